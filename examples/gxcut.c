@@ -1,0 +1,672 @@
+/* gxcut: cuts a tetrahedral mesh with triangle surfaces, steps it in time, writes frames and a report.
+
+   gxcut MESH [--sheet CUT]... [--solid CUT]... [options]; `gxcut --help` says the rest.
+   Exit codes: 0 done; 1 a cut or a step failed; 2 usage error, or a file that can't be read or written.
+   On 1 and 2 one line on stderr says what, where and why.
+
+   contents
+     >>settings    the command line
+     >>input       mesh, cuts, body
+     >>run         cut, steps, frames
+     >>report      summary and JSON */
+#include "gxio.h"
+
+#define GXFEM_IMPLEMENTATION
+#include "../gxfem.h"
+
+#ifdef _WIN32
+#include <io.h>
+#define STDERR_IS_TERMINAL (_isatty(2) != 0)
+#else
+#include <unistd.h>
+#define STDERR_IS_TERMINAL (isatty(2) != 0)
+#endif
+
+enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_MISUSED = 2 };
+
+/* -------------------------------------------------------------------------------------------- >>settings */
+
+typedef struct settings {
+    const char *mesh, *out, *format, *report;
+    const char **cuts;          /* cut_count, as given */
+    uint32_t *kinds;            /* cut_count, GX_SURFACE_SHEET or _SOLID */
+    size_t cut_count;
+    gx_region *regions;         /* region_count */
+    size_t region_count;
+    double thickness;           /* m; 0: sheets stay sheets */
+    double dt, young, poisson, density, gravity[3], stretch[3];
+    uint32_t frames, newton, cut_at;
+    int quiet, help;
+} settings;
+
+typedef struct run {
+    settings set;
+    gxio_mesh mesh;
+    gxio_surface *cuts;         /* cut_count */
+    gx_body *body;
+    gx_view view;
+    gx_skin skin;
+    double *skin_positions;     /* skin.vertex_count x 3 */
+    gx_cut_report cut;
+    int has_cut;
+    uint32_t frames_written;
+    int bar;                    /* a progress bar stands on stderr */
+    double seconds_start, seconds_newton;
+    gxio_error error;
+} run;
+
+/* What an option takes. The last four may be given more than once or, the flag, take nothing. */
+enum { TAKES_TEXT, TAKES_NUMBER, TAKES_COUNT, TAKES_VECTOR, TAKES_NOTHING, TAKES_SHEET, TAKES_SOLID, TAKES_REGION };
+
+typedef struct option {
+    const char *name;
+    int takes;
+    void *target;               /* const char *, double, uint32_t, double[3] or int of the settings */
+    int seen;
+} option;
+
+static const char usage[] =
+    "usage: gxcut MESH [--sheet CUT]... [--solid CUT]... [options]\n"
+    "\n"
+    "Cuts a tetrahedral mesh exactly, steps it in time and writes a surface per frame.\n"
+    "\n"
+    "MESH   FILE.mesh                Medit, ASCII\n"
+    "       FILE.node, FILE.ele      TetGen; either name, or FILE alone\n"
+    "       cube5                    unit cube of 5 tetrahedra\n"
+    "       grid:NX,NY,NZ[,5|6]      unit cubes of 5 (default) or 6 tetrahedra\n"
+    "       tet                      corners at the origin and at 1 on each axis\n"
+    "CUT    FILE.obj, FILE.off       triangles or polygons\n"
+    "       plane:PX,PY,PZ,NX,NY,NZ  sheet through P with normal N, across the body\n"
+    "       wave:PX,PY,PZ,NX,NY,NZ,AMPLITUDE,WAVELENGTH[,RESOLUTION]\n"
+    "                                the same as a sine wave about the plane, which runs along the coordinate\n"
+    "                                axis closest to it; RESOLUTION (16) strips per wavelength\n"
+    "       box:X0,Y0,Z0,X1,Y1,Z1    closed box\n"
+    "\n"
+    "  --sheet CUT         separates what lies on its two sides\n"
+    "  --solid CUT         closed: removes what lies inside\n"
+    "  --thickness E       makes each sheet a solid of this thickness, m\n"
+    "  --cut-at FRAME      cuts before this frame's step (0)\n"
+    "  --frames N          steps and frames (60); 0: cut and report only\n"
+    "  --dt S              time step, s (0.033)\n"
+    "  --newton N          Newton iterations per step (1)\n"
+    "  --young P           Young's modulus, Pa (1e6)\n"
+    "  --poisson X         Poisson's ratio (0.4)\n"
+    "  --density D         kg/m3 (1000)\n"
+    "  --gravity X,Y,Z     m/s2 (0,0,-9.81)\n"
+    "  --fix 'AXIS<V'      holds the material with x, y or z below V; 'AXIS>V': above\n"
+    "  --stretch X,Y,Z     starts scaled by these factors about the centre of the bounding box\n"
+    "  --out DIR           where frames go (out)\n"
+    "  --format vtu|obj    frames for ParaView with a collection frames.pvd (default), or Wavefront\n"
+    "  --report FILE.json  counts, volumes and timings\n"
+    "  --quiet             no summary, no progress bar\n"
+    "  --help              this text\n";
+
+/* A line "NAME: cause" as the run's error; returns 0. */
+static int misused(gxio_error *error, const char *name, const char *cause) { return gxio_fail(error, name, 0, "%s", cause); }
+
+static int parse_count(const char *text, uint32_t *count)
+{
+    int64_t value;
+    if (!gxio_parse_integer(text, text + strlen(text), &value) || value < 0 || value > 1000000) return 0;
+    *count = (uint32_t)value;
+    return 1;
+}
+
+/* AXIS<V or AXIS>V */
+static int parse_region(const char *text, gx_region *region)
+{
+    if (text[0] < 'x' || text[0] > 'z' || (text[1] != '<' && text[1] != '>')) return 0;
+    region->axis = (uint32_t)(text[0] - 'x');
+    region->side = text[1] == '<' ? -1 : 1;
+    return gxio_argument_number(text + 2, &region->value);
+}
+
+static void add_cut(settings *set, const char *spec, uint32_t kind)
+{
+    set->kinds[set->cut_count] = kind;
+    set->cuts[set->cut_count++] = spec;
+}
+
+/* Stores an option's value. Returns NULL, or what is wrong with it. */
+static const char *store(settings *set, const option *o, const char *value)
+{
+    switch (o->takes) {
+    case TAKES_TEXT: *(const char **)o->target = value; return *value ? NULL : "is empty";
+    case TAKES_NUMBER: return gxio_argument_number(value, (double *)o->target) ? NULL : "is not a finite number";
+    case TAKES_COUNT: return parse_count(value, (uint32_t *)o->target) ? NULL : "is not a count from 0 to 1000000";
+    case TAKES_VECTOR: return gxio_argument_list(value, (double *)o->target, 3, 3) == 3 ? NULL : "is not three finite numbers X,Y,Z";
+    case TAKES_SHEET: add_cut(set, value, GX_SURFACE_SHEET); return NULL;
+    case TAKES_SOLID: add_cut(set, value, GX_SURFACE_SOLID); return NULL;
+    default: return parse_region(value, &set->regions[set->region_count++]) ? NULL : "is not AXIS<V or AXIS>V with the axis x, y or z";
+    }
+}
+
+/* The option that `name` names, or NULL. */
+static option *find_option(option *options, const char *name)
+{
+    for (; options->name; options++)
+        if (strcmp(options->name, name) == 0) return options;
+    return NULL;
+}
+
+/* Takes the argument at argv[*i] and its value, if it has one; *i is then the last one taken. */
+static int take_argument(settings *set, option *options, int argc, char **argv, int *i, gxio_error *error)
+{
+    const char *name = argv[*i], *value, *cause;
+    option *o;
+    if (name[0] != '-') {
+        if (set->mesh) return gxio_fail(error, name, 0, "is a second mesh: one is enough");
+        set->mesh = name;
+        return 1;
+    }
+    o = find_option(options, name);
+    if (!o) return misused(error, name, "unknown option, see gxcut --help");
+    if (o->seen++ && o->takes <= TAKES_NOTHING) return misused(error, name, "is given twice");
+    if (o->takes == TAKES_NOTHING) { *(int *)o->target = 1; return 1; }
+    if (*i + 1 >= argc || strncmp(argv[*i + 1], "--", 2) == 0) return misused(error, name, "needs a value");
+    value = argv[++*i];
+    cause = store(set, o, value);
+    return cause ? gxio_fail(error, name, 0, "'%s' %s", value, cause) : 1;
+}
+
+static int take_arguments(settings *set, int argc, char **argv, gxio_error *error)
+{
+    option options[] = {
+        {"--sheet", TAKES_SHEET, NULL, 0},
+        {"--solid", TAKES_SOLID, NULL, 0},
+        {"--thickness", TAKES_NUMBER, &set->thickness, 0},
+        {"--cut-at", TAKES_COUNT, &set->cut_at, 0},
+        {"--frames", TAKES_COUNT, &set->frames, 0},
+        {"--dt", TAKES_NUMBER, &set->dt, 0},
+        {"--newton", TAKES_COUNT, &set->newton, 0},
+        {"--young", TAKES_NUMBER, &set->young, 0},
+        {"--poisson", TAKES_NUMBER, &set->poisson, 0},
+        {"--density", TAKES_NUMBER, &set->density, 0},
+        {"--gravity", TAKES_VECTOR, set->gravity, 0},
+        {"--fix", TAKES_REGION, NULL, 0},
+        {"--stretch", TAKES_VECTOR, set->stretch, 0},
+        {"--out", TAKES_TEXT, &set->out, 0},
+        {"--format", TAKES_TEXT, &set->format, 0},
+        {"--report", TAKES_TEXT, &set->report, 0},
+        {"--quiet", TAKES_NOTHING, &set->quiet, 0},
+        {"--help", TAKES_NOTHING, &set->help, 0},
+        {NULL, 0, NULL, 0}};
+    int i;
+    for (i = 1; i < argc; i++)
+        if (!take_argument(set, options, argc, argv, &i, error)) return 0;
+    if (find_option(options, "--thickness")->seen && !(set->thickness > 0.0))
+        return misused(error, "--thickness", "must be above 0");
+    return 1;
+}
+
+static int check_settings(const settings *set, gxio_error *error)
+{
+    if (!set->mesh) return misused(error, "usage", "gxcut MESH [--sheet CUT]... [--solid CUT]... [options], see gxcut --help");
+    if (!(set->dt > 0.0)) return misused(error, "--dt", "must be above 0");
+    if (!(set->young > 0.0)) return misused(error, "--young", "must be above 0");
+    if (!(set->poisson >= 0.0 && set->poisson < 0.5)) return misused(error, "--poisson", "must be at least 0 and below 0.5");
+    if (!(set->density > 0.0)) return misused(error, "--density", "must be above 0");
+    if (!set->newton) return misused(error, "--newton", "must be at least 1");
+    if (set->cut_at && set->cut_at >= set->frames) return misused(error, "--cut-at", "must be below the number of frames");
+    if (strcmp(set->format, "vtu") != 0 && strcmp(set->format, "obj") != 0) return misused(error, "--format", "must be vtu or obj");
+    return 1;
+}
+
+/* Defaults, then the arguments; cuts and regions can't be more than there are arguments. */
+static int parse_settings(settings *set, int argc, char **argv, gxio_error *error)
+{
+    const size_t room = (size_t)argc + 1;
+    set->out = "out";
+    set->format = "vtu";
+    set->dt = 0.033;
+    set->young = 1e6;
+    set->poisson = 0.4;
+    set->density = 1000.0;
+    set->gravity[2] = -9.81;
+    set->stretch[0] = set->stretch[1] = set->stretch[2] = 1.0;
+    set->frames = 60;
+    set->newton = 1;
+    set->cuts = (const char **)gxio_array(room, sizeof *set->cuts);
+    set->kinds = (uint32_t *)gxio_array(room, sizeof *set->kinds);
+    set->regions = (gx_region *)gxio_array(room, sizeof *set->regions);
+    if (!set->cuts || !set->kinds || !set->regions) return misused(error, "arguments", "out of memory");
+    if (!take_arguments(set, argc, argv, error)) return 0;
+    return set->help ? 1 : check_settings(set, error);
+}
+
+/* ----------------------------------------------------------------------------------------------- >>input */
+
+/* Ends the progress bar's line, so that what follows starts on its own. */
+static void end_bar(run *r)
+{
+    if (r->bar) fputc('\n', stderr);
+    r->bar = 0;
+}
+
+static int complain(run *r, int code)
+{
+    end_bar(r);
+    fprintf(stderr, "gxcut: %s\n", r->error.text);
+    return code;
+}
+
+static int names_point(gx_result result) { return result == GX_ERROR_NOT_FINITE || result == GX_ERROR_RANGE; }
+
+/* The library refused the mesh: names the file, and the line of the node or element to blame. */
+static int refuse_mesh(run *r, const gx_failure *failure)
+{
+    const int node = names_point(failure->result);
+    const char *path = node ? r->mesh.node_path : r->mesh.element_path, *text = gx_result_text(failure->result);
+    const uint32_t *lines = node ? r->mesh.node_lines : r->mesh.element_lines;
+    const size_t index = failure->index;
+    if (index >= (node ? r->mesh.node_count : r->mesh.element_count)) gxio_fail(&r->error, path, 0, "%s", text);
+    else gxio_fail(&r->error, path, lines ? lines[index] : 0, "%s %lu: %s", node ? "node" : "element", (unsigned long)index, text);
+    return complain(r, failure->result == GX_ERROR_MEMORY ? EXIT_FAILED : EXIT_MISUSED);
+}
+
+/* A cut failed: names it, and the line of the triangle to blame. */
+static int refuse_cut(run *r, const gx_failure *failure)
+{
+    const char *text = gx_result_text(failure->result), *what = names_point(failure->result) ? "vertex" : "triangle";
+    const size_t s = failure->surface, index = failure->index;
+    if (s >= r->set.cut_count) {
+        if (index == SIZE_MAX) gxio_fail(&r->error, "cut", 0, "%s", text);
+        else gxio_fail(&r->error, "cut", 0, "index %lu: %s", (unsigned long)index, text);
+    } else if (index == SIZE_MAX) {
+        gxio_fail(&r->error, r->set.cuts[s], 0, "cut %lu: %s", (unsigned long)s, text);
+    } else {
+        const gxio_surface *cut = &r->cuts[s];
+        const int known = cut->triangle_lines && !names_point(failure->result) && index < cut->triangle_count;
+        gxio_fail(&r->error, r->set.cuts[s], known ? cut->triangle_lines[index] : 0, "cut %lu, %s %lu: %s",
+                  (unsigned long)s, what, (unsigned long)index, text);
+    }
+    return complain(r, EXIT_FAILED);
+}
+
+static gx_surface view_cut(const run *r, size_t i)
+{
+    gx_surface surface;
+    memset(&surface, 0, sizeof surface);
+    surface.vertices = r->cuts[i].vertices;
+    surface.vertex_count = r->cuts[i].vertex_count;
+    surface.triangles = r->cuts[i].triangles;
+    surface.triangle_count = r->cuts[i].triangle_count;
+    surface.kind = r->set.kinds[i];
+    return surface;
+}
+
+/* Replaces a sheet by a solid of the given thickness. Its triangles are new: no line of the file is theirs. */
+static int thicken(run *r, size_t i)
+{
+    const gx_surface sheet = view_cut(r, i);
+    gxio_surface solid;
+    gx_failure failure;
+    memset(&solid, 0, sizeof solid);
+    failure.index = SIZE_MAX;
+    failure.surface = i;
+    solid.vertices = (double *)gxio_array(sheet.vertex_count, 2 * 3 * sizeof(double));
+    solid.triangles = (uint32_t *)gxio_array(sheet.triangle_count, 8 * 3 * sizeof(uint32_t));
+    failure.result = !solid.vertices || !solid.triangles ? GX_ERROR_MEMORY
+        : gx_surface_solidify(&sheet, r->set.thickness, solid.vertices, &solid.vertex_count, solid.triangles,
+                              &solid.triangle_count, NULL);
+    if (failure.result != GX_OK) {
+        gxio_surface_release(&solid);
+        return refuse_cut(r, &failure);
+    }
+    gxio_surface_release(&r->cuts[i]);
+    r->cuts[i] = solid;
+    r->set.kinds[i] = GX_SURFACE_SOLID;
+    return EXIT_DONE;
+}
+
+static int load(run *r)
+{
+    size_t i;
+    int code = EXIT_DONE;
+    if (!gxio_mesh_load(r->set.mesh, &r->mesh, &r->error)) return complain(r, EXIT_MISUSED);
+    r->cuts = (gxio_surface *)calloc(r->set.cut_count + 1, sizeof *r->cuts);
+    if (!r->cuts) { misused(&r->error, "cuts", "out of memory"); return complain(r, EXIT_FAILED); }
+    for (i = 0; i < r->set.cut_count; i++)
+        if (!gxio_surface_load(r->set.cuts[i], &r->mesh, &r->cuts[i], &r->error)) return complain(r, EXIT_MISUSED);
+    for (i = 0; i < r->set.cut_count && code == EXIT_DONE && r->set.thickness > 0.0; i++)
+        if (r->set.kinds[i] == GX_SURFACE_SHEET) code = thicken(r, i);
+    return code;
+}
+
+/* A call on the body failed for no reason in its input: "WHAT: text". */
+static int fail(run *r, const char *what, gx_result result)
+{
+    misused(&r->error, what, gx_result_text(result));
+    return complain(r, EXIT_FAILED);
+}
+
+/* Displacement u = (s - 1)(X - centre of the bounding box), component by component. */
+static gx_result stretch(run *r)
+{
+    double low[3], high[3];
+    size_t copy, axis;
+    const gx_result result = gx_body_view(r->body, &r->view);
+    gxio_bounds(r->mesh.positions, r->mesh.node_count, low, high);
+    for (copy = 0; result == GX_OK && copy < r->view.copy_count; copy++)
+        for (axis = 0; axis < 3; axis++) {
+            const double x = r->mesh.positions[3 * (size_t)r->view.copy_node[copy] + axis];
+            r->view.displacement[3 * copy + axis] = (r->set.stretch[axis] - 1.0) * (x - 0.5 * (low[axis] + high[axis]));
+        }
+    return result;
+}
+
+/* The body, stretched, then held: what is held stays where the stretch put it. */
+static int build(run *r)
+{
+    gx_body_desc desc;
+    gx_failure failure;
+    gx_result result;
+    memset(&desc, 0, sizeof desc);
+    desc.positions = r->mesh.positions;
+    desc.node_count = r->mesh.node_count;
+    desc.elements = r->mesh.elements;
+    desc.element_count = r->mesh.element_count;
+    desc.young = r->set.young;
+    desc.poisson = r->set.poisson;
+    desc.density = r->set.density;
+    desc.clock = gxio_seconds;
+    result = gx_body_create(&desc, &r->body, &failure);
+    if (result != GX_OK) return refuse_mesh(r, &failure);
+    result = stretch(r);
+    if (result == GX_OK && r->set.region_count) result = gx_body_hold(r->body, r->set.regions, r->set.region_count);
+    return result == GX_OK ? EXIT_DONE : fail(r, "body", result);
+}
+
+/* ------------------------------------------------------------------------------------------------- >>run */
+
+/* All cuts in one call. */
+static int cut(run *r)
+{
+    gx_surface *surfaces = (gx_surface *)gxio_array(r->set.cut_count, sizeof *surfaces);
+    gx_cut_desc desc;
+    gx_failure failure;
+    gx_result result;
+    size_t i;
+    if (!surfaces) return fail(r, "cut", GX_ERROR_MEMORY);
+    for (i = 0; i < r->set.cut_count; i++) surfaces[i] = view_cut(r, i);
+    memset(&desc, 0, sizeof desc);
+    desc.surfaces = surfaces;
+    desc.surface_count = r->set.cut_count;
+    result = gx_body_cut(r->body, &desc, &r->cut, &failure);
+    free(surfaces);
+    r->has_cut = result == GX_OK;
+    return result == GX_OK ? EXIT_DONE : refuse_cut(r, &failure);
+}
+
+/* Looks at the body as it now is: view, and skin with room for its positions if frames are to be written. */
+static int look(run *r)
+{
+    gx_result result = gx_body_view(r->body, &r->view);
+    if (result == GX_OK && r->set.frames) {
+        result = gx_body_skin(r->body, &r->skin);
+        free(r->skin_positions);
+        r->skin_positions = result == GX_OK ? (double *)gxio_array(r->skin.vertex_count, 3 * sizeof(double)) : NULL;
+        if (result == GX_OK && !r->skin_positions) result = GX_ERROR_MEMORY;
+    }
+    return result == GX_OK ? EXIT_DONE : fail(r, "surface", result);
+}
+
+/* DIR/NAME; fails where it is too long. */
+static int join_path(run *r, const char *name, char path[GXIO_PATH_ROOM])
+{
+    const int length = snprintf(path, GXIO_PATH_ROOM, "%s/%s", r->set.out, name);
+    return length > 0 && length < GXIO_PATH_ROOM ? 1 : misused(&r->error, "--out", "the path is too long");
+}
+
+static int write_frame(run *r, uint32_t frame)
+{
+    gxio_triangles t;
+    char name[32], path[GXIO_PATH_ROOM];
+    gx_body_skin_positions(r->body, &r->skin, r->skin_positions);
+    t.positions = r->skin_positions;
+    t.vertex_count = r->skin.vertex_count;
+    t.triangles = r->skin.triangles;
+    t.triangle_count = r->skin.triangle_count;
+    t.fragment = r->skin.triangle_fragment;
+    t.fragment_count = r->view.fragment_count;
+    t.cut = r->skin.triangle_cut;
+    gxio_frame_name(name, sizeof name, frame, r->set.format);
+    if (!join_path(r, name, path)) return 0;
+    if (!(strcmp(r->set.format, "obj") == 0 ? gxio_write_obj(path, &t, &r->error) : gxio_write_vtu(path, &t, &r->error))) return 0;
+    r->frames_written = frame + 1;
+    return 1;
+}
+
+/* The collection of the frames there are: written also where a later step failed. */
+static int write_collection(run *r)
+{
+    char path[GXIO_PATH_ROOM];
+    if (!r->frames_written || strcmp(r->set.format, "vtu") != 0) return 1;
+    return join_path(r, "frames.pvd", path) && gxio_write_pvd(path, r->frames_written, r->set.dt, &r->error);
+}
+
+static void draw_bar(run *r, uint32_t done)
+{
+    const int width = 40, filled = (int)((double)width * done / r->set.frames);
+    int i;
+    if (r->set.quiet || !STDERR_IS_TERMINAL) return;
+    fputs("\r[", stderr);
+    for (i = 0; i < width; i++) fputc(i < filled ? '#' : '.', stderr);
+    fprintf(stderr, "] %lu/%lu", (unsigned long)done, (unsigned long)r->set.frames);
+    fflush(stderr);
+    r->bar = 1;
+}
+
+static int refuse_step(run *r, uint32_t frame, gx_result result)
+{
+    char name[32];
+    snprintf(name, sizeof name, "frame %lu", (unsigned long)frame);
+    if (!write_collection(r)) return complain(r, EXIT_MISUSED);
+    if (frame) gxio_fail(&r->error, name, 0, "%s; the %lu frames before it are in %s", gx_result_text(result), (unsigned long)frame, r->set.out);
+    else misused(&r->error, name, gx_result_text(result));
+    return complain(r, EXIT_FAILED);
+}
+
+static int step(run *r, uint32_t frame)
+{
+    gx_step_desc desc;
+    gx_step_report report;
+    gx_result result;
+    memset(&desc, 0, sizeof desc);
+    desc.dt = r->set.dt;
+    memcpy(desc.gravity, r->set.gravity, sizeof desc.gravity);
+    desc.newton_iterations = r->set.newton;
+    result = gx_body_step(r->body, &desc, &report);
+    if (result != GX_OK) return refuse_step(r, frame, result);
+    r->seconds_newton += report.seconds;
+    return EXIT_DONE;
+}
+
+/* One frame: cut if it is time to, step, write. */
+static int advance(run *r, uint32_t frame)
+{
+    int code = EXIT_DONE;
+    if (frame == r->set.cut_at) {
+        if (r->set.cut_count) code = cut(r);
+        if (code == EXIT_DONE) code = look(r);
+    }
+    if (code == EXIT_DONE) code = step(r, frame);
+    if (code != EXIT_DONE) return code;
+    if (frame == 0 && !gxio_make_directory(r->set.out, &r->error)) return complain(r, EXIT_MISUSED);
+    if (!write_frame(r, frame)) return complain(r, EXIT_MISUSED);
+    draw_bar(r, frame + 1);
+    return EXIT_DONE;
+}
+
+static int simulate(run *r)
+{
+    uint32_t frame;
+    int code = EXIT_DONE;
+    if (!r->set.frames) {
+        if (r->set.cut_count) code = cut(r);
+        return code == EXIT_DONE ? look(r) : code;
+    }
+    if (r->set.cut_at) code = look(r);
+    for (frame = 0; frame < r->set.frames && code == EXIT_DONE; frame++) code = advance(r, frame);
+    end_bar(r);
+    if (code == EXIT_DONE && !write_collection(r)) code = complain(r, EXIT_MISUSED);
+    return code;
+}
+
+/* ---------------------------------------------------------------------------------------------- >>report */
+
+static int compare_doubles(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double smallest_link(const run *r) { return r->has_cut ? r->cut.min_link_ratio : 1.0; }
+
+/* "name": [values, ascending]; sorts them in place. */
+static void print_volumes(FILE *stream, const char *name, double *values, size_t count)
+{
+    size_t i;
+    if (count) qsort(values, count, sizeof *values, compare_doubles);
+    fprintf(stream, "\"%s\": [", name);
+    for (i = 0; i < count; i++) fprintf(stream, "%s%.17g", i ? ", " : "", values[i]);
+    fputc(']', stream);
+}
+
+/* Cells of view are sorted by element: the end of those of element e that begin at `cell`. */
+static size_t cells_end(const gx_view *view, size_t cell, size_t e)
+{
+    while (cell < view->cell_count && view->cell_element[cell] == e) cell++;
+    return cell;
+}
+
+static void print_cells(FILE *stream, const gx_view *view, double *volumes)
+{
+    size_t e, cell = 0, end;
+    char name[24];
+    fprintf(stream, "  \"cells_per_element\": [");
+    for (e = 0; e < view->element_count; e++, cell = end) {
+        end = cells_end(view, cell, e);
+        fprintf(stream, "%s%lu", e ? ", " : "", (unsigned long)(end - cell));
+    }
+    fprintf(stream, "],\n  \"cell_volumes\": {");
+    for (e = 0, cell = 0; e < view->element_count; e++, cell = end) {
+        end = cells_end(view, cell, e);
+        fputs(e ? ",\n    " : "\n    ", stream);
+        snprintf(name, sizeof name, "%lu", (unsigned long)e);
+        print_volumes(stream, name, volumes + cell, end - cell);
+    }
+    fprintf(stream, "\n  },\n");
+}
+
+static void print_report(FILE *stream, run *r, uint64_t hash, double *cell_volumes, double *fragment_volumes)
+{
+    const gx_view *view = &r->view;
+    fprintf(stream, "{\n  \"elements\": %lu,\n  \"nodes\": %lu,\n  \"cells\": %lu,\n", (unsigned long)view->element_count,
+            (unsigned long)view->node_count, (unsigned long)view->cell_count);
+    print_cells(stream, view, cell_volumes);
+    fprintf(stream, "  \"copies\": %lu,\n  \"fragments\": %lu,\n  ", (unsigned long)view->copy_count, (unsigned long)view->fragment_count);
+    print_volumes(stream, "fragment_volumes", fragment_volumes, view->fragment_count);
+    fprintf(stream, ",\n  \"volume\": %.17g,\n  \"dofs\": %lu,\n  \"mass\": %.17g,\n", view->volume,
+            3 * (unsigned long)view->copy_count, view->mass);
+    fprintf(stream, "  \"topology_hash\": \"%08lx%08lx\",\n  \"min_link_ratio\": %.17g,\n", (unsigned long)(hash >> 32),
+            (unsigned long)(hash & 0xffffffffu), smallest_link(r));
+    fprintf(stream, "  \"timings\": {\"arrangement\": %.17g, \"enrichment\": %.17g, \"integrals\": %.17g, \"newton\": %.17g, \"total\": %.17g},\n",
+            r->cut.seconds_arrangement, r->cut.seconds_enrichment, r->cut.seconds_integrals, r->seconds_newton,
+            gxio_seconds(NULL) - r->seconds_start);
+    fprintf(stream, "  \"frames\": %lu\n}\n", (unsigned long)r->set.frames);
+}
+
+static double *copy_doubles(const double *values, size_t count)
+{
+    double *copy = (double *)gxio_array(count, sizeof *copy);
+    if (copy && count) memcpy(copy, values, count * sizeof *copy);
+    return copy;
+}
+
+static int report(run *r)
+{
+    gx_result result = GX_OK;
+    const uint64_t hash = gx_body_topology_hash(r->body, &result);
+    double *cells = copy_doubles(r->view.cell_volume, r->view.cell_count);
+    double *fragments = copy_doubles(r->view.fragment_volume, r->view.fragment_count);
+    gxio_writer writer;
+    int code = EXIT_DONE;
+    if (!cells || !fragments) result = GX_ERROR_MEMORY;
+    if (result != GX_OK) code = fail(r, "report", result);
+    else if (!gxio_writer_open(&writer, r->set.report, &r->error)) code = complain(r, EXIT_MISUSED);
+    else {
+        print_report(writer.stream, r, hash, cells, fragments);
+        if (!gxio_writer_close(&writer, 1, &r->error)) code = complain(r, EXIT_MISUSED);
+    }
+    free(cells);
+    free(fragments);
+    return code;
+}
+
+static void summarise_frames(const run *r)
+{
+    char first[32], last[32];
+    if (!r->set.frames) return;
+    gxio_frame_name(first, sizeof first, 0, r->set.format);
+    gxio_frame_name(last, sizeof last, r->set.frames - 1, r->set.format);
+    printf("steps     %lu of %g s, %.3g ms each\n", (unsigned long)r->set.frames, r->set.dt, 1e3 * r->seconds_newton / r->set.frames);
+    printf("wrote     %s/%s to %s", r->set.out, first, last);
+    if (strcmp(r->set.format, "vtu") == 0) printf("; ParaView opens %s/frames.pvd", r->set.out);
+    putchar('\n');
+}
+
+static void summarise(const run *r)
+{
+    const gx_view *view = &r->view;
+    printf("mesh      %s: %lu nodes, %lu elements\n", r->set.mesh, (unsigned long)view->node_count, (unsigned long)view->element_count);
+    if (r->has_cut)
+        printf("cuts      %lu: %lu elements touched, smallest link %.3g of its face, removed volume %.6g m3\n", (unsigned long)r->set.cut_count,
+               (unsigned long)r->cut.touched_elements, r->cut.min_link_ratio, r->cut.removed_volume);
+    printf("body      %lu cells, %lu fragments, volume %.15g m3, mass %.6g kg\n", (unsigned long)view->cell_count,
+           (unsigned long)view->fragment_count, view->volume, view->mass);
+    printf("unknowns  %lu copies x 3 = %lu\n", (unsigned long)view->copy_count, 3 * (unsigned long)view->copy_count);
+    if (r->has_cut)
+        printf("cut time  %.3g ms: arrangement %.3g, enrichment %.3g, integrals %.3g\n",
+               1e3 * (r->cut.seconds_arrangement + r->cut.seconds_enrichment + r->cut.seconds_integrals),
+               1e3 * r->cut.seconds_arrangement, 1e3 * r->cut.seconds_enrichment, 1e3 * r->cut.seconds_integrals);
+    summarise_frames(r);
+    if (r->set.report) printf("report    %s\n", r->set.report);
+}
+
+static void release(run *r)
+{
+    size_t i;
+    for (i = 0; r->cuts && i < r->set.cut_count; i++) gxio_surface_release(&r->cuts[i]);
+    free(r->cuts);
+    free(r->skin_positions);
+    gx_body_destroy(r->body);
+    gxio_mesh_release(&r->mesh);
+    free((void *)r->set.cuts);
+    free(r->set.kinds);
+    free(r->set.regions);
+}
+
+static int execute(run *r, int argc, char **argv)
+{
+    int code;
+    if (!parse_settings(&r->set, argc, argv, &r->error)) return complain(r, EXIT_MISUSED);
+    if (r->set.help) { fputs(usage, stdout); return EXIT_DONE; }
+    code = load(r);
+    if (code == EXIT_DONE) code = build(r);
+    if (code == EXIT_DONE) code = simulate(r);
+    if (code == EXIT_DONE && r->set.report) code = report(r);
+    if (code == EXIT_DONE && !r->set.quiet) summarise(r);
+    return code;
+}
+
+int main(int argc, char **argv)
+{
+    run r;
+    int code;
+    memset(&r, 0, sizeof r);
+    r.seconds_start = gxio_seconds(NULL);
+    code = execute(&r, argc, argv);
+    release(&r);
+    return code;
+}

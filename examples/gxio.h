@@ -1,0 +1,1206 @@
+/* gxio.h: what the examples read and write. Plain arrays in and out; knows nothing of gxfem.h.
+
+   contents
+     >>errors      one line of text: file, line, cause
+     >>reader      a whole file in memory, read token by token
+     >>arguments   numbers and lists of numbers out of a command line
+     >>mesh        tetrahedral meshes: Medit .mesh, TetGen .node/.ele, generated cube5, grid:..., tet
+     >>surface     triangle surfaces: .obj, .off, generated plane:..., box:..., wave:...
+     >>writer      files that are either complete or not there
+     >>frames      triangles with fragment ids as .vtu or .obj, and the .pvd collection of a run
+     >>clock       seconds, directories
+
+   Every function that can fail returns 1 on success and 0 on failure, with one line in error->text.
+   What a failed function was filling is empty or released by the matching gxio_*_release. */
+#ifndef GXIO_H
+#define GXIO_H
+
+#if !defined(_WIN32) && !defined(_POSIX_C_SOURCE)
+#define _POSIX_C_SOURCE 200809L     /* clock_gettime; include this file before the system's */
+#endif
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#ifdef _WIN32
+#include <direct.h>
+#else
+#include <sys/stat.h>
+#include <sys/types.h>
+#endif
+
+enum { GXIO_PATH_ROOM = 1024 };     /* longest path, with its terminator, bytes */
+
+/* ------------------------------------------------------------------------------------------------ >>errors */
+
+typedef struct gxio_error { char text[2 * GXIO_PATH_ROOM]; } gxio_error;
+
+/* Writes "PATH:LINE: cause" (line 0: "PATH: cause"). Returns 0, so that a caller can return it. */
+static inline int gxio_fail(gxio_error *error, const char *path, size_t line, const char *format, ...)
+{
+    const size_t room = sizeof error->text;
+    va_list arguments;
+    int used = line ? snprintf(error->text, room, "%s:%lu: ", path, (unsigned long)line)
+                    : snprintf(error->text, room, "%s: ", path);
+    if (used < 0 || (size_t)used >= room) return 0;
+    va_start(arguments, format);
+    vsnprintf(error->text + used, room - (size_t)used, format, arguments);
+    va_end(arguments);
+    return 0;
+}
+
+/* ------------------------------------------------------------------------------------------------ >>reader */
+
+typedef struct gxio_reader {
+    const char *path;
+    char *text;                 /* the whole file and a terminating 0; owned */
+    const char *at, *end;       /* next character; the terminating 0 */
+    size_t line;                /* of `at`, from 1 */
+    const char *token;          /* the last token read, not terminated */
+    size_t token_length, token_line;
+} gxio_reader;
+
+enum { GXIO_SAME_LINE = 0, GXIO_ANY_LINE = 1 };     /* where the next token may stand */
+
+static inline void gxio_reader_release(gxio_reader *reader)
+{
+    free(reader->text);
+    memset(reader, 0, sizeof *reader);
+}
+
+/* The bytes of a file and a terminating 0, to be freed by the caller. NULL on failure; errno says why. */
+static inline char *gxio_slurp(const char *path, size_t *length)
+{
+    size_t capacity = 1 << 16, used = 0;
+    FILE *stream = fopen(path, "rb");
+    char *text = stream ? (char *)malloc(capacity) : NULL;
+    while (text) {
+        char *grown;
+        used += fread(text + used, 1, capacity - used - 1, stream);
+        if (used < capacity - 1) break;
+        grown = (char *)realloc(text, 2 * capacity);
+        if (!grown) { free(text); text = NULL; break; }
+        text = grown;
+        capacity *= 2;
+    }
+    if (text && ferror(stream)) { free(text); text = NULL; }
+    if (text) text[used] = 0;
+    if (stream) fclose(stream);
+    *length = used;
+    return text;
+}
+
+static inline int gxio_reader_open(gxio_reader *reader, const char *path, gxio_error *error)
+{
+    size_t length = 0;
+    memset(reader, 0, sizeof *reader);
+    reader->path = path;
+    reader->line = reader->token_line = 1;
+    errno = 0;
+    reader->text = gxio_slurp(path, &length);
+    if (!reader->text) return gxio_fail(error, path, 0, "cannot be read: %s", strerror(errno ? errno : EIO));
+    reader->at = reader->text;
+    reader->end = reader->text + length;
+    if (memchr(reader->text, 0, length)) {
+        gxio_reader_release(reader);
+        return gxio_fail(error, path, 0, "is binary, not text");
+    }
+    return 1;
+}
+
+static inline int gxio_is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
+
+static inline void gxio_skip_line(gxio_reader *reader)
+{
+    while (*reader->at && *reader->at != '\n') reader->at++;
+}
+
+/* Advances to the next token: text up to a blank, past comments (# to the end of the line).
+   Returns 0 where there is none: at the end of the file, or of the line if it must stand on the same one. */
+static inline int gxio_next(gxio_reader *reader, int where)
+{
+    for (;;) {
+        const char c = *reader->at;
+        if (c == '#') gxio_skip_line(reader);
+        else if (gxio_is_blank(c)) reader->at++;
+        else if (c == '\n' && where == GXIO_ANY_LINE) { reader->at++; reader->line++; }
+        else break;
+    }
+    if (!*reader->at || *reader->at == '\n') return 0;
+    reader->token = reader->at;
+    reader->token_line = reader->line;
+    while (*reader->at && *reader->at != '\n' && *reader->at != '#' && !gxio_is_blank(*reader->at)) reader->at++;
+    reader->token_length = (size_t)(reader->at - reader->token);
+    return 1;
+}
+
+static inline int gxio_token_is(const gxio_reader *reader, const char *word)
+{
+    return strlen(word) == reader->token_length && memcmp(word, reader->token, reader->token_length) == 0;
+}
+
+/* Fails at the last token: "PATH:LINE: 'token' cause". */
+static inline int gxio_bad_token(const gxio_reader *reader, const char *cause, gxio_error *error)
+{
+    const int shown = reader->token_length < 40 ? (int)reader->token_length : 40;
+    return gxio_fail(error, reader->path, reader->token_line, "'%.*s' %s", shown, reader->token, cause);
+}
+
+/* The next token, or a failure that says what is missing. */
+static inline int gxio_need(gxio_reader *reader, int where, const char *what, gxio_error *error)
+{
+    if (gxio_next(reader, where)) return 1;
+    if (!*reader->at) return gxio_fail(error, reader->path, reader->token_line, "the file ends where %s should stand", what);
+    return gxio_fail(error, reader->path, reader->line, "%s is missing", what);
+}
+
+/* A finite double that fills [text, end). Infinities and NaN are recognised by their letters and by errno, never by
+   arithmetic, so that -ffast-math can't hide them. */
+static inline int gxio_parse_number(const char *text, const char *end, double *value)
+{
+    const char *first = text + (*text == '-' || *text == '+');
+    char *stop;
+    if (first >= end || !((*first >= '0' && *first <= '9') || *first == '.')) return 0;
+    errno = 0;
+    *value = strtod(text, &stop);
+    return stop == end && !(errno == ERANGE && fabs(*value) > 1.0);
+}
+
+/* An integer that fills [text, end), |value| <= 2^53. */
+static inline int gxio_parse_integer(const char *text, const char *end, int64_t *value)
+{
+    const int64_t limit = (int64_t)1 << 53;
+    const int negative = *text == '-';
+    int64_t sum = 0;
+    if (*text == '-' || *text == '+') text++;
+    if (text >= end) return 0;
+    for (; text < end; text++) {
+        if (*text < '0' || *text > '9') return 0;
+        sum = 10 * sum + (*text - '0');
+        if (sum > limit) return 0;
+    }
+    *value = negative ? -sum : sum;
+    return 1;
+}
+
+static inline int gxio_read_number(gxio_reader *reader, int where, const char *what, double *value, gxio_error *error)
+{
+    if (!gxio_need(reader, where, what, error)) return 0;
+    if (gxio_parse_number(reader->token, reader->token + reader->token_length, value)) return 1;
+    return gxio_bad_token(reader, "is not a finite number", error);
+}
+
+static inline int gxio_read_integer(gxio_reader *reader, int where, const char *what, int64_t *value, gxio_error *error)
+{
+    if (!gxio_need(reader, where, what, error)) return 0;
+    if (gxio_parse_integer(reader->token, reader->token + reader->token_length, value)) return 1;
+    return gxio_bad_token(reader, "is not an integer", error);
+}
+
+/* The count of a list. A count that the rest of the file can't hold (two bytes per entry) is refused before anything
+   is allocated for it. */
+static inline int gxio_read_count(gxio_reader *reader, int where, const char *what, size_t *count, gxio_error *error)
+{
+    int64_t value = 0;
+    if (!gxio_read_integer(reader, where, what, &value, error)) return 0;
+    if (value < 0) return gxio_bad_token(reader, "is a negative count", error);
+    if (value >= (int64_t)UINT32_MAX) return gxio_bad_token(reader, "is too large a count", error);
+    if (value > (reader->end - reader->at) / 2 + 1)
+        return gxio_bad_token(reader, "is a larger count than the file is long: it is cut off", error);
+    *count = (size_t)value;
+    return 1;
+}
+
+static inline int gxio_read_point(gxio_reader *reader, int where, double point[3], gxio_error *error)
+{
+    return gxio_read_number(reader, where, "a coordinate", &point[0], error)
+        && gxio_read_number(reader, where, "a coordinate", &point[1], error)
+        && gxio_read_number(reader, where, "a coordinate", &point[2], error);
+}
+
+/* An index of 0..UINT32_MAX; whether it lies inside its array is checked when the array is complete. */
+static inline int gxio_read_index(gxio_reader *reader, int where, uint32_t *index, gxio_error *error)
+{
+    int64_t value = 0;
+    if (!gxio_read_integer(reader, where, "an index", &value, error)) return 0;
+    if (value < 0 || value > (int64_t)UINT32_MAX) return gxio_bad_token(reader, "is an index out of range", error);
+    *index = (uint32_t)value;
+    return 1;
+}
+
+/* --------------------------------------------------------------------------------------------- >>arguments */
+
+static inline int gxio_argument_number(const char *text, double *value)
+{
+    return gxio_parse_number(text, text + strlen(text), value);
+}
+
+/* Reads between `least` and `most` numbers separated by commas. Returns how many, -1 on anything else. */
+static inline int gxio_argument_list(const char *text, double *values, int least, int most)
+{
+    int count = 0;
+    for (;;) {
+        const char *end = text + strcspn(text, ",");
+        if (count == most || !gxio_parse_number(text, end, &values[count])) return -1;
+        count++;
+        if (!*end) return count >= least ? count : -1;
+        text = end + 1;
+    }
+}
+
+static inline int gxio_ends_with(const char *text, const char *ending)
+{
+    const size_t length = strlen(text), tail = strlen(ending);
+    return length > tail && strcmp(text + length - tail, ending) == 0;
+}
+
+/* What follows `prefix` in text, or NULL. */
+static inline const char *gxio_after(const char *text, const char *prefix)
+{
+    const size_t length = strlen(prefix);
+    return strncmp(text, prefix, length) == 0 ? text + length : NULL;
+}
+
+/* ---------------------------------------------------------------------------------------------- >>mesh */
+
+typedef struct gxio_mesh {
+    double *positions;          /* node_count x 3 */
+    size_t node_count;
+    uint32_t *elements;         /* element_count x 4 */
+    size_t element_count;
+    uint32_t *node_lines;       /* node_count, lines of node_path; NULL: generated */
+    uint32_t *element_lines;    /* element_count, lines of element_path; NULL: generated */
+    char node_path[GXIO_PATH_ROOM], element_path[GXIO_PATH_ROOM];
+} gxio_mesh;
+
+static inline void gxio_mesh_release(gxio_mesh *mesh)
+{
+    free(mesh->positions);
+    free(mesh->elements);
+    free(mesh->node_lines);
+    free(mesh->element_lines);
+    memset(mesh, 0, sizeof *mesh);
+}
+
+/* malloc of count x size bytes, never of 0; NULL also where the product overflows. */
+static inline void *gxio_array(size_t count, size_t size)
+{
+    if (count > (SIZE_MAX - 1) / size) return NULL;
+    return malloc(count ? count * size : 1);
+}
+
+static inline int gxio_mesh_nodes(gxio_mesh *mesh, size_t count)
+{
+    mesh->node_count = count;
+    mesh->positions = (double *)gxio_array(count, 3 * sizeof(double));
+    mesh->node_lines = (uint32_t *)gxio_array(count, sizeof(uint32_t));
+    return mesh->positions && mesh->node_lines;
+}
+
+static inline int gxio_mesh_elements(gxio_mesh *mesh, size_t count)
+{
+    mesh->element_count = count;
+    mesh->elements = (uint32_t *)gxio_array(count, 4 * sizeof(uint32_t));
+    mesh->element_lines = (uint32_t *)gxio_array(count, sizeof(uint32_t));
+    return mesh->elements && mesh->element_lines;
+}
+
+static inline void gxio_bounds(const double *points, size_t count, double low[3], double high[3])
+{
+    size_t i;
+    int axis;
+    for (axis = 0; axis < 3; axis++) low[axis] = high[axis] = count ? points[axis] : 0.0;
+    for (i = 0; i < 3 * count; i++) {
+        if (points[i] < low[i % 3]) low[i % 3] = points[i];
+        if (points[i] > high[i % 3]) high[i % 3] = points[i];
+    }
+}
+
+/* det(x1 - x0, x2 - x0, x3 - x0) in doubles. */
+static inline double gxio_element_determinant(const double *positions, const uint32_t *element)
+{
+    double d[3][3];
+    int corner, axis;
+    for (corner = 0; corner < 3; corner++)
+        for (axis = 0; axis < 3; axis++)
+            d[corner][axis] = positions[3 * element[corner + 1] + (uint32_t)axis] - positions[3 * element[0] + (uint32_t)axis];
+    return d[0][0] * (d[1][1] * d[2][2] - d[1][2] * d[2][1]) - d[0][1] * (d[1][0] * d[2][2] - d[1][2] * d[2][0])
+         + d[0][2] * (d[1][0] * d[2][1] - d[1][1] * d[2][0]);
+}
+
+/* Some programs number a tetrahedron's corners the other way round. A file of several elements, none positive and some
+   negative, is one of these: its elements are turned. Otherwise (also with one element, which shows no convention) the
+   file's order stays, and an inverted element is for the library to refuse. */
+static inline void gxio_mesh_orient(gxio_mesh *mesh)
+{
+    size_t e, negative = 0;
+    for (e = 0; e < mesh->element_count; e++) {
+        const double determinant = gxio_element_determinant(mesh->positions, mesh->elements + 4 * e);
+        if (determinant > 0.0) return;
+        if (determinant < 0.0) negative++;
+    }
+    if (!negative || mesh->element_count < 2) return;
+    for (e = 0; e < mesh->element_count; e++) {
+        uint32_t *corner = mesh->elements + 4 * e, swap = corner[2];
+        corner[2] = corner[3];
+        corner[3] = swap;
+    }
+}
+
+/* Subtracts the file's first index (0 or 1) from all corners and checks that each names a node. */
+static inline int gxio_mesh_rebase(gxio_mesh *mesh, uint32_t base, gxio_error *error)
+{
+    size_t i;
+    for (i = 0; i < 4 * mesh->element_count; i++) {
+        const uint32_t index = mesh->elements[i];
+        if (index < base || index - base >= mesh->node_count)
+            return gxio_fail(error, mesh->element_path, mesh->element_lines[i / 4],
+                             "node index %lu is out of range: the nodes are %lu to %lu", (unsigned long)index,
+                             (unsigned long)base, (unsigned long)(mesh->node_count + base) - (mesh->node_count ? 1u : 0u));
+        mesh->elements[i] = index - base;
+    }
+    return 1;
+}
+
+static inline int gxio_medit_vertices(gxio_reader *reader, gxio_mesh *mesh, gxio_error *error)
+{
+    size_t i, count = 0;
+    double reference;
+    if (mesh->positions) return gxio_bad_token(reader, "occurs twice", error);
+    if (!gxio_read_count(reader, GXIO_ANY_LINE, "the number of vertices", &count, error)) return 0;
+    if (!gxio_mesh_nodes(mesh, count)) return gxio_fail(error, reader->path, reader->line, "out of memory");
+    for (i = 0; i < count; i++) {
+        if (!gxio_read_point(reader, GXIO_ANY_LINE, mesh->positions + 3 * i, error)) return 0;
+        mesh->node_lines[i] = (uint32_t)reader->token_line;
+        if (!gxio_read_number(reader, GXIO_ANY_LINE, "a vertex's reference", &reference, error)) return 0;
+    }
+    return 1;
+}
+
+static inline int gxio_medit_tetrahedra(gxio_reader *reader, gxio_mesh *mesh, gxio_error *error)
+{
+    size_t i, corner, count = 0;
+    double reference;
+    if (mesh->elements) return gxio_bad_token(reader, "occurs twice", error);
+    if (!gxio_read_count(reader, GXIO_ANY_LINE, "the number of tetrahedra", &count, error)) return 0;
+    if (!gxio_mesh_elements(mesh, count)) return gxio_fail(error, reader->path, reader->line, "out of memory");
+    for (i = 0; i < count; i++) {
+        for (corner = 0; corner < 4; corner++)
+            if (!gxio_read_index(reader, GXIO_ANY_LINE, mesh->elements + 4 * i + corner, error)) return 0;
+        mesh->element_lines[i] = (uint32_t)reader->token_line;
+        if (!gxio_read_number(reader, GXIO_ANY_LINE, "a tetrahedron's reference", &reference, error)) return 0;
+    }
+    return 1;
+}
+
+/* MeshVersionFormatted 1 (float) or 2 (double); the later ones differ in binary files only. */
+static inline int gxio_medit_header(gxio_reader *reader, gxio_error *error)
+{
+    int64_t version = 0;
+    if (!gxio_need(reader, GXIO_ANY_LINE, "MeshVersionFormatted", error)) return 0;
+    if (!gxio_token_is(reader, "MeshVersionFormatted"))
+        return gxio_bad_token(reader, "stands where a Medit mesh has MeshVersionFormatted", error);
+    if (!gxio_read_integer(reader, GXIO_ANY_LINE, "the format's version", &version, error)) return 0;
+    return version >= 1 && version <= 4 ? 1 : gxio_bad_token(reader, "is not a known version of the format", error);
+}
+
+static inline int gxio_medit_dimension(gxio_reader *reader, gxio_error *error)
+{
+    int64_t dimension = 0;
+    if (!gxio_read_integer(reader, GXIO_ANY_LINE, "the dimension", &dimension, error)) return 0;
+    return dimension == 3 ? 1 : gxio_bad_token(reader, "is the dimension, but 3 is needed", error);
+}
+
+/* Sections in any order; those not named here are skipped. A missing End is accepted. */
+static inline int gxio_medit_sections(gxio_reader *reader, gxio_mesh *mesh, gxio_error *error)
+{
+    int skipping = 0;
+    while (gxio_next(reader, GXIO_ANY_LINE)) {
+        const char c = *reader->token;
+        int good = 1, known = 1;
+        if (gxio_token_is(reader, "End")) break;
+        else if (gxio_token_is(reader, "Dimension")) good = gxio_medit_dimension(reader, error);
+        else if (gxio_token_is(reader, "Vertices")) good = gxio_medit_vertices(reader, mesh, error);
+        else if (gxio_token_is(reader, "Tetrahedra")) good = gxio_medit_tetrahedra(reader, mesh, error);
+        else known = 0;
+        if (!good) return 0;
+        if (known) skipping = 0;
+        else if ((c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z')) skipping = 1;
+        else if (!skipping) return gxio_bad_token(reader, "stands where a section's name should", error);
+    }
+    if (!mesh->positions) return gxio_fail(error, reader->path, reader->token_line, "the file has no Vertices");
+    if (!mesh->elements) return gxio_fail(error, reader->path, reader->token_line, "the file has no Tetrahedra");
+    return 1;
+}
+
+static inline int gxio_read_medit(const char *path, gxio_mesh *mesh, gxio_error *error)
+{
+    gxio_reader reader;
+    int good;
+    if (!gxio_reader_open(&reader, path, error)) return 0;
+    snprintf(mesh->node_path, sizeof mesh->node_path, "%s", path);
+    snprintf(mesh->element_path, sizeof mesh->element_path, "%s", path);
+    good = gxio_medit_header(&reader, error) && gxio_medit_sections(&reader, mesh, error);
+    gxio_reader_release(&reader);
+    return good && gxio_mesh_rebase(mesh, 1, error);
+}
+
+/* The number at the head of each of TetGen's lines counts up from the first line's. */
+static inline int gxio_tetgen_number(gxio_reader *reader, size_t i, uint32_t *base, gxio_error *error)
+{
+    uint32_t number = 0;
+    if (!gxio_read_index(reader, GXIO_ANY_LINE, &number, error)) return 0;
+    if (i == 0 && number > 1) return gxio_bad_token(reader, "is the first index, but it must be 0 or 1", error);
+    if (i == 0) *base = number;
+    if (number == *base + i) return 1;
+    return gxio_bad_token(reader, "is out of order: the indices of a list go up by one", error);
+}
+
+/* .node: count, 3, attributes, markers; then per line: number, x, y, z and what we do not need. */
+static inline int gxio_tetgen_nodes(gxio_reader *reader, gxio_mesh *mesh, uint32_t *base, gxio_error *error)
+{
+    size_t i, count = 0;
+    int64_t dimension = 0;
+    if (!gxio_read_count(reader, GXIO_ANY_LINE, "the number of nodes", &count, error)) return 0;
+    if (!gxio_read_integer(reader, GXIO_SAME_LINE, "the dimension", &dimension, error)) return 0;
+    if (dimension != 3) return gxio_bad_token(reader, "is the dimension, but 3 is needed", error);
+    gxio_skip_line(reader);
+    if (!gxio_mesh_nodes(mesh, count)) return gxio_fail(error, reader->path, reader->line, "out of memory");
+    for (i = 0; i < count; i++, gxio_skip_line(reader)) {
+        if (!gxio_tetgen_number(reader, i, base, error)) return 0;
+        if (!gxio_read_point(reader, GXIO_SAME_LINE, mesh->positions + 3 * i, error)) return 0;
+        mesh->node_lines[i] = (uint32_t)reader->token_line;
+    }
+    return 1;
+}
+
+/* .ele: count, corners (4, or 10: the first four count), attributes; then per line: number and corners. */
+static inline int gxio_tetgen_elements(gxio_reader *reader, gxio_mesh *mesh, gxio_error *error)
+{
+    size_t i, corner, count = 0;
+    int64_t corners = 0;
+    uint32_t base = 0;
+    if (!gxio_read_count(reader, GXIO_ANY_LINE, "the number of tetrahedra", &count, error)) return 0;
+    if (!gxio_read_integer(reader, GXIO_SAME_LINE, "the nodes per tetrahedron", &corners, error)) return 0;
+    if (corners != 4 && corners != 10) return gxio_bad_token(reader, "nodes per tetrahedron, but 4 or 10 are needed", error);
+    gxio_skip_line(reader);
+    if (!gxio_mesh_elements(mesh, count)) return gxio_fail(error, reader->path, reader->line, "out of memory");
+    for (i = 0; i < count; i++, gxio_skip_line(reader)) {
+        if (!gxio_tetgen_number(reader, i, &base, error)) return 0;
+        for (corner = 0; corner < 4; corner++)
+            if (!gxio_read_index(reader, GXIO_SAME_LINE, mesh->elements + 4 * i + corner, error)) return 0;
+        mesh->element_lines[i] = (uint32_t)reader->token_line;
+    }
+    return 1;
+}
+
+/* base_path: without .node and .ele; both are read. */
+static inline int gxio_read_tetgen(const char *base_path, size_t length, gxio_mesh *mesh, gxio_error *error)
+{
+    gxio_reader reader;
+    uint32_t base = 0;
+    int good;
+    snprintf(mesh->node_path, sizeof mesh->node_path, "%.*s.node", (int)length, base_path);
+    snprintf(mesh->element_path, sizeof mesh->element_path, "%.*s.ele", (int)length, base_path);
+    if (!gxio_reader_open(&reader, mesh->node_path, error)) return 0;
+    good = gxio_tetgen_nodes(&reader, mesh, &base, error);
+    gxio_reader_release(&reader);
+    if (!good || !gxio_reader_open(&reader, mesh->element_path, error)) return 0;
+    good = gxio_tetgen_elements(&reader, mesh, error);
+    gxio_reader_release(&reader);
+    return good && gxio_mesh_rebase(mesh, base, error);
+}
+
+/* A unit cube with lowest corner `node[0]` as five or six tetrahedra; node[b] is the corner x + 2 y + 4 z = b. The five
+   are mirrored in every second cube (`odd`), the six are Kuhn's: both ways neighbouring cubes' faces agree. */
+static inline uint32_t *gxio_fill_cube(const uint32_t node[8], int tetrahedra, int odd, uint32_t *element)
+{
+    static const unsigned char cube[3][6][4] = {
+        {{0, 5, 3, 6}, {1, 3, 0, 5}, {2, 0, 3, 6}, {4, 6, 5, 0}, {7, 5, 6, 3}, {0, 0, 0, 0}},
+        {{7, 2, 1, 4}, {6, 4, 2, 7}, {5, 7, 1, 4}, {3, 1, 7, 2}, {0, 2, 4, 1}, {0, 0, 0, 0}},
+        {{0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}}};
+    const int kind = tetrahedra == 6 ? 2 : odd;
+    int t, corner;
+    for (t = 0; t < tetrahedra; t++)
+        for (corner = 0; corner < 4; corner++) *element++ = node[cube[kind][t][corner]];
+    return element;
+}
+
+/* Cubes of edge 1 with the lowest corner at the origin; node x + (nx + 1)(y + (ny + 1) z). */
+static inline int gxio_make_grid(gxio_mesh *mesh, const size_t n[3], int tetrahedra)
+{
+    const size_t row = n[0] + 1, layer = row * (n[1] + 1);
+    size_t i, x, y, z;
+    uint32_t *element;
+    if (!gxio_mesh_nodes(mesh, layer * (n[2] + 1))) return 0;
+    if (!gxio_mesh_elements(mesh, n[0] * n[1] * n[2] * (size_t)tetrahedra)) return 0;
+    for (i = 0; i < mesh->node_count; i++) {
+        mesh->positions[3 * i] = (double)(i % row);
+        mesh->positions[3 * i + 1] = (double)(i / row % (n[1] + 1));
+        mesh->positions[3 * i + 2] = (double)(i / layer);
+    }
+    element = mesh->elements;
+    for (z = 0; z < n[2]; z++)
+        for (y = 0; y < n[1]; y++)
+            for (x = 0; x < n[0]; x++) {
+                uint32_t node[8];
+                for (i = 0; i < 8; i++)
+                    node[i] = (uint32_t)(x + (i & 1) + row * (y + (i >> 1 & 1)) + layer * (z + (i >> 2)));
+                element = gxio_fill_cube(node, tetrahedra, (int)((x + y + z) & 1), element);
+            }
+    return 1;
+}
+
+/* grid:NX,NY,NZ[,5|6] */
+static inline int gxio_generate_grid(const char *spec, const char *list, gxio_mesh *mesh, gxio_error *error)
+{
+    double number[4] = {0, 0, 0, 5};
+    size_t n[3];
+    int axis, good = gxio_argument_list(list, number, 3, 4) > 0 && (number[3] == 5.0 || number[3] == 6.0);
+    for (axis = 0; axis < 3; axis++) good = good && number[axis] >= 1.0 && number[axis] <= 1e6 && floor(number[axis]) == number[axis];
+    if (!good) return gxio_fail(error, spec, 0, "is not grid:NX,NY,NZ or grid:NX,NY,NZ,5 or grid:NX,NY,NZ,6");
+    if (number[0] * number[1] * number[2] > 1e8) return gxio_fail(error, spec, 0, "has more than 10^8 cubes");
+    for (axis = 0; axis < 3; axis++) n[axis] = (size_t)number[axis];
+    return gxio_make_grid(mesh, n, (int)number[3]) ? 1 : gxio_fail(error, spec, 0, "out of memory");
+}
+
+/* tet: the reference tetrahedron, corners at the origin and at 1 on each axis. */
+static inline int gxio_generate_tet(gxio_mesh *mesh, gxio_error *error)
+{
+    static const double position[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    static const uint32_t corner[4] = {0, 1, 2, 3};
+    if (!gxio_mesh_nodes(mesh, 4) || !gxio_mesh_elements(mesh, 1)) return gxio_fail(error, "tet", 0, "out of memory");
+    memcpy(mesh->positions, position, sizeof position);
+    memcpy(mesh->elements, corner, sizeof corner);
+    return 1;
+}
+
+static inline int gxio_mesh_generate(const char *spec, gxio_mesh *mesh, gxio_error *error)
+{
+    static const size_t one[3] = {1, 1, 1};
+    const char *list = gxio_after(spec, "grid:");
+    int good;
+    if (list) good = gxio_generate_grid(spec, list, mesh, error);
+    else if (strcmp(spec, "tet") == 0) good = gxio_generate_tet(mesh, error);
+    else good = gxio_make_grid(mesh, one, 5) ? 1 : gxio_fail(error, spec, 0, "out of memory");
+    free(mesh->node_lines);
+    free(mesh->element_lines);
+    mesh->node_lines = mesh->element_lines = NULL;
+    snprintf(mesh->node_path, sizeof mesh->node_path, "%s", spec);
+    snprintf(mesh->element_path, sizeof mesh->element_path, "%s", spec);
+    return good;
+}
+
+static inline int gxio_mesh_read(const char *path, gxio_mesh *mesh, gxio_error *error)
+{
+    const size_t length = strlen(path);
+    int good;
+    if (gxio_ends_with(path, ".mesh")) good = gxio_read_medit(path, mesh, error);
+    else if (gxio_ends_with(path, ".node")) good = gxio_read_tetgen(path, length - 5, mesh, error);
+    else if (gxio_ends_with(path, ".ele")) good = gxio_read_tetgen(path, length - 4, mesh, error);
+    else good = gxio_read_tetgen(path, length, mesh, error);
+    if (good) gxio_mesh_orient(mesh);
+    return good;
+}
+
+/* cube5, tet, grid:..., a .mesh file, a .node or .ele file, or the name that a .node and an .ele file share. */
+static inline int gxio_mesh_load(const char *spec, gxio_mesh *mesh, gxio_error *error)
+{
+    int good;
+    memset(mesh, 0, sizeof *mesh);
+    if (strlen(spec) + 8 > GXIO_PATH_ROOM) return gxio_fail(error, "mesh", 0, "the name is too long");
+    if (strcmp(spec, "cube5") == 0 || strcmp(spec, "tet") == 0 || gxio_after(spec, "grid:"))
+        good = gxio_mesh_generate(spec, mesh, error);
+    else
+        good = gxio_mesh_read(spec, mesh, error);
+    if (!good) gxio_mesh_release(mesh);
+    return good;
+}
+
+/* -------------------------------------------------------------------------------------------- >>surface */
+
+typedef struct gxio_surface {
+    double *vertices;           /* vertex_count x 3 */
+    size_t vertex_count, vertex_room;
+    uint32_t *triangles;        /* triangle_count x 3 */
+    uint32_t *triangle_lines;   /* triangle_count; 0: generated */
+    size_t triangle_count, triangle_room;
+} gxio_surface;
+
+static inline void gxio_surface_release(gxio_surface *surface)
+{
+    free(surface->vertices);
+    free(surface->triangles);
+    free(surface->triangle_lines);
+    memset(surface, 0, sizeof *surface);
+}
+
+static inline int gxio_add_vertex(gxio_surface *surface, double x, double y, double z)
+{
+    double *vertex;
+    if (surface->vertex_count == surface->vertex_room) {
+        const size_t room = surface->vertex_room ? 2 * surface->vertex_room : 64;
+        double *grown = (double *)realloc(surface->vertices, room * 3 * sizeof(double));
+        if (!grown) return 0;
+        surface->vertices = grown;
+        surface->vertex_room = room;
+    }
+    vertex = surface->vertices + 3 * surface->vertex_count++;
+    vertex[0] = x;
+    vertex[1] = y;
+    vertex[2] = z;
+    return 1;
+}
+
+static inline int gxio_grow_triangles(gxio_surface *surface)
+{
+    const size_t room = surface->triangle_room ? 2 * surface->triangle_room : 64;
+    uint32_t *triangles = (uint32_t *)realloc(surface->triangles, room * 3 * sizeof(uint32_t)), *lines;
+    if (!triangles) return 0;
+    surface->triangles = triangles;
+    lines = (uint32_t *)realloc(surface->triangle_lines, room * sizeof(uint32_t));
+    if (!lines) return 0;
+    surface->triangle_lines = lines;
+    surface->triangle_room = room;
+    return 1;
+}
+
+static inline int gxio_add_triangle(gxio_surface *surface, uint32_t a, uint32_t b, uint32_t c, size_t line)
+{
+    uint32_t *triangle;
+    if (surface->triangle_count == surface->triangle_room && !gxio_grow_triangles(surface)) return 0;
+    surface->triangle_lines[surface->triangle_count] = (uint32_t)line;
+    triangle = surface->triangles + 3 * surface->triangle_count++;
+    triangle[0] = a;
+    triangle[1] = b;
+    triangle[2] = c;
+    return 1;
+}
+
+static inline int gxio_surface_check(const gxio_surface *surface, const char *path, gxio_error *error)
+{
+    size_t i;
+    for (i = 0; i < 3 * surface->triangle_count; i++)
+        if (surface->triangles[i] >= surface->vertex_count)
+            return gxio_fail(error, path, surface->triangle_lines[i / 3], "vertex index %lu is out of range: the file has %lu vertices",
+                             (unsigned long)surface->triangles[i], (unsigned long)surface->vertex_count);
+    return 1;
+}
+
+/* One corner of an OBJ face: v, v/vt, v//vn or v/vt/vn; v counts from 1, or back from the last vertex if negative. */
+static inline int gxio_obj_corner(gxio_reader *reader, const gxio_surface *surface, uint32_t *corner, gxio_error *error)
+{
+    const char *end = reader->token;
+    int64_t v = 0;
+    while (end < reader->token + reader->token_length && *end != '/') end++;
+    if (!gxio_parse_integer(reader->token, end, &v)) return gxio_bad_token(reader, "is not a face's corner", error);
+    v = v < 0 ? v + (int64_t)surface->vertex_count : v - 1;
+    if (v < 0 || v >= (int64_t)UINT32_MAX) return gxio_bad_token(reader, "is an index out of range", error);
+    *corner = (uint32_t)v;
+    return 1;
+}
+
+/* A polygon becomes a fan of triangles around its first corner. */
+static inline int gxio_obj_face(gxio_reader *reader, gxio_surface *surface, gxio_error *error)
+{
+    uint32_t first = 0, last = 0, corner = 0;
+    size_t count = 0;
+    while (gxio_next(reader, GXIO_SAME_LINE)) {
+        if (!gxio_obj_corner(reader, surface, &corner, error)) return 0;
+        if (count >= 2 && !gxio_add_triangle(surface, first, last, corner, reader->token_line))
+            return gxio_fail(error, reader->path, reader->line, "out of memory");
+        if (count == 0) first = corner;
+        last = corner;
+        count++;
+    }
+    return count >= 3 ? 1 : gxio_fail(error, reader->path, reader->line, "the face has fewer than three corners");
+}
+
+/* Lines v and f; all others are ignored. */
+static inline int gxio_read_obj(gxio_reader *reader, gxio_surface *surface, gxio_error *error)
+{
+    double p[3] = {0, 0, 0};
+    for (; gxio_next(reader, GXIO_ANY_LINE); gxio_skip_line(reader)) {
+        if (gxio_token_is(reader, "v")) {
+            if (!gxio_read_point(reader, GXIO_SAME_LINE, p, error)) return 0;
+            if (!gxio_add_vertex(surface, p[0], p[1], p[2])) return gxio_fail(error, reader->path, reader->line, "out of memory");
+        } else if (gxio_token_is(reader, "f")) {
+            if (!gxio_obj_face(reader, surface, error)) return 0;
+        }
+    }
+    return 1;
+}
+
+static inline int gxio_off_face(gxio_reader *reader, gxio_surface *surface, gxio_error *error)
+{
+    uint32_t first = 0, last = 0, corner = 0, corners = 0, i;
+    if (!gxio_read_index(reader, GXIO_ANY_LINE, &corners, error)) return 0;
+    if (corners < 3) return gxio_bad_token(reader, "corners are too few for a face", error);
+    for (i = 0; i < corners; i++) {
+        if (!gxio_read_index(reader, GXIO_SAME_LINE, &corner, error)) return 0;
+        if (i >= 2 && !gxio_add_triangle(surface, first, last, corner, reader->token_line))
+            return gxio_fail(error, reader->path, reader->line, "out of memory");
+        if (i == 0) first = corner;
+        last = corner;
+    }
+    return 1;
+}
+
+/* [OFF] vertices faces edges, then a vertex or a face per line; colours and normals behind them are ignored. */
+static inline int gxio_read_off(gxio_reader *reader, gxio_surface *surface, gxio_error *error)
+{
+    size_t i, vertices = 0, faces = 0;
+    double p[3] = {0, 0, 0};
+    if (!gxio_need(reader, GXIO_ANY_LINE, "OFF", error)) return 0;
+    if (!gxio_token_is(reader, "OFF") && !gxio_token_is(reader, "COFF") && !gxio_token_is(reader, "NOFF")) {
+        if (*reader->token < '0' || *reader->token > '9') return gxio_bad_token(reader, "stands where OFF should", error);
+        reader->at = reader->token;
+    }
+    if (!gxio_read_count(reader, GXIO_ANY_LINE, "the number of vertices", &vertices, error)) return 0;
+    if (!gxio_read_count(reader, GXIO_ANY_LINE, "the number of faces", &faces, error)) return 0;
+    for (i = 0, gxio_skip_line(reader); i < vertices; i++, gxio_skip_line(reader)) {
+        if (!gxio_read_point(reader, GXIO_ANY_LINE, p, error)) return 0;
+        if (!gxio_add_vertex(surface, p[0], p[1], p[2])) return gxio_fail(error, reader->path, reader->line, "out of memory");
+    }
+    for (i = 0; i < faces; i++, gxio_skip_line(reader))
+        if (!gxio_off_face(reader, surface, error)) return 0;
+    return 1;
+}
+
+static inline int gxio_surface_read(const char *path, gxio_surface *surface, gxio_error *error)
+{
+    const int obj = gxio_ends_with(path, ".obj"), off = gxio_ends_with(path, ".off");
+    gxio_reader reader;
+    int good;
+    if (!obj && !off) return gxio_fail(error, path, 0, "is no cut: .obj, .off, plane:..., box:... or wave:... is");
+    if (!gxio_reader_open(&reader, path, error)) return 0;
+    good = obj ? gxio_read_obj(&reader, surface, error) : gxio_read_off(&reader, surface, error);
+    gxio_reader_release(&reader);
+    return good && gxio_surface_check(surface, path, error);
+}
+
+/* A plane with a frame, and where a body lies on it. */
+typedef struct gxio_frame {
+    double p[3];                /* the plane's given point */
+    double u[3], v[3], n[3];    /* orthonormal, n = u x v */
+    double at[2];               /* centre of the body's bounding box along u and v, from p */
+    double radius;              /* of the ball around the bounding box */
+} gxio_frame;
+
+/* Unit vector along d, scaled first so that nothing overflows; 0 where d is 0. Zero components stay exactly zero. */
+static inline int gxio_normalise(double d[3])
+{
+    const double largest = fmax(fabs(d[0]), fmax(fabs(d[1]), fabs(d[2])));
+    double length;
+    int i;
+    if (!(largest > 0.0)) return 0;
+    for (i = 0; i < 3; i++) d[i] /= largest;
+    length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    for (i = 0; i < 3; i++) d[i] /= length;
+    return 1;
+}
+
+/* u is the coordinate axis closest to the plane (the first of equals), projected onto it: with n along an axis, u and v
+   are axes too, with exact zeros, so that every vertex has exactly p's coordinate along n. */
+static inline int gxio_frame_make(gxio_frame *frame, const double point[3], const double normal[3], const gxio_mesh *mesh)
+{
+    double low[3], high[3], square = 0.0;
+    int i, axis = 0;
+    memcpy(frame->p, point, sizeof frame->p);
+    memcpy(frame->n, normal, sizeof frame->n);
+    if (!gxio_normalise(frame->n)) return 0;
+    for (i = 1; i < 3; i++) if (fabs(frame->n[i]) < fabs(frame->n[axis])) axis = i;
+    for (i = 0; i < 3; i++) frame->u[i] = (i == axis ? 1.0 : 0.0) - frame->n[i] * frame->n[axis];
+    gxio_normalise(frame->u);
+    for (i = 0; i < 3; i++)
+        frame->v[i] = frame->n[(i + 1) % 3] * frame->u[(i + 2) % 3] - frame->n[(i + 2) % 3] * frame->u[(i + 1) % 3];
+    gxio_bounds(mesh->positions, mesh->node_count, low, high);
+    frame->at[0] = frame->at[1] = 0.0;
+    for (i = 0; i < 3; i++) {
+        const double offset = 0.5 * (low[i] + high[i]) - point[i];
+        frame->at[0] += offset * frame->u[i];
+        frame->at[1] += offset * frame->v[i];
+        square += (high[i] - low[i]) * (high[i] - low[i]);
+    }
+    frame->radius = 0.5 * sqrt(square);
+    return frame->radius > 0.0;
+}
+
+/* The vertex p + a u + b v + h n. */
+static inline int gxio_frame_vertex(const gxio_frame *frame, double a, double b, double h, gxio_surface *surface)
+{
+    double x[3];
+    int i;
+    for (i = 0; i < 3; i++) x[i] = frame->p[i] + (a * frame->u[i] + b * frame->v[i] + h * frame->n[i]);
+    return gxio_add_vertex(surface, x[0], x[1], x[2]);
+}
+
+/* plane:PX,PY,PZ,NX,NY,NZ: a square that covers the body's shadow on the plane through P with normal N. Its diagonal, at
+   which rounding makes a crease if N is oblique, passes beside the body: the body's ball lies in the first triangle, whose
+   inscribed circle has the radius edge (1 - 1/sqrt 2) = 1.1 ball radii. */
+static inline int gxio_generate_plane(const double number[6], const gxio_mesh *mesh, gxio_surface *surface)
+{
+    const double inscribed = 1.1, edge = 3.7556;    /* in ball radii */
+    gxio_frame frame;
+    double a0, b0, a1, b1;
+    if (!gxio_frame_make(&frame, number, number + 3, mesh)) return 0;
+    a0 = frame.at[0] - inscribed * frame.radius;
+    b0 = frame.at[1] - inscribed * frame.radius;
+    a1 = a0 + edge * frame.radius;
+    b1 = b0 + edge * frame.radius;
+    return gxio_frame_vertex(&frame, a0, b0, 0.0, surface) && gxio_frame_vertex(&frame, a1, b0, 0.0, surface)
+        && gxio_frame_vertex(&frame, a0, b1, 0.0, surface) && gxio_frame_vertex(&frame, a1, b1, 0.0, surface)
+        && gxio_add_triangle(surface, 0, 1, 2, 0) && gxio_add_triangle(surface, 1, 3, 2, 0);
+}
+
+/* wave:PX,PY,PZ,NX,NY,NZ,AMPLITUDE,WAVELENGTH[,RESOLUTION]: the points p + s u + t v + A sin(2 pi s / L) n, as strips
+   along v, RESOLUTION (16) strips per wavelength, s a multiple of L / RESOLUTION, across the whole body. */
+static inline int gxio_generate_wave(const double number[9], const gxio_mesh *mesh, gxio_surface *surface)
+{
+    const double amplitude = number[6], wavelength = number[7], step = wavelength / number[8], turn = 6.283185307179586;
+    gxio_frame frame;
+    double first, last, reach;
+    uint32_t i, strips;
+    if (!(wavelength > 0.0) || !(number[8] >= 3.0) || !gxio_frame_make(&frame, number, number + 3, mesh)) return 0;
+    reach = 1.1 * frame.radius;
+    first = floor((frame.at[0] - reach) / step);
+    last = ceil((frame.at[0] + reach) / step);
+    if (!(last - first >= 1.0) || last - first > 1e6) return 0;
+    strips = (uint32_t)(last - first);
+    for (i = 0; i <= strips; i++) {
+        const double s = (first + i) * step, h = amplitude * sin(turn * (s / wavelength));
+        if (!gxio_frame_vertex(&frame, s, frame.at[1] - reach, h, surface)) return 0;
+        if (!gxio_frame_vertex(&frame, s, frame.at[1] + reach, h, surface)) return 0;
+    }
+    for (i = 0; i < 2 * strips; i += 2) {
+        if (!gxio_add_triangle(surface, i, i + 2, i + 3, 0)) return 0;
+        if (!gxio_add_triangle(surface, i, i + 3, i + 1, 0)) return 0;
+    }
+    return 1;
+}
+
+/* box:X0,Y0,Z0,X1,Y1,Z1: twelve triangles, counter-clockwise from outside; corner x + 2 y + 4 z. */
+static inline int gxio_generate_box(const double number[6], gxio_surface *surface)
+{
+    static const unsigned char face[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    int i;
+    for (i = 0; i < 3; i++) if (!(number[i] < number[i + 3])) return 0;
+    for (i = 0; i < 8; i++)
+        if (!gxio_add_vertex(surface, number[i & 1 ? 3 : 0], number[i & 2 ? 4 : 1], number[i & 4 ? 5 : 2])) return 0;
+    for (i = 0; i < 6; i++) {
+        if (!gxio_add_triangle(surface, face[i][0], face[i][1], face[i][2], 0)) return 0;
+        if (!gxio_add_triangle(surface, face[i][0], face[i][2], face[i][3], 0)) return 0;
+    }
+    return 1;
+}
+
+static inline int gxio_surface_generate(const char *spec, const gxio_mesh *mesh, gxio_surface *surface, gxio_error *error)
+{
+    double number[9] = {0, 0, 0, 0, 0, 0, 0, 0, 16};
+    const char *list;
+    if ((list = gxio_after(spec, "plane:")) != NULL) {
+        if (gxio_argument_list(list, number, 6, 6) > 0 && gxio_generate_plane(number, mesh, surface)) return 1;
+        return gxio_fail(error, spec, 0, "is not plane:PX,PY,PZ,NX,NY,NZ with a normal N that is not 0");
+    }
+    if ((list = gxio_after(spec, "box:")) != NULL) {
+        if (gxio_argument_list(list, number, 6, 6) > 0 && gxio_generate_box(number, surface)) return 1;
+        return gxio_fail(error, spec, 0, "is not box:X0,Y0,Z0,X1,Y1,Z1 with X0 < X1, Y0 < Y1, Z0 < Z1");
+    }
+    list = gxio_after(spec, "wave:");
+    if (gxio_argument_list(list, number, 8, 9) > 0 && gxio_generate_wave(number, mesh, surface)) return 1;
+    return gxio_fail(error, spec, 0, "is not wave:PX,PY,PZ,NX,NY,NZ,AMPLITUDE,WAVELENGTH[,RESOLUTION] with N not 0, "
+                                     "WAVELENGTH > 0, RESOLUTION >= 3 and at most 10^6 strips");
+}
+
+/* mesh: the body that plane and wave sheets must cross. */
+static inline int gxio_surface_load(const char *spec, const gxio_mesh *mesh, gxio_surface *surface, gxio_error *error)
+{
+    int good;
+    memset(surface, 0, sizeof *surface);
+    if (gxio_after(spec, "plane:") || gxio_after(spec, "box:") || gxio_after(spec, "wave:"))
+        good = gxio_surface_generate(spec, mesh, surface, error);
+    else
+        good = gxio_surface_read(spec, surface, error);
+    if (!good) gxio_surface_release(surface);
+    return good;
+}
+
+/* --------------------------------------------------------------------------------------------- >>writer */
+
+/* A file under a temporary name until it is complete. */
+typedef struct gxio_writer {
+    FILE *stream;
+    char path[GXIO_PATH_ROOM], temporary[GXIO_PATH_ROOM + 8];
+} gxio_writer;
+
+static inline int gxio_writer_open(gxio_writer *writer, const char *path, gxio_error *error)
+{
+    if (strlen(path) >= sizeof writer->path) return gxio_fail(error, "output", 0, "the path is too long");
+    snprintf(writer->path, sizeof writer->path, "%s", path);
+    snprintf(writer->temporary, sizeof writer->temporary, "%s.part", path);
+    errno = 0;
+    writer->stream = fopen(writer->temporary, "wb");
+    return writer->stream ? 1 : gxio_fail(error, path, 0, "cannot be written: %s", strerror(errno));
+}
+
+/* Closes the file and gives it its name; if `good` is 0 or anything fails, removes it. */
+static inline int gxio_writer_close(gxio_writer *writer, int good, gxio_error *error)
+{
+    int complete = good && !ferror(writer->stream);
+    errno = 0;
+    if (fclose(writer->stream) != 0) complete = 0;
+#ifdef _WIN32
+    if (complete) remove(writer->path);     /* rename does not replace there */
+#endif
+    if (complete && rename(writer->temporary, writer->path) == 0) return 1;
+    gxio_fail(error, writer->path, 0, "cannot be written: %s", errno ? strerror(errno) : "the disk may be full");
+    remove(writer->temporary);
+    return 0;
+}
+
+/* --------------------------------------------------------------------------------------------- >>frames */
+
+/* Triangles of one instant: positions of a skin and what is known per triangle. Nothing is owned. */
+typedef struct gxio_triangles {
+    const double *positions;    /* vertex_count x 3, m */
+    size_t vertex_count;
+    const uint32_t *triangles;  /* triangle_count x 3 */
+    const uint32_t *fragment;   /* triangle_count, < fragment_count */
+    const uint32_t *cut;        /* triangle_count, 1: face of a cut */
+    size_t triangle_count, fragment_count;
+} gxio_triangles;
+
+/* Base64 of a stream of bytes, three at a time. */
+typedef struct gxio_base64 {
+    FILE *stream;
+    unsigned char pending[3];
+    size_t pending_count, used;
+    char text[4096];
+} gxio_base64;
+
+static inline void gxio_base64_flush(gxio_base64 *out)
+{
+    fwrite(out->text, 1, out->used, out->stream);
+    out->used = 0;
+}
+
+static inline void gxio_base64_group(gxio_base64 *out, const unsigned char b[3])
+{
+    static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    char *text;
+    if (out->used == sizeof out->text) gxio_base64_flush(out);
+    text = out->text + out->used;
+    text[0] = digit[b[0] >> 2];
+    text[1] = digit[(b[0] & 3) << 4 | b[1] >> 4];
+    text[2] = digit[(b[1] & 15) << 2 | b[2] >> 6];
+    text[3] = digit[b[2] & 63];
+    out->used += 4;
+}
+
+static inline void gxio_base64_bytes(gxio_base64 *out, const void *bytes, size_t count)
+{
+    const unsigned char *byte = (const unsigned char *)bytes;
+    size_t i;
+    for (i = 0; i < count; i++) {
+        out->pending[out->pending_count++] = byte[i];
+        if (out->pending_count == 3) {
+            gxio_base64_group(out, out->pending);
+            out->pending_count = 0;
+        }
+    }
+}
+
+/* Pads the last group with '=' and empties the buffers. */
+static inline void gxio_base64_end(gxio_base64 *out)
+{
+    const size_t padding = out->pending_count ? 3 - out->pending_count : 0;
+    if (padding) {
+        memset(out->pending + out->pending_count, 0, padding);
+        gxio_base64_group(out, out->pending);
+        memset(out->text + out->used - padding, '=', padding);
+    }
+    gxio_base64_flush(out);
+    out->pending_count = 0;
+}
+
+/* One appended array of a .vtu file: its size in bytes (64 bits), then its values, as one base64 text. */
+typedef struct gxio_block { const void *bytes; size_t size; } gxio_block;
+
+static inline size_t gxio_block_length(const gxio_block *block) { return (sizeof(uint64_t) + block->size + 2) / 3 * 4; }
+
+static inline void gxio_block_write(const gxio_block *block, FILE *stream)
+{
+    const uint64_t size = block->size;
+    gxio_base64 out;
+    out.stream = stream;
+    out.pending_count = out.used = 0;
+    gxio_base64_bytes(&out, &size, sizeof size);
+    gxio_base64_bytes(&out, block->bytes, block->size);
+    gxio_base64_end(&out);
+}
+
+static inline const char *gxio_byte_order(void)
+{
+    const uint16_t probe = 1;
+    unsigned char low;
+    memcpy(&low, &probe, 1);
+    return low ? "LittleEndian" : "BigEndian";
+}
+
+/* The XML of a .vtu file around its six blocks: points, corners, ends of cells, types, fragments, cut flags. */
+static inline void gxio_vtu_write(FILE *stream, const gxio_triangles *t, const gxio_block block[6])
+{
+    static const char *const head[6] = {
+        "<Points>\n<DataArray type=\"Float64\" Name=\"position\" NumberOfComponents=\"3\"",
+        "</Points>\n<Cells>\n<DataArray type=\"UInt32\" Name=\"connectivity\"",
+        "<DataArray type=\"UInt32\" Name=\"offsets\"",
+        "<DataArray type=\"UInt8\" Name=\"types\"",
+        "</Cells>\n<CellData Scalars=\"fragment\">\n<DataArray type=\"UInt32\" Name=\"fragment\"",
+        "<DataArray type=\"UInt32\" Name=\"cut\""};
+    unsigned long offset = 0;
+    int i;
+    fprintf(stream, "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"%s\" "
+            "header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"%lu\" NumberOfCells=\"%lu\">\n",
+            gxio_byte_order(), (unsigned long)t->vertex_count, (unsigned long)t->triangle_count);
+    for (i = 0; i < 6; i++) {
+        fprintf(stream, "%s format=\"appended\" offset=\"%lu\"/>\n", head[i], offset);
+        offset += (unsigned long)gxio_block_length(&block[i]);
+    }
+    fputs("</CellData>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"base64\">\n_", stream);
+    for (i = 0; i < 6; i++) gxio_block_write(&block[i], stream);
+    fputs("\n</AppendedData>\n</VTKFile>\n", stream);
+}
+
+/* VTK's unstructured grid of triangles, with fragment and cut flag per triangle. */
+static inline int gxio_write_vtu(const char *path, const gxio_triangles *t, gxio_error *error)
+{
+    const size_t n = t->triangle_count;
+    uint32_t *ends = (uint32_t *)gxio_array(n, sizeof(uint32_t));
+    unsigned char *types = (unsigned char *)gxio_array(n, 1);
+    gxio_writer writer;
+    gxio_block block[6];
+    size_t i;
+    int good = ends && types ? gxio_writer_open(&writer, path, error) : gxio_fail(error, path, 0, "out of memory");
+    if (good) {
+        for (i = 0; i < n; i++) ends[i] = (uint32_t)(3 * (i + 1));
+        memset(types, 5, n);        /* VTK_TRIANGLE */
+        block[0].bytes = t->positions; block[0].size = t->vertex_count * 3 * sizeof(double);
+        block[1].bytes = t->triangles; block[1].size = n * 3 * sizeof(uint32_t);
+        block[2].bytes = ends; block[2].size = n * sizeof(uint32_t);
+        block[3].bytes = types; block[3].size = n;
+        block[4].bytes = t->fragment; block[4].size = n * sizeof(uint32_t);
+        block[5].bytes = t->cut; block[5].size = n * sizeof(uint32_t);
+        gxio_vtu_write(writer.stream, t, block);
+        good = gxio_writer_close(&writer, 1, error);
+    }
+    free(ends);
+    free(types);
+    return good;
+}
+
+/* Triangle numbers sorted by fragment; order: triangle_count, start: fragment_count + 1. */
+static inline void gxio_sort_by_fragment(const gxio_triangles *t, size_t *order, size_t *start)
+{
+    size_t i, f;
+    for (f = 0; f <= t->fragment_count; f++) start[f] = 0;
+    for (i = 0; i < t->triangle_count; i++) start[t->fragment[i]]++;
+    for (f = 0, i = 0; f <= t->fragment_count; f++) start[f] = i += start[f];
+    for (i = t->triangle_count; i-- > 0;) order[--start[t->fragment[i]]] = i;
+}
+
+static inline void gxio_obj_write(FILE *stream, const gxio_triangles *t, const size_t *order, const size_t *start)
+{
+    size_t i, f;
+    for (i = 0; i < t->vertex_count; i++)
+        fprintf(stream, "v %.9g %.9g %.9g\n", t->positions[3 * i], t->positions[3 * i + 1], t->positions[3 * i + 2]);
+    for (f = 0; f < t->fragment_count; f++) {
+        fprintf(stream, "g fragment_%lu\n", (unsigned long)f);
+        for (i = start[f]; i < start[f + 1]; i++) {
+            const uint32_t *corner = t->triangles + 3 * order[i];
+            fprintf(stream, "f %lu %lu %lu\n", corner[0] + 1ul, corner[1] + 1ul, corner[2] + 1ul);
+        }
+    }
+}
+
+/* Wavefront, a group per fragment. */
+static inline int gxio_write_obj(const char *path, const gxio_triangles *t, gxio_error *error)
+{
+    size_t *order = (size_t *)gxio_array(t->triangle_count, sizeof(size_t));
+    size_t *start = (size_t *)gxio_array(t->fragment_count + 1, sizeof(size_t));
+    gxio_writer writer;
+    int good = order && start ? gxio_writer_open(&writer, path, error) : gxio_fail(error, path, 0, "out of memory");
+    if (good) {
+        gxio_sort_by_fragment(t, order, start);
+        gxio_obj_write(writer.stream, t, order, start);
+        good = gxio_writer_close(&writer, 1, error);
+    }
+    free(order);
+    free(start);
+    return good;
+}
+
+static inline void gxio_frame_name(char *name, size_t room, uint32_t frame, const char *ending)
+{
+    snprintf(name, room, "frame_%04lu.%s", (unsigned long)frame, ending);
+}
+
+/* The .pvd collection of frames 0..frame_count - 1, named by gxio_frame_name, frame i at the time (i + 1) dt. */
+static inline int gxio_write_pvd(const char *path, uint32_t frame_count, double dt, gxio_error *error)
+{
+    gxio_writer writer;
+    uint32_t i;
+    char name[32];
+    if (!gxio_writer_open(&writer, path, error)) return 0;
+    fprintf(writer.stream, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"%s\">\n<Collection>\n",
+            gxio_byte_order());
+    for (i = 0; i < frame_count; i++) {
+        gxio_frame_name(name, sizeof name, i, "vtu");
+        fprintf(writer.stream, "<DataSet timestep=\"%.9g\" part=\"0\" file=\"%s\"/>\n", (i + 1.0) * dt, name);
+    }
+    fputs("</Collection>\n</VTKFile>\n", writer.stream);
+    return gxio_writer_close(&writer, 1, error);
+}
+
+/* ---------------------------------------------------------------------------------------------- >>clock */
+
+/* Seconds from some fixed instant; user is ignored (the signature is gx_body_desc's). */
+static inline double gxio_seconds(void *user)
+{
+    (void)user;
+#if defined(CLOCK_MONOTONIC)
+    {
+        struct timespec now;
+        clock_gettime(CLOCK_MONOTONIC, &now);
+        return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+    }
+#elif defined(TIME_UTC)
+    {
+        struct timespec now;
+        timespec_get(&now, TIME_UTC);
+        return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+    }
+#else
+    return (double)clock() / (double)CLOCKS_PER_SEC;
+#endif
+}
+
+/* Makes a directory (not its parents) unless it is there. */
+static inline int gxio_make_directory(const char *path, gxio_error *error)
+{
+    int failed;
+    errno = 0;
+#ifdef _WIN32
+    failed = _mkdir(path);
+#else
+    failed = mkdir(path, 0777);
+#endif
+    return !failed || errno == EEXIST ? 1 : gxio_fail(error, path, 0, "cannot be made: %s", strerror(errno));
+}
+
+#endif /* GXIO_H */

@@ -1,0 +1,2326 @@
+/* gxfem_boolean.h - exact geometry for cutting: predicates, and the cell complex that cuts leave. Part of gxfem 0.1.
+ *
+ * A convex region (a tetrahedron, or a mesh of them) is divided by triangles, any number of them, lying and crossing as they
+ * like. Every decision is the sign of a polynomial in the given coordinates and is exact, under any compiler flag.
+ *
+ * One minute:
+ *
+ *     #define GXFEM_BOOLEAN_IMPLEMENTATION
+ *     #include "gxfem_boolean.h"
+ *     #include <stdio.h>
+ *     int main(void) {
+ *         const double x[12] = {0,0,0, 1,0,0, 0,1,0, 0,0,1}, s[9] = {-9,-9,.25, 9,-9,.25, 0,9,.25};
+ *         const uint32_t tet[4] = {0, 1, 2, 3};
+ *         gxb_complex *cx = NULL;
+ *         gxb_mesh mesh = {0};
+ *         gxb_triangle cut = {{0, 0, 0}, 0, 0, {0, 0, 0}, 0, 1};
+ *         mesh.positions = x; mesh.node_count = 4; mesh.elements = tet; mesh.element_count = 1;
+ *         if (gxb_complex_create(&mesh, NULL, &cx, NULL)) return 1;
+ *         gxb_complex_begin(cx);
+ *         for (int i = 0; i < 3; i++) gxb_complex_add_point(cx, s + 3 * i, &cut.point[i]);
+ *         gxb_complex_add_plane(cx, &cut);
+ *         gxb_complex_insert(cx, &cut, 0, NULL, NULL);
+ *         gxb_complex_commit(cx);
+ *         printf("%u convex leaves\n", cx->leaf_count);
+ *         gxb_complex_destroy(cx);
+ *     }
+ *
+ * Contents (search for >>name):
+ *     >>shared      result codes, allocator
+ *     >>numbers     exact numbers: a double is an integer times a power of two, sums and products are too
+ *     >>predicates  orient2d, orient3d, side of a plane, comparison, orientation in a plane, winding number
+ *     >>complex     the cell complex: points, planes, edges, facets, leaves
+ *     then, under GXFEM_BOOLEAN_IMPLEMENTATION, in this order: >>bits >>exact >>filter >>points >>memory >>topology
+ *     >>split >>clip >>insert
+ *
+ * How the complex works. Each element of the mesh starts as one convex leaf, bounded by four facets, which it shares with its
+ * neighbours. A triangle is clipped down the element's tree of planes (a binary space partition); each leaf whose inside it
+ * meets is divided by the triangle's plane. The part of the dividing facet that the triangle covers is a wall, the rest is
+ * open. So every leaf stays convex, and all that is ever asked is on which side of a plane a point lies. Points, edges and
+ * facets are shared by all leaves around them: they are divided once, their neighbours see the pieces, and the complex
+ * conforms at all times. Holes, dangling walls, detached walls and nested shells need no treatment of their own: what is
+ * connected is what open facets join. See docs/ARCHITECTURE.md for the reasons.
+ *
+ * What it does not do (yet): Booleans of closed meshes, incircle and insphere.
+ *
+ * Guarantees and limits
+ *     - Signs are exact for finite coordinates under every flag, rounding mode and flush-to-zero (but x87 set to 24 bits).
+ *     - Coordinates in a complex: after subtraction of the mesh's origin and scaling by a power of two to its box they are 0 or
+ *       of magnitude 2^-128 to 2^128, else GX_ERROR_RANGE. orient2d and orient3d take any finite double.
+ *     - At most 2^31 - 1 points, planes, edges, facets and leaves.
+ *     - No global state, no input or output, no heap traffic but the growth of the complex's own arrays.
+ *
+ * Configuration: GXB_LIMB32 uses 32-bit limbs also where 128-bit products exist (same results, slower).
+ *
+ * References: J. R. Shewchuk, Adaptive precision floating-point arithmetic and fast robust geometric predicates (1997);
+ *     M. Attene, Indirect predicates for geometric constructions (2020), for the term implicit point;
+ *     Trettner, Nehring-Wirxel, Kobbelt, EMBER (2022), for planes as the only definers of points.
+ */
+#ifndef GXFEM_BOOLEAN_H
+#define GXFEM_BOOLEAN_H
+
+/* >>shared: this block is the same in every gxfem header; `make lint` compares the copies */
+#ifndef GXFEM_SHARED_INCLUDED
+#define GXFEM_SHARED_INCLUDED
+#include <stddef.h>
+#include <stdint.h>
+
+/* GXFEM_STATIC makes every function private to the file that includes the headers */
+#ifdef GXFEM_STATIC
+#define GXFEM_API static inline
+#else
+#define GXFEM_API extern
+#endif
+
+/* What a function that can fail returns. On anything but GX_OK its inputs are as they were. */
+typedef enum gx_result {
+    GX_OK = 0,
+    GX_ERROR_ARGUMENT,      /* a required pointer is NULL, a required field is zero or senseless */
+    GX_ERROR_MEMORY,        /* the allocator returned NULL */
+    GX_ERROR_NOT_FINITE,    /* a coordinate or parameter is NaN or infinite */
+    GX_ERROR_RANGE,         /* a coordinate is too large or too small beside the others (see "limits") */
+    GX_ERROR_INDEX,         /* an index points outside its array */
+    GX_ERROR_EMPTY,         /* no elements, no nodes or no triangles */
+    GX_ERROR_INVERTED,      /* an element has negative volume */
+    GX_ERROR_FLAT,          /* an element has no volume */
+    GX_ERROR_OVERLAP,       /* an element face is shared by more than two elements, or by two on one side */
+    GX_ERROR_NOT_CLOSED,    /* a solid's surface has a boundary, or its triangles are not oriented alike */
+    GX_ERROR_LIMIT,         /* more objects than 32-bit indices can name, or a caller's limit is reached */
+    GX_ERROR_DIVERGED       /* a time step found no finite state of lower energy */
+} gx_result;
+
+/* What went wrong, and where: index of the node, element, triangle or copy concerned. */
+typedef struct gx_failure {
+    gx_result result;
+    size_t index;           /* SIZE_MAX: no single object is to blame */
+    size_t surface;         /* of a cut: which of its surfaces; else SIZE_MAX */
+} gx_failure;
+
+/* Where memory comes from. Zero-initialised: malloc and free. */
+typedef struct gx_allocator {
+    void *(*allocate)(void *user, size_t size);             /* NULL when there is none; size is never 0 */
+    void (*release)(void *user, void *memory, size_t size); /* size as it was allocated; memory is never NULL */
+    void *user;
+} gx_allocator;
+#endif /* GXFEM_SHARED_INCLUDED */
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* >>numbers ---------------------------------------------------------------------------------------------------------- */
+
+#if defined(__SIZEOF_INT128__) && !defined(GXB_LIMB32)
+typedef uint64_t gxb_limb;
+#define GXB_LIMB_BITS 64
+#define GXB_NUM_LIMBS 168
+#else
+typedef uint32_t gxb_limb;
+#define GXB_LIMB_BITS 32
+#define GXB_NUM_LIMBS 336
+#endif
+
+/* sign * (d[0] + d[1] B + ... + d[n-1] B^(n-1)) * B^exp with B = 2^GXB_LIMB_BITS. Zero: sign 0, n 0. Neither end limb is 0.
+   d points to room for GXB_NUM_LIMBS limbs: enough for polynomials of degree 20 in coordinates of 2^-128 ... 2^128. */
+typedef struct gxb_num {
+    int32_t sign, exp;
+    uint32_t n;
+    gxb_limb *d;
+} gxb_num;
+
+/* Declares a number x and its limbs on the stack. */
+#define GXB_NUM(x) gxb_limb x##_limbs[GXB_NUM_LIMBS]; gxb_num x = {0, 0, 0, NULL}; x.d = x##_limbs
+
+GXFEM_API void gxb_num_set(gxb_num *r, double value, int shift);                            /* r = value * 2^shift, exactly */
+GXFEM_API void gxb_num_add(gxb_num *r, const gxb_num *a, const gxb_num *b);                 /* r = a + b; r is neither */
+GXFEM_API void gxb_num_sub(gxb_num *r, const gxb_num *a, const gxb_num *b);                 /* r = a - b; r is neither */
+GXFEM_API void gxb_num_mul(gxb_num *r, const gxb_num *a, const gxb_num *b);                 /* r = a * b; r is neither */
+GXFEM_API double gxb_num_to_double(const gxb_num *a);                                       /* within one unit in the last place */
+GXFEM_API double gxb_num_ratio(const gxb_num *a, const gxb_num *b);                         /* a / b, relative error below 2^-50 */
+
+/* >>predicates ------------------------------------------------------------------------------------------------------- */
+
+/* Sign of |a-c, b-c|: 1 where a, b, c turn counter-clockwise, 0 where they are collinear. */
+GXFEM_API int gxb_orient2d(const double a[2], const double b[2], const double c[2]);
+/* Sign of |a-d, b-d, c-d|: 1 where d lies below the plane in which a, b, c appear counter-clockwise from above. */
+GXFEM_API int gxb_orient3d(const double a[3], const double b[3], const double c[3], const double d[3]);
+
+/* What the filter knows of a plane: n.(x - base) with proven errors (see >>filter). */
+typedef struct gxb_plane_filter {
+    double n[3];        /* approximate normal */
+    double base[3];     /* a point of the plane, within base_error in each coordinate */
+    double base_error;
+    double error;       /* of each component of n */
+    double norm;        /* largest |n[i]| */
+} gxb_plane_filter;
+
+/* A point within error of x in each coordinate; error >= GXB_NO_BALL: nothing is known. */
+typedef struct gxb_ball { double x[3], error; } gxb_ball;
+
+/* The plane of three points, not collinear; its normal is (q-p) x (r-p). The points must outlive it. */
+typedef struct gxb_plane { gxb_plane_filter filter; const double *p, *q, *r; } gxb_plane;
+
+/* A point given by coordinates (p), a line through p and q with a plane (plane[0]), or three planes. All must outlive it. */
+typedef struct gxb_point { gxb_ball ball; const double *p, *q; const gxb_plane *plane[3]; } gxb_point;
+
+GXFEM_API void gxb_plane_init(gxb_plane *plane, const double p[3], const double q[3], const double r[3]);
+GXFEM_API void gxb_point_explicit(gxb_point *point, const double p[3]);
+GXFEM_API void gxb_point_line_plane(gxb_point *point, const double p[3], const double q[3], const gxb_plane *plane);
+GXFEM_API void gxb_point_three_planes(gxb_point *point, const gxb_plane *a, const gxb_plane *b, const gxb_plane *c);
+
+/* 1 where the point lies on the side to which the plane's normal points, -1 on the other, 0 in the plane. */
+GXFEM_API int gxb_side(const gxb_point *point, const gxb_plane *plane);
+/* Sign of a[axis] - b[axis]. */
+GXFEM_API int gxb_compare(const gxb_point *a, const gxb_point *b, int axis);
+/* Orientation of three points of the plane, seen from the side to which its normal points. */
+GXFEM_API int gxb_orient_in_plane(const gxb_point *a, const gxb_point *b, const gxb_point *c, const gxb_plane *plane);
+
+/* How often a closed surface (vertices x 3, triangles x 3) winds around p, counted by exact ray crossings: 1 inside of a surface
+   whose triangles are counter-clockwise from outside. *on_surface: p lies on a triangle, the number then means nothing. */
+GXFEM_API int gxb_winding_number(const double *vertices, const uint32_t *triangles, size_t triangle_count, const double p[3],
+                                 int *on_surface);
+
+/* >>complex ---------------------------------------------------------------------------------------------------------- */
+
+#define GXB_NONE UINT32_MAX
+
+enum { GXB_EXPLICIT = 0, GXB_LINE_PLANE = 1, GXB_THREE_PLANES = 2 };
+
+typedef struct gxb_cpoint {     /* a point of the complex */
+    gxb_ball ball;              /* in the complex's frame: (x - origin) * 2^shift */
+    uint32_t kind;              /* GXB_EXPLICIT ... */
+    uint32_t def[3];            /* two points and a plane, or three planes */
+    gxb_num *exact;             /* X Y Z W, or NULL until they were needed */
+    uint32_t stamp[2];          /* when sign[i] was decided (complex.stamp[i]) */
+    int32_t sign[2];
+    uint32_t scratch;
+} gxb_cpoint;
+
+typedef struct gxb_cplane {     /* a plane: of three points, or through points 0 and 1 along coordinate axis def[2] */
+    gxb_plane_filter filter;
+    uint32_t along_axis;
+    uint32_t def[3];
+    gxb_num *exact;             /* n and d, or NULL until they were needed */
+    uint32_t axis;              /* a component of the normal that is not 0 */
+    int32_t axis_sign;          /* its sign */
+} gxb_cplane;
+
+typedef struct gxb_edge {
+    uint32_t v[2];              /* points */
+    uint32_t line[2];           /* two points (explicit_line) or two planes whose intersection carries the edge */
+    uint32_t explicit_line;
+    uint32_t child;             /* GXB_NONE, or the first of the two edges (child, child + 1) into which it was divided */
+    uint32_t stamp;
+} gxb_edge;
+
+typedef struct gxb_facet {      /* a convex polygon */
+    uint32_t plane;
+    uint32_t loop, loop_count;  /* in complex.pool: edge * 2 + (1 if walked backwards), counter-clockwise about the normal */
+    uint32_t leaf[2];           /* in front (where the normal points), behind; GXB_NONE outside the mesh */
+    uint32_t child;             /* GXB_NONE, or the first of the two facets (child, child + 1) into which it was divided */
+    uint32_t labels;            /* in complex.labels, or GXB_NONE: triangles that cover it */
+    uint32_t face;              /* the mesh face that it is part of, or GXB_NONE inside an element */
+    uint32_t wall;              /* 1: material on its two sides is separated */
+} gxb_facet;
+
+typedef struct gxb_label { uint32_t triangle; int32_t orientation; uint32_t next; } gxb_label;
+
+typedef struct gxb_leaf {       /* a convex piece of an element */
+    uint32_t element;
+    uint32_t facets, facet_count;   /* in complex.pool; count 0: an element that nothing has touched */
+    uint32_t parent;            /* leaf from which it was split, GXB_NONE for an element's first */
+    uint32_t removed;           /* set by the user of the complex */
+} gxb_leaf;
+
+typedef struct gxb_node { uint32_t plane, child[2]; } gxb_node;     /* front, behind: leaf * 2 or node * 2 + 1 */
+
+typedef struct gxb_block { struct gxb_block *next; size_t size, used; } gxb_block;     /* of exact numbers; never moves */
+
+/* A triangle to insert. Fill point and label, call gxb_complex_add_plane, insert. */
+typedef struct gxb_triangle {
+    uint32_t point[3];
+    uint32_t plane;
+    int32_t orientation;        /* 1, or -1 where the plane was made for a coplanar neighbour that faces the other way */
+    uint32_t edge_plane[3];     /* through point[k], point[k+1]; made when needed */
+    uint32_t label;             /* the caller's name for it */
+    uint32_t wall;              /* 1: what it covers becomes a wall; 0: it only leaves its label */
+} gxb_triangle;
+
+typedef struct gxb_mesh {
+    const double *positions;    /* node_count x 3 */
+    size_t node_count;
+    const uint32_t *elements;   /* element_count x 4, positive volume */
+    size_t element_count;
+} gxb_mesh;
+
+typedef struct gxb_undo { uint32_t array, index; } gxb_undo;
+
+/* All arrays belong to the complex and may be read; [i] is valid for i < count. Points 0 ... node_count-1 are the nodes, leaves
+   0 ... element_count-1 the elements' first leaves. */
+typedef struct gxb_complex {
+    double origin[3]; int shift;
+    uint32_t node_count, element_count, face_count, mesh_edge_count;
+    uint32_t *elements;             /* the complex's copy, element_count x 4 */
+    uint32_t *element_faces;        /* element_count x 4: face opposite to node k */
+    uint32_t *element_edges;        /* element_count x 6: 01 02 03 12 13 23 */
+    uint32_t *face_elements;        /* face_count x 2: GXB_NONE at the mesh's boundary */
+    uint32_t *face_facet;           /* face_count: GXB_NONE until touched */
+    uint32_t *mesh_edge;            /* mesh_edge_count: GXB_NONE until touched */
+    uint32_t *root;                 /* element_count: tree reference */
+    gxb_cpoint *points; uint32_t point_count, point_capacity;
+    gxb_cplane *planes; uint32_t plane_count, plane_capacity;
+    gxb_edge *edges; uint32_t edge_count, edge_capacity;
+    gxb_facet *facets; uint32_t facet_count, facet_capacity;
+    gxb_leaf *leaves; uint32_t leaf_count, leaf_capacity;
+    gxb_node *nodes; uint32_t tree_count, tree_capacity;
+    gxb_label *labels; uint32_t label_count, label_capacity;
+    gxb_block *blocks;              /* exact coordinates, computed when first needed and kept */
+    uint32_t *pool; uint32_t pool_count, pool_capacity;
+    uint32_t *walls; uint32_t wall_count, wall_capacity;    /* facets that became walls, or were labelled, since begin */
+    gxb_undo *undo; uint32_t undo_count, undo_capacity;     /* what begin ... rollback restores, and the old contents */
+    unsigned char *undo_bytes; uint32_t undo_byte_count, undo_byte_capacity;
+    struct gxbp_corner *corners; uint32_t corner_count, corner_capacity;    /* stack of clipped polygons */
+    struct gxbp_task *tasks; uint32_t task_count, task_capacity;
+    uint32_t *scratch; uint32_t scratch_count, scratch_capacity;
+    uint32_t mark[8];               /* counts at begin: points planes edges facets leaves nodes labels pool */
+    uint32_t stamp[2], edge_stamp, sign_plane;
+    uint64_t filter_calls, exact_calls;
+    gx_allocator allocator;
+} gxb_complex;
+
+/* The complex of a mesh. Errors: EMPTY, INDEX (element), NOT_FINITE and RANGE (node), INVERTED and FLAT (element), OVERLAP
+   (element: one of its faces is shared by more than two elements, or by two on the same side), LIMIT, MEMORY. */
+GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator *allocator, gxb_complex **complex,
+                                       gx_failure *failure);
+GXFEM_API void gxb_complex_destroy(gxb_complex *complex);
+
+/* What follows begin is kept by commit or undone by rollback. After an error only rollback may follow. */
+GXFEM_API void gxb_complex_begin(gxb_complex *complex);
+GXFEM_API void gxb_complex_commit(gxb_complex *complex);
+GXFEM_API void gxb_complex_rollback(gxb_complex *complex);
+
+/* Errors: NOT_FINITE, RANGE, MEMORY, LIMIT. */
+GXFEM_API gx_result gxb_complex_add_point(gxb_complex *complex, const double x[3], uint32_t *point);
+/* Sets plane and orientation from the points. GX_ERROR_FLAT: the triangle has no area. */
+GXFEM_API gx_result gxb_complex_add_plane(gxb_complex *complex, gxb_triangle *triangle);
+/* Divides the leaves of one element that the triangle meets, and labels the facets that it covers. allowed: leaves for which allowed(user, leaf) is 0 are left alone (NULL: none). */
+GXFEM_API gx_result gxb_complex_insert(gxb_complex *complex, gxb_triangle *triangle, uint32_t element,
+                                       int (*allowed)(void *user, uint32_t leaf), void *user);
+/* Makes a facet a wall. */
+GXFEM_API gx_result gxb_complex_set_wall(gxb_complex *complex, uint32_t facet);
+GXFEM_API gx_result gxb_complex_set_removed(gxb_complex *complex, uint32_t leaf);
+/* Makes the four facets of an untouched element. */
+GXFEM_API gx_result gxb_complex_open_element(gxb_complex *complex, uint32_t element);
+/* The leaf's facets, as they are divided now (in complex.pool, until the next call that changes the complex). */
+GXFEM_API gx_result gxb_leaf_facets(gxb_complex *complex, uint32_t leaf, uint32_t *first, uint32_t *count);
+/* The facet's edges, as they are divided now. */
+GXFEM_API gx_result gxb_facet_edges(gxb_complex *complex, uint32_t facet, uint32_t *first, uint32_t *count);
+
+/* Sign of a point against a plane of the complex, exact. */
+GXFEM_API int gxb_complex_side(gxb_complex *complex, uint32_t point, uint32_t plane);
+/* Sign of point[axis] - value, exact. */
+GXFEM_API int gxb_complex_compare(gxb_complex *complex, uint32_t point, int axis, double value);
+/* Barycentric coordinates of a point in an element, each rounded on its own from its exact value (0 where it is 0). */
+GXFEM_API void gxb_complex_barycentric(gxb_complex *complex, uint32_t point, uint32_t element, double lambda[4]);
+/* The same with a relative error below 2^-180. */
+GXFEM_API void gxb_complex_barycentric_fine(gxb_complex *complex, uint32_t point, uint32_t element, gxb_num lambda[4]);
+
+#ifdef __cplusplus
+}
+#endif
+#endif /* GXFEM_BOOLEAN_H: stop here for the interface */
+
+#if defined(GXFEM_IMPLEMENTATION) && !defined(GXFEM_BOOLEAN_IMPLEMENTATION)
+#define GXFEM_BOOLEAN_IMPLEMENTATION
+#endif
+#if defined(GXFEM_BOOLEAN_IMPLEMENTATION) && !defined(GXFEM_BOOLEAN_IMPLEMENTED)
+#define GXFEM_BOOLEAN_IMPLEMENTED
+#include <stdlib.h>
+#include <string.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* >>bits: doubles taken apart and put together without floating-point arithmetic ---------------------------------------- */
+
+static uint64_t gxbp_bits(double x) {
+    uint64_t b;
+    memcpy(&b, &x, sizeof b);
+    return b;
+}
+
+static double gxbp_double(uint64_t b) {
+    double x;
+    memcpy(&x, &b, sizeof x);
+    return x;
+}
+
+/* 2^e for -1022 <= e <= 1023 */
+static double gxbp_power(int e) { return gxbp_double((uint64_t)(e + 1023) << 52); }
+
+static int gxbp_exponent_bits(double x) { return (int)((gxbp_bits(x) >> 52) & 0x7ff); }
+static int gxbp_is_finite(double x) { return gxbp_exponent_bits(x) != 0x7ff; }
+static int gxbp_is_zero(double x) { return (gxbp_bits(x) << 1) == 0; }
+static double gxbp_abs(double x) { return gxbp_double(gxbp_bits(x) & ~((uint64_t)1 << 63)); }
+
+/* floor(log2 |x|) for finite x other than 0, also for denormals */
+static int gxbp_exponent(double x) {
+    const int e = gxbp_exponent_bits(x);
+    uint64_t m = gxbp_bits(x) & (((uint64_t)1 << 52) - 1);
+    int k = -1075;
+    if (e != 0) return e - 1023;
+    for (; m != 0; m >>= 1) k++;
+    return k;
+}
+
+/* >>exact: sums and products of doubles as integers times powers of two -------------------------------------------------- */
+
+#if GXB_LIMB_BITS == 64
+__extension__ typedef unsigned __int128 gxbp_wide;
+#else
+typedef uint64_t gxbp_wide;
+#endif
+
+/* Takes zero limbs off both ends; a number without limbs is 0. */
+static void gxbp_num_trim(gxb_num *r) {
+    uint32_t low = 0;
+    while (r->n > 0 && r->d[r->n - 1] == 0) r->n--;
+    while (low < r->n && r->d[low] == 0) low++;
+    if (low > 0) {
+        r->n -= low;
+        r->exp += (int32_t)low;
+        memmove(r->d, r->d + low, r->n * sizeof *r->d);
+    }
+    if (r->n == 0) r->sign = r->exp = 0;
+}
+
+GXFEM_API void gxb_num_set(gxb_num *r, double value, int shift) {
+    const uint64_t b = gxbp_bits(value), fraction = b & (((uint64_t)1 << 52) - 1);
+    const int e = gxbp_exponent_bits(value);
+    const uint64_t m = e == 0 ? fraction : fraction | (uint64_t)1 << 52;
+    const int power = (e == 0 ? -1074 : e - 1075) + shift;              /* value * 2^shift = m * 2^power */
+    const int off = (power % GXB_LIMB_BITS + GXB_LIMB_BITS) % GXB_LIMB_BITS;
+    r->sign = m == 0 ? 0 : b >> 63 ? -1 : 1;
+    r->exp = (power - off) / GXB_LIMB_BITS;
+#if GXB_LIMB_BITS == 64
+    r->n = 2;
+    r->d[0] = m << off;
+    r->d[1] = off == 0 ? 0 : m >> (64 - off);
+#else
+    r->n = 3;
+    r->d[0] = (uint32_t)(m << off);
+    r->d[1] = (uint32_t)(off == 0 ? m >> 32 : m >> (32 - off));
+    r->d[2] = (uint32_t)(off == 0 ? 0 : m >> (64 - off));
+#endif
+    gxbp_num_trim(r);
+}
+
+static void gxbp_num_copy(gxb_num *r, const gxb_num *a, int sign) {
+    r->sign = a->sign * sign;
+    r->exp = a->exp;
+    r->n = a->n;
+    memcpy(r->d, a->d, a->n * sizeof *a->d);
+}
+
+/* The limb of a that stands for B^position. */
+static gxb_limb gxbp_num_limb(const gxb_num *a, int32_t position) {
+    return position < a->exp || position >= a->exp + (int32_t)a->n ? 0 : a->d[position - a->exp];
+}
+
+static int gxbp_num_compare_magnitude(const gxb_num *a, const gxb_num *b) {
+    const int32_t top_a = a->exp + (int32_t)a->n, top_b = b->exp + (int32_t)b->n;
+    const int32_t bottom = a->exp < b->exp ? a->exp : b->exp;
+    int32_t k;
+    if (top_a != top_b) return top_a > top_b ? 1 : -1;
+    for (k = top_a - 1; k >= bottom; k--) {
+        const gxb_limb x = gxbp_num_limb(a, k), y = gxbp_num_limb(b, k);
+        if (x != y) return x > y ? 1 : -1;
+    }
+    return 0;
+}
+
+/* r = |a| + |b|, worst length max of the tops minus min of the bottoms, plus 1 */
+static void gxbp_num_add_magnitude(gxb_num *r, const gxb_num *a, const gxb_num *b) {
+    const int32_t top_a = a->exp + (int32_t)a->n, top_b = b->exp + (int32_t)b->n;
+    const int32_t top = top_a > top_b ? top_a : top_b, bottom = a->exp < b->exp ? a->exp : b->exp;
+    gxbp_wide carry = 0;
+    int32_t k;
+    r->exp = bottom;
+    r->n = (uint32_t)(top - bottom) + 1;
+    for (k = bottom; k < top; k++) {
+        carry += (gxbp_wide)gxbp_num_limb(a, k) + gxbp_num_limb(b, k);
+        r->d[k - bottom] = (gxb_limb)carry;
+        carry >>= GXB_LIMB_BITS;
+    }
+    r->d[top - bottom] = (gxb_limb)carry;
+}
+
+/* r = |a| - |b| for |a| >= |b| */
+static void gxbp_num_sub_magnitude(gxb_num *r, const gxb_num *a, const gxb_num *b) {
+    const int32_t top = a->exp + (int32_t)a->n, bottom = a->exp < b->exp ? a->exp : b->exp;
+    gxb_limb borrow = 0;
+    int32_t k;
+    r->exp = bottom;
+    r->n = (uint32_t)(top - bottom);
+    for (k = bottom; k < top; k++) {
+        const gxb_limb x = gxbp_num_limb(a, k), y = gxbp_num_limb(b, k), t = (gxb_limb)(x - y);
+        r->d[k - bottom] = (gxb_limb)(t - borrow);
+        borrow = (gxb_limb)((x < y) | (t < borrow));
+    }
+}
+
+static void gxbp_num_add_signed(gxb_num *r, const gxb_num *a, const gxb_num *b, int b_factor) {
+    const int b_sign = b->sign * b_factor;
+    int order;
+    if (b_sign == 0) { gxbp_num_copy(r, a, 1); return; }
+    if (a->sign == 0) { gxbp_num_copy(r, b, b_factor); return; }
+    if (a->sign == b_sign) {
+        gxbp_num_add_magnitude(r, a, b);
+        r->sign = a->sign;
+    } else {
+        order = gxbp_num_compare_magnitude(a, b);
+        if (order >= 0) gxbp_num_sub_magnitude(r, a, b);
+        else gxbp_num_sub_magnitude(r, b, a);
+        r->sign = order == 0 ? 0 : order > 0 ? a->sign : b_sign;
+    }
+    gxbp_num_trim(r);
+}
+
+GXFEM_API void gxb_num_add(gxb_num *r, const gxb_num *a, const gxb_num *b) { gxbp_num_add_signed(r, a, b, 1); }
+GXFEM_API void gxb_num_sub(gxb_num *r, const gxb_num *a, const gxb_num *b) { gxbp_num_add_signed(r, a, b, -1); }
+
+GXFEM_API void gxb_num_mul(gxb_num *r, const gxb_num *a, const gxb_num *b) {
+    uint32_t i, j;
+    r->sign = a->sign * b->sign;
+    r->exp = a->exp + b->exp;
+    r->n = r->sign == 0 ? 0 : a->n + b->n;
+    memset(r->d, 0, r->n * sizeof *r->d);
+    for (i = 0; r->sign != 0 && i < a->n; i++) {
+        gxbp_wide carry = 0;
+        for (j = 0; j < b->n; j++) {
+            carry += (gxbp_wide)a->d[i] * b->d[j] + r->d[i + j];
+            r->d[i + j] = (gxb_limb)carry;
+            carry >>= GXB_LIMB_BITS;
+        }
+        r->d[i + b->n] = (gxb_limb)carry;
+    }
+    gxbp_num_trim(r);
+}
+
+/* |a| = m * 2^power with 2^52 <= m < 2^53, cut off below. a is not 0. */
+static uint64_t gxbp_num_mantissa(const gxb_num *a, int *power) {
+    uint64_t m = 0;
+    int bits = 0, k = (int)a->n - 1, top = GXB_LIMB_BITS;
+    while (!((a->d[k] >> (top - 1)) & 1)) top--;
+    *power = (a->exp + k) * GXB_LIMB_BITS + top - 53;
+    while (bits < 53) {
+        const int take = top < 53 - bits ? top : 53 - bits;
+        const uint64_t limb = k >= 0 ? a->d[k] : 0;
+        m = m << take | ((limb >> (top - take)) & (((uint64_t)1 << take) - 1));
+        bits += take;
+        k--;
+        top = GXB_LIMB_BITS;
+    }
+    return m;
+}
+
+/* m * 2^power; 0 below, infinity above the range of normal doubles */
+static double gxbp_compose(uint64_t m, int power, int negative) {
+    const int e = power + 52 + 1023;
+    uint64_t b = e <= 0 ? 0 : e >= 0x7ff ? (uint64_t)0x7ff << 52 : (uint64_t)e << 52 | (m & (((uint64_t)1 << 52) - 1));
+    if (negative) b |= (uint64_t)1 << 63;
+    return gxbp_double(b);
+}
+
+GXFEM_API double gxb_num_to_double(const gxb_num *a) {
+    int power;
+    uint64_t m;
+    if (a->sign == 0) return 0;
+    m = gxbp_num_mantissa(a, &power);
+    return gxbp_compose(m, power, a->sign < 0);
+}
+
+GXFEM_API double gxb_num_ratio(const gxb_num *a, const gxb_num *b) {
+    int power_a, power_b;
+    double q;
+    if (a->sign == 0) return 0;
+    q = (double)gxbp_num_mantissa(a, &power_a);         /* 2^52 <= q < 2^53, a double without rounding */
+    q /= (double)gxbp_num_mantissa(b, &power_b);        /* 1/2 < q < 2 */
+    power_a -= power_b;
+    if (power_a < -1000) return 0;
+    if (power_a > 1000) power_a = 1000;
+    return (a->sign * b->sign < 0 ? -q : q) * gxbp_power(power_a);
+}
+
+/* r = a.b for vectors of three numbers; the worst length is that of one product plus 2 limbs */
+static void gxbp_num_dot(gxb_num *r, const gxb_num a[3], const gxb_num b[3]) {
+    GXB_NUM(t); GXB_NUM(s);
+    gxb_num_mul(&s, &a[0], &b[0]);
+    gxb_num_mul(&t, &a[1], &b[1]);
+    gxb_num_add(r, &s, &t);
+    gxbp_num_copy(&s, r, 1);
+    gxb_num_mul(&t, &a[2], &b[2]);
+    gxb_num_add(r, &s, &t);
+}
+
+/* r = a*b - c*d */
+static void gxbp_num_det2(gxb_num *r, const gxb_num *a, const gxb_num *b, const gxb_num *c, const gxb_num *d) {
+    GXB_NUM(t); GXB_NUM(s);
+    gxb_num_mul(&s, a, b);
+    gxb_num_mul(&t, c, d);
+    gxb_num_sub(r, &s, &t);
+}
+
+static void gxbp_num_cross(gxb_num r[3], const gxb_num a[3], const gxb_num b[3]) {
+    gxbp_num_det2(&r[0], &a[1], &b[2], &a[2], &b[1]);
+    gxbp_num_det2(&r[1], &a[2], &b[0], &a[0], &b[2]);
+    gxbp_num_det2(&r[2], &a[0], &b[1], &a[1], &b[0]);
+}
+
+/* A vector of numbers with its limbs. */
+typedef struct gxbp_vec { gxb_num c[4]; gxb_limb limbs[4][GXB_NUM_LIMBS]; } gxbp_vec;
+
+static void gxbp_vec_init(gxbp_vec *v) {
+    int k;
+    for (k = 0; k < 4; k++) {
+        v->c[k].sign = v->c[k].exp = 0;
+        v->c[k].n = 0;
+        v->c[k].d = v->limbs[k];
+    }
+}
+
+static void gxbp_vec_set(gxbp_vec *v, const double x[3]) {
+    int k;
+    gxbp_vec_init(v);
+    for (k = 0; k < 3; k++) gxb_num_set(&v->c[k], x[k], 0);
+    gxb_num_set(&v->c[3], 1.0, 0);
+}
+
+static void gxbp_num_sub3(gxb_num r[3], const gxb_num a[3], const gxb_num b[3]) {
+    int k;
+    for (k = 0; k < 3; k++) gxb_num_sub(&r[k], &a[k], &b[k]);
+}
+
+/* Plane through p, q, r: c[0..2] = n = (q-p) x (r-p), degree 2; c[3] = d = n.p, degree 3. */
+static void gxbp_exact_plane(gxb_num plane[4], const gxb_num p[3], const gxb_num q[3], const gxb_num r[3]) {
+    gxbp_vec a, b;
+    gxbp_vec_init(&a);
+    gxbp_vec_init(&b);
+    gxbp_num_sub3(a.c, q, p);
+    gxbp_num_sub3(b.c, r, p);
+    gxbp_num_cross(plane, a.c, b.c);
+    gxbp_num_dot(&plane[3], plane, p);
+}
+
+/* r = n.X - d W for a homogeneous point: degree 9 for a point of three planes */
+static void gxbp_exact_side(gxb_num *r, const gxb_num point[4], const gxb_num plane[4]) {
+    GXB_NUM(t); GXB_NUM(s);
+    gxbp_num_dot(&s, plane, point);
+    gxb_num_mul(&t, &plane[3], &point[3]);
+    gxb_num_sub(r, &s, &t);
+}
+
+static void gxbp_make_weight_positive(gxb_num point[4]) {
+    int k;
+    if (point[3].sign < 0) for (k = 0; k < 4; k++) point[k].sign = -point[k].sign;
+}
+
+/* Line through p and q with a plane: X = s_q p - s_p q, W = s_q - s_p with s = n.x - d; degrees 4 and 3. */
+static void gxbp_exact_line_plane(gxb_num point[4], const gxb_num p[4], const gxb_num q[4], const gxb_num plane[4]) {
+    GXB_NUM(sp); GXB_NUM(sq);
+    int k;
+    gxbp_exact_side(&sp, p, plane);
+    gxbp_exact_side(&sq, q, plane);
+    for (k = 0; k < 3; k++) gxbp_num_det2(&point[k], &sq, &p[k], &sp, &q[k]);
+    gxb_num_sub(&point[3], &sq, &sp);
+    gxbp_make_weight_positive(point);
+}
+
+/* Three planes by Cramer's rule: X = d1 n2 x n3 + d2 n3 x n1 + d3 n1 x n2, W = n1.(n2 x n3); degrees 7 and 6. */
+static void gxbp_exact_three_planes(gxb_num point[4], const gxb_num a[4], const gxb_num b[4], const gxb_num c[4]) {
+    gxbp_vec bc, ca, ab, row, d;
+    int k;
+    gxbp_vec_init(&bc); gxbp_vec_init(&ca); gxbp_vec_init(&ab); gxbp_vec_init(&row); gxbp_vec_init(&d);
+    gxbp_num_cross(bc.c, b, c);
+    gxbp_num_cross(ca.c, c, a);
+    gxbp_num_cross(ab.c, a, b);
+    gxbp_num_copy(&d.c[0], &a[3], 1); gxbp_num_copy(&d.c[1], &b[3], 1); gxbp_num_copy(&d.c[2], &c[3], 1);
+    for (k = 0; k < 3; k++) {
+        gxbp_num_copy(&row.c[0], &bc.c[k], 1); gxbp_num_copy(&row.c[1], &ca.c[k], 1); gxbp_num_copy(&row.c[2], &ab.c[k], 1);
+        gxbp_num_dot(&point[k], row.c, d.c);
+    }
+    gxbp_num_dot(&point[3], a, bc.c);
+    gxbp_make_weight_positive(point);
+}
+
+/* >>filter: doubles with error bounds that hold for any order of operations, contraction, excess precision, rounding mode ----
+ *
+ * u = 2^-52 bounds the relative error of one operation in every rounding mode. Underflow, flushed or not, adds at most 2^-1022
+ * to a result; GXBP_TINY, far above every such error in the ranges of the complex, stands for it in every bound. Differences of
+ * coordinates pass through gxbp_fence, so that a compiler that may reassociate can't multiply them out: bounds rest on the size of the
+ * differences. Everything after the fence is a sum of products; whatever its order, each elementary product suffers fewer
+ * than eight roundings, so |error| <= 8u * (sum of |products|). Each bound below is at least that plus the inherited
+ * errors to first order, times a factor of 2 or more that covers second-order terms and the rounding of the bound itself.
+ */
+#define GXB_NO_BALL_EXPONENT 200
+#define GXBP_U gxbp_power(-52)
+#define GXBP_TINY gxbp_power(-600)
+#define GXBP_NO_BALL gxbp_power(GXB_NO_BALL_EXPONENT)
+
+static double gxbp_fence(double x) {
+    volatile double v = x;
+    return v;
+}
+
+static double gxbp_max(double a, double b) { return a > b ? a : b; }
+static double gxbp_max3(const double a[3]) { return gxbp_max(gxbp_abs(a[0]), gxbp_max(gxbp_abs(a[1]), gxbp_abs(a[2]))); }
+
+/* r = a x b, errors: each component of a within ea, of b within eb. Returns the bound for each component of r:
+   two products of sizes A B, inherited A eb + B ea + ea eb each, and 8u of 2 A B. */
+static double gxbp_filter_cross(double r[3], const double a[3], double ea, const double b[3], double eb) {
+    const double A = gxbp_max3(a), B = gxbp_max3(b);
+    r[0] = a[1] * b[2] - a[2] * b[1];
+    r[1] = a[2] * b[0] - a[0] * b[2];
+    r[2] = a[0] * b[1] - a[1] * b[0];
+    return 4 * (A * eb + B * ea + ea * eb) + 32 * GXBP_U * A * B + GXBP_TINY;
+}
+
+/* c = b - a with the bound for each component */
+static double gxbp_filter_difference(double c[3], const gxb_ball *a, const gxb_ball *b) {
+    int k;
+    for (k = 0; k < 3; k++) c[k] = gxbp_fence(b->x[k] - a->x[k]);
+    return 2 * (a->error + b->error) + 2 * GXBP_U * gxbp_max3(c) + GXBP_TINY;
+}
+
+static void gxbp_filter_plane(gxb_plane_filter *f, const gxb_ball *p, const double a[3], double ea, const double b[3], double eb) {
+    f->error = gxbp_filter_cross(f->n, a, ea, b, eb);
+    memcpy(f->base, p->x, sizeof f->base);
+    f->base_error = p->error;
+    f->norm = gxbp_max3(f->n);
+}
+
+/* n.(x - base); *bound: with D = |x - base|_1 and E the error of the difference,
+   D * error + 3 (norm + error) E from the data and 8u * norm * D from rounding. */
+static double gxbp_filter_side(const gxb_ball *x, const gxb_plane_filter *f, double *bound) {
+    const double d0 = gxbp_fence(x->x[0] - f->base[0]), d1 = gxbp_fence(x->x[1] - f->base[1]);
+    const double d2 = gxbp_fence(x->x[2] - f->base[2]);
+    const double D = gxbp_abs(d0) + gxbp_abs(d1) + gxbp_abs(d2), E = x->error + f->base_error;
+    *bound = 2 * D * (f->error + 12 * GXBP_U * f->norm) + 6 * E * (f->norm + f->error) + GXBP_TINY;
+    return f->n[0] * d0 + f->n[1] * d1 + f->n[2] * d2;
+}
+
+/* 1 or -1 where certain, else 0 */
+static int gxbp_filter_sign(double value, double bound) { return value > bound ? 1 : value < -bound ? -1 : 0; }
+
+/* The plane cuts the line from p to q at t = s_p / (s_p - s_q). */
+static void gxbp_filter_line_plane(gxb_ball *r, const gxb_ball *p, const gxb_ball *q, const gxb_plane_filter *f) {
+    double ep, eq, l[3], t, et;
+    const double sp = gxbp_filter_side(p, f, &ep), sq = gxbp_filter_side(q, f, &eq);
+    const double den = gxbp_fence(sp - sq), size = gxbp_abs(den), el = gxbp_filter_difference(l, p, q);
+    const double eden = ep + eq + 4 * GXBP_U * (gxbp_abs(sp) + gxbp_abs(sq));
+    int k;
+    r->error = GXBP_NO_BALL;
+    if (!(size > 4 * eden) || p->error >= GXBP_NO_BALL || q->error >= GXBP_NO_BALL) {
+        memcpy(r->x, p->x, sizeof r->x);
+        return;
+    }
+    t = gxbp_fence(sp / den);
+    et = 4 * (ep + gxbp_abs(t) * eden) / size + 8 * GXBP_U * gxbp_abs(t);
+    for (k = 0; k < 3; k++) r->x[k] = gxbp_fence(p->x[k] + t * l[k]);
+    r->error = 2 * (gxbp_max3(l) * et + (gxbp_abs(t) + et) * el + p->error) +
+               8 * GXBP_U * (gxbp_max3(p->x) + gxbp_abs(t) * gxbp_max3(l) + gxbp_max3(r->x)) + GXBP_TINY;
+}
+
+/* Cramer's rule about the base b of plane 0: x = b + (r0 n1 x n2 + r1 n2 x n0 + r2 n0 x n1) / n0.(n1 x n2),
+   r_i = n_i.(base_i - b). */
+static void gxbp_filter_three_planes(gxb_ball *out, const gxb_plane_filter *const f[3]) {
+    gxb_ball b;
+    double r[3], er[3], c[3][3], ec[3], D = 0, eD, size;
+    int i, k;
+    memcpy(b.x, f[0]->base, sizeof b.x);
+    b.error = 0;
+    for (i = 0; i < 3; i++) r[i] = -gxbp_filter_side(&b, f[i], &er[i]);
+    r[0] = 0;
+    for (i = 0; i < 3; i++) {
+        const gxb_plane_filter *g = f[(i + 1) % 3], *h = f[(i + 2) % 3];
+        ec[i] = gxbp_filter_cross(c[i], g->n, g->error, h->n, h->error);
+    }
+    for (k = 0; k < 3; k++) D += f[0]->n[k] * c[0][k];
+    eD = 6 * (f[0]->norm * ec[0] + f[0]->error * (gxbp_max3(c[0]) + ec[0])) + 48 * GXBP_U * f[0]->norm * gxbp_max3(c[0]) + GXBP_TINY;
+    D = gxbp_fence(D);
+    size = gxbp_abs(D);
+    memcpy(out->x, b.x, sizeof out->x);
+    out->error = GXBP_NO_BALL;
+    if (!(size > 4 * eD)) return;
+    {
+        double e = 0, largest = 0;
+        for (i = 0; i < 3; i++) {
+            const double C = gxbp_max3(c[i]);
+            e += 2 * (gxbp_abs(r[i]) * ec[i] + er[i] * (C + ec[i])) + 24 * GXBP_U * gxbp_abs(r[i]) * C;
+        }
+        for (k = 0; k < 3; k++) {
+            const double step = gxbp_fence((r[0] * c[0][k] + r[1] * c[1][k] + r[2] * c[2][k]) / D);
+            largest = gxbp_max(largest, gxbp_abs(step));
+            out->x[k] = gxbp_fence(b.x[k] + step);
+        }
+        out->error = 4 * (e + largest * eD) / size + 16 * GXBP_U * (largest + gxbp_max3(out->x)) + GXBP_TINY;
+    }
+}
+
+/* >>points: the predicates on their own ------------------------------------------------------------------------------ */
+
+/* Do all differences and products of these coordinates keep away from overflow? (underflow: see GXBP_TINY) */
+static int gxbp_filter_range(const double *x, int count) {
+    for (; count > 0; count--, x++) if (gxbp_exponent_bits(*x) > 1023 + 128) return 0;
+    return 1;
+}
+
+static int gxbp_orient2d_exact(const double a[2], const double b[2], const double c[2]) {
+    GXB_NUM(r);
+    gxbp_vec p, q, o, u, v;
+    double x[3] = {0, 0, 0};
+    x[0] = a[0]; x[1] = a[1]; gxbp_vec_set(&p, x);
+    x[0] = b[0]; x[1] = b[1]; gxbp_vec_set(&q, x);
+    x[0] = c[0]; x[1] = c[1]; gxbp_vec_set(&o, x);
+    gxbp_vec_init(&u);
+    gxbp_vec_init(&v);
+    gxbp_num_sub3(u.c, p.c, o.c);
+    gxbp_num_sub3(v.c, q.c, o.c);
+    gxbp_num_det2(&r, &u.c[0], &v.c[1], &u.c[1], &v.c[0]);
+    return r.sign;
+}
+
+GXFEM_API int gxb_orient2d(const double a[2], const double b[2], const double c[2]) {
+    if (gxbp_filter_range(a, 2) && gxbp_filter_range(b, 2) && gxbp_filter_range(c, 2)) {
+        const double ax = gxbp_fence(a[0] - c[0]), ay = gxbp_fence(a[1] - c[1]);
+        const double bx = gxbp_fence(b[0] - c[0]), by = gxbp_fence(b[1] - c[1]);
+        const double bound = 16 * GXBP_U * (gxbp_abs(ax * by) + gxbp_abs(ay * bx)) + GXBP_TINY;
+        const int sign = gxbp_filter_sign(ax * by - ay * bx, bound);
+        if (sign != 0) return sign;
+    }
+    return gxbp_orient2d_exact(a, b, c);
+}
+
+static int gxbp_orient3d_exact(const double a[3], const double b[3], const double c[3], const double d[3]) {
+    GXB_NUM(r);
+    gxbp_vec p, q, s, o, n;
+    gxbp_vec_set(&p, a); gxbp_vec_set(&q, b); gxbp_vec_set(&s, c); gxbp_vec_set(&o, d);
+    gxbp_vec_init(&n);
+    gxbp_exact_plane(n.c, p.c, q.c, s.c);
+    gxbp_exact_side(&r, o.c, n.c);
+    return -r.sign;
+}
+
+GXFEM_API int gxb_orient3d(const double a[3], const double b[3], const double c[3], const double d[3]) {
+    if (gxbp_filter_range(a, 3) && gxbp_filter_range(b, 3) && gxbp_filter_range(c, 3) && gxbp_filter_range(d, 3)) {
+        gxb_plane plane;
+        gxb_ball ball;
+        double value, bound;
+        int sign;
+        gxb_plane_init(&plane, a, b, c);
+        memcpy(ball.x, d, sizeof ball.x);
+        ball.error = 0;
+        value = gxbp_filter_side(&ball, &plane.filter, &bound);
+        sign = gxbp_filter_sign(value, bound);
+        if (sign != 0) return -sign;
+    }
+    return gxbp_orient3d_exact(a, b, c, d);
+}
+
+static void gxbp_ball_explicit(gxb_ball *ball, const double p[3]) {
+    memcpy(ball->x, p, sizeof ball->x);
+    ball->error = 0;
+}
+
+GXFEM_API void gxb_plane_init(gxb_plane *plane, const double p[3], const double q[3], const double r[3]) {
+    gxb_ball b[3];
+    double a[3], c[3], ea, ec;
+    gxbp_ball_explicit(&b[0], p); gxbp_ball_explicit(&b[1], q); gxbp_ball_explicit(&b[2], r);
+    ea = gxbp_filter_difference(a, &b[0], &b[1]);
+    ec = gxbp_filter_difference(c, &b[0], &b[2]);
+    gxbp_filter_plane(&plane->filter, &b[0], a, ea, c, ec);
+    plane->p = p; plane->q = q; plane->r = r;
+}
+
+static void gxbp_point_reset(gxb_point *point) {
+    point->p = point->q = NULL;
+    point->plane[0] = point->plane[1] = point->plane[2] = NULL;
+}
+
+GXFEM_API void gxb_point_explicit(gxb_point *point, const double p[3]) {
+    gxbp_point_reset(point);
+    gxbp_ball_explicit(&point->ball, p);
+    point->p = p;
+}
+
+GXFEM_API void gxb_point_line_plane(gxb_point *point, const double p[3], const double q[3], const gxb_plane *plane) {
+    gxb_ball a, b;
+    gxbp_point_reset(point);
+    gxbp_ball_explicit(&a, p);
+    gxbp_ball_explicit(&b, q);
+    gxbp_filter_line_plane(&point->ball, &a, &b, &plane->filter);
+    point->p = p; point->q = q; point->plane[0] = plane;
+}
+
+GXFEM_API void gxb_point_three_planes(gxb_point *point, const gxb_plane *a, const gxb_plane *b, const gxb_plane *c) {
+    const gxb_plane_filter *f[3];
+    gxbp_point_reset(point);
+    f[0] = &a->filter; f[1] = &b->filter; f[2] = &c->filter;
+    gxbp_filter_three_planes(&point->ball, f);
+    point->plane[0] = a; point->plane[1] = b; point->plane[2] = c;
+}
+
+static void gxbp_plane_exact(gxbp_vec *v, const gxb_plane *plane) {
+    gxbp_vec p, q, r;
+    gxbp_vec_set(&p, plane->p); gxbp_vec_set(&q, plane->q); gxbp_vec_set(&r, plane->r);
+    gxbp_vec_init(v);
+    gxbp_exact_plane(v->c, p.c, q.c, r.c);
+}
+
+static void gxbp_point_exact(gxbp_vec *v, const gxb_point *point) {
+    gxbp_vec a, b, c;
+    if (point->plane[0] == NULL) { gxbp_vec_set(v, point->p); return; }
+    gxbp_vec_init(v);
+    gxbp_plane_exact(&a, point->plane[0]);
+    if (point->plane[1] == NULL) {
+        gxbp_vec_set(&b, point->p);
+        gxbp_vec_set(&c, point->q);
+        gxbp_exact_line_plane(v->c, b.c, c.c, a.c);
+    } else {
+        gxbp_plane_exact(&b, point->plane[1]);
+        gxbp_plane_exact(&c, point->plane[2]);
+        gxbp_exact_three_planes(v->c, a.c, b.c, c.c);
+    }
+}
+
+GXFEM_API int gxb_side(const gxb_point *point, const gxb_plane *plane) {
+    if (plane == point->plane[0] || plane == point->plane[1] || plane == point->plane[2]) return 0;
+    if (point->ball.error < GXBP_NO_BALL) {
+        double bound;
+        const double value = gxbp_filter_side(&point->ball, &plane->filter, &bound);
+        const int sign = gxbp_filter_sign(value, bound);
+        if (sign != 0) return sign;
+    }
+    {
+        GXB_NUM(r);
+        gxbp_vec x, n;
+        gxbp_point_exact(&x, point);
+        gxbp_plane_exact(&n, plane);
+        gxbp_exact_side(&r, x.c, n.c);
+        return r.sign;
+    }
+}
+
+GXFEM_API int gxb_compare(const gxb_point *a, const gxb_point *b, int axis) {
+    const double difference = gxbp_fence(a->ball.x[axis] - b->ball.x[axis]);
+    const double bound = 2 * (a->ball.error + b->ball.error) + 2 * GXBP_U * gxbp_abs(difference) + GXBP_TINY;
+    const int sign = gxbp_filter_sign(difference, bound);
+    if (sign != 0) return sign;
+    {
+        GXB_NUM(r);
+        gxbp_vec p, q;
+        gxbp_point_exact(&p, a);
+        gxbp_point_exact(&q, b);
+        gxbp_num_det2(&r, &p.c[axis], &q.c[3], &q.c[axis], &p.c[3]);
+        return r.sign;
+    }
+}
+
+/* |a b c| of the homogeneous coordinates i and j: degree 20 for three points of three planes */
+static int gxbp_orient_exact(const gxb_num a[4], const gxb_num b[4], const gxb_num c[4], int i, int j) {
+    gxbp_vec row, cofactor;
+    GXB_NUM(r);
+    gxbp_vec_init(&row);
+    gxbp_vec_init(&cofactor);
+    gxbp_num_det2(&cofactor.c[0], &b[j], &c[3], &c[j], &b[3]);
+    gxbp_num_det2(&cofactor.c[1], &c[i], &b[3], &b[i], &c[3]);
+    gxbp_num_det2(&cofactor.c[2], &b[i], &c[j], &c[i], &b[j]);
+    gxbp_num_copy(&row.c[0], &a[i], 1); gxbp_num_copy(&row.c[1], &a[j], 1); gxbp_num_copy(&row.c[2], &a[3], 1);
+    gxbp_num_dot(&r, row.c, cofactor.c);
+    return r.sign;
+}
+
+GXFEM_API int gxb_orient_in_plane(const gxb_point *a, const gxb_point *b, const gxb_point *c, const gxb_plane *plane) {
+    const double *n = plane->filter.n;
+    gxbp_vec exact_n, x[3];
+    int axis, sign, k;
+    for (axis = 0; axis < 3 && gxbp_abs(n[axis]) < plane->filter.norm; axis++) {}
+    axis %= 3;
+    sign = gxbp_filter_sign(n[axis], plane->filter.error);
+    if (sign == 0) {
+        gxbp_plane_exact(&exact_n, plane);
+        for (k = 0; k < 3 && exact_n.c[axis].sign == 0; k++) axis = k;
+        sign = exact_n.c[axis].sign;
+    }
+    {
+        const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+        double u[3], v[3];
+        const double eu = gxbp_filter_difference(u, &a->ball, &b->ball), ev = gxbp_filter_difference(v, &a->ball, &c->ball);
+        const double U = gxbp_max(gxbp_abs(u[i]), gxbp_abs(u[j])), V = gxbp_max(gxbp_abs(v[i]), gxbp_abs(v[j]));
+        const double bound = 4 * (U * ev + V * eu + eu * ev) + 32 * GXBP_U * U * V + GXBP_TINY;
+        const int turn = gxbp_filter_sign(u[i] * v[j] - u[j] * v[i], bound);
+        if (turn != 0) return turn * sign;
+        gxbp_point_exact(&x[0], a); gxbp_point_exact(&x[1], b); gxbp_point_exact(&x[2], c);
+        return gxbp_orient_exact(x[0].c, x[1].c, x[2].c, i, j) * sign;
+    }
+}
+
+/* Order of two finite doubles by their bits: flush-to-zero can't make them equal. */
+static int gxbp_compare_doubles(double a, double b) {
+    const int na = (int)(gxbp_bits(a) >> 63), nb = (int)(gxbp_bits(b) >> 63);
+    const uint64_t ma = gxbp_bits(a) << 1, mb = gxbp_bits(b) << 1;
+    if (ma == 0 && mb == 0) return 0;
+    if (na != nb) return na ? -1 : 1;
+    return ma == mb ? 0 : (ma > mb) != na ? 1 : -1;
+}
+
+/* Is p in the box of the triangle, prolonged to -x? */
+static int gxbp_ray_reaches(const double a[3], const double b[3], const double c[3], const double p[3]) {
+    int k;
+    for (k = 0; k < 3; k++) {
+        const int sa = gxbp_compare_doubles(a[k], p[k]), sb = gxbp_compare_doubles(b[k], p[k]);
+        const int sc = gxbp_compare_doubles(c[k], p[k]);
+        if (sa < 0 && sb < 0 && sc < 0) return 0;
+        if (k > 0 && sa > 0 && sb > 0 && sc > 0) return 0;
+    }
+    return 1;
+}
+
+/* In a triangle's plane a point lies in the triangle where no projection to a coordinate plane sees it on both sides of edges. */
+static int gxbp_point_in_triangle(const double a[3], const double b[3], const double c[3], const double p[3]) {
+    int k;
+    if (gxb_orient3d(a, b, c, p) != 0) return 0;
+    for (k = 0; k < 3; k++) {
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        double pa[2], pb[2], pc[2], pp[2];
+        int s, t, r;
+        pa[0] = a[i]; pa[1] = a[j]; pb[0] = b[i]; pb[1] = b[j];
+        pc[0] = c[i]; pc[1] = c[j]; pp[0] = p[i]; pp[1] = p[j];
+        s = gxb_orient2d(pa, pb, pp); t = gxb_orient2d(pb, pc, pp); r = gxb_orient2d(pc, pa, pp);
+        if ((s > 0 || t > 0 || r > 0) && (s < 0 || t < 0 || r < 0)) return 0;
+    }
+    return 1;
+}
+
+/* Does the ray from p along +x cross the triangle? In the projection to y, z the ray is moved by (h, h^2), h -> 0, so that it
+   meets no edge; the sign of its side of edge a b is then that of the first term of the expansion in h which is not 0. */
+static int gxbp_ray_side(const double a[3], const double b[3], const double p[3]) {
+    int sign = gxb_orient2d(a + 1, b + 1, p + 1);
+    if (sign != 0) return sign;
+    sign = gxbp_compare_doubles(a[2], b[2]);            /* d/dy of the orientation is a_z - b_z */
+    return sign != 0 ? sign : gxbp_compare_doubles(b[1], a[1]);     /* d/dz is b_y - a_y */
+}
+
+GXFEM_API int gxb_winding_number(const double *vertices, const uint32_t *triangles, size_t triangle_count, const double p[3],
+                                 int *on_surface) {
+    int winding = 0;
+    size_t t;
+    *on_surface = 0;
+    for (t = 0; t < triangle_count; t++) {
+        const double *a = vertices + 3 * (size_t)triangles[3 * t], *b = vertices + 3 * (size_t)triangles[3 * t + 1];
+        const double *c = vertices + 3 * (size_t)triangles[3 * t + 2];
+        int ab, side;
+        if (!gxbp_ray_reaches(a, b, c, p)) continue;
+        if (gxbp_point_in_triangle(a, b, c, p)) *on_surface = 1;
+        ab = gxbp_ray_side(a, b, p);
+        if (ab == 0 || gxbp_ray_side(b, c, p) != ab || gxbp_ray_side(c, a, p) != ab) continue;
+        side = gxb_orient3d(a, b, c, p);                /* 1: p is behind the triangle, the ray leaves through it if ab > 0 */
+        if (side == ab) winding += ab;
+    }
+    return winding;
+}
+
+/* >>memory: growing arrays, transactions --------------------------------------------------------------------------------- */
+
+static void *gxbp_allocate(const gx_allocator *a, size_t size) { return a->allocate ? a->allocate(a->user, size) : malloc(size); }
+
+static void gxbp_release(const gx_allocator *a, void *memory, size_t size) {
+    if (memory == NULL) return;
+    if (a->release) a->release(a->user, memory, size);
+    else free(memory);
+}
+
+/* Makes room for count + extra items of the given size. */
+static gx_result gxbp_reserve(gxb_complex *cx, void *array, size_t item, uint32_t count, uint32_t *capacity, size_t extra) {
+    const size_t need = (size_t)count + extra, room = need + need / 2 + 16;
+    void *old, *memory;
+    if (need <= *capacity) return GX_OK;
+    if (room > INT32_MAX || room > SIZE_MAX / item) return GX_ERROR_LIMIT;
+    memory = gxbp_allocate(&cx->allocator, room * item);
+    if (memory == NULL) return GX_ERROR_MEMORY;
+    memcpy(&old, array, sizeof old);
+    if (count > 0) memcpy(memory, old, count * item);
+    gxbp_release(&cx->allocator, old, (size_t)*capacity * item);
+    memcpy(array, &memory, sizeof memory);
+    *capacity = (uint32_t)room;
+    return GX_OK;
+}
+
+#define GXBP_RESERVE(cx, array, counter, extra) \
+    gxbp_reserve(cx, &(cx)->array, sizeof *(cx)->array, (cx)->counter##_count, &(cx)->counter##_capacity, extra)
+
+enum { GXBP_EDGES, GXBP_FACETS, GXBP_LEAVES, GXBP_NODES, GXBP_ROOTS, GXBP_FACES, GXBP_MESH_EDGES };
+
+static void *gxbp_item(gxb_complex *cx, uint32_t array, uint32_t index, size_t *size) {
+    switch (array) {
+    case GXBP_EDGES: *size = sizeof *cx->edges; return cx->edges + index;
+    case GXBP_FACETS: *size = sizeof *cx->facets; return cx->facets + index;
+    case GXBP_LEAVES: *size = sizeof *cx->leaves; return cx->leaves + index;
+    case GXBP_NODES: *size = sizeof *cx->nodes; return cx->nodes + index;
+    case GXBP_ROOTS: *size = sizeof *cx->root; return cx->root + index;
+    case GXBP_FACES: *size = sizeof *cx->face_facet; return cx->face_facet + index;
+    default: *size = sizeof *cx->mesh_edge; return cx->mesh_edge + index;
+    }
+}
+
+/* Items older than the transaction. */
+static uint32_t gxbp_item_mark(const gxb_complex *cx, uint32_t array) {
+    static const uint32_t which[4] = {2, 3, 4, 5};
+    return array <= GXBP_NODES ? cx->mark[which[array]] : UINT32_MAX;
+}
+
+#define GXBP_UNDO_ITEM 64   /* no item that is saved is larger */
+
+static gx_result gxbp_reserve_undo(gxb_complex *cx, size_t items) {
+    gx_result result = GXBP_RESERVE(cx, undo, undo, items);
+    if (result == GX_OK) result = GXBP_RESERVE(cx, undo_bytes, undo_byte, items * GXBP_UNDO_ITEM);
+    return result;
+}
+
+/* Saves an item that is about to change. Room was reserved. */
+static void gxbp_save(gxb_complex *cx, uint32_t array, uint32_t index) {
+    size_t size;
+    const void *item = gxbp_item(cx, array, index, &size);
+    if (index >= gxbp_item_mark(cx, array)) return;
+    memcpy(cx->undo_bytes + cx->undo_byte_count, item, size);
+    cx->undo_byte_count += (uint32_t)size;
+    cx->undo[cx->undo_count].array = array;
+    cx->undo[cx->undo_count++].index = index;
+}
+
+GXFEM_API void gxb_complex_begin(gxb_complex *cx) {
+    cx->mark[0] = cx->point_count; cx->mark[1] = cx->plane_count; cx->mark[2] = cx->edge_count; cx->mark[3] = cx->facet_count;
+    cx->mark[4] = cx->leaf_count; cx->mark[5] = cx->tree_count; cx->mark[6] = cx->label_count; cx->mark[7] = cx->pool_count;
+    cx->undo_count = cx->undo_byte_count = cx->wall_count = cx->corner_count = cx->task_count = 0;
+}
+
+GXFEM_API void gxb_complex_commit(gxb_complex *cx) { gxb_complex_begin(cx); }
+
+GXFEM_API void gxb_complex_rollback(gxb_complex *cx) {
+    while (cx->undo_count > 0) {
+        const gxb_undo *undo = &cx->undo[--cx->undo_count];
+        size_t size;
+        void *item = gxbp_item(cx, undo->array, undo->index, &size);
+        cx->undo_byte_count -= (uint32_t)size;
+        memcpy(item, cx->undo_bytes + cx->undo_byte_count, size);
+    }
+    cx->point_count = cx->mark[0]; cx->plane_count = cx->mark[1]; cx->edge_count = cx->mark[2]; cx->facet_count = cx->mark[3];
+    cx->leaf_count = cx->mark[4]; cx->tree_count = cx->mark[5]; cx->label_count = cx->mark[6]; cx->pool_count = cx->mark[7];
+    cx->stamp[0]++; cx->stamp[1]++; cx->edge_stamp++;
+    gxb_complex_begin(cx);
+}
+
+/* Pool lists that resolving replaced stay behind as garbage until gxbp_compact; the caller of begin sees to that. */
+
+/* >>topology: the complex of a mesh --------------------------------------------------------------------------------------- */
+
+static gx_result gxbp_new_point(gxb_complex *cx, uint32_t *id) {
+    const gx_result result = GXBP_RESERVE(cx, points, point, 1);
+    if (result != GX_OK) return result;
+    *id = cx->point_count++;
+    memset(&cx->points[*id], 0, sizeof cx->points[*id]);
+    return GX_OK;
+}
+
+/* Memory for exact numbers, in blocks that stay where they are until the complex is destroyed. NULL: there is none. */
+static void *gxbp_block_take(gxb_complex *cx, size_t size) {
+    const size_t head = (sizeof(gxb_block) + 15) & ~(size_t)15, room = cx->blocks == NULL ? 16384 : 262144;
+    gxb_block *block = cx->blocks;
+    size = (size + 15) & ~(size_t)15;
+    if (block == NULL || block->size - block->used < size) {
+        block = (gxb_block *)gxbp_allocate(&cx->allocator, head + room);
+        if (block == NULL) return NULL;
+        block->next = cx->blocks; block->size = head + room; block->used = head;
+        cx->blocks = block;
+    }
+    block->used += size;
+    return (unsigned char *)block + block->used - size;
+}
+
+/* A copy of four numbers that stays. NULL: no memory; the numbers are a cache, so that most callers may go on without. */
+static gxb_num *gxbp_keep_exact(gxb_complex *cx, const gxb_num c[4]) {
+    size_t total = 0;
+    gxb_num *copy;
+    gxb_limb *d;
+    int k;
+    for (k = 0; k < 4; k++) total += c[k].n;
+    copy = (gxb_num *)gxbp_block_take(cx, 4 * sizeof *copy + total * sizeof *d);
+    if (copy == NULL) return NULL;
+    d = (gxb_limb *)(void *)(copy + 4);
+    for (k = 0; k < 4; k++) {
+        copy[k] = c[k];
+        copy[k].d = d;
+        memcpy(d, c[k].d, c[k].n * sizeof *d);
+        d += c[k].n;
+    }
+    return copy;
+}
+
+/* (x - origin) * 2^shift, exact; GX_ERROR_RANGE outside of 2^-128 ... 2^128 */
+static gx_result gxbp_frame_exact(const gxb_complex *cx, const double x[3], gxbp_vec *v) {
+    int k;
+    GXB_NUM(a); GXB_NUM(b);
+    gxbp_vec_init(v);
+    gxb_num_set(&v->c[3], 1.0, 0);
+    for (k = 0; k < 3; k++) {
+        int power;
+        gxb_num_set(&a, x[k], cx->shift);
+        gxb_num_set(&b, cx->origin[k], cx->shift);
+        if ((a.sign != 0 && (gxbp_num_mantissa(&a, &power), power + 52 < -128)) || (a.sign != 0 && power + 52 > 128)) return GX_ERROR_RANGE;
+        gxb_num_sub(&v->c[k], &a, &b);
+        if (v->c[k].sign != 0 && (gxbp_num_mantissa(&v->c[k], &power), power + 52 > 128)) return GX_ERROR_RANGE;
+    }
+    return GX_OK;
+}
+
+GXFEM_API gx_result gxb_complex_add_point(gxb_complex *cx, const double x[3], uint32_t *point) {
+    gxbp_vec v;
+    gx_result result;
+    gxb_num *exact = NULL;
+    uint32_t id;
+    double ball[3], error = 0;
+    int k;
+    for (k = 0; k < 3; k++) if (!gxbp_is_finite(x[k])) return GX_ERROR_NOT_FINITE;
+    result = gxbp_frame_exact(cx, x, &v);
+    if (result != GX_OK) return result;
+    for (k = 0; k < 3; k++) {
+        GXB_NUM(back); GXB_NUM(rest);
+        ball[k] = gxb_num_to_double(&v.c[k]);
+        gxb_num_set(&back, ball[k], 0);
+        gxb_num_sub(&rest, &v.c[k], &back);
+        if (rest.sign != 0) error = gxbp_max(error, 2 * GXBP_U * gxbp_abs(ball[k]));
+    }
+    if (error > 0 && (exact = gxbp_keep_exact(cx, v.c)) == NULL) return GX_ERROR_MEMORY;
+    result = gxbp_new_point(cx, &id);
+    if (result != GX_OK) return result;
+    memcpy(cx->points[id].ball.x, ball, sizeof ball);
+    cx->points[id].ball.error = error;
+    cx->points[id].kind = GXB_EXPLICIT;
+    cx->points[id].exact = exact;
+    *point = id;
+    return GX_OK;
+}
+
+/* Exact homogeneous coordinates of a point of the complex given by its definition. */
+static void gxbp_exact_definition(gxb_complex *cx, uint32_t kind, const uint32_t def[3], gxb_num out[4]);
+
+/* The point's exact coordinates: kept, or in store where they need not or cannot be kept. */
+static const gxb_num *gxbp_exact_cpoint(gxb_complex *cx, uint32_t point, gxbp_vec *store) {
+    gxb_cpoint *p = &cx->points[point];
+    if (p->exact != NULL) return p->exact;
+    if (p->kind == GXB_EXPLICIT) {
+        gxbp_vec_set(store, p->ball.x);
+        return store->c;
+    }
+    gxbp_vec_init(store);
+    gxbp_exact_definition(cx, p->kind, p->def, store->c);
+    p->exact = gxbp_keep_exact(cx, store->c);
+    return p->exact != NULL ? p->exact : store->c;
+}
+
+/* n = (q - p) x e_axis, d = n.p */
+static void gxbp_exact_axis_plane(gxb_num plane[4], const gxb_num p[3], const gxb_num q[3], uint32_t axis) {
+    gxbp_vec a;
+    const uint32_t i = (axis + 1) % 3, j = (axis + 2) % 3;
+    gxbp_vec_init(&a);
+    gxbp_num_sub3(a.c, q, p);
+    plane[axis].sign = 0; plane[axis].exp = 0; plane[axis].n = 0;
+    gxbp_num_copy(&plane[i], &a.c[j], 1);       /* (a x e_k)_i = a_j, (a x e_k)_j = -a_i for i, j, k cyclic */
+    gxbp_num_copy(&plane[j], &a.c[i], -1);
+    gxbp_num_dot(&plane[3], plane, p);
+}
+
+static const gxb_num *gxbp_exact_cplane(gxb_complex *cx, uint32_t plane, gxbp_vec *store) {
+    gxb_cplane *f = &cx->planes[plane];
+    gxbp_vec s[3];
+    const gxb_num *p, *q;
+    if (f->exact != NULL) return f->exact;
+    gxbp_vec_init(store);
+    p = gxbp_exact_cpoint(cx, f->def[0], &s[0]);
+    q = gxbp_exact_cpoint(cx, f->def[1], &s[1]);
+    if (f->along_axis) gxbp_exact_axis_plane(store->c, p, q, f->def[2]);
+    else gxbp_exact_plane(store->c, p, q, gxbp_exact_cpoint(cx, f->def[2], &s[2]));
+    f->exact = gxbp_keep_exact(cx, store->c);
+    return f->exact != NULL ? f->exact : store->c;
+}
+
+static void gxbp_exact_definition(gxb_complex *cx, uint32_t kind, const uint32_t def[3], gxb_num out[4]) {
+    gxbp_vec s[3];
+    const gxb_num *c = gxbp_exact_cplane(cx, def[2], &s[2]);
+    if (kind == GXB_LINE_PLANE) {
+        const gxb_num *p = gxbp_exact_cpoint(cx, def[0], &s[0]);
+        gxbp_exact_line_plane(out, p, gxbp_exact_cpoint(cx, def[1], &s[1]), c);
+    } else {
+        const gxb_num *a = gxbp_exact_cplane(cx, def[0], &s[0]);
+        gxbp_exact_three_planes(out, a, gxbp_exact_cplane(cx, def[1], &s[1]), c);
+    }
+}
+
+/* The ball of a point given by its definition. */
+static void gxbp_definition_ball(const gxb_complex *cx, uint32_t kind, const uint32_t def[3], gxb_ball *ball) {
+    if (kind == GXB_LINE_PLANE) {
+        gxbp_filter_line_plane(ball, &cx->points[def[0]].ball, &cx->points[def[1]].ball, &cx->planes[def[2]].filter);
+    } else {
+        const gxb_plane_filter *f[3];
+        f[0] = &cx->planes[def[0]].filter; f[1] = &cx->planes[def[1]].filter; f[2] = &cx->planes[def[2]].filter;
+        gxbp_filter_three_planes(ball, f);
+    }
+}
+
+/* Is the point in the plane by the way in which either is defined? */
+static int gxbp_incident(const gxb_complex *cx, uint32_t kind, const uint32_t def[3], uint32_t point, uint32_t plane) {
+    const gxb_cplane *f = &cx->planes[plane];
+    const uint32_t third = f->along_axis ? f->def[0] : f->def[2];
+    if (kind == GXB_EXPLICIT) return point == f->def[0] || point == f->def[1] || point == third;
+    if (def[2] == plane) return 1;
+    if (kind == GXB_THREE_PLANES) return def[0] == plane || def[1] == plane;
+    return (def[0] == f->def[0] || def[0] == f->def[1] || def[0] == third) &&
+           (def[1] == f->def[0] || def[1] == f->def[1] || def[1] == third);
+}
+
+/* Sign of the exact value of n.X - d W for a point of the complex, or (point GXB_NONE) for one that only has a definition. */
+static int gxbp_exact_sign(gxb_complex *cx, uint32_t kind, const uint32_t def[3], uint32_t point, uint32_t plane) {
+    GXB_NUM(r);
+    gxbp_vec sx, sn;
+    const gxb_num *n = gxbp_exact_cplane(cx, plane, &sn), *x = sx.c;
+    cx->exact_calls++;
+    if (point != GXB_NONE) x = gxbp_exact_cpoint(cx, point, &sx);
+    else {
+        gxbp_vec_init(&sx);
+        gxbp_exact_definition(cx, kind, def, sx.c);
+    }
+    gxbp_exact_side(&r, x, n);
+    return r.sign;
+}
+
+static int gxbp_side_of(gxb_complex *cx, const gxb_ball *ball, uint32_t kind, const uint32_t def[3], uint32_t point, uint32_t plane) {
+    double bound, value;
+    int sign;
+    if (gxbp_incident(cx, kind, def, point, plane)) return 0;
+    cx->filter_calls++;
+    if (ball->error < GXBP_NO_BALL) {
+        value = gxbp_filter_side(ball, &cx->planes[plane].filter, &bound);
+        sign = gxbp_filter_sign(value, bound);
+        if (sign != 0) return sign;
+    }
+    return gxbp_exact_sign(cx, kind, def, point, plane);
+}
+
+GXFEM_API int gxb_complex_side(gxb_complex *cx, uint32_t point, uint32_t plane) {
+    const gxb_cpoint p = cx->points[point];
+    return gxbp_side_of(cx, &p.ball, p.kind, p.def, point, plane);
+}
+
+/* The side with a memory: slot 0 for the triangle being inserted, slot 1 for its edges' planes. */
+static int gxbp_sign(gxb_complex *cx, uint32_t point, uint32_t plane, int slot) {
+    if (cx->points[point].stamp[slot] != cx->stamp[slot]) {
+        const int sign = gxb_complex_side(cx, point, plane);
+        cx->points[point].sign[slot] = sign;
+        cx->points[point].stamp[slot] = cx->stamp[slot];
+    }
+    return cx->points[point].sign[slot];
+}
+
+GXFEM_API int gxb_complex_compare(gxb_complex *cx, uint32_t point, int axis, double value) {
+    GXB_NUM(a); GXB_NUM(b); GXB_NUM(c);
+    gxbp_vec store;
+    const gxb_num *x = gxbp_exact_cpoint(cx, point, &store);
+    gxb_num_set(&a, value, cx->shift);
+    gxb_num_set(&b, cx->origin[axis], cx->shift);
+    gxb_num_sub(&c, &a, &b);
+    gxb_num_mul(&a, &c, &x[3]);
+    gxb_num_sub(&b, &x[axis], &a);
+    return b.sign;
+}
+
+/* A plane through three points, or (axis < 3) through two along a coordinate axis. */
+static gx_result gxbp_new_plane(gxb_complex *cx, uint32_t p, uint32_t q, uint32_t r, int along_axis, uint32_t *id) {
+    gx_result result = GXBP_RESERVE(cx, planes, plane, 1);
+    gxb_cplane *f;
+    double a[3], b[3] = {0, 0, 0}, ea, eb = 0;
+    if (result != GX_OK) return result;
+    *id = cx->plane_count++;
+    f = &cx->planes[*id];
+    memset(f, 0, sizeof *f);
+    f->def[0] = p; f->def[1] = q; f->def[2] = r;
+    f->along_axis = (uint32_t)along_axis;
+    ea = gxbp_filter_difference(a, &cx->points[p].ball, &cx->points[q].ball);
+    if (along_axis) b[r] = 1;
+    else eb = gxbp_filter_difference(b, &cx->points[p].ball, &cx->points[r].ball);
+    gxbp_filter_plane(&f->filter, &cx->points[p].ball, a, ea, b, eb);
+    return GX_OK;
+}
+
+/* Sign of one component of a plane's normal. */
+static int gxbp_normal_sign(gxb_complex *cx, uint32_t plane, uint32_t axis) {
+    const gxb_plane_filter *f = &cx->planes[plane].filter;
+    const int sign = gxbp_filter_sign(f->n[axis], f->error);
+    gxbp_vec store;
+    return sign != 0 ? sign : gxbp_exact_cplane(cx, plane, &store)[axis].sign;
+}
+
+/* Finds a component of the normal that is not 0, the largest where the filter can tell. 0: there is none. */
+static int gxbp_plane_axis(gxb_complex *cx, uint32_t plane) {
+    const double *n = cx->planes[plane].filter.n;
+    uint32_t axis = gxbp_abs(n[0]) >= gxbp_abs(n[1]) ? 0u : 1u, k;
+    int sign;
+    if (gxbp_abs(n[2]) > gxbp_abs(n[axis])) axis = 2;
+    sign = gxbp_normal_sign(cx, plane, axis);
+    for (k = 0; k < 3 && sign == 0; k++) {
+        axis = k;
+        sign = gxbp_normal_sign(cx, plane, axis);
+    }
+    cx->planes[plane].axis = axis;
+    cx->planes[plane].axis_sign = sign;
+    return sign != 0;
+}
+
+GXFEM_API gx_result gxb_complex_add_plane(gxb_complex *cx, gxb_triangle *t) {
+    const gx_result result = gxbp_new_plane(cx, t->point[0], t->point[1], t->point[2], 0, &t->plane);
+    if (result != GX_OK) return result;
+    t->orientation = 1;
+    t->edge_plane[0] = t->edge_plane[1] = t->edge_plane[2] = GXB_NONE;
+    return gxbp_plane_axis(cx, t->plane) ? GX_OK : GX_ERROR_FLAT;
+}
+
+/* --- faces and edges of the mesh by sorting --- */
+
+typedef struct gxbp_key { uint32_t node[3], element, local; } gxbp_key;
+
+static int gxbp_compare_keys(const void *a, const void *b) {
+    const gxbp_key *p = (const gxbp_key *)a, *q = (const gxbp_key *)b;
+    int k;
+    for (k = 0; k < 3; k++) if (p->node[k] != q->node[k]) return p->node[k] < q->node[k] ? -1 : 1;
+    if (p->element != q->element) return p->element < q->element ? -1 : 1;
+    return 0;
+}
+
+static const uint8_t gxbp_face_nodes[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};     /* outward, opposite to node k */
+static const uint8_t gxbp_edge_nodes[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+
+static void gxbp_sort3(uint32_t a[3]) {
+    uint32_t t;
+    if (a[0] > a[1]) { t = a[0]; a[0] = a[1]; a[1] = t; }
+    if (a[1] > a[2]) { t = a[1]; a[1] = a[2]; a[2] = t; }
+    if (a[0] > a[1]) { t = a[0]; a[0] = a[1]; a[1] = t; }
+}
+
+static int gxbp_same_nodes(const gxbp_key *a, const gxbp_key *b) { return memcmp(a->node, b->node, sizeof a->node) == 0; }
+
+/* 1 where the outward order of the element's face is an even permutation of the sorted nodes */
+static int gxbp_face_is_even(const uint32_t *element, uint32_t face) {
+    const uint32_t a = element[gxbp_face_nodes[face][0]], b = element[gxbp_face_nodes[face][1]], c = element[gxbp_face_nodes[face][2]];
+    return (a < b) == ((b < c) == (a < c));
+}
+
+/* Numbers the faces in the order of their sorted nodes. */
+static gx_result gxbp_number_faces(gxb_complex *cx, gxbp_key *keys, size_t *bad) {
+    const size_t count = (size_t)cx->element_count * 4;
+    size_t i;
+    uint32_t e, k, j;
+    for (e = 0, i = 0; e < cx->element_count; e++) for (k = 0; k < 4; k++, i++) {
+        for (j = 0; j < 3; j++) keys[i].node[j] = cx->elements[4 * e + gxbp_face_nodes[k][j]];
+        gxbp_sort3(keys[i].node);
+        keys[i].element = e; keys[i].local = k;
+    }
+    qsort(keys, count, sizeof *keys, gxbp_compare_keys);
+    cx->face_count = 0;
+    for (i = 0; i < count; i++) {
+        const int again = i > 0 && gxbp_same_nodes(&keys[i], &keys[i - 1]);
+        const int side = gxbp_face_is_even(cx->elements + 4 * keys[i].element, keys[i].local);  /* behind the sorted normal */
+        if (!again) {
+            cx->face_elements[2 * cx->face_count] = cx->face_elements[2 * cx->face_count + 1] = GXB_NONE;
+            cx->face_count++;
+        }
+        if (cx->face_elements[2 * (cx->face_count - 1) + (uint32_t)side] != GXB_NONE) { *bad = keys[i].element; return GX_ERROR_OVERLAP; }
+        cx->face_elements[2 * (cx->face_count - 1) + (uint32_t)side] = keys[i].element;
+        cx->element_faces[4 * keys[i].element + keys[i].local] = cx->face_count - 1;
+    }
+    return GX_OK;
+}
+
+static void gxbp_number_edges(gxb_complex *cx, gxbp_key *keys) {
+    const size_t count = (size_t)cx->element_count * 6;
+    size_t i;
+    uint32_t e, k;
+    for (e = 0, i = 0; e < cx->element_count; e++) for (k = 0; k < 6; k++, i++) {
+        const uint32_t a = cx->elements[4 * e + gxbp_edge_nodes[k][0]], b = cx->elements[4 * e + gxbp_edge_nodes[k][1]];
+        keys[i].node[0] = a < b ? a : b; keys[i].node[1] = a < b ? b : a; keys[i].node[2] = 0;
+        keys[i].element = e; keys[i].local = k;
+    }
+    qsort(keys, count, sizeof *keys, gxbp_compare_keys);
+    for (i = 0, cx->mesh_edge_count = 0; i < count; i++) {
+        if (i == 0 || !gxbp_same_nodes(&keys[i], &keys[i - 1])) cx->mesh_edge_count++;
+        cx->element_edges[6 * keys[i].element + keys[i].local] = cx->mesh_edge_count - 1;
+    }
+}
+
+/* Frame: the origin is the mesh's lower corner rounded to few bits where the mesh lies far from 0 (so that the shift adds no
+   bits to its coordinates), else 0; the scale brings the box to size 1. */
+static gx_result gxbp_choose_frame(gxb_complex *cx, const gxb_mesh *mesh, size_t *bad) {
+    int axis, largest = -2000;
+    for (axis = 0; axis < 3; axis++) {
+        double low = 0, high = 0, size;
+        size_t i;
+        for (i = 0; i < mesh->node_count; i++) {
+            const double x = mesh->positions[3 * i + (size_t)axis];
+            if (!gxbp_is_finite(x)) { *bad = i; return GX_ERROR_NOT_FINITE; }
+            if (i == 0 || x < low) low = x;
+            if (i == 0 || x > high) high = x;
+        }
+        if (gxbp_exponent_bits(low) > 2000 || gxbp_exponent_bits(high) > 2000) return GX_ERROR_RANGE;
+        size = gxbp_fence(high - low);
+        if (gxbp_is_zero(size)) size = gxbp_max(gxbp_abs(low), gxbp_abs(high));
+        if (gxbp_is_zero(size)) continue;
+        if (gxbp_exponent(size) > largest) largest = gxbp_exponent(size);
+        if (!gxbp_is_zero(low) && gxbp_exponent(low) > gxbp_exponent(size) + 3) {
+            const int drop = gxbp_exponent(low) - gxbp_exponent(size);      /* keep so many leading bits */
+            if (drop < 52) cx->origin[axis] = gxbp_double(gxbp_bits(low) & ~((((uint64_t)1) << (52 - drop)) - 1));
+            else cx->origin[axis] = low;
+        }
+    }
+    cx->shift = largest == -2000 ? 0 : -largest - 1;
+    return GX_OK;
+}
+
+static gx_result gxbp_add_nodes(gxb_complex *cx, const gxb_mesh *mesh, size_t *bad) {
+    size_t i;
+    gx_result result = GXBP_RESERVE(cx, points, point, mesh->node_count);
+    for (i = 0; i < mesh->node_count && result == GX_OK; i++) {
+        uint32_t id;
+        result = gxb_complex_add_point(cx, mesh->positions + 3 * i, &id);
+        if (result != GX_OK && result != GX_ERROR_MEMORY) *bad = i;
+    }
+    return result;
+}
+
+static gx_result gxbp_check_elements(gxb_complex *cx, const gxb_mesh *mesh, size_t *bad) {
+    uint32_t e;
+    int k;
+    for (e = 0; e < cx->element_count; e++) {
+        const double *x[4];
+        int sign;
+        *bad = e;
+        for (k = 0; k < 4; k++) {
+            if (cx->elements[4 * e + (uint32_t)k] >= mesh->node_count) return GX_ERROR_INDEX;
+            x[k] = mesh->positions + 3 * (size_t)cx->elements[4 * e + (uint32_t)k];
+        }
+        sign = gxb_orient3d(x[1], x[2], x[3], x[0]);    /* node 0 lies behind face 123 as seen from outside: below it */
+        if (sign == 0) return GX_ERROR_FLAT;
+        if (sign < 0) return GX_ERROR_INVERTED;
+    }
+    *bad = SIZE_MAX;
+    return GX_OK;
+}
+
+static gx_result gxbp_make_leaves(gxb_complex *cx) {
+    uint32_t e;
+    const gx_result result = GXBP_RESERVE(cx, leaves, leaf, cx->element_count);
+    if (result != GX_OK) return result;
+    memset(cx->leaves, 0, cx->element_count * sizeof *cx->leaves);
+    for (e = 0; e < cx->element_count; e++) {
+        cx->leaves[e].element = e;
+        cx->leaves[e].parent = GXB_NONE;
+        cx->root[e] = 2 * e;
+    }
+    cx->leaf_count = cx->element_count;
+    memset(cx->face_facet, 0xff, cx->face_count * sizeof *cx->face_facet);
+    memset(cx->mesh_edge, 0xff, cx->mesh_edge_count * sizeof *cx->mesh_edge);
+    return GX_OK;
+}
+
+/* One block for the tables of fixed size. */
+static size_t gxbp_table_words(size_t elements) { return elements * (4 + 4 + 6 + 8 + 4 + 6 + 1); }
+
+static gx_result gxbp_fill_complex(gxb_complex *cx, const gxb_mesh *mesh, uint32_t *table, size_t *bad) {
+    const size_t n = mesh->element_count;
+    const size_t key_bytes = n * 6 * sizeof(gxbp_key);
+    gx_result result = gxbp_choose_frame(cx, mesh, bad);
+    gxbp_key *keys;
+    memcpy(table, mesh->elements, n * 4 * sizeof *table);
+    cx->elements = table;
+    cx->element_faces = table + 4 * n; cx->element_edges = table + 8 * n; cx->face_elements = table + 14 * n;
+    cx->face_facet = table + 22 * n; cx->mesh_edge = table + 26 * n; cx->root = table + 32 * n;
+    if (result == GX_OK) result = gxbp_check_elements(cx, mesh, bad);
+    if (result == GX_OK) result = gxbp_add_nodes(cx, mesh, bad);
+    if (result != GX_OK) return result;
+    keys = (gxbp_key *)gxbp_allocate(&cx->allocator, key_bytes);
+    if (keys == NULL) return GX_ERROR_MEMORY;
+    result = gxbp_number_faces(cx, keys, bad);
+    if (result == GX_OK) gxbp_number_edges(cx, keys);
+    gxbp_release(&cx->allocator, keys, key_bytes);
+    return result == GX_OK ? gxbp_make_leaves(cx) : result;
+}
+
+static gx_result gxbp_fail(gx_failure *failure, gx_result result, size_t index) {
+    if (failure != NULL) { failure->result = result; failure->index = index; failure->surface = SIZE_MAX; }
+    return result;
+}
+
+GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator *allocator, gxb_complex **complex,
+                                       gx_failure *failure) {
+    gx_allocator none;
+    gxb_complex *cx;
+    uint32_t *table;
+    size_t bad = SIZE_MAX;
+    gx_result result;
+    memset(&none, 0, sizeof none);
+    if (allocator == NULL) allocator = &none;
+    if (mesh == NULL || complex == NULL) return gxbp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    if (mesh->node_count == 0 || mesh->element_count == 0) return gxbp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
+    if (mesh->positions == NULL || mesh->elements == NULL) return gxbp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    if (mesh->element_count > INT32_MAX / 8 || mesh->node_count > INT32_MAX) return gxbp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
+    cx = (gxb_complex *)gxbp_allocate(allocator, sizeof *cx);
+    if (cx == NULL) return gxbp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
+    memset(cx, 0, sizeof *cx);
+    cx->allocator = *allocator;
+    cx->node_count = (uint32_t)mesh->node_count;
+    cx->element_count = (uint32_t)mesh->element_count;
+    table = (uint32_t *)gxbp_allocate(allocator, gxbp_table_words(mesh->element_count) * sizeof *table);
+    cx->elements = table;
+    result = table == NULL ? GX_ERROR_MEMORY : gxbp_fill_complex(cx, mesh, table, &bad);
+    if (result != GX_OK) {
+        gxb_complex_destroy(cx);
+        return gxbp_fail(failure, result, bad);
+    }
+    cx->stamp[0] = cx->stamp[1] = cx->edge_stamp = 1;
+    gxb_complex_begin(cx);
+    *complex = cx;
+    return gxbp_fail(failure, GX_OK, SIZE_MAX);
+}
+
+#define GXBP_FREE(array, counter) gxbp_release(&a, cx->array, (size_t)cx->counter##_capacity * sizeof *cx->array)
+
+typedef struct gxbp_corner {    /* of a clipped polygon: its point, and what carries the edge to the next corner */
+    gxb_ball ball;
+    uint32_t kind, def[3], point;
+    uint32_t carrier;           /* a plane, or GXBP_TRIANGLE_EDGE + k */
+    int32_t sign;
+} gxbp_corner;
+
+typedef struct gxbp_task { uint32_t parent, side, first, count, coplanar; } gxbp_task;
+
+#define GXBP_TRIANGLE_EDGE 0x80000000u
+#define GXBP_IN_ROOT GXB_NONE   /* task.parent: the reference is the element's root */
+
+GXFEM_API void gxb_complex_destroy(gxb_complex *cx) {
+    gx_allocator a;
+    if (cx == NULL) return;
+    a = cx->allocator;
+    while (cx->blocks != NULL) {
+        gxb_block *next = cx->blocks->next;
+        gxbp_release(&a, cx->blocks, cx->blocks->size);
+        cx->blocks = next;
+    }
+    GXBP_FREE(points, point); GXBP_FREE(planes, plane); GXBP_FREE(edges, edge); GXBP_FREE(facets, facet);
+    GXBP_FREE(leaves, leaf); GXBP_FREE(nodes, tree); GXBP_FREE(labels, label);
+    GXBP_FREE(pool, pool); GXBP_FREE(walls, wall); GXBP_FREE(undo, undo);
+    GXBP_FREE(undo_bytes, undo_byte); GXBP_FREE(corners, corner); GXBP_FREE(tasks, task); GXBP_FREE(scratch, scratch);
+    gxbp_release(&a, cx->elements, gxbp_table_words(cx->element_count) * sizeof *cx->elements);
+    gxbp_release(&a, cx, sizeof *cx);
+}
+
+/* >>split: dividing edges, facets and leaves by a plane --------------------------------------------------------------------
+ *
+ * Every function here that can run out of memory reserves room first and then changes the complex without a way to fail.
+ */
+
+/* The facets (edges) into which one was divided stand behind it as a binary tree; walks its leaves in order. */
+static uint32_t gxbp_count_facets(const gxb_complex *cx, uint32_t facet) {
+    const uint32_t child = cx->facets[facet].child;
+    return child == GXB_NONE ? 1 : gxbp_count_facets(cx, child) + gxbp_count_facets(cx, child + 1);
+}
+
+static void gxbp_push_facets(gxb_complex *cx, uint32_t facet) {
+    const uint32_t child = cx->facets[facet].child;
+    if (child == GXB_NONE) cx->pool[cx->pool_count++] = facet;
+    else {
+        gxbp_push_facets(cx, child);
+        gxbp_push_facets(cx, child + 1);
+    }
+}
+
+static uint32_t gxbp_count_edges(const gxb_complex *cx, uint32_t edge) {
+    const uint32_t child = cx->edges[edge].child;
+    return child == GXB_NONE ? 1 : gxbp_count_edges(cx, child) + gxbp_count_edges(cx, child + 1);
+}
+
+static void gxbp_push_edges(gxb_complex *cx, uint32_t signed_edge) {
+    const uint32_t child = cx->edges[signed_edge >> 1].child, back = signed_edge & 1;
+    if (child == GXB_NONE) cx->pool[cx->pool_count++] = signed_edge;
+    else {
+        gxbp_push_edges(cx, (child + back) << 1 | back);
+        gxbp_push_edges(cx, (child + 1 - back) << 1 | back);
+    }
+}
+
+GXFEM_API gx_result gxb_facet_edges(gxb_complex *cx, uint32_t facet, uint32_t *first, uint32_t *count) {
+    gxb_facet *f = &cx->facets[facet];
+    uint32_t i, total = 0;
+    for (i = 0; i < f->loop_count; i++) total += gxbp_count_edges(cx, cx->pool[f->loop + i] >> 1);
+    if (total != f->loop_count) {
+        const uint32_t start = cx->pool_count;
+        gx_result result = GXBP_RESERVE(cx, pool, pool, total);
+        if (result == GX_OK) result = gxbp_reserve_undo(cx, 1);
+        if (result != GX_OK) return result;
+        gxbp_save(cx, GXBP_FACETS, facet);
+        for (i = 0; i < f->loop_count; i++) gxbp_push_edges(cx, cx->pool[f->loop + i]);
+        f->loop = start;
+        f->loop_count = total;
+    }
+    *first = f->loop;
+    *count = f->loop_count;
+    return GX_OK;
+}
+
+GXFEM_API gx_result gxb_leaf_facets(gxb_complex *cx, uint32_t leaf, uint32_t *first, uint32_t *count) {
+    gxb_leaf *l = &cx->leaves[leaf];
+    uint32_t i, total = 0;
+    for (i = 0; i < l->facet_count; i++) total += gxbp_count_facets(cx, cx->pool[l->facets + i]);
+    if (total != l->facet_count) {
+        const uint32_t start = cx->pool_count;
+        gx_result result = GXBP_RESERVE(cx, pool, pool, total);
+        if (result == GX_OK) result = gxbp_reserve_undo(cx, 1);
+        if (result != GX_OK) return result;
+        gxbp_save(cx, GXBP_LEAVES, leaf);
+        for (i = 0; i < l->facet_count; i++) gxbp_push_facets(cx, cx->pool[l->facets + i]);
+        l->facets = start;
+        l->facet_count = total;
+    }
+    *first = l->facets;
+    *count = l->facet_count;
+    return GX_OK;
+}
+
+static uint32_t gxbp_edge_start(const gxb_complex *cx, uint32_t signed_edge) { return cx->edges[signed_edge >> 1].v[signed_edge & 1]; }
+
+/* The cutting plane, and (explicit_line) the line in which the facets to be divided meet it, where that is a triangle's edge. */
+typedef struct gxbp_knife { uint32_t plane, line[2]; int explicit_line, slot; } gxbp_knife;
+
+/* Room for dividing facets with so many edges in all. */
+static gx_result gxbp_reserve_split(gxb_complex *cx, size_t facets, size_t edges) {
+    gx_result result = GXBP_RESERVE(cx, points, point, edges + 2);
+    if (result == GX_OK) result = GXBP_RESERVE(cx, edges, edge, 2 * edges + facets + 4);
+    if (result == GX_OK) result = GXBP_RESERVE(cx, facets, facet, 2 * facets + 2);
+    if (result == GX_OK) result = GXBP_RESERVE(cx, leaves, leaf, 1);
+    if (result == GX_OK) result = GXBP_RESERVE(cx, nodes, tree, 1);
+    if (result == GX_OK) result = GXBP_RESERVE(cx, pool, pool, 8 * (edges + facets) + 64);
+    if (result == GX_OK) result = GXBP_RESERVE(cx, scratch, scratch, 4 * (edges + facets) + 64);
+    return result == GX_OK ? gxbp_reserve_undo(cx, edges + 3 * facets + 8) : result;
+}
+
+static uint32_t gxbp_new_edge(gxb_complex *cx, uint32_t a, uint32_t b, const uint32_t line[2], uint32_t explicit_line) {
+    gxb_edge *e = &cx->edges[cx->edge_count];
+    memset(e, 0, sizeof *e);
+    e->v[0] = a; e->v[1] = b;
+    e->line[0] = line[0]; e->line[1] = line[1];
+    e->explicit_line = explicit_line;
+    e->child = GXB_NONE;
+    return cx->edge_count++;
+}
+
+/* Divides the edge where the plane crosses it; its ends lie strictly on either side. */
+static void gxbp_split_edge(gxb_complex *cx, uint32_t edge, const gxbp_knife *knife) {
+    const gxb_edge e = cx->edges[edge];
+    const uint32_t id = cx->point_count++;
+    gxb_cpoint *p = &cx->points[id];
+    memset(p, 0, sizeof *p);
+    p->kind = e.explicit_line ? GXB_LINE_PLANE : GXB_THREE_PLANES;
+    p->def[0] = e.line[0]; p->def[1] = e.line[1]; p->def[2] = knife->plane;
+    gxbp_definition_ball(cx, p->kind, p->def, &p->ball);
+    p->stamp[knife->slot] = cx->stamp[knife->slot];
+    p->sign[knife->slot] = 0;
+    gxbp_save(cx, GXBP_EDGES, edge);
+    cx->edges[edge].child = cx->edge_count;
+    gxbp_new_edge(cx, e.v[0], id, e.line, e.explicit_line);
+    gxbp_new_edge(cx, id, e.v[1], e.line, e.explicit_line);
+}
+
+/* Divides the edges of a facet that the plane crosses and renews its loop. Room was reserved. */
+static void gxbp_split_facet_edges(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife) {
+    gxb_facet *f = &cx->facets[facet];
+    const uint32_t start = cx->pool_count, loop = f->loop, count = f->loop_count;
+    uint32_t i;
+    for (i = 0; i < count; i++) {
+        const uint32_t e = cx->pool[loop + i] >> 1;
+        if (cx->edges[e].child == GXB_NONE &&
+            gxbp_sign(cx, cx->edges[e].v[0], knife->plane, knife->slot) * gxbp_sign(cx, cx->edges[e].v[1], knife->plane, knife->slot) < 0)
+            gxbp_split_edge(cx, e, knife);
+    }
+    for (i = 0; i < count; i++) gxbp_push_edges(cx, cx->pool[loop + i]);
+    if (cx->pool_count - start == count) { cx->pool_count = start; return; }
+    gxbp_save(cx, GXBP_FACETS, facet);
+    f->loop = start;
+    f->loop_count = cx->pool_count - start;
+}
+
+/* Bit 1: the facet has points in front of the plane, bit 2: behind it. */
+static int gxbp_facet_sides(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife) {
+    const gxb_facet *f = &cx->facets[facet];
+    int sides = 0;
+    uint32_t i;
+    for (i = 0; i < f->loop_count; i++) {
+        const int sign = gxbp_sign(cx, gxbp_edge_start(cx, cx->pool[f->loop + i]), knife->plane, knife->slot);
+        sides |= sign > 0 ? 1 : sign < 0 ? 2 : 0;
+    }
+    return sides;
+}
+
+static void gxbp_copy_arc(gxb_complex *cx, const gxb_facet *f, uint32_t from, uint32_t to, uint32_t closing, gxb_facet *child) {
+    uint32_t i;
+    child->loop = cx->pool_count;
+    for (i = from; i != to; i = (i + 1) % f->loop_count) cx->pool[cx->pool_count++] = cx->pool[f->loop + i];
+    cx->pool[cx->pool_count++] = closing;
+    child->loop_count = cx->pool_count - child->loop;
+}
+
+/* Divides a facet that has points on both sides of the plane. Its children are child (in front) and child + 1. Returns the new edge,
+   signed as the front child walks it. */
+static uint32_t gxbp_split_facet(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife) {
+    const uint32_t child = cx->facet_count;
+    uint32_t line[2], zero[2] = {0, 0}, zeros = 0, i, edge, front;
+    gxb_facet f;
+    gxbp_split_facet_edges(cx, facet, knife);
+    f = cx->facets[facet];
+    for (i = 0; i < f.loop_count && zeros < 2; i++) {
+        if (gxbp_sign(cx, gxbp_edge_start(cx, cx->pool[f.loop + i]), knife->plane, knife->slot) == 0) zero[zeros++] = i;
+    }
+    line[0] = knife->explicit_line ? knife->line[0] : f.plane;
+    line[1] = knife->explicit_line ? knife->line[1] : knife->plane;
+    edge = gxbp_new_edge(cx, gxbp_edge_start(cx, cx->pool[f.loop + zero[0]]), gxbp_edge_start(cx, cx->pool[f.loop + zero[1]]), line,
+                         (uint32_t)knife->explicit_line);
+    front = gxbp_sign(cx, gxbp_edge_start(cx, cx->pool[f.loop + zero[0] + 1]), knife->plane, knife->slot) > 0 ? 0u : 1u;
+    gxbp_save(cx, GXBP_FACETS, facet);
+    cx->facets[facet].child = child;
+    cx->facets[child] = f;
+    cx->facets[child + 1] = f;
+    /* arc 0 runs from zero[0] to zero[1] and is closed backwards along the edge, arc 1 is the rest, closed forwards */
+    gxbp_copy_arc(cx, &f, zero[front], zero[1 - front], edge << 1 | (1u - front), &cx->facets[child]);
+    gxbp_copy_arc(cx, &f, zero[1 - front], zero[front], edge << 1 | front, &cx->facets[child + 1]);
+    cx->facet_count += 2;
+    return edge << 1 | (1u - front);
+}
+
+/* --- dividing a leaf: its facets, then the facet between the two halves, then the tree --- */
+
+typedef struct gxbp_rim { uint32_t first, count; } gxbp_rim;    /* signed edges in complex.scratch */
+
+static void gxbp_add_rim(gxb_complex *cx, gxbp_rim *rim, uint32_t signed_edge) {
+    gxb_edge *e = &cx->edges[signed_edge >> 1];
+    if (e->stamp == cx->edge_stamp) return;
+    e->stamp = cx->edge_stamp;
+    cx->scratch[rim->first + rim->count++] = signed_edge;
+}
+
+/* Edges of an undivided facet that lie in the plane belong to the rim: walked against the outside's view of the half in front. */
+static void gxbp_add_flat_edges(gxb_complex *cx, gxbp_rim *rim, uint32_t facet, uint32_t flip, const gxbp_knife *knife) {
+    const gxb_facet *f = &cx->facets[facet];
+    uint32_t i;
+    for (i = 0; i < f->loop_count; i++) {
+        const uint32_t e = cx->pool[f->loop + i];
+        if (gxbp_sign(cx, cx->edges[e >> 1].v[0], knife->plane, knife->slot) == 0 &&
+            gxbp_sign(cx, cx->edges[e >> 1].v[1], knife->plane, knife->slot) == 0) gxbp_add_rim(cx, rim, e ^ flip);
+    }
+}
+
+/* Chains the rim's edges into the loop of a new facet of the plane. */
+static uint32_t gxbp_close_rim(gxb_complex *cx, const gxbp_rim *rim, const gxbp_knife *knife) {
+    gxb_facet *f = &cx->facets[cx->facet_count];
+    uint32_t i, e = cx->scratch[rim->first];
+    for (i = 0; i < rim->count; i++) {
+        const uint32_t signed_edge = cx->scratch[rim->first + i];
+        cx->points[gxbp_edge_start(cx, signed_edge)].scratch = signed_edge;
+    }
+    memset(f, 0, sizeof *f);
+    f->plane = knife->plane;
+    f->loop = cx->pool_count;
+    f->loop_count = rim->count;
+    f->child = f->labels = f->face = GXB_NONE;
+    for (i = 0; i < rim->count; i++) {
+        cx->pool[cx->pool_count++] = e;
+        e = cx->points[cx->edges[e >> 1].v[1 - (e & 1)]].scratch;
+    }
+    return cx->facet_count++;
+}
+
+static void gxbp_move_facet(gxb_complex *cx, uint32_t facet, uint32_t from, uint32_t to) {
+    gxbp_save(cx, GXBP_FACETS, facet);
+    cx->facets[facet].leaf[cx->facets[facet].leaf[0] == from ? 0 : 1] = to;
+}
+
+/* Divides a leaf whose inside the plane meets; its facets are resolved and room is reserved. The leaf becomes the half in front, the
+   new one lies behind. Returns the facet between them. */
+static uint32_t gxbp_split_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife *knife) {
+    const uint32_t behind = cx->leaf_count++, first = cx->leaves[leaf].facets, count = cx->leaves[leaf].facet_count;
+    gxbp_rim rim;
+    uint32_t *front_list, *behind_list, fronts = 0, behinds = 0, i, middle;
+    rim.first = 0; rim.count = 0;
+    cx->edge_stamp++;
+    front_list = cx->scratch + cx->scratch_capacity - 2 * count - 2;
+    behind_list = cx->scratch + cx->scratch_capacity - count - 1;
+    for (i = 0; i < count; i++) {
+        const uint32_t facet = cx->pool[first + i];
+        const uint32_t inward = cx->facets[facet].leaf[0] == leaf ? 1u : 0u;     /* its normal points into the leaf */
+        const int sides = gxbp_facet_sides(cx, facet, knife);
+        if (sides == 3) {
+            const uint32_t edge = gxbp_split_facet(cx, facet, knife), child = cx->facets[facet].child;
+            gxbp_add_rim(cx, &rim, edge ^ inward);
+            gxbp_move_facet(cx, child + 1, leaf, behind);
+            front_list[fronts++] = child;
+            behind_list[behinds++] = child + 1;
+        } else {
+            gxbp_add_flat_edges(cx, &rim, facet, inward ^ (sides == 1 ? 0u : 1u), knife);
+            if (sides == 1) front_list[fronts++] = facet;
+            else {
+                gxbp_move_facet(cx, facet, leaf, behind);
+                behind_list[behinds++] = facet;
+            }
+        }
+    }
+    middle = gxbp_close_rim(cx, &rim, knife);
+    cx->facets[middle].leaf[0] = leaf;
+    cx->facets[middle].leaf[1] = behind;
+    front_list[fronts++] = middle;
+    behind_list[behinds++] = middle;
+    gxbp_save(cx, GXBP_LEAVES, leaf);
+    cx->leaves[behind] = cx->leaves[leaf];
+    cx->leaves[behind].parent = leaf;
+    cx->leaves[leaf].facets = cx->pool_count;
+    cx->leaves[leaf].facet_count = fronts;
+    for (i = 0; i < fronts; i++) cx->pool[cx->pool_count++] = front_list[i];
+    cx->leaves[behind].facets = cx->pool_count;
+    cx->leaves[behind].facet_count = behinds;
+    for (i = 0; i < behinds; i++) cx->pool[cx->pool_count++] = behind_list[i];
+    return middle;
+}
+
+/* --- elements are opened when they are first touched --- */
+
+static uint32_t gxbp_open_edge(gxb_complex *cx, uint32_t mesh_edge, uint32_t a, uint32_t b) {
+    uint32_t line[2];
+    if (cx->mesh_edge[mesh_edge] == GXB_NONE) {
+        line[0] = a < b ? a : b; line[1] = a < b ? b : a;
+        gxbp_save(cx, GXBP_MESH_EDGES, mesh_edge);
+        cx->mesh_edge[mesh_edge] = gxbp_new_edge(cx, line[0], line[1], line, 1);
+    }
+    return cx->mesh_edge[mesh_edge] << 1 | (a < b ? 0u : 1u);
+}
+
+/* The mesh edge between local nodes i and j of an element. */
+static uint32_t gxbp_local_edge(uint32_t i, uint32_t j) {
+    static const uint8_t table[4][4] = {{0, 0, 1, 2}, {0, 0, 3, 4}, {1, 3, 0, 5}, {2, 4, 5, 0}};
+    return table[i][j];
+}
+
+/* The facet of an element's face: its plane through the nodes in ascending order, so that both elements make the same. */
+static gx_result gxbp_open_face(gxb_complex *cx, uint32_t element, uint32_t k) {
+    const uint32_t face = cx->element_faces[4 * element + k], *node = cx->elements + 4 * (size_t)element;
+    uint32_t local[3], j, t, plane;
+    gxb_facet *f;
+    gx_result result;
+    if (cx->face_facet[face] != GXB_NONE) return GX_OK;
+    for (j = 0; j < 3; j++) local[j] = gxbp_face_nodes[k][j];
+    for (j = 0; j < 3; j++) {       /* sort by node: three steps of a bubble */
+        const uint32_t i = j % 2;
+        if (node[local[i]] > node[local[i + 1]]) { t = local[i]; local[i] = local[i + 1]; local[i + 1] = t; }
+    }
+    result = gxbp_new_plane(cx, node[local[0]], node[local[1]], node[local[2]], 0, &plane);
+    if (result == GX_OK) result = gxbp_reserve_split(cx, 1, 3);
+    if (result != GX_OK) return result;
+    gxbp_plane_axis(cx, plane);
+    f = &cx->facets[cx->facet_count];
+    memset(f, 0, sizeof *f);
+    f->plane = plane;
+    f->loop = cx->pool_count;
+    f->loop_count = 3;
+    f->child = f->labels = GXB_NONE;
+    f->face = face;
+    f->leaf[0] = cx->face_elements[2 * face];       /* the first leaf of an element has the element's number */
+    f->leaf[1] = cx->face_elements[2 * face + 1];
+    for (j = 0; j < 3; j++) {
+        const uint32_t a = local[j], b = local[(j + 1) % 3];
+        cx->pool[cx->pool_count++] = gxbp_open_edge(cx, cx->element_edges[6 * element + gxbp_local_edge(a, b)], node[a], node[b]);
+    }
+    gxbp_save(cx, GXBP_FACES, face);
+    cx->face_facet[face] = cx->facet_count++;
+    return GX_OK;
+}
+
+GXFEM_API gx_result gxb_complex_open_element(gxb_complex *cx, uint32_t element) {
+    uint32_t k, list;
+    gx_result result;
+    if (cx->leaves[element].facet_count > 0) return GX_OK;
+    for (k = 0; k < 4; k++) {
+        result = gxbp_open_face(cx, element, k);
+        if (result != GX_OK) return result;
+    }
+    result = GXBP_RESERVE(cx, pool, pool, 4);
+    if (result == GX_OK) result = gxbp_reserve_undo(cx, 1);
+    if (result != GX_OK) return result;
+    list = cx->pool_count;
+    for (k = 0; k < 4; k++) cx->pool[cx->pool_count++] = cx->face_facet[cx->element_faces[4 * element + k]];
+    gxbp_save(cx, GXBP_LEAVES, element);
+    cx->leaves[element].facets = list;
+    cx->leaves[element].facet_count = 4;
+    return GX_OK;
+}
+
+/* >>clip: a triangle against the tree of an element ------------------------------------------------------------------------ */
+
+static int gxbp_corner_sign(gxb_complex *cx, const gxbp_corner *c, uint32_t plane) {
+    return gxbp_side_of(cx, &c->ball, c->kind, c->def, c->point, plane);
+}
+
+/* The point in which the edge that leaves corner c meets the plane. */
+static void gxbp_clip_corner(gxb_complex *cx, const gxb_triangle *t, const gxbp_corner *c, uint32_t plane, gxbp_corner *r) {
+    if (c->carrier >= GXBP_TRIANGLE_EDGE) {
+        const uint32_t k = c->carrier - GXBP_TRIANGLE_EDGE;
+        r->kind = GXB_LINE_PLANE;
+        r->def[0] = t->point[k]; r->def[1] = t->point[(k + 1) % 3];
+    } else {
+        r->kind = GXB_THREE_PLANES;
+        r->def[0] = t->plane; r->def[1] = c->carrier;
+    }
+    r->def[2] = plane;
+    r->point = GXB_NONE;
+    r->sign = 0;
+    gxbp_definition_ball(cx, r->kind, r->def, &r->ball);
+}
+
+/* Appends to the corner stack what of corners first ... first+count-1 (signs known) lies on one side of the plane. Returns the number
+   of corners, 0 where that part has no area. */
+static uint32_t gxbp_clip(gxb_complex *cx, const gxb_triangle *t, uint32_t first, uint32_t count, uint32_t plane, int side) {
+    const uint32_t start = cx->corner_count;
+    uint32_t i;
+    int inside = 0;
+    for (i = 0; i < count; i++) {
+        const gxbp_corner *c = &cx->corners[first + i], *next = &cx->corners[first + (i + 1) % count];
+        const int s = c->sign * side, n = next->sign * side;
+        gxbp_corner *r;
+        if (s > 0) inside = 1;
+        if (s >= 0) {
+            r = &cx->corners[cx->corner_count++];
+            *r = *c;
+            if (s == 0 && n < 0) r->carrier = plane;
+        }
+        if (s * n < 0) {
+            r = &cx->corners[cx->corner_count++];
+            gxbp_clip_corner(cx, t, c, plane, r);
+            r->carrier = s > 0 ? plane : c->carrier;
+        }
+    }
+    if (!inside) cx->corner_count = start;
+    return cx->corner_count - start;
+}
+
+/* Signs of the corners against the plane: bit 1 in front, bit 2 behind, 0 all in the plane. */
+static int gxbp_corner_sides(gxb_complex *cx, uint32_t first, uint32_t count, uint32_t plane) {
+    int sides = 0;
+    uint32_t i;
+    for (i = first; i < first + count; i++) {
+        const int sign = gxbp_corner_sign(cx, &cx->corners[i], plane);
+        cx->corners[i].sign = sign;
+        sides |= sign > 0 ? 1 : sign < 0 ? 2 : 0;
+    }
+    return sides;
+}
+
+/* >>insert -------------------------------------------------------------------------------------------------------------- */
+
+/* The plane through edge k of the triangle, along the axis that is closest to its normal: the triangle lies in front of it where
+   *front is 1, behind it where it is -1. */
+static gx_result gxbp_edge_plane(gxb_complex *cx, gxb_triangle *t, uint32_t k, int *front) {
+    const uint32_t axis = cx->planes[t->plane].axis;
+    gx_result result = GX_OK;
+    if (t->edge_plane[k] == GXB_NONE)
+        result = gxbp_new_plane(cx, t->point[k], t->point[(k + 1) % 3], axis, 1, &t->edge_plane[k]);
+    if (result != GX_OK) return result;
+    /* ((q - p) x e).(r - p) = -e.((q - p) x (r - p)): opposite to the sign of the triangle's normal along the axis */
+    *front = -cx->planes[t->plane].axis_sign * t->orientation;
+    return GX_OK;
+}
+
+/* Does the facet's normal point to the triangle's own front? They lie in one plane. */
+static int32_t gxbp_relative_orientation(gxb_complex *cx, const gxb_triangle *t, uint32_t plane) {
+    const gxb_cplane *f = &cx->planes[t->plane];
+    const int own = f->axis_sign * t->orientation;
+    return plane == t->plane ? t->orientation : own * gxbp_normal_sign(cx, plane, f->axis);
+}
+
+static gx_result gxbp_add_label(gxb_complex *cx, const gxb_triangle *t, uint32_t facet) {
+    uint32_t l;
+    gx_result result = GXBP_RESERVE(cx, labels, label, 1);
+    for (l = cx->facets[facet].labels; l != GXB_NONE; l = cx->labels[l].next) if (cx->labels[l].triangle == t->label) return GX_OK;
+    if (result == GX_OK) result = GXBP_RESERVE(cx, walls, wall, 1);
+    if (result == GX_OK) result = gxbp_reserve_undo(cx, 1);
+    if (result != GX_OK) return result;
+    gxbp_save(cx, GXBP_FACETS, facet);
+    cx->labels[cx->label_count].triangle = t->label;
+    cx->labels[cx->label_count].orientation = gxbp_relative_orientation(cx, t, cx->facets[facet].plane);
+    cx->labels[cx->label_count].next = cx->facets[facet].labels;
+    cx->facets[facet].labels = cx->label_count++;
+    if (t->wall) cx->facets[facet].wall = 1;
+    cx->walls[cx->wall_count++] = facet;
+    return GX_OK;
+}
+
+GXFEM_API gx_result gxb_complex_set_wall(gxb_complex *cx, uint32_t facet) {
+    gx_result result = GXBP_RESERVE(cx, walls, wall, 1);
+    if (result == GX_OK) result = gxbp_reserve_undo(cx, 1);
+    if (result != GX_OK) return result;
+    gxbp_save(cx, GXBP_FACETS, facet);
+    cx->facets[facet].wall = 1;
+    cx->walls[cx->wall_count++] = facet;
+    return GX_OK;
+}
+
+GXFEM_API gx_result gxb_complex_set_removed(gxb_complex *cx, uint32_t leaf) {
+    const gx_result result = gxbp_reserve_undo(cx, 1);
+    if (result != GX_OK) return result;
+    gxbp_save(cx, GXBP_LEAVES, leaf);
+    cx->leaves[leaf].removed = 1;
+    return GX_OK;
+}
+
+/* Labels the part of a facet, in the triangle's plane, that the triangle covers; edges: bit k where edge k may bound that part. */
+static gx_result gxbp_cover_facet(gxb_complex *cx, gxb_triangle *t, uint32_t facet, uint32_t edges) {
+    uint32_t k, first, count;
+    for (k = 0; k < 3; k++) {
+        gxbp_knife knife;
+        gx_result result;
+        int front, sides;
+        if (!(edges >> k & 1)) continue;
+        result = gxbp_edge_plane(cx, t, k, &front);
+        if (result == GX_OK) result = gxb_facet_edges(cx, facet, &first, &count);
+        if (result == GX_OK) result = gxbp_reserve_split(cx, 1, count);
+        if (result != GX_OK) return result;
+        knife.plane = t->edge_plane[k];
+        knife.line[0] = t->point[k]; knife.line[1] = t->point[(k + 1) % 3];
+        knife.explicit_line = 1;
+        knife.slot = 1;
+        cx->stamp[1]++;
+        sides = gxbp_facet_sides(cx, facet, &knife);
+        if (sides == 3) {
+            gxbp_split_facet(cx, facet, &knife);
+            facet = cx->facets[facet].child + (front > 0 ? 0u : 1u);
+        } else if (sides != (front > 0 ? 1 : 2)) return GX_OK;      /* outside of the triangle */
+    }
+    return gxbp_add_label(cx, t, facet);
+}
+
+/* The triangle lies in the plane of some of the leaf's facets. */
+static gx_result gxbp_cover_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t leaf) {
+    gxbp_knife knife;
+    uint32_t first, count, i, j, edge_first, edge_count;
+    gx_result result = gxb_leaf_facets(cx, leaf, &first, &count);
+    memset(&knife, 0, sizeof knife);
+    knife.plane = t->plane;
+    for (i = 0; i < count && result == GX_OK; i++) {
+        uint32_t facet = cx->pool[first + i];
+        for (j = 0; j < cx->facets[facet].loop_count; j++) {
+            if (gxbp_sign(cx, gxbp_edge_start(cx, cx->pool[cx->facets[facet].loop + j]), t->plane, 0) != 0) break;
+        }
+        if (j < cx->facets[facet].loop_count) continue;
+        result = gxb_facet_edges(cx, facet, &edge_first, &edge_count);
+        if (result == GX_OK) result = gxbp_cover_facet(cx, t, facet, 7);
+    }
+    return result;
+}
+
+static uint32_t *gxbp_reference(gxb_complex *cx, const gxbp_task *task, uint32_t element) {
+    return task->parent == GXBP_IN_ROOT ? &cx->root[element] : &cx->nodes[task->parent].child[task->side];
+}
+
+/* The triangle's part in the leaf is the polygon: divide the leaf and label what the triangle covers of the facet between. */
+static gx_result gxbp_divide_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t leaf, const gxbp_task *task) {
+    gxbp_knife knife;
+    uint32_t first, count, i, e0, en, edges = 0, middle, node;
+    size_t total = 0;
+    gx_result result = gxb_leaf_facets(cx, leaf, &first, &count);
+    for (i = 0; i < count && result == GX_OK; i++) {
+        result = gxb_facet_edges(cx, cx->pool[first + i], &e0, &en);
+        total += en;
+    }
+    if (result == GX_OK) result = gxbp_reserve_split(cx, count, total);
+    if (result != GX_OK) return result;
+    for (i = 0; i < task->count; i++) {
+        const uint32_t carrier = cx->corners[task->first + i].carrier;
+        if (carrier >= GXBP_TRIANGLE_EDGE) edges |= 1u << (carrier - GXBP_TRIANGLE_EDGE);
+    }
+    memset(&knife, 0, sizeof knife);
+    knife.plane = t->plane;
+    middle = gxbp_split_leaf(cx, leaf, &knife);
+    node = cx->tree_count++;
+    cx->nodes[node].plane = t->plane;
+    cx->nodes[node].child[0] = 2 * leaf;
+    cx->nodes[node].child[1] = 2 * (cx->leaf_count - 1);
+    if (task->parent == GXBP_IN_ROOT) gxbp_save(cx, GXBP_ROOTS, cx->leaves[leaf].element);
+    else gxbp_save(cx, GXBP_NODES, task->parent);
+    *gxbp_reference(cx, task, cx->leaves[leaf].element) = 2 * node + 1;
+    return gxbp_cover_facet(cx, t, middle, edges);
+}
+
+static void gxbp_push_task(gxb_complex *cx, uint32_t parent, uint32_t side, uint32_t first, uint32_t count, uint32_t coplanar) {
+    gxbp_task *task = &cx->tasks[cx->task_count++];
+    task->parent = parent; task->side = side; task->first = first; task->count = count; task->coplanar = coplanar;
+}
+
+/* Sends the polygon of the task down the tree by one node. */
+static gx_result gxbp_descend(gxb_complex *cx, gxb_triangle *t, const gxbp_task *task, uint32_t node) {
+    const uint32_t plane = cx->nodes[node].plane;
+    gx_result result = GXBP_RESERVE(cx, corners, corner, 2 * (size_t)task->count + 8);
+    int sides;
+    if (result == GX_OK) result = GXBP_RESERVE(cx, tasks, task, 2);
+    if (result != GX_OK) return result;
+    sides = plane == t->plane ? 0 : gxbp_corner_sides(cx, task->first, task->count, plane);
+    if (sides == 0 || sides == 1) gxbp_push_task(cx, node, 0, task->first, task->count, task->coplanar | (sides == 0));
+    if (sides == 0 || sides == 2) gxbp_push_task(cx, node, 1, task->first, task->count, task->coplanar | (sides == 0));
+    if (sides == 3) {
+        uint32_t first = cx->corner_count, count = gxbp_clip(cx, t, task->first, task->count, plane, 1);
+        if (count > 0) gxbp_push_task(cx, node, 0, first, count, task->coplanar);
+        first = cx->corner_count;
+        count = gxbp_clip(cx, t, task->first, task->count, plane, -1);
+        if (count > 0) gxbp_push_task(cx, node, 1, first, count, task->coplanar);
+    }
+    return GX_OK;
+}
+
+/* Clips the triangle by the faces of the element. *count 0: nothing of it lies in the element. */
+static gx_result gxbp_clip_to_element(gxb_complex *cx, gxb_triangle *t, uint32_t element, gxbp_task *task) {
+    uint32_t k;
+    gx_result result = GXBP_RESERVE(cx, corners, corner, 40);
+    if (result != GX_OK) return result;
+    cx->corner_count = cx->task_count = 0;
+    for (k = 0; k < 3; k++) {
+        gxbp_corner *c = &cx->corners[cx->corner_count++];
+        memset(c, 0, sizeof *c);
+        c->ball = cx->points[t->point[k]].ball;
+        c->kind = GXB_EXPLICIT;
+        c->point = t->point[k];
+        c->carrier = GXBP_TRIANGLE_EDGE + k;
+    }
+    task->parent = GXBP_IN_ROOT; task->side = 0; task->first = 0; task->count = 3; task->coplanar = 0;
+    for (k = 0; k < 4 && task->count > 0; k++) {
+        const uint32_t face = cx->element_faces[4 * element + k];
+        const int inside = cx->face_elements[2 * face] == element ? 1 : -1;
+        uint32_t plane, first;
+        int sides;
+        result = gxbp_open_face(cx, element, k);
+        if (result != GX_OK) return result;
+        plane = cx->facets[cx->face_facet[face]].plane;
+        sides = gxbp_corner_sides(cx, task->first, task->count, plane);
+        if (sides == 0) task->coplanar = 1;
+        if (sides == 0 || sides == (inside > 0 ? 1 : 2)) continue;
+        first = cx->corner_count;
+        task->count = gxbp_clip(cx, t, task->first, task->count, plane, inside);
+        task->first = first;
+    }
+    return GX_OK;
+}
+
+/* Do all nodes of the element lie strictly on one side of the triangle's plane? */
+static int gxbp_misses_plane(gxb_complex *cx, const gxb_triangle *t, uint32_t element) {
+    int sides = 0, k;
+    for (k = 0; k < 4; k++) {
+        const int sign = gxbp_sign(cx, cx->elements[4 * element + (uint32_t)k], t->plane, 0);
+        sides |= sign > 0 ? 1 : sign < 0 ? 2 : 3;
+    }
+    return sides != 3;
+}
+
+GXFEM_API gx_result gxb_complex_insert(gxb_complex *cx, gxb_triangle *t, uint32_t element,
+                                       int (*allowed)(void *user, uint32_t leaf), void *user) {
+    gxbp_task task;
+    gx_result result;
+    if (cx->sign_plane != t->plane) {
+        cx->sign_plane = t->plane;
+        cx->stamp[0]++;
+    }
+    if (gxbp_misses_plane(cx, t, element)) return GX_OK;
+    result = gxbp_clip_to_element(cx, t, element, &task);
+    if (result != GX_OK || task.count == 0) return result;
+    result = gxb_complex_open_element(cx, element);
+    if (result == GX_OK) result = GXBP_RESERVE(cx, tasks, task, 1);
+    if (result != GX_OK) return result;
+    cx->tasks[cx->task_count++] = task;
+    while (cx->task_count > 0 && result == GX_OK) {
+        uint32_t reference;
+        task = cx->tasks[--cx->task_count];
+        reference = *gxbp_reference(cx, &task, element);
+        if (reference & 1) result = gxbp_descend(cx, t, &task, reference >> 1);
+        else if (cx->leaves[reference >> 1].removed || (allowed != NULL && !allowed(user, reference >> 1))) continue;
+        else if (task.coplanar) result = gxbp_cover_leaf(cx, t, reference >> 1);
+        else result = gxbp_divide_leaf(cx, t, reference >> 1, &task);
+    }
+    return result;
+}
+
+/* --- barycentric coordinates --- */
+
+/* The plane of the face opposite to node k, with the point's and the node's exact distances from it (both times the same factor). */
+static void gxbp_face_distances(gxb_complex *cx, uint32_t point, uint32_t element, uint32_t k, gxb_num *num, gxb_num *den) {
+    const uint32_t facet = cx->face_facet[cx->element_faces[4 * element + k]];
+    GXB_NUM(s);
+    gxbp_vec sn, sx, sv;
+    const gxb_num *n = gxbp_exact_cplane(cx, cx->facets[facet].plane, &sn), *x = gxbp_exact_cpoint(cx, point, &sx);
+    const gxb_num *v = gxbp_exact_cpoint(cx, cx->elements[4 * element + k], &sv);
+    gxbp_exact_side(num, x, n);
+    gxbp_exact_side(&s, v, n);
+    gxb_num_mul(den, &s, &x[3]);
+}
+
+/* What is known of lambda[k] without arithmetic: 1 or 0 at nodes, 0 on a face by definition; -1: nothing. */
+static int gxbp_known_lambda(const gxb_complex *cx, uint32_t point, uint32_t element, uint32_t k) {
+    const gxb_cpoint *p = &cx->points[point];
+    const uint32_t face = cx->element_faces[4 * element + k];
+    if (point < cx->node_count) return point == cx->elements[4 * element + k];
+    return gxbp_incident(cx, p->kind, p->def, point, cx->facets[cx->face_facet[face]].plane) ? 0 : -1;
+}
+
+GXFEM_API void gxb_complex_barycentric(gxb_complex *cx, uint32_t point, uint32_t element, double lambda[4]) {
+    uint32_t k;
+    for (k = 0; k < 4; k++) {
+        const int known = gxbp_known_lambda(cx, point, element, k);
+        GXB_NUM(num); GXB_NUM(den);
+        lambda[k] = known;
+        if (known >= 0) continue;
+        gxbp_face_distances(cx, point, element, k, &num, &den);
+        lambda[k] = gxb_num_ratio(&num, &den);
+    }
+}
+
+/* Each step adds the quotient of what is left: 50 bits, so that four leave less than 2^-180 of the value. */
+GXFEM_API void gxb_complex_barycentric_fine(gxb_complex *cx, uint32_t point, uint32_t element, gxb_num lambda[4]) {
+    uint32_t k;
+    int step;
+    for (k = 0; k < 4; k++) {
+        const int known = gxbp_known_lambda(cx, point, element, k);
+        GXB_NUM(num); GXB_NUM(den); GXB_NUM(q); GXB_NUM(t); GXB_NUM(s);
+        gxb_num_set(&lambda[k], known > 0 ? 1.0 : 0.0, 0);
+        if (known >= 0) continue;
+        gxbp_face_distances(cx, point, element, k, &num, &den);
+        for (step = 0; step < 4 && num.sign != 0; step++) {
+            gxb_num_set(&q, gxb_num_ratio(&num, &den), 0);
+            gxb_num_add(&s, &lambda[k], &q);
+            gxbp_num_copy(&lambda[k], &s, 1);
+            gxb_num_mul(&t, &q, &den);
+            gxb_num_sub(&s, &num, &t);
+            gxbp_num_copy(&num, &s, 1);
+        }
+    }
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif /* GXFEM_BOOLEAN_IMPLEMENTED */

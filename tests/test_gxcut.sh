@@ -1,0 +1,239 @@
+#!/bin/sh
+# Tests the program examples/gxcut.c from outside: exit codes, messages, files, figures.
+# usage: sh tests/test_gxcut.sh PATH/TO/gxcut
+set -u
+[ $# -eq 1 ] || { echo "usage: $0 GXCUT" >&2; exit 2; }
+case $1 in /*) gxcut=$1 ;; *) gxcut=$(pwd)/$1 ;; esac
+[ -x "$gxcut" ] || { echo "$0: $1 is not a program" >&2; exit 2; }
+work=$(mktemp -d) || exit 2
+trap 'rm -rf "$work"' EXIT
+trap 'exit 2' HUP INT TERM
+cd "$work" || exit 2
+passed=0
+failed=0
+
+# check NAME WHY: counts a test, which failed if WHY is not empty
+check() {
+    if [ -z "$2" ]; then passed=$((passed + 1)); else failed=$((failed + 1)); echo "FAILED $1: $2"; fi
+}
+
+# refuses NAME CODE PATTERN ARGUMENTS...: exits with CODE, says one line that matches PATTERN, leaves no file behind
+refuses() {
+    name=$1 code=$2 pattern=$3
+    shift 3
+    rm -rf out r.json
+    "$gxcut" "$@" >stdout 2>stderr
+    got=$? why=
+    [ $got -eq "$code" ] || why="exit $got, not $code"
+    [ "$(wc -l <stderr)" -eq 1 ] || why="$why; stderr is not one line"
+    grep -Eiq "^gxcut: .*($pattern)" stderr || why="$why; stderr says '$(head -n 1 stderr)'"
+    [ ! -s stdout ] || why="$why; stdout is not empty"
+    [ ! -e out ] && [ ! -e r.json ] && [ -z "$(find . -name '*.part')" ] || why="$why; files are left"
+    check "$name" "$why"
+}
+
+# runs NAME ARGUMENTS...: exits with 0 and says nothing on stderr
+runs() {
+    name=$1
+    shift
+    rm -rf out r.json
+    "$gxcut" "$@" >stdout 2>stderr
+    got=$? why=
+    [ $got -eq 0 ] || why="exit $got"
+    [ ! -s stderr ] || why="$why; stderr says '$(head -n 1 stderr)'"
+    check "$name" "$why"
+}
+
+# has NAME KEY VALUE: the last report's number
+has() {
+    got=$(sed -n 's/^ *"'"$2"'": *\([^,]*\),*$/\1/p' r.json 2>/dev/null)
+    if [ "$got" = "$3" ]; then check "$1: $2" ""; else check "$1: $2" "is '$got', not $3"; fi
+}
+
+# near NAME KEY VALUE: the same to 1e-12
+near() {
+    got=$(sed -n 's/^ *"'"$2"'": *\([^,]*\),*$/\1/p' r.json 2>/dev/null)
+    check "$1: $2" "$(awk -v a="$got" -v b="$3" 'BEGIN { d = a - b; if (a == "" || d > 1e-12 || d < -1e-12) print "is \"" a "\", not " b }')"
+}
+
+# sums NAME KEY VALUE: the numbers in the brackets of "KEY": [...] or {...} add up to VALUE and ascend within each [...]
+sums() {
+    check "$1: sum of $2" "$(tr -d '\n ' <r.json | sed 's/.*"'"$2"'":\([[{]\)/\1/; s/,"[a-z_]*":.*//' | tr '{}' '\n\n' |
+        sed 's/"[0-9]*":/\n/g' | tr -d '[]' | awk -F, -v want="$3" '
+            { for (i = 1; i <= NF; i++) { sum += $i; if (i > 1 && $i != "" && $i + 0 < $(i - 1) + 0) bad = 1 } }
+            END { d = sum - want; if (bad) print "do not ascend"; else if (d > 1e-12 || d < -1e-12) print "is " sum ", not " want }')"
+}
+
+# mesh FILE X ELEMENTS...: a Medit mesh of five nodes; X: the first coordinate (line 6); an element: four indices and a
+# reference (the first on line 15)
+mesh() {
+    name=$1 x=$2
+    shift 2
+    { printf 'MeshVersionFormatted 2\n# a comment\nDimension\n3\nVertices 5\n%s 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 -1 0\n' "$x"
+      printf 'Edges\n1 1 2 0\nTetrahedra\n%s\n' $#
+      for element in "$@"; do echo "$element"; done
+      echo End; } >"$name"
+}
+
+# ---- usage
+refuses "no mesh" 2 "usage"
+refuses "unknown option" 2 "frobnicate: unknown option" cube5 --frobnicate
+refuses "value missing" 2 "--dt: needs a value" cube5 --dt
+refuses "option twice" 2 "--dt: is given twice" cube5 --dt 1 --dt 1
+refuses "two meshes" 2 "second mesh" cube5 cube5
+refuses "NaN option" 2 "--young: 'nan' is not a finite number" cube5 --young nan
+refuses "infinite option" 2 "--dt: '1e999' is not a finite number" cube5 --dt 1e999
+refuses "trailing text" 2 "--dt: '1s' is not a finite number" cube5 --dt 1s
+refuses "time step 0" 2 "--dt: must be above 0" cube5 --dt 0
+refuses "poisson 0.5" 2 "--poisson" cube5 --poisson 0.5
+refuses "thickness 0" 2 "--thickness" cube5 --thickness 0
+refuses "frames -1" 2 "--frames" cube5 --frames -1
+refuses "gravity of two" 2 "--gravity" cube5 --gravity 0,1
+refuses "no such axis" 2 "--fix" cube5 --fix 'w<1'
+refuses "no such format" 2 "--format" cube5 --format stl
+refuses "cut after the end" 2 "--cut-at" cube5 --frames 3 --cut-at 3
+refuses "grid of 7" 2 "grid:1,1,1,7" grid:1,1,1,7
+refuses "grid of 0" 2 "grid:0,1,1" grid:0,1,1
+refuses "plane without normal" 2 "plane:0,0,0,0,0,0" cube5 --sheet plane:0,0,0,0,0,0
+refuses "box turned over" 2 "box:1,0,0,0,1,1" cube5 --solid box:1,0,0,0,1,1
+refuses "wave of length 0" 2 "wave:" cube5 --sheet wave:0,0,0,0,0,1,0.1,0
+refuses "unknown cut" 2 "cut.stl: is no cut" cube5 --sheet cut.stl
+"$gxcut" --help >stdout 2>stderr
+[ $? -eq 0 ] && grep -q "^usage: gxcut" stdout && [ ! -s stderr ]
+check "help" "$([ $? -eq 0 ] || echo 'exit code or output')"
+
+# ---- bad meshes
+refuses "missing mesh" 2 "none.mesh: cannot be read" none.mesh
+refuses "missing tetgen" 2 "none.node: cannot be read" none
+mesh a.mesh 0 "1 2 3 4 0"
+mesh a.mesh nan "1 2 3 4 0"
+refuses "NaN coordinate" 2 "a.mesh:6: 'nan' is not a finite number" a.mesh
+mesh a.mesh 1e400 "1 2 3 4 0"
+refuses "infinite coordinate" 2 "a.mesh:6: '1e400' is not a finite number" a.mesh
+mesh a.mesh 0 "1 2 3 4 0" "1 2 3 6 0"
+refuses "index too large" 2 "a.mesh:16: node index 6 is out of range" a.mesh
+mesh a.mesh 0 "0 2 3 4 0" "1 2 3 4 0"
+refuses "index 0" 2 "a.mesh:15: node index 0 is out of range" a.mesh
+mesh a.mesh 0 "1 2 3 -4 0"
+refuses "index negative" 2 "a.mesh:15: '-4' is an index out of range" a.mesh
+mesh a.mesh 0 "1 2 3 4 0" "1 2 3 5 0"
+refuses "inverted element" 2 "a.mesh:16: element 1: .*(negative|inverted)" a.mesh --report r.json
+mesh a.mesh 0 "1 2 3 4 0" "1 4 5 3 0"
+refuses "flat element" 2 "a.mesh:16: element 1: .*(no volume|flat)" a.mesh --report r.json
+mesh a.mesh 0 "1 2 3 4 0" "1 2 3 4 0"
+refuses "the same element twice" 2 "a.mesh:1[56]: element [01]: " a.mesh
+mesh a.mesh 0
+refuses "no elements" 2 "a.mesh: .*(no elements|empty)" a.mesh
+: >a.mesh
+refuses "empty file" 2 "a.mesh:1: the file ends" a.mesh
+mesh a.mesh 0 "1 2 3 4 0" "1 3 2 5 0"
+for lines in 3 7 10 11 13 14 15; do
+    head -n $lines a.mesh >b.mesh
+    refuses "mesh cut off after line $lines" 2 "b.mesh:$lines: .*(the file ends|cut off|has no)" b.mesh
+done
+printf 'MeshVersionFormatted 1\nDimension 2\nEnd\n' >b.mesh
+refuses "plane mesh" 2 "b.mesh:2: '2' is the dimension" b.mesh
+printf 'MeshVersionFormatted 1\nDimension 3\nVertices 4000000000\n0 0 0 0\n' >b.mesh
+refuses "count beyond the file" 2 "b.mesh:3: '4000000000' is a larger count" b.mesh
+printf 'hello\n' >b.mesh
+refuses "no mesh at all" 2 "b.mesh:1: 'hello'" b.mesh
+printf '4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n' >t.node
+printf '1 4 0\n1 1 2 3 4\n' >t.ele
+refuses "node file cut off" 2 "t.node:4: the file ends" t.node
+printf '4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1\n4 0 0 1\n' >t.node
+refuses "coordinate missing" 2 "t.node:4: a coordinate is missing" t
+printf '4 3 0 0\n1 0 0 0\n2 1 0 0\n2 0 1 0\n4 0 0 1\n' >t.node
+refuses "node number out of order" 2 "t.node:4: '2' is out of order" t
+
+# ---- bad cuts
+refuses "missing cut" 2 "none.obj: cannot be read" cube5 --sheet none.obj
+printf 'v 0 0 0\nv 1 0 inf\n' >c.obj
+refuses "infinite vertex" 2 "c.obj:2: 'inf' is not a finite number" cube5 --sheet c.obj
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n' >c.obj
+refuses "vertex index too large" 2 "c.obj:4: vertex index 3 is out of range" cube5 --sheet c.obj
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf -1 -2 -4\n' >c.obj
+refuses "vertex index before the first" 2 "c.obj:4: '-4' is an index out of range" cube5 --sheet c.obj
+printf 'v 0 0 0\nv 1 0 0\nf 1 2\n' >c.obj
+refuses "face of two corners" 2 "c.obj:3: the face has fewer than three" cube5 --sheet c.obj
+printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n' >c.off
+refuses "off cut off" 2 "c.off:5: the file ends" cube5 --sheet c.off
+printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n' >c.off
+refuses "off index" 2 "c.off:6: vertex index 3 is out of range" cube5 --sheet c.off
+printf 'v 0.5 -1 -1\nv 0.5 3 -1\nv 0.5 -1 3\nf 1 2 3\n' >c.obj
+refuses "open surface as solid" 1 "c.obj.*closed" cube5 --solid c.obj --report r.json
+refuses "open surface as solid, second cut" 1 "cut 1.*closed" cube5 --solid box:0.1,0.1,0.1,0.2,0.2,0.2 --solid plane:0.5,0.5,0.5,1,0,0
+
+# ---- output that cannot be written
+: >file
+refuses "directory is a file" 2 "file/frame_0000.vtu: cannot be written|file: cannot" cube5 --frames 1 --out file
+refuses "report nowhere" 2 "nowhere/r.json: cannot be written" cube5 --frames 0 --report nowhere/r.json
+
+# ---- good runs
+planes_x= planes_y=
+for value in 0.16666666666666666 0.33333333333333331 0.5 0.66666666666666663 0.83333333333333337; do
+    planes_x="$planes_x --sheet plane:$value,0.5,0.5,1,0,0"
+    planes_y="$planes_y --sheet plane:0.5,$value,0.5,0,1,0"
+done
+runs "5 parallel cuts" cube5 $planes_x --frames 0 --report r.json
+has "5 parallel cuts" elements 5
+has "5 parallel cuts" nodes 8
+has "5 parallel cuts" copies 48
+has "5 parallel cuts" dofs 144
+has "5 parallel cuts" fragments 6
+near "5 parallel cuts" volume 1
+near "5 parallel cuts" mass 1000
+sums "5 parallel cuts" cell_volumes 1
+sums "5 parallel cuts" fragment_volumes 1
+has "5 parallel cuts" frames 0
+check "frames 0 writes none" "$([ ! -e out ] || echo 'out is there')"
+hash=$(grep topology_hash r.json)
+runs "5 parallel cuts again" cube5 $planes_x --frames 0 --report r.json --quiet
+check "same hash" "$([ "$hash" = "$(grep topology_hash r.json)" ] || echo 'differs')"
+check "quiet" "$([ ! -s stdout ] || echo 'stdout is not empty')"
+runs "5 + 5 crossing cuts" cube5 $planes_x $planes_y --frames 0 --report r.json
+has "5 + 5 crossing cuts" fragments 36
+near "5 + 5 crossing cuts" volume 1
+sums "5 + 5 crossing cuts" cell_volumes 1
+sums "5 + 5 crossing cuts" fragment_volumes 1
+runs "uncut" grid:2,2,2,6 --frames 0 --report r.json
+has "uncut" cells 48
+has "uncut" copies 27
+has "uncut" fragments 1
+near "uncut" volume 8
+has "uncut" min_link_ratio 1
+runs "box out of a grid" grid:2,2,2 --solid box:0.5,0.5,0.5,1.5,1.5,1.5 --frames 0 --report r.json
+near "box out of a grid" volume 7
+has "box out of a grid" fragments 1
+runs "thick sheet" cube5 --sheet plane:0.5,0.5,0.5,1,0,0 --thickness 0.25 --frames 0 --report r.json
+near "thick sheet" volume 0.75
+has "thick sheet" fragments 2
+runs "oblique plane and wave" grid:3,3,3,6 --sheet plane:1.5,1.5,1.5,1,2,3 --sheet wave:1.5,1.5,1.5,1,0,0,0.2,1.5 --frames 0 --report r.json
+near "oblique plane and wave" volume 27
+has "oblique plane and wave" fragments 4
+printf '# quad\nv 0.5 -1 -1\nvt 0 0\nv 0.5 2 -1\nv 0.5 2 2\nv 0.5 -1 2\nvn 1 0 0\nf -4/1/1 -3//1 -2/1 -1\n' >c.obj
+runs "obj quad" cube5 --sheet c.obj --frames 0 --report r.json
+has "obj quad" fragments 2
+printf 'OFF 4 1 0\n0.5 -1 -1\n0.5 2 -1\n0.5 2 2 # corner\n0.5 -1 2\n4 0 1 2 3 255 0 0\n' >c.off
+runs "off quad" cube5 --sheet c.off --frames 0 --report r.json
+has "off quad" fragments 2
+printf '# nodes\n4 3 1 1\n0 0 0 0 7.5 1\n1 1 0 0 7.5 1\n2 0 1 0 7.5 1\n3 0 0 1 7.5 1\n# end\n' >t.node
+printf '1 4 1\n0 0 1 2 3 9\n' >t.ele
+runs "tetgen from 0" t.ele --frames 0 --report r.json
+near "tetgen from 0" volume 0.16666666666666666
+printf '4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n' >t.node
+printf '1 4 0\n1 1 2 3 4\n' >t.ele
+runs "tetgen from 1" t --frames 0 --report r.json
+near "tetgen from 1" volume 0.16666666666666666
+mesh a.mesh 0 "1 2 4 3 0" "1 3 5 2 0"
+runs "file of the other orientation" a.mesh --frames 0 --report r.json
+near "file of the other orientation" volume 0.33333333333333331
+runs "frames" cube5 --sheet plane:0.5,0.5,0.5,1,0,0 --cut-at 2 --frames 4 --fix 'z>0.9' --stretch 1.1,1,1 --report r.json
+check "four frames and a collection" "$([ "$(find out -type f | wc -l)" -eq 5 ] && [ "$(grep -c 'frame_000[0-3].vtu' out/frames.pvd)" -eq 4 ] || echo 'other files')"
+has "frames" frames 4
+has "frames" fragments 2
+check "summary" "$(grep -q 'frames.pvd' stdout && grep -q 'ms each' stdout || echo 'incomplete')"
+runs "obj frames" cube5 $planes_x --frames 2 --format obj --out here
+check "groups" "$([ "$(grep -c '^g ' here/frame_0001.obj)" -eq 6 ] && [ ! -e here/frames.pvd ] || echo 'other groups or files')"
+
+echo "$passed passed, $failed failed"
+[ $failed -eq 0 ]

@@ -1,0 +1,1213 @@
+/* Tests of gxfem_solve.h: material, assembled forms, time step, violent starts, bad input, memory. */
+#define GXFEM_SOLVE_IMPLEMENTATION
+#include "../gxfem_solve.h"
+
+#include <check.h>
+#include <stdio.h>
+
+/* Random numbers: 64-bit xorshift*, the same everywhere. Failures print the seed of the test. */
+static uint64_t random_state;
+static uint64_t random_seed;
+
+static void seed(uint64_t value)
+{
+    random_seed = value;
+    random_state = value * 2654435769u + 1;
+}
+
+/* uniform in [-1, 1) */
+static double uniform(void)
+{
+    random_state ^= random_state >> 12;
+    random_state ^= random_state << 25;
+    random_state ^= random_state >> 27;
+    return (double)((random_state * 2685821657736338717u) >> 11) / 4503599627370496.0 - 1;
+}
+
+static int finite_bits(double value)
+{
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return ((bits >> 52) & 2047) != 2047;
+}
+
+#define assert_that(condition, ...)                                        \
+    do {                                                                   \
+        if (!(condition)) {                                                \
+            printf("seed %lu: ", (unsigned long)random_seed);              \
+            printf(__VA_ARGS__);                                           \
+            printf("\n");                                                  \
+        }                                                                  \
+        ck_assert_msg(condition, #condition);                              \
+    } while (0)
+
+/* A block of unit cubes times size, six tetrahedra each, and its state. */
+typedef struct scene {
+    gxs_model model;
+    gxs_element *elements;
+    uint8_t *held;
+    double *rest, *displacement, *velocity, *forces; /* copy_count x 3 */
+} scene;
+
+static double determinant3(const double a[3][3])
+{
+    return a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
+           a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
+}
+
+/* Gradients, volume and mass of an uncut tetrahedron; swaps two corners where it is turned inside out. */
+static void make_element(gxs_element *element, const double *rest, double density)
+{
+    static const double identity_mass[10] = {2, 1, 1, 1, 2, 1, 1, 2, 1, 2};
+    double edge[3][3], volume;
+    int i, r;
+    for (i = 0; i < 3; ++i)
+        for (r = 0; r < 3; ++r)
+            edge[i][r] = rest[3 * element->copy[i + 1] + (uint32_t)r] - rest[3 * element->copy[0] + (uint32_t)r];
+    volume = determinant3((const double(*)[3])edge) / 6;
+    if (volume < 0) {
+        uint32_t first = element->copy[2];
+        element->copy[2] = element->copy[3];
+        element->copy[3] = first;
+        make_element(element, rest, density);
+        return;
+    }
+    for (i = 0; i < 3; ++i) {
+        const double *a = edge[(i + 1) % 3], *b = edge[(i + 2) % 3];
+        for (r = 0; r < 3; ++r)
+            element->gradient[i + 1][r] = (a[(r + 1) % 3] * b[(r + 2) % 3] - a[(r + 2) % 3] * b[(r + 1) % 3]) / (6 * volume);
+    }
+    for (r = 0; r < 3; ++r)
+        element->gradient[0][r] = -(element->gradient[1][r] + element->gradient[2][r] + element->gradient[3][r]);
+    element->weight = volume;
+    for (i = 0; i < 10; ++i)
+        element->mass[i] = density * volume / 20 * identity_mass[i];
+}
+
+static void *zeroed(size_t count, size_t size)
+{
+    void *memory = calloc(count, size);
+    ck_assert_ptr_nonnull(memory);
+    return memory;
+}
+
+/* nx x ny x nz cubes of edge size; inner and outer nodes moved by jitter x size; room for extra more copies, elements */
+static scene scene_block(int nx, int ny, int nz, double size, double jitter, size_t extra)
+{
+    static const int order[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+    size_t copies = (size_t)((nx + 1) * (ny + 1) * (nz + 1)), elements = (size_t)(6 * nx * ny * nz), e = 0, i = 0;
+    scene s;
+    int x, y, z, t, k;
+    s.rest = (double *)zeroed(3 * (copies + extra), sizeof(double));
+    s.displacement = (double *)zeroed(3 * (copies + extra), sizeof(double));
+    s.velocity = (double *)zeroed(3 * (copies + extra), sizeof(double));
+    s.forces = (double *)zeroed(3 * (copies + extra), sizeof(double));
+    s.held = (uint8_t *)zeroed(copies + extra, 1);
+    s.elements = (gxs_element *)zeroed(elements + extra, sizeof(gxs_element));
+    for (z = 0; z <= nz; ++z)
+        for (y = 0; y <= ny; ++y)
+            for (x = 0; x <= nx; ++x) {
+                s.rest[i++] = size * (x + jitter * uniform());
+                s.rest[i++] = size * (y + jitter * uniform());
+                s.rest[i++] = size * (z + jitter * uniform());
+            }
+    for (z = 0; z < nz; ++z)
+        for (y = 0; y < ny; ++y)
+            for (x = 0; x < nx; ++x)
+                for (t = 0; t < 6; ++t, ++e) {
+                    int at[3];
+                    at[0] = x, at[1] = y, at[2] = z;
+                    for (k = 0; k < 4; ++k) {
+                        s.elements[e].copy[k] = (uint32_t)((at[2] * (ny + 1) + at[1]) * (nx + 1) + at[0]);
+                        if (k < 3)
+                            ++at[order[t][k]];
+                    }
+                    make_element(&s.elements[e], s.rest, 1000);
+                }
+    s.model.copy_count = copies;
+    s.model.elements = s.elements;
+    s.model.element_count = elements;
+    s.model.young = 1e6;
+    s.model.poisson = 0.4;
+    s.model.held = s.held;
+    return s;
+}
+
+static void scene_free(scene *s)
+{
+    free(s->rest);
+    free(s->displacement);
+    free(s->velocity);
+    free(s->forces);
+    free(s->held);
+    free(s->elements);
+}
+
+static void scene_hold_left(scene *s)
+{
+    size_t i;
+    for (i = 0; i < s->model.copy_count; ++i)
+        s->held[i] = s->rest[3 * i] < 1e-9;
+}
+
+static gxs_step_desc step_make(double dt, double gravity)
+{
+    gxs_step_desc step;
+    memset(&step, 0, sizeof step);
+    step.dt = dt;
+    step.gravity[2] = gravity;
+    return step;
+}
+
+static gxs_solver *solver_make(void)
+{
+    gxs_solver *solver = NULL;
+    ck_assert_int_eq(gxs_solver_create(NULL, &solver), GX_OK);
+    return solver;
+}
+
+/* E(u) of the header's manual from the assembled forms, displacement u after a step from u_n, v_n; no held copies */
+static double incremental_potential(const scene *s, const gxs_step_desc *step, const double *un, const double *vn,
+                                    const double *u)
+{
+    size_t n = s->model.copy_count, i;
+    double *y = (double *)zeroed(3 * n, sizeof(double)), *my = (double *)zeroed(3 * n, sizeof(double)), sum = 0;
+    ck_assert_int_eq(gxs_model_energy(&s->model, u, &sum), GX_OK);
+    for (i = 0; i < 3 * n; ++i)
+        y[i] = u[i] - un[i] - step->dt * vn[i];
+    ck_assert_int_eq(gxs_model_mass_product(&s->model, y, my), GX_OK);
+    for (i = 0; i < 3 * n; ++i)
+        sum += 0.5 * y[i] * my[i] / (step->dt * step->dt) - (step->forces ? step->forces[i] * u[i] : 0);
+    for (i = 0; i < 3 * n; ++i)
+        y[i] = step->gravity[i % 3];
+    ck_assert_int_eq(gxs_model_mass_product(&s->model, y, my), GX_OK);
+    for (i = 0; i < 3 * n; ++i)
+        sum -= my[i] * u[i];
+    free(y);
+    free(my);
+    return sum;
+}
+
+/* ---- material ---- */
+
+static void random_deformation(double *f, double spread)
+{
+    int k;
+    for (k = 0; k < 9; ++k)
+        f[k] = (k % 4 == 0 ? 1 : 0) + spread * uniform();
+}
+
+static const double poissons[4] = {0, 0.3, 0.45, 0.4999};
+
+START_TEST(energy_is_the_formula_of_the_paper)
+{
+    int round, k;
+    for (round = 0; round < 1000; ++round) {
+        double f[9], nu = poissons[round % 4], mu, lambda, alpha, ic = 0, j, direct, rest, energy;
+        seed((uint64_t)round);
+        random_deformation(f, 2);
+        mu = 4.0 / 3 / (2 * (1 + nu));
+        lambda = nu / ((1 + nu) * (1 - 2 * nu)) + 5.0 / 6 / (2 * (1 + nu));
+        alpha = 1 + 0.75 * mu / lambda;
+        for (k = 0; k < 9; ++k)
+            ic += f[k] * f[k];
+        j = f[0] * (f[4] * f[8] - f[5] * f[7]) - f[1] * (f[3] * f[8] - f[5] * f[6]) + f[2] * (f[3] * f[7] - f[4] * f[6]);
+        direct = 0.5 * mu * (ic - 3) + 0.5 * lambda * (j - alpha) * (j - alpha) - 0.5 * mu * log(ic + 1);
+        rest = 0.5 * lambda * (1 - alpha) * (1 - alpha) - 0.5 * mu * log(4.0);
+        energy = gxs_stable_neo_hookean_energy(1, nu, f);
+        assert_that(fabs(energy - (direct - rest)) <= 1e-12 * (1 + fabs(direct) + lambda * (1 + j * j)), "%g %g", energy,
+                    direct - rest);
+    }
+}
+END_TEST
+
+START_TEST(rest_and_rotations_are_free_of_stress)
+{
+    static const double unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    double stress[9];
+    int k, round;
+    ck_assert(gxs_stable_neo_hookean_energy(1e6, 0.4, unit) == 0);
+    gxs_stable_neo_hookean_stress(1e6, 0.4, unit, stress);
+    for (k = 0; k < 9; ++k)
+        ck_assert(stress[k] == 0);
+    for (round = 0; round < 100; ++round) {
+        double q[4], length = 0, r[9];
+        seed((uint64_t)round);
+        for (k = 0; k < 4; ++k)
+            q[k] = uniform(), length += q[k] * q[k];
+        for (k = 0; k < 4; ++k)
+            q[k] /= sqrt(length);
+        r[0] = 1 - 2 * (q[2] * q[2] + q[3] * q[3]), r[1] = 2 * (q[1] * q[2] - q[0] * q[3]), r[2] = 2 * (q[1] * q[3] + q[0] * q[2]);
+        r[3] = 2 * (q[1] * q[2] + q[0] * q[3]), r[4] = 1 - 2 * (q[1] * q[1] + q[3] * q[3]), r[5] = 2 * (q[2] * q[3] - q[0] * q[1]);
+        r[6] = 2 * (q[1] * q[3] - q[0] * q[2]), r[7] = 2 * (q[2] * q[3] + q[0] * q[1]), r[8] = 1 - 2 * (q[1] * q[1] + q[2] * q[2]);
+        gxs_stable_neo_hookean_stress(1, 0.4, r, stress);
+        for (k = 0; k < 9; ++k)
+            assert_that(fabs(stress[k]) < 1e-13, "stress %g", stress[k]);
+    }
+}
+END_TEST
+
+/* P(1 + e) = 2 mu' e + lambda' tr(e) 1 in small strain, to all digits that a strain of 1e-9 allows */
+START_TEST(small_strain_is_linear_elasticity)
+{
+    int round, r, c;
+    for (round = 0; round < 100; ++round) {
+        double f[9], stress[9], strain[9], nu = poissons[round % 4], shear = 1 / (2 * (1 + nu));
+        double lame = nu / ((1 + nu) * (1 - 2 * nu)), trace;
+        seed((uint64_t)round);
+        random_deformation(f, 1e-7);
+        for (r = 0; r < 3; ++r)
+            for (c = 0; c < 3; ++c)
+                strain[3 * r + c] = 0.5 * (f[3 * r + c] + f[3 * c + r]) - (r == c ? 1 : 0);
+        trace = strain[0] + strain[4] + strain[8];
+        gxs_stable_neo_hookean_stress(1, nu, f, stress);
+        for (r = 0; r < 3; ++r)
+            for (c = 0; c < 3; ++c) {
+                double expected = 2 * shear * strain[3 * r + c] + (r == c ? lame * trace : 0);
+                assert_that(fabs(stress[3 * r + c] - expected) < 1e-12 * (1 + lame), "%g %g", stress[3 * r + c], expected);
+            }
+    }
+}
+END_TEST
+
+START_TEST(stress_is_the_derivative_of_energy)
+{
+    int round, k;
+    for (round = 0; round < 400; ++round) {
+        double f[9], stress[9], nu = poissons[round % 4], scale = 0;
+        seed((uint64_t)round);
+        random_deformation(f, round % 2 ? 0.3 : 2);
+        gxs_stable_neo_hookean_stress(1, nu, f, stress);
+        for (k = 0; k < 9; ++k)
+            scale += fabs(stress[k]);
+        for (k = 0; k < 9; ++k) {
+            double up[9], down[9], difference;
+            memcpy(up, f, sizeof up);
+            memcpy(down, f, sizeof down);
+            up[k] += 1e-5, down[k] -= 1e-5;
+            difference = (gxs_stable_neo_hookean_energy(1, nu, up) - gxs_stable_neo_hookean_energy(1, nu, down)) / 2e-5;
+            assert_that(fabs(difference - stress[k]) < 1e-6 * (1 + scale), "%g %g", difference, stress[k]);
+        }
+    }
+}
+END_TEST
+
+/* the 9x9 matrix of the product, by columns */
+static void hessian(double nu, const double *f, double h[9][9])
+{
+    int c;
+    for (c = 0; c < 9; ++c) {
+        double direction[9] = {0};
+        direction[c] = 1;
+        gxs_stable_neo_hookean_product(1, nu, f, direction, h[c]);
+    }
+}
+
+/* smallest eigenvalue of a symmetric 9x9 by Jacobi; largest: its norm */
+static double smallest_eigenvalue(double a[9][9], double *largest)
+{
+    double least;
+    int sweep, p, q, k;
+    for (sweep = 0; sweep < 30; ++sweep)
+        for (p = 0; p < 9; ++p)
+            for (q = p + 1; q < 9; ++q) {
+                double theta, t, c, s;
+                if (a[p][q] * a[p][q] <= 1e-40 * (a[p][p] * a[p][p] + a[q][q] * a[q][q]))
+                    continue;
+                theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
+                t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(1 + theta * theta));
+                c = 1 / sqrt(1 + t * t), s = c * t;
+                for (k = 0; k < 9; ++k) {
+                    double x = a[p][k], y = a[q][k];
+                    a[p][k] = c * x - s * y, a[q][k] = s * x + c * y;
+                }
+                for (k = 0; k < 9; ++k) {
+                    double x = a[k][p], y = a[k][q];
+                    a[k][p] = c * x - s * y, a[k][q] = s * x + c * y;
+                }
+            }
+    least = *largest = a[0][0];
+    for (k = 1; k < 9; ++k) {
+        least = a[k][k] < least ? a[k][k] : least;
+        *largest = a[k][k] > *largest ? a[k][k] : *largest;
+    }
+    return least;
+}
+
+/* Hessian by differences of the stress, symmetrised */
+static void difference_hessian(double nu, const double *f, double h[9][9])
+{
+    int r, c;
+    double raw[9][9];
+    for (c = 0; c < 9; ++c) {
+        double up[9], down[9], p_up[9], p_down[9];
+        memcpy(up, f, sizeof up);
+        memcpy(down, f, sizeof down);
+        up[c] += 1e-5, down[c] -= 1e-5;
+        gxs_stable_neo_hookean_stress(1, nu, up, p_up);
+        gxs_stable_neo_hookean_stress(1, nu, down, p_down);
+        for (r = 0; r < 9; ++r)
+            raw[c][r] = (p_up[r] - p_down[r]) / 2e-5;
+    }
+    for (c = 0; c < 9; ++c)
+        for (r = 0; r < 9; ++r)
+            h[c][r] = 0.5 * (raw[c][r] + raw[r][c]);
+}
+
+/* Where the true Hessian has no negative eigenvalue the product is the true one; elsewhere the difference (projected - true) is
+ * semi-definite and has no part in the positive eigenspace, hence trace(projected x difference) = 0. */
+START_TEST(hessian_is_the_projection_of_the_derivative_of_stress)
+{
+    int round, r, c, same = 0, projected = 0;
+    for (round = 0; round < 600; ++round) {
+        double f[9], h[9][9], d[9][9], copy[9][9], least, largest, nu = poissons[round % 4], trace = 0, error = 0;
+        seed((uint64_t)round);
+        random_deformation(f, round % 3 ? 1.5 : 0.15);
+        if (round % 3 == 0) /* stretched: where the Hessian is definite */
+            for (r = 0; r < 9; r += 4)
+                f[r] += 0.4;
+        hessian(nu, f, h);
+        difference_hessian(nu, f, d);
+        memcpy(copy, d, sizeof copy);
+        least = smallest_eigenvalue(copy, &largest);
+        for (r = 0; r < 9; ++r)
+            for (c = 0; c < 9; ++c) {
+                d[r][c] = h[r][c] - d[r][c];
+                trace += d[r][c] * h[r][c];
+                error = fabs(d[r][c]) > error ? fabs(d[r][c]) : error;
+            }
+        assert_that(fabs(trace) < 1e-6 * (largest * largest), "trace %g largest %g", trace, largest);
+        if (least > 1e-6 * largest) {
+            assert_that(error < 1e-6 * (1 + largest), "error %g largest %g", error, largest);
+            ++same;
+        } else {
+            memcpy(copy, d, sizeof copy);
+            least = smallest_eigenvalue(copy, &error);
+            assert_that(least > -1e-6 * (1 + largest), "least %g largest %g", least, largest);
+            ++projected;
+        }
+    }
+    ck_assert_int_gt(same, 50);
+    ck_assert_int_gt(projected, 50);
+}
+END_TEST
+
+static void check_semidefinite(double nu, const double *f)
+{
+    double h[9][9], largest, least, asymmetry = 0;
+    int r, c;
+    hessian(nu, f, h);
+    for (r = 0; r < 9; ++r)
+        for (c = 0; c < 9; ++c) {
+            assert_that(finite_bits(h[r][c]), "not finite");
+            asymmetry = fabs(h[r][c] - h[c][r]) > asymmetry ? fabs(h[r][c] - h[c][r]) : asymmetry;
+        }
+    least = smallest_eigenvalue(h, &largest);
+    assert_that(largest >= 0 && least >= -1e-13 * largest && asymmetry <= 1e-13 * largest, "%g %g %g", least, largest,
+                asymmetry);
+}
+
+/* random, squeezed, inverted, flattened to a plane or a line, collapsed to a point, nearly so, huge */
+START_TEST(projected_hessian_is_semidefinite)
+{
+    static const double factors[7] = {1, 0, -1, 1e-3, -1e-8, 1e-160, 1e3};
+    int round, a, b, c, k;
+    for (a = 0; a < 7; ++a)
+        for (b = 0; b < 7; ++b)
+            for (c = 0; c < 7; ++c)
+                for (round = 0; round < 8; ++round) {
+                    double f[9], scale[3];
+                    scale[0] = factors[a], scale[1] = factors[b], scale[2] = factors[c];
+                    seed((uint64_t)(((a * 7 + b) * 7 + c) * 8 + round));
+                    random_deformation(f, round < 2 ? 0 : 1);
+                    for (k = 0; k < 9; ++k)
+                        f[k] *= scale[k % 3];
+                    check_semidefinite(poissons[round % 4], f);
+                }
+}
+END_TEST
+
+/* ---- assembled forms ---- */
+
+START_TEST(model_gradient_and_hessian_match_differences)
+{
+    size_t i, n;
+    double *d, *g, *h, *up, *gu, *gd, energy_up, energy_down, slope = 0, worst = 0, size = 0;
+    scene s;
+    seed(7);
+    s = scene_block(2, 2, 2, 0.5, 0.1, 0);
+    n = 3 * s.model.copy_count;
+    d = (double *)zeroed(n, sizeof *d), g = (double *)zeroed(n, sizeof *d), h = (double *)zeroed(n, sizeof *d);
+    up = (double *)zeroed(n, sizeof *d), gu = (double *)zeroed(n, sizeof *d), gd = (double *)zeroed(n, sizeof *d);
+    for (i = 0; i < n; ++i) { /* stretched a little, so that no Hessian needs projection */
+        s.displacement[i] = 0.08 * s.rest[i] + 0.003 * uniform();
+        d[i] = uniform();
+    }
+    ck_assert_int_eq(gxs_model_gradient(&s.model, s.displacement, g), GX_OK);
+    ck_assert_int_eq(gxs_model_hessian_product(&s.model, s.displacement, d, h), GX_OK);
+    for (i = 0; i < n; ++i)
+        up[i] = s.displacement[i] + 1e-5 * d[i], slope += g[i] * d[i];
+    ck_assert_int_eq(gxs_model_energy(&s.model, up, &energy_up), GX_OK);
+    ck_assert_int_eq(gxs_model_gradient(&s.model, up, gu), GX_OK);
+    for (i = 0; i < n; ++i)
+        up[i] = s.displacement[i] - 1e-5 * d[i];
+    ck_assert_int_eq(gxs_model_energy(&s.model, up, &energy_down), GX_OK);
+    ck_assert_int_eq(gxs_model_gradient(&s.model, up, gd), GX_OK);
+    assert_that(fabs((energy_up - energy_down) / 2e-5 - slope) < 1e-6 * fabs(slope), "slope %g", slope);
+    for (i = 0; i < n; ++i) {
+        double error = fabs((gu[i] - gd[i]) / 2e-5 - h[i]);
+        worst = error > worst ? error : worst;
+        size = fabs(h[i]) > size ? fabs(h[i]) : size;
+    }
+    assert_that(worst < 1e-6 * size, "%g of %g", worst, size);
+    free(d), free(g), free(h), free(up), free(gu), free(gd);
+    scene_free(&s);
+}
+END_TEST
+
+/* the blocks' product and block diagonal against the assembled forms, one element per lane and an incomplete last block */
+START_TEST(block_product_equals_assembled_forms)
+{
+    size_t i, n, k;
+    double *x, *y, *expected, *mass;
+    gxsp_problem problem;
+    gxs_solver *solver = solver_make();
+    gxs_step_desc step = step_make(0.02, 0);
+    scene s;
+    seed(11);
+    s = scene_block(3, 2, 1, 0.5, 0.1, 0);
+    s.model.element_count -= 3;
+    n = 3 * s.model.copy_count;
+    x = (double *)zeroed(n, sizeof *x), y = (double *)zeroed(n, sizeof *x);
+    expected = (double *)zeroed(n, sizeof *x), mass = (double *)zeroed(n, sizeof *x);
+    for (i = 0; i < n; ++i)
+        s.displacement[i] = 0.3 * uniform(), x[i] = uniform();
+    ck_assert_int_eq(gxsp_reserve(solver, s.model.copy_count, s.model.element_count), GX_OK);
+    gxsp_problem_make(&problem, solver, &s.model, &step);
+    gxsp_begin(&problem, s.displacement, s.velocity);
+    ck_assert(gxsp_start(&problem, problem.work.base));
+    ck_assert(gxsp_linearise(&problem));
+    gxsp_product(&problem, 1, x, y);
+    ck_assert_int_eq(gxs_model_hessian_product(&s.model, s.displacement, x, expected), GX_OK);
+    ck_assert_int_eq(gxs_model_mass_product(&s.model, x, mass), GX_OK);
+    for (i = 0; i < n; ++i) {
+        double sum = expected[i] + mass[i] / (step.dt * step.dt);
+        assert_that(fabs(y[i] - sum) < 1e-9 * (1e6 + fabs(sum)), "%g %g", y[i], sum);
+    }
+    for (i = 0; i < s.model.copy_count; ++i)
+        for (k = 0; k < 3; ++k) { /* D^-1 times column k of D is a unit vector */
+            const double *d = problem.work.diagonal + 6 * i;
+            double column[3], unit[3];
+            size_t r;
+            if (problem.work.fixed[i])
+                continue;
+            memset(x, 0, n * sizeof *x);
+            x[3 * i + k] = 1;
+            gxsp_product(&problem, 1, x, y);
+            memcpy(column, y + 3 * i, sizeof column);
+            unit[0] = d[0] * column[0] + d[1] * column[1] + d[2] * column[2];
+            unit[1] = d[1] * column[0] + d[3] * column[1] + d[4] * column[2];
+            unit[2] = d[2] * column[0] + d[4] * column[1] + d[5] * column[2];
+            for (r = 0; r < 3; ++r)
+                assert_that(fabs(unit[r] - (r == k ? 1 : 0)) < 1e-9, "%g", unit[r]);
+        }
+    free(x), free(y), free(expected), free(mass);
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
+/* ---- step ---- */
+
+/* Two loose bodies and a copy of none: u = v h + g h^2 exactly, with no linear iteration. */
+START_TEST(free_fall_is_exact)
+{
+    gxs_solver *solver = solver_make();
+    gxs_step_desc step = step_make(1.0 / 30, -9.81);
+    gxs_step_report report;
+    size_t i, base;
+    int frame;
+    scene s;
+    seed(3);
+    s = scene_block(3, 2, 2, 0.25, 0.1, 8);
+    base = s.model.copy_count;
+    s.elements[s.model.element_count] = s.elements[0]; /* a loose tetrahedron of 1e-12 of its volume */
+    for (i = 0; i < 4; ++i)
+        s.elements[s.model.element_count].copy[i] = (uint32_t)(base + i);
+    s.elements[s.model.element_count].weight *= 1e-12;
+    for (i = 0; i < 10; ++i)
+        s.elements[s.model.element_count].mass[i] *= 1e-12;
+    ++s.model.element_count;
+    s.model.copy_count += 5;
+    for (i = 0; i < base + 4; ++i)
+        s.velocity[3 * i] = i < base ? 2 : -1;
+    for (frame = 0; frame < 10; ++frame) {
+        double t = (frame + 1) * step.dt;
+        ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+        ck_assert_uint_eq(report.cg_iterations, 0);
+        for (i = 0; i < base + 4; ++i) {
+            assert_that(fabs(s.displacement[3 * i] - (i < base ? 2 : -1) * t) < 1e-14, "%g", s.displacement[3 * i]);
+            assert_that(fabs(s.velocity[3 * i + 2] + 9.81 * t) < 1e-12, "%g", s.velocity[3 * i + 2]);
+        }
+        for (i = 3 * (base + 4); i < 3 * (base + 5); ++i)
+            ck_assert(s.displacement[i] == 0 && s.velocity[i] == 0);
+    }
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
+/* sum of M v, kg m/s */
+static void momentum(const scene *s, double *p)
+{
+    double *mv = (double *)zeroed(3 * s->model.copy_count, sizeof *mv);
+    size_t i;
+    ck_assert_int_eq(gxs_model_mass_product(&s->model, s->velocity, mv), GX_OK);
+    p[0] = p[1] = p[2] = 0;
+    for (i = 0; i < 3 * s->model.copy_count; ++i)
+        p[i % 3] += mv[i];
+    free(mv);
+}
+
+/* to rounding, at a CG tolerance of 1e-1 and in violent motion; with forces: their impulse */
+START_TEST(momentum_of_a_free_body_is_balanced)
+{
+    gxs_solver *solver = solver_make();
+    int frame, loaded;
+    size_t i;
+    for (loaded = 0; loaded < 2; ++loaded) {
+        gxs_step_desc step = step_make(0.01, 0);
+        double before[3], after[3], impulse[3] = {0, 0, 0};
+        scene s;
+        seed(5);
+        s = scene_block(3, 3, 3, 0.2, 0.1, 0);
+        for (i = 0; i < 3 * s.model.copy_count; ++i) {
+            s.velocity[i] = 5 * uniform();
+            s.forces[i] = loaded ? 100 * uniform() : 0;
+            impulse[i % 3] += step.dt * s.forces[i];
+        }
+        step.forces = s.forces;
+        step.cg_tolerance = 0.1;
+        for (frame = 0; frame < 10; ++frame) {
+            momentum(&s, before);
+            ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+            momentum(&s, after);
+            for (i = 0; i < 3; ++i)
+                assert_that(fabs(after[i] - before[i] - impulse[i]) < 1e-10, "%g", after[i] - before[i] - impulse[i]);
+        }
+        scene_free(&s);
+    }
+    gxs_solver_destroy(solver);
+}
+END_TEST
+
+/* nodal forces of a traction along x on the faces at x = 0 (pulled to the left) and x = length */
+static void pull(scene *s, double length, double traction)
+{
+    size_t e;
+    int skip, k, r;
+    for (e = 0; e < s->model.element_count; ++e)
+        for (skip = 0; skip < 4; ++skip) {
+            const double *x[3];
+            uint32_t c[3];
+            double a[3], b[3], area;
+            int count = 0;
+            for (k = 0; k < 4; ++k)
+                if (k != skip) {
+                    c[count] = s->elements[e].copy[k];
+                    x[count] = s->rest + 3 * c[count];
+                    ++count;
+                }
+            for (r = 0; r < 3; ++r)
+                a[r] = x[1][r] - x[0][r], b[r] = x[2][r] - x[0][r];
+            area = 0.5 * fabs(a[1] * b[2] - a[2] * b[1]);
+            for (k = 0; k < 3; ++k) {
+                if (x[0][0] == 0 && x[1][0] == 0 && x[2][0] == 0)
+                    s->forces[3 * c[k]] -= traction * area / 3;
+                if (x[0][0] == length && x[1][0] == length && x[2][0] == length)
+                    s->forces[3 * c[k]] += traction * area / 3;
+            }
+        }
+}
+
+START_TEST(stretched_bar_has_youngs_modulus)
+{
+    int which;
+    for (which = 0; which < 3; ++which) {
+        gxs_solver *solver = solver_make();
+        gxs_step_desc step = step_make(100, 0);
+        gxs_step_report report;
+        scene s = scene_block(6, 2, 2, 0.5, 0, 0);
+        double strain, across, expected = 1e-6;
+        size_t last = s.model.copy_count - 1;
+        int frame;
+        s.model.poisson = which == 2 ? 0.49 : 0.3 * which;
+        pull(&s, 3, expected * s.model.young);
+        step.forces = s.forces;
+        step.newton_iterations = 20;
+        step.newton_tolerance = 1e-10;
+        step.cg_tolerance = 1e-6;
+        step.cg_iterations = 5000;
+        for (frame = 0; frame < 3; ++frame)
+            ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+        strain = (s.displacement[3 * last] - s.displacement[0]) / 3;
+        across = s.displacement[3 * last + 1] - s.displacement[1];
+        assert_that(report.residual < 1e-8, "residual %g", report.residual);
+        assert_that(fabs(strain / expected - 1) < 1e-5, "strain %g", strain);
+        assert_that(fabs(across + s.model.poisson * expected) < 1e-5 * expected, "across %g", across);
+        gxs_solver_destroy(solver);
+        scene_free(&s);
+    }
+}
+END_TEST
+
+START_TEST(held_copies_do_not_move)
+{
+    gxs_solver *solver = solver_make();
+    gxs_step_desc step = step_make(0.033, -9.81);
+    scene s;
+    size_t i;
+    int frame;
+    seed(2);
+    s = scene_block(6, 2, 2, 0.25, 0, 0);
+    scene_hold_left(&s);
+    for (i = 0; i < 3 * s.model.copy_count; ++i) {
+        s.velocity[i] = uniform();
+        s.displacement[i] = s.held[i / 3] ? 0.01 : 0;
+        s.forces[i] = uniform();
+    }
+    step.forces = s.forces;
+    for (frame = 0; frame < 20; ++frame) {
+        ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+        for (i = 0; i < 3 * s.model.copy_count; ++i)
+            if (s.held[i / 3])
+                ck_assert(s.displacement[i] == 0.01 && s.velocity[i] == 0);
+    }
+    ck_assert(s.displacement[3 * s.model.copy_count - 1] < -0.01); /* the free end hangs */
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
+/* a hanging body comes to rest in balance, and stays there bit for bit or nearly */
+START_TEST(hanging_body_finds_its_balance)
+{
+    gxs_solver *solver = solver_make();
+    gxs_step_desc step = step_make(10, -9.81);
+    gxs_step_report report;
+    scene s = scene_block(4, 2, 2, 0.25, 0, 0);
+    double before;
+    int frame;
+    scene_hold_left(&s);
+    step.newton_iterations = 30;
+    step.newton_tolerance = 1e-10;
+    step.cg_tolerance = 1e-4;
+    for (frame = 0; frame < 8; ++frame) {
+        before = s.displacement[3 * s.model.copy_count - 1];
+        ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+        assert_that(report.residual <= 1e-10, "residual %g after %u", report.residual, (unsigned)report.newton_iterations);
+    }
+    ck_assert(fabs(before - s.displacement[3 * s.model.copy_count - 1]) < 1e-8);
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
+/* same input, same bits; also from a workspace that has seen a larger model */
+START_TEST(steps_are_repeatable)
+{
+    gxs_solver *solver = solver_make();
+    gxs_step_desc step = step_make(0.033, -9.81);
+    double *first;
+    scene s, large = scene_block(5, 5, 5, 0.1, 0, 0);
+    size_t i, count;
+    int run;
+    seed(8);
+    s = scene_block(3, 2, 2, 0.25, 0.1, 0);
+    count = 3 * s.model.copy_count;
+    first = (double *)zeroed(count, sizeof *first);
+    for (run = 0; run < 2; ++run) {
+        seed(9);
+        for (i = 0; i < count; ++i)
+            s.displacement[i] = 0.1 * uniform(), s.velocity[i] = uniform();
+        ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+        if (run == 0) {
+            memcpy(first, s.displacement, count * sizeof *first);
+            ck_assert_int_eq(gxs_solver_step(solver, &large.model, &step, large.displacement, large.velocity, NULL, NULL),
+                             GX_OK);
+        }
+    }
+    ck_assert_int_eq(memcmp(first, s.displacement, count * sizeof *first), 0);
+    free(first);
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+    scene_free(&large);
+}
+END_TEST
+
+/* ---- violent starts ---- */
+
+enum { INVERTED, FLATTENED, COLLAPSED, TANGLED, START_COUNT };
+
+static void violate(scene *s, int how, double edge)
+{
+    size_t i;
+    for (i = 0; i < 3 * s->model.copy_count; ++i)
+        switch (how) {
+        case INVERTED: s->displacement[i] = i % 3 == 2 ? -2 * s->rest[i] : 0; break;
+        case FLATTENED: s->displacement[i] = i % 3 == 2 ? -s->rest[i] : 0; break;
+        case COLLAPSED: s->displacement[i] = -s->rest[i]; break;
+        default: s->displacement[i] = edge * uniform();
+        }
+}
+
+/* k Newton iterations from one start, k = 1, 2, ...: their results are the accepted iterates of the longest run */
+START_TEST(energy_falls_from_violent_starts)
+{
+    static const double steps[2] = {0.033, 1}, ratios[2] = {0.4, 0.4999};
+    gxs_solver *solver = solver_make();
+    double *u, *v;
+    int how = _i / 4, held;
+    uint32_t k;
+    size_t count, i;
+    double dt = steps[_i % 2];
+    for (held = 0; held < 2; ++held) {
+        gxs_step_desc step = step_make(dt, 0);
+        gxs_step_report report;
+        double energy;
+        scene s;
+        seed((uint64_t)_i);
+        s = scene_block(3, 2, 2, 0.5, 0.1, 0);
+        s.model.poisson = ratios[_i / 2 % 2];
+        violate(&s, how, 0.5);
+        for (i = 0; held && i < s.model.copy_count; ++i)
+            s.held[i] = i % 12 == 0;
+        count = 3 * s.model.copy_count;
+        u = (double *)zeroed(count, sizeof *u), v = (double *)zeroed(count, sizeof *v);
+        ck_assert_int_eq(gxs_model_energy(&s.model, s.displacement, &energy), GX_OK);
+        for (k = 1; k <= 25; ++k) {
+            memcpy(u, s.displacement, count * sizeof *u);
+            memset(v, 0, count * sizeof *v);
+            step.newton_iterations = k;
+            ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, u, v, &report, NULL), GX_OK);
+            for (i = 0; i < count; ++i)
+                assert_that(finite_bits(u[i]) && finite_bits(v[i]), "not finite");
+            assert_that(finite_bits(report.residual) && report.energy <= energy + 1e-12 * fabs(energy),
+                        "iterate %u: %.17g after %.17g", (unsigned)k, report.energy, energy);
+            energy = report.energy;
+            if (report.newton_iterations < k)
+                break;
+        }
+        free(u), free(v);
+        scene_free(&s);
+    }
+    gxs_solver_destroy(solver);
+}
+END_TEST
+
+/* a hundred frames from a violent start (the exact collapse, a stationary point, disturbed a little) end at rest */
+START_TEST(tangled_body_recovers)
+{
+    gxs_solver *solver = solver_make();
+    int how, frame;
+    for (how = 0; how < START_COUNT; ++how) {
+        gxs_step_desc step = step_make(0.033, 0);
+        gxs_step_report report;
+        double energy, worst;
+        size_t i;
+        scene s;
+        seed((uint64_t)(40 + how));
+        s = scene_block(3, 2, 2, 0.5, 0.1, 0);
+        violate(&s, how, 0.5);
+        for (i = 0; i < 3 * s.model.copy_count; ++i)
+            s.displacement[i] += 1e-3 * uniform();
+        worst = 0;
+        for (frame = 0; frame < 100; ++frame) {
+            ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+            ck_assert_int_eq(gxs_model_energy(&s.model, s.displacement, &energy), GX_OK);
+            worst = energy > worst ? energy : worst;
+        }
+        assert_that(energy < 1, "start %d: %g J of %g J left", how, energy, worst);
+        scene_free(&s);
+    }
+    gxs_solver_destroy(solver);
+}
+END_TEST
+
+/* ---- tiny pieces ---- */
+
+/* CG iterations of one step of a hanging body; a share of the elements has weight and mass scaled by tiny */
+static uint32_t iterations_with(double tiny, double *residual)
+{
+    gxs_solver *solver = solver_make();
+    gxs_step_desc step = step_make(0.033, -9.81);
+    gxs_step_report report;
+    size_t e, k;
+    scene s;
+    seed(21);
+    s = scene_block(8, 4, 4, 0.25, 0.05, 0);
+    for (e = 0; e < s.model.copy_count; ++e)
+        s.held[e] = s.rest[3 * e] < 0.125;
+    for (e = 0; e < s.model.element_count; ++e)
+        if (s.rest[3 * s.elements[e].copy[0]] > 1.3) { /* a whole end of the bar, so that whole copies are tiny */
+            s.elements[e].weight *= tiny;
+            for (k = 0; k < 10; ++k)
+                s.elements[e].mass[k] *= tiny;
+        }
+    step.newton_iterations = 3;
+    step.cg_tolerance = 1e-4;
+    ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+    *residual = report.residual;
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+    return report.cg_iterations;
+}
+
+START_TEST(tiny_weights_keep_iterations_bounded)
+{
+    double residual, tiny;
+    uint32_t plain = iterations_with(1, &residual), count;
+    for (tiny = 1e-3; tiny > 1e-16; tiny *= 1e-3) {
+        count = iterations_with(tiny, &residual);
+        assert_that(count <= 3 * plain && residual < 1e-2, "%g: %u iterations, %u without, residual %g", tiny,
+                    (unsigned)count, (unsigned)plain, residual);
+    }
+}
+END_TEST
+
+/* a tiny loose element stretched to twice its size beside a large body at rest must be seen and come back */
+START_TEST(tiny_pieces_are_seen)
+{
+    gxs_solver *solver = solver_make();
+    gxs_step_desc step = step_make(1, 0);
+    gxs_step_report report;
+    double energy;
+    size_t i, base, last;
+    scene s;
+    seed(4);
+    s = scene_block(4, 4, 4, 0.25, 0, 4);
+    base = s.model.copy_count;
+    last = s.model.element_count++;
+    s.elements[last] = s.elements[0];
+    s.elements[last].weight *= 1e-12;
+    for (i = 0; i < 10; ++i)
+        s.elements[last].mass[i] *= 1e-12;
+    for (i = 0; i < 12; ++i)
+        s.displacement[3 * base + i] = s.rest[3 * s.elements[last].copy[i / 3] + i % 3];
+    for (i = 0; i < 4; ++i)
+        s.elements[last].copy[i] = (uint32_t)(base + i);
+    s.model.copy_count += 4;
+    step.newton_iterations = 50;
+    step.newton_tolerance = 1e-8;
+    ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+    ck_assert_int_eq(gxs_model_energy(&s.model, s.displacement, &energy), GX_OK);
+    assert_that(energy < 1e-6 * s.elements[last].weight * s.model.young, "energy %g", energy);
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
+/* the report's energy is E of the manual */
+START_TEST(reported_energy_is_the_incremental_potential)
+{
+    gxs_solver *solver = solver_make();
+    gxs_step_desc step = step_make(0.033, -9.81);
+    gxs_step_report report;
+    double *un, *vn, energy;
+    size_t i, count;
+    scene s;
+    seed(14);
+    s = scene_block(3, 2, 2, 0.25, 0.1, 0);
+    count = 3 * s.model.copy_count;
+    un = (double *)zeroed(count, sizeof *un), vn = (double *)zeroed(count, sizeof *vn);
+    for (i = 0; i < count; ++i)
+        un[i] = s.displacement[i] = 0.1 * uniform(), vn[i] = s.velocity[i] = uniform(), s.forces[i] = 10 * uniform();
+    step.forces = s.forces;
+    ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+    energy = incremental_potential(&s, &step, un, vn, s.displacement);
+    assert_that(fabs(report.energy - energy) < 1e-9 * (1 + fabs(energy)), "%.17g %.17g", report.energy, energy);
+    free(un), free(vn);
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
+/* ---- bad input ---- */
+
+typedef struct attempt {
+    scene s;
+    gxs_step_desc step;
+    gx_failure failure;
+    gxs_solver *solver;
+} attempt;
+
+static attempt attempt_make(void)
+{
+    attempt a;
+    a.s = scene_block(2, 1, 1, 0.5, 0, 0);
+    a.step = step_make(0.033, -9.81);
+    a.solver = solver_make();
+    return a;
+}
+
+/* the step must fail so, at that index, and leave the state alone */
+static void expect(attempt *a, gx_result result, size_t index)
+{
+    size_t bytes = 3 * sizeof(double) * (a->s.model.copy_count ? a->s.model.copy_count : 1);
+    double *before = (double *)zeroed(2, bytes);
+    memcpy(before, a->s.displacement, bytes);
+    memcpy((char *)before + bytes, a->s.velocity, bytes);
+    ck_assert_int_eq(gxs_solver_step(a->solver, &a->s.model, &a->step, a->s.displacement, a->s.velocity, NULL, &a->failure),
+                     result);
+    ck_assert_int_eq(a->failure.result, result);
+    ck_assert_uint_eq(a->failure.index, index);
+    ck_assert_int_eq(memcmp(before, a->s.displacement, bytes), 0);
+    ck_assert_int_eq(memcmp((char *)before + bytes, a->s.velocity, bytes), 0);
+    free(before);
+    gxs_solver_destroy(a->solver);
+    scene_free(&a->s);
+}
+
+/* NaN and infinity from bits, for -ffast-math */
+static double not_a_number(int infinite)
+{
+    uint64_t bits = infinite ? (uint64_t)0x7ff << 52 : (uint64_t)0xfff << 51;
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+#define attempt_with(change, result, index) \
+    do {                                    \
+        attempt a = attempt_make();         \
+        change;                             \
+        expect(&a, result, index);          \
+    } while (0)
+
+START_TEST(bad_input_is_named)
+{
+    double nan = not_a_number(0), infinity = not_a_number(1);
+    attempt_with(a.step.dt = 0, GX_ERROR_ARGUMENT, SIZE_MAX);
+    attempt_with(a.step.dt = -1, GX_ERROR_ARGUMENT, SIZE_MAX);
+    attempt_with(a.step.dt = nan, GX_ERROR_NOT_FINITE, SIZE_MAX);
+    attempt_with(a.step.cg_tolerance = -1, GX_ERROR_ARGUMENT, SIZE_MAX);
+    attempt_with(a.step.newton_tolerance = infinity, GX_ERROR_NOT_FINITE, SIZE_MAX);
+    attempt_with(a.step.gravity[1] = nan, GX_ERROR_NOT_FINITE, SIZE_MAX);
+    attempt_with(a.step.forces = a.s.forces; a.s.forces[7] = nan, GX_ERROR_NOT_FINITE, 2);
+    attempt_with(a.s.displacement[10] = infinity, GX_ERROR_NOT_FINITE, 3);
+    attempt_with(a.s.velocity[0] = nan, GX_ERROR_NOT_FINITE, 0);
+    attempt_with(a.s.model.young = 0, GX_ERROR_ARGUMENT, SIZE_MAX);
+    attempt_with(a.s.model.young = nan, GX_ERROR_NOT_FINITE, SIZE_MAX);
+    attempt_with(a.s.model.poisson = 0.5, GX_ERROR_ARGUMENT, SIZE_MAX);
+    attempt_with(a.s.model.poisson = -0.1, GX_ERROR_ARGUMENT, SIZE_MAX);
+    attempt_with(a.s.model.copy_count = 0, GX_ERROR_EMPTY, SIZE_MAX);
+    attempt_with(a.s.model.element_count = 0, GX_ERROR_EMPTY, SIZE_MAX);
+    attempt_with(a.s.model.elements = NULL, GX_ERROR_ARGUMENT, SIZE_MAX);
+    attempt_with(a.s.elements[3].copy[2] = (uint32_t)a.s.model.copy_count, GX_ERROR_INDEX, 3);
+    attempt_with(a.s.elements[4].gradient[2][1] = nan, GX_ERROR_NOT_FINITE, 4);
+    attempt_with(a.s.elements[5].weight = infinity, GX_ERROR_NOT_FINITE, 5);
+    attempt_with(a.s.elements[5].weight = -1, GX_ERROR_INVERTED, 5);
+    attempt_with(a.s.elements[6].mass[9] = nan, GX_ERROR_NOT_FINITE, 6);
+    attempt_with(a.s.elements[6].mass[4] = -1, GX_ERROR_ARGUMENT, 6);
+    ck_assert_int_eq(gxs_solver_create(NULL, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxs_solver_step(NULL, NULL, NULL, NULL, NULL, NULL, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxs_model_energy(NULL, NULL, NULL), GX_ERROR_ARGUMENT);
+    gxs_solver_destroy(NULL);
+}
+END_TEST
+
+/* numbers that are finite and too large to step with */
+START_TEST(overflow_is_divergence)
+{
+    attempt_with(a.s.displacement[0] = 1e200, GX_ERROR_DIVERGED, SIZE_MAX);
+    attempt_with(a.s.velocity[4] = 1e120, GX_ERROR_DIVERGED, SIZE_MAX);
+    attempt_with(a.step.dt = 1e-200, GX_ERROR_RANGE, SIZE_MAX);
+    attempt_with(a.step.dt = 1e200, GX_ERROR_RANGE, SIZE_MAX);
+    attempt_with(a.s.model.young = 1e308; a.s.displacement[0] = 10, GX_ERROR_DIVERGED, SIZE_MAX);
+}
+END_TEST
+
+/* copies without an element, elements without weight, bodies without mass, velocities beyond reach */
+START_TEST(degenerate_models_are_harmless)
+{
+    gxs_solver *solver = solver_make();
+    int which;
+    for (which = 0; which < 5; ++which) {
+        gxs_step_desc step = step_make(0.033, -9.81);
+        gxs_step_report report;
+        size_t e, k;
+        scene s = scene_block(2, 2, 2, 0.5, 0, 8);
+        for (e = 0; e < s.model.element_count; ++e) {
+            if (which == 1 || (which == 2 && e % 2))
+                s.elements[e].weight = 0;
+            for (k = 0; k < 10; ++k)
+                if (which >= 2 && which < 4 && (which == 3 || e % 2))
+                    s.elements[e].mass[k] = 0;
+        }
+        if (which == 4)
+            for (e = 0; e < 3 * s.model.copy_count; ++e)
+                s.velocity[e] = e % 3 ? 1e60 : -1e60;
+        s.model.copy_count += 8;
+        s.forces[3 * s.model.copy_count - 1] = 1e9; /* on a copy of no element */
+        step.forces = s.forces;
+        step.newton_iterations = 4;
+        ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+        for (e = 0; e < 3 * s.model.copy_count; ++e)
+            assert_that(finite_bits(s.displacement[e]) && finite_bits(s.velocity[e]), "case %d", which);
+        for (e = 3 * (s.model.copy_count - 8); e < 3 * s.model.copy_count; ++e)
+            ck_assert(s.displacement[e] == 0 && s.velocity[e] == 0);
+        scene_free(&s);
+    }
+    gxs_solver_destroy(solver);
+}
+END_TEST
+
+/* ---- memory ---- */
+
+typedef struct failing {
+    int left;       /* allocations until failure */
+    int forever;    /* fail once or from then on */
+    size_t balance; /* bytes not yet released */
+    int calls;
+} failing;
+
+static void *failing_allocate(void *user, size_t size)
+{
+    failing *f = (failing *)user;
+    void *memory;
+    ++f->calls;
+    if (f->left == 0 || (f->left < 0 && f->forever)) {
+        --f->left;
+        return NULL;
+    }
+    --f->left;
+    memory = malloc(size);
+    ck_assert_ptr_nonnull(memory);
+    f->balance += size;
+    return memory;
+}
+
+static void failing_release(void *user, void *memory, size_t size)
+{
+    ((failing *)user)->balance -= size;
+    free(memory);
+}
+
+/* create and three steps, the model growing in between; returns whether an allocation failed */
+static int run_with(failing *f)
+{
+    gx_allocator allocator;
+    gxs_solver *solver = NULL;
+    gxs_step_desc step = step_make(0.033, -9.81);
+    int size, failed = 0;
+    allocator.allocate = failing_allocate, allocator.release = failing_release, allocator.user = f;
+    if (gxs_solver_create(&allocator, &solver) != GX_OK) {
+        ck_assert_ptr_null(solver);
+        return 1;
+    }
+    for (size = 1; size <= 3; ++size) {
+        scene s = scene_block(2 * size, size, size, 0.5, 0, 0);
+        size_t i;
+        gx_result result = gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, NULL, NULL);
+        if (result == GX_ERROR_MEMORY) {
+            failed = 1;
+            for (i = 0; i < 3 * s.model.copy_count; ++i)
+                ck_assert(s.displacement[i] == 0 && s.velocity[i] == 0);
+            if (!f->forever) /* the solver is still good */
+                ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+        } else
+            ck_assert_int_eq(result, GX_OK);
+        scene_free(&s);
+    }
+    gxs_solver_destroy(solver);
+    return failed;
+}
+
+START_TEST(every_allocation_may_fail)
+{
+    int forever, n;
+    for (forever = 0; forever < 2; ++forever)
+        for (n = 0;; ++n) {
+            failing f = {0, 0, 0, 0};
+            int failed;
+            f.left = n;
+            f.forever = forever;
+            failed = run_with(&f);
+            ck_assert_uint_eq(f.balance, 0);
+            if (!failed)
+                break;
+            ck_assert_int_lt(n, 10);
+        }
+}
+END_TEST
+
+START_TEST(steady_state_does_not_allocate)
+{
+    gx_allocator allocator;
+    failing f = {-1, 0, 0, 0};
+    gxs_solver *solver = NULL;
+    gxs_step_desc step = step_make(0.033, -9.81);
+    scene s = scene_block(3, 3, 3, 0.5, 0, 0);
+    int frame;
+    allocator.allocate = failing_allocate, allocator.release = failing_release, allocator.user = &f;
+    ck_assert_int_eq(gxs_solver_create(&allocator, &solver), GX_OK);
+    for (frame = 0; frame < 5; ++frame)
+        ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+    ck_assert_int_eq(f.calls, 2);
+    gxs_solver_destroy(solver);
+    ck_assert_uint_eq(f.balance, 0);
+    allocator.release = NULL;
+    ck_assert_int_eq(gxs_solver_create(&allocator, &solver), GX_ERROR_ARGUMENT);
+    scene_free(&s);
+}
+END_TEST
+
+static Suite *solve_suite(void)
+{
+    Suite *suite = suite_create("gxfem_solve");
+    TCase *material = tcase_create("material"), *model = tcase_create("model"), *step = tcase_create("step");
+    TCase *violent = tcase_create("violent"), *input = tcase_create("input");
+    tcase_add_test(material, energy_is_the_formula_of_the_paper);
+    tcase_add_test(material, rest_and_rotations_are_free_of_stress);
+    tcase_add_test(material, small_strain_is_linear_elasticity);
+    tcase_add_test(material, stress_is_the_derivative_of_energy);
+    tcase_add_test(material, hessian_is_the_projection_of_the_derivative_of_stress);
+    tcase_add_test(material, projected_hessian_is_semidefinite);
+    tcase_add_test(model, model_gradient_and_hessian_match_differences);
+    tcase_add_test(model, block_product_equals_assembled_forms);
+    tcase_add_test(step, free_fall_is_exact);
+    tcase_add_test(step, momentum_of_a_free_body_is_balanced);
+    tcase_add_test(step, stretched_bar_has_youngs_modulus);
+    tcase_add_test(step, held_copies_do_not_move);
+    tcase_add_test(step, hanging_body_finds_its_balance);
+    tcase_add_test(step, steps_are_repeatable);
+    tcase_add_test(step, reported_energy_is_the_incremental_potential);
+    tcase_add_test(step, tiny_weights_keep_iterations_bounded);
+    tcase_add_test(step, tiny_pieces_are_seen);
+    tcase_add_loop_test(violent, energy_falls_from_violent_starts, 0, 4 * START_COUNT);
+    tcase_add_test(violent, tangled_body_recovers);
+    tcase_add_test(input, bad_input_is_named);
+    tcase_add_test(input, overflow_is_divergence);
+    tcase_add_test(input, degenerate_models_are_harmless);
+    tcase_add_test(input, every_allocation_may_fail);
+    tcase_add_test(input, steady_state_does_not_allocate);
+    tcase_set_timeout(violent, 120);
+    tcase_set_timeout(step, 120);
+    tcase_set_timeout(material, 120);
+    suite_add_tcase(suite, material);
+    suite_add_tcase(suite, model);
+    suite_add_tcase(suite, step);
+    suite_add_tcase(suite, violent);
+    suite_add_tcase(suite, input);
+    return suite;
+}
+
+int main(void)
+{
+    SRunner *runner = srunner_create(solve_suite());
+    int failed;
+    srunner_run_all(runner, CK_NORMAL);
+    failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
