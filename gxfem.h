@@ -1287,28 +1287,90 @@ static gx_result gxp_remove_solid(gxp_cut *cut, const gxp_surface *s, int scoped
     return result;
 }
 
+/* --- exact sums for what doubles can't hold --- */
+
+/* r += a b */
+static void gxp_num_add_product(gxb_num *r, const gxb_num *a, const gxb_num *b) {
+    GXB_NUM(p); GXB_NUM(s);
+    gxb_num_mul(&p, a, b);
+    gxb_num_add(&s, r, &p);
+    r->sign = s.sign; r->exp = s.exp; r->n = s.n;
+    memcpy(r->d, s.d, s.n * sizeof *s.d);
+}
+
+typedef struct gxp_fine_point { gxb_num c[4]; gxb_limb limbs[4][32]; } gxp_fine_point;
+
 /* >>links: pieces of element faces that no wall covers ------------------------------------------------------------------------ */
 
-/* Area of a facet relative to the mesh face that it is part of, from approximate points; *error bounds the error. */
+/* Twice the area vector of the polygon of points in body->seeds, from their approximate positions; returns a bound for its error. */
+static double gxp_rough_area(const gxb_complex *cx, const gxp_words *points, double area[3]) {
+    const gxb_ball *o = &cx->points[points->data[0]].ball;
+    double error = 0, a[3], b[3] = {0, 0, 0};
+    uint32_t i;
+    int k;
+    area[0] = area[1] = area[2] = 0;
+    for (i = 1; i < points->count; i++) {
+        const gxb_ball *p = &cx->points[points->data[i]].ball;
+        double size = 0;
+        for (k = 0; k < 3; k++) { a[k] = b[k]; b[k] = p->x[k] - o->x[k]; size += fabs(a[k]) + fabs(b[k]); }
+        for (k = 0; k < 3; k++) area[k] += a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+        error += size * (size * 1e-15 + 4 * (p->error + o->error));
+    }
+    return error;
+}
+
+/* The polygon of the points in body->seeds as a share of the face opposite to node k, in numbers that hold any size: areas in the
+   plane of two barycentric coordinates, where the face has 1. */
+static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
+    gxp_fine_point p[3];
+    unsigned axes[3];
+    uint32_t i;
+    int c;
+    GXB_NUM(sum); GXB_NUM(one);
+    gxi_part_axes(k, axes);
+    gxb_num_set(&one, 1.0, 0);
+    for (i = 0; i < 3; i++) for (c = 0; c < 4; c++) p[i].c[c].d = p[i].limbs[c];
+    for (i = 0; i < body->seeds.count; i++) {
+        gxp_fine_point *const a = &p[1 + i % 2], *const b = &p[1 + (i + 1) % 2];     /* a: this point, b: the one before */
+        GXB_NUM(x); GXB_NUM(y); GXB_NUM(z); GXB_NUM(w); GXB_NUM(s); GXB_NUM(t); GXB_NUM(d);
+        gxb_complex_barycentric_fine(body->complex, body->seeds.data[i], element, i == 0 ? p[0].c : a->c);
+        if (i < 2) continue;
+        gxb_num_sub(&x, &b->c[axes[1]], &p[0].c[axes[1]]); gxb_num_sub(&y, &b->c[axes[2]], &p[0].c[axes[2]]);
+        gxb_num_sub(&z, &a->c[axes[1]], &p[0].c[axes[1]]); gxb_num_sub(&w, &a->c[axes[2]], &p[0].c[axes[2]]);
+        gxb_num_mul(&s, &x, &w);
+        gxb_num_mul(&t, &y, &z);
+        gxb_num_sub(&d, &s, &t);
+        gxp_num_add_product(&sum, &d, &one);
+    }
+    return fabs(gxb_num_to_double(&sum));
+}
+
+#define GXP_SHARE_ERROR 1e-6    /* relative error of a link's share of its face */
+
+/* Area of a facet as a share of the mesh face that it is part of. */
 static gx_result gxp_share_of_face(gx_body *body, uint32_t facet, double *share) {
     gxb_complex *cx = body->complex;
     const uint32_t face = cx->facets[facet].face;
     const uint32_t element = cx->face_elements[2 * face] != GXB_NONE ? cx->face_elements[2 * face] : cx->face_elements[2 * face + 1];
-    uint32_t e0, en, i, k, j, axes[3];
-    double l[3][4], sum = 0;
+    uint32_t e0, en, i, k;
+    double part[3], whole[3], error, size;
     gx_result result = gxb_complex_open_element(cx, element);
+    body->seeds.count = 0;
+    for (k = 0; cx->element_faces[4 * element + k] != face; k++) {}
+    for (i = 0; i < 4 && result == GX_OK; i++) if (i != k) result = gxp_push(body, &body->seeds, cx->elements[4 * element + i]);
     if (result == GX_OK) result = gxb_facet_edges(cx, facet, &e0, &en);
     if (result != GX_OK) return result;
-    for (k = 0; cx->element_faces[4 * element + k] != face; k++) {}
-    gxi_part_axes(k, axes);
-    for (i = 0; i < en; i++) {          /* a fan; twice the area in the plane of the last two coordinates, where the face has 1 */
-        const uint32_t e = cx->pool[e0 + i], slot = i < 2 ? i : 2;
-        gxb_complex_barycentric(cx, cx->edges[e >> 1].v[e & 1], element, l[slot]);
-        if (i < 2) continue;
-        sum += (l[1][axes[1]] - l[0][axes[1]]) * (l[2][axes[2]] - l[0][axes[2]]) - (l[1][axes[2]] - l[0][axes[2]]) * (l[2][axes[1]] - l[0][axes[1]]);
-        for (j = 0; j < 4; j++) l[1][j] = l[2][j];
+    error = gxp_rough_area(cx, &body->seeds, whole);
+    size = sqrt(whole[0] * whole[0] + whole[1] * whole[1] + whole[2] * whole[2]);
+    body->seeds.count = 0;
+    for (i = 0; i < en && result == GX_OK; i++) result = gxp_push(body, &body->seeds, cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1]);
+    if (result != GX_OK) return result;
+    if (error < 0.1 * GXP_SHARE_ERROR * size) {
+        error = gxp_rough_area(cx, &body->seeds, part);
+        *share = sqrt(part[0] * part[0] + part[1] * part[1] + part[2] * part[2]) / size;
+        if (error < 0.1 * GXP_SHARE_ERROR * *share * size) return GX_OK;
     }
-    *share = fabs(sum);
+    *share = gxp_fine_share(body, element, k);
     return GX_OK;
 }
 
@@ -1340,7 +1402,7 @@ static gx_result gxp_weigh_links(gxp_cut *cut, uint32_t face) {
     for (i = 0; i < body->list.count && result == GX_OK; i++) {
         const gxb_facet *f = &cx->facets[body->list.data[i]];
         const uint32_t front = f->leaf[0], behind = f->leaf[1];
-        double total = 0, share;
+        double total = 0, share = 0;
         int seen = 0;
         if (!gxp_is_link(body, body->list.data[i])) continue;
         for (j = 0; j < body->list.count && result == GX_OK && !seen; j++) {
@@ -1863,18 +1925,7 @@ static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, int all) {
 
 /* --- parts so small that doubles can't hold their moments: the same sums in exact numbers --- */
 
-/* r += a b */
-static void gxp_num_add_product(gxb_num *r, const gxb_num *a, const gxb_num *b) {
-    GXB_NUM(p); GXB_NUM(s);
-    gxb_num_mul(&p, a, b);
-    gxb_num_add(&s, r, &p);
-    r->sign = s.sign; r->exp = s.exp; r->n = s.n;
-    memcpy(r->d, s.d, s.n * sizeof *s.d);
-}
-
 typedef struct gxp_fine_sums { gxb_num c[10]; gxb_limb limbs[10][GXB_NUM_LIMBS]; } gxp_fine_sums;
-typedef struct gxp_fine_point { gxb_num c[4]; gxb_limb limbs[4][32]; } gxp_fine_point;
-
 /* det(a, b, c) */
 static void gxp_fine_determinant(gxb_num *det, gxb_num *p[3][3]) {
     static const int cyclic[3][2] = {{1, 2}, {2, 0}, {0, 1}};

@@ -193,6 +193,7 @@ typedef struct gxb_cpoint {     /* a point of the complex */
     uint32_t stamp[2];          /* when sign[i] was decided (complex.stamp[i]) */
     int32_t sign[2];
     uint32_t scratch;
+    double parameter[2];        /* on a mesh edge: barycentric coordinates of its ends; negative until asked for */
 } gxb_cpoint;
 
 typedef struct gxb_cplane {     /* a plane: of three points, or through points 0 and 1 along coordinate axis def[2] */
@@ -274,7 +275,7 @@ typedef struct gxb_complex {
     gxb_node *nodes; uint32_t tree_count, tree_capacity;
     gxb_label *labels; uint32_t label_count, label_capacity;
     gxb_block *blocks;              /* exact coordinates, computed when first needed and kept */
-    uint32_t *pool; uint32_t pool_count, pool_capacity;
+    uint32_t *pool; uint32_t pool_count, pool_capacity, pool_live;
     uint32_t *walls; uint32_t wall_count, wall_capacity;    /* facets that became walls, or were labelled, since begin */
     gxb_undo *undo; uint32_t undo_count, undo_capacity;     /* what begin ... rollback restores, and the old contents */
     unsigned char *undo_bytes; uint32_t undo_byte_count, undo_byte_capacity;
@@ -283,6 +284,7 @@ typedef struct gxb_complex {
     uint32_t *scratch; uint32_t scratch_count, scratch_capacity;
     uint32_t mark[8];               /* counts at begin: points planes edges facets leaves nodes labels pool */
     uint32_t stamp[2], edge_stamp, sign_plane;
+    uint32_t height_element; double height[4];  /* see >>insert, barycentric coordinates */
     uint64_t filter_calls, exact_calls;
     gx_allocator allocator;
 } gxb_complex;
@@ -555,12 +557,12 @@ GXFEM_API double gxb_num_ratio(const gxb_num *a, const gxb_num *b) {
 /* r = a.b for vectors of three numbers; the worst length is that of one product plus 2 limbs */
 static void gxbp_num_dot(gxb_num *r, const gxb_num a[3], const gxb_num b[3]) {
     GXB_NUM(t); GXB_NUM(s);
+    GXB_NUM(u);
     gxb_num_mul(&s, &a[0], &b[0]);
     gxb_num_mul(&t, &a[1], &b[1]);
-    gxb_num_add(r, &s, &t);
-    gxbp_num_copy(&s, r, 1);
+    gxb_num_add(&u, &s, &t);
     gxb_num_mul(&t, &a[2], &b[2]);
-    gxb_num_add(r, &s, &t);
+    gxb_num_add(r, &u, &t);
 }
 
 /* r = a*b - c*d */
@@ -1098,13 +1100,43 @@ static void gxbp_save(gxb_complex *cx, uint32_t array, uint32_t index) {
     cx->undo[cx->undo_count++].index = index;
 }
 
-GXFEM_API void gxb_complex_begin(gxb_complex *cx) {
+/* Copies a list of the pool behind those already copied. */
+static void gxbp_move_list(const gxb_complex *cx, uint32_t *pool, uint32_t *used, uint32_t *list, uint32_t count) {
+    if (count > 0) memcpy(pool + *used, cx->pool + *list, count * sizeof *pool);
+    *list = *used;
+    *used += count;
+}
+
+/* Lists that were replaced by longer ones stay in the pool; once they outweigh the others, the pool is renewed. Without memory for
+   that it stays as it is. */
+static void gxbp_compact_pool(gxb_complex *cx) {
+    uint32_t *pool, used = 0, i;
+    if (cx->pool_count / 2 < cx->pool_live + 4096) return;
+    pool = (uint32_t *)gxbp_allocate(&cx->allocator, (size_t)cx->pool_capacity * sizeof *pool);
+    if (pool == NULL) return;
+    for (i = 0; i < cx->facet_count; i++) {
+        gxb_facet *f = &cx->facets[i];
+        if (f->child != GXB_NONE) f->loop_count = 0;    /* its children have loops of their own */
+        gxbp_move_list(cx, pool, &used, &f->loop, f->loop_count);
+    }
+    for (i = 0; i < cx->leaf_count; i++) gxbp_move_list(cx, pool, &used, &cx->leaves[i].facets, cx->leaves[i].facet_count);
+    gxbp_release(&cx->allocator, cx->pool, (size_t)cx->pool_capacity * sizeof *cx->pool);
+    cx->pool = pool;
+    cx->pool_count = cx->pool_live = used;
+}
+
+static void gxbp_set_marks(gxb_complex *cx) {
     cx->mark[0] = cx->point_count; cx->mark[1] = cx->plane_count; cx->mark[2] = cx->edge_count; cx->mark[3] = cx->facet_count;
     cx->mark[4] = cx->leaf_count; cx->mark[5] = cx->tree_count; cx->mark[6] = cx->label_count; cx->mark[7] = cx->pool_count;
     cx->undo_count = cx->undo_byte_count = cx->wall_count = cx->corner_count = cx->task_count = 0;
 }
 
-GXFEM_API void gxb_complex_commit(gxb_complex *cx) { gxb_complex_begin(cx); }
+GXFEM_API void gxb_complex_begin(gxb_complex *cx) {
+    gxbp_compact_pool(cx);
+    gxbp_set_marks(cx);
+}
+
+GXFEM_API void gxb_complex_commit(gxb_complex *cx) { gxbp_set_marks(cx); }
 
 GXFEM_API void gxb_complex_rollback(gxb_complex *cx) {
     while (cx->undo_count > 0) {
@@ -1117,10 +1149,9 @@ GXFEM_API void gxb_complex_rollback(gxb_complex *cx) {
     cx->point_count = cx->mark[0]; cx->plane_count = cx->mark[1]; cx->edge_count = cx->mark[2]; cx->facet_count = cx->mark[3];
     cx->leaf_count = cx->mark[4]; cx->tree_count = cx->mark[5]; cx->label_count = cx->mark[6]; cx->pool_count = cx->mark[7];
     cx->stamp[0]++; cx->stamp[1]++; cx->edge_stamp++;
-    gxb_complex_begin(cx);
+    cx->height_element = GXB_NONE;
+    gxbp_set_marks(cx);
 }
-
-/* Pool lists that resolving replaced stay behind as garbage until gxbp_compact; the caller of begin sees to that. */
 
 /* >>topology: the complex of a mesh --------------------------------------------------------------------------------------- */
 
@@ -1129,6 +1160,7 @@ static gx_result gxbp_new_point(gxb_complex *cx, uint32_t *id) {
     if (result != GX_OK) return result;
     *id = cx->point_count++;
     memset(&cx->points[*id], 0, sizeof cx->points[*id]);
+    cx->points[*id].parameter[0] = -1;
     return GX_OK;
 }
 
@@ -1594,6 +1626,7 @@ GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator 
         return gxbp_fail(failure, result, bad);
     }
     cx->stamp[0] = cx->stamp[1] = cx->edge_stamp = 1;
+    cx->height_element = GXB_NONE;
     gxb_complex_begin(cx);
     *complex = cx;
     return gxbp_fail(failure, GX_OK, SIZE_MAX);
@@ -1735,6 +1768,7 @@ static void gxbp_split_edge(gxb_complex *cx, uint32_t edge, const gxbp_knife *kn
     const uint32_t id = cx->point_count++;
     gxb_cpoint *p = &cx->points[id];
     memset(p, 0, sizeof *p);
+    p->parameter[0] = -1;
     p->kind = e.explicit_line ? GXB_LINE_PLANE : GXB_THREE_PLANES;
     p->def[0] = e.line[0]; p->def[1] = e.line[1]; p->def[2] = knife->plane;
     gxbp_definition_ball(cx, p->kind, p->def, &p->ball);
@@ -2267,16 +2301,43 @@ GXFEM_API gx_result gxb_complex_insert(gxb_complex *cx, gxb_triangle *t, uint32_
 
 /* --- barycentric coordinates --- */
 
-/* The plane of the face opposite to node k, with the point's and the node's exact distances from it (both times the same factor). */
-static void gxbp_face_distances(gxb_complex *cx, uint32_t point, uint32_t element, uint32_t k, gxb_num *num, gxb_num *den) {
-    const uint32_t facet = cx->face_facet[cx->element_faces[4 * element + k]];
-    GXB_NUM(s);
-    gxbp_vec sn, sx, sv;
-    const gxb_num *n = gxbp_exact_cplane(cx, cx->facets[facet].plane, &sn), *x = gxbp_exact_cpoint(cx, point, &sx);
-    const gxb_num *v = gxbp_exact_cpoint(cx, cx->elements[4 * element + k], &sv);
-    gxbp_exact_side(num, x, n);
-    gxbp_exact_side(&s, v, n);
-    gxb_num_mul(den, &s, &x[3]);
+/* Exact distance of a point from a plane, times |n| and the point's weight W, which goes to *weight (may be NULL). */
+static void gxbp_distance(gxb_complex *cx, uint32_t point, uint32_t plane, gxb_num *distance, gxb_num *weight) {
+    gxbp_vec sn, sx;
+    const gxb_num *n = gxbp_exact_cplane(cx, plane, &sn), *x = gxbp_exact_cpoint(cx, point, &sx);
+    gxbp_exact_side(distance, x, n);
+    if (weight != NULL) gxbp_num_copy(weight, &x[3], 1);
+}
+
+static uint32_t gxbp_face_plane(const gxb_complex *cx, uint32_t element, uint32_t k) {
+    return cx->facets[cx->face_facet[cx->element_faces[4 * element + k]]].plane;
+}
+
+/* Distances of the element's nodes from their opposite faces, times |n|: kept for the element last asked for. */
+static const double *gxbp_heights(gxb_complex *cx, uint32_t element) {
+    uint32_t k;
+    if (cx->height_element == element) return cx->height;
+    for (k = 0; k < 4; k++) {
+        GXB_NUM(d);
+        gxbp_distance(cx, cx->elements[4 * element + k], gxbp_face_plane(cx, element, k), &d, NULL);
+        cx->height[k] = gxb_num_to_double(&d);
+    }
+    cx->height_element = element;
+    return cx->height;
+}
+
+/* Where on the mesh edge from node def[0] to node def[1] the point lies: 0 ... 1. Asked for by every element around the edge, so kept. */
+static double gxbp_edge_parameter(gxb_complex *cx, uint32_t point, int from_end) {
+    gxb_cpoint *p = &cx->points[point];
+    if (p->parameter[0] < 0) {
+        GXB_NUM(a); GXB_NUM(b); GXB_NUM(d);
+        gxbp_distance(cx, p->def[0], p->def[2], &a, NULL);
+        gxbp_distance(cx, p->def[1], p->def[2], &b, NULL);
+        gxb_num_sub(&d, &b, &a);
+        p->parameter[0] = gxb_num_ratio(&b, &d);                /* the share of def[0] */
+        p->parameter[1] = -gxb_num_ratio(&a, &d);
+    }
+    return p->parameter[from_end];
 }
 
 /* What is known of lambda[k] without arithmetic: 1 or 0 at nodes, 0 on a face by definition; -1: nothing. */
@@ -2288,14 +2349,22 @@ static int gxbp_known_lambda(const gxb_complex *cx, uint32_t point, uint32_t ele
 }
 
 GXFEM_API void gxb_complex_barycentric(gxb_complex *cx, uint32_t point, uint32_t element, double lambda[4]) {
+    const gxb_cpoint *p = &cx->points[point];
+    const int on_edge = p->kind == GXB_LINE_PLANE && p->def[0] < cx->node_count && p->def[1] < cx->node_count;
+    const double *height = point < cx->node_count || on_edge ? NULL : gxbp_heights(cx, element);
     uint32_t k;
     for (k = 0; k < 4; k++) {
+        const uint32_t node = cx->elements[4 * element + k];
         const int known = gxbp_known_lambda(cx, point, element, k);
-        GXB_NUM(num); GXB_NUM(den);
+        GXB_NUM(d); GXB_NUM(w);
         lambda[k] = known;
         if (known >= 0) continue;
-        gxbp_face_distances(cx, point, element, k, &num, &den);
-        lambda[k] = gxb_num_ratio(&num, &den);
+        if (on_edge) {
+            lambda[k] = node == p->def[0] ? gxbp_edge_parameter(cx, point, 0) : node == p->def[1] ? gxbp_edge_parameter(cx, point, 1) : 0;
+            continue;
+        }
+        gxbp_distance(cx, point, gxbp_face_plane(cx, element, k), &d, &w);
+        lambda[k] = gxb_num_ratio(&d, &w) / height[k];
     }
 }
 
@@ -2308,7 +2377,9 @@ GXFEM_API void gxb_complex_barycentric_fine(gxb_complex *cx, uint32_t point, uin
         GXB_NUM(num); GXB_NUM(den); GXB_NUM(q); GXB_NUM(t); GXB_NUM(s);
         gxb_num_set(&lambda[k], known > 0 ? 1.0 : 0.0, 0);
         if (known >= 0) continue;
-        gxbp_face_distances(cx, point, element, k, &num, &den);
+        gxbp_distance(cx, point, gxbp_face_plane(cx, element, k), &num, &q);
+        gxbp_distance(cx, cx->elements[4 * element + k], gxbp_face_plane(cx, element, k), &t, NULL);
+        gxb_num_mul(&den, &q, &t);
         for (step = 0; step < 4 && num.sign != 0; step++) {
             gxb_num_set(&q, gxb_num_ratio(&num, &den), 0);
             gxb_num_add(&s, &lambda[k], &q);
