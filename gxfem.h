@@ -297,8 +297,6 @@ struct gx_body {
     uint32_t *node_elements;        /* element_count x 4: elements around each node */
     uint8_t *node_pinched;          /* node_count: bit 1: elements around it are not joined by faces; bit 2: one of its edges is pinched */
     uint8_t *edge_pinched;          /* mesh_edge_count: elements around it meet in the edge only */
-    uint32_t *mesh_part;            /* element_count: face-connected part of the mesh */
-    uint32_t mesh_part_count;
     gxp_box *boxes; uint32_t box_count;
     uint32_t *box_elements;         /* element_count, in tree order */
     gxp_cell *cells; uint32_t cell_count, cell_capacity;
@@ -314,7 +312,7 @@ struct gx_body {
     int held_stale, parts_stale, view_stale;
     gxs_element *parts; uint32_t part_count, part_capacity;
     gxp_words view_cells, view_fragments;               /* slot of each kept cell; fragment of each */
-    gxp_words copy_fragment, cell_element, cell_copies;
+    gxp_words copy_fragment, fragment_number, cell_element, cell_copies;
     double *cell_volume; uint32_t cell_volume_capacity;
     double *fragments; uint32_t fragment_capacity, fragment_count;  /* volume, mass, centre: 5 arrays of capacity fragment_capacity */
     double volume, mass;
@@ -368,6 +366,19 @@ static gx_result gxp_words_room(gx_body *body, gxp_words *words, size_t extra) {
 
 static void gxp_words_free(gx_body *body, gxp_words *words) {
     gxp_release(&body->allocator, words->data, (size_t)words->capacity * sizeof *words->data);
+}
+
+static int gxp_compare_words(const void *a, const void *b) {
+    const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+    return x < y ? -1 : x > y;
+}
+
+static void gxp_sort_unique(gxp_words *w) {
+    uint32_t i, n = 0;
+    if (w->count == 0) return;
+    qsort(w->data, w->count, sizeof *w->data, gxp_compare_words);
+    for (i = 0; i < w->count; i++) if (n == 0 || w->data[i] != w->data[n - 1]) w->data[n++] = w->data[i];
+    w->count = n;
 }
 
 static gx_result gxp_fail(gx_failure *failure, gx_result result, size_t index, size_t surface) {
@@ -496,8 +507,8 @@ static void gxp_list_node_elements(gx_body *body) {
     body->node_start[0] = 0;
 }
 
-/* Walks from element to element through faces that contain all of nodes[0 ... count-1], stamping; returns how many it reached. */
-static gx_result gxp_walk_around(gx_body *body, uint32_t start, const uint32_t *nodes, int count, uint32_t *reached) {
+/* Walks from element to element through faces that contain the node, stamping; *reached: how many. */
+static gx_result gxp_walk_around(gx_body *body, uint32_t start, uint32_t node, uint32_t *reached) {
     gx_result result = GX_OK;
     body->queue.count = 0;
     *reached = 0;
@@ -508,8 +519,7 @@ static gx_result gxp_walk_around(gx_body *body, uint32_t start, const uint32_t *
         uint32_t k;
         for (k = 0; k < 4 && result == GX_OK; k++) {
             const uint32_t other = gxp_neighbour(body, e, k), opposite = body->complex->elements[4 * (size_t)e + k];
-            if (other == GXP_NONE || body->cell_stamp[other] == body->stamp) continue;
-            if ((count > 0 && opposite == nodes[0]) || (count > 1 && opposite == nodes[1])) continue;
+            if (other == GXP_NONE || body->cell_stamp[other] == body->stamp || opposite == node) continue;
             body->cell_stamp[other] = body->stamp;
             result = gxp_push(body, &body->queue, other);
         }
@@ -527,7 +537,7 @@ static gx_result gxp_find_pinches(gx_body *body) {
         const uint32_t first = body->node_start[i], count = body->node_start[i + 1] - first;
         if (count == 0) continue;
         body->stamp++;
-        result = gxp_walk_around(body, body->node_elements[first], &i, 1, &reached);
+        result = gxp_walk_around(body, body->node_elements[first], i, &reached);
         if (result != GX_OK || reached == count) continue;
         body->node_pinched[i] = 1;
     }
@@ -542,20 +552,6 @@ static gx_result gxp_find_pinches(gx_body *body) {
         if (!body->edge_pinched[cx->element_edges[6 * i + j]]) continue;
         body->node_pinched[cx->elements[4 * i + gxp_edge_nodes[j][0]]] |= 2;
         body->node_pinched[cx->elements[4 * i + gxp_edge_nodes[j][1]]] |= 2;
-    }
-    return result;
-}
-
-static gx_result gxp_number_mesh_parts(gx_body *body) {
-    uint32_t e, i, reached;
-    gx_result result = GX_OK;
-    memset(body->mesh_part, 0xff, body->element_count * sizeof *body->mesh_part);
-    body->stamp++;
-    for (e = 0; e < body->element_count && result == GX_OK; e++) {
-        if (body->mesh_part[e] != GXP_NONE) continue;
-        result = gxp_walk_around(body, e, NULL, 0, &reached);
-        for (i = 0; i < reached; i++) body->mesh_part[body->queue.data[i]] = body->mesh_part_count;
-        body->mesh_part_count++;
     }
     return result;
 }
@@ -642,11 +638,10 @@ static gx_result gxp_allocate_tables(gx_body *body) {
     body->node_elements = (uint32_t *)gxp_table(body, 4 * e, sizeof(uint32_t));
     body->node_pinched = (uint8_t *)gxp_table(body, n, 1);
     body->edge_pinched = (uint8_t *)gxp_table(body, body->complex->mesh_edge_count, 1);
-    body->mesh_part = (uint32_t *)gxp_table(body, e, sizeof(uint32_t));
     body->boxes = (gxp_box *)gxp_table(body, 2 * e, sizeof(gxp_box));
     body->box_elements = (uint32_t *)gxp_table(body, e, sizeof(uint32_t));
     return body->positions && body->node_start && body->node_elements && body->node_pinched && body->edge_pinched &&
-           body->mesh_part && body->boxes && body->box_elements ? GX_OK : GX_ERROR_MEMORY;
+           body->boxes && body->box_elements ? GX_OK : GX_ERROR_MEMORY;
 }
 
 static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc) {
@@ -659,7 +654,6 @@ static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc) {
     memcpy(body->positions, desc->positions, 3 * (size_t)body->node_count * sizeof(double));
     gxp_list_node_elements(body);
     result = gxp_find_pinches(body);
-    if (result == GX_OK) result = gxp_number_mesh_parts(body);
     if (result != GX_OK) return result;
     gxp_make_first_cells(body);
     gxp_make_first_copies(body);
@@ -716,7 +710,6 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     gxp_release(&a, body->node_elements, (4 * e + 1) * sizeof(uint32_t));
     gxp_release(&a, body->node_pinched, n + 1);
     if (body->complex) gxp_release(&a, body->edge_pinched, (size_t)body->complex->mesh_edge_count + 1);
-    gxp_release(&a, body->mesh_part, (e + 1) * sizeof(uint32_t));
     gxp_release(&a, body->boxes, (2 * e + 1) * sizeof(gxp_box));
     gxp_release(&a, body->box_elements, (e + 1) * sizeof(uint32_t));
     gxp_release(&a, body->cells, body->cell_capacity * sizeof *body->cells);
@@ -735,14 +728,15 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     gxp_release(&a, body->skin_weights, body->skin_weight_capacity * sizeof(double));
     gxp_release(&a, body->lambdas, (size_t)body->lambda_capacity * 4 * sizeof(double));
     {
-        gxp_words *words[20];
+        gxp_words *words[21];
         words[0] = &body->view_cells; words[1] = &body->view_fragments; words[2] = &body->copy_fragment; words[3] = &body->cell_element;
         words[4] = &body->cell_copies; words[5] = &body->skin_copies; words[6] = &body->skin_triangles; words[7] = &body->skin_fragments;
         words[8] = &body->skin_cuts; words[9] = &body->point_slot; words[10] = &body->triangles; words[11] = &body->touched;
         words[12] = &body->nodes; words[13] = &body->queue; words[14] = &body->seeds; words[15] = &body->faces;
         words[16] = &body->fresh; words[17] = &body->list;
         words[18] = &body->removed; words[19] = &body->dead;
-        for (i = 0; i < 20; i++) gxp_words_free(body, words[i]);
+        words[20] = &body->fragment_number;
+        for (i = 0; i < 21; i++) gxp_words_free(body, words[i]);
     }
     gxs_solver_destroy(body->solver);
     gxb_complex_destroy(body->complex);
@@ -1088,6 +1082,10 @@ static gx_result gxp_stamp_scope(gxp_cut *cut, int *scoped) {
     return GX_OK;
 }
 
+/* see >>fragments */
+static gx_result gxp_update_view(gx_body *body);
+static uint32_t gxp_cell_fragment(gx_body *body, uint32_t cell);
+
 /* >>solids: winding numbers of leaves ---------------------------------------------------------------------------------------- */
 
 /* Room beside new leaves of the complex; new leaves start in their parent's cell, outside its list. */
@@ -1119,32 +1117,10 @@ static int32_t gxp_winding_step(const gx_body *body, const gxp_surface *s, uint3
     return step;
 }
 
-/* A point of the complex in the given coordinates, rounded. */
-static void gxp_point_position(const gxb_complex *cx, const double x[3], double position[3]) {
-    int k;
-    for (k = 0; k < 3; k++) position[k] = ldexp(x[k], -cx->shift) + cx->origin[k];
-}
-
-/* Is the point strictly inside the leaf? */
-static gx_result gxp_is_inside(gx_body *body, uint32_t leaf, const double position[3], int *inside) {
-    gxb_complex *cx = body->complex;
-    uint32_t point, first, count, i;
-    gx_result result = gxb_complex_add_point(cx, position, &point);
-    *inside = 0;
-    if (result == GX_OK) result = gxb_leaf_facets(cx, leaf, &first, &count);
-    if (result != GX_OK) return result;
-    for (i = 0; i < count; i++) {
-        const gxb_facet *f = &cx->facets[cx->pool[first + i]];
-        if (gxb_complex_side(cx, point, f->plane) != (f->leaf[0] == leaf ? 1 : -1)) return GX_OK;
-    }
-    *inside = 1;
-    return GX_OK;
-}
-
 /* Collects the leaf's points in body->list. */
 static gx_result gxp_leaf_points(gx_body *body, uint32_t leaf) {
     gxb_complex *cx = body->complex;
-    uint32_t first, count, i, j, e0, en;
+    uint32_t first, count = 0, i, j, e0, en;
     gx_result result = gxb_complex_open_element(cx, cx->leaves[leaf].element);
     body->list.count = 0;
     if (result == GX_OK) result = gxb_leaf_facets(cx, leaf, &first, &count);
@@ -1158,48 +1134,35 @@ static gx_result gxp_leaf_points(gx_body *body, uint32_t leaf) {
     return result;
 }
 
-/* The winding number around a leaf from one of its nodes that is off the surface, or from a point inside it. *found 0: the leaf
-   has no such node, and no double that was tried lies inside it. */
-static gx_result gxp_ask_winding(gx_body *body, const gxp_surface *s, uint32_t leaf, int32_t *winding, int *found) {
-    gxb_complex *cx = body->complex;
-    uint32_t i, round;
+/* The winding number around a leaf: around one of its nodes that is off the surface, else around a point inside it. */
+static gx_result gxp_ask_winding(gx_body *body, const gxp_surface *s, uint32_t leaf, int32_t *winding) {
+    const gx_surface *g = s->given;
+    uint32_t i;
     gx_result result = gxp_leaf_points(body, leaf);
-    *found = 0;
-    for (i = 0; i < body->list.count && result == GX_OK && !*found; i++) {
+    for (i = 0; i < body->list.count && result == GX_OK; i++) {
         int on_surface;
-        if (body->list.data[i] >= cx->node_count) continue;
-        *winding = gxb_winding_number(s->given->vertices, s->given->triangles, s->given->triangle_count,
-                                      body->positions + 3 * (size_t)body->list.data[i], &on_surface);
-        *found = !on_surface;
+        if (body->list.data[i] >= body->node_count) continue;
+        *winding = gxb_winding_number(g->vertices, g->triangles, g->triangle_count, body->positions + 3 * (size_t)body->list.data[i], &on_surface);
+        if (!on_surface) return GX_OK;
     }
-    for (round = 0; round < 8 && result == GX_OK && !*found; round++) {
-        double x[3] = {0, 0, 0}, total = 0, position[3];
-        int on_surface, k;
-        for (i = 0; i < body->list.count; i++) {
-            const double w = 1 + round * ((i * 7 + round * 3) % 5);
-            for (k = 0; k < 3; k++) x[k] += w * cx->points[body->list.data[i]].ball.x[k];
-            total += w;
-        }
-        for (k = 0; k < 3; k++) x[k] /= total;
-        gxp_point_position(cx, x, position);
-        result = gxp_is_inside(body, leaf, position, found);
-        if (*found) *winding = gxb_winding_number(s->given->vertices, s->given->triangles, s->given->triangle_count, position, &on_surface);
-    }
+    if (result == GX_OK) *winding = gxb_complex_winding(body->complex, body->list.data, body->list.count, g->vertices, g->triangles, g->triangle_count);
     return result;
 }
 
+static int gxp_is_kept(const gx_body *body, uint32_t leaf) { return leaf != GXB_NONE && !body->complex->leaves[leaf].removed; }
+
 static gx_result gxp_visit_winding(gx_body *body, uint32_t leaf, int32_t winding) {
-    if (leaf == GXP_NONE || body->leaves[leaf].stamp == body->stamp) return GX_OK;
+    if (!gxp_is_kept(body, leaf) || body->leaves[leaf].stamp == body->stamp) return GX_OK;
     body->leaves[leaf].stamp = body->stamp;
     body->leaves[leaf].winding = winding;
     return gxp_push(body, &body->queue, leaf);
 }
 
-/* The neighbours of a leaf inside the solid know their winding numbers; of one outside, those across the solid's surface. */
+/* The neighbours of a leaf inside the solid know their winding numbers; of one outside, those across the solid's surface. What was removed before this cut was not divided by it and can't pass on anything. */
 static gx_result gxp_spread_winding(gx_body *body, const gxp_surface *s, uint32_t leaf) {
     gxb_complex *cx = body->complex;
     const int32_t winding = body->leaves[leaf].winding;
-    uint32_t first, count, i;
+    uint32_t first, count = 0, i;
     gx_result result = GX_OK;
     if (winding != 0) result = gxb_complex_open_element(cx, cx->leaves[leaf].element);
     if (result == GX_OK) result = gxb_leaf_facets(cx, leaf, &first, &count);
@@ -1213,7 +1176,7 @@ static gx_result gxp_spread_winding(gx_body *body, const gxp_surface *s, uint32_
     return result;
 }
 
-/* Works the queue off from where it stands; leaves around which the solid winds remain in it. */
+/* Works the queue off from where it stands. */
 static gx_result gxp_flood_winding(gx_body *body, const gxp_surface *s, uint32_t *done) {
     gx_result result = GX_OK;
     while (*done < body->queue.count && result == GX_OK) result = gxp_spread_winding(body, s, body->queue.data[(*done)++]);
@@ -1234,55 +1197,52 @@ static gx_result gxp_wall_leaves(gx_body *body, uint32_t facet, gxp_words *seeds
     return result;
 }
 
-/* Parts of the mesh that the surface does not touch may lie in the solid as a whole. */
-static gx_result gxp_seed_untouched_parts(gx_body *body) {
-    gx_result result = GX_OK;
-    uint32_t e, part, i;
+/* Fragments (of before the cut) that the surface does not touch may lie in the solid as a whole: one leaf of each joins the seeds. */
+static gx_result gxp_seed_untouched_fragments(gx_body *body) {
+    gx_result result = gxp_update_view(body);
+    uint32_t i;
     body->nodes.count = 0;
-    result = gxp_words_room(body, &body->nodes, body->mesh_part_count);
+    if (result == GX_OK) result = gxp_words_room(body, &body->nodes, body->fragment_count);
     if (result != GX_OK) return result;
-    memset(body->nodes.data, 0, body->mesh_part_count * sizeof *body->nodes.data);
-    for (i = 0; i < body->seeds.count; i++) body->nodes.data[body->mesh_part[body->complex->leaves[body->seeds.data[i]].element]] = 1;
-    for (e = 0; e < body->element_count && result == GX_OK; e++) {
-        part = body->mesh_part[e];
-        if (body->nodes.data[part]) continue;
-        body->nodes.data[part] = 1;
-        result = gxp_push(body, &body->seeds, e);
+    if (body->fragment_count > 0) memset(body->nodes.data, 0, body->fragment_count * sizeof *body->nodes.data);
+    for (i = 0; i < body->seeds.count; i++)
+        if (gxp_is_kept(body, body->seeds.data[i])) body->nodes.data[gxp_cell_fragment(body, body->leaves[body->seeds.data[i]].cell)] = 1;
+    for (i = 0; i < body->view_cells.count && result == GX_OK; i++) {
+        if (body->nodes.data[body->view_fragments.data[i]]) continue;
+        body->nodes.data[body->view_fragments.data[i]] = 1;
+        result = gxp_push(body, &body->seeds, body->cells[body->view_cells.data[i]].first_leaf);
     }
     return result;
 }
 
-/* Finds the leaves around which the solid winds and removes them. */
-static gx_result gxp_remove_solid(gxp_cut *cut, const gxp_surface *s, int scoped) {
-    gx_body *body = cut->body;
+/* Finds the winding numbers of the seeds and of what they lead to: body->queue. */
+static gx_result gxp_find_windings(gx_body *body, const gxp_surface *s) {
     uint32_t i, done = 0;
-    int pass, unknown = 0;
-    gx_result result = gxp_follow_leaves(body);
-    body->seeds.count = body->queue.count = 0;
-    for (i = 0; i < body->complex->wall_count && result == GX_OK; i++) result = gxp_wall_leaves(body, body->complex->walls[i], &body->seeds);
-    if (result == GX_OK) result = gxp_seed_untouched_parts(body);
+    gx_result result = GX_OK;
+    body->queue.count = 0;
     body->stamp++;
-    for (pass = 0; pass < 2 && result == GX_OK; pass++) {       /* a leaf too thin for its own answer learns it from others */
-        unknown = 0;
-        for (i = 0; i < body->seeds.count && result == GX_OK; i++) {
-            const uint32_t leaf = body->seeds.data[i];
-            int32_t winding = 0;
-            int found;
-            if (body->leaves[leaf].stamp == body->stamp) continue;
-            result = gxp_ask_winding(body, s, leaf, &winding, &found);
-            unknown |= !found;
-            if (result == GX_OK && found) result = gxp_visit_winding(body, leaf, winding);
-            if (result == GX_OK && found) result = gxp_flood_winding(body, s, &done);
-        }
+    for (i = 0; i < body->seeds.count && result == GX_OK; i++) {
+        const uint32_t leaf = body->seeds.data[i];
+        int32_t winding = 0;
+        if (!gxp_is_kept(body, leaf) || body->leaves[leaf].stamp == body->stamp) continue;
+        result = gxp_ask_winding(body, s, leaf, &winding);
+        if (result == GX_OK) result = gxp_visit_winding(body, leaf, winding);
+        if (result == GX_OK) result = gxp_flood_winding(body, s, &done);
     }
-    if (result == GX_OK && unknown) result = GX_ERROR_RANGE;
+    return result;
+}
+
+/* Appends to body->removed the leaves around which the solid winds. All surfaces of the cut are in the complex. */
+static gx_result gxp_find_solid(gx_body *body, const gxp_surface *s, int scoped) {
+    uint32_t i;
+    gx_result result = GX_OK;
+    body->seeds.count = 0;
+    for (i = 0; i < body->complex->wall_count && result == GX_OK; i++) result = gxp_wall_leaves(body, body->complex->walls[i], &body->seeds);
+    if (result == GX_OK) result = gxp_seed_untouched_fragments(body);
+    if (result == GX_OK) result = gxp_find_windings(body, s);
     for (i = 0; i < body->queue.count && result == GX_OK; i++) {
         const uint32_t leaf = body->queue.data[i];
-        if (body->leaves[leaf].winding == 0 || body->complex->leaves[leaf].removed) continue;
-        if (scoped && !gxp_in_scope(body, leaf)) continue;
-        result = gxb_complex_set_removed(body->complex, leaf);
-        if (result == GX_OK) result = gxp_push(body, &body->touched, body->leaves[leaf].cell);
-        if (result == GX_OK) result = gxp_push(body, &body->removed, leaf);
+        if (body->leaves[leaf].winding != 0 && (!scoped || gxp_in_scope(body, leaf))) result = gxp_push(body, &body->removed, leaf);
     }
     return result;
 }
@@ -1383,8 +1343,6 @@ static gx_result gxp_push_pieces(gx_body *body, uint32_t facet, gxp_words *out) 
     return result == GX_OK ? gxp_push_pieces(body, child + 1, out) : result;
 }
 
-static int gxp_is_kept(const gx_body *body, uint32_t leaf) { return leaf != GXB_NONE && !body->complex->leaves[leaf].removed; }
-
 /* Is the facet a link? */
 static int gxp_is_link(const gx_body *body, uint32_t facet) {
     const gxb_facet *f = &body->complex->facets[facet];
@@ -1424,19 +1382,6 @@ static gx_result gxp_weigh_links(gxp_cut *cut, uint32_t face) {
         }
     }
     return result;
-}
-
-static int gxp_compare_words(const void *a, const void *b) {
-    const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
-    return x < y ? -1 : x > y;
-}
-
-static void gxp_sort_unique(gxp_words *w) {
-    uint32_t i, n = 0;
-    if (w->count == 0) return;
-    qsort(w->data, w->count, sizeof *w->data, gxp_compare_words);
-    for (i = 0; i < w->count; i++) if (n == 0 || w->data[i] != w->data[n - 1]) w->data[n++] = w->data[i];
-    w->count = n;
 }
 
 /* The links of all faces that this cut has divided. Only whole faces left alone by it are not looked at. */
@@ -1658,7 +1603,7 @@ typedef struct gxp_joint { uint32_t point, edge; int found, walled; } gxp_joint;
 /* Does the leaf have the joint on its boundary, and does a wall touch it there? */
 static gx_result gxp_look_for_joint(gx_body *body, uint32_t leaf, gxp_joint *joint) {
     gxb_complex *cx = body->complex;
-    uint32_t first, count, i, j, e0, en;
+    uint32_t first, count = 0, i, j, e0, en;
     gx_result result = gxb_complex_open_element(cx, cx->leaves[leaf].element);
     if (result == GX_OK) result = gxb_leaf_facets(cx, leaf, &first, &count);
     joint->found = 0;
@@ -1814,7 +1759,7 @@ static gx_result gxp_collect_pairs(gx_body *body) {
             for (cell = body->node_elements[j]; cell != GXP_NONE && result == GX_OK; cell = body->cells[cell].next)
                 if (body->cells[cell].kept) result = gxp_push_pair(body, node, cell);
     }
-    qsort(body->pairs, body->pair_count, sizeof *body->pairs, gxp_compare_pairs);
+    if (body->pair_count > 0) qsort(body->pairs, body->pair_count, sizeof *body->pairs, gxp_compare_pairs);
     return result;
 }
 
@@ -2063,24 +2008,48 @@ static void gxp_commit(gxp_cut *cut) {
     body->held_stale = body->parts_stale = body->view_stale = 1;
 }
 
-static gx_result gxp_arrange(gxp_cut *cut) {
-    gx_body *body = cut->body;
+/* Removes what the solids have found. The cells of these leaves, and those beside them, are touched. */
+static gx_result gxp_remove_leaves(gx_body *body) {
+    uint32_t i;
+    gx_result result = GX_OK;
+    gxp_sort_unique(&body->removed);
+    for (i = 0; i < body->removed.count && result == GX_OK; i++) {
+        result = gxb_complex_set_removed(body->complex, body->removed.data[i]);
+        if (result == GX_OK) result = gxp_push(body, &body->touched, body->leaves[body->removed.data[i]].cell);
+    }
+    for (i = 0; i < body->removed.count && result == GX_OK; i++) result = gxp_touch_around(body, body->removed.data[i]);
+    return result;
+}
+
+static gx_result gxp_arrange_surfaces(gxp_cut *cut, gxp_surface *surfaces) {
+    const size_t count = cut->desc->surface_count;
     size_t i;
-    uint32_t j;
     int scoped;
     gx_result result = gxp_stamp_scope(cut, &scoped);
-    body->touched.count = body->removed.count = 0;
-    for (i = 0; i < cut->desc->surface_count && result == GX_OK; i++) {
-        gxp_surface s;
-        result = gxp_surface_open(cut, &s, &cut->desc->surfaces[i], i);
-        if (result == GX_OK) result = gxp_insert_surface(cut, &s, scoped);
-        if (result == GX_OK && s.given->kind == GX_SURFACE_SOLID) result = gxp_remove_solid(cut, &s, scoped);
-        gxp_surface_free(body, &s);
+    for (i = 0; i < count && result == GX_OK; i++) {
+        result = gxp_surface_open(cut, &surfaces[i], &cut->desc->surfaces[i], i);
+        if (result == GX_OK) result = gxp_insert_surface(cut, &surfaces[i], scoped);
     }
-    if (result == GX_OK) result = gxp_follow_leaves(body);
-    if (result == GX_OK) result = gxp_list_new_leaves(cut);
-    for (j = 0; j < body->removed.count && result == GX_OK; j++) result = gxp_touch_around(body, body->removed.data[j]);
+    if (result == GX_OK) result = gxp_follow_leaves(cut->body);
+    for (i = 0; i < count && result == GX_OK; i++)
+        if (surfaces[i].given->kind == GX_SURFACE_SOLID) result = gxp_find_solid(cut->body, &surfaces[i], scoped);
     return result;
+}
+
+static gx_result gxp_arrange(gxp_cut *cut) {
+    gx_body *body = cut->body;
+    const size_t count = cut->desc->surface_count;
+    gxp_surface *surfaces = (gxp_surface *)gxp_allocate(&body->allocator, count * sizeof *surfaces);
+    gx_result result;
+    size_t i;
+    if (surfaces == NULL) return GX_ERROR_MEMORY;
+    memset(surfaces, 0, count * sizeof *surfaces);
+    body->touched.count = body->removed.count = 0;
+    result = gxp_arrange_surfaces(cut, surfaces);
+    for (i = 0; i < count; i++) if (surfaces[i].given != NULL) gxp_surface_free(body, &surfaces[i]);
+    gxp_release(&body->allocator, surfaces, count * sizeof *surfaces);
+    if (result == GX_OK) result = gxp_list_new_leaves(cut);
+    return result == GX_OK ? gxp_remove_leaves(body) : result;
 }
 
 static gx_result gxp_enrich(gxp_cut *cut, uint32_t first_facet) {
@@ -2350,19 +2319,24 @@ static gx_result gxp_list_cells(gx_body *body) {
     return GX_OK;
 }
 
-/* Numbers fragments in the order of their first cells; seeds: number of each representative copy. */
+/* Numbers fragments in the order of their first cells. */
 static gx_result gxp_number_fragments(gx_body *body) {
     uint32_t i;
-    gx_result result = gxp_set_words(body, &body->seeds, body->copy_count);
+    gx_result result = gxp_set_words(body, &body->fragment_number, body->copy_count);
     if (result != GX_OK) return result;
-    memset(body->seeds.data, 0xff, body->copy_count * sizeof *body->seeds.data);
+    memset(body->fragment_number.data, 0xff, body->copy_count * sizeof *body->fragment_number.data);
     body->fragment_count = 0;
     for (i = 0; i < body->view_cells.count; i++) {
         const uint32_t copy = gxp_find(body->copy_fragment.data, body->cell_copies.data[4 * i]);
-        if (body->seeds.data[copy] == GXP_NONE) body->seeds.data[copy] = body->fragment_count++;
-        body->view_fragments.data[body->view_fragments.count++] = body->seeds.data[copy];
+        if (body->fragment_number.data[copy] == GXP_NONE) body->fragment_number.data[copy] = body->fragment_count++;
+        body->view_fragments.data[body->view_fragments.count++] = body->fragment_number.data[copy];
     }
     return GX_OK;
+}
+
+/* Fragment of a cell slot, by the view. */
+static uint32_t gxp_cell_fragment(gx_body *body, uint32_t cell) {
+    return body->fragment_number.data[gxp_find(body->copy_fragment.data, body->cells[cell].copies[0])];
 }
 
 /* Sum of a mass block's row: density * integral of lambda_i */
@@ -2662,7 +2636,7 @@ static gx_result gxp_push_neighbours(gx_body *body, uint32_t cell) {
 static uint64_t gxp_hash_neighbours(gx_body *body, const uint64_t *name) {
     uint64_t sum = 0;
     uint32_t i;
-    qsort(body->pairs, body->pair_count, sizeof *body->pairs, gxp_compare_pairs);
+    if (body->pair_count > 0) qsort(body->pairs, body->pair_count, sizeof *body->pairs, gxp_compare_pairs);
     for (i = 0; i < body->pair_count; i++) {
         if (i > 0 && gxp_compare_pairs(&body->pairs[i], &body->pairs[i - 1]) == 0) continue;
         sum += gxp_mix(name[body->pairs[i].cell] ^ gxp_mix(body->pairs[i].node));

@@ -321,6 +321,10 @@ GXFEM_API gx_result gxb_facet_edges(gxb_complex *complex, uint32_t facet, uint32
 GXFEM_API int gxb_complex_side(gxb_complex *complex, uint32_t point, uint32_t plane);
 /* Sign of point[axis] - value, exact. */
 GXFEM_API int gxb_complex_compare(gxb_complex *complex, uint32_t point, int axis, double value);
+/* gxb_winding_number around a point inside the convex hull of points of the complex: the sum of their homogeneous coordinates.
+   Exact for hulls that no double lies in. The surface is in the given coordinates and must not pass through the hull's inside. */
+GXFEM_API int gxb_complex_winding(gxb_complex *complex, const uint32_t *points, size_t point_count, const double *vertices,
+                                  const uint32_t *triangles, size_t triangle_count);
 /* Barycentric coordinates of a point in an element, each rounded on its own from its exact value (0 where it is 0). */
 GXFEM_API void gxb_complex_barycentric(gxb_complex *complex, uint32_t point, uint32_t element, double lambda[4]);
 /* The same with a relative error below 2^-180. */
@@ -2297,6 +2301,106 @@ GXFEM_API gx_result gxb_complex_insert(gxb_complex *cx, gxb_triangle *t, uint32_
         else result = gxbp_divide_leaf(cx, t, reference >> 1, &task);
     }
     return result;
+}
+
+/* --- winding number around a point that is not a double --- */
+
+/* A point in the given coordinates times 2^shift: homogeneous, and roughly. */
+typedef struct gxbp_probe { gxbp_vec exact; double rough[3]; int shift; } gxbp_probe;
+
+static void gxbp_probe_init(gxb_complex *cx, const uint32_t *points, size_t count, gxbp_probe *probe) {
+    size_t i;
+    int k;
+    gxbp_vec_init(&probe->exact);
+    probe->shift = cx->shift;
+    for (i = 0; i < count; i++) {
+        gxbp_vec store;
+        const gxb_num *x = gxbp_exact_cpoint(cx, points[i], &store);
+        for (k = 0; k < 4; k++) {
+            GXB_NUM(sum);
+            gxb_num_add(&sum, &probe->exact.c[k], &x[k]);
+            gxbp_num_copy(&probe->exact.c[k], &sum, 1);
+        }
+    }
+    for (k = 0; k < 3; k++) {
+        GXB_NUM(origin); GXB_NUM(t); GXB_NUM(sum);
+        gxb_num_set(&origin, cx->origin[k], cx->shift);
+        gxb_num_mul(&t, &origin, &probe->exact.c[3]);
+        gxb_num_add(&sum, &probe->exact.c[k], &t);
+        gxbp_num_copy(&probe->exact.c[k], &sum, 1);
+        probe->rough[k] = gxb_num_ratio(&probe->exact.c[k], &probe->exact.c[3]);
+    }
+}
+
+/* Is the probe certainly beyond the triangle's box along y or z, or past it along x? The margin is far above the rounding. */
+static int gxbp_probe_misses(const gxbp_probe *probe, const double *const x[3]) {
+    int k, c;
+    for (k = 0; k < 3; k++) {
+        int below = 1, above = k > 0;
+        for (c = 0; c < 3; c++) {
+            GXB_NUM(n);
+            double v, margin;
+            gxb_num_set(&n, x[c][k], probe->shift);
+            v = gxb_num_to_double(&n);
+            margin = 1e-12 * (gxbp_abs(v) + gxbp_abs(probe->rough[k])) + GXBP_TINY;
+            if (v > probe->rough[k] - margin) below = 0;
+            if (v < probe->rough[k] + margin) above = 0;
+        }
+        if (below || above) return 1;
+    }
+    return 0;
+}
+
+/* gxbp_ray_side for a probe: W (a_y b_z - a_z b_y) + Y (a_z - b_z) + Z (b_y - a_y) */
+static int gxbp_probe_side(const gxbp_probe *probe, const double a[3], const double b[3]) {
+    gxbp_vec p, q, row;
+    GXB_NUM(r);
+    int k, sign;
+    gxbp_vec_init(&p); gxbp_vec_init(&q); gxbp_vec_init(&row);
+    for (k = 1; k < 3; k++) {
+        gxb_num_set(&p.c[k], a[k], probe->shift);
+        gxb_num_set(&q.c[k], b[k], probe->shift);
+    }
+    gxbp_num_det2(&row.c[2], &p.c[1], &q.c[2], &p.c[2], &q.c[1]);
+    gxb_num_sub(&row.c[0], &p.c[2], &q.c[2]);
+    gxb_num_sub(&row.c[1], &q.c[1], &p.c[1]);
+    gxbp_num_dot(&r, row.c, probe->exact.c + 1);
+    if (r.sign != 0) return r.sign;
+    sign = gxbp_compare_doubles(a[2], b[2]);
+    return sign != 0 ? sign : gxbp_compare_doubles(b[1], a[1]);
+}
+
+/* gxb_orient3d(a, b, c, probe) */
+static int gxbp_probe_orient(const gxbp_probe *probe, const double *const x[3]) {
+    gxbp_vec p[3], n;
+    GXB_NUM(r);
+    int k, c;
+    for (c = 0; c < 3; c++) {
+        gxbp_vec_init(&p[c]);
+        for (k = 0; k < 3; k++) gxb_num_set(&p[c].c[k], x[c][k], probe->shift);
+    }
+    gxbp_vec_init(&n);
+    gxbp_exact_plane(n.c, p[0].c, p[1].c, p[2].c);
+    gxbp_exact_side(&r, probe->exact.c, n.c);
+    return -r.sign;
+}
+
+GXFEM_API int gxb_complex_winding(gxb_complex *cx, const uint32_t *points, size_t point_count, const double *vertices,
+                                  const uint32_t *triangles, size_t triangle_count) {
+    gxbp_probe probe;
+    int winding = 0, c;
+    size_t t;
+    gxbp_probe_init(cx, points, point_count, &probe);
+    for (t = 0; t < triangle_count; t++) {
+        const double *x[3];
+        int side;
+        for (c = 0; c < 3; c++) x[c] = vertices + 3 * (size_t)triangles[3 * t + (size_t)c];
+        if (gxbp_probe_misses(&probe, x)) continue;
+        side = gxbp_probe_side(&probe, x[0], x[1]);
+        if (side == 0 || gxbp_probe_side(&probe, x[1], x[2]) != side || gxbp_probe_side(&probe, x[2], x[0]) != side) continue;
+        if (gxbp_probe_orient(&probe, x) == side) winding += side;
+    }
+    return winding;
 }
 
 /* --- barycentric coordinates --- */

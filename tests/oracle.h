@@ -22,7 +22,11 @@
 enum {
     ORACLE_WORDS = 4,
     ORACLE_FACE = 64 * ORACLE_WORDS - 4,    /* first of the element's own four planes, face k opposite to its node k */
-    ORACLE_NONE = -1
+    ORACLE_NONE = -1,
+    /* Where two elements meet in an edge or a node only. 0: they come apart where a wall touches that edge piece or node: a piece
+       of a sheet inside an element or on a face. 1: also where a sheet touches it from outside of the body and nowhere else
+       (Omega minus Gamma, the limit of a thin solid). */
+    ORACLE_TOUCH_FROM_OUTSIDE = 0
 };
 
 /* ---- input ---- */
@@ -705,20 +709,47 @@ static inline int oracle_same_contact(const oracle_contact *a, const oracle_cont
     return oracle_set_equal(&a->zero, &b->zero) && oracle_set_equal(&a->plus, &b->plus);
 }
 
-/* Whether something removed touches the contact c of element e at the nodes it shares with f: all elements that have those
-   nodes are asked. */
-static inline int oracle_touches_removed(const oracle *o, size_t e, size_t f, size_t shared, const oracle_contact *c) {
-    size_t g, i, k;
-    for (g = 0; g < o->mesh.element_count; ++g) {
-        const uint32_t *a = o->mesh.elements + 4 * e, *b = o->mesh.elements + 4 * f, *d = o->mesh.elements + 4 * g;
-        oracle_set on = oracle_set_empty();
-        size_t found = 0;
-        for (i = 0; i < 4; ++i) {
-            int in_a = 0, in_b = 0;
-            for (k = 0; k < 4; ++k) { in_a |= d[i] == a[k]; in_b |= d[i] == b[k]; }
-            if (in_a && in_b) ++found; else oracle_set_add(&on, ORACLE_FACE + (int)i);
+/* The faces of element g that meet in the nodes shared by e and f; returns 0 if g lacks one of these nodes */
+static inline int oracle_faces_at(const oracle *o, size_t e, size_t f, size_t g, size_t shared, oracle_set *on) {
+    const uint32_t *a = o->mesh.elements + 4 * e, *b = o->mesh.elements + 4 * f, *d = o->mesh.elements + 4 * g;
+    size_t found = 0;
+    int i, k;
+    *on = oracle_set_empty();
+    for (i = 0; i < 4; ++i) {
+        int in_a = 0, in_b = 0;
+        for (k = 0; k < 4; ++k) { in_a |= d[i] == a[k]; in_b |= d[i] == b[k]; }
+        if (in_a && in_b) ++found; else oracle_set_add(on, ORACLE_FACE + i);
+    }
+    return found == shared;
+}
+
+/* Whether a wall touches the contact c, at faces `on` of element e: c is on the rim of a covered facet of a piece of e. */
+static inline int oracle_touches_wall_in(const oracle *o, size_t e, const oracle_set *on, size_t shared, const oracle_contact *c) {
+    size_t i;
+    int k;
+    for (i = o->element_pieces[e]; i < o->element_pieces[e + 1]; ++i)
+        for (k = 0; k < (int)o->plane_count; ++k) {
+            oracle_set facet = oracle_set_empty(), rim = *on;
+            oracle_contact f, r;
+            if (!oracle_set_has(&c->zero, k)) continue;
+            oracle_set_add(&facet, k); oracle_set_add(&rim, k);
+            f = oracle_contact_of(o, &o->pieces[i], &facet);
+            r = oracle_contact_of(o, &o->pieces[i], &rim);
+            if (f.count >= 3 && r.count >= shared && oracle_same_contact(c, &r) && oracle_covered(o, &f, 0)) return 1;
         }
-        if (found < shared) continue;
+    return 0;
+}
+
+/* Whether the contact c of elements e and f can't join them: something that was removed touches it, or a sheet does. All
+   elements that have the shared nodes are asked. */
+static inline int oracle_severed(const oracle *o, size_t e, size_t f, size_t shared, const oracle_contact *c) {
+    size_t g, i;
+    if (shared == 3) return oracle_covered(o, c, 0);
+    if (ORACLE_TOUCH_FROM_OUTSIDE && oracle_covered(o, c, 0)) return 1;
+    for (g = 0; g < o->mesh.element_count; ++g) {
+        oracle_set on;
+        if (!oracle_faces_at(o, e, f, g, shared, &on)) continue;
+        if (oracle_touches_wall_in(o, g, &on, shared, c)) return 1;
         for (i = o->element_pieces[g]; i < o->element_pieces[g + 1]; ++i) {
             oracle_contact r;
             if (!o->pieces[i].removed) continue;
@@ -738,8 +769,7 @@ static inline void oracle_link_elements(oracle *o, size_t e, size_t f) {
     for (i = o->element_pieces[e]; i < o->element_pieces[e + 1]; ++i) {
         rat_mark mark = rat_arena_mark();
         oracle_contact c = oracle_contact_of(o, &o->pieces[i], &in_e);
-        if (!o->pieces[i].removed && c.count >= shared && !oracle_covered(o, &c, 0) &&
-            (shared == 3 || !oracle_touches_removed(o, e, f, shared, &c)))
+        if (!o->pieces[i].removed && c.count >= shared && !oracle_severed(o, e, f, shared, &c))
             for (j = o->element_pieces[f]; j < o->element_pieces[f + 1]; ++j) {
                 oracle_contact d = oracle_contact_of(o, &o->pieces[j], &in_f);
                 if (o->pieces[j].removed || d.count < shared || !oracle_same_contact(&c, &d)) continue;

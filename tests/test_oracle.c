@@ -451,9 +451,9 @@ START_TEST(oracle_knows_the_paper) {
 }
 END_TEST
 
-/* An uncut node has one copy on any mesh; a wall through the shared edge or node takes the two elements apart. */
+/* An uncut node has one copy on any mesh; a wall that reaches the shared edge or node takes the two elements apart. */
 START_TEST(oracle_knows_shared_edges_and_nodes) {
-    double plane[3][3] = { { 0, 0, 0 }, { 0, 0, 1 }, { 1, -1, 0 } };
+    double outside[3][3] = { { 0, 0, 0 }, { 0, 0, 1 }, { 1, -1, 0 } }, facet[3][3] = { { 0, 0, 0 }, { 0, 0, 1 }, { 1, 0, 0 } };
     int shared;
     for (shared = 1; shared <= 2; ++shared) {
         workload w;
@@ -464,7 +464,11 @@ START_TEST(oracle_knows_shared_edges_and_nodes) {
         ck_assert_uint_eq(o->copy_count, w.node_count);
         ck_assert_uint_eq(o->fragment_count, 1);
         oracle_destroy(o);
-        add_plane(&w, plane);
+        add_plane(&w, outside);     /* touches both elements in the shared edge or node, and nowhere else */
+        o = wl_oracle(&w);
+        ck_assert_uint_eq(o->fragment_count, 1 + ORACLE_TOUCH_FROM_OUTSIDE);
+        oracle_destroy(o);
+        add_plane(&w, facet);
         o = wl_oracle(&w);
         ck_assert_uint_eq(o->fragment_count, 2);
         ck_assert_uint_eq(o->copy_count, 8);

@@ -1,0 +1,87 @@
+# gxfem: everything is built in build/; the library itself needs no building. `make help` lists what there is.
+#
+# CC, CFLAGS, LDFLAGS, JOBS and BUILD may be given on the command line: make check CC=clang BUILD=build/clang
+
+CC ?= cc
+CFLAGS ?= -O2
+WARNINGS = -Wall -Wextra
+BUILD ?= build
+JOBS ?= 2
+
+headers = gxfem.h gxfem_boolean.h gxfem_integrate.h gxfem_solve.h
+tests = $(patsubst tests/%.c,%,$(sort $(wildcard tests/test_*.c)))
+examples = $(patsubst examples/%.c,%,$(sort $(wildcard examples/*.c)))
+compile = $(CC) -std=c99 $(WARNINGS) $(CFLAGS)
+sanitizers = -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all
+
+help:
+	@echo "make demo        cuts a cube of 5 tetrahedra into 36 sticks and simulates it (needs a C compiler, nothing else)"
+	@echo "make check       builds and runs the tests; installs Check and pkg-config where they are missing"
+	@echo "make check-all   check, then lint, compile tests, sanitizers, compilers and flags; takes longer"
+	@echo "make examples    builds $(examples) in $(BUILD)/"
+	@echo "make lint        house rules of the four headers"
+	@echo "make compile     the headers by every compiler and standard there is, C and C++"
+	@echo "make sanitize    the tests under AddressSanitizer and UndefinedBehaviorSanitizer"
+	@echo "make clean       removes $(BUILD)/"
+
+# ---- programs
+
+examples: $(examples:%=$(BUILD)/%)
+
+$(BUILD)/%: examples/%.c $(headers) $(wildcard examples/*.h)
+	@mkdir -p $(@D)
+	$(compile) -I. $< -o $@ $(LDFLAGS) -lm
+
+# Sticks along z: five planes across x, five across y. The foot of the cube is held as stretched; the rest springs back.
+sixths = 0.16666666666666666 0.33333333333333331 0.5 0.66666666666666663 0.83333333333333337
+demo_cuts = $(foreach i,$(sixths),--sheet plane:$(i),0.5,0.5,1,0,0) $(foreach i,$(sixths),--sheet plane:0.5,$(i),0.5,0,1,0)
+
+demo: $(BUILD)/gxcut
+	@echo "Cuts a cube of five tetrahedra by 5 + 5 crossing planes into 36 sticks, stretches it, holds its foot, lets go."
+	@$(BUILD)/gxcut cube5 $(demo_cuts) --fix 'z<0.001' --stretch 1.5,1.5,1.5 --young 1e5 --dt 0.01 --frames 60 \
+	    --out $(BUILD)/demo --report $(BUILD)/demo.json
+
+# ---- tests. Each runs in processes of its own (Check forks), so that a crash is one failed test.
+
+check:
+	@sh tests/install.sh check
+	@$(MAKE) --no-print-directory -j$(JOBS) check-programs
+
+check-programs: $(tests:%=run-%) run-gxcut
+
+run-gxcut: $(BUILD)/gxcut
+	@sh tests/test_gxcut.sh $(BUILD)/gxcut
+
+$(tests:%=run-%): run-%: $(BUILD)/tests/%
+	@$< >$<.log 2>&1; code=$$?; cat $<.log; exit $$code
+
+$(BUILD)/tests/%: tests/%.c $(headers) $(wildcard tests/*.h)
+	@mkdir -p $(@D)
+	$(compile) -g -Itests $(shell pkg-config --cflags check) $< -o $@ $(LDFLAGS) $(shell pkg-config --libs check) -lm
+
+sanitize:
+	@sh tests/install.sh check
+	@CK_TIMEOUT_MULTIPLIER=10 $(MAKE) --no-print-directory -j$(JOBS) check-programs BUILD=$(BUILD)/sanitize CFLAGS="$(sanitizers)"
+
+compile:
+	@sh tests/compile.sh $(BUILD)/compile
+
+lint:
+	@sh tests/lint.sh $(headers)
+
+flags: $(wildcard tests/flags.sh)
+	@for script in $^; do sh $$script || exit 1; done
+
+check-all: check
+	@$(MAKE) --no-print-directory lint
+	@$(MAKE) --no-print-directory examples
+	@$(MAKE) --no-print-directory compile
+	@$(MAKE) --no-print-directory sanitize
+	@for cc in gcc clang; do \
+	    if command -v $$cc >/dev/null; then $(MAKE) --no-print-directory check CC=$$cc BUILD=$(BUILD)/$$cc || exit 1; fi; done
+	@$(MAKE) --no-print-directory flags
+
+clean:
+	rm -rf $(BUILD)
+
+.PHONY: help examples demo check check-programs run-gxcut $(tests:%=run-%) sanitize compile lint flags check-all clean

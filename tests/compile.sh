@@ -1,0 +1,143 @@
+#!/bin/sh
+# Compiles the headers in every way users do, by every compiler and standard there is, and fails on any warning.
+# usage: sh tests/compile.sh DIRECTORY      (for objects and programs; made if needed)
+#     COMPILERS   which to try (gcc clang); each with its C++ front end      JOBS   how many at a time (2)
+#
+# - tests/compile/*.c and *.cc: each header alone, all together, twice, implementation before and after plain inclusion
+# - two translation units, C and C++ in all four combinations; two files with GXFEM_STATIC
+# - the example in each header's opening comment and the README's program, extracted, compiled and run
+# - examples/*.c
+set -u
+root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 2
+warnings="-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror"
+
+# ---- one job: LABEL COMMAND; silent if it succeeds
+if [ "${1-}" = --job ]; then
+    if output=$(sh -c "$3" 2>&1); then echo "$2" >>passed; else
+        echo "$2" >>failed
+        printf 'FAILED %s\n  %s\n%s\n' "$2" "$3" "$(printf '%s\n' "$output" | grep -E 'warning|error|undefined|differs|says' | head -n 12 || true)"
+    fi
+    exit 0
+fi
+
+[ $# -eq 1 ] || { echo "usage: $0 DIRECTORY" >&2; exit 2; }
+mkdir -p "$1" && cd "$1" || exit 2
+rm -rf ./*
+: >passed
+: >failed
+: >jobs
+
+cxx_of() { case $1 in gcc) echo g++ ;; clang) echo clang++ ;; *) echo "$1++" ;; esac; }
+
+# job LABEL COMMAND: one line each, for xargs
+job() { printf '%s\n%s\n' "$1" "$2" >>jobs; }
+
+run_jobs() {
+    tr '\n' '\0' <jobs | xargs -0 -P "${JOBS:-2}" -n 2 sh "$root/tests/compile.sh" --job
+    : >jobs
+}
+
+# The program in a header's opening comment: from the first #define after the words "one minute" to the brace that closes main.
+extract_example() {
+    awk '
+        { line = $0; sub(/^ \* ?/, "", line) }
+        tolower(line) ~ /one minute/ { armed = 1 }
+        armed && !inside && match(line, /^ *#define/) { inside = 1; indent = RLENGTH - 7 }
+        inside { print substr(line, indent + 1) }
+        inside && substr(line, indent + 1) == "}" { exit }' "$1"
+}
+
+extract_readme() { awk '/^```c$/ { inside = 1; next } /^```/ { if (inside) exit } inside' "$root/README.md"; }
+
+for name in gxfem gxfem_boolean gxfem_integrate gxfem_solve; do extract_example "$root/$name.h" >"example_$name.c"; done
+extract_readme >readme.c
+for file in example_*.c readme.c; do [ -s $file ] || { echo "FAILED no program found for $file"; echo $file >>failed; }; done
+
+compilers=
+for cc in ${COMPILERS:-gcc clang}; do
+    if command -v "$cc" >/dev/null 2>&1; then compilers="$compilers $cc"; else echo "no $cc here: left out"; fi
+done
+[ -n "$compilers" ] || { echo "$0: no compiler" >&2; exit 2; }
+
+# standards COMPILER STANDARD...: those of them that the compiler knows
+known_standards() {
+    compiler=$1 language=$2
+    shift 2
+    for std in "$@"; do
+        if echo 'int main(void);' | $compiler -x "$language" -std="$std" -fsyntax-only - >/dev/null 2>&1; then echo "$std"; fi
+    done
+}
+
+for cc in $compilers; do
+    cxx=$(cxx_of "$cc")
+    widths=default
+    printf '#include <stdio.h>\nint main(void) { return 0; }\n' >probe.c
+    if $cc -m32 probe.c -o probe >/dev/null 2>&1; then widths="default m32"; else echo "$cc -m32 does not work here: left out"; fi
+    for width in $widths; do
+        wide=
+        [ $width = m32 ] && wide=-m32
+        for std in $(known_standards "$cc" c c99 c11 c17 gnu99); do
+            level=-O0
+            [ $std = c99 ] && level=-O2                     # some warnings need the optimiser
+            [ $width = m32 ] && [ $std != c99 ] && continue
+            for file in "$root"/tests/compile/*.c; do
+                base=$(basename "$file" .c)
+                job "$cc $wide -std=$std $level tests/compile/$base.c" \
+                    "$cc $wide -std=$std $level $warnings -c $root/tests/compile/$base.c -o $base.$cc.$width.$std.o"
+            done
+        done
+        if ! command -v "$cxx" >/dev/null 2>&1; then echo "no $cxx here: left out"; continue; fi
+        if [ $width = m32 ] && ! $cxx -m32 -x c++ probe.c -o probe >/dev/null 2>&1; then echo "$cxx -m32 does not work here: left out"; continue; fi
+        for std in $(known_standards "$cxx" c++ c++11 c++14 c++17 c++20); do
+            level=-O0
+            [ $std = c++11 ] && level=-O2
+            [ $width = m32 ] && [ $std != c++11 ] && continue
+            for file in "$root"/tests/compile/*.cc; do
+                base=$(basename "$file" .cc)
+                job "$cxx $wide -std=$std $level tests/compile/$base.cc" \
+                    "$cxx $wide -std=$std $level $warnings -c $root/tests/compile/$base.cc -o $base.$cxx.$width.$std.o"
+            done
+        done
+    done
+    for std in c99 c17; do
+        for file in example_*.c readme.c; do
+            program=${file%.c}.$cc.$std
+            says=
+            [ $file = readme.c ] && says=" && { ./$program | grep -q ': 2 fragments' || { echo 'the program says something else'; exit 1; }; }"
+            job "$cc -std=$std $file" "$cc -std=$std $warnings -I$root $file -o $program -lm && ./$program$says"
+        done
+        for file in "$root"/examples/*.c; do
+            job "$cc -std=$std examples/$(basename "$file")" "$cc -std=$std $warnings -I$root -c $file -o examples.$(basename "$file").$cc.$std.o"
+        done
+    done
+done
+run_jobs
+
+# ---- linking what was compiled
+for cc in $compilers; do
+    cxx=$(cxx_of "$cc")
+    for width in default m32; do
+        wide=
+        [ $width = m32 ] && wide=-m32
+        c=$cc.$width.c99 cc11=$cxx.$width.c++11
+        [ -f "unit.$c.o" ] || continue
+        for name in gxfem gxfem_boolean gxfem_integrate gxfem_solve together plain_first implementation_first; do
+            job "$name by $cc $wide" "$cc $wide $name.$c.o -o $name.$c -lm && ./$name.$c"
+            [ -f "$name.$cc11.o" ] && job "$name by $cxx $wide" "$cxx $wide $name.$cc11.o -o $name.$cc11 -lm && ./$name.$cc11"
+        done
+        linker=$cc
+        [ -f "unit.$cc11.o" ] && linker=$cxx
+        for one in "$c" "$cc11"; do
+            for two in "$c" "$cc11"; do
+                [ -f "unit.$one.o" ] && [ -f "unit_user.$two.o" ] || continue
+                job "two units: $one, $two" "$linker $wide unit.$one.o unit_user.$two.o -o unit.$one.$two -lm && ./unit.$one.$two"
+                job "two static files: $one, $two" "$linker $wide static.$one.o static_other.$two.o -o static.$one.$two -lm && ./static.$one.$two"
+            done
+        done
+    done
+done
+run_jobs
+
+passed=$(wc -l <passed) failed=$(wc -l <failed)
+echo "compile: $((passed)) passed, $((failed)) failed"
+[ "$((failed))" -eq 0 ]

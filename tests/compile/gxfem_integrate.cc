@@ -1,0 +1,1 @@
+#include "gxfem_integrate.c"

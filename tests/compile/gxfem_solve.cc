@@ -1,0 +1,1 @@
+#include "gxfem_solve.c"

@@ -1,0 +1,1 @@
+#include "implementation_first.c"

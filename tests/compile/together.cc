@@ -1,0 +1,1 @@
+#include "together.c"

@@ -1,0 +1,77 @@
+#!/bin/sh
+# Installs what a group of targets needs where it is missing, by the system's own package manager; says what it does.
+# usage: sh tests/install.sh GROUP...
+#     check   Check and pkg-config, for the unit tests
+#     cxx     a C++ compiler, for the compile tests
+set -u
+
+# has PROGRAM...: are all there?
+has() {
+    for program in "$@"; do command -v "$program" >/dev/null 2>&1 || return 1; done
+}
+
+have() {
+    case $1 in
+    check) has pkg-config && pkg-config --exists check ;;
+    cxx) has g++ || has clang++ || has c++ ;;
+    *) echo "$0: no group '$1'" >&2; exit 2 ;;
+    esac
+}
+
+# packages GROUP MANAGER
+packages() {
+    case $1:$2 in
+    check:apt-get) echo check pkg-config ;;
+    check:dnf) echo check-devel pkgconf-pkg-config ;;
+    check:pacman) echo check pkgconf ;;
+    check:brew) echo check pkg-config ;;
+    cxx:apt-get) echo g++ ;;
+    cxx:dnf) echo gcc-c++ ;;
+    cxx:*) echo gcc ;;
+    esac
+}
+
+install() {
+    manager=$1
+    shift
+    case $manager in
+    apt-get) $root env DEBIAN_FRONTEND=noninteractive sh -c \
+        'apt-get install -y -q "$@" || { apt-get update -q && apt-get install -y -q "$@"; }' install "$@" ;;
+    dnf) $root dnf install -y "$@" ;;
+    pacman) $root pacman -Sy --needed --noconfirm "$@" ;;
+    brew) brew install "$@" ;;
+    esac
+}
+
+[ $# -gt 0 ] || { echo "usage: $0 check|cxx..." >&2; exit 2; }
+missing=
+for group in "$@"; do have "$group" || missing="$missing $group"; done
+[ -n "$missing" ] || exit 0
+
+manager=
+for candidate in apt-get dnf pacman brew; do
+    if has $candidate; then manager=$candidate; break; fi
+done
+if [ -z "$manager" ]; then
+    echo "$0: missing:$missing, and none of apt-get, dnf, pacman, brew is here to install it: please install it by hand" >&2
+    exit 1
+fi
+root=
+if [ $manager != brew ] && [ "$(id -u)" -ne 0 ]; then
+    if has sudo; then root=sudo; else
+        echo "$0: missing:$missing; to install it, run as root: sh $0$missing" >&2
+        exit 1
+    fi
+fi
+log=$(mktemp) || exit 1
+trap 'rm -f "$log"' EXIT
+for group in $missing; do
+    echo "installing $(packages "$group" $manager) with $root${root:+ }$manager"
+    # shellcheck disable=SC2046
+    install $manager $(packages "$group" $manager) >"$log" 2>&1
+    if ! have "$group"; then
+        tail -n 20 "$log" >&2
+        echo "$0: '$group' could not be installed (above: what $manager said); please install $(packages "$group" $manager) by hand" >&2
+        exit 1
+    fi
+done

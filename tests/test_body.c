@@ -1,0 +1,2302 @@
+/* test_body.c - a body that is cut: what a cut must leave alone, degenerate and partial cuts, solids, scopes, held regions, steps,
+   far and long coordinates, bad input, the skin. Cells, copies and fragments of random cuts: test_oracle.c.
+
+   Random tests print their seed. GXFEM_SEED=n runs seed n alone. */
+#define GXFEM_IMPLEMENTATION
+#include "../gxfem.h"
+#include "workloads.h"
+#include <check.h>
+#include <float.h>
+
+#if defined(__SANITIZE_ADDRESS__)
+#define FEWER 4
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(memory_sanitizer) || __has_feature(undefined_behavior_sanitizer)
+#define FEWER 4
+#endif
+#endif
+#ifndef FEWER
+#define FEWER 1
+#endif
+enum { SEEDS = 40 / FEWER };
+
+#define CHECK_SEED(condition, seed) ck_assert_msg(condition, "seed %llu: %s", (unsigned long long)(seed), #condition)
+
+/* ---- random numbers: splitmix64 ---- */
+
+static uint64_t random_state;
+
+static uint64_t random_bits(void) {
+    uint64_t z = random_state += UINT64_C(0x9e3779b97f4a7c15);
+    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
+    return z ^ z >> 31;
+}
+static int random_below(int n) { return (int)(random_bits() % (uint64_t)n); }
+static double random_real(double low, double high) { return low + (high - low) * ldexp((double)(random_bits() >> 11), -53); }
+static void random_seed(uint64_t seed) { random_state = seed * UINT64_C(0x2545f4914f6cdd1d) + 11; }
+
+/* ---- bodies and cuts ---- */
+
+static gx_body_desc desc_of(const workload *w) {
+    gx_body_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.positions = w->positions; desc.node_count = w->node_count;
+    desc.elements = w->elements; desc.element_count = w->element_count;
+    desc.young = 1e6; desc.poisson = 0.4; desc.density = 1000;
+    return desc;
+}
+
+static gx_body *body_of(const workload *w) {
+    gx_body_desc desc = desc_of(w);
+    gx_body *body = NULL;
+    gx_result result = gx_body_create(&desc, &body, NULL);
+    ck_assert_msg(result == GX_OK, "create: %s", gx_result_text(result));
+    return body;
+}
+
+static gx_surface surface_of(const wl_surface *s) {
+    gx_surface surface;
+    surface.vertices = s->vertices; surface.vertex_count = s->vertex_count;
+    surface.triangles = s->triangles; surface.triangle_count = s->triangle_count;
+    surface.kind = s->solid ? GX_SURFACE_SOLID : GX_SURFACE_SHEET;
+    return surface;
+}
+
+/* Cuts by surfaces first ... first+count-1 of the workload, all in one call. */
+static gx_cut_report cut_by(gx_body *body, const workload *w, size_t first, size_t count) {
+    gx_surface surfaces[WL_SURFACES];
+    gx_cut_desc desc;
+    gx_cut_report report;
+    gx_result result;
+    size_t i;
+    for (i = 0; i < count; ++i) surfaces[i] = surface_of(&w->surfaces[first + i]);
+    memset(&desc, 0, sizeof desc);
+    desc.surfaces = surfaces; desc.surface_count = count;
+    result = gx_body_cut(body, &desc, &report, NULL);
+    ck_assert_msg(result == GX_OK, "cut: %s", gx_result_text(result));
+    return report;
+}
+
+static gx_body *cut_at_once(const workload *w) {
+    gx_body *body = body_of(w);
+    if (w->surface_count > 0) cut_by(body, w, 0, w->surface_count);
+    return body;
+}
+
+static gx_body *cut_in_sequence(const workload *w) {
+    gx_body *body = body_of(w);
+    size_t i;
+    for (i = 0; i < w->surface_count; ++i) cut_by(body, w, i, 1);
+    return body;
+}
+
+static gx_view view_of(gx_body *body) {
+    gx_view view;
+    gx_result result = gx_body_view(body, &view);
+    ck_assert_msg(result == GX_OK, "view: %s", gx_result_text(result));
+    return view;
+}
+
+static uint64_t hash_of(gx_body *body) {
+    gx_result result;
+    uint64_t hash = gx_body_topology_hash(body, &result);
+    ck_assert_int_eq(result, GX_OK);
+    return hash;
+}
+
+/* Cuts at once, looks and forgets: cells, copies, fragments. */
+static void expect_counts(workload w, size_t cells, size_t copies, size_t fragments, int line) {
+    int at_once;
+    for (at_once = 0; at_once < 2; ++at_once) {
+        gx_body *body = at_once ? cut_at_once(&w) : cut_in_sequence(&w);
+        gx_view view = view_of(body);
+        ck_assert_msg(view.cell_count == cells && view.copy_count == copies && view.fragment_count == fragments,
+                      "line %d: %zu cells, %zu copies, %zu fragments; should be %zu, %zu, %zu", line, view.cell_count, view.copy_count,
+                      view.fragment_count, cells, copies, fragments);
+        gx_body_destroy(body);
+    }
+    wl_free(&w);
+}
+#define EXPECT_COUNTS(w, cells, copies, fragments) expect_counts(w, cells, copies, fragments, __LINE__)
+
+/* ---- scenes ---- */
+
+static workload grid(size_t nx, size_t ny, size_t nz, int tets) {
+    wl_frame axes = wl_axes();
+    return wl_grid(nx, ny, nz, tets, &axes);
+}
+
+static workload corner_tet(void) { return wl_tetrahedron(wl_corner_tetrahedron); }
+
+/* The plane x[axis] = value, exactly, far beyond the body */
+static void add_axis_plane(workload *w, int axis, double value) {
+    double x[4][3];
+    int i;
+    for (i = 0; i < 4; ++i) {
+        x[i][axis] = value;
+        x[i][(axis + 1) % 3] = i == 1 || i == 2 ? 64 : -64;
+        x[i][(axis + 2) % 3] = i >= 2 ? 64 : -64;
+    }
+    wl_add_quad(wl_add_surface(w, 0), x[0], x[1], x[2], x[3]);
+}
+
+/* A triangle around p, across n; the circle of `radius` about p fits in */
+static void add_plane(workload *w, const double p[3], const double n[3], double radius) {
+    wl_surface *s = wl_add_surface(w, 0);
+    double u[3], v[3], x[3], length = 0;
+    int i, k, small = fabs(n[0]) < fabs(n[1]) ? 0 : 1;
+    if (fabs(n[2]) < fabs(n[small])) small = 2;
+    for (k = 0; k < 3; ++k) u[k] = 0;
+    u[(small + 1) % 3] = n[(small + 2) % 3]; u[(small + 2) % 3] = -n[(small + 1) % 3];
+    for (k = 0; k < 3; ++k) v[k] = n[(k + 1) % 3] * u[(k + 2) % 3] - n[(k + 2) % 3] * u[(k + 1) % 3];
+    for (k = 0; k < 3; ++k) length += n[k] * n[k];
+    length = sqrt(length);
+    for (i = 0; i < 3; ++i) {
+        double a = 2.0943951023931953 * i, unit = 0;
+        for (k = 0; k < 3; ++k) unit += u[k] * u[k];
+        unit = sqrt(unit);
+        for (k = 0; k < 3; ++k) x[k] = p[k] + 2.1 * radius / unit * (cos(a) * u[k] + sin(a) * v[k] / length);
+        wl_add_vertex(s, x);
+    }
+    wl_add_triangle(s, 0, 1, 2);
+}
+
+/* The triangle a, b, c, blown up 16 times about its middle: exact where coordinates are short */
+static void add_plane_through(workload *w, const double a[3], const double b[3], const double c[3]) {
+    wl_surface *s = wl_add_surface(w, 0);
+    double x[3];
+    int i, k;
+    for (i = 0; i < 3; ++i) {
+        const double *p = i == 0 ? a : i == 1 ? b : c, *q = i == 0 ? b : i == 1 ? c : a, *r = i == 0 ? c : i == 1 ? a : b;
+        for (k = 0; k < 3; ++k) x[k] = 32 * p[k] - 16 * q[k] - 15 * r[k];
+        wl_add_vertex(s, x);
+    }
+    wl_add_triangle(s, 0, 1, 2);
+}
+
+static wl_surface *add_box(workload *w, int solid, double x0, double y0, double z0, double x1, double y1, double z1) {
+    wl_surface *s = wl_add_surface(w, solid);
+    double low[3], high[3];
+    low[0] = x0; low[1] = y0; low[2] = z0; high[0] = x1; high[1] = y1; high[2] = z1;
+    wl_add_aligned_box(s, low, high);
+    return s;
+}
+
+/* The rectangle [x0, x1] x [z0, z1] in the plane y = value */
+static wl_surface *add_rectangle(workload *w, double value, double x0, double z0, double x1, double z1) {
+    wl_surface *s = wl_add_surface(w, 0);
+    double p[4][3];
+    int i;
+    for (i = 0; i < 4; ++i) { p[i][0] = i == 1 || i == 2 ? x1 : x0; p[i][1] = value; p[i][2] = i >= 2 ? z1 : z0; }
+    wl_add_quad(s, p[0], p[1], p[2], p[3]);
+    return s;
+}
+
+static void random_point(const workload *w, double x[3]) {
+    double low, high;
+    size_t i;
+    int k;
+    for (k = 0; k < 3; ++k) {
+        low = high = w->positions[k];
+        for (i = 0; i < w->node_count; ++i) { low = fmin(low, w->positions[3 * i + (size_t)k]); high = fmax(high, w->positions[3 * i + (size_t)k]); }
+        x[k] = random_real(low, high);
+    }
+}
+
+static void add_random_plane(workload *w, double radius) {
+    double p[3], n[3];
+    int k;
+    random_point(w, p);
+    for (k = 0; k < 3; ++k) n[k] = random_real(-1, 1);
+    add_plane(w, p, n, radius);
+}
+
+/* Planes, small triangles that end inside, wavy sheets, axis planes through nodes, solid boxes */
+static void add_random_cut(workload *w, int solids) {
+    wl_frame f = wl_rotated();
+    double p[3];
+    int k;
+    random_point(w, p);
+    switch (random_below(solids ? 8 : 6)) {
+    case 0: case 1: add_random_plane(w, 40); break;
+    case 2: add_random_plane(w, random_real(0.05, 0.5)); break;
+    case 3: for (k = 0; k < 3; ++k) f.origin[k] = p[k]; wl_add_wave(wl_add_surface(w, 0), &f, 6, random_real(0.5, 3)); break;
+    case 4: add_axis_plane(w, random_below(3), random_below(5) / 4.0); break;
+    case 5: add_box(w, 0, p[0] - 0.2, p[1] - 0.3, p[2] - 0.1, p[0] + 0.1, p[1] + 0.3, p[2] + 0.2); break;
+    case 6: add_box(w, 1, p[0] - 0.2, p[1] - 0.3, p[2] - 0.1, p[0] + 0.1, p[1] + 0.3, p[2] + 0.2); break;
+    default: for (k = 0; k < 3; ++k) f.origin[k] = p[k]; wl_add_box(wl_add_surface(w, 1), &f, 3, 3, random_real(1e-9, 0.1)); break;
+    }
+}
+
+static workload random_mesh(void) {
+    workload w;
+    size_t i;
+    switch (random_below(4)) {
+    case 0: w = corner_tet(); break;
+    case 1: w = grid(1, 1, 1, 5); break;
+    case 2: w = grid(2, 1, 1, 5); break;
+    default: w = grid(1, 2, 1, 6); break;
+    }
+    if (random_below(2)) for (i = 0; i < 3 * w.node_count; ++i) w.positions[i] += random_real(-0.1, 0.1);
+    return w;
+}
+
+static workload random_scene(uint64_t seed, int cuts, int solids) {
+    workload w;
+    random_seed(seed);
+    w = random_mesh();
+    while (cuts-- > 0) add_random_cut(&w, solids);
+    return w;
+}
+
+/* Every point of mesh and surfaces: scaled, its axes turned by `turn` thirds of the cycle x y z, moved */
+static void transform(workload *w, double scale, int turn, const double offset[3]) {
+    size_t i, j, n;
+    for (j = 0; j <= w->surface_count; ++j) {
+        double *x = j == w->surface_count ? w->positions : w->surfaces[j].vertices;
+        n = j == w->surface_count ? w->node_count : w->surfaces[j].vertex_count;
+        for (i = 0; i < n; ++i) {
+            double old[3];
+            int k;
+            memcpy(old, x + 3 * i, sizeof old);
+            for (k = 0; k < 3; ++k) x[3 * i + (size_t)k] = scale * old[(k + turn) % 3] + (offset ? offset[k] : 0);
+        }
+    }
+}
+
+/* A quarter turn about axis 2: (x, y) -> (-y, x) */
+static void quarter_turn(workload *w) {
+    size_t i, j, n;
+    for (j = 0; j <= w->surface_count; ++j) {
+        double *x = j == w->surface_count ? w->positions : w->surfaces[j].vertices;
+        n = j == w->surface_count ? w->node_count : w->surfaces[j].vertex_count;
+        for (i = 0; i < n; ++i) { double t = x[3 * i]; x[3 * i] = -x[3 * i + 1]; x[3 * i + 1] = t; }
+    }
+}
+
+/* ---- comparison of two bodies ---- */
+
+typedef struct sized { uint32_t element; double volume; } sized;
+
+static int by_size(const void *a, const void *b) {
+    const sized *p = (const sized *)a, *q = (const sized *)b;
+    if (p->element != q->element) return p->element < q->element ? -1 : 1;
+    return (p->volume > q->volume) - (p->volume < q->volume);
+}
+
+static sized *sorted_cells(const gx_view *view, double scale) {
+    sized *cells = (sized *)oracle_memory(NULL, view->cell_count + 1, sizeof *cells);
+    size_t i;
+    for (i = 0; i < view->cell_count; ++i) { cells[i].element = view->cell_element[i]; cells[i].volume = view->cell_volume[i] / (scale * scale * scale); }
+    qsort(cells, view->cell_count, sizeof *cells, by_size);
+    return cells;
+}
+
+static sized *sorted_fragments(const gx_view *view, double scale) {
+    sized *f = (sized *)oracle_memory(NULL, view->fragment_count + 1, sizeof *f);
+    size_t i;
+    for (i = 0; i < view->fragment_count; ++i) { f[i].element = 0; f[i].volume = view->fragment_volume[i] / (scale * scale * scale); }
+    qsort(f, view->fragment_count, sizeof *f, by_size);
+    return f;
+}
+
+/* Same topology; volumes within `relative` of themselves or `absolute` of the body's. b is `scale` times as long as a. */
+static void expect_same(gx_body *a, gx_body *b, double scale, double relative, double absolute, const char *what, uint64_t seed) {
+    gx_view p = view_of(a), q = view_of(b);
+    sized *s, *t;
+    size_t i;
+    ck_assert_msg(p.cell_count == q.cell_count && p.copy_count == q.copy_count && p.fragment_count == q.fragment_count,
+                  "seed %llu, %s: %zu, %zu cells; %zu, %zu copies; %zu, %zu fragments", (unsigned long long)seed, what,
+                  p.cell_count, q.cell_count, p.copy_count, q.copy_count, p.fragment_count, q.fragment_count);
+    s = sorted_cells(&p, 1); t = sorted_cells(&q, scale);
+    for (i = 0; i < p.cell_count; ++i)
+        ck_assert_msg(s[i].element == t[i].element && fabs(s[i].volume - t[i].volume) <= relative * s[i].volume + absolute * p.volume,
+                      "seed %llu, %s: cell of element %u, volume %.17g and %.17g", (unsigned long long)seed, what, s[i].element, s[i].volume, t[i].volume);
+    free(s); free(t);
+    s = sorted_fragments(&p, 1); t = sorted_fragments(&q, scale);
+    for (i = 0; i < p.fragment_count; ++i)
+        ck_assert_msg(fabs(s[i].volume - t[i].volume) <= relative * s[i].volume + absolute * p.volume,
+                      "seed %llu, %s: fragment volume %.17g and %.17g", (unsigned long long)seed, what, s[i].volume, t[i].volume);
+    free(s); free(t);
+    ck_assert_msg(hash_of(a) == hash_of(b), "seed %llu, %s: topology hashes differ", (unsigned long long)seed, what);
+}
+
+/* ---- the field at material points ---- */
+
+static uint32_t slot_at(gx_body *body, uint32_t element, const double x[3]) {
+    uint32_t cell, leaf, found = GXP_NONE;
+    gxb_complex_begin(body->complex);
+    for (cell = element; cell != GXP_NONE && found == GXP_NONE; cell = body->cells[cell].next) {
+        if (!body->cells[cell].kept) continue;
+        for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && found == GXP_NONE; leaf = body->leaves[leaf].next) {
+            int inside = body->complex->leaves[leaf].facet_count == 0;
+            if (!inside) ck_assert_int_eq(gxp_is_inside(body, leaf, x, &inside), GX_OK);
+            if (inside) found = cell;
+        }
+    }
+    gxb_complex_rollback(body->complex);
+    return found;
+}
+
+/* Displacement and velocity at a point of an element; 0 where there is no material (or the point is on a wall). */
+static int field_at(gx_body *body, uint32_t element, const double lambda[4], double u[3], double v[3]) {
+    double x[3] = { 0, 0, 0 };
+    uint32_t cell;
+    int i, k;
+    for (i = 0; i < 4; ++i)
+        for (k = 0; k < 3; ++k) x[k] += lambda[i] * body->positions[3 * body->complex->elements[4 * element + (uint32_t)i] + (uint32_t)k];
+    cell = slot_at(body, element, x);
+    if (cell == GXP_NONE) return 0;
+    for (k = 0; k < 3; ++k) {
+        u[k] = v[k] = 0;
+        for (i = 0; i < 4; ++i) {
+            u[k] += lambda[i] * body->displacement[3 * body->cells[cell].copies[i] + (uint32_t)k];
+            v[k] += lambda[i] * body->velocity[3 * body->cells[cell].copies[i] + (uint32_t)k];
+        }
+    }
+    return 1;
+}
+
+static void random_lambda(double lambda[4]) {
+    double sum = 0;
+    int i;
+    for (i = 0; i < 4; ++i) sum += lambda[i] = random_real(0.001, 1);
+    for (i = 0; i < 4; ++i) lambda[i] /= sum;
+}
+
+static void set_random_state(gx_body *body) {
+    gx_view view = view_of(body);
+    size_t i;
+    for (i = 0; i < 3 * view.copy_count; ++i) { view.displacement[i] = random_real(-1, 1); view.velocity[i] = random_real(-1, 1); }
+}
+
+enum { PROBES = 60 };
+
+/* Before and after each of several cuts, at the same material points: bit by bit the same. */
+START_TEST(field_is_unchanged_by_cuts) {
+    uint64_t seed = (uint64_t)_i;
+    workload w = random_scene(seed, 4, 1);
+    gx_body *body = body_of(&w);
+    double lambda[PROBES][4], u[PROBES][3], v[PROBES][3], a[3], b[3];
+    uint32_t element[PROBES];
+    int there[PROBES], i, seen = 0;
+    size_t c;
+    for (i = 0; i < PROBES; ++i) { random_lambda(lambda[i]); element[i] = (uint32_t)random_below((int)w.element_count); }
+    for (c = 0; c < w.surface_count; ++c) {
+        set_random_state(body);
+        for (i = 0; i < PROBES; ++i) there[i] = field_at(body, element[i], lambda[i], u[i], v[i]);
+        cut_by(body, &w, c, 1);
+        for (i = 0; i < PROBES; ++i) {
+            if (!field_at(body, element[i], lambda[i], a, b)) continue;
+            CHECK_SEED(there[i], seed);
+            CHECK_SEED(memcmp(a, u[i], sizeof a) == 0 && memcmp(b, v[i], sizeof b) == 0, seed);
+            ++seen;
+        }
+    }
+    CHECK_SEED(seen > 0, seed);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* u = A X + b on every copy: after any cuts each vertex of the skin is where the affine map takes it. */
+START_TEST(skin_follows_the_field) {
+    uint64_t seed = (uint64_t)_i;
+    workload w = random_scene(seed, 3, 1);
+    gx_body *body = body_of(&w);
+    gx_view view = view_of(body);
+    gx_skin skin;
+    double map[3][4], *material, *moved;
+    size_t i, zero = 0;
+    int k, j;
+    for (k = 0; k < 3; ++k) for (j = 0; j < 4; ++j) map[k][j] = random_real(-1, 1);
+    for (i = 0; i < view.copy_count; ++i) for (k = 0; k < 3; ++k) {
+        const double *x = w.positions + 3 * view.copy_node[i];
+        view.displacement[3 * i + (size_t)k] = map[k][0] * x[0] + map[k][1] * x[1] + map[k][2] * x[2] + map[k][3];
+    }
+    for (i = 0; i < w.surface_count; ++i) cut_by(body, &w, i, 1);
+    ck_assert_int_eq(gx_body_skin(body, &skin), GX_OK);
+    view = view_of(body);
+    moved = (double *)oracle_memory(NULL, 3 * skin.vertex_count + 1, sizeof *moved);
+    material = (double *)oracle_memory(NULL, 3 * skin.vertex_count + 1, sizeof *material);
+    gx_body_skin_positions(body, &skin, moved);
+    for (i = 0; i < 3 * view.copy_count; ++i) view.displacement[i] = 0;
+    gx_body_skin_positions(body, &skin, material);
+    for (i = 0; i < skin.vertex_count; ++i) for (k = 0; k < 3; ++k) {
+        const double *x = material + 3 * i;
+        double y = x[k] + map[k][0] * x[0] + map[k][1] * x[1] + map[k][2] * x[2] + map[k][3];
+        CHECK_SEED(fabs(moved[3 * i + (size_t)k] - y) <= 1e-13 * (1 + fabs(y)) * 4, seed);
+        zero += skin.vertex_weights[4 * i + (size_t)k] < 0;
+    }
+    CHECK_SEED(zero == 0, seed);
+    free(moved); free(material);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- what sheets conserve; order, scale, rotation ---- */
+
+START_TEST(sheets_conserve_mass_and_volume) {
+    uint64_t seed = (uint64_t)_i;
+    workload w = random_scene(seed, 6, 0);
+    gx_body *body = body_of(&w);
+    double volume = view_of(body).volume, mass = view_of(body).mass;
+    size_t c, i;
+    for (c = 0; c < w.surface_count; ++c) {
+        gx_cut_report report = cut_by(body, &w, c, 1);
+        gx_view view = view_of(body);
+        double cells = 0, fragments = 0;
+        for (i = 0; i < view.cell_count; ++i) { cells += view.cell_volume[i]; CHECK_SEED(view.cell_volume[i] > 0, seed); }
+        for (i = 0; i < view.fragment_count; ++i) fragments += view.fragment_mass[i];
+        CHECK_SEED(report.removed_volume == 0 && report.removed_cells == 0 && report.removed_copies == 0, seed);
+        CHECK_SEED(fabs(view.volume - volume) <= 1e-12 * volume && fabs(cells - volume) <= 1e-12 * volume, seed);
+        CHECK_SEED(fabs(view.mass - mass) <= 1e-12 * mass && fabs(fragments - mass) <= 1e-12 * mass, seed);
+    }
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+START_TEST(solids_remove_what_they_report) {
+    uint64_t seed = (uint64_t)_i;
+    workload w = random_scene(seed, 5, 1);
+    gx_body *body = body_of(&w);
+    size_t c;
+    for (c = 0; c < w.surface_count; ++c) {
+        double before = view_of(body).volume, left;
+        size_t copies = view_of(body).copy_count, cells = view_of(body).cell_count;
+        gx_cut_report report = cut_by(body, &w, c, 1);
+        left = view_of(body).volume;
+        CHECK_SEED(fabs(before - left - report.removed_volume) <= 1e-12 * view_of(body).volume + 1e-14, seed);
+        CHECK_SEED(view_of(body).copy_count == copies + report.created_copies - report.removed_copies, seed);
+        CHECK_SEED(view_of(body).cell_count == cells + report.created_cells - report.removed_cells, seed);
+    }
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+START_TEST(sequence_equals_at_once) {
+    uint64_t seed = (uint64_t)_i;
+    workload w = random_scene(seed, 4, 1);
+    gx_body *a = cut_at_once(&w), *b = cut_in_sequence(&w);
+    expect_same(a, b, 1, 1e-9, 1e-14, "in sequence", seed);
+    gx_body_destroy(a); gx_body_destroy(b);
+    wl_free(&w);
+}
+END_TEST
+
+static void shuffle_surface(wl_surface *s) {
+    size_t i, k;
+    for (i = s->triangle_count; i > 1; --i) {
+        size_t j = (size_t)random_below((int)i);
+        uint32_t t[3], turned[3];
+        memcpy(t, s->triangles + 3 * (i - 1), sizeof t);
+        memcpy(s->triangles + 3 * (i - 1), s->triangles + 3 * j, sizeof t);
+        for (k = 0; k < 3; ++k) turned[k] = t[(k + 1) % 3];
+        memcpy(s->triangles + 3 * j, turned, sizeof turned);
+    }
+}
+
+START_TEST(order_does_not_matter) {
+    uint64_t seed = (uint64_t)_i;
+    workload w = random_scene(seed, 4, 1);
+    gx_body *a = cut_at_once(&w), *b;
+    size_t i;
+    for (i = w.surface_count; i > 1; --i) {
+        size_t j = (size_t)random_below((int)i);
+        wl_surface s = w.surfaces[i - 1];
+        w.surfaces[i - 1] = w.surfaces[j]; w.surfaces[j] = s;
+    }
+    for (i = 0; i < w.surface_count; ++i) shuffle_surface(&w.surfaces[i]);
+    b = cut_at_once(&w);
+    expect_same(a, b, 1, 1e-9, 1e-14, "permuted, at once", seed);
+    gx_body_destroy(b);
+    b = cut_in_sequence(&w);
+    expect_same(a, b, 1, 1e-9, 1e-14, "permuted, in sequence", seed);
+    gx_body_destroy(a); gx_body_destroy(b);
+    wl_free(&w);
+}
+END_TEST
+
+START_TEST(scale_and_rotation_do_not_matter) {
+    static const double scales[4] = { 1.0 / 1048576, 1048576, 8.077935669463161e-28, 1.2379400392853803e27 };    /* 2^-20 20 -90 90 */
+    uint64_t seed = (uint64_t)_i;
+    workload w = random_scene(seed, 3, 1);
+    gx_body *a = cut_at_once(&w), *b;
+    int i;
+    for (i = 0; i < 4; ++i) {
+        transform(&w, scales[i], 0, NULL);
+        b = cut_at_once(&w);
+        expect_same(a, b, scales[i], 1e-9, 1e-14, "scaled", seed);
+        gx_body_destroy(b);
+        transform(&w, 1 / scales[i], 0, NULL);
+    }
+    for (i = 0; i < 3; ++i) {
+        transform(&w, 1, 1, NULL);
+        if (i == 2) quarter_turn(&w);
+        b = cut_at_once(&w);
+        expect_same(a, b, 1, 1e-9, 1e-14, "rotated", seed);
+        gx_body_destroy(b);
+    }
+    gx_body_destroy(a);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- again, and an ulp beside ---- */
+
+START_TEST(same_cut_twice_changes_nothing) {
+    uint64_t seed = (uint64_t)_i;
+    workload w = random_scene(seed, 3, 1);
+    gx_body *body = cut_at_once(&w);
+    uint64_t hash = hash_of(body);
+    double volume = view_of(body).volume;
+    size_t i;
+    for (i = 0; i < w.surface_count; ++i) {
+        gx_cut_report report = cut_by(body, &w, i, 1);
+        CHECK_SEED(report.created_copies == 0 && report.removed_copies == 0, seed);
+        CHECK_SEED(report.created_cells == 0 && report.removed_cells == 0 && report.removed_volume == 0, seed);
+        CHECK_SEED(hash_of(body) == hash, seed);
+        CHECK_SEED(fabs(view_of(body).volume - volume) <= 1e-13 * volume, seed);
+    }
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Planes at 1/3 and the next double: a slab one ulp thick, with its own volume. */
+START_TEST(cuts_one_ulp_apart) {
+    double x = 1.0 / 3, next = nextafter(x, 1), step = next - x;
+    workload w = grid(1, 1, 1, 5);
+    gx_body *body;
+    gx_view view;
+    double thin = 1;
+    size_t i;
+    add_axis_plane(&w, 0, x);
+    add_axis_plane(&w, 0, next);
+    body = cut_at_once(&w);
+    view = view_of(body);
+    ck_assert_uint_eq(view.fragment_count, 3);
+    ck_assert_uint_eq(view.copy_count, 24);
+    for (i = 0; i < 3; ++i) thin = fmin(thin, view.fragment_volume[i]);
+    ck_assert_msg(fabs(thin - step) <= 1e-9 * step, "%.17g, should be %.17g", thin, step);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- in faces, through nodes, along edges ---- */
+
+START_TEST(cuts_in_element_faces) {
+    static const double corner[8][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, 1, 0 }, { 0, 0, 1 }, { 1, 0, 1 }, { 0, 1, 1 }, { 1, 1, 1 } };
+    static const int faces[4][3] = { { 0, 3, 5 }, { 0, 3, 6 }, { 0, 5, 6 }, { 3, 5, 6 } };
+    workload w;
+    int i, j;
+    for (i = 1; i <= 4; ++i) {      /* each face of the middle tetrahedron frees the corner behind it */
+        w = grid(1, 1, 1, 5);
+        for (j = 0; j < i; ++j) add_plane_through(&w, corner[faces[j][0]], corner[faces[j][1]], corner[faces[j][2]]);
+        EXPECT_COUNTS(w, 5, (size_t)(8 + 3 * i), (size_t)(1 + i));
+    }
+    w = grid(2, 1, 1, 6);
+    add_axis_plane(&w, 0, 1);
+    EXPECT_COUNTS(w, 12, 16, 2);
+    w = grid(3, 3, 3, 5);
+    for (j = 0; j < 3; ++j) for (i = 1; i < 3; ++i) add_axis_plane(&w, j, i);
+    EXPECT_COUNTS(w, 135, 216, 27);
+}
+END_TEST
+
+START_TEST(cuts_through_nodes_and_edges) {
+    static const double o[3] = { 0, 0, 0 }, x[3] = { 1, 0, 0 }, z[3] = { 0, 0, 1 }, xy[3] = { 1, 1, 0 }, face[3] = { 0.5, 0.25, 0.25 },
+                        yz[3] = { 0, 0.5, 0.5 }, xz[3] = { 0.5, 0, 0.5 };
+    workload w = corner_tet();      /* through an edge */
+    add_plane_through(&w, o, x, yz);
+    EXPECT_COUNTS(w, 2, 8, 2);
+    w = corner_tet();
+    add_plane_through(&w, z, face, o);
+    EXPECT_COUNTS(w, 2, 8, 2);
+    w = corner_tet();               /* through one node and two edges */
+    add_plane_through(&w, o, xz, face);
+    EXPECT_COUNTS(w, 2, 8, 2);
+    w = grid(1, 1, 1, 6);           /* through the diagonal that all six tets share: cells are whole elements */
+    add_plane_through(&w, o, xy, z);
+    EXPECT_COUNTS(w, 6, 12, 2);
+    w = grid(1, 1, 1, 5);           /* x = y cuts the middle tet and two corners; the others have a node of their own */
+    add_plane_through(&w, o, xy, z);
+    EXPECT_COUNTS(w, 8, 14, 2);
+}
+END_TEST
+
+START_TEST(three_planes_through_a_line_and_a_point) {
+    static const double c[3] = { 0.25, 0.25, 0.25 };
+    double p[3], q[3];
+    workload w = corner_tet();
+    int i;
+    for (i = 0; i < 3; ++i) {       /* the line through c along z */
+        memcpy(p, c, sizeof p); p[2] = 0.5;
+        memcpy(q, c, sizeof q); q[0] += i == 0 ? 0.5 : i == 1 ? 0 : 0.25; q[1] += i == 0 ? 0 : i == 1 ? 0.5 : 0.25;
+        add_plane_through(&w, c, p, q);
+    }
+    EXPECT_COUNTS(w, 6, 24, 6);
+    w = corner_tet();
+    for (i = 0; i < 3; ++i) add_axis_plane(&w, i, 0.25);
+    EXPECT_COUNTS(w, 8, 32, 8);
+    w = grid(2, 2, 2, 6);           /* in faces, through the middle node */
+    for (i = 0; i < 3; ++i) add_axis_plane(&w, i, 1);
+    EXPECT_COUNTS(w, 48, 64, 8);
+    w = corner_tet();               /* four through one point: x, y, z = 1/8 and x + y + z = 3/8 */
+    for (i = 0; i < 3; ++i) add_axis_plane(&w, i, 0.125);
+    { static const double a[3] = { 0.375, 0, 0 }, b[3] = { 0, 0.375, 0 }, d[3] = { 0, 0, 0.375 }; add_plane_through(&w, a, b, d); }
+    EXPECT_COUNTS(w, 14, 56, 14);
+}
+END_TEST
+
+/* What only touches the body cuts nothing: its faces, an edge, nodes. */
+START_TEST(tangent_cuts_do_nothing) {
+    static const double e[4][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }, aside[3] = { 1, -1, 0 };
+    workload w = corner_tet();
+    gx_body *body = body_of(&w);
+    uint64_t hash = hash_of(body);
+    size_t i;
+    for (i = 0; i < 3; ++i) { add_axis_plane(&w, (int)i, 0); add_axis_plane(&w, (int)i, 1); add_axis_plane(&w, (int)i, -0.5); }
+    add_plane_through(&w, e[1], e[2], e[3]);
+    add_plane_through(&w, e[0], e[3], aside);
+    for (i = 0; i < w.surface_count; ++i) {
+        gx_cut_report report = cut_by(body, &w, i, 1);
+        ck_assert_uint_eq(report.created_copies + report.created_cells + report.removed_cells, 0);
+    }
+    ck_assert_uint_eq(view_of(body).copy_count, 4);
+    ck_assert(hash_of(body) == hash);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- sheets that end ---- */
+
+START_TEST(sheet_that_ends_inside_an_element) {
+    workload w = corner_tet();
+    gx_body *body = body_of(&w);
+    gx_cut_report report;
+    add_rectangle(&w, 0.25, -1, -1, 0.25, 2);       /* x < 1/4 */
+    add_rectangle(&w, 0.25, 0.5, -1, 2, 2);         /* x > 1/2 */
+    add_rectangle(&w, 0.25, 0.25, -1, 0.5, 2);      /* what is between */
+    add_rectangle(&w, 0.25, -1, -1, 2, 2);          /* all of it again */
+    report = cut_by(body, &w, 0, 1);
+    ck_assert_uint_eq(report.created_copies + report.created_cells, 0);
+    report = cut_by(body, &w, 1, 1);
+    ck_assert_uint_eq(report.created_copies + report.created_cells, 0);
+    ck_assert_uint_eq(view_of(body).fragment_count, 1);
+    report = cut_by(body, &w, 2, 1);
+    ck_assert_uint_eq(report.created_cells, 1);
+    ck_assert_uint_eq(report.created_copies, 4);
+    ck_assert_uint_eq(view_of(body).fragment_count, 2);
+    ck_assert_double_eq_tol(view_of(body).fragment_volume[0] + view_of(body).fragment_volume[1], 1.0 / 6, 1e-15);
+    ck_assert_double_eq_tol(fmax(view_of(body).fragment_volume[0], view_of(body).fragment_volume[1]), (1 - 0.421875) / 6, 1e-15);
+    report = cut_by(body, &w, 3, 1);
+    ck_assert_uint_eq(report.created_copies + report.created_cells, 0);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* The quarter plane y = 1/4, on one side of the face x = y + z of wl_pair, or beside it by `shift` */
+static void add_half(workload *w, double y, int side) {
+    wl_surface *s = wl_add_surface(w, 0);
+    double p[3] = { 0, 0, 0 };
+    p[1] = y;
+    p[2] = -4; p[0] = y + p[2]; wl_add_vertex(s, p);
+    p[2] = 4; p[0] = y + p[2]; wl_add_vertex(s, p);
+    p[2] = side > 0 ? -4 : 4; p[0] = side > 0 ? 16 : -16; wl_add_vertex(s, p);
+    wl_add_triangle(s, 0, 1, 2);
+}
+
+/* One element of two is cut through; the sheet ends in their common face: only the node beyond it gets a further copy. */
+START_TEST(sheet_that_ends_between_elements) {
+    workload w = wl_pair();
+    add_half(&w, 0.25, 1);
+    EXPECT_COUNTS(w, 3, 6, 1);
+    w = wl_pair();
+    add_half(&w, 0.25, 1);
+    add_half(&w, 0.25, -1);
+    EXPECT_COUNTS(w, 4, 10, 2);
+}
+END_TEST
+
+START_TEST(severed_links) {
+    double d = ldexp(1, -30), ratio = (0.75 * 0.75) - (0.75 - d) * (0.75 - d);
+    workload w = wl_pair();
+    gx_body *body = body_of(&w);
+    gx_surface surfaces[2];
+    gx_cut_desc desc;
+    gx_cut_report report;
+    uint64_t hash;
+    add_half(&w, 0.25, 1);
+    add_half(&w, 0.25 + d, -1);
+    report = cut_by(body, &w, 0, 2);
+    ck_assert_uint_eq(view_of(body).fragment_count, 1);
+    ck_assert_uint_eq(report.severed_links, 0);
+    ck_assert_msg(fabs(report.min_link_ratio - ratio) <= 1e-6 * ratio, "%.17g, should be %.17g", report.min_link_ratio, ratio);
+    gx_body_destroy(body);
+    surfaces[0] = surface_of(&w.surfaces[0]);
+    surfaces[1] = surface_of(&w.surfaces[1]);
+    memset(&desc, 0, sizeof desc);
+    desc.surfaces = surfaces; desc.surface_count = 2;
+    desc.sever_below = 1e-6;
+    body = body_of(&w);
+    ck_assert_int_eq(gx_body_cut(body, &desc, &report, NULL), GX_OK);
+    ck_assert_uint_eq(report.severed_links, 1);
+    ck_assert_uint_eq(view_of(body).fragment_count, 2);
+    ck_assert_uint_eq(view_of(body).copy_count, 10);
+    hash = hash_of(body);
+    ck_assert_int_eq(gx_body_cut(body, &desc, &report, NULL), GX_OK);
+    ck_assert_uint_eq(report.severed_links, 0);
+    ck_assert(hash_of(body) == hash);
+    gx_body_destroy(body);
+    desc.surface_count = 1;             /* the same, severed by the second of two cuts */
+    body = body_of(&w);
+    ck_assert_int_eq(gx_body_cut(body, &desc, &report, NULL), GX_OK);
+    desc.surfaces = surfaces + 1;
+    ck_assert_int_eq(gx_body_cut(body, &desc, &report, NULL), GX_OK);
+    ck_assert_uint_eq(report.severed_links, 1);
+    ck_assert_uint_eq(view_of(body).fragment_count, 2);
+    ck_assert(hash_of(body) == hash);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- closed sheets, holes, folds ---- */
+
+static void add_octahedron(workload *w, int solid, const double c[3], double r) {
+    static const double dir[6][3] = { { 1, 0, 0 }, { -1, 0, 0 }, { 0, 1, 0 }, { 0, -1, 0 }, { 0, 0, 1 }, { 0, 0, -1 } };
+    static const uint32_t t[8][3] = { { 0, 2, 4 }, { 2, 1, 4 }, { 1, 3, 4 }, { 3, 0, 4 }, { 2, 0, 5 }, { 1, 2, 5 }, { 3, 1, 5 }, { 0, 3, 5 } };
+    wl_surface *s = wl_add_surface(w, solid);
+    double x[3];
+    int i, k;
+    for (i = 0; i < 6; ++i) { for (k = 0; k < 3; ++k) x[k] = c[k] + r * dir[i][k]; wl_add_vertex(s, x); }
+    for (i = 0; i < 8; ++i) wl_add_triangle(s, t[i][0], t[i][1], t[i][2]);
+}
+
+START_TEST(closed_sheets_make_cells) {
+    static const double c[3] = { 0.25, 0.25, 0.25 }, middle[3] = { 1, 1, 1 };
+    workload w = corner_tet();
+    gx_body *body;
+    gx_view view;
+    add_box(&w, 0, 0.125, 0.125, 0.125, 0.25, 0.25, 0.25);
+    EXPECT_COUNTS(w, 2, 8, 2);
+    w = corner_tet();
+    add_octahedron(&w, 0, c, 0.125);
+    EXPECT_COUNTS(w, 2, 8, 2);
+    w = corner_tet();               /* nested, in any order */
+    add_box(&w, 0, 0.125, 0.125, 0.125, 0.25, 0.25, 0.25);
+    add_box(&w, 0, 0.0625, 0.0625, 0.0625, 0.28125, 0.28125, 0.28125);
+    add_box(&w, 0, 0.15625, 0.15625, 0.15625, 0.21875, 0.21875, 0.21875);
+    body = cut_at_once(&w);
+    view = view_of(body);
+    {
+        sized *s = sorted_cells(&view, 1);
+        double a = 0.0625 * 0.0625 * 0.0625, b = 0.125 * 0.125 * 0.125, d = 0.21875 * 0.21875 * 0.21875;
+        ck_assert_double_eq_tol(s[0].volume, a, 1e-12 * a);
+        ck_assert_double_eq_tol(s[1].volume, b - a, 1e-12 * a);
+        ck_assert_double_eq_tol(s[2].volume, d - b, 1e-12 * a);
+        ck_assert_double_eq_tol(s[3].volume, 1.0 / 6 - d, 1e-15);
+        free(s);
+    }
+    gx_body_destroy(body);
+    EXPECT_COUNTS(w, 4, 16, 4);
+    w = corner_tet();               /* two side by side in a face */
+    add_box(&w, 0, 0.0625, 0.0625, 0.0625, 0.125, 0.125, 0.125);
+    add_box(&w, 0, 0.125, 0.0625, 0.0625, 0.1875, 0.125, 0.125);
+    EXPECT_COUNTS(w, 3, 12, 3);
+    w = grid(2, 2, 2, 6);           /* a bubble around a node: through many elements */
+    add_octahedron(&w, 0, middle, 0.5);
+    body = cut_at_once(&w);
+    view = view_of(body);
+    ck_assert_uint_eq(view.fragment_count, 2);
+    ck_assert_double_eq_tol(fmin(view.fragment_volume[0], view.fragment_volume[1]), 4.0 / 3 * 0.125, 1e-14);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A plane with a square hole separates nothing in one element; the patch completes it. */
+START_TEST(sheet_with_a_hole) {
+    workload w = corner_tet();
+    wl_surface *s = wl_add_surface(&w, 0);
+    double out[4][3], in[4][3], y = 0.25;
+    int i;
+    for (i = 0; i < 4; ++i) {
+        out[i][0] = in[i][0] = 0.25; out[i][1] = in[i][1] = y; out[i][2] = in[i][2] = 0.25;
+        out[i][0] += i == 1 || i == 2 ? 4 : -4; out[i][2] += i >= 2 ? 4 : -4;
+        in[i][0] += i == 1 || i == 2 ? 0.0625 : -0.0625; in[i][2] += i >= 2 ? 0.0625 : -0.0625;
+    }
+    for (i = 0; i < 4; ++i) wl_add_quad(s, out[i], out[(i + 1) % 4], in[(i + 1) % 4], in[i]);
+    EXPECT_COUNTS(w, 1, 4, 1);
+    w = corner_tet();
+    s = wl_add_surface(&w, 0);
+    for (i = 0; i < 4; ++i) wl_add_quad(s, out[i], out[(i + 1) % 4], in[(i + 1) % 4], in[i]);
+    wl_add_quad(wl_add_surface(&w, 0), in[0], in[1], in[2], in[3]);
+    EXPECT_COUNTS(w, 2, 8, 2);
+}
+END_TEST
+
+START_TEST(self_crossing_folded_and_duplicate) {
+    static const double a[4][3] = { { -8, 0.25, -8 }, { 8, 0.25, -8 }, { 8, 0.25, 8 }, { -8, 0.25, 8 } },
+                        b[4][3] = { { 0.25, -8, -8 }, { 0.25, 8, -8 }, { 0.25, 8, 8 }, { 0.25, -8, 8 } };
+    workload w = corner_tet();
+    wl_surface *s = wl_add_surface(&w, 0);
+    gx_body *body;
+    gx_cut_report report;
+    double x[3] = { 0.1, 0.1, 0.1 };
+    uint32_t i;
+    wl_add_quad(s, a[0], a[1], a[2], a[3]);         /* one sheet that crosses itself */
+    wl_add_quad(s, b[0], b[1], b[2], b[3]);
+    wl_add_triangle(s, 0, 1, 2);                    /* duplicates, also reversed */
+    wl_add_triangle(s, 2, 1, 0);
+    wl_add_triangle(s, 1, 2, 3);                    /* overlapping in the plane */
+    wl_add_triangle(s, 0, 0, 1);                    /* no area: an index twice, three points of a line, one point */
+    i = wl_add_vertex(s, x); x[1] = 0.2; x[2] = 0.3; x[0] = 0.2;
+    wl_add_triangle(s, i, wl_add_vertex(s, x), i);
+    wl_add_triangle(s, i, i, i);
+    x[0] = -8; x[1] = 0.25; x[2] = 0;
+    wl_add_triangle(s, 0, 3, wl_add_vertex(s, x));
+    body = body_of(&w);
+    report = cut_by(body, &w, 0, 1);
+    ck_assert_uint_eq(report.ignored_triangles, 4);
+    ck_assert_uint_eq(view_of(body).cell_count, 4);
+    ck_assert_uint_eq(view_of(body).fragment_count, 4);
+    ck_assert_uint_eq(view_of(body).copy_count, 16);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A surface of nothing but zero-area triangles is a cut that does nothing. */
+START_TEST(nothing_but_flat_triangles) {
+    workload w = corner_tet();
+    wl_surface *s = wl_add_surface(&w, 0);
+    gx_body *body = body_of(&w);
+    uint64_t hash = hash_of(body);
+    gx_cut_report report;
+    double x[3] = { 0.1, 0.1, 0.1 };
+    wl_add_vertex(s, x);
+    wl_add_triangle(s, 0, 0, 0);
+    report = cut_by(body, &w, 0, 1);
+    ck_assert_uint_eq(report.ignored_triangles, 1);
+    ck_assert(hash_of(body) == hash);
+    s->solid = 1;
+    report = cut_by(body, &w, 0, 1);
+    ck_assert_uint_eq(report.ignored_triangles, 1);
+    ck_assert(hash_of(body) == hash);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- very many, very thin ---- */
+
+/* Planes x = i / (n + 1) in one call, as one surface */
+START_TEST(a_thousand_parallel_cuts) {
+    const int n = 1000 / FEWER;
+    workload w = corner_tet();
+    wl_surface *s = wl_add_surface(&w, 0);
+    gx_body *body;
+    gx_view view;
+    sized *cells, *truth;
+    double sum = 0;
+    int i, k;
+    for (i = 1; i <= n; ++i) {
+        double x[4][3];
+        for (k = 0; k < 4; ++k) { x[k][0] = i / (n + 1.0); x[k][1] = k == 1 || k == 2 ? 4 : -4; x[k][2] = k >= 2 ? 4 : -4; }
+        wl_add_quad(s, x[0], x[1], x[2], x[3]);
+    }
+    body = cut_at_once(&w);
+    view = view_of(body);
+    ck_assert_uint_eq(view.cell_count, (size_t)n + 1);
+    ck_assert_uint_eq(view.fragment_count, (size_t)n + 1);
+    ck_assert_uint_eq(view.copy_count, 4 * ((size_t)n + 1));
+    truth = (sized *)oracle_memory(NULL, (size_t)n + 1, sizeof *truth);
+    for (i = 0; i <= n; ++i) {
+        double a = 1 - i / (n + 1.0), b = i == n ? 0 : 1 - (i + 1) / (n + 1.0);
+        truth[i].element = 0; truth[i].volume = (a - b) * (a * a + a * b + b * b) / 6;
+    }
+    qsort(truth, (size_t)n + 1, sizeof *truth, by_size);
+    cells = sorted_cells(&view, 1);
+    for (i = 0; i <= n; ++i) {
+        ck_assert_msg(fabs(cells[i].volume - truth[i].volume) <= 1e-15, "%.17g, should be %.17g", cells[i].volume, truth[i].volume);
+        sum += cells[i].volume;
+    }
+    ck_assert_double_eq_tol(sum, 1.0 / 6, 1e-13);
+    free(cells); free(truth);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* 3 x 20 planes x, y, z = 1 ... 20 in the tetrahedron x + y + z <= 21: a lattice of unit cubes, cut off at the oblique face */
+START_TEST(three_times_twenty_planes) {
+    const int n = FEWER > 1 ? 10 : 20, m = n + 1;
+    static const double unit[4][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
+    double x[4][3], p[4][3];
+    workload w;
+    wl_surface *s;
+    gx_body *body;
+    gx_view view;
+    size_t count[3] = { 0, 0, 0 }, i;
+    int axis, j, k;
+    for (j = 0; j < 4; ++j) for (k = 0; k < 3; ++k) x[j][k] = m * unit[j][k];
+    w = wl_tetrahedron(x);
+    s = wl_add_surface(&w, 0);
+    for (axis = 0; axis < 3; ++axis) for (j = 1; j <= n; ++j) {
+        for (k = 0; k < 4; ++k) { p[k][axis] = j; p[k][(axis + 1) % 3] = k == 1 || k == 2 ? 64 : -64; p[k][(axis + 2) % 3] = k >= 2 ? 64 : -64; }
+        wl_add_quad(s, p[0], p[1], p[2], p[3]);
+    }
+    body = cut_at_once(&w);
+    view = view_of(body);
+    for (i = 0; i < view.cell_count; ++i) {
+        double v = view.cell_volume[i];
+        int kind = v < 0.3 ? 0 : v < 0.9 ? 1 : 2;
+        ck_assert_double_eq_tol(v, kind == 0 ? 1.0 / 6 : kind == 1 ? 5.0 / 6 : 1, 1e-11);
+        ++count[kind];
+    }
+    ck_assert_uint_eq(count[0], (size_t)(m * (m + 1) / 2));
+    ck_assert_uint_eq(count[1], (size_t)(m * (m - 1) / 2));
+    ck_assert_uint_eq(count[2], (size_t)(m * (m - 1) * (m - 2) / 6));
+    ck_assert_uint_eq(view.fragment_count, view.cell_count);
+    ck_assert_uint_eq(view.copy_count, 4 * view.cell_count);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Smallest eigenvalue of a symmetric 4 x 4 matrix, by Jacobi rotations */
+static double smallest_eigenvalue(double a[4][4]) {
+    int sweep, p, q, k;
+    double low;
+    for (sweep = 0; sweep < 30; ++sweep) for (p = 0; p < 4; ++p) for (q = p + 1; q < 4; ++q) {
+        double theta, t, c, s;
+        if (fabs(a[p][q]) < 1e-300) continue;
+        theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
+        t = (theta >= 0 ? 1 : -1) / (fabs(theta) + sqrt(theta * theta + 1));
+        c = 1 / sqrt(t * t + 1); s = t * c;
+        for (k = 0; k < 4; ++k) { double x = a[k][p], y = a[k][q]; a[k][p] = c * x - s * y; a[k][q] = s * x + c * y; }
+        for (k = 0; k < 4; ++k) { double x = a[p][k], y = a[q][k]; a[p][k] = c * x - s * y; a[q][k] = s * x + c * y; }
+    }
+    low = a[0][0];
+    for (k = 1; k < 4; ++k) low = fmin(low, a[k][k]);
+    return low;
+}
+
+/* Every kept cell: a positive volume, and a mass block that is positive semi-definite, also when scaled to a unit diagonal. */
+static void check_cells(gx_body *body, const char *what, uint64_t seed) {
+    static const int at[4][4] = { { 0, 1, 2, 3 }, { 1, 4, 5, 6 }, { 2, 5, 7, 8 }, { 3, 6, 8, 9 } };
+    uint32_t i;
+    for (i = 0; i < body->cell_count; ++i) {
+        const gxp_cell *cell = &body->cells[i];
+        double a[4][4], sum = 0, low;
+        int p, q;
+        if (!cell->kept) continue;
+        ck_assert_msg(cell->volume > 0, "seed %llu, %s: volume %g", (unsigned long long)seed, what, cell->volume);
+        for (p = 0; p < 4; ++p) for (q = 0; q < 4; ++q) sum += cell->mass[at[p][q]];
+        ck_assert_msg(fabs(sum - 1000 * cell->volume) <= 1e-9 * sum, "seed %llu, %s: mass %.17g, volume %.17g",
+                      (unsigned long long)seed, what, sum, cell->volume);
+        for (p = 0; p < 4; ++p) {
+            ck_assert_msg(cell->mass[at[p][p]] > 0, "seed %llu, %s: diagonal of the mass", (unsigned long long)seed, what);
+            for (q = 0; q < 4; ++q) a[p][q] = cell->mass[at[p][q]] / sqrt(cell->mass[at[p][p]] * cell->mass[at[q][q]]);
+        }
+        low = smallest_eigenvalue(a);
+        ck_assert_msg(low >= -1e-13, "seed %llu, %s: eigenvalue %g of the scaled mass, volume %g", (unsigned long long)seed, what, low, cell->volume);
+    }
+}
+
+/* A slab of the element beside a node, of size 10^-k: its volume to 1e-10, as its true size in doubles says */
+START_TEST(slivers) {
+    int k, kind;
+    for (k = 1; k <= 15; ++k) for (kind = 0; kind < 3; ++kind) {
+        double size = pow(10, -k), truth, thin;
+        workload w = corner_tet();
+        gx_body *body;
+        gx_view view;
+        if (kind == 0) {            /* a layer on the face x = 0 */
+            add_axis_plane(&w, 0, size);
+            truth = size * (3 - 3 * size + size * size) / 6;
+        } else if (kind == 1) {     /* the tip at x = 1 */
+            add_axis_plane(&w, 0, 1 - size);
+            size = 1 - (1 - size);
+            truth = size * size * size / 6;
+        } else {                    /* a thin slab in the middle */
+            double b = 0.75 - size, a = 0.75;
+            add_axis_plane(&w, 0, 0.25);
+            add_axis_plane(&w, 0, 1 - b);
+            b = 1 - (1 - b);
+            truth = (a - b) * (a * a + a * b + b * b) / 6;
+        }
+        body = cut_at_once(&w);
+        view = view_of(body);
+        ck_assert_uint_eq(view.fragment_count, kind == 2 ? 3 : 2);
+        {
+            sized *s = sorted_cells(&view, 1);
+            thin = s[0].volume;
+            free(s);
+        }
+        ck_assert_msg(fabs(thin - truth) <= 1e-10 * truth, "kind %d, 1e-%d: %.17g, should be %.17g", kind, k, thin, truth);
+        check_cells(body, "sliver", (uint64_t)k);
+        gx_body_destroy(body);
+        wl_free(&w);
+    }
+}
+END_TEST
+
+/* The same in general position: layers beside random planes */
+START_TEST(slivers_in_general_position) {
+    uint64_t seed = (uint64_t)_i;
+    workload w;
+    gx_body *body;
+    gx_cut_report report;
+    wl_frame f = wl_rotated();
+    double thickness;
+    int k;
+    random_seed(seed);
+    w = random_mesh();
+    for (k = 0; k < 3; ++k) f.origin[k] = random_real(0.2, 0.8);
+    thickness = pow(10, -random_real(3, 12));
+    wl_add_box(wl_add_surface(&w, 0), &f, 5, 5, thickness / 2);
+    add_random_plane(&w, 40);
+    body = cut_at_once(&w);
+    check_cells(body, "general position", seed);
+    gx_body_destroy(body);
+    w.surfaces[0].solid = 1;
+    body = body_of(&w);
+    report = cut_by(body, &w, 0, 1);
+    CHECK_SEED(report.removed_volume > 0 || view_of(body).copy_count == w.node_count, seed);
+    check_cells(body, "solid", seed);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A solid 1e-12 thick takes the cube apart and removes what it should: its thickness, as doubles hold it. */
+START_TEST(thin_solid) {
+    workload w = grid(1, 1, 1, 5);
+    gx_body *body = body_of(&w);
+    gx_cut_report report;
+    double x = 0.3, y = 0.3 + 1e-12;
+    add_box(&w, 1, x, -2, -3, y, 4, 5);
+    report = cut_by(body, &w, 0, 1);
+    ck_assert_uint_eq(view_of(body).fragment_count, 2);
+    ck_assert_uint_eq(view_of(body).copy_count, 16);
+    ck_assert_msg(fabs(report.removed_volume - (y - x)) <= 1e-10 * (y - x), "%.17g, should be %.17g", report.removed_volume, y - x);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- scopes ---- */
+
+static gx_result cut_in_scope(gx_body *body, const workload *w, size_t surface, const uint32_t *fragments, size_t fragment_count,
+                              const uint32_t *cells, size_t cell_count, gx_failure *failure) {
+    gx_surface s = surface_of(&w->surfaces[surface]);
+    gx_cut_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.surfaces = &s; desc.surface_count = 1;
+    desc.scope_fragments = fragments; desc.scope_fragment_count = fragment_count;
+    desc.scope_cells = cells; desc.scope_cell_count = cell_count;
+    return gx_body_cut(body, &desc, NULL, failure);
+}
+
+/* A blade through both halves of a cube that cuts one of them; by fragments and by cells; as sheet and as solid. */
+START_TEST(scope_of_a_cut) {
+    int by_cells, solid;
+    for (by_cells = 0; by_cells < 2; ++by_cells) for (solid = 0; solid < 2; ++solid) {
+        workload w = grid(1, 1, 1, 5);
+        gx_body *body = body_of(&w);
+        gx_view view;
+        uint32_t cells[32], scope = 1;
+        size_t i, count = 0;
+        add_axis_plane(&w, 0, 0.5);
+        if (solid) add_box(&w, 1, -1, 0.25, -1, 2, 0.75, 2); else add_axis_plane(&w, 1, 0.5);
+        add_axis_plane(&w, 1, 0.5);
+        cut_by(body, &w, 0, 1);
+        view = view_of(body);
+        ck_assert_uint_eq(view.fragment_count, 2);
+        for (i = 0; i < view.cell_count; ++i) if (view.cell_fragment[i] == scope) cells[count++] = (uint32_t)i;
+        ck_assert_int_eq(cut_in_scope(body, &w, 1, by_cells ? NULL : &scope, !by_cells, by_cells ? cells : NULL, by_cells ? count : 0, NULL), GX_OK);
+        view = view_of(body);
+        ck_assert_uint_eq(view.fragment_count, 3);
+        ck_assert_double_eq_tol(view.volume, solid ? 0.75 : 1, 1e-14);
+        for (i = 0; i < 3; ++i)
+            ck_assert(fabs(view.fragment_volume[i] - 0.5) < 1e-14 || fabs(view.fragment_volume[i] - (solid ? 0.125 : 0.25)) < 1e-14);
+        cut_by(body, &w, 2, 1);     /* the same blade, without a scope */
+        ck_assert_uint_eq(view_of(body).fragment_count, 4);
+        gx_body_destroy(body);
+        wl_free(&w);
+    }
+}
+END_TEST
+
+/* A scope of both fragments is no scope; an index out of range is named. */
+START_TEST(scope_of_everything_and_of_nothing) {
+    static const uint32_t all[2] = { 0, 1 }, wrong[2] = { 0, 2 }, cells[2] = { 3, 1000 };
+    workload w = grid(1, 1, 1, 5);
+    gx_body *a, *b;
+    gx_failure failure;
+    uint64_t state;
+    add_axis_plane(&w, 0, 0.5);
+    add_axis_plane(&w, 1, 0.5);
+    a = cut_in_sequence(&w);
+    b = body_of(&w);
+    cut_by(b, &w, 0, 1);
+    state = gx_body_state_hash(b);
+    ck_assert_int_eq(cut_in_scope(b, &w, 1, wrong, 2, NULL, 0, &failure), GX_ERROR_INDEX);
+    ck_assert_uint_eq(failure.index, 1);
+    ck_assert_int_eq(cut_in_scope(b, &w, 1, NULL, 0, cells, 2, &failure), GX_ERROR_INDEX);
+    ck_assert_uint_eq(failure.index, 1);
+    ck_assert_int_eq(cut_in_scope(b, &w, 1, NULL, 2, NULL, 0, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(cut_in_scope(b, &w, 1, NULL, 0, NULL, 2, &failure), GX_ERROR_ARGUMENT);
+    ck_assert(gx_body_state_hash(b) == state);
+    ck_assert_int_eq(cut_in_scope(b, &w, 1, all, 2, NULL, 0, NULL), GX_OK);
+    expect_same(a, b, 1, 1e-13, 1e-14, "scope of all", 0);
+    gx_body_destroy(a); gx_body_destroy(b);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- solids ---- */
+
+static void expect_volumes(workload w, double kept, double removed, size_t fragments, int line) {
+    int at_once;
+    for (at_once = 0; at_once < 2; ++at_once) {
+        gx_body *body = body_of(&w);
+        double sum = 0;
+        size_t i;
+        if (at_once) sum = cut_by(body, &w, 0, w.surface_count).removed_volume;
+        else for (i = 0; i < w.surface_count; ++i) sum += cut_by(body, &w, i, 1).removed_volume;
+        ck_assert_msg(fabs(view_of(body).volume - kept) <= 1e-13 * kept, "line %d: kept %.17g, should be %.17g", line, view_of(body).volume, kept);
+        ck_assert_msg(fabs(sum - removed) <= 1e-12 * removed, "line %d: removed %.17g, should be %.17g", line, sum, removed);
+        ck_assert_msg(view_of(body).fragment_count == fragments, "line %d: %zu fragments", line, view_of(body).fragment_count);
+        gx_body_destroy(body);
+    }
+    wl_free(&w);
+}
+#define EXPECT_VOLUMES(w, kept, removed, fragments) expect_volumes(w, kept, removed, fragments, __LINE__)
+
+static void turn_inside_out(wl_surface *s, size_t first) {
+    size_t i;
+    for (i = first; i < s->triangle_count; ++i) { uint32_t t = s->triangles[3 * i]; s->triangles[3 * i] = s->triangles[3 * i + 1]; s->triangles[3 * i + 1] = t; }
+}
+
+START_TEST(solids_remove) {
+    static const double low[3] = { 0.375, 0.375, 0.375 }, high[3] = { 0.625, 0.625, 0.625 }, c[3] = { 0.5, 0.5, 0.5 };
+    workload w = grid(1, 1, 1, 5);
+    wl_surface *s;
+    add_box(&w, 1, 0.25, 0.25, 0.25, 0.75, 0.75, 0.75);             /* a cavity */
+    EXPECT_VOLUMES(w, 0.875, 0.125, 1);
+    w = grid(1, 1, 1, 5);
+    turn_inside_out(add_box(&w, 1, 0.25, 0.25, 0.25, 0.75, 0.75, 0.75), 0);
+    EXPECT_VOLUMES(w, 0.875, 0.125, 1);
+    w = grid(1, 1, 1, 6);
+    add_octahedron(&w, 1, c, 0.25);
+    EXPECT_VOLUMES(w, 1 - 1.0 / 48, 1.0 / 48, 1);
+    w = grid(1, 1, 1, 5);
+    add_box(&w, 1, -1, 0.25, -1, 2, 0.75, 2);                       /* a slab */
+    EXPECT_VOLUMES(w, 0.5, 0.5, 2);
+    w = grid(1, 1, 1, 5);                                           /* a shell: its inside is turned, what it holds stays */
+    s = add_box(&w, 1, 0.25, 0.25, 0.25, 0.75, 0.75, 0.75);
+    wl_add_aligned_box(s, low, high);
+    turn_inside_out(s, 12);
+    EXPECT_VOLUMES(w, 0.890625, 0.109375, 2);
+    w = grid(1, 1, 1, 5);                                           /* not turned: it winds twice around the middle */
+    s = add_box(&w, 1, 0.25, 0.25, 0.25, 0.75, 0.75, 0.75);
+    wl_add_aligned_box(s, low, high);
+    EXPECT_VOLUMES(w, 0.875, 0.125, 1);
+    w = grid(2, 1, 1, 6);                                           /* overlapping, as two solids */
+    add_box(&w, 1, 0.25, -1, -1, 1, 2, 2);
+    add_box(&w, 1, 0.5, -1, -1, 1.25, 2, 2);
+    EXPECT_VOLUMES(w, 1, 1, 2);
+}
+END_TEST
+
+START_TEST(solids_with_coincident_faces) {
+    static const double corner[4][3] = { { 0, 0, 0 }, { 1, 1, 0 }, { 1, 0, 1 }, { 0, 1, 1 } };
+    static const uint32_t face[4][3] = { { 0, 2, 1 }, { 0, 1, 3 }, { 0, 3, 2 }, { 1, 2, 3 } };
+    workload w = grid(1, 1, 1, 5);
+    wl_surface *s;
+    int i, turned;
+    add_box(&w, 1, 0, 0, 0, 1, 1, 0.5);                             /* five of its faces lie in the body's */
+    EXPECT_VOLUMES(w, 0.5, 0.5, 1);
+    for (turned = 0; turned < 2; ++turned) {                        /* the solid is the middle tetrahedron */
+        w = grid(1, 1, 1, 5);
+        s = wl_add_surface(&w, 1);
+        for (i = 0; i < 4; ++i) wl_add_vertex(s, corner[i]);
+        for (i = 0; i < 4; ++i) wl_add_triangle(s, face[i][0], face[i][1], face[i][2]);
+        if (turned) turn_inside_out(s, 0);
+        EXPECT_VOLUMES(w, 2.0 / 3, 1.0 / 3, 4);
+    }
+    w = grid(1, 1, 1, 5);                                           /* beside the body, with a common face */
+    add_box(&w, 1, 1, 0, 0, 2, 1, 1);
+    EXPECT_VOLUMES(w, 1, 0, 1);
+    w = grid(1, 1, 1, 5);                                           /* two that share a face, one surface */
+    s = add_box(&w, 1, -1, -1, 0.25, 2, 2, 0.5);
+    { static const double low[3] = { -1, -1, 0.5 }, high[3] = { 2, 2, 0.75 }; wl_add_aligned_box(s, low, high); }
+    EXPECT_VOLUMES(w, 0.5, 0.5, 2);
+    w = grid(1, 1, 1, 5);                                           /* the same box in both directions cancels */
+    s = add_box(&w, 1, 0.25, 0.25, 0.25, 0.5, 0.5, 0.5);
+    { static const double low[3] = { 0.25, 0.25, 0.25 }, high[3] = { 0.5, 0.5, 0.5 }; wl_add_aligned_box(s, low, high); }
+    turn_inside_out(s, 12);
+    EXPECT_VOLUMES(w, 1, 0, 1);
+}
+END_TEST
+
+/* Two cubes that do not touch; the solid holds one of them, or both. */
+START_TEST(solids_that_contain_everything) {
+    workload w = grid(1, 1, 1, 5), other = grid(1, 1, 1, 5);
+    gx_body *body;
+    gx_view view;
+    gx_skin skin;
+    gx_step_desc step;
+    size_t i;
+    for (i = 0; i < 8; ++i) wl_add_node(&w, other.positions[3 * i] + 2, other.positions[3 * i + 1], other.positions[3 * i + 2]);
+    for (i = 0; i < 5; ++i)
+        wl_add_element(&w, 8 + other.elements[4 * i], 8 + other.elements[4 * i + 1], 8 + other.elements[4 * i + 2], 8 + other.elements[4 * i + 3]);
+    wl_free(&other);
+    body = body_of(&w);
+    ck_assert_uint_eq(view_of(body).fragment_count, 2);
+    add_box(&w, 1, 1.5, -1, -1, 4, 2, 2);
+    add_box(&w, 1, -3, -4, -5, 8, 9, 7);
+    add_axis_plane(&w, 0, 0.5);
+    ck_assert_double_eq_tol(cut_by(body, &w, 0, 1).removed_volume, 1, 1e-14);
+    view = view_of(body);
+    ck_assert_uint_eq(view.fragment_count, 1);
+    ck_assert_uint_eq(view.copy_count, 8);
+    ck_assert_double_eq_tol(cut_by(body, &w, 1, 1).removed_volume, 1, 1e-14);
+    view = view_of(body);
+    ck_assert_uint_eq(view.fragment_count + view.copy_count + view.cell_count, 0);
+    ck_assert(view.volume == 0 && view.mass == 0);
+    cut_by(body, &w, 2, 1);         /* what is left can still be cut, looked at, moved */
+    cut_by(body, &w, 1, 1);
+    ck_assert_uint_eq(view_of(body).cell_count, 0);
+    ck_assert_int_eq(gx_body_skin(body, &skin), GX_OK);
+    ck_assert_uint_eq(skin.triangle_count, 0);
+    memset(&step, 0, sizeof step);
+    step.dt = 0.01;
+    ck_assert_int_eq(gx_body_step(body, &step, NULL), GX_OK);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A solid without volume: a rectangle and its reverse, by itself and beside a box; walls are only where something was removed. */
+START_TEST(solids_without_volume_do_nothing) {
+    workload w = grid(1, 1, 1, 5);
+    wl_surface *s = add_rectangle(&w, 0.5, -2, -2, 3, 3), *t;
+    gx_body *body;
+    uint64_t hash;
+    size_t i;
+    s->solid = 1;
+    for (i = 0; i < 2; ++i) wl_add_triangle(s, s->triangles[3 * i + 1], s->triangles[3 * i], s->triangles[3 * i + 2]);
+    t = add_box(&w, 1, 0.25, 0.625, 0.25, 0.5, 0.75, 0.5);
+    { static const double low[3] = { 0.25, 0.5, 0.25 }, high[3] = { 0.5, 0.5, 0.5 }; wl_add_aligned_box(t, low, high); }
+    body = body_of(&w);
+    hash = hash_of(body);
+    {
+        gx_cut_report report = cut_by(body, &w, 0, 1);
+        ck_assert_uint_eq(report.created_copies + report.created_cells + report.removed_cells, 0);
+        ck_assert(report.removed_volume == 0 && hash_of(body) == hash);
+        report = cut_by(body, &w, 1, 1);
+        ck_assert_double_eq_tol(report.removed_volume, 0.0078125, 1e-15);
+        ck_assert_uint_eq(view_of(body).fragment_count, 1);
+        ck_assert_uint_eq(view_of(body).copy_count, 8);
+    }
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+START_TEST(open_solids_are_refused) {
+    int kind;
+    for (kind = 0; kind < 3; ++kind) {
+        workload w = grid(1, 1, 1, 5);
+        wl_surface *s;
+        gx_surface surfaces[2];
+        gx_cut_desc desc;
+        gx_failure failure;
+        gx_body *body = body_of(&w);
+        uint64_t state = gx_body_state_hash(body);
+        add_axis_plane(&w, 0, 0.5);
+        s = add_box(&w, 1, 0.25, 0.25, 0.25, 0.75, 0.75, 0.75);
+        if (kind == 0) --s->triangle_count;                         /* a triangle is missing */
+        if (kind == 1) turn_inside_out(s, 11);                      /* one is turned */
+        if (kind == 2) s->vertices[3 * 6] = nextafter(s->vertices[3 * 6], 1);      /* moved, with all its triangles: still closed */
+        surfaces[0] = surface_of(&w.surfaces[0]); surfaces[1] = surface_of(s);
+        memset(&desc, 0, sizeof desc);
+        desc.surfaces = surfaces; desc.surface_count = 2;
+        if (kind == 2) ck_assert_int_eq(gx_body_cut(body, &desc, NULL, &failure), GX_OK);
+        else {
+            ck_assert_int_eq(gx_body_cut(body, &desc, NULL, &failure), GX_ERROR_NOT_CLOSED);
+            ck_assert_int_eq(failure.result, GX_ERROR_NOT_CLOSED);
+            ck_assert_uint_eq(failure.surface, 1);
+            ck_assert_uint_lt(failure.index, s->triangle_count);
+            ck_assert(gx_body_state_hash(body) == state);
+            ck_assert_uint_eq(view_of(body).copy_count, 8);
+        }
+        gx_body_destroy(body);
+        wl_free(&w);
+    }
+}
+END_TEST
+
+/* A closed surface whose triangles do not share vertices, only coordinates */
+START_TEST(triangle_soup_can_be_closed) {
+    workload w = grid(1, 1, 1, 5);
+    wl_surface *box = add_box(&w, 1, 0.25, 0.25, 0.25, 0.75, 0.75, 0.75), *soup = wl_add_surface(&w, 1);
+    gx_body *body = body_of(&w);
+    size_t i;
+    for (i = 0; i < 3 * box->triangle_count; i += 3) {
+        uint32_t a = wl_add_vertex(soup, box->vertices + 3 * box->triangles[i]), b = wl_add_vertex(soup, box->vertices + 3 * box->triangles[i + 1]);
+        wl_add_triangle(soup, a, b, wl_add_vertex(soup, box->vertices + 3 * box->triangles[i + 2]));
+    }
+    ck_assert_double_eq_tol(cut_by(body, &w, 1, 1).removed_volume, 0.125, 1e-15);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+static double signed_volume(const double *vertices, const uint32_t *triangles, size_t count) {
+    double six = 0;
+    size_t t;
+    for (t = 0; t < count; ++t) {
+        const double *a = vertices + 3 * triangles[3 * t], *b = vertices + 3 * triangles[3 * t + 1], *c = vertices + 3 * triangles[3 * t + 2];
+        six += a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+    }
+    return six / 6;
+}
+
+/* Makes surface `sheet` of the workload solid by the library, as its next surface; its volume. */
+static double solidify(workload *w, size_t sheet, double thickness) {
+    gx_surface s = surface_of(&w->surfaces[sheet]);
+    wl_surface *solid = wl_add_surface(w, 1);
+    solid->vertices = (double *)oracle_memory(NULL, 6 * s.vertex_count, sizeof(double));
+    solid->triangles = (uint32_t *)oracle_memory(NULL, 24 * s.triangle_count, sizeof(uint32_t));
+    ck_assert_int_eq(gx_surface_solidify(&s, thickness, solid->vertices, &solid->vertex_count, solid->triangles, &solid->triangle_count, NULL), GX_OK);
+    ck_assert_uint_le(solid->vertex_count, 2 * s.vertex_count);
+    ck_assert_uint_le(solid->triangle_count, 8 * s.triangle_count);
+    return signed_volume(solid->vertices, solid->triangles, solid->triangle_count);
+}
+
+START_TEST(solidified_sheets) {
+    static const double c[3] = { 0.5, 0.5, 0.5 };
+    workload w = grid(1, 1, 1, 5);
+    wl_frame f = wl_rotated();
+    gx_body *body;
+    gx_surface sheet;
+    double v, vertices[64];
+    uint32_t triangles[64];
+    size_t nv, nt;
+    add_rectangle(&w, 0.5, -0.5, -0.5, 1.5, 1.5);           /* a plane: area times thickness; 1/16 of the cube goes */
+    v = solidify(&w, 0, 0.0625);
+    ck_assert_double_eq_tol(v, 4 * 0.0625, 1e-14);
+    body = body_of(&w);
+    ck_assert_double_eq_tol(cut_by(body, &w, 1, 1).removed_volume, 0.0625, 1e-15);
+    ck_assert_uint_eq(view_of(body).fragment_count, 2);
+    gx_body_destroy(body);
+    wl_free(&w);
+    w = grid(1, 1, 1, 5);                                   /* an oblique rectangle */
+    f.origin[0] = f.origin[1] = f.origin[2] = 0.5;
+    {
+        static const double q[4][3] = { { -3, -2, 0 }, { 3, -2, 0 }, { 3, 2, 0 }, { -3, 2, 0 } };
+        double x[4][3];
+        int i;
+        for (i = 0; i < 4; ++i) wl_place(&f, q[i], x[i]);
+        wl_add_quad(wl_add_surface(&w, 0), x[0], x[1], x[2], x[3]);
+    }
+    v = solidify(&w, 0, 1e-3);
+    ck_assert_double_eq_tol(v, 24 * 1e-3, 1e-12);
+    body = body_of(&w);
+    cut_by(body, &w, 1, 1);
+    ck_assert_uint_eq(view_of(body).fragment_count, 2);
+    gx_body_destroy(body);
+    wl_free(&w);
+    w = grid(1, 1, 1, 5);                                   /* a wave: what is removed is what it holds in the body */
+    wl_add_wave(wl_add_surface(&w, 0), &f, 8, 2);
+    solidify(&w, 0, 1e-2);
+    body = body_of(&w);
+    ck_assert_double_gt(cut_by(body, &w, 1, 1).removed_volume, 0.5e-2);
+    ck_assert_uint_eq(view_of(body).fragment_count, 2);
+    gx_body_destroy(body);
+    wl_free(&w);
+    w = grid(1, 1, 1, 5);                                   /* a closed sheet becomes a shell: a bubble floats in it */
+    add_octahedron(&w, 0, c, 0.25);
+    v = solidify(&w, 0, 0.0625);
+    body = body_of(&w);
+    ck_assert_double_eq_tol(cut_by(body, &w, 1, 1).removed_volume, v, 1e-13);
+    ck_assert_uint_eq(view_of(body).fragment_count, 2);
+    gx_body_destroy(body);
+    sheet = surface_of(&w.surfaces[0]);
+    ck_assert_int_eq(gx_surface_solidify(&sheet, 0, vertices, &nv, triangles, &nt, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_surface_solidify(&sheet, -1, vertices, &nv, triangles, &nt, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_surface_solidify(&sheet, NAN, vertices, &nv, triangles, &nt, NULL), GX_ERROR_NOT_FINITE);
+    ck_assert_int_eq(gx_surface_solidify(NULL, 1, vertices, &nv, triangles, &nt, NULL), GX_ERROR_ARGUMENT);
+    sheet.triangle_count = 0;
+    ck_assert_int_eq(gx_surface_solidify(&sheet, 1, vertices, &nv, triangles, &nt, NULL), GX_ERROR_EMPTY);
+    wl_free(&w);
+}
+END_TEST
+
+/* Random sheets, some of inconsistent orientation or with a vertex in no triangle: always closed, always accepted. */
+START_TEST(solidified_sheets_are_closed) {
+    uint64_t seed = (uint64_t)_i;
+    workload w;
+    wl_surface *s;
+    gx_body *body;
+    int i, n, k;
+    random_seed(seed);
+    w = grid(1, 1, 1, 5);
+    s = wl_add_surface(&w, 0);
+    n = 4 + random_below(5);
+    for (i = 0; i < n; ++i) {
+        double x[3];
+        for (k = 0; k < 3; ++k) x[k] = random_real(-1, 2);
+        wl_add_vertex(s, x);
+    }
+    for (i = 1 + random_below(6); i > 0; --i) {
+        uint32_t a = (uint32_t)random_below(n), b = (a + 1 + (uint32_t)random_below(n - 1)) % (uint32_t)n, c = a;
+        while (c == a || c == b) c = (uint32_t)random_below(n);
+        wl_add_triangle(s, a, b, c);
+    }
+    solidify(&w, 0, 0.01);
+    body = body_of(&w);
+    cut_by(body, &w, 1, 1);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- meshes that hang together in an edge or a node ---- */
+
+/* Two tetrahedra that share an edge (shared = 2) or a node (1), on both sides of x + y = 0 */
+static workload pinched(int shared) {
+    workload w = wl_empty();
+    wl_add_node(&w, 0, 0, 0); wl_add_node(&w, 0, 0, 1); wl_add_node(&w, 1, 0, 0); wl_add_node(&w, 0, 1, 0);
+    wl_add_node(&w, -1, 0, 0); wl_add_node(&w, 0, -1, 0);
+    wl_add_element(&w, 0, 1, 2, 3);
+    if (shared == 2) wl_add_element(&w, 0, 1, 4, 5); else wl_add_element(&w, 0, 4, 5, wl_add_node(&w, 0, 0, -1));
+    return w;
+}
+
+START_TEST(pinched_meshes) {
+    static const double o[3] = { 0, 0, 0 }, z[3] = { 0, 0, 1 }, across[3] = { 1, -1, 0 };
+    workload w = pinched(2);
+    EXPECT_COUNTS(w, 2, 6, 1);
+    w = pinched(1);
+    EXPECT_COUNTS(w, 2, 7, 1);
+    w = pinched(2);                     /* through the common edge */
+    add_plane_through(&w, o, z, across);
+    EXPECT_COUNTS(w, 2, 8, 2);
+    w = pinched(1);
+    add_plane_through(&w, o, z, across);
+    EXPECT_COUNTS(w, 2, 8, 2);
+    w = pinched(2);                     /* across the edge: two pieces, each held together by its half of the edge */
+    add_axis_plane(&w, 2, 0.5);
+    EXPECT_COUNTS(w, 4, 12, 2);
+    w = pinched(1);                     /* beside the node: cuts the first tetrahedron only */
+    add_axis_plane(&w, 2, 0.5);
+    EXPECT_COUNTS(w, 3, 11, 2);
+    w = pinched(2);                     /* half of the edge is cut through, the other half still joins */
+    {
+        wl_surface *s = wl_add_surface(&w, 0);
+        double a[3] = { 2, -2, 0.5 }, b[3] = { -2, 2, 0.5 }, c[3] = { -2, 2, 4 }, d[3] = { 2, -2, 4 };
+        wl_add_quad(s, a, b, c, d);
+    }
+    EXPECT_COUNTS(w, 2, 7, 1);
+}
+END_TEST
+
+/* A solid takes away the node or edge by which two elements hang together. */
+START_TEST(solid_around_a_pinch) {
+    workload w = pinched(1);
+    gx_body *body;
+    add_box(&w, 1, -0.125, -0.125, -0.125, 0.125, 0.125, 0.125);
+    body = cut_at_once(&w);
+    ck_assert_uint_eq(view_of(body).fragment_count, 2);
+    ck_assert_uint_eq(view_of(body).copy_count, 8);
+    gx_body_destroy(body);
+    wl_free(&w);
+    w = pinched(2);
+    add_box(&w, 1, -0.125, -0.125, -1, 0.125, 0.125, 0.5);
+    body = cut_at_once(&w);
+    ck_assert_uint_eq(view_of(body).fragment_count, 1);
+    gx_body_destroy(body);
+    add_box(&w, 1, -0.125, -0.125, 0.5, 0.125, 0.125, 2);
+    body = cut_in_sequence(&w);
+    ck_assert_uint_eq(view_of(body).fragment_count, 2);
+    ck_assert_uint_eq(view_of(body).copy_count, 8);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- held regions ---- */
+
+/* Has a cell material in the region? By its rounded points, with a margin: 1 yes, -1 no, 0 too near to tell. */
+static int cell_reaches(gx_body *body, uint32_t cell, const gx_region *r) {
+    double reach = -1e300;
+    uint32_t leaf, i;
+    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next) {
+        ck_assert_int_eq(gxp_leaf_points(body, leaf), GX_OK);
+        for (i = 0; i < body->list.count; ++i) {
+            double x[3];
+            gxp_point_position(body->complex, body->complex->points[body->list.data[i]].ball.x, x);
+            reach = fmax(reach, (x[r->axis] - r->value) * r->side);
+        }
+    }
+    return reach > 1e-9 ? 1 : reach < -1e-9 ? -1 : 0;
+}
+
+static void check_held(gx_body *body, const gx_region *regions, size_t count, uint64_t seed) {
+    gx_view view = view_of(body);
+    size_t c, r, i, k;
+    for (c = 0; c < view.copy_count; ++c) {
+        int expected = -1;
+        for (r = 0; r < count; ++r) {
+            double x = body->positions[3 * view.copy_node[c] + regions[r].axis];
+            if (!((x - regions[r].value) * regions[r].side > 0)) continue;
+            for (i = 0; i < view.cell_count; ++i) for (k = 0; k < 4; ++k)
+                if (view.cell_copies[4 * i + k] == c) expected = (int)fmax(expected, cell_reaches(body, body->view_cells.data[i], &regions[r]));
+        }
+        if (expected != 0) ck_assert_msg((expected > 0) == (view.copy_held[c] == 1), "seed %llu: copy %zu of node %u: held %u",
+                                         (unsigned long long)seed, c, view.copy_node[c], view.copy_held[c]);
+    }
+}
+
+START_TEST(held_copies) {
+    uint64_t seed = (uint64_t)_i;
+    workload w = random_scene(seed, 4, 1);
+    gx_body *body = body_of(&w);
+    gx_region regions[2];
+    size_t c;
+    int i;
+    for (i = 0; i < 2; ++i) { regions[i].axis = (uint32_t)random_below(3); regions[i].side = random_below(2) ? 1 : -1; regions[i].value = random_real(0.05, 0.95); }
+    ck_assert_int_eq(gx_body_hold(body, regions, 2), GX_OK);
+    check_held(body, regions, 2, seed);
+    for (c = 0; c < w.surface_count; ++c) {
+        cut_by(body, &w, c, 1);
+        if (c == 2) { regions[0].value = 0.5; ck_assert_int_eq(gx_body_hold(body, regions, 1), GX_OK); }
+        check_held(body, regions, c < 2 ? 2 : 1, seed);
+    }
+    ck_assert_int_eq(gx_body_hold(body, NULL, 0), GX_OK);
+    check_held(body, NULL, 0, seed);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Layers: only the uppermost reaches the region, so only its copies of the upper nodes are held. On the border is not inside. */
+START_TEST(pieces_outside_the_region_are_free) {
+    workload w = grid(1, 1, 1, 5);
+    gx_region region = { 2, 1, 0.75 };
+    gx_body *body = body_of(&w);
+    gx_view view;
+    size_t i, held = 0;
+    add_axis_plane(&w, 2, 0.25);
+    add_axis_plane(&w, 2, 0.5);
+    add_axis_plane(&w, 2, 0.75);
+    ck_assert_int_eq(gx_body_hold(body, &region, 1), GX_OK);
+    for (i = 0; i < 3; ++i) {
+        size_t j;
+        cut_by(body, &w, i, 1);
+        view = view_of(body);
+        for (j = held = 0; j < view.copy_count; ++j) {
+            held += view.copy_held[j];
+            ck_assert(!view.copy_held[j] || body->positions[3 * view.copy_node[j] + 2] == 1);
+        }
+        ck_assert_uint_eq(held, 4);
+    }
+    region.value = 1;
+    ck_assert_int_eq(gx_body_hold(body, &region, 1), GX_OK);
+    view = view_of(body);
+    for (i = 0; i < view.copy_count; ++i) ck_assert(!view.copy_held[i]);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- time steps ---- */
+
+static gx_step_desc still_step(void) {
+    gx_step_desc step;
+    memset(&step, 0, sizeof step);
+    step.dt = 0.033;
+    return step;
+}
+
+/* sum over parts of M v, and of |M v| for scale */
+static double momentum(gx_body *body, double p[3]) {
+    static const int at[4][4] = { { 0, 1, 2, 3 }, { 1, 4, 5, 6 }, { 2, 5, 7, 8 }, { 3, 6, 8, 9 } };
+    double size = 0;
+    uint32_t i;
+    int a, b, k;
+    p[0] = p[1] = p[2] = 0;
+    for (i = 0; i < body->cell_count; ++i) for (a = 0; a < 4 && body->cells[i].kept; ++a) for (b = 0; b < 4; ++b) for (k = 0; k < 3; ++k) {
+        double x = body->cells[i].mass[at[a][b]] * body->velocity[3 * body->cells[i].copies[b] + (uint32_t)k];
+        p[k] += x; size += fabs(x);
+    }
+    return size;
+}
+
+START_TEST(free_bodies_keep_their_momentum) {
+    uint64_t seed = (uint64_t)_i;
+    workload w = random_scene(seed, 2, 0);
+    gx_body *body = cut_at_once(&w);
+    gx_view view = view_of(body);
+    gx_step_desc step = still_step();
+    double before[3], after[3], size;
+    size_t i;
+    int k, n;
+    step.dt = 0.01; step.newton_iterations = 30; step.newton_tolerance = 1e-9; step.cg_tolerance = 1e-10; step.cg_iterations = 20000;
+    for (i = 0; i < 3 * view.copy_count; ++i) { view.velocity[i] = random_real(-0.1, 0.1); view.displacement[i] = random_real(-0.01, 0.01); }
+    size = momentum(body, before);
+    for (n = 0; n < 3; ++n) {
+        gx_result result = gx_body_step(body, &step, NULL);
+        CHECK_SEED(result == GX_OK, seed);
+    }
+    momentum(body, after);
+    for (k = 0; k < 3; ++k)
+        ck_assert_msg(fabs(after[k] - before[k]) <= 1e-6 * size, "seed %llu: momentum %.17g, was %.17g", (unsigned long long)seed, after[k], before[k]);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Backward Euler: after n steps every copy has fallen g dt^2 n (n + 1) / 2. */
+START_TEST(fragments_fall) {
+    workload w = grid(1, 1, 1, 5);
+    gx_body *body;
+    gx_view view;
+    gx_step_desc step = still_step();
+    double fallen;
+    size_t i;
+    int n;
+    for (i = 1; i <= 2; ++i) { add_axis_plane(&w, 0, (double)i / 3); add_axis_plane(&w, 1, (double)i / 3); }
+    body = cut_at_once(&w);
+    step.gravity[2] = -9.81;
+    step.cg_tolerance = 1e-10;
+    for (n = 0; n < 10; ++n) ck_assert_int_eq(gx_body_step(body, &step, NULL), GX_OK);
+    view = view_of(body);
+    ck_assert_uint_eq(view.fragment_count, 9);
+    fallen = 9.81 * step.dt * step.dt * 55;
+    for (i = 0; i < view.copy_count; ++i) {
+        ck_assert_double_eq_tol(view.displacement[3 * i + 2], -fallen, 1e-6 * fallen);
+        ck_assert_double_eq_tol(view.displacement[3 * i], 0, 1e-6 * fallen);
+        ck_assert_double_eq_tol(view.velocity[3 * i + 2], -9.81 * step.dt * 10, 1e-6);
+    }
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Held above, cut half through: hangs, near its place. Cut through: the lower half falls. */
+START_TEST(held_body_hangs) {
+    workload w = grid(1, 1, 2, 5);
+    gx_body *body = body_of(&w);
+    gx_region region = { 2, 1, 1.5 };
+    gx_step_desc step = still_step();
+    gx_view view;
+    size_t i;
+    int n, free_copies = 0;
+    add_box(&w, 0, -1, -1, -1, 0.5, 3, 0.75);
+    add_axis_plane(&w, 2, 0.75);
+    ck_assert_int_eq(gx_body_hold(body, &region, 1), GX_OK);
+    step.gravity[2] = -9.81; step.newton_iterations = 2; step.cg_tolerance = 1e-6;
+    cut_by(body, &w, 0, 1);
+    for (n = 0; n < 30; ++n) {
+        ck_assert_int_eq(gx_body_step(body, &step, NULL), GX_OK);
+        view = view_of(body);
+        for (i = 0; i < 3 * view.copy_count; ++i) {
+            if (view.copy_held[i / 3]) ck_assert(view.displacement[i] == 0);
+        }
+    }
+    /* the part held sags by about rho g L^2 / E = 0.04 at most; what the box cut off has fallen 9.81 / 2 m */
+    for (i = 0; i < view.copy_count; ++i) {
+        const double down = -view.displacement[3 * i + 2];
+        ck_assert(down > -0.01 && (down < 0.3 || down > 3));
+        free_copies += down > 3;
+    }
+    ck_assert_int_gt(free_copies, 0);
+    cut_by(body, &w, 1, 1);
+    for (n = 0; n < 30; ++n) ck_assert_int_eq(gx_body_step(body, &step, NULL), GX_OK);
+    view = view_of(body);
+    for (i = 0; i < view.copy_count; ++i)
+        if (body->positions[3 * view.copy_node[i] + 2] == 0) ck_assert_double_gt(-view.displacement[3 * i + 2], 3);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+static int is_finite_state(const gx_view *view) {
+    size_t i;
+    for (i = 0; i < 3 * view->copy_count; ++i)
+        if (!(fabs(view->displacement[i]) < 1e6) || !(fabs(view->velocity[i]) < 1e6)) return 0;
+    return 1;
+}
+
+/* Centre of a fragment, deformed: mass-weighted */
+static void deformed_center(gx_body *body, uint32_t fragment, double center[3]) {
+    gx_view view = view_of(body);
+    double mass = 0;
+    size_t i;
+    int a, k;
+    center[0] = center[1] = center[2] = 0;
+    for (i = 0; i < view.cell_count; ++i) {
+        const gxp_cell *cell = &body->cells[body->view_cells.data[i]];
+        if (view.cell_fragment[i] != fragment) continue;
+        for (a = 0; a < 4; ++a) {
+            const double m = gxp_mass_row(cell->mass, a);
+            mass += m;
+            for (k = 0; k < 3; ++k) center[k] += m * (body->positions[3 * view.copy_node[cell->copies[a]] + (uint32_t)k] + view.displacement[3 * cell->copies[a] + (uint32_t)k]);
+        }
+    }
+    for (k = 0; k < 3; ++k) center[k] /= mass;
+}
+
+/* 36 sticks, thrown apart: v = 2 (X - middle) along x and y; each flies its own way. */
+START_TEST(sticks_drift_apart) {
+    workload w = grid(1, 1, 1, 5);
+    gx_body *body;
+    gx_view view;
+    gx_step_desc step = still_step();
+    double (*rest)[3], center[3];
+    size_t i, j;
+    int n, k;
+    for (n = 1; n <= 5; ++n) { add_axis_plane(&w, 0, n / 6.0); add_axis_plane(&w, 1, n / 6.0); }
+    body = cut_at_once(&w);
+    view = view_of(body);
+    ck_assert_uint_eq(view.fragment_count, 36);
+    rest = (double (*)[3])oracle_memory(NULL, view.fragment_count, sizeof *rest);
+    memcpy(rest, view.fragment_center, view.fragment_count * sizeof *rest);
+    for (i = 0; i < view.copy_count; ++i) for (k = 0; k < 2; ++k)
+        view.velocity[3 * i + (size_t)k] = 2 * (body->positions[3 * view.copy_node[i] + (uint32_t)k] - 0.5);
+    for (n = 0; n < 10; ++n) {
+        ck_assert_int_eq(gx_body_step(body, &step, NULL), GX_OK);
+        view = view_of(body);
+        ck_assert(is_finite_state(&view));
+    }
+    for (i = 0; i < view.fragment_count; ++i) {
+        deformed_center(body, (uint32_t)i, center);
+        for (k = 0; k < 2; ++k) ck_assert_double_eq_tol(center[k] - 0.5, 1.66 * (rest[i][k] - 0.5), 0.02);
+        for (j = 0; j < i; ++j) {
+            double other[3], now = 0, then = 0;
+            deformed_center(body, (uint32_t)j, other);
+            for (k = 0; k < 2; ++k) {
+                now += (center[k] - other[k]) * (center[k] - other[k]);
+                then += (rest[i][k] - rest[j][k]) * (rest[i][k] - rest[j][k]);
+            }
+            ck_assert_double_gt(now, 1.3 * 1.3 * then);
+        }
+    }
+    free(rest);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Slivers beside sticks, a large step, a violent state: finite, or refused with the state as it was. */
+START_TEST(violent_steps_stay_finite) {
+    uint64_t seed = (uint64_t)_i;
+    workload w = random_scene(seed, 3, 1);
+    gx_body *body;
+    gx_view view;
+    gx_step_desc step = still_step();
+    size_t i;
+    int n;
+    add_axis_plane(&w, 0, 1e-6);
+    add_axis_plane(&w, 1, 1 - 1e-5);
+    body = cut_at_once(&w);
+    view = view_of(body);
+    for (i = 0; i < 3 * view.copy_count; ++i) { view.displacement[i] = random_real(-0.5, 0.5); view.velocity[i] = random_real(-10, 10); }
+    step.dt = seed % 3 == 0 ? 1 : 0.033;
+    step.gravity[2] = -9.81;
+    for (n = 0; n < 5; ++n) {
+        uint64_t state = gx_body_state_hash(body);
+        gx_result result = gx_body_step(body, &step, NULL);
+        CHECK_SEED(result == GX_OK || (result == GX_ERROR_DIVERGED && gx_body_state_hash(body) == state), seed);
+        view = view_of(body);
+        CHECK_SEED(is_finite_state(&view), seed);
+    }
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A force on one copy moves its fragment: momentum = force x time. */
+START_TEST(forces_act_on_copies) {
+    workload w = grid(1, 1, 1, 5);
+    gx_body *body;
+    gx_view view;
+    gx_step_desc step = still_step();
+    double *forces, p[3];
+    add_axis_plane(&w, 0, 0.5);
+    body = cut_at_once(&w);
+    view = view_of(body);
+    forces = (double *)oracle_memory(NULL, 3 * view.copy_count, sizeof *forces);
+    memset(forces, 0, 3 * view.copy_count * sizeof *forces);
+    forces[3 * (view.copy_count - 1)] = 10;
+    step.forces = forces; step.cg_tolerance = 1e-10; step.newton_iterations = 20; step.newton_tolerance = 1e-10;
+    ck_assert_int_eq(gx_body_step(body, &step, NULL), GX_OK);
+    momentum(body, p);
+    ck_assert_double_eq_tol(p[0], 10 * step.dt, 1e-7);
+    ck_assert_double_eq_tol(p[1], 0, 1e-7);
+    free(forces);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- far from the origin, small, large, long ---- */
+
+/* Coordinates are multiples of 1/16: the far body and its cuts are exactly the near ones, moved. */
+START_TEST(far_from_the_origin_exactly) {
+    static const double offsets[3] = { 1048576, 134217728, 17592186044416.0 };
+    static const double a[3] = { 0.25, 0, 0 }, b[3] = { 1, 0.75, 0.5 }, c[3] = { 0, 0.5, 1 };
+    int i, k;
+    for (i = 0; i < 3; ++i) {
+        workload w = grid(2, 1, 1, 5);
+        gx_body *near_body, *far_body;
+        double offset[3];
+        for (k = 0; k < 3; ++k) offset[k] = offsets[i] * (1 - k * 0.5);
+        add_axis_plane(&w, 0, 0.5);
+        add_axis_plane(&w, 1, 0.625);
+        add_plane_through(&w, a, b, c);
+        add_box(&w, 1, 1.25, 0.25, 0.25, 1.5, 2, 0.75);
+        near_body = cut_at_once(&w);
+        transform(&w, 1, 0, offset);
+        far_body = cut_at_once(&w);
+        expect_same(near_body, far_body, 1, 1e-12, 0, "moved exactly", (uint64_t)i);
+        gx_body_destroy(near_body); gx_body_destroy(far_body);
+        wl_free(&w);
+    }
+}
+END_TEST
+
+/* Rounded by the move: the same topology where nothing is degenerate; volumes as far as the rounded input allows. */
+START_TEST(far_from_the_origin_rounded) {
+    static const double offset[2][3] = { { 1e6, -1e6, 0.7e6 }, { 1e8, 0.3e8, -1e8 } };
+    uint64_t seed = (uint64_t)_i;
+    int i;
+    for (i = 0; i < 2; ++i) {
+        workload w;
+        gx_body *near_body, *far_body;
+        double rounding = i == 0 ? 1e-9 : 1e-7;
+        random_seed(seed + 77);
+        w = grid(2, 1, 1, 5);
+        add_random_plane(&w, 10); add_random_plane(&w, 10); add_random_plane(&w, 10);
+        near_body = cut_at_once(&w);
+        transform(&w, 1, 0, offset[i]);
+        far_body = cut_at_once(&w);
+        if (view_of(near_body).cell_count == view_of(far_body).cell_count)  /* else a sliver of the rounding's size */
+            expect_same(near_body, far_body, 1, 0, rounding, "moved", seed);
+        else CHECK_SEED(i == 1, seed);
+        check_cells(far_body, "far", seed);
+        gx_body_destroy(near_body); gx_body_destroy(far_body);
+        wl_free(&w);
+    }
+}
+END_TEST
+
+START_TEST(small_and_large_coordinates) {
+    static const double scales[4] = { 1e-6, 1e6, 1e-20, 1e20 };
+    uint64_t seed = (uint64_t)_i;
+    int i;
+    for (i = 0; i < 4; ++i) {
+        workload w;
+        gx_body *a, *b;
+        random_seed(seed + 5);
+        w = grid(2, 1, 1, 5);
+        add_random_plane(&w, 10); add_random_plane(&w, 10); add_random_plane(&w, 0.3);
+        a = cut_at_once(&w);
+        transform(&w, scales[i], 0, NULL);
+        b = cut_at_once(&w);
+        expect_same(a, b, scales[i], 1e-8, 1e-13, "scaled", seed);
+        gx_body_destroy(a); gx_body_destroy(b);
+        wl_free(&w);
+    }
+}
+END_TEST
+
+/* Elements 2^13 times as long as wide; the near body is the same, stretched. */
+START_TEST(long_elements) {
+    uint64_t seed = (uint64_t)_i;
+    workload w;
+    gx_body *a, *b;
+    gx_view p, q;
+    size_t i, j;
+    random_seed(seed + 9);
+    w = grid(2, 1, 1, 5);
+    add_random_plane(&w, 10); add_random_plane(&w, 10); add_axis_plane(&w, 0, 0.5);
+    a = cut_at_once(&w);
+    for (j = 0; j <= w.surface_count; ++j) {
+        double *x = j == w.surface_count ? w.positions : w.surfaces[j].vertices;
+        for (i = 0; i < (j == w.surface_count ? w.node_count : w.surfaces[j].vertex_count); ++i) x[3 * i] *= 8192;
+    }
+    b = cut_at_once(&w);
+    CHECK_SEED(hash_of(a) == hash_of(b), seed);
+    p = view_of(a); q = view_of(b);
+    CHECK_SEED(p.cell_count == q.cell_count, seed);
+    for (i = 0; i < p.cell_count; ++i) CHECK_SEED(fabs(q.cell_volume[i] - 8192 * p.cell_volume[i]) <= 1e-9 * q.cell_volume[i], seed);
+    check_cells(b, "long", seed);
+    gx_body_destroy(a); gx_body_destroy(b);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- the skin ---- */
+
+/* Per fragment, the triangles enclose its volume, at rest and after an affine map; outer triangles lie in the mesh's surface. */
+static void check_skin(gx_body *body, uint64_t seed) {
+    static const double map[3][3] = { { 1.25, 0.25, 0 }, { 0, 0.75, 0.125 }, { 0.5, 0, 1 } };   /* determinant 0.953125 */
+    gx_view view = view_of(body);
+    gx_skin skin;
+    double *positions, *volume, *old;
+    size_t i, f;
+    int k, j, pass;
+    ck_assert_int_eq(gx_body_skin(body, &skin), GX_OK);
+    positions = (double *)oracle_memory(NULL, 3 * skin.vertex_count + 1, sizeof *positions);
+    volume = (double *)oracle_memory(NULL, view.fragment_count + 1, sizeof *volume);
+    old = (double *)oracle_memory(NULL, 3 * view.copy_count + 1, sizeof *old);
+    memcpy(old, view.displacement, 3 * view.copy_count * sizeof *old);
+    for (pass = 0; pass < 2; ++pass) {
+        for (i = 0; i < view.copy_count; ++i) for (k = 0; k < 3; ++k) {
+            const double *x = body->positions + 3 * (size_t)view.copy_node[i];
+            view.displacement[3 * i + (size_t)k] = 0;
+            for (j = 0; j < 3 && pass == 1; ++j) view.displacement[3 * i + (size_t)k] += (map[k][j] - (k == j)) * x[j];
+        }
+        gx_body_skin_positions(body, &skin, positions);
+        for (f = 0; f < view.fragment_count; ++f) volume[f] = 0;
+        for (i = 0; i < skin.triangle_count; ++i) {
+            CHECK_SEED(skin.triangle_fragment[i] < view.fragment_count && skin.triangle_cut[i] <= 1, seed);
+            volume[skin.triangle_fragment[i]] += signed_volume(positions, skin.triangles + 3 * i, 1);
+        }
+        for (f = 0; f < view.fragment_count; ++f) {
+            double truth = view.fragment_volume[f] * (pass ? 0.953125 : 1);
+            ck_assert_msg(fabs(volume[f] - truth) <= 1e-10 * truth + 1e-14 * view.volume, "seed %llu: fragment %zu of %zu: skin %.17g, volume %.17g",
+                          (unsigned long long)seed, f, view.fragment_count, volume[f], truth);
+        }
+    }
+    memcpy(view.displacement, old, 3 * view.copy_count * sizeof *old);
+    free(old); free(volume); free(positions);
+}
+
+START_TEST(skin_encloses_the_volume) {
+    uint64_t seed = (uint64_t)_i;
+    workload w = random_scene(seed, 4, 1);
+    gx_body *body = body_of(&w);
+    gx_skin skin;
+    size_t c;
+    check_skin(body, seed);
+    ck_assert_int_eq(gx_body_skin(body, &skin), GX_OK);
+    for (c = 0; c < skin.triangle_count; ++c) CHECK_SEED(skin.triangle_cut[c] == 0, seed);
+    for (c = 0; c < w.surface_count; ++c) { cut_by(body, &w, c, 1); check_skin(body, seed); }
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Area of the skin, cut faces and outer surface apart */
+START_TEST(skin_tells_cut_faces) {
+    workload w = grid(1, 1, 1, 5);
+    gx_body *body;
+    gx_skin skin;
+    double *x, area[2] = { 0, 0 };
+    size_t i;
+    add_axis_plane(&w, 0, 0.375);
+    add_box(&w, 1, 0.5, 0.25, 0.25, 0.75, 0.5, 0.5);
+    body = cut_at_once(&w);
+    ck_assert_int_eq(gx_body_skin(body, &skin), GX_OK);
+    x = (double *)oracle_memory(NULL, 3 * skin.vertex_count, sizeof *x);
+    gx_body_skin_positions(body, &skin, x);
+    for (i = 0; i < skin.triangle_count; ++i) {
+        const double *a = x + 3 * skin.triangles[3 * i], *b = x + 3 * skin.triangles[3 * i + 1], *c = x + 3 * skin.triangles[3 * i + 2];
+        double sum = 0;
+        int k;
+        for (k = 0; k < 3; ++k) {
+            int p = (k + 1) % 3, q = (k + 2) % 3;
+            double n = (b[p] - a[p]) * (c[q] - a[q]) - (b[q] - a[q]) * (c[p] - a[p]);
+            sum += n * n;
+        }
+        area[skin.triangle_cut[i]] += sqrt(sum) / 2;
+    }
+    ck_assert_double_eq_tol(area[0], 6, 1e-13);
+    ck_assert_double_eq_tol(area[1], 2 + 6 * 0.0625, 1e-13);
+    free(x);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- bad input ---- */
+
+static void expect_no_body(gx_body_desc *desc, gx_result expected, size_t index, int line) {
+    gx_body *body = NULL;
+    gx_failure failure;
+    gx_result result = gx_body_create(desc, &body, &failure);
+    ck_assert_msg(result == expected && failure.result == expected, "line %d: %s, should be: %s", line, gx_result_text(result), gx_result_text(expected));
+    ck_assert_msg(failure.index == index, "line %d: index %zu, should be %zu", line, failure.index, index);
+    ck_assert(body == NULL);
+    ck_assert_int_eq(gx_body_create(desc, &body, NULL), (int)expected);
+}
+#define EXPECT_NO_BODY(desc, expected, index) expect_no_body(desc, expected, index, __LINE__)
+
+START_TEST(bad_bodies) {
+    workload w = grid(2, 1, 1, 5);
+    gx_body_desc good = desc_of(&w), d;
+    gx_body *body;
+    uint32_t *e = (uint32_t *)oracle_memory(NULL, 4 * w.element_count + 4, sizeof *e);
+    double *x = (double *)oracle_memory(NULL, 3 * w.node_count, sizeof *x), bad[3];
+    int i;
+    ck_assert_int_eq(gx_body_create(NULL, &body, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_create(&good, NULL, NULL), GX_ERROR_ARGUMENT);
+    d = good; d.positions = NULL; EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, SIZE_MAX);
+    d = good; d.elements = NULL; EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, SIZE_MAX);
+    d = good; d.node_count = 0; EXPECT_NO_BODY(&d, GX_ERROR_EMPTY, SIZE_MAX);
+    d = good; d.element_count = 0; EXPECT_NO_BODY(&d, GX_ERROR_EMPTY, SIZE_MAX);
+    d = good; d.young = 0; EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, SIZE_MAX);
+    d = good; d.young = -1; EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, SIZE_MAX);
+    d = good; d.young = NAN; EXPECT_NO_BODY(&d, GX_ERROR_NOT_FINITE, SIZE_MAX);
+    d = good; d.density = 0; EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, SIZE_MAX);
+    d = good; d.density = INFINITY; EXPECT_NO_BODY(&d, GX_ERROR_NOT_FINITE, SIZE_MAX);
+    d = good; d.poisson = 0.5; EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, SIZE_MAX);
+    d = good; d.poisson = -0.1; EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, SIZE_MAX);
+    d = good; d.allocator.allocate = (void *(*)(void *, size_t))1; EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, SIZE_MAX);
+    memcpy(e, w.elements, 4 * w.element_count * sizeof *e);
+    memcpy(x, w.positions, 3 * w.node_count * sizeof *x);
+    d = good; d.elements = e; d.positions = x;
+    e[4 * 3 + 2] = (uint32_t)w.node_count; EXPECT_NO_BODY(&d, GX_ERROR_INDEX, 3); e[4 * 3 + 2] = UINT32_MAX; EXPECT_NO_BODY(&d, GX_ERROR_INDEX, 3);
+    memcpy(e, w.elements, 4 * w.element_count * sizeof *e);
+    e[4 * 7] = w.elements[4 * 7 + 1]; e[4 * 7 + 1] = w.elements[4 * 7]; EXPECT_NO_BODY(&d, GX_ERROR_INVERTED, 7);
+    e[4 * 7] = e[4 * 7 + 1]; EXPECT_NO_BODY(&d, GX_ERROR_FLAT, 7);
+    memcpy(e, w.elements, 4 * w.element_count * sizeof *e);
+    bad[0] = NAN; bad[1] = INFINITY; bad[2] = -INFINITY;
+    for (i = 0; i < 3; ++i) {
+        x[3 * 5 + i] = bad[i]; EXPECT_NO_BODY(&d, GX_ERROR_NOT_FINITE, 5);
+        x[3 * 5 + i] = w.positions[3 * 5 + i];
+    }
+    memcpy(e, w.elements, 4 * w.element_count * sizeof *e);         /* an element twice: its faces are shared by two on one side */
+    memcpy(e + 4 * w.element_count, e + 4 * 2, 4 * sizeof *e);
+    d.element_count = w.element_count + 1;
+    {
+        gx_failure failure;
+        ck_assert_int_eq(gx_body_create(&d, &body, &failure), GX_ERROR_OVERLAP);
+        ck_assert(failure.index == 2 || failure.index == w.element_count);
+    }
+    free(e); free(x);
+    wl_free(&w);
+    {                                                               /* four nodes in a plane */
+        static const double flat[4][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, 1, 0 } };
+        static const uint32_t n[4] = { 0, 1, 2, 3 };
+        d = good; d.positions = &flat[0][0]; d.node_count = 4; d.elements = n; d.element_count = 1;
+        EXPECT_NO_BODY(&d, GX_ERROR_FLAT, 0);
+    }
+    {                                                               /* a coordinate far too small beside the others */
+        static const double tiny[4][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1e-60, 0, 1 } };
+        static const uint32_t n[4] = { 0, 1, 2, 3 };
+        d = good; d.positions = &tiny[0][0]; d.node_count = 4; d.elements = n; d.element_count = 1;
+        EXPECT_NO_BODY(&d, GX_ERROR_RANGE, 3);
+    }
+}
+END_TEST
+
+/* A node that no element uses has no copy. */
+START_TEST(unused_nodes) {
+    static const double x[6][3] = { { 5, 5, 5 }, { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { -7, 0, 0 } };
+    static const uint32_t n[4] = { 1, 2, 3, 4 };
+    workload w = corner_tet();
+    gx_body_desc d = desc_of(&w);
+    gx_body *body;
+    gx_skin skin;
+    gx_step_desc step = still_step();
+    d.positions = &x[0][0]; d.node_count = 6; d.elements = n;
+    ck_assert_int_eq(gx_body_create(&d, &body, NULL), GX_OK);
+    ck_assert_uint_eq(view_of(body).copy_count, 4);
+    add_axis_plane(&w, 0, 0.25);
+    cut_by(body, &w, 0, 1);
+    ck_assert_uint_eq(view_of(body).copy_count, 8);
+    ck_assert_int_eq(gx_body_skin(body, &skin), GX_OK);
+    ck_assert_int_eq(gx_body_step(body, &step, NULL), GX_OK);
+    check_skin(body, 0);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+static void expect_no_cut(gx_body *body, const gx_cut_desc *desc, gx_result expected, size_t index, size_t surface, int line) {
+    uint64_t state = gx_body_state_hash(body), hash = hash_of(body);
+    gx_failure failure;
+    gx_cut_report report, untouched;
+    gx_result result;
+    memset(&report, 0x55, sizeof report);
+    untouched = report;
+    result = gx_body_cut(body, desc, &report, &failure);
+    ck_assert_msg(result == expected && failure.result == expected, "line %d: %s, should be: %s", line, gx_result_text(result), gx_result_text(expected));
+    ck_assert_msg(failure.index == index && failure.surface == surface, "line %d: index %zu of surface %zu, should be %zu of %zu",
+                  line, failure.index, failure.surface, index, surface);
+    ck_assert(gx_body_state_hash(body) == state && hash_of(body) == hash);
+    ck_assert(memcmp(&report, &untouched, sizeof report) == 0);
+}
+#define EXPECT_NO_CUT(expected, index, surface) expect_no_cut(body, &desc, expected, index, surface, __LINE__)
+
+START_TEST(bad_cuts) {
+    static const double v[9] = { -4, -4, 0.25, 4, -4, 0.25, 0, 4, 0.25 };
+    static const uint32_t n[6] = { 0, 1, 2, 0, 1, 2 };
+    workload w = grid(1, 1, 1, 5);
+    gx_body *body;
+    gx_surface good, s[2];
+    gx_cut_desc desc;
+    double x[9], bad[3];
+    uint32_t t[6], i;
+    add_axis_plane(&w, 0, 0.5);
+    body = cut_at_once(&w);
+    memset(&good, 0, sizeof good);
+    good.vertices = v; good.vertex_count = 3; good.triangles = n; good.triangle_count = 2;
+    s[0] = s[1] = good;
+    memset(&desc, 0, sizeof desc);
+    ck_assert_int_eq(gx_body_cut(NULL, &desc, NULL, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_cut(body, NULL, NULL, NULL), GX_ERROR_ARGUMENT);
+    desc.surface_count = 2; EXPECT_NO_CUT(GX_ERROR_ARGUMENT, SIZE_MAX, SIZE_MAX);
+    desc.surfaces = s; desc.surface_count = 0; EXPECT_NO_CUT(GX_ERROR_EMPTY, SIZE_MAX, SIZE_MAX);
+    desc.surface_count = 2;
+    desc.sever_below = NAN; EXPECT_NO_CUT(GX_ERROR_NOT_FINITE, SIZE_MAX, SIZE_MAX); desc.sever_below = 0;
+    s[1] = good; s[1].kind = 2; EXPECT_NO_CUT(GX_ERROR_ARGUMENT, SIZE_MAX, 1);
+    s[1] = good; s[1].vertices = NULL; EXPECT_NO_CUT(GX_ERROR_ARGUMENT, SIZE_MAX, 1);
+    s[1] = good; s[1].triangles = NULL; EXPECT_NO_CUT(GX_ERROR_ARGUMENT, SIZE_MAX, 1);
+    s[1] = good; s[1].vertex_count = 0; EXPECT_NO_CUT(GX_ERROR_EMPTY, SIZE_MAX, 1);
+    s[1] = good; s[1].triangle_count = 0; EXPECT_NO_CUT(GX_ERROR_EMPTY, SIZE_MAX, 1);
+    s[1] = good; s[1].triangles = t;
+    memcpy(t, n, sizeof t); t[4] = 3; EXPECT_NO_CUT(GX_ERROR_INDEX, 1, 1);
+    s[1] = good; s[1].vertices = x;
+    bad[0] = NAN; bad[1] = INFINITY; bad[2] = -INFINITY;
+    for (i = 0; i < 3; ++i) { memcpy(x, v, sizeof x); x[6 + i] = bad[i]; EXPECT_NO_CUT(GX_ERROR_NOT_FINITE, 2, 1); }
+    memcpy(x, v, sizeof x); x[2] = 1e-60; EXPECT_NO_CUT(GX_ERROR_RANGE, 0, 1);
+    memcpy(x, v, sizeof x); x[3] = 1e60; EXPECT_NO_CUT(GX_ERROR_RANGE, 1, 1);
+    memcpy(x, v, sizeof x); x[3] = 1e200; EXPECT_NO_CUT(GX_ERROR_RANGE, 1, 1);
+    memcpy(x, v, sizeof x); x[3] = DBL_MAX; x[7] = -DBL_MAX; EXPECT_NO_CUT(GX_ERROR_RANGE, 1, 1);
+    s[1] = good; s[1].kind = GX_SURFACE_SOLID; EXPECT_NO_CUT(GX_ERROR_NOT_CLOSED, 0, 1);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+START_TEST(bad_arguments_elsewhere) {
+    workload w = corner_tet();
+    gx_body *body = body_of(&w);
+    gx_region region = { 0, 1, 0.5 }, bad;
+    gx_step_desc step = still_step(), s;
+    gx_view view = view_of(body);
+    gx_skin skin;
+    gx_result result;
+    double forces[12];
+    uint64_t state;
+    memset(forces, 0, sizeof forces);
+    ck_assert_int_eq(gx_body_hold(body, &region, 1), GX_OK);
+    state = gx_body_state_hash(body);
+    ck_assert_int_eq(gx_body_view(NULL, &view), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_view(body, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_skin(NULL, &skin), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_skin(body, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_hold(NULL, &region, 1), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_hold(body, NULL, 1), GX_ERROR_ARGUMENT);
+    bad = region; bad.axis = 3; ck_assert_int_eq(gx_body_hold(body, &bad, 1), GX_ERROR_ARGUMENT);
+    bad = region; bad.side = 0; ck_assert_int_eq(gx_body_hold(body, &bad, 1), GX_ERROR_ARGUMENT);
+    bad = region; bad.value = NAN; ck_assert_int_eq(gx_body_hold(body, &bad, 1), GX_ERROR_NOT_FINITE);
+    ck_assert_int_eq(gx_body_step(NULL, &step, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_step(body, NULL, NULL), GX_ERROR_ARGUMENT);
+    s = step; s.dt = 0; ck_assert_int_eq(gx_body_step(body, &s, NULL), GX_ERROR_ARGUMENT);
+    s = step; s.dt = -1; ck_assert_int_eq(gx_body_step(body, &s, NULL), GX_ERROR_ARGUMENT);
+    s = step; s.dt = NAN; ck_assert_int_eq(gx_body_step(body, &s, NULL), GX_ERROR_NOT_FINITE);
+    s = step; s.gravity[1] = INFINITY; ck_assert_int_eq(gx_body_step(body, &s, NULL), GX_ERROR_NOT_FINITE);
+    s = step; s.forces = forces; forces[7] = NAN; ck_assert_int_eq(gx_body_step(body, &s, NULL), GX_ERROR_NOT_FINITE);
+    ck_assert(gx_body_topology_hash(NULL, &result) == 0);
+    ck_assert_int_eq(result, GX_ERROR_ARGUMENT);
+    ck_assert(gx_body_state_hash(body) == state);
+    view.displacement[0] = NAN;
+    ck_assert_int_eq(gx_body_step(body, &step, NULL), GX_ERROR_NOT_FINITE);
+    view.displacement[0] = 0;
+    ck_assert(gx_body_state_hash(body) == state);
+    gx_body_destroy(body);
+    gx_body_destroy(NULL);
+    wl_free(&w);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("body");
+    TCase *tests = tcase_create("body");
+    SRunner *runner;
+    const char *only = getenv("GXFEM_SEED");
+    int first = only != NULL ? atoi(only) : 0, last = only != NULL ? first + 1 : SEEDS, failed;
+    tcase_set_timeout(tests, 120);
+    tcase_add_loop_test(tests, field_is_unchanged_by_cuts, first, last);
+    tcase_add_loop_test(tests, skin_follows_the_field, first, last);
+    tcase_add_loop_test(tests, sheets_conserve_mass_and_volume, first, last);
+    tcase_add_loop_test(tests, solids_remove_what_they_report, first, last);
+    tcase_add_loop_test(tests, sequence_equals_at_once, first, last);
+    tcase_add_loop_test(tests, order_does_not_matter, first, last);
+    tcase_add_loop_test(tests, scale_and_rotation_do_not_matter, first, last);
+    tcase_add_loop_test(tests, same_cut_twice_changes_nothing, first, last);
+    tcase_add_test(tests, cuts_one_ulp_apart);
+    tcase_add_test(tests, cuts_in_element_faces);
+    tcase_add_test(tests, cuts_through_nodes_and_edges);
+    tcase_add_test(tests, three_planes_through_a_line_and_a_point);
+    tcase_add_test(tests, tangent_cuts_do_nothing);
+    tcase_add_test(tests, sheet_that_ends_inside_an_element);
+    tcase_add_test(tests, sheet_that_ends_between_elements);
+    tcase_add_test(tests, severed_links);
+    tcase_add_test(tests, closed_sheets_make_cells);
+    tcase_add_test(tests, sheet_with_a_hole);
+    tcase_add_test(tests, self_crossing_folded_and_duplicate);
+    tcase_add_test(tests, nothing_but_flat_triangles);
+    tcase_add_test(tests, a_thousand_parallel_cuts);
+    tcase_add_test(tests, three_times_twenty_planes);
+    tcase_add_test(tests, slivers);
+    tcase_add_loop_test(tests, slivers_in_general_position, first, last);
+    tcase_add_test(tests, thin_solid);
+    tcase_add_test(tests, scope_of_a_cut);
+    tcase_add_test(tests, scope_of_everything_and_of_nothing);
+    tcase_add_test(tests, solids_remove);
+    tcase_add_test(tests, solids_with_coincident_faces);
+    tcase_add_test(tests, solids_that_contain_everything);
+    tcase_add_test(tests, solids_without_volume_do_nothing);
+    tcase_add_test(tests, open_solids_are_refused);
+    tcase_add_test(tests, triangle_soup_can_be_closed);
+    tcase_add_test(tests, solidified_sheets);
+    tcase_add_loop_test(tests, solidified_sheets_are_closed, first, last);
+    tcase_add_test(tests, pinched_meshes);
+    tcase_add_test(tests, solid_around_a_pinch);
+    tcase_add_loop_test(tests, held_copies, first, last);
+    tcase_add_test(tests, pieces_outside_the_region_are_free);
+    tcase_add_loop_test(tests, free_bodies_keep_their_momentum, first, last);
+    tcase_add_test(tests, fragments_fall);
+    tcase_add_test(tests, held_body_hangs);
+    tcase_add_test(tests, sticks_drift_apart);
+    tcase_add_loop_test(tests, violent_steps_stay_finite, first, last);
+    tcase_add_test(tests, forces_act_on_copies);
+    tcase_add_test(tests, far_from_the_origin_exactly);
+    tcase_add_loop_test(tests, far_from_the_origin_rounded, first, last);
+    tcase_add_loop_test(tests, small_and_large_coordinates, first, last);
+    tcase_add_loop_test(tests, long_elements, first, last);
+    tcase_add_loop_test(tests, skin_encloses_the_volume, first, last);
+    tcase_add_test(tests, skin_tells_cut_faces);
+    tcase_add_test(tests, bad_bodies);
+    tcase_add_test(tests, unused_nodes);
+    tcase_add_test(tests, bad_cuts);
+    tcase_add_test(tests, bad_arguments_elsewhere);
+    suite_add_tcase(suite, tests);
+    runner = srunner_create(suite);
+    srunner_run_all(runner, CK_NORMAL);
+    failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    rat_arena_free();
+    return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
