@@ -223,6 +223,8 @@ typedef struct gx_skin {
     size_t vertex_count;
     const uint32_t *vertex_copies;  /* vertex_count x 4 */
     const double *vertex_weights;   /* vertex_count x 4, barycentric */
+    const uint32_t *vertex_point;   /* vertex_count; equal: the same material point, exactly. Where the copies of weight not 0 are
+                                       equal too, it is one corner of the surface: with corners so merged it is watertight */
     size_t triangle_count;
     const uint32_t *triangles;      /* triangle_count x 3, counter-clockwise from outside */
     const uint32_t *triangle_fragment;  /* triangle_count */
@@ -316,7 +318,7 @@ struct gx_body {
     double *cell_volume; uint32_t cell_volume_capacity;
     double *fragments; uint32_t fragment_capacity, fragment_count;  /* volume, mass, centre: 5 arrays of capacity fragment_capacity */
     double volume, mass;
-    gxp_words skin_copies, skin_triangles, skin_fragments, skin_cuts;
+    gxp_words skin_copies, skin_points, skin_triangles, skin_fragments, skin_cuts;
     double *skin_weights; uint32_t skin_weight_count, skin_weight_capacity;
     gxp_words point_slot;           /* of the complex's points, while a cell is integrated or drawn */
     double *lambdas; uint32_t lambda_capacity;          /* x 4 */
@@ -384,6 +386,12 @@ static void gxp_sort_unique(gxp_words *w) {
 static gx_result gxp_fail(gx_failure *failure, gx_result result, size_t index, size_t surface) {
     if (failure != NULL) { failure->result = result; failure->index = index; failure->surface = surface; }
     return result;
+}
+
+static int gxp_is_finite(double x) {
+    uint64_t b;
+    memcpy(&b, &x, sizeof b);
+    return ((b >> 52) & 0x7ff) != 0x7ff;
 }
 
 static double gxp_seconds(const gx_body *body) { return body->clock ? body->clock(body->clock_user) : 0; }
@@ -460,7 +468,7 @@ static int gxp_triangle_near_box(const double *const p[3], const double n[3], do
         r += fabs(n[k]) * h;
         far += fabs(c - p[0][k]) + h + fabs(c) + fabs(p[0][k]);
     }
-    return fabs(s) <= r + 1e-12 * scale * far;
+    return !gxp_is_finite(s) || fabs(s) <= r + 1e-12 * scale * far;     /* overflow: a candidate, which then is out of range */
 }
 
 /* Appends to found the elements whose boxes the triangle may meet. */
@@ -662,12 +670,6 @@ static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc) {
     return GX_OK;
 }
 
-static int gxp_is_finite(double x) {
-    uint64_t b;
-    memcpy(&b, &x, sizeof b);
-    return ((b >> 52) & 0x7ff) != 0x7ff;
-}
-
 static gx_result gxp_check_body_desc(const gx_body_desc *desc) {
     if (!gxp_is_finite(desc->young) || !gxp_is_finite(desc->poisson) || !gxp_is_finite(desc->density)) return GX_ERROR_NOT_FINITE;
     if (!(desc->young > 0) || !(desc->density > 0) || desc->poisson < 0 || desc->poisson >= 0.5) return GX_ERROR_ARGUMENT;
@@ -728,15 +730,15 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     gxp_release(&a, body->skin_weights, body->skin_weight_capacity * sizeof(double));
     gxp_release(&a, body->lambdas, (size_t)body->lambda_capacity * 4 * sizeof(double));
     {
-        gxp_words *words[21];
+        gxp_words *words[22];
         words[0] = &body->view_cells; words[1] = &body->view_fragments; words[2] = &body->copy_fragment; words[3] = &body->cell_element;
         words[4] = &body->cell_copies; words[5] = &body->skin_copies; words[6] = &body->skin_triangles; words[7] = &body->skin_fragments;
         words[8] = &body->skin_cuts; words[9] = &body->point_slot; words[10] = &body->triangles; words[11] = &body->touched;
         words[12] = &body->nodes; words[13] = &body->queue; words[14] = &body->seeds; words[15] = &body->faces;
         words[16] = &body->fresh; words[17] = &body->list;
         words[18] = &body->removed; words[19] = &body->dead;
-        words[20] = &body->fragment_number;
-        for (i = 0; i < 21; i++) gxp_words_free(body, words[i]);
+        words[20] = &body->fragment_number; words[21] = &body->skin_points;
+        for (i = 0; i < 22; i++) gxp_words_free(body, words[i]);
     }
     gxs_solver_destroy(body->solver);
     gxb_complex_destroy(body->complex);
@@ -914,6 +916,7 @@ static gx_result gxp_check_closed(gxp_cut *cut, const gxp_surface *s) {
         for (j = i; j < n && gxp_same_ends(&s->edges[i], &s->edges[j]); j++) balance += s->edges[j].from < s->edges[j].to ? 1 : s->edges[j].from > s->edges[j].to ? -1 : 0;
         if (balance != 0) {
             cut->failure.index = s->edges[i].triangle;
+            cut->failure.surface = s->number;
             return GX_ERROR_NOT_CLOSED;
         }
     }
@@ -1002,7 +1005,7 @@ static gx_result gxp_prepare_triangle(gxp_cut *cut, gxp_surface *s, uint32_t ind
         }
         t->point[k] = s->point[v];
     }
-    cut->failure.index = SIZE_MAX;
+    cut->failure.index = cut->failure.surface = SIZE_MAX;
     t->label = s->label + index;
     t->wall = s->given->kind == GX_SURFACE_SHEET;
     if (gxp_borrow_plane(body, s, index)) {
@@ -2077,6 +2080,7 @@ static gx_result gxp_check_cut(gxp_cut *cut) {
     if (desc->surface_count == 0) return GX_ERROR_EMPTY;
     if (!gxp_is_finite(desc->sever_below)) return GX_ERROR_NOT_FINITE;
     for (i = 0; i < desc->surface_count && result == GX_OK; i++) result = gxp_check_surface(cut, &desc->surfaces[i], i);
+    if (result == GX_OK) cut->failure.surface = SIZE_MAX;
     return result;
 }
 
@@ -2454,7 +2458,8 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
     if (body == NULL || desc == NULL) return GX_ERROR_ARGUMENT;
     result = gxp_update_parts(body);
     if (result == GX_OK) result = gxp_update_held(body);
-    if (result != GX_OK) return result;
+    if (result == GX_OK && body->part_count == 0 && report != NULL) memset(report, 0, sizeof *report);
+    if (result != GX_OK || body->part_count == 0) return result;    /* nothing left to move */
     memset(&model, 0, sizeof model);
     memset(&step, 0, sizeof step);
     model.copy_count = body->copy_count;
@@ -2498,6 +2503,46 @@ static int gxp_visible(const gx_body *body, uint32_t facet, uint32_t leaf) {
     return f->wall && gxp_cells_part(body, body->leaves[leaf].cell, body->leaves[other].cell) ? 1 : -1;
 }
 
+/* --- facets as triangles with area, so that they have normals: a facet's corners may stand in line with others --- */
+
+/* May corner i be cut off the polygon of complex points? Its triangle has area, and so has what remains. */
+static int gxp_is_ear(gx_body *body, const uint32_t *p, uint32_t n, uint32_t i, uint32_t plane) {
+    const uint32_t before = p[(i + n - 1) % n], after = p[(i + 1) % n];
+    uint32_t j;
+    if (gxb_complex_turn(body->complex, before, p[i], after, plane) == 0) return 0;
+    if (n == 3) return 1;
+    for (j = 2; j < n - 1; j++) if (gxb_complex_turn(body->complex, before, after, p[(i + j) % n], plane) != 0) return 1;
+    return 0;
+}
+
+static gx_result gxp_add_skin_triangle(gx_body *body, uint32_t element, const uint32_t point[3], int inward) {
+    uint32_t c, corner[3];
+    gx_result result = GX_OK;
+    for (c = 0; c < 3 && result == GX_OK; c++) result = gxp_add_boundary_point(body, element, point[c], &corner[c]);
+    for (c = 0; c < 3 && result == GX_OK; c++) result = gxp_push(body, &body->triangles, corner[inward ? 2 - c : c]);
+    return result;
+}
+
+/* Adds a facet as triangles, outward from the leaf: ears are cut off its convex polygon, which stands in body->faces. */
+static gx_result gxp_add_skin_facet(gx_body *body, uint32_t element, uint32_t facet, uint32_t leaf) {
+    gxb_complex *cx = body->complex;
+    const int inward = cx->facets[facet].leaf[0] == leaf;
+    uint32_t *p, e0, en, i, n;
+    gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
+    body->faces.count = 0;
+    for (i = 0; i < en && result == GX_OK; i++) result = gxp_push(body, &body->faces, cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1]);
+    p = body->faces.data;
+    for (n = body->faces.count, i = 0; n >= 3 && result == GX_OK; n--) {
+        uint32_t triangle[3], tries = 0;
+        for (i %= n; tries < n && !gxp_is_ear(body, p, n, i, cx->facets[facet].plane); i = (i + 1) % n) tries++;
+        triangle[0] = p[(i + n - 1) % n]; triangle[1] = p[i]; triangle[2] = p[(i + 1) % n];
+        result = gxp_add_skin_triangle(body, element, triangle, inward);
+        memmove(p + i, p + i + 1, (n - 1 - i) * sizeof *p);
+        i++;
+    }
+    return result;
+}
+
 static gx_result gxp_skin_leaf(gx_body *body, uint32_t leaf, uint32_t fragment) {
     gxb_complex *cx = body->complex;
     uint32_t first, count, i, t;
@@ -2506,7 +2551,7 @@ static gx_result gxp_skin_leaf(gx_body *body, uint32_t leaf, uint32_t fragment) 
         const uint32_t facet = cx->pool[first + i], before = body->triangles.count;
         const int kind = gxp_visible(body, facet, leaf);
         if (kind < 0) continue;
-        result = gxp_add_boundary_facet(body, cx->leaves[leaf].element, facet, leaf);
+        result = gxp_add_skin_facet(body, cx->leaves[leaf].element, facet, leaf);
         for (t = before; t < body->triangles.count && result == GX_OK; t += 3) {
             result = gxp_push(body, &body->skin_fragments, fragment);
             if (result == GX_OK) result = gxp_push(body, &body->skin_cuts, (uint32_t)kind);
@@ -2528,7 +2573,7 @@ static gx_result gxp_skin_whole(gx_body *body, uint32_t element, uint32_t fragme
             if (slot[n] == GXP_NONE) {
                 result = gxp_reserve(&body->allocator, &body->lambdas, 4 * sizeof(double), body->list.count, &body->lambda_capacity, 1);
                 slot[n] = body->list.count;
-                if (result == GX_OK) result = gxp_push(body, &body->list, n);
+                if (result == GX_OK) result = gxp_push(body, &body->list, body->complex->elements[4 * element + n]);
                 if (result != GX_OK) return result;
                 memset(body->lambdas + 4 * (size_t)slot[n], 0, 4 * sizeof(double));
                 body->lambdas[4 * (size_t)slot[n] + n] = 1;
@@ -2565,6 +2610,7 @@ static gx_result gxp_skin_cell(gx_body *body, uint32_t cell, uint32_t fragment) 
         body->skin_weights[body->skin_weight_count++] = body->lambdas[4 * (size_t)i + k];
         result = gxp_push(body, &body->skin_copies, body->cells[cell].copies[k]);
     }
+    for (i = 0; i < body->list.count && result == GX_OK; i++) result = gxp_push(body, &body->skin_points, body->list.data[i]);
     for (i = 0; i < body->triangles.count && result == GX_OK; i++) result = gxp_push(body, &body->skin_triangles, base + body->triangles.data[i]);
     return result;
 }
@@ -2574,7 +2620,7 @@ GXFEM_API gx_result gx_body_skin(gx_body *body, gx_skin *skin) {
     gx_result result;
     if (body == NULL || skin == NULL) return GX_ERROR_ARGUMENT;
     result = gxp_update_view(body);
-    body->skin_copies.count = body->skin_triangles.count = body->skin_fragments.count = body->skin_cuts.count = 0;
+    body->skin_copies.count = body->skin_points.count = body->skin_triangles.count = body->skin_fragments.count = body->skin_cuts.count = 0;
     body->skin_weight_count = 0;
     for (i = 0; i < body->view_cells.count && result == GX_OK; i++)
         result = gxp_skin_cell(body, body->view_cells.data[i], body->view_fragments.data[i]);
@@ -2582,6 +2628,7 @@ GXFEM_API gx_result gx_body_skin(gx_body *body, gx_skin *skin) {
     skin->vertex_count = body->skin_weight_count / 4;
     skin->vertex_copies = body->skin_copies.data;
     skin->vertex_weights = body->skin_weights;
+    skin->vertex_point = body->skin_points.data;
     skin->triangle_count = body->skin_triangles.count / 3;
     skin->triangles = body->skin_triangles.data;
     skin->triangle_fragment = body->skin_fragments.data;

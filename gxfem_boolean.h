@@ -319,6 +319,8 @@ GXFEM_API gx_result gxb_facet_edges(gxb_complex *complex, uint32_t facet, uint32
 
 /* Sign of a point against a plane of the complex, exact. */
 GXFEM_API int gxb_complex_side(gxb_complex *complex, uint32_t point, uint32_t plane);
+/* Orientation of three points that lie in a plane of the complex, seen from the side to which its normal points, exact. */
+GXFEM_API int gxb_complex_turn(gxb_complex *complex, uint32_t a, uint32_t b, uint32_t c, uint32_t plane);
 /* Sign of point[axis] - value, exact. */
 GXFEM_API int gxb_complex_compare(gxb_complex *complex, uint32_t point, int axis, double value);
 /* gxb_winding_number around a point inside the convex hull of points of the complex: the sum of their homogeneous coordinates.
@@ -946,6 +948,15 @@ static int gxbp_orient_exact(const gxb_num a[4], const gxb_num b[4], const gxb_n
     return r.sign;
 }
 
+/* Orientation of three points in the plane of coordinates i and j; 0: not certain. Bounds as for one component of a cross product. */
+static int gxbp_filter_turn(const gxb_ball *a, const gxb_ball *b, const gxb_ball *c, int i, int j) {
+    double u[3], v[3];
+    const double eu = gxbp_filter_difference(u, a, b), ev = gxbp_filter_difference(v, a, c);
+    const double U = gxbp_max(gxbp_abs(u[i]), gxbp_abs(u[j])), V = gxbp_max(gxbp_abs(v[i]), gxbp_abs(v[j]));
+    const double bound = 4 * (U * ev + V * eu + eu * ev) + 32 * GXBP_U * U * V + GXBP_TINY;
+    return gxbp_filter_sign(u[i] * v[j] - u[j] * v[i], bound);
+}
+
 GXFEM_API int gxb_orient_in_plane(const gxb_point *a, const gxb_point *b, const gxb_point *c, const gxb_plane *plane) {
     const double *n = plane->filter.n;
     gxbp_vec exact_n, x[3];
@@ -960,11 +971,7 @@ GXFEM_API int gxb_orient_in_plane(const gxb_point *a, const gxb_point *b, const 
     }
     {
         const int i = (axis + 1) % 3, j = (axis + 2) % 3;
-        double u[3], v[3];
-        const double eu = gxbp_filter_difference(u, &a->ball, &b->ball), ev = gxbp_filter_difference(v, &a->ball, &c->ball);
-        const double U = gxbp_max(gxbp_abs(u[i]), gxbp_abs(u[j])), V = gxbp_max(gxbp_abs(v[i]), gxbp_abs(v[j]));
-        const double bound = 4 * (U * ev + V * eu + eu * ev) + 32 * GXBP_U * U * V + GXBP_TINY;
-        const int turn = gxbp_filter_sign(u[i] * v[j] - u[j] * v[i], bound);
+        const int turn = gxbp_filter_turn(&a->ball, &b->ball, &c->ball, i, j);
         if (turn != 0) return turn * sign;
         gxbp_point_exact(&x[0], a); gxbp_point_exact(&x[1], b); gxbp_point_exact(&x[2], c);
         return gxbp_orient_exact(x[0].c, x[1].c, x[2].c, i, j) * sign;
@@ -1365,6 +1372,20 @@ static int gxbp_sign(gxb_complex *cx, uint32_t point, uint32_t plane, int slot) 
         cx->points[point].stamp[slot] = cx->stamp[slot];
     }
     return cx->points[point].sign[slot];
+}
+
+GXFEM_API int gxb_complex_turn(gxb_complex *cx, uint32_t a, uint32_t b, uint32_t c, uint32_t plane) {
+    const gxb_cplane *f = &cx->planes[plane];
+    const int i = (int)(f->axis + 1) % 3, j = (int)(f->axis + 2) % 3;
+    int turn = 0;
+    if (cx->points[a].ball.error < GXBP_NO_BALL && cx->points[b].ball.error < GXBP_NO_BALL && cx->points[c].ball.error < GXBP_NO_BALL)
+        turn = gxbp_filter_turn(&cx->points[a].ball, &cx->points[b].ball, &cx->points[c].ball, i, j);
+    if (turn == 0) {
+        gxbp_vec s[3];
+        const gxb_num *x = gxbp_exact_cpoint(cx, a, &s[0]), *y = gxbp_exact_cpoint(cx, b, &s[1]), *z = gxbp_exact_cpoint(cx, c, &s[2]);
+        turn = gxbp_orient_exact(x, y, z, i, j);
+    }
+    return turn * f->axis_sign;
 }
 
 GXFEM_API int gxb_complex_compare(gxb_complex *cx, uint32_t point, int axis, double value) {

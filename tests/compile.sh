@@ -68,6 +68,9 @@ known_standards() {
     done
 }
 
+# level_of STANDARD FILE: some warnings need the optimiser; once is enough
+level_of() { case $1:$2 in c99:together | c99:static | c++11:together | c++11:static) echo -O2 ;; *) echo -O0 ;; esac; }
+
 for cc in $compilers; do
     cxx=$(cxx_of "$cc")
     widths=default
@@ -77,11 +80,10 @@ for cc in $compilers; do
         wide=
         [ $width = m32 ] && wide=-m32
         for std in $(known_standards "$cc" c c99 c11 c17 gnu99); do
-            level=-O0
-            [ $std = c99 ] && level=-O2                     # some warnings need the optimiser
             [ $width = m32 ] && [ $std != c99 ] && continue
             for file in "$root"/tests/compile/*.c; do
                 base=$(basename "$file" .c)
+                level=$(level_of $std "$base")
                 job "$cc $wide -std=$std $level tests/compile/$base.c" \
                     "$cc $wide -std=$std $level $warnings -c $root/tests/compile/$base.c -o $base.$cc.$width.$std.o"
             done
@@ -89,11 +91,10 @@ for cc in $compilers; do
         if ! command -v "$cxx" >/dev/null 2>&1; then echo "no $cxx here: left out"; continue; fi
         if [ $width = m32 ] && ! $cxx -m32 -x c++ probe.c -o probe >/dev/null 2>&1; then echo "$cxx -m32 does not work here: left out"; continue; fi
         for std in $(known_standards "$cxx" c++ c++11 c++14 c++17 c++20); do
-            level=-O0
-            [ $std = c++11 ] && level=-O2
             [ $width = m32 ] && [ $std != c++11 ] && continue
             for file in "$root"/tests/compile/*.cc; do
                 base=$(basename "$file" .cc)
+                level=$(level_of $std "$base")
                 job "$cxx $wide -std=$std $level tests/compile/$base.cc" \
                     "$cxx $wide -std=$std $level $warnings -c $root/tests/compile/$base.cc -o $base.$cxx.$width.$std.o"
             done

@@ -324,15 +324,25 @@ static void expect_same(gx_body *a, gx_body *b, double scale, double relative, d
 
 /* ---- the field at material points ---- */
 
+/* Is x strictly inside a leaf? Exact; adds a point to the complex. */
+static int is_inside(gxb_complex *cx, uint32_t leaf, const double x[3]) {
+    uint32_t point, first, count, i;
+    ck_assert_int_eq(gxb_complex_add_point(cx, x, &point), GX_OK);
+    ck_assert_int_eq(gxb_leaf_facets(cx, leaf, &first, &count), GX_OK);
+    for (i = 0; i < count; ++i) {
+        const gxb_facet *f = &cx->facets[cx->pool[first + i]];
+        if (gxb_complex_side(cx, point, f->plane) != (f->leaf[0] == leaf ? 1 : -1)) return 0;
+    }
+    return 1;
+}
+
 static uint32_t slot_at(gx_body *body, uint32_t element, const double x[3]) {
     uint32_t cell, leaf, found = GXP_NONE;
     gxb_complex_begin(body->complex);
     for (cell = element; cell != GXP_NONE && found == GXP_NONE; cell = body->cells[cell].next) {
         if (!body->cells[cell].kept) continue;
         for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && found == GXP_NONE; leaf = body->leaves[leaf].next) {
-            int inside = body->complex->leaves[leaf].facet_count == 0;
-            if (!inside) ck_assert_int_eq(gxp_is_inside(body, leaf, x, &inside), GX_OK);
-            if (inside) found = cell;
+            if (body->complex->leaves[leaf].facet_count == 0 || is_inside(body->complex, leaf, x)) found = cell;
         }
     }
     gxb_complex_rollback(body->complex);
@@ -1488,30 +1498,39 @@ static workload pinched(int shared) {
 }
 
 START_TEST(pinched_meshes) {
-    static const double o[3] = { 0, 0, 0 }, z[3] = { 0, 0, 1 }, across[3] = { 1, -1, 0 };
+    static const double o[3] = { 0, 0, 0 }, z[3] = { 0, 0, 1 }, inside[3] = { 1, 2, 0 };
     workload w = pinched(2);
     EXPECT_COUNTS(w, 2, 6, 1);
     w = pinched(1);
     EXPECT_COUNTS(w, 2, 7, 1);
-    w = pinched(2);                     /* through the common edge */
-    add_plane_through(&w, o, z, across);
-    EXPECT_COUNTS(w, 2, 8, 2);
+    w = pinched(2);                     /* through the common edge and both elements: four pieces, none of them joined */
+    add_plane_through(&w, o, z, inside);
+    EXPECT_COUNTS(w, 4, 16, 4);
     w = pinched(1);
-    add_plane_through(&w, o, z, across);
-    EXPECT_COUNTS(w, 2, 8, 2);
+    add_plane_through(&w, o, z, inside);
+    EXPECT_COUNTS(w, 4, 16, 4);
     w = pinched(2);                     /* across the edge: two pieces, each held together by its half of the edge */
     add_axis_plane(&w, 2, 0.5);
     EXPECT_COUNTS(w, 4, 12, 2);
     w = pinched(1);                     /* beside the node: cuts the first tetrahedron only */
     add_axis_plane(&w, 2, 0.5);
     EXPECT_COUNTS(w, 3, 11, 2);
-    w = pinched(2);                     /* half of the edge is cut through, the other half still joins */
-    {
-        wl_surface *s = wl_add_surface(&w, 0);
-        double a[3] = { 2, -2, 0.5 }, b[3] = { -2, 2, 0.5 }, c[3] = { -2, 2, 4 }, d[3] = { 2, -2, 4 };
-        wl_add_quad(s, a, b, c, d);
-    }
-    EXPECT_COUNTS(w, 2, 7, 1);
+}
+END_TEST
+
+/* The cut meets the body in the common edge or node only. */
+START_TEST(cuts_that_only_touch_a_pinch) {
+    static const double o[3] = { 0, 0, 0 }, z[3] = { 0, 0, 1 }, across[3] = { 1, -1, 0 };
+    static const double half[4][3] = { { 2, -2, 0.5 }, { -2, 2, 0.5 }, { -2, 2, 4 }, { 2, -2, 4 } };
+    workload w = pinched(2);
+    add_plane_through(&w, o, z, across);
+    EXPECT_COUNTS(w, 2, 8, 2);
+    w = pinched(1);
+    add_plane_through(&w, o, z, across);
+    EXPECT_COUNTS(w, 2, 8, 2);
+    w = pinched(2);                     /* the upper half of the edge; the lower half still joins, also around the upper node */
+    wl_add_quad(wl_add_surface(&w, 0), half[0], half[1], half[2], half[3]);
+    EXPECT_COUNTS(w, 2, 6, 1);
 }
 END_TEST
 
@@ -1541,16 +1560,21 @@ END_TEST
 
 /* ---- held regions ---- */
 
-/* Has a cell material in the region? By its rounded points, with a margin: 1 yes, -1 no, 0 too near to tell. */
+/* How far a cell reaches into the region, by its rounded points: 1 some way, -1 not at all, 0 too near to tell */
 static int cell_reaches(gx_body *body, uint32_t cell, const gx_region *r) {
+    gxb_complex *cx = body->complex;
     double reach = -1e300;
-    uint32_t leaf, i;
+    uint32_t leaf, i, j, first, count, e0, en;
+    ck_assert_int_eq(gxb_complex_open_element(cx, body->cells[cell].element), GX_OK);
     for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next) {
-        ck_assert_int_eq(gxp_leaf_points(body, leaf), GX_OK);
-        for (i = 0; i < body->list.count; ++i) {
-            double x[3];
-            gxp_point_position(body->complex, body->complex->points[body->list.data[i]].ball.x, x);
-            reach = fmax(reach, (x[r->axis] - r->value) * r->side);
+        ck_assert_int_eq(gxb_leaf_facets(cx, leaf, &first, &count), GX_OK);
+        for (i = 0; i < count; ++i) {
+            ck_assert_int_eq(gxb_facet_edges(cx, cx->pool[first + i], &e0, &en), GX_OK);
+            for (j = 0; j < en; ++j) {
+                const uint32_t e = cx->pool[e0 + j];
+                const double x = ldexp(cx->points[cx->edges[e >> 1].v[e & 1]].ball.x[r->axis], -cx->shift) + cx->origin[r->axis];
+                reach = fmax(reach, (x - r->value) * r->side);
+            }
         }
     }
     return reach > 1e-9 ? 1 : reach < -1e-9 ? -1 : 0;
@@ -1729,8 +1753,11 @@ START_TEST(held_body_hangs) {
     cut_by(body, &w, 1, 1);
     for (n = 0; n < 30; ++n) ck_assert_int_eq(gx_body_step(body, &step, NULL), GX_OK);
     view = view_of(body);
-    for (i = 0; i < view.copy_count; ++i)
-        if (body->positions[3 * view.copy_node[i] + 2] == 0) ck_assert_double_gt(-view.displacement[3 * i + 2], 3);
+    ck_assert_uint_eq(view.fragment_count, 3);
+    for (i = 0; i < 4 * view.cell_count; ++i) {
+        const double down = -view.displacement[3 * view.cell_copies[i] + 2];
+        ck_assert((down > 3) == (view.fragment_center[3 * view.cell_fragment[i / 4] + 2] < 0.75));
+    }
     gx_body_destroy(body);
     wl_free(&w);
 }
@@ -2181,7 +2208,7 @@ START_TEST(bad_cuts) {
     memcpy(x, v, sizeof x); x[2] = 1e-60; EXPECT_NO_CUT(GX_ERROR_RANGE, 0, 1);
     memcpy(x, v, sizeof x); x[3] = 1e60; EXPECT_NO_CUT(GX_ERROR_RANGE, 1, 1);
     memcpy(x, v, sizeof x); x[3] = 1e200; EXPECT_NO_CUT(GX_ERROR_RANGE, 1, 1);
-    memcpy(x, v, sizeof x); x[3] = DBL_MAX; x[7] = -DBL_MAX; EXPECT_NO_CUT(GX_ERROR_RANGE, 1, 1);
+    memcpy(x, v, sizeof x); x[3] = DBL_MAX; x[7] = DBL_MAX; EXPECT_NO_CUT(GX_ERROR_RANGE, 1, 1);
     s[1] = good; s[1].kind = GX_SURFACE_SOLID; EXPECT_NO_CUT(GX_ERROR_NOT_CLOSED, 0, 1);
     gx_body_destroy(body);
     wl_free(&w);
@@ -2273,6 +2300,7 @@ int main(void) {
     tcase_add_test(tests, solidified_sheets);
     tcase_add_loop_test(tests, solidified_sheets_are_closed, first, last);
     tcase_add_test(tests, pinched_meshes);
+    tcase_add_test(tests, cuts_that_only_touch_a_pinch);
     tcase_add_test(tests, solid_around_a_pinch);
     tcase_add_loop_test(tests, held_copies, first, last);
     tcase_add_test(tests, pieces_outside_the_region_are_free);

@@ -1,0 +1,114 @@
+#!/bin/sh
+# flags.sh - the predicates against exact rationals under each compiler and set of flags.
+#
+#     flags.sh [CASES] [PATTERN]...
+#
+# CASES: 5000 unless given; 10000000 is the full proof (some six minutes per configuration). Of the configurations only those
+# whose name matches a PATTERN (of the shell, with ? for a space: *fast*, gcc?c99?O2) are run. One line each, `N passed, N failed` at the end;
+# exit status 1 where one failed. VERBOSE=1 prints each configuration's figures (ns per call, shares of filter and exact stage).
+# JOBS: so many at once (default: the number of processors).
+here=$(cd "$(dirname "$0")" && pwd) || exit 2
+cases=5000
+case ${1-} in [0-9]*) cases=$1; shift ;; esac
+patterns=${*:-*}
+jobs=${JOBS:-$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)}
+work=$(mktemp -d "${TMPDIR:-/tmp}/gxfem_flags.XXXXXX") || exit 2
+trap 'rm -rf "$work"' EXIT
+trap 'exit 130' INT TERM
+
+chosen() {
+    set -f
+    for pattern in $patterns; do
+        # shellcheck disable=SC2254
+        case $1 in $pattern) set +f; return 0 ;; esac
+    done
+    set +f
+    return 1
+}
+
+# builds PROBE COMPILER FLAGS...: can it make a program at all? Configurations run side by side, so each has a probe of its own.
+builds() {
+    probe=$1
+    shift
+    printf '#include <stdint.h>\n#include <stdio.h>\nint main(void) { return 0; }\n' > "$probe.c"
+    "$@" -o "$probe" "$probe.c" -lm 2> /dev/null && "$probe"
+}
+
+has_fma() { grep -qw fma /proc/cpuinfo 2> /dev/null || sysctl -n machdep.cpu.features 2> /dev/null | grep -qw FMA; }
+
+# One configuration: run_one NAME ARGUMENTS-OF-THE-PROGRAM COMPILER FLAGS...
+run_one() {
+    name=$1 arguments=$2
+    shift 2
+    out=$work/$(echo "$name" | tr ' /' '__')
+    if ! builds "$out.probe" "$@"; then
+        echo "skipped" > "$out.state"
+        echo "skipped  $name (this compiler or system has no such mode)"
+        return
+    fi
+    # shellcheck disable=SC2086
+    if "$@" -o "$out" "$here/predicates_flags.c" -lm 2> "$out.log" && "$out" "$cases" $arguments >> "$out.log" 2>&1; then
+        echo "passed" > "$out.state"
+        echo "passed   $name: $(sed -n 's/^wrong signs: /wrong signs /p' "$out.log") of $cases x 7"
+    else
+        echo "failed" > "$out.state"
+        echo "FAILED   $name"
+        cat "$out.log"
+        return
+    fi
+    if [ -n "${VERBOSE-}" ]; then cat "$out.log"; fi
+}
+
+count=0
+# configuration NAME ARGUMENTS COMPILER FLAGS...
+configuration() {
+    chosen "$1" || return 0
+    run_one "$@" &
+    count=$((count + 1))
+    if [ $((count % jobs)) -eq 0 ]; then wait; fi
+}
+
+for compiler in gcc clang; do
+    command -v $compiler > /dev/null 2>&1 || { echo "skipped  $compiler (not installed)"; continue; }
+    $compiler --version 2> /dev/null | head -n 1
+    for standard in c99 gnu99; do
+        configuration "$compiler $standard O0" "" $compiler -std=$standard -O0
+        configuration "$compiler $standard O2" "" $compiler -std=$standard -O2
+        configuration "$compiler $standard O3 native" "" $compiler -std=$standard -O3 -march=native
+        configuration "$compiler $standard Ofast" "" $compiler -std=$standard -Ofast
+        configuration "$compiler $standard fast-math" "" $compiler -std=$standard -O2 -ffast-math
+        if has_fma; then
+            configuration "$compiler $standard fast-math fma" "" $compiler -std=$standard -O3 -ffast-math -mfma -ffp-contract=fast
+            configuration "$compiler $standard contract fma" "" $compiler -std=$standard -O2 -mfma -ffp-contract=fast
+            configuration "$compiler $standard Ofast fma flush" "flush" $compiler -std=$standard -Ofast -mfma
+        fi
+    done
+    configuration "$compiler limb32" "" $compiler -std=c99 -O2 -DGXB_LIMB32
+    configuration "$compiler limb32 fast-math" "" $compiler -std=gnu99 -Ofast -DGXB_LIMB32
+    configuration "$compiler m32" "" $compiler -std=c99 -O2 -m32
+    configuration "$compiler m32 fast-math" "" $compiler -std=gnu99 -O3 -ffast-math -m32
+    configuration "$compiler flush" "flush" $compiler -std=c99 -O2
+    for mode in up down zero; do
+        configuration "$compiler round $mode" "$mode" $compiler -std=c99 -O2
+        configuration "$compiler round $mode fast-math flush" "$mode flush" $compiler -std=gnu99 -O3 -ffast-math
+    done
+    if [ $compiler = gcc ]; then
+        configuration "gcc x87 c99" "" gcc -std=c99 -O2 -mfpmath=387
+        configuration "gcc x87 gnu99" "" gcc -std=gnu99 -O2 -mfpmath=387
+        configuration "gcc x87 gnu99 O0" "" gcc -std=gnu99 -O0 -mfpmath=387
+        configuration "gcc x87 fast-math" "" gcc -std=gnu99 -O3 -ffast-math -mfpmath=387
+        configuration "gcc x87 round up" "up" gcc -std=gnu99 -O2 -mfpmath=387
+        configuration "gcc x87 m32" "" gcc -std=gnu99 -O2 -m32 -mfpmath=387
+        configuration "gcc single-precision-constant" "" gcc -std=gnu99 -O2 -fsingle-precision-constant
+        configuration "gcc all fast" "flush" gcc -std=gnu99 -Ofast -march=native -fsingle-precision-constant -fno-signed-zeros
+    else
+        configuration "clang fp-model fast" "" clang -std=c99 -O3 -ffp-model=fast
+        configuration "clang fp-model fast fma" "flush" clang -std=c99 -O3 -march=native -ffp-model=fast
+    fi
+done
+wait
+tally() { cat "$work"/*.state 2> /dev/null | grep -c "^$1"; }
+passed=$(tally passed) failed=$(tally failed) skipped=$(tally skipped)
+if [ "$skipped" -gt 0 ]; then echo "$skipped skipped"; fi
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]

@@ -1,0 +1,398 @@
+/* test_memory.c - memory runs out. The n-th allocation fails, once or from then on, n = 0, 1, 2 ... until the call succeeds:
+   every failed call returns GX_ERROR_MEMORY and leaves the body's state hash alone, nothing leaks, sizes given back are sizes
+   taken, and the same call made again gives the topology that it gives without a failure. A call may also succeed all the same
+   (exact coordinates are cached where there is room): then with the same outcome.
+
+   The tests run in one process each (Check's own fork), so they can be run under valgrind with CK_FORK=no. */
+#define GXFEM_IMPLEMENTATION
+#include "../gxfem.h"
+#include <check.h>
+
+/* ---- an allocator that fails ---- */
+
+typedef struct memory {
+    size_t bytes, blocks;       /* that live */
+    size_t calls;
+    size_t fail_at;             /* this call fails, SIZE_MAX: none does */
+    int from_then_on;
+    int failed, wrong;          /* did one fail; was a block given back with another size */
+} memory;
+
+enum { HEAD = 16 };             /* bytes before each block: its size; keeps alignment */
+
+static void *take(void *user, size_t size) {
+    memory *m = (memory *)user;
+    const size_t call = m->calls++;
+    char *block;
+    if (size == 0) m->wrong = 1;
+    if (call == m->fail_at || (m->from_then_on && call > m->fail_at)) { m->failed = 1; return NULL; }
+    block = (char *)malloc(size + HEAD);
+    if (block == NULL) abort();
+    memcpy(block, &size, sizeof size);
+    memset(block + HEAD, 0xa5, size);       /* what is not initialised shows */
+    m->bytes += size;
+    ++m->blocks;
+    return block + HEAD;
+}
+
+static void give(void *user, void *block, size_t size) {
+    memory *m = (memory *)user;
+    size_t taken;
+    if (block == NULL) { m->wrong = 1; return; }
+    memcpy(&taken, (char *)block - HEAD, sizeof taken);
+    if (taken != size) m->wrong = 1;
+    m->bytes -= taken;
+    --m->blocks;
+    memset((char *)block - HEAD, 0x5a, taken + HEAD);
+    free((char *)block - HEAD);
+}
+
+static void fail_from(memory *m, size_t n, int from_then_on) { m->calls = 0; m->fail_at = n; m->from_then_on = from_then_on; m->failed = 0; }
+static void never_fail(memory *m) { fail_from(m, SIZE_MAX, 0); }
+
+static void check_empty(const memory *m, const char *what) {
+    ck_assert_msg(m->bytes == 0 && m->blocks == 0, "%s: %zu bytes in %zu blocks are lost", what, m->bytes, m->blocks);
+    ck_assert_msg(!m->wrong, "%s: a block was given back with another size", what);
+}
+
+/* ---- bodies and cuts ---- */
+
+static const double cube[8][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, 1, 0 }, { 0, 0, 1 }, { 1, 0, 1 }, { 0, 1, 1 }, { 1, 1, 1 } };
+static const uint32_t five[20] = { 0, 5, 3, 6, 1, 3, 0, 5, 2, 0, 3, 6, 4, 5, 0, 6, 7, 3, 5, 6 };
+static const double sheet_a[9] = { 0.4, -9, -9, 0.4, 9, -9, 0.4, 0, 19 }, sheet_b[9] = { -9, 0.45, -9, 9, 0.55, -9, 0, 0.5, 19 },
+                    sheet_part[9] = { 0.1, 0.2, 0.6, 0.7, 0.1, 0.65, 0.3, 0.8, 0.7 };
+static const uint32_t one_triangle[3] = { 0, 1, 2 };
+static const double box[24] = { -1, -1, 0.3, 0.6, -1, 0.3, -1, 0.6, 0.3, 0.6, 0.6, 0.3, -1, -1, 0.7, 0.6, -1, 0.7, -1, 0.6, 0.7, 0.6, 0.6, 0.7 };
+static const uint32_t box_triangles[36] = { 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5 };
+
+static gx_surface surface(const double *vertices, size_t vertex_count, const uint32_t *triangles, size_t triangle_count, uint32_t kind) {
+    gx_surface s;
+    s.vertices = vertices; s.vertex_count = vertex_count;
+    s.triangles = triangles; s.triangle_count = triangle_count;
+    s.kind = kind;
+    return s;
+}
+static gx_surface sheet(const double *vertices) { return surface(vertices, 3, one_triangle, 1, GX_SURFACE_SHEET); }
+static gx_surface solid(void) { return surface(box, 8, box_triangles, 12, GX_SURFACE_SOLID); }
+
+static gx_result create(memory *m, gx_body **body) {
+    gx_body_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.positions = &cube[0][0]; desc.node_count = 8;
+    desc.elements = five; desc.element_count = 5;
+    desc.young = 1e6; desc.poisson = 0.4; desc.density = 1000;
+    desc.allocator.allocate = take; desc.allocator.release = give; desc.allocator.user = m;
+    return gx_body_create(&desc, body, NULL);
+}
+
+static gx_result cut(gx_body *body, const gx_surface *surfaces, size_t count, double sever_below, int scoped) {
+    static const uint32_t first = 0;
+    gx_cut_desc desc;
+    gx_failure failure;
+    gx_result result;
+    memset(&desc, 0, sizeof desc);
+    desc.surfaces = surfaces; desc.surface_count = count;
+    desc.sever_below = sever_below;
+    if (scoped) { desc.scope_fragments = &first; desc.scope_fragment_count = 1; }
+    result = gx_body_cut(body, &desc, NULL, &failure);
+    ck_assert_int_eq(failure.result, (int)result);
+    return result;
+}
+
+/* ---- what is tried ---- */
+
+typedef gx_result (*action)(gx_body *body);
+
+static gx_result cut_sheet(gx_body *body) { gx_surface s = sheet(sheet_a); return cut(body, &s, 1, 0, 0); }
+static gx_result cut_second_sheet(gx_body *body) { gx_surface s = sheet(sheet_b); return cut(body, &s, 1, 0, 0); }
+static gx_result cut_part(gx_body *body) { gx_surface s = sheet(sheet_part); return cut(body, &s, 1, 0, 0); }
+static gx_result cut_solid(gx_body *body) { gx_surface s = solid(); return cut(body, &s, 1, 0, 0); }
+static gx_result cut_scoped(gx_body *body) { gx_surface s = sheet(sheet_b); return cut(body, &s, 1, 0, 1); }
+static gx_result cut_scoped_solid(gx_body *body) { gx_surface s = solid(); return cut(body, &s, 1, 0, 1); }
+static gx_result cut_severing(gx_body *body) { gx_surface s = sheet(sheet_b); return cut(body, &s, 1, 0.4, 0); }
+static gx_result cut_all(gx_body *body) {
+    gx_surface s[4];
+    s[0] = sheet(sheet_a); s[1] = solid(); s[2] = sheet(sheet_b); s[3] = sheet(sheet_part);
+    return cut(body, s, 4, 0.01, 0);
+}
+static gx_result look(gx_body *body) { gx_view view; return gx_body_view(body, &view); }
+static gx_result draw(gx_body *body) { gx_skin skin; return gx_body_skin(body, &skin); }
+static gx_result hold(gx_body *body) {
+    static const gx_region regions[2] = { { 2, 1, 0.9 }, { 0, -1, 0.2 } };
+    return gx_body_hold(body, regions, 2);
+}
+static gx_result hold_and_look(gx_body *body) {
+    static const gx_region region = { 2, 1, 0.8 };
+    gx_result result = gx_body_hold(body, &region, 1);
+    return result == GX_OK ? look(body) : result;
+}
+static gx_result step(gx_body *body) {
+    gx_step_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.dt = 0.01; desc.gravity[2] = -9.81;
+    return gx_body_step(body, &desc, NULL);
+}
+static gx_result hash(gx_body *body) { gx_result result; gx_body_topology_hash(body, &result); return result; }
+
+/* Before the action: what the body has been through. */
+static gx_body *prepared(memory *m, const action *before) {
+    gx_body *body = NULL;
+    ck_assert_int_eq(create(m, &body), GX_OK);
+    for (; *before != NULL; ++before) ck_assert_int_eq((*before)(body), GX_OK);
+    return body;
+}
+
+static uint64_t topology(gx_body *body) {
+    gx_result result;
+    uint64_t h = gx_body_topology_hash(body, &result);
+    ck_assert_int_eq(result, GX_OK);
+    return h;
+}
+
+/* What the body is after the action without a failure */
+typedef struct outcome { uint64_t topology, state; size_t cells, copies, fragments; double volume; } outcome;
+
+static outcome outcome_of(gx_body *body) {
+    outcome o;
+    gx_view view;
+    memset(&o, 0, sizeof o);
+    ck_assert_int_eq(gx_body_view(body, &view), GX_OK);
+    o.topology = topology(body); o.state = gx_body_state_hash(body);
+    o.cells = view.cell_count; o.copies = view.copy_count; o.fragments = view.fragment_count; o.volume = view.volume;
+    return o;
+}
+
+static void check_failure(gx_result result, uint64_t before, gx_body *body, const char *what, size_t n, int from_then_on) {
+    ck_assert_msg(result == GX_ERROR_MEMORY, "%s, allocation %zu%s: %s", what, n, from_then_on ? " and on" : "", gx_result_text(result));
+    ck_assert_msg(gx_body_state_hash(body) == before, "%s, allocation %zu%s: the body has changed", what, n, from_then_on ? " and on" : "");
+}
+
+static void check_outcome(gx_body *body, const outcome *truth, const char *what, size_t n) {
+    outcome o = outcome_of(body);
+    ck_assert_msg(o.topology == truth->topology, "%s, allocation %zu: another topology", what, n);
+    ck_assert_msg(o.cells == truth->cells && o.copies == truth->copies && o.fragments == truth->fragments,
+                  "%s, allocation %zu: %zu cells, %zu copies, %zu fragments", what, n, o.cells, o.copies, o.fragments);
+    ck_assert_msg(o.state == truth->state && o.volume == truth->volume, "%s, allocation %zu: another state", what, n);
+}
+
+/* A new body for every n */
+static void sweep_fresh(const char *what, const action *before, action act, const outcome *truth, int from_then_on) {
+    size_t n;
+    for (n = 0;; ++n) {
+        memory m;
+        gx_body *body;
+        gx_result result;
+        uint64_t state;
+        memset(&m, 0, sizeof m);
+        never_fail(&m);
+        body = prepared(&m, before);
+        state = gx_body_state_hash(body);
+        fail_from(&m, n, from_then_on);
+        result = act(body);
+        if (!m.failed) {
+            ck_assert_int_eq(result, GX_OK);
+            gx_body_destroy(body);
+            check_empty(&m, what);
+            return;
+        }
+        if (result != GX_OK) check_failure(result, state, body, what, n, from_then_on);
+        never_fail(&m);
+        if (result != GX_OK) ck_assert_int_eq(act(body), GX_OK);
+        check_outcome(body, truth, what, n);
+        gx_body_destroy(body);
+        check_empty(&m, what);
+    }
+}
+
+/* One body on which the same call fails again and again, ever later */
+static void sweep_stubborn(const char *what, const action *before, action act, const outcome *truth) {
+    memory m;
+    gx_body *body;
+    gx_result result = GX_ERROR_MEMORY;
+    uint64_t state;
+    size_t n;
+    memset(&m, 0, sizeof m);
+    never_fail(&m);
+    body = prepared(&m, before);
+    state = gx_body_state_hash(body);
+    for (n = 0; result != GX_OK; ++n) {
+        fail_from(&m, n, n % 2 == 1);
+        result = act(body);
+        if (result != GX_OK) check_failure(result, state, body, what, n, n % 2 == 1);
+    }
+    never_fail(&m);
+    check_outcome(body, truth, what, n);
+    gx_body_destroy(body);
+    check_empty(&m, what);
+}
+
+/* All three sweeps of one action */
+static void sweep(const char *what, const action *before, action act) {
+    memory m;
+    gx_body *body;
+    outcome truth;
+    memset(&m, 0, sizeof m);
+    never_fail(&m);
+    body = prepared(&m, before);
+    ck_assert_int_eq(act(body), GX_OK);
+    truth = outcome_of(body);
+    gx_body_destroy(body);
+    check_empty(&m, what);
+    sweep_fresh(what, before, act, &truth, 0);
+    sweep_fresh(what, before, act, &truth, 1);
+    sweep_stubborn(what, before, act, &truth);
+}
+
+static const action nothing[] = { NULL }, after_a_cut[] = { cut_sheet, NULL }, after_two[] = { cut_sheet, cut_part, look, NULL },
+                    after_solid[] = { cut_solid, NULL }, held[] = { hold, cut_sheet, step, NULL };
+
+START_TEST(creation) {
+    int from_then_on;
+    size_t n;
+    for (from_then_on = 0; from_then_on < 2; ++from_then_on) for (n = 0;; ++n) {
+        memory m;
+        gx_body *body = NULL;
+        gx_result result;
+        memset(&m, 0, sizeof m);
+        fail_from(&m, n, from_then_on);
+        result = create(&m, &body);
+        if (m.failed) {
+            ck_assert_msg(result == GX_ERROR_MEMORY && body == NULL, "creation, allocation %zu: %s", n, gx_result_text(result));
+            check_empty(&m, "creation");
+            continue;
+        }
+        ck_assert_int_eq(result, GX_OK);
+        ck_assert_uint_gt(n, 5);
+        gx_body_destroy(body);
+        check_empty(&m, "creation");
+        break;
+    }
+}
+END_TEST
+
+START_TEST(first_cut) { sweep("a sheet", nothing, cut_sheet); }
+END_TEST
+
+START_TEST(partial_cut) { sweep("a part of a sheet", nothing, cut_part); }
+END_TEST
+
+START_TEST(solid_cut) { sweep("a solid", nothing, cut_solid); }
+END_TEST
+
+START_TEST(cut_of_a_cut_body) {
+    sweep("a second sheet", after_a_cut, cut_second_sheet);
+    sweep("a solid after sheets", after_two, cut_solid);
+    sweep("a sheet after a solid", after_solid, cut_second_sheet);
+    sweep("the same sheet again", after_a_cut, cut_sheet);
+}
+END_TEST
+
+START_TEST(scoped_cut) {
+    sweep("a scoped sheet", after_a_cut, cut_scoped);
+    sweep("a scoped solid", after_a_cut, cut_scoped_solid);
+}
+END_TEST
+
+START_TEST(severing_cut) { sweep("a severing sheet", after_two, cut_severing); }
+END_TEST
+
+START_TEST(many_surfaces) { sweep("four surfaces", nothing, cut_all); }
+END_TEST
+
+START_TEST(view_hold_skin_hash) {
+    sweep("a view", after_a_cut, look);
+    sweep("a skin", after_a_cut, draw);
+    sweep("a skin of an uncut body", nothing, draw);
+    sweep("a skin after a solid", after_solid, draw);
+    sweep("a hash", after_a_cut, hash);
+}
+END_TEST
+
+/* A region may be taken although the view after it fails: the state is then the one with the region. */
+START_TEST(holding) {
+    sweep("a hold", after_a_cut, hold);
+    {
+        memory m;
+        gx_body *body;
+        gx_view view;
+        size_t n, i, count = 0;
+        gx_result result = GX_ERROR_MEMORY;
+        memset(&m, 0, sizeof m);
+        never_fail(&m);
+        body = prepared(&m, after_a_cut);
+        for (n = 0; result != GX_OK; ++n) {
+            fail_from(&m, n, 0);
+            result = hold_and_look(body);
+            ck_assert(result == GX_OK || (m.failed && result == GX_ERROR_MEMORY));
+        }
+        never_fail(&m);
+        ck_assert_int_eq(gx_body_view(body, &view), GX_OK);
+        for (i = 0; i < view.copy_count; ++i) count += view.copy_held[i];
+        ck_assert_uint_gt(count, 0);
+        gx_body_destroy(body);
+        check_empty(&m, "hold and look");
+    }
+}
+END_TEST
+
+START_TEST(stepping) {
+    sweep("a first step", nothing, step);
+    sweep("a step after a cut", after_a_cut, step);
+    sweep("a further step", held, step);
+}
+END_TEST
+
+START_TEST(cut_after_steps) { sweep("a cut between steps", held, cut_second_sheet); }
+END_TEST
+
+START_TEST(solidifying) {
+    static const double square[12] = { 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0 };
+    static const uint32_t two[6] = { 0, 1, 2, 0, 2, 3 };
+    gx_surface s = surface(square, 4, two, 2, GX_SURFACE_SHEET);
+    gx_result result = GX_ERROR_MEMORY;
+    memory m;
+    gx_allocator a;
+    double vertices[24];
+    uint32_t triangles[48];
+    size_t n, v = 99, t = 98;
+    memset(&m, 0, sizeof m);
+    a.allocate = take; a.release = give; a.user = &m;
+    for (n = 0; result != GX_OK; ++n) {
+        fail_from(&m, n, 0);
+        result = gx_surface_solidify(&s, 0.1, vertices, &v, triangles, &t, &a);
+        if (!m.failed) continue;
+        ck_assert_int_eq(result, GX_ERROR_MEMORY);
+        ck_assert(v == 99 && t == 98);
+        check_empty(&m, "solidify");
+    }
+    ck_assert(v == 8 && t == 12);
+    check_empty(&m, "solidify");
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("memory");
+    TCase *tests = tcase_create("memory");
+    SRunner *runner;
+    int failed;
+    tcase_set_timeout(tests, 120);
+    tcase_add_test(tests, creation);
+    tcase_add_test(tests, first_cut);
+    tcase_add_test(tests, partial_cut);
+    tcase_add_test(tests, solid_cut);
+    tcase_add_test(tests, cut_of_a_cut_body);
+    tcase_add_test(tests, scoped_cut);
+    tcase_add_test(tests, severing_cut);
+    tcase_add_test(tests, many_surfaces);
+    tcase_add_test(tests, view_hold_skin_hash);
+    tcase_add_test(tests, holding);
+    tcase_add_test(tests, stepping);
+    tcase_add_test(tests, cut_after_steps);
+    tcase_add_test(tests, solidifying);
+    suite_add_tcase(suite, tests);
+    runner = srunner_create(suite);
+    srunner_run_all(runner, CK_NORMAL);
+    failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
