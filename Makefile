@@ -45,7 +45,7 @@ demo: $(BUILD)/gxcut
 
 check:
 	@sh tests/install.sh check
-	@$(MAKE) --no-print-directory -j$(JOBS) check-programs
+	@$(MAKE) --no-print-directory -k -j$(JOBS) check-programs
 
 check-programs: $(tests:%=run-%) run-gxcut
 
@@ -61,7 +61,7 @@ $(BUILD)/tests/%: tests/%.c $(headers) $(wildcard tests/*.h)
 
 sanitize:
 	@sh tests/install.sh check
-	@CK_TIMEOUT_MULTIPLIER=10 $(MAKE) --no-print-directory -j$(JOBS) check-programs BUILD=$(BUILD)/sanitize CFLAGS="$(sanitizers)"
+	@CK_TIMEOUT_MULTIPLIER=10 $(MAKE) --no-print-directory -k -j$(JOBS) check-programs BUILD=$(BUILD)/sanitize CFLAGS="$(sanitizers)"
 
 compile:
 	@sh tests/compile.sh $(BUILD)/compile

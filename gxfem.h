@@ -1308,32 +1308,41 @@ static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
     return fabs(gxb_num_to_double(&sum));
 }
 
-#define GXP_SHARE_ERROR 1e-6    /* relative error of a link's share of its face */
-
-/* Area of a facet as a share of the mesh face that it is part of. */
-static gx_result gxp_share_of_face(gx_body *body, uint32_t facet, double *share) {
+/* Collects the facet's corners in body->seeds. */
+static gx_result gxp_facet_points(gx_body *body, uint32_t facet) {
     gxb_complex *cx = body->complex;
-    const uint32_t face = cx->facets[facet].face;
-    const uint32_t element = cx->face_elements[2 * face] != GXB_NONE ? cx->face_elements[2 * face] : cx->face_elements[2 * face + 1];
-    uint32_t e0, en, i, k;
-    double part[3], whole[3], error, size;
-    gx_result result = gxb_complex_open_element(cx, element);
-    body->seeds.count = 0;
-    for (k = 0; cx->element_faces[4 * element + k] != face; k++) {}
-    for (i = 0; i < 4 && result == GX_OK; i++) if (i != k) result = gxp_push(body, &body->seeds, cx->elements[4 * element + i]);
-    if (result == GX_OK) result = gxb_facet_edges(cx, facet, &e0, &en);
-    if (result != GX_OK) return result;
-    error = gxp_rough_area(cx, &body->seeds, whole);
-    size = sqrt(whole[0] * whole[0] + whole[1] * whole[1] + whole[2] * whole[2]);
+    uint32_t e0, en, i;
+    gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
     body->seeds.count = 0;
     for (i = 0; i < en && result == GX_OK; i++) result = gxp_push(body, &body->seeds, cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1]);
+    return result;
+}
+
+/* An element with the face, and the node of it that the face does not have. */
+static uint32_t gxp_face_element(const gxb_complex *cx, uint32_t face, uint32_t *k) {
+    const uint32_t element = cx->face_elements[2 * face] != GXB_NONE ? cx->face_elements[2 * face] : cx->face_elements[2 * face + 1];
+    for (*k = 0; cx->element_faces[4 * element + *k] != face; ++*k) {}
+    return element;
+}
+
+/* Area of a facet as a share of the mesh face that it is part of, roughly, with a bound for its error. */
+static gx_result gxp_rough_share(gx_body *body, uint32_t facet, double *share, double *error) {
+    uint32_t k, i;
+    double part[3], whole[3], size;
+    const uint32_t element = gxp_face_element(body->complex, body->complex->facets[facet].face, &k);
+    gx_result result = GX_OK;
+    body->seeds.count = 0;
+    for (i = 0; i < 4 && result == GX_OK; i++) if (i != k) result = gxp_push(body, &body->seeds, body->complex->elements[4 * element + i]);
     if (result != GX_OK) return result;
-    if (error < 0.1 * GXP_SHARE_ERROR * size) {
-        error = gxp_rough_area(cx, &body->seeds, part);
-        *share = sqrt(part[0] * part[0] + part[1] * part[1] + part[2] * part[2]) / size;
-        if (error < 0.1 * GXP_SHARE_ERROR * *share * size) return GX_OK;
-    }
-    *share = gxp_fine_share(body, element, k);
+    *error = gxp_rough_area(body->complex, &body->seeds, whole);
+    size = sqrt(whole[0] * whole[0] + whole[1] * whole[1] + whole[2] * whole[2]);
+    result = gxp_facet_points(body, facet);
+    if (result != GX_OK) return result;
+    *error += gxp_rough_area(body->complex, &body->seeds, part);
+    *share = sqrt(part[0] * part[0] + part[1] * part[1] + part[2] * part[2]);
+    if (!(*error < 0.5 * size) || !(*share < 8 * size)) { *share = 0; *error = 1; return GX_OK; }    /* nothing is known */
+    *share /= size;
+    *error = 4 * *error / size;
     return GX_OK;
 }
 
@@ -1352,37 +1361,59 @@ static int gxp_is_link(const gx_body *body, uint32_t facet) {
     return !f->wall && gxp_is_kept(body, f->leaf[0]) && gxp_is_kept(body, f->leaf[1]);
 }
 
+/* Do both facets of a face belong to the link between the same two cells? */
+static int gxp_same_link(const gx_body *body, uint32_t a, uint32_t b) {
+    const gxb_facet *f = &body->complex->facets[a], *g = &body->complex->facets[b];
+    return gxp_is_link(body, a) && gxp_is_link(body, b) && body->leaves[f->leaf[0]].cell == body->leaves[g->leaf[0]].cell &&
+           body->leaves[f->leaf[1]].cell == body->leaves[g->leaf[1]].cell;
+}
+
+/* Share of the link that starts with facet first of body->list: roughly where it is certainly neither the smallest so far nor to be
+   severed, else exactly. */
+static gx_result gxp_weigh_link(gxp_cut *cut, uint32_t first, double *share) {
+    gx_body *body = cut->body;
+    double part = 0, error = 0, errors = 0;
+    uint32_t i, k, element;
+    gx_result result = GX_OK;
+    *share = 0;
+    for (i = first; i < body->list.count && result == GX_OK; i++) {
+        if (!gxp_same_link(body, body->list.data[first], body->list.data[i])) continue;
+        result = gxp_rough_share(body, body->list.data[i], &part, &error);
+        *share += part;
+        errors += error;
+    }
+    if (result != GX_OK || (*share - errors > cut->report.min_link_ratio && *share - errors > cut->desc->sever_below)) return result;
+    element = gxp_face_element(body->complex, body->complex->facets[body->list.data[first]].face, &k);
+    result = gxb_complex_open_element(body->complex, element);
+    *share = 0;
+    for (i = first; i < body->list.count && result == GX_OK; i++) {
+        if (!gxp_same_link(body, body->list.data[first], body->list.data[i])) continue;
+        result = gxp_facet_points(body, body->list.data[i]);
+        if (result == GX_OK) *share += gxp_fine_share(body, element, k);
+    }
+    return result;
+}
+
 /* Shares of one face's links; links below the ratio are severed. All pieces between the same two cells count as one link. */
 static gx_result gxp_weigh_links(gxp_cut *cut, uint32_t face) {
     gx_body *body = cut->body;
-    gxb_complex *cx = body->complex;
     uint32_t i, j;
     gx_result result;
     body->list.count = 0;
-    result = gxp_push_pieces(body, cx->face_facet[face], &body->list);
+    result = gxp_push_pieces(body, body->complex->face_facet[face], &body->list);
     for (i = 0; i < body->list.count && result == GX_OK; i++) {
-        const gxb_facet *f = &cx->facets[body->list.data[i]];
-        const uint32_t front = f->leaf[0], behind = f->leaf[1];
-        double total = 0, share = 0;
-        int seen = 0;
-        if (!gxp_is_link(body, body->list.data[i])) continue;
-        for (j = 0; j < body->list.count && result == GX_OK && !seen; j++) {
-            const gxb_facet *g = &cx->facets[body->list.data[j]];
-            if (!gxp_is_link(body, body->list.data[j]) || body->leaves[g->leaf[0]].cell != body->leaves[front].cell ||
-                body->leaves[g->leaf[1]].cell != body->leaves[behind].cell) continue;
-            if (j < i) { seen = 1; break; }
-            result = gxp_share_of_face(body, body->list.data[j], &share);
-            total += share;
-        }
-        if (result != GX_OK || seen) continue;
-        if (total < cut->report.min_link_ratio) cut->report.min_link_ratio = total;
-        if (total >= cut->desc->sever_below) continue;
+        const uint32_t facet = body->list.data[i];
+        double share;
+        if (!gxp_is_link(body, facet)) continue;
+        for (j = 0; j < i && !gxp_same_link(body, body->list.data[j], facet); j++) {}
+        if (j < i) continue;
+        result = gxp_weigh_link(cut, i, &share);
+        if (result != GX_OK) break;
+        if (share < cut->report.min_link_ratio) cut->report.min_link_ratio = share;
+        if (share >= cut->desc->sever_below) continue;
         cut->report.severed_links++;
-        for (j = body->list.count; j-- > i && result == GX_OK;) {
-            const gxb_facet *g = &cx->facets[body->list.data[j]];
-            if (gxp_is_link(body, body->list.data[j]) && body->leaves[g->leaf[0]].cell == body->leaves[front].cell &&
-                body->leaves[g->leaf[1]].cell == body->leaves[behind].cell) result = gxb_complex_set_wall(cx, body->list.data[j]);
-        }
+        for (j = body->list.count; j-- > i && result == GX_OK;)
+            if (gxp_same_link(body, facet, body->list.data[j])) result = gxb_complex_set_wall(body->complex, body->list.data[j]);
     }
     return result;
 }

@@ -327,7 +327,8 @@ GXFEM_API int gxb_complex_compare(gxb_complex *complex, uint32_t point, int axis
    Exact for hulls that no double lies in. The surface is in the given coordinates and must not pass through the hull's inside. */
 GXFEM_API int gxb_complex_winding(gxb_complex *complex, const uint32_t *points, size_t point_count, const double *vertices,
                                   const uint32_t *triangles, size_t triangle_count);
-/* Barycentric coordinates of a point in an element, each rounded on its own from its exact value (0 where it is 0). */
+/* Barycentric coordinates of a point in an element, each rounded on its own from its exact value (0 where it is 0), but one above
+   0.2, which is 1 minus the others. */
 GXFEM_API void gxb_complex_barycentric(gxb_complex *complex, uint32_t point, uint32_t element, double lambda[4]);
 /* The same with a relative error below 2^-180. */
 GXFEM_API void gxb_complex_barycentric_fine(gxb_complex *complex, uint32_t point, uint32_t element, gxb_num lambda[4]);
@@ -1331,6 +1332,26 @@ static int gxbp_incident(const gxb_complex *cx, uint32_t kind, const uint32_t de
            (def[1] == f->def[0] || def[1] == f->def[1] || def[1] == third);
 }
 
+/* Does the plane contain both points by its definition? */
+static int gxbp_plane_has_line(const gxb_cplane *f, uint32_t p, uint32_t q) {
+    const uint32_t third = f->along_axis ? f->def[0] : f->def[2];
+    return (p == f->def[0] || p == f->def[1] || p == third) && (q == f->def[0] || q == f->def[1] || q == third);
+}
+
+/* Is the point in the plane because two of its own planes meet in a line that the plane contains too? So it is where a sheet's
+   triangles meet in their common edge: what a filter never settles, and exact arithmetic need not. */
+static int gxbp_incident_by_line(const gxb_complex *cx, const uint32_t def[3], uint32_t plane) {
+    const gxb_cplane *f = &cx->planes[plane];
+    const uint32_t line_count = f->along_axis ? 1u : 3u;
+    uint32_t k, i;
+    for (k = 0; k < line_count; k++) {
+        int count = 0;
+        for (i = 0; i < 3; i++) count += gxbp_plane_has_line(&cx->planes[def[i]], f->def[k], f->def[(k + 1) % 3]);
+        if (count >= 2) return 1;
+    }
+    return 0;
+}
+
 /* Sign of the exact value of n.X - d W for a point of the complex, or (point GXB_NONE) for one that only has a definition. */
 static int gxbp_exact_sign(gxb_complex *cx, uint32_t kind, const uint32_t def[3], uint32_t point, uint32_t plane) {
     GXB_NUM(r);
@@ -1356,6 +1377,7 @@ static int gxbp_side_of(gxb_complex *cx, const gxb_ball *ball, uint32_t kind, co
         sign = gxbp_filter_sign(value, bound);
         if (sign != 0) return sign;
     }
+    if (kind == GXB_THREE_PLANES && gxbp_incident_by_line(cx, def, plane)) return 0;
     return gxbp_exact_sign(cx, kind, def, point, plane);
 }
 
@@ -2473,24 +2495,40 @@ static int gxbp_known_lambda(const gxb_complex *cx, uint32_t point, uint32_t ele
     return gxbp_incident(cx, p->kind, p->def, point, cx->facets[cx->face_facet[face]].plane) ? 0 : -1;
 }
 
+/* Of the coordinates that are not known, the one that seems largest: 1 minus the others gives it to rounding. 4: can't tell. */
+static uint32_t gxbp_largest_lambda(const gxb_complex *cx, uint32_t point, uint32_t element, const double height[4], const double lambda[4]) {
+    uint32_t k, largest = 4;
+    double most = 0, bound;
+    for (k = 0; k < 4 && cx->points[point].ball.error < GXBP_NO_BALL; k++) {
+        const double value = gxbp_filter_side(&cx->points[point].ball, &cx->planes[gxbp_face_plane(cx, element, k)].filter, &bound) / height[k];
+        if (lambda[k] >= 0 || value < most || gxbp_abs(bound / height[k]) > 0.01) continue;
+        largest = k;
+        most = value;
+    }
+    return most > 0.2 ? largest : 4;
+}
+
 GXFEM_API void gxb_complex_barycentric(gxb_complex *cx, uint32_t point, uint32_t element, double lambda[4]) {
     const gxb_cpoint *p = &cx->points[point];
     const int on_edge = p->kind == GXB_LINE_PLANE && p->def[0] < cx->node_count && p->def[1] < cx->node_count;
     const double *height = point < cx->node_count || on_edge ? NULL : gxbp_heights(cx, element);
-    uint32_t k;
+    uint32_t k, largest = 4;
+    double rest = 1;
+    for (k = 0; k < 4; k++) lambda[k] = gxbp_known_lambda(cx, point, element, k);
+    if (height != NULL) largest = gxbp_largest_lambda(cx, point, element, height, lambda);
     for (k = 0; k < 4; k++) {
         const uint32_t node = cx->elements[4 * element + k];
-        const int known = gxbp_known_lambda(cx, point, element, k);
-        GXB_NUM(d); GXB_NUM(w);
-        lambda[k] = known;
-        if (known >= 0) continue;
+        if (lambda[k] >= 0 || k == largest) continue;
         if (on_edge) {
             lambda[k] = node == p->def[0] ? gxbp_edge_parameter(cx, point, 0) : node == p->def[1] ? gxbp_edge_parameter(cx, point, 1) : 0;
-            continue;
+        } else {
+            GXB_NUM(d); GXB_NUM(w);
+            gxbp_distance(cx, point, gxbp_face_plane(cx, element, k), &d, &w);
+            lambda[k] = gxb_num_ratio(&d, &w) / height[k];
         }
-        gxbp_distance(cx, point, gxbp_face_plane(cx, element, k), &d, &w);
-        lambda[k] = gxb_num_ratio(&d, &w) / height[k];
+        rest -= lambda[k];
     }
+    if (largest < 4) lambda[largest] = rest;
 }
 
 /* Each step adds the quotient of what is left: 50 bits, so that four leave less than 2^-180 of the value. */

@@ -43,8 +43,11 @@ static inline uint64_t pc_bits(double x) {
 
 static inline double pc_power(int e) { return pc_from_bits((uint64_t)(e + 1023) << 52); }
 
-/* x moved by so many units of its last place */
-static inline double pc_nudge(double x, int units) { return (pc_bits(x) << 1) == 0 ? x : pc_from_bits(pc_bits(x) + (uint64_t)(int64_t)units); }
+/* x moved by so many units of its last place; 0, and what would leave its sign or the doubles, stays */
+static inline double pc_nudge(double x, int units) {
+    const uint64_t b = pc_bits(x) + (uint64_t)(int64_t)units;
+    return (pc_bits(x) << 1) == 0 || ((b ^ pc_bits(x)) >> 63) || ((b >> 52) & 0x7ff) == 0x7ff ? x : pc_from_bits(b);
+}
 
 /* any finite double: every exponent is equally likely, denormals and zero included */
 static inline double pc_any_double(pc_random *r) {

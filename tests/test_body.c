@@ -1572,7 +1572,10 @@ static int cell_reaches(gx_body *body, uint32_t cell, const gx_region *r) {
             ck_assert_int_eq(gxb_facet_edges(cx, cx->pool[first + i], &e0, &en), GX_OK);
             for (j = 0; j < en; ++j) {
                 const uint32_t e = cx->pool[e0 + j];
-                const double x = ldexp(cx->points[cx->edges[e >> 1].v[e & 1]].ball.x[r->axis], -cx->shift) + cx->origin[r->axis];
+                double lambda[4], x = 0;
+                int k;
+                gxb_complex_barycentric(cx, cx->edges[e >> 1].v[e & 1], body->cells[cell].element, lambda);
+                for (k = 0; k < 4; ++k) x += lambda[k] * body->positions[3 * cx->elements[4 * body->cells[cell].element + (uint32_t)k] + r->axis];
                 reach = fmax(reach, (x - r->value) * r->side);
             }
         }

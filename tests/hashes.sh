@@ -1,0 +1,66 @@
+#!/bin/sh
+# hashes.sh [DIR] - is topology_hash the same under every compiler and flag? Cuts the same files by gxcut built in many ways.
+# Prints a line per build and `N passed, N failed`.
+set -u
+dir=${1:-build/hashes}
+mkdir -p "$dir" || exit 1
+passed=0
+failed=0
+
+# Two wavy sheets that cross, and a box, as files: decimals read exactly, wherever they were made.
+awk 'BEGIN { n = 17; for (s = 0; s < 2; s++) { file = ARGV[1] "/sheet" s ".obj"
+        for (j = 0; j < n; j++) for (i = 0; i < n; i++) { u = -0.5 + 3 * i / (n - 1); v = -0.5 + 3 * j / (n - 1); w = 0.9 + 0.2 * sin(4 * u) * cos(3 * v)
+            if (s == 0) printf "v %.17g %.17g %.17g\n", u, v, w > file; else printf "v %.17g %.17g %.17g\n", w, u, v > file }
+        for (j = 1; j < n; j++) for (i = 1; i < n; i++) { a = (j - 1) * n + i; printf "f %d %d %d\nf %d %d %d\n", a, a + 1, a + n + 1, a, a + n + 1, a + n > file } } }' "$dir"
+
+sixths=""
+for x in 0.16666666666666666 0.33333333333333331 0.5 0.66666666666666663 0.83333333333333337; do
+    sixths="$sixths --sheet plane:$x,0.5,0.5,1,0,0 --sheet plane:0.5,$x,0.5,0,1,0"
+done
+
+hash_of() { # binary, arguments
+    "$@" --frames 0 --quiet --report "$dir/report.json" >/dev/null 2>&1 || { echo "failed"; return; }
+    sed -n 's/.*"topology_hash": *"\([0-9a-f]*\)".*/\1/p' "$dir/report.json"
+}
+
+hashes() { # binary
+    hash_of "$1" cube5 $sixths
+    hash_of "$1" grid:2,2,2,6 --sheet "$dir/sheet0.obj" --sheet "$dir/sheet1.obj"
+    hash_of "$1" grid:2,2,2,5 --sheet "$dir/sheet0.obj" --solid box:0.5,0.25,0.125,1.5,1,1.75 --sheet plane:1,1,1,1,0,0
+}
+
+try() { # compiler flags...
+    if ! command -v "$1" >/dev/null 2>&1; then return; fi
+    if ! "$@" -w -I. examples/gxcut.c -o "$dir/gxcut" -lm >"$dir/log" 2>&1; then
+        echo "skipped  $* (does not build here)"
+        return
+    fi
+    got=$(hashes "$dir/gxcut" | tr '\n' ' ')
+    if [ -z "${first:-}" ]; then first=$got; fi
+    case $got in *failed*) got="" ;; esac
+    if [ "$got" = "$first" ]; then passed=$((passed + 1)); echo "same     $*"
+    else failed=$((failed + 1)); echo "DIFFERS  $*: $got, not $first"; fi
+}
+
+x86=$(uname -m | grep -c -E 'x86_64|i.86')
+fma=$(grep -c -m1 ' fma ' /proc/cpuinfo 2>/dev/null || true)
+for cc in gcc clang; do
+    try $cc -std=c99 -O0
+    try $cc -std=c99 -O2
+    try $cc -std=gnu99 -O3
+    try $cc -std=gnu99 -O3 -ffast-math
+    try $cc -std=c99 -O2 -DGXB_LIMB32
+    if [ "$x86" = 1 ]; then
+        if [ "${fma:-0}" != 0 ]; then try $cc -std=gnu99 -O2 -mfma -ffp-contract=fast; try $cc -std=gnu99 -Ofast -march=native; fi
+        if [ $cc = gcc ]; then try $cc -std=gnu99 -O2 -mfpmath=387; fi
+        try $cc -std=c99 -O2 -m32
+        try $cc -std=c99 -O2 -m32 -ffast-math
+    fi
+done
+if [ "$x86" = 1 ]; then # flush-to-zero and denormals-are-zero from the first instruction on
+    printf '%s\n' '#include <xmmintrin.h>' '__attribute__((constructor)) static void flush(void) { _mm_setcsr(_mm_getcsr() | 0x8040); }' >"$dir/flush.c"
+    try gcc -std=c99 -O2 "$dir/flush.c"
+    try clang -std=c99 -O2 "$dir/flush.c"
+fi
+echo "$passed passed, $failed failed"
+[ $failed -eq 0 ] && [ $passed -gt 0 ]

@@ -1,0 +1,1347 @@
+/* Tests of gxfem_boolean.h: exact numbers, predicates against exact rationals, the cell complex against its own invariants.
+   GXFEM_DATA: a data folder; its predicates/orient2d.txt and orient3d.txt are used where it is set. */
+#define GXFEM_BOOLEAN_IMPLEMENTATION
+#include "../gxfem_boolean.h"
+
+#include "predicate_cases.h"
+
+#include <check.h>
+#include <stdio.h>
+
+static uint64_t current_seed;
+
+#define assert_that(condition, ...)                                                       \
+    do {                                                                                  \
+        if (!(condition)) {                                                               \
+            printf("%s:%d: seed %lu: ", __FILE__, __LINE__, (unsigned long)current_seed); \
+            printf(__VA_ARGS__);                                                          \
+            printf("\n");                                                                 \
+            fflush(stdout);                                                               \
+        }                                                                                 \
+        ck_assert_msg(condition, "%s", #condition);                                       \
+    } while (0)
+
+static pc_random seeded(uint64_t seed) {
+    current_seed = seed;
+    return pc_seeded(seed);
+}
+
+/* ==== numbers ==== */
+
+/* A random sum of products of doubles, as the kernel and as the oracle see it. */
+static void random_number(pc_random *r, gxb_num *a, big *b) {
+    GXB_NUM(p); GXB_NUM(q); GXB_NUM(t); GXB_NUM(s);
+    int terms = 1 + (int)pc_below(r, 3), i;
+    gxb_num_set(a, 0, 0);
+    *b = big_zero();
+    for (i = 0; i < terms; i++) {
+        const double x = pc_below(r, 3) ? pc_any_double(r) : pc_uniform(r), y = pc_below(r, 3) ? (double)pc_below(r, 100) : pc_uniform(r);
+        gxb_num_set(&p, x, 0);
+        gxb_num_set(&q, y, 0);
+        gxb_num_mul(&t, &p, &q);
+        gxb_num_add(&s, a, &t);
+        gxbp_num_copy(a, &s, 1);
+        *b = big_add(*b, big_mul(big_from_double(x), big_from_double(y)));
+    }
+}
+
+static int same_number(const gxb_num *a, big b) {
+    int64_t k;
+    if (a->sign != b.sign) return 0;
+    if (a->sign == 0) return a->n == 0;
+    if (a->n == 0 || a->d[0] == 0 || a->d[a->n - 1] == 0) return 0;         /* trimmed */
+    for (k = 32 * (int64_t)rat_min(b.exponent, a->exp * (GXB_LIMB_BITS / 32)); k < 32 * (int64_t)(big_top(b) + 4); k += 32) {
+        const int32_t word = (int32_t)(k / 32), limb = word >> (GXB_LIMB_BITS == 64), high = GXB_LIMB_BITS == 64 ? word & 1 : 0;
+        const uint64_t value = gxbp_num_limb(a, limb);
+        if ((uint32_t)(value >> (high ? 32 : 0)) != big_limb(b, word)) return 0;
+    }
+    return 1;
+}
+
+START_TEST(numbers_are_exact) {
+    pc_random r = seeded((uint64_t)_i + 1);
+    int i;
+    for (i = 0; i < 20000; i++) {
+        const rat_mark mark = rat_arena_mark();
+        GXB_NUM(a); GXB_NUM(b); GXB_NUM(c);
+        big x, y;
+        random_number(&r, &a, &x);
+        random_number(&r, &b, &y);
+        if (pc_below(&r, 8) == 0) { gxbp_num_copy(&b, &a, pc_below(&r, 2) ? 1 : -1); y = x; y.sign = b.sign; }
+        assert_that(same_number(&a, x), "case %d", i);
+        gxb_num_add(&c, &a, &b);
+        assert_that(same_number(&c, big_add(x, y)), "sum, case %d", i);
+        gxb_num_sub(&c, &a, &b);
+        assert_that(same_number(&c, big_sub(x, y)), "difference, case %d", i);
+        gxb_num_mul(&c, &a, &b);
+        assert_that(same_number(&c, big_mul(x, y)), "product, case %d", i);
+        rat_arena_release(mark);
+    }
+} END_TEST
+
+START_TEST(numbers_become_doubles) {
+    pc_random r = seeded((uint64_t)_i + 1);
+    int i, power_a, power_b;
+    for (i = 0; i < 20000; i++) {
+        const rat_mark mark = rat_arena_mark();
+        GXB_NUM(a); GXB_NUM(b);
+        big x, y, error;
+        double d;
+        random_number(&r, &a, &x);
+        random_number(&r, &b, &y);
+        big_frexp(x, &power_a);
+        big_frexp(y, &power_b);
+        if (x.sign != 0 && power_a > -1000 && power_a < 1000) {
+            d = gxb_num_to_double(&a);
+            error = big_sub(big_from_double(d), x);
+            assert_that(big_compare_abs(error, big_scale(x, -52)) <= 0, "case %d: %a", i, d);
+        }
+        if (x.sign != 0 && y.sign != 0 && power_a - power_b > -990 && power_a - power_b < 990) {
+            d = gxb_num_ratio(&a, &b);
+            error = big_sub(big_mul(big_from_double(d), y), x);
+            assert_that(big_compare_abs(error, big_scale(x, -50)) < 0, "case %d: ratio %a", i, d);
+        }
+        rat_arena_release(mark);
+    }
+} END_TEST
+
+START_TEST(numbers_take_a_shift) {
+    pc_random r = seeded(1);
+    int i;
+    for (i = 0; i < 20000; i++) {
+        const rat_mark mark = rat_arena_mark();
+        const double x = pc_any_double(&r);
+        const int shift = (int)pc_below(&r, 2001) - 1000;
+        GXB_NUM(a);
+        gxb_num_set(&a, x, shift);
+        assert_that(same_number(&a, big_mul(big_from_double(x), big_from_double(pc_power(shift)))), "%a 2^%d", x, shift);
+        rat_arena_release(mark);
+    }
+} END_TEST
+
+/* ==== predicates ==== */
+
+static void print_doubles(const double *x, int count) {
+    int i;
+    for (i = 0; i < count; i++) printf(" %a", x[i]);
+    printf("\n");
+}
+
+START_TEST(predicates_have_the_right_sign) {
+    pc_random r = seeded((uint64_t)_i + 1);
+    double worst[PC_BOUNDS] = {0, 0, 0, 0};
+    int i, kind;
+    for (i = 0; i < 8000; i++) {
+        const rat_mark mark = rat_arena_mark();
+        pc_case c;
+        pc_exact e;
+        pc_objects k;
+        do pc_generate(&r, &c); while (!pc_answer(&c, i % 3, &e));
+        pc_build(&c, i % 3, &k);
+        for (kind = 0; kind < PC_KINDS; kind++) {
+            if (e.sign[kind] == PC_INVALID || pc_call(&k, kind) == e.sign[kind]) continue;
+            print_doubles((const double *)&c, PC_CASE_DOUBLES);
+            assert_that(0, "%s, axis %d: %d instead of %d", pc_kind_names[kind], i % 3, pc_call(&k, kind), e.sign[kind]);
+        }
+        pc_bound_shares(&k, &e, worst);
+        rat_arena_release(mark);
+    }
+    for (i = 0; i < PC_BOUNDS; i++) assert_that(worst[i] < 0.5, "%s: %g of the bound used", pc_bound_names[i], worst[i]);
+} END_TEST
+
+/* Every pair and triple of kinds of points, in both orders. */
+START_TEST(points_of_all_kinds_compare) {
+    pc_random r = seeded((uint64_t)_i + 1);
+    int n, i, j, k;
+    for (n = 0; n < 500; n++) {
+        const rat_mark mark = rat_arena_mark();
+        pc_case c;
+        pc_exact e;
+        pc_objects o;
+        const gxb_point *p[4];
+        const pc_point *q[4];
+        gxb_point corner;
+        pc_point exact_corner;
+        do pc_generate(&r, &c); while (!pc_answer(&c, 0, &e) || e.line.w.sign == 0 || e.planes.w.sign == 0 || e.other.w.sign == 0);
+        pc_build(&c, 0, &o);
+        gxb_point_explicit(&corner, c.plane[0][1]);
+        exact_corner = pc_exact_explicit(c.plane[0][1], c.plane[0][0]);
+        p[0] = &corner; p[1] = &o.line; p[2] = &o.planes; p[3] = &o.other;
+        q[0] = &exact_corner; q[1] = &e.line; q[2] = &e.planes; q[3] = &e.other;
+        for (i = 0; i < 4; i++) for (j = 0; j < 4; j++) for (k = 0; k < 3; k++)
+            assert_that(gxb_compare(p[i], p[j], k) == pc_exact_compare(q[i], q[j], k), "case %d: points %d %d axis %d", n, i, j, k);
+        for (i = 0; i < 4; i++) for (j = 0; j < 4; j++) for (k = 0; k < 4; k++)
+            assert_that(gxb_orient_in_plane(p[i], p[j], p[k], &o.plane[0]) == pc_exact_orient(q[i], q[j], q[k], &e.plane[0]),
+                        "case %d: points %d %d %d", n, i, j, k);
+        for (i = 0; i < 4; i++) for (j = 0; j < 4; j++)
+            assert_that(gxb_side(p[i], &o.plane[j]) == pc_exact_side(q[i], &e.plane[j]), "case %d: point %d plane %d", n, i, j);
+        rat_arena_release(mark);
+    }
+} END_TEST
+
+/* Collinear and coplanar up to last bits, at any power of two that a double has, and doubles of any size side by side. */
+static void any_range_points(pc_random *r, double x[4][3], int n) {
+    const int power = (int)pc_below(r, 2090) - 1080, style = (int)pc_below(r, 4);
+    int i, k;
+    for (i = 0; i < 4; i++) for (k = 0; k < 3; k++) x[i][k] = style == 0 ? pc_any_double(r) : pc_uniform(r);
+    if (style == 0) return;
+    if (style == 1) for (i = 0; i < 4; i++) for (k = 0; k < 3; k++) x[i][k] = (double)pc_below(r, 9) - 4;
+    for (k = 0; k < 3; k++) {
+        const double a = style == 1 ? 2 : 0.3, b = style == 1 ? -1 : 0.9;
+        x[3][k] = n == 2 ? x[3][k] : x[0][k] + a * (x[1][k] - x[0][k]) + b * (x[2][k] - x[0][k]);
+        if (n == 2) x[2][k] = x[0][k] + a * (x[1][k] - x[0][k]);
+    }
+    for (i = 0; i < 4; i++) for (k = 0; k < 3; k++) {
+        x[i][k] = ldexp(x[i][k], power);
+        if (pc_below(r, 8) == 0 && fabs(x[i][k]) < 1e300) x[i][k] = pc_nudge(x[i][k], (int)pc_below(r, 5) - 2);
+    }
+}
+
+START_TEST(orient_takes_any_double) {
+    pc_random r = seeded((uint64_t)_i + 1);
+    int i;
+    for (i = 0; i < 10000; i++) {
+        const rat_mark mark = rat_arena_mark();
+        double x[4][3];
+        any_range_points(&r, x, 2);
+        if (gxb_orient2d(x[0], x[1], x[2]) != pc_exact_orient2d(x[0], x[1], x[2])) {
+            print_doubles(x[0], 9);
+            assert_that(0, "orient2d, case %d", i);
+        }
+        any_range_points(&r, x, 3);
+        if (gxb_orient3d(x[0], x[1], x[2], x[3]) != pc_exact_orient3d(x[0], x[1], x[2], x[3])) {
+            print_doubles(x[0], 12);
+            assert_that(0, "orient3d, case %d", i);
+        }
+        rat_arena_release(mark);
+    }
+} END_TEST
+
+START_TEST(orientation_is_as_documented) {
+    const double a[3] = {0, 0, 0}, b[3] = {1, 0, 0}, c[3] = {0, 1, 0}, above[3] = {0, 0, 1}, below[3] = {0, 0, -1};
+    gxb_plane plane;
+    gxb_point p;
+    ck_assert_int_eq(gxb_orient2d(a, b, c), 1);
+    ck_assert_int_eq(gxb_orient3d(a, b, c, below), 1);
+    ck_assert_int_eq(gxb_orient3d(a, b, c, above), -1);
+    ck_assert_int_eq(gxb_orient3d(a, b, c, c), 0);
+    gxb_plane_init(&plane, a, b, c);
+    gxb_point_explicit(&p, above);
+    ck_assert_int_eq(gxb_side(&p, &plane), 1);
+} END_TEST
+
+/* The format of Shewchuk's published test cases: number, coordinates, sign. */
+static void check_fixture(const char *name, int dimension) {
+    const char *folder = getenv("GXFEM_DATA");
+    char path[1024];
+    double x[4][3];
+    int number, sign, i, k, lines = 0;
+    FILE *file;
+    if (folder == NULL) return;
+    snprintf(path, sizeof path, "%s/predicates/%s", folder, name);
+    file = fopen(path, "r");
+    if (file == NULL) { printf("%s: not there\n", path); return; }
+    while (fscanf(file, "%d", &number) == 1) {
+        for (i = 0; i <= dimension; i++) for (k = 0; k < dimension; k++) ck_assert_int_eq(fscanf(file, "%lf", &x[i][k]), 1);
+        ck_assert_int_eq(fscanf(file, "%d", &sign), 1);
+        i = dimension == 2 ? gxb_orient2d(x[0], x[1], x[2]) : gxb_orient3d(x[0], x[1], x[2], x[3]);
+        assert_that(i == sign, "%s line %d: %d", name, number, i);
+        lines++;
+    }
+    fclose(file);
+    ck_assert_int_eq(lines, 1000);
+}
+
+START_TEST(published_cases) {
+    check_fixture("orient2d.txt", 2);
+    check_fixture("orient3d.txt", 3);
+} END_TEST
+
+/* ---- winding numbers ---- */
+
+enum { WINDING_TETS = 5 };
+
+static const double unit_tet[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+static const uint32_t tet_faces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};     /* outward */
+
+/* How a tetrahedron winds around p: 0, or its sign inside. *touched: p lies on it. */
+static int winding_of_tet(const double x[4][3], const double p[3], int *touched) {
+    const int sign = big_sign(big_orient3d(x[0], x[1], x[2], x[3]));
+    int k, inside = 1, zero = 0;
+    for (k = 0; k < 4; k++) {
+        const int s = sign * big_sign(big_orient3d(x[tet_faces[k][0]], x[tet_faces[k][1]], x[tet_faces[k][2]], p));
+        if (s > 0) inside = 0;
+        if (s == 0) zero = 1;
+    }
+    if (inside && zero) *touched = 1;
+    return inside && !zero ? sign : 0;
+}
+
+START_TEST(winding_numbers_count) {
+    pc_random r = seeded((uint64_t)_i + 1);
+    int n, i, j, k;
+    for (n = 0; n < 1500; n++) {
+        const rat_mark mark = rat_arena_mark();
+        const int lattice = pc_below(&r, 4) != 0;
+        double x[WINDING_TETS][4][3], p[3];
+        uint32_t triangles[WINDING_TETS][4][3];
+        int want = 0, touched = 0, on_surface, got;
+        for (i = 0; i < WINDING_TETS; i++) {
+            do for (j = 0; j < 4; j++) for (k = 0; k < 3; k++) x[i][j][k] = lattice ? (double)pc_below(&r, 5) : pc_uniform(&r);
+            while (big_sign(big_orient3d(x[i][0], x[i][1], x[i][2], x[i][3])) == 0);
+            for (j = 0; j < 4; j++) for (k = 0; k < 3; k++) triangles[i][j][k] = 4 * (uint32_t)i + tet_faces[j][k];
+        }
+        for (k = 0; k < 3; k++) p[k] = lattice ? (double)pc_below(&r, 9) / 2 : pc_uniform(&r);
+        for (i = 0; i < WINDING_TETS; i++) want += winding_of_tet(x[i], p, &touched);
+        got = gxb_winding_number(&x[0][0][0], &triangles[0][0][0], 4 * WINDING_TETS, p, &on_surface);
+        assert_that((on_surface != 0) == touched, "case %d: on the surface %d instead of %d", n, on_surface, touched);
+        assert_that(touched || got == want, "case %d: %d instead of %d", n, got, want);
+        rat_arena_release(mark);
+    }
+} END_TEST
+
+START_TEST(triangles_without_area_have_no_outside) {
+    const double segment[9] = {1, 0, 0, 2, 0, 0, 3, 0, 0}, before[3] = {0, 0, 0}, on[3] = {1.5, 0, 0}, after[3] = {4, 0, 0};
+    const uint32_t triangle[3] = {0, 1, 2};
+    int on_surface;
+    gxb_winding_number(segment, triangle, 1, on, &on_surface);
+    ck_assert_int_ne(on_surface, 0);
+    gxb_winding_number(segment, triangle, 1, after, &on_surface);
+    ck_assert_int_eq(on_surface, 0);
+    gxb_winding_number(segment, triangle, 1, before, &on_surface);
+    ck_assert_int_eq(on_surface, 0);
+} END_TEST
+
+/* ==== the complex ==== */
+
+/* Memory that counts, and fails on demand. */
+typedef struct heap { size_t bytes, calls, fail_at, fail_count; } heap;
+
+static void *heap_allocate(void *user, size_t size) {
+    heap *h = (heap *)user;
+    h->calls++;
+    if (h->fail_at != 0 && h->calls >= h->fail_at && h->calls - h->fail_at < h->fail_count) return NULL;
+    h->bytes += size;
+    return malloc(size);
+}
+
+static void heap_release(void *user, void *memory, size_t size) {
+    ((heap *)user)->bytes -= size;
+    free(memory);
+}
+
+enum { MAX_CUTS = 24, MAX_NODES = 16, MAX_ELEMENTS = 8 };
+
+/* A mesh and the triangles that cut it. */
+typedef struct scene {
+    double nodes[MAX_NODES][3];
+    uint32_t elements[MAX_ELEMENTS][4];
+    size_t node_count, element_count;
+    double cuts[MAX_CUTS][3][3];
+    uint32_t cut_count;
+} scene;
+
+static const double cube_nodes[8][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}};
+static const uint32_t cube_elements[6][4] = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
+
+/* The first count of the six tetrahedra around a cube's diagonal; coordinates x * size + offset, jittered unless jitter is 0. */
+static void make_mesh(scene *s, pc_random *r, size_t count, double size, double offset, double jitter) {
+    size_t i, k;
+    s->node_count = 8;
+    s->element_count = count;
+    for (i = 0; i < 8; i++) for (k = 0; k < 3; k++) s->nodes[i][k] = (cube_nodes[i][k] + jitter * pc_uniform(r)) * size + offset;
+    memcpy(s->elements, cube_elements, count * sizeof cube_elements[0]);
+}
+
+static void make_cuts(scene *s, pc_random *r, uint32_t count, int style, double size, double offset) {
+    uint32_t i, j;
+    int k;
+    s->cut_count = count;
+    for (i = 0; i < count; i++) {
+        for (j = 0; j < 3; j++) for (k = 0; k < 3; k++) {
+            const double wide = 1.5 * pc_uniform(r) + 0.5, lattice = ((double)pc_below(r, 9) - 2) / 4;
+            s->cuts[i][j][k] = (style == 0 ? wide : lattice) * size + offset;
+        }
+        if (style == 2 && i > 0 && pc_below(r, 2)) {        /* beside an earlier one, or the same, or another piece of its plane */
+            const uint32_t other = pc_below(r, i), how = pc_below(r, 3);
+            for (j = 0; j < 3; j++) for (k = 0; k < 3; k++) {
+                const double *p = s->cuts[other][j], *q = s->cuts[other][(j + 1) % 3];
+                s->cuts[i][j][k] = how == 0 ? p[k] : how == 1 ? pc_nudge(p[k], (int)pc_below(r, 3) - 1) : p[k] + (q[k] - p[k]) / 2;
+            }
+        }
+        if (style == 3) for (j = 0; j < 3; j++) memcpy(s->cuts[i][j], s->nodes[pc_below(r, (uint32_t)s->node_count)], sizeof s->cuts[i][j]);
+        if (pc_exact_plane(s->cuts[i], s->cuts[i][0]).n[0].sign == 0 && pc_exact_plane(s->cuts[i], s->cuts[i][0]).n[1].sign == 0 &&
+            pc_exact_plane(s->cuts[i], s->cuts[i][0]).n[2].sign == 0) i--;
+    }
+}
+
+static gxb_mesh mesh_of(const scene *s) {
+    gxb_mesh mesh;
+    mesh.positions = s->nodes[0];
+    mesh.node_count = s->node_count;
+    mesh.elements = s->elements[0];
+    mesh.element_count = s->element_count;
+    return mesh;
+}
+
+static gxb_complex *open_scene(const scene *s, const gx_allocator *allocator) {
+    const gxb_mesh mesh = mesh_of(s);
+    gxb_complex *cx = NULL;
+    gx_failure failure;
+    const gx_result result = gxb_complex_create(&mesh, allocator, &cx, &failure);
+    assert_that(result == GX_OK, "create: %d at %lu", (int)result, (unsigned long)failure.index);
+    return cx;
+}
+
+/* Point ids of the cuts' corners follow the nodes in order: cut c, corner j is point node_count + 3 c + j. */
+static uint32_t corner_id(const scene *s, uint32_t cut, uint32_t j) { (void)s; return 3 * cut + j; }
+
+typedef struct inserted { gxb_triangle triangles[MAX_CUTS]; uint32_t points[3 * MAX_CUTS]; } inserted;
+
+/* Inserts cut c, as wall c, in every element. */
+static gx_result insert_cut(gxb_complex *cx, const scene *s, inserted *in, uint32_t c) {
+    gxb_triangle *t = &in->triangles[c];
+    gx_result result = GX_OK;
+    uint32_t j, e;
+    memset(t, 0, sizeof *t);
+    for (j = 0; j < 3 && result == GX_OK; j++) {
+        result = gxb_complex_add_point(cx, s->cuts[c][j], &t->point[j]);
+        in->points[corner_id(s, c, j)] = t->point[j];
+    }
+    t->label = c;
+    t->wall = 1;
+    if (result == GX_OK) result = gxb_complex_add_plane(cx, t);
+    for (e = 0; e < s->element_count && result == GX_OK; e++) result = gxb_complex_insert(cx, t, e, NULL, NULL);
+    return result;
+}
+
+static gx_result insert_all(gxb_complex *cx, const scene *s, inserted *in) {
+    gx_result result = GX_OK;
+    uint32_t c;
+    for (c = 0; c < s->cut_count && result == GX_OK; c++) result = insert_cut(cx, s, in, c);
+    return result;
+}
+
+/* ---- exact geometry of the complex by the oracle, about node 0 ---- */
+
+typedef struct model {
+    const scene *s;
+    const inserted *in;
+    gxb_complex *cx;
+    pc_point *points;       /* point_count */
+    pc_plane *planes;       /* plane_count */
+    double (*position)[3];  /* point_count: rounded, relative to node 0 */
+} model;
+
+static const double *explicit_position(const model *m, uint32_t point) {
+    uint32_t i;
+    if (point < m->s->node_count) return m->s->nodes[point];
+    for (i = 0; i < 3 * m->s->cut_count; i++) if (m->in->points[i] == point) return m->s->cuts[i / 3][i % 3];
+    ck_abort_msg("an explicit point that nobody added");
+    return NULL;
+}
+
+static pc_plane exact_cplane(const model *m, uint32_t plane) {
+    const gxb_cplane *f = &m->cx->planes[plane];
+    const double *o = m->s->nodes[0];
+    double p[3][3];
+    pc_plane e;
+    int k;
+    for (k = 0; k < 2; k++) memcpy(p[k], explicit_position(m, f->def[k]), sizeof p[k]);
+    if (!f->along_axis) {
+        memcpy(p[2], explicit_position(m, f->def[2]), sizeof p[2]);
+        return pc_exact_plane(p, o);
+    }
+    {
+        big a[3], b[3], c[3];
+        big_difference(p[1], p[0], a);
+        for (k = 0; k < 3; k++) b[k] = big_from_int(k == (int)f->def[2]);
+        big_difference(p[0], o, c);
+        big_cross(a, b, e.n);
+        e.d = big_dot(e.n, c);
+        return e;
+    }
+}
+
+static pc_point exact_cpoint(const model *m, uint32_t point) {
+    const gxb_cpoint *p = &m->cx->points[point];
+    const double *o = m->s->nodes[0];
+    double line[2][3];
+    if (p->kind == GXB_EXPLICIT) return pc_exact_explicit(explicit_position(m, point), o);
+    if (p->kind == GXB_THREE_PLANES) return pc_exact_planes(&m->planes[p->def[0]], &m->planes[p->def[1]], &m->planes[p->def[2]]);
+    memcpy(line[0], explicit_position(m, p->def[0]), sizeof line[0]);
+    memcpy(line[1], explicit_position(m, p->def[1]), sizeof line[1]);
+    return pc_exact_line(line, &m->planes[p->def[2]], o);
+}
+
+static model open_model(gxb_complex *cx, const scene *s, const inserted *in) {
+    model m;
+    uint32_t i;
+    int k;
+    m.s = s; m.in = in; m.cx = cx;
+    m.planes = (pc_plane *)malloc((cx->plane_count + 1) * sizeof *m.planes);
+    m.points = (pc_point *)malloc((cx->point_count + 1) * sizeof *m.points);
+    m.position = (double(*)[3])malloc((cx->point_count + 1) * sizeof *m.position);
+    for (i = 0; i < cx->plane_count; i++) m.planes[i] = exact_cplane(&m, i);
+    for (i = 0; i < cx->point_count; i++) {
+        m.points[i] = exact_cpoint(&m, i);
+        assert_that(m.points[i].w.sign != 0, "point %u is none", i);
+        for (k = 0; k < 3; k++) m.position[i][k] = rat_to_double(rat_ratio(m.points[i].x[k], m.points[i].w));
+    }
+    return m;
+}
+
+static void close_model(model *m) { free(m->planes); free(m->points); free(m->position); }
+
+/* ---- the invariants ---- */
+
+static uint32_t edge_start(const gxb_complex *cx, uint32_t e) { return cx->edges[e >> 1].v[e & 1]; }
+
+static void add_fan(const model *m, const uint32_t *loop, uint32_t count, double area[3], double *six_volumes) {
+    const double *a = m->position[edge_start(m->cx, loop[0])];
+    uint32_t i;
+    int k;
+    for (k = 0; k < 3; k++) area[k] = 0;
+    for (i = 1; i + 1 < count; i++) {
+        const double *b = m->position[edge_start(m->cx, loop[i])], *c = m->position[edge_start(m->cx, loop[i + 1])];
+        double n[3];
+        for (k = 0; k < 3; k++) {
+            const int p = (k + 1) % 3, q = (k + 2) % 3;
+            n[k] = (b[p] - a[p]) * (c[q] - a[q]) - (b[q] - a[q]) * (c[p] - a[p]);
+            area[k] += n[k] / 2;
+        }
+        *six_volumes += n[0] * a[0] + n[1] * a[1] + n[2] * a[2];
+    }
+}
+
+static double length3(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+/* A convex polygon in its plane, counter-clockwise about the normal, without divided edges. */
+static void check_loop(const model *m, uint32_t facet, const uint32_t *loop, uint32_t count) {
+    const gxb_facet *f = &m->cx->facets[facet];
+    uint32_t i, turns = 0;
+    assert_that(count >= 3, "facet %u has %u edges", facet, count);
+    for (i = 0; i < count; i++) {
+        const uint32_t e = loop[i], next = loop[(i + 1) % count], last = loop[(i + 2) % count];
+        const uint32_t a = edge_start(m->cx, e), b = edge_start(m->cx, next), c = edge_start(m->cx, last);
+        const gxb_edge *edge = &m->cx->edges[e >> 1];
+        int turn;
+        assert_that(edge->child == GXB_NONE, "facet %u: edge %u is divided", facet, e >> 1);
+        assert_that(edge->v[1 - (e & 1)] == b, "facet %u is not closed", facet);
+        assert_that(pc_exact_side(&m->points[a], &m->planes[f->plane]) == 0, "facet %u: point %u off its plane", facet, a);
+        turn = pc_exact_orient(&m->points[a], &m->points[b], &m->points[c], &m->planes[f->plane]);
+        assert_that(turn >= 0, "facet %u is not convex", facet);
+        turns += turn > 0;
+    }
+    assert_that(turns >= 3, "facet %u has %u corners", facet, turns);
+}
+
+typedef struct use { uint32_t edge, direction; } use;
+
+static int compare_uses(const void *a, const void *b) {
+    const use *p = (const use *)a, *q = (const use *)b;
+    if (p->edge != q->edge) return p->edge < q->edge ? -1 : 1;
+    return p->direction < q->direction ? -1 : p->direction > q->direction;
+}
+
+/* Each edge walked once each way, V - E + F = 2. */
+static void check_closed(const model *m, uint32_t leaf, use *uses, uint32_t count, uint32_t facets) {
+    unsigned char *seen = (unsigned char *)calloc(m->cx->point_count, 1);
+    uint32_t i, vertices = 0;
+    qsort(uses, count, sizeof *uses, compare_uses);
+    assert_that(count % 2 == 0, "leaf %u: %u edge uses", leaf, count);
+    for (i = 0; i < count; i += 2) {
+        int k;
+        assert_that(uses[i].edge == uses[i + 1].edge && uses[i].direction + 1 == uses[i + 1].direction &&
+                    (i + 2 >= count || uses[i + 2].edge != uses[i].edge), "leaf %u: edge %u is not used once each way", leaf, uses[i].edge);
+        for (k = 0; k < 2; k++) {
+            const uint32_t v = m->cx->edges[uses[i].edge].v[k];
+            vertices += !seen[v];
+            seen[v] = 1;
+        }
+    }
+    assert_that(vertices + facets == count / 2 + 2, "leaf %u: V %u E %u F %u", leaf, vertices, count / 2, facets);
+    free(seen);
+}
+
+/* All points of the leaf lie behind or on each of its facets as seen from outside. */
+static void check_convex(const model *m, uint32_t leaf, const uint32_t *facets, uint32_t count, const use *uses, uint32_t use_count) {
+    uint32_t i, j;
+    for (i = 0; i < count; i++) {
+        const gxb_facet *f = &m->cx->facets[facets[i]];
+        const int inward = f->leaf[0] == leaf ? 1 : -1;
+        int inside = 0;
+        for (j = 0; j < use_count; j += 2) {
+            const uint32_t v = m->cx->edges[uses[j].edge].v[0], w = m->cx->edges[uses[j].edge].v[1];
+            const int a = inward * pc_exact_side(&m->points[v], &m->planes[f->plane]), b = inward * pc_exact_side(&m->points[w], &m->planes[f->plane]);
+            assert_that(a >= 0 && b >= 0, "leaf %u is not convex at facet %u", leaf, facets[i]);
+            inside |= a > 0 || b > 0;
+        }
+        assert_that(inside, "leaf %u is flat", leaf);
+    }
+}
+
+static uint32_t *copy_list(const gxb_complex *cx, uint32_t first, uint32_t count) {
+    uint32_t *list = (uint32_t *)malloc((count + 1) * sizeof *list);
+    memcpy(list, cx->pool + first, count * sizeof *list);
+    return list;
+}
+
+/* Every check of one leaf; returns its volume. */
+static double check_leaf(const model *m, uint32_t leaf) {
+    gxb_complex *cx = m->cx;
+    uint32_t first, count, i, j, uses_count = 0, edge_first, edge_count, *facets;
+    use *uses = (use *)malloc(sizeof *uses);
+    double six_volumes = 0;
+    ck_assert_int_eq(gxb_leaf_facets(cx, leaf, &first, &count), GX_OK);
+    facets = copy_list(cx, first, count);
+    for (i = 0; i < count; i++) {
+        const gxb_facet *f = &cx->facets[facets[i]];
+        const uint32_t outside_in = f->leaf[0] == leaf;     /* the normal points into the leaf */
+        uint32_t *loop;
+        double area[3], volume = 0;
+        assert_that(f->child == GXB_NONE && (f->leaf[0] == leaf) != (f->leaf[1] == leaf), "facet %u of leaf %u", facets[i], leaf);
+        ck_assert_int_eq(gxb_facet_edges(cx, facets[i], &edge_first, &edge_count), GX_OK);
+        loop = copy_list(cx, edge_first, edge_count);
+        check_loop(m, facets[i], loop, edge_count);
+        uses = (use *)realloc(uses, (uses_count + edge_count + 1) * sizeof *uses);
+        for (j = 0; j < edge_count; j++) {
+            uses[uses_count].edge = loop[j] >> 1;
+            uses[uses_count++].direction = (loop[j] & 1) ^ outside_in;
+        }
+        add_fan(m, loop, edge_count, area, &volume);
+        six_volumes += outside_in ? -volume : volume;
+        free(loop);
+    }
+    check_closed(m, leaf, uses, uses_count, count);
+    check_convex(m, leaf, facets, count, uses, uses_count);
+    free(facets);
+    free(uses);
+    return six_volumes / 6;
+}
+
+/* Both leaves of a facet list it. */
+static void check_neighbours(const model *m) {
+    gxb_complex *cx = m->cx;
+    uint32_t *listed = (uint32_t *)calloc(cx->facet_count + 1, sizeof *listed), leaf, i, first, count;
+    for (leaf = 0; leaf < cx->leaf_count; leaf++) {
+        if (cx->leaves[leaf].facet_count == 0) continue;
+        ck_assert_int_eq(gxb_leaf_facets(cx, leaf, &first, &count), GX_OK);
+        for (i = 0; i < count; i++) listed[cx->pool[first + i]]++;
+    }
+    for (i = 0; i < cx->facet_count; i++) {
+        uint32_t want = 0, k;
+        if (cx->facets[i].child != GXB_NONE) { ck_assert_uint_eq(listed[i], 0); continue; }
+        for (k = 0; k < 2; k++) {
+            leaf = cx->facets[i].leaf[k];
+            want += leaf != GXB_NONE && cx->leaves[leaf].facet_count > 0;
+            if (cx->facets[i].face != GXB_NONE && leaf != GXB_NONE)
+                assert_that(cx->leaves[leaf].element == cx->face_elements[2 * cx->facets[i].face + k], "facet %u: leaf %u", i, leaf);
+        }
+        assert_that(listed[i] == want, "facet %u is listed %u times instead of %u", i, listed[i], want);
+    }
+    free(listed);
+}
+
+/* Each leaf stands once in its element's tree, on the sides that the tree says. */
+static void check_tree(const model *m, uint32_t element, uint32_t reference, uint32_t *seen) {
+    const gxb_complex *cx = m->cx;
+    if (reference & 1) {
+        check_tree(m, element, cx->nodes[reference >> 1].child[0], seen);
+        check_tree(m, element, cx->nodes[reference >> 1].child[1], seen);
+    } else {
+        ck_assert_uint_eq(cx->leaves[reference >> 1].element, element);
+        seen[reference >> 1]++;
+    }
+}
+
+static double element_volume(const model *m, uint32_t e) {
+    const uint32_t *v = m->s->elements[e];
+    return big_to_double(big_orient3d(m->s->nodes[v[0]], m->s->nodes[v[1]], m->s->nodes[v[2]], m->s->nodes[v[3]])) / 6;
+}
+
+/* ---- the area of a triangle in an element: clipped in barycentric coordinates, whose signs at its corners are exact ---- */
+
+typedef struct corner { double lambda[4]; } corner;
+
+static corner barycentric(const double nodes[4][3], const double p[3]) {
+    const big all = big_orient3d(nodes[0], nodes[1], nodes[2], nodes[3]);
+    const double *x[4];
+    corner c;
+    int k, j;
+    for (k = 0; k < 4; k++) {
+        for (j = 0; j < 4; j++) x[j] = j == k ? p : nodes[j];
+        c.lambda[k] = rat_to_double(rat_ratio(big_orient3d(x[0], x[1], x[2], x[3]), all));
+    }
+    return c;
+}
+
+static double area_in_element(const model *m, uint32_t cut, uint32_t element) {
+    corner a[16], b[16];
+    double nodes[4][3], area[3] = {0, 0, 0}, p[16][3];
+    int n = 3, k, j, i;
+    for (k = 0; k < 4; k++) memcpy(nodes[k], m->s->nodes[m->s->elements[element][k]], sizeof nodes[k]);
+    for (k = 0; k < 3; k++) a[k] = barycentric(nodes, m->s->cuts[cut][k]);
+    for (k = 0; k < 4 && n > 0; k++) {
+        int count = 0;
+        for (i = 0; i < n; i++) {
+            const corner *c = &a[i], *d = &a[(i + 1) % n];
+            if (c->lambda[k] >= 0) b[count++] = *c;
+            if ((c->lambda[k] < 0 && d->lambda[k] > 0) || (c->lambda[k] > 0 && d->lambda[k] < 0)) {
+                const double t = c->lambda[k] / (c->lambda[k] - d->lambda[k]);
+                for (j = 0; j < 4; j++) b[count].lambda[j] = j == k ? 0 : c->lambda[j] + t * (d->lambda[j] - c->lambda[j]);
+                count++;
+            }
+        }
+        memcpy(a, b, (size_t)count * sizeof *a);
+        n = count;
+    }
+    for (i = 0; i < n; i++) for (k = 0; k < 3; k++) {
+        p[i][k] = 0;
+        for (j = 1; j < 4; j++) p[i][k] += a[i].lambda[j] * (nodes[j][k] - nodes[0][k]);
+    }
+    for (i = 1; i + 1 < n; i++) for (k = 0; k < 3; k++) {
+        const int q = (k + 1) % 3, r = (k + 2) % 3;
+        area[k] += ((p[i][q] - p[0][q]) * (p[i + 1][r] - p[0][r]) - (p[i][r] - p[0][r]) * (p[i + 1][q] - p[0][q])) / 2;
+    }
+    return length3(area);
+}
+
+static const gxb_label *find_label(const gxb_complex *cx, uint32_t facet, uint32_t triangle) {
+    uint32_t l;
+    for (l = cx->facets[facet].labels; l != GXB_NONE; l = cx->labels[l].next) if (cx->labels[l].triangle == triangle) return &cx->labels[l];
+    return NULL;
+}
+
+/* The facets that carry the cut's label lie in its plane, face as it does, are walls, and have its area in every element. */
+static void check_walls(const model *m, uint32_t cut) {
+    gxb_complex *cx = m->cx;
+    const pc_plane own = pc_exact_plane(m->s->cuts[cut], m->s->nodes[0]);
+    double found[MAX_ELEMENTS] = {0}, scale = 0;
+    uint32_t i, k, e, first, count;
+    for (i = 0; i < cx->facet_count; i++) {
+        const gxb_label *label = cx->facets[i].child == GXB_NONE ? find_label(cx, i, cut) : NULL;
+        double area[3], volume = 0;
+        uint32_t *loop, elements[2];
+        if (label == NULL) continue;
+        assert_that(cx->facets[i].wall == 1, "facet %u is no wall", i);
+        assert_that(big_sign(big_dot(own.n, m->planes[cx->facets[i].plane].n)) == label->orientation, "facet %u, cut %u: orientation", i, cut);
+        ck_assert_int_eq(gxb_facet_edges(cx, i, &first, &count), GX_OK);
+        loop = copy_list(cx, first, count);
+        for (k = 0; k < count; k++) assert_that(pc_exact_side(&m->points[edge_start(cx, loop[k])], &own) == 0, "facet %u off cut %u", i, cut);
+        add_fan(m, loop, count, area, &volume);
+        for (k = 0; k < 2; k++) elements[k] = cx->facets[i].leaf[k] == GXB_NONE ? GXB_NONE : cx->leaves[cx->facets[i].leaf[k]].element;
+        if (elements[0] != GXB_NONE) found[elements[0]] += length3(area);
+        if (elements[1] != GXB_NONE && elements[1] != elements[0]) found[elements[1]] += length3(area);
+        free(loop);
+    }
+    for (e = 0; e < m->s->element_count; e++) {
+        const double volume = element_volume(m, e), want = area_in_element(m, cut, e);
+        scale = pow(volume, 2.0 / 3);
+        assert_that(fabs(found[e] - want) <= 1e-11 * scale, "cut %u in element %u: area %.17g instead of %.17g", cut, e, found[e], want);
+    }
+}
+
+/* The kernel's signs of all points and planes against the oracle's. */
+static void check_signs(const model *m, pc_random *r, int count) {
+    int i;
+    for (i = 0; i < count; i++) {
+        const uint32_t point = pc_below(r, m->cx->point_count), plane = pc_below(r, m->cx->plane_count), axis = pc_below(r, 3);
+        const uint32_t node = pc_below(r, (uint32_t)m->s->node_count);
+        const pc_point x = pc_exact_explicit(m->s->nodes[node], m->s->nodes[0]);
+        assert_that(gxb_complex_side(m->cx, point, plane) == pc_exact_side(&m->points[point], &m->planes[plane]), "point %u plane %u", point, plane);
+        assert_that(gxb_complex_compare(m->cx, point, (int)axis, m->s->nodes[node][axis]) == pc_exact_compare(&m->points[point], &x, (int)axis),
+                    "point %u against node %u on axis %u", point, node, axis);
+    }
+}
+
+/* Barycentric coordinates of the points of an element's leaves. */
+static void check_barycentric(const model *m, uint32_t element) {
+    gxb_complex *cx = m->cx;
+    const uint32_t *v = m->s->elements[element];
+    uint32_t leaf, first, count, i, k, j;
+    for (leaf = 0; leaf < cx->leaf_count; leaf++) {
+        if (cx->leaves[leaf].element != element || cx->leaves[leaf].facet_count == 0) continue;
+        ck_assert_int_eq(gxb_leaf_facets(cx, leaf, &first, &count), GX_OK);
+        for (i = 0; i < count; i++) {
+            const uint32_t point = edge_start(cx, cx->pool[cx->facets[cx->pool[first + i]].loop]);
+            double lambda[4];
+            gxbp_vec fine;
+            gxbp_vec_init(&fine);
+            gxb_complex_barycentric(cx, point, element, lambda);
+            gxb_complex_barycentric_fine(cx, point, element, fine.c);
+            for (k = 0; k < 4; k++) {
+                double face[3][3];
+                pc_plane plane;
+                big num, den, error, q = big_zero();
+                for (j = 0; j < 3; j++) memcpy(face[j], m->s->nodes[v[tet_faces[k][j]]], sizeof face[j]);
+                plane = pc_exact_plane(face, m->s->nodes[0]);
+                num = pc_scaled_height(&m->points[point], &plane);
+                den = big_mul(pc_height(&plane, pc_exact_explicit(m->s->nodes[v[k]], m->s->nodes[0]).x), m->points[point].w);
+                error = big_sub(big_mul(big_from_double(lambda[k]), den), num);
+                assert_that(big_compare_abs(error, big_scale(num, -49)) <= 0, "point %u element %u lambda %u = %a", point, element, k, lambda[k]);
+                for (j = 0; j < fine.c[k].n; j++) {
+                    const gxb_limb limb = fine.c[k].d[j];
+                    const int32_t base = (fine.c[k].exp + (int32_t)j) * GXB_LIMB_BITS;
+                    q = big_add(q, big_mul(big_from_double((double)(uint32_t)limb), big_from_double(pc_power(base))));
+                    if (GXB_LIMB_BITS == 64) q = big_add(q, big_mul(big_from_double((double)((uint64_t)limb >> 32)), big_from_double(pc_power(base + 32))));
+                }
+                q.sign = q.sign == 0 ? 0 : fine.c[k].sign;
+                error = big_sub(big_mul(q, den), num);
+                assert_that(big_compare_abs(error, big_scale(num, -180)) <= 0, "point %u element %u: fine lambda %u", point, element, k);
+            }
+        }
+    }
+}
+
+/* Everything that must hold of a complex, whatever was inserted. */
+static void check_complex(gxb_complex *cx, const scene *s, const inserted *in, pc_random *r) {
+    const rat_mark mark = rat_arena_mark();
+    model m = open_model(cx, s, in);
+    double volume[MAX_ELEMENTS] = {0};
+    uint32_t *seen = (uint32_t *)calloc(cx->leaf_count + 1, sizeof *seen), i, touched[MAX_ELEMENTS] = {0};
+    for (i = 0; i < cx->leaf_count; i++) {
+        const uint32_t e = cx->leaves[i].element;
+        double v;
+        if (cx->leaves[i].facet_count == 0) continue;
+        v = check_leaf(&m, i);
+        assert_that(v > -1e-14 * element_volume(&m, e), "leaf %u has volume %g", i, v);
+        volume[e] += v;
+        touched[e] = 1;
+    }
+    check_neighbours(&m);
+    for (i = 0; i < s->element_count; i++) {
+        const double want = element_volume(&m, i);
+        check_tree(&m, i, cx->root[i], seen);
+        if (!touched[i]) continue;
+        assert_that(fabs(volume[i] - want) <= 1e-12 * want, "element %u: volume %.17g instead of %.17g", i, volume[i], want);
+    }
+    for (i = 0; i < cx->leaf_count; i++) assert_that(seen[i] == 1, "leaf %u stands %u times in the tree", i, seen[i]);
+    for (i = 0; i < s->cut_count; i++) check_walls(&m, i);
+    check_signs(&m, r, 50);
+    if (touched[0]) check_barycentric(&m, 0);
+    free(seen);
+    close_model(&m);
+    rat_arena_release(mark);
+}
+
+static void run_scene(const scene *s, pc_random *r) {
+    heap h = {0, 0, 0, 0};
+    gx_allocator allocator;
+    gxb_complex *cx;
+    inserted in;
+    gx_result result;
+    allocator.allocate = heap_allocate; allocator.release = heap_release; allocator.user = &h;
+    cx = open_scene(s, &allocator);
+    gxb_complex_begin(cx);
+    result = insert_all(cx, s, &in);
+    assert_that(result == GX_OK, "insert: %d", (int)result);
+    gxb_complex_commit(cx);
+    check_complex(cx, s, &in, r);
+    gxb_complex_destroy(cx);
+    ck_assert_uint_eq(h.bytes, 0);
+}
+
+/* ---- tests of the complex ---- */
+
+START_TEST(random_cuts_conform) {
+    int round;
+    for (round = 0; round < 6; round++) {
+        pc_random r = seeded((uint64_t)(6 * _i + round) + 1);
+        scene s;
+        make_mesh(&s, &r, 1 + pc_below(&r, 6), 1, 0, 0.1);
+        make_cuts(&s, &r, 1 + pc_below(&r, 8), 0, 1, 0);
+        run_scene(&s, &r);
+    }
+} END_TEST
+
+/* style 1: lattice; 2: coincident, coplanar and one ulp apart; 3: through nodes, along edges and in faces of the mesh */
+START_TEST(degenerate_cuts_conform) {
+    int style;
+    for (style = 1; style <= 3; style++) {
+        int round;
+        for (round = 0; round < 4; round++) {
+            pc_random r = seeded((uint64_t)(100 * style + 4 * _i + round) + 1);
+            scene s;
+            make_mesh(&s, &r, 1 + pc_below(&r, 6), 1, 0, style == 3 && pc_below(&r, 2) ? 0.1 : 0);
+            make_cuts(&s, &r, 1 + pc_below(&r, 10), style, 1, 0);
+            run_scene(&s, &r);
+        }
+    }
+} END_TEST
+
+/* Far from the origin, tiny and huge, and with corners whose difference to the origin is not a double. */
+START_TEST(far_and_scaled_meshes_conform) {
+    static const double sizes[6] = {1, 0x1p-20, 0x1p20, 1e-3, 0x1p-100, 0x1p100}, offsets[6] = {1048576, 1, 1e8, -1e6, 0, 0};
+    pc_random r = seeded((uint64_t)_i + 1);
+    scene s;
+    int k;
+    make_mesh(&s, &r, 6, sizes[_i], offsets[_i], 0);
+    make_cuts(&s, &r, 4, 2, sizes[_i], offsets[_i]);
+    run_scene(&s, &r);
+    make_mesh(&s, &r, 6, sizes[_i], offsets[_i], 0.1);
+    make_cuts(&s, &r, 4, 0, sizes[_i], offsets[_i]);
+    run_scene(&s, &r);
+    for (k = 0; k < 3; k++) s.cuts[1][0][k] = sizes[_i] * 1e-25 * (k + 1);
+    run_scene(&s, &r);
+} END_TEST
+
+/* Geometry that does not change leaves a topology that does not change: moved and scaled by powers of two, exactly. */
+static uint64_t mix(uint64_t hash, uint64_t value) { return (hash ^ value) * UINT64_C(1099511628211) ^ (hash >> 29); }
+
+/* Hash of all that a transaction may change, but for caches; geometry 0: only the topology. */
+static uint64_t hash_complex(const gxb_complex *cx, int geometry) {
+    uint64_t h = 7;
+    uint32_t i, j;
+    h = mix(h, cx->point_count); h = mix(h, cx->plane_count); h = mix(h, cx->edge_count); h = mix(h, cx->facet_count);
+    h = mix(h, cx->leaf_count); h = mix(h, cx->tree_count); h = mix(h, cx->label_count);
+    for (i = 0; i < cx->point_count; i++) {
+        const gxb_cpoint *p = &cx->points[i];
+        h = mix(h, p->kind);
+        for (j = 0; j < 3; j++) { h = mix(h, p->def[j]); if (geometry) h = mix(h, pc_bits(p->ball.x[j])); }
+        if (geometry) h = mix(h, pc_bits(p->ball.error));
+    }
+    for (i = 0; i < cx->plane_count; i++) {
+        const gxb_cplane *p = &cx->planes[i];
+        h = mix(mix(mix(h, p->along_axis), p->axis), (uint32_t)p->axis_sign);
+        for (j = 0; j < 3; j++) { h = mix(h, p->def[j]); if (geometry) h = mix(h, pc_bits(p->filter.n[j])); }
+    }
+    for (i = 0; i < cx->edge_count; i++) {
+        const gxb_edge *e = &cx->edges[i];
+        h = mix(mix(mix(mix(mix(mix(h, e->v[0]), e->v[1]), e->line[0]), e->line[1]), e->explicit_line), e->child);
+    }
+    for (i = 0; i < cx->facet_count; i++) {
+        const gxb_facet *f = &cx->facets[i];
+        h = mix(mix(mix(mix(mix(mix(mix(h, f->plane), f->leaf[0]), f->leaf[1]), f->child), f->labels), f->face), f->wall);
+        if (f->child == GXB_NONE) for (j = 0; j < f->loop_count; j++) h = mix(h, cx->pool[f->loop + j]);
+    }
+    for (i = 0; i < cx->leaf_count; i++) {
+        const gxb_leaf *l = &cx->leaves[i];
+        h = mix(mix(mix(h, l->element), l->parent), l->removed);
+        for (j = 0; j < l->facet_count; j++) h = mix(h, cx->pool[l->facets + j]);
+    }
+    for (i = 0; i < cx->tree_count; i++) h = mix(mix(mix(h, cx->nodes[i].plane), cx->nodes[i].child[0]), cx->nodes[i].child[1]);
+    for (i = 0; i < cx->label_count; i++) h = mix(mix(mix(h, cx->labels[i].triangle), (uint32_t)cx->labels[i].orientation), cx->labels[i].next);
+    for (i = 0; i < cx->element_count; i++) h = mix(h, cx->root[i]);
+    for (i = 0; i < cx->face_count; i++) h = mix(h, cx->face_facet[i]);
+    for (i = 0; i < cx->mesh_edge_count; i++) h = mix(h, cx->mesh_edge[i]);
+    return h;
+}
+
+static uint64_t topology_of(const scene *s) {
+    inserted in;
+    gxb_complex *cx = open_scene(s, NULL);
+    uint64_t h;
+    ck_assert_int_eq(insert_all(cx, s, &in), GX_OK);
+    h = hash_complex(cx, 0);
+    gxb_complex_destroy(cx);
+    return h;
+}
+
+START_TEST(topology_is_the_same_moved_and_scaled) {
+    static const double factors[5] = {1, 0x1p-40, 0x1p60, 0x1p-900, 0x1p500}, offsets[5] = {1048576, 0, 67108864, 0, -16777216};
+    pc_random r = seeded((uint64_t)_i + 1);
+    scene s;
+    uint64_t first;
+    int k;
+    size_t i;
+    make_mesh(&s, &r, 6, 1, 0, 0);
+    make_cuts(&s, &r, 6, 1, 1, 0);
+    first = topology_of(&s);
+    for (k = 0; k < 5; k++) {
+        scene t = s;
+        for (i = 0; i < 3 * t.node_count; i++) t.nodes[i / 3][i % 3] = (t.nodes[i / 3][i % 3] + offsets[k]) * factors[k];
+        for (i = 0; i < 9 * t.cut_count; i++) t.cuts[i / 9][i / 3 % 3][i % 3] = (t.cuts[i / 9][i / 3 % 3][i % 3] + offsets[k]) * factors[k];
+        assert_that(topology_of(&t) == first, "factor %a offset %g", factors[k], offsets[k]);
+    }
+} END_TEST
+
+/* ---- what walls separate does not depend on the order of the cuts ---- */
+
+static uint32_t find_root(uint32_t *parent, uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+}
+
+static int compare_doubles(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* Volumes of what open facets join, in ascending order, at most 256. */
+static uint32_t piece_volumes(const scene *s, double volumes[256]) {
+    const rat_mark mark = rat_arena_mark();
+    inserted in;
+    gxb_complex *cx = open_scene(s, NULL);
+    uint32_t *parent, i, count = 0;
+    double *sum;
+    model m;
+    ck_assert_int_eq(insert_all(cx, s, &in), GX_OK);
+    for (i = 0; i < s->element_count; i++) ck_assert_int_eq(gxb_complex_open_element(cx, i), GX_OK);
+    m = open_model(cx, s, &in);
+    parent = (uint32_t *)malloc((cx->leaf_count + 1) * sizeof *parent);
+    sum = (double *)calloc(cx->leaf_count + 1, sizeof *sum);
+    for (i = 0; i < cx->leaf_count; i++) parent[i] = i;
+    for (i = 0; i < cx->facet_count; i++) {
+        const gxb_facet *f = &cx->facets[i];
+        if (f->child != GXB_NONE || f->wall || f->leaf[0] == GXB_NONE || f->leaf[1] == GXB_NONE) continue;
+        parent[find_root(parent, f->leaf[0])] = find_root(parent, f->leaf[1]);
+    }
+    for (i = 0; i < cx->leaf_count; i++) sum[find_root(parent, i)] += check_leaf(&m, i);
+    for (i = 0; i < cx->leaf_count; i++) if (parent[i] == i && count < 256) volumes[count++] = sum[i];
+    qsort(volumes, count, sizeof *volumes, compare_doubles);
+    free(parent);
+    free(sum);
+    close_model(&m);
+    gxb_complex_destroy(cx);
+    rat_arena_release(mark);
+    return count;
+}
+
+START_TEST(pieces_do_not_depend_on_the_order) {
+    pc_random r = seeded((uint64_t)_i + 1);
+    double a[256], b[256];
+    scene s;
+    uint32_t count, i;
+    int round;
+    make_mesh(&s, &r, 6, 1, 0, 0);
+    make_cuts(&s, &r, 6, 1 + _i % 2, 4, -1.5);
+    count = piece_volumes(&s, a);
+    for (round = 0; round < 3; round++) {
+        for (i = s.cut_count; i > 1; i--) {
+            const uint32_t j = pc_below(&r, i);
+            double t[3][3];
+            memcpy(t, s.cuts[j], sizeof t);
+            memcpy(s.cuts[j], s.cuts[i - 1], sizeof t);
+            memcpy(s.cuts[i - 1], t, sizeof t);
+        }
+        ck_assert_uint_eq(piece_volumes(&s, b), count);
+        for (i = 0; i < count; i++) assert_that(fabs(a[i] - b[i]) < 1e-13, "piece %u: %.17g, %.17g", i, a[i], b[i]);
+    }
+} END_TEST
+
+START_TEST(coincident_cuts_share_their_facets) {
+    pc_random r = seeded((uint64_t)_i + 1);
+    scene s;
+    inserted in;
+    gxb_complex *cx;
+    uint32_t i, found = 0;
+    make_mesh(&s, &r, 6, 1, 0, 0);
+    make_cuts(&s, &r, 3, 1, 1, 0);
+    memcpy(s.cuts[1], s.cuts[0], sizeof s.cuts[0]);
+    memcpy(s.cuts[2][0], s.cuts[0][1], sizeof s.cuts[2][0]);    /* turned round */
+    memcpy(s.cuts[2][1], s.cuts[0][0], sizeof s.cuts[2][1]);
+    memcpy(s.cuts[2][2], s.cuts[0][2], sizeof s.cuts[2][2]);
+    cx = open_scene(&s, NULL);
+    ck_assert_int_eq(insert_all(cx, &s, &in), GX_OK);
+    for (i = 0; i < cx->facet_count; i++) {
+        const gxb_label *l[3];
+        if (cx->facets[i].child != GXB_NONE) continue;
+        l[0] = find_label(cx, i, 0); l[1] = find_label(cx, i, 1); l[2] = find_label(cx, i, 2);
+        assert_that((l[0] == NULL) == (l[1] == NULL) && (l[0] == NULL) == (l[2] == NULL), "facet %u", i);
+        if (l[0] == NULL) continue;
+        found++;
+        ck_assert_int_eq(l[0]->orientation, l[1]->orientation);
+        ck_assert_int_eq(l[0]->orientation, -l[2]->orientation);
+    }
+    ck_assert_uint_gt(found + 1, area_in_element(&(model){&s, &in, cx, NULL, NULL, NULL}, 0, 0) > 0 ? 1 : 0);
+    check_complex(cx, &s, &in, &r);
+    gxb_complex_destroy(cx);
+} END_TEST
+
+static int refuse(void *user, uint32_t leaf) { (void)leaf; ++*(int *)user; return 0; }
+
+START_TEST(refused_and_removed_leaves_stay_whole) {
+    pc_random r = seeded(1);
+    const double across[3][3] = {{-9, -9, 0.25}, {9, -9, 0.25}, {0, 9, 0.25}}, along[3][3] = {{0.2, -9, -9}, {0.2, 9, -9}, {0.2, 0, 9}};
+    scene s;
+    inserted in;
+    gxb_complex *cx;
+    int asked = 0;
+    uint32_t leaves;
+    make_mesh(&s, &r, 1, 1, 0, 0);
+    memcpy(s.nodes, unit_tet, sizeof unit_tet);
+    s.elements[0][0] = 0; s.elements[0][1] = 1; s.elements[0][2] = 2; s.elements[0][3] = 3;
+    s.node_count = 4;
+    memcpy(s.cuts[0], across, sizeof across);
+    memcpy(s.cuts[1], along, sizeof along);
+    s.cut_count = 2;
+    cx = open_scene(&s, NULL);
+    gxb_complex_begin(cx);
+    ck_assert_int_eq(insert_cut(cx, &s, &in, 0), GX_OK);
+    ck_assert_uint_eq(cx->leaf_count, 2);
+    ck_assert_int_eq(gxb_complex_set_removed(cx, 0), GX_OK);
+    leaves = cx->leaf_count;
+    ck_assert_int_eq(insert_cut(cx, &s, &in, 1), GX_OK);
+    ck_assert_uint_eq(cx->leaf_count, leaves + 1);
+    ck_assert_int_eq(gxb_complex_insert(cx, &in.triangles[1], 0, refuse, &asked), GX_OK);
+    ck_assert_uint_eq(cx->leaf_count, leaves + 1);
+    gxb_complex_rollback(cx);
+    ck_assert_uint_eq(cx->leaf_count, 1);
+    ck_assert_uint_eq(cx->leaves[0].removed, 0);
+    gxb_complex_begin(cx);
+    ck_assert_int_eq(gxb_complex_add_point(cx, s.cuts[0][0], &in.triangles[0].point[0]), GX_OK);
+    ck_assert_int_eq(gxb_complex_add_point(cx, s.cuts[0][1], &in.triangles[0].point[1]), GX_OK);
+    ck_assert_int_eq(gxb_complex_add_point(cx, s.cuts[0][2], &in.triangles[0].point[2]), GX_OK);
+    ck_assert_int_eq(gxb_complex_add_plane(cx, &in.triangles[0]), GX_OK);
+    asked = 0;
+    ck_assert_int_eq(gxb_complex_insert(cx, &in.triangles[0], 0, refuse, &asked), GX_OK);
+    ck_assert_int_eq(asked, 1);
+    ck_assert_uint_eq(cx->leaf_count, 1);
+    gxb_complex_destroy(cx);
+} END_TEST
+
+START_TEST(rollback_restores_everything) {
+    pc_random r = seeded((uint64_t)_i + 1);
+    scene s;
+    inserted in, twice;
+    gxb_complex *cx;
+    uint64_t before, after;
+    uint32_t c, half;
+    make_mesh(&s, &r, 6, 1, 0, 0.05 * (_i % 2));
+    make_cuts(&s, &r, 8, _i % 3, 1, 0);
+    half = s.cut_count / 2;
+    cx = open_scene(&s, NULL);
+    gxb_complex_begin(cx);
+    for (c = 0; c < half; c++) ck_assert_int_eq(insert_cut(cx, &s, &in, c), GX_OK);
+    gxb_complex_commit(cx);
+    before = hash_complex(cx, 1);
+    gxb_complex_begin(cx);
+    for (c = half; c < s.cut_count; c++) ck_assert_int_eq(insert_cut(cx, &s, &in, c), GX_OK);
+    ck_assert_int_eq(gxb_complex_set_wall(cx, 0), GX_OK);
+    ck_assert_int_eq(gxb_complex_set_removed(cx, 0), GX_OK);
+    gxb_complex_rollback(cx);
+    assert_that(hash_complex(cx, 1) == before, "rollback");
+    gxb_complex_begin(cx);
+    for (c = half; c < s.cut_count; c++) ck_assert_int_eq(insert_cut(cx, &s, &in, c), GX_OK);
+    gxb_complex_commit(cx);
+    after = hash_complex(cx, 1);
+    check_complex(cx, &s, &in, &r);
+    gxb_complex_destroy(cx);
+    cx = open_scene(&s, NULL);
+    ck_assert_int_eq(insert_all(cx, &s, &twice), GX_OK);
+    assert_that(hash_complex(cx, 1) == after, "a rolled back cut left a trace");
+    gxb_complex_destroy(cx);
+} END_TEST
+
+/* Every allocation in turn fails, once or from then on: an error, an unchanged complex after rollback, and the same result at the next try. */
+START_TEST(every_allocation_may_fail) {
+    pc_random r = seeded((uint64_t)_i / 2 + 1);
+    heap h = {0, 0, 0, 0};
+    gx_allocator allocator;
+    scene s;
+    inserted in;
+    size_t n, failures = 0;
+    uint64_t good = 0;
+    allocator.allocate = heap_allocate; allocator.release = heap_release; allocator.user = &h;
+    make_mesh(&s, &r, 6, 1, _i / 2 == 1 ? 1e6 : 0, 0.05);
+    make_cuts(&s, &r, 6, 2, 1, _i / 2 == 1 ? 1e6 : 0);
+    for (n = 0; ; n++) {
+        const gxb_mesh mesh = mesh_of(&s);
+        gxb_complex *cx = NULL;
+        gx_failure failure;
+        uint64_t before;
+        gx_result result;
+        h.calls = 0; h.fail_at = n; h.fail_count = _i % 2 ? SIZE_MAX : 1;       /* n = 0: none fails */
+        result = gxb_complex_create(&mesh, &allocator, &cx, &failure);
+        if (result != GX_OK) {
+            ck_assert_int_eq(result, GX_ERROR_MEMORY);
+            ck_assert_ptr_null(cx);
+            assert_that(h.bytes == 0, "create leaks where allocation %lu fails", (unsigned long)n);
+            failures++;
+            continue;
+        }
+        before = hash_complex(cx, 1);
+        gxb_complex_begin(cx);
+        result = insert_all(cx, &s, &in);
+        if (n > 0 && h.calls < n) { gxb_complex_destroy(cx); break; }           /* all have failed */
+        if (result != GX_OK) {
+            ck_assert_int_eq(result, GX_ERROR_MEMORY);
+            failures++;
+            gxb_complex_rollback(cx);
+            assert_that(hash_complex(cx, 1) == before, "allocation %lu", (unsigned long)n);
+            h.fail_at = 0;
+            gxb_complex_begin(cx);
+            result = insert_all(cx, &s, &in);
+        }
+        assert_that(result == GX_OK, "allocation %lu: %d", (unsigned long)n, (int)result);
+        gxb_complex_commit(cx);
+        h.fail_at = 0;
+        if (n == 0) good = hash_complex(cx, 1);
+        assert_that(hash_complex(cx, 1) == good, "allocation %lu: another result", (unsigned long)n);
+        if (n % 16 == 1) check_complex(cx, &s, &in, &r);
+        gxb_complex_destroy(cx);
+        assert_that(h.bytes == 0, "allocation %lu: a leak", (unsigned long)n);
+    }
+    ck_assert_uint_eq(h.bytes, 0);
+    ck_assert_uint_gt(failures, 10);
+} END_TEST
+
+/* Many transactions on one complex: the pool is compacted, nothing else changes. */
+START_TEST(many_transactions_conform) {
+    pc_random r = seeded(1);
+    scene s;
+    inserted in;
+    gxb_complex *cx;
+    uint32_t c, k;
+    make_mesh(&s, &r, 6, 1, 0, 0.05);
+    make_cuts(&s, &r, 16, 0, 1, 0);
+    cx = open_scene(&s, NULL);
+    for (c = 0; c < s.cut_count; c++) {
+        for (k = 0; k < 4; k++) {       /* the same again is idle work, and cheap to undo */
+            const uint64_t before = hash_complex(cx, 1);
+            gxb_complex_begin(cx);
+            ck_assert_int_eq(insert_cut(cx, &s, &in, c), GX_OK);
+            if (k < 3) {
+                gxb_complex_rollback(cx);
+                assert_that(hash_complex(cx, 1) == before, "cut %u", c);
+            } else gxb_complex_commit(cx);
+        }
+    }
+    check_complex(cx, &s, &in, &r);
+    gxb_complex_destroy(cx);
+} END_TEST
+
+/* ---- bad input ---- */
+
+static void expect_mesh(const scene *s, gx_result want, size_t index) {
+    const gxb_mesh mesh = mesh_of(s);
+    gxb_complex *cx = NULL;
+    gx_failure failure;
+    heap h = {0, 0, 0, 0};
+    gx_allocator allocator;
+    gx_result result;
+    allocator.allocate = heap_allocate; allocator.release = heap_release; allocator.user = &h;
+    result = gxb_complex_create(&mesh, &allocator, &cx, &failure);
+    assert_that(result == want && failure.result == want, "result %d instead of %d", (int)result, (int)want);
+    assert_that(want == GX_OK || cx == NULL, "a complex in spite of error %d", (int)want);
+    assert_that(failure.index == index, "error %d: index %lu instead of %lu", (int)want, (unsigned long)failure.index, (unsigned long)index);
+    gxb_complex_destroy(cx);
+    ck_assert_uint_eq(h.bytes, 0);
+}
+
+START_TEST(bad_meshes_are_named) {
+    pc_random r = seeded(1);
+    const double infinity = pc_from_bits(UINT64_C(0x7ff0000000000000)), nan = pc_from_bits(UINT64_C(0x7ff8000000000001));
+    scene good, s;
+    gxb_mesh none;
+    gxb_complex *cx = NULL;
+    gx_failure failure;
+    make_mesh(&good, &r, 6, 1, 0, 0);
+    expect_mesh(&good, GX_OK, SIZE_MAX);
+    s = good; s.nodes[5][1] = nan; expect_mesh(&s, GX_ERROR_NOT_FINITE, 5);
+    s = good; s.nodes[2][0] = infinity; expect_mesh(&s, GX_ERROR_NOT_FINITE, 2);
+    s = good; s.nodes[2][0] = -infinity; expect_mesh(&s, GX_ERROR_NOT_FINITE, 2);
+    s = good; s.elements[3][2] = 8; expect_mesh(&s, GX_ERROR_INDEX, 3);
+    s = good; s.elements[3][2] = UINT32_MAX; expect_mesh(&s, GX_ERROR_INDEX, 3);
+    s = good; s.elements[4][0] = good.elements[4][1]; s.elements[4][1] = good.elements[4][0]; expect_mesh(&s, GX_ERROR_INVERTED, 4);
+    s = good; s.elements[4][0] = s.elements[4][1]; expect_mesh(&s, GX_ERROR_FLAT, 4);
+    s = good; s.element_count = 1; memcpy(s.nodes[7], s.nodes[2], sizeof s.nodes[7]); expect_mesh(&s, GX_ERROR_FLAT, 0);
+    s = good; s.element_count = 7; memcpy(s.elements[6], s.elements[0], sizeof s.elements[6]); expect_mesh(&s, GX_ERROR_OVERLAP, 6);
+    s = good; s.nodes[1][1] = 1e-60; expect_mesh(&s, GX_ERROR_RANGE, 1);
+    s = good; s.node_count = 0; expect_mesh(&s, GX_ERROR_EMPTY, SIZE_MAX);
+    s = good; s.element_count = 0; expect_mesh(&s, GX_ERROR_EMPTY, SIZE_MAX);
+    none = mesh_of(&good); none.positions = NULL;
+    ck_assert_int_eq(gxb_complex_create(&none, NULL, &cx, &failure), GX_ERROR_ARGUMENT);
+    none = mesh_of(&good); none.elements = NULL;
+    ck_assert_int_eq(gxb_complex_create(&none, NULL, &cx, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxb_complex_create(NULL, NULL, &cx, NULL), GX_ERROR_ARGUMENT);
+    none = mesh_of(&good);
+    ck_assert_int_eq(gxb_complex_create(&none, NULL, NULL, NULL), GX_ERROR_ARGUMENT);
+    gxb_complex_destroy(NULL);
+} END_TEST
+
+/* Coordinates too large for any frame are named with their node, as the header promises. */
+START_TEST(huge_meshes_name_the_node) {
+    pc_random r = seeded(1);
+    scene s;
+    make_mesh(&s, &r, 6, 1, 0, 0);
+    s.nodes[7][2] = 1e300;
+    expect_mesh(&s, GX_ERROR_RANGE, 7);
+} END_TEST
+
+START_TEST(bad_triangles_are_named) {
+    pc_random r = seeded(1);
+    const double nan = pc_from_bits(UINT64_C(0x7ff8000000000001));
+    const double line[3][3] = {{0, 0, 0}, {0.1, 0.1, 0.1}, {0.3, 0.3, 0.3}};
+    double x[3] = {0, 0, 0};
+    scene s;
+    inserted in;
+    gxb_complex *cx;
+    gxb_triangle t;
+    uint64_t before;
+    uint32_t j, point;
+    make_mesh(&s, &r, 6, 1, 0, 0);
+    cx = open_scene(&s, NULL);
+    before = hash_complex(cx, 1);
+    gxb_complex_begin(cx);
+    x[1] = nan; ck_assert_int_eq(gxb_complex_add_point(cx, x, &point), GX_ERROR_NOT_FINITE);
+    x[1] = 1e60; ck_assert_int_eq(gxb_complex_add_point(cx, x, &point), GX_ERROR_RANGE);
+    x[1] = 1e-60; ck_assert_int_eq(gxb_complex_add_point(cx, x, &point), GX_ERROR_RANGE);
+    x[1] = 1e38; ck_assert_int_eq(gxb_complex_add_point(cx, x, &point), GX_OK);
+    memset(&t, 0, sizeof t);
+    for (j = 0; j < 3; j++) ck_assert_int_eq(gxb_complex_add_point(cx, line[0], &t.point[j]), GX_OK);
+    ck_assert_int_eq(gxb_complex_add_plane(cx, &t), GX_ERROR_FLAT);
+    gxb_complex_rollback(cx);
+    memcpy(s.cuts[0], line, sizeof line);
+    s.cuts[0][2][0] = s.cuts[0][2][1] = s.cuts[0][2][2] = 3 * 0.0625;
+    s.cuts[0][1][0] = s.cuts[0][1][1] = s.cuts[0][1][2] = 0.0625;
+    s.cut_count = 1;
+    gxb_complex_begin(cx);
+    ck_assert_int_eq(insert_cut(cx, &s, &in, 0), GX_ERROR_FLAT);
+    gxb_complex_rollback(cx);
+    assert_that(hash_complex(cx, 1) == before, "rollback");
+    s.cuts[0][2][2] = pc_nudge(s.cuts[0][2][2], 1);         /* one ulp of area */
+    gxb_complex_begin(cx);
+    ck_assert_int_eq(insert_cut(cx, &s, &in, 0), GX_OK);
+    check_complex(cx, &s, &in, &r);
+    gxb_complex_destroy(cx);
+} END_TEST
+
+/* ==== the suite ==== */
+
+static Suite *boolean_suite(void) {
+    Suite *suite = suite_create("gxfem_boolean");
+    TCase *numbers = tcase_create("numbers"), *predicates = tcase_create("predicates"), *complex = tcase_create("complex");
+    TCase *input = tcase_create("input");
+    tcase_add_loop_test(numbers, numbers_are_exact, 0, 2);
+    tcase_add_loop_test(numbers, numbers_become_doubles, 0, 2);
+    tcase_add_test(numbers, numbers_take_a_shift);
+    tcase_add_test(predicates, orientation_is_as_documented);
+    tcase_add_loop_test(predicates, predicates_have_the_right_sign, 0, 4);
+    tcase_add_loop_test(predicates, points_of_all_kinds_compare, 0, 2);
+    tcase_add_loop_test(predicates, orient_takes_any_double, 0, 3);
+    tcase_add_test(predicates, published_cases);
+    tcase_add_loop_test(predicates, winding_numbers_count, 0, 2);
+    tcase_add_test(predicates, triangles_without_area_have_no_outside);
+    tcase_add_loop_test(complex, random_cuts_conform, 0, 10);
+    tcase_add_loop_test(complex, degenerate_cuts_conform, 0, 8);
+    tcase_add_loop_test(complex, far_and_scaled_meshes_conform, 0, 6);
+    tcase_add_loop_test(complex, topology_is_the_same_moved_and_scaled, 0, 4);
+    tcase_add_loop_test(complex, pieces_do_not_depend_on_the_order, 0, 6);
+    tcase_add_loop_test(complex, coincident_cuts_share_their_facets, 0, 4);
+    tcase_add_test(complex, refused_and_removed_leaves_stay_whole);
+    tcase_add_loop_test(complex, rollback_restores_everything, 0, 6);
+    tcase_add_loop_test(complex, every_allocation_may_fail, 0, 4);
+    tcase_add_test(complex, many_transactions_conform);
+    tcase_add_test(input, bad_meshes_are_named);
+    tcase_add_test(input, huge_meshes_name_the_node);
+    tcase_add_test(input, bad_triangles_are_named);
+    tcase_set_timeout(numbers, 120);
+    tcase_set_timeout(predicates, 120);
+    tcase_set_timeout(complex, 120);
+    suite_add_tcase(suite, numbers);
+    suite_add_tcase(suite, predicates);
+    suite_add_tcase(suite, complex);
+    suite_add_tcase(suite, input);
+    return suite;
+}
+
+int main(void) {
+    SRunner *runner = srunner_create(boolean_suite());
+    int failed;
+    srunner_run_all(runner, CK_NORMAL);
+    failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
