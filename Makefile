@@ -22,6 +22,8 @@ help:
 	@echo "make lint        house rules of the four headers"
 	@echo "make compile     the headers by every compiler and standard there is, C and C++"
 	@echo "make sanitize    the tests under AddressSanitizer and UndefinedBehaviorSanitizer"
+	@echo "make flags       exact predicates against rationals under each compiler and set of flags"
+	@echo "make hashes      the same cuts give the same topology under each compiler and set of flags"
 	@echo "make clean       removes $(BUILD)/"
 
 # ---- programs
@@ -69,8 +71,11 @@ compile:
 lint:
 	@sh tests/lint.sh $(headers)
 
-flags: $(wildcard tests/flags.sh)
-	@for script in $^; do sh $$script || exit 1; done
+flags:
+	@JOBS=$(JOBS) sh tests/flags.sh
+
+hashes:
+	@sh tests/hashes.sh $(BUILD)/hashes
 
 check-all: check
 	@$(MAKE) --no-print-directory lint
@@ -80,8 +85,9 @@ check-all: check
 	@for cc in gcc clang; do \
 	    if command -v $$cc >/dev/null; then $(MAKE) --no-print-directory check CC=$$cc BUILD=$(BUILD)/$$cc || exit 1; fi; done
 	@$(MAKE) --no-print-directory flags
+	@$(MAKE) --no-print-directory hashes
 
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo check check-programs run-gxcut $(tests:%=run-%) sanitize compile lint flags check-all clean
+.PHONY: help examples demo check check-programs run-gxcut $(tests:%=run-%) sanitize compile lint flags hashes check-all clean

@@ -327,6 +327,7 @@ struct gx_body {
     gxp_words touched, nodes, queue, seeds, faces;
     gxp_words fresh;                /* pieces of touched cells: their copies and integrals are to be found */
     gxp_words removed, dead, list;  /* leaves that solids removed, copies without cells */
+    gxp_words pinches;              /* nodes at which sheets separated what meets there only */
     struct gxp_pair *pairs; uint32_t pair_count, pair_capacity;
 };
 
@@ -730,7 +731,7 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     gxp_release(&a, body->skin_weights, body->skin_weight_capacity * sizeof(double));
     gxp_release(&a, body->lambdas, (size_t)body->lambda_capacity * 4 * sizeof(double));
     {
-        gxp_words *words[22];
+        gxp_words *words[23];
         words[0] = &body->view_cells; words[1] = &body->view_fragments; words[2] = &body->copy_fragment; words[3] = &body->cell_element;
         words[4] = &body->cell_copies; words[5] = &body->skin_copies; words[6] = &body->skin_triangles; words[7] = &body->skin_fragments;
         words[8] = &body->skin_cuts; words[9] = &body->point_slot; words[10] = &body->triangles; words[11] = &body->touched;
@@ -738,7 +739,8 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
         words[16] = &body->fresh; words[17] = &body->list;
         words[18] = &body->removed; words[19] = &body->dead;
         words[20] = &body->fragment_number; words[21] = &body->skin_points;
-        for (i = 0; i < 22; i++) gxp_words_free(body, words[i]);
+        words[22] = &body->pinches;
+        for (i = 0; i < 23; i++) gxp_words_free(body, words[i]);
     }
     gxs_solver_destroy(body->solver);
     gxb_complex_destroy(body->complex);
@@ -1026,6 +1028,35 @@ static int gxp_in_scope(void *user, uint32_t leaf) {
     return body->cell_stamp[body->leaves[gxp_old_leaf(body, leaf)].cell] == body->scope_stamp;
 }
 
+/* Has the element a cell that the cut may touch? */
+static int gxp_element_in_scope(const gx_body *body, uint32_t element) {
+    uint32_t cell;
+    for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next) if (body->cell_stamp[cell] == body->scope_stamp) return 1;
+    return 0;
+}
+
+/* A sheet through an edge or node in which alone elements meet separates them there, even if it enters neither. */
+static gx_result gxp_cover_pinches(gx_body *body, gxb_triangle *t, uint32_t element) {
+    const gxb_complex *cx = body->complex;
+    uint32_t k;
+    gx_result result = GX_OK;
+    for (k = 0; k < 4 && result == GX_OK; k++) {
+        const uint32_t node = cx->elements[4 * element + k];
+        int covered = 0;
+        if (!(body->node_pinched[node] & 1)) continue;
+        result = gxb_complex_cover_node(body->complex, t, node, &covered);
+        if (covered && result == GX_OK) result = gxp_push(body, &body->pinches, node);
+    }
+    for (k = 0; k < 6 && result == GX_OK; k++) {
+        int covered = 0;
+        if (!body->edge_pinched[cx->element_edges[6 * element + k]]) continue;
+        result = gxb_complex_cover_edge(body->complex, t, element, k, &covered);
+        if (covered && result == GX_OK) result = gxp_push(body, &body->pinches, cx->elements[4 * element + gxp_edge_nodes[k][0]]);
+        if (covered && result == GX_OK) result = gxp_push(body, &body->pinches, cx->elements[4 * element + gxp_edge_nodes[k][1]]);
+    }
+    return result;
+}
+
 static gx_result gxp_insert_triangle(gxp_cut *cut, gxp_surface *s, uint32_t index, int scoped) {
     gx_body *body = cut->body;
     const double *p[3];
@@ -1035,8 +1066,12 @@ static gx_result gxp_insert_triangle(gxp_cut *cut, gxp_surface *s, uint32_t inde
     body->list.count = 0;
     result = gxp_find_elements(body, p, &body->list);
     if (result == GX_OK && body->list.count > 0) result = gxp_prepare_triangle(cut, s, index);
-    for (i = 0; i < body->list.count && result == GX_OK; i++)
-        result = gxb_complex_insert(body->complex, &s->triangles[index], body->list.data[i], scoped ? gxp_in_scope : NULL, body);
+    for (i = 0; i < body->list.count && result == GX_OK; i++) {
+        const uint32_t element = body->list.data[i];
+        result = gxb_complex_insert(body->complex, &s->triangles[index], element, scoped ? gxp_in_scope : NULL, body);
+        if (result == GX_OK && s->triangles[index].wall && (!scoped || gxp_element_in_scope(body, element)))
+            result = gxp_cover_pinches(body, &s->triangles[index], element);
+    }
     return result;
 }
 
@@ -1648,7 +1683,8 @@ static gx_result gxp_look_for_joint(gx_body *body, uint32_t leaf, gxp_joint *joi
             const uint32_t e = cx->pool[e0 + j];
             if (joint->point != GXB_NONE ? cx->edges[e >> 1].v[e & 1] != joint->point : e >> 1 != joint->edge) continue;
             joint->found = 1;
-            joint->walled |= cx->facets[facet].wall != 0 || cx->leaves[leaf].removed != 0;
+            joint->walled |= cx->facets[facet].wall != 0 || cx->leaves[leaf].removed != 0 ||
+                             (joint->point != GXB_NONE ? cx->points[joint->point].wall : cx->edges[joint->edge].wall) != 0;
         }
     }
     return result;
@@ -1776,23 +1812,29 @@ static gx_result gxp_pair_cell(gx_body *body, uint32_t cell) {
     return result;
 }
 
+/* Every cell around a node. */
+static gx_result gxp_pair_node(gx_body *body, uint32_t node) {
+    uint32_t j, cell;
+    gx_result result = GX_OK;
+    for (j = body->node_start[node]; j < body->node_start[node + 1]; j++)
+        for (cell = body->node_elements[j]; cell != GXP_NONE && result == GX_OK; cell = body->cells[cell].next)
+            if (body->cells[cell].kept) result = gxp_push_pair(body, node, cell);
+    return result;
+}
+
 /* Where to start walks: each touched cell around its nodes; around pinched nodes, where walls break joints that they only touch
    in a point, every cell. */
 static gx_result gxp_collect_pairs(gx_body *body) {
-    uint32_t i, j, cell, n;
+    uint32_t i, n;
     gx_result result = GX_OK;
     body->pair_count = 0;
     for (i = 0; i < body->fresh.count && result == GX_OK; i++) result = gxp_pair_cell(body, body->fresh.data[i]);
     for (i = 0; i < body->touched.count && result == GX_OK; i++)
         if (!body->cells[body->touched.data[i]].kept) result = gxp_pair_cell(body, body->touched.data[i]);
-    n = body->pair_count;
-    for (i = 0; i < n; i++) {
-        const uint32_t node = body->pairs[i].node;
-        if (!body->node_pinched[node]) continue;
-        for (j = body->node_start[node]; j < body->node_start[node + 1]; j++)
-            for (cell = body->node_elements[j]; cell != GXP_NONE && result == GX_OK; cell = body->cells[cell].next)
-                if (body->cells[cell].kept) result = gxp_push_pair(body, node, cell);
-    }
+    for (i = 0, n = body->pair_count; i < n && result == GX_OK; i++)
+        if (body->node_pinched[body->pairs[i].node]) result = gxp_push(body, &body->pinches, body->pairs[i].node);
+    gxp_sort_unique(&body->pinches);
+    for (i = 0; i < body->pinches.count && result == GX_OK; i++) result = gxp_pair_node(body, body->pinches.data[i]);
     if (body->pair_count > 0) qsort(body->pairs, body->pair_count, sizeof *body->pairs, gxp_compare_pairs);
     return result;
 }
@@ -2078,7 +2120,7 @@ static gx_result gxp_arrange(gxp_cut *cut) {
     size_t i;
     if (surfaces == NULL) return GX_ERROR_MEMORY;
     memset(surfaces, 0, count * sizeof *surfaces);
-    body->touched.count = body->removed.count = 0;
+    body->touched.count = body->removed.count = body->pinches.count = 0;
     result = gxp_arrange_surfaces(cut, surfaces);
     for (i = 0; i < count; i++) if (surfaces[i].given != NULL) gxp_surface_free(body, &surfaces[i]);
     gxp_release(&body->allocator, surfaces, count * sizeof *surfaces);

@@ -153,7 +153,7 @@ typedef struct gxb_plane_filter {
     double norm;        /* largest |n[i]| */
 } gxb_plane_filter;
 
-/* A point within error of x in each coordinate; error >= GXB_NO_BALL: nothing is known. */
+/* A point within error of x in each coordinate; error >= 2^200: nothing is known. */
 typedef struct gxb_ball { double x[3], error; } gxb_ball;
 
 /* The plane of three points, not collinear; its normal is (q-p) x (r-p). The points must outlive it. */
@@ -193,6 +193,7 @@ typedef struct gxb_cpoint {     /* a point of the complex */
     uint32_t stamp[2];          /* when sign[i] was decided (complex.stamp[i]) */
     int32_t sign[2];
     uint32_t scratch;
+    uint32_t wall;              /* 1: a triangle was made to separate here what meets in this node only */
     double parameter[2];        /* on a mesh edge: barycentric coordinates of its ends; negative until asked for */
 } gxb_cpoint;
 
@@ -211,6 +212,7 @@ typedef struct gxb_edge {
     uint32_t explicit_line;
     uint32_t child;             /* GXB_NONE, or the first of the two edges (child, child + 1) into which it was divided */
     uint32_t stamp;
+    uint32_t wall;              /* 1: a triangle was made to separate here what meets in this edge only */
 } gxb_edge;
 
 typedef struct gxb_facet {      /* a convex polygon */
@@ -307,6 +309,11 @@ GXFEM_API gx_result gxb_complex_add_plane(gxb_complex *complex, gxb_triangle *tr
 /* Divides the leaves of one element that the triangle meets, and labels the facets that it covers. allowed: leaves for which allowed(user, leaf) is 0 are left alone (NULL: none). */
 GXFEM_API gx_result gxb_complex_insert(gxb_complex *complex, gxb_triangle *triangle, uint32_t element,
                                        int (*allowed)(void *user, uint32_t leaf), void *user);
+/* Where elements meet in nothing but a mesh edge or a node: marks what the triangle covers of that edge (pieces of it get wall 1)
+   or whether it covers the node. *covered is set to 1 if there is something, else left alone. */
+GXFEM_API gx_result gxb_complex_cover_edge(gxb_complex *complex, gxb_triangle *triangle, uint32_t element, uint32_t local_edge,
+                                           int *covered);
+GXFEM_API gx_result gxb_complex_cover_node(gxb_complex *complex, gxb_triangle *triangle, uint32_t node, int *covered);
 /* Makes a facet a wall. */
 GXFEM_API gx_result gxb_complex_set_wall(gxb_complex *complex, uint32_t facet);
 GXFEM_API gx_result gxb_complex_set_removed(gxb_complex *complex, uint32_t leaf);
@@ -671,10 +678,10 @@ static void gxbp_exact_three_planes(gxb_num point[4], const gxb_num a[4], const 
  * than eight roundings, so |error| <= 8u * (sum of |products|). Each bound below is at least that plus the inherited
  * errors to first order, times a factor of 2 or more that covers second-order terms and the rounding of the bound itself.
  */
-#define GXB_NO_BALL_EXPONENT 200
+#define GXBP_NO_BALL_EXPONENT 200
 #define GXBP_U gxbp_power(-52)
 #define GXBP_TINY gxbp_power(-600)
-#define GXBP_NO_BALL gxbp_power(GXB_NO_BALL_EXPONENT)
+#define GXBP_NO_BALL gxbp_power(GXBP_NO_BALL_EXPONENT)
 
 static double gxbp_fence(double x) {
     volatile double v = x;
@@ -1073,7 +1080,7 @@ static gx_result gxbp_reserve(gxb_complex *cx, void *array, size_t item, uint32_
 #define GXBP_RESERVE(cx, array, counter, extra) \
     gxbp_reserve(cx, &(cx)->array, sizeof *(cx)->array, (cx)->counter##_count, &(cx)->counter##_capacity, extra)
 
-enum { GXBP_EDGES, GXBP_FACETS, GXBP_LEAVES, GXBP_NODES, GXBP_ROOTS, GXBP_FACES, GXBP_MESH_EDGES };
+enum { GXBP_EDGES, GXBP_FACETS, GXBP_LEAVES, GXBP_NODES, GXBP_POINTS, GXBP_ROOTS, GXBP_FACES, GXBP_MESH_EDGES };
 
 static void *gxbp_item(gxb_complex *cx, uint32_t array, uint32_t index, size_t *size) {
     switch (array) {
@@ -1081,6 +1088,7 @@ static void *gxbp_item(gxb_complex *cx, uint32_t array, uint32_t index, size_t *
     case GXBP_FACETS: *size = sizeof *cx->facets; return cx->facets + index;
     case GXBP_LEAVES: *size = sizeof *cx->leaves; return cx->leaves + index;
     case GXBP_NODES: *size = sizeof *cx->nodes; return cx->nodes + index;
+    case GXBP_POINTS: *size = sizeof *cx->points; return cx->points + index;
     case GXBP_ROOTS: *size = sizeof *cx->root; return cx->root + index;
     case GXBP_FACES: *size = sizeof *cx->face_facet; return cx->face_facet + index;
     default: *size = sizeof *cx->mesh_edge; return cx->mesh_edge + index;
@@ -1089,11 +1097,11 @@ static void *gxbp_item(gxb_complex *cx, uint32_t array, uint32_t index, size_t *
 
 /* Items older than the transaction. */
 static uint32_t gxbp_item_mark(const gxb_complex *cx, uint32_t array) {
-    static const uint32_t which[4] = {2, 3, 4, 5};
-    return array <= GXBP_NODES ? cx->mark[which[array]] : UINT32_MAX;
+    static const uint32_t which[5] = {2, 3, 4, 5, 0};
+    return array <= GXBP_POINTS ? cx->mark[which[array]] : UINT32_MAX;
 }
 
-#define GXBP_UNDO_ITEM 64   /* no item that is saved is larger */
+#define GXBP_UNDO_ITEM 128   /* no item that is saved is larger */
 
 static gx_result gxbp_reserve_undo(gxb_complex *cx, size_t items) {
     gx_result result = GXBP_RESERVE(cx, undo, undo, items);
@@ -1825,6 +1833,7 @@ static void gxbp_split_edge(gxb_complex *cx, uint32_t edge, const gxbp_knife *kn
     cx->edges[edge].child = cx->edge_count;
     gxbp_new_edge(cx, e.v[0], id, e.line, e.explicit_line);
     gxbp_new_edge(cx, id, e.v[1], e.line, e.explicit_line);
+    cx->edges[cx->edge_count - 2].wall = cx->edges[cx->edge_count - 1].wall = e.wall;
 }
 
 /* Divides the edges of a facet that the plane crosses and renews its loop. Room was reserved. */
@@ -2173,6 +2182,14 @@ GXFEM_API gx_result gxb_complex_set_removed(gxb_complex *cx, uint32_t leaf) {
     return GX_OK;
 }
 
+/* The knife along edge k of the triangle, whose plane has been made. */
+static void gxbp_set_knife(const gxb_triangle *t, uint32_t k, gxbp_knife *knife) {
+    knife->plane = t->edge_plane[k];
+    knife->line[0] = t->point[k]; knife->line[1] = t->point[(k + 1) % 3];
+    knife->explicit_line = 1;
+    knife->slot = 1;
+}
+
 /* Labels the part of a facet, in the triangle's plane, that the triangle covers; edges: bit k where edge k may bound that part. */
 static gx_result gxbp_cover_facet(gxb_complex *cx, gxb_triangle *t, uint32_t facet, uint32_t edges) {
     uint32_t k, first, count;
@@ -2185,10 +2202,7 @@ static gx_result gxbp_cover_facet(gxb_complex *cx, gxb_triangle *t, uint32_t fac
         if (result == GX_OK) result = gxb_facet_edges(cx, facet, &first, &count);
         if (result == GX_OK) result = gxbp_reserve_split(cx, 1, count);
         if (result != GX_OK) return result;
-        knife.plane = t->edge_plane[k];
-        knife.line[0] = t->point[k]; knife.line[1] = t->point[(k + 1) % 3];
-        knife.explicit_line = 1;
-        knife.slot = 1;
+        gxbp_set_knife(t, k, &knife);
         cx->stamp[1]++;
         sides = gxbp_facet_sides(cx, facet, &knife);
         if (sides == 3) {
@@ -2197,6 +2211,65 @@ static gx_result gxbp_cover_facet(gxb_complex *cx, gxb_triangle *t, uint32_t fac
         } else if (sides != (front > 0 ? 1 : 2)) return GX_OK;      /* outside of the triangle */
     }
     return gxbp_add_label(cx, t, facet);
+}
+
+/* --- pinched edges and nodes --- */
+
+/* Divides the piece of an edge in the triangle's plane by the planes of the triangle's edges k, k+1 ... and marks what is inside. */
+static gx_result gxbp_cover_edge(gxb_complex *cx, gxb_triangle *t, uint32_t edge, uint32_t k, int *covered) {
+    gx_result result = gxbp_reserve_split(cx, 0, 1);
+    for (; k < 3 && result == GX_OK; k++) {
+        gxbp_knife knife;
+        int front, a, b;
+        result = gxbp_edge_plane(cx, t, k, &front);
+        if (result != GX_OK) return result;
+        gxbp_set_knife(t, k, &knife);
+        a = front * gxb_complex_side(cx, cx->edges[edge].v[0], knife.plane);
+        b = front * gxb_complex_side(cx, cx->edges[edge].v[1], knife.plane);
+        if (a * b < 0) {
+            gxbp_split_edge(cx, edge, &knife);
+            return gxbp_cover_edge(cx, t, cx->edges[edge].child + (a > 0 ? 0u : 1u), k + 1, covered);
+        }
+        if (a < 0 || b < 0) return GX_OK;
+    }
+    if (result != GX_OK || cx->edges[edge].wall) return result;
+    gxbp_save(cx, GXBP_EDGES, edge);
+    cx->edges[edge].wall = 1;
+    *covered = 1;
+    return GX_OK;
+}
+
+static gx_result gxbp_cover_edges(gxb_complex *cx, gxb_triangle *t, uint32_t edge, int *covered) {
+    const uint32_t child = cx->edges[edge].child;
+    gx_result result;
+    if (child == GXB_NONE) return gxbp_cover_edge(cx, t, edge, 0, covered);
+    result = gxbp_cover_edges(cx, t, child, covered);
+    return result == GX_OK ? gxbp_cover_edges(cx, t, child + 1, covered) : result;
+}
+
+GXFEM_API gx_result gxb_complex_cover_edge(gxb_complex *cx, gxb_triangle *t, uint32_t element, uint32_t local_edge, int *covered) {
+    const uint32_t edge = cx->element_edges[6 * element + local_edge];
+    const uint32_t a = cx->elements[4 * element + gxbp_edge_nodes[local_edge][0]], b = cx->elements[4 * element + gxbp_edge_nodes[local_edge][1]];
+    gx_result result;
+    if (gxb_complex_side(cx, a, t->plane) != 0 || gxb_complex_side(cx, b, t->plane) != 0) return GX_OK;
+    result = gxb_complex_open_element(cx, element);
+    return result == GX_OK ? gxbp_cover_edges(cx, t, cx->mesh_edge[edge], covered) : result;
+}
+
+GXFEM_API gx_result gxb_complex_cover_node(gxb_complex *cx, gxb_triangle *t, uint32_t node, int *covered) {
+    uint32_t k;
+    int front;
+    gx_result result = gxbp_reserve_undo(cx, 1);
+    if (cx->points[node].wall || gxb_complex_side(cx, node, t->plane) != 0) return result;
+    for (k = 0; k < 3 && result == GX_OK; k++) {
+        result = gxbp_edge_plane(cx, t, k, &front);
+        if (result == GX_OK && gxb_complex_side(cx, node, t->edge_plane[k]) * front < 0) return GX_OK;
+    }
+    if (result != GX_OK) return result;
+    gxbp_save(cx, GXBP_POINTS, node);
+    cx->points[node].wall = 1;
+    *covered = 1;
+    return GX_OK;
 }
 
 /* The triangle lies in the plane of some of the leaf's facets. */

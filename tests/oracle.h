@@ -26,7 +26,7 @@ enum {
     /* Where two elements meet in an edge or a node only. 0: they come apart where a wall touches that edge piece or node: a piece
        of a sheet inside an element or on a face. 1: also where a sheet touches it from outside of the body and nowhere else
        (Omega minus Gamma, the limit of a thin solid). */
-    ORACLE_TOUCH_FROM_OUTSIDE = 0
+    ORACLE_TOUCH_FROM_OUTSIDE = 1
 };
 
 /* ---- input ---- */

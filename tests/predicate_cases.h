@@ -295,13 +295,13 @@ static const char *const pc_bound_names[PC_BOUNDS] = {"normal", "line-plane ball
 
 static inline void pc_ball_share(const gxb_ball *ball, const pc_point *x, const double o[3], double *worst) {
     int k;
-    if (x->w.sign == 0 || !(ball->error < pc_power(GXB_NO_BALL_EXPONENT))) return;
+    if (x->w.sign == 0 || !(ball->error < GXBP_NO_BALL)) return;
     for (k = 0; k < 3; k++) pc_worst(worst, pc_share(ball->x[k], big_from_double(o[k]), x->x[k], x->w, ball->error));
 }
 
 static inline void pc_side_share(const gxb_ball *ball, const pc_point *x, const gxb_plane *f, const pc_plane *plane, double *worst) {
     double value, bound;
-    if (x->w.sign == 0 || !(ball->error < pc_power(GXB_NO_BALL_EXPONENT))) return;
+    if (x->w.sign == 0 || !(ball->error < GXBP_NO_BALL)) return;
     value = gxbp_filter_side(ball, &f->filter, &bound);
     pc_worst(worst, pc_share(value, big_zero(), pc_scaled_height(x, plane), x->w, bound));
 }

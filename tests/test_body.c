@@ -959,7 +959,7 @@ START_TEST(three_times_twenty_planes) {
     size_t count[3] = { 0, 0, 0 }, i;
     int axis, j, k;
     for (j = 0; j < 4; ++j) for (k = 0; k < 3; ++k) x[j][k] = m * unit[j][k];
-    w = wl_tetrahedron(x);
+    w = wl_tetrahedron((const double (*)[3])x);
     s = wl_add_surface(&w, 0);
     for (axis = 0; axis < 3; ++axis) for (j = 1; j <= n; ++j) {
         for (k = 0; k < 4; ++k) { p[k][axis] = j; p[k][(axis + 1) % 3] = k == 1 || k == 2 ? 64 : -64; p[k][(axis + 2) % 3] = k >= 2 ? 64 : -64; }
@@ -1027,23 +1027,25 @@ static void check_cells(gx_body *body, const char *what, uint64_t seed) {
 START_TEST(slivers) {
     int k, kind;
     for (k = 1; k <= 15; ++k) for (kind = 0; kind < 3; ++kind) {
-        double size = pow(10, -k), truth, thin;
+        const double size = pow(10, -k);
+        volatile double cut = 1 - size;         /* volatile: what is rounded here no compiler may see through */
+        double a, b, truth, thin;               /* the slab from a to b, distances from the tip */
         workload w = corner_tet();
         gx_body *body;
         gx_view view;
-        if (kind == 0) {            /* a layer on the face x = 0 */
+        if (kind == 0) {                        /* a layer on the face x = 0 */
             add_axis_plane(&w, 0, size);
             truth = size * (3 - 3 * size + size * size) / 6;
-        } else if (kind == 1) {     /* the tip at x = 1 */
-            add_axis_plane(&w, 0, 1 - size);
-            size = 1 - (1 - size);
-            truth = size * size * size / 6;
-        } else {                    /* a thin slab in the middle */
-            double b = 0.75 - size, a = 0.75;
+        } else if (kind == 1) {                 /* the tip at x = 1 */
+            add_axis_plane(&w, 0, cut);
+            b = 1 - cut;
+            truth = b * b * b / 6;
+        } else {                                /* a thin slab in the middle */
+            cut = 0.25 + size;
             add_axis_plane(&w, 0, 0.25);
-            add_axis_plane(&w, 0, 1 - b);
-            b = 1 - (1 - b);
-            truth = (a - b) * (a * a + a * b + b * b) / 6;
+            add_axis_plane(&w, 0, cut);
+            a = 0.75; b = 1 - cut;
+            truth = (cut - 0.25) * (a * a + a * b + b * b) / 6;
         }
         body = cut_at_once(&w);
         view = view_of(body);

@@ -660,46 +660,63 @@ static double element_volume(const model *m, uint32_t e) {
     return big_to_double(big_orient3d(m->s->nodes[v[0]], m->s->nodes[v[1]], m->s->nodes[v[2]], m->s->nodes[v[3]])) / 6;
 }
 
-/* ---- the area of a triangle in an element: clipped in barycentric coordinates, whose signs at its corners are exact ---- */
+/* ---- the area of a triangle in an element: clipped exactly, in homogeneous barycentric coordinates ---- */
 
-typedef struct corner { double lambda[4]; } corner;
+typedef struct corner { big lambda[4]; } corner;   /* times a positive factor of the corner's own */
 
 static corner barycentric(const double nodes[4][3], const double p[3]) {
-    const big all = big_orient3d(nodes[0], nodes[1], nodes[2], nodes[3]);
     const double *x[4];
     corner c;
     int k, j;
     for (k = 0; k < 4; k++) {
         for (j = 0; j < 4; j++) x[j] = j == k ? p : nodes[j];
-        c.lambda[k] = rat_to_double(rat_ratio(big_orient3d(x[0], x[1], x[2], x[3]), all));
+        c.lambda[k] = big_orient3d(x[0], x[1], x[2], x[3]);
     }
     return c;
 }
 
+/* Where the edge from c to d, on different sides of face k, meets it: |d_k| c + |c_k| d, both factors positive. */
+static corner cross_face(const corner *c, const corner *d, int k) {
+    corner r;
+    int j;
+    for (j = 0; j < 4; j++)
+        r.lambda[j] = big_add(big_mul(big_abs(d->lambda[k]), c->lambda[j]), big_mul(big_abs(c->lambda[k]), d->lambda[j]));
+    return r;
+}
+
+static int clip_to_face(corner *a, int n, int k) {
+    corner b[16];
+    int i, count = 0;
+    for (i = 0; i < n; i++) {
+        const corner *c = &a[i], *d = &a[(i + 1) % n];
+        if (c->lambda[k].sign >= 0) b[count++] = *c;
+        if (c->lambda[k].sign * d->lambda[k].sign < 0) b[count++] = cross_face(c, d, k);
+    }
+    memcpy(a, b, (size_t)count * sizeof *a);
+    return count;
+}
+
+/* Rounded once, relative to node 0. */
+static void corner_position(const double nodes[4][3], const corner *c, double p[3]) {
+    big weight = big_zero();
+    int j, k;
+    for (j = 0; j < 4; j++) weight = big_add(weight, c->lambda[j]);
+    for (k = 0; k < 3; k++) {
+        big sum = big_zero();
+        for (j = 1; j < 4; j++)
+            sum = big_add(sum, big_mul(c->lambda[j], big_sub(big_from_double(nodes[j][k]), big_from_double(nodes[0][k]))));
+        p[k] = rat_to_double(rat_ratio(sum, weight));
+    }
+}
+
 static double area_in_element(const model *m, uint32_t cut, uint32_t element) {
-    corner a[16], b[16];
+    corner a[16];
     double nodes[4][3], area[3] = {0, 0, 0}, p[16][3];
-    int n = 3, k, j, i;
+    int n = 3, k, i;
     for (k = 0; k < 4; k++) memcpy(nodes[k], m->s->nodes[m->s->elements[element][k]], sizeof nodes[k]);
     for (k = 0; k < 3; k++) a[k] = barycentric(nodes, m->s->cuts[cut][k]);
-    for (k = 0; k < 4 && n > 0; k++) {
-        int count = 0;
-        for (i = 0; i < n; i++) {
-            const corner *c = &a[i], *d = &a[(i + 1) % n];
-            if (c->lambda[k] >= 0) b[count++] = *c;
-            if ((c->lambda[k] < 0 && d->lambda[k] > 0) || (c->lambda[k] > 0 && d->lambda[k] < 0)) {
-                const double t = c->lambda[k] / (c->lambda[k] - d->lambda[k]);
-                for (j = 0; j < 4; j++) b[count].lambda[j] = j == k ? 0 : c->lambda[j] + t * (d->lambda[j] - c->lambda[j]);
-                count++;
-            }
-        }
-        memcpy(a, b, (size_t)count * sizeof *a);
-        n = count;
-    }
-    for (i = 0; i < n; i++) for (k = 0; k < 3; k++) {
-        p[i][k] = 0;
-        for (j = 1; j < 4; j++) p[i][k] += a[i].lambda[j] * (nodes[j][k] - nodes[0][k]);
-    }
+    for (k = 0; k < 4 && n > 0; k++) n = clip_to_face(a, n, k);
+    for (i = 0; i < n; i++) corner_position(nodes, &a[i], p[i]);
     for (i = 1; i + 1 < n; i++) for (k = 0; k < 3; k++) {
         const int q = (k + 1) % 3, r = (k + 2) % 3;
         area[k] += ((p[i][q] - p[0][q]) * (p[i + 1][r] - p[0][r]) - (p[i][r] - p[0][r]) * (p[i + 1][q] - p[0][q])) / 2;
@@ -738,7 +755,7 @@ static void check_walls(const model *m, uint32_t cut) {
     for (e = 0; e < m->s->element_count; e++) {
         const double volume = element_volume(m, e), want = area_in_element(m, cut, e);
         scale = pow(volume, 2.0 / 3);
-        assert_that(fabs(found[e] - want) <= 1e-11 * scale, "cut %u in element %u: area %.17g instead of %.17g", cut, e, found[e], want);
+        assert_that(fabs(found[e] - want) <= 1e-12 * scale, "cut %u in element %u: area %.17g instead of %.17g", cut, e, found[e], want);
     }
 }
 

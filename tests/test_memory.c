@@ -88,14 +88,16 @@ static gx_result create(memory *m, gx_body **body) {
 static gx_result cut(gx_body *body, const gx_surface *surfaces, size_t count, double sever_below, int scoped) {
     static const uint32_t first = 0;
     gx_cut_desc desc;
+    gx_cut_report report;
     gx_failure failure;
     gx_result result;
     memset(&desc, 0, sizeof desc);
     desc.surfaces = surfaces; desc.surface_count = count;
     desc.sever_below = sever_below;
     if (scoped) { desc.scope_fragments = &first; desc.scope_fragment_count = 1; }
-    result = gx_body_cut(body, &desc, NULL, &failure);
+    result = gx_body_cut(body, &desc, &report, &failure);
     ck_assert_int_eq(failure.result, (int)result);
+    if (result == GX_OK && sever_below > 0) ck_assert_uint_gt(report.severed_links, 0);     /* else the test tries nothing */
     return result;
 }
 
