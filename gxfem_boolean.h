@@ -1007,9 +1007,10 @@ static int gxbp_ray_reaches(const double a[3], const double b[3], const double c
     return 1;
 }
 
-/* In a triangle's plane a point lies in the triangle where no projection to a coordinate plane sees it on both sides of edges. */
+/* In a triangle's plane a point lies in the triangle where no projection to a coordinate plane sees it on both sides of edges. A
+   triangle without area, all of whose projections are flat, contains what of its line is in its box. p is in the box prolonged to -x. */
 static int gxbp_point_in_triangle(const double a[3], const double b[3], const double c[3], const double p[3]) {
-    int k;
+    int k, flat = 1;
     if (gxb_orient3d(a, b, c, p) != 0) return 0;
     for (k = 0; k < 3; k++) {
         const int i = (k + 1) % 3, j = (k + 2) % 3;
@@ -1019,8 +1020,9 @@ static int gxbp_point_in_triangle(const double a[3], const double b[3], const do
         pc[0] = c[i]; pc[1] = c[j]; pp[0] = p[i]; pp[1] = p[j];
         s = gxb_orient2d(pa, pb, pp); t = gxb_orient2d(pb, pc, pp); r = gxb_orient2d(pc, pa, pp);
         if ((s > 0 || t > 0 || r > 0) && (s < 0 || t < 0 || r < 0)) return 0;
+        flat = flat && gxb_orient2d(pa, pb, pc) == 0;
     }
-    return 1;
+    return !flat || gxbp_compare_doubles(a[0], p[0]) <= 0 || gxbp_compare_doubles(b[0], p[0]) <= 0 || gxbp_compare_doubles(c[0], p[0]) <= 0;
 }
 
 /* Does the ray from p along +x cross the triangle? In the projection to y, z the ray is moved by (h, h^2), h -> 0, so that it
@@ -1562,10 +1564,10 @@ static gx_result gxbp_choose_frame(gxb_complex *cx, const gxb_mesh *mesh, size_t
         for (i = 0; i < mesh->node_count; i++) {
             const double x = mesh->positions[3 * i + (size_t)axis];
             if (!gxbp_is_finite(x)) { *bad = i; return GX_ERROR_NOT_FINITE; }
+            if (gxbp_exponent_bits(x) > 2000) { *bad = i; return GX_ERROR_RANGE; }
             if (i == 0 || x < low) low = x;
             if (i == 0 || x > high) high = x;
         }
-        if (gxbp_exponent_bits(low) > 2000 || gxbp_exponent_bits(high) > 2000) return GX_ERROR_RANGE;
         size = gxbp_fence(high - low);
         if (gxbp_is_zero(size)) size = gxbp_max(gxbp_abs(low), gxbp_abs(high));
         if (gxbp_is_zero(size)) continue;
