@@ -2010,12 +2010,28 @@ static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, g
     return GX_OK;
 }
 
-#define GXP_FINE_BELOW 1e-3     /* share of the element below which moments are summed in exact numbers: doubles lose 3 digits there */
+#define GXP_CANCELLATION 1e-3   /* moments whose terms cancel to less than this share are summed in exact numbers: doubles lose 3 digits there */
+
+/* Sum of |volume| over the cones from vertex k to the collected triangles: how large the terms are that make up the volume. */
+static double gxp_cone_volumes(const gx_body *body, unsigned k) {
+    unsigned axes[3];
+    double sum = 0;
+    uint32_t t;
+    gxi_part_axes(k, axes);
+    for (t = 0; t + 2 < body->triangles.count; t += 3) {
+        const double *a = body->lambdas + 4 * (size_t)body->triangles.data[t], *b = body->lambdas + 4 * (size_t)body->triangles.data[t + 1];
+        const double *c = body->lambdas + 4 * (size_t)body->triangles.data[t + 2];
+        const unsigned x = axes[0], y = axes[1], z = axes[2];
+        sum += fabs(a[x] * b[y] * c[z]) + fabs(a[x] * b[z] * c[y]) + fabs(a[y] * b[z] * c[x]) + fabs(a[y] * b[x] * c[z]) +
+               fabs(a[z] * b[x] * c[y]) + fabs(a[z] * b[y] * c[x]);
+    }
+    return sum / 6;
+}
 
 /* Moments of the collected boundary; *k: the vertex of the element that is their frame's origin. */
 static gx_result gxp_boundary_moments(gx_body *body, uint32_t element, unsigned *k, gxi_moments2 *m) {
     gx_result result = gxi_part_moments(body->lambdas, body->list.count, body->triangles.data, body->triangles.count / 3, k, m);
-    if (result == GX_OK && 6 * m->volume < GXP_FINE_BELOW) result = gxp_fine_moments(body, element, *k, m);
+    if (result == GX_OK && m->volume < GXP_CANCELLATION * gxp_cone_volumes(body, *k)) result = gxp_fine_moments(body, element, *k, m);
     return result;
 }
 

@@ -455,34 +455,43 @@ static int gxbp_num_compare_magnitude(const gxb_num *a, const gxb_num *b) {
     return 0;
 }
 
+/* r = |a| with room for limbs from bottom to top - 1, zeros around it. */
+static void gxbp_num_place(gxb_num *r, const gxb_num *a, int32_t bottom, int32_t top) {
+    const uint32_t below = (uint32_t)(a->exp - bottom), above = (uint32_t)(top - a->exp) - a->n;
+    r->exp = bottom;
+    r->n = (uint32_t)(top - bottom);
+    memset(r->d, 0, below * sizeof *r->d);
+    memcpy(r->d + below, a->d, a->n * sizeof *a->d);
+    memset(r->d + below + a->n, 0, above * sizeof *r->d);
+}
+
 /* r = |a| + |b|, worst length max of the tops minus min of the bottoms, plus 1 */
 static void gxbp_num_add_magnitude(gxb_num *r, const gxb_num *a, const gxb_num *b) {
     const int32_t top_a = a->exp + (int32_t)a->n, top_b = b->exp + (int32_t)b->n;
-    const int32_t top = top_a > top_b ? top_a : top_b, bottom = a->exp < b->exp ? a->exp : b->exp;
-    gxbp_wide carry = 0;
-    int32_t k;
-    r->exp = bottom;
-    r->n = (uint32_t)(top - bottom) + 1;
-    for (k = bottom; k < top; k++) {
-        carry += (gxbp_wide)gxbp_num_limb(a, k) + gxbp_num_limb(b, k);
-        r->d[k - bottom] = (gxb_limb)carry;
-        carry >>= GXB_LIMB_BITS;
+    gxb_limb *d, carry = 0;
+    uint32_t i;
+    gxbp_num_place(r, a, a->exp < b->exp ? a->exp : b->exp, (top_a > top_b ? top_a : top_b) + 1);
+    d = r->d + (b->exp - r->exp);
+    for (i = 0; i < b->n; i++) {
+        const gxbp_wide sum = (gxbp_wide)d[i] + b->d[i] + carry;
+        d[i] = (gxb_limb)sum;
+        carry = (gxb_limb)(sum >> GXB_LIMB_BITS);
     }
-    r->d[top - bottom] = (gxb_limb)carry;
+    for (; carry != 0; i++) carry = ++d[i] == 0;
 }
 
 /* r = |a| - |b| for |a| >= |b| */
 static void gxbp_num_sub_magnitude(gxb_num *r, const gxb_num *a, const gxb_num *b) {
-    const int32_t top = a->exp + (int32_t)a->n, bottom = a->exp < b->exp ? a->exp : b->exp;
-    gxb_limb borrow = 0;
-    int32_t k;
-    r->exp = bottom;
-    r->n = (uint32_t)(top - bottom);
-    for (k = bottom; k < top; k++) {
-        const gxb_limb x = gxbp_num_limb(a, k), y = gxbp_num_limb(b, k), t = (gxb_limb)(x - y);
-        r->d[k - bottom] = (gxb_limb)(t - borrow);
+    gxb_limb *d, borrow = 0;
+    uint32_t i;
+    gxbp_num_place(r, a, a->exp < b->exp ? a->exp : b->exp, a->exp + (int32_t)a->n);
+    d = r->d + (b->exp - r->exp);
+    for (i = 0; i < b->n; i++) {
+        const gxb_limb x = d[i], y = b->d[i], t = (gxb_limb)(x - y);
+        d[i] = (gxb_limb)(t - borrow);
         borrow = (gxb_limb)((x < y) | (t < borrow));
     }
+    for (; borrow != 0; i++) borrow = d[i]-- == 0;
 }
 
 static void gxbp_num_add_signed(gxb_num *r, const gxb_num *a, const gxb_num *b, int b_factor) {
@@ -510,15 +519,16 @@ GXFEM_API void gxb_num_mul(gxb_num *r, const gxb_num *a, const gxb_num *b) {
     r->sign = a->sign * b->sign;
     r->exp = a->exp + b->exp;
     r->n = r->sign == 0 ? 0 : a->n + b->n;
-    memset(r->d, 0, r->n * sizeof *r->d);
+    for (i = 0; i < r->n; i++) r->d[i] = 0;
     for (i = 0; r->sign != 0 && i < a->n; i++) {
-        gxbp_wide carry = 0;
+        const gxb_limb x = a->d[i];
+        gxb_limb *d = r->d + i, carry = 0;
         for (j = 0; j < b->n; j++) {
-            carry += (gxbp_wide)a->d[i] * b->d[j] + r->d[i + j];
-            r->d[i + j] = (gxb_limb)carry;
-            carry >>= GXB_LIMB_BITS;
+            const gxbp_wide t = (gxbp_wide)x * b->d[j] + d[j] + carry;
+            d[j] = (gxb_limb)t;
+            carry = (gxb_limb)(t >> GXB_LIMB_BITS);
         }
-        r->d[i + b->n] = (gxb_limb)carry;
+        d[b->n] = carry;
     }
     gxbp_num_trim(r);
 }
