@@ -432,10 +432,11 @@ GXFEM_API void gxb_num_set(gxb_num *r, double value, int shift) {
 }
 
 static void gxbp_num_copy(gxb_num *r, const gxb_num *a, int sign) {
+    uint32_t i;
     r->sign = a->sign * sign;
     r->exp = a->exp;
     r->n = a->n;
-    memcpy(r->d, a->d, a->n * sizeof *a->d);
+    for (i = 0; i < a->n; i++) r->d[i] = a->d[i];
 }
 
 /* The limb of a that stands for B^position. */
@@ -458,11 +459,12 @@ static int gxbp_num_compare_magnitude(const gxb_num *a, const gxb_num *b) {
 /* r = |a| with room for limbs from bottom to top - 1, zeros around it. */
 static void gxbp_num_place(gxb_num *r, const gxb_num *a, int32_t bottom, int32_t top) {
     const uint32_t below = (uint32_t)(a->exp - bottom), above = (uint32_t)(top - a->exp) - a->n;
+    uint32_t i;
     r->exp = bottom;
     r->n = (uint32_t)(top - bottom);
-    memset(r->d, 0, below * sizeof *r->d);
-    memcpy(r->d + below, a->d, a->n * sizeof *a->d);
-    memset(r->d + below + a->n, 0, above * sizeof *r->d);
+    for (i = 0; i < below; i++) r->d[i] = 0;        /* loops: a call for two or three limbs would cost more */
+    for (i = 0; i < a->n; i++) r->d[below + i] = a->d[i];
+    for (i = 0; i < above; i++) r->d[below + a->n + i] = 0;
 }
 
 /* r = |a| + |b|, worst length max of the tops minus min of the bottoms, plus 1 */
@@ -608,11 +610,8 @@ typedef struct gxbp_vec { gxb_num c[4]; gxb_limb limbs[4][GXB_NUM_LIMBS]; } gxbp
 
 static void gxbp_vec_init(gxbp_vec *v) {
     int k;
-    for (k = 0; k < 4; k++) {
-        v->c[k].sign = v->c[k].exp = 0;
-        v->c[k].n = 0;
-        v->c[k].d = v->limbs[k];
-    }
+    memset(v->c, 0, sizeof v->c);
+    for (k = 0; k < 4; k++) v->c[k].d = v->limbs[k];
 }
 
 static void gxbp_vec_set(gxbp_vec *v, const double x[3]) {
