@@ -135,7 +135,7 @@ GXFEM_API void gxb_num_add(gxb_num *r, const gxb_num *a, const gxb_num *b);     
 GXFEM_API void gxb_num_sub(gxb_num *r, const gxb_num *a, const gxb_num *b);                 /* r = a - b; r is neither */
 GXFEM_API void gxb_num_mul(gxb_num *r, const gxb_num *a, const gxb_num *b);                 /* r = a * b; r is neither */
 GXFEM_API double gxb_num_to_double(const gxb_num *a);                                       /* within one unit in the last place */
-GXFEM_API double gxb_num_ratio(const gxb_num *a, const gxb_num *b);                         /* a / b, relative error below 2^-50 */
+GXFEM_API double gxb_num_ratio(const gxb_num *a, const gxb_num *b);                         /* a / b, relative error below 2^-50 within 2^-1000 ... 2^1000 */
 
 /* >>predicates ------------------------------------------------------------------------------------------------------- */
 
@@ -143,6 +143,8 @@ GXFEM_API double gxb_num_ratio(const gxb_num *a, const gxb_num *b);             
 GXFEM_API int gxb_orient2d(const double a[2], const double b[2], const double c[2]);
 /* Sign of |a-d, b-d, c-d|: 1 where d lies below the plane in which a, b, c appear counter-clockwise from above. */
 GXFEM_API int gxb_orient3d(const double a[3], const double b[3], const double c[3], const double d[3]);
+
+/* Coordinates for gxb_plane and gxb_point: 0 or of magnitude 2^-128 to 2^128. */
 
 /* What the filter knows of a plane: n.(x - base) with proven errors (see >>filter). */
 typedef struct gxb_plane_filter {
@@ -284,6 +286,7 @@ typedef struct gxb_complex {
     struct gxbp_corner *corners; uint32_t corner_count, corner_capacity;    /* stack of clipped polygons */
     struct gxbp_task *tasks; uint32_t task_count, task_capacity;
     uint32_t *scratch; uint32_t scratch_count, scratch_capacity;
+    gxb_block *mark_block; size_t mark_used;    /* blocks at begin */
     uint32_t mark[8];               /* counts at begin: points planes edges facets leaves nodes labels pool */
     uint32_t stamp[2], edge_stamp, sign_plane;
     uint32_t height_element; double height[4];  /* see >>insert, barycentric coordinates */
@@ -682,8 +685,8 @@ static void gxbp_exact_three_planes(gxb_num point[4], const gxb_num a[4], const 
  *
  * u = 2^-52 bounds the relative error of one operation in every rounding mode. Underflow, flushed or not, adds at most 2^-1022
  * to a result; GXBP_TINY, far above every such error in the ranges of the complex, stands for it in every bound. Differences of
- * coordinates pass through gxbp_fence, so that a compiler that may reassociate can't multiply them out: bounds rest on the size of the
- * differences. Everything after the fence is a sum of products; whatever its order, each elementary product suffers fewer
+ * coordinates, normals and distances pass through gxbp_fence, so that a compiler that may reassociate can't multiply them out: bounds
+ * rest on their size after cancellation. Everything after the fence is a sum of products; whatever its order, each elementary product suffers fewer
  * than eight roundings, so |error| <= 8u * (sum of |products|). Each bound below is at least that plus the inherited
  * errors to first order, times a factor of 2 or more that covers second-order terms and the rounding of the bound itself.
  */
@@ -718,7 +721,9 @@ static double gxbp_filter_difference(double c[3], const gxb_ball *a, const gxb_b
 }
 
 static void gxbp_filter_plane(gxb_plane_filter *f, const gxb_ball *p, const double a[3], double ea, const double b[3], double eb) {
+    int k;
     f->error = gxbp_filter_cross(f->n, a, ea, b, eb);
+    for (k = 0; k < 3; k++) f->n[k] = gxbp_fence(f->n[k]);
     memcpy(f->base, p->x, sizeof f->base);
     f->base_error = p->error;
     f->norm = gxbp_max3(f->n);
@@ -764,7 +769,7 @@ static void gxbp_filter_three_planes(gxb_ball *out, const gxb_plane_filter *cons
     int i, k;
     memcpy(b.x, f[0]->base, sizeof b.x);
     b.error = 0;
-    for (i = 0; i < 3; i++) r[i] = -gxbp_filter_side(&b, f[i], &er[i]);
+    for (i = 0; i < 3; i++) r[i] = gxbp_fence(-gxbp_filter_side(&b, f[i], &er[i]));
     r[0] = 0;
     for (i = 0; i < 3; i++) {
         const gxb_plane_filter *g = f[(i + 1) % 3], *h = f[(i + 2) % 3];
@@ -1159,6 +1164,8 @@ static void gxbp_compact_pool(gxb_complex *cx) {
 static void gxbp_set_marks(gxb_complex *cx) {
     cx->mark[0] = cx->point_count; cx->mark[1] = cx->plane_count; cx->mark[2] = cx->edge_count; cx->mark[3] = cx->facet_count;
     cx->mark[4] = cx->leaf_count; cx->mark[5] = cx->tree_count; cx->mark[6] = cx->label_count; cx->mark[7] = cx->pool_count;
+    cx->mark_block = cx->blocks;
+    cx->mark_used = cx->blocks != NULL ? cx->blocks->used : 0;
     cx->undo_count = cx->undo_byte_count = cx->wall_count = cx->corner_count = cx->task_count = 0;
 }
 
@@ -1169,6 +1176,28 @@ GXFEM_API void gxb_complex_begin(gxb_complex *cx) {
 
 GXFEM_API void gxb_complex_commit(gxb_complex *cx) { gxbp_set_marks(cx); }
 
+/* Was this memory taken since begin? */
+static int gxbp_is_recent(const gxb_complex *cx, const void *memory) {
+    const unsigned char *m = (const unsigned char *)memory;
+    const gxb_block *block;
+    for (block = cx->blocks; block != cx->mark_block; block = block->next)
+        if (m >= (const unsigned char *)block && m < (const unsigned char *)block + block->size) return 1;
+    return block != NULL && m >= (const unsigned char *)block + cx->mark_used && m < (const unsigned char *)block + block->size;
+}
+
+/* Gives back exact numbers kept since begin; those of older points and planes are computed again when needed. */
+static void gxbp_drop_recent_numbers(gxb_complex *cx) {
+    uint32_t i;
+    for (i = 0; i < cx->mark[0]; i++) if (cx->points[i].exact != NULL && gxbp_is_recent(cx, cx->points[i].exact)) cx->points[i].exact = NULL;
+    for (i = 0; i < cx->mark[1]; i++) if (cx->planes[i].exact != NULL && gxbp_is_recent(cx, cx->planes[i].exact)) cx->planes[i].exact = NULL;
+    while (cx->blocks != cx->mark_block) {
+        gxb_block *next = cx->blocks->next;
+        gxbp_release(&cx->allocator, cx->blocks, cx->blocks->size);
+        cx->blocks = next;
+    }
+    if (cx->blocks != NULL) cx->blocks->used = cx->mark_used;
+}
+
 GXFEM_API void gxb_complex_rollback(gxb_complex *cx) {
     while (cx->undo_count > 0) {
         const gxb_undo *undo = &cx->undo[--cx->undo_count];
@@ -1177,6 +1206,7 @@ GXFEM_API void gxb_complex_rollback(gxb_complex *cx) {
         cx->undo_byte_count -= (uint32_t)size;
         memcpy(item, cx->undo_bytes + cx->undo_byte_count, size);
     }
+    gxbp_drop_recent_numbers(cx);
     cx->point_count = cx->mark[0]; cx->plane_count = cx->mark[1]; cx->edge_count = cx->mark[2]; cx->facet_count = cx->mark[3];
     cx->leaf_count = cx->mark[4]; cx->tree_count = cx->mark[5]; cx->label_count = cx->mark[6]; cx->pool_count = cx->mark[7];
     cx->stamp[0]++; cx->stamp[1]++; cx->edge_stamp++;
@@ -1563,26 +1593,38 @@ static void gxbp_number_edges(gxb_complex *cx, gxbp_key *keys) {
     }
 }
 
+/* floor(log2(high - low)), whatever the mode of the floating-point unit; -2000 where they are equal */
+static int gxbp_difference_exponent(double high, double low) {
+    GXB_NUM(a); GXB_NUM(b); GXB_NUM(d);
+    int power;
+    gxb_num_set(&a, high, 0);
+    gxb_num_set(&b, low, 0);
+    gxb_num_sub(&d, &a, &b);
+    if (d.sign == 0) return -2000;
+    gxbp_num_mantissa(&d, &power);
+    return power + 52;
+}
+
 /* Frame: the origin is the mesh's lower corner rounded to few bits where the mesh lies far from 0 (so that the shift adds no
    bits to its coordinates), else 0; the scale brings the box to size 1. */
 static gx_result gxbp_choose_frame(gxb_complex *cx, const gxb_mesh *mesh, size_t *bad) {
     int axis, largest = -2000;
     for (axis = 0; axis < 3; axis++) {
-        double low = 0, high = 0, size;
+        double low = 0, high = 0;
+        int size;
         size_t i;
         for (i = 0; i < mesh->node_count; i++) {
             const double x = mesh->positions[3 * i + (size_t)axis];
             if (!gxbp_is_finite(x)) { *bad = i; return GX_ERROR_NOT_FINITE; }
             if (gxbp_exponent_bits(x) > 2000) { *bad = i; return GX_ERROR_RANGE; }
-            if (i == 0 || x < low) low = x;
-            if (i == 0 || x > high) high = x;
+            if (i == 0 || gxbp_compare_doubles(x, low) < 0) low = x;
+            if (i == 0 || gxbp_compare_doubles(x, high) > 0) high = x;
         }
-        size = gxbp_fence(high - low);
-        if (gxbp_is_zero(size)) size = gxbp_max(gxbp_abs(low), gxbp_abs(high));
-        if (gxbp_is_zero(size)) continue;
-        if (gxbp_exponent(size) > largest) largest = gxbp_exponent(size);
-        if (!gxbp_is_zero(low) && gxbp_exponent(low) > gxbp_exponent(size) + 3) {
-            const int drop = gxbp_exponent(low) - gxbp_exponent(size);      /* keep so many leading bits */
+        size = gxbp_difference_exponent(high, low);
+        if (size == -2000) size = gxbp_is_zero(low) ? -2000 : gxbp_exponent(low);
+        if (size > largest) largest = size;
+        if (size > -2000 && !gxbp_is_zero(low) && gxbp_exponent(low) > size + 3) {
+            const int drop = gxbp_exponent(low) - size;                 /* keep so many leading bits */
             if (drop < 52) cx->origin[axis] = gxbp_double(gxbp_bits(low) & ~((((uint64_t)1) << (52 - drop)) - 1));
             else cx->origin[axis] = low;
         }
@@ -1677,7 +1719,7 @@ GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator 
     if (mesh == NULL || complex == NULL) return gxbp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     if (mesh->node_count == 0 || mesh->element_count == 0) return gxbp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
     if (mesh->positions == NULL || mesh->elements == NULL) return gxbp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
-    if (mesh->element_count > INT32_MAX / 8 || mesh->node_count > INT32_MAX) return gxbp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
+    if (mesh->element_count > INT32_MAX / 8 || mesh->element_count > SIZE_MAX / 256 || mesh->node_count > INT32_MAX) return gxbp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
     cx = (gxb_complex *)gxbp_allocate(allocator, sizeof *cx);
     if (cx == NULL) return gxbp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
     memset(cx, 0, sizeof *cx);
@@ -2592,9 +2634,14 @@ static uint32_t gxbp_largest_lambda(const gxb_complex *cx, uint32_t point, uint3
     return most > 0.2 ? largest : 4;
 }
 
+static int gxbp_has_node(const gxb_complex *cx, uint32_t element, uint32_t node) {
+    const uint32_t *n = cx->elements + 4 * (size_t)element;
+    return n[0] == node || n[1] == node || n[2] == node || n[3] == node;
+}
+
 GXFEM_API void gxb_complex_barycentric(gxb_complex *cx, uint32_t point, uint32_t element, double lambda[4]) {
     const gxb_cpoint *p = &cx->points[point];
-    const int on_edge = p->kind == GXB_LINE_PLANE && p->def[0] < cx->node_count && p->def[1] < cx->node_count;
+    const int on_edge = p->kind == GXB_LINE_PLANE && gxbp_has_node(cx, element, p->def[0]) && gxbp_has_node(cx, element, p->def[1]);
     const double *height = point < cx->node_count || on_edge ? NULL : gxbp_heights(cx, element);
     uint32_t k, largest = 4;
     double rest = 1;
