@@ -104,6 +104,12 @@ typedef struct gx_allocator {
     void (*release)(void *user, void *memory, size_t size); /* size as it was allocated; memory is never NULL */
     void *user;
 } gx_allocator;
+/* How work is handed to the host's threads. Zero-initialised: the calling thread does it all. Results do not depend on it. */
+typedef struct gx_jobs {
+    /* Calls task(context, i) once for each i below count, on any threads, in any order, and returns when all have returned. */
+    void (*parallel_for)(void *user, size_t count, void (*task)(void *context, size_t index), void *context);
+    void *user;
+} gx_jobs;
 #endif /* GXFEM_SHARED_INCLUDED */
 #ifdef __cplusplus
 extern "C" {
@@ -124,6 +130,7 @@ typedef struct gx_body_desc {
     gx_allocator allocator;     /* zero: malloc, free */
     double (*clock)(void *user);/* seconds, for the reports' timings; NULL: they are 0 */
     void *clock_user;
+    gx_jobs jobs;               /* the host's threads, for the steps; zero: none */
 } gx_body_desc;
 /* Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE, INVERTED, FLAT, OVERLAP (index: the node or element), LIMIT, MEMORY.
    The arrays of the description are copied. */
@@ -311,7 +318,8 @@ struct gx_body {
     gxp_undo *undo; uint32_t undo_count, undo_capacity;
     uint32_t *cell_stamp; uint32_t cell_stamp_capacity;
     uint32_t stamp, scope_stamp;
-    int held_stale, parts_stale, view_stale;
+    int held_stale, parts_stale, model_stale, view_stale;
+    double *rest; uint32_t rest_capacity;               /* copies, x 3 doubles: where they are at rest, for the solver */
     gxs_element *parts; uint32_t part_count, part_capacity;
     gxp_words view_cells, view_fragments;               /* slot of each kept cell; fragment of each */
     gxp_words copy_fragment, fragment_number, cell_element, cell_copies;
@@ -653,9 +661,17 @@ static gx_result gxp_allocate_tables(gx_body *body) {
            body->boxes && body->box_elements ? GX_OK : GX_ERROR_MEMORY;
 }
 
+static gx_result gxp_create_solver(gx_body *body, const gx_body_desc *desc) {
+    gxs_solver_desc solver;
+    memset(&solver, 0, sizeof solver);
+    solver.allocator = body->allocator;
+    solver.jobs = desc->jobs;
+    return gxs_solver_create(&solver, &body->solver);
+}
+
 static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc) {
     gx_result result = gxp_allocate_tables(body);
-    if (result == GX_OK) result = gxs_solver_create(&body->allocator, &body->solver);
+    if (result == GX_OK) result = gxp_create_solver(body, desc);
     if (result == GX_OK) result = gxp_reserve_cells(body, body->element_count);
     if (result == GX_OK) result = gxp_reserve(&body->allocator, &body->leaves, sizeof *body->leaves, 0, &body->leaf_capacity, body->element_count);
     if (result == GX_OK) result = gxp_reserve_copies(body, body->node_count);
@@ -667,7 +683,7 @@ static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc) {
     gxp_make_first_cells(body);
     gxp_make_first_copies(body);
     gxp_build_boxes(body);
-    body->parts_stale = body->view_stale = 1;
+    body->parts_stale = body->model_stale = body->view_stale = 1;
     return GX_OK;
 }
 
@@ -726,6 +742,7 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     gxp_release(&a, body->undo, body->undo_capacity * sizeof *body->undo);
     gxp_release(&a, body->pairs, body->pair_capacity * sizeof *body->pairs);
     gxp_release(&a, body->parts, body->part_capacity * sizeof *body->parts);
+    gxp_release(&a, body->rest, body->rest_capacity * 3 * sizeof(double));
     gxp_release(&a, body->cell_volume, body->cell_volume_capacity * sizeof(double));
     gxp_release(&a, body->fragments, (size_t)body->fragment_capacity * 5 * sizeof(double));
     gxp_release(&a, body->skin_weights, body->skin_weight_capacity * sizeof(double));
@@ -2097,7 +2114,7 @@ static void gxp_commit(gxp_cut *cut) {
     for (i = body->dead.count; i-- > 0;) gxp_drop_copy(body, body->dead.data[i]);
     gxb_complex_commit(body->complex);
     body->undo_count = 0;
-    body->held_stale = body->parts_stale = body->view_stale = 1;
+    body->held_stale = body->parts_stale = body->model_stale = body->view_stale = 1;
 }
 
 /* Removes what the solids have found. The cells of these leaves, and those beside them, are touched. */
@@ -2367,7 +2384,7 @@ GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t
     gxp_release(&body->allocator, body->regions, body->region_count * sizeof *body->regions);
     body->regions = copy;
     body->region_count = (uint32_t)region_count;
-    body->held_stale = 1;
+    body->held_stale = body->model_stale = 1;
     return GX_OK;
 }
 
@@ -2538,29 +2555,46 @@ static gx_result gxp_update_parts(gx_body *body) {
     return result;
 }
 
-GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report) {
+/* The solver's model: parts, where they are at rest, what is held; anew only after a cut or a hold. */
+static gx_result gxp_update_model(gx_body *body) {
+    gxs_material material;
     gxs_model model;
+    uint32_t i;
+    gx_result result = gxp_update_parts(body);
+    if (result == GX_OK) result = gxp_update_held(body);
+    if (result != GX_OK || !body->model_stale || body->part_count == 0) return result;
+    result = gxp_reserve(&body->allocator, &body->rest, 3 * sizeof(double), 0, &body->rest_capacity, body->copy_count);
+    if (result != GX_OK) return result;
+    for (i = 0; i < body->copy_count; i++)
+        memcpy(body->rest + 3 * (size_t)i, body->positions + 3 * (size_t)body->copy_node[i], 3 * sizeof(double));
+    memset(&material, 0, sizeof material);
+    memset(&model, 0, sizeof model);
+    material.young = body->young; material.poisson = body->poisson;
+    model.copy_count = body->copy_count; model.positions = body->rest;
+    model.elements = body->parts; model.element_count = body->part_count;
+    model.materials = &material; model.material_count = 1;
+    model.held = body->held;
+    result = gxs_solver_set_model(body->solver, &model, NULL);
+    if (result == GX_OK) body->model_stale = 0;
+    return result;
+}
+
+GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report) {
     gxs_step_desc step;
     gxs_step_report done;
     const double start = body != NULL ? gxp_seconds(body) : 0;
     gx_result result;
     if (body == NULL || desc == NULL) return GX_ERROR_ARGUMENT;
-    result = gxp_update_parts(body);
-    if (result == GX_OK) result = gxp_update_held(body);
+    result = gxp_update_model(body);
     if (result == GX_OK && body->part_count == 0 && report != NULL) memset(report, 0, sizeof *report);
     if (result != GX_OK || body->part_count == 0) return result;    /* nothing left to move */
-    memset(&model, 0, sizeof model);
     memset(&step, 0, sizeof step);
-    model.copy_count = body->copy_count;
-    model.elements = body->parts; model.element_count = body->part_count;
-    model.young = body->young; model.poisson = body->poisson;
-    model.held = body->held;
     step.dt = desc->dt;
     memcpy(step.gravity, desc->gravity, sizeof step.gravity);
     step.forces = desc->forces;
     step.newton_iterations = desc->newton_iterations; step.newton_tolerance = desc->newton_tolerance;
     step.cg_iterations = desc->cg_iterations; step.cg_tolerance = desc->cg_tolerance;
-    result = gxs_solver_step(body->solver, &model, &step, body->displacement, body->velocity, &done, NULL);
+    result = gxs_solver_step(body->solver, &step, body->displacement, body->velocity, &done, NULL);
     if (result != GX_OK || report == NULL) return result;
     report->newton_iterations = done.newton_iterations; report->cg_iterations = done.cg_iterations;
     report->line_search_steps = done.line_search_steps;

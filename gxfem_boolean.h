@@ -102,6 +102,12 @@ typedef struct gx_allocator {
     void (*release)(void *user, void *memory, size_t size); /* size as it was allocated; memory is never NULL */
     void *user;
 } gx_allocator;
+/* How work is handed to the host's threads. Zero-initialised: the calling thread does it all. Results do not depend on it. */
+typedef struct gx_jobs {
+    /* Calls task(context, i) once for each i below count, on any threads, in any order, and returns when all have returned. */
+    void (*parallel_for)(void *user, size_t count, void (*task)(void *context, size_t index), void *context);
+    void *user;
+} gx_jobs;
 #endif /* GXFEM_SHARED_INCLUDED */
 #ifdef __cplusplus
 extern "C" {

@@ -11,25 +11,32 @@
  *     {
  *         gxs_element element = {{0, 1, 2, 3},                                      // its four copies
  *             {{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},                      // gradients, 1/m
- *             1.0 / 6, {17, 8, 8, 8, 17, 8, 8, 17, 8, 17}};                         // m3; kg
+ *             1.0 / 6, {17, 8, 8, 8, 17, 8, 8, 17, 8, 17}, 0};                      // m3; kg
+ *         gxs_material material = {GXS_STABLE_NEO_HOOKEAN, 1e6, 0.4};
  *         double displacement[12] = {0}, velocity[12] = {0};
- *         gxs_model model = {4, &element, 1, 1e6, 0.4, NULL};
+ *         gxs_model model = {4, NULL, &element, 1, &material, 1, NULL, 0};
  *         gxs_step_desc step = {1.0 / 30, {0, 0, -9.81}, NULL, 0, 0, 0, 0};
  *         gxs_solver *solver = NULL;
  *         gx_result result = gxs_solver_create(NULL, &solver);
  *         if (result == GX_OK)
- *             result = gxs_solver_step(solver, &model, &step, displacement, velocity, NULL, NULL);
+ *             result = gxs_solver_set_model(solver, &model, NULL);
+ *         if (result == GX_OK)
+ *             result = gxs_solver_step(solver, &step, displacement, velocity, NULL, NULL);
  *         gxs_solver_destroy(solver);
  *         return (int)result;
  *     }
  *
  * CONTENTS (search for the anchors)
- *   >>shared      result codes, allocator          >>svd         stretches and rotations of F
- *   >>types       elements, model, step, report    >>tangent     projected Hessian of one F
- *   >>functions   the API                          >>element     element passes: energy, force, product
- *   >>platform    finite by bits, checks           >>pieces      free pieces and their translations
- *   >>memory      allocator, workspace             >>cg          preconditioner, conjugate gradients
- *   >>material    stable neo-Hookean               >>newton      line search, Newton, the step
+ *   >>shared      result codes, allocator, jobs    >>chunk       passes over chunks: energy, force
+ *   >>types       materials, elements, step        >>model       order of elements, chunks, free pieces
+ *   >>functions   the API                          >>lattice     structure of the multigrid
+ *   >>platform    finite by bits                   >>operator    product, linearisation
+ *   >>memory      pools, the solver's own form     >>multigrid   levels, cycle, their numbers
+ *   >>lanes       rsqrt, log for vectors           >>pieces      translations of free pieces
+ *   >>material    energies and stresses            >>cg          conjugate gradients
+ *   >>svd         stretches and rotations of F     >>newton      line search, Newton, the step
+ *   >>tangent     projected Hessian of one block   >>check       of what is given
+ *   >>element     passes over one block            >>forms       assembled forms
  *
  * WHAT IT DOES. A step of length h is the minimum over the displacements u of the incremental potential
  *
@@ -38,7 +45,10 @@
  * M: mass, U: elastic energy, f = M g + nodal forces: a linear term, so that M is never inverted. Then
  * v = (u - u_n) / h. E is minimised by Newton's method with a line search on E. The Hessian of every element
  * is projected to the nearest positive semi-definite one in closed form (analytic eigensystem); its products
- * are matrix-free. The linear systems go to conjugate gradients with 3x3 block-Jacobi.
+ * are matrix-free: eight elements side by side in a block, 48 blocks in a chunk, each chunk summed by itself and the chunks
+ * in their order, so that results are the same for any number of threads. The linear systems go to conjugate
+ * gradients with multigrid: the model itself smoothed by block-Jacobi, coarse levels on lattices whose points are doubled
+ * where a cut runs between the copies around them. Coarse matrices serve until iterations rise.
  * Newton starts at u_n + h v_n; should it end above E(u_n), it is run again from u_n: E(u) <= E(u_n) always, so a step cannot
  * blow up. Every free piece (copies joined by elements, none of them held) then moves as
  * a whole so that its momentum balances, and the later iterates leave its momentum alone: the momentum of
@@ -49,16 +59,19 @@
  *
  * WHAT IT DOES NOT DO. No cutting and no meshes: it sees elements of four copies. No contact, no friction, no
  * damping but backward Euler's own, no moving supports (change the displacement of a held copy between steps).
- * No threads; every pass is a loop over blocks of elements, which is where a job hook will go. One material and
- * one preconditioner so far: a material is the functions of >>material, a preconditioner those of >>cg.
+ * No threads of its own: see gx_jobs.
  *
- * LIMITS. poisson in [0, 0.5); copies and elements below 2^32. Work is in doubles. Workspace: about 480 bytes per
- * copy and 430 per element. The material can invert without a failure and comes back by itself; an element collapsed to a
+ * LIMITS. poisson in [0, 0.5), beyond 0.49999 the single precision of the Hessian tells; copies and elements below 2^30. Energies,
+ * forces and states are doubles; the Hessian, its products and the preconditioner are single precision, which sets no limit to
+ * what Newton reaches, only to what one linear solve does (about 1e-6 of the residual; a free body's slowest modes are solved as
+ * well while inertia is above some 1e-6 of stiffness, rho h^2 / (E dt^2) for elements of size h). Memory: about 350 bytes per element in all, of a
+ * mesh with four elements per copy. The material can invert without a failure and comes back by itself; an element collapsed to a
  * point exactly has no elastic force (F = 0 is a stationary point of its energy). Same input, same binary: same
  * bits. Nothing here needs isnan or infinities: it is right under -ffast-math, where sums round otherwise.
  *
  * REFERENCES. GXFEM: Generalized eXtended Finite Element Method for Deformable Cutting via Boolean Operations,
  * 2024. Smith 2018: Smith, de Goes, Kim, Stable Neo-Hookean Flesh Simulation, ACM Trans. Graph. 37(2), 2018.
+ * Stomakhin 2012: Stomakhin, Howes, Schroeder, Teran, Energetically Consistent Invertible Elasticity, SCA 2012.
  *
  * MACROS. GXFEM_SOLVE_IMPLEMENTATION or GXFEM_IMPLEMENTATION: the code comes here. GXFEM_STATIC: all static.
  */
@@ -108,6 +121,12 @@ typedef struct gx_allocator {
     void (*release)(void *user, void *memory, size_t size); /* size as it was allocated; memory is never NULL */
     void *user;
 } gx_allocator;
+/* How work is handed to the host's threads. Zero-initialised: the calling thread does it all. Results do not depend on it. */
+typedef struct gx_jobs {
+    /* Calls task(context, i) once for each i below count, on any threads, in any order, and returns when all have returned. */
+    void (*parallel_for)(void *user, size_t count, void (*task)(void *context, size_t index), void *context);
+    void *user;
+} gx_jobs;
 #endif /* GXFEM_SHARED_INCLUDED */
 
 #ifdef __cplusplus
@@ -116,23 +135,53 @@ extern "C" {
 
 /* >>types */
 
+/* Energies per volume of the deformation gradient F. In small strain all are linear elasticity with Young's modulus and
+ * Poisson's ratio. */
+typedef enum gxs_material_kind {
+    GXS_STABLE_NEO_HOOKEAN = 0, /* for large strain, inversion and nearly incompressible bodies [Smith 2018] */
+    GXS_ST_VENANT_KIRCHHOFF,    /* RXFEM's; softens under compression to nothing */
+    GXS_FIXED_COROTATED,        /* [Stomakhin 2012]; linear but for rotations and volume */
+    GXS_LINEAR                  /* for small rotations only */
+} gxs_material_kind;
+
+typedef struct gxs_material {
+    gxs_material_kind kind;
+    double young;               /* Pa, above 0 */
+    double poisson;             /* 0 <= poisson < 0.5 */
+} gxs_material;
+
 /* A linear tetrahedron, or the part of one that a cut has left. */
 typedef struct gxs_element {
-    uint32_t copy[4];       /* whose displacement each corner follows; below copy_count */
-    double gradient[4][3];  /* of the four shape functions, 1/m; row 0 is minus the sum of the others and not read */
-    double weight;          /* volume, m3; 0 or more */
-    double mass[10];        /* rho int N_i N_j, kg, symmetric 4x4 block: 00 01 02 03 11 12 13 22 23 33 */
+    uint32_t copy[4];           /* whose displacement each corner follows; below copy_count */
+    double gradient[4][3];      /* of the four shape functions, 1/m; row 0 is minus the sum of the others and not read */
+    double weight;              /* volume, m3; 0 or more */
+    double mass[10];            /* rho int N_i N_j, kg, symmetric 4x4 block: 00 01 02 03 11 12 13 22 23 33 */
+    uint32_t material;          /* below material_count */
 } gxs_element;
 
 /* Borrowed for the time of a call. */
 typedef struct gxs_model {
     size_t copy_count;
-    const gxs_element *elements; /* element_count */
+    const double *positions;    /* copy_count x 3: the copies' nodes at rest, m; NULL: no multigrid */
+    const gxs_element *elements;/* element_count */
     size_t element_count;
-    double young;           /* Pa, above 0 */
-    double poisson;         /* 0 <= poisson < 0.5 */
-    const uint8_t *held;    /* copy_count flags: not 0 keeps the copy's displacement; NULL: none is held */
+    const gxs_material *materials; /* material_count, as many as there are differing elements if need be */
+    size_t material_count;
+    const uint8_t *held;        /* copy_count flags: not 0 keeps the copy's displacement; NULL: none is held */
+    uint32_t lumped_mass;       /* not 0: row sums of the mass; 0: as given (consistent) */
 } gxs_model;
+
+typedef enum gxs_preconditioner {
+    GXS_AUTOMATIC = 0,          /* multigrid where it pays, by counts */
+    GXS_BLOCK_JACOBI,           /* least memory; iterations grow with size, loose fragments and thin layers */
+    GXS_MULTIGRID               /* coarse functions that never cross a cut */
+} gxs_preconditioner;
+
+typedef struct gxs_solver_desc {
+    gx_allocator allocator;     /* zero: malloc, free. Memory must be aligned as malloc aligns it */
+    gx_jobs jobs;               /* zero: none */
+    gxs_preconditioner preconditioner;
+} gxs_solver_desc;
 
 typedef struct gxs_step_desc {
     double dt;                  /* s, above 0 */
@@ -153,41 +202,43 @@ typedef struct gxs_step_report {
     double energy;              /* E at the end, J, up to a constant: the load on held copies */
 } gxs_step_report;
 
-/* Workspace of steps: grows to the largest model it has seen; one thread at a time. */
+/* A model in the solver's own form, and the workspace of its steps; one call at a time. */
 typedef struct gxs_solver gxs_solver;
 
 /* >>functions
  * Those that return a gx_result check all they read: GX_ERROR_ARGUMENT, _EMPTY, _LIMIT, _INDEX (index: element),
- * _NOT_FINITE (index: element or copy), _INVERTED (weight below 0; index: element). Outputs are written on GX_OK only. */
+ * _NOT_FINITE (index: element, material or copy), _INVERTED (weight below 0; index: element). Outputs are written on GX_OK
+ * only. failure and report may be NULL. */
 
-/* Advances displacement (m) and velocity (m/s), both copy_count x 3 and not overlapping, by one step.
+/* Advances displacement (m) and velocity (m/s), both copy_count x 3 of the model set last and not overlapping, by one step.
  * Held copies, and copies without an element of any weight or mass, keep their displacement and get velocity 0.
- * report and failure may be NULL. GX_ERROR_MEMORY and GX_ERROR_DIVERGED are possible too; displacement and velocity are
- * then unchanged. A residual above newton_tolerance when the iterations are used up is no error: see the report.
- * No allocation unless the model is larger than any before it. */
-GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_model *model, const gxs_step_desc *step,
-                                    double *displacement, double *velocity, gxs_step_report *report,
-                                    gx_failure *failure);
+ * GX_ERROR_ARGUMENT if no model is set; GX_ERROR_DIVERGED is possible: displacement and velocity are then unchanged. A residual
+ * above newton_tolerance when the iterations are used up is no error: see the report. Allocates nothing. */
+GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement, double *velocity,
+                                    gxs_step_report *report, gx_failure *failure);
 
-/* allocator: copied; NULL: malloc and free. Memory must be aligned as malloc aligns it. */
-GXFEM_API gx_result gxs_solver_create(const gx_allocator *allocator, gxs_solver **solver);
+/* What the next steps move, after each cut and each change of material or of what is held. All is copied into the solver's own
+ * form. GX_ERROR_MEMORY is possible; on any error the model before stays. */
+GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *model, gx_failure *failure);
+
+GXFEM_API gx_result gxs_solver_create(const gxs_solver_desc *desc /* or NULL */, gxs_solver **solver);
 GXFEM_API void gxs_solver_destroy(gxs_solver *solver); /* NULL is allowed */
 
 /* Assembled forms, for tests and benches: no held copies, no time. Vectors are copy_count x 3.
- * energy: U, J. gradient: dU/du, N. hessian_product: projected Hessian of U at displacement times direction, N.
- * mass_product: M times direction. The output may not overlap an input. */
+ * energy: U, J. gradient: dU/du, N. hessian_product: projected Hessian of U at displacement times direction, N, in single
+ * precision as the solver has it. mass_product: M times direction. The output may not overlap an input. */
 GXFEM_API gx_result gxs_model_energy(const gxs_model *model, const double *displacement, double *energy);
 GXFEM_API gx_result gxs_model_gradient(const gxs_model *model, const double *displacement, double *gradient);
 GXFEM_API gx_result gxs_model_hessian_product(const gxs_model *model, const double *displacement,
                                               const double *direction, double *product);
 GXFEM_API gx_result gxs_model_mass_product(const gxs_model *model, const double *direction, double *product);
 
-/* The material at one deformation gradient F (3x3 by rows, unchecked): energy density, J/m3, 0 at rest; first Piola-Kirchhoff
- * stress P = d energy / dF, Pa; projected Hessian dP/dF times direction, Pa. */
-GXFEM_API double gxs_stable_neo_hookean_energy(double young, double poisson, const double *deformation);
-GXFEM_API void gxs_stable_neo_hookean_stress(double young, double poisson, const double *deformation, double *stress);
-GXFEM_API void gxs_stable_neo_hookean_product(double young, double poisson, const double *deformation,
-                                              const double *direction, double *product);
+/* The material at one deformation gradient F (3x3 by rows; nothing is checked): energy density, J/m3, 0 at rest; first
+ * Piola-Kirchhoff stress P = d energy / dF, Pa; projected Hessian dP/dF times direction, Pa, in single precision. */
+GXFEM_API double gxs_material_energy(const gxs_material *material, const double *deformation);
+GXFEM_API void gxs_material_stress(const gxs_material *material, const double *deformation, double *stress);
+GXFEM_API void gxs_material_product(const gxs_material *material, const double *deformation, const double *direction,
+                                    double *product);
 
 #ifdef __cplusplus
 }
@@ -210,8 +261,11 @@ GXFEM_API void gxs_stable_neo_hookean_product(double young, double poisson, cons
 extern "C" {
 #endif
 
-/* elements side by side in a block: whole vectors on every instruction set up to 512 bits */
+/* elements side by side in a block: whole vectors on every instruction set up to 512 bits of doubles */
 #define GXSP_LANES 8
+
+/* Blocks of a chunk: 384 elements, whose nodes (about 150) stay in the first-level cache. */
+#define GXSP_CHUNK_BLOCKS 48
 
 /* A residual below this (about 50 units in the last place) is rounding: no iteration can lower it. */
 #define GXSP_ROUNDING 1e-14
@@ -222,8 +276,46 @@ extern "C" {
 /* Line search: at worst each trial halves the step; after 60 nothing of it is left. */
 #define GXSP_TRIALS 60
 
-/* piece of a copy that belongs to no free piece */
-#define GXSP_NO_PIECE UINT32_MAX
+/* no piece, no node, no chunk */
+#define GXSP_NONE UINT32_MAX
+
+/* Copies that one task of a pass over copies takes. */
+#define GXSP_RANGE 512
+
+/* Spacing of the first lattice of the multigrid, in edges of an average element. */
+#define GXSP_SPACING 2.5
+
+/* Below so many copies block-Jacobi is at least as fast as multigrid. */
+#define GXSP_MULTIGRID_FROM 400
+
+/* A level of at most so many nodes is factored; so is one that the next would not make smaller by a third. */
+#define GXSP_BOTTOM 40
+#define GXSP_LEVELS 12
+
+/* Multigrid's diagonal grows by this share, so that what single precision leaves of its matrices is positive definite. */
+#define GXSP_SHIFT 1e-5f
+
+/* Arrays of a block's passes never overlap. */
+#if !defined(__cplusplus)
+#define GXSP_RESTRICT restrict
+#elif defined(__GNUC__) || defined(_MSC_VER)
+#define GXSP_RESTRICT __restrict
+#else
+#define GXSP_RESTRICT
+#endif
+
+/* Loop over the lanes of a block. Clang is told not to unroll it, since it else does so before it could vectorise. */
+#if defined(__clang__)
+#define GXSP_EACH_LANE(l) _Pragma("clang loop unroll(disable)") for (l = 0; l < GXSP_LANES; ++l)
+#elif defined(__GNUC__)
+#define GXSP_EACH_LANE(l) _Pragma("GCC ivdep") for (l = 0; l < GXSP_LANES; ++l)
+#else
+#define GXSP_EACH_LANE(l) for (l = 0; l < GXSP_LANES; ++l)
+#endif
+
+/* one number per element of a block */
+typedef double gxsp_lanes[GXSP_LANES];
+typedef float gxsp_singles[GXSP_LANES];
 
 /* >>platform: comparisons with NaN mean nothing under -ffast-math, so finiteness is read off the bits */
 
@@ -232,6 +324,13 @@ static int gxsp_finite(double value)
     uint64_t bits;
     memcpy(&bits, &value, sizeof bits);
     return ((bits >> 52) & 0x7ff) != 0x7ff;
+}
+
+static int gxsp_finite_single(float value)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return ((bits >> 23) & 0xff) != 0xff;
 }
 
 /* Index of the first value that is NaN or infinite; count if there is none. */
@@ -271,111 +370,7 @@ static int gxsp_packed3(int i, int j)
     return i * (5 - i) / 2 + j;
 }
 
-static gx_result gxsp_check_element(const gxs_element *element, size_t copy_count, size_t index, gx_failure *failure)
-{
-    int i;
-    for (i = 0; i < 4; ++i)
-        if (element->copy[i] >= copy_count)
-            return gxsp_fail(failure, GX_ERROR_INDEX, index);
-    if (gxsp_first_not_finite(&element->gradient[1][0], 9) < 9 || !gxsp_finite(element->weight) ||
-        gxsp_first_not_finite(element->mass, 10) < 10)
-        return gxsp_fail(failure, GX_ERROR_NOT_FINITE, index);
-    if (element->weight < 0)
-        return gxsp_fail(failure, GX_ERROR_INVERTED, index);
-    if (element->mass[0] < 0 || element->mass[4] < 0 || element->mass[7] < 0 || element->mass[9] < 0)
-        return gxsp_fail(failure, GX_ERROR_ARGUMENT, index);
-    return GX_OK;
-}
-
-static gx_result gxsp_check_model(const gxs_model *model, gx_failure *failure)
-{
-    size_t e;
-    if (!model || (!model->elements && model->element_count > 0))
-        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
-    if (model->copy_count == 0 || model->element_count == 0)
-        return gxsp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
-    /* 1024: no array of the workspace takes more bytes per object, so sizes cannot overflow */
-    if (model->copy_count >= UINT32_MAX || model->element_count >= UINT32_MAX ||
-        model->copy_count >= SIZE_MAX / 1024 || model->element_count >= SIZE_MAX / 1024)
-        return gxsp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
-    if (!gxsp_finite(model->young) || !gxsp_finite(model->poisson))
-        return gxsp_fail(failure, GX_ERROR_NOT_FINITE, SIZE_MAX);
-    if (model->young <= 0 || model->poisson < 0 || model->poisson >= 0.5)
-        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
-    for (e = 0; e < model->element_count; ++e) {
-        gx_result result = gxsp_check_element(&model->elements[e], model->copy_count, e, failure);
-        if (result != GX_OK)
-            return result;
-    }
-    return GX_OK;
-}
-
-static gx_result gxsp_check_vector(const double *vector, size_t copy_count, gx_failure *failure)
-{
-    size_t i;
-    if (!vector)
-        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
-    i = gxsp_first_not_finite(vector, 3 * copy_count);
-    return i < 3 * copy_count ? gxsp_fail(failure, GX_ERROR_NOT_FINITE, i / 3) : GX_OK;
-}
-
-static gx_result gxsp_check_step(const gxs_step_desc *step, gx_failure *failure)
-{
-    if (!step)
-        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
-    if (!gxsp_finite(step->dt) || gxsp_first_not_finite(step->gravity, 3) < 3 || !gxsp_finite(step->newton_tolerance) ||
-        !gxsp_finite(step->cg_tolerance))
-        return gxsp_fail(failure, GX_ERROR_NOT_FINITE, SIZE_MAX);
-    if (step->dt <= 0 || step->newton_tolerance < 0 || step->cg_tolerance < 0)
-        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
-    if (step->dt < 1e-100 || step->dt > 1e100) /* dt^2 and 1 / dt^2 must be numbers */
-        return gxsp_fail(failure, GX_ERROR_RANGE, SIZE_MAX);
-    return GX_OK;
-}
-
 /* >>memory */
-
-/* GXSP_LANES elements in the form that products read; lane l of every array is one element.
- * Lanes beyond the last element are zero and name copy 0, to which they add zeros. */
-typedef struct gxsp_block {
-    double frame[9][GXSP_LANES];    /* U of F = U S V^T, by rows */
-    double gradient[9][GXSP_LANES]; /* shape function gradients 1..3 times V, by rows, 1/m */
-    double stretch[6][GXSP_LANES];  /* weight x projected Hessian: stretches; J */
-    double even[3][GXSP_LANES];     /* of the off-diagonal pairs (12), (20), (01): to themselves; J */
-    double odd[3][GXSP_LANES];      /* and to each other; J */
-    double mass[10][GXSP_LANES];    /* mass / dt^2, kg/s2 */
-    uint32_t copy[4][GXSP_LANES];
-} gxsp_block;
-
-/* All arrays of a step, cut from one allocation. n: copy_count. Vectors are n x 3 unless said. */
-typedef struct gxsp_work {
-    double *base;         /* displacement at the start of the step */
-    double *target;       /* where inertia alone leads: base + dt v */
-    double *load;         /* gravity and nodal forces, N */
-    double *current;      /* displacement: Newton's iterate */
-    double *trial;        /* displacement: tried by the line search */
-    double *inertia;      /* M (current - target) / dt^2, N */
-    double *elastic;      /* dU/du at current, N */
-    double *residual;     /* load - inertia - elastic; conjugate gradients use it up */
-    double *direction;    /* the solution of the linear system */
-    double *search;       /* conjugate gradients: search direction */
-    double *scaled;       /* preconditioned residual; scratch */
-    double *product;      /* Hessian times search; scratch */
-    double *diagonal;     /* n x 6: block diagonal, then its inverse; 0 for fixed copies */
-    double *lumped;       /* n: row sums of the mass / dt^2 */
-    double *piece_sum;    /* piece_count x 4 (room for n): sums over pieces; the last is that of lumped */
-    double *energy;       /* element_count: weight x energy density at current, J */
-    gxsp_block *blocks;   /* block_count */
-    uint32_t *piece;      /* n: number of the free piece, or GXSP_NO_PIECE */
-    uint32_t *parent;     /* n: of the forest that joins copies to pieces */
-    uint8_t *fixed;       /* n: held, or without an element */
-} gxsp_work;
-
-struct gxs_solver {
-    gx_allocator allocator;
-    unsigned char *memory; /* size bytes; NULL before the first step */
-    size_t size;
-};
 
 static void *gxsp_malloc(void *user, size_t size)
 {
@@ -390,88 +385,435 @@ static void gxsp_free(void *user, void *memory, size_t size)
     free(memory);
 }
 
-static size_t gxsp_block_count(size_t element_count)
+/* Head of an allocation of a pool; the memory follows it, 16-aligned as the allocator's is. */
+typedef struct gxsp_owned {
+    struct gxsp_owned *next;
+    size_t size; /* with this head */
+} gxsp_owned;
+
+/* Allocations that are given back together. */
+typedef struct gxsp_pool {
+    gx_allocator allocator;
+    gxsp_owned *last;
+    int failed; /* an allocation returned NULL */
+} gxsp_pool;
+
+#define GXSP_HEAD ((sizeof(gxsp_owned) + 15) / 16 * 16)
+
+/* count x size bytes, zero; NULL, and failed is set, when there are none. Callers check failed once, at their end. */
+static void *gxsp_take(gxsp_pool *pool, size_t count, size_t size)
 {
-    return (element_count + GXSP_LANES - 1) / GXSP_LANES;
+    gxsp_owned *owned;
+    size_t bytes = GXSP_HEAD + (count > 0 ? count : 1) * size;
+    if (pool->failed)
+        return NULL;
+    owned = (gxsp_owned *)pool->allocator.allocate(pool->allocator.user, bytes);
+    if (!owned) {
+        pool->failed = 1;
+        return NULL;
+    }
+    owned->next = pool->last;
+    owned->size = bytes;
+    pool->last = owned;
+    memset((unsigned char *)owned + GXSP_HEAD, 0, bytes - GXSP_HEAD);
+    return (unsigned char *)owned + GXSP_HEAD;
 }
 
-/* Bytes of the workspace: 12 vectors and 6 + 1 + 4 doubles, two indices and a flag per copy. */
-static size_t gxsp_work_size(size_t n, size_t element_count)
+/* Gives back what was taken after mark was pool->last. */
+static void gxsp_release_to(gxsp_pool *pool, gxsp_owned *mark)
 {
-    return n * ((12 * 3 + 11) * sizeof(double) + 2 * sizeof(uint32_t) + 1) + element_count * sizeof(double) +
-           gxsp_block_count(element_count) * sizeof(gxsp_block);
+    while (pool->last != mark) {
+        gxsp_owned *owned = pool->last;
+        pool->last = owned->next;
+        pool->allocator.release(pool->allocator.user, owned, owned->size);
+    }
 }
 
-static double *gxsp_take(double **cursor, size_t count)
+static gxsp_pool gxsp_pool_make(const gx_allocator *allocator)
 {
-    double *taken = *cursor;
-    *cursor += count;
-    return taken;
+    gxsp_pool pool;
+    pool.allocator = *allocator;
+    pool.last = NULL;
+    pool.failed = 0;
+    return pool;
 }
 
-/* The order is that of alignment: doubles, blocks (doubles first, whole doubles long), indices, flags. */
-static void gxsp_work_place(gxsp_work *work, unsigned char *memory, size_t n, size_t element_count)
-{
-    double *cursor = (double *)(void *)memory;
-    double **vectors[12];
-    int i;
-    vectors[0] = &work->base, vectors[1] = &work->target, vectors[2] = &work->load, vectors[3] = &work->current;
-    vectors[4] = &work->trial, vectors[5] = &work->inertia, vectors[6] = &work->elastic, vectors[7] = &work->residual;
-    vectors[8] = &work->direction, vectors[9] = &work->search, vectors[10] = &work->scaled;
-    vectors[11] = &work->product;
-    for (i = 0; i < 12; ++i)
-        *vectors[i] = gxsp_take(&cursor, 3 * n);
-    work->diagonal = gxsp_take(&cursor, 6 * n);
-    work->lumped = gxsp_take(&cursor, n);
-    work->piece_sum = gxsp_take(&cursor, 4 * n);
-    work->energy = gxsp_take(&cursor, element_count);
-    work->blocks = (gxsp_block *)(void *)cursor;
-    work->piece = (uint32_t *)(void *)(work->blocks + gxsp_block_count(element_count));
-    work->parent = work->piece + n;
-    work->fixed = (uint8_t *)(work->parent + n);
-}
+/* What a step works on, cut into elements of a block, blocks of a chunk. Lanes without an element have weight and mass 0 and
+ * name the chunk's first node, to which they add zeros. */
+typedef struct gxsp_rest {
+    double gradient[9][GXSP_LANES]; /* of shape functions 1..3, by rows, 1/m */
+    double weight[GXSP_LANES];      /* m3 */
+    double mass[GXSP_LANES];        /* m of the block m (1 + delta_ij), kg; 0 where gxsp_mass has it */
+    uint32_t material[GXSP_LANES];
+    uint16_t node[4][GXSP_LANES];   /* of the chunk */
+} gxsp_rest;
 
-/* Makes room for a model. A quarter more than needed, since cuts add a few copies at a time. */
-static gx_result gxsp_reserve(gxs_solver *solver, size_t n, size_t element_count)
-{
-    size_t size = gxsp_work_size(n, element_count);
-    unsigned char *memory;
-    if (size <= solver->size)
-        return GX_OK;
-    size += size / 4;
-    memory = (unsigned char *)solver->allocator.allocate(solver->allocator.user, size);
-    if (!memory)
-        return GX_ERROR_MEMORY;
-    if (solver->memory)
-        solver->allocator.release(solver->allocator.user, solver->memory, solver->size);
-    solver->memory = memory;
-    solver->size = size;
-    return GX_OK;
-}
+typedef struct gxsp_mass {
+    double entry[10][GXSP_LANES]; /* kg, order of gxs_element.mass */
+} gxsp_mass;
 
-/* >>material: stable neo-Hookean, with the origin barrier [Smith 2018]. An isotropic material is what the functions here say.
- *
- *   psi = mu/2 (Ic - 3) + lambda/2 (J - alpha)^2 - mu/2 log(Ic + 1) + constant,   Ic = |F|^2, J = det F,
- *   alpha = 1 + 3/4 mu/lambda: no stress at rest.   mu = 4/3 mu', lambda = lambda' + 5/6 mu': in small strain the Lame
- *   constants are mu', lambda' [Smith 2018].
- *
- * Written in G = F - 1 so that nothing cancels near rest, with t = tr G, i = Ic - 3, j = J - 1:
- *
- *   psi = 3/8 mu (|G|^2 + tr G^2 - t^2 - 2 det G) + mu/2 (x - log(1 + x)) + lambda/2 j^2,   x = i/4
- *   P   = 3/4 mu (G + G^T - t 1 - cof G) + mu/4 i/(Ic + 1) F + lambda j cof F
- */
+/* Projected Hessian of a block: dP = U (h : U^T dF V) V^T. */
+typedef struct gxsp_tangent {
+    float frame[9][GXSP_LANES];    /* U of F = U S V^T, by rows */
+    float gradient[9][GXSP_LANES]; /* shape function gradients 1..3 times V, by rows, 1/m */
+    float stretch[6][GXSP_LANES];  /* weight x h: stretches; J */
+    float even[3][GXSP_LANES];     /* of the off-diagonal pairs (12), (20), (01): to themselves; J */
+    float odd[3][GXSP_LANES];      /* and to each other; J */
+    float mass[GXSP_LANES];        /* gxsp_rest.mass x rate, kg/s2 */
+} gxsp_tangent;
+
+typedef struct gxsp_chunk {
+    uint32_t first_block, block_count;
+    uint32_t first_node, node_count; /* into nodes and slots */
+    uint32_t first_mass;             /* into masses, one per block; GXSP_NONE: gxsp_rest has them all */
+    gxs_material_kind kind;
+} gxsp_chunk;
+
+/* Lumped or not, a vector of copies in single precision is n x 4, the fourth unused: one load per copy. */
+typedef float gxsp_vector4[4];
+
+/* A level of the multigrid; level 0 is the model. Transfer: value of node i = sum of weight[i][k] x value of parent[i][k]. */
+typedef struct gxsp_level {
+    uint32_t n;
+    int32_t (*place)[3];    /* n: lattice point; not of level 0 */
+    uint32_t (*parent)[4];  /* n: nodes of the next level, GXSP_NONE where the weight is 0 */
+    float (*weight)[4];
+    uint32_t *start;        /* n + 1: rows of the matrix; not of level 0 if it is matrix-free */
+    uint32_t *column;       /* ascending in a row */
+    float *block;           /* 9 per entry, by columns */
+    float *inverse;         /* n x 9: of the diagonal blocks, by columns */
+    gxsp_vector4 *x, *b, *r;/* n: solution, right-hand side, residual; borrowed on level 0 */
+    uint32_t *child_start;  /* n of the next level + 1: nodes by parent */
+    uint32_t *child;
+} gxsp_level;
+
+/* Cholesky factor of the last level, row by row within its envelope. */
+typedef struct gxsp_factor {
+    uint32_t n;         /* unknowns */
+    uint32_t *order;    /* n / 3: node of the level in each place */
+    uint32_t *first;    /* n: first column of the row */
+    size_t *row;        /* n: where column 0 of the row would be in entry, so entry[row[i] + j] */
+    double *entry;      /* entry_count */
+    size_t entry_count;
+    double *x;          /* n */
+} gxsp_factor;
+
 typedef struct gxsp_material {
+    gxs_material_kind kind;
     double mu, lambda; /* Pa */
 } gxsp_material;
 
-static gxsp_material gxsp_material_make(double young, double poisson)
+/* A model in the solver's form, with all that a step works with. n: copy_count. Vectors are n x 3 unless said. */
+typedef struct gxsp_system {
+    gxsp_pool pool;
+    const gx_jobs *jobs;
+    size_t n, element_count, block_count, mass_count, slot_count, range_count;
+    uint32_t chunk_count, material_count;
+    gxsp_material *materials;
+    gxsp_chunk *chunks;
+    gxsp_rest *rest;        /* block_count */
+    gxsp_tangent *tangents; /* block_count */
+    gxsp_mass *masses;      /* mass_count: blocks of chunks with elements that are not whole */
+    uint32_t *nodes;        /* slot_count: the copy of each node of each chunk */
+    uint32_t *copy_start;   /* n + 1, into copy_slot */
+    uint32_t *copy_slot;    /* slot_count: a copy's slots, in the order of chunks: sums over them are the same for any number of threads */
+    gxsp_vector4 *slot_in;  /* slot_count: a chunk's input */
+    gxsp_vector4 *slot_out; /* slot_count, follows slot_in: a chunk's output; as doubles a slot has both */
+    double (*chunk_sum)[3]; /* chunk_count: elastic and kinetic energy, size of the terms they are sums of; J */
+    double *lumped;         /* n: row sums of the mass, kg */
+    uint8_t *fixed;         /* n: held, or without an element */
+    uint32_t *piece;        /* n: number of the free piece, or GXSP_NONE */
+    uint32_t piece_count;
+    double *piece_sum;      /* piece_count x 4: sums over pieces; the last is that of lumped */
+    double *base;           /* displacement at the start of the step */
+    double *target;         /* where inertia alone leads: base + dt v */
+    double *load;           /* gravity and nodal forces, N */
+    double *current;        /* displacement: Newton's iterate */
+    double *trial;          /* displacement: tried by the line search */
+    double *force;          /* inertia + elastic at the iterate, N */
+    double *residual;       /* load - force; conjugate gradients use it up */
+    double *direction;      /* the solution of the linear system */
+    gxsp_vector4 *search, *product, *scaled; /* of conjugate gradients: direction, Hessian times it, preconditioned residual */
+    float *diagonal;        /* n x 6: inverse of the Hessian's diagonal blocks, packed; 0 for fixed copies */
+    int lumped_mass;
+    gxsp_level levels[GXSP_LEVELS];
+    uint32_t level_count;   /* 0: no multigrid */
+    float (*place)[3];      /* n: rest positions in spacings of the first lattice */
+    uint32_t *scratch;      /* as many as the largest coarse level has nodes */
+    gxsp_factor factor;
+    float omega;            /* step length of the smoother; 0: not known */
+    double coarse_rate;     /* for which the coarse matrices were made; 0: never made */
+    int coarse_fresh;       /* made for this solve */
+    int coarse_worn;        /* to be made anew */
+    uint32_t usual_iterations; /* of the solve with fresh ones */
+    gxsp_vector4 *right;    /* n: residual in single precision */
+} gxsp_system;
+
+/* A step under way */
+typedef struct gxsp_problem {
+    gxsp_system *system;
+    const gxs_step_desc *step;
+    double rate;            /* 1 / dt^2 */
+    uint32_t cg_iterations; /* with the defaults put in */
+    double cg_tolerance;
+    double energies[3];     /* at current: elastic, kinetic, size of their terms; J */
+    gxs_step_report report;
+} gxsp_problem;
+
+struct gxs_solver {
+    gx_allocator allocator;
+    gx_jobs jobs;
+    gxs_preconditioner preconditioner;
+    gxsp_system *system;    /* in its own pool; NULL before the first model */
+};
+
+/* >>jobs */
+
+/* task(context, i) for every i below count, by the host's threads if it has any. */
+static void gxsp_parallel(const gx_jobs *jobs, size_t count, void (*task)(void *, size_t), void *context)
 {
-    double shear = young / (2 * (1 + poisson));
-    double lame = young * poisson / ((1 + poisson) * (1 - 2 * poisson));
+    size_t i;
+    if (jobs->parallel_for && count > 1)
+        jobs->parallel_for(jobs->user, count, task, context);
+    else
+        for (i = 0; i < count; ++i)
+            task(context, i);
+}
+
+/* >>lanes: functions of one number that compilers turn into vector instructions; sqrt they leave alone for errno's sake */
+
+/* 1 / sqrt(x) of a normal x > 0, to 3 units in the last place: the exponent halved, then Newton's method */
+static inline float gxsp_rsqrt(float x)
+{
+    uint32_t bits;
+    float y;
+    memcpy(&bits, &x, sizeof bits);
+    bits = 0x5f375a86u - (bits >> 1);
+    memcpy(&y, &bits, sizeof y);
+    y = y * (1.5f - 0.5f * x * y * y);
+    y = y * (1.5f - 0.5f * x * y * y);
+    return y * (1.5f - 0.5f * x * y * y);
+}
+
+/* x - log(1 + x) for x >= -3/4 without cancellation. 1 + x = 2^k (1 + w), 1 + w in [sqrt 1/2, sqrt 2); with z = w / (2 + w)
+ * w - log(1 + w) = w z - 2 z^3 (1/3 + z^2/5 + z^4/7 + ...), |z| < 0.172: the first term left out is below 1e-17 w^2. */
+static inline double gxsp_log_rest(double x)
+{
+    const double y = 1 + x;
+    uint64_t bits, exponent;
+    double k, m, w, z, q;
+    memcpy(&bits, &y, sizeof bits);
+    exponent = (bits - 0x3fe6a09e667f3bcdu + ((uint64_t)1024 << 52)) >> 52; /* k + 1024 */
+    bits -= (exponent - 1024) << 52;
+    exponent |= (uint64_t)0x433 << 52;                                      /* 2^52 + k + 1024 */
+    memcpy(&m, &bits, sizeof m);
+    memcpy(&k, &exponent, sizeof k);
+    k -= 4503599627370496.0 + 1024.0;
+    w = k < 0 || k > 0 ? m - 1 : x;
+    z = w / (2 + w);
+    q = z * z;
+    return w * z - 2 * z * q * (1.0 / 3 + q * (1.0 / 5 + q * (1.0 / 7 + q * (1.0 / 9 + q * (1.0 / 11 + q * (1.0 / 13 +
+           q * (1.0 / 15 + q * (1.0 / 17 + q * (1.0 / 19 + q * (1.0 / 21 + q / 23)))))))))) +
+           (x - w - k * 0.69314718055994531);
+}
+
+/* >>material: energy density (J/m3) and first Piola-Kirchhoff stress P (Pa) from G = F - 1, so that nothing cancels near rest.
+ * size: of the terms whose rounding the energy carries. */
+
+static gxsp_material gxsp_material_make(const gxs_material *given)
+{
+    double shear = given->young / (2 * (1 + given->poisson));
+    double lame = given->young * given->poisson / ((1 + given->poisson) * (1 - 2 * given->poisson));
     gxsp_material material;
-    material.mu = 4.0 / 3 * shear;
-    material.lambda = lame + 5.0 / 6 * shear;
+    material.kind = given->kind;
+    material.mu = shear;
+    material.lambda = lame;
+    if (given->kind == GXS_STABLE_NEO_HOOKEAN) { /* in small strain the Lame constants are mu', lambda' [Smith 2018, 3.4] */
+        material.mu = 4.0 / 3 * shear;
+        material.lambda = lame + 5.0 / 6 * shear;
+    }
     return material;
+}
+
+/* Density of a block and what it needs */
+typedef struct gxsp_state {
+    gxsp_lanes g[9];     /* displacement gradient, by rows */
+    gxsp_lanes p[9];     /* first Piola-Kirchhoff stress */
+    gxsp_lanes energy, size;
+    gxsp_lanes mu, lambda;
+} gxsp_state;
+
+/* Stable neo-Hookean with the origin barrier [Smith 2018]:
+ *   psi = mu/2 (Ic - 3) + lambda/2 (J - alpha)^2 - mu/2 log(Ic + 1) + constant,   Ic = |F|^2, J = det F,
+ *   alpha = 1 + 3/4 mu/lambda: no stress at rest. With t = tr G, i = Ic - 3, j = J - 1:
+ *   psi = 3/8 mu (|G|^2 + tr G^2 - t^2 - 2 det G) + mu/2 (x - log(1 + x)) + lambda/2 j^2,   x = i/4
+ *   P   = 3/4 mu (G + G^T - t 1 - cof G) + mu/4 i/(Ic + 1) F + lambda j cof F,   cof F = (1 + t) 1 - G^T + cof G */
+static void gxsp_neo_hookean(gxsp_state *GXSP_RESTRICT s)
+{
+    int l;
+    GXSP_EACH_LANE(l) {
+        const double a = s->g[0][l], b = s->g[1][l], c = s->g[2][l], d = s->g[3][l], e = s->g[4][l], f = s->g[5][l],
+                     g = s->g[6][l], h = s->g[7][l], k = s->g[8][l];
+        const double c0 = e * k - f * h, c1 = f * g - d * k, c2 = d * h - e * g, c3 = c * h - b * k, c4 = a * k - c * g,
+                     c5 = b * g - a * h, c6 = b * f - c * e, c7 = c * d - a * f, c8 = a * e - b * d;
+        const double t = a + e + k, det = a * c0 + b * c1 + c * c2;
+        const double square = a * a + b * b + c * c + d * d + e * e + f * f + g * g + h * h + k * k;
+        const double i = 2 * t + square, j = t + (c0 + c4 + c8) + det;
+        const double turned = a * a + e * e + k * k + 2 * (b * d + c * g + f * h);
+        const double mu = s->mu[l], lambda = s->lambda[l], volume = 0.5 * lambda * j * j;
+        const double rest = 0.75 * mu, growth = 0.25 * mu * i / (i + 4), pressure = lambda * j;
+        const double own = rest + growth, other = rest - pressure, cofactor = pressure - rest;
+        const double unit = pressure * (1 + t) + growth - rest * t;
+        s->energy[l] = 0.375 * mu * (square + turned - t * t - 2 * det) + 0.5 * mu * gxsp_log_rest(0.25 * i) + volume;
+        s->size[l] = mu * square + volume;
+        s->p[0][l] = own * a + other * a + cofactor * c0 + unit;
+        s->p[1][l] = own * b + other * d + cofactor * c1;
+        s->p[2][l] = own * c + other * g + cofactor * c2;
+        s->p[3][l] = own * d + other * b + cofactor * c3;
+        s->p[4][l] = own * e + other * e + cofactor * c4 + unit;
+        s->p[5][l] = own * f + other * h + cofactor * c5;
+        s->p[6][l] = own * g + other * c + cofactor * c6;
+        s->p[7][l] = own * h + other * f + cofactor * c7;
+        s->p[8][l] = own * k + other * k + cofactor * c8 + unit;
+    }
+}
+
+/* St. Venant-Kirchhoff, psi = mu E:E + lambda/2 (tr E)^2, E = (F^T F - 1) / 2, P = F (2 mu E + lambda tr E 1); and its
+ * linearisation at rest: E = (G + G^T) / 2, P = 2 mu E + lambda tr E 1. bend: 1 or, for the linear material, 0. */
+static void gxsp_kirchhoff(gxsp_state *GXSP_RESTRICT s, double bend)
+{
+    int l;
+    GXSP_EACH_LANE(l) {
+        const double a = s->g[0][l], b = s->g[1][l], c = s->g[2][l], d = s->g[3][l], e = s->g[4][l], f = s->g[5][l],
+                     g = s->g[6][l], h = s->g[7][l], k = s->g[8][l], mu = s->mu[l], lambda = s->lambda[l], half = 0.5 * bend;
+        const double e0 = a + half * (a * a + d * d + g * g), e4 = e + half * (b * b + e * e + h * h),
+                     e8 = k + half * (c * c + f * f + k * k), e1 = 0.5 * (b + d) + half * (a * b + d * e + g * h),
+                     e2 = 0.5 * (c + g) + half * (a * c + d * f + g * k), e5 = 0.5 * (f + h) + half * (b * c + e * f + h * k);
+        const double trace = e0 + e4 + e8, pressure = lambda * trace;
+        const double s0 = 2 * mu * e0 + pressure, s4 = 2 * mu * e4 + pressure, s8 = 2 * mu * e8 + pressure, s1 = 2 * mu * e1,
+                     s2 = 2 * mu * e2, s5 = 2 * mu * e5;
+        s->energy[l] = mu * (e0 * e0 + e4 * e4 + e8 * e8 + 2 * (e1 * e1 + e2 * e2 + e5 * e5)) + 0.5 * pressure * trace;
+        s->size[l] = s->energy[l];
+        s->p[0][l] = s0 + bend * (a * s0 + b * s1 + c * s2);
+        s->p[1][l] = s1 + bend * (a * s1 + b * s4 + c * s5);
+        s->p[2][l] = s2 + bend * (a * s2 + b * s5 + c * s8);
+        s->p[3][l] = s1 + bend * (d * s0 + e * s1 + f * s2);
+        s->p[4][l] = s4 + bend * (d * s1 + e * s4 + f * s5);
+        s->p[5][l] = s5 + bend * (d * s2 + e * s5 + f * s8);
+        s->p[6][l] = s2 + bend * (g * s0 + h * s1 + k * s2);
+        s->p[7][l] = s5 + bend * (g * s1 + h * s4 + k * s5);
+        s->p[8][l] = s8 + bend * (g * s2 + h * s5 + k * s8);
+    }
+}
+
+/* >>svd */
+
+typedef struct gxsp_svd {
+    gxsp_singles u[9], v[9]; /* rotations, determinant 1 */
+    gxsp_singles s[3];       /* signed, in order of size; F = U diag(s) V^T */
+    gxsp_singles b[9];       /* F V on the way */
+} gxsp_svd;
+
+/* Turns columns i and j of b and v so that those of b become orthogonal. Whatever the rounding, U and V stay rotations: a
+ * Hessian built on them is a congruence of a semi-definite one. */
+static void gxsp_orthogonalise(gxsp_svd *GXSP_RESTRICT of, int i, int j)
+{
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float b0 = of->b[i][l], b1 = of->b[3 + i][l], b2 = of->b[6 + i][l];
+        const float d0 = of->b[j][l], d1 = of->b[3 + j][l], d2 = of->b[6 + j][l];
+        const float v0 = of->v[i][l], v1 = of->v[3 + i][l], v2 = of->v[6 + i][l];
+        const float w0 = of->v[j][l], w1 = of->v[3 + j][l], w2 = of->v[6 + j][l];
+        const float gamma = 2 * (b0 * d0 + b1 * d1 + b2 * d2);
+        const float gap = (d0 * d0 + d1 * d1 + d2 * d2) - (b0 * b0 + b1 * b1 + b2 * b2);
+        const float size = gap < 0 ? -gap : gap, square = gap * gap + gamma * gamma + 1e-35f;
+        const float tangent = (gap < 0 ? -gamma : gamma) / (size + square * gxsp_rsqrt(square));
+        const float c = gxsp_rsqrt(1 + tangent * tangent), s = c * tangent;
+        of->b[i][l] = c * b0 - s * d0, of->b[3 + i][l] = c * b1 - s * d1, of->b[6 + i][l] = c * b2 - s * d2;
+        of->b[j][l] = s * b0 + c * d0, of->b[3 + j][l] = s * b1 + c * d1, of->b[6 + j][l] = s * b2 + c * d2;
+        of->v[i][l] = c * v0 - s * w0, of->v[3 + i][l] = c * v1 - s * w1, of->v[6 + i][l] = c * v2 - s * w2;
+        of->v[j][l] = s * v0 + c * w0, of->v[3 + j][l] = s * v1 + c * w1, of->v[6 + j][l] = s * v2 + c * w2;
+    }
+}
+
+/* Brings the longer of columns i and j to i, by a quarter turn, so that det V stays 1. */
+static void gxsp_order_columns(gxsp_svd *GXSP_RESTRICT of, int i, int j)
+{
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float b0 = of->b[i][l], b1 = of->b[3 + i][l], b2 = of->b[6 + i][l];
+        const float d0 = of->b[j][l], d1 = of->b[3 + j][l], d2 = of->b[6 + j][l];
+        const float v0 = of->v[i][l], v1 = of->v[3 + i][l], v2 = of->v[6 + i][l];
+        const float w0 = of->v[j][l], w1 = of->v[3 + j][l], w2 = of->v[6 + j][l];
+        const float longer = (d0 * d0 + d1 * d1 + d2 * d2) > (b0 * b0 + b1 * b1 + b2 * b2) ? 1.0f : 0.0f, stay = 1 - longer;
+        of->b[i][l] = stay * b0 + longer * d0, of->b[j][l] = stay * d0 - longer * b0;
+        of->b[3 + i][l] = stay * b1 + longer * d1, of->b[3 + j][l] = stay * d1 - longer * b1;
+        of->b[6 + i][l] = stay * b2 + longer * d2, of->b[6 + j][l] = stay * d2 - longer * b2;
+        of->v[i][l] = stay * v0 + longer * w0, of->v[j][l] = stay * w0 - longer * v0;
+        of->v[3 + i][l] = stay * v1 + longer * w1, of->v[3 + j][l] = stay * w1 - longer * v1;
+        of->v[6 + i][l] = stay * v2 + longer * w2, of->v[6 + j][l] = stay * w2 - longer * v2;
+    }
+}
+
+/* U and s from the columns of b, orthogonal and the longest first; where columns vanish, U is completed to a rotation. */
+static void gxsp_frame(gxsp_svd *GXSP_RESTRICT of, const float *GXSP_RESTRICT scale)
+{
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float a0 = of->b[0][l], a1 = of->b[3][l], a2 = of->b[6][l], b0 = of->b[1][l], b1 = of->b[4][l], b2 = of->b[7][l];
+        const float c0 = of->b[2][l], c1 = of->b[5][l], c2 = of->b[8][l];
+        const float first = a0 * a0 + a1 * a1 + a2 * a2, some = first > 1e-30f ? 1.0f : 0.0f;
+        const float reach = gxsp_rsqrt(first + 1e-30f) * some;
+        const float u0 = a0 * reach + (1 - some), u1 = a1 * reach, u2 = a2 * reach;
+        const float along = u0 * b0 + u1 * b1 + u2 * b2;
+        const float p0 = b0 - along * u0, p1 = b1 - along * u1, p2 = b2 - along * u2;
+        /* a line: any direction across will do; the axis least along it */
+        const float s0 = u0 * u0, s1 = u1 * u1, s2 = u2 * u2;
+        const float x = s0 <= s1 && s0 <= s2 ? 1.0f : 0.0f, y = (1 - x) * (s1 <= s2 ? 1.0f : 0.0f), z = 1 - x - y;
+        const float part = x * u0 + y * u1 + z * u2;
+        const float n0 = x - part * u0, n1 = y - part * u1, n2 = z - part * u2;
+        const float across = p0 * p0 + p1 * p1 + p2 * p2, wide = across > 1e-12f * first + 1e-30f ? 1.0f : 0.0f, thin = 1 - wide;
+        const float q0 = wide * p0 + thin * n0, q1 = wide * p1 + thin * n1, q2 = wide * p2 + thin * n2;
+        const float unit = gxsp_rsqrt(q0 * q0 + q1 * q1 + q2 * q2);
+        const float w0 = q0 * unit, w1 = q1 * unit, w2 = q2 * unit;
+        const float t0 = u1 * w2 - u2 * w1, t1 = u2 * w0 - u0 * w2, t2 = u0 * w1 - u1 * w0;
+        of->u[0][l] = u0, of->u[3][l] = u1, of->u[6][l] = u2;
+        of->u[1][l] = w0, of->u[4][l] = w1, of->u[7][l] = w2;
+        of->u[2][l] = t0, of->u[5][l] = t1, of->u[8][l] = t2;
+        of->s[0][l] = scale[l] * (u0 * a0 + u1 * a1 + u2 * a2);
+        of->s[1][l] = scale[l] * (w0 * b0 + w1 * b1 + w2 * b2);
+        of->s[2][l] = scale[l] * (t0 * c0 + t1 * c1 + t2 * c2);
+    }
+}
+
+/* F = 1 + G = U diag(s) V^T by one-sided Jacobi, every lane the same number of sweeps. */
+static void gxsp_decompose(gxsp_lanes *GXSP_RESTRICT g, gxsp_svd *GXSP_RESTRICT of)
+{
+    gxsp_singles scale, inverse;
+    int sweep, k, l;
+    GXSP_EACH_LANE(l) scale[l] = 0;
+    for (k = 0; k < 9; ++k)
+        GXSP_EACH_LANE(l) {
+            const float f = (float)(g[k][l] + (k % 4 == 0 ? 1.0 : 0.0)), size = f < 0 ? -f : f;
+            of->b[k][l] = f;
+            of->v[k][l] = k % 4 == 0 ? 1.0f : 0.0f;
+            scale[l] = size > scale[l] ? size : scale[l];
+        }
+    GXSP_EACH_LANE(l) {
+        scale[l] = scale[l] > 1e-30f ? scale[l] : 1.0f;
+        inverse[l] = 1 / scale[l];
+    }
+    for (k = 0; k < 9; ++k)
+        GXSP_EACH_LANE(l) of->b[k][l] *= inverse[l];
+    for (sweep = 0; sweep < 4; ++sweep) { /* quadratic at the end: 3 reach single precision but for extreme F */
+        gxsp_orthogonalise(of, 0, 1);
+        gxsp_orthogonalise(of, 0, 2);
+        gxsp_orthogonalise(of, 1, 2);
+    }
+    gxsp_order_columns(of, 0, 1);
+    gxsp_order_columns(of, 0, 2);
+    gxsp_order_columns(of, 1, 2);
+    gxsp_frame(of, scale);
 }
 
 /* Cofactors of a 3x3: the derivative of its determinant. */
@@ -488,213 +830,165 @@ static void gxsp_cofactors(const double *a, double *cofactors)
     cofactors[8] = a[0] * a[4] - a[1] * a[3];
 }
 
-/* The invariants of F = 1 + G as differences from rest. */
-typedef struct gxsp_invariants {
-    double trace;       /* t = tr G */
-    double square;      /* |G|^2 */
-    double determinant; /* det G */
-    double i, j;        /* |F|^2 - 3, det F - 1 */
-} gxsp_invariants;
-
-/* cofactors: of G */
-static gxsp_invariants gxsp_invariants_make(const double *g, const double *cofactors)
+/* One step of Newton's method for the rotation R of F = R S: R (1 + skew omega), (tr S - S) omega = axis of S's skew part, then
+ * orthogonal again to second order. Left alone where tr S - S is singular: R is not unique there. */
+static void gxsp_polish_rotation(const double *f, double *rotation)
 {
-    gxsp_invariants of;
-    int k;
-    of.trace = g[0] + g[4] + g[8];
-    of.square = 0;
-    for (k = 0; k < 9; ++k)
-        of.square += g[k] * g[k];
-    of.determinant = g[0] * cofactors[0] + g[1] * cofactors[1] + g[2] * cofactors[2];
-    of.i = 2 * of.trace + of.square;
-    of.j = of.trace + (cofactors[0] + cofactors[4] + cofactors[8]) + of.determinant;
-    return of;
-}
-
-/* x - log(1 + x) for x >= -3/4, without cancellation: below 1/100 by its series, whose next term is below 1e-18 x^2 */
-static double gxsp_log_rest(double x)
-{
-    if (x > 0.01 || x < -0.01)
-        return x - log1p(x);
-    return x * x * (1.0 / 2 - x * (1.0 / 3 - x * (1.0 / 4 - x * (1.0 / 5 - x * (1.0 / 6 - x * (1.0 / 7 - x *
-           (1.0 / 8 - x * (1.0 / 9 - x / 10))))))));
-}
-
-/* psi at 1 + G, J/m3. noise: size of the terms whose rounding it carries. */
-static double gxsp_material_energy(const gxsp_material *material, const double *g, double *noise)
-{
-    double cofactors[9];
-    gxsp_invariants of;
-    double second, square_trace, volume;
-    gxsp_cofactors(g, cofactors);
-    of = gxsp_invariants_make(g, cofactors);
-    square_trace = g[0] * g[0] + g[4] * g[4] + g[8] * g[8] + 2 * (g[1] * g[3] + g[2] * g[6] + g[5] * g[7]);
-    second = of.square + square_trace - of.trace * of.trace - 2 * of.determinant;
-    volume = 0.5 * material->lambda * of.j * of.j;
-    *noise = material->mu * of.square + volume;
-    return 0.375 * material->mu * second + 0.5 * material->mu * gxsp_log_rest(0.25 * of.i) + volume;
-}
-
-/* P at 1 + G, Pa */
-static void gxsp_material_stress(const gxsp_material *material, const double *g, double *stress)
-{
-    double cofactors[9], rest, growth, pressure;
-    gxsp_invariants of;
-    int r, c;
-    gxsp_cofactors(g, cofactors);
-    of = gxsp_invariants_make(g, cofactors);
-    rest = 0.75 * material->mu;
-    growth = 0.25 * material->mu * of.i / (of.i + 4);
-    pressure = material->lambda * of.j;
+    double s[9], a[9], inverse[9], axis[3], omega[3], turned[9], square[9], determinant, trace;
+    int r, c, k;
+    for (r = 0; r < 3; ++r)
+        for (c = 0; c < 3; ++c)
+            s[3 * r + c] = rotation[r] * f[c] + rotation[3 + r] * f[3 + c] + rotation[6 + r] * f[6 + c];
+    trace = s[0] + s[4] + s[8];
+    for (r = 0; r < 3; ++r)
+        for (c = 0; c < 3; ++c)
+            a[3 * r + c] = (r == c ? trace : 0) - 0.5 * (s[3 * r + c] + s[3 * c + r]);
+    gxsp_cofactors(a, inverse);
+    determinant = a[0] * inverse[0] + a[1] * inverse[1] + a[2] * inverse[2];
+    axis[0] = s[7] - s[5], axis[1] = s[2] - s[6], axis[2] = s[3] - s[1];
+    if (fabs(determinant) <= 1e-6 * fabs(trace * trace * trace))
+        return;
+    for (r = 0; r < 3; ++r)
+        omega[r] = (inverse[r] * axis[0] + inverse[3 + r] * axis[1] + inverse[6 + r] * axis[2]) / determinant;
+    for (r = 0; r < 3; ++r) {
+        const double *from = rotation + 3 * r;
+        turned[3 * r] = from[0] + from[1] * omega[2] - from[2] * omega[1];
+        turned[3 * r + 1] = from[1] - from[0] * omega[2] + from[2] * omega[0];
+        turned[3 * r + 2] = from[2] + from[0] * omega[1] - from[1] * omega[0];
+    }
+    for (r = 0; r < 3; ++r)
+        for (c = 0; c < 3; ++c)
+            square[3 * r + c] = (r == c ? 1.5 : 0) -
+                0.5 * (turned[r] * turned[c] + turned[3 + r] * turned[3 + c] + turned[6 + r] * turned[6 + c]);
     for (r = 0; r < 3; ++r)
         for (c = 0; c < 3; ++c) {
-            double unit = r == c ? 1 : 0, own = g[3 * r + c], turned = g[3 * c + r], cofactor = cofactors[3 * r + c];
-            /* cof F = (1 + t) 1 - G^T + cof G */
-            stress[3 * r + c] = rest * (own + turned - of.trace * unit - cofactor) + growth * (own + unit) +
-                                pressure * ((1 + of.trace) * unit - turned + cofactor);
+            double sum = 0;
+            for (k = 0; k < 3; ++k)
+                sum += turned[3 * r + k] * square[3 * k + c];
+            rotation[3 * r + c] = sum;
         }
 }
 
-/* Hessian of psi at F = diag(s), s signed [eigensystem of Smith 2018].
- * stretch: packed 3x3, d2 psi / ds_i ds_j. The pair (F_ij, F_ji), k the third index: even = d2 psi / dF_ij^2,
- * odd = d2 psi / dF_ij dF_ji; its eigenvalues are even + odd and even - odd. Everything else is 0. */
-static void gxsp_material_hessian(const gxsp_material *material, const double *s, double *stretch, double *even,
-                                  double *odd)
+/* Fixed corotated [Stomakhin 2012]: psi = mu |F - R|^2 + lambda/2 (J - 1)^2, P = 2 mu (F - R) + lambda (J - 1) cof F, R the
+ * rotation of F's polar decomposition. R = U V^T is known to single precision; a Newton step for the rotation that makes
+ * R^T F symmetric, (tr S - S) omega = its skew part, squares the error. */
+static void gxsp_corotated(gxsp_state *GXSP_RESTRICT s)
 {
-    double square = s[0] * s[0] + s[1] * s[1] + s[2] * s[2];
-    double direct = material->mu * (square / (square + 1));
-    double along = 2 * material->mu / (square + 1) / (square + 1);
-    double volume = s[0] * s[1] * s[2] - 1;
-    double pressure = material->lambda * volume - 0.75 * material->mu; /* lambda (J - alpha) */
-    double area[3];
-    int i, j;
-    area[0] = s[1] * s[2], area[1] = s[2] * s[0], area[2] = s[0] * s[1];
-    for (i = 0; i < 3; ++i) {
-        for (j = i; j < 3; ++j)
-            stretch[gxsp_packed3(i, j)] = along * s[i] * s[j] + material->lambda * area[i] * area[j] +
-                                          (i == j ? direct : pressure * s[3 - i - j]);
-        even[i] = direct;
-        odd[i] = -pressure * s[i];
+    gxsp_svd of;
+    int l, r, c, k, round;
+    gxsp_decompose(s->g, &of);
+    for (l = 0; l < GXSP_LANES; ++l) {
+        double f[9], rotation[9], cofactor[9], j, strain = 0;
+        for (k = 0; k < 9; ++k)
+            f[k] = s->g[k][l] + (k % 4 == 0 ? 1 : 0);
+        for (r = 0; r < 3; ++r)
+            for (c = 0; c < 3; ++c)
+                rotation[3 * r + c] = (double)of.u[3 * r][l] * of.v[3 * c][l] + (double)of.u[3 * r + 1][l] * of.v[3 * c + 1][l] +
+                                      (double)of.u[3 * r + 2][l] * of.v[3 * c + 2][l];
+        for (round = 0; round < 2; ++round)
+            gxsp_polish_rotation(f, rotation);
+        gxsp_cofactors(f, cofactor);
+        j = f[0] * cofactor[0] + f[1] * cofactor[1] + f[2] * cofactor[2] - 1;
+        for (k = 0; k < 9; ++k) {
+            double gap = f[k] - rotation[k];
+            strain += gap * gap;
+            s->p[k][l] = 2 * s->mu[l] * gap + s->lambda[l] * j * cofactor[k];
+        }
+        s->energy[l] = s->mu[l] * strain + 0.5 * s->lambda[l] * j * j;
+        s->size[l] = s->energy[l] + 1e-16 * s->mu[l];
     }
 }
 
-/* >>svd */
-
-/* Turns columns i and j of the 3x3s b and v so that those of b become orthogonal; 0 if they were, to 1e-10: this is an error
- * of the Hessian, not of forces, and cannot cost it its sign, since any U and V give a congruence. */
-static int gxsp_orthogonalise(double *b, double *v, int i, int j)
+/* Energy and stress of a block, from s->g. */
+static void gxsp_material_state(gxs_material_kind kind, gxsp_state *s)
 {
-    double alpha = 0, beta = 0, gamma = 0, gap, t, c, s;
-    int k;
-    for (k = 0; k < 9; k += 3) {
-        alpha += b[k + i] * b[k + i];
-        beta += b[k + j] * b[k + j];
-        gamma += b[k + i] * b[k + j];
-    }
-    if (gamma * gamma <= 1e-20 * alpha * beta)
-        return 0;
-    gap = beta - alpha;
-    t = 2 * gamma / (fabs(gap) + sqrt(gap * gap + 4 * gamma * gamma));
-    t = gap < 0 ? -t : t;
-    c = 1 / sqrt(1 + t * t);
-    s = c * t;
-    for (k = 0; k < 9; k += 3) {
-        double bi = b[k + i], bj = b[k + j], vi = v[k + i], vj = v[k + j];
-        b[k + i] = c * bi - s * bj, b[k + j] = s * bi + c * bj;
-        v[k + i] = c * vi - s * vj, v[k + j] = s * vi + c * vj;
-    }
-    return 1;
-}
-
-static void gxsp_swap_columns(double *b, double *v, int i, int j)
-{
-    int k;
-    for (k = 0; k < 9; k += 3) {
-        double bi = b[k + i], vi = v[k + i];
-        b[k + i] = b[k + j], b[k + j] = -bi; /* a quarter turn, so that det V stays 1 */
-        v[k + i] = v[k + j], v[k + j] = -vi;
+    switch (kind) {
+    case GXS_ST_VENANT_KIRCHHOFF: gxsp_kirchhoff(s, 1); break;
+    case GXS_FIXED_COROTATED: gxsp_corotated(s); break;
+    case GXS_LINEAR: gxsp_kirchhoff(s, 0); break;
+    default: gxsp_neo_hookean(s); break;
     }
 }
 
-static double gxsp_column_dot(const double *a, int i, const double *b, int j)
-{
-    return a[i] * b[j] + a[3 + i] * b[3 + j] + a[6 + i] * b[6 + j];
-}
+/* >>tangent: Hessian of psi at F = diag(s), projected. Every isotropic energy has this form: a 3x3 of the stretches, and for the
+ * pair (F_ij, F_ji), k the third index, a 2x2 with eigenvalues flip = (psi_i - psi_j) / (s_i - s_j) for F_ij = F_ji and
+ * twist = (psi_i + psi_j) / (s_i + s_j) for F_ij = -F_ji, psi_i = d psi / d s_i. even, odd: half their sum and difference. */
 
-/* Columns of b are orthogonal, longest first. U: their directions, completed to a rotation where they vanish. */
-static void gxsp_frame(const double *b, double *u)
+typedef struct gxsp_principal {
+    gxsp_singles mu, lambda, weight;
+    gxsp_singles stretch[6], flip[3], twist[3];
+} gxsp_principal;
+
+static void gxsp_neo_hookean_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to)
 {
-    double first = sqrt(gxsp_column_dot(b, 0, b, 0)), along, second;
-    int k;
-    for (k = 0; k < 3; ++k)
-        u[3 * k] = first > 0 ? b[3 * k] / first : (k == 0 ? 1 : 0);
-    along = gxsp_column_dot(u, 0, b, 1);
-    for (k = 0; k < 3; ++k)
-        u[3 * k + 1] = b[3 * k + 1] - along * u[3 * k];
-    second = sqrt(gxsp_column_dot(u, 1, u, 1));
-    if (second <= 1e-14 * first) { /* a line: any direction across will do; the axis least along it */
-        int least = fabs(u[0]) <= fabs(u[3]) && fabs(u[0]) <= fabs(u[6]) ? 0 : fabs(u[3]) <= fabs(u[6]) ? 1 : 2;
-        double part = u[3 * least];
-        for (k = 0; k < 3; ++k)
-            u[3 * k + 1] = (k == least ? 1 : 0) - part * u[3 * k];
-        second = sqrt(gxsp_column_dot(u, 1, u, 1));
+    int l;
+    GXSP_EACH_LANE(l) { /* eigensystem of [Smith 2018] */
+        const float a = of->s[0][l], b = of->s[1][l], c = of->s[2][l], mu = to->mu[l], lambda = to->lambda[l];
+        const float square = a * a + b * b + c * c, whole = 1 / (square + 1), direct = mu * square * whole;
+        const float along = 2 * mu * whole * whole, x = b * c, y = c * a, z = a * b;
+        const float pressure = lambda * (a * x - 1) - 0.75f * mu; /* lambda (J - alpha) */
+        to->stretch[0][l] = along * a * a + lambda * x * x + direct;
+        to->stretch[1][l] = along * a * b + lambda * x * y + pressure * c;
+        to->stretch[2][l] = along * a * c + lambda * x * z + pressure * b;
+        to->stretch[3][l] = along * b * b + lambda * y * y + direct;
+        to->stretch[4][l] = along * b * c + lambda * y * z + pressure * a;
+        to->stretch[5][l] = along * c * c + lambda * z * z + direct;
+        to->flip[0][l] = direct - pressure * a, to->twist[0][l] = direct + pressure * a;
+        to->flip[1][l] = direct - pressure * b, to->twist[1][l] = direct + pressure * b;
+        to->flip[2][l] = direct - pressure * c, to->twist[2][l] = direct + pressure * c;
     }
-    for (k = 0; k < 3; ++k)
-        u[3 * k + 1] /= second;
-    u[2] = u[3] * u[7] - u[6] * u[4];
-    u[5] = u[6] * u[1] - u[0] * u[7];
-    u[8] = u[0] * u[4] - u[3] * u[1];
 }
 
-/* F = U diag(s) V^T with rotations U, V (determinants 1) and s[2] signed, by one-sided Jacobi. */
-static void gxsp_svd(const double *f, double *u, double *s, double *v)
+static void gxsp_kirchhoff_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to)
 {
-    static const double unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    double b[9], norm[3];
-    int sweep, k;
-    memcpy(b, f, sizeof b);
-    memcpy(v, unit, sizeof unit);
-    for (sweep = 0; sweep < 16; ++sweep) { /* 3 to 4 suffice but for extreme F */
-        int turned = gxsp_orthogonalise(b, v, 0, 1);
-        turned |= gxsp_orthogonalise(b, v, 0, 2);
-        turned |= gxsp_orthogonalise(b, v, 1, 2);
-        if (!turned)
-            break;
+    int l;
+    GXSP_EACH_LANE(l) { /* psi_i = s_i (mu (s_i^2 - 1) + lambda/2 sum (s^2 - 1)) */
+        const float a = of->s[0][l], b = of->s[1][l], c = of->s[2][l], mu = to->mu[l], lambda = to->lambda[l];
+        const float x = a * a, y = b * b, z = c * c, common = 0.5f * lambda * (x + y + z - 3) - mu;
+        to->stretch[0][l] = (3 * mu + lambda) * x + common;
+        to->stretch[1][l] = lambda * a * b;
+        to->stretch[2][l] = lambda * a * c;
+        to->stretch[3][l] = (3 * mu + lambda) * y + common;
+        to->stretch[4][l] = lambda * b * c;
+        to->stretch[5][l] = (3 * mu + lambda) * z + common;
+        to->flip[0][l] = mu * (y + b * c + z) + common, to->twist[0][l] = mu * (y - b * c + z) + common;
+        to->flip[1][l] = mu * (z + c * a + x) + common, to->twist[1][l] = mu * (z - c * a + x) + common;
+        to->flip[2][l] = mu * (x + a * b + y) + common, to->twist[2][l] = mu * (x - a * b + y) + common;
     }
-    for (k = 0; k < 3; ++k)
-        norm[k] = gxsp_column_dot(b, k, b, k);
-    if (norm[1] > norm[0])
-        gxsp_swap_columns(b, v, 0, 1), norm[1] = norm[0];
-    if (norm[2] > norm[1])
-        gxsp_swap_columns(b, v, 1, 2);
-    if (gxsp_column_dot(b, 1, b, 1) > gxsp_column_dot(b, 0, b, 0))
-        gxsp_swap_columns(b, v, 0, 1);
-    gxsp_frame(b, u);
-    for (k = 0; k < 3; ++k)
-        s[k] = gxsp_column_dot(u, k, b, k);
 }
 
-/* >>tangent */
-
-/* Projected Hessian of one F = U S V^T: dP = U (h : U^T dF V) V^T. */
-typedef struct gxsp_tangent {
-    double u[9], v[9];
-    double stretch[6], even[3], odd[3]; /* as in gxsp_material_hessian, semi-definite; Pa */
-} gxsp_tangent;
-
-/* Is the packed 3x3 positive definite? (leading minors by elimination) */
-static int gxsp_definite3(const double *a)
+static void gxsp_corotated_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to)
 {
-    double b, c, d, e;
-    if (a[0] <= 0)
-        return 0;
-    b = a[1] / a[0];
-    c = a[2] / a[0];
-    d = a[3] - b * a[1];
-    if (d <= 0)
-        return 0;
-    e = a[4] - b * a[2];
-    return a[5] - c * a[2] - e * e / d > 0;
+    int l;
+    GXSP_EACH_LANE(l) { /* psi_i = 2 mu (s_i - 1) + lambda (J - 1) s_j s_k */
+        const float a = of->s[0][l], b = of->s[1][l], c = of->s[2][l], mu = to->mu[l], lambda = to->lambda[l];
+        const float x = b * c, y = c * a, z = a * b, pressure = lambda * (a * x - 1), least = 1e-6f;
+        const float bc = b + c > least ? b + c : least, ca = c + a > least ? c + a : least, ab = a + b > least ? a + b : least;
+        to->stretch[0][l] = 2 * mu + lambda * x * x;
+        to->stretch[1][l] = lambda * x * y + pressure * c;
+        to->stretch[2][l] = lambda * x * z + pressure * b;
+        to->stretch[3][l] = 2 * mu + lambda * y * y;
+        to->stretch[4][l] = lambda * y * z + pressure * a;
+        to->stretch[5][l] = 2 * mu + lambda * z * z;
+        to->flip[0][l] = 2 * mu - pressure * a, to->twist[0][l] = 2 * mu - 4 * mu / bc + pressure * a;
+        to->flip[1][l] = 2 * mu - pressure * b, to->twist[1][l] = 2 * mu - 4 * mu / ca + pressure * b;
+        to->flip[2][l] = 2 * mu - pressure * c, to->twist[2][l] = 2 * mu - 4 * mu / ab + pressure * c;
+    }
+}
+
+/* The same at every F: U and V are 1. */
+static void gxsp_linear_principal(gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to)
+{
+    int k, l;
+    for (k = 0; k < 9; ++k)
+        GXSP_EACH_LANE(l) of->u[k][l] = of->v[k][l] = k % 4 == 0 ? 1.0f : 0.0f;
+    GXSP_EACH_LANE(l) {
+        const float mu = to->mu[l], lambda = to->lambda[l];
+        to->stretch[0][l] = to->stretch[3][l] = to->stretch[5][l] = 2 * mu + lambda;
+        to->stretch[1][l] = to->stretch[2][l] = to->stretch[4][l] = lambda;
+        to->flip[0][l] = to->flip[1][l] = to->flip[2][l] = 2 * mu;
+        to->twist[0][l] = to->twist[1][l] = to->twist[2][l] = 0;
+    }
 }
 
 /* One Jacobi turn of the symmetric 3x3 a (by rows) that makes a_ij zero; the turn also goes to the columns of v. */
@@ -719,16 +1013,14 @@ static void gxsp_diagonalise(double *a, double *v, int i, int j)
     }
 }
 
-/* Replaces the packed symmetric 3x3 by the nearest semi-definite one: negative eigenvalues become 0. */
-static void gxsp_project3(double *packed)
+/* Replaces the stretches' 3x3 of one lane by the nearest semi-definite one: negative eigenvalues become 0. */
+static void gxsp_project_lane(gxsp_singles *stretch, int lane)
 {
     double a[9], v[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     int sweep, i, j, k;
-    if (gxsp_definite3(packed))
-        return;
     for (i = 0; i < 3; ++i)
         for (j = i; j < 3; ++j)
-            a[3 * i + j] = a[3 * j + i] = packed[gxsp_packed3(i, j)];
+            a[3 * i + j] = a[3 * j + i] = stretch[gxsp_packed3(i, j)][lane];
     for (sweep = 0; sweep < 8; ++sweep) { /* converges quadratically: 5 reach rounding */
         gxsp_diagonalise(a, v, 0, 1);
         gxsp_diagonalise(a, v, 0, 2);
@@ -739,411 +1031,1288 @@ static void gxsp_project3(double *packed)
             double sum = 0;
             for (k = 0; k < 3; ++k)
                 sum += a[4 * k] > 0 ? a[4 * k] * v[3 * i + k] * v[3 * j + k] : 0;
-            packed[gxsp_packed3(i, j)] = sum;
+            stretch[gxsp_packed3(i, j)][lane] = (float)sum;
         }
 }
 
-static void gxsp_tangent_make(const gxsp_material *material, const double *f, gxsp_tangent *tangent)
+/* Is every lane's 3x3 of the stretches positive definite? (leading minors by elimination) */
+static void gxsp_project(gxsp_principal *GXSP_RESTRICT of)
 {
-    double s[3];
-    int k;
-    gxsp_svd(f, tangent->u, s, tangent->v);
-    gxsp_material_hessian(material, s, tangent->stretch, tangent->even, tangent->odd);
-    gxsp_project3(tangent->stretch);
-    for (k = 0; k < 3; ++k) { /* the pairs' eigenvalues: flips and twists */
-        double sum = tangent->even[k] + tangent->odd[k], difference = tangent->even[k] - tangent->odd[k];
-        sum = sum > 0 ? sum : 0;
-        difference = difference > 0 ? difference : 0;
-        tangent->even[k] = 0.5 * (sum + difference);
-        tangent->odd[k] = 0.5 * (sum - difference);
+    gxsp_singles least;
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float a = of->stretch[0][l], tiny = 1e-30f, p = a > tiny ? a : tiny;
+        const float b = of->stretch[1][l] / p, c = of->stretch[2][l] / p;
+        const float d = of->stretch[3][l] - b * of->stretch[1][l], q = d > tiny ? d : tiny;
+        const float e = of->stretch[4][l] - b * of->stretch[2][l];
+        const float f = of->stretch[5][l] - c * of->stretch[2][l] - e * e / q;
+        const float low = a < d ? a : d;
+        least[l] = low < f ? low : f;
     }
+    for (l = 0; l < GXSP_LANES; ++l)
+        if (!(least[l] > 0))
+            gxsp_project_lane(of->stretch, l);
 }
 
-/* 3x3 product = a b or, transposed, a^T b */
-static void gxsp_multiply(const double *a, int transposed, const double *b, double *product)
+/* The projected Hessian of a block at s->g. */
+static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest, gxsp_state *s,
+                              gxsp_tangent *GXSP_RESTRICT tangent)
 {
-    int r, c, k;
-    for (r = 0; r < 3; ++r)
-        for (c = 0; c < 3; ++c) {
-            double sum = 0;
-            for (k = 0; k < 3; ++k)
-                sum += (transposed ? a[3 * k + r] : a[3 * r + k]) * b[3 * k + c];
-            product[3 * r + c] = sum;
-        }
-}
-
-static void gxsp_transpose(double *a)
-{
-    int r, c;
-    for (r = 0; r < 3; ++r)
-        for (c = r + 1; c < 3; ++c) {
-            double entry = a[3 * r + c];
-            a[3 * r + c] = a[3 * c + r];
-            a[3 * c + r] = entry;
-        }
-}
-
-/* h : x in the frame of the stretches. Row r, column c of the pair k = 3 - r - c. */
-static void gxsp_tangent_local(const gxsp_tangent *tangent, const double *x, double *y)
-{
-    const double *a = tangent->stretch;
-    int r, c;
-    y[0] = a[0] * x[0] + a[1] * x[4] + a[2] * x[8];
-    y[4] = a[1] * x[0] + a[3] * x[4] + a[4] * x[8];
-    y[8] = a[2] * x[0] + a[4] * x[4] + a[5] * x[8];
-    for (r = 0; r < 3; ++r)
-        for (c = 0; c < 3; ++c)
-            if (r != c)
-                y[3 * r + c] = tangent->even[3 - r - c] * x[3 * r + c] + tangent->odd[3 - r - c] * x[3 * c + r];
-}
-
-static void gxsp_tangent_product(const gxsp_tangent *tangent, const double *direction, double *product)
-{
-    double x[9], y[9];
-    gxsp_multiply(tangent->u, 1, direction, y); /* x = U^T dF V = (V^T (U^T dF)^T)^T */
-    gxsp_transpose(y);
-    gxsp_multiply(tangent->v, 1, y, x);
-    gxsp_transpose(x);
-    gxsp_tangent_local(tangent, x, y);
-    gxsp_transpose(y); /* U y V^T = U (V y^T)^T */
-    gxsp_multiply(tangent->v, 0, y, x);
-    gxsp_transpose(x);
-    gxsp_multiply(tangent->u, 0, x, product);
-}
-
-/* >>element */
-
-/* Displacement gradient of an element, 3x3 by rows: sum of (u_i - u_0) grad N_i, exactly 0 for translations. */
-static void gxsp_displacement_gradient(const gxs_element *element, const double *u, double *g)
-{
-    const double *u0 = u + 3 * (size_t)element->copy[0];
-    double d[3][3]; /* corner, axis */
-    int i, r, c;
-    for (i = 0; i < 3; ++i) {
-        const double *ui = u + 3 * (size_t)element->copy[i + 1];
-        for (r = 0; r < 3; ++r)
-            d[i][r] = ui[r] - u0[r];
+    gxsp_svd of;
+    gxsp_principal principal;
+    int k, l, r, c;
+    GXSP_EACH_LANE(l) {
+        principal.mu[l] = (float)s->mu[l];
+        principal.lambda[l] = (float)s->lambda[l];
+        principal.weight[l] = (float)rest->weight[l];
     }
-    for (r = 0; r < 3; ++r)
-        for (c = 0; c < 3; ++c)
-            g[3 * r + c] = d[0][r] * element->gradient[1][c] + d[1][r] * element->gradient[2][c] +
-                           d[2][r] * element->gradient[3][c];
-}
-
-/* force += weight x stress : grad N; the four add up to zero exactly but for the order of sums */
-static void gxsp_scatter_stress(const gxs_element *element, const double *stress, double *force)
-{
-    double *f0 = force + 3 * (size_t)element->copy[0];
-    int i, r;
-    for (i = 1; i < 4; ++i) {
-        const double *gradient = element->gradient[i];
-        double *fi = force + 3 * (size_t)element->copy[i];
-        for (r = 0; r < 3; ++r) {
-            double f = element->weight * (stress[3 * r] * gradient[0] + stress[3 * r + 1] * gradient[1] +
-                                          stress[3 * r + 2] * gradient[2]);
-            fi[r] += f;
-            f0[r] -= f;
-        }
+    if (kind != GXS_LINEAR)
+        gxsp_decompose(s->g, &of);
+    switch (kind) {
+    case GXS_ST_VENANT_KIRCHHOFF: gxsp_kirchhoff_principal(&of, &principal); break;
+    case GXS_FIXED_COROTATED: gxsp_corotated_principal(&of, &principal); break;
+    case GXS_LINEAR: gxsp_linear_principal(&of, &principal); break;
+    default: gxsp_neo_hookean_principal(&of, &principal); break;
     }
-}
-
-/* product += scale x mass block x x */
-static void gxsp_scatter_mass(const gxs_element *element, double scale, const double *x, double *product)
-{
-    static const int packed[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
-    int i, j, r;
-    for (i = 0; i < 4; ++i) {
-        double *to = product + 3 * (size_t)element->copy[i];
-        for (j = 0; j < 4; ++j) {
-            const double *from = x + 3 * (size_t)element->copy[j];
-            double mass = scale * element->mass[packed[i][j]];
-            for (r = 0; r < 3; ++r)
-                to[r] += mass * from[r];
-        }
-    }
-}
-
-static void gxsp_add_unit(double *g)
-{
-    g[0] += 1;
-    g[4] += 1;
-    g[8] += 1;
-}
-
-/* Everything a step works with. */
-typedef struct gxsp_problem {
-    const gxs_model *model;
-    const gxs_step_desc *step;
-    gxsp_material material;
-    size_t n;                 /* copy_count */
-    size_t block_count;
-    size_t piece_count;       /* free pieces */
-    double rate;              /* 1 / dt^2 */
-    uint32_t cg_iterations;   /* with the defaults put in */
-    double cg_tolerance;
-    gxsp_work work;
-    gxs_step_report report;
-} gxsp_problem;
-
-/* Elastic forces and element energies at the current iterate; their sum is not finite if one of them is not. */
-static double gxsp_update_elastic(gxsp_problem *problem)
-{
-    gxsp_work *work = &problem->work;
-    const gxs_element *elements = problem->model->elements;
-    double sum = 0;
-    size_t e;
-    memset(work->elastic, 0, 3 * problem->n * sizeof(double));
-    for (e = 0; e < problem->model->element_count; ++e) {
-        double g[9], stress[9], noise;
-        gxsp_displacement_gradient(&elements[e], work->current, g);
-        work->energy[e] = elements[e].weight * gxsp_material_energy(&problem->material, g, &noise);
-        sum += work->energy[e];
-        gxsp_material_stress(&problem->material, g, stress);
-        gxsp_scatter_stress(&elements[e], stress, work->elastic);
-    }
-    return sum;
-}
-
-/* U(trial) - U(current), summed element by element so that what stays the same does not cancel.
- * noise: size of the sum's rounding. */
-static double gxsp_elastic_change(const gxsp_problem *problem, double *noise)
-{
-    const gxsp_work *work = &problem->work;
-    const gxs_element *elements = problem->model->elements;
-    double sum = 0, size = 0;
-    size_t e;
-    for (e = 0; e < problem->model->element_count; ++e) {
-        double g[9], terms;
-        gxsp_displacement_gradient(&elements[e], work->trial, g);
-        sum += elements[e].weight * gxsp_material_energy(&problem->material, g, &terms) - work->energy[e];
-        size += elements[e].weight * terms;
-    }
-    *noise = 1e-15 * size;
-    return sum;
-}
-
-/* Copies and masses of every block; zeros beyond the last element. */
-static void gxsp_blocks_begin(gxsp_problem *problem)
-{
-    const gxs_model *model = problem->model;
-    size_t e;
-    int k;
-    memset(problem->work.blocks, 0, problem->block_count * sizeof(gxsp_block));
-    for (e = 0; e < model->element_count; ++e) {
-        gxsp_block *block = &problem->work.blocks[e / GXSP_LANES];
-        size_t lane = e % GXSP_LANES;
-        for (k = 0; k < 4; ++k)
-            block->copy[k][lane] = model->elements[e].copy[k];
-        for (k = 0; k < 10; ++k)
-            block->mass[k][lane] = problem->rate * model->elements[e].mass[k];
-    }
-}
-
-/* The projected Hessian of one element into its lane. */
-static void gxsp_block_linearise(gxsp_block *block, size_t lane, const gxsp_material *material,
-                                 const gxs_element *element, const double *u)
-{
-    gxsp_tangent tangent;
-    double f[9], turned[9];
-    int k;
-    gxsp_displacement_gradient(element, u, f);
-    gxsp_add_unit(f);
-    gxsp_tangent_make(material, f, &tangent);
-    gxsp_multiply(&element->gradient[1][0], 0, tangent.v, turned);
-    for (k = 0; k < 9; ++k) {
-        block->frame[k][lane] = tangent.u[k];
-        block->gradient[k][lane] = turned[k];
-    }
+    gxsp_project(&principal);
     for (k = 0; k < 6; ++k)
-        block->stretch[k][lane] = element->weight * tangent.stretch[k];
-    for (k = 0; k < 3; ++k) {
-        block->even[k][lane] = element->weight * tangent.even[k];
-        block->odd[k][lane] = element->weight * tangent.odd[k];
+        GXSP_EACH_LANE(l) tangent->stretch[k][l] = principal.weight[l] * principal.stretch[k][l];
+    for (k = 0; k < 3; ++k)
+        GXSP_EACH_LANE(l) {
+            const float flip = principal.flip[k][l] > 0 ? principal.flip[k][l] : 0;
+            const float twist = principal.twist[k][l] > 0 ? principal.twist[k][l] : 0;
+            tangent->even[k][l] = 0.5f * principal.weight[l] * (flip + twist);
+            tangent->odd[k][l] = 0.5f * principal.weight[l] * (flip - twist);
+        }
+    for (k = 0; k < 9; ++k)
+        GXSP_EACH_LANE(l) tangent->frame[k][l] = of.u[k][l];
+    for (r = 0; r < 3; ++r)
+        for (c = 0; c < 3; ++c)
+            GXSP_EACH_LANE(l)
+                tangent->gradient[3 * r + c][l] = (float)rest->gradient[3 * r][l] * of.v[c][l] +
+                    (float)rest->gradient[3 * r + 1][l] * of.v[3 + c][l] + (float)rest->gradient[3 * r + 2][l] * of.v[6 + c][l];
+}
+
+/* >>element: passes over one block. Vectors of its corners: x[3 corner + axis][lane]. */
+
+/* G = sum (u_i - u_0) grad N_i, exactly 0 for translations */
+static void gxsp_block_gradient(const gxsp_rest *GXSP_RESTRICT rest, gxsp_lanes *GXSP_RESTRICT x, gxsp_lanes *GXSP_RESTRICT g)
+{
+    int r, l;
+    for (r = 0; r < 3; ++r)
+        GXSP_EACH_LANE(l) {
+            const double a = x[3 + r][l] - x[r][l], b = x[6 + r][l] - x[r][l], c = x[9 + r][l] - x[r][l];
+            g[3 * r][l] = a * rest->gradient[0][l] + b * rest->gradient[3][l] + c * rest->gradient[6][l];
+            g[3 * r + 1][l] = a * rest->gradient[1][l] + b * rest->gradient[4][l] + c * rest->gradient[7][l];
+            g[3 * r + 2][l] = a * rest->gradient[2][l] + b * rest->gradient[5][l] + c * rest->gradient[8][l];
+        }
+}
+
+/* force = weight x P : grad N; the four add up to zero but for rounding */
+static void gxsp_block_force(const gxsp_rest *GXSP_RESTRICT rest, gxsp_lanes *GXSP_RESTRICT p, gxsp_lanes *GXSP_RESTRICT force)
+{
+    int r, l;
+    for (r = 0; r < 3; ++r)
+        GXSP_EACH_LANE(l) {
+            const double w = rest->weight[l], x = w * p[3 * r][l], y = w * p[3 * r + 1][l], z = w * p[3 * r + 2][l];
+            const double a = x * rest->gradient[0][l] + y * rest->gradient[1][l] + z * rest->gradient[2][l];
+            const double b = x * rest->gradient[3][l] + y * rest->gradient[4][l] + z * rest->gradient[5][l];
+            const double c = x * rest->gradient[6][l] + y * rest->gradient[7][l] + z * rest->gradient[8][l];
+            force[r][l] = -(a + b + c);
+            force[3 + r][l] = a;
+            force[6 + r][l] = b;
+            force[9 + r][l] = c;
+        }
+}
+
+/* y += rate M x; energy = rate/2 x M x. general: NULL where rest->mass says it all */
+static void gxsp_block_inertia(const gxsp_rest *GXSP_RESTRICT rest, const gxsp_mass *GXSP_RESTRICT general, double rate,
+                               gxsp_lanes *GXSP_RESTRICT x, gxsp_lanes *GXSP_RESTRICT y, double *GXSP_RESTRICT energy)
+{
+    int r, l;
+    GXSP_EACH_LANE(l) energy[l] = 0;
+    for (r = 0; r < 3; ++r)
+        GXSP_EACH_LANE(l) {
+            const double m = rate * rest->mass[l], a = x[r][l], b = x[3 + r][l], c = x[6 + r][l], d = x[9 + r][l];
+            const double sum = a + b + c + d, fa = m * (sum + a), fb = m * (sum + b), fc = m * (sum + c), fd = m * (sum + d);
+            y[r][l] += fa, y[3 + r][l] += fb, y[6 + r][l] += fc, y[9 + r][l] += fd;
+            energy[l] += 0.5 * (fa * a + fb * b + fc * c + fd * d);
+        }
+    for (r = 0; general && r < 3; ++r)
+        GXSP_EACH_LANE(l) {
+            const double a = x[r][l], b = x[3 + r][l], c = x[6 + r][l], d = x[9 + r][l];
+            const double fa = rate * (general->entry[0][l] * a + general->entry[1][l] * b + general->entry[2][l] * c + general->entry[3][l] * d);
+            const double fb = rate * (general->entry[1][l] * a + general->entry[4][l] * b + general->entry[5][l] * c + general->entry[6][l] * d);
+            const double fc = rate * (general->entry[2][l] * a + general->entry[5][l] * b + general->entry[7][l] * c + general->entry[8][l] * d);
+            const double fd = rate * (general->entry[3][l] * a + general->entry[6][l] * b + general->entry[8][l] * c + general->entry[9][l] * d);
+            y[r][l] += fa, y[3 + r][l] += fb, y[6 + r][l] += fc, y[9 + r][l] += fd;
+            energy[l] += 0.5 * (fa * a + fb * b + fc * c + fd * d);
+        }
+}
+
+/* y = (K + rate M) x, one lane after the other in registers; without general masses */
+static void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, gxsp_singles *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT y)
+{
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float m = b->mass[l], x0 = x[0][l], x1 = x[1][l], x2 = x[2][l];
+        const float g0 = b->gradient[0][l], g1 = b->gradient[1][l], g2 = b->gradient[2][l], g3 = b->gradient[3][l],
+                    g4 = b->gradient[4][l], g5 = b->gradient[5][l], g6 = b->gradient[6][l], g7 = b->gradient[7][l],
+                    g8 = b->gradient[8][l];
+        const float a0 = x[3][l] - x0, a1 = x[4][l] - x1, a2 = x[5][l] - x2, b0 = x[6][l] - x0, b1 = x[7][l] - x1,
+                    b2 = x[8][l] - x2, c0 = x[9][l] - x0, c1 = x[10][l] - x1, c2 = x[11][l] - x2;
+        /* dF V = sum (x_i - x_0) (V^T grad N_i)^T */
+        const float d0 = a0 * g0 + b0 * g3 + c0 * g6, d1 = a0 * g1 + b0 * g4 + c0 * g7, d2 = a0 * g2 + b0 * g5 + c0 * g8,
+                    d3 = a1 * g0 + b1 * g3 + c1 * g6, d4 = a1 * g1 + b1 * g4 + c1 * g7, d5 = a1 * g2 + b1 * g5 + c1 * g8,
+                    d6 = a2 * g0 + b2 * g3 + c2 * g6, d7 = a2 * g1 + b2 * g4 + c2 * g7, d8 = a2 * g2 + b2 * g5 + c2 * g8;
+        const float u0 = b->frame[0][l], u1 = b->frame[1][l], u2 = b->frame[2][l], u3 = b->frame[3][l], u4 = b->frame[4][l],
+                    u5 = b->frame[5][l], u6 = b->frame[6][l], u7 = b->frame[7][l], u8 = b->frame[8][l];
+        /* t = U^T dF V */
+        const float t0 = u0 * d0 + u3 * d3 + u6 * d6, t1 = u0 * d1 + u3 * d4 + u6 * d7, t2 = u0 * d2 + u3 * d5 + u6 * d8,
+                    t3 = u1 * d0 + u4 * d3 + u7 * d6, t4 = u1 * d1 + u4 * d4 + u7 * d7, t5 = u1 * d2 + u4 * d5 + u7 * d8,
+                    t6 = u2 * d0 + u5 * d3 + u8 * d6, t7 = u2 * d1 + u5 * d4 + u8 * d7, t8 = u2 * d2 + u5 * d5 + u8 * d8;
+        /* s = weight h : t */
+        const float s0 = b->stretch[0][l] * t0 + b->stretch[1][l] * t4 + b->stretch[2][l] * t8,
+                    s4 = b->stretch[1][l] * t0 + b->stretch[3][l] * t4 + b->stretch[4][l] * t8,
+                    s8 = b->stretch[2][l] * t0 + b->stretch[4][l] * t4 + b->stretch[5][l] * t8,
+                    s1 = b->even[2][l] * t1 + b->odd[2][l] * t3, s3 = b->even[2][l] * t3 + b->odd[2][l] * t1,
+                    s2 = b->even[1][l] * t2 + b->odd[1][l] * t6, s6 = b->even[1][l] * t6 + b->odd[1][l] * t2,
+                    s5 = b->even[0][l] * t5 + b->odd[0][l] * t7, s7 = b->even[0][l] * t7 + b->odd[0][l] * t5;
+        /* p = U s */
+        const float p0 = u0 * s0 + u1 * s3 + u2 * s6, p1 = u0 * s1 + u1 * s4 + u2 * s7, p2 = u0 * s2 + u1 * s5 + u2 * s8,
+                    p3 = u3 * s0 + u4 * s3 + u5 * s6, p4 = u3 * s1 + u4 * s4 + u5 * s7, p5 = u3 * s2 + u4 * s5 + u5 * s8,
+                    p6 = u6 * s0 + u7 * s3 + u8 * s6, p7 = u6 * s1 + u7 * s4 + u8 * s7, p8 = u6 * s2 + u7 * s5 + u8 * s8;
+        const float f0 = p0 * g0 + p1 * g1 + p2 * g2, f1 = p3 * g0 + p4 * g1 + p5 * g2, f2 = p6 * g0 + p7 * g1 + p8 * g2,
+                    f3 = p0 * g3 + p1 * g4 + p2 * g5, f4 = p3 * g3 + p4 * g4 + p5 * g5, f5 = p6 * g3 + p7 * g4 + p8 * g5,
+                    f6 = p0 * g6 + p1 * g7 + p2 * g8, f7 = p3 * g6 + p4 * g7 + p5 * g8, f8 = p6 * g6 + p7 * g7 + p8 * g8;
+        const float m0 = m * (a0 + b0 + c0 + 5 * x0), m1 = m * (a1 + b1 + c1 + 5 * x1), m2 = m * (a2 + b2 + c2 + 5 * x2);
+        y[0][l] = m0 - (f0 + f3 + f6), y[1][l] = m1 - (f1 + f4 + f7), y[2][l] = m2 - (f2 + f5 + f8);
+        y[3][l] = m0 + m * a0 + f0, y[4][l] = m1 + m * a1 + f1, y[5][l] = m2 + m * a2 + f2;
+        y[6][l] = m0 + m * b0 + f3, y[7][l] = m1 + m * b1 + f4, y[8][l] = m2 + m * b2 + f5;
+        y[9][l] = m0 + m * c0 + f6, y[10][l] = m1 + m * c1 + f7, y[11][l] = m2 + m * c2 + f8;
     }
 }
 
-/* Arrays of a block's passes never overlap. */
-#if !defined(__cplusplus)
-#define GXSP_RESTRICT restrict
-#elif defined(__GNUC__) || defined(_MSC_VER)
-#define GXSP_RESTRICT __restrict
-#else
-#define GXSP_RESTRICT
-#endif
-
-/* Loop over the lanes of a block. Clang is told not to unroll it, since it else does so before it could vectorise. */
-#if defined(__clang__)
-#define GXSP_EACH_LANE(l) _Pragma("clang loop unroll(disable)") for (l = 0; l < GXSP_LANES; ++l)
-#elif defined(__GNUC__)
-#define GXSP_EACH_LANE(l) _Pragma("GCC ivdep") for (l = 0; l < GXSP_LANES; ++l)
-#else
-#define GXSP_EACH_LANE(l) for (l = 0; l < GXSP_LANES; ++l)
-#endif
-
-typedef double gxsp_lanes[GXSP_LANES];
-
-/* x of the four copies, one lane per element: gathered[3 corner + axis] */
-static void gxsp_block_gather(const gxsp_block *GXSP_RESTRICT block, const double *x, gxsp_lanes *GXSP_RESTRICT gathered)
+/* y += rate M x of masses that rest does not have */
+static void gxsp_block_mass_product(const gxsp_mass *GXSP_RESTRICT mass, float rate, gxsp_singles *GXSP_RESTRICT x,
+                                    gxsp_singles *GXSP_RESTRICT y)
 {
+    int r, l;
+    for (r = 0; r < 3; ++r)
+        GXSP_EACH_LANE(l) {
+            const float a = rate * x[r][l], b = rate * x[3 + r][l], c = rate * x[6 + r][l], d = rate * x[9 + r][l];
+            const float m0 = (float)mass->entry[0][l], m1 = (float)mass->entry[1][l], m2 = (float)mass->entry[2][l],
+                        m3 = (float)mass->entry[3][l], m4 = (float)mass->entry[4][l], m5 = (float)mass->entry[5][l],
+                        m6 = (float)mass->entry[6][l], m7 = (float)mass->entry[7][l], m8 = (float)mass->entry[8][l],
+                        m9 = (float)mass->entry[9][l];
+            y[r][l] += m0 * a + m1 * b + m2 * c + m3 * d;
+            y[3 + r][l] += m1 * a + m4 * b + m5 * c + m6 * d;
+            y[6 + r][l] += m2 * a + m5 * b + m7 * c + m8 * d;
+            y[9 + r][l] += m3 * a + m6 * b + m8 * c + m9 * d;
+        }
+}
+
+/* block = U B U^T, B_rs = sum h_rk,sl p_k q_l: the part of the Hessian that couples two shape functions with gradients p and q
+ * in the frame of V; by rows. */
+static void gxsp_block_couple(const gxsp_tangent *GXSP_RESTRICT t, gxsp_singles *p, gxsp_singles *q, /* may be the same */
+                              gxsp_singles *GXSP_RESTRICT block)
+{
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float p0 = p[0][l], p1 = p[1][l], p2 = p[2][l], q0 = q[0][l], q1 = q[1][l], q2 = q[2][l];
+        const float e0 = t->even[0][l], e1 = t->even[1][l], e2 = t->even[2][l], o0 = t->odd[0][l], o1 = t->odd[1][l],
+                    o2 = t->odd[2][l];
+        const float b0 = t->stretch[0][l] * p0 * q0 + e2 * p1 * q1 + e1 * p2 * q2,
+                    b4 = t->stretch[3][l] * p1 * q1 + e2 * p0 * q0 + e0 * p2 * q2,
+                    b8 = t->stretch[5][l] * p2 * q2 + e1 * p0 * q0 + e0 * p1 * q1,
+                    b1 = t->stretch[1][l] * p0 * q1 + o2 * p1 * q0, b3 = t->stretch[1][l] * p1 * q0 + o2 * p0 * q1,
+                    b2 = t->stretch[2][l] * p0 * q2 + o1 * p2 * q0, b6 = t->stretch[2][l] * p2 * q0 + o1 * p0 * q2,
+                    b5 = t->stretch[4][l] * p1 * q2 + o0 * p2 * q1, b7 = t->stretch[4][l] * p2 * q1 + o0 * p1 * q2;
+        const float u0 = t->frame[0][l], u1 = t->frame[1][l], u2 = t->frame[2][l], u3 = t->frame[3][l], u4 = t->frame[4][l],
+                    u5 = t->frame[5][l], u6 = t->frame[6][l], u7 = t->frame[7][l], u8 = t->frame[8][l];
+        const float a0 = u0 * b0 + u1 * b3 + u2 * b6, a1 = u0 * b1 + u1 * b4 + u2 * b7, a2 = u0 * b2 + u1 * b5 + u2 * b8,
+                    a3 = u3 * b0 + u4 * b3 + u5 * b6, a4 = u3 * b1 + u4 * b4 + u5 * b7, a5 = u3 * b2 + u4 * b5 + u5 * b8,
+                    a6 = u6 * b0 + u7 * b3 + u8 * b6, a7 = u6 * b1 + u7 * b4 + u8 * b7, a8 = u6 * b2 + u7 * b5 + u8 * b8;
+        block[0][l] = a0 * u0 + a1 * u1 + a2 * u2, block[1][l] = a0 * u3 + a1 * u4 + a2 * u5, block[2][l] = a0 * u6 + a1 * u7 + a2 * u8;
+        block[3][l] = a3 * u0 + a4 * u1 + a5 * u2, block[4][l] = a3 * u3 + a4 * u4 + a5 * u5, block[5][l] = a3 * u6 + a4 * u7 + a5 * u8;
+        block[6][l] = a6 * u0 + a7 * u1 + a8 * u2, block[7][l] = a6 * u3 + a7 * u4 + a8 * u5, block[8][l] = a6 * u6 + a7 * u7 + a8 * u8;
+    }
+}
+
+/* The same for one lane */
+static void gxsp_lane_couple(const gxsp_tangent *t, int l, const float *p, const float *q, float *block)
+{
+    float b[9], ub[9];
+    int r, s;
+    for (r = 0; r < 3; ++r) {
+        const int n = (r + 1) % 3, m = (r + 2) % 3; /* the pair (r, n) has number m */
+        b[4 * r] = t->stretch[gxsp_packed3(r, r)][l] * p[r] * q[r] + t->even[m][l] * p[n] * q[n] + t->even[n][l] * p[m] * q[m];
+        for (s = 0; s < 3; ++s)
+            if (s != r)
+                b[3 * r + s] = t->stretch[gxsp_packed3(r < s ? r : s, r < s ? s : r)][l] * p[r] * q[s] +
+                               t->odd[3 - r - s][l] * p[s] * q[r];
+    }
+    for (r = 0; r < 3; ++r)
+        for (s = 0; s < 3; ++s)
+            ub[3 * r + s] = t->frame[3 * r][l] * b[s] + t->frame[3 * r + 1][l] * b[3 + s] + t->frame[3 * r + 2][l] * b[6 + s];
+    for (r = 0; r < 3; ++r)
+        for (s = 0; s < 3; ++s)
+            block[3 * r + s] = ub[3 * r] * t->frame[3 * s][l] + ub[3 * r + 1] * t->frame[3 * s + 1][l] +
+                               ub[3 * r + 2] * t->frame[3 * s + 2][l];
+}
+
+/* V^T grad N of corner 0 ... 3 */
+static void gxsp_block_corner(const gxsp_tangent *GXSP_RESTRICT t, int corner, gxsp_singles *GXSP_RESTRICT gamma)
+{
+    int k, l;
+    for (k = 0; k < 3; ++k)
+        GXSP_EACH_LANE(l)
+            gamma[k][l] = corner > 0 ? t->gradient[3 * (corner - 1) + k][l] :
+                          -(t->gradient[k][l] + t->gradient[3 + k][l] + t->gradient[6 + k][l]);
+}
+
+/* >>chunk: passes over one chunk, which only writes its own slots and sums */
+
+typedef struct gxsp_pass {
+    gxsp_system *system;
+    double rate;
+    const double *from;         /* displacement */
+    const gxsp_vector4 *x;      /* single precision input */
+    gxsp_vector4 *y;
+    double *sum;                /* n x 3 */
+    int inertia, forces;
+} gxsp_pass;
+
+static const gxsp_mass *gxsp_block_masses(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t block)
+{
+    return chunk->first_mass == GXSP_NONE ? NULL : &system->masses[chunk->first_mass + block];
+}
+
+/* x of a block's corners, and the parameters of their material */
+static void gxsp_block_load(const gxsp_system *system, const gxsp_chunk *chunk, const gxsp_rest *GXSP_RESTRICT rest, const double *x,
+                            gxsp_lanes *GXSP_RESTRICT corners)
+{
+    const uint32_t *copies = system->nodes + chunk->first_node;
     int i, l;
     for (i = 0; i < 4; ++i)
         for (l = 0; l < GXSP_LANES; ++l) {
-            const double *from = x + 3 * (size_t)block->copy[i][l];
-            gathered[3 * i][l] = from[0];
-            gathered[3 * i + 1][l] = from[1];
-            gathered[3 * i + 2][l] = from[2];
+            const double *from = x + 3 * (size_t)copies[rest->node[i][l]];
+            corners[3 * i][l] = from[0];
+            corners[3 * i + 1][l] = from[1];
+            corners[3 * i + 2][l] = from[2];
         }
 }
 
-static void gxsp_block_scatter(const gxsp_block *GXSP_RESTRICT block, gxsp_lanes *GXSP_RESTRICT values, double *y)
+static void gxsp_block_parameters(const gxsp_system *system, const gxsp_rest *rest, gxsp_state *s)
+{
+    int l;
+    for (l = 0; l < GXSP_LANES; ++l) {
+        const gxsp_material *material = &system->materials[rest->material[l]];
+        s->mu[l] = material->mu;
+        s->lambda[l] = material->lambda;
+    }
+}
+
+/* Forces of a block into the chunk's slots, 3 doubles each. */
+static void gxsp_block_store(const gxsp_rest *GXSP_RESTRICT rest, gxsp_lanes *GXSP_RESTRICT values, double *slots)
 {
     int i, l;
     for (l = 0; l < GXSP_LANES; ++l)
         for (i = 0; i < 4; ++i) {
-            double *to = y + 3 * (size_t)block->copy[i][l];
+            double *to = slots + 3 * (size_t)rest->node[i][l];
             to[0] += values[3 * i][l];
             to[1] += values[3 * i + 1][l];
             to[2] += values[3 * i + 2][l];
         }
 }
 
-/* y[12] = mass / dt^2 x[12] */
-static void gxsp_block_mass(const gxsp_block *GXSP_RESTRICT block, gxsp_lanes *GXSP_RESTRICT x, gxsp_lanes *GXSP_RESTRICT y)
+/* Energies of a chunk at pass->from, and elastic + inertial forces. */
+static void gxsp_task_state(void *context, size_t index)
 {
-    int r, l;
-    for (r = 0; r < 3; ++r)
-        GXSP_EACH_LANE(l) {
-            double a = x[r][l], b = x[3 + r][l], c = x[6 + r][l], d = x[9 + r][l];
-            y[r][l] = block->mass[0][l] * a + block->mass[1][l] * b + block->mass[2][l] * c + block->mass[3][l] * d;
-            y[3 + r][l] = block->mass[1][l] * a + block->mass[4][l] * b + block->mass[5][l] * c + block->mass[6][l] * d;
-            y[6 + r][l] = block->mass[2][l] * a + block->mass[5][l] * b + block->mass[7][l] * c + block->mass[8][l] * d;
-            y[9 + r][l] = block->mass[3][l] * a + block->mass[6][l] * b + block->mass[8][l] * c + block->mass[9][l] * d;
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    gxsp_system *system = pass->system;
+    const gxsp_chunk *chunk = &system->chunks[index];
+    double *slots = (double *)(void *)(system->slot_in) + 3 * (size_t)chunk->first_node;
+    double elastic = 0, kinetic = 0, size = 0;
+    uint32_t b;
+    int k, l;
+    memset(slots, 0, 3 * (size_t)chunk->node_count * sizeof *slots);
+    for (b = 0; b < chunk->block_count; ++b) {
+        const gxsp_rest *rest = &system->rest[chunk->first_block + b];
+        gxsp_lanes x[12], forces[12], energy;
+        gxsp_state s;
+        gxsp_block_load(system, chunk, rest, pass->from, x);
+        gxsp_block_parameters(system, rest, &s);
+        gxsp_block_gradient(rest, x, s.g);
+        gxsp_material_state(chunk->kind, &s);
+        gxsp_block_force(rest, s.p, forces);
+        for (l = 0; l < GXSP_LANES; ++l) {
+            elastic += rest->weight[l] * s.energy[l];
+            size += rest->weight[l] * s.size[l];
+        }
+        if (pass->inertia) {
+            gxsp_lanes moved[12];
+            gxsp_block_load(system, chunk, rest, system->target, moved);
+            for (k = 0; k < 12; ++k)
+                GXSP_EACH_LANE(l) moved[k][l] = x[k][l] - moved[k][l];
+            gxsp_block_inertia(rest, gxsp_block_masses(system, chunk, b), pass->rate, moved, forces, energy);
+            for (l = 0; l < GXSP_LANES; ++l)
+                kinetic += energy[l];
+        }
+        gxsp_block_store(rest, forces, slots);
+    }
+    system->chunk_sum[index][0] = elastic;
+    system->chunk_sum[index][1] = kinetic;
+    system->chunk_sum[index][2] = size + kinetic;
+}
+
+/* sum = over the slots of each copy, 3 doubles each */
+static void gxsp_task_sum(void *context, size_t index)
+{
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    const double *slots = (const double *)(const void *)system->slot_in;
+    size_t i = index * GXSP_RANGE, end = i + GXSP_RANGE < system->n ? i + GXSP_RANGE : system->n;
+    for (; i < end; ++i) {
+        double x = 0, y = 0, z = 0;
+        uint32_t s;
+        for (s = system->copy_start[i]; s < system->copy_start[i + 1]; ++s) {
+            const double *from = slots + 3 * (size_t)system->copy_slot[s];
+            x += from[0], y += from[1], z += from[2];
+        }
+        pass->sum[3 * i] = x, pass->sum[3 * i + 1] = y, pass->sum[3 * i + 2] = z;
+    }
+}
+
+/* Energies at from (elastic, kinetic, size of terms), and elastic + inertial forces. */
+static void gxsp_evaluate(gxsp_system *system, double rate, const double *from, double *force, double *energies)
+{
+    gxsp_pass pass;
+    uint32_t c;
+    memset(&pass, 0, sizeof pass);
+    pass.system = system;
+    pass.rate = rate;
+    pass.from = from;
+    pass.sum = force;
+    pass.inertia = rate > 0 && !system->lumped_mass;
+    gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_state, &pass);
+    gxsp_parallel(system->jobs, system->range_count, gxsp_task_sum, &pass);
+    energies[0] = energies[1] = energies[2] = 0;
+    for (c = 0; c < system->chunk_count; ++c) {
+        energies[0] += system->chunk_sum[c][0];
+        energies[1] += system->chunk_sum[c][1];
+        energies[2] += system->chunk_sum[c][2];
+    }
+    if (rate > 0 && system->lumped_mass) {
+        size_t i;
+        double kinetic = 0;
+        for (i = 0; i < 3 * system->n; ++i) {
+            double moved = from[i] - system->target[i], inertia = rate * system->lumped[i / 3] * moved;
+            force[i] += inertia;
+            kinetic += 0.5 * inertia * moved;
+        }
+        energies[1] = kinetic;
+        energies[2] += kinetic;
+    }
+}
+
+/* >>model: elements sorted by material kind, by whether they are whole, and along a curve through space, then cut into chunks */
+
+/* Forests of joined indices: the root of a tree is its least. */
+static uint32_t gxsp_root(uint32_t *parent, uint32_t i)
+{
+    while (parent[i] != i) {
+        parent[i] = parent[parent[i]];
+        i = parent[i];
+    }
+    return i;
+}
+
+static void gxsp_join(uint32_t *parent, uint32_t i, uint32_t j)
+{
+    i = gxsp_root(parent, i);
+    j = gxsp_root(parent, j);
+    if (i < j)
+        parent[j] = i;
+    else
+        parent[i] = j;
+}
+
+/* Position of a place along the Z-order curve of 1024^3 cells */
+static uint32_t gxsp_curve(const double *at, const double *low, double per_cell)
+{
+    uint32_t code = 0;
+    int k, bit;
+    for (k = 0; k < 3; ++k) {
+        double cell = (at[k] - low[k]) * per_cell;
+        uint32_t index = cell < 0 ? 0 : cell > 1023 ? 1023 : (uint32_t)cell;
+        for (bit = 0; bit < 10; ++bit)
+            code |= (index >> bit & 1u) << (3u * (uint32_t)bit + (uint32_t)k);
+    }
+    return code;
+}
+
+/* Is the mass block m (1 + delta_ij), as a whole element's is? To rounding of its ten integrals. */
+static int gxsp_whole(const double *mass)
+{
+    static const int own[10] = {2, 1, 1, 1, 2, 1, 1, 2, 1, 2};
+    int k;
+    for (k = 0; k < 10; ++k)
+        if (fabs(mass[k] - 0.5 * own[k] * mass[0]) > 1e-14 * mass[0])
+            return 0;
+    return 1;
+}
+
+/* An element's place in the order: class, then curve */
+typedef struct gxsp_sorted {
+    uint32_t place, element;
+    uint32_t class_index; /* 2 x kind + (general mass) */
+} gxsp_sorted;
+
+static uint32_t gxsp_sorted_digit(const gxsp_sorted *of, int pass)
+{
+    return pass < 3 ? of->place >> (10 * pass) & 1023u : of->class_index;
+}
+
+/* Stable sort by place and class, least digit first. other: room for as many */
+static gxsp_sorted *gxsp_sort_elements(gxsp_sorted *sorted, gxsp_sorted *other, size_t count)
+{
+    int pass, digit;
+    for (pass = 0; pass < 4; ++pass) {
+        size_t start[1025] = {0}, i;
+        gxsp_sorted *swap = sorted;
+        for (i = 0; i < count; ++i)
+            ++start[gxsp_sorted_digit(&sorted[i], pass) + 1];
+        for (digit = 0; digit < 1024; ++digit)
+            start[digit + 1] += start[digit];
+        for (i = 0; i < count; ++i)
+            other[start[gxsp_sorted_digit(&sorted[i], pass)]++] = sorted[i];
+        sorted = other;
+        other = swap;
+    }
+    return sorted;
+}
+
+static gxsp_sorted *gxsp_order_elements(const gxs_model *model, gxsp_pool *scratch)
+{
+    gxsp_sorted *sorted = (gxsp_sorted *)gxsp_take(scratch, model->element_count, sizeof *sorted);
+    gxsp_sorted *other = (gxsp_sorted *)gxsp_take(scratch, model->element_count, sizeof *other);
+    double low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, extent = 0;
+    size_t i;
+    int k, r;
+    if (scratch->failed)
+        return NULL;
+    for (i = 0; model->positions && i < model->copy_count; ++i)
+        for (k = 0; k < 3; ++k) {
+            double x = model->positions[3 * i + (size_t)k];
+            low[k] = i == 0 || x < low[k] ? x : low[k];
+            high[k] = i == 0 || x > high[k] ? x : high[k];
+        }
+    for (k = 0; k < 3; ++k)
+        extent = high[k] - low[k] > extent ? high[k] - low[k] : extent;
+    for (i = 0; i < model->element_count; ++i) {
+        const gxs_element *element = &model->elements[i];
+        const gxs_material_kind kind = model->materials[element->material].kind;
+        sorted[i].element = (uint32_t)i;
+        sorted[i].place = 0;
+        sorted[i].class_index = 2 * (uint32_t)kind + (model->lumped_mass || gxsp_whole(element->mass) ? 0u : 1u);
+        if (model->positions && extent > 0) {
+            double at[3] = {0, 0, 0};
+            for (k = 0; k < 4; ++k)
+                for (r = 0; r < 3; ++r)
+                    at[r] += 0.25 * model->positions[3 * (size_t)element->copy[k] + (size_t)r];
+            sorted[i].place = gxsp_curve(at, low, 1024 / extent);
+        }
+    }
+    return gxsp_sort_elements(sorted, other, model->element_count);
+}
+
+static void gxsp_place_element(gxsp_system *system, const gxsp_chunk *chunk, const gxs_element *element, uint32_t at, int lumped)
+{
+    gxsp_rest *rest = &system->rest[chunk->first_block + at / GXSP_LANES];
+    size_t lane = at % GXSP_LANES;
+    int k;
+    for (k = 0; k < 9; ++k)
+        rest->gradient[k][lane] = element->gradient[1 + k / 3][k % 3];
+    rest->weight[lane] = element->weight;
+    rest->material[lane] = element->material;
+    if (chunk->first_mass != GXSP_NONE)
+        for (k = 0; k < 10; ++k)
+            system->masses[chunk->first_mass + at / GXSP_LANES].entry[k][lane] = element->mass[k];
+    else
+        rest->mass[lane] = lumped ? 0 : 0.5 * element->mass[0];
+}
+
+/* Blocks and nodes of the chunks. local, stamp: copy_count, scratch, zero */
+static void gxsp_fill_chunks(gxsp_system *system, const gxs_model *model, const gxsp_sorted *sorted, uint32_t *local, uint32_t *stamp)
+{
+    size_t first = 0;
+    uint32_t c;
+    for (c = 0; c < system->chunk_count; ++c) {
+        gxsp_chunk *chunk = &system->chunks[c];
+        uint32_t e, count = 0, last;
+        int k;
+        for (last = 0; first + last < model->element_count && last < chunk->block_count * GXSP_LANES &&
+             sorted[first + last].class_index == sorted[first].class_index; ++last)
+            ;
+        chunk->first_node = (uint32_t)system->slot_count;
+        for (e = 0; e < last; ++e) {
+            const gxs_element *element = &model->elements[sorted[first + e].element];
+            gxsp_rest *rest = &system->rest[chunk->first_block + e / GXSP_LANES];
+            gxsp_place_element(system, chunk, element, e, model->lumped_mass);
+            for (k = 0; k < 4; ++k) {
+                uint32_t copy = element->copy[k];
+                if (stamp[copy] != c + 1) {
+                    stamp[copy] = c + 1;
+                    local[copy] = count;
+                    system->nodes[system->slot_count + count++] = copy;
+                }
+                rest->node[k][e % GXSP_LANES] = (uint16_t)local[copy];
+            }
+        }
+        for (; e < chunk->block_count * GXSP_LANES; ++e) /* of no weight, but of a material there is */
+            system->rest[chunk->first_block + e / GXSP_LANES].material[e % GXSP_LANES] =
+                model->elements[sorted[first].element].material;
+        chunk->node_count = count;
+        system->slot_count += count;
+        first += last;
+    }
+}
+
+/* Chunks of the sorted elements: which blocks, what kind; counts of what they need */
+static void gxsp_plan_chunks(gxsp_system *system, const gxsp_sorted *sorted, gxsp_chunk *chunks)
+{
+    size_t i = 0;
+    system->chunk_count = 0;
+    system->block_count = system->mass_count = 0;
+    while (i < system->element_count) {
+        uint32_t class_index = sorted[i].class_index, count = 0;
+        gxsp_chunk chunk;
+        memset(&chunk, 0, sizeof chunk);
+        while (i < system->element_count && sorted[i].class_index == class_index && count < GXSP_CHUNK_BLOCKS * GXSP_LANES)
+            ++i, ++count;
+        chunk.kind = (gxs_material_kind)(class_index / 2);
+        chunk.first_block = (uint32_t)system->block_count;
+        chunk.block_count = (count + GXSP_LANES - 1) / GXSP_LANES;
+        chunk.first_mass = class_index % 2 ? (uint32_t)system->mass_count : GXSP_NONE;
+        system->block_count += chunk.block_count;
+        system->mass_count += class_index % 2 ? chunk.block_count : 0;
+        if (chunks)
+            chunks[system->chunk_count] = chunk;
+        ++system->chunk_count;
+    }
+}
+
+static void gxsp_chunks_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model)
+{
+    gxsp_sorted *sorted = gxsp_order_elements(model, scratch);
+    uint32_t *local = (uint32_t *)gxsp_take(scratch, system->n, sizeof(uint32_t));
+    uint32_t *stamp = (uint32_t *)gxsp_take(scratch, system->n, sizeof(uint32_t)), c, i;
+    size_t most = 4 * system->element_count, s;
+    if (scratch->failed)
+        return;
+    gxsp_plan_chunks(system, sorted, NULL);
+    system->chunks = (gxsp_chunk *)gxsp_take(&system->pool, system->chunk_count, sizeof(gxsp_chunk));
+    system->chunk_sum = (double(*)[3])gxsp_take(&system->pool, system->chunk_count, sizeof *system->chunk_sum);
+    system->rest = (gxsp_rest *)gxsp_take(&system->pool, system->block_count, sizeof(gxsp_rest));
+    system->tangents = (gxsp_tangent *)gxsp_take(&system->pool, system->block_count, sizeof(gxsp_tangent));
+    system->masses = (gxsp_mass *)gxsp_take(&system->pool, system->mass_count, sizeof(gxsp_mass));
+    system->copy_start = (uint32_t *)gxsp_take(&system->pool, system->n + 2, sizeof(uint32_t));
+    system->nodes = (uint32_t *)gxsp_take(scratch, most, sizeof(uint32_t)); /* its size is not known yet */
+    if (scratch->failed || system->pool.failed)
+        return;
+    gxsp_plan_chunks(system, sorted, system->chunks);
+    gxsp_fill_chunks(system, model, sorted, local, stamp);
+    system->copy_slot = (uint32_t *)gxsp_take(&system->pool, system->slot_count, sizeof(uint32_t));
+    system->slot_in = (gxsp_vector4 *)gxsp_take(&system->pool, 2 * system->slot_count, sizeof(gxsp_vector4));
+    system->slot_out = system->slot_in + system->slot_count;
+    local = (uint32_t *)gxsp_take(&system->pool, system->slot_count, sizeof(uint32_t));
+    if (system->pool.failed)
+        return;
+    memcpy(local, system->nodes, system->slot_count * sizeof(uint32_t));
+    system->nodes = local;
+    for (s = 0; s < system->slot_count; ++s)
+        ++system->copy_start[system->nodes[s] + 2];
+    for (i = 0; i < system->n; ++i)
+        system->copy_start[i + 2] += system->copy_start[i + 1];
+    for (c = 0; c < system->chunk_count; ++c)
+        for (i = 0; i < system->chunks[c].node_count; ++i) {
+            s = system->chunks[c].first_node + i;
+            system->copy_slot[system->copy_start[system->nodes[s] + 1]++] = (uint32_t)s;
         }
 }
 
-/* t[9] = U^T sum (x_i - x_0) (V^T grad N_i)^T: the change of F in the frame of its stretches */
-static void gxsp_block_strain(const gxsp_block *GXSP_RESTRICT block, gxsp_lanes *GXSP_RESTRICT x, gxsp_lanes *GXSP_RESTRICT t)
+/* Does the element give corner i stiffness or mass? */
+static int gxsp_supports(const gxs_element *element, int i)
 {
-    gxsp_lanes d[9];
-    int r, c, l;
-    for (r = 0; r < 3; ++r)
-        for (c = 0; c < 3; ++c)
-            GXSP_EACH_LANE(l)
-                d[3 * r + c][l] = (x[3 + r][l] - x[r][l]) * block->gradient[c][l] +
-                                  (x[6 + r][l] - x[r][l]) * block->gradient[3 + c][l] +
-                                  (x[9 + r][l] - x[r][l]) * block->gradient[6 + c][l];
-    for (r = 0; r < 3; ++r)
-        for (c = 0; c < 3; ++c)
-            GXSP_EACH_LANE(l)
-                t[3 * r + c][l] = block->frame[r][l] * d[c][l] + block->frame[3 + r][l] * d[3 + c][l] +
-                                  block->frame[6 + r][l] * d[6 + c][l];
+    static const int own[4] = {0, 4, 7, 9};
+    return element->weight > 0 || element->mass[own[i]] > 0;
 }
 
-/* y[9] = weight h : t[9] (gxsp_tangent_local on lanes) */
-static void gxsp_block_stress(const gxsp_block *GXSP_RESTRICT block, gxsp_lanes *GXSP_RESTRICT t, gxsp_lanes *GXSP_RESTRICT y)
+/* Copies that no element supports are fixed like held ones; row sums of the mass. */
+static void gxsp_find_fixed(gxsp_system *system, const gxs_model *model)
 {
-    int r, c, l;
-    GXSP_EACH_LANE(l) {
-        y[0][l] = block->stretch[0][l] * t[0][l] + block->stretch[1][l] * t[4][l] + block->stretch[2][l] * t[8][l];
-        y[4][l] = block->stretch[1][l] * t[0][l] + block->stretch[3][l] * t[4][l] + block->stretch[4][l] * t[8][l];
-        y[8][l] = block->stretch[2][l] * t[0][l] + block->stretch[4][l] * t[4][l] + block->stretch[5][l] * t[8][l];
+    static const int packed[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
+    size_t e, i;
+    int k, j;
+    memset(system->fixed, 1, system->n);
+    for (e = 0; e < model->element_count; ++e)
+        for (k = 0; k < 4; ++k) {
+            const gxs_element *element = &model->elements[e];
+            if (gxsp_supports(element, k))
+                system->fixed[element->copy[k]] = 0;
+            for (j = 0; j < 4; ++j)
+                system->lumped[element->copy[k]] += element->mass[packed[k][j]];
+        }
+    if (model->held)
+        for (i = 0; i < system->n; ++i)
+            if (model->held[i])
+                system->fixed[i] = 1;
+}
+
+/* Numbers the free pieces: copies joined by elements, none of them fixed, with mass. A translation of such a piece meets no
+ * stiffness: K T = 0, so T^T (K + rate M) x = rate x sum of lumped x. forest, total: n, scratch */
+static void gxsp_find_pieces(gxsp_system *system, const gxs_model *model, uint32_t *forest, double *total)
+{
+    size_t e, i;
+    int k;
+    for (i = 0; i < system->n; ++i)
+        forest[i] = (uint32_t)i;
+    for (e = 0; e < model->element_count; ++e)
+        for (k = 1; k < 4; ++k)
+            if (gxsp_supports(&model->elements[e], 0) || gxsp_supports(&model->elements[e], k))
+                gxsp_join(forest, model->elements[e].copy[0], model->elements[e].copy[k]);
+    for (i = 0; i < system->n; ++i)
+        total[gxsp_root(forest, (uint32_t)i)] += system->lumped[i];
+    for (i = 0; i < system->n; ++i)
+        if (system->fixed[i])
+            total[gxsp_root(forest, (uint32_t)i)] = -1;
+    for (i = 0; i < system->n; ++i) { /* roots come before their copies: the lower index wins in gxsp_join */
+        uint32_t root = gxsp_root(forest, (uint32_t)i);
+        if (root == i)
+            system->piece[i] = total[i] > 0 ? system->piece_count++ : GXSP_NONE;
+        else
+            system->piece[i] = system->piece[root];
     }
-    for (r = 0; r < 3; ++r)
-        for (c = 0; c < 3; ++c)
-            if (r != c)
-                GXSP_EACH_LANE(l)
-                    y[3 * r + c][l] = block->even[3 - r - c][l] * t[3 * r + c][l] +
-                                      block->odd[3 - r - c][l] * t[3 * c + r][l];
+    system->piece_sum = (double *)gxsp_take(&system->pool, 4 * (size_t)system->piece_count, sizeof(double));
+    for (i = 0; i < system->n && !system->pool.failed; ++i)
+        if (system->piece[i] != GXSP_NONE)
+            system->piece_sum[4 * (size_t)system->piece[i] + 3] += system->lumped[i];
 }
 
-/* f[12] += U s[9] (V^T grad N_i) */
-static void gxsp_block_force(const gxsp_block *GXSP_RESTRICT block, gxsp_lanes *GXSP_RESTRICT s, gxsp_lanes *GXSP_RESTRICT f)
+/* Rest positions in spacings of the first lattice: GXSP_SPACING edges of an average whole element. 0: there is none. */
+static int gxsp_find_places(gxsp_system *system, const gxs_model *model)
 {
-    gxsp_lanes p[9];
-    int i, r, c, l;
-    for (r = 0; r < 3; ++r)
-        for (c = 0; c < 3; ++c)
-            GXSP_EACH_LANE(l)
-                p[3 * r + c][l] = block->frame[3 * r][l] * s[c][l] + block->frame[3 * r + 1][l] * s[3 + c][l] +
-                                  block->frame[3 * r + 2][l] * s[6 + c][l];
+    double volume = 0, spacing;
+    size_t e, i, k, counted = 0;
+    for (e = 0; e < model->element_count; ++e) {
+        const double *g = &model->elements[e].gradient[1][0];
+        double inverse = g[0] * (g[4] * g[8] - g[5] * g[7]) + g[1] * (g[5] * g[6] - g[3] * g[8]) + g[2] * (g[3] * g[7] - g[4] * g[6]);
+        if (fabs(inverse) > 0) {
+            volume += 1 / fabs(inverse) / 6;
+            ++counted;
+        }
+    }
+    if (counted == 0)
+        return 0;
+    spacing = GXSP_SPACING * cbrt(5 * volume / (double)counted); /* five elements to a cube */
+    for (i = 0; i < system->n; ++i)
+        for (k = 0; k < 3; ++k) {
+            double place = (model->positions[3 * i + k] - model->positions[k]) / spacing;
+            if (!(fabs(place) < 1e6)) /* single precision would not place it */
+                return 0;
+            system->place[i][k] = (float)place + 0.31f; /* lattice planes off the mesh's own */
+        }
+    return 1;
+}
+
+static void gxsp_system_vectors(gxsp_system *system)
+{
+    double **vectors[8];
+    gxsp_vector4 **singles[3];
+    int i;
+    vectors[0] = &system->base, vectors[1] = &system->target, vectors[2] = &system->load, vectors[3] = &system->current;
+    vectors[4] = &system->trial, vectors[5] = &system->force, vectors[6] = &system->residual, vectors[7] = &system->direction;
+    for (i = 0; i < 8; ++i)
+        *vectors[i] = (double *)gxsp_take(&system->pool, 3 * system->n, sizeof(double));
+    singles[0] = &system->search, singles[1] = &system->product, singles[2] = &system->scaled;
     for (i = 0; i < 3; ++i)
-        for (r = 0; r < 3; ++r)
-            GXSP_EACH_LANE(l) {
-                double force = p[3 * r][l] * block->gradient[3 * i][l] + p[3 * r + 1][l] * block->gradient[3 * i + 1][l] +
-                               p[3 * r + 2][l] * block->gradient[3 * i + 2][l];
-                f[3 * i + 3 + r][l] += force;
-                f[r][l] -= force;
+        *singles[i] = (gxsp_vector4 *)gxsp_take(&system->pool, system->n, sizeof(gxsp_vector4));
+    system->right = (gxsp_vector4 *)gxsp_take(&system->pool, system->n, sizeof(gxsp_vector4));
+    system->diagonal = (float *)gxsp_take(&system->pool, 6 * system->n, sizeof(float));
+    system->lumped = (double *)gxsp_take(&system->pool, system->n, sizeof(double));
+    system->piece = (uint32_t *)gxsp_take(&system->pool, system->n, sizeof(uint32_t));
+    system->fixed = (uint8_t *)gxsp_take(&system->pool, system->n, 1);
+}
+
+
+/* >>lattice: the multigrid's structure. A coarse node is a point of a lattice together with one connected component of the nodes
+ * in its support, so that coarse functions never cross a cut (the copies' own trick, one level up). Values between lattice
+ * points are linear on the six tetrahedra around a cell's diagonal: at most four weights, exact for affine fields. */
+
+/* Lattice cell, order of axes and weights at a place. */
+static void gxsp_locate(const float *place, int32_t *cell, uint8_t *axis, float *weight)
+{
+    float f[3];
+    int k;
+    for (k = 0; k < 3; ++k) {
+        cell[k] = (int32_t)floor((double)place[k]);
+        f[k] = place[k] - (float)cell[k];
+        axis[k] = (uint8_t)k;
+    }
+    for (k = 0; k < 3; ++k) { /* three compare-and-swaps sort three numbers: (0 1), (1 2), (0 1) */
+        int i = k % 2;
+        if (f[axis[i]] < f[axis[i + 1]]) {
+            uint8_t first = axis[i];
+            axis[i] = axis[i + 1];
+            axis[i + 1] = first;
+        }
+    }
+    weight[0] = 1 - f[axis[0]];
+    weight[1] = f[axis[0]] - f[axis[1]];
+    weight[2] = f[axis[1]] - f[axis[2]];
+    weight[3] = f[axis[2]];
+}
+
+/* Lattice points as one number; never 0. 2^20 points along each axis suffice for any 32-bit count of elements near each other;
+ * farther ones would only share a number, not a component. */
+static uint64_t gxsp_lattice_key(const int32_t *point)
+{
+    return ((uint64_t)((uint32_t)point[0] & 0x1fffffu) << 42 | (uint64_t)((uint32_t)point[1] & 0x1fffffu) << 21 |
+            ((uint32_t)point[2] & 0x1fffffu)) + 1;
+}
+
+/* Keys of the four points of the tetrahedron from a cell along axes */
+static void gxsp_tetrahedron_keys(const int32_t *cell, const uint8_t *axis, uint64_t *key)
+{
+    int32_t point[3];
+    int k;
+    memcpy(point, cell, sizeof point);
+    key[0] = gxsp_lattice_key(point);
+    for (k = 0; k < 3; ++k) {
+        ++point[axis[k]];
+        key[k + 1] = gxsp_lattice_key(point);
+    }
+}
+
+/* What the transfer of a level is made from: four lattice points around each node, those of weight 0 left out */
+typedef struct gxsp_transfer {
+    uint64_t *key;      /* n x 4; 0: left out */
+    uint32_t *forest;   /* n x 4 */
+} gxsp_transfer;
+
+/* Nodes i and j are neighbours: the lattice points around both belong to one component there. */
+static void gxsp_join_nodes(gxsp_transfer *transfer, uint32_t i, uint32_t j)
+{
+    const uint64_t *a = transfer->key + 4 * (size_t)i, *b = transfer->key + 4 * (size_t)j;
+    uint32_t p, q;
+    for (p = 0; p < 4; ++p)
+        for (q = 0; q < 4; ++q)
+            if (a[p] == b[q] && a[p] != 0)
+                gxsp_join(transfer->forest, 4 * i + p, 4 * j + q);
+}
+
+/* Points and weights of a level's nodes, before components are joined. place: n x 3, in spacings of the next lattice */
+static void gxsp_transfer_begin(const gxsp_level *level, float (*place)[3], const uint8_t *fixed, gxsp_transfer *transfer)
+{
+    uint32_t i;
+    int k;
+    for (i = 0; i < level->n; ++i) {
+        int32_t cell[3];
+        uint8_t axis[3];
+        gxsp_locate(place[i], cell, axis, level->weight[i]);
+        gxsp_tetrahedron_keys(cell, axis, transfer->key + 4 * (size_t)i);
+        for (k = 0; k < 4; ++k) {
+            transfer->forest[4 * (size_t)i + (size_t)k] = 4 * i + (uint32_t)k;
+            if (level->weight[i][k] < 1e-4f || (fixed && fixed[i])) { /* 1e-4: what this leaves out of an affine field is far below the smoother's part */
+                transfer->key[4 * (size_t)i + (size_t)k] = 0;
+                level->weight[i][k] = 0;
+            }
+        }
+    }
+}
+
+/* Numbers the components: the next level's nodes. Returns how many. */
+static uint32_t gxsp_transfer_end(gxsp_level *level, gxsp_transfer *transfer)
+{
+    uint32_t slot, count = 0;
+    for (slot = 0; slot < 4 * level->n; ++slot) { /* roots come first in their tree: the lower index wins in gxsp_join */
+        uint32_t *parent = &level->parent[slot / 4][slot % 4], root;
+        if (transfer->key[slot] == 0) {
+            *parent = GXSP_NONE;
+            continue;
+        }
+        root = gxsp_root(transfer->forest, slot);
+        *parent = root == slot ? count++ : level->parent[root / 4][root % 4];
+    }
+    return count;
+}
+
+static void gxsp_transfer_places(const gxsp_level *level, const gxsp_transfer *transfer, gxsp_level *next)
+{
+    uint32_t slot;
+    for (slot = 0; slot < 4 * level->n; ++slot)
+        if (transfer->key[slot] != 0) {
+            uint64_t key = transfer->key[slot] - 1;
+            int k;
+            for (k = 0; k < 3; ++k) { /* 21 bits with their sign */
+                uint32_t bits = (uint32_t)(key >> (42 - 21 * k)) & 0x1fffffu;
+                next->place[level->parent[slot / 4][slot % 4]][k] = (int32_t)bits - (bits & 0x100000u ? 0x200000 : 0);
+            }
+        }
+}
+
+/* Nodes by parent. */
+static void gxsp_find_children(gxsp_pool *pool, gxsp_level *level, uint32_t next_count)
+{
+    uint32_t i, total = 0, k;
+    level->child_start = (uint32_t *)gxsp_take(pool, (size_t)next_count + 2, sizeof(uint32_t));
+    if (pool->failed)
+        return;
+    for (i = 0; i < level->n; ++i)
+        for (k = 0; k < 4; ++k)
+            if (level->parent[i][k] != GXSP_NONE)
+                ++level->child_start[level->parent[i][k] + 2], ++total;
+    level->child = (uint32_t *)gxsp_take(pool, total, sizeof(uint32_t));
+    if (pool->failed)
+        return;
+    for (i = 0; i < next_count; ++i)
+        level->child_start[i + 2] += level->child_start[i + 1];
+    for (i = 0; i < level->n; ++i)
+        for (k = 0; k < 4; ++k)
+            if (level->parent[i][k] != GXSP_NONE)
+                level->child[level->child_start[level->parent[i][k] + 1]++] = i;
+}
+
+static void gxsp_sort_row(uint32_t *row, uint32_t count)
+{
+    uint32_t i, j;
+    for (i = 1; i < count; ++i) { /* some 30 entries */
+        uint32_t value = row[i];
+        for (j = i; j > 0 && row[j - 1] > value; --j)
+            row[j] = row[j - 1];
+        row[j] = value;
+    }
+}
+
+/* Room for a level of n nodes, but for its matrix */
+static void gxsp_level_make(gxsp_pool *pool, gxsp_level *level, uint32_t n, int coarse)
+{
+    level->n = n;
+    level->parent = (uint32_t(*)[4])gxsp_take(pool, n, sizeof *level->parent);
+    level->weight = (float(*)[4])gxsp_take(pool, n, sizeof *level->weight);
+    if (!coarse)
+        return;
+    level->place = (int32_t(*)[3])gxsp_take(pool, n, sizeof *level->place);
+    level->start = (uint32_t *)gxsp_take(pool, (size_t)n + 1, sizeof(uint32_t));
+    level->inverse = (float *)gxsp_take(pool, 9 * (size_t)n, sizeof(float));
+    level->x = (gxsp_vector4 *)gxsp_take(pool, n, sizeof(gxsp_vector4));
+    level->b = (gxsp_vector4 *)gxsp_take(pool, n, sizeof(gxsp_vector4));
+    level->r = (gxsp_vector4 *)gxsp_take(pool, n, sizeof(gxsp_vector4));
+}
+
+static void gxsp_level_matrix(gxsp_pool *pool, gxsp_level *level, const uint32_t *columns)
+{
+    uint32_t entries = level->start[level->n];
+    level->column = (uint32_t *)gxsp_take(pool, entries, sizeof(uint32_t));
+    level->block = (float *)gxsp_take(pool, 9 * (size_t)entries, sizeof(float));
+    if (!pool->failed)
+        memcpy(level->column, columns, entries * sizeof(uint32_t));
+}
+
+/* Columns of transfer^T A transfer, row by row; with columns NULL only the rows' starts. seen: next->n, scratch */
+static void gxsp_coarse_pattern(const gxsp_level *level, gxsp_level *next, uint32_t *columns, uint32_t *seen)
+{
+    uint32_t row, i, k, count = 0;
+    int b;
+    memset(seen, 0, next->n * sizeof *seen);
+    for (row = 0; row < next->n; ++row) {
+        next->start[row] = count;
+        for (i = level->child_start[row]; i < level->child_start[row + 1]; ++i)
+            for (k = level->start[level->child[i]]; k < level->start[level->child[i] + 1]; ++k)
+                for (b = 0; b < 4; ++b) {
+                    uint32_t parent = level->parent[level->column[k]][b];
+                    if (parent == GXSP_NONE || seen[parent] == row + 1)
+                        continue;
+                    seen[parent] = row + 1;
+                    if (columns)
+                        columns[count] = parent;
+                    ++count;
+                }
+        if (columns)
+            gxsp_sort_row(columns + next->start[row], count - next->start[row]);
+    }
+    next->start[next->n] = count;
+}
+
+/* The level after levels[at], at > 0, of twice its spacing. 0: it would not be much smaller. Scratch is left in the pool of
+ * temporary memory. */
+static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t at)
+{
+    gxsp_level *level = &system->levels[at], *next = level + 1;
+    gxsp_transfer transfer;
+    float (*place)[3] = (float(*)[3])gxsp_take(scratch, level->n, sizeof *place);
+    uint32_t i, k, count, *seen, *columns;
+    transfer.key = (uint64_t *)gxsp_take(scratch, 4 * (size_t)level->n, sizeof(uint64_t));
+    transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * (size_t)level->n, sizeof(uint32_t));
+    if (scratch->failed)
+        return 0;
+    for (i = 0; i < level->n; ++i)
+        for (k = 0; k < 3; ++k)
+            place[i][k] = 0.5f * (float)level->place[i][k];
+    gxsp_transfer_begin(level, place, NULL, &transfer);
+    for (i = 0; i < level->n; ++i)
+        for (k = level->start[i]; k < level->start[i + 1]; ++k)
+            if (level->column[k] < i)
+                gxsp_join_nodes(&transfer, i, level->column[k]);
+    count = gxsp_transfer_end(level, &transfer);
+    if (count > level->n - level->n / 3)
+        return 0;
+    gxsp_level_make(&system->pool, next, count, 1);
+    gxsp_find_children(&system->pool, level, count);
+    seen = (uint32_t *)gxsp_take(scratch, count, sizeof(uint32_t));
+    if (system->pool.failed || scratch->failed)
+        return 0;
+    gxsp_transfer_places(level, &transfer, next);
+    gxsp_coarse_pattern(level, next, NULL, seen);
+    columns = (uint32_t *)gxsp_take(scratch, next->start[count], sizeof(uint32_t));
+    if (scratch->failed)
+        return 0;
+    gxsp_coarse_pattern(level, next, columns, seen);
+    gxsp_level_matrix(&system->pool, next, columns);
+    return 1;
+}
+
+/* Order and envelope of the last level: breadth first, component by component. */
+static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch)
+{
+    const gxsp_level *level = &system->levels[system->level_count - 1];
+    gxsp_factor *factor = &system->factor;
+    uint32_t *place = (uint32_t *)gxsp_take(scratch, level->n, sizeof(uint32_t)), seed, i, k, count = 0, done = 0;
+    size_t entries = 0;
+    factor->n = 3 * level->n;
+    factor->order = (uint32_t *)gxsp_take(&system->pool, level->n, sizeof(uint32_t));
+    factor->first = (uint32_t *)gxsp_take(&system->pool, factor->n, sizeof(uint32_t));
+    factor->row = (size_t *)gxsp_take(&system->pool, factor->n, sizeof(size_t));
+    factor->x = (double *)gxsp_take(&system->pool, factor->n, sizeof(double));
+    if (scratch->failed || system->pool.failed)
+        return;
+    memset(place, 0xff, level->n * sizeof *place);
+    for (seed = 0; seed < level->n; ++seed) {
+        if (place[seed] != GXSP_NONE)
+            continue;
+        place[seed] = count;
+        factor->order[count++] = seed;
+        for (; done < count; ++done)
+            for (k = level->start[factor->order[done]]; k < level->start[factor->order[done] + 1]; ++k)
+                if (place[level->column[k]] == GXSP_NONE) {
+                    place[level->column[k]] = count;
+                    factor->order[count++] = level->column[k];
+                }
+    }
+    for (i = 0; i < factor->n; ++i) {
+        uint32_t node = factor->order[i / 3], first = i / 3;
+        for (k = level->start[node]; k < level->start[node + 1]; ++k)
+            first = place[level->column[k]] < first ? place[level->column[k]] : first;
+        factor->first[i] = 3 * first;
+        factor->row[i] = entries - 3 * (size_t)first;   /* no less than 0: every row before has an entry */
+        entries += i - 3 * first + 1;
+    }
+    factor->entry = (double *)gxsp_take(&system->pool, entries + factor->n, sizeof(double));
+    factor->entry_count = entries;
+}
+
+/* Coarse nodes that an element's corners follow, each once, and their weights at the corners. Returns how many: 16 at most. */
+static int gxsp_element_parents(const gxsp_system *system, const uint32_t *copies, uint32_t *parents, float (*weights)[4])
+{
+    const gxsp_level *fine = &system->levels[0];
+    int count = 0, i, k, p;
+    for (i = 0; i < 4; ++i)
+        for (k = 0; k < 4; ++k) {
+            const uint32_t parent = fine->parent[copies[i]][k];
+            if (parent == GXSP_NONE)
+                continue;
+            for (p = 0; p < count && parents[p] != parent; ++p)
+                ;
+            if (p == count) {
+                parents[count++] = parent;
+                memset(weights[p], 0, sizeof weights[p]);
+            }
+            weights[p][i] = fine->weight[copies[i]][k];
+        }
+    return count;
+}
+
+static void gxsp_lane_copies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t block, int lane, uint32_t *copies)
+{
+    const gxsp_rest *rest = &system->rest[chunk->first_block + block];
+    int i;
+    for (i = 0; i < 4; ++i)
+        copies[i] = system->nodes[chunk->first_node + rest->node[i][lane]];
+}
+
+/* Columns of level 1's matrix: two nodes are neighbours where an element follows both. With columns NULL only their count in
+ * start[row + 2], repetitions within a chunk left out as far as the table holds them. */
+static void gxsp_list_pairs(gxsp_system *system, uint32_t *start, uint32_t *columns, uint64_t *table, uint32_t table_size)
+{
+    uint32_t c, b;
+    int l, p, q;
+    memset(table, 0xff, table_size * sizeof *table);
+    for (c = 0; c < system->chunk_count; ++c)
+        for (b = 0; b < system->chunks[c].block_count; ++b)
+            for (l = 0; l < GXSP_LANES; ++l) {
+                uint32_t copies[4], parents[16];
+                float weights[16][4];
+                int count;
+                gxsp_lane_copies(system, &system->chunks[c], b, l, copies);
+                count = gxsp_element_parents(system, copies, parents, weights);
+                for (p = 0; p < count; ++p)
+                    for (q = 0; q < count; ++q) {
+                        const uint64_t pair = (uint64_t)parents[p] << 32 | parents[q];
+                        uint64_t *seen = &table[(parents[p] * 2654435761u ^ parents[q] * 2246822519u) >> 8 & (table_size - 1)];
+                        if (*seen == pair)
+                            continue;
+                        *seen = pair;
+                        if (columns)
+                            columns[start[parents[p] + 1]++] = parents[q];
+                        else
+                            ++start[parents[p] + 2];
+                    }
             }
 }
 
-/* y = (K + M / dt^2) x, K the projected Hessian of U at the last linearisation; without elastic: M / dt^2 x.
- * All passes over elements run in this order, block after block, hence the same sums every time. */
-static void gxsp_product(const gxsp_problem *problem, int elastic, const double *x, double *y)
+/* Level 1's matrix */
+static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch)
 {
-    size_t b;
-    memset(y, 0, 3 * problem->n * sizeof(double));
-    for (b = 0; b < problem->block_count; ++b) {
-        const gxsp_block *block = &problem->work.blocks[b];
-        gxsp_lanes from[12], to[12], strain[9], stress[9];
-        gxsp_block_gather(block, x, from);
-        gxsp_block_mass(block, from, to);
-        if (elastic) {
-            gxsp_block_strain(block, from, strain);
-            gxsp_block_stress(block, strain, stress);
-            gxsp_block_force(block, stress, to);
+    enum { table_size = 8192 };
+    gxsp_level *next = &system->levels[1];
+    uint32_t *start = (uint32_t *)gxsp_take(scratch, (size_t)next->n + 2, sizeof(uint32_t)), *columns, *kept, i, k, count = 0;
+    uint64_t *table = (uint64_t *)gxsp_take(scratch, table_size, sizeof(uint64_t));
+    if (scratch->failed || system->pool.failed)
+        return;
+    gxsp_list_pairs(system, start, NULL, table, table_size);
+    for (i = 0; i < next->n; ++i)
+        start[i + 2] += start[i + 1];
+    columns = (uint32_t *)gxsp_take(scratch, start[next->n + 1], sizeof(uint32_t));
+    kept = (uint32_t *)gxsp_take(scratch, start[next->n + 1], sizeof(uint32_t));
+    if (scratch->failed)
+        return;
+    gxsp_list_pairs(system, start, columns, table, table_size);
+    for (i = 0; i < next->n; ++i) {
+        next->start[i] = count;
+        gxsp_sort_row(columns + start[i], start[i + 1] - start[i]);
+        for (k = start[i]; k < start[i + 1]; ++k)
+            if (k == start[i] || columns[k] != columns[k - 1])
+                kept[count++] = columns[k];
+    }
+    next->start[next->n] = count;
+    gxsp_level_matrix(&system->pool, next, kept);
+}
+
+/* All levels of the multigrid. level_count stays 0 if there is nothing to coarsen. */
+static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch)
+{
+    gxsp_level *fine = &system->levels[0];
+    gxsp_transfer transfer;
+    uint32_t c, b, count, at;
+    int l;
+    gxsp_level_make(&system->pool, fine, (uint32_t)system->n, 0);
+    transfer.key = (uint64_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint64_t));
+    transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint32_t));
+    if (scratch->failed || system->pool.failed)
+        return;
+    gxsp_transfer_begin(fine, system->place, system->fixed, &transfer);
+    for (c = 0; c < system->chunk_count; ++c)
+        for (b = 0; b < system->chunks[c].block_count; ++b)
+            for (l = 0; l < GXSP_LANES; ++l) {
+                const gxsp_rest *rest = &system->rest[system->chunks[c].first_block + b];
+                const uint32_t *copies = system->nodes + system->chunks[c].first_node;
+                int i, j;
+                for (i = 0; rest->weight[l] > 0 && i < 4; ++i)
+                    for (j = 0; j < i; ++j)
+                        gxsp_join_nodes(&transfer, copies[rest->node[i][l]], copies[rest->node[j][l]]);
+            }
+    count = gxsp_transfer_end(fine, &transfer);
+    if (count == 0)
+        return;
+    gxsp_level_make(&system->pool, fine + 1, count, 1);
+    if (system->pool.failed)
+        return;
+    gxsp_transfer_places(fine, &transfer, fine + 1);
+    gxsp_first_pattern(system, scratch);
+    if (scratch->failed || system->pool.failed)
+        return;
+    for (at = 1; at + 1 < GXSP_LEVELS && system->levels[at].n > GXSP_BOTTOM && gxsp_add_level(system, scratch, at); ++at)
+        ;
+    system->level_count = at + 1;
+    gxsp_factor_make(system, scratch);
+    system->scratch = (uint32_t *)gxsp_take(&system->pool, count, sizeof(uint32_t));
+}
+
+/* Everything about a model that does not depend on its state; scratch holds what is needed for the time being. */
+static void gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model, gxs_preconditioner preconditioner)
+{
+    uint32_t i, *forest = (uint32_t *)gxsp_take(scratch, model->copy_count, sizeof(uint32_t));
+    double *total = (double *)gxsp_take(scratch, model->copy_count, sizeof(double));
+    system->n = model->copy_count;
+    system->element_count = model->element_count;
+    system->range_count = (system->n + GXSP_RANGE - 1) / GXSP_RANGE;
+    system->lumped_mass = model->lumped_mass != 0;
+    system->material_count = (uint32_t)model->material_count;
+    system->materials = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
+    gxsp_system_vectors(system);
+    if (scratch->failed || system->pool.failed)
+        return;
+    for (i = 0; i < system->material_count; ++i)
+        system->materials[i] = gxsp_material_make(&model->materials[i]);
+    gxsp_find_fixed(system, model);
+    gxsp_find_pieces(system, model, forest, total);
+    gxsp_chunks_make(system, scratch, model);
+    if (preconditioner == GXS_BLOCK_JACOBI || !model->positions || scratch->failed || system->pool.failed ||
+        (preconditioner == GXS_AUTOMATIC && system->n < GXSP_MULTIGRID_FROM))
+        return;
+    system->place = (float(*)[3])gxsp_take(&system->pool, system->n, sizeof *system->place);
+    if (!system->pool.failed && gxsp_find_places(system, model))
+        gxsp_multigrid_make(system, scratch);
+}
+
+/* >>operator */
+
+static void gxsp_block_gather(const gxsp_rest *GXSP_RESTRICT rest, const gxsp_vector4 *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT to)
+{
+    int i, l;
+    for (i = 0; i < 4; ++i)
+        for (l = 0; l < GXSP_LANES; ++l) {
+            const float *from = x[rest->node[i][l]];
+            to[3 * i][l] = from[0];
+            to[3 * i + 1][l] = from[1];
+            to[3 * i + 2][l] = from[2];
         }
-        gxsp_block_scatter(block, to, y);
+}
+
+static void gxsp_block_scatter(const gxsp_rest *GXSP_RESTRICT rest, gxsp_singles *GXSP_RESTRICT from, gxsp_vector4 *GXSP_RESTRICT y)
+{
+    int i, l;
+    for (l = 0; l < GXSP_LANES; ++l)
+        for (i = 0; i < 4; ++i) {
+            float *to = y[rest->node[i][l]];
+            to[0] += from[3 * i][l];
+            to[1] += from[3 * i + 1][l];
+            to[2] += from[3 * i + 2][l];
+        }
+}
+
+static void gxsp_task_product(void *context, size_t index)
+{
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    const gxsp_chunk *chunk = &system->chunks[index];
+    const uint32_t *copies = system->nodes + chunk->first_node;
+    gxsp_vector4 *in = system->slot_in + chunk->first_node, *out = system->slot_out + chunk->first_node;
+    uint32_t b, i;
+    for (i = 0; i < chunk->node_count; ++i)
+        memcpy(in[i], pass->x[copies[i]], sizeof *in);
+    memset(out, 0, chunk->node_count * sizeof *out);
+    for (b = 0; b < chunk->block_count; ++b) {
+        const gxsp_rest *rest = &system->rest[chunk->first_block + b];
+        const gxsp_mass *general = gxsp_block_masses(system, chunk, b);
+        gxsp_singles from[12], to[12];
+        gxsp_block_gather(rest, (const gxsp_vector4 *)in, from);
+        gxsp_block_product(&system->tangents[chunk->first_block + b], from, to);
+        if (general)
+            gxsp_block_mass_product(general, (float)pass->rate, from, to);
+        gxsp_block_scatter(rest, to, out);
     }
 }
 
-/* Diagonal 3x3 of corner i in one lane, packed: U B U^T + mass, B_rs = sum h_rc,sd gamma_c gamma_d, gamma = V^T grad N_i. */
-static void gxsp_lane_diagonal(const gxsp_block *block, int lane, int corner, double *packed)
+static void gxsp_task_product_sum(void *context, size_t index)
+{
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    size_t i = index * GXSP_RANGE, end = i + GXSP_RANGE < system->n ? i + GXSP_RANGE : system->n;
+    for (; i < end; ++i) {
+        float m = system->lumped_mass ? (float)(pass->rate * system->lumped[i]) : 0;
+        float x = m * pass->x[i][0], y = m * pass->x[i][1], z = m * pass->x[i][2];
+        uint32_t s;
+        for (s = system->copy_start[i]; s < system->copy_start[i + 1]; ++s) {
+            const float *from = system->slot_out[system->copy_slot[s]];
+            x += from[0], y += from[1], z += from[2];
+        }
+        pass->y[i][0] = x, pass->y[i][1] = y, pass->y[i][2] = z;
+    }
+}
+
+/* y = (K + rate M) x, K the projected Hessian of the last linearisation */
+static void gxsp_product(gxsp_system *system, double rate, const gxsp_vector4 *x, gxsp_vector4 *y)
+{
+    gxsp_pass pass;
+    memset(&pass, 0, sizeof pass);
+    pass.system = system;
+    pass.rate = rate;
+    pass.x = x;
+    pass.y = y;
+    gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_product, &pass);
+    gxsp_parallel(system->jobs, system->range_count, gxsp_task_product_sum, &pass);
+}
+
+/* Hessian of a chunk at pass->from, and its diagonal blocks into the slots, 6 floats each. */
+static void gxsp_task_linearise(void *context, size_t index)
 {
     static const int own[4] = {0, 4, 7, 9};
-    double gamma[3], b[9], ub[9], u[9], square[3];
-    int r, s, k;
-    for (k = 0; k < 3; ++k) {
-        gamma[k] = corner > 0 ? block->gradient[3 * (corner - 1) + k][lane] :
-                   -(block->gradient[k][lane] + block->gradient[3 + k][lane] + block->gradient[6 + k][lane]);
-        square[k] = gamma[k] * gamma[k];
+    static const int packed[6] = {0, 1, 2, 4, 5, 8};
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    gxsp_system *system = pass->system;
+    const gxsp_chunk *chunk = &system->chunks[index];
+    float *slots = (float *)system->slot_in + 6 * (size_t)chunk->first_node;
+    uint32_t b;
+    int corner, k, l;
+    memset(slots, 0, 6 * (size_t)chunk->node_count * sizeof *slots);
+    for (b = 0; b < chunk->block_count; ++b) {
+        const gxsp_rest *rest = &system->rest[chunk->first_block + b];
+        gxsp_tangent *tangent = &system->tangents[chunk->first_block + b];
+        const gxsp_mass *general = gxsp_block_masses(system, chunk, b);
+        gxsp_lanes x[12];
+        gxsp_state s;
+        gxsp_block_load(system, chunk, rest, pass->from, x);
+        gxsp_block_parameters(system, rest, &s);
+        gxsp_block_gradient(rest, x, s.g);
+        gxsp_tangent_make(chunk->kind, rest, &s, tangent);
+        GXSP_EACH_LANE(l) tangent->mass[l] = (float)(pass->rate * rest->mass[l]);
+        for (corner = 0; corner < 4; ++corner) {
+            gxsp_singles gamma[3], block[9];
+            gxsp_block_corner(tangent, corner, gamma);
+            gxsp_block_couple(tangent, gamma, gamma, block);
+            for (l = 0; l < GXSP_LANES; ++l) {
+                float *to = slots + 6 * (size_t)rest->node[corner][l];
+                float mass = 2 * tangent->mass[l] + (general ? (float)(pass->rate * general->entry[own[corner]][l]) : 0);
+                for (k = 0; k < 6; ++k)
+                    to[k] += block[packed[k]][l] + (packed[k] % 4 == 0 ? mass : 0);
+            }
+        }
     }
-    for (k = 0; k < 9; ++k)
-        u[k] = block->frame[k][lane];
-    for (r = 0; r < 3; ++r) {
-        int next = (r + 1) % 3, last = (r + 2) % 3;
-        b[4 * r] = block->stretch[gxsp_packed3(r, r)][lane] * square[r] + block->even[last][lane] * square[next] +
-                   block->even[next][lane] * square[last];
-        for (s = r + 1; s < 3; ++s)
-            b[3 * r + s] = b[3 * s + r] = gamma[r] * gamma[s] *
-                (block->stretch[gxsp_packed3(r, s)][lane] + block->odd[3 - r - s][lane]);
-    }
-    gxsp_multiply(u, 0, b, ub);
-    for (r = 0; r < 3; ++r)
-        for (s = r; s < 3; ++s)
-            packed[gxsp_packed3(r, s)] = ub[3 * r] * u[3 * s] + ub[3 * r + 1] * u[3 * s + 1] +
-                ub[3 * r + 2] * u[3 * s + 2] + (r == s ? block->mass[own[corner]][lane] : 0);
 }
 
 /* Inverse of a positive semi-definite 3x3, packed in place, as W^T W with W the inverse Cholesky factor: semi-definite in spite
- * of rounding. 1e-13 of the trace is added, so that a direction without stiffness gives a large number, not an infinite one.
- * Zero stays zero: such a copy is left alone. */
+ * of rounding. 1e-7 of the trace is added (the entries are sums in single precision), so that a direction without stiffness gives
+ * a large number, not an infinite one. Zero stays zero: such a copy is left alone. */
 static void gxsp_invert3(double *a)
 {
-    const double shift = 1e-13;
+    const double shift = 1e-7;
     double trace = a[0] + a[3] + a[5], scale, l00, l10, l20, l11, l21, l22, w10, w20, w21;
-    if (trace <= 0) {
+    if (!(trace > 0)) {
         memset(a, 0, 6 * sizeof *a);
         return;
     }
     scale = 1 / trace;
-    l00 = 1 / sqrt(a[0] * scale + shift); /* reciprocals of the factor's diagonal */
+    l00 = a[0] * scale + shift;
+    l00 = 1 / sqrt(l00 > shift ? l00 : shift); /* reciprocals of the factor's diagonal */
     l10 = a[1] * scale * l00;
     l20 = a[2] * scale * l00;
     l11 = a[3] * scale + shift - l10 * l10;
-    l11 = 1 / sqrt(l11 > 1e-14 ? l11 : 1e-14);
+    l11 = 1 / sqrt(l11 > shift ? l11 : shift);
     l21 = (a[4] * scale - l20 * l10) * l11;
     l22 = a[5] * scale + shift - l20 * l20 - l21 * l21;
-    l22 = 1 / sqrt(l22 > 1e-14 ? l22 : 1e-14);
+    l22 = 1 / sqrt(l22 > shift ? l22 : shift);
     w10 = -l10 * l00 * l11;
     w21 = -l21 * l11 * l22;
     w20 = -(l20 * l00 + l21 * w10) * l22;
@@ -1155,141 +2324,504 @@ static void gxsp_invert3(double *a)
     a[5] = scale * l22 * l22;
 }
 
-/* Hessian and inverse block diagonal at the current iterate. 0 if a number overflowed. */
-static int gxsp_linearise(gxsp_problem *problem)
+static void gxsp_task_diagonal(void *context, size_t index)
 {
-    gxsp_work *work = &problem->work;
-    const gxs_model *model = problem->model;
-    size_t e, i;
-    memset(work->diagonal, 0, 6 * problem->n * sizeof(double));
-    for (e = 0; e < model->element_count; ++e) {
-        gxsp_block *block = &work->blocks[e / GXSP_LANES];
-        int lane = (int)(e % GXSP_LANES), corner, k;
-        gxsp_block_linearise(block, (size_t)lane, &problem->material, &model->elements[e], work->current);
-        for (corner = 0; corner < 4; ++corner) {
-            double packed[6], *to = work->diagonal + 6 * (size_t)model->elements[e].copy[corner];
-            gxsp_lane_diagonal(block, lane, corner, packed);
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    const float *slots = (const float *)system->slot_in;
+    size_t i = index * GXSP_RANGE, end = i + GXSP_RANGE < system->n ? i + GXSP_RANGE : system->n;
+    for (; i < end; ++i) {
+        double sum[6] = {0, 0, 0, 0, 0, 0};
+        uint32_t s;
+        int k;
+        for (s = system->copy_start[i]; s < system->copy_start[i + 1]; ++s)
             for (k = 0; k < 6; ++k)
-                to[k] += packed[k];
-        }
-    }
-    if (gxsp_first_not_finite(work->diagonal, 6 * problem->n) < 6 * problem->n)
-        return 0;
-    for (i = 0; i < problem->n; ++i) {
-        if (work->fixed[i])
-            memset(work->diagonal + 6 * i, 0, 6 * sizeof(double));
-        gxsp_invert3(work->diagonal + 6 * i);
-    }
-    return gxsp_first_not_finite(work->diagonal, 6 * problem->n) == 6 * problem->n;
-}
-
-/* >>pieces: a translation of a free piece T meets no stiffness: K T = 0, so T^T (K + M / dt^2) x = sum of lumped x. */
-
-static uint32_t gxsp_root(uint32_t *parent, uint32_t i)
-{
-    while (parent[i] != i) {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    return i;
-}
-
-/* Does the element give corner i stiffness or mass? */
-static int gxsp_supports(const gxs_element *element, size_t i)
-{
-    static const int own[4] = {0, 4, 7, 9};
-    return element->weight > 0 || element->mass[own[i]] > 0;
-}
-
-/* Copies that no element supports are fixed like held ones. */
-static void gxsp_find_fixed(gxsp_problem *problem)
-{
-    const gxs_model *model = problem->model;
-    uint8_t *fixed = problem->work.fixed;
-    size_t e, i;
-    memset(fixed, 1, problem->n);
-    for (e = 0; e < model->element_count; ++e)
-        for (i = 0; i < 4; ++i)
-            if (gxsp_supports(&model->elements[e], i))
-                fixed[model->elements[e].copy[i]] = 0;
-    if (model->held)
-        for (i = 0; i < problem->n; ++i)
-            if (model->held[i])
-                fixed[i] = 1;
-}
-
-static void gxsp_join_copies(gxsp_problem *problem)
-{
-    const gxs_model *model = problem->model;
-    uint32_t *parent = problem->work.parent;
-    size_t e, i;
-    for (i = 0; i < problem->n; ++i)
-        parent[i] = (uint32_t)i;
-    for (e = 0; e < model->element_count; ++e) {
-        const gxs_element *element = &model->elements[e];
-        uint32_t root = gxsp_root(parent, element->copy[0]);
-        for (i = 1; i < 4; ++i) {
-            uint32_t other = gxsp_root(parent, element->copy[i]);
-            if (!gxsp_supports(element, 0) && !gxsp_supports(element, i))
-                continue;
-            if (other < root) {
-                parent[root] = other;
-                root = other;
-            } else
-                parent[other] = root;
-        }
+                sum[k] += (double)slots[6 * (size_t)system->copy_slot[s] + (size_t)k];
+        for (k = 0; system->lumped_mass && k < 6; ++k)
+            sum[k] += k == 0 || k == 3 || k == 5 ? pass->rate * system->lumped[i] : 0;
+        if (system->fixed[i])
+            memset(sum, 0, sizeof sum);
+        gxsp_invert3(sum);
+        for (k = 0; k < 6; ++k)
+            system->diagonal[6 * i + (size_t)k] = (float)sum[k];
     }
 }
 
-/* Numbers the free pieces: components without a fixed copy and with mass. */
-static void gxsp_find_pieces(gxsp_problem *problem)
+/* Hessian and inverse block diagonal at a displacement. 0 if a number overflowed. */
+static int gxsp_linearise(gxsp_system *system, double rate, const double *from)
 {
-    gxsp_work *work = &problem->work;
+    gxsp_pass pass;
     size_t i;
-    gxsp_join_copies(problem);
-    memset(work->piece_sum, 0, problem->n * sizeof(double)); /* by root: mass; below 0 marks a fixed copy */
-    for (i = 0; i < problem->n; ++i)
-        work->piece_sum[gxsp_root(work->parent, (uint32_t)i)] += work->lumped[i];
-    for (i = 0; i < problem->n; ++i)
-        if (work->fixed[i])
-            work->piece_sum[gxsp_root(work->parent, (uint32_t)i)] = -1;
-    problem->piece_count = 0;
-    for (i = 0; i < problem->n; ++i) { /* roots come before their copies: the lower index wins in gxsp_join_copies */
-        uint32_t root = gxsp_root(work->parent, (uint32_t)i);
-        if (root == i)
-            work->piece[i] = work->piece_sum[i] > 0 ? (uint32_t)problem->piece_count++ : GXSP_NO_PIECE;
-        else
-            work->piece[i] = work->piece[root];
-    }
-    memset(work->piece_sum, 0, 4 * problem->piece_count * sizeof(double));
-    for (i = 0; i < problem->n; ++i)
-        if (work->piece[i] != GXSP_NO_PIECE)
-            work->piece_sum[4 * (size_t)work->piece[i] + 3] += work->lumped[i];
+    memset(&pass, 0, sizeof pass);
+    pass.system = system;
+    pass.rate = rate;
+    pass.from = from;
+    gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_linearise, &pass);
+    gxsp_parallel(system->jobs, system->range_count, gxsp_task_diagonal, &pass);
+    for (i = 0; i < 6 * system->n; ++i)
+        if (!gxsp_finite_single(system->diagonal[i]))
+            return 0;
+    return 1;
 }
 
-/* Subtracts from x, piece by piece, the translation sum / total mass, where sum is of lumped x (or, if forces are
- * given instead, adds sum of forces / total mass). */
-static void gxsp_translate_pieces(const gxsp_problem *problem, const double *forces, double *x)
+/* y = D^-1 x for packed D^-1 */
+static void gxsp_apply_packed(const float *d, const float *x, float *y)
 {
-    const gxsp_work *work = &problem->work;
-    size_t i, p;
-    int r;
-    if (problem->piece_count == 0)
+    const float a = x[0], b = x[1], c = x[2];
+    y[0] = d[0] * a + d[1] * b + d[2] * c;
+    y[1] = d[1] * a + d[3] * b + d[4] * c;
+    y[2] = d[2] * a + d[4] * b + d[5] * c;
+}
+
+/* >>multigrid: a level's matrix in block rows; block Gauss-Seidel forward before and backward after the coarse correction, so
+ * that the whole is symmetric. The order is that of the nodes. */
+
+/* y += a x for a 3x3 a by columns */
+static void gxsp_add_block(const float *a, const float *x, float *y)
+{
+    y[0] += a[0] * x[0] + a[3] * x[1] + a[6] * x[2];
+    y[1] += a[1] * x[0] + a[4] * x[1] + a[7] * x[2];
+    y[2] += a[2] * x[0] + a[5] * x[1] + a[8] * x[2];
+}
+
+static void gxsp_subtract_block(const float *a, const float *x, float *y)
+{
+    y[0] -= a[0] * x[0] + a[3] * x[1] + a[6] * x[2];
+    y[1] -= a[1] * x[0] + a[4] * x[1] + a[7] * x[2];
+    y[2] -= a[2] * x[0] + a[5] * x[1] + a[8] * x[2];
+}
+
+/* x from 0 by one forward sweep: only the rows' entries left of the diagonal count */
+static void gxsp_sweep_forward(gxsp_level *level)
+{
+    uint32_t i, k;
+    for (i = 0; i < level->n; ++i) {
+        float r[3];
+        memcpy(r, level->b[i], sizeof r);
+        for (k = level->start[i]; level->column[k] < i; ++k)
+            gxsp_subtract_block(level->block + 9 * (size_t)k, level->x[level->column[k]], r);
+        memset(level->x[i], 0, sizeof level->x[i]);
+        gxsp_add_block(level->inverse + 9 * (size_t)i, r, level->x[i]);
+    }
+}
+
+static void gxsp_level_residual(gxsp_level *level)
+{
+    uint32_t i, k;
+    for (i = 0; i < level->n; ++i) {
+        memcpy(level->r[i], level->b[i], sizeof level->r[i]);
+        for (k = level->start[i]; k < level->start[i + 1]; ++k)
+            gxsp_subtract_block(level->block + 9 * (size_t)k, level->x[level->column[k]], level->r[i]);
+    }
+}
+
+static void gxsp_sweep_backward(gxsp_level *level)
+{
+    uint32_t i, k;
+    for (i = level->n; i-- > 0;) {
+        float r[3];
+        memcpy(r, level->b[i], sizeof r);
+        for (k = level->start[i]; k < level->start[i + 1]; ++k)
+            gxsp_subtract_block(level->block + 9 * (size_t)k, level->x[level->column[k]], r);
+        gxsp_add_block(level->inverse + 9 * (size_t)i, r, level->x[i]);
+    }
+}
+
+/* b of the next level = transfer^T r */
+static void gxsp_restrict(const gxsp_level *level, gxsp_level *next)
+{
+    uint32_t i;
+    int k, c;
+    memset(next->b, 0, next->n * sizeof *next->b);
+    for (i = 0; i < level->n; ++i)
+        for (k = 0; k < 4; ++k)
+            if (level->parent[i][k] != GXSP_NONE)
+                for (c = 0; c < 3; ++c)
+                    next->b[level->parent[i][k]][c] += level->weight[i][k] * level->r[i][c];
+}
+
+/* x += transfer x of the next level */
+static void gxsp_prolong(gxsp_level *level, const gxsp_level *next)
+{
+    uint32_t i;
+    int k, c;
+    for (i = 0; i < level->n; ++i)
+        for (k = 0; k < 4; ++k)
+            if (level->parent[i][k] != GXSP_NONE)
+                for (c = 0; c < 3; ++c)
+                    level->x[i][c] += level->weight[i][k] * next->x[level->parent[i][k]][c];
+}
+
+/* x = (L L^T)^-1 b on the last level */
+static void gxsp_factor_solve(const gxsp_factor *factor, gxsp_level *level)
+{
+    uint32_t i, j;
+    double *x = factor->x;
+    for (i = 0; i < factor->n; ++i) {
+        const double *row = factor->entry + factor->row[i];
+        double sum = (double)level->b[factor->order[i / 3]][i % 3];
+        for (j = factor->first[i]; j < i; ++j)
+            sum -= row[j] * x[j];
+        x[i] = sum * row[i]; /* the diagonal is stored inverted */
+    }
+    for (i = factor->n; i-- > 0;) {
+        const double *row = factor->entry + factor->row[i];
+        x[i] *= row[i];
+        for (j = factor->first[i]; j < i; ++j)
+            x[j] -= row[j] * x[i];
+    }
+    for (i = 0; i < factor->n; ++i)
+        level->x[factor->order[i / 3]][i % 3] = (float)x[i];
+}
+
+/* x = the multigrid's answer to b on levels[at] and below, at > 0 */
+static void gxsp_cycle(gxsp_system *system, uint32_t at)
+{
+    gxsp_level *level = &system->levels[at];
+    if (at + 1 == system->level_count) {
+        gxsp_factor_solve(&system->factor, level);
         return;
-    for (p = 0; p < problem->piece_count; ++p)
-        memset(work->piece_sum + 4 * p, 0, 3 * sizeof(double));
-    for (i = 0; i < problem->n; ++i)
-        if (work->piece[i] != GXSP_NO_PIECE)
+    }
+    gxsp_sweep_forward(level);
+    gxsp_level_residual(level);
+    gxsp_restrict(level, level + 1);
+    gxsp_cycle(system, at + 1);
+    gxsp_prolong(level, level + 1);
+    gxsp_sweep_backward(level);
+}
+
+/* z = V-cycle of residual b; z holds D^-1 b on entry. Level 0 is smoothed by omega D^-1. scratch: product */
+static void gxsp_multigrid(gxsp_system *system, double rate, gxsp_vector4 *b, gxsp_vector4 *z)
+{
+    gxsp_level *fine = &system->levels[0];
+    const float omega = system->omega;
+    size_t i;
+    int c;
+    fine->x = z, fine->b = b, fine->r = system->product;
+    for (i = 0; i < system->n; ++i)
+        for (c = 0; c < 3; ++c)
+            z[i][c] *= omega;
+    gxsp_product(system, rate, (const gxsp_vector4 *)z, fine->r);
+    for (i = 0; i < system->n; ++i)
+        for (c = 0; c < 3; ++c)
+            fine->r[i][c] = b[i][c] - fine->r[i][c];
+    gxsp_restrict(fine, fine + 1);
+    gxsp_cycle(system, 1);
+    gxsp_prolong(fine, fine + 1);
+    gxsp_product(system, rate, (const gxsp_vector4 *)z, fine->r);
+    for (i = 0; i < system->n; ++i) {
+        float r[3], y[3];
+        for (c = 0; c < 3; ++c)
+            r[c] = omega * (b[i][c] - fine->r[i][c]);
+        gxsp_apply_packed(system->diagonal + 6 * i, r, y);
+        for (c = 0; c < 3; ++c)
+            z[i][c] += y[c];
+    }
+}
+
+/* --- numbers of the coarse levels --- */
+
+/* Index of column j in row i */
+static uint32_t gxsp_find_entry(const gxsp_level *level, uint32_t i, uint32_t j)
+{
+    uint32_t low = level->start[i], high = level->start[i + 1];
+    while (high - low > 1) {
+        uint32_t middle = low + (high - low) / 2;
+        if (level->column[middle] <= j)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* An element's part of level 1's matrix: its Hessian and mass between the coarse functions that its corners follow. */
+static void gxsp_coarse_element(gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, int lane, double rate)
+{
+    static const int packed[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
+    gxsp_level *next = &system->levels[1];
+    const gxsp_tangent *tangent = &system->tangents[chunk->first_block + b];
+    const gxsp_mass *general = gxsp_block_masses(system, chunk, b);
+    uint32_t copies[4], parents[16];
+    float weights[16][4], gamma[16][3], corner[4][3], masses[4][4], block[9];
+    int count, i, j, k, p, q;
+    gxsp_lane_copies(system, chunk, b, lane, copies);
+    count = gxsp_element_parents(system, copies, parents, weights);
+    for (k = 0; k < 3; ++k) {
+        corner[0][k] = 0;
+        for (i = 1; i < 4; ++i) {
+            corner[i][k] = tangent->gradient[3 * (i - 1) + k][lane];
+            corner[0][k] -= corner[i][k];
+        }
+    }
+    for (i = 0; i < 4; ++i)
+        for (j = 0; j < 4; ++j)
+            masses[i][j] = tangent->mass[lane] * (i == j ? 2.0f : 1.0f) +
+                           (general ? (float)(rate * general->entry[packed[i][j]][lane]) : 0);
+    for (p = 0; p < count; ++p)
+        for (k = 0; k < 3; ++k)
+            gamma[p][k] = weights[p][0] * corner[0][k] + weights[p][1] * corner[1][k] + weights[p][2] * corner[2][k] +
+                          weights[p][3] * corner[3][k];
+    for (p = 0; p < count; ++p)
+        for (q = 0; q <= p; ++q) {
+            float mass = 0, *to, *back;
+            for (i = 0; i < 4; ++i)
+                for (j = 0; j < 4; ++j)
+                    mass += weights[p][i] * masses[i][j] * weights[q][j];
+            gxsp_lane_couple(tangent, lane, gamma[p], gamma[q], block);
+            block[0] += mass, block[4] += mass, block[8] += mass;
+            to = next->block + 9 * (size_t)gxsp_find_entry(next, parents[p], parents[q]);
+            back = next->block + 9 * (size_t)gxsp_find_entry(next, parents[q], parents[p]);
+            for (i = 0; i < 3; ++i) /* by rows here, by columns there */
+                for (j = 0; j < 3; ++j) {
+                    to[3 * j + i] += block[3 * i + j];
+                    if (p != q)
+                        back[3 * i + j] += block[3 * i + j];
+                }
+        }
+}
+
+/* The diagonal raised by its share, and inverted. 0 if a number overflowed. */
+static int gxsp_invert_diagonal(gxsp_level *level)
+{
+    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    uint32_t i, k;
+    int c;
+    for (i = 0; i < level->n; ++i)
+        for (k = level->start[i]; k < level->start[i + 1]; ++k)
+            if (level->column[k] == i) {
+                float *block = level->block + 9 * (size_t)k;
+                float raise = GXSP_SHIFT * (block[0] + block[4] + block[8]);
+                double inverse[6];
+                block[0] += raise, block[4] += raise, block[8] += raise;
+                inverse[0] = (double)block[0], inverse[1] = (double)block[1], inverse[2] = (double)block[2];
+                inverse[3] = (double)block[4], inverse[4] = (double)block[5], inverse[5] = (double)block[8];
+                gxsp_invert3(inverse);
+                for (c = 0; c < 9; ++c) {
+                    level->inverse[9 * (size_t)i + (size_t)c] = (float)inverse[full[c]];
+                    if (!gxsp_finite_single((float)inverse[full[c]]))
+                        return 0;
+                }
+            }
+    return 1;
+}
+
+/* next's matrix = transfer^T A transfer, row by row of next. child: nodes of level by parent. at: next->n, scratch. */
+static void gxsp_coarsen(const gxsp_level *level, gxsp_level *next, const uint32_t *child_start, const uint32_t *child, uint32_t *at)
+{
+    uint32_t row, i, k, e;
+    int a, b, c;
+    memset(next->block, 0, 9 * (size_t)next->start[next->n] * sizeof *next->block);
+    for (row = 0; row < next->n; ++row) {
+        for (e = next->start[row]; e < next->start[row + 1]; ++e)
+            at[next->column[e]] = e;
+        for (i = child_start[row]; i < child_start[row + 1]; ++i) {
+            const uint32_t node = child[i];
+            float own = 0;
+            for (a = 0; a < 4; ++a)
+                own += level->parent[node][a] == row ? level->weight[node][a] : 0;
+            for (k = level->start[node]; k < level->start[node + 1]; ++k) {
+                const uint32_t other = level->column[k];
+                for (b = 0; b < 4; ++b)
+                    if (level->parent[other][b] != GXSP_NONE) {
+                        const float factor = own * level->weight[other][b];
+                        float *to = next->block + 9 * (size_t)at[level->parent[other][b]];
+                        for (c = 0; c < 9; ++c)
+                            to[c] += factor * level->block[9 * (size_t)k + (size_t)c];
+                    }
+            }
+        }
+    }
+}
+
+/* Cholesky of the last level. A pivot that rounding left at 0 or below is raised to its share of the diagonal. */
+static int gxsp_factorise(gxsp_factor *factor, const gxsp_level *level, uint32_t *place)
+{
+    uint32_t i, j, k, m;
+    int r, c;
+    memset(factor->entry, 0, factor->entry_count * sizeof *factor->entry);
+    for (i = 0; i < level->n; ++i)
+        place[factor->order[i]] = i;
+    for (i = 0; i < level->n; ++i)
+        for (k = level->start[i]; k < level->start[i + 1]; ++k)
             for (r = 0; r < 3; ++r)
-                work->piece_sum[4 * (size_t)work->piece[i] + (size_t)r] +=
-                    forces ? forces[3 * i + (size_t)r] : -work->lumped[i] * x[3 * i + (size_t)r];
-    for (p = 0; p < problem->piece_count; ++p)
+                for (c = 0; c < 3; ++c) {
+                    uint32_t row = 3 * place[i] + (uint32_t)r, column = 3 * place[level->column[k]] + (uint32_t)c;
+                    if (column <= row)
+                        factor->entry[factor->row[row] + column] = (double)level->block[9 * (size_t)k + (size_t)(3 * c + r)];
+                }
+    for (i = 0; i < factor->n; ++i) {
+        double *row = factor->entry + factor->row[i], least = 1e-7 * row[i];
+        for (j = factor->first[i]; j <= i; ++j) {
+            const double *other = factor->entry + factor->row[j];
+            double sum = row[j];
+            m = factor->first[j] > factor->first[i] ? factor->first[j] : factor->first[i];
+            for (k = m; k < j; ++k)
+                sum -= row[k] * other[k];
+            if (j < i)
+                row[j] = sum * other[j];
+            else
+                row[i] = 1 / sqrt(sum > least ? sum : least > 0 ? least : 1);
+        }
+        if (!gxsp_finite(row[i]))
+            return 0;
+    }
+    return 1;
+}
+
+/* Lumped masses between coarse functions */
+static void gxsp_coarse_lumped(gxsp_system *system, double rate)
+{
+    const gxsp_level *fine = &system->levels[0];
+    gxsp_level *next = &system->levels[1];
+    uint32_t i;
+    int p, q;
+    for (i = 0; i < fine->n; ++i)
+        for (p = 0; p < 4; ++p)
+            for (q = 0; q < 4; ++q)
+                if (fine->parent[i][p] != GXSP_NONE && fine->parent[i][q] != GXSP_NONE) {
+                    float *to = next->block + 9 * (size_t)gxsp_find_entry(next, fine->parent[i][p], fine->parent[i][q]);
+                    float mass = (float)(rate * system->lumped[i]) * fine->weight[i][p] * fine->weight[i][q];
+                    to[0] += mass, to[4] += mass, to[8] += mass;
+                }
+}
+
+/* The matrices of all levels from the last linearisation. 0 if a number overflowed. */
+static int gxsp_coarse_numbers(gxsp_system *system, double rate)
+{
+    uint32_t at, c, b;
+    int l;
+    memset(system->levels[1].block, 0, 9 * (size_t)system->levels[1].start[system->levels[1].n] * sizeof(float));
+    for (c = 0; c < system->chunk_count; ++c)
+        for (b = 0; b < system->chunks[c].block_count; ++b)
+            for (l = 0; l < GXSP_LANES; ++l)
+                if (system->rest[system->chunks[c].first_block + b].weight[l] > 0)
+                    gxsp_coarse_element(system, &system->chunks[c], b, l, rate);
+    if (system->lumped_mass)
+        gxsp_coarse_lumped(system, rate);
+    for (at = 1; at < system->level_count; ++at) {
+        gxsp_level *level = &system->levels[at];
+        if (!gxsp_invert_diagonal(level))
+            return 0;
+        if (at + 1 < system->level_count)
+            gxsp_coarsen(level, level + 1, level->child_start, level->child, system->scratch);
+    }
+    return gxsp_factorise(&system->factor, &system->levels[system->level_count - 1], system->scratch);
+}
+
+/* Largest eigenvalue of D^-1 (K + rate M) by the power method from a start that favours none; omega damps the upper half of
+ * the spectrum: 4/3 of its inverse. An eigenvalue half as large again would still leave the cycle definite. */
+static void gxsp_find_omega(gxsp_system *system, double rate)
+{
+    gxsp_vector4 *x = system->search, *y = system->product;
+    uint32_t random = 1;
+    size_t i;
+    int c, round;
+    double largest = 0;
+    for (i = 0; i < system->n; ++i)
+        for (c = 0; c < 3; ++c) {
+            random = random * 1664525u + 1013904223u;
+            x[i][c] = system->fixed[i] ? 0 : (float)(random >> 8) / 8388608.0f - 1;
+        }
+    for (round = 0; round < 6; ++round) {
+        double before = 0, after = 0;
+        float scale;
+        gxsp_product(system, rate, (const gxsp_vector4 *)x, y);
+        for (i = 0; i < system->n; ++i) {
+            float z[3];
+            gxsp_apply_packed(system->diagonal + 6 * i, y[i], z);
+            for (c = 0; c < 3; ++c) {
+                before += (double)y[i][c] * (double)x[i][c];
+                after += (double)y[i][c] * (double)z[c];
+                x[i][c] = z[c];
+            }
+        }
+        if (!(before > 0) || !(after > 0))
+            break;
+        largest = after / before;
+        scale = (float)(1 / sqrt(after));
+        for (i = 0; i < system->n; ++i)
+            for (c = 0; c < 3; ++c)
+                x[i][c] *= scale;
+    }
+    largest = largest > 0 ? 1.05 * largest : 4;
+    system->omega = (float)(4.0 / 3 / (largest < 4 ? largest : 4)); /* 4: no element's own D^-1 K exceeds it */
+}
+
+/* >>pieces */
+
+/* Sums over the free pieces of a momentum density become their translations. */
+static void gxsp_piece_translations(gxsp_system *system)
+{
+    size_t p;
+    int r;
+    for (p = 0; p < system->piece_count; ++p)
         for (r = 0; r < 3; ++r)
-            work->piece_sum[4 * p + (size_t)r] /= work->piece_sum[4 * p + 3];
-    for (i = 0; i < problem->n; ++i)
-        if (work->piece[i] != GXSP_NO_PIECE)
+            system->piece_sum[4 * p + (size_t)r] /= system->piece_sum[4 * p + 3];
+}
+
+static void gxsp_clear_pieces(gxsp_system *system)
+{
+    size_t p;
+    for (p = 0; p < system->piece_count; ++p)
+        memset(system->piece_sum + 4 * p, 0, 3 * sizeof(double));
+}
+
+/* Subtracts from x, piece by piece, the translation with x's momentum. */
+static void gxsp_remove_translations(gxsp_system *system, gxsp_vector4 *x)
+{
+    size_t i;
+    int r;
+    if (system->piece_count == 0)
+        return;
+    gxsp_clear_pieces(system);
+    for (i = 0; i < system->n; ++i)
+        if (system->piece[i] != GXSP_NONE)
             for (r = 0; r < 3; ++r)
-                x[3 * i + (size_t)r] += work->piece_sum[4 * (size_t)work->piece[i] + (size_t)r];
+                system->piece_sum[4 * (size_t)system->piece[i] + (size_t)r] += system->lumped[i] * (double)x[i][r];
+    gxsp_piece_translations(system);
+    for (i = 0; i < system->n; ++i)
+        if (system->piece[i] != GXSP_NONE)
+            for (r = 0; r < 3; ++r)
+                x[i][r] -= (float)system->piece_sum[4 * (size_t)system->piece[i] + (size_t)r];
+}
+
+/* The same in double, to which single precision came close. */
+static void gxsp_remove_rest_of_translations(gxsp_system *system, double *x)
+{
+    size_t i, r;
+    if (system->piece_count == 0)
+        return;
+    gxsp_clear_pieces(system);
+    for (i = 0; i < system->n; ++i)
+        if (system->piece[i] != GXSP_NONE)
+            for (r = 0; r < 3; ++r)
+                system->piece_sum[4 * (size_t)system->piece[i] + r] += system->lumped[i] * x[3 * i + r];
+    gxsp_piece_translations(system);
+    for (i = 0; i < system->n; ++i)
+        if (system->piece[i] != GXSP_NONE)
+            for (r = 0; r < 3; ++r)
+                x[3 * i + r] -= system->piece_sum[4 * (size_t)system->piece[i] + r];
+}
+
+/* Translates every free piece of current so that its momentum balances its load. */
+static void gxsp_balance_momentum(gxsp_system *system, double rate)
+{
+    double *sums = system->piece_sum;
+    size_t i, r;
+    if (system->piece_count == 0)
+        return;
+    gxsp_clear_pieces(system);
+    for (i = 0; i < system->n; ++i)
+        if (system->piece[i] != GXSP_NONE)
+            for (r = 0; r < 3; ++r)
+                sums[4 * (size_t)system->piece[i] + r] += system->load[3 * i + r] -
+                    rate * system->lumped[i] * (system->current[3 * i + r] - system->target[3 * i + r]);
+    gxsp_piece_translations(system);
+    for (i = 0; i < system->n; ++i)
+        if (system->piece[i] != GXSP_NONE)
+            for (r = 0; r < 3; ++r)
+                system->current[3 * i + r] += sums[4 * (size_t)system->piece[i] + r] / rate;
 }
 
 /* >>cg */
@@ -1300,79 +2832,139 @@ typedef struct gxsp_norms {
 } gxsp_norms;
 
 /* scaled = D^-1 r */
-static gxsp_norms gxsp_precondition(const gxsp_problem *problem, const double *r, double *scaled)
+static gxsp_norms gxsp_scale(gxsp_system *system, const double *r)
 {
     gxsp_norms norms = {0, 0};
     size_t i;
-    for (i = 0; i < problem->n; ++i) {
-        const double *d = problem->work.diagonal + 6 * i, *ri = r + 3 * i;
-        double x = d[0] * ri[0] + d[1] * ri[1] + d[2] * ri[2];
-        double y = d[1] * ri[0] + d[3] * ri[1] + d[4] * ri[2];
-        double z = d[2] * ri[0] + d[4] * ri[1] + d[5] * ri[2];
-        scaled[3 * i] = x, scaled[3 * i + 1] = y, scaled[3 * i + 2] = z;
-        norms.energy += x * ri[0] + y * ri[1] + z * ri[2];
+    for (i = 0; i < system->n; ++i) {
+        const float *d = system->diagonal + 6 * i;
+        const double a = r[3 * i], b = r[3 * i + 1], c = r[3 * i + 2];
+        const double x = (double)d[0] * a + (double)d[1] * b + (double)d[2] * c, y = (double)d[1] * a + (double)d[3] * b + (double)d[4] * c,
+                     z = (double)d[2] * a + (double)d[4] * b + (double)d[5] * c;
+        norms.energy += x * a + y * b + z * c;
         norms.displacement += x * x + y * y + z * z;
+        system->scaled[i][0] = (float)x, system->scaled[i][1] = (float)y, system->scaled[i][2] = (float)z;
     }
     return norms;
 }
 
-/* Solves (K + M / dt^2) direction = residual. The directions of free pieces carry no momentum: their translations are
- * projected out of the preconditioned residual (deflated conjugate gradients; the residual has none, see
- * gxsp_start). 0 if a number overflowed. */
+/* z = M^-1 r from D^-1 r, both scaled; without translations of free pieces. Returns r . z. */
+static double gxsp_precondition(gxsp_system *system, double rate)
+{
+    double product = 0;
+    size_t i;
+    int c;
+    if (system->level_count > 0) {
+        for (i = 0; i < system->n; ++i)
+            for (c = 0; c < 3; ++c)
+                system->right[i][c] = system->fixed[i] ? 0 : (float)system->residual[3 * i + (size_t)c];
+        gxsp_multigrid(system, rate, system->right, system->scaled);
+    }
+    gxsp_remove_translations(system, system->scaled);
+    for (i = 0; i < system->n; ++i)
+        for (c = 0; c < 3; ++c)
+            product += system->residual[3 * i + (size_t)c] * (double)system->scaled[i][c];
+    return product;
+}
+
+/* Solves (K + rate M) direction = residual to a share of the residual, which is used up. The directions of free pieces carry
+ * no momentum: their translations are projected out of the preconditioned residual (deflated conjugate gradients; the residual
+ * has none, see gxsp_start). Operator and preconditioner are of single precision, vectors and sums of double. 0 if a number
+ * overflowed. */
 static int gxsp_conjugate_gradients(gxsp_problem *problem)
 {
-    gxsp_work *work = &problem->work;
-    size_t count = 3 * problem->n, i;
-    double goal = problem->cg_tolerance * problem->cg_tolerance, rho;
-    gxsp_norms first, now;
+    gxsp_system *system = problem->system;
+    const double goal = problem->cg_tolerance * problem->cg_tolerance, rate = problem->rate;
+    gxsp_norms first = gxsp_scale(system, system->residual), now;
     uint32_t iteration;
-    memset(work->direction, 0, count * sizeof(double));
-    first = now = gxsp_precondition(problem, work->residual, work->scaled);
-    gxsp_translate_pieces(problem, NULL, work->scaled);
-    memcpy(work->search, work->scaled, count * sizeof(double));
-    rho = gxsp_dot(work->residual, work->scaled, problem->n);
+    double rho = gxsp_precondition(system, rate);
+    size_t i;
+    int c;
+    memset(system->direction, 0, 3 * system->n * sizeof(double));
+    memcpy(system->search, system->scaled, system->n * sizeof *system->search);
     for (iteration = 0; iteration < problem->cg_iterations; ++iteration) {
-        double curvature, alpha, beta;
-        gxsp_product(problem, 1, work->search, work->product);
-        curvature = gxsp_dot(work->search, work->product, problem->n);
+        double curvature = 0, alpha, beta;
+        gxsp_product(system, rate, (const gxsp_vector4 *)system->search, system->product);
+        for (i = 0; i < system->n; ++i)
+            for (c = 0; c < 3; ++c)
+                curvature += (double)system->search[i][c] * (double)system->product[i][c];
         if (!gxsp_finite(curvature) || !gxsp_finite(rho))
             return 0;
         if (curvature <= 0 || rho <= 0) /* rounding is all that is left */
             break;
         alpha = rho / curvature;
-        for (i = 0; i < count; ++i) {
-            work->direction[i] += alpha * work->search[i];
-            work->residual[i] -= alpha * work->product[i];
-        }
+        for (i = 0; i < system->n; ++i)
+            for (c = 0; c < 3; ++c) {
+                system->direction[3 * i + (size_t)c] += alpha * (double)system->search[i][c];
+                system->residual[3 * i + (size_t)c] -= alpha * (double)system->product[i][c];
+            }
         ++problem->report.cg_iterations;
-        now = gxsp_precondition(problem, work->residual, work->scaled);
+        now = gxsp_scale(system, system->residual);
         if (now.energy <= goal * first.energy && now.displacement <= goal * first.displacement)
             break;
-        gxsp_translate_pieces(problem, NULL, work->scaled);
         beta = rho;
-        rho = gxsp_dot(work->residual, work->scaled, problem->n);
+        rho = gxsp_precondition(system, rate);
         beta = rho / beta;
-        for (i = 0; i < count; ++i)
-            work->search[i] = work->scaled[i] + beta * work->search[i];
+        for (i = 0; i < system->n; ++i)
+            for (c = 0; c < 3; ++c)
+                system->search[i][c] = system->scaled[i][c] + (float)beta * system->search[i][c];
     }
-    return gxsp_first_not_finite(work->direction, count) == count;
+    gxsp_remove_rest_of_translations(system, system->direction);
+    return gxsp_first_not_finite(system->direction, 3 * system->n) == 3 * system->n;
+}
+
+/* Brings the preconditioner up to date with the linearisation: the coarse matrices are made anew where they are missing, where
+ * the rate has changed, or where iterations have risen by half since they were made. */
+static int gxsp_prepare(gxsp_problem *problem)
+{
+    gxsp_system *system = problem->system;
+    if (system->level_count == 0)
+        return 1;
+    if (!(system->omega > 0))
+        gxsp_find_omega(system, problem->rate);
+    system->coarse_fresh = system->coarse_rate < problem->rate || system->coarse_rate > problem->rate || system->coarse_worn;
+    if (!system->coarse_fresh)
+        return 1;
+    system->coarse_rate = problem->rate;
+    system->coarse_worn = 0;
+    return gxsp_coarse_numbers(system, problem->rate);
+}
+
+/* Solves the linear system and learns from the count of iterations how the coarse matrices have aged. */
+static int gxsp_solve(gxsp_problem *problem)
+{
+    gxsp_system *system = problem->system;
+    uint32_t before = problem->report.cg_iterations, count;
+    if (!gxsp_prepare(problem) || !gxsp_conjugate_gradients(problem))
+        return 0;
+    count = problem->report.cg_iterations - before;
+    if (system->coarse_fresh)
+        system->usual_iterations = count;
+    else if (count > system->usual_iterations + system->usual_iterations / 2 + 1)
+        system->coarse_worn = 1;
+    return 1;
 }
 
 /* >>newton */
 
-/* residual = load - inertia - elastic at current, and its size relative to the three (see gxs_step_report) */
+/* residual = load - force at current, 0 at fixed copies, and its size relative to load, inertia and elastic forces (see
+ * gxs_step_report); inertia by the lumped mass here, where it is but a scale. scratch: direction */
 static double gxsp_balance(gxsp_problem *problem)
 {
-    gxsp_work *work = &problem->work;
+    gxsp_system *system = problem->system;
     gxsp_norms load, inertia, elastic, residual;
-    double energy, displacement, by_energy, by_displacement;
-    size_t i;
-    for (i = 0; i < 3 * problem->n; ++i)
-        work->residual[i] = work->load[i] - work->inertia[i] - work->elastic[i];
-    load = gxsp_precondition(problem, work->load, work->scaled);
-    inertia = gxsp_precondition(problem, work->inertia, work->scaled);
-    elastic = gxsp_precondition(problem, work->elastic, work->scaled);
-    residual = gxsp_precondition(problem, work->residual, work->scaled);
+    double energy, displacement, by_energy, by_displacement, *part = system->direction;
+    size_t i, count = 3 * system->n;
+    load = gxsp_scale(system, system->load);
+    for (i = 0; i < count; ++i)
+        part[i] = problem->rate * system->lumped[i / 3] * (system->current[i] - system->target[i]);
+    inertia = gxsp_scale(system, part);
+    for (i = 0; i < count; ++i)
+        part[i] = system->force[i] - part[i];
+    elastic = gxsp_scale(system, part);
+    for (i = 0; i < count; ++i)
+        system->residual[i] = system->fixed[i / 3] ? 0 : system->load[i] - system->force[i];
+    residual = gxsp_scale(system, system->residual);
     energy = sqrt(load.energy) + sqrt(inertia.energy) + sqrt(elastic.energy);
     displacement = sqrt(load.displacement) + sqrt(inertia.displacement) + sqrt(elastic.displacement);
     by_energy = energy > 0 ? sqrt(residual.energy) / energy : 0;
@@ -1380,59 +2972,53 @@ static double gxsp_balance(gxsp_problem *problem)
     return by_energy > by_displacement ? by_energy : by_displacement;
 }
 
-/* inertia = M (current - target) / dt^2 */
-static void gxsp_update_inertia(gxsp_problem *problem)
+/* Energies and forces at current. 0 if they are not finite. */
+static int gxsp_update(gxsp_problem *problem)
 {
-    gxsp_work *work = &problem->work;
-    size_t i;
-    for (i = 0; i < 3 * problem->n; ++i)
-        work->scaled[i] = work->current[i] - work->target[i];
-    gxsp_product(problem, 0, work->scaled, work->inertia);
+    gxsp_system *system = problem->system;
+    gxsp_evaluate(system, problem->rate, system->current, system->force, problem->energies);
+    return gxsp_finite(problem->energies[0]) && gxsp_finite(problem->energies[1]) &&
+           gxsp_first_not_finite(system->force, 3 * system->n) == 3 * system->n;
 }
 
 /* Start of Newton at from (target or base), each free piece translated so that its momentum balances. The rest of the
- * iteration cannot change momentum: elastic forces have none, nor do the directions. 0 if the energy is not finite. */
+ * iteration cannot change momentum: elastic forces have none, nor do the directions. */
 static int gxsp_start(gxsp_problem *problem, const double *from)
 {
-    gxsp_work *work = &problem->work;
-    size_t i, count = 3 * problem->n;
-    memcpy(work->current, from, count * sizeof(double));
-    gxsp_update_inertia(problem);
-    for (i = 0; i < count; ++i)
-        work->residual[i] = work->load[i] - work->inertia[i];
-    gxsp_translate_pieces(problem, work->residual, work->current);
-    gxsp_update_inertia(problem);
-    return gxsp_finite(gxsp_update_elastic(problem)) && gxsp_first_not_finite(work->current, count) == count &&
-           gxsp_first_not_finite(work->inertia, count) == count && gxsp_first_not_finite(work->elastic, count) == count;
+    gxsp_system *system = problem->system;
+    memcpy(system->current, from, 3 * system->n * sizeof(double));
+    gxsp_balance_momentum(system, problem->rate);
+    return gxsp_first_not_finite(system->current, 3 * system->n) == 3 * system->n && gxsp_update(problem);
 }
 
-/* A step length for the direction, by backtracking on E; current becomes the point found. Inertia and load are
- * quadratic, their change exact; the elastic energy is summed anew. 0: no finite point of lower energy. */
+/* A step length for the direction, by backtracking on E; current becomes the point found, and force and energies its own.
+ * 0: no finite point of lower energy. */
 static int gxsp_line_search(gxsp_problem *problem)
 {
-    gxsp_work *work = &problem->work;
-    double linear, slope, curvature, rounding = 0, length = 1; /* rounding: of positions and of the linear terms */
-    size_t i, count = 3 * problem->n;
+    gxsp_system *system = problem->system;
+    double slope = 0, work = 0, rounding = 0, length = 1; /* rounding: of positions and of the linear terms */
+    double before[3];
+    size_t i, count = 3 * system->n;
     int trial;
-    linear = gxsp_dot(work->inertia, work->direction, problem->n) - gxsp_dot(work->load, work->direction, problem->n);
-    slope = linear + gxsp_dot(work->elastic, work->direction, problem->n);
-    for (i = 0; i < count; ++i)
-        rounding += fabs(work->elastic[i] * work->current[i]) + fabs(work->load[i] * work->direction[i]) +
-                    fabs(work->inertia[i] * work->direction[i]);
-    gxsp_product(problem, 0, work->direction, work->product);
-    curvature = gxsp_dot(work->direction, work->product, problem->n);
-    if (!gxsp_finite(slope) || !gxsp_finite(curvature))
+    for (i = 0; i < count; ++i) {
+        slope += (system->force[i] - system->load[i]) * system->direction[i];
+        work += system->load[i] * system->direction[i];
+        rounding += fabs(system->force[i] * system->current[i]) + fabs(system->load[i] * system->direction[i]);
+    }
+    if (!gxsp_finite(slope))
         return 0;
+    memcpy(before, problem->energies, sizeof before);
     for (trial = 0; trial < GXSP_TRIALS; ++trial) {
-        double noise, change, next;
+        double change, next, *accepted = system->trial;
         for (i = 0; i < count; ++i)
-            work->trial[i] = work->current[i] + length * work->direction[i];
+            system->trial[i] = system->current[i] + length * system->direction[i];
         ++problem->report.line_search_steps;
-        change = gxsp_elastic_change(problem, &noise) + length * (linear + 0.5 * length * curvature);
-        if (gxsp_finite(change) && change <= GXSP_ARMIJO * length * slope + noise + 1e-15 * rounding) {
-            double *accepted = work->trial;
-            work->trial = work->current;
-            work->current = accepted;
+        gxsp_evaluate(system, problem->rate, system->trial, system->force, problem->energies);
+        change = (problem->energies[0] - before[0]) + (problem->energies[1] - before[1]) - length * work;
+        if (gxsp_finite(change) && gxsp_finite(problem->energies[2]) &&
+            change <= GXSP_ARMIJO * length * slope + 1e-15 * (problem->energies[2] + before[2] + rounding)) {
+            system->trial = system->current;
+            system->current = accepted;
             return 1;
         }
         /* minimum of the parabola through the two energies and the slope, within 1/10 to 1/2 of the length */
@@ -1440,54 +3026,41 @@ static int gxsp_line_search(gxsp_problem *problem)
                -0.5 * slope * length * length / (change - length * slope) : 0.1 * length;
         length = next < 0.1 * length ? 0.1 * length : next > 0.5 * length ? 0.5 * length : next;
     }
+    memcpy(problem->energies, before, sizeof before);
     return 0;
 }
 
 /* E at current, J */
 static double gxsp_energy(const gxsp_problem *problem)
 {
-    const gxsp_work *work = &problem->work;
-    double sum = 0;
-    size_t i;
-    for (i = 0; i < problem->model->element_count; ++i)
-        sum += work->energy[i];
-    for (i = 0; i < 3 * problem->n; ++i)
-        sum += 0.5 * (work->current[i] - work->target[i]) * work->inertia[i] - work->load[i] * work->current[i];
-    return sum;
+    const gxsp_system *system = problem->system;
+    return problem->energies[0] + problem->energies[1] - gxsp_dot(system->load, system->current, system->n);
 }
 
-/* Load, targets, fixed copies, pieces. */
+/* Load, target, base. */
 static void gxsp_begin(gxsp_problem *problem, const double *displacement, const double *velocity)
 {
-    gxsp_work *work = &problem->work;
+    gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
-    size_t i, r, count = 3 * problem->n;
-    gxsp_blocks_begin(problem);
-    gxsp_find_fixed(problem);
-    for (i = 0; i < count; ++i)
-        work->scaled[i] = 1;
-    gxsp_product(problem, 0, work->scaled, work->product);
-    memcpy(work->base, displacement, count * sizeof(double));
-    for (i = 0; i < problem->n; ++i) {
-        work->lumped[i] = work->product[3 * i];
+    size_t i, r;
+    memcpy(system->base, displacement, 3 * system->n * sizeof(double));
+    for (i = 0; i < system->n; ++i)
         for (r = 0; r < 3; ++r) {
             size_t k = 3 * i + r;
-            work->target[k] = displacement[k] + (work->fixed[i] ? 0 : step->dt * velocity[k]);
-            work->load[k] = work->lumped[i] * step->dt * step->dt * step->gravity[r] +
-                            (step->forces && !work->fixed[i] ? step->forces[k] : 0);
+            system->target[k] = displacement[k] + (system->fixed[i] ? 0 : step->dt * velocity[k]);
+            system->load[k] = system->lumped[i] * step->gravity[r] + (step->forces && !system->fixed[i] ? step->forces[k] : 0);
         }
-    }
-    gxsp_find_pieces(problem);
 }
 
 /* Newton's method from a start that gxsp_start found finite to balance or to the end of the budget. */
 static gx_result gxsp_newton(gxsp_problem *problem)
 {
     const gxs_step_desc *step = problem->step;
+    gxsp_system *system = problem->system;
     uint32_t budget = step->newton_iterations ? step->newton_iterations : 1, *done = &problem->report.newton_iterations;
     double goal = step->newton_tolerance > GXSP_ROUNDING ? step->newton_tolerance : GXSP_ROUNDING;
     *done = 0;
-    if (!gxsp_linearise(problem))
+    if (!gxsp_linearise(system, problem->rate, system->current))
         return GX_ERROR_DIVERGED;
     for (;;) {
         problem->report.residual = gxsp_balance(problem);
@@ -1495,15 +3068,13 @@ static gx_result gxsp_newton(gxsp_problem *problem)
             return GX_ERROR_DIVERGED;
         if (problem->report.residual <= goal || *done == budget)
             return GX_OK;
-        if (*done > 0 && !gxsp_linearise(problem))
+        if (*done > 0 && !gxsp_linearise(system, problem->rate, system->current))
             return GX_ERROR_DIVERGED;
-        if (!gxsp_conjugate_gradients(problem))
+        if (!gxsp_solve(problem))
             return GX_ERROR_DIVERGED;
         if (!gxsp_line_search(problem)) /* after a first success: no more to gain in doubles */
             return *done > 0 ? GX_OK : GX_ERROR_DIVERGED;
         ++*done;
-        gxsp_update_inertia(problem);
-        gxsp_update_elastic(problem);
     }
 }
 
@@ -1511,79 +3082,175 @@ static gx_result gxsp_newton(gxsp_problem *problem)
  * is, or not a number, then from base: so E(u) <= E(base) always, and what a step can add to the energy is bounded. */
 static gx_result gxsp_minimise(gxsp_problem *problem)
 {
+    gxsp_system *system = problem->system;
     gx_result result = GX_ERROR_DIVERGED;
-    int stay = gxsp_start(problem, problem->work.base);
-    double limit = stay ? gxsp_energy(problem) : 0;
-    if (gxsp_start(problem, problem->work.target))
+    double found, limit, kept[3];
+    if (gxsp_start(problem, system->target))
         result = gxsp_newton(problem);
-    if (stay && gxsp_finite(limit) && (result != GX_OK || gxsp_energy(problem) > limit + 1e-12 * fabs(limit))) {
-        gxsp_start(problem, problem->work.base);
-        result = gxsp_newton(problem);
+    found = result == GX_OK ? gxsp_energy(problem) : 0;
+    memcpy(kept, problem->energies, sizeof kept);
+    gxsp_evaluate(system, problem->rate, system->base, system->force, problem->energies);
+    limit = problem->energies[0] + problem->energies[1] - gxsp_dot(system->load, system->base, system->n);
+    if (!gxsp_finite(limit) || (result == GX_OK && found <= limit + 1e-12 * fabs(limit))) {
+        memcpy(problem->energies, kept, sizeof kept);
+        return result;
     }
-    return result;
+    return gxsp_start(problem, system->base) ? gxsp_newton(problem) : GX_ERROR_DIVERGED;
 }
 
 /* Writes the state out, all of it or, if a number is not finite, none. */
 static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double *velocity)
 {
-    gxsp_work *work = &problem->work;
-    size_t i, count = 3 * problem->n;
-    double per_second = 1 / problem->step->dt;
+    gxsp_system *system = problem->system;
+    size_t i, count = 3 * system->n;
+    double per_second = 1 / problem->step->dt, *rate = system->residual;
     for (i = 0; i < count; ++i)
-        work->scaled[i] = work->fixed[i / 3] ? 0 : per_second * (work->current[i] - work->base[i]);
+        rate[i] = system->fixed[i / 3] ? 0 : per_second * (system->current[i] - system->base[i]);
     problem->report.energy = gxsp_energy(problem);
-    if (gxsp_first_not_finite(work->scaled, count) < count || gxsp_first_not_finite(work->current, count) < count ||
+    if (gxsp_first_not_finite(rate, count) < count || gxsp_first_not_finite(system->current, count) < count ||
         !gxsp_finite(problem->report.energy))
         return GX_ERROR_DIVERGED;
-    memcpy(displacement, work->current, count * sizeof(double));
-    memcpy(velocity, work->scaled, count * sizeof(double));
+    memcpy(displacement, system->current, count * sizeof(double));
+    memcpy(velocity, rate, count * sizeof(double));
     return GX_OK;
 }
 
-static gx_result gxsp_check_all(const gxs_solver *solver, const gxs_model *model, const gxs_step_desc *step,
-                                const double *displacement, const double *velocity, gx_failure *failure)
+/* >>check */
+
+static gx_result gxsp_check_element(const gxs_element *element, const gxs_model *model, size_t index, gx_failure *failure)
 {
+    int i;
+    for (i = 0; i < 4; ++i)
+        if (element->copy[i] >= model->copy_count)
+            return gxsp_fail(failure, GX_ERROR_INDEX, index);
+    if (element->material >= model->material_count)
+        return gxsp_fail(failure, GX_ERROR_INDEX, index);
+    if (gxsp_first_not_finite(&element->gradient[1][0], 9) < 9 || !gxsp_finite(element->weight) ||
+        gxsp_first_not_finite(element->mass, 10) < 10)
+        return gxsp_fail(failure, GX_ERROR_NOT_FINITE, index);
+    if (element->weight < 0)
+        return gxsp_fail(failure, GX_ERROR_INVERTED, index);
+    if (element->mass[0] < 0 || element->mass[4] < 0 || element->mass[7] < 0 || element->mass[9] < 0)
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, index);
+    return GX_OK;
+}
+
+static gx_result gxsp_check_material(const gxs_material *material, size_t index, gx_failure *failure)
+{
+    if (!gxsp_finite(material->young) || !gxsp_finite(material->poisson))
+        return gxsp_fail(failure, GX_ERROR_NOT_FINITE, index);
+    if (material->young <= 0 || material->poisson < 0 || material->poisson >= 0.5 || (int)material->kind < 0 ||
+        material->kind > GXS_LINEAR)
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, index);
+    return GX_OK;
+}
+
+static gx_result gxsp_check_vector(const double *vector, size_t copy_count, gx_failure *failure)
+{
+    size_t i;
+    if (!vector)
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    i = gxsp_first_not_finite(vector, 3 * copy_count);
+    return i < 3 * copy_count ? gxsp_fail(failure, GX_ERROR_NOT_FINITE, i / 3) : GX_OK;
+}
+
+static gx_result gxsp_check_model(const gxs_model *model, gx_failure *failure)
+{
+    size_t e;
+    gx_result result = GX_OK;
+    if (!model || (!model->elements && model->element_count > 0) || (!model->materials && model->material_count > 0))
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    if (model->copy_count == 0 || model->element_count == 0 || model->material_count == 0)
+        return gxsp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
+    /* 1024: no array takes more bytes per object, so sizes cannot overflow; elements have four slots at most */
+    if (model->copy_count >= UINT32_MAX / 4 || model->element_count >= UINT32_MAX / 4 || model->material_count >= UINT32_MAX ||
+        model->copy_count >= SIZE_MAX / 1024 || model->element_count >= SIZE_MAX / 1024)
+        return gxsp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
+    for (e = 0; e < model->material_count && result == GX_OK; ++e)
+        result = gxsp_check_material(&model->materials[e], e, failure);
+    for (e = 0; e < model->element_count && result == GX_OK; ++e)
+        result = gxsp_check_element(&model->elements[e], model, e, failure);
+    return result == GX_OK && model->positions ? gxsp_check_vector(model->positions, model->copy_count, failure) : result;
+}
+
+static gx_result gxsp_check_step(const gxs_step_desc *step, gx_failure *failure)
+{
+    if (!step)
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    if (!gxsp_finite(step->dt) || gxsp_first_not_finite(step->gravity, 3) < 3 || !gxsp_finite(step->newton_tolerance) ||
+        !gxsp_finite(step->cg_tolerance))
+        return gxsp_fail(failure, GX_ERROR_NOT_FINITE, SIZE_MAX);
+    if (step->dt <= 0 || step->newton_tolerance < 0 || step->cg_tolerance < 0)
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    if (step->dt < 1e-100 || step->dt > 1e100) /* dt^2 and 1 / dt^2 must be numbers */
+        return gxsp_fail(failure, GX_ERROR_RANGE, SIZE_MAX);
+    return GX_OK;
+}
+
+/* >>api */
+
+static void gxsp_system_destroy(gxsp_system *system)
+{
+    gxsp_pool pool;
+    if (!system)
+        return;
+    pool = system->pool; /* which holds system itself */
+    gxsp_release_to(&pool, NULL);
+}
+
+GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *model, gx_failure *failure)
+{
+    gx_failure ignored;
     gx_result result;
+    gxsp_pool pool, scratch;
+    gxsp_system *system;
+    failure = failure ? failure : &ignored;
+    gxsp_fail(failure, GX_OK, SIZE_MAX);
     if (!solver)
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
-    if ((result = gxsp_check_step(step, failure)) != GX_OK || (result = gxsp_check_model(model, failure)) != GX_OK ||
-        (result = gxsp_check_vector(displacement, model->copy_count, failure)) != GX_OK ||
-        (result = gxsp_check_vector(velocity, model->copy_count, failure)) != GX_OK)
+    result = gxsp_check_model(model, failure);
+    if (result != GX_OK)
         return result;
-    return step->forces ? gxsp_check_vector(step->forces, model->copy_count, failure) : GX_OK;
+    pool = gxsp_pool_make(&solver->allocator);
+    scratch = gxsp_pool_make(&solver->allocator);
+    system = (gxsp_system *)gxsp_take(&pool, 1, sizeof *system);
+    if (!system)
+        return gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
+    system->pool = pool;
+    system->jobs = &solver->jobs;
+    gxsp_system_build(system, &scratch, model, solver->preconditioner);
+    gxsp_release_to(&scratch, NULL);
+    if (scratch.failed || system->pool.failed) {
+        gxsp_system_destroy(system);
+        return gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
+    }
+    gxsp_system_destroy(solver->system);
+    solver->system = system;
+    return GX_OK;
 }
 
-static void gxsp_problem_make(gxsp_problem *problem, const gxs_solver *solver, const gxs_model *model,
-                              const gxs_step_desc *step)
-{
-    memset(problem, 0, sizeof *problem);
-    problem->model = model;
-    problem->step = step;
-    problem->material = gxsp_material_make(model->young, model->poisson);
-    problem->n = model->copy_count;
-    problem->block_count = gxsp_block_count(model->element_count);
-    problem->rate = 1 / (step->dt * step->dt);
-    problem->cg_iterations = step->cg_iterations ? step->cg_iterations : 1000;
-    problem->cg_tolerance = step->cg_tolerance > 0 ? step->cg_tolerance : 1e-2;
-    gxsp_work_place(&problem->work, solver->memory, model->copy_count, model->element_count);
-}
-
-GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_model *model, const gxs_step_desc *step,
-                                    double *displacement, double *velocity, gxs_step_report *report,
-                                    gx_failure *failure)
+GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement, double *velocity,
+                                    gxs_step_report *report, gx_failure *failure)
 {
     gxsp_problem problem;
     gx_failure ignored;
     gx_result result;
+    size_t n;
     failure = failure ? failure : &ignored;
     gxsp_fail(failure, GX_OK, SIZE_MAX);
-    result = gxsp_check_all(solver, model, step, displacement, velocity, failure);
-    if (result != GX_OK)
+    if (!solver || !solver->system)
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    n = solver->system->n;
+    if ((result = gxsp_check_step(step, failure)) != GX_OK || (result = gxsp_check_vector(displacement, n, failure)) != GX_OK ||
+        (result = gxsp_check_vector(velocity, n, failure)) != GX_OK ||
+        (step->forces && (result = gxsp_check_vector(step->forces, n, failure)) != GX_OK))
         return result;
-    result = gxsp_reserve(solver, model->copy_count, model->element_count);
-    if (result != GX_OK)
-        return gxsp_fail(failure, result, SIZE_MAX);
-    gxsp_problem_make(&problem, solver, model, step);
+    memset(&problem, 0, sizeof problem);
+    problem.system = solver->system;
+    problem.step = step;
+    problem.rate = 1 / (step->dt * step->dt);
+    problem.cg_iterations = step->cg_iterations ? step->cg_iterations : 1000;
+    problem.cg_tolerance = step->cg_tolerance > 0 ? step->cg_tolerance : 1e-2;
     gxsp_begin(&problem, displacement, velocity);
     result = gxsp_minimise(&problem);
     if (result == GX_OK)
@@ -1595,14 +3262,14 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_model *model, 
     return GX_OK;
 }
 
-GXFEM_API gx_result gxs_solver_create(const gx_allocator *allocator, gxs_solver **solver)
+GXFEM_API gx_result gxs_solver_create(const gxs_solver_desc *desc, gxs_solver **solver)
 {
     gx_allocator used = {NULL, NULL, NULL};
     gxs_solver *made;
-    if (!solver || (allocator && !allocator->allocate != !allocator->release))
+    if (!solver || (desc && !desc->allocator.allocate != !desc->allocator.release))
         return GX_ERROR_ARGUMENT;
-    if (allocator)
-        used = *allocator;
+    if (desc)
+        used = desc->allocator;
     if (!used.allocate) {
         used.allocate = gxsp_malloc;
         used.release = gxsp_free;
@@ -1610,9 +3277,12 @@ GXFEM_API gx_result gxs_solver_create(const gx_allocator *allocator, gxs_solver 
     made = (gxs_solver *)used.allocate(used.user, sizeof *made);
     if (!made)
         return GX_ERROR_MEMORY;
+    memset(made, 0, sizeof *made);
     made->allocator = used;
-    made->memory = NULL;
-    made->size = 0;
+    if (desc) {
+        made->jobs = desc->jobs;
+        made->preconditioner = desc->preconditioner;
+    }
     *solver = made;
     return GX_OK;
 }
@@ -1623,9 +3293,65 @@ GXFEM_API void gxs_solver_destroy(gxs_solver *solver)
     if (!solver)
         return;
     allocator = solver->allocator;
-    if (solver->memory)
-        allocator.release(allocator.user, solver->memory, solver->size);
+    gxsp_system_destroy(solver->system);
     allocator.release(allocator.user, solver, sizeof *solver);
+}
+
+/* >>forms: the assembled forms, eight elements of the caller's array at a time */
+
+typedef struct gxsp_group {
+    gxsp_rest rest;
+    gxsp_state state;
+    gxsp_mass mass;
+    gxs_material_kind kind;
+    uint32_t count; /* elements in it, of one kind */
+    const gxs_element *elements;
+} gxsp_group;
+
+/* The next elements of one kind from at on. */
+static void gxsp_group_load(const gxs_model *model, size_t at, gxsp_group *group)
+{
+    size_t lane;
+    int k;
+    memset(group, 0, sizeof *group);
+    group->elements = model->elements + at;
+    group->kind = model->materials[group->elements->material].kind;
+    for (lane = 0; lane < GXSP_LANES; ++lane) {
+        const gxs_element *element = &group->elements[lane];
+        gxsp_material material;
+        if (at + lane >= model->element_count || model->materials[element->material].kind != group->kind)
+            break;
+        material = gxsp_material_make(&model->materials[element->material]);
+        group->state.mu[lane] = material.mu;
+        group->state.lambda[lane] = material.lambda;
+        for (k = 0; k < 9; ++k)
+            group->rest.gradient[k][lane] = element->gradient[1 + k / 3][k % 3];
+        group->rest.weight[lane] = element->weight;
+        for (k = 0; k < 10; ++k)
+            group->mass.entry[k][lane] = element->mass[k];
+    }
+    group->count = (uint32_t)lane;
+}
+
+static void gxsp_group_gather(const gxsp_group *group, const double *x, gxsp_lanes *corners)
+{
+    uint32_t lane;
+    int i, r;
+    memset(corners, 0, 12 * sizeof *corners);
+    for (lane = 0; lane < group->count; ++lane)
+        for (i = 0; i < 4; ++i)
+            for (r = 0; r < 3; ++r)
+                corners[3 * i + r][lane] = x[3 * (size_t)group->elements[lane].copy[i] + (size_t)r];
+}
+
+static void gxsp_group_scatter(const gxsp_group *group, gxsp_lanes *values, double *y)
+{
+    uint32_t lane;
+    int i, r;
+    for (lane = 0; lane < group->count; ++lane)
+        for (i = 0; i < 4; ++i)
+            for (r = 0; r < 3; ++r)
+                y[3 * (size_t)group->elements[lane].copy[i] + (size_t)r] += values[3 * i + r][lane];
 }
 
 /* Model and an input vector of one of the assembled forms. */
@@ -1641,16 +3367,21 @@ static gx_result gxsp_check_form(const gxs_model *model, const double *vector, c
 GXFEM_API gx_result gxs_model_energy(const gxs_model *model, const double *displacement, double *energy)
 {
     gx_result result = gxsp_check_form(model, displacement, energy);
-    gxsp_material material;
     double sum = 0;
     size_t e;
+    uint32_t lane;
     if (result != GX_OK)
         return result;
-    material = gxsp_material_make(model->young, model->poisson);
-    for (e = 0; e < model->element_count; ++e) {
-        double g[9], noise;
-        gxsp_displacement_gradient(&model->elements[e], displacement, g);
-        sum += model->elements[e].weight * gxsp_material_energy(&material, g, &noise);
+    for (e = 0; e < model->element_count;) {
+        gxsp_group group;
+        gxsp_lanes x[12];
+        gxsp_group_load(model, e, &group);
+        gxsp_group_gather(&group, displacement, x);
+        gxsp_block_gradient(&group.rest, x, group.state.g);
+        gxsp_material_state(group.kind, &group.state);
+        for (lane = 0; lane < group.count; ++lane)
+            sum += group.rest.weight[lane] * group.state.energy[lane];
+        e += group.count;
     }
     *energy = sum;
     return GX_OK;
@@ -1659,17 +3390,20 @@ GXFEM_API gx_result gxs_model_energy(const gxs_model *model, const double *displ
 GXFEM_API gx_result gxs_model_gradient(const gxs_model *model, const double *displacement, double *gradient)
 {
     gx_result result = gxsp_check_form(model, displacement, gradient);
-    gxsp_material material;
     size_t e;
     if (result != GX_OK)
         return result;
-    material = gxsp_material_make(model->young, model->poisson);
     memset(gradient, 0, 3 * model->copy_count * sizeof(double));
-    for (e = 0; e < model->element_count; ++e) {
-        double g[9], stress[9];
-        gxsp_displacement_gradient(&model->elements[e], displacement, g);
-        gxsp_material_stress(&material, g, stress);
-        gxsp_scatter_stress(&model->elements[e], stress, gradient);
+    for (e = 0; e < model->element_count;) {
+        gxsp_group group;
+        gxsp_lanes x[12], force[12];
+        gxsp_group_load(model, e, &group);
+        gxsp_group_gather(&group, displacement, x);
+        gxsp_block_gradient(&group.rest, x, group.state.g);
+        gxsp_material_state(group.kind, &group.state);
+        gxsp_block_force(&group.rest, group.state.p, force);
+        gxsp_group_scatter(&group, force, gradient);
+        e += group.count;
     }
     return GX_OK;
 }
@@ -1679,23 +3413,31 @@ GXFEM_API gx_result gxs_model_hessian_product(const gxs_model *model, const doub
 {
     gx_result result = gxsp_check_form(model, displacement, product);
     gx_failure failure;
-    gxsp_material material;
     size_t e;
     if (result == GX_OK)
         result = gxsp_check_vector(direction, model->copy_count, &failure);
     if (result != GX_OK)
         return result;
-    material = gxsp_material_make(model->young, model->poisson);
     memset(product, 0, 3 * model->copy_count * sizeof(double));
-    for (e = 0; e < model->element_count; ++e) {
-        double f[9], change[9], stress[9];
+    for (e = 0; e < model->element_count;) {
+        gxsp_group group;
         gxsp_tangent tangent;
-        gxsp_displacement_gradient(&model->elements[e], displacement, f);
-        gxsp_add_unit(f);
-        gxsp_tangent_make(&material, f, &tangent);
-        gxsp_displacement_gradient(&model->elements[e], direction, change);
-        gxsp_tangent_product(&tangent, change, stress);
-        gxsp_scatter_stress(&model->elements[e], stress, product);
+        gxsp_lanes x[12];
+        gxsp_singles from[12], to[12];
+        int k, l;
+        gxsp_group_load(model, e, &group);
+        gxsp_group_gather(&group, displacement, x);
+        gxsp_block_gradient(&group.rest, x, group.state.g);
+        memset(&tangent, 0, sizeof tangent);
+        gxsp_tangent_make(group.kind, &group.rest, &group.state, &tangent);
+        gxsp_group_gather(&group, direction, x);
+        for (k = 0; k < 12; ++k)
+            GXSP_EACH_LANE(l) from[k][l] = (float)(x[k][l] - x[k % 3][l]); /* of translations exactly 0 */
+        gxsp_block_product(&tangent, from, to);
+        for (k = 0; k < 12; ++k)
+            GXSP_EACH_LANE(l) x[k][l] = (double)to[k][l];
+        gxsp_group_scatter(&group, x, product);
+        e += group.count;
     }
     return GX_OK;
 }
@@ -1707,42 +3449,69 @@ GXFEM_API gx_result gxs_model_mass_product(const gxs_model *model, const double 
     if (result != GX_OK)
         return result;
     memset(product, 0, 3 * model->copy_count * sizeof(double));
-    for (e = 0; e < model->element_count; ++e)
-        gxsp_scatter_mass(&model->elements[e], 1, direction, product);
+    for (e = 0; e < model->element_count;) {
+        gxsp_group group;
+        gxsp_lanes x[12], y[12], energy;
+        gxsp_group_load(model, e, &group);
+        gxsp_group_gather(&group, direction, x);
+        memset(y, 0, sizeof y);
+        gxsp_block_inertia(&group.rest, &group.mass, 1, x, y, energy);
+        gxsp_group_scatter(&group, y, product);
+        e += group.count;
+    }
     return GX_OK;
 }
 
-static void gxsp_subtract_unit(const double *deformation, double *g)
+static gxsp_state gxsp_single_state(const gxs_material *material, const double *deformation)
 {
-    memcpy(g, deformation, 9 * sizeof *g);
-    g[0] -= 1;
-    g[4] -= 1;
-    g[8] -= 1;
+    gxsp_material own = gxsp_material_make(material);
+    gxsp_state state;
+    int k;
+    memset(&state, 0, sizeof state);
+    state.mu[0] = own.mu;
+    state.lambda[0] = own.lambda;
+    for (k = 0; k < 9; ++k)
+        state.g[k][0] = deformation[k] - (k % 4 == 0 ? 1 : 0);
+    return state;
 }
 
-GXFEM_API double gxs_stable_neo_hookean_energy(double young, double poisson, const double *deformation)
+GXFEM_API double gxs_material_energy(const gxs_material *material, const double *deformation)
 {
-    gxsp_material material = gxsp_material_make(young, poisson);
-    double g[9], noise;
-    gxsp_subtract_unit(deformation, g);
-    return gxsp_material_energy(&material, g, &noise);
+    gxsp_state state = gxsp_single_state(material, deformation);
+    gxsp_material_state(material->kind, &state);
+    return state.energy[0];
 }
 
-GXFEM_API void gxs_stable_neo_hookean_stress(double young, double poisson, const double *deformation, double *stress)
+GXFEM_API void gxs_material_stress(const gxs_material *material, const double *deformation, double *stress)
 {
-    gxsp_material material = gxsp_material_make(young, poisson);
-    double g[9];
-    gxsp_subtract_unit(deformation, g);
-    gxsp_material_stress(&material, g, stress);
+    gxsp_state state = gxsp_single_state(material, deformation);
+    int k;
+    gxsp_material_state(material->kind, &state);
+    for (k = 0; k < 9; ++k)
+        stress[k] = state.p[k][0];
 }
 
-GXFEM_API void gxs_stable_neo_hookean_product(double young, double poisson, const double *deformation,
-                                              const double *direction, double *product)
+GXFEM_API void gxs_material_product(const gxs_material *material, const double *deformation, const double *direction,
+                                    double *product)
 {
-    gxsp_material material = gxsp_material_make(young, poisson);
+    gxsp_state state = gxsp_single_state(material, deformation);
+    gxsp_rest rest;
     gxsp_tangent tangent;
-    gxsp_tangent_make(&material, deformation, &tangent);
-    gxsp_tangent_product(&tangent, direction, product);
+    gxsp_singles from[12], to[12];
+    int k, c;
+    memset(&rest, 0, sizeof rest);
+    memset(&tangent, 0, sizeof tangent);
+    memset(from, 0, sizeof from);
+    rest.weight[0] = 1;
+    rest.gradient[0][0] = rest.gradient[4][0] = rest.gradient[8][0] = 1; /* u_i - u_0 are the columns of dF, forces those of dP */
+    gxsp_tangent_make(material->kind, &rest, &state, &tangent);
+    for (k = 0; k < 3; ++k)
+        for (c = 0; c < 3; ++c)
+            from[3 + 3 * c + k][0] = (float)direction[3 * k + c];
+    gxsp_block_product(&tangent, from, to);
+    for (k = 0; k < 3; ++k)
+        for (c = 0; c < 3; ++c)
+            product[3 * k + c] = (double)to[3 + 3 * c + k][0];
 }
 
 #ifdef __cplusplus
@@ -1750,10 +3519,18 @@ GXFEM_API void gxs_stable_neo_hookean_product(double young, double poisson, cons
 #endif
 
 #undef GXSP_LANES
+#undef GXSP_CHUNK_BLOCKS
 #undef GXSP_EACH_LANE
 #undef GXSP_RESTRICT
 #undef GXSP_ROUNDING
 #undef GXSP_ARMIJO
 #undef GXSP_TRIALS
-#undef GXSP_NO_PIECE
+#undef GXSP_NONE
+#undef GXSP_RANGE
+#undef GXSP_SPACING
+#undef GXSP_MULTIGRID_FROM
+#undef GXSP_BOTTOM
+#undef GXSP_LEVELS
+#undef GXSP_SHIFT
+#undef GXSP_HEAD
 #endif /* GXFEM_SOLVE_IMPLEMENTED */

@@ -44,6 +44,7 @@ static int finite_bits(double value)
 /* A block of unit cubes times size, six tetrahedra each, and its state. */
 typedef struct scene {
     gxs_model model;
+    gxs_material *material;
     gxs_element *elements;
     uint8_t *held;
     double *rest, *displacement, *velocity, *forces; /* copy_count x 3 */
@@ -124,11 +125,16 @@ static scene scene_block(int nx, int ny, int nz, double size, double jitter, siz
                     }
                     make_element(&s.elements[e], s.rest, 1000);
                 }
+    s.material = (gxs_material *)zeroed(1, sizeof(gxs_material));
+    s.material->young = 1e6;
+    s.material->poisson = 0.4;
+    memset(&s.model, 0, sizeof s.model);
     s.model.copy_count = copies;
+    s.model.positions = s.rest;
     s.model.elements = s.elements;
     s.model.element_count = elements;
-    s.model.young = 1e6;
-    s.model.poisson = 0.4;
+    s.model.materials = s.material;
+    s.model.material_count = 1;
     s.model.held = s.held;
     return s;
 }
@@ -141,6 +147,7 @@ static void scene_free(scene *s)
     free(s->forces);
     free(s->held);
     free(s->elements);
+    free(s->material);
 }
 
 static void scene_hold_left(scene *s)
@@ -164,6 +171,14 @@ static gxs_solver *solver_make(void)
     gxs_solver *solver = NULL;
     ck_assert_int_eq(gxs_solver_create(NULL, &solver), GX_OK);
     return solver;
+}
+
+/* a model and one step of it */
+static gx_result advance(gxs_solver *solver, const gxs_model *model, const gxs_step_desc *step, double *displacement,
+                         double *velocity, gxs_step_report *report, gx_failure *failure)
+{
+    gx_result result = gxs_solver_set_model(solver, model, failure);
+    return result == GX_OK ? gxs_solver_step(solver, step, displacement, velocity, report, failure) : result;
 }
 
 /* E(u) of the header's manual from the assembled forms, displacement u after a step from u_n, v_n; no held copies */
@@ -199,11 +214,23 @@ static void random_deformation(double *f, double spread)
 
 static const double poissons[4] = {0, 0.3, 0.45, 0.4999};
 
+enum { KINDS = GXS_LINEAR + 1 };
+
+static gxs_material material_make(int kind, double nu)
+{
+    gxs_material material;
+    material.kind = (gxs_material_kind)kind;
+    material.young = 1;
+    material.poisson = nu;
+    return material;
+}
+
 START_TEST(energy_is_the_formula_of_the_paper)
 {
     int round, k;
     for (round = 0; round < 1000; ++round) {
         double f[9], nu = poissons[round % 4], mu, lambda, alpha, ic = 0, j, direct, rest, energy;
+        gxs_material material = material_make(GXS_STABLE_NEO_HOOKEAN, nu);
         seed((uint64_t)round);
         random_deformation(f, 2);
         mu = 4.0 / 3 / (2 * (1 + nu));
@@ -214,7 +241,7 @@ START_TEST(energy_is_the_formula_of_the_paper)
         j = f[0] * (f[4] * f[8] - f[5] * f[7]) - f[1] * (f[3] * f[8] - f[5] * f[6]) + f[2] * (f[3] * f[7] - f[4] * f[6]);
         direct = 0.5 * mu * (ic - 3) + 0.5 * lambda * (j - alpha) * (j - alpha) - 0.5 * mu * log(ic + 1);
         rest = 0.5 * lambda * (1 - alpha) * (1 - alpha) - 0.5 * mu * log(4.0);
-        energy = gxs_stable_neo_hookean_energy(1, nu, f);
+        energy = gxs_material_energy(&material, f);
         assert_that(fabs(energy - (direct - rest)) <= 1e-12 * (1 + fabs(direct) + lambda * (1 + j * j)), "%g %g", energy,
                     direct - rest);
     }
@@ -224,13 +251,14 @@ END_TEST
 START_TEST(rest_and_rotations_are_free_of_stress)
 {
     static const double unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    gxs_material material = material_make(_i, 0.4);
     double stress[9];
     int k, round;
-    ck_assert(gxs_stable_neo_hookean_energy(1e6, 0.4, unit) == 0);
-    gxs_stable_neo_hookean_stress(1e6, 0.4, unit, stress);
+    ck_assert(gxs_material_energy(&material, unit) < 1e-30);
+    gxs_material_stress(&material, unit, stress);
     for (k = 0; k < 9; ++k)
-        ck_assert(stress[k] == 0);
-    for (round = 0; round < 100; ++round) {
+        ck_assert(fabs(stress[k]) < 1e-15);
+    for (round = 0; round < 100 && _i != GXS_LINEAR; ++round) {
         double q[4], length = 0, r[9];
         seed((uint64_t)round);
         for (k = 0; k < 4; ++k)
@@ -240,7 +268,7 @@ START_TEST(rest_and_rotations_are_free_of_stress)
         r[0] = 1 - 2 * (q[2] * q[2] + q[3] * q[3]), r[1] = 2 * (q[1] * q[2] - q[0] * q[3]), r[2] = 2 * (q[1] * q[3] + q[0] * q[2]);
         r[3] = 2 * (q[1] * q[2] + q[0] * q[3]), r[4] = 1 - 2 * (q[1] * q[1] + q[3] * q[3]), r[5] = 2 * (q[2] * q[3] - q[0] * q[1]);
         r[6] = 2 * (q[1] * q[3] - q[0] * q[2]), r[7] = 2 * (q[2] * q[3] + q[0] * q[1]), r[8] = 1 - 2 * (q[1] * q[1] + q[2] * q[2]);
-        gxs_stable_neo_hookean_stress(1, 0.4, r, stress);
+        gxs_material_stress(&material, r, stress);
         for (k = 0; k < 9; ++k)
             assert_that(fabs(stress[k]) < 1e-13, "stress %g", stress[k]);
     }
@@ -254,13 +282,14 @@ START_TEST(small_strain_is_linear_elasticity)
     for (round = 0; round < 100; ++round) {
         double f[9], stress[9], strain[9], nu = poissons[round % 4], shear = 1 / (2 * (1 + nu));
         double lame = nu / ((1 + nu) * (1 - 2 * nu)), trace;
+        gxs_material material = material_make(_i, nu);
         seed((uint64_t)round);
         random_deformation(f, 1e-7);
         for (r = 0; r < 3; ++r)
             for (c = 0; c < 3; ++c)
                 strain[3 * r + c] = 0.5 * (f[3 * r + c] + f[3 * c + r]) - (r == c ? 1 : 0);
         trace = strain[0] + strain[4] + strain[8];
-        gxs_stable_neo_hookean_stress(1, nu, f, stress);
+        gxs_material_stress(&material, f, stress);
         for (r = 0; r < 3; ++r)
             for (c = 0; c < 3; ++c) {
                 double expected = 2 * shear * strain[3 * r + c] + (r == c ? lame * trace : 0);
@@ -274,10 +303,11 @@ START_TEST(stress_is_the_derivative_of_energy)
 {
     int round, k;
     for (round = 0; round < 400; ++round) {
-        double f[9], stress[9], nu = poissons[round % 4], scale = 0;
+        double f[9], stress[9], scale = 0;
+        gxs_material material = material_make(_i, poissons[round % 4]);
         seed((uint64_t)round);
-        random_deformation(f, round % 2 ? 0.3 : 2);
-        gxs_stable_neo_hookean_stress(1, nu, f, stress);
+        random_deformation(f, round % 2 ? 0.3 : _i == GXS_FIXED_COROTATED ? 0.5 : 2); /* its rotation jumps where F is inverted */
+        gxs_material_stress(&material, f, stress);
         for (k = 0; k < 9; ++k)
             scale += fabs(stress[k]);
         for (k = 0; k < 9; ++k) {
@@ -285,7 +315,7 @@ START_TEST(stress_is_the_derivative_of_energy)
             memcpy(up, f, sizeof up);
             memcpy(down, f, sizeof down);
             up[k] += 1e-5, down[k] -= 1e-5;
-            difference = (gxs_stable_neo_hookean_energy(1, nu, up) - gxs_stable_neo_hookean_energy(1, nu, down)) / 2e-5;
+            difference = (gxs_material_energy(&material, up) - gxs_material_energy(&material, down)) / 2e-5;
             assert_that(fabs(difference - stress[k]) < 1e-6 * (1 + scale), "%g %g", difference, stress[k]);
         }
     }
@@ -293,13 +323,13 @@ START_TEST(stress_is_the_derivative_of_energy)
 END_TEST
 
 /* the 9x9 matrix of the product, by columns */
-static void hessian(double nu, const double *f, double h[9][9])
+static void hessian(const gxs_material *material, const double *f, double h[9][9])
 {
     int c;
     for (c = 0; c < 9; ++c) {
         double direction[9] = {0};
         direction[c] = 1;
-        gxs_stable_neo_hookean_product(1, nu, f, direction, h[c]);
+        gxs_material_product(material, f, direction, h[c]);
     }
 }
 
@@ -335,7 +365,7 @@ static double smallest_eigenvalue(double a[9][9], double *largest)
 }
 
 /* Hessian by differences of the stress, symmetrised */
-static void difference_hessian(double nu, const double *f, double h[9][9])
+static void difference_hessian(const gxs_material *material, const double *f, double h[9][9])
 {
     int r, c;
     double raw[9][9];
@@ -344,8 +374,8 @@ static void difference_hessian(double nu, const double *f, double h[9][9])
         memcpy(up, f, sizeof up);
         memcpy(down, f, sizeof down);
         up[c] += 1e-5, down[c] -= 1e-5;
-        gxs_stable_neo_hookean_stress(1, nu, up, p_up);
-        gxs_stable_neo_hookean_stress(1, nu, down, p_down);
+        gxs_material_stress(material, up, p_up);
+        gxs_material_stress(material, down, p_down);
         for (r = 0; r < 9; ++r)
             raw[c][r] = (p_up[r] - p_down[r]) / 2e-5;
     }
@@ -360,14 +390,15 @@ START_TEST(hessian_is_the_projection_of_the_derivative_of_stress)
 {
     int round, r, c, same = 0, projected = 0;
     for (round = 0; round < 600; ++round) {
-        double f[9], h[9][9], d[9][9], copy[9][9], least, largest, nu = poissons[round % 4], trace = 0, error = 0;
+        double f[9], h[9][9], d[9][9], copy[9][9], least, largest, trace = 0, error = 0;
+        gxs_material material = material_make(_i, poissons[round % 4]);
         seed((uint64_t)round);
-        random_deformation(f, round % 3 ? 1.5 : 0.15);
+        random_deformation(f, round % 3 && _i != GXS_FIXED_COROTATED ? 1.5 : 0.15 + 0.2 * (round % 3));
         if (round % 3 == 0) /* stretched: where the Hessian is definite */
             for (r = 0; r < 9; r += 4)
                 f[r] += 0.4;
-        hessian(nu, f, h);
-        difference_hessian(nu, f, d);
+        hessian(&material, f, h);
+        difference_hessian(&material, f, d);
         memcpy(copy, d, sizeof copy);
         least = smallest_eigenvalue(copy, &largest);
         for (r = 0; r < 9; ++r)
@@ -376,34 +407,35 @@ START_TEST(hessian_is_the_projection_of_the_derivative_of_stress)
                 trace += d[r][c] * h[r][c];
                 error = fabs(d[r][c]) > error ? fabs(d[r][c]) : error;
             }
-        assert_that(fabs(trace) < 1e-6 * (largest * largest), "trace %g largest %g", trace, largest);
-        if (least > 1e-6 * largest) {
-            assert_that(error < 1e-6 * (1 + largest), "error %g largest %g", error, largest);
+        assert_that(fabs(trace) < 2e-5 * (largest * largest), "trace %g largest %g", trace, largest);
+        if (least > 1e-5 * largest || _i == GXS_LINEAR) {
+            assert_that(error < 1e-5 * (1 + largest), "error %g largest %g", error, largest);
             ++same;
         } else {
             memcpy(copy, d, sizeof copy);
             least = smallest_eigenvalue(copy, &error);
-            assert_that(least > -1e-6 * (1 + largest), "least %g largest %g", least, largest);
+            assert_that(least > -1e-5 * (1 + largest), "least %g largest %g", least, largest);
             ++projected;
         }
     }
     ck_assert_int_gt(same, 50);
-    ck_assert_int_gt(projected, 50);
+    ck_assert_int_gt(projected + (_i == GXS_LINEAR ? 100 : 0), 50);
 }
 END_TEST
 
-static void check_semidefinite(double nu, const double *f)
+/* to single precision */
+static void check_semidefinite(const gxs_material *material, const double *f)
 {
     double h[9][9], largest, least, asymmetry = 0;
     int r, c;
-    hessian(nu, f, h);
+    hessian(material, f, h);
     for (r = 0; r < 9; ++r)
         for (c = 0; c < 9; ++c) {
             assert_that(finite_bits(h[r][c]), "not finite");
             asymmetry = fabs(h[r][c] - h[c][r]) > asymmetry ? fabs(h[r][c] - h[c][r]) : asymmetry;
         }
     least = smallest_eigenvalue(h, &largest);
-    assert_that(largest >= 0 && least >= -1e-13 * largest && asymmetry <= 1e-13 * largest, "%g %g %g", least, largest,
+    assert_that(largest >= 0 && least >= -2e-6 * largest && asymmetry <= 2e-6 * largest, "%g %g %g", least, largest,
                 asymmetry);
 }
 
@@ -417,12 +449,13 @@ START_TEST(projected_hessian_is_semidefinite)
             for (c = 0; c < 7; ++c)
                 for (round = 0; round < 8; ++round) {
                     double f[9], scale[3];
+                    gxs_material material = material_make(_i, poissons[round % 4]);
                     scale[0] = factors[a], scale[1] = factors[b], scale[2] = factors[c];
                     seed((uint64_t)(((a * 7 + b) * 7 + c) * 8 + round));
                     random_deformation(f, round < 2 ? 0 : 1);
                     for (k = 0; k < 9; ++k)
                         f[k] *= scale[k % 3];
-                    check_semidefinite(poissons[round % 4], f);
+                    check_semidefinite(&material, f);
                 }
 }
 END_TEST
@@ -459,59 +492,65 @@ START_TEST(model_gradient_and_hessian_match_differences)
         worst = error > worst ? error : worst;
         size = fabs(h[i]) > size ? fabs(h[i]) : size;
     }
-    assert_that(worst < 1e-6 * size, "%g of %g", worst, size);
+    assert_that(worst < 3e-6 * size, "%g of %g", worst, size);
     free(d), free(g), free(h), free(up), free(gu), free(gd);
     scene_free(&s);
 }
 END_TEST
 
-/* the blocks' product and block diagonal against the assembled forms, one element per lane and an incomplete last block */
+/* the chunks' product and block diagonal against the assembled forms: whole and cut elements, an incomplete last block */
 START_TEST(block_product_equals_assembled_forms)
 {
-    size_t i, n, k;
-    double *x, *y, *expected, *mass;
-    gxsp_problem problem;
+    size_t i, n, k, copies;
+    double *x, *expected, *mass;
+    gxsp_vector4 *in, *out;
     gxs_solver *solver = solver_make();
-    gxs_step_desc step = step_make(0.02, 0);
+    gxsp_system *system;
     scene s;
+    const double rate = 2500;
     seed(11);
-    s = scene_block(3, 2, 1, 0.5, 0.1, 0);
+    s = scene_block(9, 8, 4, 0.5, 0.1, 0);
     s.model.element_count -= 3;
-    n = 3 * s.model.copy_count;
-    x = (double *)zeroed(n, sizeof *x), y = (double *)zeroed(n, sizeof *x);
-    expected = (double *)zeroed(n, sizeof *x), mass = (double *)zeroed(n, sizeof *x);
-    for (i = 0; i < n; ++i)
-        s.displacement[i] = 0.3 * uniform(), x[i] = uniform();
-    ck_assert_int_eq(gxsp_reserve(solver, s.model.copy_count, s.model.element_count), GX_OK);
-    gxsp_problem_make(&problem, solver, &s.model, &step);
-    gxsp_begin(&problem, s.displacement, s.velocity);
-    ck_assert(gxsp_start(&problem, problem.work.base));
-    ck_assert(gxsp_linearise(&problem));
-    gxsp_product(&problem, 1, x, y);
+    s.model.lumped_mass = _i % 2;
+    s.material->kind = (gxs_material_kind)(_i / 2);
+    for (i = 0; i < 300; ++i) {
+        s.elements[i].weight *= 0.3;
+        s.elements[i].mass[i % 10] *= 1.01; /* no longer that of a whole element */
+    }
+    copies = s.model.copy_count;
+    n = 3 * copies;
+    x = (double *)zeroed(n, sizeof *x), expected = (double *)zeroed(n, sizeof *x), mass = (double *)zeroed(n, sizeof *x);
+    in = (gxsp_vector4 *)zeroed(copies, sizeof *in), out = (gxsp_vector4 *)zeroed(copies, sizeof *out);
+    for (i = 0; i < n; ++i) {
+        s.displacement[i] = 0.3 * uniform();
+        in[i / 3][i % 3] = (float)uniform();
+        x[i] = (double)in[i / 3][i % 3];
+    }
+    ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
+    system = solver->system;
+    ck_assert(gxsp_linearise(system, rate, s.displacement));
+    gxsp_product(system, rate, (const gxsp_vector4 *)in, out);
     ck_assert_int_eq(gxs_model_hessian_product(&s.model, s.displacement, x, expected), GX_OK);
     ck_assert_int_eq(gxs_model_mass_product(&s.model, x, mass), GX_OK);
     for (i = 0; i < n; ++i) {
-        double sum = expected[i] + mass[i] / (step.dt * step.dt);
-        assert_that(fabs(y[i] - sum) < 1e-9 * (1e6 + fabs(sum)), "%g %g", y[i], sum);
+        double sum = expected[i] + rate * (s.model.lumped_mass ? system->lumped[i / 3] * x[i] : mass[i]);
+        double got = (double)out[i / 3][i % 3];
+        assert_that(fabs(got - sum) < 3e-6 * (1e6 + fabs(sum)), "%g %g", got, sum);
     }
-    for (i = 0; i < s.model.copy_count; ++i)
+    for (i = 0; i < copies; i += 7)
         for (k = 0; k < 3; ++k) { /* D^-1 times column k of D is a unit vector */
-            const double *d = problem.work.diagonal + 6 * i;
-            double column[3], unit[3];
+            float unit[3];
             size_t r;
-            if (problem.work.fixed[i])
+            if (system->fixed[i])
                 continue;
-            memset(x, 0, n * sizeof *x);
-            x[3 * i + k] = 1;
-            gxsp_product(&problem, 1, x, y);
-            memcpy(column, y + 3 * i, sizeof column);
-            unit[0] = d[0] * column[0] + d[1] * column[1] + d[2] * column[2];
-            unit[1] = d[1] * column[0] + d[3] * column[1] + d[4] * column[2];
-            unit[2] = d[2] * column[0] + d[4] * column[1] + d[5] * column[2];
+            memset(in, 0, copies * sizeof *in);
+            in[i][k] = 1;
+            gxsp_product(system, rate, (const gxsp_vector4 *)in, out);
+            gxsp_apply_packed(system->diagonal + 6 * i, out[i], unit);
             for (r = 0; r < 3; ++r)
-                assert_that(fabs(unit[r] - (r == k ? 1 : 0)) < 1e-9, "%g", unit[r]);
+                assert_that(fabs((double)unit[r] - (r == k ? 1 : 0)) < 1e-3, "%g", (double)unit[r]);
         }
-    free(x), free(y), free(expected), free(mass);
+    free(x), free(expected), free(mass), free(in), free(out);
     gxs_solver_destroy(solver);
     scene_free(&s);
 }
@@ -543,7 +582,7 @@ START_TEST(free_fall_is_exact)
         s.velocity[3 * i] = i < base ? 2 : -1;
     for (frame = 0; frame < 10; ++frame) {
         double t = (frame + 1) * step.dt;
-        ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+        ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
         ck_assert_uint_eq(report.cg_iterations, 0);
         for (i = 0; i < base + 4; ++i) {
             assert_that(fabs(s.displacement[3 * i] - (i < base ? 2 : -1) * t) < 1e-14, "%g", s.displacement[3 * i]);
@@ -590,7 +629,7 @@ START_TEST(momentum_of_a_free_body_is_balanced)
         step.cg_tolerance = 0.1;
         for (frame = 0; frame < 10; ++frame) {
             momentum(&s, before);
-            ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+            ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
             momentum(&s, after);
             for (i = 0; i < 3; ++i)
                 assert_that(fabs(after[i] - before[i] - impulse[i]) < 1e-10, "%g", after[i] - before[i] - impulse[i]);
@@ -635,26 +674,26 @@ START_TEST(stretched_bar_has_youngs_modulus)
     int which;
     for (which = 0; which < 3; ++which) {
         gxs_solver *solver = solver_make();
-        gxs_step_desc step = step_make(100, 0);
+        gxs_step_desc step = step_make(1, 0);
         gxs_step_report report;
         scene s = scene_block(6, 2, 2, 0.5, 0, 0);
         double strain, across, expected = 1e-6;
         size_t last = s.model.copy_count - 1;
         int frame;
-        s.model.poisson = which == 2 ? 0.49 : 0.3 * which;
-        pull(&s, 3, expected * s.model.young);
+        s.material->poisson = which == 2 ? 0.49 : 0.3 * which;
+        pull(&s, 3, expected * s.material->young);
         step.forces = s.forces;
         step.newton_iterations = 20;
         step.newton_tolerance = 1e-10;
         step.cg_tolerance = 1e-6;
         step.cg_iterations = 5000;
         for (frame = 0; frame < 3; ++frame)
-            ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+            ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
         strain = (s.displacement[3 * last] - s.displacement[0]) / 3;
         across = s.displacement[3 * last + 1] - s.displacement[1];
         assert_that(report.residual < 1e-8, "residual %g", report.residual);
         assert_that(fabs(strain / expected - 1) < 1e-5, "strain %g", strain);
-        assert_that(fabs(across + s.model.poisson * expected) < 1e-5 * expected, "across %g", across);
+        assert_that(fabs(across + s.material->poisson * expected) < 1e-5 * expected, "across %g", across);
         gxs_solver_destroy(solver);
         scene_free(&s);
     }
@@ -678,7 +717,7 @@ START_TEST(held_copies_do_not_move)
     }
     step.forces = s.forces;
     for (frame = 0; frame < 20; ++frame) {
-        ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+        ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
         for (i = 0; i < 3 * s.model.copy_count; ++i)
             if (s.held[i / 3])
                 ck_assert(s.displacement[i] == 0.01 && s.velocity[i] == 0);
@@ -704,7 +743,7 @@ START_TEST(hanging_body_finds_its_balance)
     step.cg_tolerance = 1e-4;
     for (frame = 0; frame < 8; ++frame) {
         before = s.displacement[3 * s.model.copy_count - 1];
-        ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+        ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
         assert_that(report.residual <= 1e-10, "residual %g after %u", report.residual, (unsigned)report.newton_iterations);
     }
     ck_assert(fabs(before - s.displacement[3 * s.model.copy_count - 1]) < 1e-8);
@@ -730,10 +769,10 @@ START_TEST(steps_are_repeatable)
         seed(9);
         for (i = 0; i < count; ++i)
             s.displacement[i] = 0.1 * uniform(), s.velocity[i] = uniform();
-        ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+        ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
         if (run == 0) {
             memcpy(first, s.displacement, count * sizeof *first);
-            ck_assert_int_eq(gxs_solver_step(solver, &large.model, &step, large.displacement, large.velocity, NULL, NULL),
+            ck_assert_int_eq(advance(solver, &large.model, &step, large.displacement, large.velocity, NULL, NULL),
                              GX_OK);
         }
     }
@@ -778,7 +817,7 @@ START_TEST(energy_falls_from_violent_starts)
         scene s;
         seed((uint64_t)_i);
         s = scene_block(3, 2, 2, 0.5, 0.1, 0);
-        s.model.poisson = ratios[_i / 2 % 2];
+        s.material->poisson = ratios[_i / 2 % 2];
         violate(&s, how, 0.5);
         for (i = 0; held && i < s.model.copy_count; ++i)
             s.held[i] = i % 12 == 0;
@@ -789,7 +828,7 @@ START_TEST(energy_falls_from_violent_starts)
             memcpy(u, s.displacement, count * sizeof *u);
             memset(v, 0, count * sizeof *v);
             step.newton_iterations = k;
-            ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, u, v, &report, NULL), GX_OK);
+            ck_assert_int_eq(advance(solver, &s.model, &step, u, v, &report, NULL), GX_OK);
             for (i = 0; i < count; ++i)
                 assert_that(finite_bits(u[i]) && finite_bits(v[i]), "not finite");
             assert_that(finite_bits(report.residual) && report.energy <= energy + 1e-12 * fabs(energy),
@@ -823,7 +862,7 @@ START_TEST(tangled_body_recovers)
             s.displacement[i] += 1e-3 * uniform();
         worst = 0;
         for (frame = 0; frame < 100; ++frame) {
-            ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+            ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
             ck_assert_int_eq(gxs_model_energy(&s.model, s.displacement, &energy), GX_OK);
             worst = energy > worst ? energy : worst;
         }
@@ -856,7 +895,7 @@ static uint32_t iterations_with(double tiny, double *residual)
         }
     step.newton_iterations = 3;
     step.cg_tolerance = 1e-4;
-    ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+    ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
     *residual = report.residual;
     gxs_solver_destroy(solver);
     scene_free(&s);
@@ -899,9 +938,9 @@ START_TEST(tiny_pieces_are_seen)
     s.model.copy_count += 4;
     step.newton_iterations = 50;
     step.newton_tolerance = 1e-8;
-    ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+    ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
     ck_assert_int_eq(gxs_model_energy(&s.model, s.displacement, &energy), GX_OK);
-    assert_that(energy < 1e-6 * s.elements[last].weight * s.model.young, "energy %g", energy);
+    assert_that(energy < 1e-6 * s.elements[last].weight * s.material->young, "energy %g", energy);
     gxs_solver_destroy(solver);
     scene_free(&s);
 }
@@ -923,7 +962,7 @@ START_TEST(reported_energy_is_the_incremental_potential)
     for (i = 0; i < count; ++i)
         un[i] = s.displacement[i] = 0.1 * uniform(), vn[i] = s.velocity[i] = uniform(), s.forces[i] = 10 * uniform();
     step.forces = s.forces;
-    ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+    ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
     energy = incremental_potential(&s, &step, un, vn, s.displacement);
     assert_that(fabs(report.energy - energy) < 1e-9 * (1 + fabs(energy)), "%.17g %.17g", report.energy, energy);
     free(un), free(vn);
@@ -957,7 +996,7 @@ static void expect(attempt *a, gx_result result, size_t index)
     double *before = (double *)zeroed(2, bytes);
     memcpy(before, a->s.displacement, bytes);
     memcpy((char *)before + bytes, a->s.velocity, bytes);
-    ck_assert_int_eq(gxs_solver_step(a->solver, &a->s.model, &a->step, a->s.displacement, a->s.velocity, NULL, &a->failure),
+    ck_assert_int_eq(advance(a->solver, &a->s.model, &a->step, a->s.displacement, a->s.velocity, NULL, &a->failure),
                      result);
     ck_assert_int_eq(a->failure.result, result);
     ck_assert_uint_eq(a->failure.index, index);
@@ -996,10 +1035,15 @@ START_TEST(bad_input_is_named)
     attempt_with(a.step.forces = a.s.forces; a.s.forces[7] = nan, GX_ERROR_NOT_FINITE, 2);
     attempt_with(a.s.displacement[10] = infinity, GX_ERROR_NOT_FINITE, 3);
     attempt_with(a.s.velocity[0] = nan, GX_ERROR_NOT_FINITE, 0);
-    attempt_with(a.s.model.young = 0, GX_ERROR_ARGUMENT, SIZE_MAX);
-    attempt_with(a.s.model.young = nan, GX_ERROR_NOT_FINITE, SIZE_MAX);
-    attempt_with(a.s.model.poisson = 0.5, GX_ERROR_ARGUMENT, SIZE_MAX);
-    attempt_with(a.s.model.poisson = -0.1, GX_ERROR_ARGUMENT, SIZE_MAX);
+    attempt_with(a.s.material->young = 0, GX_ERROR_ARGUMENT, 0);
+    attempt_with(a.s.material->young = nan, GX_ERROR_NOT_FINITE, 0);
+    attempt_with(a.s.material->poisson = 0.5, GX_ERROR_ARGUMENT, 0);
+    attempt_with(a.s.material->poisson = -0.1, GX_ERROR_ARGUMENT, 0);
+    attempt_with(a.s.material->kind = (gxs_material_kind)KINDS, GX_ERROR_ARGUMENT, 0);
+    attempt_with(a.s.model.materials = NULL, GX_ERROR_ARGUMENT, SIZE_MAX);
+    attempt_with(a.s.model.material_count = 0, GX_ERROR_EMPTY, SIZE_MAX);
+    attempt_with(a.s.elements[2].material = 1, GX_ERROR_INDEX, 2);
+    attempt_with(a.s.rest[4] = nan, GX_ERROR_NOT_FINITE, 1);
     attempt_with(a.s.model.copy_count = 0, GX_ERROR_EMPTY, SIZE_MAX);
     attempt_with(a.s.model.element_count = 0, GX_ERROR_EMPTY, SIZE_MAX);
     attempt_with(a.s.model.elements = NULL, GX_ERROR_ARGUMENT, SIZE_MAX);
@@ -1010,7 +1054,7 @@ START_TEST(bad_input_is_named)
     attempt_with(a.s.elements[6].mass[9] = nan, GX_ERROR_NOT_FINITE, 6);
     attempt_with(a.s.elements[6].mass[4] = -1, GX_ERROR_ARGUMENT, 6);
     ck_assert_int_eq(gxs_solver_create(NULL, NULL), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gxs_solver_step(NULL, NULL, NULL, NULL, NULL, NULL, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(advance(NULL, NULL, NULL, NULL, NULL, NULL, NULL), GX_ERROR_ARGUMENT);
     ck_assert_int_eq(gxs_model_energy(NULL, NULL, NULL), GX_ERROR_ARGUMENT);
     gxs_solver_destroy(NULL);
 }
@@ -1023,7 +1067,7 @@ START_TEST(overflow_is_divergence)
     attempt_with(a.s.velocity[4] = 1e120, GX_ERROR_DIVERGED, SIZE_MAX);
     attempt_with(a.step.dt = 1e-200, GX_ERROR_RANGE, SIZE_MAX);
     attempt_with(a.step.dt = 1e200, GX_ERROR_RANGE, SIZE_MAX);
-    attempt_with(a.s.model.young = 1e308; a.s.displacement[0] = 10, GX_ERROR_DIVERGED, SIZE_MAX);
+    attempt_with(a.s.material->young = 1e308; a.s.displacement[0] = 10, GX_ERROR_DIVERGED, SIZE_MAX);
 }
 END_TEST
 
@@ -1051,7 +1095,7 @@ START_TEST(degenerate_models_are_harmless)
         s.forces[3 * s.model.copy_count - 1] = 1e9; /* on a copy of no element */
         step.forces = s.forces;
         step.newton_iterations = 4;
-        ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+        ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
         for (e = 0; e < 3 * s.model.copy_count; ++e)
             assert_that(finite_bits(s.displacement[e]) && finite_bits(s.velocity[e]), "case %d", which);
         for (e = 3 * (s.model.copy_count - 8); e < 3 * s.model.copy_count; ++e)
@@ -1096,25 +1140,27 @@ static void failing_release(void *user, void *memory, size_t size)
 /* create and three steps, the model growing in between; returns whether an allocation failed */
 static int run_with(failing *f)
 {
-    gx_allocator allocator;
+    gxs_solver_desc desc;
     gxs_solver *solver = NULL;
     gxs_step_desc step = step_make(0.033, -9.81);
     int size, failed = 0;
-    allocator.allocate = failing_allocate, allocator.release = failing_release, allocator.user = f;
-    if (gxs_solver_create(&allocator, &solver) != GX_OK) {
+    memset(&desc, 0, sizeof desc);
+    desc.allocator.allocate = failing_allocate, desc.allocator.release = failing_release, desc.allocator.user = f;
+    desc.preconditioner = GXS_MULTIGRID;
+    if (gxs_solver_create(&desc, &solver) != GX_OK) {
         ck_assert_ptr_null(solver);
         return 1;
     }
     for (size = 1; size <= 3; ++size) {
         scene s = scene_block(2 * size, size, size, 0.5, 0, 0);
         size_t i;
-        gx_result result = gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, NULL, NULL);
+        gx_result result = advance(solver, &s.model, &step, s.displacement, s.velocity, NULL, NULL);
         if (result == GX_ERROR_MEMORY) {
             failed = 1;
             for (i = 0; i < 3 * s.model.copy_count; ++i)
                 ck_assert(s.displacement[i] == 0 && s.velocity[i] == 0);
             if (!f->forever) /* the solver is still good */
-                ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+                ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
         } else
             ck_assert_int_eq(result, GX_OK);
         scene_free(&s);
@@ -1136,29 +1182,68 @@ START_TEST(every_allocation_may_fail)
             ck_assert_uint_eq(f.balance, 0);
             if (!failed)
                 break;
-            ck_assert_int_lt(n, 10);
+            ck_assert_int_lt(n, 1000);
         }
 }
 END_TEST
 
-START_TEST(steady_state_does_not_allocate)
+START_TEST(steps_do_not_allocate)
 {
-    gx_allocator allocator;
+    gxs_solver_desc desc;
     failing f = {-1, 0, 0, 0};
     gxs_solver *solver = NULL;
     gxs_step_desc step = step_make(0.033, -9.81);
-    scene s = scene_block(3, 3, 3, 0.5, 0, 0);
-    int frame;
-    allocator.allocate = failing_allocate, allocator.release = failing_release, allocator.user = &f;
-    ck_assert_int_eq(gxs_solver_create(&allocator, &solver), GX_OK);
+    scene s = scene_block(8, 8, 8, 0.5, 0, 0);
+    int frame, calls;
+    memset(&desc, 0, sizeof desc);
+    desc.allocator.allocate = failing_allocate, desc.allocator.release = failing_release, desc.allocator.user = &f;
+    ck_assert_int_eq(gxs_solver_create(&desc, &solver), GX_OK);
+    ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
+    calls = f.calls;
     for (frame = 0; frame < 5; ++frame)
-        ck_assert_int_eq(gxs_solver_step(solver, &s.model, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
-    ck_assert_int_eq(f.calls, 2);
+        ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+    ck_assert_int_eq(f.calls, calls);
     gxs_solver_destroy(solver);
     ck_assert_uint_eq(f.balance, 0);
-    allocator.release = NULL;
-    ck_assert_int_eq(gxs_solver_create(&allocator, &solver), GX_ERROR_ARGUMENT);
+    desc.allocator.release = NULL;
+    ck_assert_int_eq(gxs_solver_create(&desc, &solver), GX_ERROR_ARGUMENT);
     scene_free(&s);
+}
+END_TEST
+
+/* ---- multigrid ---- */
+
+/* from 7 to 13 nodes along the edge, soft and stiff: iterations stay, and stay below block-Jacobi's */
+START_TEST(multigrid_iterations_do_not_grow)
+{
+    static const double youngs[2] = {1e6, 1e9};
+    uint32_t counts[2][2];
+    int size, which;
+    for (which = 0; which < 2; ++which)
+        for (size = 0; size < 2; ++size) {
+            gxs_solver_desc desc;
+            gxs_solver *solver = NULL;
+            gxs_step_desc step = step_make(0.033, -9.81);
+            gxs_step_report report;
+            size_t i;
+            scene s;
+            seed(31);
+            s = scene_block(size ? 12 : 6, size ? 12 : 6, size ? 12 : 6, size ? 1.0 / 12 : 1.0 / 6, 0.1, 0);
+            for (i = 0; i < s.model.copy_count; ++i)
+                s.held[i] = s.rest[3 * i] < 0.05;
+            s.material->young = youngs[_i];
+            step.cg_tolerance = 1e-4;
+            memset(&desc, 0, sizeof desc);
+            desc.preconditioner = which ? GXS_MULTIGRID : GXS_BLOCK_JACOBI;
+            ck_assert_int_eq(gxs_solver_create(&desc, &solver), GX_OK);
+            ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+            counts[which][size] = report.cg_iterations;
+            gxs_solver_destroy(solver);
+            scene_free(&s);
+        }
+    assert_that(counts[1][1] <= 2 * counts[1][0] && 3 * counts[1][1] < counts[0][1], "multigrid %u then %u, block-Jacobi %u then %u",
+                (unsigned)counts[1][0], (unsigned)counts[1][1], (unsigned)counts[0][0], (unsigned)counts[0][1]);
 }
 END_TEST
 
@@ -1168,13 +1253,14 @@ static Suite *solve_suite(void)
     TCase *material = tcase_create("material"), *model = tcase_create("model"), *step = tcase_create("step");
     TCase *violent = tcase_create("violent"), *input = tcase_create("input");
     tcase_add_test(material, energy_is_the_formula_of_the_paper);
-    tcase_add_test(material, rest_and_rotations_are_free_of_stress);
-    tcase_add_test(material, small_strain_is_linear_elasticity);
-    tcase_add_test(material, stress_is_the_derivative_of_energy);
-    tcase_add_test(material, hessian_is_the_projection_of_the_derivative_of_stress);
-    tcase_add_test(material, projected_hessian_is_semidefinite);
+    tcase_add_loop_test(material, rest_and_rotations_are_free_of_stress, 0, KINDS);
+    tcase_add_loop_test(material, small_strain_is_linear_elasticity, 0, KINDS);
+    tcase_add_loop_test(material, stress_is_the_derivative_of_energy, 0, KINDS);
+    tcase_add_loop_test(material, hessian_is_the_projection_of_the_derivative_of_stress, 0, KINDS);
+    tcase_add_loop_test(material, projected_hessian_is_semidefinite, 0, KINDS);
     tcase_add_test(model, model_gradient_and_hessian_match_differences);
-    tcase_add_test(model, block_product_equals_assembled_forms);
+    tcase_add_loop_test(model, block_product_equals_assembled_forms, 0, 2 * KINDS);
+    tcase_add_loop_test(model, multigrid_iterations_do_not_grow, 0, 2);
     tcase_add_test(step, free_fall_is_exact);
     tcase_add_test(step, momentum_of_a_free_body_is_balanced);
     tcase_add_test(step, stretched_bar_has_youngs_modulus);
@@ -1190,7 +1276,7 @@ static Suite *solve_suite(void)
     tcase_add_test(input, overflow_is_divergence);
     tcase_add_test(input, degenerate_models_are_harmless);
     tcase_add_test(input, every_allocation_may_fail);
-    tcase_add_test(input, steady_state_does_not_allocate);
+    tcase_add_test(input, steps_do_not_allocate);
     tcase_set_timeout(violent, 120);
     tcase_set_timeout(step, 120);
     tcase_set_timeout(material, 120);
