@@ -480,8 +480,8 @@ typedef struct gxsp_level {
     float (*weight)[4];
     uint32_t *start;        /* n + 1: rows of the matrix; not of level 0 if it is matrix-free */
     uint32_t *column;       /* ascending in a row */
-    float *block;           /* 9 per entry, by columns */
-    float *inverse;         /* n x 9: of the diagonal blocks, by columns */
+    float *block;           /* 12 per entry: three columns, each of 4 with the last 0 */
+    float *inverse;         /* n x 12: of the diagonal blocks */
     gxsp_vector4 *x, *b, *r;/* n: solution, right-hand side, residual; borrowed on level 0 */
     uint32_t *child_start;  /* n of the next level + 1: nodes by parent */
     uint32_t *child;
@@ -546,6 +546,8 @@ typedef struct gxsp_system {
     int coarse_fresh;       /* made for this solve */
     int coarse_worn;        /* to be made anew */
     uint32_t usual_iterations; /* of the solve with fresh ones */
+    int base_known;         /* current is what the last step returned, and base_energy its elastic energy */
+    double base_energy;
     gxsp_vector4 *right;    /* n: residual in single precision */
 } gxsp_system;
 
@@ -1527,7 +1529,7 @@ static gxsp_sorted *gxsp_order_elements(const gxs_model *model, gxsp_pool *scrat
     return gxsp_sort_elements(sorted, other, model->element_count);
 }
 
-static void gxsp_place_element(gxsp_system *system, const gxsp_chunk *chunk, const gxs_element *element, uint32_t at, int lumped)
+static void gxsp_place_element(gxsp_system *system, const gxsp_chunk *chunk, const gxs_element *element, uint32_t at, uint32_t lumped)
 {
     gxsp_rest *rest = &system->rest[chunk->first_block + at / GXSP_LANES];
     size_t lane = at % GXSP_LANES;
@@ -1905,7 +1907,7 @@ static void gxsp_level_make(gxsp_pool *pool, gxsp_level *level, uint32_t n, int 
         return;
     level->place = (int32_t(*)[3])gxsp_take(pool, n, sizeof *level->place);
     level->start = (uint32_t *)gxsp_take(pool, (size_t)n + 1, sizeof(uint32_t));
-    level->inverse = (float *)gxsp_take(pool, 9 * (size_t)n, sizeof(float));
+    level->inverse = (float *)gxsp_take(pool, 12 * (size_t)n, sizeof(float));
     level->x = (gxsp_vector4 *)gxsp_take(pool, n, sizeof(gxsp_vector4));
     level->b = (gxsp_vector4 *)gxsp_take(pool, n, sizeof(gxsp_vector4));
     level->r = (gxsp_vector4 *)gxsp_take(pool, n, sizeof(gxsp_vector4));
@@ -1915,7 +1917,7 @@ static void gxsp_level_matrix(gxsp_pool *pool, gxsp_level *level, const uint32_t
 {
     uint32_t entries = level->start[level->n];
     level->column = (uint32_t *)gxsp_take(pool, entries, sizeof(uint32_t));
-    level->block = (float *)gxsp_take(pool, 9 * (size_t)entries, sizeof(float));
+    level->block = (float *)gxsp_take(pool, 12 * (size_t)entries, sizeof(float));
     if (!pool->failed)
         memcpy(level->column, columns, entries * sizeof(uint32_t));
 }
@@ -2376,42 +2378,39 @@ static void gxsp_apply_packed(const float *d, const float *x, float *y)
 /* >>multigrid: a level's matrix in block rows; block Gauss-Seidel forward before and backward after the coarse correction, so
  * that the whole is symmetric. The order is that of the nodes. */
 
-/* y += a x for a 3x3 a by columns */
-static void gxsp_add_block(const float *a, const float *x, float *y)
+/* y += a x and y -= a x for blocks of three columns */
+static void gxsp_add_block(const float *GXSP_RESTRICT a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y)
 {
-    y[0] += a[0] * x[0] + a[3] * x[1] + a[6] * x[2];
-    y[1] += a[1] * x[0] + a[4] * x[1] + a[7] * x[2];
-    y[2] += a[2] * x[0] + a[5] * x[1] + a[8] * x[2];
+    int k;
+    for (k = 0; k < 4; ++k)
+        y[k] += a[k] * x[0] + a[4 + k] * x[1] + a[8 + k] * x[2];
 }
 
-static void gxsp_subtract_block(const float *a, const float *x, float *y)
+static void gxsp_subtract_block(const float *GXSP_RESTRICT a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y)
 {
-    y[0] -= a[0] * x[0] + a[3] * x[1] + a[6] * x[2];
-    y[1] -= a[1] * x[0] + a[4] * x[1] + a[7] * x[2];
-    y[2] -= a[2] * x[0] + a[5] * x[1] + a[8] * x[2];
+    int k;
+    for (k = 0; k < 4; ++k)
+        y[k] -= a[k] * x[0] + a[4 + k] * x[1] + a[8 + k] * x[2];
 }
 
-/* x from 0 by one forward sweep: only the rows' entries left of the diagonal count */
+/* x from 0 by one forward sweep: only the rows' entries left of the diagonal count. What the sweep leaves of b is then
+ * minus the entries right of the diagonal times x. */
 static void gxsp_sweep_forward(gxsp_level *level)
 {
     uint32_t i, k;
     for (i = 0; i < level->n; ++i) {
-        float r[3];
+        gxsp_vector4 r;
         memcpy(r, level->b[i], sizeof r);
         for (k = level->start[i]; level->column[k] < i; ++k)
-            gxsp_subtract_block(level->block + 9 * (size_t)k, level->x[level->column[k]], r);
+            gxsp_subtract_block(level->block + 12 * (size_t)k, level->x[level->column[k]], r);
         memset(level->x[i], 0, sizeof level->x[i]);
-        gxsp_add_block(level->inverse + 9 * (size_t)i, r, level->x[i]);
+        gxsp_add_block(level->inverse + 12 * (size_t)i, r, level->x[i]);
     }
-}
-
-static void gxsp_level_residual(gxsp_level *level)
-{
-    uint32_t i, k;
     for (i = 0; i < level->n; ++i) {
-        memcpy(level->r[i], level->b[i], sizeof level->r[i]);
-        for (k = level->start[i]; k < level->start[i + 1]; ++k)
-            gxsp_subtract_block(level->block + 9 * (size_t)k, level->x[level->column[k]], level->r[i]);
+        gxsp_vector4 r = {0, 0, 0, 0};
+        for (k = level->start[i + 1]; level->column[k - 1] > i; --k)
+            gxsp_subtract_block(level->block + 12 * (size_t)(k - 1), level->x[level->column[k - 1]], r);
+        memcpy(level->r[i], r, sizeof r);
     }
 }
 
@@ -2419,11 +2418,11 @@ static void gxsp_sweep_backward(gxsp_level *level)
 {
     uint32_t i, k;
     for (i = level->n; i-- > 0;) {
-        float r[3];
+        gxsp_vector4 r;
         memcpy(r, level->b[i], sizeof r);
         for (k = level->start[i]; k < level->start[i + 1]; ++k)
-            gxsp_subtract_block(level->block + 9 * (size_t)k, level->x[level->column[k]], r);
-        gxsp_add_block(level->inverse + 9 * (size_t)i, r, level->x[i]);
+            gxsp_subtract_block(level->block + 12 * (size_t)k, level->x[level->column[k]], r);
+        gxsp_add_block(level->inverse + 12 * (size_t)i, r, level->x[i]);
     }
 }
 
@@ -2436,7 +2435,7 @@ static void gxsp_restrict(const gxsp_level *level, gxsp_level *next)
     for (i = 0; i < level->n; ++i)
         for (k = 0; k < 4; ++k)
             if (level->parent[i][k] != GXSP_NONE)
-                for (c = 0; c < 3; ++c)
+                for (c = 0; c < 4; ++c)
                     next->b[level->parent[i][k]][c] += level->weight[i][k] * level->r[i][c];
 }
 
@@ -2448,7 +2447,7 @@ static void gxsp_prolong(gxsp_level *level, const gxsp_level *next)
     for (i = 0; i < level->n; ++i)
         for (k = 0; k < 4; ++k)
             if (level->parent[i][k] != GXSP_NONE)
-                for (c = 0; c < 3; ++c)
+                for (c = 0; c < 4; ++c)
                     level->x[i][c] += level->weight[i][k] * next->x[level->parent[i][k]][c];
 }
 
@@ -2483,7 +2482,6 @@ static void gxsp_cycle(gxsp_system *system, uint32_t at)
         return;
     }
     gxsp_sweep_forward(level);
-    gxsp_level_residual(level);
     gxsp_restrict(level, level + 1);
     gxsp_cycle(system, at + 1);
     gxsp_prolong(level, level + 1);
@@ -2570,13 +2568,13 @@ static void gxsp_coarse_element(gxsp_system *system, const gxsp_chunk *chunk, ui
                     mass += weights[p][i] * masses[i][j] * weights[q][j];
             gxsp_lane_couple(tangent, lane, gamma[p], gamma[q], block);
             block[0] += mass, block[4] += mass, block[8] += mass;
-            to = next->block + 9 * (size_t)gxsp_find_entry(next, parents[p], parents[q]);
-            back = next->block + 9 * (size_t)gxsp_find_entry(next, parents[q], parents[p]);
+            to = next->block + 12 * (size_t)gxsp_find_entry(next, parents[p], parents[q]);
+            back = next->block + 12 * (size_t)gxsp_find_entry(next, parents[q], parents[p]);
             for (i = 0; i < 3; ++i) /* by rows here, by columns there */
                 for (j = 0; j < 3; ++j) {
-                    to[3 * j + i] += block[3 * i + j];
+                    to[4 * j + i] += block[3 * i + j];
                     if (p != q)
-                        back[3 * i + j] += block[3 * i + j];
+                        back[4 * i + j] += block[3 * i + j];
                 }
         }
 }
@@ -2590,15 +2588,15 @@ static int gxsp_invert_diagonal(gxsp_level *level)
     for (i = 0; i < level->n; ++i)
         for (k = level->start[i]; k < level->start[i + 1]; ++k)
             if (level->column[k] == i) {
-                float *block = level->block + 9 * (size_t)k;
-                float raise = GXSP_SHIFT * (block[0] + block[4] + block[8]);
+                float *block = level->block + 12 * (size_t)k;
+                float raise = GXSP_SHIFT * (block[0] + block[5] + block[10]);
                 double inverse[6];
-                block[0] += raise, block[4] += raise, block[8] += raise;
+                block[0] += raise, block[5] += raise, block[10] += raise;
                 inverse[0] = (double)block[0], inverse[1] = (double)block[1], inverse[2] = (double)block[2];
-                inverse[3] = (double)block[4], inverse[4] = (double)block[5], inverse[5] = (double)block[8];
+                inverse[3] = (double)block[5], inverse[4] = (double)block[6], inverse[5] = (double)block[10];
                 gxsp_invert3(inverse);
                 for (c = 0; c < 9; ++c) {
-                    level->inverse[9 * (size_t)i + (size_t)c] = (float)inverse[full[c]];
+                    level->inverse[12 * (size_t)i + (size_t)(c / 3 * 4 + c % 3)] = (float)inverse[full[c]];
                     if (!gxsp_finite_single((float)inverse[full[c]]))
                         return 0;
                 }
@@ -2611,7 +2609,7 @@ static void gxsp_coarsen(const gxsp_level *level, gxsp_level *next, const uint32
 {
     uint32_t row, i, k, e;
     int a, b, c;
-    memset(next->block, 0, 9 * (size_t)next->start[next->n] * sizeof *next->block);
+    memset(next->block, 0, 12 * (size_t)next->start[next->n] * sizeof *next->block);
     for (row = 0; row < next->n; ++row) {
         for (e = next->start[row]; e < next->start[row + 1]; ++e)
             at[next->column[e]] = e;
@@ -2625,9 +2623,9 @@ static void gxsp_coarsen(const gxsp_level *level, gxsp_level *next, const uint32
                 for (b = 0; b < 4; ++b)
                     if (level->parent[other][b] != GXSP_NONE) {
                         const float factor = own * level->weight[other][b];
-                        float *to = next->block + 9 * (size_t)at[level->parent[other][b]];
-                        for (c = 0; c < 9; ++c)
-                            to[c] += factor * level->block[9 * (size_t)k + (size_t)c];
+                        float *to = next->block + 12 * (size_t)at[level->parent[other][b]];
+                        for (c = 0; c < 12; ++c)
+                            to[c] += factor * level->block[12 * (size_t)k + (size_t)c];
                     }
             }
         }
@@ -2648,7 +2646,7 @@ static int gxsp_factorise(gxsp_factor *factor, const gxsp_level *level, uint32_t
                 for (c = 0; c < 3; ++c) {
                     uint32_t row = 3 * place[i] + (uint32_t)r, column = 3 * place[level->column[k]] + (uint32_t)c;
                     if (column <= row)
-                        factor->entry[factor->row[row] + column] = (double)level->block[9 * (size_t)k + (size_t)(3 * c + r)];
+                        factor->entry[factor->row[row] + column] = (double)level->block[12 * (size_t)k + (size_t)(4 * c + r)];
                 }
     for (i = 0; i < factor->n; ++i) {
         double *row = factor->entry + factor->row[i], least = 1e-7 * row[i];
@@ -2680,9 +2678,9 @@ static void gxsp_coarse_lumped(gxsp_system *system, double rate)
         for (p = 0; p < 4; ++p)
             for (q = 0; q < 4; ++q)
                 if (fine->parent[i][p] != GXSP_NONE && fine->parent[i][q] != GXSP_NONE) {
-                    float *to = next->block + 9 * (size_t)gxsp_find_entry(next, fine->parent[i][p], fine->parent[i][q]);
+                    float *to = next->block + 12 * (size_t)gxsp_find_entry(next, fine->parent[i][p], fine->parent[i][q]);
                     float mass = (float)(rate * system->lumped[i]) * fine->weight[i][p] * fine->weight[i][q];
-                    to[0] += mass, to[4] += mass, to[8] += mass;
+                    to[0] += mass, to[5] += mass, to[10] += mass;
                 }
 }
 
@@ -2691,7 +2689,7 @@ static int gxsp_coarse_numbers(gxsp_system *system, double rate)
 {
     uint32_t at, c, b;
     int l;
-    memset(system->levels[1].block, 0, 9 * (size_t)system->levels[1].start[system->levels[1].n] * sizeof(float));
+    memset(system->levels[1].block, 0, 12 * (size_t)system->levels[1].start[system->levels[1].n] * sizeof(float));
     for (c = 0; c < system->chunk_count; ++c)
         for (b = 0; b < system->chunks[c].block_count; ++b)
             for (l = 0; l < GXSP_LANES; ++l)
@@ -3043,6 +3041,7 @@ static void gxsp_begin(gxsp_problem *problem, const double *displacement, const 
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
     size_t i, r;
+    system->base_known = system->base_known && memcmp(displacement, system->current, 3 * system->n * sizeof(double)) == 0;
     memcpy(system->base, displacement, 3 * system->n * sizeof(double));
     for (i = 0; i < system->n; ++i)
         for (r = 0; r < 3; ++r) {
@@ -3088,9 +3087,12 @@ static gx_result gxsp_minimise(gxsp_problem *problem)
     if (gxsp_start(problem, system->target))
         result = gxsp_newton(problem);
     found = result == GX_OK ? gxsp_energy(problem) : 0;
+    limit = -gxsp_dot(system->load, system->base, system->n);
+    if (result == GX_OK && system->base_known && found <= system->base_energy + limit)
+        return result; /* lower even without the kinetic energy that staying at base would take */
     memcpy(kept, problem->energies, sizeof kept);
     gxsp_evaluate(system, problem->rate, system->base, system->force, problem->energies);
-    limit = problem->energies[0] + problem->energies[1] - gxsp_dot(system->load, system->base, system->n);
+    limit += problem->energies[0] + problem->energies[1];
     if (!gxsp_finite(limit) || (result == GX_OK && found <= limit + 1e-12 * fabs(limit))) {
         memcpy(problem->energies, kept, sizeof kept);
         return result;
@@ -3112,6 +3114,8 @@ static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double
         return GX_ERROR_DIVERGED;
     memcpy(displacement, system->current, count * sizeof(double));
     memcpy(velocity, rate, count * sizeof(double));
+    system->base_known = 1;
+    system->base_energy = problem->energies[0];
     return GX_OK;
 }
 
