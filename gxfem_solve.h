@@ -15,9 +15,11 @@
  *         gxs_material material = {GXS_STABLE_NEO_HOOKEAN, 1e6, 0.4};
  *         double displacement[12] = {0}, velocity[12] = {0};
  *         gxs_model model = {4, NULL, &element, 1, &material, 1, NULL, 0};
- *         gxs_step_desc step = {1.0 / 30, {0, 0, -9.81}, NULL, 0, 0, 0, 0};
+ *         gxs_step_desc step = {0};
  *         gxs_solver *solver = NULL;
  *         gx_result result = gxs_solver_create(NULL, &solver);
+ *         step.dt = 1.0 / 30;
+ *         step.gravity[2] = -9.81;
  *         if (result == GX_OK)
  *             result = gxs_solver_set_model(solver, &model, NULL);
  *         if (result == GX_OK)
@@ -43,7 +45,8 @@
  *     E(u) = |u - u_n - h v_n|_M^2 / (2 h^2) + U(u) - f . u        GXFEM Eq. 10 divided by h^2; joule
  *
  * M: mass, U: elastic energy, f = M g + nodal forces: a linear term, so that M is never inverted. Then
- * v = (u - u_n) / h. E is minimised by Newton's method with a line search on E. The Hessian of every element
+ * v = (u - u_n) / h. That is backward Euler; BDF2 and the implicit midpoint rule differ in what takes the place of h and u_n + h v_n.
+ * E is minimised by Newton's method with a line search on E. The Hessian of every element
  * is projected to the nearest positive semi-definite one in closed form (analytic eigensystem); its products
  * are matrix-free: eight elements side by side in a block, 48 blocks in a chunk, each chunk summed by itself and the chunks
  * in their order, so that results are the same for any number of threads. The linear systems go to conjugate
@@ -57,8 +60,7 @@
  * sqrt(sum r_i . D_i^-1 r_i), and in displacement, sqrt(sum |D_i^-1 r_i|^2). The second sees a piece of 1e-12 of its
  * neighbour's volume as well as the neighbour.
  *
- * WHAT IT DOES NOT DO. No cutting and no meshes: it sees elements of four copies. No contact, no friction, no
- * damping but backward Euler's own, no moving supports (change the displacement of a held copy between steps).
+ * WHAT IT DOES NOT DO. No cutting and no meshes: it sees elements of four copies. No contact, no friction.
  * No threads of its own: see gx_jobs.
  *
  * LIMITS. poisson in [0, 0.5), beyond 0.49999 the single precision of the Hessian tells; copies and elements below 2^30. Energies,
@@ -71,6 +73,7 @@
  *
  * REFERENCES. GXFEM: Generalized eXtended Finite Element Method for Deformable Cutting via Boolean Operations,
  * 2024. Smith 2018: Smith, de Goes, Kim, Stable Neo-Hookean Flesh Simulation, ACM Trans. Graph. 37(2), 2018.
+ * BDF2 with steps that vary: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, III.5.
  * Stomakhin 2012: Stomakhin, Howes, Schroeder, Teran, Energetically Consistent Invertible Elasticity, SCA 2012.
  *
  * MACROS. GXFEM_SOLVE_IMPLEMENTATION or GXFEM_IMPLEMENTATION: the code comes here. GXFEM_STATIC: all static.
@@ -183,10 +186,22 @@ typedef struct gxs_solver_desc {
     gxs_preconditioner preconditioner;
 } gxs_solver_desc;
 
+/* How time is discretised. All are implicit and minimise a potential of the form of E above. */
+typedef enum gxs_integrator {
+    GXS_BDF1 = 0,               /* backward Euler: first order, damps what it cannot resolve */
+    GXS_BDF2,                   /* second order, damps less; the first step, without one before it, is backward Euler */
+    GXS_MIDPOINT                /* implicit midpoint: second order, damps nothing; needs steps that resolve the motion */
+} gxs_integrator;
+
 typedef struct gxs_step_desc {
     double dt;                  /* s, above 0 */
     double gravity[3];          /* m/s2 */
     const double *forces;       /* copy_count x 3, N; NULL: none */
+    gxs_integrator integrator;
+    const double *previous_displacement, *previous_velocity; /* copy_count x 3, of the step before; BDF2 only; NULL: none */
+    double previous_dt;         /* s, of the step before; BDF2 only */
+    const double *targets;      /* copy_count x 3: displacement of held copies at the step's end, others not read; NULL: they stay */
+    double mass_damping;        /* Rayleigh's alpha, 1/s, 0 or more: force -alpha M v */
     uint32_t newton_iterations; /* at most so many; 0: 1 */
     double newton_tolerance;    /* stop at this residual (see gxs_step_report); 0: run all */
     uint32_t cg_iterations;     /* per Newton iteration, at most; 0: 1000 */
@@ -211,7 +226,8 @@ typedef struct gxs_solver gxs_solver;
  * only. failure and report may be NULL. */
 
 /* Advances displacement (m) and velocity (m/s), both copy_count x 3 of the model set last and not overlapping, by one step.
- * Held copies, and copies without an element of any weight or mass, keep their displacement and get velocity 0.
+ * Held copies keep their displacement or go to their target, copies without an element of any weight or mass stay where they are;
+ * both get the velocity of that.
  * GX_ERROR_ARGUMENT if no model is set; GX_ERROR_DIVERGED is possible: displacement and velocity are then unchanged. A residual
  * above newton_tolerance when the iterations are used up is no error: see the report. Allocates nothing. */
 GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement, double *velocity,
@@ -521,12 +537,13 @@ typedef struct gxsp_system {
     gxsp_vector4 *slot_out; /* slot_count, follows slot_in: a chunk's output; as doubles a slot has both */
     double (*chunk_sum)[3]; /* chunk_count: elastic and kinetic energy, size of the terms they are sums of; J */
     double *lumped;         /* n: row sums of the mass, kg */
+    uint8_t *held;          /* n: as the model says */
     uint8_t *fixed;         /* n: held, or without an element */
     uint32_t *piece;        /* n: number of the free piece, or GXSP_NONE */
     uint32_t piece_count;
     double *piece_sum;      /* piece_count x 4: sums over pieces; the last is that of lumped */
     double *base;           /* displacement at the start of the step */
-    double *target;         /* where inertia alone leads: base + dt v */
+    double *target;         /* where inertia (and mass damping) alone lead; of backward Euler base + dt v */
     double *load;           /* gravity and nodal forces, N */
     double *current;        /* displacement: Newton's iterate */
     double *trial;          /* displacement: tried by the line search */
@@ -555,7 +572,9 @@ typedef struct gxsp_system {
 typedef struct gxsp_problem {
     gxsp_system *system;
     const gxs_step_desc *step;
-    double rate;            /* 1 / dt^2 */
+    double rate;            /* of the inertia: rate/2 |u - target|_M^2, 1/s2 */
+    double speed;           /* v = speed (u - a mean of the displacements before), 1/s */
+    double mean[2];         /* its weights: of base and of previous_displacement */
     uint32_t cg_iterations; /* with the defaults put in */
     double cg_tolerance;
     double energies[3];     /* at current: elastic, kinetic, size of their terms; J */
@@ -1669,7 +1688,7 @@ static void gxsp_find_fixed(gxsp_system *system, const gxs_model *model)
     if (model->held)
         for (i = 0; i < system->n; ++i)
             if (model->held[i])
-                system->fixed[i] = 1;
+                system->held[i] = system->fixed[i] = 1;
 }
 
 /* Numbers the free pieces: copies joined by elements, none of them fixed, with mass. A translation of such a piece meets no
@@ -1745,6 +1764,7 @@ static void gxsp_system_vectors(gxsp_system *system)
     system->lumped = (double *)gxsp_take(&system->pool, system->n, sizeof(double));
     system->piece = (uint32_t *)gxsp_take(&system->pool, system->n, sizeof(uint32_t));
     system->fixed = (uint8_t *)gxsp_take(&system->pool, system->n, 1);
+    system->held = (uint8_t *)gxsp_take(&system->pool, system->n, 1);
 }
 
 
@@ -3035,18 +3055,58 @@ static double gxsp_energy(const gxsp_problem *problem)
     return problem->energies[0] + problem->energies[1] - gxsp_dot(system->load, system->current, system->n);
 }
 
-/* Load, target, base. */
+/* The step's integrator as rate and target: the equation of motion is M rate (u - target) = f - dU/du. With v = speed (u - mean)
+ *   BDF1      speed = 1 / dt, mean = u_n;   rate = speed^2, target = mean + v_n / speed
+ *   BDF2      r = dt / dt of the step before; a0 = (1 + 2 r) / (1 + r), a1 = -(1 + r), a2 = r^2 / (1 + r):
+ *             speed = a0 / dt, mean = -(a1 u_n + a2 u_n-1) / a0, and the same of velocities: target = mean + mean of v / speed
+ *   midpoint  u is the displacement at half the step: BDF1 of half the step, finished in gxsp_finish */
+static void gxsp_choose_integrator(gxsp_problem *problem)
+{
+    const gxs_step_desc *step = problem->step;
+    double dt = step->integrator == GXS_MIDPOINT ? 0.5 * step->dt : step->dt;
+    problem->speed = 1 / dt;
+    problem->mean[0] = 1;
+    problem->mean[1] = 0;
+    if (step->integrator == GXS_BDF2 && step->previous_displacement) {
+        double r = dt / step->previous_dt, first = (1 + 2 * r) / (1 + r);
+        problem->speed = first / dt;
+        problem->mean[0] = (1 + r) / first;
+        problem->mean[1] = -r * r / (1 + r) / first;
+    }
+    problem->rate = problem->speed * problem->speed + problem->speed * step->mass_damping;
+}
+
+/* mean of the displacements before */
+static double gxsp_mean(const gxsp_problem *problem, size_t k)
+{
+    double mean = problem->mean[0] * problem->system->base[k];
+    return problem->mean[1] < 0 ? mean + problem->mean[1] * problem->step->previous_displacement[k] : mean;
+}
+
+/* Load, target, base: that of held copies is where they will be. */
 static void gxsp_begin(gxsp_problem *problem, const double *displacement, const double *velocity)
 {
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
+    double share; /* of inertia in the rate; the rest is mass damping's */
     size_t i, r;
-    system->base_known = system->base_known && memcmp(displacement, system->current, 3 * system->n * sizeof(double)) == 0;
+    gxsp_choose_integrator(problem);
+    share = problem->speed * problem->speed / problem->rate;
+    system->base_known = system->base_known && !step->targets &&
+                         memcmp(displacement, system->current, 3 * system->n * sizeof(double)) == 0;
     memcpy(system->base, displacement, 3 * system->n * sizeof(double));
     for (i = 0; i < system->n; ++i)
         for (r = 0; r < 3; ++r) {
             size_t k = 3 * i + r;
-            system->target[k] = displacement[k] + (system->fixed[i] ? 0 : step->dt * velocity[k]);
+            double mean = gxsp_mean(problem, k), speed = problem->mean[0] * velocity[k];
+            if (problem->mean[1] < 0)
+                speed += problem->mean[1] * step->previous_velocity[k];
+            system->target[k] = mean + share * speed / problem->speed;
+            if (system->fixed[i]) {
+                if (step->targets && system->held[i])
+                    system->base[k] = step->integrator == GXS_MIDPOINT ? 0.5 * (displacement[k] + step->targets[k]) : step->targets[k];
+                system->target[k] = system->base[k];
+            }
             system->load[k] = system->lumped[i] * step->gravity[r] + (step->forces && !system->fixed[i] ? step->forces[k] : 0);
         }
 }
@@ -3104,17 +3164,24 @@ static gx_result gxsp_minimise(gxsp_problem *problem)
 static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double *velocity)
 {
     gxsp_system *system = problem->system;
+    const gxs_step_desc *step = problem->step;
+    const int midpoint = step->integrator == GXS_MIDPOINT;
     size_t i, count = 3 * system->n;
-    double per_second = 1 / problem->step->dt, *rate = system->residual;
-    for (i = 0; i < count; ++i)
-        rate[i] = system->fixed[i / 3] ? 0 : per_second * (system->current[i] - system->base[i]);
+    double *speeds = system->residual, *ends = system->direction;
+    for (i = 0; i < count; ++i) {
+        ends[i] = midpoint ? 2 * system->current[i] - displacement[i] : system->current[i];
+        if (system->fixed[i / 3])
+            speeds[i] = (ends[i] - displacement[i]) / step->dt;
+        else
+            speeds[i] = problem->speed * (system->current[i] - gxsp_mean(problem, i)) * (midpoint ? 2 : 1) - (midpoint ? velocity[i] : 0);
+    }
     problem->report.energy = gxsp_energy(problem);
-    if (gxsp_first_not_finite(rate, count) < count || gxsp_first_not_finite(system->current, count) < count ||
+    if (gxsp_first_not_finite(speeds, count) < count || gxsp_first_not_finite(ends, count) < count ||
         !gxsp_finite(problem->report.energy))
         return GX_ERROR_DIVERGED;
-    memcpy(displacement, system->current, count * sizeof(double));
-    memcpy(velocity, rate, count * sizeof(double));
-    system->base_known = 1;
+    memcpy(displacement, ends, count * sizeof(double));
+    memcpy(velocity, speeds, count * sizeof(double));
+    system->base_known = !midpoint;
     system->base_energy = problem->energies[0];
     return GX_OK;
 }
@@ -3184,11 +3251,38 @@ static gx_result gxsp_check_step(const gxs_step_desc *step, gx_failure *failure)
     if (!gxsp_finite(step->dt) || gxsp_first_not_finite(step->gravity, 3) < 3 || !gxsp_finite(step->newton_tolerance) ||
         !gxsp_finite(step->cg_tolerance))
         return gxsp_fail(failure, GX_ERROR_NOT_FINITE, SIZE_MAX);
-    if (step->dt <= 0 || step->newton_tolerance < 0 || step->cg_tolerance < 0)
+    if (!gxsp_finite(step->previous_dt) || !gxsp_finite(step->mass_damping))
+        return gxsp_fail(failure, GX_ERROR_NOT_FINITE, SIZE_MAX);
+    if (step->dt <= 0 || step->newton_tolerance < 0 || step->cg_tolerance < 0 || step->mass_damping < 0 ||
+        (int)step->integrator < 0 || step->integrator > GXS_MIDPOINT)
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
-    if (step->dt < 1e-100 || step->dt > 1e100) /* dt^2 and 1 / dt^2 must be numbers */
+    if (step->integrator == GXS_BDF2 && step->previous_displacement && (!step->previous_velocity || step->previous_dt <= 0))
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    if (step->dt < 1e-100 || step->dt > 1e100 || /* dt^2 and 1 / dt^2 must be numbers */
+        (step->integrator == GXS_BDF2 && step->previous_displacement && (step->previous_dt < 1e-100 || step->previous_dt > 1e100)))
         return gxsp_fail(failure, GX_ERROR_RANGE, SIZE_MAX);
     return GX_OK;
+}
+
+/* Every array that a step reads */
+static gx_result gxsp_check_vectors(const gxs_step_desc *step, size_t n, const double *displacement, const double *velocity,
+                                    const uint8_t *held, gx_failure *failure)
+{
+    gx_result result = gxsp_check_vector(displacement, n, failure);
+    size_t i;
+    if (result == GX_OK)
+        result = gxsp_check_vector(velocity, n, failure);
+    if (result == GX_OK && step->forces)
+        result = gxsp_check_vector(step->forces, n, failure);
+    if (result == GX_OK && step->integrator == GXS_BDF2 && step->previous_displacement) {
+        result = gxsp_check_vector(step->previous_displacement, n, failure);
+        if (result == GX_OK)
+            result = gxsp_check_vector(step->previous_velocity, n, failure);
+    }
+    for (i = 0; step->targets && result == GX_OK && i < n; ++i)
+        if (held[i] && gxsp_first_not_finite(step->targets + 3 * i, 3) < 3)
+            result = gxsp_fail(failure, GX_ERROR_NOT_FINITE, i);
+    return result;
 }
 
 /* >>api */
@@ -3245,14 +3339,12 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     if (!solver || !solver->system)
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     n = solver->system->n;
-    if ((result = gxsp_check_step(step, failure)) != GX_OK || (result = gxsp_check_vector(displacement, n, failure)) != GX_OK ||
-        (result = gxsp_check_vector(velocity, n, failure)) != GX_OK ||
-        (step->forces && (result = gxsp_check_vector(step->forces, n, failure)) != GX_OK))
+    if ((result = gxsp_check_step(step, failure)) != GX_OK ||
+        (result = gxsp_check_vectors(step, n, displacement, velocity, solver->system->held, failure)) != GX_OK)
         return result;
     memset(&problem, 0, sizeof problem);
     problem.system = solver->system;
     problem.step = step;
-    problem.rate = 1 / (step->dt * step->dt);
     problem.cg_iterations = step->cg_iterations ? step->cg_iterations : 1000;
     problem.cg_tolerance = step->cg_tolerance > 0 ? step->cg_tolerance : 1e-2;
     gxsp_begin(&problem, displacement, velocity);

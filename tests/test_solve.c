@@ -3,6 +3,7 @@
 #include "../gxfem_solve.h"
 
 #include <check.h>
+#include <pthread.h>
 #include <stdio.h>
 
 /* Random numbers: 64-bit xorshift*, the same everywhere. Failures print the seed of the test. */
@@ -29,6 +30,15 @@ static int finite_bits(double value)
     uint64_t bits;
     memcpy(&bits, &value, sizeof bits);
     return ((bits >> 52) & 2047) != 2047;
+}
+
+/* NaN and infinity from bits, for -ffast-math */
+static double not_a_number(int infinite)
+{
+    uint64_t bits = infinite ? (uint64_t)0x7ff << 52 : (uint64_t)0xfff << 51;
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
 }
 
 #define assert_that(condition, ...)                                        \
@@ -784,6 +794,103 @@ START_TEST(steps_are_repeatable)
 }
 END_TEST
 
+/* ---- integrators ---- */
+
+/* A soft bar, bent a little and let go, after 0.32 s in steps of dt; end: displacement and velocity of its last copy */
+static void swing(gxs_integrator integrator, double dt, double damping, double *end)
+{
+    gxs_solver *solver = solver_make();
+    gxs_step_desc step = step_make(dt, 0);
+    double *previous[2], *now[2];
+    scene s = scene_block(4, 1, 1, 0.5, 0, 0);
+    size_t count = 3 * s.model.copy_count, i;
+    int frame, frames = (int)(0.32 / dt + 0.5);
+    s.material->young = 2e4;
+    scene_hold_left(&s);
+    for (i = 0; i < 2; ++i)
+        previous[i] = (double *)zeroed(count, sizeof(double)), now[i] = (double *)zeroed(count, sizeof(double));
+    for (i = 0; i < s.model.copy_count; ++i)
+        s.displacement[3 * i + 2] = 0.03 * s.rest[3 * i] * s.rest[3 * i];
+    step.integrator = integrator;
+    step.mass_damping = damping;
+    step.newton_iterations = 10;
+    step.newton_tolerance = 1e-12;
+    step.cg_tolerance = 1e-5;
+    ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
+    for (frame = 0; frame < frames; ++frame) {
+        memcpy(now[0], s.displacement, count * sizeof(double));
+        memcpy(now[1], s.velocity, count * sizeof(double));
+        if (frame > 0) {
+            step.previous_displacement = previous[0];
+            step.previous_velocity = previous[1];
+            step.previous_dt = dt;
+        }
+        ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+        memcpy(previous[0], now[0], count * sizeof(double));
+        memcpy(previous[1], now[1], count * sizeof(double));
+    }
+    end[0] = s.displacement[count - 1];
+    end[1] = s.velocity[count - 1];
+    for (i = 0; i < 2; ++i)
+        free(previous[i]), free(now[i]);
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+
+/* halving the step halves backward Euler's error and quarters that of the other two */
+START_TEST(integrators_have_their_order)
+{
+    double truth[2], error[2];
+    int k;
+    gxs_integrator integrator = (gxs_integrator)(_i / 2);
+    double damping = _i % 2 ? 3 : 0;
+    swing(GXS_MIDPOINT, 0.32 / 1024, damping, truth);
+    for (k = 0; k < 2; ++k) {
+        double end[2];
+        swing(integrator, 0.01 / (1 << k), damping, end);
+        error[k] = fabs(end[0] - truth[0]) + 0.05 * fabs(end[1] - truth[1]);
+    }
+    assert_that(error[0] / error[1] > (integrator == GXS_BDF1 ? 1.6 : 3.2) && error[0] / error[1] < (integrator == GXS_BDF1 ? 2.5 : 5.5),
+                "errors %g %g", error[0], error[1]);
+}
+END_TEST
+
+/* a bar carried by its held end: it goes where the targets say, with their velocity, and takes the rest along */
+START_TEST(targets_move_held_copies)
+{
+    gxs_solver *solver = solver_make();
+    gxs_step_desc step = step_make(0.01, 0);
+    gxs_step_report report;
+    scene s = scene_block(4, 2, 2, 0.25, 0, 0);
+    double *targets = (double *)zeroed(3 * s.model.copy_count, sizeof(double));
+    size_t i;
+    int frame;
+    scene_hold_left(&s);
+    step.targets = targets;
+    step.integrator = _i ? GXS_MIDPOINT : GXS_BDF1;
+    step.mass_damping = _i ? 20 : 0;
+    ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
+    for (frame = 1; frame <= 300; ++frame) {
+        for (i = 0; i < s.model.copy_count; ++i)
+            targets[3 * i + 1] = s.held[i] ? (frame < 100 ? 0.01 * frame : 1) : not_a_number(0); /* others are not read */
+        ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+        for (i = 0; i < s.model.copy_count; ++i)
+            if (s.held[i]) {
+                ck_assert(fabs(s.displacement[3 * i + 1] - targets[3 * i + 1]) < 1e-15);
+                assert_that(fabs(s.velocity[3 * i + 1] - (frame <= 100 ? 1 : 0)) < 1e-12, "%g", s.velocity[3 * i + 1]);
+            }
+    }
+    for (i = 0; i < s.model.copy_count; ++i)
+        assert_that(fabs(s.displacement[3 * i + 1] - 1) < 0.05, "left behind at %g", s.displacement[3 * i + 1]);
+    for (i = 0; i < s.model.copy_count; ++i)
+        targets[3 * i] = s.held[i] ? not_a_number(1) : 0;
+    ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_ERROR_NOT_FINITE);
+    free(targets);
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
 /* ---- violent starts ---- */
 
 enum { INVERTED, FLATTENED, COLLAPSED, TANGLED, START_COUNT };
@@ -1007,15 +1114,6 @@ static void expect(attempt *a, gx_result result, size_t index)
     scene_free(&a->s);
 }
 
-/* NaN and infinity from bits, for -ffast-math */
-static double not_a_number(int infinite)
-{
-    uint64_t bits = infinite ? (uint64_t)0x7ff << 52 : (uint64_t)0xfff << 51;
-    double value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
 #define attempt_with(change, result, index) \
     do {                                    \
         attempt a = attempt_make();         \
@@ -1030,6 +1128,15 @@ START_TEST(bad_input_is_named)
     attempt_with(a.step.dt = -1, GX_ERROR_ARGUMENT, SIZE_MAX);
     attempt_with(a.step.dt = nan, GX_ERROR_NOT_FINITE, SIZE_MAX);
     attempt_with(a.step.cg_tolerance = -1, GX_ERROR_ARGUMENT, SIZE_MAX);
+    attempt_with(a.step.mass_damping = -1, GX_ERROR_ARGUMENT, SIZE_MAX);
+    attempt_with(a.step.mass_damping = nan, GX_ERROR_NOT_FINITE, SIZE_MAX);
+    attempt_with(a.step.integrator = (gxs_integrator)(GXS_MIDPOINT + 1), GX_ERROR_ARGUMENT, SIZE_MAX);
+    attempt_with(a.step.integrator = GXS_BDF2; a.step.previous_displacement = a.s.forces; a.step.previous_dt = 1,
+                 GX_ERROR_ARGUMENT, SIZE_MAX);
+    attempt_with(a.step.integrator = GXS_BDF2; a.step.previous_displacement = a.step.previous_velocity = a.s.forces,
+                 GX_ERROR_ARGUMENT, SIZE_MAX);
+    attempt_with(a.step.integrator = GXS_BDF2; a.step.previous_displacement = a.step.previous_velocity = a.s.forces;
+                 a.step.previous_dt = 1; a.s.forces[5] = nan, GX_ERROR_NOT_FINITE, 1);
     attempt_with(a.step.newton_tolerance = infinity, GX_ERROR_NOT_FINITE, SIZE_MAX);
     attempt_with(a.step.gravity[1] = nan, GX_ERROR_NOT_FINITE, SIZE_MAX);
     attempt_with(a.step.forces = a.s.forces; a.s.forces[7] = nan, GX_ERROR_NOT_FINITE, 2);
@@ -1247,6 +1354,84 @@ START_TEST(multigrid_iterations_do_not_grow)
 }
 END_TEST
 
+/* ---- jobs ---- */
+
+static void backwards(void *user, size_t count, void (*task)(void *, size_t), void *context)
+{
+    (void)user;
+    while (count-- > 0)
+        task(context, count);
+}
+
+typedef struct worker {
+    void (*task)(void *, size_t);
+    void *context;
+    size_t begin, end, step;
+} worker;
+
+static void *work(void *argument)
+{
+    worker *w = (worker *)argument;
+    size_t i;
+    for (i = w->begin; i < w->end; i += w->step)
+        w->task(w->context, i);
+    return NULL;
+}
+
+/* as many threads as *user says, each every so manyth index */
+static void threads(void *user, size_t count, void (*task)(void *, size_t), void *context)
+{
+    size_t workers = *(const size_t *)user, k;
+    worker w[4];
+    pthread_t id[4];
+    for (k = 0; k < workers; ++k) {
+        w[k].task = task, w[k].context = context, w[k].begin = k, w[k].end = count, w[k].step = workers;
+        ck_assert_int_eq(pthread_create(&id[k], NULL, work, &w[k]), 0);
+    }
+    for (k = 0; k < workers; ++k)
+        ck_assert_int_eq(pthread_join(id[k], NULL), 0);
+}
+
+/* ten frames of a falling, tumbling, stretched body: the same bits in whatever order and on however many threads */
+START_TEST(jobs_do_not_change_results)
+{
+    double *first = NULL;
+    size_t workers, count = 0;
+    int run, frame;
+    for (run = 0; run < 4; ++run) { /* alone, backwards, two threads, four */
+        gxs_solver_desc desc;
+        gxs_solver *solver = NULL;
+        gxs_step_desc step = step_make(0.033, -9.81);
+        size_t i;
+        scene s;
+        seed(12);
+        s = scene_block(8, 8, 8, 0.125, 0.2, 0);
+        scene_hold_left(&s);
+        s.model.lumped_mass = _i == 1;
+        s.material->kind = (gxs_material_kind)_i;
+        count = 3 * s.model.copy_count;
+        for (i = 0; i < count; ++i)
+            s.displacement[i] = 0.3 * s.rest[i] + 0.01 * uniform(), s.velocity[i] = uniform();
+        memset(&desc, 0, sizeof desc);
+        desc.jobs.parallel_for = run == 0 ? NULL : run == 1 ? backwards : threads;
+        desc.jobs.user = &workers;
+        workers = run == 3 ? 4 : 2;
+        ck_assert_int_eq(gxs_solver_create(&desc, &solver), GX_OK);
+        ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
+        for (frame = 0; frame < 10; ++frame)
+            ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+        if (!first) {
+            first = (double *)zeroed(count, sizeof *first);
+            memcpy(first, s.displacement, count * sizeof *first);
+        }
+        ck_assert_int_eq(memcmp(first, s.displacement, count * sizeof *first), 0);
+        gxs_solver_destroy(solver);
+        scene_free(&s);
+    }
+    free(first);
+}
+END_TEST
+
 static Suite *solve_suite(void)
 {
     Suite *suite = suite_create("gxfem_solve");
@@ -1270,6 +1455,9 @@ static Suite *solve_suite(void)
     tcase_add_test(step, reported_energy_is_the_incremental_potential);
     tcase_add_test(step, tiny_weights_keep_iterations_bounded);
     tcase_add_test(step, tiny_pieces_are_seen);
+    tcase_add_loop_test(step, integrators_have_their_order, 0, 6);
+    tcase_add_loop_test(step, targets_move_held_copies, 0, 2);
+    tcase_add_loop_test(step, jobs_do_not_change_results, 0, KINDS);
     tcase_add_loop_test(violent, energy_falls_from_violent_starts, 0, 4 * START_COUNT);
     tcase_add_test(violent, tangled_body_recovers);
     tcase_add_test(input, bad_input_is_named);
