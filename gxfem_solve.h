@@ -311,6 +311,12 @@ extern "C" {
 /* Multigrid's diagonal grows by this share, so that what single precision leaves of its matrices is positive definite. */
 #define GXSP_SHIFT 1e-5f
 
+/* The stiffness of a whole element in the linear systems: 2^40 leaves room for pieces down to 1e-40 of it, and for masses above. */
+#define GXSP_STIFFNESS 40
+
+/* Coarse nodes that a chunk's table of matrix entries has room for; the entries of further ones are looked for each time. */
+#define GXSP_CHUNK_PARENTS 192
+
 /* Arrays of a block's passes never overlap. */
 #if !defined(__cplusplus)
 #define GXSP_RESTRICT restrict
@@ -553,10 +559,11 @@ typedef struct gxsp_system {
     gxsp_vector4 *search, *product, *scaled; /* of conjugate gradients: direction, Hessian times it, preconditioned residual */
     float *diagonal;        /* n x 6: inverse of the Hessian's diagonal blocks, packed; 0 for fixed copies */
     int lumped_mass;
+    double scale;           /* power of two by which the linear systems are multiplied, so that single precision holds tiny pieces too */
     gxsp_level levels[GXSP_LEVELS];
     uint32_t level_count;   /* 0: no multigrid */
     float (*place)[3];      /* n: rest positions in spacings of the first lattice */
-    uint32_t *scratch;      /* as many as the largest coarse level has nodes */
+    uint32_t *scratch;      /* for the coarse matrices: a chunk's table, and twice as many as level 1 has nodes */
     gxsp_factor factor;
     float omega;            /* step length of the smoother; 0: not known */
     double coarse_rate;     /* for which the coarse matrices were made; 0: never made */
@@ -1075,8 +1082,8 @@ static void gxsp_project(gxsp_principal *GXSP_RESTRICT of)
             gxsp_project_lane(of->stretch, l);
 }
 
-/* The projected Hessian of a block at s->g. */
-static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest, gxsp_state *s,
+/* The projected Hessian of a block at s->g, times scale. */
+static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest, double scale, gxsp_state *s,
                               gxsp_tangent *GXSP_RESTRICT tangent)
 {
     gxsp_svd of;
@@ -1085,7 +1092,7 @@ static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_REST
     GXSP_EACH_LANE(l) {
         principal.mu[l] = (float)s->mu[l];
         principal.lambda[l] = (float)s->lambda[l];
-        principal.weight[l] = (float)rest->weight[l];
+        principal.weight[l] = (float)(scale * rest->weight[l]);
     }
     if (kind != GXS_LINEAR)
         gxsp_decompose(s->g, &of);
@@ -1258,28 +1265,6 @@ static void gxsp_block_couple(const gxsp_tangent *GXSP_RESTRICT t, gxsp_singles 
         block[3][l] = a3 * u0 + a4 * u1 + a5 * u2, block[4][l] = a3 * u3 + a4 * u4 + a5 * u5, block[5][l] = a3 * u6 + a4 * u7 + a5 * u8;
         block[6][l] = a6 * u0 + a7 * u1 + a8 * u2, block[7][l] = a6 * u3 + a7 * u4 + a8 * u5, block[8][l] = a6 * u6 + a7 * u7 + a8 * u8;
     }
-}
-
-/* The same for one lane */
-static void gxsp_lane_couple(const gxsp_tangent *t, int l, const float *p, const float *q, float *block)
-{
-    float b[9], ub[9];
-    int r, s;
-    for (r = 0; r < 3; ++r) {
-        const int n = (r + 1) % 3, m = (r + 2) % 3; /* the pair (r, n) has number m */
-        b[4 * r] = t->stretch[gxsp_packed3(r, r)][l] * p[r] * q[r] + t->even[m][l] * p[n] * q[n] + t->even[n][l] * p[m] * q[m];
-        for (s = 0; s < 3; ++s)
-            if (s != r)
-                b[3 * r + s] = t->stretch[gxsp_packed3(r < s ? r : s, r < s ? s : r)][l] * p[r] * q[s] +
-                               t->odd[3 - r - s][l] * p[s] * q[r];
-    }
-    for (r = 0; r < 3; ++r)
-        for (s = 0; s < 3; ++s)
-            ub[3 * r + s] = t->frame[3 * r][l] * b[s] + t->frame[3 * r + 1][l] * b[3 + s] + t->frame[3 * r + 2][l] * b[6 + s];
-    for (r = 0; r < 3; ++r)
-        for (s = 0; s < 3; ++s)
-            block[3 * r + s] = ub[3 * r] * t->frame[3 * s][l] + ub[3 * r + 1] * t->frame[3 * s + 1][l] +
-                               ub[3 * r + 2] * t->frame[3 * s + 2][l];
 }
 
 /* V^T grad N of corner 0 ... 3 */
@@ -1646,10 +1631,10 @@ static void gxsp_chunks_make(gxsp_system *system, gxsp_pool *scratch, const gxs_
     gxsp_fill_chunks(system, model, sorted, local, stamp);
     system->copy_slot = (uint32_t *)gxsp_take(&system->pool, system->slot_count, sizeof(uint32_t));
     system->slot_in = (gxsp_vector4 *)gxsp_take(&system->pool, 2 * system->slot_count, sizeof(gxsp_vector4));
-    system->slot_out = system->slot_in + system->slot_count;
     local = (uint32_t *)gxsp_take(&system->pool, system->slot_count, sizeof(uint32_t));
     if (system->pool.failed)
         return;
+    system->slot_out = system->slot_in + system->slot_count;
     memcpy(local, system->nodes, system->slot_count * sizeof(uint32_t));
     system->nodes = local;
     for (s = 0; s < system->slot_count; ++s)
@@ -2168,7 +2153,22 @@ static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch)
         ;
     system->level_count = at + 1;
     gxsp_factor_make(system, scratch);
-    system->scratch = (uint32_t *)gxsp_take(&system->pool, count, sizeof(uint32_t));
+    system->scratch = (uint32_t *)gxsp_take(&system->pool, GXSP_CHUNK_PARENTS * GXSP_CHUNK_PARENTS + 2 * (size_t)count, sizeof(uint32_t));
+}
+
+/* 2^GXSP_STIFFNESS over Young's modulus times the length of the largest element, but for the mantissa */
+static double gxsp_choose_scale(const gxs_model *model)
+{
+    double young = 0, volume = 0, size;
+    size_t i;
+    int exponent;
+    for (i = 0; i < model->material_count; ++i)
+        young = model->materials[i].young > young ? model->materials[i].young : young;
+    for (i = 0; i < model->element_count; ++i)
+        volume = model->elements[i].weight > volume ? model->elements[i].weight : volume;
+    size = volume > 0 ? young * cbrt(volume) : young;
+    (void)frexp(size, &exponent);
+    return ldexp(1, GXSP_STIFFNESS - exponent);
 }
 
 /* Everything about a model that does not depend on its state; scratch holds what is needed for the time being. */
@@ -2180,6 +2180,7 @@ static void gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const gxs
     system->element_count = model->element_count;
     system->range_count = (system->n + GXSP_RANGE - 1) / GXSP_RANGE;
     system->lumped_mass = model->lumped_mass != 0;
+    system->scale = gxsp_choose_scale(model);
     system->material_count = (uint32_t)model->material_count;
     system->materials = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
     gxsp_system_vectors(system);
@@ -2264,13 +2265,13 @@ static void gxsp_task_product_sum(void *context, size_t index)
     }
 }
 
-/* y = (K + rate M) x, K the projected Hessian of the last linearisation */
+/* y = scale (K + rate M) x, K the projected Hessian of the last linearisation */
 static void gxsp_product(gxsp_system *system, double rate, const gxsp_vector4 *x, gxsp_vector4 *y)
 {
     gxsp_pass pass;
     memset(&pass, 0, sizeof pass);
     pass.system = system;
-    pass.rate = rate;
+    pass.rate = system->scale * rate;
     pass.x = x;
     pass.y = y;
     gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_product, &pass);
@@ -2298,7 +2299,7 @@ static void gxsp_task_linearise(void *context, size_t index)
         gxsp_block_load(system, chunk, rest, pass->from, x);
         gxsp_block_parameters(system, rest, &s);
         gxsp_block_gradient(rest, x, s.g);
-        gxsp_tangent_make(chunk->kind, rest, &s, tangent);
+        gxsp_tangent_make(chunk->kind, rest, system->scale, &s, tangent);
         GXSP_EACH_LANE(l) tangent->mass[l] = (float)(pass->rate * rest->mass[l]);
         for (corner = 0; corner < 4; ++corner) {
             gxsp_singles gamma[3], block[9];
@@ -2363,20 +2364,22 @@ static void gxsp_task_diagonal(void *context, size_t index)
             sum[k] += k == 0 || k == 3 || k == 5 ? pass->rate * system->lumped[i] : 0;
         if (system->fixed[i])
             memset(sum, 0, sizeof sum);
+        if (sum[0] + sum[3] + sum[5] < 1e-28) /* below single precision: only what is coarser moves such a copy */
+            memset(sum, 0, sizeof sum);
         gxsp_invert3(sum);
         for (k = 0; k < 6; ++k)
             system->diagonal[6 * i + (size_t)k] = (float)sum[k];
     }
 }
 
-/* Hessian and inverse block diagonal at a displacement. 0 if a number overflowed. */
+/* Hessian, times scale, and inverse block diagonal at a displacement. 0 if a number overflowed. */
 static int gxsp_linearise(gxsp_system *system, double rate, const double *from)
 {
     gxsp_pass pass;
     size_t i;
     memset(&pass, 0, sizeof pass);
     pass.system = system;
-    pass.rate = rate;
+    pass.rate = system->scale * rate;
     pass.from = from;
     gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_linearise, &pass);
     gxsp_parallel(system->jobs, system->range_count, gxsp_task_diagonal, &pass);
@@ -2553,17 +2556,65 @@ static uint32_t gxsp_find_entry(const gxsp_level *level, uint32_t i, uint32_t j)
     return low;
 }
 
-/* An element's part of level 1's matrix: its Hessian and mass between the coarse functions that its corners follow. */
-static void gxsp_coarse_element(gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, int lane, double rate)
+/* Entries of level 1's matrix between the coarse nodes of one chunk, found once */
+typedef struct gxsp_chunk_entries {
+    uint32_t *index;    /* count x count; GXSP_NONE: not looked for yet */
+    uint32_t *local;    /* by coarse node: its number in the chunk */
+    uint32_t *stamp;    /* by coarse node: the chunk that numbered it, plus 1 */
+    uint32_t count;
+} gxsp_chunk_entries;
+
+static float *gxsp_chunk_block(gxsp_chunk_entries *of, gxsp_level *next, uint32_t chunk, uint32_t i, uint32_t j)
+{
+    uint32_t *found, ends[2];
+    int k;
+    ends[0] = i, ends[1] = j;
+    for (k = 0; k < 2; ++k)
+        if (of->stamp[ends[k]] != chunk + 1) {
+            of->stamp[ends[k]] = chunk + 1;
+            of->local[ends[k]] = of->count++;
+        }
+    if (of->local[i] >= GXSP_CHUNK_PARENTS || of->local[j] >= GXSP_CHUNK_PARENTS)
+        return next->block + 12 * (size_t)gxsp_find_entry(next, i, j);
+    found = &of->index[of->local[i] * GXSP_CHUNK_PARENTS + of->local[j]];
+    if (*found == GXSP_NONE)
+        *found = gxsp_find_entry(next, i, j);
+    return next->block + 12 * (size_t)*found;
+}
+
+/* Hessian of a block between gradients in the frame of V: h[3 k + l] couples unit vectors k and l, three columns of 4 */
+typedef float gxsp_couplings[9][12];
+
+static void gxsp_block_couplings(const gxsp_tangent *tangent, gxsp_couplings *h)
+{
+    int k, m, l, r, c;
+    for (k = 0; k < 3; ++k)
+        for (m = k; m < 3; ++m) {
+            gxsp_singles p[3], q[3], block[9];
+            memset(p, 0, sizeof p);
+            memset(q, 0, sizeof q);
+            GXSP_EACH_LANE(l) p[k][l] = q[m][l] = 1;
+            gxsp_block_couple(tangent, p, q, block);
+            for (l = 0; l < GXSP_LANES; ++l)
+                for (r = 0; r < 3; ++r)
+                    for (c = 0; c < 3; ++c)
+                        h[l][3 * k + m][4 * c + r] = h[l][3 * m + k][4 * r + c] = block[3 * r + c][l];
+        }
+}
+
+/* An element's part of level 1's matrix, on and above the diagonal: its Hessian h and mass between the coarse functions that its
+ * corners follow. */
+static void gxsp_coarse_element(gxsp_system *system, uint32_t chunk, uint32_t b, int lane, double rate, gxsp_couplings h,
+                                gxsp_chunk_entries *entries)
 {
     static const int packed[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
-    gxsp_level *next = &system->levels[1];
-    const gxsp_tangent *tangent = &system->tangents[chunk->first_block + b];
-    const gxsp_mass *general = gxsp_block_masses(system, chunk, b);
+    const gxsp_chunk *of = &system->chunks[chunk];
+    const gxsp_tangent *tangent = &system->tangents[of->first_block + b];
+    const gxsp_mass *general = gxsp_block_masses(system, of, b);
     uint32_t copies[4], parents[16];
-    float weights[16][4], gamma[16][3], corner[4][3], masses[4][4], block[9];
+    float weights[16][4], gamma[16][3], corner[4][3], moments[16][4];
     int count, i, j, k, p, q;
-    gxsp_lane_copies(system, chunk, b, lane, copies);
+    gxsp_lane_copies(system, of, b, lane, copies);
     count = gxsp_element_parents(system, copies, parents, weights);
     for (k = 0; k < 3; ++k) {
         corner[0][k] = 0;
@@ -2572,30 +2623,64 @@ static void gxsp_coarse_element(gxsp_system *system, const gxsp_chunk *chunk, ui
             corner[0][k] -= corner[i][k];
         }
     }
-    for (i = 0; i < 4; ++i)
-        for (j = 0; j < 4; ++j)
-            masses[i][j] = tangent->mass[lane] * (i == j ? 2.0f : 1.0f) +
-                           (general ? (float)(rate * general->entry[packed[i][j]][lane]) : 0);
-    for (p = 0; p < count; ++p)
+    for (p = 0; p < count; ++p) {
+        const float *w = weights[p], sum = w[0] + w[1] + w[2] + w[3];
         for (k = 0; k < 3; ++k)
-            gamma[p][k] = weights[p][0] * corner[0][k] + weights[p][1] * corner[1][k] + weights[p][2] * corner[2][k] +
-                          weights[p][3] * corner[3][k];
-    for (p = 0; p < count; ++p)
-        for (q = 0; q <= p; ++q) {
-            float mass = 0, *to, *back;
-            for (i = 0; i < 4; ++i)
-                for (j = 0; j < 4; ++j)
-                    mass += weights[p][i] * masses[i][j] * weights[q][j];
-            gxsp_lane_couple(tangent, lane, gamma[p], gamma[q], block);
-            block[0] += mass, block[4] += mass, block[8] += mass;
-            to = next->block + 12 * (size_t)gxsp_find_entry(next, parents[p], parents[q]);
-            back = next->block + 12 * (size_t)gxsp_find_entry(next, parents[q], parents[p]);
-            for (i = 0; i < 3; ++i) /* by rows here, by columns there */
-                for (j = 0; j < 3; ++j) {
-                    to[4 * j + i] += block[3 * i + j];
-                    if (p != q)
-                        back[4 * i + j] += block[3 * i + j];
-                }
+            gamma[p][k] = w[0] * corner[0][k] + w[1] * corner[1][k] + w[2] * corner[2][k] + w[3] * corner[3][k];
+        for (i = 0; i < 4; ++i) {
+            moments[p][i] = tangent->mass[lane] * (sum + w[i]);
+            for (j = 0; general && j < 4; ++j)
+                moments[p][i] += (float)(rate * general->entry[packed[i][j]][lane]) * w[j];
+        }
+    }
+    for (p = 0; p < count; ++p) {
+        float half[3][12]; /* gamma_p . h, still to be multiplied by gamma_q */
+        for (j = 0; j < 3; ++j)
+            for (k = 0; k < 12; ++k)
+                half[j][k] = gamma[p][0] * h[j][k] + gamma[p][1] * h[3 + j][k] + gamma[p][2] * h[6 + j][k];
+        for (q = 0; q < count; ++q) {
+            const float *g = gamma[q], *w = weights[q];
+            float *to, mass;
+            if (parents[q] < parents[p])
+                continue;
+            mass = moments[p][0] * w[0] + moments[p][1] * w[1] + moments[p][2] * w[2] + moments[p][3] * w[3];
+            to = gxsp_chunk_block(entries, &system->levels[1], chunk, parents[p], parents[q]);
+            for (k = 0; k < 12; ++k)
+                to[k] += g[0] * half[0][k] + g[1] * half[1][k] + g[2] * half[2][k];
+            to[0] += mass, to[5] += mass, to[10] += mass;
+        }
+    }
+}
+
+/* Level 1's matrix from the last linearisation, and below the diagonal what stands above it */
+static void gxsp_coarse_elements(gxsp_system *system, double rate)
+{
+    gxsp_level *next = &system->levels[1];
+    gxsp_chunk_entries entries;
+    uint32_t c, b, i, k;
+    int l, r, s;
+    entries.index = system->scratch;
+    entries.local = entries.index + GXSP_CHUNK_PARENTS * GXSP_CHUNK_PARENTS;
+    entries.stamp = entries.local + next->n;
+    memset(entries.stamp, 0, next->n * sizeof(uint32_t));
+    memset(next->block, 0, 12 * (size_t)next->start[next->n] * sizeof(float));
+    for (c = 0; c < system->chunk_count; ++c) {
+        memset(entries.index, 0xff, GXSP_CHUNK_PARENTS * GXSP_CHUNK_PARENTS * sizeof(uint32_t));
+        entries.count = 0;
+        for (b = 0; b < system->chunks[c].block_count; ++b) {
+            gxsp_couplings h[GXSP_LANES];
+            gxsp_block_couplings(&system->tangents[system->chunks[c].first_block + b], h);
+            for (l = 0; l < GXSP_LANES; ++l)
+                if (system->rest[system->chunks[c].first_block + b].weight[l] > 0)
+                    gxsp_coarse_element(system, c, b, l, rate, h[l], &entries);
+        }
+    }
+    for (i = 0; i < next->n; ++i)
+        for (k = next->start[i]; next->column[k] < i; ++k) {
+            const float *from = next->block + 12 * (size_t)gxsp_find_entry(next, next->column[k], i);
+            for (r = 0; r < 3; ++r)
+                for (s = 0; s < 3; ++s)
+                    next->block[12 * (size_t)k + (size_t)(4 * s + r)] = from[4 * r + s];
         }
 }
 
@@ -2707,16 +2792,10 @@ static void gxsp_coarse_lumped(gxsp_system *system, double rate)
 /* The matrices of all levels from the last linearisation. 0 if a number overflowed. */
 static int gxsp_coarse_numbers(gxsp_system *system, double rate)
 {
-    uint32_t at, c, b;
-    int l;
-    memset(system->levels[1].block, 0, 12 * (size_t)system->levels[1].start[system->levels[1].n] * sizeof(float));
-    for (c = 0; c < system->chunk_count; ++c)
-        for (b = 0; b < system->chunks[c].block_count; ++b)
-            for (l = 0; l < GXSP_LANES; ++l)
-                if (system->rest[system->chunks[c].first_block + b].weight[l] > 0)
-                    gxsp_coarse_element(system, &system->chunks[c], b, l, rate);
+    uint32_t at;
+    gxsp_coarse_elements(system, system->scale * rate);
     if (system->lumped_mass)
-        gxsp_coarse_lumped(system, rate);
+        gxsp_coarse_lumped(system, system->scale * rate);
     for (at = 1; at < system->level_count; ++at) {
         gxsp_level *level = &system->levels[at];
         if (!gxsp_invert_diagonal(level))
@@ -2885,7 +2964,7 @@ static double gxsp_precondition(gxsp_system *system, double rate)
     return product;
 }
 
-/* Solves (K + rate M) direction = residual to a share of the residual, which is used up. The directions of free pieces carry
+/* Solves scale (K + rate M) direction = scale residual to a share of the residual, which is used up. The directions of free pieces carry
  * no momentum: their translations are projected out of the preconditioned residual (deflated conjugate gradients; the residual
  * has none, see gxsp_start). Operator and preconditioner are of single precision, vectors and sums of double. 0 if a number
  * overflowed. */
@@ -2893,11 +2972,15 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
 {
     gxsp_system *system = problem->system;
     const double goal = problem->cg_tolerance * problem->cg_tolerance, rate = problem->rate;
-    gxsp_norms first = gxsp_scale(system, system->residual), now;
+    gxsp_norms first, now;
     uint32_t iteration;
-    double rho = gxsp_precondition(system, rate);
+    double rho;
     size_t i;
     int c;
+    for (i = 0; i < 3 * system->n; ++i)
+        system->residual[i] *= system->scale;
+    first = gxsp_scale(system, system->residual);
+    rho = gxsp_precondition(system, rate);
     memset(system->direction, 0, 3 * system->n * sizeof(double));
     memcpy(system->search, system->scaled, system->n * sizeof *system->search);
     for (iteration = 0; iteration < problem->cg_iterations; ++iteration) {
@@ -3525,7 +3608,7 @@ GXFEM_API gx_result gxs_model_hessian_product(const gxs_model *model, const doub
         gxsp_group_gather(&group, displacement, x);
         gxsp_block_gradient(&group.rest, x, group.state.g);
         memset(&tangent, 0, sizeof tangent);
-        gxsp_tangent_make(group.kind, &group.rest, &group.state, &tangent);
+        gxsp_tangent_make(group.kind, &group.rest, 1, &group.state, &tangent);
         gxsp_group_gather(&group, direction, x);
         for (k = 0; k < 12; ++k)
             GXSP_EACH_LANE(l) from[k][l] = (float)(x[k][l] - x[k % 3][l]); /* of translations exactly 0 */
@@ -3600,7 +3683,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
     memset(from, 0, sizeof from);
     rest.weight[0] = 1;
     rest.gradient[0][0] = rest.gradient[4][0] = rest.gradient[8][0] = 1; /* u_i - u_0 are the columns of dF, forces those of dP */
-    gxsp_tangent_make(material->kind, &rest, &state, &tangent);
+    gxsp_tangent_make(material->kind, &rest, 1, &state, &tangent);
     for (k = 0; k < 3; ++k)
         for (c = 0; c < 3; ++c)
             from[3 + 3 * c + k][0] = (float)direction[3 * k + c];
@@ -3628,5 +3711,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_BOTTOM
 #undef GXSP_LEVELS
 #undef GXSP_SHIFT
+#undef GXSP_STIFFNESS
+#undef GXSP_CHUNK_PARENTS
 #undef GXSP_HEAD
 #endif /* GXFEM_SOLVE_IMPLEMENTED */
