@@ -1819,6 +1819,28 @@ static void gxsp_join_nodes(gxsp_transfer *transfer, uint32_t i, uint32_t j)
                 gxsp_join(transfer->forest, 4 * i + p, 4 * j + q);
 }
 
+/* The same for the four corners of an element, which are all neighbours */
+static void gxsp_join_corners(gxsp_transfer *transfer, const uint32_t *copies)
+{
+    uint64_t known[16];
+    uint32_t slots[16], count = 0, i, p, k;
+    for (i = 0; i < 4; ++i)
+        for (p = 0; p < 4; ++p) {
+            const uint32_t slot = 4 * copies[i] + p;
+            const uint64_t key = transfer->key[slot];
+            if (key == 0)
+                continue;
+            for (k = 0; k < count && known[k] != key; ++k)
+                ;
+            if (k < count)
+                gxsp_join(transfer->forest, slots[k], slot);
+            else {
+                known[count] = key;
+                slots[count++] = slot;
+            }
+        }
+}
+
 /* Points and weights of a level's nodes, before components are joined. place: n x 3, in spacings of the next lattice */
 static void gxsp_transfer_begin(const gxsp_level *level, float (*place)[3], const uint8_t *fixed, gxsp_transfer *transfer)
 {
@@ -2058,53 +2080,121 @@ static void gxsp_lane_copies(const gxsp_system *system, const gxsp_chunk *chunk,
         copies[i] = system->nodes[chunk->first_node + rest->node[i][lane]];
 }
 
-/* Columns of level 1's matrix: two nodes are neighbours where an element follows both. With columns NULL only their count in
- * start[row + 2], repetitions within a chunk left out as far as the table holds them. */
-static void gxsp_list_pairs(gxsp_system *system, uint32_t *start, uint32_t *columns, uint64_t *table, uint32_t table_size)
+/* Pairs of coarse nodes that elements of one chunk follow: where their entry of level 1's matrix is */
+typedef struct gxsp_chunk_pairs {
+    uint32_t *entry;    /* GXSP_CHUNK_PARENTS x GXSP_CHUNK_PARENTS; GXSP_NONE: not known yet */
+    uint32_t *local;    /* by coarse node: its number in the chunk */
+    uint32_t *stamp;    /* by coarse node: the chunk that numbered it, plus 1; 0 at first */
+    uint32_t chunk, count;
+} gxsp_chunk_pairs;
+
+static void gxsp_pairs_begin(gxsp_chunk_pairs *pairs, uint32_t chunk)
 {
-    uint32_t c, b;
-    int l, p, q;
-    memset(table, 0xff, table_size * sizeof *table);
-    for (c = 0; c < system->chunk_count; ++c)
-        for (b = 0; b < system->chunks[c].block_count; ++b)
-            for (l = 0; l < GXSP_LANES; ++l) {
-                uint32_t copies[4], parents[16];
-                float weights[16][4];
-                int count;
-                gxsp_lane_copies(system, &system->chunks[c], b, l, copies);
-                count = gxsp_element_parents(system, copies, parents, weights);
-                for (p = 0; p < count; ++p)
-                    for (q = 0; q < count; ++q) {
-                        const uint64_t pair = (uint64_t)parents[p] << 32 | parents[q];
-                        uint64_t *seen = &table[(parents[p] * 2654435761u ^ parents[q] * 2246822519u) >> 8 & (table_size - 1)];
-                        if (*seen == pair)
-                            continue;
-                        *seen = pair;
-                        if (columns)
-                            columns[start[parents[p] + 1]++] = parents[q];
-                        else
-                            ++start[parents[p] + 2];
-                    }
-            }
+    memset(pairs->entry, 0xff, GXSP_CHUNK_PARENTS * GXSP_CHUNK_PARENTS * sizeof(uint32_t));
+    pairs->chunk = chunk;
+    pairs->count = 0;
 }
 
-/* Level 1's matrix */
+/* The table's place for a pair; NULL if the table is full. */
+static uint32_t *gxsp_pairs_find(gxsp_chunk_pairs *pairs, uint32_t i, uint32_t j)
+{
+    uint32_t ends[2], k;
+    ends[0] = i, ends[1] = j;
+    for (k = 0; k < 2; ++k)
+        if (pairs->stamp[ends[k]] != pairs->chunk + 1) {
+            pairs->stamp[ends[k]] = pairs->chunk + 1;
+            pairs->local[ends[k]] = pairs->count++;
+        }
+    if (pairs->local[i] >= GXSP_CHUNK_PARENTS || pairs->local[j] >= GXSP_CHUNK_PARENTS)
+        return NULL;
+    return &pairs->entry[pairs->local[i] * GXSP_CHUNK_PARENTS + pairs->local[j]];
+}
+
+/* Tables in the system's scratch memory */
+static void gxsp_pairs_place(gxsp_system *system, gxsp_chunk_pairs *pairs)
+{
+    pairs->entry = system->scratch;
+    pairs->local = pairs->entry + GXSP_CHUNK_PARENTS * GXSP_CHUNK_PARENTS;
+    pairs->stamp = pairs->local + system->levels[1].n;
+    memset(pairs->stamp, 0, system->levels[1].n * sizeof(uint32_t));
+}
+
+/* Rows and columns, the row the lower, of the entries that the elements of a chunk need: each once but where the table is full.
+ * Returns how many there are; writes the first room of them. */
+static uint32_t gxsp_list_pairs(const gxsp_system *system, gxsp_chunk_pairs *pairs, uint32_t chunk, uint32_t (*list)[2], uint32_t room)
+{
+    uint32_t b, count = 0;
+    int l, p, q;
+    gxsp_pairs_begin(pairs, chunk);
+    for (b = 0; b < system->chunks[chunk].block_count; ++b)
+        for (l = 0; l < GXSP_LANES; ++l) {
+            uint32_t copies[4], parents[16];
+            float weights[16][4];
+            int followed;
+            gxsp_lane_copies(system, &system->chunks[chunk], b, l, copies);
+            followed = gxsp_element_parents(system, copies, parents, weights);
+            for (p = 0; p < followed; ++p)
+                for (q = 0; q < followed; ++q) {
+                    uint32_t *seen;
+                    if (parents[q] < parents[p])
+                        continue;
+                    seen = gxsp_pairs_find(pairs, parents[p], parents[q]);
+                    if (seen && *seen == 0)
+                        continue;
+                    if (seen)
+                        *seen = 0;
+                    if (count < room)
+                        list[count][0] = parents[p], list[count][1] = parents[q];
+                    ++count;
+                }
+        }
+    return count;
+}
+
+/* Level 1's matrix: two nodes are neighbours where an element follows both. */
 static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch)
 {
-    enum { table_size = 8192 };
     gxsp_level *next = &system->levels[1];
-    uint32_t *start = (uint32_t *)gxsp_take(scratch, (size_t)next->n + 2, sizeof(uint32_t)), *columns, *kept, i, k, count = 0;
-    uint64_t *table = (uint64_t *)gxsp_take(scratch, table_size, sizeof(uint64_t));
+    gxsp_chunk_pairs pairs;
+    uint32_t (*list)[2] = NULL, *start, *columns, *kept, c, i, k, count = 0, room = 0;
+    system->scratch = (uint32_t *)gxsp_take(&system->pool, GXSP_CHUNK_PARENTS * GXSP_CHUNK_PARENTS + 2 * (size_t)next->n, sizeof(uint32_t));
+    start = (uint32_t *)gxsp_take(scratch, (size_t)next->n + 2, sizeof(uint32_t));
     if (scratch->failed || system->pool.failed)
         return;
-    gxsp_list_pairs(system, start, NULL, table, table_size);
+    gxsp_pairs_place(system, &pairs);
+    for (c = 0; c < system->chunk_count; ++c) {
+        uint32_t more = gxsp_list_pairs(system, &pairs, c, list ? list + count : NULL, room - count);
+        if (more > room - count) { /* again, with room */
+            uint32_t (*larger)[2];
+            room = 2 * (count + more);
+            larger = (uint32_t(*)[2])gxsp_take(scratch, room, sizeof *larger);
+            if (!larger)
+                return;
+            if (count > 0)
+                memcpy(larger, list, count * sizeof *list);
+            list = larger;
+            memset(pairs.stamp, 0, next->n * sizeof(uint32_t));
+            more = gxsp_list_pairs(system, &pairs, c, list + count, room - count);
+        }
+        count += more;
+    }
+    for (i = 0; i < count; ++i) {
+        ++start[list[i][0] + 2];
+        if (list[i][0] != list[i][1])
+            ++start[list[i][1] + 2];
+    }
     for (i = 0; i < next->n; ++i)
         start[i + 2] += start[i + 1];
     columns = (uint32_t *)gxsp_take(scratch, start[next->n + 1], sizeof(uint32_t));
     kept = (uint32_t *)gxsp_take(scratch, start[next->n + 1], sizeof(uint32_t));
     if (scratch->failed)
         return;
-    gxsp_list_pairs(system, start, columns, table, table_size);
+    for (i = 0; i < count; ++i) {
+        columns[start[list[i][0] + 1]++] = list[i][1];
+        if (list[i][0] != list[i][1])
+            columns[start[list[i][1] + 1]++] = list[i][0];
+    }
+    count = 0;
     for (i = 0; i < next->n; ++i) {
         next->start[i] = count;
         gxsp_sort_row(columns + start[i], start[i + 1] - start[i]);
@@ -2132,12 +2222,11 @@ static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch)
     for (c = 0; c < system->chunk_count; ++c)
         for (b = 0; b < system->chunks[c].block_count; ++b)
             for (l = 0; l < GXSP_LANES; ++l) {
-                const gxsp_rest *rest = &system->rest[system->chunks[c].first_block + b];
-                const uint32_t *copies = system->nodes + system->chunks[c].first_node;
-                int i, j;
-                for (i = 0; rest->weight[l] > 0 && i < 4; ++i)
-                    for (j = 0; j < i; ++j)
-                        gxsp_join_nodes(&transfer, copies[rest->node[i][l]], copies[rest->node[j][l]]);
+                uint32_t copies[4];
+                if (!(system->rest[system->chunks[c].first_block + b].weight[l] > 0))
+                    continue;
+                gxsp_lane_copies(system, &system->chunks[c], b, l, copies);
+                gxsp_join_corners(&transfer, copies);
             }
     count = gxsp_transfer_end(fine, &transfer);
     if (count == 0)
@@ -2153,7 +2242,6 @@ static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch)
         ;
     system->level_count = at + 1;
     gxsp_factor_make(system, scratch);
-    system->scratch = (uint32_t *)gxsp_take(&system->pool, GXSP_CHUNK_PARENTS * GXSP_CHUNK_PARENTS + 2 * (size_t)count, sizeof(uint32_t));
 }
 
 /* 2^GXSP_STIFFNESS over Young's modulus times the length of the largest element, but for the mantissa */
@@ -2556,27 +2644,11 @@ static uint32_t gxsp_find_entry(const gxsp_level *level, uint32_t i, uint32_t j)
     return low;
 }
 
-/* Entries of level 1's matrix between the coarse nodes of one chunk, found once */
-typedef struct gxsp_chunk_entries {
-    uint32_t *index;    /* count x count; GXSP_NONE: not looked for yet */
-    uint32_t *local;    /* by coarse node: its number in the chunk */
-    uint32_t *stamp;    /* by coarse node: the chunk that numbered it, plus 1 */
-    uint32_t count;
-} gxsp_chunk_entries;
-
-static float *gxsp_chunk_block(gxsp_chunk_entries *of, gxsp_level *next, uint32_t chunk, uint32_t i, uint32_t j)
+static float *gxsp_pair_block(gxsp_chunk_pairs *pairs, gxsp_level *next, uint32_t i, uint32_t j)
 {
-    uint32_t *found, ends[2];
-    int k;
-    ends[0] = i, ends[1] = j;
-    for (k = 0; k < 2; ++k)
-        if (of->stamp[ends[k]] != chunk + 1) {
-            of->stamp[ends[k]] = chunk + 1;
-            of->local[ends[k]] = of->count++;
-        }
-    if (of->local[i] >= GXSP_CHUNK_PARENTS || of->local[j] >= GXSP_CHUNK_PARENTS)
+    uint32_t *found = gxsp_pairs_find(pairs, i, j);
+    if (!found)
         return next->block + 12 * (size_t)gxsp_find_entry(next, i, j);
-    found = &of->index[of->local[i] * GXSP_CHUNK_PARENTS + of->local[j]];
     if (*found == GXSP_NONE)
         *found = gxsp_find_entry(next, i, j);
     return next->block + 12 * (size_t)*found;
@@ -2604,11 +2676,10 @@ static void gxsp_block_couplings(const gxsp_tangent *tangent, gxsp_couplings *h)
 
 /* An element's part of level 1's matrix, on and above the diagonal: its Hessian h and mass between the coarse functions that its
  * corners follow. */
-static void gxsp_coarse_element(gxsp_system *system, uint32_t chunk, uint32_t b, int lane, double rate, gxsp_couplings h,
-                                gxsp_chunk_entries *entries)
+static void gxsp_coarse_element(gxsp_system *system, gxsp_chunk_pairs *pairs, uint32_t b, int lane, double rate, gxsp_couplings h)
 {
     static const int packed[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
-    const gxsp_chunk *of = &system->chunks[chunk];
+    const gxsp_chunk *of = &system->chunks[pairs->chunk];
     const gxsp_tangent *tangent = &system->tangents[of->first_block + b];
     const gxsp_mass *general = gxsp_block_masses(system, of, b);
     uint32_t copies[4], parents[16];
@@ -2644,7 +2715,7 @@ static void gxsp_coarse_element(gxsp_system *system, uint32_t chunk, uint32_t b,
             if (parents[q] < parents[p])
                 continue;
             mass = moments[p][0] * w[0] + moments[p][1] * w[1] + moments[p][2] * w[2] + moments[p][3] * w[3];
-            to = gxsp_chunk_block(entries, &system->levels[1], chunk, parents[p], parents[q]);
+            to = gxsp_pair_block(pairs, &system->levels[1], parents[p], parents[q]);
             for (k = 0; k < 12; ++k)
                 to[k] += g[0] * half[0][k] + g[1] * half[1][k] + g[2] * half[2][k];
             to[0] += mass, to[5] += mass, to[10] += mass;
@@ -2656,23 +2727,19 @@ static void gxsp_coarse_element(gxsp_system *system, uint32_t chunk, uint32_t b,
 static void gxsp_coarse_elements(gxsp_system *system, double rate)
 {
     gxsp_level *next = &system->levels[1];
-    gxsp_chunk_entries entries;
+    gxsp_chunk_pairs pairs;
     uint32_t c, b, i, k;
     int l, r, s;
-    entries.index = system->scratch;
-    entries.local = entries.index + GXSP_CHUNK_PARENTS * GXSP_CHUNK_PARENTS;
-    entries.stamp = entries.local + next->n;
-    memset(entries.stamp, 0, next->n * sizeof(uint32_t));
+    gxsp_pairs_place(system, &pairs);
     memset(next->block, 0, 12 * (size_t)next->start[next->n] * sizeof(float));
     for (c = 0; c < system->chunk_count; ++c) {
-        memset(entries.index, 0xff, GXSP_CHUNK_PARENTS * GXSP_CHUNK_PARENTS * sizeof(uint32_t));
-        entries.count = 0;
+        gxsp_pairs_begin(&pairs, c);
         for (b = 0; b < system->chunks[c].block_count; ++b) {
             gxsp_couplings h[GXSP_LANES];
             gxsp_block_couplings(&system->tangents[system->chunks[c].first_block + b], h);
             for (l = 0; l < GXSP_LANES; ++l)
                 if (system->rest[system->chunks[c].first_block + b].weight[l] > 0)
-                    gxsp_coarse_element(system, c, b, l, rate, h[l], &entries);
+                    gxsp_coarse_element(system, &pairs, b, l, rate, h[l]);
         }
     }
     for (i = 0; i < next->n; ++i)
