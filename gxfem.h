@@ -318,9 +318,9 @@ struct gx_body {
     gxp_undo *undo; uint32_t undo_count, undo_capacity;
     uint32_t *cell_stamp; uint32_t cell_stamp_capacity;
     uint32_t stamp, scope_stamp;
-    int held_stale, parts_stale, model_stale, view_stale;
-    double *rest; uint32_t rest_capacity;               /* copies, x 3 doubles: where they are at rest, for the solver */
-    gxs_element *parts; uint32_t part_count, part_capacity;
+    int held_stale, model_stale, view_stale;
+    gxs_element *parts; uint32_t part_count, part_capacity;     /* there only while the solver's model is made; part_count stays */
+    double *rest; uint32_t rest_capacity;               /* copies, x 3 doubles: where they are at rest, m; as long */
     gxp_words view_cells, view_fragments;               /* slot of each kept cell; fragment of each */
     gxp_words copy_fragment, fragment_number, cell_element, cell_copies;
     double *cell_volume; uint32_t cell_volume_capacity;
@@ -683,7 +683,7 @@ static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc) {
     gxp_make_first_cells(body);
     gxp_make_first_copies(body);
     gxp_build_boxes(body);
-    body->parts_stale = body->model_stale = body->view_stale = 1;
+    body->model_stale = body->view_stale = 1;
     return GX_OK;
 }
 
@@ -741,8 +741,6 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     gxp_release(&a, body->regions, body->region_count * sizeof *body->regions);
     gxp_release(&a, body->undo, body->undo_capacity * sizeof *body->undo);
     gxp_release(&a, body->pairs, body->pair_capacity * sizeof *body->pairs);
-    gxp_release(&a, body->parts, body->part_capacity * sizeof *body->parts);
-    gxp_release(&a, body->rest, body->rest_capacity * 3 * sizeof(double));
     gxp_release(&a, body->cell_volume, body->cell_volume_capacity * sizeof(double));
     gxp_release(&a, body->fragments, (size_t)body->fragment_capacity * 5 * sizeof(double));
     gxp_release(&a, body->skin_weights, body->skin_weight_capacity * sizeof(double));
@@ -2114,7 +2112,7 @@ static void gxp_commit(gxp_cut *cut) {
     for (i = body->dead.count; i-- > 0;) gxp_drop_copy(body, body->dead.data[i]);
     gxb_complex_commit(body->complex);
     body->undo_count = 0;
-    body->held_stale = body->parts_stale = body->model_stale = body->view_stale = 1;
+    body->held_stale = body->model_stale = body->view_stale = 1;
 }
 
 /* Removes what the solids have found. The cells of these leaves, and those beside them, are touched. */
@@ -2537,11 +2535,9 @@ static void gxp_add_part(gx_body *body, const gxp_cell *cell, uint32_t first, co
     for (k = 0; k < 10; k++) part->mass[k] += cell->mass[k];
 }
 
-static gx_result gxp_update_parts(gx_body *body) {
+static gx_result gxp_make_parts(gx_body *body) {
     uint32_t e, cell;
-    gx_result result;
-    if (!body->parts_stale) return GX_OK;
-    result = gxp_reserve(&body->allocator, &body->parts, sizeof *body->parts, 0, &body->part_capacity, body->cell_count);
+    gx_result result = gxp_reserve(&body->allocator, &body->parts, sizeof *body->parts, 0, &body->part_capacity, body->cell_count);
     body->part_count = 0;
     for (e = 0; e < body->element_count && result == GX_OK; e++) {
         const uint32_t first = body->part_count;
@@ -2551,19 +2547,14 @@ static gx_result gxp_update_parts(gx_body *body) {
         for (cell = e; cell != GXP_NONE; cell = body->cells[cell].next)
             if (body->cells[cell].kept) gxp_add_part(body, &body->cells[cell], first, gradients);
     }
-    if (result == GX_OK) body->parts_stale = 0;
     return result;
 }
 
-/* The solver's model: parts, where they are at rest, what is held; anew only after a cut or a hold. */
-static gx_result gxp_update_model(gx_body *body) {
+static gx_result gxp_set_model(gx_body *body) {
     gxs_material material;
     gxs_model model;
     uint32_t i;
-    gx_result result = gxp_update_parts(body);
-    if (result == GX_OK) result = gxp_update_held(body);
-    if (result != GX_OK || !body->model_stale || body->part_count == 0) return result;
-    result = gxp_reserve(&body->allocator, &body->rest, 3 * sizeof(double), 0, &body->rest_capacity, body->copy_count);
+    gx_result result = gxp_reserve(&body->allocator, &body->rest, 3 * sizeof(double), 0, &body->rest_capacity, body->copy_count);
     if (result != GX_OK) return result;
     for (i = 0; i < body->copy_count; i++)
         memcpy(body->rest + 3 * (size_t)i, body->positions + 3 * (size_t)body->copy_node[i], 3 * sizeof(double));
@@ -2574,7 +2565,23 @@ static gx_result gxp_update_model(gx_body *body) {
     model.elements = body->parts; model.element_count = body->part_count;
     model.materials = &material; model.material_count = 1;
     model.held = body->held;
-    result = gxs_solver_set_model(body->solver, &model, NULL);
+    return gxs_solver_set_model(body->solver, &model, NULL);
+}
+
+static void gxp_release_parts(gx_body *body) {
+    gxp_release(&body->allocator, body->parts, body->part_capacity * sizeof *body->parts);
+    gxp_release(&body->allocator, body->rest, body->rest_capacity * 3 * sizeof(double));
+    body->parts = NULL; body->part_capacity = 0;
+    body->rest = NULL; body->rest_capacity = 0;
+}
+
+/* The solver's model, anew after a cut or a hold only. The solver copies it, so that the parts need not be kept. */
+static gx_result gxp_update_model(gx_body *body) {
+    gx_result result = gxp_update_held(body);
+    if (result != GX_OK || !body->model_stale) return result;
+    result = gxp_make_parts(body);
+    if (result == GX_OK && body->part_count > 0) result = gxp_set_model(body);
+    gxp_release_parts(body);
     if (result == GX_OK) body->model_stale = 0;
     return result;
 }

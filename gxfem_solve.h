@@ -28,17 +28,19 @@
  *         return (int)result;
  *     }
  *
- * CONTENTS (search for the anchors)
- *   >>shared      result codes, allocator, jobs    >>chunk       passes over chunks: energy, force
- *   >>types       materials, elements, step        >>model       order of elements, chunks, free pieces
- *   >>functions   the API                          >>lattice     structure of the multigrid
- *   >>platform    finite by bits                   >>operator    product, linearisation
- *   >>memory      pools, the solver's own form     >>multigrid   levels, cycle, their numbers
- *   >>lanes       rsqrt, log for vectors           >>pieces      translations of free pieces
- *   >>material    energies and stresses            >>cg          conjugate gradients
- *   >>svd         stretches and rotations of F     >>newton      line search, Newton, the step
- *   >>tangent     projected Hessian of one block   >>check       of what is given
- *   >>element     passes over one block            >>forms       assembled forms
+ * CONTENTS (search for the anchors; in the order of the file)
+ *   >>shared      result codes, allocator, jobs    >>model       order of elements, chunks, free pieces
+ *   >>types       materials, elements, step        >>lattice     structure of the multigrid
+ *   >>functions   the API                          >>operator    product, linearisation, block diagonal
+ *   >>platform    finite by bits                   >>multigrid   the cycle, numbers of the coarse levels
+ *   >>memory      pools, the solver's own form     >>pieces      translations of free pieces
+ *   >>jobs        a loop, by threads or not        >>cg          conjugate gradients
+ *   >>lanes       rsqrt, log for vectors           >>newton      line search, Newton, integrators
+ *   >>material    energies and stresses            >>check       of what is given
+ *   >>svd         stretches and rotations of F     >>api         the public functions
+ *   >>tangent     projected Hessian of one block   >>forms       assembled forms, the material at one F
+ *   >>element     passes over one block
+ *   >>chunk       passes over chunks: energy, force
  *
  * WHAT IT DOES. A step of length h is the minimum over the displacements u of the incremental potential
  *
@@ -66,7 +68,7 @@
  * LIMITS. poisson in [0, 0.5), beyond 0.49999 the single precision of the Hessian tells; copies and elements below 2^30. Energies,
  * forces and states are doubles; the Hessian, its products and the preconditioner are single precision, which sets no limit to
  * what Newton reaches, only to what one linear solve does (about 1e-6 of the residual; a free body's slowest modes are solved as
- * well while inertia is above some 1e-6 of stiffness, rho h^2 / (E dt^2) for elements of size h). Memory: about 350 bytes per element in all, of a
+ * well while inertia is above some 1e-6 of stiffness, rho h^2 / (E dt^2) for elements of size h). Memory: about 370 bytes per element in all, of a
  * mesh with four elements per copy. The material can invert without a failure and comes back by itself; an element collapsed to a
  * point exactly has no elastic force (F = 0 is a stationary point of its energy). Same input, same binary: same
  * bits. Nothing here needs isnan or infinities: it is right under -ffast-math, where sums round otherwise.
@@ -214,7 +216,8 @@ typedef struct gxs_step_report {
     uint32_t line_search_steps; /* step lengths tried, sum over Newton iterations */
     double residual;            /* |load - inertia - elastic| / (|load| + |inertia| + |elastic|) on the copies not held,
                                    the larger of the two measures (see above) */
-    double energy;              /* E at the end, J, up to a constant: the load on held copies */
+    double energy;              /* E at the end, J, up to a constant: the load on held copies. Of the midpoint rule this and the
+                                   residual are those of its displacement at half the step */
 } gxs_step_report;
 
 /* A model in the solver's own form, and the workspace of its steps; one call at a time. */
@@ -491,7 +494,7 @@ typedef struct gxsp_chunk {
     gxs_material_kind kind;
 } gxsp_chunk;
 
-/* Lumped or not, a vector of copies in single precision is n x 4, the fourth unused: one load per copy. */
+/* A vector of copies in single precision is n x 4, the fourth unused: one load per copy. */
 typedef float gxsp_vector4[4];
 
 /* A level of the multigrid; level 0 is the model. Transfer: value of node i = sum of weight[i][k] x value of parent[i][k]. */
@@ -742,45 +745,49 @@ typedef struct gxsp_svd {
     gxsp_singles b[9];       /* F V on the way */
 } gxsp_svd;
 
-/* Turns columns i and j of b and v so that those of b become orthogonal. Whatever the rounding, U and V stay rotations: a
- * Hessian built on them is a congruence of a semi-definite one. */
+/* Turns columns i and j of b and v by the angle of cosine c and sine s: (x, y) becomes (c x - s y, s x + c y). */
+static void gxsp_turn_columns(gxsp_svd *GXSP_RESTRICT of, int i, int j, const float *GXSP_RESTRICT c, const float *GXSP_RESTRICT s)
+{
+    int k, l;
+    for (k = 0; k < 9; k += 3)
+        GXSP_EACH_LANE(l) {
+            const float x = of->b[k + i][l], y = of->b[k + j][l], v = of->v[k + i][l], w = of->v[k + j][l];
+            of->b[k + i][l] = c[l] * x - s[l] * y, of->b[k + j][l] = s[l] * x + c[l] * y;
+            of->v[k + i][l] = c[l] * v - s[l] * w, of->v[k + j][l] = s[l] * v + c[l] * w;
+        }
+}
+
+/* Makes columns i and j of b orthogonal. Whatever the rounding, U and V stay rotations: a Hessian built on them is a congruence
+ * of a semi-definite one. */
 static void gxsp_orthogonalise(gxsp_svd *GXSP_RESTRICT of, int i, int j)
 {
+    gxsp_singles c, s;
     int l;
     GXSP_EACH_LANE(l) {
-        const float b0 = of->b[i][l], b1 = of->b[3 + i][l], b2 = of->b[6 + i][l];
-        const float d0 = of->b[j][l], d1 = of->b[3 + j][l], d2 = of->b[6 + j][l];
-        const float v0 = of->v[i][l], v1 = of->v[3 + i][l], v2 = of->v[6 + i][l];
-        const float w0 = of->v[j][l], w1 = of->v[3 + j][l], w2 = of->v[6 + j][l];
-        const float gamma = 2 * (b0 * d0 + b1 * d1 + b2 * d2);
-        const float gap = (d0 * d0 + d1 * d1 + d2 * d2) - (b0 * b0 + b1 * b1 + b2 * b2);
+        const float x0 = of->b[i][l], x1 = of->b[3 + i][l], x2 = of->b[6 + i][l];
+        const float y0 = of->b[j][l], y1 = of->b[3 + j][l], y2 = of->b[6 + j][l];
+        const float gamma = 2 * (x0 * y0 + x1 * y1 + x2 * y2);
+        const float gap = (y0 * y0 + y1 * y1 + y2 * y2) - (x0 * x0 + x1 * x1 + x2 * x2);
         const float size = gap < 0 ? -gap : gap, square = gap * gap + gamma * gamma + 1e-35f;
         const float tangent = (gap < 0 ? -gamma : gamma) / (size + square * gxsp_rsqrt(square));
-        const float c = gxsp_rsqrt(1 + tangent * tangent), s = c * tangent;
-        of->b[i][l] = c * b0 - s * d0, of->b[3 + i][l] = c * b1 - s * d1, of->b[6 + i][l] = c * b2 - s * d2;
-        of->b[j][l] = s * b0 + c * d0, of->b[3 + j][l] = s * b1 + c * d1, of->b[6 + j][l] = s * b2 + c * d2;
-        of->v[i][l] = c * v0 - s * w0, of->v[3 + i][l] = c * v1 - s * w1, of->v[6 + i][l] = c * v2 - s * w2;
-        of->v[j][l] = s * v0 + c * w0, of->v[3 + j][l] = s * v1 + c * w1, of->v[6 + j][l] = s * v2 + c * w2;
+        c[l] = gxsp_rsqrt(1 + tangent * tangent);
+        s[l] = c[l] * tangent;
     }
+    gxsp_turn_columns(of, i, j, c, s);
 }
 
 /* Brings the longer of columns i and j to i, by a quarter turn, so that det V stays 1. */
 static void gxsp_order_columns(gxsp_svd *GXSP_RESTRICT of, int i, int j)
 {
+    gxsp_singles c, s;
     int l;
     GXSP_EACH_LANE(l) {
-        const float b0 = of->b[i][l], b1 = of->b[3 + i][l], b2 = of->b[6 + i][l];
-        const float d0 = of->b[j][l], d1 = of->b[3 + j][l], d2 = of->b[6 + j][l];
-        const float v0 = of->v[i][l], v1 = of->v[3 + i][l], v2 = of->v[6 + i][l];
-        const float w0 = of->v[j][l], w1 = of->v[3 + j][l], w2 = of->v[6 + j][l];
-        const float longer = (d0 * d0 + d1 * d1 + d2 * d2) > (b0 * b0 + b1 * b1 + b2 * b2) ? 1.0f : 0.0f, stay = 1 - longer;
-        of->b[i][l] = stay * b0 + longer * d0, of->b[j][l] = stay * d0 - longer * b0;
-        of->b[3 + i][l] = stay * b1 + longer * d1, of->b[3 + j][l] = stay * d1 - longer * b1;
-        of->b[6 + i][l] = stay * b2 + longer * d2, of->b[6 + j][l] = stay * d2 - longer * b2;
-        of->v[i][l] = stay * v0 + longer * w0, of->v[j][l] = stay * w0 - longer * v0;
-        of->v[3 + i][l] = stay * v1 + longer * w1, of->v[3 + j][l] = stay * w1 - longer * v1;
-        of->v[6 + i][l] = stay * v2 + longer * w2, of->v[6 + j][l] = stay * w2 - longer * v2;
+        const float x0 = of->b[i][l], x1 = of->b[3 + i][l], x2 = of->b[6 + i][l];
+        const float y0 = of->b[j][l], y1 = of->b[3 + j][l], y2 = of->b[6 + j][l];
+        s[l] = (y0 * y0 + y1 * y1 + y2 * y2) > (x0 * x0 + x1 * x1 + x2 * x2) ? -1.0f : 0.0f;
+        c[l] = 1 + s[l];
     }
+    gxsp_turn_columns(of, i, j, c, s);
 }
 
 /* U and s from the columns of b, orthogonal and the longest first; where columns vanish, U is completed to a rotation. */
@@ -1279,14 +1286,15 @@ static void gxsp_block_corner(const gxsp_tangent *GXSP_RESTRICT t, int corner, g
 
 /* >>chunk: passes over one chunk, which only writes its own slots and sums */
 
+/* What a pass reads and writes; unused fields are 0. Vectors have one entry per copy. */
 typedef struct gxsp_pass {
     gxsp_system *system;
-    double rate;
-    const double *from;         /* displacement */
-    const gxsp_vector4 *x;      /* single precision input */
-    gxsp_vector4 *y;
-    double *sum;                /* n x 3 */
-    int inertia, forces;
+    double rate;                /* 1/s2; of products and linearisations times scale */
+    const double *from;         /* x 3: displacement, m */
+    double *sum;                /* x 3: forces, N */
+    int inertia;                /* forces and energy of the mass too */
+    const gxsp_vector4 *x;      /* of products: input */
+    gxsp_vector4 *y;            /* output */
 } gxsp_pass;
 
 static const gxsp_mass *gxsp_block_masses(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t block)
@@ -2084,14 +2092,15 @@ static void gxsp_lane_copies(const gxsp_system *system, const gxsp_chunk *chunk,
 typedef struct gxsp_chunk_pairs {
     uint32_t *entry;    /* GXSP_CHUNK_PARENTS x GXSP_CHUNK_PARENTS; GXSP_NONE: not known yet */
     uint32_t *local;    /* by coarse node: its number in the chunk */
-    uint32_t *stamp;    /* by coarse node: the chunk that numbered it, plus 1; 0 at first */
-    uint32_t chunk, count;
+    uint32_t *stamp;    /* by coarse node: the round in which it was numbered */
+    uint32_t round;     /* one for each chunk, from 1 */
+    uint32_t count;     /* coarse nodes numbered in this round */
 } gxsp_chunk_pairs;
 
-static void gxsp_pairs_begin(gxsp_chunk_pairs *pairs, uint32_t chunk)
+static void gxsp_pairs_begin(gxsp_chunk_pairs *pairs)
 {
     memset(pairs->entry, 0xff, GXSP_CHUNK_PARENTS * GXSP_CHUNK_PARENTS * sizeof(uint32_t));
-    pairs->chunk = chunk;
+    ++pairs->round;
     pairs->count = 0;
 }
 
@@ -2101,8 +2110,8 @@ static uint32_t *gxsp_pairs_find(gxsp_chunk_pairs *pairs, uint32_t i, uint32_t j
     uint32_t ends[2], k;
     ends[0] = i, ends[1] = j;
     for (k = 0; k < 2; ++k)
-        if (pairs->stamp[ends[k]] != pairs->chunk + 1) {
-            pairs->stamp[ends[k]] = pairs->chunk + 1;
+        if (pairs->stamp[ends[k]] != pairs->round) {
+            pairs->stamp[ends[k]] = pairs->round;
             pairs->local[ends[k]] = pairs->count++;
         }
     if (pairs->local[i] >= GXSP_CHUNK_PARENTS || pairs->local[j] >= GXSP_CHUNK_PARENTS)
@@ -2116,6 +2125,7 @@ static void gxsp_pairs_place(gxsp_system *system, gxsp_chunk_pairs *pairs)
     pairs->entry = system->scratch;
     pairs->local = pairs->entry + GXSP_CHUNK_PARENTS * GXSP_CHUNK_PARENTS;
     pairs->stamp = pairs->local + system->levels[1].n;
+    pairs->round = 0;
     memset(pairs->stamp, 0, system->levels[1].n * sizeof(uint32_t));
 }
 
@@ -2125,7 +2135,7 @@ static uint32_t gxsp_list_pairs(const gxsp_system *system, gxsp_chunk_pairs *pai
 {
     uint32_t b, count = 0;
     int l, p, q;
-    gxsp_pairs_begin(pairs, chunk);
+    gxsp_pairs_begin(pairs);
     for (b = 0; b < system->chunks[chunk].block_count; ++b)
         for (l = 0; l < GXSP_LANES; ++l) {
             uint32_t copies[4], parents[16];
@@ -2173,7 +2183,6 @@ static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch)
             if (count > 0)
                 memcpy(larger, list, count * sizeof *list);
             list = larger;
-            memset(pairs.stamp, 0, next->n * sizeof(uint32_t));
             more = gxsp_list_pairs(system, &pairs, c, list + count, room - count);
         }
         count += more;
@@ -2676,16 +2685,16 @@ static void gxsp_block_couplings(const gxsp_tangent *tangent, gxsp_couplings *h)
 
 /* An element's part of level 1's matrix, on and above the diagonal: its Hessian h and mass between the coarse functions that its
  * corners follow. */
-static void gxsp_coarse_element(gxsp_system *system, gxsp_chunk_pairs *pairs, uint32_t b, int lane, double rate, gxsp_couplings h)
+static void gxsp_coarse_element(gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, int lane, double rate, gxsp_couplings h,
+                                gxsp_chunk_pairs *pairs)
 {
     static const int packed[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
-    const gxsp_chunk *of = &system->chunks[pairs->chunk];
-    const gxsp_tangent *tangent = &system->tangents[of->first_block + b];
-    const gxsp_mass *general = gxsp_block_masses(system, of, b);
+    const gxsp_tangent *tangent = &system->tangents[chunk->first_block + b];
+    const gxsp_mass *general = gxsp_block_masses(system, chunk, b);
     uint32_t copies[4], parents[16];
     float weights[16][4], gamma[16][3], corner[4][3], moments[16][4];
     int count, i, j, k, p, q;
-    gxsp_lane_copies(system, of, b, lane, copies);
+    gxsp_lane_copies(system, chunk, b, lane, copies);
     count = gxsp_element_parents(system, copies, parents, weights);
     for (k = 0; k < 3; ++k) {
         corner[0][k] = 0;
@@ -2733,13 +2742,13 @@ static void gxsp_coarse_elements(gxsp_system *system, double rate)
     gxsp_pairs_place(system, &pairs);
     memset(next->block, 0, 12 * (size_t)next->start[next->n] * sizeof(float));
     for (c = 0; c < system->chunk_count; ++c) {
-        gxsp_pairs_begin(&pairs, c);
+        gxsp_pairs_begin(&pairs);
         for (b = 0; b < system->chunks[c].block_count; ++b) {
             gxsp_couplings h[GXSP_LANES];
             gxsp_block_couplings(&system->tangents[system->chunks[c].first_block + b], h);
             for (l = 0; l < GXSP_LANES; ++l)
                 if (system->rest[system->chunks[c].first_block + b].weight[l] > 0)
-                    gxsp_coarse_element(system, &pairs, b, l, rate, h[l]);
+                    gxsp_coarse_element(system, &system->chunks[c], b, l, rate, h[l], &pairs);
         }
     }
     for (i = 0; i < next->n; ++i)
@@ -2914,21 +2923,36 @@ static void gxsp_find_omega(gxsp_system *system, double rate)
 
 /* >>pieces */
 
-/* Sums over the free pieces of a momentum density become their translations. */
-static void gxsp_piece_translations(gxsp_system *system)
-{
-    size_t p;
-    int r;
-    for (p = 0; p < system->piece_count; ++p)
-        for (r = 0; r < 3; ++r)
-            system->piece_sum[4 * p + (size_t)r] /= system->piece_sum[4 * p + 3];
-}
-
+/* Sums over free pieces: cleared, copies added one by one, then as a mean over each piece's mass. */
 static void gxsp_clear_pieces(gxsp_system *system)
 {
     size_t p;
     for (p = 0; p < system->piece_count; ++p)
         memset(system->piece_sum + 4 * p, 0, 3 * sizeof(double));
+}
+
+static void gxsp_add_to_piece(gxsp_system *system, size_t copy, double x, double y, double z)
+{
+    double *sum;
+    if (system->piece[copy] == GXSP_NONE)
+        return;
+    sum = system->piece_sum + 4 * (size_t)system->piece[copy];
+    sum[0] += x, sum[1] += y, sum[2] += z;
+}
+
+static void gxsp_average_pieces(gxsp_system *system)
+{
+    size_t p, r;
+    for (p = 0; p < system->piece_count; ++p)
+        for (r = 0; r < 3; ++r)
+            system->piece_sum[4 * p + r] /= system->piece_sum[4 * p + 3];
+}
+
+/* Of the copy's piece; zeros where it belongs to none */
+static const double *gxsp_piece_average(const gxsp_system *system, size_t copy)
+{
+    static const double none[3] = {0, 0, 0};
+    return system->piece[copy] == GXSP_NONE ? none : system->piece_sum + 4 * (size_t)system->piece[copy];
 }
 
 /* Subtracts from x, piece by piece, the translation with x's momentum. */
@@ -2939,53 +2963,36 @@ static void gxsp_remove_translations(gxsp_system *system, gxsp_vector4 *x)
     if (system->piece_count == 0)
         return;
     gxsp_clear_pieces(system);
+    for (i = 0; i < system->n; ++i) {
+        const double m = system->lumped[i];
+        gxsp_add_to_piece(system, i, m * (double)x[i][0], m * (double)x[i][1], m * (double)x[i][2]);
+    }
+    gxsp_average_pieces(system);
     for (i = 0; i < system->n; ++i)
-        if (system->piece[i] != GXSP_NONE)
-            for (r = 0; r < 3; ++r)
-                system->piece_sum[4 * (size_t)system->piece[i] + (size_t)r] += system->lumped[i] * (double)x[i][r];
-    gxsp_piece_translations(system);
-    for (i = 0; i < system->n; ++i)
-        if (system->piece[i] != GXSP_NONE)
-            for (r = 0; r < 3; ++r)
-                x[i][r] -= (float)system->piece_sum[4 * (size_t)system->piece[i] + (size_t)r];
+        for (r = 0; r < 3; ++r)
+            x[i][r] -= (float)gxsp_piece_average(system, i)[r];
 }
 
-/* The same in double, to which single precision came close. */
-static void gxsp_remove_rest_of_translations(gxsp_system *system, double *x)
+/* Translates every free piece of x so that load = rate M (x - from) in sum. load and from may be NULL: zeros; without both, x's own
+ * momentum is taken out. */
+static void gxsp_balance_momentum(gxsp_system *system, const double *load, double rate, const double *from, double *x)
 {
     size_t i, r;
     if (system->piece_count == 0)
         return;
     gxsp_clear_pieces(system);
+    for (i = 0; i < system->n; ++i) {
+        double f[3];
+        for (r = 0; r < 3; ++r) {
+            const size_t k = 3 * i + r;
+            f[r] = (load ? load[k] : 0) - rate * system->lumped[i] * (x[k] - (from ? from[k] : 0));
+        }
+        gxsp_add_to_piece(system, i, f[0], f[1], f[2]);
+    }
+    gxsp_average_pieces(system);
     for (i = 0; i < system->n; ++i)
-        if (system->piece[i] != GXSP_NONE)
-            for (r = 0; r < 3; ++r)
-                system->piece_sum[4 * (size_t)system->piece[i] + r] += system->lumped[i] * x[3 * i + r];
-    gxsp_piece_translations(system);
-    for (i = 0; i < system->n; ++i)
-        if (system->piece[i] != GXSP_NONE)
-            for (r = 0; r < 3; ++r)
-                x[3 * i + r] -= system->piece_sum[4 * (size_t)system->piece[i] + r];
-}
-
-/* Translates every free piece of current so that its momentum balances its load. */
-static void gxsp_balance_momentum(gxsp_system *system, double rate)
-{
-    double *sums = system->piece_sum;
-    size_t i, r;
-    if (system->piece_count == 0)
-        return;
-    gxsp_clear_pieces(system);
-    for (i = 0; i < system->n; ++i)
-        if (system->piece[i] != GXSP_NONE)
-            for (r = 0; r < 3; ++r)
-                sums[4 * (size_t)system->piece[i] + r] += system->load[3 * i + r] -
-                    rate * system->lumped[i] * (system->current[3 * i + r] - system->target[3 * i + r]);
-    gxsp_piece_translations(system);
-    for (i = 0; i < system->n; ++i)
-        if (system->piece[i] != GXSP_NONE)
-            for (r = 0; r < 3; ++r)
-                system->current[3 * i + r] += sums[4 * (size_t)system->piece[i] + r] / rate;
+        for (r = 0; r < 3; ++r)
+            x[3 * i + r] += gxsp_piece_average(system, i)[r] / rate;
 }
 
 /* >>cg */
@@ -3077,7 +3084,7 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
             for (c = 0; c < 3; ++c)
                 system->search[i][c] = system->scaled[i][c] + (float)beta * system->search[i][c];
     }
-    gxsp_remove_rest_of_translations(system, system->direction);
+    gxsp_balance_momentum(system, NULL, 1, NULL, system->direction); /* what single precision left of it */
     return gxsp_first_not_finite(system->direction, 3 * system->n) == 3 * system->n;
 }
 
@@ -3155,7 +3162,7 @@ static int gxsp_start(gxsp_problem *problem, const double *from)
 {
     gxsp_system *system = problem->system;
     memcpy(system->current, from, 3 * system->n * sizeof(double));
-    gxsp_balance_momentum(system, problem->rate);
+    gxsp_balance_momentum(system, system->load, problem->rate, system->target, system->current);
     return gxsp_first_not_finite(system->current, 3 * system->n) == 3 * system->n && gxsp_update(problem);
 }
 
@@ -3385,7 +3392,7 @@ static gx_result gxsp_check_model(const gxs_model *model, gx_failure *failure)
         return gxsp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
     /* 1024: no array takes more bytes per object, so sizes cannot overflow; elements have four slots at most */
     if (model->copy_count >= UINT32_MAX / 4 || model->element_count >= UINT32_MAX / 4 || model->material_count >= UINT32_MAX ||
-        model->copy_count >= SIZE_MAX / 1024 || model->element_count >= SIZE_MAX / 1024)
+        model->copy_count >= SIZE_MAX / 1024 || model->element_count >= SIZE_MAX / 1024 || model->material_count >= SIZE_MAX / 1024)
         return gxsp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
     for (e = 0; e < model->material_count && result == GX_OK; ++e)
         result = gxsp_check_material(&model->materials[e], e, failure);
