@@ -745,49 +745,53 @@ typedef struct gxsp_svd {
     gxsp_singles b[9];       /* F V on the way */
 } gxsp_svd;
 
-/* Turns columns i and j of b and v by the angle of cosine c and sine s: (x, y) becomes (c x - s y, s x + c y). */
-static void gxsp_turn_columns(gxsp_svd *GXSP_RESTRICT of, int i, int j, const float *GXSP_RESTRICT c, const float *GXSP_RESTRICT s)
+/* (x, y) turned by the angle of cosine c and sine s */
+static inline void gxsp_turn(float c, float s, float *x, float *y)
 {
-    int k, l;
-    for (k = 0; k < 9; k += 3)
-        GXSP_EACH_LANE(l) {
-            const float x = of->b[k + i][l], y = of->b[k + j][l], v = of->v[k + i][l], w = of->v[k + j][l];
-            of->b[k + i][l] = c[l] * x - s[l] * y, of->b[k + j][l] = s[l] * x + c[l] * y;
-            of->v[k + i][l] = c[l] * v - s[l] * w, of->v[k + j][l] = s[l] * v + c[l] * w;
-        }
+    const float turned = c * *x - s * *y;
+    *y = s * *x + c * *y;
+    *x = turned;
+}
+
+/* Columns i and j of b and of v in lane l */
+static inline void gxsp_turn_columns(gxsp_svd *of, int i, int j, int l, float c, float s)
+{
+    gxsp_turn(c, s, &of->b[i][l], &of->b[j][l]);
+    gxsp_turn(c, s, &of->b[3 + i][l], &of->b[3 + j][l]);
+    gxsp_turn(c, s, &of->b[6 + i][l], &of->b[6 + j][l]);
+    gxsp_turn(c, s, &of->v[i][l], &of->v[j][l]);
+    gxsp_turn(c, s, &of->v[3 + i][l], &of->v[3 + j][l]);
+    gxsp_turn(c, s, &of->v[6 + i][l], &of->v[6 + j][l]);
+}
+
+static inline float gxsp_column_product(const gxsp_svd *of, int i, int j, int l)
+{
+    return of->b[i][l] * of->b[j][l] + of->b[3 + i][l] * of->b[3 + j][l] + of->b[6 + i][l] * of->b[6 + j][l];
 }
 
 /* Makes columns i and j of b orthogonal. Whatever the rounding, U and V stay rotations: a Hessian built on them is a congruence
  * of a semi-definite one. */
 static void gxsp_orthogonalise(gxsp_svd *GXSP_RESTRICT of, int i, int j)
 {
-    gxsp_singles c, s;
     int l;
     GXSP_EACH_LANE(l) {
-        const float x0 = of->b[i][l], x1 = of->b[3 + i][l], x2 = of->b[6 + i][l];
-        const float y0 = of->b[j][l], y1 = of->b[3 + j][l], y2 = of->b[6 + j][l];
-        const float gamma = 2 * (x0 * y0 + x1 * y1 + x2 * y2);
-        const float gap = (y0 * y0 + y1 * y1 + y2 * y2) - (x0 * x0 + x1 * x1 + x2 * x2);
+        const float gamma = 2 * gxsp_column_product(of, i, j, l);
+        const float gap = gxsp_column_product(of, j, j, l) - gxsp_column_product(of, i, i, l);
         const float size = gap < 0 ? -gap : gap, square = gap * gap + gamma * gamma + 1e-35f;
         const float tangent = (gap < 0 ? -gamma : gamma) / (size + square * gxsp_rsqrt(square));
-        c[l] = gxsp_rsqrt(1 + tangent * tangent);
-        s[l] = c[l] * tangent;
+        const float c = gxsp_rsqrt(1 + tangent * tangent);
+        gxsp_turn_columns(of, i, j, l, c, c * tangent);
     }
-    gxsp_turn_columns(of, i, j, c, s);
 }
 
 /* Brings the longer of columns i and j to i, by a quarter turn, so that det V stays 1. */
 static void gxsp_order_columns(gxsp_svd *GXSP_RESTRICT of, int i, int j)
 {
-    gxsp_singles c, s;
     int l;
     GXSP_EACH_LANE(l) {
-        const float x0 = of->b[i][l], x1 = of->b[3 + i][l], x2 = of->b[6 + i][l];
-        const float y0 = of->b[j][l], y1 = of->b[3 + j][l], y2 = of->b[6 + j][l];
-        s[l] = (y0 * y0 + y1 * y1 + y2 * y2) > (x0 * x0 + x1 * x1 + x2 * x2) ? -1.0f : 0.0f;
-        c[l] = 1 + s[l];
+        const float s = gxsp_column_product(of, j, j, l) > gxsp_column_product(of, i, i, l) ? -1.0f : 0.0f;
+        gxsp_turn_columns(of, i, j, l, 1 + s, s);
     }
-    gxsp_turn_columns(of, i, j, c, s);
 }
 
 /* U and s from the columns of b, orthogonal and the longest first; where columns vanish, U is completed to a rotation. */
