@@ -88,7 +88,8 @@ typedef enum gx_result {
     GX_ERROR_OVERLAP,       /* an element face is shared by more than two elements, or by two on one side */
     GX_ERROR_NOT_CLOSED,    /* a solid's surface has a boundary, or its triangles are not oriented alike */
     GX_ERROR_LIMIT,         /* more objects than 32-bit indices can name, or a caller's limit is reached */
-    GX_ERROR_DIVERGED       /* a time step found no finite state of lower energy */
+    GX_ERROR_DIVERGED,      /* a time step found no finite state of lower energy */
+    GX_ERROR_FREE           /* a static balance is asked of a piece that nothing holds */
 } gx_result;
 
 /* What went wrong, and where: index of the node, element, triangle or copy concerned. */
@@ -2930,6 +2931,7 @@ GXFEM_API const char *gx_result_text(gx_result result) {
     case GX_ERROR_NOT_CLOSED: return "a solid's surface is not closed or not consistently oriented";
     case GX_ERROR_LIMIT: return "too many objects";
     case GX_ERROR_DIVERGED: return "the time step diverged";
+    case GX_ERROR_FREE: return "a piece is held by nothing";
     }
     return "unknown result";
 }

@@ -70,7 +70,7 @@
  * what Newton reaches, only to what one linear solve does (about 1e-6 of the residual; a free body's slowest modes are solved as
  * well while inertia is above some 1e-6 of stiffness, rho h^2 / (E dt^2) for elements of size h). Memory: about 370 bytes per element in all, of a
  * mesh with four elements per copy. The material can invert without a failure and comes back by itself; an element collapsed to a
- * point exactly has no elastic force (F = 0 is a stationary point of its energy). Same input, same binary: same
+ * point, where its energy is stationary, is opened as if it were not quite one. Same input, same binary: same
  * bits. Nothing here needs isnan or infinities: it is right under -ffast-math, where sums round otherwise.
  *
  * REFERENCES. GXFEM: Generalized eXtended Finite Element Method for Deformable Cutting via Boolean Operations,
@@ -110,7 +110,8 @@ typedef enum gx_result {
     GX_ERROR_OVERLAP,       /* an element face is shared by more than two elements, or by two on one side */
     GX_ERROR_NOT_CLOSED,    /* a solid's surface has a boundary, or its triangles are not oriented alike */
     GX_ERROR_LIMIT,         /* more objects than 32-bit indices can name, or a caller's limit is reached */
-    GX_ERROR_DIVERGED       /* a time step found no finite state of lower energy */
+    GX_ERROR_DIVERGED,      /* a time step found no finite state of lower energy */
+    GX_ERROR_FREE           /* a static balance is asked of a piece that nothing holds */
 } gx_result;
 
 /* What went wrong, and where: index of the node, element, triangle or copy concerned. */
@@ -146,13 +147,21 @@ typedef enum gxs_material_kind {
     GXS_STABLE_NEO_HOOKEAN = 0, /* for large strain, inversion and nearly incompressible bodies [Smith 2018] */
     GXS_ST_VENANT_KIRCHHOFF,    /* RXFEM's; softens under compression to nothing */
     GXS_FIXED_COROTATED,        /* [Stomakhin 2012]; linear but for rotations and volume */
-    GXS_LINEAR                  /* for small rotations only */
+    GXS_LINEAR,                 /* for small rotations only */
+    GXS_CUSTOM                  /* the caller's own, by energy below */
 } gxs_material_kind;
+
+/* Energy density, J/m3, at a deformation gradient F (3x3 by rows), finite wherever F is. stress: P = d energy / dF, Pa, by rows;
+ * hessian: dP_i/dF_j at [9 i + j], symmetric, it need not be semi-definite; either may be NULL. Called on the threads of gx_jobs. */
+typedef double (*gxs_energy_fn)(void *user, const double *deformation, double *stress, double *hessian);
 
 typedef struct gxs_material {
     gxs_material_kind kind;
-    double young;               /* Pa, above 0 */
-    double poisson;             /* 0 <= poisson < 0.5 */
+    double young;               /* Pa, above 0; of GXS_CUSTOM: about its stiffness, for scaling only */
+    double poisson;             /* 0 <= poisson < 0.5; of GXS_CUSTOM: not read */
+    double damping;             /* Rayleigh's beta, s, 0 or more: stress grows by beta times its rate of change */
+    gxs_energy_fn energy;       /* GXS_CUSTOM only */
+    void *user;
 } gxs_material;
 
 /* A linear tetrahedron, or the part of one that a cut has left. */
@@ -164,6 +173,14 @@ typedef struct gxs_element {
     uint32_t material;          /* below material_count */
 } gxs_element;
 
+/* A copy that follows others: in every step its displacement changes by the sum of weight x what theirs change by. A held copy
+ * follows nothing; masters follow nothing themselves. */
+typedef struct gxs_constraint {
+    uint32_t copy;
+    uint32_t master[4];         /* below copy_count, also where the weight is 0 */
+    double weight[4];           /* 1 in sum where the copy shall follow translations */
+} gxs_constraint;
+
 /* Borrowed for the time of a call. */
 typedef struct gxs_model {
     size_t copy_count;
@@ -174,29 +191,68 @@ typedef struct gxs_model {
     size_t material_count;
     const uint8_t *held;        /* copy_count flags: not 0 keeps the copy's displacement; NULL: none is held */
     uint32_t lumped_mass;       /* not 0: row sums of the mass; 0: as given (consistent) */
+    const gxs_constraint *constraints; /* constraint_count, each of another copy */
+    size_t constraint_count;
 } gxs_model;
 
 typedef enum gxs_preconditioner {
     GXS_AUTOMATIC = 0,          /* multigrid where it pays, by counts */
     GXS_BLOCK_JACOBI,           /* least memory; iterations grow with size, loose fragments and thin layers */
-    GXS_MULTIGRID               /* coarse functions that never cross a cut */
+    GXS_MULTIGRID,              /* coarse functions that never cross a cut */
+    GXS_VOLUME_RATIO            /* RXFEM Eq. 26, for comparison: each copy by the volume of its support */
 } gxs_preconditioner;
+
+typedef enum gxs_matrix {
+    GXS_MATRIX_FREE = 0,        /* products from the elements; no fine matrix is ever assembled */
+    GXS_MATRIX_ASSEMBLED        /* 3x3 blocks by rows: cheaper products for more memory and an assembly in each Newton iteration */
+} gxs_matrix;
 
 typedef struct gxs_solver_desc {
     gx_allocator allocator;     /* zero: malloc, free. Memory must be aligned as malloc aligns it */
     gx_jobs jobs;               /* zero: none */
     gxs_preconditioner preconditioner;
+    gxs_matrix matrix;
 } gxs_solver_desc;
 
 /* How time is discretised. All are implicit and minimise a potential of the form of E above. */
 typedef enum gxs_integrator {
     GXS_BDF1 = 0,               /* backward Euler: first order, damps what it cannot resolve */
     GXS_BDF2,                   /* second order, damps less; the first step, without one before it, is backward Euler */
-    GXS_MIDPOINT                /* implicit midpoint: second order, damps nothing; needs steps that resolve the motion */
+    GXS_MIDPOINT,               /* implicit midpoint: second order, damps nothing; needs steps that resolve the motion */
+    GXS_STATIC                  /* no inertia, velocities 0. dt 0: balance of forces, GX_ERROR_FREE where a piece is held by nothing.
+                                   dt above 0: the mass over dt^2 holds every copy where it was, so that free pieces have an answer */
 } gxs_integrator;
 
+/* A material point: it is where the sum of weight x copy has moved it. A node, a point of an element, a vertex of a skin. */
+typedef struct gxs_point {
+    uint32_t copy[4];           /* below copy_count, also where the weight is 0 */
+    double weight[4];           /* of the shape functions there, 1 in sum */
+    double position[3];         /* at rest, m */
+} gxs_point;
+
+/* Pulls a point to a target: a hand, a haptic tool, an elastic tether. Energy stiffness/2 |x - target|^2 */
+typedef struct gxs_spring {
+    gxs_point point;
+    double target[3];           /* m, in space */
+    double stiffness;           /* N/m, 0 or more */
+} gxs_spring;
+
+/* Keeps contact points on the side of normal . x >= offset by a penalty of stiffness/2 depth^2 a point. Friction holds a point
+ * by friction x the normal force at the step's start, up to sticking_speed in proportion to the speed. */
+typedef struct gxs_plane {
+    double normal[3];           /* of length 1 */
+    double offset;              /* m */
+    double stiffness;           /* N/m, 0 or more */
+    double friction;            /* Coulomb's coefficient, 0 or more */
+    double sticking_speed;      /* m/s; 0: 1e-3 */
+} gxs_plane;
+
+/* A contact point's energy, J, at a position; force: on the point, minus its gradient, N; hessian: of the energy, N/m, semi-definite,
+ * 00 01 02 11 12 22, NULL if it is not asked for. Called on the thread of the step only. */
+typedef double (*gxs_contact_fn)(void *user, size_t point, const double *position, double *force, double *hessian);
+
 typedef struct gxs_step_desc {
-    double dt;                  /* s, above 0 */
+    double dt;                  /* s, above 0; GXS_STATIC: 0 is possible */
     double gravity[3];          /* m/s2 */
     const double *forces;       /* copy_count x 3, N; NULL: none */
     gxs_integrator integrator;
@@ -208,16 +264,47 @@ typedef struct gxs_step_desc {
     double newton_tolerance;    /* stop at this residual (see gxs_step_report); 0: run all */
     uint32_t cg_iterations;     /* per Newton iteration, at most; 0: 1000 */
     double cg_tolerance;        /* reduction of the residual by each linear solve; 0: 1e-2 */
+    const gxs_spring *springs;  /* spring_count */
+    size_t spring_count;
+    double *spring_forces;      /* spring_count x 3: written, the force of each spring on the body at the end, N; NULL: not asked for */
+    const gxs_point *points;    /* point_count: of contact */
+    size_t point_count;
+    const gxs_plane *planes;    /* plane_count, for every contact point */
+    size_t plane_count;
+    gxs_contact_fn contact;     /* for every contact point; NULL: none */
+    void *contact_user;
+    double sleep_speed;         /* m/s: a piece (copies joined by elements) none of whose copies has been faster for sleep_time sleeps:
+                                   steps leave it out until something touches it; 0: none sleeps */
+    double sleep_time;          /* s; 0: 0.5 */
+    double *rest_times;         /* copy_count: for how long each copy has been slower, s; read and written. Needed by sleep_speed */
+    double (*clock)(void *user);/* s; NULL: none, and the report's seconds are 0 */
+    void *clock_user;
+    double budget_seconds;      /* after so long no further iteration begins, and the step ends with what it has; 0: no limit.
+                                   Results then depend on the machine */
 } gxs_step_desc;
 
+/* Why a step ended */
+typedef enum gxs_stop {
+    GXS_STOP_BALANCE = 0,       /* the residual is below newton_tolerance */
+    GXS_STOP_ITERATIONS,        /* newton_iterations are done */
+    GXS_STOP_SECONDS,           /* budget_seconds are over */
+    GXS_STOP_ROUNDING,          /* no lower energy can be told in doubles */
+    GXS_STOP_ASLEEP             /* nothing to move: every piece sleeps or is held */
+} gxs_stop;
+
 typedef struct gxs_step_report {
+    gxs_stop stop;
+    size_t active_unknowns;     /* displacements solved for: three for each copy that is not held, follows nothing and is awake */
     uint32_t newton_iterations; /* done; 0 when the start was in balance to rounding */
     uint32_t cg_iterations;     /* sum over Newton iterations */
     uint32_t line_search_steps; /* step lengths tried, sum over Newton iterations */
     double residual;            /* |load - inertia - elastic| / (|load| + |inertia| + |elastic|) on the copies not held,
                                    the larger of the two measures (see above) */
-    double energy;              /* E at the end, J, up to a constant: the load on held copies. Of the midpoint rule this and the
-                                   residual are those of its displacement at half the step */
+    double energy;              /* E at the end, J, without pieces asleep and up to a constant: the load on held copies. Of the midpoint
+                                   rule this and the residual are those of its displacement at half the step */
+    double seconds_linearise;   /* in Hessians and their diagonal, */
+    double seconds_prepare;     /* in numbers of the preconditioner and assembly, */
+    double seconds_solve;       /* in conjugate gradients; all 0 without a clock */
 } gxs_step_report;
 
 /* A model in the solver's own form, and the workspace of its steps; one call at a time. */
@@ -297,6 +384,17 @@ extern "C" {
 
 /* no piece, no node, no chunk */
 #define GXSP_NONE UINT32_MAX
+
+/* States of a piece: a copy is held; it has no mass, or constraints that do not follow translations; springs or contact act on it */
+#define GXSP_HELD 1u
+#define GXSP_UNBALANCED 2u
+#define GXSP_TOUCHED 4u
+#define GXSP_ASLEEP 8u
+
+/* An element all whose stretches are smaller is all but a point, where its forces vanish: directions are found as if it were
+ * GXSP_NUDGE of its size. */
+#define GXSP_COLLAPSED 1e-4
+#define GXSP_NUDGE 0.1
 
 /* Copies that one task of a pass over copies takes. */
 #define GXSP_RANGE 512
@@ -389,10 +487,15 @@ static double gxsp_dot(const double *a, const double *b, size_t count)
     return x + y + z;
 }
 
-/* index of entry (i, j), i <= j, of a symmetric 3x3 stored 00 01 02 11 12 22 */
+/* index of entry (i, j), i <= j, of a symmetric 3x3 stored 00 01 02 11 12 22, and of a 9x9 alike */
 static int gxsp_packed3(int i, int j)
 {
     return i * (5 - i) / 2 + j;
+}
+
+static int gxsp_packed9(int i, int j)
+{
+    return i <= j ? i * (17 - i) / 2 + j : j * (17 - j) / 2 + i;
 }
 
 /* >>memory */
@@ -487,10 +590,21 @@ typedef struct gxsp_tangent {
     float mass[GXSP_LANES];        /* gxsp_rest.mass x rate, kg/s2 */
 } gxsp_tangent;
 
+/* Projected Hessian of a block of GXS_CUSTOM, which has no frame (U and V are 1): weight x dP_i/dF_j, upper triangle by rows; J */
+typedef struct gxsp_general {
+    float hessian[45][GXSP_LANES];
+} gxsp_general;
+
+/* Entries of the assembled matrix to which a block's corners i <= j add, in the order of gxs_element.mass: row the lower copy */
+typedef struct gxsp_fine {
+    uint32_t entry[10][GXSP_LANES];
+} gxsp_fine;
+
 typedef struct gxsp_chunk {
     uint32_t first_block, block_count;
     uint32_t first_node, node_count; /* into nodes and slots */
     uint32_t first_mass;             /* into masses, one per block; GXSP_NONE: gxsp_rest has them all */
+    uint32_t first_general;          /* into generals, one per block; GXSP_NONE: gxsp_tangent has the Hessians */
     gxs_material_kind kind;
 } gxsp_chunk;
 
@@ -525,32 +639,74 @@ typedef struct gxsp_factor {
 
 typedef struct gxsp_material {
     gxs_material_kind kind;
-    double mu, lambda; /* Pa */
+    double mu, lambda; /* Pa; of GXS_CUSTOM a factor of its energy, and about its stiffness */
+    double damping;    /* s */
+    gxs_energy_fn energy;
+    void *user;
 } gxsp_material;
+
+/* Copies joined by elements and constraints */
+typedef struct gxsp_piece {
+    double sum[3];      /* over its copies, of the pass under way */
+    double mass;        /* kg */
+    uint64_t forces;    /* hash of the nodal forces of the step before; 0: not known */
+    int woken, tired;   /* something touches it in this step; nothing does, and it has been slow for long */
+    uint32_t state;     /* GXSP_HELD ... GXSP_ASLEEP; 0: a translation of it meets no stiffness */
+} gxsp_piece;
+
+/* A follower of the model */
+typedef struct gxsp_follower {
+    uint32_t copy, master[4];
+    double weight[4];
+} gxsp_follower;
+
+/* Hessian of springs and contact at one point, times scale */
+typedef struct gxsp_term {
+    uint32_t copy[4];
+    float weight[4], hessian[6];
+} gxsp_term;
+
+/* What the solver keeps from model to model */
+typedef struct gxsp_lasting {
+    gxsp_term *term;        /* of the present linearisation */
+    size_t count, capacity;
+    double gravity[3];      /* of the step before: changes of these wake what sleeps */
+    uint64_t planes;        /* hash */
+    int forces;             /* there were nodal forces */
+} gxsp_lasting;
 
 /* A model in the solver's form, with all that a step works with. n: copy_count. Vectors are n x 3 unless said. */
 typedef struct gxsp_system {
     gxsp_pool pool;
     const gx_jobs *jobs;
-    size_t n, element_count, block_count, mass_count, slot_count, range_count;
+    size_t n, element_count, block_count, mass_count, general_count, slot_count, range_count;
     uint32_t chunk_count, material_count;
-    gxsp_material *materials;
+    gxsp_material *materials;   /* material_count: as given */
+    gxsp_material *damped;      /* material_count: what the step under way works with: Rayleigh damping makes them stiffer */
     gxsp_chunk *chunks;
     gxsp_rest *rest;        /* block_count */
     gxsp_tangent *tangents; /* block_count */
     gxsp_mass *masses;      /* mass_count: blocks of chunks with elements that are not whole */
+    gxsp_general *generals; /* general_count: blocks of chunks of GXS_CUSTOM */
     uint32_t *nodes;        /* slot_count: the copy of each node of each chunk */
     uint32_t *copy_start;   /* n + 1, into copy_slot */
     uint32_t *copy_slot;    /* slot_count: a copy's slots, in the order of chunks: sums over them are the same for any number of threads */
     gxsp_vector4 *slot_in;  /* slot_count: a chunk's input */
     gxsp_vector4 *slot_out; /* slot_count, follows slot_in: a chunk's output; as doubles a slot has both */
-    double (*chunk_sum)[3]; /* chunk_count: elastic and kinetic energy, size of the terms they are sums of; J */
+    double (*chunk_sum)[3]; /* chunk_count: elastic and kinetic energy, size of the terms they are sums of; J. Of linearisations:
+                               whether there is a collapsed element */
     double *lumped;         /* n: row sums of the mass, kg */
     uint8_t *held;          /* n: as the model says */
-    uint8_t *fixed;         /* n: held, or without an element */
-    uint32_t *piece;        /* n: number of the free piece, or GXSP_NONE */
-    uint32_t piece_count;
-    double *piece_sum;      /* piece_count x 4: sums over pieces; the last is that of lumped */
+    uint8_t *fixed;         /* n: held, or without an element and a follower of nothing */
+    uint8_t *still;         /* n: fixed or asleep: what this step leaves alone */
+    uint8_t *chunk_still;   /* chunk_count: all copies are */
+    uint32_t *piece;        /* n: number of the piece */
+    gxsp_piece *pieces;     /* piece_count */
+    uint32_t piece_count, loose_count; /* loose: of state 0 */
+    gxsp_follower *followers;
+    uint32_t follower_count;
+    gxsp_lasting *lasting;  /* of the solver */
+    float *volume;          /* n: inverse volume of the support, largest 1; of GXS_VOLUME_RATIO only */
     double *base;           /* displacement at the start of the step */
     double *target;         /* where inertia (and mass damping) alone lead; of backward Euler base + dt v */
     double *load;           /* gravity and nodal forces, N */
@@ -569,10 +725,14 @@ typedef struct gxsp_system {
     uint32_t *scratch;      /* for the coarse matrices: a chunk's table, and twice as many as level 1 has nodes */
     gxsp_factor factor;
     float omega;            /* step length of the smoother; 0: not known */
-    double coarse_rate;     /* for which the coarse matrices were made; 0: never made */
+    double coarse_rate;     /* for which the coarse matrices were made; below 0: never made */
     int coarse_fresh;       /* made for this solve */
     int coarse_worn;        /* to be made anew */
+    gxsp_fine *fine;        /* block_count: places in the assembled matrix, levels[0]; NULL: matrix-free */
+    uint32_t *transpose;    /* by entry of levels[0]: the entry that mirrors it */
     uint32_t usual_iterations; /* of the solve with fresh ones */
+    int still_known;        /* still and chunk_still are those of the pieces' states */
+    size_t active;          /* unknowns of this step */
     int base_known;         /* current is what the last step returned, and base_energy its elastic energy */
     double base_energy;
     gxsp_vector4 *right;    /* n: residual in single precision */
@@ -587,7 +747,9 @@ typedef struct gxsp_problem {
     double mean[2];         /* its weights: of base and of previous_displacement */
     uint32_t cg_iterations; /* with the defaults put in */
     double cg_tolerance;
-    double energies[3];     /* at current: elastic, kinetic, size of their terms; J */
+    double energies[3];     /* at current: elastic with springs and contact, kinetic, size of their terms; J */
+    double start;           /* on the clock */
+    int collapsed;          /* the linearisation found elements collapsed to a point */
     gxs_step_report report;
 } gxsp_problem;
 
@@ -595,6 +757,8 @@ struct gxs_solver {
     gx_allocator allocator;
     gx_jobs jobs;
     gxs_preconditioner preconditioner;
+    gxs_matrix matrix;
+    gxsp_lasting lasting;
     gxsp_system *system;    /* in its own pool; NULL before the first model */
 };
 
@@ -659,9 +823,16 @@ static gxsp_material gxsp_material_make(const gxs_material *given)
     material.kind = given->kind;
     material.mu = shear;
     material.lambda = lame;
+    material.damping = given->damping;
+    material.energy = given->energy;
+    material.user = given->user;
     if (given->kind == GXS_STABLE_NEO_HOOKEAN) { /* in small strain the Lame constants are mu', lambda' [Smith 2018, 3.4] */
         material.mu = 4.0 / 3 * shear;
         material.lambda = lame + 5.0 / 6 * shear;
+    }
+    if (given->kind == GXS_CUSTOM) {
+        material.mu = 1;
+        material.lambda = given->young;
     }
     return material;
 }
@@ -672,6 +843,7 @@ typedef struct gxsp_state {
     gxsp_lanes p[9];     /* first Piola-Kirchhoff stress */
     gxsp_lanes energy, size;
     gxsp_lanes mu, lambda;
+    const gxsp_material *material[GXSP_LANES]; /* of GXS_CUSTOM only */
 } gxsp_state;
 
 /* Stable neo-Hookean with the origin barrier [Smith 2018]:
@@ -938,10 +1110,26 @@ static void gxsp_corotated(gxsp_state *GXSP_RESTRICT s)
     }
 }
 
+/* The caller's energy, one element after the other */
+static void gxsp_custom(gxsp_state *s)
+{
+    int k, l;
+    for (l = 0; l < GXSP_LANES; ++l) {
+        double f[9], p[9];
+        for (k = 0; k < 9; ++k)
+            f[k] = s->g[k][l] + (k % 4 == 0 ? 1 : 0);
+        s->energy[l] = s->mu[l] * s->material[l]->energy(s->material[l]->user, f, p, NULL);
+        s->size[l] = fabs(s->energy[l]) + s->lambda[l]; /* its own rounding is not known: that of terms as large as its stiffness */
+        for (k = 0; k < 9; ++k)
+            s->p[k][l] = s->mu[l] * p[k];
+    }
+}
+
 /* Energy and stress of a block, from s->g. */
 static void gxsp_material_state(gxs_material_kind kind, gxsp_state *s)
 {
     switch (kind) {
+    case GXS_CUSTOM: gxsp_custom(s); break;
     case GXS_ST_VENANT_KIRCHHOFF: gxsp_kirchhoff(s, 1); break;
     case GXS_FIXED_COROTATED: gxsp_corotated(s); break;
     case GXS_LINEAR: gxsp_kirchhoff(s, 0); break;
@@ -1030,48 +1218,60 @@ static void gxsp_linear_principal(gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GX
     }
 }
 
-/* One Jacobi turn of the symmetric 3x3 a (by rows) that makes a_ij zero; the turn also goes to the columns of v. */
-static void gxsp_diagonalise(double *a, double *v, int i, int j)
+/* One Jacobi turn of the symmetric a (n x n) that makes a_ij zero; the turn also goes to the columns of v. */
+static void gxsp_diagonalise(double *a, double *v, int n, int i, int j)
 {
     double zeta, t, c, s;
     int k;
-    if (a[3 * i + j] * a[3 * i + j] <= 1e-32 * fabs(a[4 * i] * a[4 * j]))
+    if (a[n * i + j] * a[n * i + j] <= 1e-32 * fabs(a[n * i + i] * a[n * j + j]))
         return;
-    zeta = (a[4 * j] - a[4 * i]) / (2 * a[3 * i + j]);
+    zeta = (a[n * j + j] - a[n * i + i]) / (2 * a[n * i + j]);
     t = (zeta < 0 ? -1 : 1) / (fabs(zeta) + sqrt(1 + zeta * zeta));
     c = 1 / sqrt(1 + t * t);
     s = c * t;
-    for (k = 0; k < 3; ++k) {
-        double ai = a[3 * i + k], aj = a[3 * j + k];
-        a[3 * i + k] = c * ai - s * aj, a[3 * j + k] = s * ai + c * aj;
+    for (k = 0; k < n; ++k) {
+        double ai = a[n * i + k], aj = a[n * j + k];
+        a[n * i + k] = c * ai - s * aj, a[n * j + k] = s * ai + c * aj;
     }
-    for (k = 0; k < 9; k += 3) {
+    for (k = 0; k < n * n; k += n) {
         double ai = a[k + i], aj = a[k + j], vi = v[k + i], vj = v[k + j];
         a[k + i] = c * ai - s * aj, a[k + j] = s * ai + c * aj;
         v[k + i] = c * vi - s * vj, v[k + j] = s * vi + c * vj;
     }
 }
 
-/* Replaces the stretches' 3x3 of one lane by the nearest semi-definite one: negative eigenvalues become 0. */
+/* Replaces the symmetric a (n x n, n at most 9) by the nearest semi-definite one: negative eigenvalues become 0. */
+static void gxsp_project_symmetric(double *a, int n)
+{
+    double v[81], value[9];
+    int sweep, i, j, k;
+    for (k = 0; k < n * n; ++k)
+        v[k] = k % (n + 1) == 0 ? 1 : 0;
+    for (sweep = 0; sweep < 5 + n; ++sweep) /* converges quadratically: 5 reach rounding for 3x3 */
+        for (i = 0; i < n; ++i)
+            for (j = i + 1; j < n; ++j)
+                gxsp_diagonalise(a, v, n, i, j);
+    for (k = 0; k < n; ++k)
+        value[k] = a[(n + 1) * k] > 0 ? a[(n + 1) * k] : 0;
+    for (i = 0; i < n; ++i)
+        for (j = 0; j < n; ++j) {
+            a[n * i + j] = 0;
+            for (k = 0; k < n; ++k)
+                a[n * i + j] += value[k] * v[n * i + k] * v[n * j + k];
+        }
+}
+
 static void gxsp_project_lane(gxsp_singles *stretch, int lane)
 {
-    double a[9], v[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    int sweep, i, j, k;
+    double a[9];
+    int i, j;
     for (i = 0; i < 3; ++i)
         for (j = i; j < 3; ++j)
-            a[3 * i + j] = a[3 * j + i] = stretch[gxsp_packed3(i, j)][lane];
-    for (sweep = 0; sweep < 8; ++sweep) { /* converges quadratically: 5 reach rounding */
-        gxsp_diagonalise(a, v, 0, 1);
-        gxsp_diagonalise(a, v, 0, 2);
-        gxsp_diagonalise(a, v, 1, 2);
-    }
+            a[3 * i + j] = a[3 * j + i] = (double)stretch[gxsp_packed3(i, j)][lane];
+    gxsp_project_symmetric(a, 3);
     for (i = 0; i < 3; ++i)
-        for (j = i; j < 3; ++j) {
-            double sum = 0;
-            for (k = 0; k < 3; ++k)
-                sum += a[4 * k] > 0 ? a[4 * k] * v[3 * i + k] * v[3 * j + k] : 0;
-            stretch[gxsp_packed3(i, j)][lane] = (float)sum;
-        }
+        for (j = i; j < 3; ++j)
+            stretch[gxsp_packed3(i, j)][lane] = (float)a[3 * i + j];
 }
 
 /* Is every lane's 3x3 of the stretches positive definite? (leading minors by elimination) */
@@ -1093,20 +1293,65 @@ static void gxsp_project(gxsp_principal *GXSP_RESTRICT of)
             gxsp_project_lane(of->stretch, l);
 }
 
-/* The projected Hessian of a block at s->g, times scale. */
-static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest, double scale, gxsp_state *s,
-                              gxsp_tangent *GXSP_RESTRICT tangent)
+/* The projected Hessian of a block of the caller's energy at s->g, times scale. */
+static void gxsp_general_make(const gxsp_rest *rest, double scale, gxsp_state *s, gxsp_tangent *tangent, gxsp_general *general)
+{
+    int k, l, i, j;
+    for (l = 0; l < GXSP_LANES; ++l) {
+        double f[9], h[81];
+        for (k = 0; k < 9; ++k) {
+            f[k] = s->g[k][l] + (k % 4 == 0 ? 1 : 0);
+            tangent->frame[k][l] = k % 4 == 0 ? 1.0f : 0.0f;
+            tangent->gradient[k][l] = (float)rest->gradient[k][l];
+        }
+        s->material[l]->energy(s->material[l]->user, f, NULL, h);
+        gxsp_project_symmetric(h, 9);
+        for (i = 0; i < 9; ++i)
+            for (j = i; j < 9; ++j)
+                general->hessian[gxsp_packed9(i, j)][l] = (float)(scale * rest->weight[l] * s->mu[l] * h[9 * i + j]);
+    }
+}
+
+/* Makes elements collapsed to a point, F = 0, small instead: F = GXSP_NUDGE. Were there any? */
+static int gxsp_nudge(gxsp_lanes *g)
+{
+    gxsp_lanes square;
+    int k, l, any = 0;
+    GXSP_EACH_LANE(l) square[l] = 0;
+    for (k = 0; k < 9; ++k)
+        GXSP_EACH_LANE(l) {
+            const double f = g[k][l] + (k % 4 == 0 ? 1 : 0);
+            square[l] += f * f;
+        }
+    for (l = 0; l < GXSP_LANES; ++l)
+        if (square[l] < GXSP_COLLAPSED * GXSP_COLLAPSED) {
+            for (k = 0; k < 9; ++k)
+                g[k][l] = k % 4 == 0 ? GXSP_NUDGE - 1 : 0;
+            any = 1;
+        }
+    return any;
+}
+
+/* The projected Hessian of a block at s->g, times scale. general: of GXS_CUSTOM only, else NULL. Was an element collapsed? */
+static int gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest, double scale, gxsp_state *s,
+                              gxsp_tangent *GXSP_RESTRICT tangent, gxsp_general *general)
 {
     gxsp_svd of;
     gxsp_principal principal;
-    int k, l, r, c;
+    int k, l, r, c, collapsed = 0;
+    if (kind == GXS_CUSTOM) {
+        gxsp_general_make(rest, scale, s, tangent, general);
+        return 0;
+    }
     GXSP_EACH_LANE(l) {
         principal.mu[l] = (float)s->mu[l];
         principal.lambda[l] = (float)s->lambda[l];
         principal.weight[l] = (float)(scale * rest->weight[l]);
     }
-    if (kind != GXS_LINEAR)
+    if (kind != GXS_LINEAR) {
+        collapsed = gxsp_nudge(s->g);
         gxsp_decompose(s->g, &of);
+    }
     switch (kind) {
     case GXS_ST_VENANT_KIRCHHOFF: gxsp_kirchhoff_principal(&of, &principal); break;
     case GXS_FIXED_COROTATED: gxsp_corotated_principal(&of, &principal); break;
@@ -1130,6 +1375,7 @@ static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_REST
             GXSP_EACH_LANE(l)
                 tangent->gradient[3 * r + c][l] = (float)rest->gradient[3 * r][l] * of.v[c][l] +
                     (float)rest->gradient[3 * r + 1][l] * of.v[3 + c][l] + (float)rest->gradient[3 * r + 2][l] * of.v[6 + c][l];
+    return collapsed;
 }
 
 /* >>element: passes over one block. Vectors of its corners: x[3 corner + axis][lane]. */
@@ -1232,6 +1478,42 @@ static void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, gxsp_singles
     }
 }
 
+/* The same for a Hessian without a frame */
+static void gxsp_general_product(const gxsp_tangent *b, const gxsp_general *h, gxsp_singles *x, gxsp_singles *y)
+{
+    gxsp_singles d[9], p[9];
+    int i, j, k, l;
+    for (i = 0; i < 9; ++i)
+        GXSP_EACH_LANE(l) {
+            const int r = i / 3, c = i % 3;
+            d[i][l] = (x[3 + r][l] - x[r][l]) * b->gradient[c][l] + (x[6 + r][l] - x[r][l]) * b->gradient[3 + c][l] +
+                      (x[9 + r][l] - x[r][l]) * b->gradient[6 + c][l];
+            p[i][l] = 0;
+        }
+    for (i = 0; i < 9; ++i)
+        for (j = 0; j < 9; ++j)
+            GXSP_EACH_LANE(l) p[i][l] += h->hessian[gxsp_packed9(i, j)][l] * d[j][l];
+    for (i = 0; i < 3; ++i)
+        GXSP_EACH_LANE(l) {
+            const float sum = x[i][l] + x[3 + i][l] + x[6 + i][l] + x[9 + i][l];
+            y[i][l] = b->mass[l] * (sum + x[i][l]);
+            for (k = 0; k < 3; ++k) {
+                const float f = p[3 * i][l] * b->gradient[3 * k][l] + p[3 * i + 1][l] * b->gradient[3 * k + 1][l] +
+                                p[3 * i + 2][l] * b->gradient[3 * k + 2][l];
+                y[3 + 3 * k + i][l] = b->mass[l] * (sum + x[3 + 3 * k + i][l]) + f;
+                y[i][l] -= f;
+            }
+        }
+}
+
+static void gxsp_kind_product(gxs_material_kind kind, const gxsp_tangent *b, const gxsp_general *h, gxsp_singles *x, gxsp_singles *y)
+{
+    if (kind == GXS_CUSTOM)
+        gxsp_general_product(b, h, x, y);
+    else
+        gxsp_block_product(b, x, y);
+}
+
 /* y += rate M x of masses that rest does not have */
 static void gxsp_block_mass_product(const gxsp_mass *GXSP_RESTRICT mass, float rate, gxsp_singles *GXSP_RESTRICT x,
                                     gxsp_singles *GXSP_RESTRICT y)
@@ -1251,12 +1533,30 @@ static void gxsp_block_mass_product(const gxsp_mass *GXSP_RESTRICT mass, float r
         }
 }
 
+static void gxsp_general_couple(const gxsp_general *general, gxsp_singles *p, gxsp_singles *q, gxsp_singles *block)
+{
+    int r, s, k, m, l;
+    for (r = 0; r < 3; ++r)
+        for (s = 0; s < 3; ++s) {
+            GXSP_EACH_LANE(l) block[3 * r + s][l] = 0;
+            for (k = 0; k < 3; ++k)
+                for (m = 0; m < 3; ++m)
+                    GXSP_EACH_LANE(l)
+                        block[3 * r + s][l] += general->hessian[gxsp_packed9(3 * r + k, 3 * s + m)][l] * p[k][l] * q[m][l];
+        }
+}
+
 /* block = U B U^T, B_rs = sum h_rk,sl p_k q_l: the part of the Hessian that couples two shape functions with gradients p and q
  * in the frame of V; by rows. */
-static void gxsp_block_couple(const gxsp_tangent *GXSP_RESTRICT t, gxsp_singles *p, gxsp_singles *q, /* may be the same */
+static void gxsp_block_couple(const gxsp_tangent *GXSP_RESTRICT t, const gxsp_general *general, /* or NULL */
+                              gxsp_singles *p, gxsp_singles *q, /* may be the same */
                               gxsp_singles *GXSP_RESTRICT block)
 {
     int l;
+    if (general) {
+        gxsp_general_couple(general, p, q, block);
+        return;
+    }
     GXSP_EACH_LANE(l) {
         const float p0 = p[0][l], p1 = p[1][l], p2 = p[2][l], q0 = q[0][l], q1 = q[1][l], q2 = q[2][l];
         const float e0 = t->even[0][l], e1 = t->even[1][l], e2 = t->even[2][l], o0 = t->odd[0][l], o1 = t->odd[1][l],
@@ -1296,14 +1596,21 @@ typedef struct gxsp_pass {
     double rate;                /* 1/s2; of products and linearisations times scale */
     const double *from;         /* x 3: displacement, m */
     double *sum;                /* x 3: forces, N */
+    const gxsp_material *materials;
     int inertia;                /* forces and energy of the mass too */
-    const gxsp_vector4 *x;      /* of products: input */
+    int nudge;                  /* forces of collapsed elements as if they were not quite */
+    gxsp_vector4 *x;            /* of products: input */
     gxsp_vector4 *y;            /* output */
 } gxsp_pass;
 
 static const gxsp_mass *gxsp_block_masses(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t block)
 {
     return chunk->first_mass == GXSP_NONE ? NULL : &system->masses[chunk->first_mass + block];
+}
+
+static gxsp_general *gxsp_block_general(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t block)
+{
+    return chunk->first_general == GXSP_NONE ? NULL : &system->generals[chunk->first_general + block];
 }
 
 /* x of a block's corners, and the parameters of their material */
@@ -1321,13 +1628,14 @@ static void gxsp_block_load(const gxsp_system *system, const gxsp_chunk *chunk, 
         }
 }
 
-static void gxsp_block_parameters(const gxsp_system *system, const gxsp_rest *rest, gxsp_state *s)
+static void gxsp_block_parameters(const gxsp_material *materials, const gxsp_rest *rest, gxsp_state *s)
 {
     int l;
     for (l = 0; l < GXSP_LANES; ++l) {
-        const gxsp_material *material = &system->materials[rest->material[l]];
+        const gxsp_material *material = &materials[rest->material[l]];
         s->mu[l] = material->mu;
         s->lambda[l] = material->lambda;
+        s->material[l] = material;
     }
 }
 
@@ -1354,14 +1662,20 @@ static void gxsp_task_state(void *context, size_t index)
     double elastic = 0, kinetic = 0, size = 0;
     uint32_t b;
     int k, l;
+    for (k = 0; k < 3; ++k)
+        system->chunk_sum[index][k] = 0;
+    if (system->chunk_still[index])
+        return;
     memset(slots, 0, 3 * (size_t)chunk->node_count * sizeof *slots);
     for (b = 0; b < chunk->block_count; ++b) {
         const gxsp_rest *rest = &system->rest[chunk->first_block + b];
         gxsp_lanes x[12], forces[12], energy;
         gxsp_state s;
         gxsp_block_load(system, chunk, rest, pass->from, x);
-        gxsp_block_parameters(system, rest, &s);
+        gxsp_block_parameters(pass->materials, rest, &s);
         gxsp_block_gradient(rest, x, s.g);
+        if (pass->nudge && chunk->kind != GXS_LINEAR && chunk->kind != GXS_CUSTOM)
+            gxsp_nudge(s.g);
         gxsp_material_state(chunk->kind, &s);
         gxsp_block_force(rest, s.p, forces);
         for (l = 0; l < GXSP_LANES; ++l) {
@@ -1394,7 +1708,7 @@ static void gxsp_task_sum(void *context, size_t index)
     for (; i < end; ++i) {
         double x = 0, y = 0, z = 0;
         uint32_t s;
-        for (s = system->copy_start[i]; s < system->copy_start[i + 1]; ++s) {
+        for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->still[i]; ++s) {
             const double *from = slots + 3 * (size_t)system->copy_slot[s];
             x += from[0], y += from[1], z += from[2];
         }
@@ -1402,33 +1716,35 @@ static void gxsp_task_sum(void *context, size_t index)
     }
 }
 
-/* Energies at from (elastic, kinetic, size of terms), and elastic + inertial forces. */
-static void gxsp_evaluate(gxsp_system *system, double rate, const double *from, double *force, double *energies)
+/* Energies of the elements at from (elastic, kinetic, size of terms), and elastic + inertial forces; 0 at copies that are still. */
+static void gxsp_evaluate_elements(gxsp_system *system, double rate, const double *from, int nudge, double *force, double *energies)
 {
     gxsp_pass pass;
     uint32_t c;
+    int k;
     memset(&pass, 0, sizeof pass);
     pass.system = system;
+    pass.materials = system->damped;
     pass.rate = rate;
     pass.from = from;
     pass.sum = force;
     pass.inertia = rate > 0 && !system->lumped_mass;
+    pass.nudge = nudge;
     gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_state, &pass);
     gxsp_parallel(system->jobs, system->range_count, gxsp_task_sum, &pass);
     energies[0] = energies[1] = energies[2] = 0;
-    for (c = 0; c < system->chunk_count; ++c) {
-        energies[0] += system->chunk_sum[c][0];
-        energies[1] += system->chunk_sum[c][1];
-        energies[2] += system->chunk_sum[c][2];
-    }
+    for (c = 0; c < system->chunk_count; ++c)
+        for (k = 0; k < 3; ++k)
+            energies[k] += system->chunk_sum[c][k];
     if (rate > 0 && system->lumped_mass) {
         size_t i;
         double kinetic = 0;
-        for (i = 0; i < 3 * system->n; ++i) {
-            double moved = from[i] - system->target[i], inertia = rate * system->lumped[i / 3] * moved;
-            force[i] += inertia;
-            kinetic += 0.5 * inertia * moved;
-        }
+        for (i = 0; i < 3 * system->n; ++i)
+            if (!system->still[i / 3]) {
+                double moved = from[i] - system->target[i], inertia = rate * system->lumped[i / 3] * moved;
+                force[i] += inertia;
+                kinetic += 0.5 * inertia * moved;
+            }
         energies[1] = kinetic;
         energies[2] += kinetic;
     }
@@ -1602,7 +1918,7 @@ static void gxsp_plan_chunks(gxsp_system *system, const gxsp_sorted *sorted, gxs
 {
     size_t i = 0;
     system->chunk_count = 0;
-    system->block_count = system->mass_count = 0;
+    system->block_count = system->mass_count = system->general_count = 0;
     while (i < system->element_count) {
         uint32_t class_index = sorted[i].class_index, count = 0;
         gxsp_chunk chunk;
@@ -1613,8 +1929,10 @@ static void gxsp_plan_chunks(gxsp_system *system, const gxsp_sorted *sorted, gxs
         chunk.first_block = (uint32_t)system->block_count;
         chunk.block_count = (count + GXSP_LANES - 1) / GXSP_LANES;
         chunk.first_mass = class_index % 2 ? (uint32_t)system->mass_count : GXSP_NONE;
+        chunk.first_general = chunk.kind == GXS_CUSTOM ? (uint32_t)system->general_count : GXSP_NONE;
         system->block_count += chunk.block_count;
         system->mass_count += class_index % 2 ? chunk.block_count : 0;
+        system->general_count += chunk.kind == GXS_CUSTOM ? chunk.block_count : 0;
         if (chunks)
             chunks[system->chunk_count] = chunk;
         ++system->chunk_count;
@@ -1632,9 +1950,11 @@ static void gxsp_chunks_make(gxsp_system *system, gxsp_pool *scratch, const gxs_
     gxsp_plan_chunks(system, sorted, NULL);
     system->chunks = (gxsp_chunk *)gxsp_take(&system->pool, system->chunk_count, sizeof(gxsp_chunk));
     system->chunk_sum = (double(*)[3])gxsp_take(&system->pool, system->chunk_count, sizeof *system->chunk_sum);
+    system->chunk_still = (uint8_t *)gxsp_take(&system->pool, system->chunk_count, 1);
     system->rest = (gxsp_rest *)gxsp_take(&system->pool, system->block_count, sizeof(gxsp_rest));
     system->tangents = (gxsp_tangent *)gxsp_take(&system->pool, system->block_count, sizeof(gxsp_tangent));
     system->masses = (gxsp_mass *)gxsp_take(&system->pool, system->mass_count, sizeof(gxsp_mass));
+    system->generals = (gxsp_general *)gxsp_take(&system->pool, system->general_count, sizeof(gxsp_general));
     system->copy_start = (uint32_t *)gxsp_take(&system->pool, system->n + 2, sizeof(uint32_t));
     system->nodes = (uint32_t *)gxsp_take(scratch, most, sizeof(uint32_t)); /* its size is not known yet */
     if (scratch->failed || system->pool.failed)
@@ -1688,9 +2008,36 @@ static void gxsp_find_fixed(gxsp_system *system, const gxs_model *model)
                 system->held[i] = system->fixed[i] = 1;
 }
 
-/* Numbers the free pieces: copies joined by elements, none of them fixed, with mass. A translation of such a piece meets no
- * stiffness: K T = 0, so T^T (K + rate M) x = rate x sum of lumped x. forest, total: n, scratch */
-static void gxsp_find_pieces(gxsp_system *system, const gxs_model *model, uint32_t *forest, double *total)
+/* Which copies follow others. Returns the index of a constraint that cannot be, SIZE_MAX if all can. */
+static size_t gxsp_find_followers(gxsp_system *system, const gxs_model *model)
+{
+    size_t i;
+    int k;
+    system->followers = (gxsp_follower *)gxsp_take(&system->pool, model->constraint_count, sizeof(gxsp_follower));
+    for (i = 0; i < model->constraint_count && !system->pool.failed; ++i) {
+        const gxs_constraint *constraint = &model->constraints[i];
+        gxsp_follower *follower = &system->followers[system->follower_count];
+        if (system->held[constraint->copy])
+            continue;
+        if (system->still[constraint->copy]) /* here: has been met */
+            return i;
+        system->still[constraint->copy] = 1;
+        system->fixed[constraint->copy] = 0;
+        follower->copy = constraint->copy;
+        memcpy(follower->master, constraint->master, sizeof follower->master);
+        memcpy(follower->weight, constraint->weight, sizeof follower->weight);
+        ++system->follower_count;
+    }
+    for (i = 0; i < model->constraint_count && !system->pool.failed; ++i)
+        for (k = 0; k < 4 && !system->held[model->constraints[i].copy]; ++k)
+            if (fabs(model->constraints[i].weight[k]) > 0 && system->still[model->constraints[i].master[k]])
+                return i;
+    memset(system->still, 0, system->n);
+    return SIZE_MAX;
+}
+
+/* Joins what elements and constraints couple. forest: n */
+static void gxsp_join_copies(const gxsp_system *system, const gxs_model *model, uint32_t *forest)
 {
     size_t e, i;
     int k;
@@ -1700,22 +2047,38 @@ static void gxsp_find_pieces(gxsp_system *system, const gxs_model *model, uint32
         for (k = 1; k < 4; ++k)
             if (gxsp_supports(&model->elements[e], 0) || gxsp_supports(&model->elements[e], k))
                 gxsp_join(forest, model->elements[e].copy[0], model->elements[e].copy[k]);
-    for (i = 0; i < system->n; ++i)
-        total[gxsp_root(forest, (uint32_t)i)] += system->lumped[i];
-    for (i = 0; i < system->n; ++i)
-        if (system->fixed[i])
-            total[gxsp_root(forest, (uint32_t)i)] = -1;
+    for (i = 0; i < system->follower_count; ++i)
+        for (k = 0; k < 4; ++k)
+            if (fabs(system->followers[i].weight[k]) > 0)
+                gxsp_join(forest, system->followers[i].copy, system->followers[i].master[k]);
+}
+
+/* Numbers the pieces. A translation of one of state 0 meets no stiffness: K T = 0, so T^T (K + rate M) x = rate x sum of
+ * lumped x. forest: n, scratch */
+static void gxsp_find_pieces(gxsp_system *system, const gxs_model *model, uint32_t *forest)
+{
+    size_t i;
+    uint32_t p;
+    gxsp_join_copies(system, model, forest);
     for (i = 0; i < system->n; ++i) { /* roots come before their copies: the lower index wins in gxsp_join */
         uint32_t root = gxsp_root(forest, (uint32_t)i);
-        if (root == i)
-            system->piece[i] = total[i] > 0 ? system->piece_count++ : GXSP_NONE;
-        else
-            system->piece[i] = system->piece[root];
+        system->piece[i] = root == i ? system->piece_count++ : system->piece[root];
     }
-    system->piece_sum = (double *)gxsp_take(&system->pool, 4 * (size_t)system->piece_count, sizeof(double));
-    for (i = 0; i < system->n && !system->pool.failed; ++i)
-        if (system->piece[i] != GXSP_NONE)
-            system->piece_sum[4 * (size_t)system->piece[i] + 3] += system->lumped[i];
+    system->pieces = (gxsp_piece *)gxsp_take(&system->pool, system->piece_count, sizeof(gxsp_piece));
+    if (system->pool.failed)
+        return;
+    for (i = 0; i < system->n; ++i) {
+        gxsp_piece *piece = &system->pieces[system->piece[i]];
+        piece->mass += system->lumped[i];
+        piece->state |= system->fixed[i] ? GXSP_HELD : 0;
+    }
+    for (i = 0; i < system->follower_count; ++i) {
+        const double *w = system->followers[i].weight;
+        if (fabs(w[0] + w[1] + w[2] + w[3] - 1) > 1e-12)
+            system->pieces[system->piece[system->followers[i].copy]].state |= GXSP_UNBALANCED;
+    }
+    for (p = 0; p < system->piece_count; ++p)
+        system->pieces[p].state |= system->pieces[p].mass > 0 ? 0 : GXSP_UNBALANCED;
 }
 
 /* Rest positions in spacings of the first lattice: GXSP_SPACING edges of an average whole element. 0: there is none. */
@@ -1761,6 +2124,7 @@ static void gxsp_system_vectors(gxsp_system *system)
     system->lumped = (double *)gxsp_take(&system->pool, system->n, sizeof(double));
     system->piece = (uint32_t *)gxsp_take(&system->pool, system->n, sizeof(uint32_t));
     system->fixed = (uint8_t *)gxsp_take(&system->pool, system->n, 1);
+    system->still = (uint8_t *)gxsp_take(&system->pool, system->n, 1);
     system->held = (uint8_t *)gxsp_take(&system->pool, system->n, 1);
 }
 
@@ -1986,6 +2350,21 @@ static void gxsp_coarse_pattern(const gxsp_level *level, gxsp_level *next, uint3
     next->start[next->n] = count;
 }
 
+/* Rows of the next level's matrix from a level's */
+static void gxsp_coarse_rows(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *level)
+{
+    gxsp_level *next = level + 1;
+    uint32_t *seen = (uint32_t *)gxsp_take(scratch, next->n, sizeof(uint32_t)), *columns;
+    if (scratch->failed)
+        return;
+    gxsp_coarse_pattern(level, next, NULL, seen);
+    columns = (uint32_t *)gxsp_take(scratch, next->start[next->n], sizeof(uint32_t));
+    if (scratch->failed)
+        return;
+    gxsp_coarse_pattern(level, next, columns, seen);
+    gxsp_level_matrix(pool, next, columns);
+}
+
 /* The level after levels[at], at > 0, of twice its spacing. 0: it would not be much smaller. Scratch is left in the pool of
  * temporary memory. */
 static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t at)
@@ -1993,7 +2372,7 @@ static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t at)
     gxsp_level *level = &system->levels[at], *next = level + 1;
     gxsp_transfer transfer;
     float (*place)[3] = (float(*)[3])gxsp_take(scratch, level->n, sizeof *place);
-    uint32_t i, k, count, *seen, *columns;
+    uint32_t i, k, count;
     transfer.key = (uint64_t *)gxsp_take(scratch, 4 * (size_t)level->n, sizeof(uint64_t));
     transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * (size_t)level->n, sizeof(uint32_t));
     if (scratch->failed)
@@ -2011,17 +2390,11 @@ static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t at)
         return 0;
     gxsp_level_make(&system->pool, next, count, 1);
     gxsp_find_children(&system->pool, level, count);
-    seen = (uint32_t *)gxsp_take(scratch, count, sizeof(uint32_t));
-    if (system->pool.failed || scratch->failed)
+    if (system->pool.failed)
         return 0;
     gxsp_transfer_places(level, &transfer, next);
-    gxsp_coarse_pattern(level, next, NULL, seen);
-    columns = (uint32_t *)gxsp_take(scratch, next->start[count], sizeof(uint32_t));
-    if (scratch->failed)
-        return 0;
-    gxsp_coarse_pattern(level, next, columns, seen);
-    gxsp_level_matrix(&system->pool, next, columns);
-    return 1;
+    gxsp_coarse_rows(&system->pool, scratch, level);
+    return !system->pool.failed && !scratch->failed;
 }
 
 /* Order and envelope of the last level: breadth first, component by component. */
@@ -2165,16 +2538,44 @@ static uint32_t gxsp_list_pairs(const gxsp_system *system, gxsp_chunk_pairs *pai
     return count;
 }
 
+/* Rows of a level's matrix from its entries on and above the diagonal, (row, column), of which some may come twice. */
+static void gxsp_rows_make(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *level, uint32_t (*list)[2], uint32_t listed)
+{
+    uint32_t *start = (uint32_t *)gxsp_take(scratch, (size_t)level->n + 2, sizeof(uint32_t)), *columns, *kept, i, k, count = 0;
+    if (scratch->failed)
+        return;
+    for (i = 0; i < listed; ++i) {
+        ++start[list[i][0] + 2];
+        if (list[i][0] != list[i][1])
+            ++start[list[i][1] + 2];
+    }
+    for (i = 0; i < level->n; ++i)
+        start[i + 2] += start[i + 1];
+    columns = (uint32_t *)gxsp_take(scratch, start[level->n + 1], sizeof(uint32_t));
+    kept = (uint32_t *)gxsp_take(scratch, start[level->n + 1], sizeof(uint32_t));
+    if (scratch->failed)
+        return;
+    for (i = 0; i < listed; ++i) {
+        columns[start[list[i][0] + 1]++] = list[i][1];
+        if (list[i][0] != list[i][1])
+            columns[start[list[i][1] + 1]++] = list[i][0];
+    }
+    for (i = 0; i < level->n; ++i) {
+        level->start[i] = count;
+        gxsp_sort_row(columns + start[i], start[i + 1] - start[i]);
+        for (k = start[i]; k < start[i + 1]; ++k)
+            if (k == start[i] || columns[k] != columns[k - 1])
+                kept[count++] = columns[k];
+    }
+    level->start[level->n] = count;
+    gxsp_level_matrix(pool, level, kept);
+}
+
 /* Level 1's matrix: two nodes are neighbours where an element follows both. */
 static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch)
 {
-    gxsp_level *next = &system->levels[1];
     gxsp_chunk_pairs pairs;
-    uint32_t (*list)[2] = NULL, *start, *columns, *kept, c, i, k, count = 0, room = 0;
-    system->scratch = (uint32_t *)gxsp_take(&system->pool, GXSP_CHUNK_PARENTS * GXSP_CHUNK_PARENTS + 2 * (size_t)next->n, sizeof(uint32_t));
-    start = (uint32_t *)gxsp_take(scratch, (size_t)next->n + 2, sizeof(uint32_t));
-    if (scratch->failed || system->pool.failed)
-        return;
+    uint32_t (*list)[2] = NULL, c, count = 0, room = 0;
     gxsp_pairs_place(system, &pairs);
     for (c = 0; c < system->chunk_count; ++c) {
         uint32_t more = gxsp_list_pairs(system, &pairs, c, list ? list + count : NULL, room - count);
@@ -2191,42 +2592,72 @@ static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch)
         }
         count += more;
     }
-    for (i = 0; i < count; ++i) {
-        ++start[list[i][0] + 2];
-        if (list[i][0] != list[i][1])
-            ++start[list[i][1] + 2];
-    }
-    for (i = 0; i < next->n; ++i)
-        start[i + 2] += start[i + 1];
-    columns = (uint32_t *)gxsp_take(scratch, start[next->n + 1], sizeof(uint32_t));
-    kept = (uint32_t *)gxsp_take(scratch, start[next->n + 1], sizeof(uint32_t));
-    if (scratch->failed)
-        return;
-    for (i = 0; i < count; ++i) {
-        columns[start[list[i][0] + 1]++] = list[i][1];
-        if (list[i][0] != list[i][1])
-            columns[start[list[i][1] + 1]++] = list[i][0];
-    }
-    count = 0;
-    for (i = 0; i < next->n; ++i) {
-        next->start[i] = count;
-        gxsp_sort_row(columns + start[i], start[i + 1] - start[i]);
-        for (k = start[i]; k < start[i + 1]; ++k)
-            if (k == start[i] || columns[k] != columns[k - 1])
-                kept[count++] = columns[k];
-    }
-    next->start[next->n] = count;
-    gxsp_level_matrix(&system->pool, next, kept);
+    gxsp_rows_make(&system->pool, scratch, &system->levels[1], list, count);
 }
 
-/* All levels of the multigrid. level_count stays 0 if there is nothing to coarsen. */
+/* Index of column j in row i, or that of a lower one if the row does not have it */
+static uint32_t gxsp_find_entry(const gxsp_level *level, uint32_t i, uint32_t j)
+{
+    uint32_t low = level->start[i], high = level->start[i + 1];
+    while (high - low > 1) {
+        uint32_t middle = low + (high - low) / 2;
+        if (level->column[middle] <= j)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* Corners of the ten blocks of an element, in the order of gxs_element.mass */
+static const int gxsp_corners[10][2] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {1, 1}, {1, 2}, {1, 3}, {2, 2}, {2, 3}, {3, 3}};
+
+/* The assembled matrix: copies are neighbours where they share an element; every copy is its own. */
+static void gxsp_fine_make(gxsp_system *system, gxsp_pool *scratch)
+{
+    gxsp_level *fine = &system->levels[0];
+    const size_t lanes = system->block_count * GXSP_LANES;
+    uint32_t (*list)[2] = (uint32_t(*)[2])gxsp_take(scratch, 10 * lanes + system->n, sizeof *list), c, b, i, k, count = 0;
+    int l, pair;
+    system->fine = (gxsp_fine *)gxsp_take(&system->pool, system->block_count, sizeof(gxsp_fine));
+    fine->start = (uint32_t *)gxsp_take(&system->pool, system->n + 1, sizeof(uint32_t));
+    fine->inverse = (float *)gxsp_take(&system->pool, 12 * system->n, sizeof(float));
+    if (scratch->failed || system->pool.failed)
+        return;
+    for (i = 0; i < fine->n; ++i, ++count)
+        list[count][0] = list[count][1] = i;
+    for (c = 0; c < system->chunk_count; ++c)
+        for (b = 0; b < system->chunks[c].block_count; ++b)
+            for (l = 0; l < GXSP_LANES; ++l) {
+                uint32_t copies[4];
+                gxsp_lane_copies(system, &system->chunks[c], b, l, copies);
+                for (pair = 0; pair < 10; ++pair, ++count) {
+                    const uint32_t p = copies[gxsp_corners[pair][0]], q = copies[gxsp_corners[pair][1]];
+                    list[count][0] = p < q ? p : q;
+                    list[count][1] = p < q ? q : p;
+                }
+            }
+    gxsp_rows_make(&system->pool, scratch, fine, list, count);
+    system->transpose = (uint32_t *)gxsp_take(&system->pool, scratch->failed ? 1 : fine->start[fine->n], sizeof(uint32_t));
+    if (scratch->failed || system->pool.failed)
+        return;
+    for (count = 0; count < lanes; ++count)
+        for (pair = 0; pair < 10; ++pair) {
+            const uint32_t *ends = list[fine->n + 10 * count + (uint32_t)pair];
+            system->fine[count / GXSP_LANES].entry[pair][count % GXSP_LANES] = gxsp_find_entry(fine, ends[0], ends[1]);
+        }
+    for (i = 0; i < fine->n; ++i)
+        for (k = fine->start[i]; k < fine->start[i + 1]; ++k)
+            system->transpose[k] = gxsp_find_entry(fine, fine->column[k], i);
+}
+
+/* All levels of the multigrid below the model. level_count stays 0 if there is nothing to coarsen. */
 static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch)
 {
     gxsp_level *fine = &system->levels[0];
     gxsp_transfer transfer;
     uint32_t c, b, count, at;
     int l;
-    gxsp_level_make(&system->pool, fine, (uint32_t)system->n, 0);
     transfer.key = (uint64_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint64_t));
     transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint32_t));
     if (scratch->failed || system->pool.failed)
@@ -2245,10 +2676,16 @@ static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch)
     if (count == 0)
         return;
     gxsp_level_make(&system->pool, fine + 1, count, 1);
+    system->scratch = (uint32_t *)gxsp_take(&system->pool, GXSP_CHUNK_PARENTS * GXSP_CHUNK_PARENTS + 2 * (size_t)count, sizeof(uint32_t));
+    if (system->fine)
+        gxsp_find_children(&system->pool, fine, count);
     if (system->pool.failed)
         return;
     gxsp_transfer_places(fine, &transfer, fine + 1);
-    gxsp_first_pattern(system, scratch);
+    if (system->fine)
+        gxsp_coarse_rows(&system->pool, scratch, fine);
+    else
+        gxsp_first_pattern(system, scratch);
     if (scratch->failed || system->pool.failed)
         return;
     for (at = 1; at + 1 < GXSP_LEVELS && system->levels[at].n > GXSP_BOTTOM && gxsp_add_level(system, scratch, at); ++at)
@@ -2272,35 +2709,162 @@ static double gxsp_choose_scale(const gxs_model *model)
     return ldexp(1, GXSP_STIFFNESS - exponent);
 }
 
-/* Everything about a model that does not depend on its state; scratch holds what is needed for the time being. */
-static void gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model, gxs_preconditioner preconditioner)
+/* Inverse volumes of supports, the largest volume 1 */
+static void gxsp_find_volumes(gxsp_system *system, const gxs_model *model)
+{
+    double *volume = system->trial, largest = 0; /* borrowed */
+    size_t e, i;
+    int k;
+    system->volume = (float *)gxsp_take(&system->pool, system->n, sizeof(float));
+    if (system->pool.failed)
+        return;
+    for (e = 0; e < model->element_count; ++e)
+        for (k = 0; k < 4; ++k)
+            volume[model->elements[e].copy[k]] += model->elements[e].weight;
+    for (i = 0; i < system->n; ++i)
+        largest = volume[i] > largest ? volume[i] : largest;
+    for (i = 0; i < system->n; ++i) {
+        system->volume[i] = volume[i] > 1e-30 * largest ? (float)(largest / volume[i]) : 0;
+        volume[i] = 0;
+    }
+}
+
+/* What depends on the choice of matrix and preconditioner */
+static void gxsp_preconditioner_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model,
+                                     gxs_preconditioner preconditioner, gxs_matrix matrix)
+{
+    const int multigrid = model->positions && (preconditioner == GXS_MULTIGRID ||
+                          (preconditioner == GXS_AUTOMATIC && system->n >= GXSP_MULTIGRID_FROM));
+    if (preconditioner == GXS_VOLUME_RATIO)
+        gxsp_find_volumes(system, model);
+    system->levels[0].n = (uint32_t)system->n;
+    if (matrix == GXS_MATRIX_ASSEMBLED)
+        gxsp_fine_make(system, scratch);
+    if (!multigrid)
+        return;
+    gxsp_level_make(&system->pool, &system->levels[0], (uint32_t)system->n, 0);
+    system->place = (float(*)[3])gxsp_take(&system->pool, system->n, sizeof *system->place);
+    if (!system->pool.failed && !scratch->failed && gxsp_find_places(system, model))
+        gxsp_multigrid_make(system, scratch);
+}
+
+/* Everything about a model that does not depend on its state; scratch holds what is needed for the time being. Returns the index of
+ * a constraint that cannot be, SIZE_MAX if all can. */
+static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model, const gxs_solver *solver)
 {
     uint32_t i, *forest = (uint32_t *)gxsp_take(scratch, model->copy_count, sizeof(uint32_t));
-    double *total = (double *)gxsp_take(scratch, model->copy_count, sizeof(double));
+    size_t bad;
     system->n = model->copy_count;
     system->element_count = model->element_count;
     system->range_count = (system->n + GXSP_RANGE - 1) / GXSP_RANGE;
     system->lumped_mass = model->lumped_mass != 0;
     system->scale = gxsp_choose_scale(model);
+    system->coarse_rate = -1;
     system->material_count = (uint32_t)model->material_count;
     system->materials = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
+    system->damped = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
     gxsp_system_vectors(system);
     if (scratch->failed || system->pool.failed)
-        return;
+        return SIZE_MAX;
     for (i = 0; i < system->material_count; ++i)
-        system->materials[i] = gxsp_material_make(&model->materials[i]);
+        system->damped[i] = system->materials[i] = gxsp_material_make(&model->materials[i]);
     gxsp_find_fixed(system, model);
-    gxsp_find_pieces(system, model, forest, total);
+    bad = gxsp_find_followers(system, model);
+    if (bad != SIZE_MAX || system->pool.failed)
+        return bad;
+    memcpy(system->still, system->fixed, system->n);
+    gxsp_find_pieces(system, model, forest);
     gxsp_chunks_make(system, scratch, model);
-    if (preconditioner == GXS_BLOCK_JACOBI || !model->positions || scratch->failed || system->pool.failed ||
-        (preconditioner == GXS_AUTOMATIC && system->n < GXSP_MULTIGRID_FROM))
-        return;
-    system->place = (float(*)[3])gxsp_take(&system->pool, system->n, sizeof *system->place);
-    if (!system->pool.failed && gxsp_find_places(system, model))
-        gxsp_multigrid_make(system, scratch);
+    if (!scratch->failed && !system->pool.failed)
+        gxsp_preconditioner_make(system, scratch, model, solver->preconditioner, solver->matrix);
+    return SIZE_MAX;
+}
+
+/* >>followers: what follows a copy gets its motion, and gives it its forces */
+
+/* Increments x of all copies from those of masters */
+static void gxsp_extend(const gxsp_system *system, gxsp_vector4 *x)
+{
+    uint32_t i, k, c;
+    for (i = 0; i < system->follower_count; ++i) {
+        const gxsp_follower *follower = &system->followers[i];
+        gxsp_vector4 sum = {0, 0, 0, 0};
+        for (k = 0; k < 4; ++k)
+            for (c = 0; c < 3; ++c)
+                sum[c] += (float)follower->weight[k] * x[follower->master[k]][c];
+        memcpy(x[follower->copy], sum, sizeof sum);
+    }
+}
+
+/* Forces y on masters; 0 on followers */
+static void gxsp_reduce(const gxsp_system *system, gxsp_vector4 *y)
+{
+    uint32_t i, k, c;
+    for (i = 0; i < system->follower_count; ++i) {
+        const gxsp_follower *follower = &system->followers[i];
+        for (k = 0; k < 4; ++k)
+            for (c = 0; c < 3; ++c)
+                y[follower->master[k]][c] += (float)follower->weight[k] * y[follower->copy][c];
+        memset(y[follower->copy], 0, sizeof *y);
+    }
+}
+
+/* Displacements of followers: that at from, which may be NULL for 0, and what their masters have moved since then */
+static void gxsp_follow(const gxsp_system *system, const double *from, double *displacement)
+{
+    uint32_t i, k, c;
+    for (i = 0; i < system->follower_count; ++i) {
+        const gxsp_follower *follower = &system->followers[i];
+        double *to = displacement + 3 * (size_t)follower->copy;
+        for (c = 0; c < 3; ++c) {
+            double sum = from ? from[3 * (size_t)follower->copy + c] : 0;
+            for (k = 0; k < 4; ++k) {
+                const size_t master = 3 * (size_t)follower->master[k] + c;
+                sum += follower->weight[k] * (displacement[master] - (from ? from[master] : 0));
+            }
+            to[c] = sum;
+        }
+    }
+}
+
+/* Residuals: those of followers are given to masters, but not to copies that are still. */
+static void gxsp_reduce_residual(const gxsp_system *system, double *r)
+{
+    uint32_t i, k, c;
+    for (i = 0; i < system->follower_count; ++i) {
+        const gxsp_follower *follower = &system->followers[i];
+        for (k = 0; k < 4; ++k)
+            for (c = 0; c < 3 && !system->still[follower->master[k]]; ++c)
+                r[3 * (size_t)follower->master[k] + c] += follower->weight[k] * r[3 * (size_t)follower->copy + c];
+        memset(r + 3 * (size_t)follower->copy, 0, 3 * sizeof *r);
+    }
 }
 
 /* >>operator */
+
+/* y += a x and y -= a x for blocks of three columns */
+static void gxsp_add_block(const float *GXSP_RESTRICT a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y)
+{
+    int k;
+    for (k = 0; k < 4; ++k)
+        y[k] += a[k] * x[0] + a[4 + k] * x[1] + a[8 + k] * x[2];
+}
+
+static void gxsp_subtract_block(const float *GXSP_RESTRICT a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y)
+{
+    int k;
+    for (k = 0; k < 4; ++k)
+        y[k] -= a[k] * x[0] + a[4 + k] * x[1] + a[8 + k] * x[2];
+}
+
+/* y = D^-1 x for packed D^-1 */
+static void gxsp_apply_packed(const float *d, const float *x, float *y)
+{
+    const float a = x[0], b = x[1], c = x[2];
+    y[0] = d[0] * a + d[1] * b + d[2] * c;
+    y[1] = d[1] * a + d[3] * b + d[4] * c;
+    y[2] = d[2] * a + d[4] * b + d[5] * c;
+}
 
 static void gxsp_block_gather(const gxsp_rest *GXSP_RESTRICT rest, const gxsp_vector4 *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT to)
 {
@@ -2334,6 +2898,8 @@ static void gxsp_task_product(void *context, size_t index)
     const uint32_t *copies = system->nodes + chunk->first_node;
     gxsp_vector4 *in = system->slot_in + chunk->first_node, *out = system->slot_out + chunk->first_node;
     uint32_t b, i;
+    if (system->chunk_still[index])
+        return;
     for (i = 0; i < chunk->node_count; ++i)
         memcpy(in[i], pass->x[copies[i]], sizeof *in);
     memset(out, 0, chunk->node_count * sizeof *out);
@@ -2342,7 +2908,7 @@ static void gxsp_task_product(void *context, size_t index)
         const gxsp_mass *general = gxsp_block_masses(system, chunk, b);
         gxsp_singles from[12], to[12];
         gxsp_block_gather(rest, (const gxsp_vector4 *)in, from);
-        gxsp_block_product(&system->tangents[chunk->first_block + b], from, to);
+        gxsp_kind_product(chunk->kind, &system->tangents[chunk->first_block + b], gxsp_block_general(system, chunk, b), from, to);
         if (general)
             gxsp_block_mass_product(general, (float)pass->rate, from, to);
         gxsp_block_scatter(rest, to, out);
@@ -2358,7 +2924,7 @@ static void gxsp_task_product_sum(void *context, size_t index)
         float m = system->lumped_mass ? (float)(pass->rate * system->lumped[i]) : 0;
         float x = m * pass->x[i][0], y = m * pass->x[i][1], z = m * pass->x[i][2];
         uint32_t s;
-        for (s = system->copy_start[i]; s < system->copy_start[i + 1]; ++s) {
+        for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->still[i]; ++s) {
             const float *from = system->slot_out[system->copy_slot[s]];
             x += from[0], y += from[1], z += from[2];
         }
@@ -2366,8 +2932,42 @@ static void gxsp_task_product_sum(void *context, size_t index)
     }
 }
 
-/* y = scale (K + rate M) x, K the projected Hessian of the last linearisation */
-static void gxsp_product(gxsp_system *system, double rate, const gxsp_vector4 *x, gxsp_vector4 *y)
+static void gxsp_task_rows(void *context, size_t index)
+{
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    const gxsp_level *fine = &system->levels[0];
+    size_t i = index * GXSP_RANGE, end = i + GXSP_RANGE < system->n ? i + GXSP_RANGE : system->n;
+    uint32_t k;
+    for (; i < end; ++i) {
+        gxsp_vector4 sum = {0, 0, 0, 0};
+        for (k = fine->start[i]; k < fine->start[i + 1] && !system->still[i]; ++k)
+            gxsp_add_block(fine->block + 12 * (size_t)k, pass->x[fine->column[k]], sum);
+        memcpy(pass->y[i], sum, sizeof sum);
+    }
+}
+
+/* y += H x of springs and contact */
+static void gxsp_add_terms(const gxsp_lasting *lasting, gxsp_vector4 *x, gxsp_vector4 *y)
+{
+    size_t t;
+    int k, c;
+    for (t = 0; t < lasting->count; ++t) {
+        const gxsp_term *term = &lasting->term[t];
+        float at[3] = {0, 0, 0}, force[3];
+        for (k = 0; k < 4; ++k)
+            for (c = 0; c < 3; ++c)
+                at[c] += term->weight[k] * x[term->copy[k]][c];
+        gxsp_apply_packed(term->hessian, at, force);
+        for (k = 0; k < 4; ++k)
+            for (c = 0; c < 3; ++c)
+                y[term->copy[k]][c] += term->weight[k] * force[c];
+    }
+}
+
+/* y = scale (K + rate M) x, K the projected Hessian of the last linearisation, on copies that follow nothing; x of followers is
+ * written too. */
+static void gxsp_product(gxsp_system *system, double rate, gxsp_vector4 *x, gxsp_vector4 *y)
 {
     gxsp_pass pass;
     memset(&pass, 0, sizeof pass);
@@ -2375,8 +2975,15 @@ static void gxsp_product(gxsp_system *system, double rate, const gxsp_vector4 *x
     pass.rate = system->scale * rate;
     pass.x = x;
     pass.y = y;
-    gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_product, &pass);
-    gxsp_parallel(system->jobs, system->range_count, gxsp_task_product_sum, &pass);
+    gxsp_extend(system, x);
+    if (system->fine)
+        gxsp_parallel(system->jobs, system->range_count, gxsp_task_rows, &pass);
+    else {
+        gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_product, &pass);
+        gxsp_parallel(system->jobs, system->range_count, gxsp_task_product_sum, &pass);
+    }
+    gxsp_add_terms(system->lasting, x, y);
+    gxsp_reduce(system, y);
 }
 
 /* Hessian of a chunk at pass->from, and its diagonal blocks into the slots, 6 floats each. */
@@ -2390,6 +2997,9 @@ static void gxsp_task_linearise(void *context, size_t index)
     float *slots = (float *)system->slot_in + 6 * (size_t)chunk->first_node;
     uint32_t b;
     int corner, k, l;
+    system->chunk_sum[index][0] = 0;
+    if (system->chunk_still[index])
+        return;
     memset(slots, 0, 6 * (size_t)chunk->node_count * sizeof *slots);
     for (b = 0; b < chunk->block_count; ++b) {
         const gxsp_rest *rest = &system->rest[chunk->first_block + b];
@@ -2398,14 +3008,14 @@ static void gxsp_task_linearise(void *context, size_t index)
         gxsp_lanes x[12];
         gxsp_state s;
         gxsp_block_load(system, chunk, rest, pass->from, x);
-        gxsp_block_parameters(system, rest, &s);
+        gxsp_block_parameters(pass->materials, rest, &s);
         gxsp_block_gradient(rest, x, s.g);
-        gxsp_tangent_make(chunk->kind, rest, system->scale, &s, tangent);
+        system->chunk_sum[index][0] += gxsp_tangent_make(chunk->kind, rest, system->scale, &s, tangent, gxsp_block_general(system, chunk, b));
         GXSP_EACH_LANE(l) tangent->mass[l] = (float)(pass->rate * rest->mass[l]);
         for (corner = 0; corner < 4; ++corner) {
             gxsp_singles gamma[3], block[9];
             gxsp_block_corner(tangent, corner, gamma);
-            gxsp_block_couple(tangent, gamma, gamma, block);
+            gxsp_block_couple(tangent, gxsp_block_general(system, chunk, b), gamma, gamma, block);
             for (l = 0; l < GXSP_LANES; ++l) {
                 float *to = slots + 6 * (size_t)rest->node[corner][l];
                 float mass = 2 * tangent->mass[l] + (general ? (float)(pass->rate * general->entry[own[corner]][l]) : 0);
@@ -2458,14 +3068,12 @@ static void gxsp_task_diagonal(void *context, size_t index)
         double sum[6] = {0, 0, 0, 0, 0, 0};
         uint32_t s;
         int k;
-        for (s = system->copy_start[i]; s < system->copy_start[i + 1]; ++s)
+        for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->still[i]; ++s)
             for (k = 0; k < 6; ++k)
                 sum[k] += (double)slots[6 * (size_t)system->copy_slot[s] + (size_t)k];
         for (k = 0; system->lumped_mass && k < 6; ++k)
             sum[k] += k == 0 || k == 3 || k == 5 ? pass->rate * system->lumped[i] : 0;
-        if (system->fixed[i])
-            memset(sum, 0, sizeof sum);
-        if (sum[0] + sum[3] + sum[5] < 1e-28) /* below single precision: only what is coarser moves such a copy */
+        if (system->still[i] || sum[0] + sum[3] + sum[5] < 1e-28) /* below single precision: only what is coarser moves such a copy */
             memset(sum, 0, sizeof sum);
         gxsp_invert3(sum);
         for (k = 0; k < 6; ++k)
@@ -2473,49 +3081,58 @@ static void gxsp_task_diagonal(void *context, size_t index)
     }
 }
 
-/* Hessian, times scale, and inverse block diagonal at a displacement. 0 if a number overflowed. */
-static int gxsp_linearise(gxsp_system *system, double rate, const double *from)
+/* Springs, contact and followers add to the diagonal blocks: all goes to a copy's first slot, from which the blocks are summed. */
+static void gxsp_extra_diagonal(gxsp_system *system)
+{
+    float *slots = (float *)system->slot_in;
+    size_t t;
+    uint32_t i, s;
+    int k, m;
+    for (t = 0; t < system->lasting->count; ++t)
+        for (k = 0; k < 4; ++k) {
+            const gxsp_term *term = &system->lasting->term[t];
+            const uint32_t copy = term->copy[k];
+            for (m = 0; m < 6 && system->copy_start[copy] < system->copy_start[copy + 1]; ++m)
+                slots[6 * (size_t)system->copy_slot[system->copy_start[copy]] + (size_t)m] += term->weight[k] * term->weight[k] * term->hessian[m];
+        }
+    for (i = 0; i < system->follower_count; ++i)
+        for (s = system->copy_start[system->followers[i].copy]; s < system->copy_start[system->followers[i].copy + 1]; ++s)
+            for (k = 0; k < 4; ++k) {
+                const uint32_t copy = system->followers[i].master[k];
+                const float weight = (float)system->followers[i].weight[k];
+                float *from = slots + 6 * (size_t)system->copy_slot[s];
+                for (m = 0; m < 6 && weight * weight > 0 && system->copy_start[copy] < system->copy_start[copy + 1]; ++m)
+                    slots[6 * (size_t)system->copy_slot[system->copy_start[copy]] + (size_t)m] += weight * weight * from[m];
+            }
+    for (i = 0; i < system->follower_count; ++i)
+        for (s = system->copy_start[system->followers[i].copy]; s < system->copy_start[system->followers[i].copy + 1]; ++s)
+            memset(slots + 6 * (size_t)system->copy_slot[s], 0, 6 * sizeof *slots);
+}
+
+/* Hessian of the elements, times scale, and inverse block diagonal at a displacement. 0 if a number overflowed. */
+static int gxsp_linearise(gxsp_system *system, double rate, const double *from, int *collapsed)
 {
     gxsp_pass pass;
     size_t i;
     memset(&pass, 0, sizeof pass);
     pass.system = system;
+    pass.materials = system->damped;
     pass.rate = system->scale * rate;
     pass.from = from;
     gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_linearise, &pass);
+    gxsp_extra_diagonal(system);
     gxsp_parallel(system->jobs, system->range_count, gxsp_task_diagonal, &pass);
+    *collapsed = 0;
+    for (i = 0; i < system->chunk_count; ++i)
+        *collapsed |= system->chunk_sum[i][0] > 0;
     for (i = 0; i < 6 * system->n; ++i)
         if (!gxsp_finite_single(system->diagonal[i]))
             return 0;
     return 1;
 }
 
-/* y = D^-1 x for packed D^-1 */
-static void gxsp_apply_packed(const float *d, const float *x, float *y)
-{
-    const float a = x[0], b = x[1], c = x[2];
-    y[0] = d[0] * a + d[1] * b + d[2] * c;
-    y[1] = d[1] * a + d[3] * b + d[4] * c;
-    y[2] = d[2] * a + d[4] * b + d[5] * c;
-}
-
 /* >>multigrid: a level's matrix in block rows; block Gauss-Seidel forward before and backward after the coarse correction, so
  * that the whole is symmetric. The order is that of the nodes. */
-
-/* y += a x and y -= a x for blocks of three columns */
-static void gxsp_add_block(const float *GXSP_RESTRICT a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y)
-{
-    int k;
-    for (k = 0; k < 4; ++k)
-        y[k] += a[k] * x[0] + a[4 + k] * x[1] + a[8 + k] * x[2];
-}
-
-static void gxsp_subtract_block(const float *GXSP_RESTRICT a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y)
-{
-    int k;
-    for (k = 0; k < 4; ++k)
-        y[k] -= a[k] * x[0] + a[4 + k] * x[1] + a[8 + k] * x[2];
-}
 
 /* x from 0 by one forward sweep: only the rows' entries left of the diagonal count. What the sweep leaves of b is then
  * minus the entries right of the diagonal times x. */
@@ -2612,7 +3229,8 @@ static void gxsp_cycle(gxsp_system *system, uint32_t at)
     gxsp_sweep_backward(level);
 }
 
-/* z = V-cycle of residual b; z holds D^-1 b on entry. Level 0 is smoothed by omega D^-1. scratch: product */
+/* z = V-cycle of residual b; z holds D^-1 b on entry. Level 0 is smoothed by omega D^-1, or by block Gauss-Seidel if it is
+ * assembled. scratch: product */
 static void gxsp_multigrid(gxsp_system *system, double rate, gxsp_vector4 *b, gxsp_vector4 *z)
 {
     gxsp_level *fine = &system->levels[0];
@@ -2620,17 +3238,21 @@ static void gxsp_multigrid(gxsp_system *system, double rate, gxsp_vector4 *b, gx
     size_t i;
     int c;
     fine->x = z, fine->b = b, fine->r = system->product;
+    if (system->fine) {
+        gxsp_cycle(system, 0);
+        return;
+    }
     for (i = 0; i < system->n; ++i)
         for (c = 0; c < 3; ++c)
             z[i][c] *= omega;
-    gxsp_product(system, rate, (const gxsp_vector4 *)z, fine->r);
+    gxsp_product(system, rate, z, fine->r);
     for (i = 0; i < system->n; ++i)
         for (c = 0; c < 3; ++c)
             fine->r[i][c] = b[i][c] - fine->r[i][c];
     gxsp_restrict(fine, fine + 1);
     gxsp_cycle(system, 1);
     gxsp_prolong(fine, fine + 1);
-    gxsp_product(system, rate, (const gxsp_vector4 *)z, fine->r);
+    gxsp_product(system, rate, z, fine->r);
     for (i = 0; i < system->n; ++i) {
         float r[3], y[3];
         for (c = 0; c < 3; ++c)
@@ -2642,20 +3264,6 @@ static void gxsp_multigrid(gxsp_system *system, double rate, gxsp_vector4 *b, gx
 }
 
 /* --- numbers of the coarse levels --- */
-
-/* Index of column j in row i */
-static uint32_t gxsp_find_entry(const gxsp_level *level, uint32_t i, uint32_t j)
-{
-    uint32_t low = level->start[i], high = level->start[i + 1];
-    while (high - low > 1) {
-        uint32_t middle = low + (high - low) / 2;
-        if (level->column[middle] <= j)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
-}
 
 static float *gxsp_pair_block(gxsp_chunk_pairs *pairs, gxsp_level *next, uint32_t i, uint32_t j)
 {
@@ -2670,7 +3278,7 @@ static float *gxsp_pair_block(gxsp_chunk_pairs *pairs, gxsp_level *next, uint32_
 /* Hessian of a block between gradients in the frame of V: h[3 k + l] couples unit vectors k and l, three columns of 4 */
 typedef float gxsp_couplings[9][12];
 
-static void gxsp_block_couplings(const gxsp_tangent *tangent, gxsp_couplings *h)
+static void gxsp_block_couplings(const gxsp_tangent *tangent, const gxsp_general *general, gxsp_couplings *h)
 {
     int k, m, l, r, c;
     for (k = 0; k < 3; ++k)
@@ -2679,7 +3287,7 @@ static void gxsp_block_couplings(const gxsp_tangent *tangent, gxsp_couplings *h)
             memset(p, 0, sizeof p);
             memset(q, 0, sizeof q);
             GXSP_EACH_LANE(l) p[k][l] = q[m][l] = 1;
-            gxsp_block_couple(tangent, p, q, block);
+            gxsp_block_couple(tangent, general, p, q, block);
             for (l = 0; l < GXSP_LANES; ++l)
                 for (r = 0; r < 3; ++r)
                     for (c = 0; c < 3; ++c)
@@ -2749,7 +3357,7 @@ static void gxsp_coarse_elements(gxsp_system *system, double rate)
         gxsp_pairs_begin(&pairs);
         for (b = 0; b < system->chunks[c].block_count; ++b) {
             gxsp_couplings h[GXSP_LANES];
-            gxsp_block_couplings(&system->tangents[system->chunks[c].first_block + b], h);
+            gxsp_block_couplings(&system->tangents[system->chunks[c].first_block + b], gxsp_block_general(system, &system->chunks[c], b), h);
             for (l = 0; l < GXSP_LANES; ++l)
                 if (system->rest[system->chunks[c].first_block + b].weight[l] > 0)
                     gxsp_coarse_element(system, &system->chunks[c], b, l, rate, h[l], &pairs);
@@ -2869,13 +3477,98 @@ static void gxsp_coarse_lumped(gxsp_system *system, double rate)
                 }
 }
 
-/* The matrices of all levels from the last linearisation. 0 if a number overflowed. */
+/* Springs and contact between coarse functions, where level 1's matrix has an entry for them */
+static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term)
+{
+    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    const gxsp_level *fine = &system->levels[0];
+    gxsp_level *next = &system->levels[1];
+    int i, j, p, q, k;
+    for (i = 0; i < 16; ++i)
+        for (j = 0; j < 16; ++j) {
+            const uint32_t a = term->copy[i / 4], b = term->copy[j / 4], row = fine->parent[a][i % 4], column = fine->parent[b][j % 4];
+            uint32_t entry;
+            p = i % 4, q = j % 4;
+            if (row == GXSP_NONE || column == GXSP_NONE)
+                continue;
+            entry = gxsp_find_entry(next, row, column);
+            if (next->column[entry] != column)
+                continue;
+            for (k = 0; k < 9; ++k)
+                next->block[12 * (size_t)entry + (size_t)(k / 3 * 4 + k % 3)] +=
+                    term->weight[i / 4] * term->weight[j / 4] * fine->weight[a][p] * fine->weight[b][q] * term->hessian[full[k]];
+        }
+}
+
+/* The assembled matrix from the last linearisation: each element's ten blocks, then what mirrors them */
+static void gxsp_assemble(gxsp_system *system, double rate)
+{
+    gxsp_level *fine = &system->levels[0];
+    uint32_t c, b, i, k;
+    int pair, l, e;
+    memset(fine->block, 0, 12 * (size_t)fine->start[fine->n] * sizeof(float));
+    for (c = 0; c < system->chunk_count; ++c)
+        for (b = 0; b < system->chunks[c].block_count && !system->chunk_still[c]; ++b) {
+            const gxsp_chunk *chunk = &system->chunks[c];
+            const gxsp_rest *rest = &system->rest[chunk->first_block + b];
+            const gxsp_tangent *tangent = &system->tangents[chunk->first_block + b];
+            const gxsp_mass *general = gxsp_block_masses(system, chunk, b);
+            gxsp_singles gamma[4][3];
+            for (k = 0; k < 4; ++k)
+                gxsp_block_corner(tangent, (int)k, gamma[k]);
+            for (pair = 0; pair < 10; ++pair) {
+                const int p = gxsp_corners[pair][0], q = gxsp_corners[pair][1];
+                gxsp_singles block[9];
+                gxsp_block_couple(tangent, gxsp_block_general(system, chunk, b), gamma[p], gamma[q], block);
+                for (l = 0; l < GXSP_LANES; ++l) {
+                    const uint32_t *nodes = system->nodes + chunk->first_node;
+                    const int turned = nodes[rest->node[p][l]] > nodes[rest->node[q][l]];
+                    float mass = tangent->mass[l] * (p == q ? 2.0f : 1.0f) + (general ? (float)(rate * general->entry[pair][l]) : 0);
+                    float *to = fine->block + 12 * (size_t)system->fine[chunk->first_block + b].entry[pair][l];
+                    for (e = 0; e < 9; ++e)
+                        to[turned ? e / 3 * 4 + e % 3 : e % 3 * 4 + e / 3] += block[e][l];
+                    to[0] += mass, to[5] += mass, to[10] += mass;
+                }
+            }
+        }
+    for (i = 0; i < fine->n; ++i)
+        for (k = fine->start[i]; fine->column[k] <= i; ++k) {
+            float *to = fine->block + 12 * (size_t)k;
+            const float *from = fine->block + 12 * (size_t)system->transpose[k], mass = (float)(rate * system->lumped[i]);
+            for (e = 0; e < 9 && fine->column[k] < i; ++e)
+                to[e / 3 * 4 + e % 3] = from[e % 3 * 4 + e / 3];
+            if (fine->column[k] == i && system->lumped_mass)
+                to[0] += mass, to[5] += mass, to[10] += mass;
+            if (k + 1 == fine->start[i + 1])
+                break;
+        }
+}
+
+/* Inverse diagonal blocks of the assembled matrix, which block Gauss-Seidel reads as columns of four */
+static void gxsp_spread_diagonal(gxsp_system *system)
+{
+    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    size_t i, k;
+    for (i = 0; i < system->n; ++i)
+        for (k = 0; k < 9; ++k)
+            system->levels[0].inverse[12 * i + k / 3 * 4 + k % 3] = system->diagonal[6 * i + (size_t)full[k]];
+}
+
+/* The matrices of all coarse levels from the last linearisation. 0 if a number overflowed. */
 static int gxsp_coarse_numbers(gxsp_system *system, double rate)
 {
+    gxsp_level *fine = &system->levels[0];
     uint32_t at;
-    gxsp_coarse_elements(system, system->scale * rate);
-    if (system->lumped_mass)
-        gxsp_coarse_lumped(system, system->scale * rate);
+    size_t t;
+    if (system->fine)
+        gxsp_coarsen(fine, fine + 1, fine->child_start, fine->child, system->scratch);
+    else {
+        gxsp_coarse_elements(system, system->scale * rate);
+        if (system->lumped_mass)
+            gxsp_coarse_lumped(system, system->scale * rate);
+    }
+    for (t = 0; t < system->lasting->count; ++t)
+        gxsp_coarse_term(system, &system->lasting->term[t]);
     for (at = 1; at < system->level_count; ++at) {
         gxsp_level *level = &system->levels[at];
         if (!gxsp_invert_diagonal(level))
@@ -2898,12 +3591,12 @@ static void gxsp_find_omega(gxsp_system *system, double rate)
     for (i = 0; i < system->n; ++i)
         for (c = 0; c < 3; ++c) {
             random = random * 1664525u + 1013904223u;
-            x[i][c] = system->fixed[i] ? 0 : (float)(random >> 8) / 8388608.0f - 1;
+            x[i][c] = system->still[i] ? 0 : (float)(random >> 8) / 8388608.0f - 1;
         }
     for (round = 0; round < 6; ++round) {
         double before = 0, after = 0;
         float scale;
-        gxsp_product(system, rate, (const gxsp_vector4 *)x, y);
+        gxsp_product(system, rate, x, y);
         for (i = 0; i < system->n; ++i) {
             float z[3];
             gxsp_apply_packed(system->diagonal + 6 * i, y[i], z);
@@ -2927,36 +3620,28 @@ static void gxsp_find_omega(gxsp_system *system, double rate)
 
 /* >>pieces */
 
-/* Sums over free pieces: cleared, copies added one by one, then as a mean over each piece's mass. */
+/* Sums over pieces: cleared, copies added one by one, then as a mean over each piece's mass. Only of pieces of state 0. */
 static void gxsp_clear_pieces(gxsp_system *system)
 {
-    size_t p;
+    uint32_t p;
     for (p = 0; p < system->piece_count; ++p)
-        memset(system->piece_sum + 4 * p, 0, 3 * sizeof(double));
+        memset(system->pieces[p].sum, 0, sizeof system->pieces[p].sum);
 }
 
 static void gxsp_add_to_piece(gxsp_system *system, size_t copy, double x, double y, double z)
 {
-    double *sum;
-    if (system->piece[copy] == GXSP_NONE)
+    gxsp_piece *piece = &system->pieces[system->piece[copy]];
+    if (piece->state != 0)
         return;
-    sum = system->piece_sum + 4 * (size_t)system->piece[copy];
-    sum[0] += x, sum[1] += y, sum[2] += z;
+    piece->sum[0] += x, piece->sum[1] += y, piece->sum[2] += z;
 }
 
 static void gxsp_average_pieces(gxsp_system *system)
 {
-    size_t p, r;
+    uint32_t p, r;
     for (p = 0; p < system->piece_count; ++p)
-        for (r = 0; r < 3; ++r)
-            system->piece_sum[4 * p + r] /= system->piece_sum[4 * p + 3];
-}
-
-/* Of the copy's piece; zeros where it belongs to none */
-static const double *gxsp_piece_average(const gxsp_system *system, size_t copy)
-{
-    static const double none[3] = {0, 0, 0};
-    return system->piece[copy] == GXSP_NONE ? none : system->piece_sum + 4 * (size_t)system->piece[copy];
+        for (r = 0; r < 3 && system->pieces[p].state == 0; ++r)
+            system->pieces[p].sum[r] /= system->pieces[p].mass;
 }
 
 /* Subtracts from x, piece by piece, the translation with x's momentum. */
@@ -2964,7 +3649,7 @@ static void gxsp_remove_translations(gxsp_system *system, gxsp_vector4 *x)
 {
     size_t i;
     int r;
-    if (system->piece_count == 0)
+    if (system->loose_count == 0)
         return;
     gxsp_clear_pieces(system);
     for (i = 0; i < system->n; ++i) {
@@ -2974,15 +3659,15 @@ static void gxsp_remove_translations(gxsp_system *system, gxsp_vector4 *x)
     gxsp_average_pieces(system);
     for (i = 0; i < system->n; ++i)
         for (r = 0; r < 3; ++r)
-            x[i][r] -= (float)gxsp_piece_average(system, i)[r];
+            x[i][r] -= (float)system->pieces[system->piece[i]].sum[r];
 }
 
-/* Translates every free piece of x so that load = rate M (x - from) in sum. load and from may be NULL: zeros; without both, x's own
+/* Translates every loose piece of x so that load = rate M (x - from) in sum. load and from may be NULL: zeros; without both, x's own
  * momentum is taken out. */
 static void gxsp_balance_momentum(gxsp_system *system, const double *load, double rate, const double *from, double *x)
 {
     size_t i, r;
-    if (system->piece_count == 0)
+    if (system->loose_count == 0)
         return;
     gxsp_clear_pieces(system);
     for (i = 0; i < system->n; ++i) {
@@ -2996,7 +3681,199 @@ static void gxsp_balance_momentum(gxsp_system *system, const double *load, doubl
     gxsp_average_pieces(system);
     for (i = 0; i < system->n; ++i)
         for (r = 0; r < 3; ++r)
-            x[3 * i + r] += gxsp_piece_average(system, i)[r] / rate;
+            x[3 * i + r] += system->pieces[system->piece[i]].sum[r] / rate;
+}
+
+/* Pieces that springs and contact act on, of which terms tells, are not loose. */
+static void gxsp_touch_pieces(gxsp_system *system)
+{
+    size_t t;
+    uint32_t p;
+    int k;
+    for (p = 0; p < system->piece_count; ++p)
+        system->pieces[p].state &= ~GXSP_TOUCHED;
+    for (t = 0; t < system->lasting->count; ++t)
+        for (k = 0; k < 4; ++k)
+            if (system->lasting->term[t].weight[k] * system->lasting->term[t].weight[k] > 0)
+                system->pieces[system->piece[system->lasting->term[t].copy[k]]].state |= GXSP_TOUCHED;
+    system->loose_count = 0;
+    for (p = 0; p < system->piece_count; ++p)
+        system->loose_count += system->pieces[p].state == 0;
+}
+
+/* >>points: springs and contact at material points */
+
+/* What acts on one point */
+typedef struct gxsp_pull {
+    double energy;      /* J */
+    double force[3];    /* on the point, N */
+    double hessian[6];  /* of the energy, N/m, packed */
+} gxsp_pull;
+
+static void gxsp_point_position(const gxs_point *point, const double *displacement, double *x)
+{
+    int k, c;
+    memcpy(x, point->position, 3 * sizeof *x);
+    for (k = 0; k < 4; ++k)
+        for (c = 0; c < 3; ++c)
+            x[c] += point->weight[k] * displacement[3 * (size_t)point->copy[k] + (size_t)c];
+}
+
+/* Can the step move it? */
+static int gxsp_point_moves(const gxsp_system *system, const gxs_point *point)
+{
+    int k;
+    for (k = 0; k < 4; ++k)
+        if (fabs(point->weight[k]) > 0 && !system->still[point->copy[k]])
+            return 1;
+    return 0;
+}
+
+static void gxsp_spring_pull(const gxs_spring *spring, const double *x, gxsp_pull *pull)
+{
+    int c;
+    memset(pull, 0, sizeof *pull);
+    for (c = 0; c < 3; ++c) {
+        const double gap = spring->target[c] - x[c];
+        pull->energy += 0.5 * spring->stiffness * gap * gap;
+        pull->force[c] = spring->stiffness * gap;
+        pull->hessian[gxsp_packed3(c, c)] = spring->stiffness;
+    }
+}
+
+/* Adds c (a 1 + b n n^T) */
+static void gxsp_add_dyad(double a, double b, const double *n, double *hessian)
+{
+    int i, j;
+    for (i = 0; i < 3; ++i)
+        for (j = i; j < 3; ++j)
+            hessian[gxsp_packed3(i, j)] += (i == j ? a : 0) + b * n[i] * n[j];
+}
+
+/* Friction: energy load phi(|y|), y the way across the plane since the step's start, phi(s) = s^2 / (2 reach) up to reach and
+ * s - reach/2 beyond. Convex, so its Hessian is semi-definite. */
+static void gxsp_friction_pull(const gxs_plane *plane, double load, double reach, const double *way, gxsp_pull *pull)
+{
+    const double *n = plane->normal, along = n[0] * way[0] + n[1] * way[1] + n[2] * way[2];
+    double y[3], unit[3], s, factor, part[6] = {0, 0, 0, 0, 0, 0};
+    int c;
+    for (c = 0; c < 3; ++c)
+        y[c] = way[c] - along * n[c];
+    s = sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2]);
+    factor = load / (s > reach ? s : reach);
+    pull->energy += s > reach ? load * (s - 0.5 * reach) : 0.5 * factor * s * s;
+    gxsp_add_dyad(factor, -factor, n, part);
+    for (c = 0; c < 3; ++c) {
+        pull->force[c] -= factor * y[c];
+        unit[c] = s > 0 ? y[c] / s : 0;
+    }
+    if (s > reach)
+        gxsp_add_dyad(0, -factor, unit, part);
+    for (c = 0; c < 6; ++c)
+        pull->hessian[c] += part[c];
+}
+
+/* before: where the point was at the step's start; dt: since then */
+static void gxsp_plane_pull(const gxs_plane *plane, double dt, const double *before, const double *x, gxsp_pull *pull)
+{
+    const double *n = plane->normal, depth = plane->offset - (n[0] * x[0] + n[1] * x[1] + n[2] * x[2]);
+    const double pressed = plane->stiffness * (plane->offset - (n[0] * before[0] + n[1] * before[1] + n[2] * before[2]));
+    const double reach = dt * (plane->sticking_speed > 0 ? plane->sticking_speed : 1e-3);
+    double way[3];
+    int c;
+    if (depth > 0) {
+        pull->energy += 0.5 * plane->stiffness * depth * depth;
+        for (c = 0; c < 3; ++c)
+            pull->force[c] += plane->stiffness * depth * n[c];
+        gxsp_add_dyad(0, plane->stiffness, n, pull->hessian);
+    }
+    for (c = 0; c < 3; ++c)
+        way[c] = x[c] - before[c];
+    if (pressed > 0 && plane->friction > 0 && reach > 0)
+        gxsp_friction_pull(plane, plane->friction * pressed, reach, way, pull);
+}
+
+/* All that acts on contact point i at a displacement */
+static void gxsp_contact_pull(const gxsp_problem *problem, size_t i, const double *displacement, gxsp_pull *pull)
+{
+    const gxs_step_desc *step = problem->step;
+    double x[3], before[3];
+    size_t p;
+    int c;
+    memset(pull, 0, sizeof *pull);
+    gxsp_point_position(&step->points[i], displacement, x);
+    gxsp_point_position(&step->points[i], problem->system->base, before);
+    for (p = 0; p < step->plane_count; ++p)
+        gxsp_plane_pull(&step->planes[p], step->integrator == GXS_MIDPOINT ? 0.5 * step->dt : step->dt, before, x, pull);
+    if (step->contact) {
+        double force[3] = {0, 0, 0}, hessian[6] = {0, 0, 0, 0, 0, 0};
+        pull->energy += step->contact(step->contact_user, i, x, force, hessian);
+        for (c = 0; c < 3; ++c)
+            pull->force[c] += force[c];
+        for (c = 0; c < 6; ++c)
+            pull->hessian[c] += hessian[c];
+    }
+}
+
+/* The points of a step one after the other: springs, then those of contact. NULL at the end; points that do not move are left out. */
+static const gxs_point *gxsp_next_pull(const gxsp_problem *problem, size_t *at, const double *displacement, gxsp_pull *pull)
+{
+    const gxs_step_desc *step = problem->step;
+    for (; *at < step->spring_count + step->point_count; ++*at) {
+        const size_t i = *at;
+        const gxs_point *point = i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
+        double x[3];
+        if (!gxsp_point_moves(problem->system, point))
+            continue;
+        gxsp_point_position(point, displacement, x);
+        if (i < step->spring_count)
+            gxsp_spring_pull(&step->springs[i], x, pull);
+        else
+            gxsp_contact_pull(problem, i - step->spring_count, displacement, pull);
+        ++*at;
+        return point;
+    }
+    return NULL;
+}
+
+/* Energies of elements and points, and their forces with inertia */
+static void gxsp_evaluate(const gxsp_problem *problem, const double *from, int nudge, double *force, double *energies)
+{
+    const gxs_point *point;
+    gxsp_pull pull;
+    size_t at = 0;
+    int k, c;
+    gxsp_evaluate_elements(problem->system, problem->rate, from, nudge, force, energies);
+    while ((point = gxsp_next_pull(problem, &at, from, &pull)) != NULL) {
+        energies[0] += pull.energy;
+        energies[2] += fabs(pull.energy);
+        for (k = 0; k < 4; ++k)
+            for (c = 0; c < 3 && !problem->system->still[point->copy[k]]; ++c)
+                force[3 * (size_t)point->copy[k] + (size_t)c] -= point->weight[k] * pull.force[c];
+    }
+}
+
+/* Hessians of all points at a displacement as terms, and which pieces they touch */
+static void gxsp_terms_make(const gxsp_problem *problem, const double *displacement)
+{
+    gxsp_lasting *lasting = problem->system->lasting;
+    const gxs_point *point;
+    gxsp_pull pull;
+    size_t at = 0;
+    int k;
+    lasting->count = 0;
+    while ((point = gxsp_next_pull(problem, &at, displacement, &pull)) != NULL) {
+        gxsp_term *term = &lasting->term[lasting->count];
+        if (!(pull.hessian[0] + pull.hessian[3] + pull.hessian[5] > 0))
+            continue;
+        ++lasting->count;
+        memcpy(term->copy, point->copy, sizeof term->copy);
+        for (k = 0; k < 4; ++k)
+            term->weight[k] = (float)point->weight[k];
+        for (k = 0; k < 6; ++k)
+            term->hessian[k] = (float)(problem->system->scale * pull.hessian[k]);
+    }
+    gxsp_touch_pieces(problem->system);
 }
 
 /* >>cg */
@@ -3023,7 +3900,7 @@ static gxsp_norms gxsp_scale(gxsp_system *system, const double *r)
     return norms;
 }
 
-/* z = M^-1 r from D^-1 r, both scaled; without translations of free pieces. Returns r . z. */
+/* z = M^-1 r from D^-1 r, both scaled; without translations of loose pieces. Returns r . z. */
 static double gxsp_precondition(gxsp_system *system, double rate)
 {
     double product = 0;
@@ -3032,14 +3909,30 @@ static double gxsp_precondition(gxsp_system *system, double rate)
     if (system->level_count > 0) {
         for (i = 0; i < system->n; ++i)
             for (c = 0; c < 3; ++c)
-                system->right[i][c] = system->fixed[i] ? 0 : (float)system->residual[3 * i + (size_t)c];
+                system->right[i][c] = system->still[i] ? 0 : (float)system->residual[3 * i + (size_t)c];
         gxsp_multigrid(system, rate, system->right, system->scaled);
     }
+    for (i = 0; i < system->n && system->volume; ++i)
+        for (c = 0; c < 3; ++c)
+            system->scaled[i][c] = system->still[i] ? 0 : system->volume[i] * (float)system->residual[3 * i + (size_t)c];
+    gxsp_extend(system, system->scaled);
     gxsp_remove_translations(system, system->scaled);
     for (i = 0; i < system->n; ++i)
         for (c = 0; c < 3; ++c)
             product += system->residual[3 * i + (size_t)c] * (double)system->scaled[i][c];
     return product;
+}
+
+static double gxsp_now(const gxsp_problem *problem)
+{
+    return problem->step->clock ? problem->step->clock(problem->step->clock_user) : 0;
+}
+
+static int gxsp_out_of_time(gxsp_problem *problem)
+{
+    if (problem->step->budget_seconds > 0 && problem->step->clock && gxsp_now(problem) - problem->start > problem->step->budget_seconds)
+        problem->report.stop = GXS_STOP_SECONDS;
+    return problem->report.stop == GXS_STOP_SECONDS;
 }
 
 /* Solves scale (K + rate M) direction = scale residual to a share of the residual, which is used up. The directions of free pieces carry
@@ -3063,7 +3956,7 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
     memcpy(system->search, system->scaled, system->n * sizeof *system->search);
     for (iteration = 0; iteration < problem->cg_iterations; ++iteration) {
         double curvature = 0, alpha, beta;
-        gxsp_product(system, rate, (const gxsp_vector4 *)system->search, system->product);
+        gxsp_product(system, rate, system->search, system->product);
         for (i = 0; i < system->n; ++i)
             for (c = 0; c < 3; ++c)
                 curvature += (double)system->search[i][c] * (double)system->product[i][c];
@@ -3079,7 +3972,7 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
             }
         ++problem->report.cg_iterations;
         now = gxsp_scale(system, system->residual);
-        if (now.energy <= goal * first.energy && now.displacement <= goal * first.displacement)
+        if ((now.energy <= goal * first.energy && now.displacement <= goal * first.displacement) || gxsp_out_of_time(problem))
             break;
         beta = rho;
         rho = gxsp_precondition(system, rate);
@@ -3088,18 +3981,23 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
             for (c = 0; c < 3; ++c)
                 system->search[i][c] = system->scaled[i][c] + (float)beta * system->search[i][c];
     }
+    gxsp_follow(system, NULL, system->direction);
     gxsp_balance_momentum(system, NULL, 1, NULL, system->direction); /* what single precision left of it */
     return gxsp_first_not_finite(system->direction, 3 * system->n) == 3 * system->n;
 }
 
-/* Brings the preconditioner up to date with the linearisation: the coarse matrices are made anew where they are missing, where
+/* Brings matrix and preconditioner up to date with the linearisation: the coarse matrices are made anew where they are missing, where
  * the rate has changed, or where iterations have risen by half since they were made. */
 static int gxsp_prepare(gxsp_problem *problem)
 {
     gxsp_system *system = problem->system;
+    if (system->fine) {
+        gxsp_assemble(system, system->scale * problem->rate);
+        gxsp_spread_diagonal(system);
+    }
     if (system->level_count == 0)
         return 1;
-    if (!(system->omega > 0))
+    if (!(system->omega > 0) && !system->fine)
         gxsp_find_omega(system, problem->rate);
     system->coarse_fresh = system->coarse_rate < problem->rate || system->coarse_rate > problem->rate || system->coarse_worn;
     if (!system->coarse_fresh)
@@ -3114,14 +4012,153 @@ static int gxsp_solve(gxsp_problem *problem)
 {
     gxsp_system *system = problem->system;
     uint32_t before = problem->report.cg_iterations, count;
-    if (!gxsp_prepare(problem) || !gxsp_conjugate_gradients(problem))
-        return 0;
+    double start = gxsp_now(problem), prepared;
+    int solved = gxsp_prepare(problem);
+    prepared = gxsp_now(problem);
+    solved = solved && gxsp_conjugate_gradients(problem);
+    problem->report.seconds_prepare += prepared - start;
+    problem->report.seconds_solve += gxsp_now(problem) - prepared;
     count = problem->report.cg_iterations - before;
     if (system->coarse_fresh)
         system->usual_iterations = count;
     else if (count > system->usual_iterations + system->usual_iterations / 2 + 1)
         system->coarse_worn = 1;
-    return 1;
+    return solved;
+}
+
+/* >>sleep: a piece that has been slow for long is left out until something touches it: loads, targets, springs or planes that change, a
+ * state or a rest time that the caller has written */
+
+static uint64_t gxsp_hash(uint64_t hash, const double *values, size_t count)
+{
+    size_t i;
+    for (i = 0; i < count; ++i) {
+        uint64_t bits;
+        memcpy(&bits, &values[i], sizeof bits);
+        hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
+        hash ^= hash >> 29;
+    }
+    return hash | 1;
+}
+
+static int gxsp_differs(const double *a, const double *b)
+{
+    return memcmp(a, b, 3 * sizeof *a) != 0;
+}
+
+static void gxsp_wake(gxsp_system *system, size_t copy)
+{
+    system->pieces[system->piece[copy]].woken = 1;
+}
+
+/* Does something change for all pieces at once? Notes what is to be compared with in the next step. */
+static int gxsp_scene_changed(const gxs_step_desc *step, gxsp_lasting *lasting)
+{
+    uint64_t planes = 1;
+    int changed;
+    size_t i;
+    for (i = 0; i < step->plane_count; ++i) {
+        const gxs_plane *plane = &step->planes[i];
+        planes = gxsp_hash(gxsp_hash(planes, plane->normal, 3), &plane->offset, 1);
+        planes = gxsp_hash(gxsp_hash(planes, &plane->stiffness, 1), &plane->friction, 1);
+    }
+    changed = gxsp_differs(step->gravity, lasting->gravity) || planes != lasting->planes;
+    memcpy(lasting->gravity, step->gravity, sizeof lasting->gravity);
+    lasting->planes = planes;
+    return changed;
+}
+
+/* Wakes the pieces of which something has changed. */
+static void gxsp_wake_touched(gxsp_problem *problem, const double *displacement, const double *velocity)
+{
+    static const double zero[3] = {0, 0, 0};
+    gxsp_system *system = problem->system;
+    const gxs_step_desc *step = problem->step;
+    gxsp_lasting *lasting = system->lasting;
+    size_t i, k;
+    uint32_t p;
+    for (i = 0; i < system->n; ++i) {
+        gxsp_piece *piece = &system->pieces[system->piece[i]];
+        if (step->targets && system->held[i] && gxsp_differs(step->targets + 3 * i, displacement + 3 * i))
+            piece->woken = 1;
+        if ((piece->state & GXSP_ASLEEP) && !system->fixed[i] &&
+            (gxsp_differs(velocity + 3 * i, zero) || gxsp_differs(displacement + 3 * i, system->current + 3 * i)))
+            piece->woken = 1;
+    }
+    for (k = 0; k < step->spring_count; ++k)
+        for (i = 0; i < 4; ++i)
+            if (fabs(step->springs[k].point.weight[i]) > 0)
+                gxsp_wake(system, step->springs[k].point.copy[i]);
+    if (step->forces || lasting->forces) {
+        uint64_t *hash = (uint64_t *)(void *)system->trial; /* borrowed: one per piece */
+        for (p = 0; p < system->piece_count; ++p)
+            hash[p] = 1;
+        for (i = 0; i < system->n; ++i)
+            hash[system->piece[i]] = gxsp_hash(hash[system->piece[i]], step->forces ? step->forces + 3 * i : zero, 3);
+        for (p = 0; p < system->piece_count; ++p) {
+            system->pieces[p].woken |= hash[p] != system->pieces[p].forces;
+            system->pieces[p].forces = hash[p];
+        }
+    }
+    lasting->forces = step->forces != NULL;
+}
+
+/* Which pieces sleep in this step, and so which copies are still. */
+static void gxsp_choose_sleepers(gxsp_problem *problem, const double *displacement, const double *velocity)
+{
+    gxsp_system *system = problem->system;
+    const gxs_step_desc *step = problem->step;
+    const double time = step->sleep_time > 0 ? step->sleep_time : 0.5;
+    const int all = gxsp_scene_changed(step, system->lasting);
+    int changed = 0;
+    uint32_t p, c, k;
+    size_t i;
+    for (p = 0; p < system->piece_count; ++p)
+        system->pieces[p].woken = all;
+    gxsp_wake_touched(problem, displacement, velocity);
+    for (p = 0; p < system->piece_count; ++p)
+        system->pieces[p].tired = step->sleep_speed > 0 && !system->pieces[p].woken;
+    for (i = 0; i < system->n && step->sleep_speed > 0; ++i)
+        if (!system->fixed[i] && step->rest_times[i] < time)
+            system->pieces[system->piece[i]].tired = 0;
+    for (p = 0; p < system->piece_count; ++p) {
+        gxsp_piece *piece = &system->pieces[p];
+        const uint32_t state = (piece->state & ~GXSP_ASLEEP) | (piece->tired ? GXSP_ASLEEP : 0);
+        changed |= state != piece->state;
+        system->coarse_worn |= (piece->state & ~state & GXSP_ASLEEP) != 0; /* its matrices are old */
+        piece->state = state;
+    }
+    if (!changed && system->still_known)
+        return;
+    system->still_known = 1;
+    system->base_known = 0;
+    for (i = 0; i < system->n; ++i)
+        system->still[i] = system->fixed[i] || (system->pieces[system->piece[i]].state & GXSP_ASLEEP);
+    for (c = 0; c < system->chunk_count; ++c) {
+        system->chunk_still[c] = 1;
+        for (k = 0; k < system->chunks[c].node_count; ++k)
+            system->chunk_still[c] &= system->still[system->nodes[system->chunks[c].first_node + k]];
+    }
+    system->active = 3 * system->n;
+    for (i = 0; i < system->n; ++i)
+        system->active -= system->still[i] ? 3 : 0;
+    for (i = 0; i < system->follower_count; ++i)
+        system->active -= system->still[system->followers[i].copy] ? 0 : 3;
+}
+
+/* The rest times of a step that has ended with these velocities */
+static void gxsp_count_rest(const gxsp_problem *problem, const double *velocity)
+{
+    const gxsp_system *system = problem->system;
+    const gxs_step_desc *step = problem->step;
+    size_t i;
+    if (!(step->sleep_speed > 0))
+        return;
+    for (i = 0; i < system->n; ++i) {
+        const double square = gxsp_dot(velocity + 3 * i, velocity + 3 * i, 1);
+        const int rests = square <= step->sleep_speed * step->sleep_speed && !system->pieces[system->piece[i]].woken;
+        step->rest_times[i] = rests ? step->rest_times[i] + step->dt : 0;
+    }
 }
 
 /* >>newton */
@@ -3142,7 +4179,8 @@ static double gxsp_balance(gxsp_problem *problem)
         part[i] = system->force[i] - part[i];
     elastic = gxsp_scale(system, part);
     for (i = 0; i < count; ++i)
-        system->residual[i] = system->fixed[i / 3] ? 0 : system->load[i] - system->force[i];
+        system->residual[i] = system->still[i / 3] ? 0 : system->load[i] - system->force[i];
+    gxsp_reduce_residual(system, system->residual);
     residual = gxsp_scale(system, system->residual);
     energy = sqrt(load.energy) + sqrt(inertia.energy) + sqrt(elastic.energy);
     displacement = sqrt(load.displacement) + sqrt(inertia.displacement) + sqrt(elastic.displacement);
@@ -3155,17 +4193,19 @@ static double gxsp_balance(gxsp_problem *problem)
 static int gxsp_update(gxsp_problem *problem)
 {
     gxsp_system *system = problem->system;
-    gxsp_evaluate(system, problem->rate, system->current, system->force, problem->energies);
+    gxsp_evaluate(problem, system->current, 0, system->force, problem->energies);
     return gxsp_finite(problem->energies[0]) && gxsp_finite(problem->energies[1]) &&
            gxsp_first_not_finite(system->force, 3 * system->n) == 3 * system->n;
 }
 
-/* Start of Newton at from (target or base), each free piece translated so that its momentum balances. The rest of the
+/* Start of Newton at from (target or base), each loose piece translated so that its momentum balances. The rest of the
  * iteration cannot change momentum: elastic forces have none, nor do the directions. */
 static int gxsp_start(gxsp_problem *problem, const double *from)
 {
     gxsp_system *system = problem->system;
     memcpy(system->current, from, 3 * system->n * sizeof(double));
+    gxsp_follow(system, system->base, system->current);
+    gxsp_terms_make(problem, system->current);
     gxsp_balance_momentum(system, system->load, problem->rate, system->target, system->current);
     return gxsp_first_not_finite(system->current, 3 * system->n) == 3 * system->n && gxsp_update(problem);
 }
@@ -3187,12 +4227,12 @@ static int gxsp_line_search(gxsp_problem *problem)
     if (!gxsp_finite(slope))
         return 0;
     memcpy(before, problem->energies, sizeof before);
-    for (trial = 0; trial < GXSP_TRIALS; ++trial) {
+    for (trial = 0; trial < GXSP_TRIALS && (trial == 0 || !gxsp_out_of_time(problem)); ++trial) {
         double change, next, *accepted = system->trial;
         for (i = 0; i < count; ++i)
             system->trial[i] = system->current[i] + length * system->direction[i];
         ++problem->report.line_search_steps;
-        gxsp_evaluate(system, problem->rate, system->trial, system->force, problem->energies);
+        gxsp_evaluate(problem, system->trial, 0, system->force, problem->energies);
         change = (problem->energies[0] - before[0]) + (problem->energies[1] - before[1]) - length * work;
         if (gxsp_finite(change) && gxsp_finite(problem->energies[2]) &&
             change <= GXSP_ARMIJO * length * slope + 1e-15 * (problem->energies[2] + before[2] + rounding)) {
@@ -3220,14 +4260,20 @@ static double gxsp_energy(const gxsp_problem *problem)
  *   BDF1      speed = 1 / dt, mean = u_n;   rate = speed^2, target = mean + v_n / speed
  *   BDF2      r = dt / dt of the step before; a0 = (1 + 2 r) / (1 + r), a1 = -(1 + r), a2 = r^2 / (1 + r):
  *             speed = a0 / dt, mean = -(a1 u_n + a2 u_n-1) / a0, and the same of velocities: target = mean + mean of v / speed
- *   midpoint  u is the displacement at half the step: BDF1 of half the step, finished in gxsp_finish */
+ *   midpoint  u is the displacement at half the step: BDF1 of half the step, finished in gxsp_finish
+ *   static    speed = 0, rate = 1 / dt^2 or 0, target = u_n */
 static void gxsp_choose_integrator(gxsp_problem *problem)
 {
     const gxs_step_desc *step = problem->step;
     double dt = step->integrator == GXS_MIDPOINT ? 0.5 * step->dt : step->dt;
-    problem->speed = 1 / dt;
     problem->mean[0] = 1;
     problem->mean[1] = 0;
+    if (step->integrator == GXS_STATIC) {
+        problem->speed = 0;
+        problem->rate = dt > 0 ? 1 / (dt * dt) : 0;
+        return;
+    }
+    problem->speed = 1 / dt;
     if (step->integrator == GXS_BDF2 && step->previous_displacement) {
         double r = dt / step->previous_dt, first = (1 + 2 * r) / (1 + r);
         problem->speed = first / dt;
@@ -3235,6 +4281,45 @@ static void gxsp_choose_integrator(gxsp_problem *problem)
         problem->mean[1] = -r * r / (1 + r) / first;
     }
     problem->rate = problem->speed * problem->speed + problem->speed * step->mass_damping;
+}
+
+/* Elastic forces at a displacement with the materials times their damping x factor, added to the load */
+static void gxsp_add_damping(gxsp_problem *problem, double factor, const double *displacement)
+{
+    gxsp_system *system = problem->system;
+    double energies[3];
+    size_t i;
+    for (i = 0; i < system->material_count; ++i) {
+        system->damped[i].mu = factor * system->materials[i].damping * system->materials[i].mu;
+        system->damped[i].lambda = factor * system->materials[i].damping * system->materials[i].lambda;
+    }
+    gxsp_evaluate_elements(system, 0, displacement, 0, system->force, energies);
+    for (i = 0; i < 3 * system->n; ++i)
+        system->load[i] += system->force[i];
+}
+
+/* Rayleigh's stiffness damping: stress P(F) + beta dP/dt, the rate taken as that of the integrator, speed (P(F) - P of the mean before).
+ * All energies are linear in their moduli, so that is the energy (1 + beta speed) U(u) with a load of the forces before. Two states
+ * of equal P, a rotation of what is at rest for one, are not damped. */
+static void gxsp_begin_damping(gxsp_problem *problem, const double *displacement)
+{
+    gxsp_system *system = problem->system;
+    int any = 0;
+    size_t i;
+    for (i = 0; i < system->material_count; ++i)
+        any |= system->materials[i].damping > 0;
+    if (any && problem->speed > 0) {
+        system->base_known = 0;
+        gxsp_add_damping(problem, problem->speed * problem->mean[0], displacement);
+        if (problem->mean[1] < 0)
+            gxsp_add_damping(problem, problem->speed * problem->mean[1], problem->step->previous_displacement);
+    }
+    for (i = 0; i < system->material_count; ++i) {
+        const double factor = 1 + problem->speed * system->materials[i].damping;
+        system->damped[i] = system->materials[i];
+        system->damped[i].mu *= factor;
+        system->damped[i].lambda *= factor;
+    }
 }
 
 /* mean of the displacements before */
@@ -3249,11 +4334,9 @@ static void gxsp_begin(gxsp_problem *problem, const double *displacement, const 
 {
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
-    double share; /* of inertia in the rate; the rest is mass damping's */
+    const double lead = problem->speed > 0 ? problem->speed / problem->rate : 0; /* s; the rest of the rate is mass damping's */
     size_t i, r;
-    gxsp_choose_integrator(problem);
-    share = problem->speed * problem->speed / problem->rate;
-    system->base_known = system->base_known && !step->targets &&
+    system->base_known = system->base_known && !step->targets && step->spring_count + step->point_count == 0 &&
                          memcmp(displacement, system->current, 3 * system->n * sizeof(double)) == 0;
     memcpy(system->base, displacement, 3 * system->n * sizeof(double));
     for (i = 0; i < system->n; ++i)
@@ -3262,38 +4345,71 @@ static void gxsp_begin(gxsp_problem *problem, const double *displacement, const 
             double mean = gxsp_mean(problem, k), speed = problem->mean[0] * velocity[k];
             if (problem->mean[1] < 0)
                 speed += problem->mean[1] * step->previous_velocity[k];
-            system->target[k] = mean + share * speed / problem->speed;
-            if (system->fixed[i]) {
-                if (step->targets && system->held[i])
-                    system->base[k] = step->integrator == GXS_MIDPOINT ? 0.5 * (displacement[k] + step->targets[k]) : step->targets[k];
+            system->target[k] = mean + lead * speed;
+            if (step->targets && system->held[i])
+                system->base[k] = step->integrator == GXS_MIDPOINT ? 0.5 * (displacement[k] + step->targets[k]) : step->targets[k];
+            if (system->still[i])
                 system->target[k] = system->base[k];
-            }
-            system->load[k] = system->lumped[i] * step->gravity[r] + (step->forces && !system->fixed[i] ? step->forces[k] : 0);
+            system->load[k] = system->still[i] ? 0 : system->lumped[i] * step->gravity[r] + (step->forces ? step->forces[k] : 0);
         }
+    for (i = 0; i < system->follower_count; ++i) /* of masters that targets move */
+        for (r = 0; r < 12; ++r) {
+            const gxsp_follower *follower = &system->followers[i];
+            const size_t master = 3 * (size_t)follower->master[r / 3] + r % 3;
+            system->base[3 * (size_t)follower->copy + r % 3] += follower->weight[r / 3] * (system->base[master] - displacement[master]);
+        }
+    gxsp_begin_damping(problem, displacement);
+}
+
+static int gxsp_linearise_all(gxsp_problem *problem)
+{
+    gxsp_system *system = problem->system;
+    const double start = gxsp_now(problem);
+    int finite;
+    gxsp_terms_make(problem, system->current);
+    finite = gxsp_linearise(system, problem->rate, system->current, &problem->collapsed);
+    problem->report.seconds_linearise += gxsp_now(problem) - start;
+    return finite;
+}
+
+/* Elements collapsed to a point have no force that would open them: what they have all but collapsed takes its place, for the direction
+ * and its slope. Energies stay as they are. */
+static void gxsp_nudge_forces(gxsp_problem *problem)
+{
+    double energies[3];
+    gxsp_evaluate(problem, problem->system->current, 1, problem->system->force, energies);
+    gxsp_balance(problem);
 }
 
 /* Newton's method from a start that gxsp_start found finite to balance or to the end of the budget. */
 static gx_result gxsp_newton(gxsp_problem *problem)
 {
     const gxs_step_desc *step = problem->step;
-    gxsp_system *system = problem->system;
     uint32_t budget = step->newton_iterations ? step->newton_iterations : 1, *done = &problem->report.newton_iterations;
     double goal = step->newton_tolerance > GXSP_ROUNDING ? step->newton_tolerance : GXSP_ROUNDING;
     *done = 0;
-    if (!gxsp_linearise(system, problem->rate, system->current))
+    if (!gxsp_linearise_all(problem))
         return GX_ERROR_DIVERGED;
     for (;;) {
         problem->report.residual = gxsp_balance(problem);
         if (!gxsp_finite(problem->report.residual))
             return GX_ERROR_DIVERGED;
-        if (problem->report.residual <= goal || *done == budget)
+        problem->report.stop = problem->report.residual <= goal ? GXS_STOP_BALANCE : GXS_STOP_ITERATIONS;
+        if ((problem->report.residual <= goal && !problem->collapsed) || *done == budget || gxsp_out_of_time(problem))
             return GX_OK;
-        if (*done > 0 && !gxsp_linearise(system, problem->rate, system->current))
+        if (*done > 0 && !gxsp_linearise_all(problem))
             return GX_ERROR_DIVERGED;
+        if (problem->collapsed)
+            gxsp_nudge_forces(problem);
+        else if (problem->report.residual <= goal)
+            return GX_OK;
         if (!gxsp_solve(problem))
             return GX_ERROR_DIVERGED;
-        if (!gxsp_line_search(problem)) /* after a first success: no more to gain in doubles */
-            return *done > 0 ? GX_OK : GX_ERROR_DIVERGED;
+        if (!gxsp_line_search(problem)) { /* after a first success: no more to gain in doubles */
+            if (problem->report.stop != GXS_STOP_SECONDS)
+                problem->report.stop = GXS_STOP_ROUNDING;
+            return *done > 0 || problem->report.stop == GXS_STOP_SECONDS ? GX_OK : GX_ERROR_DIVERGED;
+        }
         ++*done;
     }
 }
@@ -3305,6 +4421,11 @@ static gx_result gxsp_minimise(gxsp_problem *problem)
     gxsp_system *system = problem->system;
     gx_result result = GX_ERROR_DIVERGED;
     double found, limit, kept[3];
+    if (system->active == 0) {
+        memcpy(system->current, system->base, 3 * system->n * sizeof(double));
+        problem->report.stop = GXS_STOP_ASLEEP;
+        return GX_OK;
+    }
     if (gxsp_start(problem, system->target))
         result = gxsp_newton(problem);
     found = result == GX_OK ? gxsp_energy(problem) : 0;
@@ -3312,7 +4433,7 @@ static gx_result gxsp_minimise(gxsp_problem *problem)
     if (result == GX_OK && system->base_known && found <= system->base_energy + limit)
         return result; /* lower even without the kinetic energy that staying at base would take */
     memcpy(kept, problem->energies, sizeof kept);
-    gxsp_evaluate(system, problem->rate, system->base, system->force, problem->energies);
+    gxsp_evaluate(problem, system->base, 0, system->force, problem->energies);
     limit += problem->energies[0] + problem->energies[1];
     if (!gxsp_finite(limit) || (result == GX_OK && found <= limit + 1e-12 * fabs(limit))) {
         memcpy(problem->energies, kept, sizeof kept);
@@ -3331,8 +4452,8 @@ static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double
     double *speeds = system->residual, *ends = system->direction;
     for (i = 0; i < count; ++i) {
         ends[i] = midpoint ? 2 * system->current[i] - displacement[i] : system->current[i];
-        if (system->fixed[i / 3])
-            speeds[i] = (ends[i] - displacement[i]) / step->dt;
+        if (system->still[i / 3])
+            speeds[i] = step->integrator == GXS_STATIC ? 0 : (ends[i] - displacement[i]) / step->dt;
         else
             speeds[i] = problem->speed * (system->current[i] - gxsp_mean(problem, i)) * (midpoint ? 2 : 1) - (midpoint ? velocity[i] : 0);
     }
@@ -3342,9 +4463,26 @@ static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double
         return GX_ERROR_DIVERGED;
     memcpy(displacement, ends, count * sizeof(double));
     memcpy(velocity, speeds, count * sizeof(double));
-    system->base_known = !midpoint;
+    if (midpoint)
+        memcpy(system->current, ends, count * sizeof(double));
+    system->base_known = !midpoint && step->spring_count + step->point_count == 0;
     system->base_energy = problem->energies[0];
+    gxsp_count_rest(problem, velocity);
     return GX_OK;
+}
+
+/* The force of every spring on the body at the end of the step; of the midpoint rule in its middle */
+static void gxsp_report_springs(const gxsp_problem *problem)
+{
+    const gxs_step_desc *step = problem->step;
+    size_t i;
+    for (i = 0; i < step->spring_count && step->spring_forces; ++i) {
+        double x[3];
+        gxsp_pull pull;
+        gxsp_point_position(&step->springs[i].point, problem->system->current, x);
+        gxsp_spring_pull(&step->springs[i], x, &pull);
+        memcpy(step->spring_forces + 3 * i, pull.force, sizeof pull.force);
+    }
 }
 
 /* >>check */
@@ -3369,10 +4507,10 @@ static gx_result gxsp_check_element(const gxs_element *element, const gxs_model 
 
 static gx_result gxsp_check_material(const gxs_material *material, size_t index, gx_failure *failure)
 {
-    if (!gxsp_finite(material->young) || !gxsp_finite(material->poisson))
+    if (!gxsp_finite(material->young) || !gxsp_finite(material->poisson) || !gxsp_finite(material->damping))
         return gxsp_fail(failure, GX_ERROR_NOT_FINITE, index);
     if (material->young <= 0 || material->poisson < 0 || material->poisson >= 0.5 || (int)material->kind < 0 ||
-        material->kind > GXS_LINEAR)
+        material->kind > GXS_CUSTOM || material->damping < 0 || (material->kind == GXS_CUSTOM && !material->energy))
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, index);
     return GX_OK;
 }
@@ -3386,43 +4524,108 @@ static gx_result gxsp_check_vector(const double *vector, size_t copy_count, gx_f
     return i < 3 * copy_count ? gxsp_fail(failure, GX_ERROR_NOT_FINITE, i / 3) : GX_OK;
 }
 
+static gx_result gxsp_check_constraint(const gxs_constraint *constraint, size_t n, size_t index, gx_failure *failure)
+{
+    int k;
+    if (constraint->copy >= n)
+        return gxsp_fail(failure, GX_ERROR_INDEX, index);
+    for (k = 0; k < 4; ++k) {
+        if (constraint->master[k] >= n)
+            return gxsp_fail(failure, GX_ERROR_INDEX, index);
+        if (!gxsp_finite(constraint->weight[k]))
+            return gxsp_fail(failure, GX_ERROR_NOT_FINITE, index);
+    }
+    return GX_OK;
+}
+
 static gx_result gxsp_check_model(const gxs_model *model, gx_failure *failure)
 {
     size_t e;
     gx_result result = GX_OK;
-    if (!model || (!model->elements && model->element_count > 0) || (!model->materials && model->material_count > 0))
+    if (!model || (!model->elements && model->element_count > 0) || (!model->constraints && model->constraint_count > 0) || (!model->materials && model->material_count > 0))
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     if (model->copy_count == 0 || model->element_count == 0 || model->material_count == 0)
         return gxsp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
     /* 1024: no array takes more bytes per object, so sizes cannot overflow; elements have four slots at most */
     if (model->copy_count >= UINT32_MAX / 4 || model->element_count >= UINT32_MAX / 4 || model->material_count >= UINT32_MAX ||
-        model->copy_count >= SIZE_MAX / 1024 || model->element_count >= SIZE_MAX / 1024 || model->material_count >= SIZE_MAX / 1024)
+        model->copy_count >= SIZE_MAX / 1024 || model->element_count >= SIZE_MAX / 1024 || model->material_count >= SIZE_MAX / 1024 ||
+        model->constraint_count > model->copy_count)
         return gxsp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
     for (e = 0; e < model->material_count && result == GX_OK; ++e)
         result = gxsp_check_material(&model->materials[e], e, failure);
     for (e = 0; e < model->element_count && result == GX_OK; ++e)
         result = gxsp_check_element(&model->elements[e], model, e, failure);
+    for (e = 0; e < model->constraint_count && result == GX_OK; ++e)
+        result = gxsp_check_constraint(&model->constraints[e], model->copy_count, e, failure);
     return result == GX_OK && model->positions ? gxsp_check_vector(model->positions, model->copy_count, failure) : result;
+}
+
+/* dt within what the square of it and of its inverse can hold */
+static int gxsp_dt_fits(double dt)
+{
+    return dt >= 1e-100 && dt <= 1e100;
 }
 
 static gx_result gxsp_check_step(const gxs_step_desc *step, gx_failure *failure)
 {
+    const int still = step && step->integrator == GXS_STATIC, history = step && step->integrator == GXS_BDF2 && step->previous_displacement;
     if (!step)
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     if (!gxsp_finite(step->dt) || gxsp_first_not_finite(step->gravity, 3) < 3 || !gxsp_finite(step->newton_tolerance) ||
-        !gxsp_finite(step->cg_tolerance))
+        !gxsp_finite(step->cg_tolerance) || !gxsp_finite(step->previous_dt) || !gxsp_finite(step->mass_damping) ||
+        !gxsp_finite(step->sleep_speed) || !gxsp_finite(step->sleep_time) || !gxsp_finite(step->budget_seconds))
         return gxsp_fail(failure, GX_ERROR_NOT_FINITE, SIZE_MAX);
-    if (!gxsp_finite(step->previous_dt) || !gxsp_finite(step->mass_damping))
-        return gxsp_fail(failure, GX_ERROR_NOT_FINITE, SIZE_MAX);
-    if (step->dt <= 0 || step->newton_tolerance < 0 || step->cg_tolerance < 0 || step->mass_damping < 0 ||
-        (int)step->integrator < 0 || step->integrator > GXS_MIDPOINT)
+    if (step->dt < 0 || (step->dt <= 0 && !still) || step->newton_tolerance < 0 || step->cg_tolerance < 0 || step->mass_damping < 0 ||
+        (int)step->integrator < 0 || step->integrator > GXS_STATIC || step->sleep_speed < 0 || step->sleep_time < 0 ||
+        step->budget_seconds < 0 || (history && (!step->previous_velocity || step->previous_dt <= 0)) ||
+        (step->budget_seconds > 0 && !step->clock) || (step->sleep_speed > 0 && !step->rest_times) ||
+        (step->spring_count > 0 && !step->springs) || (step->point_count > 0 && !step->points) || (step->plane_count > 0 && !step->planes))
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
-    if (step->integrator == GXS_BDF2 && step->previous_displacement && (!step->previous_velocity || step->previous_dt <= 0))
-        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
-    if (step->dt < 1e-100 || step->dt > 1e100 || /* dt^2 and 1 / dt^2 must be numbers */
-        (step->integrator == GXS_BDF2 && step->previous_displacement && (step->previous_dt < 1e-100 || step->previous_dt > 1e100)))
+    if ((step->dt > 0 && !gxsp_dt_fits(step->dt)) || (history && !gxsp_dt_fits(step->previous_dt)))
         return gxsp_fail(failure, GX_ERROR_RANGE, SIZE_MAX);
+    if (step->spring_count >= SIZE_MAX / 1024 || step->point_count >= SIZE_MAX / 1024)
+        return gxsp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
     return GX_OK;
+}
+
+static gx_result gxsp_check_point(const gxs_point *point, size_t n, size_t index, gx_failure *failure)
+{
+    int k;
+    for (k = 0; k < 4; ++k)
+        if (point->copy[k] >= n)
+            return gxsp_fail(failure, GX_ERROR_INDEX, index);
+    if (gxsp_first_not_finite(point->weight, 4) < 4 || gxsp_first_not_finite(point->position, 3) < 3)
+        return gxsp_fail(failure, GX_ERROR_NOT_FINITE, index);
+    return GX_OK;
+}
+
+static gx_result gxsp_check_plane(const gxs_plane *plane, size_t index, gx_failure *failure)
+{
+    if (gxsp_first_not_finite(plane->normal, 3) < 3 || !gxsp_finite(plane->offset) || !gxsp_finite(plane->stiffness) ||
+        !gxsp_finite(plane->friction) || !gxsp_finite(plane->sticking_speed))
+        return gxsp_fail(failure, GX_ERROR_NOT_FINITE, index);
+    if (fabs(gxsp_dot(plane->normal, plane->normal, 1) - 1) > 1e-6 || plane->stiffness < 0 || plane->friction < 0 || plane->sticking_speed < 0)
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, index);
+    return GX_OK;
+}
+
+/* Springs, contact points and planes of a step */
+static gx_result gxsp_check_points(const gxs_step_desc *step, size_t n, gx_failure *failure)
+{
+    gx_result result = GX_OK;
+    size_t i;
+    for (i = 0; i < step->spring_count && result == GX_OK; ++i) {
+        result = gxsp_check_point(&step->springs[i].point, n, i, failure);
+        if (result == GX_OK && (gxsp_first_not_finite(step->springs[i].target, 3) < 3 || !gxsp_finite(step->springs[i].stiffness)))
+            result = gxsp_fail(failure, GX_ERROR_NOT_FINITE, i);
+        if (result == GX_OK && step->springs[i].stiffness < 0)
+            result = gxsp_fail(failure, GX_ERROR_ARGUMENT, i);
+    }
+    for (i = 0; i < step->point_count && result == GX_OK; ++i)
+        result = gxsp_check_point(&step->points[i], n, i, failure);
+    for (i = 0; i < step->plane_count && result == GX_OK; ++i)
+        result = gxsp_check_plane(&step->planes[i], i, failure);
+    return result;
 }
 
 /* Every array that a step reads */
@@ -3440,6 +4643,8 @@ static gx_result gxsp_check_vectors(const gxs_step_desc *step, size_t n, const d
         if (result == GX_OK)
             result = gxsp_check_vector(step->previous_velocity, n, failure);
     }
+    if (result == GX_OK && step->sleep_speed > 0 && (i = gxsp_first_not_finite(step->rest_times, n)) < n)
+        result = gxsp_fail(failure, GX_ERROR_NOT_FINITE, i);
     for (i = 0; step->targets && result == GX_OK && i < n; ++i)
         if (held[i] && gxsp_first_not_finite(step->targets + 3 * i, 3) < 3)
             result = gxsp_fail(failure, GX_ERROR_NOT_FINITE, i);
@@ -3463,6 +4668,7 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
     gx_result result;
     gxsp_pool pool, scratch;
     gxsp_system *system;
+    size_t bad;
     failure = failure ? failure : &ignored;
     gxsp_fail(failure, GX_OK, SIZE_MAX);
     if (!solver)
@@ -3477,14 +4683,51 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
         return gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
     system->pool = pool;
     system->jobs = &solver->jobs;
-    gxsp_system_build(system, &scratch, model, solver->preconditioner);
+    system->lasting = &solver->lasting;
+    bad = gxsp_system_build(system, &scratch, model, solver);
     gxsp_release_to(&scratch, NULL);
-    if (scratch.failed || system->pool.failed) {
+    if (bad != SIZE_MAX)
+        gxsp_fail(failure, GX_ERROR_ARGUMENT, bad);
+    else if (scratch.failed || system->pool.failed)
+        gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
+    if (failure->result != GX_OK) {
         gxsp_system_destroy(system);
-        return gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
+        return failure->result;
     }
     gxsp_system_destroy(solver->system);
     solver->system = system;
+    return GX_OK;
+}
+
+/* Room for the terms of a step */
+static int gxsp_reserve_terms(gxs_solver *solver, size_t count)
+{
+    gxsp_lasting *lasting = &solver->lasting;
+    gxsp_term *larger;
+    if (count <= lasting->capacity)
+        return 1;
+    larger = (gxsp_term *)solver->allocator.allocate(solver->allocator.user, count * sizeof *larger);
+    if (!larger)
+        return 0;
+    if (lasting->term)
+        solver->allocator.release(solver->allocator.user, lasting->term, lasting->capacity * sizeof *larger);
+    lasting->term = larger;
+    lasting->capacity = count;
+    return 1;
+}
+
+/* A balance of forces without inertia needs every piece to be held, by a copy or a spring. */
+static gx_result gxsp_check_free(const gxsp_problem *problem, gx_failure *failure)
+{
+    const gxsp_system *system = problem->system;
+    size_t i, k;
+    for (k = 0; k < problem->step->spring_count; ++k)
+        for (i = 0; i < 4 && problem->step->springs[k].stiffness > 0; ++i)
+            if (fabs(problem->step->springs[k].point.weight[i]) > 0)
+                system->pieces[system->piece[problem->step->springs[k].point.copy[i]]].state |= GXSP_TOUCHED;
+    for (i = 0; i < system->n && !(problem->rate > 0); ++i)
+        if (!(system->pieces[system->piece[i]].state & (GXSP_HELD | GXSP_TOUCHED | GXSP_ASLEEP)))
+            return gxsp_fail(failure, GX_ERROR_FREE, i);
     return GX_OK;
 }
 
@@ -3500,20 +4743,29 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     if (!solver || !solver->system)
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     n = solver->system->n;
-    if ((result = gxsp_check_step(step, failure)) != GX_OK ||
+    if ((result = gxsp_check_step(step, failure)) != GX_OK || (result = gxsp_check_points(step, n, failure)) != GX_OK ||
         (result = gxsp_check_vectors(step, n, displacement, velocity, solver->system->held, failure)) != GX_OK)
         return result;
+    if (!gxsp_reserve_terms(solver, step->spring_count + step->point_count))
+        return gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
     memset(&problem, 0, sizeof problem);
     problem.system = solver->system;
     problem.step = step;
     problem.cg_iterations = step->cg_iterations ? step->cg_iterations : 1000;
     problem.cg_tolerance = step->cg_tolerance > 0 ? step->cg_tolerance : 1e-2;
+    problem.start = gxsp_now(&problem);
+    gxsp_choose_integrator(&problem);
+    gxsp_choose_sleepers(&problem, displacement, velocity);
+    if ((result = gxsp_check_free(&problem, failure)) != GX_OK)
+        return result;
     gxsp_begin(&problem, displacement, velocity);
+    problem.report.active_unknowns = problem.system->active;
     result = gxsp_minimise(&problem);
     if (result == GX_OK)
         result = gxsp_finish(&problem, displacement, velocity);
     if (result != GX_OK)
         return gxsp_fail(failure, result, SIZE_MAX);
+    gxsp_report_springs(&problem);
     if (report)
         *report = problem.report;
     return GX_OK;
@@ -3539,6 +4791,7 @@ GXFEM_API gx_result gxs_solver_create(const gxs_solver_desc *desc, gxs_solver **
     if (desc) {
         made->jobs = desc->jobs;
         made->preconditioner = desc->preconditioner;
+        made->matrix = desc->matrix;
     }
     *solver = made;
     return GX_OK;
@@ -3551,6 +4804,8 @@ GXFEM_API void gxs_solver_destroy(gxs_solver *solver)
         return;
     allocator = solver->allocator;
     gxsp_system_destroy(solver->system);
+    if (solver->lasting.term)
+        allocator.release(allocator.user, solver->lasting.term, solver->lasting.capacity * sizeof *solver->lasting.term);
     allocator.release(allocator.user, solver, sizeof *solver);
 }
 
@@ -3560,6 +4815,7 @@ typedef struct gxsp_group {
     gxsp_rest rest;
     gxsp_state state;
     gxsp_mass mass;
+    gxsp_material material[GXSP_LANES];
     gxs_material_kind kind;
     uint32_t count; /* elements in it, of one kind */
     const gxs_element *elements;
@@ -3575,12 +4831,11 @@ static void gxsp_group_load(const gxs_model *model, size_t at, gxsp_group *group
     group->kind = model->materials[group->elements->material].kind;
     for (lane = 0; lane < GXSP_LANES; ++lane) {
         const gxs_element *element = &group->elements[lane];
-        gxsp_material material;
         if (at + lane >= model->element_count || model->materials[element->material].kind != group->kind)
             break;
-        material = gxsp_material_make(&model->materials[element->material]);
-        group->state.mu[lane] = material.mu;
-        group->state.lambda[lane] = material.lambda;
+        group->material[lane] = gxsp_material_make(&model->materials[element->material]);
+        group->state.mu[lane] = group->material[lane].mu;
+        group->state.lambda[lane] = group->material[lane].lambda;
         for (k = 0; k < 9; ++k)
             group->rest.gradient[k][lane] = element->gradient[1 + k / 3][k % 3];
         group->rest.weight[lane] = element->weight;
@@ -3588,6 +4843,8 @@ static void gxsp_group_load(const gxs_model *model, size_t at, gxsp_group *group
             group->mass.entry[k][lane] = element->mass[k];
     }
     group->count = (uint32_t)lane;
+    for (lane = 0; lane < GXSP_LANES; ++lane)
+        group->state.material[lane] = &group->material[lane < group->count ? lane : 0];
 }
 
 static void gxsp_group_gather(const gxsp_group *group, const double *x, gxsp_lanes *corners)
@@ -3679,6 +4936,7 @@ GXFEM_API gx_result gxs_model_hessian_product(const gxs_model *model, const doub
     for (e = 0; e < model->element_count;) {
         gxsp_group group;
         gxsp_tangent tangent;
+        gxsp_general general;
         gxsp_lanes x[12];
         gxsp_singles from[12], to[12];
         int k, l;
@@ -3686,11 +4944,11 @@ GXFEM_API gx_result gxs_model_hessian_product(const gxs_model *model, const doub
         gxsp_group_gather(&group, displacement, x);
         gxsp_block_gradient(&group.rest, x, group.state.g);
         memset(&tangent, 0, sizeof tangent);
-        gxsp_tangent_make(group.kind, &group.rest, 1, &group.state, &tangent);
+        gxsp_tangent_make(group.kind, &group.rest, 1, &group.state, &tangent, &general);
         gxsp_group_gather(&group, direction, x);
         for (k = 0; k < 12; ++k)
             GXSP_EACH_LANE(l) from[k][l] = (float)(x[k][l] - x[k % 3][l]); /* of translations exactly 0 */
-        gxsp_block_product(&tangent, from, to);
+        gxsp_kind_product(group.kind, &tangent, &general, from, to);
         for (k = 0; k < 12; ++k)
             GXSP_EACH_LANE(l) x[k][l] = (double)to[k][l];
         gxsp_group_scatter(&group, x, product);
@@ -3719,14 +4977,15 @@ GXFEM_API gx_result gxs_model_mass_product(const gxs_model *model, const double 
     return GX_OK;
 }
 
-static gxsp_state gxsp_single_state(const gxs_material *material, const double *deformation)
+static gxsp_state gxsp_single_state(const gxsp_material *material, const double *deformation)
 {
-    gxsp_material own = gxsp_material_make(material);
     gxsp_state state;
     int k;
     memset(&state, 0, sizeof state);
-    state.mu[0] = own.mu;
-    state.lambda[0] = own.lambda;
+    state.mu[0] = material->mu;
+    state.lambda[0] = material->lambda;
+    for (k = 0; k < GXSP_LANES; ++k)
+        state.material[k] = material;
     for (k = 0; k < 9; ++k)
         state.g[k][0] = deformation[k] - (k % 4 == 0 ? 1 : 0);
     return state;
@@ -3734,14 +4993,16 @@ static gxsp_state gxsp_single_state(const gxs_material *material, const double *
 
 GXFEM_API double gxs_material_energy(const gxs_material *material, const double *deformation)
 {
-    gxsp_state state = gxsp_single_state(material, deformation);
+    const gxsp_material own = gxsp_material_make(material);
+    gxsp_state state = gxsp_single_state(&own, deformation);
     gxsp_material_state(material->kind, &state);
     return state.energy[0];
 }
 
 GXFEM_API void gxs_material_stress(const gxs_material *material, const double *deformation, double *stress)
 {
-    gxsp_state state = gxsp_single_state(material, deformation);
+    const gxsp_material own = gxsp_material_make(material);
+    gxsp_state state = gxsp_single_state(&own, deformation);
     int k;
     gxsp_material_state(material->kind, &state);
     for (k = 0; k < 9; ++k)
@@ -3751,9 +5012,11 @@ GXFEM_API void gxs_material_stress(const gxs_material *material, const double *d
 GXFEM_API void gxs_material_product(const gxs_material *material, const double *deformation, const double *direction,
                                     double *product)
 {
-    gxsp_state state = gxsp_single_state(material, deformation);
+    const gxsp_material own = gxsp_material_make(material);
+    gxsp_state state = gxsp_single_state(&own, deformation);
     gxsp_rest rest;
     gxsp_tangent tangent;
+    gxsp_general general;
     gxsp_singles from[12], to[12];
     int k, c;
     memset(&rest, 0, sizeof rest);
@@ -3761,11 +5024,11 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
     memset(from, 0, sizeof from);
     rest.weight[0] = 1;
     rest.gradient[0][0] = rest.gradient[4][0] = rest.gradient[8][0] = 1; /* u_i - u_0 are the columns of dF, forces those of dP */
-    gxsp_tangent_make(material->kind, &rest, 1, &state, &tangent);
+    gxsp_tangent_make(material->kind, &rest, 1, &state, &tangent, &general);
     for (k = 0; k < 3; ++k)
         for (c = 0; c < 3; ++c)
             from[3 + 3 * c + k][0] = (float)direction[3 * k + c];
-    gxsp_block_product(&tangent, from, to);
+    gxsp_kind_product(material->kind, &tangent, &general, from, to);
     for (k = 0; k < 3; ++k)
         for (c = 0; c < 3; ++c)
             product[3 * k + c] = (double)to[3 + 3 * c + k][0];
@@ -3783,6 +5046,12 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_ARMIJO
 #undef GXSP_TRIALS
 #undef GXSP_NONE
+#undef GXSP_HELD
+#undef GXSP_UNBALANCED
+#undef GXSP_TOUCHED
+#undef GXSP_ASLEEP
+#undef GXSP_COLLAPSED
+#undef GXSP_NUDGE
 #undef GXSP_RANGE
 #undef GXSP_SPACING
 #undef GXSP_MULTIGRID_FROM
