@@ -1,12 +1,14 @@
 # gxfem: everything is built in build/; the library itself needs no building. `make help` lists what there is.
 #
-# CC, CFLAGS, LDFLAGS, JOBS and BUILD may be given on the command line: make check CC=clang BUILD=build/clang
+# CC, CFLAGS, LDFLAGS, JOBS and BUILD may be given on the command line: make check CC=clang BUILD=build/clang; so may what a bench
+# is built and called with: make bench-solver BENCH_CFLAGS=-O2 BENCH=--small
 
 CC ?= cc
 CFLAGS ?= -O2
 WARNINGS = -Wall -Wextra
 BUILD ?= build
 JOBS ?= 2
+BENCH_CFLAGS ?= -O3 -march=native
 
 headers = gxfem.h gxfem_boolean.h gxfem_integrate.h gxfem_solve.h
 tests = $(patsubst tests/%.c,%,$(sort $(wildcard tests/test_*.c)))
@@ -24,6 +26,7 @@ help:
 	@echo "make sanitize    the tests under AddressSanitizer and UndefinedBehaviorSanitizer"
 	@echo "make flags       exact predicates against rationals under each compiler and set of flags"
 	@echo "make hashes      the same cuts give the same topology under each compiler and set of flags"
+	@echo "make bench-solver  time steps by preconditioner, beside CHOLMOD (installs SuiteSparse where it is missing); BENCH=--small: the smallest blocks only"
 	@echo "make clean       removes $(BUILD)/"
 
 # ---- programs
@@ -77,6 +80,18 @@ flags:
 hashes:
 	@sh tests/hashes.sh $(BUILD)/hashes
 
+# ---- benches. Only what they print goes to stdout: it is CSV.
+
+bench-solver:
+	@sh tests/install.sh bench >&2
+	@$(MAKE) --no-print-directory $(BUILD)/bench/solver >&2
+	@$(BUILD)/bench/solver --out $(BUILD)/bench $(BENCH)
+
+$(BUILD)/bench/solver: bench/solver.c bench/block.h $(headers)
+	@mkdir -p $(@D)
+	$(CC) -std=c99 $(WARNINGS) $(BENCH_CFLAGS) -pthread $(shell pkg-config --cflags CHOLMOD 2>/dev/null) $< -o $@ $(LDFLAGS) \
+	    $(shell pkg-config --libs CHOLMOD 2>/dev/null || echo -lcholmod) -lm
+
 check-all: check
 	@$(MAKE) --no-print-directory lint
 	@$(MAKE) --no-print-directory examples
@@ -90,4 +105,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo check check-programs run-gxcut $(tests:%=run-%) sanitize compile lint flags hashes check-all clean
+.PHONY: help examples demo check check-programs run-gxcut $(tests:%=run-%) sanitize compile lint flags hashes bench-solver check-all clean

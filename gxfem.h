@@ -2,7 +2,7 @@
  *
  * A body is a tetrahedral mesh with a material. Cuts are triangle surfaces in material (rest) coordinates, any number of them,
  * crossing each other as they like. The mesh is never remeshed: where material separates, nodes get further copies of their
- * displacement (GXFEM Eq. 18), and every integral over a cut element is exact. Backward Euler steps move it.
+ * displacement (GXFEM Eq. 18), and every integral over a cut element is exact. Implicit time steps move it (gxfem_solve.h).
  *
  * One minute:
  *
@@ -25,7 +25,7 @@
  *         cut.surfaces = &sheet; cut.surface_count = 1;
  *         if (gx_body_cut(body, &cut, NULL, NULL) != GX_OK) return 1;
  *         step.dt = 0.033; step.gravity[2] = -9.81;
- *         if (gx_body_step(body, &step, NULL) != GX_OK || gx_body_view(body, &view) != GX_OK) return 1;
+ *         if (gx_body_step(body, &step, NULL, NULL) != GX_OK || gx_body_view(body, &view) != GX_OK) return 1;
  *         printf("%u fragments, %u unknowns\n", (unsigned)view.fragment_count, (unsigned)(3 * view.copy_count));
  *         gx_body_destroy(body);
  *         return 0;
@@ -49,7 +49,7 @@
  * What is exact: which cells there are, what they are linked to, hence copies and fragments; decisions are signs of polynomials
  * in the given coordinates (gxfem_boolean.h). What is rounded, once: volumes, masses and vertices, as doubles.
  *
- * What it does not do (yet): contact between pieces, cuts given in the deformed state, materials beside stable neo-Hookean,
+ * What it does not do (yet): contact between pieces, cuts given in the deformed state,
  * unknowns within a partly cut element (a sheet that ends inside an element separates nothing there until another completes it).
  *
  * Limits: 2^31 - 1 of each kind of object; coordinates within 2^-128 ... 2^128 of the body's size (GX_ERROR_RANGE);
@@ -112,6 +112,9 @@ typedef struct gx_jobs {
     void *user;
 } gx_jobs;
 #endif /* GXFEM_SHARED_INCLUDED */
+
+#include "gxfem_solve.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -120,20 +123,28 @@ extern "C" {
 
 typedef struct gx_body gx_body;                     /* opaque */
 
+typedef struct gx_material {
+    gxs_material elastic;
+    double density;             /* kg/m3, > 0 */
+} gx_material;
+
 typedef struct gx_body_desc {
     const double *positions;    /* node_count x 3, material coordinates, m */
     size_t node_count;
     const uint32_t *elements;   /* element_count x 4 node indices, positive volume: det(x1-x0, x2-x0, x3-x0) > 0 */
     size_t element_count;
-    double young;               /* Pa, > 0 */
+    double young;               /* Pa, > 0: of one stable neo-Hookean material, if materials is NULL */
     double poisson;             /* 0 <= poisson < 0.5 */
     double density;             /* kg/m3, > 0 */
+    const gx_material *materials; size_t material_count;
+    const uint32_t *element_materials;  /* element_count, below material_count; NULL: all of materials[0] */
+    double support_below;       /* copies with a smaller share of their node's volume follow others, see gx_body_step; 0: none does */
     gx_allocator allocator;     /* zero: malloc, free */
     double (*clock)(void *user);/* seconds, for the reports' timings; NULL: they are 0 */
     void *clock_user;
     gx_jobs jobs;               /* the host's threads, for the steps; zero: none */
 } gx_body_desc;
-/* Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE, INVERTED, FLAT, OVERLAP (index: the node or element), LIMIT, MEMORY.
+/* Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE, INVERTED, FLAT, OVERLAP (index: the node, element or material), LIMIT, MEMORY.
    The arrays of the description are copied. */
 GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **body, gx_failure *failure /* or NULL */);
 GXFEM_API void gx_body_destroy(gx_body *body);      /* NULL is fine */
@@ -189,6 +200,7 @@ typedef struct gx_view {
     const uint8_t *copy_held;       /* copy_count, 1: held by a Dirichlet region */
     double *displacement;           /* copy_count x 3, m; the caller may write */
     double *velocity;               /* copy_count x 3, m/s; the caller may write */
+    double *rest_time;              /* copy_count: for how long it has been slower than sleep_speed, s; the caller may write 0 to wake it */
     size_t fragment_count;
     const double *fragment_volume;  /* fragment_count, m3 */
     const double *fragment_mass;    /* kg */
@@ -206,23 +218,21 @@ typedef struct gx_region { uint32_t axis; int32_t side; double value; } gx_regio
    displacement, now and after later cuts. Replaces what was held before. */
 GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t region_count);
 
-typedef struct gx_step_desc {
-    double dt;                  /* s, > 0 */
-    double gravity[3];          /* m/s2 */
-    const double *forces;       /* copy_count x 3, N; NULL: none */
-    uint32_t newton_iterations; /* 0: 1 */
-    double newton_tolerance;    /* force balance relative to the load; 0: run all iterations */
-    uint32_t cg_iterations;     /* 0: 1000 */
-    double cg_tolerance;        /* relative residual, 0: 1e-2 */
-} gx_step_desc;
-typedef struct gx_step_report {
-    uint32_t newton_iterations, cg_iterations, line_search_steps;
-    double residual;            /* of the last Newton iterate, relative to the load */
-    double energy;              /* incremental potential, J (Eq. 10) */
-    double seconds;
-} gx_step_report;
-/* One backward Euler step (GXFEM Eq. 10). Errors: ARGUMENT, NOT_FINITE, MEMORY, DIVERGED; the body is then as it was. */
-GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report /* or NULL */);
+/* A step as the solver takes it; arrays are by copy, as in gx_view. previous_displacement, previous_velocity, previous_dt and rest_times
+   are the body's own and not read. clock: where it is NULL, that of the body. A point of the skin is a gxs_point by its copies and
+   weights. */
+typedef gxs_step_desc gx_step_desc;
+typedef gxs_step_report gx_step_report;
+/* One time step (GXFEM Eq. 10). A cut wakes the fragments that it touches. Errors: those of gxs_solver_step, MEMORY; the body is then as
+   it was.
+   Copies below gx_body_desc.support_below (RXFEM Eq. 22) take the increment of the displacement field of a well supported element near
+   them. Where a fragment has no element all of whose copies are well supported, its fullest element takes that part, if it is at least
+   as full as support_below says; else the fragment moves as a point. */
+GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report /* or NULL */, gx_failure *failure /* or NULL */);
+
+/* What the solver sees of the body as it is cut now: for solvers of one's own. Arrays are the body's, valid until its next cut, hold or
+   step. Errors: ARGUMENT, MEMORY. */
+GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model);
 
 /* >>skin ----------------------------------------------------------------------------------------------------------------- */
 
@@ -256,7 +266,7 @@ GXFEM_API const char *gx_result_text(gx_result result);
 #define GXFEM_IMPLEMENTED
 #include "gxfem_boolean.h"
 #include "gxfem_integrate.h"
-#include "gxfem_solve.h"
+#include "gxfem_solve.h"    /* again: now with its implementation */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -301,7 +311,9 @@ struct gx_body {
     gxb_complex *complex;
     gxs_solver *solver;
     uint32_t node_count, element_count;
-    double young, poisson, density;
+    gx_material *materials; uint32_t material_count;
+    uint32_t *element_materials;    /* element_count */
+    double support_below;
     double *positions;              /* node_count x 3 */
     uint32_t *node_start;           /* node_count + 1, into node_elements */
     uint32_t *node_elements;        /* element_count x 4: elements around each node */
@@ -314,6 +326,10 @@ struct gx_body {
     uint32_t *copy_node; uint32_t copy_count, copy_capacity;
     double *displacement, *velocity; uint32_t displacement_capacity, velocity_capacity;   /* copies, x 3 doubles */
     uint8_t *held; uint32_t held_capacity;
+    double *rest_time; uint32_t rest_time_capacity;
+    double *history[4]; uint32_t history_capacity[4];   /* displacement and velocity a step ago, x 3, and room for those of now; from the
+                                                           first BDF2 step on */
+    double previous_dt;                                 /* s; 0: there was none */
     gx_region *regions; uint32_t region_count;
     uint32_t label_count;           /* cut triangles so far */
     gxp_undo *undo; uint32_t undo_count, undo_capacity;
@@ -322,6 +338,8 @@ struct gx_body {
     int held_stale, model_stale, view_stale;
     gxs_element *parts; uint32_t part_count, part_capacity;     /* there only while the solver's model is made; part_count stays */
     double *rest; uint32_t rest_capacity;               /* copies, x 3 doubles: where they are at rest, m; as long */
+    gxs_material *elastic; uint32_t elastic_capacity;   /* materials for the solver; as long */
+    gxs_constraint *constraints; uint32_t constraint_count, constraint_capacity;    /* as long */
     gxp_words view_cells, view_fragments;               /* slot of each kept cell; fragment of each */
     gxp_words copy_fragment, fragment_number, cell_element, cell_copies;
     double *cell_volume; uint32_t cell_volume_capacity;
@@ -586,6 +604,8 @@ static double gxp_element_volume(const gx_body *body, uint32_t element) {
     return gxi_tet_volume(x);
 }
 
+static double gxp_density(const gx_body *body, uint32_t element) { return body->materials[body->element_materials[element]].density; }
+
 static void gxp_make_first_cells(gx_body *body) {
     uint32_t e;
     body->cell_count = body->leaf_count = body->element_count;
@@ -597,7 +617,7 @@ static void gxp_make_first_cells(gx_body *body) {
         cell->next = GXP_NONE;
         cell->kept = 1;
         cell->volume = gxp_element_volume(body, e);
-        gxi_tet_mass(cell->volume, body->density, cell->mass);
+        gxi_tet_mass(cell->volume, gxp_density(body, e), cell->mass);
         memset(&body->leaves[e], 0, sizeof body->leaves[e]);
         body->leaves[e].cell = e;
         body->leaves[e].next = GXP_NONE;
@@ -619,16 +639,32 @@ static void gxp_make_first_copies(gx_body *body) {
     }
     memset(body->displacement, 0, 3 * (size_t)body->copy_count * sizeof(double));
     memset(body->velocity, 0, 3 * (size_t)body->copy_count * sizeof(double));
+    memset(body->rest_time, 0, body->copy_count * sizeof(double));
     memset(body->held, 0, body->copy_count);
 }
 
 static gx_result gxp_reserve_copies(gx_body *body, size_t extra) {
     const gx_allocator *a = &body->allocator;
     const size_t n = body->copy_count;
+    int i;
     gx_result r = gxp_reserve(a, &body->copy_node, sizeof *body->copy_node, n, &body->copy_capacity, extra);
     if (r == GX_OK) r = gxp_reserve(a, &body->displacement, 3 * sizeof(double), n, &body->displacement_capacity, extra);
     if (r == GX_OK) r = gxp_reserve(a, &body->velocity, 3 * sizeof(double), n, &body->velocity_capacity, extra);
+    if (r == GX_OK) r = gxp_reserve(a, &body->rest_time, sizeof(double), n, &body->rest_time_capacity, extra);
+    for (i = 0; i < 4 && r == GX_OK && body->history[i] != NULL; i++)
+        r = gxp_reserve(a, &body->history[i], 3 * sizeof(double), n, &body->history_capacity[i], extra);
     return r == GX_OK ? gxp_reserve(a, &body->held, 1, n, &body->held_capacity, extra) : r;
+}
+
+/* The state of one copy becomes that of another. */
+static void gxp_copy_state(gx_body *body, uint32_t from, uint32_t to) {
+    const size_t a = 3 * (size_t)from, b = 3 * (size_t)to, size = 3 * sizeof(double);
+    int i;
+    memcpy(body->displacement + b, body->displacement + a, size);
+    memcpy(body->velocity + b, body->velocity + a, size);
+    for (i = 0; i < 2 && body->previous_dt > 0; i++) memcpy(body->history[i] + b, body->history[i] + a, size);
+    body->rest_time[to] = body->rest_time[from];
+    body->held[to] = body->held[from];
 }
 
 static gx_result gxp_reserve_cells(gx_body *body, size_t extra) {
@@ -658,7 +694,9 @@ static gx_result gxp_allocate_tables(gx_body *body) {
     body->edge_pinched = (uint8_t *)gxp_table(body, body->complex->mesh_edge_count, 1);
     body->boxes = (gxp_box *)gxp_table(body, 2 * e, sizeof(gxp_box));
     body->box_elements = (uint32_t *)gxp_table(body, e, sizeof(uint32_t));
-    return body->positions && body->node_start && body->node_elements && body->node_pinched && body->edge_pinched &&
+    body->element_materials = (uint32_t *)gxp_table(body, e, sizeof(uint32_t));
+    body->materials = (gx_material *)gxp_table(body, body->material_count, sizeof *body->materials);
+    return body->element_materials && body->materials && body->positions && body->node_start && body->node_elements && body->node_pinched && body->edge_pinched &&
            body->boxes && body->box_elements ? GX_OK : GX_ERROR_MEMORY;
 }
 
@@ -670,6 +708,16 @@ static gx_result gxp_create_solver(gx_body *body, const gx_body_desc *desc) {
     return gxs_solver_create(&solver, &body->solver);
 }
 
+static void gxp_fill_materials(gx_body *body, const gx_body_desc *desc) {
+    if (desc->materials != NULL) memcpy(body->materials, desc->materials, body->material_count * sizeof *body->materials);
+    else {
+        body->materials->elastic.young = desc->young; body->materials->elastic.poisson = desc->poisson;
+        body->materials->density = desc->density;
+    }
+    if (desc->materials != NULL && desc->element_materials != NULL)
+        memcpy(body->element_materials, desc->element_materials, body->element_count * sizeof(uint32_t));
+}
+
 static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc) {
     gx_result result = gxp_allocate_tables(body);
     if (result == GX_OK) result = gxp_create_solver(body, desc);
@@ -678,6 +726,7 @@ static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc) {
     if (result == GX_OK) result = gxp_reserve_copies(body, body->node_count);
     if (result != GX_OK) return result;
     memcpy(body->positions, desc->positions, 3 * (size_t)body->node_count * sizeof(double));
+    gxp_fill_materials(body, desc);
     gxp_list_node_elements(body);
     result = gxp_find_pinches(body);
     if (result != GX_OK) return result;
@@ -688,25 +737,48 @@ static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc) {
     return GX_OK;
 }
 
-static gx_result gxp_check_body_desc(const gx_body_desc *desc) {
-    if (!gxp_is_finite(desc->young) || !gxp_is_finite(desc->poisson) || !gxp_is_finite(desc->density)) return GX_ERROR_NOT_FINITE;
-    if (!(desc->young > 0) || !(desc->density > 0) || desc->poisson < 0 || desc->poisson >= 0.5) return GX_ERROR_ARGUMENT;
-    return (desc->allocator.allocate == NULL) == (desc->allocator.release == NULL) ? GX_OK : GX_ERROR_ARGUMENT;
+static gx_result gxp_check_material(double young, double poisson, double density) {
+    if (!gxp_is_finite(young) || !gxp_is_finite(poisson) || !gxp_is_finite(density)) return GX_ERROR_NOT_FINITE;
+    return young > 0 && density > 0 && poisson >= 0 && poisson < 0.5 ? GX_OK : GX_ERROR_ARGUMENT;
+}
+
+/* index: of the material or element to blame */
+static gx_result gxp_check_body_desc(const gx_body_desc *desc, size_t *index) {
+    gx_result result = GX_OK;
+    size_t i;
+    *index = SIZE_MAX;
+    if ((desc->allocator.allocate == NULL) != (desc->allocator.release == NULL)) return GX_ERROR_ARGUMENT;
+    if (!gxp_is_finite(desc->support_below)) return GX_ERROR_NOT_FINITE;
+    if (desc->support_below < 0 || desc->support_below >= 1) return GX_ERROR_ARGUMENT;
+    if (desc->materials == NULL) return gxp_check_material(desc->young, desc->poisson, desc->density);
+    if (desc->material_count == 0 || desc->material_count >= INT32_MAX) return desc->material_count == 0 ? GX_ERROR_EMPTY : GX_ERROR_LIMIT;
+    for (i = 0; i < desc->material_count && result == GX_OK; i++) {
+        const gxs_material *m = &desc->materials[*index = i].elastic;
+        result = gxp_check_material(m->young, m->poisson, desc->materials[i].density);
+        if (result == GX_OK && !gxp_is_finite(m->damping)) result = GX_ERROR_NOT_FINITE;
+        if (result == GX_OK && ((int)m->kind < 0 || m->kind > GXS_CUSTOM || m->damping < 0 || (m->kind == GXS_CUSTOM && m->energy == NULL)))
+            result = GX_ERROR_ARGUMENT;
+    }
+    for (i = 0; i < desc->element_count && result == GX_OK && desc->element_materials != NULL; i++)
+        if (desc->element_materials[*index = i] >= desc->material_count) result = GX_ERROR_INDEX;
+    return result;
 }
 
 GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **out, gx_failure *failure) {
     gx_body *body;
     gxb_mesh mesh;
     gx_result result;
+    size_t index;
     if (desc == NULL || out == NULL) return gxp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX, SIZE_MAX);
-    result = gxp_check_body_desc(desc);
-    if (result != GX_OK) return gxp_fail(failure, result, SIZE_MAX, SIZE_MAX);
+    result = gxp_check_body_desc(desc, &index);
+    if (result != GX_OK) return gxp_fail(failure, result, index, SIZE_MAX);
     body = (gx_body *)gxp_allocate(&desc->allocator, sizeof *body);
     if (body == NULL) return gxp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX, SIZE_MAX);
     memset(body, 0, sizeof *body);
     body->allocator = desc->allocator;
     body->clock = desc->clock; body->clock_user = desc->clock_user;
-    body->young = desc->young; body->poisson = desc->poisson; body->density = desc->density;
+    body->material_count = desc->materials != NULL ? (uint32_t)desc->material_count : 1;
+    body->support_below = desc->support_below;
     mesh.positions = desc->positions; mesh.node_count = desc->node_count;
     mesh.elements = desc->elements; mesh.element_count = desc->element_count;
     result = gxb_complex_create(&mesh, &desc->allocator, &body->complex, failure);
@@ -717,6 +789,17 @@ GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **out, gx_f
     if (result != GX_OK) { gx_body_destroy(body); return gxp_fail(failure, result, SIZE_MAX, SIZE_MAX); }
     *out = body;
     return gxp_fail(failure, GX_OK, SIZE_MAX, SIZE_MAX);
+}
+
+/* What the solver has copied */
+static void gxp_release_model(gx_body *body) {
+    const gx_allocator *a = &body->allocator;
+    gxp_release(a, body->parts, body->part_capacity * sizeof *body->parts);
+    gxp_release(a, body->rest, (size_t)body->rest_capacity * 3 * sizeof(double));
+    gxp_release(a, body->elastic, body->elastic_capacity * sizeof *body->elastic);
+    gxp_release(a, body->constraints, body->constraint_capacity * sizeof *body->constraints);
+    body->parts = NULL; body->rest = NULL; body->elastic = NULL; body->constraints = NULL;
+    body->part_capacity = body->rest_capacity = body->elastic_capacity = body->constraint_capacity = 0;
 }
 
 GXFEM_API void gx_body_destroy(gx_body *body) {
@@ -739,6 +822,11 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     gxp_release(&a, body->displacement, (size_t)body->displacement_capacity * 3 * sizeof(double));
     gxp_release(&a, body->velocity, (size_t)body->velocity_capacity * 3 * sizeof(double));
     gxp_release(&a, body->held, body->held_capacity);
+    gxp_release(&a, body->rest_time, body->rest_time_capacity * sizeof(double));
+    for (i = 0; i < 4; i++) gxp_release(&a, body->history[i], (size_t)body->history_capacity[i] * 3 * sizeof(double));
+    gxp_release(&a, body->materials, ((size_t)body->material_count + 1) * sizeof *body->materials);
+    gxp_release(&a, body->element_materials, (e + 1) * sizeof(uint32_t));
+    gxp_release_model(body);
     gxp_release(&a, body->regions, body->region_count * sizeof *body->regions);
     gxp_release(&a, body->undo, body->undo_capacity * sizeof *body->undo);
     gxp_release(&a, body->pairs, body->pair_capacity * sizeof *body->pairs);
@@ -1789,9 +1877,7 @@ static gx_result gxp_new_copy(gx_body *body, uint32_t from, uint32_t *copy) {
     if (result != GX_OK) return result;
     *copy = body->copy_count++;
     body->copy_node[*copy] = body->copy_node[from];
-    memcpy(body->displacement + 3 * (size_t)*copy, body->displacement + 3 * (size_t)from, 3 * sizeof(double));
-    memcpy(body->velocity + 3 * (size_t)*copy, body->velocity + 3 * (size_t)from, 3 * sizeof(double));
-    body->held[*copy] = body->held[from];
+    gxp_copy_state(body, from, *copy);
     return GX_OK;
 }
 
@@ -2065,7 +2151,7 @@ static gx_result gxp_integrate_cell(gx_body *body, uint32_t cell) {
     if (result == GX_OK) result = gxp_save_cell(body, cell);
     if (result != GX_OK) return result;
     body->cells[cell].volume = 6 * volume * m.volume;
-    gxi_part_mass(&m, k, volume, body->density, body->cells[cell].mass);
+    gxi_part_mass(&m, k, volume, gxp_density(body, body->cells[cell].element), body->cells[cell].mass);
     return GX_OK;
 }
 
@@ -2100,14 +2186,14 @@ static void gxp_drop_copy(gx_body *body, uint32_t copy) {
             if (body->cells[cell].copies[k] == last) body->cells[cell].copies[k] = copy;
     }
     body->copy_node[copy] = node;
-    memcpy(body->displacement + 3 * (size_t)copy, body->displacement + 3 * (size_t)last, 3 * sizeof(double));
-    memcpy(body->velocity + 3 * (size_t)copy, body->velocity + 3 * (size_t)last, 3 * sizeof(double));
-    body->held[copy] = body->held[last];
+    gxp_copy_state(body, last, copy);
 }
 
 static void gxp_commit(gxp_cut *cut) {
     gx_body *body = cut->body;
-    uint32_t i;
+    uint32_t i, k;
+    for (i = 0; i < body->fresh.count; i++) /* what a cut touches wakes */
+        for (k = 0; k < 4; k++) body->rest_time[body->cells[body->fresh.data[i]].copies[k]] = 0;
     cut->report.removed_copies = body->dead.count;
     gxp_sort_unique(&body->dead);
     for (i = body->dead.count; i-- > 0;) gxp_drop_copy(body, body->dead.data[i]);
@@ -2509,7 +2595,7 @@ GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view) {
     view->cell_element = body->cell_element.data; view->cell_copies = body->cell_copies.data;
     view->cell_volume = body->cell_volume; view->cell_fragment = body->view_fragments.data;
     view->copy_count = body->copy_count; view->copy_node = body->copy_node; view->copy_held = body->held;
-    view->displacement = body->displacement; view->velocity = body->velocity;
+    view->displacement = body->displacement; view->velocity = body->velocity; view->rest_time = body->rest_time;
     view->fragment_count = body->fragment_count;
     view->fragment_volume = body->fragments;
     view->fragment_mass = body->fragments ? body->fragments + body->fragment_capacity : NULL;
@@ -2530,6 +2616,7 @@ static void gxp_add_part(gx_body *body, const gxp_cell *cell, uint32_t first, co
         memset(part, 0, sizeof *part);
         memcpy(part->copy, cell->copies, sizeof part->copy);
         memcpy(part->gradient, gradients, 12 * sizeof *gradients);
+        part->material = body->element_materials[cell->element];
         body->part_count++;
     }
     part->weight += cell->volume;
@@ -2551,64 +2638,213 @@ static gx_result gxp_make_parts(gx_body *body) {
     return result;
 }
 
-static gx_result gxp_set_model(gx_body *body) {
-    gxs_material material;
-    gxs_model model;
+/* --- copies with next to no support follow others --- */
+
+/* What is found about copies on the way */
+typedef struct gxp_supports {
+    double *share;          /* copy_count: volume around it, as a share of its node's */
+    uint32_t *part;         /* copy_count: the part whose field it shall follow; GXP_NONE: not known, or none */
+    uint32_t *root;         /* copy_count: union-find over parts: fragments */
+} gxp_supports;
+
+static double gxp_part_volume(const gxs_element *part) {
+    const double *g = part->gradient[1];
+    const double det = g[0] * (g[4] * g[8] - g[5] * g[7]) + g[1] * (g[5] * g[6] - g[3] * g[8]) + g[2] * (g[3] * g[7] - g[4] * g[6]);
+    return 1 / (6 * fabs(det));
+}
+
+/* Shares of all copies. node: node_count, scratch, zero: volumes of the elements around each node */
+static void gxp_find_shares(const gx_body *body, gxp_supports *of, double *node) {
+    uint32_t e, i;
+    int k;
+    for (e = 0; e < body->element_count; e++) {
+        double x[12], gradients[12], volume = 0;
+        gxp_element_positions(body, e, x);
+        (void)gxi_tet_gradients(x, gradients, &volume);
+        for (k = 0; k < 4; k++) node[body->complex->elements[4 * (size_t)e + (size_t)k]] += volume;
+    }
+    for (i = 0; i < body->part_count; i++)
+        for (k = 0; k < 4; k++) of->share[body->parts[i].copy[k]] += body->parts[i].weight;
+    for (i = 0; i < body->copy_count; i++) of->share[i] /= node[body->copy_node[i]];
+}
+
+static int gxp_low(const gx_body *body, const gxp_supports *of, uint32_t copy) { return of->share[copy] < body->support_below; }
+
+/* Parts whose copies are all well supported are followed, by their own copies first, then from neighbour to neighbour. */
+static void gxp_spread_supports(const gx_body *body, gxp_supports *of) {
+    uint32_t i, changed = 1;
+    int k, j;
+    for (i = 0; i < body->part_count; i++) {
+        const uint32_t *c = body->parts[i].copy;
+        if (gxp_low(body, of, c[0]) || gxp_low(body, of, c[1]) || gxp_low(body, of, c[2]) || gxp_low(body, of, c[3])) continue;
+        for (k = 0; k < 4; k++) if (of->part[c[k]] == GXP_NONE) of->part[c[k]] = i;
+    }
+    while (changed) {
+        changed = 0;
+        for (i = 0; i < body->part_count; i++) {
+            const uint32_t *c = body->parts[i].copy;
+            for (k = 0; k < 4 && of->part[c[k]] == GXP_NONE; k++) continue;
+            for (j = 0; j < 4 && k < 4; j++)
+                if (of->part[c[j]] == GXP_NONE) { of->part[c[j]] = of->part[c[k]]; changed = 1; }
+        }
+    }
+}
+
+/* Fragments that are left follow their fullest part. */
+static void gxp_choose_fullest(const gx_body *body, gxp_supports *of) {
     uint32_t i;
-    gx_result result = gxp_reserve(&body->allocator, &body->rest, 3 * sizeof(double), 0, &body->rest_capacity, body->copy_count);
+    int k;
+    for (i = 0; i < body->copy_count; i++) of->root[i] = i;
+    for (i = 0; i < body->part_count; i++)
+        for (k = 1; k < 4; k++) gxp_unite(of->root, body->parts[i].copy[0], body->parts[i].copy[k]);
+    for (i = 0; i < body->part_count; i++) {
+        const uint32_t root = gxp_find(of->root, body->parts[i].copy[0]), best = of->part[root];
+        if (of->part[body->parts[i].copy[0]] != GXP_NONE && best == GXP_NONE) continue;
+        if (best == GXP_NONE || body->parts[i].weight / gxp_part_volume(&body->parts[i]) > body->parts[best].weight / gxp_part_volume(&body->parts[best]))
+            of->part[root] = i;
+    }
+    for (i = 0; i < body->copy_count; i++) if (of->part[i] == GXP_NONE) of->part[i] = of->part[gxp_find(of->root, i)];
+}
+
+/* The copy follows the field of its part at its node, or, where that part is all but empty, the part's best supported copy. */
+static void gxp_add_constraint(gx_body *body, const gxp_supports *of, uint32_t copy) {
+    const gxs_element *part = &body->parts[of->part[copy]];
+    const double *x = body->positions + 3 * (size_t)body->copy_node[copy], *x0 = body->positions + 3 * (size_t)body->copy_node[part->copy[0]];
+    gxs_constraint *constraint = &body->constraints[body->constraint_count];
+    int k, best = 0, c;
+    for (k = 1; k < 4; k++) if (of->share[part->copy[k]] > of->share[part->copy[best]]) best = k;
+    constraint->copy = copy;
+    for (k = 0; k < 4; k++) {
+        const int point = part->weight < body->support_below * gxp_part_volume(part);
+        constraint->master[k] = part->copy[k];
+        constraint->weight[k] = point ? k == best : k == 0;
+        for (c = 0; c < 3 && !point; c++) constraint->weight[k] += part->gradient[k][c] * (x[c] - x0[c]);
+        if (part->copy[k] == copy && (!point || k == best)) return;   /* a master itself */
+    }
+    body->constraint_count++;
+}
+
+static gx_result gxp_make_constraints(gx_body *body) {
+    const gx_allocator *a = &body->allocator;
+    const size_t n = (size_t)body->copy_count + 1, node_bytes = ((size_t)body->node_count + 1) * sizeof(double);
+    gxp_supports of;
+    double *node;
+    uint32_t i;
+    gx_result result;
+    body->constraint_count = 0;
+    if (!(body->support_below > 0)) return GX_OK;
+    result = gxp_reserve(a, &body->constraints, sizeof *body->constraints, 0, &body->constraint_capacity, body->copy_count);
     if (result != GX_OK) return result;
-    for (i = 0; i < body->copy_count; i++)
-        memcpy(body->rest + 3 * (size_t)i, body->positions + 3 * (size_t)body->copy_node[i], 3 * sizeof(double));
-    memset(&material, 0, sizeof material);
-    memset(&model, 0, sizeof model);
-    material.young = body->young; material.poisson = body->poisson;
-    model.copy_count = body->copy_count; model.positions = body->rest;
-    model.elements = body->parts; model.element_count = body->part_count;
-    model.materials = &material; model.material_count = 1;
-    model.held = body->held;
-    return gxs_solver_set_model(body->solver, &model, NULL);
-}
-
-static void gxp_release_parts(gx_body *body) {
-    gxp_release(&body->allocator, body->parts, body->part_capacity * sizeof *body->parts);
-    gxp_release(&body->allocator, body->rest, body->rest_capacity * 3 * sizeof(double));
-    body->parts = NULL; body->part_capacity = 0;
-    body->rest = NULL; body->rest_capacity = 0;
-}
-
-/* The solver's model, anew after a cut or a hold only. The solver copies it, so that the parts need not be kept. */
-static gx_result gxp_update_model(gx_body *body) {
-    gx_result result = gxp_update_held(body);
-    if (result != GX_OK || !body->model_stale) return result;
-    result = gxp_make_parts(body);
-    if (result == GX_OK && body->part_count > 0) result = gxp_set_model(body);
-    gxp_release_parts(body);
-    if (result == GX_OK) body->model_stale = 0;
+    of.share = (double *)gxp_allocate(a, n * sizeof(double));
+    of.part = (uint32_t *)gxp_allocate(a, 2 * n * sizeof(uint32_t));
+    node = (double *)gxp_allocate(a, node_bytes);
+    if (of.share != NULL && of.part != NULL && node != NULL) {
+        of.root = of.part + n;
+        memset(of.share, 0, n * sizeof(double));
+        memset(of.part, 0xff, n * sizeof(uint32_t));
+        memset(node, 0, node_bytes);
+        gxp_find_shares(body, &of, node);
+        gxp_spread_supports(body, &of);
+        gxp_choose_fullest(body, &of);
+        for (i = 0; i < body->copy_count; i++) if (gxp_low(body, &of, i) && of.part[i] != GXP_NONE) gxp_add_constraint(body, &of, i);
+    } else result = GX_ERROR_MEMORY;
+    gxp_release(a, of.share, n * sizeof(double));
+    gxp_release(a, of.part, 2 * n * sizeof(uint32_t));
+    gxp_release(a, node, node_bytes);
     return result;
 }
 
-GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report) {
-    gxs_step_desc step;
-    gxs_step_report done;
-    const double start = body != NULL ? gxp_seconds(body) : 0;
-    gx_result result;
-    if (body == NULL || desc == NULL) return GX_ERROR_ARGUMENT;
-    result = gxp_update_model(body);
-    if (result == GX_OK && body->part_count == 0 && report != NULL) memset(report, 0, sizeof *report);
-    if (result != GX_OK || body->part_count == 0) return result;    /* nothing left to move */
-    memset(&step, 0, sizeof step);
-    step.dt = desc->dt;
-    memcpy(step.gravity, desc->gravity, sizeof step.gravity);
-    step.forces = desc->forces;
-    step.newton_iterations = desc->newton_iterations; step.newton_tolerance = desc->newton_tolerance;
-    step.cg_iterations = desc->cg_iterations; step.cg_tolerance = desc->cg_tolerance;
-    result = gxs_solver_step(body->solver, &step, body->displacement, body->velocity, &done, NULL);
-    if (result != GX_OK || report == NULL) return result;
-    report->newton_iterations = done.newton_iterations; report->cg_iterations = done.cg_iterations;
-    report->line_search_steps = done.line_search_steps;
-    report->residual = done.residual; report->energy = done.energy;
-    report->seconds = gxp_seconds(body) - start;
+static gx_result gxp_make_model(gx_body *body, gxs_model *model) {
+    const gx_allocator *a = &body->allocator;
+    uint32_t i;
+    gx_result result = gxp_make_parts(body);
+    if (result == GX_OK) result = gxp_make_constraints(body);
+    if (result == GX_OK) result = gxp_reserve(a, &body->rest, 3 * sizeof(double), 0, &body->rest_capacity, body->copy_count);
+    if (result == GX_OK) result = gxp_reserve(a, &body->elastic, sizeof *body->elastic, 0, &body->elastic_capacity, body->material_count);
+    if (result != GX_OK) return result;
+    for (i = 0; i < body->copy_count; i++)
+        memcpy(body->rest + 3 * (size_t)i, body->positions + 3 * (size_t)body->copy_node[i], 3 * sizeof(double));
+    for (i = 0; i < body->material_count; i++) body->elastic[i] = body->materials[i].elastic;
+    memset(model, 0, sizeof *model);
+    model->copy_count = body->copy_count; model->positions = body->rest;
+    model->elements = body->parts; model->element_count = body->part_count;
+    model->materials = body->elastic; model->material_count = body->material_count;
+    model->held = body->held;
+    model->constraints = body->constraints; model->constraint_count = body->constraint_count;
     return GX_OK;
+}
+
+/* The solver's model, anew after a cut or a hold only. The solver copies it, so that it need not be kept. */
+static gx_result gxp_update_model(gx_body *body) {
+    gxs_model model;
+    gx_result result = gxp_update_held(body);
+    if (result == GX_OK && body->model_stale) {
+        result = gxp_make_model(body, &model);
+        if (result == GX_OK && body->part_count > 0) result = gxs_solver_set_model(body->solver, &model, NULL);
+        if (result == GX_OK) body->model_stale = 0;
+    }
+    gxp_release_model(body);
+    return result;
+}
+
+GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model) {
+    gx_result result;
+    if (body == NULL || model == NULL) return GX_ERROR_ARGUMENT;
+    result = gxp_update_held(body);
+    return result == GX_OK ? gxp_make_model(body, model) : result;
+}
+
+/* The step with what is the body's own */
+static gx_result gxp_complete_step(gx_body *body, const gx_step_desc *desc, gx_step_desc *step) {
+    const int history = desc->integrator == GXS_BDF2;
+    gx_result result = GX_OK;
+    int i;
+    *step = *desc;
+    step->rest_times = body->rest_time;
+    if (step->clock == NULL) { step->clock = body->clock; step->clock_user = body->clock_user; }
+    for (i = 0; i < 4 && history && result == GX_OK; i++)
+        if (body->history[i] == NULL)
+            result = gxp_reserve(&body->allocator, &body->history[i], 3 * sizeof(double), 0, &body->history_capacity[i], body->copy_count);
+    step->previous_displacement = history && body->previous_dt > 0 ? body->history[0] : NULL;
+    step->previous_velocity = body->history[1];
+    step->previous_dt = body->previous_dt;
+    return result;
+}
+
+/* The solver's step, and what BDF2's next one needs of this one */
+static gx_result gxp_step(gx_body *body, const gx_step_desc *step, gx_step_report *report, gx_failure *failure) {
+    const size_t bytes = 3 * (size_t)body->copy_count * sizeof(double);
+    const int history = step->integrator == GXS_BDF2;
+    gx_result result;
+    int i;
+    if (history) {
+        memcpy(body->history[2], body->displacement, bytes);
+        memcpy(body->history[3], body->velocity, bytes);
+    }
+    result = gxs_solver_step(body->solver, step, body->displacement, body->velocity, report, failure);
+    if (result != GX_OK) return result;
+    body->previous_dt = history ? step->dt : 0;
+    for (i = 0; i < 2 && history; i++) {
+        double *now = body->history[i + 2];
+        const uint32_t capacity = body->history_capacity[i + 2];
+        body->history[i + 2] = body->history[i]; body->history_capacity[i + 2] = body->history_capacity[i];
+        body->history[i] = now; body->history_capacity[i] = capacity;
+    }
+    return GX_OK;
+}
+
+GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report, gx_failure *failure) {
+    const double start = body != NULL ? gxp_seconds(body) : 0;
+    gx_step_desc step;
+    gx_result result;
+    if (body == NULL || desc == NULL) return gxp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX, SIZE_MAX);
+    result = gxp_update_model(body);
+    if (result == GX_OK) result = gxp_complete_step(body, desc, &step);
+    if (result == GX_OK && body->part_count == 0 && report != NULL) memset(report, 0, sizeof *report);
+    if (result != GX_OK || body->part_count == 0) return gxp_fail(failure, result, SIZE_MAX, SIZE_MAX);    /* nothing left to move */
+    result = gxp_step(body, &step, report, failure);
+    if (result == GX_OK && report != NULL) report->seconds = gxp_seconds(body) - start;
+    return result;
 }
 
 /* >>boundary: the skin ---------------------------------------------------------------------------------------------------------- */
@@ -2911,6 +3147,8 @@ GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
     for (i = 0; i < body->copy_count; i++) hash = gxp_mix(hash ^ body->copy_node[i]);
     hash = gxp_hash_doubles(hash, body->displacement, 3 * (size_t)body->copy_count);
     hash = gxp_hash_doubles(hash, body->velocity, 3 * (size_t)body->copy_count);
+    hash = gxp_hash_doubles(hash, body->rest_time, body->copy_count);
+    for (i = 0; i < 2 && body->previous_dt > 0; i++) hash = gxp_hash_doubles(hash, body->history[i], 3 * (size_t)body->copy_count);
     for (i = 0; i < body->region_count; i++)
         hash = gxp_hash_doubles(gxp_mix(hash ^ body->regions[i].axis ^ (uint64_t)(body->regions[i].side + 1) << 8), &body->regions[i].value, 1);
     return hash;

@@ -12,9 +12,9 @@
  *         gxs_element element = {{0, 1, 2, 3},                                      // its four copies
  *             {{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},                      // gradients, 1/m
  *             1.0 / 6, {17, 8, 8, 8, 17, 8, 8, 17, 8, 17}, 0};                      // m3; kg
- *         gxs_material material = {GXS_STABLE_NEO_HOOKEAN, 1e6, 0.4};
+ *         gxs_material material = {GXS_STABLE_NEO_HOOKEAN, 1e6, 0.4, 0, NULL, NULL};
  *         double displacement[12] = {0}, velocity[12] = {0};
- *         gxs_model model = {4, NULL, &element, 1, &material, 1, NULL, 0};
+ *         gxs_model model = {4, NULL, &element, 1, &material, 1, NULL, 0, NULL, 0};
  *         gxs_step_desc step = {0};
  *         gxs_solver *solver = NULL;
  *         gx_result result = gxs_solver_create(NULL, &solver);
@@ -302,6 +302,7 @@ typedef struct gxs_step_report {
                                    the larger of the two measures (see above) */
     double energy;              /* E at the end, J, without pieces asleep and up to a constant: the load on held copies. Of the midpoint
                                    rule this and the residual are those of its displacement at half the step */
+    double seconds;             /* of the step; from gx_body_step with the renewal of the solver's model after a cut */
     double seconds_linearise;   /* in Hessians and their diagonal, */
     double seconds_prepare;     /* in numbers of the preconditioner and assembly, */
     double seconds_solve;       /* in conjugate gradients; all 0 without a clock */
@@ -4766,6 +4767,7 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     if (result != GX_OK)
         return gxsp_fail(failure, result, SIZE_MAX);
     gxsp_report_springs(&problem);
+    problem.report.seconds = gxsp_now(&problem) - problem.start;
     if (report)
         *report = problem.report;
     return GX_OK;

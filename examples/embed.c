@@ -19,7 +19,7 @@ int main(void)
     gx_view view = {0};
     gx_result result = gx_body_create(&body_desc, &body, NULL);
     if (result == GX_OK) result = gx_body_cut(body, &cut_desc, NULL, NULL);
-    for (int i = 0; i < 30 && result == GX_OK; i++) result = gx_body_step(body, &step_desc, NULL);
+    for (int i = 0; i < 30 && result == GX_OK; i++) result = gx_body_step(body, &step_desc, NULL, NULL);
     if (result == GX_OK) result = gx_body_view(body, &view);
     printf("%s: %lu fragments\n", gx_result_text(result), (unsigned long)view.fragment_count);
     gx_body_destroy(body);

@@ -476,7 +476,7 @@ static int step(run *r, uint32_t frame)
     desc.dt = r->set.dt;
     memcpy(desc.gravity, r->set.gravity, sizeof desc.gravity);
     desc.newton_iterations = r->set.newton;
-    result = gx_body_step(r->body, &desc, &report);
+    result = gx_body_step(r->body, &desc, &report, NULL);
     if (result != GX_OK) return refuse_step(r, frame, result);
     r->seconds_newton += report.seconds;
     return EXIT_DONE;

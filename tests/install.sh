@@ -3,6 +3,7 @@
 # usage: sh tests/install.sh GROUP...
 #     check   Check and pkg-config, for the unit tests
 #     cxx     a C++ compiler, for the compile tests
+#     bench   SuiteSparse, for the direct solver that benches compare with
 set -u
 
 # has PROGRAM...: are all there?
@@ -10,10 +11,17 @@ has() {
     for program in "$@"; do command -v "$program" >/dev/null 2>&1 || return 1; done
 }
 
+# Is there a header of this name? A file can only be looked for where the compiler looks.
+header() {
+    # shellcheck disable=SC2046
+    printf '#include <%s>\n' "$1" | "${CC:-cc}" $(pkg-config --cflags CHOLMOD 2>/dev/null) -E - >/dev/null 2>&1
+}
+
 have() {
     case $1 in
     check) has pkg-config && pkg-config --exists check ;;
     cxx) has g++ || has clang++ || has c++ ;;
+    bench) header cholmod.h || header suitesparse/cholmod.h ;;
     *) echo "$0: no group '$1'" >&2; exit 2 ;;
     esac
 }
@@ -28,6 +36,10 @@ packages() {
     cxx:apt-get) echo g++ ;;
     cxx:dnf) echo gcc-c++ ;;
     cxx:*) echo gcc ;;
+    bench:apt-get) echo libsuitesparse-dev libopenblas0-serial ;; # the BLAS that the first brings is a reference, and slow
+    bench:dnf) echo suitesparse-devel ;;
+    bench:pacman) echo suitesparse ;;
+    bench:brew) echo suite-sparse pkg-config ;;
     esac
 }
 
@@ -43,7 +55,7 @@ install() {
     esac
 }
 
-[ $# -gt 0 ] || { echo "usage: $0 check|cxx..." >&2; exit 2; }
+[ $# -gt 0 ] || { echo "usage: $0 check|cxx|bench..." >&2; exit 2; }
 missing=
 for group in "$@"; do have "$group" || missing="$missing $group"; done
 [ -n "$missing" ] || exit 0

@@ -1295,7 +1295,7 @@ START_TEST(solids_that_contain_everything) {
     ck_assert_uint_eq(skin.triangle_count, 0);
     memset(&step, 0, sizeof step);
     step.dt = 0.01;
-    ck_assert_int_eq(gx_body_step(body, &step, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
     gx_body_destroy(body);
     wl_free(&w);
 }
@@ -1689,7 +1689,7 @@ START_TEST(free_bodies_keep_their_momentum) {
     for (i = 0; i < 3 * view.copy_count; ++i) { view.velocity[i] = random_real(-0.1, 0.1); view.displacement[i] = random_real(-0.01, 0.01); }
     size = momentum(body, before);
     for (n = 0; n < 3; ++n) {
-        gx_result result = gx_body_step(body, &step, NULL);
+        gx_result result = gx_body_step(body, &step, NULL, NULL);
         CHECK_SEED(result == GX_OK, seed);
     }
     momentum(body, after);
@@ -1713,7 +1713,7 @@ START_TEST(fragments_fall) {
     body = cut_at_once(&w);
     step.gravity[2] = -9.81;
     step.cg_tolerance = 1e-10;
-    for (n = 0; n < 10; ++n) ck_assert_int_eq(gx_body_step(body, &step, NULL), GX_OK);
+    for (n = 0; n < 10; ++n) ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
     view = view_of(body);
     ck_assert_uint_eq(view.fragment_count, 9);
     fallen = 9.81 * step.dt * step.dt * 55;
@@ -1742,7 +1742,7 @@ START_TEST(held_body_hangs) {
     step.gravity[2] = -9.81; step.newton_iterations = 2; step.cg_tolerance = 1e-6;
     cut_by(body, &w, 0, 1);
     for (n = 0; n < 30; ++n) {
-        ck_assert_int_eq(gx_body_step(body, &step, NULL), GX_OK);
+        ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
         view = view_of(body);
         for (i = 0; i < 3 * view.copy_count; ++i) {
             if (view.copy_held[i / 3]) ck_assert(view.displacement[i] == 0);
@@ -1756,7 +1756,7 @@ START_TEST(held_body_hangs) {
     }
     ck_assert_int_gt(free_copies, 0);
     cut_by(body, &w, 1, 1);
-    for (n = 0; n < 30; ++n) ck_assert_int_eq(gx_body_step(body, &step, NULL), GX_OK);
+    for (n = 0; n < 30; ++n) ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
     view = view_of(body);
     ck_assert_uint_eq(view.fragment_count, 3);
     for (i = 0; i < 4 * view.cell_count; ++i) {
@@ -1812,7 +1812,7 @@ START_TEST(sticks_drift_apart) {
     for (i = 0; i < view.copy_count; ++i) for (k = 0; k < 2; ++k)
         view.velocity[3 * i + (size_t)k] = 2 * (body->positions[3 * view.copy_node[i] + (uint32_t)k] - 0.5);
     for (n = 0; n < 10; ++n) {
-        ck_assert_int_eq(gx_body_step(body, &step, NULL), GX_OK);
+        ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
         view = view_of(body);
         ck_assert(is_finite_state(&view));
     }
@@ -1853,7 +1853,7 @@ START_TEST(violent_steps_stay_finite) {
     step.gravity[2] = -9.81;
     for (n = 0; n < 5; ++n) {
         uint64_t state = gx_body_state_hash(body);
-        gx_result result = gx_body_step(body, &step, NULL);
+        gx_result result = gx_body_step(body, &step, NULL, NULL);
         CHECK_SEED(result == GX_OK || (result == GX_ERROR_DIVERGED && gx_body_state_hash(body) == state), seed);
         view = view_of(body);
         CHECK_SEED(is_finite_state(&view), seed);
@@ -1877,7 +1877,7 @@ START_TEST(forces_act_on_copies) {
     memset(forces, 0, 3 * view.copy_count * sizeof *forces);
     forces[3 * (view.copy_count - 1)] = 10;
     step.forces = forces; step.cg_tolerance = 1e-10; step.newton_iterations = 20; step.newton_tolerance = 1e-10;
-    ck_assert_int_eq(gx_body_step(body, &step, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
     momentum(body, p);
     ck_assert_double_eq_tol(p[0], 10 * step.dt, 1e-7);
     ck_assert_double_eq_tol(p[1], 0, 1e-7);
@@ -2156,7 +2156,7 @@ START_TEST(unused_nodes) {
     cut_by(body, &w, 0, 1);
     ck_assert_uint_eq(view_of(body).copy_count, 8);
     ck_assert_int_eq(gx_body_skin(body, &skin), GX_OK);
-    ck_assert_int_eq(gx_body_step(body, &step, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
     check_skin(body, 0);
     gx_body_destroy(body);
     wl_free(&w);
@@ -2242,18 +2242,18 @@ START_TEST(bad_arguments_elsewhere) {
     bad = region; bad.axis = 3; ck_assert_int_eq(gx_body_hold(body, &bad, 1), GX_ERROR_ARGUMENT);
     bad = region; bad.side = 0; ck_assert_int_eq(gx_body_hold(body, &bad, 1), GX_ERROR_ARGUMENT);
     bad = region; bad.value = NAN; ck_assert_int_eq(gx_body_hold(body, &bad, 1), GX_ERROR_NOT_FINITE);
-    ck_assert_int_eq(gx_body_step(NULL, &step, NULL), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gx_body_step(body, NULL, NULL), GX_ERROR_ARGUMENT);
-    s = step; s.dt = 0; ck_assert_int_eq(gx_body_step(body, &s, NULL), GX_ERROR_ARGUMENT);
-    s = step; s.dt = -1; ck_assert_int_eq(gx_body_step(body, &s, NULL), GX_ERROR_ARGUMENT);
-    s = step; s.dt = NAN; ck_assert_int_eq(gx_body_step(body, &s, NULL), GX_ERROR_NOT_FINITE);
-    s = step; s.gravity[1] = INFINITY; ck_assert_int_eq(gx_body_step(body, &s, NULL), GX_ERROR_NOT_FINITE);
-    s = step; s.forces = forces; forces[7] = NAN; ck_assert_int_eq(gx_body_step(body, &s, NULL), GX_ERROR_NOT_FINITE);
+    ck_assert_int_eq(gx_body_step(NULL, &step, NULL, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_step(body, NULL, NULL, NULL), GX_ERROR_ARGUMENT);
+    s = step; s.dt = 0; ck_assert_int_eq(gx_body_step(body, &s, NULL, NULL), GX_ERROR_ARGUMENT);
+    s = step; s.dt = -1; ck_assert_int_eq(gx_body_step(body, &s, NULL, NULL), GX_ERROR_ARGUMENT);
+    s = step; s.dt = NAN; ck_assert_int_eq(gx_body_step(body, &s, NULL, NULL), GX_ERROR_NOT_FINITE);
+    s = step; s.gravity[1] = INFINITY; ck_assert_int_eq(gx_body_step(body, &s, NULL, NULL), GX_ERROR_NOT_FINITE);
+    s = step; s.forces = forces; forces[7] = NAN; ck_assert_int_eq(gx_body_step(body, &s, NULL, NULL), GX_ERROR_NOT_FINITE);
     ck_assert(gx_body_topology_hash(NULL, &result) == 0);
     ck_assert_int_eq(result, GX_ERROR_ARGUMENT);
     ck_assert(gx_body_state_hash(body) == state);
     view.displacement[0] = NAN;
-    ck_assert_int_eq(gx_body_step(body, &step, NULL), GX_ERROR_NOT_FINITE);
+    ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_ERROR_NOT_FINITE);
     view.displacement[0] = 0;
     ck_assert(gx_body_state_hash(body) == state);
     gx_body_destroy(body);

@@ -132,7 +132,7 @@ static gx_result step(gx_body *body) {
     gx_step_desc desc;
     memset(&desc, 0, sizeof desc);
     desc.dt = 0.01; desc.gravity[2] = -9.81;
-    return gx_body_step(body, &desc, NULL);
+    return gx_body_step(body, &desc, NULL, NULL);
 }
 static gx_result hash(gx_body *body) { gx_result result; gx_body_topology_hash(body, &result); return result; }
 

@@ -1,0 +1,845 @@
+/* solver: what a time step costs, by preconditioner and form of the matrix, beside a direct solver.
+
+   make bench-solver [BENCH="--small --case NAME"] builds and runs it; it prints CSV and writes it to build/bench/solver.csv.
+       --small      the smallest size only
+       --case NAME  only the cases with NAME in their name: accordion, loose-jittered, 23k-1e8, ...
+       --out DIR    where solver.csv and product.csv go; without it they are not written
+
+   A case is a block (block.h) that is let go from rest: backward Euler, 33 ms, one Newton iteration, linear systems to 1e-2. The
+   direction of gravity sways by 0.05 rad, so that the block swings on: else backward Euler would have brought a stiff one to rest
+   to the last digit before the measurement ends. (Not by more: one Newton iteration does not follow a stiff accordion that is
+   shaken, and its linear systems get easier.) Every method starts from the same cut body at rest and makes the same steps, of
+   which the first four are not counted. Columns of solver.csv:
+       setup_ms     gxs_solver_set_model: the structure, once per cut
+       solve_ms     the preconditioner's numbers (or the assembled matrix's) and conjugate gradients; median of the steps
+       step_ms      all of gxs_solver_step; median of the steps
+       iterations   of conjugate gradients, mean of the steps
+       peak_bytes   the most memory that the solver had at any time, from its allocator
+       residual     of the last step's report, after the one Newton iteration
+   Of `cholmod` (SuiteSparse, as the system has it with its BLAS), for the linear system that follows the last step of
+   multigrid-free, in double precision:
+       setup_ms     cholmod_analyze: ordering and symbolic factorisation, once per cut
+       solve_ms     cholmod_factorize and cholmod_solve
+       step_ms      the median step of multigrid-free with this solve_ms in place of its own; filling the matrix is not counted
+       peak_bytes   CHOLMOD's own count of the matrix, factor and workspace
+       residual     |b - A x| / |b| of the linear system: not to be compared with the others
+   product.csv has the time of conjugate gradients per element and iteration: one product and some vector work with block-Jacobi,
+   three products with multigrid.
+
+   contents
+     >>host      clock, memory, threads       >>direct    the linear system for CHOLMOD
+     >>run       one method on one body       >>cases     what is run
+     >>rows      what is printed              >>main      the command line */
+#define _POSIX_C_SOURCE 200809L
+#define GXFEM_IMPLEMENTATION
+#include "../gxfem.h"
+#include "block.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <sched.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+/* Distributions have it in a folder of its own or not. */
+#if defined(__has_include)
+#if __has_include(<suitesparse/cholmod.h>)
+#include <suitesparse/cholmod.h>
+#else
+#include <cholmod.h>
+#endif
+#else
+#include <cholmod.h>
+#endif
+
+/* Steps from rest that are not counted, and the most that are made. */
+enum { STEPS_SKIPPED = 4, STEPS = 20 };
+
+/* A method whose counted steps have taken so many seconds ends with the step it is at: block-Jacobi on the largest blocks. */
+static const double patience = 30.0;
+
+/* High enough not to be met: a limit would make slow methods look fast. */
+static const uint32_t cg_limit = 20000;
+
+/* What CHOLMOD may take: bytes of the factor, operations of the factorisation (minutes with a slow BLAS). */
+static const double direct_bytes = 2e9, direct_operations = 5e11;
+
+/* -------------------------------------------------------------------------------------------------- >>host */
+
+static double seconds(void *user)
+{
+    struct timespec now;
+    (void)user;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* malloc, counted; on the thread of the solver's calls only */
+typedef struct meter {
+    size_t now, peak;       /* bytes */
+} meter;
+
+static void *meter_allocate(void *user, size_t size)
+{
+    meter *m = (meter *)user;
+    void *memory = malloc(size);
+    if (!memory) return NULL;
+    m->now += size;
+    if (m->now > m->peak) m->peak = m->now;
+    return memory;
+}
+
+static void meter_release(void *user, void *memory, size_t size)
+{
+    ((meter *)user)->now -= size;
+    free(memory);
+}
+
+/* One thread that helps the calling one: both take the next index until there is none. Between passes it yields instead of
+   sleeping, as job systems do: a pass takes some 20 microseconds, waking a thread not less. All that both write is atomic. */
+typedef struct helper {
+    pthread_t thread;
+    void (*task)(void *, size_t);
+    void *context;
+    size_t count, next;
+    unsigned round, done;           /* rounds of work: begun, and finished by the helper */
+    int quit;
+} helper;
+
+static void helper_work(helper *h)
+{
+    size_t i;
+    while ((i = __atomic_fetch_add(&h->next, 1, __ATOMIC_RELAXED)) < h->count) h->task(h->context, i);
+}
+
+static void *helper_main(void *user)
+{
+    helper *h = (helper *)user;
+    unsigned seen = 0;
+    while (!__atomic_load_n(&h->quit, __ATOMIC_ACQUIRE)) {
+        if (__atomic_load_n(&h->round, __ATOMIC_ACQUIRE) == seen) { sched_yield(); continue; }
+        helper_work(h);
+        __atomic_store_n(&h->done, ++seen, __ATOMIC_RELEASE);
+    }
+    return NULL;
+}
+
+static void helper_parallel_for(void *user, size_t count, void (*task)(void *, size_t), void *context)
+{
+    helper *h = (helper *)user;
+    h->task = task;
+    h->context = context;
+    h->count = count;
+    h->next = 0;
+    __atomic_store_n(&h->round, h->round + 1, __ATOMIC_RELEASE);
+    helper_work(h);
+    while (__atomic_load_n(&h->done, __ATOMIC_ACQUIRE) != h->round) sched_yield();
+}
+
+static int helper_start(helper *h)
+{
+    memset(h, 0, sizeof *h);
+    return pthread_create(&h->thread, NULL, helper_main, h) == 0;
+}
+
+static void helper_stop(helper *h)
+{
+    __atomic_store_n(&h->quit, 1, __ATOMIC_RELEASE);
+    pthread_join(h->thread, NULL);
+}
+
+/* --------------------------------------------------------------------------------------------------- >>run */
+
+typedef struct method {
+    const char *name;
+    gxs_preconditioner preconditioner;
+    gxs_matrix matrix;
+    int threads;            /* 1 or 2 */
+} method;
+
+/* volume-ratio differs from jacobi-free by its diagonal only. */
+enum { MULTIGRID_FREE = 2, MULTIGRID_FREE_2 = 5, METHODS = 6 };
+static const method methods[METHODS] = {
+    {"jacobi-free", GXS_BLOCK_JACOBI, GXS_MATRIX_FREE, 1},
+    {"jacobi-assembled", GXS_BLOCK_JACOBI, GXS_MATRIX_ASSEMBLED, 1},
+    {"multigrid-free", GXS_MULTIGRID, GXS_MATRIX_FREE, 1},
+    {"multigrid-assembled", GXS_MULTIGRID, GXS_MATRIX_ASSEMBLED, 1},
+    {"volume-ratio", GXS_VOLUME_RATIO, GXS_MATRIX_FREE, 1},
+    {"multigrid-free-2", GXS_MULTIGRID, GXS_MATRIX_FREE, 2}};
+
+typedef struct state {
+    size_t count;           /* 3 x copies */
+    double *displacement, *velocity;
+    int steps;              /* made from rest */
+} state;
+
+/* Times are in seconds. */
+typedef struct outcome {
+    double setup, solve, step;      /* the last two: medians */
+    double iterations;              /* per step */
+    double iteration;               /* seconds of conjugate gradients per iteration */
+    double residual;
+    size_t peak_bytes;
+} outcome;
+
+typedef struct samples {
+    double solve[STEPS], step[STEPS];
+    double seconds, conjugate_gradients, iterations; /* sums */
+    size_t count;
+} samples;
+
+static int complain(const char *what, gx_result result)
+{
+    fprintf(stderr, "solver: %s: %s\n", what, gx_result_text(result));
+    return 0;
+}
+
+static int state_begin(state *s, size_t copies)
+{
+    s->steps = 0;
+    s->count = 3 * copies;
+    s->displacement = (double *)calloc(s->count, sizeof(double));
+    s->velocity = (double *)calloc(s->count, sizeof(double));
+    return s->displacement && s->velocity;
+}
+
+static void state_end(state *s)
+{
+    free(s->displacement);
+    free(s->velocity);
+    memset(s, 0, sizeof *s);
+}
+
+/* The step with this number from rest; gravity sways once in 12 steps. */
+static gxs_step_desc step_make(int number)
+{
+    const double angle = 0.05 * sin(2.0 * 3.14159265358979 * number / 12.0);
+    gxs_step_desc step;
+    memset(&step, 0, sizeof step);
+    step.dt = 0.033;
+    step.gravity[0] = 9.81 * sin(angle);
+    step.gravity[2] = -9.81 * cos(angle);
+    step.newton_iterations = 1;
+    step.cg_iterations = cg_limit;
+    step.cg_tolerance = 1e-2;
+    step.clock = seconds;
+    return step;
+}
+
+static int compare(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+static double median(double *values, size_t count)
+{
+    qsort(values, count, sizeof *values, compare);
+    return count == 0 ? 0.0 : 0.5 * (values[(count - 1) / 2] + values[count / 2]);
+}
+
+static void take_sample(samples *s, const gxs_step_report *report, double step)
+{
+    s->seconds += step;
+    s->step[s->count] = step;
+    s->solve[s->count++] = report->seconds_prepare + report->seconds_solve;
+    s->conjugate_gradients += report->seconds_solve;
+    s->iterations += report->cg_iterations;
+}
+
+static void summarise(samples *s, outcome *o)
+{
+    o->solve = median(s->solve, s->count);
+    o->step = median(s->step, s->count);
+    o->iterations = s->count > 0 ? s->iterations / (double)s->count : 0.0;
+    o->iteration = s->iterations > 0 ? s->conjugate_gradients / s->iterations : 0.0;
+}
+
+/* The state's next step. */
+static gx_result step_on(gxs_solver *solver, state *s, samples *taken, outcome *o)
+{
+    const gxs_step_desc step = step_make(s->steps);
+    const double start = seconds(NULL);
+    gxs_step_report report;
+    const gx_result result = gxs_solver_step(solver, &step, s->displacement, s->velocity, &report, NULL);
+    if (result != GX_OK) return result;
+    if (s->steps++ >= STEPS_SKIPPED) take_sample(taken, &report, seconds(NULL) - start);
+    o->residual = report.residual;
+    return GX_OK;
+}
+
+static gx_result swing(gxs_solver *solver, int steps, state *s, outcome *o)
+{
+    gx_result result = GX_OK;
+    samples taken;
+    memset(&taken, 0, sizeof taken);
+    while (result == GX_OK && s->steps < steps && taken.seconds < patience) result = step_on(solver, s, &taken, o);
+    summarise(&taken, o);
+    return result;
+}
+
+static gx_result set_and_swing(const gxs_solver_desc *desc, const gxs_model *model, int steps, state *s, outcome *o)
+{
+    gxs_solver *solver = NULL;
+    gx_result result = gxs_solver_create(desc, &solver);
+    const double start = seconds(NULL);
+    if (result == GX_OK) result = gxs_solver_set_model(solver, model, NULL);
+    o->setup = seconds(NULL) - start;
+    if (result == GX_OK) result = swing(solver, steps, s, o);
+    gxs_solver_destroy(solver);
+    return result;
+}
+
+/* A method on a model at rest; s is its state in the end. */
+static int run_method(const method *m, const gxs_model *model, int steps, state *s, outcome *o)
+{
+    gxs_solver_desc desc;
+    helper second;
+    meter memory = {0, 0};
+    gx_result result;
+    memset(&desc, 0, sizeof desc);
+    memset(o, 0, sizeof *o);
+    desc.allocator.allocate = meter_allocate;
+    desc.allocator.release = meter_release;
+    desc.allocator.user = &memory;
+    desc.preconditioner = m->preconditioner;
+    desc.matrix = m->matrix;
+    if (!state_begin(s, model->copy_count)) return complain(m->name, GX_ERROR_MEMORY);
+    if (m->threads > 1) {
+        if (!helper_start(&second)) return complain("no second thread", GX_ERROR_LIMIT);
+        desc.jobs.parallel_for = helper_parallel_for;
+        desc.jobs.user = &second;
+    }
+    result = set_and_swing(&desc, model, steps, s, o);
+    if (m->threads > 1) helper_stop(&second);
+    o->peak_bytes = memory.peak;
+    return result == GX_OK || complain(m->name, result);
+}
+
+/* -------------------------------------------------------------------------------------------------- >>rows */
+
+typedef struct timing {
+    char name[40];          /* of the case */
+    const char *method;
+    size_t elements;
+    double nanoseconds;     /* per element and iteration */
+} timing;
+
+enum { TIMINGS = 400 };     /* cases x methods, and room */
+
+typedef struct tables {
+    FILE *solver, *product; /* NULL: not written */
+    timing timings[TIMINGS];
+    size_t timing_count;
+} tables;
+
+static void print_row(FILE *file, const char *name, const char *method_name, size_t unknowns, const outcome *o)
+{
+    fprintf(file, "%s,%s,%lu,%.1f,%.3f,%.3f,%.3f,%lu,%.3e\n", name, method_name, (unsigned long)unknowns, o->iterations,
+            1e3 * o->setup, 1e3 * o->solve, 1e3 * o->step, (unsigned long)o->peak_bytes, o->residual);
+    fflush(file);
+}
+
+static void add_row(tables *t, const char *name, const char *method_name, size_t unknowns, const outcome *o)
+{
+    print_row(stdout, name, method_name, unknowns, o);
+    if (t->solver) print_row(t->solver, name, method_name, unknowns, o);
+}
+
+static void add_timing(tables *t, const char *name, const char *method_name, size_t elements, const outcome *o)
+{
+    timing *row = &t->timings[t->timing_count];
+    if (t->timing_count == TIMINGS || !(o->iterations > 0)) return;
+    t->timing_count++;
+    snprintf(row->name, sizeof row->name, "%s", name);
+    row->method = method_name;
+    row->elements = elements;
+    row->nanoseconds = 1e9 * o->iteration / (double)elements;
+    if (!t->product) return;
+    fprintf(t->product, "%s,%s,%lu,%.2f\n", name, method_name, (unsigned long)elements, row->nanoseconds);
+    fflush(t->product);
+}
+
+/* What a product costs: of the methods with one product per iteration. */
+static void print_timings(const tables *t)
+{
+    size_t i;
+    fprintf(stderr, "\n%-28s %-17s %9s  ns per element and iteration (vector work included)\n", "case", "method", "elements");
+    for (i = 0; i < t->timing_count; i++) {
+        const timing *row = &t->timings[i];
+        if (strncmp(row->method, "jacobi", 6) != 0) continue;
+        fprintf(stderr, "%-28s %-17s %9lu %6.2f\n", row->name, row->method, (unsigned long)row->elements, row->nanoseconds);
+    }
+}
+
+static FILE *open_table(const char *folder, const char *file, const char *header)
+{
+    char path[4096];
+    FILE *f;
+    if (!folder) return NULL;
+    snprintf(path, sizeof path, "%s/%s", folder, file);
+    f = fopen(path, "w");
+    if (f) fprintf(f, "%s\n", header);
+    else perror(path);
+    return f;
+}
+
+/* ------------------------------------------------------------------------------------------------ >>direct */
+
+/* (K + rate M) x = b, its lower triangle by columns as CHOLMOD wants it, without held copies and copies without an element. A
+   copy's three unknowns make a block; blocks of a column are sorted by rows, so that the diagonal one is the first. Masses are
+   consistent and no copy follows others: so are the bodies of block.h. */
+typedef struct direct {
+    const gxs_model *model;
+    uint32_t *row;          /* copy_count: number of the copy's row of blocks; NO_ROW */
+    size_t rows;
+    uint64_t *blocks;       /* block_count: column << 32 | row, sorted */
+    size_t block_count;
+    size_t *column;         /* rows + 1: index of each column's first block */
+    cholmod_common common;
+    cholmod_sparse *matrix;
+    cholmod_dense *load, *solution;
+    cholmod_factor *factor;
+} direct;
+
+static const uint32_t NO_ROW = UINT32_MAX;
+
+static void direct_number(direct *d)
+{
+    const gxs_model *model = d->model;
+    size_t i;
+    for (i = 0; i < model->copy_count; i++) d->row[i] = NO_ROW;
+    for (i = 0; i < 4 * model->element_count; i++) {
+        const gxs_element *element = &model->elements[i / 4];
+        const uint32_t copy = element->copy[i % 4];
+        if (element->weight > 0 && d->row[copy] == NO_ROW && !(model->held && model->held[copy])) d->row[copy] = (uint32_t)d->rows++;
+    }
+}
+
+/* The lower block of corners i and j, or 0 if it has none: that of the other order, or one of them is held. */
+static int direct_block(const direct *d, const gxs_element *element, int i, int j, uint64_t *block)
+{
+    const uint32_t row = d->row[element->copy[i]], column = d->row[element->copy[j]];
+    *block = (uint64_t)column << 32 | row;
+    return element->weight > 0 && row != NO_ROW && column != NO_ROW && row >= column;
+}
+
+static int compare_blocks(const void *a, const void *b)
+{
+    const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* Every block that an element has, once; blocks has room for ten of each element. */
+static void direct_list_blocks(direct *d)
+{
+    size_t e, count = 0, i;
+    int pair;
+    for (e = 0; e < d->model->element_count; e++)
+        for (pair = 0; pair < 16; pair++)
+            if (direct_block(d, &d->model->elements[e], pair / 4, pair % 4, &d->blocks[count])) count++;
+    qsort(d->blocks, count, sizeof *d->blocks, compare_blocks);
+    for (i = 0; i < count; i++)
+        if (i == 0 || d->blocks[i] != d->blocks[d->block_count - 1]) d->blocks[d->block_count++] = d->blocks[i];
+    for (i = 0; i < d->block_count; i++) d->column[(d->blocks[i] >> 32) + 1] = i + 1;
+}
+
+/* Where entry (r, s) of a block is in the matrix. A column of n blocks has 3 n, 3 n - 1 and 3 n - 2 entries in its three columns:
+   the diagonal block is a triangle. */
+static size_t direct_entry(const direct *d, size_t block, size_t r, size_t s)
+{
+    const size_t column = d->blocks[block] >> 32, first = d->column[column], blocks = d->column[column + 1] - first;
+    return 9 * first - 3 * column + s * 3 * blocks - s * (s + 1) / 2 + 3 * (block - first) + r;
+}
+
+/* The rows and columns of the matrix's entries. */
+static void direct_shape(direct *d)
+{
+    int *column = (int *)d->matrix->p, *row = (int *)d->matrix->i;
+    size_t block, r, s;
+    for (block = 0; block < d->block_count; block++) {
+        const size_t i = (uint32_t)d->blocks[block], j = d->blocks[block] >> 32;
+        for (s = 0; s < 3; s++) {
+            if (i == j) column[3 * j + s] = (int)direct_entry(d, block, s, s);
+            for (r = i == j ? s : 0; r < 3; r++) row[direct_entry(d, block, r, s)] = (int)(3 * i + r);
+        }
+    }
+    column[3 * d->rows] = (int)d->matrix->nzmax;
+}
+
+/* dP/dF of an element at a displacement, 9x9, by the rows of F: made from nine products, symmetric but for rounding. */
+static void direct_tangent(const gxs_material *material, double gradient[4][3], const gxs_element *element,
+                           const double *displacement, double tangent[9][9])
+{
+    double deformation[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, direction[9];
+    int i, k;
+    for (i = 0; i < 4; i++)
+        for (k = 0; k < 9; k++) deformation[k] += displacement[3 * (size_t)element->copy[i] + (size_t)k / 3] * gradient[i][k % 3];
+    for (k = 0; k < 9; k++) {
+        memset(direction, 0, sizeof direction);
+        direction[k] = 1;
+        gxs_material_product(material, deformation, direction, tangent[k]);
+    }
+}
+
+/* Entry (r, s) of the block of corners i and j: weight g_i . (dP_r/dF_s g_j), and rate times the mass */
+static double direct_value(const gxs_element *element, double gradient[4][3], double tangent[9][9], double rate,
+                           int i, int j, int r, int s)
+{
+    static const int packed[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
+    double sum = 0;
+    int c, e;
+    for (c = 0; c < 3; c++)
+        for (e = 0; e < 3; e++)
+            sum += gradient[i][c] * gradient[j][e] * 0.5 * (tangent[3 * r + c][3 * s + e] + tangent[3 * s + e][3 * r + c]);
+    return element->weight * sum + (r == s ? rate * element->mass[packed[i][j]] : 0.0);
+}
+
+static size_t direct_find(const direct *d, uint64_t block)
+{
+    const uint64_t *found = (const uint64_t *)bsearch(&block, d->blocks, d->block_count, sizeof block, compare_blocks);
+    return (size_t)(found - d->blocks);
+}
+
+static void direct_add_element(direct *d, const gxs_element *element, const double *displacement, double rate)
+{
+    double gradient[4][3], tangent[9][9], *values = (double *)d->matrix->x;
+    uint64_t block;
+    int pair, r, s;
+    memcpy(gradient, element->gradient, sizeof gradient);
+    for (s = 0; s < 3; s++) gradient[0][s] = -(gradient[1][s] + gradient[2][s] + gradient[3][s]);
+    direct_tangent(&d->model->materials[element->material], gradient, element, displacement, tangent);
+    for (pair = 0; pair < 16; pair++) {
+        const int i = pair / 4, j = pair % 4;
+        size_t at;
+        if (!direct_block(d, element, i, j, &block)) continue;
+        at = direct_find(d, block);
+        for (s = 0; s < 3; s++)
+            for (r = i == j ? s : 0; r < 3; r++)
+                values[direct_entry(d, at, (size_t)r, (size_t)s)] += direct_value(element, gradient, tangent, rate, i, j, r, s);
+    }
+}
+
+/* Mass times gravity less the elastic force, at a displacement: there the inertia of a step is 0. */
+static gx_result direct_make_load(direct *d, const double *displacement, const double gravity[3])
+{
+    const size_t count = 3 * d->model->copy_count;
+    double *fall = (double *)malloc(count * sizeof *fall), *weight = (double *)malloc(count * sizeof *weight);
+    double *elastic = (double *)malloc(count * sizeof *elastic), *load = (double *)d->load->x;
+    gx_result result = fall && weight && elastic ? GX_OK : GX_ERROR_MEMORY;
+    size_t i;
+    for (i = 0; i < count && result == GX_OK; i++) fall[i] = gravity[i % 3];
+    if (result == GX_OK) result = gxs_model_mass_product(d->model, fall, weight);
+    if (result == GX_OK) result = gxs_model_gradient(d->model, displacement, elastic);
+    for (i = 0; i < count && result == GX_OK; i++)
+        if (d->row[i / 3] != NO_ROW) load[3 * (size_t)d->row[i / 3] + i % 3] = weight[i] - elastic[i];
+    free(fall);
+    free(weight);
+    free(elastic);
+    return result;
+}
+
+static int direct_allocate(direct *d)
+{
+    const size_t copies = d->model->copy_count, elements = d->model->element_count;
+    d->row = (uint32_t *)malloc(copies * sizeof *d->row);
+    d->column = (size_t *)calloc(copies + 1, sizeof *d->column);
+    d->blocks = (uint64_t *)malloc((10 * elements + 1) * sizeof *d->blocks);
+    return d->row && d->column && d->blocks;
+}
+
+static gx_result direct_assemble(direct *d, const double *displacement, const gxs_step_desc *step)
+{
+    size_t e, size;
+    if (!direct_allocate(d)) return GX_ERROR_MEMORY;
+    direct_number(d);
+    direct_list_blocks(d);
+    size = 3 * d->rows;
+    d->matrix = cholmod_allocate_sparse(size, size, 9 * d->block_count - size, 1, 1, -1, CHOLMOD_REAL, &d->common);
+    d->load = cholmod_zeros(size, 1, CHOLMOD_REAL, &d->common);
+    if (!d->matrix || !d->load) return GX_ERROR_MEMORY;
+    direct_shape(d);
+    memset(d->matrix->x, 0, d->matrix->nzmax * sizeof(double));
+    for (e = 0; e < d->model->element_count; e++)
+        direct_add_element(d, &d->model->elements[e], displacement, 1.0 / (step->dt * step->dt));
+    return direct_make_load(d, displacement, step->gravity);
+}
+
+static void direct_begin(direct *d, const gxs_model *model)
+{
+    memset(d, 0, sizeof *d);
+    d->model = model;
+    cholmod_start(&d->common);
+    d->common.print = 0;
+}
+
+static void direct_end(direct *d)
+{
+    cholmod_free_sparse(&d->matrix, &d->common);
+    cholmod_free_dense(&d->load, &d->common);
+    cholmod_free_dense(&d->solution, &d->common);
+    cholmod_free_factor(&d->factor, &d->common);
+    cholmod_finish(&d->common);
+    free(d->row);
+    free(d->column);
+    free(d->blocks);
+}
+
+/* |b - A x| / |b|; the load is used up. */
+static double direct_residual(direct *d)
+{
+    double one[2] = {1, 0}, minus[2] = {-1, 0};
+    const double size = cholmod_norm_dense(d->load, 2, &d->common);
+    cholmod_sdmult(d->matrix, 0, minus, one, d->solution, d->load, &d->common);
+    return size > 0 ? cholmod_norm_dense(d->load, 2, &d->common) / size : 0.0;
+}
+
+/* Analyses, and tells whether the rest is bearable. */
+static int direct_analyse(direct *d, outcome *o)
+{
+    const double start = seconds(NULL);
+    double bytes;
+    d->factor = cholmod_analyze(d->matrix, &d->common);
+    o->setup = seconds(NULL) - start;
+    if (!d->factor) return complain("cholmod", GX_ERROR_MEMORY);
+    bytes = d->factor->is_super ? 8.0 * (double)d->factor->xsize : 12.0 * d->common.lnz;
+    if (bytes <= direct_bytes && d->common.fl <= direct_operations) return 1;
+    fprintf(stderr, "    cholmod: left out: its factor would have %.1f GB and take %.0f Gflop\n", 1e-9 * bytes, 1e-9 * d->common.fl);
+    return 0;
+}
+
+static int direct_solve(direct *d, outcome *o)
+{
+    const double start = seconds(NULL), operations = d->common.fl;
+    cholmod_factorize(d->matrix, d->factor, &d->common);
+    if (d->common.status != CHOLMOD_OK) {
+        fprintf(stderr, "solver: cholmod: status %d\n", d->common.status);
+        return 0;
+    }
+    fprintf(stderr, "    cholmod: %.1f Gflop/s\n", 1e-9 * operations / (seconds(NULL) - start)); /* of a large block 20 with a good BLAS */
+    d->solution = cholmod_solve(CHOLMOD_A, d->factor, d->load, &d->common);
+    o->solve = seconds(NULL) - start;
+    if (!d->solution) return complain("cholmod", GX_ERROR_MEMORY);
+    o->peak_bytes = d->common.memory_usage;
+    o->residual = direct_residual(d);
+    return 1;
+}
+
+/* sqrt(x . M x) */
+static double mass_norm(const gxs_model *model, const double *x, double *scratch)
+{
+    double sum = 0;
+    size_t i;
+    if (gxs_model_mass_product(model, x, scratch) != GX_OK) return NAN;
+    for (i = 0; i < 3 * model->copy_count; i++) sum += x[i] * scratch[i];
+    return sqrt(sum);
+}
+
+/* How far a step of the solver with a tight tolerance ends from where the solution says, relative to the solution, by the mass:
+   tells whether both solved the same system. It is that of the linear solve if the line search took the whole step. */
+static double direct_difference(direct *d, const double *start, const state *end)
+{
+    double *scratch = (double *)malloc(end->count * sizeof *scratch), *moved = (double *)calloc(end->count, sizeof *moved);
+    double *apart = (double *)calloc(end->count, sizeof *apart), difference = NAN;
+    size_t i;
+    if (scratch && moved && apart) {
+        for (i = 0; i < end->count; i++) {
+            if (d->row[i / 3] == NO_ROW) continue;
+            moved[i] = ((const double *)d->solution->x)[3 * (size_t)d->row[i / 3] + i % 3];
+            apart[i] = end->displacement[i] - start[i] - moved[i];
+        }
+        difference = mass_norm(d->model, apart, scratch) / mass_norm(d->model, moved, scratch);
+    }
+    free(scratch);
+    free(moved);
+    free(apart);
+    return difference;
+}
+
+/* One step of multigrid-free to a tight tolerance. */
+static gx_result step_tightly(const gxs_model *model, const gxs_step_desc *loose, state *s)
+{
+    gxs_step_desc step = *loose;
+    gxs_solver_desc desc;
+    gxs_solver *solver = NULL;
+    gx_result result;
+    memset(&desc, 0, sizeof desc);
+    desc.preconditioner = GXS_MULTIGRID;
+    desc.matrix = GXS_MATRIX_FREE;
+    step.cg_tolerance = 1e-5;
+    result = gxs_solver_create(&desc, &solver);
+    if (result == GX_OK) result = gxs_solver_set_model(solver, model, NULL);
+    if (result == GX_OK) result = gxs_solver_step(solver, &step, s->displacement, s->velocity, NULL, NULL);
+    gxs_solver_destroy(solver);
+    return result;
+}
+
+static void direct_check(direct *d, const gxs_step_desc *step, const double *start, state *s)
+{
+    const gx_result result = step_tightly(d->model, step, s);
+    if (result != GX_OK) complain("check of cholmod", result);
+    else fprintf(stderr, "    cholmod: a step of multigrid-free to 1e-5 differs by %.1e\n", direct_difference(d, start, s));
+}
+
+/* The system of the step that follows the state, as the solver has it: linearised where the velocity leads. 0: left out or failed. */
+static int run_direct(const gxs_model *model, state *s, outcome *o)
+{
+    const gxs_step_desc step = step_make(s->steps);
+    double *start = (double *)malloc(s->count * sizeof *start);
+    gx_result result = start ? GX_OK : GX_ERROR_MEMORY;
+    direct d;
+    size_t i;
+    int done = 0;
+    memset(o, 0, sizeof *o);
+    direct_begin(&d, model);
+    for (i = 0; i < s->count && start; i++) start[i] = s->displacement[i] + step.dt * s->velocity[i];
+    if (result == GX_OK) result = direct_assemble(&d, start, &step);
+    if (result != GX_OK) complain("cholmod", result);
+    else done = direct_analyse(&d, o) && direct_solve(&d, o);
+    if (done) direct_check(&d, &step, start, s);
+    direct_end(&d);
+    free(start);
+    return done;
+}
+
+/* ------------------------------------------------------------------------------------------------- >>cases */
+
+/* Cells along an edge for about so many unknowns after cutting. */
+enum { SIZES = 4 };
+static const char *const size_names[SIZES] = {"7k", "23k", "48k", "150k"};
+static const uint32_t size_cells[BLOCK_CUTS][SIZES] = {{12, 19, 24, 36}, {11, 16, 21, 30}, {8, 11, 15, 21}};
+
+/* The swing is followed for fewer steps where they are long. */
+static const int size_steps[SIZES] = {STEPS, STEPS, 12, 8};
+
+typedef struct scene {
+    char name[40];
+    block_desc block;
+    int steps;
+} scene;
+
+static scene scene_make(int cut, int jittered, int size, int hard)
+{
+    scene s;
+    snprintf(s.name, sizeof s.name, "%s-%s-%s-%s", block_cut_names[cut], jittered ? "jittered" : "lattice", size_names[size],
+             hard ? "1e8" : "1e6");
+    s.block.cells = size_cells[cut][size];
+    s.block.jitter = jittered ? 0.2 : 0.0;
+    s.block.cut = cut;
+    s.block.young = hard ? 1e8 : 1e6;
+    s.steps = size_steps[size];
+    return s;
+}
+
+/* Two threads and one must give the same bits; that of runs of as many steps only. */
+static int compare_threads(const state *one, const state *two)
+{
+    int same;
+    if (one->steps != two->steps) return 1;
+    same = memcmp(one->displacement, two->displacement, one->count * sizeof(double)) == 0 &&
+           memcmp(one->velocity, two->velocity, one->count * sizeof(double)) == 0;
+    fprintf(stderr, "    2 threads: %s\n", same ? "the same bits" : "OTHER BITS");
+    return same;
+}
+
+/* The methods of the library; 0 if one failed. */
+static int run_methods(tables *t, const scene *s, const gxs_model *model, outcome found[METHODS], state ends[METHODS])
+{
+    int m, ok = 1;
+    for (m = 0; m < METHODS; m++) {
+        if (!run_method(&methods[m], model, s->steps, &ends[m], &found[m])) { ok = 0; continue; }
+        add_row(t, s->name, methods[m].name, 3 * model->copy_count, &found[m]);
+        add_timing(t, s->name, methods[m].name, model->element_count, &found[m]);
+    }
+    return ok && compare_threads(&ends[MULTIGRID_FREE], &ends[MULTIGRID_FREE_2]);
+}
+
+static int run_model(tables *t, const scene *s, const gxs_model *model)
+{
+    outcome found[METHODS], by_cholmod;
+    state ends[METHODS];
+    int m, ok;
+    memset(ends, 0, sizeof ends);
+    ok = run_methods(t, s, model, found, ends);
+    if (ok && run_direct(model, &ends[MULTIGRID_FREE], &by_cholmod)) {
+        by_cholmod.step = found[MULTIGRID_FREE].step - found[MULTIGRID_FREE].solve + by_cholmod.solve;
+        add_row(t, s->name, "cholmod", 3 * model->copy_count, &by_cholmod);
+    }
+    for (m = 0; m < METHODS; m++) state_end(&ends[m]);
+    return ok;
+}
+
+static int run_scene(tables *t, const scene *s)
+{
+    gx_body *body = NULL;
+    gxs_model model;
+    gx_result result = block_create(&s->block, &body);
+    int ok;
+    if (result == GX_OK) result = gx_body_model(body, &model);
+    if (result != GX_OK) ok = complain(s->name, result);
+    else {
+        fprintf(stderr, "%s: %lu unknowns, %lu elements\n", s->name, (unsigned long)(3 * model.copy_count),
+                (unsigned long)model.element_count);
+        ok = run_model(t, s, &model);
+    }
+    gx_body_destroy(body);
+    return ok;
+}
+
+/* -------------------------------------------------------------------------------------------------- >>main */
+
+typedef struct settings {
+    const char *filter, *folder;    /* --case, --out */
+    int small;
+} settings;
+
+static int take_arguments(settings *set, int argc, char **argv)
+{
+    int i;
+    memset(set, 0, sizeof *set);
+    for (i = 1; i < argc; i++) {
+        if (strcmp(argv[i], "--small") == 0) set->small = 1;
+        else if (strcmp(argv[i], "--case") == 0 && i + 1 < argc) set->filter = argv[++i];
+        else if (strcmp(argv[i], "--out") == 0 && i + 1 < argc) set->folder = argv[++i];
+        else return 0;
+    }
+    return 1;
+}
+
+static int run_scenes(const settings *set, tables *t)
+{
+    const int sizes = set->small ? 1 : SIZES;
+    int i, ran = 0, ok = 1;
+    for (i = 0; i < sizes * BLOCK_CUTS * 4; i++) {
+        const scene s = scene_make(i / 4 % BLOCK_CUTS, i / 2 % 2, i / (4 * BLOCK_CUTS), i % 2);
+        if (set->filter && !strstr(s.name, set->filter)) continue;
+        ok = run_scene(t, &s) && ok;
+        ran++;
+    }
+    if (ran == 0) fprintf(stderr, "solver: no case has '%s' in its name\n", set->filter);
+    return ok && ran > 0;
+}
+
+int main(int argc, char **argv)
+{
+    static const char header[] = "case,method,unknowns,iterations,setup_ms,solve_ms,step_ms,peak_bytes,residual";
+    static tables t;
+    settings set;
+    int ok;
+    if (!take_arguments(&set, argc, argv)) {
+        fprintf(stderr, "usage: solver [--small] [--case NAME] [--out DIR]\n");
+        return 2;
+    }
+    t.solver = open_table(set.folder, "solver.csv", header);
+    t.product = open_table(set.folder, "product.csv", "case,method,elements,ns_per_element_and_iteration");
+    if (set.folder && (!t.solver || !t.product)) return 2;
+    printf("%s\n", header);
+    fflush(stdout);
+    ok = run_scenes(&set, &t);
+    print_timings(&t);
+    if (t.solver) fclose(t.solver);
+    if (t.product) fclose(t.product);
+    return !ok;
+}
