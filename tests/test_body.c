@@ -4,8 +4,7 @@
    Random tests print their seed. GXFEM_SEED=n runs seed n alone. */
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
-#include "workloads.h"
-#include <check.h>
+#include "body.h"
 #include <float.h>
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -19,91 +18,6 @@
 #define FEWER 1
 #endif
 enum { SEEDS = 40 / FEWER };
-
-#define CHECK_SEED(condition, seed) ck_assert_msg(condition, "seed %llu: %s", (unsigned long long)(seed), #condition)
-
-/* ---- random numbers: splitmix64 ---- */
-
-static uint64_t random_state;
-
-static uint64_t random_bits(void) {
-    uint64_t z = random_state += UINT64_C(0x9e3779b97f4a7c15);
-    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
-    return z ^ z >> 31;
-}
-static int random_below(int n) { return (int)(random_bits() % (uint64_t)n); }
-static double random_real(double low, double high) { return low + (high - low) * ldexp((double)(random_bits() >> 11), -53); }
-static void random_seed(uint64_t seed) { random_state = seed * UINT64_C(0x2545f4914f6cdd1d) + 11; }
-
-/* ---- bodies and cuts ---- */
-
-static gx_body_desc desc_of(const workload *w) {
-    gx_body_desc desc;
-    memset(&desc, 0, sizeof desc);
-    desc.positions = w->positions; desc.node_count = w->node_count;
-    desc.elements = w->elements; desc.element_count = w->element_count;
-    desc.young = 1e6; desc.poisson = 0.4; desc.density = 1000;
-    return desc;
-}
-
-static gx_body *body_of(const workload *w) {
-    gx_body_desc desc = desc_of(w);
-    gx_body *body = NULL;
-    gx_result result = gx_body_create(&desc, &body, NULL);
-    ck_assert_msg(result == GX_OK, "create: %s", gx_result_text(result));
-    return body;
-}
-
-static gx_surface surface_of(const wl_surface *s) {
-    gx_surface surface;
-    surface.vertices = s->vertices; surface.vertex_count = s->vertex_count;
-    surface.triangles = s->triangles; surface.triangle_count = s->triangle_count;
-    surface.kind = s->solid ? GX_SURFACE_SOLID : GX_SURFACE_SHEET;
-    return surface;
-}
-
-/* Cuts by surfaces first ... first+count-1 of the workload, all in one call. */
-static gx_cut_report cut_by(gx_body *body, const workload *w, size_t first, size_t count) {
-    gx_surface surfaces[WL_SURFACES];
-    gx_cut_desc desc;
-    gx_cut_report report;
-    gx_result result;
-    size_t i;
-    for (i = 0; i < count; ++i) surfaces[i] = surface_of(&w->surfaces[first + i]);
-    memset(&desc, 0, sizeof desc);
-    desc.surfaces = surfaces; desc.surface_count = count;
-    result = gx_body_cut(body, &desc, &report, NULL);
-    ck_assert_msg(result == GX_OK, "cut: %s", gx_result_text(result));
-    return report;
-}
-
-static gx_body *cut_at_once(const workload *w) {
-    gx_body *body = body_of(w);
-    if (w->surface_count > 0) cut_by(body, w, 0, w->surface_count);
-    return body;
-}
-
-static gx_body *cut_in_sequence(const workload *w) {
-    gx_body *body = body_of(w);
-    size_t i;
-    for (i = 0; i < w->surface_count; ++i) cut_by(body, w, i, 1);
-    return body;
-}
-
-static gx_view view_of(gx_body *body) {
-    gx_view view;
-    gx_result result = gx_body_view(body, &view);
-    ck_assert_msg(result == GX_OK, "view: %s", gx_result_text(result));
-    return view;
-}
-
-static uint64_t hash_of(gx_body *body) {
-    gx_result result;
-    uint64_t hash = gx_body_topology_hash(body, &result);
-    ck_assert_int_eq(result, GX_OK);
-    return hash;
-}
 
 /* Cuts at once, looks and forgets: cells, copies, fragments. */
 static void expect_counts(workload w, size_t cells, size_t copies, size_t fragments, int line) {
@@ -122,45 +36,7 @@ static void expect_counts(workload w, size_t cells, size_t copies, size_t fragme
 
 /* ---- scenes ---- */
 
-static workload grid(size_t nx, size_t ny, size_t nz, int tets) {
-    wl_frame axes = wl_axes();
-    return wl_grid(nx, ny, nz, tets, &axes);
-}
-
 static workload corner_tet(void) { return wl_tetrahedron(wl_corner_tetrahedron); }
-
-/* The plane x[axis] = value, exactly, far beyond the body */
-static void add_axis_plane(workload *w, int axis, double value) {
-    double x[4][3];
-    int i;
-    for (i = 0; i < 4; ++i) {
-        x[i][axis] = value;
-        x[i][(axis + 1) % 3] = i == 1 || i == 2 ? 64 : -64;
-        x[i][(axis + 2) % 3] = i >= 2 ? 64 : -64;
-    }
-    wl_add_quad(wl_add_surface(w, 0), x[0], x[1], x[2], x[3]);
-}
-
-/* A triangle around p, across n; the circle of `radius` about p fits in */
-static void add_plane(workload *w, const double p[3], const double n[3], double radius) {
-    wl_surface *s = wl_add_surface(w, 0);
-    double u[3], v[3], x[3], length = 0;
-    int i, k, small = fabs(n[0]) < fabs(n[1]) ? 0 : 1;
-    if (fabs(n[2]) < fabs(n[small])) small = 2;
-    for (k = 0; k < 3; ++k) u[k] = 0;
-    u[(small + 1) % 3] = n[(small + 2) % 3]; u[(small + 2) % 3] = -n[(small + 1) % 3];
-    for (k = 0; k < 3; ++k) v[k] = n[(k + 1) % 3] * u[(k + 2) % 3] - n[(k + 2) % 3] * u[(k + 1) % 3];
-    for (k = 0; k < 3; ++k) length += n[k] * n[k];
-    length = sqrt(length);
-    for (i = 0; i < 3; ++i) {
-        double a = 2.0943951023931953 * i, unit = 0;
-        for (k = 0; k < 3; ++k) unit += u[k] * u[k];
-        unit = sqrt(unit);
-        for (k = 0; k < 3; ++k) x[k] = p[k] + 2.1 * radius / unit * (cos(a) * u[k] + sin(a) * v[k] / length);
-        wl_add_vertex(s, x);
-    }
-    wl_add_triangle(s, 0, 1, 2);
-}
 
 /* The triangle a, b, c, blown up 16 times about its middle: exact where coordinates are short */
 static void add_plane_through(workload *w, const double a[3], const double b[3], const double c[3]) {
@@ -173,14 +49,6 @@ static void add_plane_through(workload *w, const double a[3], const double b[3],
         wl_add_vertex(s, x);
     }
     wl_add_triangle(s, 0, 1, 2);
-}
-
-static wl_surface *add_box(workload *w, int solid, double x0, double y0, double z0, double x1, double y1, double z1) {
-    wl_surface *s = wl_add_surface(w, solid);
-    double low[3], high[3];
-    low[0] = x0; low[1] = y0; low[2] = z0; high[0] = x1; high[1] = y1; high[2] = z1;
-    wl_add_aligned_box(s, low, high);
-    return s;
 }
 
 /* The rectangle [x0, x1] x [z0, z1] in the plane y = value */

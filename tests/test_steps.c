@@ -1,0 +1,382 @@
+/* test_steps.c - what a body adds to the solver's steps: materials by element, the model for other solvers, BDF2's history and rest
+   times through cuts, copies without support, points of the skin. The steps themselves: test_solve.c, test_forces.c. */
+#define GXFEM_IMPLEMENTATION
+#include "../gxfem.h"
+#include "body.h"
+
+static gx_step_desc step_of(double dt, double gravity) {
+    gx_step_desc step;
+    memset(&step, 0, sizeof step);
+    step.dt = dt;
+    step.gravity[2] = gravity;
+    return step;
+}
+
+static void hold_above(gx_body *body, double z) {
+    gx_region region = { 2, 1, 0 };
+    region.value = z;
+    ck_assert_int_eq(gx_body_hold(body, &region, 1), GX_OK);
+}
+
+static gxs_step_report advance(gx_body *body, const gx_step_desc *step, int steps) {
+    gxs_step_report report;
+    gx_failure failure;
+    while (steps-- > 0) {
+        gx_result result = gx_body_step(body, step, &report, &failure);
+        ck_assert_msg(result == GX_OK, "%s at %zu", gx_result_text(result), failure.index);
+    }
+    return report;
+}
+
+/* ---- materials ---- */
+
+/* A column of two materials, hung by its top: stresses add up, so each part stretches by its own stiffness. */
+START_TEST(materials_by_element) {
+    workload w = grid(2, 2, 8, 5);
+    gx_body_desc desc = desc_of(&w);
+    gx_material materials[2];
+    uint32_t *which = (uint32_t *)calloc(w.element_count, sizeof *which);
+    gx_body *body = NULL;
+    gx_step_desc step = step_of(0, -9.81);
+    gx_view view;
+    double low = 0, middle = 0, top, stretch[2];
+    size_t i, k, counts[3] = { 0, 0, 0 };
+    memset(materials, 0, sizeof materials);
+    materials[0].elastic.kind = GXS_LINEAR; materials[0].elastic.young = 1e6; materials[0].density = 1000;
+    materials[1] = materials[0]; materials[1].elastic.young = 4e6; materials[1].density = 500;
+    for (i = 0; i < w.element_count; ++i) {
+        double z = 0;
+        for (k = 0; k < 4; ++k) z += 0.25 * w.positions[3 * w.elements[4 * i + k] + 2];
+        which[i] = z > 4;
+    }
+    desc.materials = materials; desc.material_count = 2; desc.element_materials = which;
+    ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+    hold_above(body, 8 - 1e-9);
+    view = view_of(body);
+    ck_assert_double_eq_tol(view.mass, 1000 * 16 + 500 * 16, 1e-8);
+    step.integrator = GXS_STATIC; step.newton_iterations = 20; step.newton_tolerance = 1e-10; step.cg_tolerance = 1e-8;
+    ck_assert_int_eq(advance(body, &step, 1).stop, GXS_STOP_BALANCE);
+    for (i = 0; i < view.copy_count; ++i) {
+        const double z = w.positions[3 * view.copy_node[i] + 2], u = view.displacement[3 * i + 2];
+        if (z < 1e-9) { low += u; counts[0]++; }
+        if (fabs(z - 4) < 1e-9) { middle += u; counts[1]++; }
+    }
+    low /= (double)counts[0]; middle /= (double)counts[1]; top = 0;
+    stretch[0] = middle - low; stretch[1] = top - middle;
+    /* bars under their own weight and what hangs below: rho g L^2 / (2 E), and that with the lower part's weight */
+    ck_assert_double_eq_tol(stretch[0], 1000 * 9.81 * 16 / 2e6, 0.03 * stretch[0]);
+    ck_assert_double_eq_tol(stretch[1], (500 * 9.81 * 8 + 1000 * 9.81 * 16) / 4e6, 0.1 * stretch[1]);
+    gx_body_destroy(body);
+    free(which);
+    wl_free(&w);
+}
+END_TEST
+
+START_TEST(bad_materials_are_named) {
+    workload w = grid(1, 1, 1, 5);
+    gx_body_desc desc = desc_of(&w);
+    gx_material materials[2];
+    uint32_t which[5] = { 0, 1, 0, 1, 0 };
+    gx_body *body = NULL;
+    gx_failure failure;
+    memset(materials, 0, sizeof materials);
+    materials[0].elastic.young = 1e6; materials[0].density = 1000;
+    materials[1] = materials[0];
+    desc.materials = materials; desc.element_materials = which;
+#define EXPECT(result, at) do { ck_assert_int_eq(gx_body_create(&desc, &body, &failure), result); ck_assert_uint_eq(failure.index, at); } while (0)
+    EXPECT(GX_ERROR_EMPTY, SIZE_MAX);
+    desc.material_count = 2;
+    materials[1].density = 0; EXPECT(GX_ERROR_ARGUMENT, 1); materials[1].density = 1000;
+    materials[0].elastic.young = NAN; EXPECT(GX_ERROR_NOT_FINITE, 0); materials[0].elastic.young = 1e6;
+    materials[1].elastic.damping = -1; EXPECT(GX_ERROR_ARGUMENT, 1); materials[1].elastic.damping = 0;
+    materials[1].elastic.kind = GXS_CUSTOM; EXPECT(GX_ERROR_ARGUMENT, 1); materials[1].elastic.kind = GXS_LINEAR;
+    which[3] = 2; EXPECT(GX_ERROR_INDEX, 3); which[3] = 1;
+    desc.support_below = -1; EXPECT(GX_ERROR_ARGUMENT, SIZE_MAX); desc.support_below = 1; EXPECT(GX_ERROR_ARGUMENT, SIZE_MAX);
+    desc.support_below = NAN; EXPECT(GX_ERROR_NOT_FINITE, SIZE_MAX); desc.support_below = 0;
+    ck_assert_int_eq(gx_body_create(&desc, &body, &failure), GX_OK);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- the model ---- */
+
+/* Whatever the cuts, the model has the body's volume and mass, and a solver of one's own that is given it does what the body does. */
+START_TEST(model_is_what_the_body_moves) {
+    const uint64_t seed = (uint64_t)_i;
+    workload w = grid(3, 3, 3, 5);
+    gx_body *body;
+    gx_view view;
+    gxs_model model;
+    gxs_solver *solver = NULL;
+    gx_step_desc step = step_of(0.02, -9.81);
+    double volume = 0, mass = 0, *u, *v;
+    const double n[3] = { 0.3, 1, 0.2 }, p[3] = { 1.5, 1.4, 1.6 };
+    size_t i, k, bytes;
+    random_seed(seed);
+    if (_i > 0) add_plane(&w, p, n, 10);
+    body = cut_at_once(&w);
+    hold_above(body, 3 - 1e-9);
+    view = view_of(body);
+    bytes = 3 * view.copy_count * sizeof *u;
+    for (i = 0; i < 3 * view.copy_count; ++i) view.velocity[i] = random_real(-1, 1);
+    ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
+    ck_assert_uint_eq(model.copy_count, view.copy_count);
+    for (i = 0; i < model.element_count; ++i) {
+        volume += model.elements[i].weight;
+        for (k = 0; k < 10; ++k) mass += model.elements[i].mass[k] * (k == 0 || k == 4 || k == 7 || k == 9 ? 1 : 2);
+    }
+    ck_assert_double_eq_tol(volume, view.volume, 1e-12 * volume);
+    ck_assert_double_eq_tol(mass, view.mass, 1e-12 * mass);
+    u = (double *)malloc(bytes); v = (double *)malloc(bytes);
+    memcpy(u, view.displacement, bytes); memcpy(v, view.velocity, bytes);
+    ck_assert_int_eq(gxs_solver_create(NULL, &solver), GX_OK);
+    ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);
+    for (i = 0; i < 5; ++i) {
+        ck_assert_int_eq(gxs_solver_step(solver, &step, u, v, NULL, NULL), GX_OK);
+        advance(body, &step, 1);
+    }
+    ck_assert(memcmp(u, view.displacement, bytes) == 0 && memcmp(v, view.velocity, bytes) == 0);
+    ck_assert_int_eq(gx_body_model(NULL, &model), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_model(body, NULL), GX_ERROR_ARGUMENT);
+    free(u); free(v);
+    gxs_solver_destroy(solver);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- history ---- */
+
+/* BDF2 on a body that falls: of second order, so exact from the second step on but for the first one's error; a cut in between does not
+   show in the motion, and so the history of new copies is that of the old. */
+START_TEST(bdf2_goes_on_after_a_cut) {
+    workload w = grid(2, 2, 2, 5);
+    gx_body *cut = body_of(&w), *whole = body_of(&w);
+    gx_step_desc step = step_of(0.01, -9.81);
+    gx_view a, b;
+    size_t i;
+    int k;
+    add_axis_plane(&w, 0, 0.7);
+    step.integrator = GXS_BDF2; step.newton_tolerance = 1e-13; step.newton_iterations = 5;
+    a = view_of(cut); b = view_of(whole);
+    for (i = 0; i < a.copy_count; ++i) for (k = 0; k < 3; ++k) a.velocity[3 * i + (size_t)k] = b.velocity[3 * i + (size_t)k] = 0.1 * k;
+    advance(cut, &step, 4); advance(whole, &step, 4);
+    cut_by(cut, &w, 0, 1);
+    advance(cut, &step, 6); advance(whole, &step, 6);
+    a = view_of(cut); b = view_of(whole);
+    ck_assert_uint_eq(a.fragment_count, 2);
+    for (i = 0; i < a.copy_count; ++i) for (k = 0; k < 3; ++k) {
+        ck_assert_double_eq_tol(a.displacement[3 * i + (size_t)k], b.displacement[(size_t)k], 1e-13);
+        ck_assert_double_eq_tol(a.velocity[3 * i + (size_t)k], 0.1 * k - (k == 2) * 9.81 * 0.1, 1e-12);
+    }
+    /* after a step of another kind it starts anew, by backward Euler */
+    step.integrator = GXS_BDF1; advance(whole, &step, 1);
+    step.integrator = GXS_BDF2; b = view_of(whole);
+    {
+        const double before = b.displacement[2], speed = b.velocity[2];
+        advance(whole, &step, 1);
+        ck_assert_double_eq_tol(b.displacement[2] - before, 0.01 * (speed - 0.0981), 1e-13);
+    }
+    gx_body_destroy(cut); gx_body_destroy(whole);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- sleep ---- */
+
+/* A block cut in two by its middle hangs on both sides and comes to rest; a cut wakes the side that it touches, not the other. */
+START_TEST(cuts_wake_what_they_touch) {
+    workload w = grid(4, 2, 2, 5);
+    gx_body_desc desc = desc_of(&w);
+    gx_body *body = NULL;
+    gx_material material;
+    gx_step_desc step = step_of(0.033, -9.81);
+    gxs_step_report report;
+    gx_view view;
+    double *before;
+    size_t i, left = 0, all;
+    int n;
+    memset(&material, 0, sizeof material);
+    material.elastic.young = 1e6; material.elastic.poisson = 0.4; material.density = 1000;
+    desc.materials = &material; desc.material_count = 1;
+    ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+    add_axis_plane(&w, 0, 2.25); add_box(&w, 0, -1, -1, 0.5, 1.75, 4, 0.75);
+    cut_by(body, &w, 0, 1);
+    hold_above(body, 2 - 1e-9);
+    step.sleep_speed = 1e-3; step.mass_damping = 5;
+    report = advance(body, &step, 1);
+    for (n = 0; n < 400 && report.stop != GXS_STOP_ASLEEP; ++n) report = advance(body, &step, 1);
+    ck_assert_int_eq(report.stop, GXS_STOP_ASLEEP);
+    ck_assert_uint_eq(report.active_unknowns, 0);
+    cut_by(body, &w, 1, 1);
+    view = view_of(body);
+    before = (double *)malloc(3 * view.copy_count * sizeof *before);
+    memcpy(before, view.displacement, 3 * view.copy_count * sizeof *before);
+    for (i = all = 0; i < view.copy_count; ++i) all += view.copy_held[i] ? 0 : 3;
+    report = advance(body, &step, 1);
+    ck_assert_msg(report.active_unknowns > 0 && report.active_unknowns < all, "%zu of %zu", report.active_unknowns, all);
+    report = advance(body, &step, 20);
+    for (i = 0; i < view.copy_count; ++i) {
+        const int moved = memcmp(before + 3 * i, view.displacement + 3 * i, 3 * sizeof *before) != 0;
+        left += moved;
+        ck_assert(!moved || view.rest_time[i] < 1);
+    }
+    ck_assert(3 * left > 0 && 3 * left < all);
+    free(before);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- copies without support ---- */
+
+/* A corner cut off so close to its node that it has 1e-12 ... 1e-3 of its element: falls like the rest, as a point if support_below says
+   so. It never disturbs the body that it has left. */
+START_TEST(tiny_corners_fall) {
+    static const double sizes[3] = { 1e-1, 1e-2, 1e-4 };
+    workload w = grid(1, 1, 1, 5);
+    gx_body_desc desc = desc_of(&w);
+    gx_step_desc step = step_of(0.033, -9.81);
+    gxs_step_report report;
+    const double size = sizes[_i / 2], n[3] = { 1, 1, 1 };
+    double p[3];
+    gx_body *body = NULL;
+    gx_view view;
+    gxs_model model;
+    size_t i;
+    int k;
+    for (k = 0; k < 3; ++k) p[k] = size / 3;
+    add_plane(&w, p, n, 20);
+    desc.support_below = _i % 2 ? 2e-3 : 0;
+    ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+    cut_by(body, &w, 0, 1);
+    view = view_of(body);
+    ck_assert_uint_eq(view.fragment_count, 2);
+    ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
+    ck_assert_uint_eq(model.constraint_count, _i % 2 ? view.copy_count - 8 - 1 : 0); /* one leads */
+    for (i = 0; i < 3 * view.copy_count; ++i) view.velocity[i] = (double)(i % 3);
+    report = advance(body, &step, 10);
+    ck_assert(report.cg_iterations < 30);
+    for (i = 0; i < view.copy_count; ++i) {
+        const double fallen = 9.81 * 0.033 * 0.033 * 55;
+        ck_assert_double_eq_tol(view.displacement[3 * i + 2], 0.66 - fallen, 1e-9);
+        ck_assert_double_eq_tol(view.displacement[3 * i + 1], 0.33, 1e-9);
+    }
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A plane so close to a layer of nodes that the copies behind it have next to no support, in a block that hangs by them: extended, they
+   follow the field of what is before it, and the block hangs as the uncut one below. */
+START_TEST(copies_without_support_follow_their_fragment) {
+    workload w = grid(2, 2, 4, 5);
+    gx_body_desc desc = desc_of(&w);
+    gx_step_desc step = step_of(0.033, -9.81);
+    gx_body *body = NULL;
+    gxs_model model;
+    gx_view view;
+    size_t i, k;
+    double *before;
+    add_box(&w, 0, -1, -1, 2 + 1e-7, 1.3, 4, 9);
+    desc.support_below = 1e-4;
+    ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+    cut_by(body, &w, 0, 1);
+    hold_above(body, 4 - 1e-9);
+    advance(body, &step, 3);
+    view = view_of(body);
+    ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
+    ck_assert_uint_gt(model.constraint_count, 0);
+    before = (double *)malloc(3 * view.copy_count * sizeof *before);
+    memcpy(before, view.displacement, 3 * view.copy_count * sizeof *before);
+    advance(body, &step, 3);
+    ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
+    for (i = 0; i < model.constraint_count; ++i) {
+        const gxs_constraint *c = &model.constraints[i];
+        double sum = 0;
+        int r;
+        for (k = 0; k < 4; ++k) sum += c->weight[k];
+        ck_assert_double_eq_tol(sum, 1, 1e-12);
+        for (r = 0; r < 3; ++r) {
+            double moved = view.displacement[3 * c->copy + (uint32_t)r] - before[3 * c->copy + (uint32_t)r];
+            for (k = 0; k < 4; ++k)
+                moved -= c->weight[k] * (view.displacement[3 * c->master[k] + (uint32_t)r] - before[3 * c->master[k] + (uint32_t)r]);
+            ck_assert(fabs(moved) < 1e-13);
+        }
+    }
+    for (i = 0; i < 3 * view.copy_count; ++i) ck_assert(fabs(view.displacement[i]) < 1);
+    free(before);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- points of the skin ---- */
+
+/* A corner of the skin of a cut body, pulled by a spring: what it is pulled by is what the rest is accelerated by. */
+START_TEST(springs_pull_points_of_the_skin) {
+    workload w = grid(2, 2, 2, 5);
+    gx_body *body;
+    gx_step_desc step = step_of(0.01, 0);
+    gxs_spring spring;
+    gx_skin skin;
+    gx_view view;
+    double force[3], speed = 0, mass, *x;
+    size_t i, k;
+    const double n[3] = { 1, 0.2, 0.1 }, p[3] = { 1.1, 1, 1 };
+    gx_failure failure;
+    add_plane(&w, p, n, 10);
+    body = cut_at_once(&w);
+    view = view_of(body);
+    ck_assert_int_eq(gx_body_skin(body, &skin), GX_OK);
+    x = (double *)malloc(3 * skin.vertex_count * sizeof *x);
+    gx_body_skin_positions(body, &skin, x);
+    memset(&spring, 0, sizeof spring);
+    memcpy(spring.point.copy, skin.vertex_copies, sizeof spring.point.copy);
+    memcpy(spring.point.weight, skin.vertex_weights, sizeof spring.point.weight);
+    memcpy(spring.point.position, x, sizeof spring.point.position);
+    memcpy(spring.target, x, sizeof spring.target);
+    spring.target[1] += 1;
+    spring.stiffness = 1000;
+    step.springs = &spring; step.spring_count = 1; step.spring_forces = force;
+    step.newton_iterations = 20; step.newton_tolerance = 1e-10; step.cg_tolerance = 1e-8;
+    advance(body, &step, 1);
+    mass = view.fragment_mass[skin.triangle_fragment[0]];
+    for (i = 0; i < body->cell_count; ++i) for (k = 0; k < 4 && body->cells[i].kept; ++k) {
+        static const int rows[4][4] = { { 0, 1, 2, 3 }, { 1, 4, 5, 6 }, { 2, 5, 7, 8 }, { 3, 6, 8, 9 } };
+        int j;
+        for (j = 0; j < 4; ++j) speed += body->cells[i].mass[rows[k][j]] * view.velocity[3 * body->cells[i].copies[k] + 1];
+    }
+    ck_assert(mass > 0 && force[1] > 900 && force[1] <= 1000);
+    ck_assert_double_eq_tol(speed, 0.01 * force[1], 1e-9 * speed);
+    spring.point.copy[2] = 100000;
+    ck_assert_int_eq(gx_body_step(body, &step, NULL, &failure), GX_ERROR_INDEX);
+    ck_assert_uint_eq(failure.index, 0);
+    free(x);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("steps");
+    TCase *tests = tcase_create("steps");
+    SRunner *runner;
+    int failed;
+    tcase_set_timeout(tests, 120);
+    tcase_add_test(tests, materials_by_element);
+    tcase_add_test(tests, bad_materials_are_named);
+    tcase_add_loop_test(tests, model_is_what_the_body_moves, 0, 4);
+    tcase_add_test(tests, bdf2_goes_on_after_a_cut);
+    tcase_add_test(tests, cuts_wake_what_they_touch);
+    tcase_add_loop_test(tests, tiny_corners_fall, 0, 6);
+    tcase_add_test(tests, copies_without_support_follow_their_fragment);
+    tcase_add_test(tests, springs_pull_points_of_the_skin);
+    suite_add_tcase(suite, tests);
+    runner = srunner_create(suite);
+    srunner_run_all(runner, CK_NORMAL);
+    failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
