@@ -403,8 +403,10 @@ extern "C" {
 /* Spacing of the first lattice of the multigrid, in edges of an average element. */
 #define GXSP_SPACING 2.5
 
-/* Below so many copies block-Jacobi is at least as fast as multigrid. */
+/* In pieces of fewer copies block-Jacobi is at least as fast as multigrid; but for nearly incompressible ones. */
 #define GXSP_MULTIGRID_FROM 400
+#define GXSP_MULTIGRID_FROM_STIFF 60
+#define GXSP_STIFF_POISSON 0.48
 
 /* A level of at most so many nodes is factored; so is one that the next would not make smaller by a third. */
 #define GXSP_BOTTOM 40
@@ -416,7 +418,7 @@ extern "C" {
 /* The stiffness of a whole element in the linear systems: 2^40 leaves room for pieces down to 1e-40 of it, and for masses above. */
 #define GXSP_STIFFNESS 40
 
-/* Coarse nodes that a chunk's table of matrix entries has room for; the entries of further ones are looked for each time. */
+/* Up to so many coarse nodes a chunk has a table of matrix entries; of more, entries are looked for each time. */
 #define GXSP_CHUNK_PARENTS 192
 
 /* Arrays of a block's passes never overlap. */
@@ -627,6 +629,31 @@ typedef struct gxsp_level {
     uint32_t *child;
 } gxsp_level;
 
+/* Edges: pairs of a chunk's nodes, i <= j, that share an element; a node is an edge to itself, and these come first. */
+typedef struct gxsp_edges {
+    uint16_t *table;        /* nodes x nodes: the edge of two nodes i < j if ends says so, else without meaning: it is never cleared */
+    uint32_t *ends;         /* i << 16 | j */
+    float (*block)[12];     /* i's row and j's column of the Hessian, three columns of 4 */
+    float (*turned)[12];    /* transposed */
+    uint32_t nodes, count;
+    uint32_t *start;        /* nodes + 2: adjacency, by node into other and edge */
+    uint16_t *other, *edge;
+    uint16_t (*parent)[4];  /* by node: numbers of its parents, see gxsp_pairs */
+    float (*half)[12];      /* by number: a node's row of the Hessian times the transfer */
+    uint16_t *touched;      /* numbers of those that are not 0 */
+} gxsp_edges;
+
+/* Pairs of coarse nodes that the nodes of one chunk follow, numbered in the chunk: where their entry of level 1's matrix is */
+typedef struct gxsp_pairs {
+    uint32_t *entry;    /* count x count, if that is GXSP_CHUNK_PARENTS at most; GXSP_NONE: not known yet */
+    uint32_t *local;    /* by coarse node: its number in the chunk; of use as scratch elsewhere */
+    uint32_t *node;     /* by number: the coarse node */
+    uint32_t *seen;     /* by number: the chunk's node, plus 1, that has last touched it */
+    uint32_t *stamp;    /* by coarse node: the round in which it was numbered */
+    uint32_t round;     /* one for each visit of a chunk */
+    uint32_t count;     /* coarse nodes numbered in this round */
+} gxsp_pairs;
+
 /* Cholesky factor of the last level, row by row within its envelope. */
 typedef struct gxsp_factor {
     uint32_t n;         /* unknowns */
@@ -723,7 +750,8 @@ typedef struct gxsp_system {
     gxsp_level levels[GXSP_LEVELS];
     uint32_t level_count;   /* 0: no multigrid */
     float (*place)[3];      /* n: rest positions in spacings of the first lattice */
-    uint32_t *scratch;      /* for the coarse matrices: a chunk's table, and twice as many as level 1 has nodes */
+    gxsp_edges edges;       /* of the chunk at work on level 1's matrix */
+    gxsp_pairs pairs;
     gxsp_factor factor;
     float omega;            /* step length of the smoother; 0: not known */
     double coarse_rate;     /* for which the coarse matrices were made; below 0: never made */
@@ -750,6 +778,11 @@ typedef struct gxsp_problem {
     double cg_tolerance;
     double energies[3];     /* at current: elastic with springs and contact, kinetic, size of their terms; J */
     double start;           /* on the clock */
+    int exact;              /* the linearisation is not projected */
+    int indefinite;         /* conjugate gradients met negative curvature */
+    int projected_only;     /* the exact one has proved indefinite in this step */
+    int shortened;          /* the line search did not take the whole step */
+    int noise;              /* the line search ended where energies differ by rounding only */
     int collapsed;          /* the linearisation found elements collapsed to a point */
     gxs_step_report report;
 } gxsp_problem;
@@ -1294,8 +1327,8 @@ static void gxsp_project(gxsp_principal *GXSP_RESTRICT of)
             gxsp_project_lane(of->stretch, l);
 }
 
-/* The projected Hessian of a block of the caller's energy at s->g, times scale. */
-static void gxsp_general_make(const gxsp_rest *rest, double scale, gxsp_state *s, gxsp_tangent *tangent, gxsp_general *general)
+/* The Hessian of a block of the caller's energy at s->g, times scale, exact or projected */
+static void gxsp_general_make(const gxsp_rest *rest, double scale, int exact, gxsp_state *s, gxsp_tangent *tangent, gxsp_general *general)
 {
     int k, l, i, j;
     for (l = 0; l < GXSP_LANES; ++l) {
@@ -1306,7 +1339,8 @@ static void gxsp_general_make(const gxsp_rest *rest, double scale, gxsp_state *s
             tangent->gradient[k][l] = (float)rest->gradient[k][l];
         }
         s->material[l]->energy(s->material[l]->user, f, NULL, h);
-        gxsp_project_symmetric(h, 9);
+        if (!exact)
+            gxsp_project_symmetric(h, 9);
         for (i = 0; i < 9; ++i)
             for (j = i; j < 9; ++j)
                 general->hessian[gxsp_packed9(i, j)][l] = (float)(scale * rest->weight[l] * s->mu[l] * h[9 * i + j]);
@@ -1333,15 +1367,15 @@ static int gxsp_nudge(gxsp_lanes *g)
     return any;
 }
 
-/* The projected Hessian of a block at s->g, times scale. general: of GXS_CUSTOM only, else NULL. Was an element collapsed? */
-static int gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest, double scale, gxsp_state *s,
-                              gxsp_tangent *GXSP_RESTRICT tangent, gxsp_general *general)
+/* The Hessian of a block at s->g, times scale, exact or projected. general: of GXS_CUSTOM only, else NULL. Was an element collapsed? */
+static int gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest, double scale, int exact, gxsp_state *s,
+                             gxsp_tangent *GXSP_RESTRICT tangent, gxsp_general *general)
 {
     gxsp_svd of;
     gxsp_principal principal;
     int k, l, r, c, collapsed = 0;
     if (kind == GXS_CUSTOM) {
-        gxsp_general_make(rest, scale, s, tangent, general);
+        gxsp_general_make(rest, scale, exact, s, tangent, general);
         return 0;
     }
     GXSP_EACH_LANE(l) {
@@ -1359,13 +1393,14 @@ static int gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_RESTR
     case GXS_LINEAR: gxsp_linear_principal(&of, &principal); break;
     default: gxsp_neo_hookean_principal(&of, &principal); break;
     }
-    gxsp_project(&principal);
+    if (!exact)
+        gxsp_project(&principal);
     for (k = 0; k < 6; ++k)
         GXSP_EACH_LANE(l) tangent->stretch[k][l] = principal.weight[l] * principal.stretch[k][l];
     for (k = 0; k < 3; ++k)
         GXSP_EACH_LANE(l) {
-            const float flip = principal.flip[k][l] > 0 ? principal.flip[k][l] : 0;
-            const float twist = principal.twist[k][l] > 0 ? principal.twist[k][l] : 0;
+            const float flip = exact || principal.flip[k][l] > 0 ? principal.flip[k][l] : 0;
+            const float twist = exact || principal.twist[k][l] > 0 ? principal.twist[k][l] : 0;
             tangent->even[k][l] = 0.5f * principal.weight[l] * (flip + twist);
             tangent->odd[k][l] = 0.5f * principal.weight[l] * (flip - twist);
         }
@@ -1600,6 +1635,7 @@ typedef struct gxsp_pass {
     const gxsp_material *materials;
     int inertia;                /* forces and energy of the mass too */
     int nudge;                  /* forces of collapsed elements as if they were not quite */
+    int exact;                  /* Hessians are not projected */
     gxsp_vector4 *x;            /* of products: input */
     gxsp_vector4 *y;            /* output */
 } gxsp_pass;
@@ -1665,9 +1701,9 @@ static void gxsp_task_state(void *context, size_t index)
     int k, l;
     for (k = 0; k < 3; ++k)
         system->chunk_sum[index][k] = 0;
+    memset(slots, 0, 3 * (size_t)chunk->node_count * sizeof *slots);
     if (system->chunk_still[index])
         return;
-    memset(slots, 0, 3 * (size_t)chunk->node_count * sizeof *slots);
     for (b = 0; b < chunk->block_count; ++b) {
         const gxsp_rest *rest = &system->rest[chunk->first_block + b];
         gxsp_lanes x[12], forces[12], energy;
@@ -1709,7 +1745,7 @@ static void gxsp_task_sum(void *context, size_t index)
     for (; i < end; ++i) {
         double x = 0, y = 0, z = 0;
         uint32_t s;
-        for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->still[i]; ++s) {
+        for (s = system->copy_start[i]; s < system->copy_start[i + 1]; ++s) {
             const double *from = slots + 3 * (size_t)system->copy_slot[s];
             x += from[0], y += from[1], z += from[2];
         }
@@ -1717,7 +1753,7 @@ static void gxsp_task_sum(void *context, size_t index)
     }
 }
 
-/* Energies of the elements at from (elastic, kinetic, size of terms), and elastic + inertial forces; 0 at copies that are still. */
+/* Energies of the elements at from (elastic, kinetic, size of terms), and elastic + inertial forces, 0 on what sleeps. */
 static void gxsp_evaluate_elements(gxsp_system *system, double rate, const double *from, int nudge, double *force, double *energies)
 {
     gxsp_pass pass;
@@ -1773,16 +1809,23 @@ static void gxsp_join(uint32_t *parent, uint32_t i, uint32_t j)
         parent[i] = j;
 }
 
+/* The ten bits of x with two zeros between each two */
+static uint32_t gxsp_spread(uint32_t x)
+{
+    x = (x | x << 16) & 0x030000ffu;
+    x = (x | x << 8) & 0x0300f00fu;
+    x = (x | x << 4) & 0x030c30c3u;
+    return (x | x << 2) & 0x09249249u;
+}
+
 /* Position of a place along the Z-order curve of 1024^3 cells */
 static uint32_t gxsp_curve(const double *at, const double *low, double per_cell)
 {
     uint32_t code = 0;
-    int k, bit;
+    int k;
     for (k = 0; k < 3; ++k) {
         double cell = (at[k] - low[k]) * per_cell;
-        uint32_t index = cell < 0 ? 0 : cell > 1023 ? 1023 : (uint32_t)cell;
-        for (bit = 0; bit < 10; ++bit)
-            code |= (index >> bit & 1u) << (3u * (uint32_t)bit + (uint32_t)k);
+        code |= gxsp_spread(cell < 0 ? 0 : cell > 1023 ? 1023 : (uint32_t)cell) << k;
     }
     return code;
 }
@@ -1798,26 +1841,28 @@ static int gxsp_whole(const double *mass)
     return 1;
 }
 
-/* An element's place in the order: class, then curve */
+/* An element's place in the order: class, then piece, then curve, the last of each ten bits first */
 typedef struct gxsp_sorted {
-    uint32_t place, element;
-    uint32_t class_index; /* 2 x kind + (general mass) */
+    uint32_t place, piece, class_index; /* class: 2 x kind + (general mass) */
+    uint32_t index;                     /* of the element or, while pieces are sorted, of the piece */
 } gxsp_sorted;
 
 static uint32_t gxsp_sorted_digit(const gxsp_sorted *of, int pass)
 {
-    return pass < 3 ? of->place >> (10 * pass) & 1023u : of->class_index;
+    return pass < 3 ? of->place >> (10 * pass) & 1023u : pass < 6 ? of->piece >> (10 * (pass - 3)) & 1023u : of->class_index;
 }
 
-/* Stable sort by place and class, least digit first. other: room for as many */
-static gxsp_sorted *gxsp_sort_elements(gxsp_sorted *sorted, gxsp_sorted *other, size_t count)
+/* Stable sort, least digit first; digits all alike are left out. other: room for as many */
+static gxsp_sorted *gxsp_sort(gxsp_sorted *sorted, gxsp_sorted *other, size_t count)
 {
     int pass, digit;
-    for (pass = 0; pass < 4; ++pass) {
+    for (pass = 0; pass < 7; ++pass) {
         size_t start[1025] = {0}, i;
         gxsp_sorted *swap = sorted;
         for (i = 0; i < count; ++i)
             ++start[gxsp_sorted_digit(&sorted[i], pass) + 1];
+        if (start[gxsp_sorted_digit(&sorted[0], pass) + 1] == count)
+            continue;
         for (digit = 0; digit < 1024; ++digit)
             start[digit + 1] += start[digit];
         for (i = 0; i < count; ++i)
@@ -1828,15 +1873,12 @@ static gxsp_sorted *gxsp_sort_elements(gxsp_sorted *sorted, gxsp_sorted *other, 
     return sorted;
 }
 
-static gxsp_sorted *gxsp_order_elements(const gxs_model *model, gxsp_pool *scratch)
+/* Position of every element along the curve through the model's box */
+static void gxsp_place_elements(const gxs_model *model, gxsp_sorted *sorted)
 {
-    gxsp_sorted *sorted = (gxsp_sorted *)gxsp_take(scratch, model->element_count, sizeof *sorted);
-    gxsp_sorted *other = (gxsp_sorted *)gxsp_take(scratch, model->element_count, sizeof *other);
     double low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, extent = 0;
     size_t i;
     int k, r;
-    if (scratch->failed)
-        return NULL;
     for (i = 0; model->positions && i < model->copy_count; ++i)
         for (k = 0; k < 3; ++k) {
             double x = model->positions[3 * i + (size_t)k];
@@ -1845,21 +1887,54 @@ static gxsp_sorted *gxsp_order_elements(const gxs_model *model, gxsp_pool *scrat
         }
     for (k = 0; k < 3; ++k)
         extent = high[k] - low[k] > extent ? high[k] - low[k] : extent;
-    for (i = 0; i < model->element_count; ++i) {
-        const gxs_element *element = &model->elements[i];
-        const gxs_material_kind kind = model->materials[element->material].kind;
-        sorted[i].element = (uint32_t)i;
-        sorted[i].place = 0;
-        sorted[i].class_index = 2 * (uint32_t)kind + (model->lumped_mass || gxsp_whole(element->mass) ? 0u : 1u);
-        if (model->positions && extent > 0) {
-            double at[3] = {0, 0, 0};
-            for (k = 0; k < 4; ++k)
-                for (r = 0; r < 3; ++r)
-                    at[r] += 0.25 * model->positions[3 * (size_t)element->copy[k] + (size_t)r];
-            sorted[i].place = gxsp_curve(at, low, 1024 / extent);
-        }
+    for (i = 0; i < model->element_count && extent > 0; ++i) {
+        double at[3] = {0, 0, 0};
+        for (k = 0; k < 4; ++k)
+            for (r = 0; r < 3; ++r)
+                at[r] += 0.25 * model->positions[3 * (size_t)model->elements[i].copy[k] + (size_t)r];
+        sorted[i].place = gxsp_curve(at, low, 1024 / extent);
     }
-    return gxsp_sort_elements(sorted, other, model->element_count);
+}
+
+/* Pieces in the order in which the curve first meets them. rank: by piece */
+static void gxsp_rank_pieces(const gxsp_system *system, const gxs_model *model, const gxsp_sorted *elements, gxsp_sorted *pieces,
+                             gxsp_sorted *other, uint32_t *rank)
+{
+    size_t i;
+    for (i = 0; i < system->piece_count; ++i) {
+        pieces[i].index = (uint32_t)i;
+        pieces[i].place = UINT32_MAX;
+    }
+    for (i = 0; i < model->element_count; ++i) {
+        gxsp_sorted *piece = &pieces[system->piece[model->elements[i].copy[0]]];
+        piece->place = elements[i].place < piece->place ? elements[i].place : piece->place;
+    }
+    pieces = gxsp_sort(pieces, other, system->piece_count);
+    for (i = 0; i < system->piece_count; ++i)
+        rank[pieces[i].index] = (uint32_t)i;
+}
+
+/* The order of elements. Elements of one piece are together, so that chunks have few nodes and sleep with their piece. */
+static gxsp_sorted *gxsp_order_elements(const gxsp_system *system, const gxs_model *model, gxsp_pool *scratch)
+{
+    const size_t count = model->element_count, pieces = system->piece_count, most = count > pieces ? count : pieces;
+    gxsp_sorted *sorted = (gxsp_sorted *)gxsp_take(scratch, count, sizeof *sorted);
+    gxsp_sorted *other = (gxsp_sorted *)gxsp_take(scratch, most, sizeof *other);
+    gxsp_sorted *ranked = (gxsp_sorted *)gxsp_take(scratch, pieces, sizeof *ranked);
+    uint32_t *rank = (uint32_t *)gxsp_take(scratch, pieces, sizeof(uint32_t));
+    size_t i;
+    if (scratch->failed)
+        return NULL;
+    gxsp_place_elements(model, sorted);
+    gxsp_rank_pieces(system, model, sorted, ranked, other, rank);
+    for (i = 0; i < count; ++i) {
+        const gxs_element *element = &model->elements[i];
+        sorted[i].index = (uint32_t)i;
+        sorted[i].piece = rank[system->piece[element->copy[0]]];
+        sorted[i].class_index = 2 * (uint32_t)model->materials[element->material].kind +
+                                (model->lumped_mass || gxsp_whole(element->mass) ? 0u : 1u);
+    }
+    return gxsp_sort(sorted, other, count);
 }
 
 static void gxsp_place_element(gxsp_system *system, const gxsp_chunk *chunk, const gxs_element *element, uint32_t at, uint32_t lumped)
@@ -1892,7 +1967,7 @@ static void gxsp_fill_chunks(gxsp_system *system, const gxs_model *model, const 
             ;
         chunk->first_node = (uint32_t)system->slot_count;
         for (e = 0; e < last; ++e) {
-            const gxs_element *element = &model->elements[sorted[first + e].element];
+            const gxs_element *element = &model->elements[sorted[first + e].index];
             gxsp_rest *rest = &system->rest[chunk->first_block + e / GXSP_LANES];
             gxsp_place_element(system, chunk, element, e, model->lumped_mass);
             for (k = 0; k < 4; ++k) {
@@ -1907,7 +1982,7 @@ static void gxsp_fill_chunks(gxsp_system *system, const gxs_model *model, const 
         }
         for (; e < chunk->block_count * GXSP_LANES; ++e) /* of no weight, but of a material there is */
             system->rest[chunk->first_block + e / GXSP_LANES].material[e % GXSP_LANES] =
-                model->elements[sorted[first].element].material;
+                model->elements[sorted[first].index].material;
         chunk->node_count = count;
         system->slot_count += count;
         first += last;
@@ -1942,7 +2017,7 @@ static void gxsp_plan_chunks(gxsp_system *system, const gxsp_sorted *sorted, gxs
 
 static void gxsp_chunks_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model)
 {
-    gxsp_sorted *sorted = gxsp_order_elements(model, scratch);
+    gxsp_sorted *sorted = gxsp_order_elements(system, model, scratch);
     uint32_t *local = (uint32_t *)gxsp_take(scratch, system->n, sizeof(uint32_t));
     uint32_t *stamp = (uint32_t *)gxsp_take(scratch, system->n, sizeof(uint32_t)), c, i;
     size_t most = 4 * system->element_count, s;
@@ -2196,28 +2271,6 @@ static void gxsp_join_nodes(gxsp_transfer *transfer, uint32_t i, uint32_t j)
                 gxsp_join(transfer->forest, 4 * i + p, 4 * j + q);
 }
 
-/* The same for the four corners of an element, which are all neighbours */
-static void gxsp_join_corners(gxsp_transfer *transfer, const uint32_t *copies)
-{
-    uint64_t known[16];
-    uint32_t slots[16], count = 0, i, p, k;
-    for (i = 0; i < 4; ++i)
-        for (p = 0; p < 4; ++p) {
-            const uint32_t slot = 4 * copies[i] + p;
-            const uint64_t key = transfer->key[slot];
-            if (key == 0)
-                continue;
-            for (k = 0; k < count && known[k] != key; ++k)
-                ;
-            if (k < count)
-                gxsp_join(transfer->forest, slots[k], slot);
-            else {
-                known[count] = key;
-                slots[count++] = slot;
-            }
-        }
-}
-
 /* Points and weights of a level's nodes, before components are joined. place: n x 3, in spacings of the next lattice */
 static void gxsp_transfer_begin(const gxsp_level *level, float (*place)[3], const uint8_t *fixed, gxsp_transfer *transfer)
 {
@@ -2437,27 +2490,6 @@ static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch)
     factor->entry_count = entries;
 }
 
-/* Coarse nodes that an element's corners follow, each once, and their weights at the corners. Returns how many: 16 at most. */
-static int gxsp_element_parents(const gxsp_system *system, const uint32_t *copies, uint32_t *parents, float (*weights)[4])
-{
-    const gxsp_level *fine = &system->levels[0];
-    int count = 0, i, k, p;
-    for (i = 0; i < 4; ++i)
-        for (k = 0; k < 4; ++k) {
-            const uint32_t parent = fine->parent[copies[i]][k];
-            if (parent == GXSP_NONE)
-                continue;
-            for (p = 0; p < count && parents[p] != parent; ++p)
-                ;
-            if (p == count) {
-                parents[count++] = parent;
-                memset(weights[p], 0, sizeof weights[p]);
-            }
-            weights[p][i] = fine->weight[copies[i]][k];
-        }
-    return count;
-}
-
 static void gxsp_lane_copies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t block, int lane, uint32_t *copies)
 {
     const gxsp_rest *rest = &system->rest[chunk->first_block + block];
@@ -2466,73 +2498,196 @@ static void gxsp_lane_copies(const gxsp_system *system, const gxsp_chunk *chunk,
         copies[i] = system->nodes[chunk->first_node + rest->node[i][lane]];
 }
 
-/* Pairs of coarse nodes that elements of one chunk follow: where their entry of level 1's matrix is */
-typedef struct gxsp_chunk_pairs {
-    uint32_t *entry;    /* GXSP_CHUNK_PARENTS x GXSP_CHUNK_PARENTS; GXSP_NONE: not known yet */
-    uint32_t *local;    /* by coarse node: its number in the chunk */
-    uint32_t *stamp;    /* by coarse node: the round in which it was numbered */
-    uint32_t round;     /* one for each chunk, from 1 */
-    uint32_t count;     /* coarse nodes numbered in this round */
-} gxsp_chunk_pairs;
+/* Corners of the ten blocks of an element, in the order of gxs_element.mass */
+static const int gxsp_corners[10][2] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {1, 1}, {1, 2}, {1, 3}, {2, 2}, {2, 3}, {3, 3}};
 
-static void gxsp_pairs_begin(gxsp_chunk_pairs *pairs)
+/* Room for the edges of any chunk */
+static void gxsp_edges_make(gxsp_system *system)
 {
-    memset(pairs->entry, 0xff, GXSP_CHUNK_PARENTS * GXSP_CHUNK_PARENTS * sizeof(uint32_t));
+    gxsp_edges *edges = &system->edges;
+    size_t c, lanes = 0, nodes = 0;
+    for (c = 0; c < system->chunk_count; ++c) {
+        lanes = system->chunks[c].block_count * GXSP_LANES > lanes ? system->chunks[c].block_count * GXSP_LANES : lanes;
+        nodes = system->chunks[c].node_count > nodes ? system->chunks[c].node_count : nodes;
+    }
+    edges->table = (uint16_t *)gxsp_take(&system->pool, nodes * nodes, sizeof(uint16_t));
+    edges->ends = (uint32_t *)gxsp_take(&system->pool, nodes + 6 * lanes, sizeof(uint32_t));
+    edges->block = (float(*)[12])gxsp_take(&system->pool, nodes + 6 * lanes, sizeof *edges->block);
+    edges->turned = (float(*)[12])gxsp_take(&system->pool, nodes + 6 * lanes, sizeof *edges->turned);
+    edges->start = (uint32_t *)gxsp_take(&system->pool, nodes + 2, sizeof(uint32_t));
+    edges->other = (uint16_t *)gxsp_take(&system->pool, nodes + 12 * lanes, sizeof(uint16_t));
+    edges->edge = (uint16_t *)gxsp_take(&system->pool, nodes + 12 * lanes, sizeof(uint16_t));
+    edges->parent = (uint16_t(*)[4])gxsp_take(&system->pool, nodes, sizeof *edges->parent);
+    edges->half = (float(*)[12])gxsp_take(&system->pool, 4 * nodes, sizeof *edges->half);
+    edges->touched = (uint16_t *)gxsp_take(&system->pool, 4 * nodes, sizeof(uint16_t));
+}
+
+static void gxsp_edges_begin(gxsp_edges *edges, const gxsp_chunk *chunk)
+{
+    uint32_t i;
+    for (i = 0; i < chunk->node_count; ++i)
+        edges->ends[i] = i << 16 | i;
+    edges->nodes = edges->count = chunk->node_count;
+}
+
+/* The edge of two nodes, made where there is none */
+static uint32_t gxsp_find_edge(gxsp_edges *edges, uint32_t i, uint32_t j)
+{
+    const uint32_t low = i < j ? i : j, high = i < j ? j : i;
+    uint16_t *at = &edges->table[low * edges->nodes + high];
+    if (low == high)
+        return low;
+    if (*at < edges->count && edges->ends[*at] == (low << 16 | high))
+        return *at;
+    edges->ends[edges->count] = low << 16 | high;
+    *at = (uint16_t)edges->count;
+    return edges->count++;
+}
+
+/* All edges of a chunk's elements of any weight */
+static void gxsp_list_edges(gxsp_system *system, const gxsp_chunk *chunk)
+{
+    uint32_t b;
+    int l, i, j;
+    gxsp_edges_begin(&system->edges, chunk);
+    for (b = 0; b < chunk->block_count; ++b)
+        for (l = 0; l < GXSP_LANES; ++l) {
+            const gxsp_rest *rest = &system->rest[chunk->first_block + b];
+            for (i = 0; i < 4 && rest->weight[l] > 0; ++i)
+                for (j = i + 1; j < 4; ++j)
+                    (void)gxsp_find_edge(&system->edges, rest->node[i][l], rest->node[j][l]);
+        }
+}
+
+/* Edges by node, from both ends */
+static void gxsp_edges_adjacency(gxsp_edges *edges)
+{
+    uint32_t e, i;
+    memset(edges->start, 0, (edges->nodes + 2) * sizeof *edges->start);
+    for (e = 0; e < edges->count; ++e) {
+        ++edges->start[(edges->ends[e] >> 16) + 2];
+        if (e >= edges->nodes)
+            ++edges->start[(edges->ends[e] & 0xffff) + 2];
+    }
+    for (i = 0; i < edges->nodes; ++i)
+        edges->start[i + 2] += edges->start[i + 1];
+    for (e = 0; e < edges->count; ++e) {
+        const uint32_t low = edges->ends[e] >> 16, high = edges->ends[e] & 0xffff;
+        edges->other[edges->start[low + 1]] = (uint16_t)high;
+        edges->edge[edges->start[low + 1]++] = (uint16_t)e;
+        if (low == high)
+            continue;
+        edges->other[edges->start[high + 1]] = (uint16_t)low;
+        edges->edge[edges->start[high + 1]++] = (uint16_t)e;
+    }
+}
+
+/* Numbers the coarse nodes that a chunk's nodes follow, and clears the table of their pairs. */
+static void gxsp_pairs_begin(gxsp_system *system, const gxsp_chunk *chunk)
+{
+    gxsp_pairs *pairs = &system->pairs;
+    uint32_t i, k;
     ++pairs->round;
     pairs->count = 0;
-}
-
-/* The table's place for a pair; NULL if the table is full. */
-static uint32_t *gxsp_pairs_find(gxsp_chunk_pairs *pairs, uint32_t i, uint32_t j)
-{
-    uint32_t ends[2], k;
-    ends[0] = i, ends[1] = j;
-    for (k = 0; k < 2; ++k)
-        if (pairs->stamp[ends[k]] != pairs->round) {
-            pairs->stamp[ends[k]] = pairs->round;
-            pairs->local[ends[k]] = pairs->count++;
+    for (i = 0; i < chunk->node_count; ++i)
+        for (k = 0; k < 4; ++k) {
+            const uint32_t parent = system->levels[0].parent[system->nodes[chunk->first_node + i]][k];
+            if (parent == GXSP_NONE)
+                continue;
+            if (pairs->stamp[parent] != pairs->round) {
+                pairs->stamp[parent] = pairs->round;
+                pairs->node[pairs->count] = parent;
+                pairs->local[parent] = pairs->count++;
+            }
+            system->edges.parent[i][k] = (uint16_t)pairs->local[parent];
         }
-    if (pairs->local[i] >= GXSP_CHUNK_PARENTS || pairs->local[j] >= GXSP_CHUNK_PARENTS)
-        return NULL;
-    return &pairs->entry[pairs->local[i] * GXSP_CHUNK_PARENTS + pairs->local[j]];
+    memset(pairs->seen, 0, pairs->count * sizeof *pairs->seen);
+    if (pairs->count <= GXSP_CHUNK_PARENTS)
+        memset(pairs->entry, 0xff, (size_t)pairs->count * pairs->count * sizeof(uint32_t));
 }
 
-/* Tables in the system's scratch memory */
-static void gxsp_pairs_place(gxsp_system *system, gxsp_chunk_pairs *pairs)
+/* The table's place for a pair of numbers; NULL where there are too many for a table. */
+static uint32_t *gxsp_pairs_find(gxsp_pairs *pairs, uint32_t i, uint32_t j)
 {
-    pairs->entry = system->scratch;
-    pairs->local = pairs->entry + GXSP_CHUNK_PARENTS * GXSP_CHUNK_PARENTS;
-    pairs->stamp = pairs->local + system->levels[1].n;
-    pairs->round = 0;
-    memset(pairs->stamp, 0, system->levels[1].n * sizeof(uint32_t));
+    return pairs->count <= GXSP_CHUNK_PARENTS ? &pairs->entry[i * pairs->count + j] : NULL;
 }
 
-/* Rows and columns, the row the lower, of the entries that the elements of a chunk need: each once but where the table is full.
- * Returns how many there are; writes the first room of them. */
-static uint32_t gxsp_list_pairs(const gxsp_system *system, gxsp_chunk_pairs *pairs, uint32_t chunk, uint32_t (*list)[2], uint32_t room)
+static void gxsp_pairs_make(gxsp_system *system)
 {
-    uint32_t b, count = 0;
-    int l, p, q;
-    gxsp_pairs_begin(pairs);
-    for (b = 0; b < system->chunks[chunk].block_count; ++b)
+    system->pairs.entry = (uint32_t *)gxsp_take(&system->pool, GXSP_CHUNK_PARENTS * GXSP_CHUNK_PARENTS, sizeof(uint32_t));
+    system->pairs.local = (uint32_t *)gxsp_take(&system->pool, system->levels[1].n, sizeof(uint32_t));
+    system->pairs.stamp = (uint32_t *)gxsp_take(&system->pool, system->levels[1].n, sizeof(uint32_t));
+    system->pairs.node = (uint32_t *)gxsp_take(&system->pool, system->levels[1].n, sizeof(uint32_t));
+    system->pairs.seen = (uint32_t *)gxsp_take(&system->pool, system->levels[1].n, sizeof(uint32_t));
+    system->pairs.round = 0;
+}
+
+/* Sets of a chunk's coarse nodes, a bit for each, words to a set */
+typedef struct gxsp_sets {
+    uint64_t *own, *reach;  /* by node: its parents; those of its neighbours too */
+    uint64_t *row;          /* by number of the coarse node: those that it shares an element with */
+    size_t words;
+} gxsp_sets;
+
+static void gxsp_join_sets(uint64_t *to, const uint64_t *from, size_t words)
+{
+    size_t k;
+    for (k = 0; k < words; ++k)
+        to[k] |= from[k];
+}
+
+/* The sets of a chunk after gxsp_pairs_begin. memory: room for all */
+static gxsp_sets gxsp_find_sets(gxsp_system *system, const gxsp_chunk *chunk, uint64_t *memory)
+{
+    gxsp_sets sets;
+    const size_t words = sets.words = (system->pairs.count + 63) / 64;
+    uint32_t i, k, b;
+    size_t word;
+    int l;
+    sets.own = memory;
+    sets.reach = sets.own + chunk->node_count * words;
+    sets.row = sets.reach + chunk->node_count * words;
+    memset(memory, 0, (2 * (size_t)chunk->node_count + system->pairs.count) * words * sizeof *memory);
+    for (i = 0; i < chunk->node_count; ++i)
+        for (k = 0; k < 4; ++k)
+            if (system->levels[0].parent[system->nodes[chunk->first_node + i]][k] != GXSP_NONE)
+                sets.own[i * words + system->edges.parent[i][k] / 64] |= (uint64_t)1 << system->edges.parent[i][k] % 64;
+    for (b = 0; b < chunk->block_count; ++b)
         for (l = 0; l < GXSP_LANES; ++l) {
-            uint32_t copies[4], parents[16];
-            float weights[16][4];
-            int followed;
-            gxsp_lane_copies(system, &system->chunks[chunk], b, l, copies);
-            followed = gxsp_element_parents(system, copies, parents, weights);
-            for (p = 0; p < followed; ++p)
-                for (q = 0; q < followed; ++q) {
-                    uint32_t *seen;
-                    if (parents[q] < parents[p])
-                        continue;
-                    seen = gxsp_pairs_find(pairs, parents[p], parents[q]);
-                    if (seen && *seen == 0)
-                        continue;
-                    if (seen)
-                        *seen = 0;
-                    if (count < room)
-                        list[count][0] = parents[p], list[count][1] = parents[q];
+            const gxsp_rest *rest = &system->rest[chunk->first_block + b];
+            const size_t n0 = rest->node[0][l] * words, n1 = rest->node[1][l] * words, n2 = rest->node[2][l] * words,
+                         n3 = rest->node[3][l] * words;
+            for (word = 0; word < words && rest->weight[l] > 0; ++word) {
+                const uint64_t all = sets.own[n0 + word] | sets.own[n1 + word] | sets.own[n2 + word] | sets.own[n3 + word];
+                sets.reach[n0 + word] |= all, sets.reach[n1 + word] |= all;
+                sets.reach[n2 + word] |= all, sets.reach[n3 + word] |= all;
+            }
+        }
+    for (i = 0; i < chunk->node_count; ++i)
+        for (k = 0; k < 4; ++k)
+            if (system->levels[0].parent[system->nodes[chunk->first_node + i]][k] != GXSP_NONE)
+                gxsp_join_sets(sets.row + system->edges.parent[i][k] * words, sets.reach + i * words, words);
+    return sets;
+}
+
+/* Rows and columns, the row the lower, of the entries of level 1's matrix that a chunk needs. Returns how many there are; writes the
+ * first room of them. memory: see gxsp_find_sets */
+static uint32_t gxsp_list_pairs(gxsp_system *system, const gxsp_chunk *chunk, uint64_t *memory, uint32_t (*list)[2], uint32_t room)
+{
+    gxsp_sets sets;
+    uint32_t i, k, count = 0;
+    gxsp_pairs_begin(system, chunk);
+    sets = gxsp_find_sets(system, chunk, memory);
+    for (i = 0; i < system->pairs.count; ++i)
+        for (k = 0; k < sets.words; ++k) {
+            uint64_t set = sets.row[i * sets.words + k];
+            uint32_t j;
+            for (j = 64 * k; set != 0; set >>= 1, ++j)
+                if ((set & 1) && system->pairs.node[i] <= system->pairs.node[j]) {
+                    if (count < room) {
+                        list[count][0] = system->pairs.node[i];
+                        list[count][1] = system->pairs.node[j];
+                    }
                     ++count;
                 }
         }
@@ -2542,7 +2697,7 @@ static uint32_t gxsp_list_pairs(const gxsp_system *system, gxsp_chunk_pairs *pai
 /* Rows of a level's matrix from its entries on and above the diagonal, (row, column), of which some may come twice. */
 static void gxsp_rows_make(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *level, uint32_t (*list)[2], uint32_t listed)
 {
-    uint32_t *start = (uint32_t *)gxsp_take(scratch, (size_t)level->n + 2, sizeof(uint32_t)), *columns, *kept, i, k, count = 0;
+    uint32_t *start = (uint32_t *)gxsp_take(scratch, (size_t)level->n + 2, sizeof(uint32_t)), *columns, *kept, *seen, i, k, count = 0;
     if (scratch->failed)
         return;
     for (i = 0; i < listed; ++i) {
@@ -2554,6 +2709,7 @@ static void gxsp_rows_make(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *leve
         start[i + 2] += start[i + 1];
     columns = (uint32_t *)gxsp_take(scratch, start[level->n + 1], sizeof(uint32_t));
     kept = (uint32_t *)gxsp_take(scratch, start[level->n + 1], sizeof(uint32_t));
+    seen = (uint32_t *)gxsp_take(scratch, level->n, sizeof(uint32_t));
     if (scratch->failed)
         return;
     for (i = 0; i < listed; ++i) {
@@ -2563,10 +2719,12 @@ static void gxsp_rows_make(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *leve
     }
     for (i = 0; i < level->n; ++i) {
         level->start[i] = count;
-        gxsp_sort_row(columns + start[i], start[i + 1] - start[i]);
         for (k = start[i]; k < start[i + 1]; ++k)
-            if (k == start[i] || columns[k] != columns[k - 1])
+            if (seen[columns[k]] != i + 1) {
+                seen[columns[k]] = i + 1;
                 kept[count++] = columns[k];
+            }
+        gxsp_sort_row(kept + level->start[i], count - level->start[i]);
     }
     level->start[level->n] = count;
     gxsp_level_matrix(pool, level, kept);
@@ -2575,11 +2733,15 @@ static void gxsp_rows_make(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *leve
 /* Level 1's matrix: two nodes are neighbours where an element follows both. */
 static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch)
 {
-    gxsp_chunk_pairs pairs;
-    uint32_t (*list)[2] = NULL, c, count = 0, room = 0;
-    gxsp_pairs_place(system, &pairs);
+    uint32_t (*list)[2] = NULL, c, count = 0, room = 0, nodes = 0;
+    uint64_t *memory;
+    for (c = 0; c < system->chunk_count; ++c)
+        nodes = system->chunks[c].node_count > nodes ? system->chunks[c].node_count : nodes;
+    memory = (uint64_t *)gxsp_take(scratch, 6 * (size_t)nodes * (nodes / 16 + 1), sizeof(uint64_t)); /* four parents to a node */
+    if (scratch->failed)
+        return;
     for (c = 0; c < system->chunk_count; ++c) {
-        uint32_t more = gxsp_list_pairs(system, &pairs, c, list ? list + count : NULL, room - count);
+        uint32_t more = gxsp_list_pairs(system, &system->chunks[c], memory, list ? list + count : NULL, room - count);
         if (more > room - count) { /* again, with room */
             uint32_t (*larger)[2];
             room = 2 * (count + more);
@@ -2589,7 +2751,7 @@ static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch)
             if (count > 0)
                 memcpy(larger, list, count * sizeof *list);
             list = larger;
-            more = gxsp_list_pairs(system, &pairs, c, list + count, room - count);
+            more = gxsp_list_pairs(system, &system->chunks[c], memory, list + count, room - count);
         }
         count += more;
     }
@@ -2609,9 +2771,6 @@ static uint32_t gxsp_find_entry(const gxsp_level *level, uint32_t i, uint32_t j)
     }
     return low;
 }
-
-/* Corners of the ten blocks of an element, in the order of gxs_element.mass */
-static const int gxsp_corners[10][2] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {1, 1}, {1, 2}, {1, 3}, {2, 2}, {2, 3}, {3, 3}};
 
 /* The assembled matrix: copies are neighbours where they share an element; every copy is its own. */
 static void gxsp_fine_make(gxsp_system *system, gxsp_pool *scratch)
@@ -2657,27 +2816,24 @@ static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch)
 {
     gxsp_level *fine = &system->levels[0];
     gxsp_transfer transfer;
-    uint32_t c, b, count, at;
-    int l;
+    uint32_t c, e, count, at;
+    gxsp_edges_make(system);
     transfer.key = (uint64_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint64_t));
     transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint32_t));
     if (scratch->failed || system->pool.failed)
         return;
     gxsp_transfer_begin(fine, system->place, system->fixed, &transfer);
-    for (c = 0; c < system->chunk_count; ++c)
-        for (b = 0; b < system->chunks[c].block_count; ++b)
-            for (l = 0; l < GXSP_LANES; ++l) {
-                uint32_t copies[4];
-                if (!(system->rest[system->chunks[c].first_block + b].weight[l] > 0))
-                    continue;
-                gxsp_lane_copies(system, &system->chunks[c], b, l, copies);
-                gxsp_join_corners(&transfer, copies);
-            }
+    for (c = 0; c < system->chunk_count; ++c) {
+        const uint32_t *copies = system->nodes + system->chunks[c].first_node;
+        gxsp_list_edges(system, &system->chunks[c]);
+        for (e = system->edges.nodes; e < system->edges.count; ++e)
+            gxsp_join_nodes(&transfer, copies[system->edges.ends[e] >> 16], copies[system->edges.ends[e] & 0xffff]);
+    }
     count = gxsp_transfer_end(fine, &transfer);
     if (count == 0)
         return;
     gxsp_level_make(&system->pool, fine + 1, count, 1);
-    system->scratch = (uint32_t *)gxsp_take(&system->pool, GXSP_CHUNK_PARENTS * GXSP_CHUNK_PARENTS + 2 * (size_t)count, sizeof(uint32_t));
+    gxsp_pairs_make(system);
     if (system->fine)
         gxsp_find_children(&system->pool, fine, count);
     if (system->pool.failed)
@@ -2730,12 +2886,28 @@ static void gxsp_find_volumes(gxsp_system *system, const gxs_model *model)
     }
 }
 
-/* What depends on the choice of matrix and preconditioner */
+/* Are most copies in pieces that multigrid pays for? count: piece_count, scratch */
+static int gxsp_large_pieces(const gxsp_system *system, const gxs_model *model, uint32_t *count)
+{
+    uint32_t from = GXSP_MULTIGRID_FROM;
+    size_t i, large = 0;
+    for (i = 0; i < model->material_count; ++i)
+        if (model->materials[i].kind != GXS_CUSTOM && model->materials[i].poisson > GXSP_STIFF_POISSON)
+            from = GXSP_MULTIGRID_FROM_STIFF;
+    memset(count, 0, system->piece_count * sizeof *count);
+    for (i = 0; i < system->n; ++i)
+        ++count[system->piece[i]];
+    for (i = 0; i < system->n; ++i)
+        large += count[system->piece[i]] >= from;
+    return 2 * large > system->n;
+}
+
+/* What depends on the choice of matrix and preconditioner. forest: n, scratch */
 static void gxsp_preconditioner_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model,
-                                     gxs_preconditioner preconditioner, gxs_matrix matrix)
+                                     gxs_preconditioner preconditioner, gxs_matrix matrix, uint32_t *forest)
 {
     const int multigrid = model->positions && (preconditioner == GXS_MULTIGRID ||
-                          (preconditioner == GXS_AUTOMATIC && system->n >= GXSP_MULTIGRID_FROM));
+                          (preconditioner == GXS_AUTOMATIC && gxsp_large_pieces(system, model, forest)));
     if (preconditioner == GXS_VOLUME_RATIO)
         gxsp_find_volumes(system, model);
     system->levels[0].n = (uint32_t)system->n;
@@ -2777,7 +2949,7 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
     gxsp_find_pieces(system, model, forest);
     gxsp_chunks_make(system, scratch, model);
     if (!scratch->failed && !system->pool.failed)
-        gxsp_preconditioner_make(system, scratch, model, solver->preconditioner, solver->matrix);
+        gxsp_preconditioner_make(system, scratch, model, solver->preconditioner, solver->matrix, forest);
     return SIZE_MAX;
 }
 
@@ -2843,7 +3015,33 @@ static void gxsp_reduce_residual(const gxsp_system *system, double *r)
 
 /* >>operator */
 
-/* y += a x and y -= a x for blocks of three columns */
+/* --- blocks: three columns of 4, the last of each 0 --- */
+
+static void gxsp_transpose_block(const float *GXSP_RESTRICT a, float *GXSP_RESTRICT transposed)
+{
+    transposed[0] = a[0], transposed[1] = a[4], transposed[2] = a[8], transposed[3] = 0;
+    transposed[4] = a[1], transposed[5] = a[5], transposed[6] = a[9], transposed[7] = 0;
+    transposed[8] = a[2], transposed[9] = a[6], transposed[10] = a[10], transposed[11] = 0;
+}
+
+/* to += lane l of nine numbers by rows, transposed or not, and mass on the diagonal */
+static void gxsp_add_lane(gxsp_singles *GXSP_RESTRICT block, int l, int transposed, float mass, float *GXSP_RESTRICT to)
+{
+    const int r = transposed ? 4 : 1, c = transposed ? 1 : 4;
+    to[0] += block[0][l] + mass, to[c] += block[1][l], to[2 * c] += block[2][l];
+    to[r] += block[3][l], to[5] += block[4][l] + mass, to[r + 2 * c] += block[5][l];
+    to[2 * r] += block[6][l], to[2 * r + c] += block[7][l], to[10] += block[8][l] + mass;
+}
+
+/* y += a x for 12 numbers */
+static void gxsp_add_scaled(float a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y)
+{
+    int k;
+    for (k = 0; k < 12; ++k)
+        y[k] += a * x[k];
+}
+
+/* y += a x and y -= a x for blocks */
 static void gxsp_add_block(const float *GXSP_RESTRICT a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y)
 {
     int k;
@@ -3011,7 +3209,8 @@ static void gxsp_task_linearise(void *context, size_t index)
         gxsp_block_load(system, chunk, rest, pass->from, x);
         gxsp_block_parameters(pass->materials, rest, &s);
         gxsp_block_gradient(rest, x, s.g);
-        system->chunk_sum[index][0] += gxsp_tangent_make(chunk->kind, rest, system->scale, &s, tangent, gxsp_block_general(system, chunk, b));
+        system->chunk_sum[index][0] += gxsp_tangent_make(chunk->kind, rest, system->scale, pass->exact, &s, tangent,
+                                                             gxsp_block_general(system, chunk, b));
         GXSP_EACH_LANE(l) tangent->mass[l] = (float)(pass->rate * rest->mass[l]);
         for (corner = 0; corner < 4; ++corner) {
             gxsp_singles gamma[3], block[9];
@@ -3111,7 +3310,7 @@ static void gxsp_extra_diagonal(gxsp_system *system)
 }
 
 /* Hessian of the elements, times scale, and inverse block diagonal at a displacement. 0 if a number overflowed. */
-static int gxsp_linearise(gxsp_system *system, double rate, const double *from, int *collapsed)
+static int gxsp_linearise(gxsp_system *system, double rate, const double *from, int exact, int *collapsed)
 {
     gxsp_pass pass;
     size_t i;
@@ -3120,6 +3319,7 @@ static int gxsp_linearise(gxsp_system *system, double rate, const double *from, 
     pass.materials = system->damped;
     pass.rate = system->scale * rate;
     pass.from = from;
+    pass.exact = exact;
     gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_linearise, &pass);
     gxsp_extra_diagonal(system);
     gxsp_parallel(system->jobs, system->range_count, gxsp_task_diagonal, &pass);
@@ -3266,81 +3466,95 @@ static void gxsp_multigrid(gxsp_system *system, double rate, gxsp_vector4 *b, gx
 
 /* --- numbers of the coarse levels --- */
 
-static float *gxsp_pair_block(gxsp_chunk_pairs *pairs, gxsp_level *next, uint32_t i, uint32_t j)
+/* Blocks of a chunk's edges: the Hessian of its elements, of i's row and j's column, with their mass */
+static void gxsp_edge_blocks(gxsp_system *system, const gxsp_chunk *chunk, double rate)
+{
+    gxsp_edges *edges = &system->edges;
+    uint32_t b, k, known;
+    int pair, l;
+    gxsp_edges_begin(edges, chunk);
+    memset(edges->block, 0, chunk->node_count * sizeof *edges->block);
+    for (b = 0; b < chunk->block_count; ++b) {
+        const gxsp_rest *rest = &system->rest[chunk->first_block + b];
+        const gxsp_tangent *tangent = &system->tangents[chunk->first_block + b];
+        const gxsp_mass *general = gxsp_block_masses(system, chunk, b);
+        gxsp_singles gamma[4][3];
+        for (k = 0; k < 4; ++k)
+            gxsp_block_corner(tangent, (int)k, gamma[k]);
+        for (pair = 0; pair < 10; ++pair) {
+            const int p = gxsp_corners[pair][0], q = gxsp_corners[pair][1];
+            gxsp_singles block[9];
+            gxsp_block_couple(tangent, gxsp_block_general(system, chunk, b), gamma[p], gamma[q], block);
+            for (l = 0; l < GXSP_LANES; ++l) {
+                const uint16_t i = rest->node[p][l], j = rest->node[q][l];
+                const float mass = tangent->mass[l] * (p == q ? 2.0f : 1.0f) + (general ? (float)(rate * general->entry[pair][l]) : 0);
+                if (!(rest->weight[l] > 0))
+                    continue;
+                known = edges->count;
+                k = gxsp_find_edge(edges, i, j);
+                if (k == known)
+                    memset(edges->block[k], 0, sizeof edges->block[k]);
+                gxsp_add_lane(block, l, i > j, mass, edges->block[k]);
+                if (i == j && p != q) /* two corners that follow one copy */
+                    gxsp_add_lane(block, l, 1, mass, edges->block[k]);
+            }
+        }
+    }
+    for (k = edges->nodes; k < edges->count; ++k)
+        gxsp_transpose_block(edges->block[k], edges->turned[k]);
+}
+
+static float *gxsp_pair_block(gxsp_pairs *pairs, gxsp_level *next, uint32_t row, uint32_t column, uint32_t i, uint32_t j)
 {
     uint32_t *found = gxsp_pairs_find(pairs, i, j);
     if (!found)
-        return next->block + 12 * (size_t)gxsp_find_entry(next, i, j);
+        return next->block + 12 * (size_t)gxsp_find_entry(next, row, column);
     if (*found == GXSP_NONE)
-        *found = gxsp_find_entry(next, i, j);
+        *found = gxsp_find_entry(next, row, column);
     return next->block + 12 * (size_t)*found;
 }
 
-/* Hessian of a block between gradients in the frame of V: h[3 k + l] couples unit vectors k and l, three columns of 4 */
-typedef float gxsp_couplings[9][12];
-
-static void gxsp_block_couplings(const gxsp_tangent *tangent, const gxsp_general *general, gxsp_couplings *h)
+/* A node's row of the Hessian times the transfer, in edges->half by number. Returns how many are touched. */
+static uint32_t gxsp_half_row(gxsp_system *system, const uint32_t *copies, uint32_t i)
 {
-    int k, m, l, r, c;
-    for (k = 0; k < 3; ++k)
-        for (m = k; m < 3; ++m) {
-            gxsp_singles p[3], q[3], block[9];
-            memset(p, 0, sizeof p);
-            memset(q, 0, sizeof q);
-            GXSP_EACH_LANE(l) p[k][l] = q[m][l] = 1;
-            gxsp_block_couple(tangent, general, p, q, block);
-            for (l = 0; l < GXSP_LANES; ++l)
-                for (r = 0; r < 3; ++r)
-                    for (c = 0; c < 3; ++c)
-                        h[l][3 * k + m][4 * c + r] = h[l][3 * m + k][4 * r + c] = block[3 * r + c][l];
+    const gxsp_level *fine = &system->levels[0];
+    gxsp_edges *edges = &system->edges;
+    uint32_t k, q, count = 0;
+    int m;
+    for (k = edges->start[i]; k < edges->start[i + 1]; ++k) {
+        const uint32_t other = edges->other[k], copy = copies[other];
+        const float *block = other < i ? edges->turned[edges->edge[k]] : edges->block[edges->edge[k]];
+        for (q = 0; q < 4; ++q) {
+            const uint16_t number = edges->parent[other][q];
+            if (fine->parent[copy][q] == GXSP_NONE)
+                continue;
+            if (system->pairs.seen[number] == i + 1)
+                gxsp_add_scaled(fine->weight[copy][q], block, edges->half[number]);
+            else {
+                system->pairs.seen[number] = i + 1;
+                edges->touched[count++] = number;
+                for (m = 0; m < 12; ++m)
+                    edges->half[number][m] = fine->weight[copy][q] * block[m];
+            }
         }
+    }
+    return count;
 }
 
-/* An element's part of level 1's matrix, on and above the diagonal: its Hessian h and mass between the coarse functions that its
- * corners follow. */
-static void gxsp_coarse_element(gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, int lane, double rate, gxsp_couplings h,
-                                gxsp_chunk_pairs *pairs)
+/* A node's part of level 1's matrix on and above the diagonal */
+static void gxsp_coarse_node(gxsp_system *system, const uint32_t *copies, uint32_t i)
 {
-    static const int packed[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
-    const gxsp_tangent *tangent = &system->tangents[chunk->first_block + b];
-    const gxsp_mass *general = gxsp_block_masses(system, chunk, b);
-    uint32_t copies[4], parents[16];
-    float weights[16][4], gamma[16][3], corner[4][3], moments[16][4];
-    int count, i, j, k, p, q;
-    gxsp_lane_copies(system, chunk, b, lane, copies);
-    count = gxsp_element_parents(system, copies, parents, weights);
-    for (k = 0; k < 3; ++k) {
-        corner[0][k] = 0;
-        for (i = 1; i < 4; ++i) {
-            corner[i][k] = tangent->gradient[3 * (i - 1) + k][lane];
-            corner[0][k] -= corner[i][k];
-        }
-    }
-    for (p = 0; p < count; ++p) {
-        const float *w = weights[p], sum = w[0] + w[1] + w[2] + w[3];
-        for (k = 0; k < 3; ++k)
-            gamma[p][k] = w[0] * corner[0][k] + w[1] * corner[1][k] + w[2] * corner[2][k] + w[3] * corner[3][k];
-        for (i = 0; i < 4; ++i) {
-            moments[p][i] = tangent->mass[lane] * (sum + w[i]);
-            for (j = 0; general && j < 4; ++j)
-                moments[p][i] += (float)(rate * general->entry[packed[i][j]][lane]) * w[j];
-        }
-    }
-    for (p = 0; p < count; ++p) {
-        float half[3][12]; /* gamma_p . h, still to be multiplied by gamma_q */
-        for (j = 0; j < 3; ++j)
-            for (k = 0; k < 12; ++k)
-                half[j][k] = gamma[p][0] * h[j][k] + gamma[p][1] * h[3 + j][k] + gamma[p][2] * h[6 + j][k];
-        for (q = 0; q < count; ++q) {
-            const float *g = gamma[q], *w = weights[q];
-            float *to, mass;
-            if (parents[q] < parents[p])
-                continue;
-            mass = moments[p][0] * w[0] + moments[p][1] * w[1] + moments[p][2] * w[2] + moments[p][3] * w[3];
-            to = gxsp_pair_block(pairs, &system->levels[1], parents[p], parents[q]);
-            for (k = 0; k < 12; ++k)
-                to[k] += g[0] * half[0][k] + g[1] * half[1][k] + g[2] * half[2][k];
-            to[0] += mass, to[5] += mass, to[10] += mass;
+    const gxsp_level *fine = &system->levels[0];
+    const gxsp_pairs *pairs = &system->pairs;
+    const uint32_t count = gxsp_half_row(system, copies, i);
+    uint32_t p, t;
+    for (p = 0; p < 4; ++p) {
+        const uint32_t row = fine->parent[copies[i]][p], number = system->edges.parent[i][p];
+        for (t = 0; t < count && row != GXSP_NONE; ++t) {
+            const uint32_t other = system->edges.touched[t];
+            if (row <= pairs->node[other])
+                gxsp_add_scaled(fine->weight[copies[i]][p], system->edges.half[other],
+                                gxsp_pair_block(&system->pairs, &system->levels[1], row, pairs->node[other], number, other));
         }
     }
 }
@@ -3349,28 +3563,19 @@ static void gxsp_coarse_element(gxsp_system *system, const gxsp_chunk *chunk, ui
 static void gxsp_coarse_elements(gxsp_system *system, double rate)
 {
     gxsp_level *next = &system->levels[1];
-    gxsp_chunk_pairs pairs;
-    uint32_t c, b, i, k;
-    int l, r, s;
-    gxsp_pairs_place(system, &pairs);
+    uint32_t c, i, k;
     memset(next->block, 0, 12 * (size_t)next->start[next->n] * sizeof(float));
     for (c = 0; c < system->chunk_count; ++c) {
-        gxsp_pairs_begin(&pairs);
-        for (b = 0; b < system->chunks[c].block_count; ++b) {
-            gxsp_couplings h[GXSP_LANES];
-            gxsp_block_couplings(&system->tangents[system->chunks[c].first_block + b], gxsp_block_general(system, &system->chunks[c], b), h);
-            for (l = 0; l < GXSP_LANES; ++l)
-                if (system->rest[system->chunks[c].first_block + b].weight[l] > 0)
-                    gxsp_coarse_element(system, &system->chunks[c], b, l, rate, h[l], &pairs);
-        }
+        const gxsp_chunk *chunk = &system->chunks[c];
+        gxsp_edge_blocks(system, chunk, rate);
+        gxsp_edges_adjacency(&system->edges);
+        gxsp_pairs_begin(system, chunk);
+        for (i = 0; i < chunk->node_count; ++i)
+            gxsp_coarse_node(system, system->nodes + chunk->first_node, i);
     }
     for (i = 0; i < next->n; ++i)
-        for (k = next->start[i]; next->column[k] < i; ++k) {
-            const float *from = next->block + 12 * (size_t)gxsp_find_entry(next, next->column[k], i);
-            for (r = 0; r < 3; ++r)
-                for (s = 0; s < 3; ++s)
-                    next->block[12 * (size_t)k + (size_t)(4 * s + r)] = from[4 * r + s];
-        }
+        for (k = next->start[i]; next->column[k] < i; ++k)
+            gxsp_transpose_block(next->block + 12 * (size_t)gxsp_find_entry(next, next->column[k], i), next->block + 12 * (size_t)k);
 }
 
 /* The diagonal raised by its share, and inverted. 0 if a number overflowed. */
@@ -3506,7 +3711,7 @@ static void gxsp_assemble(gxsp_system *system, double rate)
 {
     gxsp_level *fine = &system->levels[0];
     uint32_t c, b, i, k;
-    int pair, l, e;
+    int pair, l;
     memset(fine->block, 0, 12 * (size_t)fine->start[fine->n] * sizeof(float));
     for (c = 0; c < system->chunk_count; ++c)
         for (b = 0; b < system->chunks[c].block_count && !system->chunk_still[c]; ++b) {
@@ -3526,18 +3731,17 @@ static void gxsp_assemble(gxsp_system *system, double rate)
                     const int turned = nodes[rest->node[p][l]] > nodes[rest->node[q][l]];
                     float mass = tangent->mass[l] * (p == q ? 2.0f : 1.0f) + (general ? (float)(rate * general->entry[pair][l]) : 0);
                     float *to = fine->block + 12 * (size_t)system->fine[chunk->first_block + b].entry[pair][l];
-                    for (e = 0; e < 9; ++e)
-                        to[turned ? e / 3 * 4 + e % 3 : e % 3 * 4 + e / 3] += block[e][l];
-                    to[0] += mass, to[5] += mass, to[10] += mass;
+                    gxsp_add_lane(block, l, turned, mass, to);
+                    if (p != q && rest->node[p][l] == rest->node[q][l]) /* two corners that follow one copy */
+                        gxsp_add_lane(block, l, 1, mass, to);
                 }
             }
         }
     for (i = 0; i < fine->n; ++i)
         for (k = fine->start[i]; fine->column[k] <= i; ++k) {
-            float *to = fine->block + 12 * (size_t)k;
-            const float *from = fine->block + 12 * (size_t)system->transpose[k], mass = (float)(rate * system->lumped[i]);
-            for (e = 0; e < 9 && fine->column[k] < i; ++e)
-                to[e / 3 * 4 + e % 3] = from[e % 3 * 4 + e / 3];
+            float *to = fine->block + 12 * (size_t)k, mass = (float)(rate * system->lumped[i]);
+            if (fine->column[k] < i)
+                gxsp_transpose_block(fine->block + 12 * (size_t)system->transpose[k], to);
             if (fine->column[k] == i && system->lumped_mass)
                 to[0] += mass, to[5] += mass, to[10] += mass;
             if (k + 1 == fine->start[i + 1])
@@ -3562,7 +3766,7 @@ static int gxsp_coarse_numbers(gxsp_system *system, double rate)
     uint32_t at;
     size_t t;
     if (system->fine)
-        gxsp_coarsen(fine, fine + 1, fine->child_start, fine->child, system->scratch);
+        gxsp_coarsen(fine, fine + 1, fine->child_start, fine->child, system->pairs.local);
     else {
         gxsp_coarse_elements(system, system->scale * rate);
         if (system->lumped_mass)
@@ -3575,9 +3779,9 @@ static int gxsp_coarse_numbers(gxsp_system *system, double rate)
         if (!gxsp_invert_diagonal(level))
             return 0;
         if (at + 1 < system->level_count)
-            gxsp_coarsen(level, level + 1, level->child_start, level->child, system->scratch);
+            gxsp_coarsen(level, level + 1, level->child_start, level->child, system->pairs.local);
     }
-    return gxsp_factorise(&system->factor, &system->levels[system->level_count - 1], system->scratch);
+    return gxsp_factorise(&system->factor, &system->levels[system->level_count - 1], system->pairs.local);
 }
 
 /* Largest eigenvalue of D^-1 (K + rate M) by the power method from a start that favours none; omega damps the upper half of
@@ -3949,6 +4153,7 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
     double rho;
     size_t i;
     int c;
+    problem->indefinite = 0;
     for (i = 0; i < 3 * system->n; ++i)
         system->residual[i] *= system->scale;
     first = gxsp_scale(system, system->residual);
@@ -3963,8 +4168,10 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
                 curvature += (double)system->search[i][c] * (double)system->product[i][c];
         if (!gxsp_finite(curvature) || !gxsp_finite(rho))
             return 0;
-        if (curvature <= 0 || rho <= 0) /* rounding is all that is left */
+        if (curvature <= 0 || rho <= 0) { /* of projected Hessians: rounding is all that is left */
+            problem->indefinite = 1;
             break;
+        }
         alpha = rho / curvature;
         for (i = 0; i < system->n; ++i)
             for (c = 0; c < 3; ++c) {
@@ -4000,7 +4207,8 @@ static int gxsp_prepare(gxsp_problem *problem)
         return 1;
     if (!(system->omega > 0) && !system->fine)
         gxsp_find_omega(system, problem->rate);
-    system->coarse_fresh = system->coarse_rate < problem->rate || system->coarse_rate > problem->rate || system->coarse_worn;
+    system->coarse_fresh = system->coarse_rate < problem->rate || system->coarse_rate > problem->rate ||
+                           (system->coarse_worn && !problem->exact);
     if (!system->coarse_fresh)
         return 1;
     system->coarse_rate = problem->rate;
@@ -4164,6 +4372,27 @@ static void gxsp_count_rest(const gxsp_problem *problem, const double *velocity)
 
 /* >>newton */
 
+/* Adds the forces on held copies, which have no D of their own, scaled by the mean of the others'. A body that only its held copies
+ * deform has no other force when it is in balance. */
+static void gxsp_add_reactions(const gxsp_system *system, gxsp_norms *norms)
+{
+    double stiffness = 0, square = 0, compliance;
+    size_t i, counted = 0;
+    for (i = 0; i < system->n; ++i) {
+        const float *d = system->diagonal + 6 * i;
+        const double trace = (double)d[0] + (double)d[3] + (double)d[5];
+        if (trace > 0) {
+            stiffness += 3 / trace;
+            ++counted;
+        }
+        if (system->held[i])
+            square += gxsp_dot(system->force + 3 * i, system->force + 3 * i, 1);
+    }
+    compliance = stiffness > 0 ? (double)counted / stiffness : 0;
+    norms->energy += square * compliance;
+    norms->displacement += square * compliance * compliance;
+}
+
 /* residual = load - force at current, 0 at fixed copies, and its size relative to load, inertia and elastic forces (see
  * gxs_step_report); inertia by the lumped mass here, where it is but a scale. scratch: direction */
 static double gxsp_balance(gxsp_problem *problem)
@@ -4179,6 +4408,7 @@ static double gxsp_balance(gxsp_problem *problem)
     for (i = 0; i < count; ++i)
         part[i] = system->force[i] - part[i];
     elastic = gxsp_scale(system, part);
+    gxsp_add_reactions(system, &elastic);
     for (i = 0; i < count; ++i)
         system->residual[i] = system->still[i / 3] ? 0 : system->load[i] - system->force[i];
     gxsp_reduce_residual(system, system->residual);
@@ -4216,7 +4446,7 @@ static int gxsp_start(gxsp_problem *problem, const double *from)
 static int gxsp_line_search(gxsp_problem *problem)
 {
     gxsp_system *system = problem->system;
-    double slope = 0, work = 0, rounding = 0, length = 1; /* rounding: of positions and of the linear terms */
+    double slope = 0, work = 0, rounding = 0, length = 1, slack; /* rounding: of positions and of the linear terms */
     double before[3];
     size_t i, count = 3 * system->n;
     int trial;
@@ -4235,8 +4465,10 @@ static int gxsp_line_search(gxsp_problem *problem)
         ++problem->report.line_search_steps;
         gxsp_evaluate(problem, system->trial, 0, system->force, problem->energies);
         change = (problem->energies[0] - before[0]) + (problem->energies[1] - before[1]) - length * work;
-        if (gxsp_finite(change) && gxsp_finite(problem->energies[2]) &&
-            change <= GXSP_ARMIJO * length * slope + 1e-15 * (problem->energies[2] + before[2] + rounding)) {
+        slack = 1e-15 * (problem->energies[2] + before[2] + rounding);
+        if (gxsp_finite(change) && gxsp_finite(problem->energies[2]) && change <= GXSP_ARMIJO * length * slope + slack) {
+            problem->noise = fabs(change) <= slack;
+            problem->shortened = trial > 0;
             system->trial = system->current;
             system->current = accepted;
             return 1;
@@ -4368,7 +4600,7 @@ static int gxsp_linearise_all(gxsp_problem *problem)
     const double start = gxsp_now(problem);
     int finite;
     gxsp_terms_make(problem, system->current);
-    finite = gxsp_linearise(system, problem->rate, system->current, &problem->collapsed);
+    finite = gxsp_linearise(system, problem->rate, system->current, problem->exact, &problem->collapsed);
     problem->report.seconds_linearise += gxsp_now(problem) - start;
     return finite;
 }
@@ -4382,29 +4614,63 @@ static void gxsp_nudge_forces(gxsp_problem *problem)
     gxsp_balance(problem);
 }
 
+/* The next direction. Near the end, where projected Hessians converge slowly, the exact one is tried: should it prove indefinite, the
+ * projected one serves from there on. */
+static int gxsp_find_direction(gxsp_problem *problem)
+{
+    if (!gxsp_solve(problem))
+        return 0;
+    if (!problem->exact || !problem->indefinite)
+        return 1;
+    problem->exact = 0;
+    problem->projected_only = 1;
+    if (!gxsp_linearise_all(problem))
+        return 0;
+    gxsp_balance(problem);
+    return gxsp_solve(problem);
+}
+
+/* Does Newton's method go on? before: residual an iteration ago. Says why not. */
+static int gxsp_goes_on(gxsp_problem *problem, double before)
+{
+    const gxs_step_desc *step = problem->step;
+    const uint32_t budget = step->newton_iterations ? step->newton_iterations : 1, done = problem->report.newton_iterations;
+    const double goal = step->newton_tolerance > GXSP_ROUNDING ? step->newton_tolerance : GXSP_ROUNDING;
+    const double residual = problem->report.residual;
+    problem->report.stop = GXS_STOP_BALANCE;
+    if (residual <= goal && !problem->collapsed)
+        return 0;
+    problem->report.stop = GXS_STOP_ROUNDING;
+    if (done > 0 && problem->noise && residual > 0.5 * before)
+        return 0;
+    problem->report.stop = GXS_STOP_ITERATIONS;
+    if (done == budget || gxsp_out_of_time(problem))
+        return 0;
+    problem->exact = done > 0 && !problem->projected_only && !problem->shortened && residual < 0.1 && residual > 0.1 * before;
+    return 1;
+}
+
 /* Newton's method from a start that gxsp_start found finite to balance or to the end of the budget. */
 static gx_result gxsp_newton(gxsp_problem *problem)
 {
-    const gxs_step_desc *step = problem->step;
-    uint32_t budget = step->newton_iterations ? step->newton_iterations : 1, *done = &problem->report.newton_iterations;
-    double goal = step->newton_tolerance > GXSP_ROUNDING ? step->newton_tolerance : GXSP_ROUNDING;
+    uint32_t *done = &problem->report.newton_iterations;
+    double before = 0;
     *done = 0;
+    problem->exact = problem->projected_only = problem->noise = 0;
     if (!gxsp_linearise_all(problem))
         return GX_ERROR_DIVERGED;
     for (;;) {
         problem->report.residual = gxsp_balance(problem);
         if (!gxsp_finite(problem->report.residual))
             return GX_ERROR_DIVERGED;
-        problem->report.stop = problem->report.residual <= goal ? GXS_STOP_BALANCE : GXS_STOP_ITERATIONS;
-        if ((problem->report.residual <= goal && !problem->collapsed) || *done == budget || gxsp_out_of_time(problem))
+        if (!gxsp_goes_on(problem, before))
             return GX_OK;
+        before = problem->report.residual;
         if (*done > 0 && !gxsp_linearise_all(problem))
             return GX_ERROR_DIVERGED;
         if (problem->collapsed)
             gxsp_nudge_forces(problem);
-        else if (problem->report.residual <= goal)
-            return GX_OK;
-        if (!gxsp_solve(problem))
+        if (!gxsp_find_direction(problem))
             return GX_ERROR_DIVERGED;
         if (!gxsp_line_search(problem)) { /* after a first success: no more to gain in doubles */
             if (problem->report.stop != GXS_STOP_SECONDS)
@@ -4946,7 +5212,7 @@ GXFEM_API gx_result gxs_model_hessian_product(const gxs_model *model, const doub
         gxsp_group_gather(&group, displacement, x);
         gxsp_block_gradient(&group.rest, x, group.state.g);
         memset(&tangent, 0, sizeof tangent);
-        gxsp_tangent_make(group.kind, &group.rest, 1, &group.state, &tangent, &general);
+        gxsp_tangent_make(group.kind, &group.rest, 1, 0, &group.state, &tangent, &general);
         gxsp_group_gather(&group, direction, x);
         for (k = 0; k < 12; ++k)
             GXSP_EACH_LANE(l) from[k][l] = (float)(x[k][l] - x[k % 3][l]); /* of translations exactly 0 */
@@ -5026,7 +5292,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
     memset(from, 0, sizeof from);
     rest.weight[0] = 1;
     rest.gradient[0][0] = rest.gradient[4][0] = rest.gradient[8][0] = 1; /* u_i - u_0 are the columns of dF, forces those of dP */
-    gxsp_tangent_make(material->kind, &rest, 1, &state, &tangent, &general);
+    gxsp_tangent_make(material->kind, &rest, 1, 0, &state, &tangent, &general);
     for (k = 0; k < 3; ++k)
         for (c = 0; c < 3; ++c)
             from[3 + 3 * c + k][0] = (float)direction[3 * k + c];
@@ -5057,6 +5323,8 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_RANGE
 #undef GXSP_SPACING
 #undef GXSP_MULTIGRID_FROM
+#undef GXSP_MULTIGRID_FROM_STIFF
+#undef GXSP_STIFF_POISSON
 #undef GXSP_BOTTOM
 #undef GXSP_LEVELS
 #undef GXSP_SHIFT

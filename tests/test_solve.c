@@ -338,7 +338,7 @@ START_TEST(block_product_equals_assembled_forms)
     }
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
     system = solver->system;
-    ck_assert(gxsp_linearise(system, rate, s.displacement, &collapsed));
+    ck_assert(gxsp_linearise(system, rate, s.displacement, 0, &collapsed));
     if (desc.matrix == GXS_MATRIX_ASSEMBLED)
         gxsp_assemble(system, system->scale * rate);
     gxsp_product(system, rate, in, out);

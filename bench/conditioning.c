@@ -1,0 +1,424 @@
+/* Condition numbers of the system matrix of a cut cube: RXFEM's Fig. 14 with RXFEM's basis and ours, and a corner piece.
+ * usage: conditioning [FILE]     rows go to stdout and to FILE
+ *
+ * As in RXFEM section 7: the cube [-1, 1]^3 of five tetrahedra, free; A = M + dt^2 K at rest, E = 1e6 Pa, nu = 0.3,
+ * rho = 1000 kg/m3, dt = 1e-3 s.
+ *   case       uncut; slice: plane x = 1 - eps; corner: plane that cuts off a corner, eps: the piece's share of its element
+ *   basis      copies: one displacement per node and side (this library); sign: shifted sign enrichment (RXFEM section 4.3),
+ *              u = sum N_i u_i + sum psi_i N_i a_i, psi_i = (sgn(x) - sgn(x_i)) / 2. They span the same space: where a node
+ *              has two copies, that on its own side is u_i, the other u_i + a_i or u_i - a_i
+ *   scaling    S of S^T A S: none; diagonal: A_kk^-1/2; block: the inverse factors of the 3x3 diagonal blocks; volume: RXFEM
+ *              Eq. 26 and 27, the share of its node's one-ring on which a function is not 0, to the power -1/2
+ *   extension  on: gx_body_desc.support_below is 1/2, so that the four copies of the corner piece move together, as a point.
+ *              The constraints are those of gx_body_model; in the sign basis what they leave is spanned by u_i and a_i
+ *
+ * Condition numbers go up to 1e41, so eigenvalues are not taken from A. A in the copies' basis is a graded matrix whose factor
+ * L, A = L L^T, has small relative errors; any other basis and scaling is a factor F = S^T B^T L, and one-sided Jacobi rotations
+ * of F's columns give its singular values with small relative errors too [Demmel and Veselic 1992]. With double in place of long
+ * double the same four digits come out. */
+#define GXFEM_IMPLEMENTATION
+#include "../gxfem.h"
+
+#include "csv.h"
+
+#include <math.h>
+
+enum { COPIES = 16, SIZE = 3 * COPIES };
+
+typedef long double real;
+typedef real matrix[SIZE][SIZE];
+
+static const double young = 1e6, poisson = 0.3, density = 1000, dt = 1e-3;
+
+static const double corners[24] = {-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1, -1, -1, 1, 1, -1, 1, -1, 1, 1, 1, 1, 1};
+static const uint32_t tetrahedra[20] = {0, 5, 3, 6, 1, 3, 0, 5, 2, 0, 3, 6, 4, 6, 5, 0, 7, 5, 6, 3};
+
+static void expect(int holds, const char *what)
+{
+    if (holds)
+        return;
+    fprintf(stderr, "conditioning: %s\n", what);
+    exit(1);
+}
+
+/* The copies of a cut cube that follow no others ("free") and its matrix */
+typedef struct cube {
+    gx_body *body;
+    gxs_model model;
+    size_t count;               /* free ones */
+    uint32_t free[COPIES];      /* of a copy of the body: its number among the free ones */
+    uint32_t node[COPIES];      /* of a free one */
+    int own[COPIES];            /* is it on its node's side of the plane */
+    real volume[COPIES];        /* of its cells, m3 */
+    matrix a, factor;
+} cube;
+
+/* ---- the body */
+
+static void cube_create(cube *c, double support_below)
+{
+    gx_body_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.positions = corners;
+    desc.node_count = 8;
+    desc.elements = tetrahedra;
+    desc.element_count = 5;
+    desc.young = young;
+    desc.poisson = poisson;
+    desc.density = density;
+    desc.support_below = support_below;
+    expect(gx_body_create(&desc, &c->body, NULL) == GX_OK, "no body");
+}
+
+/* Cuts by the plane through three points. */
+static void cube_cut(cube *c, const double points[9])
+{
+    static const uint32_t triangle[3] = {0, 1, 2};
+    gx_surface sheet;
+    gx_cut_desc cut;
+    memset(&sheet, 0, sizeof sheet);
+    memset(&cut, 0, sizeof cut);
+    sheet.vertices = points;
+    sheet.vertex_count = 3;
+    sheet.triangles = triangle;
+    sheet.triangle_count = 1;
+    cut.surfaces = &sheet;
+    cut.surface_count = 1;
+    expect(gx_body_cut(c->body, &cut, NULL, NULL) == GX_OK, "the cut failed");
+}
+
+/* The fragment of each copy */
+static void copy_fragments(const gx_view *view, uint32_t fragment[COPIES])
+{
+    size_t cell, k;
+    for (cell = 0; cell < view->cell_count; ++cell)
+        for (k = 0; k < 4; ++k)
+            fragment[view->cell_copies[4 * cell + k]] = view->cell_fragment[cell];
+}
+
+/* The constraint of a copy; NULL: it is free */
+static const gxs_constraint *constraint_of(const cube *c, size_t copy)
+{
+    size_t i;
+    for (i = 0; i < c->model.constraint_count; ++i)
+        if (c->model.constraints[i].copy == copy)
+            return &c->model.constraints[i];
+    return NULL;
+}
+
+/* Numbers the free copies. On its node's side is one whose fragment's centre is there. plane: n, d of n . x = d; NULL: uncut */
+static void cube_number(cube *c, const gx_view *view, const double plane[4])
+{
+    uint32_t fragment[COPIES];
+    size_t i;
+    copy_fragments(view, fragment);
+    for (i = 0; i < view->copy_count; ++i) {
+        const double *x = corners + 3 * view->copy_node[i], *y = view->fragment_center + 3 * fragment[i];
+        double at = plane ? plane[0] * x[0] + plane[1] * x[1] + plane[2] * x[2] - plane[3] : 1;
+        double of = plane ? plane[0] * y[0] + plane[1] * y[1] + plane[2] * y[2] - plane[3] : 1;
+        if (constraint_of(c, i))
+            continue;
+        c->free[i] = (uint32_t)c->count;
+        c->node[c->count] = view->copy_node[i];
+        c->own[c->count++] = (at > 0) == (of > 0);
+    }
+}
+
+/* ---- the matrix */
+
+/* of one pair of corners: M_ij 1 + dt^2 w (lambda g_i g_j^T + mu g_j g_i^T + mu g_i . g_j 1), which is the stable neo-Hookean
+ * material at rest as well */
+static void add_pair(real block[3][3], const gxs_element *e, int i, int j, real g[4][3])
+{
+    static const int packed[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
+    real mu = (real)young / (2 * (1 + (real)poisson)), lambda = 2 * mu * poisson / (1 - 2 * (real)poisson);
+    real scale = (real)dt * dt * e->weight, dot = g[i][0] * g[j][0] + g[i][1] * g[j][1] + g[i][2] * g[j][2];
+    int r, s;
+    for (r = 0; r < 3; ++r)
+        for (s = 0; s < 3; ++s)
+            block[r][s] = scale * (lambda * g[i][r] * g[j][s] + mu * g[j][r] * g[i][s] + (r == s ? mu * dot : 0)) +
+                          (r == s ? (real)e->mass[packed[i][j]] : 0);
+}
+
+/* The free copies that one follows, itself if it is free; returns how many */
+static int masters_of(const cube *c, uint32_t copy, uint32_t master[4], real weight[4])
+{
+    const gxs_constraint *constraint = constraint_of(c, copy);
+    int k, count = 0;
+    if (!constraint) {
+        master[0] = c->free[copy];
+        weight[0] = 1;
+        return 1;
+    }
+    for (k = 0; k < 4; ++k)
+        if (constraint->weight[k] < 0 || constraint->weight[k] > 0) {
+            master[count] = c->free[constraint->master[k]];
+            weight[count++] = constraint->weight[k];
+        }
+    return count;
+}
+
+/* A += C^T block C, C: rows of the two copies' masters */
+static void add_block(cube *c, uint32_t row, uint32_t column, real block[3][3])
+{
+    uint32_t rows[4], columns[4];
+    real left[4], right[4];
+    int i, j, r, s, m = masters_of(c, row, rows, left), n = masters_of(c, column, columns, right);
+    for (i = 0; i < m; ++i)
+        for (j = 0; j < n; ++j)
+            for (r = 0; r < 3; ++r)
+                for (s = 0; s < 3; ++s)
+                    c->a[3 * rows[i] + (uint32_t)r][3 * columns[j] + (uint32_t)s] += left[i] * right[j] * block[r][s];
+}
+
+static void add_element(cube *c, const gxs_element *e)
+{
+    real g[4][3], block[3][3];
+    int i, j, r;
+    for (r = 0; r < 3; ++r) {
+        for (i = 1; i < 4; ++i)
+            g[i][r] = e->gradient[i][r];
+        g[0][r] = -(g[1][r] + g[2][r] + g[3][r]);
+    }
+    for (i = 0; i < 4; ++i) {
+        if (!constraint_of(c, e->copy[i]))
+            c->volume[c->free[e->copy[i]]] += (real)e->weight;
+        for (j = 0; j < 4; ++j) {
+            add_pair(block, e, i, j, g);
+            add_block(c, e->copy[i], e->copy[j], block);
+        }
+    }
+}
+
+/* A = L L^T, pivots by size; rows of L stay where they are, columns come in the order of pivots. Destroys a copy of A. */
+static void cube_factor(cube *c)
+{
+    static matrix a;
+    int done[SIZE] = {0};
+    size_t n = 3 * c->count, k, i, j;
+    memcpy(a, c->a, sizeof a);
+    memset(c->factor, 0, sizeof c->factor);
+    for (k = 0; k < n; ++k) {
+        size_t pivot = n;
+        real root;
+        for (i = 0; i < n; ++i)
+            if (!done[i] && (pivot == n || a[i][i] > a[pivot][pivot]))
+                pivot = i;
+        expect(pivot < n && a[pivot][pivot] > 0, "the matrix is not positive definite in long double");
+        root = sqrtl(a[pivot][pivot]);
+        done[pivot] = 1;
+        c->factor[pivot][k] = root;
+        for (i = 0; i < n; ++i)
+            if (!done[i])
+                c->factor[i][k] = a[i][pivot] / root;
+        for (i = 0; i < n; ++i)
+            for (j = 0; j < n && !done[i]; ++j)
+                if (!done[j])
+                    a[i][j] -= c->factor[i][k] * c->factor[j][k];
+    }
+}
+
+/* ---- bases and scalings: rows of F */
+
+/* The other copy of a copy's node; count if there is none */
+static size_t partner(const cube *c, size_t copy)
+{
+    size_t i;
+    for (i = 0; i < c->count; ++i)
+        if (i != copy && c->node[i] == c->node[copy])
+            return i;
+    return c->count;
+}
+
+/* F = B^T L. Copies: B = 1. Sign: rows of u_i are those of both copies added, rows of a_i those of the copy on the other side (its
+ * sign does not matter). */
+static void change_basis(const cube *c, int sign, matrix f)
+{
+    size_t i, r, k, n = 3 * c->count;
+    memcpy(f, c->factor, sizeof c->factor);
+    for (i = 0; sign && i < c->count; ++i) {
+        size_t other = partner(c, i);
+        for (r = 0; r < 3 && c->own[i] && other < c->count; ++r)
+            for (k = 0; k < n; ++k)
+                f[3 * i + r][k] += c->factor[3 * other + r][k];
+    }
+}
+
+/* Support's share of the one-ring: of a copy, and of an enrichment, its cells'; of a standard function of the sign basis 1, of
+ * a copy whose partner follows others 1 as well. */
+static real volume_share(const cube *c, size_t copy, int sign)
+{
+    size_t other = partner(c, copy);
+    if (other == c->count || (sign && c->own[copy]))
+        return 1;
+    return c->volume[copy] / (c->volume[copy] + c->volume[other]);
+}
+
+/* Divides rows by their norms, which are the roots of A's diagonal. */
+static void scale_diagonal(const cube *c, matrix f)
+{
+    size_t i, k, n = 3 * c->count;
+    for (i = 0; i < n; ++i) {
+        real sum = 0;
+        for (k = 0; k < n; ++k)
+            sum += f[i][k] * f[i][k];
+        sum = sqrtl(sum);
+        for (k = 0; k < n; ++k)
+            f[i][k] /= sum;
+    }
+}
+
+/* Makes the three rows of each block orthonormal [Gram-Schmidt, twice]: F is then that of S = the block's inverse factor. */
+static void scale_block(const cube *c, matrix f)
+{
+    size_t i, j, k, n = 3 * c->count, pass;
+    for (i = 0; i < n; ++i) {
+        real sum = 0;
+        for (pass = 0; pass < 2; ++pass)
+            for (j = i - i % 3; j < i; ++j) {
+                real dot = 0;
+                for (k = 0; k < n; ++k)
+                    dot += f[i][k] * f[j][k];
+                for (k = 0; k < n; ++k)
+                    f[i][k] -= dot * f[j][k];
+            }
+        for (k = 0; k < n; ++k)
+            sum += f[i][k] * f[i][k];
+        sum = sqrtl(sum);
+        for (k = 0; k < n; ++k)
+            f[i][k] /= sum;
+    }
+}
+
+static void scale_volume(const cube *c, int sign, matrix f)
+{
+    size_t i, k, n = 3 * c->count;
+    for (i = 0; i < n; ++i) {
+        real scale = 1 / sqrtl(volume_share(c, i / 3, sign));
+        for (k = 0; k < n; ++k)
+            f[i][k] *= scale;
+    }
+}
+
+/* ---- singular values */
+
+/* Turns columns p and q of f so that they are orthogonal; 0 if they were. */
+static int rotate(matrix f, size_t n, size_t p, size_t q)
+{
+    real a = 0, b = 0, g = 0, zeta, t, cosine, sine;
+    size_t i;
+    for (i = 0; i < n; ++i) {
+        a += f[i][p] * f[i][p];
+        b += f[i][q] * f[i][q];
+        g += f[i][p] * f[i][q];
+    }
+    if (fabsl(g) <= 1e-18L * sqrtl(a) * sqrtl(b))
+        return 0;
+    zeta = (b - a) / (2 * g);
+    t = (zeta > 0 ? 1 : -1) / (fabsl(zeta) + sqrtl(1 + zeta * zeta));
+    cosine = 1 / sqrtl(1 + t * t);
+    sine = cosine * t;
+    for (i = 0; i < n; ++i) {
+        real x = f[i][p], y = f[i][q];
+        f[i][p] = cosine * x - sine * y;
+        f[i][q] = sine * x + cosine * y;
+    }
+    return 1;
+}
+
+/* of F F^T: the square of F's largest singular value over the smallest */
+static real condition(matrix f, size_t n)
+{
+    real least = 0, largest = 0;
+    size_t p, q, i;
+    int turned = 1, sweep;
+    for (sweep = 0; sweep < 100 && turned; ++sweep)
+        for (turned = 0, p = 0; p < n; ++p)
+            for (q = p + 1; q < n; ++q)
+                turned |= rotate(f, n, p, q);
+    expect(!turned, "Jacobi's sweeps do not end");
+    for (p = 0; p < n; ++p) {
+        real sum = 0;
+        for (i = 0; i < n; ++i)
+            sum += f[i][p] * f[i][p];
+        largest = sum > largest ? sum : largest;
+        least = p == 0 || sum < least ? sum : least;
+    }
+    return largest / least;
+}
+
+/* ---- cases */
+
+static void rows(const cube *c, const char *name, double eps, int extended)
+{
+    static const char *const scaling[] = {"none", "diagonal", "block", "volume"};
+    static matrix f;
+    int sign, k;
+    for (sign = 0; sign < 2; ++sign)
+        for (k = 0; k < 4; ++k) {
+            change_basis(c, sign, f);
+            if (k == 1)
+                scale_diagonal(c, f);
+            else if (k == 2)
+                scale_block(c, f);
+            else if (k == 3)
+                scale_volume(c, sign, f);
+            csv_row("%s,%.6g,%s,%s,%s,%.6Le", name, eps, sign ? "sign" : "copies", scaling[k], extended ? "on" : "off",
+                    condition(f, 3 * c->count));
+        }
+}
+
+/* points and plane: NULL for the uncut cube */
+static void run(const char *name, double eps, const double *points, const double *plane, int extended)
+{
+    static cube c;
+    gx_view view;
+    size_t e;
+    memset(&c, 0, sizeof c);
+    cube_create(&c, extended ? 0.5 : 0);
+    if (points)
+        cube_cut(&c, points);
+    expect(gx_body_view(c.body, &view) == GX_OK && gx_body_model(c.body, &c.model) == GX_OK, "no model");
+    expect(view.copy_count <= COPIES, "more copies than there is room for");
+    cube_number(&c, &view, plane);
+    for (e = 0; e < c.model.element_count; ++e)
+        add_element(&c, &c.model.elements[e]);
+    cube_factor(&c);
+    rows(&c, name, eps, extended);
+    gx_body_destroy(c.body);
+}
+
+static void slice(double eps)
+{
+    double x = 1 - eps, points[9] = {0, -9, -9, 0, 9, -9, 0, 0, 9}, plane[4] = {1, 0, 0, 0};
+    points[0] = points[3] = points[6] = plane[3] = x;
+    run("slice", 1 - x, points, plane, 0);
+}
+
+/* The corner (1, -1, -1), which is in one element only: the plane meets its three edges, of length 2, at the share eps^(1/3). */
+static void corner_piece(double eps)
+{
+    double cut = 2 * cbrt(eps), points[9], plane[4] = {-1, 1, 1, 0};
+    size_t i, k;
+    for (i = 0; i < 3; ++i)
+        for (k = 0; k < 3; ++k) /* from the point on edge i along the plane's triangle to far outside */
+            points[3 * i + k] = (k == 0 ? 1 : -1) + (k == 0 ? -1 : 1) * ((k == i ? cut : 0) + 8 * (3.0 * (k == i) - 1));
+    plane[3] = -1 - 1 - 1 + cut;
+    run("corner", eps, points, plane, 0);
+    run("corner", eps, points, plane, 1);
+}
+
+int main(int argc, char **argv)
+{
+    static const double wide[] = {1, 0.75, 0.5, 0.25};
+    size_t i;
+    csv_open(argc, argv, "case,eps,basis,scaling,extension,condition");
+    run("uncut", 0, NULL, NULL, 0);
+    for (i = 0; i < sizeof wide / sizeof wide[0]; ++i)
+        slice(wide[i]);
+    for (i = 1; i <= 12; ++i)
+        slice(pow(10, -(double)i));
+    for (i = 1; i <= 12; ++i)
+        corner_piece(pow(10, -(double)i));
+    return csv_close();
+}
