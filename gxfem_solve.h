@@ -380,6 +380,9 @@ extern "C" {
 /* Sufficient decrease in the line search, share of what the slope promises [Nocedal and Wright, Numerical Optimization]. */
 #define GXSP_ARMIJO 1e-4
 
+/* Newton ends after so many iterations in a row without a gain that doubles can tell. */
+#define GXSP_STALLS 4
+
 /* Line search: at worst each trial halves the step; after 60 nothing of it is left. */
 #define GXSP_TRIALS 60
 
@@ -600,7 +603,7 @@ typedef struct gxsp_general {
 
 /* Entries of the assembled matrix to which a block's corners i <= j add, in the order of gxs_element.mass: row the lower copy */
 typedef struct gxsp_fine {
-    uint32_t entry[10][GXSP_LANES];
+    uint32_t entry[10][GXSP_LANES]; /* GXSP_NONE: a corner follows others */
 } gxsp_fine;
 
 typedef struct gxsp_chunk {
@@ -677,7 +680,8 @@ typedef struct gxsp_material {
 typedef struct gxsp_piece {
     double sum[3];      /* over its copies, of the pass under way */
     double mass;        /* kg */
-    uint64_t forces;    /* hash of the nodal forces of the step before; 0: not known */
+    uint64_t forces[2]; /* hash of its nodal forces: of the step before, of this one */
+    int sprung[2];      /* a spring acts on it: in the step before, in this one */
     int woken, tired;   /* something touches it in this step; nothing does, and it has been slow for long */
     uint32_t state;     /* GXSP_HELD ... GXSP_ASLEEP; 0: a translation of it meets no stiffness */
 } gxsp_piece;
@@ -692,15 +696,20 @@ typedef struct gxsp_follower {
 typedef struct gxsp_term {
     uint32_t copy[4];
     float weight[4], hessian[6];
+    int assembled; /* the assembled matrix has it */
 } gxsp_term;
+
+/* What acts on all pieces: a change wakes those that sleep */
+typedef struct gxsp_scene {
+    double gravity[3];
+    uint64_t planes, forces, springs; /* hashes; 1: none */
+} gxsp_scene;
 
 /* What the solver keeps from model to model */
 typedef struct gxsp_lasting {
     gxsp_term *term;        /* of the present linearisation */
     size_t count, capacity;
-    double gravity[3];      /* of the step before: changes of these wake what sleeps */
-    uint64_t planes;        /* hash */
-    int forces;             /* there were nodal forces */
+    gxsp_scene scene;       /* of the step before */
 } gxsp_lasting;
 
 /* A model in the solver's form, with all that a step works with. n: copy_count. Vectors are n x 3 unless said. */
@@ -733,8 +742,9 @@ typedef struct gxsp_system {
     uint32_t piece_count, loose_count; /* loose: of state 0 */
     gxsp_follower *followers;
     uint32_t follower_count;
+    uint32_t *follower;     /* n: index of the copy's entry in followers; GXSP_NONE: it follows none */
     gxsp_lasting *lasting;  /* of the solver */
-    float *volume;          /* n: inverse volume of the support, largest 1; of GXS_VOLUME_RATIO only */
+    float *volume;          /* n: inverse volume of the support, scaled; of GXS_VOLUME_RATIO only */
     double *base;           /* displacement at the start of the step */
     double *target;         /* where inertia (and mass damping) alone lead; of backward Euler base + dt v */
     double *load;           /* gravity and nodal forces, N */
@@ -757,6 +767,7 @@ typedef struct gxsp_system {
     double coarse_rate;     /* for which the coarse matrices were made; below 0: never made */
     int coarse_fresh;       /* made for this solve */
     int coarse_worn;        /* to be made anew */
+    double term_stiffness, coarse_stiffness; /* sums of springs' and contact's Hessians: now, when coarse matrices were made */
     gxsp_fine *fine;        /* block_count: places in the assembled matrix, levels[0]; NULL: matrix-free */
     uint32_t *transpose;    /* by entry of levels[0]: the entry that mirrors it */
     uint32_t usual_iterations; /* of the solve with fresh ones */
@@ -778,10 +789,13 @@ typedef struct gxsp_problem {
     double cg_tolerance;
     double energies[3];     /* at current: elastic with springs and contact, kinetic, size of their terms; J */
     double start;           /* on the clock */
+    gxsp_scene scene;
     int exact;              /* the linearisation is not projected */
     int indefinite;         /* conjugate gradients met negative curvature */
     int projected_only;     /* the exact one has proved indefinite in this step */
     int shortened;          /* the line search did not take the whole step */
+    int stalls;             /* iterations in a row that noise ended and that gained next to nothing */
+    double least;           /* residual so far */
     int noise;              /* the line search ended where energies differ by rounding only */
     int collapsed;          /* the linearisation found elements collapsed to a point */
     gxs_step_report report;
@@ -1633,6 +1647,7 @@ typedef struct gxsp_pass {
     const double *from;         /* x 3: displacement, m */
     double *sum;                /* x 3: forces, N */
     const gxsp_material *materials;
+    const double *turned;       /* x 3: stresses are turned as elements are from here on to there; NULL: they are not */
     int inertia;                /* forces and energy of the mass too */
     int nudge;                  /* forces of collapsed elements as if they were not quite */
     int exact;                  /* Hessians are not projected */
@@ -1689,6 +1704,33 @@ static void gxsp_block_store(const gxsp_rest *GXSP_RESTRICT rest, gxsp_lanes *GX
         }
 }
 
+/* P of elements with displacement gradients from, turned by what turns their rotations into those at to; left alone where that is
+ * more than a right angle: such an element is tangled. */
+static void gxsp_turn_stress(gxsp_lanes *from, gxsp_lanes *to, gxsp_lanes *p)
+{
+    gxsp_svd first, last;
+    int r, c, k, l;
+    gxsp_decompose(from, &first);
+    gxsp_decompose(to, &last);
+    for (l = 0; l < GXSP_LANES; ++l) {
+        double a[9], b[9], turn[9], stress[9];
+        for (r = 0; r < 3; ++r)
+            for (c = 0; c < 3; ++c) {
+                a[3 * r + c] = b[3 * r + c] = 0;
+                for (k = 0; k < 3; ++k) {
+                    a[3 * r + c] += (double)(first.u[3 * r + k][l] * first.v[3 * c + k][l]);
+                    b[3 * r + c] += (double)(last.u[3 * r + k][l] * last.v[3 * c + k][l]);
+                }
+            }
+        for (k = 0; k < 9; ++k) {
+            turn[k] = b[k / 3 * 3] * a[k % 3 * 3] + b[k / 3 * 3 + 1] * a[k % 3 * 3 + 1] + b[k / 3 * 3 + 2] * a[k % 3 * 3 + 2];
+            stress[k] = p[k][l];
+        }
+        for (k = 0; k < 9 && turn[0] + turn[4] + turn[8] > 1; ++k)
+            p[k][l] = turn[k / 3 * 3] * stress[k % 3] + turn[k / 3 * 3 + 1] * stress[3 + k % 3] + turn[k / 3 * 3 + 2] * stress[6 + k % 3];
+    }
+}
+
 /* Energies of a chunk at pass->from, and elastic + inertial forces. */
 static void gxsp_task_state(void *context, size_t index)
 {
@@ -1706,14 +1748,20 @@ static void gxsp_task_state(void *context, size_t index)
         return;
     for (b = 0; b < chunk->block_count; ++b) {
         const gxsp_rest *rest = &system->rest[chunk->first_block + b];
-        gxsp_lanes x[12], forces[12], energy;
+        gxsp_lanes x[12], forces[12], ahead[9], energy;
         gxsp_state s;
         gxsp_block_load(system, chunk, rest, pass->from, x);
         gxsp_block_parameters(pass->materials, rest, &s);
         gxsp_block_gradient(rest, x, s.g);
+        if (pass->turned) {
+            gxsp_block_load(system, chunk, rest, pass->turned, x);
+            gxsp_block_gradient(rest, x, ahead);
+        }
         if (pass->nudge && chunk->kind != GXS_LINEAR && chunk->kind != GXS_CUSTOM)
             gxsp_nudge(s.g);
         gxsp_material_state(chunk->kind, &s);
+        if (pass->turned && chunk->kind != GXS_LINEAR)
+            gxsp_turn_stress(s.g, ahead, s.p);
         gxsp_block_force(rest, s.p, forces);
         for (l = 0; l < GXSP_LANES; ++l) {
             elastic += rest->weight[l] * s.energy[l];
@@ -1753,8 +1801,10 @@ static void gxsp_task_sum(void *context, size_t index)
     }
 }
 
-/* Energies of the elements at from (elastic, kinetic, size of terms), and elastic + inertial forces, 0 on what sleeps. */
-static void gxsp_evaluate_elements(gxsp_system *system, double rate, const double *from, int nudge, double *force, double *energies)
+/* Energies of the elements at from (elastic, kinetic, size of terms), and elastic + inertial forces, 0 on what sleeps. turned: see
+ * gxsp_pass */
+static void gxsp_evaluate_elements(gxsp_system *system, double rate, const double *from, const double *turned, int nudge, double *force,
+                                   double *energies)
 {
     gxsp_pass pass;
     uint32_t c;
@@ -1766,6 +1816,7 @@ static void gxsp_evaluate_elements(gxsp_system *system, double rate, const doubl
     pass.from = from;
     pass.sum = force;
     pass.inertia = rate > 0 && !system->lumped_mass;
+    pass.turned = turned;
     pass.nudge = nudge;
     gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_state, &pass);
     gxsp_parallel(system->jobs, system->range_count, gxsp_task_sum, &pass);
@@ -2109,6 +2160,12 @@ static size_t gxsp_find_followers(gxsp_system *system, const gxs_model *model)
             if (fabs(model->constraints[i].weight[k]) > 0 && system->still[model->constraints[i].master[k]])
                 return i;
     memset(system->still, 0, system->n);
+    system->follower = (uint32_t *)gxsp_take(&system->pool, system->n, sizeof(uint32_t));
+    if (system->pool.failed)
+        return SIZE_MAX;
+    memset(system->follower, 0xff, system->n * sizeof *system->follower);
+    for (i = 0; i < system->follower_count; ++i)
+        system->follower[system->followers[i].copy] = (uint32_t)i;
     return SIZE_MAX;
 }
 
@@ -2772,39 +2829,86 @@ static uint32_t gxsp_find_entry(const gxsp_level *level, uint32_t i, uint32_t j)
     return low;
 }
 
-/* The assembled matrix: copies are neighbours where they share an element; every copy is its own. */
+/* The copies that an element's corner moves, with their weights: its own, or its masters. Returns how many. */
+static int gxsp_corner_masters(const gxsp_system *system, uint32_t copy, uint32_t *masters, float *weights)
+{
+    const gxsp_follower *follower;
+    int k, count = 0;
+    if (system->follower[copy] == GXSP_NONE) {
+        masters[0] = copy;
+        weights[0] = 1;
+        return 1;
+    }
+    follower = &system->followers[system->follower[copy]];
+    for (k = 0; k < 4; ++k)
+        if (fabs(follower->weight[k]) > 0) {
+            masters[count] = follower->master[k];
+            weights[count++] = (float)follower->weight[k];
+        }
+    return count;
+}
+
+static int gxsp_element_follows(const gxsp_system *system, const uint32_t *copies)
+{
+    return system->follower[copies[0]] != GXSP_NONE || system->follower[copies[1]] != GXSP_NONE ||
+           system->follower[copies[2]] != GXSP_NONE || system->follower[copies[3]] != GXSP_NONE;
+}
+
+/* Rows and columns, the row the lower, that an element adds to. Returns how many. */
+static uint32_t gxsp_element_pairs(const gxsp_system *system, const uint32_t *copies, uint32_t (*list)[2])
+{
+    uint32_t all[16], count = 0, listed = 0, i, j;
+    float weights[4];
+    int k;
+    for (k = 0; k < 4; ++k)
+        count += (uint32_t)gxsp_corner_masters(system, copies[k], all + count, weights);
+    for (i = 0; i < count; ++i)
+        for (j = i; j < count; ++j, ++listed) {
+            list[listed][0] = all[i] < all[j] ? all[i] : all[j];
+            list[listed][1] = all[i] < all[j] ? all[j] : all[i];
+        }
+    return listed;
+}
+
+/* The assembled matrix of what followers leave free: copies are neighbours where they share an element; every copy is its own. */
 static void gxsp_fine_make(gxsp_system *system, gxsp_pool *scratch)
 {
     gxsp_level *fine = &system->levels[0];
-    const size_t lanes = system->block_count * GXSP_LANES;
-    uint32_t (*list)[2] = (uint32_t(*)[2])gxsp_take(scratch, 10 * lanes + system->n, sizeof *list), c, b, i, k, count = 0;
-    int l, pair;
+    uint32_t (*list)[2] = NULL, c, b, i, k, count, room = 0;
+    int l, pair, pass;
     system->fine = (gxsp_fine *)gxsp_take(&system->pool, system->block_count, sizeof(gxsp_fine));
     fine->start = (uint32_t *)gxsp_take(&system->pool, system->n + 1, sizeof(uint32_t));
     fine->inverse = (float *)gxsp_take(&system->pool, 12 * system->n, sizeof(float));
-    if (scratch->failed || system->pool.failed)
+    if (system->pool.failed)
         return;
-    for (i = 0; i < fine->n; ++i, ++count)
-        list[count][0] = list[count][1] = i;
-    for (c = 0; c < system->chunk_count; ++c)
-        for (b = 0; b < system->chunks[c].block_count; ++b)
-            for (l = 0; l < GXSP_LANES; ++l) {
-                uint32_t copies[4];
-                gxsp_lane_copies(system, &system->chunks[c], b, l, copies);
-                for (pair = 0; pair < 10; ++pair, ++count) {
-                    const uint32_t p = copies[gxsp_corners[pair][0]], q = copies[gxsp_corners[pair][1]];
-                    list[count][0] = p < q ? p : q;
-                    list[count][1] = p < q ? q : p;
+    for (pass = 0; pass < 2; ++pass) { /* count, then list */
+        if (pass == 1 && !(list = (uint32_t(*)[2])gxsp_take(scratch, room, sizeof *list)))
+            return;
+        for (i = 0, count = 0; i < fine->n; ++i, ++count)
+            if (list)
+                list[count][0] = list[count][1] = i;
+        for (c = 0; c < system->chunk_count; ++c)
+            for (b = 0; b < system->chunks[c].block_count; ++b)
+                for (l = 0; l < GXSP_LANES; ++l) {
+                    uint32_t copies[4], pairs[136][2];
+                    gxsp_lane_copies(system, &system->chunks[c], b, l, copies);
+                    count += gxsp_element_pairs(system, copies, list ? list + count : pairs);
                 }
-            }
+        room = count;
+    }
     gxsp_rows_make(&system->pool, scratch, fine, list, count);
     system->transpose = (uint32_t *)gxsp_take(&system->pool, scratch->failed ? 1 : fine->start[fine->n], sizeof(uint32_t));
     if (scratch->failed || system->pool.failed)
         return;
-    for (count = 0; count < lanes; ++count)
-        for (pair = 0; pair < 10; ++pair) {
-            const uint32_t *ends = list[fine->n + 10 * count + (uint32_t)pair];
-            system->fine[count / GXSP_LANES].entry[pair][count % GXSP_LANES] = gxsp_find_entry(fine, ends[0], ends[1]);
+    for (c = 0; c < system->chunk_count; ++c)
+        for (i = 0; i < system->chunks[c].block_count * GXSP_LANES; ++i) {
+            uint32_t copies[4];
+            gxsp_lane_copies(system, &system->chunks[c], i / GXSP_LANES, (int)(i % GXSP_LANES), copies);
+            for (pair = 0; pair < 10; ++pair) {
+                const uint32_t p = copies[gxsp_corners[pair][0]], q = copies[gxsp_corners[pair][1]];
+                system->fine[system->chunks[c].first_block + i / GXSP_LANES].entry[pair][i % GXSP_LANES] =
+                    gxsp_element_follows(system, copies) ? GXSP_NONE : gxsp_find_entry(fine, p < q ? p : q, p < q ? q : p);
+            }
         }
     for (i = 0; i < fine->n; ++i)
         for (k = fine->start[i]; k < fine->start[i + 1]; ++k)
@@ -2829,6 +2933,9 @@ static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch)
         for (e = system->edges.nodes; e < system->edges.count; ++e)
             gxsp_join_nodes(&transfer, copies[system->edges.ends[e] >> 16], copies[system->edges.ends[e] & 0xffff]);
     }
+    for (e = 0; e < 4 * system->follower_count; ++e)
+        if (fabs(system->followers[e / 4].weight[e % 4]) > 0)
+            gxsp_join_nodes(&transfer, system->followers[e / 4].copy, system->followers[e / 4].master[e % 4]);
     count = gxsp_transfer_end(fine, &transfer);
     if (count == 0)
         return;
@@ -2866,7 +2973,7 @@ static double gxsp_choose_scale(const gxs_model *model)
     return ldexp(1, GXSP_STIFFNESS - exponent);
 }
 
-/* Inverse volumes of supports, the largest volume 1 */
+/* Inverse volumes of supports, the least of the size of a whole copy's inverse stiffness */
 static void gxsp_find_volumes(gxsp_system *system, const gxs_model *model)
 {
     double *volume = system->trial, largest = 0; /* borrowed */
@@ -2881,7 +2988,7 @@ static void gxsp_find_volumes(gxsp_system *system, const gxs_model *model)
     for (i = 0; i < system->n; ++i)
         largest = volume[i] > largest ? volume[i] : largest;
     for (i = 0; i < system->n; ++i) {
-        system->volume[i] = volume[i] > 1e-30 * largest ? (float)(largest / volume[i]) : 0;
+        system->volume[i] = volume[i] > 1e-20 * largest ? (float)ldexp(largest / volume[i], -GXSP_STIFFNESS) : 0;
         volume[i] = 0;
     }
 }
@@ -3154,11 +3261,11 @@ static void gxsp_add_terms(const gxsp_lasting *lasting, gxsp_vector4 *x, gxsp_ve
     for (t = 0; t < lasting->count; ++t) {
         const gxsp_term *term = &lasting->term[t];
         float at[3] = {0, 0, 0}, force[3];
-        for (k = 0; k < 4; ++k)
+        for (k = 0; k < 4 && !term->assembled; ++k)
             for (c = 0; c < 3; ++c)
                 at[c] += term->weight[k] * x[term->copy[k]][c];
         gxsp_apply_packed(term->hessian, at, force);
-        for (k = 0; k < 4; ++k)
+        for (k = 0; k < 4 && !term->assembled; ++k)
             for (c = 0; c < 3; ++c)
                 y[term->copy[k]][c] += term->weight[k] * force[c];
     }
@@ -3706,57 +3813,140 @@ static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term)
         }
 }
 
-/* The assembled matrix from the last linearisation: each element's ten blocks, then what mirrors them */
+/* Adds a corner pair's block, on and above the diagonal, where corners follow others. same: both are one corner */
+static void gxsp_assemble_following(gxsp_system *system, uint32_t p, uint32_t q, int same, const float *block)
+{
+    gxsp_level *fine = &system->levels[0];
+    uint32_t a[4], b[4];
+    float wa[4], wb[4], turned[12];
+    const int as = gxsp_corner_masters(system, p, a, wa), bs = gxsp_corner_masters(system, q, b, wb);
+    int i, j;
+    gxsp_transpose_block(block, turned);
+    for (i = 0; i < as; ++i)
+        for (j = 0; j < bs; ++j) {
+            const uint32_t low = a[i] < b[j] ? a[i] : b[j], high = a[i] < b[j] ? b[j] : a[i];
+            float *to = fine->block + 12 * (size_t)gxsp_find_entry(fine, low, high);
+            if (same && a[i] > b[j]) /* its mirror comes by itself */
+                continue;
+            gxsp_add_scaled(wa[i] * wb[j], a[i] <= b[j] ? block : turned, to);
+            if (a[i] == b[j] && !same)
+                gxsp_add_scaled(wa[i] * wb[j], turned, to);
+        }
+}
+
+/* A block's elements, of which each lane's corner pair adds to one entry, or to those of its masters */
+static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, double rate)
+{
+    gxsp_level *fine = &system->levels[0];
+    const gxsp_rest *rest = &system->rest[chunk->first_block + b];
+    const gxsp_tangent *tangent = &system->tangents[chunk->first_block + b];
+    const gxsp_mass *general = gxsp_block_masses(system, chunk, b);
+    gxsp_singles gamma[4][3];
+    int pair, l;
+    for (l = 0; l < 4; ++l)
+        gxsp_block_corner(tangent, l, gamma[l]);
+    for (pair = 0; pair < 10; ++pair) {
+        const int p = gxsp_corners[pair][0], q = gxsp_corners[pair][1];
+        gxsp_singles block[9];
+        gxsp_block_couple(tangent, gxsp_block_general(system, chunk, b), gamma[p], gamma[q], block);
+        for (l = 0; l < GXSP_LANES; ++l) {
+            const uint32_t *copies = system->nodes + chunk->first_node, entry = system->fine[chunk->first_block + b].entry[pair][l];
+            const uint32_t i = copies[rest->node[p][l]], j = copies[rest->node[q][l]];
+            const float mass = tangent->mass[l] * (p == q ? 2.0f : 1.0f) + (general ? (float)(rate * general->entry[pair][l]) : 0);
+            float own[12] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, *to = entry == GXSP_NONE ? own : fine->block + 12 * (size_t)entry;
+            gxsp_add_lane(block, l, entry != GXSP_NONE && i > j, mass, to);
+            if (entry == GXSP_NONE)
+                gxsp_assemble_following(system, i, j, p == q, own);
+            else if (p != q && i == j) /* two corners that follow one copy */
+                gxsp_add_lane(block, l, 1, mass, to);
+        }
+    }
+}
+
+/* Adds a spring or contact, on and above the diagonal, if the matrix has entries for all of it. Has it? */
+static int gxsp_assemble_term(gxsp_system *system, const gxsp_term *term)
+{
+    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    gxsp_level *fine = &system->levels[0];
+    uint32_t a[16], i, j, count = 0, entry;
+    float w[16];
+    int k, adds;
+    for (k = 0; k < 4; ++k)
+        if (term->weight[k] * term->weight[k] > 0) {
+            const uint32_t first = count;
+            for (count += (uint32_t)gxsp_corner_masters(system, term->copy[k], a + count, w + count), i = first; i < count; ++i)
+                w[i] *= term->weight[k];
+        }
+    for (adds = 0; adds < 2; ++adds)
+        for (i = 0; i < count; ++i)
+            for (j = 0; j < count; ++j) {
+                if (a[i] > a[j])
+                    continue;
+                entry = gxsp_find_entry(fine, a[i], a[j]);
+                if (fine->column[entry] != a[j])
+                    return 0;
+                for (k = 0; k < 9 && adds; ++k)
+                    fine->block[12 * (size_t)entry + (size_t)(k / 3 * 4 + k % 3)] += w[i] * w[j] * term->hessian[full[k]];
+            }
+    return 1;
+}
+
+/* The assembled matrix from the last linearisation: on and above the diagonal by elements, then what mirrors it */
 static void gxsp_assemble(gxsp_system *system, double rate)
 {
     gxsp_level *fine = &system->levels[0];
     uint32_t c, b, i, k;
-    int pair, l;
+    size_t t;
     memset(fine->block, 0, 12 * (size_t)fine->start[fine->n] * sizeof(float));
     for (c = 0; c < system->chunk_count; ++c)
-        for (b = 0; b < system->chunks[c].block_count && !system->chunk_still[c]; ++b) {
-            const gxsp_chunk *chunk = &system->chunks[c];
-            const gxsp_rest *rest = &system->rest[chunk->first_block + b];
-            const gxsp_tangent *tangent = &system->tangents[chunk->first_block + b];
-            const gxsp_mass *general = gxsp_block_masses(system, chunk, b);
-            gxsp_singles gamma[4][3];
-            for (k = 0; k < 4; ++k)
-                gxsp_block_corner(tangent, (int)k, gamma[k]);
-            for (pair = 0; pair < 10; ++pair) {
-                const int p = gxsp_corners[pair][0], q = gxsp_corners[pair][1];
-                gxsp_singles block[9];
-                gxsp_block_couple(tangent, gxsp_block_general(system, chunk, b), gamma[p], gamma[q], block);
-                for (l = 0; l < GXSP_LANES; ++l) {
-                    const uint32_t *nodes = system->nodes + chunk->first_node;
-                    const int turned = nodes[rest->node[p][l]] > nodes[rest->node[q][l]];
-                    float mass = tangent->mass[l] * (p == q ? 2.0f : 1.0f) + (general ? (float)(rate * general->entry[pair][l]) : 0);
-                    float *to = fine->block + 12 * (size_t)system->fine[chunk->first_block + b].entry[pair][l];
-                    gxsp_add_lane(block, l, turned, mass, to);
-                    if (p != q && rest->node[p][l] == rest->node[q][l]) /* two corners that follow one copy */
-                        gxsp_add_lane(block, l, 1, mass, to);
+        for (b = 0; b < system->chunks[c].block_count && !system->chunk_still[c]; ++b)
+            gxsp_assemble_block(system, &system->chunks[c], b, rate);
+    for (i = 0; i < fine->n && system->lumped_mass; ++i) {
+        uint32_t a[4], p, q;
+        float w[4];
+        const uint32_t count = (uint32_t)gxsp_corner_masters(system, i, a, w);
+        for (p = 0; p < count; ++p)
+            for (q = 0; q < count; ++q)
+                if (a[p] <= a[q]) {
+                    float *to = fine->block + 12 * (size_t)gxsp_find_entry(fine, a[p], a[q]);
+                    const float mass = w[p] * w[q] * (float)(rate * system->lumped[i]);
+                    to[0] += mass, to[5] += mass, to[10] += mass;
                 }
-            }
-        }
+    }
+    for (t = 0; t < system->lasting->count; ++t)
+        system->lasting->term[t].assembled = gxsp_assemble_term(system, &system->lasting->term[t]);
     for (i = 0; i < fine->n; ++i)
-        for (k = fine->start[i]; fine->column[k] <= i; ++k) {
-            float *to = fine->block + 12 * (size_t)k, mass = (float)(rate * system->lumped[i]);
-            if (fine->column[k] < i)
-                gxsp_transpose_block(fine->block + 12 * (size_t)system->transpose[k], to);
-            if (fine->column[k] == i && system->lumped_mass)
-                to[0] += mass, to[5] += mass, to[10] += mass;
-            if (k + 1 == fine->start[i + 1])
-                break;
-        }
+        for (k = fine->start[i]; fine->column[k] < i; ++k)
+            gxsp_transpose_block(fine->block + 12 * (size_t)system->transpose[k], fine->block + 12 * (size_t)k);
 }
 
-/* Inverse diagonal blocks of the assembled matrix, which block Gauss-Seidel reads as columns of four */
-static void gxsp_spread_diagonal(gxsp_system *system)
+/* Inverse diagonal blocks of the assembled matrix with springs and contact, for block Gauss-Seidel. 0 where nothing moves. */
+static void gxsp_invert_fine(gxsp_system *system)
 {
-    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    size_t i, k;
-    for (i = 0; i < system->n; ++i)
-        for (k = 0; k < 9; ++k)
-            system->levels[0].inverse[12 * i + k / 3 * 4 + k % 3] = system->diagonal[6 * i + (size_t)full[k]];
+    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5}, packed[6] = {0, 4, 8, 5, 9, 10};
+    gxsp_level *fine = &system->levels[0];
+    uint32_t i, k;
+    size_t t;
+    int m;
+    for (i = 0; i < fine->n; ++i)
+        memcpy(fine->inverse + 12 * (size_t)i, fine->block + 12 * (size_t)gxsp_find_entry(fine, i, i), 12 * sizeof(float));
+    for (t = 0; t < system->lasting->count; ++t)
+        for (k = 0; k < 4 && !system->lasting->term[t].assembled; ++k) {
+            const gxsp_term *term = &system->lasting->term[t];
+            for (m = 0; m < 9; ++m)
+                fine->inverse[12 * (size_t)term->copy[k] + (size_t)(m / 3 * 4 + m % 3)] += term->weight[k] * term->weight[k] * term->hessian[full[m]];
+        }
+    for (i = 0; i < fine->n; ++i) {
+        float *inverse = fine->inverse + 12 * (size_t)i;
+        double sum[6];
+        for (m = 0; m < 6; ++m)
+            sum[m] = system->still[i] || system->follower[i] != GXSP_NONE ? 0 : (double)inverse[packed[m]];
+        if (sum[0] + sum[3] + sum[5] < 1e-28)
+            memset(sum, 0, sizeof sum);
+        gxsp_invert3(sum);
+        for (m = 0; m < 9; ++m)
+            inverse[m / 3 * 4 + m % 3] = (float)sum[full[m]];
+    }
 }
 
 /* The matrices of all coarse levels from the last linearisation. 0 if a number overflowed. */
@@ -3773,7 +3963,8 @@ static int gxsp_coarse_numbers(gxsp_system *system, double rate)
             gxsp_coarse_lumped(system, system->scale * rate);
     }
     for (t = 0; t < system->lasting->count; ++t)
-        gxsp_coarse_term(system, &system->lasting->term[t]);
+        if (!system->lasting->term[t].assembled)
+            gxsp_coarse_term(system, &system->lasting->term[t]);
     for (at = 1; at < system->level_count; ++at) {
         gxsp_level *level = &system->levels[at];
         if (!gxsp_invert_diagonal(level))
@@ -3820,7 +4011,9 @@ static void gxsp_find_omega(gxsp_system *system, double rate)
                 x[i][c] *= scale;
     }
     largest = largest > 0 ? 1.05 * largest : 4;
-    system->omega = (float)(4.0 / 3 / (largest < 4 ? largest : 4)); /* 4: no element's own D^-1 K exceeds it */
+    if (largest > 4 && system->follower_count == 0) /* no element's own D^-1 K exceeds 4 */
+        largest = 4;
+    system->omega = (float)(4.0 / 3 / largest);
 }
 
 /* >>pieces */
@@ -3889,14 +4082,21 @@ static void gxsp_balance_momentum(gxsp_system *system, const double *load, doubl
             x[3 * i + r] += system->pieces[system->piece[i]].sum[r] / rate;
 }
 
-/* Pieces that springs and contact act on, of which terms tells, are not loose. */
+/* Forgets what springs and contact have acted on. */
+static void gxsp_untouch_pieces(gxsp_system *system)
+{
+    uint32_t p;
+    for (p = 0; p < system->piece_count; ++p)
+        system->pieces[p].state &= ~GXSP_TOUCHED;
+}
+
+/* Pieces that springs and contact act on, of which terms tells, are not loose, nor are they again in this run of Newton's method: their
+ * momentum is no longer that of the start. */
 static void gxsp_touch_pieces(gxsp_system *system)
 {
     size_t t;
     uint32_t p;
     int k;
-    for (p = 0; p < system->piece_count; ++p)
-        system->pieces[p].state &= ~GXSP_TOUCHED;
     for (t = 0; t < system->lasting->count; ++t)
         for (k = 0; k < 4; ++k)
             if (system->lasting->term[t].weight[k] * system->lasting->term[t].weight[k] > 0)
@@ -3910,6 +4110,7 @@ static void gxsp_touch_pieces(gxsp_system *system)
 
 /* What acts on one point */
 typedef struct gxsp_pull {
+    double position[3]; /* of the point, m */
     double energy;      /* J */
     double force[3];    /* on the point, N */
     double hessian[6];  /* of the energy, N/m, packed */
@@ -3934,19 +4135,20 @@ static int gxsp_point_moves(const gxsp_system *system, const gxs_point *point)
     return 0;
 }
 
-static void gxsp_spring_pull(const gxs_spring *spring, const double *x, gxsp_pull *pull)
+static void gxsp_spring_pull(const gxs_spring *spring, const double *displacement, gxsp_pull *pull)
 {
     int c;
     memset(pull, 0, sizeof *pull);
+    gxsp_point_position(&spring->point, displacement, pull->position);
     for (c = 0; c < 3; ++c) {
-        const double gap = spring->target[c] - x[c];
+        const double gap = spring->target[c] - pull->position[c];
         pull->energy += 0.5 * spring->stiffness * gap * gap;
         pull->force[c] = spring->stiffness * gap;
         pull->hessian[gxsp_packed3(c, c)] = spring->stiffness;
     }
 }
 
-/* Adds c (a 1 + b n n^T) */
+/* Adds a 1 + b n n^T */
 static void gxsp_add_dyad(double a, double b, const double *n, double *hessian)
 {
     int i, j;
@@ -3956,32 +4158,31 @@ static void gxsp_add_dyad(double a, double b, const double *n, double *hessian)
 }
 
 /* Friction: energy load phi(|y|), y the way across the plane since the step's start, phi(s) = s^2 / (2 reach) up to reach and
- * s - reach/2 beyond. Convex, so its Hessian is semi-definite. */
-static void gxsp_friction_pull(const gxs_plane *plane, double load, double reach, const double *way, gxsp_pull *pull)
+ * s - reach/2 beyond. Convex, so its Hessian is semi-definite. cautious: in its place stands phi'(s) / s in every direction, which
+ * bounds it: exact ones overshoot the kink at the end of sticking to and fro. */
+static void gxsp_friction_pull(const gxs_plane *plane, double load, double reach, const double *way, int cautious, gxsp_pull *pull)
 {
     const double *n = plane->normal, along = n[0] * way[0] + n[1] * way[1] + n[2] * way[2];
-    double y[3], unit[3], s, factor, part[6] = {0, 0, 0, 0, 0, 0};
+    double y[3], unit[3], s, factor;
     int c;
     for (c = 0; c < 3; ++c)
         y[c] = way[c] - along * n[c];
     s = sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2]);
     factor = load / (s > reach ? s : reach);
     pull->energy += s > reach ? load * (s - 0.5 * reach) : 0.5 * factor * s * s;
-    gxsp_add_dyad(factor, -factor, n, part);
+    gxsp_add_dyad(factor, -factor, n, pull->hessian);
     for (c = 0; c < 3; ++c) {
         pull->force[c] -= factor * y[c];
         unit[c] = s > 0 ? y[c] / s : 0;
     }
-    if (s > reach)
-        gxsp_add_dyad(0, -factor, unit, part);
-    for (c = 0; c < 6; ++c)
-        pull->hessian[c] += part[c];
+    if (s > reach && !cautious)
+        gxsp_add_dyad(0, -factor, unit, pull->hessian);
 }
 
 /* before: where the point was at the step's start; dt: since then */
-static void gxsp_plane_pull(const gxs_plane *plane, double dt, const double *before, const double *x, gxsp_pull *pull)
+static void gxsp_plane_pull(const gxs_plane *plane, double dt, const double *before, int cautious, gxsp_pull *pull)
 {
-    const double *n = plane->normal, depth = plane->offset - (n[0] * x[0] + n[1] * x[1] + n[2] * x[2]);
+    const double *n = plane->normal, *x = pull->position, depth = plane->offset - (n[0] * x[0] + n[1] * x[1] + n[2] * x[2]);
     const double pressed = plane->stiffness * (plane->offset - (n[0] * before[0] + n[1] * before[1] + n[2] * before[2]));
     const double reach = dt * (plane->sticking_speed > 0 ? plane->sticking_speed : 1e-3);
     double way[3];
@@ -3995,24 +4196,25 @@ static void gxsp_plane_pull(const gxs_plane *plane, double dt, const double *bef
     for (c = 0; c < 3; ++c)
         way[c] = x[c] - before[c];
     if (pressed > 0 && plane->friction > 0 && reach > 0)
-        gxsp_friction_pull(plane, plane->friction * pressed, reach, way, pull);
+        gxsp_friction_pull(plane, plane->friction * pressed, reach, way, cautious, pull);
 }
 
 /* All that acts on contact point i at a displacement */
 static void gxsp_contact_pull(const gxsp_problem *problem, size_t i, const double *displacement, gxsp_pull *pull)
 {
     const gxs_step_desc *step = problem->step;
-    double x[3], before[3];
+    double before[3];
     size_t p;
     int c;
     memset(pull, 0, sizeof *pull);
-    gxsp_point_position(&step->points[i], displacement, x);
+    gxsp_point_position(&step->points[i], displacement, pull->position);
     gxsp_point_position(&step->points[i], problem->system->base, before);
     for (p = 0; p < step->plane_count; ++p)
-        gxsp_plane_pull(&step->planes[p], step->integrator == GXS_MIDPOINT ? 0.5 * step->dt : step->dt, before, x, pull);
+        gxsp_plane_pull(&step->planes[p], step->integrator == GXS_MIDPOINT ? 0.5 * step->dt : step->dt, before,
+                        problem->shortened, pull);
     if (step->contact) {
         double force[3] = {0, 0, 0}, hessian[6] = {0, 0, 0, 0, 0, 0};
-        pull->energy += step->contact(step->contact_user, i, x, force, hessian);
+        pull->energy += step->contact(step->contact_user, i, pull->position, force, hessian);
         for (c = 0; c < 3; ++c)
             pull->force[c] += force[c];
         for (c = 0; c < 6; ++c)
@@ -4027,12 +4229,10 @@ static const gxs_point *gxsp_next_pull(const gxsp_problem *problem, size_t *at, 
     for (; *at < step->spring_count + step->point_count; ++*at) {
         const size_t i = *at;
         const gxs_point *point = i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
-        double x[3];
         if (!gxsp_point_moves(problem->system, point))
             continue;
-        gxsp_point_position(point, displacement, x);
         if (i < step->spring_count)
-            gxsp_spring_pull(&step->springs[i], x, pull);
+            gxsp_spring_pull(&step->springs[i], displacement, pull);
         else
             gxsp_contact_pull(problem, i - step->spring_count, displacement, pull);
         ++*at;
@@ -4048,14 +4248,29 @@ static void gxsp_evaluate(const gxsp_problem *problem, const double *from, int n
     gxsp_pull pull;
     size_t at = 0;
     int k, c;
-    gxsp_evaluate_elements(problem->system, problem->rate, from, nudge, force, energies);
+    gxsp_evaluate_elements(problem->system, problem->rate, from, NULL, nudge, force, energies);
     while ((point = gxsp_next_pull(problem, &at, from, &pull)) != NULL) {
         energies[0] += pull.energy;
         energies[2] += fabs(pull.energy);
+        for (c = 0; c < 3; ++c) /* the gap of a spring is a small difference of positions */
+            energies[2] += fabs(pull.force[c]) * (fabs(point->position[c]) + fabs(pull.position[c]));
         for (k = 0; k < 4; ++k)
             for (c = 0; c < 3 && !problem->system->still[point->copy[k]]; ++c)
                 force[3 * (size_t)point->copy[k] + (size_t)c] -= point->weight[k] * pull.force[c];
     }
+}
+
+/* Are springs and contact so much stiffer or softer, all in all, than when the coarse matrices were made that these are of no use? */
+static void gxsp_compare_terms(gxsp_system *system)
+{
+    double sum = 0;
+    size_t t;
+    for (t = 0; t < system->lasting->count; ++t) {
+        const float *h = system->lasting->term[t].hessian;
+        sum += (double)h[0] + (double)h[3] + (double)h[5];
+    }
+    system->term_stiffness = sum;
+    system->coarse_worn |= sum > 4 * system->coarse_stiffness || 4 * sum < system->coarse_stiffness;
 }
 
 /* Hessians of all points at a displacement as terms, and which pieces they touch */
@@ -4073,12 +4288,14 @@ static void gxsp_terms_make(const gxsp_problem *problem, const double *displacem
             continue;
         ++lasting->count;
         memcpy(term->copy, point->copy, sizeof term->copy);
+        term->assembled = 0;
         for (k = 0; k < 4; ++k)
             term->weight[k] = (float)point->weight[k];
         for (k = 0; k < 6; ++k)
             term->hessian[k] = (float)(problem->system->scale * pull.hessian[k]);
     }
     gxsp_touch_pieces(problem->system);
+    gxsp_compare_terms(problem->system);
 }
 
 /* >>cg */
@@ -4201,7 +4418,7 @@ static int gxsp_prepare(gxsp_problem *problem)
     gxsp_system *system = problem->system;
     if (system->fine) {
         gxsp_assemble(system, system->scale * problem->rate);
-        gxsp_spread_diagonal(system);
+        gxsp_invert_fine(system);
     }
     if (system->level_count == 0)
         return 1;
@@ -4213,6 +4430,7 @@ static int gxsp_prepare(gxsp_problem *problem)
         return 1;
     system->coarse_rate = problem->rate;
     system->coarse_worn = 0;
+    system->coarse_stiffness = system->term_stiffness;
     return gxsp_coarse_numbers(system, problem->rate);
 }
 
@@ -4238,6 +4456,7 @@ static int gxsp_solve(gxsp_problem *problem)
 /* >>sleep: a piece that has been slow for long is left out until something touches it: loads, targets, springs or planes that change, a
  * state or a rest time that the caller has written */
 
+/* 1 of no values, never 0 */
 static uint64_t gxsp_hash(uint64_t hash, const double *values, size_t count)
 {
     size_t i;
@@ -4255,26 +4474,48 @@ static int gxsp_differs(const double *a, const double *b)
     return memcmp(a, b, 3 * sizeof *a) != 0;
 }
 
-static void gxsp_wake(gxsp_system *system, size_t copy)
+/* Hashes of nodal forces, in all and by piece. Copies without a force do not count. */
+static uint64_t gxsp_hash_forces(gxsp_system *system, const double *forces)
 {
-    system->pieces[system->piece[copy]].woken = 1;
+    static const double zero[3] = {0, 0, 0};
+    uint64_t all = 1;
+    uint32_t p;
+    size_t i;
+    for (p = 0; p < system->piece_count; ++p)
+        system->pieces[p].forces[1] = 1;
+    for (i = 0; forces && i < system->n; ++i)
+        if (gxsp_differs(forces + 3 * i, zero)) {
+            uint64_t *hash = &system->pieces[system->piece[i]].forces[1];
+            const double index = (double)i;
+            *hash = gxsp_hash(gxsp_hash(*hash, &index, 1), forces + 3 * i, 3);
+            all = gxsp_hash(gxsp_hash(all, &index, 1), forces + 3 * i, 3);
+        }
+    return all;
 }
 
-/* Does something change for all pieces at once? Notes what is to be compared with in the next step. */
-static int gxsp_scene_changed(const gxs_step_desc *step, gxsp_lasting *lasting)
+static gxsp_scene gxsp_scene_make(gxsp_system *system, const gxs_step_desc *step)
 {
-    uint64_t planes = 1;
-    int changed;
+    gxsp_scene scene;
     size_t i;
+    memcpy(scene.gravity, step->gravity, sizeof scene.gravity);
+    scene.planes = 1;
     for (i = 0; i < step->plane_count; ++i) {
         const gxs_plane *plane = &step->planes[i];
-        planes = gxsp_hash(gxsp_hash(planes, plane->normal, 3), &plane->offset, 1);
-        planes = gxsp_hash(gxsp_hash(planes, &plane->stiffness, 1), &plane->friction, 1);
+        const double values[4] = {plane->offset, plane->stiffness, plane->friction, plane->sticking_speed};
+        scene.planes = gxsp_hash(gxsp_hash(scene.planes, plane->normal, 3), values, 4);
     }
-    changed = gxsp_differs(step->gravity, lasting->gravity) || planes != lasting->planes;
-    memcpy(lasting->gravity, step->gravity, sizeof lasting->gravity);
-    lasting->planes = planes;
-    return changed;
+    scene.forces = gxsp_hash_forces(system, step->forces);
+    scene.springs = 1;
+    for (i = 0; i < system->piece_count; ++i)
+        system->pieces[i].sprung[1] = 0;
+    for (i = 0; i < 4 * step->spring_count; ++i) {
+        const gxs_spring *spring = &step->springs[i / 4];
+        const double values[3] = {(double)spring->point.copy[i % 4], spring->point.weight[i % 4], spring->stiffness};
+        scene.springs = gxsp_hash(gxsp_hash(gxsp_hash(scene.springs, spring->target, 3), spring->point.position, 3), values, 3);
+        if (fabs(spring->point.weight[i % 4]) > 0)
+            system->pieces[system->piece[spring->point.copy[i % 4]]].sprung[1] = 1;
+    }
+    return scene;
 }
 
 /* Wakes the pieces of which something has changed. */
@@ -4283,9 +4524,15 @@ static void gxsp_wake_touched(gxsp_problem *problem, const double *displacement,
     static const double zero[3] = {0, 0, 0};
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
-    gxsp_lasting *lasting = system->lasting;
-    size_t i, k;
+    const gxsp_scene *before = &system->lasting->scene, *now = &problem->scene;
+    const int springs = now->springs != before->springs, forces = now->forces != before->forces, known = system->still_known;
+    const int all = gxsp_differs(now->gravity, before->gravity) || now->planes != before->planes || (!known && (springs || forces));
+    size_t i;
     uint32_t p;
+    for (p = 0; p < system->piece_count; ++p) {
+        gxsp_piece *piece = &system->pieces[p];
+        piece->woken = all || (forces && piece->forces[0] != piece->forces[1]) || (springs && (piece->sprung[0] || piece->sprung[1]));
+    }
     for (i = 0; i < system->n; ++i) {
         gxsp_piece *piece = &system->pieces[system->piece[i]];
         if (step->targets && system->held[i] && gxsp_differs(step->targets + 3 * i, displacement + 3 * i))
@@ -4294,22 +4541,6 @@ static void gxsp_wake_touched(gxsp_problem *problem, const double *displacement,
             (gxsp_differs(velocity + 3 * i, zero) || gxsp_differs(displacement + 3 * i, system->current + 3 * i)))
             piece->woken = 1;
     }
-    for (k = 0; k < step->spring_count; ++k)
-        for (i = 0; i < 4; ++i)
-            if (fabs(step->springs[k].point.weight[i]) > 0)
-                gxsp_wake(system, step->springs[k].point.copy[i]);
-    if (step->forces || lasting->forces) {
-        uint64_t *hash = (uint64_t *)(void *)system->trial; /* borrowed: one per piece */
-        for (p = 0; p < system->piece_count; ++p)
-            hash[p] = 1;
-        for (i = 0; i < system->n; ++i)
-            hash[system->piece[i]] = gxsp_hash(hash[system->piece[i]], step->forces ? step->forces + 3 * i : zero, 3);
-        for (p = 0; p < system->piece_count; ++p) {
-            system->pieces[p].woken |= hash[p] != system->pieces[p].forces;
-            system->pieces[p].forces = hash[p];
-        }
-    }
-    lasting->forces = step->forces != NULL;
 }
 
 /* Which pieces sleep in this step, and so which copies are still. */
@@ -4318,12 +4549,10 @@ static void gxsp_choose_sleepers(gxsp_problem *problem, const double *displaceme
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
     const double time = step->sleep_time > 0 ? step->sleep_time : 0.5;
-    const int all = gxsp_scene_changed(step, system->lasting);
     int changed = 0;
     uint32_t p, c, k;
     size_t i;
-    for (p = 0; p < system->piece_count; ++p)
-        system->pieces[p].woken = all;
+    problem->scene = gxsp_scene_make(system, step);
     gxsp_wake_touched(problem, displacement, velocity);
     for (p = 0; p < system->piece_count; ++p)
         system->pieces[p].tired = step->sleep_speed > 0 && !system->pieces[p].woken;
@@ -4434,8 +4663,13 @@ static int gxsp_update(gxsp_problem *problem)
 static int gxsp_start(gxsp_problem *problem, const double *from)
 {
     gxsp_system *system = problem->system;
+    size_t i;
     memcpy(system->current, from, 3 * system->n * sizeof(double));
+    for (i = 0; i < system->n; ++i)
+        if (system->still[i])
+            memcpy(system->current + 3 * i, system->base + 3 * i, 3 * sizeof(double));
     gxsp_follow(system, system->base, system->current);
+    gxsp_untouch_pieces(system);
     gxsp_terms_make(problem, system->current);
     gxsp_balance_momentum(system, system->load, problem->rate, system->target, system->current);
     return gxsp_first_not_finite(system->current, 3 * system->n) == 3 * system->n && gxsp_update(problem);
@@ -4526,14 +4760,14 @@ static void gxsp_add_damping(gxsp_problem *problem, double factor, const double 
         system->damped[i].mu = factor * system->materials[i].damping * system->materials[i].mu;
         system->damped[i].lambda = factor * system->materials[i].damping * system->materials[i].lambda;
     }
-    gxsp_evaluate_elements(system, 0, displacement, 0, system->force, energies);
+    gxsp_evaluate_elements(system, 0, displacement, system->target, 0, system->force, energies);
     for (i = 0; i < 3 * system->n; ++i)
         system->load[i] += system->force[i];
 }
 
 /* Rayleigh's stiffness damping: stress P(F) + beta dP/dt, the rate taken as that of the integrator, speed (P(F) - P of the mean before).
- * All energies are linear in their moduli, so that is the energy (1 + beta speed) U(u) with a load of the forces before. Two states
- * of equal P, a rotation of what is at rest for one, are not damped. */
+ * All energies are linear in their moduli, so that is the energy (1 + beta speed) U(u) with a load of the forces before. These are
+ * turned as the elements are by inertia alone: rotations of what is under stress are not damped, to first order in the step. */
 static void gxsp_begin_damping(gxsp_problem *problem, const double *displacement)
 {
     gxsp_system *system = problem->system;
@@ -4555,10 +4789,10 @@ static void gxsp_begin_damping(gxsp_problem *problem, const double *displacement
     }
 }
 
-/* mean of the displacements before */
-static double gxsp_mean(const gxsp_problem *problem, size_t k)
+/* mean of the displacements before. displacement: at the step's start */
+static double gxsp_mean(const gxsp_problem *problem, const double *displacement, size_t k)
 {
-    double mean = problem->mean[0] * problem->system->base[k];
+    double mean = problem->mean[0] * displacement[k];
     return problem->mean[1] < 0 ? mean + problem->mean[1] * problem->step->previous_displacement[k] : mean;
 }
 
@@ -4575,13 +4809,13 @@ static void gxsp_begin(gxsp_problem *problem, const double *displacement, const 
     for (i = 0; i < system->n; ++i)
         for (r = 0; r < 3; ++r) {
             size_t k = 3 * i + r;
-            double mean = gxsp_mean(problem, k), speed = problem->mean[0] * velocity[k];
+            double mean = gxsp_mean(problem, displacement, k), speed = problem->mean[0] * velocity[k];
             if (problem->mean[1] < 0)
                 speed += problem->mean[1] * step->previous_velocity[k];
             system->target[k] = mean + lead * speed;
             if (step->targets && system->held[i])
                 system->base[k] = step->integrator == GXS_MIDPOINT ? 0.5 * (displacement[k] + step->targets[k]) : step->targets[k];
-            if (system->still[i])
+            if (system->still[i] && !system->held[i]) /* what a held copy is accelerated by acts on its neighbours */
                 system->target[k] = system->base[k];
             system->load[k] = system->still[i] ? 0 : system->lumped[i] * step->gravity[r] + (step->forces ? step->forces[k] : 0);
         }
@@ -4640,11 +4874,13 @@ static int gxsp_goes_on(gxsp_problem *problem, double before)
     problem->report.stop = GXS_STOP_BALANCE;
     if (residual <= goal && !problem->collapsed)
         return 0;
+    problem->stalls = done > 0 && problem->noise && residual > 0.9 * problem->least ? problem->stalls + 1 : 0;
+    problem->least = done == 0 || residual < problem->least ? residual : problem->least;
     problem->report.stop = GXS_STOP_ROUNDING;
-    if (done > 0 && problem->noise && residual > 0.5 * before)
+    if (problem->stalls > GXSP_STALLS)
         return 0;
     problem->report.stop = GXS_STOP_ITERATIONS;
-    if (done == budget || gxsp_out_of_time(problem))
+    if (gxsp_out_of_time(problem) || done == budget)
         return 0;
     problem->exact = done > 0 && !problem->projected_only && !problem->shortened && residual < 0.1 && residual > 0.1 * before;
     return 1;
@@ -4656,7 +4892,7 @@ static gx_result gxsp_newton(gxsp_problem *problem)
     uint32_t *done = &problem->report.newton_iterations;
     double before = 0;
     *done = 0;
-    problem->exact = problem->projected_only = problem->noise = 0;
+    problem->exact = problem->projected_only = problem->stalls = problem->shortened = 0;
     if (!gxsp_linearise_all(problem))
         return GX_ERROR_DIVERGED;
     for (;;) {
@@ -4722,7 +4958,7 @@ static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double
         if (system->still[i / 3])
             speeds[i] = step->integrator == GXS_STATIC ? 0 : (ends[i] - displacement[i]) / step->dt;
         else
-            speeds[i] = problem->speed * (system->current[i] - gxsp_mean(problem, i)) * (midpoint ? 2 : 1) - (midpoint ? velocity[i] : 0);
+            speeds[i] = problem->speed * (system->current[i] - gxsp_mean(problem, displacement, i)) * (midpoint ? 2 : 1) - (midpoint ? velocity[i] : 0);
     }
     problem->report.energy = gxsp_energy(problem);
     if (gxsp_first_not_finite(speeds, count) < count || gxsp_first_not_finite(ends, count) < count ||
@@ -4734,6 +4970,11 @@ static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double
         memcpy(system->current, ends, count * sizeof(double));
     system->base_known = !midpoint && step->spring_count + step->point_count == 0;
     system->base_energy = problem->energies[0];
+    system->lasting->scene = problem->scene;
+    for (i = 0; i < system->piece_count; ++i) {
+        system->pieces[i].forces[0] = system->pieces[i].forces[1];
+        system->pieces[i].sprung[0] = system->pieces[i].sprung[1];
+    }
     gxsp_count_rest(problem, velocity);
     return GX_OK;
 }
@@ -4744,10 +4985,8 @@ static void gxsp_report_springs(const gxsp_problem *problem)
     const gxs_step_desc *step = problem->step;
     size_t i;
     for (i = 0; i < step->spring_count && step->spring_forces; ++i) {
-        double x[3];
         gxsp_pull pull;
-        gxsp_point_position(&step->springs[i].point, problem->system->current, x);
-        gxsp_spring_pull(&step->springs[i], x, &pull);
+        gxsp_spring_pull(&step->springs[i], problem->system->current, &pull);
         memcpy(step->spring_forces + 3 * i, pull.force, sizeof pull.force);
     }
 }
@@ -4987,11 +5226,13 @@ static int gxsp_reserve_terms(gxs_solver *solver, size_t count)
 static gx_result gxsp_check_free(const gxsp_problem *problem, gx_failure *failure)
 {
     const gxsp_system *system = problem->system;
+    const gxs_step_desc *step = problem->step;
     size_t i, k;
-    for (k = 0; k < problem->step->spring_count; ++k)
-        for (i = 0; i < 4 && problem->step->springs[k].stiffness > 0; ++i)
-            if (fabs(problem->step->springs[k].point.weight[i]) > 0)
-                system->pieces[system->piece[problem->step->springs[k].point.copy[i]]].state |= GXSP_TOUCHED;
+    gxsp_untouch_pieces(problem->system);
+    for (k = 0; k < step->spring_count; ++k)
+        for (i = 0; i < 4 && step->springs[k].stiffness > 0; ++i)
+            if (fabs(step->springs[k].point.weight[i]) > 0)
+                system->pieces[system->piece[step->springs[k].point.copy[i]]].state |= GXSP_TOUCHED;
     for (i = 0; i < system->n && !(problem->rate > 0); ++i)
         if (!(system->pieces[system->piece[i]].state & (GXSP_HELD | GXSP_TOUCHED | GXSP_ASLEEP)))
             return gxsp_fail(failure, GX_ERROR_FREE, i);
@@ -5313,6 +5554,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_ROUNDING
 #undef GXSP_ARMIJO
 #undef GXSP_TRIALS
+#undef GXSP_STALLS
 #undef GXSP_NONE
 #undef GXSP_HELD
 #undef GXSP_UNBALANCED
