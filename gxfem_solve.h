@@ -55,7 +55,7 @@
  * gradients with multigrid: the model itself smoothed by block-Jacobi, coarse levels on lattices whose points are doubled
  * where a cut runs between the copies around them. Coarse matrices serve until iterations rise.
  * Newton starts at u_n + h v_n; should it end above E(u_n), it is run again from u_n: E(u) <= E(u_n) always, so a step cannot
- * blow up. Every free piece (copies joined by elements, none of them held) then moves as
+ * blow up (but for the midpoint rule, which goes on from there as far again). Every free piece (copies joined by elements, none of them held) then moves as
  * a whole so that its momentum balances, and the later iterates leave its momentum alone: the momentum of
  * every free piece is right to rounding whatever the tolerances are, and free fall takes no iteration.
  * Residuals are measured twice, both times scaled by the block diagonal D of the Hessian: in energy,
@@ -320,7 +320,8 @@ typedef struct gxs_solver gxs_solver;
  * Held copies keep their displacement or go to their target, copies without an element of any weight or mass stay where they are;
  * both get the velocity of that.
  * GX_ERROR_ARGUMENT if no model is set; GX_ERROR_DIVERGED is possible: displacement and velocity are then unchanged. A residual
- * above newton_tolerance when the iterations are used up is no error: see the report. Allocates nothing. */
+ * above newton_tolerance when the iterations are used up is no error: see the report. Allocates (GX_ERROR_MEMORY) only where there are
+ * more springs and contact points than ever before. */
 GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement, double *velocity,
                                     gxs_step_report *report, gx_failure *failure);
 
@@ -411,8 +412,9 @@ extern "C" {
 #define GXSP_MULTIGRID_FROM_STIFF 60
 #define GXSP_STIFF_POISSON 0.48
 
-/* A level of at most so many nodes is factored; so is one that the next would not make smaller by a third. */
-#define GXSP_BOTTOM 40
+/* A level is factored that takes no more multiplications than this for each copy, or that the next would not make smaller by a third.
+ * Slender bodies need it: coarser levels hardly bend with them, and an exact solution two levels down saves two iterations in three. */
+#define GXSP_FACTOR_COST 3000
 #define GXSP_LEVELS 12
 
 /* Multigrid's diagonal grows by this share, so that what single precision leaves of its matrices is positive definite. */
@@ -491,6 +493,19 @@ static double gxsp_dot(const double *a, const double *b, size_t count)
         z += a[3 * i + 2] * b[3 * i + 2];
     }
     return x + y + z;
+}
+
+/* sum of a[i] b[i] in eight sums side by side, for vectors */
+static double gxsp_long_dot(const double *a, const double *b, size_t count)
+{
+    double sum[8] = {0, 0, 0, 0, 0, 0, 0, 0};
+    size_t i, k;
+    for (i = 0; i + 8 <= count; i += 8)
+        for (k = 0; k < 8; ++k)
+            sum[k] += a[i + k] * b[i + k];
+    for (; i < count; ++i)
+        sum[0] += a[i] * b[i];
+    return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
 }
 
 /* index of entry (i, j), i <= j, of a symmetric 3x3 stored 00 01 02 11 12 22, and of a 9x9 alike */
@@ -1713,7 +1728,7 @@ static void gxsp_turn_stress(gxsp_lanes *from, gxsp_lanes *to, gxsp_lanes *p)
     gxsp_decompose(from, &first);
     gxsp_decompose(to, &last);
     for (l = 0; l < GXSP_LANES; ++l) {
-        double a[9], b[9], turn[9], stress[9];
+        double a[9], b[9], turn[9], stress[9], f[9], h[9];
         for (r = 0; r < 3; ++r)
             for (c = 0; c < 3; ++c) {
                 a[3 * r + c] = b[3 * r + c] = 0;
@@ -1722,6 +1737,12 @@ static void gxsp_turn_stress(gxsp_lanes *from, gxsp_lanes *to, gxsp_lanes *p)
                     b[3 * r + c] += (double)(last.u[3 * r + k][l] * last.v[3 * c + k][l]);
                 }
             }
+        for (k = 0; k < 9; ++k) {
+            f[k] = from[k][l] + (k % 4 == 0 ? 1 : 0);
+            h[k] = to[k][l] + (k % 4 == 0 ? 1 : 0);
+        }
+        gxsp_polish_rotation(f, a); /* else each step's load would have another error of single precision, and no body come to rest */
+        gxsp_polish_rotation(h, b);
         for (k = 0; k < 9; ++k) {
             turn[k] = b[k / 3 * 3] * a[k % 3 * 3] + b[k / 3 * 3 + 1] * a[k % 3 * 3 + 1] + b[k / 3 * 3 + 2] * a[k % 3 * 3 + 2];
             stress[k] = p[k][l];
@@ -2508,12 +2529,63 @@ static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t at)
     return !system->pool.failed && !scratch->failed;
 }
 
-/* Order and envelope of the last level: breadth first, component by component. */
+/* Breadth-first order of the component of a seed, appended to order; place: those met have theirs, others GXSP_NONE. Returns the new
+ * length. */
+static uint32_t gxsp_order_component(const gxsp_level *level, uint32_t seed, uint32_t count, uint32_t *order, uint32_t *place)
+{
+    uint32_t done = count, k;
+    place[seed] = count;
+    order[count++] = seed;
+    for (; done < count; ++done)
+        for (k = level->start[order[done]]; k < level->start[order[done] + 1]; ++k)
+            if (place[level->column[k]] == GXSP_NONE) {
+                place[level->column[k]] = count;
+                order[count++] = level->column[k];
+            }
+    return count;
+}
+
+/* Order for a small envelope: component by component, breadth first from a node that is last from some other. place: n, scratch.
+ * Returns the multiplications of a factorisation. */
+static double gxsp_order_level(const gxsp_level *level, uint32_t *order, uint32_t *place)
+{
+    uint32_t seed, i, k, count = 0, end;
+    double cost = 0;
+    memset(place, 0xff, level->n * sizeof *place);
+    for (seed = 0; seed < level->n; ++seed) {
+        if (place[seed] != GXSP_NONE)
+            continue;
+        end = gxsp_order_component(level, seed, count, order, place);
+        k = order[end - 1];
+        for (i = count; i < end; ++i)
+            place[order[i]] = GXSP_NONE;
+        count = gxsp_order_component(level, k, count, order, place);
+    }
+    for (i = 0; i < level->n; ++i) {
+        uint32_t first = i;
+        for (k = level->start[order[i]]; k < level->start[order[i] + 1]; ++k)
+            first = place[level->column[k]] < first ? place[level->column[k]] : first;
+        cost += 13.5 * (double)(i - first + 1) * (double)(i - first + 1); /* three rows, each of a width squared / 2 */
+    }
+    return cost;
+}
+
+/* Is a level small enough to be factored? */
+static int gxsp_factors(gxsp_pool *scratch, const gxsp_level *level, size_t copies)
+{
+    gxsp_owned *mark = scratch->last;
+    uint32_t *order = (uint32_t *)gxsp_take(scratch, 2 * (size_t)level->n, sizeof(uint32_t));
+    const int factors = !scratch->failed && gxsp_order_level(level, order, order + level->n) <= GXSP_FACTOR_COST * (double)copies;
+    gxsp_release_to(scratch, mark);
+    return factors;
+}
+
+/* Order and envelope of the last level */
 static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch)
 {
     const gxsp_level *level = &system->levels[system->level_count - 1];
     gxsp_factor *factor = &system->factor;
-    uint32_t *place = (uint32_t *)gxsp_take(scratch, level->n, sizeof(uint32_t)), seed, i, k, count = 0, done = 0;
+    uint32_t *place = (uint32_t *)gxsp_take(scratch, level->n, sizeof(uint32_t)), i, k;
     size_t entries = 0;
     factor->n = 3 * level->n;
     factor->order = (uint32_t *)gxsp_take(&system->pool, level->n, sizeof(uint32_t));
@@ -2522,19 +2594,7 @@ static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch)
     factor->x = (double *)gxsp_take(&system->pool, factor->n, sizeof(double));
     if (scratch->failed || system->pool.failed)
         return;
-    memset(place, 0xff, level->n * sizeof *place);
-    for (seed = 0; seed < level->n; ++seed) {
-        if (place[seed] != GXSP_NONE)
-            continue;
-        place[seed] = count;
-        factor->order[count++] = seed;
-        for (; done < count; ++done)
-            for (k = level->start[factor->order[done]]; k < level->start[factor->order[done] + 1]; ++k)
-                if (place[level->column[k]] == GXSP_NONE) {
-                    place[level->column[k]] = count;
-                    factor->order[count++] = level->column[k];
-                }
-    }
+    (void)gxsp_order_level(level, factor->order, place);
     for (i = 0; i < factor->n; ++i) {
         uint32_t node = factor->order[i / 3], first = i / 3;
         for (k = level->start[node]; k < level->start[node + 1]; ++k)
@@ -2952,7 +3012,7 @@ static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch)
         gxsp_first_pattern(system, scratch);
     if (scratch->failed || system->pool.failed)
         return;
-    for (at = 1; at + 1 < GXSP_LEVELS && system->levels[at].n > GXSP_BOTTOM && gxsp_add_level(system, scratch, at); ++at)
+    for (at = 1; at + 1 < GXSP_LEVELS && !gxsp_factors(scratch, &system->levels[at], system->n) && gxsp_add_level(system, scratch, at); ++at)
         ;
     system->level_count = at + 1;
     gxsp_factor_make(system, scratch);
@@ -3507,9 +3567,8 @@ static void gxsp_factor_solve(const gxsp_factor *factor, gxsp_level *level)
     double *x = factor->x;
     for (i = 0; i < factor->n; ++i) {
         const double *row = factor->entry + factor->row[i];
-        double sum = (double)level->b[factor->order[i / 3]][i % 3];
-        for (j = factor->first[i]; j < i; ++j)
-            sum -= row[j] * x[j];
+        const uint32_t first = factor->first[i];
+        const double sum = (double)level->b[factor->order[i / 3]][i % 3] - gxsp_long_dot(row + first, x + first, i - first);
         x[i] = sum * row[i]; /* the diagonal is stored inverted */
     }
     for (i = factor->n; i-- > 0;) {
@@ -3758,10 +3817,9 @@ static int gxsp_factorise(gxsp_factor *factor, const gxsp_level *level, uint32_t
         double *row = factor->entry + factor->row[i], least = 1e-7 * row[i];
         for (j = factor->first[i]; j <= i; ++j) {
             const double *other = factor->entry + factor->row[j];
-            double sum = row[j];
+            double sum;
             m = factor->first[j] > factor->first[i] ? factor->first[j] : factor->first[i];
-            for (k = m; k < j; ++k)
-                sum -= row[k] * other[k];
+            sum = row[j] - gxsp_long_dot(row + m, other + m, j - m);
             if (j < i)
                 row[j] = sum * other[j];
             else
@@ -5567,7 +5625,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_MULTIGRID_FROM
 #undef GXSP_MULTIGRID_FROM_STIFF
 #undef GXSP_STIFF_POISSON
-#undef GXSP_BOTTOM
+#undef GXSP_FACTOR_COST
 #undef GXSP_LEVELS
 #undef GXSP_SHIFT
 #undef GXSP_STIFFNESS
