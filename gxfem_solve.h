@@ -261,7 +261,7 @@ typedef struct gxs_step_desc {
     const double *targets;      /* copy_count x 3: displacement of held copies at the step's end, others not read; NULL: they stay */
     double mass_damping;        /* Rayleigh's alpha, 1/s, 0 or more: force -alpha M v */
     uint32_t newton_iterations; /* at most so many; 0: 1 */
-    double newton_tolerance;    /* stop at this residual (see gxs_step_report); 0: run all */
+    double newton_tolerance;    /* stop at this residual (see gxs_step_report); 0: 1e-8, far below what one iteration leaves of motion */
     uint32_t cg_iterations;     /* per Newton iteration, at most; 0: 1000 */
     double cg_tolerance;        /* reduction of the residual by each linear solve; 0: 1e-2 */
     const gxs_spring *springs;  /* spring_count */
@@ -408,7 +408,7 @@ extern "C" {
 #define GXSP_SPACING 2.5
 
 /* In pieces of fewer copies block-Jacobi is at least as fast as multigrid; but for nearly incompressible ones. */
-#define GXSP_MULTIGRID_FROM 400
+#define GXSP_MULTIGRID_FROM 150
 #define GXSP_MULTIGRID_FROM_STIFF 60
 #define GXSP_STIFF_POISSON 0.48
 
@@ -433,6 +433,13 @@ extern "C" {
 #define GXSP_RESTRICT __restrict
 #else
 #define GXSP_RESTRICT
+#endif
+
+/* Functions of column numbers that compilers know only once they are inlined: else these might be equal, and no vectors follow. */
+#if defined(__GNUC__)
+#define GXSP_INLINE static inline __attribute__((always_inline))
+#else
+#define GXSP_INLINE static inline
 #endif
 
 /* Loop over the lanes of a block. Clang is told not to unroll it, since it else does so before it could vectorise. */
@@ -774,7 +781,6 @@ typedef struct gxsp_system {
     double scale;           /* power of two by which the linear systems are multiplied, so that single precision holds tiny pieces too */
     gxsp_level levels[GXSP_LEVELS];
     uint32_t level_count;   /* 0: no multigrid */
-    float (*place)[3];      /* n: rest positions in spacings of the first lattice */
     gxsp_edges edges;       /* of the chunk at work on level 1's matrix */
     gxsp_pairs pairs;
     gxsp_factor factor;
@@ -791,6 +797,8 @@ typedef struct gxsp_system {
     int base_known;         /* current is what the last step returned, and base_energy its elastic energy */
     double base_energy;
     gxsp_vector4 *right;    /* n: residual in single precision */
+    gxsp_vector4 *guess;    /* n: direction of the last step's first iteration */
+    int guess_known;
 } gxsp_system;
 
 /* A step under way */
@@ -1006,7 +1014,7 @@ static inline float gxsp_column_product(const gxsp_svd *of, int i, int j, int l)
 
 /* Makes columns i and j of b orthogonal. Whatever the rounding, U and V stay rotations: a Hessian built on them is a congruence
  * of a semi-definite one. */
-static void gxsp_orthogonalise(gxsp_svd *GXSP_RESTRICT of, int i, int j)
+GXSP_INLINE void gxsp_orthogonalise(gxsp_svd *GXSP_RESTRICT of, int i, int j)
 {
     int l;
     GXSP_EACH_LANE(l) {
@@ -1020,7 +1028,7 @@ static void gxsp_orthogonalise(gxsp_svd *GXSP_RESTRICT of, int i, int j)
 }
 
 /* Brings the longer of columns i and j to i, by a quarter turn, so that det V stays 1. */
-static void gxsp_order_columns(gxsp_svd *GXSP_RESTRICT of, int i, int j)
+GXSP_INLINE void gxsp_order_columns(gxsp_svd *GXSP_RESTRICT of, int i, int j)
 {
     int l;
     GXSP_EACH_LANE(l) {
@@ -2236,7 +2244,7 @@ static void gxsp_find_pieces(gxsp_system *system, const gxs_model *model, uint32
 }
 
 /* Rest positions in spacings of the first lattice: GXSP_SPACING edges of an average whole element. 0: there is none. */
-static int gxsp_find_places(gxsp_system *system, const gxs_model *model)
+static int gxsp_find_places(const gxsp_system *system, const gxs_model *model, float (*to)[3])
 {
     double volume = 0, spacing;
     size_t e, i, k, counted = 0;
@@ -2256,7 +2264,7 @@ static int gxsp_find_places(gxsp_system *system, const gxs_model *model)
             double place = (model->positions[3 * i + k] - model->positions[k]) / spacing;
             if (!(fabs(place) < 1e6)) /* single precision would not place it */
                 return 0;
-            system->place[i][k] = (float)place + 0.31f; /* lattice planes off the mesh's own */
+            to[i][k] = (float)place + 0.31f; /* lattice planes off the mesh's own */
         }
     return 1;
 }
@@ -2274,6 +2282,7 @@ static void gxsp_system_vectors(gxsp_system *system)
     for (i = 0; i < 3; ++i)
         *singles[i] = (gxsp_vector4 *)gxsp_take(&system->pool, system->n, sizeof(gxsp_vector4));
     system->right = (gxsp_vector4 *)gxsp_take(&system->pool, system->n, sizeof(gxsp_vector4));
+    system->guess = (gxsp_vector4 *)gxsp_take(&system->pool, system->n, sizeof(gxsp_vector4));
     system->diagonal = (float *)gxsp_take(&system->pool, 6 * system->n, sizeof(float));
     system->lumped = (double *)gxsp_take(&system->pool, system->n, sizeof(double));
     system->piece = (uint32_t *)gxsp_take(&system->pool, system->n, sizeof(uint32_t));
@@ -2975,8 +2984,8 @@ static void gxsp_fine_make(gxsp_system *system, gxsp_pool *scratch)
             system->transpose[k] = gxsp_find_entry(fine, fine->column[k], i);
 }
 
-/* All levels of the multigrid below the model. level_count stays 0 if there is nothing to coarsen. */
-static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch)
+/* All levels of the multigrid below the model; place: n x 3, see gxsp_find_places. level_count stays 0 if there is nothing to coarsen. */
+static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (*place)[3])
 {
     gxsp_level *fine = &system->levels[0];
     gxsp_transfer transfer;
@@ -2986,7 +2995,7 @@ static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch)
     transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint32_t));
     if (scratch->failed || system->pool.failed)
         return;
-    gxsp_transfer_begin(fine, system->place, system->fixed, &transfer);
+    gxsp_transfer_begin(fine, place, system->fixed, &transfer);
     for (c = 0; c < system->chunk_count; ++c) {
         const uint32_t *copies = system->nodes + system->chunks[c].first_node;
         gxsp_list_edges(system, &system->chunks[c]);
@@ -3073,6 +3082,7 @@ static int gxsp_large_pieces(const gxsp_system *system, const gxs_model *model, 
 static void gxsp_preconditioner_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model,
                                      gxs_preconditioner preconditioner, gxs_matrix matrix, uint32_t *forest)
 {
+    float (*place)[3]; /* rest positions in spacings of the first lattice */
     const int multigrid = model->positions && (preconditioner == GXS_MULTIGRID ||
                           (preconditioner == GXS_AUTOMATIC && gxsp_large_pieces(system, model, forest)));
     if (preconditioner == GXS_VOLUME_RATIO)
@@ -3083,9 +3093,9 @@ static void gxsp_preconditioner_make(gxsp_system *system, gxsp_pool *scratch, co
     if (!multigrid)
         return;
     gxsp_level_make(&system->pool, &system->levels[0], (uint32_t)system->n, 0);
-    system->place = (float(*)[3])gxsp_take(&system->pool, system->n, sizeof *system->place);
-    if (!system->pool.failed && !scratch->failed && gxsp_find_places(system, model))
-        gxsp_multigrid_make(system, scratch);
+    place = (float(*)[3])gxsp_take(scratch, system->n, sizeof *place);
+    if (!system->pool.failed && !scratch->failed && gxsp_find_places(system, model, place))
+        gxsp_multigrid_make(system, scratch, place);
 }
 
 /* Everything about a model that does not depend on its state; scratch holds what is needed for the time being. Returns the index of
@@ -3232,28 +3242,59 @@ static void gxsp_apply_packed(const float *d, const float *x, float *y)
     y[2] = d[2] * a + d[4] * b + d[5] * c;
 }
 
+#if defined(__GNUC__) && (defined(__clang__) || __GNUC__ >= 12)
+/* Four nodes' vectors to three components side by side and back: compilers do not find these shuffles by themselves. */
+typedef float gxsp_four __attribute__((vector_size(16), aligned(4), may_alias));
+
+static inline void gxsp_gather_four(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2)
+{
+    const gxsp_four a = *(const gxsp_four *)x[node[0]], b = *(const gxsp_four *)x[node[1]], c = *(const gxsp_four *)x[node[2]],
+                    d = *(const gxsp_four *)x[node[3]];
+    const gxsp_four ab = __builtin_shufflevector(a, b, 0, 4, 1, 5), cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+    *(gxsp_four *)to0 = __builtin_shufflevector(ab, cd, 0, 1, 4, 5);
+    *(gxsp_four *)to1 = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+    *(gxsp_four *)to2 = __builtin_shufflevector(__builtin_shufflevector(a, b, 2, 6, 3, 7), __builtin_shufflevector(c, d, 2, 6, 3, 7), 0, 1, 4, 5);
+}
+
+static inline void gxsp_scatter_four(const uint16_t *node, const float *from0, const float *from1, const float *from2, gxsp_vector4 *y)
+{
+    const gxsp_four p = *(const gxsp_four *)from0, q = *(const gxsp_four *)from1, r = *(const gxsp_four *)from2;
+    const gxsp_four low = __builtin_shufflevector(p, q, 0, 4, 1, 5), high = __builtin_shufflevector(p, q, 2, 6, 3, 7);
+    *(gxsp_four *)y[node[0]] += __builtin_shufflevector(low, r, 0, 1, 4, 4);
+    *(gxsp_four *)y[node[1]] += __builtin_shufflevector(low, r, 2, 3, 5, 5);
+    *(gxsp_four *)y[node[2]] += __builtin_shufflevector(high, r, 0, 1, 6, 6);
+    *(gxsp_four *)y[node[3]] += __builtin_shufflevector(high, r, 2, 3, 7, 7);
+}
+#else
+static void gxsp_gather_four(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2)
+{
+    int l;
+    for (l = 0; l < 4; ++l)
+        to0[l] = x[node[l]][0], to1[l] = x[node[l]][1], to2[l] = x[node[l]][2];
+}
+
+static void gxsp_scatter_four(const uint16_t *node, const float *from0, const float *from1, const float *from2, gxsp_vector4 *y)
+{
+    int l;
+    for (l = 0; l < 4; ++l)
+        y[node[l]][0] += from0[l], y[node[l]][1] += from1[l], y[node[l]][2] += from2[l];
+}
+#endif
+
 static void gxsp_block_gather(const gxsp_rest *GXSP_RESTRICT rest, const gxsp_vector4 *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT to)
 {
     int i, l;
     for (i = 0; i < 4; ++i)
-        for (l = 0; l < GXSP_LANES; ++l) {
-            const float *from = x[rest->node[i][l]];
-            to[3 * i][l] = from[0];
-            to[3 * i + 1][l] = from[1];
-            to[3 * i + 2][l] = from[2];
-        }
+        for (l = 0; l < GXSP_LANES; l += 4)
+            gxsp_gather_four(rest->node[i] + l, x, to[3 * i] + l, to[3 * i + 1] + l, to[3 * i + 2] + l);
 }
 
 static void gxsp_block_scatter(const gxsp_rest *GXSP_RESTRICT rest, gxsp_singles *GXSP_RESTRICT from, gxsp_vector4 *GXSP_RESTRICT y)
 {
     int i, l;
-    for (l = 0; l < GXSP_LANES; ++l)
-        for (i = 0; i < 4; ++i) {
-            float *to = y[rest->node[i][l]];
-            to[0] += from[3 * i][l];
-            to[1] += from[3 * i + 1][l];
-            to[2] += from[3 * i + 2][l];
-        }
+    for (i = 0; i < 4; ++i)
+        for (l = 0; l < GXSP_LANES; l += 4)
+            gxsp_scatter_four(rest->node[i] + l, from[3 * i] + l, from[3 * i + 1] + l, from[3 * i + 2] + l, y);
 }
 
 static void gxsp_task_product(void *context, size_t index)
@@ -4363,6 +4404,11 @@ typedef struct gxsp_norms {
     double energy, displacement;
 } gxsp_norms;
 
+static int gxsp_reduced(const gxsp_norms *now, const gxsp_norms *first, double goal)
+{
+    return now->energy <= goal * first->energy && now->displacement <= goal * first->displacement;
+}
+
 /* scaled = D^-1 r */
 static gxsp_norms gxsp_scale(gxsp_system *system, const double *r)
 {
@@ -4415,6 +4461,34 @@ static int gxsp_out_of_time(gxsp_problem *problem)
     return problem->report.stop == GXS_STOP_SECONDS;
 }
 
+/* Takes the best multiple of the last step's first direction as the start of conjugate gradients: where the acceleration changes little
+ * from step to step, that is most of the solution. */
+static void gxsp_guess_direction(gxsp_system *system, double rate)
+{
+    double curvature = 0, work = 0, multiple;
+    size_t i;
+    int c;
+    for (i = 0; i < system->n; ++i)
+        if (system->still[i])
+            memset(system->guess[i], 0, sizeof system->guess[i]);
+    gxsp_extend(system, system->guess);
+    gxsp_remove_translations(system, system->guess);
+    gxsp_product(system, rate, system->guess, system->product);
+    for (i = 0; i < system->n; ++i)
+        for (c = 0; c < 3; ++c) {
+            curvature += (double)system->guess[i][c] * (double)system->product[i][c];
+            work += (double)system->guess[i][c] * system->residual[3 * i + (size_t)c];
+        }
+    multiple = work / curvature;
+    if (!(curvature > 0) || !gxsp_finite(work) || !gxsp_finite(curvature) || !gxsp_finite(multiple))
+        return;
+    for (i = 0; i < system->n; ++i)
+        for (c = 0; c < 3; ++c) {
+            system->direction[3 * i + (size_t)c] = multiple * (double)system->guess[i][c];
+            system->residual[3 * i + (size_t)c] -= multiple * (double)system->product[i][c];
+        }
+}
+
 /* Solves scale (K + rate M) direction = scale residual to a share of the residual, which is used up. The directions of free pieces carry
  * no momentum: their translations are projected out of the preconditioned residual (deflated conjugate gradients; the residual
  * has none, see gxsp_start). Operator and preconditioner are of single precision, vectors and sums of double. 0 if a number
@@ -4423,6 +4497,7 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
 {
     gxsp_system *system = problem->system;
     const double goal = problem->cg_tolerance * problem->cg_tolerance, rate = problem->rate;
+    const int start = problem->report.newton_iterations == 0;
     gxsp_norms first, now;
     uint32_t iteration;
     double rho;
@@ -4431,11 +4506,15 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
     problem->indefinite = 0;
     for (i = 0; i < 3 * system->n; ++i)
         system->residual[i] *= system->scale;
-    first = gxsp_scale(system, system->residual);
-    rho = gxsp_precondition(system, rate);
+    now = first = gxsp_scale(system, system->residual);
     memset(system->direction, 0, 3 * system->n * sizeof(double));
+    if (start && system->guess_known) {
+        gxsp_guess_direction(system, rate);
+        now = gxsp_scale(system, system->residual);
+    }
+    rho = gxsp_precondition(system, rate);
     memcpy(system->search, system->scaled, system->n * sizeof *system->search);
-    for (iteration = 0; iteration < problem->cg_iterations; ++iteration) {
+    for (iteration = 0; iteration < problem->cg_iterations && !gxsp_reduced(&now, &first, goal); ++iteration) {
         double curvature = 0, alpha, beta;
         gxsp_product(system, rate, system->search, system->product);
         for (i = 0; i < system->n; ++i)
@@ -4455,7 +4534,7 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
             }
         ++problem->report.cg_iterations;
         now = gxsp_scale(system, system->residual);
-        if ((now.energy <= goal * first.energy && now.displacement <= goal * first.displacement) || gxsp_out_of_time(problem))
+        if (gxsp_reduced(&now, &first, goal) || gxsp_out_of_time(problem))
             break;
         beta = rho;
         rho = gxsp_precondition(system, rate);
@@ -4466,7 +4545,12 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
     }
     gxsp_follow(system, NULL, system->direction);
     gxsp_balance_momentum(system, NULL, 1, NULL, system->direction); /* what single precision left of it */
-    return gxsp_first_not_finite(system->direction, 3 * system->n) == 3 * system->n;
+    if (gxsp_first_not_finite(system->direction, 3 * system->n) < 3 * system->n)
+        return 0;
+    for (i = 0; i < 3 * system->n && start; ++i)
+        system->guess[i / 3][i % 3] = (float)system->direction[i];
+    system->guess_known |= start;
+    return 1;
 }
 
 /* Brings matrix and preconditioner up to date with the linearisation: the coarse matrices are made anew where they are missing, where
@@ -4927,7 +5011,7 @@ static int gxsp_goes_on(gxsp_problem *problem, double before)
 {
     const gxs_step_desc *step = problem->step;
     const uint32_t budget = step->newton_iterations ? step->newton_iterations : 1, done = problem->report.newton_iterations;
-    const double goal = step->newton_tolerance > GXSP_ROUNDING ? step->newton_tolerance : GXSP_ROUNDING;
+    const double wanted = step->newton_tolerance > 0 ? step->newton_tolerance : 1e-8, goal = wanted > GXSP_ROUNDING ? wanted : GXSP_ROUNDING;
     const double residual = problem->report.residual;
     problem->report.stop = GXS_STOP_BALANCE;
     if (residual <= goal && !problem->collapsed)
@@ -5609,6 +5693,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_CHUNK_BLOCKS
 #undef GXSP_EACH_LANE
 #undef GXSP_RESTRICT
+#undef GXSP_INLINE
 #undef GXSP_ROUNDING
 #undef GXSP_ARMIJO
 #undef GXSP_TRIALS
