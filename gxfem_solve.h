@@ -423,6 +423,9 @@ extern "C" {
 /* The stiffness of a whole element in the linear systems: 2^40 leaves room for pieces down to 1e-40 of it, and for masses above. */
 #define GXSP_STIFFNESS 40
 
+/* Stiffness in the linear systems below which single precision makes nothing of an inverse: it is left alone. */
+#define GXSP_TINY 1e-28
+
 /* Up to so many coarse nodes a chunk has a table of matrix entries; of more, entries are looked for each time. */
 #define GXSP_CHUNK_PARENTS 192
 
@@ -3244,7 +3247,7 @@ static void gxsp_apply_packed(const float *d, const float *x, float *y)
 
 #if defined(__GNUC__) && (defined(__clang__) || __GNUC__ >= 12)
 /* Four nodes' vectors to three components side by side and back: compilers do not find these shuffles by themselves. */
-typedef float gxsp_four __attribute__((vector_size(16), aligned(4), may_alias));
+typedef __attribute__((vector_size(16), aligned(4), may_alias)) float gxsp_four;
 
 static inline void gxsp_gather_four(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2)
 {
@@ -3481,7 +3484,7 @@ static void gxsp_task_diagonal(void *context, size_t index)
                 sum[k] += (double)slots[6 * (size_t)system->copy_slot[s] + (size_t)k];
         for (k = 0; system->lumped_mass && k < 6; ++k)
             sum[k] += k == 0 || k == 3 || k == 5 ? pass->rate * system->lumped[i] : 0;
-        if (system->still[i] || sum[0] + sum[3] + sum[5] < 1e-28) /* below single precision: only what is coarser moves such a copy */
+        if (system->still[i] || sum[0] + sum[3] + sum[5] < GXSP_TINY) /* only what is coarser moves such a copy */
             memset(sum, 0, sizeof sum);
         gxsp_invert3(sum);
         for (k = 0; k < 6; ++k)
@@ -3800,6 +3803,8 @@ static int gxsp_invert_diagonal(gxsp_level *level)
                 block[0] += raise, block[5] += raise, block[10] += raise;
                 inverse[0] = (double)block[0], inverse[1] = (double)block[1], inverse[2] = (double)block[2];
                 inverse[3] = (double)block[5], inverse[4] = (double)block[6], inverse[5] = (double)block[10];
+                if (inverse[0] + inverse[3] + inverse[5] < GXSP_TINY)
+                    memset(inverse, 0, sizeof inverse);
                 gxsp_invert3(inverse);
                 for (c = 0; c < 9; ++c) {
                     level->inverse[12 * (size_t)i + (size_t)(c / 3 * 4 + c % 3)] = (float)inverse[full[c]];
@@ -3864,7 +3869,7 @@ static int gxsp_factorise(gxsp_factor *factor, const gxsp_level *level, uint32_t
             if (j < i)
                 row[j] = sum * other[j];
             else
-                row[i] = 1 / sqrt(sum > least ? sum : least > 0 ? least : 1);
+                row[i] = 1 / sqrt(row[i] < GXSP_TINY ? 1 : sum > least ? sum : least);
         }
         if (!gxsp_finite(row[i]))
             return 0;
@@ -4040,7 +4045,7 @@ static void gxsp_invert_fine(gxsp_system *system)
         double sum[6];
         for (m = 0; m < 6; ++m)
             sum[m] = system->still[i] || system->follower[i] != GXSP_NONE ? 0 : (double)inverse[packed[m]];
-        if (sum[0] + sum[3] + sum[5] < 1e-28)
+        if (sum[0] + sum[3] + sum[5] < GXSP_TINY)
             memset(sum, 0, sizeof sum);
         gxsp_invert3(sum);
         for (m = 0; m < 9; ++m)
@@ -5714,6 +5719,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_LEVELS
 #undef GXSP_SHIFT
 #undef GXSP_STIFFNESS
+#undef GXSP_TINY
 #undef GXSP_CHUNK_PARENTS
 #undef GXSP_HEAD
 #endif /* GXFEM_SOLVE_IMPLEMENTED */
