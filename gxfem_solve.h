@@ -1071,7 +1071,22 @@ static void gxsp_frame(gxsp_svd *GXSP_RESTRICT of, const float *GXSP_RESTRICT sc
     }
 }
 
-/* F = 1 + G = U diag(s) V^T by one-sided Jacobi, every lane the same number of sweeps. */
+/* Are the columns of b, the largest entry of which is 1, orthogonal to single precision in every lane? */
+static int gxsp_orthogonal(const gxsp_svd *GXSP_RESTRICT of)
+{
+    gxsp_singles square;
+    float most = 0;
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float x = gxsp_column_product(of, 0, 1, l), y = gxsp_column_product(of, 0, 2, l), z = gxsp_column_product(of, 1, 2, l);
+        square[l] = x * x + y * y + z * z;
+    }
+    for (l = 0; l < GXSP_LANES; ++l)
+        most = square[l] > most ? square[l] : most;
+    return most < 1e-13f;
+}
+
+/* F = 1 + G = U diag(s) V^T by one-sided Jacobi, every lane of a block the same number of sweeps. */
 static void gxsp_decompose(gxsp_lanes *GXSP_RESTRICT g, gxsp_svd *GXSP_RESTRICT of)
 {
     gxsp_singles scale, inverse;
@@ -1090,7 +1105,7 @@ static void gxsp_decompose(gxsp_lanes *GXSP_RESTRICT g, gxsp_svd *GXSP_RESTRICT 
     }
     for (k = 0; k < 9; ++k)
         GXSP_EACH_LANE(l) of->b[k][l] *= inverse[l];
-    for (sweep = 0; sweep < 4; ++sweep) { /* quadratic at the end: 3 reach single precision but for extreme F */
+    for (sweep = 0; sweep < 4 && !gxsp_orthogonal(of); ++sweep) { /* quadratic at the end: 4 reach single precision for extreme F too */
         gxsp_orthogonalise(of, 0, 1);
         gxsp_orthogonalise(of, 0, 2);
         gxsp_orthogonalise(of, 1, 2);
