@@ -29,52 +29,57 @@
  *     }
  *
  * CONTENTS (search for the anchors; in the order of the file)
- *   >>shared      result codes, allocator, jobs    >>model       order of elements, chunks, free pieces
+ *   >>shared      result codes, allocator, jobs    >>model       order of elements, chunks, pieces
  *   >>types       materials, elements, step        >>lattice     structure of the multigrid
- *   >>functions   the API                          >>operator    product, linearisation, block diagonal
- *   >>platform    finite by bits                   >>multigrid   the cycle, numbers of the coarse levels
- *   >>memory      pools, the solver's own form     >>pieces      translations of free pieces
- *   >>jobs        a loop, by threads or not        >>cg          conjugate gradients
- *   >>lanes       rsqrt, log for vectors           >>newton      line search, Newton, integrators
- *   >>material    energies and stresses            >>check       of what is given
- *   >>svd         stretches and rotations of F     >>api         the public functions
- *   >>tangent     projected Hessian of one block   >>forms       assembled forms, the material at one F
- *   >>element     passes over one block
- *   >>chunk       passes over chunks: energy, force
+ *   >>functions   the API                          >>followers   constraints between copies
+ *   >>platform    finite by bits                   >>operator    product, linearisation, block diagonal
+ *   >>memory      pools, the solver's own form     >>multigrid   the cycle, numbers of its levels, assembly
+ *   >>jobs        a loop, by threads or not        >>pieces      translations of loose pieces
+ *   >>lanes       rsqrt, log for vectors           >>points      springs and contact
+ *   >>material    energies and stresses            >>cg          conjugate gradients
+ *   >>svd         stretches and rotations of F     >>sleep       what rests is left out
+ *   >>tangent     Hessian of one block             >>newton      line search, Newton, integrators
+ *   >>element     passes over one block            >>check       of what is given
+ *   >>chunk       passes over chunks: energy,      >>api         the public functions
+ *                 force                            >>forms       assembled forms, the material at one F
  *
  * WHAT IT DOES. A step of length h is the minimum over the displacements u of the incremental potential
  *
- *     E(u) = |u - u_n - h v_n|_M^2 / (2 h^2) + U(u) - f . u        GXFEM Eq. 10 divided by h^2; joule
+ *     E(u) = |u - u_n - h v_n|_M^2 / (2 h^2) + U(u) + C(u) - f . u        GXFEM Eq. 10 divided by h^2; joule
  *
- * M: mass, U: elastic energy, f = M g + nodal forces: a linear term, so that M is never inverted. Then
- * v = (u - u_n) / h. That is backward Euler; BDF2 and the implicit midpoint rule differ in what takes the place of h and u_n + h v_n.
- * E is minimised by Newton's method with a line search on E. The Hessian of every element
- * is projected to the nearest positive semi-definite one in closed form (analytic eigensystem); its products
- * are matrix-free: eight elements side by side in a block, 48 blocks in a chunk, each chunk summed by itself and the chunks
- * in their order, so that results are the same for any number of threads. The linear systems go to conjugate
- * gradients with multigrid: the model itself smoothed by block-Jacobi, coarse levels on lattices whose points are doubled
- * where a cut runs between the copies around them. Coarse matrices serve until iterations rise.
+ * M: mass, U: elastic energy, C: springs and contact, f = M g + nodal forces: a linear term, so that M is never inverted. Then
+ * v = (u - u_n) / h. That is backward Euler; BDF2 and the implicit midpoint rule differ in what takes the place of h and
+ * u_n + h v_n, statics have no mass, Rayleigh damping is in the first term (mass) and in U (stiffness).
+ * E is minimised by Newton's method with a line search on E. The Hessian of every element is projected to the nearest positive
+ * semi-definite one in closed form (analytic eigensystem); where Newton goes on and steps are whole, near the end, the exact one
+ * is tried. Products are matrix-free: eight elements side by side in a block, 48 blocks in a chunk, each chunk summed by itself
+ * and the chunks in their order, so that results are the same for any number of threads. The linear systems go to conjugate
+ * gradients with multigrid: the model itself smoothed by block-Jacobi, coarse levels on lattices whose points are doubled where
+ * a cut runs between the copies around them, and a factorised one as soon as that is cheap. Coarse matrices serve until
+ * iterations rise. The last step's direction is the guess for the next.
  * Newton starts at u_n + h v_n; should it end above E(u_n), it is run again from u_n: E(u) <= E(u_n) always, so a step cannot
- * blow up (but for the midpoint rule, which goes on from there as far again). Every free piece (copies joined by elements, none of them held) then moves as
- * a whole so that its momentum balances, and the later iterates leave its momentum alone: the momentum of
- * every free piece is right to rounding whatever the tolerances are, and free fall takes no iteration.
+ * blow up (but for the midpoint rule, which goes on from there as far again). Every loose piece (copies joined by elements, none
+ * of them held or touched by springs and contact) then moves as a whole so that its momentum balances, and the later iterates
+ * leave its momentum alone: it is right to rounding whatever the tolerances are, and free fall takes no iteration.
  * Residuals are measured twice, both times scaled by the block diagonal D of the Hessian: in energy,
  * sqrt(sum r_i . D_i^-1 r_i), and in displacement, sqrt(sum |D_i^-1 r_i|^2). The second sees a piece of 1e-12 of its
  * neighbour's volume as well as the neighbour.
+ * A piece that has been slow for long sleeps if gxs_step_desc.sleep_speed says so; steps do without it until something touches it.
  *
- * WHAT IT DOES NOT DO. No cutting and no meshes: it sees elements of four copies. No contact, no friction.
- * No threads of its own: see gx_jobs.
+ * WHAT IT DOES NOT DO. No cutting and no meshes: it sees elements of four copies. No search for contacts between pieces: give
+ * points, planes and your own forces. No threads of its own: see gx_jobs.
  *
- * LIMITS. poisson in [0, 0.5), beyond 0.49999 the single precision of the Hessian tells; copies and elements below 2^30. Energies,
- * forces and states are doubles; the Hessian, its products and the preconditioner are single precision, which sets no limit to
- * what Newton reaches, only to what one linear solve does (about 1e-6 of the residual; a free body's slowest modes are solved as
- * well while inertia is above some 1e-6 of stiffness, rho h^2 / (E dt^2) for elements of size h). Memory: about 370 bytes per element in all, of a
- * mesh with four elements per copy. The material can invert without a failure and comes back by itself; an element collapsed to a
- * point, where its energy is stationary, is opened as if it were not quite one. Same input, same binary: same
- * bits. Nothing here needs isnan or infinities: it is right under -ffast-math, where sums round otherwise.
+ * LIMITS. poisson in [0, 0.5), beyond 0.49999 the single precision of the Hessian tells; copies and elements below 2^30.
+ * Energies, forces and states are doubles; the Hessian, its products and the preconditioner are single precision, which sets no
+ * limit to what Newton reaches, only to what one linear solve does (about 1e-6 of the residual; a free body's slowest modes are
+ * solved as well while inertia is above some 1e-6 of stiffness, rho h^2 / (E dt^2) for elements of size h). Memory: about 400
+ * bytes per element in all, of a mesh with four elements per copy. The material can invert without a failure and comes back by
+ * itself; an element collapsed to a point, where its energy is stationary, is opened as if it were not quite one. Same input,
+ * same binary: same bits. Nothing here needs isnan or infinities: it is right under -ffast-math, where sums round otherwise.
  *
- * REFERENCES. GXFEM: Generalized eXtended Finite Element Method for Deformable Cutting via Boolean Operations,
- * 2024. Smith 2018: Smith, de Goes, Kim, Stable Neo-Hookean Flesh Simulation, ACM Trans. Graph. 37(2), 2018.
+ * REFERENCES. GXFEM: Generalized eXtended Finite Element Method for Deformable Cutting via Boolean Operations, 2024. RXFEM:
+ * Koschier, Bender, Thuerey, Robust eXtended Finite Elements for Complex Cutting of Deformables, ACM Trans. Graph. 36(4), 2017.
+ * Smith 2018: Smith, de Goes, Kim, Stable Neo-Hookean Flesh Simulation, ACM Trans. Graph. 37(2), 2018.
  * BDF2 with steps that vary: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, III.5.
  * Stomakhin 2012: Stomakhin, Howes, Schroeder, Teran, Energetically Consistent Invertible Elasticity, SCA 2012.
  *
@@ -312,15 +317,15 @@ typedef struct gxs_step_report {
 typedef struct gxs_solver gxs_solver;
 
 /* >>functions
- * Those that return a gx_result check all they read: GX_ERROR_ARGUMENT, _EMPTY, _LIMIT, _INDEX (index: element),
- * _NOT_FINITE (index: element, material or copy), _INVERTED (weight below 0; index: element). Outputs are written on GX_OK
- * only. failure and report may be NULL. */
+ * Those that return a gx_result check all they read: GX_ERROR_ARGUMENT, _EMPTY, _LIMIT, _RANGE, _INDEX, _NOT_FINITE (index: of
+ * the element, material, constraint, copy, spring, point or plane), _INVERTED (weight below 0; index: element). Outputs are
+ * written on GX_OK only. failure and report may be NULL. */
 
 /* Advances displacement (m) and velocity (m/s), both copy_count x 3 of the model set last and not overlapping, by one step.
  * Held copies keep their displacement or go to their target, copies without an element of any weight or mass stay where they are;
  * both get the velocity of that.
- * GX_ERROR_ARGUMENT if no model is set; GX_ERROR_DIVERGED is possible: displacement and velocity are then unchanged. A residual
- * above newton_tolerance when the iterations are used up is no error: see the report. Allocates (GX_ERROR_MEMORY) only where there are
+ * GX_ERROR_ARGUMENT if no model is set; GX_ERROR_DIVERGED and (GXS_STATIC) GX_ERROR_FREE are possible: displacement and velocity
+ * are then unchanged. A residual above newton_tolerance when the iterations are used up is no error: see the report. Allocates (GX_ERROR_MEMORY) only where there are
  * more springs and contact points than ever before. */
 GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement, double *velocity,
                                     gxs_step_report *report, gx_failure *failure);
@@ -332,7 +337,7 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
 GXFEM_API gx_result gxs_solver_create(const gxs_solver_desc *desc /* or NULL */, gxs_solver **solver);
 GXFEM_API void gxs_solver_destroy(gxs_solver *solver); /* NULL is allowed */
 
-/* Assembled forms, for tests and benches: no held copies, no time. Vectors are copy_count x 3.
+/* Assembled forms, for tests and benches: no held copies, no constraints, no time. Vectors are copy_count x 3.
  * energy: U, J. gradient: dU/du, N. hessian_product: projected Hessian of U at displacement times direction, N, in single
  * precision as the solver has it. mass_product: M times direction. The output may not overlap an input. */
 GXFEM_API gx_result gxs_model_energy(const gxs_model *model, const double *displacement, double *energy);

@@ -1,0 +1,118 @@
+/* frames.c - frames in which a cut happens beside frames in which none does.
+
+   make bench-frames builds and runs it; it prints CSV and writes it to build/bench/frames.csv.
+
+   A block that hangs by its top and swings; after every fourth frame a horizontal cut goes one cell deeper, in strips that share their
+   edges exactly, until it has crossed 7/8 of the block. A cut frame is the cut, the renewal of the solver's model and the step.
+   Columns: medians in ms; worst: the slowest cut frame; ratio: cut frame to mean frame, those with a cut included; unknowns at the end. */
+#define _POSIX_C_SOURCE 199309L
+#define GXFEM_IMPLEMENTATION
+#include "../gxfem.h"
+#include "block.h"
+#include "csv.h"
+#include <time.h>
+
+enum { FRAMES_BETWEEN = 4, MOST_FRAMES = 1024 };
+
+static double seconds(void *user)
+{
+    struct timespec now;
+    (void)user;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(double *values, size_t count)
+{
+    if (count == 0) return 0;
+    qsort(values, count, sizeof *values, ascending);
+    return values[count / 2];
+}
+
+static void check(gx_result result)
+{
+    if (result == GX_OK) return;
+    fprintf(stderr, "frames: %s\n", gx_result_text(result));
+    exit(1);
+}
+
+/* Times of a scene, ms */
+typedef struct times {
+    double plain[MOST_FRAMES], frame[MOST_FRAMES], cut[MOST_FRAMES], sum, worst;
+    size_t plain_count, frame_count, frames;
+} times;
+
+static double step(gx_body *body, double time)
+{
+    const double start = seconds(NULL);
+    gx_step_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.dt = 0.033;
+    desc.gravity[0] = 9.81 * sin(0.05 * sin(5 * time));
+    desc.gravity[2] = -9.81 * cos(0.05 * sin(5 * time));
+    check(gx_body_step(body, &desc, NULL, NULL));
+    return 1e3 * (seconds(NULL) - start);
+}
+
+static void plain_frame(gx_body *body, times *t)
+{
+    const double ms = step(body, 0.033 * (double)t->frames++);
+    t->plain[t->plain_count++] = ms;
+    t->sum += ms;
+}
+
+/* The next strip of the cut, from x = low to high, and the step after it */
+static void cut_frame(gx_body *body, times *t, double low, double high)
+{
+    const double start = seconds(NULL);
+    double cut, ms;
+    check(block_cut_rectangle(body, 2, 0.4711, low, high));
+    cut = 1e3 * (seconds(NULL) - start);
+    ms = cut + step(body, 0.033 * (double)t->frames++);
+    t->cut[t->frame_count] = cut;
+    t->frame[t->frame_count++] = ms;
+    t->sum += ms;
+    t->worst = ms > t->worst ? ms : t->worst;
+}
+
+static void run(uint32_t cells, double jitter)
+{
+    const uint32_t strips = cells * 7 / 8;
+    block_desc desc;
+    gx_body *body = NULL;
+    gx_view view;
+    times *t = (times *)calloc(1, sizeof *t);
+    uint32_t i, k;
+    double middle;
+    memset(&desc, 0, sizeof desc);
+    desc.cells = cells;
+    desc.jitter = jitter;
+    desc.young = 1e6;
+    check(t ? block_create(&desc, &body) : GX_ERROR_MEMORY);
+    for (k = 0; k < 8; ++k) step(body, 0.033 * k);
+    for (i = 0; i < strips; ++i) {
+        cut_frame(body, t, i == 0 ? -0.1 : (i + 0.37) / cells, (i + 1.37) / cells);
+        for (k = 1; k < FRAMES_BETWEEN; ++k) plain_frame(body, t);
+    }
+    check(gx_body_view(body, &view));
+    middle = median(t->frame, t->frame_count);
+    csv_row("%s-%u,%lu,%.2f,%.2f,%.2f,%.2f,%.2f", jitter > 0 ? "jittered" : "lattice", cells, (unsigned long)(3 * view.copy_count),
+            median(t->plain, t->plain_count), median(t->cut, t->frame_count), middle, t->worst, middle / (t->sum / (double)t->frames));
+    gx_body_destroy(body);
+    free(t);
+}
+
+int main(int argc, char **argv)
+{
+    static const uint32_t cells[3] = {12, 19, 24};
+    int i;
+    csv_open(argc, argv, "block,unknowns,plain_ms,cut_ms,cut_frame_ms,worst_ms,ratio");
+    for (i = 0; i < 6; ++i) run(cells[i / 2], i % 2 ? 0.2 : 0);
+    return csv_close();
+}
