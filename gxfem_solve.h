@@ -609,8 +609,12 @@ typedef struct gxsp_rest {
     double weight[GXSP_LANES];      /* m3 */
     double mass[GXSP_LANES];        /* m of the block m (1 + delta_ij), kg; 0 where gxsp_mass has it */
     uint32_t material[GXSP_LANES];
-    uint16_t node[4][GXSP_LANES];   /* of the chunk */
 } gxsp_rest;
+
+/* Nodes of a block, numbered in its chunk; apart from the rest, of which products need nothing else */
+typedef struct gxsp_corners {
+    uint16_t node[4][GXSP_LANES];
+} gxsp_corners;
 
 typedef struct gxsp_mass {
     double entry[10][GXSP_LANES]; /* kg, order of gxs_element.mass */
@@ -752,6 +756,7 @@ typedef struct gxsp_system {
     gxsp_material *damped;      /* material_count: what the step under way works with: Rayleigh damping makes them stiffer */
     gxsp_chunk *chunks;
     gxsp_rest *rest;        /* block_count */
+    gxsp_corners *corners;  /* block_count */
     gxsp_tangent *tangents; /* block_count */
     gxsp_mass *masses;      /* mass_count: blocks of chunks with elements that are not whole */
     gxsp_general *generals; /* general_count: blocks of chunks of GXS_CUSTOM */
@@ -1711,15 +1716,36 @@ static gxsp_general *gxsp_block_general(const gxsp_system *system, const gxsp_ch
     return chunk->first_general == GXSP_NONE ? NULL : &system->generals[chunk->first_general + block];
 }
 
+/* Asks for memory that is soon read: a block is too long for processors to see the next one in time. */
+static inline void gxsp_fetch(const void *memory, size_t size)
+{
+#if defined(__GNUC__)
+    const char *line = (const char *)memory;
+    size_t k;
+    for (k = 0; k < size; k += 64)
+        __builtin_prefetch(line + k);
+#else
+    (void)memory;
+    (void)size;
+#endif
+}
+
+/* The block two further on, or this one at the end */
+static size_t gxsp_block_ahead(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t block)
+{
+    const size_t at = (size_t)chunk->first_block + block;
+    return at + 2 < system->block_count ? at + 2 : at;
+}
+
 /* x of a block's corners, and the parameters of their material */
-static void gxsp_block_load(const gxsp_system *system, const gxsp_chunk *chunk, const gxsp_rest *GXSP_RESTRICT rest, const double *x,
+static void gxsp_block_load(const gxsp_system *system, const gxsp_chunk *chunk, const gxsp_corners *GXSP_RESTRICT corner, const double *x,
                             gxsp_lanes *GXSP_RESTRICT corners)
 {
     const uint32_t *copies = system->nodes + chunk->first_node;
     int i, l;
     for (i = 0; i < 4; ++i)
         for (l = 0; l < GXSP_LANES; ++l) {
-            const double *from = x + 3 * (size_t)copies[rest->node[i][l]];
+            const double *from = x + 3 * (size_t)copies[corner->node[i][l]];
             corners[3 * i][l] = from[0];
             corners[3 * i + 1][l] = from[1];
             corners[3 * i + 2][l] = from[2];
@@ -1738,12 +1764,12 @@ static void gxsp_block_parameters(const gxsp_material *materials, const gxsp_res
 }
 
 /* Forces of a block into the chunk's slots, 3 doubles each. */
-static void gxsp_block_store(const gxsp_rest *GXSP_RESTRICT rest, gxsp_lanes *GXSP_RESTRICT values, double *slots)
+static void gxsp_block_store(const gxsp_corners *GXSP_RESTRICT corner, gxsp_lanes *GXSP_RESTRICT values, double *slots)
 {
     int i, l;
     for (l = 0; l < GXSP_LANES; ++l)
         for (i = 0; i < 4; ++i) {
-            double *to = slots + 3 * (size_t)rest->node[i][l];
+            double *to = slots + 3 * (size_t)corner->node[i][l];
             to[0] += values[3 * i][l];
             to[1] += values[3 * i + 1][l];
             to[2] += values[3 * i + 2][l];
@@ -1802,11 +1828,12 @@ static void gxsp_task_state(void *context, size_t index)
         const gxsp_rest *rest = &system->rest[chunk->first_block + b];
         gxsp_lanes x[12], forces[12], ahead[9], energy;
         gxsp_state s;
-        gxsp_block_load(system, chunk, rest, pass->from, x);
+        gxsp_fetch(&system->rest[gxsp_block_ahead(system, chunk, b)], sizeof(gxsp_rest));
+        gxsp_block_load(system, chunk, &system->corners[chunk->first_block + b], pass->from, x);
         gxsp_block_parameters(pass->materials, rest, &s);
         gxsp_block_gradient(rest, x, s.g);
         if (pass->turned) {
-            gxsp_block_load(system, chunk, rest, pass->turned, x);
+            gxsp_block_load(system, chunk, &system->corners[chunk->first_block + b], pass->turned, x);
             gxsp_block_gradient(rest, x, ahead);
         }
         if (pass->nudge && chunk->kind != GXS_LINEAR && chunk->kind != GXS_CUSTOM)
@@ -1821,14 +1848,14 @@ static void gxsp_task_state(void *context, size_t index)
         }
         if (pass->inertia) {
             gxsp_lanes moved[12];
-            gxsp_block_load(system, chunk, rest, system->target, moved);
+            gxsp_block_load(system, chunk, &system->corners[chunk->first_block + b], system->target, moved);
             for (k = 0; k < 12; ++k)
                 GXSP_EACH_LANE(l) moved[k][l] = x[k][l] - moved[k][l];
             gxsp_block_inertia(rest, gxsp_block_masses(system, chunk, b), pass->rate, moved, forces, energy);
             for (l = 0; l < GXSP_LANES; ++l)
                 kinetic += energy[l];
         }
-        gxsp_block_store(rest, forces, slots);
+        gxsp_block_store(&system->corners[chunk->first_block + b], forces, slots);
     }
     system->chunk_sum[index][0] = elastic;
     system->chunk_sum[index][1] = kinetic;
@@ -2071,7 +2098,7 @@ static void gxsp_fill_chunks(gxsp_system *system, const gxs_model *model, const 
         chunk->first_node = (uint32_t)system->slot_count;
         for (e = 0; e < last; ++e) {
             const gxs_element *element = &model->elements[sorted[first + e].index];
-            gxsp_rest *rest = &system->rest[chunk->first_block + e / GXSP_LANES];
+            gxsp_corners *corner = &system->corners[chunk->first_block + e / GXSP_LANES];
             gxsp_place_element(system, chunk, element, e, model->lumped_mass);
             for (k = 0; k < 4; ++k) {
                 uint32_t copy = element->copy[k];
@@ -2080,7 +2107,7 @@ static void gxsp_fill_chunks(gxsp_system *system, const gxs_model *model, const 
                     local[copy] = count;
                     system->nodes[system->slot_count + count++] = copy;
                 }
-                rest->node[k][e % GXSP_LANES] = (uint16_t)local[copy];
+                corner->node[k][e % GXSP_LANES] = (uint16_t)local[copy];
             }
         }
         for (; e < chunk->block_count * GXSP_LANES; ++e) /* of no weight, but of a material there is */
@@ -2131,6 +2158,7 @@ static void gxsp_chunks_make(gxsp_system *system, gxsp_pool *scratch, const gxs_
     system->chunk_sum = (double(*)[3])gxsp_take(&system->pool, system->chunk_count, sizeof *system->chunk_sum);
     system->chunk_still = (uint8_t *)gxsp_take(&system->pool, system->chunk_count, 1);
     system->rest = (gxsp_rest *)gxsp_take(&system->pool, system->block_count, sizeof(gxsp_rest));
+    system->corners = (gxsp_corners *)gxsp_take(&system->pool, system->block_count, sizeof(gxsp_corners));
     system->tangents = (gxsp_tangent *)gxsp_take(&system->pool, system->block_count, sizeof(gxsp_tangent));
     system->masses = (gxsp_mass *)gxsp_take(&system->pool, system->mass_count, sizeof(gxsp_mass));
     system->generals = (gxsp_general *)gxsp_take(&system->pool, system->general_count, sizeof(gxsp_general));
@@ -2641,14 +2669,14 @@ static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch)
 
 static void gxsp_lane_copies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t block, int lane, uint32_t *copies)
 {
-    const gxsp_rest *rest = &system->rest[chunk->first_block + block];
+    const gxsp_corners *corner = &system->corners[chunk->first_block + block];
     int i;
     for (i = 0; i < 4; ++i)
-        copies[i] = system->nodes[chunk->first_node + rest->node[i][lane]];
+        copies[i] = system->nodes[chunk->first_node + corner->node[i][lane]];
 }
 
 /* Corners of the ten blocks of an element, in the order of gxs_element.mass */
-static const int gxsp_corners[10][2] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {1, 1}, {1, 2}, {1, 3}, {2, 2}, {2, 3}, {3, 3}};
+static const int gxsp_pair_corners[10][2] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {1, 1}, {1, 2}, {1, 3}, {2, 2}, {2, 3}, {3, 3}};
 
 /* Room for the edges of any chunk */
 static void gxsp_edges_make(gxsp_system *system)
@@ -2702,9 +2730,10 @@ static void gxsp_list_edges(gxsp_system *system, const gxsp_chunk *chunk)
     for (b = 0; b < chunk->block_count; ++b)
         for (l = 0; l < GXSP_LANES; ++l) {
             const gxsp_rest *rest = &system->rest[chunk->first_block + b];
+            const gxsp_corners *corner = &system->corners[chunk->first_block + b];
             for (i = 0; i < 4 && rest->weight[l] > 0; ++i)
                 for (j = i + 1; j < 4; ++j)
-                    (void)gxsp_find_edge(&system->edges, rest->node[i][l], rest->node[j][l]);
+                    (void)gxsp_find_edge(&system->edges, corner->node[i][l], corner->node[j][l]);
         }
 }
 
@@ -2804,8 +2833,9 @@ static gxsp_sets gxsp_find_sets(gxsp_system *system, const gxsp_chunk *chunk, ui
     for (b = 0; b < chunk->block_count; ++b)
         for (l = 0; l < GXSP_LANES; ++l) {
             const gxsp_rest *rest = &system->rest[chunk->first_block + b];
-            const size_t n0 = rest->node[0][l] * words, n1 = rest->node[1][l] * words, n2 = rest->node[2][l] * words,
-                         n3 = rest->node[3][l] * words;
+            const gxsp_corners *corner = &system->corners[chunk->first_block + b];
+            const size_t n0 = corner->node[0][l] * words, n1 = corner->node[1][l] * words, n2 = corner->node[2][l] * words,
+                         n3 = corner->node[3][l] * words;
             for (word = 0; word < words && rest->weight[l] > 0; ++word) {
                 const uint64_t all = sets.own[n0 + word] | sets.own[n1 + word] | sets.own[n2 + word] | sets.own[n3 + word];
                 sets.reach[n0 + word] |= all, sets.reach[n1 + word] |= all;
@@ -2997,7 +3027,7 @@ static void gxsp_fine_make(gxsp_system *system, gxsp_pool *scratch)
             uint32_t copies[4];
             gxsp_lane_copies(system, &system->chunks[c], i / GXSP_LANES, (int)(i % GXSP_LANES), copies);
             for (pair = 0; pair < 10; ++pair) {
-                const uint32_t p = copies[gxsp_corners[pair][0]], q = copies[gxsp_corners[pair][1]];
+                const uint32_t p = copies[gxsp_pair_corners[pair][0]], q = copies[gxsp_pair_corners[pair][1]];
                 system->fine[system->chunks[c].first_block + i / GXSP_LANES].entry[pair][i % GXSP_LANES] =
                     gxsp_element_follows(system, copies) ? GXSP_NONE : gxsp_find_entry(fine, p < q ? p : q, p < q ? q : p);
             }
@@ -3304,20 +3334,20 @@ static void gxsp_scatter_four(const uint16_t *node, const float *from0, const fl
 }
 #endif
 
-static void gxsp_block_gather(const gxsp_rest *GXSP_RESTRICT rest, const gxsp_vector4 *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT to)
+static void gxsp_block_gather(const gxsp_corners *GXSP_RESTRICT corner, const gxsp_vector4 *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT to)
 {
     int i, l;
     for (i = 0; i < 4; ++i)
         for (l = 0; l < GXSP_LANES; l += 4)
-            gxsp_gather_four(rest->node[i] + l, x, to[3 * i] + l, to[3 * i + 1] + l, to[3 * i + 2] + l);
+            gxsp_gather_four(corner->node[i] + l, x, to[3 * i] + l, to[3 * i + 1] + l, to[3 * i + 2] + l);
 }
 
-static void gxsp_block_scatter(const gxsp_rest *GXSP_RESTRICT rest, gxsp_singles *GXSP_RESTRICT from, gxsp_vector4 *GXSP_RESTRICT y)
+static void gxsp_block_scatter(const gxsp_corners *GXSP_RESTRICT corner, gxsp_singles *GXSP_RESTRICT from, gxsp_vector4 *GXSP_RESTRICT y)
 {
     int i, l;
     for (i = 0; i < 4; ++i)
         for (l = 0; l < GXSP_LANES; l += 4)
-            gxsp_scatter_four(rest->node[i] + l, from[3 * i] + l, from[3 * i + 1] + l, from[3 * i + 2] + l, y);
+            gxsp_scatter_four(corner->node[i] + l, from[3 * i] + l, from[3 * i + 1] + l, from[3 * i + 2] + l, y);
 }
 
 static void gxsp_task_product(void *context, size_t index)
@@ -3334,14 +3364,15 @@ static void gxsp_task_product(void *context, size_t index)
         memcpy(in[i], pass->x[copies[i]], sizeof *in);
     memset(out, 0, chunk->node_count * sizeof *out);
     for (b = 0; b < chunk->block_count; ++b) {
-        const gxsp_rest *rest = &system->rest[chunk->first_block + b];
+        const gxsp_corners *corner = &system->corners[chunk->first_block + b];
         const gxsp_mass *general = gxsp_block_masses(system, chunk, b);
         gxsp_singles from[12], to[12];
-        gxsp_block_gather(rest, (const gxsp_vector4 *)in, from);
+        gxsp_fetch(&system->tangents[gxsp_block_ahead(system, chunk, b)], sizeof(gxsp_tangent));
+        gxsp_block_gather(corner, (const gxsp_vector4 *)in, from);
         gxsp_kind_product(chunk->kind, &system->tangents[chunk->first_block + b], gxsp_block_general(system, chunk, b), from, to);
         if (general)
             gxsp_block_mass_product(general, (float)pass->rate, from, to);
-        gxsp_block_scatter(rest, to, out);
+        gxsp_block_scatter(corner, to, out);
     }
 }
 
@@ -3437,7 +3468,7 @@ static void gxsp_task_linearise(void *context, size_t index)
         const gxsp_mass *general = gxsp_block_masses(system, chunk, b);
         gxsp_lanes x[12];
         gxsp_state s;
-        gxsp_block_load(system, chunk, rest, pass->from, x);
+        gxsp_block_load(system, chunk, &system->corners[chunk->first_block + b], pass->from, x);
         gxsp_block_parameters(pass->materials, rest, &s);
         gxsp_block_gradient(rest, x, s.g);
         system->chunk_sum[index][0] += gxsp_tangent_make(chunk->kind, rest, system->scale, pass->exact, &s, tangent,
@@ -3448,7 +3479,7 @@ static void gxsp_task_linearise(void *context, size_t index)
             gxsp_block_corner(tangent, corner, gamma);
             gxsp_block_couple(tangent, gxsp_block_general(system, chunk, b), gamma, gamma, block);
             for (l = 0; l < GXSP_LANES; ++l) {
-                float *to = slots + 6 * (size_t)rest->node[corner][l];
+                float *to = slots + 6 * (size_t)system->corners[chunk->first_block + b].node[corner][l];
                 float mass = 2 * tangent->mass[l] + (general ? (float)(pass->rate * general->entry[own[corner]][l]) : 0);
                 for (k = 0; k < 6; ++k)
                     to[k] += block[packed[k]][l] + (packed[k] % 4 == 0 ? mass : 0);
@@ -3706,17 +3737,18 @@ static void gxsp_edge_blocks(gxsp_system *system, const gxsp_chunk *chunk, doubl
     memset(edges->block, 0, chunk->node_count * sizeof *edges->block);
     for (b = 0; b < chunk->block_count; ++b) {
         const gxsp_rest *rest = &system->rest[chunk->first_block + b];
+        const gxsp_corners *corner = &system->corners[chunk->first_block + b];
         const gxsp_tangent *tangent = &system->tangents[chunk->first_block + b];
         const gxsp_mass *general = gxsp_block_masses(system, chunk, b);
         gxsp_singles gamma[4][3];
         for (k = 0; k < 4; ++k)
             gxsp_block_corner(tangent, (int)k, gamma[k]);
         for (pair = 0; pair < 10; ++pair) {
-            const int p = gxsp_corners[pair][0], q = gxsp_corners[pair][1];
+            const int p = gxsp_pair_corners[pair][0], q = gxsp_pair_corners[pair][1];
             gxsp_singles block[9];
             gxsp_block_couple(tangent, gxsp_block_general(system, chunk, b), gamma[p], gamma[q], block);
             for (l = 0; l < GXSP_LANES; ++l) {
-                const uint16_t i = rest->node[p][l], j = rest->node[q][l];
+                const uint16_t i = corner->node[p][l], j = corner->node[q][l];
                 const float mass = tangent->mass[l] * (p == q ? 2.0f : 1.0f) + (general ? (float)(rate * general->entry[pair][l]) : 0);
                 if (!(rest->weight[l] > 0))
                     continue;
@@ -3962,7 +3994,7 @@ static void gxsp_assemble_following(gxsp_system *system, uint32_t p, uint32_t q,
 static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, double rate)
 {
     gxsp_level *fine = &system->levels[0];
-    const gxsp_rest *rest = &system->rest[chunk->first_block + b];
+    const gxsp_corners *corner = &system->corners[chunk->first_block + b];
     const gxsp_tangent *tangent = &system->tangents[chunk->first_block + b];
     const gxsp_mass *general = gxsp_block_masses(system, chunk, b);
     gxsp_singles gamma[4][3];
@@ -3970,12 +4002,12 @@ static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, ui
     for (l = 0; l < 4; ++l)
         gxsp_block_corner(tangent, l, gamma[l]);
     for (pair = 0; pair < 10; ++pair) {
-        const int p = gxsp_corners[pair][0], q = gxsp_corners[pair][1];
+        const int p = gxsp_pair_corners[pair][0], q = gxsp_pair_corners[pair][1];
         gxsp_singles block[9];
         gxsp_block_couple(tangent, gxsp_block_general(system, chunk, b), gamma[p], gamma[q], block);
         for (l = 0; l < GXSP_LANES; ++l) {
             const uint32_t *copies = system->nodes + chunk->first_node, entry = system->fine[chunk->first_block + b].entry[pair][l];
-            const uint32_t i = copies[rest->node[p][l]], j = copies[rest->node[q][l]];
+            const uint32_t i = copies[corner->node[p][l]], j = copies[corner->node[q][l]];
             const float mass = tangent->mass[l] * (p == q ? 2.0f : 1.0f) + (general ? (float)(rate * general->entry[pair][l]) : 0);
             float own[12] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, *to = entry == GXSP_NONE ? own : fine->block + 12 * (size_t)entry;
             gxsp_add_lane(block, l, entry != GXSP_NONE && i > j, mass, to);
