@@ -2,7 +2,7 @@
    allocator that fails. Include after gxfem_solve.h. */
 #ifndef BLOCK_H
 #define BLOCK_H
-#include <check.h>
+#include "runner.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -299,6 +299,24 @@ static inline void failing_release(void *user, void *memory, size_t size)
 {
     ((failing *)user)->balance -= size;
     free(memory);
+}
+
+/* run(f, which), which allocates by f and tells whether an allocation failed: the n-th fails, once and from then on, until none does. */
+static inline void sweep_allocations(int (*run)(failing *f, int which), int which)
+{
+    int forever, n;
+    for (forever = 0; forever < 2; ++forever)
+        for (n = 0;; ++n) {
+            failing f = {0, 0, 0, 0};
+            int failed;
+            f.left = n;
+            f.forever = forever;
+            failed = run(&f, which);
+            ck_assert_uint_eq(f.balance, 0);
+            if (!failed)
+                break;
+            ck_assert_int_lt(n, 1000);
+        }
 }
 
 #endif

@@ -4,7 +4,7 @@
 #define GXFEM_TESTS_BODY_H
 
 #include "workloads.h"
-#include <check.h>
+#include "runner.h"
 
 #define CHECK_SEED(condition, seed) ck_assert_msg(condition, "seed %llu: %s", (unsigned long long)(seed), #condition)
 

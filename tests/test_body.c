@@ -2133,9 +2133,8 @@ END_TEST
 int main(void) {
     Suite *suite = suite_create("body");
     TCase *tests = tcase_create("body");
-    SRunner *runner;
     const char *only = getenv("GXFEM_SEED");
-    int first = only != NULL ? atoi(only) : 0, last = only != NULL ? first + 1 : SEEDS, failed;
+    int first = only != NULL ? atoi(only) : 0, last = only != NULL ? first + 1 : SEEDS, result;
     tcase_set_timeout(tests, 120);
     tcase_add_loop_test(tests, field_is_unchanged_by_cuts, first, last);
     tcase_add_loop_test(tests, skin_follows_the_field, first, last);
@@ -2194,10 +2193,7 @@ int main(void) {
     tcase_add_test(tests, bad_cuts);
     tcase_add_test(tests, bad_arguments_elsewhere);
     suite_add_tcase(suite, tests);
-    runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
+    result = run_suite(suite);
     rat_arena_free();
-    return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+    return result;
 }

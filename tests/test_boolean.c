@@ -5,7 +5,7 @@
 
 #include "predicate_cases.h"
 
-#include <check.h>
+#include "runner.h"
 #include <stdio.h>
 
 static uint64_t current_seed;
@@ -1481,10 +1481,5 @@ static Suite *boolean_suite(void) {
 }
 
 int main(void) {
-    SRunner *runner = srunner_create(boolean_suite());
-    int failed;
-    srunner_run_all(runner, CK_NORMAL);
-    failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+    return run_suite(boolean_suite());
 }

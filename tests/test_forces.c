@@ -4,7 +4,7 @@
 #include "../gxfem_solve.h"
 
 #include "block.h"
-#include <check.h>
+#include "runner.h"
 #include <stdio.h>
 
 /* ---- scenes of several blocks ---- */
@@ -2424,19 +2424,7 @@ static int run_with(failing *f, int which)
 
 START_TEST(every_allocation_may_fail)
 {
-    int forever, n;
-    for (forever = 0; forever < 2; ++forever)
-        for (n = 0;; ++n) {
-            failing f = {0, 0, 0, 0};
-            int failed;
-            f.left = n;
-            f.forever = forever;
-            failed = run_with(&f, _i);
-            ck_assert_uint_eq(f.balance, 0);
-            if (!failed)
-                break;
-            ck_assert_int_lt(n, 1000);
-        }
+    sweep_allocations(run_with, _i);
 }
 END_TEST
 
@@ -2745,10 +2733,5 @@ static Suite *forces_suite(void)
 
 int main(void)
 {
-    SRunner *runner = srunner_create(forces_suite());
-    int failed;
-    srunner_run_all(runner, CK_NORMAL);
-    failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+    return run_suite(forces_suite());
 }

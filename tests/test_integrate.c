@@ -13,7 +13,7 @@
 #define GXFEM_INTEGRATE_IMPLEMENTATION
 #include "../gxfem_integrate.h"
 
-#include <check.h>
+#include "runner.h"
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -1491,11 +1491,6 @@ static Suite *integrate_suite(void)
 
 int main(void)
 {
-    SRunner *runner = srunner_create(integrate_suite());
-    int failed;
     make_gauss();
-    srunner_run_all(runner, CK_NORMAL);
-    failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+    return run_suite(integrate_suite());
 }

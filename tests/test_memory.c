@@ -6,7 +6,7 @@
    The tests run in one process each (Check's own fork), so they can be run under valgrind with CK_FORK=no. */
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
-#include <check.h>
+#include "runner.h"
 
 /* ---- an allocator that fails ---- */
 
@@ -375,8 +375,6 @@ END_TEST
 int main(void) {
     Suite *suite = suite_create("memory");
     TCase *tests = tcase_create("memory");
-    SRunner *runner;
-    int failed;
     tcase_set_timeout(tests, 120);
     tcase_add_test(tests, creation);
     tcase_add_test(tests, first_cut);
@@ -392,9 +390,5 @@ int main(void) {
     tcase_add_test(tests, cut_after_steps);
     tcase_add_test(tests, solidifying);
     suite_add_tcase(suite, tests);
-    runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+    return run_suite(suite);
 }

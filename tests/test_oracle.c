@@ -5,7 +5,7 @@
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "workloads.h"
-#include <check.h>
+#include "runner.h"
 
 enum { SCENES = 1600, PARTS = 10 };
 
@@ -507,18 +507,14 @@ END_TEST
 int main(void) {
     Suite *suite = suite_create("oracle");
     TCase *tests = tcase_create("oracle");
-    SRunner *runner;
-    int failed;
+    int result;
     tcase_set_timeout(tests, 300);
     tcase_add_test(tests, oracle_knows_the_paper);
     tcase_add_test(tests, oracle_knows_shared_edges_and_nodes);
     tcase_add_test(tests, cube_of_sticks);
     tcase_add_loop_test(tests, random_scenes, 0, PARTS);
     suite_add_tcase(suite, tests);
-    runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
+    result = run_suite(suite);
     rat_arena_free();
-    return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+    return result;
 }

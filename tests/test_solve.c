@@ -3,7 +3,7 @@
 #include "../gxfem_solve.h"
 
 #include "block.h"
-#include <check.h>
+#include "runner.h"
 #include <pthread.h>
 #include <stdio.h>
 
@@ -1009,12 +1009,13 @@ END_TEST
 /* ---- memory ---- */
 
 /* create and three steps, the model growing in between; returns whether an allocation failed */
-static int run_with(failing *f)
+static int run_with(failing *f, int which)
 {
     gxs_solver_desc desc;
     gxs_solver *solver = NULL;
     gxs_step_desc step = step_make(0.033, -9.81);
     int size, failed = 0;
+    (void)which;
     memset(&desc, 0, sizeof desc);
     desc.allocator.allocate = failing_allocate, desc.allocator.release = failing_release, desc.allocator.user = f;
     desc.preconditioner = GXS_MULTIGRID;
@@ -1042,19 +1043,7 @@ static int run_with(failing *f)
 
 START_TEST(every_allocation_may_fail)
 {
-    int forever, n;
-    for (forever = 0; forever < 2; ++forever)
-        for (n = 0;; ++n) {
-            failing f = {0, 0, 0, 0};
-            int failed;
-            f.left = n;
-            f.forever = forever;
-            failed = run_with(&f);
-            ck_assert_uint_eq(f.balance, 0);
-            if (!failed)
-                break;
-            ck_assert_int_lt(n, 1000);
-        }
+    sweep_allocations(run_with, 0);
 }
 END_TEST
 
@@ -1242,10 +1231,5 @@ static Suite *solve_suite(void)
 
 int main(void)
 {
-    SRunner *runner = srunner_create(solve_suite());
-    int failed;
-    srunner_run_all(runner, CK_NORMAL);
-    failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+    return run_suite(solve_suite());
 }

@@ -362,8 +362,6 @@ END_TEST
 int main(void) {
     Suite *suite = suite_create("steps");
     TCase *tests = tcase_create("steps");
-    SRunner *runner;
-    int failed;
     tcase_set_timeout(tests, 120);
     tcase_add_test(tests, materials_by_element);
     tcase_add_test(tests, bad_materials_are_named);
@@ -374,9 +372,5 @@ int main(void) {
     tcase_add_test(tests, copies_without_support_follow_their_fragment);
     tcase_add_test(tests, springs_pull_points_of_the_skin);
     suite_add_tcase(suite, tests);
-    runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+    return run_suite(suite);
 }

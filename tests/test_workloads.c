@@ -4,7 +4,7 @@
 #include "../gxfem.h"
 #include "workloads.h"
 #include "skin_check.h"
-#include <check.h>
+#include "runner.h"
 
 typedef struct answer {
     size_t fragments;
@@ -198,8 +198,7 @@ END_TEST
 int main(void) {
     Suite *suite = suite_create("workloads");
     TCase *tests = tcase_create("workloads");
-    SRunner *runner;
-    int failed;
+    int result;
     tcase_set_timeout(tests, 120);
     tcase_add_test(tests, w1_tetrahedron_slab);
     tcase_add_test(tests, w2_ring_slab);
@@ -213,10 +212,7 @@ int main(void) {
     tcase_add_test(tests, t_slab_goes_through);
     tcase_add_test(tests, c_corner_cut_off);
     suite_add_tcase(suite, tests);
-    runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
+    result = run_suite(suite);
     rat_arena_free();
-    return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+    return result;
 }
