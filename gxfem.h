@@ -355,7 +355,7 @@ typedef struct gxp_skin_vertex {    /* beside the columns that users see */
     uint32_t slots[4];          /* from which it has its normal, by its weights */
     uint32_t next;              /* of its bucket */
     uint32_t corner;            /* 3 x triangle + k: its first corner */
-    int outer, fresh;           /* of the outer surface; new in its place */
+    uint8_t outer, fresh, noted;    /* of the outer surface; new in its place; among those that may have changed */
 } gxp_skin_vertex;
 
 typedef struct gxp_skin_links {
@@ -3127,10 +3127,13 @@ static gx_result gxp_spread_touched(gx_body *body) {
     gxp_words *dirty = &body->skin.dirty;
     uint32_t i, j, k, count;
     gx_result result = GX_OK;
-    gxp_sort_unique(dirty);
-    count = dirty->count;
     body->stamp++;
-    for (i = 0; i < count; i++) body->cell_stamp[dirty->data[i]] = body->stamp;
+    for (i = 0, count = 0; i < dirty->count; i++) {
+        if (body->cell_stamp[dirty->data[i]] == body->stamp) continue;
+        body->cell_stamp[dirty->data[i]] = body->stamp;
+        dirty->data[count++] = dirty->data[i];
+    }
+    dirty->count = count;
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint32_t e = dirty->data[i];
         for (k = 0; k < 4 && result == GX_OK; k++) result = gxp_spread_to(body, gxp_neighbour(body, e, k));
@@ -3337,7 +3340,7 @@ typedef struct gxp_skin_face {
     uint32_t element;
     const uint32_t *copies;     /* the cell's */
     uint32_t slots[4];          /* outer: of the face's nodes, by local node */
-    int outer;
+    uint8_t outer;
     uint32_t surface;           /* gx_skin.triangle_surface */
     uint32_t label;             /* the cut triangle, GXP_NONE: none */
     uint32_t plane;             /* of the complex */
@@ -3371,27 +3374,29 @@ static gx_result gxp_vertex_room(gx_body *body) {
     return result;
 }
 
-/* Copies and weights of a point of an element, those of weight 0 last; how many are not. */
-static uint32_t gxp_weigh_point(const gxp_skin_face *face, const double lambda[4], uint32_t copies[4], double weights[4], uint32_t slots[4]) {
+/* What a point of the face is looked up by, known without arithmetic. */
+static void gxp_make_key(const gx_body *body, const gxp_skin_face *face, uint32_t point, gxp_skin_key *key) {
+    const unsigned support = gxb_complex_support(body->complex, point, face->element);
+    uint32_t i, j, n = 0;
+    memset(key->name, 0xff, sizeof key->name);
+    key->point = point;
+    key->group[0] = face->group[0]; key->group[1] = face->group[1];
+    for (i = 0; i < 4; i++) {
+        const uint32_t name = face->outer ? face->slots[i] : face->copies[i];
+        if (!(support >> i & 1) || name == GXP_NONE) continue;
+        for (j = n++; j > 0 && key->name[j - 1] > name; j--) key->name[j] = key->name[j - 1];
+        key->name[j] = name;
+    }
+}
+
+/* Copies, weights and slots of a point, those of weight 0 last. */
+static void gxp_weigh_point(const gxp_skin_face *face, const double lambda[4], uint32_t *copies, double *weights, uint32_t *slots) {
     uint32_t k, n = 0;
     for (k = 0; k < 4; k++) {
         if (!(lambda[k] > 0) || (face->outer && face->slots[k] == GXP_NONE)) continue;
         copies[n] = face->copies[k]; weights[n] = lambda[k]; slots[n++] = face->slots[k];
     }
     for (k = n; k < 4; k++) { copies[k] = copies[0]; weights[k] = 0; slots[k] = slots[0]; }
-    return n;
-}
-
-static void gxp_make_key(const gxp_skin_face *face, uint32_t point, const uint32_t *copies, const uint32_t *slots, uint32_t n, gxp_skin_key *key) {
-    uint32_t i, j;
-    memset(key, 0, sizeof *key);
-    key->point = point;
-    key->group[0] = face->group[0]; key->group[1] = face->group[1];
-    for (i = 0; i < 4; i++) {
-        const uint32_t name = i < n ? (face->outer ? slots : copies)[i] : GXP_NONE;
-        for (j = i; j > 0 && key->name[j - 1] > name; j--) key->name[j] = key->name[j - 1];
-        key->name[j] = name;
-    }
 }
 
 /* Outside by barycentric interpolation, on cut faces by the cut triangle's map. */
@@ -3407,41 +3412,47 @@ static void gxp_set_texture(gx_body *body, uint32_t vertex, const gxp_skin_face 
     }
 }
 
-/* The vertex of a key, a new one if there is none. */
-static gx_result gxp_find_vertex(gx_body *body, const gxp_skin_face *face, uint32_t point, const double lambda[4], uint32_t *vertex) {
+/* A new vertex for a key */
+static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const gxp_skin_key *key, uint32_t *vertex) {
     gxp_skin *s = &body->skin;
-    gx_result result = gxp_vertex_room(body);
-    uint32_t copies[4], slots[4], i, n, k, own;
-    double weights[4];
-    gxp_skin_key key;
+    const uint32_t i = s->vertex_count;
+    gxp_skin_vertex *v = &s->vertices[i];
+    double lambda[4], *rest = s->rest + 3 * (size_t)i;
+    uint32_t n, own = GXP_NONE;
+    int k;
+    gx_result result = face->outer ? GX_OK : gxp_own_slot(body, &own);
     if (result != GX_OK) return result;
-    n = gxp_weigh_point(face, lambda, copies, weights, slots);
-    gxp_make_key(face, point, copies, slots, n, &key);
-    for (*vertex = *gxp_vertex_bucket(s, &key); *vertex != GXP_NONE; *vertex = s->vertices[*vertex].next)
-        if (memcmp(&s->vertices[*vertex].key, &key, sizeof key) == 0) return GX_OK;
-    if (!face->outer) {
-        result = gxp_own_slot(body, &own);
-        for (i = 0; i < 4 && result == GX_OK; i++) slots[i] = own;
-    }
-    if (result != GX_OK) return result;
-    i = *vertex = s->vertex_count++;
-    s->vertices[i].key = key;
-    s->vertices[i].corner = GXP_NONE;
-    s->vertices[i].outer = face->outer;
-    s->vertices[i].fresh = 1;
-    memcpy(s->vertices[i].slots, slots, sizeof slots);
-    s->vertices[i].next = *gxp_vertex_bucket(s, &key);
-    *gxp_vertex_bucket(s, &key) = i;
-    memcpy(s->copies + 4 * (size_t)i, copies, sizeof copies);
-    memcpy(s->weights + 4 * (size_t)i, weights, sizeof weights);
-    s->point[i] = point;
+    gxb_complex_barycentric(body->complex, key->point, face->element, lambda);
+    gxp_weigh_point(face, lambda, s->copies + 4 * (size_t)i, s->weights + 4 * (size_t)i, v->slots);
+    for (n = 0; n < 4 && !face->outer; n++) v->slots[n] = own;
+    v->key = *key;
+    v->corner = GXP_NONE;
+    v->outer = face->outer;
+    v->fresh = 1;
+    v->noted = 0;
+    v->next = *gxp_vertex_bucket(s, key);
+    *gxp_vertex_bucket(s, key) = i;
+    s->point[i] = key->point;
     for (k = 0; k < 3; k++) {
-        s->rest[3 * (size_t)i + k] = 0;
-        for (n = 0; n < 4; n++) s->rest[3 * (size_t)i + k] += weights[n] * body->positions[3 * (size_t)body->copy_node[copies[n]] + k];
+        rest[k] = 0;
+        for (n = 0; n < 4; n++)
+            rest[k] += s->weights[4 * (size_t)i + n] * body->positions[3 * (size_t)body->copy_node[s->copies[4 * (size_t)i + n]] + (size_t)k];
     }
     gxp_set_normal(s->normal + 3 * (size_t)i, face->normal);
     gxp_set_texture(body, i, face, lambda);
+    *vertex = s->vertex_count++;
     return GX_OK;
+}
+
+static gx_result gxp_find_vertex(gx_body *body, const gxp_skin_face *face, uint32_t point, uint32_t *vertex) {
+    gxp_skin *s = &body->skin;
+    const gx_result result = gxp_vertex_room(body);
+    gxp_skin_key key;
+    if (result != GX_OK) return result;
+    gxp_make_key(body, face, point, &key);
+    for (*vertex = *gxp_vertex_bucket(s, &key); *vertex != GXP_NONE; *vertex = s->vertices[*vertex].next)
+        if (memcmp(&s->vertices[*vertex].key, &key, sizeof key) == 0) return GX_OK;
+    return gxp_add_vertex(body, face, &key, vertex);
 }
 
 /* Takes a vertex without triangles away. */
@@ -3507,7 +3518,12 @@ static void gxp_unlink_triangle(gxp_skin *s, uint32_t t) {
     else s->first.data[s->element[t]] = own->next;
 }
 
-static gx_result gxp_note_change(gx_body *body, int kind, uint32_t index) { return gxp_push(body, &body->skin.changed[kind], index); }
+static gx_result gxp_note_vertex(gx_body *body, uint32_t vertex) {
+    gxp_skin_vertex *v = &body->skin.vertices[vertex];
+    if (v->noted) return GX_OK;
+    v->noted = 1;
+    return gxp_push(body, &body->skin.changed[0], vertex);
+}
 
 /* Takes a triangle away; the last one takes its place. */
 static gx_result gxp_drop_triangle(gx_body *body, uint32_t t) {
@@ -3516,8 +3532,8 @@ static gx_result gxp_drop_triangle(gx_body *body, uint32_t t) {
     void *arrays[8];
     size_t items[8];
     uint32_t k;
-    gx_result result = gxp_note_change(body, 1, t);
-    for (k = 0; k < 3 && result == GX_OK; k++) result = gxp_note_change(body, 0, s->triangles[3 * t + k]);
+    gx_result result = gxp_push(body, &s->changed[1], t);
+    for (k = 0; k < 3 && result == GX_OK; k++) result = gxp_note_vertex(body, s->triangles[3 * t + k]);
     if (result != GX_OK) return result;
     gxp_unlink_triangle(s, t);
     s->triangle_count--;
@@ -3532,17 +3548,16 @@ static gx_result gxp_drop_triangle(gx_body *body, uint32_t t) {
 static gx_result gxp_add_skin_triangle(gx_body *body, const gxp_skin_face *face, const uint32_t point[3], int inward) {
     gxp_skin *s = &body->skin;
     const uint32_t t = s->triangle_count;
-    uint32_t k, j, lambda, *corner;
+    uint32_t k, j, *corner;
     gx_result result = gxp_triangle_room(body);
     if (result != GX_OK) return result;
     corner = s->triangles + 3 * (size_t)t;
     for (k = 0; k < 3 && result == GX_OK; k++) {
         const uint32_t p = point[inward ? 2 - k : k];
-        result = gxp_add_boundary_point(body, face->element, p, &lambda);
-        if (result == GX_OK) result = gxp_find_vertex(body, face, p, body->lambdas + 4 * (size_t)lambda, &corner[k]);
-        if (result == GX_OK) result = gxp_note_change(body, 0, corner[k]);
+        result = gxp_find_vertex(body, face, p, &corner[k]);
+        if (result == GX_OK) result = gxp_note_vertex(body, corner[k]);
     }
-    if (result == GX_OK) result = gxp_note_change(body, 1, t);
+    if (result == GX_OK) result = gxp_push(body, &s->changed[1], t);
     if (result != GX_OK) return result;
     s->triangle_count++;
     s->element[t] = face->element;
@@ -3557,12 +3572,12 @@ static gx_result gxp_add_skin_triangle(gx_body *body, const gxp_skin_face *face,
 
 /* --- facets as triangles with area, so that they have normals: a facet's corners may stand in line with others --- */
 
-/* May corner i be cut off the polygon of complex points? Its triangle has area, and so has what remains. */
+/* May corner i be cut off the polygon of complex points, which has area? So must its triangle have, and what remains. */
 static int gxp_is_ear(gx_body *body, const uint32_t *p, uint32_t n, uint32_t i, uint32_t plane) {
     const uint32_t before = p[(i + n - 1) % n], after = p[(i + 1) % n];
     uint32_t j;
-    if (gxb_complex_turn(body->complex, before, p[i], after, plane) == 0) return 0;
     if (n == 3) return 1;
+    if (gxb_complex_turn(body->complex, before, p[i], after, plane) == 0) return 0;
     for (j = 2; j < n - 1; j++) if (gxb_complex_turn(body->complex, before, after, p[(i + j) % n], plane) != 0) return 1;
     return 0;
 }
@@ -3678,11 +3693,23 @@ static gx_result gxp_skin_whole(gx_body *body, gxp_skin_face *face) {
     return result;
 }
 
-/* Has no cut divided the element's faces or edges? */
+/* Is the element's face k as the mesh has it: not divided, no wall, and the element behind it, if there is one, still there? */
+static int gxp_face_is_whole(const gx_body *body, uint32_t element, uint32_t k) {
+    const gxb_complex *cx = body->complex;
+    const uint32_t facet = cx->face_facet[cx->element_faces[4 * element + k]];
+    const gxb_facet *f = &cx->facets[facet];
+    uint32_t other;
+    if (facet == GXB_NONE) return 1;
+    other = f->leaf[f->leaf[0] == element];
+    return f->child == GXB_NONE && !f->wall && (other == GXB_NONE || !cx->leaves[other].removed);
+}
+
+/* Does it show its outer faces as the mesh has them, and nothing else? */
 static int gxp_is_untouched(const gx_body *body, uint32_t element) {
     const gxb_complex *cx = body->complex;
     uint32_t k;
-    for (k = 0; k < 4; k++) if (cx->face_facet[cx->element_faces[4 * element + k]] != GXB_NONE) return 0;
+    if (body->cells[element].next != GXP_NONE || body->leaves[element].next != GXP_NONE || cx->leaves[element].removed) return 0;
+    for (k = 0; k < 4; k++) if (!gxp_face_is_whole(body, element, k)) return 0;
     for (k = 0; k < 6; k++) if (gxp_edge_is_divided(cx, cx->element_edges[6 * element + k])) return 0;
     return 1;
 }
@@ -3701,7 +3728,6 @@ static gx_result gxp_skin_element(gx_body *body, uint32_t element) {
     if (untouched && !gxp_is_at_boundary(body, element)) return GX_OK;
     memset(&face, 0, sizeof face);
     face.element = element;
-    gxp_clear_boundary(body);
     if (!untouched) result = gxb_complex_open_element(body->complex, element);
     for (cell = element; cell != GXP_NONE && result == GX_OK; cell = body->cells[cell].next) {
         if (!body->cells[cell].kept) continue;
@@ -3752,7 +3778,7 @@ static void gxp_renew_normals(gxp_skin *s) {
         gxp_rest_normal(s, vertex, normal);
         if (s->vertices[vertex].fresh || memcmp(normal, s->normal + 3 * (size_t)vertex, sizeof normal) != 0) s->changed[0].data[n++] = vertex;
         memcpy(s->normal + 3 * (size_t)vertex, normal, sizeof normal);
-        s->vertices[vertex].fresh = 0;
+        s->vertices[vertex].fresh = s->vertices[vertex].noted = 0;
     }
     s->changed[0].count = n;
 }
