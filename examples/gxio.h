@@ -4,7 +4,7 @@
      >>errors      one line of text: file, line, cause
      >>reader      a whole file in memory, read token by token
      >>arguments   numbers and lists of numbers out of a command line
-     >>mesh        tetrahedral meshes: Medit .mesh, TetGen .node/.ele, generated cube5, grid:..., tet
+     >>mesh        tetrahedral meshes: Medit .mesh, TetGen .node/.ele, generated cube5, grid:..., tet, shapes of gxshape.h
      >>surface     triangle surfaces: .obj, .off, generated plane:..., box:..., wave:...
      >>writer      files that are either complete or not there
      >>frames      triangles with fragment ids as .vtu or .obj, and the .pvd collection of a run
@@ -34,6 +34,7 @@
 #include <sys/stat.h>
 #include <sys/types.h>
 #endif
+#include "gxshape.h"
 
 enum { GXIO_PATH_ROOM = 1024 };     /* longest path, with its terminator, bytes */
 
@@ -581,12 +582,60 @@ static inline int gxio_generate_tet(gxio_mesh *mesh, gxio_error *error)
     return 1;
 }
 
+/* Takes over what gxshape.h made; fails if it says what is wrong. */
+static inline int gxio_take_shape(const char *spec, const char *wrong, const gxshape_mesh *made, gxio_mesh *mesh, gxio_error *error)
+{
+    if (wrong) return gxio_fail(error, spec, 0, "%s", wrong);
+    mesh->positions = made->positions;
+    mesh->node_count = made->node_count;
+    mesh->elements = made->elements;
+    mesh->element_count = made->element_count;
+    return 1;
+}
+
+/* ball:RADIUS,SPACING and torus:R,r,SPACING about the origin, the torus around the z axis. */
+static inline int gxio_generate_round(const char *spec, gxio_mesh *mesh, gxio_error *error)
+{
+    const char *ball = gxio_after(spec, "ball:");
+    double number[3] = {0, 0, 0}, thin;
+    gxshape_mesh made;
+    gxshape_field field;
+    int count = ball ? gxio_argument_list(ball, number, 2, 2) : gxio_argument_list(spec + strlen("torus:"), number, 3, 3);
+    memset(&field, 0, sizeof field);
+    field.part_count = 1;
+    field.parts[0].kind = ball ? GXSHAPE_CAPSULE : GXSHAPE_RING;
+    field.parts[0].q[2] = ball ? 0.0 : 1.0;
+    field.parts[0].r[0] = number[0];
+    field.parts[0].r[1] = thin = ball ? number[0] : number[1];
+    if (count < 0 || !(number[count - 1] > 0.0) || !(thin >= GXSHAPE_THINNEST * number[count - 1]) || (!ball && !(number[0] > thin)))
+        return gxio_fail(error, spec, 0, ball ? "is not ball:RADIUS,SPACING with 0 < SPACING <= RADIUS / 0.92"
+                                              : "is not torus:R,r,SPACING with R > r and 0 < SPACING <= r / 0.92");
+    return gxio_take_shape(spec, gxshape_fill(&field, number[count - 1], &made), &made, mesh, error);
+}
+
+/* NAME or NAME:SPACING of one of gxshape.h's shapes. */
+static inline int gxio_generate_shape(const char *spec, const gxshape_named *named, gxio_mesh *mesh, gxio_error *error)
+{
+    const char *list = strchr(spec, ':');
+    double spacing = named->spacing;
+    gxshape_mesh made;
+    gxshape_field field;
+    if (list && (!gxio_argument_number(list + 1, &spacing) || !(spacing > 0.0 && spacing <= named->coarsest)))
+        return gxio_fail(error, spec, 0, "is not %s or %s:SPACING with 0 < SPACING <= %g", named->name, named->name, named->coarsest);
+    memset(&field, 0, sizeof field);
+    named->make(&field);
+    return gxio_take_shape(spec, gxshape_fill(&field, spacing, &made), &made, mesh, error);
+}
+
 static inline int gxio_mesh_generate(const char *spec, gxio_mesh *mesh, gxio_error *error)
 {
     static const size_t one[3] = {1, 1, 1};
     const char *list = gxio_after(spec, "grid:");
+    const gxshape_named *named = gxshape_find(spec, strcspn(spec, ":"));
     int good;
     if (list) good = gxio_generate_grid(spec, list, mesh, error);
+    else if (named) good = gxio_generate_shape(spec, named, mesh, error);
+    else if (gxio_after(spec, "ball:") || gxio_after(spec, "torus:")) good = gxio_generate_round(spec, mesh, error);
     else if (strcmp(spec, "tet") == 0) good = gxio_generate_tet(mesh, error);
     else good = gxio_make_grid(mesh, one, 5) ? 1 : gxio_fail(error, spec, 0, "out of memory");
     free(mesh->node_lines);
@@ -595,6 +644,12 @@ static inline int gxio_mesh_generate(const char *spec, gxio_mesh *mesh, gxio_err
     snprintf(mesh->node_path, sizeof mesh->node_path, "%s", spec);
     snprintf(mesh->element_path, sizeof mesh->element_path, "%s", spec);
     return good;
+}
+
+static inline int gxio_mesh_is_generated(const char *spec)
+{
+    return strcmp(spec, "cube5") == 0 || strcmp(spec, "tet") == 0 || gxio_after(spec, "grid:") || gxio_after(spec, "ball:")
+        || gxio_after(spec, "torus:") || gxshape_find(spec, strcspn(spec, ":"));
 }
 
 static inline int gxio_mesh_read(const char *path, gxio_mesh *mesh, gxio_error *error)
@@ -609,13 +664,13 @@ static inline int gxio_mesh_read(const char *path, gxio_mesh *mesh, gxio_error *
     return good;
 }
 
-/* cube5, tet, grid:..., a .mesh file, a .node or .ele file, or the name that a .node and an .ele file share. */
+/* cube5, tet, grid:..., a shape, a .mesh file, a .node or .ele file, or the name that a .node and an .ele file share. */
 static inline int gxio_mesh_load(const char *spec, gxio_mesh *mesh, gxio_error *error)
 {
     int good;
     memset(mesh, 0, sizeof *mesh);
     if (strlen(spec) + 8 > GXIO_PATH_ROOM) return gxio_fail(error, "mesh", 0, "the name is too long");
-    if (strcmp(spec, "cube5") == 0 || strcmp(spec, "tet") == 0 || gxio_after(spec, "grid:"))
+    if (gxio_mesh_is_generated(spec))
         good = gxio_mesh_generate(spec, mesh, error);
     else
         good = gxio_mesh_read(spec, mesh, error);
