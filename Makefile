@@ -63,7 +63,7 @@ run-gxcut: $(BUILD)/gxcut
 $(tests:%=run-%): run-%: $(BUILD)/tests/%
 	@$< >$<.log 2>&1; code=$$?; cat $<.log; exit $$code
 
-$(BUILD)/tests/%: tests/%.c $(headers) $(wildcard tests/*.h)
+$(BUILD)/tests/%: tests/%.c $(headers) $(wildcard tests/*.h examples/*.h)
 	@mkdir -p $(@D)
 	$(compile) -g -Itests $(shell pkg-config --cflags check) $< -o $@ $(LDFLAGS) $(shell pkg-config --libs check) -lm
 

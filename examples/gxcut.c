@@ -71,11 +71,18 @@ static const char usage[] =
     "Cuts a tetrahedral mesh exactly, steps it in time and writes a surface per frame.\n"
     "\n"
     "MESH   FILE.mesh                Medit, ASCII\n"
+    "       FILE.msh                 Gmsh 2.2 or 4.1, ASCII\n"
+    "       FILE.vtk                 legacy VTK, unstructured grid, ASCII\n"
     "       FILE.node, FILE.ele      TetGen; either name, or FILE alone\n"
     "       cube5                    unit cube of 5 tetrahedra\n"
     "       grid:NX,NY,NZ[,5|6]      unit cubes of 5 (default) or 6 tetrahedra\n"
     "       tet                      corners at the origin and at 1 on each axis\n"
+    "       NAME[:SPACING]           octopus, bunny, armadillo, objects (a plate with things on it), with edges of about\n"
+    "                                SPACING; default and largest: 0.0188 0.05, 0.0085 0.02, 3.9 10, 0.058 0.1\n"
+    "       ball:RADIUS,SPACING      about the origin; torus:R,r,SPACING: around the z axis\n"
     "CUT    FILE.obj, FILE.off       triangles or polygons\n"
+    "       FILE.stl                 ASCII or binary; corners with equal coordinates become one\n"
+    "       FILE.vtk                 legacy VTK, polydata, ASCII\n"
     "       plane:PX,PY,PZ,NX,NY,NZ  sheet through P with normal N, across the body\n"
     "       wave:PX,PY,PZ,NX,NY,NZ,AMPLITUDE,WAVELENGTH[,RESOLUTION]\n"
     "                                the same as a sine wave about the plane, which runs along the coordinate\n"
@@ -346,7 +353,7 @@ static gx_result stretch(run *r)
     double low[3], high[3];
     size_t copy, axis;
     const gx_result result = gx_body_view(r->body, &r->view);
-    gxio_bounds(r->mesh.positions, r->mesh.node_count, low, high);
+    gxio_mesh_bounds(&r->mesh, low, high);
     for (copy = 0; result == GX_OK && copy < r->view.copy_count; copy++)
         for (axis = 0; axis < 3; axis++) {
             const double x = r->mesh.positions[3 * (size_t)r->view.copy_node[copy] + axis];

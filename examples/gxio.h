@@ -4,8 +4,11 @@
      >>errors      one line of text: file, line, cause
      >>reader      a whole file in memory, read token by token
      >>arguments   numbers and lists of numbers out of a command line
-     >>mesh        tetrahedral meshes: Medit .mesh, TetGen .node/.ele, generated cube5, grid:..., tet
-     >>surface     triangle surfaces: .obj, .off, generated plane:..., box:..., wave:...
+     >>mesh        a tetrahedral mesh; Medit .mesh, TetGen .node/.ele
+     >>gmsh        Gmsh .msh
+     >>vtk         what legacy .vtk files of meshes and surfaces share; meshes
+     >>generate    generated meshes: cube5, grid:..., tet, shapes of gxshape.h; any mesh by its name
+     >>surface     triangle surfaces: .obj, .off, .stl, .vtk, generated plane:..., box:..., wave:...
      >>writer      files that are either complete or not there
      >>frames      triangles with fragment ids as .vtu or .obj, and the .pvd collection of a run
      >>clock       seconds, directories
@@ -34,6 +37,7 @@
 #include <sys/stat.h>
 #include <sys/types.h>
 #endif
+#include "gxshape.h"
 
 enum { GXIO_PATH_ROOM = 1024 };     /* longest path, with its terminator, bytes */
 
@@ -96,7 +100,8 @@ static inline char *gxio_slurp(const char *path, size_t *length)
     return text;
 }
 
-static inline int gxio_reader_open(gxio_reader *reader, const char *path, gxio_error *error)
+/* The whole file, whatever is in it. */
+static inline int gxio_reader_load(gxio_reader *reader, const char *path, gxio_error *error)
 {
     size_t length = 0;
     memset(reader, 0, sizeof *reader);
@@ -107,11 +112,21 @@ static inline int gxio_reader_open(gxio_reader *reader, const char *path, gxio_e
     if (!reader->text) return gxio_fail(error, path, 0, "cannot be read: %s", strerror(errno ? errno : EIO));
     reader->at = reader->text;
     reader->end = reader->text + length;
-    if (memchr(reader->text, 0, length)) {
-        gxio_reader_release(reader);
-        return gxio_fail(error, path, 0, "is binary, not text");
-    }
     return 1;
+}
+
+/* 1: text, 0: there are bytes of 0 in it, which no text has. */
+static inline int gxio_is_text(const gxio_reader *reader)
+{
+    return memchr(reader->text, 0, (size_t)(reader->end - reader->text)) == NULL;
+}
+
+static inline int gxio_reader_open(gxio_reader *reader, const char *path, gxio_error *error)
+{
+    if (!gxio_reader_load(reader, path, error)) return 0;
+    if (gxio_is_text(reader)) return 1;
+    gxio_reader_release(reader);
+    return gxio_fail(error, path, 0, "is binary, not text");
 }
 
 static inline int gxio_is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
@@ -119,6 +134,14 @@ static inline int gxio_is_blank(char c) { return c == ' ' || c == '\t' || c == '
 static inline void gxio_skip_line(gxio_reader *reader)
 {
     while (*reader->at && *reader->at != '\n') reader->at++;
+}
+
+static inline void gxio_next_line(gxio_reader *reader)
+{
+    gxio_skip_line(reader);
+    if (!*reader->at) return;
+    reader->at++;
+    reader->line++;
 }
 
 /* Advances to the next token: text up to a blank, past comments (# to the end of the line).
@@ -158,6 +181,16 @@ static inline int gxio_need(gxio_reader *reader, int where, const char *what, gx
     if (gxio_next(reader, where)) return 1;
     if (!*reader->at) return gxio_fail(error, reader->path, reader->token_line, "the file ends where %s should stand", what);
     return gxio_fail(error, reader->path, reader->line, "%s is missing", what);
+}
+
+/* The next token, which must be `word`. */
+static inline int gxio_expect(gxio_reader *reader, const char *word, gxio_error *error)
+{
+    char cause[80];
+    if (!gxio_need(reader, GXIO_ANY_LINE, word, error)) return 0;
+    if (gxio_token_is(reader, word)) return 1;
+    snprintf(cause, sizeof cause, "stands where %s should", word);
+    return gxio_bad_token(reader, cause, error);
 }
 
 /* A finite double that fills [text, end). Infinities and NaN are recognised by their letters and by errno, never by
@@ -311,15 +344,18 @@ static inline int gxio_mesh_elements(gxio_mesh *mesh, size_t count)
     return mesh->elements && mesh->element_lines;
 }
 
-static inline void gxio_bounds(const double *points, size_t count, double low[3], double high[3])
+/* The bounding box of the nodes that elements have: files may hold others, which are no part of the body. */
+static inline void gxio_mesh_bounds(const gxio_mesh *mesh, double low[3], double high[3])
 {
     size_t i;
     int axis;
-    for (axis = 0; axis < 3; axis++) low[axis] = high[axis] = count ? points[axis] : 0.0;
-    for (i = 0; i < 3 * count; i++) {
-        if (points[i] < low[i % 3]) low[i % 3] = points[i];
-        if (points[i] > high[i % 3]) high[i % 3] = points[i];
-    }
+    for (axis = 0; axis < 3; axis++) low[axis] = high[axis] = mesh->element_count ? mesh->positions[3 * (size_t)mesh->elements[0] + (size_t)axis] : 0.0;
+    for (i = 0; i < 4 * mesh->element_count; i++)
+        for (axis = 0; axis < 3; axis++) {
+            const double x = mesh->positions[3 * (size_t)mesh->elements[i] + (size_t)axis];
+            if (x < low[axis]) low[axis] = x;
+            if (x > high[axis]) high[axis] = x;
+        }
 }
 
 /* det(x1 - x0, x2 - x0, x3 - x0) in doubles. */
@@ -517,6 +553,467 @@ static inline int gxio_read_tetgen(const char *base_path, size_t length, gxio_me
     return good && gxio_mesh_rebase(mesh, base, error);
 }
 
+/* ---------------------------------------------------------------------------------------------- >>gmsh */
+
+typedef struct gxio_tag { uint32_t tag, node; } gxio_tag;      /* a node's name in the file, its index */
+
+/* A file while it is read. Elements hold tags until all nodes are known. */
+typedef struct gxio_gmsh {
+    gxio_reader *reader;
+    gxio_mesh *mesh;
+    gxio_tag *tags;             /* mesh->node_count */
+    int version;                /* 2 or 4 */
+} gxio_gmsh;
+
+/* Past the line $EndNAME of the section $NAME, which is the last token. */
+static inline int gxio_gmsh_skip(gxio_reader *reader, gxio_error *error)
+{
+    const char *name = reader->token + 1;
+    const size_t length = reader->token_length - 1, line = reader->token_line;
+    while (*reader->at) {
+        gxio_next_line(reader);
+        if (strncmp(reader->at, "$End", 4) != 0 || strncmp(reader->at + 4, name, length) != 0) continue;
+        gxio_next_line(reader);
+        return 1;
+    }
+    return gxio_fail(error, reader->path, line, "the file ends before $End%.*s", length < 40 ? (int)length : 40, name);
+}
+
+/* $MeshFormat: version, 0 (ASCII), size of a double. */
+static inline int gxio_gmsh_header(gxio_gmsh *file, gxio_error *error)
+{
+    gxio_reader *reader = file->reader;
+    double version = 0.0;
+    int64_t binary = 0;
+    if (!gxio_expect(reader, "$MeshFormat", error)) return 0;
+    if (!gxio_read_number(reader, GXIO_ANY_LINE, "the format's version", &version, error)) return 0;
+    file->version = version >= 2.0 && version < 3.0 ? 2 : version == 4.1 ? 4 : 0;
+    if (!file->version) return gxio_bad_token(reader, "is the format's version, but 2.2 or 4.1 is needed", error);
+    if (!gxio_read_integer(reader, GXIO_SAME_LINE, "the file's type", &binary, error)) return 0;
+    if (binary) return gxio_bad_token(reader, "is the file's type, but 0 (ASCII) is needed", error);
+    gxio_skip_line(reader);
+    return gxio_expect(reader, "$EndMeshFormat", error);
+}
+
+static inline int gxio_gmsh_room(gxio_gmsh *file, size_t nodes, gxio_error *error)
+{
+    if (file->mesh->positions) return gxio_fail(error, file->reader->path, file->reader->token_line, "a second section $Nodes");
+    file->tags = (gxio_tag *)gxio_array(nodes, sizeof *file->tags);
+    if (gxio_mesh_nodes(file->mesh, nodes) && file->tags) return 1;
+    return gxio_fail(error, file->reader->path, file->reader->line, "out of memory");
+}
+
+static inline int gxio_gmsh_tag(gxio_gmsh *file, size_t i, gxio_error *error)
+{
+    file->tags[i].node = (uint32_t)i;
+    return gxio_read_index(file->reader, GXIO_ANY_LINE, &file->tags[i].tag, error);
+}
+
+/* What follows the coordinates on their line (4.1: those on a curve or surface) is passed over. */
+static inline int gxio_gmsh_point(gxio_gmsh *file, size_t i, int where, gxio_error *error)
+{
+    if (!gxio_read_point(file->reader, where, file->mesh->positions + 3 * i, error)) return 0;
+    file->mesh->node_lines[i] = (uint32_t)file->reader->token_line;
+    gxio_skip_line(file->reader);
+    return 1;
+}
+
+/* Version 2: count, then tag and coordinates per line. */
+static inline int gxio_gmsh_nodes_2(gxio_gmsh *file, gxio_error *error)
+{
+    size_t i, count = 0;
+    if (!gxio_read_count(file->reader, GXIO_ANY_LINE, "the number of nodes", &count, error)) return 0;
+    if (!gxio_gmsh_room(file, count, error)) return 0;
+    for (i = 0; i < count; i++)
+        if (!gxio_gmsh_tag(file, i, error) || !gxio_gmsh_point(file, i, GXIO_SAME_LINE, error)) return 0;
+    return gxio_expect(file->reader, "$EndNodes", error);
+}
+
+/* Version 4, first line of $Nodes and $Elements: number of blocks, of items in all. */
+static inline int gxio_gmsh_totals(gxio_gmsh *file, const char *what, size_t *blocks, size_t *total, gxio_error *error)
+{
+    if (!gxio_read_count(file->reader, GXIO_ANY_LINE, "the number of blocks", blocks, error)) return 0;
+    if (!gxio_read_count(file->reader, GXIO_SAME_LINE, what, total, error)) return 0;
+    gxio_skip_line(file->reader);
+    return 1;
+}
+
+/* Version 4, first line of a block: dimension and number of its entity, kind (of elements: their type), count, which may be
+   `left` at most. */
+static inline int gxio_gmsh_block(gxio_gmsh *file, int64_t *kind, size_t left, size_t *count, gxio_error *error)
+{
+    int64_t dimension = 0, entity = 0;
+    if (!gxio_read_integer(file->reader, GXIO_ANY_LINE, "a block's dimension", &dimension, error)) return 0;
+    if (!gxio_read_integer(file->reader, GXIO_SAME_LINE, "a block's entity", &entity, error)) return 0;
+    if (!gxio_read_integer(file->reader, GXIO_SAME_LINE, "a block's kind", kind, error)) return 0;
+    if (!gxio_read_count(file->reader, GXIO_SAME_LINE, "a block's count", count, error)) return 0;
+    return *count <= left ? 1 : gxio_bad_token(file->reader, "is a larger count than the section's first line leaves", error);
+}
+
+static inline int gxio_gmsh_fewer(gxio_gmsh *file, const char *what, size_t left, gxio_error *error)
+{
+    return gxio_fail(error, file->reader->path, file->reader->token_line, "%lu %s fewer than the section's first line says",
+                     (unsigned long)left, what);
+}
+
+/* Version 4: blocks of all tags, then all coordinates. */
+static inline int gxio_gmsh_nodes_4(gxio_gmsh *file, gxio_error *error)
+{
+    size_t blocks = 0, total = 0, first = 0, count = 0, i;
+    int64_t parametric = 0;
+    if (!gxio_gmsh_totals(file, "the number of nodes", &blocks, &total, error) || !gxio_gmsh_room(file, total, error)) return 0;
+    for (; blocks > 0; blocks--, first += count) {
+        if (!gxio_gmsh_block(file, &parametric, total - first, &count, error)) return 0;
+        for (i = 0; i < count; i++) if (!gxio_gmsh_tag(file, first + i, error)) return 0;
+        for (i = 0; i < count; i++) if (!gxio_gmsh_point(file, first + i, GXIO_ANY_LINE, error)) return 0;
+    }
+    if (first < total) return gxio_gmsh_fewer(file, "nodes", total - first, error);
+    return gxio_expect(file->reader, "$EndNodes", error);
+}
+
+/* The corners of an element, which come first; only tetrahedra (type 4, or 11 with nodes on the edges) are kept. */
+static inline int gxio_gmsh_corners(gxio_gmsh *file, int64_t type, gxio_error *error)
+{
+    gxio_mesh *mesh = file->mesh;
+    int corner;
+    for (corner = 0; corner < 4 && (type == 4 || type == 11); corner++)
+        if (!gxio_read_index(file->reader, GXIO_SAME_LINE, mesh->elements + 4 * mesh->element_count + corner, error)) return 0;
+    if (corner == 4) mesh->element_lines[mesh->element_count++] = (uint32_t)file->reader->token_line;
+    gxio_skip_line(file->reader);
+    return 1;
+}
+
+/* Room for tetrahedra, of which there are none yet. */
+static inline int gxio_gmsh_element_room(gxio_gmsh *file, size_t count, gxio_error *error)
+{
+    const gxio_reader *reader = file->reader;
+    if (file->mesh->elements) return gxio_fail(error, reader->path, reader->token_line, "a second section $Elements");
+    if (!gxio_mesh_elements(file->mesh, count)) return gxio_fail(error, reader->path, reader->line, "out of memory");
+    file->mesh->element_count = 0;
+    return 1;
+}
+
+/* Version 2: count, then per line: number, type, how many tags, these, nodes. */
+static inline int gxio_gmsh_elements_2(gxio_gmsh *file, gxio_error *error)
+{
+    gxio_reader *reader = file->reader;
+    size_t i, count = 0, tags = 0;
+    int64_t number = 0, type = 0, tag = 0;
+    if (!gxio_read_count(reader, GXIO_ANY_LINE, "the number of elements", &count, error)) return 0;
+    if (!gxio_gmsh_element_room(file, count, error)) return 0;
+    for (i = 0; i < count; i++) {
+        if (!gxio_read_integer(reader, GXIO_ANY_LINE, "an element's number", &number, error)) return 0;
+        if (!gxio_read_integer(reader, GXIO_SAME_LINE, "an element's type", &type, error)) return 0;
+        if (!gxio_read_count(reader, GXIO_SAME_LINE, "an element's number of tags", &tags, error)) return 0;
+        for (; tags > 0; tags--) if (!gxio_read_integer(reader, GXIO_SAME_LINE, "an element's tag", &tag, error)) return 0;
+        if (!gxio_gmsh_corners(file, type, error)) return 0;
+    }
+    return gxio_expect(reader, "$EndElements", error);
+}
+
+/* Version 4: blocks of one type, per line: number, nodes. */
+static inline int gxio_gmsh_elements_4(gxio_gmsh *file, gxio_error *error)
+{
+    size_t blocks = 0, left = 0, count = 0;
+    int64_t type = 0, number = 0;
+    if (!gxio_gmsh_totals(file, "the number of elements", &blocks, &left, error)) return 0;
+    if (!gxio_gmsh_element_room(file, left, error)) return 0;
+    for (; blocks > 0; blocks--) {
+        if (!gxio_gmsh_block(file, &type, left, &count, error)) return 0;
+        for (left -= count; count > 0; count--) {
+            if (!gxio_read_integer(file->reader, GXIO_ANY_LINE, "an element's number", &number, error)) return 0;
+            if (!gxio_gmsh_corners(file, type, error)) return 0;
+        }
+    }
+    if (left) return gxio_gmsh_fewer(file, "elements", left, error);
+    return gxio_expect(file->reader, "$EndElements", error);
+}
+
+/* Sections in any order; those not named here are skipped. */
+static inline int gxio_gmsh_sections(gxio_gmsh *file, gxio_error *error)
+{
+    gxio_reader *reader = file->reader;
+    while (gxio_next(reader, GXIO_ANY_LINE)) {
+        int good;
+        if (*reader->token != '$') return gxio_bad_token(reader, "stands where a section $... should", error);
+        if (gxio_token_is(reader, "$Nodes")) good = file->version == 2 ? gxio_gmsh_nodes_2(file, error) : gxio_gmsh_nodes_4(file, error);
+        else if (gxio_token_is(reader, "$Elements"))
+            good = file->version == 2 ? gxio_gmsh_elements_2(file, error) : gxio_gmsh_elements_4(file, error);
+        else good = gxio_gmsh_skip(reader, error);
+        if (!good) return 0;
+    }
+    if (!file->mesh->positions) return gxio_fail(error, reader->path, reader->token_line, "the file has no $Nodes");
+    if (!file->mesh->elements) return gxio_fail(error, reader->path, reader->token_line, "the file has no $Elements");
+    if (!file->mesh->element_count) return gxio_fail(error, reader->path, 0, "the file has no tetrahedra (elements of type 4 or 11)");
+    return 1;
+}
+
+static inline int gxio_tag_compare(const void *a, const void *b)
+{
+    const gxio_tag *p = (const gxio_tag *)a, *q = (const gxio_tag *)b;
+    if (p->tag != q->tag) return p->tag < q->tag ? -1 : 1;
+    return p->node < q->node ? -1 : p->node > q->node;
+}
+
+/* Replaces tags by the nodes' indices. */
+static inline int gxio_gmsh_resolve(gxio_gmsh *file, gxio_error *error)
+{
+    gxio_mesh *mesh = file->mesh;
+    gxio_tag *tags = file->tags;
+    size_t i;
+    qsort(tags, mesh->node_count, sizeof *tags, gxio_tag_compare);
+    for (i = 1; i < mesh->node_count; i++)
+        if (tags[i].tag == tags[i - 1].tag)
+            return gxio_fail(error, mesh->node_path, mesh->node_lines[tags[i].node], "a second node with the tag %lu", (unsigned long)tags[i].tag);
+    for (i = 0; i < 4 * mesh->element_count; i++) {
+        size_t low = 0, high = mesh->node_count;        /* the first tag not below the corner's lies in low ... high */
+        while (low < high) {
+            const size_t middle = low + (high - low) / 2;
+            if (tags[middle].tag < mesh->elements[i]) low = middle + 1;
+            else high = middle;
+        }
+        if (low == mesh->node_count || tags[low].tag != mesh->elements[i])
+            return gxio_fail(error, mesh->element_path, mesh->element_lines[i / 4], "there is no node with the tag %lu", (unsigned long)mesh->elements[i]);
+        mesh->elements[i] = tags[low].node;
+    }
+    return 1;
+}
+
+static inline int gxio_read_gmsh(const char *path, gxio_mesh *mesh, gxio_error *error)
+{
+    gxio_reader reader;
+    gxio_gmsh file;
+    int good;
+    if (!gxio_reader_open(&reader, path, error)) return 0;
+    snprintf(mesh->node_path, sizeof mesh->node_path, "%s", path);
+    snprintf(mesh->element_path, sizeof mesh->element_path, "%s", path);
+    memset(&file, 0, sizeof file);
+    file.reader = &reader;
+    file.mesh = mesh;
+    good = gxio_gmsh_header(&file, error) && gxio_gmsh_sections(&file, error) && gxio_gmsh_resolve(&file, error);
+    free(file.tags);
+    gxio_reader_release(&reader);
+    return good;
+}
+
+/* ----------------------------------------------------------------------------------------------- >>vtk */
+
+/* Cells: lists of point indices, one after the other. */
+typedef struct gxio_cells {
+    size_t count, index_count;
+    uint32_t *start;            /* count + 1 */
+    uint32_t *index;            /* index_count */
+    uint32_t *line;             /* count */
+} gxio_cells;
+
+/* What is read of a legacy VTK file. */
+typedef struct gxio_vtk {
+    double *points;             /* point_count x 3; NULL: none yet */
+    uint32_t *point_lines;      /* point_count */
+    size_t point_count;
+    gxio_cells cells;           /* CELLS of an unstructured grid, POLYGONS of polydata */
+    gxio_cells strips;          /* TRIANGLE_STRIPS */
+    uint32_t *types;            /* type_count, of cells */
+    size_t type_count;
+} gxio_vtk;
+
+static inline void gxio_cells_release(gxio_cells *cells)
+{
+    free(cells->start);
+    free(cells->index);
+    free(cells->line);
+}
+
+static inline void gxio_vtk_release(gxio_vtk *vtk)
+{
+    free(vtk->points);
+    free(vtk->point_lines);
+    free(vtk->types);
+    gxio_cells_release(&vtk->cells);
+    gxio_cells_release(&vtk->strips);
+}
+
+/* "# vtk DataFile Version X.Y", a title, ASCII, DATASET and its kind. */
+static inline int gxio_vtk_header(gxio_reader *reader, const char *dataset, gxio_error *error)
+{
+    static const char first[] = "# vtk DataFile Version";
+    char cause[80];
+    if (strncmp(reader->at, first, sizeof first - 1) != 0) return gxio_fail(error, reader->path, 1, "the file does not start with '%s'", first);
+    gxio_next_line(reader);
+    gxio_next_line(reader);
+    if (!gxio_need(reader, GXIO_ANY_LINE, "ASCII", error)) return 0;
+    if (!gxio_token_is(reader, "ASCII")) return gxio_bad_token(reader, "stands where ASCII should: files of that kind only can be read", error);
+    if (!gxio_expect(reader, "DATASET", error) || !gxio_need(reader, GXIO_SAME_LINE, "the kind of dataset", error)) return 0;
+    snprintf(cause, sizeof cause, "is the kind of dataset, but %s is needed", dataset);
+    return gxio_token_is(reader, dataset) ? 1 : gxio_bad_token(reader, cause, error);
+}
+
+/* POINTS count type, then three numbers each. */
+static inline int gxio_vtk_points(gxio_reader *reader, gxio_vtk *vtk, gxio_error *error)
+{
+    size_t i;
+    if (vtk->points) return gxio_bad_token(reader, "occurs twice", error);
+    if (!gxio_read_count(reader, GXIO_SAME_LINE, "the number of points", &vtk->point_count, error)) return 0;
+    if (!gxio_need(reader, GXIO_SAME_LINE, "the type of the coordinates", error)) return 0;
+    vtk->points = (double *)gxio_array(vtk->point_count, 3 * sizeof(double));
+    vtk->point_lines = (uint32_t *)gxio_array(vtk->point_count, sizeof(uint32_t));
+    if (!vtk->points || !vtk->point_lines) return gxio_fail(error, reader->path, reader->line, "out of memory");
+    for (i = 0; i < vtk->point_count; i++) {
+        if (!gxio_read_point(reader, GXIO_ANY_LINE, vtk->points + 3 * i, error)) return 0;
+        vtk->point_lines[i] = (uint32_t)reader->token_line;
+    }
+    return 1;
+}
+
+static inline int gxio_cells_room(gxio_cells *cells, const gxio_reader *reader, gxio_error *error)
+{
+    cells->start = (uint32_t *)gxio_array(cells->count + 1, sizeof(uint32_t));
+    cells->index = (uint32_t *)gxio_array(cells->index_count, sizeof(uint32_t));
+    cells->line = (uint32_t *)gxio_array(cells->count, sizeof(uint32_t));
+    if (!cells->start || !cells->index || !cells->line) return gxio_fail(error, reader->path, reader->line, "out of memory");
+    cells->start[0] = 0;
+    return 1;
+}
+
+/* Versions up to 4: per cell its number of points and these. size: of both together. */
+static inline int gxio_cells_counted(gxio_reader *reader, gxio_cells *cells, size_t count, size_t size, gxio_error *error)
+{
+    size_t i, k, points = 0, used = 0;
+    if (size < count) return gxio_bad_token(reader, "is a smaller size than the number of cells", error);
+    cells->count = count;
+    cells->index_count = size - count;
+    if (!gxio_cells_room(cells, reader, error)) return 0;
+    for (i = 0; i < count; i++) {
+        if (!gxio_read_count(reader, GXIO_ANY_LINE, "a cell's number of points", &points, error)) return 0;
+        if (points > cells->index_count - used) return gxio_bad_token(reader, "points are more than the section's size leaves", error);
+        cells->line[i] = (uint32_t)reader->token_line;
+        for (k = 0; k < points; k++) if (!gxio_read_index(reader, GXIO_ANY_LINE, cells->index + used++, error)) return 0;
+        cells->start[i + 1] = (uint32_t)used;
+    }
+    if (used == cells->index_count) return 1;
+    return gxio_fail(error, reader->path, reader->token_line, "the cells end before the section's size is reached");
+}
+
+/* Version 5: OFFSETS type, where each cell starts and the last ends; CONNECTIVITY type, points of all. OFFSETS is the last token. */
+static inline int gxio_cells_listed(gxio_reader *reader, gxio_cells *cells, size_t offsets, size_t size, gxio_error *error)
+{
+    size_t i, k;
+    cells->count = offsets ? offsets - 1 : 0;
+    cells->index_count = size;
+    if (!gxio_cells_room(cells, reader, error) || !gxio_need(reader, GXIO_SAME_LINE, "the type of the offsets", error)) return 0;
+    for (i = 0; i < offsets; i++) {
+        if (!gxio_read_index(reader, GXIO_ANY_LINE, cells->start + i, error)) return 0;
+        if (i ? cells->start[i] < cells->start[i - 1] : cells->start[i] != 0) return gxio_bad_token(reader, "is an offset out of order", error);
+    }
+    if (cells->start[cells->count] != size) return gxio_bad_token(reader, "is not where the last cell ends", error);
+    if (!gxio_expect(reader, "CONNECTIVITY", error) || !gxio_need(reader, GXIO_SAME_LINE, "the type of the connectivity", error)) return 0;
+    for (i = 0; i < cells->count; i++)
+        for (k = cells->start[i]; k < cells->start[i + 1]; k++) {
+            if (!gxio_read_index(reader, GXIO_ANY_LINE, cells->index + k, error)) return 0;
+            if (k == cells->start[i]) cells->line[i] = (uint32_t)reader->token_line;
+        }
+    return 1;
+}
+
+/* CELLS, POLYGONS or TRIANGLE_STRIPS, and two numbers. */
+static inline int gxio_vtk_cells(gxio_reader *reader, gxio_cells *cells, gxio_error *error)
+{
+    size_t count = 0, size = 0;
+    gxio_reader after;
+    if (cells->start) return gxio_bad_token(reader, "occurs twice", error);
+    if (!gxio_read_count(reader, GXIO_SAME_LINE, "the number of cells", &count, error)) return 0;
+    if (!gxio_read_count(reader, GXIO_SAME_LINE, "the size of the cells", &size, error)) return 0;
+    after = *reader;
+    if (!gxio_next(&after, GXIO_ANY_LINE) || !gxio_token_is(&after, "OFFSETS")) return gxio_cells_counted(reader, cells, count, size, error);
+    *reader = after;
+    return gxio_cells_listed(reader, cells, count, size, error);
+}
+
+static inline int gxio_vtk_types(gxio_reader *reader, gxio_vtk *vtk, gxio_error *error)
+{
+    size_t i;
+    if (vtk->types) return gxio_bad_token(reader, "occurs twice", error);
+    if (!gxio_read_count(reader, GXIO_SAME_LINE, "the number of types", &vtk->type_count, error)) return 0;
+    vtk->types = (uint32_t *)gxio_array(vtk->type_count, sizeof(uint32_t));
+    if (!vtk->types) return gxio_fail(error, reader->path, reader->line, "out of memory");
+    for (i = 0; i < vtk->type_count; i++) if (!gxio_read_index(reader, GXIO_ANY_LINE, vtk->types + i, error)) return 0;
+    return 1;
+}
+
+/* Sections up to the first with data. Those between, which are not needed (METADATA, FIELD, LINES, VERTICES), are skipped. */
+static inline int gxio_vtk_sections(gxio_reader *reader, gxio_vtk *vtk, gxio_error *error)
+{
+    int skipping = 0;
+    while (gxio_next(reader, GXIO_ANY_LINE)) {
+        int good = 1, known = 1;
+        if (gxio_token_is(reader, "CELL_DATA") || gxio_token_is(reader, "POINT_DATA")) break;
+        else if (gxio_token_is(reader, "POINTS")) good = gxio_vtk_points(reader, vtk, error);
+        else if (gxio_token_is(reader, "CELLS") || gxio_token_is(reader, "POLYGONS")) good = gxio_vtk_cells(reader, &vtk->cells, error);
+        else if (gxio_token_is(reader, "TRIANGLE_STRIPS")) good = gxio_vtk_cells(reader, &vtk->strips, error);
+        else if (gxio_token_is(reader, "CELL_TYPES")) good = gxio_vtk_types(reader, vtk, error);
+        else known = 0;
+        if (!good) return 0;
+        if (known) skipping = 0;
+        else if (gxio_token_is(reader, "METADATA") || gxio_token_is(reader, "FIELD") || gxio_token_is(reader, "LINES")
+                 || gxio_token_is(reader, "VERTICES")) skipping = 1;
+        else if (!skipping) return gxio_bad_token(reader, "stands where a section's name should", error);
+    }
+    return vtk->points ? 1 : gxio_fail(error, reader->path, reader->token_line, "the file has no POINTS");
+}
+
+/* A whole file whose DATASET is of the kind `dataset`. vtk is to be released, whatever is returned. */
+static inline int gxio_vtk_read(const char *path, const char *dataset, gxio_vtk *vtk, gxio_error *error)
+{
+    gxio_reader reader;
+    int good;
+    memset(vtk, 0, sizeof *vtk);
+    if (!gxio_reader_open(&reader, path, error)) return 0;
+    good = gxio_vtk_header(&reader, dataset, error) && gxio_vtk_sections(&reader, vtk, error);
+    gxio_reader_release(&reader);
+    return good;
+}
+
+/* The cells of type 10 (VTK_TETRA) and the corners of those of type 24 (VTK_QUADRATIC_TETRA); others are left out. */
+static inline int gxio_vtk_tetrahedra(const gxio_vtk *vtk, gxio_mesh *mesh, gxio_error *error)
+{
+    const gxio_cells *cells = &vtk->cells;
+    size_t i;
+    if (!cells->start) return gxio_fail(error, mesh->element_path, 0, "the file has no CELLS");
+    if (vtk->type_count != cells->count)
+        return gxio_fail(error, mesh->element_path, 0, "the file has %lu CELLS, but %lu CELL_TYPES", (unsigned long)cells->count, (unsigned long)vtk->type_count);
+    if (!gxio_mesh_elements(mesh, cells->count)) return gxio_fail(error, mesh->element_path, 0, "out of memory");
+    mesh->element_count = 0;
+    for (i = 0; i < cells->count; i++) {
+        const uint32_t points = cells->start[i + 1] - cells->start[i], type = vtk->types[i];
+        if (type != 10 && type != 24) continue;
+        if (points != (type == 10 ? 4 : 10))
+            return gxio_fail(error, mesh->element_path, cells->line[i], "a cell of type %lu with %lu points", (unsigned long)type, (unsigned long)points);
+        memcpy(mesh->elements + 4 * mesh->element_count, cells->index + cells->start[i], 4 * sizeof(uint32_t));
+        mesh->element_lines[mesh->element_count++] = cells->line[i];
+    }
+    return mesh->element_count ? 1 : gxio_fail(error, mesh->element_path, 0, "the file has no tetrahedra (cells of type 10 or 24)");
+}
+
+static inline int gxio_read_vtk_mesh(const char *path, gxio_mesh *mesh, gxio_error *error)
+{
+    gxio_vtk vtk;
+    int good = gxio_vtk_read(path, "UNSTRUCTURED_GRID", &vtk, error);
+    snprintf(mesh->node_path, sizeof mesh->node_path, "%s", path);
+    snprintf(mesh->element_path, sizeof mesh->element_path, "%s", path);
+    if (good) {
+        mesh->positions = vtk.points;
+        mesh->node_lines = vtk.point_lines;
+        mesh->node_count = vtk.point_count;
+        vtk.points = NULL;
+        vtk.point_lines = NULL;
+        good = gxio_vtk_tetrahedra(&vtk, mesh, error) && gxio_mesh_rebase(mesh, 0, error);
+    }
+    gxio_vtk_release(&vtk);
+    return good;
+}
+
+/* ------------------------------------------------------------------------------------------ >>generate */
+
 /* A unit cube with lowest corner `node[0]` as five or six tetrahedra; node[b] is the corner x + 2 y + 4 z = b. The five
    are mirrored in every second cube (`odd`), the six are Kuhn's: both ways neighbouring cubes' faces agree. */
 static inline uint32_t *gxio_fill_cube(const uint32_t node[8], int tetrahedra, int odd, uint32_t *element)
@@ -581,12 +1078,60 @@ static inline int gxio_generate_tet(gxio_mesh *mesh, gxio_error *error)
     return 1;
 }
 
+/* Takes over what gxshape.h made; fails if it says what is wrong. */
+static inline int gxio_take_shape(const char *spec, const char *wrong, const gxshape_mesh *made, gxio_mesh *mesh, gxio_error *error)
+{
+    if (wrong) return gxio_fail(error, spec, 0, "%s", wrong);
+    mesh->positions = made->positions;
+    mesh->node_count = made->node_count;
+    mesh->elements = made->elements;
+    mesh->element_count = made->element_count;
+    return 1;
+}
+
+/* ball:RADIUS,SPACING and torus:R,r,SPACING about the origin, the torus around the z axis. */
+static inline int gxio_generate_round(const char *spec, gxio_mesh *mesh, gxio_error *error)
+{
+    const char *ball = gxio_after(spec, "ball:");
+    double number[3] = {0, 0, 0}, thin;
+    gxshape_mesh made;
+    gxshape_field field;
+    int count = ball ? gxio_argument_list(ball, number, 2, 2) : gxio_argument_list(spec + strlen("torus:"), number, 3, 3);
+    memset(&field, 0, sizeof field);
+    field.part_count = 1;
+    field.parts[0].kind = ball ? GXSHAPE_CAPSULE : GXSHAPE_RING;
+    field.parts[0].q[2] = ball ? 0.0 : 1.0;
+    field.parts[0].r[0] = number[0];
+    field.parts[0].r[1] = thin = ball ? number[0] : number[1];
+    if (count < 0 || !(number[count - 1] > 0.0) || !(thin >= GXSHAPE_THINNEST * number[count - 1]) || (!ball && !(number[0] > thin)))
+        return gxio_fail(error, spec, 0, ball ? "is not ball:RADIUS,SPACING with 0 < SPACING <= RADIUS / 0.92"
+                                              : "is not torus:R,r,SPACING with R > r and 0 < SPACING <= r / 0.92");
+    return gxio_take_shape(spec, gxshape_fill(&field, number[count - 1], &made), &made, mesh, error);
+}
+
+/* NAME or NAME:SPACING of one of gxshape.h's shapes. */
+static inline int gxio_generate_shape(const char *spec, const gxshape_named *named, gxio_mesh *mesh, gxio_error *error)
+{
+    const char *list = strchr(spec, ':');
+    double spacing = named->spacing;
+    gxshape_mesh made;
+    gxshape_field field;
+    if (list && (!gxio_argument_number(list + 1, &spacing) || !(spacing > 0.0 && spacing <= named->coarsest)))
+        return gxio_fail(error, spec, 0, "is not %s or %s:SPACING with 0 < SPACING <= %g", named->name, named->name, named->coarsest);
+    memset(&field, 0, sizeof field);
+    named->make(&field);
+    return gxio_take_shape(spec, gxshape_fill(&field, spacing, &made), &made, mesh, error);
+}
+
 static inline int gxio_mesh_generate(const char *spec, gxio_mesh *mesh, gxio_error *error)
 {
     static const size_t one[3] = {1, 1, 1};
     const char *list = gxio_after(spec, "grid:");
+    const gxshape_named *named = gxshape_find(spec, strcspn(spec, ":"));
     int good;
     if (list) good = gxio_generate_grid(spec, list, mesh, error);
+    else if (named) good = gxio_generate_shape(spec, named, mesh, error);
+    else if (gxio_after(spec, "ball:") || gxio_after(spec, "torus:")) good = gxio_generate_round(spec, mesh, error);
     else if (strcmp(spec, "tet") == 0) good = gxio_generate_tet(mesh, error);
     else good = gxio_make_grid(mesh, one, 5) ? 1 : gxio_fail(error, spec, 0, "out of memory");
     free(mesh->node_lines);
@@ -597,11 +1142,19 @@ static inline int gxio_mesh_generate(const char *spec, gxio_mesh *mesh, gxio_err
     return good;
 }
 
+static inline int gxio_mesh_is_generated(const char *spec)
+{
+    return strcmp(spec, "cube5") == 0 || strcmp(spec, "tet") == 0 || gxio_after(spec, "grid:") || gxio_after(spec, "ball:")
+        || gxio_after(spec, "torus:") || gxshape_find(spec, strcspn(spec, ":"));
+}
+
 static inline int gxio_mesh_read(const char *path, gxio_mesh *mesh, gxio_error *error)
 {
     const size_t length = strlen(path);
     int good;
     if (gxio_ends_with(path, ".mesh")) good = gxio_read_medit(path, mesh, error);
+    else if (gxio_ends_with(path, ".msh")) good = gxio_read_gmsh(path, mesh, error);
+    else if (gxio_ends_with(path, ".vtk")) good = gxio_read_vtk_mesh(path, mesh, error);
     else if (gxio_ends_with(path, ".node")) good = gxio_read_tetgen(path, length - 5, mesh, error);
     else if (gxio_ends_with(path, ".ele")) good = gxio_read_tetgen(path, length - 4, mesh, error);
     else good = gxio_read_tetgen(path, length, mesh, error);
@@ -609,13 +1162,13 @@ static inline int gxio_mesh_read(const char *path, gxio_mesh *mesh, gxio_error *
     return good;
 }
 
-/* cube5, tet, grid:..., a .mesh file, a .node or .ele file, or the name that a .node and an .ele file share. */
+/* cube5, tet, grid:..., a shape, a .mesh, .msh or .vtk file, a .node or .ele file, or the name that a .node and an .ele file share. */
 static inline int gxio_mesh_load(const char *spec, gxio_mesh *mesh, gxio_error *error)
 {
     int good;
     memset(mesh, 0, sizeof *mesh);
     if (strlen(spec) + 8 > GXIO_PATH_ROOM) return gxio_fail(error, "mesh", 0, "the name is too long");
-    if (strcmp(spec, "cube5") == 0 || strcmp(spec, "tet") == 0 || gxio_after(spec, "grid:"))
+    if (gxio_mesh_is_generated(spec))
         good = gxio_mesh_generate(spec, mesh, error);
     else
         good = gxio_mesh_read(spec, mesh, error);
@@ -773,15 +1326,192 @@ static inline int gxio_read_off(gxio_reader *reader, gxio_surface *surface, gxio
     return 1;
 }
 
-static inline int gxio_surface_read(const char *path, gxio_surface *surface, gxio_error *error)
+/* Polygons as fans around their first corner, strips with every second triangle turned. */
+static inline int gxio_vtk_triangles(const char *path, const gxio_vtk *vtk, gxio_surface *surface, gxio_error *error)
 {
-    const int obj = gxio_ends_with(path, ".obj"), off = gxio_ends_with(path, ".off");
+    const uint32_t *at;
+    size_t i, k;
+    int good = 1;
+    if (!vtk->cells.start && !vtk->strips.start) return gxio_fail(error, path, 0, "the file has neither POLYGONS nor TRIANGLE_STRIPS");
+    for (i = 0; i < vtk->point_count && good; i++)
+        good = gxio_add_vertex(surface, vtk->points[3 * i], vtk->points[3 * i + 1], vtk->points[3 * i + 2]);
+    for (i = 0; i < vtk->cells.count && good; i++) {
+        at = vtk->cells.index + vtk->cells.start[i];
+        for (k = 2; k < vtk->cells.start[i + 1] - vtk->cells.start[i] && good; k++)
+            good = gxio_add_triangle(surface, at[0], at[k - 1], at[k], vtk->cells.line[i]);
+    }
+    for (i = 0; i < vtk->strips.count && good; i++) {
+        at = vtk->strips.index + vtk->strips.start[i];
+        for (k = 2; k < vtk->strips.start[i + 1] - vtk->strips.start[i] && good; k++)
+            good = gxio_add_triangle(surface, at[k - 2], at[k % 2 ? k : k - 1], at[k % 2 ? k - 1 : k], vtk->strips.line[i]);
+    }
+    return good ? 1 : gxio_fail(error, path, 0, "out of memory");
+}
+
+static inline int gxio_read_vtk_surface(const char *path, gxio_surface *surface, gxio_error *error)
+{
+    gxio_vtk vtk;
+    const int good = gxio_vtk_read(path, "POLYDATA", &vtk, error) && gxio_vtk_triangles(path, &vtk, surface, error);
+    gxio_vtk_release(&vtk);
+    return good;
+}
+
+/* One facet of an ASCII STL file, whose word "facet" is the last token; its normal is not needed. */
+static inline int gxio_stl_facet(gxio_reader *reader, gxio_surface *surface, gxio_error *error)
+{
+    const uint32_t first = (uint32_t)surface->vertex_count;
+    const size_t line = reader->token_line;
+    double p[3] = {0, 0, 0};
+    int i;
+    gxio_skip_line(reader);
+    if (!gxio_expect(reader, "outer", error) || !gxio_expect(reader, "loop", error)) return 0;
+    for (i = 0; i < 3; i++) {
+        if (!gxio_expect(reader, "vertex", error) || !gxio_read_point(reader, GXIO_SAME_LINE, p, error)) return 0;
+        if (!gxio_add_vertex(surface, p[0], p[1], p[2])) return gxio_fail(error, reader->path, reader->line, "out of memory");
+    }
+    if (!gxio_expect(reader, "endloop", error) || !gxio_expect(reader, "endfacet", error)) return 0;
+    return gxio_add_triangle(surface, first, first + 1, first + 2, line) ? 1 : gxio_fail(error, reader->path, reader->line, "out of memory");
+}
+
+/* Any number of: solid NAME, facets, endsolid NAME. */
+static inline int gxio_stl_text(gxio_reader *reader, gxio_surface *surface, gxio_error *error)
+{
+    if (!gxio_need(reader, GXIO_ANY_LINE, "solid", error)) return 0;
+    do {
+        if (!gxio_token_is(reader, "solid")) return gxio_bad_token(reader, "stands where solid should", error);
+        for (gxio_skip_line(reader);;) {
+            if (!gxio_need(reader, GXIO_ANY_LINE, "facet or endsolid", error)) return 0;
+            if (gxio_token_is(reader, "endsolid")) break;
+            if (!gxio_token_is(reader, "facet")) return gxio_bad_token(reader, "stands where facet or endsolid should", error);
+            if (!gxio_stl_facet(reader, surface, error)) return 0;
+        }
+        gxio_skip_line(reader);
+    } while (gxio_next(reader, GXIO_ANY_LINE));
+    return 1;
+}
+
+/* Four bytes, the lowest first. */
+static inline uint32_t gxio_word(const char *bytes)
+{
+    const unsigned char *b = (const unsigned char *)bytes;
+    return (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+}
+
+/* Binary STL: 80 bytes, the number of triangles, then for each 12 floats (normal, corners) and two bytes. */
+enum { GXIO_STL_HEAD = 84, GXIO_STL_TRIANGLE = 50 };
+
+static inline int gxio_stl_is_binary(const char *bytes, size_t length)
+{
+    return length >= GXIO_STL_HEAD && (length - GXIO_STL_HEAD) % GXIO_STL_TRIANGLE == 0
+        && (length - GXIO_STL_HEAD) / GXIO_STL_TRIANGLE == gxio_word(bytes + GXIO_STL_HEAD - 4);
+}
+
+/* A float that is not finite has all bits of its exponent set. */
+static inline int gxio_stl_binary(const char *path, const char *bytes, size_t length, gxio_surface *surface, gxio_error *error)
+{
+    size_t i, count = (length - GXIO_STL_HEAD) / GXIO_STL_TRIANGLE;
+    for (i = 0; i < count; i++) {
+        const uint32_t first = (uint32_t)surface->vertex_count;
+        const char *at = bytes + GXIO_STL_HEAD + i * GXIO_STL_TRIANGLE + 12;
+        float x[9];
+        int k;
+        for (k = 0; k < 9; k++) {
+            const uint32_t word = gxio_word(at + 4 * k);
+            if ((word >> 23 & 255) == 255) return gxio_fail(error, path, 0, "triangle %lu has a coordinate that is not finite", (unsigned long)i);
+            memcpy(&x[k], &word, sizeof word);
+        }
+        for (k = 0; k < 9; k += 3)
+            if (!gxio_add_vertex(surface, (double)x[k], (double)x[k + 1], (double)x[k + 2])) return gxio_fail(error, path, 0, "out of memory");
+        if (!gxio_add_triangle(surface, first, first + 1, first + 2, 0)) return gxio_fail(error, path, 0, "out of memory");
+    }
+    return 1;
+}
+
+typedef struct gxio_corner { double x[3]; uint32_t vertex; } gxio_corner;
+
+/* By coordinates; 0 and -0 are equal. */
+static inline int gxio_point_compare(const double x[3], const double y[3])
+{
+    int i;
+    for (i = 0; i < 3; i++) if (x[i] < y[i] || x[i] > y[i]) return x[i] < y[i] ? -1 : 1;
+    return 0;
+}
+
+static inline int gxio_corner_compare(const void *a, const void *b)
+{
+    const gxio_corner *p = (const gxio_corner *)a, *q = (const gxio_corner *)b;
+    const int order = gxio_point_compare(p->x, q->x);
+    return order ? order : p->vertex < q->vertex ? -1 : p->vertex > q->vertex;
+}
+
+/* first[i]: the first vertex with the coordinates of i. corners: room for all vertices. */
+static inline void gxio_find_first(const gxio_surface *surface, gxio_corner *corners, uint32_t *first)
+{
+    const size_t count = surface->vertex_count;
+    size_t i, start = 0;
+    for (i = 0; i < count; i++) {
+        memcpy(corners[i].x, surface->vertices + 3 * i, sizeof corners[i].x);
+        corners[i].vertex = (uint32_t)i;
+    }
+    qsort(corners, count, sizeof *corners, gxio_corner_compare);
+    for (i = 0; i < count; i++) {
+        if (gxio_point_compare(corners[i].x, corners[start].x) != 0) start = i;
+        first[corners[i].vertex] = corners[start].vertex;
+    }
+}
+
+/* Makes one vertex of all with equal coordinates, in the order of the first ones. */
+static inline int gxio_surface_merge(gxio_surface *surface)
+{
+    const size_t count = surface->vertex_count;
+    gxio_corner *corners = (gxio_corner *)gxio_array(count, sizeof *corners);
+    uint32_t *name = (uint32_t *)gxio_array(count, sizeof *name);
+    const int good = corners && name;
+    size_t i, kept = 0;
+    if (good) gxio_find_first(surface, corners, name);
+    for (i = 0; i < count && good; i++) {       /* name: of those before i, the new number */
+        if (name[i] != i) { name[i] = name[name[i]]; continue; }
+        memmove(surface->vertices + 3 * kept, surface->vertices + 3 * i, 3 * sizeof(double));
+        name[i] = (uint32_t)kept++;
+    }
+    for (i = 0; i < 3 * surface->triangle_count && good; i++) surface->triangles[i] = name[surface->triangles[i]];
+    if (good) surface->vertex_count = kept;
+    free(corners);
+    free(name);
+    return good;
+}
+
+static inline int gxio_read_stl(const char *path, gxio_surface *surface, gxio_error *error)
+{
+    gxio_reader reader;
+    size_t length;
+    int good;
+    if (!gxio_reader_load(&reader, path, error)) return 0;
+    length = (size_t)(reader.end - reader.text);
+    if (gxio_stl_is_binary(reader.text, length)) good = gxio_stl_binary(path, reader.text, length, surface, error);
+    else if (gxio_is_text(&reader)) good = gxio_stl_text(&reader, surface, error);
+    else good = gxio_fail(error, path, 0, "is binary, but not as long as its number of triangles asks for");
+    gxio_reader_release(&reader);
+    return good && !gxio_surface_merge(surface) ? gxio_fail(error, path, 0, "out of memory") : good;
+}
+
+static inline int gxio_read_obj_or_off(const char *path, gxio_surface *surface, gxio_error *error)
+{
     gxio_reader reader;
     int good;
-    if (!obj && !off) return gxio_fail(error, path, 0, "is no cut: .obj, .off, plane:..., box:... or wave:... is");
     if (!gxio_reader_open(&reader, path, error)) return 0;
-    good = obj ? gxio_read_obj(&reader, surface, error) : gxio_read_off(&reader, surface, error);
+    good = gxio_ends_with(path, ".obj") ? gxio_read_obj(&reader, surface, error) : gxio_read_off(&reader, surface, error);
     gxio_reader_release(&reader);
+    return good;
+}
+
+static inline int gxio_surface_read(const char *path, gxio_surface *surface, gxio_error *error)
+{
+    int good;
+    if (gxio_ends_with(path, ".obj") || gxio_ends_with(path, ".off")) good = gxio_read_obj_or_off(path, surface, error);
+    else if (gxio_ends_with(path, ".stl")) good = gxio_read_stl(path, surface, error);
+    else if (gxio_ends_with(path, ".vtk")) good = gxio_read_vtk_surface(path, surface, error);
+    else return gxio_fail(error, path, 0, "is no cut: .obj, .off, .stl, .vtk, plane:..., box:... or wave:... is");
     return good && gxio_surface_check(surface, path, error);
 }
 
@@ -820,7 +1550,7 @@ static inline int gxio_frame_make(gxio_frame *frame, const double point[3], cons
     gxio_normalise(frame->u);
     for (i = 0; i < 3; i++)
         frame->v[i] = frame->n[(i + 1) % 3] * frame->u[(i + 2) % 3] - frame->n[(i + 2) % 3] * frame->u[(i + 1) % 3];
-    gxio_bounds(mesh->positions, mesh->node_count, low, high);
+    gxio_mesh_bounds(mesh, low, high);
     frame->at[0] = frame->at[1] = 0.0;
     for (i = 0; i < 3; i++) {
         const double offset = 0.5 * (low[i] + high[i]) - point[i];

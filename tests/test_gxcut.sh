@@ -97,7 +97,7 @@ refuses "grid of 0" 2 "grid:0,1,1" grid:0,1,1
 refuses "plane without normal" 2 "plane:0,0,0,0,0,0" cube5 --sheet plane:0,0,0,0,0,0
 refuses "box turned over" 2 "box:1,0,0,0,1,1" cube5 --solid box:1,0,0,0,1,1
 refuses "wave of length 0" 2 "wave:" cube5 --sheet wave:0,0,0,0,0,1,0.1,0
-refuses "unknown cut" 2 "cut.stl: is no cut" cube5 --sheet cut.stl
+refuses "unknown cut" 2 "cut.ply: is no cut" cube5 --sheet cut.ply
 "$gxcut" --help >stdout 2>stderr
 [ $? -eq 0 ] && grep -q "^usage: gxcut" stdout && [ ! -s stderr ]
 check "help" "$([ $? -eq 0 ] || echo 'exit code or output')"
