@@ -276,7 +276,8 @@ GXFEM_API gx_result gx_body_skin(gx_body *body, const gx_skin_desc *desc /* or N
 GXFEM_API gx_result gx_body_skin_positions(const gx_body *body, double *positions /* vertex_count x 3 */);
 /* The same less an origin, and normals, for drawing. Normals of the outer surface are interpolated from those at nodes, each the mean over
    the faces of its piece around it, weighted by area. */
-GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3] /* or NULL: 0 */, float *positions /* vertex_count x 3 */,
+GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3] /* or NULL: 0 */,
+                                          float *positions /* vertex_count x 3, or NULL */,
                                           float *normals /* vertex_count x 3, of length 1, or NULL */);
 
 /* Where a ray first meets the deformed skin. With copies and weights it can be held on to: see gxs_spring. */
@@ -3932,10 +3933,10 @@ GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3],
     gxp_skin *s;
     size_t i;
     int k;
-    if (body == NULL || positions == NULL || !body->skin.made || body->skin.dirty.count > 0) return GX_ERROR_ARGUMENT;
+    if (body == NULL || !body->skin.made || body->skin.dirty.count > 0) return GX_ERROR_ARGUMENT;
     s = &body->skin;
     gxp_move_vertices(body, s->positions);
-    for (i = 0; i < s->vertex_count; i++) for (k = 0; k < 3; k++)
+    for (i = 0; i < s->vertex_count && positions != NULL; i++) for (k = 0; k < 3; k++)
         positions[3 * i + (size_t)k] = (float)(s->positions[3 * i + (size_t)k] - (origin != NULL ? origin[k] : 0));
     if (normals != NULL) gxp_deformed_normals(s, normals);
     return GX_OK;

@@ -47,6 +47,7 @@ typedef struct run {
     gx_view view;
     gx_skin skin;
     double *skin_positions;     /* skin.vertex_count x 3 */
+    float *skin_normals;        /* the same */
     gx_cut_report cut;
     int has_cut;
     uint32_t frames_written;
@@ -408,12 +409,15 @@ static int cut(run *r)
 /* Looks at the body as it now is: view, and skin with room for its positions if frames are to be written. */
 static int look(run *r)
 {
+    const gx_skin_desc shading = {0.6, 1};      /* creases of 34 degrees and more stay sharp */
     gx_result result = gx_body_view(r->body, &r->view);
     if (result == GX_OK && r->set.frames) {
-        result = gx_body_skin(r->body, NULL, &r->skin);
+        result = gx_body_skin(r->body, &shading, &r->skin);
         free(r->skin_positions);
+        free(r->skin_normals);
         r->skin_positions = result == GX_OK ? (double *)gxio_array(r->skin.vertex_count, 3 * sizeof(double)) : NULL;
-        if (result == GX_OK && !r->skin_positions) result = GX_ERROR_MEMORY;
+        r->skin_normals = result == GX_OK ? (float *)gxio_array(r->skin.vertex_count, 3 * sizeof(float)) : NULL;
+        if (result == GX_OK && (!r->skin_positions || !r->skin_normals)) result = GX_ERROR_MEMORY;
     }
     return result == GX_OK ? EXIT_DONE : fail(r, "surface", result);
 }
@@ -430,13 +434,17 @@ static int write_frame(run *r, uint32_t frame)
     gxio_triangles t;
     char name[32], path[GXIO_PATH_ROOM];
     gx_body_skin_positions(r->body, r->skin_positions);
+    gx_body_skin_vertices(r->body, NULL, NULL, r->skin_normals);
     t.positions = r->skin_positions;
+    t.normals = r->skin_normals;
+    t.texture = r->skin.vertex_texture;
     t.vertex_count = r->skin.vertex_count;
     t.triangles = r->skin.triangles;
     t.triangle_count = r->skin.triangle_count;
     t.fragment = r->skin.triangle_fragment;
     t.fragment_count = r->view.fragment_count;
-    t.cut = r->skin.triangle_surface;
+    t.surface = r->skin.triangle_surface;
+    t.material = r->skin.triangle_material;
     gxio_frame_name(name, sizeof name, frame, r->set.format);
     if (!join_path(r, name, path)) return 0;
     if (!(strcmp(r->set.format, "obj") == 0 ? gxio_write_obj(path, &t, &r->error) : gxio_write_vtu(path, &t, &r->error))) return 0;
@@ -647,6 +655,7 @@ static void release(run *r)
     for (i = 0; r->cuts && i < r->set.cut_count; i++) gxio_surface_release(&r->cuts[i]);
     free(r->cuts);
     free(r->skin_positions);
+    free(r->skin_normals);
     gx_body_destroy(r->body);
     gxio_mesh_release(&r->mesh);
     free((void *)r->set.cuts);

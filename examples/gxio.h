@@ -1699,10 +1699,13 @@ static inline int gxio_writer_close(gxio_writer *writer, int good, gxio_error *e
 /* Triangles of one instant: positions of a skin and what is known per triangle. Nothing is owned. */
 typedef struct gxio_triangles {
     const double *positions;    /* vertex_count x 3, m */
+    const float *normals;       /* vertex_count x 3 */
+    const float *texture;       /* vertex_count x 2, texture coordinates */
     size_t vertex_count;
     const uint32_t *triangles;  /* triangle_count x 3 */
     const uint32_t *fragment;   /* triangle_count, < fragment_count */
-    const uint32_t *cut;        /* triangle_count, 1: face of a cut */
+    const uint32_t *surface;    /* triangle_count, 0: outer surface; else the number of the cut's surface, from 1 */
+    const uint32_t *material;   /* triangle_count */
     size_t triangle_count, fragment_count;
 } gxio_triangles;
 
@@ -1783,50 +1786,61 @@ static inline const char *gxio_byte_order(void)
     return low ? "LittleEndian" : "BigEndian";
 }
 
-/* The XML of a .vtu file around its six blocks: points, corners, ends of cells, types, fragments, cut flags. */
-static inline void gxio_vtu_write(FILE *stream, const gxio_triangles *t, const gxio_block block[6])
+/* One array of a .vtu file: what stands before it, up to its name, and its bytes */
+typedef struct gxio_array_block { const char *head; gxio_block block; } gxio_array_block;
+
+enum { GXIO_VTU_ARRAYS = 9 };
+
+static inline void gxio_vtu_write(FILE *stream, const gxio_triangles *t, const gxio_array_block array[GXIO_VTU_ARRAYS])
 {
-    static const char *const head[6] = {
-        "<Points>\n<DataArray type=\"Float64\" Name=\"position\" NumberOfComponents=\"3\"",
-        "</Points>\n<Cells>\n<DataArray type=\"UInt32\" Name=\"connectivity\"",
-        "<DataArray type=\"UInt32\" Name=\"offsets\"",
-        "<DataArray type=\"UInt8\" Name=\"types\"",
-        "</Cells>\n<CellData Scalars=\"fragment\">\n<DataArray type=\"UInt32\" Name=\"fragment\"",
-        "<DataArray type=\"UInt32\" Name=\"cut\""};
     unsigned long offset = 0;
     int i;
     fprintf(stream, "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"%s\" "
             "header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"%lu\" NumberOfCells=\"%lu\">\n",
             gxio_byte_order(), (unsigned long)t->vertex_count, (unsigned long)t->triangle_count);
-    for (i = 0; i < 6; i++) {
-        fprintf(stream, "%s format=\"appended\" offset=\"%lu\"/>\n", head[i], offset);
-        offset += (unsigned long)gxio_block_length(&block[i]);
+    for (i = 0; i < GXIO_VTU_ARRAYS; i++) {
+        fprintf(stream, "%s format=\"appended\" offset=\"%lu\"/>\n", array[i].head, offset);
+        offset += (unsigned long)gxio_block_length(&array[i].block);
     }
     fputs("</CellData>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"base64\">\n_", stream);
-    for (i = 0; i < 6; i++) gxio_block_write(&block[i], stream);
+    for (i = 0; i < GXIO_VTU_ARRAYS; i++) gxio_block_write(&array[i].block, stream);
     fputs("\n</AppendedData>\n</VTKFile>\n", stream);
 }
 
-/* VTK's unstructured grid of triangles, with fragment and cut flag per triangle. */
+static inline gxio_array_block gxio_vtu_array(const char *head, const void *bytes, size_t size)
+{
+    gxio_array_block array;
+    array.head = head;
+    array.block.bytes = bytes;
+    array.block.size = size;
+    return array;
+}
+
+/* VTK's unstructured grid of triangles: normals and texture coordinates by vertex; fragment, surface and material by triangle. */
 static inline int gxio_write_vtu(const char *path, const gxio_triangles *t, gxio_error *error)
 {
-    const size_t n = t->triangle_count;
-    uint32_t *ends = (uint32_t *)gxio_array(n, sizeof(uint32_t));
+    const size_t n = t->triangle_count, v = t->vertex_count, word = sizeof(uint32_t);
+    uint32_t *ends = (uint32_t *)gxio_array(n, word);
     unsigned char *types = (unsigned char *)gxio_array(n, 1);
     gxio_writer writer;
-    gxio_block block[6];
+    gxio_array_block array[GXIO_VTU_ARRAYS];
     size_t i;
     int good = ends && types ? gxio_writer_open(&writer, path, error) : gxio_fail(error, path, 0, "out of memory");
     if (good) {
         for (i = 0; i < n; i++) ends[i] = (uint32_t)(3 * (i + 1));
         memset(types, 5, n);        /* VTK_TRIANGLE */
-        block[0].bytes = t->positions; block[0].size = t->vertex_count * 3 * sizeof(double);
-        block[1].bytes = t->triangles; block[1].size = n * 3 * sizeof(uint32_t);
-        block[2].bytes = ends; block[2].size = n * sizeof(uint32_t);
-        block[3].bytes = types; block[3].size = n;
-        block[4].bytes = t->fragment; block[4].size = n * sizeof(uint32_t);
-        block[5].bytes = t->cut; block[5].size = n * sizeof(uint32_t);
-        gxio_vtu_write(writer.stream, t, block);
+        array[0] = gxio_vtu_array("<PointData Normals=\"normal\" TCoords=\"texture\">\n<DataArray type=\"Float32\" Name=\"normal\" NumberOfComponents=\"3\"",
+                                  t->normals, v * 3 * sizeof(float));
+        array[1] = gxio_vtu_array("<DataArray type=\"Float32\" Name=\"texture\" NumberOfComponents=\"2\"", t->texture, v * 2 * sizeof(float));
+        array[2] = gxio_vtu_array("</PointData>\n<Points>\n<DataArray type=\"Float64\" Name=\"position\" NumberOfComponents=\"3\"",
+                                  t->positions, v * 3 * sizeof(double));
+        array[3] = gxio_vtu_array("</Points>\n<Cells>\n<DataArray type=\"UInt32\" Name=\"connectivity\"", t->triangles, n * 3 * word);
+        array[4] = gxio_vtu_array("<DataArray type=\"UInt32\" Name=\"offsets\"", ends, n * word);
+        array[5] = gxio_vtu_array("<DataArray type=\"UInt8\" Name=\"types\"", types, n);
+        array[6] = gxio_vtu_array("</Cells>\n<CellData Scalars=\"fragment\">\n<DataArray type=\"UInt32\" Name=\"fragment\"", t->fragment, n * word);
+        array[7] = gxio_vtu_array("<DataArray type=\"UInt32\" Name=\"surface\"", t->surface, n * word);
+        array[8] = gxio_vtu_array("<DataArray type=\"UInt32\" Name=\"material\"", t->material, n * word);
+        gxio_vtu_write(writer.stream, t, array);
         good = gxio_writer_close(&writer, 1, error);
     }
     free(ends);
@@ -1846,14 +1860,20 @@ static inline void gxio_sort_by_fragment(const gxio_triangles *t, size_t *order,
 
 static inline void gxio_obj_write(FILE *stream, const gxio_triangles *t, const size_t *order, const size_t *start)
 {
-    size_t i, f;
-    for (i = 0; i < t->vertex_count; i++)
-        fprintf(stream, "v %.9g %.9g %.9g\n", t->positions[3 * i], t->positions[3 * i + 1], t->positions[3 * i + 2]);
+    size_t i, f, k;
+    for (i = 0; i < t->vertex_count; i++) {
+        const double *x = t->positions + 3 * i;
+        const float *n = t->normals + 3 * i, *uv = t->texture + 2 * i;
+        fprintf(stream, "v %.9g %.9g %.9g\nvt %.9g %.9g\nvn %.5g %.5g %.5g\n", x[0], x[1], x[2],
+                (double)uv[0], (double)uv[1], (double)n[0], (double)n[1], (double)n[2]);
+    }
     for (f = 0; f < t->fragment_count; f++) {
         fprintf(stream, "g fragment_%lu\n", (unsigned long)f);
         for (i = start[f]; i < start[f + 1]; i++) {
             const uint32_t *corner = t->triangles + 3 * order[i];
-            fprintf(stream, "f %lu %lu %lu\n", corner[0] + 1ul, corner[1] + 1ul, corner[2] + 1ul);
+            fputc('f', stream);
+            for (k = 0; k < 3; k++) fprintf(stream, " %lu/%lu/%lu", corner[k] + 1ul, corner[k] + 1ul, corner[k] + 1ul);
+            fputc('\n', stream);
         }
     }
 }

@@ -520,7 +520,8 @@ START_TEST(errors) {
     skin_of(body, NULL);
     ck_assert_int_eq(gx_body_skin_positions(NULL, x), GX_ERROR_ARGUMENT);
     ck_assert_int_eq(gx_body_skin_positions(body, NULL), GX_ERROR_ARGUMENT);
-    ck_assert_int_eq(gx_body_skin_vertices(body, NULL, NULL, y), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_skin_vertices(NULL, NULL, y, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_skin_vertices(body, NULL, NULL, y), GX_OK);
     ck_assert_int_eq(gx_body_pick(body, o, zero, &hit), GX_ERROR_ARGUMENT);
     ck_assert_int_eq(gx_body_pick(body, NULL, d, &hit), GX_ERROR_ARGUMENT);
     d[1] = INFINITY; ck_assert_int_eq(gx_body_pick(body, o, d, &hit), GX_ERROR_NOT_FINITE);
