@@ -29,6 +29,7 @@ help:
 	@echo "make bench-solver  time steps by preconditioner, beside CHOLMOD (installs SuiteSparse where it is missing); BENCH=--small: the smallest blocks only"
 	@echo "make bench-accuracy, bench-drift, bench-conditioning   closed forms and published values; what integrators keep; RXFEM's Fig. 14"
 	@echo "make bench-frames   frames in which a cut happens beside those in which none does"
+	@echo "make bench-skin    the visual surface: moved in each frame, rebuilt after a cut"
 	@echo "make clean       removes $(BUILD)/"
 
 # ---- programs
@@ -94,10 +95,10 @@ $(BUILD)/bench/solver: bench/solver.c bench/block.h $(headers)
 	$(CC) -std=c99 $(WARNINGS) $(BENCH_CFLAGS) -pthread $(shell pkg-config --cflags CHOLMOD 2>/dev/null) $< -o $@ $(LDFLAGS) \
 	    $(shell pkg-config --libs CHOLMOD 2>/dev/null || echo -lcholmod) -lm
 
-bench-accuracy bench-drift bench-conditioning bench-frames: bench-%: $(BUILD)/bench/%
+bench-accuracy bench-drift bench-conditioning bench-frames bench-skin: bench-%: $(BUILD)/bench/%
 	@$< $(BUILD)/bench/$*.csv
 
-$(BUILD)/bench/accuracy $(BUILD)/bench/drift $(BUILD)/bench/conditioning $(BUILD)/bench/frames: $(BUILD)/bench/%: bench/%.c $(wildcard bench/*.h) $(headers)
+$(BUILD)/bench/accuracy $(BUILD)/bench/drift $(BUILD)/bench/conditioning $(BUILD)/bench/frames $(BUILD)/bench/skin: $(BUILD)/bench/%: bench/%.c $(wildcard bench/*.h) $(headers)
 	@mkdir -p $(@D)
 	@$(CC) -std=c99 $(WARNINGS) $(BENCH_CFLAGS) $< -o $@ $(LDFLAGS) -lm
 
@@ -114,4 +115,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo check check-programs run-gxcut $(tests:%=run-%) sanitize compile lint flags hashes bench-solver bench-accuracy bench-drift bench-conditioning bench-frames check-all clean
+.PHONY: help examples demo check check-programs run-gxcut $(tests:%=run-%) sanitize compile lint flags hashes bench-solver bench-accuracy bench-drift bench-conditioning bench-frames bench-skin check-all clean

@@ -37,7 +37,7 @@
  *     >>cut        surfaces, cuts, solidified sheets
  *     >>view       cells, copies, fragments
  *     >>step       held regions, time step
- *     >>skin       the visual surface
+ *     >>skin       the visual surface, rays
  *     >>hash       of the topology, of the state
  *     then, under GXFEM_IMPLEMENTATION: >>memory >>tree >>create >>transaction >>surfaces >>arrange >>solids >>links >>cells
  *     >>components >>integrals >>commit >>regions >>fragments >>parts >>boundary
@@ -138,6 +138,7 @@ typedef struct gx_body_desc {
     double density;             /* kg/m3, > 0 */
     const gx_material *materials; size_t material_count;
     const uint32_t *element_materials;  /* element_count, below material_count; NULL: all of materials[0] */
+    const float *texture;       /* node_count x 2: texture coordinates of the outer surface; NULL: all 0 */
     double support_below;       /* copies with a smaller share of their node's volume follow others, see gx_body_step; 0: none does */
     gx_allocator allocator;     /* zero: malloc, free */
     double (*clock)(void *user);/* seconds, for the reports' timings; NULL: they are 0 */
@@ -160,6 +161,7 @@ typedef struct gx_surface {
     const uint32_t *triangles;  /* triangle_count x 3 */
     size_t triangle_count;
     uint32_t kind;              /* GX_SURFACE_SHEET or GX_SURFACE_SOLID */
+    const float *texture;       /* vertex_count x 2: texture coordinates of the faces that it cuts; NULL: all 0 */
 } gx_surface;
 typedef struct gx_cut_desc {
     const gx_surface *surfaces; size_t surface_count;
@@ -236,20 +238,58 @@ GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model);
 
 /* >>skin ----------------------------------------------------------------------------------------------------------------- */
 
-/* Triangles of the surface of every cell group that moves as one: outer surface and both faces of every cut. */
+typedef struct gx_skin_desc {
+    double crease_angle;        /* the outer surface is shaded smooth across mesh edges that bend by less, rad; 0: each face is flat */
+    int smooth_cuts;            /* 1: faces of a cut are shaded smooth across the edges of its triangles; 0: each of its planes is flat */
+} gx_skin_desc;
+
+enum { GX_SKIN_OUTER = 0 };
+#define GX_SKIN_SEVERED UINT32_MAX
+
+typedef struct gx_range { uint32_t first, count; } gx_range;
+
+/* The visual surface: the outer surface and both faces of every cut that has separated material. Arrays are the body's, valid until the
+   next cut or gx_body_skin. A vertex is a point of one piece with one normal: at creases and along cuts there are several. */
 typedef struct gx_skin {
     size_t vertex_count;
-    const uint32_t *vertex_copies;  /* vertex_count x 4 */
-    const double *vertex_weights;   /* vertex_count x 4, barycentric */
+    const uint32_t *vertex_copies;  /* vertex_count x 4: the copies that move it; those of weight 0 stand last */
+    const double *vertex_weights;   /* vertex_count x 4, barycentric: x = sum of weight (X + u) over the copies */
     const uint32_t *vertex_point;   /* vertex_count; equal: the same material point, exactly. Where the copies of weight not 0 are
                                        equal too, it is one corner of the surface: with corners so merged it is watertight */
+    const double *vertex_rest;      /* vertex_count x 3, material coordinates, m */
+    const float *vertex_normal;     /* vertex_count x 3, outward, of length 1, at rest */
+    const float *vertex_texture;    /* vertex_count x 2 */
     size_t triangle_count;
     const uint32_t *triangles;      /* triangle_count x 3, counter-clockwise from outside */
     const uint32_t *triangle_fragment;  /* triangle_count */
-    const uint32_t *triangle_cut;   /* triangle_count; 0: outer surface of the mesh; 1: face of a cut */
+    const uint32_t *triangle_element;   /* triangle_count */
+    const uint32_t *triangle_material;  /* triangle_count, that of the element (gx_body_desc.element_materials) */
+    const uint32_t *triangle_surface;   /* triangle_count; GX_SKIN_OUTER; 1 + n: face of the n-th surface that the body was cut by, counted
+                                           over all its cuts (where several coincide, the first); GX_SKIN_SEVERED: where a link was severed */
+    /* What differs from the arrays of the call before, ascending; counts may differ too. Fragment ids may differ anywhere. */
+    const gx_range *vertex_ranges; size_t vertex_range_count;
+    const gx_range *triangle_ranges; size_t triangle_range_count;
 } gx_skin;
-GXFEM_API gx_result gx_body_skin(gx_body *body, gx_skin *skin);     /* arrays owned by the body, valid until the next cut */
-GXFEM_API void gx_body_skin_positions(const gx_body *body, const gx_skin *skin, double *positions /* vertex_count x 3, deformed */);
+/* Rebuilds what cuts have touched since the last call; all of it if desc is another. Errors: ARGUMENT, NOT_FINITE, MEMORY, LIMIT. */
+GXFEM_API gx_result gx_body_skin(gx_body *body, const gx_skin_desc *desc /* or NULL: zero */, gx_skin *skin);
+/* The deformed skin as the last gx_body_skin gave it. Errors: ARGUMENT (also where there is none, or a cut has been since). */
+GXFEM_API gx_result gx_body_skin_positions(const gx_body *body, double *positions /* vertex_count x 3 */);
+/* The same less an origin, and normals, for drawing. Normals of the outer surface are interpolated from those at nodes, each the mean over
+   the faces of its piece around it, weighted by area. */
+GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3] /* or NULL: 0 */, float *positions /* vertex_count x 3 */,
+                                          float *normals /* vertex_count x 3, of length 1, or NULL */);
+
+/* Where a ray first meets the deformed skin. With copies and weights it can be held on to: see gxs_spring. */
+typedef struct gx_hit {
+    uint32_t triangle;              /* of the skin; UINT32_MAX: the ray meets nothing, and the rest is 0 */
+    uint32_t fragment, element, surface;    /* as of the triangle */
+    double distance;                /* in lengths of direction */
+    double position[3], material[3];/* deformed, m; material coordinates, m */
+    uint32_t copies[4];
+    double weights[4];
+} gx_hit;
+/* Errors: as of gx_body_skin_positions; ARGUMENT (direction 0), NOT_FINITE. */
+GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit);
 
 /* >>hash ----------------------------------------------------------------------------------------------------------------- */
 
@@ -304,6 +344,52 @@ typedef struct gxp_pair { uint32_t node, cell; } gxp_pair;
 
 typedef struct gxp_words { uint32_t *data, count, capacity; } gxp_words;   /* growing array of indices */
 
+typedef struct gxp_surface_record { uint32_t label, map; } gxp_surface_record;  /* its first triangle's label; its first map, or GXP_NONE */
+
+/* What a vertex of the skin is looked up by: a point of the complex, four names in ascending order, a group. Of the outer surface the names
+   are slots and the group is 0; of a face of a cut they are copies, and the group is its surface, and its side or plane and side. */
+typedef struct gxp_skin_key { uint32_t point, name[4], group[2]; } gxp_skin_key;
+
+typedef struct gxp_skin_vertex {    /* beside the columns that users see */
+    gxp_skin_key key;
+    uint32_t slots[4];          /* from which it has its normal, by its weights */
+    uint32_t next;              /* of its bucket */
+    uint32_t corner;            /* 3 x triangle + k: its first corner */
+    uint8_t outer, fresh, noted;    /* of the outer surface; new in its place; among those that may have changed */
+} gxp_skin_vertex;
+
+typedef struct gxp_skin_links {
+    uint32_t slots[3];          /* to which it adds its normal */
+    float normal[3];            /* of its facet, outward at rest, of length 1 */
+    uint32_t next, previous;    /* of its element */
+    uint32_t corner_next[3], corner_previous[3];    /* of the same vertex */
+} gxp_skin_links;
+
+typedef struct gxp_skin_slot { uint32_t copy, group, next; } gxp_skin_slot;    /* copy GXP_NONE: belongs to one vertex; next: in its bucket, or free */
+
+typedef struct gxp_skin {
+    int made;                   /* 0: all of it is to be made */
+    gx_skin_desc desc;
+    gxp_words dirty;            /* elements that cuts have touched since; some more than once */
+    /* columns: one entry for each vertex; see gx_skin */
+    gxp_skin_vertex *vertices;
+    uint32_t *copies, *point; double *weights, *rest; float *normal, *texture;
+    uint32_t vertex_count, vertex_capacity;
+    /* columns: one entry for each triangle */
+    gxp_skin_links *links;
+    uint32_t *triangles, *fragment, *element, *material, *surface;
+    uint32_t triangle_count, triangle_capacity;
+    gxp_words first;            /* element_count: the first of its triangles */
+    gxp_skin_slot *slots; uint32_t slot_count, slot_capacity, free_slot;
+    gxp_words vertex_buckets, slot_buckets;
+    gxp_words boundary;         /* face_count: number among the outer faces */
+    gxp_words groups;           /* outer faces x 4: group of each node's corner */
+    double *group_normals; uint32_t group_normal_capacity;      /* x 3, by group */
+    gxp_words changed[2];       /* vertices, triangles */
+    gx_range *ranges[2]; uint32_t range_count[2], range_capacity[2];
+    double *normals, *positions; uint32_t normal_capacity, position_capacity;   /* scratch: slots x 3, vertices x 3 */
+} gxp_skin;
+
 struct gx_body {
     gx_allocator allocator;
     double (*clock)(void *user);
@@ -345,8 +431,11 @@ struct gx_body {
     double *cell_volume; uint32_t cell_volume_capacity;
     double *fragments; uint32_t fragment_capacity, fragment_count;  /* volume, mass, centre: 5 arrays of capacity fragment_capacity */
     double volume, mass;
-    gxp_words skin_copies, skin_points, skin_triangles, skin_fragments, skin_cuts;
-    double *skin_weights; uint32_t skin_weight_count, skin_weight_capacity;
+    float *texture;                 /* node_count x 2, or NULL */
+    gxp_surface_record *surfaces; uint32_t surface_count, surface_capacity;     /* that have cut the body */
+    double *maps; uint32_t map_count, map_capacity;     /* x 8: material coordinates less the complex's origin to texture coordinates, for
+                                                           each triangle of surfaces with a texture: 3 factors and a constant, twice */
+    gxp_skin skin;
     gxp_words point_slot;           /* of the complex's points, while a cell is integrated or drawn */
     double *lambdas; uint32_t lambda_capacity;          /* x 4 */
     gxp_words triangles;
@@ -420,6 +509,13 @@ static int gxp_is_finite(double x) {
     uint64_t b;
     memcpy(&b, &x, sizeof b);
     return ((b >> 52) & 0x7ff) != 0x7ff;
+}
+
+static uint64_t gxp_mix(uint64_t x) {   /* splitmix64's finaliser */
+    x += 0x9e3779b97f4a7c15u;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+    return x ^ (x >> 31);
 }
 
 static double gxp_seconds(const gx_body *body) { return body->clock ? body->clock(body->clock_user) : 0; }
@@ -521,6 +617,7 @@ static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_
 /* >>create --------------------------------------------------------------------------------------------------------------- */
 
 static const uint8_t gxp_edge_nodes[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+static const uint8_t gxp_outward[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};     /* nodes of the face opposite to each */
 
 static int gxp_local_node(const gx_body *body, uint32_t element, uint32_t node) {
     const uint32_t *n = body->complex->elements + 4 * (size_t)element;
@@ -720,6 +817,10 @@ static void gxp_fill_materials(gx_body *body, const gx_body_desc *desc) {
 
 static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc) {
     gx_result result = gxp_allocate_tables(body);
+    if (result == GX_OK && desc->texture != NULL) {
+        body->texture = (float *)gxp_table(body, 2 * (size_t)body->node_count, sizeof(float));
+        if (body->texture == NULL) result = GX_ERROR_MEMORY;
+    }
     if (result == GX_OK) result = gxp_create_solver(body, desc);
     if (result == GX_OK) result = gxp_reserve_cells(body, body->element_count);
     if (result == GX_OK) result = gxp_reserve(&body->allocator, &body->leaves, sizeof *body->leaves, 0, &body->leaf_capacity, body->element_count);
@@ -727,6 +828,7 @@ static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc) {
     if (result != GX_OK) return result;
     memcpy(body->positions, desc->positions, 3 * (size_t)body->node_count * sizeof(double));
     gxp_fill_materials(body, desc);
+    if (body->texture != NULL) memcpy(body->texture, desc->texture, 2 * (size_t)body->node_count * sizeof(float));
     gxp_list_node_elements(body);
     result = gxp_find_pinches(body);
     if (result != GX_OK) return result;
@@ -802,6 +904,8 @@ static void gxp_release_model(gx_body *body) {
     body->part_capacity = body->rest_capacity = body->elastic_capacity = body->constraint_capacity = 0;
 }
 
+static void gxp_skin_free(gx_body *body);   /* see >>boundary */
+
 GXFEM_API void gx_body_destroy(gx_body *body) {
     gx_allocator a;
     size_t n, e, i;
@@ -832,19 +936,18 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     gxp_release(&a, body->pairs, body->pair_capacity * sizeof *body->pairs);
     gxp_release(&a, body->cell_volume, body->cell_volume_capacity * sizeof(double));
     gxp_release(&a, body->fragments, (size_t)body->fragment_capacity * 5 * sizeof(double));
-    gxp_release(&a, body->skin_weights, body->skin_weight_capacity * sizeof(double));
+    gxp_release(&a, body->texture, (2 * n + 1) * sizeof(float));
+    gxp_release(&a, body->surfaces, body->surface_capacity * sizeof *body->surfaces);
+    gxp_release(&a, body->maps, (size_t)body->map_capacity * 8 * sizeof(double));
+    gxp_skin_free(body);
     gxp_release(&a, body->lambdas, (size_t)body->lambda_capacity * 4 * sizeof(double));
     {
-        gxp_words *words[23];
+        gxp_words *words[18];
         words[0] = &body->view_cells; words[1] = &body->view_fragments; words[2] = &body->copy_fragment; words[3] = &body->cell_element;
-        words[4] = &body->cell_copies; words[5] = &body->skin_copies; words[6] = &body->skin_triangles; words[7] = &body->skin_fragments;
-        words[8] = &body->skin_cuts; words[9] = &body->point_slot; words[10] = &body->triangles; words[11] = &body->touched;
-        words[12] = &body->nodes; words[13] = &body->queue; words[14] = &body->seeds; words[15] = &body->faces;
-        words[16] = &body->fresh; words[17] = &body->list;
-        words[18] = &body->removed; words[19] = &body->dead;
-        words[20] = &body->fragment_number; words[21] = &body->skin_points;
-        words[22] = &body->pinches;
-        for (i = 0; i < 23; i++) gxp_words_free(body, words[i]);
+        words[4] = &body->cell_copies; words[5] = &body->fragment_number; words[6] = &body->point_slot; words[7] = &body->triangles;
+        words[8] = &body->touched; words[9] = &body->nodes; words[10] = &body->queue; words[11] = &body->seeds; words[12] = &body->faces;
+        words[13] = &body->fresh; words[14] = &body->list; words[15] = &body->removed; words[16] = &body->dead; words[17] = &body->pinches;
+        for (i = 0; i < 18; i++) gxp_words_free(body, words[i]);
     }
     gxs_solver_destroy(body->solver);
     gxb_complex_destroy(body->complex);
@@ -853,7 +956,7 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
 
 /* >>transaction: a cut changes cells and leaves in place; an undo log, the counts and the complex's own log take it back ------- */
 
-typedef struct gxp_counts { uint32_t cells, leaves, copies, labels; } gxp_counts;
+typedef struct gxp_counts { uint32_t cells, leaves, copies, labels, surfaces, maps, dirty; } gxp_counts;
 
 /* What one cut works with. */
 typedef struct gxp_cut {
@@ -890,6 +993,7 @@ static void gxp_begin(gxp_cut *cut) {
     body->undo_count = 0;
     cut->before.cells = body->cell_count; cut->before.leaves = body->leaf_count;
     cut->before.copies = body->copy_count; cut->before.labels = body->label_count;
+    cut->before.surfaces = body->surface_count; cut->before.maps = body->map_count; cut->before.dirty = body->skin.dirty.count;
 }
 
 static void gxp_rollback(gxp_cut *cut) {
@@ -901,6 +1005,7 @@ static void gxp_rollback(gxp_cut *cut) {
     }
     body->cell_count = cut->before.cells; body->leaf_count = cut->before.leaves;
     body->copy_count = cut->before.copies; body->label_count = cut->before.labels;
+    body->surface_count = cut->before.surfaces; body->map_count = cut->before.maps; body->skin.dirty.count = cut->before.dirty;
     gxb_complex_rollback(body->complex);
 }
 
@@ -1029,6 +1134,41 @@ static gx_result gxp_check_closed(gxp_cut *cut, const gxp_surface *s) {
     return GX_OK;
 }
 
+/* The affine map from material coordinates (less the complex's origin) to the texture of one triangle: with edges p and q and n = p x q, a
+   vector has the share g . (x - a) of p, with g = (q x n) / |n|^2, and of q with (n x p) / |n|^2. */
+static void gxp_map_triangle(const gx_body *body, const gx_surface *s, size_t triangle, double map[8]) {
+    const uint32_t *t = s->triangles + 3 * triangle;
+    const double *a = s->vertices + 3 * (size_t)t[0], *b = s->vertices + 3 * (size_t)t[1], *c = s->vertices + 3 * (size_t)t[2];
+    double p[3], q[3], n[3], square = 0;
+    int i, k;
+    for (k = 0; k < 3; k++) { p[k] = b[k] - a[k]; q[k] = c[k] - a[k]; }
+    for (k = 0; k < 3; k++) n[k] = p[(k + 1) % 3] * q[(k + 2) % 3] - p[(k + 2) % 3] * q[(k + 1) % 3];
+    for (k = 0; k < 3; k++) square += n[k] * n[k];
+    for (i = 0; i < 2; i++) {
+        const double u = (double)s->texture[2 * t[0] + (uint32_t)i], du = (double)s->texture[2 * t[1] + (uint32_t)i] - u, dv = (double)s->texture[2 * t[2] + (uint32_t)i] - u;
+        map[4 * i + 3] = u;
+        for (k = 0; k < 3; k++) {
+            const int x = (k + 1) % 3, y = (k + 2) % 3;
+            const double g = q[x] * n[y] - q[y] * n[x], h = n[x] * p[y] - n[y] * p[x];
+            map[4 * i + k] = square > 0 ? (du * g + dv * h) / square : 0;
+            map[4 * i + 3] -= map[4 * i + k] * (a[k] - body->complex->origin[k]);
+        }
+    }
+}
+
+/* Notes a surface that begins to cut: where its labels start, and how material points map to its texture. */
+static gx_result gxp_note_surface(gx_body *body, const gx_surface *given) {
+    const size_t maps = given->texture != NULL ? given->triangle_count : 0;
+    gx_result result = gxp_reserve(&body->allocator, &body->surfaces, sizeof *body->surfaces, body->surface_count, &body->surface_capacity, 1);
+    uint32_t i;
+    if (result == GX_OK) result = gxp_reserve(&body->allocator, &body->maps, 8 * sizeof(double), body->map_count, &body->map_capacity, maps);
+    if (result != GX_OK) return result;
+    body->surfaces[body->surface_count].label = body->label_count;
+    body->surfaces[body->surface_count++].map = maps > 0 ? body->map_count : GXP_NONE;
+    for (i = 0; i < maps; i++) gxp_map_triangle(body, given, i, body->maps + 8 * (size_t)body->map_count++);
+    return GX_OK;
+}
+
 static gx_result gxp_surface_open(gxp_cut *cut, gxp_surface *s, const gx_surface *given, size_t number) {
     gx_body *body = cut->body;
     const size_t v = given->vertex_count, t = given->triangle_count;
@@ -1037,6 +1177,8 @@ static gx_result gxp_surface_open(gxp_cut *cut, gxp_surface *s, const gx_surface
     memset(s, 0, sizeof *s);
     s->given = given; s->number = number; s->label = body->label_count;
     if (t > INT32_MAX - (size_t)body->label_count) return GX_ERROR_LIMIT;
+    result = gxp_note_surface(body, given);
+    if (result != GX_OK) return result;
     body->label_count += (uint32_t)t;
     s->point = (uint32_t *)gxp_allocate(&body->allocator, v * sizeof *s->point);
     s->triangles = (gxb_triangle *)gxp_allocate(&body->allocator, t * sizeof *s->triangles);
@@ -2275,6 +2417,8 @@ static gx_result gxp_check_cut(gxp_cut *cut) {
     return result;
 }
 
+static gx_result gxp_note_touched(gxp_cut *cut, uint32_t first_facet);  /* see >>boundary */
+
 GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_report *report, gx_failure *failure) {
     gxp_cut cut;
     uint32_t first_facet;
@@ -2296,6 +2440,7 @@ GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_r
     cut.report.seconds_enrichment = gxp_seconds(body) - start - cut.report.seconds_arrangement;
     if (result == GX_OK) result = gxp_integrate(&cut);
     cut.report.seconds_integrals = gxp_seconds(body) - start - cut.report.seconds_arrangement - cut.report.seconds_enrichment;
+    if (result == GX_OK) result = gxp_note_touched(&cut, first_facet);
     if (result != GX_OK) {
         gxp_rollback(&cut);
         return gxp_fail(failure, result, cut.failure.index, cut.failure.surface);
@@ -2847,7 +2992,617 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
     return result;
 }
 
-/* >>boundary: the skin ---------------------------------------------------------------------------------------------------------- */
+/* >>boundary: the visual surface. Its triangles are listed by element; those of elements that a cut touched are made anew. Triangles
+   and vertices stand without gaps: the last one takes the place of one that goes. ------------------------------------------------ */
+
+/* Makes room for extra further items in several arrays of the same length: in all of them, or in none. arrays: their addresses. */
+static gx_result gxp_reserve_columns(const gx_allocator *a, void *const *arrays, const size_t *items, int columns, size_t count,
+                                     uint32_t *capacity, size_t extra) {
+    const size_t need = count + extra, room = need + need / 2 + 16;
+    void *memory[8], *old;
+    int i, n;
+    if (need <= *capacity) return GX_OK;
+    for (n = 0; n < columns; n++) {
+        if (room > INT32_MAX || room > SIZE_MAX / items[n]) break;
+        memory[n] = gxp_allocate(a, room * items[n]);
+        if (memory[n] == NULL) break;
+    }
+    for (i = 0; i < n && n < columns; i++) gxp_release(a, memory[i], room * items[i]);
+    if (n < columns) return room > INT32_MAX || room > SIZE_MAX / items[n] ? GX_ERROR_LIMIT : GX_ERROR_MEMORY;
+    for (i = 0; i < columns; i++) {
+        memcpy(&old, arrays[i], sizeof old);
+        if (count > 0) memcpy(memory[i], old, count * items[i]);
+        gxp_release(a, old, (size_t)*capacity * items[i]);
+        memcpy(arrays[i], &memory[i], sizeof old);
+    }
+    *capacity = (uint32_t)room;
+    return GX_OK;
+}
+
+enum { GXP_VERTEX_COLUMNS = 7, GXP_TRIANGLE_COLUMNS = 6 };
+
+static void gxp_vertex_columns(gxp_skin *s, void **arrays, size_t *items) {
+    arrays[0] = &s->vertices; items[0] = sizeof *s->vertices;
+    arrays[1] = &s->copies; items[1] = 4 * sizeof *s->copies;
+    arrays[2] = &s->weights; items[2] = 4 * sizeof *s->weights;
+    arrays[3] = &s->point; items[3] = sizeof *s->point;
+    arrays[4] = &s->rest; items[4] = 3 * sizeof *s->rest;
+    arrays[5] = &s->normal; items[5] = 3 * sizeof *s->normal;
+    arrays[6] = &s->texture; items[6] = 2 * sizeof *s->texture;
+}
+
+static void gxp_triangle_columns(gxp_skin *s, void **arrays, size_t *items) {
+    arrays[0] = &s->links; items[0] = sizeof *s->links;
+    arrays[1] = &s->triangles; items[1] = 3 * sizeof *s->triangles;
+    arrays[2] = &s->fragment; items[2] = sizeof *s->fragment;
+    arrays[3] = &s->element; items[3] = sizeof *s->element;
+    arrays[4] = &s->material; items[4] = sizeof *s->material;
+    arrays[5] = &s->surface; items[5] = sizeof *s->surface;
+}
+
+static void gxp_move_column_item(void *const *arrays, const size_t *items, int columns, size_t from, size_t to) {
+    int i;
+    for (i = 0; i < columns; i++) {
+        char *data;
+        memcpy(&data, arrays[i], sizeof data);
+        memcpy(data + to * items[i], data + from * items[i], items[i]);
+    }
+}
+
+static void gxp_release_columns(const gx_allocator *a, void *const *arrays, const size_t *items, int columns, uint32_t capacity) {
+    int i;
+    for (i = 0; i < columns; i++) {
+        void *data;
+        memcpy(&data, arrays[i], sizeof data);
+        gxp_release(a, data, capacity * items[i]);
+    }
+}
+
+static void gxp_skin_free(gx_body *body) {
+    gxp_skin *s = &body->skin;
+    void *arrays[8];
+    size_t items[8];
+    gxp_vertex_columns(s, arrays, items);
+    gxp_release_columns(&body->allocator, arrays, items, GXP_VERTEX_COLUMNS, s->vertex_capacity);
+    gxp_triangle_columns(s, arrays, items);
+    gxp_release_columns(&body->allocator, arrays, items, GXP_TRIANGLE_COLUMNS, s->triangle_capacity);
+    gxp_release(&body->allocator, s->slots, s->slot_capacity * sizeof *s->slots);
+    gxp_release(&body->allocator, s->normals, (size_t)s->normal_capacity * 3 * sizeof *s->normals);
+    gxp_release(&body->allocator, s->positions, (size_t)s->position_capacity * 3 * sizeof *s->positions);
+    gxp_release(&body->allocator, s->group_normals, (size_t)s->group_normal_capacity * 3 * sizeof *s->group_normals);
+    gxp_release(&body->allocator, s->ranges[0], s->range_capacity[0] * sizeof **s->ranges);
+    gxp_release(&body->allocator, s->ranges[1], s->range_capacity[1] * sizeof **s->ranges);
+    gxp_words_free(body, &s->dirty); gxp_words_free(body, &s->vertex_buckets); gxp_words_free(body, &s->slot_buckets);
+    gxp_words_free(body, &s->first); gxp_words_free(body, &s->boundary); gxp_words_free(body, &s->groups);
+    gxp_words_free(body, &s->changed[0]); gxp_words_free(body, &s->changed[1]);
+}
+
+/* --- what cuts touch --- */
+
+static gx_result gxp_push_leaf_elements(gx_body *body, uint32_t facet) {
+    const gxb_complex *cx = body->complex;
+    uint32_t i;
+    gx_result result = GX_OK;
+    for (i = 0; i < 2 && result == GX_OK; i++)
+        if (cx->facets[facet].leaf[i] != GXB_NONE) result = gxp_push(body, &body->skin.dirty, cx->leaves[cx->facets[facet].leaf[i]].element);
+    return result;
+}
+
+/* Notes for the skin, if there is one, the elements in which the cut made facets or walls or changed a cell, and those whose copies
+   will be renumbered when dead ones are dropped. Elements noted in vain do no harm. */
+static gx_result gxp_note_touched(gxp_cut *cut, uint32_t first_facet) {
+    gx_body *body = cut->body;
+    const gxb_complex *cx = body->complex;
+    uint32_t i, j;
+    gx_result result = GX_OK;
+    if (!body->skin.made) return GX_OK;
+    if (body->skin.dirty.count / 8 > body->element_count) { body->skin.made = 0; return GX_OK; }
+    for (i = first_facet; i < cx->facet_count && result == GX_OK; i++) result = gxp_push_leaf_elements(body, i);
+    for (i = 0; i < cx->wall_count && result == GX_OK; i++) result = gxp_push_leaf_elements(body, cx->walls[i]);
+    for (i = 0; i < body->undo_count && result == GX_OK; i++)
+        if (body->undo[i].kind == GXP_UNDO_CELL) result = gxp_push(body, &body->skin.dirty, body->undo[i].cell.element);
+    for (i = body->copy_count - body->dead.count; i < body->copy_count; i++) {
+        const uint32_t node = body->copy_node[i];
+        for (j = body->node_start[node]; j < body->node_start[node + 1] && result == GX_OK; j++)
+            result = gxp_push(body, &body->skin.dirty, body->node_elements[j]);
+    }
+    return result;
+}
+
+/* Is the mesh edge divided, or its piece of an outer face? */
+static int gxp_edge_is_divided(const gxb_complex *cx, uint32_t mesh_edge) {
+    const uint32_t edge = cx->mesh_edge[mesh_edge];
+    return edge != GXB_NONE && cx->edges[edge].child != GXB_NONE;
+}
+
+static gx_result gxp_spread_to(gx_body *body, uint32_t element) {
+    if (element == GXP_NONE || body->cell_stamp[element] == body->stamp) return GX_OK;
+    body->cell_stamp[element] = body->stamp;
+    return gxp_push(body, &body->skin.dirty, element);
+}
+
+/* Elements that share a divided edge with a touched one have a further corner there; those across its faces see other cells. */
+static gx_result gxp_spread_touched(gx_body *body) {
+    const gxb_complex *cx = body->complex;
+    gxp_words *dirty = &body->skin.dirty;
+    uint32_t i, j, k, count;
+    gx_result result = GX_OK;
+    body->stamp++;
+    for (i = 0, count = 0; i < dirty->count; i++) {
+        if (body->cell_stamp[dirty->data[i]] == body->stamp) continue;
+        body->cell_stamp[dirty->data[i]] = body->stamp;
+        dirty->data[count++] = dirty->data[i];
+    }
+    dirty->count = count;
+    for (i = 0; i < count && result == GX_OK; i++) {
+        const uint32_t e = dirty->data[i];
+        for (k = 0; k < 4 && result == GX_OK; k++) result = gxp_spread_to(body, gxp_neighbour(body, e, k));
+        for (k = 0; k < 6; k++) {
+            const uint32_t a = cx->elements[4 * e + gxp_edge_nodes[k][0]], b = cx->elements[4 * e + gxp_edge_nodes[k][1]];
+            if (!gxp_edge_is_divided(cx, cx->element_edges[6 * e + k])) continue;
+            for (j = body->node_start[a]; j < body->node_start[a + 1] && result == GX_OK; j++)
+                if (gxp_local_node(body, body->node_elements[j], b) >= 0) result = gxp_spread_to(body, body->node_elements[j]);
+        }
+    }
+    return result;
+}
+
+/* --- normals --- */
+
+static double gxp_dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/* (b - a) x (c - a) of a triangle's corners */
+static void gxp_triangle_normal(const double *x, const uint32_t *t, double n[3]) {
+    const double *a = x + 3 * (size_t)t[0], *b = x + 3 * (size_t)t[1], *c = x + 3 * (size_t)t[2];
+    const double p[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, q[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+    n[0] = p[1] * q[2] - p[2] * q[1];
+    n[1] = p[2] * q[0] - p[0] * q[2];
+    n[2] = p[0] * q[1] - p[1] * q[0];
+}
+
+/* Of length 1; left alone where it has none, or one that is not finite. */
+static void gxp_set_normal(float *normal, const double n[3]) {
+    const double square = gxp_dot(n, n);
+    const double scale = square > 0 ? 1 / sqrt(square) : 0;
+    int k;
+    if (!(scale > 0) || !gxp_is_finite(scale)) return;
+    for (k = 0; k < 3; k++) normal[k] = (float)(scale * n[k]);
+}
+
+/* --- the outer surface before any cut: which of its corners are shaded as one --- */
+
+/* Normal of the outer face opposite to the element's node k, of its area's length. */
+static void gxp_outer_normal(const gx_body *body, uint32_t element, uint32_t k, double n[3]) {
+    double x[12], a[3], b[3];
+    const uint8_t *f = gxp_outward[k];
+    int i;
+    gxp_element_positions(body, element, x);
+    for (i = 0; i < 3; i++) { a[i] = x[3 * f[1] + i] - x[3 * f[0] + i]; b[i] = x[3 * f[2] + i] - x[3 * f[0] + i]; }
+    for (i = 0; i < 3; i++) n[i] = 0.5 * (a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]);
+}
+
+/* Lists the outer faces: s->boundary has the number of each mesh face among them, body->faces element * 4 + k of each. */
+static gx_result gxp_list_outer_faces(gx_body *body) {
+    const gxb_complex *cx = body->complex;
+    gxp_skin *s = &body->skin;
+    uint32_t e, k;
+    gx_result result = gxp_set_words(body, &s->boundary, cx->face_count);
+    body->faces.count = 0;
+    for (e = 0; e < body->element_count && result == GX_OK; e++) for (k = 0; k < 4 && result == GX_OK; k++) {
+        if (gxp_neighbour(body, e, k) != GXP_NONE) continue;
+        s->boundary.data[cx->element_faces[4 * e + k]] = body->faces.count;
+        result = gxp_push(body, &body->faces, 4 * e + k);
+    }
+    return result;
+}
+
+/* Two outer faces (by number) meet in the mesh edge from node a to b: where they bend little, their corners are one group. */
+static void gxp_join_corners(gx_body *body, uint32_t p, uint32_t q, uint32_t a, uint32_t b) {
+    const uint32_t ep = body->faces.data[p], eq = body->faces.data[q];
+    uint32_t *group = body->skin.groups.data;
+    double m[3], n[3];
+    gxp_outer_normal(body, ep / 4, ep % 4, m);
+    gxp_outer_normal(body, eq / 4, eq % 4, n);
+    if (gxp_dot(m, n) < cos(body->skin.desc.crease_angle) * sqrt(gxp_dot(m, m) * gxp_dot(n, n))) return;
+    gxp_unite(group, 4 * p + (uint32_t)gxp_local_node(body, ep / 4, a), 4 * q + (uint32_t)gxp_local_node(body, eq / 4, a));
+    gxp_unite(group, 4 * p + (uint32_t)gxp_local_node(body, ep / 4, b), 4 * q + (uint32_t)gxp_local_node(body, eq / 4, b));
+}
+
+/* Finds for each mesh edge the two outer faces that meet there, and joins them. body->list: of each edge, the first face and how many. */
+static gx_result gxp_join_faces(gx_body *body) {
+    const gxb_complex *cx = body->complex;
+    uint32_t i, j, *first, *second;
+    gx_result result = gxp_set_words(body, &body->list, 2 * (size_t)cx->mesh_edge_count);
+    if (result != GX_OK) return result;
+    first = body->list.data; second = first + cx->mesh_edge_count;
+    memset(first, 0xff, 2 * (size_t)cx->mesh_edge_count * sizeof *first);
+    for (i = 0; i < body->faces.count; i++) for (j = 0; j < 6; j++) {
+        const uint32_t e = body->faces.data[i] / 4, k = body->faces.data[i] % 4, edge = cx->element_edges[6 * e + j];
+        const uint32_t a = gxp_edge_nodes[j][0], b = gxp_edge_nodes[j][1];
+        if (a == k || b == k || body->edge_pinched[edge]) continue;
+        if (first[edge] == GXP_NONE) first[edge] = i;
+        else if (second[edge] == GXP_NONE) {
+            second[edge] = i;
+            gxp_join_corners(body, first[edge], i, cx->elements[4 * e + a], cx->elements[4 * e + b]);
+        }
+    }
+    return GX_OK;
+}
+
+/* Groups of corners of outer faces: s->groups has for each outer face's four nodes the number of its group (the fourth is not used);
+   s->group_normals their normals at rest, weighted by area, not of length 1. */
+static gx_result gxp_group_corners(gx_body *body) {
+    gxp_skin *s = &body->skin;
+    uint32_t i, k;
+    int j;
+    gx_result result = gxp_list_outer_faces(body);
+    const uint32_t count = 4 * body->faces.count;
+    if (result == GX_OK) result = gxp_set_words(body, &s->groups, count);
+    if (result == GX_OK) result = gxp_reserve(&body->allocator, &s->group_normals, 3 * sizeof(double), 0, &s->group_normal_capacity, count);
+    if (result != GX_OK) return result;
+    for (i = 0; i < count; i++) s->groups.data[i] = i;
+    if (s->desc.crease_angle > 0) result = gxp_join_faces(body);
+    if (result != GX_OK) return result;
+    for (i = 0; i < count; i++) s->groups.data[i] = gxp_find(s->groups.data, i);
+    memset(s->group_normals, 0, 3 * (size_t)count * sizeof(double));
+    for (i = 0; i < body->faces.count; i++) {
+        double n[3];
+        gxp_outer_normal(body, body->faces.data[i] / 4, body->faces.data[i] % 4, n);
+        for (k = 0; k < 4; k++) for (j = 0; j < 3; j++) s->group_normals[3 * (size_t)s->groups.data[4 * i + k] + (size_t)j] += n[j];
+    }
+    return GX_OK;
+}
+
+/* --- the surfaces that cut the body, by the labels of their triangles --- */
+
+static uint32_t gxp_label_surface(const gx_body *body, uint32_t label) {
+    uint32_t low = 0, high = body->surface_count;
+    while (high - low > 1) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (body->surfaces[middle].label <= label) low = middle;
+        else high = middle;
+    }
+    return low;
+}
+
+/* The affine map to the texture of a cut triangle, NULL if its surface has none */
+static const double *gxp_label_map(const gx_body *body, uint32_t label) {
+    uint32_t surface;
+    if (label == GXP_NONE) return NULL;
+    surface = gxp_label_surface(body, label);
+    if (body->surfaces[surface].map == GXP_NONE) return NULL;
+    return body->maps + 8 * ((size_t)body->surfaces[surface].map + label - body->surfaces[surface].label);
+}
+
+/* --- slots: where normals of the deformed surface are summed. Outer ones by copy and group, those of cut faces by vertex --- */
+
+static gx_result gxp_rehash(gx_body *body, gxp_words *buckets, uint32_t items) {
+    uint32_t size = 64;
+    gx_result result;
+    while (size < items) size *= 2;
+    result = gxp_set_words(body, buckets, size);
+    if (result == GX_OK) { buckets->count = size; memset(buckets->data, 0xff, size * sizeof *buckets->data); }
+    return result;
+}
+
+static uint32_t *gxp_slot_bucket(gxp_skin *s, uint32_t copy, uint32_t group) {
+    return &s->slot_buckets.data[gxp_mix((uint64_t)copy << 32 | group) & (s->slot_buckets.count - 1)];
+}
+
+/* Room for one slot more; the buckets grow with the slots. */
+static gx_result gxp_slot_room(gx_body *body) {
+    gxp_skin *s = &body->skin;
+    const uint32_t before = s->slot_capacity;
+    uint32_t i;
+    gx_result result = gxp_reserve(&body->allocator, &s->slots, sizeof *s->slots, s->slot_count, &s->slot_capacity, 1);
+    if (result != GX_OK || (s->slot_capacity == before && s->slot_buckets.count > 0)) return result;
+    result = gxp_rehash(body, &s->slot_buckets, s->slot_capacity);
+    for (i = 0; i < s->slot_count && result == GX_OK; i++) {
+        uint32_t *bucket = gxp_slot_bucket(s, s->slots[i].copy, s->slots[i].group);
+        if (s->slots[i].copy == GXP_NONE) continue;
+        s->slots[i].next = *bucket;
+        *bucket = i;
+    }
+    return result;
+}
+
+static gx_result gxp_outer_slot(gx_body *body, uint32_t copy, uint32_t group, uint32_t *slot) {
+    gxp_skin *s = &body->skin;
+    gx_result result = gxp_slot_room(body);
+    uint32_t i;
+    if (result != GX_OK) return result;
+    for (i = *gxp_slot_bucket(s, copy, group); i != GXP_NONE; i = s->slots[i].next)
+        if (s->slots[i].copy == copy && s->slots[i].group == group) { *slot = i; return GX_OK; }
+    i = s->slot_count++;
+    s->slots[i].copy = copy; s->slots[i].group = group;
+    s->slots[i].next = *gxp_slot_bucket(s, copy, group);
+    *gxp_slot_bucket(s, copy, group) = i;
+    *slot = i;
+    return GX_OK;
+}
+
+/* A slot that belongs to one vertex: a free one, or a new one */
+static gx_result gxp_own_slot(gx_body *body, uint32_t *slot) {
+    gxp_skin *s = &body->skin;
+    gx_result result = GX_OK;
+    if (s->free_slot != GXP_NONE) { *slot = s->free_slot; s->free_slot = s->slots[*slot].next; return GX_OK; }
+    result = gxp_slot_room(body);
+    if (result != GX_OK) return result;
+    *slot = s->slot_count++;
+    s->slots[*slot].copy = GXP_NONE;
+    return GX_OK;
+}
+
+/* --- vertices --- */
+
+/* A facet that is shown, or rather its part in a leaf's cell */
+typedef struct gxp_skin_face {
+    uint32_t element;
+    const uint32_t *copies;     /* the cell's */
+    uint32_t slots[4];          /* outer: of the face's nodes, by local node */
+    uint8_t outer;
+    uint32_t surface;           /* gx_skin.triangle_surface */
+    uint32_t label;             /* the cut triangle, GXP_NONE: none */
+    uint32_t plane;             /* of the complex */
+    uint32_t group[2];          /* see gxp_skin_key */
+    double normal[3];           /* outward at rest, of any length */
+} gxp_skin_face;
+
+static uint32_t *gxp_vertex_bucket(gxp_skin *s, const gxp_skin_key *key) {
+    uint64_t h = gxp_mix((uint64_t)key->group[0] << 32 | key->group[1]) + key->point;
+    h = gxp_mix(h ^ ((uint64_t)key->name[0] << 32 | key->name[1]));
+    h = gxp_mix(h ^ ((uint64_t)key->name[2] << 32 | key->name[3]));
+    return &s->vertex_buckets.data[h & (s->vertex_buckets.count - 1)];
+}
+
+static gx_result gxp_vertex_room(gx_body *body) {
+    gxp_skin *s = &body->skin;
+    const uint32_t before = s->vertex_capacity;
+    void *arrays[8];
+    size_t items[8];
+    uint32_t i;
+    gx_result result;
+    gxp_vertex_columns(s, arrays, items);
+    result = gxp_reserve_columns(&body->allocator, arrays, items, GXP_VERTEX_COLUMNS, s->vertex_count, &s->vertex_capacity, 1);
+    if (result != GX_OK || (s->vertex_capacity == before && s->vertex_buckets.count > 0)) return result;
+    result = gxp_rehash(body, &s->vertex_buckets, s->vertex_capacity);
+    for (i = 0; i < s->vertex_count && result == GX_OK; i++) {
+        uint32_t *bucket = gxp_vertex_bucket(s, &s->vertices[i].key);
+        s->vertices[i].next = *bucket;
+        *bucket = i;
+    }
+    return result;
+}
+
+/* What a point of the face is looked up by, known without arithmetic. */
+static void gxp_make_key(const gx_body *body, const gxp_skin_face *face, uint32_t point, gxp_skin_key *key) {
+    const unsigned support = gxb_complex_support(body->complex, point, face->element);
+    uint32_t i, j, n = 0;
+    memset(key->name, 0xff, sizeof key->name);
+    key->point = point;
+    key->group[0] = face->group[0]; key->group[1] = face->group[1];
+    for (i = 0; i < 4; i++) {
+        const uint32_t name = face->outer ? face->slots[i] : face->copies[i];
+        if (!(support >> i & 1) || name == GXP_NONE) continue;
+        for (j = n++; j > 0 && key->name[j - 1] > name; j--) key->name[j] = key->name[j - 1];
+        key->name[j] = name;
+    }
+}
+
+/* Copies, weights and slots of a point, those of weight 0 last. */
+static void gxp_weigh_point(const gxp_skin_face *face, const double lambda[4], uint32_t *copies, double *weights, uint32_t *slots) {
+    uint32_t k, n = 0;
+    for (k = 0; k < 4; k++) {
+        if (!(lambda[k] > 0) || (face->outer && face->slots[k] == GXP_NONE)) continue;
+        copies[n] = face->copies[k]; weights[n] = lambda[k]; slots[n++] = face->slots[k];
+    }
+    for (k = n; k < 4; k++) { copies[k] = copies[0]; weights[k] = 0; slots[k] = slots[0]; }
+}
+
+/* Outside by barycentric interpolation, on cut faces by the cut triangle's map. */
+static void gxp_set_texture(gx_body *body, uint32_t vertex, const gxp_skin_face *face, const double lambda[4]) {
+    const double *x = body->skin.rest + 3 * (size_t)vertex, *map = gxp_label_map(body, face->label);
+    const uint32_t *node = body->complex->elements + 4 * (size_t)face->element;
+    int i, k;
+    for (i = 0; i < 2; i++) {
+        double t = map != NULL ? map[4 * i + 3] : 0;
+        for (k = 0; k < 3 && map != NULL; k++) t += map[4 * i + k] * (x[k] - body->complex->origin[k]);
+        for (k = 0; k < 4 && face->outer && body->texture != NULL; k++) t += lambda[k] * (double)body->texture[2 * (size_t)node[k] + (size_t)i];
+        body->skin.texture[2 * (size_t)vertex + (size_t)i] = (float)t;
+    }
+}
+
+/* A new vertex for a key */
+static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const gxp_skin_key *key, uint32_t *vertex) {
+    gxp_skin *s = &body->skin;
+    const uint32_t i = s->vertex_count;
+    gxp_skin_vertex *v = &s->vertices[i];
+    double lambda[4], *rest = s->rest + 3 * (size_t)i;
+    uint32_t n, own = GXP_NONE;
+    int k;
+    gx_result result = face->outer ? GX_OK : gxp_own_slot(body, &own);
+    if (result != GX_OK) return result;
+    gxb_complex_barycentric(body->complex, key->point, face->element, lambda);
+    gxp_weigh_point(face, lambda, s->copies + 4 * (size_t)i, s->weights + 4 * (size_t)i, v->slots);
+    for (n = 0; n < 4 && !face->outer; n++) v->slots[n] = own;
+    v->key = *key;
+    v->corner = GXP_NONE;
+    v->outer = face->outer;
+    v->fresh = 1;
+    v->noted = 0;
+    v->next = *gxp_vertex_bucket(s, key);
+    *gxp_vertex_bucket(s, key) = i;
+    s->point[i] = key->point;
+    for (k = 0; k < 3; k++) {
+        rest[k] = 0;
+        for (n = 0; n < 4; n++)
+            rest[k] += s->weights[4 * (size_t)i + n] * body->positions[3 * (size_t)body->copy_node[s->copies[4 * (size_t)i + n]] + (size_t)k];
+    }
+    gxp_set_normal(s->normal + 3 * (size_t)i, face->normal);
+    gxp_set_texture(body, i, face, lambda);
+    *vertex = s->vertex_count++;
+    return GX_OK;
+}
+
+static gx_result gxp_find_vertex(gx_body *body, const gxp_skin_face *face, uint32_t point, uint32_t *vertex) {
+    gxp_skin *s = &body->skin;
+    const gx_result result = gxp_vertex_room(body);
+    gxp_skin_key key;
+    if (result != GX_OK) return result;
+    gxp_make_key(body, face, point, &key);
+    for (*vertex = *gxp_vertex_bucket(s, &key); *vertex != GXP_NONE; *vertex = s->vertices[*vertex].next)
+        if (memcmp(&s->vertices[*vertex].key, &key, sizeof key) == 0) return GX_OK;
+    return gxp_add_vertex(body, face, &key, vertex);
+}
+
+/* Takes a vertex without triangles away. */
+static void gxp_drop_vertex(gx_body *body, uint32_t vertex) {
+    gxp_skin *s = &body->skin;
+    const uint32_t last = --s->vertex_count;
+    uint32_t *link, corner;
+    void *arrays[8];
+    size_t items[8];
+    for (link = gxp_vertex_bucket(s, &s->vertices[vertex].key); *link != vertex; link = &s->vertices[*link].next) {}
+    *link = s->vertices[vertex].next;
+    if (!s->vertices[vertex].outer) {
+        s->slots[s->vertices[vertex].slots[0]].next = s->free_slot;
+        s->free_slot = s->vertices[vertex].slots[0];
+    }
+    if (vertex == last) return;
+    for (link = gxp_vertex_bucket(s, &s->vertices[last].key); *link != last; link = &s->vertices[*link].next) {}
+    *link = vertex;
+    for (corner = s->vertices[last].corner; corner != GXP_NONE; corner = s->links[corner / 3].corner_next[corner % 3]) s->triangles[corner] = vertex;
+    gxp_vertex_columns(s, arrays, items);
+    gxp_move_column_item(arrays, items, GXP_VERTEX_COLUMNS, last, vertex);
+    s->vertices[vertex].fresh = 1;
+}
+
+/* --- triangles --- */
+
+static gx_result gxp_triangle_room(gx_body *body) {
+    gxp_skin *s = &body->skin;
+    void *arrays[8];
+    size_t items[8];
+    gxp_triangle_columns(s, arrays, items);
+    return gxp_reserve_columns(&body->allocator, arrays, items, GXP_TRIANGLE_COLUMNS, s->triangle_count, &s->triangle_capacity, 1);
+}
+
+/* Hooks the triangle's corners to its vertices and itself to its element. */
+static void gxp_link_triangle(gxp_skin *s, uint32_t t) {
+    gxp_skin_links *own = &s->links[t];
+    uint32_t k;
+    for (k = 0; k < 3; k++) {
+        uint32_t *first = &s->vertices[s->triangles[3 * t + k]].corner;
+        own->corner_next[k] = *first;
+        own->corner_previous[k] = GXP_NONE;
+        if (*first != GXP_NONE) s->links[*first / 3].corner_previous[*first % 3] = 3 * t + k;
+        *first = 3 * t + k;
+    }
+    own->next = s->first.data[s->element[t]];
+    own->previous = GXP_NONE;
+    if (own->next != GXP_NONE) s->links[own->next].previous = t;
+    s->first.data[s->element[t]] = t;
+}
+
+static void gxp_unlink_triangle(gxp_skin *s, uint32_t t) {
+    const gxp_skin_links *own = &s->links[t];
+    uint32_t k;
+    for (k = 0; k < 3; k++) {
+        const uint32_t next = own->corner_next[k], previous = own->corner_previous[k];
+        if (next != GXP_NONE) s->links[next / 3].corner_previous[next % 3] = previous;
+        if (previous != GXP_NONE) s->links[previous / 3].corner_next[previous % 3] = next;
+        else s->vertices[s->triangles[3 * t + k]].corner = next;
+    }
+    if (own->next != GXP_NONE) s->links[own->next].previous = own->previous;
+    if (own->previous != GXP_NONE) s->links[own->previous].next = own->next;
+    else s->first.data[s->element[t]] = own->next;
+}
+
+static gx_result gxp_note_vertex(gx_body *body, uint32_t vertex) {
+    gxp_skin_vertex *v = &body->skin.vertices[vertex];
+    if (v->noted) return GX_OK;
+    v->noted = 1;
+    return gxp_push(body, &body->skin.changed[0], vertex);
+}
+
+/* Takes a triangle away; the last one takes its place. */
+static gx_result gxp_drop_triangle(gx_body *body, uint32_t t) {
+    gxp_skin *s = &body->skin;
+    const uint32_t last = s->triangle_count - 1;
+    void *arrays[8];
+    size_t items[8];
+    uint32_t k;
+    gx_result result = gxp_push(body, &s->changed[1], t);
+    for (k = 0; k < 3 && result == GX_OK; k++) result = gxp_note_vertex(body, s->triangles[3 * t + k]);
+    if (result != GX_OK) return result;
+    gxp_unlink_triangle(s, t);
+    s->triangle_count--;
+    if (t == last) return GX_OK;
+    gxp_unlink_triangle(s, last);
+    gxp_triangle_columns(s, arrays, items);
+    gxp_move_column_item(arrays, items, GXP_TRIANGLE_COLUMNS, last, t);
+    gxp_link_triangle(s, t);
+    return GX_OK;
+}
+
+static gx_result gxp_add_skin_triangle(gx_body *body, const gxp_skin_face *face, const uint32_t point[3], int inward) {
+    gxp_skin *s = &body->skin;
+    const uint32_t t = s->triangle_count;
+    uint32_t k, j, *corner;
+    gx_result result = gxp_triangle_room(body);
+    if (result != GX_OK) return result;
+    corner = s->triangles + 3 * (size_t)t;
+    for (k = 0; k < 3 && result == GX_OK; k++) {
+        const uint32_t p = point[inward ? 2 - k : k];
+        result = gxp_find_vertex(body, face, p, &corner[k]);
+        if (result == GX_OK) result = gxp_note_vertex(body, corner[k]);
+    }
+    if (result == GX_OK) result = gxp_push(body, &s->changed[1], t);
+    if (result != GX_OK) return result;
+    s->triangle_count++;
+    s->element[t] = face->element;
+    s->material[t] = body->element_materials[face->element];
+    s->surface[t] = face->surface;
+    gxp_set_normal(s->links[t].normal, face->normal);
+    for (k = 0, j = 0; k < 4 && face->outer; k++) if (face->slots[k] != GXP_NONE) s->links[t].slots[j++] = face->slots[k];
+    for (k = 0; k < 3 && !face->outer; k++) s->links[t].slots[k] = s->vertices[corner[k]].slots[0];
+    gxp_link_triangle(s, t);
+    return GX_OK;
+}
+
+/* --- facets as triangles with area, so that they have normals: a facet's corners may stand in line with others --- */
+
+/* May corner i be cut off the polygon of complex points, which has area? So must its triangle have, and what remains. */
+static int gxp_is_ear(gx_body *body, const uint32_t *p, uint32_t n, uint32_t i, uint32_t plane) {
+    const uint32_t before = p[(i + n - 1) % n], after = p[(i + 1) % n];
+    uint32_t j;
+    if (n == 3) return 1;
+    if (gxb_complex_turn(body->complex, before, p[i], after, plane) == 0) return 0;
+    for (j = 2; j < n - 1; j++) if (gxb_complex_turn(body->complex, before, after, p[(i + j) % n], plane) != 0) return 1;
+    return 0;
+}
+
+/* Adds a facet as triangles, outward from the leaf: ears are cut off its convex polygon, which stands in body->faces. */
+static gx_result gxp_add_skin_facet(gx_body *body, const gxp_skin_face *face, uint32_t facet, uint32_t leaf) {
+    gxb_complex *cx = body->complex;
+    const int inward = cx->facets[facet].leaf[0] == leaf;
+    uint32_t *p, e0, en, i, n;
+    gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
+    body->faces.count = 0;
+    for (i = 0; i < en && result == GX_OK; i++) result = gxp_push(body, &body->faces, cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1]);
+    p = body->faces.data;
+    for (n = body->faces.count, i = 0; n >= 3 && result == GX_OK; n--) {
+        uint32_t triangle[3], tries = 0;
+        for (i %= n; tries < n && !gxp_is_ear(body, p, n, i, cx->facets[facet].plane); i = (i + 1) % n) tries++;
+        triangle[0] = p[(i + n - 1) % n]; triangle[1] = p[i]; triangle[2] = p[(i + 1) % n];
+        result = gxp_add_skin_triangle(body, face, triangle, inward);
+        memmove(p + i, p + i + 1, (n - 1 - i) * sizeof *p);
+        i++;
+    }
+    return result;
+}
+
+/* --- what an element shows --- */
 
 /* Do two cells move apart at a common facet? In one element where any copy differs, else where a shared node's copies differ. */
 static int gxp_cells_part(const gx_body *body, uint32_t a, uint32_t b) {
@@ -2870,161 +3625,412 @@ static int gxp_visible(const gx_body *body, uint32_t facet, uint32_t leaf) {
     return f->wall && gxp_cells_part(body, body->leaves[leaf].cell, body->leaves[other].cell) ? 1 : -1;
 }
 
-/* --- facets as triangles with area, so that they have normals: a facet's corners may stand in line with others --- */
-
-/* May corner i be cut off the polygon of complex points? Its triangle has area, and so has what remains. */
-static int gxp_is_ear(gx_body *body, const uint32_t *p, uint32_t n, uint32_t i, uint32_t plane) {
-    const uint32_t before = p[(i + n - 1) % n], after = p[(i + 1) % n];
+/* The outer face opposite to the element's node k, as a cell has it */
+static gx_result gxp_outer_face(gx_body *body, uint32_t k, gxp_skin_face *face) {
+    const uint32_t number = body->skin.boundary.data[body->complex->element_faces[4 * face->element + k]];
     uint32_t j;
-    if (gxb_complex_turn(body->complex, before, p[i], after, plane) == 0) return 0;
-    if (n == 3) return 1;
-    for (j = 2; j < n - 1; j++) if (gxb_complex_turn(body->complex, before, after, p[(i + j) % n], plane) != 0) return 1;
-    return 0;
-}
-
-static gx_result gxp_add_skin_triangle(gx_body *body, uint32_t element, const uint32_t point[3], int inward) {
-    uint32_t c, corner[3];
     gx_result result = GX_OK;
-    for (c = 0; c < 3 && result == GX_OK; c++) result = gxp_add_boundary_point(body, element, point[c], &corner[c]);
-    for (c = 0; c < 3 && result == GX_OK; c++) result = gxp_push(body, &body->triangles, corner[inward ? 2 - c : c]);
-    return result;
-}
-
-/* Adds a facet as triangles, outward from the leaf: ears are cut off its convex polygon, which stands in body->faces. */
-static gx_result gxp_add_skin_facet(gx_body *body, uint32_t element, uint32_t facet, uint32_t leaf) {
-    gxb_complex *cx = body->complex;
-    const int inward = cx->facets[facet].leaf[0] == leaf;
-    uint32_t *p, e0, en, i, n;
-    gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
-    body->faces.count = 0;
-    for (i = 0; i < en && result == GX_OK; i++) result = gxp_push(body, &body->faces, cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1]);
-    p = body->faces.data;
-    for (n = body->faces.count, i = 0; n >= 3 && result == GX_OK; n--) {
-        uint32_t triangle[3], tries = 0;
-        for (i %= n; tries < n && !gxp_is_ear(body, p, n, i, cx->facets[facet].plane); i = (i + 1) % n) tries++;
-        triangle[0] = p[(i + n - 1) % n]; triangle[1] = p[i]; triangle[2] = p[(i + 1) % n];
-        result = gxp_add_skin_triangle(body, element, triangle, inward);
-        memmove(p + i, p + i + 1, (n - 1 - i) * sizeof *p);
-        i++;
+    face->outer = 1;
+    face->surface = GX_SKIN_OUTER;
+    face->label = GXP_NONE;
+    face->group[0] = face->group[1] = 0;
+    gxp_outer_normal(body, face->element, k, face->normal);
+    for (j = 0; j < 4 && result == GX_OK; j++) {
+        face->slots[j] = GXP_NONE;
+        if (j != k) result = gxp_outer_slot(body, face->copies[j], body->skin.groups.data[4 * number + j], &face->slots[j]);
     }
     return result;
 }
 
-static gx_result gxp_skin_leaf(gx_body *body, uint32_t leaf, uint32_t fragment) {
+/* The face of a cut that the leaf has at the facet. Of several triangles that cover it the first counts. */
+static void gxp_cut_face(const gx_body *body, uint32_t facet, uint32_t leaf, gxp_skin_face *face) {
+    const gxb_complex *cx = body->complex;
+    const gxb_facet *f = &cx->facets[facet];
+    const int front = f->leaf[0] == leaf;
+    uint32_t l, first = GXP_NONE;
+    int k;
+    for (l = f->labels; l != GXB_NONE; l = cx->labels[l].next)
+        if (first == GXP_NONE || cx->labels[l].triangle < cx->labels[first].triangle) first = l;
+    face->outer = 0;
+    face->label = first == GXP_NONE ? GXP_NONE : cx->labels[first].triangle;
+    face->surface = first == GXP_NONE ? GX_SKIN_SEVERED : 1 + gxp_label_surface(body, face->label);
+    memset(face->slots, 0xff, sizeof face->slots);
+    for (k = 0; k < 3; k++) face->normal[k] = front ? -cx->planes[face->plane].filter.n[k] : cx->planes[face->plane].filter.n[k];
+    face->group[0] = face->surface;
+    if (body->skin.desc.smooth_cuts && first != GXP_NONE) face->group[1] = (uint32_t)(front ^ (cx->labels[first].orientation < 0));
+    else face->group[1] = 2 + 2 * face->plane + (uint32_t)front;
+}
+
+static gx_result gxp_skin_leaf(gx_body *body, uint32_t leaf, gxp_skin_face *face) {
     gxb_complex *cx = body->complex;
-    uint32_t first, count, i, t;
+    uint32_t first, count, i, k;
     gx_result result = gxb_leaf_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
-        const uint32_t facet = cx->pool[first + i], before = body->triangles.count;
+        const uint32_t facet = cx->pool[first + i];
         const int kind = gxp_visible(body, facet, leaf);
         if (kind < 0) continue;
-        result = gxp_add_skin_facet(body, cx->leaves[leaf].element, facet, leaf);
-        for (t = before; t < body->triangles.count && result == GX_OK; t += 3) {
-            result = gxp_push(body, &body->skin_fragments, fragment);
-            if (result == GX_OK) result = gxp_push(body, &body->skin_cuts, (uint32_t)kind);
-        }
+        face->plane = cx->facets[facet].plane;
+        if (kind == 0) {
+            for (k = 0; cx->element_faces[4 * face->element + k] != cx->facets[facet].face;) k++;
+            result = gxp_outer_face(body, k, face);
+        } else gxp_cut_face(body, facet, leaf, face);
+        if (result == GX_OK) result = gxp_add_skin_facet(body, face, facet, leaf);
     }
     return result;
 }
 
 /* An element that no cut has touched shows its outer faces. */
-static gx_result gxp_skin_whole(gx_body *body, uint32_t element, uint32_t fragment) {
-    static const uint8_t outward[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-    uint32_t k, c, slot[4];
+static gx_result gxp_skin_whole(gx_body *body, gxp_skin_face *face) {
+    uint32_t k, j, point[3];
     gx_result result = GX_OK;
-    memset(slot, 0xff, sizeof slot);
+    face->plane = 0;
     for (k = 0; k < 4 && result == GX_OK; k++) {
-        if (gxp_neighbour(body, element, k) != GXP_NONE) continue;
-        for (c = 0; c < 3 && result == GX_OK; c++) {
-            const uint32_t n = outward[k][c];
-            if (slot[n] == GXP_NONE) {
-                result = gxp_reserve(&body->allocator, &body->lambdas, 4 * sizeof(double), body->list.count, &body->lambda_capacity, 1);
-                slot[n] = body->list.count;
-                if (result == GX_OK) result = gxp_push(body, &body->list, body->complex->elements[4 * element + n]);
-                if (result != GX_OK) return result;
-                memset(body->lambdas + 4 * (size_t)slot[n], 0, 4 * sizeof(double));
-                body->lambdas[4 * (size_t)slot[n] + n] = 1;
-            }
-            result = gxp_push(body, &body->triangles, slot[n]);
-        }
-        if (result == GX_OK) result = gxp_push(body, &body->skin_fragments, fragment);
-        if (result == GX_OK) result = gxp_push(body, &body->skin_cuts, 0);
+        if (gxp_neighbour(body, face->element, k) != GXP_NONE) continue;
+        result = gxp_outer_face(body, k, face);
+        for (j = 0; j < 3; j++) point[j] = body->complex->elements[4 * face->element + gxp_outward[k][j]];
+        if (result == GX_OK) result = gxp_add_skin_triangle(body, face, point, 0);
     }
     return result;
 }
 
+/* Is the element's face k as the mesh has it: not divided, no wall, and the element behind it, if there is one, still there? */
+static int gxp_face_is_whole(const gx_body *body, uint32_t element, uint32_t k) {
+    const gxb_complex *cx = body->complex;
+    const uint32_t facet = cx->face_facet[cx->element_faces[4 * element + k]];
+    const gxb_facet *f = &cx->facets[facet];
+    uint32_t other;
+    if (facet == GXB_NONE) return 1;
+    other = f->leaf[f->leaf[0] == element];
+    return f->child == GXB_NONE && !f->wall && (other == GXB_NONE || !cx->leaves[other].removed);
+}
+
+/* Does it show its outer faces as the mesh has them, and nothing else? */
 static int gxp_is_untouched(const gx_body *body, uint32_t element) {
+    const gxb_complex *cx = body->complex;
     uint32_t k;
-    for (k = 0; k < 4; k++) if (body->complex->face_facet[body->complex->element_faces[4 * element + k]] != GXB_NONE) return 0;
+    if (body->cells[element].next != GXP_NONE || body->leaves[element].next != GXP_NONE || cx->leaves[element].removed) return 0;
+    for (k = 0; k < 4; k++) if (!gxp_face_is_whole(body, element, k)) return 0;
+    for (k = 0; k < 6; k++) if (gxp_edge_is_divided(cx, cx->element_edges[6 * element + k])) return 0;
     return 1;
 }
 
-/* Collects what one cell shows and appends it to the skin. */
-static gx_result gxp_skin_cell(gx_body *body, uint32_t cell, uint32_t fragment) {
-    const uint32_t element = body->cells[cell].element;
-    uint32_t leaf, i, k, base = body->skin_weight_count / 4;
+static int gxp_is_at_boundary(const gx_body *body, uint32_t element) {
+    uint32_t k;
+    for (k = 0; k < 4; k++) if (gxp_neighbour(body, element, k) == GXP_NONE) return 1;
+    return 0;
+}
+
+static gx_result gxp_skin_element(gx_body *body, uint32_t element) {
+    const int untouched = gxp_is_untouched(body, element);
+    gxp_skin_face face;
+    uint32_t cell, leaf;
     gx_result result = GX_OK;
-    gxp_clear_boundary(body);
-    if (gxp_is_untouched(body, element)) result = gxp_skin_whole(body, element, fragment);
-    else {
-        result = gxb_complex_open_element(body->complex, element);
-        for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next)
-            result = gxp_skin_leaf(body, leaf, fragment);
+    if (untouched && !gxp_is_at_boundary(body, element)) return GX_OK;
+    memset(&face, 0, sizeof face);
+    face.element = element;
+    if (!untouched) result = gxb_complex_open_element(body->complex, element);
+    for (cell = element; cell != GXP_NONE && result == GX_OK; cell = body->cells[cell].next) {
+        if (!body->cells[cell].kept) continue;
+        face.copies = body->cells[cell].copies;
+        if (untouched) result = gxp_skin_whole(body, &face);
+        else for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next)
+            result = gxp_skin_leaf(body, leaf, &face);
     }
-    if (result == GX_OK) result = gxp_reserve(&body->allocator, &body->skin_weights, sizeof(double), body->skin_weight_count,
-                                              &body->skin_weight_capacity, 4 * (size_t)body->list.count);
-    for (i = 0; i < body->list.count && result == GX_OK; i++) for (k = 0; k < 4 && result == GX_OK; k++) {
-        body->skin_weights[body->skin_weight_count++] = body->lambdas[4 * (size_t)i + k];
-        result = gxp_push(body, &body->skin_copies, body->cells[cell].copies[k]);
-    }
-    for (i = 0; i < body->list.count && result == GX_OK; i++) result = gxp_push(body, &body->skin_points, body->list.data[i]);
-    for (i = 0; i < body->triangles.count && result == GX_OK; i++) result = gxp_push(body, &body->skin_triangles, base + body->triangles.data[i]);
     return result;
 }
 
-GXFEM_API gx_result gx_body_skin(gx_body *body, gx_skin *skin) {
-    uint32_t i;
-    gx_result result;
-    if (body == NULL || skin == NULL) return GX_ERROR_ARGUMENT;
-    result = gxp_update_view(body);
-    body->skin_copies.count = body->skin_points.count = body->skin_triangles.count = body->skin_fragments.count = body->skin_cuts.count = 0;
-    body->skin_weight_count = 0;
-    for (i = 0; i < body->view_cells.count && result == GX_OK; i++)
-        result = gxp_skin_cell(body, body->view_cells.data[i], body->view_fragments.data[i]);
-    if (result != GX_OK) return result;
-    skin->vertex_count = body->skin_weight_count / 4;
-    skin->vertex_copies = body->skin_copies.data;
-    skin->vertex_weights = body->skin_weights;
-    skin->vertex_point = body->skin_points.data;
-    skin->triangle_count = body->skin_triangles.count / 3;
-    skin->triangles = body->skin_triangles.data;
-    skin->triangle_fragment = body->skin_fragments.data;
-    skin->triangle_cut = body->skin_cuts.data;
-    return GX_OK;
+/* --- what has changed --- */
+
+/* At rest: outer ones from the uncut mesh's, others from the facets around, weighted by area: their own normals, since a triangle's
+   corners may be rounded to a line. */
+static void gxp_rest_normal(const gxp_skin *s, uint32_t vertex, float *normal) {
+    double n[3] = {0, 0, 0}, a[3];
+    uint32_t corner, i;
+    int k;
+    if (s->vertices[vertex].outer) {
+        for (i = 0; i < 4; i++) for (k = 0; k < 3; k++)
+            n[k] += s->weights[4 * vertex + i] * s->group_normals[3 * (size_t)s->slots[s->vertices[vertex].slots[i]].group + (size_t)k];
+    } else for (corner = s->vertices[vertex].corner; corner != GXP_NONE; corner = s->links[corner / 3].corner_next[corner % 3]) {
+        gxp_triangle_normal(s->rest, s->triangles + 3 * (size_t)(corner / 3), a);
+        for (k = 0; k < 3; k++) n[k] += sqrt(gxp_dot(a, a)) * (double)s->links[corner / 3].normal[k];
+    }
+    gxp_set_normal(normal, n);
 }
 
-GXFEM_API void gx_body_skin_positions(const gx_body *body, const gx_skin *skin, double *positions) {
-    size_t i;
-    int k, n;
-    for (i = 0; i < skin->vertex_count; i++) for (k = 0; k < 3; k++) {
-        double x = 0;
-        for (n = 0; n < 4; n++) {
-            const size_t copy = skin->vertex_copies[4 * i + (size_t)n];
-            x += skin->vertex_weights[4 * i + (size_t)n] *
-                 (body->positions[3 * (size_t)body->copy_node[copy] + (size_t)k] + body->displacement[3 * copy + (size_t)k]);
-        }
-        positions[3 * i + (size_t)k] = x;
+static void gxp_drop_lonely_vertices(gx_body *body) {
+    gxp_skin *s = &body->skin;
+    uint32_t i;
+    gxp_sort_unique(&s->changed[0]);
+    for (i = s->changed[0].count; i-- > 0;) {   /* from the end, so that none of them takes another's place */
+        const uint32_t vertex = s->changed[0].data[i];
+        if (s->vertices[vertex].corner == GXP_NONE) gxp_drop_vertex(body, vertex);
     }
 }
 
-/* --- hashes --- */
-
-static uint64_t gxp_mix(uint64_t x) {   /* splitmix64's finaliser */
-    x += 0x9e3779b97f4a7c15u;
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    return x ^ (x >> 31);
+/* Normals of the vertices around what was made anew; s->changed[0] keeps those that are other than they were. */
+static void gxp_renew_normals(gxp_skin *s) {
+    uint32_t i, n = 0;
+    for (i = 0; i < s->changed[0].count; i++) {
+        const uint32_t vertex = s->changed[0].data[i];
+        float normal[3];
+        if (vertex >= s->vertex_count) continue;
+        memcpy(normal, s->normal + 3 * (size_t)vertex, sizeof normal);
+        gxp_rest_normal(s, vertex, normal);
+        if (s->vertices[vertex].fresh || memcmp(normal, s->normal + 3 * (size_t)vertex, sizeof normal) != 0) s->changed[0].data[n++] = vertex;
+        memcpy(s->normal + 3 * (size_t)vertex, normal, sizeof normal);
+        s->vertices[vertex].fresh = s->vertices[vertex].noted = 0;
+    }
+    s->changed[0].count = n;
 }
+
+/* The changed items as ranges */
+static gx_result gxp_make_ranges(gx_body *body, int kind, uint32_t count) {
+    gxp_skin *s = &body->skin;
+    gxp_words *changed = &s->changed[kind];
+    gx_result result = GX_OK;
+    uint32_t i, n = 0;
+    gxp_sort_unique(changed);
+    for (i = 0; i < changed->count && changed->data[i] < count && result == GX_OK; i++) {
+        if (n > 0 && s->ranges[kind][n - 1].first + s->ranges[kind][n - 1].count == changed->data[i]) { s->ranges[kind][n - 1].count++; continue; }
+        result = gxp_reserve(&body->allocator, &s->ranges[kind], sizeof **s->ranges, n, &s->range_capacity[kind], 1);
+        if (result != GX_OK) break;
+        s->ranges[kind][n].first = changed->data[i];
+        s->ranges[kind][n++].count = 1;
+    }
+    s->range_count[kind] = n;
+    changed->count = 0;
+    return result;
+}
+
+/* An empty skin of another description, with every element to be made */
+static gx_result gxp_restart_skin(gx_body *body, const gx_skin_desc *desc) {
+    gxp_skin *s = &body->skin;
+    uint32_t e;
+    gx_result result;
+    s->desc = *desc;
+    s->vertex_count = s->triangle_count = s->slot_count = 0;
+    s->free_slot = GXP_NONE;
+    s->changed[0].count = s->changed[1].count = s->vertex_buckets.count = s->slot_buckets.count = 0;
+    result = gxp_group_corners(body);
+    if (result == GX_OK) result = gxp_set_words(body, &s->first, body->element_count);
+    if (result == GX_OK) result = gxp_set_words(body, &s->dirty, body->element_count);
+    if (result != GX_OK) return result;
+    memset(s->first.data, 0xff, body->element_count * sizeof *s->first.data);
+    for (e = 0; e < body->element_count; e++) s->dirty.data[s->dirty.count++] = e;
+    return GX_OK;
+}
+
+static gx_result gxp_remake_elements(gx_body *body) {
+    gxp_skin *s = &body->skin;
+    uint32_t i;
+    gx_result result = GX_OK;
+    for (i = 0; i < s->dirty.count && result == GX_OK; i++)
+        while (s->first.data[s->dirty.data[i]] != GXP_NONE && result == GX_OK) result = gxp_drop_triangle(body, s->first.data[s->dirty.data[i]]);
+    for (i = 0; i < s->dirty.count && result == GX_OK; i++) result = gxp_skin_element(body, s->dirty.data[i]);
+    s->dirty.count = 0;
+    if (result != GX_OK) return result;
+    gxp_drop_lonely_vertices(body);
+    gxp_renew_normals(s);
+    return GX_OK;
+}
+
+static gx_result gxp_mark_fragments(gx_body *body) {
+    gxp_skin *s = &body->skin;
+    uint32_t t;
+    const gx_result result = gxp_update_view(body);
+    for (t = 0; t < s->triangle_count && result == GX_OK; t++)
+        s->fragment[t] = body->fragment_number.data[gxp_find(body->copy_fragment.data, s->copies[4 * (size_t)s->triangles[3 * (size_t)t]])];
+    return result;
+}
+
+/* The skin after all cuts. Without memory it is left unmade: the next call makes all of it. */
+static gx_result gxp_update_skin(gx_body *body, const gx_skin_desc *desc) {
+    gxp_skin *s = &body->skin;
+    const int all = !s->made || desc->crease_angle < s->desc.crease_angle || desc->crease_angle > s->desc.crease_angle ||
+                    desc->smooth_cuts != s->desc.smooth_cuts;
+    gx_result result;
+    s->made = 0;
+    s->range_count[0] = s->range_count[1] = 0;
+    result = all ? gxp_restart_skin(body, desc) : gxp_spread_touched(body);
+    if (result == GX_OK) result = gxp_remake_elements(body);
+    if (result == GX_OK) result = gxp_mark_fragments(body);
+    if (result == GX_OK) result = gxp_make_ranges(body, 0, s->vertex_count);
+    if (result == GX_OK) result = gxp_make_ranges(body, 1, s->triangle_count);
+    if (result == GX_OK) result = gxp_reserve(&body->allocator, &s->normals, 3 * sizeof(double), 0, &s->normal_capacity, s->slot_count);
+    if (result == GX_OK) result = gxp_reserve(&body->allocator, &s->positions, 3 * sizeof(double), 0, &s->position_capacity, s->vertex_count);
+    if (result == GX_OK) s->made = 1;
+    return result;
+}
+
+static void gxp_show_skin(const gxp_skin *s, gx_skin *skin) {
+    skin->vertex_count = s->vertex_count;
+    skin->vertex_copies = s->copies; skin->vertex_weights = s->weights; skin->vertex_point = s->point;
+    skin->vertex_rest = s->rest; skin->vertex_normal = s->normal; skin->vertex_texture = s->texture;
+    skin->triangle_count = s->triangle_count;
+    skin->triangles = s->triangles; skin->triangle_fragment = s->fragment; skin->triangle_element = s->element;
+    skin->triangle_material = s->material; skin->triangle_surface = s->surface;
+    skin->vertex_ranges = s->ranges[0]; skin->vertex_range_count = s->range_count[0];
+    skin->triangle_ranges = s->ranges[1]; skin->triangle_range_count = s->range_count[1];
+}
+
+GXFEM_API gx_result gx_body_skin(gx_body *body, const gx_skin_desc *desc, gx_skin *skin) {
+    gx_skin_desc none;
+    gx_result result;
+    memset(&none, 0, sizeof none);
+    if (desc == NULL) desc = &none;
+    if (body == NULL || skin == NULL) return GX_ERROR_ARGUMENT;
+    if (!gxp_is_finite(desc->crease_angle)) return GX_ERROR_NOT_FINITE;
+    if (desc->crease_angle < 0) return GX_ERROR_ARGUMENT;
+    result = gxp_update_skin(body, desc);
+    if (result == GX_OK) gxp_show_skin(&body->skin, skin);
+    return result;
+}
+
+/* --- the deformed skin --- */
+
+/* x = X + sum of weight u, in doubles */
+static void gxp_move_vertices(const gx_body *body, double *positions) {
+    const gxp_skin *s = &body->skin;
+    size_t i;
+    int k, n;
+    for (i = 0; i < s->vertex_count; i++) {
+        const uint32_t *copies = s->copies + 4 * i;
+        const double *w = s->weights + 4 * i;
+        double x[3];
+        for (k = 0; k < 3; k++) x[k] = s->rest[3 * i + (size_t)k];
+        for (n = 0; n < 4 && w[n] > 0; n++) for (k = 0; k < 3; k++) x[k] += w[n] * body->displacement[3 * (size_t)copies[n] + (size_t)k];
+        for (k = 0; k < 3; k++) positions[3 * i + (size_t)k] = x[k];
+    }
+}
+
+/* Sums triangles' normals in their slots, then takes each vertex's from its slots. */
+static void gxp_deformed_normals(gxp_skin *s, float *normals) {
+    size_t i;
+    int k, n;
+    memset(s->normals, 0, 3 * (size_t)s->slot_count * sizeof *s->normals);
+    for (i = 0; i < s->triangle_count; i++) {
+        double a[3];
+        gxp_triangle_normal(s->positions, s->triangles + 3 * i, a);
+        for (n = 0; n < 3; n++) for (k = 0; k < 3; k++) s->normals[3 * (size_t)s->links[i].slots[n] + (size_t)k] += a[k];
+    }
+    for (i = 0; i < s->vertex_count; i++) {
+        double a[3] = {0, 0, 0};
+        for (n = 0; n < 4 && s->weights[4 * i + (size_t)n] > 0; n++) for (k = 0; k < 3; k++)
+            a[k] += s->weights[4 * i + (size_t)n] * s->normals[3 * (size_t)s->vertices[i].slots[n] + (size_t)k];
+        memcpy(normals + 3 * i, s->normal + 3 * i, 3 * sizeof *normals);
+        gxp_set_normal(normals + 3 * i, a);
+    }
+}
+
+GXFEM_API gx_result gx_body_skin_positions(const gx_body *body, double *positions) {
+    if (body == NULL || positions == NULL || !body->skin.made || body->skin.dirty.count > 0) return GX_ERROR_ARGUMENT;
+    gxp_move_vertices(body, positions);
+    return GX_OK;
+}
+
+GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3], float *positions, float *normals) {
+    gxp_skin *s;
+    size_t i;
+    int k;
+    if (body == NULL || positions == NULL || !body->skin.made || body->skin.dirty.count > 0) return GX_ERROR_ARGUMENT;
+    s = &body->skin;
+    gxp_move_vertices(body, s->positions);
+    for (i = 0; i < s->vertex_count; i++) for (k = 0; k < 3; k++)
+        positions[3 * i + (size_t)k] = (float)(s->positions[3 * i + (size_t)k] - (origin != NULL ? origin[k] : 0));
+    if (normals != NULL) gxp_deformed_normals(s, normals);
+    return GX_OK;
+}
+
+/* --- rays --- */
+
+/* The deformed vertices as the ray sees them: two coordinates across it (a shear along the axis it follows most), and how far along it
+   they lie, in lengths of direction. */
+static void gxp_look_along(const gx_body *body, const double origin[3], const double direction[3]) {
+    const gxp_skin *s = &body->skin;
+    int axis = 0, k;
+    size_t i;
+    for (k = 1; k < 3; k++) if (fabs(direction[k]) > fabs(direction[axis])) axis = k;
+    gxp_move_vertices(body, s->positions);
+    for (i = 0; i < s->vertex_count; i++) {
+        double *x = s->positions + 3 * i;
+        const double along = (x[axis] - origin[axis]) / direction[axis];
+        const double p = x[(axis + 1) % 3] - origin[(axis + 1) % 3], q = x[(axis + 2) % 3] - origin[(axis + 2) % 3];
+        x[0] = p - along * direction[(axis + 1) % 3];
+        x[1] = q - along * direction[(axis + 2) % 3];
+        x[2] = along;
+    }
+}
+
+/* Does the ray pass through the triangle? Then share has the weights of its corners, and distance where. Signs are exact, so that no ray
+   slips through between triangles that share their corners. */
+static int gxp_meet_triangle(const gxp_skin *s, const uint32_t *t, double share[3], double *distance) {
+    static const double ray[2] = {0, 0};
+    const double *p[3];
+    double sum = 0;
+    int k, positive = 0, negative = 0;
+    for (k = 0; k < 3; k++) p[k] = s->positions + 3 * (size_t)t[k];
+    for (k = 0; k < 2; k++) if (!(fmin(p[0][k], fmin(p[1][k], p[2][k])) <= 0 && fmax(p[0][k], fmax(p[1][k], p[2][k])) >= 0)) return 0;
+    for (k = 0; k < 3; k++) {
+        const double *a = p[(k + 1) % 3], *b = p[(k + 2) % 3];
+        const int side = gxb_orient2d(ray, a, b);
+        positive |= side > 0;
+        negative |= side < 0;
+        share[k] = fabs(a[0] * b[1] - a[1] * b[0]);
+        sum += share[k];
+    }
+    if (positive == negative || !(sum > 0)) return 0;   /* beside it, or the triangle is seen from its edge */
+    *distance = 0;
+    for (k = 0; k < 3; k++) { share[k] /= sum; *distance += share[k] * p[k][2]; }
+    return *distance >= 0;
+}
+
+static void gxp_fill_hit(const gx_body *body, uint32_t triangle, const double share[3], gx_hit *hit) {
+    const gxp_skin *s = &body->skin;
+    uint32_t i, k, n, count = 0;
+    int j;
+    hit->triangle = triangle;
+    hit->fragment = s->fragment[triangle]; hit->element = s->element[triangle]; hit->surface = s->surface[triangle];
+    for (i = 0; i < 3; i++) {
+        const size_t v = s->triangles[3 * (size_t)triangle + i];
+        for (j = 0; j < 3; j++) hit->material[j] += share[i] * s->rest[3 * v + (size_t)j];
+        for (k = 0; k < 4 && s->weights[4 * v + k] > 0; k++) {
+            for (n = 0; n < count && hit->copies[n] != s->copies[4 * v + k]; n++) {}
+            if (n == count) hit->copies[count++] = s->copies[4 * v + k];
+            hit->weights[n] += share[i] * s->weights[4 * v + k];
+        }
+    }
+    for (n = count; n < 4; n++) hit->copies[n] = hit->copies[0];
+    for (j = 0; j < 3; j++) {
+        hit->position[j] = hit->material[j];
+        for (n = 0; n < 4; n++) hit->position[j] += hit->weights[n] * body->displacement[3 * (size_t)hit->copies[n] + (size_t)j];
+    }
+}
+
+GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit) {
+    double share[3], best[3] = {0, 0, 0}, distance;
+    uint32_t t, found = UINT32_MAX;
+    const gxp_skin *s;
+    int k;
+    if (body == NULL || origin == NULL || direction == NULL || hit == NULL) return GX_ERROR_ARGUMENT;
+    if (!body->skin.made || body->skin.dirty.count > 0) return GX_ERROR_ARGUMENT;
+    for (k = 0; k < 3; k++) if (!gxp_is_finite(origin[k]) || !gxp_is_finite(direction[k])) return GX_ERROR_NOT_FINITE;
+    if (!(gxp_dot(direction, direction) > 0)) return GX_ERROR_ARGUMENT;
+    s = &body->skin;
+    gxp_look_along(body, origin, direction);
+    memset(hit, 0, sizeof *hit);
+    for (t = 0; t < s->triangle_count; t++) {
+        if (!gxp_meet_triangle(s, s->triangles + 3 * (size_t)t, share, &distance)) continue;
+        if (found != UINT32_MAX && distance >= hit->distance) continue;
+        found = t;
+        hit->distance = distance;
+        memcpy(best, share, sizeof best);
+    }
+    if (found == UINT32_MAX) hit->triangle = found;
+    else gxp_fill_hit(body, found, best, hit);
+    return GX_OK;
+}
+
+/* --- hashes --- */
 
 #define GXP_BESIDE_WALL 0xfffffff0u     /* neighbour across a wall inside the element */
 #define GXP_ACROSS_WALL 0xfffffff1u     /* neighbour across a wall on a face */

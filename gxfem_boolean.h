@@ -347,7 +347,9 @@ GXFEM_API int gxb_complex_winding(gxb_complex *complex, const uint32_t *points, 
 /* Barycentric coordinates of a point in an element, each rounded on its own from its exact value (0 where it is 0), but one above
    0.2, which is 1 minus the others. */
 GXFEM_API void gxb_complex_barycentric(gxb_complex *complex, uint32_t point, uint32_t element, double lambda[4]);
-/* The same with a relative error below 2^-180. */
+/* Bit k: its coordinate k is not 0 by the point's definition. Needs no arithmetic. */
+GXFEM_API unsigned gxb_complex_support(const gxb_complex *complex, uint32_t point, uint32_t element);
+/* The coordinates with a relative error below 2^-180. */
 GXFEM_API void gxb_complex_barycentric_fine(gxb_complex *complex, uint32_t point, uint32_t element, gxb_num lambda[4]);
 
 #ifdef __cplusplus
@@ -2646,9 +2648,27 @@ static int gxbp_has_node(const gxb_complex *cx, uint32_t element, uint32_t node)
     return n[0] == node || n[1] == node || n[2] == node || n[3] == node;
 }
 
+/* Does the point divide an edge of the element? */
+static int gxbp_divides_edge(const gxb_complex *cx, uint32_t point, uint32_t element) {
+    const gxb_cpoint *p = &cx->points[point];
+    return p->kind == GXB_LINE_PLANE && gxbp_has_node(cx, element, p->def[0]) && gxbp_has_node(cx, element, p->def[1]);
+}
+
+GXFEM_API unsigned gxb_complex_support(const gxb_complex *cx, uint32_t point, uint32_t element) {
+    const gxb_cpoint *p = &cx->points[point];
+    const int on_edge = gxbp_divides_edge(cx, point, element);
+    unsigned support = 0;
+    uint32_t k;
+    for (k = 0; k < 4; k++) {
+        const uint32_t node = cx->elements[4 * element + k];
+        if (on_edge ? node == p->def[0] || node == p->def[1] : gxbp_known_lambda(cx, point, element, k) != 0) support |= 1u << k;
+    }
+    return support;
+}
+
 GXFEM_API void gxb_complex_barycentric(gxb_complex *cx, uint32_t point, uint32_t element, double lambda[4]) {
     const gxb_cpoint *p = &cx->points[point];
-    const int on_edge = p->kind == GXB_LINE_PLANE && gxbp_has_node(cx, element, p->def[0]) && gxbp_has_node(cx, element, p->def[1]);
+    const int on_edge = gxbp_divides_edge(cx, point, element);
     const double *height = point < cx->node_count || on_edge ? NULL : gxbp_heights(cx, element);
     uint32_t k, largest = 4;
     double rest = 1;

@@ -410,7 +410,7 @@ static int look(run *r)
 {
     gx_result result = gx_body_view(r->body, &r->view);
     if (result == GX_OK && r->set.frames) {
-        result = gx_body_skin(r->body, &r->skin);
+        result = gx_body_skin(r->body, NULL, &r->skin);
         free(r->skin_positions);
         r->skin_positions = result == GX_OK ? (double *)gxio_array(r->skin.vertex_count, 3 * sizeof(double)) : NULL;
         if (result == GX_OK && !r->skin_positions) result = GX_ERROR_MEMORY;
@@ -429,14 +429,14 @@ static int write_frame(run *r, uint32_t frame)
 {
     gxio_triangles t;
     char name[32], path[GXIO_PATH_ROOM];
-    gx_body_skin_positions(r->body, &r->skin, r->skin_positions);
+    gx_body_skin_positions(r->body, r->skin_positions);
     t.positions = r->skin_positions;
     t.vertex_count = r->skin.vertex_count;
     t.triangles = r->skin.triangles;
     t.triangle_count = r->skin.triangle_count;
     t.fragment = r->skin.triangle_fragment;
     t.fragment_count = r->view.fragment_count;
-    t.cut = r->skin.triangle_cut;
+    t.cut = r->skin.triangle_surface;
     gxio_frame_name(name, sizeof name, frame, r->set.format);
     if (!join_path(r, name, path)) return 0;
     if (!(strcmp(r->set.format, "obj") == 0 ? gxio_write_obj(path, &t, &r->error) : gxio_write_vtu(path, &t, &r->error))) return 0;

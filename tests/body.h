@@ -8,6 +8,18 @@
 
 #define CHECK_SEED(condition, seed) ck_assert_msg(condition, "seed %llu: %s", (unsigned long long)(seed), #condition)
 
+/* Random tests run on fewer seeds under a sanitizer. */
+#if defined(__SANITIZE_ADDRESS__)
+#define FEWER 4
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(memory_sanitizer) || __has_feature(undefined_behavior_sanitizer)
+#define FEWER 4
+#endif
+#endif
+#ifndef FEWER
+#define FEWER 1
+#endif
+
 /* ---- random numbers: splitmix64 ---- */
 
 static uint64_t random_state;
@@ -43,6 +55,7 @@ static inline gx_body *body_of(const workload *w) {
 
 static inline gx_surface surface_of(const wl_surface *s) {
     gx_surface surface;
+    memset(&surface, 0, sizeof surface);
     surface.vertices = s->vertices; surface.vertex_count = s->vertex_count;
     surface.triangles = s->triangles; surface.triangle_count = s->triangle_count;
     surface.kind = s->solid ? GX_SURFACE_SOLID : GX_SURFACE_SHEET;
@@ -137,6 +150,67 @@ static inline wl_surface *add_box(workload *w, int solid, double x0, double y0, 
     low[0] = x0; low[1] = y0; low[2] = z0; high[0] = x1; high[1] = y1; high[2] = z1;
     wl_add_aligned_box(s, low, high);
     return s;
+}
+
+static inline workload corner_tet(void) { return wl_tetrahedron(wl_corner_tetrahedron); }
+
+/* ---- random scenes ---- */
+
+static inline void random_point(const workload *w, double x[3]) {
+    double low, high;
+    size_t i;
+    int k;
+    for (k = 0; k < 3; ++k) {
+        low = high = w->positions[k];
+        for (i = 0; i < w->node_count; ++i) { low = fmin(low, w->positions[3 * i + (size_t)k]); high = fmax(high, w->positions[3 * i + (size_t)k]); }
+        x[k] = random_real(low, high);
+    }
+}
+
+static inline void add_random_plane(workload *w, double radius) {
+    double p[3], n[3];
+    int k;
+    random_point(w, p);
+    for (k = 0; k < 3; ++k) n[k] = random_real(-1, 1);
+    add_plane(w, p, n, radius);
+}
+
+/* Planes, small triangles that end inside, wavy sheets, axis planes through nodes, solid boxes */
+static inline void add_random_cut(workload *w, int solids) {
+    wl_frame f = wl_rotated();
+    double p[3];
+    int k;
+    random_point(w, p);
+    switch (random_below(solids ? 8 : 6)) {
+    case 0: case 1: add_random_plane(w, 40); break;
+    case 2: add_random_plane(w, random_real(0.05, 0.5)); break;
+    case 3: for (k = 0; k < 3; ++k) f.origin[k] = p[k]; wl_add_wave(wl_add_surface(w, 0), &f, 6, random_real(0.5, 3)); break;
+    case 4: add_axis_plane(w, random_below(3), random_below(5) / 4.0); break;
+    case 5: add_box(w, 0, p[0] - 0.2, p[1] - 0.3, p[2] - 0.1, p[0] + 0.1, p[1] + 0.3, p[2] + 0.2); break;
+    case 6: add_box(w, 1, p[0] - 0.2, p[1] - 0.3, p[2] - 0.1, p[0] + 0.1, p[1] + 0.3, p[2] + 0.2); break;
+    default: for (k = 0; k < 3; ++k) f.origin[k] = p[k]; wl_add_box(wl_add_surface(w, 1), &f, 3, 3, random_real(1e-9, 0.1)); break;
+    }
+}
+
+static inline workload random_mesh(void) {
+    workload w;
+    size_t i;
+    switch (random_below(4)) {
+    case 0: w = corner_tet(); break;
+    case 1: w = grid(1, 1, 1, 5); break;
+    case 2: w = grid(2, 1, 1, 5); break;
+    default: w = grid(1, 2, 1, 6); break;
+    }
+    if (random_below(2)) for (i = 0; i < 3 * w.node_count; ++i) w.positions[i] += random_real(-0.1, 0.1);
+    return w;
+}
+
+static inline workload random_scene(uint64_t seed, int cuts, int solids) {
+    workload w;
+    random_seed(seed);
+    w = random_mesh();
+    while (cuts-- > 0) add_random_cut(&w, solids);
+    return w;
 }
 
 #endif /* GXFEM_TESTS_BODY_H */

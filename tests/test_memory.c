@@ -67,6 +67,7 @@ static const uint32_t box_triangles[36] = { 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 
 
 static gx_surface surface(const double *vertices, size_t vertex_count, const uint32_t *triangles, size_t triangle_count, uint32_t kind) {
     gx_surface s;
+    memset(&s, 0, sizeof s);
     s.vertices = vertices; s.vertex_count = vertex_count;
     s.triangles = triangles; s.triangle_count = triangle_count;
     s.kind = kind;
@@ -118,7 +119,7 @@ static gx_result cut_all(gx_body *body) {
     return cut(body, s, 4, 0.01, 0);
 }
 static gx_result look(gx_body *body) { gx_view view; return gx_body_view(body, &view); }
-static gx_result draw(gx_body *body) { gx_skin skin; return gx_body_skin(body, &skin); }
+static gx_result draw(gx_body *body) { gx_skin skin; return gx_body_skin(body, NULL, &skin); }
 static gx_result hold(gx_body *body) {
     static const gx_region regions[2] = { { 2, 1, 0.9 }, { 0, -1, 0.2 } };
     return gx_body_hold(body, regions, 2);
@@ -246,7 +247,8 @@ static void sweep(const char *what, const action *before, action act) {
 }
 
 static const action nothing[] = { NULL }, after_a_cut[] = { cut_sheet, NULL }, after_two[] = { cut_sheet, cut_part, look, NULL },
-                    after_solid[] = { cut_solid, NULL }, held[] = { hold, cut_sheet, step, NULL };
+                    after_solid[] = { cut_solid, NULL }, held[] = { hold, cut_sheet, step, NULL }, drawn[] = { cut_sheet, draw, NULL },
+                    drawn_and_cut[] = { draw, cut_sheet, draw, cut_second_sheet, NULL };
 
 START_TEST(creation) {
     int from_then_on;
@@ -306,6 +308,9 @@ START_TEST(view_hold_skin_hash) {
     sweep("a skin", after_a_cut, draw);
     sweep("a skin of an uncut body", nothing, draw);
     sweep("a skin after a solid", after_solid, draw);
+    sweep("a cut of a body with a skin", drawn, cut_second_sheet);
+    sweep("a solid in a body with a skin", drawn, cut_solid);
+    sweep("a skin that follows a cut", drawn_and_cut, draw);
     sweep("a hash", after_a_cut, hash);
 }
 END_TEST

@@ -294,6 +294,7 @@ static void cut(gx_body *body, const workload *w, const ordering *o, uint64_t se
     gx_surface surfaces[WL_SURFACES];
     double *vertices[WL_SURFACES];
     size_t i, calls = w->surface_count == 0 ? 0 : o->at_once ? 1 : w->surface_count;
+    memset(surfaces, 0, sizeof surfaces);
     for (i = 0; i < w->surface_count; ++i) {
         const wl_surface *s = &w->surfaces[o->surface[i]];
         vertices[i] = scaled(s->vertices, 3 * s->vertex_count, o->scale);

@@ -28,6 +28,7 @@ static gx_body *build(const workload *w) {
 
 static gx_surface surface_of(const wl_surface *s) {
     gx_surface surface;
+    memset(&surface, 0, sizeof surface);
     surface.vertices = s->vertices; surface.vertex_count = s->vertex_count;
     surface.triangles = s->triangles; surface.triangle_count = s->triangle_count;
     surface.kind = s->solid ? GX_SURFACE_SOLID : GX_SURFACE_SHEET;
