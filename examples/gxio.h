@@ -344,6 +344,17 @@ static inline int gxio_mesh_elements(gxio_mesh *mesh, size_t count)
     return mesh->elements && mesh->element_lines;
 }
 
+static inline void gxio_bounds(const double *points, size_t count, double low[3], double high[3])
+{
+    size_t i;
+    int axis;
+    for (axis = 0; axis < 3; axis++) low[axis] = high[axis] = count ? points[axis] : 0.0;
+    for (i = 0; i < 3 * count; i++) {
+        if (points[i] < low[i % 3]) low[i % 3] = points[i];
+        if (points[i] > high[i % 3]) high[i % 3] = points[i];
+    }
+}
+
 /* The bounding box of the nodes that elements have: files may hold others, which are no part of the body. */
 static inline void gxio_mesh_bounds(const gxio_mesh *mesh, double low[3], double high[3])
 {
