@@ -344,17 +344,28 @@ static inline int gxio_mesh_elements(gxio_mesh *mesh, size_t count)
     return mesh->elements && mesh->element_lines;
 }
 
+static inline void gxio_bounds(const double *points, size_t count, double low[3], double high[3])
+{
+    size_t i;
+    int axis;
+    for (axis = 0; axis < 3; axis++) low[axis] = high[axis] = count ? points[axis] : 0.0;
+    for (i = 0; i < 3 * count; i++) {
+        if (points[i] < low[i % 3]) low[i % 3] = points[i];
+        if (points[i] > high[i % 3]) high[i % 3] = points[i];
+    }
+}
+
 /* The bounding box of the nodes that elements have: files may hold others, which are no part of the body. */
 static inline void gxio_mesh_bounds(const gxio_mesh *mesh, double low[3], double high[3])
 {
     size_t i;
     int axis;
-    for (axis = 0; axis < 3; axis++) low[axis] = high[axis] = mesh->element_count ? mesh->positions[3 * (size_t)mesh->elements[0] + (size_t)axis] : 0.0;
+    for (axis = 0; axis < 3; axis++) low[axis] = high[axis] = 0.0;
     for (i = 0; i < 4 * mesh->element_count; i++)
         for (axis = 0; axis < 3; axis++) {
             const double x = mesh->positions[3 * (size_t)mesh->elements[i] + (size_t)axis];
-            if (x < low[axis]) low[axis] = x;
-            if (x > high[axis]) high[axis] = x;
+            if (i == 0 || x < low[axis]) low[axis] = x;
+            if (i == 0 || x > high[axis]) high[axis] = x;
         }
 }
 
@@ -764,7 +775,8 @@ static inline int gxio_gmsh_resolve(gxio_gmsh *file, gxio_error *error)
     qsort(tags, mesh->node_count, sizeof *tags, gxio_tag_compare);
     for (i = 1; i < mesh->node_count; i++)
         if (tags[i].tag == tags[i - 1].tag)
-            return gxio_fail(error, mesh->node_path, mesh->node_lines[tags[i].node], "a second node with the tag %lu", (unsigned long)tags[i].tag);
+            return gxio_fail(error, mesh->node_path, mesh->node_lines[tags[i].node], "a second node with the tag %lu",
+                             (unsigned long)tags[i].tag);
     for (i = 0; i < 4 * mesh->element_count; i++) {
         size_t low = 0, high = mesh->node_count;        /* the first tag not below the corner's lies in low ... high */
         while (low < high) {
@@ -773,7 +785,8 @@ static inline int gxio_gmsh_resolve(gxio_gmsh *file, gxio_error *error)
             else high = middle;
         }
         if (low == mesh->node_count || tags[low].tag != mesh->elements[i])
-            return gxio_fail(error, mesh->element_path, mesh->element_lines[i / 4], "there is no node with the tag %lu", (unsigned long)mesh->elements[i]);
+            return gxio_fail(error, mesh->element_path, mesh->element_lines[i / 4], "there is no node with the tag %lu",
+                             (unsigned long)mesh->elements[i]);
         mesh->elements[i] = tags[low].node;
     }
     return 1;
@@ -838,11 +851,13 @@ static inline int gxio_vtk_header(gxio_reader *reader, const char *dataset, gxio
 {
     static const char first[] = "# vtk DataFile Version";
     char cause[80];
-    if (strncmp(reader->at, first, sizeof first - 1) != 0) return gxio_fail(error, reader->path, 1, "the file does not start with '%s'", first);
+    if (strncmp(reader->at, first, sizeof first - 1) != 0)
+        return gxio_fail(error, reader->path, 1, "the file does not start with '%s'", first);
     gxio_next_line(reader);
     gxio_next_line(reader);
     if (!gxio_need(reader, GXIO_ANY_LINE, "ASCII", error)) return 0;
-    if (!gxio_token_is(reader, "ASCII")) return gxio_bad_token(reader, "stands where ASCII should: files of that kind only can be read", error);
+    if (!gxio_token_is(reader, "ASCII"))
+        return gxio_bad_token(reader, "stands where ASCII should: files of that kind only can be read", error);
     if (!gxio_expect(reader, "DATASET", error) || !gxio_need(reader, GXIO_SAME_LINE, "the kind of dataset", error)) return 0;
     snprintf(cause, sizeof cause, "is the kind of dataset, but %s is needed", dataset);
     return gxio_token_is(reader, dataset) ? 1 : gxio_bad_token(reader, cause, error);
@@ -903,7 +918,8 @@ static inline int gxio_cells_listed(gxio_reader *reader, gxio_cells *cells, size
     if (!gxio_cells_room(cells, reader, error) || !gxio_need(reader, GXIO_SAME_LINE, "the type of the offsets", error)) return 0;
     for (i = 0; i < offsets; i++) {
         if (!gxio_read_index(reader, GXIO_ANY_LINE, cells->start + i, error)) return 0;
-        if (i ? cells->start[i] < cells->start[i - 1] : cells->start[i] != 0) return gxio_bad_token(reader, "is an offset out of order", error);
+        if (i ? cells->start[i] < cells->start[i - 1] : cells->start[i] != 0)
+            return gxio_bad_token(reader, "is an offset out of order", error);
     }
     if (cells->start[cells->count] != size) return gxio_bad_token(reader, "is not where the last cell ends", error);
     if (!gxio_expect(reader, "CONNECTIVITY", error) || !gxio_need(reader, GXIO_SAME_LINE, "the type of the connectivity", error)) return 0;
@@ -924,7 +940,8 @@ static inline int gxio_vtk_cells(gxio_reader *reader, gxio_cells *cells, gxio_er
     if (!gxio_read_count(reader, GXIO_SAME_LINE, "the number of cells", &count, error)) return 0;
     if (!gxio_read_count(reader, GXIO_SAME_LINE, "the size of the cells", &size, error)) return 0;
     after = *reader;
-    if (!gxio_next(&after, GXIO_ANY_LINE) || !gxio_token_is(&after, "OFFSETS")) return gxio_cells_counted(reader, cells, count, size, error);
+    if (!gxio_next(&after, GXIO_ANY_LINE) || !gxio_token_is(&after, "OFFSETS"))
+        return gxio_cells_counted(reader, cells, count, size, error);
     *reader = after;
     return gxio_cells_listed(reader, cells, count, size, error);
 }
@@ -980,14 +997,16 @@ static inline int gxio_vtk_tetrahedra(const gxio_vtk *vtk, gxio_mesh *mesh, gxio
     size_t i;
     if (!cells->start) return gxio_fail(error, mesh->element_path, 0, "the file has no CELLS");
     if (vtk->type_count != cells->count)
-        return gxio_fail(error, mesh->element_path, 0, "the file has %lu CELLS, but %lu CELL_TYPES", (unsigned long)cells->count, (unsigned long)vtk->type_count);
+        return gxio_fail(error, mesh->element_path, 0, "the file has %lu CELLS, but %lu CELL_TYPES",
+                         (unsigned long)cells->count, (unsigned long)vtk->type_count);
     if (!gxio_mesh_elements(mesh, cells->count)) return gxio_fail(error, mesh->element_path, 0, "out of memory");
     mesh->element_count = 0;
     for (i = 0; i < cells->count; i++) {
         const uint32_t points = cells->start[i + 1] - cells->start[i], type = vtk->types[i];
         if (type != 10 && type != 24) continue;
         if (points != (type == 10 ? 4 : 10))
-            return gxio_fail(error, mesh->element_path, cells->line[i], "a cell of type %lu with %lu points", (unsigned long)type, (unsigned long)points);
+            return gxio_fail(error, mesh->element_path, cells->line[i], "a cell of type %lu with %lu points",
+                             (unsigned long)type, (unsigned long)points);
         memcpy(mesh->elements + 4 * mesh->element_count, cells->index + cells->start[i], 4 * sizeof(uint32_t));
         mesh->element_lines[mesh->element_count++] = cells->line[i];
     }
@@ -1370,7 +1389,8 @@ static inline int gxio_stl_facet(gxio_reader *reader, gxio_surface *surface, gxi
         if (!gxio_add_vertex(surface, p[0], p[1], p[2])) return gxio_fail(error, reader->path, reader->line, "out of memory");
     }
     if (!gxio_expect(reader, "endloop", error) || !gxio_expect(reader, "endfacet", error)) return 0;
-    return gxio_add_triangle(surface, first, first + 1, first + 2, line) ? 1 : gxio_fail(error, reader->path, reader->line, "out of memory");
+    return gxio_add_triangle(surface, first, first + 1, first + 2, line) ? 1
+        : gxio_fail(error, reader->path, reader->line, "out of memory");
 }
 
 /* Any number of: solid NAME, facets, endsolid NAME. */
@@ -1417,11 +1437,13 @@ static inline int gxio_stl_binary(const char *path, const char *bytes, size_t le
         int k;
         for (k = 0; k < 9; k++) {
             const uint32_t word = gxio_word(at + 4 * k);
-            if ((word >> 23 & 255) == 255) return gxio_fail(error, path, 0, "triangle %lu has a coordinate that is not finite", (unsigned long)i);
+            if ((word >> 23 & 255) == 255)
+                return gxio_fail(error, path, 0, "triangle %lu has a coordinate that is not finite", (unsigned long)i);
             memcpy(&x[k], &word, sizeof word);
         }
         for (k = 0; k < 9; k += 3)
-            if (!gxio_add_vertex(surface, (double)x[k], (double)x[k + 1], (double)x[k + 2])) return gxio_fail(error, path, 0, "out of memory");
+            if (!gxio_add_vertex(surface, (double)x[k], (double)x[k + 1], (double)x[k + 2]))
+                return gxio_fail(error, path, 0, "out of memory");
         if (!gxio_add_triangle(surface, first, first + 1, first + 2, 0)) return gxio_fail(error, path, 0, "out of memory");
     }
     return 1;

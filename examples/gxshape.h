@@ -81,7 +81,8 @@ static inline double gxshape_frustum(const gxshape_part *part, const double x[3]
     int i;
     for (i = 0; i < 3; i++) d[i] = part->q[i] - part->p[i];
     height = gxshape_length(d);
-    return fmax((distance - part->r[0] - t * slope) * height / sqrt(height * height + slope * slope), (fabs(t - 0.5) - 0.5) * height);
+    return fmax((distance - part->r[0] - t * slope) * height / sqrt(height * height + slope * slope),
+                (fabs(t - 0.5) - 0.5) * height);
 }
 
 /* With g = |x / q| the surface is g = 1; (g - 1) / |grad g| is the distance to first order. At the centre: the shortest semi-axis. */
@@ -504,7 +505,8 @@ static inline void gxshape_fill_corner(gxshape_stuffer *stuffer, const gxshape_c
     uint32_t v[4];
     int i;
     for (i = 0; i < 4; i++)
-        v[i] = i < 4 - cell->outside ? gxshape_at_node(stuffer, cell->node[i]) : gxshape_at_crossing(stuffer, cell->node[0], cell->node[i]);
+        v[i] = i < 4 - cell->outside ? gxshape_at_node(stuffer, cell->node[i])
+                                     : gxshape_at_crossing(stuffer, cell->node[0], cell->node[i]);
     gxshape_add_element(stuffer, cell->mirrored, v[0], v[1], v[2], v[3]);
 }
 
@@ -512,8 +514,9 @@ static inline void gxshape_fill_corner(gxshape_stuffer *stuffer, const gxshape_c
 static inline void gxshape_fill_pyramid(gxshape_stuffer *stuffer, const gxshape_cell *cell)
 {
     const uint32_t *node = cell->node;
-    const uint32_t a = gxshape_at_node(stuffer, node[0]), b = gxshape_at_node(stuffer, node[1]), top = gxshape_at_node(stuffer, node[2]);
-    const uint32_t a_cut = gxshape_at_crossing(stuffer, node[0], node[3]), b_cut = gxshape_at_crossing(stuffer, node[1], node[3]);
+    const uint32_t a = gxshape_at_node(stuffer, node[0]), a_cut = gxshape_at_crossing(stuffer, node[0], node[3]);
+    const uint32_t b = gxshape_at_node(stuffer, node[1]), b_cut = gxshape_at_crossing(stuffer, node[1], node[3]);
+    const uint32_t top = gxshape_at_node(stuffer, node[2]);
     if (gxshape_diagonal_from_first(stuffer->lattice, node[0], node[1], node[3])) {
         gxshape_add_element(stuffer, cell->mirrored, a, b, top, b_cut);
         gxshape_add_element(stuffer, cell->mirrored, a, b_cut, top, a_cut);
@@ -638,8 +641,8 @@ static inline const char *gxshape_lattice_fill(gxshape_lattice *lattice, gxshape
 }
 
 /* Fills the part of the box in which the field is negative, which must not reach the box's faces, by tetrahedra with edges about
-   as long as the spacing (> 0); the mesh's boundary points lie where the field is 0. What is thinner than 2 GXSHAPE_THINNEST spacings may
-   be missing or in pieces.
+   as long as the spacing (> 0); the mesh's boundary points lie where the field is 0. What is thinner than 2 GXSHAPE_THINNEST
+   spacings may be missing or in pieces, and across a narrower gap the boundary may touch itself.
    Returns NULL, or what is wrong; the mesh is then empty. The mesh's arrays are the caller's, see gxshape_mesh_release. */
 static inline const char *gxshape_stuff(gxshape_fn field, const void *shape, const double low[3], const double high[3],
                                         double spacing, gxshape_mesh *mesh)
@@ -838,11 +841,12 @@ static inline void gxshape_bound(gxshape_field *field)
     for (j = 0; j < 3; j++) { field->low[j] = DBL_MAX; field->high[j] = -DBL_MAX; }
     for (i = 0; i < field->part_count; i++) {
         const gxshape_part *part = &field->parts[i];
-        const int capsule = part->kind == GXSHAPE_CAPSULE || part->kind == GXSHAPE_FRUSTUM, ring = part->kind == GXSHAPE_RING;
+        const int two_ends = part->kind == GXSHAPE_CAPSULE || part->kind == GXSHAPE_FRUSTUM;
         for (j = 0; j < 3; j++) {
-            const double reach = capsule ? part->r[0] : ring ? part->r[0] + part->r[1] : part->q[j];
-            field->low[j] = fmin(field->low[j], capsule ? fmin(part->p[j] - reach, part->q[j] - part->r[1]) : part->p[j] - reach);
-            field->high[j] = fmax(field->high[j], capsule ? fmax(part->p[j] + reach, part->q[j] + part->r[1]) : part->p[j] + reach);
+            const double reach = two_ends ? part->r[0] : part->kind == GXSHAPE_RING ? part->r[0] + part->r[1] : part->q[j];
+            const double other = two_ends ? part->q[j] : part->p[j], other_reach = two_ends ? part->r[1] : reach;
+            field->low[j] = fmin(field->low[j], fmin(part->p[j] - reach, other - other_reach));
+            field->high[j] = fmax(field->high[j], fmax(part->p[j] + reach, other + other_reach));
         }
         blend = fmax(blend, part->blend);
     }
