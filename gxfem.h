@@ -167,13 +167,13 @@ typedef struct gx_cut_desc {
     const gx_surface *surfaces; size_t surface_count;
     const uint32_t *scope_fragments; size_t scope_fragment_count;   /* 0: the whole body; ids of gx_view */
     const uint32_t *scope_cells; size_t scope_cell_count;           /* 0: the whole body; ids of gx_view */
-    double sever_below;         /* links of a smaller share of their face are severed; 0: never */
+    double sever_below;         /* links of touched cells with a smaller share of their face are severed; 0: never */
 } gx_cut_desc;
 typedef struct gx_cut_report {
     size_t touched_elements, created_cells, removed_cells, created_copies, removed_copies;
     size_t ignored_triangles;   /* of zero area */
     size_t severed_links;
-    double min_link_ratio;      /* smallest link area / face area among the faces that this cut divided; 1 if none */
+    double min_link_ratio;      /* smallest link area / face area among the links of cells that this cut touched; 1 if none is smaller */
     double removed_volume;
     double seconds_arrangement, seconds_enrichment, seconds_integrals;
 } gx_cut_report;
@@ -342,6 +342,7 @@ enum { GXP_UNDO_CELL, GXP_UNDO_LEAF };
 typedef struct gxp_undo { uint32_t kind, index; gxp_cell cell; gxp_leaf leaf; } gxp_undo;
 
 typedef struct gxp_pair { uint32_t node, cell; } gxp_pair;
+typedef struct gxp_link { uint32_t face, other, facet; } gxp_link;       /* a piece of a face, and the cell behind it */
 
 typedef struct gxp_words { uint32_t *data, count, capacity; } gxp_words;   /* growing array of indices */
 
@@ -445,7 +446,8 @@ struct gx_body {
     gxp_words fresh;                /* pieces of touched cells: their copies and integrals are to be found */
     gxp_words removed, dead, list;  /* leaves that solids removed, copies without cells */
     gxp_words pinches;              /* nodes at which sheets separated what meets there only */
-    struct gxp_pair *pairs; uint32_t pair_count, pair_capacity;
+    gxp_pair *pairs; uint32_t pair_count, pair_capacity;
+    gxp_link *links; uint32_t link_count, link_capacity;
 };
 
 /* >>memory -------------------------------------------------------------------------------------------------------------- */
@@ -935,6 +937,7 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     gxp_release(&a, body->regions, body->region_count * sizeof *body->regions);
     gxp_release(&a, body->undo, body->undo_capacity * sizeof *body->undo);
     gxp_release(&a, body->pairs, body->pair_capacity * sizeof *body->pairs);
+    gxp_release(&a, body->links, body->link_capacity * sizeof *body->links);
     gxp_release(&a, body->cell_volume, body->cell_volume_capacity * sizeof(double));
     gxp_release(&a, body->fragments, (size_t)body->fragment_capacity * 5 * sizeof(double));
     gxp_release(&a, body->texture, (2 * n + 1) * sizeof(float));
@@ -1643,76 +1646,91 @@ static int gxp_is_link(const gx_body *body, uint32_t facet) {
     return !f->wall && gxp_is_kept(body, f->leaf[0]) && gxp_is_kept(body, f->leaf[1]);
 }
 
-/* Do both facets of a face belong to the link between the same two cells? */
-static int gxp_same_link(const gx_body *body, uint32_t a, uint32_t b) {
-    const gxb_facet *f = &body->complex->facets[a], *g = &body->complex->facets[b];
-    return gxp_is_link(body, a) && gxp_is_link(body, b) && body->leaves[f->leaf[0]].cell == body->leaves[g->leaf[0]].cell &&
-           body->leaves[f->leaf[1]].cell == body->leaves[g->leaf[1]].cell;
+static int gxp_compare_links(const void *a, const void *b) {
+    const gxp_link *p = (const gxp_link *)a, *q = (const gxp_link *)b;
+    if (p->face != q->face) return p->face < q->face ? -1 : 1;
+    if (p->other != q->other) return p->other < q->other ? -1 : 1;
+    return p->facet < q->facet ? -1 : p->facet > q->facet;
 }
 
-/* Share of the link that starts with facet first of body->list: roughly where it is certainly neither the smallest so far nor to be
-   severed, else exactly. */
-static gx_result gxp_weigh_link(gxp_cut *cut, uint32_t first, double *share) {
+/* Collects the pieces of faces by which a cell hangs together with others; those of one link stand together. Links to cells with a stamp
+   are left out. */
+static gx_result gxp_list_links(gx_body *body, uint32_t cell) {
+    gxb_complex *cx = body->complex;
+    uint32_t leaf, first, count, i;
+    gx_result result = GX_OK;
+    body->link_count = 0;
+    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next) {
+        result = gxb_leaf_facets(cx, leaf, &first, &count);
+        for (i = 0; i < count && result == GX_OK; i++) {
+            const uint32_t facet = cx->pool[first + i];
+            const gxb_facet *f = &cx->facets[facet];
+            gxp_link *link;
+            if (f->face == GXB_NONE || !gxp_is_link(body, facet)) continue;
+            result = gxp_reserve(&body->allocator, &body->links, sizeof *body->links, body->link_count, &body->link_capacity, 1);
+            if (result != GX_OK) break;
+            link = &body->links[body->link_count];
+            link->face = f->face; link->facet = facet;
+            link->other = body->leaves[f->leaf[f->leaf[0] == leaf]].cell;
+            body->link_count += body->cell_stamp[link->other] != body->stamp;
+        }
+    }
+    if (body->link_count > 1) qsort(body->links, body->link_count, sizeof *body->links, gxp_compare_links);
+    return result;
+}
+
+/* Share of the link of pieces first ... end-1 of its face: roughly where it is certainly neither the smallest so far nor to be severed,
+   else exactly. */
+static gx_result gxp_weigh_link(gxp_cut *cut, uint32_t first, uint32_t end, double *share) {
     gx_body *body = cut->body;
     double part = 0, error = 0, errors = 0;
     uint32_t i, k, element;
     gx_result result = GX_OK;
     *share = 0;
-    for (i = first; i < body->list.count && result == GX_OK; i++) {
-        if (!gxp_same_link(body, body->list.data[first], body->list.data[i])) continue;
-        result = gxp_rough_share(body, body->list.data[i], &part, &error);
+    for (i = first; i < end && result == GX_OK; i++) {
+        result = gxp_rough_share(body, body->links[i].facet, &part, &error);
         *share += part;
         errors += error;
     }
     if (result != GX_OK || (*share - errors > cut->report.min_link_ratio && *share - errors > cut->desc->sever_below)) return result;
-    element = gxp_face_element(body->complex, body->complex->facets[body->list.data[first]].face, &k);
+    element = gxp_face_element(body->complex, body->links[first].face, &k);
     result = gxb_complex_open_element(body->complex, element);
     *share = 0;
-    for (i = first; i < body->list.count && result == GX_OK; i++) {
-        if (!gxp_same_link(body, body->list.data[first], body->list.data[i])) continue;
-        result = gxp_facet_points(body, body->list.data[i]);
+    for (i = first; i < end && result == GX_OK; i++) {
+        result = gxp_facet_points(body, body->links[i].facet);
         if (result == GX_OK) *share += gxp_fine_share(body, element, k);
     }
     return result;
 }
 
-/* Shares of one face's links; links below the ratio are severed. All pieces between the same two cells count as one link. */
-static gx_result gxp_weigh_links(gxp_cut *cut, uint32_t face) {
+/* Weighs the link of pieces first ... end-1 and severs it where its share is below the ratio. */
+static gx_result gxp_judge_link(gxp_cut *cut, uint32_t first, uint32_t end) {
     gx_body *body = cut->body;
-    uint32_t i, j;
-    gx_result result;
-    body->list.count = 0;
-    result = gxp_push_pieces(body, body->complex->face_facet[face], &body->list);
-    for (i = 0; i < body->list.count && result == GX_OK; i++) {
-        const uint32_t facet = body->list.data[i];
-        double share;
-        if (!gxp_is_link(body, facet)) continue;
-        for (j = 0; j < i && !gxp_same_link(body, body->list.data[j], facet); j++) {}
-        if (j < i) continue;
-        result = gxp_weigh_link(cut, i, &share);
-        if (result != GX_OK) break;
-        if (share < cut->report.min_link_ratio) cut->report.min_link_ratio = share;
-        if (share >= cut->desc->sever_below) continue;
-        cut->report.severed_links++;
-        for (j = body->list.count; j-- > i && result == GX_OK;)
-            if (gxp_same_link(body, facet, body->list.data[j])) result = gxb_complex_set_wall(body->complex, body->list.data[j]);
-    }
+    double share;
+    gx_result result = gxp_weigh_link(cut, first, end, &share);
+    if (result != GX_OK) return result;
+    if (share < cut->report.min_link_ratio) cut->report.min_link_ratio = share;
+    if (share >= cut->desc->sever_below) return GX_OK;
+    cut->report.severed_links++;
+    for (; first < end && result == GX_OK; first++) result = gxb_complex_set_wall(body->complex, body->links[first].facet);
     return result;
 }
 
-/* The links of all faces that this cut has divided. Only whole faces left alone by it are not looked at. */
-static gx_result gxp_weigh_all_links(gxp_cut *cut, uint32_t first_facet) {
+/* The links of all pieces of touched cells, but whole faces. All pieces of a face between the same two cells count as one link. */
+static gx_result gxp_weigh_links(gxp_cut *cut) {
     gx_body *body = cut->body;
-    uint32_t i;
+    uint32_t i, first, end;
     gx_result result = GX_OK;
-    body->faces.count = 0;
-    for (i = first_facet; i < body->complex->facet_count && result == GX_OK; i++) {
-        const gxb_facet *f = &body->complex->facets[i];
-        if (f->face != GXB_NONE && f->leaf[0] != GXB_NONE && f->leaf[1] != GXB_NONE && body->complex->face_facet[f->face] != i)
-            result = gxp_push(body, &body->faces, f->face);
+    body->stamp++;
+    for (i = 0; i < body->fresh.count && result == GX_OK; i++) {
+        result = gxp_list_links(body, body->fresh.data[i]);
+        for (first = 0; first < body->link_count && result == GX_OK; first = end) {
+            const gxp_link *link = &body->links[first];
+            for (end = first + 1; end < body->link_count && body->links[end].face == link->face && body->links[end].other == link->other; end++) {}
+            if (body->complex->face_facet[link->face] != link->facet) result = gxp_judge_link(cut, first, end);
+        }
+        body->cell_stamp[body->fresh.data[i]] = body->stamp;
     }
-    gxp_sort_unique(&body->faces);
-    for (i = 0; i < body->faces.count && result == GX_OK; i++) result = gxp_weigh_links(cut, body->faces.data[i]);
     return result;
 }
 
@@ -2389,10 +2407,10 @@ static gx_result gxp_arrange(gxp_cut *cut) {
     return result == GX_OK ? gxp_remove_leaves(body) : result;
 }
 
-static gx_result gxp_enrich(gxp_cut *cut, uint32_t first_facet) {
+static gx_result gxp_enrich(gxp_cut *cut) {
     gx_result result = gxp_collect_touched(cut);
     if (result == GX_OK) result = gxp_divide_cells(cut);
-    if (result == GX_OK) result = gxp_weigh_all_links(cut, first_facet);
+    if (result == GX_OK) result = gxp_weigh_links(cut);
     if (result == GX_OK && cut->report.severed_links > 0) result = gxp_touch_severed(cut);
     return result == GX_OK ? gxp_divide_nodes(cut) : result;
 }
@@ -2437,7 +2455,7 @@ GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_r
     start = gxp_seconds(body);
     result = gxp_arrange(&cut);
     cut.report.seconds_arrangement = gxp_seconds(body) - start;
-    if (result == GX_OK) result = gxp_enrich(&cut, first_facet);
+    if (result == GX_OK) result = gxp_enrich(&cut);
     cut.report.seconds_enrichment = gxp_seconds(body) - start - cut.report.seconds_arrangement;
     if (result == GX_OK) result = gxp_integrate(&cut);
     cut.report.seconds_integrals = gxp_seconds(body) - start - cut.report.seconds_arrangement - cut.report.seconds_enrichment;

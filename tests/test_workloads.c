@@ -39,9 +39,9 @@ static void look_at_skin(gx_body *body, answer *a) {
     gx_skin skin;
     double *positions;
     skin_counts n;
-    ck_assert_int_eq(gx_body_skin(body, &skin), GX_OK);
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin), GX_OK);
     positions = (double *)malloc((3 * skin.vertex_count + 1) * sizeof *positions);
-    gx_body_skin_positions(body, &skin, positions);
+    ck_assert_int_eq(gx_body_skin_positions(body, positions), GX_OK);
     n = skin_count(&skin, UINT32_MAX, positions);
     a->euler = n.vertices - n.edges + n.triangles;
     a->open_edges = n.open_edges;
