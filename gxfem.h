@@ -189,7 +189,17 @@ GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thicknes
 
 /* >>view ----------------------------------------------------------------------------------------------------------------- */
 
-/* Everything one reads off a body: arrays owned by the body, valid until the next cut or its destruction. */
+/* What cuts have done to a fragment */
+enum {
+    GX_FRAGMENT_UNCHANGED = 0,
+    GX_FRAGMENT_TOUCHED,        /* cut but whole, or less than it was: partial cuts, material removed */
+    GX_FRAGMENT_SPLIT,          /* lost pieces that are fragments now, and kept its id as the heaviest piece (the first of equals) */
+    GX_FRAGMENT_CREATED         /* a piece that fell off: its id is new, fragment_origin says from what */
+};
+
+/* Everything one reads off a body: arrays owned by the body, valid until the next cut, restore or its destruction. Changes of
+   fragments are those between the last view before a cut (the creation counts as one) and the first view after it; cuts without a
+   view between them are one change. Views without a cut between them tell the same. */
 typedef struct gx_view {
     size_t node_count, element_count;
     size_t cell_count;              /* kept cells, sorted by element */
@@ -207,10 +217,30 @@ typedef struct gx_view {
     const double *fragment_volume;  /* fragment_count, m3 */
     const double *fragment_mass;    /* kg */
     const double *fragment_center;  /* fragment_count x 3, centre of mass, material coordinates */
+    const double *fragment_inertia; /* fragment_count x 6, about the centre, material coordinates: 00 01 02 11 12 22, kg m2 */
+    const uint32_t *fragment_id;    /* fragment_count; 1, 2 ...: of this fragment as long as it is there, of no other ever after */
+    const uint32_t *fragment_origin;/* fragment_count: id of the fragment that it was part of before the change */
+    const uint32_t *fragment_change;/* fragment_count: GX_FRAGMENT_ */
+    size_t removed_count;
+    const uint32_t *removed_ids;    /* removed_count: ids of the fragments of which the change left nothing */
     double volume, mass;            /* of the body */
 } gx_view;
-/* Errors: ARGUMENT, MEMORY. */
+/* Errors: ARGUMENT, MEMORY, LIMIT (no ids left). */
 GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view);
+
+/* How a fragment moves: integrals over its deformed shape by the consistent mass. */
+typedef struct gx_motion {
+    double mass;                /* kg */
+    double center[3];           /* centre of mass, m, in space */
+    double inertia[6];          /* about it: 00 01 02 11 12 22, kg m2 */
+    double velocity[3];         /* of the centre: momentum / mass, m/s */
+    double angular_velocity[3]; /* inverse of inertia times angular momentum about the centre, 1/s; no part around an axis about which
+                                   there is no inertia to speak of (a point, a line) */
+    double energy;              /* kinetic, J */
+} gx_motion;
+/* Motions of all fragments from the present displacement and velocity, in the order of gx_view; capacity: how many there is room for.
+   Errors: ARGUMENT, MEMORY, LIMIT (capacity is below gx_view.fragment_count). */
+GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t capacity);
 
 /* >>step ----------------------------------------------------------------------------------------------------------------- */
 
@@ -319,6 +349,7 @@ extern "C" {
 /* --- types --- */
 
 #define GXP_NONE UINT32_MAX
+#define GXP_FRAGMENT_ARRAYS 11      /* 1 + 1 + 3 + 6 */
 
 typedef struct gxp_cell {       /* slot; slots 0 ... element_count-1 are the elements' first cells */
     uint32_t element;
@@ -420,6 +451,10 @@ struct gx_body {
     double previous_dt;                                 /* s; 0: there was none */
     gx_region *regions; uint32_t region_count;
     uint32_t label_count;           /* cut triangles so far */
+    uint32_t *copy_label; uint32_t copy_label_capacity;     /* copies: 2 x index of its fragment at the last look, + 1 where it was cut since */
+    gxp_words fragment_ids, fragment_origins, fragment_changes, removed_ids;    /* as last looked at */
+    uint32_t next_id;               /* of a fragment */
+    int look_stale;                 /* a cut has happened since the last look */
     gxp_undo *undo; uint32_t undo_count, undo_capacity;
     uint32_t *cell_stamp; uint32_t cell_stamp_capacity;
     uint32_t stamp, scope_stamp;
@@ -431,7 +466,7 @@ struct gx_body {
     gxp_words view_cells, view_fragments;               /* slot of each kept cell; fragment of each */
     gxp_words copy_fragment, fragment_number, cell_element, cell_copies;
     double *cell_volume; uint32_t cell_volume_capacity;
-    double *fragments; uint32_t fragment_capacity, fragment_count;  /* volume, mass, centre: 5 arrays of capacity fragment_capacity */
+    double *fragments; uint32_t fragment_capacity, fragment_count;  /* volume, mass, centre, inertia: GXP_FRAGMENT_ARRAYS of fragment_capacity */
     double volume, mass;
     float *texture;                 /* node_count x 2, or NULL */
     gxp_surface_record *surfaces; uint32_t surface_count, surface_capacity;     /* that have cut the body */
@@ -741,6 +776,7 @@ static void gxp_make_first_copies(gx_body *body) {
     memset(body->velocity, 0, 3 * (size_t)body->copy_count * sizeof(double));
     memset(body->rest_time, 0, body->copy_count * sizeof(double));
     memset(body->held, 0, body->copy_count);
+    memset(body->copy_label, 0, body->copy_count * sizeof *body->copy_label);
 }
 
 static gx_result gxp_reserve_copies(gx_body *body, size_t extra) {
@@ -751,6 +787,7 @@ static gx_result gxp_reserve_copies(gx_body *body, size_t extra) {
     if (r == GX_OK) r = gxp_reserve(a, &body->displacement, 3 * sizeof(double), n, &body->displacement_capacity, extra);
     if (r == GX_OK) r = gxp_reserve(a, &body->velocity, 3 * sizeof(double), n, &body->velocity_capacity, extra);
     if (r == GX_OK) r = gxp_reserve(a, &body->rest_time, sizeof(double), n, &body->rest_time_capacity, extra);
+    if (r == GX_OK) r = gxp_reserve(a, &body->copy_label, sizeof *body->copy_label, n, &body->copy_label_capacity, extra);
     for (i = 0; i < 4 && r == GX_OK && body->history[i] != NULL; i++)
         r = gxp_reserve(a, &body->history[i], 3 * sizeof(double), n, &body->history_capacity[i], extra);
     return r == GX_OK ? gxp_reserve(a, &body->held, 1, n, &body->held_capacity, extra) : r;
@@ -765,6 +802,7 @@ static void gxp_copy_state(gx_body *body, uint32_t from, uint32_t to) {
     for (i = 0; i < 2 && body->previous_dt > 0; i++) memcpy(body->history[i] + b, body->history[i] + a, size);
     body->rest_time[to] = body->rest_time[from];
     body->held[to] = body->held[from];
+    body->copy_label[to] = body->copy_label[from];
 }
 
 static gx_result gxp_reserve_cells(gx_body *body, size_t extra) {
@@ -818,6 +856,8 @@ static void gxp_fill_materials(gx_body *body, const gx_body_desc *desc) {
         memcpy(body->element_materials, desc->element_materials, body->element_count * sizeof(uint32_t));
 }
 
+static gx_result gxp_first_look(gx_body *body);     /* see >>fragments */
+
 static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc) {
     gx_result result = gxp_allocate_tables(body);
     if (result == GX_OK && desc->texture != NULL) {
@@ -839,7 +879,7 @@ static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc) {
     gxp_make_first_copies(body);
     gxp_build_boxes(body);
     body->model_stale = body->view_stale = 1;
-    return GX_OK;
+    return gxp_first_look(body);
 }
 
 static gx_result gxp_check_material(double young, double poisson, double density) {
@@ -933,13 +973,18 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     for (i = 0; i < 4; i++) gxp_release(&a, body->history[i], (size_t)body->history_capacity[i] * 3 * sizeof(double));
     gxp_release(&a, body->materials, ((size_t)body->material_count + 1) * sizeof *body->materials);
     gxp_release(&a, body->element_materials, (e + 1) * sizeof(uint32_t));
+    gxp_release(&a, body->copy_label, body->copy_label_capacity * sizeof *body->copy_label);
+    gxp_words_free(body, &body->fragment_ids);
+    gxp_words_free(body, &body->fragment_origins);
+    gxp_words_free(body, &body->fragment_changes);
+    gxp_words_free(body, &body->removed_ids);
     gxp_release_model(body);
     gxp_release(&a, body->regions, body->region_count * sizeof *body->regions);
     gxp_release(&a, body->undo, body->undo_capacity * sizeof *body->undo);
     gxp_release(&a, body->pairs, body->pair_capacity * sizeof *body->pairs);
     gxp_release(&a, body->links, body->link_capacity * sizeof *body->links);
     gxp_release(&a, body->cell_volume, body->cell_volume_capacity * sizeof(double));
-    gxp_release(&a, body->fragments, (size_t)body->fragment_capacity * 5 * sizeof(double));
+    gxp_release(&a, body->fragments, (size_t)body->fragment_capacity * GXP_FRAGMENT_ARRAYS * sizeof(double));
     gxp_release(&a, body->texture, (2 * n + 1) * sizeof(float));
     gxp_release(&a, body->surfaces, body->surface_capacity * sizeof *body->surfaces);
     gxp_release(&a, body->maps, (size_t)body->map_capacity * 8 * sizeof(double));
@@ -1346,33 +1391,32 @@ static gx_result gxp_insert_surface(gxp_cut *cut, gxp_surface *s, int scoped) {
     return result;
 }
 
+/* see >>fragments */
+static gx_result gxp_update_view(gx_body *body);
+static uint32_t gxp_cell_fragment(gx_body *body, uint32_t cell);
+
 /* Stamps the cells that the cut may touch. */
 static gx_result gxp_stamp_scope(gxp_cut *cut, int *scoped) {
     gx_body *body = cut->body;
     const gx_cut_desc *desc = cut->desc;
-    gx_view view;
     gx_result result;
     size_t i, j;
     *scoped = desc->scope_fragment_count > 0 || desc->scope_cell_count > 0;
     if (!*scoped) return GX_OK;
-    result = gx_body_view(body, &view);
+    result = gxp_update_view(body);
     if (result != GX_OK) return result;
     body->scope_stamp = ++body->stamp;
     for (i = 0; i < desc->scope_cell_count; i++) {
-        if (desc->scope_cells[i] >= view.cell_count) { cut->failure.index = i; return GX_ERROR_INDEX; }
+        if (desc->scope_cells[i] >= body->view_cells.count) { cut->failure.index = i; return GX_ERROR_INDEX; }
         body->cell_stamp[body->view_cells.data[desc->scope_cells[i]]] = body->scope_stamp;
     }
     for (i = 0; i < desc->scope_fragment_count; i++) {
-        if (desc->scope_fragments[i] >= view.fragment_count) { cut->failure.index = i; return GX_ERROR_INDEX; }
-        for (j = 0; j < view.cell_count; j++)
-            if (view.cell_fragment[j] == desc->scope_fragments[i]) body->cell_stamp[body->view_cells.data[j]] = body->scope_stamp;
+        if (desc->scope_fragments[i] >= body->fragment_count) { cut->failure.index = i; return GX_ERROR_INDEX; }
+        for (j = 0; j < body->view_cells.count; j++)
+            if (body->view_fragments.data[j] == desc->scope_fragments[i]) body->cell_stamp[body->view_cells.data[j]] = body->scope_stamp;
     }
     return GX_OK;
 }
-
-/* see >>fragments */
-static gx_result gxp_update_view(gx_body *body);
-static uint32_t gxp_cell_fragment(gx_body *body, uint32_t cell);
 
 /* >>solids: winding numbers of leaves ---------------------------------------------------------------------------------------- */
 
@@ -2039,6 +2083,7 @@ static gx_result gxp_new_copy(gx_body *body, uint32_t from, uint32_t *copy) {
     *copy = body->copy_count++;
     body->copy_node[*copy] = body->copy_node[from];
     gxp_copy_state(body, from, *copy);
+    body->copy_label[*copy] |= 1;
     return GX_OK;
 }
 
@@ -2350,17 +2395,27 @@ static void gxp_drop_copy(gx_body *body, uint32_t copy) {
     gxp_copy_state(body, last, copy);
 }
 
+/* What a cut touches wakes, and its fragment is no more as it was. */
+static void gxp_touch_copies(gx_body *body, const gxp_cell *cell) {
+    int k;
+    for (k = 0; k < 4; k++) {
+        body->rest_time[cell->copies[k]] = 0;
+        body->copy_label[cell->copies[k]] |= 1;
+    }
+}
+
 static void gxp_commit(gxp_cut *cut) {
     gx_body *body = cut->body;
-    uint32_t i, k;
-    for (i = 0; i < body->fresh.count; i++) /* what a cut touches wakes */
-        for (k = 0; k < 4; k++) body->rest_time[body->cells[body->fresh.data[i]].copies[k]] = 0;
+    uint32_t i;
+    for (i = 0; i < body->fresh.count; i++) gxp_touch_copies(body, &body->cells[body->fresh.data[i]]);
+    for (i = 0; i < body->touched.count; i++)   /* also what hung on removed cells by an edge or node only */
+        if (!body->cells[body->touched.data[i]].kept) gxp_touch_copies(body, &body->cells[body->touched.data[i]]);
     cut->report.removed_copies = body->dead.count;
     gxp_sort_unique(&body->dead);
     for (i = body->dead.count; i-- > 0;) gxp_drop_copy(body, body->dead.data[i]);
     gxb_complex_commit(body->complex);
     body->undo_count = 0;
-    body->held_stale = body->model_stale = body->view_stale = 1;
+    body->held_stale = body->model_stale = body->view_stale = body->look_stale = 1;
 }
 
 /* Removes what the solids have found. The cells of these leaves, and those beside them, are touched. */
@@ -2698,42 +2753,83 @@ static uint32_t gxp_cell_fragment(gx_body *body, uint32_t cell) {
     return body->fragment_number.data[gxp_find(body->copy_fragment.data, body->cells[cell].copies[0])];
 }
 
+/* Where entry ij stands in a mass block */
+static const uint8_t gxp_mass_at[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
+
 /* Sum of a mass block's row: density * integral of lambda_i */
 static double gxp_mass_row(const double mass[10], int i) {
-    static const uint8_t at[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
-    return mass[at[i][0]] + mass[at[i][1]] + mass[at[i][2]] + mass[at[i][3]];
+    const uint8_t *at = gxp_mass_at[i];
+    return mass[at[0]] + mass[at[1]] + mass[at[2]] + mass[at[3]];
+}
+
+/* x of the cell's nodes as seen from a centre: at rest, or where the cell's copies have moved */
+static void gxp_cell_corners(const gx_body *body, const gxp_cell *cell, int moved, const double center[3], double x[4][3]) {
+    int n, k;
+    for (n = 0; n < 4; n++) {
+        const double *rest = body->positions + 3 * (size_t)body->complex->elements[4 * (size_t)cell->element + (size_t)n];
+        const double *u = body->displacement + 3 * (size_t)cell->copies[n];
+        for (k = 0; k < 3; k++) x[n][k] = rest[k] - center[k] + (moved ? u[k] : 0);
+    }
+}
+
+/* sum += density * integral of x over the cell */
+static void gxp_add_first_moment(const gxp_cell *cell, double x[4][3], double sum[3]) {
+    int n, k;
+    for (n = 0; n < 4; n++) for (k = 0; k < 3; k++) sum[k] += gxp_mass_row(cell->mass, n) * x[n][k];
+}
+
+/* inertia += density * integral of (|x|^2 1 - x x^T) = sum_ij m_ij (x_i . x_j 1 - x_i x_j^T) */
+static void gxp_add_inertia(const gxp_cell *cell, double x[4][3], double inertia[6]) {
+    int i, j;
+    for (i = 0; i < 4; i++) for (j = 0; j < 4; j++) {
+        const double m = cell->mass[gxp_mass_at[i][j]], *a = x[i], *b = x[j];
+        inertia[0] += m * (a[1] * b[1] + a[2] * b[2]); inertia[3] += m * (a[0] * b[0] + a[2] * b[2]); inertia[5] += m * (a[0] * b[0] + a[1] * b[1]);
+        inertia[1] -= m * a[0] * b[1]; inertia[2] -= m * a[0] * b[2]; inertia[4] -= m * a[1] * b[2];
+    }
+}
+
+static gx_result gxp_reserve_fragments(gx_body *body) {
+    const size_t room = (size_t)body->fragment_count + body->fragment_count / 2 + 4;
+    double *memory;
+    if (body->fragment_count <= body->fragment_capacity) return GX_OK;
+    if (room > UINT32_MAX || room > SIZE_MAX / (GXP_FRAGMENT_ARRAYS * sizeof *memory)) return GX_ERROR_LIMIT;
+    memory = (double *)gxp_allocate(&body->allocator, room * GXP_FRAGMENT_ARRAYS * sizeof *memory);
+    if (memory == NULL) return GX_ERROR_MEMORY;
+    gxp_release(&body->allocator, body->fragments, (size_t)body->fragment_capacity * GXP_FRAGMENT_ARRAYS * sizeof *memory);
+    body->fragments = memory;
+    body->fragment_capacity = (uint32_t)room;
+    return GX_OK;
 }
 
 static gx_result gxp_sum_fragments(gx_body *body) {
-    double *volume, *mass, *center;
+    static const double zero[3] = {0, 0, 0};
+    double *volume, *mass, *center, *inertia, x[4][3];
     uint32_t i, f;
-    int k, n;
-    if (body->fragment_count > body->fragment_capacity) {
-        const uint32_t room = body->fragment_count + body->fragment_count / 2 + 4;
-        double *memory = (double *)gxp_allocate(&body->allocator, (size_t)room * 5 * sizeof *memory);
-        if (memory == NULL) return GX_ERROR_MEMORY;
-        gxp_release(&body->allocator, body->fragments, (size_t)body->fragment_capacity * 5 * sizeof(double));
-        body->fragments = memory;
-        body->fragment_capacity = room;
-    }
+    int n;
+    const gx_result result = gxp_reserve_fragments(body);
     body->volume = body->mass = 0;
-    if (body->fragment_count == 0) return GX_OK;
-    memset(body->fragments, 0, (size_t)body->fragment_capacity * 5 * sizeof(double));
-    volume = body->fragments; mass = volume + body->fragment_capacity; center = mass + body->fragment_capacity;
+    if (result != GX_OK || body->fragment_count == 0) return result;
+    memset(body->fragments, 0, (size_t)body->fragment_capacity * GXP_FRAGMENT_ARRAYS * sizeof(double));
+    volume = body->fragments; mass = volume + body->fragment_capacity;
+    center = mass + body->fragment_capacity; inertia = center + 3 * (size_t)body->fragment_capacity;
     for (i = 0; i < body->view_cells.count; i++) {
-        const gxp_cell *c = &body->cells[body->view_cells.data[i]];
+        const gxp_cell *cell = &body->cells[body->view_cells.data[i]];
         f = body->view_fragments.data[i];
-        volume[f] += c->volume;
-        for (n = 0; n < 4; n++) {
-            const double row = gxp_mass_row(c->mass, n);
-            mass[f] += row;
-            for (k = 0; k < 3; k++) center[3 * f + (uint32_t)k] += row * body->positions[3 * (size_t)body->complex->elements[4 * (size_t)c->element + (size_t)n] + (size_t)k];
-        }
+        volume[f] += cell->volume;
+        for (n = 0; n < 4; n++) mass[f] += gxp_mass_row(cell->mass, n);
+        gxp_cell_corners(body, cell, 0, zero, x);
+        gxp_add_first_moment(cell, x, center + 3 * (size_t)f);
     }
     for (f = 0; f < body->fragment_count; f++) {
         body->volume += volume[f];
         body->mass += mass[f];
-        for (k = 0; k < 3; k++) if (mass[f] > 0) center[3 * f + (uint32_t)k] /= mass[f];
+        for (n = 0; n < 3; n++) if (mass[f] > 0) center[3 * (size_t)f + (size_t)n] /= mass[f];
+    }
+    for (i = 0; i < body->view_cells.count; i++) {
+        const gxp_cell *cell = &body->cells[body->view_cells.data[i]];
+        f = body->view_fragments.data[i];
+        gxp_cell_corners(body, cell, 0, center + 3 * (size_t)f, x);
+        gxp_add_inertia(cell, x, inertia + 6 * (size_t)f);
     }
     return GX_OK;
 }
@@ -2748,10 +2844,106 @@ static gx_result gxp_update_view(gx_body *body) {
     return result;
 }
 
+/* --- what cuts have changed: fragments now are pieces of those of the last look, which their copies are labelled with --- */
+
+/* What a look finds on its way */
+typedef struct gxp_change {
+    uint32_t *origin;       /* fragment_count: index at the last look */
+    uint32_t *touched;      /* fragment_count flags */
+    uint32_t *heaviest;     /* at the last look: the piece that keeps the id; GXP_NONE: nothing is left */
+    uint32_t *pieces;       /* at the last look */
+} gxp_change;
+
+static void gxp_label_copies(gx_body *body) {
+    uint32_t i, k;
+    for (i = 0; i < body->view_cells.count; i++)
+        for (k = 0; k < 4; k++) body->copy_label[body->cell_copies.data[4 * i + k]] = 2 * body->view_fragments.data[i];
+}
+
+static void gxp_find_origins(gx_body *body, gxp_change *change) {
+    const double *mass = body->fragments + body->fragment_capacity;
+    uint32_t i, k, f;
+    for (i = 0; i < body->view_cells.count; i++) for (k = 0; k < 4; k++) {
+        const uint32_t label = body->copy_label[body->cell_copies.data[4 * i + k]];
+        change->origin[body->view_fragments.data[i]] = label >> 1;
+        change->touched[body->view_fragments.data[i]] |= label & 1;
+    }
+    for (f = 0; f < body->fragment_count; f++) {
+        uint32_t *heaviest = &change->heaviest[change->origin[f]];
+        if (*heaviest == GXP_NONE || mass[f] > mass[*heaviest]) *heaviest = f;
+        change->pieces[change->origin[f]]++;
+    }
+}
+
+/* There is room in the lists. */
+static void gxp_give_ids(gx_body *body, const gxp_change *change) {
+    const uint32_t before = body->fragment_ids.count;
+    uint32_t *ids = change->touched, i;     /* a fragment's flag is read before its id is written */
+    body->removed_ids.count = 0;
+    for (i = 0; i < before; i++)
+        if (change->heaviest[i] == GXP_NONE) body->removed_ids.data[body->removed_ids.count++] = body->fragment_ids.data[i];
+    for (i = 0; i < body->fragment_count; i++) {
+        const uint32_t origin = change->origin[i];
+        const int keeps = change->heaviest[origin] == i;
+        body->fragment_origins.data[i] = body->fragment_ids.data[origin];
+        body->fragment_changes.data[i] = !keeps ? GX_FRAGMENT_CREATED : change->pieces[origin] > 1 ? GX_FRAGMENT_SPLIT :
+                                         change->touched[i] ? GX_FRAGMENT_TOUCHED : GX_FRAGMENT_UNCHANGED;
+        ids[i] = keeps ? body->fragment_ids.data[origin] : body->next_id++;
+    }
+    body->fragment_ids.count = body->fragment_origins.count = body->fragment_changes.count = body->fragment_count;
+    if (body->fragment_count > 0) memcpy(body->fragment_ids.data, ids, body->fragment_count * sizeof *ids);
+}
+
+static gx_result gxp_look_room(gx_body *body) {
+    gx_result result = gxp_words_room(body, &body->fragment_ids, body->fragment_count);
+    if (result == GX_OK) result = gxp_words_room(body, &body->fragment_origins, body->fragment_count);
+    if (result == GX_OK) result = gxp_words_room(body, &body->fragment_changes, body->fragment_count);
+    if (result == GX_OK) result = gxp_words_room(body, &body->removed_ids, body->fragment_ids.count);
+    return result == GX_OK && body->next_id > UINT32_MAX - body->fragment_count ? GX_ERROR_LIMIT : result;
+}
+
+/* The view is up to date. An error leaves labels and ids as they were: nothing of the change is lost. */
+static gx_result gxp_look(gx_body *body) {
+    const size_t now = body->fragment_count, before = body->fragment_ids.count, bytes = (2 * now + 2 * before + 1) * sizeof(uint32_t);
+    gxp_change change;
+    gx_result result;
+    if (!body->look_stale) return GX_OK;
+    result = gxp_look_room(body);
+    if (result != GX_OK) return result;
+    change.origin = (uint32_t *)gxp_allocate(&body->allocator, bytes);
+    if (change.origin == NULL) return GX_ERROR_MEMORY;
+    memset(change.origin, 0, bytes);
+    change.touched = change.origin + now; change.pieces = change.touched + now; change.heaviest = change.pieces + before;
+    memset(change.heaviest, 0xff, before * sizeof *change.heaviest);
+    gxp_find_origins(body, &change);
+    gxp_give_ids(body, &change);
+    gxp_release(&body->allocator, change.origin, bytes);
+    gxp_label_copies(body);
+    body->look_stale = 0;
+    return GX_OK;
+}
+
+/* The fragments of the mesh: ids 1, 2 ... */
+static gx_result gxp_first_look(gx_body *body) {
+    uint32_t f;
+    gx_result result = gxp_update_view(body);
+    body->next_id = 1;
+    if (result == GX_OK) result = gxp_look_room(body);
+    for (f = 0; f < body->fragment_count && result == GX_OK; f++) {
+        body->fragment_ids.data[f] = body->fragment_origins.data[f] = body->next_id++;
+        body->fragment_changes.data[f] = GX_FRAGMENT_UNCHANGED;
+    }
+    if (result != GX_OK) return result;
+    body->fragment_ids.count = body->fragment_origins.count = body->fragment_changes.count = body->fragment_count;
+    gxp_label_copies(body);
+    return GX_OK;
+}
+
 GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view) {
     gx_result result;
     if (body == NULL || view == NULL) return GX_ERROR_ARGUMENT;
     result = gxp_update_view(body);
+    if (result == GX_OK) result = gxp_look(body);
     if (result == GX_OK) result = gxp_update_held(body);
     if (result != GX_OK) return result;
     view->node_count = body->node_count; view->element_count = body->element_count;
@@ -2764,7 +2956,123 @@ GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view) {
     view->fragment_volume = body->fragments;
     view->fragment_mass = body->fragments ? body->fragments + body->fragment_capacity : NULL;
     view->fragment_center = body->fragments ? body->fragments + 2 * (size_t)body->fragment_capacity : NULL;
+    view->fragment_inertia = body->fragments ? body->fragments + 5 * (size_t)body->fragment_capacity : NULL;
+    view->fragment_id = body->fragment_ids.data;
+    view->fragment_origin = body->fragment_origins.data;
+    view->fragment_change = body->fragment_changes.data;
+    view->removed_count = body->removed_ids.count; view->removed_ids = body->removed_ids.data;
     view->volume = body->volume; view->mass = body->mass;
+    return GX_OK;
+}
+
+/* --- motion --- */
+
+#define GXP_NO_INERTIA 1e-13    /* a principal moment below this share of the largest is rounding: nothing turns about its axis */
+
+/* One rotation of Jacobi's method: makes entry pq of the symmetric a zero; columns of v are the axes. */
+static void gxp_rotate(double a[3][3], double v[3][3], int p, int q) {
+    double t, c, s;
+    int k;
+    if (!(fabs(a[p][q]) > 0)) return;
+    t = (a[q][q] - a[p][p]) / (2 * a[p][q]);
+    t = (t < 0 ? -1 : 1) / (fabs(t) + sqrt(t * t + 1));
+    c = 1 / sqrt(t * t + 1); s = t * c;
+    for (k = 0; k < 3; k++) {
+        const double x = a[k][p], y = a[k][q];
+        a[k][p] = c * x - s * y; a[k][q] = s * x + c * y;
+    }
+    for (k = 0; k < 3; k++) {
+        const double x = a[p][k], y = a[q][k], z = v[k][p], w = v[k][q];
+        a[p][k] = c * x - s * y; a[q][k] = s * x + c * y;
+        v[k][p] = c * z - s * w; v[k][q] = s * z + c * w;
+    }
+    a[p][q] = a[q][p] = 0;
+}
+
+/* Pseudo-inverse of the inertia times the angular momentum */
+static void gxp_spin(const double inertia[6], const double momentum[3], double spin[3]) {
+    double a[3][3], v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, largest = 0;
+    int i, k, sweep;
+    a[0][0] = inertia[0]; a[1][1] = inertia[3]; a[2][2] = inertia[5];
+    a[0][1] = a[1][0] = inertia[1]; a[0][2] = a[2][0] = inertia[2]; a[1][2] = a[2][1] = inertia[4];
+    for (sweep = 0; sweep < 8; sweep++) {   /* converges quadratically: 5 are enough */
+        gxp_rotate(a, v, 0, 1); gxp_rotate(a, v, 0, 2); gxp_rotate(a, v, 1, 2);
+    }
+    for (i = 0; i < 3; i++) if (a[i][i] > largest) largest = a[i][i];
+    spin[0] = spin[1] = spin[2] = 0;
+    for (i = 0; i < 3; i++) {
+        const double along = v[0][i] * momentum[0] + v[1][i] * momentum[1] + v[2][i] * momentum[2];
+        for (k = 0; k < 3 && a[i][i] > GXP_NO_INERTIA * largest; k++) spin[k] += along / a[i][i] * v[k][i];
+    }
+}
+
+static void gxp_cell_velocities(const gx_body *body, const gxp_cell *cell, const double mean[3], double v[4][3]) {
+    int n, k;
+    for (n = 0; n < 4; n++) for (k = 0; k < 3; k++) v[n][k] = body->velocity[3 * (size_t)cell->copies[n] + (size_t)k] - mean[k];
+}
+
+/* With x and v relative to the centre: inertia, angular momentum sum_ij m_ij x_i x v_j, energy of the relative motion */
+static void gxp_add_rotation(const gxp_cell *cell, double x[4][3], double v[4][3], gx_motion *motion, double momentum[3]) {
+    int i, j, k;
+    gxp_add_inertia(cell, x, motion->inertia);
+    for (i = 0; i < 4; i++) for (j = 0; j < 4; j++) for (k = 0; k < 3; k++) {
+        const double m = cell->mass[gxp_mass_at[i][j]];
+        const int a = (k + 1) % 3, b = (k + 2) % 3;
+        momentum[k] += m * (x[i][a] * v[j][b] - x[i][b] * v[j][a]);
+        motion->energy += 0.5 * m * v[i][k] * v[j][k];
+    }
+}
+
+/* Mass, centre and velocity of all fragments */
+static void gxp_find_centers(const gx_body *body, gx_motion *motions) {
+    static const double zero[3] = {0, 0, 0};
+    uint32_t i;
+    int k;
+    memset(motions, 0, body->fragment_count * sizeof *motions);
+    for (i = 0; i < body->view_cells.count; i++) {
+        const gxp_cell *cell = &body->cells[body->view_cells.data[i]];
+        gx_motion *motion = &motions[body->view_fragments.data[i]];
+        double x[4][3], v[4][3];
+        gxp_cell_corners(body, cell, 1, zero, x);
+        gxp_cell_velocities(body, cell, zero, v);
+        for (k = 0; k < 4; k++) motion->mass += gxp_mass_row(cell->mass, k);
+        gxp_add_first_moment(cell, x, motion->center);
+        gxp_add_first_moment(cell, v, motion->velocity);
+    }
+    for (i = 0; i < body->fragment_count; i++) for (k = 0; k < 3 && motions[i].mass > 0; k++) {
+        motions[i].center[k] /= motions[i].mass;
+        motions[i].velocity[k] /= motions[i].mass;
+    }
+}
+
+GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t capacity) {
+    double (*momentum)[3];
+    size_t bytes;
+    uint32_t i;
+    int k;
+    gx_result result;
+    if (body == NULL || (motions == NULL && capacity > 0)) return GX_ERROR_ARGUMENT;
+    result = gxp_update_view(body);
+    if (result != GX_OK || body->fragment_count == 0) return result;
+    if (capacity < body->fragment_count) return GX_ERROR_LIMIT;
+    bytes = body->fragment_count * sizeof *momentum;
+    momentum = (double (*)[3])gxp_allocate(&body->allocator, bytes);
+    if (momentum == NULL) return GX_ERROR_MEMORY;
+    memset(momentum, 0, bytes);
+    gxp_find_centers(body, motions);
+    for (i = 0; i < body->view_cells.count; i++) {
+        const gxp_cell *cell = &body->cells[body->view_cells.data[i]];
+        const uint32_t f = body->view_fragments.data[i];
+        double x[4][3], v[4][3];
+        gxp_cell_corners(body, cell, 1, motions[f].center, x);
+        gxp_cell_velocities(body, cell, motions[f].velocity, v);
+        gxp_add_rotation(cell, x, v, &motions[f], momentum[f]);
+    }
+    for (i = 0; i < body->fragment_count; i++) {
+        gxp_spin(motions[i].inertia, momentum[i], motions[i].angular_velocity);
+        for (k = 0; k < 3; k++) motions[i].energy += 0.5 * motions[i].mass * motions[i].velocity[k] * motions[i].velocity[k];
+    }
+    gxp_release(&body->allocator, momentum, bytes);
     return GX_OK;
 }
 
@@ -4173,6 +4481,9 @@ GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
     hash = gxp_hash_doubles(hash, body->displacement, 3 * (size_t)body->copy_count);
     hash = gxp_hash_doubles(hash, body->velocity, 3 * (size_t)body->copy_count);
     hash = gxp_hash_doubles(hash, body->rest_time, body->copy_count);
+    for (i = 0; i < body->copy_count; i++) hash = gxp_mix(hash ^ body->copy_label[i]);
+    for (i = 0; i < body->fragment_ids.count; i++) hash = gxp_mix(hash ^ body->fragment_ids.data[i]);
+    hash = gxp_mix(hash ^ body->next_id);
     for (i = 0; i < 2 && body->previous_dt > 0; i++) hash = gxp_hash_doubles(hash, body->history[i], 3 * (size_t)body->copy_count);
     for (i = 0; i < body->region_count; i++)
         hash = gxp_hash_doubles(gxp_mix(hash ^ body->regions[i].axis ^ (uint64_t)(body->regions[i].side + 1) << 8), &body->regions[i].value, 1);
