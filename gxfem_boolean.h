@@ -30,8 +30,9 @@
  *     >>numbers     exact numbers: a double is an integer times a power of two, sums and products are too
  *     >>predicates  orient2d, orient3d, side of a plane, comparison, orientation in a plane, winding number
  *     >>complex     the cell complex: points, planes, edges, facets, leaves
+ *     >>stream      a complex as bytes
  *     then, under GXFEM_BOOLEAN_IMPLEMENTATION, in this order: >>bits >>exact >>filter >>points >>memory >>topology
- *     >>split >>clip >>insert
+ *     >>split >>clip >>insert >>save >>check
  *
  * How the complex works. Each element of the mesh starts as one convex leaf, bounded by four facets, which it shares with its
  * neighbours. A triangle is clipped down the element's tree of planes (a binary space partition); each leaf whose inside it
@@ -87,7 +88,9 @@ typedef enum gx_result {
     GX_ERROR_NOT_CLOSED,    /* a solid's surface has a boundary, or its triangles are not oriented alike */
     GX_ERROR_LIMIT,         /* more objects than 32-bit indices can name, or a caller's limit is reached */
     GX_ERROR_DIVERGED,      /* a time step found no finite state of lower energy */
-    GX_ERROR_FREE           /* a static balance is asked of a piece that nothing holds */
+    GX_ERROR_FREE,          /* a static balance is asked of a piece that nothing holds */
+    GX_ERROR_FORMAT,        /* not a saved body, or one of another version or another kind of machine */
+    GX_ERROR_DAMAGED        /* a saved body is cut short, or what it says cannot be */
 } gx_result;
 
 /* What went wrong, and where: index of the node, element, triangle or copy concerned. */
@@ -351,6 +354,28 @@ GXFEM_API void gxb_complex_barycentric(gxb_complex *complex, uint32_t point, uin
 GXFEM_API unsigned gxb_complex_support(const gxb_complex *complex, uint32_t point, uint32_t element);
 /* The coordinates with a relative error below 2^-180. */
 GXFEM_API void gxb_complex_barycentric_fine(gxb_complex *complex, uint32_t point, uint32_t element, gxb_num lambda[4]);
+
+/* >>stream ----------------------------------------------------------------------------------------------------------- */
+
+/* Bytes that are written, counted (out NULL) or read (in not NULL), in the machine's own order. The first error stays, and what is
+   passed after it is not written, and read as 0. */
+typedef struct gxb_stream {
+    unsigned char *out;
+    const unsigned char *in;
+    size_t size, at;            /* room, or bytes there are; bytes passed */
+    gx_result result;           /* GX_ERROR_LIMIT: no room; GX_ERROR_DAMAGED: no more bytes, or what they say cannot be */
+} gxb_stream;
+GXFEM_API void gxb_stream_pass(gxb_stream *stream, void *data, size_t count, size_t width);    /* count items of width bytes */
+/* Reading: are there bytes for so many items? Else GX_ERROR_DAMAGED and 0, so that a count never asks for more memory than the bytes
+   that it counts. */
+GXFEM_API int gxb_stream_has(gxb_stream *stream, size_t count, size_t width);
+
+/* What defines the complex, but for its mesh: no exact numbers, no signs, no lists that were replaced. Not within a transaction. */
+GXFEM_API void gxb_complex_save(gxb_complex *complex, gxb_stream *stream);
+/* Reads it into a complex just created of the same mesh. trusted 0: everything is checked that other functions rely on, exactly: in
+   range, every tree a tree, facets convex polygons in their planes, leaves convex, closed and within their element's tree. After
+   an error (that of the stream: DAMAGED, MEMORY, LIMIT) the complex can only be destroyed. */
+GXFEM_API gx_result gxb_complex_load(gxb_complex *complex, gxb_stream *stream, int trusted);
 
 #ifdef __cplusplus
 }
@@ -2710,6 +2735,712 @@ GXFEM_API void gxb_complex_barycentric_fine(gxb_complex *cx, uint32_t point, uin
             gxbp_num_copy(&num, &s, 1);
         }
     }
+}
+
+/* >>save: points by their definitions, the rest by indices ------------------------------------------------------------------ */
+
+GXFEM_API int gxb_stream_has(gxb_stream *stream, size_t count, size_t width) {
+    if (stream->result == GX_OK && count > (stream->size - stream->at) / width) stream->result = GX_ERROR_DAMAGED;
+    return stream->result == GX_OK;
+}
+
+GXFEM_API void gxb_stream_pass(gxb_stream *stream, void *data, size_t count, size_t width) {
+    const size_t bytes = count * width;
+    if (stream->in != NULL && !gxb_stream_has(stream, count, width)) {
+        if (bytes > 0) memset(data, 0, bytes);
+        return;
+    }
+    if (stream->in == NULL && stream->out != NULL && bytes > stream->size - stream->at) stream->result = GX_ERROR_LIMIT;
+    if (stream->result != GX_OK || bytes == 0) return;
+    if (stream->in != NULL) memcpy(data, stream->in + stream->at, bytes);
+    else if (stream->out != NULL) memcpy(stream->out + stream->at, data, bytes);
+    stream->at += bytes;
+}
+
+static void gxbp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, word, 1, sizeof *word); }
+
+static void gxbp_require(gxb_stream *s, gx_result result) { if (s->result == GX_OK) s->result = result; }
+static void gxbp_require_true(gxb_stream *s, int holds) { if (!holds) gxbp_require(s, GX_ERROR_DAMAGED); }
+
+/* The given coordinates of an explicit point: what came into the frame by a shift and a scale, exactly, goes back. */
+static void gxbp_given(gxb_complex *cx, uint32_t point, double x[3]) {
+    gxbp_vec store;
+    const gxb_num *c = gxbp_exact_cpoint(cx, point, &store);
+    int k;
+    for (k = 0; k < 3; k++) {
+        GXB_NUM(scale); GXB_NUM(given); GXB_NUM(origin); GXB_NUM(sum);
+        uint64_t m;
+        int power;
+        gxb_num_set(&scale, 1.0, -cx->shift);
+        gxb_num_mul(&given, &c[k], &scale);
+        gxb_num_set(&origin, cx->origin[k], 0);
+        gxb_num_add(&sum, &given, &origin);
+        x[k] = 0;
+        if (sum.sign == 0) continue;
+        m = gxbp_num_mantissa(&sum, &power);
+        if (power >= -1074) x[k] = gxbp_compose(m, power, sum.sign < 0);
+        else x[k] = gxbp_double((m >> (-1074 - power)) | (sum.sign < 0 ? (uint64_t)1 << 63 : 0));    /* a denormal: no bit is lost */
+    }
+}
+
+static void gxbp_save_points(gxb_complex *cx, gxb_stream *s) {
+    uint32_t i;
+    for (i = 0; i < cx->point_count; i++) {
+        gxb_cpoint *p = &cx->points[i];
+        uint32_t head = p->kind | p->wall << 2;
+        double x[3];
+        gxbp_pass_word(s, &head);
+        if (i < cx->node_count) continue;
+        if (p->kind != GXB_EXPLICIT) { gxb_stream_pass(s, p->def, 3, sizeof *p->def); continue; }
+        if (s->out != NULL) gxbp_given(cx, i, x);
+        gxb_stream_pass(s, x, 3, sizeof *x);
+    }
+}
+
+/* Points by definition have no ball yet: it needs the planes. */
+static void gxbp_load_points(gxb_complex *cx, gxb_stream *s, uint32_t count) {
+    uint32_t i;
+    for (i = 0; i < count && s->result == GX_OK; i++) {
+        uint32_t head, id = i, def[3];
+        double x[3];
+        gxbp_pass_word(s, &head);
+        gxbp_require_true(s, head < 8 && (head & 3) <= (i < cx->node_count ? 0u : 2u));
+        if (i < cx->node_count) { cx->points[i].wall = head >> 2; continue; }
+        if ((head & 3) == GXB_EXPLICIT) gxb_stream_pass(s, x, 3, sizeof *x);
+        else gxb_stream_pass(s, def, 3, sizeof *def);
+        if (s->result != GX_OK) return;
+        if ((head & 3) == GXB_EXPLICIT) {
+            const gx_result result = gxb_complex_add_point(cx, x, &id);
+            if (result != GX_OK) gxbp_require(s, result == GX_ERROR_MEMORY || result == GX_ERROR_LIMIT ? result : GX_ERROR_DAMAGED);
+        } else {
+            gxbp_require(s, gxbp_new_point(cx, &id));
+            if (s->result == GX_OK) memcpy(cx->points[id].def, def, sizeof def);
+        }
+        if (s->result != GX_OK) return;
+        cx->points[id].kind = head & 3;
+        cx->points[id].wall = head >> 2;
+    }
+}
+
+static int gxbp_is_explicit(const gxb_complex *cx, uint32_t point) { return point < cx->point_count && cx->points[point].kind == GXB_EXPLICIT; }
+
+static void gxbp_save_planes(gxb_complex *cx, gxb_stream *s) {
+    uint32_t i;
+    for (i = 0; i < cx->plane_count; i++) {
+        gxb_stream_pass(s, cx->planes[i].def, 3, sizeof *cx->planes[i].def);
+        gxbp_pass_word(s, &cx->planes[i].along_axis);
+    }
+}
+
+/* Planes must have a normal. */
+static void gxbp_load_planes(gxb_complex *cx, gxb_stream *s, uint32_t count) {
+    uint32_t i, k;
+    for (i = 0; i < count && s->result == GX_OK; i++) {
+        uint32_t def[3], along_axis, id = 0;
+        int normal = 0;
+        gxb_stream_pass(s, def, 3, sizeof *def);
+        gxbp_pass_word(s, &along_axis);
+        gxbp_require_true(s, along_axis <= 1 && gxbp_is_explicit(cx, def[0]) && gxbp_is_explicit(cx, def[1]) &&
+                             (along_axis ? def[2] < 3 : gxbp_is_explicit(cx, def[2])));
+        if (s->result == GX_OK) gxbp_require(s, gxbp_new_plane(cx, def[0], def[1], def[2], (int)along_axis, &id));
+        if (s->result != GX_OK) return;
+        if (along_axis) for (k = 0; k < 3 && !normal; k++) normal = gxbp_normal_sign(cx, id, k) != 0;
+        else normal = gxbp_plane_axis(cx, id);
+        gxbp_require_true(s, normal);
+    }
+}
+
+/* Points by definition must be points: a filter that is certain of their place proves it, else their exact weight. */
+static void gxbp_place_points(gxb_complex *cx, gxb_stream *s) {
+    uint32_t i, k;
+    for (i = cx->node_count; i < cx->point_count && s->result == GX_OK; i++) {
+        gxb_cpoint *p = &cx->points[i];
+        if (p->kind == GXB_EXPLICIT) continue;
+        for (k = 0; k < 3; k++)
+            gxbp_require_true(s, k < 2 && p->kind == GXB_LINE_PLANE ? gxbp_is_explicit(cx, p->def[k]) : p->def[k] < cx->plane_count);
+        if (s->result != GX_OK) return;
+        gxbp_definition_ball(cx, p->kind, p->def, &p->ball);
+        if (p->ball.error >= GXBP_NO_BALL) {
+            gxbp_vec store;
+            gxbp_require_true(s, gxbp_exact_cpoint(cx, i, &store)[3].sign != 0);
+        }
+    }
+}
+
+/* A list of the pool; reading appends it. */
+static void gxbp_pass_list(gxb_complex *cx, gxb_stream *s, uint32_t *first, uint32_t *count) {
+    gxbp_pass_word(s, count);
+    if (s->in != NULL) {
+        if (!gxb_stream_has(s, *count, sizeof *cx->pool)) { *count = 0; return; }
+        gxbp_require(s, GXBP_RESERVE(cx, pool, pool, *count));
+        if (s->result != GX_OK) { *count = 0; return; }
+        *first = cx->pool_count;
+        cx->pool_count += *count;
+    }
+    if (*count > 0) gxb_stream_pass(s, cx->pool + *first, *count, sizeof *cx->pool);
+}
+
+static void gxbp_pass_edges(gxb_complex *cx, gxb_stream *s) {
+    uint32_t i;
+    for (i = 0; i < cx->edge_count; i++) {
+        gxb_edge *e = &cx->edges[i];
+        gxb_stream_pass(s, e->v, 2, sizeof *e->v);
+        gxb_stream_pass(s, e->line, 2, sizeof *e->line);
+        gxbp_pass_word(s, &e->explicit_line);
+        gxbp_pass_word(s, &e->child);
+        gxbp_pass_word(s, &e->wall);
+    }
+}
+
+static void gxbp_pass_facets(gxb_complex *cx, gxb_stream *s) {
+    uint32_t i;
+    for (i = 0; i < cx->facet_count; i++) {
+        gxb_facet *f = &cx->facets[i];
+        uint32_t none = 0;
+        gxbp_pass_word(s, &f->plane);
+        gxb_stream_pass(s, f->leaf, 2, sizeof *f->leaf);
+        gxbp_pass_word(s, &f->child);
+        gxbp_pass_word(s, &f->labels);
+        gxbp_pass_word(s, &f->face);
+        gxbp_pass_word(s, &f->wall);
+        gxbp_pass_list(cx, s, &f->loop, f->child == GXB_NONE ? &f->loop_count : &none);    /* children have loops of their own */
+    }
+}
+
+static void gxbp_pass_leaves(gxb_complex *cx, gxb_stream *s) {
+    uint32_t i;
+    for (i = 0; i < cx->leaf_count; i++) {
+        gxb_leaf *l = &cx->leaves[i];
+        gxbp_pass_word(s, &l->element);
+        gxbp_pass_word(s, &l->parent);
+        gxbp_pass_word(s, &l->removed);
+        gxbp_pass_list(cx, s, &l->facets, &l->facet_count);
+    }
+}
+
+static void gxbp_pass_rest(gxb_complex *cx, gxb_stream *s) {
+    uint32_t i;
+    gxb_stream_pass(s, cx->face_facet, cx->face_count, sizeof *cx->face_facet);
+    gxb_stream_pass(s, cx->mesh_edge, cx->mesh_edge_count, sizeof *cx->mesh_edge);
+    gxb_stream_pass(s, cx->root, cx->element_count, sizeof *cx->root);
+    for (i = 0; i < cx->tree_count; i++) {
+        gxbp_pass_word(s, &cx->nodes[i].plane);
+        gxb_stream_pass(s, cx->nodes[i].child, 2, sizeof *cx->nodes[i].child);
+    }
+    for (i = 0; i < cx->label_count; i++) {
+        gxbp_pass_word(s, &cx->labels[i].triangle);
+        gxb_stream_pass(s, &cx->labels[i].orientation, 1, sizeof cx->labels[i].orientation);
+        gxbp_pass_word(s, &cx->labels[i].next);
+    }
+}
+
+enum { GXBP_COUNTS = 7 };
+
+GXFEM_API void gxb_complex_save(gxb_complex *cx, gxb_stream *stream) {
+    uint32_t counts[GXBP_COUNTS];
+    counts[0] = cx->point_count; counts[1] = cx->plane_count; counts[2] = cx->edge_count; counts[3] = cx->facet_count;
+    counts[4] = cx->leaf_count; counts[5] = cx->tree_count; counts[6] = cx->label_count;
+    gxb_stream_pass(stream, counts, GXBP_COUNTS, sizeof *counts);
+    gxbp_save_points(cx, stream);
+    gxbp_save_planes(cx, stream);
+    gxbp_pass_edges(cx, stream);
+    gxbp_pass_facets(cx, stream);
+    gxbp_pass_leaves(cx, stream);
+    gxbp_pass_rest(cx, stream);
+}
+
+/* Items of 4 bytes at least each; all of them zero until they are read. */
+static void gxbp_load_room(gxb_stream *s, gxb_complex *cx, const uint32_t counts[GXBP_COUNTS]) {
+    static const size_t least[GXBP_COUNTS] = {4, 16, 28, 32, 16, 12, 12};
+    int i;
+    for (i = 0; i < GXBP_COUNTS; i++) {
+        gxb_stream_has(s, counts[i], least[i]);
+        gxbp_require_true(s, counts[i] <= INT32_MAX);
+    }
+    gxbp_require_true(s, counts[0] >= cx->node_count && counts[4] >= cx->element_count);
+    if (s->result != GX_OK) return;
+    gxbp_require(s, GXBP_RESERVE(cx, edges, edge, counts[2]));
+    gxbp_require(s, GXBP_RESERVE(cx, facets, facet, counts[3]));
+    gxbp_require(s, GXBP_RESERVE(cx, leaves, leaf, counts[4] - cx->leaf_count));
+    gxbp_require(s, GXBP_RESERVE(cx, nodes, tree, counts[5]));
+    gxbp_require(s, GXBP_RESERVE(cx, labels, label, counts[6]));
+    if (s->result != GX_OK) return;
+    cx->edge_count = counts[2]; cx->facet_count = counts[3]; cx->leaf_count = counts[4]; cx->tree_count = counts[5]; cx->label_count = counts[6];
+    if (counts[2] > 0) memset(cx->edges, 0, counts[2] * sizeof *cx->edges);
+    if (counts[3] > 0) memset(cx->facets, 0, counts[3] * sizeof *cx->facets);
+    memset(cx->leaves, 0, counts[4] * sizeof *cx->leaves);
+}
+
+static void gxbp_check(gxb_complex *cx, gxb_stream *s);     /* see >>check */
+
+GXFEM_API gx_result gxb_complex_load(gxb_complex *cx, gxb_stream *s, int trusted) {
+    uint32_t counts[GXBP_COUNTS];
+    gxb_stream_pass(s, counts, GXBP_COUNTS, sizeof *counts);
+    gxbp_load_room(s, cx, counts);
+    if (s->result == GX_OK) gxbp_load_points(cx, s, counts[0]);
+    if (s->result == GX_OK) gxbp_load_planes(cx, s, counts[1]);
+    if (s->result == GX_OK) gxbp_place_points(cx, s);
+    if (s->result == GX_OK) gxbp_pass_edges(cx, s);
+    if (s->result == GX_OK) gxbp_pass_facets(cx, s);
+    if (s->result == GX_OK) gxbp_pass_leaves(cx, s);
+    if (s->result == GX_OK) gxbp_pass_rest(cx, s);
+    if (s->result == GX_OK && !trusted) gxbp_check(cx, s);
+    if (s->result != GX_OK) return s->result;
+    cx->pool_live = cx->pool_count;
+    gxb_complex_begin(cx);
+    return GX_OK;
+}
+
+/* >>check: is what was read a complex? ---------------------------------------------------------------------------------------
+ *
+ * First every index, then that trees are trees, then geometry, by the exact predicates: each facet is a convex polygon in its
+ * plane; each leaf is closed and lies on one side of its facets' planes, which are those of its element's faces and of the nodes
+ * above it in the tree. So each leaf is all of its part of the tree, and a triangle that the tree sends to a leaf divides it.
+ */
+
+#define GXBP_DEPTH 10000    /* of a tree of edges, facets or leaves: functions that walk them call themselves */
+
+/* Trees of items that were divided into (child, child + 1): each child comes behind its one parent. child: of item i at
+   first + i * size. depth: count. */
+static void gxbp_check_trees(gxb_stream *s, const uint32_t *first, size_t size, uint32_t count, uint32_t *depth) {
+    uint32_t i, child;
+    if (count > 0) memset(depth, 0, count * sizeof *depth);
+    for (i = 0; i < count && s->result == GX_OK; i++) {
+        memcpy(&child, (const unsigned char *)first + i * size, sizeof child);
+        if (child == GXB_NONE) continue;
+        gxbp_require_true(s, child > i && child < count - 1 && depth[child] == 0 && depth[child + 1] == 0);
+        if (s->result != GX_OK) return;
+        depth[child] = depth[child + 1] = depth[i] + 1;
+        if (depth[child] > GXBP_DEPTH) gxbp_require(s, GX_ERROR_LIMIT);
+    }
+}
+
+static int gxbp_below(uint32_t index, uint32_t count) { return index == GXB_NONE || index < count; }
+
+static void gxbp_check_indices(gxb_complex *cx, gxb_stream *s) {
+    uint32_t i, j;
+    int good = 1;
+    for (i = 0; i < cx->edge_count; i++) {
+        const gxb_edge *e = &cx->edges[i];
+        good &= e->explicit_line <= 1 && e->wall <= 1 && e->v[0] < cx->point_count && e->v[1] < cx->point_count && e->v[0] != e->v[1];
+        for (j = 0; j < 2; j++) good &= e->explicit_line == 1 ? gxbp_is_explicit(cx, e->line[j]) : e->line[j] < cx->plane_count;
+    }
+    for (i = 0; i < cx->facet_count; i++) {
+        const gxb_facet *f = &cx->facets[i];
+        good &= f->plane < cx->plane_count && !cx->planes[f->plane < cx->plane_count ? f->plane : 0].along_axis && f->wall <= 1 &&
+                gxbp_below(f->leaf[0], cx->leaf_count) && gxbp_below(f->leaf[1], cx->leaf_count) && f->leaf[0] != f->leaf[1] &&
+                gxbp_below(f->labels, cx->label_count) && gxbp_below(f->face, cx->face_count);
+        for (j = 0; j < f->loop_count; j++) good &= cx->pool[f->loop + j] >> 1 < cx->edge_count;
+    }
+    for (i = 0; i < cx->leaf_count; i++) {
+        const gxb_leaf *l = &cx->leaves[i];
+        good &= l->element < cx->element_count && l->removed <= 1;
+        good &= i < cx->element_count ? l->element == i && l->parent == GXB_NONE : l->parent < i && cx->leaves[l->parent].element == l->element && l->facet_count > 0;
+        for (j = 0; j < l->facet_count; j++) good &= cx->pool[l->facets + j] < cx->facet_count;
+        if (!good) break;
+    }
+    for (i = 0; i < cx->label_count; i++)     /* lists share their ends, which are older */
+        good &= (cx->labels[i].next == GXB_NONE || cx->labels[i].next < i) && cx->labels[i].orientation >= -1 && cx->labels[i].orientation <= 1;
+    for (i = 0; i < cx->face_count; i++) good &= gxbp_below(cx->face_facet[i], cx->facet_count);
+    for (i = 0; i < cx->mesh_edge_count; i++) good &= gxbp_below(cx->mesh_edge[i], cx->edge_count);
+    gxbp_require_true(s, good);
+}
+
+/* --- edges: on their lines, divided between their ends --- */
+
+static int gxbp_same_place(gxb_complex *cx, uint32_t a, uint32_t b) {
+    gxbp_vec sa, sb;
+    const gxb_num *p = gxbp_exact_cpoint(cx, a, &sa), *q = gxbp_exact_cpoint(cx, b, &sb);
+    int k;
+    for (k = 0; k < 3; k++) {
+        GXB_NUM(d);
+        gxbp_num_det2(&d, &p[k], &q[3], &q[k], &p[3]);
+        if (d.sign != 0) return 0;
+    }
+    return 1;
+}
+
+/* Do the planes meet in a line? */
+static int gxbp_planes_cross(gxb_complex *cx, uint32_t a, uint32_t b) {
+    const gxb_plane_filter *f = &cx->planes[a].filter, *g = &cx->planes[b].filter;
+    double r[3];
+    const double bound = gxbp_filter_cross(r, f->n, f->error, g->n, g->error);
+    gxbp_vec sa, sb, cross;
+    if (gxbp_max3(r) > bound) return 1;
+    gxbp_vec_init(&cross);
+    gxbp_num_cross(cross.c, gxbp_exact_cplane(cx, a, &sa), gxbp_exact_cplane(cx, b, &sb));
+    return cross.c[0].sign != 0 || cross.c[1].sign != 0 || cross.c[2].sign != 0;
+}
+
+static int gxbp_collinear(gxb_complex *cx, uint32_t a, uint32_t b, uint32_t c) {
+    gxbp_vec sa, sb, sc;
+    const gxb_num *p = gxbp_exact_cpoint(cx, a, &sa), *q = gxbp_exact_cpoint(cx, b, &sb), *r = gxbp_exact_cpoint(cx, c, &sc);
+    return gxbp_orient_exact(p, q, r, 0, 1) == 0 && gxbp_orient_exact(p, q, r, 1, 2) == 0 && gxbp_orient_exact(p, q, r, 2, 0) == 0;
+}
+
+static int gxbp_on_line(gxb_complex *cx, uint32_t point, const gxb_edge *e) {
+    const gxb_cpoint *p = &cx->points[point];
+    int i, planes = 0;
+    if (!e->explicit_line) return gxb_complex_side(cx, point, e->line[0]) == 0 && gxb_complex_side(cx, point, e->line[1]) == 0;
+    if (point == e->line[0] || point == e->line[1]) return 1;
+    if (p->kind == GXB_LINE_PLANE && p->def[0] == e->line[0] && p->def[1] == e->line[1]) return 1;
+    for (i = 0; i < 3 && p->kind == GXB_THREE_PLANES; i++) planes += gxbp_plane_has_line(&cx->planes[p->def[i]], e->line[0], e->line[1]);
+    return planes >= 2 || gxbp_collinear(cx, point, e->line[0], e->line[1]);
+}
+
+/* The halves of a divided edge: they meet in the point of its line and a plane between its ends. */
+static int gxbp_edge_is_divided(gxb_complex *cx, const gxb_edge *e) {
+    const gxb_edge *a = &cx->edges[e->child], *b = a + 1;
+    const gxb_cpoint *p = &cx->points[a->v[1]];
+    if (a->v[0] != e->v[0] || b->v[1] != e->v[1] || a->v[1] != b->v[0]) return 0;
+    if (a->explicit_line != e->explicit_line || b->explicit_line != e->explicit_line) return 0;
+    if (memcmp(a->line, e->line, sizeof e->line) != 0 || memcmp(b->line, e->line, sizeof e->line) != 0) return 0;
+    if (p->kind != (e->explicit_line ? GXB_LINE_PLANE : GXB_THREE_PLANES) || p->def[0] != e->line[0] || p->def[1] != e->line[1]) return 0;
+    return gxb_complex_side(cx, e->v[0], p->def[2]) * gxb_complex_side(cx, e->v[1], p->def[2]) < 0;
+}
+
+/* depth: of each edge in its tree */
+static void gxbp_check_edges(gxb_complex *cx, gxb_stream *s, const uint32_t *depth) {
+    uint32_t i;
+    for (i = 0; i < cx->edge_count && s->result == GX_OK; i++) {
+        const gxb_edge *e = &cx->edges[i];
+        if (depth[i] == 0) {
+            gxbp_require_true(s, e->explicit_line ? !gxbp_same_place(cx, e->line[0], e->line[1]) : gxbp_planes_cross(cx, e->line[0], e->line[1]));
+            gxbp_require_true(s, gxbp_on_line(cx, e->v[0], e) && gxbp_on_line(cx, e->v[1], e));
+        }
+        if (e->child != GXB_NONE && s->result == GX_OK) gxbp_require_true(s, gxbp_edge_is_divided(cx, e));
+    }
+    for (i = 0; i < 6 * cx->element_count && s->result == GX_OK; i++) {
+        const uint32_t edge = cx->mesh_edge[cx->element_edges[i]], *node = cx->elements + 4 * (size_t)(i / 6);
+        const uint32_t a = node[gxbp_edge_nodes[i % 6][0]], b = node[gxbp_edge_nodes[i % 6][1]];
+        const gxb_edge *e = &cx->edges[edge == GXB_NONE ? 0 : edge];
+        if (edge == GXB_NONE) continue;
+        gxbp_require_true(s, depth[edge] == 0 && e->explicit_line && e->line[0] == (a < b ? a : b) && e->line[1] == (a < b ? b : a) &&
+                             memcmp(e->v, e->line, sizeof e->v) == 0);
+    }
+}
+
+/* --- facets --- */
+
+/* What the checks work with; one block of words */
+typedef struct gxbp_checker {
+    gxb_complex *cx;
+    gxb_stream *s;
+    uint32_t *edge_mark;        /* 2 x edge_count: round in which the edge was met, in this direction */
+    uint32_t *border;           /* 2 x edge_count: round of the leaf or face at whose facets it was met */
+    uint32_t *facet_mark;       /* 2 x facet_count: the leaf on this side has it */
+    uint32_t *edge;             /* edge_count: of the facet at work, undivided and signed */
+    uint32_t *corner;           /* edge_count: indices of those at which its line changes */
+    uint32_t *facet;            /* facet_count: undivided ones of the leaf or face at work */
+    uint32_t *point;            /* point_count: of the leaf at work */
+    uint32_t *edge_depth, *facet_depth, *node_depth;
+    uint32_t *node_up, *leaf_up;/* 2 x node above + side; GXB_NONE: it is a root */
+    uint32_t *node_element;
+    uint32_t count, corners, facets, points, round, loose;      /* loose: edges in border without their opposite */
+} gxbp_checker;
+
+/* Appends the pieces of a signed edge; none may come twice in a facet. */
+static void gxbp_collect_edges(gxbp_checker *c, uint32_t signed_edge) {
+    const uint32_t child = c->cx->edges[signed_edge >> 1].child, back = signed_edge & 1;
+    if (c->s->result != GX_OK) return;
+    if (child != GXB_NONE) {
+        gxbp_collect_edges(c, (child + back) << 1 | back);
+        gxbp_collect_edges(c, (child + 1 - back) << 1 | back);
+        return;
+    }
+    gxbp_require_true(c->s, c->edge_mark[signed_edge] != c->round && c->edge_mark[signed_edge ^ 1] != c->round);
+    c->edge_mark[signed_edge] = c->round;
+    if (c->s->result == GX_OK) c->edge[c->count++] = signed_edge;
+}
+
+static void gxbp_collect_facet(gxbp_checker *c, uint32_t facet) {
+    const gxb_facet *f = &c->cx->facets[facet];
+    uint32_t i;
+    c->count = 0;
+    c->round++;
+    for (i = 0; i < f->loop_count && c->s->result == GX_OK; i++) gxbp_collect_edges(c, c->cx->pool[f->loop + i]);
+}
+
+static int gxbp_same_carrier(const gxb_complex *cx, uint32_t a, uint32_t b) {
+    const gxb_edge *e = &cx->edges[a >> 1], *f = &cx->edges[b >> 1];
+    return e->explicit_line == f->explicit_line && memcmp(e->line, f->line, sizeof e->line) == 0;
+}
+
+/* Edges first ... end-1 (cyclic) have one line: the corners lie to its left or on it, one does not lie on it, and every edge goes
+   the same way along it. */
+static int gxbp_side_is_convex(gxbp_checker *c, uint32_t plane, uint32_t first, uint32_t end) {
+    gxb_complex *cx = c->cx;
+    uint32_t i, apex = GXB_NONE, a = gxbp_edge_start(cx, c->edge[first]), b = gxbp_edge_start(cx, c->edge[end]);
+    for (i = 0; i < c->corners; i++) {
+        const uint32_t point = gxbp_edge_start(cx, c->edge[c->corner[i]]);
+        const int turn = point == a || point == b ? 0 : gxb_complex_turn(cx, a, b, point, plane);
+        if (turn < 0) return 0;
+        if (turn > 0) apex = point;
+    }
+    if (apex == GXB_NONE) return 0;
+    for (i = first; i != end; i = (i + 1) % c->count) {
+        a = gxbp_edge_start(cx, c->edge[i]); b = gxbp_edge_start(cx, c->edge[(i + 1) % c->count]);
+        if (gxb_complex_turn(cx, a, b, apex, plane) <= 0) return 0;
+    }
+    return 1;
+}
+
+/* A convex polygon in its plane, counter-clockwise, each point once. */
+static void gxbp_check_polygon(gxbp_checker *c, uint32_t facet) {
+    gxb_complex *cx = c->cx;
+    const uint32_t plane = cx->facets[facet].plane;
+    uint32_t i;
+    gxbp_collect_facet(c, facet);
+    gxbp_require_true(c->s, c->count >= 3);
+    if (c->s->result != GX_OK) return;
+    c->corners = 0;
+    for (i = 0; i < c->count; i++) {
+        const uint32_t e = c->edge[i], next = c->edge[(i + 1) % c->count], start = gxbp_edge_start(cx, e);
+        gxbp_require_true(c->s, cx->edges[e >> 1].v[1 - (e & 1)] == gxbp_edge_start(cx, next) && cx->points[start].scratch != c->round &&
+                                gxb_complex_side(cx, start, plane) == 0);
+        cx->points[start].scratch = c->round;
+        if (!gxbp_same_carrier(cx, c->edge[(i + c->count - 1) % c->count], e)) c->corner[c->corners++] = i;
+    }
+    gxbp_require_true(c->s, c->corners >= 3);
+    for (i = 0; i < c->corners && c->s->result == GX_OK; i++)
+        gxbp_require_true(c->s, gxbp_side_is_convex(c, plane, c->corner[i], c->corner[(i + 1) % c->corners]));
+}
+
+/* A facet's leaves are one element's, or those of its face's two elements. */
+static int gxbp_facet_is_between(const gxb_complex *cx, const gxb_facet *f) {
+    int k;
+    if (f->face == GXB_NONE)
+        return f->leaf[0] != GXB_NONE && f->leaf[1] != GXB_NONE && cx->leaves[f->leaf[0]].element == cx->leaves[f->leaf[1]].element;
+    for (k = 0; k < 2; k++) {
+        const uint32_t element = cx->face_elements[2 * f->face + (uint32_t)k];
+        if (element == GXB_NONE ? f->leaf[k] != GXB_NONE : f->leaf[k] == GXB_NONE || cx->leaves[f->leaf[k]].element != element) return 0;
+    }
+    return 1;
+}
+
+static void gxbp_check_facets(gxbp_checker *c) {
+    gxb_complex *cx = c->cx;
+    uint32_t i;
+    for (i = 0; i < cx->facet_count && c->s->result == GX_OK; i++) {
+        const gxb_facet *f = &cx->facets[i], *half = f->child == GXB_NONE ? f : &cx->facets[f->child];
+        gxbp_require_true(c->s, half[0].plane == f->plane && half[0].face == f->face &&
+                                (f->child == GXB_NONE || (half[1].plane == f->plane && half[1].face == f->face)));
+        if (f->face != GXB_NONE && c->facet_depth[i] == 0) gxbp_require_true(c->s, cx->face_facet[f->face] == i);
+        if (f->child != GXB_NONE || c->s->result != GX_OK) continue;
+        gxbp_require_true(c->s, gxbp_facet_is_between(cx, f));
+        if (c->s->result == GX_OK) gxbp_check_polygon(c, i);
+    }
+}
+
+/* Collects the facets into which one was divided; those of a leaf's list must be its own, each listed once. */
+static void gxbp_collect_facets(gxbp_checker *c, uint32_t facet, uint32_t leaf) {
+    const gxb_facet *f = &c->cx->facets[facet];
+    if (c->s->result != GX_OK) return;
+    if (f->child != GXB_NONE) {
+        gxbp_collect_facets(c, f->child, leaf);
+        gxbp_collect_facets(c, f->child + 1, leaf);
+        return;
+    }
+    if (leaf != GXB_NONE) {
+        const uint32_t side = f->leaf[0] == leaf ? 0 : 1;
+        gxbp_require_true(c->s, f->leaf[side] == leaf && !c->facet_mark[2 * facet + side]);
+        c->facet_mark[2 * facet + side] = 1;
+    }
+    if (c->s->result == GX_OK) c->facet[c->facets++] = facet;
+}
+
+/* Adds a facet's edges (flip 1: walked backwards) to the border; no edge may come twice in one direction. */
+static void gxbp_add_border(gxbp_checker *c, uint32_t facet, uint32_t flip, uint32_t round) {
+    uint32_t i;
+    gxbp_collect_facet(c, facet);
+    for (i = 0; i < c->count && c->s->result == GX_OK; i++) {
+        const uint32_t e = c->edge[i] ^ flip;
+        gxbp_require_true(c->s, c->border[e] != round);
+        c->border[e] = round;
+        if (c->border[e ^ 1] == round) c->loose--;
+        else c->loose++;
+    }
+}
+
+/* --- mesh faces: their facets cover them once, up to the pieces of their mesh edges --- */
+
+/* Are all pieces of the signed edge on the border? Returns how many there are. */
+static uint32_t gxbp_border_pieces(gxbp_checker *c, uint32_t signed_edge, uint32_t round) {
+    const uint32_t child = c->cx->edges[signed_edge >> 1].child, back = signed_edge & 1;
+    if (child != GXB_NONE)
+        return gxbp_border_pieces(c, child << 1 | back, round) + gxbp_border_pieces(c, (child + 1) << 1 | back, round);
+    gxbp_require_true(c->s, c->border[signed_edge] == round && c->border[signed_edge ^ 1] != round);
+    return 1;
+}
+
+/* Element's face k: nodes a < b < c are its plane, and its border runs from a to b to c. */
+static void gxbp_check_face(gxbp_checker *c, uint32_t element, uint32_t k) {
+    gxb_complex *cx = c->cx;
+    const uint32_t *node = cx->elements + 4 * (size_t)element, root = cx->face_facet[cx->element_faces[4 * (size_t)element + k]];
+    uint32_t local[3], n[3], i, j, pieces = 0, round;
+    const gxb_cplane *plane;
+    if (root == GXB_NONE) return;
+    plane = &cx->planes[cx->facets[root].plane];
+    for (j = 0; j < 3; j++) n[j] = node[gxbp_face_nodes[k][j]];
+    gxbp_sort3(n);
+    for (j = 0; j < 3; j++) for (i = 0; i < 4; i++) if (node[i] == n[j]) local[j] = i;
+    gxbp_require_true(c->s, c->facet_depth[root] == 0 && cx->facets[root].face == cx->element_faces[4 * (size_t)element + k] &&
+                            !plane->along_axis && memcmp(plane->def, n, sizeof n) == 0);
+    c->facets = c->loose = 0;
+    round = ++c->round;
+    gxbp_collect_facets(c, root, GXB_NONE);
+    for (i = 0; i < c->facets && c->s->result == GX_OK; i++) gxbp_add_border(c, c->facet[i], 0, round);
+    for (j = 0; j < 3 && c->s->result == GX_OK; j++) {
+        const uint32_t edge = cx->mesh_edge[cx->element_edges[6 * (size_t)element + gxbp_local_edge(local[j], local[(j + 1) % 3])]];
+        gxbp_require_true(c->s, edge != GXB_NONE);
+        if (c->s->result == GX_OK) pieces += gxbp_border_pieces(c, edge << 1 | (j == 2 ? 1u : 0u), round);
+    }
+    gxbp_require_true(c->s, pieces == c->loose);
+}
+
+/* --- the trees of the elements --- */
+
+#define GXBP_UNSEEN (GXB_NONE - 1)
+
+static void gxbp_hang(gxbp_checker *c, uint32_t reference, uint32_t up, uint32_t element, uint32_t depth) {
+    const uint32_t index = reference >> 1, count = reference & 1 ? c->cx->tree_count : c->cx->leaf_count;
+    uint32_t *from = reference & 1 ? c->node_up : c->leaf_up;
+    gxbp_require_true(c->s, index < count && from[index < count ? index : 0] == GXBP_UNSEEN);
+    if (c->s->result != GX_OK) return;
+    from[index] = up;
+    if (!(reference & 1)) { gxbp_require_true(c->s, c->cx->leaves[index].element == element); return; }
+    c->node_element[index] = element;
+    c->node_depth[index] = depth;
+    if (depth > GXBP_DEPTH) gxbp_require(c->s, GX_ERROR_LIMIT);
+}
+
+/* A node stands behind the one above it. */
+static void gxbp_check_tree(gxbp_checker *c) {
+    gxb_complex *cx = c->cx;
+    uint32_t i, k;
+    for (i = 0; i < cx->tree_count; i++) c->node_up[i] = GXBP_UNSEEN;
+    for (i = 0; i < cx->leaf_count; i++) c->leaf_up[i] = GXBP_UNSEEN;
+    if (cx->tree_count == 0) for (i = 0; i < cx->element_count; i++) gxbp_require_true(c->s, !(cx->root[i] & 1));
+    for (i = 0; i < cx->element_count && c->s->result == GX_OK; i++) gxbp_hang(c, cx->root[i], GXB_NONE, i, 1);
+    for (i = 0; i < cx->tree_count && c->s->result == GX_OK; i++) {
+        const gxb_node *n = &cx->nodes[i];
+        gxbp_require_true(c->s, c->node_up[i] != GXBP_UNSEEN && n->plane < cx->plane_count && !cx->planes[n->plane].along_axis);
+        for (k = 0; k < 2 && c->s->result == GX_OK; k++) {
+            gxbp_require_true(c->s, !(n->child[k] & 1) || n->child[k] >> 1 > i);
+            if (c->s->result == GX_OK) gxbp_hang(c, n->child[k], 2 * i + k, c->node_element[i], c->node_depth[i] + 1);
+        }
+    }
+    for (i = 0; i < cx->leaf_count; i++) gxbp_require_true(c->s, c->leaf_up[i] != GXBP_UNSEEN);
+}
+
+/* --- leaves --- */
+
+/* Do the leaf's points lie on one side of the plane (1: in front, -1: behind)? *off: one is not in it. */
+static int gxbp_lies_beside(gxbp_checker *c, uint32_t plane, int side, int *off) {
+    uint32_t i;
+    *off = 0;
+    c->cx->stamp[0]++;
+    for (i = 0; i < c->points; i++) {
+        const int sign = gxbp_sign(c->cx, c->point[i], plane, 0) * side;
+        if (sign < 0) return 0;
+        *off |= sign;
+    }
+    return 1;
+}
+
+/* Is the facet's plane that of a node above the leaf, which lies on its side as it does on the facet's? */
+static int gxbp_is_above(const gxbp_checker *c, uint32_t leaf, const gxb_facet *f) {
+    const uint32_t side = f->leaf[0] == leaf ? 0 : 1;
+    uint32_t up;
+    for (up = c->leaf_up[leaf]; up != GXB_NONE; up = c->node_up[up >> 1])
+        if (c->cx->nodes[up >> 1].plane == f->plane && (up & 1) == side) return 1;
+    return 0;
+}
+
+static void gxbp_collect_points(gxbp_checker *c, uint32_t round) {
+    uint32_t i;
+    for (i = 0; i < c->count; i++) {
+        const uint32_t point = gxbp_edge_start(c->cx, c->edge[i]);
+        if (c->cx->points[point].scratch == round) continue;
+        c->cx->points[point].scratch = round;
+        c->point[c->points++] = point;
+    }
+}
+
+/* A leaf that has been opened: closed, convex, and all of what the nodes above it and its element's faces leave. */
+static void gxbp_check_open_leaf(gxbp_checker *c, uint32_t leaf) {
+    gxb_complex *cx = c->cx;
+    const gxb_leaf l = cx->leaves[leaf];
+    const uint32_t round = ++c->round;
+    uint32_t i, up;
+    int off;
+    c->facets = c->loose = c->points = 0;
+    for (i = 0; i < l.facet_count && c->s->result == GX_OK; i++) gxbp_collect_facets(c, cx->pool[l.facets + i], leaf);
+    for (i = 0; i < c->facets && c->s->result == GX_OK; i++) {
+        gxbp_add_border(c, c->facet[i], cx->facets[c->facet[i]].leaf[0] == leaf ? 1 : 0, round);
+        gxbp_collect_points(c, round);
+    }
+    gxbp_require_true(c->s, c->loose == 0);
+    for (i = 0; i < c->facets && c->s->result == GX_OK; i++) {
+        const gxb_facet *f = &cx->facets[c->facet[i]];
+        gxbp_require_true(c->s, gxbp_lies_beside(c, f->plane, f->leaf[0] == leaf ? 1 : -1, &off) && off);
+        gxbp_require_true(c->s, f->face != GXB_NONE || gxbp_is_above(c, leaf, f));
+    }
+    for (i = 0; i < 4 && c->s->result == GX_OK; i++) {
+        const uint32_t face = cx->element_faces[4 * (size_t)l.element + i];
+        gxbp_require_true(c->s, cx->face_facet[face] != GXB_NONE);
+        if (c->s->result == GX_OK)
+            gxbp_require_true(c->s, gxbp_lies_beside(c, gxbp_face_plane(cx, l.element, i), cx->face_elements[2 * face] == l.element ? 1 : -1, &off));
+    }
+    for (up = c->leaf_up[leaf]; up != GXB_NONE && c->s->result == GX_OK; up = c->node_up[up >> 1])
+        gxbp_require_true(c->s, gxbp_lies_beside(c, cx->nodes[up >> 1].plane, up & 1 ? -1 : 1, &off));
+}
+
+/* Both leaves of a facet list it, but for those of elements that nothing has opened. */
+static void gxbp_check_leaves(gxbp_checker *c) {
+    gxb_complex *cx = c->cx;
+    uint32_t i, k;
+    for (i = 0; i < cx->leaf_count && c->s->result == GX_OK; i++) {
+        if (cx->leaves[i].facet_count > 0) gxbp_check_open_leaf(c, i);
+        else gxbp_require_true(c->s, cx->root[i] == 2 * i);
+    }
+    for (i = 0; i < cx->facet_count && c->s->result == GX_OK; i++) for (k = 0; k < 2; k++) {
+        const gxb_facet *f = &cx->facets[i];
+        if (f->child != GXB_NONE || f->leaf[k] == GXB_NONE) continue;
+        gxbp_require_true(c->s, cx->leaves[f->leaf[k]].facet_count > 0 ? c->facet_mark[2 * i + k] != 0 : f->face != GXB_NONE);
+    }
+}
+
+static void gxbp_run_checks(gxbp_checker *c) {
+    gxb_complex *cx = c->cx;
+    uint32_t i;
+    gxbp_check_indices(cx, c->s);
+    gxbp_check_trees(c->s, cx->edge_count > 0 ? &cx->edges->child : NULL, sizeof *cx->edges, cx->edge_count, c->edge_depth);
+    gxbp_check_trees(c->s, cx->facet_count > 0 ? &cx->facets->child : NULL, sizeof *cx->facets, cx->facet_count, c->facet_depth);
+    if (c->s->result == GX_OK) gxbp_check_tree(c);
+    if (c->s->result == GX_OK) gxbp_check_edges(cx, c->s, c->edge_depth);
+    if (c->s->result == GX_OK) gxbp_check_facets(c);
+    for (i = 0; i < 4 * cx->element_count && c->s->result == GX_OK; i++) gxbp_check_face(c, i / 4, i % 4);
+    if (c->s->result == GX_OK) gxbp_check_leaves(c);
+}
+
+static void gxbp_check(gxb_complex *cx, gxb_stream *s) {
+    const size_t e = cx->edge_count, f = cx->facet_count, n = cx->tree_count, l = cx->leaf_count;
+    const size_t words = 7 * e + 4 * f + cx->point_count + 3 * n + l + 1;
+    gxbp_checker c;
+    uint32_t *block;
+    memset(&c, 0, sizeof c);
+    if (words > SIZE_MAX / sizeof *block) { gxbp_require(s, GX_ERROR_LIMIT); return; }
+    block = (uint32_t *)gxbp_allocate(&cx->allocator, words * sizeof *block);
+    if (block == NULL) { gxbp_require(s, GX_ERROR_MEMORY); return; }
+    memset(block, 0, words * sizeof *block);
+    c.cx = cx; c.s = s;
+    c.edge_mark = block; c.border = c.edge_mark + 2 * e; c.edge = c.border + 2 * e; c.corner = c.edge + e; c.edge_depth = c.corner + e;
+    c.facet_mark = c.edge_depth + e; c.facet = c.facet_mark + 2 * f; c.facet_depth = c.facet + f;
+    c.node_depth = c.facet_depth + f; c.node_up = c.node_depth + n; c.node_element = c.node_up + n;
+    c.leaf_up = c.node_element + n; c.point = c.leaf_up + l;
+    gxbp_run_checks(&c);
+    gxbp_release(&cx->allocator, block, words * sizeof *block);
 }
 
 #ifdef __cplusplus

@@ -95,7 +95,9 @@ typedef enum gx_result {
     GX_ERROR_NOT_CLOSED,    /* a solid's surface has a boundary, or its triangles are not oriented alike */
     GX_ERROR_LIMIT,         /* more objects than 32-bit indices can name, or a caller's limit is reached */
     GX_ERROR_DIVERGED,      /* a time step found no finite state of lower energy */
-    GX_ERROR_FREE           /* a static balance is asked of a piece that nothing holds */
+    GX_ERROR_FREE,          /* a static balance is asked of a piece that nothing holds */
+    GX_ERROR_FORMAT,        /* not a saved body, or one of another version or another kind of machine */
+    GX_ERROR_DAMAGED        /* a saved body is cut short, or what it says cannot be */
 } gx_result;
 
 /* What went wrong, and where: index of the node, element, triangle or copy concerned. */

@@ -116,7 +116,9 @@ typedef enum gx_result {
     GX_ERROR_NOT_CLOSED,    /* a solid's surface has a boundary, or its triangles are not oriented alike */
     GX_ERROR_LIMIT,         /* more objects than 32-bit indices can name, or a caller's limit is reached */
     GX_ERROR_DIVERGED,      /* a time step found no finite state of lower energy */
-    GX_ERROR_FREE           /* a static balance is asked of a piece that nothing holds */
+    GX_ERROR_FREE,          /* a static balance is asked of a piece that nothing holds */
+    GX_ERROR_FORMAT,        /* not a saved body, or one of another version or another kind of machine */
+    GX_ERROR_DAMAGED        /* a saved body is cut short, or what it says cannot be */
 } gx_result;
 
 /* What went wrong, and where: index of the node, element, triangle or copy concerned. */
@@ -313,6 +315,12 @@ typedef struct gxs_step_report {
     double seconds_solve;       /* in conjugate gradients; all 0 without a clock */
 } gxs_step_report;
 
+/* What acted on all pieces in a step: a change of it wakes those that sleep. */
+typedef struct gxs_scene {
+    double gravity[3];          /* m/s2 */
+    uint64_t planes, forces, springs; /* hashes of what was given */
+} gxs_scene;
+
 /* A model in the solver's own form, and the workspace of its steps; one call at a time. */
 typedef struct gxs_solver gxs_solver;
 
@@ -333,6 +341,11 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
 /* What the next steps move, after each cut and each change of material or of what is held. All is copied into the solver's own
  * form. GX_ERROR_MEMORY is possible; on any error the model before stays. */
 GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *model, gx_failure *failure);
+
+/* For whoever saves a state and goes on from it later: the scene of the last step, and a solver as if its model had just been set
+ * after a step in that scene. Two solvers so resumed with the same model, scene and states take the same steps, bit by bit. */
+GXFEM_API void gxs_solver_scene(const gxs_solver *solver, gxs_scene *scene);
+GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene);
 
 GXFEM_API gx_result gxs_solver_create(const gxs_solver_desc *desc /* or NULL */, gxs_solver **solver);
 GXFEM_API void gxs_solver_destroy(gxs_solver *solver); /* NULL is allowed */
@@ -733,17 +746,11 @@ typedef struct gxsp_term {
     int assembled; /* the assembled matrix has it */
 } gxsp_term;
 
-/* What acts on all pieces: a change wakes those that sleep */
-typedef struct gxsp_scene {
-    double gravity[3];
-    uint64_t planes, forces, springs; /* hashes; 1: none */
-} gxsp_scene;
-
 /* What the solver keeps from model to model */
 typedef struct gxsp_lasting {
     gxsp_term *term;        /* of the present linearisation */
     size_t count, capacity;
-    gxsp_scene scene;       /* of the step before */
+    gxs_scene scene;       /* of the step before */
 } gxsp_lasting;
 
 /* A model in the solver's form, with all that a step works with. n: copy_count. Vectors are n x 3 unless said. */
@@ -825,7 +832,7 @@ typedef struct gxsp_problem {
     double cg_tolerance;
     double energies[3];     /* at current: elastic with springs and contact, kinetic, size of their terms; J */
     double start;           /* on the clock */
-    gxsp_scene scene;
+    gxs_scene scene;
     int exact;              /* the linearisation is not projected */
     int indefinite;         /* conjugate gradients met negative curvature */
     int projected_only;     /* the exact one has proved indefinite in this step */
@@ -4692,9 +4699,9 @@ static uint64_t gxsp_hash_forces(gxsp_system *system, const double *forces)
     return all;
 }
 
-static gxsp_scene gxsp_scene_make(gxsp_system *system, const gxs_step_desc *step)
+static gxs_scene gxsp_scene_make(gxsp_system *system, const gxs_step_desc *step)
 {
-    gxsp_scene scene;
+    gxs_scene scene;
     size_t i;
     memcpy(scene.gravity, step->gravity, sizeof scene.gravity);
     scene.planes = 1;
@@ -4723,7 +4730,7 @@ static void gxsp_wake_touched(gxsp_problem *problem, const double *displacement,
     static const double zero[3] = {0, 0, 0};
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
-    const gxsp_scene *before = &system->lasting->scene, *now = &problem->scene;
+    const gxs_scene *before = &system->lasting->scene, *now = &problem->scene;
     const int springs = now->springs != before->springs, forces = now->forces != before->forces, known = system->still_known;
     const int all = gxsp_differs(now->gravity, before->gravity) || now->planes != before->planes || (!known && (springs || forces));
     size_t i;
@@ -5402,6 +5409,33 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
     gxsp_system_destroy(solver->system);
     solver->system = system;
     return GX_OK;
+}
+
+GXFEM_API void gxs_solver_scene(const gxs_solver *solver, gxs_scene *scene)
+{
+    *scene = solver->lasting.scene;
+}
+
+/* All that one step leaves to the next goes; what depends on the model alone stays. */
+GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene)
+{
+    gxsp_system *system = solver->system;
+    uint32_t p;
+    solver->lasting.scene = *scene;
+    if (!system)
+        return;
+    system->still_known = system->base_known = system->guess_known = 0;
+    system->omega = 0;
+    system->coarse_rate = -1;
+    system->coarse_stiffness = 0;
+    system->coarse_fresh = system->coarse_worn = 0;
+    system->usual_iterations = 0;
+    for (p = 0; p < system->piece_count; ++p) {
+        gxsp_piece *piece = &system->pieces[p];
+        piece->state &= ~(GXSP_TOUCHED | GXSP_ASLEEP);
+        piece->forces[0] = piece->forces[1] = 0;
+        piece->sprung[0] = piece->sprung[1] = 0;
+    }
 }
 
 /* Room for the terms of a step */
