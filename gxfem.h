@@ -39,8 +39,9 @@
  *     >>step       held regions, time step
  *     >>skin       the visual surface, rays
  *     >>hash       of the topology, of the state
+ *     >>save       save and load, clone and restore
  *     then, under GXFEM_IMPLEMENTATION: >>memory >>tree >>create >>transaction >>surfaces >>arrange >>solids >>links >>cells
- *     >>components >>integrals >>commit >>regions >>fragments >>parts >>boundary
+ *     >>components >>integrals >>commit >>regions >>fragments >>parts >>bytes >>boundary
  *
  * Words. Wall: a piece of a sheet inside the body or on an element face. Cell: a connected piece of one element after cutting
  * (GXFEM Eq. 20). Link: a piece of the face between two elements that no wall covers. Copy: a node's displacement for one
@@ -330,6 +331,28 @@ GXFEM_API uint64_t gx_body_topology_hash(gx_body *body, gx_result *result);   /*
 GXFEM_API uint64_t gx_body_state_hash(const gx_body *body);                   /* of all that a failed call must leave alone */
 GXFEM_API const char *gx_result_text(gx_result result);
 
+/* >>save ----------------------------------------------------------------------------------------------------------------- */
+
+/* A body as bytes or as another body, with all that it is: mesh, materials, cuts, displacement, velocity, rest times, the history of
+   BDF2, what is held, ids of fragments and what has changed. Further cuts then give the same cells, and further steps the same bits in
+   the same program; for that, saving, cloning and restoring let the solvers of all bodies concerned start anew (the next step
+   makes its preconditioner and takes no guess from the last), but what sleeps goes on sleeping. Pointers are not saved. */
+
+/* *size: how many bytes it takes. memory NULL: nothing is written. Fields have fixed widths, in the machine's byte order, which the
+   bytes tell. Errors: ARGUMENT, LIMIT (capacity is below *size). */
+GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, size_t *size);
+/* Whatever the bytes are, they do no harm: a checksum tells damage by accident, and all that a body relies on is checked. Of desc
+   (NULL: all zero) allocator, clock and jobs are read, and, for each saved material of kind GXS_CUSTOM, energy and user of the
+   material with its number. Errors: ARGUMENT (index: a material without its energy), MEMORY, LIMIT, FORMAT, DAMAGED (index: bytes
+   read until then). */
+GXFEM_API gx_result gx_body_load(const void *memory, size_t size, const gx_body_desc *desc, gx_body **body, gx_failure *failure /* or NULL */);
+/* Another body of the same state, with the same allocator, clock, jobs and energies. Errors: ARGUMENT, MEMORY, LIMIT. */
+GXFEM_API gx_result gx_body_clone(gx_body *body, gx_body **clone);
+/* The body becomes what from is now: to go back to a clone, or to bring a clone up to date. Where neither has been cut since they were
+   the same, only the state is copied, and neither cells nor the solver's model are made anew; else arrays of the view end, as by a
+   cut. Allocator, clock and jobs stay the body's own. Errors: ARGUMENT, MEMORY, LIMIT; the body is then as it was. */
+GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from);
+
 #ifdef __cplusplus
 }
 #endif
@@ -451,7 +474,9 @@ struct gx_body {
     double *history[4]; uint32_t history_capacity[4];   /* displacement and velocity a step ago, x 3, and room for those of now; from the
                                                            first BDF2 step on */
     double previous_dt;                                 /* s; 0: there was none */
-    gx_region *regions; uint32_t region_count;
+    gx_region *regions; uint32_t region_count, region_capacity;
+    gx_jobs jobs;
+    uint64_t past;                  /* hash of the mesh and of all cuts: bodies with the same one have the same cells and copies */
     uint32_t label_count;           /* cut triangles so far */
     uint32_t *copy_label; uint32_t copy_label_capacity;     /* copies: 2 x index of its fragment at the last look, + 1 where it was cut since */
     gxp_words fragment_ids, fragment_origins, fragment_changes, removed_ids;    /* as last looked at */
@@ -840,11 +865,11 @@ static gx_result gxp_allocate_tables(gx_body *body) {
            body->boxes && body->box_elements ? GX_OK : GX_ERROR_MEMORY;
 }
 
-static gx_result gxp_create_solver(gx_body *body, const gx_body_desc *desc) {
+static gx_result gxp_create_solver(gx_body *body) {
     gxs_solver_desc solver;
     memset(&solver, 0, sizeof solver);
     solver.allocator = body->allocator;
-    solver.jobs = desc->jobs;
+    solver.jobs = body->jobs;
     return gxs_solver_create(&solver, &body->solver);
 }
 
@@ -859,6 +884,8 @@ static void gxp_fill_materials(gx_body *body, const gx_body_desc *desc) {
 }
 
 static gx_result gxp_first_look(gx_body *body);     /* see >>fragments */
+static uint64_t gxp_hash_mesh(const gx_body *body); /* see >>bytes */
+static uint64_t gxp_hash_cut(uint64_t past, const gx_cut_desc *desc);
 
 static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc) {
     gx_result result = gxp_allocate_tables(body);
@@ -866,7 +893,7 @@ static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc) {
         body->texture = (float *)gxp_table(body, 2 * (size_t)body->node_count, sizeof(float));
         if (body->texture == NULL) result = GX_ERROR_MEMORY;
     }
-    if (result == GX_OK) result = gxp_create_solver(body, desc);
+    if (result == GX_OK) result = gxp_create_solver(body);
     if (result == GX_OK) result = gxp_reserve_cells(body, body->element_count);
     if (result == GX_OK) result = gxp_reserve(&body->allocator, &body->leaves, sizeof *body->leaves, 0, &body->leaf_capacity, body->element_count);
     if (result == GX_OK) result = gxp_reserve_copies(body, body->node_count);
@@ -881,6 +908,7 @@ static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc) {
     gxp_make_first_copies(body);
     gxp_build_boxes(body);
     body->model_stale = body->view_stale = 1;
+    body->past = gxp_hash_mesh(body);
     return gxp_first_look(body);
 }
 
@@ -924,6 +952,7 @@ GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **out, gx_f
     memset(body, 0, sizeof *body);
     body->allocator = desc->allocator;
     body->clock = desc->clock; body->clock_user = desc->clock_user;
+    body->jobs = desc->jobs;
     body->material_count = desc->materials != NULL ? (uint32_t)desc->material_count : 1;
     body->support_below = desc->support_below;
     mesh.positions = desc->positions; mesh.node_count = desc->node_count;
@@ -981,7 +1010,7 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     gxp_words_free(body, &body->fragment_changes);
     gxp_words_free(body, &body->removed_ids);
     gxp_release_model(body);
-    gxp_release(&a, body->regions, body->region_count * sizeof *body->regions);
+    gxp_release(&a, body->regions, body->region_capacity * sizeof *body->regions);
     gxp_release(&a, body->undo, body->undo_capacity * sizeof *body->undo);
     gxp_release(&a, body->pairs, body->pair_capacity * sizeof *body->pairs);
     gxp_release(&a, body->links, body->link_capacity * sizeof *body->links);
@@ -2410,13 +2439,19 @@ static void gxp_commit(gxp_cut *cut) {
     gx_body *body = cut->body;
     uint32_t i;
     for (i = 0; i < body->fresh.count; i++) gxp_touch_copies(body, &body->cells[body->fresh.data[i]]);
-    for (i = 0; i < body->touched.count; i++)   /* also what hung on removed cells by an edge or node only */
-        if (!body->cells[body->touched.data[i]].kept) gxp_touch_copies(body, &body->cells[body->touched.data[i]]);
+    for (i = 0; i < body->touched.count; i++) {
+        gxp_cell *cell = &body->cells[body->touched.data[i]];
+        if (cell->kept) continue;
+        gxp_touch_copies(body, cell);           /* also what hung on it by an edge or node only */
+        memset(cell->copies, 0xff, sizeof cell->copies);
+    }
+    for (i = 0; i < body->removed.count; i++) body->leaves[body->removed.data[i]].next = GXP_NONE;
     cut->report.removed_copies = body->dead.count;
     gxp_sort_unique(&body->dead);
     for (i = body->dead.count; i-- > 0;) gxp_drop_copy(body, body->dead.data[i]);
     gxb_complex_commit(body->complex);
     body->undo_count = 0;
+    body->past = gxp_hash_cut(body->past, cut->desc);
     body->held_stale = body->model_stale = body->view_stale = body->look_stale = 1;
 }
 
@@ -2673,22 +2708,23 @@ static gx_result gxp_update_held(gx_body *body) {
     return result;
 }
 
+static gx_result gxp_check_region(const gx_region *r) {
+    if (!gxp_is_finite(r->value)) return GX_ERROR_NOT_FINITE;
+    return r->axis > 2 || (r->side != 1 && r->side != -1) ? GX_ERROR_ARGUMENT : GX_OK;
+}
+
 GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t region_count) {
-    gx_region *copy = NULL;
+    gx_result result;
     size_t i;
     if (body == NULL || (region_count > 0 && regions == NULL)) return GX_ERROR_ARGUMENT;
     if (region_count > INT32_MAX) return GX_ERROR_LIMIT;
     for (i = 0; i < region_count; i++) {
-        if (!gxp_is_finite(regions[i].value)) return GX_ERROR_NOT_FINITE;
-        if (regions[i].axis > 2 || (regions[i].side != 1 && regions[i].side != -1)) return GX_ERROR_ARGUMENT;
+        result = gxp_check_region(&regions[i]);
+        if (result != GX_OK) return result;
     }
-    if (region_count > 0) {
-        copy = (gx_region *)gxp_allocate(&body->allocator, region_count * sizeof *copy);
-        if (copy == NULL) return GX_ERROR_MEMORY;
-        memcpy(copy, regions, region_count * sizeof *copy);
-    }
-    gxp_release(&body->allocator, body->regions, body->region_count * sizeof *body->regions);
-    body->regions = copy;
+    result = gxp_reserve(&body->allocator, &body->regions, sizeof *regions, 0, &body->region_capacity, region_count);
+    if (result != GX_OK) return result;
+    if (region_count > 0) memcpy(body->regions, regions, region_count * sizeof *regions);
     body->region_count = (uint32_t)region_count;
     body->held_stale = body->model_stale = 1;
     return GX_OK;
@@ -3319,6 +3355,576 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
     result = gxp_step(body, &step, report, failure);
     if (result == GX_OK && report != NULL) report->seconds = gxp_seconds(body) - start;
     return result;
+}
+
+/* >>bytes: save and load, clone and restore ---------------------------------------------------------------------------------------
+ *
+ * One stream of bytes does all four. A clone is written to memory and read back, without the checks; what the same functions write
+ * and read stands once, in gxp_pass_cells (topology, beside gxb_complex_save) and gxp_pass_state (all else).
+ */
+
+static uint64_t gxp_hash_doubles(uint64_t hash, const double *x, size_t count);     /* see hashes */
+
+static uint64_t gxp_hash_words(uint64_t hash, const uint32_t *words, size_t count) {
+    size_t i;
+    hash = gxp_mix(hash ^ count);
+    for (i = 0; i < count; i++) hash = gxp_mix(hash ^ words[i]);
+    return hash;
+}
+
+static uint64_t gxp_hash_mesh(const gx_body *body) {
+    const uint64_t hash = gxp_hash_doubles(gxp_mix(body->node_count), body->positions, 3 * (size_t)body->node_count);
+    return gxp_hash_doubles(gxp_hash_words(gxp_hash_words(hash, body->complex->elements, 4 * (size_t)body->element_count),
+                                           body->element_materials, body->element_count), &body->support_below, 1);
+}
+
+static uint64_t gxp_hash_cut(uint64_t past, const gx_cut_desc *desc) {
+    size_t i;
+    past = gxp_hash_words(past, desc->scope_fragments, desc->scope_fragment_count);
+    past = gxp_hash_doubles(gxp_hash_words(past, desc->scope_cells, desc->scope_cell_count), &desc->sever_below, 1);
+    for (i = 0; i < desc->surface_count; i++) {
+        const gx_surface *s = &desc->surfaces[i];
+        past = gxp_hash_doubles(gxp_mix(past ^ s->kind ^ (uint64_t)s->vertex_count << 8), s->vertices, 3 * s->vertex_count);
+        past = gxp_hash_words(past, s->triangles, 3 * s->triangle_count);
+    }
+    return past;
+}
+
+static void gxp_require(gxb_stream *s, gx_result result) { if (s->result == GX_OK) s->result = result; }
+static void gxp_require_true(gxb_stream *s, int holds) { if (!holds) gxp_require(s, GX_ERROR_DAMAGED); }
+static void gxp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, word, 1, sizeof *word); }
+
+/* --- head --- */
+
+#define GXP_SAVE_VERSION 1u     /* raised by every change of what follows */
+#define GXP_BYTE_ORDER 0x01020304u
+
+typedef struct gxp_head {
+    unsigned char magic[8];
+    uint32_t version, order;
+    double width;               /* -2.5: doubles are IEEE 754's */
+    uint64_t size, checksum;    /* of all; of what follows the head */
+} gxp_head;
+
+static const unsigned char gxp_magic[8] = {'g', 'x', 'f', 'e', 'm', '\r', '\n', 0x1a};    /* transfers that treat it as text show */
+
+static void gxp_pass_head(gxb_stream *s, gxp_head *head) {
+    gxb_stream_pass(s, head->magic, 8, 1);
+    gxp_pass_word(s, &head->version);
+    gxp_pass_word(s, &head->order);
+    gxb_stream_pass(s, &head->width, 1, sizeof head->width);
+    gxb_stream_pass(s, &head->size, 1, sizeof head->size);
+    gxb_stream_pass(s, &head->checksum, 1, sizeof head->checksum);
+}
+
+static gxp_head gxp_make_head(uint64_t size, uint64_t checksum) {
+    gxp_head head;
+    memcpy(head.magic, gxp_magic, sizeof head.magic);
+    head.version = GXP_SAVE_VERSION; head.order = GXP_BYTE_ORDER;
+    head.width = -2.5;
+    head.size = size; head.checksum = checksum;
+    return head;
+}
+
+static uint64_t gxp_checksum(const unsigned char *bytes, size_t count) {
+    uint64_t hash = gxp_mix(count), word;
+    for (; count >= sizeof word; count -= sizeof word, bytes += sizeof word) {
+        memcpy(&word, bytes, sizeof word);
+        hash = gxp_mix(hash ^ word);
+    }
+    word = 0;
+    memcpy(&word, bytes, count);
+    return gxp_mix(hash ^ word);
+}
+
+static gx_result gxp_check_head(gxb_stream *s) {
+    gxp_head head, own;
+    gxp_pass_head(s, &head);
+    own = gxp_make_head(head.size, head.checksum);
+    if (memcmp(head.magic, own.magic, sizeof own.magic) != 0 || head.version != own.version || head.order != own.order ||
+        memcmp(&head.width, &own.width, sizeof own.width) != 0) return GX_ERROR_FORMAT;
+    if (s->result != GX_OK || head.size != s->size) return GX_ERROR_DAMAGED;
+    return head.checksum == gxp_checksum(s->in + s->at, s->size - s->at) ? GX_OK : GX_ERROR_DAMAGED;
+}
+
+/* --- mesh and materials: what gx_body_create takes --- */
+
+static void gxp_pass_material(gxb_stream *s, gx_material *m) {
+    uint32_t kind = (uint32_t)m->elastic.kind;
+    gxp_pass_word(s, &kind);
+    gxp_require_true(s, kind <= (uint32_t)GXS_CUSTOM);
+    if (s->result == GX_OK) m->elastic.kind = (gxs_material_kind)kind;
+    gxb_stream_pass(s, &m->elastic.young, 1, sizeof(double));
+    gxb_stream_pass(s, &m->elastic.poisson, 1, sizeof(double));
+    gxb_stream_pass(s, &m->elastic.damping, 1, sizeof(double));
+    gxb_stream_pass(s, &m->density, 1, sizeof(double));
+}
+
+typedef struct gxp_mesh {
+    uint32_t node_count, element_count, material_count;
+    double support_below;
+    double *positions;
+    uint32_t *elements, *element_materials;
+    gx_material *materials;
+} gxp_mesh;
+
+static void gxp_pass_sizes(gxb_stream *s, gxp_mesh *mesh) {
+    gxp_pass_word(s, &mesh->node_count);
+    gxp_pass_word(s, &mesh->element_count);
+    gxp_pass_word(s, &mesh->material_count);
+    gxb_stream_pass(s, &mesh->support_below, 1, sizeof mesh->support_below);
+}
+
+static void gxp_pass_mesh(gxb_stream *s, gxp_mesh *mesh) {
+    uint32_t i;
+    gxb_stream_pass(s, mesh->positions, 3 * (size_t)mesh->node_count, sizeof(double));
+    gxb_stream_pass(s, mesh->elements, 4 * (size_t)mesh->element_count, sizeof(uint32_t));
+    gxb_stream_pass(s, mesh->element_materials, mesh->element_count, sizeof(uint32_t));
+    for (i = 0; i < mesh->material_count; i++) gxp_pass_material(s, &mesh->materials[i]);
+}
+
+static void gxp_save_mesh(gxb_stream *s, gx_body *body) {
+    gxp_mesh mesh;
+    mesh.node_count = body->node_count; mesh.element_count = body->element_count; mesh.material_count = body->material_count;
+    mesh.support_below = body->support_below;
+    mesh.positions = body->positions; mesh.elements = body->complex->elements;
+    mesh.element_materials = body->element_materials; mesh.materials = body->materials;
+    gxp_pass_sizes(s, &mesh);
+    gxp_pass_mesh(s, &mesh);
+}
+
+/* Energies can't be saved: they are given again. *material: the one that lacks its own */
+static gx_result gxp_give_energies(gxp_mesh *mesh, const gx_body_desc *desc, size_t *material) {
+    uint32_t i;
+    for (i = 0; i < mesh->material_count; i++) {
+        gxs_material *m = &mesh->materials[i].elastic;
+        if (m->kind != GXS_CUSTOM) continue;
+        *material = i;
+        if (desc->materials == NULL || i >= desc->material_count || desc->materials[i].elastic.energy == NULL) return GX_ERROR_ARGUMENT;
+        m->energy = desc->materials[i].elastic.energy;
+        m->user = desc->materials[i].elastic.user;
+    }
+    return GX_OK;
+}
+
+/* A body of the mesh, not cut yet. */
+static void gxp_create_again(gxb_stream *s, const gx_body_desc *given, gxp_mesh *mesh, gx_body **body, size_t *index) {
+    gx_body_desc desc;
+    gx_result result;
+    gxp_pass_mesh(s, mesh);
+    if (s->result != GX_OK) return;
+    gxp_require(s, gxp_give_energies(mesh, given, index));
+    if (s->result != GX_OK) return;
+    memset(&desc, 0, sizeof desc);
+    desc.allocator = given->allocator; desc.clock = given->clock; desc.clock_user = given->clock_user; desc.jobs = given->jobs;
+    desc.positions = mesh->positions; desc.node_count = mesh->node_count;
+    desc.elements = mesh->elements; desc.element_count = mesh->element_count;
+    desc.materials = mesh->materials; desc.material_count = mesh->material_count;
+    desc.element_materials = mesh->element_materials;
+    desc.support_below = mesh->support_below;
+    result = gx_body_create(&desc, body, NULL);
+    gxp_require(s, result == GX_OK || result == GX_ERROR_MEMORY || result == GX_ERROR_LIMIT ? result : GX_ERROR_DAMAGED);
+}
+
+static void gxp_load_mesh(gxb_stream *s, const gx_body_desc *desc, gx_body **body, size_t *index) {
+    const gx_allocator *a = &desc->allocator;
+    size_t positions, elements, element_materials, materials;
+    gxp_mesh mesh;
+    memset(&mesh, 0, sizeof mesh);
+    gxp_pass_sizes(s, &mesh);
+    gxb_stream_has(s, mesh.node_count, 3 * sizeof(double));
+    gxb_stream_has(s, mesh.element_count, 5 * sizeof(uint32_t));
+    gxb_stream_has(s, mesh.material_count, sizeof(uint32_t) + 4 * sizeof(double));
+    gxp_require_true(s, mesh.node_count > 0 && mesh.element_count > 0 && mesh.material_count > 0 && mesh.material_count <= INT32_MAX / sizeof(gx_material));
+    if (s->result != GX_OK) return;
+    positions = 3 * (size_t)mesh.node_count * sizeof(double); elements = 4 * (size_t)mesh.element_count * sizeof(uint32_t);
+    element_materials = elements / 4; materials = mesh.material_count * sizeof(gx_material);
+    mesh.positions = (double *)gxp_allocate(a, positions);
+    mesh.elements = (uint32_t *)gxp_allocate(a, elements);
+    mesh.element_materials = (uint32_t *)gxp_allocate(a, element_materials);
+    mesh.materials = (gx_material *)gxp_allocate(a, materials);
+    if (mesh.positions && mesh.elements && mesh.element_materials && mesh.materials) {
+        memset(mesh.materials, 0, materials);
+        gxp_create_again(s, desc, &mesh, body, index);
+    } else gxp_require(s, GX_ERROR_MEMORY);
+    gxp_release(a, mesh.positions, positions);
+    gxp_release(a, mesh.elements, elements);
+    gxp_release(a, mesh.element_materials, element_materials);
+    gxp_release(a, mesh.materials, materials);
+}
+
+/* --- topology: what cuts have made --- */
+
+static void gxp_pass_cells(gxb_stream *s, gx_body *body) {
+    uint32_t i;
+    for (i = 0; i < body->cell_count; i++) {
+        gxp_cell *c = &body->cells[i];
+        gxp_pass_word(s, &c->element);
+        gxb_stream_pass(s, c->copies, 4, sizeof *c->copies);
+        gxp_pass_word(s, &c->first_leaf);
+        gxp_pass_word(s, &c->next);
+        gxp_pass_word(s, &c->kept);
+        gxb_stream_pass(s, &c->volume, 1, sizeof c->volume);
+        gxb_stream_pass(s, c->mass, 10, sizeof *c->mass);
+    }
+    for (i = 0; i < body->leaf_count; i++) {
+        gxp_pass_word(s, &body->leaves[i].cell);
+        gxp_pass_word(s, &body->leaves[i].next);
+    }
+    gxb_stream_pass(s, body->copy_node, body->copy_count, sizeof *body->copy_node);
+    gxp_pass_word(s, &body->label_count);
+    gxb_stream_pass(s, &body->past, 1, sizeof body->past);
+}
+
+static void gxp_save_topology(gxb_stream *s, gx_body *body) {
+    gxb_complex_save(body->complex, s);
+    gxp_pass_word(s, &body->cell_count);
+    gxp_pass_word(s, &body->copy_count);
+    gxp_pass_cells(s, body);
+}
+
+/* Marks, one byte for each cell, leaf and copy: it has its place. */
+typedef struct gxp_places { unsigned char *cell, *leaf, *copy; } gxp_places;
+
+/* The cell's leaves are its own, kept, of its element and of no other cell; its copies are those of its element's nodes. */
+static void gxp_check_cell(gxb_stream *s, gx_body *body, uint32_t cell, const gxp_places *seen) {
+    gxp_cell *c = &body->cells[cell];
+    const uint32_t *node = body->complex->elements + 4 * (size_t)c->element;
+    uint32_t leaf, k;
+    gxp_require_true(s, c->kept <= 1 && (c->first_leaf != GXP_NONE) == (c->kept != 0));
+    for (leaf = c->first_leaf; leaf != GXP_NONE && s->result == GX_OK; leaf = body->leaves[leaf].next) {
+        gxp_require_true(s, leaf < body->leaf_count && !seen->leaf[leaf < body->leaf_count ? leaf : 0]);
+        if (s->result != GX_OK) return;
+        seen->leaf[leaf] = 1;
+        gxp_require_true(s, body->leaves[leaf].cell == cell && gxp_is_kept(body, leaf) && body->complex->leaves[leaf].element == c->element);
+    }
+    gxp_require_true(s, gxp_is_finite(c->volume) && c->volume >= 0);
+    for (k = 0; k < 10; k++) gxp_require_true(s, gxp_is_finite(c->mass[k]));
+    for (k = 0; k < 4 && s->result == GX_OK; k++) {
+        if (!c->kept) { gxp_require_true(s, c->copies[k] == GXP_NONE); continue; }
+        gxp_require_true(s, c->copies[k] < body->copy_count && body->copy_node[c->copies[k] < body->copy_count ? c->copies[k] : 0] == node[k]);
+        if (s->result == GX_OK) seen->copy[c->copies[k]] = 1;
+    }
+}
+
+/* Every cell is in its element's list once, every kept leaf in a kept cell, every copy in use. */
+static void gxp_check_lists(gxb_stream *s, gx_body *body, const gxp_places *seen) {
+    uint32_t e, i, cell;
+    for (e = 0; e < body->element_count; e++) for (cell = e; cell != GXP_NONE && s->result == GX_OK; cell = body->cells[cell].next) {
+        gxp_require_true(s, cell < body->cell_count && !seen->cell[cell < body->cell_count ? cell : 0]);
+        if (s->result != GX_OK) return;
+        seen->cell[cell] = 1;
+        gxp_require_true(s, body->cells[cell].element == e);
+        if (s->result == GX_OK) gxp_check_cell(s, body, cell, seen);
+    }
+    for (i = 0; i < body->cell_count; i++) gxp_require_true(s, seen->cell[i]);
+    for (i = 0; i < body->copy_count; i++) gxp_require_true(s, seen->copy[i]);
+    for (i = 0; i < body->leaf_count; i++) {
+        gxp_require_true(s, body->leaves[i].cell < body->cell_count && seen->leaf[i] == !body->complex->leaves[i].removed);
+        gxp_require_true(s, seen->leaf[i] || body->leaves[i].next == GXP_NONE);
+    }
+    for (i = 0; i < body->complex->label_count; i++) gxp_require_true(s, body->complex->labels[i].triangle < body->label_count);
+}
+
+static void gxp_check_topology(gxb_stream *s, gx_body *body) {
+    const size_t bytes = (size_t)body->cell_count + body->leaf_count + body->copy_count;
+    gxp_places seen;
+    seen.cell = (unsigned char *)gxp_allocate(&body->allocator, bytes);
+    if (seen.cell == NULL) { gxp_require(s, GX_ERROR_MEMORY); return; }
+    memset(seen.cell, 0, bytes);
+    seen.leaf = seen.cell + body->cell_count; seen.copy = seen.leaf + body->leaf_count;
+    gxp_check_lists(s, body, &seen);
+    gxp_release(&body->allocator, seen.cell, bytes);
+}
+
+static void gxp_load_topology(gxb_stream *s, gx_body *body, int trusted) {
+    const uint32_t leaves = gxb_complex_load(body->complex, s, trusted) == GX_OK ? body->complex->leaf_count : 0;
+    uint32_t cells, copies;
+    gxp_pass_word(s, &cells);
+    gxp_pass_word(s, &copies);
+    gxb_stream_has(s, cells, sizeof(uint32_t) * 8 + sizeof(double) * 11);
+    gxb_stream_has(s, copies, sizeof(uint32_t));
+    gxp_require_true(s, cells >= body->element_count && cells <= INT32_MAX && copies <= INT32_MAX);
+    if (s->result != GX_OK) return;
+    gxp_require(s, gxp_reserve_cells(body, cells - body->cell_count));
+    gxp_require(s, gxp_reserve(&body->allocator, &body->leaves, sizeof *body->leaves, body->leaf_count, &body->leaf_capacity, leaves - body->leaf_count));
+    body->copy_count = 0;
+    gxp_require(s, gxp_reserve_copies(body, copies));
+    if (s->result != GX_OK) return;
+    memset(body->leaves, 0, leaves * sizeof *body->leaves);
+    if (copies > 0) memset(body->held, 0, copies);
+    body->cell_count = cells; body->leaf_count = leaves; body->copy_count = copies;
+    gxp_pass_cells(s, body);
+    if (s->result == GX_OK && !trusted) gxp_check_topology(s, body);
+    body->held_stale = body->model_stale = body->view_stale = 1;
+}
+
+/* --- state: all else. Whoever adds some to gx_body adds it to gxp_pass_state, and to gxp_state_room where it takes room --- */
+
+typedef struct gxp_state_counts { uint32_t copies, regions, fragments, removed, history; } gxp_state_counts;
+
+static void gxp_pass_state_counts(gxb_stream *s, gxp_state_counts *n) {
+    gxp_pass_word(s, &n->copies);
+    gxp_pass_word(s, &n->regions);
+    gxp_pass_word(s, &n->fragments);
+    gxp_pass_word(s, &n->removed);
+    gxp_pass_word(s, &n->history);
+}
+
+static gxp_state_counts gxp_count_state(const gx_body *body) {
+    gxp_state_counts n;
+    n.copies = body->copy_count; n.regions = body->region_count;
+    n.fragments = body->fragment_ids.count; n.removed = body->removed_ids.count;
+    n.history = body->previous_dt > 0;
+    return n;
+}
+
+/* Room for a state with these counts; the present one stays. */
+static gx_result gxp_state_room(gx_body *body, const gxp_state_counts *n) {
+    const gx_allocator *a = &body->allocator;
+    int i;
+    gx_result r = gxp_words_room(body, &body->fragment_ids, n->fragments);
+    if (r == GX_OK) r = gxp_words_room(body, &body->fragment_origins, n->fragments);
+    if (r == GX_OK) r = gxp_words_room(body, &body->fragment_changes, n->fragments);
+    if (r == GX_OK) r = gxp_words_room(body, &body->removed_ids, n->removed);
+    if (r == GX_OK) r = gxp_reserve(a, &body->regions, sizeof *body->regions, body->region_count, &body->region_capacity, n->regions);
+    for (i = 0; i < 2 && r == GX_OK && n->history; i++)
+        if (body->history[i] == NULL) r = gxp_reserve(a, &body->history[i], 3 * sizeof(double), 0, &body->history_capacity[i], body->copy_count);
+    return r;
+}
+
+static void gxp_pass_region(gxb_stream *s, gx_region *r) {
+    gxp_pass_word(s, &r->axis);
+    gxb_stream_pass(s, &r->side, 1, sizeof r->side);
+    gxb_stream_pass(s, &r->value, 1, sizeof r->value);
+}
+
+static void gxp_pass_words(gxb_stream *s, gxp_words *words, uint32_t count) {
+    words->count = count;
+    gxb_stream_pass(s, words->data, count, sizeof *words->data);
+}
+
+/* n: of this body when it is written, of what is read else, and there is room. */
+static void gxp_pass_state(gxb_stream *s, gx_body *body, const gxp_state_counts *n) {
+    const size_t copies = n->copies;
+    uint32_t i, look_stale = (uint32_t)body->look_stale;
+    gxs_scene scene;
+    gxb_stream_pass(s, body->displacement, copies, 3 * sizeof(double));
+    gxb_stream_pass(s, body->velocity, copies, 3 * sizeof(double));
+    gxb_stream_pass(s, body->rest_time, copies, sizeof(double));
+    gxb_stream_pass(s, body->copy_label, copies, sizeof *body->copy_label);
+    for (i = 0; i < 2 && n->history; i++) gxb_stream_pass(s, body->history[i], copies, 3 * sizeof(double));
+    gxb_stream_pass(s, &body->previous_dt, 1, sizeof body->previous_dt);
+    body->region_count = n->regions;
+    for (i = 0; i < n->regions; i++) gxp_pass_region(s, &body->regions[i]);
+    gxp_pass_words(s, &body->fragment_ids, n->fragments);
+    gxp_pass_words(s, &body->fragment_origins, n->fragments);
+    gxp_pass_words(s, &body->fragment_changes, n->fragments);
+    gxp_pass_words(s, &body->removed_ids, n->removed);
+    gxp_pass_word(s, &body->next_id);
+    gxp_pass_word(s, &look_stale);
+    body->look_stale = (int)(look_stale & 1);
+    gxs_solver_scene(body->solver, &scene);
+    gxb_stream_pass(s, scene.gravity, 3, sizeof *scene.gravity);
+    gxb_stream_pass(s, &scene.planes, 1, sizeof scene.planes);
+    gxb_stream_pass(s, &scene.forces, 1, sizeof scene.forces);
+    gxb_stream_pass(s, &scene.springs, 1, sizeof scene.springs);
+    if (s->in != NULL) gxs_solver_resume(body->solver, &scene);
+}
+
+static void gxp_save_state(gxb_stream *s, gx_body *body) {
+    gxp_state_counts n = gxp_count_state(body);
+    gxp_pass_state_counts(s, &n);
+    gxp_pass_state(s, body, &n);
+}
+
+static void gxp_check_state(gxb_stream *s, gx_body *body, const gxp_state_counts *n) {
+    uint32_t i;
+    gxp_require_true(s, body->next_id >= 1);
+    gxp_require_true(s, gxp_is_finite(body->previous_dt) && (n->history ? body->previous_dt > 0 : !(body->previous_dt > 0 || body->previous_dt < 0)));
+    for (i = 0; i < n->regions; i++) gxp_require_true(s, gxp_check_region(&body->regions[i]) == GX_OK);
+    for (i = 0; i < n->copies; i++) gxp_require_true(s, body->copy_label[i] >> 1 < n->fragments);
+    for (i = 0; i < n->fragments; i++)
+        gxp_require_true(s, body->fragment_ids.data[i] - 1 < body->next_id - 1 && body->fragment_origins.data[i] - 1 < body->next_id - 1 &&
+                            body->fragment_changes.data[i] <= GX_FRAGMENT_CREATED);
+    for (i = 0; i < n->removed; i++) gxp_require_true(s, body->removed_ids.data[i] - 1 < body->next_id - 1);
+    if (s->result == GX_OK) gxp_require(s, gxp_update_view(body));
+    gxp_require_true(s, body->look_stale || body->fragment_count == n->fragments);
+}
+
+static void gxp_load_state(gxb_stream *s, gx_body *body, int trusted) {
+    gxp_state_counts n;
+    gxp_pass_state_counts(s, &n);
+    gxb_stream_has(s, n.copies, 2 * sizeof(double));
+    gxb_stream_has(s, n.regions, 2 * sizeof(uint32_t) + sizeof(double));
+    gxb_stream_has(s, n.fragments, 3 * sizeof(uint32_t));
+    gxb_stream_has(s, n.removed, sizeof(uint32_t));
+    gxp_require_true(s, n.copies == body->copy_count && n.history <= 1);
+    if (s->result == GX_OK) gxp_require(s, gxp_state_room(body, &n));
+    if (s->result == GX_OK) gxp_pass_state(s, body, &n);
+    if (s->result == GX_OK && !trusted) gxp_check_state(s, body, &n);
+}
+
+/* --- the four functions --- */
+
+static void gxp_write(gxb_stream *s, gx_body *body) {
+    gxp_head head = gxp_make_head(0, 0);
+    gxp_pass_head(s, &head);
+    gxp_save_mesh(s, body);
+    gxp_save_topology(s, body);
+    gxp_save_state(s, body);
+}
+
+/* The solver forgets, so that it goes on as that of the other body will. */
+static void gxp_resume(gx_body *body) {
+    gxs_scene scene;
+    gxs_solver_scene(body->solver, &scene);
+    gxs_solver_resume(body->solver, &scene);
+}
+
+GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, size_t *size) {
+    gxb_stream s;
+    size_t start;
+    gxp_head head;
+    if (body == NULL || size == NULL) return GX_ERROR_ARGUMENT;
+    memset(&s, 0, sizeof s);
+    gxp_pass_head(&s, &head);
+    start = s.at; s.at = 0;
+    gxp_write(&s, body);
+    *size = s.at;
+    if (memory == NULL) return GX_OK;
+    if (capacity < s.at) return GX_ERROR_LIMIT;
+    s.out = (unsigned char *)memory;
+    s.size = s.at; s.at = 0;
+    gxp_write(&s, body);
+    s.at = 0;
+    head = gxp_make_head(s.size, gxp_checksum(s.out + start, s.size - start));
+    gxp_pass_head(&s, &head);
+    gxp_resume(body);
+    return GX_OK;
+}
+
+/* index: as gx_failure's */
+static gx_result gxp_read(gxb_stream *s, const gx_body_desc *desc, int trusted, gx_body **body, size_t *index) {
+    gx_body *made = NULL;
+    gxp_head head;
+    if (trusted) gxp_pass_head(s, &head);
+    else s->result = gxp_check_head(s);
+    *index = SIZE_MAX;
+    if (s->result == GX_OK) gxp_load_mesh(s, desc, &made, index);
+    if (s->result == GX_OK) gxp_load_topology(s, made, trusted);
+    if (s->result == GX_OK) gxp_load_state(s, made, trusted);
+    gxp_require_true(s, s->at == s->size);
+    if (s->result == GX_OK) *body = made;
+    else gx_body_destroy(made);
+    if (s->result == GX_ERROR_FORMAT || s->result == GX_ERROR_DAMAGED) *index = s->at;
+    return s->result;
+}
+
+GXFEM_API gx_result gx_body_load(const void *memory, size_t size, const gx_body_desc *desc, gx_body **body, gx_failure *failure) {
+    gx_body_desc none;
+    gxb_stream s;
+    size_t index;
+    gx_result result;
+    memset(&none, 0, sizeof none);
+    if (desc == NULL) desc = &none;
+    if (memory == NULL || body == NULL || (desc->allocator.allocate == NULL) != (desc->allocator.release == NULL))
+        return gxp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX, SIZE_MAX);
+    memset(&s, 0, sizeof s);
+    s.in = (const unsigned char *)memory;
+    s.size = size;
+    result = gxp_read(&s, desc, 0, body, &index);
+    return gxp_fail(failure, result, index, SIZE_MAX);
+}
+
+/* A body like from, with the allocator, clock and jobs of another. */
+static gx_result gxp_copy_body(gx_body *from, const gx_body *host, gx_body **copy) {
+    gx_body_desc desc;
+    gxb_stream s;
+    unsigned char *bytes;
+    size_t size, index;
+    gx_result result = gx_body_save(from, NULL, 0, &size);
+    if (result != GX_OK) return result;
+    bytes = (unsigned char *)gxp_allocate(&host->allocator, size);
+    if (bytes == NULL) return GX_ERROR_MEMORY;
+    memset(&s, 0, sizeof s);
+    s.out = bytes; s.size = size;
+    gxp_write(&s, from);
+    memset(&s, 0, sizeof s);
+    s.in = bytes; s.size = size;
+    memset(&desc, 0, sizeof desc);
+    desc.allocator = host->allocator; desc.clock = host->clock; desc.clock_user = host->clock_user; desc.jobs = host->jobs;
+    desc.materials = from->materials; desc.material_count = from->material_count;
+    result = gxp_read(&s, &desc, 1, copy, &index);
+    gxp_release(&host->allocator, bytes, size);
+    if (result == GX_OK) gxp_resume(from);
+    return result;
+}
+
+GXFEM_API gx_result gx_body_clone(gx_body *body, gx_body **clone) {
+    return body == NULL || clone == NULL ? GX_ERROR_ARGUMENT : gxp_copy_body(body, body, clone);
+}
+
+static int gxp_same_doubles(const double *a, const double *b, size_t count) { return memcmp(a, b, count * sizeof *a) == 0; }
+
+static int gxp_same_materials(const gx_body *a, const gx_body *b) {
+    uint32_t i;
+    int same = a->material_count == b->material_count;
+    for (i = 0; i < a->material_count && same; i++) {
+        const gxs_material *p = &a->materials[i].elastic, *q = &b->materials[i].elastic;
+        same = p->kind == q->kind && gxp_same_doubles(&p->young, &q->young, 1) && gxp_same_doubles(&p->poisson, &q->poisson, 1) &&
+               gxp_same_doubles(&p->damping, &q->damping, 1) && gxp_same_doubles(&a->materials[i].density, &b->materials[i].density, 1) &&
+               (p->kind != GXS_CUSTOM || (p->energy == q->energy && p->user == q->user));
+    }
+    return same;
+}
+
+static int gxp_same_regions(const gx_body *a, const gx_body *b) {
+    uint32_t i;
+    int same = a->region_count == b->region_count;
+    for (i = 0; i < a->region_count && same; i++) {
+        const gx_region *p = &a->regions[i], *q = &b->regions[i];
+        same = p->axis == q->axis && p->side == q->side && gxp_same_doubles(&p->value, &q->value, 1);
+    }
+    return same;
+}
+
+/* The state of a body with the same cells and copies */
+static gx_result gxp_restore_state(gx_body *body, gx_body *from) {
+    gxp_state_counts n = gxp_count_state(from);
+    const int same_held = gxp_same_regions(body, from);
+    gxb_stream s;
+    unsigned char *bytes;
+    size_t size;
+    gx_result result = gxp_state_room(body, &n);
+    if (result != GX_OK) return result;
+    memset(&s, 0, sizeof s);
+    gxp_pass_state(&s, from, &n);
+    size = s.at;
+    bytes = (unsigned char *)gxp_allocate(&body->allocator, size);
+    if (bytes == NULL) return GX_ERROR_MEMORY;
+    s.out = bytes; s.size = size; s.at = 0;
+    gxp_pass_state(&s, from, &n);
+    s.in = bytes; s.out = NULL; s.at = 0;
+    gxp_pass_state(&s, body, &n);
+    gxp_release(&body->allocator, bytes, size);
+    if (!same_held) body->held_stale = body->model_stale = 1;
+    gxp_resume(from);
+    return GX_OK;
+}
+
+GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from) {
+    gx_body *copy, swap;
+    gx_result result;
+    if (body == NULL || from == NULL) return GX_ERROR_ARGUMENT;
+    if (body == from) return GX_OK;
+    if (body->past == from->past && body->copy_count == from->copy_count && body->cell_count == from->cell_count &&
+        body->leaf_count == from->leaf_count && gxp_same_materials(body, from)) return gxp_restore_state(body, from);
+    result = gxp_copy_body(from, body, &copy);
+    if (result != GX_OK) return result;
+    swap = *body; *body = *copy; *copy = swap;
+    gx_body_destroy(copy);
+    return GX_OK;
 }
 
 /* >>boundary: the visual surface. Its triangles are listed by element; those of elements that a cut touched are made anew. Triangles

@@ -1,0 +1,705 @@
+/* test_save.c - saved, loaded, cloned and restored bodies: nothing that one can ask of them differs, later cuts give the same cells,
+   later steps the same bits. Damaged and hostile bytes: an error, or a body that can be used, but never a crash; run it with
+   make sanitize, too. */
+#define GXFEM_IMPLEMENTATION
+#include "../gxfem.h"
+#include "body.h"
+
+/* ---- scenes ---- */
+
+static void shake(gx_body *body, double size) {
+    gx_view v = view_of(body);
+    size_t i;
+    for (i = 0; i < 3 * v.copy_count; ++i) { v.displacement[i] = random_real(-size, size); v.velocity[i] = random_real(-size, size); }
+    for (i = 0; i < v.copy_count; ++i) v.rest_time[i] = random_real(0, 1);
+}
+
+/* A random plane, a triangle that ends inside, or a box */
+static void add_random_surface(workload *w, double size) {
+    double p[3], n[3], x[3];
+    int k, kind = random_below(4);
+    for (k = 0; k < 3; ++k) { p[k] = size * random_real(0.1, 0.9); n[k] = random_real(-1, 1); }
+    if (kind == 0) {
+        add_box(w, 1, p[0] - 0.2 * size, p[1] - 0.15 * size, p[2] - 0.1 * size, p[0] + 0.1 * size, p[1] + 0.3 * size, p[2] + 0.2 * size);
+    } else if (kind == 1) {
+        wl_surface *s = wl_add_surface(w, 0);
+        int i;
+        for (i = 0; i < 3; ++i) { for (k = 0; k < 3; ++k) x[k] = p[k] + size * random_real(-0.3, 0.3); wl_add_vertex(s, x); }
+        wl_add_triangle(s, 0, 1, 2);
+    } else if (kind == 2) add_axis_plane(w, random_below(3), size * random_below(5) / 4);
+    else add_plane(w, p, n, 4 * size);
+}
+
+/* Cuts, some in sequence, some at once, with looks in between now and then. *left: surfaces that are not used yet */
+static gx_body *random_body(workload *w, int cuts, int spare, double size) {
+    gx_body *body = body_of(w);
+    size_t i;
+    int k;
+    for (k = 0; k < cuts + spare; ++k) add_random_surface(w, size);
+    for (i = 0; i < (size_t)cuts;) {
+        const size_t n = i + 1 < (size_t)cuts && random_below(3) == 0 ? 2 : 1;
+        cut_by(body, w, i, n);
+        if (random_below(2)) view_of(body);
+        i += n;
+    }
+    return body;
+}
+
+static gx_result hold_low(gx_body *body, double value) {
+    gx_region region;
+    region.axis = 2; region.side = -1; region.value = value;
+    return gx_body_hold(body, &region, 1);
+}
+
+/* ---- bytes ---- */
+
+typedef struct bytes { unsigned char *data; size_t size; } bytes;
+
+static bytes saved(gx_body *body) {
+    bytes b;
+    size_t again = 0;
+    ck_assert_int_eq(gx_body_save(body, NULL, 0, &b.size), GX_OK);
+    b.data = (unsigned char *)malloc(b.size);
+    ck_assert_int_eq(gx_body_save(body, b.data, b.size, &again), GX_OK);
+    ck_assert_uint_eq(again, b.size);
+    return b;
+}
+
+static gx_body *loaded(bytes b) {
+    gx_body *body = NULL;
+    gx_failure failure;
+    gx_result result = gx_body_load(b.data, b.size, NULL, &body, &failure);
+    ck_assert_msg(result == GX_OK, "load: %s, byte %zu of %zu", gx_result_text(result), failure.index, b.size);
+    ck_assert_int_eq(failure.result, GX_OK);
+    return body;
+}
+
+static gx_body *clone_of(gx_body *body) {
+    gx_body *clone = NULL;
+    ck_assert_int_eq(gx_body_clone(body, &clone), GX_OK);
+    return clone;
+}
+
+/* By way of bytes, or straight */
+static gx_body *twin_of(gx_body *body, int by_bytes) {
+    bytes b;
+    gx_body *twin;
+    if (!by_bytes) return clone_of(body);
+    b = saved(body);
+    twin = loaded(b);
+    free(b.data);
+    return twin;
+}
+
+/* ---- equality ---- */
+
+#define SAME(a, b, count) CHECK_SEED((count) == 0 || memcmp(a, b, (count) * sizeof *(a)) == 0, seed)
+
+static void expect_equal_views(gx_body *a, gx_body *b, uint64_t seed) {
+    gx_view p = view_of(a), q = view_of(b);
+    CHECK_SEED(p.cell_count == q.cell_count && p.copy_count == q.copy_count && p.fragment_count == q.fragment_count, seed);
+    SAME(p.cell_element, q.cell_element, p.cell_count);
+    SAME(p.cell_copies, q.cell_copies, 4 * p.cell_count);
+    SAME(p.cell_volume, q.cell_volume, p.cell_count);
+    SAME(p.cell_fragment, q.cell_fragment, p.cell_count);
+    SAME(p.copy_node, q.copy_node, p.copy_count);
+    SAME(p.copy_held, q.copy_held, p.copy_count);
+    SAME(p.displacement, q.displacement, 3 * p.copy_count);
+    SAME(p.velocity, q.velocity, 3 * p.copy_count);
+    SAME(p.rest_time, q.rest_time, p.copy_count);
+    SAME(p.fragment_volume, q.fragment_volume, p.fragment_count);
+    SAME(p.fragment_mass, q.fragment_mass, p.fragment_count);
+    SAME(p.fragment_inertia, q.fragment_inertia, 6 * p.fragment_count);
+    SAME(p.fragment_id, q.fragment_id, p.fragment_count);
+    SAME(p.fragment_origin, q.fragment_origin, p.fragment_count);
+    SAME(p.fragment_change, q.fragment_change, p.fragment_count);
+    CHECK_SEED(p.removed_count == q.removed_count, seed);
+    SAME(p.removed_ids, q.removed_ids, p.removed_count);
+    CHECK_SEED(p.volume == q.volume && p.mass == q.mass, seed);
+}
+
+static void expect_equal_skins(gx_body *a, gx_body *b, uint64_t seed) {
+    gx_skin p, q;
+    ck_assert_int_eq(gx_body_skin(a, &p), GX_OK);
+    ck_assert_int_eq(gx_body_skin(b, &q), GX_OK);
+    CHECK_SEED(p.vertex_count == q.vertex_count && p.triangle_count == q.triangle_count, seed);
+    SAME(p.vertex_copies, q.vertex_copies, 4 * p.vertex_count);
+    SAME(p.vertex_weights, q.vertex_weights, 4 * p.vertex_count);
+    SAME(p.triangles, q.triangles, 3 * p.triangle_count);
+    SAME(p.triangle_cut, q.triangle_cut, p.triangle_count);
+}
+
+/* State first: views and hashes open elements, and a view tells what has changed. */
+static void expect_equal(gx_body *a, gx_body *b, uint64_t seed) {
+    CHECK_SEED(gx_body_state_hash(a) == gx_body_state_hash(b), seed);
+    expect_equal_views(a, b, seed);
+    CHECK_SEED(hash_of(a) == hash_of(b), seed);
+    expect_equal_skins(a, b, seed);
+    CHECK_SEED(gx_body_state_hash(a) == gx_body_state_hash(b), seed);
+}
+
+/* ---- what is loaded is what was saved ---- */
+
+START_TEST(random_bodies) {
+    const uint64_t seed = (uint64_t)_i + 1;
+    workload w;
+    gx_body *body, *copy;
+    bytes b, again;
+    size_t k;
+    random_seed(seed);
+    w = grid(2, 2, 1 + (size_t)random_below(2), random_below(2) ? 5 : 6);
+    body = random_body(&w, 1 + random_below(5), 3, 2);
+    if (random_below(2)) shake(body, 0.05);
+    if (random_below(2)) ck_assert_int_eq(hold_low(body, random_real(0.1, 1)), GX_OK);
+    b = saved(body);
+    copy = _i % 2 ? clone_of(body) : loaded(b);
+    again = saved(copy);
+    CHECK_SEED(again.size == b.size && memcmp(again.data, b.data, b.size) == 0, seed);
+    expect_equal(body, copy, seed);
+    for (k = 0; k < 3; ++k) {           /* further cuts */
+        cut_by(body, &w, w.surface_count - 1 - k, 1);
+        cut_by(copy, &w, w.surface_count - 1 - k, 1);
+        if (k != 1) expect_equal(body, copy, seed);     /* once without a look */
+    }
+    free(b.data); free(again.data);
+    gx_body_destroy(body); gx_body_destroy(copy);
+    wl_free(&w);
+}
+END_TEST
+
+/* The frame of the complex shifts and scales: given coordinates must come back as they were. */
+START_TEST(far_and_small_bodies) {
+    static const double sizes[6] = { 1, 1e-6, 1e6, 1e-300, 3e-308, 1e60 }, offsets[6] = { 1e8, 0.3, 12345678.9, 0, 0, 0 };
+    size_t i, k;
+    workload w = grid(2, 2, 1, 5);
+    gx_body *body, *copy;
+    double p[3] = { 0.9, 1.1, 0.4 }, n[3] = { 0.3, 1, 0.2 };
+    const double h = sizes[_i], x0 = offsets[_i];
+    add_plane(&w, p, n, 2);
+    p[0] = 1.3; n[2] = -3;
+    add_plane(&w, p, n, 2);
+    for (i = 0; i < 3 * w.node_count; ++i) w.positions[i] = x0 + h * w.positions[i];
+    for (k = 0; k < w.surface_count; ++k) for (i = 0; i < 3 * w.surfaces[k].vertex_count; ++i) w.surfaces[k].vertices[i] = x0 + h * w.surfaces[k].vertices[i];
+    body = body_of(&w);
+    cut_by(body, &w, 0, 1);
+    copy = twin_of(body, 1);
+    expect_equal(body, copy, (uint64_t)_i);
+    cut_by(body, &w, 1, 1);
+    cut_by(copy, &w, 1, 1);
+    expect_equal(body, copy, (uint64_t)_i);
+    ck_assert_uint_gt(view_of(body).fragment_count, 2);
+    gx_body_destroy(body); gx_body_destroy(copy);
+    wl_free(&w);
+}
+END_TEST
+
+/* Where elements meet in an edge or a node only, walls of edges and nodes are part of the complex. */
+START_TEST(pinched_bodies) {
+    static const double x[8][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { -1, 0, 0 }, { 0, -1, 0 }, { 0, -1, 1 }, { -1, 0, 1 } };
+    workload w = wl_empty();
+    gx_body *body, *copy;
+    int i;
+    for (i = 0; i < 8; ++i) wl_add_node(&w, x[i][0], x[i][1], x[i][2]);
+    wl_add_element(&w, 0, 1, 2, 3);
+    if (_i == 0) wl_add_element(&w, 0, 4, 5, 3);        /* the edge 03 */
+    else wl_add_element(&w, 0, 4, 5, 6);                /* the node 0 */
+    add_plane(&w, x[0], x[1], 0.5);
+    add_axis_plane(&w, 2, 0.25);
+    body = body_of(&w);
+    for (i = 0; i < 2; ++i) {
+        cut_by(body, &w, (size_t)i, 1);
+        copy = twin_of(body, 1);
+        expect_equal(body, copy, (uint64_t)_i);
+        if (i == 0) {
+            cut_by(copy, &w, 1, 1);
+            ck_assert_uint_gt(view_of(copy).fragment_count, 1);
+        }
+        gx_body_destroy(copy);
+    }
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- steps ---- */
+
+typedef struct custom { double stiffness; int calls; } custom;
+
+/* stiffness/2 |F - 1|^2 */
+static double custom_energy(void *user, const double *f, double *stress, double *hessian) {
+    custom *c = (custom *)user;
+    double energy = 0;
+    int i;
+    ++c->calls;
+    for (i = 0; i < 9; ++i) {
+        const double d = f[i] - (i % 4 == 0);
+        energy += 0.5 * c->stiffness * d * d;
+        if (stress) stress[i] = c->stiffness * d;
+        if (hessian) { memset(hessian + 9 * i, 0, 9 * sizeof *hessian); hessian[10 * i] = c->stiffness; }
+    }
+    return energy;
+}
+
+static void expect_same_steps(gx_body *a, gx_body *b, const gx_step_desc *step, int count, uint64_t seed) {
+    int i;
+    for (i = 0; i < count; ++i) {
+        gx_step_report p, q;
+        ck_assert_int_eq(gx_body_step(a, step, &p, NULL), GX_OK);
+        ck_assert_int_eq(gx_body_step(b, step, &q, NULL), GX_OK);
+        CHECK_SEED(p.cg_iterations == q.cg_iterations && p.newton_iterations == q.newton_iterations && p.stop == q.stop, seed);
+        CHECK_SEED(p.energy == q.energy, seed);
+        CHECK_SEED(gx_body_state_hash(a) == gx_body_state_hash(b), seed);
+    }
+}
+
+/* Integrators, materials, springs, contact; the size is one at which multigrid is used. Some steps before, a save or a clone in the
+   middle, a cut and steps after. */
+START_TEST(steps_go_on) {
+    static const gxs_integrator integrators[4] = { GXS_BDF1, GXS_BDF2, GXS_MIDPOINT, GXS_STATIC };
+    const uint64_t seed = (uint64_t)_i;
+    const int variant = _i % 4, by_bytes = _i / 4 % 2, custom_material = _i / 8;
+    custom user = { 1e5, 0 };
+    gx_material materials[2];
+    workload w = grid(5, 5, 6, 5);
+    gx_body_desc desc = desc_of(&w);
+    gx_body *body = NULL, *copy = NULL;
+    gx_step_desc step;
+    gxs_spring spring;
+    gxs_plane plane;
+    gxs_point point;
+    uint32_t *of;
+    size_t i;
+    int k;
+    random_seed(seed + 77);
+    memset(materials, 0, sizeof materials);
+    materials[0].elastic.young = 2e5; materials[0].elastic.poisson = 0.45; materials[0].density = 1000; materials[0].elastic.damping = 1e-3;
+    materials[1] = materials[0];
+    if (custom_material) { materials[1].elastic.kind = GXS_CUSTOM; materials[1].elastic.energy = custom_energy; materials[1].elastic.user = &user; }
+    of = (uint32_t *)calloc(w.element_count, sizeof *of);
+    for (i = 0; i < w.element_count; ++i) of[i] = i % 7 == 0;
+    desc.materials = materials; desc.material_count = 2; desc.element_materials = of;
+    desc.support_below = 0.01;
+    ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+    add_axis_plane(&w, 0, 2.4);
+    add_axis_plane(&w, 1, 2.995);
+    cut_by(body, &w, 0, 1);
+    ck_assert_int_eq(hold_low(body, 0.5), GX_OK);
+    shake(body, 0.02);
+    memset(&step, 0, sizeof step); memset(&spring, 0, sizeof spring); memset(&plane, 0, sizeof plane); memset(&point, 0, sizeof point);
+    step.dt = 0.01; step.gravity[0] = 3; step.gravity[2] = -9.81; step.integrator = integrators[variant];
+    if (variant == 3) step.dt = 0;
+    for (k = 0; k < 4; ++k) { spring.point.copy[k] = point.copy[k] = (uint32_t)(200 + k); spring.point.weight[k] = point.weight[k] = 0.25; }
+    spring.target[0] = 2; spring.target[1] = 1; spring.target[2] = 4; spring.stiffness = 1e3;
+    plane.normal[2] = 1; plane.offset = -1; plane.stiffness = 1e4; plane.friction = 0.3;
+    step.springs = &spring; step.spring_count = 1;
+    step.planes = &plane; step.plane_count = 1; step.points = &point; step.point_count = 1;
+    for (k = 0; k < 3; ++k) ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
+    if (by_bytes) {
+        bytes b = saved(body);
+        if (custom_material) {
+            gx_failure failure;
+            ck_assert_int_eq(gx_body_load(b.data, b.size, NULL, &copy, &failure), GX_ERROR_ARGUMENT);
+            ck_assert_uint_eq(failure.index, 1);
+            ck_assert_ptr_null(copy);
+        }
+        ck_assert_int_eq(gx_body_load(b.data, b.size, &desc, &copy, NULL), GX_OK);
+        free(b.data);
+    } else copy = clone_of(body);
+    ck_assert(gx_body_state_hash(body) == gx_body_state_hash(copy));
+    expect_same_steps(body, copy, &step, 4, seed);
+    step.dt = variant == 3 ? 0 : 0.007;
+    step.spring_count = 0;
+    expect_same_steps(body, copy, &step, 3, seed);
+    cut_by(body, &w, 1, 1);
+    cut_by(copy, &w, 1, 1);
+    step.spring_count = 1; spring.stiffness = 1e6;
+    step.integrator = GXS_BDF1; step.dt = 0.01;
+    expect_same_steps(body, copy, &step, 2, seed);
+    ck_assert_int_eq(user.calls > 0, custom_material);
+    free(of);
+    gx_body_destroy(body); gx_body_destroy(copy);
+    wl_free(&w);
+}
+END_TEST
+
+/* A body at rest is not woken by being saved, cloned or restored, nor is its copy. */
+START_TEST(sleepers_sleep_on) {
+    workload w = grid(2, 2, 2, 5);
+    gx_body *body = body_of(&w), *copy, *clone;
+    gx_step_desc step;
+    gx_step_report report;
+    int i;
+    ck_assert_int_eq(hold_low(body, 0.5), GX_OK);
+    memset(&step, 0, sizeof step);
+    step.dt = 0.1; step.gravity[2] = -9.81; step.sleep_speed = 1e-3; step.sleep_time = 0.3;
+    memset(&report, 0, sizeof report);
+    for (i = 0; i < 300 && report.stop != GXS_STOP_ASLEEP; ++i) ck_assert_int_eq(gx_body_step(body, &step, &report, NULL), GX_OK);
+    ck_assert_int_eq(report.stop, GXS_STOP_ASLEEP);
+    copy = twin_of(body, 1);
+    clone = clone_of(body);
+    ck_assert_int_eq(gx_body_restore(clone, body), GX_OK);
+    expect_same_steps(clone, copy, &step, 1, 0);
+    ck_assert_int_eq(gx_body_step(body, &step, &report, NULL), GX_OK);
+    ck_assert_int_eq(report.stop, GXS_STOP_ASLEEP);
+    step.gravity[0] = 1;
+    ck_assert_int_eq(gx_body_step(copy, &step, &report, NULL), GX_OK);
+    ck_assert_int_ne(report.stop, GXS_STOP_ASLEEP);
+    gx_body_destroy(body); gx_body_destroy(copy); gx_body_destroy(clone);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- clones and restoring ---- */
+
+/* Back to a clone after steps (the state alone), after cuts (all), and after another hold; then the same steps as before. */
+START_TEST(rollback) {
+    const uint64_t seed = (uint64_t)_i + 1;
+    workload w = grid(3, 3, 3, 6);
+    gx_body *body, *snapshot;
+    gx_step_desc step;
+    uint64_t before, after;
+    int i, way;
+    random_seed(seed);
+    body = random_body(&w, 2, 1, 3);
+    ck_assert_int_eq(hold_low(body, 0.5), GX_OK);
+    memset(&step, 0, sizeof step);
+    step.dt = 0.01; step.gravity[2] = -9.81; step.integrator = _i % 2 ? GXS_BDF2 : GXS_BDF1;
+    for (i = 0; i < 2; ++i) ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
+    view_of(body);      /* what one has seen is state, too */
+    snapshot = clone_of(body);
+    before = gx_body_state_hash(snapshot);
+    CHECK_SEED(gx_body_state_hash(body) == before, seed);
+    for (i = 0; i < 4; ++i) ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
+    after = gx_body_state_hash(body);
+    CHECK_SEED(after != before && gx_body_state_hash(snapshot) == before, seed);
+    for (way = 0; way < 4; ++way) {
+        if (way == 1) cut_by(body, &w, w.surface_count - 1, 1);
+        if (way == 2) ck_assert_int_eq(gx_body_hold(body, NULL, 0), GX_OK);
+        if (way == 3) shake(body, 1);
+        if (way == 1) view_of(body);
+        ck_assert_int_eq(gx_body_restore(body, snapshot), GX_OK);
+        CHECK_SEED(gx_body_state_hash(body) == before, seed);
+        expect_equal_views(body, snapshot, seed);
+        for (i = 0; i < 4; ++i) ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
+        ck_assert_msg(gx_body_state_hash(body) == after, "seed %llu, way %d: another end", (unsigned long long)seed, way);
+    }
+    ck_assert_int_eq(gx_body_restore(snapshot, body), GX_OK);   /* brought up to date: both go on alike */
+    CHECK_SEED(gx_body_state_hash(snapshot) == after, seed);
+    expect_same_steps(body, snapshot, &step, 3, seed);
+    ck_assert_int_eq(gx_body_restore(body, body), GX_OK);
+    expect_equal(body, snapshot, seed);
+    gx_body_destroy(body); gx_body_destroy(snapshot);
+    wl_free(&w);
+}
+END_TEST
+
+/* Bodies of other meshes, materials or cuts that have the same counts are not taken for the same. */
+START_TEST(restoring_from_strangers) {
+    workload w = grid(2, 1, 1, 5), v = grid(2, 1, 1, 5);
+    gx_body_desc desc = desc_of(&w);
+    gx_body *a, *b, *c = NULL;
+    double p[3] = { 0.5, 0.5, 0.5 }, n[3] = { 1, 0.1, 0.2 };
+    gx_step_desc step;
+    memset(&step, 0, sizeof step);
+    step.dt = 0.01; step.gravity[2] = -1;
+    add_plane(&w, p, n, 4);
+    p[0] += 1e-9;
+    add_plane(&v, p, n, 4);
+    a = cut_at_once(&w);
+    b = cut_at_once(&v);
+    desc.young *= 2;
+    ck_assert_int_eq(gx_body_create(&desc, &c, NULL), GX_OK);
+    cut_by(c, &w, 0, 1);
+    ck_assert(hash_of(a) == hash_of(b) && hash_of(a) == hash_of(c));
+    shake(b, 0.1);
+    shake(c, 0.1);
+    ck_assert_int_eq(gx_body_restore(a, b), GX_OK);
+    expect_equal(a, b, 0);
+    expect_same_steps(a, b, &step, 2, 0);
+    ck_assert_int_eq(gx_body_restore(a, c), GX_OK);
+    expect_equal(a, c, 0);
+    expect_same_steps(a, c, &step, 2, 1);
+    gx_body_destroy(a); gx_body_destroy(b); gx_body_destroy(c);
+    wl_free(&w); wl_free(&v);
+}
+END_TEST
+
+/* Nothing of a copy is the body's: it lives on. */
+START_TEST(copies_stand_alone) {
+    workload w = grid(2, 2, 1, 5);
+    gx_body *body, *copy, *clone;
+    random_seed(5);
+    body = random_body(&w, 3, 1, 2);
+    copy = twin_of(body, 1);
+    clone = clone_of(body);
+    gx_body_destroy(body);
+    expect_equal(copy, clone, 5);
+    cut_by(copy, &w, w.surface_count - 1, 1);
+    cut_by(clone, &w, w.surface_count - 1, 1);
+    expect_equal(copy, clone, 5);
+    gx_body_destroy(copy); gx_body_destroy(clone);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- errors ---- */
+
+START_TEST(arguments) {
+    workload w = wl_through(0.1);
+    gx_body *body = cut_at_once(&w), *other = NULL;
+    bytes b = saved(body);
+    gx_body_desc desc;
+    gx_failure failure;
+    size_t size = 0;
+    const uint64_t state = gx_body_state_hash(body);
+    ck_assert_int_eq(gx_body_save(NULL, NULL, 0, &size), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_save(body, b.data, b.size, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_save(body, b.data, b.size - 1, &size), GX_ERROR_LIMIT);
+    ck_assert_uint_eq(size, b.size);
+    ck_assert_int_eq(gx_body_load(NULL, b.size, NULL, &other, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(failure.result, GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_load(b.data, b.size, NULL, NULL, NULL), GX_ERROR_ARGUMENT);
+    memset(&desc, 0, sizeof desc);
+    desc.allocator.allocate = (void *(*)(void *, size_t))(size_t)1;
+    ck_assert_int_eq(gx_body_load(b.data, b.size, &desc, &other, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_clone(NULL, &other), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_clone(body, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_restore(NULL, body), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_restore(body, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_ptr_null(other);
+    ck_assert(gx_body_state_hash(body) == state);
+    free(b.data);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Magic, version, byte order, kind of double: not a body's bytes. */
+START_TEST(foreign_bytes) {
+    workload w = wl_through(0.1);
+    gx_body *body = cut_at_once(&w), *other = NULL;
+    bytes b = saved(body);
+    size_t i;
+    for (i = 0; i < 24; ++i) {
+        b.data[i] ^= 0x55;
+        ck_assert_int_eq(gx_body_load(b.data, b.size, NULL, &other, NULL), GX_ERROR_FORMAT);
+        b.data[i] ^= 0x55;
+    }
+    memset(b.data, 0, b.size);
+    ck_assert_int_eq(gx_body_load(b.data, b.size, NULL, &other, NULL), GX_ERROR_FORMAT);
+    ck_assert_ptr_null(other);
+    free(b.data);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- damage ---- */
+
+enum { HEAD_BYTES = 40, AT_SIZE = 24, AT_CHECKSUM = 32 };
+
+/* A small body with all there is: sheets, a partial one, a solid, held copies, history, a fragment that is gone; seen or not */
+static gx_body *small_body(workload *w, int seen) {
+    gx_body *body;
+    gx_step_desc step;
+    double p[3] = { 0.2, 0.2, 0.2 }, n[3] = { 1, 0.3, 0.2 };
+    wl_surface *s;
+    *w = wl_empty();
+    wl_add_node(w, 0, 0, 0); wl_add_node(w, 1, 0, 0); wl_add_node(w, 0, 1, 0); wl_add_node(w, 0, 0, 1); wl_add_node(w, 1, 1, 1);
+    wl_add_element(w, 0, 1, 2, 3);
+    wl_add_element(w, 4, 1, 2, 3);
+    add_plane(w, p, n, 3);
+    s = wl_add_surface(w, 0);
+    p[0] = 0.5; p[1] = 0.1; p[2] = 0.1; wl_add_vertex(s, p);
+    p[1] = 0.3; wl_add_vertex(s, p);
+    p[2] = 0.4; p[0] = 0.4; wl_add_vertex(s, p);
+    wl_add_triangle(s, 0, 1, 2);
+    add_box(w, 1, -1, -1, 0.6, 0.3, 0.3, 2);
+    n[0] = -0.2; p[0] = p[1] = p[2] = 0.4;
+    add_plane(w, p, n, 3);
+    body = body_of(w);
+    cut_by(body, w, 0, 1);
+    memset(&step, 0, sizeof step);
+    step.dt = 0.01; step.gravity[2] = -9.81; step.integrator = GXS_BDF2;
+    ck_assert_int_eq(hold_low(body, 0.1), GX_OK);
+    ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
+    view_of(body);
+    cut_by(body, w, 1, 2);
+    if (seen) view_of(body);
+    return body;
+}
+
+/* Damage with a checksum that is right. */
+static void seal(bytes b) {
+    const uint64_t size = b.size, checksum = gxp_checksum(b.data + HEAD_BYTES, b.size - HEAD_BYTES);
+    memcpy(b.data + AT_SIZE, &size, sizeof size);
+    memcpy(b.data + AT_CHECKSUM, &checksum, sizeof checksum);
+}
+
+/* What was loaded is used in every way; errors are fine. */
+static void use(gx_body *body, const workload *w) {
+    static const gx_region region = { 0, 1, 0.3 };
+    gx_surface surface = surface_of(&w->surfaces[3]);
+    gx_cut_desc cut;
+    gx_step_desc step;
+    gx_view view;
+    gx_skin skin;
+    gx_motion motions[64];
+    gx_body *clone = NULL;
+    gx_result result;
+    size_t size;
+    memset(&cut, 0, sizeof cut); memset(&step, 0, sizeof step);
+    step.dt = 0.01; step.integrator = GXS_BDF2; step.cg_iterations = 20; step.sleep_speed = 1e-3;
+    cut.surfaces = &surface; cut.surface_count = 1; cut.sever_below = 1e-3;
+    (void)gx_body_view(body, &view);
+    (void)gx_body_step(body, &step, NULL, NULL);
+    (void)gx_body_topology_hash(body, &result);
+    (void)gx_body_cut(body, &cut, NULL, NULL);
+    surface = surface_of(&w->surfaces[2]);
+    (void)gx_body_cut(body, &cut, NULL, NULL);
+    (void)gx_body_hold(body, &region, 1);
+    if (gx_body_view(body, &view) == GX_OK && view.fragment_count > 0) ck_assert_uint_lt(view.cell_fragment[view.cell_count - 1], view.fragment_count);
+    (void)gx_body_skin(body, &skin);
+    (void)gx_body_motion(body, motions, 64);
+    (void)gx_body_step(body, &step, NULL, NULL);
+    (void)gx_body_save(body, NULL, 0, &size);
+    if (gx_body_clone(body, &clone) == GX_OK) gx_body_destroy(clone);
+}
+
+/* Loads; returns whether that succeeded. */
+static int try_bytes(bytes b, const workload *w, const char *what, size_t at) {
+    gx_body *body = NULL;
+    gx_failure failure;
+    const gx_result result = gx_body_load(b.data, b.size, NULL, &body, &failure);
+    ck_assert_msg(result == GX_OK || result == GX_ERROR_FORMAT || result == GX_ERROR_DAMAGED || result == GX_ERROR_LIMIT ||
+                  result == GX_ERROR_ARGUMENT, "%s at %zu: %s", what, at, gx_result_text(result));
+    ck_assert_msg((result == GX_OK) == (body != NULL) && failure.result == result, "%s at %zu", what, at);
+    if (body != NULL) use(body, w);
+    gx_body_destroy(body);
+    return result == GX_OK;
+}
+
+/* Every byte changed, every length: with the checksum as it was nothing passes. */
+START_TEST(damage_is_seen) {
+    workload w;
+    gx_body *body = small_body(&w, 1);
+    bytes b = saved(body), part;
+    size_t i;
+    for (i = 0; i < b.size; ++i) {
+        b.data[i] ^= (unsigned char)(1u << i % 8);
+        ck_assert_msg(!try_bytes(b, &w, "a flipped bit", i), "a flipped bit at %zu is not seen", i);
+        b.data[i] ^= (unsigned char)(1u << i % 8);
+    }
+    for (i = 0; i < b.size; ++i) {
+        part.data = (unsigned char *)malloc(i + 1);      /* so that a sanitizer sees what reads beyond it */
+        part.size = i;
+        memcpy(part.data, b.data, i);
+        ck_assert_msg(!try_bytes(part, &w, "cut short", i), "that it is cut short at %zu is not seen", i);
+        if (i >= HEAD_BYTES) {
+            seal(part);
+            ck_assert_msg(!try_bytes(part, &w, "cut short and sealed", i), "that it is cut short at %zu is not seen", i);
+        }
+        free(part.data);
+    }
+    ck_assert(try_bytes(b, &w, "as it was", 0));
+    free(b.data);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Every bit of every byte flipped, and the checksum made right: an error, or a body that can be used. */
+START_TEST(hostile_bits) {
+    workload w;
+    gx_body *body = small_body(&w, _i % 2);
+    bytes b = saved(body);
+    size_t i, passed = 0;
+    for (i = HEAD_BYTES; i < b.size; ++i) {
+        const unsigned char flip = (unsigned char)(1u << _i);
+        b.data[i] ^= flip;
+        seal(b);
+        passed += (size_t)try_bytes(b, &w, "a bit", i);
+        b.data[i] ^= flip;
+    }
+    ck_assert_uint_gt(passed, 0);               /* coordinates, velocities */
+    ck_assert_uint_lt(passed, b.size - HEAD_BYTES);
+    free(b.data);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Every word replaced by ones that an index or a count might be. */
+START_TEST(hostile_words) {
+    static const uint32_t values[6] = { 0, 1, UINT32_MAX, 0x7fffffff, 0x80000000u, 3 };
+    workload w;
+    gx_body *body = small_body(&w, _i % 2);
+    bytes b = saved(body);
+    size_t i;
+    for (i = HEAD_BYTES; i + 4 <= b.size; i += 4) {
+        uint32_t word, changed;
+        memcpy(&word, b.data + i, 4);
+        changed = _i < 6 ? values[_i] : _i == 6 ? word + 1 : word - 1;
+        memcpy(b.data + i, &changed, 4);
+        seal(b);
+        (void)try_bytes(b, &w, "a word", i);
+        memcpy(b.data + i, &word, 4);
+    }
+    free(b.data);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Words swapped, copied over each other and drawn from small numbers, a few at once */
+START_TEST(hostile_mixtures) {
+    const uint64_t seed = (uint64_t)_i + 1;
+    workload w;
+    gx_body *body = small_body(&w, _i % 2);
+    bytes b = saved(body), m;
+    int round, k;
+    random_seed(seed);
+    m.data = (unsigned char *)malloc(b.size);
+    m.size = b.size;
+    for (round = 0; round < 1500; ++round) {
+        const int words = (int)((b.size - HEAD_BYTES) / 4);
+        memcpy(m.data, b.data, b.size);
+        for (k = 1 + random_below(3); k > 0; --k) {
+            const size_t from = HEAD_BYTES + 4 * (size_t)random_below(words), to = HEAD_BYTES + 4 * (size_t)random_below(words);
+            uint32_t p, q, small = (uint32_t)random_below(40);
+            memcpy(&p, m.data + from, 4);
+            memcpy(&q, m.data + to, 4);
+            if (random_below(2)) { memcpy(m.data + from, &small, 4); continue; }
+            memcpy(m.data + to, &p, 4);
+            if (random_below(2)) memcpy(m.data + from, &q, 4);
+        }
+        seal(m);
+        (void)try_bytes(m, &w, "a mixture", (size_t)round);
+    }
+    free(b.data); free(m.data);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("save");
+    TCase *tests = tcase_create("save");
+    tcase_set_timeout(tests, 240);
+    tcase_add_loop_test(tests, random_bodies, 0, 60);
+    tcase_add_loop_test(tests, far_and_small_bodies, 0, 6);
+    tcase_add_loop_test(tests, pinched_bodies, 0, 2);
+    tcase_add_loop_test(tests, steps_go_on, 0, 16);
+    tcase_add_test(tests, sleepers_sleep_on);
+    tcase_add_loop_test(tests, rollback, 0, 4);
+    tcase_add_test(tests, restoring_from_strangers);
+    tcase_add_test(tests, copies_stand_alone);
+    tcase_add_test(tests, arguments);
+    tcase_add_test(tests, foreign_bytes);
+    tcase_add_test(tests, damage_is_seen);
+    tcase_add_loop_test(tests, hostile_bits, 0, 8);
+    tcase_add_loop_test(tests, hostile_words, 0, 8);
+    tcase_add_loop_test(tests, hostile_mixtures, 0, 4);
+    suite_add_tcase(suite, tests);
+    return run_suite(suite);
+}
