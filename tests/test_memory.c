@@ -137,6 +137,41 @@ static gx_result step(gx_body *body) {
 }
 static gx_result hash(gx_body *body) { gx_result result; gx_body_topology_hash(body, &result); return result; }
 
+static gx_result motion(gx_body *body) { gx_motion motions[64]; return gx_body_motion(body, motions, 64); }
+
+/* What there is of a copy, if one was made, is right. */
+static gx_result compare_and_destroy(gx_result result, gx_body *body, gx_body *copy) {
+    ck_assert((result == GX_OK) == (copy != NULL));
+    if (copy != NULL) ck_assert(gx_body_state_hash(copy) == gx_body_state_hash(body));
+    gx_body_destroy(copy);
+    return result;
+}
+static gx_result clone(gx_body *body) {
+    gx_body *copy = NULL;
+    gx_result result = gx_body_clone(body, &copy);
+    return compare_and_destroy(result, body, copy);
+}
+static gx_result save_and_load(gx_body *body) {
+    static unsigned char bytes[1 << 20];
+    gx_body_desc desc;
+    gx_body *copy = NULL;
+    gx_result result;
+    size_t size;
+    ck_assert_int_eq(gx_body_save(body, bytes, sizeof bytes, &size), GX_OK);
+    memset(&desc, 0, sizeof desc);
+    desc.allocator = body->allocator;
+    result = gx_body_load(bytes, size, &desc, &copy, NULL);
+    return compare_and_destroy(result, body, copy);
+}
+
+static gx_body *source;         /* what bodies become again; its own memory lasts */
+static gx_result restore(gx_body *body) {
+    const uint64_t state = gx_body_state_hash(source);
+    const gx_result result = gx_body_restore(body, source);
+    ck_assert(gx_body_state_hash(source) == state && (result != GX_OK || gx_body_state_hash(body) == state));
+    return result;
+}
+
 /* Before the action: what the body has been through. */
 static gx_body *prepared(memory *m, const action *before) {
     gx_body *body = NULL;
@@ -349,6 +384,42 @@ START_TEST(stepping) {
 }
 END_TEST
 
+static gx_result step_bdf2(gx_body *body) {
+    gx_step_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.dt = 0.01; desc.gravity[2] = -9.81; desc.integrator = GXS_BDF2;
+    return gx_body_step(body, &desc, NULL, NULL);
+}
+static const action moved[] = { hold, cut_sheet, look, step_bdf2, cut_solid, NULL }, unmoved[] = { cut_sheet, look, cut_solid, NULL };
+
+START_TEST(motions) { sweep("motions", after_a_cut, motion); }
+END_TEST
+
+START_TEST(copies) {
+    sweep("a clone", nothing, clone);
+    sweep("a clone of a cut body", moved, clone);
+    sweep("loading", nothing, save_and_load);
+    sweep("loading a cut body", moved, save_and_load);
+}
+END_TEST
+
+/* To a body with other cuts, to one with other state only, to one with room for more than there was */
+START_TEST(restoring) {
+    static const action *const sources[4] = { nothing, moved, moved, moved }, *const bodies[4] = { moved, after_a_cut, moved, unmoved };
+    memory m;
+    int i;
+    for (i = 0; i < 4; ++i) {
+        memset(&m, 0, sizeof m);
+        never_fail(&m);
+        source = prepared(&m, sources[i]);
+        if (i == 2) ck_assert_int_eq(step_bdf2(source), GX_OK);
+        sweep("restoring", bodies[i], restore);
+        gx_body_destroy(source);
+        check_empty(&m, "restoring");
+    }
+}
+END_TEST
+
 START_TEST(cut_after_steps) { sweep("a cut between steps", held, cut_second_sheet); }
 END_TEST
 
@@ -392,6 +463,9 @@ int main(void) {
     tcase_add_test(tests, view_hold_skin_hash);
     tcase_add_test(tests, holding);
     tcase_add_test(tests, stepping);
+    tcase_add_test(tests, motions);
+    tcase_add_test(tests, copies);
+    tcase_add_test(tests, restoring);
     tcase_add_test(tests, cut_after_steps);
     tcase_add_test(tests, solidifying);
     suite_add_tcase(suite, tests);
