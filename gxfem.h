@@ -328,7 +328,8 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
 /* >>hash ----------------------------------------------------------------------------------------------------------------- */
 
 GXFEM_API uint64_t gx_body_topology_hash(gx_body *body, gx_result *result);   /* of the cell complex: same on every compiler */
-GXFEM_API uint64_t gx_body_state_hash(const gx_body *body);                   /* of all that a failed call must leave alone */
+GXFEM_API uint64_t gx_body_state_hash(const gx_body *body);                   /* of all that a failed call must leave alone, and of the
+                                                                                 ids that views have told */
 GXFEM_API const char *gx_result_text(gx_result result);
 
 /* >>save ----------------------------------------------------------------------------------------------------------------- */
@@ -343,8 +344,8 @@ GXFEM_API const char *gx_result_text(gx_result result);
 GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, size_t *size);
 /* Whatever the bytes are, they do no harm: a checksum tells damage by accident, and all that a body relies on is checked. Of desc
    (NULL: all zero) allocator, clock and jobs are read, and, for each saved material of kind GXS_CUSTOM, energy and user of the
-   material with its number. Errors: ARGUMENT (index: a material without its energy), MEMORY, LIMIT, FORMAT, DAMAGED (index: bytes
-   read until then). */
+   material with its number. Errors: ARGUMENT (index: a material without its energy), MEMORY, LIMIT (also: one edge, face or element
+   divided 10,000 times in a row), FORMAT, DAMAGED (index: bytes read until then). */
 GXFEM_API gx_result gx_body_load(const void *memory, size_t size, const gx_body_desc *desc, gx_body **body, gx_failure *failure /* or NULL */);
 /* Another body of the same state, with the same allocator, clock, jobs and energies. Errors: ARGUMENT, MEMORY, LIMIT. */
 GXFEM_API gx_result gx_body_clone(gx_body *body, gx_body **clone);
@@ -2816,13 +2817,22 @@ static void gxp_add_first_moment(const gxp_cell *cell, double x[4][3], double su
     for (n = 0; n < 4; n++) for (k = 0; k < 3; k++) sum[k] += gxp_mass_row(cell->mass, n) * x[n][k];
 }
 
-/* inertia += density * integral of (|x|^2 1 - x x^T) = sum_ij m_ij (x_i . x_j 1 - x_i x_j^T) */
-static void gxp_add_inertia(const gxp_cell *cell, double x[4][3], double inertia[6]) {
-    int i, j;
-    for (i = 0; i < 4; i++) for (j = 0; j < 4; j++) {
-        const double m = cell->mass[gxp_mass_at[i][j]], *a = x[i], *b = x[j];
-        inertia[0] += m * (a[1] * b[1] + a[2] * b[2]); inertia[3] += m * (a[0] * b[0] + a[2] * b[2]); inertia[5] += m * (a[0] * b[0] + a[1] * b[1]);
-        inertia[1] -= m * a[0] * b[1]; inertia[2] -= m * a[0] * b[2]; inertia[4] -= m * a[1] * b[2];
+/* mx_i = sum_j m_ij x_j */
+static void gxp_mass_times(const gxp_cell *cell, double x[4][3], double mx[4][3]) {
+    int i, k;
+    for (i = 0; i < 4; i++) for (k = 0; k < 3; k++) {
+        const uint8_t *at = gxp_mass_at[i];
+        mx[i][k] = cell->mass[at[0]] * x[0][k] + cell->mass[at[1]] * x[1][k] + cell->mass[at[2]] * x[2][k] + cell->mass[at[3]] * x[3][k];
+    }
+}
+
+/* inertia += density * integral of (|x|^2 1 - x x^T) = sum_ij m_ij (x_i . x_j 1 - x_i x_j^T); mx: see gxp_mass_times */
+static void gxp_add_inertia(double x[4][3], double mx[4][3], double inertia[6]) {
+    int i;
+    for (i = 0; i < 4; i++) {
+        const double *a = mx[i], *b = x[i];
+        inertia[0] += a[1] * b[1] + a[2] * b[2]; inertia[3] += a[0] * b[0] + a[2] * b[2]; inertia[5] += a[0] * b[0] + a[1] * b[1];
+        inertia[1] -= a[0] * b[1]; inertia[2] -= a[0] * b[2]; inertia[4] -= a[1] * b[2];
     }
 }
 
@@ -2841,7 +2851,7 @@ static gx_result gxp_reserve_fragments(gx_body *body) {
 
 static gx_result gxp_sum_fragments(gx_body *body) {
     static const double zero[3] = {0, 0, 0};
-    double *volume, *mass, *center, *inertia, x[4][3];
+    double *volume, *mass, *center, *inertia, x[4][3], mx[4][3];
     uint32_t i, f;
     int n;
     const gx_result result = gxp_reserve_fragments(body);
@@ -2867,7 +2877,8 @@ static gx_result gxp_sum_fragments(gx_body *body) {
         const gxp_cell *cell = &body->cells[body->view_cells.data[i]];
         f = body->view_fragments.data[i];
         gxp_cell_corners(body, cell, 0, center + 3 * (size_t)f, x);
-        gxp_add_inertia(cell, x, inertia + 6 * (size_t)f);
+        gxp_mass_times(cell, x, mx);
+        gxp_add_inertia(x, mx, inertia + 6 * (size_t)f);
     }
     return GX_OK;
 }
@@ -3051,13 +3062,15 @@ static void gxp_cell_velocities(const gx_body *body, const gxp_cell *cell, const
 
 /* With x and v relative to the centre: inertia, angular momentum sum_ij m_ij x_i x v_j, energy of the relative motion */
 static void gxp_add_rotation(const gxp_cell *cell, double x[4][3], double v[4][3], gx_motion *motion, double momentum[3]) {
-    int i, j, k;
-    gxp_add_inertia(cell, x, motion->inertia);
-    for (i = 0; i < 4; i++) for (j = 0; j < 4; j++) for (k = 0; k < 3; k++) {
-        const double m = cell->mass[gxp_mass_at[i][j]];
+    double mx[4][3], mv[4][3];
+    int i, k;
+    gxp_mass_times(cell, x, mx);
+    gxp_mass_times(cell, v, mv);
+    gxp_add_inertia(x, mx, motion->inertia);
+    for (i = 0; i < 4; i++) for (k = 0; k < 3; k++) {
         const int a = (k + 1) % 3, b = (k + 2) % 3;
-        momentum[k] += m * (x[i][a] * v[j][b] - x[i][b] * v[j][a]);
-        motion->energy += 0.5 * m * v[i][k] * v[j][k];
+        momentum[k] += mx[i][a] * v[i][b] - mx[i][b] * v[i][a];
+        motion->energy += 0.5 * mv[i][k] * v[i][k];
     }
 }
 
