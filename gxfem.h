@@ -3385,8 +3385,21 @@ static uint64_t gxp_hash_words(uint64_t hash, const uint32_t *words, size_t coun
     return hash;
 }
 
+/* count x 2, or NULL */
+static uint64_t gxp_hash_texture(uint64_t hash, const float *texture, size_t count) {
+    size_t i;
+    hash = gxp_mix(hash ^ (texture != NULL));
+    for (i = 0; i < 2 * count && texture != NULL; i++) {
+        uint32_t b;
+        memcpy(&b, &texture[i], sizeof b);
+        hash = gxp_mix(hash ^ b);
+    }
+    return hash;
+}
+
 static uint64_t gxp_hash_mesh(const gx_body *body) {
-    const uint64_t hash = gxp_hash_doubles(gxp_mix(body->node_count), body->positions, 3 * (size_t)body->node_count);
+    const uint64_t hash = gxp_hash_texture(gxp_hash_doubles(gxp_mix(body->node_count), body->positions, 3 * (size_t)body->node_count),
+                                           body->texture, body->node_count);
     return gxp_hash_doubles(gxp_hash_words(gxp_hash_words(hash, body->complex->elements, 4 * (size_t)body->element_count),
                                            body->element_materials, body->element_count), &body->support_below, 1);
 }
@@ -3398,7 +3411,7 @@ static uint64_t gxp_hash_cut(uint64_t past, const gx_cut_desc *desc) {
     for (i = 0; i < desc->surface_count; i++) {
         const gx_surface *s = &desc->surfaces[i];
         past = gxp_hash_doubles(gxp_mix(past ^ s->kind ^ (uint64_t)s->vertex_count << 8), s->vertices, 3 * s->vertex_count);
-        past = gxp_hash_words(past, s->triangles, 3 * s->triangle_count);
+        past = gxp_hash_texture(gxp_hash_words(past, s->triangles, 3 * s->triangle_count), s->texture, s->vertex_count);
     }
     return past;
 }
@@ -3476,7 +3489,9 @@ static void gxp_pass_material(gxb_stream *s, gx_material *m) {
 typedef struct gxp_mesh {
     uint32_t node_count, element_count, material_count;
     double support_below;
+    uint32_t textured;          /* 1: there is a texture */
     double *positions;
+    float *texture;
     uint32_t *elements, *element_materials;
     gx_material *materials;
 } gxp_mesh;
@@ -3485,12 +3500,14 @@ static void gxp_pass_sizes(gxb_stream *s, gxp_mesh *mesh) {
     gxp_pass_word(s, &mesh->node_count);
     gxp_pass_word(s, &mesh->element_count);
     gxp_pass_word(s, &mesh->material_count);
+    gxp_pass_word(s, &mesh->textured);
     gxb_stream_pass(s, &mesh->support_below, 1, sizeof mesh->support_below);
 }
 
 static void gxp_pass_mesh(gxb_stream *s, gxp_mesh *mesh) {
     uint32_t i;
     gxb_stream_pass(s, mesh->positions, 3 * (size_t)mesh->node_count, sizeof(double));
+    if (mesh->textured) gxb_stream_pass(s, mesh->texture, 2 * (size_t)mesh->node_count, sizeof(float));
     gxb_stream_pass(s, mesh->elements, 4 * (size_t)mesh->element_count, sizeof(uint32_t));
     gxb_stream_pass(s, mesh->element_materials, mesh->element_count, sizeof(uint32_t));
     for (i = 0; i < mesh->material_count; i++) gxp_pass_material(s, &mesh->materials[i]);
@@ -3501,6 +3518,7 @@ static void gxp_save_mesh(gxb_stream *s, gx_body *body) {
     mesh.node_count = body->node_count; mesh.element_count = body->element_count; mesh.material_count = body->material_count;
     mesh.support_below = body->support_below;
     mesh.positions = body->positions; mesh.elements = body->complex->elements;
+    mesh.texture = body->texture; mesh.textured = body->texture != NULL;
     mesh.element_materials = body->element_materials; mesh.materials = body->materials;
     gxp_pass_sizes(s, &mesh);
     gxp_pass_mesh(s, &mesh);
@@ -3534,6 +3552,7 @@ static void gxp_create_again(gxb_stream *s, const gx_body_desc *given, gxp_mesh 
     desc.elements = mesh->elements; desc.element_count = mesh->element_count;
     desc.materials = mesh->materials; desc.material_count = mesh->material_count;
     desc.element_materials = mesh->element_materials;
+    desc.texture = mesh->textured ? mesh->texture : NULL;
     desc.support_below = mesh->support_below;
     result = gx_body_create(&desc, body, NULL);
     gxp_require(s, result == GX_OK || result == GX_ERROR_MEMORY || result == GX_ERROR_LIMIT ? result : GX_ERROR_DAMAGED);
@@ -3541,26 +3560,30 @@ static void gxp_create_again(gxb_stream *s, const gx_body_desc *given, gxp_mesh 
 
 static void gxp_load_mesh(gxb_stream *s, const gx_body_desc *desc, gx_body **body, size_t *index) {
     const gx_allocator *a = &desc->allocator;
-    size_t positions, elements, element_materials, materials;
+    size_t positions, texture, elements, element_materials, materials;
     gxp_mesh mesh;
     memset(&mesh, 0, sizeof mesh);
     gxp_pass_sizes(s, &mesh);
     gxb_stream_has(s, mesh.node_count, 3 * sizeof(double));
     gxb_stream_has(s, mesh.element_count, 5 * sizeof(uint32_t));
     gxb_stream_has(s, mesh.material_count, sizeof(uint32_t) + 4 * sizeof(double));
-    gxp_require_true(s, mesh.node_count > 0 && mesh.element_count > 0 && mesh.material_count > 0 && mesh.material_count <= INT32_MAX / sizeof(gx_material));
+    gxp_require_true(s, mesh.node_count > 0 && mesh.element_count > 0 && mesh.material_count > 0 && mesh.material_count <= INT32_MAX / sizeof(gx_material) &&
+                        mesh.textured <= 1);
     if (s->result != GX_OK) return;
     positions = 3 * (size_t)mesh.node_count * sizeof(double); elements = 4 * (size_t)mesh.element_count * sizeof(uint32_t);
+    texture = 2 * (size_t)mesh.node_count * sizeof(float);
     element_materials = elements / 4; materials = mesh.material_count * sizeof(gx_material);
     mesh.positions = (double *)gxp_allocate(a, positions);
+    mesh.texture = (float *)gxp_allocate(a, texture);
     mesh.elements = (uint32_t *)gxp_allocate(a, elements);
     mesh.element_materials = (uint32_t *)gxp_allocate(a, element_materials);
     mesh.materials = (gx_material *)gxp_allocate(a, materials);
-    if (mesh.positions && mesh.elements && mesh.element_materials && mesh.materials) {
+    if (mesh.positions && mesh.texture && mesh.elements && mesh.element_materials && mesh.materials) {
         memset(mesh.materials, 0, materials);
         gxp_create_again(s, desc, &mesh, body, index);
     } else gxp_require(s, GX_ERROR_MEMORY);
     gxp_release(a, mesh.positions, positions);
+    gxp_release(a, mesh.texture, texture);
     gxp_release(a, mesh.elements, elements);
     gxp_release(a, mesh.element_materials, element_materials);
     gxp_release(a, mesh.materials, materials);
@@ -3586,6 +3609,11 @@ static void gxp_pass_cells(gxb_stream *s, gx_body *body) {
     }
     gxb_stream_pass(s, body->copy_node, body->copy_count, sizeof *body->copy_node);
     gxp_pass_word(s, &body->label_count);
+    for (i = 0; i < body->surface_count; i++) {
+        gxp_pass_word(s, &body->surfaces[i].label);
+        gxp_pass_word(s, &body->surfaces[i].map);
+    }
+    gxb_stream_pass(s, body->maps, body->map_count, 8 * sizeof *body->maps);
     gxb_stream_pass(s, &body->past, 1, sizeof body->past);
 }
 
@@ -3593,6 +3621,8 @@ static void gxp_save_topology(gxb_stream *s, gx_body *body) {
     gxb_complex_save(body->complex, s);
     gxp_pass_word(s, &body->cell_count);
     gxp_pass_word(s, &body->copy_count);
+    gxp_pass_word(s, &body->surface_count);
+    gxp_pass_word(s, &body->map_count);
     gxp_pass_cells(s, body);
 }
 
@@ -3639,6 +3669,20 @@ static void gxp_check_lists(gxb_stream *s, gx_body *body, const gxp_places *seen
     for (i = 0; i < body->complex->label_count; i++) gxp_require_true(s, body->complex->labels[i].triangle < body->label_count);
 }
 
+/* Surfaces in the order of their labels, each with maps for all of its triangles or for none. */
+static void gxp_check_surfaces(gxb_stream *s, const gx_body *body) {
+    uint32_t i;
+    size_t k;
+    for (i = 0; i < body->surface_count; i++) {
+        const gxp_surface_record *r = &body->surfaces[i];
+        const uint32_t end = i + 1 < body->surface_count ? r[1].label : body->label_count;
+        gxp_require_true(s, r->label < end && (i > 0 || r->label == 0));
+        gxp_require_true(s, r->map == GXP_NONE || (r->map <= body->map_count && end - r->label <= body->map_count - r->map));
+    }
+    gxp_require_true(s, body->surface_count > 0 || body->label_count == 0);
+    for (k = 0; k < 8 * (size_t)body->map_count; k++) gxp_require_true(s, gxp_is_finite(body->maps[k]));
+}
+
 static void gxp_check_topology(gxb_stream *s, gx_body *body) {
     const size_t bytes = (size_t)body->cell_count + body->leaf_count + body->copy_count;
     gxp_places seen;
@@ -3647,26 +3691,34 @@ static void gxp_check_topology(gxb_stream *s, gx_body *body) {
     memset(seen.cell, 0, bytes);
     seen.leaf = seen.cell + body->cell_count; seen.copy = seen.leaf + body->leaf_count;
     gxp_check_lists(s, body, &seen);
+    gxp_check_surfaces(s, body);
     gxp_release(&body->allocator, seen.cell, bytes);
 }
 
 static void gxp_load_topology(gxb_stream *s, gx_body *body, int trusted) {
     const uint32_t leaves = gxb_complex_load(body->complex, s, trusted) == GX_OK ? body->complex->leaf_count : 0;
-    uint32_t cells, copies;
+    uint32_t cells, copies, surfaces, maps;
     gxp_pass_word(s, &cells);
     gxp_pass_word(s, &copies);
+    gxp_pass_word(s, &surfaces);
+    gxp_pass_word(s, &maps);
     gxb_stream_has(s, cells, sizeof(uint32_t) * 8 + sizeof(double) * 11);
     gxb_stream_has(s, copies, sizeof(uint32_t));
+    gxb_stream_has(s, surfaces, 2 * sizeof(uint32_t));
+    gxb_stream_has(s, maps, 8 * sizeof(double));
     gxp_require_true(s, cells >= body->element_count && cells <= INT32_MAX && copies <= INT32_MAX);
     if (s->result != GX_OK) return;
     gxp_require(s, gxp_reserve_cells(body, cells - body->cell_count));
     gxp_require(s, gxp_reserve(&body->allocator, &body->leaves, sizeof *body->leaves, body->leaf_count, &body->leaf_capacity, leaves - body->leaf_count));
     body->copy_count = 0;
     gxp_require(s, gxp_reserve_copies(body, copies));
+    gxp_require(s, gxp_reserve(&body->allocator, &body->surfaces, sizeof *body->surfaces, 0, &body->surface_capacity, surfaces));
+    gxp_require(s, gxp_reserve(&body->allocator, &body->maps, 8 * sizeof *body->maps, 0, &body->map_capacity, maps));
     if (s->result != GX_OK) return;
     memset(body->leaves, 0, leaves * sizeof *body->leaves);
     if (copies > 0) memset(body->held, 0, copies);
     body->cell_count = cells; body->leaf_count = leaves; body->copy_count = copies;
+    body->surface_count = surfaces; body->map_count = maps;
     gxp_pass_cells(s, body);
     if (s->result == GX_OK && !trusted) gxp_check_topology(s, body);
     body->held_stale = body->model_stale = body->view_stale = 1;

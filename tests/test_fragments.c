@@ -92,19 +92,6 @@ static void check_change(const memory *m, const gx_view *v, int touched, uint64_
     for (i = 0; i < m->count; ++i) CHECK_SEED(is_listed(v, m->pieces[i].id) == (heaviest[i] == SIZE_MAX), seed);
 }
 
-static void add_random_surface(workload *w) {
-    double p[3], n[3], x[3];
-    int k, i, kind = random_below(5);
-    for (k = 0; k < 3; ++k) { p[k] = random_real(0.2, 2.8); n[k] = random_real(-1, 1); }
-    if (kind == 0) add_box(w, 1, p[0] - 0.7, p[1] - 0.5, p[2] - 0.6, p[0] + 0.2, p[1] + 0.9, p[2] + 0.7);
-    else if (kind == 1) {
-        wl_surface *s = wl_add_surface(w, 0);
-        for (i = 0; i < 3; ++i) { for (k = 0; k < 3; ++k) x[k] = p[k] + random_real(-0.8, 0.8); wl_add_vertex(s, x); }
-        wl_add_triangle(s, 0, 1, 2);
-    } else if (kind == 2) add_axis_plane(w, random_below(3), random_below(7) / 2.0);
-    else add_plane(w, p, n, 12);
-}
-
 /* Random cuts, several between looks now and then; skins, hashes and failed cuts in between tell nothing and change nothing. */
 START_TEST(random_cuts) {
     const uint64_t seed = (uint64_t)_i + 1;
@@ -126,9 +113,9 @@ START_TEST(random_cuts) {
     for (k = 0; k < 9; ++k) {
         gx_skin skin;
         gx_view v;
-        add_random_surface(&w);
+        add_random_cut(&w, 1);
         touched |= cut_by(body, &w, (size_t)k, 1).touched_elements > 0;
-        if (random_below(3) == 0) ck_assert_int_eq(gx_body_skin(body, &skin), GX_OK);
+        if (random_below(3) == 0) ck_assert_int_eq(gx_body_skin(body, NULL, &skin), GX_OK);
         if (random_below(3) == 0) hash_of(body);
         if (random_below(3) == 0) continue;
         v = view_of(body);
@@ -149,7 +136,7 @@ static gx_result bad_cut(gx_body *body) {
     static const uint32_t t[3] = { 0, 1, 9 };
     gx_surface surface;
     gx_cut_desc cut;
-    memset(&cut, 0, sizeof cut);
+    memset(&cut, 0, sizeof cut); memset(&surface, 0, sizeof surface);
     surface.vertices = x; surface.vertex_count = 3; surface.triangles = t; surface.triangle_count = 1; surface.kind = GX_SURFACE_SHEET;
     cut.surfaces = &surface; cut.surface_count = 1;
     return gx_body_cut(body, &cut, NULL, NULL);
@@ -403,7 +390,7 @@ START_TEST(rigid_motion) {
     }
     for (k = 0; k < 3; ++k) axis[k] /= sqrt(length);
     angle = random_real(-3, 3);
-    for (i = 0; i < 4; ++i) { add_random_surface(&w); cut_by(body, &w, i, 1); }
+    for (i = 0; i < 4; ++i) { add_random_cut(&w, 1); cut_by(body, &w, i, 1); }
     v = view_of(body);
     move_rigidly(&w, &v, axis, angle, t, v0, spin);
     ck_assert_uint_lt(v.fragment_count, MOST);
