@@ -1,0 +1,933 @@
+/* scene.h: what the scenes of the two papers share, over gxio.h and gxfem.h. Include it in place of both.
+
+   A scene reads
+
+       scene s;
+       scene_sheet blade;
+       scene_open(&s, &desc, argc, argv);               command line, mesh; s.body_desc and s.step are the papers'
+       scene_make(&s);                                  the body
+       blade = scene_flat_sheet(&s, ...);
+       for (; s.frame < s.frames; scene_step(&s)) scene_advance(&s, &blade, 0.1, 0.9);
+       scene_check(&s, s.view.fragment_count == 2, "fragments: %u (2)", ...);
+       return scene_close(&s);
+
+   contents
+     >>types       scene, sheets, times
+     >>failure     one line of text, exit code
+     >>memory      an allocator that counts
+     >>arguments   the command line
+     >>body        mesh, body
+     >>sheets      surfaces that advance strip by strip
+     >>cuts        a cut, and the record of all
+     >>skin        the visual surface: the one place that knows how gxfem.h gives it
+     >>frames      steps, times, files, progress bar
+     >>measures    what a scene is judged by
+     >>report      checks, the line of the table
+
+   Exit codes: 0 all checks hold; 1 one does not, or a cut or a step failed; 2 usage error, or a file that can't be written. */
+#ifndef SCENE_H
+#define SCENE_H
+
+#include "gxio.h"
+
+#define GXFEM_IMPLEMENTATION
+#include "../gxfem.h"
+
+#ifdef _WIN32
+#include <io.h>
+#define SCENE_STDERR_IS_TERMINAL (_isatty(2) != 0)
+#else
+#include <unistd.h>
+#define SCENE_STDERR_IS_TERMINAL (isatty(2) != 0)
+#endif
+
+/* --------------------------------------------------------------------------------------------- >>types */
+
+typedef struct scene_desc {
+    const char *name, *about;           /* about: one line */
+    const char *mesh, *small_mesh;      /* as gxio_mesh_load takes them; small_mesh NULL: the same */
+    int any_mesh;                       /* not 0: --mesh may name another */
+    uint32_t frames, small_frames;
+} scene_desc;
+
+/* Seconds of a frame, or their sums */
+enum { SCENE_ARRANGEMENT, SCENE_ENRICHMENT, SCENE_INTEGRALS, SCENE_MODEL, SCENE_LINEARISE, SCENE_PREPARE, SCENE_SOLVE,
+       SCENE_FORCES,                    /* energies and forces of the step: what is left of it */
+       SCENE_SKIN,                      /* view, skin, positions of its vertices */
+       SCENE_PHASES };
+
+typedef struct scene_memory { size_t now, peak; } scene_memory;     /* bytes */
+
+/* A surface of (along + 1) x (across + 1) points, cut column by column: neighbouring strips have the same vertices, bit by bit. */
+typedef struct scene_sheet {
+    double *vertices;                   /* column by column, x 3 */
+    uint32_t *triangles;                /* of the whole sheet, 2 x along x across x 3 */
+    uint32_t along, across;
+    uint32_t done;                      /* columns cut so far */
+} scene_sheet;
+
+/* Where the sheet is at a (along) and b (across), both from 0 to 1 */
+typedef void (*scene_point_fn)(const void *user, double a, double b, double *x);
+
+/* The body's surface as triangles, and where its vertices come from */
+typedef struct scene_skin {
+    gxio_triangles triangles;           /* as files take them */
+    double *positions;                  /* triangles.vertex_count x 3, deformed; owned */
+    const uint32_t *vertex_point;       /* triangles.vertex_count */
+    const uint32_t *vertex_copies;      /* x 4 */
+    const double *vertex_weights;       /* x 4 */
+} scene_skin;
+
+typedef struct scene {
+    scene_desc desc;
+    int small, quiet, help;
+    uint32_t frame, frames, every;      /* frame: of the next step */
+    const char *mesh_name, *out, *format, *table;
+    gxio_mesh mesh;                     /* may be moved before scene_make */
+    gx_body_desc body_desc;             /* may be changed before scene_make */
+    gx_step_desc step;                  /* may be changed at any time */
+    gx_body *body;
+    gx_view view;
+    scene_skin skin;                    /* of the last step */
+    int looked;                         /* view and skin are those of the body as it is cut now */
+    gx_surface *cuts;                   /* cut_count, every surface so far; they and their arrays owned */
+    size_t cut_count;
+    size_t first_copies, cut_triangles;
+    scene_memory memory;
+    double frame_seconds[SCENE_PHASES], frame_cut, sum[SCENE_PHASES], sum_frames, worst_frame;
+    double solver_start;                /* when the solver first looked at the clock in this step; below 0: not yet */
+    uint32_t cut_frames, frames_written;
+    int bar;                            /* a progress bar stands on stderr */
+    uint32_t checks, wrong;
+    gxio_error error;
+} scene;
+
+/* ------------------------------------------------------------------------------------------- >>failure */
+
+enum { SCENE_RIGHT = 0, SCENE_WRONG = 1, SCENE_MISUSED = 2 };
+
+static inline void scene_end_bar(scene *s)
+{
+    if (s->bar) fputc('\n', stderr);
+    s->bar = 0;
+}
+
+/* Says what is in s->error and ends the program. */
+static inline void scene_quit(scene *s, int code)
+{
+    scene_end_bar(s);
+    fprintf(stderr, "%s: %s\n", s->desc.name, s->error.text);
+    exit(code);
+}
+
+static inline void scene_misuse(scene *s, const char *what, const char *cause)
+{
+    gxio_fail(&s->error, what, 0, "%s", cause);
+    scene_quit(s, SCENE_MISUSED);
+}
+
+/* Ends the program where a call on the body failed: "NAME: what: cause" */
+static inline void scene_must(scene *s, gx_result result, const char *what)
+{
+    if (result == GX_OK) return;
+    gxio_fail(&s->error, what, 0, "%s", gx_result_text(result));
+    scene_quit(s, SCENE_WRONG);
+}
+
+/* count x size bytes, zeroed, or the end of the program */
+static inline void *scene_array(scene *s, size_t count, size_t size)
+{
+    void *array = gxio_array(count, size);
+    scene_must(s, array ? GX_OK : GX_ERROR_MEMORY, "memory");
+    return memset(array, 0, count * size);
+}
+
+/* -------------------------------------------------------------------------------------------- >>memory */
+
+static inline void *scene_allocate(void *user, size_t size)
+{
+    scene_memory *memory = (scene_memory *)user;
+    void *bytes = malloc(size);
+    if (bytes) memory->now += size;
+    if (memory->now > memory->peak) memory->peak = memory->now;
+    return bytes;
+}
+
+static inline void scene_release(void *user, void *bytes, size_t size)
+{
+    ((scene_memory *)user)->now -= size;
+    free(bytes);
+}
+
+/* ----------------------------------------------------------------------------------------- >>arguments */
+
+static inline void scene_usage(const scene *s)
+{
+    printf("usage: %s [options]\n\n%s\n\n", s->desc.name, s->desc.about);
+    puts("  --small             a smaller scene, for tests");
+    printf("  --frames N          steps and frames (%lu; %lu with --small)\n", (unsigned long)s->desc.frames,
+           (unsigned long)s->desc.small_frames);
+    if (s->desc.any_mesh) printf("  --mesh MESH         FILE.mesh, FILE.node or grid:NX,NY,NZ (%s)\n", s->desc.mesh);
+    puts("  --out DIR           writes frames there\n"
+         "  --every N           only each N-th of them (1)\n"
+         "  --format vtu|obj    frames for ParaView with a collection frames.pvd (default), or Wavefront\n"
+         "  --table FILE        appends the scene's line of the table of all scenes\n"
+         "  --quiet             prints only what is wrong\n"
+         "  --help              this text");
+}
+
+static inline void scene_read_count(scene *s, const char *name, const char *value, uint32_t *count)
+{
+    int64_t number;
+    if (!gxio_parse_integer(value, value + strlen(value), &number) || number < 1 || number > 1000000)
+        scene_misuse(s, name, "needs a count from 1 to 1000000");
+    *count = (uint32_t)number;
+}
+
+static inline int scene_take_flag(scene *s, const char *name)
+{
+    if (strcmp(name, "--small") == 0) s->small = 1;
+    else if (strcmp(name, "--quiet") == 0) s->quiet = 1;
+    else if (strcmp(name, "--help") == 0) s->help = 1;
+    else return 0;
+    return 1;
+}
+
+static inline int scene_take_value(scene *s, const char *name, const char *value)
+{
+    if (strcmp(name, "--frames") == 0) scene_read_count(s, name, value, &s->frames);
+    else if (strcmp(name, "--every") == 0) scene_read_count(s, name, value, &s->every);
+    else if (strcmp(name, "--out") == 0) s->out = value;
+    else if (strcmp(name, "--format") == 0) s->format = value;
+    else if (strcmp(name, "--table") == 0) s->table = value;
+    else if (strcmp(name, "--mesh") == 0 && s->desc.any_mesh) s->mesh_name = value;
+    else return 0;
+    return 1;
+}
+
+static inline void scene_take_arguments(scene *s, int argc, char **argv)
+{
+    int i;
+    for (i = 1; i < argc; i++) {
+        if (scene_take_flag(s, argv[i])) continue;
+        if (!scene_take_value(s, argv[i], i + 1 < argc ? argv[i + 1] : "1")) scene_misuse(s, argv[i], "unknown option, see --help");
+        if (++i >= argc) scene_misuse(s, argv[i - 1], "needs a value");
+    }
+    if (strcmp(s->format, "vtu") != 0 && strcmp(s->format, "obj") != 0) scene_misuse(s, "--format", "must be vtu or obj");
+    if (!s->frames) s->frames = s->small ? s->desc.small_frames : s->desc.frames;
+    if (!s->mesh_name) s->mesh_name = s->small && s->desc.small_mesh ? s->desc.small_mesh : s->desc.mesh;
+}
+
+/* ---------------------------------------------------------------------------------------------- >>body */
+
+/* The parameters of GXFEM section 5 */
+static inline void scene_set_defaults(scene *s)
+{
+    s->body_desc.young = 1e6;
+    s->body_desc.poisson = 0.4;
+    s->body_desc.density = 1000.0;
+    s->step.dt = 0.033;
+    s->step.gravity[2] = -9.81;
+    s->step.newton_iterations = 1;
+}
+
+/* Reads the command line and the mesh. */
+static inline void scene_open(scene *s, const scene_desc *desc, int argc, char **argv)
+{
+    memset(s, 0, sizeof *s);
+    s->desc = *desc;
+    s->every = 1;
+    s->format = "vtu";
+    scene_set_defaults(s);
+    scene_take_arguments(s, argc, argv);
+    if (s->help) {
+        scene_usage(s);
+        exit(SCENE_RIGHT);
+    }
+    if (!gxio_mesh_load(s->mesh_name, &s->mesh, &s->error)) scene_quit(s, SCENE_MISUSED);
+    if (s->out && !gxio_make_directory(s->out, &s->error)) scene_quit(s, SCENE_MISUSED);
+    if (!s->quiet) printf("%s: %s\n", s->desc.name, s->desc.about);
+}
+
+/* Multiplies the mesh's coordinates. */
+static inline void scene_scale(scene *s, double x, double y, double z)
+{
+    const double factor[3] = {x, y, z};
+    size_t i;
+    for (i = 0; i < 3 * s->mesh.node_count; i++) s->mesh.positions[i] *= factor[i % 3];
+}
+
+/* The body, of s->mesh by s->body_desc */
+static inline void scene_make(scene *s)
+{
+    gx_body_desc *desc = &s->body_desc;
+    gx_failure failure;
+    gx_result result;
+    desc->positions = s->mesh.positions;
+    desc->node_count = s->mesh.node_count;
+    desc->elements = s->mesh.elements;
+    desc->element_count = s->mesh.element_count;
+    desc->allocator.allocate = scene_allocate;
+    desc->allocator.release = scene_release;
+    desc->allocator.user = &s->memory;
+    desc->clock = gxio_seconds;
+    result = gx_body_create(desc, &s->body, &failure);
+    if (result != GX_OK && failure.index != SIZE_MAX)
+        fprintf(stderr, "%s: node or element %lu\n", s->mesh_name, (unsigned long)failure.index);
+    scene_must(s, result, s->mesh_name);
+    scene_must(s, gx_body_view(s->body, &s->view), "view");
+    s->first_copies = s->view.copy_count;
+}
+
+/* Holds what lies on one side (-1: below) of a plane across an axis. */
+static inline void scene_hold(scene *s, uint32_t axis, int32_t side, double value)
+{
+    gx_region region;
+    region.axis = axis;
+    region.side = side;
+    region.value = value;
+    scene_must(s, gx_body_hold(s->body, &region, 1), "hold");
+}
+
+/* -------------------------------------------------------------------------------------------- >>sheets */
+
+static inline void scene_fill_triangles(scene_sheet *sheet)
+{
+    const uint32_t row = sheet->across + 1;
+    uint32_t i, j, *t = sheet->triangles;
+    for (i = 0; i < sheet->along; i++)
+        for (j = 0; j < sheet->across; j++, t += 6) {
+            const uint32_t a = i * row + j, b = a + row;
+            t[0] = a; t[1] = b; t[2] = b + 1;
+            t[3] = a; t[4] = b + 1; t[5] = a + 1;
+        }
+}
+
+static inline scene_sheet scene_make_sheet(scene *s, uint32_t along, uint32_t across, scene_point_fn point, const void *user)
+{
+    scene_sheet sheet;
+    uint32_t i, j;
+    double *x;
+    sheet.along = along;
+    sheet.across = across;
+    sheet.done = 0;
+    x = sheet.vertices = (double *)scene_array(s, (size_t)(along + 1) * (across + 1), 3 * sizeof(double));
+    sheet.triangles = (uint32_t *)scene_array(s, (size_t)along * across, 6 * sizeof(uint32_t));
+    for (i = 0; i <= along; i++)
+        for (j = 0; j <= across; j++, x += 3) point(user, (double)i / along, (double)j / across, x);
+    scene_fill_triangles(&sheet);
+    return sheet;
+}
+
+static inline void scene_drop_sheet(scene_sheet *sheet)
+{
+    free(sheet->vertices);
+    free(sheet->triangles);
+    memset(sheet, 0, sizeof *sheet);
+}
+
+/* corner + a u + b v; nine numbers */
+static inline void scene_flat_point(const void *user, double a, double b, double *x)
+{
+    const double *p = (const double *)user;
+    int i;
+    for (i = 0; i < 3; i++) x[i] = p[i] + a * p[3 + i] + b * p[6 + i];
+}
+
+/* A parallelogram in `along` strips from `corner` along u. Where u and v are 0, every vertex has exactly the corner's coordinate. */
+static inline scene_sheet scene_flat_sheet(scene *s, const double corner[3], const double u[3], const double v[3], uint32_t along)
+{
+    double p[9];
+    memcpy(p, corner, 3 * sizeof(double));
+    memcpy(p + 3, u, 3 * sizeof(double));
+    memcpy(p + 6, v, 3 * sizeof(double));
+    return scene_make_sheet(s, along, 1, scene_flat_point, p);
+}
+
+/* ---------------------------------------------------------------------------------------------- >>cuts */
+
+/* Remembers a surface: what it points to may go. */
+static inline void scene_record(scene *s, const gx_surface *surface)
+{
+    gx_surface *grown = (gx_surface *)realloc(s->cuts, (s->cut_count + 1) * sizeof *grown), *copy;
+    double *vertices = (double *)scene_array(s, surface->vertex_count, 3 * sizeof(double));
+    uint32_t *triangles = (uint32_t *)scene_array(s, surface->triangle_count, 3 * sizeof(uint32_t));
+    scene_must(s, grown ? GX_OK : GX_ERROR_MEMORY, "memory");
+    memcpy(vertices, surface->vertices, 3 * surface->vertex_count * sizeof(double));
+    memcpy(triangles, surface->triangles, 3 * surface->triangle_count * sizeof(uint32_t));
+    s->cuts = grown;
+    copy = &s->cuts[s->cut_count++];
+    *copy = *surface;
+    copy->vertices = vertices;
+    copy->triangles = triangles;
+    s->cut_triangles += surface->triangle_count;
+}
+
+/* Cuts the body, now, by all surfaces at once. */
+static inline void scene_cut(scene *s, const gx_surface *surfaces, size_t count)
+{
+    const double start = gxio_seconds(NULL);
+    gx_cut_desc desc;
+    gx_cut_report report;
+    size_t i;
+    memset(&desc, 0, sizeof desc);
+    desc.surfaces = surfaces;
+    desc.surface_count = count;
+    scene_must(s, gx_body_cut(s->body, &desc, &report, NULL), "cut");
+    s->frame_cut += gxio_seconds(NULL) - start;
+    s->frame_seconds[SCENE_ARRANGEMENT] += report.seconds_arrangement;
+    s->frame_seconds[SCENE_ENRICHMENT] += report.seconds_enrichment;
+    s->frame_seconds[SCENE_INTEGRALS] += report.seconds_integrals;
+    s->looked = 0;
+    for (i = 0; i < count; i++) scene_record(s, &surfaces[i]);
+}
+
+/* Cuts the strips of a sheet up to a column. */
+static inline void scene_cut_up_to(scene *s, scene_sheet *sheet, uint32_t column)
+{
+    const size_t row = sheet->across + 1;
+    gx_surface strip;
+    if (column <= sheet->done) return;
+    memset(&strip, 0, sizeof strip);
+    strip.vertices = sheet->vertices + 3 * row * sheet->done;
+    strip.vertex_count = row * (column - sheet->done + 1);
+    strip.triangles = sheet->triangles;
+    strip.triangle_count = 2 * (size_t)sheet->across * (column - sheet->done);
+    scene_cut(s, &strip, 1);
+    sheet->done = column;
+}
+
+/* The number of `count` things due in this frame, if the first is to begin at `from` and the last to end at `to`, shares of the
+   run, whatever its length */
+static inline uint32_t scene_due(const scene *s, double from, double to, uint32_t count)
+{
+    const double share = ((s->frame + 1.0) / s->frames - from) / (to - from);
+    return share >= 1.0 ? count : share <= 0.0 ? 0 : (uint32_t)(share * count + 1e-9);
+}
+
+/* Cuts the strips that are due: the sheet's sweep takes the run from `from` to `to`. */
+static inline void scene_advance(scene *s, scene_sheet *sheet, double from, double to)
+{
+    scene_cut_up_to(s, sheet, scene_due(s, from, to, sheet->along));
+}
+
+/* Cuts a whole parallelogram at once. */
+static inline void scene_cut_flat(scene *s, const double corner[3], const double u[3], const double v[3])
+{
+    scene_sheet sheet = scene_flat_sheet(s, corner, u, v, 1);
+    scene_cut_up_to(s, &sheet, 1);
+    scene_drop_sheet(&sheet);
+}
+
+/* Cuts the body through, across an axis at a coordinate. */
+static inline void scene_cut_across(scene *s, uint32_t axis, double at)
+{
+    double low[3], high[3], corner[3], u[3] = {0, 0, 0}, v[3] = {0, 0, 0};
+    const uint32_t j = (axis + 1) % 3, k = (axis + 2) % 3;
+    gxio_bounds(s->mesh.positions, s->mesh.node_count, low, high);
+    corner[axis] = at;
+    corner[j] = 2.0 * low[j] - high[j];     /* a body's width beyond it on each side, and the diagonal beside it */
+    corner[k] = 2.0 * low[k] - high[k];
+    u[j] = 4.0 * (high[j] - low[j]);
+    v[k] = 4.0 * (high[k] - low[k]);
+    scene_cut_flat(s, corner, u, v);
+}
+
+/* ---------------------------------------------------------------------------------------------- >>skin */
+
+/* The surface as the body is now. */
+static inline void scene_take_skin(scene *s)
+{
+    scene_skin *own = &s->skin;
+    gx_skin skin;
+    scene_must(s, gx_body_skin(s->body, &skin), "skin");
+    if (!s->looked) {
+        free(own->positions);
+        own->positions = (double *)scene_array(s, skin.vertex_count, 3 * sizeof(double));
+    }
+    gx_body_skin_positions(s->body, &skin, own->positions);
+    own->triangles.positions = own->positions;
+    own->triangles.vertex_count = skin.vertex_count;
+    own->triangles.triangles = skin.triangles;
+    own->triangles.triangle_count = skin.triangle_count;
+    own->triangles.fragment = skin.triangle_fragment;
+    own->triangles.fragment_count = s->view.fragment_count;
+    own->triangles.cut = skin.triangle_cut;
+    own->vertex_point = skin.vertex_point;
+    own->vertex_copies = skin.vertex_copies;
+    own->vertex_weights = skin.vertex_weights;
+}
+
+/* View and skin of the body as it is now */
+static inline void scene_look(scene *s)
+{
+    const double start = gxio_seconds(NULL);
+    if (!s->looked) scene_must(s, gx_body_view(s->body, &s->view), "view");
+    scene_take_skin(s);
+    s->looked = 1;
+    s->frame_seconds[SCENE_SKIN] += gxio_seconds(NULL) - start;
+}
+
+/* -------------------------------------------------------------------------------------------- >>frames */
+
+static inline void scene_join_path(scene *s, const char *name, char path[GXIO_PATH_ROOM])
+{
+    const int length = snprintf(path, GXIO_PATH_ROOM, "%s/%s", s->out, name);
+    if (length <= 0 || length >= GXIO_PATH_ROOM) scene_misuse(s, "--out", "the path is too long");
+}
+
+static inline void scene_write_frame(scene *s)
+{
+    char name[32], path[GXIO_PATH_ROOM];
+    gxio_frame_name(name, sizeof name, s->frames_written, s->format);
+    scene_join_path(s, name, path);
+    if (!(strcmp(s->format, "obj") == 0 ? gxio_write_obj(path, &s->skin.triangles, &s->error)
+                                        : gxio_write_vtu(path, &s->skin.triangles, &s->error))) scene_quit(s, SCENE_MISUSED);
+    s->frames_written++;
+}
+
+/* The collection of the frames there are */
+static inline void scene_write_collection(scene *s)
+{
+    char path[GXIO_PATH_ROOM];
+    if (!s->frames_written || strcmp(s->format, "vtu") != 0) return;
+    scene_join_path(s, "frames.pvd", path);
+    if (!gxio_write_pvd(path, s->frames_written, s->step.dt * s->every, &s->error)) scene_quit(s, SCENE_MISUSED);
+}
+
+static inline void scene_draw_bar(scene *s)
+{
+    const int width = 40, filled = (int)((double)width * s->frame / s->frames);
+    int i;
+    if (s->quiet || !SCENE_STDERR_IS_TERMINAL) return;
+    fprintf(stderr, "\r%s [", s->desc.name);
+    for (i = 0; i < width; i++) fputc(i < filled ? '#' : '.', stderr);
+    fprintf(stderr, "] %lu/%lu, %lu unknowns ", (unsigned long)s->frame, (unsigned long)s->frames, 3 * (unsigned long)s->view.copy_count);
+    fflush(stderr);
+    s->bar = 1;
+}
+
+/* The solver's clock: when it is first asked, the body has made the solver's model. */
+static inline double scene_solver_clock(void *user)
+{
+    scene *s = (scene *)user;
+    const double now = gxio_seconds(NULL);
+    if (s->solver_start < 0.0) s->solver_start = now;
+    return now;
+}
+
+/* The body's step, and what it took by phase */
+static inline void scene_move(scene *s, gx_step_report *report)
+{
+    const double start = gxio_seconds(NULL);
+    double *seconds = s->frame_seconds;
+    gx_result result;
+    memset(report, 0, sizeof *report);
+    s->step.clock = scene_solver_clock;
+    s->step.clock_user = s;
+    s->solver_start = -1.0;
+    result = gx_body_step(s->body, &s->step, report, NULL);
+    if (result != GX_OK && s->out) scene_write_collection(s);   /* what there is can be looked at */
+    scene_must(s, result, "step");
+    seconds[SCENE_MODEL] = s->solver_start < 0.0 ? 0.0 : s->solver_start - start;
+    seconds[SCENE_LINEARISE] = report->seconds_linearise;
+    seconds[SCENE_PREPARE] = report->seconds_prepare;
+    seconds[SCENE_SOLVE] = report->seconds_solve;
+    seconds[SCENE_FORCES] = report->seconds - seconds[SCENE_MODEL] - seconds[SCENE_LINEARISE] - seconds[SCENE_PREPARE] - seconds[SCENE_SOLVE];
+}
+
+/* Adds the frame's times to the run's. */
+static inline void scene_count_frame(scene *s)
+{
+    double frame = s->frame_cut;
+    int i;
+    for (i = 0; i < SCENE_PHASES; i++) {
+        s->sum[i] += s->frame_seconds[i];
+        if (i >= SCENE_MODEL) frame += s->frame_seconds[i];
+        s->frame_seconds[i] = 0.0;
+    }
+    if (s->frame_cut > 0.0) s->cut_frames++;
+    s->frame_cut = 0.0;
+    s->sum_frames += frame;
+    if (frame > s->worst_frame) s->worst_frame = frame;
+}
+
+/* Ends a frame: a step by s->step, a look at the body, the frame's file if it is due. */
+static inline void scene_step(scene *s)
+{
+    gx_step_report report;
+    scene_move(s, &report);
+    scene_look(s);
+    scene_count_frame(s);
+    s->frame++;
+    if (s->out && s->frame % s->every == 0) scene_write_frame(s);
+    scene_draw_bar(s);
+    if (s->frame < s->frames) return;
+    scene_end_bar(s);
+    if (s->out) scene_write_collection(s);
+}
+
+/* Brings the body to rest: balance of forces from where it is, without inertia. Returns the residual, see gxs_step_report. */
+static inline double scene_settle(scene *s, double tolerance)
+{
+    const gx_step_desc kept = s->step;
+    gx_step_report report;
+    s->step.integrator = GXS_STATIC;
+    s->step.dt = 0.0;
+    s->step.newton_iterations = 1000;
+    s->step.newton_tolerance = tolerance;
+    scene_move(s, &report);
+    s->step = kept;
+    scene_look(s);
+    memset(s->frame_seconds, 0, sizeof s->frame_seconds);
+    return report.residual;
+}
+
+/* ------------------------------------------------------------------------------------------ >>measures */
+
+/* Volume of the mesh as it was given, m3 */
+static inline double scene_mesh_volume(const scene *s)
+{
+    double volume = 0.0;
+    size_t e;
+    for (e = 0; e < s->mesh.element_count; e++) volume += gxio_element_determinant(s->mesh.positions, s->mesh.elements + 4 * e) / 6.0;
+    return volume;
+}
+
+/* |sum of the cells' volumes / volume of the mesh - 1| */
+static inline double scene_volume_error(const scene *s)
+{
+    double volume = 0.0;
+    size_t c;
+    for (c = 0; c < s->view.cell_count; c++) volume += s->view.cell_volume[c];
+    return fabs(volume / scene_mesh_volume(s) - 1.0);
+}
+
+/* The largest eigenvalue of a symmetric matrix, as 00 01 02 11 12 22: the largest root of its characteristic polynomial, by
+   the cosine of a third of an angle [Smith, Eigenvalues of a symmetric 3x3 matrix, CACM 1961] */
+static inline double scene_largest_eigenvalue(const double m[6])
+{
+    const double mean = (m[0] + m[3] + m[5]) / 3.0, x = m[0] - mean, y = m[3] - mean, z = m[5] - mean;
+    const double p = sqrt((x * x + y * y + z * z + 2.0 * (m[1] * m[1] + m[2] * m[2] + m[4] * m[4])) / 6.0);
+    double determinant;
+    if (!(p > 0.0)) return mean;
+    determinant = x * (y * z - m[4] * m[4]) - m[1] * (m[1] * z - m[4] * m[2]) + m[2] * (m[1] * m[4] - y * m[2]);
+    return mean + 2.0 * p * cos(acos(fmax(-1.0, fmin(1.0, determinant / (2.0 * p * p * p)))) / 3.0);
+}
+
+/* The largest principal stretch of an element */
+static inline double scene_element_stretch(const gxs_element *e, const double *displacement)
+{
+    double f[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, c[6];
+    int corner, i, j;
+    for (corner = 1; corner < 4; corner++)
+        for (i = 0; i < 3; i++)
+            for (j = 0; j < 3; j++)
+                f[i][j] += (displacement[3 * (size_t)e->copy[corner] + (size_t)i] - displacement[3 * (size_t)e->copy[0] + (size_t)i]) * e->gradient[corner][j];
+    for (i = 0, corner = 0; i < 3; i++)
+        for (j = i; j < 3; j++) c[corner++] = f[0][i] * f[0][j] + f[1][i] * f[1][j] + f[2][i] * f[2][j];
+    return sqrt(scene_largest_eigenvalue(c));
+}
+
+/* The largest principal stretch of all parts: a part that drifted away from its neighbours would have a large one. */
+static inline double scene_largest_stretch(scene *s)
+{
+    gxs_model model;
+    double largest = 0.0;
+    size_t e;
+    scene_must(s, gx_body_model(s->body, &model), "model");
+    for (e = 0; e < model.element_count; e++) largest = fmax(largest, scene_element_stretch(&model.elements[e], s->view.displacement));
+    return largest;
+}
+
+typedef struct scene_corner { uint32_t point, copies[4], vertex; } scene_corner;
+typedef struct scene_edge { uint32_t low, high; int way; } scene_edge;
+
+static inline int scene_compare_words(const void *a, const void *b)
+{
+    const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+    return (x > y) - (x < y);
+}
+
+static inline int scene_compare_corners(const void *a, const void *b) { return memcmp(a, b, sizeof(scene_corner) - sizeof(uint32_t)); }
+
+static inline int scene_compare_edges(const void *a, const void *b)
+{
+    const scene_edge *p = (const scene_edge *)a, *q = (const scene_edge *)b;
+    const int low = scene_compare_words(&p->low, &q->low);
+    return low ? low : scene_compare_words(&p->high, &q->high);
+}
+
+/* Numbers of the surface's corners, triangles.vertex_count: vertices that are the same material point and follow the same copies
+   (those of weight not 0) are one. To be freed by the caller. */
+static inline uint32_t *scene_merge_vertices(scene *s)
+{
+    const size_t n = s->skin.triangles.vertex_count;
+    scene_corner *corners = (scene_corner *)scene_array(s, n, sizeof *corners);
+    uint32_t *merged = (uint32_t *)scene_array(s, n, sizeof *merged), count = 0;
+    size_t v, k;
+    for (v = 0; v < n; v++) {
+        corners[v].point = s->skin.vertex_point[v];
+        corners[v].vertex = (uint32_t)v;
+        for (k = 0; k < 4; k++)
+            corners[v].copies[k] = fabs(s->skin.vertex_weights[4 * v + k]) > 0.0 ? s->skin.vertex_copies[4 * v + k] : UINT32_MAX;
+        qsort(corners[v].copies, 4, sizeof(uint32_t), scene_compare_words);
+    }
+    qsort(corners, n, sizeof *corners, scene_compare_corners);
+    for (v = 0; v < n; v++) {
+        if (v > 0 && scene_compare_corners(&corners[v], &corners[v - 1]) != 0) count++;
+        merged[corners[v].vertex] = count;
+    }
+    free(corners);
+    return merged;
+}
+
+/* Edges of the surface that more triangles pass one way than the other: 0 where every fragment is watertight */
+static inline size_t scene_open_edges(scene *s)
+{
+    const size_t n = 3 * s->skin.triangles.triangle_count;
+    uint32_t *merged = scene_merge_vertices(s);
+    scene_edge *edges = (scene_edge *)scene_array(s, n, sizeof *edges);
+    size_t i, j, open = 0;
+    for (i = 0; i < n; i++) {
+        const uint32_t *corner = s->skin.triangles.triangles + i / 3 * 3;
+        const uint32_t a = merged[corner[i % 3]], b = merged[corner[(i + 1) % 3]];
+        edges[i].low = a < b ? a : b;
+        edges[i].high = a < b ? b : a;
+        edges[i].way = a < b ? 1 : -1;
+    }
+    qsort(edges, n, sizeof *edges, scene_compare_edges);
+    for (i = 0; i < n; i = j) {
+        int balance = 0;
+        for (j = i; j < n && scene_compare_edges(&edges[i], &edges[j]) == 0; j++) balance += edges[j].way;
+        open += balance != 0;
+    }
+    free(merged);
+    free(edges);
+    return open;
+}
+
+/* The elements around a node as a mesh of their own, and what the cuts have in its box */
+typedef struct scene_ring {
+    double *positions, *vertices;       /* 3 per node; 9 per triangle */
+    uint32_t *elements, *triangles, *number;    /* number: of the mesh's nodes in the ring, UINT32_MAX elsewhere */
+    uint32_t *nodes;                    /* of the mesh, node_count */
+    size_t node_count, element_count, triangle_count;
+    double low[3], high[3];
+} scene_ring;
+
+static inline void scene_fill_ring(const scene *s, scene_ring *ring, const uint32_t *around, size_t count)
+{
+    size_t i, k;
+    ring->node_count = ring->triangle_count = 0;
+    ring->element_count = count;
+    for (i = 0; i < 4 * count; i++) {
+        const uint32_t node = s->mesh.elements[4 * (size_t)around[i / 4] + i % 4];
+        if (ring->number[node] == UINT32_MAX) {
+            for (k = 0; k < 3; k++) ring->positions[3 * ring->node_count + k] = s->mesh.positions[3 * (size_t)node + k];
+            ring->nodes[ring->node_count] = node;
+            ring->number[node] = (uint32_t)ring->node_count++;
+        }
+        ring->elements[i] = ring->number[node];
+    }
+    for (i = 0; i < ring->node_count; i++) ring->number[ring->nodes[i]] = UINT32_MAX;
+    gxio_bounds(ring->positions, ring->node_count, ring->low, ring->high);
+}
+
+/* Does a triangle's box meet the ring's? */
+static inline int scene_meets_ring(const scene_ring *ring, const double *a, const double *b, const double *c)
+{
+    int i;
+    for (i = 0; i < 3; i++)
+        if (fmin(a[i], fmin(b[i], c[i])) > ring->high[i] || fmax(a[i], fmax(b[i], c[i])) < ring->low[i]) return 0;
+    return 1;
+}
+
+/* Adds the triangles of a sheet that may meet the ring. */
+static inline void scene_add_to_ring(scene_ring *ring, const gx_surface *sheet)
+{
+    size_t t, k;
+    for (t = 0; t < sheet->triangle_count; t++) {
+        const double *x[3];
+        for (k = 0; k < 3; k++) x[k] = sheet->vertices + 3 * (size_t)sheet->triangles[3 * t + k];
+        if (!scene_meets_ring(ring, x[0], x[1], x[2])) continue;
+        for (k = 0; k < 3; k++) memcpy(ring->vertices + 9 * ring->triangle_count + 3 * k, x[k], 3 * sizeof(double));
+        ring->triangle_count++;
+    }
+}
+
+/* Fragments of the ring alone, cut at once by all the sheets' triangles and by all solids */
+static inline size_t scene_ring_fragments(scene *s, const scene_ring *ring)
+{
+    gx_surface *surfaces = (gx_surface *)scene_array(s, s->cut_count + 1, sizeof *surfaces);
+    gx_body_desc desc;
+    gx_cut_desc cut;
+    gx_view view;
+    gx_body *body;
+    size_t i;
+    memset(&desc, 0, sizeof desc);
+    memset(&cut, 0, sizeof cut);
+    desc.positions = ring->positions; desc.node_count = ring->node_count;
+    desc.elements = ring->elements; desc.element_count = ring->element_count;
+    desc.young = desc.density = 1.0;
+    scene_must(s, gx_body_create(&desc, &body, NULL), "elements around a node");
+    surfaces[0].vertices = ring->vertices; surfaces[0].vertex_count = 3 * ring->triangle_count;
+    surfaces[0].triangles = ring->triangles; surfaces[0].triangle_count = ring->triangle_count;
+    for (i = 0, cut.surface_count = ring->triangle_count > 0; i < s->cut_count; i++)
+        if (s->cuts[i].kind == GX_SURFACE_SOLID) surfaces[cut.surface_count++] = s->cuts[i];
+    cut.surfaces = surfaces;
+    if (cut.surface_count) scene_must(s, gx_body_cut(body, &cut, NULL, NULL), "cut around a node");
+    scene_must(s, gx_body_view(body, &view), "elements around a node");
+    i = view.fragment_count;
+    gx_body_destroy(body);
+    free(surfaces);
+    return i;
+}
+
+/* Elements around each node: those of node i are around[start[i]] to around[start[i + 1] - 1]. Both to be freed by the caller. */
+static inline void scene_list_around(scene *s, uint32_t **around, size_t **start)
+{
+    const size_t corners = 4 * s->mesh.element_count, n = s->mesh.node_count;
+    size_t i;
+    *around = (uint32_t *)scene_array(s, corners, sizeof **around);
+    *start = (size_t *)scene_array(s, n + 1, sizeof **start);
+    for (i = 0; i < corners; i++) (*start)[s->mesh.elements[i]]++;
+    for (i = 0; i < n; i++) (*start)[i + 1] += (*start)[i];
+    for (i = corners; i-- > 0;) (*around)[--(*start)[s->mesh.elements[i]]] = (uint32_t)(i / 4);
+}
+
+/* The least number of copies: for each node the number of pieces that all cuts so far, made at once, leave of the elements around
+   it and nothing else (GXFEM Eq. 18). Found by a body per node, from scratch. */
+static inline size_t scene_least_copies(scene *s)
+{
+    uint32_t *around;
+    size_t *start, i, k, most = 1, least = 0;
+    scene_ring ring;
+    scene_list_around(s, &around, &start);
+    for (i = 0; i < s->mesh.node_count; i++) if (start[i + 1] - start[i] > most) most = start[i + 1] - start[i];
+    ring.positions = (double *)scene_array(s, 4 * most, 3 * sizeof(double));
+    ring.elements = (uint32_t *)scene_array(s, 4 * most, sizeof(uint32_t));
+    ring.nodes = (uint32_t *)scene_array(s, 4 * most, sizeof(uint32_t));
+    ring.number = (uint32_t *)scene_array(s, s->mesh.node_count, sizeof(uint32_t));
+    ring.vertices = (double *)scene_array(s, s->cut_triangles, 9 * sizeof(double));
+    ring.triangles = (uint32_t *)scene_array(s, s->cut_triangles, 3 * sizeof(uint32_t));
+    for (i = 0; i < s->mesh.node_count; i++) ring.number[i] = UINT32_MAX;
+    for (i = 0; i < 3 * s->cut_triangles; i++) ring.triangles[i] = (uint32_t)i;
+    for (i = 0; i < s->mesh.node_count; i++) {
+        if (start[i] == start[i + 1]) continue;
+        scene_fill_ring(s, &ring, around + start[i], start[i + 1] - start[i]);
+        for (k = 0; k < s->cut_count; k++) if (s->cuts[k].kind == GX_SURFACE_SHEET) scene_add_to_ring(&ring, &s->cuts[k]);
+        least += scene_ring_fragments(s, &ring);
+    }
+    free(ring.positions); free(ring.elements); free(ring.nodes); free(ring.number); free(ring.vertices); free(ring.triangles);
+    free(around); free(start);
+    return least;
+}
+
+/* -------------------------------------------------------------------------------------------- >>report */
+
+static inline unsigned long scene_unknowns(const scene *s) { return 3 * (unsigned long)s->view.copy_count; }
+
+/* A line of what one sees: "name: value (what it should be)", and whether it holds. */
+static inline void scene_check(scene *s, int ok, const char *format, ...)
+{
+    va_list arguments;
+    s->checks++;
+    if (!ok) s->wrong++;
+    if (ok && s->quiet) return;
+    scene_end_bar(s);
+    fputs("  ", stdout);
+    va_start(arguments, format);
+    vprintf(format, arguments);
+    va_end(arguments);
+    puts(ok ? "  ok" : "  WRONG");
+}
+
+/* A line of what one sees that is no check */
+static inline void scene_say(scene *s, const char *format, ...)
+{
+    va_list arguments;
+    if (s->quiet) return;
+    scene_end_bar(s);
+    fputs("  ", stdout);
+    va_start(arguments, format);
+    vprintf(format, arguments);
+    va_end(arguments);
+    putchar('\n');
+}
+
+/* What holds in every scene that cuts by sheets: no volume lost, no copy too many or too few, no crack in the surface */
+static inline void scene_check_body(scene *s)
+{
+    const double volume = scene_volume_error(s);
+    const size_t least = scene_least_copies(s), open = scene_open_edges(s);
+    scene_check(s, s->view.copy_count == least, "unknowns: %lu, %+.1f %% of the uncut body's %lu (least possible: %lu)", scene_unknowns(s),
+                100.0 * ((double)s->view.copy_count / (double)s->first_copies - 1.0), 3 * (unsigned long)s->first_copies, 3 * (unsigned long)least);
+    scene_check(s, volume <= 1e-12, "volume of the cells against the mesh's: %.1e (at most 1e-12)", volume);
+    scene_check(s, open == 0, "open edges of the surface: %lu (0)", (unsigned long)open);
+}
+
+/* Mean milliseconds per frame in which the phase happens: cuts in frames with a cut */
+static inline double scene_phase_ms(const scene *s, int phase)
+{
+    const uint32_t frames = phase < SCENE_MODEL ? s->cut_frames : s->frame;
+    return frames ? 1e3 * s->sum[phase] / frames : 0.0;
+}
+
+static inline double scene_mean_ms(const scene *s) { return s->frame ? 1e3 * s->sum_frames / s->frame : 0.0; }
+
+static inline void scene_print_times(scene *s)
+{
+    scene_say(s, "cuts: %lu triangles in %lu of %lu frames; ms per frame with a cut: arrangement %.3g, enrichment %.3g, integrals %.3g",
+              (unsigned long)s->cut_triangles, (unsigned long)s->cut_frames, (unsigned long)s->frame, scene_phase_ms(s, SCENE_ARRANGEMENT),
+              scene_phase_ms(s, SCENE_ENRICHMENT), scene_phase_ms(s, SCENE_INTEGRALS));
+    scene_say(s, "ms per frame: model %.3g, linearise %.3g, prepare %.3g, solve %.3g, forces %.3g, skin %.3g", scene_phase_ms(s, SCENE_MODEL),
+              scene_phase_ms(s, SCENE_LINEARISE), scene_phase_ms(s, SCENE_PREPARE), scene_phase_ms(s, SCENE_SOLVE),
+              scene_phase_ms(s, SCENE_FORCES), scene_phase_ms(s, SCENE_SKIN));
+    scene_say(s, "frame: %.3g ms, worst %.3g ms, %.3g frames/s; the body's memory at its peak: %.3g MB", scene_mean_ms(s), 1e3 * s->worst_frame,
+              1e3 / scene_mean_ms(s), 1e-6 * (double)s->memory.peak);
+}
+
+/* The scene's line of the table of all scenes, in Markdown */
+static inline void scene_print_row(const scene *s, FILE *stream)
+{
+    int i;
+    fprintf(stream, "| %s | %lu | %lu | %lu | %lu |", s->desc.name, (unsigned long)s->mesh.element_count, 3 * (unsigned long)s->first_copies,
+            scene_unknowns(s), (unsigned long)s->cut_triangles);
+    for (i = 0; i < SCENE_PHASES; i++) fprintf(stream, " %.3g |", scene_phase_ms(s, i));
+    fprintf(stream, " %.3g | %.3g | %.3g | %.3g | %lu of %lu |\n", scene_mean_ms(s), 1e3 * s->worst_frame, 1e3 / scene_mean_ms(s),
+            1e-6 * (double)s->memory.peak, (unsigned long)(s->checks - s->wrong), (unsigned long)s->checks);
+}
+
+static inline void scene_append_row(scene *s)
+{
+    FILE *stream;
+    int good;
+    errno = 0;
+    stream = fopen(s->table, "a");
+    if (stream) scene_print_row(s, stream);
+    good = stream && !ferror(stream);
+    if (stream && fclose(stream) != 0) good = 0;
+    if (good) return;
+    gxio_fail(&s->error, s->table, 0, "cannot be written: %s", strerror(errno ? errno : EIO));
+    scene_quit(s, SCENE_MISUSED);
+}
+
+/* Prints times, appends to the table, gives everything back. Returns the exit code. */
+static inline int scene_close(scene *s)
+{
+    size_t i;
+    scene_print_times(s);
+    if (s->table) scene_append_row(s);
+    for (i = 0; i < s->cut_count; i++) {
+        free((void *)s->cuts[i].vertices);
+        free((void *)s->cuts[i].triangles);
+    }
+    free(s->cuts);
+    free(s->skin.positions);
+    gx_body_destroy(s->body);
+    gxio_mesh_release(&s->mesh);
+    return s->wrong ? SCENE_WRONG : SCENE_RIGHT;
+}
+
+#endif /* SCENE_H */
