@@ -48,6 +48,7 @@ typedef struct scene_desc {
     const char *mesh, *small_mesh;      /* as gxio_mesh_load takes them; small_mesh NULL: the same */
     int any_mesh;                       /* not 0: --mesh may name another */
     uint32_t frames, small_frames;
+    int has_csv;                        /* not 0: --csv names a file for figures of the scene's own */
 } scene_desc;
 
 /* Seconds of a frame, or their sums */
@@ -82,7 +83,7 @@ typedef struct scene {
     scene_desc desc;
     int small, quiet, help;
     uint32_t frame, frames, every;      /* frame: of the next step */
-    const char *mesh_name, *out, *format, *table;
+    const char *mesh_name, *out, *format, *table, *csv;
     gxio_mesh mesh;                     /* may be moved before scene_make */
     gx_body_desc body_desc;             /* may be changed before scene_make */
     gx_step_desc step;                  /* may be changed at any time */
@@ -167,6 +168,7 @@ static inline void scene_usage(const scene *s)
     puts("  --small             a smaller scene, for tests");
     printf("  --frames N          steps and frames (%lu; %lu with --small)\n", (unsigned long)s->desc.frames,
            (unsigned long)s->desc.small_frames);
+    if (s->desc.has_csv) puts("  --csv FILE          appends the scene's figures to it");
     if (s->desc.any_mesh) printf("  --mesh MESH         FILE.mesh, FILE.node or grid:NX,NY,NZ (%s)\n", s->desc.mesh);
     puts("  --out DIR           writes frames there\n"
          "  --every N           only each N-th of them (1)\n"
@@ -200,6 +202,7 @@ static inline int scene_take_value(scene *s, const char *name, const char *value
     else if (strcmp(name, "--out") == 0) s->out = value;
     else if (strcmp(name, "--format") == 0) s->format = value;
     else if (strcmp(name, "--table") == 0) s->table = value;
+    else if (strcmp(name, "--csv") == 0 && s->desc.has_csv) s->csv = value;
     else if (strcmp(name, "--mesh") == 0 && s->desc.any_mesh) s->mesh_name = value;
     else return 0;
     return 1;
@@ -899,17 +902,25 @@ static inline void scene_print_row(const scene *s, FILE *stream)
             1e-6 * (double)s->memory.peak, (unsigned long)(s->checks - s->wrong), (unsigned long)s->checks);
 }
 
-static inline void scene_append_row(scene *s)
+/* Opens a file to append to, or ends the program; scene_close_file closes it so. */
+static inline FILE *scene_open_file(scene *s, const char *path)
 {
     FILE *stream;
-    int good;
     errno = 0;
-    stream = fopen(s->table, "a");
-    if (stream) scene_print_row(s, stream);
-    good = stream && !ferror(stream);
-    if (stream && fclose(stream) != 0) good = 0;
+    stream = fopen(path, "a");
+    if (stream) return stream;
+    gxio_fail(&s->error, path, 0, "cannot be written: %s", strerror(errno ? errno : EIO));
+    scene_quit(s, SCENE_MISUSED);
+    return NULL;
+}
+
+static inline void scene_close_file(scene *s, const char *path, FILE *stream)
+{
+    int good = !ferror(stream);
+    errno = 0;
+    if (fclose(stream) != 0) good = 0;
     if (good) return;
-    gxio_fail(&s->error, s->table, 0, "cannot be written: %s", strerror(errno ? errno : EIO));
+    gxio_fail(&s->error, path, 0, "cannot be written: %s", strerror(errno ? errno : EIO));
     scene_quit(s, SCENE_MISUSED);
 }
 
@@ -918,7 +929,11 @@ static inline int scene_close(scene *s)
 {
     size_t i;
     scene_print_times(s);
-    if (s->table) scene_append_row(s);
+    if (s->table) {
+        FILE *stream = scene_open_file(s, s->table);
+        scene_print_row(s, stream);
+        scene_close_file(s, s->table, stream);
+    }
     for (i = 0; i < s->cut_count; i++) {
         free((void *)s->cuts[i].vertices);
         free((void *)s->cuts[i].triangles);
