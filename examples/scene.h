@@ -597,6 +597,24 @@ static inline double scene_mesh_volume(const scene *s)
     return volume;
 }
 
+/* Mass of the body as steps see it: the sum of all mass blocks, kg; compensated [Kahan 1965], so that a check to 1e-12 sees the blocks and
+   not their summation */
+static inline double scene_mass(scene *s)
+{
+    gxs_model model;
+    double sum = 0.0, lost = 0.0;
+    size_t e, i;
+    scene_must(s, gx_body_model(s->body, &model), "model");
+    for (e = 0; e < model.element_count; e++)
+        for (i = 0; i < 10; i++) {
+            const double once = i == 0 || i == 4 || i == 7 || i == 9 ? 1.0 : 2.0;    /* diagonal or not */
+            const double term = once * model.elements[e].mass[i] - lost, grown = sum + term;
+            lost = grown - sum - term;
+            sum = grown;
+        }
+    return sum;
+}
+
 /* |sum of the cells' volumes / volume of the mesh - 1| */
 static inline double scene_volume_error(const scene *s)
 {
@@ -641,6 +659,36 @@ static inline double scene_largest_stretch(scene *s)
     scene_must(s, gx_body_model(s->body, &model), "model");
     for (e = 0; e < model.element_count; e++) largest = fmax(largest, scene_element_stretch(&model.elements[e], s->view.displacement));
     return largest;
+}
+
+/* The fragment of each copy, view.copy_count; to be freed by the caller. */
+static inline uint32_t *scene_copy_fragments(scene *s)
+{
+    uint32_t *fragment = (uint32_t *)scene_array(s, s->view.copy_count, sizeof *fragment);
+    size_t i;
+    for (i = 0; i < 4 * s->view.cell_count; i++) fragment[s->view.cell_copies[i]] = s->view.cell_fragment[i / 4];
+    return fragment;
+}
+
+/* The mean over the mass of a fragment of a field, by copy x 3: of view.displacement or view.velocity the motion of its centre */
+static inline void scene_mean(scene *s, uint32_t fragment, const double *field, double mean[3])
+{
+    static const unsigned char row[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};   /* of gxs_element.mass */
+    uint32_t *of_copy = scene_copy_fragments(s);
+    gxs_model model;
+    double mass = 0.0;
+    size_t e, i, j;
+    scene_must(s, gx_body_model(s->body, &model), "model");
+    mean[0] = mean[1] = mean[2] = 0.0;
+    for (e = 0; e < model.element_count; e++)
+        for (i = 0; i < 4 && of_copy[model.elements[e].copy[0]] == fragment; i++) {
+            const double *m = model.elements[e].mass;
+            const double share = m[row[i][0]] + m[row[i][1]] + m[row[i][2]] + m[row[i][3]];
+            mass += share;
+            for (j = 0; j < 3; j++) mean[j] += share * field[3 * (size_t)model.elements[e].copy[i] + j];
+        }
+    for (j = 0; j < 3; j++) mean[j] /= mass;
+    free(of_copy);
 }
 
 typedef struct scene_corner { uint32_t point, copies[4], vertex; } scene_corner;

@@ -261,8 +261,8 @@ static gxs_element *slab_sampled_elements(const slab *b, const slab_box *boxes, 
 }
 
 /* Displacements at which held fragments made of `elements` rest, copy_count x 3, from the start given or from 0. Others stay. To be
-   freed by the caller. */
-static double *slab_rest(const slab *b, const gxs_element *elements, size_t count, const gx_step_desc *like, const double *start)
+   freed by the caller. tolerance: as gxs_step_desc.newton_tolerance. */
+static double *slab_rest(const slab *b, const gxs_element *elements, size_t count, const gx_step_desc *like, double tolerance, const double *start)
 {
     double *displacement = (double *)scene_array(b->s, b->view.copy_count, 3 * sizeof(double));
     double *velocity = (double *)scene_array(b->s, b->view.copy_count, 3 * sizeof(double));
@@ -273,7 +273,7 @@ static double *slab_rest(const slab *b, const gxs_element *elements, size_t coun
     memcpy(step.gravity, like->gravity, sizeof step.gravity);
     step.integrator = GXS_STATIC;
     step.newton_iterations = 1000;
-    step.newton_tolerance = 1e-13;
+    step.newton_tolerance = tolerance;
     step.cg_tolerance = 1e-4;
     model.elements = elements;
     model.element_count = count;
@@ -336,8 +336,8 @@ static void slab_judge(scene *s, const double *z, size_t z_count, const double *
     double *rest, *again, worst = 0.0;
     for (f = 0; f < b.view.fragment_count; f++) boxes[f] = slab_box_of(&b, f, z, z_count, x_cut, x_cut != NULL);
     sampled = slab_sampled_elements(&b, boxes, DEPTH, &sampled_count, &points);
-    rest = slab_rest(&b, b.elements, b.element_count, &s->step, b.view.displacement);
-    again = slab_rest(&b, sampled, sampled_count, &s->step, b.view.displacement);
+    rest = slab_rest(&b, b.elements, b.element_count, &s->step, 1e-13, b.view.displacement);
+    again = slab_rest(&b, sampled, sampled_count, &s->step, 1e-13, b.view.displacement);
     for (f = 0; f < b.view.fragment_count; f++) {
         const slab_box *box = &boxes[f];
         const double point[3] = {x, 0.5 * (box->low[1] + box->high[1]), 0.5 * (box->low[2] + box->high[2])};
@@ -424,7 +424,7 @@ static void slab_study_body(scene *s, slab_strip *strip, int space, size_t first
                             const double *z, size_t z_count)
 {
     slab b = slab_take(s, mesh, body, s->body_desc.density);
-    double *rest = slab_rest(&b, b.elements, b.element_count, &s->step, NULL);
+    double *rest = slab_rest(&b, b.elements, b.element_count, &s->step, 1e-6, NULL);
     size_t f;
     for (f = 0; f < b.view.fragment_count; f++) {
         const slab_box box = slab_box_of(&b, f, z, z_count, NULL, 0);

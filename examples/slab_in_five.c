@@ -1,7 +1,7 @@
 /* slab_in_five: a slab is cut into five slices of increasing thickness (RXFEM, Fig. 11).
 
    61 x 11 x 1 cubes of 5 tetrahedra, held at x = 0; St. Venant-Kirchhoff, steps of 5 ms. The four planes come in together from the free
-   end, one row of cubes after the other. RXFEM gives neither size nor stiffness: cubes of 1 cm, and 10 MPa, let the slices droop by a
+   end, one row of cubes after the other. RXFEM gives neither size nor stiffness: cubes of 1 cm, and 30 MPa, let the slices droop by a
    good part of their length. */
 #include "slab.h"
 
@@ -13,7 +13,7 @@ int main(int argc, char **argv)
                              "grid:61,11,1", "grid:15,3,1", 0, 300, 16, 1};
     const double edge = 0.01;           /* of a cube, m */
     const double z[PLANES] = {edge / 15, 3 * edge / 15, 6 * edge / 15, 10 * edge / 15};
-    gx_material material = {{GXS_ST_VENANT_KIRCHHOFF, 1e7, 0.4, 0, NULL, NULL}, 1000.0};
+    gx_material material = {{GXS_ST_VENANT_KIRCHHOFF, 3e7, 0.4, 0, NULL, NULL}, 1000.0};
     scene_sheet planes[PLANES];
     slab_strip strip = {0};
     double drops[SLICES], length;
@@ -41,7 +41,7 @@ int main(int argc, char **argv)
     scene_check_body(&s);
     strip.edge = edge;
     strip.z = z; strip.z_count = PLANES;
-    strip.most_elements = s.small ? 20000 : 250000;
+    strip.most_elements = s.small ? 20000 : 160000;
     slab_study(&s, &strip);
     for (i = 0; i < PLANES; i++) scene_drop_sheet(&planes[i]);
     return scene_close(&s);
