@@ -260,6 +260,37 @@ static inline void scene_scale(scene *s, double x, double y, double z)
     for (i = 0; i < 3 * s->mesh.node_count; i++) s->mesh.positions[i] *= factor[i % 3];
 }
 
+/* Nodes that elements use, in their order; the others go. */
+static inline void scene_drop_nodes(scene *s)
+{
+    uint32_t *number = (uint32_t *)scene_array(s, s->mesh.node_count, sizeof *number), count = 0;
+    size_t i;
+    for (i = 0; i < 4 * s->mesh.element_count; i++) number[s->mesh.elements[i]] = 1;
+    for (i = 0; i < s->mesh.node_count; i++)
+        if (number[i]) {
+            memmove(s->mesh.positions + 3 * (size_t)count, s->mesh.positions + 3 * i, 3 * sizeof(double));
+            number[i] = count++;
+        }
+    for (i = 0; i < 4 * s->mesh.element_count; i++) s->mesh.elements[i] = number[s->mesh.elements[i]];
+    s->mesh.node_count = count;
+    free(number);
+}
+
+/* Keeps the elements whose centre is wanted, and the nodes that they use. */
+static inline void scene_keep(scene *s, int (*wanted)(const void *user, const double center[3]), const void *user)
+{
+    size_t e, kept = 0, i, k;
+    for (e = 0; e < s->mesh.element_count; e++) {
+        const uint32_t *corner = s->mesh.elements + 4 * e;
+        double center[3] = {0, 0, 0};
+        for (i = 0; i < 4; i++)
+            for (k = 0; k < 3; k++) center[k] += 0.25 * s->mesh.positions[3 * (size_t)corner[i] + k];
+        if (wanted(user, center)) memmove(s->mesh.elements + 4 * kept++, corner, 4 * sizeof *corner);
+    }
+    s->mesh.element_count = kept;
+    scene_drop_nodes(s);
+}
+
 /* The body, of s->mesh by s->body_desc */
 static inline void scene_make(scene *s)
 {
