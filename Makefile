@@ -13,6 +13,7 @@ BENCH_CFLAGS ?= -O3 -march=native
 headers = gxfem.h gxfem_boolean.h gxfem_integrate.h gxfem_solve.h
 tests = $(patsubst tests/%.c,%,$(sort $(wildcard tests/test_*.c)))
 examples = $(patsubst examples/%.c,%,$(sort $(wildcard examples/*.c)))
+scenes = $(filter-out embed gxcut,$(examples))
 compile = $(CC) -std=c99 $(WARNINGS) $(CFLAGS)
 sanitizers = -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all
 
@@ -21,6 +22,8 @@ help:
 	@echo "make check       builds and runs the tests; installs Check and pkg-config where they are missing"
 	@echo "make check-all   check, then lint, compile tests, sanitizers, compilers and flags; takes longer"
 	@echo "make examples    builds $(examples) in $(BUILD)/"
+	@echo "make scenes      runs the scenes of the papers, writes docs/SCENES.md; SMALL=1: small ones, $(BUILD)/scenes/SCENES.md"
+	@echo "make pictures    renders the scenes into docs/pictures/; installs f3d and a virtual display where they are missing"
 	@echo "make lint        house rules of the four headers"
 	@echo "make compile     the headers by every compiler and standard there is, C and C++"
 	@echo "make sanitize    the tests under AddressSanitizer and UndefinedBehaviorSanitizer"
@@ -48,6 +51,16 @@ demo: $(BUILD)/gxcut
 	@echo "Cuts a cube of five tetrahedra by 5 + 5 crossing planes into 36 sticks, stretches it, holds its foot, lets go."
 	@$(BUILD)/gxcut cube5 $(demo_cuts) --fix 'z<0.001' --stretch 1.5,1.5,1.5 --young 1e5 --dt 0.01 --frames 60 \
 	    --out $(BUILD)/demo --report $(BUILD)/demo.json
+
+# ---- scenes. Without gnuplot there is no chart, and nothing else is missing.
+
+scenes: $(scenes:%=$(BUILD)/%)
+	$(if $(SMALL),,@sh tests/install.sh charts || true)
+	@CC="$(CC)" CFLAGS="$(CFLAGS)" sh examples/scenes.sh $(BUILD) $(if $(SMALL),$(BUILD)/scenes/SCENES.md --small,docs/SCENES.md) -- $(scenes)
+
+pictures: $(scenes:%=$(BUILD)/%)
+	@sh tests/install.sh pictures
+	@sh examples/pictures.sh $(BUILD) docs/pictures
 
 # ---- tests. Each runs in processes of its own (Check forks), so that a crash is one failed test.
 
@@ -115,4 +128,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo check check-programs run-gxcut $(tests:%=run-%) sanitize compile lint flags hashes bench-solver bench-accuracy bench-drift bench-conditioning bench-frames bench-skin check-all clean
+.PHONY: help examples demo scenes pictures check check-programs run-gxcut $(tests:%=run-%) sanitize compile lint flags hashes bench-solver bench-accuracy bench-drift bench-conditioning bench-frames bench-skin check-all clean

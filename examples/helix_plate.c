@@ -50,6 +50,7 @@ int main(int argc, char **argv)
     scene_check(&s, stretch < 1.5, "largest stretch of a part: %.3f (below 1.5: none drifts away)", stretch);
     scene_check(&s, s.view.fragment_count == 1, "fragments: %lu (1)", (unsigned long)s.view.fragment_count);
     scene_check_body(&s);
+    scene_say(&s, "(RXFEM tells of its plate of 159k tetrahedra: unknowns +12 %%; here the cut passes most elements)");
     scene_drop_sheet(&blade);
     return scene_close(&s);
 }

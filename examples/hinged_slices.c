@@ -61,7 +61,8 @@ int main(int argc, char **argv)
         double at[3];
         if (s.view.fragment_center[3 * f + 1] > y[CUTS - 1]) continue;      /* at the wall */
         center(&s, f, at);
-        scene_check(&s, fabs(at[0]) < 1e-3 * edge && at[2] < 0.0, "slice of %.1f m: centre of mass %.1e of an edge beside the hinge, %.4f m below it (at most 1e-3, below)",
+        scene_check(&s, fabs(at[0]) < 1e-3 * edge && at[2] < 0.0,
+                    "slice of %.1f m: centre of mass %.1e of an edge beside the hinge, %.4f m below it (at most 1e-3, below)",
                     s.view.fragment_volume[f] / 2.0, fabs(at[0]) / edge, -at[2]);
     }
     scene_check_body(&s);

@@ -404,9 +404,11 @@ static void slab_report(scene *s, slab_strip *strip, int space, size_t slice, ui
     static const char *const names[2] = {"cut", "conforming"};
     const double share = drop / slab_beam_drop(s, strip->cubes * strip->edge, thickness), relative = thickness / strip->edge;
     double *last = &strip->share[(size_t)space * (strip->z_count + 1) + slice];
-    scene_say(s, "%-10s %6lu %6.3f %10lu %10lu %8.1f %%", names[space], (unsigned long)slice, relative, (unsigned long)refinement, (unsigned long)unknowns, 100.0 * share);
+    scene_say(s, "%-10s %6lu %6.3f %10lu %10lu %8.1f %%", names[space], (unsigned long)slice, relative, (unsigned long)refinement,
+              (unsigned long)unknowns, 100.0 * share);
     if (strip->csv)
-        fprintf(strip->csv, "%s,%s,%lu,%.6g,%lu,%lu,%.6g\n", s->desc.name, names[space], (unsigned long)slice, relative, (unsigned long)refinement, (unsigned long)unknowns, share);
+        fprintf(strip->csv, "%s,%s,%lu,%.6g,%lu,%lu,%.6g\n", s->desc.name, names[space], (unsigned long)slice, relative,
+                (unsigned long)refinement, (unsigned long)unknowns, share);
     strip->meshes += *last > 0.0;
     strip->further += *last > 0.0 && share > *last && share < 1.01;
     *last = share;
@@ -488,8 +490,8 @@ static void slab_study(scene *s, slab_strip *strip)
         const double t = (i < strip->z_count ? strip->z[i] : strip->edge) - (i > 0 ? strip->z[i - 1] : 0.0), slender = strip->edge / t;
         for (n = 1; 5.0 * strip->cubes * slender * slender * n * n * n <= (double)strip->most_elements; n *= 2) slab_study_slice(s, strip, i, t, n);
     }
-    scene_check(s, strip->further == strip->meshes, "refined meshes that bend a slice further than the one before, at most 1 %% beyond beam theory: %lu (all %lu)",
-                (unsigned long)strip->further, (unsigned long)strip->meshes);
+    scene_check(s, strip->further == strip->meshes,
+                "refined meshes that bend a slice further than the one before, at most 1 %% beyond beam theory: %lu (all %lu)", (unsigned long)strip->further, (unsigned long)strip->meshes);
     if (s->csv) scene_close_file(s, s->csv, strip->csv);
     free(strip->share);
 }

@@ -46,7 +46,8 @@ static double astray(scene *s, const double middle[3], double seconds)
 
 int main(int argc, char **argv)
 {
-    const scene_desc desc = {"swiss_cheese", "One tetrahedron is cut by waves and planes in several directions, and its pieces fly apart.", "tet", NULL, 0, 90, 20, 0};
+    const scene_desc desc = {"swiss_cheese", "One tetrahedron is cut by waves and planes in several directions, and its pieces fly apart.",
+                             "tet", NULL, 0, 90, 20, 0};
     cheese_surface surfaces[CHEESE_SURFACES];
     double middle[3], off, least = HUGE_VAL;
     uint32_t done = 0, flight = 0;

@@ -97,9 +97,10 @@ int main(int argc, char **argv)
     scene_check(&s, mass <= 1e-12, "mass against the uncut blocks': %.1e (at most 1e-12)", mass);
     scene_say(&s, "residual of the rest: %.1e", scene_settle(&s, 1e-10));
     for (block = 0; block < BLOCKS; block++) {
-        const double now = sunk(&s, block, HIGH + 1);
-        scene_check(&s, fabs(now / strip[block] - 1.0) <= 0.01, "strip %d at rest: longer by %.5f m (%.5f m before the cuts, within 1 %%)", block + 1, now, strip[block]);
-        scene_check(&s, sunk(&s, block, 0) > foot[block], "foot of block %d at rest: down by %.4f m (more than %.4f m before the cuts)", block + 1, sunk(&s, block, 0), foot[block]);
+        const double longer = sunk(&s, block, HIGH + 1), down = sunk(&s, block, 0);
+        scene_check(&s, fabs(longer / strip[block] - 1.0) <= 0.01, "strip %d at rest: longer by %.5f m (%.5f m before the cuts, within 1 %%)",
+                    block + 1, longer, strip[block]);
+        scene_check(&s, down > foot[block], "foot of block %d at rest: down by %.4f m (more than %.4f m before the cuts)", block + 1, down, foot[block]);
     }
     scene_check(&s, s.view.fragment_count == BLOCKS, "fragments: %lu (2)", (unsigned long)s.view.fragment_count);
     scene_check_body(&s);

@@ -4,6 +4,8 @@
 #     check   Check and pkg-config, for the unit tests
 #     cxx     a C++ compiler, for the compile tests
 #     bench   SuiteSparse, for the direct solver that benches compare with
+#     charts  gnuplot, for charts
+#     pictures  f3d, and a virtual display where there is no other, for pictures of scenes
 set -u
 
 # has PROGRAM...: are all there?
@@ -22,6 +24,8 @@ have() {
     check) has pkg-config && pkg-config --exists check ;;
     cxx) has g++ || has clang++ || has c++ ;;
     bench) header cholmod.h || header suitesparse/cholmod.h ;;
+    charts) has gnuplot ;;
+    pictures) has f3d && { [ -n "${DISPLAY:-}" ] || has xvfb-run; } ;;
     *) echo "$0: no group '$1'" >&2; exit 2 ;;
     esac
 }
@@ -40,6 +44,12 @@ packages() {
     bench:dnf) echo suitesparse-devel ;;
     bench:pacman) echo suitesparse ;;
     bench:brew) echo suite-sparse pkg-config ;;
+    charts:apt-get) echo gnuplot-nox ;;
+    charts:*) echo gnuplot ;;
+    pictures:apt-get) echo f3d xvfb xauth ;;
+    pictures:dnf) echo f3d xorg-x11-server-Xvfb ;;
+    pictures:pacman) echo f3d xorg-server-xvfb ;;
+    pictures:brew) echo f3d ;;
     esac
 }
 
@@ -55,7 +65,7 @@ install() {
     esac
 }
 
-[ $# -gt 0 ] || { echo "usage: $0 check|cxx|bench..." >&2; exit 2; }
+[ $# -gt 0 ] || { echo "usage: $0 check|cxx|bench|charts|pictures..." >&2; exit 2; }
 missing=
 for group in "$@"; do have "$group" || missing="$missing $group"; done
 [ -n "$missing" ] || exit 0

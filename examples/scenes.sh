@@ -1,0 +1,79 @@
+#!/bin/sh
+# Runs scenes and writes what they say as one page.
+# usage: sh examples/scenes.sh PROGRAMS PAGE [SCENE_OPTION]... -- SCENE...
+#     PROGRAMS  directory of the built scenes
+#     PAGE      Markdown file to write; where gnuplot is, charts/locking.svg beside it
+#     CC, CFLAGS are named on the page
+# Goes on where a scene is wrong; exits with 1 then.
+set -u
+programs=$1
+page=$2
+shift 2
+options=
+while [ $# -gt 0 ] && [ "$1" != -- ]; do options="$options $1"; shift; done
+[ $# -gt 1 ] || { echo "usage: $0 PROGRAMS PAGE [SCENE_OPTION]... -- SCENE..." >&2; exit 2; }
+shift
+directory=$(dirname -- "$page")
+mkdir -p "$directory" || exit 2
+work=$(mktemp -d) || exit 2
+trap 'rm -rf "$work"' EXIT
+: >"$work/rows"
+: >"$work/said"
+failed=
+
+for scene in "$@"; do
+    csv=
+    "$programs/$scene" --help | grep -q -- '--csv' && csv="--csv $work/csv"
+    # shellcheck disable=SC2086
+    "$programs/$scene" $options --table "$work/rows" $csv >"$work/one"
+    code=$?
+    cat "$work/one"
+    { echo; echo "### $scene"; echo; sed -n '1s/^[^:]*: //p' "$work/one"; echo; echo '```'; sed -e 1d -e 's/^  //' "$work/one"
+      if [ $code -ne 0 ]; then echo "ended with exit code $code"; fi
+      echo '```'; } >>"$work/said"
+    [ $code -eq 0 ] || failed="$failed $scene"
+done
+
+# chart FILE: share of beam theory's drop by the slice's thickness in elements, from lines
+# SCENE,cut|conforming,SLICE,THICKNESS,REFINEMENT,UNKNOWNS,SHARE with the thickness in elements of refinement 1
+chart() {
+    mkdir -p "$(dirname -- "$1")"
+    { echo 'set terminal svg size 760,460 font "sans,12" background "white"'; echo "set output '$1'"
+      echo 'set logscale x 2; set yrange [0:100]; set grid; set key left top'
+      echo 'set xlabel "thickness of the slice, elements"; set ylabel "drop of the end, % of beam theory"'
+      awk -F, '{ key = $1 ", " $2
+                 if (!(key in rows)) order[++n] = key
+                 rows[key] = rows[key] ($2 == "cut" ? $4 * $5 : $5) " " 100 * $7 "\n" }
+          END { for (i = 1; i <= n; i++) printf("$k%d << EOD\n%sEOD\n", i, rows[order[i]])
+                printf("plot ")
+                for (i = 1; i <= n; i++) printf("%s$k%d with points pointtype %d title \"%s\" noenhanced", i == 1 ? "" : ", ", i, 5 + i, order[i])
+                print "" }'; } | gnuplot
+}
+
+{
+    echo "# Scenes"
+    echo
+    echo "Written by \`make scenes\`${options:+ with$options}. $(${CC:-cc} --version | head -n 1), ${CFLAGS:-}, $(uname -m), one thread. Times are of the"
+    echo "machine that ran it: mean milliseconds, of cuts over the frames in which one happens, of the rest over all frames."
+    echo
+    echo "| scene | elements | unknowns before | after | cut triangles | arrangement | enrichment | integrals | model | linearise | prepare | solve | forces | skin | frame | worst frame | frames/s | peak MB | checks |"
+    echo "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- |"
+    cat "$work/rows"
+    echo
+    echo "A frame is the cut, the step and the skin. arrangement, enrichment, integrals: of the cut; model, linearise, prepare, solve,"
+    echo "forces: of the step; skin: view, skin and positions of its vertices; peak: the body's memory, by its allocator."
+    if [ -s "$work/csv" ] && command -v gnuplot >/dev/null && chart "$directory/charts/locking.svg" <"$work/csv"; then
+        echo
+        echo "![how far slices bend, beside beam theory, by their thickness in elements](charts/locking.svg)"
+        echo
+        echo "Locking of linear elements: cut slices (the slab's own mesh, refined) and slices meshed on their own bend alike far too little"
+        echo "while they are thin beside an element. Integration has no part in it: the checks below hold the same"
+        echo "slices against integrals by brute force."
+    fi
+    echo
+    echo "## What they say"
+    cat "$work/said"
+} >"$work/page"
+mv "$work/page" "$page" || exit 2
+echo "wrote $page"
+[ -z "$failed" ] || { echo "wrong:$failed" >&2; exit 1; }
