@@ -47,8 +47,9 @@ static double falling(scene *s)
 
 int main(int argc, char **argv)
 {
-    const scene_desc desc = {"accordion", "A hanging cube is cut from both sides in turn, and unfolds; a last cut rips it apart.",
-                             "grid:16,16,16", "grid:6,6,6", 0, 150, 24, 0};
+    const scene_desc desc = {
+        .name = "accordion", .about = "A hanging cube is cut from both sides in turn, and unfolds; a last cut rips it apart.",
+        .mesh = "grid:16,16,16", .small_mesh = "grid:6,6,6", .frames = 150, .small_frames = 24, .least_frames = 20};
     scene_sheet folds[MOST_FOLDS], last;
     double level[MOST_FOLDS + 1], mass, speed = 0.0, gain = 0.0, width;
     uint32_t cubes;

@@ -23,8 +23,9 @@ static void spiral_point(const void *user, double a, double b, double *x)
 
 int main(int argc, char **argv)
 {
-    const scene_desc desc = {"helix_plate", "A smooth spiral cut winds through a plate from the rim to the middle, which sinks as a helix.",
-                             "grid:25,25,1", "grid:11,11,1", 0, 400, 20, 0};
+    const scene_desc desc = {
+        .name = "helix_plate", .about = "A smooth spiral cut winds through a plate from the rim to the middle, which sinks as a helix.",
+        .mesh = "grid:25,25,1", .small_mesh = "grid:11,11,1", .frames = 400, .small_frames = 20};
     gx_material material = {{GXS_ST_VENANT_KIRCHHOFF, 2e7, 0.4, 0, NULL, NULL}, 1000.0};
     gx_region sides[4] = {{0, -1, 1e-9}, {0, 1, 0}, {1, -1, 1e-9}, {1, 1, 0}};
     scene_sheet blade;

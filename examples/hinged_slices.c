@@ -29,8 +29,9 @@ static void center(scene *s, uint32_t slice, double at[3])
 
 int main(int argc, char **argv)
 {
-    const scene_desc desc = {"hinged_slices", "Slices are cut from a cube of 5 tetrahedra across an edge that is a hinge, and fold down.",
-                             "cube5", NULL, 0, 600, 600, 0};
+    const scene_desc desc = {
+        .name = "hinged_slices", .about = "Slices are cut from a cube of 5 tetrahedra across an edge that is a hinge, and fold down.",
+        .mesh = "cube5", .frames = 600, .small_frames = 600};
     const double edge = 1.4142135623730951;         /* across the hinge, m */
     const double y[CUTS] = {0.1, 0.3, 0.6};         /* slices of 0.1, 0.2 and 0.3 m, and 0.4 m at the wall, y = 1 */
     const gx_region held[2] = {{0, -1, 1e-9}, {1, 1, 1.0 - 1e-9}};

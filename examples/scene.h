@@ -49,6 +49,7 @@ typedef struct scene_desc {
     int any_mesh;                       /* not 0: --mesh may name another */
     uint32_t frames, small_frames;
     int has_csv;                        /* not 0: --csv names a file for figures of the scene's own */
+    uint32_t least_frames;              /* with fewer there is nothing to see; 0: any number will do */
 } scene_desc;
 
 /* Seconds of a frame, or their sums */
@@ -217,6 +218,10 @@ static inline void scene_take_arguments(scene *s, int argc, char **argv)
         if (++i >= argc) scene_misuse(s, argv[i - 1], "needs a value");
     }
     if (strcmp(s->format, "vtu") != 0 && strcmp(s->format, "obj") != 0) scene_misuse(s, "--format", "must be vtu or obj");
+    if (s->frames && s->frames < s->desc.least_frames) {
+        gxio_fail(&s->error, "--frames", 0, "needs at least %lu", (unsigned long)s->desc.least_frames);
+        scene_quit(s, SCENE_MISUSED);
+    }
     if (!s->frames) s->frames = s->small ? s->desc.small_frames : s->desc.frames;
     if (!s->mesh_name) s->mesh_name = s->small && s->desc.small_mesh ? s->desc.small_mesh : s->desc.mesh;
 }
@@ -949,14 +954,17 @@ static inline void scene_check_body(scene *s)
     scene_check(s, open == 0, "open edges of the surface: %lu (0)", (unsigned long)open);
 }
 
+/* Milliseconds, to a microsecond */
+static inline double scene_ms(double seconds) { return floor(1e6 * seconds + 0.5) / 1e3; }
+
 /* Mean milliseconds per frame in which the phase happens: cuts in frames with a cut */
 static inline double scene_phase_ms(const scene *s, int phase)
 {
     const uint32_t frames = phase < SCENE_MODEL ? s->cut_frames : s->frame;
-    return frames ? 1e3 * s->sum[phase] / frames : 0.0;
+    return frames ? scene_ms(s->sum[phase] / frames) : 0.0;
 }
 
-static inline double scene_mean_ms(const scene *s) { return s->frame ? 1e3 * s->sum_frames / s->frame : 0.0; }
+static inline double scene_mean_ms(const scene *s) { return s->frame ? scene_ms(s->sum_frames / s->frame) : 0.0; }
 
 static inline void scene_print_times(scene *s)
 {
@@ -966,8 +974,8 @@ static inline void scene_print_times(scene *s)
     scene_say(s, "ms per frame: model %.3g, linearise %.3g, prepare %.3g, solve %.3g, forces %.3g, skin %.3g", scene_phase_ms(s, SCENE_MODEL),
               scene_phase_ms(s, SCENE_LINEARISE), scene_phase_ms(s, SCENE_PREPARE), scene_phase_ms(s, SCENE_SOLVE),
               scene_phase_ms(s, SCENE_FORCES), scene_phase_ms(s, SCENE_SKIN));
-    scene_say(s, "frame: %.3g ms, worst %.3g ms, %.3g frames/s; the body's memory at its peak: %.3g MB", scene_mean_ms(s), 1e3 * s->worst_frame,
-              1e3 / scene_mean_ms(s), 1e-6 * (double)s->memory.peak);
+    scene_say(s, "frame: %.3g ms, worst %.3g ms, %.0f frames/s; the body's memory at its peak: %.3g MB", scene_mean_ms(s), scene_ms(s->worst_frame),
+              s->frame / s->sum_frames, 1e-6 * (double)s->memory.peak);
 }
 
 /* The scene's line of the table of all scenes, in Markdown */
@@ -977,7 +985,7 @@ static inline void scene_print_row(const scene *s, FILE *stream)
     fprintf(stream, "| %s | %lu | %lu | %lu | %lu |", s->desc.name, (unsigned long)s->mesh.element_count, 3 * (unsigned long)s->first_copies,
             scene_unknowns(s), (unsigned long)s->cut_triangles);
     for (i = 0; i < SCENE_PHASES; i++) fprintf(stream, " %.3g |", scene_phase_ms(s, i));
-    fprintf(stream, " %.3g | %.3g | %.3g | %.3g | %lu of %lu |\n", scene_mean_ms(s), 1e3 * s->worst_frame, 1e3 / scene_mean_ms(s),
+    fprintf(stream, " %.3g | %.3g | %.0f | %.3g | %lu of %lu |\n", scene_mean_ms(s), scene_ms(s->worst_frame), s->frame / s->sum_frames,
             1e-6 * (double)s->memory.peak, (unsigned long)(s->checks - s->wrong), (unsigned long)s->checks);
 }
 

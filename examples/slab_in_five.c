@@ -9,8 +9,9 @@ enum { PLANES = 4, SLICES = PLANES + 1 };
 
 int main(int argc, char **argv)
 {
-    const scene_desc desc = {"slab_in_five", "A slab is cut into five slices of 1/15 to 5/15 of its thickness, which droop each on its own.",
-                             "grid:61,11,1", "grid:15,3,1", 0, 300, 16, 1};
+    const scene_desc desc = {
+        .name = "slab_in_five", .about = "A slab is cut into five slices of 1/15 to 5/15 of its thickness, which droop each on its own.",
+        .mesh = "grid:61,11,1", .small_mesh = "grid:15,3,1", .frames = 300, .small_frames = 16, .has_csv = 1};
     const double edge = 0.01;           /* of a cube, m */
     const double z[PLANES] = {edge / 15, 3 * edge / 15, 6 * edge / 15, 10 * edge / 15};
     gx_material material = {{GXS_ST_VENANT_KIRCHHOFF, 3e7, 0.4, 0, NULL, NULL}, 1000.0};

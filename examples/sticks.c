@@ -39,7 +39,9 @@ static void advance(scene *s, scene_sheet blades[CUTS], double from, double to)
 
 int main(int argc, char **argv)
 {
-    const scene_desc desc = {"sticks", "A stretched cube of 5 tetrahedra is cut into 36 sticks by 5 + 5 crossing planes.", "cube5", NULL, 0, 150, 20, 0};
+    const scene_desc desc = {
+        .name = "sticks", .about = "A stretched cube of 5 tetrahedra is cut into 36 sticks by 5 + 5 crossing planes.",
+        .mesh = "cube5", .frames = 150, .small_frames = 20};
     scene s;
     scene_sheet first[CUTS], second[CUTS];
     unsigned long parallel = 0;

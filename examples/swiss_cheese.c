@@ -46,8 +46,9 @@ static double astray(scene *s, const double middle[3], double seconds)
 
 int main(int argc, char **argv)
 {
-    const scene_desc desc = {"swiss_cheese", "One tetrahedron is cut by waves and planes in several directions, and its pieces fly apart.",
-                             "tet", NULL, 0, 90, 20, 0};
+    const scene_desc desc = {
+        .name = "swiss_cheese", .about = "One tetrahedron is cut by waves and planes in several directions, and its pieces fly apart.",
+        .mesh = "tet", .frames = 90, .small_frames = 20};
     cheese_surface surfaces[CHEESE_SURFACES];
     double middle[3], off, least = HUGE_VAL;
     uint32_t done = 0, flight = 0;

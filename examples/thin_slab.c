@@ -12,8 +12,9 @@ static const double edge = 0.116;       /* of a cube, m: edges of tetrahedra are
 
 int main(int argc, char **argv)
 {
-    const scene_desc desc = {"thin_slab", "A slab is cut into sheets of 1/20 to 3/5 of its thickness, then all of them by one cut across.",
-                             "grid:12,15,1", "grid:6,4,1", 0, 150, 16, 1};
+    const scene_desc desc = {
+        .name = "thin_slab", .about = "A slab is cut into sheets of 1/20 to 3/5 of its thickness, then all of them by one cut across.",
+        .mesh = "grid:12,15,1", .small_mesh = "grid:6,4,1", .frames = 150, .small_frames = 16, .has_csv = 1};
     const double z[PLANES] = {0.05 * edge, 0.1 * edge, 0.2 * edge, 0.4 * edge};
     double before[SHEETS], after[SHEETS], length, across;
     scene_sheet planes[PLANES], last;

@@ -66,8 +66,9 @@ static double sunk(const scene *s, int block, double height)
 
 int main(int argc, char **argv)
 {
-    const scene_desc desc = {"unfolding_blocks", "Two blocks hang each on a small strip and are cut so that they unfold; the strips stay as long as they are.",
-                             "grid:24,4,16", NULL, 0, 300, 16, 0};
+    const scene_desc desc = {
+        .name = "unfolding_blocks", .about = "Two blocks hang each on a small strip and are cut so that they unfold; the strips stay as long as they are.",
+        .mesh = "grid:24,4,16", .frames = 300, .small_frames = 16};
     const double apart[BLOCKS] = {1.37, 0.97};
     gx_material material = {{GXS_ST_VENANT_KIRCHHOFF, 1e6, 0.4, 0, NULL, NULL}, 1000.0};
     double strip[BLOCKS], foot[BLOCKS], mass;
