@@ -21,6 +21,20 @@ static void spiral_point(const void *user, double a, double b, double *x)
     x[2] = (-0.25 + 1.5 * b) * edge;
 }
 
+/* How far the plate's middle hangs below its place: mean over the copies of the nodes within a cube of it; m */
+static double sunk(const scene *s, double middle)
+{
+    double sum = 0.0;
+    size_t copy, count = 0;
+    for (copy = 0; copy < s->view.copy_count; copy++) {
+        const double *at = s->mesh.positions + 3 * (size_t)s->view.copy_node[copy];
+        if (fabs(at[0] / edge - middle) > 1.0 || fabs(at[1] / edge - middle) > 1.0) continue;
+        sum -= s->view.displacement[3 * copy + 2];
+        count++;
+    }
+    return sum / (double)count;
+}
+
 int main(int argc, char **argv)
 {
     const scene_desc desc = {
@@ -30,7 +44,7 @@ int main(int argc, char **argv)
     gx_region sides[4] = {{0, -1, 1e-9}, {0, 1, 0}, {1, -1, 1e-9}, {1, 1, 0}};
     scene_sheet blade;
     spiral course;
-    double cubes, stretch;
+    double cubes, before, stretch;
     scene s;
     scene_open(&s, &desc, argc, argv);
     cubes = s.small ? 11 : 25;
@@ -45,8 +59,13 @@ int main(int argc, char **argv)
     s.step.dt = 0.005;
     scene_make(&s);
     scene_must(&s, gx_body_hold(s.body, sides, 4), "hold");
+    scene_settle(&s, 1e-8);
+    before = sunk(&s, course.middle);
     blade = scene_make_sheet(&s, s.small ? 60 : 400, 1, spiral_point, &course);
     for (; s.frame < s.frames; scene_step(&s)) scene_advance(&s, &blade, 0.02, 0.75);
+    scene_say(&s, "residual of the rest: %.1e", scene_settle(&s, 1e-8));
+    scene_check(&s, sunk(&s, course.middle) > 5.0 * before, "middle at rest: down by %.5f m (more than five times the %.5f m before the cut)",
+                sunk(&s, course.middle), before);
     stretch = scene_largest_stretch(&s);
     scene_check(&s, stretch < 1.5, "largest stretch of a part: %.3f (below 1.5: none drifts away)", stretch);
     scene_check(&s, s.view.fragment_count == 1, "fragments: %lu (1)", (unsigned long)s.view.fragment_count);
