@@ -84,6 +84,9 @@ sanitize:
 	@sh tests/install.sh check
 	@CK_TIMEOUT_MULTIPLIER=10 $(MAKE) --no-print-directory -k -j$(JOBS) check-programs BUILD=$(BUILD)/sanitize CFLAGS="$(sanitizers)"
 
+sanitize-scenes:
+	@$(MAKE) --no-print-directory -j$(JOBS) scenes SMALL=1 BUILD=$(BUILD)/sanitize CFLAGS="$(sanitizers)"
+
 compile:
 	@sh tests/compile.sh $(BUILD)/compile
 
@@ -128,4 +131,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo scenes pictures check check-programs run-gxcut $(tests:%=run-%) sanitize compile lint flags hashes bench-solver bench-accuracy bench-drift bench-conditioning bench-frames bench-skin check-all clean
+.PHONY: help examples demo scenes pictures check check-programs run-gxcut $(tests:%=run-%) sanitize sanitize-scenes compile lint flags hashes bench-solver bench-accuracy bench-drift bench-conditioning bench-frames bench-skin check-all clean

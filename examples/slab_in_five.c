@@ -42,7 +42,7 @@ int main(int argc, char **argv)
     scene_check_body(&s);
     strip.edge = edge;
     strip.z = z; strip.z_count = PLANES;
-    strip.most_elements = s.small ? 20000 : 160000;
+    strip.most_elements = s.small ? 8000 : 160000;
     slab_study(&s, &strip);
     for (i = 0; i < PLANES; i++) scene_drop_sheet(&planes[i]);
     return scene_close(&s);
