@@ -14,12 +14,15 @@ failed=0
 # on a display: COMMAND...
 display() { if [ -n "${DISPLAY:-}" ]; then "$@"; else xvfb-run -a "$@"; fi; }
 
-# picture SCENE EVERY FRAME ARRAY AZIMUTH ELEVATION: the FRAME-th of each EVERY-th frame, coloured by `fragment` or `cut`
+# picture SCENE EVERY FRAME ARRAY AZIMUTH ELEVATION: the FRAME-th of each EVERY-th frame, coloured by `fragment` or, outer surface and
+# faces of cuts, by `surface`
 picture() {
     echo "$1"
     rm -rf "$programs/pictures/$1"
+    if [ "$4" = surface ]; then range=--range=0,1; else range=; fi
+    # shellcheck disable=SC2086
     "$programs/$1" --quiet --every "$2" --out "$programs/pictures/$1" &&
-    display f3d "$programs/pictures/$1/frame_$3.vtu" --output="$directory/$1.png" --resolution 640,420 --up=+Z --cells --scalars="$4" \
+    display f3d "$programs/pictures/$1/frame_$3.vtu" --output="$directory/$1.png" --resolution 640,420 --up=+Z --cells --scalars="$4" $range \
         --colormap=$colors --bg-color=1,1,1 --fxaa --ssao --camera-azimuth-angle="$5" --camera-elevation-angle="$6" --quiet && return
     echo "$1: no picture" >&2
     failed=1
@@ -28,9 +31,9 @@ picture() {
 picture sticks 25 0005 fragment 30 25
 picture thin_slab 15 0005 fragment 35 15
 picture swiss_cheese 3 0022 fragment 60 20
-picture accordion 10 0011 cut 20 8
+picture accordion 10 0011 surface 20 8
 picture hinged_slices 20 0009 fragment 35 15
 picture slab_in_five 30 0009 fragment 35 12
-picture unfolding_blocks 10 0014 cut 20 8
-picture helix_plate 20 0019 cut 25 22
+picture unfolding_blocks 10 0014 surface 20 8
+picture helix_plate 20 0019 surface 25 22
 exit $failed

@@ -75,6 +75,7 @@ typedef void (*scene_point_fn)(const void *user, double a, double b, double *x);
 typedef struct scene_skin {
     gxio_triangles triangles;           /* as files take them */
     double *positions;                  /* triangles.vertex_count x 3, deformed; owned */
+    float *normals;                     /* triangles.vertex_count x 3; owned */
     const uint32_t *vertex_point;       /* triangles.vertex_count */
     const uint32_t *vertex_copies;      /* x 4 */
     const double *vertex_weights;       /* x 4 */
@@ -170,7 +171,7 @@ static inline void scene_usage(const scene *s)
     printf("  --frames N          steps and frames (%lu; %lu with --small)\n", (unsigned long)s->desc.frames,
            (unsigned long)s->desc.small_frames);
     if (s->desc.has_csv) puts("  --csv FILE          appends the scene's figures to it");
-    if (s->desc.any_mesh) printf("  --mesh MESH         FILE.mesh, FILE.node or grid:NX,NY,NZ (%s)\n", s->desc.mesh);
+    if (s->desc.any_mesh) printf("  --mesh MESH         a file or a generated mesh, as gxcut takes them (%s)\n", s->desc.mesh);
     puts("  --out DIR           writes frames there\n"
          "  --every N           only each N-th of them (1)\n"
          "  --format vtu|obj    frames for ParaView with a collection frames.pvd (default), or Wavefront\n"
@@ -474,27 +475,34 @@ static inline void scene_cut_across(scene *s, uint32_t axis, double at)
 
 /* ---------------------------------------------------------------------------------------------- >>skin */
 
-/* The surface as the body is now. */
+/* Takes the surface anew after a cut, and where it and its normals are now. */
 static inline void scene_take_skin(scene *s)
 {
-    scene_skin *own = &s->skin;
+    const gx_skin_desc shading = {0.6, 1};      /* creases of 34 degrees and more stay sharp */
+    gxio_triangles *triangles = &s->skin.triangles;
     gx_skin skin;
-    scene_must(s, gx_body_skin(s->body, &skin), "skin");
     if (!s->looked) {
-        free(own->positions);
-        own->positions = (double *)scene_array(s, skin.vertex_count, 3 * sizeof(double));
+        scene_must(s, gx_body_skin(s->body, &shading, &skin), "skin");
+        free(s->skin.positions);
+        free(s->skin.normals);
+        s->skin.positions = (double *)scene_array(s, skin.vertex_count, 3 * sizeof(double));
+        s->skin.normals = (float *)scene_array(s, skin.vertex_count, 3 * sizeof(float));
+        s->skin.vertex_point = skin.vertex_point;
+        s->skin.vertex_copies = skin.vertex_copies;
+        s->skin.vertex_weights = skin.vertex_weights;
+        triangles->positions = s->skin.positions;
+        triangles->normals = s->skin.normals;
+        triangles->texture = skin.vertex_texture;
+        triangles->vertex_count = skin.vertex_count;
+        triangles->triangles = skin.triangles;
+        triangles->triangle_count = skin.triangle_count;
+        triangles->fragment = skin.triangle_fragment;
+        triangles->fragment_count = s->view.fragment_count;
+        triangles->surface = skin.triangle_surface;
+        triangles->material = skin.triangle_material;
     }
-    gx_body_skin_positions(s->body, &skin, own->positions);
-    own->triangles.positions = own->positions;
-    own->triangles.vertex_count = skin.vertex_count;
-    own->triangles.triangles = skin.triangles;
-    own->triangles.triangle_count = skin.triangle_count;
-    own->triangles.fragment = skin.triangle_fragment;
-    own->triangles.fragment_count = s->view.fragment_count;
-    own->triangles.cut = skin.triangle_cut;
-    own->vertex_point = skin.vertex_point;
-    own->vertex_copies = skin.vertex_copies;
-    own->vertex_weights = skin.vertex_weights;
+    scene_must(s, gx_body_skin_positions(s->body, s->skin.positions), "skin");
+    scene_must(s, gx_body_skin_vertices(s->body, NULL, NULL, s->skin.normals), "skin");
 }
 
 /* View and skin of the body as it is now */
@@ -1027,6 +1035,7 @@ static inline int scene_close(scene *s)
     }
     free(s->cuts);
     free(s->skin.positions);
+    free(s->skin.normals);
     gx_body_destroy(s->body);
     gxio_mesh_release(&s->mesh);
     return s->wrong ? SCENE_WRONG : SCENE_RIGHT;

@@ -61,7 +61,7 @@ chart() {
     cat "$work/rows"
     echo
     echo "A frame is the cut, the step and the skin. arrangement, enrichment, integrals: of the cut; model, linearise, prepare, solve,"
-    echo "forces: of the step; skin: view, skin and positions of its vertices; peak: the body's memory, by its allocator."
+    echo "forces: of the step; skin: view, skin, positions and normals of its vertices; peak: the body's memory, by its allocator."
     if [ -s "$work/csv" ] && command -v gnuplot >/dev/null && chart "$directory/charts/locking.svg" <"$work/csv"; then
         echo
         echo "![how far slices bend, beside beam theory, by their thickness in elements](charts/locking.svg)"
