@@ -37,12 +37,10 @@ static double bottom(const scene *s)
 static double falling(scene *s)
 {
     uint32_t f, lowest = 0;
-    double mean[3];
     if (s->view.fragment_count < 3) return 0.0;
     for (f = 1; f < s->view.fragment_count; f++)
         if (s->view.fragment_center[3 * f + 2] < s->view.fragment_center[3 * lowest + 2]) lowest = f;
-    scene_mean(s, lowest, s->view.velocity, mean);
-    return -mean[2];
+    return -scene_motion(s, lowest).velocity[2];
 }
 
 int main(int argc, char **argv)

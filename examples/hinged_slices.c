@@ -19,14 +19,6 @@ static void turn(scene *s)
     }
 }
 
-/* Where the centre of mass of a slice is, m */
-static void center(scene *s, uint32_t slice, double at[3])
-{
-    int i;
-    scene_mean(s, slice, s->view.displacement, at);
-    for (i = 0; i < 3; i++) at[i] += s->view.fragment_center[3 * slice + (uint32_t)i];
-}
-
 int main(int argc, char **argv)
 {
     const scene_desc desc = {
@@ -59,9 +51,9 @@ int main(int argc, char **argv)
     residual = scene_settle(&s, 1e-10);
     scene_say(&s, "residual of the rest: %.1e", residual);
     for (f = 0; f < s.view.fragment_count; f++) {
-        double at[3];
-        if (s.view.fragment_center[3 * f + 1] > y[CUTS - 1]) continue;      /* at the wall */
-        center(&s, f, at);
+        const gx_motion motion = scene_motion(&s, f);
+        const double *at = motion.center;
+        if (at[1] > y[CUTS - 1]) continue;      /* at the wall */
         scene_check(&s, fabs(at[0]) < 1e-3 * edge && at[2] < 0.0,
                     "slice of %.1f m: centre of mass %.1e of an edge beside the hinge, %.4f m below it (at most 1e-3, below)",
                     s.view.fragment_volume[f] / 2.0, fabs(at[0]) / edge, -at[2]);

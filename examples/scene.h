@@ -714,25 +714,14 @@ static inline uint32_t *scene_copy_fragments(scene *s)
     return fragment;
 }
 
-/* The mean over the mass of a fragment of a field, by copy x 3: of view.displacement or view.velocity the motion of its centre */
-static inline void scene_mean(scene *s, uint32_t fragment, const double *field, double mean[3])
+/* How a fragment moves */
+static inline gx_motion scene_motion(scene *s, uint32_t fragment)
 {
-    static const unsigned char row[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};   /* of gxs_element.mass */
-    uint32_t *of_copy = scene_copy_fragments(s);
-    gxs_model model;
-    double mass = 0.0;
-    size_t e, i, j;
-    scene_must(s, gx_body_model(s->body, &model), "model");
-    mean[0] = mean[1] = mean[2] = 0.0;
-    for (e = 0; e < model.element_count; e++)
-        for (i = 0; i < 4 && of_copy[model.elements[e].copy[0]] == fragment; i++) {
-            const double *m = model.elements[e].mass;
-            const double share = m[row[i][0]] + m[row[i][1]] + m[row[i][2]] + m[row[i][3]];
-            mass += share;
-            for (j = 0; j < 3; j++) mean[j] += share * field[3 * (size_t)model.elements[e].copy[i] + j];
-        }
-    for (j = 0; j < 3; j++) mean[j] /= mass;
-    free(of_copy);
+    gx_motion *motions = (gx_motion *)scene_array(s, s->view.fragment_count, sizeof *motions), motion;
+    scene_must(s, gx_body_motion(s->body, motions, s->view.fragment_count), "motion");
+    motion = motions[fragment];
+    free(motions);
+    return motion;
 }
 
 typedef struct scene_corner { uint32_t point, copies[4], vertex; } scene_corner;

@@ -35,11 +35,12 @@ static void burst(scene *s, double middle[3])
 /* How far the centre of a fragment is, after so many seconds of flight, from where it should be; m */
 static double astray(scene *s, const double middle[3], double seconds)
 {
-    double worst = 0.0, mean[3];
+    double worst = 0.0;
     uint32_t f, i;
     for (f = 0; f < s->view.fragment_count; f++) {
-        scene_mean(s, f, s->view.displacement, mean);
-        for (i = 0; i < 3; i++) worst = fmax(worst, fabs(mean[i] - seconds * (s->view.fragment_center[3 * f + i] - middle[i])));
+        const gx_motion motion = scene_motion(s, f);
+        const double *from = s->view.fragment_center + 3 * (size_t)f;
+        for (i = 0; i < 3; i++) worst = fmax(worst, fabs(motion.center[i] - (from[i] + seconds * (from[i] - middle[i]))));
     }
     return worst;
 }
