@@ -319,6 +319,12 @@ static inline void scene_make(scene *s)
     s->first_copies = s->view.copy_count;
 }
 
+/* Holds what lies in one of the half-spaces. */
+static inline void scene_hold_regions(scene *s, const gx_region *regions, size_t count)
+{
+    scene_must(s, gx_body_hold(s->body, regions, count), "hold");
+}
+
 /* Holds what lies on one side (-1: below) of a plane across an axis. */
 static inline void scene_hold(scene *s, uint32_t axis, int32_t side, double value)
 {
@@ -326,7 +332,7 @@ static inline void scene_hold(scene *s, uint32_t axis, int32_t side, double valu
     region.axis = axis;
     region.side = side;
     region.value = value;
-    scene_must(s, gx_body_hold(s->body, &region, 1), "hold");
+    scene_hold_regions(s, &region, 1);
 }
 
 /* -------------------------------------------------------------------------------------------- >>sheets */
@@ -364,6 +370,15 @@ static inline void scene_drop_sheet(scene_sheet *sheet)
     free(sheet->vertices);
     free(sheet->triangles);
     memset(sheet, 0, sizeof *sheet);
+}
+
+/* From -1 to 1, and the same for the same pair: the multiplications and shifts of a 32-bit hash */
+static inline double scene_noise(uint32_t i, uint32_t j)
+{
+    uint32_t h = i * 0x9E3779B1u ^ j * 0x85EBCA77u;
+    h = (h ^ h >> 16) * 0x7FEB352Du;
+    h = (h ^ h >> 15) * 0x846CA68Bu;
+    return (h ^ h >> 16) / 2147483647.5 - 1.0;
 }
 
 /* corner + a u + b v; nine numbers */
@@ -666,6 +681,52 @@ static inline double scene_volume_error(const scene *s)
     size_t c;
     for (c = 0; c < s->view.cell_count; c++) volume += s->view.cell_volume[c];
     return fabs(volume / scene_mesh_volume(s) - 1.0);
+}
+
+/* Elements that cuts have divided */
+static inline size_t scene_divided_elements(const scene *s)
+{
+    size_t c, divided = 0;
+    for (c = 1; c < s->view.cell_count; c++)
+        divided += s->view.cell_element[c] == s->view.cell_element[c - 1]
+            && (c < 2 || s->view.cell_element[c] != s->view.cell_element[c - 2]);
+    return divided;
+}
+
+/* The node that a vertex of the surface is at, UINT32_MAX where it is at none */
+static inline uint32_t scene_node_at(const scene *s, size_t vertex)
+{
+    int k;
+    for (k = 0; k < 4; k++)
+        if (s->skin.vertex_weights[4 * vertex + (size_t)k] >= 1.0) return s->view.copy_node[s->skin.vertex_copies[4 * vertex + (size_t)k]];
+    return UINT32_MAX;
+}
+
+/* The node of the surface nearest to a material point */
+static inline uint32_t scene_nearest_node(const scene *s, const double x[3])
+{
+    double least = HUGE_VAL;
+    uint32_t nearest = 0;
+    size_t v, i;
+    for (v = 0; v < s->skin.triangles.vertex_count; v++) {
+        const uint32_t node = scene_node_at(s, v);
+        double distance = 0.0;
+        if (node == UINT32_MAX) continue;
+        for (i = 0; i < 3; i++) distance += pow(s->mesh.positions[3 * (size_t)node + i] - x[i], 2.0);
+        if (distance < least) {
+            least = distance;
+            nearest = node;
+        }
+    }
+    return nearest;
+}
+
+/* Where a node of the surface that no cut passes through is now */
+static inline const double *scene_place(const scene *s, uint32_t node)
+{
+    size_t v;
+    for (v = 0; v + 1 < s->skin.triangles.vertex_count && scene_node_at(s, v) != node;) v++;
+    return s->skin.positions + 3 * v;
 }
 
 /* The largest eigenvalue of a symmetric matrix, as 00 01 02 11 12 22: the largest root of its characteristic polynomial, by
