@@ -729,6 +729,36 @@ static inline const double *scene_place(const scene *s, uint32_t node)
     return s->skin.positions + 3 * v;
 }
 
+/* Fragments of at least a share of the body's volume */
+static inline size_t scene_fragments_above(const scene *s, double share)
+{
+    size_t f, count = 0;
+    for (f = 0; f < s->view.fragment_count; f++) count += s->view.fragment_volume[f] >= share * s->view.volume;
+    return count;
+}
+
+/* How far the two faces of the cuts are apart: the mean over the triangles' corners that have left their opposite, m. Fragments below a
+   share of the body's volume are left out. */
+static inline double scene_mean_gap(scene *s, double share)
+{
+    const gxio_triangles *t = &s->skin.triangles;
+    size_t *first, i, k, points = 0, count = 0;     /* first: vertex + 1 where each point was first seen */
+    double sum = 0.0;
+    for (i = 0; i < t->vertex_count; i++) if (s->skin.vertex_point[i] >= points) points = (size_t)s->skin.vertex_point[i] + 1;
+    first = (size_t *)scene_array(s, points, sizeof *first);
+    for (i = 0; i < 3 * t->triangle_count; i++) {
+        const size_t vertex = t->triangles[i], point = s->skin.vertex_point[vertex];
+        double distance = 0.0;
+        if (!t->cut[i / 3] || s->view.fragment_volume[t->fragment[i / 3]] < share * s->view.volume) continue;
+        if (!first[point]) first[point] = vertex + 1;
+        for (k = 0; k < 3; k++) distance += pow(t->positions[3 * vertex + k] - t->positions[3 * (first[point] - 1) + k], 2.0);
+        sum += sqrt(distance);
+        count += distance > 0.0;
+    }
+    free(first);
+    return count ? sum / (double)count : 0.0;
+}
+
 /* The largest eigenvalue of a symmetric matrix, as 00 01 02 11 12 22: the largest root of its characteristic polynomial, by
    the cosine of a third of an angle [Smith, Eigenvalues of a symmetric 3x3 matrix, CACM 1961] */
 static inline double scene_largest_eigenvalue(const double m[6])
