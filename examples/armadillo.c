@@ -58,8 +58,9 @@ static void make_tall(scene *s)
 
 int main(int argc, char **argv)
 {
-    const scene_desc desc = {"armadillo", "An armadillo hung up by its limbs is cut by smooth and sharp surfaces.", "armadillo", "armadillo:8",
-                             1, 300, 80};
+    const scene_desc desc = {
+        .name = "armadillo", .about = "An armadillo hung up by its limbs is cut by smooth and sharp surfaces.",
+        .mesh = "armadillo", .small_mesh = "armadillo:8", .any_mesh = 1, .frames = 300, .small_frames = 80, .least_frames = 80};
     const gx_region limbs[3] = {{1, -1, -0.42}, {0, -1, -0.48}, {0, 1, 0.48}};
     const gx_material material = {{GXS_ST_VENANT_KIRCHHOFF, 6e4, 0.4, 0.0, NULL, NULL}, 1000.0};
     scene s;
@@ -74,7 +75,7 @@ int main(int argc, char **argv)
     s.step.dt = 0.005;
     s.step.gravity[2] = 9.81;
     scene_make(&s);
-    scene_hold_regions(&s, limbs, 3);
+    scene_must(&s, gx_body_hold(s.body, limbs, 3), "hold");
     scene_settle(&s, 1e-4);
     for (i = 0; i < BLADES; i++) sheets[i] = scene_make_sheet(&s, blades[i].columns, blades[i].rows, blade_point, &blades[i]);
     for (; s.frame < s.frames; scene_step(&s))

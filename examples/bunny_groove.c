@@ -91,8 +91,9 @@ static double strayed(const scene *s, uint32_t node)
 
 int main(int argc, char **argv)
 {
-    const scene_desc desc = {"bunny_groove", "A groove is carved around a turning bunny and peeled off by a second cut.", "bunny", "bunny:0.016",
-                             1, 240, 120};
+    const scene_desc desc = {
+        .name = "bunny_groove", .about = "A groove is carved around a turning bunny and peeled off by a second cut.",
+        .mesh = "bunny", .small_mesh = "bunny:0.016", .any_mesh = 1, .frames = 240, .small_frames = 120, .least_frames = 80};
     const gx_material material = {{GXS_ST_VENANT_KIRCHHOFF, 1e5, 0.4, 0.0, NULL, NULL}, 1000.0};
     scene s;
     scene_sheet groove, second;

@@ -67,7 +67,9 @@ static unsigned long pieces(const scene *s)
 
 int main(int argc, char **argv)
 {
-    const scene_desc desc = {"noisy_plate", "A plate with objects on it is cut by a long bumpy surface.", "objects", "objects:0.1", 1, 240, 40};
+    const scene_desc desc = {
+        .name = "noisy_plate", .about = "A plate with objects on it is cut by a long bumpy surface.",
+        .mesh = "objects", .small_mesh = "objects:0.1", .any_mesh = 1, .frames = 240, .small_frames = 40, .least_frames = 40};
     const gx_region sides[2] = {{1, -1, -0.95}, {1, 1, 0.95}};
     const gx_material material = {{GXS_ST_VENANT_KIRCHHOFF, 2e6, 0.4, 0.0, NULL, NULL}, 1000.0};
     const fineness full = {45, 48}, coarse = {20, 21};
@@ -82,7 +84,7 @@ int main(int argc, char **argv)
     s.step.dt = 0.005;
     scene_make(&s);
     pull(&s);
-    scene_hold_regions(&s, sides, 2);
+    scene_must(&s, gx_body_hold(s.body, sides, 2), "hold");
     scene_settle(&s, 1e-4);
     stretched = scene_largest_stretch(&s);
     fine = s.small ? &coarse : &full;

@@ -319,12 +319,6 @@ static inline void scene_make(scene *s)
     s->first_copies = s->view.copy_count;
 }
 
-/* Holds what lies in one of the half-spaces. */
-static inline void scene_hold_regions(scene *s, const gx_region *regions, size_t count)
-{
-    scene_must(s, gx_body_hold(s->body, regions, count), "hold");
-}
-
 /* Holds what lies on one side (-1: below) of a plane across an axis. */
 static inline void scene_hold(scene *s, uint32_t axis, int32_t side, double value)
 {
@@ -332,7 +326,7 @@ static inline void scene_hold(scene *s, uint32_t axis, int32_t side, double valu
     region.axis = axis;
     region.side = side;
     region.value = value;
-    scene_hold_regions(s, &region, 1);
+    scene_must(s, gx_body_hold(s->body, &region, 1), "hold");
 }
 
 /* -------------------------------------------------------------------------------------------- >>sheets */
@@ -749,7 +743,7 @@ static inline double scene_mean_gap(scene *s, double share)
     for (i = 0; i < 3 * t->triangle_count; i++) {
         const size_t vertex = t->triangles[i], point = s->skin.vertex_point[vertex];
         double distance = 0.0;
-        if (!t->cut[i / 3] || s->view.fragment_volume[t->fragment[i / 3]] < share * s->view.volume) continue;
+        if (t->surface[i / 3] == GX_SKIN_OUTER || s->view.fragment_volume[t->fragment[i / 3]] < share * s->view.volume) continue;
         if (!first[point]) first[point] = vertex + 1;
         for (k = 0; k < 3; k++) distance += pow(t->positions[3 * vertex + k] - t->positions[3 * (first[point] - 1) + k], 2.0);
         sum += sqrt(distance);
