@@ -2,7 +2,8 @@
 
    55k tetrahedra of St. Venant-Kirchhoff material, steps of 5 ms. Hands and feet are held, gravity pulls at the back (along z). A zigzag,
    a long wave and a bumpy sheet cross each other in the trunk and end inside it; short waves take the tail off, spikes
-   part the right thigh, so that the trunk swings down from three limbs. */
+   part the right thigh, so that the trunk swings down from three limbs. RXFEM gives neither size nor stiffness: 1.51 m and 60 kPa
+   let the cuts gape. */
 #include "scene.h"
 
 enum { BLADES = 5 };

@@ -4,7 +4,7 @@
    18.5k tetrahedra of St. Venant-Kirchhoff material, steps of 5 ms; the bunny's feet are held on a table that turns about y. The
    blade, a U with flared sides, stands still in space while the bunny turns by once: a surface of revolution about an ellipse,
    but for the last 20 degrees, where the strip in the groove stays attached. It lies in its groove until a second cut, a plane
-   through the axis, crosses the groove near its beginning: now it has a free end and is thrown off. */
+   through the axis, crosses the groove near its beginning: now it has a free end and is thrown off. RXFEM gives neither stiffness nor speed. */
 #include "scene.h"
 
 enum { COLUMNS = 170, BLADE_COLUMNS = 6 };

@@ -14,17 +14,20 @@ failed=0
 # on a display: COMMAND...
 display() { if [ -n "${DISPLAY:-}" ]; then "$@"; else xvfb-run -a "$@"; fi; }
 
-# picture SCENE EVERY FRAME ARRAY AZIMUTH ELEVATION: the FRAME-th of each EVERY-th frame, coloured by `fragment` or, outer surface and
-# faces of cuts, by `surface`
+# picture SCENE EVERY FRAME ARRAY AZIMUTH ELEVATION [OPTION]...: the FRAME-th of each EVERY-th frame, coloured by `fragment` or, outer
+# surface and faces of cuts, by `surface`; OPTIONs of f3d, without any z is up
 picture() {
     echo "$1"
     rm -rf "$programs/pictures/$1"
-    if [ "$4" = surface ]; then range=--range=0,1; else range=; fi
+    scene=$1 every=$2 frame=$3 array=$4 azimuth=$5 elevation=$6
+    shift 6
+    [ $# -gt 0 ] || set -- --up=+Z
+    if [ "$array" = surface ]; then range=--range=0,1; else range=; fi
     # shellcheck disable=SC2086
-    "$programs/$1" --quiet --every "$2" --out "$programs/pictures/$1" &&
-    display f3d "$programs/pictures/$1/frame_$3.vtu" --output="$directory/$1.png" --resolution 640,420 --up=+Z --cells --scalars="$4" $range \
-        --colormap=$colors --bg-color=1,1,1 --fxaa --ssao --camera-azimuth-angle="$5" --camera-elevation-angle="$6" --quiet && return
-    echo "$1: no picture" >&2
+    "$programs/$scene" --quiet --every "$every" --out "$programs/pictures/$scene" &&
+    display f3d "$programs/pictures/$scene/frame_$frame.vtu" --output="$directory/$scene.png" --resolution 640,420 --cells --scalars="$array" $range \
+        --colormap=$colors --bg-color=1,1,1 --fxaa --ssao --camera-azimuth-angle="$azimuth" --camera-elevation-angle="$elevation" --quiet "$@" && return
+    echo "$scene: no picture" >&2
     failed=1
 }
 
@@ -36,4 +39,8 @@ picture hinged_slices 20 0009 fragment 35 15
 picture slab_in_five 30 0009 fragment 35 12
 picture unfolding_blocks 10 0014 surface 20 8
 picture helix_plate 20 0019 surface 25 22
+picture octopus 10 0011 surface 0 0 --up=+Y --camera-position=70,-20,-170 --camera-focal-point=-3,-10,-12 --camera-view-angle=30
+picture bunny_groove 20 0009 surface 0 0 --up=+Y --camera-position=0.15,0.3,0.5 --camera-focal-point=0.01,0.075,0.01 --camera-view-angle=28
+picture armadillo 25 0006 surface 0 0 --up=+Y --camera-position=1.6,0.9,3.6 --camera-focal-point=0.05,0.2,0.1 --camera-view-angle=24
+picture noisy_plate 20 0011 surface 0 0 --up=+Z --camera-position=-2.5,-2.8,3.2 --camera-focal-point=-0.2,0,0 --camera-view-angle=40
 exit $failed
