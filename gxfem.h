@@ -486,7 +486,7 @@ struct gx_body {
     gxp_undo *undo; uint32_t undo_count, undo_capacity;
     uint32_t *cell_stamp; uint32_t cell_stamp_capacity;
     uint32_t stamp, scope_stamp;
-    int held_stale, model_stale, view_stale;
+    int held_stale, model_stale, view_stale, sums_stale;
     gxs_element *parts; uint32_t part_count, part_capacity;     /* there only while the solver's model is made; part_count stays */
     double *rest; uint32_t rest_capacity;               /* copies, x 3 doubles: where they are at rest, m; as long */
     gxs_material *elastic; uint32_t elastic_capacity;   /* materials for the solver; as long */
@@ -2744,6 +2744,15 @@ static void gxp_unite(uint32_t *parent, uint32_t i, uint32_t j) {
     else parent[i] = j;
 }
 
+static void gxp_unite_all(uint32_t *parent, const uint32_t copies[4]) {
+    uint32_t root = gxp_find(parent, copies[0]), k;
+    for (k = 1; k < 4; k++) {
+        const uint32_t other = gxp_find(parent, copies[k]);
+        if (other < root) { parent[root] = other; root = other; }
+        else parent[other] = root;
+    }
+}
+
 static gx_result gxp_set_words(gx_body *body, gxp_words *words, size_t count) {
     words->count = 0;
     return gxp_words_room(body, words, count);
@@ -2751,7 +2760,7 @@ static gx_result gxp_set_words(gx_body *body, gxp_words *words, size_t count) {
 
 /* Lists the kept cells by element and joins copies that a cell moves by: cells of one fragment share copies from link to link. */
 static gx_result gxp_list_cells(gx_body *body) {
-    uint32_t e, cell, k, i;
+    uint32_t e, cell, i;
     gx_result result = gxp_set_words(body, &body->view_cells, body->cell_count);
     if (result == GX_OK) result = gxp_set_words(body, &body->view_fragments, body->cell_count);
     if (result == GX_OK) result = gxp_set_words(body, &body->cell_element, body->cell_count);
@@ -2766,8 +2775,9 @@ static gx_result gxp_list_cells(gx_body *body) {
         body->cell_volume[body->view_cells.count] = c->volume;
         body->view_cells.data[body->view_cells.count++] = cell;
         body->cell_element.data[body->cell_element.count++] = e;
-        for (k = 0; k < 4; k++) body->cell_copies.data[body->cell_copies.count++] = c->copies[k];
-        for (k = 1; k < 4; k++) gxp_unite(body->copy_fragment.data, c->copies[0], c->copies[k]);
+        memcpy(body->cell_copies.data + body->cell_copies.count, c->copies, sizeof c->copies);
+        body->cell_copies.count += 4;
+        gxp_unite_all(body->copy_fragment.data, c->copies);
     }
     return GX_OK;
 }
@@ -2856,6 +2866,7 @@ static gx_result gxp_sum_fragments(gx_body *body) {
     int n;
     const gx_result result = gxp_reserve_fragments(body);
     body->volume = body->mass = 0;
+    if (result == GX_OK) body->sums_stale = 0;
     if (result != GX_OK || body->fragment_count == 0) return result;
     memset(body->fragments, 0, (size_t)body->fragment_capacity * GXP_FRAGMENT_ARRAYS * sizeof(double));
     volume = body->fragments; mass = volume + body->fragment_capacity;
@@ -2883,14 +2894,16 @@ static gx_result gxp_sum_fragments(gx_body *body) {
     return GX_OK;
 }
 
+/* Cells and fragments. What they weigh is summed for gx_body_view only. */
 static gx_result gxp_update_view(gx_body *body) {
     gx_result result;
     if (!body->view_stale) return GX_OK;
     result = gxp_list_cells(body);
     if (result == GX_OK) result = gxp_number_fragments(body);
-    if (result == GX_OK) result = gxp_sum_fragments(body);
-    if (result == GX_OK) body->view_stale = 0;
-    return result;
+    if (result != GX_OK) return result;
+    body->view_stale = 0;
+    body->sums_stale = 1;
+    return GX_OK;
 }
 
 /* --- what cuts have changed: fragments now are pieces of those of the last look, which their copies are labelled with --- */
@@ -2992,6 +3005,7 @@ GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view) {
     gx_result result;
     if (body == NULL || view == NULL) return GX_ERROR_ARGUMENT;
     result = gxp_update_view(body);
+    if (result == GX_OK && body->sums_stale) result = gxp_sum_fragments(body);
     if (result == GX_OK) result = gxp_look(body);
     if (result == GX_OK) result = gxp_update_held(body);
     if (result != GX_OK) return result;
@@ -4438,6 +4452,7 @@ static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const 
         for (n = 0; n < 4; n++)
             rest[k] += s->weights[4 * (size_t)i + n] * body->positions[3 * (size_t)body->copy_node[s->copies[4 * (size_t)i + n]] + (size_t)k];
     }
+    memset(s->normal + 3 * (size_t)i, 0, 3 * sizeof *s->normal);    /* should the next not find one */
     gxp_set_normal(s->normal + 3 * (size_t)i, face->normal);
     gxp_set_texture(body, i, face, lambda);
     *vertex = s->vertex_count++;
@@ -4563,6 +4578,7 @@ static gx_result gxp_add_skin_triangle(gx_body *body, const gxp_skin_face *face,
     s->element[t] = face->element;
     s->material[t] = body->element_materials[face->element];
     s->surface[t] = face->surface;
+    memset(s->links[t].normal, 0, sizeof s->links[t].normal);
     gxp_set_normal(s->links[t].normal, face->normal);
     for (k = 0, j = 0; k < 4 && face->outer; k++) if (face->slots[k] != GXP_NONE) s->links[t].slots[j++] = face->slots[k];
     for (k = 0; k < 3 && !face->outer; k++) s->links[t].slots[k] = s->vertices[corner[k]].slots[0];

@@ -246,7 +246,11 @@ typedef struct gxb_leaf {       /* a convex piece of an element */
     uint32_t removed;           /* set by the user of the complex */
 } gxb_leaf;
 
-typedef struct gxb_node { uint32_t plane, child[2]; } gxb_node;     /* front, behind: leaf * 2 or node * 2 + 1 */
+typedef struct gxb_node {       /* of an element's tree of planes */
+    uint32_t plane, child[2];   /* front, behind: leaf * 2 or node * 2 + 1 */
+    uint32_t parent;            /* node, GXB_NONE: the element's root */
+    uint32_t leaves;            /* below it */
+} gxb_node;
 
 typedef struct gxb_block { struct gxb_block *next; size_t size, used; } gxb_block;     /* of exact numbers; never moves */
 
@@ -2378,6 +2382,155 @@ static gx_result gxbp_cover_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t leaf
     return result;
 }
 
+/* --- balance: planes that come in order, as in parallel cuts, would make chains of nodes. A chain is a list of nodes, each with what hangs
+   off it; where one node's plane has all that hangs off those above it on one side or the other, that node can stand above them,
+   and nodes with nothing on a side are not needed there. No leaf changes. --- */
+
+typedef struct gxbp_rung { uint32_t node, side, off; } gxbp_rung;   /* the chain goes on at child[side]; off: what hangs at the other one */
+typedef struct gxbp_step { uint32_t node, child[2]; } gxbp_step;
+typedef struct gxbp_plan { gxbp_step *step; uint32_t count; gxbp_rung *spare; } gxbp_plan;    /* what shall hang where, from below */
+
+/* Is the tree far from what a balanced one of so many leaves has? Looked at eight times while it doubles. */
+static int gxbp_is_slack(uint32_t height, uint32_t leaves) {
+    uint32_t bits = 0;
+    while (leaves >> bits > 1) bits++;
+    return height > 2 * bits + 4 && (leaves & ((1u << bits >> 3) - 1)) == 0;
+}
+
+static uint32_t gxbp_depth(const gxb_complex *cx, uint32_t node) {
+    uint32_t depth = 0;
+    for (; node != GXB_NONE; node = cx->nodes[node].parent) depth++;
+    return depth;
+}
+
+static uint32_t gxbp_leaves_below(const gxb_complex *cx, uint32_t reference) { return reference & 1 ? cx->nodes[reference >> 1].leaves : 1; }
+
+/* On which sides of the plane (slot 1's, for its present stamp) the leaf has points: bit 1 in front, bit 2 behind. 3 also where memory
+   fails. */
+static int gxbp_leaf_sides(gxb_complex *cx, uint32_t leaf, uint32_t plane) {
+    uint32_t first, count, i, j, e0, en;
+    int sides = 0;
+    if (gxb_leaf_facets(cx, leaf, &first, &count) != GX_OK) return 3;
+    for (i = 0; i < count && sides != 3; i++) {
+        if (gxb_facet_edges(cx, cx->pool[first + i], &e0, &en) != GX_OK) return 3;
+        for (j = 0; j < en && sides != 3; j++) {
+            const int sign = gxbp_sign(cx, gxbp_edge_start(cx, cx->pool[e0 + j]), plane, 1);
+            sides |= sign > 0 ? 1 : sign < 0 ? 2 : 0;
+        }
+    }
+    return sides;
+}
+
+static int gxbp_sides_below(gxb_complex *cx, uint32_t reference, uint32_t plane) {
+    int sides;
+    if (!(reference & 1)) return gxbp_leaf_sides(cx, reference >> 1, plane);
+    sides = gxbp_sides_below(cx, cx->nodes[reference >> 1].child[0], plane);
+    return sides == 3 ? 3 : sides | gxbp_sides_below(cx, cx->nodes[reference >> 1].child[1], plane);
+}
+
+static uint32_t gxbp_plan_node(gxbp_plan *plan, uint32_t node, uint32_t side, uint32_t on, uint32_t off) {
+    plan->step[plan->count].node = node;
+    plan->step[plan->count].child[side] = on;
+    plan->step[plan->count++].child[1 - side] = off;
+    return 2 * node + 1;
+}
+
+/* The chain as it is, above end */
+static uint32_t gxbp_plan_chain(gxbp_plan *plan, const gxbp_rung *rung, uint32_t count, uint32_t end) {
+    while (count-- > 0) end = gxbp_plan_node(plan, rung[count].node, rung[count].side, end, rung[count].off);
+    return end;
+}
+
+/* Sorts what hangs above rung middle by its side of that plane: those on the chain's own side last. Their number is *own. 0: the plane
+   passes through one of them. spare: middle rungs */
+static int gxbp_part_chain(gxb_complex *cx, gxbp_rung *rung, uint32_t middle, gxbp_rung *spare, uint32_t *own) {
+    const uint32_t plane = cx->nodes[rung[middle].node].plane, side = rung[middle].side;
+    uint32_t i, n = 0;
+    cx->stamp[1]++;
+    *own = 0;
+    for (i = 0; i < middle; i++) {
+        const int sides = gxbp_sides_below(cx, rung[i].off, plane);
+        if (sides == 3) return 0;
+        if ((sides == 1) == (side == 0)) spare[(*own)++] = rung[i];
+        else spare[middle - ++n] = rung[i];
+    }
+    for (i = 0; i < n; i++) rung[i] = spare[middle - 1 - i];
+    memcpy(rung + n, spare, *own * sizeof *rung);
+    return 1;
+}
+
+/* A balanced tree of the chain above end: the rung in the middle, by leaves, is made its root. */
+static uint32_t gxbp_balance_chain(gxb_complex *cx, gxbp_plan *plan, gxbp_rung *rung, uint32_t count, uint32_t end) {
+    uint32_t total = gxbp_leaves_below(cx, end), sum = 0, middle = 0, own, i, on, off;
+    gxbp_rung root;
+    if (count < 4) return gxbp_plan_chain(plan, rung, count, end);
+    for (i = 0; i < count; i++) total += gxbp_leaves_below(cx, rung[i].off);
+    for (; middle + 1 < count && 2 * sum < total; middle++) sum += gxbp_leaves_below(cx, rung[middle].off);
+    if (!gxbp_part_chain(cx, rung, middle, plan->spare, &own)) return gxbp_plan_chain(plan, rung, count, end);
+    root = rung[middle];
+    memmove(rung + middle, rung + middle + 1, (count - middle - 1) * sizeof *rung);
+    off = gxbp_balance_chain(cx, plan, rung, middle - own, root.off);
+    on = gxbp_balance_chain(cx, plan, rung + middle - own, own + count - middle - 1, end);
+    return gxbp_plan_node(plan, root.node, root.side, on, off);
+}
+
+/* Hangs everything where the plan says, from below, and the whole where top was. */
+static gx_result gxbp_follow_plan(gxb_complex *cx, const gxbp_plan *plan, uint32_t tree, uint32_t top, uint32_t element) {
+    const uint32_t above = cx->nodes[top].parent;
+    uint32_t i, k;
+    gx_result result = gxbp_reserve_undo(cx, 3 * (size_t)plan->count + 1);
+    if (result != GX_OK) return result;
+    for (i = 0; i < plan->count; i++) {
+        gxb_node *n = &cx->nodes[plan->step[i].node];
+        gxbp_save(cx, GXBP_NODES, plan->step[i].node);
+        n->leaves = 0;
+        for (k = 0; k < 2; k++) {
+            const uint32_t child = n->child[k] = plan->step[i].child[k];
+            n->leaves += gxbp_leaves_below(cx, child);
+            if (child & 1) { gxbp_save(cx, GXBP_NODES, child >> 1); cx->nodes[child >> 1].parent = plan->step[i].node; }
+        }
+    }
+    cx->nodes[tree >> 1].parent = above;    /* it has been saved */
+    if (above == GXB_NONE) { gxbp_save(cx, GXBP_ROOTS, element); cx->root[element] = tree; return GX_OK; }
+    gxbp_save(cx, GXBP_NODES, above);
+    cx->nodes[above].child[cx->nodes[above].child[1] == 2 * top + 1] = tree;
+    return GX_OK;
+}
+
+/* Balances the tree below top along the path to a node. */
+static gx_result gxbp_balance(gxb_complex *cx, uint32_t top, uint32_t node, uint32_t element) {
+    const uint32_t count = gxbp_depth(cx, node) - gxbp_depth(cx, cx->nodes[top].parent);
+    const size_t size = count * (2 * sizeof(gxbp_rung) + sizeof(gxbp_step));
+    gxbp_rung *rung = (gxbp_rung *)gxbp_allocate(&cx->allocator, size);
+    gxbp_plan plan;
+    uint32_t i, n, tree, below = cx->nodes[node].child[0];
+    gx_result result;
+    if (rung == NULL) return GX_ERROR_MEMORY;
+    for (i = count, n = node; i-- > 0; n = cx->nodes[n].parent) {
+        rung[i].node = n;
+        rung[i].side = cx->nodes[n].child[1] == below;
+        rung[i].off = cx->nodes[n].child[1 - rung[i].side];
+        below = 2 * n + 1;
+    }
+    plan.spare = rung + count; plan.step = (gxbp_step *)(void *)(rung + 2 * (size_t)count); plan.count = 0;
+    tree = gxbp_balance_chain(cx, &plan, rung, count, cx->nodes[node].child[0]);
+    result = gxbp_follow_plan(cx, &plan, tree, top, element);
+    gxbp_release(&cx->allocator, rung, size);
+    return result;
+}
+
+/* A leaf has become a node with two. Balances the lowest tree around it that has become too high. */
+static gx_result gxbp_grow_tree(gxb_complex *cx, uint32_t node, uint32_t element) {
+    uint32_t n, height = 0, slack = GXB_NONE;
+    gx_result result = gxbp_reserve_undo(cx, gxbp_depth(cx, node));
+    for (n = node; n != GXB_NONE && result == GX_OK; n = cx->nodes[n].parent) {
+        gxbp_save(cx, GXBP_NODES, n);
+        cx->nodes[n].leaves++;
+        if (slack == GXB_NONE && gxbp_is_slack(++height, cx->nodes[n].leaves)) slack = n;
+    }
+    return slack != GXB_NONE ? gxbp_balance(cx, slack, node, element) : result;
+}
+
 static uint32_t *gxbp_reference(gxb_complex *cx, const gxbp_task *task, uint32_t element) {
     return task->parent == GXBP_IN_ROOT ? &cx->root[element] : &cx->nodes[task->parent].child[task->side];
 }
@@ -2405,10 +2558,13 @@ static gx_result gxbp_divide_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t lea
     cx->nodes[node].plane = t->plane;
     cx->nodes[node].child[0] = 2 * leaf;
     cx->nodes[node].child[1] = 2 * (cx->leaf_count - 1);
+    cx->nodes[node].parent = task->parent;
+    cx->nodes[node].leaves = 1;
     if (task->parent == GXBP_IN_ROOT) gxbp_save(cx, GXBP_ROOTS, cx->leaves[leaf].element);
     else gxbp_save(cx, GXBP_NODES, task->parent);
     *gxbp_reference(cx, task, cx->leaves[leaf].element) = 2 * node + 1;
-    return gxbp_cover_facet(cx, t, middle, edges);
+    result = gxbp_cover_facet(cx, t, middle, edges);
+    return result == GX_OK ? gxbp_grow_tree(cx, node, cx->leaves[leaf].element) : result;
 }
 
 static void gxbp_push_task(gxb_complex *cx, uint32_t parent, uint32_t side, uint32_t first, uint32_t count, uint32_t coplanar) {
@@ -2973,6 +3129,16 @@ static void gxbp_load_room(gxb_stream *s, gxb_complex *cx, const uint32_t counts
 
 static void gxbp_check(gxb_complex *cx, gxb_stream *s);     /* see >>check */
 
+/* Parents of nodes and numbers of leaves, which are not saved */
+static void gxbp_link_trees(gxb_complex *cx) {
+    uint32_t i, k, n;
+    for (i = 0; i < cx->tree_count; i++) { cx->nodes[i].parent = GXB_NONE; cx->nodes[i].leaves = 0; }
+    for (i = 0; i < cx->tree_count; i++) for (k = 0; k < 2; k++)
+        if (cx->nodes[i].child[k] & 1) cx->nodes[cx->nodes[i].child[k] >> 1].parent = i;
+    for (i = 0; i < cx->tree_count; i++) for (k = 0; k < 2; k++)
+        for (n = cx->nodes[i].child[k] & 1 ? GXB_NONE : i; n != GXB_NONE; n = cx->nodes[n].parent) cx->nodes[n].leaves++;
+}
+
 GXFEM_API gx_result gxb_complex_load(gxb_complex *cx, gxb_stream *s, int trusted) {
     uint32_t counts[GXBP_COUNTS];
     gxb_stream_pass(s, counts, GXBP_COUNTS, sizeof *counts);
@@ -2986,6 +3152,7 @@ GXFEM_API gx_result gxb_complex_load(gxb_complex *cx, gxb_stream *s, int trusted
     if (s->result == GX_OK) gxbp_pass_rest(cx, s);
     if (s->result == GX_OK && !trusted) gxbp_check(cx, s);
     if (s->result != GX_OK) return s->result;
+    gxbp_link_trees(cx);
     cx->pool_live = cx->pool_count;
     gxb_complex_begin(cx);
     return GX_OK;
@@ -3134,6 +3301,7 @@ typedef struct gxbp_checker {
     uint32_t *facet;            /* facet_count: undivided ones of the leaf or face at work */
     uint32_t *point;            /* point_count: of the leaf at work */
     uint32_t *edge_depth, *facet_depth, *node_depth;
+    uint32_t *queue, hung;      /* nodes that hang in a tree, each behind the one above it */
     uint32_t *node_up, *leaf_up;/* 2 x node above + side; GXB_NONE: it is a root */
     uint32_t *node_element;
     uint32_t count, corners, facets, points, round, loose;      /* loose: edges in border without their opposite */
@@ -3309,27 +3477,27 @@ static void gxbp_hang(gxbp_checker *c, uint32_t reference, uint32_t up, uint32_t
     if (c->s->result != GX_OK) return;
     from[index] = up;
     if (!(reference & 1)) { gxbp_require_true(c->s, c->cx->leaves[index].element == element); return; }
+    c->queue[c->hung++] = index;
     c->node_element[index] = element;
     c->node_depth[index] = depth;
     if (depth > GXBP_DEPTH) gxbp_require(c->s, GX_ERROR_LIMIT);
 }
 
-/* A node stands behind the one above it. */
+/* From the roots down: every node and leaf hangs somewhere, once. */
 static void gxbp_check_tree(gxbp_checker *c) {
     gxb_complex *cx = c->cx;
     uint32_t i, k;
+    c->hung = 0;
     for (i = 0; i < cx->tree_count; i++) c->node_up[i] = GXBP_UNSEEN;
     for (i = 0; i < cx->leaf_count; i++) c->leaf_up[i] = GXBP_UNSEEN;
-    if (cx->tree_count == 0) for (i = 0; i < cx->element_count; i++) gxbp_require_true(c->s, !(cx->root[i] & 1));
     for (i = 0; i < cx->element_count && c->s->result == GX_OK; i++) gxbp_hang(c, cx->root[i], GXB_NONE, i, 1);
-    for (i = 0; i < cx->tree_count && c->s->result == GX_OK; i++) {
-        const gxb_node *n = &cx->nodes[i];
-        gxbp_require_true(c->s, c->node_up[i] != GXBP_UNSEEN && n->plane < cx->plane_count && !cx->planes[n->plane].along_axis);
-        for (k = 0; k < 2 && c->s->result == GX_OK; k++) {
-            gxbp_require_true(c->s, !(n->child[k] & 1) || n->child[k] >> 1 > i);
-            if (c->s->result == GX_OK) gxbp_hang(c, n->child[k], 2 * i + k, c->node_element[i], c->node_depth[i] + 1);
-        }
+    for (i = 0; i < c->hung && c->s->result == GX_OK; i++) {
+        const uint32_t node = c->queue[i];
+        const gxb_node *n = &cx->nodes[node];
+        gxbp_require_true(c->s, n->plane < cx->plane_count && !cx->planes[n->plane].along_axis);
+        for (k = 0; k < 2 && c->s->result == GX_OK; k++) gxbp_hang(c, n->child[k], 2 * node + k, c->node_element[node], c->node_depth[node] + 1);
     }
+    gxbp_require_true(c->s, c->hung == cx->tree_count);
     for (i = 0; i < cx->leaf_count; i++) gxbp_require_true(c->s, c->leaf_up[i] != GXBP_UNSEEN);
 }
 
@@ -3426,7 +3594,7 @@ static void gxbp_run_checks(gxbp_checker *c) {
 
 static void gxbp_check(gxb_complex *cx, gxb_stream *s) {
     const size_t e = cx->edge_count, f = cx->facet_count, n = cx->tree_count, l = cx->leaf_count;
-    const size_t words = 7 * e + 4 * f + cx->point_count + 3 * n + l + 1;
+    const size_t words = 7 * e + 4 * f + cx->point_count + 4 * n + l + 1;
     gxbp_checker c;
     uint32_t *block;
     memset(&c, 0, sizeof c);
@@ -3438,7 +3606,7 @@ static void gxbp_check(gxb_complex *cx, gxb_stream *s) {
     c.edge_mark = block; c.border = c.edge_mark + 2 * e; c.edge = c.border + 2 * e; c.corner = c.edge + e; c.edge_depth = c.corner + e;
     c.facet_mark = c.edge_depth + e; c.facet = c.facet_mark + 2 * f; c.facet_depth = c.facet + f;
     c.node_depth = c.facet_depth + f; c.node_up = c.node_depth + n; c.node_element = c.node_up + n;
-    c.leaf_up = c.node_element + n; c.point = c.leaf_up + l;
+    c.leaf_up = c.node_element + n; c.point = c.leaf_up + l; c.queue = c.point + cx->point_count;
     gxbp_run_checks(&c);
     gxbp_release(&cx->allocator, block, words * sizeof *block);
 }

@@ -1783,6 +1783,42 @@ START_TEST(long_elements) {
 }
 END_TEST
 
+/* ---- many cuts ---- */
+
+/* Cuts that come in order leave trees as shallow as in any other order, and no leaf differs. */
+START_TEST(ordered_cuts_make_no_chains) {
+    enum { CUTS = 600 };
+    workload w = grid(1, 1, 1, 5);
+    gx_body *body = body_of(&w);
+    const gxb_complex *cx = body->complex;
+    uint32_t i, n, depth;
+    size_t c, k;
+    gx_view view;
+    for (c = 0; c < CUTS; ++c) {
+        add_axis_plane(&w, 0, ((double)c + 0.5) / CUTS);
+        cut_by(body, &w, 0, 1);
+        wl_free(&w);
+        w = grid(1, 1, 1, 5);
+    }
+    view = view_of(body);
+    ck_assert_uint_eq(view.fragment_count, CUTS + 1);
+    ck_assert_uint_eq(view.cell_count, 5 * (CUTS + 1));
+    for (i = 0; i < cx->tree_count; ++i) {
+        uint32_t leaves = 0;
+        for (depth = 1, n = cx->nodes[i].parent; n != GXB_NONE; n = cx->nodes[n].parent) ++depth;
+        ck_assert_uint_le(depth, 2 * 10 + 5);
+        for (k = 0; k < 2; ++k) {
+            const uint32_t child = cx->nodes[i].child[k];
+            if (child & 1) ck_assert_uint_eq(cx->nodes[child >> 1].parent, i);
+            leaves += child & 1 ? cx->nodes[child >> 1].leaves : 1;
+        }
+        ck_assert_uint_eq(cx->nodes[i].leaves, leaves);
+    }
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 /* ---- the skin ---- */
 
 /* Per fragment, the triangles enclose its volume, at rest and after an affine map; outer triangles lie in the mesh's surface. */
@@ -2118,6 +2154,7 @@ int main(void) {
     tcase_add_loop_test(tests, far_from_the_origin_rounded, first, last);
     tcase_add_loop_test(tests, small_and_large_coordinates, first, last);
     tcase_add_loop_test(tests, long_elements, first, last);
+    tcase_add_test(tests, ordered_cuts_make_no_chains);
     tcase_add_loop_test(tests, skin_encloses_the_volume, first, last);
     tcase_add_test(tests, skin_tells_cut_faces);
     tcase_add_test(tests, bad_bodies);
