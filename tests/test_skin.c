@@ -195,6 +195,32 @@ START_TEST(follows_cuts) {
 }
 END_TEST
 
+/* A body that goes back to before a cut shows what it showed then, and follows later cuts from there. */
+START_TEST(follows_restores) {
+    uint64_t seed = (uint64_t)_i;
+    workload w = random_scene(seed, 3, 1);
+    gx_body *body = body_of(&w), *old;
+    gx_skin_desc desc = random_desc();
+    gx_skin skin, truth;
+    cut_by(body, &w, 0, 1);
+    skin_of(body, &desc);
+    ck_assert_int_eq(gx_body_clone(body, &old), GX_OK);
+    cut_by(body, &w, 1, 1);
+    if (random_below(2)) skin_of(body, &desc);
+    ck_assert_int_eq(gx_body_restore(body, old), GX_OK);
+    skin = skin_of(body, &desc);
+    truth = skin_of(old, &desc);
+    check_same(&skin, &truth, seed, 1);
+    cut_by(body, &w, 2, 1);
+    cut_by(old, &w, 2, 1);
+    skin = skin_of(body, &desc);
+    truth = skin_of(old, &desc);
+    check_same(&skin, &truth, seed, 2);
+    gx_body_destroy(body); gx_body_destroy(old);
+    wl_free(&w);
+}
+END_TEST
+
 /* A small cut in a large body changes little of its skin. */
 START_TEST(changes_are_local) {
     workload w = grid(12, 12, 12, 5);
@@ -549,6 +575,7 @@ int main(void) {
     int first = only ? atoi(only) : 0, last = only ? first + 1 : SEEDS;
     tcase_set_timeout(tests, 120);
     tcase_add_loop_test(tests, follows_cuts, first, last);
+    tcase_add_loop_test(tests, follows_restores, first, last);
     tcase_add_test(tests, changes_are_local);
     tcase_add_test(tests, partial_cuts_show_nothing);
     tcase_add_loop_test(tests, flat_normals, 0, 2);
