@@ -28,7 +28,7 @@
  * Contents (search for >>name):
  *     >>shared      result codes, allocator
  *     >>numbers     exact numbers: a double is an integer times a power of two, sums and products are too
- *     >>predicates  orient2d, orient3d, side of a plane, comparison, orientation in a plane, winding number
+ *     >>predicates  orient2d, orient3d, incircle, insphere, side of a plane, comparison, orientation in a plane, winding number
  *     >>complex     the cell complex: points, planes, edges, facets, leaves
  *     >>stream      a complex as bytes
  *     then, under GXFEM_BOOLEAN_IMPLEMENTATION, in this order: >>bits >>exact >>filter >>points >>memory >>topology
@@ -42,12 +42,13 @@
  * conforms at all times. Holes, dangling walls, detached walls and nested shells need no treatment of their own: what is
  * connected is what open facets join. See docs/ARCHITECTURE.md for the reasons.
  *
- * What it does not do (yet): Booleans of closed meshes, incircle and insphere.
+ * What it does not do (yet): Booleans of closed meshes.
  *
  * Guarantees and limits
  *     - Signs are exact for finite coordinates under every flag, rounding mode and flush-to-zero (but x87 set to 24 bits).
  *     - Coordinates in a complex: after subtraction of the mesh's origin and scaling by a power of two to its box they are 0 or
- *       of magnitude 2^-128 to 2^128, else GX_ERROR_RANGE. orient2d and orient3d take any finite double.
+ *       of magnitude 2^-128 to 2^128, else GX_ERROR_RANGE. orient2d, orient3d, incircle and insphere take any
+ *       finite double.
  *     - At most 2^31 - 1 points, planes, edges, facets and leaves.
  *     - No global state, no input or output, no heap traffic but the growth of the complex's own arrays.
  *
@@ -153,6 +154,10 @@ GXFEM_API double gxb_num_ratio(const gxb_num *a, const gxb_num *b);             
 GXFEM_API int gxb_orient2d(const double a[2], const double b[2], const double c[2]);
 /* Sign of |a-d, b-d, c-d|: 1 where d lies below the plane in which a, b, c appear counter-clockwise from above. */
 GXFEM_API int gxb_orient3d(const double a[3], const double b[3], const double c[3], const double d[3]);
+/* 1 where d lies inside the circle through a, b, c, which turn counter-clockwise; -1 outside, 0 on it. */
+GXFEM_API int gxb_incircle(const double a[2], const double b[2], const double c[2], const double d[2]);
+/* 1 where e lies inside the sphere through a, b, c, d with gxb_orient3d(a, b, c, d) = 1; -1 outside, 0 on it. */
+GXFEM_API int gxb_insphere(const double a[3], const double b[3], const double c[3], const double d[3], const double e[3]);
 
 /* Coordinates for gxb_plane and gxb_point: 0 or of magnitude 2^-128 to 2^128. */
 
@@ -576,11 +581,17 @@ GXFEM_API void gxb_num_mul(gxb_num *r, const gxb_num *a, const gxb_num *b) {
     gxbp_num_trim(r);
 }
 
+/* Bits of a limb other than 0, counted up to the highest that is set. */
+static int gxbp_limb_bits(gxb_limb x) {
+    int bits = 1, step;
+    for (step = GXB_LIMB_BITS / 2; step > 0; step /= 2) if (x >> step != 0) { bits += step; x >>= step; }
+    return bits;
+}
+
 /* |a| = m * 2^power with 2^52 <= m < 2^53, cut off below. a is not 0. */
 static uint64_t gxbp_num_mantissa(const gxb_num *a, int *power) {
     uint64_t m = 0;
-    int bits = 0, k = (int)a->n - 1, top = GXB_LIMB_BITS;
-    while (!((a->d[k] >> (top - 1)) & 1)) top--;
+    int bits = 0, k = (int)a->n - 1, top = gxbp_limb_bits(a->d[k]);
     *power = (a->exp + k) * GXB_LIMB_BITS + top - 53;
     while (bits < 53) {
         const int take = top < 53 - bits ? top : 53 - bits;
@@ -893,6 +904,108 @@ GXFEM_API int gxb_orient3d(const double a[3], const double b[3], const double c[
         if (sign != 0) return -sign;
     }
     return gxbp_orient3d_exact(a, b, c, d);
+}
+
+/* Rows are the points less the last, with their squared lengths; the determinant along the column of squares. An elementary product of
+   the filter has four fenced differences, three products and is one of twelve: at most 4 + 3 + 11 roundings whatever the order; in 3D
+   five, four, one of 72: 80. Ranges as for gxb_orient3d keep all products from overflow and errors of underflow below GXBP_TINY. */
+static int gxbp_filter_incircle(const double a[2], const double b[2], const double c[2], const double d[2]) {
+    const double *p[3];
+    double x[3], y[3], value = 0, size = 0;
+    int i;
+    p[0] = a; p[1] = b; p[2] = c;
+    for (i = 0; i < 3; i++) { x[i] = gxbp_fence(p[i][0] - d[0]); y[i] = gxbp_fence(p[i][1] - d[1]); }
+    for (i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        const double lift = x[i] * x[i] + y[i] * y[i];
+        value += lift * (x[j] * y[k] - x[k] * y[j]);
+        size += lift * (gxbp_abs(x[j] * y[k]) + gxbp_abs(x[k] * y[j]));
+    }
+    return gxbp_filter_sign(value, 48 * GXBP_U * size + GXBP_TINY);
+}
+
+static int gxbp_filter_insphere(const double a[3], const double b[3], const double c[3], const double d[3], const double e[3]) {
+    const double *p[4];
+    double x[4][3], lift[4], value = 0, size = 0;
+    int i, k;
+    p[0] = a; p[1] = b; p[2] = c; p[3] = d;
+    for (i = 0; i < 4; i++) {
+        for (k = 0; k < 3; k++) x[i][k] = gxbp_fence(p[i][k] - e[k]);
+        lift[i] = x[i][0] * x[i][0] + x[i][1] * x[i][1] + x[i][2] * x[i][2];
+    }
+    for (i = 0; i < 4; i++) {
+        const double *u = x[i == 0], *v = x[i <= 1 ? 2 : 1], *w = x[i <= 2 ? 3 : 2];
+        const double sign = i % 2 == 0 ? -1 : 1;
+        for (k = 0; k < 3; k++) {
+            const int m = (k + 1) % 3, n = (k + 2) % 3;
+            value += sign * lift[i] * u[k] * (v[m] * w[n] - v[n] * w[m]);
+            size += lift[i] * gxbp_abs(u[k]) * (gxbp_abs(v[m] * w[n]) + gxbp_abs(v[n] * w[m]));
+        }
+    }
+    return gxbp_filter_sign(value, 128 * GXBP_U * size + GXBP_TINY);
+}
+
+/* p - o as exact numbers; c[3] = its squared length */
+static void gxbp_exact_lifted(gxbp_vec *v, const double p[3], const double o[3]) {
+    gxbp_vec x, y;
+    gxbp_vec_set(&x, p); gxbp_vec_set(&y, o);
+    gxbp_vec_init(v);
+    gxbp_num_sub3(v->c, x.c, y.c);
+    gxbp_num_dot(&v->c[3], v->c, v->c);
+}
+
+/* Degree 4: 140 limbs of 64 bits for any finite doubles. */
+static int gxbp_incircle_exact(const double a[2], const double b[2], const double c[2], const double d[2]) {
+    const double *p[4];
+    double x[4][3];
+    gxbp_vec row[3], minor, lift;
+    GXB_NUM(r);
+    int i;
+    p[0] = a; p[1] = b; p[2] = c; p[3] = d;
+    for (i = 0; i < 4; i++) { x[i][0] = p[i][0]; x[i][1] = p[i][1]; x[i][2] = 0; }
+    gxbp_vec_init(&minor); gxbp_vec_init(&lift);
+    for (i = 0; i < 3; i++) gxbp_exact_lifted(&row[i], x[i], x[3]);
+    for (i = 0; i < 3; i++) {
+        const gxbp_vec *u = &row[(i + 1) % 3], *v = &row[(i + 2) % 3];
+        gxbp_num_det2(&minor.c[i], &u->c[0], &v->c[1], &v->c[0], &u->c[1]);
+        gxbp_num_copy(&lift.c[i], &row[i].c[3], 1);
+    }
+    gxbp_num_dot(&r, lift.c, minor.c);
+    return r.sign;
+}
+
+/* Degree 5: a difference of any finite doubles has 34 limbs of 64 bits, its square 67, a minor 100, their product and the sum of four 167. */
+static int gxbp_insphere_exact(const double a[3], const double b[3], const double c[3], const double d[3], const double e[3]) {
+    gxbp_vec row[4], normal;
+    GXB_NUM(minor); GXB_NUM(term); GXB_NUM(sum); GXB_NUM(next);
+    int i;
+    gxbp_exact_lifted(&row[0], a, e); gxbp_exact_lifted(&row[1], b, e); gxbp_exact_lifted(&row[2], c, e); gxbp_exact_lifted(&row[3], d, e);
+    for (i = 0; i < 4; i++) {
+        gxbp_vec_init(&normal);
+        gxbp_num_cross(normal.c, row[i <= 1 ? 2 : 1].c, row[i <= 2 ? 3 : 2].c);
+        gxbp_num_dot(&minor, row[i == 0].c, normal.c);
+        gxb_num_mul(&term, &row[i].c[3], &minor);
+        if (i % 2 == 0) term.sign = -term.sign;
+        gxb_num_add(&next, &sum, &term);
+        gxbp_num_copy(&sum, &next, 1);
+    }
+    return sum.sign;
+}
+
+GXFEM_API int gxb_incircle(const double a[2], const double b[2], const double c[2], const double d[2]) {
+    if (gxbp_filter_range(a, 2) && gxbp_filter_range(b, 2) && gxbp_filter_range(c, 2) && gxbp_filter_range(d, 2)) {
+        const int sign = gxbp_filter_incircle(a, b, c, d);
+        if (sign != 0) return sign;
+    }
+    return gxbp_incircle_exact(a, b, c, d);
+}
+
+GXFEM_API int gxb_insphere(const double a[3], const double b[3], const double c[3], const double d[3], const double e[3]) {
+    if (gxbp_filter_range(a, 3) && gxbp_filter_range(b, 3) && gxbp_filter_range(c, 3) && gxbp_filter_range(d, 3) && gxbp_filter_range(e, 3)) {
+        const int sign = gxbp_filter_insphere(a, b, c, d, e);
+        if (sign != 0) return sign;
+    }
+    return gxbp_insphere_exact(a, b, c, d, e);
 }
 
 static void gxbp_ball_explicit(gxb_ball *ball, const double p[3]) {
