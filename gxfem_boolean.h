@@ -5398,10 +5398,10 @@ static void gxbp_divide_source(gxb_boolean *b, uint32_t s) {
     n = gxbp_chain_segments(b, s);
     for (pass = 0; pass < 2; pass++)
         for (i = 0; i < n && b->result == GX_OK; i++) {
-            const uint32_t segment = b->chain[3 * i];
-            if (segment == GXB_NONE) continue;
-            if (pass == 0 && !gxbp_is_placed(b, gxbp_same(b, b->segments[segment].p)) && !gxbp_is_placed(b, gxbp_same(b, b->segments[segment].q))) continue;
-            gxbp_trace_segments(b, s, i);
+            const gxbp_segment *segment;
+            if (b->chain[3 * i] == GXB_NONE) continue;
+            segment = &b->segments[b->chain[3 * i]];
+            if (pass == 1 || gxbp_is_placed(b, gxbp_same(b, segment->p)) || gxbp_is_placed(b, gxbp_same(b, segment->q))) gxbp_trace_segments(b, s, i);
         }
 }
 
@@ -5702,7 +5702,8 @@ static int gxbp_side_of_piece(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
         const uint32_t corner = b->sources[piece->source].point[i];
         value = gxbp_filter_side(&x[corner].ball, filter, &bound);
         side = gxbp_filter_sign(value, bound) * plane->axis_sign *
-               gxbp_filter_turn(&x[piece->v[k]].ball, &x[piece->v[(k + 1) % 3]].ball, &x[corner].ball, (int)(plane->axis + 1) % 3, (int)(plane->axis + 2) % 3);
+               gxbp_filter_turn(&x[piece->v[k]].ball, &x[piece->v[(k + 1) % 3]].ball, &x[corner].ball,
+                                (int)(plane->axis + 1) % 3, (int)(plane->axis + 2) % 3);
     }
     return side != 0 ? side : gxbp_point_side(b, piece->v[(k + 2) % 3], b->sources[t].plane);
 }
@@ -5777,7 +5778,9 @@ static void gxbp_set_ray(gxb_boolean *b, gxbp_ray *ray, uint32_t f) {
     }
     if (!given) gxbp_exact_probe(b, ray);
     for (k = 0; k < 3; k++) ray->ball.x[k] = given ? (p[0]->ball.x[k] + p[1]->ball.x[k] + p[2]->ball.x[k]) / 3 : ray->probe.rough[k];
-    ray->ball.error = gxbp_power(-49) * gxbp_max(gxbp_max3(ray->ball.x), given ? gxbp_max(gxbp_max3(p[0]->ball.x), gxbp_max(gxbp_max3(p[1]->ball.x), gxbp_max3(p[2]->ball.x))) : 0) + GXBP_TINY;
+    ray->ball.error = gxbp_max3(ray->ball.x);
+    for (k = 0; k < 3 && given; k++) ray->ball.error = gxbp_max(ray->ball.error, gxbp_max3(p[k]->ball.x));
+    ray->ball.error = gxbp_power(-49) * ray->ball.error + GXBP_TINY;
 }
 
 static int gxbp_ray_left(gxb_boolean *b, gxbp_ray *ray, const gxb_ball *p, const gxb_ball *q) {
@@ -6222,7 +6225,7 @@ static double gxbp_rough_volume(const gxb_boolean *b, uint32_t t, const gxb_ball
     return d0[0] * n[0] + d0[1] * n[1] + d0[2] * n[2];
 }
 
-#define GXBP_VOLUME_ERROR 1e-7     /* relative: sums of doubles with a larger bound give way to exact ones. Mostly the bound is far above the error. */
+#define GXBP_VOLUME_ERROR 1e-7     /* relative: sums of doubles with a larger bound, mostly far above their error, give way to exact ones */
 
 /* Six times the volumes of the sets in volume[root], in the frame's units. */
 static void gxbp_measure_shells(gxb_boolean *b, uint32_t *parent, double *volume, double *error) {
