@@ -33,6 +33,7 @@ help:
 	@echo "make bench-accuracy, bench-drift, bench-conditioning   closed forms and published values; what integrators keep; RXFEM's Fig. 14"
 	@echo "make bench-frames   frames in which a cut happens beside those in which none does"
 	@echo "make bench-skin    the visual surface: moved in each frame, rebuilt after a cut"
+	@echo "make bench-kernel  Booleans of closed surfaces; DATA=FOLDER: also of the OFF files there"
 	@echo "make clean       removes $(BUILD)/"
 
 # ---- programs
@@ -118,6 +119,13 @@ $(BUILD)/bench/accuracy $(BUILD)/bench/drift $(BUILD)/bench/conditioning $(BUILD
 	@mkdir -p $(@D)
 	@$(CC) -std=c99 $(WARNINGS) $(BENCH_CFLAGS) $< -o $@ $(LDFLAGS) -lm
 
+bench-kernel: $(BUILD)/bench/kernel
+	@$< $(BUILD)/bench/kernel.csv $(DATA)
+
+$(BUILD)/bench/kernel: bench/kernel.c bench/csv.h tests/workloads.h tests/oracle.h tests/rational.h gxfem_boolean.h
+	@mkdir -p $(@D)
+	@$(CC) -std=c99 $(WARNINGS) $(BENCH_CFLAGS) $< -o $@ $(LDFLAGS) -lm
+
 check-all: check
 	@$(MAKE) --no-print-directory lint
 	@$(MAKE) --no-print-directory examples
@@ -131,4 +139,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo scenes pictures check check-programs run-gxcut $(tests:%=run-%) sanitize sanitize-scenes compile lint flags hashes bench-solver bench-accuracy bench-drift bench-conditioning bench-frames bench-skin check-all clean
+.PHONY: help examples demo scenes pictures check check-programs run-gxcut $(tests:%=run-%) sanitize sanitize-scenes compile lint flags hashes bench-solver bench-accuracy bench-drift bench-conditioning bench-frames bench-skin bench-kernel check-all clean

@@ -28,11 +28,12 @@
  * Contents (search for >>name):
  *     >>shared      result codes, allocator
  *     >>numbers     exact numbers: a double is an integer times a power of two, sums and products are too
- *     >>predicates  orient2d, orient3d, side of a plane, comparison, orientation in a plane, winding number
+ *     >>predicates  orient2d, orient3d, incircle, insphere, side of a plane, comparison, orientation in a plane, winding number
  *     >>complex     the cell complex: points, planes, edges, facets, leaves
  *     >>stream      a complex as bytes
+ *     >>boolean     Booleans of closed triangle surfaces, exact and chainable
  *     then, under GXFEM_BOOLEAN_IMPLEMENTATION, in this order: >>bits >>exact >>filter >>points >>memory >>topology
- *     >>split >>clip >>insert >>save >>check
+ *     >>split >>clip >>insert >>save >>check >>arrangement
  *
  * How the complex works. Each element of the mesh starts as one convex leaf, bounded by four facets, which it shares with its
  * neighbours. A triangle is clipped down the element's tree of planes (a binary space partition); each leaf whose inside it
@@ -42,12 +43,17 @@
  * conforms at all times. Holes, dangling walls, detached walls and nested shells need no treatment of their own: what is
  * connected is what open facets join. See docs/ARCHITECTURE.md for the reasons.
  *
- * What it does not do (yet): Booleans of closed meshes, incircle and insphere.
+ * How Booleans work. Where triangles of the operands meet is found by predicates of input points; each touched triangle is divided
+ * along those segments; winding numbers spread from facet to facet; the result is the facets between inside and outside. Vertices are
+ * rounded at the output only, and more operands may follow. See docs/KERNEL.md.
+ *
+ * What it does not do: merge coplanar triangles of a result, or move its rounded vertices so that none of its triangles is turned over.
  *
  * Guarantees and limits
  *     - Signs are exact for finite coordinates under every flag, rounding mode and flush-to-zero (but x87 set to 24 bits).
  *     - Coordinates in a complex: after subtraction of the mesh's origin and scaling by a power of two to its box they are 0 or
- *       of magnitude 2^-128 to 2^128, else GX_ERROR_RANGE. orient2d and orient3d take any finite double.
+ *       of magnitude 2^-128 to 2^128, else GX_ERROR_RANGE. orient2d, orient3d, incircle and insphere take any
+ *       finite double. Coordinates of a Boolean are 0 or of magnitude 2^-128 to 2^128, beside its first operand's if that is outside 2^+-60.
  *     - At most 2^31 - 1 points, planes, edges, facets and leaves.
  *     - No global state, no input or output, no heap traffic but the growth of the complex's own arrays.
  *
@@ -153,6 +159,10 @@ GXFEM_API double gxb_num_ratio(const gxb_num *a, const gxb_num *b);             
 GXFEM_API int gxb_orient2d(const double a[2], const double b[2], const double c[2]);
 /* Sign of |a-d, b-d, c-d|: 1 where d lies below the plane in which a, b, c appear counter-clockwise from above. */
 GXFEM_API int gxb_orient3d(const double a[3], const double b[3], const double c[3], const double d[3]);
+/* 1 where d lies inside the circle through a, b, c, which turn counter-clockwise; -1 outside, 0 on it. */
+GXFEM_API int gxb_incircle(const double a[2], const double b[2], const double c[2], const double d[2]);
+/* 1 where e lies inside the sphere through a, b, c, d with gxb_orient3d(a, b, c, d) = 1; -1 outside, 0 on it. */
+GXFEM_API int gxb_insphere(const double a[3], const double b[3], const double c[3], const double d[3], const double e[3]);
 
 /* Coordinates for gxb_plane and gxb_point: 0 or of magnitude 2^-128 to 2^128. */
 
@@ -381,6 +391,69 @@ GXFEM_API void gxb_complex_save(gxb_complex *complex, gxb_stream *stream);
    an error (that of the stream: DAMAGED, MEMORY, LIMIT) the complex can only be destroyed. */
 GXFEM_API gx_result gxb_complex_load(gxb_complex *complex, gxb_stream *stream, int trusted);
 
+/* >>boolean ---------------------------------------------------------------------------------------------------------- */
+
+/* Booleans of closed triangle meshes. A Boolean holds operands and the exact arrangement of their triangles; the result is read off
+   it as often as wanted and more operands may follow: nothing is rounded in between (docs/KERNEL.md). */
+typedef struct gxb_boolean gxb_boolean;
+
+/* What an operand does to the result of those before it (to nothing, if it is the first). */
+enum { GXB_UNION = 0, GXB_INTERSECTION, GXB_DIFFERENCE, GXB_SYMMETRIC_DIFFERENCE,
+       GXB_SPLIT };         /* an open or closed sheet: it takes nothing away, and separates what lies on its two sides */
+/* Which winding numbers of an operand's surface count as inside. */
+enum { GXB_NONZERO = 0, GXB_POSITIVE, GXB_NEGATIVE, GXB_ODD };
+
+typedef struct gxb_operand {
+    const double *vertices;     size_t vertex_count;        /* x 3 */
+    const uint32_t *triangles;  size_t triangle_count;      /* x 3, counter-clockwise from outside */
+    uint32_t operation;         /* GXB_UNION ... */
+    uint32_t rule;              /* GXB_NONZERO ...; a sheet has none */
+    uint32_t simple;            /* 1: the caller vouches that this surface meets itself in common vertices and edges only, which saves looking */
+} gxb_operand;
+
+typedef struct gxb_boolean_desc {
+    gx_allocator allocator;
+    size_t memory_limit;        /* in bytes, of all that the Boolean holds at a time; 0: none */
+    uint32_t fine;              /* 1: vertices and volumes are right to their last digits. 0: vertices proven within 1e-10 of the largest
+                                   coordinate and volumes within 1e-7 of their size; both are mostly far nearer */
+    /* Instead of operations and rules: is a point around which the operands wind so often inside? NULL: by operations and rules. */
+    int (*inside)(void *user, const int32_t *winding, size_t operand_count);
+    void *user;
+} gxb_boolean_desc;
+
+enum { GXB_FROM_VERTEX = 0,     /* index[0]: vertex of operand[0] */
+       GXB_FROM_EDGE_TRIANGLE,  /* index[0]: 3 t + k, edge from corner k to k + 1 of triangle t of operand[0]; index[1]: triangle of operand[1] */
+       GXB_FROM_EDGE_EDGE,      /* both are 3 t + k */
+       GXB_FROM_THREE_TRIANGLES };
+typedef struct gxb_origin { uint32_t kind, operand[3], index[3]; } gxb_origin;
+
+/* Arrays belong to the Boolean and are valid until it is changed, evaluated again or destroyed. */
+typedef struct gxb_boolean_result {
+    const double *vertices;     size_t vertex_count;        /* x 3; an input vertex has the input's bits, others are rounded once */
+    const uint32_t *triangles;  size_t triangle_count;      /* x 3; the exact surface is closed, oriented outward and does not cross itself */
+    const gxb_origin *vertex_origin;                        /* vertex_count */
+    const uint32_t *triangle_operand, *triangle_source;     /* triangle_count: operand, and its triangle there */
+    const uint8_t *triangle_reversed;                       /* triangle_count: 1 where it faces against that triangle */
+    const uint32_t *triangle_component;                     /* triangle_count */
+    const double *component_volume; size_t component_count; /* components: what the interior of the result consists of */
+    /* component_count x operands: 1 where a component lies only in front of a sheet (where its normals point), -1 only behind,
+       0 both or not at it */
+    const int8_t *component_side;
+    double volume;
+    const uint32_t *defects;    size_t defect_count;        /* triangles that rounding turned over or left without area */
+    uint64_t filter_calls, exact_calls;                     /* signs asked for since creation, and how many took exact arithmetic */
+    uint64_t allocations; size_t peak_bytes;                /* since creation */
+} gxb_boolean_result;
+
+/* desc may be NULL. */
+GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean **boolean);
+GXFEM_API void gxb_boolean_destroy(gxb_boolean *boolean);
+/* Copies an operand. Errors: ARGUMENT, EMPTY, INDEX (triangle), NOT_FINITE and RANGE (vertex), NOT_CLOSED (triangle), LIMIT, MEMORY. */
+GXFEM_API gx_result gxb_boolean_add(gxb_boolean *boolean, const gxb_operand *operand, gx_failure *failure);
+/* The result of all operands so far. Errors: EMPTY (no operand), MEMORY, LIMIT, OVERLAP (a surface vouched for as simple is not). After an error the
+   Boolean holds its operands and may be asked again. */
+GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *boolean, gxb_boolean_result *result);
+
 #ifdef __cplusplus
 }
 #endif
@@ -576,11 +649,17 @@ GXFEM_API void gxb_num_mul(gxb_num *r, const gxb_num *a, const gxb_num *b) {
     gxbp_num_trim(r);
 }
 
+/* Bits of a limb other than 0, counted up to the highest that is set. */
+static int gxbp_limb_bits(gxb_limb x) {
+    int bits = 1, step;
+    for (step = GXB_LIMB_BITS / 2; step > 0; step /= 2) if (x >> step != 0) { bits += step; x >>= step; }
+    return bits;
+}
+
 /* |a| = m * 2^power with 2^52 <= m < 2^53, cut off below. a is not 0. */
 static uint64_t gxbp_num_mantissa(const gxb_num *a, int *power) {
     uint64_t m = 0;
-    int bits = 0, k = (int)a->n - 1, top = GXB_LIMB_BITS;
-    while (!((a->d[k] >> (top - 1)) & 1)) top--;
+    int bits = 0, k = (int)a->n - 1, top = gxbp_limb_bits(a->d[k]);
     *power = (a->exp + k) * GXB_LIMB_BITS + top - 53;
     while (bits < 53) {
         const int take = top < 53 - bits ? top : 53 - bits;
@@ -893,6 +972,108 @@ GXFEM_API int gxb_orient3d(const double a[3], const double b[3], const double c[
         if (sign != 0) return -sign;
     }
     return gxbp_orient3d_exact(a, b, c, d);
+}
+
+/* Rows are the points less the last, with their squared lengths; the determinant along the column of squares. An elementary product of
+   the filter has four fenced differences, three products and is one of twelve: at most 4 + 3 + 11 roundings whatever the order; in 3D
+   five, four, one of 72: 80. Ranges as for gxb_orient3d keep all products from overflow and errors of underflow below GXBP_TINY. */
+static int gxbp_filter_incircle(const double a[2], const double b[2], const double c[2], const double d[2]) {
+    const double *p[3];
+    double x[3], y[3], value = 0, size = 0;
+    int i;
+    p[0] = a; p[1] = b; p[2] = c;
+    for (i = 0; i < 3; i++) { x[i] = gxbp_fence(p[i][0] - d[0]); y[i] = gxbp_fence(p[i][1] - d[1]); }
+    for (i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        const double lift = x[i] * x[i] + y[i] * y[i];
+        value += lift * (x[j] * y[k] - x[k] * y[j]);
+        size += lift * (gxbp_abs(x[j] * y[k]) + gxbp_abs(x[k] * y[j]));
+    }
+    return gxbp_filter_sign(value, 48 * GXBP_U * size + GXBP_TINY);
+}
+
+static int gxbp_filter_insphere(const double a[3], const double b[3], const double c[3], const double d[3], const double e[3]) {
+    const double *p[4];
+    double x[4][3], lift[4], value = 0, size = 0;
+    int i, k;
+    p[0] = a; p[1] = b; p[2] = c; p[3] = d;
+    for (i = 0; i < 4; i++) {
+        for (k = 0; k < 3; k++) x[i][k] = gxbp_fence(p[i][k] - e[k]);
+        lift[i] = x[i][0] * x[i][0] + x[i][1] * x[i][1] + x[i][2] * x[i][2];
+    }
+    for (i = 0; i < 4; i++) {
+        const double *u = x[i == 0], *v = x[i <= 1 ? 2 : 1], *w = x[i <= 2 ? 3 : 2];
+        const double sign = i % 2 == 0 ? -1 : 1;
+        for (k = 0; k < 3; k++) {
+            const int m = (k + 1) % 3, n = (k + 2) % 3;
+            value += sign * lift[i] * u[k] * (v[m] * w[n] - v[n] * w[m]);
+            size += lift[i] * gxbp_abs(u[k]) * (gxbp_abs(v[m] * w[n]) + gxbp_abs(v[n] * w[m]));
+        }
+    }
+    return gxbp_filter_sign(value, 128 * GXBP_U * size + GXBP_TINY);
+}
+
+/* p - o as exact numbers; c[3] = its squared length */
+static void gxbp_exact_lifted(gxbp_vec *v, const double p[3], const double o[3]) {
+    gxbp_vec x, y;
+    gxbp_vec_set(&x, p); gxbp_vec_set(&y, o);
+    gxbp_vec_init(v);
+    gxbp_num_sub3(v->c, x.c, y.c);
+    gxbp_num_dot(&v->c[3], v->c, v->c);
+}
+
+/* Degree 4: 140 limbs of 64 bits for any finite doubles. */
+static int gxbp_incircle_exact(const double a[2], const double b[2], const double c[2], const double d[2]) {
+    const double *p[4];
+    double x[4][3];
+    gxbp_vec row[3], minor, lift;
+    GXB_NUM(r);
+    int i;
+    p[0] = a; p[1] = b; p[2] = c; p[3] = d;
+    for (i = 0; i < 4; i++) { x[i][0] = p[i][0]; x[i][1] = p[i][1]; x[i][2] = 0; }
+    gxbp_vec_init(&minor); gxbp_vec_init(&lift);
+    for (i = 0; i < 3; i++) gxbp_exact_lifted(&row[i], x[i], x[3]);
+    for (i = 0; i < 3; i++) {
+        const gxbp_vec *u = &row[(i + 1) % 3], *v = &row[(i + 2) % 3];
+        gxbp_num_det2(&minor.c[i], &u->c[0], &v->c[1], &v->c[0], &u->c[1]);
+        gxbp_num_copy(&lift.c[i], &row[i].c[3], 1);
+    }
+    gxbp_num_dot(&r, lift.c, minor.c);
+    return r.sign;
+}
+
+/* Degree 5: a difference of any finite doubles has 34 limbs of 64 bits, its square 67, a minor 100, their product and the sum of four 167. */
+static int gxbp_insphere_exact(const double a[3], const double b[3], const double c[3], const double d[3], const double e[3]) {
+    gxbp_vec row[4], normal;
+    GXB_NUM(minor); GXB_NUM(term); GXB_NUM(sum); GXB_NUM(next);
+    int i;
+    gxbp_exact_lifted(&row[0], a, e); gxbp_exact_lifted(&row[1], b, e); gxbp_exact_lifted(&row[2], c, e); gxbp_exact_lifted(&row[3], d, e);
+    for (i = 0; i < 4; i++) {
+        gxbp_vec_init(&normal);
+        gxbp_num_cross(normal.c, row[i <= 1 ? 2 : 1].c, row[i <= 2 ? 3 : 2].c);
+        gxbp_num_dot(&minor, row[i == 0].c, normal.c);
+        gxb_num_mul(&term, &row[i].c[3], &minor);
+        if (i % 2 == 0) term.sign = -term.sign;
+        gxb_num_add(&next, &sum, &term);
+        gxbp_num_copy(&sum, &next, 1);
+    }
+    return sum.sign;
+}
+
+GXFEM_API int gxb_incircle(const double a[2], const double b[2], const double c[2], const double d[2]) {
+    if (gxbp_filter_range(a, 2) && gxbp_filter_range(b, 2) && gxbp_filter_range(c, 2) && gxbp_filter_range(d, 2)) {
+        const int sign = gxbp_filter_incircle(a, b, c, d);
+        if (sign != 0) return sign;
+    }
+    return gxbp_incircle_exact(a, b, c, d);
+}
+
+GXFEM_API int gxb_insphere(const double a[3], const double b[3], const double c[3], const double d[3], const double e[3]) {
+    if (gxbp_filter_range(a, 3) && gxbp_filter_range(b, 3) && gxbp_filter_range(c, 3) && gxbp_filter_range(d, 3) && gxbp_filter_range(e, 3)) {
+        const int sign = gxbp_filter_insphere(a, b, c, d, e);
+        if (sign != 0) return sign;
+    }
+    return gxbp_insphere_exact(a, b, c, d, e);
 }
 
 static void gxbp_ball_explicit(gxb_ball *ball, const double p[3]) {
@@ -3609,6 +3790,2738 @@ static void gxbp_check(gxb_complex *cx, gxb_stream *s) {
     c.leaf_up = c.node_element + n; c.point = c.leaf_up + l; c.queue = c.point + cx->point_count;
     gxbp_run_checks(&c);
     gxbp_release(&cx->allocator, block, words * sizeof *block);
+}
+
+/* >>arrangement: triangles of closed surfaces, divided where they meet (docs/KERNEL.md) ------------------------------------- */
+
+/* Labels of a facet's edge are lists: the triangles that meet the facet's plane in it (sources), in flats also edges of sources
+   (half-edge | GXBP_EDGE_LABEL). */
+#define GXBP_EDGE_LABEL ((uint32_t)1 << 31)
+#define GXBP_LOOSE UINT32_MAX            /* an edge that only triangulates */
+#define GXBP_BARE (UINT32_MAX - 1)      /* the end of a list: an edge that must stay */
+
+enum { GXBP_LEAF = 8 };                 /* triangles in a leaf of a box tree */
+
+typedef struct gxbp_source {    /* an input triangle */
+    uint32_t point[3];
+    uint32_t twin[3];           /* the half-edge 3 s + k on the other side of edge k, GXB_NONE where there is not exactly one */
+    uint32_t edge[3];           /* in cuts: the edge's inner points; GXB_NONE: it has none */
+    uint32_t plane;             /* GXB_NONE until needed */
+    uint32_t operand;
+    uint32_t facet;             /* first of its facets; of a flat: its root has them all */
+    uint32_t segments;          /* list */
+    uint32_t root, next;        /* flat: union-find parent, next member */
+    uint32_t flags;
+} gxbp_source;
+enum { GXBP_DEGENERATE = 1, GXBP_DIRTY = 2, GXBP_DIVIDED = 4, GXBP_FLAT = 8 };
+
+typedef struct gxbp_piece {     /* a triangle of a source's triangulation; edge k from v[k] to v[k + 1] */
+    uint32_t v[3], near[3], labels[3];
+    uint32_t source;            /* root of the flat; GXB_NONE: no longer in use */
+    uint32_t next;
+    uint32_t covers;            /* in a flat: list of the sources that cover it */
+    uint32_t state;             /* winding numbers in front of it */
+} gxbp_piece;
+
+typedef struct gxbp_vertex {    /* beside each point of the complex */
+    uint32_t key[4];            /* kind and what defines it, see gxb_origin; half-edges and sources */
+    uint32_t same;              /* union-find: points found to be equal */
+    uint32_t stamp, hint;       /* a facet around it in the triangulation at work */
+    uint32_t head, head_stamp;  /* scratch */
+    uint32_t slot;              /* scratch: number in the output */
+} gxbp_vertex;
+
+typedef struct gxbp_link { uint32_t value, next; } gxbp_link;
+typedef struct gxbp_segment { uint32_t p, q, label, next; } gxbp_segment;
+typedef struct gxbp_cut { uint32_t half_edge, first, count; } gxbp_cut;     /* inner points of an edge in cut_points, in its direction */
+typedef struct gxbp_hit { uint32_t cut, point; } gxbp_hit;
+typedef struct gxbp_margin { uint32_t vertex, near, labels, made, dangling; } gxbp_margin;
+typedef struct gxbp_box { double low[3], high[3]; } gxbp_box;
+
+typedef struct gxbp_tree {      /* boxes over groups of GXBP_LEAF sources, then over pairs of boxes, up to one */
+    uint32_t first, levels;     /* of its boxes in gxb_boolean.boxes */
+    uint32_t level[28];         /* first box of each level, from first */
+    uint32_t size[28];
+} gxbp_tree;
+
+typedef struct gxbp_operand {
+    uint32_t operation, rule, simple;
+    uint32_t source, source_count;
+    uint32_t *order;            /* sources in the order of the tree's leaves, in one piece of memory of its own */
+    gxbp_tree tree;
+} gxbp_operand;
+
+struct gxb_boolean {
+    gxb_complex cx;             /* points, planes and exact numbers; the complex has no elements */
+    gx_allocator outer;
+    size_t limit, used, peak;
+    uint64_t allocations;
+    int over_limit;
+    gx_result result;           /* of the evaluation at work */
+    uint32_t fine;
+    int (*inside)(void *user, const int32_t *winding, size_t operand_count);
+    void *user;
+    gxbp_operand *operands; uint32_t operand_count, operand_capacity;
+    gxbp_source *sources; uint32_t source_count, source_capacity;
+    gxbp_box *bounds; uint32_t bound_count, bound_capacity;             /* of each operand's sources, in its tree's order */
+    gxbp_box *boxes; uint32_t box_count, box_capacity;                  /* of trees */
+    gxbp_vertex *vertices; uint32_t vertex_count, vertex_capacity;
+    uint32_t *table; uint32_t table_size, table_used;                   /* hash of points by coordinates or key */
+    gxbp_piece *pieces; uint32_t piece_count, piece_capacity;
+    gxbp_link *links; uint32_t link_count, link_capacity;
+    gxbp_segment *segments; uint32_t segment_count, segment_capacity;
+    gxbp_cut *cuts; uint32_t cut_count, cut_capacity;
+    uint32_t *cut_points; uint32_t cut_point_count, cut_point_capacity;
+    gxbp_hit *hits; uint32_t hit_count, hit_capacity;
+    uint32_t *dirty; uint32_t dirty_count, dirty_capacity;
+    gxbp_margin *rims; uint32_t rim_count, rim_capacity;
+    gxbp_margin *lefts; uint32_t left_count, left_capacity;
+    uint32_t *chain; uint32_t chain_count, chain_capacity;
+    uint32_t *scratch; uint32_t scratch_count, scratch_capacity;
+    uint32_t arranged;          /* operands that are in the arrangement */
+    uint32_t segment_mark;      /* segments before it are in the triangulations */
+    uint32_t merged_points;     /* points before it were compared with each other */
+    uint32_t plane, stamp, head_stamp;                                  /* of the triangulation at work */
+    int32_t *windings; uint32_t winding_count, winding_capacity;        /* state x operand */
+    uint32_t *states; uint32_t state_count, state_capacity;             /* of each state: is it inside? */
+    uint32_t *state_table; uint32_t state_table_size;
+    double *out_vertices; uint32_t out_vertex_count, out_vertex_capacity;
+    gxb_origin *out_origins; uint32_t out_origin_count, out_origin_capacity;
+    uint32_t *out_points; uint32_t out_point_count, out_point_capacity;
+    uint32_t *out_triangles; uint32_t out_triangle_count, out_triangle_capacity;
+    uint32_t *out_operands; uint32_t out_operand_count, out_operand_capacity;
+    uint32_t *out_sources; uint32_t out_source_count, out_source_capacity;
+    uint32_t *out_components; uint32_t out_component_count, out_component_capacity;
+    uint32_t *out_planes; uint32_t out_plane_count, out_plane_capacity;
+    uint8_t *out_reversed; uint32_t out_reversed_count, out_reversed_capacity;
+    int8_t *out_sides; uint32_t out_side_count, out_side_capacity;
+    double *out_volumes; uint32_t out_volume_count, out_volume_capacity;
+    uint32_t *out_defects; uint32_t out_defect_count, out_defect_capacity;
+};
+
+/* --- memory --- */
+
+static void *gxbp_count_allocate(void *user, size_t size) {
+    gxb_boolean *b = (gxb_boolean *)user;
+    void *memory;
+    if (b->limit != 0 && (size > b->limit || b->used > b->limit - size)) { b->over_limit = 1; return NULL; }
+    memory = gxbp_allocate(&b->outer, size);
+    if (memory == NULL) return NULL;
+    b->allocations++;
+    b->used += size;
+    if (b->used > b->peak) b->peak = b->used;
+    return memory;
+}
+
+static void gxbp_count_release(void *user, void *memory, size_t size) {
+    gxb_boolean *b = (gxb_boolean *)user;
+    b->used -= size;
+    gxbp_release(&b->outer, memory, size);
+}
+
+/* The first error of an evaluation stays in b->result; what follows does nothing. */
+static int gxbp_stop(gxb_boolean *b, gx_result result) {
+    if (b->result == GX_OK) b->result = result == GX_ERROR_MEMORY && b->over_limit ? GX_ERROR_LIMIT : result;
+    return 0;
+}
+
+static int gxbp_room(gxb_boolean *b, void *array, size_t item, uint32_t count, uint32_t *capacity, size_t extra) {
+    gx_result result;
+    if ((size_t)count + extra <= *capacity) return 1;
+    if (*capacity == 0 && extra < 64) extra = 64;       /* small cases should not pay for growing */
+    result = gxbp_reserve(&b->cx, array, item, count, capacity, extra);
+    return result == GX_OK ? 1 : gxbp_stop(b, result);
+}
+
+#define GXBP_ROOM(b, array, counter, extra) \
+    gxbp_room(b, &(b)->array, sizeof *(b)->array, (b)->counter##_count, &(b)->counter##_capacity, extra)
+#define GXBP_DROP(b, array, counter) \
+    (gxbp_release(&(b)->cx.allocator, (b)->array, (size_t)(b)->counter##_capacity * sizeof *(b)->array), \
+     (b)->array = NULL, (b)->counter##_count = (b)->counter##_capacity = 0)
+
+static uint32_t gxbp_new_link(gxb_boolean *b, uint32_t value, uint32_t next) {
+    if (!GXBP_ROOM(b, links, link, 1)) return next;
+    b->links[b->link_count].value = value;
+    b->links[b->link_count].next = next;
+    return b->link_count++;
+}
+
+/* --- points: found by their coordinates or by what defines them --- */
+
+static uint32_t gxbp_mix(uint32_t hash, uint64_t value) {
+    uint64_t x = (value ^ hash * UINT64_C(0xff51afd7ed558ccd)) * UINT64_C(0x9e3779b97f4a7c15);
+    return (uint32_t)(x >> 32) ^ (uint32_t)x;
+}
+
+static uint32_t gxbp_hash_key(const uint32_t key[4]) {
+    return gxbp_mix(gxbp_mix(key[0], (uint64_t)key[1] << 32 | key[2]), key[3]);
+}
+
+static uint32_t gxbp_hash_place(const double x[3]) { return gxbp_mix(gxbp_mix(gxbp_mix(0, gxbp_bits(x[0])), gxbp_bits(x[1])), gxbp_bits(x[2])); }
+
+static uint32_t gxbp_hash_point(const gxb_boolean *b, uint32_t point) {
+    const uint32_t *key = b->vertices[point].key;
+    return key[0] == GXB_FROM_VERTEX ? gxbp_hash_place(b->cx.points[point].ball.x) : gxbp_hash_key(key);
+}
+
+static int gxbp_grow_table(gxb_boolean *b, uint32_t extra) {
+    uint32_t size = b->table_size == 0 ? 64 : b->table_size, *table, i, k;
+    if ((uint64_t)(b->table_used + (uint64_t)extra) * 2 <= b->table_size) return 1;
+    while ((uint64_t)size < ((uint64_t)b->table_used + extra) * 3 && size < (uint32_t)1 << 31) size *= 2;
+    table = (uint32_t *)gxbp_allocate(&b->cx.allocator, (size_t)size * sizeof *table);
+    if (table == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
+    memset(table, 0xff, (size_t)size * sizeof *table);
+    for (i = 0; i < b->table_size; i++) {
+        if (b->table[i] == GXB_NONE) continue;
+        for (k = gxbp_hash_point(b, b->table[i]) & (size - 1); table[k] != GXB_NONE; k = (k + 1) & (size - 1)) {}
+        table[k] = b->table[i];
+    }
+    gxbp_release(&b->cx.allocator, b->table, (size_t)b->table_size * sizeof *table);
+    b->table = table;
+    b->table_size = size;
+    return 1;
+}
+
+/* A point without coordinates yet. */
+static uint32_t gxbp_new_vertex(gxb_boolean *b, uint32_t kind, uint32_t p, uint32_t q, uint32_t r) {
+    uint32_t id;
+    gx_result result;
+    gxbp_vertex *v;
+    if (!GXBP_ROOM(b, vertices, vertex, 1)) return GXB_NONE;
+    result = gxbp_new_point(&b->cx, &id);
+    if (result != GX_OK) { gxbp_stop(b, result); return GXB_NONE; }
+    v = &b->vertices[b->vertex_count++];
+    memset(v, 0, sizeof *v);
+    v->key[0] = kind; v->key[1] = p; v->key[2] = q; v->key[3] = r;
+    v->same = id;
+    return id;
+}
+
+static uint32_t gxbp_same(gxb_boolean *b, uint32_t point) {
+    gxbp_vertex *v = b->vertices;
+    while (v[point].same != point) {
+        v[point].same = v[v[point].same].same;
+        point = v[point].same;
+    }
+    return point;
+}
+
+/* Two names of one point: the first stays, by the second's definition where that is an input vertex. */
+static void gxbp_unite(gxb_boolean *b, uint32_t keep, uint32_t drop) {
+    gxb_cpoint *p = &b->cx.points[keep];
+    const gxb_cpoint *q = &b->cx.points[drop];
+    if (keep == drop) return;
+    b->vertices[drop].same = keep;
+    if (p->kind == GXB_EXPLICIT || q->kind != GXB_EXPLICIT) return;
+    p->kind = GXB_EXPLICIT;
+    p->ball = q->ball;
+    p->exact = NULL;
+    p->def[0] = q->def[0];
+}
+
+/* The point of a plane where a line meets it, or of three planes. Where the ball is too large to filter by it comes from exact
+   coordinates: the ratio's relative error is below 2^-50. */
+static void gxbp_place_point(gxb_boolean *b, uint32_t point, uint32_t kind, uint32_t p, uint32_t q, uint32_t r) {
+    gxb_cpoint *c = &b->cx.points[point];
+    c->kind = kind;
+    c->def[0] = p; c->def[1] = q; c->def[2] = r;
+    gxbp_definition_ball(&b->cx, kind, c->def, &c->ball);
+    if (c->ball.error > gxbp_power(-30) * gxbp_max3(c->ball.x)) {
+        gxbp_vec store;
+        const gxb_num *x = gxbp_exact_cpoint(&b->cx, point, &store);
+        double error = 0;
+        int k;
+        b->cx.exact_calls++;
+        for (k = 0; k < 3; k++) {
+            c->ball.x[k] = gxb_num_ratio(&x[k], &x[3]);
+            error = gxbp_max(error, gxbp_abs(c->ball.x[k]));
+        }
+        c->ball.error = error * gxbp_power(-49) + GXBP_TINY;
+    }
+}
+
+/* Finds or makes the entry of a point with this key. *fresh: it is new and has no place yet. */
+static uint32_t gxbp_keyed_point(gxb_boolean *b, uint32_t kind, uint32_t p, uint32_t q, uint32_t r, int *fresh) {
+    uint32_t key[4], k, id;
+    *fresh = 0;
+    if (!gxbp_grow_table(b, 1)) return GXB_NONE;
+    key[0] = kind; key[1] = p; key[2] = q; key[3] = r;
+    for (k = gxbp_hash_key(key) & (b->table_size - 1); b->table[k] != GXB_NONE; k = (k + 1) & (b->table_size - 1))
+        if (memcmp(b->vertices[b->table[k]].key, key, sizeof key) == 0) return gxbp_same(b, b->table[k]);
+    id = gxbp_new_vertex(b, kind, p, q, r);
+    if (id == GXB_NONE) return GXB_NONE;
+    b->table[k] = id;
+    b->table_used++;
+    *fresh = 1;
+    return id;
+}
+
+/* --- operands --- */
+
+/* The input's coordinates in the frame: times 2^shift, exact. */
+static gx_result gxbp_scale(const gxb_boolean *b, const double x[3], double y[3]) {
+    int k;
+    for (k = 0; k < 3; k++) {
+        const int e = gxbp_exponent_bits(x[k]);
+        if (e == 0x7ff) return GX_ERROR_NOT_FINITE;
+        y[k] = 0;
+        if (gxbp_is_zero(x[k])) continue;
+        if (e == 0 || e - 1023 + b->cx.shift < -128 || e - 1023 + b->cx.shift > 127) return GX_ERROR_RANGE;
+        y[k] = gxbp_double(gxbp_bits(x[k]) + ((uint64_t)(int64_t)b->cx.shift << 52));
+    }
+    return GX_OK;
+}
+
+/* Scenes of ordinary size keep their scale. */
+static void gxbp_choose_scale(gxb_boolean *b, const gxb_operand *operand) {
+    int largest = -2000;
+    size_t i;
+    for (i = 0; i < 3 * operand->vertex_count; i++) {
+        const int e = gxbp_exponent_bits(operand->vertices[i]) - 1023;
+        if (e > largest && e < 1024 && e > -1023) largest = e;
+    }
+    b->cx.shift = largest < -60 || largest > 60 ? (largest == -2000 ? 0 : -largest) : 0;
+}
+
+static uint32_t gxbp_input_point(gxb_boolean *b, const double y[3], uint32_t operand, uint32_t index) {
+    uint32_t k, id;
+    for (k = gxbp_hash_place(y) & (b->table_size - 1); b->table[k] != GXB_NONE; k = (k + 1) & (b->table_size - 1)) {
+        const uint32_t p = b->table[k];
+        if (b->vertices[p].key[0] == GXB_FROM_VERTEX && memcmp(b->cx.points[p].ball.x, y, 3 * sizeof *y) == 0) return p;
+    }
+    id = gxbp_new_vertex(b, GXB_FROM_VERTEX, operand, index, 0);
+    if (id == GXB_NONE) return GXB_NONE;
+    gxbp_ball_explicit(&b->cx.points[id].ball, y);
+    b->cx.points[id].def[0] = id;
+    b->table[k] = id;
+    b->table_used++;
+    return id;
+}
+
+static uint32_t gxbp_next_edge(uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
+
+/* Half-edges by the vertex that they leave, with the vertex in which they end. */
+typedef struct gxbp_exit { uint32_t half_edge, to; } gxbp_exit;
+typedef struct gxbp_fan { gxbp_exit *list; uint32_t *first; size_t bytes; } gxbp_fan;
+
+static int gxbp_make_fan(gxb_boolean *b, const uint32_t *triangles, size_t count, uint32_t vertex_count, gxbp_fan *fan) {
+    uint32_t h;
+    fan->bytes = 3 * count * sizeof *fan->list + ((size_t)vertex_count + 1) * sizeof *fan->first;
+    fan->list = (gxbp_exit *)gxbp_allocate(&b->cx.allocator, fan->bytes);
+    if (fan->list == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
+    fan->first = (uint32_t *)(void *)(fan->list + 3 * count);
+    memset(fan->first, 0, ((size_t)vertex_count + 1) * sizeof *fan->first);
+    for (h = 0; h < 3 * count; h++) fan->first[triangles[h]]++;
+    for (h = 1; h <= vertex_count; h++) fan->first[h] += fan->first[h - 1];
+    for (h = (uint32_t)(3 * count); h-- > 0;) {
+        gxbp_exit *e = &fan->list[--fan->first[triangles[h]]];
+        e->half_edge = h;
+        e->to = triangles[gxbp_next_edge(h)];
+    }
+    return 1;
+}
+
+static void gxbp_drop_fan(gxb_boolean *b, gxbp_fan *fan) { gxbp_release(&b->cx.allocator, fan->list, fan->bytes); }
+
+/* How many half-edges go from p to q; the last of them. */
+static uint32_t gxbp_count_half_edges(const gxbp_fan *fan, uint32_t p, uint32_t q, uint32_t *last) {
+    const gxbp_exit *e = fan->list + fan->first[p], *end = fan->list + fan->first[p + 1];
+    uint32_t n = 0;
+    for (; e < end; e++) if (e->to == q) { *last = e->half_edge; n++; }
+    return n;
+}
+
+/* twin of each half-edge, GXB_NONE where an edge has not one in each direction. Returns the first half-edge whose edge is passed more
+   often in its direction than in the other, or GXB_NONE: the surface is closed. */
+static uint32_t gxbp_find_twins(const gxbp_fan *fan, uint32_t vertex_count, uint32_t *twin) {
+    uint32_t open = GXB_NONE, p, i;
+    for (p = 0; p < vertex_count; p++)
+        for (i = fan->first[p]; i < fan->first[p + 1]; i++) {
+            const uint32_t h = fan->list[i].half_edge, q = fan->list[i].to;
+            uint32_t forth = h, back = 0, nf, nb;
+            if (p == q) continue;
+            nb = gxbp_count_half_edges(fan, q, p, &back);
+            if (p > q && nb > 0) continue;              /* seen from the other end */
+            nf = gxbp_count_half_edges(fan, p, q, &forth);
+            if (nf == 1 && nb == 1) { twin[h] = back; twin[back] = h; }
+            else if (nf != nb && open == GXB_NONE) open = nf > nb ? h : back;
+        }
+    return open;
+}
+
+static int gxbp_has_area(const double *p, const double *q, const double *r) {
+    gxb_plane plane;
+    gxbp_vec n;
+    int k;
+    gxb_plane_init(&plane, p, q, r);
+    if (plane.filter.norm > plane.filter.error) return 1;
+    gxbp_plane_exact(&n, &plane);
+    for (k = 0; k < 3; k++) if (n.c[k].sign != 0) return 1;
+    return 0;
+}
+
+static void gxbp_fill_source(gxb_boolean *b, uint32_t s, uint32_t operand, const uint32_t *twin, uint32_t first) {
+    gxbp_source *t = &b->sources[s];
+    gxbp_piece *f = &b->pieces[b->piece_count];
+    const double *x[3];
+    int k;
+    for (k = 0; k < 3; k++) {
+        x[k] = b->cx.points[t->point[k]].ball.x;
+        t->twin[k] = twin[k] == GXB_NONE ? GXB_NONE : twin[k] + 3 * first;
+        t->edge[k] = GXB_NONE;
+        f->v[k] = t->point[k];
+        f->near[k] = GXB_NONE;
+        f->labels[k] = GXBP_BARE;
+    }
+    t->plane = GXB_NONE; t->operand = operand; t->segments = GXB_NONE;
+    t->root = s; t->next = GXB_NONE;
+    t->flags = gxbp_has_area(x[0], x[1], x[2]) ? 0 : (uint32_t)GXBP_DEGENERATE;
+    f->source = s; f->next = GXB_NONE; f->covers = GXB_NONE; f->state = GXB_NONE;
+    t->facet = b->piece_count++;
+}
+
+/* Neighbours across an edge of a triangle without area are none. */
+static void gxbp_forget_degenerate(gxb_boolean *b, uint32_t first) {
+    uint32_t s, k;
+    for (s = first; s < b->source_count; s++) {
+        if (!(b->sources[s].flags & GXBP_DEGENERATE)) continue;
+        b->pieces[b->sources[s].facet].source = GXB_NONE;
+        for (k = 0; k < 3; k++) {
+            const uint32_t h = b->sources[s].twin[k];
+            if (h != GXB_NONE) b->sources[h / 3].twin[h % 3] = GXB_NONE;
+            b->sources[s].twin[k] = GXB_NONE;
+        }
+        b->operands[b->operand_count - 1].simple = 0;
+    }
+}
+
+/* points and local: room for vertex_count; local triangles and twins: 3 per triangle */
+static gx_result gxbp_read_points(gxb_boolean *b, const gxb_operand *o, uint32_t *points, uint32_t *local, size_t *bad) {
+    size_t i;
+    for (i = 0; i < o->vertex_count; i++) {
+        double y[3];
+        const gx_result result = gxbp_scale(b, o->vertices + 3 * i, y);
+        if (result != GX_OK) { *bad = i; return result; }
+        points[i] = gxbp_input_point(b, y, b->operand_count, (uint32_t)i);
+        if (points[i] == GXB_NONE) return b->result;
+        b->vertices[points[i]].head = GXB_NONE;
+    }
+    for (i = 0; i < o->vertex_count; i++) {         /* vertices at one place are one */
+        gxbp_vertex *v = &b->vertices[points[i]];
+        if (v->head == GXB_NONE) v->head = (uint32_t)i;
+        local[i] = v->head;
+    }
+    return GX_OK;
+}
+
+static gx_result gxbp_read_triangles(gxb_boolean *b, const gxb_operand *o, uint32_t *work, size_t *bad) {
+    uint32_t *points = work, *local = points + o->vertex_count, *triangles = local + o->vertex_count;
+    uint32_t *twin = triangles + 3 * o->triangle_count, open, first = b->source_count;
+    gx_result result = gxbp_read_points(b, o, points, local, bad);
+    gxbp_fan fan;
+    size_t h;
+    if (result != GX_OK) return result;
+    for (h = 0; h < 3 * o->triangle_count; h++) { triangles[h] = local[o->triangles[h]]; twin[h] = GXB_NONE; }
+    if (!gxbp_make_fan(b, triangles, o->triangle_count, (uint32_t)o->vertex_count, &fan)) return b->result;
+    open = gxbp_find_twins(&fan, (uint32_t)o->vertex_count, twin);
+    gxbp_drop_fan(b, &fan);
+    if (open != GXB_NONE && o->operation != GXB_SPLIT) { *bad = open / 3; return GX_ERROR_NOT_CLOSED; }
+    for (h = 0; h < o->triangle_count; h++) {
+        gxbp_source *t = &b->sources[b->source_count];
+        int k;
+        for (k = 0; k < 3; k++) t->point[k] = points[triangles[3 * h + (size_t)k]];
+        gxbp_fill_source(b, b->source_count, b->operand_count, twin + 3 * h, first);
+        b->source_count++;
+    }
+    return GX_OK;
+}
+
+/* --- box trees --- */
+
+static void gxbp_box_join(gxbp_box *a, const gxbp_box *c) {
+    int k;
+    for (k = 0; k < 3; k++) {
+        if (c->low[k] < a->low[k]) a->low[k] = c->low[k];
+        if (c->high[k] > a->high[k]) a->high[k] = c->high[k];
+    }
+}
+
+static gxbp_box gxbp_box_of(const gxb_boolean *b, uint32_t s) {
+    gxbp_box box;
+    const double *x[3];
+    int k;
+    for (k = 0; k < 3; k++) x[k] = b->cx.points[b->sources[s].point[k]].ball.x;
+    for (k = 0; k < 3; k++) {
+        const double p = x[0][k], q = x[1][k], r = x[2][k];
+        box.low[k] = p < q ? (p < r ? p : r) : (q < r ? q : r);
+        box.high[k] = p > q ? (p > r ? p : r) : (q > r ? q : r);
+    }
+    return box;
+}
+
+static int gxbp_box_meets(const gxbp_box *a, const gxbp_box *c) {
+    return a->low[0] <= c->high[0] && c->low[0] <= a->high[0] && a->low[1] <= c->high[1] && c->low[1] <= a->high[1] &&
+           a->low[2] <= c->high[2] && c->low[2] <= a->high[2];
+}
+
+/* Ten bits with two zeros after each */
+static uint32_t gxbp_spread(uint32_t x) {
+    x = (x | x << 16) & 0x030000ffu;
+    x = (x | x << 8) & 0x0300f00fu;
+    x = (x | x << 4) & 0x030c30c3u;
+    return (x | x << 2) & 0x09249249u;
+}
+
+static uint32_t gxbp_lattice(double x, double low, double size) {
+    const double t = size > 0 ? (x - low) / size * 1023 : 0;
+    return t > 0 ? t < 1023 ? (uint32_t)t : 1023 : 0;
+}
+
+/* Sorts the sources along a Z-order curve by the middles of their boxes; keys and more are scratch of count words each. */
+static void gxbp_sort_sources(const gxb_boolean *b, gxbp_operand *o, const gxbp_box *all, uint32_t *keys, uint32_t *more) {
+    uint32_t *from = o->order, *to = more, *swap, i, pass;
+    for (i = 0; i < o->source_count; i++) {
+        const gxbp_box *box = &b->bounds[o->source + i];
+        int k;
+        keys[i] = 0;
+        for (k = 0; k < 3; k++)
+            keys[i] |= gxbp_spread(gxbp_lattice(box->low[k] / 2 + box->high[k] / 2, all->low[k], all->high[k] - all->low[k])) << k;
+    }
+    for (pass = 0; pass < 4; pass++) {
+        uint32_t count[257];
+        memset(count, 0, sizeof count);
+        for (i = 0; i < o->source_count; i++) count[1 + (keys[i] >> 8 * pass & 255)]++;
+        for (i = 1; i < 257; i++) count[i] += count[i - 1];
+        for (i = 0; i < o->source_count; i++) to[count[keys[from[i] - o->source] >> 8 * pass & 255]++] = from[i];
+        swap = from; from = to; to = swap;
+    }
+}
+
+static void gxbp_fill_tree(gxb_boolean *b, const gxbp_operand *o) {
+    const gxbp_tree *t = &o->tree;
+    uint32_t i, l;
+    for (i = 0; i < o->source_count; i++) {
+        gxbp_box *box = &b->boxes[t->first + i / GXBP_LEAF];
+        if (i % GXBP_LEAF == 0) *box = b->bounds[o->source + i];
+        else gxbp_box_join(box, &b->bounds[o->source + i]);
+    }
+    for (l = 1; l < t->levels; l++)
+        for (i = 0; i < t->size[l - 1]; i++) {
+            gxbp_box *box = &b->boxes[t->first + t->level[l] + i / 2];
+            const gxbp_box *child = &b->boxes[t->first + t->level[l - 1] + i];
+            if (i % 2 == 0) *box = *child;
+            else gxbp_box_join(box, child);
+        }
+}
+
+static gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
+    gxbp_tree *t = &o->tree;
+    uint32_t size = (o->source_count + GXBP_LEAF - 1) / GXBP_LEAF, total = 0, i;
+    const size_t words = o->source_count;
+    o->order = (uint32_t *)gxbp_allocate(&b->cx.allocator, words * sizeof *o->order);
+    if (o->order == NULL) return GX_ERROR_MEMORY;
+    for (i = 0; i < o->source_count; i++) {
+        o->order[i] = o->source + i;
+        b->bounds[o->source + i] = gxbp_box_of(b, o->source + i);
+    }
+    b->bound_count = o->source + o->source_count;
+    for (t->levels = 0; ; size = (size + 1) / 2) {
+        t->level[t->levels] = total;
+        t->size[t->levels++] = size;
+        total += size;
+        if (size == 1) break;
+    }
+    t->first = b->box_count;
+    if (!GXBP_ROOM(b, boxes, box, total)) return GX_ERROR_MEMORY;
+    b->box_count += total;
+    if (o->source_count > 4 * GXBP_LEAF) {
+        gxbp_box all = b->bounds[o->source];
+        uint32_t *work = (uint32_t *)gxbp_allocate(&b->cx.allocator, 2 * words * sizeof *work);
+        if (work == NULL) return GX_ERROR_MEMORY;
+        for (i = 1; i < o->source_count; i++) gxbp_box_join(&all, &b->bounds[o->source + i]);
+        gxbp_sort_sources(b, o, &all, work, work + words);
+        gxbp_release(&b->cx.allocator, work, 2 * words * sizeof *work);
+        for (i = 0; i < o->source_count; i++) b->bounds[o->source + i] = gxbp_box_of(b, o->order[i]);
+    }
+    gxbp_fill_tree(b, o);
+    return GX_OK;
+}
+
+static gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operand *o, size_t *bad) {
+    const size_t words = 2 * o->vertex_count + 6 * o->triangle_count;
+    gxbp_operand *mine;
+    gx_result result;
+    uint32_t *work;
+    if (!GXBP_ROOM(b, operands, operand, 1) || !GXBP_ROOM(b, sources, source, o->triangle_count) || !GXBP_ROOM(b, bounds, bound, o->triangle_count) ||
+        !GXBP_ROOM(b, pieces, piece, o->triangle_count) || !GXBP_ROOM(b, vertices, vertex, o->vertex_count) ||
+        !gxbp_grow_table(b, (uint32_t)o->vertex_count)) return b->result;
+    result = GXBP_RESERVE(&b->cx, points, point, o->vertex_count);
+    if (result != GX_OK) return result;
+    work = (uint32_t *)gxbp_allocate(&b->cx.allocator, words * sizeof *work);
+    if (work == NULL) return GX_ERROR_MEMORY;
+    mine = &b->operands[b->operand_count];
+    memset(mine, 0, sizeof *mine);
+    mine->operation = o->operation; mine->rule = o->rule; mine->simple = o->simple;
+    mine->source = b->source_count; mine->source_count = (uint32_t)o->triangle_count;
+    result = gxbp_read_triangles(b, o, work, bad);
+    gxbp_release(&b->cx.allocator, work, words * sizeof *work);
+    if (result == GX_OK) result = gxbp_make_tree(b, mine);
+    if (result != GX_OK) { gxbp_release(&b->cx.allocator, mine->order, o->triangle_count * sizeof *mine->order); return result; }
+    b->operand_count++;
+    gxbp_forget_degenerate(b, mine->source);
+    return GX_OK;
+}
+
+/* --- where two triangles meet --- */
+
+static const double *gxbp_corner_of(const gxb_boolean *b, uint32_t s, int k) { return b->cx.points[b->sources[s].point[k]].ball.x; }
+
+/* The side of a plane: filter, then what is known by definition, then exact arithmetic. */
+static int gxbp_point_side(gxb_boolean *b, uint32_t point, uint32_t plane) {
+    gxb_complex *cx = &b->cx;
+    const gxb_cpoint *p = &cx->points[point];
+    double bound;
+    const double value = gxbp_filter_side(&p->ball, &cx->planes[plane].filter, &bound);
+    uint32_t def[3];
+    cx->filter_calls++;
+    if (value > bound) return 1;
+    if (value < -bound) return -1;
+    memcpy(def, p->def, sizeof def);
+    if (p->kind == GXB_EXPLICIT) point = def[0];
+    if (gxbp_incident(cx, p->kind, def, point, plane)) return 0;
+    if (p->kind == GXB_THREE_PLANES && gxbp_incident_by_line(cx, def, plane)) return 0;
+    return gxbp_exact_sign(cx, p->kind, def, point, plane);
+}
+
+/* Orientation of three input points in a triangle's plane. */
+static int gxbp_flat_turn(const gxb_boolean *b, uint32_t plane, const double *p, const double *q, const double *r) {
+    const gxb_cplane *f = &b->cx.planes[plane];
+    const uint32_t i = (f->axis + 1) % 3, j = (f->axis + 2) % 3;
+    double a[2], c[2], d[2];
+    a[0] = p[i]; a[1] = p[j]; c[0] = q[i]; c[1] = q[j]; d[0] = r[i]; d[1] = r[j];
+    return gxb_orient2d(a, c, d) * f->axis_sign;
+}
+
+/* A triangle that lies in the plane of a neighbour, and faces as it does, has the same plane: points on both are known to be in it. */
+static int gxbp_share_plane(gxb_boolean *b, uint32_t s) {
+    int k;
+    for (k = 0; k < 3; k++) {
+        const uint32_t twin = b->sources[s].twin[k], plane = twin == GXB_NONE ? GXB_NONE : b->sources[twin / 3].plane;
+        if (plane == GXB_NONE || gxbp_point_side(b, b->sources[s].point[(k + 2) % 3], plane) != 0 ||
+            gxbp_flat_turn(b, plane, gxbp_corner_of(b, s, 0), gxbp_corner_of(b, s, 1), gxbp_corner_of(b, s, 2)) <= 0) continue;
+        b->sources[s].plane = plane;
+        return 1;
+    }
+    return 0;
+}
+
+static int gxbp_need_plane(gxb_boolean *b, uint32_t s) {
+    gxbp_source *t = &b->sources[s];
+    gx_result result;
+    if (t->plane != GXB_NONE || gxbp_share_plane(b, s)) return 1;
+    result = gxbp_new_plane(&b->cx, t->point[0], t->point[1], t->point[2], 0, &t->plane);
+    if (result != GX_OK) { t->plane = GXB_NONE; return gxbp_stop(b, result); }
+    gxbp_plane_axis(&b->cx, t->plane);
+    return 1;
+}
+
+static void gxbp_mark_dirty(gxb_boolean *b, uint32_t s) {
+    if (b->sources[s].flags & GXBP_DIRTY || !GXBP_ROOM(b, dirty, dirty, 1)) return;
+    b->sources[s].flags |= GXBP_DIRTY;
+    b->dirty[b->dirty_count++] = s;
+}
+
+/* A segment (a point, if p is q) in which a triangle (label) meets a source. */
+static void gxbp_add_segment(gxb_boolean *b, uint32_t s, uint32_t p, uint32_t q, uint32_t label) {
+    gxbp_segment *segment;
+    if (!GXBP_ROOM(b, segments, segment, 1)) return;
+    segment = &b->segments[b->segment_count];
+    segment->p = p; segment->q = q; segment->label = label; segment->next = b->sources[s].segments;
+    b->sources[s].segments = b->segment_count++;
+    gxbp_mark_dirty(b, s);
+}
+
+/* The half-edge by which an edge is named: the lower of the two. */
+static uint32_t gxbp_edge_name(const gxb_boolean *b, uint32_t s, int k) {
+    const uint32_t h = 3 * s + (uint32_t)k, twin = b->sources[s].twin[k];
+    return twin < h ? twin : h;
+}
+
+/* A point inside an edge. */
+static void gxbp_hit_edge(gxb_boolean *b, uint32_t s, int k, uint32_t point) {
+    const uint32_t name = gxbp_edge_name(b, s, k), twin = b->sources[s].twin[k];
+    uint32_t cut = b->sources[s].edge[k];
+    if (!GXBP_ROOM(b, cuts, cut, 1) || !GXBP_ROOM(b, hits, hit, 1)) return;
+    if (cut == GXB_NONE) {
+        cut = b->cut_count++;
+        b->cuts[cut].half_edge = name;
+        b->cuts[cut].first = b->cuts[cut].count = 0;
+        b->sources[s].edge[k] = cut;
+        if (twin != GXB_NONE) b->sources[twin / 3].edge[twin % 3] = cut;
+    }
+    b->hits[b->hit_count].cut = cut;
+    b->hits[b->hit_count++].point = point;
+    gxbp_mark_dirty(b, s);
+    if (twin != GXB_NONE) gxbp_mark_dirty(b, twin / 3);
+}
+
+/* Where a point of a triangle's plane lies: corner or edge -1: not there; both -1: inside. */
+typedef struct gxbp_spot { int outside, edge, corner; } gxbp_spot;
+
+/* By the signs of the three edges, positive inside. */
+static gxbp_spot gxbp_spot_of(const int sign[3]) {
+    gxbp_spot spot = {0, -1, -1};
+    int k;
+    for (k = 0; k < 3; k++) if (sign[k] < 0) spot.outside = 1;
+    for (k = 0; k < 3 && !spot.outside; k++) {
+        if (sign[k] != 0) continue;
+        if (sign[(k + 1) % 3] == 0) spot.corner = (k + 1) % 3;
+        else if (sign[(k + 2) % 3] != 0) spot.edge = k;
+    }
+    return spot;
+}
+
+static gxbp_spot gxbp_spot_of_point(const gxb_boolean *b, const double *x, uint32_t s) {
+    int sign[3], k;
+    for (k = 0; k < 3; k++)
+        sign[k] = gxbp_flat_turn(b, b->sources[s].plane, gxbp_corner_of(b, s, k), gxbp_corner_of(b, s, (k + 1) % 3), x);
+    return gxbp_spot_of(sign);
+}
+
+/* gxb_orient3d of points of the frame. A product of three fenced differences suffers three roundings in them, two in itself and at most
+   five in the sum: within 32u of the products' sizes. */
+static int gxbp_orient(const double *p, const double *q, const double *r, const double *o) {
+    double a[3], c[3], d[3], m[3], size[3], value;
+    int k;
+    for (k = 0; k < 3; k++) { a[k] = gxbp_fence(p[k] - o[k]); c[k] = gxbp_fence(q[k] - o[k]); d[k] = gxbp_fence(r[k] - o[k]); }
+    for (k = 0; k < 3; k++) {
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        m[k] = c[i] * d[j] - c[j] * d[i];
+        size[k] = gxbp_abs(c[i] * d[j]) + gxbp_abs(c[j] * d[i]);
+    }
+    value = a[0] * m[0] + a[1] * m[1] + a[2] * m[2];
+    k = gxbp_filter_sign(value, 32 * GXBP_U * (gxbp_abs(a[0]) * size[0] + gxbp_abs(a[1]) * size[1] + gxbp_abs(a[2]) * size[2]) + GXBP_TINY);
+    return k != 0 ? k : gxbp_orient3d_exact(p, q, r, o);
+}
+
+/* Where the line from p (in front of the plane: side 1) to q (behind) passes. */
+static gxbp_spot gxbp_spot_of_line(gxb_boolean *b, const double *p, const double *q, int side, uint32_t s) {
+    int sign[3], k;
+    for (k = 0; k < 3; k++) {
+        sign[k] = side * gxbp_orient(gxbp_corner_of(b, s, k), gxbp_corner_of(b, s, (k + 1) % 3), p, q);
+        b->cx.filter_calls++;
+        if (sign[k] < 0) break;
+    }
+    for (k++; k < 3; k++) sign[k] = 1;
+    return gxbp_spot_of(sign);
+}
+
+/* The points in which two triangles meet: at most two. */
+typedef struct gxbp_meeting { uint32_t point[8]; int count; } gxbp_meeting;
+
+static void gxbp_found(gxb_boolean *b, gxbp_meeting *m, uint32_t point) {
+    int i;
+    if (point == GXB_NONE) return;
+    point = gxbp_same(b, point);
+    for (i = 0; i < m->count; i++) if (m->point[i] == point) return;
+    if (m->count < 8) m->point[m->count++] = point;
+}
+
+static uint32_t gxbp_edge_triangle_point(gxb_boolean *b, uint32_t s, int k, uint32_t t) {
+    const uint32_t name = gxbp_edge_name(b, s, k);
+    int fresh;
+    const uint32_t point = gxbp_keyed_point(b, GXB_FROM_EDGE_TRIANGLE, name, t, 0, &fresh);
+    if (fresh) gxbp_place_point(b, point, GXB_LINE_PLANE, b->sources[s].point[k], b->sources[s].point[(k + 1) % 3], b->sources[t].plane);
+    return point;
+}
+
+/* Edge k of s crosses edge j of t, and t's plane if plane is that; else (both lie in one plane) plane passes through edge j. */
+static uint32_t gxbp_edge_edge_point(gxb_boolean *b, uint32_t s, int k, uint32_t t, int j, uint32_t plane) {
+    const uint32_t e = gxbp_edge_name(b, s, k), f = gxbp_edge_name(b, t, j);
+    const gx_result room = GXBP_RESERVE(&b->cx, planes, plane, 1);      /* first, so that a point without a place never stays */
+    int fresh;
+    uint32_t point;
+    if (room != GX_OK) { gxbp_stop(b, room); return GXB_NONE; }
+    point = gxbp_keyed_point(b, GXB_FROM_EDGE_EDGE, e < f ? e : f, e < f ? f : e, 0, &fresh);
+    if (!fresh) return point;
+    if (plane == GXB_NONE) {
+        gxbp_new_plane(&b->cx, b->sources[t].point[j], b->sources[t].point[(j + 1) % 3], b->cx.planes[b->sources[t].plane].axis, 1, &plane);
+        gxbp_plane_axis(&b->cx, plane);
+    }
+    gxbp_place_point(b, point, GXB_LINE_PLANE, b->sources[s].point[k], b->sources[s].point[(k + 1) % 3], plane);
+    return point;
+}
+
+/* What of the corners and edges of s lies in t; side: of the corners of s against t's plane. */
+static void gxbp_meet_one_way(gxb_boolean *b, uint32_t s, uint32_t t, const int side[3], gxbp_meeting *m) {
+    int k;
+    for (k = 0; k < 3; k++) {
+        const int j = (k + 1) % 3;
+        if (side[k] == 0) {
+            const uint32_t point = b->sources[s].point[k];
+            const gxbp_spot spot = gxbp_spot_of_point(b, gxbp_corner_of(b, s, k), t);
+            if (spot.outside) continue;
+            if (spot.edge >= 0) gxbp_hit_edge(b, t, spot.edge, point);
+            gxbp_found(b, m, point);
+        } else if (side[k] * side[j] < 0) {
+            const gxbp_spot spot = gxbp_spot_of_line(b, gxbp_corner_of(b, s, k), gxbp_corner_of(b, s, j), side[k], t);
+            uint32_t point;
+            if (spot.outside) continue;
+            if (spot.corner >= 0) point = b->sources[t].point[spot.corner];
+            else if (spot.edge >= 0) point = gxbp_edge_edge_point(b, s, k, t, spot.edge, b->sources[t].plane);
+            else point = gxbp_edge_triangle_point(b, s, k, t);
+            if (point == GXB_NONE) return;
+            gxbp_hit_edge(b, s, k, point);
+            if (spot.edge >= 0) gxbp_hit_edge(b, t, spot.edge, point);
+            gxbp_found(b, m, point);
+        }
+    }
+}
+
+static int gxbp_is_corner(gxb_boolean *b, uint32_t s, uint32_t point) {
+    const uint32_t *p = b->sources[s].point, same = gxbp_same(b, point);
+    return same == gxbp_same(b, p[0]) || same == gxbp_same(b, p[1]) || same == gxbp_same(b, p[2]);
+}
+
+static void gxbp_record_meeting(gxb_boolean *b, uint32_t s, uint32_t t, const gxbp_meeting *m) {
+    if (b->result != GX_OK || m->count == 0) return;
+    if (m->count == 1) {
+        if (!gxbp_is_corner(b, s, m->point[0])) gxbp_add_segment(b, s, m->point[0], m->point[0], t);
+        if (!gxbp_is_corner(b, t, m->point[0])) gxbp_add_segment(b, t, m->point[0], m->point[0], s);
+        return;
+    }
+    gxbp_add_segment(b, s, m->point[0], m->point[1], t);
+    gxbp_add_segment(b, t, m->point[0], m->point[1], s);
+}
+
+static uint32_t gxbp_root(gxb_boolean *b, uint32_t s) {
+    while (b->sources[s].root != s) {
+        b->sources[s].root = b->sources[b->sources[s].root].root;
+        s = b->sources[s].root;
+    }
+    return s;
+}
+
+/* The two overlap in their plane: they are divided together. */
+static void gxbp_join_flats(gxb_boolean *b, uint32_t s, uint32_t t) {
+    uint32_t r = gxbp_root(b, s), q = gxbp_root(b, t), last;
+    gxbp_mark_dirty(b, s);
+    gxbp_mark_dirty(b, t);
+    if (r == q) return;
+    if (q < r) { const uint32_t swap = r; r = q; q = swap; }
+    for (last = r; b->sources[last].next != GXB_NONE; last = b->sources[last].next) {}
+    b->sources[last].next = q;
+    b->sources[q].root = r;
+    b->sources[r].flags |= GXBP_FLAT;
+}
+
+/* No edge of s has all of t on its outer side (turn[k][j]: corner j of t against edge k of s). */
+static int gxbp_no_edge_separates(int turn[3][3], int orientation) {
+    int k;
+    for (k = 0; k < 3; k++)
+        if (turn[k][0] * orientation <= 0 && turn[k][1] * orientation <= 0 && turn[k][2] * orientation <= 0) return 0;
+    return 1;
+}
+
+static void gxbp_meet_in_plane(gxb_boolean *b, uint32_t s, uint32_t t) {
+    const uint32_t plane = b->sources[s].plane;
+    int of_s[3][3], of_t[3][3], k, j, facing;
+    gxbp_meeting m;
+    m.count = 0;
+    for (k = 0; k < 3; k++) for (j = 0; j < 3; j++) {
+        of_s[k][j] = gxbp_flat_turn(b, plane, gxbp_corner_of(b, s, k), gxbp_corner_of(b, s, (k + 1) % 3), gxbp_corner_of(b, t, j));
+        of_t[k][j] = gxbp_flat_turn(b, plane, gxbp_corner_of(b, t, k), gxbp_corner_of(b, t, (k + 1) % 3), gxbp_corner_of(b, s, j));
+    }
+    facing = gxbp_flat_turn(b, plane, gxbp_corner_of(b, t, 0), gxbp_corner_of(b, t, 1), gxbp_corner_of(b, t, 2));
+    for (k = 0; k < 3; k++) {
+        int sign[3];
+        gxbp_spot spot;
+        for (j = 0; j < 3; j++) sign[j] = of_t[j][k] * facing;
+        spot = gxbp_spot_of(sign);
+        if (!spot.outside) gxbp_found(b, &m, b->sources[s].point[k]);
+        if (!spot.outside && spot.edge >= 0) gxbp_hit_edge(b, t, spot.edge, b->sources[s].point[k]);
+        for (j = 0; j < 3; j++) sign[j] = of_s[j][k];
+        spot = gxbp_spot_of(sign);
+        if (!spot.outside) gxbp_found(b, &m, b->sources[t].point[k]);
+        if (!spot.outside && spot.edge >= 0) gxbp_hit_edge(b, s, spot.edge, b->sources[t].point[k]);
+    }
+    for (k = 0; k < 3; k++) for (j = 0; j < 3; j++) {
+        uint32_t point;
+        if (of_s[k][j] * of_s[k][(j + 1) % 3] >= 0 || of_t[j][k] * of_t[j][(k + 1) % 3] >= 0) continue;
+        point = gxbp_edge_edge_point(b, s, k, t, j, GXB_NONE);
+        if (point == GXB_NONE) return;
+        gxbp_hit_edge(b, s, k, point);
+        gxbp_hit_edge(b, t, j, point);
+    }
+    if (gxbp_no_edge_separates(of_s, 1) && gxbp_no_edge_separates(of_t, facing)) gxbp_join_flats(b, s, t);
+    else gxbp_record_meeting(b, s, t, &m);
+}
+
+static void gxbp_sides(gxb_boolean *b, uint32_t s, uint32_t plane, int side[3]) {
+    int k;
+    for (k = 0; k < 3; k++) side[k] = b->sources[s].plane == plane ? 0 : gxbp_point_side(b, b->sources[s].point[k], plane);
+}
+
+static int gxbp_all_on_one_side(const int side[3]) { return side[0] != 0 && side[0] == side[1] && side[0] == side[2]; }
+
+/* Do they share an edge of their surface and else, as they are not in one plane, nothing? */
+static int gxbp_are_neighbours(const gxb_boolean *b, uint32_t s, uint32_t t) {
+    const uint32_t *twin = b->sources[s].twin;
+    int k;
+    for (k = 0; k < 3; k++) if (twin[k] != GXB_NONE && twin[k] / 3 == t) return 1;
+    return 0;
+}
+
+/* Neighbours in one plane: do they lie on the two sides of their edge? */
+static int gxbp_flat_apart(const gxb_boolean *b, uint32_t s, uint32_t t) {
+    int k, j;
+    for (k = 0; k < 3; k++) {
+        const double *p = gxbp_corner_of(b, s, k), *q = gxbp_corner_of(b, s, (k + 1) % 3);
+        if (b->sources[s].twin[k] == GXB_NONE || b->sources[s].twin[k] / 3 != t) continue;
+        j = (int)(b->sources[s].twin[k] % 3);
+        return gxbp_flat_turn(b, b->sources[s].plane, p, q, gxbp_corner_of(b, t, (j + 2) % 3)) < 0;
+    }
+    return 0;
+}
+
+/* One corner in the plane, the others on one side of it */
+static int gxbp_touches_by_corner(const int side[3]) { return side[0] + side[1] + side[2] == 2 || side[0] + side[1] + side[2] == -2; }
+
+static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
+    int of_t[3], of_s[3];
+    gxbp_meeting m;
+    int neighbours, flat, k, common = 0;
+    if (b->result != GX_OK || !gxbp_need_plane(b, s) || !gxbp_need_plane(b, t)) return;
+    gxbp_sides(b, t, b->sources[s].plane, of_t);
+    if (gxbp_all_on_one_side(of_t)) return;
+    flat = of_t[0] == 0 && of_t[1] == 0 && of_t[2] == 0;
+    neighbours = gxbp_are_neighbours(b, s, t);
+    if (neighbours && !flat) return;
+    if (flat) {
+        if (!neighbours || !gxbp_flat_apart(b, s, t)) gxbp_meet_in_plane(b, s, t);
+        return;
+    }
+    gxbp_sides(b, s, b->sources[t].plane, of_s);
+    if (gxbp_all_on_one_side(of_s)) return;
+    for (k = 0; k < 3; k++) common += gxbp_is_corner(b, t, b->sources[s].point[k]);
+    if (common == 1 && (gxbp_touches_by_corner(of_s) || gxbp_touches_by_corner(of_t))) return;
+    m.count = 0;
+    gxbp_meet_one_way(b, s, t, of_s, &m);
+    gxbp_meet_one_way(b, t, s, of_t, &m);
+    gxbp_record_meeting(b, s, t, &m);
+}
+
+/* --- broad phase: pairs of boxes of two trees, or of one --- */
+
+static void gxbp_meet_leaves(gxb_boolean *b, const gxbp_operand *o, uint32_t i, const gxbp_operand *q, uint32_t j) {
+    const uint32_t end_i = i * GXBP_LEAF + GXBP_LEAF < o->source_count ? i * GXBP_LEAF + GXBP_LEAF : o->source_count;
+    const uint32_t end_j = j * GXBP_LEAF + GXBP_LEAF < q->source_count ? j * GXBP_LEAF + GXBP_LEAF : q->source_count;
+    const gxbp_box *other = &b->boxes[q->tree.first + j];
+    uint32_t x, y;
+    for (x = i * GXBP_LEAF; x < end_i; x++) {
+        const uint32_t s = o->order[x];
+        const gxbp_box *box = &b->bounds[o->source + x];
+        if (!gxbp_box_meets(box, other) || b->sources[s].flags & GXBP_DEGENERATE) continue;
+        for (y = o == q && i == j ? x + 1 : j * GXBP_LEAF; y < end_j; y++) {
+            const uint32_t t = q->order[y];
+            if (gxbp_box_meets(box, &b->bounds[q->source + y]) && !(b->sources[t].flags & GXBP_DEGENERATE)) gxbp_meet(b, s, t);
+        }
+    }
+}
+
+/* Box i of level l of one tree, box j of level m of the other. Depth: the sum of their levels. */
+static void gxbp_meet_boxes(gxb_boolean *b, const gxbp_operand *o, uint32_t l, uint32_t i, const gxbp_operand *q, uint32_t m, uint32_t j) {
+    const gxbp_tree *s = &o->tree, *t = &q->tree;
+    uint32_t c;
+    if (b->result != GX_OK || (o == q && l == m && i > j)) return;
+    if (!gxbp_box_meets(&b->boxes[s->first + s->level[l] + i], &b->boxes[t->first + t->level[m] + j])) return;
+    if (l == 0 && m == 0) gxbp_meet_leaves(b, o, i, q, j);
+    else if (l >= m) {
+        for (c = 2 * i; c < 2 * i + 2 && c < s->size[l - 1]; c++) {
+            uint32_t d;
+            if (l > m) { gxbp_meet_boxes(b, o, l - 1, c, q, m, j); continue; }
+            for (d = 2 * j; d < 2 * j + 2 && d < t->size[m - 1]; d++) gxbp_meet_boxes(b, o, l - 1, c, q, m - 1, d);
+        }
+    } else for (c = 2 * j; c < 2 * j + 2 && c < t->size[m - 1]; c++) gxbp_meet_boxes(b, o, l, i, q, m - 1, c);
+}
+
+static void gxbp_meet_operands(gxb_boolean *b, uint32_t i, uint32_t j) {
+    const gxbp_operand *o = &b->operands[i], *q = &b->operands[j];
+    if (i == j && o->simple) return;
+    gxbp_meet_boxes(b, o, o->tree.levels - 1, 0, q, q->tree.levels - 1, 0);
+}
+
+/* --- edges: their inner points in order --- */
+
+/* Sign of p[axis] - q[axis] */
+static int gxbp_compare_points(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t axis) {
+    const gxb_ball *a = &b->cx.points[p].ball, *c = &b->cx.points[q].ball;
+    const double difference = gxbp_fence(a->x[axis] - c->x[axis]);
+    const double bound = 2 * (a->error + c->error) + 2 * GXBP_U * gxbp_abs(difference) + GXBP_TINY;
+    const int sign = gxbp_filter_sign(difference, bound);
+    gxbp_vec s, t;
+    const gxb_num *x, *y;
+    GXB_NUM(r);
+    b->cx.filter_calls++;
+    if (sign != 0 || p == q) return sign;
+    b->cx.exact_calls++;
+    x = gxbp_exact_cpoint(&b->cx, p, &s);
+    y = gxbp_exact_cpoint(&b->cx, q, &t);
+    gxbp_num_det2(&r, &x[axis], &y[3], &y[axis], &x[3]);
+    return r.sign;
+}
+
+/* Merge sort of points along an axis; work: count words. */
+static void gxbp_sort_points(gxb_boolean *b, uint32_t *p, uint32_t count, uint32_t axis, int direction, uint32_t *work) {
+    const uint32_t half = count / 2;
+    uint32_t i, j, k;
+    if (count < 2) return;
+    gxbp_sort_points(b, p, half, axis, direction, work);
+    gxbp_sort_points(b, p + half, count - half, axis, direction, work);
+    memcpy(work, p, half * sizeof *p);
+    for (i = 0, j = half, k = 0; i < half; k++)
+        p[k] = j < count && gxbp_compare_points(b, p[j], work[i], axis) * direction < 0 ? p[j++] : work[i++];
+}
+
+/* Equal neighbours become one. Returns how many remain. */
+static uint32_t gxbp_unite_neighbours(gxb_boolean *b, uint32_t *p, uint32_t count, uint32_t axis) {
+    uint32_t i, n = 0;
+    for (i = 0; i < count; i++) {
+        const uint32_t q = gxbp_same(b, p[i]);
+        if (n > 0 && (p[n - 1] == q || gxbp_compare_points(b, p[n - 1], q, axis) == 0)) gxbp_unite(b, p[n - 1], q);
+        else p[n++] = q;
+    }
+    return n;
+}
+
+/* The longest axis of an edge, and its direction along it: an edge has a length, and the longest difference is never lost. */
+static uint32_t gxbp_edge_axis(const double *p, const double *q, int *direction) {
+    uint32_t axis = 0, k;
+    for (k = 1; k < 3; k++) if (gxbp_abs(gxbp_fence(q[k] - p[k])) > gxbp_abs(gxbp_fence(q[axis] - p[axis]))) axis = k;
+    *direction = gxbp_compare_doubles(q[axis], p[axis]);
+    return axis;
+}
+
+/* Puts the new points of a cut, which are in b->scratch, in order with the old ones. */
+static void gxbp_order_cut(gxb_boolean *b, uint32_t cut) {
+    gxbp_cut *c = &b->cuts[cut];
+    const uint32_t s = c->half_edge / 3, k = c->half_edge % 3;
+    const double *p = gxbp_corner_of(b, s, (int)k), *q = gxbp_corner_of(b, s, (int)(k + 1) % 3);
+    uint32_t count, axis;
+    int direction;
+    if (!GXBP_ROOM(b, scratch, scratch, c->count)) return;
+    if (c->count > 0) memcpy(b->scratch + b->scratch_count, b->cut_points + c->first, c->count * sizeof *b->scratch);
+    b->scratch_count += c->count;
+    count = b->scratch_count;
+    if (!GXBP_ROOM(b, scratch, scratch, count) || !GXBP_ROOM(b, cut_points, cut_point, count)) return;
+    axis = gxbp_edge_axis(p, q, &direction);
+    gxbp_sort_points(b, b->scratch, count, axis, direction, b->scratch + b->scratch_count);
+    count = gxbp_unite_neighbours(b, b->scratch, count, axis);
+    c->first = b->cut_point_count;
+    c->count = count;
+    memcpy(b->cut_points + c->first, b->scratch, count * sizeof *b->cut_points);
+    b->cut_point_count += count;
+}
+
+/* Sorts the hits by cut (counting), then each cut's points. */
+static void gxbp_order_cuts(gxb_boolean *b) {
+    const size_t words = (size_t)b->cut_count + 1 + b->hit_count;
+    uint32_t *first, *points, i;
+    if (b->result != GX_OK || b->hit_count == 0) return;
+    first = (uint32_t *)gxbp_allocate(&b->cx.allocator, words * sizeof *first);
+    if (first == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
+    points = first + b->cut_count + 1;
+    memset(first, 0, ((size_t)b->cut_count + 1) * sizeof *first);
+    for (i = 0; i < b->hit_count; i++) first[b->hits[i].cut]++;
+    for (i = 1; i <= b->cut_count; i++) first[i] += first[i - 1];
+    for (i = b->hit_count; i-- > 0;) points[--first[b->hits[i].cut]] = b->hits[i].point;
+    for (i = 0; i < b->cut_count && b->result == GX_OK; i++) {
+        const uint32_t count = first[i + 1] - first[i];
+        b->scratch_count = 0;
+        if (count == 0 || !GXBP_ROOM(b, scratch, scratch, count)) continue;
+        memcpy(b->scratch, points + first[i], count * sizeof *points);
+        b->scratch_count = count;
+        gxbp_order_cut(b, i);
+    }
+    gxbp_release(&b->cx.allocator, first, words * sizeof *first);
+    b->hit_count = 0;
+}
+
+/* --- triangulations --- */
+
+/* Is the point an end of this line of two input points, or defined as a point of it? */
+static int gxbp_on_input_line(const gxb_cpoint *p, uint32_t from, uint32_t to) {
+    if (p->kind == GXB_EXPLICIT) return p->def[0] == from || p->def[0] == to;
+    return p->kind == GXB_LINE_PLANE && ((p->def[0] == from && p->def[1] == to) || (p->def[0] == to && p->def[1] == from));
+}
+
+/* Do three points of a plane lie on one line by their definitions: in a second common plane (one plane may have several names), or on
+   one edge? */
+static int gxbp_on_definition_line(gxb_complex *cx, uint32_t p, uint32_t q, uint32_t r, uint32_t plane) {
+    const gxb_cpoint *a = &cx->points[p], *c = &cx->points[q], *d = &cx->points[r];
+    uint32_t k, first = a->kind == GXB_LINE_PLANE ? 2u : 0u;
+    if (a->kind == GXB_EXPLICIT) return 0;
+    if (a->kind == GXB_LINE_PLANE && gxbp_on_input_line(c, a->def[0], a->def[1]) && gxbp_on_input_line(d, a->def[0], a->def[1])) return 1;
+    for (k = first; k < 3; k++) {
+        const uint32_t f = a->def[k];
+        if (f != plane && gxbp_incident(cx, c->kind, c->def, c->kind == GXB_EXPLICIT ? c->def[0] : q, f) &&
+            gxbp_incident(cx, d->kind, d->def, d->kind == GXB_EXPLICIT ? d->def[0] : r, f) && gxbp_planes_cross(cx, f, plane)) return 1;
+    }
+    return 0;
+}
+
+/* Orientation in the plane of the triangulation at work, where the filter knows it; else 0 */
+static int gxbp_turn_by_filter(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t r) {
+    const gxb_cplane *f = &b->cx.planes[b->plane];
+    const gxb_cpoint *x = b->cx.points;
+    b->cx.filter_calls++;
+    return f->axis_sign * gxbp_filter_turn(&x[p].ball, &x[q].ball, &x[r].ball, (int)(f->axis + 1) % 3, (int)(f->axis + 2) % 3);
+}
+
+/* Orientation in the plane of the triangulation at work. */
+static int gxbp_turn(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t r) {
+    gxb_complex *cx = &b->cx;
+    const int turn = gxbp_turn_by_filter(b, p, q, r);
+    if (turn != 0) return turn;
+    if (p == q || q == r || r == p) return 0;
+    if (gxbp_on_definition_line(cx, p, q, r, b->plane) || gxbp_on_definition_line(cx, q, r, p, b->plane) ||
+        gxbp_on_definition_line(cx, r, p, q, b->plane)) return 0;
+    cx->exact_calls++;
+    return gxb_complex_turn(cx, p, q, r, b->plane);
+}
+
+static uint32_t gxbp_new_piece(gxb_boolean *b, uint32_t source) {
+    gxbp_piece *f;
+    if (!GXBP_ROOM(b, pieces, piece, 1)) return GXB_NONE;
+    f = &b->pieces[b->piece_count];
+    f->source = source;
+    f->next = b->sources[source].facet;
+    f->covers = f->state = GXB_NONE;
+    b->sources[source].facet = b->piece_count;
+    return b->piece_count++;
+}
+
+static void gxbp_set_piece(gxb_boolean *b, uint32_t f, uint32_t p, uint32_t q, uint32_t r) {
+    gxbp_piece *piece = &b->pieces[f];
+    int k;
+    piece->v[0] = p; piece->v[1] = q; piece->v[2] = r;
+    for (k = 0; k < 3; k++) {
+        b->vertices[piece->v[k]].hint = f;
+        b->vertices[piece->v[k]].stamp = b->stamp;
+    }
+}
+
+static void gxbp_set_edge(gxb_boolean *b, uint32_t f, int k, uint32_t near, uint32_t labels) {
+    b->pieces[f].near[k] = near;
+    b->pieces[f].labels[k] = labels;
+}
+
+static int gxbp_corner_index(const gxbp_piece *f, uint32_t v) { return f->v[0] == v ? 0 : f->v[1] == v ? 1 : 2; }
+
+/* Tells the neighbour across the edge from p to q (as seen from f) that f is there now. */
+static void gxbp_greet(gxb_boolean *b, uint32_t near, uint32_t p, uint32_t q, uint32_t f) {
+    gxbp_piece *n;
+    int k;
+    if (near == GXB_NONE) return;
+    n = &b->pieces[near];
+    for (k = 0; k < 3; k++) if (n->v[k] == q && n->v[(k + 1) % 3] == p) n->near[k] = f;
+}
+
+/* Begins work on a source's (root's) triangulation: vertices by their names of now, hints. */
+static void gxbp_open_triangulation(gxb_boolean *b, uint32_t s) {
+    uint32_t f;
+    int k;
+    b->plane = b->sources[s].plane;
+    b->stamp++;
+    for (f = b->sources[s].facet; f != GXB_NONE; f = b->pieces[f].next)
+        for (k = 0; k < 3; k++) {
+            const uint32_t v = gxbp_same(b, b->pieces[f].v[k]);
+            b->pieces[f].v[k] = v;
+            b->vertices[v].hint = f;
+            b->vertices[v].stamp = b->stamp;
+        }
+}
+
+/* One half of an edge that x divides: f = (p, q, r) with the edge at k becomes (p, x, r), the new one is (x, q, r). */
+static uint32_t gxbp_split_half(gxb_boolean *b, uint32_t f, int k, uint32_t x) {
+    const uint32_t g = gxbp_new_piece(b, b->pieces[f].source);
+    gxbp_piece old;
+    uint32_t p, q, r;
+    if (g == GXB_NONE) return GXB_NONE;
+    old = b->pieces[f];
+    p = old.v[k]; q = old.v[(k + 1) % 3]; r = old.v[(k + 2) % 3];
+    gxbp_set_piece(b, f, p, x, r);
+    gxbp_set_edge(b, f, 0, GXB_NONE, old.labels[k]);
+    gxbp_set_edge(b, f, 1, g, GXBP_LOOSE);
+    gxbp_set_edge(b, f, 2, old.near[(k + 2) % 3], old.labels[(k + 2) % 3]);
+    gxbp_set_piece(b, g, x, q, r);
+    gxbp_set_edge(b, g, 0, GXB_NONE, old.labels[k]);
+    gxbp_set_edge(b, g, 1, old.near[(k + 1) % 3], old.labels[(k + 1) % 3]);
+    gxbp_set_edge(b, g, 2, f, GXBP_LOOSE);
+    gxbp_greet(b, old.near[(k + 1) % 3], q, r, g);
+    return g;
+}
+
+static void gxbp_split_side(gxb_boolean *b, uint32_t f, int k, uint32_t x) {
+    const uint32_t other = b->pieces[f].near[k], p = b->pieces[f].v[k];
+    uint32_t g, h;
+    if (!GXBP_ROOM(b, pieces, piece, 2)) return;
+    g = gxbp_split_half(b, f, k, x);
+    if (other == GXB_NONE) return;
+    k = (gxbp_corner_index(&b->pieces[other], p) + 2) % 3;
+    h = gxbp_split_half(b, other, k, x);                /* other: (q, x, r'), h: (x, p, r') */
+    b->pieces[f].near[0] = h; b->pieces[h].near[0] = f;
+    b->pieces[g].near[0] = other; b->pieces[other].near[0] = g;
+}
+
+static void gxbp_split_inside(gxb_boolean *b, uint32_t f, uint32_t x) {
+    gxbp_piece old;
+    uint32_t part[3];
+    int k;
+    if (!GXBP_ROOM(b, pieces, piece, 2)) return;
+    old = b->pieces[f];
+    part[0] = f;
+    part[1] = gxbp_new_piece(b, old.source);
+    part[2] = gxbp_new_piece(b, old.source);
+    for (k = 0; k < 3; k++) {
+        gxbp_set_piece(b, part[k], old.v[k], old.v[(k + 1) % 3], x);
+        gxbp_set_edge(b, part[k], 0, old.near[k], old.labels[k]);
+        gxbp_set_edge(b, part[k], 1, part[(k + 1) % 3], GXBP_LOOSE);
+        gxbp_set_edge(b, part[k], 2, part[(k + 2) % 3], GXBP_LOOSE);
+        gxbp_greet(b, old.near[k], old.v[k], old.v[(k + 1) % 3], part[k]);
+    }
+}
+
+static int gxbp_has_label(const gxb_boolean *b, uint32_t list, uint32_t label) {
+    for (; list != GXBP_LOOSE && list != GXBP_BARE; list = b->links[list].next) if (b->links[list].value == label) return 1;
+    return 0;
+}
+
+static void gxbp_label_edge(gxb_boolean *b, uint32_t f, int k, uint32_t label) {
+    const uint32_t old = b->pieces[f].labels[k], near = b->pieces[f].near[k], p = b->pieces[f].v[k];
+    uint32_t list;
+    if (gxbp_has_label(b, old, label)) return;
+    list = gxbp_new_link(b, label, old == GXBP_LOOSE ? GXBP_BARE : old);
+    b->pieces[f].labels[k] = list;
+    if (near != GXB_NONE) b->pieces[near].labels[(gxbp_corner_index(&b->pieces[near], p) + 2) % 3] = list;
+}
+
+/* --- along a straight line through a triangulation --- */
+
+/* The line from p to x. In a triangle's plane (label) its sides are those of the plane, times sigma. */
+typedef struct gxbp_line { uint32_t p, x, plane; int sigma; } gxbp_line;
+
+static void gxbp_set_line(gxb_boolean *b, gxbp_line *line, uint32_t s, uint32_t p, uint32_t x, uint32_t label) {
+    int k;
+    line->p = p; line->x = x; line->plane = GXB_NONE; line->sigma = 1;
+    if (label & GXBP_EDGE_LABEL) return;
+    for (k = 0; k < 3; k++) {
+        const int side = gxbp_point_side(b, b->sources[s].point[k], b->sources[label].plane);
+        if (side == 0) continue;
+        line->plane = b->sources[label].plane;
+        line->sigma = side * gxbp_turn(b, p, x, b->sources[s].point[k]);
+        if (line->sigma != 0) return;
+    }
+    line->plane = GXB_NONE;
+}
+
+/* 1: v lies to the left */
+static int gxbp_left(gxb_boolean *b, const gxbp_line *line, uint32_t v) {
+    if (v == line->p || v == line->x) return 0;
+    if (line->plane != GXB_NONE) return line->sigma * gxbp_point_side(b, v, line->plane);
+    return gxbp_turn(b, line->p, line->x, v);
+}
+
+/* gxbp_left where the filter knows, else 0 */
+static int gxbp_left_by_filter(gxb_boolean *b, const gxbp_line *line, uint32_t v) {
+    const gxb_complex *cx = &b->cx;
+    double value, bound;
+    if (line->plane == GXB_NONE) return gxbp_turn_by_filter(b, line->p, line->x, v);
+    value = gxbp_filter_side(&cx->points[v].ball, &cx->planes[line->plane].filter, &bound);
+    return line->sigma * gxbp_filter_sign(value, bound);
+}
+
+/* Where the line leaves the star of a vertex: through the edge opposite to corner k of facet f (u right of it, w left), or along
+   edge k (ahead 1) or k + 2 (ahead 2). goal: an edge that leads there is taken whatever the line says. */
+typedef struct gxbp_way { uint32_t f; int k, ahead; } gxbp_way;
+
+static int gxbp_try_way(gxb_boolean *b, const gxbp_line *line, uint32_t goal, gxbp_way *way) {
+    const gxbp_piece *f = &b->pieces[way->f];
+    const uint32_t u = f->v[(way->k + 1) % 3], w = f->v[(way->k + 2) % 3];
+    int of_u, of_w;
+    if (u == goal || w == goal) { way->ahead = u == goal ? 1 : 2; return 1; }
+    of_u = gxbp_left_by_filter(b, line, u);
+    if (of_u > 0) return 0;
+    of_w = gxbp_left_by_filter(b, line, w);
+    if (of_w < 0) return 0;
+    if (of_u == 0) of_u = gxbp_left(b, line, u);
+    if (of_u > 0) return 0;
+    if (of_w == 0) of_w = gxbp_left(b, line, w);
+    if (of_u == 0 && of_w > 0) { way->ahead = 1; return 1; }
+    if (of_w == 0 && of_u < 0) { way->ahead = 2; return 1; }
+    way->ahead = 0;
+    return of_u < 0 && of_w > 0;
+}
+
+/* Looks around v, first one way, then (at the rim) the other. */
+static int gxbp_find_way(gxb_boolean *b, const gxbp_line *line, uint32_t v, uint32_t goal, gxbp_way *way) {
+    const uint32_t start = b->vertices[v].hint;
+    way->f = start;
+    do {
+        way->k = gxbp_corner_index(&b->pieces[way->f], v);
+        if (gxbp_try_way(b, line, goal, way)) return 1;
+        way->f = b->pieces[way->f].near[(way->k + 2) % 3];
+    } while (way->f != GXB_NONE && way->f != start);
+    if (way->f == start) return 0;
+    for (way->f = start;;) {
+        way->k = gxbp_corner_index(&b->pieces[way->f], v);
+        way->f = b->pieces[way->f].near[way->k];
+        if (way->f == GXB_NONE) return 0;
+        way->k = gxbp_corner_index(&b->pieces[way->f], v);
+        if (gxbp_try_way(b, line, goal, way)) return 1;
+    }
+}
+
+/* Where a point of the source lies in its triangulation: at a vertex, on edge k of facet f, inside f (k -1). */
+typedef struct gxbp_location { uint32_t vertex, f; int k; } gxbp_location;
+
+/* Crosses facets from way's edge on. 1: found. 0: *v is a vertex on the line before the point. */
+static int gxbp_cross_facets(gxb_boolean *b, const gxbp_line *line, gxbp_way way, uint32_t *v, gxbp_location *spot) {
+    uint32_t f = way.f;
+    int k = (way.k + 1) % 3;                    /* the edge to cross, from u to w */
+    uint32_t u = b->pieces[f].v[k], w = b->pieces[f].v[(k + 1) % 3];
+    int t = gxbp_turn(b, u, w, line->x);
+    for (;;) {
+        uint32_t c;
+        int of_c, j;
+        spot->vertex = GXB_NONE; spot->f = f; spot->k = t == 0 ? k : -1;
+        if (t >= 0) return 1;
+        f = b->pieces[f].near[k];
+        if (f == GXB_NONE) { gxbp_stop(b, GX_ERROR_OVERLAP); return 1; }
+        j = gxbp_corner_index(&b->pieces[f], w);        /* (w, u, c) */
+        c = b->pieces[f].v[(j + 2) % 3];
+        spot->f = f; spot->k = -1;
+        if (gxbp_turn_by_filter(b, u, c, line->x) > 0 && gxbp_turn_by_filter(b, c, w, line->x) > 0) return 1;
+        of_c = gxbp_left(b, line, c);
+        if (of_c < 0) { u = c; k = (j + 2) % 3; t = gxbp_turn(b, c, w, line->x); }
+        else { k = (j + 1) % 3; t = gxbp_turn(b, u, c, line->x); if (of_c > 0) w = c; }
+        if (of_c != 0) continue;
+        spot->vertex = t == 0 ? c : GXB_NONE; spot->f = f; spot->k = -1;
+        *v = c;
+        return t >= 0;
+    }
+}
+
+static gxbp_location gxbp_locate(gxb_boolean *b, const gxbp_line *line) {
+    gxbp_location spot;
+    uint32_t v = line->p;
+    memset(&spot, 0, sizeof spot);
+    while (b->result == GX_OK) {
+        gxbp_way way;
+        uint32_t ahead;
+        int t;
+        if (!gxbp_find_way(b, line, v, GXB_NONE, &way)) { gxbp_stop(b, GX_ERROR_OVERLAP); break; }
+        if (way.ahead == 0) {
+            if (gxbp_cross_facets(b, line, way, &v, &spot)) return spot;
+            continue;
+        }
+        ahead = b->pieces[way.f].v[(way.k + way.ahead) % 3];
+        t = gxbp_turn(b, b->pieces[way.f].v[(way.k + 1) % 3], b->pieces[way.f].v[(way.k + 2) % 3], line->x);
+        spot.vertex = t == 0 ? ahead : GXB_NONE;
+        spot.f = way.f;
+        spot.k = way.ahead == 1 ? way.k : (way.k + 2) % 3;
+        if (t >= 0) return spot;
+        v = ahead;
+    }
+    return spot;
+}
+
+static int gxbp_points_equal(gxb_boolean *b, uint32_t p, uint32_t q) {
+    const gxb_ball *x = &b->cx.points[p].ball, *y = &b->cx.points[q].ball;
+    const double reach = 2 * (x->error + y->error) + GXBP_TINY;
+    uint32_t k;
+    for (k = 0; k < 3; k++) if (gxbp_abs(gxbp_fence(x->x[k] - y->x[k])) > 2 * reach) return 0;
+    for (k = 0; k < 3; k++) if (gxbp_compare_points(b, p, q, k) != 0) return 0;
+    return 1;
+}
+
+static int gxbp_is_placed(gxb_boolean *b, uint32_t v) { return b->vertices[v].stamp == b->stamp; }
+
+/* Makes a point a vertex of source s's triangulation, found from vertex p on; returns its name there. */
+static uint32_t gxbp_insert_point(gxb_boolean *b, uint32_t s, uint32_t x, uint32_t p, uint32_t label) {
+    gxbp_line line;
+    gxbp_location spot;
+    x = gxbp_same(b, x);
+    if (gxbp_is_placed(b, x)) return x;
+    if (gxbp_points_equal(b, p, x)) { gxbp_unite(b, p, x); return p; }
+    gxbp_set_line(b, &line, s, p, x, label);
+    spot = gxbp_locate(b, &line);
+    if (b->result != GX_OK) return x;
+    if (spot.vertex != GXB_NONE) { gxbp_unite(b, spot.vertex, x); return spot.vertex; }
+    if (spot.k >= 0) gxbp_split_side(b, spot.f, spot.k, x);
+    else gxbp_split_inside(b, spot.f, x);
+    return x;
+}
+
+/* --- edges that must be there --- */
+
+static void gxbp_push_rim(gxb_boolean *b, uint32_t vertex, uint32_t f, int k) {
+    gxbp_margin *r;
+    if (!GXBP_ROOM(b, rims, rim, 1)) return;
+    r = &b->rims[b->rim_count++];
+    r->vertex = vertex; r->made = GXB_NONE; r->dangling = 0;
+    r->near = f == GXB_NONE ? GXB_NONE : b->pieces[f].near[k];
+    r->labels = f == GXB_NONE ? GXBP_LOOSE : b->pieces[f].labels[k];
+}
+
+/* The apex over the base from rim[high] to rim[low]: no other vertex between lies in its triangle. */
+static uint32_t gxbp_choose_apex(gxb_boolean *b, const gxbp_margin *rim, uint32_t low, uint32_t high) {
+    uint32_t best = low + 1, i;
+    for (i = low + 2; i < high; i++) {
+        const uint32_t v = rim[i].vertex;
+        if (v == rim[best].vertex || v == rim[low].vertex || v == rim[high].vertex) continue;
+        if (gxbp_turn(b, rim[low].vertex, rim[best].vertex, v) >= 0 && gxbp_turn(b, rim[best].vertex, rim[high].vertex, v) >= 0) best = i;
+    }
+    return best;
+}
+
+/* Joins edge k of f to what lies outside of the rim's piece i. A dangling piece has its other side in the rim too. */
+static void gxbp_attach_rim(gxb_boolean *b, gxbp_margin *rim, uint32_t count, uint32_t i, uint32_t f, int k) {
+    uint32_t j;
+    gxbp_set_edge(b, f, k, rim[i].near, rim[i].labels);
+    if (!rim[i].dangling) { gxbp_greet(b, rim[i].near, rim[i].vertex, rim[i + 1].vertex, f); return; }
+    rim[i].made = f;
+    b->pieces[f].near[k] = GXB_NONE;
+    for (j = 0; j + 1 < count; j++) {
+        if (rim[j].vertex != rim[i + 1].vertex || rim[j + 1].vertex != rim[i].vertex || rim[j].made == GXB_NONE) continue;
+        b->pieces[f].near[k] = rim[j].made;
+        gxbp_greet(b, rim[j].made, rim[i].vertex, rim[i + 1].vertex, f);
+    }
+}
+
+/* Triangulates what lies between rim[low] ... rim[high] and the base; facets are taken from the scratch list's end. Returns the base's. */
+static uint32_t gxbp_fill_rim(gxb_boolean *b, gxbp_margin *rim, uint32_t count, uint32_t low, uint32_t high) {
+    const uint32_t apex = gxbp_choose_apex(b, rim, low, high), f = b->scratch[--b->scratch_count];
+    uint32_t g;
+    gxbp_set_piece(b, f, rim[high].vertex, rim[low].vertex, rim[apex].vertex);
+    gxbp_set_edge(b, f, 0, GXB_NONE, GXBP_LOOSE);
+    if (apex == low + 1) gxbp_attach_rim(b, rim, count, low, f, 1);
+    else {
+        g = gxbp_fill_rim(b, rim, count, low, apex);
+        gxbp_set_edge(b, f, 1, g, GXBP_LOOSE);
+        b->pieces[g].near[0] = f;
+    }
+    if (apex + 1 == high) gxbp_attach_rim(b, rim, count, apex, f, 2);
+    else {
+        g = gxbp_fill_rim(b, rim, count, apex, high);
+        gxbp_set_edge(b, f, 2, g, GXBP_LOOSE);
+        b->pieces[g].near[0] = f;
+    }
+    return f;
+}
+
+/* The point where the line of a triangle (label) crosses an edge that must stay. */
+static uint32_t gxbp_crossing_point(gxb_boolean *b, uint32_t s, uint32_t labels, uint32_t label) {
+    uint32_t other = GXB_NONE, id[3];
+    int fresh;
+    for (; other == GXB_NONE && labels != GXBP_BARE; labels = b->links[labels].next)
+        if (!(b->links[labels].value & GXBP_EDGE_LABEL)) other = b->links[labels].value;
+    if (other == GXB_NONE || label & GXBP_EDGE_LABEL) { gxbp_stop(b, GX_ERROR_OVERLAP); return GXB_NONE; }
+    id[0] = s; id[1] = label; id[2] = other;
+    gxbp_sort3(id);
+    other = gxbp_keyed_point(b, GXB_FROM_THREE_TRIANGLES, id[0], id[1], id[2], &fresh);
+    if (fresh) gxbp_place_point(b, other, GXB_THREE_PLANES, b->sources[id[0]].plane, b->sources[id[1]].plane, b->sources[id[2]].plane);
+    return other;
+}
+
+static void gxbp_push_left(gxb_boolean *b, uint32_t vertex, uint32_t f, int k) {
+    gxbp_margin *r;
+    if (!GXBP_ROOM(b, lefts, left, 1)) return;
+    r = &b->lefts[b->left_count++];
+    r->vertex = vertex; r->made = GXB_NONE; r->dangling = 0;
+    r->near = f == GXB_NONE ? GXB_NONE : b->pieces[f].near[k];
+    r->labels = f == GXB_NONE ? GXBP_LOOSE : b->pieces[f].labels[k];
+}
+
+static void gxbp_push(gxb_boolean *b, uint32_t value) {
+    if (GXBP_ROOM(b, scratch, scratch, 1)) b->scratch[b->scratch_count++] = value;
+}
+
+/* Facets that the line crosses from way on, up to the first vertex on it: into scratch; their rims on its right (from the start) and
+   its left (from the start, without it). 0: an edge that must stay is in the way; it has been divided there. */
+static int gxbp_collect_crossed(gxb_boolean *b, uint32_t s, const gxbp_line *line, gxbp_way way, uint32_t label) {
+    uint32_t f = way.f, u = b->pieces[f].v[(way.k + 1) % 3], w = b->pieces[f].v[(way.k + 2) % 3];
+    int k = (way.k + 1) % 3;
+    b->scratch_count = b->rim_count = b->left_count = 0;
+    gxbp_push_rim(b, b->pieces[f].v[way.k], f, way.k);
+    gxbp_push_left(b, w, f, (way.k + 2) % 3);
+    gxbp_push(b, f);
+    while (b->result == GX_OK) {
+        uint32_t c;
+        int j, of_c;
+        if (b->pieces[f].labels[k] != GXBP_LOOSE) {
+            const uint32_t x = gxbp_crossing_point(b, s, b->pieces[f].labels[k], label);
+            if (x == GXB_NONE) return 0;
+            if (gxbp_is_placed(b, x)) { gxbp_stop(b, GX_ERROR_OVERLAP); return 0; }
+            gxbp_split_side(b, f, k, x);
+            return 0;
+        }
+        f = b->pieces[f].near[k];
+        if (f == GXB_NONE) { gxbp_stop(b, GX_ERROR_OVERLAP); return 0; }
+        gxbp_push(b, f);
+        j = gxbp_corner_index(&b->pieces[f], w);
+        c = b->pieces[f].v[(j + 2) % 3];
+        of_c = gxbp_left(b, line, c);
+        if (of_c <= 0) gxbp_push_rim(b, u, f, (j + 1) % 3);
+        if (of_c >= 0) gxbp_push_left(b, c, f, (j + 2) % 3);
+        if (of_c == 0) { gxbp_push_rim(b, c, GXB_NONE, 0); return b->result == GX_OK; }
+        if (of_c < 0) { u = c; k = (j + 2) % 3; }
+        else { w = c; k = (j + 1) % 3; }
+    }
+    return 0;
+}
+
+#define GXBP_REMOVED (UINT32_MAX - 1)
+
+static void gxbp_find_dangling(const gxb_boolean *b, gxbp_margin *rim, uint32_t count) {
+    uint32_t i;
+    for (i = 0; i < count; i++) rim[i].dangling = rim[i].near != GXB_NONE && b->pieces[rim[i].near].state == GXBP_REMOVED;
+}
+
+/* Retriangulates the crossed facets with an edge from the start to the vertex in which the right rim ends. */
+static void gxbp_refill(gxb_boolean *b, uint32_t start) {
+    uint32_t i, n, f, g;
+    for (i = 0; i < b->scratch_count; i++) b->pieces[b->scratch[i]].state = GXBP_REMOVED;
+    gxbp_push_left(b, start, GXB_NONE, 0);
+    if (b->result != GX_OK) return;
+    n = b->left_count - 1;                              /* the left rim goes backwards: turn it round, all but the start */
+    for (i = 0; i < n / 2; i++) {
+        const gxbp_margin swap = b->lefts[i];
+        b->lefts[i] = b->lefts[n - 1 - i];
+        b->lefts[n - 1 - i] = swap;
+    }
+    gxbp_find_dangling(b, b->rims, b->rim_count);
+    gxbp_find_dangling(b, b->lefts, b->left_count);
+    for (i = 0; i < b->scratch_count; i++) b->pieces[b->scratch[i]].state = GXB_NONE;
+    f = gxbp_fill_rim(b, b->rims, b->rim_count, 0, b->rim_count - 1);
+    g = gxbp_fill_rim(b, b->lefts, b->left_count, 0, b->left_count - 1);
+    b->pieces[f].near[0] = g;
+    b->pieces[g].near[0] = f;
+}
+
+/* Makes p q an edge, or a row of them where vertices lie on it, with a label. */
+static void gxbp_force_edge(gxb_boolean *b, uint32_t s, uint32_t p, uint32_t q, uint32_t label) {
+    gxbp_line line;
+    gxbp_set_line(b, &line, s, p, q, label);
+    while (p != q && b->result == GX_OK) {
+        gxbp_way way;
+        if (!gxbp_find_way(b, &line, p, q, &way)) { gxbp_stop(b, GX_ERROR_OVERLAP); return; }
+        if (way.ahead != 0) {
+            const uint32_t ahead = b->pieces[way.f].v[(way.k + way.ahead) % 3];
+            gxbp_label_edge(b, way.f, way.ahead == 1 ? way.k : (way.k + 2) % 3, label);
+            p = ahead;
+        } else if (gxbp_collect_crossed(b, s, &line, way, label)) gxbp_refill(b, p);
+    }
+}
+
+/* --- dividing a source that is alone in its plane --- */
+
+static void gxbp_divide_rim(gxb_boolean *b, uint32_t s, uint32_t k) {
+    const uint32_t cut = b->sources[s].edge[k];
+    uint32_t u = gxbp_same(b, b->sources[s].point[k]), i;
+    if (cut == GXB_NONE) return;
+    for (i = 0; i < b->cuts[cut].count && b->result == GX_OK; i++) {
+        const int forward = b->cuts[cut].half_edge == 3 * s + k;
+        const uint32_t x = gxbp_same(b, b->cut_points[b->cuts[cut].first + (forward ? i : b->cuts[cut].count - 1 - i)]);
+        uint32_t f = b->vertices[u].hint;
+        int j = gxbp_corner_index(&b->pieces[f], u);
+        while (b->pieces[f].near[j] != GXB_NONE) {
+            f = b->pieces[f].near[j];
+            j = gxbp_corner_index(&b->pieces[f], u);
+        }
+        if (b->pieces[f].v[(j + 1) % 3] != x) gxbp_split_side(b, f, j, x);
+        u = x;
+    }
+}
+
+/* A segment that is not done yet and ends in v, by the lists that gxbp_chain_segments made. */
+static uint32_t gxbp_next_segment(const gxb_boolean *b, uint32_t v) {
+    uint32_t e = b->vertices[v].head_stamp == b->head_stamp ? b->vertices[v].head : GXB_NONE;
+    while (e != GXB_NONE && b->chain[3 * (e / 2)] == GXB_NONE) e = b->chain[3 * (e / 2) + 1 + e % 2];
+    return e == GXB_NONE ? GXB_NONE : e / 2;
+}
+
+/* chain: segment, next of the lists of its two ends */
+static uint32_t gxbp_chain_segments(gxb_boolean *b, uint32_t s) {
+    uint32_t i, n = 0;
+    b->chain_count = 0;
+    b->head_stamp++;
+    for (i = b->sources[s].segments; i != GXB_NONE && i >= b->segment_mark; i = b->segments[i].next) {
+        uint32_t e;
+        if (!GXBP_ROOM(b, chain, chain, 3)) return 0;
+        b->chain[3 * n] = i;
+        for (e = 0; e < 2; e++) {
+            gxbp_vertex *v = &b->vertices[gxbp_same(b, e == 0 ? b->segments[i].p : b->segments[i].q)];
+            b->chain[3 * n + 1 + e] = v->head_stamp == b->head_stamp ? v->head : GXB_NONE;
+            v->head_stamp = b->head_stamp;
+            v->head = 2 * n + e;
+        }
+        b->chain_count += 3;
+        n++;
+    }
+    return n;
+}
+
+/* Follows segments from one that has an end in the triangulation, so that each begins where the last one ended. */
+static void gxbp_trace_segments(gxb_boolean *b, uint32_t s, uint32_t i) {
+    const gxbp_segment *first = &b->segments[b->chain[3 * i]];
+    uint32_t v = gxbp_same(b, first->p);
+    if (!gxbp_is_placed(b, v) && gxbp_is_placed(b, gxbp_same(b, first->q))) v = gxbp_same(b, first->q);
+    if (!gxbp_is_placed(b, v)) v = gxbp_insert_point(b, s, v, gxbp_same(b, b->sources[s].point[0]), GXBP_EDGE_LABEL);
+    for (; i != GXB_NONE && b->result == GX_OK; i = gxbp_next_segment(b, v)) {
+        const gxbp_segment segment = b->segments[b->chain[3 * i]];
+        const uint32_t other = gxbp_same(b, segment.p) == v ? segment.q : segment.p;
+        uint32_t end;
+        b->chain[3 * i] = GXB_NONE;
+        end = gxbp_insert_point(b, s, other, v, segment.label);
+        gxbp_force_edge(b, s, v, end, segment.label);
+        v = end;
+    }
+}
+
+static void gxbp_divide_source(gxb_boolean *b, uint32_t s) {
+    uint32_t n, i, k, pass;
+    if (!gxbp_need_plane(b, s)) return;
+    b->sources[s].flags |= GXBP_DIVIDED;
+    gxbp_open_triangulation(b, s);
+    for (k = 0; k < 3; k++) gxbp_divide_rim(b, s, k);
+    n = gxbp_chain_segments(b, s);
+    for (pass = 0; pass < 2; pass++)
+        for (i = 0; i < n && b->result == GX_OK; i++) {
+            const gxbp_segment *segment;
+            if (b->chain[3 * i] == GXB_NONE) continue;
+            segment = &b->segments[b->chain[3 * i]];
+            if (pass == 1 || gxbp_is_placed(b, gxbp_same(b, segment->p)) || gxbp_is_placed(b, gxbp_same(b, segment->q))) gxbp_trace_segments(b, s, i);
+        }
+}
+
+/* --- flats: sources that overlap in one plane are divided together, within a frame around them --- */
+
+/* A corner of the frame: where a line along the plane's axis meets it. */
+static uint32_t gxbp_frame_corner(gxb_boolean *b, uint32_t plane, double x, double y) {
+    const uint32_t axis = b->cx.planes[plane].axis;
+    uint32_t id[3], k;
+    for (k = 0; k < 3; k++) {
+        id[k] = gxbp_new_vertex(b, GXB_FROM_VERTEX, GXB_NONE, GXB_NONE, 0);
+        if (id[k] == GXB_NONE) return GXB_NONE;
+    }
+    for (k = 0; k < 2; k++) {
+        gxb_cpoint *p = &b->cx.points[id[k]];
+        p->ball.x[axis] = k;
+        p->ball.x[(axis + 1) % 3] = x;
+        p->ball.x[(axis + 2) % 3] = y;
+        p->ball.error = 0;
+        p->def[0] = id[k];
+    }
+    gxbp_place_point(b, id[2], GXB_LINE_PLANE, id[0], id[1], plane);
+    return id[2];
+}
+
+static void gxbp_make_frame(gxb_boolean *b, uint32_t r) {
+    const uint32_t plane = b->sources[r].plane, i = (b->cx.planes[plane].axis + 1) % 3, j = (b->cx.planes[plane].axis + 2) % 3;
+    gxbp_box box = gxbp_box_of(b, r);
+    uint32_t t, corner[4], f, g;
+    double dx, dy;
+    for (t = r; t != GXB_NONE; t = b->sources[t].next) {
+        const gxbp_box more = gxbp_box_of(b, t);
+        gxbp_box_join(&box, &more);
+    }
+    dx = gxbp_fence(box.high[i] - box.low[i]); dy = gxbp_fence(box.high[j] - box.low[j]);
+    corner[0] = gxbp_frame_corner(b, plane, box.low[i] - dx, box.low[j] - dy);
+    corner[1] = gxbp_frame_corner(b, plane, box.high[i] + dx, box.low[j] - dy);
+    corner[2] = gxbp_frame_corner(b, plane, box.high[i] + dx, box.high[j] + dy);
+    corner[3] = gxbp_frame_corner(b, plane, box.low[i] - dx, box.high[j] + dy);
+    f = gxbp_new_piece(b, r);
+    g = gxbp_new_piece(b, r);
+    if (b->result != GX_OK) return;
+    if (b->cx.planes[plane].axis_sign < 0) { t = corner[1]; corner[1] = corner[3]; corner[3] = t; }
+    gxbp_set_piece(b, f, corner[0], corner[1], corner[2]);
+    gxbp_set_piece(b, g, corner[0], corner[2], corner[3]);
+    for (t = 0; t < 3; t++) { gxbp_set_edge(b, f, (int)t, GXB_NONE, GXBP_BARE); gxbp_set_edge(b, g, (int)t, GXB_NONE, GXBP_BARE); }
+    gxbp_set_edge(b, f, 2, g, GXBP_LOOSE);
+    gxbp_set_edge(b, g, 0, f, GXBP_LOOSE);
+}
+
+/* Point i of an edge: its start, its inner points in order, its end. */
+static uint32_t gxbp_edge_point(gxb_boolean *b, uint32_t s, uint32_t k, uint32_t i) {
+    const uint32_t cut = b->sources[s].edge[k], count = cut == GXB_NONE ? 0 : b->cuts[cut].count;
+    if (i == 0) return gxbp_same(b, b->sources[s].point[k]);
+    if (i > count) return gxbp_same(b, b->sources[s].point[(k + 1) % 3]);
+    return gxbp_same(b, b->cut_points[b->cuts[cut].first + (b->cuts[cut].half_edge == 3 * s + k ? i - 1 : count - i)]);
+}
+
+static uint32_t gxbp_edge_points(const gxb_boolean *b, uint32_t s, uint32_t k) {
+    return 2 + (b->sources[s].edge[k] == GXB_NONE ? 0 : b->cuts[b->sources[s].edge[k]].count);
+}
+
+static void gxbp_place_flat_points(gxb_boolean *b, uint32_t r) {
+    uint32_t last = b->pieces[b->sources[r].facet].v[0], t, k, i;
+    for (t = r; t != GXB_NONE; t = b->sources[t].next) {
+        for (k = 0; k < 3; k++)
+            for (i = 0; i + 1 < gxbp_edge_points(b, t, k) && b->result == GX_OK; i++)
+                last = gxbp_insert_point(b, r, gxbp_edge_point(b, t, k, i), last, GXBP_EDGE_LABEL);
+        for (i = b->sources[t].segments; i != GXB_NONE && b->result == GX_OK; i = b->segments[i].next) {
+            last = gxbp_insert_point(b, r, b->segments[i].p, last, GXBP_EDGE_LABEL);
+            last = gxbp_insert_point(b, r, b->segments[i].q, last, GXBP_EDGE_LABEL);
+        }
+    }
+}
+
+static void gxbp_place_flat_edges(gxb_boolean *b, uint32_t r) {
+    uint32_t t, k, i;
+    for (t = r; t != GXB_NONE; t = b->sources[t].next)
+        for (k = 0; k < 3; k++)
+            for (i = 1; i < gxbp_edge_points(b, t, k) && b->result == GX_OK; i++)
+                gxbp_force_edge(b, r, gxbp_edge_point(b, t, k, i - 1), gxbp_edge_point(b, t, k, i), gxbp_edge_name(b, t, (int)k) | GXBP_EDGE_LABEL);
+    for (t = r; t != GXB_NONE; t = b->sources[t].next)
+        for (i = b->sources[t].segments; i != GXB_NONE && b->result == GX_OK; i = b->segments[i].next) {
+            const gxbp_segment segment = b->segments[i];
+            gxbp_force_edge(b, r, gxbp_same(b, segment.p), gxbp_same(b, segment.q), segment.label);
+        }
+}
+
+/* 1: t faces as the plane's normal does. */
+static int gxbp_facing(const gxb_boolean *b, uint32_t r, uint32_t t) {
+    return r == t ? 1 : gxbp_flat_turn(b, b->sources[r].plane, gxbp_corner_of(b, t, 0), gxbp_corner_of(b, t, 1), gxbp_corner_of(b, t, 2));
+}
+
+/* A facet at the start of t's first edge, inside t. */
+static uint32_t gxbp_first_covered(gxb_boolean *b, uint32_t r, uint32_t t) {
+    const uint32_t u = gxbp_edge_point(b, t, 0, 0);
+    const int facing = gxbp_facing(b, r, t);
+    gxbp_line line;
+    gxbp_way way;
+    gxbp_set_line(b, &line, r, u, gxbp_edge_point(b, t, 0, 1), GXBP_EDGE_LABEL);
+    if (!gxbp_find_way(b, &line, u, line.x, &way) || way.ahead == 0) { gxbp_stop(b, GX_ERROR_OVERLAP); return GXB_NONE; }
+    if (way.ahead == (facing > 0 ? 1 : 2)) return way.f;
+    return b->pieces[way.f].near[way.ahead == 1 ? way.k : (way.k + 2) % 3];
+}
+
+static int gxbp_covers(const gxb_boolean *b, uint32_t f, uint32_t t) {
+    uint32_t c;
+    for (c = b->pieces[f].covers; c != GXB_NONE; c = b->links[c].next) if (b->links[c].value == t) return 1;
+    return 0;
+}
+
+static int gxbp_is_edge_of(const gxb_boolean *b, uint32_t labels, uint32_t t) {
+    int k;
+    for (k = 0; k < 3; k++) if (gxbp_has_label(b, labels, gxbp_edge_name(b, t, k) | GXBP_EDGE_LABEL)) return 1;
+    return 0;
+}
+
+/* Gives its name to all facets within a member's edges. */
+static void gxbp_cover_facets(gxb_boolean *b, uint32_t r, uint32_t t) {
+    const uint32_t first = gxbp_first_covered(b, r, t);
+    int k;
+    b->scratch_count = 0;
+    if (first == GXB_NONE) return;
+    b->pieces[first].covers = gxbp_new_link(b, t, b->pieces[first].covers);
+    gxbp_push(b, first);
+    while (b->scratch_count > 0 && b->result == GX_OK) {
+        const uint32_t f = b->scratch[--b->scratch_count];
+        for (k = 0; k < 3; k++) {
+            const uint32_t g = b->pieces[f].near[k];
+            if (g == GXB_NONE || gxbp_is_edge_of(b, b->pieces[f].labels[k], t) || gxbp_covers(b, g, t)) continue;
+            b->pieces[g].covers = gxbp_new_link(b, t, b->pieces[g].covers);
+            gxbp_push(b, g);
+        }
+    }
+}
+
+static void gxbp_divide_flat(gxb_boolean *b, uint32_t r) {
+    uint32_t t, f;
+    if (!gxbp_need_plane(b, r)) return;
+    for (t = r; t != GXB_NONE; t = b->sources[t].next) {
+        for (f = b->sources[t].facet; f != GXB_NONE; f = b->pieces[f].next) b->pieces[f].source = GXB_NONE;
+        b->sources[t].facet = GXB_NONE;
+        b->sources[t].flags |= GXBP_FLAT | GXBP_DIVIDED;
+        b->sources[t].flags &= ~(uint32_t)GXBP_DIRTY;
+    }
+    gxbp_open_triangulation(b, r);
+    gxbp_make_frame(b, r);
+    if (b->result != GX_OK) return;
+    gxbp_place_flat_points(b, r);
+    gxbp_place_flat_edges(b, r);
+    for (t = r; t != GXB_NONE && b->result == GX_OK; t = b->sources[t].next) gxbp_cover_facets(b, r, t);
+}
+
+static void gxbp_divide_dirty(gxb_boolean *b) {
+    uint32_t i;
+    for (i = 0; i < b->dirty_count && b->result == GX_OK; i++) {
+        const uint32_t s = b->dirty[i], r = gxbp_root(b, s);
+        if (!(b->sources[s].flags & GXBP_DIRTY)) continue;
+        if (b->sources[r].flags & GXBP_FLAT) gxbp_divide_flat(b, r);
+        else gxbp_divide_source(b, s);
+        b->sources[s].flags &= ~(uint32_t)GXBP_DIRTY;
+    }
+    b->dirty_count = 0;
+}
+
+/* --- points that are equal without having met in a triangulation --- */
+
+typedef struct gxbp_projected { double t; uint32_t point; } gxbp_projected;
+
+static void gxbp_sort_projected(gxbp_projected *p, uint32_t count, gxbp_projected *work) {
+    const uint32_t half = count / 2;
+    uint32_t i, j, k;
+    if (count < 2) return;
+    gxbp_sort_projected(p, half, work);
+    gxbp_sort_projected(p + half, count - half, work);
+    memcpy(work, p, half * sizeof *p);
+    for (i = 0, j = half, k = 0; i < half; k++) p[k] = j < count && p[j].t < work[i].t ? p[j++] : work[i++];
+}
+
+/* Points that are new since the last time are compared with all that lie within the errors of both along a direction in which few
+   points agree. */
+static void gxbp_merge_points(gxb_boolean *b) {
+    static const double direction[3] = {0.6180339887, 0.4142135623, 0.7320508075};
+    const size_t size = 2 * (size_t)b->vertex_count * sizeof(gxbp_projected);
+    gxbp_projected *p;
+    uint32_t i, j, n = 0;
+    double reach = 0;
+    if (b->result != GX_OK || b->merged_points == b->vertex_count) return;
+    p = (gxbp_projected *)gxbp_allocate(&b->cx.allocator, size);
+    if (p == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
+    for (i = 0; i < b->vertex_count; i++) {
+        const gxb_ball *x = &b->cx.points[i].ball;
+        if (b->vertices[i].key[0] == GXB_FROM_VERTEX || b->vertices[i].same != i) continue;
+        p[n].t = direction[0] * x->x[0] + direction[1] * x->x[1] + direction[2] * x->x[2];
+        p[n++].point = i;
+        reach = gxbp_max(reach, x->error + 4 * GXBP_U * gxbp_max3(x->x));
+    }
+    gxbp_sort_projected(p, n, p + n);
+    for (i = 0; i < n; i++)
+        for (j = i + 1; j < n && p[j].t - p[i].t <= 8 * reach; j++) {
+            const uint32_t q = gxbp_same(b, p[i].point), r = gxbp_same(b, p[j].point);
+            if (q != r && (q >= b->merged_points || r >= b->merged_points) && gxbp_points_equal(b, q, r)) gxbp_unite(b, q, r);
+        }
+    gxbp_release(&b->cx.allocator, p, size);
+    b->merged_points = b->vertex_count;
+}
+
+/* --- winding numbers: states are vectors of one number per operand, each kept once --- */
+
+static int gxbp_counts(uint32_t rule, int32_t winding) {
+    switch (rule) {
+    case GXB_POSITIVE: return winding > 0;
+    case GXB_NEGATIVE: return winding < 0;
+    case GXB_ODD: return winding % 2 != 0;
+    default: return winding != 0;
+    }
+}
+
+static int gxbp_is_inside(const gxb_boolean *b, const int32_t *winding) {
+    uint32_t i;
+    int inside = 0;
+    if (b->inside != NULL) return b->inside(b->user, winding, b->operand_count) != 0;
+    for (i = 0; i < b->operand_count; i++) {
+        const gxbp_operand *o = &b->operands[i];
+        const int counts = o->operation == GXB_SPLIT ? 0 : gxbp_counts(o->rule, winding[i]);
+        switch (i == 0 && o->operation != GXB_SPLIT ? (uint32_t)GXB_UNION : o->operation) {
+        case GXB_UNION: inside = inside || counts; break;
+        case GXB_INTERSECTION: inside = inside && counts; break;
+        case GXB_DIFFERENCE: inside = inside && !counts; break;
+        case GXB_SYMMETRIC_DIFFERENCE: inside = inside != counts; break;
+        default: break;
+        }
+    }
+    return inside;
+}
+
+static uint32_t gxbp_hash_winding(const int32_t *winding, uint32_t count) {
+    uint32_t hash = count, i;
+    for (i = 0; i < count; i++) hash = gxbp_mix(hash, (uint32_t)winding[i]);
+    return hash;
+}
+
+static int gxbp_grow_states(gxb_boolean *b) {
+    const uint32_t n = b->operand_count, size = b->state_table_size == 0 ? 64 : 2 * b->state_table_size;
+    uint32_t *table, i, k;
+    if (2 * (b->state_count + 1) <= b->state_table_size) return 1;
+    table = (uint32_t *)gxbp_allocate(&b->cx.allocator, (size_t)size * sizeof *table);
+    if (table == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
+    memset(table, 0xff, (size_t)size * sizeof *table);
+    for (i = 0; i < b->state_count; i++) {
+        for (k = gxbp_hash_winding(b->windings + (size_t)i * n, n) & (size - 1); table[k] != GXB_NONE; k = (k + 1) & (size - 1)) {}
+        table[k] = i;
+    }
+    gxbp_release(&b->cx.allocator, b->state_table, (size_t)b->state_table_size * sizeof *table);
+    b->state_table = table;
+    b->state_table_size = size;
+    return 1;
+}
+
+/* The state whose numbers stand behind those of all states. */
+static uint32_t gxbp_find_state(gxb_boolean *b) {
+    const uint32_t n = b->operand_count;
+    const int32_t *winding = b->windings + (size_t)b->state_count * n;
+    uint32_t k;
+    if (!gxbp_grow_states(b) || !GXBP_ROOM(b, states, state, 1)) return 0;
+    for (k = gxbp_hash_winding(winding, n) & (b->state_table_size - 1); b->state_table[k] != GXB_NONE; k = (k + 1) & (b->state_table_size - 1))
+        if (memcmp(b->windings + (size_t)b->state_table[k] * n, winding, n * sizeof *winding) == 0) return b->state_table[k];
+    b->state_table[k] = b->state_count;
+    b->states[b->state_count] = (uint32_t)gxbp_is_inside(b, winding);
+    return b->state_count++;
+}
+
+/* Room for one more vector behind the states', a copy of a state's or (GXB_NONE) zeros. NULL: no memory. */
+static int32_t *gxbp_copy_winding(gxb_boolean *b, uint32_t state) {
+    const uint32_t n = b->operand_count;
+    int32_t *winding;
+    b->winding_count = b->state_count * n;
+    if (!GXBP_ROOM(b, windings, winding, n)) return NULL;
+    winding = b->windings + b->winding_count;
+    if (state == GXB_NONE) memset(winding, 0, n * sizeof *winding);
+    else memcpy(winding, b->windings + (size_t)state * n, n * sizeof *winding);
+    return winding;
+}
+
+static uint32_t gxbp_root_plane(const gxb_boolean *b, uint32_t f) { return b->sources[b->pieces[f].source].plane; }
+
+/* The side of t's plane on which facet f lies, which has edge k in it. If its apex is too near to tell, any corner of the source tells: side
+   times orientation with the edge is the same for all points. */
+static int gxbp_side_of_piece(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
+    const gxbp_piece *piece = &b->pieces[f];
+    const gxb_plane_filter *filter = &b->cx.planes[b->sources[t].plane].filter;
+    const gxb_cplane *plane = &b->cx.planes[gxbp_root_plane(b, f)];
+    const gxb_cpoint *x = b->cx.points;
+    double bound, value = gxbp_filter_side(&x[piece->v[(k + 2) % 3]].ball, filter, &bound);
+    int side = gxbp_filter_sign(value, bound), i;
+    b->cx.filter_calls++;
+    for (i = 0; i < 3 && side == 0; i++) {
+        const uint32_t corner = b->sources[piece->source].point[i];
+        value = gxbp_filter_side(&x[corner].ball, filter, &bound);
+        side = gxbp_filter_sign(value, bound) * plane->axis_sign *
+               gxbp_filter_turn(&x[piece->v[k]].ball, &x[piece->v[(k + 1) % 3]].ball, &x[corner].ball,
+                                (int)(plane->axis + 1) % 3, (int)(plane->axis + 2) % 3);
+    }
+    return side != 0 ? side : gxbp_point_side(b, piece->v[(k + 2) % 3], b->sources[t].plane);
+}
+
+/* The state in front of the facet beyond edge k: a triangle with a part in front of the plane is passed, from the side on which f lies. */
+static uint32_t gxbp_state_beyond(gxb_boolean *b, uint32_t f, int k) {
+    const uint32_t plane = gxbp_root_plane(b, f);
+    uint32_t list = b->pieces[f].labels[k];
+    int32_t *winding = NULL;
+    for (; list != GXBP_LOOSE && list != GXBP_BARE; list = b->links[list].next) {
+        const uint32_t t = b->links[list].value;
+        int side[3];
+        if (t & GXBP_EDGE_LABEL || b->operands[b->sources[t].operand].operation == GXB_SPLIT) continue;
+        gxbp_sides(b, t, plane, side);
+        if (side[0] <= 0 && side[1] <= 0 && side[2] <= 0) continue;
+        if (winding == NULL && (winding = gxbp_copy_winding(b, b->pieces[f].state)) == NULL) return 0;
+        winding[b->sources[t].operand] += gxbp_side_of_piece(b, f, k, t);
+    }
+    return winding == NULL ? b->pieces[f].state : gxbp_find_state(b);
+}
+
+/* Adds sign times the facet's own surfaces: behind it the winding number is larger by one for each that faces as its plane does. */
+static void gxbp_add_covers(const gxb_boolean *b, uint32_t f, int sign, int32_t *winding) {
+    const uint32_t r = b->pieces[f].source;
+    uint32_t c;
+    if (b->pieces[f].covers == GXB_NONE) {
+        if (b->operands[b->sources[r].operand].operation != GXB_SPLIT) winding[b->sources[r].operand] += sign;
+        return;
+    }
+    for (c = b->pieces[f].covers; c != GXB_NONE; c = b->links[c].next) {
+        const uint32_t t = b->links[c].value;
+        if (b->operands[b->sources[t].operand].operation != GXB_SPLIT) winding[b->sources[t].operand] += sign * gxbp_facing(b, r, t);
+    }
+}
+
+static uint32_t gxbp_state_behind(gxb_boolean *b, uint32_t f) {
+    int32_t *winding = gxbp_copy_winding(b, b->pieces[f].state);
+    if (winding == NULL) return 0;
+    gxbp_add_covers(b, f, 1, winding);
+    return gxbp_find_state(b);
+}
+
+/* --- a first state by a ray along x from a point inside the facet, moved by (h, h^2) in y, z with h -> 0 (see gxbp_ray_side) --- */
+
+typedef struct gxbp_ray {
+    gxb_ball ball;
+    uint32_t f;
+    int32_t *winding;
+    int exact;                  /* is probe made yet? */
+    gxbp_probe probe;           /* the sum of the corners' homogeneous coordinates */
+} gxbp_ray;
+
+static const gxbp_probe *gxbp_exact_probe(gxb_boolean *b, gxbp_ray *ray) {
+    if (!ray->exact) {
+        gxbp_probe_init(&b->cx, b->pieces[ray->f].v, 3, &ray->probe);
+        ray->probe.shift = 0;                           /* triangles are given in the frame */
+        ray->exact = 1;
+    }
+    b->cx.exact_calls++;
+    return &ray->probe;
+}
+
+/* A ball around the sum of the corners' homogeneous coordinates: their middle where all have weight 1. */
+static void gxbp_set_ray(gxb_boolean *b, gxbp_ray *ray, uint32_t f) {
+    const gxb_cpoint *p[3];
+    int k, given = 1;
+    ray->f = f;
+    ray->exact = 0;
+    for (k = 0; k < 3; k++) {
+        p[k] = &b->cx.points[b->pieces[f].v[k]];
+        given = given && p[k]->kind == GXB_EXPLICIT;
+    }
+    if (!given) gxbp_exact_probe(b, ray);
+    for (k = 0; k < 3; k++) ray->ball.x[k] = given ? (p[0]->ball.x[k] + p[1]->ball.x[k] + p[2]->ball.x[k]) / 3 : ray->probe.rough[k];
+    ray->ball.error = gxbp_max3(ray->ball.x);
+    for (k = 0; k < 3 && given; k++) ray->ball.error = gxbp_max(ray->ball.error, gxbp_max3(p[k]->ball.x));
+    ray->ball.error = gxbp_power(-49) * ray->ball.error + GXBP_TINY;
+}
+
+static int gxbp_ray_left(gxb_boolean *b, gxbp_ray *ray, const gxb_ball *p, const gxb_ball *q) {
+    const int turn = gxbp_filter_turn(p, q, &ray->ball, 1, 2);
+    return turn != 0 ? turn : gxbp_probe_side(gxbp_exact_probe(b, ray), p->x, q->x);
+}
+
+static void gxbp_cross_ray(gxb_boolean *b, gxbp_ray *ray, uint32_t s) {
+    const gxb_ball *p = &b->cx.points[b->sources[s].point[0]].ball, *q = &b->cx.points[b->sources[s].point[1]].ball;
+    const gxb_ball *r = &b->cx.points[b->sources[s].point[2]].ball;
+    const uint32_t own = b->pieces[ray->f].source;
+    const double *x[3];
+    double value, bound;
+    int left, behind;
+    if (s == own || (b->sources[s].flags & GXBP_DEGENERATE) || gxbp_covers(b, ray->f, s)) return;
+    left = gxbp_ray_left(b, ray, p, q);
+    if (left == 0 || gxbp_ray_left(b, ray, q, r) != left || gxbp_ray_left(b, ray, r, p) != left || !gxbp_need_plane(b, s)) return;
+    value = gxbp_filter_side(&ray->ball, &b->cx.planes[b->sources[s].plane].filter, &bound);
+    behind = -gxbp_filter_sign(value, bound);
+    x[0] = p->x; x[1] = q->x; x[2] = r->x;
+    if (behind == 0) behind = gxbp_probe_orient(gxbp_exact_probe(b, ray), x);
+    if (behind == left) ray->winding[b->sources[s].operand] += left;
+}
+
+static int gxbp_ray_meets(const gxbp_ray *ray, const gxbp_box *box) {
+    const double *x = ray->ball.x, e = 2 * ray->ball.error;
+    return box->high[0] >= x[0] - e && box->low[1] <= x[1] + e && box->high[1] >= x[1] - e && box->low[2] <= x[2] + e && box->high[2] >= x[2] - e;
+}
+
+static void gxbp_shoot(gxb_boolean *b, gxbp_ray *ray, const gxbp_operand *o, uint32_t l, uint32_t i) {
+    uint32_t c;
+    if (!gxbp_ray_meets(ray, &b->boxes[o->tree.first + o->tree.level[l] + i])) return;
+    if (l > 0) {
+        for (c = 2 * i; c < 2 * i + 2 && c < o->tree.size[l - 1]; c++) gxbp_shoot(b, ray, o, l - 1, c);
+        return;
+    }
+    for (c = i * GXBP_LEAF; c < (i + 1) * GXBP_LEAF && c < o->source_count; c++)
+        if (gxbp_ray_meets(ray, &b->bounds[o->source + c])) gxbp_cross_ray(b, ray, o->order[c]);
+}
+
+/* The start lies on the side of the facet's plane that the first of n_y, n_z, n_x which is not 0 says; from behind (n_x > 0) or from
+   in front (n_x < 0) the ray passes the facet itself. */
+static void gxbp_cross_own(gxb_boolean *b, const gxbp_ray *ray) {
+    const uint32_t plane = gxbp_root_plane(b, ray->f);
+    const int nx = gxbp_normal_sign(&b->cx, plane, 0);
+    int side = gxbp_normal_sign(&b->cx, plane, 1);
+    if (side == 0) side = gxbp_normal_sign(&b->cx, plane, 2);
+    if (side == 0) side = nx;
+    if (nx * side < 0) gxbp_add_covers(b, ray->f, nx, ray->winding);
+    if (side < 0) gxbp_add_covers(b, ray->f, -1, ray->winding);         /* from the state behind to the one in front */
+}
+
+static uint32_t gxbp_state_by_ray(gxb_boolean *b, uint32_t f) {
+    gxbp_ray ray;
+    uint32_t i;
+    if (!gxbp_need_plane(b, b->pieces[f].source)) return 0;
+    ray.winding = gxbp_copy_winding(b, GXB_NONE);
+    if (ray.winding == NULL) return 0;
+    gxbp_set_ray(b, &ray, f);
+    for (i = 0; i < b->operand_count && b->result == GX_OK; i++)
+        if (b->operands[i].operation != GXB_SPLIT) gxbp_shoot(b, &ray, &b->operands[i], b->operands[i].tree.levels - 1, 0);
+    gxbp_cross_own(b, &ray);
+    return gxbp_find_state(b);
+}
+
+/* --- states spread from facet to facet --- */
+
+/* Facets of divided sources by their edges on the source's rim, as directed pairs of points. */
+typedef struct gxbp_rim_table { uint32_t *entry, size; } gxbp_rim_table;
+
+static uint32_t gxbp_rim_slot(const gxb_boolean *b, const gxbp_rim_table *table, uint32_t p, uint32_t q) {
+    uint32_t k = gxbp_mix(p, q) & (table->size - 1);
+    for (; table->entry[k] != GXB_NONE; k = (k + 1) & (table->size - 1)) {
+        const gxbp_piece *f = &b->pieces[table->entry[k] / 3];
+        if (f->v[table->entry[k] % 3] == p && f->v[(table->entry[k] % 3 + 1) % 3] == q) break;
+    }
+    return k;
+}
+
+static int gxbp_is_divided_rim(const gxb_boolean *b, uint32_t f, int k) {
+    const uint32_t s = b->pieces[f].source;
+    return s != GXB_NONE && b->pieces[f].near[k] == GXB_NONE && (b->sources[s].flags & (GXBP_DIVIDED | GXBP_FLAT)) == GXBP_DIVIDED;
+}
+
+/* Vertices get their last names on the way. */
+static int gxbp_fill_rim_table(gxb_boolean *b, gxbp_rim_table *table) {
+    uint32_t f, count = 0;
+    int k;
+    for (f = 0; f < b->piece_count; f++)
+        for (k = 0; k < 3; k++) {
+            b->pieces[f].v[k] = gxbp_same(b, b->pieces[f].v[k]);
+            count += (uint32_t)gxbp_is_divided_rim(b, f, k);
+        }
+    for (table->size = 16; table->size < 2 * count; table->size *= 2) {}
+    table->entry = (uint32_t *)gxbp_allocate(&b->cx.allocator, (size_t)table->size * sizeof *table->entry);
+    if (table->entry == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
+    memset(table->entry, 0xff, (size_t)table->size * sizeof *table->entry);
+    for (f = 0; f < b->piece_count; f++)
+        for (k = 0; k < 3; k++)
+            if (gxbp_is_divided_rim(b, f, k))
+                table->entry[gxbp_rim_slot(b, table, b->pieces[f].v[k], b->pieces[f].v[(k + 1) % 3])] = 3 * f + (uint32_t)k;
+    return 1;
+}
+
+/* The facet of source t, a neighbour of f's across the surface's edge, that shares edge k of f; GXB_NONE unless only the two meet there. */
+static uint32_t gxbp_across_edge(const gxb_boolean *b, const gxbp_rim_table *table, uint32_t f, int k, uint32_t t) {
+    const uint32_t p = b->pieces[f].v[k], q = b->pieces[f].v[(k + 1) % 3];
+    uint32_t g = b->sources[t].facet, h;
+    int j;
+    if (b->sources[t].flags & GXBP_FLAT) return GXB_NONE;
+    if (b->sources[t].flags & GXBP_DIVIDED) {
+        h = table->entry[gxbp_rim_slot(b, table, q, p)];
+        if (h == GXB_NONE || b->pieces[h / 3].source != t || b->pieces[h / 3].labels[h % 3] != GXBP_BARE) return GXB_NONE;
+        return h / 3;
+    }
+    for (j = 0; j < 3; j++) if (b->pieces[g].v[j] == q && b->pieces[g].v[(j + 1) % 3] == p) return g;
+    return GXB_NONE;
+}
+
+static uint32_t gxbp_neighbour(const gxb_boolean *b, const gxbp_rim_table *table, uint32_t f, int k) {
+    const gxbp_piece *piece = &b->pieces[f];
+    const gxbp_source *s = &b->sources[piece->source];
+    int j;
+    if (piece->near[k] != GXB_NONE) return (s->flags & GXBP_FLAT) && b->pieces[piece->near[k]].covers == GXB_NONE ? GXB_NONE : piece->near[k];
+    if (piece->labels[k] != GXBP_BARE || s->flags & GXBP_FLAT) return GXB_NONE;
+    for (j = 0; j < 3; j++) {
+        uint32_t g;
+        if (s->twin[j] == GXB_NONE) continue;
+        if (!(s->flags & GXBP_DIVIDED) && j != k) continue;
+        g = gxbp_across_edge(b, table, f, k, s->twin[j] / 3);
+        if (g != GXB_NONE) return g;
+    }
+    return GXB_NONE;
+}
+
+static void gxbp_spread_state(gxb_boolean *b, const gxbp_rim_table *table, uint32_t first) {
+    b->scratch_count = 0;
+    gxbp_push(b, first);
+    while (b->scratch_count > 0 && b->result == GX_OK) {
+        const uint32_t f = b->scratch[--b->scratch_count];
+        int k;
+        for (k = 0; k < 3; k++) {
+            const uint32_t g = gxbp_neighbour(b, table, f, k);
+            if (g == GXB_NONE || b->pieces[g].state != GXB_NONE) continue;
+            b->pieces[g].state = b->pieces[f].near[k] == g ? gxbp_state_beyond(b, f, k) : b->pieces[f].state;
+            gxbp_push(b, g);
+        }
+    }
+}
+
+static int gxbp_is_surface(const gxb_boolean *b, uint32_t f) {
+    const uint32_t s = b->pieces[f].source;
+    return s != GXB_NONE && (!(b->sources[s].flags & GXBP_FLAT) || b->pieces[f].covers != GXB_NONE);
+}
+
+static void gxbp_find_states(gxb_boolean *b) {
+    gxbp_rim_table table;
+    uint32_t f, pass;
+    if (b->result != GX_OK || !gxbp_fill_rim_table(b, &table)) return;
+    b->state_count = 0;
+    if (b->state_table_size > 0) memset(b->state_table, 0xff, (size_t)b->state_table_size * sizeof *b->state_table);
+    for (f = 0; f < b->piece_count; f++) b->pieces[f].state = GXB_NONE;
+    for (pass = 0; pass < 2; pass++)            /* first from input triangles, whose rays are cheap */
+        for (f = 0; f < b->piece_count && b->result == GX_OK; f++) {
+            if (!gxbp_is_surface(b, f) || b->pieces[f].state != GXB_NONE) continue;
+            if (pass == 0 && b->sources[b->pieces[f].source].flags & GXBP_DIVIDED) continue;
+            b->pieces[f].state = gxbp_state_by_ray(b, f);
+            gxbp_spread_state(b, &table, f);
+        }
+    gxbp_release(&b->cx.allocator, table.entry, (size_t)table.size * sizeof *table.entry);
+}
+
+/* --- the result: facets between inside and outside --- */
+
+/* The input's coordinates again. */
+static double gxbp_unscale(const gxb_boolean *b, double y) {
+    const int e = gxbp_exponent_bits(y);
+    if (e - b->cx.shift <= 0 || e == 0) return 0;
+    return e - b->cx.shift >= 0x7ff ? y : gxbp_double(gxbp_bits(y) - ((uint64_t)(int64_t)b->cx.shift << 52));
+}
+
+#define GXBP_VERTEX_ERROR 1e-10     /* relative to the largest coordinate: a larger ball gives way to exact coordinates */
+
+/* An input vertex as it was given; else the ball's middle where the ball is small, else from exact coordinates. */
+static void gxbp_round_point(gxb_boolean *b, uint32_t point, double out[3]) {
+    const gxb_cpoint *p = &b->cx.points[point];
+    int k;
+    if (p->kind != GXB_EXPLICIT && (b->fine || p->ball.error > GXBP_VERTEX_ERROR * gxbp_max3(p->ball.x))) {
+        gxbp_vec store;
+        const gxb_num *x = gxbp_exact_cpoint(&b->cx, point, &store);
+        for (k = 0; k < 3; k++) out[k] = gxbp_unscale(b, gxb_num_ratio(&x[k], &x[3]));
+    } else for (k = 0; k < 3; k++) out[k] = gxbp_unscale(b, p->ball.x[k]);
+}
+
+static void gxbp_name_source(const gxb_boolean *b, uint32_t s, uint32_t corner, uint32_t *operand, uint32_t *index) {
+    *operand = b->sources[s].operand;
+    *index = s - b->operands[*operand].source;
+    if (corner < 3) *index = 3 * *index + corner;
+}
+
+static void gxbp_describe_point(const gxb_boolean *b, uint32_t point, gxb_origin *o) {
+    const gxb_cpoint *p = &b->cx.points[point];
+    const uint32_t *key = b->vertices[p->kind == GXB_EXPLICIT ? p->def[0] : point].key;
+    int k;
+    memset(o, 0, sizeof *o);
+    o->kind = key[0];
+    if (key[0] == GXB_FROM_VERTEX) { o->operand[0] = key[1]; o->index[0] = key[2]; return; }
+    if (key[0] == GXB_FROM_THREE_TRIANGLES) {
+        for (k = 0; k < 3; k++) gxbp_name_source(b, key[1 + k], 3, &o->operand[k], &o->index[k]);
+        return;
+    }
+    gxbp_name_source(b, key[1] / 3, key[1] % 3, &o->operand[0], &o->index[0]);
+    if (key[0] == GXB_FROM_EDGE_EDGE) gxbp_name_source(b, key[2] / 3, key[2] % 3, &o->operand[1], &o->index[1]);
+    else gxbp_name_source(b, key[2], 3, &o->operand[1], &o->index[1]);
+}
+
+static uint32_t gxbp_out_vertex(gxb_boolean *b, uint32_t point) {
+    gxbp_vertex *v = &b->vertices[point];
+    if (v->slot != GXB_NONE) return v->slot;
+    if (!GXBP_ROOM(b, out_points, out_point, 1)) return 0;
+    v->slot = b->out_point_count;
+    b->out_points[b->out_point_count++] = point;
+    return v->slot;
+}
+
+/* The source of a facet's surface: of those that cover it one of a sheet (sheets 1) or a closed surface; GXB_NONE: there is none. */
+static uint32_t gxbp_cover_of(const gxb_boolean *b, uint32_t f, int sheets) {
+    const uint32_t r = b->pieces[f].source;
+    uint32_t c;
+    if (b->pieces[f].covers == GXB_NONE) return (b->operands[b->sources[r].operand].operation == GXB_SPLIT) == sheets ? r : GXB_NONE;
+    for (c = b->pieces[f].covers; c != GXB_NONE; c = b->links[c].next)
+        if ((b->operands[b->sources[b->links[c].value].operand].operation == GXB_SPLIT) == sheets) return b->links[c].value;
+    return GXB_NONE;
+}
+
+/* reversed: the outside is behind the facet's plane. */
+static void gxbp_emit(gxb_boolean *b, uint32_t f, int reversed, uint32_t source) {
+    uint32_t n = b->out_triangle_count, i;
+    int k;
+    if (!GXBP_ROOM(b, out_triangles, out_triangle, 3) || !GXBP_ROOM(b, out_operands, out_operand, 1) ||
+        !GXBP_ROOM(b, out_sources, out_source, 1) || !GXBP_ROOM(b, out_planes, out_plane, 1) || !GXBP_ROOM(b, out_reversed, out_reversed, 1)) return;
+    for (k = 0; k < 3; k++) b->out_triangles[n + (uint32_t)k] = gxbp_out_vertex(b, b->pieces[f].v[reversed ? (3 - k) % 3 : k]);
+    b->out_triangle_count += 3;
+    i = b->out_source_count++;
+    b->out_operand_count++;
+    gxbp_name_source(b, source, 3, &b->out_operands[i], &b->out_sources[i]);
+    b->out_planes[b->out_plane_count++] = 2 * f + (uint32_t)reversed;
+    b->out_reversed[b->out_reversed_count++] = reversed != (gxbp_facing(b, b->pieces[f].source, source) < 0);
+}
+
+static void gxbp_extract(gxb_boolean *b) {
+    uint32_t f, last_state = GXB_NONE, last_operand = GXB_NONE, behind = 0;
+    for (f = 0; f < b->vertex_count; f++) b->vertices[f].slot = GXB_NONE;
+    b->out_point_count = b->out_triangle_count = b->out_operand_count = b->out_source_count = b->out_plane_count = b->out_reversed_count = 0;
+    for (f = 0; f < b->piece_count && b->result == GX_OK; f++) {
+        uint32_t source, operand;
+        int front_in, back_in;
+        if (!gxbp_is_surface(b, f)) continue;
+        operand = b->pieces[f].covers == GXB_NONE ? b->sources[b->pieces[f].source].operand : GXB_NONE;
+        if (operand == GXB_NONE || operand != last_operand || b->pieces[f].state != last_state) behind = gxbp_state_behind(b, f);
+        last_operand = operand;
+        last_state = b->pieces[f].state;
+        front_in = b->states[last_state] != 0;
+        back_in = b->states[behind] != 0;
+        if (front_in != back_in) {
+            source = gxbp_cover_of(b, f, 0);
+            gxbp_emit(b, f, front_in, source);
+        } else if (front_in && (source = gxbp_cover_of(b, f, 1)) != GXB_NONE) {
+            gxbp_emit(b, f, 0, source);
+            gxbp_emit(b, f, 1, source);
+        }
+    }
+}
+
+static void gxbp_round_vertices(gxb_boolean *b) {
+    uint32_t i;
+    b->out_vertex_count = b->out_origin_count = 0;
+    if (b->result != GX_OK || !GXBP_ROOM(b, out_vertices, out_vertex, 3 * (size_t)b->out_point_count) ||
+        !GXBP_ROOM(b, out_origins, out_origin, b->out_point_count)) return;
+    for (i = 0; i < b->out_point_count; i++) {
+        gxbp_round_point(b, b->out_points[i], b->out_vertices + 3 * (size_t)i);
+        gxbp_describe_point(b, b->out_points[i], &b->out_origins[i]);
+    }
+    b->out_vertex_count = 3 * b->out_point_count;
+    b->out_origin_count = b->out_point_count;
+}
+
+static uint32_t gxbp_out_corner(const gxb_boolean *b, uint32_t t, uint32_t k) { return b->out_points[b->out_triangles[3 * t + k % 3]]; }
+static uint32_t gxbp_out_plane(const gxb_boolean *b, uint32_t t) { return gxbp_root_plane(b, b->out_planes[t] / 2); }
+
+/* Triangles that rounding has turned over or left without area, seen along the longest axis of their plane's normal. */
+static void gxbp_find_defects(gxb_boolean *b) {
+    uint32_t t, k;
+    b->out_defect_count = 0;
+    for (t = 0; t < b->out_source_count && b->result == GX_OK; t++) {
+        const double *x[3];
+        int given = 1;
+        for (k = 0; k < 3; k++) {
+            given = given && b->cx.points[gxbp_out_corner(b, t, k)].kind == GXB_EXPLICIT;
+            x[k] = b->out_vertices + 3 * (size_t)b->out_triangles[3 * t + k];
+        }
+        if (given || gxbp_flat_turn(b, gxbp_out_plane(b, t), x[0], x[1], x[2]) == (b->out_planes[t] & 1 ? -1 : 1)) continue;
+        if (GXBP_ROOM(b, out_defects, out_defect, 1)) b->out_defects[b->out_defect_count++] = t;
+    }
+}
+
+/* --- components: shells (triangles joined where the solid between them is one), and which shell lies in which --- */
+
+static uint32_t gxbp_find_set(uint32_t *parent, uint32_t i) {
+    while (parent[i] != i) { parent[i] = parent[parent[i]]; i = parent[i]; }
+    return i;
+}
+
+static void gxbp_join_sets(uint32_t *parent, uint32_t i, uint32_t j) {
+    i = gxbp_find_set(parent, i);
+    j = gxbp_find_set(parent, j);
+    if (i < j) parent[j] = i;
+    else parent[i] = j;
+}
+
+/* Triangles around an edge from p to q, by angle. Seen along the edge, a triangle that passes it forwards (from p to q) has the solid at
+   smaller angles, one that passes it backwards at larger ones. */
+typedef struct gxbp_blade { uint32_t triangle, apex, plane; int forward, toward, group; } gxbp_blade;
+
+/* 1: the apex of g lies at an angle between 0 and pi from f, -1: beyond, 0: in its plane */
+static int gxbp_blade_side(gxb_boolean *b, const gxbp_blade *f, const gxbp_blade *g) { return f->toward * gxbp_point_side(b, g->apex, f->plane); }
+
+static int gxbp_blade_precedes(gxb_boolean *b, const gxbp_blade *f, const gxbp_blade *g) {
+    int side;
+    if (f->group != g->group) return f->group < g->group;
+    side = f->group % 2 == 0 ? 0 : gxbp_blade_side(b, f, g);
+    return side != 0 ? side > 0 : f->forward && !g->forward;
+}
+
+static void gxbp_make_blade(gxb_boolean *b, uint32_t h, uint32_t p, const gxbp_blade *first, gxbp_blade *blade, uint32_t q) {
+    blade->triangle = h / 3;
+    blade->apex = gxbp_out_corner(b, h / 3, h % 3 + 2);
+    blade->plane = gxbp_out_plane(b, h / 3);
+    blade->forward = gxbp_out_corner(b, h / 3, h % 3) == p;
+    blade->toward = (b->out_planes[h / 3] & 1 ? -1 : 1) * (blade->forward ? 1 : -1);
+    blade->group = 0;
+    if (first == NULL) return;
+    blade->group = 2 - gxbp_blade_side(b, first, blade);            /* 1: first half, 3: second half */
+    if (blade->group != 2) return;
+    b->plane = first->plane;
+    if (gxbp_turn(b, p, q, blade->apex) == gxbp_turn(b, p, q, first->apex)) blade->group = 0;
+}
+
+/* Joins the triangles at the two sides of each wedge of the solid around an edge that more than two triangles share. */
+static void gxbp_join_wedges(gxb_boolean *b, const gxbp_fan *fan, uint32_t i, uint32_t j, uint32_t *parent) {
+    const uint32_t p = b->out_points[i], q = b->out_points[j];
+    gxbp_blade *blade = NULL;
+    uint32_t n = 0, pass, k, m, capacity = 0;
+    for (pass = 0; pass < 2; pass++) {
+        const uint32_t from = pass == 0 ? i : j, to = pass == 0 ? j : i;
+        for (k = fan->first[from]; k < fan->first[from + 1]; k++) {
+            gxbp_blade mine;
+            if (fan->list[k].to != to) continue;
+            if (!gxbp_room(b, &blade, sizeof *blade, n, &capacity, 1)) break;
+            gxbp_make_blade(b, fan->list[k].half_edge, p, n == 0 ? NULL : blade, &mine, q);
+            for (m = n; m > 1 && gxbp_blade_precedes(b, &mine, &blade[m - 1]); m--) blade[m] = blade[m - 1];
+            blade[m] = mine;
+            n++;
+        }
+    }
+    for (m = 0; m < n; m++) if (!blade[m].forward) gxbp_join_sets(parent, blade[m].triangle, blade[(m + 1) % n].triangle);
+    gxbp_release(&b->cx.allocator, blade, (size_t)capacity * sizeof *blade);
+}
+
+static void gxbp_join_shells(gxb_boolean *b, uint32_t *parent) {
+    const uint32_t count = b->out_source_count;
+    const size_t bytes = (size_t)count * 3 * sizeof(uint32_t);
+    uint32_t *twin, h;
+    gxbp_fan fan;
+    if (!gxbp_make_fan(b, b->out_triangles, count, b->out_point_count, &fan)) return;
+    twin = (uint32_t *)gxbp_allocate(&b->cx.allocator, bytes);
+    if (twin != NULL) {
+        memset(twin, 0xff, bytes);
+        gxbp_find_twins(&fan, b->out_point_count, twin);
+        for (h = 0; h < 3 * count; h++) {
+            const uint32_t i = b->out_triangles[h], j = b->out_triangles[gxbp_next_edge(h)];
+            if (twin[h] == GXB_NONE) { if (i < j) gxbp_join_wedges(b, &fan, i, j, parent); }
+            else if (twin[h] > h) gxbp_join_sets(parent, h / 3, twin[h] / 3);
+        }
+        gxbp_release(&b->cx.allocator, twin, bytes);
+    } else gxbp_stop(b, GX_ERROR_MEMORY);
+    gxbp_drop_fan(b, &fan);
+}
+
+/* Numerator and denominator as one number, relative error below 2^-180: each step adds the quotient of what is left, 50 bits. */
+static void gxbp_num_divide(gxb_num *r, const gxb_num *num, const gxb_num *den) {
+    GXB_NUM(rest); GXB_NUM(q); GXB_NUM(t); GXB_NUM(s);
+    int step;
+    gxb_num_set(r, 0, 0);
+    gxbp_num_copy(&rest, num, 1);
+    for (step = 0; step < 4 && rest.sign != 0; step++) {
+        gxb_num_set(&q, gxb_num_ratio(&rest, den), 0);
+        gxb_num_add(&s, r, &q);
+        gxbp_num_copy(r, &s, 1);
+        gxb_num_mul(&t, &q, den);
+        gxb_num_sub(&s, &rest, &t);
+        gxbp_num_copy(&rest, &s, 1);
+    }
+}
+
+static void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *fine) {
+    gxbp_vec store;
+    const gxb_num *x = gxbp_exact_cpoint(&b->cx, point, &store);
+    int k;
+    gxbp_vec_init(fine);
+    for (k = 0; k < 3; k++) gxbp_num_divide(&fine->c[k], &x[k], &x[3]);
+}
+
+/* Six times the volume of a shell (set root in parent), from coordinates of 180 bits. */
+static double gxbp_fine_volume(gxb_boolean *b, uint32_t *parent, uint32_t root) {
+    GXB_NUM(total); GXB_NUM(sum); GXB_NUM(term);
+    gxbp_vec x[3], n;
+    uint32_t t, k;
+    for (t = root; t < b->out_source_count; t++) {
+        if (gxbp_find_set(parent, t) != root) continue;
+        for (k = 0; k < 3; k++) gxbp_fine_point(b, gxbp_out_corner(b, t, k), &x[k]);
+        gxbp_vec_init(&n);
+        gxbp_num_cross(n.c, x[0].c, x[1].c);
+        gxbp_num_dot(&term, n.c, x[2].c);
+        gxb_num_add(&sum, &total, &term);
+        gxbp_num_copy(&total, &sum, 1);
+    }
+    return gxb_num_to_double(&total);
+}
+
+/* Six times the volume of the tetrahedron from o to a triangle of the result, d0 . n; *error: bounds as in >>filter, for n's error and size
+   E and N, the error e of d0 and its size D: 3 (D E + e (N + E)) and 8u of three products. */
+static double gxbp_rough_volume(const gxb_boolean *b, uint32_t t, const gxb_ball *o, double *error) {
+    const gxb_ball *x = &b->cx.points[gxbp_out_corner(b, t, 0)].ball;
+    double d0[3], d1[3], d2[3], n[3], E, D, N;
+    const double e = gxbp_filter_difference(d0, o, x), e1 = gxbp_filter_difference(d1, x, &b->cx.points[gxbp_out_corner(b, t, 1)].ball);
+    const double e2 = gxbp_filter_difference(d2, x, &b->cx.points[gxbp_out_corner(b, t, 2)].ball);
+    E = gxbp_filter_cross(n, d1, e1, d2, e2);
+    D = gxbp_max3(d0);
+    N = gxbp_max3(n);
+    *error = 6 * (D * E + e * (N + E)) + 48 * GXBP_U * D * N + GXBP_TINY;
+    return d0[0] * n[0] + d0[1] * n[1] + d0[2] * n[2];
+}
+
+#define GXBP_VOLUME_ERROR 1e-7     /* relative: sums of doubles with a larger bound, mostly far above their error, give way to exact ones */
+
+/* Six times the volumes of the sets in volume[root], in the frame's units. */
+static void gxbp_measure_shells(gxb_boolean *b, uint32_t *parent, double *volume, double *error) {
+    uint32_t t;
+    for (t = 0; t < b->out_source_count; t++) volume[t] = error[t] = 0;
+    for (t = 0; t < b->out_source_count; t++) {
+        const uint32_t root = gxbp_find_set(parent, t);
+        double bound;
+        volume[root] += gxbp_rough_volume(b, t, &b->cx.points[gxbp_out_corner(b, root, 0)].ball, &bound);
+        error[root] += 2 * bound;
+    }
+    for (t = 0; t < b->out_source_count; t++)
+        if (parent[t] == t && (b->fine || error[t] > GXBP_VOLUME_ERROR * gxbp_abs(volume[t]))) volume[t] = gxbp_fine_volume(b, parent, t);
+}
+
+/* gxbp_ray_left for points of the result */
+static int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p, uint32_t q) {
+    gxbp_vec s, t;
+    const gxb_num *x, *y;
+    int turn = gxbp_filter_turn(&b->cx.points[p].ball, &b->cx.points[q].ball, &ray->ball, 1, 2);
+    if (turn != 0) return turn;
+    x = gxbp_exact_cpoint(&b->cx, p, &s);
+    y = gxbp_exact_cpoint(&b->cx, q, &t);
+    turn = gxbp_orient_exact(x, y, gxbp_exact_probe(b, ray)->exact.c, 1, 2);
+    if (turn == 0) turn = gxbp_compare_points(b, p, q, 2);
+    return turn != 0 ? turn : gxbp_compare_points(b, q, p, 1);
+}
+
+/* The smallest shell with volume around a cavity's (or a sheet's) shell. */
+static uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, uint32_t *parent, const double *volume, int32_t *winding) {
+    gxbp_ray ray;
+    uint32_t t, best = GXB_NONE, k;
+    gxbp_set_ray(b, &ray, b->out_planes[cavity] / 2);
+    for (t = 0; t < b->out_source_count; t++) winding[t] = 0;
+    for (t = 0; t < b->out_source_count; t++) {
+        const uint32_t root = gxbp_find_set(parent, t), plane = gxbp_out_plane(b, t);
+        const int facing = b->out_planes[t] & 1 ? -1 : 1;
+        double value, bound;
+        int left, behind;
+        uint32_t c[3];
+        if (root == cavity || !(volume[root] > 0)) continue;
+        for (k = 0; k < 3; k++) c[k] = gxbp_out_corner(b, t, k);
+        left = gxbp_ray_left_of(b, &ray, c[0], c[1]);
+        if (left == 0 || gxbp_ray_left_of(b, &ray, c[1], c[2]) != left || gxbp_ray_left_of(b, &ray, c[2], c[0]) != left) continue;
+        value = gxbp_filter_side(&ray.ball, &b->cx.planes[plane].filter, &bound);
+        behind = -gxbp_filter_sign(value, bound);
+        if (behind == 0) {
+            GXB_NUM(side);
+            gxbp_vec store;
+            gxbp_exact_side(&side, gxbp_exact_probe(b, &ray)->exact.c, gxbp_exact_cplane(&b->cx, plane, &store));
+            behind = -side.sign;
+        }
+        if (behind * facing == left) winding[root] += left;
+    }
+    for (t = 0; t < b->out_source_count; t++) if (winding[t] != 0 && (best == GXB_NONE || volume[t] < volume[best])) best = t;
+    return best;
+}
+
+static void gxbp_number_components(gxb_boolean *b, uint32_t *parent, double *volume, int32_t *winding) {
+    uint32_t t, root;
+    for (t = 0; t < b->out_source_count; t++) {
+        if (parent[t] != t || volume[t] > 0) continue;
+        root = gxbp_find_container(b, t, parent, volume, winding);
+        if (root == GXB_NONE) continue;
+        volume[root] += volume[t];
+        parent[t] = root;
+    }
+    b->out_component_count = b->out_volume_count = 0;
+    for (t = 0; t < b->out_source_count; t++) {
+        root = gxbp_find_set(parent, t);
+        winding[t] = -1;
+        if (root == t) winding[t] = 0;
+    }
+    for (t = 0; t < b->out_source_count && b->result == GX_OK; t++) {
+        root = gxbp_find_set(parent, t);
+        if (winding[root] == 0) {
+            if (!GXBP_ROOM(b, out_volumes, out_volume, 1)) return;
+            b->out_volumes[b->out_volume_count++] = volume[root] / 6;
+            winding[root] = (int32_t)b->out_volume_count;
+        }
+        b->out_components[t] = (uint32_t)winding[root] - 1;
+    }
+    b->out_component_count = b->out_source_count;
+}
+
+/* On which sides of sheets the components lie, by the triangles that they have of them. */
+static void gxbp_find_sides(gxb_boolean *b) {
+    const size_t n = b->operand_count, size = (size_t)b->out_volume_count * n;
+    size_t i;
+    uint32_t t;
+    b->out_side_count = 0;
+    if (b->result != GX_OK || !GXBP_ROOM(b, out_sides, out_side, size)) return;
+    memset(b->out_sides, 0, size);
+    for (t = 0; t < b->out_source_count; t++) {
+        int8_t *side = &b->out_sides[b->out_components[t] * n + b->out_operands[t]];
+        const int8_t mine = b->out_reversed[t] ? 1 : -1;
+        if (b->operands[b->out_operands[t]].operation == GXB_SPLIT) *side = *side == 0 || *side == mine ? mine : 2;
+    }
+    for (i = 0; i < size; i++) if (b->out_sides[i] == 2) b->out_sides[i] = 0;
+    b->out_side_count = (uint32_t)size;
+}
+
+static void gxbp_find_components(gxb_boolean *b) {
+    const uint32_t count = b->out_source_count;
+    const size_t bytes = (size_t)count * (2 * sizeof(double) + 2 * sizeof(uint32_t)) + 16;
+    double *volume;
+    uint32_t *parent, t;
+    b->out_component_count = b->out_volume_count = 0;
+    if (b->result != GX_OK || count == 0 || !GXBP_ROOM(b, out_components, out_component, count)) return;
+    volume = (double *)gxbp_allocate(&b->cx.allocator, bytes);
+    if (volume == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
+    parent = (uint32_t *)(void *)(volume + 2 * (size_t)count);
+    for (t = 0; t < count; t++) parent[t] = t;
+    gxbp_join_shells(b, parent);
+    if (b->result == GX_OK) {
+        gxbp_measure_shells(b, parent, volume, volume + count);
+        gxbp_number_components(b, parent, volume, (int32_t *)(void *)(parent + count));
+    }
+    gxbp_release(&b->cx.allocator, volume, bytes);
+    gxbp_find_sides(b);
+}
+
+/* --- the public functions --- */
+
+static void gxbp_drop_boolean(gxb_boolean *b) {
+    uint32_t i;
+    for (i = 0; i < b->operand_count; i++)
+        gxbp_release(&b->cx.allocator, b->operands[i].order, (size_t)b->operands[i].source_count * sizeof(uint32_t));
+    while (b->cx.blocks != NULL) {
+        gxb_block *next = b->cx.blocks->next;
+        gxbp_release(&b->cx.allocator, b->cx.blocks, b->cx.blocks->size);
+        b->cx.blocks = next;
+    }
+    gxbp_release(&b->cx.allocator, b->cx.points, (size_t)b->cx.point_capacity * sizeof *b->cx.points);
+    gxbp_release(&b->cx.allocator, b->cx.planes, (size_t)b->cx.plane_capacity * sizeof *b->cx.planes);
+    gxbp_release(&b->cx.allocator, b->table, (size_t)b->table_size * sizeof *b->table);
+    gxbp_release(&b->cx.allocator, b->state_table, (size_t)b->state_table_size * sizeof *b->state_table);
+    GXBP_DROP(b, operands, operand); GXBP_DROP(b, sources, source); GXBP_DROP(b, bounds, bound); GXBP_DROP(b, boxes, box);
+    GXBP_DROP(b, vertices, vertex); GXBP_DROP(b, pieces, piece); GXBP_DROP(b, links, link); GXBP_DROP(b, segments, segment);
+    GXBP_DROP(b, cuts, cut); GXBP_DROP(b, cut_points, cut_point); GXBP_DROP(b, hits, hit); GXBP_DROP(b, dirty, dirty);
+    GXBP_DROP(b, rims, rim); GXBP_DROP(b, lefts, left); GXBP_DROP(b, scratch, scratch); GXBP_DROP(b, chain, chain);
+    GXBP_DROP(b, windings, winding); GXBP_DROP(b, states, state);
+    GXBP_DROP(b, out_vertices, out_vertex); GXBP_DROP(b, out_origins, out_origin); GXBP_DROP(b, out_points, out_point);
+    GXBP_DROP(b, out_triangles, out_triangle); GXBP_DROP(b, out_operands, out_operand); GXBP_DROP(b, out_sources, out_source);
+    GXBP_DROP(b, out_components, out_component); GXBP_DROP(b, out_planes, out_plane); GXBP_DROP(b, out_volumes, out_volume);
+    GXBP_DROP(b, out_defects, out_defect); GXBP_DROP(b, out_reversed, out_reversed); GXBP_DROP(b, out_sides, out_side);
+}
+
+GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean **boolean) {
+    gxb_boolean_desc none;
+    gxb_boolean *b;
+    memset(&none, 0, sizeof none);
+    if (boolean == NULL) return GX_ERROR_ARGUMENT;
+    if (desc == NULL) desc = &none;
+    if ((desc->allocator.allocate == NULL) != (desc->allocator.release == NULL)) return GX_ERROR_ARGUMENT;
+    b = (gxb_boolean *)gxbp_allocate(&desc->allocator, sizeof *b);
+    if (b == NULL) return GX_ERROR_MEMORY;
+    memset(b, 0, sizeof *b);
+    b->outer = desc->allocator;
+    b->limit = desc->memory_limit;
+    b->fine = desc->fine;
+    b->inside = desc->inside;
+    b->user = desc->user;
+    b->cx.allocator.allocate = gxbp_count_allocate;
+    b->cx.allocator.release = gxbp_count_release;
+    b->cx.allocator.user = b;
+    *boolean = b;
+    return GX_OK;
+}
+
+GXFEM_API void gxb_boolean_destroy(gxb_boolean *boolean) {
+    gx_allocator outer;
+    if (boolean == NULL) return;
+    outer = boolean->outer;
+    gxbp_drop_boolean(boolean);
+    gxbp_release(&outer, boolean, sizeof *boolean);
+}
+
+static gx_result gxbp_check_operand(const gxb_boolean *b, const gxb_operand *o, size_t *bad) {
+    size_t i;
+    if (o->operation > GXB_SPLIT || o->rule > GXB_ODD) return GX_ERROR_ARGUMENT;
+    if (o->triangle_count == 0 || o->vertex_count == 0) return GX_ERROR_EMPTY;
+    if (o->vertices == NULL || o->triangles == NULL) return GX_ERROR_ARGUMENT;
+    if (o->triangle_count > INT32_MAX / 12 || o->triangle_count + b->source_count > INT32_MAX / 12 || o->vertex_count > INT32_MAX / 4 ||
+        b->operand_count > INT32_MAX / 64) return GX_ERROR_LIMIT;
+    for (i = 0; i < 3 * o->triangle_count; i++)
+        if (o->triangles[i] >= o->vertex_count) { *bad = i / 3; return GX_ERROR_INDEX; }
+    return GX_OK;
+}
+
+/* Forgets the points from count on. */
+static void gxbp_cut_points_back(gxb_boolean *b, uint32_t count) {
+    uint32_t i, k, n = 0;
+    for (i = 0; i < b->table_size; i++) if (b->table[i] != GXB_NONE && b->table[i] >= count) n++;
+    if (n > 0) {
+        memset(b->table, 0xff, (size_t)b->table_size * sizeof *b->table);
+        for (i = 0; i < count; i++) {
+            if (b->vertices[i].key[0] == GXB_FROM_VERTEX && b->vertices[i].key[1] == GXB_NONE) continue;      /* of a frame */
+            for (k = gxbp_hash_point(b, i) & (b->table_size - 1); b->table[k] != GXB_NONE; k = (k + 1) & (b->table_size - 1)) {}
+            b->table[k] = i;
+        }
+        b->table_used -= n;
+    }
+    b->vertex_count = b->cx.point_count = count;
+}
+
+GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, gx_failure *failure) {
+    uint32_t sources, pieces, points, boxes;
+    size_t bad = SIZE_MAX;
+    gx_result result;
+    if (b == NULL || operand == NULL) return gxbp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    result = gxbp_check_operand(b, operand, &bad);
+    if (result != GX_OK) return gxbp_fail(failure, result, bad);
+    sources = b->source_count; pieces = b->piece_count; points = b->vertex_count; boxes = b->box_count;
+    b->result = GX_OK;
+    b->over_limit = 0;
+    if (b->operand_count == 0) gxbp_choose_scale(b, operand);
+    result = gxbp_append_operand(b, operand, &bad);
+    if (result == GX_ERROR_MEMORY && b->over_limit) result = GX_ERROR_LIMIT;
+    if (result != GX_OK) {
+        b->source_count = b->bound_count = sources;
+        b->piece_count = pieces;
+        b->box_count = boxes;
+        gxbp_cut_points_back(b, points);
+    }
+    return gxbp_fail(failure, result, bad);
+}
+
+/* After an error: the operands are as they came, nothing is arranged. Points that were found stay known. */
+static void gxbp_forget_arrangement(gxb_boolean *b) {
+    uint32_t s, k;
+    b->piece_count = b->link_count = b->segment_count = b->cut_count = b->cut_point_count = b->hit_count = b->dirty_count = 0;
+    b->arranged = b->segment_mark = 0;
+    for (s = 0; s < b->source_count; s++) {
+        gxbp_source *t = &b->sources[s];
+        gxbp_piece *f = &b->pieces[b->piece_count];
+        for (k = 0; k < 3; k++) {
+            t->edge[k] = GXB_NONE;
+            f->v[k] = t->point[k];
+            f->near[k] = GXB_NONE;
+            f->labels[k] = GXBP_BARE;
+        }
+        t->segments = t->next = GXB_NONE;
+        t->root = s;
+        t->flags &= (uint32_t)GXBP_DEGENERATE;
+        f->source = t->flags & GXBP_DEGENERATE ? GXB_NONE : s;
+        f->next = f->covers = f->state = GXB_NONE;
+        t->facet = b->piece_count++;
+    }
+}
+
+static void gxbp_arrange(gxb_boolean *b) {
+    uint32_t i, j;
+    for (i = b->arranged; i < b->operand_count; i++)
+        for (j = 0; j <= i && b->result == GX_OK; j++) gxbp_meet_operands(b, i, j);
+    gxbp_order_cuts(b);
+    if (b->result == GX_OK) gxbp_divide_dirty(b);
+    gxbp_merge_points(b);
+    b->segment_mark = b->segment_count;
+    b->arranged = b->operand_count;
+}
+
+static void gxbp_show_result(gxb_boolean *b, gxb_boolean_result *result) {
+    const int shift = b->cx.shift > 300 ? 300 : b->cx.shift < -300 ? -300 : b->cx.shift;       /* volumes beyond doubles become 0 or infinite */
+    uint32_t i;
+    memset(result, 0, sizeof *result);
+    result->vertices = b->out_vertices; result->vertex_count = b->out_point_count;
+    result->triangles = b->out_triangles; result->triangle_count = b->out_source_count;
+    result->vertex_origin = b->out_origins;
+    result->triangle_operand = b->out_operands; result->triangle_source = b->out_sources; result->triangle_reversed = b->out_reversed;
+    result->triangle_component = b->out_components;
+    for (i = 0; i < b->out_volume_count; i++) {
+        b->out_volumes[i] *= gxbp_power(-3 * shift);
+        result->volume += b->out_volumes[i];
+    }
+    result->component_volume = b->out_volumes; result->component_count = b->out_volume_count;
+    result->component_side = b->out_sides;
+    result->defects = b->out_defects; result->defect_count = b->out_defect_count;
+    result->filter_calls = b->cx.filter_calls; result->exact_calls = b->cx.exact_calls;
+    result->allocations = b->allocations; result->peak_bytes = b->peak;
+}
+
+GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *b, gxb_boolean_result *result) {
+    if (b == NULL || result == NULL) return GX_ERROR_ARGUMENT;
+    if (b->operand_count == 0) return GX_ERROR_EMPTY;
+    b->result = GX_OK;
+    b->over_limit = 0;
+    gxbp_arrange(b);
+    gxbp_find_states(b);
+    if (b->result == GX_OK) gxbp_extract(b);
+    gxbp_round_vertices(b);
+    if (b->result == GX_OK) gxbp_find_defects(b);
+    gxbp_find_components(b);
+    if (b->result == GX_OK) gxbp_show_result(b, result);
+    else gxbp_forget_arrangement(b);
+    return b->result;
 }
 
 #ifdef __cplusplus

@@ -49,7 +49,7 @@ run_one() {
     # shellcheck disable=SC2086
     if "$@" -o "$out" "$here/predicates_flags.c" -lm 2> "$out.log" && "$out" "$cases" $arguments >> "$out.log" 2>&1; then
         echo "passed" > "$out.state"
-        echo "passed   $name: $(sed -n 's/^wrong signs: /wrong signs /p' "$out.log") of $cases x 7"
+        echo "passed   $name: $(sed -n 's/^wrong signs: /wrong signs /p' "$out.log") of $cases x 9"
     else
         echo "failed" > "$out.state"
         echo "FAILED   $name"

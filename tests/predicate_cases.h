@@ -64,6 +64,8 @@ typedef struct pc_case {
     double plane[4][3][3];  /* three points of each plane */
     double line[2][3];
     double point[3];
+    double circle[4][3];    /* (nearly) on a circle in x and y */
+    double sphere[5][3];
 } pc_case;
 
 enum { PC_CASE_DOUBLES = sizeof(pc_case) / sizeof(double) };
@@ -102,6 +104,19 @@ static inline void pc_wild(pc_random *r, double *x) {
     }
 }
 
+/* x plus u's coordinates in any order with any signs: as far from x, but for rounding (on the lattice: exactly). */
+static inline void pc_round_points(pc_random *r, const double x[3], const double u[3], pc_case *c) {
+    uint32_t i, k;
+    for (i = 0; i < 5; i++) {
+        const uint32_t turn = pc_below(r, 3), swap = pc_below(r, 2);
+        for (k = 0; k < 3; k++) {
+            const double sign = pc_below(r, 2) ? 1 : -1;
+            c->sphere[i][k] = x[k] + sign * u[(k * (1 + swap) + turn) % 3];
+            if (i < 4) c->circle[i][k] = k == 2 ? 0 : x[k] + sign * u[k ^ swap];
+        }
+    }
+}
+
 /* Everything near one place, by one of many ways of nearly failing. */
 static inline void pc_generate(pc_random *r, pc_case *c) {
     const int lattice = pc_below(r, 8) < 3, shared = pc_below(r, 4) == 0, apart = pc_below(r, 2) == 0;
@@ -128,6 +143,7 @@ static inline void pc_generate(pc_random *r, pc_case *c) {
         c->line[1][k] = x[k] - w[k] * (lattice ? 1 : 0.75);
         c->point[k] = x[k];
     }
+    pc_round_points(r, x, u[0], c);
     if (noise == 1) for (i = 0; i < 12; i++) { double *d = all + pc_below(r, PC_CASE_DOUBLES); *d = pc_nudge(*d, (int)pc_below(r, 7) - 3); }
     if (noise == 2 || noise == 3) for (i = 27; i < PC_CASE_DOUBLES; i++) all[i] += pc_uniform(r) * (noise == 2 ? 1e-12 : 1e-7);
     pc_scale(r, all);
@@ -206,9 +222,10 @@ static inline int pc_exact_orient(const pc_point *a, const pc_point *b, const pc
     return big_sign(big_det3(r[0], r[1], r[2])) * a->w.sign * b->w.sign * c->w.sign * plane->n[axis].sign;
 }
 
-enum { PC_ORIENT2D, PC_ORIENT3D, PC_SIDE_EXPLICIT, PC_SIDE_LINE, PC_SIDE_PLANES, PC_COMPARE, PC_ORIENT_IN_PLANE, PC_KINDS };
+enum { PC_ORIENT2D, PC_ORIENT3D, PC_SIDE_EXPLICIT, PC_SIDE_LINE, PC_SIDE_PLANES, PC_COMPARE, PC_ORIENT_IN_PLANE, PC_INCIRCLE, PC_INSPHERE,
+       PC_KINDS };
 static const char *const pc_kind_names[PC_KINDS] = {"orient2d", "orient3d", "side of point", "side of line-plane", "side of three planes",
-                                                   "compare", "orient in plane"};
+                                                   "compare", "orient in plane", "incircle", "insphere"};
 enum { PC_INVALID = 9 };    /* no answer: parallel planes and the like */
 
 typedef struct pc_exact {
@@ -220,6 +237,33 @@ typedef struct pc_exact {
 static inline int pc_exact_orient2d(const double a[2], const double b[2], const double c[2]) { return big_sign(big_orient2d(a, b, c)); }
 static inline int pc_exact_orient3d(const double a[3], const double b[3], const double c[3], const double d[3]) {
     return -big_sign(big_orient3d(a, b, c, d));
+}
+
+/* By the lifting to a paraboloid about the first point: determinant of the other points' differences and their squared lengths. */
+static inline int pc_exact_incircle(const double (*p)[3]) {
+    big row[3][3];
+    int i;
+    for (i = 0; i < 3; i++) {
+        big d[3];
+        big_difference(p[i + 1], p[0], d);
+        row[i][0] = d[0]; row[i][1] = d[1];
+        row[i][2] = big_add(big_mul(d[0], d[0]), big_mul(d[1], d[1]));
+    }
+    return -big_sign(big_det3(row[0], row[1], row[2]));
+}
+
+static inline int pc_exact_insphere(const double (*p)[3]) {
+    big d[4][3], lift[4], sum = big_zero();
+    int i;
+    for (i = 0; i < 4; i++) {
+        big_difference(p[i + 1], p[0], d[i]);
+        lift[i] = big_dot(d[i], d[i]);
+    }
+    for (i = 0; i < 4; i++) {
+        const big minor = big_det3(d[i == 0], d[i <= 1 ? 2 : 1], d[i <= 2 ? 3 : 2]);
+        sum = i % 2 == 1 ? big_add(sum, big_mul(lift[i], minor)) : big_sub(sum, big_mul(lift[i], minor));
+    }
+    return big_sign(sum);
 }
 
 /* 0: one of the planes is none. The numbers live until the arena is released. */
@@ -240,6 +284,8 @@ static inline int pc_answer(const pc_case *c, int axis, pc_exact *e) {
     e->sign[PC_SIDE_EXPLICIT] = pc_exact_side(&e->point, &e->plane[3]);
     if (e->line.w.sign != 0) e->sign[PC_SIDE_LINE] = pc_exact_side(&e->line, &e->plane[3]);
     if (e->planes.w.sign != 0) e->sign[PC_SIDE_PLANES] = pc_exact_side(&e->planes, &e->plane[3]);
+    e->sign[PC_INCIRCLE] = pc_exact_incircle(c->circle);
+    e->sign[PC_INSPHERE] = pc_exact_insphere(c->sphere);
     if (e->planes.w.sign != 0 && e->line.w.sign != 0) {
         e->sign[PC_COMPARE] = pc_exact_compare(&e->line, &e->planes, axis);
         if (e->other.w.sign != 0) e->sign[PC_ORIENT_IN_PLANE] = pc_exact_orient(&e->line, &e->planes, &e->other, &e->plane[0]);
@@ -274,6 +320,8 @@ static inline int pc_call(const pc_objects *k, int kind) {
     case PC_SIDE_EXPLICIT: return gxb_side(&k->point, &k->plane[3]);
     case PC_SIDE_LINE: return gxb_side(&k->line, &k->plane[3]);
     case PC_SIDE_PLANES: return gxb_side(&k->planes, &k->plane[3]);
+    case PC_INCIRCLE: return gxb_incircle(c->circle[0], c->circle[1], c->circle[2], c->circle[3]);
+    case PC_INSPHERE: return gxb_insphere(c->sphere[0], c->sphere[1], c->sphere[2], c->sphere[3], c->sphere[4]);
     case PC_COMPARE: return gxb_compare(&k->line, &k->planes, k->axis);
     default: return gxb_orient_in_plane(&k->line, &k->planes, &k->other, &k->plane[0]);
     }

@@ -2,7 +2,7 @@
 
        predicates_flags [CASES] [nearest|up|down|zero] [flush] [seed=S]
 
-   Prints the wrong signs of CASES near-degenerate cases (100000) times seven predicates, nanoseconds per call where the filter
+   Prints the wrong signs of CASES near-degenerate cases (100000) times nine predicates, nanoseconds per call where the filter
    decides and where the exact stage does, the exact stage's share, and how much of each of the filter's bounds the true errors
    used up. Exit status 1 where a sign is wrong or a bound was exceeded. */
 #define GXFEM_STATIC
@@ -61,6 +61,8 @@ static int filter_decides(const pc_objects *k, int kind) {
     case PC_ORIENT3D: case PC_SIDE_EXPLICIT: return filter_side(&k->point, &k->plane[3]) != 0;
     case PC_SIDE_LINE: return filter_side(&k->line, &k->plane[3]) != 0;
     case PC_SIDE_PLANES: return filter_side(&k->planes, &k->plane[3]) != 0;
+    case PC_INCIRCLE: return gxbp_filter_incircle(c->circle[0], c->circle[1], c->circle[2], c->circle[3]) != 0;
+    case PC_INSPHERE: return gxbp_filter_insphere(c->sphere[0], c->sphere[1], c->sphere[2], c->sphere[3], c->sphere[4]) != 0;
     case PC_COMPARE: return filter_compare(&k->line.ball, &k->planes.ball, k->axis) != 0;
     default: return filter_orient(&k->line.ball, &k->planes.ball, &k->other.ball, &k->plane[0]) != 0;
     }

@@ -1,5 +1,5 @@
 /* Tests of gxfem_boolean.h: exact numbers, predicates against exact rationals, the cell complex against its own invariants.
-   GXFEM_DATA: a data folder; its predicates/orient2d.txt and orient3d.txt are used where it is set. */
+   GXFEM_DATA: a data folder; the cases in its folder predicates/ are used where it is set. */
 #define GXFEM_BOOLEAN_IMPLEMENTATION
 #include "../gxfem_boolean.h"
 
@@ -315,10 +315,11 @@ START_TEST(orientation_is_as_documented) {
 } END_TEST
 
 /* The format of Shewchuk's published test cases: number, coordinates, sign. */
-static void check_fixture(const char *name, int dimension) {
+/* So many points of the given dimension, and the sign of the predicate that takes them */
+static void check_fixture(const char *name, int dimension, int points) {
     const char *folder = getenv("GXFEM_DATA");
     char path[1024];
-    double x[4][3];
+    double x[5][3];
     int number, sign, i, k, lines = 0;
     FILE *file;
     if (folder == NULL) return;
@@ -326,9 +327,10 @@ static void check_fixture(const char *name, int dimension) {
     file = fopen(path, "r");
     if (file == NULL) { printf("%s: not there\n", path); return; }
     while (fscanf(file, "%d", &number) == 1) {
-        for (i = 0; i <= dimension; i++) for (k = 0; k < dimension; k++) ck_assert_int_eq(fscanf(file, "%lf", &x[i][k]), 1);
+        for (i = 0; i < points; i++) for (k = 0; k < dimension; k++) ck_assert_int_eq(fscanf(file, "%lf", &x[i][k]), 1);
         ck_assert_int_eq(fscanf(file, "%d", &sign), 1);
-        i = dimension == 2 ? gxb_orient2d(x[0], x[1], x[2]) : gxb_orient3d(x[0], x[1], x[2], x[3]);
+        i = points == 3 ? gxb_orient2d(x[0], x[1], x[2]) : points == 5 ? gxb_insphere(x[0], x[1], x[2], x[3], x[4]) :
+            dimension == 2 ? gxb_incircle(x[0], x[1], x[2], x[3]) : gxb_orient3d(x[0], x[1], x[2], x[3]);
         assert_that(i == sign, "%s line %d: %d", name, number, i);
         lines++;
     }
@@ -337,8 +339,10 @@ static void check_fixture(const char *name, int dimension) {
 }
 
 START_TEST(published_cases) {
-    check_fixture("orient2d.txt", 2);
-    check_fixture("orient3d.txt", 3);
+    check_fixture("orient2d.txt", 2, 3);
+    check_fixture("orient3d.txt", 3, 4);
+    check_fixture("incircle.txt", 2, 4);
+    check_fixture("insphere.txt", 3, 5);
 } END_TEST
 
 /* ---- winding numbers ---- */

@@ -1,0 +1,252 @@
+/* kernel.c - Booleans of closed surfaces: A minus B0 (minus B1 ...), doubles in to doubles out.
+
+   make bench-kernel builds and runs it on generated workloads; make bench-kernel DATA=FOLDER on the files of a folder too: NAME_A.off,
+   NAME_B0.off, NAME_B1.off ... (as in "W1_A.off"). It prints CSV.
+
+   W1 a tetrahedron less a slab, W3 less a wavy slab of 1760 triangles, W4 a cube less 5 + 5 crossing slabs; "+" after a name: evaluated
+   after each operand. S: a bumpy sphere of 8,000 triangles less a turned copy. filter_share and exact_share: of the signs asked for, those that
+   the filter or the definitions decided, and those that took exact arithmetic. Surfaces are vouched for as simple; "?": they are not.
+   Each call creates, adds, evaluates and destroys; SECONDS per workload, at least three calls. */
+#define _POSIX_C_SOURCE 200809L
+#define GXFEM_BOOLEAN_IMPLEMENTATION
+#include "../gxfem_boolean.h"
+#include "../tests/workloads.h"
+#include "csv.h"
+#include <dirent.h>
+#include <time.h>
+
+enum { OPERANDS = 64, CALLS = 100000, NAMES = 512, NAME = 64 };
+static const double SECONDS = 0.3;
+
+static double microseconds(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return 1e6 * (double)now.tv_sec + 1e-3 * (double)now.tv_nsec;
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void stop_at(const char *what, gx_result result)
+{
+    if (result == GX_OK) return;
+    fprintf(stderr, "kernel: %s: error %d\n", what, (int)result);
+    exit(1);
+}
+
+typedef struct figures {
+    size_t triangles, components, peak;
+    double volume;
+    uint64_t filter, exact, allocations;
+} figures;
+
+static figures run(const char *name, const gxb_operand *operands, size_t count, int each)
+{
+    gxb_boolean *b = NULL;
+    gxb_boolean_result r;
+    figures f;
+    size_t i;
+    memset(&r, 0, sizeof r);
+    stop_at(name, gxb_boolean_create(NULL, &b));
+    for (i = 0; i < count; ++i) {
+        stop_at(name, gxb_boolean_add(b, &operands[i], NULL));
+        if (i + 1 == count || (each && i > 0)) stop_at(name, gxb_boolean_evaluate(b, &r));
+    }
+    f.triangles = r.triangle_count; f.components = r.component_count; f.volume = r.volume;
+    f.filter = r.filter_calls; f.exact = r.exact_calls; f.allocations = r.allocations; f.peak = r.peak_bytes;
+    gxb_boolean_destroy(b);
+    return f;
+}
+
+static void measure(const char *name, const char *mark, const gxb_operand *operands, size_t count, int each)
+{
+    static double us[CALLS];
+    const double start = microseconds();
+    figures f;
+    size_t n = 0;
+    do {
+        const double before = microseconds();
+        f = run(name, operands, count, each);
+        us[n++] = microseconds() - before;
+    } while (n < CALLS && (n < 3 || microseconds() - start < 1e6 * SECONDS));
+    qsort(us, n, sizeof *us, ascending);
+    csv_row("%s%s,%.1f,%.1f,%lu,%lu,%.17g,%.4f,%.4f,%lu,%lu", name, mark, us[n / 2], us[0], (unsigned long)f.triangles,
+            (unsigned long)f.components, f.volume, f.filter == 0 ? 1 : 1 - (double)f.exact / (double)f.filter,
+            f.filter == 0 ? 0 : (double)f.exact / (double)f.filter, (unsigned long)f.allocations, (unsigned long)f.peak);
+}
+
+static void measure_all(const char *name, gxb_operand *operands, size_t count)
+{
+    size_t i;
+    for (i = 0; i < count; ++i) { operands[i].operation = i == 0 ? GXB_UNION : GXB_DIFFERENCE; operands[i].simple = 1; }
+    measure(name, "", operands, count, 0);
+    if (count > 2) measure(name, "+", operands, count, 1);
+    for (i = 0; i < count; ++i) operands[i].simple = 0;
+    measure(name, "?", operands, count, 0);
+}
+
+static gxb_operand operand_of(const wl_surface *s)
+{
+    gxb_operand o;
+    memset(&o, 0, sizeof o);
+    o.vertices = s->vertices; o.vertex_count = s->vertex_count;
+    o.triangles = s->triangles; o.triangle_count = s->triangle_count;
+    return o;
+}
+
+/* ---- generated ---- */
+
+static void measure_workload(const char *name, const wl_surface *body, workload w)
+{
+    gxb_operand operands[WL_SURFACES + 1];
+    size_t i;
+    operands[0] = operand_of(body);
+    for (i = 0; i < w.surface_count; ++i) operands[i + 1] = operand_of(&w.surfaces[i]);
+    measure_all(name, operands, w.surface_count + 1);
+    wl_free(&w);
+}
+
+/* An octahedron whose faces are divided n x n, blown up to a sphere with bumps, in a frame */
+static wl_surface bumpy_sphere(uint32_t n, const wl_frame *frame)
+{
+    wl_surface s;
+    uint32_t face, i, j;
+    memset(&s, 0, sizeof s);
+    for (face = 0; face < 8; ++face) {
+        const uint32_t first = (uint32_t)s.vertex_count, outward = (face ^ face >> 1 ^ face >> 2) & 1;
+        for (j = 0; j <= n; ++j) for (i = 0; i + j <= n; ++i) {
+            double x[3], y[3], length;
+            int k;
+            x[0] = (double)i / n; x[1] = (double)j / n; x[2] = (double)(n - i - j) / n;
+            length = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+            for (k = 0; k < 3; ++k) x[k] *= (face >> k & 1 ? -1 : 1) / length;
+            length = 1 + 0.07 * sin(9 * x[0]) * sin(8 * x[1]) * sin(7 * x[2]);
+            for (k = 0; k < 3; ++k) x[k] *= length;
+            wl_place(frame, x, y);
+            wl_add_vertex(&s, y);
+        }
+        for (j = 0; j < n; ++j) for (i = 0; i + j < n; ++i) {
+            const uint32_t row = first + j * (n + 1) - j * (j - 1) / 2, a = row + i, b = a + 1, c = a + n + 1 - j;
+            if (outward) wl_add_triangle(&s, a, c, b); else wl_add_triangle(&s, a, b, c);
+            if (i + j + 1 == n) continue;
+            if (outward) wl_add_triangle(&s, b, c, c + 1); else wl_add_triangle(&s, b, c + 1, c);
+        }
+    }
+    return s;
+}
+
+static void measure_spheres(void)
+{
+    wl_frame axes = wl_axes(), turned = wl_rotated();
+    wl_surface s[2];
+    gxb_operand operands[2];
+    int i;
+    memset(turned.origin, 0, sizeof turned.origin);
+    s[0] = bumpy_sphere(32, &axes);
+    s[1] = bumpy_sphere(32, &turned);
+    for (i = 0; i < 2; ++i) operands[i] = operand_of(&s[i]);
+    measure_all("S", operands, 2);
+    for (i = 0; i < 2; ++i) { free(s[i].vertices); free(s[i].triangles); }
+}
+
+static void measure_generated(void)
+{
+    static const uint32_t faces[4][3] = { { 1, 2, 3 }, { 0, 3, 2 }, { 0, 1, 3 }, { 0, 2, 1 } };
+    static const double low[3] = { 0, 0, 0 }, high[3] = { 1, 1, 1 };
+    wl_frame axes = wl_axes();
+    wl_surface tetrahedron, cube;
+    int i;
+    memset(&tetrahedron, 0, sizeof tetrahedron);
+    memset(&cube, 0, sizeof cube);
+    for (i = 0; i < 4; ++i) wl_add_vertex(&tetrahedron, wl_unit_tetrahedron[i]);
+    for (i = 0; i < 4; ++i) wl_add_triangle(&tetrahedron, faces[i][0], faces[i][2], faces[i][1]);
+    if (gxb_orient3d(wl_unit_tetrahedron[1], wl_unit_tetrahedron[2], wl_unit_tetrahedron[3], wl_unit_tetrahedron[0]) > 0)
+        for (i = 0; i < 4; ++i) memcpy(tetrahedron.triangles + 3 * i, faces[i], sizeof faces[i]);
+    wl_add_aligned_box(&cube, low, high);
+    measure_workload("W1 generated", &tetrahedron, wl_through(1e-4));
+    measure_workload("W3 generated", &tetrahedron, wl_wavy(1));
+    measure_workload("W4 generated", &cube, wl_sticks(&axes));
+    measure_spheres();
+    free(tetrahedron.vertices); free(tetrahedron.triangles);
+    free(cube.vertices); free(cube.triangles);
+}
+
+/* ---- from files ---- */
+
+/* An OFF file's polygons as fans. 0: there is none of this name. */
+static int read_off(const char *path, wl_surface *s)
+{
+    FILE *file = fopen(path, "r");
+    unsigned long vertices, faces, edges, i;
+    unsigned count, k, n[3];
+    double x[3];
+    char magic[8];
+    memset(s, 0, sizeof *s);
+    if (!file) return 0;
+    if (fscanf(file, "%7s %lu %lu %lu", magic, &vertices, &faces, &edges) != 4 || strcmp(magic, "OFF") != 0) goto bad;
+    for (i = 0; i < vertices; ++i) {
+        if (fscanf(file, "%lf %lf %lf", &x[0], &x[1], &x[2]) != 3) goto bad;
+        wl_add_vertex(s, x);
+    }
+    for (i = 0; i < faces; ++i) {
+        if (fscanf(file, "%u %u %u", &count, &n[0], &n[1]) != 3) goto bad;
+        for (k = 2; k < count; ++k) {
+            if (fscanf(file, "%u", &n[2]) != 1) goto bad;
+            wl_add_triangle(s, n[0], n[1], n[2]);
+            n[1] = n[2];
+        }
+    }
+    fclose(file);
+    return 1;
+bad:
+    fprintf(stderr, "kernel: %s: not an OFF file, or cut short\n", path);
+    exit(1);
+}
+
+static void measure_files(const char *folder, const char *name)
+{
+    wl_surface s[OPERANDS];
+    gxb_operand operands[OPERANDS];
+    char path[1024];
+    size_t count = 0, i;
+    snprintf(path, sizeof path, "%s/%s_A.off", folder, name);
+    while (count < OPERANDS && read_off(path, &s[count])) {
+        operands[count] = operand_of(&s[count]);
+        snprintf(path, sizeof path, "%s/%s_B%lu.off", folder, name, (unsigned long)count++);
+    }
+    if (count > 1) measure_all(name, operands, count);
+    for (i = 0; i < count; ++i) { free(s[i].vertices); free(s[i].triangles); }
+}
+
+static int by_name(const void *a, const void *b) { return strcmp((const char *)a, (const char *)b); }
+
+static void measure_folder(const char *folder)
+{
+    static char names[NAMES][NAME];
+    DIR *directory = opendir(folder);
+    const struct dirent *entry;
+    size_t count = 0, i;
+    if (!directory) { fprintf(stderr, "kernel: %s: no such folder\n", folder); exit(1); }
+    while (count < NAMES && (entry = readdir(directory)) != NULL) {
+        const size_t length = strlen(entry->d_name);
+        if (length < 7 || length - 6 >= NAME || strcmp(entry->d_name + length - 6, "_A.off") != 0) continue;
+        memcpy(names[count], entry->d_name, length - 6);
+        names[count++][length - 6] = '\0';
+    }
+    closedir(directory);
+    qsort(names, count, sizeof *names, by_name);
+    for (i = 0; i < count; ++i) measure_files(folder, names[i]);
+}
+
+/* usage: kernel FILE [FOLDER] */
+int main(int argc, char **argv)
+{
+    csv_open(argc, argv, "workload,median_us,min_us,triangles,components,volume,filter_share,exact_share,allocations,peak_bytes");
+    measure_generated();
+    if (argc > 2) measure_folder(argv[2]);
+    return csv_close();
+}

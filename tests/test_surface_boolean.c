@@ -1,0 +1,736 @@
+/* test_surface_boolean.c - Booleans of closed surfaces: the named workloads against the exact oracle, at once and in sequence; small
+   random solids on a lattice (coplanar, touching, nested, self-crossing) against the oracle and against what volumes must satisfy;
+   provenance, sheets, winding rules, memory that runs out, input that is refused. */
+#define GXFEM_BOOLEAN_IMPLEMENTATION
+#include "../gxfem_boolean.h"
+#include "workloads.h"
+#include "runner.h"
+
+#define CHECK_CASE(condition, ...) ck_assert_msg(condition, __VA_ARGS__)
+
+/* ---- random numbers: splitmix64 ---- */
+
+static uint64_t random_state;
+
+static uint64_t random_bits(void) {
+    uint64_t z = random_state += UINT64_C(0x9e3779b97f4a7c15);
+    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
+    return z ^ z >> 31;
+}
+static int random_below(int n) { return (int)(random_bits() % (uint64_t)n); }
+
+/* ---- operands and answers ---- */
+
+static gxb_operand operand_of(const wl_surface *s, uint32_t operation) {
+    gxb_operand o;
+    memset(&o, 0, sizeof o);
+    o.vertices = s->vertices; o.vertex_count = s->vertex_count;
+    o.triangles = s->triangles; o.triangle_count = s->triangle_count;
+    o.operation = operation;
+    return o;
+}
+
+static void surface_free(wl_surface *s) { free(s->vertices); free(s->triangles); memset(s, 0, sizeof *s); }
+
+/* The boundary of a mesh of tetrahedra: faces that no other element has */
+static wl_surface boundary_of(const workload *w) {
+    static const int faces[4][3] = { { 1, 2, 3 }, { 0, 3, 2 }, { 0, 1, 3 }, { 0, 2, 1 } };
+    wl_surface s;
+    size_t e, f;
+    int k, m, i, j;
+    memset(&s, 0, sizeof s);
+    for (e = 0; e < w->node_count; ++e) wl_add_vertex(&s, w->positions + 3 * e);
+    for (e = 0; e < w->element_count; ++e) for (k = 0; k < 4; ++k) {
+        int shared = 0;
+        uint32_t n[3];
+        for (i = 0; i < 3; ++i) n[i] = w->elements[4 * e + (size_t)faces[k][i]];
+        for (f = 0; f < w->element_count; ++f) for (m = 0; m < 4 && f != e; ++m) {
+            int same = 0;
+            for (i = 0; i < 3; ++i) for (j = 0; j < 3; ++j) same += w->elements[4 * f + (size_t)faces[m][i]] == n[j];
+            shared |= same == 3;
+        }
+        if (!shared) wl_add_triangle(&s, n[0], n[1], n[2]);
+    }
+    return s;
+}
+
+typedef struct answer { size_t components, triangles, defects; double volume; } answer;
+
+/* Every directed edge of the result is matched by one in the other direction, and every triangle names a component. */
+static void check_closed(const gxb_boolean_result *r) {
+    gxb_boolean *b = NULL;
+    gxbp_fan fan;
+    uint32_t *twin = (uint32_t *)malloc((3 * r->triangle_count + 1) * sizeof *twin);
+    size_t t;
+    for (t = 0; t < r->triangle_count; ++t) ck_assert_uint_lt(r->triangle_component[t], r->component_count);
+    for (t = 0; t < 3 * r->triangle_count; ++t) ck_assert_uint_lt(r->triangles[t], r->vertex_count);
+    ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
+    ck_assert_int_eq(gxbp_make_fan(b, r->triangles, r->triangle_count, (uint32_t)r->vertex_count, &fan), 1);
+    ck_assert_uint_eq(gxbp_find_twins(&fan, (uint32_t)r->vertex_count, twin), GXB_NONE);
+    gxbp_drop_fan(b, &fan);
+    gxb_boolean_destroy(b);
+    free(twin);
+}
+
+static answer read_answer(gxb_boolean *b) {
+    gxb_boolean_result r;
+    answer a;
+    size_t i;
+    double sum = 0;
+    ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
+    check_closed(&r);
+    for (i = 0; i < r.component_count; ++i) { ck_assert(r.component_volume[i] > 0); sum += r.component_volume[i]; }
+    ck_assert(fabs(sum - r.volume) <= 1e-12 * sum);
+    a.components = r.component_count; a.triangles = r.triangle_count; a.defects = r.defect_count; a.volume = r.volume;
+    return a;
+}
+
+/* All operands at once, or (each) evaluated after each */
+static answer evaluate(const gxb_operand *operands, size_t count, int each) {
+    gxb_boolean *b = NULL;
+    answer a = { 0, 0, 0, 0 };
+    size_t i;
+    ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
+    for (i = 0; i < count; ++i) {
+        ck_assert_int_eq(gxb_boolean_add(b, &operands[i], NULL), GX_OK);
+        if (each && i + 1 < count) read_answer(b);
+    }
+    a = read_answer(b);
+    gxb_boolean_destroy(b);
+    return a;
+}
+
+static answer combine(const wl_surface *p, uint32_t operation, const wl_surface *q) {
+    gxb_operand o[2];
+    o[0] = operand_of(p, GXB_UNION);
+    o[1] = operand_of(q, operation);
+    return evaluate(o, 2, 0);
+}
+
+static int close_to(double x, double y, double size) { return fabs(x - y) <= 1e-11 * size; }
+
+/* ---- workloads ---- */
+
+static void check_answer(const char *name, const answer *a, size_t components, double volume) {
+    CHECK_CASE(a->components == components, "%s: %zu components, should be %zu", name, a->components, components);
+    CHECK_CASE(fabs(a->volume - volume) <= 1e-10 * volume, "%s: volume %.17g, should be %.17g", name, a->volume, volume);
+}
+
+/* What is kept, at once, in sequence and with every surface vouched for; and what is removed, which shows cuts however thin. */
+static void check_cuts(const char *name, const workload *w, size_t components, double kept, double removed) {
+    gxb_operand o[WL_SURFACES + 1];
+    wl_surface body = boundary_of(w);
+    size_t i, n = w->surface_count;
+    answer a;
+    o[0] = operand_of(&body, GXB_UNION);
+    for (i = 0; i < n; ++i) o[i + 1] = operand_of(&w->surfaces[i], GXB_DIFFERENCE);
+    a = evaluate(o, n + 1, 0);
+    check_answer(name, &a, components, kept);
+    a = evaluate(o, n + 1, 1);
+    check_answer(name, &a, components, kept);
+    for (i = 0; i <= n; ++i) o[i].simple = 1;
+    a = evaluate(o, n + 1, 0);
+    check_answer(name, &a, components, kept);
+    for (i = 0; i < n; ++i) o[i] = operand_of(&w->surfaces[i], GXB_UNION);
+    o[n] = operand_of(&body, GXB_INTERSECTION);
+    a = evaluate(o, n + 1, 0);
+    CHECK_CASE(fabs(a.volume - removed) <= 1e-9 * removed, "%s: removed %.17g, should be %.17g", name, a.volume, removed);
+    surface_free(&body);
+}
+
+static void check_workload(const char *name, workload w, size_t components) {
+    oracle *truth = wl_oracle(&w);
+    ck_assert_uint_eq(truth->fragment_count, components);
+    check_cuts(name, &w, components, truth->volume, wl_removed_volume(truth));
+    oracle_destroy(truth);
+    wl_free(&w);
+}
+
+START_TEST(slabs) {
+    check_workload("W1", wl_through(1e-4), 2);
+    check_workload("W2", wl_ring_cut(6), 2);
+    check_workload("W2f", wl_ring_cut(5), 2);
+}
+END_TEST
+
+START_TEST(wavy_sheet) {
+    static const double apex[3] = { 0.148, 0.298, 0.398 };
+    workload w = wl_wavy(1), uncut = wl_tetrahedron(wl_unit_tetrahedron);
+    double removed = wl_inside_volume(wl_unit_tetrahedron, &w.surfaces[0], apex);
+    wl_surface body = boundary_of(&uncut);
+    gxb_operand o = operand_of(&body, GXB_UNION);
+    answer whole = evaluate(&o, 1, 0);
+    check_cuts("W3", &w, 2, whole.volume - removed, removed);
+    surface_free(&body);
+    wl_free(&uncut);
+    wl_free(&w);
+}
+END_TEST
+
+START_TEST(sticks) {
+    wl_frame axes = wl_axes(), rotated = wl_rotated();
+    workload w = wl_sticks(&axes);
+    check_cuts("W4", &w, 36, 0.995 * 0.995, 1 - 0.995 * 0.995);
+    wl_free(&w);
+    check_workload("W4r", wl_sticks(&rotated), 36);
+}
+END_TEST
+
+START_TEST(slabs_in_facets_and_corners) {
+    check_workload("D1", wl_facet_slab(0), 1);
+    check_workload("D1b", wl_facet_slab(1), 1);
+    check_workload("D1c", wl_oblique_slab(), 1);
+    check_workload("D2", wl_corner_slab(), 2);
+    check_workload("D3", wl_ulp_slab(0), 2);
+    check_workload("D3g", wl_ulp_slab(1), 2);
+}
+END_TEST
+
+START_TEST(slabs_that_end_inside) {
+    check_workload("P4", wl_partial(1e-4), 1);
+    check_workload("P9", wl_partial(1e-9), 1);
+    check_workload("P12", wl_partial(1e-12), 1);
+    check_workload("P15", wl_partial(1e-15), 1);
+}
+END_TEST
+
+START_TEST(thin_slabs) {
+    check_workload("T8", wl_through(1e-8), 2);
+    check_workload("T12", wl_through(1e-12), 2);
+    check_workload("T15", wl_through(1e-15), 2);
+}
+END_TEST
+
+START_TEST(corners_cut_off) {
+    check_workload("C3", wl_corner_cut(1e-3), 2);
+    check_workload("C6", wl_corner_cut(1e-6), 2);
+    check_workload("C9", wl_corner_cut(1e-9), 2);
+    check_workload("C14", wl_corner_cut(1e-14), 2);
+}
+END_TEST
+
+/* ---- random solids on a lattice ---- */
+
+static void add_box(wl_surface *s, int size) {
+    double low[3], high[3];
+    int k;
+    for (k = 0; k < 3; ++k) {
+        low[k] = random_below(size);
+        high[k] = low[k] + 1 + random_below(size);
+    }
+    wl_add_aligned_box(s, low, high);
+}
+
+/* A tetrahedron with corners on the lattice, oriented outward */
+static void add_tetrahedron(wl_surface *s, int size) {
+    static const int faces[4][3] = { { 1, 2, 3 }, { 0, 3, 2 }, { 0, 1, 3 }, { 0, 2, 1 } };
+    double x[4][3];
+    uint32_t n[4];
+    int i, k, side = 0;
+    while (side == 0) {
+        for (i = 0; i < 4; ++i) for (k = 0; k < 3; ++k) x[i][k] = random_below(size + 1);
+        side = gxb_orient3d(x[1], x[2], x[3], x[0]);
+    }
+    for (i = 0; i < 4; ++i) n[i] = wl_add_vertex(s, x[i]);
+    if (side < 0) { uint32_t swap = n[0]; n[0] = n[1]; n[1] = swap; }
+    for (i = 0; i < 4; ++i) wl_add_triangle(s, n[faces[i][0]], n[faces[i][1]], n[faces[i][2]]);
+}
+
+/* One to three boxes and tetrahedra: they may lie in, on and through each other. */
+static wl_surface random_solid(int parts) {
+    wl_surface s;
+    memset(&s, 0, sizeof s);
+    for (parts = 1 + random_below(parts); parts > 0; --parts) if (random_below(2)) add_box(&s, 3); else add_tetrahedron(&s, 4);
+    return s;
+}
+
+/* 1: turned, so that what was flat or equal is so but for rounding; 2: coordinates moved by units of their last place, the surface torn nowhere */
+static void disturb(wl_surface *s, int how) {
+    wl_frame rotated = wl_rotated();
+    size_t i;
+    for (i = 0; i < s->vertex_count && how == 1; ++i) {
+        double x[3];
+        memcpy(x, s->vertices + 3 * i, sizeof x);
+        wl_place(&rotated, x, s->vertices + 3 * i);
+    }
+    for (i = 0; i < 3 * s->vertex_count && how == 2; ++i) s->vertices[i] *= 1 + (random_below(5) - 2) * ldexp(1, -52);
+}
+
+static double volume_of(const wl_surface *s) {
+    gxb_operand o = operand_of(s, GXB_UNION);
+    return evaluate(&o, 1, 0).volume;
+}
+
+/* vol(A) + vol(B) = vol(A or B) + vol(A and B), and what follows for the others */
+static void check_volumes(const wl_surface *p, const wl_surface *q, unsigned seed) {
+    double vp = volume_of(p), vq = volume_of(q), size = vp + vq;
+    double both = combine(p, GXB_INTERSECTION, q).volume, any = combine(p, GXB_UNION, q).volume;
+    double minus = combine(p, GXB_DIFFERENCE, q).volume, one = combine(p, GXB_SYMMETRIC_DIFFERENCE, q).volume;
+    CHECK_CASE(close_to(both + any, size, size), "seed %u: %.17g and %.17g have %.17g in common and %.17g together", seed, vp, vq, both, any);
+    CHECK_CASE(close_to(minus + both, vp, size), "seed %u: %.17g less %.17g is %.17g", seed, vp, both, minus);
+    CHECK_CASE(close_to(one + both, any, size), "seed %u: only one: %.17g, both: %.17g, any: %.17g", seed, one, both, any);
+    CHECK_CASE(close_to(combine(p, GXB_UNION, p).volume, vp, size), "seed %u: with itself", seed);
+    CHECK_CASE(combine(p, GXB_DIFFERENCE, p).triangles == 0, "seed %u: less itself", seed);
+}
+
+START_TEST(volumes_add_up) {
+    unsigned seed;
+    for (seed = 1; seed <= 250; ++seed) {
+        wl_surface p, q;
+        random_state = seed;
+        p = random_solid(3); q = random_solid(3);
+        disturb(&p, (int)(seed % 3)); disturb(&q, (int)(seed % 3));
+        check_volumes(&p, &q, seed);
+        surface_free(&p); surface_free(&q);
+    }
+}
+END_TEST
+
+/* x, y, z become y, -x, z (a rotation) or the lattice times 3/8 plus a shift (rounding-free); order of triangles and corners turned */
+static wl_surface moved(const wl_surface *s, int how) {
+    wl_surface m;
+    size_t i;
+    memset(&m, 0, sizeof m);
+    for (i = 0; i < s->vertex_count; ++i) {
+        const double *x = s->vertices + 3 * (how == 2 ? s->vertex_count - 1 - i : i);
+        double y[3] = { x[0], x[1], x[2] };
+        if (how == 0) { y[0] = x[1]; y[1] = -x[0]; }
+        if (how == 1) { y[0] = 0.375 * x[0] + 5; y[1] = 0.375 * x[1] - 2; y[2] = 0.375 * x[2]; }
+        wl_add_vertex(&m, y);
+    }
+    for (i = 0; i < s->triangle_count; ++i) {
+        const uint32_t *t = s->triangles + 3 * (how == 2 ? s->triangle_count - 1 - i : i);
+        const uint32_t n = (uint32_t)s->vertex_count - 1;
+        if (how == 2) wl_add_triangle(&m, n - t[1], n - t[2], n - t[0]);
+        else wl_add_triangle(&m, t[0], t[1], t[2]);
+    }
+    return m;
+}
+
+START_TEST(the_same_from_elsewhere) {
+    unsigned seed;
+    int how;
+    for (seed = 1; seed <= 100; ++seed) {
+        wl_surface p, q;
+        answer a;
+        random_state = 1000 + seed;
+        p = random_solid(2); q = random_solid(3);
+        a = combine(&p, GXB_DIFFERENCE, &q);
+        for (how = 0; how < 3; ++how) {
+            wl_surface pm = moved(&p, how), qm = moved(&q, how);
+            double scale = how == 1 ? 0.375 * 0.375 * 0.375 : 1;
+            answer m = combine(&pm, GXB_DIFFERENCE, &qm);
+            CHECK_CASE(m.components == a.components, "seed %u, %d: %zu components, were %zu", seed, how, m.components, a.components);
+            CHECK_CASE(close_to(m.volume, scale * a.volume, scale * 64), "seed %u, %d: volume %.17g of %.17g", seed, how, m.volume, a.volume);
+            surface_free(&pm); surface_free(&qm);
+        }
+        surface_free(&p); surface_free(&q);
+    }
+}
+END_TEST
+
+/* A tetrahedron less a random solid, beside the exact oracle */
+START_TEST(random_cuts_beside_the_oracle) {
+    unsigned seed;
+    for (seed = 1; seed <= 60; ++seed) {
+        static const int order[4] = { 0, 2, 1, 3 };
+        workload w = wl_empty();
+        wl_surface body, *cut;
+        oracle *truth;
+        answer a;
+        int k;
+        memset(&body, 0, sizeof body);
+        random_state = 2000 + seed;
+        add_tetrahedron(&body, 4);
+        for (k = 0; k < 4; ++k) { const double *x = body.vertices + 3 * order[k]; wl_add_node(&w, x[0], x[1], x[2]); }
+        wl_add_element(&w, 0, 1, 2, 3);
+        cut = wl_add_surface(&w, 1);
+        if (random_below(2)) add_box(cut, 3); else add_tetrahedron(cut, 4);
+        if (random_below(3) == 0) add_tetrahedron(cut, 4);
+        truth = wl_oracle(&w);
+        a = combine(&body, GXB_DIFFERENCE, cut);
+        CHECK_CASE(close_to(a.volume, truth->volume, 64), "seed %u: volume %.17g, should be %.17g", seed, a.volume, truth->volume);
+        CHECK_CASE(a.components == truth->fragment_count, "seed %u: %zu components, should be %zu", seed, a.components, truth->fragment_count);
+        a = combine(&body, GXB_INTERSECTION, cut);
+        CHECK_CASE(close_to(a.volume, wl_removed_volume(truth), 64), "seed %u: common %.17g", seed, a.volume);
+        oracle_destroy(truth);
+        surface_free(&body);
+        wl_free(&w);
+    }
+}
+END_TEST
+
+/* ---- chains ---- */
+
+START_TEST(chains_are_exact) {
+    unsigned seed;
+    for (seed = 1; seed <= 60; ++seed) {
+        wl_surface s[6];
+        gxb_operand o[6];
+        answer once, each;
+        size_t i;
+        random_state = 3000 + seed;
+        for (i = 0; i < 6; ++i) {
+            s[i] = random_solid(2);
+            disturb(&s[i], (int)(seed % 3));
+            o[i] = operand_of(&s[i], i == 0 ? (uint32_t)GXB_UNION : (uint32_t)random_below(4));
+        }
+        once = evaluate(o, 6, 0);
+        each = evaluate(o, 6, 1);
+        CHECK_CASE(once.components == each.components, "seed %u: %zu components at once, %zu in sequence", seed, once.components, each.components);
+        CHECK_CASE(close_to(once.volume, each.volume, 64), "seed %u: volume %.17g at once, %.17g in sequence", seed, once.volume, each.volume);
+        for (i = 0; i < 6; ++i) surface_free(&s[i]);
+    }
+}
+END_TEST
+
+/* ---- rules, nesting, sheets ---- */
+
+START_TEST(winding_rules) {
+    static const double low[3] = { 0, 0, 0 }, high[3] = { 2, 2, 2 }, low2[3] = { 1, 1, 1 }, high2[3] = { 3, 3, 3 };
+    wl_surface s;
+    gxb_operand o;
+    answer a;
+    memset(&s, 0, sizeof s);
+    wl_add_aligned_box(&s, low, high);          /* two boxes of one surface, a unit cube in common */
+    wl_add_aligned_box(&s, low2, high2);
+    o = operand_of(&s, GXB_UNION);
+    a = evaluate(&o, 1, 0);
+    check_answer("nonzero", &a, 1, 15);
+    o.rule = GXB_ODD;
+    a = evaluate(&o, 1, 0);
+    check_answer("odd", &a, 2, 14);
+    o.rule = GXB_NEGATIVE;
+    a = evaluate(&o, 1, 0);
+    ck_assert_uint_eq(a.triangles, 0);
+    o.rule = GXB_POSITIVE;
+    a = evaluate(&o, 1, 0);
+    check_answer("positive", &a, 1, 15);
+    surface_free(&s);
+}
+END_TEST
+
+START_TEST(cavities_belong_to_their_component) {
+    static const double low[3][3] = { { 0, 0, 0 }, { 1, 1, 1 }, { 2, 2, 2 } }, high[3][3] = { { 9, 9, 9 }, { 8, 8, 8 }, { 7, 7, 7 } };
+    wl_surface s[3];
+    gxb_operand o[3];
+    gxb_boolean *b = NULL;
+    gxb_boolean_result r;
+    int i;
+    memset(s, 0, sizeof s);
+    for (i = 0; i < 3; ++i) {
+        wl_add_aligned_box(&s[i], low[i], high[i]);
+        o[i] = operand_of(&s[i], i == 1 ? GXB_DIFFERENCE : GXB_UNION);
+    }
+    ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
+    for (i = 0; i < 3; ++i) ck_assert_int_eq(gxb_boolean_add(b, &o[i], NULL), GX_OK);
+    ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
+    ck_assert_uint_eq(r.component_count, 2);
+    ck_assert(r.component_volume[0] == 729 - 343 && r.component_volume[1] == 125);
+    gxb_boolean_destroy(b);
+    for (i = 0; i < 3; ++i) surface_free(&s[i]);
+}
+END_TEST
+
+/* Cubes that share an edge, a corner or a face */
+START_TEST(touching_solids) {
+    static const double one[3] = { 1, 1, 1 }, zero[3] = { 0, 0, 0 }, offset[3][3] = { { 1, 1, 0 }, { 1, 1, 1 }, { 1, 0, 0 } };
+    static const size_t components[3] = { 2, 2, 1 };
+    int i, k;
+    for (i = 0; i < 3; ++i) {
+        wl_surface p, q;
+        double high[3];
+        answer a;
+        memset(&p, 0, sizeof p); memset(&q, 0, sizeof q);
+        for (k = 0; k < 3; ++k) high[k] = offset[i][k] + 1;
+        wl_add_aligned_box(&p, zero, one);
+        wl_add_aligned_box(&q, offset[i], high);
+        a = combine(&p, GXB_UNION, &q);
+        check_answer("touching", &a, components[i], 2);
+        ck_assert_uint_eq(combine(&p, GXB_INTERSECTION, &q).triangles, 0);
+        surface_free(&p); surface_free(&q);
+    }
+}
+END_TEST
+
+/* A sheet across a cube divides it; one that ends inside, or floats there, does not. Nothing is lost. Component, side of the sheet: */
+static void check_sides(const wl_surface *cube, const wl_surface *sheet, size_t components) {
+    gxb_operand o[2];
+    gxb_boolean *b = NULL;
+    gxb_boolean_result r;
+    size_t i;
+    o[0] = operand_of(cube, GXB_UNION); o[1] = operand_of(sheet, GXB_SPLIT);
+    ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
+    for (i = 0; i < 2; ++i) ck_assert_int_eq(gxb_boolean_add(b, &o[i], NULL), GX_OK);
+    ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
+    ck_assert_uint_eq(r.component_count, components);
+    for (i = 0; i < components; ++i) ck_assert(r.component_side[2 * i] == 0 && (r.component_side[2 * i + 1] == 0) == (components == 1));
+    if (components == 2) ck_assert_int_eq(r.component_side[1], -r.component_side[3]);
+    for (i = 0; i < r.triangle_count; ++i) {        /* the sheet faces up: what lies in front of it is above */
+        const double z = r.vertices[3 * r.triangles[3 * i] + 2] + r.vertices[3 * r.triangles[3 * i + 1] + 2] + r.vertices[3 * r.triangles[3 * i + 2] + 2];
+        const int side = r.component_side[2 * r.triangle_component[i] + 1];
+        ck_assert(side == 0 || (z - 1.5) * side >= 0);
+        ck_assert(side == 0 || r.triangle_operand[i] == 0 || r.triangle_reversed[i] == (side == 1));
+    }
+    gxb_boolean_destroy(b);
+}
+
+START_TEST(sheets_divide) {
+    static const double zero[3] = { 0, 0, 0 }, one[3] = { 1, 1, 1 };
+    static const double reach[3] = { 2, 0.75, 0.75 }, start[3] = { -1, -1, 0.25 };
+    static const size_t components[3] = { 2, 1, 1 };
+    int i;
+    for (i = 0; i < 3; ++i) {
+        const double x0 = start[i], x1 = reach[i], z = 0.5;
+        const double a[3] = { x0, x0, z }, b[3] = { x1, x0, z }, c[3] = { x1, x1, z }, d[3] = { x0, x1, z };
+        wl_surface cube, sheet;
+        answer r;
+        memset(&cube, 0, sizeof cube); memset(&sheet, 0, sizeof sheet);
+        wl_add_aligned_box(&cube, zero, one);
+        wl_add_quad(&sheet, a, b, c, d);
+        r = combine(&cube, GXB_SPLIT, &sheet);
+        check_answer("sheet", &r, components[i], 1);
+        ck_assert_uint_gt(r.triangles, 12);
+        check_sides(&cube, &sheet, components[i]);
+        surface_free(&cube); surface_free(&sheet);
+    }
+}
+END_TEST
+
+/* ---- provenance ---- */
+
+static const double *corner(const gxb_operand *o, uint32_t operand, size_t triangle, size_t k) {
+    return o[operand].vertices + 3 * (size_t)o[operand].triangles[3 * triangle + k % 3];
+}
+
+/* Distance of x from a triangle's plane */
+static double off_plane(const gxb_operand *o, uint32_t operand, size_t triangle, const double *x) {
+    const double *p = corner(o, operand, triangle, 0), *q = corner(o, operand, triangle, 1), *r = corner(o, operand, triangle, 2);
+    double u[3], v[3], n[3], d = 0, size = 0;
+    int k;
+    for (k = 0; k < 3; ++k) { u[k] = q[k] - p[k]; v[k] = r[k] - p[k]; }
+    for (k = 0; k < 3; ++k) n[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+    for (k = 0; k < 3; ++k) { d += n[k] * (x[k] - p[k]); size += n[k] * n[k]; }
+    return fabs(d) / sqrt(size);
+}
+
+static double off_edge(const gxb_operand *o, uint32_t operand, size_t half_edge, const double *x) {
+    const double *p = corner(o, operand, half_edge / 3, half_edge % 3), *q = corner(o, operand, half_edge / 3, half_edge % 3 + 1);
+    double u[3], t = 0, size = 0, d = 0;
+    int k;
+    for (k = 0; k < 3; ++k) { u[k] = q[k] - p[k]; t += u[k] * (x[k] - p[k]); size += u[k] * u[k]; }
+    for (k = 0; k < 3; ++k) { const double e = x[k] - p[k] - t / size * u[k]; d += e * e; }
+    return sqrt(d);
+}
+
+static void check_origin(const gxb_operand *o, const gxb_origin *origin, const double *x) {
+    int k;
+    switch (origin->kind) {
+    case GXB_FROM_VERTEX: ck_assert_mem_eq(x, o[origin->operand[0]].vertices + 3 * (size_t)origin->index[0], 3 * sizeof *x); break;
+    case GXB_FROM_EDGE_TRIANGLE:
+        ck_assert(off_edge(o, origin->operand[0], origin->index[0], x) < 1e-13);
+        ck_assert(off_plane(o, origin->operand[1], origin->index[1], x) < 1e-13);
+        break;
+    case GXB_FROM_EDGE_EDGE: for (k = 0; k < 2; ++k) ck_assert(off_edge(o, origin->operand[k], origin->index[k], x) < 1e-13); break;
+    default: for (k = 0; k < 3; ++k) ck_assert(off_plane(o, origin->operand[k], origin->index[k], x) < 1e-13);
+    }
+}
+
+START_TEST(everything_knows_where_it_comes_from) {
+    wl_frame rotated = wl_rotated();
+    workload w = wl_sticks(&rotated);
+    wl_surface body = boundary_of(&w);
+    gxb_operand o[WL_SURFACES + 1];
+    gxb_boolean *b = NULL;
+    gxb_boolean_result r;
+    size_t i, kinds[4] = { 0, 0, 0, 0 };
+    ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
+    for (i = 0; i <= w.surface_count; ++i) {
+        o[i] = operand_of(i == 0 ? &body : &w.surfaces[i - 1], i == 0 ? GXB_UNION : GXB_DIFFERENCE);
+        ck_assert_int_eq(gxb_boolean_add(b, &o[i], NULL), GX_OK);
+    }
+    ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
+    for (i = 0; i < r.vertex_count; ++i) {
+        check_origin(o, &r.vertex_origin[i], r.vertices + 3 * i);
+        kinds[r.vertex_origin[i].kind]++;
+    }
+    ck_assert(kinds[0] == 8 && kinds[1] > 0 && kinds[3] > 0);
+    for (i = 0; i < 3 * r.triangle_count; ++i)
+        ck_assert(off_plane(o, r.triangle_operand[i / 3], r.triangle_source[i / 3], r.vertices + 3 * (size_t)r.triangles[i]) < 1e-13);
+    gxb_boolean_destroy(b);
+    surface_free(&body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- memory and bad input ---- */
+
+typedef struct memory { size_t live, calls, fail_at; int from_then_on; } memory;
+
+static void *take(void *user, size_t size) {
+    memory *m = (memory *)user;
+    const size_t call = m->calls++;
+    if (call == m->fail_at || (m->from_then_on && call > m->fail_at)) return NULL;
+    m->live += size;
+    return malloc(size);
+}
+
+static void give(void *user, void *block, size_t size) {
+    ((memory *)user)->live -= size;
+    free(block);
+}
+
+/* Adds three boxes and evaluates after each; a call that fails is made again, and then succeeds. */
+static answer stubborn(memory *m, const gxb_operand *o, int *failed) {
+    gxb_boolean_desc desc;
+    gxb_boolean *b = NULL;
+    gxb_boolean_result r;
+    gx_result result;
+    answer a;
+    int i;
+    memset(&desc, 0, sizeof desc);
+    desc.allocator.allocate = take; desc.allocator.release = give; desc.allocator.user = m;
+    *failed = 0;
+    for (i = -1; i < 6; ++i) {
+        for (;;) {
+            result = i < 0 ? gxb_boolean_create(&desc, &b) : i % 2 == 0 ? gxb_boolean_add(b, &o[i / 2], NULL) : gxb_boolean_evaluate(b, &r);
+            if (result == GX_OK) break;
+            ck_assert_int_eq(result, GX_ERROR_MEMORY);
+            ck_assert(m->fail_at != SIZE_MAX);
+            *failed = 1;
+            m->fail_at = SIZE_MAX;
+            m->from_then_on = 0;
+        }
+    }
+    m->fail_at = SIZE_MAX;
+    m->from_then_on = 0;
+    a = read_answer(b);
+    gxb_boolean_destroy(b);
+    ck_assert_uint_eq(m->live, 0);
+    return a;
+}
+
+START_TEST(memory_runs_out) {
+    static const double low[3][3] = { { 0, 0, 0 }, { 1, -1, 0 }, { -1, 1, 1 } }, high[3][3] = { { 3, 3, 3 }, { 2, 4, 3 }, { 4, 2, 2 } };
+    wl_surface s[3];
+    gxb_operand o[3];
+    size_t n;
+    int i, failed = 1;
+    memset(s, 0, sizeof s);
+    for (i = 0; i < 3; ++i) { wl_add_aligned_box(&s[i], low[i], high[i]); o[i] = operand_of(&s[i], i == 0 ? GXB_UNION : GXB_DIFFERENCE); }
+    for (i = 0; i < 2; ++i)
+        for (n = 0, failed = 1; failed; ++n) {
+            memory m = { 0, 0, 0, 0 };
+            answer a;
+            m.fail_at = n;
+            m.from_then_on = i;
+            a = stubborn(&m, o, &failed);
+            check_answer("after a failure", &a, 2, 27 - 9 - 2);
+            ck_assert_uint_lt(n, 5000);
+        }
+    for (i = 0; i < 3; ++i) surface_free(&s[i]);
+}
+END_TEST
+
+START_TEST(memory_limit) {
+    workload w = wl_wavy(1);
+    wl_surface body = boundary_of(&w);
+    gxb_operand o[2];
+    gxb_boolean_desc desc;
+    gxb_boolean_result r;
+    size_t limit, refused = 0;
+    int i;
+    o[0] = operand_of(&body, GXB_UNION); o[1] = operand_of(&w.surfaces[0], GXB_DIFFERENCE);
+    for (limit = 1 << 12; limit <= 1 << 23; limit *= 2) {
+        gxb_boolean *b = NULL;
+        gx_result result = GX_OK;
+        memset(&desc, 0, sizeof desc);
+        desc.memory_limit = limit;
+        ck_assert_int_eq(gxb_boolean_create(&desc, &b), GX_OK);
+        for (i = 0; i < 2 && result == GX_OK; ++i) result = gxb_boolean_add(b, &o[i], NULL);
+        if (result == GX_OK) result = gxb_boolean_evaluate(b, &r);
+        if (result == GX_OK) ck_assert(r.peak_bytes <= limit && r.component_count == 2);
+        else { ck_assert_int_eq(result, GX_ERROR_LIMIT); ++refused; }
+        gxb_boolean_destroy(b);
+    }
+    ck_assert(refused > 0 && refused < 12);
+    surface_free(&body);
+    wl_free(&w);
+}
+END_TEST
+
+static gx_result refusal(const gxb_operand *o, size_t *index) {
+    gxb_boolean *b = NULL;
+    gx_failure failure;
+    gx_result result;
+    ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
+    result = gxb_boolean_add(b, o, &failure);
+    *index = failure.index;
+    gxb_boolean_destroy(b);
+    return result;
+}
+
+START_TEST(bad_input_is_refused) {
+    static const double zero[3] = { 0, 0, 0 }, one[3] = { 1, 1, 1 };
+    wl_surface s;
+    gxb_operand good, o;
+    gxb_boolean *b = NULL;
+    gxb_boolean_result r;
+    size_t i;
+    double kept;
+    memset(&s, 0, sizeof s);
+    wl_add_aligned_box(&s, zero, one);
+    good = operand_of(&s, GXB_UNION);
+    ck_assert_int_eq(refusal(&good, &i), GX_OK);
+    o = good; o.operation = 99; ck_assert_int_eq(refusal(&o, &i), GX_ERROR_ARGUMENT);
+    o = good; o.vertices = NULL; ck_assert_int_eq(refusal(&o, &i), GX_ERROR_ARGUMENT);
+    o = good; o.triangle_count = 0; ck_assert_int_eq(refusal(&o, &i), GX_ERROR_EMPTY);
+    o = good; o.triangle_count = 11; ck_assert_int_eq(refusal(&o, &i), GX_ERROR_NOT_CLOSED);
+    o = good; o.vertex_count = 7; ck_assert_int_eq(refusal(&o, &i), GX_ERROR_INDEX);
+    kept = s.vertices[10];
+    s.vertices[10] = INFINITY; ck_assert_int_eq(refusal(&good, &i), GX_ERROR_NOT_FINITE); ck_assert_uint_eq(i, 3);
+    s.vertices[10] = 1e300; ck_assert_int_eq(refusal(&good, &i), GX_ERROR_RANGE);
+    s.vertices[10] = kept;
+    ck_assert_int_eq(gxb_boolean_create(NULL, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
+    ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_ERROR_EMPTY);
+    o = good; o.triangle_count = 11;            /* a refused operand leaves nothing behind */
+    ck_assert_int_eq(gxb_boolean_add(b, &o, NULL), GX_ERROR_NOT_CLOSED);
+    ck_assert_int_eq(gxb_boolean_add(b, &good, NULL), GX_OK);
+    ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
+    ck_assert(r.volume == 1 && r.component_count == 1 && r.triangle_count == 12);
+    gxb_boolean_destroy(b);
+    surface_free(&s);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("Booleans of surfaces");
+    TCase *tests = tcase_create("Booleans");
+    int result;
+    tcase_set_timeout(tests, 300);
+    tcase_add_test(tests, slabs);
+    tcase_add_test(tests, wavy_sheet);
+    tcase_add_test(tests, sticks);
+    tcase_add_test(tests, slabs_in_facets_and_corners);
+    tcase_add_test(tests, slabs_that_end_inside);
+    tcase_add_test(tests, thin_slabs);
+    tcase_add_test(tests, corners_cut_off);
+    tcase_add_test(tests, volumes_add_up);
+    tcase_add_test(tests, the_same_from_elsewhere);
+    tcase_add_test(tests, random_cuts_beside_the_oracle);
+    tcase_add_test(tests, chains_are_exact);
+    tcase_add_test(tests, winding_rules);
+    tcase_add_test(tests, cavities_belong_to_their_component);
+    tcase_add_test(tests, touching_solids);
+    tcase_add_test(tests, sheets_divide);
+    tcase_add_test(tests, everything_knows_where_it_comes_from);
+    tcase_add_test(tests, memory_runs_out);
+    tcase_add_test(tests, memory_limit);
+    tcase_add_test(tests, bad_input_is_refused);
+    suite_add_tcase(suite, tests);
+    result = run_suite(suite);
+    rat_arena_free();
+    return result;
+}
