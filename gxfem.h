@@ -4713,9 +4713,10 @@ static gx_result gxp_skin_whole(gx_body *body, gxp_skin_face *face) {
 static int gxp_face_is_whole(const gx_body *body, uint32_t element, uint32_t k) {
     const gxb_complex *cx = body->complex;
     const uint32_t facet = cx->face_facet[cx->element_faces[4 * element + k]];
-    const gxb_facet *f = &cx->facets[facet];
+    const gxb_facet *f;
     uint32_t other;
     if (facet == GXB_NONE) return 1;
+    f = &cx->facets[facet];
     other = f->leaf[f->leaf[0] == element];
     return f->child == GXB_NONE && !f->wall && (other == GXB_NONE || !cx->leaves[other].removed);
 }
