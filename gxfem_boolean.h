@@ -3461,8 +3461,9 @@ static void gxbp_check_edges(gxb_complex *cx, gxb_stream *s, const uint32_t *dep
     for (i = 0; i < 6 * cx->element_count && s->result == GX_OK; i++) {
         const uint32_t edge = cx->mesh_edge[cx->element_edges[i]], *node = cx->elements + 4 * (size_t)(i / 6);
         const uint32_t a = node[gxbp_edge_nodes[i % 6][0]], b = node[gxbp_edge_nodes[i % 6][1]];
-        const gxb_edge *e = &cx->edges[edge == GXB_NONE ? 0 : edge];
+        const gxb_edge *e;
         if (edge == GXB_NONE) continue;
+        e = &cx->edges[edge];
         gxbp_require_true(s, depth[edge] == 0 && e->explicit_line && e->line[0] == (a < b ? a : b) && e->line[1] == (a < b ? b : a) &&
                              memcmp(e->v, e->line, sizeof e->v) == 0);
     }
