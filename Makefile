@@ -107,7 +107,7 @@ bench-solver:
 	@$(MAKE) --no-print-directory $(BUILD)/bench/solver >&2
 	@$(BUILD)/bench/solver --out $(BUILD)/bench $(BENCH)
 
-$(BUILD)/bench/solver: bench/solver.c bench/block.h $(headers)
+$(BUILD)/bench/solver: bench/solver.c bench/block.h bench/clock.h $(headers)
 	@mkdir -p $(@D)
 	$(CC) -std=c99 $(WARNINGS) $(BENCH_CFLAGS) -pthread $(shell pkg-config --cflags CHOLMOD 2>/dev/null) $< -o $@ $(LDFLAGS) \
 	    $(shell pkg-config --libs CHOLMOD 2>/dev/null || echo -lcholmod) -lm
@@ -122,7 +122,7 @@ $(BUILD)/bench/accuracy $(BUILD)/bench/drift $(BUILD)/bench/conditioning $(BUILD
 bench-kernel: $(BUILD)/bench/kernel
 	@$< $(BUILD)/bench/kernel.csv $(DATA)
 
-$(BUILD)/bench/kernel: bench/kernel.c bench/csv.h tests/workloads.h tests/oracle.h tests/rational.h gxfem_boolean.h
+$(BUILD)/bench/kernel: bench/kernel.c bench/clock.h bench/csv.h tests/workloads.h tests/oracle.h tests/rational.h gxfem_boolean.h
 	@mkdir -p $(@D)
 	@$(CC) -std=c99 $(WARNINGS) $(BENCH_CFLAGS) $< -o $@ $(LDFLAGS) -lm
 

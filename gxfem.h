@@ -487,6 +487,8 @@ struct gx_body {
     uint32_t *cell_stamp; uint32_t cell_stamp_capacity;
     uint32_t stamp, scope_stamp;
     int held_stale, model_stale, view_stale, sums_stale;
+    int labels_known;               /* copy_fragment and fragment_number hold for copies older than splits, and nothing has been removed */
+    gxp_words splits;               /* copies made since then, each with the one it comes from */
     gxs_element *parts; uint32_t part_count, part_capacity;     /* there only while the solver's model is made; part_count stays */
     double *rest; uint32_t rest_capacity;               /* copies, x 3 doubles: where they are at rest, m; as long */
     gxs_material *elastic; uint32_t elastic_capacity;   /* materials for the solver; as long */
@@ -1023,12 +1025,12 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     gxp_skin_free(body);
     gxp_release(&a, body->lambdas, (size_t)body->lambda_capacity * 4 * sizeof(double));
     {
-        gxp_words *words[18];
+        gxp_words *words[19];
         words[0] = &body->view_cells; words[1] = &body->view_fragments; words[2] = &body->copy_fragment; words[3] = &body->cell_element;
         words[4] = &body->cell_copies; words[5] = &body->fragment_number; words[6] = &body->point_slot; words[7] = &body->triangles;
         words[8] = &body->touched; words[9] = &body->nodes; words[10] = &body->queue; words[11] = &body->seeds; words[12] = &body->faces;
-        words[13] = &body->fresh; words[14] = &body->list; words[15] = &body->removed; words[16] = &body->dead; words[17] = &body->pinches;
-        for (i = 0; i < 18; i++) gxp_words_free(body, words[i]);
+        words[13] = &body->fresh; words[14] = &body->list; words[15] = &body->removed; words[16] = &body->dead; words[17] = &body->pinches; words[18] = &body->splits;
+        for (i = 0; i < 19; i++) gxp_words_free(body, words[i]);
     }
     gxs_solver_destroy(body->solver);
     gxb_complex_destroy(body->complex);
@@ -1037,7 +1039,7 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
 
 /* >>transaction: a cut changes cells and leaves in place; an undo log, the counts and the complex's own log take it back ------- */
 
-typedef struct gxp_counts { uint32_t cells, leaves, copies, labels, surfaces, maps, dirty; } gxp_counts;
+typedef struct gxp_counts { uint32_t cells, leaves, copies, labels, surfaces, maps, dirty, splits; } gxp_counts;
 
 /* What one cut works with. */
 typedef struct gxp_cut {
@@ -1075,6 +1077,7 @@ static void gxp_begin(gxp_cut *cut) {
     cut->before.cells = body->cell_count; cut->before.leaves = body->leaf_count;
     cut->before.copies = body->copy_count; cut->before.labels = body->label_count;
     cut->before.surfaces = body->surface_count; cut->before.maps = body->map_count; cut->before.dirty = body->skin.dirty.count;
+    cut->before.splits = body->splits.count;
 }
 
 static void gxp_rollback(gxp_cut *cut) {
@@ -1087,6 +1090,7 @@ static void gxp_rollback(gxp_cut *cut) {
     body->cell_count = cut->before.cells; body->leaf_count = cut->before.leaves;
     body->copy_count = cut->before.copies; body->label_count = cut->before.labels;
     body->surface_count = cut->before.surfaces; body->map_count = cut->before.maps; body->skin.dirty.count = cut->before.dirty;
+    body->splits.count = cut->before.splits;
     gxb_complex_rollback(body->complex);
 }
 
@@ -2110,13 +2114,15 @@ static gx_result gxp_walk_component(gx_body *body, uint32_t cell, uint32_t node)
 
 /* A further copy of a node's displacement, with the values of the one it comes from (GXFEM Algorithm 1, line 7). */
 static gx_result gxp_new_copy(gx_body *body, uint32_t from, uint32_t *copy) {
-    const gx_result result = gxp_reserve_copies(body, 1);
+    gx_result result = gxp_reserve_copies(body, 1);
     if (result != GX_OK) return result;
     *copy = body->copy_count++;
     body->copy_node[*copy] = body->copy_node[from];
     gxp_copy_state(body, from, *copy);
     body->copy_label[*copy] |= 1;
-    return GX_OK;
+    if (!body->labels_known) return GX_OK;
+    result = gxp_push(body, &body->splits, *copy);
+    return result == GX_OK ? gxp_push(body, &body->splits, from) : result;
 }
 
 static gx_result gxp_set_copy(gx_body *body, uint32_t node, uint32_t copy) {
@@ -2454,6 +2460,8 @@ static void gxp_commit(gxp_cut *cut) {
     body->undo_count = 0;
     body->past = gxp_hash_cut(body->past, cut->desc);
     body->held_stale = body->model_stale = body->view_stale = body->look_stale = 1;
+    if (body->removed.count + body->dead.count > 0 || body->splits.count > body->copy_count) body->labels_known = 0;
+    if (!body->labels_known) body->splits.count = 0;
 }
 
 /* Removes what the solids have found. The cells of these leaves, and those beside them, are touched. */
@@ -2768,6 +2776,7 @@ static gx_result gxp_list_cells(gx_body *body) {
     if (result == GX_OK) result = gxp_set_words(body, &body->copy_fragment, body->copy_count);
     if (result == GX_OK) result = gxp_reserve(&body->allocator, &body->cell_volume, sizeof(double), 0, &body->cell_volume_capacity, body->cell_count);
     if (result != GX_OK) return result;
+    body->copy_fragment.count = body->copy_count;
     for (i = 0; i < body->copy_count; i++) body->copy_fragment.data[i] = i;
     for (e = 0; e < body->element_count; e++) for (cell = e; cell != GXP_NONE; cell = body->cells[cell].next) {
         const gxp_cell *c = &body->cells[cell];
@@ -2898,11 +2907,54 @@ static gx_result gxp_sum_fragments(gx_body *body) {
 static gx_result gxp_update_view(gx_body *body) {
     gx_result result;
     if (!body->view_stale) return GX_OK;
+    body->labels_known = 0;
     result = gxp_list_cells(body);
     if (result == GX_OK) result = gxp_number_fragments(body);
     if (result != GX_OK) return result;
     body->view_stale = 0;
-    body->sums_stale = 1;
+    body->sums_stale = body->labels_known = 1;
+    body->splits.count = 0;
+    return GX_OK;
+}
+
+/* Joins copies by the cells around the nodes of new ones, and no others: in scratch->data. */
+static gx_result gxp_join_around_splits(gx_body *body, gxp_words *scratch) {
+    uint32_t i, j, k, cell, *parent;
+    gx_result result = gxp_set_words(body, scratch, body->copy_count);
+    parent = scratch->data;
+    body->queue.count = 0;
+    body->stamp++;
+    for (i = 0; i < body->splits.count; i += 2) {
+        const uint32_t node = body->copy_node[body->splits.data[i]];
+        for (j = body->node_start[node]; j < body->node_start[node + 1]; j++)
+            for (cell = body->node_elements[j]; cell != GXP_NONE && result == GX_OK; cell = body->cells[cell].next)
+                if (body->cells[cell].kept) result = gxp_visit_cell(body, cell);
+    }
+    if (result != GX_OK) return result;
+    for (i = 0; i < body->queue.count; i++) for (k = 0; k < 4; k++) {
+        const uint32_t copy = body->cells[body->queue.data[i]].copies[k];
+        parent[copy] = copy;
+    }
+    for (i = 0; i < body->queue.count; i++) gxp_unite_all(parent, body->cells[body->queue.data[i]].copies);
+    return GX_OK;
+}
+
+/* Which fragment each copy is in. Where all new copies still hang together with those they come from, around the nodes they are at, no
+   fragment has fallen apart: sheets take nothing away, so that whatever hung together by old copies does so by their descendants. */
+static gx_result gxp_update_labels(gx_body *body) {
+    const gxp_words *splits = &body->splits;
+    uint32_t i;
+    gx_result result;
+    if (!body->view_stale || (body->labels_known && splits->count == 0)) return GX_OK;
+    if (!body->labels_known) return gxp_update_view(body);
+    result = gxp_join_around_splits(body, &body->list);
+    for (i = 0; i < splits->count && result == GX_OK; i += 2)
+        if (gxp_find(body->list.data, splits->data[i]) != gxp_find(body->list.data, splits->data[i + 1])) return gxp_update_view(body);
+    if (result == GX_OK) result = gxp_words_room(body, &body->copy_fragment, body->copy_count - body->copy_fragment.count);
+    if (result != GX_OK) return result;
+    body->copy_fragment.count = body->copy_count;
+    for (i = 0; i < splits->count; i += 2) body->copy_fragment.data[splits->data[i]] = gxp_find(body->copy_fragment.data, splits->data[i + 1]);
+    body->splits.count = 0;
     return GX_OK;
 }
 
@@ -3736,6 +3788,7 @@ static void gxp_load_topology(gxb_stream *s, gx_body *body, int trusted) {
     gxp_pass_cells(s, body);
     if (s->result == GX_OK && !trusted) gxp_check_topology(s, body);
     body->held_stale = body->model_stale = body->view_stale = 1;
+    body->labels_known = 0;
 }
 
 /* --- state: all else. Whoever adds some to gx_body adds it to gxp_pass_state, and to gxp_state_room where it takes room --- */
@@ -4854,7 +4907,7 @@ static gx_result gxp_remake_elements(gx_body *body) {
 static gx_result gxp_mark_fragments(gx_body *body) {
     gxp_skin *s = &body->skin;
     uint32_t t;
-    const gx_result result = gxp_update_view(body);
+    const gx_result result = gxp_update_labels(body);
     for (t = 0; t < s->triangle_count && result == GX_OK; t++)
         s->fragment[t] = body->fragment_number.data[gxp_find(body->copy_fragment.data, s->copies[4 * (size_t)s->triangles[3 * (size_t)t]])];
     return result;

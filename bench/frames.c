@@ -9,31 +9,10 @@
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "block.h"
+#include "clock.h"
 #include "csv.h"
-#include <time.h>
 
 enum { FRAMES_BETWEEN = 4, MOST_FRAMES = 1024 };
-
-static double seconds(void *user)
-{
-    struct timespec now;
-    (void)user;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static double median(double *values, size_t count)
-{
-    if (count == 0) return 0;
-    qsort(values, count, sizeof *values, ascending);
-    return values[count / 2];
-}
 
 static void check(gx_result result)
 {

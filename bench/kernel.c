@@ -11,25 +11,12 @@
 #define GXFEM_BOOLEAN_IMPLEMENTATION
 #include "../gxfem_boolean.h"
 #include "../tests/workloads.h"
+#include "clock.h"
 #include "csv.h"
 #include <dirent.h>
-#include <time.h>
 
 enum { OPERANDS = 64, CALLS = 100000, NAMES = 512, NAME = 64 };
 static const double SECONDS = 0.3;
-
-static double microseconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return 1e6 * (double)now.tv_sec + 1e-3 * (double)now.tv_nsec;
-}
-
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 static void stop_at(const char *what, gx_result result)
 {
@@ -65,16 +52,17 @@ static figures run(const char *name, const gxb_operand *operands, size_t count, 
 static void measure(const char *name, const char *mark, const gxb_operand *operands, size_t count, int each)
 {
     static double us[CALLS];
-    const double start = microseconds();
+    const double start = seconds(NULL);
+    double middle;
     figures f;
     size_t n = 0;
     do {
-        const double before = microseconds();
+        const double before = seconds(NULL);
         f = run(name, operands, count, each);
-        us[n++] = microseconds() - before;
-    } while (n < CALLS && (n < 3 || microseconds() - start < 1e6 * SECONDS));
-    qsort(us, n, sizeof *us, ascending);
-    csv_row("%s%s,%.1f,%.1f,%lu,%lu,%.17g,%.4f,%.4f,%lu,%lu", name, mark, us[n / 2], us[0], (unsigned long)f.triangles,
+        us[n++] = 1e6 * (seconds(NULL) - before);
+    } while (n < CALLS && (n < 3 || seconds(NULL) - start < SECONDS));
+    middle = median(us, n);
+    csv_row("%s%s,%.1f,%.1f,%lu,%lu,%.17g,%.4f,%.4f,%lu,%lu", name, mark, middle, us[0], (unsigned long)f.triangles,
             (unsigned long)f.components, f.volume, f.filter == 0 ? 1 : 1 - (double)f.exact / (double)f.filter,
             f.filter == 0 ? 0 : (double)f.exact / (double)f.filter, (unsigned long)f.allocations, (unsigned long)f.peak);
 }

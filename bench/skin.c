@@ -10,29 +10,10 @@
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "block.h"
+#include "clock.h"
 #include "csv.h"
-#include <time.h>
 
 enum { CALLS = 51, MOST_STRIPS = 64 };
-
-static double milliseconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
-}
-
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static double median(double *values, size_t count)
-{
-    qsort(values, count, sizeof *values, ascending);
-    return values[count / 2];
-}
 
 static void check(gx_result result)
 {
@@ -69,13 +50,13 @@ static void measure_frames(uint32_t cells)
     normals = (float *)malloc(3 * skin.vertex_count * sizeof *normals);
     check(positions && normals ? GX_OK : GX_ERROR_MEMORY);
     for (i = 0; i < CALLS; i++) {
-        const double start = milliseconds();
+        const double start = 1e3 * seconds(NULL);
         check(gx_body_skin_vertices(body, NULL, positions, NULL));
-        times[0][i] = milliseconds() - start;
+        times[0][i] = 1e3 * seconds(NULL) - start;
         check(gx_body_skin_vertices(body, NULL, positions, normals));
-        times[1][i] = milliseconds() - start - times[0][i];
+        times[1][i] = 1e3 * seconds(NULL) - start - times[0][i];
         check(gx_body_pick(body, from, along, &hit));
-        times[2][i] = milliseconds() - start - times[0][i] - times[1][i];
+        times[2][i] = 1e3 * seconds(NULL) - start - times[0][i] - times[1][i];
     }
     csv_row("frame,%u,%lu,%lu,%.0f,%.0f,%.0f,,,,,", cells, (unsigned long)skin.vertex_count, (unsigned long)skin.triangle_count,
             1e3 * median(times[0], CALLS), 1e3 * median(times[1], CALLS), 1e3 * median(times[2], CALLS));
@@ -96,20 +77,20 @@ static void measure_cuts(uint32_t cells)
     size_t r;
     check(gx_body_skin(body, &desc, &skin));
     for (i = 0; i < strips; i++) {
-        start = milliseconds();
+        start = 1e3 * seconds(NULL);
         check(block_cut_rectangle(body, 2, 0.4711, i == 0 ? -0.1 : (i + 0.37) / cells, (i + 1.37) / cells));
-        cut[i] = milliseconds() - start;
-        start = milliseconds();
+        cut[i] = 1e3 * seconds(NULL) - start;
+        start = 1e3 * seconds(NULL);
         check(gx_body_skin(body, &desc, &skin));
-        rebuild[i] = milliseconds() - start;
-        start = milliseconds();
+        rebuild[i] = 1e3 * seconds(NULL) - start;
+        start = 1e3 * seconds(NULL);
         check(gx_body_view(body, &seen));
-        view[i] = milliseconds() - start;
+        view[i] = 1e3 * seconds(NULL) - start;
         for (r = 0, share[i] = 0; r < skin.triangle_range_count; r++) share[i] += skin.triangle_ranges[r].count / (double)skin.triangle_count;
     }
-    start = milliseconds();
+    start = 1e3 * seconds(NULL);
     check(gx_body_skin(body, &other, &skin));
-    start = milliseconds() - start;
+    start = 1e3 * seconds(NULL) - start;
     csv_row("cut,%u,%lu,%lu,,,,%.3f,%.3f,%.3f,%.2f,%.4f", cells, (unsigned long)skin.vertex_count, (unsigned long)skin.triangle_count,
             median(cut, strips), median(rebuild, strips), median(view, strips), start, median(share, strips));
     gx_body_destroy(body);

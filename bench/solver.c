@@ -34,6 +34,7 @@
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "block.h"
+#include "clock.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -41,7 +42,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 /* Distributions have it in a folder of its own or not. */
 #if defined(__has_include)
@@ -67,14 +67,6 @@ static const uint32_t cg_limit = 20000;
 static const double direct_bytes = 2e9, direct_operations = 5e11;
 
 /* -------------------------------------------------------------------------------------------------- >>host */
-
-static double seconds(void *user)
-{
-    struct timespec now;
-    (void)user;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 /* malloc, counted; on the thread of the solver's calls only */
 typedef struct meter {
@@ -226,18 +218,6 @@ static gxs_step_desc step_make(int number)
     step.cg_tolerance = 1e-2;
     step.clock = seconds;
     return step;
-}
-
-static int compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
-}
-
-static double median(double *values, size_t count)
-{
-    qsort(values, count, sizeof *values, compare);
-    return count == 0 ? 0.0 : 0.5 * (values[(count - 1) / 2] + values[count / 2]);
 }
 
 static void take_sample(samples *s, const gxs_step_report *report, double step)

@@ -177,36 +177,11 @@ START_TEST(sticks) {
 }
 END_TEST
 
-START_TEST(slabs_in_facets_and_corners) {
-    check_workload("D1", wl_facet_slab(0), 1);
-    check_workload("D1b", wl_facet_slab(1), 1);
-    check_workload("D1c", wl_oblique_slab(), 1);
-    check_workload("D2", wl_corner_slab(), 2);
-    check_workload("D3", wl_ulp_slab(0), 2);
-    check_workload("D3g", wl_ulp_slab(1), 2);
-}
-END_TEST
-
-START_TEST(slabs_that_end_inside) {
-    check_workload("P4", wl_partial(1e-4), 1);
-    check_workload("P9", wl_partial(1e-9), 1);
-    check_workload("P12", wl_partial(1e-12), 1);
-    check_workload("P15", wl_partial(1e-15), 1);
-}
-END_TEST
-
-START_TEST(thin_slabs) {
-    check_workload("T8", wl_through(1e-8), 2);
-    check_workload("T12", wl_through(1e-12), 2);
-    check_workload("T15", wl_through(1e-15), 2);
-}
-END_TEST
-
-START_TEST(corners_cut_off) {
-    check_workload("C3", wl_corner_cut(1e-3), 2);
-    check_workload("C6", wl_corner_cut(1e-6), 2);
-    check_workload("C9", wl_corner_cut(1e-9), 2);
-    check_workload("C14", wl_corner_cut(1e-14), 2);
+START_TEST(hard_slabs_and_corners) {
+    const char *name;
+    size_t pieces;
+    workload w = wl_hard(_i, &name, &pieces);
+    check_workload(name, w, pieces);
 }
 END_TEST
 
@@ -713,10 +688,7 @@ int main(void) {
     tcase_add_test(tests, slabs);
     tcase_add_test(tests, wavy_sheet);
     tcase_add_test(tests, sticks);
-    tcase_add_test(tests, slabs_in_facets_and_corners);
-    tcase_add_test(tests, slabs_that_end_inside);
-    tcase_add_test(tests, thin_slabs);
-    tcase_add_test(tests, corners_cut_off);
+    tcase_add_loop_test(tests, hard_slabs_and_corners, 0, WL_HARD);
     tcase_add_test(tests, volumes_add_up);
     tcase_add_test(tests, the_same_from_elsewhere);
     tcase_add_test(tests, random_cuts_beside_the_oracle);

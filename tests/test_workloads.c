@@ -163,36 +163,11 @@ START_TEST(w4_sticks_rotated) {
 }
 END_TEST
 
-START_TEST(d_slabs_in_facets_and_corners) {
-    check_workload("D1", wl_facet_slab(0), 1);
-    check_workload("D1b", wl_facet_slab(1), 1);
-    check_workload("D1c", wl_oblique_slab(), 1);
-    check_workload("D2", wl_corner_slab(), 2);
-    check_workload("D3", wl_ulp_slab(0), 2);
-    check_workload("D3g", wl_ulp_slab(1), 2);
-}
-END_TEST
-
-START_TEST(p_slab_ends_inside) {
-    check_workload("P4", wl_partial(1e-4), 1);
-    check_workload("P9", wl_partial(1e-9), 1);
-    check_workload("P12", wl_partial(1e-12), 1);
-    check_workload("P15", wl_partial(1e-15), 1);
-}
-END_TEST
-
-START_TEST(t_slab_goes_through) {
-    check_workload("T8", wl_through(1e-8), 2);
-    check_workload("T12", wl_through(1e-12), 2);
-    check_workload("T15", wl_through(1e-15), 2);
-}
-END_TEST
-
-START_TEST(c_corner_cut_off) {
-    check_workload("C3", wl_corner_cut(1e-3), 2);
-    check_workload("C6", wl_corner_cut(1e-6), 2);
-    check_workload("C9", wl_corner_cut(1e-9), 2);
-    check_workload("C14", wl_corner_cut(1e-14), 2);
+START_TEST(hard_slabs_and_corners) {
+    const char *name;
+    size_t pieces;
+    workload w = wl_hard(_i, &name, &pieces);
+    check_workload(name, w, pieces);
 }
 END_TEST
 
@@ -208,10 +183,7 @@ int main(void) {
     tcase_add_test(tests, w3_solidified_by_the_library);
     tcase_add_test(tests, w4_sticks);
     tcase_add_test(tests, w4_sticks_rotated);
-    tcase_add_test(tests, d_slabs_in_facets_and_corners);
-    tcase_add_test(tests, p_slab_ends_inside);
-    tcase_add_test(tests, t_slab_goes_through);
-    tcase_add_test(tests, c_corner_cut_off);
+    tcase_add_loop_test(tests, hard_slabs_and_corners, 0, WL_HARD);
     suite_add_tcase(suite, tests);
     result = run_suite(suite);
     rat_arena_free();

@@ -455,6 +455,22 @@ static inline workload wl_ulp_slab(int general) {
 
 /* ---- views of a workload ---- */
 
+/* The hard slabs and corners by name: D coplanar and through nodes, P ends inside, T through and thin, C cuts off a corner. pieces: what
+   is left. */
+enum { WL_HARD = 17 };
+static inline workload wl_hard(int i, const char **name, size_t *pieces) {
+    static const char *const names[WL_HARD] = { "D1", "D1b", "D1c", "D2", "D3", "D3g", "P4", "P9", "P12", "P15", "T8", "T12", "T15", "C3", "C6", "C9", "C14" };
+    static const double size[WL_HARD] = { 0, 0, 0, 0, 0, 0, 1e-4, 1e-9, 1e-12, 1e-15, 1e-8, 1e-12, 1e-15, 1e-3, 1e-6, 1e-9, 1e-14 };
+    *name = names[i];
+    *pieces = i < 3 || names[i][0] == 'P' ? 1 : 2;
+    switch (names[i][0]) {
+    case 'P': return wl_partial(size[i]);
+    case 'T': return wl_through(size[i]);
+    case 'C': return wl_corner_cut(size[i]);
+    default: return i < 2 ? wl_facet_slab(i) : i == 2 ? wl_oblique_slab() : i == 3 ? wl_corner_slab() : wl_ulp_slab(i - 4);
+    }
+}
+
 static inline oracle *wl_oracle(const workload *w) {
     oracle_mesh mesh;
     oracle_surface surfaces[WL_SURFACES];
