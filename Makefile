@@ -44,6 +44,14 @@ $(BUILD)/%: examples/%.c $(headers) $(wildcard examples/*.h)
 	@mkdir -p $(@D)
 	$(compile) -I. $< -o $@ $(LDFLAGS) -lm
 
+# Scenes share one object with the library's implementation; each also compiles on its own, as gxcut does.
+$(scenes:%=$(BUILD)/%): $(BUILD)/%: examples/%.c $(BUILD)/gxfem.o $(headers) $(wildcard examples/*.h)
+	$(compile) -DSCENE_LINKS_GXFEM -I. $< $(BUILD)/gxfem.o -o $@ $(LDFLAGS) -lm
+
+$(BUILD)/gxfem.o: $(headers)
+	@mkdir -p $(@D)
+	printf '#define GXFEM_IMPLEMENTATION\n#include "gxfem.h"\n' | $(compile) -I. -x c -c - -o $@
+
 # Sticks along z: five planes across x, five across y. The foot of the cube is held as stretched; the rest springs back.
 sixths = 0.16666666666666666 0.33333333333333331 0.5 0.66666666666666663 0.83333333333333337
 demo_cuts = $(foreach i,$(sixths),--sheet plane:$(i),0.5,0.5,1,0,0) $(foreach i,$(sixths),--sheet plane:0.5,$(i),0.5,0,1,0)
@@ -98,7 +106,7 @@ flags:
 	@JOBS=$(JOBS) sh tests/flags.sh
 
 hashes:
-	@sh tests/hashes.sh $(BUILD)/hashes
+	@JOBS=$(JOBS) sh tests/hashes.sh $(BUILD)/hashes
 
 # ---- benches. Only what they print goes to stdout: it is CSV.
 

@@ -30,7 +30,9 @@
 
 #include "gxio.h"
 
+#ifndef SCENE_LINKS_GXFEM       /* make examples compiles the library once for all scenes */
 #define GXFEM_IMPLEMENTATION
+#endif
 #include "../gxfem.h"
 
 #ifdef _WIN32

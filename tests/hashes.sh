@@ -1,8 +1,9 @@
 #!/bin/sh
 # hashes.sh [DIR] - is topology_hash the same under every compiler and flag? Cuts the same files by gxcut built in many ways.
-# Prints a line per build and `N passed, N failed`.
+# Prints a line per build and `N passed, N failed`. JOBS=N: so many builds at a time.
 set -u
 dir=${1:-build/hashes}
+jobs=${JOBS:-2}
 mkdir -p "$dir" || exit 1
 passed=0
 failed=0
@@ -19,8 +20,8 @@ for x in 0.16666666666666666 0.33333333333333331 0.5 0.66666666666666663 0.83333
 done
 
 hash_of() { # binary, arguments
-    "$@" --frames 0 --quiet --report "$dir/report.json" >/dev/null 2>&1 || { echo "failed"; return; }
-    sed -n 's/.*"topology_hash": *"\([0-9a-f]*\)".*/\1/p' "$dir/report.json"
+    "$@" --frames 0 --quiet --report "$report" >/dev/null 2>&1 || { echo "failed"; return; }
+    sed -n 's/.*"topology_hash": *"\([0-9a-f]*\)".*/\1/p' "$report"
 }
 
 hashes() { # binary
@@ -29,17 +30,23 @@ hashes() { # binary
     hash_of "$1" grid:2,2,2,5 --sheet "$dir/sheet0.obj" --solid box:0.5,0.25,0.125,1.5,1,1.75 --sheet plane:1,1,1,1,0,0
 }
 
+# one FILE COMPILER FLAGS...: builds gxcut, writes its hashes to FILE; nothing where it does not build
+one() {
+    file=$1
+    shift
+    "$@" -w -I. examples/gxcut.c -o "$file.gxcut" -lm >"$file.log" 2>&1 || return 0
+    report=$file.json
+    hashes "$file.gxcut" | tr '\n' ' ' >"$file"
+}
+
+count=0
 try() { # compiler flags...
-    if ! command -v "$1" >/dev/null 2>&1; then return; fi
-    if ! "$@" -w -I. examples/gxcut.c -o "$dir/gxcut" -lm >"$dir/log" 2>&1; then
-        echo "skipped  $* (does not build here)"
-        return
-    fi
-    got=$(hashes "$dir/gxcut" | tr '\n' ' ')
-    if [ -z "${first:-}" ]; then first=$got; fi
-    case $got in *failed*) got="" ;; esac
-    if [ "$got" = "$first" ]; then passed=$((passed + 1)); echo "same     $*"
-    else failed=$((failed + 1)); echo "DIFFERS  $*: $got, not $first"; fi
+    command -v "$1" >/dev/null 2>&1 || return
+    count=$((count + 1))
+    rm -f "$dir/$count"
+    echo "$*" >"$dir/$count.build"
+    one "$dir/$count" "$@" &
+    [ $((count % jobs)) -ne 0 ] || wait
 }
 
 x86=$(uname -m | grep -c -E 'x86_64|i.86')
@@ -62,5 +69,15 @@ if [ "$x86" = 1 ]; then # flush-to-zero and denormals-are-zero from the first in
     try gcc -std=c99 -O2 "$dir/flush.c"
     try clang -std=c99 -O2 "$dir/flush.c"
 fi
+wait
+for i in $(seq $count); do
+    build=$(cat "$dir/$i.build")
+    if [ ! -f "$dir/$i" ]; then echo "skipped  $build (does not build here)"; continue; fi
+    got=$(cat "$dir/$i")
+    : "${first:=$got}"
+    case $got in *failed*) got="a failure" ;; esac
+    if [ "$got" = "$first" ]; then passed=$((passed + 1)); echo "same     $build"
+    else failed=$((failed + 1)); echo "DIFFERS  $build: $got, not $first"; fi
+done
 echo "$passed passed, $failed failed"
 [ $failed -eq 0 ] && [ $passed -gt 0 ]
