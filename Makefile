@@ -15,7 +15,7 @@ tests = $(patsubst tests/%.c,%,$(sort $(wildcard tests/test_*.c)))
 examples = $(patsubst examples/%.c,%,$(sort $(wildcard examples/*.c)))
 scenes = $(filter-out embed gxcut,$(examples))
 compile = $(CC) -std=c99 $(WARNINGS) $(CFLAGS)
-sanitizers = -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all
+sanitizers = -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all
 
 help:
 	@echo "make demo        cuts a cube of 5 tetrahedra into 36 sticks and simulates it (needs a C compiler, nothing else)"
@@ -33,6 +33,7 @@ help:
 	@echo "make bench-accuracy, bench-drift, bench-conditioning   closed forms and published values; what integrators keep; RXFEM's Fig. 14"
 	@echo "make bench-frames   frames in which a cut happens beside those in which none does"
 	@echo "make bench-skin    the visual surface: moved in each frame, rebuilt after a cut"
+	@echo "make bench-scaling  cost of a cut and a step against elements, cuts and triangles; BENCH=--small: seconds"
 	@echo "make bench-kernel  Booleans of closed surfaces; DATA=FOLDER: also of the OFF files there"
 	@echo "make clean       removes $(BUILD)/"
 
@@ -120,10 +121,10 @@ $(BUILD)/bench/solver: bench/solver.c bench/block.h bench/clock.h $(headers)
 	$(CC) -std=c99 $(WARNINGS) $(BENCH_CFLAGS) -pthread $(shell pkg-config --cflags CHOLMOD 2>/dev/null) $< -o $@ $(LDFLAGS) \
 	    $(shell pkg-config --libs CHOLMOD 2>/dev/null || echo -lcholmod) -lm
 
-bench-accuracy bench-drift bench-conditioning bench-frames bench-skin: bench-%: $(BUILD)/bench/%
-	@$< $(BUILD)/bench/$*.csv
+bench-accuracy bench-drift bench-conditioning bench-frames bench-skin bench-scaling: bench-%: $(BUILD)/bench/%
+	@$< $(BUILD)/bench/$*.csv $(BENCH)
 
-$(BUILD)/bench/accuracy $(BUILD)/bench/drift $(BUILD)/bench/conditioning $(BUILD)/bench/frames $(BUILD)/bench/skin: $(BUILD)/bench/%: bench/%.c $(wildcard bench/*.h) $(headers)
+$(BUILD)/bench/accuracy $(BUILD)/bench/drift $(BUILD)/bench/conditioning $(BUILD)/bench/frames $(BUILD)/bench/skin $(BUILD)/bench/scaling: $(BUILD)/bench/%: bench/%.c $(wildcard bench/*.h) $(headers)
 	@mkdir -p $(@D)
 	@$(CC) -std=c99 $(WARNINGS) $(BENCH_CFLAGS) $< -o $@ $(LDFLAGS) -lm
 
@@ -147,4 +148,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo scenes pictures check check-programs run-gxcut $(tests:%=run-%) sanitize sanitize-scenes compile lint flags hashes bench-solver bench-accuracy bench-drift bench-conditioning bench-frames bench-skin bench-kernel check-all clean
+.PHONY: help examples demo scenes pictures check check-programs run-gxcut $(tests:%=run-%) sanitize sanitize-scenes compile lint flags hashes bench-solver bench-accuracy bench-drift bench-conditioning bench-frames bench-skin bench-scaling bench-kernel check-all clean

@@ -22,6 +22,8 @@ typedef struct block_desc {
     double jitter;          /* inner nodes move by up to so many cells along each axis */
     int cut;                /* BLOCK_UNCUT ... */
     double young;           /* Pa */
+    gx_allocator allocator; /* of the body; zero: malloc, free */
+    double (*clock)(void *user);    /* of the body's reports; NULL: none */
 } block_desc;
 
 static const char *const block_cut_names[BLOCK_CUTS] = {"uncut", "accordion", "loose"};
@@ -141,16 +143,18 @@ static gx_result block_cut(gx_body *body, const block_desc *desc)
 
 /* ---- body ---- */
 
-static gx_result block_make_body(const block_mesh *mesh, double young, gx_body **body)
+static gx_result block_make_body(const block_mesh *mesh, const block_desc *block, gx_body **body)
 {
     const size_t side = mesh->side, cells = side - 1;
     gx_body_desc desc;
     memset(&desc, 0, sizeof desc);
     desc.positions = mesh->positions; desc.node_count = side * side * side;
     desc.elements = mesh->elements; desc.element_count = 5 * cells * cells * cells;
-    desc.young = young;
+    desc.young = block->young;
     desc.poisson = 0.4;
     desc.density = 1000.0;
+    desc.allocator = block->allocator;
+    desc.clock = block->clock;
     return gx_body_create(&desc, body, NULL);
 }
 
@@ -165,7 +169,7 @@ static gx_result block_make_mesh_and_body(const block_desc *desc, gx_body **body
     mesh.elements = (uint32_t *)malloc(cells * cells * cells * 20 * sizeof(uint32_t));
     if (mesh.positions && mesh.elements) {
         block_fill(&mesh, desc->jitter);
-        result = block_make_body(&mesh, desc->young, body);
+        result = block_make_body(&mesh, desc, body);
     }
     free(mesh.positions);
     free(mesh.elements);

@@ -6,7 +6,7 @@
 #include <time.h>
 
 /* From some fixed instant; user is not used (the signature is gx_body_desc's). */
-static double seconds(void *user)
+static inline double seconds(void *user)
 {
     struct timespec now;
     (void)user;
@@ -14,14 +14,14 @@ static double seconds(void *user)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static int ascending(const void *a, const void *b)
+static inline int ascending(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
 }
 
 /* Sorts the values. 0 of none */
-static double median(double *values, size_t count)
+static inline double median(double *values, size_t count)
 {
     if (count == 0) return 0;
     qsort(values, count, sizeof *values, ascending);

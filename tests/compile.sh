@@ -108,7 +108,7 @@ for cc in $compilers; do
             job "$cc -std=$std $file" "$cc -std=$std $warnings -I$root $file -o $program -lm && ./$program$says"
         done
         for file in "$root"/examples/*.c; do
-            job "$cc -std=$std examples/$(basename "$file")" "$cc -std=$std $warnings -I$root -c $file -o examples.$(basename "$file").$cc.$std.o"
+            job "$cc -std=$std examples/$(basename "$file")" "$cc -std=$std $warnings -I$root -fsyntax-only $file"
         done
     done
 done
