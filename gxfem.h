@@ -555,15 +555,26 @@ static void gxp_words_free(gx_body *body, gxp_words *words) {
     gxp_release(&body->allocator, words->data, (size_t)words->capacity * sizeof *words->data);
 }
 
-static int gxp_compare_words(const void *a, const void *b) {
-    const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
-    return x < y ? -1 : x > y;
+/* Ascending, by the bits from `bit` down: those without it first [radix exchange, Hildebrandt and Isbitz 1959] */
+static void gxp_sort_by_bits(uint32_t *w, uint32_t count, uint32_t bit) {
+    while (count > 1 && bit != 0) {
+        uint32_t i = 0, j = count;
+        while (i < j) {
+            if (!(w[i] & bit)) { i++; continue; }
+            while (--j > i && (w[j] & bit)) continue;
+            if (j > i) { const uint32_t t = w[i]; w[i++] = w[j]; w[j] = t; }
+        }
+        bit >>= 1;
+        gxp_sort_by_bits(w + i, count - i, bit);
+        count = i;
+    }
 }
 
 static void gxp_sort_unique(gxp_words *w) {
-    uint32_t i, n = 0;
-    if (w->count == 0) return;
-    qsort(w->data, w->count, sizeof *w->data, gxp_compare_words);
+    uint32_t i, n = 0, all = 0, bit = 1;
+    for (i = 0; i < w->count; i++) all |= w->data[i];
+    while (all >> 1 >= bit) bit <<= 1;
+    gxp_sort_by_bits(w->data, w->count, bit);
     for (i = 0; i < w->count; i++) if (n == 0 || w->data[i] != w->data[n - 1]) w->data[n++] = w->data[i];
     w->count = n;
 }
@@ -2236,8 +2247,12 @@ static gx_result gxp_divide_nodes(gxp_cut *cut) {
 
 /* >>integrals: volume and mass of a part, by its boundary triangles in barycentric coordinates ------------------------------------ */
 
-/* The part's points and triangles: body->list has the points, body->lambdas 4 numbers for each, body->triangles the indices. */
-static void gxp_clear_boundary(gx_body *body) { body->list.count = body->triangles.count = 0; }
+/* The part's points and triangles: body->list has the points, body->lambdas 4 numbers for each, body->triangles the indices. Points of
+   the parts before it are kept where they may be met again: parts of one element share those of its walls. */
+static void gxp_clear_boundary(gx_body *body, int other_element) {
+    if (other_element || body->list.count > 64) body->list.count = 0;
+    body->triangles.count = 0;
+}
 
 static gx_result gxp_add_boundary_point(gx_body *body, uint32_t element, uint32_t point, uint32_t *index) {
     const uint32_t slot = point < body->point_slot.count ? body->point_slot.data[point] : GXP_NONE;
@@ -2329,6 +2344,14 @@ static void gxp_fine_add(gxp_fine_sums *sums, gxb_num *p[3][3]) {
     }
 }
 
+/* Those of one of the collected points, unless they are there already */
+static void gxp_fine_coordinates(gx_body *body, uint32_t element, uint32_t point, gxp_fine_point *points) {
+    int a;
+    if (points[point].c[0].d != NULL) return;
+    for (a = 0; a < 4; a++) points[point].c[a].d = points[point].limbs[a];
+    gxb_complex_barycentric_fine(body->complex, body->list.data[point], element, points[point].c);
+}
+
 /* Moments of the collected boundary in the frame with origin k, from coordinates with 180 bits. */
 static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, gxi_moments2 *m) {
     const size_t size = body->list.count * sizeof(gxp_fine_point);
@@ -2339,13 +2362,11 @@ static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, g
     int a, c;
     if (points == NULL) return GX_ERROR_MEMORY;
     for (i = 0; i < 10; i++) { sums.c[i].sign = sums.c[i].exp = 0; sums.c[i].n = 0; sums.c[i].d = sums.limbs[i]; }
-    for (i = 0; i < body->list.count; i++) {
-        for (a = 0; a < 4; a++) points[i].c[a].d = points[i].limbs[a];
-        gxb_complex_barycentric_fine(body->complex, body->list.data[i], element, points[i].c);
-    }
+    for (i = 0; i < body->list.count; i++) points[i].c[0].d = NULL;
     gxi_part_axes(k, axes);
     for (t = 0; t + 2 < body->triangles.count; t += 3) {
         gxb_num *p[3][3];
+        for (a = 0; a < 3; a++) gxp_fine_coordinates(body, element, body->triangles.data[t + (uint32_t)a], points);
         for (a = 0; a < 3; a++) for (c = 0; c < 3; c++) p[a][c] = &points[body->triangles.data[t + (uint32_t)a]].c[axes[c]];
         gxp_fine_add(&sums, p);
     }
@@ -2381,14 +2402,14 @@ static gx_result gxp_boundary_moments(gx_body *body, uint32_t element, unsigned 
     return result;
 }
 
-static gx_result gxp_integrate_cell(gx_body *body, uint32_t cell) {
+static gx_result gxp_integrate_cell(gx_body *body, uint32_t cell, int other_element) {
     const uint32_t element = body->cells[cell].element;
     const double volume = gxp_element_volume(body, element);
     gxi_moments2 m;
     unsigned k;
     uint32_t leaf;
     gx_result result = gxb_complex_open_element(body->complex, element);
-    gxp_clear_boundary(body);
+    gxp_clear_boundary(body, other_element);
     for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next)
         result = gxp_add_boundary_leaf(body, leaf, 0);
     if (result == GX_OK) result = gxp_boundary_moments(body, element, &k, &m);
@@ -2408,7 +2429,7 @@ static gx_result gxp_integrate_removed(gxp_cut *cut, const gxp_words *removed) {
         const uint32_t leaf = removed->data[i], element = body->complex->leaves[leaf].element;
         gxi_moments2 m;
         unsigned k;
-        gxp_clear_boundary(body);
+        gxp_clear_boundary(body, 1);
         result = gxp_add_boundary_leaf(body, leaf, 1);
         if (result == GX_OK) result = gxp_boundary_moments(body, element, &k, &m);
         if (result == GX_OK) cut->report.removed_volume += 6 * m.volume * gxp_element_volume(body, element);
@@ -2518,9 +2539,11 @@ static gx_result gxp_enrich(gxp_cut *cut) {
 
 static gx_result gxp_integrate(gxp_cut *cut) {
     gx_body *body = cut->body;
+    const uint32_t *fresh = body->fresh.data;
     uint32_t i;
     gx_result result = gxp_integrate_removed(cut, &body->removed);
-    for (i = 0; i < body->fresh.count && result == GX_OK; i++) result = gxp_integrate_cell(body, body->fresh.data[i]);
+    for (i = 0; i < body->fresh.count && result == GX_OK; i++)
+        result = gxp_integrate_cell(body, fresh[i], i == 0 || body->cells[fresh[i]].element != body->cells[fresh[i - 1]].element);
     return result;
 }
 
@@ -4484,12 +4507,14 @@ static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const 
     gxp_skin *s = &body->skin;
     const uint32_t i = s->vertex_count;
     gxp_skin_vertex *v = &s->vertices[i];
-    double lambda[4], *rest = s->rest + 3 * (size_t)i;
-    uint32_t n, own = GXP_NONE;
+    double *rest = s->rest + 3 * (size_t)i;
+    const double *lambda;
+    uint32_t n, slot, own = GXP_NONE;
     int k;
     gx_result result = face->outer ? GX_OK : gxp_own_slot(body, &own);
+    if (result == GX_OK) result = gxp_add_boundary_point(body, face->element, key->point, &slot);
     if (result != GX_OK) return result;
-    gxb_complex_barycentric(body->complex, key->point, face->element, lambda);
+    lambda = body->lambdas + 4 * (size_t)slot;
     gxp_weigh_point(face, lambda, s->copies + 4 * (size_t)i, s->weights + 4 * (size_t)i, v->slots);
     for (n = 0; n < 4 && !face->outer; n++) v->slots[n] = own;
     v->key = *key;
@@ -4512,15 +4537,23 @@ static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const 
     return GX_OK;
 }
 
+static gx_result gxp_note_vertex(gx_body *body, uint32_t vertex) {
+    gxp_skin_vertex *v = &body->skin.vertices[vertex];
+    if (v->noted) return GX_OK;
+    v->noted = 1;
+    return gxp_push(body, &body->skin.changed[0], vertex);
+}
+
 static gx_result gxp_find_vertex(gx_body *body, const gxp_skin_face *face, uint32_t point, uint32_t *vertex) {
     gxp_skin *s = &body->skin;
-    const gx_result result = gxp_vertex_room(body);
+    gx_result result = gxp_vertex_room(body);
     gxp_skin_key key;
     if (result != GX_OK) return result;
     gxp_make_key(body, face, point, &key);
     for (*vertex = *gxp_vertex_bucket(s, &key); *vertex != GXP_NONE; *vertex = s->vertices[*vertex].next)
-        if (memcmp(&s->vertices[*vertex].key, &key, sizeof key) == 0) return GX_OK;
-    return gxp_add_vertex(body, face, &key, vertex);
+        if (memcmp(&s->vertices[*vertex].key, &key, sizeof key) == 0) return gxp_note_vertex(body, *vertex);
+    result = gxp_add_vertex(body, face, &key, vertex);
+    return result == GX_OK ? gxp_note_vertex(body, *vertex) : result;
 }
 
 /* Takes a vertex without triangles away. */
@@ -4586,13 +4619,6 @@ static void gxp_unlink_triangle(gxp_skin *s, uint32_t t) {
     else s->first.data[s->element[t]] = own->next;
 }
 
-static gx_result gxp_note_vertex(gx_body *body, uint32_t vertex) {
-    gxp_skin_vertex *v = &body->skin.vertices[vertex];
-    if (v->noted) return GX_OK;
-    v->noted = 1;
-    return gxp_push(body, &body->skin.changed[0], vertex);
-}
-
 /* Takes a triangle away; the last one takes its place. */
 static gx_result gxp_drop_triangle(gx_body *body, uint32_t t) {
     gxp_skin *s = &body->skin;
@@ -4613,20 +4639,15 @@ static gx_result gxp_drop_triangle(gx_body *body, uint32_t t) {
     return GX_OK;
 }
 
-static gx_result gxp_add_skin_triangle(gx_body *body, const gxp_skin_face *face, const uint32_t point[3], int inward) {
+static gx_result gxp_add_skin_triangle(gx_body *body, const gxp_skin_face *face, const uint32_t vertex[3], int inward) {
     gxp_skin *s = &body->skin;
     const uint32_t t = s->triangle_count;
     uint32_t k, j, *corner;
     gx_result result = gxp_triangle_room(body);
-    if (result != GX_OK) return result;
-    corner = s->triangles + 3 * (size_t)t;
-    for (k = 0; k < 3 && result == GX_OK; k++) {
-        const uint32_t p = point[inward ? 2 - k : k];
-        result = gxp_find_vertex(body, face, p, &corner[k]);
-        if (result == GX_OK) result = gxp_note_vertex(body, corner[k]);
-    }
     if (result == GX_OK) result = gxp_push(body, &s->changed[1], t);
     if (result != GX_OK) return result;
+    corner = s->triangles + 3 * (size_t)t;
+    for (k = 0; k < 3; k++) corner[k] = vertex[inward ? 2 - k : k];
     s->triangle_count++;
     s->element[t] = face->element;
     s->material[t] = body->element_materials[face->element];
@@ -4651,21 +4672,29 @@ static int gxp_is_ear(gx_body *body, const uint32_t *p, uint32_t n, uint32_t i, 
     return 0;
 }
 
-/* Adds a facet as triangles, outward from the leaf: ears are cut off its convex polygon, which stands in body->faces. */
+/* Adds a facet as triangles, outward from the leaf: ears are cut off its convex polygon, whose points stand in body->faces, their
+   vertices in body->queue. */
 static gx_result gxp_add_skin_facet(gx_body *body, const gxp_skin_face *face, uint32_t facet, uint32_t leaf) {
     gxb_complex *cx = body->complex;
     const int inward = cx->facets[facet].leaf[0] == leaf;
-    uint32_t *p, e0, en, i, n;
+    uint32_t *p, *v, e0, en, i, n, vertex = GXP_NONE;
     gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
-    body->faces.count = 0;
-    for (i = 0; i < en && result == GX_OK; i++) result = gxp_push(body, &body->faces, cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1]);
+    body->faces.count = body->queue.count = 0;
+    for (i = 0; i < en && result == GX_OK; i++) {
+        const uint32_t point = cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1];
+        result = gxp_find_vertex(body, face, point, &vertex);
+        if (result == GX_OK) result = gxp_push(body, &body->faces, point);
+        if (result == GX_OK) result = gxp_push(body, &body->queue, vertex);
+    }
     p = body->faces.data;
+    v = body->queue.data;
     for (n = body->faces.count, i = 0; n >= 3 && result == GX_OK; n--) {
         uint32_t triangle[3], tries = 0;
         for (i %= n; tries < n && !gxp_is_ear(body, p, n, i, cx->facets[facet].plane); i = (i + 1) % n) tries++;
-        triangle[0] = p[(i + n - 1) % n]; triangle[1] = p[i]; triangle[2] = p[(i + 1) % n];
+        triangle[0] = v[(i + n - 1) % n]; triangle[1] = v[i]; triangle[2] = v[(i + 1) % n];
         result = gxp_add_skin_triangle(body, face, triangle, inward);
         memmove(p + i, p + i + 1, (n - 1 - i) * sizeof *p);
+        memmove(v + i, v + i + 1, (n - 1 - i) * sizeof *v);
         i++;
     }
     return result;
@@ -4750,14 +4779,15 @@ static gx_result gxp_skin_leaf(gx_body *body, uint32_t leaf, gxp_skin_face *face
 
 /* An element that no cut has touched shows its outer faces. */
 static gx_result gxp_skin_whole(gx_body *body, gxp_skin_face *face) {
-    uint32_t k, j, point[3];
+    uint32_t k, j, vertex[3];
     gx_result result = GX_OK;
     face->plane = 0;
     for (k = 0; k < 4 && result == GX_OK; k++) {
         if (gxp_neighbour(body, face->element, k) != GXP_NONE) continue;
         result = gxp_outer_face(body, k, face);
-        for (j = 0; j < 3; j++) point[j] = body->complex->elements[4 * face->element + gxp_outward[k][j]];
-        if (result == GX_OK) result = gxp_add_skin_triangle(body, face, point, 0);
+        for (j = 0; j < 3 && result == GX_OK; j++)
+            result = gxp_find_vertex(body, face, body->complex->elements[4 * face->element + gxp_outward[k][j]], &vertex[j]);
+        if (result == GX_OK) result = gxp_add_skin_triangle(body, face, vertex, 0);
     }
     return result;
 }
@@ -4796,6 +4826,7 @@ static gx_result gxp_skin_element(gx_body *body, uint32_t element) {
     uint32_t cell, leaf;
     gx_result result = GX_OK;
     if (untouched && !gxp_is_at_boundary(body, element)) return GX_OK;
+    gxp_clear_boundary(body, 1);    /* each point's coordinates in the element are found once, for all faces it is in */
     memset(&face, 0, sizeof face);
     face.element = element;
     if (!untouched) result = gxb_complex_open_element(body->complex, element);

@@ -76,7 +76,7 @@ static void run(uint32_t cells, double jitter)
     check(t ? block_create(&desc, &body) : GX_ERROR_MEMORY);
     for (k = 0; k < 8; ++k) step(body, 0.033 * k);
     for (i = 0; i < strips; ++i) {
-        cut_frame(body, t, i == 0 ? -0.1 : (i + 0.37) / cells, (i + 1.37) / cells);
+        cut_frame(body, t, i == 0 ? -0.1 : (i + 0.37) / cells, (i + 1 + 0.37) / cells);
         for (k = 1; k < FRAMES_BETWEEN; ++k) plain_frame(body, t);
     }
     check(gx_body_view(body, &view));

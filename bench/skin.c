@@ -78,7 +78,7 @@ static void measure_cuts(uint32_t cells)
     check(gx_body_skin(body, &desc, &skin));
     for (i = 0; i < strips; i++) {
         start = 1e3 * seconds(NULL);
-        check(block_cut_rectangle(body, 2, 0.4711, i == 0 ? -0.1 : (i + 0.37) / cells, (i + 1.37) / cells));
+        check(block_cut_rectangle(body, 2, 0.4711, i == 0 ? -0.1 : (i + 0.37) / cells, (i + 1 + 0.37) / cells));
         cut[i] = 1e3 * seconds(NULL) - start;
         start = 1e3 * seconds(NULL);
         check(gx_body_skin(body, &desc, &skin));
