@@ -76,7 +76,7 @@ int main(int argc, char **argv)
     s.step.dt = 0.005;
     s.step.gravity[2] = 9.81;
     scene_make(&s);
-    scene_must(&s, gx_body_hold(s.body, limbs, 3), "hold");
+    scene_hold_all(&s, limbs, 3);
     scene_settle(&s, 1e-4);
     for (i = 0; i < BLADES; i++) sheets[i] = scene_make_sheet(&s, blades[i].columns, blades[i].rows, blade_point, &blades[i]);
     for (; s.frame < s.frames; scene_step(&s))

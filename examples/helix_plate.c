@@ -58,7 +58,7 @@ int main(int argc, char **argv)
     s.body_desc.material_count = 1;
     s.step.dt = 0.005;
     scene_make(&s);
-    scene_must(&s, gx_body_hold(s.body, sides, 4), "hold");
+    scene_hold_all(&s, sides, 4);
     scene_settle(&s, 1e-8);
     before = sunk(&s, course.middle);
     blade = scene_make_sheet(&s, s.small ? 60 : 400, 1, spiral_point, &course);

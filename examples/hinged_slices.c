@@ -40,7 +40,7 @@ int main(int argc, char **argv)
     s.step.dt = 0.005;
     s.step.mass_damping = 2.0;
     scene_make(&s);
-    scene_must(&s, gx_body_hold(s.body, held, 2), "hold");
+    scene_hold_all(&s, held, 2);
     for (i = 0; i < CUTS; i++) {
         const double corner[3] = {2.5, y[i], -2}, u[3] = {-3, 0, 0}, v[3] = {0, 0, 4};
         blades[i] = scene_flat_sheet(&s, corner, u, v, 8);

@@ -85,7 +85,7 @@ int main(int argc, char **argv)
     s.step.dt = 0.005;
     scene_make(&s);
     pull(&s);
-    scene_must(&s, gx_body_hold(s.body, sides, 2), "hold");
+    scene_hold_all(&s, sides, 2);
     scene_settle(&s, 1e-4);
     stretched = scene_largest_stretch(&s);
     fine = s.small ? &coarse : &full;

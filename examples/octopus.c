@@ -68,7 +68,7 @@ static double mouth_opening(const scene *s, lips of)
 static void hold_arms(scene *s)
 {
     const gx_region held[4] = {{2, 1, 0.02 * scale}, {0, -1, -0.14 * scale}, {0, 1, 0.16 * scale}, {1, 1, 0.09 * scale}};
-    scene_must(s, gx_body_hold(s->body, held, 4), "hold");
+    scene_hold_all(s, held, 4);
 }
 
 int main(int argc, char **argv)

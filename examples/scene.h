@@ -18,6 +18,7 @@
      >>arguments   the command line
      >>body        mesh, body
      >>sheets      surfaces that advance strip by strip
+     >>trace       the run as a file, for other programs to repeat
      >>cuts        a cut, and the record of all
      >>skin        the visual surface: the one place that knows how gxfem.h gives it
      >>frames      steps, times, files, progress bar
@@ -87,7 +88,10 @@ typedef struct scene {
     scene_desc desc;
     int small, quiet, help;
     uint32_t frame, frames, every;      /* frame: of the next step */
-    const char *mesh_name, *out, *format, *table, *csv;
+    const char *mesh_name, *out, *format, *table, *csv, *trace;
+    FILE *trace_stream;                 /* NULL: nothing traced yet */
+    gx_region *regions;                 /* region_count, what is held; owned */
+    size_t region_count;
     gxio_mesh mesh;                     /* may be moved before scene_make */
     gx_body_desc body_desc;             /* may be changed before scene_make */
     gx_step_desc step;                  /* may be changed at any time */
@@ -178,6 +182,7 @@ static inline void scene_usage(const scene *s)
          "  --every N           only each N-th of them (1)\n"
          "  --format vtu|obj    frames for ParaView with a collection frames.pvd (default), or Wavefront\n"
          "  --table FILE        appends the scene's line of the table of all scenes\n"
+         "  --trace FILE        writes mesh, material, state and cuts there, for bench/ to repeat\n"
          "  --quiet             prints only what is wrong\n"
          "  --help              this text");
 }
@@ -206,6 +211,7 @@ static inline int scene_take_value(scene *s, const char *name, const char *value
     else if (strcmp(name, "--out") == 0) s->out = value;
     else if (strcmp(name, "--format") == 0) s->format = value;
     else if (strcmp(name, "--table") == 0) s->table = value;
+    else if (strcmp(name, "--trace") == 0) s->trace = value;
     else if (strcmp(name, "--csv") == 0 && s->desc.has_csv) s->csv = value;
     else if (strcmp(name, "--mesh") == 0 && s->desc.any_mesh) s->mesh_name = value;
     else return 0;
@@ -321,6 +327,16 @@ static inline void scene_make(scene *s)
     s->first_copies = s->view.copy_count;
 }
 
+/* Holds what lies in one of the regions. */
+static inline void scene_hold_all(scene *s, const gx_region *regions, size_t count)
+{
+    free(s->regions);
+    s->regions = (gx_region *)scene_array(s, count, sizeof *regions);
+    s->region_count = count;
+    memcpy(s->regions, regions, count * sizeof *regions);
+    scene_must(s, gx_body_hold(s->body, regions, count), "hold");
+}
+
 /* Holds what lies on one side (-1: below) of a plane across an axis. */
 static inline void scene_hold(scene *s, uint32_t axis, int32_t side, double value)
 {
@@ -328,7 +344,7 @@ static inline void scene_hold(scene *s, uint32_t axis, int32_t side, double valu
     region.axis = axis;
     region.side = side;
     region.value = value;
-    scene_must(s, gx_body_hold(s->body, &region, 1), "hold");
+    scene_hold_all(s, &region, 1);
 }
 
 /* -------------------------------------------------------------------------------------------- >>sheets */
@@ -395,6 +411,65 @@ static inline scene_sheet scene_flat_sheet(scene *s, const double corner[3], con
     return scene_make_sheet(s, along, 1, scene_flat_point, p);
 }
 
+/* --------------------------------------------------------------------------------------------- >>trace */
+
+/* Opens a file to write to (mode "w") or append to ("a"), or ends the program; scene_close_file closes it so. */
+static inline FILE *scene_open_file(scene *s, const char *path, const char *mode)
+{
+    FILE *stream;
+    errno = 0;
+    stream = fopen(path, mode);
+    if (stream) return stream;
+    gxio_fail(&s->error, path, 0, "cannot be written: %s", strerror(errno ? errno : EIO));
+    scene_quit(s, SCENE_MISUSED);
+    return NULL;
+}
+
+static inline void scene_close_file(scene *s, const char *path, FILE *stream)
+{
+    int good = !ferror(stream);
+    errno = 0;
+    if (fclose(stream) != 0) good = 0;
+    if (good) return;
+    gxio_fail(&s->error, path, 0, "cannot be written: %s", strerror(errno ? errno : EIO));
+    scene_quit(s, SCENE_MISUSED);
+}
+
+/* What the first frame starts from; the body is not cut yet. Lines of numbers, each kind after its name and count:
+   nodes: position, displacement, velocity; elements: nodes; regions: axis, side, value, see gx_region. */
+static inline void scene_begin_trace(scene *s)
+{
+    FILE *f = s->trace_stream = scene_open_file(s, s->trace, "w");
+    const double *u = s->view.displacement, *v = s->view.velocity;
+    size_t i, k;
+    fprintf(f, "gxfem-trace 1\nmaterial %.17g %.17g %.17g\n", s->body_desc.young, s->body_desc.poisson, s->body_desc.density);
+    fprintf(f, "step %.17g %.17g %.17g %.17g %lu\n", s->step.dt, s->step.gravity[0], s->step.gravity[1], s->step.gravity[2],
+            (unsigned long)s->step.newton_iterations);
+    fprintf(f, "nodes %lu\n", (unsigned long)s->mesh.node_count);
+    for (i = 0; i < s->mesh.node_count; i++) {
+        for (k = 0; k < 3; k++) fprintf(f, "%.17g ", s->mesh.positions[3 * i + k]);
+        for (k = 0; k < 3; k++) fprintf(f, "%.17g ", u[3 * i + k]);
+        for (k = 0; k < 3; k++) fprintf(f, "%.17g%c", v[3 * i + k], k < 2 ? ' ' : '\n');
+    }
+    fprintf(f, "elements %lu\n", (unsigned long)s->mesh.element_count);
+    for (i = 0; i < 4 * s->mesh.element_count; i++) fprintf(f, "%lu%c", (unsigned long)s->mesh.elements[i], i % 4 < 3 ? ' ' : '\n');
+    fprintf(f, "regions %lu\n", (unsigned long)s->region_count);
+    for (i = 0; i < s->region_count; i++) fprintf(f, "%lu %ld %.17g\n", (unsigned long)s->regions[i].axis, (long)s->regions[i].side, s->regions[i].value);
+    fprintf(f, "frames %lu\n", (unsigned long)s->frames);
+}
+
+/* Writes a cut by the triangles of a surface from `first` on; those before it are what of the same blade's path was cut before. */
+static inline void scene_trace_cut(scene *s, const gx_surface *surface, size_t first)
+{
+    FILE *f = s->trace_stream;
+    size_t i;
+    if (!f) return;
+    fprintf(f, "cut %lu %lu %lu %lu\n", (unsigned long)s->frame, (unsigned long)surface->vertex_count,
+            (unsigned long)surface->triangle_count, (unsigned long)first);
+    for (i = 0; i < 3 * surface->vertex_count; i++) fprintf(f, "%.17g%c", surface->vertices[i], i % 3 < 2 ? ' ' : '\n');
+    for (i = 0; i < 3 * surface->triangle_count; i++) fprintf(f, "%lu%c", (unsigned long)surface->triangles[i], i % 3 < 2 ? ' ' : '\n');
+}
+
 /* ---------------------------------------------------------------------------------------------- >>cuts */
 
 /* Remembers a surface: what it points to may go. */
@@ -414,8 +489,7 @@ static inline void scene_record(scene *s, const gx_surface *surface)
     s->cut_triangles += surface->triangle_count;
 }
 
-/* Cuts the body, now, by all surfaces at once. */
-static inline void scene_cut(scene *s, const gx_surface *surfaces, size_t count)
+static inline void scene_cut_body(scene *s, const gx_surface *surfaces, size_t count)
 {
     const double start = gxio_seconds(NULL);
     gx_cut_desc desc;
@@ -433,18 +507,34 @@ static inline void scene_cut(scene *s, const gx_surface *surfaces, size_t count)
     for (i = 0; i < count; i++) scene_record(s, &surfaces[i]);
 }
 
+/* Cuts the body, now, by all surfaces at once. */
+static inline void scene_cut(scene *s, const gx_surface *surfaces, size_t count)
+{
+    size_t i;
+    if (s->trace && !s->trace_stream) scene_begin_trace(s);
+    for (i = 0; i < count; i++) scene_trace_cut(s, &surfaces[i], 0);
+    scene_cut_body(s, surfaces, count);
+}
+
 /* Cuts the strips of a sheet up to a column. */
 static inline void scene_cut_up_to(scene *s, scene_sheet *sheet, uint32_t column)
 {
     const size_t row = sheet->across + 1;
-    gx_surface strip;
+    gx_surface strip, path;
     if (column <= sheet->done) return;
+    if (s->trace && !s->trace_stream) scene_begin_trace(s);
+    memset(&path, 0, sizeof path);
+    path.vertices = sheet->vertices;
+    path.vertex_count = row * (column + 1);
+    path.triangles = sheet->triangles;
+    path.triangle_count = 2 * (size_t)sheet->across * column;
+    scene_trace_cut(s, &path, 2 * (size_t)sheet->across * sheet->done);
     memset(&strip, 0, sizeof strip);
     strip.vertices = sheet->vertices + 3 * row * sheet->done;
     strip.vertex_count = row * (column - sheet->done + 1);
     strip.triangles = sheet->triangles;
     strip.triangle_count = 2 * (size_t)sheet->across * (column - sheet->done);
-    scene_cut(s, &strip, 1);
+    scene_cut_body(s, &strip, 1);
     sheet->done = column;
 }
 
@@ -614,6 +704,7 @@ static inline void scene_count_frame(scene *s)
 static inline void scene_step(scene *s)
 {
     gx_step_report report;
+    if (s->trace && !s->trace_stream) scene_begin_trace(s);
     scene_move(s, &report);
     scene_look(s);
     scene_count_frame(s);
@@ -1073,38 +1164,18 @@ static inline void scene_print_row(const scene *s, FILE *stream)
             1e-6 * (double)s->memory.peak, (unsigned long)(s->checks - s->wrong), (unsigned long)s->checks);
 }
 
-/* Opens a file to append to, or ends the program; scene_close_file closes it so. */
-static inline FILE *scene_open_file(scene *s, const char *path)
-{
-    FILE *stream;
-    errno = 0;
-    stream = fopen(path, "a");
-    if (stream) return stream;
-    gxio_fail(&s->error, path, 0, "cannot be written: %s", strerror(errno ? errno : EIO));
-    scene_quit(s, SCENE_MISUSED);
-    return NULL;
-}
-
-static inline void scene_close_file(scene *s, const char *path, FILE *stream)
-{
-    int good = !ferror(stream);
-    errno = 0;
-    if (fclose(stream) != 0) good = 0;
-    if (good) return;
-    gxio_fail(&s->error, path, 0, "cannot be written: %s", strerror(errno ? errno : EIO));
-    scene_quit(s, SCENE_MISUSED);
-}
-
 /* Prints times, appends to the table, gives everything back. Returns the exit code. */
 static inline int scene_close(scene *s)
 {
     size_t i;
     scene_print_times(s);
     if (s->table) {
-        FILE *stream = scene_open_file(s, s->table);
+        FILE *stream = scene_open_file(s, s->table, "a");
         scene_print_row(s, stream);
         scene_close_file(s, s->table, stream);
     }
+    if (s->trace_stream) scene_close_file(s, s->trace, s->trace_stream);
+    free(s->regions);
     for (i = 0; i < s->cut_count; i++) {
         free((void *)s->cuts[i].vertices);
         free((void *)s->cuts[i].triangles);

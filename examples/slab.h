@@ -482,7 +482,7 @@ static void slab_study(scene *s, slab_strip *strip)
     uint32_t n;
     size_t i;
     strip->share = (double *)scene_array(s, 2 * (strip->z_count + 1), sizeof *strip->share);
-    if (s->csv) strip->csv = scene_open_file(s, s->csv);
+    if (s->csv) strip->csv = scene_open_file(s, s->csv, "a");
     scene_say(s, "locking: a strip of the slab, %lu x 1 x 1 cubes, small strain; drop of the end beside beam theory's", (unsigned long)strip->cubes);
     scene_say(s, "%-10s %6s %6s %10s %10s %10s", "mesh", "slice", "t/h", "refinement", "unknowns", "drop");
     for (n = 1; 5.0 * strip->cubes * n * n * n <= (double)strip->most_elements; n *= 2) slab_study_cut(s, strip, n);
