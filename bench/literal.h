@@ -507,27 +507,28 @@ static int literal_cut_domains(literal *l, literal_domains *all, uint32_t owner,
     return changed;
 }
 
-/* Which elements the solid's triangles may touch, and their nodes */
-static void literal_cull(const literal *l, const gx_surface *solid, uint8_t *touched, uint8_t *nodes)
+/* Which elements the surface's triangles may touch, and their nodes */
+static void literal_cull(const literal *l, const gx_surface *surface, uint8_t *touched, uint8_t *nodes)
 {
     size_t i;
-    for (i = 0; i < solid->triangle_count; i++) {
-        const uint32_t *t = solid->triangles + 3 * i;
-        const double *const p[3] = {solid->vertices + 3 * (size_t)t[0], solid->vertices + 3 * (size_t)t[1], solid->vertices + 3 * (size_t)t[2]};
+    for (i = 0; i < surface->triangle_count; i++) {
+        const uint32_t *t = surface->triangles + 3 * i;
+        const double *const p[3] = {surface->vertices + 3 * (size_t)t[0], surface->vertices + 3 * (size_t)t[1], surface->vertices + 3 * (size_t)t[2]};
         literal_mark_elements(l, p, touched);
     }
     for (i = 0; i < 4 * l->desc.element_count; i++) nodes[l->desc.elements[i]] |= touched[i / 4];
 }
 
-/* Cuts by closed surfaces, all at once: lines 1 to 19. Integrals and copies of elements: see literal_model. */
-static void literal_cut(literal *l, const gx_surface *solids, size_t count)
+/* Cuts by closed surfaces, all at once: lines 1 to 19. Only what the triangles of `fresh` may touch is looked at (NULL: of all solids).
+   Integrals and copies of elements: see literal_model. */
+static void literal_cut(literal *l, const gx_surface *solids, size_t count, const gx_surface *fresh)
 {
     uint8_t *touched = (uint8_t *)literal_memory(NULL, l->desc.element_count, 1), *nodes = (uint8_t *)literal_memory(NULL, l->desc.node_count, 1);
     const double start = seconds(NULL);
     size_t i;
     memset(touched, 0, l->desc.element_count);
     memset(nodes, 0, l->desc.node_count);
-    for (i = 0; i < count; i++) literal_cull(l, &solids[i], touched, nodes);
+    for (i = 0; i < (fresh ? 1 : count); i++) literal_cull(l, fresh ? fresh : &solids[i], touched, nodes);
     for (i = 0; i < l->desc.node_count; i++) nodes[i] = (uint8_t)(nodes[i] && literal_cut_domains(l, &l->nodal, (uint32_t)i, solids, count));
     for (i = 0; i < l->desc.element_count; i++) l->dirty[i] |= (uint8_t)(touched[i] && literal_cut_domains(l, &l->element, (uint32_t)i, solids, count));
     for (i = 0; i < 4 * l->desc.element_count; i++) l->dirty[i / 4] |= nodes[l->desc.elements[i]];
@@ -638,6 +639,8 @@ static void literal_part(const literal *l, uint32_t element, const literal_domai
     part->weight = fmax(0, m.volume);
     gxi_moments2_map(&m, matrix, translation);
     gxi_part_mass(&m, 0, volume, l->desc.density, part->mass);
+    if (part->mass[0] < 0 || part->mass[4] < 0 || part->mass[7] < 0 || part->mass[9] < 0)      /* of a sliver, by rounding */
+        memset(part->mass, 0, sizeof part->mass);
 }
 
 /* Lines 20 to 24, and what the solver takes but for the materials. Arrays are valid until the next cut. */

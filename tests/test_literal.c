@@ -21,7 +21,7 @@ static literal *literal_cut_by(const workload *w) {
     size_t i;
     for (i = 0; i < w->surface_count; ++i) {
         const gx_surface solid = surface_of(&w->surfaces[i]);
-        literal_cut(l, &solid, 1);
+        literal_cut(l, &solid, 1, NULL);
     }
     ck_assert_uint_eq(l->report.failures, 0);
     return l;
@@ -154,8 +154,8 @@ START_TEST(partial_cuts_are_forgotten_as_published) {
     literal *apart = literal_cut_by(&w), *together = literal_of(&w);
     both[0] = surface_of(&w.surfaces[0]);
     both[1] = surface_of(&w.surfaces[1]);
-    literal_cut(together, both, 1);
-    literal_cut(together, both, 2);
+    literal_cut(together, both, 1, NULL);
+    literal_cut(together, both, 2, NULL);
     ck_assert_uint_eq(apart->element.count, 1);
     ck_assert_uint_eq(together->element.count, 2);
     ck_assert_uint_eq(together->copy_count, 8);
@@ -172,7 +172,7 @@ START_TEST(new_copies_start_where_their_origin_is) {
     size_t i;
     int k;
     for (i = 0; i < 3 * l->copy_count; ++i) { l->displacement[i] = (double)i; l->velocity[i] = -(double)i; }
-    literal_cut(l, &solid, 1);
+    literal_cut(l, &solid, 1, NULL);
     ck_assert_uint_gt(l->copy_count, 4);
     for (i = 0; i < l->copy_count; ++i)
         for (k = 0; k < 3; ++k) {
