@@ -34,6 +34,7 @@ help:
 	@echo "make bench-frames   frames in which a cut happens beside those in which none does"
 	@echo "make bench-skin    the visual surface: moved in each frame, rebuilt after a cut"
 	@echo "make bench-scaling  cost of a cut and a step against elements, cuts and triangles; BENCH=--small: seconds"
+	@echo "make bench-failure  hard cases: which method is right, wrong, refuses, crashes"
 	@echo "make bench-table2  scenes of GXFEM's Table 2 by the library, virtual nodes and the literal Algorithm 1; BENCH=--small: minutes"
 	@echo "make bench-kernel  Booleans of closed surfaces; DATA=FOLDER: also of the OFF files there"
 	@echo "make clean       removes $(BUILD)/"
@@ -122,10 +123,10 @@ $(BUILD)/bench/solver: bench/solver.c bench/block.h bench/clock.h $(headers)
 	$(CC) -std=c99 $(WARNINGS) $(BENCH_CFLAGS) -pthread $(shell pkg-config --cflags CHOLMOD 2>/dev/null) $< -o $@ $(LDFLAGS) \
 	    $(shell pkg-config --libs CHOLMOD 2>/dev/null || echo -lcholmod) -lm
 
-bench-accuracy bench-drift bench-conditioning bench-frames bench-skin bench-scaling: bench-%: $(BUILD)/bench/%
+bench-accuracy bench-drift bench-conditioning bench-frames bench-skin bench-scaling bench-failure: bench-%: $(BUILD)/bench/%
 	@$< $(BUILD)/bench/$*.csv $(BENCH)
 
-$(BUILD)/bench/accuracy $(BUILD)/bench/drift $(BUILD)/bench/conditioning $(BUILD)/bench/frames $(BUILD)/bench/skin $(BUILD)/bench/scaling $(BUILD)/bench/table2: $(BUILD)/bench/%: bench/%.c $(wildcard bench/*.h) $(headers)
+$(BUILD)/bench/accuracy $(BUILD)/bench/drift $(BUILD)/bench/conditioning $(BUILD)/bench/frames $(BUILD)/bench/skin $(BUILD)/bench/scaling $(BUILD)/bench/table2 $(BUILD)/bench/failure: $(BUILD)/bench/%: bench/%.c $(wildcard bench/*.h) $(headers)
 	@mkdir -p $(@D)
 	@$(CC) -std=c99 $(WARNINGS) $(BENCH_CFLAGS) $< -o $@ $(LDFLAGS) -lm
 
@@ -137,8 +138,9 @@ frames-accordion = 540
 frames-octopus = 600
 traces = $(BUILD)/bench/traces$(BENCH)
 
-bench-table2: $(BUILD)/bench/table2 $(table2:%=$(traces)/%.trace)
-	@$< $(BUILD)/bench/table2.csv $(foreach s,$(table2),$(s)=$(traces)/$(s).trace)
+bench-table2:
+	@$(MAKE) --no-print-directory $(BUILD)/bench/table2 $(table2:%=$(traces)/%.trace) >&2
+	@$(BUILD)/bench/table2 $(BUILD)/bench/table2.csv $(foreach s,$(table2),$(s)=$(traces)/$(s).trace)
 
 $(table2:%=$(traces)/%.trace): $(traces)/%.trace: $(BUILD)/%
 	@mkdir -p $(@D)
@@ -164,4 +166,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo scenes pictures check check-programs run-gxcut $(tests:%=run-%) sanitize sanitize-scenes compile lint flags hashes bench-solver bench-accuracy bench-drift bench-conditioning bench-frames bench-skin bench-scaling bench-table2 bench-kernel check-all clean
+.PHONY: help examples demo scenes pictures check check-programs run-gxcut $(tests:%=run-%) sanitize sanitize-scenes compile lint flags hashes bench-solver bench-accuracy bench-drift bench-conditioning bench-frames bench-skin bench-scaling bench-failure bench-table2 bench-kernel check-all clean

@@ -24,6 +24,8 @@ typedef struct method {
     const char *(*cut)(void *state, const replay_cut *cut, method_times *times);
     const char *(*step)(void *state, method_times *times);
     size_t (*unknowns)(void *state);
+    /* Parts and copies as they are now, and where the copies are; borrowed */
+    void (*look)(void *state, gxs_model *model, const double **displacement);
     void (*destroy)(void *state);
 } method;
 
@@ -99,6 +101,7 @@ static inline const char *method_body_cut(void *state, const replay_cut *cut, me
     gx_result result;
     memset(&desc, 0, sizeof desc);
     desc.surfaces = &strip; desc.surface_count = 1;
+    desc.sever_below = m->scene->sever_below;
     result = gx_body_cut(m->body, &desc, &report, NULL);
     if (result != GX_OK) return gx_result_text(result);
     times->booleans += report.seconds_arrangement + report.seconds_enrichment;
@@ -127,6 +130,14 @@ static inline size_t method_body_unknowns(void *state)
     gx_view view;
     method_must(gx_body_view(((method_body *)state)->body, &view), "view");
     return 3 * view.copy_count;
+}
+
+static inline void method_library_look(void *state, gxs_model *model, const double **displacement)
+{
+    gx_view view;
+    method_must(gx_body_view(((method_body *)state)->body, &view), "view");
+    method_must(gx_body_model(((method_body *)state)->body, model), "model");
+    *displacement = view.displacement;
 }
 
 static inline void method_body_destroy(void *state)
@@ -169,9 +180,16 @@ static inline const char *method_vna_step(void *state, method_times *times)
     return NULL;
 }
 
-/* ---- the literal Algorithm 1 ---- */
+static inline void method_vna_look(void *state, gxs_model *model, const double **displacement)
+{
+    method_body *m = (method_body *)state;
+    method_library_look(m, model, displacement);
+    m->replicas = (gxs_element *)method_memory(m->replicas, model->element_count, sizeof *m->replicas);
+    vna_replicate(model->elements, model->element_count, &m->scene->density, m->replicas);
+    model->elements = m->replicas;
+}
 
-#define METHOD_THICKNESS 1e-4       /* of cuts made solid, m: GXFEM's Table 1, but for the single tetrahedron */
+/* ---- the literal Algorithm 1 ---- */
 
 typedef struct method_literal {
     const replay *scene;
@@ -204,13 +222,13 @@ static inline void *method_literal_create(const replay *scene)
 }
 
 /* The path so far as a solid; vertices and triangles are the caller's to free. */
-static inline gx_surface method_solidify(const gx_surface *sheet)
+static inline gx_surface method_solidify(const gx_surface *sheet, double thickness)
 {
     double *vertices = (double *)method_memory(NULL, 6 * sheet->vertex_count, sizeof(double));
     uint32_t *triangles = (uint32_t *)method_memory(NULL, 24 * sheet->triangle_count, sizeof(uint32_t));
     gx_surface solid;
     memset(&solid, 0, sizeof solid);
-    method_must(gx_surface_solidify(sheet, METHOD_THICKNESS, vertices, &solid.vertex_count, triangles, &solid.triangle_count, NULL), "solid");
+    method_must(gx_surface_solidify(sheet, thickness, vertices, &solid.vertex_count, triangles, &solid.triangle_count, NULL), "solid");
     solid.vertices = vertices;
     solid.triangles = triangles;
     solid.kind = GX_SURFACE_SOLID;
@@ -223,13 +241,16 @@ static inline const char *method_literal_cut(void *state, const replay_cut *cut,
     const literal_report before = m->cutter->report;
     const gx_surface strip = replay_strip(cut);
     const double start = seconds(NULL);
-    gx_surface solid = method_solidify(&cut->path);
+    const int is_solid = cut->path.kind == GX_SURFACE_SOLID;
+    gx_surface solid = is_solid ? cut->path : method_solidify(&cut->path, m->scene->thickness);
     literal_cut(m->cutter, &solid, 1, &strip);
     times->booleans += m->cutter->report.seconds_booleans - before.seconds_booleans;
     times->domains += m->cutter->report.booleans - before.booleans;
     times->total += seconds(NULL) - start;
-    free((void *)(uintptr_t)solid.vertices);
-    free((void *)(uintptr_t)solid.triangles);
+    if (!is_solid) {
+        free((void *)(uintptr_t)solid.vertices);
+        free((void *)(uintptr_t)solid.triangles);
+    }
     m->changed = 1;
     return m->cutter->report.failures > before.failures ? "a Boolean of rounded subdomains is refused" : NULL;
 }
@@ -267,6 +288,13 @@ static inline const char *method_literal_step(void *state, method_times *times)
 
 static inline size_t method_literal_unknowns(void *state) { return 3 * ((method_literal *)state)->cutter->copy_count; }
 
+static inline void method_literal_look(void *state, gxs_model *model, const double **displacement)
+{
+    method_literal *m = (method_literal *)state;
+    literal_model(m->cutter, model);
+    *displacement = m->cutter->displacement;
+}
+
 static inline void method_literal_destroy(void *state)
 {
     method_literal *m = (method_literal *)state;
@@ -279,9 +307,9 @@ static inline void method_literal_destroy(void *state)
 /* ---- all ---- */
 
 static const method methods[] = {
-    {"gxfem", method_body_create, method_body_cut, method_library_step, method_body_unknowns, method_body_destroy},
-    {"VNA", method_body_create, method_body_cut, method_vna_step, method_body_unknowns, method_body_destroy},
-    {"Algorithm 1", method_literal_create, method_literal_cut, method_literal_step, method_literal_unknowns, method_literal_destroy}};
+    {"gxfem", method_body_create, method_body_cut, method_library_step, method_body_unknowns, method_library_look, method_body_destroy},
+    {"VNA", method_body_create, method_body_cut, method_vna_step, method_body_unknowns, method_vna_look, method_body_destroy},
+    {"Algorithm 1", method_literal_create, method_literal_cut, method_literal_step, method_literal_unknowns, method_literal_look, method_literal_destroy}};
 
 enum { METHOD_COUNT = sizeof methods / sizeof methods[0] };
 

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define REPLAY_THICKNESS 1e-4   /* GXFEM's Table 1, but for the single tetrahedron */
+
 /* Before a frame's step: the triangles from `first` on cut; those before it are what of the same blade's path was cut earlier. */
 typedef struct replay_cut {
     size_t frame, first;
@@ -22,6 +24,8 @@ typedef struct replay {
     uint32_t *elements;                             /* element_count x 4 */
     gx_region *regions;
     replay_cut *cuts;
+    double sever_below;                             /* see gx_cut_desc; not in files: 0 */
+    double thickness;                               /* of sheets, for methods that need solids, m; not in files: REPLAY_THICKNESS */
     const char *name;                               /* of the file */
     FILE *stream;                                   /* while it is read */
 } replay;
@@ -138,6 +142,7 @@ static inline replay replay_read(const char *name)
     int k;
     memset(&r, 0, sizeof r);
     r.name = name;
+    r.thickness = REPLAY_THICKNESS;
     r.stream = fopen(name, "r");
     if (!r.stream) {
         perror(name);
@@ -194,7 +199,7 @@ static inline int replay_is_held(const replay *r, size_t node)
     return 0;
 }
 
-/* The triangles of the cut that are new, as a sheet; borrowed */
+/* The triangles of the cut that are new; borrowed */
 static inline gx_surface replay_strip(const replay_cut *cut)
 {
     gx_surface strip = cut->path;
