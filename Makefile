@@ -36,6 +36,7 @@ help:
 	@echo "make bench-scaling  cost of a cut and a step against elements, cuts and triangles; BENCH=--small: seconds"
 	@echo "make bench-failure  hard cases: which method is right, wrong, refuses, crashes"
 	@echo "make bench-table2  scenes of GXFEM's Table 2 by the library, virtual nodes and the literal Algorithm 1; BENCH=--small: minutes"
+	@echo "make bench-stepping  error of the motion against time per step: steps, integrators, Newton, CG, lumping, virtual nodes; BENCH=--small"
 	@echo "make bench-kernel  Booleans of closed surfaces; DATA=FOLDER: also of the OFF files there"
 	@echo "make clean       removes $(BUILD)/"
 
@@ -126,12 +127,13 @@ $(BUILD)/bench/solver: bench/solver.c bench/block.h bench/clock.h $(headers)
 bench-accuracy bench-drift bench-conditioning bench-frames bench-skin bench-scaling bench-failure: bench-%: $(BUILD)/bench/%
 	@$< $(BUILD)/bench/$*.csv $(BENCH)
 
-$(BUILD)/bench/accuracy $(BUILD)/bench/drift $(BUILD)/bench/conditioning $(BUILD)/bench/frames $(BUILD)/bench/skin $(BUILD)/bench/scaling $(BUILD)/bench/table2 $(BUILD)/bench/failure: $(BUILD)/bench/%: bench/%.c $(wildcard bench/*.h) $(headers)
+$(BUILD)/bench/accuracy $(BUILD)/bench/drift $(BUILD)/bench/conditioning $(BUILD)/bench/frames $(BUILD)/bench/skin $(BUILD)/bench/scaling $(BUILD)/bench/table2 $(BUILD)/bench/stepping $(BUILD)/bench/failure: $(BUILD)/bench/%: bench/%.c $(wildcard bench/*.h) $(headers)
 	@mkdir -p $(@D)
 	@$(CC) -std=c99 $(WARNINGS) $(BENCH_CFLAGS) $< -o $@ $(LDFLAGS) -lm
 
 # Scenes with the frames of GXFEM's Table 2; BENCH=--small: small ones. OCTOPUS=FILE: the octopus on that mesh
 table2 = sticks thin_slab accordion octopus
+stepping = slab_in_five accordion
 frames-sticks = 145
 frames-thin_slab = 450
 frames-accordion = 540
@@ -142,9 +144,13 @@ bench-table2:
 	@$(MAKE) --no-print-directory $(BUILD)/bench/table2 $(table2:%=$(traces)/%.trace) >&2
 	@$(BUILD)/bench/table2 $(BUILD)/bench/table2.csv $(foreach s,$(table2),$(s)=$(traces)/$(s).trace)
 
-$(table2:%=$(traces)/%.trace): $(traces)/%.trace: $(BUILD)/%
+bench-stepping:
+	@$(MAKE) --no-print-directory $(BUILD)/bench/stepping $(stepping:%=$(traces)/%.trace) >&2
+	@$(BUILD)/bench/stepping $(BUILD)/bench/stepping.csv $(foreach s,$(stepping),$(s)=$(traces)/$(s).trace)
+
+$(sort $(table2:%=$(traces)/%.trace) $(stepping:%=$(traces)/%.trace)): $(traces)/%.trace: $(BUILD)/%
 	@mkdir -p $(@D)
-	@$< --quiet --trace $@ $(if $(BENCH),$(BENCH),--frames $(frames-$*)) $(if $(OCTOPUS),$(if $(filter octopus,$*),--mesh $(OCTOPUS)))
+	@$< --quiet --trace $@ $(if $(BENCH),$(BENCH),$(frames-$*:%=--frames %)) $(if $(OCTOPUS),$(if $(filter octopus,$*),--mesh $(OCTOPUS)))
 
 bench-kernel: $(BUILD)/bench/kernel
 	@$< $(BUILD)/bench/kernel.csv $(DATA)
@@ -166,4 +172,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo scenes pictures check check-programs run-gxcut $(tests:%=run-%) sanitize sanitize-scenes compile lint flags hashes bench-solver bench-accuracy bench-drift bench-conditioning bench-frames bench-skin bench-scaling bench-failure bench-table2 bench-kernel check-all clean
+.PHONY: help examples demo scenes pictures check check-programs run-gxcut $(tests:%=run-%) sanitize sanitize-scenes compile lint flags hashes bench-solver bench-accuracy bench-drift bench-conditioning bench-frames bench-skin bench-scaling bench-failure bench-table2 bench-stepping bench-kernel check-all clean
