@@ -434,8 +434,8 @@ static const catalogue_row catalogue[] = {
     {"solid 1e-12 thick", slab_1e12, 0}, {"slice of 1e-3", sliver_1e3, 0}, {"slice of 1e-8", sliver_1e8, 0}, {"slice of 1e-15", sliver_1e15, 0},
     {"corner of 1e-9", corner_1e9, 0}, {"corner of 1e-15", corner_1e15, 0}, {"fold", fold, 0}, {"self-crossing", self_crossing, 0}, {"hole", hole, 0},
     {"T-junction", t_junction, 0}, {"ends on another", ends_on_another, 0}, {"duplicate triangle", duplicate_triangle, 0},
-    {"triangle without area", flat_triangle, 0}, {"ends inside", open_end, 0}, {"1000 parallel, one element", thousand_parallel, 1},
-    {"3 x 20 crossing, one element", crossing_3_20, 1}, {"aspect ratio 1e4", aspect_1e4, 0}, {"size of 1e-6", size_1e6, 0},
+    {"triangle without area", flat_triangle, 0}, {"ends inside", open_end, 0}, {"1000 parallel in one element", thousand_parallel, 1},
+    {"3 x 20 crossing in one element", crossing_3_20, 1}, {"aspect ratio 1e4", aspect_1e4, 0}, {"size of 1e-6", size_1e6, 0},
     {"size of 1e6 at 1e8", offset_1e8, 0}, {"starts shaken by an edge length", shaken, 0}, {"starts in one point", collapsed, 0},
     {"steps of 1 s", one_second, 0}, {"Poisson's ratio 0.4999", incompressible, 0}, {"hangs by 1e-3 of a face", bridge, 0}};
 

@@ -261,10 +261,10 @@ int main(int argc, char **argv)
         turn_steps(&s, "BDF1", GXS_BDF1, 1, 0, 0);
         turn_steps(&s, "BDF2", GXS_BDF2, 1, 0, 0);
         turn_steps(&s, "midpoint", GXS_MIDPOINT, 1, 0, 0);
-        turn_steps(&s, "midpoint, 2 Newton", GXS_MIDPOINT, 2, 0, 0);
-        turn_steps(&s, "BDF1, lumped", GXS_BDF1, 1, 1, 0);
-        turn_steps(&s, "BDF2, lumped", GXS_BDF2, 1, 1, 0);
-        turn_steps(&s, "VNA, BDF2", GXS_BDF2, 1, 0, 1);
+        turn_steps(&s, "midpoint; 2 Newton", GXS_MIDPOINT, 2, 0, 0);
+        turn_steps(&s, "BDF1; lumped", GXS_BDF1, 1, 1, 0);
+        turn_steps(&s, "BDF2; lumped", GXS_BDF2, 1, 1, 0);
+        turn_steps(&s, "VNA; BDF2", GXS_BDF2, 1, 0, 1);
         turn_solver(&s);
         setting_free(&s);
         replay_free(&scene);
