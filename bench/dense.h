@@ -27,7 +27,7 @@ typedef struct pinv {
 
 static inline void *dense_memory(void *old, size_t count, size_t size)
 {
-    void *memory = realloc(old, (count + 1) * size);
+    void *memory = old ? realloc(old, (count + 1) * size) : calloc(count + 1, size);
     if (memory) return memory;
     fprintf(stderr, "bench: no memory\n");
     exit(1);
