@@ -37,6 +37,8 @@ help:
 	@echo "make bench-failure  hard cases: which method is right, wrong, refuses, crashes"
 	@echo "make bench-table2  scenes of GXFEM's Table 2 by the library, virtual nodes and the literal Algorithm 1; BENCH=--small: minutes"
 	@echo "make bench-stepping  error of the motion against time per step: steps, integrators, Newton, CG, lumping, virtual nodes; BENCH=--small"
+	@echo "make bench-quadrature  integrals over parts of cut elements: error and time beside RXFEM, adaptive and regular sampling"
+	@echo "make charts      the benches that have charts, then docs/charts/; installs gnuplot where it is missing"
 	@echo "make bench-kernel  Booleans of closed surfaces; DATA=FOLDER: also of the OFF files there"
 	@echo "make clean       removes $(BUILD)/"
 
@@ -89,7 +91,7 @@ run-gxcut: $(BUILD)/gxcut
 $(tests:%=run-%): run-%: $(BUILD)/tests/%
 	@$< >$<.log 2>&1; code=$$?; cat $<.log; exit $$code
 
-$(BUILD)/tests/%: tests/%.c $(headers) $(wildcard tests/*.h examples/*.h)
+$(BUILD)/tests/%: tests/%.c $(headers) $(wildcard tests/*.h examples/*.h bench/*.h)
 	@mkdir -p $(@D)
 	$(compile) -g -Itests $(shell pkg-config --cflags check) $< -o $@ $(LDFLAGS) $(shell pkg-config --libs check) -lm
 
@@ -124,10 +126,10 @@ $(BUILD)/bench/solver: bench/solver.c bench/block.h bench/clock.h $(headers)
 	$(CC) -std=c99 $(WARNINGS) $(BENCH_CFLAGS) -pthread $(shell pkg-config --cflags CHOLMOD 2>/dev/null) $< -o $@ $(LDFLAGS) \
 	    $(shell pkg-config --libs CHOLMOD 2>/dev/null || echo -lcholmod) -lm
 
-bench-accuracy bench-drift bench-conditioning bench-frames bench-skin bench-scaling bench-failure: bench-%: $(BUILD)/bench/%
+bench-accuracy bench-drift bench-conditioning bench-frames bench-quadrature bench-skin bench-scaling bench-failure: bench-%: $(BUILD)/bench/%
 	@$< $(BUILD)/bench/$*.csv $(BENCH)
 
-$(BUILD)/bench/accuracy $(BUILD)/bench/drift $(BUILD)/bench/conditioning $(BUILD)/bench/frames $(BUILD)/bench/skin $(BUILD)/bench/scaling $(BUILD)/bench/table2 $(BUILD)/bench/stepping $(BUILD)/bench/failure: $(BUILD)/bench/%: bench/%.c $(wildcard bench/*.h) $(headers)
+$(BUILD)/bench/accuracy $(BUILD)/bench/drift $(BUILD)/bench/conditioning $(BUILD)/bench/frames $(BUILD)/bench/quadrature $(BUILD)/bench/skin $(BUILD)/bench/scaling $(BUILD)/bench/table2 $(BUILD)/bench/stepping $(BUILD)/bench/failure: $(BUILD)/bench/%: bench/%.c $(wildcard bench/*.h) $(headers)
 	@mkdir -p $(@D)
 	@$(CC) -std=c99 $(WARNINGS) $(BENCH_CFLAGS) $< -o $@ $(LDFLAGS) -lm
 
@@ -152,6 +154,11 @@ $(sort $(table2:%=$(traces)/%.trace) $(stepping:%=$(traces)/%.trace)): $(traces)
 	@mkdir -p $(@D)
 	@$< --quiet --trace $@ $(if $(BENCH),$(BENCH),$(frames-$*:%=--frames %)) $(if $(OCTOPUS),$(if $(filter octopus,$*),--mesh $(OCTOPUS)))
 
+charts:
+	@sh tests/install.sh charts >&2
+	@$(MAKE) --no-print-directory bench-quadrature >/dev/null
+	@sh bench/charts.sh $(BUILD)/bench docs/charts
+
 bench-kernel: $(BUILD)/bench/kernel
 	@$< $(BUILD)/bench/kernel.csv $(DATA)
 
@@ -172,4 +179,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo scenes pictures check check-programs run-gxcut $(tests:%=run-%) sanitize sanitize-scenes compile lint flags hashes bench-solver bench-accuracy bench-drift bench-conditioning bench-frames bench-skin bench-scaling bench-failure bench-table2 bench-stepping bench-kernel check-all clean
+.PHONY: help examples demo scenes pictures check check-programs run-gxcut $(tests:%=run-%) sanitize sanitize-scenes compile lint flags hashes bench-solver bench-accuracy bench-drift bench-conditioning bench-frames bench-quadrature bench-skin bench-scaling bench-failure bench-table2 bench-stepping bench-kernel charts check-all clean

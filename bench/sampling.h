@@ -19,6 +19,8 @@
 
 #include <stdint.h>
 
+static const double SAMPLING_PIVOT = 1e-8;
+
 enum { SAMPLING_COLUMNS = 64, SAMPLING_DEGREE_MAX = 4, SAMPLING_MONOMIALS = 35 };
 
 typedef struct sampling_rule {
@@ -300,18 +302,18 @@ static inline void sampling_exchange(sampling_basis *b, size_t leaves, const dou
 }
 
 /* The column that a new one, B y, is exchanged for, and how much of its weight w goes to the others first: an unused one at once, else the
-   first that comes to weight 0 as weights change by y; count: none does. */
+   first that comes to weight 0 as weights change by y; count: none does. What y is below SAMPLING_PIVOT is a rounding error. */
 static inline size_t sampling_leaving(const sampling_basis *b, const double *y, double w, double *moved)
 {
     size_t i, leaves = b->count;
-    double most = 1e-9;
+    double most = SAMPLING_PIVOT;
     *moved = 0;
     for (i = 0; i < b->count; ++i)
         if (!b->taken[i] && fabs(y[i]) > most) { most = fabs(y[i]); leaves = i; }
     if (leaves < b->count) return leaves;
     *moved = w;
     for (i = 0; i < b->count; ++i)
-        if (b->taken[i] && y[i] < 0 && b->weight[i] < -y[i] * *moved) {
+        if (b->taken[i] && y[i] < -SAMPLING_PIVOT && b->weight[i] < -y[i] * *moved) {
             *moved = -b->weight[i] / y[i];
             leaves = i;
         }
@@ -329,7 +331,7 @@ static inline void sampling_enter(sampling_basis *b, const double *p, unsigned d
     for (i = 0; i < b->count; ++i) y[i] = dense_dot(b->inverse[i], values, b->count);
     leaves = sampling_leaving(b, y, p[3], &moved);
     for (i = 0; i < b->count; ++i)
-        if (b->taken[i]) b->weight[i] += moved * y[i];
+        if (b->taken[i]) b->weight[i] = fmax(0, b->weight[i] + moved * y[i]);
     if (leaves == b->count) return;
     sampling_exchange(b, leaves, y);
     memcpy(b->point[leaves], p, sizeof b->point[leaves]);

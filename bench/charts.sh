@@ -1,0 +1,105 @@
+#!/bin/sh
+# Draws what benches have measured.
+# usage: sh bench/charts.sh TABLES CHARTS
+#     TABLES  directory of the benches' CSV files
+#     CHARTS  directory of the SVG files
+# quadrature.csv gives quadrature.svg and quadrature_triangles.svg. A table that is missing is an error. Needs gnuplot.
+set -u
+tables=$1
+charts=$2
+mkdir -p "$charts" || exit 2
+where="$(date +%Y-%m-%d), $(uname -m), one thread"
+
+[ -s "$tables/quadrature.csv" ] || { echo "$0: $tables/quadrature.csv is missing: make bench-quadrature" >&2; exit 2; }
+
+# series REGION METHOD COLUMNS: an awk expression of rows of quadrature.csv, of the integrand xx+yy+zz, as a gnuplot data block.
+# Errors below 1e-18 are drawn there.
+series() {
+    awk -F, -v region="$1" -v method="$2" '
+        $1 == region && $3 == method && $5 == "xx+yy+zz" { error = $9 < 1e-18 ? 1e-18 : $9; print '"$3"' }' "$tables/quadrature.csv"
+}
+
+# Time to make a rule (left), and per evaluation when a thousand share it (right), by error; a panel for each region
+panels() {
+    echo 'set terminal svg size 1180,760 font "sans,13" background "white"'
+    echo "set output '$charts/quadrature.svg'"
+    for region in plane kink sphere; do
+        for method in gxfem positive rxfem "rxfem clipped" adaptive regular; do
+            name=$(echo "$region $method" | tr ' ' _)
+            for column in '$11 + $12, error, $4' '$14, error, $4'; do
+                case $column in '$11'*) block=make_$name ;; *) block=each_$name ;; esac
+                echo "\$$block << EOD"
+                series "$region" "$method" "$column"
+                echo "EOD"
+            done
+        done
+    done
+    cat <<END
+set multiplot layout 2,3 title "Integral of x^2 + y^2 + z^2 over a part of one cut tetrahedron   ($where)" font "sans,15"
+set logscale xy; set grid back lc rgb "#dddddd"; set format x "10^{%L}"; set format y "10^{%L}"
+set yrange [3e-19:3]; set ytics 1e3; set key off
+set style line 1 lc rgb "#c00000" lw 2 pt 7 ps 1.1
+set style line 2 lc rgb "#e08030" lw 2 pt 5 ps 0.9
+set style line 3 lc rgb "#2060b0" lw 2 pt 9 ps 1.1
+set style line 4 lc rgb "#2060b0" lw 1 dt 2 pt 8 ps 1.1
+set style line 5 lc rgb "#308040" lw 2 pt 13 ps 1.1
+set style line 6 lc rgb "#808080" lw 2 pt 11 ps 0.9
+END
+    for row in make each; do
+        for region in plane kink sphere; do
+            case $region in plane) text="plane, 1 triangle" ;; kink) text="kink, 2 triangles" ;; *) text="sphere, 512 triangles" ;; esac
+            if [ $row = make ]; then
+                echo "set title '$text' offset 0,-0.6; set xlabel 'time to make the rule, cut included, us'; set xrange [1:1e6]"
+            else
+                echo "set title ''; set xlabel 'time of an evaluation with 1/1000 of that, us'; set xrange [0.03:3e4]"
+            fi
+            if [ $region = plane ]; then echo "set ylabel 'error, share of the element'"; else echo "set ylabel ''"; fi
+            if [ $row = make ] && [ $region = sphere ]; then echo 'set key at graph 0.99,0.47 right samplen 2 spacing 1.05 font "sans,11"'; else echo 'set key off'; fi
+            printf 'plot '
+            n=0
+            for method in gxfem positive rxfem "rxfem clipped" adaptive regular; do
+                n=$((n + 1))
+                case $method in
+                gxfem) title="gxfem: exact moments" ;;
+                positive) title="gxfem: positive rules, degree 1-4" ;;
+                rxfem) title="RXFEM, degree 2 (published), 1-4" ;;
+                "rxfem clipped") title="RXFEM, clipped triangles" ;;
+                adaptive) title="adaptive, depth 1-6 (published: 4)" ;;
+                regular) title="regular, 5^3-100^3 (published: 50^3)" ;;
+                esac
+                [ $n -eq 1 ] || printf ', '
+                printf '$%s_%s using 1:2 with linespoints ls %d title "%s"' $row "$(echo "$region $method" | tr ' ' _)" $n "$title"
+            done
+            echo
+        done
+    done
+    echo 'unset multiplot'
+}
+
+# What a curved cut of more and more triangles costs in one element, and what RXFEM's rule is off then
+triangles() {
+    echo 'set terminal svg size 1180,480 font "sans,13" background "white"'
+    echo "set output '$charts/quadrature_triangles.svg'"
+    for method in gxfem rxfem triangles; do
+        echo "\$$method << EOD"
+        series spheres "$method" '$2, $11 + $12, error, $12'
+        echo "EOD"
+    done
+    cat <<END
+set multiplot layout 1,2 title "A sphere's octant cut by more and more triangles in one tetrahedron   ($where)" font "sans,15"
+set logscale xy; set grid back lc rgb "#dddddd"; set format y "10^{%L}"
+set xlabel "triangles of the sheet (a third meets the element)"; set xrange [6:3000]
+set style line 1 lc rgb "#c00000" lw 2 pt 7 ps 1.1
+set style line 3 lc rgb "#2060b0" lw 2 pt 9 ps 1.1
+set style line 4 lc rgb "#2060b0" lw 1 dt 2 pt 8 ps 1.1
+set style line 6 lc rgb "#808080" lw 2 pt 11 ps 0.9
+set ylabel "time, us"; set yrange [5:1e6]; set key left top
+plot \$gxfem using 1:2 with linespoints ls 1 title "gxfem: the whole cut", \$rxfem using 1:2 with linespoints ls 3 title "RXFEM: path and rule", \$rxfem using 1:4 with linespoints ls 4 title "RXFEM: its rule alone"
+set ylabel "error of the integral of x^2 + y^2 + z^2, share of the element"; set yrange [3e-19:3]; set ytics 1e3; set key right center
+plot \$gxfem using 1:3 with linespoints ls 1 title "gxfem", \$rxfem using 1:3 with linespoints ls 3 title "RXFEM", \$triangles using 1:3 with linespoints ls 6 title "the triangles, beside the round sphere"
+unset multiplot
+END
+}
+
+panels | gnuplot && triangles | gnuplot || exit 1
+echo "wrote $charts/quadrature.svg, $charts/quadrature_triangles.svg"
