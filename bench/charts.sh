@@ -8,7 +8,7 @@ set -u
 tables=$1
 charts=$2
 mkdir -p "$charts" || exit 2
-where="$(date +%Y-%m-%d), $(uname -m), one thread"
+where="$(date +%Y-%m-%d), $(uname -m | tr _ -), one thread"
 
 [ -s "$tables/quadrature.csv" ] || { echo "$0: $tables/quadrature.csv is missing: make bench-quadrature" >&2; exit 2; }
 
@@ -19,9 +19,9 @@ series() {
         $1 == region && $3 == method && $5 == "xx+yy+zz" { error = $9 < 1e-18 ? 1e-18 : $9; print '"$3"' }' "$tables/quadrature.csv"
 }
 
-# Time to make a rule (left), and per evaluation when a thousand share it (right), by error; a panel for each region
+# Error by the time to make a rule (above), and per evaluation when a thousand share it (below); a panel for each region
 panels() {
-    echo 'set terminal svg size 1180,760 font "sans,13" background "white"'
+    echo 'set terminal svg size 1180,780 font "sans,12" background "white"'
     echo "set output '$charts/quadrature.svg'"
     for region in plane kink sphere; do
         for method in gxfem positive rxfem "rxfem clipped" adaptive regular; do
@@ -36,7 +36,7 @@ panels() {
     done
     cat <<END
 set multiplot layout 2,3 title "Integral of x^2 + y^2 + z^2 over a part of one cut tetrahedron   ($where)" font "sans,15"
-set logscale xy; set grid back lc rgb "#dddddd"; set format x "10^{%L}"; set format y "10^{%L}"
+set xlabel font ",11"; set logscale xy; set grid back lc rgb "#dddddd"; set format x "10^{%L}"; set format y "10^{%L}"
 set yrange [3e-19:3]; set ytics 1e3; set key off
 set style line 1 lc rgb "#c00000" lw 2 pt 7 ps 1.1
 set style line 2 lc rgb "#e08030" lw 2 pt 5 ps 0.9
@@ -47,25 +47,25 @@ set style line 6 lc rgb "#808080" lw 2 pt 11 ps 0.9
 END
     for row in make each; do
         for region in plane kink sphere; do
-            case $region in plane) text="plane, 1 triangle" ;; kink) text="kink, 2 triangles" ;; *) text="sphere, 512 triangles" ;; esac
+            case $region in plane) text="plane, 1 triangle" ;; kink) text="kink, 2 triangles" ;; *) text="sphere, $(series sphere gxfem '$2') triangles" ;; esac
             if [ $row = make ]; then
-                echo "set title '$text' offset 0,-0.6; set xlabel 'time to make the rule, cut included, us'; set xrange [1:1e6]"
+                echo "set title '$text' offset 0,-0.6; set xlabel 'time of cut and rule, us'; set xrange [1:1e6]"
             else
-                echo "set title ''; set xlabel 'time of an evaluation with 1/1000 of that, us'; set xrange [0.03:3e4]"
+                echo "set title ''; set xlabel 'evaluation + 1/1000 of cut and rule, us'; set xrange [0.03:3e4]"
             fi
             if [ $region = plane ]; then echo "set ylabel 'error, share of the element'"; else echo "set ylabel ''"; fi
-            if [ $row = make ] && [ $region = sphere ]; then echo 'set key at graph 0.99,0.47 right samplen 2 spacing 1.05 font "sans,11"'; else echo 'set key off'; fi
+            if [ $row$region = eachsphere ]; then echo 'set key at graph 0.99,0.72 right samplen 1.5 spacing 1.1 font "sans,11"'; else echo 'set key off'; fi
             printf 'plot '
             n=0
             for method in gxfem positive rxfem "rxfem clipped" adaptive regular; do
                 n=$((n + 1))
                 case $method in
-                gxfem) title="gxfem: exact moments" ;;
-                positive) title="gxfem: positive rules, degree 1-4" ;;
-                rxfem) title="RXFEM, degree 2 (published), 1-4" ;;
-                "rxfem clipped") title="RXFEM, clipped triangles" ;;
-                adaptive) title="adaptive, depth 1-6 (published: 4)" ;;
-                regular) title="regular, 5^3-100^3 (published: 50^3)" ;;
+                gxfem) title="gxfem, moments" ;;
+                positive) title="positive rule, degree 1-4" ;;
+                rxfem) title="RXFEM, degree 1-4" ;;
+                "rxfem clipped") title="RXFEM, clipped" ;;
+                adaptive) title="adaptive, depth 1-6" ;;
+                regular) title="regular, 5-100 cells" ;;
                 esac
                 [ $n -eq 1 ] || printf ', '
                 printf '$%s_%s using 1:2 with linespoints ls %d title "%s"' $row "$(echo "$region $method" | tr ' ' _)" $n "$title"
@@ -78,7 +78,7 @@ END
 
 # What a curved cut of more and more triangles costs in one element, and what RXFEM's rule is off then
 triangles() {
-    echo 'set terminal svg size 1180,480 font "sans,13" background "white"'
+    echo 'set terminal svg size 1180,480 font "sans,12" background "white"'
     echo "set output '$charts/quadrature_triangles.svg'"
     for method in gxfem rxfem triangles; do
         echo "\$$method << EOD"
@@ -88,14 +88,14 @@ triangles() {
     cat <<END
 set multiplot layout 1,2 title "A sphere's octant cut by more and more triangles in one tetrahedron   ($where)" font "sans,15"
 set logscale xy; set grid back lc rgb "#dddddd"; set format y "10^{%L}"
-set xlabel "triangles of the sheet (a third meets the element)"; set xrange [6:3000]
+set xlabel "triangles that meet the element"; set xrange [2:1000]
 set style line 1 lc rgb "#c00000" lw 2 pt 7 ps 1.1
 set style line 3 lc rgb "#2060b0" lw 2 pt 9 ps 1.1
 set style line 4 lc rgb "#2060b0" lw 1 dt 2 pt 8 ps 1.1
 set style line 6 lc rgb "#808080" lw 2 pt 11 ps 0.9
 set ylabel "time, us"; set yrange [5:1e6]; set key left top
 plot \$gxfem using 1:2 with linespoints ls 1 title "gxfem: the whole cut", \$rxfem using 1:2 with linespoints ls 3 title "RXFEM: path and rule", \$rxfem using 1:4 with linespoints ls 4 title "RXFEM: its rule alone"
-set ylabel "error of the integral of x^2 + y^2 + z^2, share of the element"; set yrange [3e-19:3]; set ytics 1e3; set key right center
+set ylabel "error, share of the element"; set yrange [3e-19:3]; set ytics 1e3; set key right center
 plot \$gxfem using 1:3 with linespoints ls 1 title "gxfem", \$rxfem using 1:3 with linespoints ls 3 title "RXFEM", \$triangles using 1:3 with linespoints ls 6 title "the triangles, beside the round sphere"
 unset multiplot
 END
