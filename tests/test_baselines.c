@@ -1,11 +1,11 @@
-/* test_baselines.c - what the benches compare the library with: bench/dense.h, part.h, rxfem.h, sampling.h. Each must be as good as it is
+/* test_baselines.c - what the benches compare the library with: bench/dense.h, part.h, rxfem.h, rxfem_model.h, sampling.h. Each must be as good as it is
    meant to be, else the comparison says nothing.
 
    truth: part.h against rationals and the oracle; then rules against part.h, enrichments against the library's copies. */
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "../bench/part.h"
-#include "../bench/rxfem.h"
+#include "../bench/rxfem_model.h"
 #include "../bench/sampling.h"
 #include "body.h"
 #include "oracle.h"
@@ -661,6 +661,173 @@ START_TEST(shares_of_support) {
 }
 END_TEST
 
+/* A sheet of 1e-10 of the cube's edge is on no well supported function of its own but those of its outer nodes: the others follow them, by
+   weights that give back what lies in the sheet's plane. */
+START_TEST(constrained_functions) {
+    workload w = grid(1, 1, 1, 5);
+    rx_body *b = rx_body_of(&w);
+    rx_model *m;
+    size_t i, k;
+    static const double normal[3] = {1, 1e-12, 2e-12}, p[3] = {1 - 1e-10, 0.5, 0.5};
+    add_plane(&w, p, normal, 9);
+    ck_assert_int_eq(rx_cut_by(b, &w, 0), RX_OK);
+    m = rx_model_create(b, 1000);
+    ck_assert_uint_gt(m->model.constraint_count, 0);
+    for (i = 0; i < m->model.constraint_count; ++i) {
+        const gxs_constraint *c = &m->model.constraints[i];
+        const double *x = m->positions + 3 * (size_t)c->copy;
+        double sum = 0, y = 0, z = 0;
+        ck_assert_double_lt(x[0], 0.5);             /* a node of the far side, in the sheet */
+        for (k = 0; k < 4; ++k) {
+            const double *master = m->positions + 3 * (size_t)c->master[k];
+            sum += c->weight[k];
+            y += c->weight[k] * master[1];
+            z += c->weight[k] * master[2];
+            ck_assert(!(fabs(c->weight[k]) > 0) || master[0] > 0.5);
+        }
+        ck_assert_double_eq_tol(sum, 1, 1e-12);
+        ck_assert_msg(fabs(y - x[1]) < 1e-9 && fabs(z - x[2]) < 1e-9, "%g %g follows %g %g", x[1], x[2], y, z);
+    }
+    rx_model_destroy(m);
+    rx_body_destroy(b);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- rxfem_model.h ---- */
+
+typedef struct swing { gx_body *body; rx_body *b; rx_model *m; gxs_solver *solver; double *displacement, *velocity; uint8_t *held; } swing;
+
+/* Both are held where x is near 0, on each side of the cuts, and have the same material. */
+static swing swing_begin(const workload *w, gxs_material *material) {
+    static const gx_region root = {0, -1, 1e-6};
+    swing s;
+    size_t i;
+    memset(&s, 0, sizeof s);
+    memset(material, 0, sizeof *material);
+    material->kind = GXS_STABLE_NEO_HOOKEAN; material->young = 1e6; material->poisson = 0.4;
+    s.body = cut_in_sequence(w);
+    s.b = rx_body_of(w);
+    for (i = 0; i < w->surface_count; ++i) ck_assert_int_eq(rx_cut_by(s.b, w, i), RX_OK);
+    s.m = rx_model_create(s.b, 1000);
+    ck_assert_int_eq(gx_body_hold(s.body, &root, 1), GX_OK);
+    s.displacement = (double *)dense_memory(NULL, 3 * s.m->value_count, sizeof(double));
+    s.velocity = (double *)dense_memory(NULL, 3 * s.m->value_count, sizeof(double));
+    s.held = (uint8_t *)dense_memory(NULL, s.m->value_count, 1);
+    for (i = 0; i < s.m->value_count; ++i) s.held[i] = s.m->positions[3 * i] < 1e-6;
+    s.m->model.materials = material; s.m->model.material_count = 1;
+    s.m->model.held = s.held;
+    ck_assert_int_eq(gxs_solver_create(NULL, &s.solver), GX_OK);
+    ck_assert_int_eq(gxs_solver_set_model(s.solver, &s.m->model, NULL), GX_OK);
+    return s;
+}
+
+static void swing_end(swing *s) {
+    gxs_solver_destroy(s->solver);
+    rx_model_destroy(s->m);
+    rx_body_destroy(s->b);
+    gx_body_destroy(s->body);
+    free(s->displacement); free(s->velocity); free(s->held);
+}
+
+/* The largest difference between the displacements of corners of the same cells */
+static double swing_difference(const swing *s, double *largest) {
+    const gx_view view = view_of(s->body);
+    uint32_t *element = (uint32_t *)dense_memory(NULL, s->b->piece_count, sizeof *element);
+    double *volume = (double *)dense_memory(NULL, s->b->piece_count, sizeof *volume), worst = 0;
+    size_t *cells, *pieces, i, k, a;
+    for (i = 0; i < s->b->piece_count; ++i) { element[i] = s->b->pieces[i].element; volume[i] = s->b->pieces[i].moments[0]; }
+    cells = order_cells(view.cell_element, view.cell_volume, view.cell_count);
+    pieces = order_cells(element, volume, s->b->piece_count);
+    ck_assert_uint_eq(view.cell_count, s->b->piece_count);
+    for (*largest = 0, i = 0; i < view.cell_count; ++i)
+        for (k = 0; k < 4; ++k)
+            for (a = 0; a < 3; ++a) {
+                const double x = view.displacement[3 * view.cell_copies[4 * cells[i] + k] + a];
+                const double y = s->displacement[3 * s->m->corners[4 * pieces[i] + k] + a];
+                worst = fmax(worst, fabs(x - y));
+                *largest = fmax(*largest, fabs(x));
+            }
+    free(element); free(volume); free(cells); free(pieces);
+    return worst;
+}
+
+/* On planes RXFEM's integrals are exact and its space is the library's: the same motion */
+START_TEST(same_motion_on_planes) {
+    static const double p[3] = {0.9, 0.52, 0.47}, normal[3] = {0.1, 0.05, 1}, beside[3] = {0.9, 0.52, 0.71};
+    workload w = grid(2, 1, 1, 5);
+    gxs_material material;
+    gxs_step_desc step;
+    swing s;
+    double largest, worst;
+    int i;
+    add_plane(&w, p, normal, 9);
+    add_plane(&w, beside, normal, 9);
+    s = swing_begin(&w, &material);
+    memset(&step, 0, sizeof step);
+    step.dt = 0.01; step.gravity[2] = -9.81;
+    step.newton_iterations = 50; step.newton_tolerance = 1e-9; step.cg_tolerance = 1e-6;
+    for (i = 0; i < 5; ++i) {
+        ck_assert_int_eq(gxs_solver_step(s.solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+        ck_assert_int_eq(gx_body_step(s.body, &step, NULL, NULL), GX_OK);
+    }
+    worst = swing_difference(&s, &largest);
+    ck_assert_double_gt(largest, 1e-3);
+    ck_assert_msg(worst < 1e-6 * largest, "%.2e of %.2e", worst, largest);
+    swing_end(&s);
+    wl_free(&w);
+}
+END_TEST
+
+/* RXFEM's derivatives at the rule's points and once for each piece are the same, and those of the library's model. */
+START_TEST(elastic_derivatives) {
+    static const double p[3] = {0.9, 0.52, 0.47}, normal[3] = {0.1, 0.05, 1};
+    workload w = grid(2, 1, 1, 5);
+    gxs_material material;
+    swing s;
+    size_t n, i, j;
+    double *unknowns, *forces[2], *stiffness[2], *gradient, *spread, *direction, *product, *sum, energy[2], whole, scale = 0;
+    add_plane(&w, p, normal, 9);
+    s = swing_begin(&w, &material);
+    n = 3 * (s.b->node_count + s.b->enrichment_count);
+    ck_assert_uint_eq(n, 3 * s.m->value_count);
+    unknowns = (double *)dense_memory(NULL, n, sizeof(double)); gradient = (double *)dense_memory(NULL, n, sizeof(double));
+    spread = (double *)dense_memory(NULL, n, sizeof(double)); direction = (double *)dense_memory(NULL, n, sizeof(double));
+    product = (double *)dense_memory(NULL, n, sizeof(double)); sum = (double *)dense_memory(NULL, n, sizeof(double));
+    random_seed(7);
+    for (i = 0; i < n; ++i) { unknowns[i] = random_real(-0.05, 0.05); direction[i] = random_real(-1, 1); }
+    for (i = 0; i < 2; ++i) {
+        forces[i] = (double *)dense_memory(NULL, n, sizeof(double));
+        stiffness[i] = (double *)dense_memory(NULL, 144 * s.b->piece_count, sizeof(double));
+        energy[i] = rx_elastic(s.b, s.m, &material, unknowns, i == 0, forces[i], stiffness[i]);
+    }
+    rx_values_of(s.b, s.m, unknowns, s.displacement);
+    ck_assert_int_eq(gxs_model_energy(&s.m->model, s.displacement, &whole), GX_OK);
+    ck_assert_int_eq(gxs_model_gradient(&s.m->model, s.displacement, gradient), GX_OK);
+    ck_assert_int_eq(gxs_model_hessian_product(&s.m->model, s.displacement, direction, product), GX_OK);
+    for (i = 0; i < s.m->value_count; ++i) rx_spread(s.b, s.m, (uint32_t)i, gradient + 3 * i, spread);
+    for (i = 0; i < n; ++i) scale = fmax(scale, fabs(spread[i]));
+    ck_assert_double_eq_tol(energy[0], whole, 1e-10 * whole);
+    ck_assert_double_eq_tol(energy[1], whole, 1e-10 * whole);
+    for (i = 0; i < n; ++i) {
+        ck_assert_double_eq_tol(forces[0][i], spread[i], 1e-9 * scale);
+        ck_assert_double_eq_tol(forces[1][i], spread[i], 1e-9 * scale);
+    }
+    for (i = 0; i < s.b->piece_count; ++i)
+        for (j = 0; j < 144; ++j) {
+            const uint32_t *copy = s.m->elements[i].copy;
+            sum[3 * copy[j / 36] + j / 12 % 3] += stiffness[0][144 * i + j] * direction[3 * copy[j % 12 / 3] + j % 3];
+            ck_assert_double_eq_tol(stiffness[0][144 * i + j], stiffness[1][144 * i + j], 1e-3);
+        }
+    for (scale = 0, i = 0; i < n; ++i) scale = fmax(scale, fabs(product[i]));
+    for (i = 0; i < n; ++i) ck_assert_msg(s.held[i / 3] || fabs(sum[i] - product[i]) < 1e-5 * scale, "%lu: %g, %g", (unsigned long)i, sum[i], product[i]);
+    free(unknowns); free(gradient); free(spread); free(direction); free(product); free(sum);
+    for (i = 0; i < 2; ++i) { free(forces[i]); free(stiffness[i]); }
+    swing_end(&s);
+    wl_free(&w);
+}
+END_TEST
+
 /* ---- sampling.h ---- */
 
 /* The numbers of points that RXFEM's Table 1 has for these regions: the plane's exactly; the adaptive ones depend on how a cell is found to
@@ -829,6 +996,10 @@ int main(void) {
     list = add_case(suite, "section 6");
     tcase_add_test(list, perturbation);
     tcase_add_test(list, shares_of_support);
+    tcase_add_test(list, constrained_functions);
+    list = add_case(suite, "model");
+    tcase_add_test(list, same_motion_on_planes);
+    tcase_add_test(list, elastic_derivatives);
     list = add_case(suite, "sampling");
     tcase_add_test(list, published_samples);
     tcase_add_test(list, inside_by_parity);
