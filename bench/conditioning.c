@@ -5,10 +5,11 @@
  * rho = 1000 kg/m3, dt = 1e-3 s.
  *   case       uncut; slice: plane x = 1 - eps; corner: plane that cuts off a corner, eps: the piece's share of its element
  *   basis      copies: one displacement per node and side (this library); sign: shifted sign enrichment (RXFEM section 4.3),
- *              u = sum N_i u_i + sum psi_i N_i a_i, psi_i = (sgn(x) - sgn(x_i)) / 2. They span the same space: where a node
- *              has two copies, that on its own side is u_i, the other u_i + a_i or u_i - a_i
+ *              u = sum N_i u_i + sum psi_i N_i a_i, psi_i = (sgn(x) - sgn(x_i)) / 2, as bench/rxfem.h finds it. They span the
+ *              same space: where a node has two copies, that on its own side is u_i, the other u_i + a_i or u_i - a_i
  *   scaling    S of S^T A S: none; diagonal: A_kk^-1/2; block: the inverse factors of the 3x3 diagonal blocks; volume: RXFEM
- *              Eq. 26 and 27, the share of its node's one-ring on which a function is not 0, to the power -1/2
+ *              Eq. 26 and 27, the share of its node's one-ring on which a function is not 0, to the power -1/2; by exact
+ *              volumes: RXFEM's rules are right to 1e-15 of the element only, and it constrains functions below 1e-9
  *   extension  on: gx_body_desc.support_below is 1/2, so that the four copies of the corner piece move together, as a point.
  *              The constraints are those of gx_body_model; in the sign basis what they leave is spanned by u_i and a_i
  *
@@ -20,6 +21,7 @@
 #include "../gxfem.h"
 
 #include "csv.h"
+#include "rxfem.h"
 
 #include <math.h>
 
@@ -48,10 +50,12 @@ typedef struct cube {
     size_t count;               /* free ones */
     uint32_t free[COPIES];      /* of a copy of the body: its number among the free ones */
     uint32_t node[COPIES];      /* of a free one */
-    int own[COPIES];            /* is it on its node's side of the plane */
     real volume[COPIES];        /* of its cells, m3 */
+    int sign[COPIES][COPIES];   /* RXFEM's function (row) at a free copy */
     matrix a, factor;
 } cube;
+
+static rx_rules *rules; /* RXFEM's, as published */
 
 /* ---- the body */
 
@@ -87,15 +91,6 @@ static void cube_cut(cube *c, const double points[9])
     expect(gx_body_cut(c->body, &cut, NULL, NULL) == GX_OK, "the cut failed");
 }
 
-/* The fragment of each copy */
-static void copy_fragments(const gx_view *view, uint32_t fragment[COPIES])
-{
-    size_t cell, k;
-    for (cell = 0; cell < view->cell_count; ++cell)
-        for (k = 0; k < 4; ++k)
-            fragment[view->cell_copies[4 * cell + k]] = view->cell_fragment[cell];
-}
-
 /* The constraint of a copy; NULL: it is free */
 static const gxs_constraint *constraint_of(const cube *c, size_t copy)
 {
@@ -106,22 +101,99 @@ static const gxs_constraint *constraint_of(const cube *c, size_t copy)
     return NULL;
 }
 
-/* Numbers the free copies. On its node's side is one whose fragment's centre is there. plane: n, d of n . x = d; NULL: uncut */
-static void cube_number(cube *c, const gx_view *view, const double plane[4])
+/* Numbers the free copies. */
+static void cube_number(cube *c, const gx_view *view)
 {
-    uint32_t fragment[COPIES];
     size_t i;
-    copy_fragments(view, fragment);
     for (i = 0; i < view->copy_count; ++i) {
-        const double *x = corners + 3 * view->copy_node[i], *y = view->fragment_center + 3 * fragment[i];
-        double at = plane ? plane[0] * x[0] + plane[1] * x[1] + plane[2] * x[2] - plane[3] : 1;
-        double of = plane ? plane[0] * y[0] + plane[1] * y[1] + plane[2] * y[2] - plane[3] : 1;
         if (constraint_of(c, i))
             continue;
         c->free[i] = (uint32_t)c->count;
-        c->node[c->count] = view->copy_node[i];
-        c->own[c->count++] = (at > 0) == (of > 0);
+        c->node[c->count++] = view->copy_node[i];
     }
+}
+
+/* ---- RXFEM's functions */
+
+/* Is the fragment's centre in front of the plane (n, d of n . x = d); NULL: there is one side only */
+static int is_in_front(const gx_view *view, size_t cell, const double plane[4])
+{
+    const double *y = view->fragment_center + 3 * (size_t)view->cell_fragment[cell];
+    return plane && plane[0] * y[0] + plane[1] * y[1] + plane[2] * y[2] > plane[3];
+}
+
+/* The cell that is RXFEM's piece: of the same element, on the same side if there are two */
+static size_t cell_of(const gx_view *view, const rx_body *b, const rx_piece *piece, const double plane[4], int turned)
+{
+    const int divided = b->patch_first[piece->element] < b->patch_first[piece->element + 1];
+    size_t cell;
+    for (cell = 0; cell < view->cell_count; ++cell)
+        if (view->cell_element[cell] == piece->element && (!divided || is_in_front(view, cell, plane) == ((int)(piece->plus & 1) != turned)))
+            break;
+    expect(cell < view->cell_count, "RXFEM has a piece that is no cell");
+    return cell;
+}
+
+/* Values of the functions at free copies: u of each node, then the enrichments */
+static void read_functions(cube *c, const gx_view *view, const rx_body *b, const double plane[4], int turned)
+{
+    uint32_t functions[64];
+    int psi[64], k;
+    size_t i, j;
+    for (i = 0; i < b->piece_count; ++i) {
+        const size_t cell = cell_of(view, b, &b->pieces[i], plane, turned);
+        for (k = 0; k < 4; ++k) {
+            const uint32_t copy = view->cell_copies[4 * cell + (size_t)k];
+            const size_t count = rx_piece_functions(b, &b->pieces[i], k, functions, psi);
+            if (constraint_of(c, copy))
+                continue;
+            c->sign[view->copy_node[copy]][c->free[copy]] = 1;
+            for (j = 0; j < count; ++j)
+                c->sign[b->node_count + functions[j]][c->free[copy]] = psi[j];
+        }
+    }
+}
+
+static int free_copies(const cube *c, uint32_t node)
+{
+    size_t i;
+    int count = 0;
+    for (i = 0; i < c->count; ++i)
+        count += c->node[i] == node;
+    return count;
+}
+
+/* Leaves out the functions that free copies have no use for: those of nodes that have none, enrichments of nodes that have one. */
+static void keep_functions(cube *c, const rx_body *b)
+{
+    size_t i, kept = 0;
+    for (i = 0; i < b->node_count + b->enrichment_count; ++i) {
+        const int standard = i < b->node_count;
+        if (free_copies(c, standard ? (uint32_t)i : b->enrichments[i - b->node_count].node) < (standard ? 1 : 2))
+            continue;
+        memmove(c->sign[kept++], c->sign[i], sizeof c->sign[i]);
+    }
+    expect(kept == c->count, "RXFEM has another number of functions");
+}
+
+/* The cube cut by RXFEM. Its plus side is in front of the triangle of the points; turned: behind the plane */
+static void cube_enrich(cube *c, const gx_view *view, const double *points, const double *plane)
+{
+    static const uint32_t triangle[3] = {0, 1, 2};
+    rx_body *b = rx_body_create(rules, corners, 8, tetrahedra, 5);
+    double normal[3];
+    rx_surface sheet;
+    sheet.vertices = points;
+    sheet.vertex_count = 3;
+    sheet.triangles = triangle;
+    sheet.triangle_count = 1;
+    expect(!points || rx_body_cut(b, &sheet) == RX_OK, "RXFEM refuses the cut");
+    expect(b->node_count + b->enrichment_count <= COPIES, "more functions than there is room for");
+    if (points)
+        rx_triangle_normal(points, normal);
+    read_functions(c, view, b, plane, points && dense_dot(normal, plane, 3) < 0);
+    keep_functions(c, b);
+    rx_body_destroy(b);
 }
 
 /* ---- the matrix */
@@ -220,38 +292,31 @@ static void cube_factor(cube *c)
 
 /* ---- bases and scalings: rows of F */
 
-/* The other copy of a copy's node; count if there is none */
-static size_t partner(const cube *c, size_t copy)
-{
-    size_t i;
-    for (i = 0; i < c->count; ++i)
-        if (i != copy && c->node[i] == c->node[copy])
-            return i;
-    return c->count;
-}
-
-/* F = B^T L. Copies: B = 1. Sign: rows of u_i are those of both copies added, rows of a_i those of the copy on the other side (its
- * sign does not matter). */
+/* F = B^T L. Copies: B = 1. Sign: a function's row is the sum of the copies' rows times its values there. */
 static void change_basis(const cube *c, int sign, matrix f)
 {
-    size_t i, r, k, n = 3 * c->count;
+    size_t i, j, r, k, n = 3 * c->count;
     memcpy(f, c->factor, sizeof c->factor);
-    for (i = 0; sign && i < c->count; ++i) {
-        size_t other = partner(c, i);
-        for (r = 0; r < 3 && c->own[i] && other < c->count; ++r)
-            for (k = 0; k < n; ++k)
-                f[3 * i + r][k] += c->factor[3 * other + r][k];
-    }
+    for (i = 0; sign && i < n; ++i)
+        for (r = i % 3, k = 0; k < n; ++k)
+            for (f[i][k] = 0, j = 0; j < c->count; ++j)
+                f[i][k] += c->sign[i / 3][j] * c->factor[3 * j + r][k];
 }
 
-/* Support's share of the one-ring: of a copy, and of an enrichment, its cells'; of a standard function of the sign basis 1, of
- * a copy whose partner follows others 1 as well. */
-static real volume_share(const cube *c, size_t copy, int sign)
+/* Support's share of the one-ring of its node: of one free copy, or of one of RXFEM's functions. 1 where the node's other copy follows others */
+static real volume_share(const cube *c, size_t at, int sign)
 {
-    size_t other = partner(c, copy);
-    if (other == c->count || (sign && c->own[copy]))
-        return 1;
-    return c->volume[copy] / (c->volume[copy] + c->volume[other]);
+    real support = 0, ring = 0;
+    size_t i, node = COPIES;
+    for (i = 0; i < c->count && node == COPIES; ++i)
+        if (sign ? c->sign[at][i] != 0 : i == at)
+            node = c->node[i];
+    for (i = 0; i < c->count; ++i)
+        if (c->node[i] == node) {
+            ring += c->volume[i];
+            support += sign ? (c->sign[at][i] != 0) * c->volume[i] : (i == at) * c->volume[i];
+        }
+    return support / ring;
 }
 
 /* Divides rows by their norms, which are the roots of A's diagonal. */
@@ -380,7 +445,8 @@ static void run(const char *name, double eps, const double *points, const double
         cube_cut(&c, points);
     expect(gx_body_view(c.body, &view) == GX_OK && gx_body_model(c.body, &c.model) == GX_OK, "no model");
     expect(view.copy_count <= COPIES, "more copies than there is room for");
-    cube_number(&c, &view, plane);
+    cube_number(&c, &view);
+    cube_enrich(&c, &view, points, plane);
     for (e = 0; e < c.model.element_count; ++e)
         add_element(&c, &c.model.elements[e]);
     cube_factor(&c);
@@ -413,6 +479,7 @@ int main(int argc, char **argv)
     static const double wide[] = {1, 0.75, 0.5, 0.25};
     size_t i;
     csv_open(argc, argv, "case,eps,basis,scaling,extension,condition");
+    rules = rx_rules_create(2, 0);
     run("uncut", 0, NULL, NULL, 0);
     for (i = 0; i < sizeof wide / sizeof wide[0]; ++i)
         slice(wide[i]);
@@ -420,5 +487,6 @@ int main(int argc, char **argv)
         slice(pow(10, -(double)i));
     for (i = 1; i <= 12; ++i)
         corner_piece(pow(10, -(double)i));
+    rx_rules_destroy(rules);
     return csv_close();
 }
