@@ -156,7 +156,7 @@ $(sort $(table2:%=$(traces)/%.trace) $(stepping:%=$(traces)/%.trace)): $(traces)
 
 charts:
 	@sh tests/install.sh charts >&2
-	@$(MAKE) --no-print-directory bench-quadrature >/dev/null
+	@$(MAKE) --no-print-directory bench-quadrature bench-conditioning >/dev/null
 	@sh bench/charts.sh $(BUILD)/bench docs/charts
 
 bench-kernel: $(BUILD)/bench/kernel

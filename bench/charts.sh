@@ -3,14 +3,17 @@
 # usage: sh bench/charts.sh TABLES CHARTS
 #     TABLES  directory of the benches' CSV files
 #     CHARTS  directory of the SVG files
-# quadrature.csv gives quadrature.svg and quadrature_triangles.svg. A table that is missing is an error. Needs gnuplot.
+# quadrature.csv gives quadrature.svg and quadrature_triangles.svg, conditioning.csv conditioning.svg. A table that is missing is an
+# error. Needs gnuplot.
 set -u
 tables=$1
 charts=$2
 mkdir -p "$charts" || exit 2
 where="$(date +%Y-%m-%d), $(uname -m | tr _ -), one thread"
 
-[ -s "$tables/quadrature.csv" ] || { echo "$0: $tables/quadrature.csv is missing: make bench-quadrature" >&2; exit 2; }
+for bench in quadrature conditioning; do
+    [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-$bench" >&2; exit 2; }
+done
 
 # series REGION METHOD COLUMNS: an awk expression of rows of quadrature.csv, of the integrand xx+yy+zz, as a gnuplot data block.
 # Errors below 1e-18 are drawn there.
@@ -101,5 +104,33 @@ unset multiplot
 END
 }
 
-panels | gnuplot && triangles | gnuplot || exit 1
-echo "wrote $charts/quadrature.svg, $charts/quadrature_triangles.svg"
+# Condition numbers as a slice or a corner piece gets small
+conditioning() {
+    echo 'set terminal svg size 1180,480 font "sans,12" background "white"'
+    echo "set output '$charts/conditioning.svg'"
+    for name in slice corner; do
+        for kind in copies,diagonal,off copies,diagonal,on sign,none,off sign,diagonal,off sign,volume,off; do
+            echo "\$${name}_$(echo $kind | tr , _) << EOD"
+            awk -F, -v name=$name -v kind=$kind '$1 == name && $3 "," $4 "," $5 == kind { print $2, $6 }' "$tables/conditioning.csv" | sort -g
+            echo "EOD"
+        done
+    done
+    cat <<END
+set multiplot layout 1,2 title "Condition of M + dt^2 K, a cube of five tetrahedra (RXFEM's Fig. 14)   ($where)" font "sans,15"
+set logscale xy; set grid back lc rgb "#dddddd"; set format x "10^{%L}"; set format y "10^{%L}"; set yrange [1:1e42]; set ytics 1e6
+set style line 1 lc rgb "#c00000" lw 2 pt 7 ps 1.1
+set style line 2 lc rgb "#c00000" lw 1 dt 2 pt 6 ps 1.1
+set style line 3 lc rgb "#808080" lw 2 pt 11 ps 0.9
+set style line 4 lc rgb "#2060b0" lw 1 dt 2 pt 8 ps 1.1
+set style line 5 lc rgb "#2060b0" lw 2 pt 9 ps 1.1
+set ylabel "condition number"; set key right top
+set title "a slice off the cube"; set xlabel "thickness of the slice, m"
+plot \$slice_sign_none_off using 1:2 with linespoints ls 3 title "RXFEM, unscaled", \$slice_sign_diagonal_off using 1:2 with linespoints ls 4 title "RXFEM, diagonal", \$slice_sign_volume_off using 1:2 with linespoints ls 5 title "RXFEM, volume ratios (its own)", \$slice_copies_diagonal_off using 1:2 with linespoints ls 1 title "gxfem's copies, diagonal"
+set title "a corner off one element"; set xlabel "volume of the piece, share of the element"
+plot \$corner_sign_none_off using 1:2 with linespoints ls 3 title "RXFEM, unscaled", \$corner_sign_diagonal_off using 1:2 with linespoints ls 4 title "RXFEM, diagonal", \$corner_sign_volume_off using 1:2 with linespoints ls 5 title "RXFEM, volume ratios (its own)", \$corner_copies_diagonal_off using 1:2 with linespoints ls 1 title "gxfem's copies, diagonal", \$corner_copies_diagonal_on using 1:2 with linespoints ls 2 title "the same, piece moves as a point"
+unset multiplot
+END
+}
+
+panels | gnuplot && triangles | gnuplot && conditioning | gnuplot || exit 1
+echo "wrote $charts/quadrature.svg, $charts/quadrature_triangles.svg, $charts/conditioning.svg"

@@ -1,7 +1,9 @@
 /* part.h - the part of a tetrahedron on one node's side of a surface, by the arrangement of gxfem_boolean.h: what truth is read off.
 
    part_moments are the integrals to degree 2 in barycentric coordinates, from boundary points whose coordinates have 180 bits, summed in
-   long double. Shapes are in doubles: tetrahedra and boundary, for rules and for moments of higher degree. Include after the implementations of gxfem_boolean.h and gxfem_integrate.h. What fails ends the program. */
+   long double. Shapes are in doubles: tetrahedra and boundary, for rules and for moments of higher degree.
+
+   Include after the implementation of gxfem_boolean.h. What fails ends the program. */
 #ifndef BENCH_PART_H
 #define BENCH_PART_H
 

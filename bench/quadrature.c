@@ -483,7 +483,7 @@ static void print_verdict(void)
         if (strcmp(rows[i].run.method, "gxfem") != 0) continue;
         for (j = i + 1; j < row_count && (strcmp(rows[j].run.method, "rxfem") != 0 || strcmp(rows[j].run.knob, "2") != 0); ++j) {}
         if (j == row_count) continue;
-        fprintf(stderr, "%s, %lu triangles: gxfem %s 1e-14 of the element (%.1e); its cut takes %.1f us, RXFEM's rule %.1f us (%.2f x), its path %.1f us\n",
+        fprintf(stderr, "%s, %lu triangles: gxfem %s 1e-14 of the element (%.1e); cut %.1f us, RXFEM's rule %.1f us (%.2f x), its path %.1f us\n",
                 rows[i].region, (unsigned long)rows[i].triangles, rows[i].of_element <= 1e-14 ? "within" : "BEYOND", rows[i].of_element,
                 rows[i].run.geometry + rows[i].run.rule, rows[j].run.rule, rows[j].run.rule / (rows[i].run.geometry + rows[i].run.rule),
                 rows[j].run.geometry);
@@ -539,7 +539,8 @@ int main(int argc, char **argv)
 {
     region made;
     int degree, clip;
-    csv_open(argc, argv, "region,triangles,method,knob,integrand,value,truth,error,error_of_element,points,geometry_us,rule_us,evaluate_us,amortised_us");
+    csv_open(argc, argv, "region,triangles,method,knob,integrand,value,truth,error,error_of_element,points,geometry_us,rule_us,evaluate_us,"
+                         "amortised_us");
     for (degree = 1; degree <= RX_DEGREE_MAX; ++degree)
         for (clip = 0; clip < 2; ++clip) rules[degree][clip] = rx_rules_create((unsigned)degree, clip);
     total = count_runs();

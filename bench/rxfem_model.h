@@ -5,8 +5,8 @@
    compared is the enrichment and the integration, not the solver. An enrichment whose support is too small (Eq. 22) makes its value
    follow: by an affine function through the corners of the best piece of its fragment, the one with most free corners, then the largest
    (the paper: "as-rigid-as-possible", without a formula).
-   rx_elastic: energy, forces and tangent stiffness in RXFEM's own unknowns u and a (Eq. 12), evaluated at each of the rule's points, or
-   once for each piece, in which F is constant.
+   rx_elastic: energy, forces and tangent stiffness of the paper's material, St. Venant-Kirchhoff, in RXFEM's own unknowns u and a (Eq. 12),
+   evaluated at each of the rule's points, or once for each piece, in which F is constant. The tangent is the exact one, not projected.
 
    Include after the implementations of gxfem_boolean.h, gxfem_integrate.h and gxfem_solve.h. Out of memory ends the program. */
 #ifndef BENCH_RXFEM_MODEL_H
@@ -256,44 +256,76 @@ static inline void rx_deformation(const gxs_element *e, const double *values, do
             for (f[3 * r + s] = r == s, k = 0; k < 4; ++k) f[3 * r + s] += values[3 * (size_t)e->copy[k] + (size_t)r] * e->gradient[k][s];
 }
 
-/* Adds weight times density, forces (12) and tangent stiffness (12 x 12) at one point: dP for each unit displacement of a corner */
-static inline double rx_add_point(const gxs_material *material, const gxs_element *e, const double f[9], double weight, double force[12],
+/* Energy density, and the second Piola-Kirchhoff stress S = lambda tr(E) 1 + 2 mu E, E = (F^T F - 1) / 2 */
+static inline double rx_stress(const double lame[2], const double f[9], double s[9])
+{
+    double trace, square = 0;
+    int i, j;
+    for (i = 0; i < 3; ++i)
+        for (j = 0; j < 3; ++j) s[3 * i + j] = 0.5 * (f[i] * f[j] + f[3 + i] * f[3 + j] + f[6 + i] * f[6 + j] - (i == j));
+    trace = s[0] + s[4] + s[8];
+    for (i = 0; i < 9; ++i) {
+        square += s[i] * s[i];
+        s[i] = 2 * lame[1] * s[i] + (i % 4 == 0 ? lame[0] * trace : 0);
+    }
+    return 0.5 * lame[0] * trace * trace + lame[1] * square;
+}
+
+/* dP = dF S + F dS for dF = e_r g^T: dE = (a g^T + g a^T) / 2 with a the r-th row of F, tr dE = a . g */
+static inline void rx_stress_change(const double lame[2], const double f[9], const double s[9], const double *g, int r, double change[9])
+{
+    const double *a = f + 3 * r, trace = dense_dot(a, g, 3);
+    double fa[3], fg[3];
+    int i, j;
+    for (i = 0; i < 3; ++i) {
+        fa[i] = dense_dot(f + 3 * i, a, 3);
+        fg[i] = dense_dot(f + 3 * i, g, 3);
+    }
+    for (i = 0; i < 3; ++i)
+        for (j = 0; j < 3; ++j)
+            change[3 * i + j] = lame[0] * trace * f[3 * i + j] + lame[1] * (fa[i] * g[j] + fg[i] * a[j]) + (i == r ? dense_dot(s + 3 * j, g, 3) : 0);
+}
+
+/* Adds weight times forces (12) and tangent stiffness (12 x 12) at one point; returns weight times the energy density. */
+static inline double rx_add_point(const double lame[2], const gxs_element *e, const double f[9], double weight, double force[12],
                                   double stiffness[144])
 {
-    double stress[9], change[9], product[9];
-    int k, r, s, j, q;
-    gxs_material_stress(material, f, stress);
+    double s[9], change[9], stress[9];
+    const double energy = rx_stress(lame, f, s);
+    int k, r, j, q;
+    for (k = 0; k < 9; ++k) stress[k] = f[k - k % 3] * s[k % 3] + f[k - k % 3 + 1] * s[3 + k % 3] + f[k - k % 3 + 2] * s[6 + k % 3];
     for (k = 0; k < 12; ++k) force[k] += weight * dense_dot(stress + 3 * (k % 3), e->gradient[k / 3], 3);
     for (k = 0; k < 4; ++k)
         for (r = 0; r < 3; ++r) {
-            memset(change, 0, sizeof change);
-            for (s = 0; s < 3; ++s) change[3 * r + s] = e->gradient[k][s];
-            gxs_material_product(material, f, change, product);
+            rx_stress_change(lame, f, s, e->gradient[k], r, change);
             for (j = 0; j < 4; ++j)
-                for (q = 0; q < 3; ++q) stiffness[12 * (3 * k + r) + 3 * j + q] += weight * dense_dot(product + 3 * q, e->gradient[j], 3);
+                for (q = 0; q < 3; ++q) stiffness[12 * (3 * k + r) + 3 * j + q] += weight * dense_dot(change + 3 * q, e->gradient[j], 3);
         }
-    return weight * gxs_material_energy(material, f);
+    return weight * energy;
 }
 
 /* Energy; forces (gradient, 3 (nodes + enrichments), set to 0 first) and, where stiffness is not NULL, each piece's tangent in its four values
-   (piece_count x 144). literal: at each of the rule's points, as published; else once for each piece. */
-static inline double rx_elastic(const rx_body *b, const rx_model *m, const gxs_material *material, const double *unknowns, int literal, double *forces,
-                                double *stiffness)
+   (piece_count x 144). literal: at each of the rule's points in pieces of cut elements, as published; else once for each piece. */
+static inline double rx_elastic(const rx_body *b, const rx_model *m, double young, double poisson, const double *unknowns, int literal,
+                                double *forces, double *stiffness)
 {
-    const size_t points = literal ? b->rules->volume.point_count : 1;
+    const double lame[2] = {young * poisson / ((1 + poisson) * (1 - 2 * poisson)), 0.5 * young / (1 + poisson)};
     double *values = (double *)dense_memory(NULL, 3 * m->value_count, sizeof *values), weights[RX_POINTS], energy = 0;
     size_t i, j, k;
     rx_values_of(b, m, unknowns, values);
     memset(forces, 0, 3 * (b->node_count + b->enrichment_count) * sizeof *forces);
     for (i = 0; i < b->piece_count; ++i) {
         const gxs_element *e = &m->elements[i];
-        const double scale = 6 * rx_element_volume(b, b->pieces[i].element);
+        const uint32_t element = b->pieces[i].element;
+        const int at_points = literal && b->patch_first[element] < b->patch_first[element + 1];
+        const size_t points = at_points ? b->rules->volume.point_count : 1;
+        const double scale = 6 * rx_element_volume(b, element);
         double force[12] = {0}, tangent[144] = {0}, f[9];
-        if (literal) rx_weights(b->rules, b->pieces[i].moments, weights);
+        if (at_points) rx_weights(b->rules, b->pieces[i].moments, weights);
         else weights[0] = b->pieces[i].moments[0];
         for (j = 0; j < points; ++j) {
             rx_deformation(e, values, f);
-            energy += rx_add_point(material, e, f, scale * weights[j], force, tangent);
+            energy += rx_add_point(lame, e, f, scale * weights[j], force, tangent);
         }
         for (k = 0; k < 4; ++k) rx_spread(b, m, e->copy[k], force + 3 * k, forces);
         if (stiffness) memcpy(stiffness + 144 * i, tangent, sizeof tangent);
