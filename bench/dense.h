@@ -19,7 +19,8 @@ typedef struct pinv {
     double *qr;             /* m columns of n: R on and above the diagonal, reflectors below it */
     double *head;           /* m: first entry of each reflector, which is v with |v|^2 = 2 */
     double *w, *v;          /* rank columns of m, of m (rank in use) */
-    double *norm, *scale;   /* m: squares of column norms; 1 / singular value^2, 0 where it is cut off */
+    double *norm, *scale;   /* m: squares of column norms; 1 / singular value^2, 0 where it is cut off. While T is divided: squares of norms as they
+                               are now and as they were last summed */
     double *work;           /* n */
     size_t *pivot;          /* m */
     size_t capacity, pivots; /* doubles in qr's block, indices in pivot's */
@@ -69,15 +70,18 @@ static inline void pinv_free(pinv *p)
     memset(p, 0, sizeof *p);
 }
 
-/* The column of largest norm among k ... m - 1 comes to k; returns its square. Norms are computed anew, not updated: they decide the rank. */
+static inline double pinv_rest(const pinv *p, size_t j, size_t k)
+{
+    const double *rest = p->qr + j * p->n + k;
+    return dense_dot(rest, rest, p->n - k);
+}
+
+/* The column of largest norm among k ... m - 1 comes to k; returns its square, summed. */
 static inline double pinv_pivot(pinv *p, size_t k)
 {
     size_t j, best = k, i;
-    double largest = -1;
-    for (j = k; j < p->m; ++j) {
-        const double square = dense_dot(p->qr + j * p->n + k, p->qr + j * p->n + k, p->n - k);
-        if (square > largest) { largest = square; best = j; }
-    }
+    for (j = k; j < p->m; ++j)
+        if (p->norm[j] > p->norm[best]) best = j;
     for (i = 0; best != k && i < p->n; ++i) {
         const double kept = p->qr[k * p->n + i];
         p->qr[k * p->n + i] = p->qr[best * p->n + i];
@@ -86,7 +90,17 @@ static inline double pinv_pivot(pinv *p, size_t k)
     i = p->pivot[k];
     p->pivot[k] = p->pivot[best];
     p->pivot[best] = i;
-    return largest;
+    p->norm[best] = p->norm[k];
+    p->scale[best] = p->scale[k];
+    return pinv_rest(p, k, k);
+}
+
+/* Squares of norms below row k lose the row's entry. Where little is left of what they were when summed, they are summed again. */
+static inline void pinv_shorten(pinv *p, size_t j, size_t k)
+{
+    const double entry = p->qr[j * p->n + k];
+    p->norm[j] -= entry * entry;
+    if (p->norm[j] < 1e-3 * p->scale[j]) p->norm[j] = p->scale[j] = pinv_rest(p, j, k + 1);
 }
 
 /* x -= v (v . x), the k-th reflection; v starts at row k with head[k] */
@@ -109,7 +123,10 @@ static inline void pinv_eliminate(pinv *p, size_t k, double square)
     p->head[k] = (column[k] + length) * scale;
     for (i = k + 1; i < p->n; ++i) column[i] *= scale;
     column[k] = -length;
-    for (j = k + 1; j < p->m; ++j) pinv_reflect(p, k, p->qr + j * p->n);
+    for (j = k + 1; j < p->m; ++j) {
+        pinv_reflect(p, k, p->qr + j * p->n);
+        pinv_shorten(p, j, k);
+    }
 }
 
 /* Columns below `noise` times the first are not divided further. */
@@ -117,7 +134,10 @@ static inline void pinv_triangulate(pinv *p, double noise)
 {
     double first = 0;
     size_t k;
-    for (k = 0; k < p->m; ++k) p->pivot[k] = k;
+    for (k = 0; k < p->m; ++k) {
+        p->pivot[k] = k;
+        p->norm[k] = p->scale[k] = pinv_rest(p, k, 0);
+    }
     for (p->rank = 0; p->rank < p->m; ++p->rank) {
         const double square = pinv_pivot(p, p->rank);
         if (p->rank == 0) first = square;

@@ -19,7 +19,7 @@
 
 #include <stdint.h>
 
-static const double SAMPLING_PIVOT = 1e-8;
+static const double SAMPLING_PIVOT = 1e-7, SAMPLING_SLACK = 1e-12;
 
 enum { SAMPLING_COLUMNS = 64, SAMPLING_DEGREE_MAX = 4, SAMPLING_MONOMIALS = 35 };
 
@@ -286,6 +286,7 @@ static inline size_t sampling_monomials(unsigned degree, const double *x, double
    unit matrix belongs to no point and has weight 0. */
 typedef struct sampling_basis {
     size_t count;
+    double total;               /* of all weights that have entered */
     int taken[SAMPLING_MONOMIALS];
     double point[SAMPLING_MONOMIALS][3], weight[SAMPLING_MONOMIALS];
     double inverse[SAMPLING_MONOMIALS][SAMPLING_MONOMIALS];
@@ -301,22 +302,23 @@ static inline void sampling_exchange(sampling_basis *b, size_t leaves, const dou
         if (i != leaves) dense_add(b->inverse[i], -y[i], row, b->count);
 }
 
-/* The column that a new one, B y, is exchanged for, and how much of its weight w goes to the others first: an unused one at once, else the
-   first that comes to weight 0 as weights change by y; count: none does. What y is below SAMPLING_PIVOT is a rounding error. */
+/* The column that a new one, B y, is exchanged for, and how much of its weight w goes to the others first: an unused one at once, else of
+   those that come to weight 0 first as weights change by y, within SAMPLING_SLACK of all weight, the one with the largest y [Harris
+   1973]; count: none does. What y is below SAMPLING_PIVOT is a rounding error. */
 static inline size_t sampling_leaving(const sampling_basis *b, const double *y, double w, double *moved)
 {
+    const double slack = SAMPLING_SLACK * b->total;
+    double most = SAMPLING_PIVOT, limit = w;
     size_t i, leaves = b->count;
-    double most = SAMPLING_PIVOT;
     *moved = 0;
     for (i = 0; i < b->count; ++i)
         if (!b->taken[i] && fabs(y[i]) > most) { most = fabs(y[i]); leaves = i; }
     if (leaves < b->count) return leaves;
-    *moved = w;
     for (i = 0; i < b->count; ++i)
-        if (b->taken[i] && y[i] < -SAMPLING_PIVOT && b->weight[i] < -y[i] * *moved) {
-            *moved = -b->weight[i] / y[i];
-            leaves = i;
-        }
+        if (b->taken[i] && y[i] < -SAMPLING_PIVOT && b->weight[i] + slack < -y[i] * limit) limit = -(b->weight[i] + slack) / y[i];
+    for (i = 0; i < b->count && limit < w; ++i)
+        if (b->taken[i] && y[i] < -most && b->weight[i] <= -y[i] * limit) { most = -y[i]; leaves = i; }
+    *moved = leaves < b->count ? fmin(w, -b->weight[leaves] / y[leaves]) : w;
     return leaves;
 }
 
@@ -329,6 +331,7 @@ static inline void sampling_enter(sampling_basis *b, const double *p, unsigned d
     for (a = 0; a < 3; ++a) x[a] = (p[a] - scale[a]) * scale[3];
     sampling_monomials(degree, x, values);
     for (i = 0; i < b->count; ++i) y[i] = dense_dot(b->inverse[i], values, b->count);
+    b->total += p[3];
     leaves = sampling_leaving(b, y, p[3], &moved);
     for (i = 0; i < b->count; ++i)
         if (b->taken[i]) b->weight[i] = fmax(0, b->weight[i] + moved * y[i]);
