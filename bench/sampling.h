@@ -384,9 +384,31 @@ static inline void sampling_correct(sampling_rule *r, unsigned degree, const dou
     for (j = 0; j < n && positive; ++j) r->points[4 * j + 3] *= 1 + change[j];
 }
 
+typedef struct sampling_sized { double volume; const double *corners; } sampling_sized;
+
+static inline int sampling_larger(const void *a, const void *b)
+{
+    const double x = ((const sampling_sized *)a)->volume, y = ((const sampling_sized *)b)->volume;
+    return (x < y) - (x > y);
+}
+
+/* Largest first: a basis that begins in a sliver is nearly singular, and its inverse keeps the errors. */
+static inline sampling_sized *sampling_sort(const double *tetrahedra, size_t count)
+{
+    sampling_sized *list = (sampling_sized *)dense_memory(NULL, count, sizeof *list);
+    size_t t;
+    for (t = 0; t < count; ++t) {
+        list[t].corners = tetrahedra + 12 * t;
+        list[t].volume = sampling_volume(list[t].corners);
+    }
+    qsort(list, count, sizeof *list, sampling_larger);
+    return list;
+}
+
 /* tetrahedra: count x 4 corners x 3, of positive volume; moments: of the part they make up, as gxi_polyhedron_monomials gives them */
 static inline void sampling_positive(const double *tetrahedra, size_t count, unsigned degree, const double *moments, sampling_rule *r)
 {
+    sampling_sized *list = sampling_sort(tetrahedra, count);
     sampling_basis b;
     sampling_rule one;
     double scale[4];
@@ -398,10 +420,11 @@ static inline void sampling_positive(const double *tetrahedra, size_t count, uns
     sampling_scale(tetrahedra, 4 * count, scale);
     for (t = 0; t < count; ++t) {
         one.count = 0;
-        sampling_tetrahedron(tetrahedra + 12 * t, degree, &one);
+        sampling_tetrahedron(list[t].corners, degree, &one);
         for (i = 0; i < one.count; ++i) sampling_enter(&b, one.points + 4 * i, degree, scale);
     }
     sampling_free(&one);
+    free(list);
     r->count = 0;
     for (i = 0; i < b.count; ++i)
         if (b.taken[i] && b.weight[i] > 0) sampling_add(r, b.point[i][0], b.point[i][1], b.point[i][2], b.weight[i]);
