@@ -1,10 +1,11 @@
-/* method.h - ways of cutting behind one interface: the library, virtual nodes (vna.h), the literal Algorithm 1 (literal.h). Each repeats a
-   scene (replay.h) by the same time step, gxfem_solve.h's: only what is compared differs. Include after replay.h. */
+/* method.h - ways of cutting behind one interface: the library, RXFEM (rxfem.h), virtual nodes (vna.h), the literal Algorithm 1 (literal.h).
+   Each repeats a scene (replay.h) by the same time step, gxfem_solve.h's: only what is compared differs. Include after replay.h. */
 #ifndef GXFEM_BENCH_METHOD_H
 #define GXFEM_BENCH_METHOD_H
 
 #include "clock.h"
 #include "literal.h"
+#include "rxfem_model.h"
 #include "vna.h"
 
 /* Of a frame */
@@ -304,10 +305,246 @@ static inline void method_literal_destroy(void *state)
     free(m);
 }
 
+/* ---- RXFEM ---- */
+
+/* A cut that advances is one surface to RXFEM, whose patches its enrichments belong to: with each strip the mesh is cut anew by the paths
+   of all blades so far, and what is counted as the time of the cut is the share of patches that are new. Elastic derivatives are taken at
+   the rule's 24 points as published; their time is added to that of the common step. */
+typedef struct method_rxfem {
+    const replay *scene;
+    rx_rules *rules;
+    rx_body *body;
+    rx_model *model;
+    const replay_cut **paths; size_t path_count;    /* of each blade, as far as it is cut */
+    gxs_solver *solver;
+    gxs_material material;
+    uint8_t *held;
+    double *displacement, *velocity;    /* copies x 3 */
+    double *forces, *stiffness;         /* of rx_elastic */
+    int changed;
+} method_rxfem;
+
+static inline rx_body *method_rxfem_body(const method_rxfem *m)
+{
+    rx_body *body = rx_body_create(m->rules, m->scene->positions, m->scene->node_count, m->scene->elements, m->scene->element_count);
+    body->clock = seconds;
+    return body;
+}
+
+static inline void *method_rxfem_create(const replay *scene)
+{
+    method_rxfem *m = (method_rxfem *)method_memory(NULL, 1, sizeof *m);
+    size_t i;
+    memset(m, 0, sizeof *m);
+    m->scene = scene;
+    m->changed = 1;
+    m->material.kind = GXS_STABLE_NEO_HOOKEAN;
+    m->material.young = scene->young;
+    m->material.poisson = scene->poisson;
+    m->rules = rx_rules_create(2, 0);
+    m->body = method_rxfem_body(m);
+    m->model = rx_model_create(m->body, scene->density);
+    m->paths = (const replay_cut **)method_memory(NULL, scene->cut_count, sizeof *m->paths);
+    m->displacement = (double *)method_memory(NULL, 3 * m->model->value_count, sizeof(double));
+    m->velocity = (double *)method_memory(NULL, 3 * m->model->value_count, sizeof(double));
+    for (i = 0; i < m->model->value_count; i++) {
+        memcpy(m->displacement + 3 * i, scene->displacement + 3 * (size_t)m->model->values[i].node, 3 * sizeof(double));
+        memcpy(m->velocity + 3 * i, scene->velocity + 3 * (size_t)m->model->values[i].node, 3 * sizeof(double));
+    }
+    method_must(gxs_solver_create(NULL, &m->solver), "solver");
+    return m;
+}
+
+/* The piece of the element that has the point */
+static inline size_t method_rxfem_piece(const rx_body *b, uint32_t element, const double *x)
+{
+    uint64_t plus = 0;
+    uint32_t p, i;
+    for (p = b->patch_first[element]; p < b->patch_first[element + 1]; p++)
+        if (rx_side_of_patch(b, &b->patches[b->patch_list[p]], x) > 0) plus |= (uint64_t)1 << (p - b->patch_first[element]);
+    for (i = b->piece_first[element]; i + 1 < b->piece_first[element + 1]; i++) if (b->pieces[i].plus == plus) break;
+    return i;
+}
+
+/* The centre of a piece */
+static inline void method_rxfem_center(const rx_body *b, const rx_piece *piece, double x[3])
+{
+    const double *o = rx_corner(b, piece->element, 0);
+    int i, k;
+    for (i = 0; i < 3; i++) {
+        x[i] = o[i];
+        for (k = 0; k < 3 && piece->moments[0] > 0; k++)
+            x[i] += piece->moments[1 + k] / piece->moments[0] * (rx_corner(b, piece->element, k + 1)[i] - o[i]);
+    }
+}
+
+/* New copies start where those of the piece that they come from are. */
+static inline double *method_rxfem_carry(const method_rxfem *m, const rx_body *body, const rx_model *model, const double *old)
+{
+    double *now = (double *)method_memory(NULL, 3 * model->value_count, sizeof(double));
+    size_t i, k;
+    memset(now, 0, 3 * model->value_count * sizeof(double));
+    for (i = 0; i < body->piece_count; i++) {
+        double x[3];
+        size_t from;
+        method_rxfem_center(body, &body->pieces[i], x);
+        from = method_rxfem_piece(m->body, body->pieces[i].element, x);
+        for (k = 0; k < 4; k++)
+            memcpy(now + 3 * (size_t)model->corners[4 * i + k], old + 3 * (size_t)m->model->corners[4 * from + k], 3 * sizeof(double));
+    }
+    return now;
+}
+
+static inline void method_rxfem_take(method_rxfem *m, rx_body *body)
+{
+    rx_model *model = rx_model_create(body, m->scene->density);
+    double *displacement = method_rxfem_carry(m, body, model, m->displacement), *velocity = method_rxfem_carry(m, body, model, m->velocity);
+    rx_body_destroy(m->body);
+    rx_model_destroy(m->model);
+    free(m->displacement);
+    free(m->velocity);
+    m->body = body;
+    m->model = model;
+    m->displacement = displacement;
+    m->velocity = velocity;
+    m->changed = 1;
+}
+
+static inline const char *method_rxfem_text(rx_result result)
+{
+    switch (result) {
+    case RX_OK: return NULL;
+    case RX_ERROR_CROSSING: return "cuts cross or meet in an element";
+    case RX_ERROR_MANIFOLD: return "the surface is not manifold or not oriented";
+    case RX_ERROR_DEGENERATE: return "signs stay 0";
+    default: return "too many patches in an element";
+    }
+}
+
+/* Which path the cut goes on; path_count: none, it begins */
+static inline size_t method_rxfem_blade(const method_rxfem *m, const replay_cut *cut)
+{
+    size_t i;
+    for (i = 0; i < m->path_count && cut->first > 0; i++) {
+        const gx_surface *path = &m->paths[i]->path;
+        if (path->triangle_count == cut->first && memcmp(path->vertices, cut->path.vertices, 3 * path->vertex_count * sizeof(double)) == 0) return i;
+    }
+    return m->path_count;
+}
+
+static inline const char *method_rxfem_cut(void *state, const replay_cut *cut, method_times *times)
+{
+    method_rxfem *m = (method_rxfem *)state;
+    const size_t before = m->body->patch_count;
+    rx_body *body;
+    rx_result result = RX_OK;
+    double share;
+    size_t i;
+    if (cut->path.kind == GX_SURFACE_SOLID) return "solids: it knows sheets only";
+    i = method_rxfem_blade(m, cut);
+    m->paths[i] = cut;
+    if (i == m->path_count) m->path_count++;
+    body = method_rxfem_body(m);
+    for (i = 0; i < m->path_count && result == RX_OK; i++) {
+        rx_surface path;
+        path.vertices = m->paths[i]->path.vertices; path.vertex_count = m->paths[i]->path.vertex_count;
+        path.triangles = m->paths[i]->path.triangles; path.triangle_count = m->paths[i]->path.triangle_count;
+        result = rx_body_cut(body, &path);
+    }
+    if (result != RX_OK) {
+        rx_body_destroy(body);
+        return method_rxfem_text(result);
+    }
+    share = body->patch_count > before ? (double)(body->patch_count - before) / (double)body->patch_count : 0;
+    times->booleans += share * body->seconds_path;
+    times->integrals += share * body->seconds_rules;
+    times->total += share * (body->seconds_path + body->seconds_rules);
+    times->domains += body->patch_count > before ? body->patch_count - before : 1;
+    method_rxfem_take(m, body);
+    return NULL;
+}
+
+static inline void method_rxfem_renew(method_rxfem *m)
+{
+    gxs_model model = m->model->model;
+    size_t i;
+    m->held = (uint8_t *)method_memory(m->held, model.copy_count, 1);
+    for (i = 0; i < model.copy_count; i++) m->held[i] = (uint8_t)replay_is_held(m->scene, m->model->values[i].node);
+    model.held = m->held;
+    model.materials = &m->material;
+    model.material_count = 1;
+    method_must(gxs_solver_set_model(m->solver, &model, NULL), "model");
+    m->forces = (double *)method_memory(m->forces, 3 * (m->body->node_count + m->body->enrichment_count), sizeof(double));
+    m->stiffness = (double *)method_memory(m->stiffness, 144 * m->body->piece_count, sizeof(double));
+    m->changed = 0;
+}
+
+/* What the published evaluation at the rule's points takes: of forces and tangents, at rest, since its time does not depend on the state */
+static inline double method_rxfem_elastic(method_rxfem *m)
+{
+    const size_t count = 3 * (m->body->node_count + m->body->enrichment_count);
+    double *unknowns = (double *)calloc(count, sizeof(double)), start;
+    method_must(unknowns ? GX_OK : GX_ERROR_MEMORY, "bench");
+    start = seconds(NULL);
+    rx_elastic(m->body, m->model, m->scene->young, m->scene->poisson, unknowns, 1, m->forces, m->stiffness);
+    start = seconds(NULL) - start;
+    free(unknowns);
+    return start;
+}
+
+static inline const char *method_rxfem_step(void *state, method_times *times)
+{
+    method_rxfem *m = (method_rxfem *)state;
+    const gx_step_desc desc = method_step_desc(m->scene);
+    const double start = seconds(NULL);
+    double elastic;
+    gx_step_report report;
+    gx_result result;
+    if (m->changed) method_rxfem_renew(m);
+    result = gxs_solver_step(m->solver, &desc, m->displacement, m->velocity, &report, NULL);
+    if (result != GX_OK) return gx_result_text(result);
+    times->solve += report.seconds_prepare + report.seconds_solve;
+    times->total += seconds(NULL) - start;
+    elastic = method_rxfem_elastic(m);
+    times->derivatives += elastic;
+    times->total += elastic;
+    return NULL;
+}
+
+static inline size_t method_rxfem_unknowns(void *state)
+{
+    const method_rxfem *m = (method_rxfem *)state;
+    return 3 * (m->body->node_count + m->body->enrichment_count);
+}
+
+static inline void method_rxfem_look(void *state, gxs_model *model, const double **displacement)
+{
+    const method_rxfem *m = (method_rxfem *)state;
+    *model = m->model->model;
+    *displacement = m->displacement;
+}
+
+static inline void method_rxfem_destroy(void *state)
+{
+    method_rxfem *m = (method_rxfem *)state;
+    rx_body_destroy(m->body);
+    rx_model_destroy(m->model);
+    rx_rules_destroy(m->rules);
+    gxs_solver_destroy(m->solver);
+    free((void *)m->paths);
+    free(m->held);
+    free(m->displacement);
+    free(m->velocity);
+    free(m->forces);
+    free(m->stiffness);
+    free(m);
+}
+
 /* ---- all ---- */
 
 static const method methods[] = {
     {"gxfem", method_body_create, method_body_cut, method_library_step, method_body_unknowns, method_library_look, method_body_destroy},
+    {"RXFEM", method_rxfem_create, method_rxfem_cut, method_rxfem_step, method_rxfem_unknowns, method_rxfem_look, method_rxfem_destroy},
     {"VNA", method_body_create, method_body_cut, method_vna_step, method_body_unknowns, method_vna_look, method_body_destroy},
     {"Algorithm 1", method_literal_create, method_literal_cut, method_literal_step, method_literal_unknowns, method_literal_look, method_literal_destroy}};
 

@@ -96,6 +96,17 @@ static inline void rx_find_fragments(const rx_body *b, rx_model *m)
 
 /* ---- elements ---- */
 
+/* A node whose mass the rule makes negative has none. */
+static inline void rx_clear_negative(double mass[10])
+{
+    static const int row[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
+    int i, j;
+    for (i = 0; i < 4; ++i)
+        for (j = 0; j < 4 && mass[row[i][i]] < 0; ++j)
+            if (j != i) mass[row[i][j]] = 0;
+    for (i = 0; i < 4; ++i) mass[row[i][i]] = fmax(0, mass[row[i][i]]);
+}
+
 /* The reference frame of a piece is that of gxi_part_mass with corner 0 as its origin, and its moments stand in the same order. Volumes that
    the rule makes negative are 0. */
 static inline void rx_fill_element(const rx_body *b, const rx_model *m, size_t piece, double density, gxs_element *e)
@@ -117,6 +128,7 @@ static inline void rx_fill_element(const rx_body *b, const rx_model *m, size_t p
     memcpy(moments.second, p->moments + 4, sizeof moments.second);
     e->weight = fmax(0, 6 * whole * moments.volume);
     gxi_part_mass(&moments, 0, whole, density, e->mass);
+    rx_clear_negative(e->mass);
 }
 
 /* ---- section 6, step 2 ---- */
