@@ -3431,7 +3431,7 @@ static gx_result gxp_change_model(gx_body *body) {
     body->part_count = 0;
     for (i = 0; i < body->changed.count && result == GX_OK; i++) result = gxp_add_parts(body, body->changed.data[i]);
     memset(&change, 0, sizeof change);
-    change.copy_count = body->copy_count; change.origins = body->copy_before;
+    change.copy_count = body->copy_count; change.origins = body->copy_before; change.held = body->held;
     change.groups = body->changed.data; change.group_count = body->changed.count;
     change.elements = body->parts; change.element_count = body->part_count;
     body->part_count = count;

@@ -207,7 +207,8 @@ typedef struct gxs_model {
 typedef struct gxs_change {
     size_t copy_count;          /* from now on */
     const uint32_t *origins;    /* copy_count: 2 x the index so far of the copy that this one is, or, for a new one, 2 x that of the copy
-                                   whose position, motion and flag in held it takes over, + 1 */
+                                   whose position and motion it takes over, + 1 */
+    const uint8_t *held;        /* copy_count flags as the model's; NULL: none is held */
     const uint32_t *groups;     /* group_count, ascending: all elements of these go */
     size_t group_count;
     const gxs_element *elements;/* element_count, by ascending group: what comes in their place; of the model's materials */
@@ -358,7 +359,7 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
  * with what they have learnt so far. Results are those of the whole model set anew but for rounding and the tolerances of steps.
  * GX_ERROR_ARGUMENT if no model is set or an order is not as it should be (index: of the group or element). GX_ERROR_LIMIT if the change
  * does not fit what there is: a matrix is assembled, mass is lumped, copies follow others, GXS_VOLUME_RATIO, lanes that changes have left
- * behind are a quarter of all, no element is left, elements that stay have lost a copy. On this and on GX_ERROR_MEMORY no model is set any
+ * behind are a quarter of all, a copy is held and was not or the other way round, no element is left, elements that stay have lost a copy. On this and on GX_ERROR_MEMORY no model is set any
  * more: set it. On other errors the model before stays. */
 GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *change, gx_failure *failure);
 
@@ -5095,7 +5096,7 @@ static void gxsp_renew_levels(gxsp_renewal *update)
 
 /* --- all of it --- */
 
-/* What copies so far have become. 0: two say that they are one. */
+/* What copies so far have become. 0: two say that they are one, or one is not held as before. */
 static int gxsp_find_successors(gxsp_renewal *update)
 {
     const gxs_change *change = update->change;
@@ -5103,6 +5104,8 @@ static int gxsp_find_successors(gxsp_renewal *update)
     memset(update->successor, 0xff, update->before * sizeof *update->successor);
     for (i = 0; i < change->copy_count; ++i) {
         uint32_t *of = &update->successor[change->origins[i] >> 1];
+        if ((change->held && change->held[i]) != (update->system->held[change->origins[i] >> 1] != 0))
+            return 0;
         if (change->origins[i] & 1)
             update->touched[i] = 1;
         else if (*of != GXSP_NONE)
