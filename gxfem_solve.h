@@ -1797,10 +1797,18 @@ static inline void gxsp_fetch(const void *memory, size_t size)
 #endif
 }
 
-/* The block two further on, or this one at the end */
-static uint32_t gxsp_block_ahead(const gxsp_chunk *chunk, uint32_t block)
+/* The chunk of the block two further on, and which one it is there */
+static const gxsp_chunk *gxsp_block_ahead(const gxsp_system *system, size_t index, uint32_t block, uint32_t *ahead)
 {
-    return block + 2 < chunk->block_count ? block + 2 : block;
+    const gxsp_chunk *chunk = &system->chunks[index];
+    *ahead = block + 2;
+    if (*ahead < chunk->block_count)
+        return chunk;
+    *ahead -= chunk->block_count;
+    if (index + 1 < system->chunk_count && *ahead < chunk[1].block_count)
+        return chunk + 1;
+    *ahead = block;
+    return chunk;
 }
 
 /* x of a block's corners, and the parameters of their material */
@@ -1883,7 +1891,7 @@ static void gxsp_task_state(void *context, size_t index)
     const gxsp_chunk *chunk = &system->chunks[index];
     double *slots = (double *)(void *)(system->slot_in) + 3 * (size_t)chunk->first_node;
     double elastic = 0, kinetic = 0, size = 0;
-    uint32_t b;
+    uint32_t b, further;
     int k, l;
     for (k = 0; k < 3; ++k)
         system->chunk_sum[index][k] = 0;
@@ -1892,9 +1900,10 @@ static void gxsp_task_state(void *context, size_t index)
         return;
     for (b = 0; b < chunk->block_count; ++b) {
         const gxsp_rest *rest = &chunk->rest[b];
+        const gxsp_chunk *next = gxsp_block_ahead(system, index, b, &further);
         gxsp_lanes x[12], forces[12], ahead[9], energy;
         gxsp_state s;
-        gxsp_fetch(&chunk->rest[gxsp_block_ahead(chunk, b)], sizeof(gxsp_rest));
+        gxsp_fetch(&next->rest[further], sizeof(gxsp_rest));
         gxsp_block_load(system, chunk, &chunk->corners[b], pass->from, x);
         gxsp_block_parameters(pass->materials, rest, &s);
         gxsp_block_gradient(rest, x, s.g);
@@ -3496,14 +3505,21 @@ static void gxsp_apply_packed(const float *d, const float *x, float *y)
 /* Four nodes' vectors to three components side by side and back: compilers do not find these shuffles by themselves. */
 typedef __attribute__((vector_size(16), aligned(4), may_alias)) float gxsp_four;
 
-static inline void gxsp_gather_four(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2)
+typedef __attribute__((vector_size(32), aligned(4), may_alias)) float gxsp_eight;
+
+/* All eight lanes at once: narrower stores would not be forwarded to the loads that soon follow. */
+static inline void gxsp_gather_eight(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2)
 {
     const gxsp_four a = *(const gxsp_four *)x[node[0]], b = *(const gxsp_four *)x[node[1]], c = *(const gxsp_four *)x[node[2]],
-                    d = *(const gxsp_four *)x[node[3]];
-    const gxsp_four ab = __builtin_shufflevector(a, b, 0, 4, 1, 5), cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
-    *(gxsp_four *)to0 = __builtin_shufflevector(ab, cd, 0, 1, 4, 5);
-    *(gxsp_four *)to1 = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
-    *(gxsp_four *)to2 = __builtin_shufflevector(__builtin_shufflevector(a, b, 2, 6, 3, 7), __builtin_shufflevector(c, d, 2, 6, 3, 7), 0, 1, 4, 5);
+                    d = *(const gxsp_four *)x[node[3]], e = *(const gxsp_four *)x[node[4]], f = *(const gxsp_four *)x[node[5]],
+                    g = *(const gxsp_four *)x[node[6]], h = *(const gxsp_four *)x[node[7]];
+    const gxsp_eight ae = __builtin_shufflevector(a, e, 0, 1, 2, 3, 4, 5, 6, 7), bf = __builtin_shufflevector(b, f, 0, 1, 2, 3, 4, 5, 6, 7),
+                     cg = __builtin_shufflevector(c, g, 0, 1, 2, 3, 4, 5, 6, 7), dh = __builtin_shufflevector(d, h, 0, 1, 2, 3, 4, 5, 6, 7);
+    const gxsp_eight p = __builtin_shufflevector(ae, bf, 0, 8, 1, 9, 4, 12, 5, 13), q = __builtin_shufflevector(cg, dh, 0, 8, 1, 9, 4, 12, 5, 13);
+    const gxsp_eight r = __builtin_shufflevector(ae, bf, 2, 10, 3, 11, 6, 14, 7, 15), s = __builtin_shufflevector(cg, dh, 2, 10, 3, 11, 6, 14, 7, 15);
+    *(gxsp_eight *)to0 = __builtin_shufflevector(p, q, 0, 1, 8, 9, 4, 5, 12, 13);
+    *(gxsp_eight *)to1 = __builtin_shufflevector(p, q, 2, 3, 10, 11, 6, 7, 14, 15);
+    *(gxsp_eight *)to2 = __builtin_shufflevector(r, s, 0, 1, 8, 9, 4, 5, 12, 13);
 }
 
 static inline void gxsp_scatter_four(const uint16_t *node, const float *from0, const float *from1, const float *from2, gxsp_vector4 *y)
@@ -3516,10 +3532,10 @@ static inline void gxsp_scatter_four(const uint16_t *node, const float *from0, c
     *(gxsp_four *)y[node[3]] += __builtin_shufflevector(high, r, 2, 3, 7, 7);
 }
 #else
-static void gxsp_gather_four(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2)
+static void gxsp_gather_eight(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2)
 {
     int l;
-    for (l = 0; l < 4; ++l)
+    for (l = 0; l < GXSP_LANES; ++l)
         to0[l] = x[node[l]][0], to1[l] = x[node[l]][1], to2[l] = x[node[l]][2];
 }
 
@@ -3533,10 +3549,9 @@ static void gxsp_scatter_four(const uint16_t *node, const float *from0, const fl
 
 static void gxsp_block_gather(const gxsp_corners *GXSP_RESTRICT corner, const gxsp_vector4 *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT to)
 {
-    int i, l;
+    int i;
     for (i = 0; i < 4; ++i)
-        for (l = 0; l < GXSP_LANES; l += 4)
-            gxsp_gather_four(corner->node[i] + l, x, to[3 * i] + l, to[3 * i + 1] + l, to[3 * i + 2] + l);
+        gxsp_gather_eight(corner->node[i], x, to[3 * i], to[3 * i + 1], to[3 * i + 2]);
 }
 
 static void gxsp_block_scatter(const gxsp_corners *GXSP_RESTRICT corner, gxsp_singles *GXSP_RESTRICT from, gxsp_vector4 *GXSP_RESTRICT y)
@@ -3554,7 +3569,7 @@ static void gxsp_task_product(void *context, size_t index)
     const gxsp_chunk *chunk = &system->chunks[index];
     const uint32_t *copies = system->nodes + chunk->first_node;
     gxsp_vector4 *in = system->slot_in + chunk->first_node, *out = system->slot_out + chunk->first_node;
-    uint32_t b, i;
+    uint32_t b, i, further;
     if (system->chunk_still[index])
         return;
     for (i = 0; i < chunk->node_count; ++i)
@@ -3563,8 +3578,9 @@ static void gxsp_task_product(void *context, size_t index)
     for (b = 0; b < chunk->block_count; ++b) {
         const gxsp_corners *corner = &chunk->corners[b];
         const gxsp_mass *general = gxsp_block_masses(chunk, b);
+        const gxsp_chunk *next = gxsp_block_ahead(system, index, b, &further);
         gxsp_singles from[12], to[12];
-        gxsp_fetch(&chunk->tangents[gxsp_block_ahead(chunk, b)], sizeof(gxsp_tangent));
+        gxsp_fetch(&next->tangents[further], sizeof(gxsp_tangent));
         gxsp_block_gather(corner, (const gxsp_vector4 *)in, from);
         gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_general(chunk, b), from, to);
         if (general)
