@@ -825,8 +825,7 @@ typedef struct gxsp_system {
     uint32_t *copy_slot;    /* slot_count: a copy's slots, in the order of chunks: sums over them are the same for any number of threads */
     uint16_t *slot_root;    /* slot_count: number in the chunk of the least node that elements of the chunk join with this one */
     int roots_known;        /* slot_root is there */
-    gxsp_vector4 *slot_in;  /* slot_count: a chunk's input */
-    gxsp_vector4 *slot_out; /* slot_count, follows slot_in: a chunk's output; as doubles a slot has both */
+    double (*slots)[3];     /* slot_count: what a chunk's pass has for each node: 3 doubles, 4 floats (of products), or 6 */
     double (*chunk_sum)[3]; /* chunk_count: elastic and kinetic energy, size of the terms they are sums of; J. Of linearisations:
                                whether there is a collapsed element */
     double *lumped;         /* n: row sums of the mass, kg */
@@ -1889,7 +1888,7 @@ static void gxsp_task_state(void *context, size_t index)
     const gxsp_pass *pass = (const gxsp_pass *)context;
     gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->chunks[index];
-    double *slots = (double *)(void *)(system->slot_in) + 3 * (size_t)chunk->first_node;
+    double *slots = &system->slots[chunk->first_node][0];
     double elastic = 0, kinetic = 0, size = 0;
     uint32_t b, further;
     int k, l;
@@ -1942,7 +1941,7 @@ static void gxsp_task_sum(void *context, size_t index)
 {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
-    const double *slots = (const double *)(const void *)system->slot_in;
+    const double *slots = &system->slots[0][0];
     size_t i = index * GXSP_RANGE, end = i + GXSP_RANGE < system->n ? i + GXSP_RANGE : system->n;
     for (; i < end; ++i) {
         double x = 0, y = 0, z = 0;
@@ -2500,9 +2499,7 @@ static void gxsp_steps_make(gxsp_system *system)
         *singles[i] = (gxsp_vector4 *)gxsp_take(&system->pool, system->n, sizeof(gxsp_vector4));
     system->diagonal = (float *)gxsp_take(&system->pool, 6 * system->n, sizeof(float));
     system->renewed = (uint8_t *)gxsp_take(&system->pool, system->n, 1);
-    system->slot_in = (gxsp_vector4 *)gxsp_take(&system->pool, 2 * system->slot_count, sizeof(gxsp_vector4));
-    if (!system->pool.failed)
-        system->slot_out = system->slot_in + system->slot_count;
+    system->slots = (double(*)[3])gxsp_take(&system->pool, system->slot_count, sizeof *system->slots);
     gxsp_tangents_make(&system->pool, system->chunks, system->chunk_count);
 }
 
@@ -3568,7 +3565,8 @@ static void gxsp_task_product(void *context, size_t index)
     const gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->chunks[index];
     const uint32_t *copies = system->nodes + chunk->first_node;
-    gxsp_vector4 *in = system->slot_in + chunk->first_node, *out = system->slot_out + chunk->first_node;
+    gxsp_vector4 in[4 * GXSP_CHUNK_BLOCKS * GXSP_LANES]; /* apart from the chunks', so that it stays in the cache */
+    gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->slots + chunk->first_node;
     uint32_t b, i, further;
     if (system->chunk_still[index])
         return;
@@ -3593,13 +3591,14 @@ static void gxsp_task_product_sum(void *context, size_t index)
 {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
+    gxsp_vector4 *slots = (gxsp_vector4 *)(void *)system->slots;
     size_t i = index * GXSP_RANGE, end = i + GXSP_RANGE < system->n ? i + GXSP_RANGE : system->n;
     for (; i < end; ++i) {
         float m = system->lumped_mass ? (float)(pass->rate * system->lumped[i]) : 0;
         float x = m * pass->x[i][0], y = m * pass->x[i][1], z = m * pass->x[i][2];
         uint32_t s;
         for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->still[i]; ++s) {
-            const float *from = system->slot_out[system->copy_slot[s]];
+            const float *from = slots[system->copy_slot[s]];
             x += from[0], y += from[1], z += from[2];
         }
         pass->y[i][0] = x, pass->y[i][1] = y, pass->y[i][2] = z;
@@ -3668,7 +3667,7 @@ static void gxsp_task_linearise(void *context, size_t index)
     const gxsp_pass *pass = (const gxsp_pass *)context;
     gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->chunks[index];
-    float *slots = (float *)system->slot_in + 6 * (size_t)chunk->first_node;
+    float *slots = (float *)(void *)system->slots[chunk->first_node];
     uint32_t b;
     int corner, k, l;
     system->chunk_sum[index][0] = 0;
@@ -3737,7 +3736,7 @@ static void gxsp_task_diagonal(void *context, size_t index)
 {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
-    const float *slots = (const float *)system->slot_in;
+    const float *slots = (const float *)(const void *)system->slots;
     size_t i = index * GXSP_RANGE, end = i + GXSP_RANGE < system->n ? i + GXSP_RANGE : system->n;
     for (; i < end; ++i) {
         double sum[6] = {0, 0, 0, 0, 0, 0};
@@ -3759,7 +3758,7 @@ static void gxsp_task_diagonal(void *context, size_t index)
 /* Springs, contact and followers add to the diagonal blocks: all goes to a copy's first slot, from which the blocks are summed. */
 static void gxsp_extra_diagonal(gxsp_system *system)
 {
-    float *slots = (float *)system->slot_in;
+    float *slots = (float *)(void *)system->slots;
     size_t t;
     uint32_t i, s;
     int k, m;
@@ -4774,11 +4773,10 @@ static void gxsp_slots_room(gxsp_system *system, size_t count)
         system->slot_room = count + count / 8;
         system->nodes = (uint32_t *)gxsp_retake(pool, system->nodes, 0, system->slot_room, sizeof(uint32_t));
         system->copy_slot = (uint32_t *)gxsp_retake(pool, system->copy_slot, 0, system->slot_room, sizeof(uint32_t));
-        system->slot_in = (gxsp_vector4 *)gxsp_retake(pool, system->slot_in, 0, 2 * system->slot_room, sizeof(gxsp_vector4));
+        system->slots = (double(*)[3])gxsp_retake(pool, system->slots, 0, system->slot_room, sizeof *system->slots);
         system->slot_root = (uint16_t *)gxsp_retake(pool, system->slot_root, 0, system->slot_room, sizeof(uint16_t));
     }
     system->slot_count = count;
-    system->slot_out = system->slot_in + count;
 }
 
 /* Nodes of all chunks. 0: an element that stays has lost a copy. */
