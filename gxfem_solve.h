@@ -685,7 +685,7 @@ typedef struct gxsp_mass {
 
 /* Projected Hessian of a block: dP = U (h : U^T dF V) V^T. */
 typedef struct gxsp_tangent {
-    float frame[9][GXSP_LANES];    /* U of F = U S V^T, by rows */
+    float frame[4][GXSP_LANES];    /* U of F = U S V^T as sqrt 2 times its unit quaternion: x, y, z, w; any such numbers make it symmetric */
     float gradient[9][GXSP_LANES]; /* shape function gradients 1..3 times V, by rows, 1/m */
     float stretch[6][GXSP_LANES];  /* weight x h: stretches; J */
     float even[3][GXSP_LANES];     /* of the off-diagonal pairs (12), (20), (01): to themselves; J */
@@ -1466,7 +1466,6 @@ static void gxsp_general_make(const gxsp_rest *rest, double scale, int exact, gx
         double f[9], h[81];
         for (k = 0; k < 9; ++k) {
             f[k] = s->g[k][l] + (k % 4 == 0 ? 1 : 0);
-            tangent->frame[k][l] = k % 4 == 0 ? 1.0f : 0.0f;
             tangent->gradient[k][l] = (float)rest->gradient[k][l];
         }
         s->material[l]->energy(s->material[l]->user, f, NULL, h);
@@ -1496,6 +1495,25 @@ static int gxsp_nudge(gxsp_lanes *g)
             any = 1;
         }
     return any;
+}
+
+/* sqrt 2 times the unit quaternions of rotations u, by rows, from the largest of their four numbers: 4 q_i q_j are sums of entries of u */
+static void gxsp_pack_rotation(gxsp_singles *GXSP_RESTRICT u, gxsp_singles *GXSP_RESTRICT frame)
+{
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float a = u[0][l], b = u[4][l], c = u[8][l];
+        const float xx = 1 + a - b - c, yy = 1 - a + b - c, zz = 1 - a - b + c, ww = 1 + a + b + c;
+        const float xy = u[1][l] + u[3][l], xz = u[2][l] + u[6][l], yz = u[5][l] + u[7][l];
+        const float xw = u[7][l] - u[5][l], yw = u[2][l] - u[6][l], zw = u[3][l] - u[1][l];
+        const float first = xx > yy ? xx : yy, second = zz > ww ? zz : ww;
+        const float half = first > second ? 1.0f : 0.0f, one = half * (xx > yy ? 1.0f : 0.0f), two = half - one;
+        const float three = (1 - half) * (zz > ww ? 1.0f : 0.0f), four = 1 - half - three;
+        const float x = one * xx + two * xy + three * xz + four * xw, y = one * xy + two * yy + three * yz + four * yw;
+        const float z = one * xz + two * yz + three * zz + four * zw, w = one * xw + two * yw + three * zw + four * ww;
+        const float scale = gxsp_rsqrt(0.5f * (x * x + y * y + z * z + w * w));
+        frame[0][l] = scale * x, frame[1][l] = scale * y, frame[2][l] = scale * z, frame[3][l] = scale * w;
+    }
 }
 
 /* The Hessian of a block at s->g, times scale, exact or projected. general: of GXS_CUSTOM only, else NULL. Was an element collapsed? */
@@ -1535,8 +1553,7 @@ static int gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_RESTR
             tangent->even[k][l] = 0.5f * principal.weight[l] * (flip + twist);
             tangent->odd[k][l] = 0.5f * principal.weight[l] * (flip - twist);
         }
-    for (k = 0; k < 9; ++k)
-        GXSP_EACH_LANE(l) tangent->frame[k][l] = of.u[k][l];
+    gxsp_pack_rotation(of.u, tangent->frame);
     for (r = 0; r < 3; ++r)
         for (c = 0; c < 3; ++c)
             GXSP_EACH_LANE(l)
@@ -1617,8 +1634,10 @@ static void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, gxsp_singles
         const float d0 = a0 * g0 + b0 * g3 + c0 * g6, d1 = a0 * g1 + b0 * g4 + c0 * g7, d2 = a0 * g2 + b0 * g5 + c0 * g8,
                     d3 = a1 * g0 + b1 * g3 + c1 * g6, d4 = a1 * g1 + b1 * g4 + c1 * g7, d5 = a1 * g2 + b1 * g5 + c1 * g8,
                     d6 = a2 * g0 + b2 * g3 + c2 * g6, d7 = a2 * g1 + b2 * g4 + c2 * g7, d8 = a2 * g2 + b2 * g5 + c2 * g8;
-        const float u0 = b->frame[0][l], u1 = b->frame[1][l], u2 = b->frame[2][l], u3 = b->frame[3][l], u4 = b->frame[4][l],
-                    u5 = b->frame[5][l], u6 = b->frame[6][l], u7 = b->frame[7][l], u8 = b->frame[8][l];
+        const float q0 = b->frame[0][l], q1 = b->frame[1][l], q2 = b->frame[2][l], q3 = b->frame[3][l];
+        const float u0 = 1 - (q1 * q1 + q2 * q2), u1 = q0 * q1 - q2 * q3, u2 = q0 * q2 + q1 * q3, u3 = q0 * q1 + q2 * q3,
+                    u4 = 1 - (q0 * q0 + q2 * q2), u5 = q1 * q2 - q0 * q3, u6 = q0 * q2 - q1 * q3, u7 = q1 * q2 + q0 * q3,
+                    u8 = 1 - (q0 * q0 + q1 * q1);
         /* t = U^T dF V */
         const float t0 = u0 * d0 + u3 * d3 + u6 * d6, t1 = u0 * d1 + u3 * d4 + u6 * d7, t2 = u0 * d2 + u3 * d5 + u6 * d8,
                     t3 = u1 * d0 + u4 * d3 + u7 * d6, t4 = u1 * d1 + u4 * d4 + u7 * d7, t5 = u1 * d2 + u4 * d5 + u7 * d8,
@@ -1734,8 +1753,10 @@ static void gxsp_block_couple(const gxsp_tangent *GXSP_RESTRICT t, const gxsp_ge
                     b1 = t->stretch[1][l] * p0 * q1 + o2 * p1 * q0, b3 = t->stretch[1][l] * p1 * q0 + o2 * p0 * q1,
                     b2 = t->stretch[2][l] * p0 * q2 + o1 * p2 * q0, b6 = t->stretch[2][l] * p2 * q0 + o1 * p0 * q2,
                     b5 = t->stretch[4][l] * p1 * q2 + o0 * p2 * q1, b7 = t->stretch[4][l] * p2 * q1 + o0 * p1 * q2;
-        const float u0 = t->frame[0][l], u1 = t->frame[1][l], u2 = t->frame[2][l], u3 = t->frame[3][l], u4 = t->frame[4][l],
-                    u5 = t->frame[5][l], u6 = t->frame[6][l], u7 = t->frame[7][l], u8 = t->frame[8][l];
+        const float r0 = t->frame[0][l], r1 = t->frame[1][l], r2 = t->frame[2][l], r3 = t->frame[3][l];
+        const float u0 = 1 - (r1 * r1 + r2 * r2), u1 = r0 * r1 - r2 * r3, u2 = r0 * r2 + r1 * r3, u3 = r0 * r1 + r2 * r3,
+                    u4 = 1 - (r0 * r0 + r2 * r2), u5 = r1 * r2 - r0 * r3, u6 = r0 * r2 - r1 * r3, u7 = r1 * r2 + r0 * r3,
+                    u8 = 1 - (r0 * r0 + r1 * r1);
         const float a0 = u0 * b0 + u1 * b3 + u2 * b6, a1 = u0 * b1 + u1 * b4 + u2 * b7, a2 = u0 * b2 + u1 * b5 + u2 * b8,
                     a3 = u3 * b0 + u4 * b3 + u5 * b6, a4 = u3 * b1 + u4 * b4 + u5 * b7, a5 = u3 * b2 + u4 * b5 + u5 * b8,
                     a6 = u6 * b0 + u7 * b3 + u8 * b6, a7 = u6 * b1 + u7 * b4 + u8 * b7, a8 = u6 * b2 + u7 * b5 + u8 * b8;
