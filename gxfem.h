@@ -449,6 +449,9 @@ typedef struct gxp_skin {
     double *normals, *positions; uint32_t normal_capacity, position_capacity;   /* scratch: slots x 3, vertices x 3 */
 } gxp_skin;
 
+/* The solver's model is as the body, but for the last cuts, or not at all. */
+typedef enum gxp_model { GXP_MODEL_KNOWN, GXP_MODEL_CHANGED, GXP_MODEL_STALE } gxp_model;
+
 struct gx_body {
     gx_allocator allocator;
     double (*clock)(void *user);
@@ -487,7 +490,7 @@ struct gx_body {
     uint32_t *cell_stamp; uint32_t cell_stamp_capacity;
     uint32_t stamp, scope_stamp;
     int held_stale, view_stale, sums_stale;
-    enum { GXP_MODEL_KNOWN, GXP_MODEL_CHANGED, GXP_MODEL_STALE } model; /* the solver's: as the body, but for cuts, not at all */
+    gxp_model model;
     int model_updated;              /* it has been changed since it was set */
     gxp_words changed;              /* elements of which a cell or its copies have changed since the solver's model was; some more than once */
     uint32_t *copy_before; uint32_t copy_before_capacity;   /* copies: 2 x index then of the copy that it is, or, + 1, that it comes from */

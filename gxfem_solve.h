@@ -29,19 +29,19 @@
  *     }
  *
  * CONTENTS (search for the anchors; in the order of the file)
- *   >>shared      result codes, allocator, jobs    >>model       order of elements, chunks, pieces
- *   >>types       materials, elements, step        >>lattice     structure of the multigrid
- *   >>functions   the API                          >>followers   constraints between copies
- *   >>platform    finite by bits                   >>operator    product, linearisation, block diagonal
- *   >>memory      pools, the solver's own form     >>multigrid   the cycle, numbers of its levels, assembly
+ *   >>shared      result codes, allocator, jobs    >>lattice     structure of the multigrid
+ *   >>types       materials, elements, step        >>followers   constraints between copies
+ *   >>functions   the API                          >>operator    product, linearisation, block diagonal
+ *   >>platform    finite by bits                   >>multigrid   the cycle, numbers of its levels, assembly
+ *   >>memory      pools, the solver's own form     >>update      what a cut changes
  *   >>jobs        a loop, by threads or not        >>pieces      translations of loose pieces
  *   >>lanes       rsqrt, log for vectors           >>points      springs and contact
  *   >>material    energies and stresses            >>cg          conjugate gradients
  *   >>svd         stretches and rotations of F     >>sleep       what rests is left out
  *   >>tangent     Hessian of one block             >>newton      line search, Newton, integrators
  *   >>element     passes over one block            >>check       of what is given
- *   >>chunk       passes over chunks: energy,      >>api         the public functions
- *                 force                            >>forms       assembled forms, the material at one F
+ *   >>chunk       passes over chunks               >>api         the public functions
+ *   >>model       order of elements, chunks        >>forms       assembled forms, the material at one F
  *
  * WHAT IT DOES. A step of length h is the minimum over the displacements u of the incremental potential
  *
@@ -462,6 +462,15 @@ extern "C" {
 /* The stiffness of a whole element in the linear systems: 2^40 leaves room for pieces down to 1e-40 of it, and for masses above. */
 #define GXSP_STIFFNESS 40
 
+/* Coarse matrices cost as much as so many iterations: if they age faster, they are made anew before they cost that, and every
+ * GXSP_PATIENCE times serve for one solve more, to see whether they may. */
+#define GXSP_REMAKE 10
+#define GXSP_PATIENCE 8
+
+/* Where updates have changed the model, the smoother's step length times the largest eigenvalue there is below this; at 2 the cycle would
+ * be indefinite, and the eigenvalue is known to a tenth. */
+#define GXSP_OMEGA 1.75
+
 /* Stiffness in the linear systems below which single precision makes nothing of an inverse: it is left alone. */
 #define GXSP_TINY 1e-28
 
@@ -871,6 +880,9 @@ typedef struct gxsp_system {
     gxsp_fine *fine;        /* block_count: places in the assembled matrix, levels[0]; NULL: matrix-free */
     uint32_t *transpose;    /* by entry of levels[0]: the entry that mirrors it */
     uint32_t usual_iterations; /* of the solve with fresh ones */
+    uint32_t coarse_age;    /* solves since they were made */
+    uint32_t coarse_life;   /* how many solves they serve; 0: as many as they will */
+    uint32_t coarse_ends;   /* how often this has been their end */
     int still_known;        /* still and chunk_still are those of the pieces' states */
     size_t active;          /* unknowns of this step */
     int base_known;         /* current is what the last step returned, and base_energy its elastic energy */
@@ -4439,11 +4451,11 @@ static void gxsp_mark_still(gxsp_system *system)
     }
 }
 
-/* The step length where updates have changed the operator: elsewhere the largest eigenvalue is no larger than it was. */
+/* Shortens the step length where the cycle might become indefinite where updates have changed the operator: elsewhere the largest
+ * eigenvalue is no larger than it was. */
 static void gxsp_renew_omega(gxsp_system *system, double rate)
 {
     double largest;
-    float omega;
     uint32_t c, k;
     size_t i;
     for (i = 0; i < system->n; ++i)
@@ -4455,9 +4467,8 @@ static void gxsp_renew_omega(gxsp_system *system, double rate)
         system->chunk_still[c] |= still;
     }
     largest = gxsp_largest_eigenvalue(system, rate);
-    omega = gxsp_omega(system, largest);
-    if (largest > 0 && omega < system->omega)
-        system->omega = omega;
+    if (GXSP_OMEGA < (double)system->omega * largest)
+        system->omega = (float)(GXSP_OMEGA / largest);
     gxsp_mark_still(system);
 }
 
@@ -5097,6 +5108,12 @@ static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, co
     return gxsp_lower_numbers(system, dirty);
 }
 
+/* Is it known that the coarse matrices are as old as they can be? */
+static int gxsp_coarse_ends(const gxsp_system *system)
+{
+    return system->coarse_life > 0 && system->coarse_age >= system->coarse_life;
+}
+
 static void gxsp_renew_levels(gxsp_renewal *update)
 {
     gxsp_system *system = update->system;
@@ -5124,8 +5141,8 @@ static void gxsp_renew_levels(gxsp_renewal *update)
         gxsp_levels_make(system, scratch, &before, dirty);
     }
     if (!scratch->failed && !system->coarse.failed && system->coarse_rate >= 0 &&
-        (system->coarse_stiffness > 0 || !gxsp_renew_numbers(update, &before, dirty)))
-        system->coarse_rate = -1; /* springs and contact are not known any more: all numbers are made anew */
+        (system->coarse_stiffness > 0 || system->coarse_worn || gxsp_coarse_ends(system) || !gxsp_renew_numbers(update, &before, dirty)))
+        system->coarse_rate = -1; /* all numbers are made anew by the next step; springs and contact are not known any more */
     gxsp_release_to(&old, NULL);
 }
 
@@ -5653,7 +5670,7 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
 }
 
 /* Brings matrix and preconditioner up to date with the linearisation: the coarse matrices are made anew where they are missing, where
- * the rate has changed, or where iterations have risen by half since they were made. */
+ * the rate has changed, where iterations have risen by half since they were made, or before they rise by more than a renewal costs. */
 static int gxsp_prepare(gxsp_problem *problem)
 {
     gxsp_system *system = problem->system;
@@ -5669,9 +5686,12 @@ static int gxsp_prepare(gxsp_problem *problem)
         gxsp_renew_omega(system, problem->rate);
     system->omega_renewed = 0;
     system->coarse_fresh = system->coarse_rate < problem->rate || system->coarse_rate > problem->rate ||
-                           (system->coarse_worn && !problem->exact);
+                           ((system->coarse_worn || gxsp_coarse_ends(system)) && !problem->exact);
     if (!system->coarse_fresh)
         return 1;
+    if (!system->coarse_worn && gxsp_coarse_ends(system) && ++system->coarse_ends % GXSP_PATIENCE == 0)
+        ++system->coarse_life;
+    system->coarse_age = 0;
     system->coarse_rate = problem->rate;
     memcpy(system->coarse_state, system->current, 3 * system->n * sizeof(double));
     system->coarse_worn = 0;
@@ -5693,8 +5713,12 @@ static int gxsp_solve(gxsp_problem *problem)
     count = problem->report.cg_iterations - before;
     if (system->coarse_fresh)
         system->usual_iterations = count;
-    else if (count > system->usual_iterations + system->usual_iterations / 2 + 1)
+    else if (count > system->usual_iterations + system->usual_iterations / 2 + 1) {
         system->coarse_worn = 1;
+        if (count > system->usual_iterations + GXSP_REMAKE)
+            system->coarse_life = system->coarse_age;
+    }
+    ++system->coarse_age;
     return solved;
 }
 
@@ -6543,6 +6567,7 @@ GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene)
     system->coarse_stiffness = 0;
     system->coarse_fresh = system->coarse_worn = 0;
     system->usual_iterations = 0;
+    system->coarse_age = system->coarse_life = system->coarse_ends = 0;
     for (p = 0; p < system->piece_count; ++p) {
         gxsp_piece *piece = &system->pieces[p];
         piece->state &= ~(GXSP_TOUCHED | GXSP_ASLEEP);
@@ -6919,6 +6944,9 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_SHIFT
 #undef GXSP_STIFFNESS
 #undef GXSP_TINY
+#undef GXSP_OMEGA
+#undef GXSP_REMAKE
+#undef GXSP_PATIENCE
 #undef GXSP_CHUNK_PARENTS
 #undef GXSP_ALIGNMENT
 #undef GXSP_FILTER
