@@ -2183,7 +2183,7 @@ static void gxsp_place_element(const gxsp_chunk *chunk, const gxs_element *eleme
         rest->gradient[k][lane] = element->gradient[1 + k / 3][k % 3];
     rest->weight[lane] = element->weight;
     rest->material[lane] = element->material;
-    chunk->groups[at] = element->group;
+    chunk->groups[at] = element->group % GXSP_GROUPS; /* who does not update may have left it unset */
     if (chunk->masses)
         for (k = 0; k < 10; ++k)
             chunk->masses[at / GXSP_LANES].entry[k][lane] = element->mass[k];
@@ -6264,8 +6264,6 @@ static gx_result gxsp_check_element(const gxs_element *element, const gxs_model 
             return gxsp_fail(failure, GX_ERROR_INDEX, index);
     if (element->material >= model->material_count)
         return gxsp_fail(failure, GX_ERROR_INDEX, index);
-    if (element->group >= GXSP_GROUPS)
-        return gxsp_fail(failure, GX_ERROR_LIMIT, index);
     if (gxsp_first_not_finite(&element->gradient[1][0], 9) < 9 || !gxsp_finite(element->weight) ||
         gxsp_first_not_finite(element->mass, 10) < 10)
         return gxsp_fail(failure, GX_ERROR_NOT_FINITE, index);
@@ -6505,7 +6503,8 @@ static gx_result gxsp_check_change(const gxsp_system *system, const gxs_change *
     model.copy_count = change->copy_count;
     model.material_count = system->material_count;
     for (i = 0; i < change->element_count && result == GX_OK; ++i)
-        result = gxsp_check_element(&change->elements[i], &model, i, failure);
+        result = change->elements[i].group < GXSP_GROUPS ? gxsp_check_element(&change->elements[i], &model, i, failure) :
+                                                           gxsp_fail(failure, GX_ERROR_LIMIT, i);
     return result;
 }
 
