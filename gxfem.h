@@ -449,6 +449,9 @@ typedef struct gxp_skin {
     double *normals, *positions; uint32_t normal_capacity, position_capacity;   /* scratch: slots x 3, vertices x 3 */
 } gxp_skin;
 
+/* The solver's model is as the body, but for the last cuts, or not at all. */
+typedef enum gxp_model { GXP_MODEL_KNOWN, GXP_MODEL_CHANGED, GXP_MODEL_STALE } gxp_model;
+
 struct gx_body {
     gx_allocator allocator;
     double (*clock)(void *user);
@@ -486,7 +489,11 @@ struct gx_body {
     gxp_undo *undo; uint32_t undo_count, undo_capacity;
     uint32_t *cell_stamp; uint32_t cell_stamp_capacity;
     uint32_t stamp, scope_stamp;
-    int held_stale, model_stale, view_stale, sums_stale;
+    int held_stale, view_stale, sums_stale;
+    gxp_model model;
+    int model_updated;              /* it has been changed since it was set */
+    gxp_words changed;              /* elements of which a cell or its copies have changed since the solver's model was; some more than once */
+    uint32_t *copy_before; uint32_t copy_before_capacity;   /* copies: 2 x index then of the copy that it is, or, + 1, that it comes from */
     int labels_known;               /* copy_fragment and fragment_number hold for copies older than splits, and nothing has been removed */
     gxp_words splits;               /* copies made since then, each with the one it comes from */
     gxs_element *parts; uint32_t part_count, part_capacity;     /* there only while the solver's model is made; part_count stays */
@@ -818,6 +825,7 @@ static void gxp_make_first_copies(gx_body *body) {
     memset(body->rest_time, 0, body->copy_count * sizeof(double));
     memset(body->held, 0, body->copy_count);
     memset(body->copy_label, 0, body->copy_count * sizeof *body->copy_label);
+    memset(body->copy_before, 0, body->copy_count * sizeof *body->copy_before);
 }
 
 static gx_result gxp_reserve_copies(gx_body *body, size_t extra) {
@@ -829,6 +837,7 @@ static gx_result gxp_reserve_copies(gx_body *body, size_t extra) {
     if (r == GX_OK) r = gxp_reserve(a, &body->velocity, 3 * sizeof(double), n, &body->velocity_capacity, extra);
     if (r == GX_OK) r = gxp_reserve(a, &body->rest_time, sizeof(double), n, &body->rest_time_capacity, extra);
     if (r == GX_OK) r = gxp_reserve(a, &body->copy_label, sizeof *body->copy_label, n, &body->copy_label_capacity, extra);
+    if (r == GX_OK) r = gxp_reserve(a, &body->copy_before, sizeof *body->copy_before, n, &body->copy_before_capacity, extra);
     for (i = 0; i < 4 && r == GX_OK && body->history[i] != NULL; i++)
         r = gxp_reserve(a, &body->history[i], 3 * sizeof(double), n, &body->history_capacity[i], extra);
     return r == GX_OK ? gxp_reserve(a, &body->held, 1, n, &body->held_capacity, extra) : r;
@@ -844,6 +853,7 @@ static void gxp_copy_state(gx_body *body, uint32_t from, uint32_t to) {
     body->rest_time[to] = body->rest_time[from];
     body->held[to] = body->held[from];
     body->copy_label[to] = body->copy_label[from];
+    body->copy_before[to] = body->copy_before[from];
 }
 
 static gx_result gxp_reserve_cells(gx_body *body, size_t extra) {
@@ -921,7 +931,8 @@ static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc) {
     gxp_make_first_cells(body);
     gxp_make_first_copies(body);
     gxp_build_boxes(body);
-    body->model_stale = body->view_stale = 1;
+    body->view_stale = 1;
+    body->model = GXP_MODEL_STALE;
     body->past = gxp_hash_mesh(body);
     return gxp_first_look(body);
 }
@@ -1019,6 +1030,8 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     gxp_release(&a, body->materials, ((size_t)body->material_count + 1) * sizeof *body->materials);
     gxp_release(&a, body->element_materials, (e + 1) * sizeof(uint32_t));
     gxp_release(&a, body->copy_label, body->copy_label_capacity * sizeof *body->copy_label);
+    gxp_release(&a, body->copy_before, body->copy_before_capacity * sizeof *body->copy_before);
+    gxp_words_free(body, &body->changed);
     gxp_words_free(body, &body->fragment_ids);
     gxp_words_free(body, &body->fragment_origins);
     gxp_words_free(body, &body->fragment_changes);
@@ -2131,6 +2144,7 @@ static gx_result gxp_new_copy(gx_body *body, uint32_t from, uint32_t *copy) {
     body->copy_node[*copy] = body->copy_node[from];
     gxp_copy_state(body, from, *copy);
     body->copy_label[*copy] |= 1;
+    body->copy_before[*copy] |= 1;
     if (!body->labels_known) return GX_OK;
     result = gxp_push(body, &body->splits, *copy);
     return result == GX_OK ? gxp_push(body, &body->splits, from) : result;
@@ -2463,9 +2477,21 @@ static void gxp_touch_copies(gx_body *body, const gxp_cell *cell) {
     }
 }
 
+/* Notes the elements that the solver is to see anew; without memory for that, all are. */
+static void gxp_note_changed(gx_body *body) {
+    gx_result result = GX_OK;
+    uint32_t i;
+    if (body->model == GXP_MODEL_STALE) return;
+    for (i = 0; i < body->undo_count && result == GX_OK; i++)
+        if (body->undo[i].kind == GXP_UNDO_CELL) result = gxp_push(body, &body->changed, body->undo[i].cell.element);
+    for (i = 0; i < body->fresh.count && result == GX_OK; i++) result = gxp_push(body, &body->changed, body->cells[body->fresh.data[i]].element);
+    body->model = result == GX_OK ? GXP_MODEL_CHANGED : GXP_MODEL_STALE;
+}
+
 static void gxp_commit(gxp_cut *cut) {
     gx_body *body = cut->body;
     uint32_t i;
+    gxp_note_changed(body);
     for (i = 0; i < body->fresh.count; i++) gxp_touch_copies(body, &body->cells[body->fresh.data[i]]);
     for (i = 0; i < body->touched.count; i++) {
         gxp_cell *cell = &body->cells[body->touched.data[i]];
@@ -2480,7 +2506,7 @@ static void gxp_commit(gxp_cut *cut) {
     gxb_complex_commit(body->complex);
     body->undo_count = 0;
     body->past = gxp_hash_cut(body->past, cut->desc);
-    body->held_stale = body->model_stale = body->view_stale = body->look_stale = 1;
+    body->held_stale = body->view_stale = body->look_stale = 1;
     if (body->removed.count + body->dead.count > 0 || body->splits.count > body->copy_count) body->labels_known = 0;
     if (!body->labels_known) body->splits.count = 0;
 }
@@ -2758,7 +2784,8 @@ GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t
     if (result != GX_OK) return result;
     if (region_count > 0) memcpy(body->regions, regions, region_count * sizeof *regions);
     body->region_count = (uint32_t)region_count;
-    body->held_stale = body->model_stale = 1;
+    body->held_stale = 1;
+    body->model = GXP_MODEL_STALE;
     return GX_OK;
 }
 
@@ -3229,24 +3256,31 @@ static void gxp_add_part(gx_body *body, const gxp_cell *cell, uint32_t first, co
         memcpy(part->copy, cell->copies, sizeof part->copy);
         memcpy(part->gradient, gradients, 12 * sizeof *gradients);
         part->material = body->element_materials[cell->element];
+        part->group = cell->element;
         body->part_count++;
     }
     part->weight += cell->volume;
     for (k = 0; k < 10; k++) part->mass[k] += cell->mass[k];
 }
 
+/* The parts of an element, for which there is room, at the end */
+static gx_result gxp_add_parts(gx_body *body, uint32_t element) {
+    const uint32_t first = body->part_count;
+    double x[12], gradients[12];
+    uint32_t cell;
+    gx_result result;
+    gxp_element_positions(body, element, x);
+    result = gxi_tet_gradients(x, gradients, NULL);
+    for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next)
+        if (body->cells[cell].kept) gxp_add_part(body, &body->cells[cell], first, gradients);
+    return result;
+}
+
 static gx_result gxp_make_parts(gx_body *body) {
-    uint32_t e, cell;
+    uint32_t e;
     gx_result result = gxp_reserve(&body->allocator, &body->parts, sizeof *body->parts, 0, &body->part_capacity, body->cell_count);
     body->part_count = 0;
-    for (e = 0; e < body->element_count && result == GX_OK; e++) {
-        const uint32_t first = body->part_count;
-        double x[12], gradients[12];
-        gxp_element_positions(body, e, x);
-        result = gxi_tet_gradients(x, gradients, NULL);
-        for (cell = e; cell != GXP_NONE; cell = body->cells[cell].next)
-            if (body->cells[cell].kept) gxp_add_part(body, &body->cells[cell], first, gradients);
-    }
+    for (e = 0; e < body->element_count && result == GX_OK; e++) result = gxp_add_parts(body, e);
     return result;
 }
 
@@ -3386,16 +3420,51 @@ static gx_result gxp_make_model(gx_body *body, gxs_model *model) {
     return GX_OK;
 }
 
-/* The solver's model, anew after a cut or a hold only. The solver copies it, so that it need not be kept. */
-static gx_result gxp_update_model(gx_body *body) {
+/* The solver's model changed as the body was. part_count is left alone: something is left to move. */
+static gx_result gxp_change_model(gx_body *body) {
+    const uint32_t count = body->part_count;
+    size_t room = 0;
+    uint32_t i, cell;
+    gxs_change change;
+    gx_result result;
+    gxp_sort_unique(&body->changed);
+    for (i = 0; i < body->changed.count; i++)
+        for (cell = body->changed.data[i]; cell != GXP_NONE; cell = body->cells[cell].next) room++;
+    result = gxp_reserve(&body->allocator, &body->parts, sizeof *body->parts, 0, &body->part_capacity, room);
+    body->part_count = 0;
+    for (i = 0; i < body->changed.count && result == GX_OK; i++) result = gxp_add_parts(body, body->changed.data[i]);
+    memset(&change, 0, sizeof change);
+    change.copy_count = body->copy_count; change.origins = body->copy_before; change.held = body->held;
+    change.groups = body->changed.data; change.group_count = body->changed.count;
+    change.elements = body->parts; change.element_count = body->part_count;
+    body->part_count = count;
+    return result == GX_OK ? gxs_solver_update(body->solver, &change, NULL) : result;
+}
+
+static gx_result gxp_set_model(gx_body *body) {
     gxs_model model;
+    gx_result result = gxp_make_model(body, &model);
+    return result == GX_OK && body->part_count > 0 ? gxs_solver_set_model(body->solver, &model, NULL) : result;
+}
+
+/* The solver's model, after a cut or a hold only. The solver copies it, so that it need not be kept. */
+static gx_result gxp_update_model(gx_body *body) {
     gx_result result = gxp_update_held(body);
-    if (result == GX_OK && body->model_stale) {
-        result = gxp_make_model(body, &model);
-        if (result == GX_OK && body->part_count > 0) result = gxs_solver_set_model(body->solver, &model, NULL);
-        if (result == GX_OK) body->model_stale = 0;
+    uint32_t i;
+    if (result != GX_OK || body->model == GXP_MODEL_KNOWN) { gxp_release_model(body); return result; }
+    if (body->model == GXP_MODEL_CHANGED) {
+        result = body->support_below > 0 ? GX_ERROR_LIMIT : gxp_change_model(body);
+        body->model = result == GX_OK ? GXP_MODEL_KNOWN : GXP_MODEL_STALE;
+        body->model_updated = 1;
+        if (result == GX_ERROR_LIMIT) result = GX_OK;
+    }
+    if (result == GX_OK && body->model == GXP_MODEL_STALE) {
+        result = gxp_set_model(body);
+        if (result == GX_OK) { body->model = GXP_MODEL_KNOWN; body->model_updated = 0; }
     }
     gxp_release_model(body);
+    body->changed.count = 0;
+    for (i = 0; i < body->copy_count; i++) body->copy_before[i] = 2 * i;
     return result;
 }
 
@@ -3810,7 +3879,8 @@ static void gxp_load_topology(gxb_stream *s, gx_body *body, int trusted) {
     body->surface_count = surfaces; body->map_count = maps;
     gxp_pass_cells(s, body);
     if (s->result == GX_OK && !trusted) gxp_check_topology(s, body);
-    body->held_stale = body->model_stale = body->view_stale = 1;
+    body->held_stale = body->view_stale = 1;
+    body->model = GXP_MODEL_STALE;
     body->labels_known = 0;
 }
 
@@ -3860,6 +3930,12 @@ static void gxp_pass_words(gxb_stream *s, gxp_words *words, uint32_t count) {
 }
 
 /* n: of this body when it is written, of what is read else, and there is room. */
+/* The solver forgets, so that it goes on as that of the other body will. */
+static void gxp_resume_in(gx_body *body, const gxs_scene *scene) {
+    gxs_solver_resume(body->solver, scene);
+    if (body->model_updated) body->model = GXP_MODEL_STALE;
+}
+
 static void gxp_pass_state(gxb_stream *s, gx_body *body, const gxp_state_counts *n) {
     const size_t copies = n->copies;
     uint32_t i, look_stale = (uint32_t)body->look_stale;
@@ -3884,7 +3960,7 @@ static void gxp_pass_state(gxb_stream *s, gx_body *body, const gxp_state_counts 
     gxb_stream_pass(s, &scene.planes, 1, sizeof scene.planes);
     gxb_stream_pass(s, &scene.forces, 1, sizeof scene.forces);
     gxb_stream_pass(s, &scene.springs, 1, sizeof scene.springs);
-    if (s->in != NULL) gxs_solver_resume(body->solver, &scene);
+    if (s->in != NULL) gxp_resume_in(body, &scene);
 }
 
 static void gxp_save_state(gxb_stream *s, gx_body *body) {
@@ -3930,11 +4006,10 @@ static void gxp_write(gxb_stream *s, gx_body *body) {
     gxp_save_state(s, body);
 }
 
-/* The solver forgets, so that it goes on as that of the other body will. */
 static void gxp_resume(gx_body *body) {
     gxs_scene scene;
     gxs_solver_scene(body->solver, &scene);
-    gxs_solver_resume(body->solver, &scene);
+    gxp_resume_in(body, &scene);
 }
 
 GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, size_t *size) {
@@ -4063,7 +4138,7 @@ static gx_result gxp_restore_state(gx_body *body, gx_body *from) {
     s.in = bytes; s.out = NULL; s.at = 0;
     gxp_pass_state(&s, body, &n);
     gxp_release(&body->allocator, bytes, size);
-    if (!same_held) body->held_stale = body->model_stale = 1;
+    if (!same_held) { body->held_stale = 1; body->model = GXP_MODEL_STALE; }
     gxp_resume(from);
     return GX_OK;
 }

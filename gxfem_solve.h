@@ -11,7 +11,7 @@
  *     {
  *         gxs_element element = {{0, 1, 2, 3},                                      // its four copies
  *             {{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},                      // gradients, 1/m
- *             1.0 / 6, {17, 8, 8, 8, 17, 8, 8, 17, 8, 17}, 0};                      // m3; kg
+ *             1.0 / 6, {17, 8, 8, 8, 17, 8, 8, 17, 8, 17}, 0, 0};                   // m3; kg
  *         gxs_material material = {GXS_STABLE_NEO_HOOKEAN, 1e6, 0.4, 0, NULL, NULL};
  *         double displacement[12] = {0}, velocity[12] = {0};
  *         gxs_model model = {4, NULL, &element, 1, &material, 1, NULL, 0, NULL, 0};
@@ -29,19 +29,19 @@
  *     }
  *
  * CONTENTS (search for the anchors; in the order of the file)
- *   >>shared      result codes, allocator, jobs    >>model       order of elements, chunks, pieces
- *   >>types       materials, elements, step        >>lattice     structure of the multigrid
- *   >>functions   the API                          >>followers   constraints between copies
- *   >>platform    finite by bits                   >>operator    product, linearisation, block diagonal
- *   >>memory      pools, the solver's own form     >>multigrid   the cycle, numbers of its levels, assembly
+ *   >>shared      result codes, allocator, jobs    >>lattice     structure of the multigrid
+ *   >>types       materials, elements, step        >>followers   constraints between copies
+ *   >>functions   the API                          >>operator    product, linearisation, block diagonal
+ *   >>platform    finite by bits                   >>multigrid   the cycle, numbers of its levels, assembly
+ *   >>memory      pools, the solver's own form     >>update      what a cut changes
  *   >>jobs        a loop, by threads or not        >>pieces      translations of loose pieces
  *   >>lanes       rsqrt, log for vectors           >>points      springs and contact
  *   >>material    energies and stresses            >>cg          conjugate gradients
  *   >>svd         stretches and rotations of F     >>sleep       what rests is left out
  *   >>tangent     Hessian of one block             >>newton      line search, Newton, integrators
  *   >>element     passes over one block            >>check       of what is given
- *   >>chunk       passes over chunks: energy,      >>api         the public functions
- *                 force                            >>forms       assembled forms, the material at one F
+ *   >>chunk       passes over chunks               >>api         the public functions
+ *   >>model       order of elements, chunks        >>forms       assembled forms, the material at one F
  *
  * WHAT IT DOES. A step of length h is the minimum over the displacements u of the incremental potential
  *
@@ -178,6 +178,7 @@ typedef struct gxs_element {
     double weight;              /* volume, m3; 0 or more */
     double mass[10];            /* rho int N_i N_j, kg, symmetric 4x4 block: 00 01 02 03 11 12 13 22 23 33 */
     uint32_t material;          /* below material_count */
+    uint32_t group;             /* the caller's, below 2^30: elements of one group are replaced together, see gxs_solver_update; else not read */
 } gxs_element;
 
 /* A copy that follows others: in every step its displacement changes by the sum of weight x what theirs change by. A held copy
@@ -201,6 +202,18 @@ typedef struct gxs_model {
     const gxs_constraint *constraints; /* constraint_count, each of another copy */
     size_t constraint_count;
 } gxs_model;
+
+/* What a cut has changed of a model. Borrowed for the time of a call. */
+typedef struct gxs_change {
+    size_t copy_count;          /* from now on */
+    const uint32_t *origins;    /* copy_count: 2 x the index so far of the copy that this one is, or, for a new one, 2 x that of the copy
+                                   whose position and motion it takes over, + 1 */
+    const uint8_t *held;        /* copy_count flags as the model's; NULL: none is held */
+    const uint32_t *groups;     /* group_count, ascending: all elements of these go */
+    size_t group_count;
+    const gxs_element *elements;/* element_count, by ascending group: what comes in their place; of the model's materials */
+    size_t element_count;
+} gxs_change;
 
 typedef enum gxs_preconditioner {
     GXS_AUTOMATIC = 0,          /* multigrid where it pays, by counts */
@@ -342,8 +355,16 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
  * form. GX_ERROR_MEMORY is possible; on any error the model before stays. */
 GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *model, gx_failure *failure);
 
+/* Changes the model in time that goes by the size of the change, but for what is proportional to the number of copies and small. Steps go on
+ * with what they have learnt so far. Results are those of the whole model set anew but for rounding and the tolerances of steps.
+ * GX_ERROR_ARGUMENT if no model is set or an order is not as it should be (index: of the group or element). GX_ERROR_LIMIT if the change
+ * does not fit what there is: a matrix is assembled, mass is lumped, copies follow others, GXS_VOLUME_RATIO, lanes that changes have left
+ * behind are a quarter of all, a copy is held and was not or the other way round, no element is left, elements that stay have lost a copy. On this and on GX_ERROR_MEMORY no model is set any
+ * more: set it. On other errors the model before stays. */
+GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *change, gx_failure *failure);
+
 /* For whoever saves a state and goes on from it later: the scene of the last step, and a solver as if its model had just been set
- * after a step in that scene. Two solvers so resumed with the same model, scene and states take the same steps, bit by bit. */
+ * after a step in that scene; a model that has been updated is dropped, and must be set. Two solvers so resumed with the same model, scene and states take the same steps, bit by bit. */
 GXFEM_API void gxs_solver_scene(const gxs_solver *solver, gxs_scene *scene);
 GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene);
 
@@ -441,11 +462,29 @@ extern "C" {
 /* The stiffness of a whole element in the linear systems: 2^40 leaves room for pieces down to 1e-40 of it, and for masses above. */
 #define GXSP_STIFFNESS 40
 
+/* Coarse matrices cost as much as so many iterations: if they age faster, they are made anew before they cost that, and every
+ * GXSP_PATIENCE times serve for one solve more, to see whether they may. */
+#define GXSP_REMAKE 10
+#define GXSP_PATIENCE 8
+
+/* Where updates have changed the model, the smoother's step length times the largest eigenvalue there is below this; at 2 the cycle would
+ * be indefinite, and the eigenvalue is known to a tenth. */
+#define GXSP_OMEGA 1.75
+
 /* Stiffness in the linear systems below which single precision makes nothing of an inverse: it is left alone. */
 #define GXSP_TINY 1e-28
 
 /* Up to so many coarse nodes a chunk has a table of matrix entries; of more, entries are looked for each time. */
 #define GXSP_CHUNK_PARENTS 192
+
+/* Memory begins at multiples of this: no vector lies across two cache lines. */
+#define GXSP_ALIGNMENT 64
+
+/* Bits of the table in which changed groups are looked up first; a power of two. */
+#define GXSP_FILTER 65536u
+
+/* Groups of elements are below this: as many bits as gxsp_sort goes by. */
+#define GXSP_GROUPS ((uint32_t)1 << 30)
 
 /* Arrays of a block's passes never overlap. */
 #if !defined(__cplusplus)
@@ -562,7 +601,7 @@ static void gxsp_free(void *user, void *memory, size_t size)
     free(memory);
 }
 
-/* Head of an allocation of a pool; the memory follows it, 16-aligned as the allocator's is. */
+/* Head of an allocation of a pool; the memory follows it, at the next multiple of GXSP_ALIGNMENT. */
 typedef struct gxsp_owned {
     struct gxsp_owned *next;
     size_t size; /* with this head */
@@ -575,25 +614,45 @@ typedef struct gxsp_pool {
     int failed; /* an allocation returned NULL */
 } gxsp_pool;
 
-#define GXSP_HEAD ((sizeof(gxsp_owned) + 15) / 16 * 16)
+static void *gxsp_memory(gxsp_owned *owned)
+{
+    unsigned char *memory = (unsigned char *)(owned + 1);
+    return memory + (GXSP_ALIGNMENT - (uintptr_t)memory % GXSP_ALIGNMENT) % GXSP_ALIGNMENT;
+}
 
 /* count x size bytes, zero; NULL, and failed is set, when there are none. Callers check failed once, at their end. */
 static void *gxsp_take(gxsp_pool *pool, size_t count, size_t size)
 {
     gxsp_owned *owned;
-    size_t bytes = GXSP_HEAD + (count > 0 ? count : 1) * size;
+    size_t bytes = (count > 0 ? count : 1) * size;
     if (pool->failed)
         return NULL;
-    owned = (gxsp_owned *)pool->allocator.allocate(pool->allocator.user, bytes);
+    owned = (gxsp_owned *)pool->allocator.allocate(pool->allocator.user, sizeof *owned + GXSP_ALIGNMENT + bytes);
     if (!owned) {
         pool->failed = 1;
         return NULL;
     }
     owned->next = pool->last;
-    owned->size = bytes;
+    owned->size = sizeof *owned + GXSP_ALIGNMENT + bytes;
     pool->last = owned;
-    memset((unsigned char *)owned + GXSP_HEAD, 0, bytes - GXSP_HEAD);
-    return (unsigned char *)owned + GXSP_HEAD;
+    return memset(gxsp_memory(owned), 0, bytes);
+}
+
+/* Memory of room x size bytes in place of some of used x size, whose contents it has; the old one is given back. NULL, and the old one
+ * stays, when there is none. */
+static void *gxsp_retake(gxsp_pool *pool, void *memory, size_t used, size_t room, size_t size)
+{
+    void *larger = gxsp_take(pool, room, size);
+    gxsp_owned **link = &pool->last, *owned;
+    if (!larger)
+        return NULL;
+    memcpy(larger, memory, used * size);
+    while (gxsp_memory(*link) != memory)
+        link = &(*link)->next;
+    owned = *link;
+    *link = owned->next;
+    pool->allocator.release(pool->allocator.user, owned, owned->size);
+    return larger;
 }
 
 /* Gives back what was taken after mark was pool->last. */
@@ -635,7 +694,7 @@ typedef struct gxsp_mass {
 
 /* Projected Hessian of a block: dP = U (h : U^T dF V) V^T. */
 typedef struct gxsp_tangent {
-    float frame[9][GXSP_LANES];    /* U of F = U S V^T, by rows */
+    float frame[4][GXSP_LANES];    /* U of F = U S V^T as sqrt 2 times its unit quaternion: x, y, z, w; any such numbers make it symmetric */
     float gradient[9][GXSP_LANES]; /* shape function gradients 1..3 times V, by rows, 1/m */
     float stretch[6][GXSP_LANES];  /* weight x h: stretches; J */
     float even[3][GXSP_LANES];     /* of the off-diagonal pairs (12), (20), (01): to themselves; J */
@@ -654,10 +713,16 @@ typedef struct gxsp_fine {
 } gxsp_fine;
 
 typedef struct gxsp_chunk {
-    uint32_t first_block, block_count;
+    gxsp_rest *rest;                 /* block_count, as are the next four */
+    gxsp_corners *corners;
+    gxsp_tangent *tangents;
+    gxsp_mass *masses;               /* NULL: gxsp_rest has them all */
+    gxsp_general *generals;          /* of GXS_CUSTOM; NULL: gxsp_tangent has the Hessians */
+    uint32_t *groups;                /* block_count x GXSP_LANES: group of the element in each lane; GXSP_NONE: there is none */
+    uint32_t first_block, block_count; /* blocks are counted through all chunks */
     uint32_t first_node, node_count; /* into nodes and slots */
-    uint32_t first_mass;             /* into masses, one per block; GXSP_NONE: gxsp_rest has them all */
-    uint32_t first_general;          /* into generals, one per block; GXSP_NONE: gxsp_tangent has the Hessians */
+    uint32_t class_index;            /* 2 x kind + (masses are not those of whole elements) */
+    int open;                        /* made by an update, with room for GXSP_CHUNK_BLOCKS */
     gxs_material_kind kind;
 } gxsp_chunk;
 
@@ -756,22 +821,20 @@ typedef struct gxsp_lasting {
 /* A model in the solver's form, with all that a step works with. n: copy_count. Vectors are n x 3 unless said. */
 typedef struct gxsp_system {
     gxsp_pool pool;
+    gxsp_pool coarse;       /* levels of the multigrid below the model, and what their numbers are made with */
     const gx_jobs *jobs;
-    size_t n, element_count, block_count, mass_count, general_count, slot_count, range_count;
-    uint32_t chunk_count, material_count;
+    size_t n, element_count, block_count, slot_count, range_count;
+    size_t copy_room, slot_room; /* of arrays over copies and slots, from the first update on */
+    uint32_t chunk_count, chunk_room, material_count;
     gxsp_material *materials;   /* material_count: as given */
     gxsp_material *damped;      /* material_count: what the step under way works with: Rayleigh damping makes them stiffer */
     gxsp_chunk *chunks;
-    gxsp_rest *rest;        /* block_count */
-    gxsp_corners *corners;  /* block_count */
-    gxsp_tangent *tangents; /* block_count */
-    gxsp_mass *masses;      /* mass_count: blocks of chunks with elements that are not whole */
-    gxsp_general *generals; /* general_count: blocks of chunks of GXS_CUSTOM */
     uint32_t *nodes;        /* slot_count: the copy of each node of each chunk */
     uint32_t *copy_start;   /* n + 1, into copy_slot */
     uint32_t *copy_slot;    /* slot_count: a copy's slots, in the order of chunks: sums over them are the same for any number of threads */
-    gxsp_vector4 *slot_in;  /* slot_count: a chunk's input */
-    gxsp_vector4 *slot_out; /* slot_count, follows slot_in: a chunk's output; as doubles a slot has both */
+    uint16_t *slot_root;    /* slot_count: number in the chunk of the least node that elements of the chunk join with this one */
+    int roots_known;        /* slot_root is there */
+    double (*slots)[3];     /* slot_count: what a chunk's pass has for each node: 3 doubles, 4 floats (of products), or 6 */
     double (*chunk_sum)[3]; /* chunk_count: elastic and kinetic energy, size of the terms they are sums of; J. Of linearisations:
                                whether there is a collapsed element */
     double *lumped;         /* n: row sums of the mass, kg */
@@ -798,6 +861,8 @@ typedef struct gxsp_system {
     gxsp_vector4 *search, *product, *scaled; /* of conjugate gradients: direction, Hessian times it, preconditioned residual */
     float *diagonal;        /* n x 6: inverse of the Hessian's diagonal blocks, packed; 0 for fixed copies */
     int lumped_mass;
+    int stiff;              /* a material is nearly incompressible */
+    int chosen;             /* the preconditioner was chosen by the size of pieces */
     double scale;           /* power of two by which the linear systems are multiplied, so that single precision holds tiny pieces too */
     gxsp_level levels[GXSP_LEVELS];
     uint32_t level_count;   /* 0: no multigrid */
@@ -805,13 +870,19 @@ typedef struct gxsp_system {
     gxsp_pairs pairs;
     gxsp_factor factor;
     float omega;            /* step length of the smoother; 0: not known */
+    uint8_t *renewed;       /* n: the copy's diagonal is of other elements than when omega was found; of use if */
+    int omega_renewed;      /* there are such copies */
     double coarse_rate;     /* for which the coarse matrices were made; below 0: never made */
+    double *coarse_state;   /* displacement at which */
     int coarse_fresh;       /* made for this solve */
     int coarse_worn;        /* to be made anew */
     double term_stiffness, coarse_stiffness; /* sums of springs' and contact's Hessians: now, when coarse matrices were made */
     gxsp_fine *fine;        /* block_count: places in the assembled matrix, levels[0]; NULL: matrix-free */
     uint32_t *transpose;    /* by entry of levels[0]: the entry that mirrors it */
     uint32_t usual_iterations; /* of the solve with fresh ones */
+    uint32_t coarse_age;    /* solves since they were made */
+    uint32_t coarse_life;   /* how many solves they serve; 0: as many as they will */
+    uint32_t coarse_ends;   /* how often this has been their end */
     int still_known;        /* still and chunk_still are those of the pieces' states */
     size_t active;          /* unknowns of this step */
     int base_known;         /* current is what the last step returned, and base_energy its elastic energy */
@@ -1407,7 +1478,6 @@ static void gxsp_general_make(const gxsp_rest *rest, double scale, int exact, gx
         double f[9], h[81];
         for (k = 0; k < 9; ++k) {
             f[k] = s->g[k][l] + (k % 4 == 0 ? 1 : 0);
-            tangent->frame[k][l] = k % 4 == 0 ? 1.0f : 0.0f;
             tangent->gradient[k][l] = (float)rest->gradient[k][l];
         }
         s->material[l]->energy(s->material[l]->user, f, NULL, h);
@@ -1437,6 +1507,25 @@ static int gxsp_nudge(gxsp_lanes *g)
             any = 1;
         }
     return any;
+}
+
+/* sqrt 2 times the unit quaternions of rotations u, by rows, from the largest of their four numbers: 4 q_i q_j are sums of entries of u */
+static void gxsp_pack_rotation(gxsp_singles *GXSP_RESTRICT u, gxsp_singles *GXSP_RESTRICT frame)
+{
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float a = u[0][l], b = u[4][l], c = u[8][l];
+        const float xx = 1 + a - b - c, yy = 1 - a + b - c, zz = 1 - a - b + c, ww = 1 + a + b + c;
+        const float xy = u[1][l] + u[3][l], xz = u[2][l] + u[6][l], yz = u[5][l] + u[7][l];
+        const float xw = u[7][l] - u[5][l], yw = u[2][l] - u[6][l], zw = u[3][l] - u[1][l];
+        const float first = xx > yy ? xx : yy, second = zz > ww ? zz : ww;
+        const float half = first > second ? 1.0f : 0.0f, one = half * (xx > yy ? 1.0f : 0.0f), two = half - one;
+        const float three = (1 - half) * (zz > ww ? 1.0f : 0.0f), four = 1 - half - three;
+        const float x = one * xx + two * xy + three * xz + four * xw, y = one * xy + two * yy + three * yz + four * yw;
+        const float z = one * xz + two * yz + three * zz + four * zw, w = one * xw + two * yw + three * zw + four * ww;
+        const float scale = gxsp_rsqrt(0.5f * (x * x + y * y + z * z + w * w));
+        frame[0][l] = scale * x, frame[1][l] = scale * y, frame[2][l] = scale * z, frame[3][l] = scale * w;
+    }
 }
 
 /* The Hessian of a block at s->g, times scale, exact or projected. general: of GXS_CUSTOM only, else NULL. Was an element collapsed? */
@@ -1476,8 +1565,7 @@ static int gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_RESTR
             tangent->even[k][l] = 0.5f * principal.weight[l] * (flip + twist);
             tangent->odd[k][l] = 0.5f * principal.weight[l] * (flip - twist);
         }
-    for (k = 0; k < 9; ++k)
-        GXSP_EACH_LANE(l) tangent->frame[k][l] = of.u[k][l];
+    gxsp_pack_rotation(of.u, tangent->frame);
     for (r = 0; r < 3; ++r)
         for (c = 0; c < 3; ++c)
             GXSP_EACH_LANE(l)
@@ -1558,8 +1646,10 @@ static void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, gxsp_singles
         const float d0 = a0 * g0 + b0 * g3 + c0 * g6, d1 = a0 * g1 + b0 * g4 + c0 * g7, d2 = a0 * g2 + b0 * g5 + c0 * g8,
                     d3 = a1 * g0 + b1 * g3 + c1 * g6, d4 = a1 * g1 + b1 * g4 + c1 * g7, d5 = a1 * g2 + b1 * g5 + c1 * g8,
                     d6 = a2 * g0 + b2 * g3 + c2 * g6, d7 = a2 * g1 + b2 * g4 + c2 * g7, d8 = a2 * g2 + b2 * g5 + c2 * g8;
-        const float u0 = b->frame[0][l], u1 = b->frame[1][l], u2 = b->frame[2][l], u3 = b->frame[3][l], u4 = b->frame[4][l],
-                    u5 = b->frame[5][l], u6 = b->frame[6][l], u7 = b->frame[7][l], u8 = b->frame[8][l];
+        const float q0 = b->frame[0][l], q1 = b->frame[1][l], q2 = b->frame[2][l], q3 = b->frame[3][l];
+        const float u0 = 1 - (q1 * q1 + q2 * q2), u1 = q0 * q1 - q2 * q3, u2 = q0 * q2 + q1 * q3, u3 = q0 * q1 + q2 * q3,
+                    u4 = 1 - (q0 * q0 + q2 * q2), u5 = q1 * q2 - q0 * q3, u6 = q0 * q2 - q1 * q3, u7 = q1 * q2 + q0 * q3,
+                    u8 = 1 - (q0 * q0 + q1 * q1);
         /* t = U^T dF V */
         const float t0 = u0 * d0 + u3 * d3 + u6 * d6, t1 = u0 * d1 + u3 * d4 + u6 * d7, t2 = u0 * d2 + u3 * d5 + u6 * d8,
                     t3 = u1 * d0 + u4 * d3 + u7 * d6, t4 = u1 * d1 + u4 * d4 + u7 * d7, t5 = u1 * d2 + u4 * d5 + u7 * d8,
@@ -1675,8 +1765,10 @@ static void gxsp_block_couple(const gxsp_tangent *GXSP_RESTRICT t, const gxsp_ge
                     b1 = t->stretch[1][l] * p0 * q1 + o2 * p1 * q0, b3 = t->stretch[1][l] * p1 * q0 + o2 * p0 * q1,
                     b2 = t->stretch[2][l] * p0 * q2 + o1 * p2 * q0, b6 = t->stretch[2][l] * p2 * q0 + o1 * p0 * q2,
                     b5 = t->stretch[4][l] * p1 * q2 + o0 * p2 * q1, b7 = t->stretch[4][l] * p2 * q1 + o0 * p1 * q2;
-        const float u0 = t->frame[0][l], u1 = t->frame[1][l], u2 = t->frame[2][l], u3 = t->frame[3][l], u4 = t->frame[4][l],
-                    u5 = t->frame[5][l], u6 = t->frame[6][l], u7 = t->frame[7][l], u8 = t->frame[8][l];
+        const float r0 = t->frame[0][l], r1 = t->frame[1][l], r2 = t->frame[2][l], r3 = t->frame[3][l];
+        const float u0 = 1 - (r1 * r1 + r2 * r2), u1 = r0 * r1 - r2 * r3, u2 = r0 * r2 + r1 * r3, u3 = r0 * r1 + r2 * r3,
+                    u4 = 1 - (r0 * r0 + r2 * r2), u5 = r1 * r2 - r0 * r3, u6 = r0 * r2 - r1 * r3, u7 = r1 * r2 + r0 * r3,
+                    u8 = 1 - (r0 * r0 + r1 * r1);
         const float a0 = u0 * b0 + u1 * b3 + u2 * b6, a1 = u0 * b1 + u1 * b4 + u2 * b7, a2 = u0 * b2 + u1 * b5 + u2 * b8,
                     a3 = u3 * b0 + u4 * b3 + u5 * b6, a4 = u3 * b1 + u4 * b4 + u5 * b7, a5 = u3 * b2 + u4 * b5 + u5 * b8,
                     a6 = u6 * b0 + u7 * b3 + u8 * b6, a7 = u6 * b1 + u7 * b4 + u8 * b7, a8 = u6 * b2 + u7 * b5 + u8 * b8;
@@ -1713,14 +1805,14 @@ typedef struct gxsp_pass {
     gxsp_vector4 *y;            /* output */
 } gxsp_pass;
 
-static const gxsp_mass *gxsp_block_masses(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t block)
+static const gxsp_mass *gxsp_block_masses(const gxsp_chunk *chunk, uint32_t block)
 {
-    return chunk->first_mass == GXSP_NONE ? NULL : &system->masses[chunk->first_mass + block];
+    return chunk->masses ? &chunk->masses[block] : NULL;
 }
 
-static gxsp_general *gxsp_block_general(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t block)
+static gxsp_general *gxsp_block_general(const gxsp_chunk *chunk, uint32_t block)
 {
-    return chunk->first_general == GXSP_NONE ? NULL : &system->generals[chunk->first_general + block];
+    return chunk->generals ? &chunk->generals[block] : NULL;
 }
 
 /* Asks for memory that is soon read: a block is too long for processors to see the next one in time. */
@@ -1737,11 +1829,18 @@ static inline void gxsp_fetch(const void *memory, size_t size)
 #endif
 }
 
-/* The block two further on, or this one at the end */
-static size_t gxsp_block_ahead(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t block)
+/* The chunk of the block two further on, and which one it is there */
+static const gxsp_chunk *gxsp_block_ahead(const gxsp_system *system, size_t index, uint32_t block, uint32_t *ahead)
 {
-    const size_t at = (size_t)chunk->first_block + block;
-    return at + 2 < system->block_count ? at + 2 : at;
+    const gxsp_chunk *chunk = &system->chunks[index];
+    *ahead = block + 2;
+    if (*ahead < chunk->block_count)
+        return chunk;
+    *ahead -= chunk->block_count;
+    if (index + 1 < system->chunk_count && *ahead < chunk[1].block_count)
+        return chunk + 1;
+    *ahead = block;
+    return chunk;
 }
 
 /* x of a block's corners, and the parameters of their material */
@@ -1822,9 +1921,9 @@ static void gxsp_task_state(void *context, size_t index)
     const gxsp_pass *pass = (const gxsp_pass *)context;
     gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->chunks[index];
-    double *slots = (double *)(void *)(system->slot_in) + 3 * (size_t)chunk->first_node;
+    double *slots = &system->slots[chunk->first_node][0];
     double elastic = 0, kinetic = 0, size = 0;
-    uint32_t b;
+    uint32_t b, further;
     int k, l;
     for (k = 0; k < 3; ++k)
         system->chunk_sum[index][k] = 0;
@@ -1832,15 +1931,16 @@ static void gxsp_task_state(void *context, size_t index)
     if (system->chunk_still[index])
         return;
     for (b = 0; b < chunk->block_count; ++b) {
-        const gxsp_rest *rest = &system->rest[chunk->first_block + b];
+        const gxsp_rest *rest = &chunk->rest[b];
+        const gxsp_chunk *next = gxsp_block_ahead(system, index, b, &further);
         gxsp_lanes x[12], forces[12], ahead[9], energy;
         gxsp_state s;
-        gxsp_fetch(&system->rest[gxsp_block_ahead(system, chunk, b)], sizeof(gxsp_rest));
-        gxsp_block_load(system, chunk, &system->corners[chunk->first_block + b], pass->from, x);
+        gxsp_fetch(&next->rest[further], sizeof(gxsp_rest));
+        gxsp_block_load(system, chunk, &chunk->corners[b], pass->from, x);
         gxsp_block_parameters(pass->materials, rest, &s);
         gxsp_block_gradient(rest, x, s.g);
         if (pass->turned) {
-            gxsp_block_load(system, chunk, &system->corners[chunk->first_block + b], pass->turned, x);
+            gxsp_block_load(system, chunk, &chunk->corners[b], pass->turned, x);
             gxsp_block_gradient(rest, x, ahead);
         }
         if (pass->nudge && chunk->kind != GXS_LINEAR && chunk->kind != GXS_CUSTOM)
@@ -1855,14 +1955,14 @@ static void gxsp_task_state(void *context, size_t index)
         }
         if (pass->inertia) {
             gxsp_lanes moved[12];
-            gxsp_block_load(system, chunk, &system->corners[chunk->first_block + b], system->target, moved);
+            gxsp_block_load(system, chunk, &chunk->corners[b], system->target, moved);
             for (k = 0; k < 12; ++k)
                 GXSP_EACH_LANE(l) moved[k][l] = x[k][l] - moved[k][l];
-            gxsp_block_inertia(rest, gxsp_block_masses(system, chunk, b), pass->rate, moved, forces, energy);
+            gxsp_block_inertia(rest, gxsp_block_masses(chunk, b), pass->rate, moved, forces, energy);
             for (l = 0; l < GXSP_LANES; ++l)
                 kinetic += energy[l];
         }
-        gxsp_block_store(&system->corners[chunk->first_block + b], forces, slots);
+        gxsp_block_store(&chunk->corners[b], forces, slots);
     }
     system->chunk_sum[index][0] = elastic;
     system->chunk_sum[index][1] = kinetic;
@@ -1874,7 +1974,7 @@ static void gxsp_task_sum(void *context, size_t index)
 {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
-    const double *slots = (const double *)(const void *)system->slot_in;
+    const double *slots = &system->slots[0][0];
     size_t i = index * GXSP_RANGE, end = i + GXSP_RANGE < system->n ? i + GXSP_RANGE : system->n;
     for (; i < end; ++i) {
         double x = 0, y = 0, z = 0;
@@ -2074,124 +2174,199 @@ static gxsp_sorted *gxsp_order_elements(const gxsp_system *system, const gxs_mod
     return gxsp_sort(sorted, other, count);
 }
 
-static void gxsp_place_element(gxsp_system *system, const gxsp_chunk *chunk, const gxs_element *element, uint32_t at, uint32_t lumped)
+static void gxsp_place_element(const gxsp_chunk *chunk, const gxs_element *element, uint32_t at, uint32_t lumped)
 {
-    gxsp_rest *rest = &system->rest[chunk->first_block + at / GXSP_LANES];
+    gxsp_rest *rest = &chunk->rest[at / GXSP_LANES];
     size_t lane = at % GXSP_LANES;
     int k;
     for (k = 0; k < 9; ++k)
         rest->gradient[k][lane] = element->gradient[1 + k / 3][k % 3];
     rest->weight[lane] = element->weight;
     rest->material[lane] = element->material;
-    if (chunk->first_mass != GXSP_NONE)
+    chunk->groups[at] = element->group % GXSP_GROUPS; /* who does not update may have left it unset */
+    if (chunk->masses)
         for (k = 0; k < 10; ++k)
-            system->masses[chunk->first_mass + at / GXSP_LANES].entry[k][lane] = element->mass[k];
+            chunk->masses[at / GXSP_LANES].entry[k][lane] = element->mass[k];
     else
         rest->mass[lane] = lumped ? 0 : 0.5 * element->mass[0];
 }
 
-/* Blocks and nodes of the chunks. local, stamp: copy_count, scratch, zero */
-static void gxsp_fill_chunks(gxsp_system *system, const gxs_model *model, const gxsp_sorted *sorted, uint32_t *local, uint32_t *stamp)
+/* Numbers of copies in the chunk at work */
+typedef struct gxsp_numbers {
+    uint32_t *local;    /* n: the number, where stamp is the round */
+    uint32_t *stamp;    /* n, 0 at first */
+    uint32_t round;     /* one for each chunk */
+} gxsp_numbers;
+
+/* The nodes of a chunk, and its corners. copies: by lane; not read where there is no element. Returns how many nodes there are. */
+static uint32_t gxsp_number_nodes(const gxsp_chunk *chunk, uint32_t (*copies)[4], gxsp_numbers *numbers, uint32_t *nodes)
 {
+    uint32_t lane, count = 0;
+    int k;
+    ++numbers->round;
+    for (lane = 0; lane < chunk->block_count * GXSP_LANES; ++lane)
+        for (k = 0; k < 4; ++k) {
+            uint16_t *corner = &chunk->corners[lane / GXSP_LANES].node[k][lane % GXSP_LANES];
+            const uint32_t copy = copies[lane][k];
+            if (chunk->groups[lane] == GXSP_NONE) {
+                *corner = 0;
+                continue;
+            }
+            if (numbers->stamp[copy] != numbers->round) {
+                numbers->stamp[copy] = numbers->round;
+                numbers->local[copy] = count;
+                nodes[count++] = copy;
+            }
+            *corner = (uint16_t)numbers->local[copy];
+        }
+    return count;
+}
+
+/* Blocks and nodes of the chunks */
+static void gxsp_fill_chunks(gxsp_system *system, const gxs_model *model, const gxsp_sorted *sorted, gxsp_numbers *numbers)
+{
+    uint32_t copies[GXSP_CHUNK_BLOCKS * GXSP_LANES][4], c;
     size_t first = 0;
-    uint32_t c;
     for (c = 0; c < system->chunk_count; ++c) {
         gxsp_chunk *chunk = &system->chunks[c];
-        uint32_t e, count = 0, last;
-        int k;
-        for (last = 0; first + last < model->element_count && last < chunk->block_count * GXSP_LANES &&
-             sorted[first + last].class_index == sorted[first].class_index; ++last)
-            ;
-        chunk->first_node = (uint32_t)system->slot_count;
-        for (e = 0; e < last; ++e) {
+        uint32_t e;
+        for (e = 0; first + e < model->element_count && e < chunk->block_count * GXSP_LANES &&
+             sorted[first + e].class_index == chunk->class_index; ++e) {
             const gxs_element *element = &model->elements[sorted[first + e].index];
-            gxsp_corners *corner = &system->corners[chunk->first_block + e / GXSP_LANES];
-            gxsp_place_element(system, chunk, element, e, model->lumped_mass);
-            for (k = 0; k < 4; ++k) {
-                uint32_t copy = element->copy[k];
-                if (stamp[copy] != c + 1) {
-                    stamp[copy] = c + 1;
-                    local[copy] = count;
-                    system->nodes[system->slot_count + count++] = copy;
-                }
-                corner->node[k][e % GXSP_LANES] = (uint16_t)local[copy];
-            }
+            gxsp_place_element(chunk, element, e, model->lumped_mass);
+            memcpy(copies[e], element->copy, sizeof copies[e]);
         }
+        first += e;
         for (; e < chunk->block_count * GXSP_LANES; ++e) /* of no weight, but of a material there is */
-            system->rest[chunk->first_block + e / GXSP_LANES].material[e % GXSP_LANES] =
-                model->elements[sorted[first].index].material;
-        chunk->node_count = count;
-        system->slot_count += count;
-        first += last;
+            chunk->rest[e / GXSP_LANES].material[e % GXSP_LANES] = chunk->rest[0].material[0];
+        chunk->first_node = (uint32_t)system->slot_count;
+        chunk->node_count = gxsp_number_nodes(chunk, copies, numbers, system->nodes + system->slot_count);
+        system->slot_count += chunk->node_count;
     }
 }
 
-/* Chunks of the sorted elements: which blocks, what kind; counts of what they need */
-static void gxsp_plan_chunks(gxsp_system *system, const gxsp_sorted *sorted, gxsp_chunk *chunks)
+/* Chunks of the sorted elements: which blocks, what class. Returns how many. chunks: NULL, or room for all */
+static uint32_t gxsp_plan_chunks(gxsp_system *system, const gxsp_sorted *sorted, gxsp_chunk *chunks)
 {
+    uint32_t chunk_count = 0;
     size_t i = 0;
-    system->chunk_count = 0;
-    system->block_count = system->mass_count = system->general_count = 0;
+    system->block_count = 0;
     while (i < system->element_count) {
         uint32_t class_index = sorted[i].class_index, count = 0;
         gxsp_chunk chunk;
         memset(&chunk, 0, sizeof chunk);
         while (i < system->element_count && sorted[i].class_index == class_index && count < GXSP_CHUNK_BLOCKS * GXSP_LANES)
             ++i, ++count;
+        chunk.class_index = class_index;
         chunk.kind = (gxs_material_kind)(class_index / 2);
         chunk.first_block = (uint32_t)system->block_count;
         chunk.block_count = (count + GXSP_LANES - 1) / GXSP_LANES;
-        chunk.first_mass = class_index % 2 ? (uint32_t)system->mass_count : GXSP_NONE;
-        chunk.first_general = chunk.kind == GXS_CUSTOM ? (uint32_t)system->general_count : GXSP_NONE;
         system->block_count += chunk.block_count;
-        system->mass_count += class_index % 2 ? chunk.block_count : 0;
-        system->general_count += chunk.kind == GXS_CUSTOM ? chunk.block_count : 0;
         if (chunks)
-            chunks[system->chunk_count] = chunk;
-        ++system->chunk_count;
+            chunks[chunk_count] = chunk;
+        ++chunk_count;
     }
+    return chunk_count;
+}
+
+/* Blocks of chunks count of which are planned, but for those of steps: see gxsp_steps_make */
+static void gxsp_blocks_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count)
+{
+    gxsp_rest *rest;
+    gxsp_corners *corners;
+    gxsp_mass *masses;
+    uint32_t *groups;
+    size_t blocks = 0, general = 0;
+    uint32_t c;
+    for (c = 0; c < count; ++c) {
+        blocks += chunks[c].block_count;
+        general += chunks[c].class_index % 2 ? chunks[c].block_count : 0;
+    }
+    rest = (gxsp_rest *)gxsp_take(pool, blocks, sizeof(gxsp_rest));
+    corners = (gxsp_corners *)gxsp_take(pool, blocks, sizeof(gxsp_corners));
+    groups = (uint32_t *)gxsp_take(pool, blocks * GXSP_LANES, sizeof(uint32_t));
+    masses = (gxsp_mass *)gxsp_take(pool, general, sizeof(gxsp_mass));
+    if (pool->failed)
+        return;
+    memset(groups, 0xff, blocks * GXSP_LANES * sizeof *groups);
+    for (c = 0; c < count; ++c) {
+        chunks[c].rest = rest;
+        chunks[c].corners = corners;
+        chunks[c].groups = groups;
+        chunks[c].masses = chunks[c].class_index % 2 ? masses : NULL;
+        rest += chunks[c].block_count;
+        corners += chunks[c].block_count;
+        groups += chunks[c].block_count * GXSP_LANES;
+        masses += chunks[c].class_index % 2 ? chunks[c].block_count : 0;
+    }
+}
+
+/* Blocks that linearisations write */
+static void gxsp_tangents_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count)
+{
+    gxsp_tangent *tangents;
+    gxsp_general *generals;
+    size_t blocks = 0, custom = 0;
+    uint32_t c;
+    for (c = 0; c < count; ++c) {
+        blocks += chunks[c].block_count;
+        custom += chunks[c].kind == GXS_CUSTOM ? chunks[c].block_count : 0;
+    }
+    tangents = (gxsp_tangent *)gxsp_take(pool, blocks, sizeof(gxsp_tangent));
+    generals = (gxsp_general *)gxsp_take(pool, custom, sizeof(gxsp_general));
+    for (c = 0; c < count && !pool->failed; ++c) {
+        chunks[c].tangents = tangents;
+        chunks[c].generals = chunks[c].kind == GXS_CUSTOM ? generals : NULL;
+        tangents += chunks[c].block_count;
+        generals += chunks[c].kind == GXS_CUSTOM ? chunks[c].block_count : 0;
+    }
+}
+
+/* The slots of every copy, in the order of chunks */
+static void gxsp_list_slots(gxsp_system *system)
+{
+    uint32_t i;
+    size_t s;
+    memset(system->copy_start, 0, (system->n + 2) * sizeof *system->copy_start);
+    for (s = 0; s < system->slot_count; ++s)
+        ++system->copy_start[system->nodes[s] + 2];
+    for (i = 0; i < system->n; ++i)
+        system->copy_start[i + 2] += system->copy_start[i + 1];
+    for (s = 0; s < system->slot_count; ++s) /* slots are in the order of chunks */
+        system->copy_slot[system->copy_start[system->nodes[s] + 1]++] = (uint32_t)s;
 }
 
 static void gxsp_chunks_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model)
 {
     gxsp_sorted *sorted = gxsp_order_elements(system, model, scratch);
-    uint32_t *local = (uint32_t *)gxsp_take(scratch, system->n, sizeof(uint32_t));
-    uint32_t *stamp = (uint32_t *)gxsp_take(scratch, system->n, sizeof(uint32_t)), c, i;
-    size_t most = 4 * system->element_count, s;
+    gxsp_numbers numbers;
+    uint32_t *nodes;
+    numbers.local = (uint32_t *)gxsp_take(scratch, system->n, sizeof(uint32_t));
+    numbers.stamp = (uint32_t *)gxsp_take(scratch, system->n, sizeof(uint32_t));
+    numbers.round = 0;
     if (scratch->failed)
         return;
-    gxsp_plan_chunks(system, sorted, NULL);
+    system->chunk_count = gxsp_plan_chunks(system, sorted, NULL);
     system->chunks = (gxsp_chunk *)gxsp_take(&system->pool, system->chunk_count, sizeof(gxsp_chunk));
     system->chunk_sum = (double(*)[3])gxsp_take(&system->pool, system->chunk_count, sizeof *system->chunk_sum);
     system->chunk_still = (uint8_t *)gxsp_take(&system->pool, system->chunk_count, 1);
-    system->rest = (gxsp_rest *)gxsp_take(&system->pool, system->block_count, sizeof(gxsp_rest));
-    system->corners = (gxsp_corners *)gxsp_take(&system->pool, system->block_count, sizeof(gxsp_corners));
-    system->tangents = (gxsp_tangent *)gxsp_take(&system->pool, system->block_count, sizeof(gxsp_tangent));
-    system->masses = (gxsp_mass *)gxsp_take(&system->pool, system->mass_count, sizeof(gxsp_mass));
-    system->generals = (gxsp_general *)gxsp_take(&system->pool, system->general_count, sizeof(gxsp_general));
     system->copy_start = (uint32_t *)gxsp_take(&system->pool, system->n + 2, sizeof(uint32_t));
-    system->nodes = (uint32_t *)gxsp_take(scratch, most, sizeof(uint32_t)); /* its size is not known yet */
+    system->nodes = (uint32_t *)gxsp_take(scratch, 4 * system->element_count, sizeof(uint32_t)); /* its size is not known yet */
     if (scratch->failed || system->pool.failed)
         return;
-    gxsp_plan_chunks(system, sorted, system->chunks);
-    gxsp_fill_chunks(system, model, sorted, local, stamp);
-    system->copy_slot = (uint32_t *)gxsp_take(&system->pool, system->slot_count, sizeof(uint32_t));
-    system->slot_in = (gxsp_vector4 *)gxsp_take(&system->pool, 2 * system->slot_count, sizeof(gxsp_vector4));
-    local = (uint32_t *)gxsp_take(&system->pool, system->slot_count, sizeof(uint32_t));
+    (void)gxsp_plan_chunks(system, sorted, system->chunks);
+    gxsp_blocks_make(&system->pool, system->chunks, system->chunk_count);
     if (system->pool.failed)
         return;
-    system->slot_out = system->slot_in + system->slot_count;
-    memcpy(local, system->nodes, system->slot_count * sizeof(uint32_t));
-    system->nodes = local;
-    for (s = 0; s < system->slot_count; ++s)
-        ++system->copy_start[system->nodes[s] + 2];
-    for (i = 0; i < system->n; ++i)
-        system->copy_start[i + 2] += system->copy_start[i + 1];
-    for (c = 0; c < system->chunk_count; ++c)
-        for (i = 0; i < system->chunks[c].node_count; ++i) {
-            s = system->chunks[c].first_node + i;
-            system->copy_slot[system->copy_start[system->nodes[s] + 1]++] = (uint32_t)s;
-        }
+    gxsp_fill_chunks(system, model, sorted, &numbers);
+    system->copy_slot = (uint32_t *)gxsp_take(&system->pool, system->slot_count, sizeof(uint32_t));
+    system->slot_root = (uint16_t *)gxsp_take(&system->pool, system->slot_count, sizeof(uint16_t));
+    nodes = (uint32_t *)gxsp_take(&system->pool, system->slot_count, sizeof(uint32_t));
+    if (system->pool.failed)
+        return;
+    memcpy(nodes, system->nodes, system->slot_count * sizeof(uint32_t));
+    system->nodes = nodes;
+    gxsp_list_slots(system);
 }
 
 /* Does the element give corner i stiffness or mass? */
@@ -2273,20 +2448,23 @@ static void gxsp_join_copies(const gxsp_system *system, const gxs_model *model, 
                 gxsp_join(forest, system->followers[i].copy, system->followers[i].master[k]);
 }
 
-/* Numbers the pieces. A translation of one of state 0 meets no stiffness: K T = 0, so T^T (K + rate M) x = rate x sum of
- * lumped x. forest: n, scratch */
-static void gxsp_find_pieces(gxsp_system *system, const gxs_model *model, uint32_t *forest)
+/* Numbers the pieces: trees of a forest of copies */
+static void gxsp_number_pieces(gxsp_system *system, uint32_t *forest)
 {
     size_t i;
-    uint32_t p;
-    gxsp_join_copies(system, model, forest);
+    system->piece_count = 0;
     for (i = 0; i < system->n; ++i) { /* roots come before their copies: the lower index wins in gxsp_join */
         uint32_t root = gxsp_root(forest, (uint32_t)i);
         system->piece[i] = root == i ? system->piece_count++ : system->piece[root];
     }
-    system->pieces = (gxsp_piece *)gxsp_take(&system->pool, system->piece_count, sizeof(gxsp_piece));
-    if (system->pool.failed)
-        return;
+}
+
+/* Masses and states of the pieces, which are 0. A translation of one of state 0 meets no stiffness: K T = 0, so
+ * T^T (K + rate M) x = rate x sum of lumped x. */
+static void gxsp_fill_pieces(gxsp_system *system)
+{
+    size_t i;
+    uint32_t p;
     for (i = 0; i < system->n; ++i) {
         gxsp_piece *piece = &system->pieces[system->piece[i]];
         piece->mass += system->lumped[i];
@@ -2327,21 +2505,9 @@ static int gxsp_find_places(const gxsp_system *system, const gxs_model *model, f
     return 1;
 }
 
-static void gxsp_system_vectors(gxsp_system *system)
+/* What is known of every copy */
+static void gxsp_copies_make(gxsp_system *system)
 {
-    double **vectors[8];
-    gxsp_vector4 **singles[3];
-    int i;
-    vectors[0] = &system->base, vectors[1] = &system->target, vectors[2] = &system->load, vectors[3] = &system->current;
-    vectors[4] = &system->trial, vectors[5] = &system->force, vectors[6] = &system->residual, vectors[7] = &system->direction;
-    for (i = 0; i < 8; ++i)
-        *vectors[i] = (double *)gxsp_take(&system->pool, 3 * system->n, sizeof(double));
-    singles[0] = &system->search, singles[1] = &system->product, singles[2] = &system->scaled;
-    for (i = 0; i < 3; ++i)
-        *singles[i] = (gxsp_vector4 *)gxsp_take(&system->pool, system->n, sizeof(gxsp_vector4));
-    system->right = (gxsp_vector4 *)gxsp_take(&system->pool, system->n, sizeof(gxsp_vector4));
-    system->guess = (gxsp_vector4 *)gxsp_take(&system->pool, system->n, sizeof(gxsp_vector4));
-    system->diagonal = (float *)gxsp_take(&system->pool, 6 * system->n, sizeof(float));
     system->lumped = (double *)gxsp_take(&system->pool, system->n, sizeof(double));
     system->piece = (uint32_t *)gxsp_take(&system->pool, system->n, sizeof(uint32_t));
     system->fixed = (uint8_t *)gxsp_take(&system->pool, system->n, 1);
@@ -2349,6 +2515,26 @@ static void gxsp_system_vectors(gxsp_system *system)
     system->held = (uint8_t *)gxsp_take(&system->pool, system->n, 1);
 }
 
+/* What only steps need: taken last, when all that a model is made with has been given back */
+static void gxsp_steps_make(gxsp_system *system)
+{
+    double **vectors[9];
+    gxsp_vector4 **singles[5];
+    int i;
+    vectors[0] = &system->base, vectors[1] = &system->target, vectors[2] = &system->load, vectors[3] = &system->current;
+    vectors[4] = &system->trial, vectors[5] = &system->force, vectors[6] = &system->residual, vectors[7] = &system->direction;
+    vectors[8] = &system->coarse_state;
+    for (i = 0; i < 9; ++i)
+        *vectors[i] = (double *)gxsp_take(&system->pool, 3 * system->n, sizeof(double));
+    singles[0] = &system->search, singles[1] = &system->product, singles[2] = &system->scaled, singles[3] = &system->right;
+    singles[4] = &system->guess;
+    for (i = 0; i < 5; ++i)
+        *singles[i] = (gxsp_vector4 *)gxsp_take(&system->pool, system->n, sizeof(gxsp_vector4));
+    system->diagonal = (float *)gxsp_take(&system->pool, 6 * system->n, sizeof(float));
+    system->renewed = (uint8_t *)gxsp_take(&system->pool, system->n, 1);
+    system->slots = (double(*)[3])gxsp_take(&system->pool, system->slot_count, sizeof *system->slots);
+    gxsp_tangents_make(&system->pool, system->chunks, system->chunk_count);
+}
 
 /* >>lattice: the multigrid's structure. A coarse node is a point of a lattice together with one connected component of the nodes
  * in its support, so that coarse functions never cross a cut (the copies' own trick, one level up). Values between lattice
@@ -2587,13 +2773,13 @@ static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t at)
     count = gxsp_transfer_end(level, &transfer);
     if (count > level->n - level->n / 3)
         return 0;
-    gxsp_level_make(&system->pool, next, count, 1);
-    gxsp_find_children(&system->pool, level, count);
-    if (system->pool.failed)
+    gxsp_level_make(&system->coarse, next, count, 1);
+    gxsp_find_children(&system->coarse, level, count);
+    if (system->coarse.failed)
         return 0;
     gxsp_transfer_places(level, &transfer, next);
-    gxsp_coarse_rows(&system->pool, scratch, level);
-    return !system->pool.failed && !scratch->failed;
+    gxsp_coarse_rows(&system->coarse, scratch, level);
+    return !system->coarse.failed && !scratch->failed;
 }
 
 /* Breadth-first order of the component of a seed, appended to order; place: those met have theirs, others GXSP_NONE. Returns the new
@@ -2655,11 +2841,11 @@ static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch)
     uint32_t *place = (uint32_t *)gxsp_take(scratch, level->n, sizeof(uint32_t)), i, k;
     size_t entries = 0;
     factor->n = 3 * level->n;
-    factor->order = (uint32_t *)gxsp_take(&system->pool, level->n, sizeof(uint32_t));
-    factor->first = (uint32_t *)gxsp_take(&system->pool, factor->n, sizeof(uint32_t));
-    factor->row = (size_t *)gxsp_take(&system->pool, factor->n, sizeof(size_t));
-    factor->x = (double *)gxsp_take(&system->pool, factor->n, sizeof(double));
-    if (scratch->failed || system->pool.failed)
+    factor->order = (uint32_t *)gxsp_take(&system->coarse, level->n, sizeof(uint32_t));
+    factor->first = (uint32_t *)gxsp_take(&system->coarse, factor->n, sizeof(uint32_t));
+    factor->row = (size_t *)gxsp_take(&system->coarse, factor->n, sizeof(size_t));
+    factor->x = (double *)gxsp_take(&system->coarse, factor->n, sizeof(double));
+    if (scratch->failed || system->coarse.failed)
         return;
     (void)gxsp_order_level(level, factor->order, place);
     for (i = 0; i < factor->n; ++i) {
@@ -2670,13 +2856,13 @@ static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch)
         factor->row[i] = entries - 3 * (size_t)first;   /* no less than 0: every row before has an entry */
         entries += i - 3 * first + 1;
     }
-    factor->entry = (double *)gxsp_take(&system->pool, entries + factor->n, sizeof(double));
+    factor->entry = (double *)gxsp_take(&system->coarse, entries + factor->n, sizeof(double));
     factor->entry_count = entries;
 }
 
 static void gxsp_lane_copies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t block, int lane, uint32_t *copies)
 {
-    const gxsp_corners *corner = &system->corners[chunk->first_block + block];
+    const gxsp_corners *corner = &chunk->corners[block];
     int i;
     for (i = 0; i < 4; ++i)
         copies[i] = system->nodes[chunk->first_node + corner->node[i][lane]];
@@ -2694,16 +2880,16 @@ static void gxsp_edges_make(gxsp_system *system)
         lanes = system->chunks[c].block_count * GXSP_LANES > lanes ? system->chunks[c].block_count * GXSP_LANES : lanes;
         nodes = system->chunks[c].node_count > nodes ? system->chunks[c].node_count : nodes;
     }
-    edges->table = (uint16_t *)gxsp_take(&system->pool, nodes * nodes, sizeof(uint16_t));
-    edges->ends = (uint32_t *)gxsp_take(&system->pool, nodes + 6 * lanes, sizeof(uint32_t));
-    edges->block = (float(*)[12])gxsp_take(&system->pool, nodes + 6 * lanes, sizeof *edges->block);
-    edges->turned = (float(*)[12])gxsp_take(&system->pool, nodes + 6 * lanes, sizeof *edges->turned);
-    edges->start = (uint32_t *)gxsp_take(&system->pool, nodes + 2, sizeof(uint32_t));
-    edges->other = (uint16_t *)gxsp_take(&system->pool, nodes + 12 * lanes, sizeof(uint16_t));
-    edges->edge = (uint16_t *)gxsp_take(&system->pool, nodes + 12 * lanes, sizeof(uint16_t));
-    edges->parent = (uint16_t(*)[4])gxsp_take(&system->pool, nodes, sizeof *edges->parent);
-    edges->half = (float(*)[12])gxsp_take(&system->pool, 4 * nodes, sizeof *edges->half);
-    edges->touched = (uint16_t *)gxsp_take(&system->pool, 4 * nodes, sizeof(uint16_t));
+    edges->table = (uint16_t *)gxsp_take(&system->coarse, nodes * nodes, sizeof(uint16_t));
+    edges->ends = (uint32_t *)gxsp_take(&system->coarse, nodes + 6 * lanes, sizeof(uint32_t));
+    edges->block = (float(*)[12])gxsp_take(&system->coarse, nodes + 6 * lanes, sizeof *edges->block);
+    edges->turned = (float(*)[12])gxsp_take(&system->coarse, nodes + 6 * lanes, sizeof *edges->turned);
+    edges->start = (uint32_t *)gxsp_take(&system->coarse, nodes + 2, sizeof(uint32_t));
+    edges->other = (uint16_t *)gxsp_take(&system->coarse, nodes + 12 * lanes, sizeof(uint16_t));
+    edges->edge = (uint16_t *)gxsp_take(&system->coarse, nodes + 12 * lanes, sizeof(uint16_t));
+    edges->parent = (uint16_t(*)[4])gxsp_take(&system->coarse, nodes, sizeof *edges->parent);
+    edges->half = (float(*)[12])gxsp_take(&system->coarse, 4 * nodes, sizeof *edges->half);
+    edges->touched = (uint16_t *)gxsp_take(&system->coarse, 4 * nodes, sizeof(uint16_t));
 }
 
 static void gxsp_edges_begin(gxsp_edges *edges, const gxsp_chunk *chunk)
@@ -2736,8 +2922,8 @@ static void gxsp_list_edges(gxsp_system *system, const gxsp_chunk *chunk)
     gxsp_edges_begin(&system->edges, chunk);
     for (b = 0; b < chunk->block_count; ++b)
         for (l = 0; l < GXSP_LANES; ++l) {
-            const gxsp_rest *rest = &system->rest[chunk->first_block + b];
-            const gxsp_corners *corner = &system->corners[chunk->first_block + b];
+            const gxsp_rest *rest = &chunk->rest[b];
+            const gxsp_corners *corner = &chunk->corners[b];
             for (i = 0; i < 4 && rest->weight[l] > 0; ++i)
                 for (j = i + 1; j < 4; ++j)
                     (void)gxsp_find_edge(&system->edges, corner->node[i][l], corner->node[j][l]);
@@ -2799,11 +2985,11 @@ static uint32_t *gxsp_pairs_find(gxsp_pairs *pairs, uint32_t i, uint32_t j)
 
 static void gxsp_pairs_make(gxsp_system *system)
 {
-    system->pairs.entry = (uint32_t *)gxsp_take(&system->pool, GXSP_CHUNK_PARENTS * GXSP_CHUNK_PARENTS, sizeof(uint32_t));
-    system->pairs.local = (uint32_t *)gxsp_take(&system->pool, system->levels[1].n, sizeof(uint32_t));
-    system->pairs.stamp = (uint32_t *)gxsp_take(&system->pool, system->levels[1].n, sizeof(uint32_t));
-    system->pairs.node = (uint32_t *)gxsp_take(&system->pool, system->levels[1].n, sizeof(uint32_t));
-    system->pairs.seen = (uint32_t *)gxsp_take(&system->pool, system->levels[1].n, sizeof(uint32_t));
+    system->pairs.entry = (uint32_t *)gxsp_take(&system->coarse, GXSP_CHUNK_PARENTS * GXSP_CHUNK_PARENTS, sizeof(uint32_t));
+    system->pairs.local = (uint32_t *)gxsp_take(&system->coarse, system->levels[1].n, sizeof(uint32_t));
+    system->pairs.stamp = (uint32_t *)gxsp_take(&system->coarse, system->levels[1].n, sizeof(uint32_t));
+    system->pairs.node = (uint32_t *)gxsp_take(&system->coarse, system->levels[1].n, sizeof(uint32_t));
+    system->pairs.seen = (uint32_t *)gxsp_take(&system->coarse, system->levels[1].n, sizeof(uint32_t));
     system->pairs.round = 0;
 }
 
@@ -2839,8 +3025,8 @@ static gxsp_sets gxsp_find_sets(gxsp_system *system, const gxsp_chunk *chunk, ui
                 sets.own[i * words + system->edges.parent[i][k] / 64] |= (uint64_t)1 << system->edges.parent[i][k] % 64;
     for (b = 0; b < chunk->block_count; ++b)
         for (l = 0; l < GXSP_LANES; ++l) {
-            const gxsp_rest *rest = &system->rest[chunk->first_block + b];
-            const gxsp_corners *corner = &system->corners[chunk->first_block + b];
+            const gxsp_rest *rest = &chunk->rest[b];
+            const gxsp_corners *corner = &chunk->corners[b];
             const size_t n0 = corner->node[0][l] * words, n1 = corner->node[1][l] * words, n2 = corner->node[2][l] * words,
                          n3 = corner->node[3][l] * words;
             for (word = 0; word < words && rest->weight[l] > 0; ++word) {
@@ -2856,12 +3042,34 @@ static gxsp_sets gxsp_find_sets(gxsp_system *system, const gxsp_chunk *chunk, ui
     return sets;
 }
 
-/* Rows and columns, the row the lower, of the entries of level 1's matrix that a chunk needs. Returns how many there are; writes the
- * first room of them. memory: see gxsp_find_sets */
-static uint32_t gxsp_list_pairs(gxsp_system *system, const gxsp_chunk *chunk, uint64_t *memory, uint32_t (*list)[2], uint32_t room)
+/* Growing list of a matrix's entries: rows and columns, the row the lower; in a pool of temporary memory */
+typedef struct gxsp_list {
+    gxsp_pool *scratch;
+    uint32_t (*pair)[2], count, room;
+} gxsp_list;
+
+static void gxsp_list_add(gxsp_list *list, uint32_t row, uint32_t column)
 {
+    if (list->count == list->room) {
+        uint32_t (*larger)[2] = (uint32_t(*)[2])gxsp_take(list->scratch, 2 * (size_t)list->room + 1024, sizeof *larger);
+        if (!larger)
+            return;
+        if (list->count > 0)
+            memcpy(larger, list->pair, list->count * sizeof *larger);
+        list->pair = larger;
+        list->room = 2 * list->room + 1024;
+    }
+    list->pair[list->count][0] = row;
+    list->pair[list->count++][1] = column;
+}
+
+/* Lists the entries of level 1's matrix that a chunk needs. dirty: by coarse node; only entries of one at least are listed; NULL: all
+ * are. memory: see gxsp_find_sets */
+static void gxsp_list_pairs(gxsp_system *system, const gxsp_chunk *chunk, uint64_t *memory, const uint8_t *dirty, gxsp_list *list)
+{
+    const uint32_t *node = system->pairs.node;
     gxsp_sets sets;
-    uint32_t i, k, count = 0;
+    uint32_t i, k;
     gxsp_pairs_begin(system, chunk);
     sets = gxsp_find_sets(system, chunk, memory);
     for (i = 0; i < system->pairs.count; ++i)
@@ -2869,15 +3077,9 @@ static uint32_t gxsp_list_pairs(gxsp_system *system, const gxsp_chunk *chunk, ui
             uint64_t set = sets.row[i * sets.words + k];
             uint32_t j;
             for (j = 64 * k; set != 0; set >>= 1, ++j)
-                if ((set & 1) && system->pairs.node[i] <= system->pairs.node[j]) {
-                    if (count < room) {
-                        list[count][0] = system->pairs.node[i];
-                        list[count][1] = system->pairs.node[j];
-                    }
-                    ++count;
-                }
+                if ((set & 1) && node[i] < node[j] && (!dirty || dirty[node[i]] || dirty[node[j]]))
+                    gxsp_list_add(list, node[i], node[j]);
         }
-    return count;
 }
 
 /* Rows of a level's matrix from its entries on and above the diagonal, (row, column), of which some may come twice. */
@@ -2916,32 +3118,44 @@ static void gxsp_rows_make(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *leve
     gxsp_level_matrix(pool, level, kept);
 }
 
-/* Level 1's matrix: two nodes are neighbours where an element follows both. */
-static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch)
+/* Does a chunk have a node that follows one of the dirty? */
+static int gxsp_follows_dirty(const gxsp_system *system, const gxsp_chunk *chunk, const uint8_t *dirty)
 {
-    uint32_t (*list)[2] = NULL, c, count = 0, room = 0, nodes = 0;
+    uint32_t i, k;
+    for (i = 0; i < chunk->node_count; ++i)
+        for (k = 0; k < 4; ++k) {
+            const uint32_t parent = system->levels[0].parent[system->nodes[chunk->first_node + i]][k];
+            if (parent != GXSP_NONE && dirty[parent])
+                return 1;
+        }
+    return 0;
+}
+
+/* Level 1's matrix: two nodes are neighbours where an element follows both; every node is its own. before: the level of which all but
+ * the dirty nodes and those after its own have the neighbours that they had; NULL: none has. */
+static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gxsp_level *before, const uint8_t *dirty)
+{
+    uint32_t c, i, k, nodes = 0;
     uint64_t *memory;
+    gxsp_list list;
+    memset(&list, 0, sizeof list);
+    list.scratch = scratch;
     for (c = 0; c < system->chunk_count; ++c)
         nodes = system->chunks[c].node_count > nodes ? system->chunks[c].node_count : nodes;
     memory = (uint64_t *)gxsp_take(scratch, 6 * (size_t)nodes * (nodes / 16 + 1), sizeof(uint64_t)); /* four parents to a node */
     if (scratch->failed)
         return;
-    for (c = 0; c < system->chunk_count; ++c) {
-        uint32_t more = gxsp_list_pairs(system, &system->chunks[c], memory, list ? list + count : NULL, room - count);
-        if (more > room - count) { /* again, with room */
-            uint32_t (*larger)[2];
-            room = 2 * (count + more);
-            larger = (uint32_t(*)[2])gxsp_take(scratch, room, sizeof *larger);
-            if (!larger)
-                return;
-            if (count > 0)
-                memcpy(larger, list, count * sizeof *list);
-            list = larger;
-            more = gxsp_list_pairs(system, &system->chunks[c], memory, list + count, room - count);
-        }
-        count += more;
-    }
-    gxsp_rows_make(&system->pool, scratch, &system->levels[1], list, count);
+    for (i = 0; i < system->levels[1].n; ++i)
+        gxsp_list_add(&list, i, i);
+    for (i = 0; before && i < before->n; ++i)
+        for (k = before->start[i]; k < before->start[i + 1] && !dirty[i]; ++k)
+            if (before->column[k] > i && !dirty[before->column[k]])
+                gxsp_list_add(&list, i, before->column[k]);
+    for (c = 0; c < system->chunk_count; ++c)
+        if (!before || gxsp_follows_dirty(system, &system->chunks[c], dirty))
+            gxsp_list_pairs(system, &system->chunks[c], memory, before ? dirty : NULL, &list);
+    if (!scratch->failed)
+        gxsp_rows_make(&system->coarse, scratch, &system->levels[1], list.pair, list.count);
 }
 
 /* Index of column j in row i, or that of a lower one if the row does not have it */
@@ -3044,16 +3258,35 @@ static void gxsp_fine_make(gxsp_system *system, gxsp_pool *scratch)
             system->transpose[k] = gxsp_find_entry(fine, fine->column[k], i);
 }
 
+/* The rows of level 1 and all levels after it. before, dirty: see gxsp_first_pattern */
+static void gxsp_levels_make(gxsp_system *system, gxsp_pool *scratch, const gxsp_level *before, const uint8_t *dirty)
+{
+    uint32_t at;
+    gxsp_pairs_make(system);
+    if (system->coarse.failed)
+        return;
+    if (system->fine)
+        gxsp_coarse_rows(&system->coarse, scratch, &system->levels[0]);
+    else
+        gxsp_first_pattern(system, scratch, before, dirty);
+    if (scratch->failed || system->coarse.failed)
+        return;
+    for (at = 1; at + 1 < GXSP_LEVELS && !gxsp_factors(scratch, &system->levels[at], system->n) && gxsp_add_level(system, scratch, at); ++at)
+        ;
+    system->level_count = at + 1;
+    gxsp_factor_make(system, scratch);
+}
+
 /* All levels of the multigrid below the model; place: n x 3, see gxsp_find_places. level_count stays 0 if there is nothing to coarsen. */
 static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (*place)[3])
 {
     gxsp_level *fine = &system->levels[0];
     gxsp_transfer transfer;
-    uint32_t c, e, count, at;
+    uint32_t c, e, count;
     gxsp_edges_make(system);
     transfer.key = (uint64_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint64_t));
     transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint32_t));
-    if (scratch->failed || system->pool.failed)
+    if (scratch->failed || system->coarse.failed)
         return;
     gxsp_transfer_begin(fine, place, system->fixed, &transfer);
     for (c = 0; c < system->chunk_count; ++c) {
@@ -3068,23 +3301,13 @@ static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (
     count = gxsp_transfer_end(fine, &transfer);
     if (count == 0)
         return;
-    gxsp_level_make(&system->pool, fine + 1, count, 1);
-    gxsp_pairs_make(system);
+    gxsp_level_make(&system->coarse, fine + 1, count, 1);
     if (system->fine)
-        gxsp_find_children(&system->pool, fine, count);
-    if (system->pool.failed)
+        gxsp_find_children(&system->coarse, fine, count);
+    if (system->coarse.failed)
         return;
     gxsp_transfer_places(fine, &transfer, fine + 1);
-    if (system->fine)
-        gxsp_coarse_rows(&system->pool, scratch, fine);
-    else
-        gxsp_first_pattern(system, scratch);
-    if (scratch->failed || system->pool.failed)
-        return;
-    for (at = 1; at + 1 < GXSP_LEVELS && !gxsp_factors(scratch, &system->levels[at], system->n) && gxsp_add_level(system, scratch, at); ++at)
-        ;
-    system->level_count = at + 1;
-    gxsp_factor_make(system, scratch);
+    gxsp_levels_make(system, scratch, NULL, NULL);
 }
 
 /* 2^GXSP_STIFFNESS over Young's modulus times the length of the largest element, but for the mantissa */
@@ -3103,33 +3326,28 @@ static double gxsp_choose_scale(const gxs_model *model)
 }
 
 /* Inverse volumes of supports, the least of the size of a whole copy's inverse stiffness */
-static void gxsp_find_volumes(gxsp_system *system, const gxs_model *model)
+static void gxsp_find_volumes(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model)
 {
-    double *volume = system->trial, largest = 0; /* borrowed */
+    double *volume = (double *)gxsp_take(scratch, system->n, sizeof(double)), largest = 0;
     size_t e, i;
     int k;
     system->volume = (float *)gxsp_take(&system->pool, system->n, sizeof(float));
-    if (system->pool.failed)
+    if (system->pool.failed || scratch->failed)
         return;
     for (e = 0; e < model->element_count; ++e)
         for (k = 0; k < 4; ++k)
             volume[model->elements[e].copy[k]] += model->elements[e].weight;
     for (i = 0; i < system->n; ++i)
         largest = volume[i] > largest ? volume[i] : largest;
-    for (i = 0; i < system->n; ++i) {
+    for (i = 0; i < system->n; ++i)
         system->volume[i] = volume[i] > 1e-20 * largest ? (float)ldexp(largest / volume[i], -GXSP_STIFFNESS) : 0;
-        volume[i] = 0;
-    }
 }
 
 /* Are most copies in pieces that multigrid pays for? count: piece_count, scratch */
-static int gxsp_large_pieces(const gxsp_system *system, const gxs_model *model, uint32_t *count)
+static int gxsp_large_pieces(const gxsp_system *system, uint32_t *count)
 {
-    uint32_t from = GXSP_MULTIGRID_FROM;
+    const uint32_t from = system->stiff ? GXSP_MULTIGRID_FROM_STIFF : GXSP_MULTIGRID_FROM;
     size_t i, large = 0;
-    for (i = 0; i < model->material_count; ++i)
-        if (model->materials[i].kind != GXS_CUSTOM && model->materials[i].poisson > GXSP_STIFF_POISSON)
-            from = GXSP_MULTIGRID_FROM_STIFF;
     memset(count, 0, system->piece_count * sizeof *count);
     for (i = 0; i < system->n; ++i)
         ++count[system->piece[i]];
@@ -3144,9 +3362,10 @@ static void gxsp_preconditioner_make(gxsp_system *system, gxsp_pool *scratch, co
 {
     float (*place)[3]; /* rest positions in spacings of the first lattice */
     const int multigrid = model->positions && (preconditioner == GXS_MULTIGRID ||
-                          (preconditioner == GXS_AUTOMATIC && gxsp_large_pieces(system, model, forest)));
+                          (preconditioner == GXS_AUTOMATIC && gxsp_large_pieces(system, forest)));
+    system->chosen = model->positions && preconditioner == GXS_AUTOMATIC;
     if (preconditioner == GXS_VOLUME_RATIO)
-        gxsp_find_volumes(system, model);
+        gxsp_find_volumes(system, scratch, model);
     system->levels[0].n = (uint32_t)system->n;
     if (matrix == GXS_MATRIX_ASSEMBLED)
         gxsp_fine_make(system, scratch);
@@ -3163,6 +3382,7 @@ static void gxsp_preconditioner_make(gxsp_system *system, gxsp_pool *scratch, co
 static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model, const gxs_solver *solver)
 {
     uint32_t i, *forest = (uint32_t *)gxsp_take(scratch, model->copy_count, sizeof(uint32_t));
+    gxsp_owned *mark;
     size_t bad;
     system->n = model->copy_count;
     system->element_count = model->element_count;
@@ -3173,18 +3393,27 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
     system->material_count = (uint32_t)model->material_count;
     system->materials = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
     system->damped = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
-    gxsp_system_vectors(system);
+    gxsp_copies_make(system);
     if (scratch->failed || system->pool.failed)
         return SIZE_MAX;
-    for (i = 0; i < system->material_count; ++i)
+    for (i = 0; i < system->material_count; ++i) {
         system->damped[i] = system->materials[i] = gxsp_material_make(&model->materials[i]);
+        system->stiff |= model->materials[i].kind != GXS_CUSTOM && model->materials[i].poisson > GXSP_STIFF_POISSON;
+    }
     gxsp_find_fixed(system, model);
     bad = gxsp_find_followers(system, model);
     if (bad != SIZE_MAX || system->pool.failed)
         return bad;
     memcpy(system->still, system->fixed, system->n);
-    gxsp_find_pieces(system, model, forest);
+    gxsp_join_copies(system, model, forest);
+    gxsp_number_pieces(system, forest);
+    system->pieces = (gxsp_piece *)gxsp_take(&system->pool, system->piece_count, sizeof(gxsp_piece));
+    if (system->pool.failed)
+        return SIZE_MAX;
+    gxsp_fill_pieces(system);
+    mark = scratch->last;
     gxsp_chunks_make(system, scratch, model);
+    gxsp_release_to(scratch, mark);
     if (!scratch->failed && !system->pool.failed)
         gxsp_preconditioner_make(system, scratch, model, solver->preconditioner, solver->matrix, forest);
     return SIZE_MAX;
@@ -3306,14 +3535,21 @@ static void gxsp_apply_packed(const float *d, const float *x, float *y)
 /* Four nodes' vectors to three components side by side and back: compilers do not find these shuffles by themselves. */
 typedef __attribute__((vector_size(16), aligned(4), may_alias)) float gxsp_four;
 
-static inline void gxsp_gather_four(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2)
+typedef __attribute__((vector_size(32), aligned(4), may_alias)) float gxsp_eight;
+
+/* All eight lanes at once: narrower stores would not be forwarded to the loads that soon follow. */
+static inline void gxsp_gather_eight(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2)
 {
     const gxsp_four a = *(const gxsp_four *)x[node[0]], b = *(const gxsp_four *)x[node[1]], c = *(const gxsp_four *)x[node[2]],
-                    d = *(const gxsp_four *)x[node[3]];
-    const gxsp_four ab = __builtin_shufflevector(a, b, 0, 4, 1, 5), cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
-    *(gxsp_four *)to0 = __builtin_shufflevector(ab, cd, 0, 1, 4, 5);
-    *(gxsp_four *)to1 = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
-    *(gxsp_four *)to2 = __builtin_shufflevector(__builtin_shufflevector(a, b, 2, 6, 3, 7), __builtin_shufflevector(c, d, 2, 6, 3, 7), 0, 1, 4, 5);
+                    d = *(const gxsp_four *)x[node[3]], e = *(const gxsp_four *)x[node[4]], f = *(const gxsp_four *)x[node[5]],
+                    g = *(const gxsp_four *)x[node[6]], h = *(const gxsp_four *)x[node[7]];
+    const gxsp_eight ae = __builtin_shufflevector(a, e, 0, 1, 2, 3, 4, 5, 6, 7), bf = __builtin_shufflevector(b, f, 0, 1, 2, 3, 4, 5, 6, 7),
+                     cg = __builtin_shufflevector(c, g, 0, 1, 2, 3, 4, 5, 6, 7), dh = __builtin_shufflevector(d, h, 0, 1, 2, 3, 4, 5, 6, 7);
+    const gxsp_eight p = __builtin_shufflevector(ae, bf, 0, 8, 1, 9, 4, 12, 5, 13), q = __builtin_shufflevector(cg, dh, 0, 8, 1, 9, 4, 12, 5, 13);
+    const gxsp_eight r = __builtin_shufflevector(ae, bf, 2, 10, 3, 11, 6, 14, 7, 15), s = __builtin_shufflevector(cg, dh, 2, 10, 3, 11, 6, 14, 7, 15);
+    *(gxsp_eight *)to0 = __builtin_shufflevector(p, q, 0, 1, 8, 9, 4, 5, 12, 13);
+    *(gxsp_eight *)to1 = __builtin_shufflevector(p, q, 2, 3, 10, 11, 6, 7, 14, 15);
+    *(gxsp_eight *)to2 = __builtin_shufflevector(r, s, 0, 1, 8, 9, 4, 5, 12, 13);
 }
 
 static inline void gxsp_scatter_four(const uint16_t *node, const float *from0, const float *from1, const float *from2, gxsp_vector4 *y)
@@ -3326,10 +3562,10 @@ static inline void gxsp_scatter_four(const uint16_t *node, const float *from0, c
     *(gxsp_four *)y[node[3]] += __builtin_shufflevector(high, r, 2, 3, 7, 7);
 }
 #else
-static void gxsp_gather_four(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2)
+static void gxsp_gather_eight(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2)
 {
     int l;
-    for (l = 0; l < 4; ++l)
+    for (l = 0; l < GXSP_LANES; ++l)
         to0[l] = x[node[l]][0], to1[l] = x[node[l]][1], to2[l] = x[node[l]][2];
 }
 
@@ -3343,10 +3579,9 @@ static void gxsp_scatter_four(const uint16_t *node, const float *from0, const fl
 
 static void gxsp_block_gather(const gxsp_corners *GXSP_RESTRICT corner, const gxsp_vector4 *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT to)
 {
-    int i, l;
+    int i;
     for (i = 0; i < 4; ++i)
-        for (l = 0; l < GXSP_LANES; l += 4)
-            gxsp_gather_four(corner->node[i] + l, x, to[3 * i] + l, to[3 * i + 1] + l, to[3 * i + 2] + l);
+        gxsp_gather_eight(corner->node[i], x, to[3 * i], to[3 * i + 1], to[3 * i + 2]);
 }
 
 static void gxsp_block_scatter(const gxsp_corners *GXSP_RESTRICT corner, gxsp_singles *GXSP_RESTRICT from, gxsp_vector4 *GXSP_RESTRICT y)
@@ -3363,20 +3598,22 @@ static void gxsp_task_product(void *context, size_t index)
     const gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->chunks[index];
     const uint32_t *copies = system->nodes + chunk->first_node;
-    gxsp_vector4 *in = system->slot_in + chunk->first_node, *out = system->slot_out + chunk->first_node;
-    uint32_t b, i;
+    gxsp_vector4 in[4 * GXSP_CHUNK_BLOCKS * GXSP_LANES]; /* apart from the chunks', so that it stays in the cache */
+    gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->slots + chunk->first_node;
+    uint32_t b, i, further;
     if (system->chunk_still[index])
         return;
     for (i = 0; i < chunk->node_count; ++i)
         memcpy(in[i], pass->x[copies[i]], sizeof *in);
     memset(out, 0, chunk->node_count * sizeof *out);
     for (b = 0; b < chunk->block_count; ++b) {
-        const gxsp_corners *corner = &system->corners[chunk->first_block + b];
-        const gxsp_mass *general = gxsp_block_masses(system, chunk, b);
+        const gxsp_corners *corner = &chunk->corners[b];
+        const gxsp_mass *general = gxsp_block_masses(chunk, b);
+        const gxsp_chunk *next = gxsp_block_ahead(system, index, b, &further);
         gxsp_singles from[12], to[12];
-        gxsp_fetch(&system->tangents[gxsp_block_ahead(system, chunk, b)], sizeof(gxsp_tangent));
+        gxsp_fetch(&next->tangents[further], sizeof(gxsp_tangent));
         gxsp_block_gather(corner, (const gxsp_vector4 *)in, from);
-        gxsp_kind_product(chunk->kind, &system->tangents[chunk->first_block + b], gxsp_block_general(system, chunk, b), from, to);
+        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_general(chunk, b), from, to);
         if (general)
             gxsp_block_mass_product(general, (float)pass->rate, from, to);
         gxsp_block_scatter(corner, to, out);
@@ -3387,13 +3624,14 @@ static void gxsp_task_product_sum(void *context, size_t index)
 {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
+    gxsp_vector4 *slots = (gxsp_vector4 *)(void *)system->slots;
     size_t i = index * GXSP_RANGE, end = i + GXSP_RANGE < system->n ? i + GXSP_RANGE : system->n;
     for (; i < end; ++i) {
         float m = system->lumped_mass ? (float)(pass->rate * system->lumped[i]) : 0;
         float x = m * pass->x[i][0], y = m * pass->x[i][1], z = m * pass->x[i][2];
         uint32_t s;
         for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->still[i]; ++s) {
-            const float *from = system->slot_out[system->copy_slot[s]];
+            const float *from = slots[system->copy_slot[s]];
             x += from[0], y += from[1], z += from[2];
         }
         pass->y[i][0] = x, pass->y[i][1] = y, pass->y[i][2] = z;
@@ -3462,7 +3700,7 @@ static void gxsp_task_linearise(void *context, size_t index)
     const gxsp_pass *pass = (const gxsp_pass *)context;
     gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->chunks[index];
-    float *slots = (float *)system->slot_in + 6 * (size_t)chunk->first_node;
+    float *slots = (float *)(void *)system->slots[chunk->first_node];
     uint32_t b;
     int corner, k, l;
     system->chunk_sum[index][0] = 0;
@@ -3470,23 +3708,23 @@ static void gxsp_task_linearise(void *context, size_t index)
         return;
     memset(slots, 0, 6 * (size_t)chunk->node_count * sizeof *slots);
     for (b = 0; b < chunk->block_count; ++b) {
-        const gxsp_rest *rest = &system->rest[chunk->first_block + b];
-        gxsp_tangent *tangent = &system->tangents[chunk->first_block + b];
-        const gxsp_mass *general = gxsp_block_masses(system, chunk, b);
+        const gxsp_rest *rest = &chunk->rest[b];
+        gxsp_tangent *tangent = &chunk->tangents[b];
+        const gxsp_mass *general = gxsp_block_masses(chunk, b);
         gxsp_lanes x[12];
         gxsp_state s;
-        gxsp_block_load(system, chunk, &system->corners[chunk->first_block + b], pass->from, x);
+        gxsp_block_load(system, chunk, &chunk->corners[b], pass->from, x);
         gxsp_block_parameters(pass->materials, rest, &s);
         gxsp_block_gradient(rest, x, s.g);
         system->chunk_sum[index][0] += gxsp_tangent_make(chunk->kind, rest, system->scale, pass->exact, &s, tangent,
-                                                             gxsp_block_general(system, chunk, b));
+                                                             gxsp_block_general(chunk, b));
         GXSP_EACH_LANE(l) tangent->mass[l] = (float)(pass->rate * rest->mass[l]);
         for (corner = 0; corner < 4; ++corner) {
             gxsp_singles gamma[3], block[9];
             gxsp_block_corner(tangent, corner, gamma);
-            gxsp_block_couple(tangent, gxsp_block_general(system, chunk, b), gamma, gamma, block);
+            gxsp_block_couple(tangent, gxsp_block_general(chunk, b), gamma, gamma, block);
             for (l = 0; l < GXSP_LANES; ++l) {
-                float *to = slots + 6 * (size_t)system->corners[chunk->first_block + b].node[corner][l];
+                float *to = slots + 6 * (size_t)chunk->corners[b].node[corner][l];
                 float mass = 2 * tangent->mass[l] + (general ? (float)(pass->rate * general->entry[own[corner]][l]) : 0);
                 for (k = 0; k < 6; ++k)
                     to[k] += block[packed[k]][l] + (packed[k] % 4 == 0 ? mass : 0);
@@ -3531,7 +3769,7 @@ static void gxsp_task_diagonal(void *context, size_t index)
 {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
-    const float *slots = (const float *)system->slot_in;
+    const float *slots = (const float *)(const void *)system->slots;
     size_t i = index * GXSP_RANGE, end = i + GXSP_RANGE < system->n ? i + GXSP_RANGE : system->n;
     for (; i < end; ++i) {
         double sum[6] = {0, 0, 0, 0, 0, 0};
@@ -3553,7 +3791,7 @@ static void gxsp_task_diagonal(void *context, size_t index)
 /* Springs, contact and followers add to the diagonal blocks: all goes to a copy's first slot, from which the blocks are summed. */
 static void gxsp_extra_diagonal(gxsp_system *system)
 {
-    float *slots = (float *)system->slot_in;
+    float *slots = (float *)(void *)system->slots;
     size_t t;
     uint32_t i, s;
     int k, m;
@@ -3743,17 +3981,17 @@ static void gxsp_edge_blocks(gxsp_system *system, const gxsp_chunk *chunk, doubl
     gxsp_edges_begin(edges, chunk);
     memset(edges->block, 0, chunk->node_count * sizeof *edges->block);
     for (b = 0; b < chunk->block_count; ++b) {
-        const gxsp_rest *rest = &system->rest[chunk->first_block + b];
-        const gxsp_corners *corner = &system->corners[chunk->first_block + b];
-        const gxsp_tangent *tangent = &system->tangents[chunk->first_block + b];
-        const gxsp_mass *general = gxsp_block_masses(system, chunk, b);
+        const gxsp_rest *rest = &chunk->rest[b];
+        const gxsp_corners *corner = &chunk->corners[b];
+        const gxsp_tangent *tangent = &chunk->tangents[b];
+        const gxsp_mass *general = gxsp_block_masses(chunk, b);
         gxsp_singles gamma[4][3];
         for (k = 0; k < 4; ++k)
             gxsp_block_corner(tangent, (int)k, gamma[k]);
         for (pair = 0; pair < 10; ++pair) {
             const int p = gxsp_pair_corners[pair][0], q = gxsp_pair_corners[pair][1];
             gxsp_singles block[9];
-            gxsp_block_couple(tangent, gxsp_block_general(system, chunk, b), gamma[p], gamma[q], block);
+            gxsp_block_couple(tangent, gxsp_block_general(chunk, b), gamma[p], gamma[q], block);
             for (l = 0; l < GXSP_LANES; ++l) {
                 const uint16_t i = corner->node[p][l], j = corner->node[q][l];
                 const float mass = tangent->mass[l] * (p == q ? 2.0f : 1.0f) + (general ? (float)(rate * general->entry[pair][l]) : 0);
@@ -3783,8 +4021,9 @@ static float *gxsp_pair_block(gxsp_pairs *pairs, gxsp_level *next, uint32_t row,
     return next->block + 12 * (size_t)*found;
 }
 
-/* A node's row of the Hessian times the transfer, in edges->half by number. Returns how many are touched. */
-static uint32_t gxsp_half_row(gxsp_system *system, const uint32_t *copies, uint32_t i)
+/* A node's row of the Hessian times the transfer, in edges->half by number; only the columns of dirty nodes, unless dirty is NULL.
+ * Returns how many are touched. */
+static uint32_t gxsp_half_row(gxsp_system *system, const uint32_t *copies, uint32_t i, const uint8_t *dirty)
 {
     const gxsp_level *fine = &system->levels[0];
     gxsp_edges *edges = &system->edges;
@@ -3795,7 +4034,7 @@ static uint32_t gxsp_half_row(gxsp_system *system, const uint32_t *copies, uint3
         const float *block = other < i ? edges->turned[edges->edge[k]] : edges->block[edges->edge[k]];
         for (q = 0; q < 4; ++q) {
             const uint16_t number = edges->parent[other][q];
-            if (fine->parent[copy][q] == GXSP_NONE)
+            if (fine->parent[copy][q] == GXSP_NONE || (dirty && !dirty[fine->parent[copy][q]]))
                 continue;
             if (system->pairs.seen[number] == i + 1)
                 gxsp_add_scaled(fine->weight[copy][q], block, edges->half[number]);
@@ -3810,52 +4049,58 @@ static uint32_t gxsp_half_row(gxsp_system *system, const uint32_t *copies, uint3
     return count;
 }
 
-/* A node's part of level 1's matrix on and above the diagonal */
-static void gxsp_coarse_node(gxsp_system *system, const uint32_t *copies, uint32_t i)
+/* A node's part of level 1's matrix on and above the diagonal; dirty: of entries in rows or columns of dirty nodes only */
+static void gxsp_coarse_node(gxsp_system *system, const uint32_t *copies, uint32_t i, const uint8_t *dirty)
 {
     const gxsp_level *fine = &system->levels[0];
     const gxsp_pairs *pairs = &system->pairs;
-    const uint32_t count = gxsp_half_row(system, copies, i);
-    uint32_t p, t;
+    uint32_t count, p, t;
+    int any = 0;
+    for (p = 0; p < 4 && dirty; ++p)
+        any |= fine->parent[copies[i]][p] != GXSP_NONE && dirty[fine->parent[copies[i]][p]];
+    count = gxsp_half_row(system, copies, i, any ? NULL : dirty);
     for (p = 0; p < 4; ++p) {
         const uint32_t row = fine->parent[copies[i]][p], number = system->edges.parent[i][p];
         for (t = 0; t < count && row != GXSP_NONE; ++t) {
             const uint32_t other = system->edges.touched[t];
-            if (row <= pairs->node[other])
+            if (row <= pairs->node[other] && (!dirty || dirty[row] || dirty[pairs->node[other]]))
                 gxsp_add_scaled(fine->weight[copies[i]][p], system->edges.half[other],
                                 gxsp_pair_block(&system->pairs, &system->levels[1], row, pairs->node[other], number, other));
         }
     }
 }
 
-/* Level 1's matrix from the last linearisation, and below the diagonal what stands above it */
-static void gxsp_coarse_elements(gxsp_system *system, double rate)
+/* Level 1's matrix from the last linearisation, and below the diagonal what stands above it. dirty: only the rows and columns of dirty
+ * nodes, whose blocks are 0; NULL: all */
+static void gxsp_coarse_elements(gxsp_system *system, double rate, const uint8_t *dirty)
 {
     gxsp_level *next = &system->levels[1];
     uint32_t c, i, k;
-    memset(next->block, 0, 12 * (size_t)next->start[next->n] * sizeof(float));
     for (c = 0; c < system->chunk_count; ++c) {
         const gxsp_chunk *chunk = &system->chunks[c];
+        if (dirty && !gxsp_follows_dirty(system, chunk, dirty))
+            continue;
         gxsp_edge_blocks(system, chunk, rate);
         gxsp_edges_adjacency(&system->edges);
         gxsp_pairs_begin(system, chunk);
         for (i = 0; i < chunk->node_count; ++i)
-            gxsp_coarse_node(system, system->nodes + chunk->first_node, i);
+            gxsp_coarse_node(system, system->nodes + chunk->first_node, i, dirty);
     }
     for (i = 0; i < next->n; ++i)
         for (k = next->start[i]; next->column[k] < i; ++k)
-            gxsp_transpose_block(next->block + 12 * (size_t)gxsp_find_entry(next, next->column[k], i), next->block + 12 * (size_t)k);
+            if (!dirty || dirty[i] || dirty[next->column[k]])
+                gxsp_transpose_block(next->block + 12 * (size_t)gxsp_find_entry(next, next->column[k], i), next->block + 12 * (size_t)k);
 }
 
-/* The diagonal raised by its share, and inverted. 0 if a number overflowed. */
-static int gxsp_invert_diagonal(gxsp_level *level)
+/* The diagonal raised by its share, and inverted; of dirty nodes only, unless dirty is NULL. 0 if a number overflowed. */
+static int gxsp_invert_diagonal(gxsp_level *level, const uint8_t *dirty)
 {
     static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
     uint32_t i, k;
     int c;
     for (i = 0; i < level->n; ++i)
         for (k = level->start[i]; k < level->start[i + 1]; ++k)
-            if (level->column[k] == i) {
+            if (level->column[k] == i && (!dirty || dirty[i])) {
                 float *block = level->block + 12 * (size_t)k;
                 float raise = GXSP_SHIFT * (block[0] + block[5] + block[10]);
                 double inverse[6];
@@ -4001,9 +4246,9 @@ static void gxsp_assemble_following(gxsp_system *system, uint32_t p, uint32_t q,
 static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, double rate)
 {
     gxsp_level *fine = &system->levels[0];
-    const gxsp_corners *corner = &system->corners[chunk->first_block + b];
-    const gxsp_tangent *tangent = &system->tangents[chunk->first_block + b];
-    const gxsp_mass *general = gxsp_block_masses(system, chunk, b);
+    const gxsp_corners *corner = &chunk->corners[b];
+    const gxsp_tangent *tangent = &chunk->tangents[b];
+    const gxsp_mass *general = gxsp_block_masses(chunk, b);
     gxsp_singles gamma[4][3];
     int pair, l;
     for (l = 0; l < 4; ++l)
@@ -4011,7 +4256,7 @@ static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, ui
     for (pair = 0; pair < 10; ++pair) {
         const int p = gxsp_pair_corners[pair][0], q = gxsp_pair_corners[pair][1];
         gxsp_singles block[9];
-        gxsp_block_couple(tangent, gxsp_block_general(system, chunk, b), gamma[p], gamma[q], block);
+        gxsp_block_couple(tangent, gxsp_block_general(chunk, b), gamma[p], gamma[q], block);
         for (l = 0; l < GXSP_LANES; ++l) {
             const uint32_t *copies = system->nodes + chunk->first_node, entry = system->fine[chunk->first_block + b].entry[pair][l];
             const uint32_t i = copies[corner->node[p][l]], j = copies[corner->node[q][l]];
@@ -4112,25 +4357,13 @@ static void gxsp_invert_fine(gxsp_system *system)
     }
 }
 
-/* The matrices of all coarse levels from the last linearisation. 0 if a number overflowed. */
-static int gxsp_coarse_numbers(gxsp_system *system, double rate)
+/* What follows from level 1's matrix. dirty: nodes of level 1 whose inverses are missing; NULL: all are. 0 if a number overflowed. */
+static int gxsp_lower_numbers(gxsp_system *system, const uint8_t *dirty)
 {
-    gxsp_level *fine = &system->levels[0];
     uint32_t at;
-    size_t t;
-    if (system->fine)
-        gxsp_coarsen(fine, fine + 1, fine->child_start, fine->child, system->pairs.local);
-    else {
-        gxsp_coarse_elements(system, system->scale * rate);
-        if (system->lumped_mass)
-            gxsp_coarse_lumped(system, system->scale * rate);
-    }
-    for (t = 0; t < system->lasting->count; ++t)
-        if (!system->lasting->term[t].assembled)
-            gxsp_coarse_term(system, &system->lasting->term[t]);
     for (at = 1; at < system->level_count; ++at) {
         gxsp_level *level = &system->levels[at];
-        if (!gxsp_invert_diagonal(level))
+        if (!gxsp_invert_diagonal(level, at == 1 ? dirty : NULL))
             return 0;
         if (at + 1 < system->level_count)
             gxsp_coarsen(level, level + 1, level->child_start, level->child, system->pairs.local);
@@ -4138,9 +4371,27 @@ static int gxsp_coarse_numbers(gxsp_system *system, double rate)
     return gxsp_factorise(&system->factor, &system->levels[system->level_count - 1], system->pairs.local);
 }
 
-/* Largest eigenvalue of D^-1 (K + rate M) by the power method from a start that favours none; omega damps the upper half of
- * the spectrum: 4/3 of its inverse. An eigenvalue half as large again would still leave the cycle definite. */
-static void gxsp_find_omega(gxsp_system *system, double rate)
+/* The matrices of all coarse levels from the last linearisation. 0 if a number overflowed. */
+static int gxsp_coarse_numbers(gxsp_system *system, double rate)
+{
+    gxsp_level *fine = &system->levels[0];
+    size_t t;
+    if (system->fine)
+        gxsp_coarsen(fine, fine + 1, fine->child_start, fine->child, system->pairs.local);
+    else {
+        memset(fine[1].block, 0, 12 * (size_t)fine[1].start[fine[1].n] * sizeof(float));
+        gxsp_coarse_elements(system, system->scale * rate, NULL);
+        if (system->lumped_mass)
+            gxsp_coarse_lumped(system, system->scale * rate);
+    }
+    for (t = 0; t < system->lasting->count; ++t)
+        if (!system->lasting->term[t].assembled)
+            gxsp_coarse_term(system, &system->lasting->term[t]);
+    return gxsp_lower_numbers(system, NULL);
+}
+
+/* Largest eigenvalue of D^-1 (K + rate M) on what is not still, by the power method from a start that favours none; 0 if nothing moves */
+static double gxsp_largest_eigenvalue(gxsp_system *system, double rate)
 {
     gxsp_vector4 *x = system->search, *y = system->product;
     uint32_t random = 1;
@@ -4173,10 +4424,811 @@ static void gxsp_find_omega(gxsp_system *system, double rate)
             for (c = 0; c < 3; ++c)
                 x[i][c] *= scale;
     }
+    return largest;
+}
+
+/* The smoother's step length damps the upper half of the spectrum: 4/3 of the inverse of its end. An eigenvalue half as large again would
+ * still leave the cycle definite. */
+static float gxsp_omega(const gxsp_system *system, double largest)
+{
     largest = largest > 0 ? 1.05 * largest : 4;
     if (largest > 4 && system->follower_count == 0) /* no element's own D^-1 K exceeds 4 */
         largest = 4;
-    system->omega = (float)(4.0 / 3 / largest);
+    return (float)(4.0 / 3 / largest);
+}
+
+/* Which copies and chunks the pieces' states leave alone */
+static void gxsp_mark_still(gxsp_system *system)
+{
+    uint32_t c, k;
+    size_t i;
+    for (i = 0; i < system->n; ++i)
+        system->still[i] = system->fixed[i] || (system->pieces[system->piece[i]].state & GXSP_ASLEEP);
+    for (c = 0; c < system->chunk_count; ++c) {
+        system->chunk_still[c] = 1;
+        for (k = 0; k < system->chunks[c].node_count; ++k)
+            system->chunk_still[c] &= system->still[system->nodes[system->chunks[c].first_node + k]];
+    }
+}
+
+/* Shortens the step length where the cycle might become indefinite where updates have changed the operator: elsewhere the largest
+ * eigenvalue is no larger than it was. */
+static void gxsp_renew_omega(gxsp_system *system, double rate)
+{
+    double largest;
+    uint32_t c, k;
+    size_t i;
+    for (i = 0; i < system->n; ++i)
+        system->still[i] |= !system->renewed[i];
+    for (c = 0; c < system->chunk_count; ++c) {
+        uint8_t still = 1;
+        for (k = 0; k < system->chunks[c].node_count; ++k)
+            still &= system->still[system->nodes[system->chunks[c].first_node + k]];
+        system->chunk_still[c] |= still;
+    }
+    largest = gxsp_largest_eigenvalue(system, rate);
+    if (GXSP_OMEGA < (double)system->omega * largest)
+        system->omega = (float)(GXSP_OMEGA / largest);
+    gxsp_mark_still(system);
+}
+
+/* >>update: what a cut has changed goes into the chunks and levels that there are. Elements are replaced where they were, further ones go
+ * to chunks at the end; of chunks and coarse nodes of which nothing has changed only numbers are copied. */
+
+/* A lane whose element goes */
+typedef struct gxsp_hole {
+    uint32_t chunk, lane, group;
+    uint32_t element;       /* of the change: what takes the lane; GXSP_NONE: nothing does */
+} gxsp_hole;
+
+typedef struct gxsp_renewal {
+    gxsp_system *system;
+    gxsp_pool *scratch;
+    const gxs_change *change;
+    size_t before;          /* copies so far */
+    uint32_t *successor;    /* before: what a copy is from now on; GXSP_NONE: it is no more */
+    uint8_t *touched;       /* change->copy_count: an element around the copy has gone or come */
+    gxsp_hole *holes;       /* hole_count; then, as holes of new chunks, what is placed elsewhere */
+    uint32_t hole_count, placed_count; /* placed: of elements that took no hole */
+    uint32_t *left, left_count; /* elements of the change that take no hole */
+    uint8_t *dirty;         /* by node of level 1 so far: some that follow it are touched */
+} gxsp_renewal;
+
+/* Does the element of a lane give corner k stiffness or mass? */
+static int gxsp_lane_supports(const gxsp_chunk *chunk, uint32_t lane, int k)
+{
+    static const int own[4] = {0, 4, 7, 9};
+    const gxsp_rest *rest = &chunk->rest[lane / GXSP_LANES];
+    const size_t l = lane % GXSP_LANES;
+    return rest->weight[l] > 0 || rest->mass[l] > 0 || (chunk->masses && chunk->masses[lane / GXSP_LANES].entry[own[k]][l] > 0);
+}
+
+/* Row sum of its mass */
+static double gxsp_lane_mass(const gxsp_chunk *chunk, uint32_t lane, int k)
+{
+    static const int packed[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
+    double sum = 5 * chunk->rest[lane / GXSP_LANES].mass[lane % GXSP_LANES];
+    int j;
+    for (j = 0; j < 4 && chunk->masses; ++j)
+        sum += chunk->masses[lane / GXSP_LANES].entry[packed[k][j]][lane % GXSP_LANES];
+    return sum;
+}
+
+/* --- which lanes change --- */
+
+/* Groups that change: a bit for each, of as many low bits of their numbers as make GXSP_FILTER */
+typedef struct gxsp_filter {
+    uint64_t bit[GXSP_FILTER / 64];
+} gxsp_filter;
+
+static int gxsp_changes(const gxs_change *change, const gxsp_filter *filter, uint32_t group)
+{
+    size_t low = 0, high = change->group_count;
+    if (!(filter->bit[group % GXSP_FILTER / 64] >> group % 64 & 1))
+        return 0;
+    while (high - low > 1) {
+        const size_t middle = low + (high - low) / 2;
+        if (change->groups[middle] <= group)
+            low = middle;
+        else
+            high = middle;
+    }
+    return change->groups[low] == group;
+}
+
+/* All lanes of the groups that change, in the order of groups, then of lanes */
+static void gxsp_find_holes(gxsp_renewal *update)
+{
+    const gxsp_system *system = update->system;
+    gxsp_hole *found = NULL;
+    gxsp_sorted *sorted, *other;
+    gxsp_filter filter;
+    uint32_t c, lane, pass, count = 0;
+    size_t i;
+    memset(&filter, 0, sizeof filter);
+    for (i = 0; i < update->change->group_count; ++i)
+        filter.bit[update->change->groups[i] % GXSP_FILTER / 64] |= (uint64_t)1 << update->change->groups[i] % 64;
+    for (pass = 0; pass < 2 && update->change->group_count > 0; ++pass) { /* count, then list */
+        if (pass == 1 && !(found = (gxsp_hole *)gxsp_take(update->scratch, count, sizeof *found)))
+            return;
+        for (c = 0, count = 0; c < system->chunk_count; ++c)
+            for (lane = 0; lane < system->chunks[c].block_count * GXSP_LANES; ++lane) {
+                const uint32_t group = system->chunks[c].groups[lane];
+                if (group == GXSP_NONE || !gxsp_changes(update->change, &filter, group))
+                    continue;
+                if (found)
+                    found[count].chunk = c, found[count].lane = lane, found[count].group = group;
+                ++count;
+            }
+    }
+    sorted = (gxsp_sorted *)gxsp_take(update->scratch, count, sizeof *sorted);
+    other = (gxsp_sorted *)gxsp_take(update->scratch, count, sizeof *other);
+    update->holes = (gxsp_hole *)gxsp_take(update->scratch, count + update->change->element_count, sizeof *update->holes);
+    if (update->scratch->failed)
+        return;
+    for (i = 0; i < count; ++i)
+        sorted[i].place = found[i].group, sorted[i].index = (uint32_t)i;
+    if (count > 0)
+        sorted = gxsp_sort(sorted, other, count);
+    for (i = 0; i < count; ++i) {
+        update->holes[i] = found[sorted[i].index];
+        update->holes[i].element = GXSP_NONE;
+    }
+    update->hole_count = count;
+}
+
+static uint32_t gxsp_class_of(const gxsp_system *system, const gxs_element *element)
+{
+    return 2 * (uint32_t)system->materials[element->material].kind + (gxsp_whole(element->mass) ? 0u : 1u);
+}
+
+/* Elements take the lanes of their group as far as these are of their class. */
+static void gxsp_match_holes(gxsp_renewal *update)
+{
+    const gxs_change *change = update->change;
+    uint32_t first = 0, e, i;
+    update->left = (uint32_t *)gxsp_take(update->scratch, change->element_count, sizeof(uint32_t));
+    for (e = 0; e < change->element_count && !update->scratch->failed; ++e) {
+        const gxs_element *element = &change->elements[e];
+        const uint32_t class_index = gxsp_class_of(update->system, element);
+        while (first < update->hole_count && update->holes[first].group < element->group)
+            ++first;
+        for (i = first; i < update->hole_count && update->holes[i].group == element->group; ++i)
+            if (update->holes[i].element == GXSP_NONE && update->system->chunks[update->holes[i].chunk].class_index == class_index)
+                break;
+        if (i < update->hole_count && update->holes[i].group == element->group)
+            update->holes[i].element = e;
+        else
+            update->left[update->left_count++] = e;
+    }
+}
+
+/* --- chunks --- */
+
+/* Copies around what goes, and the coarse nodes that these follow */
+static void gxsp_touch_removed(gxsp_renewal *update)
+{
+    const gxsp_system *system = update->system;
+    uint32_t i, copies[4];
+    int k, q;
+    for (i = 0; i < update->hole_count; ++i) {
+        const gxsp_hole *hole = &update->holes[i];
+        gxsp_lane_copies(system, &system->chunks[hole->chunk], hole->lane / GXSP_LANES, (int)(hole->lane % GXSP_LANES), copies);
+        for (k = 0; k < 4; ++k) {
+            if (update->successor[copies[k]] != GXSP_NONE)
+                update->touched[update->successor[copies[k]]] = 1;
+            for (q = 0; q < 4 && system->level_count > 0; ++q)
+                if (system->levels[0].parent[copies[k]][q] != GXSP_NONE)
+                    update->dirty[system->levels[0].parent[copies[k]][q]] = 1;
+        }
+    }
+}
+
+static void gxsp_touch_added(const gxsp_renewal *update)
+{
+    size_t e;
+    int k;
+    for (e = 0; e < update->change->element_count; ++e)
+        for (k = 0; k < 4; ++k)
+            update->touched[update->change->elements[e].copy[k]] = 1;
+}
+
+/* Does every group have the weight that it had? Then a state has the energy that it had. */
+static int gxsp_keeps_weight(const gxsp_renewal *update)
+{
+    const gxs_change *change = update->change;
+    uint32_t hole = 0;
+    size_t e = 0, g;
+    for (g = 0; g < change->group_count; ++g) {
+        double gone = 0, come = 0;
+        for (; hole < update->hole_count && update->holes[hole].group == change->groups[g]; ++hole)
+            gone += update->system->chunks[update->holes[hole].chunk].rest[update->holes[hole].lane / GXSP_LANES].weight[update->holes[hole].lane % GXSP_LANES];
+        for (; e < change->element_count && change->elements[e].group == change->groups[g]; ++e)
+            come += change->elements[e].weight;
+        if (fabs(gone - come) > 1e-12 * gone)
+            return 0;
+    }
+    return 1;
+}
+
+static void gxsp_empty_lane(const gxsp_chunk *chunk, uint32_t lane)
+{
+    gxsp_rest *rest = &chunk->rest[lane / GXSP_LANES];
+    const size_t l = lane % GXSP_LANES;
+    int k;
+    chunk->groups[lane] = GXSP_NONE;
+    rest->weight[l] = rest->mass[l] = 0;
+    for (k = 0; k < 10 && chunk->masses; ++k)
+        chunk->masses[lane / GXSP_LANES].entry[k][l] = 0;
+}
+
+/* A new chunk at the end, without a block in use but with room for all that a chunk can have */
+static gxsp_chunk *gxsp_open_chunk(gxsp_system *system, uint32_t class_index)
+{
+    gxsp_pool *pool = &system->pool;
+    gxsp_chunk *chunk;
+    if (system->chunk_count >= system->chunk_room) {
+        const uint32_t room = system->chunk_count + system->chunk_count / 8 + 8;
+        system->chunks = (gxsp_chunk *)gxsp_retake(pool, system->chunks, system->chunk_count, room, sizeof(gxsp_chunk));
+        system->chunk_sum = (double(*)[3])gxsp_retake(pool, system->chunk_sum, 0, room, sizeof *system->chunk_sum);
+        system->chunk_still = (uint8_t *)gxsp_retake(pool, system->chunk_still, 0, room, 1);
+        system->chunk_room = room;
+    }
+    if (pool->failed)
+        return NULL;
+    chunk = &system->chunks[system->chunk_count];
+    memset(chunk, 0, sizeof *chunk);
+    chunk->class_index = class_index;
+    chunk->kind = (gxs_material_kind)(class_index / 2);
+    chunk->block_count = GXSP_CHUNK_BLOCKS;
+    chunk->open = 1;
+    gxsp_blocks_make(pool, chunk, 1);
+    gxsp_tangents_make(pool, chunk, 1);
+    chunk->block_count = 0;
+    if (pool->failed)
+        return NULL;
+    ++system->chunk_count;
+    return chunk;
+}
+
+/* A free lane of the open chunk at index, or GXSP_NONE */
+static uint32_t gxsp_free_lane(gxsp_chunk *chunk, uint32_t from)
+{
+    uint32_t lane;
+    for (lane = from; lane < chunk->block_count * GXSP_LANES; ++lane)
+        if (chunk->groups[lane] == GXSP_NONE)
+            return lane;
+    return chunk->block_count < GXSP_CHUNK_BLOCKS ? lane : GXSP_NONE;
+}
+
+/* Index of the last open chunk of a class, or chunk_count */
+static uint32_t gxsp_find_open(const gxsp_system *system, uint32_t class_index)
+{
+    uint32_t c;
+    for (c = system->chunk_count; c-- > 0;)
+        if (system->chunks[c].open && system->chunks[c].class_index == class_index)
+            return c;
+    return system->chunk_count;
+}
+
+/* Lanes of the class's open chunk, or of new ones, for those elements without a hole that are of this class */
+static void gxsp_place_class(gxsp_renewal *update, uint32_t class_index)
+{
+    gxsp_system *system = update->system;
+    uint32_t i, c = gxsp_find_open(system, class_index), lane = 0;
+    for (i = 0; i < update->left_count; ++i) {
+        gxsp_hole *hole = &update->holes[update->hole_count + update->placed_count];
+        if (gxsp_class_of(system, &update->change->elements[update->left[i]]) != class_index)
+            continue;
+        lane = c < system->chunk_count ? gxsp_free_lane(&system->chunks[c], lane) : GXSP_NONE;
+        if (lane == GXSP_NONE) {
+            c = system->chunk_count;
+            lane = 0;
+            if (!gxsp_open_chunk(system, class_index))
+                return;
+        }
+        if (lane == system->chunks[c].block_count * GXSP_LANES)
+            ++system->chunks[c].block_count;
+        hole->chunk = c, hole->lane = lane, hole->element = update->left[i];
+        gxsp_place_element(&system->chunks[c], &update->change->elements[hole->element], lane, 0);
+        ++update->placed_count;
+        ++lane;
+    }
+}
+
+/* Elements in their lanes; corners and nodes still are what they were. */
+static void gxsp_replace_elements(gxsp_renewal *update)
+{
+    uint32_t i, class_index;
+    for (i = 0; i < update->hole_count; ++i) {
+        const gxsp_hole *hole = &update->holes[i];
+        const gxsp_chunk *chunk = &update->system->chunks[hole->chunk];
+        if (hole->element == GXSP_NONE)
+            gxsp_empty_lane(chunk, hole->lane);
+        else
+            gxsp_place_element(chunk, &update->change->elements[hole->element], hole->lane, 0);
+    }
+    for (class_index = 0; class_index < 2 * (GXS_CUSTOM + 1) && !update->system->pool.failed; ++class_index)
+        gxsp_place_class(update, class_index);
+}
+
+/* Nodes of a chunk of which lanes have changed. next: by hole, the next one of its chunk. 0: an element that stays has lost a copy. */
+static int gxsp_renew_chunk(gxsp_renewal *update, gxsp_chunk *chunk, uint32_t hole, const uint32_t *next, gxsp_numbers *numbers, uint32_t *nodes)
+{
+    const gxsp_system *system = update->system;
+    uint32_t copies[GXSP_CHUNK_BLOCKS * GXSP_LANES][4], lane, used = 0;
+    int k;
+    memset(copies, 0, sizeof copies);
+    for (lane = 0; lane < chunk->block_count * GXSP_LANES && chunk->node_count > 0; ++lane) {
+        gxsp_lane_copies(system, chunk, lane / GXSP_LANES, (int)(lane % GXSP_LANES), copies[lane]);
+        for (k = 0; k < 4; ++k)
+            copies[lane][k] = update->successor[copies[lane][k]];
+    }
+    for (; hole != GXSP_NONE; hole = next[hole])
+        if (update->holes[hole].element != GXSP_NONE)
+            memcpy(copies[update->holes[hole].lane], update->change->elements[update->holes[hole].element].copy, sizeof copies[0]);
+    for (lane = 0; lane < chunk->block_count * GXSP_LANES; ++lane)
+        if (chunk->groups[lane] != GXSP_NONE) {
+            used = lane + 1;
+            for (k = 0; k < 4; ++k)
+                if (copies[lane][k] == GXSP_NONE)
+                    return 0;
+        }
+    chunk->block_count = (used + GXSP_LANES - 1) / GXSP_LANES;
+    chunk->node_count = gxsp_number_nodes(chunk, copies, numbers, nodes);
+    return 1;
+}
+
+/* Nodes of a chunk joined by its elements: by node, the least one that it is joined with */
+static void gxsp_find_roots(const gxsp_chunk *chunk, uint16_t *roots)
+{
+    uint32_t forest[GXSP_CHUNK_BLOCKS * GXSP_LANES * 4], i, lane;
+    int k;
+    for (i = 0; i < chunk->node_count; ++i)
+        forest[i] = i;
+    for (lane = 0; lane < chunk->block_count * GXSP_LANES; ++lane) {
+        const gxsp_corners *corner = &chunk->corners[lane / GXSP_LANES];
+        const size_t l = lane % GXSP_LANES;
+        for (k = 1; k < 4 && chunk->groups[lane] != GXSP_NONE; ++k)
+            if (gxsp_lane_supports(chunk, lane, 0) || gxsp_lane_supports(chunk, lane, k))
+                gxsp_join(forest, corner->node[0][l], corner->node[k][l]);
+    }
+    for (i = 0; i < chunk->node_count; ++i)
+        roots[i] = (uint16_t)gxsp_root(forest, i);
+}
+
+/* Room for so many slots */
+static void gxsp_slots_room(gxsp_system *system, size_t count)
+{
+    gxsp_pool *pool = &system->pool;
+    if (count > system->slot_room) {
+        system->slot_room = count + count / 8;
+        system->nodes = (uint32_t *)gxsp_retake(pool, system->nodes, 0, system->slot_room, sizeof(uint32_t));
+        system->copy_slot = (uint32_t *)gxsp_retake(pool, system->copy_slot, 0, system->slot_room, sizeof(uint32_t));
+        system->slots = (double(*)[3])gxsp_retake(pool, system->slots, 0, system->slot_room, sizeof *system->slots);
+        system->slot_root = (uint16_t *)gxsp_retake(pool, system->slot_root, 0, system->slot_room, sizeof(uint16_t));
+    }
+    system->slot_count = count;
+}
+
+/* Nodes of all chunks. 0: an element that stays has lost a copy. */
+static int gxsp_renew_nodes(gxsp_renewal *update)
+{
+    gxsp_system *system = update->system;
+    const size_t n = update->change->copy_count;
+    const uint32_t holes = update->hole_count + update->placed_count;
+    const size_t room = system->slot_count + 4 * (size_t)holes;
+    uint32_t *first = (uint32_t *)gxsp_take(update->scratch, system->chunk_count, sizeof(uint32_t)), c, i;
+    uint32_t *next = (uint32_t *)gxsp_take(update->scratch, holes, sizeof(uint32_t));
+    uint32_t *nodes = (uint32_t *)gxsp_take(update->scratch, room, sizeof(uint32_t));
+    uint16_t *roots = (uint16_t *)gxsp_take(update->scratch, room, sizeof(uint16_t));
+    size_t count = 0;
+    gxsp_numbers numbers;
+    numbers.local = (uint32_t *)gxsp_take(update->scratch, n, sizeof(uint32_t));
+    numbers.stamp = (uint32_t *)gxsp_take(update->scratch, n, sizeof(uint32_t));
+    numbers.round = 0;
+    if (update->scratch->failed)
+        return 1;
+    memset(first, 0xff, system->chunk_count * sizeof *first);
+    for (i = holes; i-- > 0;) {
+        next[i] = first[update->holes[i].chunk];
+        first[update->holes[i].chunk] = i;
+    }
+    for (c = 0; c < system->chunk_count; ++c) {
+        gxsp_chunk *chunk = &system->chunks[c];
+        const uint32_t before = chunk->first_node;
+        if (first[c] != GXSP_NONE && !gxsp_renew_chunk(update, chunk, first[c], next, &numbers, nodes + count))
+            return 0;
+        for (i = 0; i < chunk->node_count && first[c] == GXSP_NONE; ++i) {
+            nodes[count + i] = update->successor[system->nodes[before + i]];
+            if (nodes[count + i] == GXSP_NONE)
+                return 0;
+        }
+        if (first[c] != GXSP_NONE || !system->roots_known)
+            gxsp_find_roots(chunk, roots + count);
+        else
+            memcpy(roots + count, system->slot_root + before, chunk->node_count * sizeof *roots);
+        chunk->first_node = (uint32_t)count;
+        count += chunk->node_count;
+    }
+    gxsp_slots_room(system, count);
+    if (system->pool.failed)
+        return 1;
+    memcpy(system->nodes, nodes, count * sizeof *nodes);
+    memcpy(system->slot_root, roots, count * sizeof *roots);
+    system->roots_known = 1;
+    return 1;
+}
+
+/* --- copies --- */
+
+/* Room for so many copies; what they have stays theirs. */
+static void gxsp_copies_room(gxsp_system *system, size_t count)
+{
+    gxsp_pool *pool = &system->pool;
+    const size_t n = system->n, room = count + count / 8;
+    gxsp_level *fine = &system->levels[0];
+    if (count <= system->copy_room)
+        return;
+    system->base = (double *)gxsp_retake(pool, system->base, 0, 3 * room, sizeof(double));
+    system->target = (double *)gxsp_retake(pool, system->target, 0, 3 * room, sizeof(double));
+    system->load = (double *)gxsp_retake(pool, system->load, 0, 3 * room, sizeof(double));
+    system->current = (double *)gxsp_retake(pool, system->current, 3 * n, 3 * room, sizeof(double));
+    system->coarse_state = (double *)gxsp_retake(pool, system->coarse_state, 3 * n, 3 * room, sizeof(double));
+    system->trial = (double *)gxsp_retake(pool, system->trial, 0, 3 * room, sizeof(double));
+    system->force = (double *)gxsp_retake(pool, system->force, 0, 3 * room, sizeof(double));
+    system->residual = (double *)gxsp_retake(pool, system->residual, 0, 3 * room, sizeof(double));
+    system->direction = (double *)gxsp_retake(pool, system->direction, 0, 3 * room, sizeof(double));
+    system->search = (gxsp_vector4 *)gxsp_retake(pool, system->search, 0, room, sizeof(gxsp_vector4));
+    system->product = (gxsp_vector4 *)gxsp_retake(pool, system->product, 0, room, sizeof(gxsp_vector4));
+    system->scaled = (gxsp_vector4 *)gxsp_retake(pool, system->scaled, 0, room, sizeof(gxsp_vector4));
+    system->right = (gxsp_vector4 *)gxsp_retake(pool, system->right, 0, room, sizeof(gxsp_vector4));
+    system->guess = (gxsp_vector4 *)gxsp_retake(pool, system->guess, n, room, sizeof(gxsp_vector4));
+    system->diagonal = (float *)gxsp_retake(pool, system->diagonal, 0, 6 * room, sizeof(float));
+    system->copy_start = (uint32_t *)gxsp_retake(pool, system->copy_start, 0, room + 2, sizeof(uint32_t));
+    system->lumped = (double *)gxsp_retake(pool, system->lumped, n, room, sizeof(double));
+    system->piece = (uint32_t *)gxsp_retake(pool, system->piece, n, room, sizeof(uint32_t));
+    system->fixed = (uint8_t *)gxsp_retake(pool, system->fixed, n, room, 1);
+    system->still = (uint8_t *)gxsp_retake(pool, system->still, 0, room, 1);
+    system->held = (uint8_t *)gxsp_retake(pool, system->held, n, room, 1);
+    system->follower = (uint32_t *)gxsp_retake(pool, system->follower, 0, room, sizeof(uint32_t));
+    system->renewed = (uint8_t *)gxsp_retake(pool, system->renewed, 0, room, 1);
+    if (system->level_count > 0) {
+        fine->parent = (uint32_t(*)[4])gxsp_retake(pool, fine->parent, n, room, sizeof *fine->parent);
+        fine->weight = (float(*)[4])gxsp_retake(pool, fine->weight, n, room, sizeof *fine->weight);
+    }
+    system->copy_room = room;
+    if (!pool->failed)
+        memset(system->follower, 0xff, room * sizeof *system->follower);
+}
+
+/* Entries of an array over copies go where their copies go. moved: copies that are not what they were, moved_count; kept: scratch */
+static void gxsp_move(const gxs_change *change, const uint32_t *moved, size_t moved_count, void *array, size_t size, unsigned char *kept)
+{
+    unsigned char *bytes = (unsigned char *)array;
+    size_t i;
+    for (i = 0; i < moved_count; ++i)
+        memcpy(kept + i * size, bytes + (change->origins[moved[i]] >> 1) * size, size);
+    for (i = 0; i < moved_count; ++i)
+        memcpy(bytes + moved[i] * size, kept + i * size, size);
+}
+
+/* What is known of copies, for those there are from now on */
+static void gxsp_move_copies(gxsp_renewal *update)
+{
+    gxsp_system *system = update->system;
+    const gxs_change *change = update->change;
+    uint32_t *moved = (uint32_t *)gxsp_take(update->scratch, change->copy_count, sizeof(uint32_t)), i;
+    unsigned char *kept;
+    size_t count = 0;
+    gxsp_copies_room(system, change->copy_count);
+    for (i = 0; i < change->copy_count && moved; ++i)
+        if (change->origins[i] >> 1 != i)
+            moved[count++] = i;
+    kept = (unsigned char *)gxsp_take(update->scratch, count, 3 * sizeof(double)); /* the largest entry */
+    if (update->scratch->failed || system->pool.failed)
+        return;
+    gxsp_move(change, moved, count, system->current, 3 * sizeof(double), kept);
+    gxsp_move(change, moved, count, system->guess, sizeof(gxsp_vector4), kept);
+    gxsp_move(change, moved, count, system->coarse_state, 3 * sizeof(double), kept);
+    gxsp_move(change, moved, count, system->lumped, sizeof(double), kept);
+    gxsp_move(change, moved, count, system->piece, sizeof(uint32_t), kept);
+    gxsp_move(change, moved, count, system->fixed, 1, kept);
+    gxsp_move(change, moved, count, system->held, 1, kept);
+    if (system->level_count > 0) {
+        gxsp_move(change, moved, count, system->levels[0].parent, sizeof *system->levels[0].parent, kept);
+        gxsp_move(change, moved, count, system->levels[0].weight, sizeof *system->levels[0].weight, kept);
+    }
+    system->n = change->copy_count;
+    system->levels[0].n = (uint32_t)change->copy_count;
+    system->range_count = (system->n + GXSP_RANGE - 1) / GXSP_RANGE;
+}
+
+/* Masses of touched copies, and whether anything supports them */
+static void gxsp_recount_copies(const gxsp_renewal *update)
+{
+    gxsp_system *system = update->system;
+    const uint8_t *touched = update->touched;
+    uint32_t c, i, lane, copies[4];
+    int k;
+    for (i = 0; i < system->n; ++i)
+        if (touched[i]) {
+            system->lumped[i] = 0;
+            system->fixed[i] = 1;
+        }
+    for (c = 0; c < system->chunk_count; ++c) {
+        const gxsp_chunk *chunk = &system->chunks[c];
+        int any = 0;
+        for (i = 0; i < chunk->node_count; ++i)
+            any |= touched[system->nodes[chunk->first_node + i]];
+        for (lane = 0; lane < chunk->block_count * GXSP_LANES && any; ++lane) {
+            if (chunk->groups[lane] == GXSP_NONE)
+                continue;
+            gxsp_lane_copies(system, chunk, lane / GXSP_LANES, (int)(lane % GXSP_LANES), copies);
+            for (k = 0; k < 4; ++k)
+                if (touched[copies[k]]) {
+                    system->lumped[copies[k]] += gxsp_lane_mass(chunk, lane, k);
+                    system->fixed[copies[k]] &= !gxsp_lane_supports(chunk, lane, k);
+                }
+        }
+    }
+    for (i = 0; i < system->n; ++i)
+        system->fixed[i] |= system->held[i];
+}
+
+/* Pieces, of which those sleep that are parts of sleeping ones: what has touched them wakes them again */
+static void gxsp_renew_pieces(gxsp_renewal *update)
+{
+    gxsp_system *system = update->system;
+    uint32_t *forest = (uint32_t *)gxsp_take(update->scratch, system->n, sizeof(uint32_t)), c, i, p;
+    uint8_t *asleep = (uint8_t *)gxsp_take(update->scratch, system->n, 1);
+    if (update->scratch->failed)
+        return;
+    for (i = 0; i < system->n; ++i) {
+        forest[i] = i;
+        asleep[i] = (system->pieces[system->piece[i]].state & GXSP_ASLEEP) != 0;
+    }
+    for (c = 0; c < system->chunk_count; ++c)
+        for (i = 0; i < system->chunks[c].node_count; ++i) {
+            const uint32_t at = system->chunks[c].first_node + i;
+            gxsp_join(forest, system->nodes[at], system->nodes[system->chunks[c].first_node + system->slot_root[at]]);
+        }
+    gxsp_number_pieces(system, forest);
+    system->pieces = (gxsp_piece *)gxsp_retake(&system->pool, system->pieces, 0, system->piece_count, sizeof(gxsp_piece));
+    if (system->pool.failed)
+        return;
+    gxsp_fill_pieces(system);
+    for (p = 0; p < system->piece_count; ++p)
+        system->pieces[p].state |= GXSP_ASLEEP;
+    for (i = 0; i < system->n; ++i)
+        if (!system->fixed[i] && !asleep[i])
+            system->pieces[system->piece[i]].state &= ~GXSP_ASLEEP;
+}
+
+/* --- multigrid --- */
+
+/* Of components that touched copies belong to, what is joined now. forest: n x 4 */
+static void gxsp_join_dirty(gxsp_renewal *update, uint32_t *forest)
+{
+    gxsp_system *system = update->system;
+    const gxsp_level *fine = &system->levels[0];
+    uint32_t c, e, p, q, slot;
+    for (slot = 0; slot < 4 * fine->n; ++slot)
+        forest[slot] = slot;
+    for (c = 0; c < system->chunk_count; ++c) {
+        const uint32_t *copies = system->nodes + system->chunks[c].first_node;
+        if (!gxsp_follows_dirty(system, &system->chunks[c], update->dirty))
+            continue;
+        gxsp_list_edges(system, &system->chunks[c]);
+        for (e = system->edges.nodes; e < system->edges.count; ++e) {
+            const uint32_t i = copies[system->edges.ends[e] >> 16], j = copies[system->edges.ends[e] & 0xffff];
+            for (p = 0; p < 4; ++p)
+                for (q = 0; q < 4 && fine->parent[i][p] != GXSP_NONE && update->dirty[fine->parent[i][p]]; ++q)
+                    if (fine->parent[i][p] == fine->parent[j][q])
+                        gxsp_join(forest, 4 * i + p, 4 * j + q);
+        }
+    }
+}
+
+/* Dirty coarse nodes fall apart: the first component of each keeps its number, further ones get new ones. from: n x 4, room: by new node,
+ * which one it was part of. Returns how many nodes there are. */
+static uint32_t gxsp_number_dirty(gxsp_renewal *update, uint32_t *forest, uint32_t *from)
+{
+    gxsp_system *system = update->system;
+    const gxsp_level *fine = &system->levels[0];
+    const uint32_t before = system->levels[1].n;
+    uint32_t slot, count = before;
+    uint8_t *kept = (uint8_t *)gxsp_take(update->scratch, before, 1);
+    for (slot = 0; slot < 4 * fine->n && kept; ++slot) {
+        uint32_t *parent = &fine->parent[slot / 4][slot % 4], root;
+        if (*parent == GXSP_NONE || !update->dirty[*parent])
+            continue;
+        root = gxsp_root(forest, slot);
+        if (root != slot)
+            *parent = fine->parent[root / 4][root % 4]; /* roots come first in their tree: it has its number */
+        else if (kept[*parent]) {
+            from[count - before] = *parent;
+            *parent = count++;
+        } else
+            kept[*parent] = 1;
+    }
+    return count;
+}
+
+/* Copies that nothing moves any more follow nothing. */
+static void gxsp_drop_fixed(const gxsp_renewal *update)
+{
+    gxsp_level *fine = &update->system->levels[0];
+    uint32_t i;
+    for (i = 0; i < fine->n; ++i)
+        if (update->touched[i] && update->system->fixed[i]) {
+            memset(fine->parent[i], 0xff, sizeof fine->parent[i]);
+            memset(fine->weight[i], 0, sizeof fine->weight[i]);
+        }
+}
+
+/* Blocks of level 1's entries between nodes that are not dirty, and these nodes' inverses, from the level as it was */
+static void gxsp_keep_blocks(const gxsp_level *before, gxsp_level *level, const uint8_t *dirty)
+{
+    uint32_t i, k, at;
+    for (i = 0; i < before->n; ++i) {
+        if (dirty[i])
+            continue;
+        memcpy(level->inverse + 12 * (size_t)i, before->inverse + 12 * (size_t)i, 12 * sizeof(float));
+        for (k = before->start[i], at = level->start[i]; k < before->start[i + 1]; ++k) {
+            if (dirty[before->column[k]])
+                continue;
+            while (level->column[at] < before->column[k])
+                ++at;
+            memcpy(level->block + 12 * (size_t)at, before->block + 12 * (size_t)k, 12 * sizeof(float));
+        }
+    }
+}
+
+/* Numbers of the coarse levels: those of entries of dirty nodes from the Hessian at the state at which the others were made, so that all
+ * together are semi-definite as ever. */
+static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, const uint8_t *dirty)
+{
+    gxsp_system *system = update->system;
+    const double rate = system->scale * system->coarse_rate;
+    gxsp_pass pass;
+    uint32_t c;
+    gxsp_keep_blocks(before, &system->levels[1], dirty);
+    memset(&pass, 0, sizeof pass);
+    pass.system = system;
+    pass.materials = system->damped;
+    pass.rate = rate;
+    pass.from = system->coarse_state;
+    for (c = 0; c < system->chunk_count; ++c)
+        if (gxsp_follows_dirty(system, &system->chunks[c], dirty)) {
+            system->chunk_still[c] = 0;
+            gxsp_task_linearise(&pass, c);
+        }
+    gxsp_coarse_elements(system, rate, dirty);
+    return gxsp_lower_numbers(system, dirty);
+}
+
+/* Is it known that the coarse matrices are as old as they can be? */
+static int gxsp_coarse_ends(const gxsp_system *system)
+{
+    return system->coarse_life > 0 && system->coarse_age >= system->coarse_life;
+}
+
+static void gxsp_renew_levels(gxsp_renewal *update)
+{
+    gxsp_system *system = update->system;
+    gxsp_pool *scratch = update->scratch, old = system->coarse;
+    gxsp_level before = system->levels[1];
+    uint32_t *forest = (uint32_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint32_t));
+    uint32_t *from = (uint32_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint32_t)), count = 0, i;
+    uint8_t *dirty = NULL;
+    system->coarse = gxsp_pool_make(&old.allocator);
+    gxsp_edges_make(system);
+    if (!scratch->failed && !system->coarse.failed) {
+        gxsp_drop_fixed(update);
+        gxsp_join_dirty(update, forest);
+        count = gxsp_number_dirty(update, forest, from);
+        memset(&system->levels[1], 0, (GXSP_LEVELS - 1) * sizeof system->levels[1]);
+        gxsp_level_make(&system->coarse, &system->levels[1], count, 1);
+        dirty = (uint8_t *)gxsp_take(scratch, count, 1);
+    }
+    if (!scratch->failed && !system->coarse.failed) {
+        memset(dirty, 1, count);
+        memcpy(dirty, update->dirty, before.n);
+        memcpy(system->levels[1].place, before.place, before.n * sizeof *before.place);
+        for (i = before.n; i < count; ++i)
+            memcpy(system->levels[1].place[i], before.place[from[i - before.n]], sizeof *before.place);
+        gxsp_levels_make(system, scratch, &before, dirty);
+    }
+    if (!scratch->failed && !system->coarse.failed && system->coarse_rate >= 0 &&
+        (system->coarse_stiffness > 0 || system->coarse_worn || gxsp_coarse_ends(system) || !gxsp_renew_numbers(update, &before, dirty)))
+        system->coarse_rate = -1; /* all numbers are made anew by the next step; springs and contact are not known any more */
+    gxsp_release_to(&old, NULL);
+}
+
+/* --- all of it --- */
+
+/* What copies so far have become. 0: two say that they are one, or one is not held as before. */
+static int gxsp_find_successors(gxsp_renewal *update)
+{
+    const gxs_change *change = update->change;
+    uint32_t i;
+    memset(update->successor, 0xff, update->before * sizeof *update->successor);
+    for (i = 0; i < change->copy_count; ++i) {
+        uint32_t *of = &update->successor[change->origins[i] >> 1];
+        if ((change->held && change->held[i]) != (update->system->held[change->origins[i] >> 1] != 0))
+            return 0;
+        if (change->origins[i] & 1)
+            update->touched[i] = 1;
+        else if (*of != GXSP_NONE)
+            return 0;
+        else
+            *of = i;
+    }
+    return 1;
+}
+
+/* What steps have learnt and what depends on all copies */
+static void gxsp_renew_steps(gxsp_renewal *update, int keeps_weight)
+{
+    gxsp_system *system = update->system;
+    size_t i;
+    system->still_known = 0;
+    system->base_known &= keeps_weight;
+    for (i = 0; i < system->n; ++i)
+        system->renewed[i] = update->touched[i] | (system->omega_renewed ? system->renewed[i] : 0);
+    system->omega_renewed = 1;
+    memcpy(system->still, system->fixed, system->n);
+    gxsp_list_slots(system);
+}
+
+/* Can the model's form take changes? */
+static int gxsp_is_flexible(const gxsp_system *system)
+{
+    return !system->fine && !system->volume && !system->lumped_mass && system->follower_count == 0;
+}
+
+/* Are the chunks still worth keeping, and the choice of preconditioner? */
+static int gxsp_is_compact(gxsp_renewal *update)
+{
+    const gxsp_system *system = update->system;
+    uint32_t *count = (uint32_t *)gxsp_take(update->scratch, system->piece_count, sizeof(uint32_t)), c;
+    size_t lanes = 0;
+    for (c = 0; c < system->chunk_count; ++c)
+        lanes += system->chunks[c].block_count * GXSP_LANES;
+    if (lanes > system->element_count + system->element_count / 4 + 2 * GXSP_CHUNK_BLOCKS * GXSP_LANES)
+        return 0;
+    return !count || !system->chosen || gxsp_large_pieces(system, count) == (system->level_count > 0);
+}
+
+/* 0: the change does not fit. Memory may also have run out: see the pools. */
+static int gxsp_update_system(gxsp_renewal *update)
+{
+    gxsp_system *system = update->system;
+    int keeps_weight;
+    gxsp_find_holes(update);
+    gxsp_match_holes(update);
+    if (update->scratch->failed)
+        return 1;
+    gxsp_touch_removed(update);
+    keeps_weight = gxsp_keeps_weight(update);
+    system->element_count += update->change->element_count;
+    system->element_count -= update->hole_count;
+    gxsp_replace_elements(update);
+    if (system->pool.failed)
+        return 1;
+    if (system->element_count == 0 || !gxsp_renew_nodes(update))
+        return 0;
+    gxsp_move_copies(update);
+    if (update->scratch->failed || system->pool.failed)
+        return 1;
+    gxsp_renew_steps(update, keeps_weight);
+    gxsp_touch_added(update);
+    gxsp_recount_copies(update);
+    gxsp_renew_pieces(update);
+    if (!update->scratch->failed && !system->pool.failed && system->level_count > 0)
+        gxsp_renew_levels(update);
+    return gxsp_is_compact(update);
 }
 
 /* >>pieces */
@@ -4618,7 +5670,7 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
 }
 
 /* Brings matrix and preconditioner up to date with the linearisation: the coarse matrices are made anew where they are missing, where
- * the rate has changed, or where iterations have risen by half since they were made. */
+ * the rate has changed, where iterations have risen by half since they were made, or before they rise by more than a renewal costs. */
 static int gxsp_prepare(gxsp_problem *problem)
 {
     gxsp_system *system = problem->system;
@@ -4629,12 +5681,19 @@ static int gxsp_prepare(gxsp_problem *problem)
     if (system->level_count == 0)
         return 1;
     if (!(system->omega > 0) && !system->fine)
-        gxsp_find_omega(system, problem->rate);
+        system->omega = gxsp_omega(system, gxsp_largest_eigenvalue(system, problem->rate));
+    else if (system->omega_renewed)
+        gxsp_renew_omega(system, problem->rate);
+    system->omega_renewed = 0;
     system->coarse_fresh = system->coarse_rate < problem->rate || system->coarse_rate > problem->rate ||
-                           (system->coarse_worn && !problem->exact);
+                           ((system->coarse_worn || gxsp_coarse_ends(system)) && !problem->exact);
     if (!system->coarse_fresh)
         return 1;
+    if (!system->coarse_worn && gxsp_coarse_ends(system) && ++system->coarse_ends % GXSP_PATIENCE == 0)
+        ++system->coarse_life;
+    system->coarse_age = 0;
     system->coarse_rate = problem->rate;
+    memcpy(system->coarse_state, system->current, 3 * system->n * sizeof(double));
     system->coarse_worn = 0;
     system->coarse_stiffness = system->term_stiffness;
     return gxsp_coarse_numbers(system, problem->rate);
@@ -4654,8 +5713,12 @@ static int gxsp_solve(gxsp_problem *problem)
     count = problem->report.cg_iterations - before;
     if (system->coarse_fresh)
         system->usual_iterations = count;
-    else if (count > system->usual_iterations + system->usual_iterations / 2 + 1)
+    else if (count > system->usual_iterations + system->usual_iterations / 2 + 1) {
         system->coarse_worn = 1;
+        if (count > system->usual_iterations + GXSP_REMAKE)
+            system->coarse_life = system->coarse_age;
+    }
+    ++system->coarse_age;
     return solved;
 }
 
@@ -4756,7 +5819,7 @@ static void gxsp_choose_sleepers(gxsp_problem *problem, const double *displaceme
     const gxs_step_desc *step = problem->step;
     const double time = step->sleep_time > 0 ? step->sleep_time : 0.5;
     int changed = 0;
-    uint32_t p, c, k;
+    uint32_t p;
     size_t i;
     problem->scene = gxsp_scene_make(system, step);
     gxsp_wake_touched(problem, displacement, velocity);
@@ -4776,13 +5839,7 @@ static void gxsp_choose_sleepers(gxsp_problem *problem, const double *displaceme
         return;
     system->still_known = 1;
     system->base_known = 0;
-    for (i = 0; i < system->n; ++i)
-        system->still[i] = system->fixed[i] || (system->pieces[system->piece[i]].state & GXSP_ASLEEP);
-    for (c = 0; c < system->chunk_count; ++c) {
-        system->chunk_still[c] = 1;
-        for (k = 0; k < system->chunks[c].node_count; ++k)
-            system->chunk_still[c] &= system->still[system->nodes[system->chunks[c].first_node + k]];
-    }
+    gxsp_mark_still(system);
     system->active = 3 * system->n;
     for (i = 0; i < system->n; ++i)
         system->active -= system->still[i] ? 3 : 0;
@@ -5370,8 +6427,15 @@ static void gxsp_system_destroy(gxsp_system *system)
     gxsp_pool pool;
     if (!system)
         return;
+    gxsp_release_to(&system->coarse, NULL);
     pool = system->pool; /* which holds system itself */
     gxsp_release_to(&pool, NULL);
+}
+
+static void gxsp_drop_system(gxs_solver *solver)
+{
+    gxsp_system_destroy(solver->system);
+    solver->system = NULL;
 }
 
 GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *model, gx_failure *failure)
@@ -5394,13 +6458,16 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
     if (!system)
         return gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
     system->pool = pool;
+    system->coarse = gxsp_pool_make(&solver->allocator);
     system->jobs = &solver->jobs;
     system->lasting = &solver->lasting;
     bad = gxsp_system_build(system, &scratch, model, solver);
     gxsp_release_to(&scratch, NULL);
+    if (bad == SIZE_MAX && !scratch.failed && !system->pool.failed && !system->coarse.failed)
+        gxsp_steps_make(system);
     if (bad != SIZE_MAX)
         gxsp_fail(failure, GX_ERROR_ARGUMENT, bad);
-    else if (scratch.failed || system->pool.failed)
+    else if (scratch.failed || system->pool.failed || system->coarse.failed)
         gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
     if (failure->result != GX_OK) {
         gxsp_system_destroy(system);
@@ -5409,6 +6476,73 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
     gxsp_system_destroy(solver->system);
     solver->system = system;
     return GX_OK;
+}
+
+/* Is the change one of this model? */
+static gx_result gxsp_check_change(const gxsp_system *system, const gxs_change *change, gx_failure *failure)
+{
+    gxs_model model;
+    gx_result result = GX_OK;
+    size_t i;
+    if (!change || !change->origins || (!change->groups && change->group_count > 0) || (!change->elements && change->element_count > 0))
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    if (change->copy_count == 0)
+        return gxsp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
+    if (change->copy_count >= UINT32_MAX / 4 || change->element_count >= UINT32_MAX / 4 - system->element_count)
+        return gxsp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
+    for (i = 0; i < change->copy_count; ++i)
+        if (change->origins[i] >> 1 >= system->n)
+            return gxsp_fail(failure, GX_ERROR_INDEX, i);
+    for (i = 1; i < change->group_count; ++i)
+        if (change->groups[i - 1] >= change->groups[i])
+            return gxsp_fail(failure, GX_ERROR_ARGUMENT, i);
+    for (i = 1; i < change->element_count; ++i)
+        if (change->elements[i - 1].group > change->elements[i].group)
+            return gxsp_fail(failure, GX_ERROR_ARGUMENT, i);
+    memset(&model, 0, sizeof model);
+    model.copy_count = change->copy_count;
+    model.material_count = system->material_count;
+    for (i = 0; i < change->element_count && result == GX_OK; ++i)
+        result = change->elements[i].group < GXSP_GROUPS ? gxsp_check_element(&change->elements[i], &model, i, failure) :
+                                                           gxsp_fail(failure, GX_ERROR_LIMIT, i);
+    return result;
+}
+
+GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *change, gx_failure *failure)
+{
+    gx_failure ignored;
+    gxsp_pool scratch;
+    gxsp_renewal update;
+    gxsp_system *system;
+    int fits;
+    failure = failure ? failure : &ignored;
+    gxsp_fail(failure, GX_OK, SIZE_MAX);
+    if (!solver || !solver->system)
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    system = solver->system;
+    if (gxsp_check_change(system, change, failure) != GX_OK) {
+        if (failure->result == GX_ERROR_LIMIT)
+            gxsp_drop_system(solver);
+        return failure->result;
+    }
+    scratch = gxsp_pool_make(&solver->allocator);
+    memset(&update, 0, sizeof update);
+    update.system = system;
+    update.scratch = &scratch;
+    update.change = change;
+    update.before = system->n;
+    update.successor = (uint32_t *)gxsp_take(&scratch, system->n, sizeof(uint32_t));
+    update.touched = (uint8_t *)gxsp_take(&scratch, change->copy_count, 1);
+    update.dirty = (uint8_t *)gxsp_take(&scratch, system->levels[1].n, 1);
+    fits = scratch.failed || (gxsp_is_flexible(system) && gxsp_find_successors(&update) && gxsp_update_system(&update));
+    gxsp_release_to(&scratch, NULL);
+    if (scratch.failed || system->pool.failed || system->coarse.failed)
+        gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
+    else if (!fits)
+        gxsp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
+    if (failure->result != GX_OK)
+        gxsp_drop_system(solver);
+    return failure->result;
 }
 
 GXFEM_API void gxs_solver_scene(const gxs_solver *solver, gxs_scene *scene)
@@ -5422,7 +6556,9 @@ GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene)
     gxsp_system *system = solver->system;
     uint32_t p;
     solver->lasting.scene = *scene;
-    if (!system)
+    if (system && system->roots_known)
+        gxsp_drop_system(solver);
+    if (!solver->system)
         return;
     system->still_known = system->base_known = system->guess_known = 0;
     system->omega = 0;
@@ -5430,6 +6566,7 @@ GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene)
     system->coarse_stiffness = 0;
     system->coarse_fresh = system->coarse_worn = 0;
     system->usual_iterations = 0;
+    system->coarse_age = system->coarse_life = system->coarse_ends = 0;
     for (p = 0; p < system->piece_count; ++p) {
         gxsp_piece *piece = &system->pieces[p];
         piece->state &= ~(GXSP_TOUCHED | GXSP_ASLEEP);
@@ -5806,6 +6943,11 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_SHIFT
 #undef GXSP_STIFFNESS
 #undef GXSP_TINY
+#undef GXSP_OMEGA
+#undef GXSP_REMAKE
+#undef GXSP_PATIENCE
 #undef GXSP_CHUNK_PARENTS
-#undef GXSP_HEAD
+#undef GXSP_ALIGNMENT
+#undef GXSP_FILTER
+#undef GXSP_GROUPS
 #endif /* GXFEM_SOLVE_IMPLEMENTED */

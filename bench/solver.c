@@ -717,6 +717,7 @@ typedef struct scene {
 static scene scene_make(int cut, int jittered, int size, int hard)
 {
     scene s;
+    memset(&s, 0, sizeof s);
     snprintf(s.name, sizeof s.name, "%s-%s-%s-%s", block_cut_names[cut], jittered ? "jittered" : "lattice", size_names[size],
              hard ? "1e8" : "1e6");
     s.block.cells = size_cells[cut][size];

@@ -1,0 +1,463 @@
+/* test_updates.c - a cut changes the solver's model instead of making it anew (gxs_solver_update): the same motion as with a model that is
+   set whole after each cut, no more iterations, the same bits in any order of jobs and after a save, sleepers that wake, bad changes,
+   memory that runs out. */
+#define GXFEM_IMPLEMENTATION
+#include "../gxfem.h"
+#include "body.h"
+
+enum { BLOCK = 6 };     /* cells along an edge: enough copies for multigrid */
+
+static void hold_top(gx_body *body) {
+    const gx_region top = { 2, 1, BLOCK - 1e-9 };
+    ck_assert_int_eq(gx_body_hold(body, &top, 1), GX_OK);
+}
+
+static gx_step_desc step_of(double dt) {
+    gx_step_desc step;
+    memset(&step, 0, sizeof step);
+    step.dt = dt;
+    step.gravity[0] = 1; step.gravity[2] = -9.81;
+    return step;
+}
+
+/* Steps to balance, so that two ways to the same step end alike */
+static gx_step_desc exact_step(double dt) {
+    gx_step_desc step = step_of(dt);
+    step.newton_iterations = 60; step.newton_tolerance = 1e-11; step.cg_tolerance = 1e-4;
+    return step;
+}
+
+static uint32_t advance(gx_body *body, const gx_step_desc *step, int steps) {
+    gxs_step_report report;
+    gx_failure failure;
+    uint32_t iterations = 0;
+    while (steps-- > 0) {
+        gx_result result = gx_body_step(body, step, &report, &failure);
+        ck_assert_msg(result == GX_OK, "%s at %zu", gx_result_text(result), failure.index);
+        iterations += report.cg_iterations;
+    }
+    return iterations;
+}
+
+/* Difference of displacements relative to these, both by the mass: a copy of 1e-60 of its element's has no place that doubles could tell. */
+static double apart(gx_body *a, gx_body *b) {
+    const gx_view of = view_of(a), to = view_of(b);
+    const double *mass = a->solver->system->lumped;
+    double most = 0, gap = 0;
+    size_t i;
+    ck_assert_uint_eq(of.copy_count, to.copy_count);
+    for (i = 0; i < 3 * of.copy_count; ++i) {
+        const double d = of.displacement[i] - to.displacement[i];
+        most += mass[i / 3] * of.displacement[i] * of.displacement[i];
+        gap += mass[i / 3] * d * d;
+    }
+    return sqrt(gap / most);
+}
+
+static int same_bits(gx_body *a, gx_body *b) {
+    const gx_view of = view_of(a), to = view_of(b);
+    return of.copy_count == to.copy_count && memcmp(of.displacement, to.displacement, 3 * of.copy_count * sizeof(double)) == 0 &&
+           memcmp(of.velocity, to.velocity, 3 * of.copy_count * sizeof(double)) == 0;
+}
+
+/* A quad across z, in x from low to high */
+static void add_strip(workload *w, double z, double low, double high) {
+    const double a[3] = { low, -1, z }, b[3] = { high, -1, z }, c[3] = { high, BLOCK + 1, z }, d[3] = { low, BLOCK + 1, z };
+    wl_add_quad(wl_add_surface(w, 0), a, b, c, d);
+}
+
+/* Cuts of a block: strips that grow together, sheets that end inside and cross, holes, planes that part it, a cut through nodes */
+static void add_cuts(workload *w) {
+    const double p[3] = { 3.1, 2.9, 3.3 }, n[3] = { 1, 0.3, 0.2 }, q[3] = { 2.13, 4.21, 1.93 }, m[3] = { 0.1, 1, 0.4 };
+    int i;
+    for (i = 0; i < 4; ++i) add_strip(w, 2.37, i - 0.63, i + 0.37);
+    add_plane(w, p, n, 1.2);
+    add_plane(w, q, m, 0.7);
+    add_box(w, 1, 1.2, 1.3, 3.1, 2.6, 2.2, 4.4);
+    add_strip(w, 2.37, 3.37, 8);
+    add_plane(w, q, n, 20);
+    add_axis_plane(w, 1, 3);
+    add_random_plane(w, 2);
+    add_random_plane(w, 2);
+}
+
+static workload block_with_cuts(uint64_t seed) {
+    workload w = grid(BLOCK, BLOCK, BLOCK, seed % 2 ? 6 : 5);
+    random_seed(seed);
+    add_cuts(&w);
+    return w;
+}
+
+/* ---- the same motion ---- */
+
+START_TEST(cuts_change_the_model) {
+    workload w = block_with_cuts((uint64_t)_i);
+    gx_body *changed = body_of(&w), *whole = body_of(&w);
+    gx_step_desc step = exact_step(0.02);
+    size_t c, updates = 0;
+    hold_top(changed); hold_top(whole);
+    advance(changed, &step, 2); advance(whole, &step, 2);
+    for (c = 0; c < w.surface_count; ++c) {
+        cut_by(changed, &w, c, 1); cut_by(whole, &w, c, 1);
+        hold_top(whole);                /* so that its model is set whole */
+        if (c % 3 == 1) continue;       /* two cuts before a step */
+        advance(changed, &step, 2); advance(whole, &step, 2);
+        updates += changed->model_updated != 0;
+        ck_assert(!whole->model_updated);
+        ck_assert_msg(apart(changed, whole) < 1e-6, "after cut %zu: %g", c, apart(changed, whole));
+    }
+    ck_assert_uint_gt(updates, 3);
+    gx_body_destroy(changed); gx_body_destroy(whole);
+    wl_free(&w);
+}
+END_TEST
+
+/* BDF2, damping and a material that is not the default: what the model keeps is of no one kind. */
+START_TEST(changed_models_are_of_any_kind) {
+    static const gxs_material_kind kinds[4] = { GXS_ST_VENANT_KIRCHHOFF, GXS_FIXED_COROTATED, GXS_LINEAR, GXS_STABLE_NEO_HOOKEAN };
+    workload w = block_with_cuts(2);
+    gx_body_desc desc = desc_of(&w);
+    gx_material materials[2];
+    uint32_t *which = (uint32_t *)calloc(w.element_count, sizeof *which);
+    gx_body *changed = NULL, *whole = NULL;
+    gx_step_desc step = exact_step(0.01);
+    size_t c;
+    memset(materials, 0, sizeof materials);
+    materials[0].elastic.kind = kinds[_i]; materials[0].elastic.young = 2e6; materials[0].elastic.poisson = 0.3; materials[0].density = 1000;
+    materials[0].elastic.damping = 1e-3;
+    materials[1] = materials[0];
+    materials[1].elastic.kind = GXS_STABLE_NEO_HOOKEAN; materials[1].elastic.young = 5e6;
+    for (c = 0; c < w.element_count; ++c) which[c] = c / 7 % 2;
+    desc.materials = materials; desc.material_count = 2; desc.element_materials = which;
+    step.integrator = GXS_BDF2;
+    ck_assert_int_eq(gx_body_create(&desc, &changed, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_create(&desc, &whole, NULL), GX_OK);
+    hold_top(changed); hold_top(whole);
+    advance(changed, &step, 2); advance(whole, &step, 2);
+    for (c = 0; c < 6; ++c) {
+        cut_by(changed, &w, c, 1); cut_by(whole, &w, c, 1);
+        hold_top(whole);
+        advance(changed, &step, 1); advance(whole, &step, 1);
+        ck_assert(changed->model_updated);
+        ck_assert_msg(apart(changed, whole) < 1e-6, "after cut %zu: %g", c, apart(changed, whole));
+    }
+    gx_body_destroy(changed); gx_body_destroy(whole);
+    free(which);
+    wl_free(&w);
+}
+END_TEST
+
+/* One Newton iteration a step, as in a game: what is kept of the preconditioner is worth what a new one is. */
+START_TEST(changed_models_take_no_more_iterations) {
+    workload w = grid(12, 12, 12, 5);
+    gx_body *changed, *whole;
+    const gx_region top = { 2, 1, 12 - 1e-9 };
+    gx_step_desc step = step_of(0.033);
+    uint32_t by_change = 0, by_whole = 0;
+    double x;
+    size_t c;
+    for (x = -0.63; x < 9; x += 1) {
+        const double a[3] = { x, -1, 5.47 }, b[3] = { x + 1, -1, 5.47 }, d[3] = { x + 1, 13, 5.47 }, e[3] = { x, 13, 5.47 };
+        wl_add_quad(wl_add_surface(&w, 0), a, b, d, e);
+    }
+    changed = body_of(&w); whole = body_of(&w);
+    ck_assert_int_eq(gx_body_hold(changed, &top, 1), GX_OK);
+    ck_assert_int_eq(gx_body_hold(whole, &top, 1), GX_OK);
+    advance(changed, &step, 4); advance(whole, &step, 4);
+    for (c = 0; c < w.surface_count; ++c) {
+        cut_by(changed, &w, c, 1); cut_by(whole, &w, c, 1);
+        ck_assert_int_eq(gx_body_hold(whole, &top, 1), GX_OK);
+        by_change += advance(changed, &step, 2);
+        by_whole += advance(whole, &step, 2);
+        ck_assert(changed->model_updated);
+    }
+    ck_assert_msg(by_change <= by_whole + by_whole / 10, "%u iterations, %u with models set whole", by_change, by_whole);
+    gx_body_destroy(changed); gx_body_destroy(whole);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- the same bits ---- */
+
+static void backwards(void *user, size_t count, void (*task)(void *, size_t), void *context) {
+    (void)user;
+    while (count-- > 0) task(context, count);
+}
+
+START_TEST(order_of_jobs_does_not_matter) {
+    workload w = block_with_cuts(3);
+    gx_body_desc desc = desc_of(&w);
+    gx_body *one = NULL, *other = NULL;
+    gx_step_desc step = step_of(0.02);
+    size_t c;
+    ck_assert_int_eq(gx_body_create(&desc, &one, NULL), GX_OK);
+    desc.jobs.parallel_for = backwards;
+    ck_assert_int_eq(gx_body_create(&desc, &other, NULL), GX_OK);
+    hold_top(one); hold_top(other);
+    advance(one, &step, 2); advance(other, &step, 2);
+    for (c = 0; c < w.surface_count; ++c) {
+        cut_by(one, &w, c, 1); cut_by(other, &w, c, 1);
+        advance(one, &step, 2); advance(other, &step, 2);
+        ck_assert_msg(same_bits(one, other), "after cut %zu", c);
+    }
+    gx_body_destroy(one); gx_body_destroy(other);
+    wl_free(&w);
+}
+END_TEST
+
+/* A body saved when its model has been changed, and when it is yet to be changed, takes the steps that its copy takes. */
+START_TEST(saved_bodies_go_on_alike) {
+    workload w = block_with_cuts(4);
+    gx_body *body = body_of(&w), *copy = NULL, *before = NULL;
+    gx_step_desc step = step_of(0.02);
+    hold_top(body);
+    advance(body, &step, 2);
+    cut_by(body, &w, 0, 2);
+    advance(body, &step, 2);
+    ck_assert(body->model_updated);
+    if (_i % 2) cut_by(body, &w, 2, 1);
+    ck_assert_int_eq(gx_body_clone(body, &copy), GX_OK);
+    ck_assert_int_eq(gx_body_clone(body, &before), GX_OK);
+    advance(body, &step, 2); advance(copy, &step, 2);
+    ck_assert(same_bits(body, copy));
+    cut_by(body, &w, 3, 2); cut_by(copy, &w, 3, 2);
+    advance(body, &step, 2); advance(copy, &step, 2);
+    ck_assert(body->model_updated && same_bits(body, copy));
+    ck_assert_int_eq(gx_body_restore(body, before), GX_OK);
+    advance(body, &step, 2); advance(before, &step, 2);
+    ck_assert(same_bits(body, before));
+    gx_body_destroy(body); gx_body_destroy(copy); gx_body_destroy(before);
+    wl_free(&w);
+}
+END_TEST
+
+/* A state that has been restored without a cut in between: the model is that of the same cells, but has been changed. */
+START_TEST(restored_states_go_on_alike) {
+    workload w = block_with_cuts(5);
+    gx_body *body = body_of(&w), *mark = NULL;
+    gx_step_desc step = step_of(0.02);
+    hold_top(body);
+    advance(body, &step, 2);
+    cut_by(body, &w, 0, 2);
+    advance(body, &step, 1);
+    ck_assert(body->model_updated);
+    ck_assert_int_eq(gx_body_clone(body, &mark), GX_OK);
+    advance(body, &step, 3);
+    cut_by(body, &w, 5, 1); cut_by(mark, &w, 5, 1);     /* the same cuts, so that restoring copies the state alone */
+    advance(body, &step, 1);
+    ck_assert_int_eq(gx_body_restore(body, mark), GX_OK);
+    advance(body, &step, 3); advance(mark, &step, 3);
+    ck_assert(same_bits(body, mark));
+    gx_body_destroy(body); gx_body_destroy(mark);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- sleep ---- */
+
+/* Two halves hang asleep. One is cut; of the other the caller writes a displacement before the step: both wake. */
+START_TEST(what_is_written_between_cut_and_step_wakes) {
+    workload w = grid(4, 2, 2, 5);
+    gx_body *body;
+    const gx_region top = { 2, 1, 2 - 1e-9 };
+    gx_step_desc step = step_of(0.033);
+    gxs_step_report report;
+    gx_view view;
+    size_t i, all = 0;
+    int n;
+    add_axis_plane(&w, 0, 2.25); add_box(&w, 0, -1, -1, 0.5, 1.75, 4, 0.75);
+    body = body_of(&w);
+    cut_by(body, &w, 0, 1);
+    ck_assert_int_eq(gx_body_hold(body, &top, 1), GX_OK);
+    step.sleep_speed = 1e-3; step.mass_damping = 5;
+    for (n = 0, report.active_unknowns = 1; n < 400 && report.active_unknowns > 0; ++n)
+        ck_assert_int_eq(gx_body_step(body, &step, &report, NULL), GX_OK);
+    ck_assert_uint_eq(report.active_unknowns, 0);
+    cut_by(body, &w, 1, 1);
+    view = view_of(body);
+    for (i = 0; i < view.copy_count; ++i) all += view.copy_held[i] ? 0 : 3;
+    for (i = 0; i < view.copy_count && _i; ++i)
+        if (!view.copy_held[i] && w.positions[3 * view.copy_node[i]] > 3.5) { body->displacement[3 * i + _i - 1] += 1e-3; break; }
+    ck_assert_int_eq(gx_body_step(body, &step, &report, NULL), GX_OK);
+    ck_assert(body->model_updated);
+    if (_i) ck_assert_uint_eq(report.active_unknowns, all);
+    else ck_assert(report.active_unknowns > 0 && report.active_unknowns < all);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- the solver alone ---- */
+
+/* The block's model by a body that is at rest */
+static gxs_model model_of(gx_body *body) {
+    gxs_model model;
+    ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
+    return model;
+}
+
+static gxs_solver *solver_with(const gxs_model *model) {
+    gxs_solver *solver = NULL;
+    ck_assert_int_eq(gxs_solver_create(NULL, &solver), GX_OK);
+    ck_assert_int_eq(gxs_solver_set_model(solver, model, NULL), GX_OK);
+    return solver;
+}
+
+START_TEST(bad_changes_are_named) {
+    workload w = grid(2, 2, 2, 5);
+    gx_body *body = body_of(&w);
+    gxs_model model = model_of(body);
+    gxs_solver *solver = solver_with(&model);
+    uint32_t *origins = (uint32_t *)malloc(model.copy_count * sizeof *origins), groups[2] = { 3, 5 };
+    gxs_element elements[2];
+    gxs_change change;
+    gxs_step_desc step;
+    gx_failure failure;
+    double *u = (double *)calloc(6 * model.copy_count, sizeof *u);
+    size_t i;
+    for (i = 0; i < model.copy_count; ++i) origins[i] = 2 * (uint32_t)i;
+    memset(&change, 0, sizeof change); memset(&step, 0, sizeof step);
+    step.dt = 0.01;
+    elements[0] = model.elements[3]; elements[1] = model.elements[5];
+    change.copy_count = model.copy_count; change.origins = origins;
+    change.groups = groups; change.group_count = 2;
+    change.elements = elements; change.element_count = 2;
+#define EXPECT(result, at) do { ck_assert_int_eq(gxs_solver_update(solver, &change, &failure), result); ck_assert_uint_eq(failure.index, at); } while (0)
+    ck_assert_int_eq(gxs_solver_update(NULL, &change, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxs_solver_update(solver, NULL, &failure), GX_ERROR_ARGUMENT);
+    change.origins = NULL; EXPECT(GX_ERROR_ARGUMENT, SIZE_MAX); change.origins = origins;
+    change.groups = NULL; EXPECT(GX_ERROR_ARGUMENT, SIZE_MAX); change.groups = groups;
+    change.elements = NULL; EXPECT(GX_ERROR_ARGUMENT, SIZE_MAX); change.elements = elements;
+    change.copy_count = 0; EXPECT(GX_ERROR_EMPTY, SIZE_MAX); change.copy_count = model.copy_count;
+    origins[4] = 2 * (uint32_t)model.copy_count; EXPECT(GX_ERROR_INDEX, 4); origins[4] = 8;
+    groups[1] = 3; EXPECT(GX_ERROR_ARGUMENT, 1); groups[1] = 5;
+    elements[0].group = 6; EXPECT(GX_ERROR_ARGUMENT, 1); elements[0].group = 3;
+    elements[1].copy[2] = (uint32_t)model.copy_count; EXPECT(GX_ERROR_INDEX, 1); elements[1].copy[2] = model.elements[5].copy[2];
+    elements[1].material = 1; EXPECT(GX_ERROR_INDEX, 1); elements[1].material = 0;
+    elements[0].weight = NAN; EXPECT(GX_ERROR_NOT_FINITE, 0);
+    elements[0].weight = -1; EXPECT(GX_ERROR_INVERTED, 0); elements[0].weight = model.elements[3].weight;
+    ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * model.copy_count, NULL, NULL), GX_OK);  /* the model is still set */
+    EXPECT(GX_OK, SIZE_MAX);
+    ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * model.copy_count, NULL, NULL), GX_OK);
+    change.copy_count--; EXPECT(GX_ERROR_LIMIT, SIZE_MAX); change.copy_count++;     /* a copy is lost that elements have */
+    EXPECT(GX_ERROR_ARGUMENT, SIZE_MAX);                                            /* no model is set any more */
+    ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * model.copy_count, NULL, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);
+    origins[7] = 6; EXPECT(GX_ERROR_LIMIT, SIZE_MAX); origins[7] = 14;              /* two copies that are one */
+#undef EXPECT
+    gxs_solver_destroy(solver);
+    free(origins); free(u);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Elements replaced by themselves, copies renumbered: nothing changes but for rounding. */
+START_TEST(changes_of_nothing_change_nothing) {
+    workload w = grid(BLOCK, BLOCK, BLOCK, 5);
+    gx_body *body = body_of(&w);
+    gxs_model model = model_of(body);
+    const size_t n = model.copy_count;
+    gxs_element *elements = (gxs_element *)malloc(model.element_count * sizeof *elements);
+    uint32_t *origins = (uint32_t *)malloc(n * sizeof *origins), *groups = (uint32_t *)malloc(model.element_count * sizeof *groups);
+    double *u = (double *)calloc(6 * n, sizeof *u), *other = (double *)calloc(6 * n, sizeof *other), most = 0;
+    gxs_solver *plain = solver_with(&model), *changed = solver_with(&model);
+    gxs_step_desc step;
+    gxs_change change;
+    size_t i, round;
+    memset(&step, 0, sizeof step); memset(&change, 0, sizeof change);
+    step.dt = 0.02; step.gravity[2] = -9.81; step.newton_iterations = 60; step.newton_tolerance = 1e-11; step.cg_tolerance = 1e-4;
+    random_seed(7);
+    for (i = 0; i < n; ++i) { origins[i] = 2 * (uint32_t)i; u[3 * i] = other[3 * i] = 0.2 * sin(w.positions[3 * i + 2]); }
+    for (round = 0; round < 6; ++round) {
+        change.copy_count = n; change.origins = origins; change.groups = groups; change.elements = elements;
+        change.group_count = change.element_count = 0;
+        for (i = 0; i < model.element_count; ++i)
+            if (random_below(8) == 0) {
+                groups[change.group_count++] = (uint32_t)i;
+                elements[change.element_count++] = model.elements[i];
+            }
+        ck_assert_int_eq(gxs_solver_update(changed, &change, NULL), GX_OK);
+        ck_assert_int_eq(gxs_solver_step(plain, &step, u, u + 3 * n, NULL, NULL), GX_OK);
+        ck_assert_int_eq(gxs_solver_step(changed, &step, other, other + 3 * n, NULL, NULL), GX_OK);
+        for (i = 0, most = 0; i < 3 * n; ++i) most = fmax(most, fabs(u[i] - other[i]));
+        ck_assert_msg(most < 1e-8, "round %zu: %g", round, most);
+    }
+    gxs_solver_destroy(plain); gxs_solver_destroy(changed);
+    free(elements); free(origins); free(groups); free(u); free(other);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- memory ---- */
+
+typedef struct memory { size_t left; int from_then_on, failed; } memory;
+
+static void *take(void *user, size_t size) {
+    memory *m = (memory *)user;
+    if (m->left == 0 || (m->failed && m->from_then_on)) { m->failed = 1; m->left = SIZE_MAX; return NULL; }
+    m->left--;
+    return malloc(size);
+}
+
+static void give(void *user, void *block, size_t size) { (void)user; (void)size; free(block); }
+
+/* The n-th allocation of the step after a cut fails, once or from then on: the body is as it was, and the step made again is as good. */
+START_TEST(memory_may_run_out) {
+    workload w = block_with_cuts(6);
+    gx_body_desc desc = desc_of(&w);
+    gx_step_desc step = exact_step(0.02);
+    gx_body *whole = body_of(&w);
+    size_t n, failures = 0;
+    hold_top(whole);
+    advance(whole, &step, 1);
+    cut_by(whole, &w, 0, 1);
+    advance(whole, &step, 1);
+    for (n = 0;; ++n) {
+        memory m = { SIZE_MAX, 0, 0 };
+        gx_body *body = NULL;
+        gx_result result;
+        uint64_t hash;
+        desc.allocator.allocate = take; desc.allocator.release = give; desc.allocator.user = &m;
+        ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+        hold_top(body);
+        advance(body, &step, 1);
+        cut_by(body, &w, 0, 1);
+        hash = gx_body_state_hash(body);
+        m.left = n; m.from_then_on = _i;
+        result = gx_body_step(body, &step, NULL, NULL);
+        failures += m.failed != 0;
+        ck_assert_int_eq(result, m.failed ? GX_ERROR_MEMORY : GX_OK);
+        ck_assert(!m.failed || gx_body_state_hash(body) == hash);
+        m.left = SIZE_MAX; m.from_then_on = 0;
+        if (result != GX_OK) advance(body, &step, 1);
+        ck_assert_msg(apart(body, whole) < 1e-6, "allocation %zu: %g", n, apart(body, whole));
+        gx_body_destroy(body);
+        if (result == GX_OK) break;
+    }
+    ck_assert_uint_gt(failures, 50);
+    gx_body_destroy(whole);
+    wl_free(&w);
+}
+END_TEST
+
+static Suite *updates_suite(void) {
+    Suite *suite = suite_create("updates");
+    TCase *tests = tcase_create("updates");
+    tcase_set_timeout(tests, 120);
+    tcase_add_loop_test(tests, cuts_change_the_model, 0, 6 / FEWER);
+    tcase_add_loop_test(tests, changed_models_are_of_any_kind, 0, 4);
+    tcase_add_test(tests, changed_models_take_no_more_iterations);
+    tcase_add_test(tests, order_of_jobs_does_not_matter);
+    tcase_add_loop_test(tests, saved_bodies_go_on_alike, 0, 2);
+    tcase_add_test(tests, restored_states_go_on_alike);
+    tcase_add_loop_test(tests, what_is_written_between_cut_and_step_wakes, 0, 4);
+    tcase_add_test(tests, bad_changes_are_named);
+    tcase_add_test(tests, changes_of_nothing_change_nothing);
+    tcase_add_loop_test(tests, memory_may_run_out, 0, 2);
+    suite_add_tcase(suite, tests);
+    return suite;
+}
+
+int main(void) { return run_suite(updates_suite()); }
