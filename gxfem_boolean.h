@@ -47,7 +47,7 @@
  * along those segments; winding numbers spread from facet to facet; the result is the facets between inside and outside. Vertices are
  * rounded at the output only, and more operands may follow. See docs/KERNEL.md.
  *
- * What it does not do: merge coplanar triangles of a result, or move its rounded vertices so that none of its triangles is turned over.
+ * What it does not do: move a result's rounded vertices so that none of its triangles is turned over.
  *
  * Guarantees and limits
  *     - Signs are exact for finite coordinates under every flag, rounding mode and flush-to-zero (but x87 set to 24 bits).
@@ -411,11 +411,18 @@ typedef struct gxb_operand {
     uint32_t simple;            /* 1: the caller vouches that this surface meets itself in common vertices and edges only, which saves looking */
 } gxb_operand;
 
+/* How a result is divided into triangles. */
+enum { GXB_DIVIDED = 0,     /* as the operands have divided each other */
+       GXB_COARSE,          /* each source face in as few triangles as its outline allows: without vertices inside it, or on a straight
+                               part of its outline where no other face ends; nothing is merged across source faces */
+       GXB_MERGED };        /* as GXB_COARSE, of source faces that lie beside each other in one plane too: a triangle names one of them */
+
 typedef struct gxb_boolean_desc {
     gx_allocator allocator;
     size_t memory_limit;        /* in bytes, of all that the Boolean holds at a time; 0: none */
     uint32_t fine;              /* 1: vertices and volumes are right to their last digits. 0: vertices proven within 1e-10 of the largest
                                    coordinate and volumes within 1e-7 of their size; both are mostly far nearer */
+    uint32_t triangulation;     /* GXB_DIVIDED ... */
     /* Instead of operations and rules: is a point around which the operands wind so often inside? NULL: by operations and rules. */
     int (*inside)(void *user, const int32_t *winding, size_t operand_count);
     void *user;
@@ -813,8 +820,16 @@ static void gxbp_exact_three_planes(gxb_num point[4], const gxb_num a[4], const 
 #define GXBP_NO_BALL gxbp_power(GXBP_NO_BALL_EXPONENT)
 
 static double gxbp_fence(double x) {
+#if defined(__GNUC__) && defined(__SSE2_MATH__)
+    __asm__("" : "+x"(x));      /* no code; the compiler can not see through it, and registers hold doubles only */
+    return x;
+#elif defined(__GNUC__) && defined(__aarch64__)
+    __asm__("" : "+w"(x));
+    return x;
+#else
     volatile double v = x;
     return v;
+#endif
 }
 
 static double gxbp_max(double a, double b) { return a > b ? a : b; }
@@ -3856,10 +3871,12 @@ struct gxb_boolean {
     gxb_complex cx;             /* points, planes and exact numbers; the complex has no elements */
     gx_allocator outer;
     size_t limit, used, peak;
+    unsigned char *arena;       /* behind the struct: what small cases need comes from here */
+    size_t arena_size, arena_used;
     uint64_t allocations;
     int over_limit;
     gx_result result;           /* of the evaluation at work */
-    uint32_t fine;
+    uint32_t fine, triangulation;
     int (*inside)(void *user, const int32_t *winding, size_t operand_count);
     void *user;
     gxbp_operand *operands; uint32_t operand_count, operand_capacity;
@@ -3902,9 +3919,18 @@ struct gxb_boolean {
 
 /* --- memory --- */
 
+#define GXBP_ARENA ((size_t)1 << 16)
+
+static size_t gxbp_whole_words(size_t size) { return (size + 15) & ~(size_t)15; }
+
 static void *gxbp_count_allocate(void *user, size_t size) {
     gxb_boolean *b = (gxb_boolean *)user;
     void *memory;
+    if (size <= b->arena_size - b->arena_used) {
+        memory = b->arena + b->arena_used;
+        b->arena_used += gxbp_whole_words(size);
+        return memory;
+    }
     if (b->limit != 0 && (size > b->limit || b->used > b->limit - size)) { b->over_limit = 1; return NULL; }
     memory = gxbp_allocate(&b->outer, size);
     if (memory == NULL) return NULL;
@@ -3916,6 +3942,12 @@ static void *gxbp_count_allocate(void *user, size_t size) {
 
 static void gxbp_count_release(void *user, void *memory, size_t size) {
     gxb_boolean *b = (gxb_boolean *)user;
+    const unsigned char *m = (const unsigned char *)memory;
+    if (m >= b->arena && m < b->arena + b->arena_size) {
+        const size_t from = (size_t)(m - b->arena);
+        if (from + gxbp_whole_words(size) == b->arena_used) b->arena_used = from;       /* what else is released there stays taken */
+        return;
+    }
     b->used -= size;
     gxbp_release(&b->outer, memory, size);
 }
@@ -3929,7 +3961,7 @@ static int gxbp_stop(gxb_boolean *b, gx_result result) {
 static int gxbp_room(gxb_boolean *b, void *array, size_t item, uint32_t count, uint32_t *capacity, size_t extra) {
     gx_result result;
     if ((size_t)count + extra <= *capacity) return 1;
-    if (*capacity == 0 && extra < 64) extra = 64;       /* small cases should not pay for growing */
+    if (*capacity == 0 && extra < 16) extra = 16;       /* small cases should not pay for growing */
     result = gxbp_reserve(&b->cx, array, item, count, capacity, extra);
     return result == GX_OK ? 1 : gxbp_stop(b, result);
 }
@@ -4658,9 +4690,18 @@ static void gxbp_meet_in_plane(gxb_boolean *b, uint32_t s, uint32_t t) {
     else gxbp_record_meeting(b, s, t, &m);
 }
 
-static void gxbp_sides(gxb_boolean *b, uint32_t s, uint32_t plane, int side[3]) {
+/* Sides of a source's corners; each point remembers two answers, of which slot says the one to replace. */
+static void gxbp_sides(gxb_boolean *b, uint32_t s, uint32_t plane, int slot, int side[3]) {
     int k;
-    for (k = 0; k < 3; k++) side[k] = b->sources[s].plane == plane ? 0 : gxbp_point_side(b, b->sources[s].point[k], plane);
+    for (k = 0; k < 3; k++) {
+        const uint32_t point = b->sources[s].point[k];
+        gxb_cpoint *p = &b->cx.points[point];
+        if (p->stamp[slot] != plane + 1) {
+            p->sign[slot] = b->sources[s].plane == plane ? 0 : gxbp_point_side(b, point, plane);
+            p->stamp[slot] = plane + 1;
+        }
+        side[k] = p->sign[slot];
+    }
 }
 
 static int gxbp_all_on_one_side(const int side[3]) { return side[0] != 0 && side[0] == side[1] && side[0] == side[2]; }
@@ -4693,7 +4734,7 @@ static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
     gxbp_meeting m;
     int neighbours, flat, k, common = 0;
     if (b->result != GX_OK || !gxbp_need_plane(b, s) || !gxbp_need_plane(b, t)) return;
-    gxbp_sides(b, t, b->sources[s].plane, of_t);
+    gxbp_sides(b, t, b->sources[s].plane, 0, of_t);
     if (gxbp_all_on_one_side(of_t)) return;
     flat = of_t[0] == 0 && of_t[1] == 0 && of_t[2] == 0;
     neighbours = gxbp_are_neighbours(b, s, t);
@@ -4702,7 +4743,7 @@ static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
         if (!neighbours || !gxbp_flat_apart(b, s, t)) gxbp_meet_in_plane(b, s, t);
         return;
     }
-    gxbp_sides(b, s, b->sources[t].plane, of_s);
+    gxbp_sides(b, s, b->sources[t].plane, 1, of_s);
     if (gxbp_all_on_one_side(of_s)) return;
     for (k = 0; k < 3; k++) common += gxbp_is_corner(b, t, b->sources[s].point[k]);
     if (common == 1 && (gxbp_touches_by_corner(of_s) || gxbp_touches_by_corner(of_t))) return;
@@ -5718,7 +5759,7 @@ static uint32_t gxbp_state_beyond(gxb_boolean *b, uint32_t f, int k) {
         const uint32_t t = b->links[list].value;
         int side[3];
         if (t & GXBP_EDGE_LABEL || b->operands[b->sources[t].operand].operation == GXB_SPLIT) continue;
-        gxbp_sides(b, t, plane, side);
+        gxbp_sides(b, t, plane, 0, side);
         if (side[0] <= 0 && side[1] <= 0 && side[2] <= 0) continue;
         if (winding == NULL && (winding = gxbp_copy_winding(b, b->pieces[f].state)) == NULL) return 0;
         winding[b->sources[t].operand] += gxbp_side_of_piece(b, f, k, t);
@@ -6056,6 +6097,228 @@ static void gxbp_extract(gxb_boolean *b) {
     }
 }
 
+static uint32_t gxbp_out_corner(const gxb_boolean *b, uint32_t t, uint32_t k) { return b->out_points[b->out_triangles[3 * t + k % 3]]; }
+
+/* A source that met nothing may have had no plane yet. GXB_NONE: no memory. */
+static uint32_t gxbp_out_plane(gxb_boolean *b, uint32_t t) {
+    const uint32_t s = b->pieces[b->out_planes[t] / 2].source;
+    return gxbp_need_plane(b, s) ? b->sources[s].plane : GXB_NONE;
+}
+
+/* --- coarse results: vertices that the outline of no face needs are taken away, one by one, and their stars filled with fewer triangles --- */
+
+/* The triangles of a face around a vertex, from outline to outline or all around. hint: one of the half-edges that leave it there. */
+typedef struct gxbp_umbrella { uint32_t vertex, hint, next; } gxbp_umbrella;
+
+/* Half-edges are 3 t + k. */
+typedef struct gxbp_coarse {
+    uint32_t *near;             /* of each half-edge: the one across it in the same face, GXB_NONE on the face's outline */
+    uint32_t *corner;           /* of each half-edge: the umbrella that it leaves from; GXB_NONE: its triangle is gone */
+    gxbp_umbrella *umbrellas; uint32_t umbrella_count;
+    uint32_t *first;            /* of each vertex: its umbrellas */
+    uint32_t *degree;           /* of each vertex: edges of outlines that end there */
+} gxbp_coarse;
+
+static uint32_t gxbp_last_edge(uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
+
+/* 1: triangle u is of t's face and faces as it does, -1: the other way (a sheet's other side), 0: it is of another face. */
+static int gxbp_same_face(gxb_boolean *b, uint32_t t, uint32_t u) {
+    const int facing = b->out_planes[t] & 1 ? -1 : 1;
+    uint32_t k;
+    if (b->out_operands[t] == b->out_operands[u] && b->out_sources[t] == b->out_sources[u]) return b->out_planes[u] & 1 ? -facing : facing;
+    if (b->triangulation != GXB_MERGED) return 0;
+    b->plane = gxbp_out_plane(b, t);
+    if (b->plane == GXB_NONE) return 0;
+    for (k = 0; k < 3 && gxbp_out_plane(b, u) != b->plane; k++) if (gxbp_point_side(b, gxbp_out_corner(b, u, k), b->plane) != 0) return 0;
+    return facing * gxbp_turn(b, gxbp_out_corner(b, u, 0), gxbp_out_corner(b, u, 1), gxbp_out_corner(b, u, 2));
+}
+
+/* Joins the half-edges between p and q that face alike, if all are of one face. 0: the edge belongs to an outline. */
+static int gxbp_pair_edge(gxb_boolean *b, const gxbp_fan *fan, uint32_t p, uint32_t q, uint32_t *near) {
+    uint32_t found[2][2], pass, i, first = GXB_NONE;
+    memset(found, 0xff, sizeof found);
+    for (pass = 0; pass < 2; pass++) {
+        const uint32_t from = pass == 0 ? p : q, to = pass == 0 ? q : p;
+        for (i = fan->first[from]; i < fan->first[from + 1]; i++) {
+            const uint32_t h = fan->list[i].half_edge;
+            int facing;
+            if (fan->list[i].to != to) continue;
+            if (first == GXB_NONE) first = h / 3;
+            facing = gxbp_same_face(b, first, h / 3);
+            if (facing == 0 || found[pass][facing > 0] != GXB_NONE) return 0;
+            found[pass][facing > 0] = h;
+        }
+    }
+    for (i = 0; i < 2; i++) if ((found[0][i] == GXB_NONE) != (found[1][i] == GXB_NONE)) return 0;
+    for (i = 0; i < 2; i++) if (found[0][i] != GXB_NONE) { near[found[0][i]] = found[1][i]; near[found[1][i]] = found[0][i]; }
+    return 1;
+}
+
+static void gxbp_find_outlines(gxb_boolean *b, const gxbp_fan *fan, gxbp_coarse *c) {
+    uint32_t p, i, j;
+    for (p = 0; p < b->out_point_count; p++)
+        for (i = fan->first[p]; i < fan->first[p + 1]; i++) {
+            const uint32_t q = fan->list[i].to;
+            if (q < p || c->near[fan->list[i].half_edge] != GXB_NONE) continue;
+            for (j = fan->first[p]; j < i && fan->list[j].to != q; j++) {}
+            if (j < i || gxbp_pair_edge(b, fan, p, q, c->near)) continue;
+            c->degree[p]++;
+            c->degree[q]++;
+        }
+}
+
+static void gxbp_make_umbrellas(const gxb_boolean *b, gxbp_coarse *c) {
+    uint32_t h, e;
+    for (h = 0; h < b->out_triangle_count; h++) {
+        const uint32_t u = c->umbrella_count, v = b->out_triangles[h];
+        if (c->corner[h] != GXB_NONE) continue;
+        c->umbrellas[u].vertex = v; c->umbrellas[u].hint = h; c->umbrellas[u].next = c->first[v];
+        c->first[v] = c->umbrella_count++;
+        for (e = h; e != GXB_NONE && c->corner[e] == GXB_NONE; e = c->near[gxbp_last_edge(e)]) c->corner[e] = u;
+        for (e = c->near[h]; e != GXB_NONE && c->corner[gxbp_next_edge(e)] == GXB_NONE; e = c->near[gxbp_next_edge(e)]) c->corner[gxbp_next_edge(e)] = u;
+    }
+}
+
+/* The polygon that an umbrella's triangles fill goes to rims (umbrellas of its vertices, what lies beyond the edge to the next), the
+   triangles to scratch. 1: it is open, the vertex lies on the edge from the last to the first. */
+static int gxbp_open_umbrella(gxb_boolean *b, const gxbp_coarse *c, uint32_t u) {
+    uint32_t start = c->umbrellas[u].hint, e = start, n;
+    while (c->near[e] != GXB_NONE && (e = gxbp_next_edge(c->near[e])) != start) {}
+    start = e;
+    b->rim_count = b->scratch_count = 0;
+    do {
+        n = gxbp_next_edge(e);
+        if (!GXBP_ROOM(b, rims, rim, 2)) return 0;
+        b->rims[b->rim_count].vertex = c->corner[n];
+        b->rims[b->rim_count++].near = c->near[n];
+        gxbp_push(b, e / 3);
+        n = gxbp_next_edge(n);
+        e = c->near[n];
+    } while (e != GXB_NONE && e != start);
+    if (e == start) return 0;
+    b->rims[b->rim_count].vertex = c->corner[n];
+    b->rims[b->rim_count++].near = GXB_NONE;
+    return 1;
+}
+
+static uint32_t gxbp_coarse_point(const gxb_boolean *b, const gxbp_coarse *c, uint32_t u) { return b->out_points[c->umbrellas[u].vertex]; }
+
+static void gxbp_link_half_edges(uint32_t *near, uint32_t h, uint32_t other) {
+    near[h] = other;
+    if (other != GXB_NONE) near[other] = h;
+}
+
+/* A triangle of the polygon's vertices p, q and r, one after the other; what is left has an edge from p to r. */
+static void gxbp_fill_corner(gxb_boolean *b, gxbp_coarse *c, uint32_t p, uint32_t q, uint32_t r) {
+    const uint32_t h = 3 * b->scratch[--b->scratch_count];
+    uint32_t k;
+    c->corner[h] = b->rims[p].vertex; c->corner[h + 1] = b->rims[q].vertex; c->corner[h + 2] = b->rims[r].vertex;
+    for (k = 0; k < 3; k++) c->umbrellas[c->corner[h + k]].hint = h + k;
+    gxbp_link_half_edges(c->near, h, b->rims[p].near);
+    gxbp_link_half_edges(c->near, h + 1, b->rims[q].near);
+    c->near[h + 2] = GXB_NONE;
+    b->rims[p].near = h + 2;
+}
+
+/* Fills the polygon of an umbrella around v. It is seen from v, and stays so if a convex corner is cut off whose ends are seen from v under
+   no more than a straight angle: then v is left of the new edge or on it. Of at most two corners, neighbours, the ends are seen under
+   more, and a polygon has three that are convex; where v lies on an edge, the corners of that edge are the two. */
+static void gxbp_fill_umbrella(gxb_boolean *b, gxbp_coarse *c, uint32_t v) {
+    gxbp_margin *rim = b->rims;
+    const int facing = b->out_planes[b->scratch[0]] & 1 ? -1 : 1;
+    uint32_t n = b->rim_count, i, q = 0, tried = 0;
+    for (i = 0; i < n; i++) { rim[i].labels = (i + 1) % n; rim[i].made = (i + n - 1) % n; }
+    while (n > 3 && b->result == GX_OK) {
+        const uint32_t p = rim[q].made, r = rim[q].labels, end = gxbp_coarse_point(b, c, rim[r].vertex), start = gxbp_coarse_point(b, c, rim[p].vertex);
+        if (facing * gxbp_turn(b, start, gxbp_coarse_point(b, c, rim[q].vertex), end) > 0 && facing * gxbp_turn(b, start, end, v) >= 0) {
+            gxbp_fill_corner(b, c, p, q, r);
+            rim[p].labels = r;
+            rim[r].made = p;
+            q = p;
+            n--;
+            tried = 0;
+        } else if (++tried <= n) q = r;
+        else gxbp_stop(b, GX_ERROR_OVERLAP);
+    }
+    if (b->result != GX_OK) return;
+    gxbp_fill_corner(b, c, rim[q].made, q, rim[q].labels);
+    gxbp_link_half_edges(c->near, rim[rim[q].made].near, rim[rim[q].labels].near);
+    for (i = 0; i < b->scratch_count; i++) c->corner[3 * b->scratch[i]] = GXB_NONE;
+}
+
+/* May the vertex go? Not where an outline bends, ends or branches. */
+static int gxbp_is_needless(gxb_boolean *b, const gxbp_coarse *c, uint32_t v) {
+    uint32_t u, ends[2] = {GXB_NONE, GXB_NONE};
+    if (c->degree[v] == 0) return 1;
+    if (c->degree[v] != 2) return 0;
+    for (u = c->first[v]; u != GXB_NONE; u = c->umbrellas[u].next) {
+        uint32_t p, q;
+        if (!gxbp_open_umbrella(b, c, u)) continue;
+        p = c->umbrellas[b->rims[0].vertex].vertex;
+        q = c->umbrellas[b->rims[b->rim_count - 1].vertex].vertex;
+        if (p == q || (ends[0] != GXB_NONE && (p < q ? p : q) != ends[0]) || (ends[0] != GXB_NONE && (p < q ? q : p) != ends[1])) return 0;
+        if (ends[0] != GXB_NONE) continue;
+        ends[0] = p < q ? p : q;
+        ends[1] = p < q ? q : p;
+        b->plane = gxbp_out_plane(b, b->scratch[0]);
+        if (b->plane == GXB_NONE || gxbp_turn(b, b->out_points[p], b->out_points[v], b->out_points[q]) != 0) return 0;
+    }
+    return b->result == GX_OK;
+}
+
+static void gxbp_take_vertex(gxb_boolean *b, gxbp_coarse *c, uint32_t v) {
+    uint32_t u;
+    for (u = c->first[v]; u != GXB_NONE && b->result == GX_OK; u = c->umbrellas[u].next) {
+        gxbp_open_umbrella(b, c, u);
+        b->plane = gxbp_out_plane(b, b->scratch[0]);
+        if (b->result == GX_OK) gxbp_fill_umbrella(b, c, b->out_points[v]);
+    }
+}
+
+/* What is left becomes the result; needed: a word for each vertex. */
+static void gxbp_close_coarse(gxb_boolean *b, const gxbp_coarse *c, uint32_t *needed) {
+    uint32_t t, k, n = 0, points = 0;
+    memset(needed, 0, b->out_point_count * sizeof *needed);
+    for (t = 0; t < b->out_source_count; t++) {
+        if (c->corner[3 * t] == GXB_NONE) continue;
+        for (k = 0; k < 3; k++) needed[b->out_triangles[3 * n + k] = c->umbrellas[c->corner[3 * t + k]].vertex] = 1;
+        b->out_operands[n] = b->out_operands[t]; b->out_sources[n] = b->out_sources[t];
+        b->out_planes[n] = b->out_planes[t]; b->out_reversed[n++] = b->out_reversed[t];
+    }
+    for (k = 0; k < b->out_point_count; k++) {
+        if (!needed[k]) continue;
+        b->out_points[points] = b->out_points[k];
+        needed[k] = points++;
+    }
+    for (k = 0; k < 3 * n; k++) b->out_triangles[k] = needed[b->out_triangles[k]];
+    b->out_point_count = points;
+    b->out_triangle_count = 3 * n;
+    b->out_operand_count = b->out_source_count = b->out_plane_count = b->out_reversed_count = n;
+}
+
+static void gxbp_coarsen(gxb_boolean *b) {
+    const size_t halves = b->out_triangle_count, points = b->out_point_count;
+    const size_t bytes = halves * (2 * sizeof(uint32_t) + sizeof(gxbp_umbrella)) + 2 * points * sizeof(uint32_t);
+    gxbp_coarse c;
+    gxbp_fan fan;
+    uint32_t v;
+    if (!gxbp_make_fan(b, b->out_triangles, b->out_source_count, b->out_point_count, &fan)) return;
+    c.umbrella_count = 0;
+    c.near = (uint32_t *)gxbp_allocate(&b->cx.allocator, bytes);
+    if (c.near != NULL) {
+        memset(c.near, 0xff, (2 * halves + points) * sizeof *c.near);
+        c.corner = c.near + halves; c.first = c.corner + halves; c.degree = c.first + points;
+        c.umbrellas = (gxbp_umbrella *)(void *)(c.degree + points);
+        memset(c.degree, 0, points * sizeof *c.degree);
+        gxbp_find_outlines(b, &fan, &c);
+        gxbp_make_umbrellas(b, &c);
+        for (v = 0; v < points && b->result == GX_OK; v++) if (gxbp_is_needless(b, &c, v)) gxbp_take_vertex(b, &c, v);
+        if (b->result == GX_OK) gxbp_close_coarse(b, &c, c.degree);
+        gxbp_release(&b->cx.allocator, c.near, bytes);
+    } else gxbp_stop(b, GX_ERROR_MEMORY);
+    gxbp_drop_fan(b, &fan);
+}
+
 static void gxbp_round_vertices(gxb_boolean *b) {
     uint32_t i;
     b->out_vertex_count = b->out_origin_count = 0;
@@ -6068,9 +6331,6 @@ static void gxbp_round_vertices(gxb_boolean *b) {
     b->out_vertex_count = 3 * b->out_point_count;
     b->out_origin_count = b->out_point_count;
 }
-
-static uint32_t gxbp_out_corner(const gxb_boolean *b, uint32_t t, uint32_t k) { return b->out_points[b->out_triangles[3 * t + k % 3]]; }
-static uint32_t gxbp_out_plane(const gxb_boolean *b, uint32_t t) { return gxbp_root_plane(b, b->out_planes[t] / 2); }
 
 /* Triangles that rounding has turned over or left without area, seen along the longest axis of their plane's normal. */
 static void gxbp_find_defects(gxb_boolean *b) {
@@ -6141,6 +6401,7 @@ static void gxbp_join_wedges(gxb_boolean *b, const gxbp_fan *fan, uint32_t i, ui
             gxbp_blade mine;
             if (fan->list[k].to != to) continue;
             if (!gxbp_room(b, &blade, sizeof *blade, n, &capacity, 1)) break;
+            if (gxbp_out_plane(b, fan->list[k].half_edge / 3) == GXB_NONE) break;
             gxbp_make_blade(b, fan->list[k].half_edge, p, n == 0 ? NULL : blade, &mine, q);
             for (m = n; m > 1 && gxbp_blade_precedes(b, &mine, &blade[m - 1]); m--) blade[m] = blade[m - 1];
             blade[m] = mine;
@@ -6267,7 +6528,7 @@ static uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, uint32_t *p
         double value, bound;
         int left, behind;
         uint32_t c[3];
-        if (root == cavity || !(volume[root] > 0)) continue;
+        if (root == cavity || !(volume[root] > 0) || plane == GXB_NONE) continue;
         for (k = 0; k < 3; k++) c[k] = gxbp_out_corner(b, t, k);
         left = gxbp_ray_left_of(b, &ray, c[0], c[1]);
         if (left == 0 || gxbp_ray_left_of(b, &ray, c[1], c[2]) != left || gxbp_ray_left_of(b, &ray, c[2], c[0]) != left) continue;
@@ -6378,16 +6639,23 @@ static void gxbp_drop_boolean(gxb_boolean *b) {
 GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean **boolean) {
     gxb_boolean_desc none;
     gxb_boolean *b;
+    size_t arena;
     memset(&none, 0, sizeof none);
     if (boolean == NULL) return GX_ERROR_ARGUMENT;
     if (desc == NULL) desc = &none;
-    if ((desc->allocator.allocate == NULL) != (desc->allocator.release == NULL)) return GX_ERROR_ARGUMENT;
-    b = (gxb_boolean *)gxbp_allocate(&desc->allocator, sizeof *b);
+    if ((desc->allocator.allocate == NULL) != (desc->allocator.release == NULL) || desc->triangulation > GXB_MERGED) return GX_ERROR_ARGUMENT;
+    arena = desc->memory_limit == 0 || desc->memory_limit >= 16 * GXBP_ARENA ? GXBP_ARENA : 0;
+    b = (gxb_boolean *)gxbp_allocate(&desc->allocator, gxbp_whole_words(sizeof *b) + arena);
     if (b == NULL) return GX_ERROR_MEMORY;
     memset(b, 0, sizeof *b);
+    b->arena = (unsigned char *)b + gxbp_whole_words(sizeof *b);
+    b->arena_size = arena;
+    b->used = b->peak = gxbp_whole_words(sizeof *b) + arena;
+    b->allocations = 1;
     b->outer = desc->allocator;
     b->limit = desc->memory_limit;
     b->fine = desc->fine;
+    b->triangulation = desc->triangulation;
     b->inside = desc->inside;
     b->user = desc->user;
     b->cx.allocator.allocate = gxbp_count_allocate;
@@ -6402,7 +6670,7 @@ GXFEM_API void gxb_boolean_destroy(gxb_boolean *boolean) {
     if (boolean == NULL) return;
     outer = boolean->outer;
     gxbp_drop_boolean(boolean);
-    gxbp_release(&outer, boolean, sizeof *boolean);
+    gxbp_release(&outer, boolean, gxbp_whole_words(sizeof *boolean) + boolean->arena_size);
 }
 
 static gx_result gxbp_check_operand(const gxb_boolean *b, const gxb_operand *o, size_t *bad) {
@@ -6517,6 +6785,7 @@ GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *b, gxb_boolean_result *res
     gxbp_arrange(b);
     gxbp_find_states(b);
     if (b->result == GX_OK) gxbp_extract(b);
+    if (b->result == GX_OK && b->triangulation != GXB_DIVIDED && b->out_source_count > 0) gxbp_coarsen(b);
     gxbp_round_vertices(b);
     if (b->result == GX_OK) gxbp_find_defects(b);
     gxbp_find_components(b);
