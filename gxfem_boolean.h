@@ -937,10 +937,81 @@ static int gxbp_filter_range(const double *x, int count) {
     return 1;
 }
 
+/* What a short exact stage returns where coordinates are too far apart for it. */
+#define GXBP_UNKNOWN 2
+
+#if GXB_LIMB_BITS == 64
+__extension__ typedef __int128 gxbp_signed_wide;
+
+/* count doubles as integers below 2^61 of one unit: 0 where the smallest needs a finer one */
+static int gxbp_short_integers(const double *const *x, int count, int dimension, int64_t *out) {
+    int top = 0, i, k;
+    for (i = 0; i < count; i++) for (k = 0; k < dimension; k++) {
+        const int e = gxbp_exponent_bits(x[i][k]);
+        if (e > top) top = e;
+    }
+    for (i = 0; i < count; i++) for (k = 0; k < dimension; k++) {
+        const uint64_t bits = gxbp_bits(x[i][k]);
+        const int shift = gxbp_exponent_bits(x[i][k]) - top + 8;
+        uint64_t m = (bits & (((uint64_t)1 << 52) - 1)) | (uint64_t)1 << 52;
+        if (bits << 1 == 0) m = 0;
+        else if (shift >= 0) m <<= shift;
+        else if (shift > -53 && gxbp_exponent_bits(x[i][k]) != 0 && (m & (((uint64_t)1 << -shift) - 1)) == 0) m >>= -shift;
+        else return 0;
+        *out++ = bits >> 63 ? -(int64_t)m : (int64_t)m;
+    }
+    return 1;
+}
+
+static int gxbp_orient2d_short(const double a[2], const double b[2], const double c[2]) {
+    const double *x[3];
+    int64_t v[6];
+    gxbp_signed_wide s, t;
+    x[0] = a; x[1] = b; x[2] = c;
+    if (!gxbp_short_integers(x, 3, 2, v)) return GXBP_UNKNOWN;
+    s = (gxbp_signed_wide)(v[0] - v[4]) * (v[3] - v[5]);
+    t = (gxbp_signed_wide)(v[1] - v[5]) * (v[2] - v[4]);
+    return s > t ? 1 : s < t ? -1 : 0;
+}
+
+/* Differences are below 2^62, minors below 2^125; each minor is taken apart at 2^64, so that products with its halves stay below 2^127. */
+static int gxbp_orient3d_short(const double a[3], const double b[3], const double c[3], const double d[3]) {
+    const double *x[4];
+    int64_t v[12];
+    gxbp_signed_wide high = 0;
+    gxbp_wide low = 0;
+    int i, k;
+    x[0] = a; x[1] = b; x[2] = c; x[3] = d;
+    if (!gxbp_short_integers(x, 4, 3, v)) return GXBP_UNKNOWN;
+    for (i = 0; i < 9; i++) v[i] -= v[9 + i % 3];
+    for (k = 0; k < 3; k++) {
+        const int m = (k + 1) % 3, n = (k + 2) % 3;
+        const gxbp_signed_wide minor = (gxbp_signed_wide)v[3 + m] * v[6 + n] - (gxbp_signed_wide)v[3 + n] * v[6 + m];
+        const gxbp_signed_wide part = (gxbp_signed_wide)(uint64_t)minor * v[k];
+        high += (gxbp_signed_wide)(int64_t)(minor >> 64) * v[k] + (part >> 64);
+        low += (uint64_t)part;
+    }
+    high += (gxbp_signed_wide)(low >> 64);
+    return high < 0 ? -1 : high > 0 || (uint64_t)low != 0;
+}
+#else
+static int gxbp_orient2d_short(const double a[2], const double b[2], const double c[2]) {
+    (void)a; (void)b; (void)c;
+    return GXBP_UNKNOWN;
+}
+
+static int gxbp_orient3d_short(const double a[3], const double b[3], const double c[3], const double d[3]) {
+    (void)d;
+    return gxbp_orient2d_short(a, b, c);
+}
+#endif
+
 static int gxbp_orient2d_exact(const double a[2], const double b[2], const double c[2]) {
+    const int known = gxbp_orient2d_short(a, b, c);
     GXB_NUM(r);
     gxbp_vec p, q, o, u, v;
     double x[3] = {0, 0, 0};
+    if (known != GXBP_UNKNOWN) return known;
     x[0] = a[0]; x[1] = a[1]; gxbp_vec_set(&p, x);
     x[0] = b[0]; x[1] = b[1]; gxbp_vec_set(&q, x);
     x[0] = c[0]; x[1] = c[1]; gxbp_vec_set(&o, x);
@@ -964,8 +1035,10 @@ GXFEM_API int gxb_orient2d(const double a[2], const double b[2], const double c[
 }
 
 static int gxbp_orient3d_exact(const double a[3], const double b[3], const double c[3], const double d[3]) {
+    const int known = gxbp_orient3d_short(a, b, c, d);
     GXB_NUM(r);
     gxbp_vec p, q, s, o, n;
+    if (known != GXBP_UNKNOWN) return known;
     gxbp_vec_set(&p, a); gxbp_vec_set(&q, b); gxbp_vec_set(&s, c); gxbp_vec_set(&o, d);
     gxbp_vec_init(&n);
     gxbp_exact_plane(n.c, p.c, q.c, s.c);
@@ -1635,12 +1708,32 @@ static int gxbp_incident_by_line(const gxb_complex *cx, const uint32_t def[3], u
     return 0;
 }
 
+/* Of a point and a plane that are given by doubles */
+static int gxbp_short_side(const gxb_complex *cx, uint32_t point, uint32_t plane) {
+    const gxb_cplane *f = &cx->planes[plane];
+    const double *x[4];
+    int k, turn;
+    if (f->along_axis) return GXBP_UNKNOWN;
+    for (k = 0; k < 4; k++) {
+        const gxb_cpoint *p = &cx->points[k < 3 ? f->def[k] : point];
+        if (p->kind != GXB_EXPLICIT || p->ball.error > 0) return GXBP_UNKNOWN;
+        x[k] = p->ball.x;
+    }
+    turn = gxbp_orient3d_short(x[0], x[1], x[2], x[3]);
+    return turn == GXBP_UNKNOWN ? turn : -turn;
+}
+
 /* Sign of the exact value of n.X - d W for a point of the complex, or (point GXB_NONE) for one that only has a definition. */
 static int gxbp_exact_sign(gxb_complex *cx, uint32_t kind, const uint32_t def[3], uint32_t point, uint32_t plane) {
     GXB_NUM(r);
     gxbp_vec sx, sn;
-    const gxb_num *n = gxbp_exact_cplane(cx, plane, &sn), *x = sx.c;
+    const gxb_num *n, *x = sx.c;
     cx->exact_calls++;
+    if (kind == GXB_EXPLICIT) {
+        const int known = gxbp_short_side(cx, point, plane);
+        if (known != GXBP_UNKNOWN) return known;
+    }
+    n = gxbp_exact_cplane(cx, plane, &sn);
     if (point != GXB_NONE) x = gxbp_exact_cpoint(cx, point, &sx);
     else {
         gxbp_vec_init(&sx);
@@ -4521,28 +4614,37 @@ static gxbp_spot gxbp_spot_of_point(const gxb_boolean *b, const double *x, uint3
     return gxbp_spot_of(sign);
 }
 
-/* gxb_orient3d of points of the frame. A product of three fenced differences suffers three roundings in them, two in itself and at most
-   five in the sum: within 32u of the products' sizes. */
-static int gxbp_orient(const double *p, const double *q, const double *r, const double *o) {
-    double a[3], c[3], d[3], m[3], size[3], value;
+/* m = a x c, and the sizes of its products. A product of three fenced differences suffers three roundings in them, two in itself and at
+   most five in the sum that makes an orientation of it: within 32u of the products' sizes. */
+static void gxbp_cross_sizes(double m[3], double size[3], const double a[3], const double c[3]) {
     int k;
-    for (k = 0; k < 3; k++) { a[k] = gxbp_fence(p[k] - o[k]); c[k] = gxbp_fence(q[k] - o[k]); d[k] = gxbp_fence(r[k] - o[k]); }
     for (k = 0; k < 3; k++) {
         const int i = (k + 1) % 3, j = (k + 2) % 3;
-        m[k] = c[i] * d[j] - c[j] * d[i];
-        size[k] = gxbp_abs(c[i] * d[j]) + gxbp_abs(c[j] * d[i]);
+        m[k] = a[i] * c[j] - a[j] * c[i];
+        size[k] = gxbp_abs(a[i] * c[j]) + gxbp_abs(a[j] * c[i]);
     }
-    value = a[0] * m[0] + a[1] * m[1] + a[2] * m[2];
-    k = gxbp_filter_sign(value, 32 * GXBP_U * (gxbp_abs(a[0]) * size[0] + gxbp_abs(a[1]) * size[1] + gxbp_abs(a[2]) * size[2]) + GXBP_TINY);
-    return k != 0 ? k : gxbp_orient3d_exact(p, q, r, o);
 }
 
-/* Where the line from p (in front of the plane: side 1) to q (behind) passes. */
+/* Where the line from p (in front of the plane: side 1) to q (behind) passes: signs of gxbp_orient of the triangle's edges with p and q,
+   with the same bounds, from differences and products that they share. */
 static gxbp_spot gxbp_spot_of_line(gxb_boolean *b, const double *p, const double *q, int side, uint32_t s) {
-    int sign[3], k;
+    double d[3], c[3][3], m[3][3], size[3][3];
+    int sign[3], k, i;
+    for (i = 0; i < 3; i++) d[i] = gxbp_fence(p[i] - q[i]);
     for (k = 0; k < 3; k++) {
-        sign[k] = side * gxbp_orient(gxbp_corner_of(b, s, k), gxbp_corner_of(b, s, (k + 1) % 3), p, q);
+        const double *x = gxbp_corner_of(b, s, k);
+        for (i = 0; i < 3; i++) c[k][i] = gxbp_fence(x[i] - q[i]);
+        gxbp_cross_sizes(m[k], size[k], c[k], d);
+    }
+    for (k = 0; k < 3; k++) {
+        const double *a = c[k], *n = m[(k + 1) % 3], *z = size[(k + 1) % 3];
+        const double bound = 32 * GXBP_U * (gxbp_abs(a[0]) * z[0] + gxbp_abs(a[1]) * z[1] + gxbp_abs(a[2]) * z[2]) + GXBP_TINY;
+        sign[k] = side * gxbp_filter_sign(a[0] * n[0] + a[1] * n[1] + a[2] * n[2], bound);
         b->cx.filter_calls++;
+        if (sign[k] == 0) {
+            b->cx.exact_calls++;
+            sign[k] = side * gxbp_orient3d_exact(gxbp_corner_of(b, s, k), gxbp_corner_of(b, s, (k + 1) % 3), p, q);
+        }
         if (sign[k] < 0) break;
     }
     for (k++; k < 3; k++) sign[k] = 1;
