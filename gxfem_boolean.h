@@ -4713,6 +4713,69 @@ static void gxbp_meet_one_way(gxb_boolean *b, uint32_t s, uint32_t t, const int 
     }
 }
 
+/* Edge k of s crosses t's plane where the signs against the two edges of t that cross s's plane say: y[0] against edge j, y[1] against j + 2. */
+static void gxbp_record_crossing(gxb_boolean *b, uint32_t s, int k, uint32_t t, int j, const int y[2], gxbp_meeting *m) {
+    const int edge = y[0] == 0 ? j : (j + 2) % 3;
+    uint32_t point;
+    if (y[0] < 0 || y[1] < 0) return;
+    if (y[0] > 0 && y[1] > 0) point = gxbp_edge_triangle_point(b, s, k, t);
+    else point = gxbp_edge_edge_point(b, s, k, t, edge, b->sources[t].plane);
+    if (point == GXB_NONE) return;
+    gxbp_hit_edge(b, s, k, point);
+    if (y[0] == 0 || y[1] == 0) gxbp_hit_edge(b, t, edge, point);
+    gxbp_found(b, m, point);
+}
+
+/* sign[x][y]: orientation of (p[0], p[y + 1], q[x + 1], q[0]). The differences and products are shared: see gxbp_cross_sizes for the bound. */
+static void gxbp_orient_pairs(gxb_boolean *b, const double *const q[3], const double *const p[3], int sign[2][2]) {
+    double w[3], u[2][3], v[3], m[3], size[3];
+    int x, y, k;
+    for (k = 0; k < 3; k++) {
+        w[k] = gxbp_fence(p[0][k] - q[0][k]);
+        for (x = 0; x < 2; x++) u[x][k] = gxbp_fence(q[x + 1][k] - q[0][k]);
+    }
+    for (y = 0; y < 2; y++) {
+        for (k = 0; k < 3; k++) v[k] = gxbp_fence(p[y + 1][k] - q[0][k]);
+        gxbp_cross_sizes(m, size, w, v);
+        for (x = 0; x < 2; x++) {
+            const double *a = u[x];
+            const double bound = 32 * GXBP_U * (gxbp_abs(a[0]) * size[0] + gxbp_abs(a[1]) * size[1] + gxbp_abs(a[2]) * size[2]) + GXBP_TINY;
+            sign[x][y] = gxbp_filter_sign(a[0] * m[0] + a[1] * m[1] + a[2] * m[2], bound);
+            b->cx.filter_calls++;
+            if (sign[x][y] != 0) continue;
+            b->cx.exact_calls++;
+            sign[x][y] = gxbp_orient3d_exact(p[0], p[y + 1], q[x + 1], q[0]);
+        }
+    }
+}
+
+/* The corner that is alone on its side */
+static int gxbp_lone_corner(const int side[3]) { return side[1] == side[2] ? 0 : side[0] == side[2] ? 1 : 2; }
+
+/* No corner lies in the other's plane. Two edges of each triangle cross it, those of the corner that is alone on its side; where one
+   passes is known from its orientations with the two of the other, and these are the same for both triangles. */
+static void gxbp_meet_across(gxb_boolean *b, uint32_t s, uint32_t t, const int of_s[3], const int of_t[3], gxbp_meeting *m) {
+    const int i = gxbp_lone_corner(of_s), j = gxbp_lone_corner(of_t);
+    const double *p[3], *q[3];
+    int sign[2][2], y[2], k, x;
+    for (k = 0; k < 3; k++) { q[k] = gxbp_corner_of(b, s, (i + k) % 3); p[k] = gxbp_corner_of(b, t, (j + k) % 3); }
+    gxbp_orient_pairs(b, q, p, sign);
+    for (k = 0; k < 3; k++) {
+        if (k == (i + 1) % 3) continue;
+        x = k != i;
+        y[0] = -of_s[i] * sign[x][0];
+        y[1] = of_s[i] * sign[x][1];
+        gxbp_record_crossing(b, s, k, t, j, y, m);
+    }
+    for (k = 0; k < 3; k++) {
+        if (k == (j + 1) % 3) continue;
+        x = k != j;
+        y[0] = -of_t[j] * sign[0][x];
+        y[1] = of_t[j] * sign[1][x];
+        gxbp_record_crossing(b, t, k, s, i, y, m);
+    }
+}
+
 static int gxbp_is_corner(gxb_boolean *b, uint32_t s, uint32_t point) {
     const uint32_t *p = b->sources[s].point, same = gxbp_same(b, point);
     return same == gxbp_same(b, p[0]) || same == gxbp_same(b, p[1]) || same == gxbp_same(b, p[2]);
@@ -4847,11 +4910,14 @@ static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
     }
     gxbp_sides(b, s, b->sources[t].plane, 1, of_s);
     if (gxbp_all_on_one_side(of_s)) return;
-    for (k = 0; k < 3; k++) common += gxbp_is_corner(b, t, b->sources[s].point[k]);
-    if (common == 1 && (gxbp_touches_by_corner(of_s) || gxbp_touches_by_corner(of_t))) return;
     m.count = 0;
-    gxbp_meet_one_way(b, s, t, of_s, &m);
-    gxbp_meet_one_way(b, t, s, of_t, &m);
+    if (of_s[0] * of_s[1] * of_s[2] != 0 && of_t[0] * of_t[1] * of_t[2] != 0) gxbp_meet_across(b, s, t, of_s, of_t, &m);
+    else {
+        for (k = 0; k < 3; k++) common += gxbp_is_corner(b, t, b->sources[s].point[k]);
+        if (common == 1 && (gxbp_touches_by_corner(of_s) || gxbp_touches_by_corner(of_t))) return;
+        gxbp_meet_one_way(b, s, t, of_s, &m);
+        gxbp_meet_one_way(b, t, s, of_t, &m);
+    }
     gxbp_record_meeting(b, s, t, &m);
 }
 
@@ -5153,11 +5219,11 @@ static void gxbp_label_edge(gxb_boolean *b, uint32_t f, int k, uint32_t label) {
 /* --- along a straight line through a triangulation --- */
 
 /* The line from p to x. In a triangle's plane (label) its sides are those of the plane, times sigma. */
-typedef struct gxbp_line { uint32_t p, x, plane; int sigma; } gxbp_line;
+typedef struct gxbp_line { uint32_t p, x, plane, source; int sigma; } gxbp_line;
 
 static void gxbp_set_line(gxb_boolean *b, gxbp_line *line, uint32_t s, uint32_t p, uint32_t x, uint32_t label) {
     int k;
-    line->p = p; line->x = x; line->plane = GXB_NONE; line->sigma = 1;
+    line->p = p; line->x = x; line->plane = GXB_NONE; line->source = label; line->sigma = 1;
     if (label & GXBP_EDGE_LABEL) return;
     for (k = 0; k < 3; k++) {
         const int side = gxbp_point_side(b, b->sources[s].point[k], b->sources[label].plane);
@@ -5169,10 +5235,32 @@ static void gxbp_set_line(gxb_boolean *b, gxbp_line *line, uint32_t s, uint32_t 
     line->plane = GXB_NONE;
 }
 
+/* Is a point, named by an edge and a triangle, in triangle t and not on its edge j? */
+static int gxbp_is_named_in(const gxb_boolean *b, uint32_t v, uint32_t t, uint32_t j) {
+    const uint32_t *key = b->vertices[v].key, twin = b->sources[key[1] / 3].twin[key[1] % 3];
+    return key[2] == t || (key[1] / 3 == t && key[1] % 3 != j) || (twin != GXB_NONE && twin / 3 == t && twin % 3 != j);
+}
+
+/* The side of a source's plane. In a neighbour, all points that are not on the common edge lie on the side on which its other corner is: so
+   the two halves of a face that is flat but for rounding need no exact numbers of points computed in them. */
+static int gxbp_side_of_source(gxb_boolean *b, uint32_t v, uint32_t s) {
+    const uint32_t plane = b->sources[s].plane;
+    double bound, value;
+    int k;
+    if (b->cx.points[v].kind != GXB_LINE_PLANE || b->vertices[v].key[0] != GXB_FROM_EDGE_TRIANGLE) return gxbp_point_side(b, v, plane);
+    value = gxbp_filter_side(&b->cx.points[v].ball, &b->cx.planes[plane].filter, &bound);
+    if (value > bound || value < -bound) { b->cx.filter_calls++; return value > 0 ? 1 : -1; }
+    for (k = 0; k < 3; k++) {
+        const uint32_t twin = b->sources[s].twin[k];
+        if (twin != GXB_NONE && gxbp_is_named_in(b, v, twin / 3, twin % 3)) return gxbp_point_side(b, b->sources[twin / 3].point[(twin % 3 + 2) % 3], plane);
+    }
+    return gxbp_point_side(b, v, plane);
+}
+
 /* 1: v lies to the left */
 static int gxbp_left(gxb_boolean *b, const gxbp_line *line, uint32_t v) {
     if (v == line->p || v == line->x) return 0;
-    if (line->plane != GXB_NONE) return line->sigma * gxbp_point_side(b, v, line->plane);
+    if (line->plane != GXB_NONE) return line->sigma * gxbp_side_of_source(b, v, line->source);
     return gxbp_turn(b, line->p, line->x, v);
 }
 
@@ -5849,7 +5937,7 @@ static int gxbp_side_of_piece(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
                gxbp_filter_turn(&x[piece->v[k]].ball, &x[piece->v[(k + 1) % 3]].ball, &x[corner].ball,
                                 (int)(plane->axis + 1) % 3, (int)(plane->axis + 2) % 3);
     }
-    return side != 0 ? side : gxbp_point_side(b, piece->v[(k + 2) % 3], b->sources[t].plane);
+    return side != 0 ? side : gxbp_side_of_source(b, piece->v[(k + 2) % 3], t);
 }
 
 /* The state in front of the facet beyond edge k: a triangle with a part in front of the plane is passed, from the side on which f lies. */
