@@ -4225,9 +4225,10 @@ static uint32_t gxbp_input_point(gxb_boolean *b, const double y[3], uint32_t ope
 }
 
 static uint32_t gxbp_next_edge(uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
+static uint32_t gxbp_last_edge(uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
 
-/* Half-edges by the vertex that they leave, with the vertex in which they end. */
-typedef struct gxbp_exit { uint32_t half_edge, to; } gxbp_exit;
+/* Half-edges by the vertex that they leave, with the vertex in which they end, and that from which their triangle comes back. */
+typedef struct gxbp_exit { uint32_t half_edge, to, from; } gxbp_exit;
 typedef struct gxbp_fan { gxbp_exit *list; uint32_t *first; size_t bytes; } gxbp_fan;
 
 static int gxbp_make_fan(gxb_boolean *b, const uint32_t *triangles, size_t count, uint32_t vertex_count, gxbp_fan *fan) {
@@ -4243,44 +4244,62 @@ static int gxbp_make_fan(gxb_boolean *b, const uint32_t *triangles, size_t count
         gxbp_exit *e = &fan->list[--fan->first[triangles[h]]];
         e->half_edge = h;
         e->to = triangles[gxbp_next_edge(h)];
+        e->from = triangles[gxbp_last_edge(h)];
     }
     return 1;
 }
 
 static void gxbp_drop_fan(gxb_boolean *b, gxbp_fan *fan) { gxbp_release(&b->cx.allocator, fan->list, fan->bytes); }
 
-/* How many half-edges go from p to q; the last of them. */
-static uint32_t gxbp_count_half_edges(const gxbp_fan *fan, uint32_t p, uint32_t q, uint32_t *last) {
+/* Looks at the half-edges between p and q, all of which are in the fan's list of p: twins, if there is one in each direction; if there are
+   more in one direction, one of those. */
+static uint32_t gxbp_pair_half_edges(const gxbp_fan *fan, uint32_t p, uint32_t q, uint32_t *twin) {
     const gxbp_exit *e = fan->list + fan->first[p], *end = fan->list + fan->first[p + 1];
-    uint32_t n = 0;
-    for (; e < end; e++) if (e->to == q) { *last = e->half_edge; n++; }
-    return n;
+    uint32_t forth = 0, back = 0, there = 0, home = 0;
+    for (; e < end; e++) {
+        if (e->to == q) { forth++; there = e->half_edge; }
+        if (e->from == q) { back++; home = gxbp_last_edge(e->half_edge); }
+    }
+    if (forth == 1 && back == 1) { twin[there] = home; twin[home] = there; }
+    return forth == back ? GXB_NONE : forth > back ? there : home;
 }
 
-/* twin of each half-edge, GXB_NONE where an edge has not one in each direction. Returns the first half-edge whose edge is passed more
-   often in its direction than in the other, or GXB_NONE: the surface is closed. */
+/* twin of each half-edge, left alone where an edge has not one in each direction. Returns a half-edge whose edge is passed more often in
+   its direction than in the other, or GXB_NONE: the surface is closed. */
 static uint32_t gxbp_find_twins(const gxbp_fan *fan, uint32_t vertex_count, uint32_t *twin) {
     uint32_t open = GXB_NONE, p, i;
     for (p = 0; p < vertex_count; p++)
         for (i = fan->first[p]; i < fan->first[p + 1]; i++) {
-            const uint32_t h = fan->list[i].half_edge, q = fan->list[i].to;
-            uint32_t forth = h, back = 0, nf, nb;
-            if (p == q) continue;
-            nb = gxbp_count_half_edges(fan, q, p, &back);
-            if (p > q && nb > 0) continue;              /* seen from the other end */
-            nf = gxbp_count_half_edges(fan, p, q, &forth);
-            if (nf == 1 && nb == 1) { twin[h] = back; twin[back] = h; }
-            else if (nf != nb && open == GXB_NONE) open = nf > nb ? h : back;
+            const gxbp_exit *e = &fan->list[i];
+            uint32_t odd = GXB_NONE;
+            if (e->to > p) odd = gxbp_pair_half_edges(fan, p, e->to, twin);
+            if (odd == GXB_NONE && e->from > p && twin[gxbp_last_edge(e->half_edge)] == GXB_NONE) odd = gxbp_pair_half_edges(fan, p, e->from, twin);
+            if (open == GXB_NONE) open = odd;
         }
     return open;
 }
 
+/* m = a x c, and the sizes of its products. A product of three fenced differences suffers three roundings in them, two in itself and at
+   most five in the sum that makes an orientation of it: within 32u of the products' sizes. */
+static void gxbp_cross_sizes(double m[3], double size[3], const double a[3], const double c[3]) {
+    int k;
+    for (k = 0; k < 3; k++) {
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        m[k] = a[i] * c[j] - a[j] * c[i];
+        size[k] = gxbp_abs(a[i] * c[j]) + gxbp_abs(a[j] * c[i]);
+    }
+}
+
+/* Errors of the components: see gxbp_cross_sizes. */
 static int gxbp_has_area(const double *p, const double *q, const double *r) {
+    double a[3], c[3], m[3], size[3];
     gxb_plane plane;
     gxbp_vec n;
     int k;
+    for (k = 0; k < 3; k++) { a[k] = gxbp_fence(q[k] - p[k]); c[k] = gxbp_fence(r[k] - p[k]); }
+    gxbp_cross_sizes(m, size, a, c);
+    for (k = 0; k < 3; k++) if (gxbp_abs(m[k]) > 32 * GXBP_U * size[k] + GXBP_TINY) return 1;
     gxb_plane_init(&plane, p, q, r);
-    if (plane.filter.norm > plane.filter.error) return 1;
     gxbp_plane_exact(&n, &plane);
     for (k = 0; k < 3; k++) if (n.c[k].sign != 0) return 1;
     return 0;
@@ -4362,6 +4381,8 @@ static gx_result gxbp_read_triangles(gxb_boolean *b, const gxb_operand *o, uint3
     return GX_OK;
 }
 
+static const double *gxbp_corner_of(const gxb_boolean *b, uint32_t s, int k) { return b->cx.points[b->sources[s].point[k]].ball.x; }
+
 /* --- box trees --- */
 
 static void gxbp_box_join(gxbp_box *a, const gxbp_box *c) {
@@ -4386,8 +4407,8 @@ static gxbp_box gxbp_box_of(const gxb_boolean *b, uint32_t s) {
 }
 
 static int gxbp_box_meets(const gxbp_box *a, const gxbp_box *c) {
-    return a->low[0] <= c->high[0] && c->low[0] <= a->high[0] && a->low[1] <= c->high[1] && c->low[1] <= a->high[1] &&
-           a->low[2] <= c->high[2] && c->low[2] <= a->high[2];
+    return (a->low[0] <= c->high[0]) & (c->low[0] <= a->high[0]) & (a->low[1] <= c->high[1]) & (c->low[1] <= a->high[1]) &
+           (a->low[2] <= c->high[2]) & (c->low[2] <= a->high[2]);      /* without branches: nobody can foretell them */
 }
 
 /* Ten bits with two zeros after each */
@@ -4398,29 +4419,37 @@ static uint32_t gxbp_spread(uint32_t x) {
     return (x | x << 2) & 0x09249249u;
 }
 
-static uint32_t gxbp_lattice(double x, double low, double size) {
-    const double t = size > 0 ? (x - low) / size * 1023 : 0;
-    return t > 0 ? t < 1023 ? (uint32_t)t : 1023 : 0;
-}
+static uint32_t gxbp_lattice(double t) { return t > 0 ? t < 1023 ? (uint32_t)t : 1023 : 0; }
 
-/* Sorts the sources along a Z-order curve by the middles of their boxes; keys and more are scratch of count words each. */
-static void gxbp_sort_sources(const gxb_boolean *b, gxbp_operand *o, const gxbp_box *all, uint32_t *keys, uint32_t *more) {
-    uint32_t *from = o->order, *to = more, *swap, i, pass;
+/* Sorts the sources along a Z-order curve by their first corners; work: two words of 64 bits each. */
+static void gxbp_sort_sources(const gxb_boolean *b, const gxbp_operand *o, uint64_t *work) {
+    uint64_t *from = work, *to = work + o->source_count, *swap;
+    gxbp_box all;
+    double scale[3];
+    uint32_t i, pass, k;
     for (i = 0; i < o->source_count; i++) {
-        const gxbp_box *box = &b->bounds[o->source + i];
-        int k;
-        keys[i] = 0;
-        for (k = 0; k < 3; k++)
-            keys[i] |= gxbp_spread(gxbp_lattice(box->low[k] / 2 + box->high[k] / 2, all->low[k], all->high[k] - all->low[k])) << k;
+        gxbp_box corner;
+        memcpy(corner.low, gxbp_corner_of(b, o->source + i, 0), sizeof corner.low);
+        memcpy(corner.high, corner.low, sizeof corner.high);
+        if (i == 0) all = corner;
+        else gxbp_box_join(&all, &corner);
     }
-    for (pass = 0; pass < 4; pass++) {
+    for (k = 0; k < 3; k++) scale[k] = all.high[k] > all.low[k] ? 1023 / (all.high[k] - all.low[k]) : 0;
+    for (i = 0; i < o->source_count; i++) {
+        const double *x = gxbp_corner_of(b, o->source + i, 0);
+        uint32_t key = 0;
+        for (k = 0; k < 3; k++) key |= gxbp_spread(gxbp_lattice((x[k] - all.low[k]) * scale[k])) << k;
+        from[i] = (uint64_t)key << 32 | (o->source + i);
+    }
+    for (pass = 4; pass < 8; pass++) {
         uint32_t count[257];
         memset(count, 0, sizeof count);
-        for (i = 0; i < o->source_count; i++) count[1 + (keys[i] >> 8 * pass & 255)]++;
+        for (i = 0; i < o->source_count; i++) count[1 + (from[i] >> 8 * pass & 255)]++;
         for (i = 1; i < 257; i++) count[i] += count[i - 1];
-        for (i = 0; i < o->source_count; i++) to[count[keys[from[i] - o->source] >> 8 * pass & 255]++] = from[i];
+        for (i = 0; i < o->source_count; i++) to[count[from[i] >> 8 * pass & 255]++] = from[i];
         swap = from; from = to; to = swap;
     }
+    for (i = 0; i < o->source_count; i++) o->order[i] = (uint32_t)from[i];
 }
 
 static void gxbp_fill_tree(gxb_boolean *b, const gxbp_operand *o) {
@@ -4446,10 +4475,13 @@ static gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
     const size_t words = o->source_count;
     o->order = (uint32_t *)gxbp_allocate(&b->cx.allocator, words * sizeof *o->order);
     if (o->order == NULL) return GX_ERROR_MEMORY;
-    for (i = 0; i < o->source_count; i++) {
-        o->order[i] = o->source + i;
-        b->bounds[o->source + i] = gxbp_box_of(b, o->source + i);
-    }
+    if (o->source_count > 4 * GXBP_LEAF) {
+        uint64_t *work = (uint64_t *)gxbp_allocate(&b->cx.allocator, 2 * words * sizeof *work);
+        if (work == NULL) return GX_ERROR_MEMORY;
+        gxbp_sort_sources(b, o, work);
+        gxbp_release(&b->cx.allocator, work, 2 * words * sizeof *work);
+    } else for (i = 0; i < o->source_count; i++) o->order[i] = o->source + i;
+    for (i = 0; i < o->source_count; i++) b->bounds[o->source + i] = gxbp_box_of(b, o->order[i]);
     b->bound_count = o->source + o->source_count;
     for (t->levels = 0; ; size = (size + 1) / 2) {
         t->level[t->levels] = total;
@@ -4460,28 +4492,24 @@ static gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
     t->first = b->box_count;
     if (!GXBP_ROOM(b, boxes, box, total)) return GX_ERROR_MEMORY;
     b->box_count += total;
-    if (o->source_count > 4 * GXBP_LEAF) {
-        gxbp_box all = b->bounds[o->source];
-        uint32_t *work = (uint32_t *)gxbp_allocate(&b->cx.allocator, 2 * words * sizeof *work);
-        if (work == NULL) return GX_ERROR_MEMORY;
-        for (i = 1; i < o->source_count; i++) gxbp_box_join(&all, &b->bounds[o->source + i]);
-        gxbp_sort_sources(b, o, &all, work, work + words);
-        gxbp_release(&b->cx.allocator, work, 2 * words * sizeof *work);
-        for (i = 0; i < o->source_count; i++) b->bounds[o->source + i] = gxbp_box_of(b, o->order[i]);
-    }
     gxbp_fill_tree(b, o);
     return GX_OK;
 }
 
+/* With the first operand comes room for a second one of its size (gxbp_reserve adds half of what is asked for), and for thirds of it that the
+   two divide: what is not used is not touched, and nothing large is copied. */
+static size_t gxbp_foresee(const gxb_boolean *b, size_t count, size_t thirds) { return b->operand_count > 0 ? count : count + thirds * count / 3; }
+
 static gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operand *o, size_t *bad) {
     const size_t words = 2 * o->vertex_count + 6 * o->triangle_count;
+    const size_t sources = gxbp_foresee(b, o->triangle_count, 1), pieces = gxbp_foresee(b, o->triangle_count, 3), points = gxbp_foresee(b, o->vertex_count, 3);
     gxbp_operand *mine;
     gx_result result;
     uint32_t *work;
-    if (!GXBP_ROOM(b, operands, operand, 1) || !GXBP_ROOM(b, sources, source, o->triangle_count) || !GXBP_ROOM(b, bounds, bound, o->triangle_count) ||
-        !GXBP_ROOM(b, pieces, piece, o->triangle_count) || !GXBP_ROOM(b, vertices, vertex, o->vertex_count) ||
+    if (!GXBP_ROOM(b, operands, operand, 1) || !GXBP_ROOM(b, sources, source, sources) || !GXBP_ROOM(b, bounds, bound, sources) ||
+        !GXBP_ROOM(b, pieces, piece, pieces) || !GXBP_ROOM(b, vertices, vertex, points) ||
         !gxbp_grow_table(b, (uint32_t)o->vertex_count)) return b->result;
-    result = GXBP_RESERVE(&b->cx, points, point, o->vertex_count);
+    result = GXBP_RESERVE(&b->cx, points, point, points);
     if (result != GX_OK) return result;
     work = (uint32_t *)gxbp_allocate(&b->cx.allocator, words * sizeof *work);
     if (work == NULL) return GX_ERROR_MEMORY;
@@ -4499,8 +4527,6 @@ static gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operand *o, size_
 }
 
 /* --- where two triangles meet --- */
-
-static const double *gxbp_corner_of(const gxb_boolean *b, uint32_t s, int k) { return b->cx.points[b->sources[s].point[k]].ball.x; }
 
 /* The side of a plane: filter, then what is known by definition, then exact arithmetic. */
 static int gxbp_point_side(gxb_boolean *b, uint32_t point, uint32_t plane) {
@@ -4612,17 +4638,6 @@ static gxbp_spot gxbp_spot_of_point(const gxb_boolean *b, const double *x, uint3
     for (k = 0; k < 3; k++)
         sign[k] = gxbp_flat_turn(b, b->sources[s].plane, gxbp_corner_of(b, s, k), gxbp_corner_of(b, s, (k + 1) % 3), x);
     return gxbp_spot_of(sign);
-}
-
-/* m = a x c, and the sizes of its products. A product of three fenced differences suffers three roundings in them, two in itself and at
-   most five in the sum that makes an orientation of it: within 32u of the products' sizes. */
-static void gxbp_cross_sizes(double m[3], double size[3], const double a[3], const double c[3]) {
-    int k;
-    for (k = 0; k < 3; k++) {
-        const int i = (k + 1) % 3, j = (k + 2) % 3;
-        m[k] = a[i] * c[j] - a[j] * c[i];
-        size[k] = gxbp_abs(a[i] * c[j]) + gxbp_abs(a[j] * c[i]);
-    }
 }
 
 /* Where the line from p (in front of the plane: side 1) to q (behind) passes: signs of gxbp_orient of the triangle's edges with p and q,
@@ -4923,18 +4938,29 @@ static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
 
 /* --- broad phase: pairs of boxes of two trees, or of one --- */
 
+/* Sources of box i of a tree that meet a box, as positions in the tree's order. Returns how many. */
+static uint32_t gxbp_leaf_members(const gxb_boolean *b, const gxbp_operand *o, uint32_t i, const gxbp_box *box, uint32_t member[GXBP_LEAF]) {
+    const uint32_t end = i * GXBP_LEAF + GXBP_LEAF < o->source_count ? i * GXBP_LEAF + GXBP_LEAF : o->source_count;
+    uint32_t x, n = 0;
+    for (x = i * GXBP_LEAF; x < end; x++) {
+        member[n] = x;
+        n += (uint32_t)gxbp_box_meets(&b->bounds[o->source + x], box);
+    }
+    return n;
+}
+
 static void gxbp_meet_leaves(gxb_boolean *b, const gxbp_operand *o, uint32_t i, const gxbp_operand *q, uint32_t j) {
-    const uint32_t end_i = i * GXBP_LEAF + GXBP_LEAF < o->source_count ? i * GXBP_LEAF + GXBP_LEAF : o->source_count;
-    const uint32_t end_j = j * GXBP_LEAF + GXBP_LEAF < q->source_count ? j * GXBP_LEAF + GXBP_LEAF : q->source_count;
-    const gxbp_box *other = &b->boxes[q->tree.first + j];
-    uint32_t x, y;
-    for (x = i * GXBP_LEAF; x < end_i; x++) {
-        const uint32_t s = o->order[x];
-        const gxbp_box *box = &b->bounds[o->source + x];
-        if (!gxbp_box_meets(box, other) || b->sources[s].flags & GXBP_DEGENERATE) continue;
-        for (y = o == q && i == j ? x + 1 : j * GXBP_LEAF; y < end_j; y++) {
-            const uint32_t t = q->order[y];
-            if (gxbp_box_meets(box, &b->bounds[q->source + y]) && !(b->sources[t].flags & GXBP_DEGENERATE)) gxbp_meet(b, s, t);
+    uint32_t first[GXBP_LEAF], second[GXBP_LEAF], n, m, x, y;
+    n = gxbp_leaf_members(b, o, i, &b->boxes[q->tree.first + j], first);
+    m = n == 0 ? 0 : gxbp_leaf_members(b, q, j, &b->boxes[o->tree.first + i], second);
+    for (x = 0; x < n; x++) {
+        const uint32_t s = o->order[first[x]];
+        const gxbp_box *box = &b->bounds[o->source + first[x]];
+        if (b->sources[s].flags & GXBP_DEGENERATE) continue;
+        for (y = 0; y < m; y++) {
+            const uint32_t t = q->order[second[y]];
+            if ((o == q && second[y] <= first[x]) || !gxbp_box_meets(box, &b->bounds[q->source + second[y]])) continue;
+            if (!(b->sources[t].flags & GXBP_DEGENERATE)) gxbp_meet(b, s, t);
         }
     }
 }
@@ -6248,12 +6274,17 @@ static uint32_t gxbp_cover_of(const gxb_boolean *b, uint32_t f, int sheets) {
     return GXB_NONE;
 }
 
+/* The arrays with one item for each triangle grow together. */
+static int gxbp_more_triangles(gxb_boolean *b) {
+    return GXBP_ROOM(b, out_operands, out_operand, 1) && GXBP_ROOM(b, out_planes, out_plane, 1) && GXBP_ROOM(b, out_reversed, out_reversed, 1) &&
+           GXBP_ROOM(b, out_sources, out_source, 1);
+}
+
 /* reversed: the outside is behind the facet's plane. */
 static void gxbp_emit(gxb_boolean *b, uint32_t f, int reversed, uint32_t source) {
     uint32_t n = b->out_triangle_count, i;
     int k;
-    if (!GXBP_ROOM(b, out_triangles, out_triangle, 3) || !GXBP_ROOM(b, out_operands, out_operand, 1) ||
-        !GXBP_ROOM(b, out_sources, out_source, 1) || !GXBP_ROOM(b, out_planes, out_plane, 1) || !GXBP_ROOM(b, out_reversed, out_reversed, 1)) return;
+    if (!GXBP_ROOM(b, out_triangles, out_triangle, 3) || (b->out_source_count == b->out_source_capacity && !gxbp_more_triangles(b))) return;
     for (k = 0; k < 3; k++) b->out_triangles[n + (uint32_t)k] = gxbp_out_vertex(b, b->pieces[f].v[reversed ? (3 - k) % 3 : k]);
     b->out_triangle_count += 3;
     i = b->out_source_count++;
@@ -6308,8 +6339,6 @@ typedef struct gxbp_coarse {
     uint32_t *first;            /* of each vertex: its umbrellas */
     uint32_t *degree;           /* of each vertex: edges of outlines that end there */
 } gxbp_coarse;
-
-static uint32_t gxbp_last_edge(uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
 
 /* 1: triangle u is of t's face and faces as it does, -1: the other way (a sheet's other side), 0: it is of another face. */
 static int gxbp_same_face(gxb_boolean *b, uint32_t t, uint32_t u) {
