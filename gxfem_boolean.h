@@ -3985,6 +3985,7 @@ struct gxb_boolean {
     uint32_t *cut_points; uint32_t cut_point_count, cut_point_capacity;
     gxbp_hit *hits; uint32_t hit_count, hit_capacity;
     uint32_t *dirty; uint32_t dirty_count, dirty_capacity;
+    uint32_t *divided; uint32_t divided_count, divided_capacity;        /* sources that were, alone or as a flat's roots */
     gxbp_margin *rims; uint32_t rim_count, rim_capacity;
     gxbp_margin *lefts; uint32_t left_count, left_capacity;
     uint32_t *chain; uint32_t chain_count, chain_capacity;
@@ -3992,6 +3993,7 @@ struct gxb_boolean {
     uint32_t arranged;          /* operands that are in the arrangement */
     uint32_t segment_mark;      /* segments before it are in the triangulations */
     uint32_t merged_points;     /* points before it were compared with each other */
+    uint32_t renamed;           /* 1: an input vertex has got another name */
     uint32_t plane, stamp, head_stamp;                                  /* of the triangulation at work */
     int32_t *windings; uint32_t winding_count, winding_capacity;        /* state x operand */
     uint32_t *states; uint32_t state_count, state_capacity;             /* of each state: is it inside? */
@@ -4138,6 +4140,7 @@ static void gxbp_unite(gxb_boolean *b, uint32_t keep, uint32_t drop) {
     const gxb_cpoint *q = &b->cx.points[drop];
     if (keep == drop) return;
     b->vertices[drop].same = keep;
+    if (q->kind == GXB_EXPLICIT && q->def[0] == drop) b->renamed = 1;
     if (p->kind == GXB_EXPLICIT || q->kind != GXB_EXPLICIT) return;
     p->kind = GXB_EXPLICIT;
     p->ball = q->ball;
@@ -5647,10 +5650,16 @@ static void gxbp_trace_segments(gxb_boolean *b, uint32_t s, uint32_t i) {
     }
 }
 
+static void gxbp_note_divided(gxb_boolean *b, uint32_t s) {
+    if (b->sources[s].flags & GXBP_DIVIDED || !GXBP_ROOM(b, divided, divided, 1)) return;
+    b->sources[s].flags |= GXBP_DIVIDED;
+    b->divided[b->divided_count++] = s;
+}
+
 static void gxbp_divide_source(gxb_boolean *b, uint32_t s) {
     uint32_t n, i, k, pass;
     if (!gxbp_need_plane(b, s)) return;
-    b->sources[s].flags |= GXBP_DIVIDED;
+    gxbp_note_divided(b, s);
     gxbp_open_triangulation(b, s);
     for (k = 0; k < 3; k++) gxbp_divide_rim(b, s, k);
     n = gxbp_chain_segments(b, s);
@@ -5802,7 +5811,8 @@ static void gxbp_divide_flat(gxb_boolean *b, uint32_t r) {
     for (t = r; t != GXB_NONE; t = b->sources[t].next) {
         for (f = b->sources[t].facet; f != GXB_NONE; f = b->pieces[f].next) b->pieces[f].source = GXB_NONE;
         b->sources[t].facet = GXB_NONE;
-        b->sources[t].flags |= GXBP_FLAT | GXBP_DIVIDED;
+        gxbp_note_divided(b, t);
+        b->sources[t].flags |= GXBP_FLAT;
         b->sources[t].flags &= ~(uint32_t)GXBP_DIRTY;
     }
     gxbp_open_triangulation(b, r);
@@ -6118,60 +6128,70 @@ static uint32_t gxbp_rim_slot(const gxb_boolean *b, const gxbp_rim_table *table,
     return k;
 }
 
-static int gxbp_is_divided_rim(const gxb_boolean *b, uint32_t f, int k) {
-    const uint32_t s = b->pieces[f].source;
-    return s != GXB_NONE && b->pieces[f].near[k] == GXB_NONE && (b->sources[s].flags & (GXBP_DIVIDED | GXBP_FLAT)) == GXBP_DIVIDED;
+/* Facets of divided sources, of those that are alone in their plane the first one (else GXB_NONE). */
+static uint32_t gxbp_first_rim_facet(const gxb_boolean *b, uint32_t i) {
+    const gxbp_source *s = &b->sources[b->divided[i]];
+    return s->flags & GXBP_FLAT ? GXB_NONE : s->facet;
 }
 
-/* Vertices get their last names on the way. */
+/* Vertices get their last names: those of divided sources, and of all where that changes any. */
+static void gxbp_rename_vertices(gxb_boolean *b) {
+    uint32_t f, i, k;
+    for (i = 0; i < b->divided_count && !b->renamed; i++)
+        for (f = b->sources[b->divided[i]].facet; f != GXB_NONE; f = b->pieces[f].next)
+            for (k = 0; k < 3; k++) b->pieces[f].v[k] = gxbp_same(b, b->pieces[f].v[k]);
+    for (f = 0; f < b->piece_count && b->renamed; f++)
+        for (k = 0; k < 3; k++) b->pieces[f].v[k] = gxbp_same(b, b->pieces[f].v[k]);
+}
+
 static int gxbp_fill_rim_table(gxb_boolean *b, gxbp_rim_table *table) {
-    uint32_t f, count = 0;
-    int k;
-    for (f = 0; f < b->piece_count; f++)
-        for (k = 0; k < 3; k++) {
-            b->pieces[f].v[k] = gxbp_same(b, b->pieces[f].v[k]);
-            count += (uint32_t)gxbp_is_divided_rim(b, f, k);
-        }
+    uint32_t f, i, k, count = 0;
+    for (i = 0; i < b->divided_count; i++)
+        for (f = gxbp_first_rim_facet(b, i); f != GXB_NONE; f = b->pieces[f].next)
+            for (k = 0; k < 3; k++) count += b->pieces[f].near[k] == GXB_NONE;
     for (table->size = 16; table->size < 2 * count; table->size *= 2) {}
     table->entry = (uint32_t *)gxbp_allocate(&b->cx.allocator, (size_t)table->size * sizeof *table->entry);
     if (table->entry == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
     memset(table->entry, 0xff, (size_t)table->size * sizeof *table->entry);
-    for (f = 0; f < b->piece_count; f++)
-        for (k = 0; k < 3; k++)
-            if (gxbp_is_divided_rim(b, f, k))
-                table->entry[gxbp_rim_slot(b, table, b->pieces[f].v[k], b->pieces[f].v[(k + 1) % 3])] = 3 * f + (uint32_t)k;
+    for (i = 0; i < b->divided_count; i++)
+        for (f = gxbp_first_rim_facet(b, i); f != GXB_NONE; f = b->pieces[f].next)
+            for (k = 0; k < 3; k++)
+                if (b->pieces[f].near[k] == GXB_NONE)
+                    table->entry[gxbp_rim_slot(b, table, b->pieces[f].v[k], b->pieces[f].v[(k + 1) % 3])] = 3 * f + k;
     return 1;
 }
 
-/* The facet of source t, a neighbour of f's across the surface's edge, that shares edge k of f; GXB_NONE unless only the two meet there. */
-static uint32_t gxbp_across_edge(const gxb_boolean *b, const gxbp_rim_table *table, uint32_t f, int k, uint32_t t) {
+/* The facet that shares edge k of f, on the rim of divided source s, across the surface's edge; GXB_NONE unless only the two meet there. */
+static uint32_t gxbp_across_rim(const gxb_boolean *b, const gxbp_rim_table *table, uint32_t f, int k, const gxbp_source *s) {
     const uint32_t p = b->pieces[f].v[k], q = b->pieces[f].v[(k + 1) % 3];
-    uint32_t g = b->sources[t].facet, h;
-    int j;
-    if (b->sources[t].flags & GXBP_FLAT) return GXB_NONE;
-    if (b->sources[t].flags & GXBP_DIVIDED) {
-        h = table->entry[gxbp_rim_slot(b, table, q, p)];
-        if (h == GXB_NONE || b->pieces[h / 3].source != t || b->pieces[h / 3].labels[h % 3] != GXBP_BARE) return GXB_NONE;
-        return h / 3;
+    const uint32_t h = table->entry[gxbp_rim_slot(b, table, q, p)];
+    int i, j;
+    for (i = 0; i < 3; i++) {
+        const uint32_t t = s->twin[i] == GXB_NONE ? GXB_NONE : s->twin[i] / 3;
+        if (t == GXB_NONE || b->sources[t].flags & GXBP_FLAT) continue;
+        if (b->sources[t].flags & GXBP_DIVIDED) {
+            if (h != GXB_NONE && b->pieces[h / 3].source == t && b->pieces[h / 3].labels[h % 3] == GXBP_BARE) return h / 3;
+            continue;
+        }
+        for (j = 0; j < 3; j++)
+            if (b->pieces[b->sources[t].facet].v[j] == q && b->pieces[b->sources[t].facet].v[(j + 1) % 3] == p) return b->sources[t].facet;
     }
-    for (j = 0; j < 3; j++) if (b->pieces[g].v[j] == q && b->pieces[g].v[(j + 1) % 3] == p) return g;
     return GXB_NONE;
 }
 
 static uint32_t gxbp_neighbour(const gxb_boolean *b, const gxbp_rim_table *table, uint32_t f, int k) {
     const gxbp_piece *piece = &b->pieces[f];
-    const gxbp_source *s = &b->sources[piece->source];
-    int j;
-    if (piece->near[k] != GXB_NONE) return (s->flags & GXBP_FLAT) && b->pieces[piece->near[k]].covers == GXB_NONE ? GXB_NONE : piece->near[k];
-    if (piece->labels[k] != GXBP_BARE || s->flags & GXBP_FLAT) return GXB_NONE;
-    for (j = 0; j < 3; j++) {
-        uint32_t g;
-        if (s->twin[j] == GXB_NONE) continue;
-        if (!(s->flags & GXBP_DIVIDED) && j != k) continue;
-        g = gxbp_across_edge(b, table, f, k, s->twin[j] / 3);
-        if (g != GXB_NONE) return g;
-    }
-    return GXB_NONE;
+    const gxbp_source *s = &b->sources[piece->source], *t;
+    uint32_t h;
+    if (s->flags & GXBP_FLAT) return piece->near[k] != GXB_NONE && b->pieces[piece->near[k]].covers != GXB_NONE ? piece->near[k] : GXB_NONE;
+    if (piece->near[k] != GXB_NONE) return piece->near[k];
+    if (s->flags & GXBP_DIVIDED) return piece->labels[k] == GXBP_BARE ? gxbp_across_rim(b, table, f, k, s) : GXB_NONE;
+    if (s->twin[k] == GXB_NONE) return GXB_NONE;
+    t = &b->sources[s->twin[k] / 3];
+    if (!(t->flags & (GXBP_DIVIDED | GXBP_FLAT))) return t->facet;
+    if (t->flags & GXBP_FLAT) return GXB_NONE;
+    h = table->entry[gxbp_rim_slot(b, table, piece->v[(k + 1) % 3], piece->v[k])];
+    return h != GXB_NONE && b->pieces[h / 3].source == s->twin[k] / 3 && b->pieces[h / 3].labels[h % 3] == GXBP_BARE ? h / 3 : GXB_NONE;
 }
 
 static void gxbp_spread_state(gxb_boolean *b, const gxbp_rim_table *table, uint32_t first) {
@@ -6197,10 +6217,11 @@ static int gxbp_is_surface(const gxb_boolean *b, uint32_t f) {
 static void gxbp_find_states(gxb_boolean *b) {
     gxbp_rim_table table;
     uint32_t f, pass;
-    if (b->result != GX_OK || !gxbp_fill_rim_table(b, &table)) return;
+    if (b->result != GX_OK) return;
+    gxbp_rename_vertices(b);
+    if (!gxbp_fill_rim_table(b, &table)) return;
     b->state_count = 0;
     if (b->state_table_size > 0) memset(b->state_table, 0xff, (size_t)b->state_table_size * sizeof *b->state_table);
-    for (f = 0; f < b->piece_count; f++) b->pieces[f].state = GXB_NONE;
     for (pass = 0; pass < 2; pass++)            /* first from input triangles, whose rays are cheap */
         for (f = 0; f < b->piece_count && b->result == GX_OK; f++) {
             if (!gxbp_is_surface(b, f) || b->pieces[f].state != GXB_NONE) continue;
@@ -6306,6 +6327,7 @@ static void gxbp_extract(gxb_boolean *b) {
         if (operand == GXB_NONE || operand != last_operand || b->pieces[f].state != last_state) behind = gxbp_state_behind(b, f);
         last_operand = operand;
         last_state = b->pieces[f].state;
+        b->pieces[f].state = GXB_NONE;          /* for the next evaluation */
         front_in = b->states[last_state] != 0;
         back_in = b->states[behind] != 0;
         if (front_in != back_in) {
@@ -6846,7 +6868,7 @@ static void gxbp_drop_boolean(gxb_boolean *b) {
     gxbp_release(&b->cx.allocator, b->state_table, (size_t)b->state_table_size * sizeof *b->state_table);
     GXBP_DROP(b, operands, operand); GXBP_DROP(b, sources, source); GXBP_DROP(b, bounds, bound); GXBP_DROP(b, boxes, box);
     GXBP_DROP(b, vertices, vertex); GXBP_DROP(b, pieces, piece); GXBP_DROP(b, links, link); GXBP_DROP(b, segments, segment);
-    GXBP_DROP(b, cuts, cut); GXBP_DROP(b, cut_points, cut_point); GXBP_DROP(b, hits, hit); GXBP_DROP(b, dirty, dirty);
+    GXBP_DROP(b, cuts, cut); GXBP_DROP(b, cut_points, cut_point); GXBP_DROP(b, hits, hit); GXBP_DROP(b, dirty, dirty); GXBP_DROP(b, divided, divided);
     GXBP_DROP(b, rims, rim); GXBP_DROP(b, lefts, left); GXBP_DROP(b, scratch, scratch); GXBP_DROP(b, chain, chain);
     GXBP_DROP(b, windings, winding); GXBP_DROP(b, states, state);
     GXBP_DROP(b, out_vertices, out_vertex); GXBP_DROP(b, out_origins, out_origin); GXBP_DROP(b, out_points, out_point);
@@ -6945,7 +6967,7 @@ GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, 
 /* After an error: the operands are as they came, nothing is arranged. Points that were found stay known. */
 static void gxbp_forget_arrangement(gxb_boolean *b) {
     uint32_t s, k;
-    b->piece_count = b->link_count = b->segment_count = b->cut_count = b->cut_point_count = b->hit_count = b->dirty_count = 0;
+    b->piece_count = b->link_count = b->segment_count = b->cut_count = b->cut_point_count = b->hit_count = b->dirty_count = b->divided_count = 0;
     b->arranged = b->segment_mark = 0;
     for (s = 0; s < b->source_count; s++) {
         gxbp_source *t = &b->sources[s];
