@@ -478,6 +478,15 @@ GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *boolean, gxb_boolean_resul
 extern "C" {
 #endif
 
+/* What is called rarely is small rather than fast; what is called from many places is there once. */
+#if defined(__GNUC__)
+#define GXBP_COLD __attribute__((cold, noinline))
+#define GXBP_APART __attribute__((noinline))
+#else
+#define GXBP_COLD
+#define GXBP_APART
+#endif
+
 /* >>bits: doubles taken apart and put together without floating-point arithmetic ---------------------------------------- */
 
 static uint64_t gxbp_bits(double x) {
@@ -754,7 +763,7 @@ static void gxbp_num_sub3(gxb_num r[3], const gxb_num a[3], const gxb_num b[3]) 
 }
 
 /* Plane through p, q, r: c[0..2] = n = (q-p) x (r-p), degree 2; c[3] = d = n.p, degree 3. */
-static void gxbp_exact_plane(gxb_num plane[4], const gxb_num p[3], const gxb_num q[3], const gxb_num r[3]) {
+static GXBP_APART void gxbp_exact_plane(gxb_num plane[4], const gxb_num p[3], const gxb_num q[3], const gxb_num r[3]) {
     gxbp_vec a, b;
     gxbp_vec_init(&a);
     gxbp_vec_init(&b);
@@ -778,7 +787,7 @@ static void gxbp_make_weight_positive(gxb_num point[4]) {
 }
 
 /* Line through p and q with a plane: X = s_q p - s_p q, W = s_q - s_p with s = n.x - d; degrees 4 and 3. */
-static void gxbp_exact_line_plane(gxb_num point[4], const gxb_num p[4], const gxb_num q[4], const gxb_num plane[4]) {
+static GXBP_APART void gxbp_exact_line_plane(gxb_num point[4], const gxb_num p[4], const gxb_num q[4], const gxb_num plane[4]) {
     GXB_NUM(sp); GXB_NUM(sq);
     int k;
     gxbp_exact_side(&sp, p, plane);
@@ -789,7 +798,7 @@ static void gxbp_exact_line_plane(gxb_num point[4], const gxb_num p[4], const gx
 }
 
 /* Three planes by Cramer's rule: X = d1 n2 x n3 + d2 n3 x n1 + d3 n1 x n2, W = n1.(n2 x n3); degrees 7 and 6. */
-static void gxbp_exact_three_planes(gxb_num point[4], const gxb_num a[4], const gxb_num b[4], const gxb_num c[4]) {
+static GXBP_COLD void gxbp_exact_three_planes(gxb_num point[4], const gxb_num a[4], const gxb_num b[4], const gxb_num c[4]) {
     gxbp_vec bc, ca, ab, row, d;
     int k;
     gxbp_vec_init(&bc); gxbp_vec_init(&ca); gxbp_vec_init(&ab); gxbp_vec_init(&row); gxbp_vec_init(&d);
@@ -1006,7 +1015,7 @@ static int gxbp_orient3d_short(const double a[3], const double b[3], const doubl
 }
 #endif
 
-static int gxbp_orient2d_exact(const double a[2], const double b[2], const double c[2]) {
+static GXBP_APART int gxbp_orient2d_exact(const double a[2], const double b[2], const double c[2]) {
     const int known = gxbp_orient2d_short(a, b, c);
     GXB_NUM(r);
     gxbp_vec p, q, o, u, v;
@@ -1034,7 +1043,7 @@ GXFEM_API int gxb_orient2d(const double a[2], const double b[2], const double c[
     return gxbp_orient2d_exact(a, b, c);
 }
 
-static int gxbp_orient3d_exact(const double a[3], const double b[3], const double c[3], const double d[3]) {
+static GXBP_APART int gxbp_orient3d_exact(const double a[3], const double b[3], const double c[3], const double d[3]) {
     const int known = gxbp_orient3d_short(a, b, c, d);
     GXB_NUM(r);
     gxbp_vec p, q, s, o, n;
@@ -1111,7 +1120,7 @@ static void gxbp_exact_lifted(gxbp_vec *v, const double p[3], const double o[3])
 }
 
 /* Degree 4: 140 limbs of 64 bits for any finite doubles. */
-static int gxbp_incircle_exact(const double a[2], const double b[2], const double c[2], const double d[2]) {
+static GXBP_COLD int gxbp_incircle_exact(const double a[2], const double b[2], const double c[2], const double d[2]) {
     const double *p[4];
     double x[4][3];
     gxbp_vec row[3], minor, lift;
@@ -1131,7 +1140,7 @@ static int gxbp_incircle_exact(const double a[2], const double b[2], const doubl
 }
 
 /* Degree 5: a difference of any finite doubles has 34 limbs of 64 bits, its square 67, a minor 100, their product and the sum of four 167. */
-static int gxbp_insphere_exact(const double a[3], const double b[3], const double c[3], const double d[3], const double e[3]) {
+static GXBP_COLD int gxbp_insphere_exact(const double a[3], const double b[3], const double c[3], const double d[3], const double e[3]) {
     gxbp_vec row[4], normal;
     GXB_NUM(minor); GXB_NUM(term); GXB_NUM(sum); GXB_NUM(next);
     int i;
@@ -1207,14 +1216,14 @@ GXFEM_API void gxb_point_three_planes(gxb_point *point, const gxb_plane *a, cons
     point->plane[0] = a; point->plane[1] = b; point->plane[2] = c;
 }
 
-static void gxbp_plane_exact(gxbp_vec *v, const gxb_plane *plane) {
+static GXBP_COLD void gxbp_plane_exact(gxbp_vec *v, const gxb_plane *plane) {
     gxbp_vec p, q, r;
     gxbp_vec_set(&p, plane->p); gxbp_vec_set(&q, plane->q); gxbp_vec_set(&r, plane->r);
     gxbp_vec_init(v);
     gxbp_exact_plane(v->c, p.c, q.c, r.c);
 }
 
-static void gxbp_point_exact(gxbp_vec *v, const gxb_point *point) {
+static GXBP_COLD void gxbp_point_exact(gxbp_vec *v, const gxb_point *point) {
     gxbp_vec a, b, c;
     if (point->plane[0] == NULL) { gxbp_vec_set(v, point->p); return; }
     gxbp_vec_init(v);
@@ -1264,7 +1273,7 @@ GXFEM_API int gxb_compare(const gxb_point *a, const gxb_point *b, int axis) {
 }
 
 /* |a b c| of the homogeneous coordinates i and j: degree 20 for three points of three planes */
-static int gxbp_orient_exact(const gxb_num a[4], const gxb_num b[4], const gxb_num c[4], int i, int j) {
+static GXBP_APART int gxbp_orient_exact(const gxb_num a[4], const gxb_num b[4], const gxb_num c[4], int i, int j) {
     gxbp_vec row, cofactor;
     GXB_NUM(r);
     gxbp_vec_init(&row);
@@ -1286,7 +1295,7 @@ static int gxbp_filter_turn(const gxb_ball *a, const gxb_ball *b, const gxb_ball
     return gxbp_filter_sign(u[i] * v[j] - u[j] * v[i], bound);
 }
 
-GXFEM_API int gxb_orient_in_plane(const gxb_point *a, const gxb_point *b, const gxb_point *c, const gxb_plane *plane) {
+GXFEM_API GXBP_COLD int gxb_orient_in_plane(const gxb_point *a, const gxb_point *b, const gxb_point *c, const gxb_plane *plane) {
     const double *n = plane->filter.n;
     gxbp_vec exact_n, x[3];
     int axis, sign, k;
@@ -1355,7 +1364,7 @@ static int gxbp_ray_side(const double a[3], const double b[3], const double p[3]
     return sign != 0 ? sign : gxbp_compare_doubles(b[1], a[1]);     /* d/dz is b_y - a_y */
 }
 
-GXFEM_API int gxb_winding_number(const double *vertices, const uint32_t *triangles, size_t triangle_count, const double p[3],
+GXFEM_API GXBP_COLD int gxb_winding_number(const double *vertices, const uint32_t *triangles, size_t triangle_count, const double p[3],
                                  int *on_surface) {
     int winding = 0;
     size_t t;
@@ -1378,14 +1387,14 @@ GXFEM_API int gxb_winding_number(const double *vertices, const uint32_t *triangl
 
 static void *gxbp_allocate(const gx_allocator *a, size_t size) { return a->allocate ? a->allocate(a->user, size) : malloc(size); }
 
-static void gxbp_release(const gx_allocator *a, void *memory, size_t size) {
+static GXBP_APART void gxbp_release(const gx_allocator *a, void *memory, size_t size) {
     if (memory == NULL) return;
     if (a->release) a->release(a->user, memory, size);
     else free(memory);
 }
 
 /* Makes room for count + extra items of the given size. */
-static gx_result gxbp_reserve(gxb_complex *cx, void *array, size_t item, uint32_t count, uint32_t *capacity, size_t extra) {
+static GXBP_APART gx_result gxbp_reserve(gxb_complex *cx, void *array, size_t item, uint32_t count, uint32_t *capacity, size_t extra) {
     const size_t need = (size_t)count + extra, room = need + need / 2 + 16;
     void *old, *memory;
     if (need <= *capacity) return GX_OK;
@@ -1452,7 +1461,7 @@ static void gxbp_move_list(const gxb_complex *cx, uint32_t *pool, uint32_t *used
 
 /* Lists that were replaced by longer ones stay in the pool; once they outweigh the others, the pool is renewed. Without memory for
    that it stays as it is. */
-static void gxbp_compact_pool(gxb_complex *cx) {
+static GXBP_COLD void gxbp_compact_pool(gxb_complex *cx) {
     uint32_t *pool, used = 0, i;
     if (cx->pool_count / 2 < cx->pool_live + 4096) return;
     pool = (uint32_t *)gxbp_allocate(&cx->allocator, (size_t)cx->pool_capacity * sizeof *pool);
@@ -1493,7 +1502,7 @@ static int gxbp_is_recent(const gxb_complex *cx, const void *memory) {
 }
 
 /* Gives back exact numbers kept since begin; those of older points and planes are computed again when needed. */
-static void gxbp_drop_recent_numbers(gxb_complex *cx) {
+static GXBP_COLD void gxbp_drop_recent_numbers(gxb_complex *cx) {
     uint32_t i;
     for (i = 0; i < cx->mark[0]; i++) if (cx->points[i].exact != NULL && gxbp_is_recent(cx, cx->points[i].exact)) cx->points[i].exact = NULL;
     for (i = 0; i < cx->mark[1]; i++) if (cx->planes[i].exact != NULL && gxbp_is_recent(cx, cx->planes[i].exact)) cx->planes[i].exact = NULL;
@@ -1505,7 +1514,7 @@ static void gxbp_drop_recent_numbers(gxb_complex *cx) {
     if (cx->blocks != NULL) cx->blocks->used = cx->mark_used;
 }
 
-GXFEM_API void gxb_complex_rollback(gxb_complex *cx) {
+GXFEM_API GXBP_COLD void gxb_complex_rollback(gxb_complex *cx) {
     while (cx->undo_count > 0) {
         const gxb_undo *undo = &cx->undo[--cx->undo_count];
         size_t size;
@@ -1583,7 +1592,7 @@ static gx_result gxbp_frame_exact(const gxb_complex *cx, const double x[3], gxbp
     return GX_OK;
 }
 
-GXFEM_API gx_result gxb_complex_add_point(gxb_complex *cx, const double x[3], uint32_t *point) {
+GXFEM_API GXBP_APART gx_result gxb_complex_add_point(gxb_complex *cx, const double x[3], uint32_t *point) {
     gxbp_vec v;
     gx_result result;
     gxb_num *exact = NULL;
@@ -1640,7 +1649,7 @@ static void gxbp_exact_axis_plane(gxb_num plane[4], const gxb_num p[3], const gx
     gxbp_num_dot(&plane[3], plane, p);
 }
 
-static const gxb_num *gxbp_exact_cplane(gxb_complex *cx, uint32_t plane, gxbp_vec *store) {
+static GXBP_APART const gxb_num *gxbp_exact_cplane(gxb_complex *cx, uint32_t plane, gxbp_vec *store) {
     gxb_cplane *f = &cx->planes[plane];
     gxbp_vec s[3];
     const gxb_num *p, *q;
@@ -1786,7 +1795,7 @@ GXFEM_API int gxb_complex_turn(gxb_complex *cx, uint32_t a, uint32_t b, uint32_t
     return turn * f->axis_sign;
 }
 
-GXFEM_API int gxb_complex_compare(gxb_complex *cx, uint32_t point, int axis, double value) {
+GXFEM_API GXBP_COLD int gxb_complex_compare(gxb_complex *cx, uint32_t point, int axis, double value) {
     GXB_NUM(a); GXB_NUM(b); GXB_NUM(c);
     gxbp_vec store;
     const gxb_num *x = gxbp_exact_cpoint(cx, point, &store);
@@ -2034,7 +2043,7 @@ static gx_result gxbp_fail(gx_failure *failure, gx_result result, size_t index) 
     return result;
 }
 
-GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator *allocator, gxb_complex **complex,
+GXFEM_API GXBP_COLD gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator *allocator, gxb_complex **complex,
                                        gx_failure *failure) {
     gx_allocator none;
     gxb_complex *cx;
@@ -2081,7 +2090,7 @@ typedef struct gxbp_task { uint32_t parent, side, first, count, coplanar; } gxbp
 #define GXBP_TRIANGLE_EDGE 0x80000000u
 #define GXBP_IN_ROOT GXB_NONE   /* task.parent: the reference is the element's root */
 
-GXFEM_API void gxb_complex_destroy(gxb_complex *cx) {
+GXFEM_API GXBP_COLD void gxb_complex_destroy(gxb_complex *cx) {
     gx_allocator a;
     if (cx == NULL) return;
     a = cx->allocator;
@@ -2393,7 +2402,7 @@ static uint32_t gxbp_local_edge(uint32_t i, uint32_t j) {
 }
 
 /* The facet of an element's face: its plane through the nodes in ascending order, so that both elements make the same. */
-static gx_result gxbp_open_face(gxb_complex *cx, uint32_t element, uint32_t k) {
+static GXBP_APART gx_result gxbp_open_face(gxb_complex *cx, uint32_t element, uint32_t k) {
     const uint32_t face = cx->element_faces[4 * element + k], *node = cx->elements + 4 * (size_t)element;
     uint32_t local[3], j, t, plane;
     gxb_facet *f;
@@ -2956,7 +2965,7 @@ GXFEM_API gx_result gxb_complex_insert(gxb_complex *cx, gxb_triangle *t, uint32_
 /* A point in the given coordinates times 2^shift: homogeneous, and roughly. */
 typedef struct gxbp_probe { gxbp_vec exact; double rough[3]; int shift; } gxbp_probe;
 
-static void gxbp_probe_init(gxb_complex *cx, const uint32_t *points, size_t count, gxbp_probe *probe) {
+static GXBP_COLD void gxbp_probe_init(gxb_complex *cx, const uint32_t *points, size_t count, gxbp_probe *probe) {
     size_t i;
     int k;
     gxbp_vec_init(&probe->exact);
@@ -3000,7 +3009,7 @@ static int gxbp_probe_misses(const gxbp_probe *probe, const double *const x[3]) 
 }
 
 /* gxbp_ray_side for a probe: W (a_y b_z - a_z b_y) + Y (a_z - b_z) + Z (b_y - a_y) */
-static int gxbp_probe_side(const gxbp_probe *probe, const double a[3], const double b[3]) {
+static GXBP_COLD int gxbp_probe_side(const gxbp_probe *probe, const double a[3], const double b[3]) {
     gxbp_vec p, q, row;
     GXB_NUM(r);
     int k, sign;
@@ -3019,7 +3028,7 @@ static int gxbp_probe_side(const gxbp_probe *probe, const double a[3], const dou
 }
 
 /* gxb_orient3d(a, b, c, probe) */
-static int gxbp_probe_orient(const gxbp_probe *probe, const double *const x[3]) {
+static GXBP_COLD int gxbp_probe_orient(const gxbp_probe *probe, const double *const x[3]) {
     gxbp_vec p[3], n;
     GXB_NUM(r);
     int k, c;
@@ -3033,7 +3042,7 @@ static int gxbp_probe_orient(const gxbp_probe *probe, const double *const x[3]) 
     return -r.sign;
 }
 
-GXFEM_API int gxb_complex_winding(gxb_complex *cx, const uint32_t *points, size_t point_count, const double *vertices,
+GXFEM_API GXBP_COLD int gxb_complex_winding(gxb_complex *cx, const uint32_t *points, size_t point_count, const double *vertices,
                                   const uint32_t *triangles, size_t triangle_count) {
     gxbp_probe probe;
     int winding = 0, c;
@@ -3160,7 +3169,7 @@ GXFEM_API void gxb_complex_barycentric(gxb_complex *cx, uint32_t point, uint32_t
 }
 
 /* Each step adds the quotient of what is left: 50 bits, so that four leave less than 2^-180 of the value. */
-GXFEM_API void gxb_complex_barycentric_fine(gxb_complex *cx, uint32_t point, uint32_t element, gxb_num lambda[4]) {
+GXFEM_API GXBP_COLD void gxb_complex_barycentric_fine(gxb_complex *cx, uint32_t point, uint32_t element, gxb_num lambda[4]) {
     uint32_t k;
     int step;
     for (k = 0; k < 4; k++) {
@@ -3381,7 +3390,7 @@ static void gxbp_pass_rest(gxb_complex *cx, gxb_stream *s) {
 
 enum { GXBP_COUNTS = 7 };
 
-GXFEM_API void gxb_complex_save(gxb_complex *cx, gxb_stream *stream) {
+GXFEM_API GXBP_COLD void gxb_complex_save(gxb_complex *cx, gxb_stream *stream) {
     uint32_t counts[GXBP_COUNTS];
     counts[0] = cx->point_count; counts[1] = cx->plane_count; counts[2] = cx->edge_count; counts[3] = cx->facet_count;
     counts[4] = cx->leaf_count; counts[5] = cx->tree_count; counts[6] = cx->label_count;
@@ -3428,7 +3437,7 @@ static void gxbp_link_trees(gxb_complex *cx) {
         for (n = cx->nodes[i].child[k] & 1 ? GXB_NONE : i; n != GXB_NONE; n = cx->nodes[n].parent) cx->nodes[n].leaves++;
 }
 
-GXFEM_API gx_result gxb_complex_load(gxb_complex *cx, gxb_stream *s, int trusted) {
+GXFEM_API GXBP_COLD gx_result gxb_complex_load(gxb_complex *cx, gxb_stream *s, int trusted) {
     uint32_t counts[GXBP_COUNTS];
     gxb_stream_pass(s, counts, GXBP_COUNTS, sizeof *counts);
     gxbp_load_room(s, cx, counts);
@@ -3517,7 +3526,7 @@ static int gxbp_same_place(gxb_complex *cx, uint32_t a, uint32_t b) {
 }
 
 /* Do the planes meet in a line? */
-static int gxbp_planes_cross(gxb_complex *cx, uint32_t a, uint32_t b) {
+static GXBP_APART int gxbp_planes_cross(gxb_complex *cx, uint32_t a, uint32_t b) {
     const gxb_plane_filter *f = &cx->planes[a].filter, *g = &cx->planes[b].filter;
     double r[3];
     const double bound = gxbp_filter_cross(r, f->n, f->error, g->n, g->error);
@@ -4092,7 +4101,7 @@ static uint32_t gxbp_hash_point(const gxb_boolean *b, uint32_t point) {
     return key[0] == GXB_FROM_VERTEX ? gxbp_hash_place(b->cx.points[point].ball.x) : gxbp_hash_key(key);
 }
 
-static int gxbp_grow_table(gxb_boolean *b, uint32_t extra) {
+static GXBP_APART int gxbp_grow_table(gxb_boolean *b, uint32_t extra) {
     uint32_t size = b->table_size == 0 ? 64 : b->table_size, *table, i, k;
     if ((uint64_t)(b->table_used + (uint64_t)extra) * 2 <= b->table_size) return 1;
     while ((uint64_t)size < ((uint64_t)b->table_used + extra) * 3 && size < (uint32_t)1 << 31) size *= 2;
@@ -4839,7 +4848,7 @@ static int gxbp_no_edge_separates(int turn[3][3], int orientation) {
     return 1;
 }
 
-static void gxbp_meet_in_plane(gxb_boolean *b, uint32_t s, uint32_t t) {
+static GXBP_COLD void gxbp_meet_in_plane(gxb_boolean *b, uint32_t s, uint32_t t) {
     const uint32_t plane = b->sources[s].plane;
     int of_s[3][3], of_t[3][3], k, j, facing;
     gxbp_meeting m;
@@ -5675,7 +5684,7 @@ static void gxbp_divide_source(gxb_boolean *b, uint32_t s) {
 /* --- flats: sources that overlap in one plane are divided together, within a frame around them --- */
 
 /* A corner of the frame: where a line along the plane's axis meets it. */
-static uint32_t gxbp_frame_corner(gxb_boolean *b, uint32_t plane, double x, double y) {
+static GXBP_COLD uint32_t gxbp_frame_corner(gxb_boolean *b, uint32_t plane, double x, double y) {
     const uint32_t axis = b->cx.planes[plane].axis;
     uint32_t id[3], k;
     for (k = 0; k < 3; k++) {
@@ -5694,7 +5703,7 @@ static uint32_t gxbp_frame_corner(gxb_boolean *b, uint32_t plane, double x, doub
     return id[2];
 }
 
-static void gxbp_make_frame(gxb_boolean *b, uint32_t r) {
+static GXBP_COLD void gxbp_make_frame(gxb_boolean *b, uint32_t r) {
     const uint32_t plane = b->sources[r].plane, i = (b->cx.planes[plane].axis + 1) % 3, j = (b->cx.planes[plane].axis + 2) % 3;
     gxbp_box box = gxbp_box_of(b, r);
     uint32_t t, corner[4], f, g;
@@ -5805,7 +5814,7 @@ static void gxbp_cover_facets(gxb_boolean *b, uint32_t r, uint32_t t) {
     }
 }
 
-static void gxbp_divide_flat(gxb_boolean *b, uint32_t r) {
+static GXBP_COLD void gxbp_divide_flat(gxb_boolean *b, uint32_t r) {
     uint32_t t, f;
     if (!gxbp_need_plane(b, r)) return;
     for (t = r; t != GXB_NONE; t = b->sources[t].next) {
@@ -5912,7 +5921,7 @@ static uint32_t gxbp_hash_winding(const int32_t *winding, uint32_t count) {
     return hash;
 }
 
-static int gxbp_grow_states(gxb_boolean *b) {
+static GXBP_APART int gxbp_grow_states(gxb_boolean *b) {
     const uint32_t n = b->operand_count, size = b->state_table_size == 0 ? 64 : 2 * b->state_table_size;
     uint32_t *table, i, k;
     if (2 * (b->state_count + 1) <= b->state_table_size) return 1;
@@ -6260,7 +6269,7 @@ static void gxbp_name_source(const gxb_boolean *b, uint32_t s, uint32_t corner, 
     if (corner < 3) *index = 3 * *index + corner;
 }
 
-static void gxbp_describe_point(const gxb_boolean *b, uint32_t point, gxb_origin *o) {
+static GXBP_APART void gxbp_describe_point(const gxb_boolean *b, uint32_t point, gxb_origin *o) {
     const gxb_cpoint *p = &b->cx.points[point];
     const uint32_t *key = b->vertices[p->kind == GXB_EXPLICIT ? p->def[0] : point].key;
     int k;
@@ -6537,7 +6546,7 @@ static void gxbp_close_coarse(gxb_boolean *b, const gxbp_coarse *c, uint32_t *ne
     b->out_operand_count = b->out_source_count = b->out_plane_count = b->out_reversed_count = n;
 }
 
-static void gxbp_coarsen(gxb_boolean *b) {
+static GXBP_COLD void gxbp_coarsen(gxb_boolean *b) {
     const size_t halves = b->out_triangle_count, points = b->out_point_count;
     const size_t bytes = halves * (2 * sizeof(uint32_t) + sizeof(gxbp_umbrella)) + 2 * points * sizeof(uint32_t);
     gxbp_coarse c;
@@ -6632,7 +6641,7 @@ static void gxbp_make_blade(gxb_boolean *b, uint32_t h, uint32_t p, const gxbp_b
 }
 
 /* Joins the triangles at the two sides of each wedge of the solid around an edge that more than two triangles share. */
-static void gxbp_join_wedges(gxb_boolean *b, const gxbp_fan *fan, uint32_t i, uint32_t j, uint32_t *parent) {
+static GXBP_COLD void gxbp_join_wedges(gxb_boolean *b, const gxbp_fan *fan, uint32_t i, uint32_t j, uint32_t *parent) {
     const uint32_t p = b->out_points[i], q = b->out_points[j];
     gxbp_blade *blade = NULL;
     uint32_t n = 0, pass, k, m, capacity = 0;
@@ -6698,7 +6707,7 @@ static void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *fine) {
 }
 
 /* Six times the volume of a shell (set root in parent), from coordinates of 180 bits. */
-static double gxbp_fine_volume(gxb_boolean *b, uint32_t *parent, uint32_t root) {
+static GXBP_COLD double gxbp_fine_volume(gxb_boolean *b, uint32_t *parent, uint32_t root) {
     GXB_NUM(total); GXB_NUM(sum); GXB_NUM(term);
     gxbp_vec x[3], n;
     uint32_t t, k;
@@ -6758,7 +6767,7 @@ static int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p, uint32_t 
 }
 
 /* The smallest shell with volume around a cavity's (or a sheet's) shell. */
-static uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, uint32_t *parent, const double *volume, int32_t *winding) {
+static GXBP_COLD uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, uint32_t *parent, const double *volume, int32_t *winding) {
     gxbp_ray ray;
     uint32_t t, best = GXB_NONE, k;
     gxbp_set_ray(b, &ray, b->out_planes[cavity] / 2);
@@ -6787,7 +6796,7 @@ static uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, uint32_t *p
     return best;
 }
 
-static void gxbp_number_components(gxb_boolean *b, uint32_t *parent, double *volume, int32_t *winding) {
+static GXBP_APART void gxbp_number_components(gxb_boolean *b, uint32_t *parent, double *volume, int32_t *winding) {
     uint32_t t, root;
     for (t = 0; t < b->out_source_count; t++) {
         if (parent[t] != t || volume[t] > 0) continue;
@@ -6853,7 +6862,7 @@ static void gxbp_find_components(gxb_boolean *b) {
 
 /* --- the public functions --- */
 
-static void gxbp_drop_boolean(gxb_boolean *b) {
+static GXBP_COLD void gxbp_drop_boolean(gxb_boolean *b) {
     uint32_t i;
     for (i = 0; i < b->operand_count; i++)
         gxbp_release(&b->cx.allocator, b->operands[i].order, (size_t)b->operands[i].source_count * sizeof(uint32_t));
@@ -6877,7 +6886,7 @@ static void gxbp_drop_boolean(gxb_boolean *b) {
     GXBP_DROP(b, out_defects, out_defect); GXBP_DROP(b, out_reversed, out_reversed); GXBP_DROP(b, out_sides, out_side);
 }
 
-GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean **boolean) {
+GXFEM_API GXBP_APART gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean **boolean) {
     gxb_boolean_desc none;
     gxb_boolean *b;
     size_t arena;
@@ -6927,7 +6936,7 @@ static gx_result gxbp_check_operand(const gxb_boolean *b, const gxb_operand *o, 
 }
 
 /* Forgets the points from count on. */
-static void gxbp_cut_points_back(gxb_boolean *b, uint32_t count) {
+static GXBP_COLD void gxbp_cut_points_back(gxb_boolean *b, uint32_t count) {
     uint32_t i, k, n = 0;
     for (i = 0; i < b->table_size; i++) if (b->table[i] != GXB_NONE && b->table[i] >= count) n++;
     if (n > 0) {
@@ -6965,7 +6974,7 @@ GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, 
 }
 
 /* After an error: the operands are as they came, nothing is arranged. Points that were found stay known. */
-static void gxbp_forget_arrangement(gxb_boolean *b) {
+static GXBP_COLD void gxbp_forget_arrangement(gxb_boolean *b) {
     uint32_t s, k;
     b->piece_count = b->link_count = b->segment_count = b->cut_count = b->cut_point_count = b->hit_count = b->dirty_count = b->divided_count = 0;
     b->arranged = b->segment_mark = 0;
