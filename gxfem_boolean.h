@@ -533,9 +533,10 @@ static void gxbp_num_trim(gxb_num *r) {
     while (r->n > 0 && r->d[r->n - 1] == 0) r->n--;
     while (low < r->n && r->d[low] == 0) low++;
     if (low > 0) {
+        uint32_t i;
         r->n -= low;
         r->exp += (int32_t)low;
-        memmove(r->d, r->d + low, r->n * sizeof *r->d);
+        for (i = 0; i < r->n; i++) r->d[i] = r->d[i + low];
     }
     if (r->n == 0) r->sign = r->exp = 0;
 }
@@ -640,7 +641,7 @@ static void gxbp_num_add_signed(gxb_num *r, const gxb_num *a, const gxb_num *b, 
         else gxbp_num_sub_magnitude(r, b, a);
         r->sign = order == 0 ? 0 : order > 0 ? a->sign : b_sign;
     }
-    gxbp_num_trim(r);
+    if (r->d[0] == 0 || r->d[r->n - 1] == 0) gxbp_num_trim(r);
 }
 
 GXFEM_API void gxb_num_add(gxb_num *r, const gxb_num *a, const gxb_num *b) { gxbp_num_add_signed(r, a, b, 1); }
@@ -651,8 +652,9 @@ GXFEM_API void gxb_num_mul(gxb_num *r, const gxb_num *a, const gxb_num *b) {
     r->sign = a->sign * b->sign;
     r->exp = a->exp + b->exp;
     r->n = r->sign == 0 ? 0 : a->n + b->n;
-    for (i = 0; i < r->n; i++) r->d[i] = 0;
-    for (i = 0; r->sign != 0 && i < a->n; i++) {
+    if (r->n == 0) { r->exp = 0; return; }
+    for (j = 0; j < b->n; j++) r->d[j] = 0;
+    for (i = 0; i < a->n; i++) {
         const gxb_limb x = a->d[i];
         gxb_limb *d = r->d + i, carry = 0;
         for (j = 0; j < b->n; j++) {
@@ -662,7 +664,7 @@ GXFEM_API void gxb_num_mul(gxb_num *r, const gxb_num *a, const gxb_num *b) {
         }
         d[b->n] = carry;
     }
-    gxbp_num_trim(r);
+    if (r->d[0] == 0 || r->d[r->n - 1] == 0) gxbp_num_trim(r);
 }
 
 /* Bits of a limb other than 0, counted up to the highest that is set. */
@@ -3969,6 +3971,10 @@ typedef struct gxbp_operand {
     gxbp_tree tree;
 } gxbp_operand;
 
+/* From a state one up or down in an operand's winding number */
+typedef struct gxbp_crossing { uint32_t from, operand, to; int32_t change; } gxbp_crossing;
+enum { GXBP_STEPS = 64 };
+
 struct gxb_boolean {
     gxb_complex cx;             /* points, planes and exact numbers; the complex has no elements */
     gx_allocator outer;
@@ -4002,11 +4008,14 @@ struct gxb_boolean {
     uint32_t arranged;          /* operands that are in the arrangement */
     uint32_t segment_mark;      /* segments before it are in the triangulations */
     uint32_t merged_points;     /* points before it were compared with each other */
+    struct gxbp_projected *projected; uint32_t projected_count, projected_capacity;     /* the computed ones of these, along a direction */
+    double reach;               /* the largest of their errors */
     uint32_t renamed;           /* 1: an input vertex has got another name */
     uint32_t plane, stamp, head_stamp;                                  /* of the triangulation at work */
     int32_t *windings; uint32_t winding_count, winding_capacity;        /* state x operand */
     uint32_t *states; uint32_t state_count, state_capacity;             /* of each state: is it inside? */
     uint32_t *state_table; uint32_t state_table_size;
+    gxbp_crossing steps[GXBP_STEPS];                                        /* the last ones asked for */
     double *out_vertices; uint32_t out_vertex_count, out_vertex_capacity;
     gxb_origin *out_origins; uint32_t out_origin_count, out_origin_capacity;
     uint32_t *out_points; uint32_t out_point_count, out_point_capacity;
@@ -5858,31 +5867,40 @@ static void gxbp_sort_projected(gxbp_projected *p, uint32_t count, gxbp_projecte
     for (i = 0, j = half, k = 0; i < half; k++) p[k] = j < count && p[j].t < work[i].t ? p[j++] : work[i++];
 }
 
-/* Points that are new since the last time are compared with all that lie within the errors of both along a direction in which few
+/* Sorts the new ones behind the others, then merges them with these; work: room for all. */
+static void gxbp_merge_projected(gxbp_projected *p, uint32_t old, uint32_t count, gxbp_projected *work) {
+    uint32_t i = 0, j = old, k;
+    gxbp_sort_projected(p + old, count - old, work);
+    memcpy(work, p, old * sizeof *p);
+    for (k = 0; i < old; k++) p[k] = j < count && p[j].t < work[i].t ? p[j++] : work[i++];
+}
+
+/* Computed points that are new since the last time are compared with all that lie within the errors of both along a direction in which few
    points agree. */
 static void gxbp_merge_points(gxb_boolean *b) {
     static const double direction[3] = {0.6180339887, 0.4142135623, 0.7320508075};
-    const size_t size = 2 * (size_t)b->vertex_count * sizeof(gxbp_projected);
-    gxbp_projected *p;
-    uint32_t i, j, n = 0;
-    double reach = 0;
-    if (b->result != GX_OK || b->merged_points == b->vertex_count) return;
-    p = (gxbp_projected *)gxbp_allocate(&b->cx.allocator, size);
-    if (p == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
-    for (i = 0; i < b->vertex_count; i++) {
+    const uint32_t old = b->projected_count;
+    const size_t fresh = b->vertex_count - b->merged_points, size = (old + fresh) * sizeof(gxbp_projected);
+    gxbp_projected *p, *work;
+    uint32_t i, j;
+    if (b->result != GX_OK || fresh == 0 || !GXBP_ROOM(b, projected, projected, fresh)) return;
+    work = (gxbp_projected *)gxbp_allocate(&b->cx.allocator, size);
+    if (work == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
+    p = b->projected;
+    for (i = b->merged_points; i < b->vertex_count; i++) {
         const gxb_ball *x = &b->cx.points[i].ball;
         if (b->vertices[i].key[0] == GXB_FROM_VERTEX || b->vertices[i].same != i) continue;
-        p[n].t = direction[0] * x->x[0] + direction[1] * x->x[1] + direction[2] * x->x[2];
-        p[n++].point = i;
-        reach = gxbp_max(reach, x->error + 4 * GXBP_U * gxbp_max3(x->x));
+        p[b->projected_count].t = direction[0] * x->x[0] + direction[1] * x->x[1] + direction[2] * x->x[2];
+        p[b->projected_count++].point = i;
+        b->reach = gxbp_max(b->reach, x->error + 4 * GXBP_U * gxbp_max3(x->x));
     }
-    gxbp_sort_projected(p, n, p + n);
-    for (i = 0; i < n; i++)
-        for (j = i + 1; j < n && p[j].t - p[i].t <= 8 * reach; j++) {
+    gxbp_merge_projected(p, old, b->projected_count, work);
+    for (i = 0; i < b->projected_count; i++)
+        for (j = i + 1; j < b->projected_count && p[j].t - p[i].t <= 8 * b->reach; j++) {
             const uint32_t q = gxbp_same(b, p[i].point), r = gxbp_same(b, p[j].point);
             if (q != r && (q >= b->merged_points || r >= b->merged_points) && gxbp_points_equal(b, q, r)) gxbp_unite(b, q, r);
         }
-    gxbp_release(&b->cx.allocator, p, size);
+    gxbp_release(&b->cx.allocator, work, size);
     b->merged_points = b->vertex_count;
 }
 
@@ -5963,6 +5981,18 @@ static int32_t *gxbp_copy_winding(gxb_boolean *b, uint32_t state) {
     return winding;
 }
 
+static uint32_t gxbp_step_state(gxb_boolean *b, uint32_t from, uint32_t operand, int change) {
+    gxbp_crossing *step = &b->steps[(2 * (from + 5 * operand) + (change > 0)) % GXBP_STEPS];
+    int32_t *winding;
+    if (step->change == change && step->from == from && step->operand == operand) return step->to;
+    winding = gxbp_copy_winding(b, from);
+    if (winding == NULL) return 0;
+    winding[operand] += change;
+    step->from = from; step->operand = operand; step->change = change;
+    step->to = gxbp_find_state(b);
+    return step->to;
+}
+
 static uint32_t gxbp_root_plane(const gxb_boolean *b, uint32_t f) { return b->sources[b->pieces[f].source].plane; }
 
 /* The side of t's plane on which facet f lies, which has edge k in it. If its apex is too near to tell, any corner of the source tells: side
@@ -5985,19 +6015,26 @@ static int gxbp_side_of_piece(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
     return side != 0 ? side : gxbp_side_of_source(b, piece->v[(k + 2) % 3], t);
 }
 
-/* The state in front of the facet beyond edge k: a triangle with a part in front of the plane is passed, from the side on which f lies. */
+/* How a label of edge k changes the winding number of its operand: a triangle with a part in front of f's plane is passed, from the side on
+   which f lies. */
+static int gxbp_label_step(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
+    int side[3];
+    if (t & GXBP_EDGE_LABEL || b->operands[b->sources[t].operand].operation == GXB_SPLIT) return 0;
+    gxbp_sides(b, t, gxbp_root_plane(b, f), 0, side);
+    return side[0] <= 0 && side[1] <= 0 && side[2] <= 0 ? 0 : gxbp_side_of_piece(b, f, k, t);
+}
+
+/* The state in front of the facet beyond edge k. */
 static uint32_t gxbp_state_beyond(gxb_boolean *b, uint32_t f, int k) {
-    const uint32_t plane = gxbp_root_plane(b, f);
     uint32_t list = b->pieces[f].labels[k];
     int32_t *winding = NULL;
     for (; list != GXBP_LOOSE && list != GXBP_BARE; list = b->links[list].next) {
         const uint32_t t = b->links[list].value;
-        int side[3];
-        if (t & GXBP_EDGE_LABEL || b->operands[b->sources[t].operand].operation == GXB_SPLIT) continue;
-        gxbp_sides(b, t, plane, 0, side);
-        if (side[0] <= 0 && side[1] <= 0 && side[2] <= 0) continue;
+        const int change = gxbp_label_step(b, f, k, t);
+        if (change == 0) continue;
+        if (winding == NULL && b->links[list].next == GXBP_BARE) return gxbp_step_state(b, b->pieces[f].state, b->sources[t].operand, change);
         if (winding == NULL && (winding = gxbp_copy_winding(b, b->pieces[f].state)) == NULL) return 0;
-        winding[b->sources[t].operand] += gxbp_side_of_piece(b, f, k, t);
+        winding[b->sources[t].operand] += change;
     }
     return winding == NULL ? b->pieces[f].state : gxbp_find_state(b);
 }
@@ -6017,7 +6054,11 @@ static void gxbp_add_covers(const gxb_boolean *b, uint32_t f, int sign, int32_t 
 }
 
 static uint32_t gxbp_state_behind(gxb_boolean *b, uint32_t f) {
-    int32_t *winding = gxbp_copy_winding(b, b->pieces[f].state);
+    const uint32_t operand = b->sources[b->pieces[f].source].operand;
+    int32_t *winding;
+    if (b->pieces[f].covers == GXB_NONE)
+        return b->operands[operand].operation == GXB_SPLIT ? b->pieces[f].state : gxbp_step_state(b, b->pieces[f].state, operand, 1);
+    winding = gxbp_copy_winding(b, b->pieces[f].state);
     if (winding == NULL) return 0;
     gxbp_add_covers(b, f, 1, winding);
     return gxbp_find_state(b);
@@ -6210,9 +6251,12 @@ static void gxbp_spread_state(gxb_boolean *b, const gxbp_rim_table *table, uint3
         const uint32_t f = b->scratch[--b->scratch_count];
         int k;
         for (k = 0; k < 3; k++) {
-            const uint32_t g = gxbp_neighbour(b, table, f, k);
+            const uint32_t near = b->pieces[f].near[k];
+            uint32_t g;
+            if (near != GXB_NONE && b->pieces[near].state != GXB_NONE) continue;
+            g = gxbp_neighbour(b, table, f, k);
             if (g == GXB_NONE || b->pieces[g].state != GXB_NONE) continue;
-            b->pieces[g].state = b->pieces[f].near[k] == g ? gxbp_state_beyond(b, f, k) : b->pieces[f].state;
+            b->pieces[g].state = near == g ? gxbp_state_beyond(b, f, k) : b->pieces[f].state;
             gxbp_push(b, g);
         }
     }
@@ -6230,6 +6274,7 @@ static void gxbp_find_states(gxb_boolean *b) {
     gxbp_rename_vertices(b);
     if (!gxbp_fill_rim_table(b, &table)) return;
     b->state_count = 0;
+    memset(b->steps, 0, sizeof b->steps);
     if (b->state_table_size > 0) memset(b->state_table, 0xff, (size_t)b->state_table_size * sizeof *b->state_table);
     for (pass = 0; pass < 2; pass++)            /* first from input triangles, whose rays are cheap */
         for (f = 0; f < b->piece_count && b->result == GX_OK; f++) {
@@ -6325,20 +6370,16 @@ static void gxbp_emit(gxb_boolean *b, uint32_t f, int reversed, uint32_t source)
 }
 
 static void gxbp_extract(gxb_boolean *b) {
-    uint32_t f, last_state = GXB_NONE, last_operand = GXB_NONE, behind = 0;
+    uint32_t f;
     for (f = 0; f < b->vertex_count; f++) b->vertices[f].slot = GXB_NONE;
     b->out_point_count = b->out_triangle_count = b->out_operand_count = b->out_source_count = b->out_plane_count = b->out_reversed_count = 0;
     for (f = 0; f < b->piece_count && b->result == GX_OK; f++) {
-        uint32_t source, operand;
+        uint32_t source;
         int front_in, back_in;
         if (!gxbp_is_surface(b, f)) continue;
-        operand = b->pieces[f].covers == GXB_NONE ? b->sources[b->pieces[f].source].operand : GXB_NONE;
-        if (operand == GXB_NONE || operand != last_operand || b->pieces[f].state != last_state) behind = gxbp_state_behind(b, f);
-        last_operand = operand;
-        last_state = b->pieces[f].state;
+        back_in = b->states[gxbp_state_behind(b, f)] != 0;
+        front_in = b->states[b->pieces[f].state] != 0;
         b->pieces[f].state = GXB_NONE;          /* for the next evaluation */
-        front_in = b->states[last_state] != 0;
-        back_in = b->states[behind] != 0;
         if (front_in != back_in) {
             source = gxbp_cover_of(b, f, 0);
             gxbp_emit(b, f, front_in, source);
@@ -6878,6 +6919,7 @@ static GXBP_COLD void gxbp_drop_boolean(gxb_boolean *b) {
     GXBP_DROP(b, operands, operand); GXBP_DROP(b, sources, source); GXBP_DROP(b, bounds, bound); GXBP_DROP(b, boxes, box);
     GXBP_DROP(b, vertices, vertex); GXBP_DROP(b, pieces, piece); GXBP_DROP(b, links, link); GXBP_DROP(b, segments, segment);
     GXBP_DROP(b, cuts, cut); GXBP_DROP(b, cut_points, cut_point); GXBP_DROP(b, hits, hit); GXBP_DROP(b, dirty, dirty); GXBP_DROP(b, divided, divided);
+    GXBP_DROP(b, projected, projected);
     GXBP_DROP(b, rims, rim); GXBP_DROP(b, lefts, left); GXBP_DROP(b, scratch, scratch); GXBP_DROP(b, chain, chain);
     GXBP_DROP(b, windings, winding); GXBP_DROP(b, states, state);
     GXBP_DROP(b, out_vertices, out_vertex); GXBP_DROP(b, out_origins, out_origin); GXBP_DROP(b, out_points, out_point);
