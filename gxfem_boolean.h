@@ -533,10 +533,9 @@ static void gxbp_num_trim(gxb_num *r) {
     while (r->n > 0 && r->d[r->n - 1] == 0) r->n--;
     while (low < r->n && r->d[low] == 0) low++;
     if (low > 0) {
-        uint32_t i;
         r->n -= low;
         r->exp += (int32_t)low;
-        for (i = 0; i < r->n; i++) r->d[i] = r->d[i + low];
+        memmove(r->d, r->d + low, r->n * sizeof *r->d);
     }
     if (r->n == 0) r->sign = r->exp = 0;
 }
@@ -648,15 +647,22 @@ GXFEM_API void gxb_num_add(gxb_num *r, const gxb_num *a, const gxb_num *b) { gxb
 GXFEM_API void gxb_num_sub(gxb_num *r, const gxb_num *a, const gxb_num *b) { gxbp_num_add_signed(r, a, b, -1); }
 
 GXFEM_API void gxb_num_mul(gxb_num *r, const gxb_num *a, const gxb_num *b) {
+    gxb_limb carry = 0;
     uint32_t i, j;
     r->sign = a->sign * b->sign;
     r->exp = a->exp + b->exp;
     r->n = r->sign == 0 ? 0 : a->n + b->n;
     if (r->n == 0) { r->exp = 0; return; }
-    for (j = 0; j < b->n; j++) r->d[j] = 0;
-    for (i = 0; i < a->n; i++) {
+    for (j = 0; j < b->n; j++) {
+        const gxbp_wide t = (gxbp_wide)a->d[0] * b->d[j] + carry;
+        r->d[j] = (gxb_limb)t;
+        carry = (gxb_limb)(t >> GXB_LIMB_BITS);
+    }
+    r->d[b->n] = carry;
+    for (i = 1; i < a->n; i++) {
         const gxb_limb x = a->d[i];
-        gxb_limb *d = r->d + i, carry = 0;
+        gxb_limb *d = r->d + i;
+        carry = 0;
         for (j = 0; j < b->n; j++) {
             const gxbp_wide t = (gxbp_wide)x * b->d[j] + d[j] + carry;
             d[j] = (gxb_limb)t;
