@@ -3958,7 +3958,8 @@ typedef struct gxbp_vertex {    /* beside each point of the complex */
 } gxbp_vertex;
 
 typedef struct gxbp_link { uint32_t value, next; } gxbp_link;
-typedef struct gxbp_segment { uint32_t p, q, label, next; } gxbp_segment;
+/* left: the sign of the label's plane to the left of p q, seen from the side to which the source's normal points; 0: not known */
+typedef struct gxbp_segment { uint32_t p, q, label, next; int32_t left; } gxbp_segment;
 typedef struct gxbp_cut { uint32_t half_edge, first, count; } gxbp_cut;     /* inner points of an edge in cut_points, in its direction */
 typedef struct gxbp_hit { uint32_t cut, point; } gxbp_hit;
 typedef struct gxbp_margin { uint32_t vertex, near, labels, made, dangling; } gxbp_margin;
@@ -4611,11 +4612,11 @@ static void gxbp_mark_dirty(gxb_boolean *b, uint32_t s) {
 }
 
 /* A segment (a point, if p is q) in which a triangle (label) meets a source. */
-static void gxbp_add_segment(gxb_boolean *b, uint32_t s, uint32_t p, uint32_t q, uint32_t label) {
+static void gxbp_add_segment(gxb_boolean *b, uint32_t s, uint32_t p, uint32_t q, uint32_t label, int left) {
     gxbp_segment *segment;
     if (!GXBP_ROOM(b, segments, segment, 1)) return;
     segment = &b->segments[b->segment_count];
-    segment->p = p; segment->q = q; segment->label = label; segment->next = b->sources[s].segments;
+    segment->p = p; segment->q = q; segment->label = label; segment->next = b->sources[s].segments; segment->left = left;
     b->sources[s].segments = b->segment_count++;
     gxbp_mark_dirty(b, s);
 }
@@ -4693,8 +4694,8 @@ static gxbp_spot gxbp_spot_of_line(gxb_boolean *b, const double *p, const double
     return gxbp_spot_of(sign);
 }
 
-/* The points in which two triangles meet: at most two. */
-typedef struct gxbp_meeting { uint32_t point[8]; int count; } gxbp_meeting;
+/* The points in which two triangles meet: at most two. left: gxbp_segment.left of the first triangle, from point 0 to 1. */
+typedef struct gxbp_meeting { uint32_t point[8]; int count, left; } gxbp_meeting;
 
 static void gxbp_found(gxb_boolean *b, gxbp_meeting *m, uint32_t point) {
     int i;
@@ -4795,7 +4796,10 @@ static void gxbp_orient_pairs(gxb_boolean *b, const double *const q[3], const do
 static int gxbp_lone_corner(const int side[3]) { return side[1] == side[2] ? 0 : side[0] == side[2] ? 1 : 2; }
 
 /* No corner lies in the other's plane. Two edges of each triangle cross it, those of the corner that is alone on its side; where one
-   passes is known from its orientations with the two of the other, and these are the same for both triangles. */
+   passes is known from its orientations with the two of the other, and these are the same for both triangles. In s, walking from the
+   edge that leaves the lone corner to the one that comes back, that corner is to the left; so of_s there is the sign of |n_t n_s u| for the
+   way's direction u. In t likewise, with |n_s n_t w|: the two ways agree where the lone corners' signs differ. Of the two ends of what
+   is common, one begins both ways. */
 static void gxbp_meet_across(gxb_boolean *b, uint32_t s, uint32_t t, const int of_s[3], const int of_t[3], gxbp_meeting *m) {
     const int i = gxbp_lone_corner(of_s), j = gxbp_lone_corner(of_t);
     const double *p[3], *q[3];
@@ -4808,6 +4812,7 @@ static void gxbp_meet_across(gxb_boolean *b, uint32_t s, uint32_t t, const int o
         y[0] = -of_s[i] * sign[x][0];
         y[1] = of_s[i] * sign[x][1];
         gxbp_record_crossing(b, s, k, t, j, y, m);
+        if (m->count == 1 && m->left == 0) m->left = x == 0 ? of_s[i] : -of_s[i];
     }
     for (k = 0; k < 3; k++) {
         if (k == (j + 1) % 3) continue;
@@ -4815,6 +4820,7 @@ static void gxbp_meet_across(gxb_boolean *b, uint32_t s, uint32_t t, const int o
         y[0] = -of_t[j] * sign[0][x];
         y[1] = of_t[j] * sign[1][x];
         gxbp_record_crossing(b, t, k, s, i, y, m);
+        if (m->count == 1 && m->left == 0) m->left = x == 0 ? -of_t[j] : of_t[j];
     }
 }
 
@@ -4826,12 +4832,12 @@ static int gxbp_is_corner(gxb_boolean *b, uint32_t s, uint32_t point) {
 static void gxbp_record_meeting(gxb_boolean *b, uint32_t s, uint32_t t, const gxbp_meeting *m) {
     if (b->result != GX_OK || m->count == 0) return;
     if (m->count == 1) {
-        if (!gxbp_is_corner(b, s, m->point[0])) gxbp_add_segment(b, s, m->point[0], m->point[0], t);
-        if (!gxbp_is_corner(b, t, m->point[0])) gxbp_add_segment(b, t, m->point[0], m->point[0], s);
+        if (!gxbp_is_corner(b, s, m->point[0])) gxbp_add_segment(b, s, m->point[0], m->point[0], t, 0);
+        if (!gxbp_is_corner(b, t, m->point[0])) gxbp_add_segment(b, t, m->point[0], m->point[0], s, 0);
         return;
     }
-    gxbp_add_segment(b, s, m->point[0], m->point[1], t);
-    gxbp_add_segment(b, t, m->point[0], m->point[1], s);
+    gxbp_add_segment(b, s, m->point[0], m->point[1], t, m->left);
+    gxbp_add_segment(b, t, m->point[0], m->point[1], s, -m->left);
 }
 
 static uint32_t gxbp_root(gxb_boolean *b, uint32_t s) {
@@ -4867,7 +4873,7 @@ static GXBP_COLD void gxbp_meet_in_plane(gxb_boolean *b, uint32_t s, uint32_t t)
     const uint32_t plane = b->sources[s].plane;
     int of_s[3][3], of_t[3][3], k, j, facing;
     gxbp_meeting m;
-    m.count = 0;
+    m.count = m.left = 0;
     for (k = 0; k < 3; k++) for (j = 0; j < 3; j++) {
         of_s[k][j] = gxbp_flat_turn(b, plane, gxbp_corner_of(b, s, k), gxbp_corner_of(b, s, (k + 1) % 3), gxbp_corner_of(b, t, j));
         of_t[k][j] = gxbp_flat_turn(b, plane, gxbp_corner_of(b, t, k), gxbp_corner_of(b, t, (k + 1) % 3), gxbp_corner_of(b, s, j));
@@ -4952,7 +4958,7 @@ static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
     }
     gxbp_sides(b, s, b->sources[t].plane, 1, of_s);
     if (gxbp_all_on_one_side(of_s)) return;
-    m.count = 0;
+    m.count = m.left = 0;
     if (of_s[0] * of_s[1] * of_s[2] != 0 && of_t[0] * of_t[1] * of_t[2] != 0) gxbp_meet_across(b, s, t, of_s, of_t, &m);
     else {
         for (k = 0; k < 3; k++) common += gxbp_is_corner(b, t, b->sources[s].point[k]);
@@ -5271,13 +5277,14 @@ static void gxbp_label_edge(gxb_boolean *b, uint32_t f, int k, uint32_t label) {
 
 /* --- along a straight line through a triangulation --- */
 
-/* The line from p to x. In a triangle's plane (label) its sides are those of the plane, times sigma. */
+/* The line from p to x. In a triangle's plane (label) its sides are those of the plane, times sigma (gxbp_segment.left where that is known). */
 typedef struct gxbp_line { uint32_t p, x, plane, source; int sigma; } gxbp_line;
 
-static void gxbp_set_line(gxb_boolean *b, gxbp_line *line, uint32_t s, uint32_t p, uint32_t x, uint32_t label) {
+static void gxbp_set_line(gxb_boolean *b, gxbp_line *line, uint32_t s, uint32_t p, uint32_t x, uint32_t label, int left) {
     int k;
     line->p = p; line->x = x; line->plane = GXB_NONE; line->source = label; line->sigma = 1;
     if (label & GXBP_EDGE_LABEL) return;
+    if (left != 0) { line->plane = b->sources[label].plane; line->sigma = left; return; }
     for (k = 0; k < 3; k++) {
         const int side = gxbp_point_side(b, b->sources[s].point[k], b->sources[label].plane);
         if (side == 0) continue;
@@ -5433,13 +5440,13 @@ static int gxbp_points_equal(gxb_boolean *b, uint32_t p, uint32_t q) {
 static int gxbp_is_placed(gxb_boolean *b, uint32_t v) { return b->vertices[v].stamp == b->stamp; }
 
 /* Makes a point a vertex of source s's triangulation, found from vertex p on; returns its name there. */
-static uint32_t gxbp_insert_point(gxb_boolean *b, uint32_t s, uint32_t x, uint32_t p, uint32_t label) {
+static uint32_t gxbp_insert_point(gxb_boolean *b, uint32_t s, uint32_t x, uint32_t p, uint32_t label, int left) {
     gxbp_line line;
     gxbp_location spot;
     x = gxbp_same(b, x);
     if (gxbp_is_placed(b, x)) return x;
     if (gxbp_points_equal(b, p, x)) { gxbp_unite(b, p, x); return p; }
-    gxbp_set_line(b, &line, s, p, x, label);
+    gxbp_set_line(b, &line, s, p, x, label, left);
     spot = gxbp_locate(b, &line);
     if (b->result != GX_OK) return x;
     if (spot.vertex != GXB_NONE) { gxbp_unite(b, spot.vertex, x); return spot.vertex; }
@@ -5595,9 +5602,9 @@ static void gxbp_refill(gxb_boolean *b, uint32_t start) {
 }
 
 /* Makes p q an edge, or a row of them where vertices lie on it, with a label. */
-static void gxbp_force_edge(gxb_boolean *b, uint32_t s, uint32_t p, uint32_t q, uint32_t label) {
+static void gxbp_force_edge(gxb_boolean *b, uint32_t s, uint32_t p, uint32_t q, uint32_t label, int left) {
     gxbp_line line;
-    gxbp_set_line(b, &line, s, p, q, label);
+    gxbp_set_line(b, &line, s, p, q, label, left);
     while (p != q && b->result == GX_OK) {
         gxbp_way way;
         if (!gxbp_find_way(b, &line, p, q, &way)) { gxbp_stop(b, GX_ERROR_OVERLAP); return; }
@@ -5662,14 +5669,16 @@ static void gxbp_trace_segments(gxb_boolean *b, uint32_t s, uint32_t i) {
     const gxbp_segment *first = &b->segments[b->chain[3 * i]];
     uint32_t v = gxbp_same(b, first->p);
     if (!gxbp_is_placed(b, v) && gxbp_is_placed(b, gxbp_same(b, first->q))) v = gxbp_same(b, first->q);
-    if (!gxbp_is_placed(b, v)) v = gxbp_insert_point(b, s, v, gxbp_same(b, b->sources[s].point[0]), GXBP_EDGE_LABEL);
+    if (!gxbp_is_placed(b, v)) v = gxbp_insert_point(b, s, v, gxbp_same(b, b->sources[s].point[0]), GXBP_EDGE_LABEL, 0);
     for (; i != GXB_NONE && b->result == GX_OK; i = gxbp_next_segment(b, v)) {
         const gxbp_segment segment = b->segments[b->chain[3 * i]];
-        const uint32_t other = gxbp_same(b, segment.p) == v ? segment.q : segment.p;
+        const int forward = gxbp_same(b, segment.p) == v;
+        const uint32_t other = forward ? segment.q : segment.p;
+        const int left = forward ? segment.left : -segment.left;
         uint32_t end;
         b->chain[3 * i] = GXB_NONE;
-        end = gxbp_insert_point(b, s, other, v, segment.label);
-        gxbp_force_edge(b, s, v, end, segment.label);
+        end = gxbp_insert_point(b, s, other, v, segment.label, left);
+        gxbp_force_edge(b, s, v, end, segment.label, left);
         v = end;
     }
 }
@@ -5760,10 +5769,10 @@ static void gxbp_place_flat_points(gxb_boolean *b, uint32_t r) {
     for (t = r; t != GXB_NONE; t = b->sources[t].next) {
         for (k = 0; k < 3; k++)
             for (i = 0; i + 1 < gxbp_edge_points(b, t, k) && b->result == GX_OK; i++)
-                last = gxbp_insert_point(b, r, gxbp_edge_point(b, t, k, i), last, GXBP_EDGE_LABEL);
+                last = gxbp_insert_point(b, r, gxbp_edge_point(b, t, k, i), last, GXBP_EDGE_LABEL, 0);
         for (i = b->sources[t].segments; i != GXB_NONE && b->result == GX_OK; i = b->segments[i].next) {
-            last = gxbp_insert_point(b, r, b->segments[i].p, last, GXBP_EDGE_LABEL);
-            last = gxbp_insert_point(b, r, b->segments[i].q, last, GXBP_EDGE_LABEL);
+            last = gxbp_insert_point(b, r, b->segments[i].p, last, GXBP_EDGE_LABEL, 0);
+            last = gxbp_insert_point(b, r, b->segments[i].q, last, GXBP_EDGE_LABEL, 0);
         }
     }
 }
@@ -5773,11 +5782,11 @@ static void gxbp_place_flat_edges(gxb_boolean *b, uint32_t r) {
     for (t = r; t != GXB_NONE; t = b->sources[t].next)
         for (k = 0; k < 3; k++)
             for (i = 1; i < gxbp_edge_points(b, t, k) && b->result == GX_OK; i++)
-                gxbp_force_edge(b, r, gxbp_edge_point(b, t, k, i - 1), gxbp_edge_point(b, t, k, i), gxbp_edge_name(b, t, (int)k) | GXBP_EDGE_LABEL);
+                gxbp_force_edge(b, r, gxbp_edge_point(b, t, k, i - 1), gxbp_edge_point(b, t, k, i), gxbp_edge_name(b, t, (int)k) | GXBP_EDGE_LABEL, 0);
     for (t = r; t != GXB_NONE; t = b->sources[t].next)
         for (i = b->sources[t].segments; i != GXB_NONE && b->result == GX_OK; i = b->segments[i].next) {
             const gxbp_segment segment = b->segments[i];
-            gxbp_force_edge(b, r, gxbp_same(b, segment.p), gxbp_same(b, segment.q), segment.label);
+            gxbp_force_edge(b, r, gxbp_same(b, segment.p), gxbp_same(b, segment.q), segment.label, 0);
         }
 }
 
@@ -5792,7 +5801,7 @@ static uint32_t gxbp_first_covered(gxb_boolean *b, uint32_t r, uint32_t t) {
     const int facing = gxbp_facing(b, r, t);
     gxbp_line line;
     gxbp_way way;
-    gxbp_set_line(b, &line, r, u, gxbp_edge_point(b, t, 0, 1), GXBP_EDGE_LABEL);
+    gxbp_set_line(b, &line, r, u, gxbp_edge_point(b, t, 0, 1), GXBP_EDGE_LABEL, 0);
     if (!gxbp_find_way(b, &line, u, line.x, &way) || way.ahead == 0) { gxbp_stop(b, GX_ERROR_OVERLAP); return GXB_NONE; }
     if (way.ahead == (facing > 0 ? 1 : 2)) return way.f;
     return b->pieces[way.f].near[way.ahead == 1 ? way.k : (way.k + 2) % 3];
