@@ -771,7 +771,7 @@ static void gxbp_num_sub3(gxb_num r[3], const gxb_num a[3], const gxb_num b[3]) 
 }
 
 /* Plane through p, q, r: c[0..2] = n = (q-p) x (r-p), degree 2; c[3] = d = n.p, degree 3. */
-static GXBP_APART void gxbp_exact_plane(gxb_num plane[4], const gxb_num p[3], const gxb_num q[3], const gxb_num r[3]) {
+static GXBP_COLD void gxbp_exact_plane(gxb_num plane[4], const gxb_num p[3], const gxb_num q[3], const gxb_num r[3]) {
     gxbp_vec a, b;
     gxbp_vec_init(&a);
     gxbp_vec_init(&b);
@@ -795,7 +795,7 @@ static void gxbp_make_weight_positive(gxb_num point[4]) {
 }
 
 /* Line through p and q with a plane: X = s_q p - s_p q, W = s_q - s_p with s = n.x - d; degrees 4 and 3. */
-static GXBP_APART void gxbp_exact_line_plane(gxb_num point[4], const gxb_num p[4], const gxb_num q[4], const gxb_num plane[4]) {
+static GXBP_COLD void gxbp_exact_line_plane(gxb_num point[4], const gxb_num p[4], const gxb_num q[4], const gxb_num plane[4]) {
     GXB_NUM(sp); GXB_NUM(sq);
     int k;
     gxbp_exact_side(&sp, p, plane);
@@ -960,7 +960,7 @@ static int gxbp_filter_range(const double *x, int count) {
 #if GXB_LIMB_BITS == 64
 __extension__ typedef __int128 gxbp_signed_wide;
 
-/* count doubles as integers below 2^61 of one unit: 0 where the smallest needs a finer one */
+/* count doubles as integers below 2^61 of one unit. 0: the smallest needs a finer one, or is a denormal */
 static int gxbp_short_integers(const double *const *x, int count, int dimension, int64_t *out) {
     int top = 0, i, k;
     for (i = 0; i < count; i++) for (k = 0; k < dimension; k++) {
@@ -972,8 +972,9 @@ static int gxbp_short_integers(const double *const *x, int count, int dimension,
         const int shift = gxbp_exponent_bits(x[i][k]) - top + 8;
         uint64_t m = (bits & (((uint64_t)1 << 52) - 1)) | (uint64_t)1 << 52;
         if (bits << 1 == 0) m = 0;
+        else if (gxbp_exponent_bits(x[i][k]) == 0) return 0;
         else if (shift >= 0) m <<= shift;
-        else if (shift > -53 && gxbp_exponent_bits(x[i][k]) != 0 && (m & (((uint64_t)1 << -shift) - 1)) == 0) m >>= -shift;
+        else if (shift > -53 && (m & (((uint64_t)1 << -shift) - 1)) == 0) m >>= -shift;
         else return 0;
         *out++ = bits >> 63 ? -(int64_t)m : (int64_t)m;
     }
@@ -1023,7 +1024,7 @@ static int gxbp_orient3d_short(const double a[3], const double b[3], const doubl
 }
 #endif
 
-static GXBP_APART int gxbp_orient2d_exact(const double a[2], const double b[2], const double c[2]) {
+static GXBP_COLD int gxbp_orient2d_exact(const double a[2], const double b[2], const double c[2]) {
     const int known = gxbp_orient2d_short(a, b, c);
     GXB_NUM(r);
     gxbp_vec p, q, o, u, v;
@@ -1281,7 +1282,7 @@ GXFEM_API int gxb_compare(const gxb_point *a, const gxb_point *b, int axis) {
 }
 
 /* |a b c| of the homogeneous coordinates i and j: degree 20 for three points of three planes */
-static GXBP_APART int gxbp_orient_exact(const gxb_num a[4], const gxb_num b[4], const gxb_num c[4], int i, int j) {
+static GXBP_COLD int gxbp_orient_exact(const gxb_num a[4], const gxb_num b[4], const gxb_num c[4], int i, int j) {
     gxbp_vec row, cofactor;
     GXB_NUM(r);
     gxbp_vec_init(&row);
@@ -1303,7 +1304,7 @@ static int gxbp_filter_turn(const gxb_ball *a, const gxb_ball *b, const gxb_ball
     return gxbp_filter_sign(u[i] * v[j] - u[j] * v[i], bound);
 }
 
-GXFEM_API GXBP_COLD int gxb_orient_in_plane(const gxb_point *a, const gxb_point *b, const gxb_point *c, const gxb_plane *plane) {
+GXFEM_API GXBP_APART int gxb_orient_in_plane(const gxb_point *a, const gxb_point *b, const gxb_point *c, const gxb_plane *plane) {
     const double *n = plane->filter.n;
     gxbp_vec exact_n, x[3];
     int axis, sign, k;
@@ -1372,7 +1373,7 @@ static int gxbp_ray_side(const double a[3], const double b[3], const double p[3]
     return sign != 0 ? sign : gxbp_compare_doubles(b[1], a[1]);     /* d/dz is b_y - a_y */
 }
 
-GXFEM_API GXBP_COLD int gxb_winding_number(const double *vertices, const uint32_t *triangles, size_t triangle_count, const double p[3],
+GXFEM_API GXBP_APART int gxb_winding_number(const double *vertices, const uint32_t *triangles, size_t triangle_count, const double p[3],
                                  int *on_surface) {
     int winding = 0;
     size_t t;
@@ -1522,7 +1523,7 @@ static GXBP_COLD void gxbp_drop_recent_numbers(gxb_complex *cx) {
     if (cx->blocks != NULL) cx->blocks->used = cx->mark_used;
 }
 
-GXFEM_API GXBP_COLD void gxb_complex_rollback(gxb_complex *cx) {
+GXFEM_API GXBP_APART void gxb_complex_rollback(gxb_complex *cx) {
     while (cx->undo_count > 0) {
         const gxb_undo *undo = &cx->undo[--cx->undo_count];
         size_t size;
@@ -1657,7 +1658,7 @@ static void gxbp_exact_axis_plane(gxb_num plane[4], const gxb_num p[3], const gx
     gxbp_num_dot(&plane[3], plane, p);
 }
 
-static GXBP_APART const gxb_num *gxbp_exact_cplane(gxb_complex *cx, uint32_t plane, gxbp_vec *store) {
+static GXBP_COLD const gxb_num *gxbp_exact_cplane(gxb_complex *cx, uint32_t plane, gxbp_vec *store) {
     gxb_cplane *f = &cx->planes[plane];
     gxbp_vec s[3];
     const gxb_num *p, *q;
@@ -1803,7 +1804,7 @@ GXFEM_API int gxb_complex_turn(gxb_complex *cx, uint32_t a, uint32_t b, uint32_t
     return turn * f->axis_sign;
 }
 
-GXFEM_API GXBP_COLD int gxb_complex_compare(gxb_complex *cx, uint32_t point, int axis, double value) {
+GXFEM_API GXBP_APART int gxb_complex_compare(gxb_complex *cx, uint32_t point, int axis, double value) {
     GXB_NUM(a); GXB_NUM(b); GXB_NUM(c);
     gxbp_vec store;
     const gxb_num *x = gxbp_exact_cpoint(cx, point, &store);
@@ -1896,7 +1897,7 @@ static int gxbp_face_is_even(const uint32_t *element, uint32_t face) {
 }
 
 /* Numbers the faces in the order of their sorted nodes. */
-static gx_result gxbp_number_faces(gxb_complex *cx, gxbp_key *keys, size_t *bad) {
+static GXBP_APART gx_result gxbp_number_faces(gxb_complex *cx, gxbp_key *keys, size_t *bad) {
     const size_t count = (size_t)cx->element_count * 4;
     size_t i;
     uint32_t e, k, j;
@@ -1951,7 +1952,7 @@ static int gxbp_difference_exponent(double high, double low) {
 
 /* Frame: the origin is the mesh's lower corner rounded to few bits where the mesh lies far from 0 (so that the shift adds no
    bits to its coordinates), else 0; the scale brings the box to size 1. */
-static gx_result gxbp_choose_frame(gxb_complex *cx, const gxb_mesh *mesh, size_t *bad) {
+static GXBP_APART gx_result gxbp_choose_frame(gxb_complex *cx, const gxb_mesh *mesh, size_t *bad) {
     int axis, largest = -2000;
     for (axis = 0; axis < 3; axis++) {
         double low = 0, high = 0;
@@ -1988,7 +1989,7 @@ static gx_result gxbp_add_nodes(gxb_complex *cx, const gxb_mesh *mesh, size_t *b
     return result;
 }
 
-static gx_result gxbp_check_elements(gxb_complex *cx, const gxb_mesh *mesh, size_t *bad) {
+static GXBP_APART gx_result gxbp_check_elements(gxb_complex *cx, const gxb_mesh *mesh, size_t *bad) {
     uint32_t e;
     int k;
     for (e = 0; e < cx->element_count; e++) {
@@ -2051,7 +2052,7 @@ static gx_result gxbp_fail(gx_failure *failure, gx_result result, size_t index) 
     return result;
 }
 
-GXFEM_API GXBP_COLD gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator *allocator, gxb_complex **complex,
+GXFEM_API GXBP_APART gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator *allocator, gxb_complex **complex,
                                        gx_failure *failure) {
     gx_allocator none;
     gxb_complex *cx;
@@ -2098,7 +2099,7 @@ typedef struct gxbp_task { uint32_t parent, side, first, count, coplanar; } gxbp
 #define GXBP_TRIANGLE_EDGE 0x80000000u
 #define GXBP_IN_ROOT GXB_NONE   /* task.parent: the reference is the element's root */
 
-GXFEM_API GXBP_COLD void gxb_complex_destroy(gxb_complex *cx) {
+GXFEM_API GXBP_APART void gxb_complex_destroy(gxb_complex *cx) {
     gx_allocator a;
     if (cx == NULL) return;
     a = cx->allocator;
@@ -2766,7 +2767,7 @@ static int gxbp_part_chain(gxb_complex *cx, gxbp_rung *rung, uint32_t middle, gx
 }
 
 /* A balanced tree of the chain above end: the rung in the middle, by leaves, is made its root. */
-static uint32_t gxbp_balance_chain(gxb_complex *cx, gxbp_plan *plan, gxbp_rung *rung, uint32_t count, uint32_t end) {
+static GXBP_COLD uint32_t gxbp_balance_chain(gxb_complex *cx, gxbp_plan *plan, gxbp_rung *rung, uint32_t count, uint32_t end) {
     uint32_t total = gxbp_leaves_below(cx, end), sum = 0, middle = 0, own, i, on, off;
     gxbp_rung root;
     if (count < 4) return gxbp_plan_chain(plan, rung, count, end);
@@ -3050,7 +3051,7 @@ static GXBP_COLD int gxbp_probe_orient(const gxbp_probe *probe, const double *co
     return -r.sign;
 }
 
-GXFEM_API GXBP_COLD int gxb_complex_winding(gxb_complex *cx, const uint32_t *points, size_t point_count, const double *vertices,
+GXFEM_API GXBP_APART int gxb_complex_winding(gxb_complex *cx, const uint32_t *points, size_t point_count, const double *vertices,
                                   const uint32_t *triangles, size_t triangle_count) {
     gxbp_probe probe;
     int winding = 0, c;
@@ -3177,7 +3178,7 @@ GXFEM_API void gxb_complex_barycentric(gxb_complex *cx, uint32_t point, uint32_t
 }
 
 /* Each step adds the quotient of what is left: 50 bits, so that four leave less than 2^-180 of the value. */
-GXFEM_API GXBP_COLD void gxb_complex_barycentric_fine(gxb_complex *cx, uint32_t point, uint32_t element, gxb_num lambda[4]) {
+GXFEM_API GXBP_APART void gxb_complex_barycentric_fine(gxb_complex *cx, uint32_t point, uint32_t element, gxb_num lambda[4]) {
     uint32_t k;
     int step;
     for (k = 0; k < 4; k++) {
@@ -3225,7 +3226,7 @@ static void gxbp_require(gxb_stream *s, gx_result result) { if (s->result == GX_
 static void gxbp_require_true(gxb_stream *s, int holds) { if (!holds) gxbp_require(s, GX_ERROR_DAMAGED); }
 
 /* The given coordinates of an explicit point: what came into the frame by a shift and a scale, exactly, goes back. */
-static void gxbp_given(gxb_complex *cx, uint32_t point, double x[3]) {
+static GXBP_COLD void gxbp_given(gxb_complex *cx, uint32_t point, double x[3]) {
     gxbp_vec store;
     const gxb_num *c = gxbp_exact_cpoint(cx, point, &store);
     int k;
@@ -3534,7 +3535,7 @@ static int gxbp_same_place(gxb_complex *cx, uint32_t a, uint32_t b) {
 }
 
 /* Do the planes meet in a line? */
-static GXBP_APART int gxbp_planes_cross(gxb_complex *cx, uint32_t a, uint32_t b) {
+static GXBP_COLD int gxbp_planes_cross(gxb_complex *cx, uint32_t a, uint32_t b) {
     const gxb_plane_filter *f = &cx->planes[a].filter, *g = &cx->planes[b].filter;
     double r[3];
     const double bound = gxbp_filter_cross(r, f->n, f->error, g->n, g->error);
@@ -4089,8 +4090,7 @@ static int gxbp_room(gxb_boolean *b, void *array, size_t item, uint32_t count, u
 #define GXBP_ROOM(b, array, counter, extra) \
     gxbp_room(b, &(b)->array, sizeof *(b)->array, (b)->counter##_count, &(b)->counter##_capacity, extra)
 #define GXBP_DROP(b, array, counter) \
-    (gxbp_release(&(b)->cx.allocator, (b)->array, (size_t)(b)->counter##_capacity * sizeof *(b)->array), \
-     (b)->array = NULL, (b)->counter##_count = (b)->counter##_capacity = 0)
+    gxbp_release(&(b)->cx.allocator, (b)->array, (size_t)(b)->counter##_capacity * sizeof *(b)->array)
 
 static uint32_t gxbp_new_link(gxb_boolean *b, uint32_t value, uint32_t next) {
     if (!GXBP_ROOM(b, links, link, 1)) return next;
@@ -4450,7 +4450,7 @@ static uint32_t gxbp_spread(uint32_t x) {
 static uint32_t gxbp_lattice(double t) { return t > 0 ? t < 1023 ? (uint32_t)t : 1023 : 0; }
 
 /* Sorts the sources along a Z-order curve by their first corners; work: two words of 64 bits each. */
-static void gxbp_sort_sources(const gxb_boolean *b, const gxbp_operand *o, uint64_t *work) {
+static GXBP_APART void gxbp_sort_sources(const gxb_boolean *b, const gxbp_operand *o, uint64_t *work) {
     uint64_t *from = work, *to = work + o->source_count, *swap;
     gxbp_box all;
     double scale[3];
@@ -4670,7 +4670,7 @@ static gxbp_spot gxbp_spot_of_point(const gxb_boolean *b, const double *x, uint3
 
 /* Where the line from p (in front of the plane: side 1) to q (behind) passes: signs of gxbp_orient of the triangle's edges with p and q,
    with the same bounds, from differences and products that they share. */
-static gxbp_spot gxbp_spot_of_line(gxb_boolean *b, const double *p, const double *q, int side, uint32_t s) {
+static GXBP_COLD gxbp_spot gxbp_spot_of_line(gxb_boolean *b, const double *p, const double *q, int side, uint32_t s) {
     double d[3], c[3][3], m[3][3], size[3][3];
     int sign[3], k, i;
     for (i = 0; i < 3; i++) d[i] = gxbp_fence(p[i] - q[i]);
@@ -4714,7 +4714,7 @@ static uint32_t gxbp_edge_triangle_point(gxb_boolean *b, uint32_t s, int k, uint
 }
 
 /* Edge k of s crosses edge j of t, and t's plane if plane is that; else (both lie in one plane) plane passes through edge j. */
-static uint32_t gxbp_edge_edge_point(gxb_boolean *b, uint32_t s, int k, uint32_t t, int j, uint32_t plane) {
+static GXBP_COLD uint32_t gxbp_edge_edge_point(gxb_boolean *b, uint32_t s, int k, uint32_t t, int j, uint32_t plane) {
     const uint32_t e = gxbp_edge_name(b, s, k), f = gxbp_edge_name(b, t, j);
     const gx_result room = GXBP_RESERVE(&b->cx, planes, plane, 1);      /* first, so that a point without a place never stays */
     int fresh;
@@ -4731,7 +4731,7 @@ static uint32_t gxbp_edge_edge_point(gxb_boolean *b, uint32_t s, int k, uint32_t
 }
 
 /* What of the corners and edges of s lies in t; side: of the corners of s against t's plane. */
-static void gxbp_meet_one_way(gxb_boolean *b, uint32_t s, uint32_t t, const int side[3], gxbp_meeting *m) {
+static GXBP_COLD void gxbp_meet_one_way(gxb_boolean *b, uint32_t s, uint32_t t, const int side[3], gxbp_meeting *m) {
     int k;
     for (k = 0; k < 3; k++) {
         const int j = (k + 1) % 3;
@@ -5513,7 +5513,7 @@ static uint32_t gxbp_fill_rim(gxb_boolean *b, gxbp_margin *rim, uint32_t count, 
 }
 
 /* The point where the line of a triangle (label) crosses an edge that must stay. */
-static uint32_t gxbp_crossing_point(gxb_boolean *b, uint32_t s, uint32_t labels, uint32_t label) {
+static GXBP_APART uint32_t gxbp_crossing_point(gxb_boolean *b, uint32_t s, uint32_t labels, uint32_t label) {
     uint32_t other = GXB_NONE, id[3];
     int fresh;
     for (; other == GXB_NONE && labels != GXBP_BARE; labels = b->links[labels].next)
@@ -5575,7 +5575,7 @@ static int gxbp_collect_crossed(gxb_boolean *b, uint32_t s, const gxbp_line *lin
 
 #define GXBP_REMOVED (UINT32_MAX - 1)
 
-static void gxbp_find_dangling(const gxb_boolean *b, gxbp_margin *rim, uint32_t count) {
+static GXBP_APART void gxbp_find_dangling(const gxb_boolean *b, gxbp_margin *rim, uint32_t count) {
     uint32_t i;
     for (i = 0; i < count; i++) rim[i].dangling = rim[i].near != GXB_NONE && b->pieces[rim[i].near].state == GXBP_REMOVED;
 }
@@ -6918,7 +6918,7 @@ static void gxbp_find_components(gxb_boolean *b) {
 
 /* --- the public functions --- */
 
-static GXBP_COLD void gxbp_drop_boolean(gxb_boolean *b) {
+static GXBP_APART void gxbp_drop_boolean(gxb_boolean *b) {
     uint32_t i;
     for (i = 0; i < b->operand_count; i++)
         gxbp_release(&b->cx.allocator, b->operands[i].order, (size_t)b->operands[i].source_count * sizeof(uint32_t));
