@@ -759,6 +759,7 @@ static answer stubborn(memory *m, const gxb_operand *o, int *failed) {
     memset(&desc, 0, sizeof desc);
     desc.allocator.allocate = take; desc.allocator.release = give; desc.allocator.user = m;
     desc.triangulation = GXB_COARSE;
+    desc.memory_limit = (size_t)1 << 19;        /* so little that each array is allocated by itself */
     *failed = 0;
     for (i = -1; i < 6; ++i) {
         for (;;) {
