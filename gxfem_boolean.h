@@ -3947,7 +3947,7 @@ typedef struct gxbp_piece {     /* a triangle of a source's triangulation; edge 
     uint32_t source;            /* root of the flat; GXB_NONE: no longer in use */
     uint32_t next;
     uint32_t covers;            /* in a flat: list of the sources that cover it */
-    uint32_t state;             /* winding numbers in front of it */
+    uint32_t state;             /* winding numbers in front of it; GXB_NONE: not known. Kept from evaluation to evaluation */
 } gxbp_piece;
 
 typedef struct gxbp_vertex {    /* beside each point of the complex */
@@ -4014,6 +4014,7 @@ struct gxb_boolean {
     uint32_t *chain; uint32_t chain_count, chain_capacity;
     uint32_t *scratch; uint32_t scratch_count, scratch_capacity;
     uint32_t arranged;          /* operands that are in the arrangement */
+    uint32_t stated;            /* operands that states count; 0: facets have no states */
     uint32_t segment_mark;      /* segments before it are in the triangulations */
     uint32_t merged_points;     /* points before it were compared with each other */
     struct gxbp_projected *projected; uint32_t projected_count, projected_capacity;     /* the computed ones of these, along a direction */
@@ -5218,6 +5219,7 @@ static uint32_t gxbp_split_half(gxb_boolean *b, uint32_t f, int k, uint32_t x) {
     uint32_t p, q, r;
     if (g == GXB_NONE) return GXB_NONE;
     old = b->pieces[f];
+    b->pieces[g].state = old.state;
     p = old.v[k]; q = old.v[(k + 1) % 3]; r = old.v[(k + 2) % 3];
     gxbp_set_piece(b, f, p, x, r);
     gxbp_set_edge(b, f, 0, GXB_NONE, old.labels[k]);
@@ -5253,6 +5255,7 @@ static void gxbp_split_inside(gxb_boolean *b, uint32_t f, uint32_t x) {
     part[1] = gxbp_new_piece(b, old.source);
     part[2] = gxbp_new_piece(b, old.source);
     for (k = 0; k < 3; k++) {
+        b->pieces[part[k]].state = old.state;
         gxbp_set_piece(b, part[k], old.v[k], old.v[(k + 1) % 3], x);
         gxbp_set_edge(b, part[k], 0, old.near[k], old.labels[k]);
         gxbp_set_edge(b, part[k], 1, part[(k + 1) % 3], GXBP_LOOSE);
@@ -5582,6 +5585,7 @@ static GXBP_APART void gxbp_find_dangling(const gxb_boolean *b, gxbp_margin *rim
 
 /* Retriangulates the crossed facets with an edge from the start to the vertex in which the right rim ends. */
 static void gxbp_refill(gxb_boolean *b, uint32_t start) {
+    const uint32_t state = b->pieces[b->scratch[0]].state;      /* of all: no label is between them */
     uint32_t i, n, f, g;
     for (i = 0; i < b->scratch_count; i++) b->pieces[b->scratch[i]].state = GXBP_REMOVED;
     gxbp_push_left(b, start, GXB_NONE, 0);
@@ -5594,7 +5598,7 @@ static void gxbp_refill(gxb_boolean *b, uint32_t start) {
     }
     gxbp_find_dangling(b, b->rims, b->rim_count);
     gxbp_find_dangling(b, b->lefts, b->left_count);
-    for (i = 0; i < b->scratch_count; i++) b->pieces[b->scratch[i]].state = GXB_NONE;
+    for (i = 0; i < b->scratch_count; i++) b->pieces[b->scratch[i]].state = state;
     f = gxbp_fill_rim(b, b->rims, b->rim_count, 0, b->rim_count - 1);
     g = gxbp_fill_rim(b, b->lefts, b->left_count, 0, b->left_count - 1);
     b->pieces[f].near[0] = g;
@@ -6282,23 +6286,138 @@ static int gxbp_is_surface(const gxb_boolean *b, uint32_t f) {
     return s != GXB_NONE && (!(b->sources[s].flags & GXBP_FLAT) || b->pieces[f].covers != GXB_NONE);
 }
 
+/* --- states that are there already: new operands have the number 0 in them, which is right wherever their boxes are not --- */
+
+/* Lengthens the states by the numbers of new operands, all 0: each state keeps its place. */
+static int gxbp_lengthen_states(gxb_boolean *b) {
+    const uint32_t n = b->operand_count, m = b->stated;
+    uint32_t i, k;
+    memset(b->steps, 0, sizeof b->steps);
+    if (b->state_table_size > 0) memset(b->state_table, 0xff, (size_t)b->state_table_size * sizeof *b->state_table);
+    if (m == 0) b->state_count = 0;
+    b->winding_count = b->state_count * m;
+    if (!GXBP_ROOM(b, windings, winding, (size_t)b->state_count * (n - m) + n)) return 0;
+    for (i = b->state_count; i-- > 0;) {
+        memmove(b->windings + (size_t)i * n, b->windings + (size_t)i * m, m * sizeof *b->windings);
+        memset(b->windings + (size_t)i * n + m, 0, (n - m) * sizeof *b->windings);
+    }
+    for (i = 0; i < b->state_count; i++) {
+        const int32_t *winding = b->windings + (size_t)i * n;
+        b->states[i] = (uint32_t)gxbp_is_inside(b, winding);
+        for (k = gxbp_hash_winding(winding, n) & (b->state_table_size - 1); b->state_table[k] != GXB_NONE; k = (k + 1) & (b->state_table_size - 1)) {}
+        b->state_table[k] = i;
+    }
+    return 1;
+}
+
+/* A state with this bit counts no new operand yet. */
+#define GXBP_OPEN ((uint32_t)1 << 31)
+
+static int gxbp_is_open(const gxb_boolean *b, uint32_t f) { return b->pieces[f].state != GXB_NONE && b->pieces[f].state & GXBP_OPEN; }
+
+/* Is the facet certainly beside the box along this axis? */
+static int gxbp_piece_misses(const gxb_boolean *b, uint32_t f, const gxbp_box *box, int axis) {
+    int i, below = 1, above = 1;
+    for (i = 0; i < 3; i++) {
+        const gxb_ball *x = &b->cx.points[b->pieces[f].v[i]].ball;
+        below &= x->x[axis] + 2 * x->error < box->low[axis];
+        above &= x->x[axis] - 2 * x->error > box->high[axis];
+    }
+    return below | above;
+}
+
+/* Along the box's shortest side first */
+static void gxbp_open_states(gxb_boolean *b, const gxbp_box *box) {
+    uint32_t f;
+    int axis = 0, k;
+    for (k = 1; k < 3; k++) if (box->high[k] - box->low[k] < box->high[axis] - box->low[axis]) axis = k;
+    for (f = 0; f < b->piece_count; f++) {
+        if (b->pieces[f].source == GXB_NONE || b->pieces[f].state == GXB_NONE || gxbp_piece_misses(b, f, box, axis)) continue;
+        if (!gxbp_piece_misses(b, f, box, (axis + 1) % 3) && !gxbp_piece_misses(b, f, box, (axis + 2) % 3)) b->pieces[f].state |= GXBP_OPEN;
+    }
+}
+
+/* The state of an open facet beyond edge k of g, which is not open: its own with g's numbers of new operands and those of the labels between. */
+static uint32_t gxbp_close_state(gxb_boolean *b, uint32_t g, int k, uint32_t f) {
+    const uint32_t n = b->operand_count, m = b->stated, own = b->pieces[f].state & ~GXBP_OPEN, from = b->pieces[g].state;
+    uint32_t list = b->pieces[g].near[k] == f ? b->pieces[g].labels[k] : GXBP_BARE, i;
+    int32_t *winding = gxbp_copy_winding(b, own);
+    int differs = 0;
+    if (winding == NULL) return own;
+    for (i = m; i < n; i++) winding[i] = b->windings[(size_t)from * n + i];
+    for (; list != GXBP_LOOSE && list != GXBP_BARE; list = b->links[list].next) {
+        const uint32_t t = b->links[list].value;
+        if (!(t & GXBP_EDGE_LABEL) && b->sources[t].operand >= m) winding[b->sources[t].operand] += gxbp_label_step(b, g, k, t);
+    }
+    for (i = m; i < n; i++) differs = differs || winding[i] != 0;
+    return differs ? gxbp_find_state(b) : own;
+}
+
+/* From a facet that is not open any more to open ones */
+static void gxbp_spread_closed(gxb_boolean *b, const gxbp_rim_table *table, uint32_t first) {
+    b->scratch_count = 0;
+    gxbp_push(b, first);
+    while (b->scratch_count > 0 && b->result == GX_OK) {
+        const uint32_t f = b->scratch[--b->scratch_count];
+        int k;
+        for (k = 0; k < 3; k++) {
+            const uint32_t g = gxbp_neighbour(b, table, f, k);
+            if (g == GXB_NONE || !gxbp_is_open(b, g)) continue;
+            b->pieces[g].state = gxbp_close_state(b, f, k, g);
+            gxbp_push(b, g);
+        }
+    }
+}
+
+static void gxbp_close_by_ray(gxb_boolean *b, uint32_t f) {
+    gxbp_ray ray;
+    uint32_t i;
+    if (!gxbp_need_plane(b, b->pieces[f].source)) return;
+    ray.winding = gxbp_copy_winding(b, b->pieces[f].state & ~GXBP_OPEN);
+    if (ray.winding == NULL) return;
+    gxbp_set_ray(b, &ray, f);
+    for (i = b->stated; i < b->operand_count && b->result == GX_OK; i++)
+        if (b->operands[i].operation != GXB_SPLIT) gxbp_shoot(b, &ray, &b->operands[i], b->operands[i].tree.levels - 1, 0);
+    b->pieces[f].state = gxbp_find_state(b);
+}
+
+/* Facets that are not open lend to their open neighbours; where there are none, a ray helps. */
+static void gxbp_close_states(gxb_boolean *b, const gxbp_rim_table *table) {
+    uint32_t f, i, pass;
+    int k;
+    for (i = b->stated; i < b->operand_count; i++) {
+        const gxbp_tree *tree = &b->operands[i].tree;
+        gxbp_open_states(b, &b->boxes[tree->first + tree->level[tree->levels - 1]]);
+    }
+    for (pass = 0; pass < 2; pass++)
+        for (f = 0; f < b->piece_count && b->result == GX_OK; f++) {
+            if (b->pieces[f].source == GXB_NONE) continue;
+            for (k = 0; k < 3 && gxbp_is_open(b, f); k++) {
+                const uint32_t g = gxbp_neighbour(b, table, f, k);
+                if (g != GXB_NONE && b->pieces[g].state != GXB_NONE && !gxbp_is_open(b, g)) gxbp_spread_closed(b, table, g);
+            }
+            if (pass == 0 || !gxbp_is_open(b, f)) continue;
+            gxbp_close_by_ray(b, f);
+            gxbp_spread_closed(b, table, f);
+        }
+}
+
 static void gxbp_find_states(gxb_boolean *b) {
     gxbp_rim_table table;
     uint32_t f, pass;
     if (b->result != GX_OK) return;
     gxbp_rename_vertices(b);
-    if (!gxbp_fill_rim_table(b, &table)) return;
-    b->state_count = 0;
-    memset(b->steps, 0, sizeof b->steps);
-    if (b->state_table_size > 0) memset(b->state_table, 0xff, (size_t)b->state_table_size * sizeof *b->state_table);
+    if (!gxbp_lengthen_states(b) || !gxbp_fill_rim_table(b, &table)) return;
+    if (b->stated > 0) gxbp_close_states(b, &table);
     for (pass = 0; pass < 2; pass++)            /* first from input triangles, whose rays are cheap */
         for (f = 0; f < b->piece_count && b->result == GX_OK; f++) {
-            if (!gxbp_is_surface(b, f) || b->pieces[f].state != GXB_NONE) continue;
+            if (b->pieces[f].state != GXB_NONE || !gxbp_is_surface(b, f)) continue;
             if (pass == 0 && b->sources[b->pieces[f].source].flags & GXBP_DIVIDED) continue;
             b->pieces[f].state = gxbp_state_by_ray(b, f);
             gxbp_spread_state(b, &table, f);
         }
     gxbp_release(&b->cx.allocator, table.entry, (size_t)table.size * sizeof *table.entry);
+    b->stated = b->operand_count;
 }
 
 /* --- the result: facets between inside and outside --- */
@@ -6394,7 +6513,6 @@ static void gxbp_extract(gxb_boolean *b) {
         if (!gxbp_is_surface(b, f)) continue;
         back_in = b->states[gxbp_state_behind(b, f)] != 0;
         front_in = b->states[b->pieces[f].state] != 0;
-        b->pieces[f].state = GXB_NONE;          /* for the next evaluation */
         if (front_in != back_in) {
             source = gxbp_cover_of(b, f, 0);
             gxbp_emit(b, f, front_in, source);
@@ -7034,7 +7152,7 @@ GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, 
 static GXBP_COLD void gxbp_forget_arrangement(gxb_boolean *b) {
     uint32_t s, k;
     b->piece_count = b->link_count = b->segment_count = b->cut_count = b->cut_point_count = b->hit_count = b->dirty_count = b->divided_count = 0;
-    b->arranged = b->segment_mark = 0;
+    b->arranged = b->segment_mark = b->stated = 0;
     for (s = 0; s < b->source_count; s++) {
         gxbp_source *t = &b->sources[s];
         gxbp_piece *f = &b->pieces[b->piece_count];
