@@ -2122,12 +2122,12 @@ GXFEM_API GXBP_APART void gxb_complex_destroy(gxb_complex *cx) {
  */
 
 /* The facets (edges) into which one was divided stand behind it as a binary tree; walks its leaves in order. */
-static uint32_t gxbp_count_facets(const gxb_complex *cx, uint32_t facet) {
+static GXBP_APART uint32_t gxbp_count_facets(const gxb_complex *cx, uint32_t facet) {
     const uint32_t child = cx->facets[facet].child;
     return child == GXB_NONE ? 1 : gxbp_count_facets(cx, child) + gxbp_count_facets(cx, child + 1);
 }
 
-static void gxbp_push_facets(gxb_complex *cx, uint32_t facet) {
+static GXBP_APART void gxbp_push_facets(gxb_complex *cx, uint32_t facet) {
     const uint32_t child = cx->facets[facet].child;
     if (child == GXB_NONE) cx->pool[cx->pool_count++] = facet;
     else {
@@ -2136,7 +2136,7 @@ static void gxbp_push_facets(gxb_complex *cx, uint32_t facet) {
     }
 }
 
-static uint32_t gxbp_count_edges(const gxb_complex *cx, uint32_t edge) {
+static GXBP_APART uint32_t gxbp_count_edges(const gxb_complex *cx, uint32_t edge) {
     const uint32_t child = cx->edges[edge].child;
     return child == GXB_NONE ? 1 : gxbp_count_edges(cx, child) + gxbp_count_edges(cx, child + 1);
 }
@@ -2728,7 +2728,7 @@ static int gxbp_leaf_sides(gxb_complex *cx, uint32_t leaf, uint32_t plane) {
     return sides;
 }
 
-static int gxbp_sides_below(gxb_complex *cx, uint32_t reference, uint32_t plane) {
+static GXBP_APART int gxbp_sides_below(gxb_complex *cx, uint32_t reference, uint32_t plane) {
     int sides;
     if (!(reference & 1)) return gxbp_leaf_sides(cx, reference >> 1, plane);
     sides = gxbp_sides_below(cx, cx->nodes[reference >> 1].child[0], plane);
@@ -5000,7 +5000,7 @@ static void gxbp_meet_leaves(gxb_boolean *b, const gxbp_operand *o, uint32_t i, 
 }
 
 /* Box i of level l of one tree, box j of level m of the other. Depth: the sum of their levels. */
-static void gxbp_meet_boxes(gxb_boolean *b, const gxbp_operand *o, uint32_t l, uint32_t i, const gxbp_operand *q, uint32_t m, uint32_t j) {
+static GXBP_APART void gxbp_meet_boxes(gxb_boolean *b, const gxbp_operand *o, uint32_t l, uint32_t i, const gxbp_operand *q, uint32_t m, uint32_t j) {
     const gxbp_tree *s = &o->tree, *t = &q->tree;
     uint32_t c;
     if (b->result != GX_OK || (o == q && l == m && i > j)) return;
@@ -5495,7 +5495,7 @@ static void gxbp_attach_rim(gxb_boolean *b, gxbp_margin *rim, uint32_t count, ui
 }
 
 /* Triangulates what lies between rim[low] ... rim[high] and the base; facets are taken from the scratch list's end. Returns the base's. */
-static uint32_t gxbp_fill_rim(gxb_boolean *b, gxbp_margin *rim, uint32_t count, uint32_t low, uint32_t high) {
+static GXBP_APART uint32_t gxbp_fill_rim(gxb_boolean *b, gxbp_margin *rim, uint32_t count, uint32_t low, uint32_t high) {
     const uint32_t apex = gxbp_choose_apex(b, rim, low, high), f = b->scratch[--b->scratch_count];
     uint32_t g;
     gxbp_set_piece(b, f, rim[high].vertex, rim[low].vertex, rim[apex].vertex);
@@ -5876,7 +5876,7 @@ static void gxbp_divide_dirty(gxb_boolean *b) {
 
 typedef struct gxbp_projected { double t; uint32_t point; } gxbp_projected;
 
-static void gxbp_sort_projected(gxbp_projected *p, uint32_t count, gxbp_projected *work) {
+static GXBP_APART void gxbp_sort_projected(gxbp_projected *p, uint32_t count, gxbp_projected *work) {
     const uint32_t half = count / 2;
     uint32_t i, j, k;
     if (count < 2) return;
@@ -6147,7 +6147,7 @@ static int gxbp_ray_meets(const gxbp_ray *ray, const gxbp_box *box) {
     return box->high[0] >= x[0] - e && box->low[1] <= x[1] + e && box->high[1] >= x[1] - e && box->low[2] <= x[2] + e && box->high[2] >= x[2] - e;
 }
 
-static void gxbp_shoot(gxb_boolean *b, gxbp_ray *ray, const gxbp_operand *o, uint32_t l, uint32_t i) {
+static GXBP_APART void gxbp_shoot(gxb_boolean *b, gxbp_ray *ray, const gxbp_operand *o, uint32_t l, uint32_t i) {
     uint32_t c;
     if (!gxbp_ray_meets(ray, &b->boxes[o->tree.first + o->tree.level[l] + i])) return;
     if (l > 0) {
