@@ -4947,9 +4947,9 @@ static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
     int of_t[3], of_s[3];
     gxbp_meeting m;
     int neighbours, flat, k, common = 0;
-    if (b->result != GX_OK || !gxbp_need_plane(b, s) || !gxbp_need_plane(b, t)) return;
+    if (b->result != GX_OK || !gxbp_need_plane(b, s)) return;
     gxbp_sides(b, t, b->sources[s].plane, 0, of_t);
-    if (gxbp_all_on_one_side(of_t)) return;
+    if (gxbp_all_on_one_side(of_t) || !gxbp_need_plane(b, t)) return;
     flat = of_t[0] == 0 && of_t[1] == 0 && of_t[2] == 0;
     neighbours = gxbp_are_neighbours(b, s, t);
     if (neighbours && !flat) return;
