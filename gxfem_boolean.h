@@ -6508,10 +6508,11 @@ static void gxbp_extract(gxb_boolean *b) {
     for (f = 0; f < b->vertex_count; f++) b->vertices[f].slot = GXB_NONE;
     b->out_point_count = b->out_triangle_count = b->out_operand_count = b->out_source_count = b->out_plane_count = b->out_reversed_count = 0;
     for (f = 0; f < b->piece_count && b->result == GX_OK; f++) {
-        uint32_t source;
+        uint32_t source, behind;
         int front_in, back_in;
         if (!gxbp_is_surface(b, f)) continue;
-        back_in = b->states[gxbp_state_behind(b, f)] != 0;
+        behind = gxbp_state_behind(b, f);           /* may move the states */
+        back_in = b->states[behind] != 0;
         front_in = b->states[b->pieces[f].state] != 0;
         if (front_in != back_in) {
             source = gxbp_cover_of(b, f, 0);
