@@ -1304,7 +1304,7 @@ static int gxbp_filter_turn(const gxb_ball *a, const gxb_ball *b, const gxb_ball
     return gxbp_filter_sign(u[i] * v[j] - u[j] * v[i], bound);
 }
 
-GXFEM_API GXBP_APART int gxb_orient_in_plane(const gxb_point *a, const gxb_point *b, const gxb_point *c, const gxb_plane *plane) {
+GXFEM_API int gxb_orient_in_plane(const gxb_point *a, const gxb_point *b, const gxb_point *c, const gxb_plane *plane) {
     const double *n = plane->filter.n;
     gxbp_vec exact_n, x[3];
     int axis, sign, k;
@@ -1373,7 +1373,7 @@ static int gxbp_ray_side(const double a[3], const double b[3], const double p[3]
     return sign != 0 ? sign : gxbp_compare_doubles(b[1], a[1]);     /* d/dz is b_y - a_y */
 }
 
-GXFEM_API GXBP_APART int gxb_winding_number(const double *vertices, const uint32_t *triangles, size_t triangle_count, const double p[3],
+GXFEM_API int gxb_winding_number(const double *vertices, const uint32_t *triangles, size_t triangle_count, const double p[3],
                                  int *on_surface) {
     int winding = 0;
     size_t t;
@@ -1523,7 +1523,7 @@ static GXBP_COLD void gxbp_drop_recent_numbers(gxb_complex *cx) {
     if (cx->blocks != NULL) cx->blocks->used = cx->mark_used;
 }
 
-GXFEM_API GXBP_APART void gxb_complex_rollback(gxb_complex *cx) {
+GXFEM_API void gxb_complex_rollback(gxb_complex *cx) {
     while (cx->undo_count > 0) {
         const gxb_undo *undo = &cx->undo[--cx->undo_count];
         size_t size;
@@ -1601,7 +1601,7 @@ static gx_result gxbp_frame_exact(const gxb_complex *cx, const double x[3], gxbp
     return GX_OK;
 }
 
-GXFEM_API GXBP_APART gx_result gxb_complex_add_point(gxb_complex *cx, const double x[3], uint32_t *point) {
+GXFEM_API gx_result gxb_complex_add_point(gxb_complex *cx, const double x[3], uint32_t *point) {
     gxbp_vec v;
     gx_result result;
     gxb_num *exact = NULL;
@@ -1804,7 +1804,7 @@ GXFEM_API int gxb_complex_turn(gxb_complex *cx, uint32_t a, uint32_t b, uint32_t
     return turn * f->axis_sign;
 }
 
-GXFEM_API GXBP_APART int gxb_complex_compare(gxb_complex *cx, uint32_t point, int axis, double value) {
+GXFEM_API int gxb_complex_compare(gxb_complex *cx, uint32_t point, int axis, double value) {
     GXB_NUM(a); GXB_NUM(b); GXB_NUM(c);
     gxbp_vec store;
     const gxb_num *x = gxbp_exact_cpoint(cx, point, &store);
@@ -1897,7 +1897,7 @@ static int gxbp_face_is_even(const uint32_t *element, uint32_t face) {
 }
 
 /* Numbers the faces in the order of their sorted nodes. */
-static GXBP_APART gx_result gxbp_number_faces(gxb_complex *cx, gxbp_key *keys, size_t *bad) {
+static gx_result gxbp_number_faces(gxb_complex *cx, gxbp_key *keys, size_t *bad) {
     const size_t count = (size_t)cx->element_count * 4;
     size_t i;
     uint32_t e, k, j;
@@ -1952,7 +1952,7 @@ static int gxbp_difference_exponent(double high, double low) {
 
 /* Frame: the origin is the mesh's lower corner rounded to few bits where the mesh lies far from 0 (so that the shift adds no
    bits to its coordinates), else 0; the scale brings the box to size 1. */
-static GXBP_APART gx_result gxbp_choose_frame(gxb_complex *cx, const gxb_mesh *mesh, size_t *bad) {
+static gx_result gxbp_choose_frame(gxb_complex *cx, const gxb_mesh *mesh, size_t *bad) {
     int axis, largest = -2000;
     for (axis = 0; axis < 3; axis++) {
         double low = 0, high = 0;
@@ -1989,7 +1989,7 @@ static gx_result gxbp_add_nodes(gxb_complex *cx, const gxb_mesh *mesh, size_t *b
     return result;
 }
 
-static GXBP_APART gx_result gxbp_check_elements(gxb_complex *cx, const gxb_mesh *mesh, size_t *bad) {
+static gx_result gxbp_check_elements(gxb_complex *cx, const gxb_mesh *mesh, size_t *bad) {
     uint32_t e;
     int k;
     for (e = 0; e < cx->element_count; e++) {
@@ -2052,7 +2052,7 @@ static gx_result gxbp_fail(gx_failure *failure, gx_result result, size_t index) 
     return result;
 }
 
-GXFEM_API GXBP_APART gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator *allocator, gxb_complex **complex,
+GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator *allocator, gxb_complex **complex,
                                        gx_failure *failure) {
     gx_allocator none;
     gxb_complex *cx;
@@ -2099,7 +2099,7 @@ typedef struct gxbp_task { uint32_t parent, side, first, count, coplanar; } gxbp
 #define GXBP_TRIANGLE_EDGE 0x80000000u
 #define GXBP_IN_ROOT GXB_NONE   /* task.parent: the reference is the element's root */
 
-GXFEM_API GXBP_APART void gxb_complex_destroy(gxb_complex *cx) {
+GXFEM_API void gxb_complex_destroy(gxb_complex *cx) {
     gx_allocator a;
     if (cx == NULL) return;
     a = cx->allocator;
@@ -3051,7 +3051,7 @@ static GXBP_COLD int gxbp_probe_orient(const gxbp_probe *probe, const double *co
     return -r.sign;
 }
 
-GXFEM_API GXBP_APART int gxb_complex_winding(gxb_complex *cx, const uint32_t *points, size_t point_count, const double *vertices,
+GXFEM_API int gxb_complex_winding(gxb_complex *cx, const uint32_t *points, size_t point_count, const double *vertices,
                                   const uint32_t *triangles, size_t triangle_count) {
     gxbp_probe probe;
     int winding = 0, c;
@@ -3178,7 +3178,7 @@ GXFEM_API void gxb_complex_barycentric(gxb_complex *cx, uint32_t point, uint32_t
 }
 
 /* Each step adds the quotient of what is left: 50 bits, so that four leave less than 2^-180 of the value. */
-GXFEM_API GXBP_APART void gxb_complex_barycentric_fine(gxb_complex *cx, uint32_t point, uint32_t element, gxb_num lambda[4]) {
+GXFEM_API void gxb_complex_barycentric_fine(gxb_complex *cx, uint32_t point, uint32_t element, gxb_num lambda[4]) {
     uint32_t k;
     int step;
     for (k = 0; k < 4; k++) {
@@ -3246,7 +3246,7 @@ static GXBP_COLD void gxbp_given(gxb_complex *cx, uint32_t point, double x[3]) {
     }
 }
 
-static void gxbp_save_points(gxb_complex *cx, gxb_stream *s) {
+static GXBP_COLD void gxbp_save_points(gxb_complex *cx, gxb_stream *s) {
     uint32_t i;
     for (i = 0; i < cx->point_count; i++) {
         gxb_cpoint *p = &cx->points[i];
@@ -3261,7 +3261,7 @@ static void gxbp_save_points(gxb_complex *cx, gxb_stream *s) {
 }
 
 /* Points by definition have no ball yet: it needs the planes. */
-static void gxbp_load_points(gxb_complex *cx, gxb_stream *s, uint32_t count) {
+static GXBP_COLD void gxbp_load_points(gxb_complex *cx, gxb_stream *s, uint32_t count) {
     uint32_t i;
     for (i = 0; i < count && s->result == GX_OK; i++) {
         uint32_t head, id = i, def[3];
@@ -3287,7 +3287,7 @@ static void gxbp_load_points(gxb_complex *cx, gxb_stream *s, uint32_t count) {
 
 static int gxbp_is_explicit(const gxb_complex *cx, uint32_t point) { return point < cx->point_count && cx->points[point].kind == GXB_EXPLICIT; }
 
-static void gxbp_save_planes(gxb_complex *cx, gxb_stream *s) {
+static GXBP_COLD void gxbp_save_planes(gxb_complex *cx, gxb_stream *s) {
     uint32_t i;
     for (i = 0; i < cx->plane_count; i++) {
         gxb_stream_pass(s, cx->planes[i].def, 3, sizeof *cx->planes[i].def);
@@ -3296,7 +3296,7 @@ static void gxbp_save_planes(gxb_complex *cx, gxb_stream *s) {
 }
 
 /* Planes must have a normal. */
-static void gxbp_load_planes(gxb_complex *cx, gxb_stream *s, uint32_t count) {
+static GXBP_COLD void gxbp_load_planes(gxb_complex *cx, gxb_stream *s, uint32_t count) {
     uint32_t i, k;
     for (i = 0; i < count && s->result == GX_OK; i++) {
         uint32_t def[3], along_axis, id = 0;
@@ -3314,7 +3314,7 @@ static void gxbp_load_planes(gxb_complex *cx, gxb_stream *s, uint32_t count) {
 }
 
 /* Points by definition must be points: a filter that is certain of their place proves it, else their exact weight. */
-static void gxbp_place_points(gxb_complex *cx, gxb_stream *s) {
+static GXBP_COLD void gxbp_place_points(gxb_complex *cx, gxb_stream *s) {
     uint32_t i, k;
     for (i = cx->node_count; i < cx->point_count && s->result == GX_OK; i++) {
         gxb_cpoint *p = &cx->points[i];
@@ -3343,7 +3343,7 @@ static void gxbp_pass_list(gxb_complex *cx, gxb_stream *s, uint32_t *first, uint
     if (*count > 0) gxb_stream_pass(s, cx->pool + *first, *count, sizeof *cx->pool);
 }
 
-static void gxbp_pass_edges(gxb_complex *cx, gxb_stream *s) {
+static GXBP_COLD void gxbp_pass_edges(gxb_complex *cx, gxb_stream *s) {
     uint32_t i;
     for (i = 0; i < cx->edge_count; i++) {
         gxb_edge *e = &cx->edges[i];
@@ -3355,7 +3355,7 @@ static void gxbp_pass_edges(gxb_complex *cx, gxb_stream *s) {
     }
 }
 
-static void gxbp_pass_facets(gxb_complex *cx, gxb_stream *s) {
+static GXBP_COLD void gxbp_pass_facets(gxb_complex *cx, gxb_stream *s) {
     uint32_t i;
     for (i = 0; i < cx->facet_count; i++) {
         gxb_facet *f = &cx->facets[i];
@@ -3370,7 +3370,7 @@ static void gxbp_pass_facets(gxb_complex *cx, gxb_stream *s) {
     }
 }
 
-static void gxbp_pass_leaves(gxb_complex *cx, gxb_stream *s) {
+static GXBP_COLD void gxbp_pass_leaves(gxb_complex *cx, gxb_stream *s) {
     uint32_t i;
     for (i = 0; i < cx->leaf_count; i++) {
         gxb_leaf *l = &cx->leaves[i];
@@ -3381,7 +3381,7 @@ static void gxbp_pass_leaves(gxb_complex *cx, gxb_stream *s) {
     }
 }
 
-static void gxbp_pass_rest(gxb_complex *cx, gxb_stream *s) {
+static GXBP_COLD void gxbp_pass_rest(gxb_complex *cx, gxb_stream *s) {
     uint32_t i;
     gxb_stream_pass(s, cx->face_facet, cx->face_count, sizeof *cx->face_facet);
     gxb_stream_pass(s, cx->mesh_edge, cx->mesh_edge_count, sizeof *cx->mesh_edge);
@@ -3399,7 +3399,7 @@ static void gxbp_pass_rest(gxb_complex *cx, gxb_stream *s) {
 
 enum { GXBP_COUNTS = 7 };
 
-GXFEM_API GXBP_COLD void gxb_complex_save(gxb_complex *cx, gxb_stream *stream) {
+GXFEM_API void gxb_complex_save(gxb_complex *cx, gxb_stream *stream) {
     uint32_t counts[GXBP_COUNTS];
     counts[0] = cx->point_count; counts[1] = cx->plane_count; counts[2] = cx->edge_count; counts[3] = cx->facet_count;
     counts[4] = cx->leaf_count; counts[5] = cx->tree_count; counts[6] = cx->label_count;
@@ -3446,7 +3446,7 @@ static void gxbp_link_trees(gxb_complex *cx) {
         for (n = cx->nodes[i].child[k] & 1 ? GXB_NONE : i; n != GXB_NONE; n = cx->nodes[n].parent) cx->nodes[n].leaves++;
 }
 
-GXFEM_API GXBP_COLD gx_result gxb_complex_load(gxb_complex *cx, gxb_stream *s, int trusted) {
+GXFEM_API gx_result gxb_complex_load(gxb_complex *cx, gxb_stream *s, int trusted) {
     uint32_t counts[GXBP_COUNTS];
     gxb_stream_pass(s, counts, GXBP_COUNTS, sizeof *counts);
     gxbp_load_room(s, cx, counts);
@@ -3900,7 +3900,7 @@ static void gxbp_run_checks(gxbp_checker *c) {
     if (c->s->result == GX_OK) gxbp_check_leaves(c);
 }
 
-static void gxbp_check(gxb_complex *cx, gxb_stream *s) {
+static GXBP_COLD void gxbp_check(gxb_complex *cx, gxb_stream *s) {
     const size_t e = cx->edge_count, f = cx->facet_count, n = cx->tree_count, l = cx->leaf_count;
     const size_t words = 7 * e + 4 * f + cx->point_count + 4 * n + l + 1;
     gxbp_checker c;
@@ -5516,7 +5516,7 @@ static GXBP_APART uint32_t gxbp_fill_rim(gxb_boolean *b, gxbp_margin *rim, uint3
 }
 
 /* The point where the line of a triangle (label) crosses an edge that must stay. */
-static GXBP_APART uint32_t gxbp_crossing_point(gxb_boolean *b, uint32_t s, uint32_t labels, uint32_t label) {
+static uint32_t gxbp_crossing_point(gxb_boolean *b, uint32_t s, uint32_t labels, uint32_t label) {
     uint32_t other = GXB_NONE, id[3];
     int fresh;
     for (; other == GXB_NONE && labels != GXBP_BARE; labels = b->links[labels].next)
@@ -5578,7 +5578,7 @@ static int gxbp_collect_crossed(gxb_boolean *b, uint32_t s, const gxbp_line *lin
 
 #define GXBP_REMOVED (UINT32_MAX - 1)
 
-static GXBP_APART void gxbp_find_dangling(const gxb_boolean *b, gxbp_margin *rim, uint32_t count) {
+static void gxbp_find_dangling(const gxb_boolean *b, gxbp_margin *rim, uint32_t count) {
     uint32_t i;
     for (i = 0; i < count; i++) rim[i].dangling = rim[i].near != GXB_NONE && b->pieces[rim[i].near].state == GXBP_REMOVED;
 }
@@ -7062,7 +7062,7 @@ static GXBP_APART void gxbp_drop_boolean(gxb_boolean *b) {
     GXBP_DROP(b, out_defects, out_defect); GXBP_DROP(b, out_reversed, out_reversed); GXBP_DROP(b, out_sides, out_side);
 }
 
-GXFEM_API GXBP_APART gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean **boolean) {
+GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean **boolean) {
     gxb_boolean_desc none;
     gxb_boolean *b;
     size_t arena;
