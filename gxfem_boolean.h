@@ -47,7 +47,7 @@
  * along those segments; winding numbers spread from facet to facet; the result is the facets between inside and outside. Vertices are
  * rounded at the output only, and more operands may follow. See docs/KERNEL.md.
  *
- * What it does not do: merge coplanar triangles of a result, or move its rounded vertices so that none of its triangles is turned over.
+ * What it does not do: move a result's rounded vertices so that none of its triangles is turned over.
  *
  * Guarantees and limits
  *     - Signs are exact for finite coordinates under every flag, rounding mode and flush-to-zero (but x87 set to 24 bits).
@@ -411,11 +411,18 @@ typedef struct gxb_operand {
     uint32_t simple;            /* 1: the caller vouches that this surface meets itself in common vertices and edges only, which saves looking */
 } gxb_operand;
 
+/* How a result is divided into triangles. */
+enum { GXB_DIVIDED = 0,     /* as the operands have divided each other */
+       GXB_COARSE,          /* each source face in as few triangles as its outline allows: without vertices inside it, or on a straight
+                               part of its outline where no other face ends; nothing is merged across source faces */
+       GXB_MERGED };        /* as GXB_COARSE, of source faces that lie beside each other in one plane too: a triangle names one of them */
+
 typedef struct gxb_boolean_desc {
     gx_allocator allocator;
     size_t memory_limit;        /* in bytes, of all that the Boolean holds at a time; 0: none */
     uint32_t fine;              /* 1: vertices and volumes are right to their last digits. 0: vertices proven within 1e-10 of the largest
                                    coordinate and volumes within 1e-7 of their size; both are mostly far nearer */
+    uint32_t triangulation;     /* GXB_DIVIDED ... */
     /* Instead of operations and rules: is a point around which the operands wind so often inside? NULL: by operations and rules. */
     int (*inside)(void *user, const int32_t *winding, size_t operand_count);
     void *user;
@@ -469,6 +476,15 @@ GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *boolean, gxb_boolean_resul
 
 #ifdef __cplusplus
 extern "C" {
+#endif
+
+/* What is called rarely is small rather than fast; what is called from many places is there once. */
+#if defined(__GNUC__)
+#define GXBP_COLD __attribute__((cold, noinline))
+#define GXBP_APART __attribute__((noinline))
+#else
+#define GXBP_COLD
+#define GXBP_APART
 #endif
 
 /* >>bits: doubles taken apart and put together without floating-point arithmetic ---------------------------------------- */
@@ -624,21 +640,29 @@ static void gxbp_num_add_signed(gxb_num *r, const gxb_num *a, const gxb_num *b, 
         else gxbp_num_sub_magnitude(r, b, a);
         r->sign = order == 0 ? 0 : order > 0 ? a->sign : b_sign;
     }
-    gxbp_num_trim(r);
+    if (r->d[0] == 0 || r->d[r->n - 1] == 0) gxbp_num_trim(r);
 }
 
 GXFEM_API void gxb_num_add(gxb_num *r, const gxb_num *a, const gxb_num *b) { gxbp_num_add_signed(r, a, b, 1); }
 GXFEM_API void gxb_num_sub(gxb_num *r, const gxb_num *a, const gxb_num *b) { gxbp_num_add_signed(r, a, b, -1); }
 
 GXFEM_API void gxb_num_mul(gxb_num *r, const gxb_num *a, const gxb_num *b) {
+    gxb_limb carry = 0;
     uint32_t i, j;
     r->sign = a->sign * b->sign;
     r->exp = a->exp + b->exp;
     r->n = r->sign == 0 ? 0 : a->n + b->n;
-    for (i = 0; i < r->n; i++) r->d[i] = 0;
-    for (i = 0; r->sign != 0 && i < a->n; i++) {
+    if (r->n == 0) { r->exp = 0; return; }
+    for (j = 0; j < b->n; j++) {
+        const gxbp_wide t = (gxbp_wide)a->d[0] * b->d[j] + carry;
+        r->d[j] = (gxb_limb)t;
+        carry = (gxb_limb)(t >> GXB_LIMB_BITS);
+    }
+    r->d[b->n] = carry;
+    for (i = 1; i < a->n; i++) {
         const gxb_limb x = a->d[i];
-        gxb_limb *d = r->d + i, carry = 0;
+        gxb_limb *d = r->d + i;
+        carry = 0;
         for (j = 0; j < b->n; j++) {
             const gxbp_wide t = (gxbp_wide)x * b->d[j] + d[j] + carry;
             d[j] = (gxb_limb)t;
@@ -646,7 +670,7 @@ GXFEM_API void gxb_num_mul(gxb_num *r, const gxb_num *a, const gxb_num *b) {
         }
         d[b->n] = carry;
     }
-    gxbp_num_trim(r);
+    if (r->d[0] == 0 || r->d[r->n - 1] == 0) gxbp_num_trim(r);
 }
 
 /* Bits of a limb other than 0, counted up to the highest that is set. */
@@ -747,7 +771,7 @@ static void gxbp_num_sub3(gxb_num r[3], const gxb_num a[3], const gxb_num b[3]) 
 }
 
 /* Plane through p, q, r: c[0..2] = n = (q-p) x (r-p), degree 2; c[3] = d = n.p, degree 3. */
-static void gxbp_exact_plane(gxb_num plane[4], const gxb_num p[3], const gxb_num q[3], const gxb_num r[3]) {
+static GXBP_COLD void gxbp_exact_plane(gxb_num plane[4], const gxb_num p[3], const gxb_num q[3], const gxb_num r[3]) {
     gxbp_vec a, b;
     gxbp_vec_init(&a);
     gxbp_vec_init(&b);
@@ -771,7 +795,7 @@ static void gxbp_make_weight_positive(gxb_num point[4]) {
 }
 
 /* Line through p and q with a plane: X = s_q p - s_p q, W = s_q - s_p with s = n.x - d; degrees 4 and 3. */
-static void gxbp_exact_line_plane(gxb_num point[4], const gxb_num p[4], const gxb_num q[4], const gxb_num plane[4]) {
+static GXBP_COLD void gxbp_exact_line_plane(gxb_num point[4], const gxb_num p[4], const gxb_num q[4], const gxb_num plane[4]) {
     GXB_NUM(sp); GXB_NUM(sq);
     int k;
     gxbp_exact_side(&sp, p, plane);
@@ -782,7 +806,7 @@ static void gxbp_exact_line_plane(gxb_num point[4], const gxb_num p[4], const gx
 }
 
 /* Three planes by Cramer's rule: X = d1 n2 x n3 + d2 n3 x n1 + d3 n1 x n2, W = n1.(n2 x n3); degrees 7 and 6. */
-static void gxbp_exact_three_planes(gxb_num point[4], const gxb_num a[4], const gxb_num b[4], const gxb_num c[4]) {
+static GXBP_COLD void gxbp_exact_three_planes(gxb_num point[4], const gxb_num a[4], const gxb_num b[4], const gxb_num c[4]) {
     gxbp_vec bc, ca, ab, row, d;
     int k;
     gxbp_vec_init(&bc); gxbp_vec_init(&ca); gxbp_vec_init(&ab); gxbp_vec_init(&row); gxbp_vec_init(&d);
@@ -813,8 +837,16 @@ static void gxbp_exact_three_planes(gxb_num point[4], const gxb_num a[4], const 
 #define GXBP_NO_BALL gxbp_power(GXBP_NO_BALL_EXPONENT)
 
 static double gxbp_fence(double x) {
+#if defined(__GNUC__) && defined(__SSE2_MATH__)
+    __asm__("" : "+x"(x));      /* no code; the compiler can not see through it, and registers hold doubles only */
+    return x;
+#elif defined(__GNUC__) && defined(__aarch64__)
+    __asm__("" : "+w"(x));
+    return x;
+#else
     volatile double v = x;
     return v;
+#endif
 }
 
 static double gxbp_max(double a, double b) { return a > b ? a : b; }
@@ -922,10 +954,82 @@ static int gxbp_filter_range(const double *x, int count) {
     return 1;
 }
 
-static int gxbp_orient2d_exact(const double a[2], const double b[2], const double c[2]) {
+/* What a short exact stage returns where coordinates are too far apart for it. */
+#define GXBP_UNKNOWN 2
+
+#if GXB_LIMB_BITS == 64
+__extension__ typedef __int128 gxbp_signed_wide;
+
+/* count doubles as integers below 2^61 of one unit. 0: the smallest needs a finer one, or is a denormal */
+static int gxbp_short_integers(const double *const *x, int count, int dimension, int64_t *out) {
+    int top = 0, i, k;
+    for (i = 0; i < count; i++) for (k = 0; k < dimension; k++) {
+        const int e = gxbp_exponent_bits(x[i][k]);
+        if (e > top) top = e;
+    }
+    for (i = 0; i < count; i++) for (k = 0; k < dimension; k++) {
+        const uint64_t bits = gxbp_bits(x[i][k]);
+        const int shift = gxbp_exponent_bits(x[i][k]) - top + 8;
+        uint64_t m = (bits & (((uint64_t)1 << 52) - 1)) | (uint64_t)1 << 52;
+        if (bits << 1 == 0) m = 0;
+        else if (gxbp_exponent_bits(x[i][k]) == 0) return 0;
+        else if (shift >= 0) m <<= shift;
+        else if (shift > -53 && (m & (((uint64_t)1 << -shift) - 1)) == 0) m >>= -shift;
+        else return 0;
+        *out++ = bits >> 63 ? -(int64_t)m : (int64_t)m;
+    }
+    return 1;
+}
+
+static int gxbp_orient2d_short(const double a[2], const double b[2], const double c[2]) {
+    const double *x[3];
+    int64_t v[6];
+    gxbp_signed_wide s, t;
+    x[0] = a; x[1] = b; x[2] = c;
+    if (!gxbp_short_integers(x, 3, 2, v)) return GXBP_UNKNOWN;
+    s = (gxbp_signed_wide)(v[0] - v[4]) * (v[3] - v[5]);
+    t = (gxbp_signed_wide)(v[1] - v[5]) * (v[2] - v[4]);
+    return s > t ? 1 : s < t ? -1 : 0;
+}
+
+/* Differences are below 2^62, minors below 2^125; each minor is taken apart at 2^64, so that products with its halves stay below 2^127. */
+static int gxbp_orient3d_short(const double a[3], const double b[3], const double c[3], const double d[3]) {
+    const double *x[4];
+    int64_t v[12];
+    gxbp_signed_wide high = 0;
+    gxbp_wide low = 0;
+    int i, k;
+    x[0] = a; x[1] = b; x[2] = c; x[3] = d;
+    if (!gxbp_short_integers(x, 4, 3, v)) return GXBP_UNKNOWN;
+    for (i = 0; i < 9; i++) v[i] -= v[9 + i % 3];
+    for (k = 0; k < 3; k++) {
+        const int m = (k + 1) % 3, n = (k + 2) % 3;
+        const gxbp_signed_wide minor = (gxbp_signed_wide)v[3 + m] * v[6 + n] - (gxbp_signed_wide)v[3 + n] * v[6 + m];
+        const gxbp_signed_wide part = (gxbp_signed_wide)(uint64_t)minor * v[k];
+        high += (gxbp_signed_wide)(int64_t)(minor >> 64) * v[k] + (part >> 64);
+        low += (uint64_t)part;
+    }
+    high += (gxbp_signed_wide)(low >> 64);
+    return high < 0 ? -1 : high > 0 || (uint64_t)low != 0;
+}
+#else
+static int gxbp_orient2d_short(const double a[2], const double b[2], const double c[2]) {
+    (void)a; (void)b; (void)c;
+    return GXBP_UNKNOWN;
+}
+
+static int gxbp_orient3d_short(const double a[3], const double b[3], const double c[3], const double d[3]) {
+    (void)d;
+    return gxbp_orient2d_short(a, b, c);
+}
+#endif
+
+static GXBP_COLD int gxbp_orient2d_exact(const double a[2], const double b[2], const double c[2]) {
+    const int known = gxbp_orient2d_short(a, b, c);
     GXB_NUM(r);
     gxbp_vec p, q, o, u, v;
     double x[3] = {0, 0, 0};
+    if (known != GXBP_UNKNOWN) return known;
     x[0] = a[0]; x[1] = a[1]; gxbp_vec_set(&p, x);
     x[0] = b[0]; x[1] = b[1]; gxbp_vec_set(&q, x);
     x[0] = c[0]; x[1] = c[1]; gxbp_vec_set(&o, x);
@@ -948,9 +1052,11 @@ GXFEM_API int gxb_orient2d(const double a[2], const double b[2], const double c[
     return gxbp_orient2d_exact(a, b, c);
 }
 
-static int gxbp_orient3d_exact(const double a[3], const double b[3], const double c[3], const double d[3]) {
+static GXBP_APART int gxbp_orient3d_exact(const double a[3], const double b[3], const double c[3], const double d[3]) {
+    const int known = gxbp_orient3d_short(a, b, c, d);
     GXB_NUM(r);
     gxbp_vec p, q, s, o, n;
+    if (known != GXBP_UNKNOWN) return known;
     gxbp_vec_set(&p, a); gxbp_vec_set(&q, b); gxbp_vec_set(&s, c); gxbp_vec_set(&o, d);
     gxbp_vec_init(&n);
     gxbp_exact_plane(n.c, p.c, q.c, s.c);
@@ -1023,7 +1129,7 @@ static void gxbp_exact_lifted(gxbp_vec *v, const double p[3], const double o[3])
 }
 
 /* Degree 4: 140 limbs of 64 bits for any finite doubles. */
-static int gxbp_incircle_exact(const double a[2], const double b[2], const double c[2], const double d[2]) {
+static GXBP_COLD int gxbp_incircle_exact(const double a[2], const double b[2], const double c[2], const double d[2]) {
     const double *p[4];
     double x[4][3];
     gxbp_vec row[3], minor, lift;
@@ -1043,7 +1149,7 @@ static int gxbp_incircle_exact(const double a[2], const double b[2], const doubl
 }
 
 /* Degree 5: a difference of any finite doubles has 34 limbs of 64 bits, its square 67, a minor 100, their product and the sum of four 167. */
-static int gxbp_insphere_exact(const double a[3], const double b[3], const double c[3], const double d[3], const double e[3]) {
+static GXBP_COLD int gxbp_insphere_exact(const double a[3], const double b[3], const double c[3], const double d[3], const double e[3]) {
     gxbp_vec row[4], normal;
     GXB_NUM(minor); GXB_NUM(term); GXB_NUM(sum); GXB_NUM(next);
     int i;
@@ -1119,14 +1225,14 @@ GXFEM_API void gxb_point_three_planes(gxb_point *point, const gxb_plane *a, cons
     point->plane[0] = a; point->plane[1] = b; point->plane[2] = c;
 }
 
-static void gxbp_plane_exact(gxbp_vec *v, const gxb_plane *plane) {
+static GXBP_COLD void gxbp_plane_exact(gxbp_vec *v, const gxb_plane *plane) {
     gxbp_vec p, q, r;
     gxbp_vec_set(&p, plane->p); gxbp_vec_set(&q, plane->q); gxbp_vec_set(&r, plane->r);
     gxbp_vec_init(v);
     gxbp_exact_plane(v->c, p.c, q.c, r.c);
 }
 
-static void gxbp_point_exact(gxbp_vec *v, const gxb_point *point) {
+static GXBP_COLD void gxbp_point_exact(gxbp_vec *v, const gxb_point *point) {
     gxbp_vec a, b, c;
     if (point->plane[0] == NULL) { gxbp_vec_set(v, point->p); return; }
     gxbp_vec_init(v);
@@ -1176,7 +1282,7 @@ GXFEM_API int gxb_compare(const gxb_point *a, const gxb_point *b, int axis) {
 }
 
 /* |a b c| of the homogeneous coordinates i and j: degree 20 for three points of three planes */
-static int gxbp_orient_exact(const gxb_num a[4], const gxb_num b[4], const gxb_num c[4], int i, int j) {
+static GXBP_COLD int gxbp_orient_exact(const gxb_num a[4], const gxb_num b[4], const gxb_num c[4], int i, int j) {
     gxbp_vec row, cofactor;
     GXB_NUM(r);
     gxbp_vec_init(&row);
@@ -1290,14 +1396,14 @@ GXFEM_API int gxb_winding_number(const double *vertices, const uint32_t *triangl
 
 static void *gxbp_allocate(const gx_allocator *a, size_t size) { return a->allocate ? a->allocate(a->user, size) : malloc(size); }
 
-static void gxbp_release(const gx_allocator *a, void *memory, size_t size) {
+static GXBP_APART void gxbp_release(const gx_allocator *a, void *memory, size_t size) {
     if (memory == NULL) return;
     if (a->release) a->release(a->user, memory, size);
     else free(memory);
 }
 
 /* Makes room for count + extra items of the given size. */
-static gx_result gxbp_reserve(gxb_complex *cx, void *array, size_t item, uint32_t count, uint32_t *capacity, size_t extra) {
+static GXBP_APART gx_result gxbp_reserve(gxb_complex *cx, void *array, size_t item, uint32_t count, uint32_t *capacity, size_t extra) {
     const size_t need = (size_t)count + extra, room = need + need / 2 + 16;
     void *old, *memory;
     if (need <= *capacity) return GX_OK;
@@ -1364,7 +1470,7 @@ static void gxbp_move_list(const gxb_complex *cx, uint32_t *pool, uint32_t *used
 
 /* Lists that were replaced by longer ones stay in the pool; once they outweigh the others, the pool is renewed. Without memory for
    that it stays as it is. */
-static void gxbp_compact_pool(gxb_complex *cx) {
+static GXBP_COLD void gxbp_compact_pool(gxb_complex *cx) {
     uint32_t *pool, used = 0, i;
     if (cx->pool_count / 2 < cx->pool_live + 4096) return;
     pool = (uint32_t *)gxbp_allocate(&cx->allocator, (size_t)cx->pool_capacity * sizeof *pool);
@@ -1405,7 +1511,7 @@ static int gxbp_is_recent(const gxb_complex *cx, const void *memory) {
 }
 
 /* Gives back exact numbers kept since begin; those of older points and planes are computed again when needed. */
-static void gxbp_drop_recent_numbers(gxb_complex *cx) {
+static GXBP_COLD void gxbp_drop_recent_numbers(gxb_complex *cx) {
     uint32_t i;
     for (i = 0; i < cx->mark[0]; i++) if (cx->points[i].exact != NULL && gxbp_is_recent(cx, cx->points[i].exact)) cx->points[i].exact = NULL;
     for (i = 0; i < cx->mark[1]; i++) if (cx->planes[i].exact != NULL && gxbp_is_recent(cx, cx->planes[i].exact)) cx->planes[i].exact = NULL;
@@ -1552,7 +1658,7 @@ static void gxbp_exact_axis_plane(gxb_num plane[4], const gxb_num p[3], const gx
     gxbp_num_dot(&plane[3], plane, p);
 }
 
-static const gxb_num *gxbp_exact_cplane(gxb_complex *cx, uint32_t plane, gxbp_vec *store) {
+static GXBP_COLD const gxb_num *gxbp_exact_cplane(gxb_complex *cx, uint32_t plane, gxbp_vec *store) {
     gxb_cplane *f = &cx->planes[plane];
     gxbp_vec s[3];
     const gxb_num *p, *q;
@@ -1620,12 +1726,32 @@ static int gxbp_incident_by_line(const gxb_complex *cx, const uint32_t def[3], u
     return 0;
 }
 
+/* Of a point and a plane that are given by doubles */
+static int gxbp_short_side(const gxb_complex *cx, uint32_t point, uint32_t plane) {
+    const gxb_cplane *f = &cx->planes[plane];
+    const double *x[4];
+    int k, turn;
+    if (f->along_axis) return GXBP_UNKNOWN;
+    for (k = 0; k < 4; k++) {
+        const gxb_cpoint *p = &cx->points[k < 3 ? f->def[k] : point];
+        if (p->kind != GXB_EXPLICIT || p->ball.error > 0) return GXBP_UNKNOWN;
+        x[k] = p->ball.x;
+    }
+    turn = gxbp_orient3d_short(x[0], x[1], x[2], x[3]);
+    return turn == GXBP_UNKNOWN ? turn : -turn;
+}
+
 /* Sign of the exact value of n.X - d W for a point of the complex, or (point GXB_NONE) for one that only has a definition. */
 static int gxbp_exact_sign(gxb_complex *cx, uint32_t kind, const uint32_t def[3], uint32_t point, uint32_t plane) {
     GXB_NUM(r);
     gxbp_vec sx, sn;
-    const gxb_num *n = gxbp_exact_cplane(cx, plane, &sn), *x = sx.c;
+    const gxb_num *n, *x = sx.c;
     cx->exact_calls++;
+    if (kind == GXB_EXPLICIT) {
+        const int known = gxbp_short_side(cx, point, plane);
+        if (known != GXBP_UNKNOWN) return known;
+    }
+    n = gxbp_exact_cplane(cx, plane, &sn);
     if (point != GXB_NONE) x = gxbp_exact_cpoint(cx, point, &sx);
     else {
         gxbp_vec_init(&sx);
@@ -1996,12 +2122,12 @@ GXFEM_API void gxb_complex_destroy(gxb_complex *cx) {
  */
 
 /* The facets (edges) into which one was divided stand behind it as a binary tree; walks its leaves in order. */
-static uint32_t gxbp_count_facets(const gxb_complex *cx, uint32_t facet) {
+static GXBP_APART uint32_t gxbp_count_facets(const gxb_complex *cx, uint32_t facet) {
     const uint32_t child = cx->facets[facet].child;
     return child == GXB_NONE ? 1 : gxbp_count_facets(cx, child) + gxbp_count_facets(cx, child + 1);
 }
 
-static void gxbp_push_facets(gxb_complex *cx, uint32_t facet) {
+static GXBP_APART void gxbp_push_facets(gxb_complex *cx, uint32_t facet) {
     const uint32_t child = cx->facets[facet].child;
     if (child == GXB_NONE) cx->pool[cx->pool_count++] = facet;
     else {
@@ -2010,7 +2136,7 @@ static void gxbp_push_facets(gxb_complex *cx, uint32_t facet) {
     }
 }
 
-static uint32_t gxbp_count_edges(const gxb_complex *cx, uint32_t edge) {
+static GXBP_APART uint32_t gxbp_count_edges(const gxb_complex *cx, uint32_t edge) {
     const uint32_t child = cx->edges[edge].child;
     return child == GXB_NONE ? 1 : gxbp_count_edges(cx, child) + gxbp_count_edges(cx, child + 1);
 }
@@ -2285,7 +2411,7 @@ static uint32_t gxbp_local_edge(uint32_t i, uint32_t j) {
 }
 
 /* The facet of an element's face: its plane through the nodes in ascending order, so that both elements make the same. */
-static gx_result gxbp_open_face(gxb_complex *cx, uint32_t element, uint32_t k) {
+static GXBP_APART gx_result gxbp_open_face(gxb_complex *cx, uint32_t element, uint32_t k) {
     const uint32_t face = cx->element_faces[4 * element + k], *node = cx->elements + 4 * (size_t)element;
     uint32_t local[3], j, t, plane;
     gxb_facet *f;
@@ -2602,7 +2728,7 @@ static int gxbp_leaf_sides(gxb_complex *cx, uint32_t leaf, uint32_t plane) {
     return sides;
 }
 
-static int gxbp_sides_below(gxb_complex *cx, uint32_t reference, uint32_t plane) {
+static GXBP_APART int gxbp_sides_below(gxb_complex *cx, uint32_t reference, uint32_t plane) {
     int sides;
     if (!(reference & 1)) return gxbp_leaf_sides(cx, reference >> 1, plane);
     sides = gxbp_sides_below(cx, cx->nodes[reference >> 1].child[0], plane);
@@ -2641,7 +2767,7 @@ static int gxbp_part_chain(gxb_complex *cx, gxbp_rung *rung, uint32_t middle, gx
 }
 
 /* A balanced tree of the chain above end: the rung in the middle, by leaves, is made its root. */
-static uint32_t gxbp_balance_chain(gxb_complex *cx, gxbp_plan *plan, gxbp_rung *rung, uint32_t count, uint32_t end) {
+static GXBP_COLD uint32_t gxbp_balance_chain(gxb_complex *cx, gxbp_plan *plan, gxbp_rung *rung, uint32_t count, uint32_t end) {
     uint32_t total = gxbp_leaves_below(cx, end), sum = 0, middle = 0, own, i, on, off;
     gxbp_rung root;
     if (count < 4) return gxbp_plan_chain(plan, rung, count, end);
@@ -2848,7 +2974,7 @@ GXFEM_API gx_result gxb_complex_insert(gxb_complex *cx, gxb_triangle *t, uint32_
 /* A point in the given coordinates times 2^shift: homogeneous, and roughly. */
 typedef struct gxbp_probe { gxbp_vec exact; double rough[3]; int shift; } gxbp_probe;
 
-static void gxbp_probe_init(gxb_complex *cx, const uint32_t *points, size_t count, gxbp_probe *probe) {
+static GXBP_COLD void gxbp_probe_init(gxb_complex *cx, const uint32_t *points, size_t count, gxbp_probe *probe) {
     size_t i;
     int k;
     gxbp_vec_init(&probe->exact);
@@ -2892,7 +3018,7 @@ static int gxbp_probe_misses(const gxbp_probe *probe, const double *const x[3]) 
 }
 
 /* gxbp_ray_side for a probe: W (a_y b_z - a_z b_y) + Y (a_z - b_z) + Z (b_y - a_y) */
-static int gxbp_probe_side(const gxbp_probe *probe, const double a[3], const double b[3]) {
+static GXBP_COLD int gxbp_probe_side(const gxbp_probe *probe, const double a[3], const double b[3]) {
     gxbp_vec p, q, row;
     GXB_NUM(r);
     int k, sign;
@@ -2911,7 +3037,7 @@ static int gxbp_probe_side(const gxbp_probe *probe, const double a[3], const dou
 }
 
 /* gxb_orient3d(a, b, c, probe) */
-static int gxbp_probe_orient(const gxbp_probe *probe, const double *const x[3]) {
+static GXBP_COLD int gxbp_probe_orient(const gxbp_probe *probe, const double *const x[3]) {
     gxbp_vec p[3], n;
     GXB_NUM(r);
     int k, c;
@@ -3100,7 +3226,7 @@ static void gxbp_require(gxb_stream *s, gx_result result) { if (s->result == GX_
 static void gxbp_require_true(gxb_stream *s, int holds) { if (!holds) gxbp_require(s, GX_ERROR_DAMAGED); }
 
 /* The given coordinates of an explicit point: what came into the frame by a shift and a scale, exactly, goes back. */
-static void gxbp_given(gxb_complex *cx, uint32_t point, double x[3]) {
+static GXBP_COLD void gxbp_given(gxb_complex *cx, uint32_t point, double x[3]) {
     gxbp_vec store;
     const gxb_num *c = gxbp_exact_cpoint(cx, point, &store);
     int k;
@@ -3120,7 +3246,7 @@ static void gxbp_given(gxb_complex *cx, uint32_t point, double x[3]) {
     }
 }
 
-static void gxbp_save_points(gxb_complex *cx, gxb_stream *s) {
+static GXBP_COLD void gxbp_save_points(gxb_complex *cx, gxb_stream *s) {
     uint32_t i;
     for (i = 0; i < cx->point_count; i++) {
         gxb_cpoint *p = &cx->points[i];
@@ -3135,7 +3261,7 @@ static void gxbp_save_points(gxb_complex *cx, gxb_stream *s) {
 }
 
 /* Points by definition have no ball yet: it needs the planes. */
-static void gxbp_load_points(gxb_complex *cx, gxb_stream *s, uint32_t count) {
+static GXBP_COLD void gxbp_load_points(gxb_complex *cx, gxb_stream *s, uint32_t count) {
     uint32_t i;
     for (i = 0; i < count && s->result == GX_OK; i++) {
         uint32_t head, id = i, def[3];
@@ -3161,7 +3287,7 @@ static void gxbp_load_points(gxb_complex *cx, gxb_stream *s, uint32_t count) {
 
 static int gxbp_is_explicit(const gxb_complex *cx, uint32_t point) { return point < cx->point_count && cx->points[point].kind == GXB_EXPLICIT; }
 
-static void gxbp_save_planes(gxb_complex *cx, gxb_stream *s) {
+static GXBP_COLD void gxbp_save_planes(gxb_complex *cx, gxb_stream *s) {
     uint32_t i;
     for (i = 0; i < cx->plane_count; i++) {
         gxb_stream_pass(s, cx->planes[i].def, 3, sizeof *cx->planes[i].def);
@@ -3170,7 +3296,7 @@ static void gxbp_save_planes(gxb_complex *cx, gxb_stream *s) {
 }
 
 /* Planes must have a normal. */
-static void gxbp_load_planes(gxb_complex *cx, gxb_stream *s, uint32_t count) {
+static GXBP_COLD void gxbp_load_planes(gxb_complex *cx, gxb_stream *s, uint32_t count) {
     uint32_t i, k;
     for (i = 0; i < count && s->result == GX_OK; i++) {
         uint32_t def[3], along_axis, id = 0;
@@ -3188,7 +3314,7 @@ static void gxbp_load_planes(gxb_complex *cx, gxb_stream *s, uint32_t count) {
 }
 
 /* Points by definition must be points: a filter that is certain of their place proves it, else their exact weight. */
-static void gxbp_place_points(gxb_complex *cx, gxb_stream *s) {
+static GXBP_COLD void gxbp_place_points(gxb_complex *cx, gxb_stream *s) {
     uint32_t i, k;
     for (i = cx->node_count; i < cx->point_count && s->result == GX_OK; i++) {
         gxb_cpoint *p = &cx->points[i];
@@ -3217,7 +3343,7 @@ static void gxbp_pass_list(gxb_complex *cx, gxb_stream *s, uint32_t *first, uint
     if (*count > 0) gxb_stream_pass(s, cx->pool + *first, *count, sizeof *cx->pool);
 }
 
-static void gxbp_pass_edges(gxb_complex *cx, gxb_stream *s) {
+static GXBP_COLD void gxbp_pass_edges(gxb_complex *cx, gxb_stream *s) {
     uint32_t i;
     for (i = 0; i < cx->edge_count; i++) {
         gxb_edge *e = &cx->edges[i];
@@ -3229,7 +3355,7 @@ static void gxbp_pass_edges(gxb_complex *cx, gxb_stream *s) {
     }
 }
 
-static void gxbp_pass_facets(gxb_complex *cx, gxb_stream *s) {
+static GXBP_COLD void gxbp_pass_facets(gxb_complex *cx, gxb_stream *s) {
     uint32_t i;
     for (i = 0; i < cx->facet_count; i++) {
         gxb_facet *f = &cx->facets[i];
@@ -3244,7 +3370,7 @@ static void gxbp_pass_facets(gxb_complex *cx, gxb_stream *s) {
     }
 }
 
-static void gxbp_pass_leaves(gxb_complex *cx, gxb_stream *s) {
+static GXBP_COLD void gxbp_pass_leaves(gxb_complex *cx, gxb_stream *s) {
     uint32_t i;
     for (i = 0; i < cx->leaf_count; i++) {
         gxb_leaf *l = &cx->leaves[i];
@@ -3255,7 +3381,7 @@ static void gxbp_pass_leaves(gxb_complex *cx, gxb_stream *s) {
     }
 }
 
-static void gxbp_pass_rest(gxb_complex *cx, gxb_stream *s) {
+static GXBP_COLD void gxbp_pass_rest(gxb_complex *cx, gxb_stream *s) {
     uint32_t i;
     gxb_stream_pass(s, cx->face_facet, cx->face_count, sizeof *cx->face_facet);
     gxb_stream_pass(s, cx->mesh_edge, cx->mesh_edge_count, sizeof *cx->mesh_edge);
@@ -3409,7 +3535,7 @@ static int gxbp_same_place(gxb_complex *cx, uint32_t a, uint32_t b) {
 }
 
 /* Do the planes meet in a line? */
-static int gxbp_planes_cross(gxb_complex *cx, uint32_t a, uint32_t b) {
+static GXBP_COLD int gxbp_planes_cross(gxb_complex *cx, uint32_t a, uint32_t b) {
     const gxb_plane_filter *f = &cx->planes[a].filter, *g = &cx->planes[b].filter;
     double r[3];
     const double bound = gxbp_filter_cross(r, f->n, f->error, g->n, g->error);
@@ -3774,7 +3900,7 @@ static void gxbp_run_checks(gxbp_checker *c) {
     if (c->s->result == GX_OK) gxbp_check_leaves(c);
 }
 
-static void gxbp_check(gxb_complex *cx, gxb_stream *s) {
+static GXBP_COLD void gxbp_check(gxb_complex *cx, gxb_stream *s) {
     const size_t e = cx->edge_count, f = cx->facet_count, n = cx->tree_count, l = cx->leaf_count;
     const size_t words = 7 * e + 4 * f + cx->point_count + 4 * n + l + 1;
     gxbp_checker c;
@@ -3821,7 +3947,7 @@ typedef struct gxbp_piece {     /* a triangle of a source's triangulation; edge 
     uint32_t source;            /* root of the flat; GXB_NONE: no longer in use */
     uint32_t next;
     uint32_t covers;            /* in a flat: list of the sources that cover it */
-    uint32_t state;             /* winding numbers in front of it */
+    uint32_t state;             /* winding numbers in front of it; GXB_NONE: not known. Kept from evaluation to evaluation */
 } gxbp_piece;
 
 typedef struct gxbp_vertex {    /* beside each point of the complex */
@@ -3833,7 +3959,8 @@ typedef struct gxbp_vertex {    /* beside each point of the complex */
 } gxbp_vertex;
 
 typedef struct gxbp_link { uint32_t value, next; } gxbp_link;
-typedef struct gxbp_segment { uint32_t p, q, label, next; } gxbp_segment;
+/* left: the sign of the label's plane to the left of p q, seen from the side to which the source's normal points; 0: not known */
+typedef struct gxbp_segment { uint32_t p, q, label, next; int32_t left; } gxbp_segment;
 typedef struct gxbp_cut { uint32_t half_edge, first, count; } gxbp_cut;     /* inner points of an edge in cut_points, in its direction */
 typedef struct gxbp_hit { uint32_t cut, point; } gxbp_hit;
 typedef struct gxbp_margin { uint32_t vertex, near, labels, made, dangling; } gxbp_margin;
@@ -3852,14 +3979,20 @@ typedef struct gxbp_operand {
     gxbp_tree tree;
 } gxbp_operand;
 
+/* From a state one up or down in an operand's winding number */
+typedef struct gxbp_crossing { uint32_t from, operand, to; int32_t change; } gxbp_crossing;
+enum { GXBP_STEPS = 64 };
+
 struct gxb_boolean {
     gxb_complex cx;             /* points, planes and exact numbers; the complex has no elements */
     gx_allocator outer;
     size_t limit, used, peak;
+    unsigned char *arena;       /* behind the struct: what small cases need comes from here */
+    size_t arena_size, arena_used;
     uint64_t allocations;
     int over_limit;
     gx_result result;           /* of the evaluation at work */
-    uint32_t fine;
+    uint32_t fine, triangulation;
     int (*inside)(void *user, const int32_t *winding, size_t operand_count);
     void *user;
     gxbp_operand *operands; uint32_t operand_count, operand_capacity;
@@ -3875,17 +4008,23 @@ struct gxb_boolean {
     uint32_t *cut_points; uint32_t cut_point_count, cut_point_capacity;
     gxbp_hit *hits; uint32_t hit_count, hit_capacity;
     uint32_t *dirty; uint32_t dirty_count, dirty_capacity;
+    uint32_t *divided; uint32_t divided_count, divided_capacity;        /* sources that were, alone or as a flat's roots */
     gxbp_margin *rims; uint32_t rim_count, rim_capacity;
     gxbp_margin *lefts; uint32_t left_count, left_capacity;
     uint32_t *chain; uint32_t chain_count, chain_capacity;
     uint32_t *scratch; uint32_t scratch_count, scratch_capacity;
     uint32_t arranged;          /* operands that are in the arrangement */
+    uint32_t stated;            /* operands that states count; 0: facets have no states */
     uint32_t segment_mark;      /* segments before it are in the triangulations */
     uint32_t merged_points;     /* points before it were compared with each other */
+    struct gxbp_projected *projected; uint32_t projected_count, projected_capacity;     /* the computed ones of these, along a direction */
+    double reach;               /* the largest of their errors */
+    uint32_t renamed;           /* 1: an input vertex has got another name */
     uint32_t plane, stamp, head_stamp;                                  /* of the triangulation at work */
     int32_t *windings; uint32_t winding_count, winding_capacity;        /* state x operand */
     uint32_t *states; uint32_t state_count, state_capacity;             /* of each state: is it inside? */
     uint32_t *state_table; uint32_t state_table_size;
+    gxbp_crossing steps[GXBP_STEPS];                                        /* the last ones asked for */
     double *out_vertices; uint32_t out_vertex_count, out_vertex_capacity;
     gxb_origin *out_origins; uint32_t out_origin_count, out_origin_capacity;
     uint32_t *out_points; uint32_t out_point_count, out_point_capacity;
@@ -3902,9 +4041,18 @@ struct gxb_boolean {
 
 /* --- memory --- */
 
+#define GXBP_ARENA ((size_t)1 << 16)
+
+static size_t gxbp_whole_words(size_t size) { return (size + 15) & ~(size_t)15; }
+
 static void *gxbp_count_allocate(void *user, size_t size) {
     gxb_boolean *b = (gxb_boolean *)user;
     void *memory;
+    if (size <= b->arena_size - b->arena_used) {
+        memory = b->arena + b->arena_used;
+        b->arena_used += gxbp_whole_words(size);
+        return memory;
+    }
     if (b->limit != 0 && (size > b->limit || b->used > b->limit - size)) { b->over_limit = 1; return NULL; }
     memory = gxbp_allocate(&b->outer, size);
     if (memory == NULL) return NULL;
@@ -3916,6 +4064,12 @@ static void *gxbp_count_allocate(void *user, size_t size) {
 
 static void gxbp_count_release(void *user, void *memory, size_t size) {
     gxb_boolean *b = (gxb_boolean *)user;
+    const unsigned char *m = (const unsigned char *)memory;
+    if (m >= b->arena && m < b->arena + b->arena_size) {
+        const size_t from = (size_t)(m - b->arena);
+        if (from + gxbp_whole_words(size) == b->arena_used) b->arena_used = from;       /* what else is released there stays taken */
+        return;
+    }
     b->used -= size;
     gxbp_release(&b->outer, memory, size);
 }
@@ -3929,7 +4083,7 @@ static int gxbp_stop(gxb_boolean *b, gx_result result) {
 static int gxbp_room(gxb_boolean *b, void *array, size_t item, uint32_t count, uint32_t *capacity, size_t extra) {
     gx_result result;
     if ((size_t)count + extra <= *capacity) return 1;
-    if (*capacity == 0 && extra < 64) extra = 64;       /* small cases should not pay for growing */
+    if (*capacity == 0 && extra < 16) extra = 16;       /* small cases should not pay for growing */
     result = gxbp_reserve(&b->cx, array, item, count, capacity, extra);
     return result == GX_OK ? 1 : gxbp_stop(b, result);
 }
@@ -3937,8 +4091,7 @@ static int gxbp_room(gxb_boolean *b, void *array, size_t item, uint32_t count, u
 #define GXBP_ROOM(b, array, counter, extra) \
     gxbp_room(b, &(b)->array, sizeof *(b)->array, (b)->counter##_count, &(b)->counter##_capacity, extra)
 #define GXBP_DROP(b, array, counter) \
-    (gxbp_release(&(b)->cx.allocator, (b)->array, (size_t)(b)->counter##_capacity * sizeof *(b)->array), \
-     (b)->array = NULL, (b)->counter##_count = (b)->counter##_capacity = 0)
+    gxbp_release(&(b)->cx.allocator, (b)->array, (size_t)(b)->counter##_capacity * sizeof *(b)->array)
 
 static uint32_t gxbp_new_link(gxb_boolean *b, uint32_t value, uint32_t next) {
     if (!GXBP_ROOM(b, links, link, 1)) return next;
@@ -3965,7 +4118,7 @@ static uint32_t gxbp_hash_point(const gxb_boolean *b, uint32_t point) {
     return key[0] == GXB_FROM_VERTEX ? gxbp_hash_place(b->cx.points[point].ball.x) : gxbp_hash_key(key);
 }
 
-static int gxbp_grow_table(gxb_boolean *b, uint32_t extra) {
+static GXBP_APART int gxbp_grow_table(gxb_boolean *b, uint32_t extra) {
     uint32_t size = b->table_size == 0 ? 64 : b->table_size, *table, i, k;
     if ((uint64_t)(b->table_used + (uint64_t)extra) * 2 <= b->table_size) return 1;
     while ((uint64_t)size < ((uint64_t)b->table_used + extra) * 3 && size < (uint32_t)1 << 31) size *= 2;
@@ -4013,6 +4166,7 @@ static void gxbp_unite(gxb_boolean *b, uint32_t keep, uint32_t drop) {
     const gxb_cpoint *q = &b->cx.points[drop];
     if (keep == drop) return;
     b->vertices[drop].same = keep;
+    if (q->kind == GXB_EXPLICIT && q->def[0] == drop) b->renamed = 1;
     if (p->kind == GXB_EXPLICIT || q->kind != GXB_EXPLICIT) return;
     p->kind = GXB_EXPLICIT;
     p->ball = q->ball;
@@ -4100,9 +4254,10 @@ static uint32_t gxbp_input_point(gxb_boolean *b, const double y[3], uint32_t ope
 }
 
 static uint32_t gxbp_next_edge(uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
+static uint32_t gxbp_last_edge(uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
 
-/* Half-edges by the vertex that they leave, with the vertex in which they end. */
-typedef struct gxbp_exit { uint32_t half_edge, to; } gxbp_exit;
+/* Half-edges by the vertex that they leave, with the vertex in which they end, and that from which their triangle comes back. */
+typedef struct gxbp_exit { uint32_t half_edge, to, from; } gxbp_exit;
 typedef struct gxbp_fan { gxbp_exit *list; uint32_t *first; size_t bytes; } gxbp_fan;
 
 static int gxbp_make_fan(gxb_boolean *b, const uint32_t *triangles, size_t count, uint32_t vertex_count, gxbp_fan *fan) {
@@ -4118,44 +4273,62 @@ static int gxbp_make_fan(gxb_boolean *b, const uint32_t *triangles, size_t count
         gxbp_exit *e = &fan->list[--fan->first[triangles[h]]];
         e->half_edge = h;
         e->to = triangles[gxbp_next_edge(h)];
+        e->from = triangles[gxbp_last_edge(h)];
     }
     return 1;
 }
 
 static void gxbp_drop_fan(gxb_boolean *b, gxbp_fan *fan) { gxbp_release(&b->cx.allocator, fan->list, fan->bytes); }
 
-/* How many half-edges go from p to q; the last of them. */
-static uint32_t gxbp_count_half_edges(const gxbp_fan *fan, uint32_t p, uint32_t q, uint32_t *last) {
+/* Looks at the half-edges between p and q, all of which are in the fan's list of p: twins, if there is one in each direction; if there are
+   more in one direction, one of those. */
+static uint32_t gxbp_pair_half_edges(const gxbp_fan *fan, uint32_t p, uint32_t q, uint32_t *twin) {
     const gxbp_exit *e = fan->list + fan->first[p], *end = fan->list + fan->first[p + 1];
-    uint32_t n = 0;
-    for (; e < end; e++) if (e->to == q) { *last = e->half_edge; n++; }
-    return n;
+    uint32_t forth = 0, back = 0, there = 0, home = 0;
+    for (; e < end; e++) {
+        if (e->to == q) { forth++; there = e->half_edge; }
+        if (e->from == q) { back++; home = gxbp_last_edge(e->half_edge); }
+    }
+    if (forth == 1 && back == 1) { twin[there] = home; twin[home] = there; }
+    return forth == back ? GXB_NONE : forth > back ? there : home;
 }
 
-/* twin of each half-edge, GXB_NONE where an edge has not one in each direction. Returns the first half-edge whose edge is passed more
-   often in its direction than in the other, or GXB_NONE: the surface is closed. */
+/* twin of each half-edge, left alone where an edge has not one in each direction. Returns a half-edge whose edge is passed more often in
+   its direction than in the other, or GXB_NONE: the surface is closed. */
 static uint32_t gxbp_find_twins(const gxbp_fan *fan, uint32_t vertex_count, uint32_t *twin) {
     uint32_t open = GXB_NONE, p, i;
     for (p = 0; p < vertex_count; p++)
         for (i = fan->first[p]; i < fan->first[p + 1]; i++) {
-            const uint32_t h = fan->list[i].half_edge, q = fan->list[i].to;
-            uint32_t forth = h, back = 0, nf, nb;
-            if (p == q) continue;
-            nb = gxbp_count_half_edges(fan, q, p, &back);
-            if (p > q && nb > 0) continue;              /* seen from the other end */
-            nf = gxbp_count_half_edges(fan, p, q, &forth);
-            if (nf == 1 && nb == 1) { twin[h] = back; twin[back] = h; }
-            else if (nf != nb && open == GXB_NONE) open = nf > nb ? h : back;
+            const gxbp_exit *e = &fan->list[i];
+            uint32_t odd = GXB_NONE;
+            if (e->to > p) odd = gxbp_pair_half_edges(fan, p, e->to, twin);
+            if (odd == GXB_NONE && e->from > p && twin[gxbp_last_edge(e->half_edge)] == GXB_NONE) odd = gxbp_pair_half_edges(fan, p, e->from, twin);
+            if (open == GXB_NONE) open = odd;
         }
     return open;
 }
 
+/* m = a x c, and the sizes of its products. A product of three fenced differences suffers three roundings in them, two in itself and at
+   most five in the sum that makes an orientation of it: within 32u of the products' sizes. */
+static void gxbp_cross_sizes(double m[3], double size[3], const double a[3], const double c[3]) {
+    int k;
+    for (k = 0; k < 3; k++) {
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        m[k] = a[i] * c[j] - a[j] * c[i];
+        size[k] = gxbp_abs(a[i] * c[j]) + gxbp_abs(a[j] * c[i]);
+    }
+}
+
+/* Errors of the components: see gxbp_cross_sizes. */
 static int gxbp_has_area(const double *p, const double *q, const double *r) {
+    double a[3], c[3], m[3], size[3];
     gxb_plane plane;
     gxbp_vec n;
     int k;
+    for (k = 0; k < 3; k++) { a[k] = gxbp_fence(q[k] - p[k]); c[k] = gxbp_fence(r[k] - p[k]); }
+    gxbp_cross_sizes(m, size, a, c);
+    for (k = 0; k < 3; k++) if (gxbp_abs(m[k]) > 32 * GXBP_U * size[k] + GXBP_TINY) return 1;
     gxb_plane_init(&plane, p, q, r);
-    if (plane.filter.norm > plane.filter.error) return 1;
     gxbp_plane_exact(&n, &plane);
     for (k = 0; k < 3; k++) if (n.c[k].sign != 0) return 1;
     return 0;
@@ -4237,6 +4410,8 @@ static gx_result gxbp_read_triangles(gxb_boolean *b, const gxb_operand *o, uint3
     return GX_OK;
 }
 
+static const double *gxbp_corner_of(const gxb_boolean *b, uint32_t s, int k) { return b->cx.points[b->sources[s].point[k]].ball.x; }
+
 /* --- box trees --- */
 
 static void gxbp_box_join(gxbp_box *a, const gxbp_box *c) {
@@ -4261,8 +4436,8 @@ static gxbp_box gxbp_box_of(const gxb_boolean *b, uint32_t s) {
 }
 
 static int gxbp_box_meets(const gxbp_box *a, const gxbp_box *c) {
-    return a->low[0] <= c->high[0] && c->low[0] <= a->high[0] && a->low[1] <= c->high[1] && c->low[1] <= a->high[1] &&
-           a->low[2] <= c->high[2] && c->low[2] <= a->high[2];
+    return (a->low[0] <= c->high[0]) & (c->low[0] <= a->high[0]) & (a->low[1] <= c->high[1]) & (c->low[1] <= a->high[1]) &
+           (a->low[2] <= c->high[2]) & (c->low[2] <= a->high[2]);      /* without branches: nobody can foretell them */
 }
 
 /* Ten bits with two zeros after each */
@@ -4273,29 +4448,37 @@ static uint32_t gxbp_spread(uint32_t x) {
     return (x | x << 2) & 0x09249249u;
 }
 
-static uint32_t gxbp_lattice(double x, double low, double size) {
-    const double t = size > 0 ? (x - low) / size * 1023 : 0;
-    return t > 0 ? t < 1023 ? (uint32_t)t : 1023 : 0;
-}
+static uint32_t gxbp_lattice(double t) { return t > 0 ? t < 1023 ? (uint32_t)t : 1023 : 0; }
 
-/* Sorts the sources along a Z-order curve by the middles of their boxes; keys and more are scratch of count words each. */
-static void gxbp_sort_sources(const gxb_boolean *b, gxbp_operand *o, const gxbp_box *all, uint32_t *keys, uint32_t *more) {
-    uint32_t *from = o->order, *to = more, *swap, i, pass;
+/* Sorts the sources along a Z-order curve by their first corners; work: two words of 64 bits each. */
+static GXBP_APART void gxbp_sort_sources(const gxb_boolean *b, const gxbp_operand *o, uint64_t *work) {
+    uint64_t *from = work, *to = work + o->source_count, *swap;
+    gxbp_box all;
+    double scale[3];
+    uint32_t i, pass, k;
     for (i = 0; i < o->source_count; i++) {
-        const gxbp_box *box = &b->bounds[o->source + i];
-        int k;
-        keys[i] = 0;
-        for (k = 0; k < 3; k++)
-            keys[i] |= gxbp_spread(gxbp_lattice(box->low[k] / 2 + box->high[k] / 2, all->low[k], all->high[k] - all->low[k])) << k;
+        gxbp_box corner;
+        memcpy(corner.low, gxbp_corner_of(b, o->source + i, 0), sizeof corner.low);
+        memcpy(corner.high, corner.low, sizeof corner.high);
+        if (i == 0) all = corner;
+        else gxbp_box_join(&all, &corner);
     }
-    for (pass = 0; pass < 4; pass++) {
+    for (k = 0; k < 3; k++) scale[k] = all.high[k] > all.low[k] ? 1023 / (all.high[k] - all.low[k]) : 0;
+    for (i = 0; i < o->source_count; i++) {
+        const double *x = gxbp_corner_of(b, o->source + i, 0);
+        uint32_t key = 0;
+        for (k = 0; k < 3; k++) key |= gxbp_spread(gxbp_lattice((x[k] - all.low[k]) * scale[k])) << k;
+        from[i] = (uint64_t)key << 32 | (o->source + i);
+    }
+    for (pass = 4; pass < 8; pass++) {
         uint32_t count[257];
         memset(count, 0, sizeof count);
-        for (i = 0; i < o->source_count; i++) count[1 + (keys[i] >> 8 * pass & 255)]++;
+        for (i = 0; i < o->source_count; i++) count[1 + (from[i] >> 8 * pass & 255)]++;
         for (i = 1; i < 257; i++) count[i] += count[i - 1];
-        for (i = 0; i < o->source_count; i++) to[count[keys[from[i] - o->source] >> 8 * pass & 255]++] = from[i];
+        for (i = 0; i < o->source_count; i++) to[count[from[i] >> 8 * pass & 255]++] = from[i];
         swap = from; from = to; to = swap;
     }
+    for (i = 0; i < o->source_count; i++) o->order[i] = (uint32_t)from[i];
 }
 
 static void gxbp_fill_tree(gxb_boolean *b, const gxbp_operand *o) {
@@ -4321,10 +4504,13 @@ static gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
     const size_t words = o->source_count;
     o->order = (uint32_t *)gxbp_allocate(&b->cx.allocator, words * sizeof *o->order);
     if (o->order == NULL) return GX_ERROR_MEMORY;
-    for (i = 0; i < o->source_count; i++) {
-        o->order[i] = o->source + i;
-        b->bounds[o->source + i] = gxbp_box_of(b, o->source + i);
-    }
+    if (o->source_count > 4 * GXBP_LEAF) {
+        uint64_t *work = (uint64_t *)gxbp_allocate(&b->cx.allocator, 2 * words * sizeof *work);
+        if (work == NULL) return GX_ERROR_MEMORY;
+        gxbp_sort_sources(b, o, work);
+        gxbp_release(&b->cx.allocator, work, 2 * words * sizeof *work);
+    } else for (i = 0; i < o->source_count; i++) o->order[i] = o->source + i;
+    for (i = 0; i < o->source_count; i++) b->bounds[o->source + i] = gxbp_box_of(b, o->order[i]);
     b->bound_count = o->source + o->source_count;
     for (t->levels = 0; ; size = (size + 1) / 2) {
         t->level[t->levels] = total;
@@ -4335,28 +4521,24 @@ static gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
     t->first = b->box_count;
     if (!GXBP_ROOM(b, boxes, box, total)) return GX_ERROR_MEMORY;
     b->box_count += total;
-    if (o->source_count > 4 * GXBP_LEAF) {
-        gxbp_box all = b->bounds[o->source];
-        uint32_t *work = (uint32_t *)gxbp_allocate(&b->cx.allocator, 2 * words * sizeof *work);
-        if (work == NULL) return GX_ERROR_MEMORY;
-        for (i = 1; i < o->source_count; i++) gxbp_box_join(&all, &b->bounds[o->source + i]);
-        gxbp_sort_sources(b, o, &all, work, work + words);
-        gxbp_release(&b->cx.allocator, work, 2 * words * sizeof *work);
-        for (i = 0; i < o->source_count; i++) b->bounds[o->source + i] = gxbp_box_of(b, o->order[i]);
-    }
     gxbp_fill_tree(b, o);
     return GX_OK;
 }
 
+/* With the first operand comes room for a second one of its size (gxbp_reserve adds half of what is asked for), and for thirds of it that the
+   two divide: what is not used is not touched, and nothing large is copied. */
+static size_t gxbp_foresee(const gxb_boolean *b, size_t count, size_t thirds) { return b->operand_count > 0 ? count : count + thirds * count / 3; }
+
 static gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operand *o, size_t *bad) {
     const size_t words = 2 * o->vertex_count + 6 * o->triangle_count;
+    const size_t sources = gxbp_foresee(b, o->triangle_count, 1), pieces = gxbp_foresee(b, o->triangle_count, 3), points = gxbp_foresee(b, o->vertex_count, 3);
     gxbp_operand *mine;
     gx_result result;
     uint32_t *work;
-    if (!GXBP_ROOM(b, operands, operand, 1) || !GXBP_ROOM(b, sources, source, o->triangle_count) || !GXBP_ROOM(b, bounds, bound, o->triangle_count) ||
-        !GXBP_ROOM(b, pieces, piece, o->triangle_count) || !GXBP_ROOM(b, vertices, vertex, o->vertex_count) ||
+    if (!GXBP_ROOM(b, operands, operand, 1) || !GXBP_ROOM(b, sources, source, sources) || !GXBP_ROOM(b, bounds, bound, sources) ||
+        !GXBP_ROOM(b, pieces, piece, pieces) || !GXBP_ROOM(b, vertices, vertex, points) ||
         !gxbp_grow_table(b, (uint32_t)o->vertex_count)) return b->result;
-    result = GXBP_RESERVE(&b->cx, points, point, o->vertex_count);
+    result = GXBP_RESERVE(&b->cx, points, point, points);
     if (result != GX_OK) return result;
     work = (uint32_t *)gxbp_allocate(&b->cx.allocator, words * sizeof *work);
     if (work == NULL) return GX_ERROR_MEMORY;
@@ -4374,8 +4556,6 @@ static gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operand *o, size_
 }
 
 /* --- where two triangles meet --- */
-
-static const double *gxbp_corner_of(const gxb_boolean *b, uint32_t s, int k) { return b->cx.points[b->sources[s].point[k]].ball.x; }
 
 /* The side of a plane: filter, then what is known by definition, then exact arithmetic. */
 static int gxbp_point_side(gxb_boolean *b, uint32_t point, uint32_t plane) {
@@ -4433,11 +4613,11 @@ static void gxbp_mark_dirty(gxb_boolean *b, uint32_t s) {
 }
 
 /* A segment (a point, if p is q) in which a triangle (label) meets a source. */
-static void gxbp_add_segment(gxb_boolean *b, uint32_t s, uint32_t p, uint32_t q, uint32_t label) {
+static void gxbp_add_segment(gxb_boolean *b, uint32_t s, uint32_t p, uint32_t q, uint32_t label, int left) {
     gxbp_segment *segment;
     if (!GXBP_ROOM(b, segments, segment, 1)) return;
     segment = &b->segments[b->segment_count];
-    segment->p = p; segment->q = q; segment->label = label; segment->next = b->sources[s].segments;
+    segment->p = p; segment->q = q; segment->label = label; segment->next = b->sources[s].segments; segment->left = left;
     b->sources[s].segments = b->segment_count++;
     gxbp_mark_dirty(b, s);
 }
@@ -4489,36 +4669,34 @@ static gxbp_spot gxbp_spot_of_point(const gxb_boolean *b, const double *x, uint3
     return gxbp_spot_of(sign);
 }
 
-/* gxb_orient3d of points of the frame. A product of three fenced differences suffers three roundings in them, two in itself and at most
-   five in the sum: within 32u of the products' sizes. */
-static int gxbp_orient(const double *p, const double *q, const double *r, const double *o) {
-    double a[3], c[3], d[3], m[3], size[3], value;
-    int k;
-    for (k = 0; k < 3; k++) { a[k] = gxbp_fence(p[k] - o[k]); c[k] = gxbp_fence(q[k] - o[k]); d[k] = gxbp_fence(r[k] - o[k]); }
+/* Where the line from p (in front of the plane: side 1) to q (behind) passes: signs of gxbp_orient of the triangle's edges with p and q,
+   with the same bounds, from differences and products that they share. */
+static GXBP_COLD gxbp_spot gxbp_spot_of_line(gxb_boolean *b, const double *p, const double *q, int side, uint32_t s) {
+    double d[3], c[3][3], m[3][3], size[3][3];
+    int sign[3], k, i;
+    for (i = 0; i < 3; i++) d[i] = gxbp_fence(p[i] - q[i]);
     for (k = 0; k < 3; k++) {
-        const int i = (k + 1) % 3, j = (k + 2) % 3;
-        m[k] = c[i] * d[j] - c[j] * d[i];
-        size[k] = gxbp_abs(c[i] * d[j]) + gxbp_abs(c[j] * d[i]);
+        const double *x = gxbp_corner_of(b, s, k);
+        for (i = 0; i < 3; i++) c[k][i] = gxbp_fence(x[i] - q[i]);
+        gxbp_cross_sizes(m[k], size[k], c[k], d);
     }
-    value = a[0] * m[0] + a[1] * m[1] + a[2] * m[2];
-    k = gxbp_filter_sign(value, 32 * GXBP_U * (gxbp_abs(a[0]) * size[0] + gxbp_abs(a[1]) * size[1] + gxbp_abs(a[2]) * size[2]) + GXBP_TINY);
-    return k != 0 ? k : gxbp_orient3d_exact(p, q, r, o);
-}
-
-/* Where the line from p (in front of the plane: side 1) to q (behind) passes. */
-static gxbp_spot gxbp_spot_of_line(gxb_boolean *b, const double *p, const double *q, int side, uint32_t s) {
-    int sign[3], k;
     for (k = 0; k < 3; k++) {
-        sign[k] = side * gxbp_orient(gxbp_corner_of(b, s, k), gxbp_corner_of(b, s, (k + 1) % 3), p, q);
+        const double *a = c[k], *n = m[(k + 1) % 3], *z = size[(k + 1) % 3];
+        const double bound = 32 * GXBP_U * (gxbp_abs(a[0]) * z[0] + gxbp_abs(a[1]) * z[1] + gxbp_abs(a[2]) * z[2]) + GXBP_TINY;
+        sign[k] = side * gxbp_filter_sign(a[0] * n[0] + a[1] * n[1] + a[2] * n[2], bound);
         b->cx.filter_calls++;
+        if (sign[k] == 0) {
+            b->cx.exact_calls++;
+            sign[k] = side * gxbp_orient3d_exact(gxbp_corner_of(b, s, k), gxbp_corner_of(b, s, (k + 1) % 3), p, q);
+        }
         if (sign[k] < 0) break;
     }
     for (k++; k < 3; k++) sign[k] = 1;
     return gxbp_spot_of(sign);
 }
 
-/* The points in which two triangles meet: at most two. */
-typedef struct gxbp_meeting { uint32_t point[8]; int count; } gxbp_meeting;
+/* The points in which two triangles meet: at most two. left: gxbp_segment.left of the first triangle, from point 0 to 1. */
+typedef struct gxbp_meeting { uint32_t point[8]; int count, left; } gxbp_meeting;
 
 static void gxbp_found(gxb_boolean *b, gxbp_meeting *m, uint32_t point) {
     int i;
@@ -4537,7 +4715,7 @@ static uint32_t gxbp_edge_triangle_point(gxb_boolean *b, uint32_t s, int k, uint
 }
 
 /* Edge k of s crosses edge j of t, and t's plane if plane is that; else (both lie in one plane) plane passes through edge j. */
-static uint32_t gxbp_edge_edge_point(gxb_boolean *b, uint32_t s, int k, uint32_t t, int j, uint32_t plane) {
+static GXBP_COLD uint32_t gxbp_edge_edge_point(gxb_boolean *b, uint32_t s, int k, uint32_t t, int j, uint32_t plane) {
     const uint32_t e = gxbp_edge_name(b, s, k), f = gxbp_edge_name(b, t, j);
     const gx_result room = GXBP_RESERVE(&b->cx, planes, plane, 1);      /* first, so that a point without a place never stays */
     int fresh;
@@ -4554,7 +4732,7 @@ static uint32_t gxbp_edge_edge_point(gxb_boolean *b, uint32_t s, int k, uint32_t
 }
 
 /* What of the corners and edges of s lies in t; side: of the corners of s against t's plane. */
-static void gxbp_meet_one_way(gxb_boolean *b, uint32_t s, uint32_t t, const int side[3], gxbp_meeting *m) {
+static GXBP_COLD void gxbp_meet_one_way(gxb_boolean *b, uint32_t s, uint32_t t, const int side[3], gxbp_meeting *m) {
     int k;
     for (k = 0; k < 3; k++) {
         const int j = (k + 1) % 3;
@@ -4579,6 +4757,74 @@ static void gxbp_meet_one_way(gxb_boolean *b, uint32_t s, uint32_t t, const int 
     }
 }
 
+/* Edge k of s crosses t's plane where the signs against the two edges of t that cross s's plane say: y[0] against edge j, y[1] against j + 2. */
+static void gxbp_record_crossing(gxb_boolean *b, uint32_t s, int k, uint32_t t, int j, const int y[2], gxbp_meeting *m) {
+    const int edge = y[0] == 0 ? j : (j + 2) % 3;
+    uint32_t point;
+    if (y[0] < 0 || y[1] < 0) return;
+    if (y[0] > 0 && y[1] > 0) point = gxbp_edge_triangle_point(b, s, k, t);
+    else point = gxbp_edge_edge_point(b, s, k, t, edge, b->sources[t].plane);
+    if (point == GXB_NONE) return;
+    gxbp_hit_edge(b, s, k, point);
+    if (y[0] == 0 || y[1] == 0) gxbp_hit_edge(b, t, edge, point);
+    gxbp_found(b, m, point);
+}
+
+/* sign[x][y]: orientation of (p[0], p[y + 1], q[x + 1], q[0]). The differences and products are shared: see gxbp_cross_sizes for the bound. */
+static void gxbp_orient_pairs(gxb_boolean *b, const double *const q[3], const double *const p[3], int sign[2][2]) {
+    double w[3], u[2][3], v[3], m[3], size[3];
+    int x, y, k;
+    for (k = 0; k < 3; k++) {
+        w[k] = gxbp_fence(p[0][k] - q[0][k]);
+        for (x = 0; x < 2; x++) u[x][k] = gxbp_fence(q[x + 1][k] - q[0][k]);
+    }
+    for (y = 0; y < 2; y++) {
+        for (k = 0; k < 3; k++) v[k] = gxbp_fence(p[y + 1][k] - q[0][k]);
+        gxbp_cross_sizes(m, size, w, v);
+        for (x = 0; x < 2; x++) {
+            const double *a = u[x];
+            const double bound = 32 * GXBP_U * (gxbp_abs(a[0]) * size[0] + gxbp_abs(a[1]) * size[1] + gxbp_abs(a[2]) * size[2]) + GXBP_TINY;
+            sign[x][y] = gxbp_filter_sign(a[0] * m[0] + a[1] * m[1] + a[2] * m[2], bound);
+            b->cx.filter_calls++;
+            if (sign[x][y] != 0) continue;
+            b->cx.exact_calls++;
+            sign[x][y] = gxbp_orient3d_exact(p[0], p[y + 1], q[x + 1], q[0]);
+        }
+    }
+}
+
+/* The corner that is alone on its side */
+static int gxbp_lone_corner(const int side[3]) { return side[1] == side[2] ? 0 : side[0] == side[2] ? 1 : 2; }
+
+/* No corner lies in the other's plane. Two edges of each triangle cross it, those of the corner that is alone on its side; where one
+   passes is known from its orientations with the two of the other, and these are the same for both triangles. In s, walking from the
+   edge that leaves the lone corner to the one that comes back, that corner is to the left; so of_s there is the sign of |n_t n_s u| for the
+   way's direction u. In t likewise, with |n_s n_t w|: the two ways agree where the lone corners' signs differ. Of the two ends of what
+   is common, one begins both ways. */
+static void gxbp_meet_across(gxb_boolean *b, uint32_t s, uint32_t t, const int of_s[3], const int of_t[3], gxbp_meeting *m) {
+    const int i = gxbp_lone_corner(of_s), j = gxbp_lone_corner(of_t);
+    const double *p[3], *q[3];
+    int sign[2][2], y[2], k, x;
+    for (k = 0; k < 3; k++) { q[k] = gxbp_corner_of(b, s, (i + k) % 3); p[k] = gxbp_corner_of(b, t, (j + k) % 3); }
+    gxbp_orient_pairs(b, q, p, sign);
+    for (k = 0; k < 3; k++) {
+        if (k == (i + 1) % 3) continue;
+        x = k != i;
+        y[0] = -of_s[i] * sign[x][0];
+        y[1] = of_s[i] * sign[x][1];
+        gxbp_record_crossing(b, s, k, t, j, y, m);
+        if (m->count == 1 && m->left == 0) m->left = x == 0 ? of_s[i] : -of_s[i];
+    }
+    for (k = 0; k < 3; k++) {
+        if (k == (j + 1) % 3) continue;
+        x = k != j;
+        y[0] = -of_t[j] * sign[0][x];
+        y[1] = of_t[j] * sign[1][x];
+        gxbp_record_crossing(b, t, k, s, i, y, m);
+        if (m->count == 1 && m->left == 0) m->left = x == 0 ? -of_t[j] : of_t[j];
+    }
+}
+
 static int gxbp_is_corner(gxb_boolean *b, uint32_t s, uint32_t point) {
     const uint32_t *p = b->sources[s].point, same = gxbp_same(b, point);
     return same == gxbp_same(b, p[0]) || same == gxbp_same(b, p[1]) || same == gxbp_same(b, p[2]);
@@ -4587,12 +4833,12 @@ static int gxbp_is_corner(gxb_boolean *b, uint32_t s, uint32_t point) {
 static void gxbp_record_meeting(gxb_boolean *b, uint32_t s, uint32_t t, const gxbp_meeting *m) {
     if (b->result != GX_OK || m->count == 0) return;
     if (m->count == 1) {
-        if (!gxbp_is_corner(b, s, m->point[0])) gxbp_add_segment(b, s, m->point[0], m->point[0], t);
-        if (!gxbp_is_corner(b, t, m->point[0])) gxbp_add_segment(b, t, m->point[0], m->point[0], s);
+        if (!gxbp_is_corner(b, s, m->point[0])) gxbp_add_segment(b, s, m->point[0], m->point[0], t, 0);
+        if (!gxbp_is_corner(b, t, m->point[0])) gxbp_add_segment(b, t, m->point[0], m->point[0], s, 0);
         return;
     }
-    gxbp_add_segment(b, s, m->point[0], m->point[1], t);
-    gxbp_add_segment(b, t, m->point[0], m->point[1], s);
+    gxbp_add_segment(b, s, m->point[0], m->point[1], t, m->left);
+    gxbp_add_segment(b, t, m->point[0], m->point[1], s, -m->left);
 }
 
 static uint32_t gxbp_root(gxb_boolean *b, uint32_t s) {
@@ -4624,11 +4870,11 @@ static int gxbp_no_edge_separates(int turn[3][3], int orientation) {
     return 1;
 }
 
-static void gxbp_meet_in_plane(gxb_boolean *b, uint32_t s, uint32_t t) {
+static GXBP_COLD void gxbp_meet_in_plane(gxb_boolean *b, uint32_t s, uint32_t t) {
     const uint32_t plane = b->sources[s].plane;
     int of_s[3][3], of_t[3][3], k, j, facing;
     gxbp_meeting m;
-    m.count = 0;
+    m.count = m.left = 0;
     for (k = 0; k < 3; k++) for (j = 0; j < 3; j++) {
         of_s[k][j] = gxbp_flat_turn(b, plane, gxbp_corner_of(b, s, k), gxbp_corner_of(b, s, (k + 1) % 3), gxbp_corner_of(b, t, j));
         of_t[k][j] = gxbp_flat_turn(b, plane, gxbp_corner_of(b, t, k), gxbp_corner_of(b, t, (k + 1) % 3), gxbp_corner_of(b, s, j));
@@ -4658,9 +4904,18 @@ static void gxbp_meet_in_plane(gxb_boolean *b, uint32_t s, uint32_t t) {
     else gxbp_record_meeting(b, s, t, &m);
 }
 
-static void gxbp_sides(gxb_boolean *b, uint32_t s, uint32_t plane, int side[3]) {
+/* Sides of a source's corners; each point remembers two answers, of which slot says the one to replace. */
+static void gxbp_sides(gxb_boolean *b, uint32_t s, uint32_t plane, int slot, int side[3]) {
     int k;
-    for (k = 0; k < 3; k++) side[k] = b->sources[s].plane == plane ? 0 : gxbp_point_side(b, b->sources[s].point[k], plane);
+    for (k = 0; k < 3; k++) {
+        const uint32_t point = b->sources[s].point[k];
+        gxb_cpoint *p = &b->cx.points[point];
+        if (p->stamp[slot] != plane + 1) {
+            p->sign[slot] = b->sources[s].plane == plane ? 0 : gxbp_point_side(b, point, plane);
+            p->stamp[slot] = plane + 1;
+        }
+        side[k] = p->sign[slot];
+    }
 }
 
 static int gxbp_all_on_one_side(const int side[3]) { return side[0] != 0 && side[0] == side[1] && side[0] == side[2]; }
@@ -4692,9 +4947,9 @@ static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
     int of_t[3], of_s[3];
     gxbp_meeting m;
     int neighbours, flat, k, common = 0;
-    if (b->result != GX_OK || !gxbp_need_plane(b, s) || !gxbp_need_plane(b, t)) return;
-    gxbp_sides(b, t, b->sources[s].plane, of_t);
-    if (gxbp_all_on_one_side(of_t)) return;
+    if (b->result != GX_OK || !gxbp_need_plane(b, s)) return;
+    gxbp_sides(b, t, b->sources[s].plane, 0, of_t);
+    if (gxbp_all_on_one_side(of_t) || !gxbp_need_plane(b, t)) return;
     flat = of_t[0] == 0 && of_t[1] == 0 && of_t[2] == 0;
     neighbours = gxbp_are_neighbours(b, s, t);
     if (neighbours && !flat) return;
@@ -4702,36 +4957,50 @@ static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
         if (!neighbours || !gxbp_flat_apart(b, s, t)) gxbp_meet_in_plane(b, s, t);
         return;
     }
-    gxbp_sides(b, s, b->sources[t].plane, of_s);
+    gxbp_sides(b, s, b->sources[t].plane, 1, of_s);
     if (gxbp_all_on_one_side(of_s)) return;
-    for (k = 0; k < 3; k++) common += gxbp_is_corner(b, t, b->sources[s].point[k]);
-    if (common == 1 && (gxbp_touches_by_corner(of_s) || gxbp_touches_by_corner(of_t))) return;
-    m.count = 0;
-    gxbp_meet_one_way(b, s, t, of_s, &m);
-    gxbp_meet_one_way(b, t, s, of_t, &m);
+    m.count = m.left = 0;
+    if (of_s[0] * of_s[1] * of_s[2] != 0 && of_t[0] * of_t[1] * of_t[2] != 0) gxbp_meet_across(b, s, t, of_s, of_t, &m);
+    else {
+        for (k = 0; k < 3; k++) common += gxbp_is_corner(b, t, b->sources[s].point[k]);
+        if (common == 1 && (gxbp_touches_by_corner(of_s) || gxbp_touches_by_corner(of_t))) return;
+        gxbp_meet_one_way(b, s, t, of_s, &m);
+        gxbp_meet_one_way(b, t, s, of_t, &m);
+    }
     gxbp_record_meeting(b, s, t, &m);
 }
 
 /* --- broad phase: pairs of boxes of two trees, or of one --- */
 
+/* Sources of box i of a tree that meet a box, as positions in the tree's order. Returns how many. */
+static uint32_t gxbp_leaf_members(const gxb_boolean *b, const gxbp_operand *o, uint32_t i, const gxbp_box *box, uint32_t member[GXBP_LEAF]) {
+    const uint32_t end = i * GXBP_LEAF + GXBP_LEAF < o->source_count ? i * GXBP_LEAF + GXBP_LEAF : o->source_count;
+    uint32_t x, n = 0;
+    for (x = i * GXBP_LEAF; x < end; x++) {
+        member[n] = x;
+        n += (uint32_t)gxbp_box_meets(&b->bounds[o->source + x], box);
+    }
+    return n;
+}
+
 static void gxbp_meet_leaves(gxb_boolean *b, const gxbp_operand *o, uint32_t i, const gxbp_operand *q, uint32_t j) {
-    const uint32_t end_i = i * GXBP_LEAF + GXBP_LEAF < o->source_count ? i * GXBP_LEAF + GXBP_LEAF : o->source_count;
-    const uint32_t end_j = j * GXBP_LEAF + GXBP_LEAF < q->source_count ? j * GXBP_LEAF + GXBP_LEAF : q->source_count;
-    const gxbp_box *other = &b->boxes[q->tree.first + j];
-    uint32_t x, y;
-    for (x = i * GXBP_LEAF; x < end_i; x++) {
-        const uint32_t s = o->order[x];
-        const gxbp_box *box = &b->bounds[o->source + x];
-        if (!gxbp_box_meets(box, other) || b->sources[s].flags & GXBP_DEGENERATE) continue;
-        for (y = o == q && i == j ? x + 1 : j * GXBP_LEAF; y < end_j; y++) {
-            const uint32_t t = q->order[y];
-            if (gxbp_box_meets(box, &b->bounds[q->source + y]) && !(b->sources[t].flags & GXBP_DEGENERATE)) gxbp_meet(b, s, t);
+    uint32_t first[GXBP_LEAF], second[GXBP_LEAF], n, m, x, y;
+    n = gxbp_leaf_members(b, o, i, &b->boxes[q->tree.first + j], first);
+    m = n == 0 ? 0 : gxbp_leaf_members(b, q, j, &b->boxes[o->tree.first + i], second);
+    for (x = 0; x < n; x++) {
+        const uint32_t s = o->order[first[x]];
+        const gxbp_box *box = &b->bounds[o->source + first[x]];
+        if (b->sources[s].flags & GXBP_DEGENERATE) continue;
+        for (y = 0; y < m; y++) {
+            const uint32_t t = q->order[second[y]];
+            if ((o == q && second[y] <= first[x]) || !gxbp_box_meets(box, &b->bounds[q->source + second[y]])) continue;
+            if (!(b->sources[t].flags & GXBP_DEGENERATE)) gxbp_meet(b, s, t);
         }
     }
 }
 
 /* Box i of level l of one tree, box j of level m of the other. Depth: the sum of their levels. */
-static void gxbp_meet_boxes(gxb_boolean *b, const gxbp_operand *o, uint32_t l, uint32_t i, const gxbp_operand *q, uint32_t m, uint32_t j) {
+static GXBP_APART void gxbp_meet_boxes(gxb_boolean *b, const gxbp_operand *o, uint32_t l, uint32_t i, const gxbp_operand *q, uint32_t m, uint32_t j) {
     const gxbp_tree *s = &o->tree, *t = &q->tree;
     uint32_t c;
     if (b->result != GX_OK || (o == q && l == m && i > j)) return;
@@ -4950,6 +5219,7 @@ static uint32_t gxbp_split_half(gxb_boolean *b, uint32_t f, int k, uint32_t x) {
     uint32_t p, q, r;
     if (g == GXB_NONE) return GXB_NONE;
     old = b->pieces[f];
+    b->pieces[g].state = old.state;
     p = old.v[k]; q = old.v[(k + 1) % 3]; r = old.v[(k + 2) % 3];
     gxbp_set_piece(b, f, p, x, r);
     gxbp_set_edge(b, f, 0, GXB_NONE, old.labels[k]);
@@ -4985,6 +5255,7 @@ static void gxbp_split_inside(gxb_boolean *b, uint32_t f, uint32_t x) {
     part[1] = gxbp_new_piece(b, old.source);
     part[2] = gxbp_new_piece(b, old.source);
     for (k = 0; k < 3; k++) {
+        b->pieces[part[k]].state = old.state;
         gxbp_set_piece(b, part[k], old.v[k], old.v[(k + 1) % 3], x);
         gxbp_set_edge(b, part[k], 0, old.near[k], old.labels[k]);
         gxbp_set_edge(b, part[k], 1, part[(k + 1) % 3], GXBP_LOOSE);
@@ -5009,13 +5280,14 @@ static void gxbp_label_edge(gxb_boolean *b, uint32_t f, int k, uint32_t label) {
 
 /* --- along a straight line through a triangulation --- */
 
-/* The line from p to x. In a triangle's plane (label) its sides are those of the plane, times sigma. */
-typedef struct gxbp_line { uint32_t p, x, plane; int sigma; } gxbp_line;
+/* The line from p to x. In a triangle's plane (label) its sides are those of the plane, times sigma (gxbp_segment.left where that is known). */
+typedef struct gxbp_line { uint32_t p, x, plane, source; int sigma; } gxbp_line;
 
-static void gxbp_set_line(gxb_boolean *b, gxbp_line *line, uint32_t s, uint32_t p, uint32_t x, uint32_t label) {
+static void gxbp_set_line(gxb_boolean *b, gxbp_line *line, uint32_t s, uint32_t p, uint32_t x, uint32_t label, int left) {
     int k;
-    line->p = p; line->x = x; line->plane = GXB_NONE; line->sigma = 1;
+    line->p = p; line->x = x; line->plane = GXB_NONE; line->source = label; line->sigma = 1;
     if (label & GXBP_EDGE_LABEL) return;
+    if (left != 0) { line->plane = b->sources[label].plane; line->sigma = left; return; }
     for (k = 0; k < 3; k++) {
         const int side = gxbp_point_side(b, b->sources[s].point[k], b->sources[label].plane);
         if (side == 0) continue;
@@ -5026,10 +5298,32 @@ static void gxbp_set_line(gxb_boolean *b, gxbp_line *line, uint32_t s, uint32_t 
     line->plane = GXB_NONE;
 }
 
+/* Is a point, named by an edge and a triangle, in triangle t and not on its edge j? */
+static int gxbp_is_named_in(const gxb_boolean *b, uint32_t v, uint32_t t, uint32_t j) {
+    const uint32_t *key = b->vertices[v].key, twin = b->sources[key[1] / 3].twin[key[1] % 3];
+    return key[2] == t || (key[1] / 3 == t && key[1] % 3 != j) || (twin != GXB_NONE && twin / 3 == t && twin % 3 != j);
+}
+
+/* The side of a source's plane. In a neighbour, all points that are not on the common edge lie on the side on which its other corner is: so
+   the two halves of a face that is flat but for rounding need no exact numbers of points computed in them. */
+static int gxbp_side_of_source(gxb_boolean *b, uint32_t v, uint32_t s) {
+    const uint32_t plane = b->sources[s].plane;
+    double bound, value;
+    int k;
+    if (b->cx.points[v].kind != GXB_LINE_PLANE || b->vertices[v].key[0] != GXB_FROM_EDGE_TRIANGLE) return gxbp_point_side(b, v, plane);
+    value = gxbp_filter_side(&b->cx.points[v].ball, &b->cx.planes[plane].filter, &bound);
+    if (value > bound || value < -bound) { b->cx.filter_calls++; return value > 0 ? 1 : -1; }
+    for (k = 0; k < 3; k++) {
+        const uint32_t twin = b->sources[s].twin[k];
+        if (twin != GXB_NONE && gxbp_is_named_in(b, v, twin / 3, twin % 3)) return gxbp_point_side(b, b->sources[twin / 3].point[(twin % 3 + 2) % 3], plane);
+    }
+    return gxbp_point_side(b, v, plane);
+}
+
 /* 1: v lies to the left */
 static int gxbp_left(gxb_boolean *b, const gxbp_line *line, uint32_t v) {
     if (v == line->p || v == line->x) return 0;
-    if (line->plane != GXB_NONE) return line->sigma * gxbp_point_side(b, v, line->plane);
+    if (line->plane != GXB_NONE) return line->sigma * gxbp_side_of_source(b, v, line->source);
     return gxbp_turn(b, line->p, line->x, v);
 }
 
@@ -5149,13 +5443,13 @@ static int gxbp_points_equal(gxb_boolean *b, uint32_t p, uint32_t q) {
 static int gxbp_is_placed(gxb_boolean *b, uint32_t v) { return b->vertices[v].stamp == b->stamp; }
 
 /* Makes a point a vertex of source s's triangulation, found from vertex p on; returns its name there. */
-static uint32_t gxbp_insert_point(gxb_boolean *b, uint32_t s, uint32_t x, uint32_t p, uint32_t label) {
+static uint32_t gxbp_insert_point(gxb_boolean *b, uint32_t s, uint32_t x, uint32_t p, uint32_t label, int left) {
     gxbp_line line;
     gxbp_location spot;
     x = gxbp_same(b, x);
     if (gxbp_is_placed(b, x)) return x;
     if (gxbp_points_equal(b, p, x)) { gxbp_unite(b, p, x); return p; }
-    gxbp_set_line(b, &line, s, p, x, label);
+    gxbp_set_line(b, &line, s, p, x, label, left);
     spot = gxbp_locate(b, &line);
     if (b->result != GX_OK) return x;
     if (spot.vertex != GXB_NONE) { gxbp_unite(b, spot.vertex, x); return spot.vertex; }
@@ -5201,7 +5495,7 @@ static void gxbp_attach_rim(gxb_boolean *b, gxbp_margin *rim, uint32_t count, ui
 }
 
 /* Triangulates what lies between rim[low] ... rim[high] and the base; facets are taken from the scratch list's end. Returns the base's. */
-static uint32_t gxbp_fill_rim(gxb_boolean *b, gxbp_margin *rim, uint32_t count, uint32_t low, uint32_t high) {
+static GXBP_APART uint32_t gxbp_fill_rim(gxb_boolean *b, gxbp_margin *rim, uint32_t count, uint32_t low, uint32_t high) {
     const uint32_t apex = gxbp_choose_apex(b, rim, low, high), f = b->scratch[--b->scratch_count];
     uint32_t g;
     gxbp_set_piece(b, f, rim[high].vertex, rim[low].vertex, rim[apex].vertex);
@@ -5291,6 +5585,7 @@ static void gxbp_find_dangling(const gxb_boolean *b, gxbp_margin *rim, uint32_t 
 
 /* Retriangulates the crossed facets with an edge from the start to the vertex in which the right rim ends. */
 static void gxbp_refill(gxb_boolean *b, uint32_t start) {
+    const uint32_t state = b->pieces[b->scratch[0]].state;      /* of all: no label is between them */
     uint32_t i, n, f, g;
     for (i = 0; i < b->scratch_count; i++) b->pieces[b->scratch[i]].state = GXBP_REMOVED;
     gxbp_push_left(b, start, GXB_NONE, 0);
@@ -5303,7 +5598,7 @@ static void gxbp_refill(gxb_boolean *b, uint32_t start) {
     }
     gxbp_find_dangling(b, b->rims, b->rim_count);
     gxbp_find_dangling(b, b->lefts, b->left_count);
-    for (i = 0; i < b->scratch_count; i++) b->pieces[b->scratch[i]].state = GXB_NONE;
+    for (i = 0; i < b->scratch_count; i++) b->pieces[b->scratch[i]].state = state;
     f = gxbp_fill_rim(b, b->rims, b->rim_count, 0, b->rim_count - 1);
     g = gxbp_fill_rim(b, b->lefts, b->left_count, 0, b->left_count - 1);
     b->pieces[f].near[0] = g;
@@ -5311,9 +5606,9 @@ static void gxbp_refill(gxb_boolean *b, uint32_t start) {
 }
 
 /* Makes p q an edge, or a row of them where vertices lie on it, with a label. */
-static void gxbp_force_edge(gxb_boolean *b, uint32_t s, uint32_t p, uint32_t q, uint32_t label) {
+static void gxbp_force_edge(gxb_boolean *b, uint32_t s, uint32_t p, uint32_t q, uint32_t label, int left) {
     gxbp_line line;
-    gxbp_set_line(b, &line, s, p, q, label);
+    gxbp_set_line(b, &line, s, p, q, label, left);
     while (p != q && b->result == GX_OK) {
         gxbp_way way;
         if (!gxbp_find_way(b, &line, p, q, &way)) { gxbp_stop(b, GX_ERROR_OVERLAP); return; }
@@ -5378,22 +5673,30 @@ static void gxbp_trace_segments(gxb_boolean *b, uint32_t s, uint32_t i) {
     const gxbp_segment *first = &b->segments[b->chain[3 * i]];
     uint32_t v = gxbp_same(b, first->p);
     if (!gxbp_is_placed(b, v) && gxbp_is_placed(b, gxbp_same(b, first->q))) v = gxbp_same(b, first->q);
-    if (!gxbp_is_placed(b, v)) v = gxbp_insert_point(b, s, v, gxbp_same(b, b->sources[s].point[0]), GXBP_EDGE_LABEL);
+    if (!gxbp_is_placed(b, v)) v = gxbp_insert_point(b, s, v, gxbp_same(b, b->sources[s].point[0]), GXBP_EDGE_LABEL, 0);
     for (; i != GXB_NONE && b->result == GX_OK; i = gxbp_next_segment(b, v)) {
         const gxbp_segment segment = b->segments[b->chain[3 * i]];
-        const uint32_t other = gxbp_same(b, segment.p) == v ? segment.q : segment.p;
+        const int forward = gxbp_same(b, segment.p) == v;
+        const uint32_t other = forward ? segment.q : segment.p;
+        const int left = forward ? segment.left : -segment.left;
         uint32_t end;
         b->chain[3 * i] = GXB_NONE;
-        end = gxbp_insert_point(b, s, other, v, segment.label);
-        gxbp_force_edge(b, s, v, end, segment.label);
+        end = gxbp_insert_point(b, s, other, v, segment.label, left);
+        gxbp_force_edge(b, s, v, end, segment.label, left);
         v = end;
     }
+}
+
+static void gxbp_note_divided(gxb_boolean *b, uint32_t s) {
+    if (b->sources[s].flags & GXBP_DIVIDED || !GXBP_ROOM(b, divided, divided, 1)) return;
+    b->sources[s].flags |= GXBP_DIVIDED;
+    b->divided[b->divided_count++] = s;
 }
 
 static void gxbp_divide_source(gxb_boolean *b, uint32_t s) {
     uint32_t n, i, k, pass;
     if (!gxbp_need_plane(b, s)) return;
-    b->sources[s].flags |= GXBP_DIVIDED;
+    gxbp_note_divided(b, s);
     gxbp_open_triangulation(b, s);
     for (k = 0; k < 3; k++) gxbp_divide_rim(b, s, k);
     n = gxbp_chain_segments(b, s);
@@ -5409,7 +5712,7 @@ static void gxbp_divide_source(gxb_boolean *b, uint32_t s) {
 /* --- flats: sources that overlap in one plane are divided together, within a frame around them --- */
 
 /* A corner of the frame: where a line along the plane's axis meets it. */
-static uint32_t gxbp_frame_corner(gxb_boolean *b, uint32_t plane, double x, double y) {
+static GXBP_COLD uint32_t gxbp_frame_corner(gxb_boolean *b, uint32_t plane, double x, double y) {
     const uint32_t axis = b->cx.planes[plane].axis;
     uint32_t id[3], k;
     for (k = 0; k < 3; k++) {
@@ -5428,7 +5731,7 @@ static uint32_t gxbp_frame_corner(gxb_boolean *b, uint32_t plane, double x, doub
     return id[2];
 }
 
-static void gxbp_make_frame(gxb_boolean *b, uint32_t r) {
+static GXBP_COLD void gxbp_make_frame(gxb_boolean *b, uint32_t r) {
     const uint32_t plane = b->sources[r].plane, i = (b->cx.planes[plane].axis + 1) % 3, j = (b->cx.planes[plane].axis + 2) % 3;
     gxbp_box box = gxbp_box_of(b, r);
     uint32_t t, corner[4], f, g;
@@ -5470,10 +5773,10 @@ static void gxbp_place_flat_points(gxb_boolean *b, uint32_t r) {
     for (t = r; t != GXB_NONE; t = b->sources[t].next) {
         for (k = 0; k < 3; k++)
             for (i = 0; i + 1 < gxbp_edge_points(b, t, k) && b->result == GX_OK; i++)
-                last = gxbp_insert_point(b, r, gxbp_edge_point(b, t, k, i), last, GXBP_EDGE_LABEL);
+                last = gxbp_insert_point(b, r, gxbp_edge_point(b, t, k, i), last, GXBP_EDGE_LABEL, 0);
         for (i = b->sources[t].segments; i != GXB_NONE && b->result == GX_OK; i = b->segments[i].next) {
-            last = gxbp_insert_point(b, r, b->segments[i].p, last, GXBP_EDGE_LABEL);
-            last = gxbp_insert_point(b, r, b->segments[i].q, last, GXBP_EDGE_LABEL);
+            last = gxbp_insert_point(b, r, b->segments[i].p, last, GXBP_EDGE_LABEL, 0);
+            last = gxbp_insert_point(b, r, b->segments[i].q, last, GXBP_EDGE_LABEL, 0);
         }
     }
 }
@@ -5483,11 +5786,11 @@ static void gxbp_place_flat_edges(gxb_boolean *b, uint32_t r) {
     for (t = r; t != GXB_NONE; t = b->sources[t].next)
         for (k = 0; k < 3; k++)
             for (i = 1; i < gxbp_edge_points(b, t, k) && b->result == GX_OK; i++)
-                gxbp_force_edge(b, r, gxbp_edge_point(b, t, k, i - 1), gxbp_edge_point(b, t, k, i), gxbp_edge_name(b, t, (int)k) | GXBP_EDGE_LABEL);
+                gxbp_force_edge(b, r, gxbp_edge_point(b, t, k, i - 1), gxbp_edge_point(b, t, k, i), gxbp_edge_name(b, t, (int)k) | GXBP_EDGE_LABEL, 0);
     for (t = r; t != GXB_NONE; t = b->sources[t].next)
         for (i = b->sources[t].segments; i != GXB_NONE && b->result == GX_OK; i = b->segments[i].next) {
             const gxbp_segment segment = b->segments[i];
-            gxbp_force_edge(b, r, gxbp_same(b, segment.p), gxbp_same(b, segment.q), segment.label);
+            gxbp_force_edge(b, r, gxbp_same(b, segment.p), gxbp_same(b, segment.q), segment.label, 0);
         }
 }
 
@@ -5502,7 +5805,7 @@ static uint32_t gxbp_first_covered(gxb_boolean *b, uint32_t r, uint32_t t) {
     const int facing = gxbp_facing(b, r, t);
     gxbp_line line;
     gxbp_way way;
-    gxbp_set_line(b, &line, r, u, gxbp_edge_point(b, t, 0, 1), GXBP_EDGE_LABEL);
+    gxbp_set_line(b, &line, r, u, gxbp_edge_point(b, t, 0, 1), GXBP_EDGE_LABEL, 0);
     if (!gxbp_find_way(b, &line, u, line.x, &way) || way.ahead == 0) { gxbp_stop(b, GX_ERROR_OVERLAP); return GXB_NONE; }
     if (way.ahead == (facing > 0 ? 1 : 2)) return way.f;
     return b->pieces[way.f].near[way.ahead == 1 ? way.k : (way.k + 2) % 3];
@@ -5539,13 +5842,14 @@ static void gxbp_cover_facets(gxb_boolean *b, uint32_t r, uint32_t t) {
     }
 }
 
-static void gxbp_divide_flat(gxb_boolean *b, uint32_t r) {
+static GXBP_COLD void gxbp_divide_flat(gxb_boolean *b, uint32_t r) {
     uint32_t t, f;
     if (!gxbp_need_plane(b, r)) return;
     for (t = r; t != GXB_NONE; t = b->sources[t].next) {
         for (f = b->sources[t].facet; f != GXB_NONE; f = b->pieces[f].next) b->pieces[f].source = GXB_NONE;
         b->sources[t].facet = GXB_NONE;
-        b->sources[t].flags |= GXBP_FLAT | GXBP_DIVIDED;
+        gxbp_note_divided(b, t);
+        b->sources[t].flags |= GXBP_FLAT;
         b->sources[t].flags &= ~(uint32_t)GXBP_DIRTY;
     }
     gxbp_open_triangulation(b, r);
@@ -5572,7 +5876,7 @@ static void gxbp_divide_dirty(gxb_boolean *b) {
 
 typedef struct gxbp_projected { double t; uint32_t point; } gxbp_projected;
 
-static void gxbp_sort_projected(gxbp_projected *p, uint32_t count, gxbp_projected *work) {
+static GXBP_APART void gxbp_sort_projected(gxbp_projected *p, uint32_t count, gxbp_projected *work) {
     const uint32_t half = count / 2;
     uint32_t i, j, k;
     if (count < 2) return;
@@ -5582,31 +5886,40 @@ static void gxbp_sort_projected(gxbp_projected *p, uint32_t count, gxbp_projecte
     for (i = 0, j = half, k = 0; i < half; k++) p[k] = j < count && p[j].t < work[i].t ? p[j++] : work[i++];
 }
 
-/* Points that are new since the last time are compared with all that lie within the errors of both along a direction in which few
+/* Sorts the new ones behind the others, then merges them with these; work: room for all. */
+static void gxbp_merge_projected(gxbp_projected *p, uint32_t old, uint32_t count, gxbp_projected *work) {
+    uint32_t i = 0, j = old, k;
+    gxbp_sort_projected(p + old, count - old, work);
+    memcpy(work, p, old * sizeof *p);
+    for (k = 0; i < old; k++) p[k] = j < count && p[j].t < work[i].t ? p[j++] : work[i++];
+}
+
+/* Computed points that are new since the last time are compared with all that lie within the errors of both along a direction in which few
    points agree. */
 static void gxbp_merge_points(gxb_boolean *b) {
     static const double direction[3] = {0.6180339887, 0.4142135623, 0.7320508075};
-    const size_t size = 2 * (size_t)b->vertex_count * sizeof(gxbp_projected);
-    gxbp_projected *p;
-    uint32_t i, j, n = 0;
-    double reach = 0;
-    if (b->result != GX_OK || b->merged_points == b->vertex_count) return;
-    p = (gxbp_projected *)gxbp_allocate(&b->cx.allocator, size);
-    if (p == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
-    for (i = 0; i < b->vertex_count; i++) {
+    const uint32_t old = b->projected_count;
+    const size_t fresh = b->vertex_count - b->merged_points, size = (old + fresh) * sizeof(gxbp_projected);
+    gxbp_projected *p, *work;
+    uint32_t i, j;
+    if (b->result != GX_OK || fresh == 0 || !GXBP_ROOM(b, projected, projected, fresh)) return;
+    work = (gxbp_projected *)gxbp_allocate(&b->cx.allocator, size);
+    if (work == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
+    p = b->projected;
+    for (i = b->merged_points; i < b->vertex_count; i++) {
         const gxb_ball *x = &b->cx.points[i].ball;
         if (b->vertices[i].key[0] == GXB_FROM_VERTEX || b->vertices[i].same != i) continue;
-        p[n].t = direction[0] * x->x[0] + direction[1] * x->x[1] + direction[2] * x->x[2];
-        p[n++].point = i;
-        reach = gxbp_max(reach, x->error + 4 * GXBP_U * gxbp_max3(x->x));
+        p[b->projected_count].t = direction[0] * x->x[0] + direction[1] * x->x[1] + direction[2] * x->x[2];
+        p[b->projected_count++].point = i;
+        b->reach = gxbp_max(b->reach, x->error + 4 * GXBP_U * gxbp_max3(x->x));
     }
-    gxbp_sort_projected(p, n, p + n);
-    for (i = 0; i < n; i++)
-        for (j = i + 1; j < n && p[j].t - p[i].t <= 8 * reach; j++) {
+    gxbp_merge_projected(p, old, b->projected_count, work);
+    for (i = 0; i < b->projected_count; i++)
+        for (j = i + 1; j < b->projected_count && p[j].t - p[i].t <= 8 * b->reach; j++) {
             const uint32_t q = gxbp_same(b, p[i].point), r = gxbp_same(b, p[j].point);
             if (q != r && (q >= b->merged_points || r >= b->merged_points) && gxbp_points_equal(b, q, r)) gxbp_unite(b, q, r);
         }
-    gxbp_release(&b->cx.allocator, p, size);
+    gxbp_release(&b->cx.allocator, work, size);
     b->merged_points = b->vertex_count;
 }
 
@@ -5645,7 +5958,7 @@ static uint32_t gxbp_hash_winding(const int32_t *winding, uint32_t count) {
     return hash;
 }
 
-static int gxbp_grow_states(gxb_boolean *b) {
+static GXBP_APART int gxbp_grow_states(gxb_boolean *b) {
     const uint32_t n = b->operand_count, size = b->state_table_size == 0 ? 64 : 2 * b->state_table_size;
     uint32_t *table, i, k;
     if (2 * (b->state_count + 1) <= b->state_table_size) return 1;
@@ -5687,6 +6000,18 @@ static int32_t *gxbp_copy_winding(gxb_boolean *b, uint32_t state) {
     return winding;
 }
 
+static uint32_t gxbp_step_state(gxb_boolean *b, uint32_t from, uint32_t operand, int change) {
+    gxbp_crossing *step = &b->steps[(2 * (from + 5 * operand) + (change > 0)) % GXBP_STEPS];
+    int32_t *winding;
+    if (step->change == change && step->from == from && step->operand == operand) return step->to;
+    winding = gxbp_copy_winding(b, from);
+    if (winding == NULL) return 0;
+    winding[operand] += change;
+    step->from = from; step->operand = operand; step->change = change;
+    step->to = gxbp_find_state(b);
+    return step->to;
+}
+
 static uint32_t gxbp_root_plane(const gxb_boolean *b, uint32_t f) { return b->sources[b->pieces[f].source].plane; }
 
 /* The side of t's plane on which facet f lies, which has edge k in it. If its apex is too near to tell, any corner of the source tells: side
@@ -5706,22 +6031,29 @@ static int gxbp_side_of_piece(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
                gxbp_filter_turn(&x[piece->v[k]].ball, &x[piece->v[(k + 1) % 3]].ball, &x[corner].ball,
                                 (int)(plane->axis + 1) % 3, (int)(plane->axis + 2) % 3);
     }
-    return side != 0 ? side : gxbp_point_side(b, piece->v[(k + 2) % 3], b->sources[t].plane);
+    return side != 0 ? side : gxbp_side_of_source(b, piece->v[(k + 2) % 3], t);
 }
 
-/* The state in front of the facet beyond edge k: a triangle with a part in front of the plane is passed, from the side on which f lies. */
+/* How a label of edge k changes the winding number of its operand: a triangle with a part in front of f's plane is passed, from the side on
+   which f lies. */
+static int gxbp_label_step(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
+    int side[3];
+    if (t & GXBP_EDGE_LABEL || b->operands[b->sources[t].operand].operation == GXB_SPLIT) return 0;
+    gxbp_sides(b, t, gxbp_root_plane(b, f), 0, side);
+    return side[0] <= 0 && side[1] <= 0 && side[2] <= 0 ? 0 : gxbp_side_of_piece(b, f, k, t);
+}
+
+/* The state in front of the facet beyond edge k. */
 static uint32_t gxbp_state_beyond(gxb_boolean *b, uint32_t f, int k) {
-    const uint32_t plane = gxbp_root_plane(b, f);
     uint32_t list = b->pieces[f].labels[k];
     int32_t *winding = NULL;
     for (; list != GXBP_LOOSE && list != GXBP_BARE; list = b->links[list].next) {
         const uint32_t t = b->links[list].value;
-        int side[3];
-        if (t & GXBP_EDGE_LABEL || b->operands[b->sources[t].operand].operation == GXB_SPLIT) continue;
-        gxbp_sides(b, t, plane, side);
-        if (side[0] <= 0 && side[1] <= 0 && side[2] <= 0) continue;
+        const int change = gxbp_label_step(b, f, k, t);
+        if (change == 0) continue;
+        if (winding == NULL && b->links[list].next == GXBP_BARE) return gxbp_step_state(b, b->pieces[f].state, b->sources[t].operand, change);
         if (winding == NULL && (winding = gxbp_copy_winding(b, b->pieces[f].state)) == NULL) return 0;
-        winding[b->sources[t].operand] += gxbp_side_of_piece(b, f, k, t);
+        winding[b->sources[t].operand] += change;
     }
     return winding == NULL ? b->pieces[f].state : gxbp_find_state(b);
 }
@@ -5741,7 +6073,11 @@ static void gxbp_add_covers(const gxb_boolean *b, uint32_t f, int sign, int32_t 
 }
 
 static uint32_t gxbp_state_behind(gxb_boolean *b, uint32_t f) {
-    int32_t *winding = gxbp_copy_winding(b, b->pieces[f].state);
+    const uint32_t operand = b->sources[b->pieces[f].source].operand;
+    int32_t *winding;
+    if (b->pieces[f].covers == GXB_NONE)
+        return b->operands[operand].operation == GXB_SPLIT ? b->pieces[f].state : gxbp_step_state(b, b->pieces[f].state, operand, 1);
+    winding = gxbp_copy_winding(b, b->pieces[f].state);
     if (winding == NULL) return 0;
     gxbp_add_covers(b, f, 1, winding);
     return gxbp_find_state(b);
@@ -5811,7 +6147,7 @@ static int gxbp_ray_meets(const gxbp_ray *ray, const gxbp_box *box) {
     return box->high[0] >= x[0] - e && box->low[1] <= x[1] + e && box->high[1] >= x[1] - e && box->low[2] <= x[2] + e && box->high[2] >= x[2] - e;
 }
 
-static void gxbp_shoot(gxb_boolean *b, gxbp_ray *ray, const gxbp_operand *o, uint32_t l, uint32_t i) {
+static GXBP_APART void gxbp_shoot(gxb_boolean *b, gxbp_ray *ray, const gxbp_operand *o, uint32_t l, uint32_t i) {
     uint32_t c;
     if (!gxbp_ray_meets(ray, &b->boxes[o->tree.first + o->tree.level[l] + i])) return;
     if (l > 0) {
@@ -5861,60 +6197,70 @@ static uint32_t gxbp_rim_slot(const gxb_boolean *b, const gxbp_rim_table *table,
     return k;
 }
 
-static int gxbp_is_divided_rim(const gxb_boolean *b, uint32_t f, int k) {
-    const uint32_t s = b->pieces[f].source;
-    return s != GXB_NONE && b->pieces[f].near[k] == GXB_NONE && (b->sources[s].flags & (GXBP_DIVIDED | GXBP_FLAT)) == GXBP_DIVIDED;
+/* Facets of divided sources, of those that are alone in their plane the first one (else GXB_NONE). */
+static uint32_t gxbp_first_rim_facet(const gxb_boolean *b, uint32_t i) {
+    const gxbp_source *s = &b->sources[b->divided[i]];
+    return s->flags & GXBP_FLAT ? GXB_NONE : s->facet;
 }
 
-/* Vertices get their last names on the way. */
+/* Vertices get their last names: those of divided sources, and of all where that changes any. */
+static void gxbp_rename_vertices(gxb_boolean *b) {
+    uint32_t f, i, k;
+    for (i = 0; i < b->divided_count && !b->renamed; i++)
+        for (f = b->sources[b->divided[i]].facet; f != GXB_NONE; f = b->pieces[f].next)
+            for (k = 0; k < 3; k++) b->pieces[f].v[k] = gxbp_same(b, b->pieces[f].v[k]);
+    for (f = 0; f < b->piece_count && b->renamed; f++)
+        for (k = 0; k < 3; k++) b->pieces[f].v[k] = gxbp_same(b, b->pieces[f].v[k]);
+}
+
 static int gxbp_fill_rim_table(gxb_boolean *b, gxbp_rim_table *table) {
-    uint32_t f, count = 0;
-    int k;
-    for (f = 0; f < b->piece_count; f++)
-        for (k = 0; k < 3; k++) {
-            b->pieces[f].v[k] = gxbp_same(b, b->pieces[f].v[k]);
-            count += (uint32_t)gxbp_is_divided_rim(b, f, k);
-        }
+    uint32_t f, i, k, count = 0;
+    for (i = 0; i < b->divided_count; i++)
+        for (f = gxbp_first_rim_facet(b, i); f != GXB_NONE; f = b->pieces[f].next)
+            for (k = 0; k < 3; k++) count += b->pieces[f].near[k] == GXB_NONE;
     for (table->size = 16; table->size < 2 * count; table->size *= 2) {}
     table->entry = (uint32_t *)gxbp_allocate(&b->cx.allocator, (size_t)table->size * sizeof *table->entry);
     if (table->entry == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
     memset(table->entry, 0xff, (size_t)table->size * sizeof *table->entry);
-    for (f = 0; f < b->piece_count; f++)
-        for (k = 0; k < 3; k++)
-            if (gxbp_is_divided_rim(b, f, k))
-                table->entry[gxbp_rim_slot(b, table, b->pieces[f].v[k], b->pieces[f].v[(k + 1) % 3])] = 3 * f + (uint32_t)k;
+    for (i = 0; i < b->divided_count; i++)
+        for (f = gxbp_first_rim_facet(b, i); f != GXB_NONE; f = b->pieces[f].next)
+            for (k = 0; k < 3; k++)
+                if (b->pieces[f].near[k] == GXB_NONE)
+                    table->entry[gxbp_rim_slot(b, table, b->pieces[f].v[k], b->pieces[f].v[(k + 1) % 3])] = 3 * f + k;
     return 1;
 }
 
-/* The facet of source t, a neighbour of f's across the surface's edge, that shares edge k of f; GXB_NONE unless only the two meet there. */
-static uint32_t gxbp_across_edge(const gxb_boolean *b, const gxbp_rim_table *table, uint32_t f, int k, uint32_t t) {
+/* The facet that shares edge k of f, on the rim of divided source s, across the surface's edge; GXB_NONE unless only the two meet there. */
+static uint32_t gxbp_across_rim(const gxb_boolean *b, const gxbp_rim_table *table, uint32_t f, int k, const gxbp_source *s) {
     const uint32_t p = b->pieces[f].v[k], q = b->pieces[f].v[(k + 1) % 3];
-    uint32_t g = b->sources[t].facet, h;
-    int j;
-    if (b->sources[t].flags & GXBP_FLAT) return GXB_NONE;
-    if (b->sources[t].flags & GXBP_DIVIDED) {
-        h = table->entry[gxbp_rim_slot(b, table, q, p)];
-        if (h == GXB_NONE || b->pieces[h / 3].source != t || b->pieces[h / 3].labels[h % 3] != GXBP_BARE) return GXB_NONE;
-        return h / 3;
+    const uint32_t h = table->entry[gxbp_rim_slot(b, table, q, p)];
+    int i, j;
+    for (i = 0; i < 3; i++) {
+        const uint32_t t = s->twin[i] == GXB_NONE ? GXB_NONE : s->twin[i] / 3;
+        if (t == GXB_NONE || b->sources[t].flags & GXBP_FLAT) continue;
+        if (b->sources[t].flags & GXBP_DIVIDED) {
+            if (h != GXB_NONE && b->pieces[h / 3].source == t && b->pieces[h / 3].labels[h % 3] == GXBP_BARE) return h / 3;
+            continue;
+        }
+        for (j = 0; j < 3; j++)
+            if (b->pieces[b->sources[t].facet].v[j] == q && b->pieces[b->sources[t].facet].v[(j + 1) % 3] == p) return b->sources[t].facet;
     }
-    for (j = 0; j < 3; j++) if (b->pieces[g].v[j] == q && b->pieces[g].v[(j + 1) % 3] == p) return g;
     return GXB_NONE;
 }
 
 static uint32_t gxbp_neighbour(const gxb_boolean *b, const gxbp_rim_table *table, uint32_t f, int k) {
     const gxbp_piece *piece = &b->pieces[f];
-    const gxbp_source *s = &b->sources[piece->source];
-    int j;
-    if (piece->near[k] != GXB_NONE) return (s->flags & GXBP_FLAT) && b->pieces[piece->near[k]].covers == GXB_NONE ? GXB_NONE : piece->near[k];
-    if (piece->labels[k] != GXBP_BARE || s->flags & GXBP_FLAT) return GXB_NONE;
-    for (j = 0; j < 3; j++) {
-        uint32_t g;
-        if (s->twin[j] == GXB_NONE) continue;
-        if (!(s->flags & GXBP_DIVIDED) && j != k) continue;
-        g = gxbp_across_edge(b, table, f, k, s->twin[j] / 3);
-        if (g != GXB_NONE) return g;
-    }
-    return GXB_NONE;
+    const gxbp_source *s = &b->sources[piece->source], *t;
+    uint32_t h;
+    if (s->flags & GXBP_FLAT) return piece->near[k] != GXB_NONE && b->pieces[piece->near[k]].covers != GXB_NONE ? piece->near[k] : GXB_NONE;
+    if (piece->near[k] != GXB_NONE) return piece->near[k];
+    if (s->flags & GXBP_DIVIDED) return piece->labels[k] == GXBP_BARE ? gxbp_across_rim(b, table, f, k, s) : GXB_NONE;
+    if (s->twin[k] == GXB_NONE) return GXB_NONE;
+    t = &b->sources[s->twin[k] / 3];
+    if (!(t->flags & (GXBP_DIVIDED | GXBP_FLAT))) return t->facet;
+    if (t->flags & GXBP_FLAT) return GXB_NONE;
+    h = table->entry[gxbp_rim_slot(b, table, piece->v[(k + 1) % 3], piece->v[k])];
+    return h != GXB_NONE && b->pieces[h / 3].source == s->twin[k] / 3 && b->pieces[h / 3].labels[h % 3] == GXBP_BARE ? h / 3 : GXB_NONE;
 }
 
 static void gxbp_spread_state(gxb_boolean *b, const gxbp_rim_table *table, uint32_t first) {
@@ -5924,9 +6270,12 @@ static void gxbp_spread_state(gxb_boolean *b, const gxbp_rim_table *table, uint3
         const uint32_t f = b->scratch[--b->scratch_count];
         int k;
         for (k = 0; k < 3; k++) {
-            const uint32_t g = gxbp_neighbour(b, table, f, k);
+            const uint32_t near = b->pieces[f].near[k];
+            uint32_t g;
+            if (near != GXB_NONE && b->pieces[near].state != GXB_NONE) continue;
+            g = gxbp_neighbour(b, table, f, k);
             if (g == GXB_NONE || b->pieces[g].state != GXB_NONE) continue;
-            b->pieces[g].state = b->pieces[f].near[k] == g ? gxbp_state_beyond(b, f, k) : b->pieces[f].state;
+            b->pieces[g].state = near == g ? gxbp_state_beyond(b, f, k) : b->pieces[f].state;
             gxbp_push(b, g);
         }
     }
@@ -5937,21 +6286,138 @@ static int gxbp_is_surface(const gxb_boolean *b, uint32_t f) {
     return s != GXB_NONE && (!(b->sources[s].flags & GXBP_FLAT) || b->pieces[f].covers != GXB_NONE);
 }
 
+/* --- states that are there already: new operands have the number 0 in them, which is right wherever their boxes are not --- */
+
+/* Lengthens the states by the numbers of new operands, all 0: each state keeps its place. */
+static int gxbp_lengthen_states(gxb_boolean *b) {
+    const uint32_t n = b->operand_count, m = b->stated;
+    uint32_t i, k;
+    memset(b->steps, 0, sizeof b->steps);
+    if (b->state_table_size > 0) memset(b->state_table, 0xff, (size_t)b->state_table_size * sizeof *b->state_table);
+    if (m == 0) b->state_count = 0;
+    b->winding_count = b->state_count * m;
+    if (!GXBP_ROOM(b, windings, winding, (size_t)b->state_count * (n - m) + n)) return 0;
+    for (i = b->state_count; i-- > 0;) {
+        memmove(b->windings + (size_t)i * n, b->windings + (size_t)i * m, m * sizeof *b->windings);
+        memset(b->windings + (size_t)i * n + m, 0, (n - m) * sizeof *b->windings);
+    }
+    for (i = 0; i < b->state_count; i++) {
+        const int32_t *winding = b->windings + (size_t)i * n;
+        b->states[i] = (uint32_t)gxbp_is_inside(b, winding);
+        for (k = gxbp_hash_winding(winding, n) & (b->state_table_size - 1); b->state_table[k] != GXB_NONE; k = (k + 1) & (b->state_table_size - 1)) {}
+        b->state_table[k] = i;
+    }
+    return 1;
+}
+
+/* A state with this bit counts no new operand yet. */
+#define GXBP_OPEN ((uint32_t)1 << 31)
+
+static int gxbp_is_open(const gxb_boolean *b, uint32_t f) { return b->pieces[f].state != GXB_NONE && b->pieces[f].state & GXBP_OPEN; }
+
+/* Is the facet certainly beside the box along this axis? */
+static int gxbp_piece_misses(const gxb_boolean *b, uint32_t f, const gxbp_box *box, int axis) {
+    int i, below = 1, above = 1;
+    for (i = 0; i < 3; i++) {
+        const gxb_ball *x = &b->cx.points[b->pieces[f].v[i]].ball;
+        below &= x->x[axis] + 2 * x->error < box->low[axis];
+        above &= x->x[axis] - 2 * x->error > box->high[axis];
+    }
+    return below | above;
+}
+
+/* Along the box's shortest side first */
+static void gxbp_open_states(gxb_boolean *b, const gxbp_box *box) {
+    uint32_t f;
+    int axis = 0, k;
+    for (k = 1; k < 3; k++) if (box->high[k] - box->low[k] < box->high[axis] - box->low[axis]) axis = k;
+    for (f = 0; f < b->piece_count; f++) {
+        if (b->pieces[f].source == GXB_NONE || b->pieces[f].state == GXB_NONE || gxbp_piece_misses(b, f, box, axis)) continue;
+        if (!gxbp_piece_misses(b, f, box, (axis + 1) % 3) && !gxbp_piece_misses(b, f, box, (axis + 2) % 3)) b->pieces[f].state |= GXBP_OPEN;
+    }
+}
+
+/* The state of an open facet beyond edge k of g, which is not open: its own with g's numbers of new operands and those of the labels between. */
+static uint32_t gxbp_close_state(gxb_boolean *b, uint32_t g, int k, uint32_t f) {
+    const uint32_t n = b->operand_count, m = b->stated, own = b->pieces[f].state & ~GXBP_OPEN, from = b->pieces[g].state;
+    uint32_t list = b->pieces[g].near[k] == f ? b->pieces[g].labels[k] : GXBP_BARE, i;
+    int32_t *winding = gxbp_copy_winding(b, own);
+    int differs = 0;
+    if (winding == NULL) return own;
+    for (i = m; i < n; i++) winding[i] = b->windings[(size_t)from * n + i];
+    for (; list != GXBP_LOOSE && list != GXBP_BARE; list = b->links[list].next) {
+        const uint32_t t = b->links[list].value;
+        if (!(t & GXBP_EDGE_LABEL) && b->sources[t].operand >= m) winding[b->sources[t].operand] += gxbp_label_step(b, g, k, t);
+    }
+    for (i = m; i < n; i++) differs = differs || winding[i] != 0;
+    return differs ? gxbp_find_state(b) : own;
+}
+
+/* From a facet that is not open any more to open ones */
+static void gxbp_spread_closed(gxb_boolean *b, const gxbp_rim_table *table, uint32_t first) {
+    b->scratch_count = 0;
+    gxbp_push(b, first);
+    while (b->scratch_count > 0 && b->result == GX_OK) {
+        const uint32_t f = b->scratch[--b->scratch_count];
+        int k;
+        for (k = 0; k < 3; k++) {
+            const uint32_t g = gxbp_neighbour(b, table, f, k);
+            if (g == GXB_NONE || !gxbp_is_open(b, g)) continue;
+            b->pieces[g].state = gxbp_close_state(b, f, k, g);
+            gxbp_push(b, g);
+        }
+    }
+}
+
+static void gxbp_close_by_ray(gxb_boolean *b, uint32_t f) {
+    gxbp_ray ray;
+    uint32_t i;
+    if (!gxbp_need_plane(b, b->pieces[f].source)) return;
+    ray.winding = gxbp_copy_winding(b, b->pieces[f].state & ~GXBP_OPEN);
+    if (ray.winding == NULL) return;
+    gxbp_set_ray(b, &ray, f);
+    for (i = b->stated; i < b->operand_count && b->result == GX_OK; i++)
+        if (b->operands[i].operation != GXB_SPLIT) gxbp_shoot(b, &ray, &b->operands[i], b->operands[i].tree.levels - 1, 0);
+    b->pieces[f].state = gxbp_find_state(b);
+}
+
+/* Facets that are not open lend to their open neighbours; where there are none, a ray helps. */
+static void gxbp_close_states(gxb_boolean *b, const gxbp_rim_table *table) {
+    uint32_t f, i, pass;
+    int k;
+    for (i = b->stated; i < b->operand_count; i++) {
+        const gxbp_tree *tree = &b->operands[i].tree;
+        gxbp_open_states(b, &b->boxes[tree->first + tree->level[tree->levels - 1]]);
+    }
+    for (pass = 0; pass < 2; pass++)
+        for (f = 0; f < b->piece_count && b->result == GX_OK; f++) {
+            if (b->pieces[f].source == GXB_NONE) continue;
+            for (k = 0; k < 3 && gxbp_is_open(b, f); k++) {
+                const uint32_t g = gxbp_neighbour(b, table, f, k);
+                if (g != GXB_NONE && b->pieces[g].state != GXB_NONE && !gxbp_is_open(b, g)) gxbp_spread_closed(b, table, g);
+            }
+            if (pass == 0 || !gxbp_is_open(b, f)) continue;
+            gxbp_close_by_ray(b, f);
+            gxbp_spread_closed(b, table, f);
+        }
+}
+
 static void gxbp_find_states(gxb_boolean *b) {
     gxbp_rim_table table;
     uint32_t f, pass;
-    if (b->result != GX_OK || !gxbp_fill_rim_table(b, &table)) return;
-    b->state_count = 0;
-    if (b->state_table_size > 0) memset(b->state_table, 0xff, (size_t)b->state_table_size * sizeof *b->state_table);
-    for (f = 0; f < b->piece_count; f++) b->pieces[f].state = GXB_NONE;
+    if (b->result != GX_OK) return;
+    gxbp_rename_vertices(b);
+    if (!gxbp_lengthen_states(b) || !gxbp_fill_rim_table(b, &table)) return;
+    if (b->stated > 0) gxbp_close_states(b, &table);
     for (pass = 0; pass < 2; pass++)            /* first from input triangles, whose rays are cheap */
         for (f = 0; f < b->piece_count && b->result == GX_OK; f++) {
-            if (!gxbp_is_surface(b, f) || b->pieces[f].state != GXB_NONE) continue;
+            if (b->pieces[f].state != GXB_NONE || !gxbp_is_surface(b, f)) continue;
             if (pass == 0 && b->sources[b->pieces[f].source].flags & GXBP_DIVIDED) continue;
             b->pieces[f].state = gxbp_state_by_ray(b, f);
             gxbp_spread_state(b, &table, f);
         }
     gxbp_release(&b->cx.allocator, table.entry, (size_t)table.size * sizeof *table.entry);
+    b->stated = b->operand_count;
 }
 
 /* --- the result: facets between inside and outside --- */
@@ -5982,7 +6448,7 @@ static void gxbp_name_source(const gxb_boolean *b, uint32_t s, uint32_t corner, 
     if (corner < 3) *index = 3 * *index + corner;
 }
 
-static void gxbp_describe_point(const gxb_boolean *b, uint32_t point, gxb_origin *o) {
+static GXBP_APART void gxbp_describe_point(const gxb_boolean *b, uint32_t point, gxb_origin *o) {
     const gxb_cpoint *p = &b->cx.points[point];
     const uint32_t *key = b->vertices[p->kind == GXB_EXPLICIT ? p->def[0] : point].key;
     int k;
@@ -6017,12 +6483,17 @@ static uint32_t gxbp_cover_of(const gxb_boolean *b, uint32_t f, int sheets) {
     return GXB_NONE;
 }
 
+/* The arrays with one item for each triangle grow together. */
+static int gxbp_more_triangles(gxb_boolean *b) {
+    return GXBP_ROOM(b, out_operands, out_operand, 1) && GXBP_ROOM(b, out_planes, out_plane, 1) && GXBP_ROOM(b, out_reversed, out_reversed, 1) &&
+           GXBP_ROOM(b, out_sources, out_source, 1);
+}
+
 /* reversed: the outside is behind the facet's plane. */
 static void gxbp_emit(gxb_boolean *b, uint32_t f, int reversed, uint32_t source) {
     uint32_t n = b->out_triangle_count, i;
     int k;
-    if (!GXBP_ROOM(b, out_triangles, out_triangle, 3) || !GXBP_ROOM(b, out_operands, out_operand, 1) ||
-        !GXBP_ROOM(b, out_sources, out_source, 1) || !GXBP_ROOM(b, out_planes, out_plane, 1) || !GXBP_ROOM(b, out_reversed, out_reversed, 1)) return;
+    if (!GXBP_ROOM(b, out_triangles, out_triangle, 3) || (b->out_source_count == b->out_source_capacity && !gxbp_more_triangles(b))) return;
     for (k = 0; k < 3; k++) b->out_triangles[n + (uint32_t)k] = gxbp_out_vertex(b, b->pieces[f].v[reversed ? (3 - k) % 3 : k]);
     b->out_triangle_count += 3;
     i = b->out_source_count++;
@@ -6033,19 +6504,16 @@ static void gxbp_emit(gxb_boolean *b, uint32_t f, int reversed, uint32_t source)
 }
 
 static void gxbp_extract(gxb_boolean *b) {
-    uint32_t f, last_state = GXB_NONE, last_operand = GXB_NONE, behind = 0;
+    uint32_t f;
     for (f = 0; f < b->vertex_count; f++) b->vertices[f].slot = GXB_NONE;
     b->out_point_count = b->out_triangle_count = b->out_operand_count = b->out_source_count = b->out_plane_count = b->out_reversed_count = 0;
     for (f = 0; f < b->piece_count && b->result == GX_OK; f++) {
-        uint32_t source, operand;
+        uint32_t source, behind;
         int front_in, back_in;
         if (!gxbp_is_surface(b, f)) continue;
-        operand = b->pieces[f].covers == GXB_NONE ? b->sources[b->pieces[f].source].operand : GXB_NONE;
-        if (operand == GXB_NONE || operand != last_operand || b->pieces[f].state != last_state) behind = gxbp_state_behind(b, f);
-        last_operand = operand;
-        last_state = b->pieces[f].state;
-        front_in = b->states[last_state] != 0;
+        behind = gxbp_state_behind(b, f);           /* may move the states */
         back_in = b->states[behind] != 0;
+        front_in = b->states[b->pieces[f].state] != 0;
         if (front_in != back_in) {
             source = gxbp_cover_of(b, f, 0);
             gxbp_emit(b, f, front_in, source);
@@ -6054,6 +6522,226 @@ static void gxbp_extract(gxb_boolean *b) {
             gxbp_emit(b, f, 1, source);
         }
     }
+}
+
+static uint32_t gxbp_out_corner(const gxb_boolean *b, uint32_t t, uint32_t k) { return b->out_points[b->out_triangles[3 * t + k % 3]]; }
+
+/* A source that met nothing may have had no plane yet. GXB_NONE: no memory. */
+static uint32_t gxbp_out_plane(gxb_boolean *b, uint32_t t) {
+    const uint32_t s = b->pieces[b->out_planes[t] / 2].source;
+    return gxbp_need_plane(b, s) ? b->sources[s].plane : GXB_NONE;
+}
+
+/* --- coarse results: vertices that the outline of no face needs are taken away, one by one, and their stars filled with fewer triangles --- */
+
+/* The triangles of a face around a vertex, from outline to outline or all around. hint: one of the half-edges that leave it there. */
+typedef struct gxbp_umbrella { uint32_t vertex, hint, next; } gxbp_umbrella;
+
+/* Half-edges are 3 t + k. */
+typedef struct gxbp_coarse {
+    uint32_t *near;             /* of each half-edge: the one across it in the same face, GXB_NONE on the face's outline */
+    uint32_t *corner;           /* of each half-edge: the umbrella that it leaves from; GXB_NONE: its triangle is gone */
+    gxbp_umbrella *umbrellas; uint32_t umbrella_count;
+    uint32_t *first;            /* of each vertex: its umbrellas */
+    uint32_t *degree;           /* of each vertex: edges of outlines that end there */
+} gxbp_coarse;
+
+/* 1: triangle u is of t's face and faces as it does, -1: the other way (a sheet's other side), 0: it is of another face. */
+static int gxbp_same_face(gxb_boolean *b, uint32_t t, uint32_t u) {
+    const int facing = b->out_planes[t] & 1 ? -1 : 1;
+    uint32_t k;
+    if (b->out_operands[t] == b->out_operands[u] && b->out_sources[t] == b->out_sources[u]) return b->out_planes[u] & 1 ? -facing : facing;
+    if (b->triangulation != GXB_MERGED) return 0;
+    b->plane = gxbp_out_plane(b, t);
+    if (b->plane == GXB_NONE) return 0;
+    for (k = 0; k < 3 && gxbp_out_plane(b, u) != b->plane; k++) if (gxbp_point_side(b, gxbp_out_corner(b, u, k), b->plane) != 0) return 0;
+    return facing * gxbp_turn(b, gxbp_out_corner(b, u, 0), gxbp_out_corner(b, u, 1), gxbp_out_corner(b, u, 2));
+}
+
+/* Joins the half-edges between p and q that face alike, if all are of one face. 0: the edge belongs to an outline. */
+static int gxbp_pair_edge(gxb_boolean *b, const gxbp_fan *fan, uint32_t p, uint32_t q, uint32_t *near) {
+    uint32_t found[2][2], pass, i, first = GXB_NONE;
+    memset(found, 0xff, sizeof found);
+    for (pass = 0; pass < 2; pass++) {
+        const uint32_t from = pass == 0 ? p : q, to = pass == 0 ? q : p;
+        for (i = fan->first[from]; i < fan->first[from + 1]; i++) {
+            const uint32_t h = fan->list[i].half_edge;
+            int facing;
+            if (fan->list[i].to != to) continue;
+            if (first == GXB_NONE) first = h / 3;
+            facing = gxbp_same_face(b, first, h / 3);
+            if (facing == 0 || found[pass][facing > 0] != GXB_NONE) return 0;
+            found[pass][facing > 0] = h;
+        }
+    }
+    for (i = 0; i < 2; i++) if ((found[0][i] == GXB_NONE) != (found[1][i] == GXB_NONE)) return 0;
+    for (i = 0; i < 2; i++) if (found[0][i] != GXB_NONE) { near[found[0][i]] = found[1][i]; near[found[1][i]] = found[0][i]; }
+    return 1;
+}
+
+static void gxbp_find_outlines(gxb_boolean *b, const gxbp_fan *fan, gxbp_coarse *c) {
+    uint32_t p, i, j;
+    for (p = 0; p < b->out_point_count; p++)
+        for (i = fan->first[p]; i < fan->first[p + 1]; i++) {
+            const uint32_t q = fan->list[i].to;
+            if (q < p || c->near[fan->list[i].half_edge] != GXB_NONE) continue;
+            for (j = fan->first[p]; j < i && fan->list[j].to != q; j++) {}
+            if (j < i || gxbp_pair_edge(b, fan, p, q, c->near)) continue;
+            c->degree[p]++;
+            c->degree[q]++;
+        }
+}
+
+static void gxbp_make_umbrellas(const gxb_boolean *b, gxbp_coarse *c) {
+    uint32_t h, e;
+    for (h = 0; h < b->out_triangle_count; h++) {
+        const uint32_t u = c->umbrella_count, v = b->out_triangles[h];
+        if (c->corner[h] != GXB_NONE) continue;
+        c->umbrellas[u].vertex = v; c->umbrellas[u].hint = h; c->umbrellas[u].next = c->first[v];
+        c->first[v] = c->umbrella_count++;
+        for (e = h; e != GXB_NONE && c->corner[e] == GXB_NONE; e = c->near[gxbp_last_edge(e)]) c->corner[e] = u;
+        for (e = c->near[h]; e != GXB_NONE && c->corner[gxbp_next_edge(e)] == GXB_NONE; e = c->near[gxbp_next_edge(e)]) c->corner[gxbp_next_edge(e)] = u;
+    }
+}
+
+/* The polygon that an umbrella's triangles fill goes to rims (umbrellas of its vertices, what lies beyond the edge to the next), the
+   triangles to scratch. 1: it is open, the vertex lies on the edge from the last to the first. */
+static int gxbp_open_umbrella(gxb_boolean *b, const gxbp_coarse *c, uint32_t u) {
+    uint32_t start = c->umbrellas[u].hint, e = start, n;
+    while (c->near[e] != GXB_NONE && (e = gxbp_next_edge(c->near[e])) != start) {}
+    start = e;
+    b->rim_count = b->scratch_count = 0;
+    do {
+        n = gxbp_next_edge(e);
+        if (!GXBP_ROOM(b, rims, rim, 2)) return 0;
+        b->rims[b->rim_count].vertex = c->corner[n];
+        b->rims[b->rim_count++].near = c->near[n];
+        gxbp_push(b, e / 3);
+        n = gxbp_next_edge(n);
+        e = c->near[n];
+    } while (e != GXB_NONE && e != start);
+    if (e == start) return 0;
+    b->rims[b->rim_count].vertex = c->corner[n];
+    b->rims[b->rim_count++].near = GXB_NONE;
+    return 1;
+}
+
+static uint32_t gxbp_coarse_point(const gxb_boolean *b, const gxbp_coarse *c, uint32_t u) { return b->out_points[c->umbrellas[u].vertex]; }
+
+static void gxbp_link_half_edges(uint32_t *near, uint32_t h, uint32_t other) {
+    near[h] = other;
+    if (other != GXB_NONE) near[other] = h;
+}
+
+/* A triangle of the polygon's vertices p, q and r, one after the other; what is left has an edge from p to r. */
+static void gxbp_fill_corner(gxb_boolean *b, gxbp_coarse *c, uint32_t p, uint32_t q, uint32_t r) {
+    const uint32_t h = 3 * b->scratch[--b->scratch_count];
+    uint32_t k;
+    c->corner[h] = b->rims[p].vertex; c->corner[h + 1] = b->rims[q].vertex; c->corner[h + 2] = b->rims[r].vertex;
+    for (k = 0; k < 3; k++) c->umbrellas[c->corner[h + k]].hint = h + k;
+    gxbp_link_half_edges(c->near, h, b->rims[p].near);
+    gxbp_link_half_edges(c->near, h + 1, b->rims[q].near);
+    c->near[h + 2] = GXB_NONE;
+    b->rims[p].near = h + 2;
+}
+
+/* Fills the polygon of an umbrella around v. It is seen from v, and stays so if a convex corner is cut off whose ends are seen from v under
+   no more than a straight angle: then v is left of the new edge or on it. Of at most two corners, neighbours, the ends are seen under
+   more, and a polygon has three that are convex; where v lies on an edge, the corners of that edge are the two. */
+static void gxbp_fill_umbrella(gxb_boolean *b, gxbp_coarse *c, uint32_t v) {
+    gxbp_margin *rim = b->rims;
+    const int facing = b->out_planes[b->scratch[0]] & 1 ? -1 : 1;
+    uint32_t n = b->rim_count, i, q = 0, tried = 0;
+    for (i = 0; i < n; i++) { rim[i].labels = (i + 1) % n; rim[i].made = (i + n - 1) % n; }
+    while (n > 3 && b->result == GX_OK) {
+        const uint32_t p = rim[q].made, r = rim[q].labels, end = gxbp_coarse_point(b, c, rim[r].vertex), start = gxbp_coarse_point(b, c, rim[p].vertex);
+        if (facing * gxbp_turn(b, start, gxbp_coarse_point(b, c, rim[q].vertex), end) > 0 && facing * gxbp_turn(b, start, end, v) >= 0) {
+            gxbp_fill_corner(b, c, p, q, r);
+            rim[p].labels = r;
+            rim[r].made = p;
+            q = p;
+            n--;
+            tried = 0;
+        } else if (++tried <= n) q = r;
+        else gxbp_stop(b, GX_ERROR_OVERLAP);
+    }
+    if (b->result != GX_OK) return;
+    gxbp_fill_corner(b, c, rim[q].made, q, rim[q].labels);
+    gxbp_link_half_edges(c->near, rim[rim[q].made].near, rim[rim[q].labels].near);
+    for (i = 0; i < b->scratch_count; i++) c->corner[3 * b->scratch[i]] = GXB_NONE;
+}
+
+/* May the vertex go? Not where an outline bends, ends or branches. */
+static int gxbp_is_needless(gxb_boolean *b, const gxbp_coarse *c, uint32_t v) {
+    uint32_t u, ends[2] = {GXB_NONE, GXB_NONE};
+    if (c->degree[v] == 0) return 1;
+    if (c->degree[v] != 2) return 0;
+    for (u = c->first[v]; u != GXB_NONE; u = c->umbrellas[u].next) {
+        uint32_t p, q;
+        if (!gxbp_open_umbrella(b, c, u)) continue;
+        p = c->umbrellas[b->rims[0].vertex].vertex;
+        q = c->umbrellas[b->rims[b->rim_count - 1].vertex].vertex;
+        if (p == q || (ends[0] != GXB_NONE && (p < q ? p : q) != ends[0]) || (ends[0] != GXB_NONE && (p < q ? q : p) != ends[1])) return 0;
+        if (ends[0] != GXB_NONE) continue;
+        ends[0] = p < q ? p : q;
+        ends[1] = p < q ? q : p;
+        b->plane = gxbp_out_plane(b, b->scratch[0]);
+        if (b->plane == GXB_NONE || gxbp_turn(b, b->out_points[p], b->out_points[v], b->out_points[q]) != 0) return 0;
+    }
+    return b->result == GX_OK;
+}
+
+static void gxbp_take_vertex(gxb_boolean *b, gxbp_coarse *c, uint32_t v) {
+    uint32_t u;
+    for (u = c->first[v]; u != GXB_NONE && b->result == GX_OK; u = c->umbrellas[u].next) {
+        gxbp_open_umbrella(b, c, u);
+        b->plane = gxbp_out_plane(b, b->scratch[0]);
+        if (b->result == GX_OK) gxbp_fill_umbrella(b, c, b->out_points[v]);
+    }
+}
+
+/* What is left becomes the result; needed: a word for each vertex. */
+static void gxbp_close_coarse(gxb_boolean *b, const gxbp_coarse *c, uint32_t *needed) {
+    uint32_t t, k, n = 0, points = 0;
+    memset(needed, 0, b->out_point_count * sizeof *needed);
+    for (t = 0; t < b->out_source_count; t++) {
+        if (c->corner[3 * t] == GXB_NONE) continue;
+        for (k = 0; k < 3; k++) needed[b->out_triangles[3 * n + k] = c->umbrellas[c->corner[3 * t + k]].vertex] = 1;
+        b->out_operands[n] = b->out_operands[t]; b->out_sources[n] = b->out_sources[t];
+        b->out_planes[n] = b->out_planes[t]; b->out_reversed[n++] = b->out_reversed[t];
+    }
+    for (k = 0; k < b->out_point_count; k++) {
+        if (!needed[k]) continue;
+        b->out_points[points] = b->out_points[k];
+        needed[k] = points++;
+    }
+    for (k = 0; k < 3 * n; k++) b->out_triangles[k] = needed[b->out_triangles[k]];
+    b->out_point_count = points;
+    b->out_triangle_count = 3 * n;
+    b->out_operand_count = b->out_source_count = b->out_plane_count = b->out_reversed_count = n;
+}
+
+static GXBP_COLD void gxbp_coarsen(gxb_boolean *b) {
+    const size_t halves = b->out_triangle_count, points = b->out_point_count;
+    const size_t bytes = halves * (2 * sizeof(uint32_t) + sizeof(gxbp_umbrella)) + 2 * points * sizeof(uint32_t);
+    gxbp_coarse c;
+    gxbp_fan fan;
+    uint32_t v;
+    if (!gxbp_make_fan(b, b->out_triangles, b->out_source_count, b->out_point_count, &fan)) return;
+    c.umbrella_count = 0;
+    c.near = (uint32_t *)gxbp_allocate(&b->cx.allocator, bytes);
+    if (c.near != NULL) {
+        memset(c.near, 0xff, (2 * halves + points) * sizeof *c.near);
+        c.corner = c.near + halves; c.first = c.corner + halves; c.degree = c.first + points;
+        c.umbrellas = (gxbp_umbrella *)(void *)(c.degree + points);
+        memset(c.degree, 0, points * sizeof *c.degree);
+        gxbp_find_outlines(b, &fan, &c);
+        gxbp_make_umbrellas(b, &c);
+        for (v = 0; v < points && b->result == GX_OK; v++) if (gxbp_is_needless(b, &c, v)) gxbp_take_vertex(b, &c, v);
+        if (b->result == GX_OK) gxbp_close_coarse(b, &c, c.degree);
+        gxbp_release(&b->cx.allocator, c.near, bytes);
+    } else gxbp_stop(b, GX_ERROR_MEMORY);
+    gxbp_drop_fan(b, &fan);
 }
 
 static void gxbp_round_vertices(gxb_boolean *b) {
@@ -6068,9 +6756,6 @@ static void gxbp_round_vertices(gxb_boolean *b) {
     b->out_vertex_count = 3 * b->out_point_count;
     b->out_origin_count = b->out_point_count;
 }
-
-static uint32_t gxbp_out_corner(const gxb_boolean *b, uint32_t t, uint32_t k) { return b->out_points[b->out_triangles[3 * t + k % 3]]; }
-static uint32_t gxbp_out_plane(const gxb_boolean *b, uint32_t t) { return gxbp_root_plane(b, b->out_planes[t] / 2); }
 
 /* Triangles that rounding has turned over or left without area, seen along the longest axis of their plane's normal. */
 static void gxbp_find_defects(gxb_boolean *b) {
@@ -6131,7 +6816,7 @@ static void gxbp_make_blade(gxb_boolean *b, uint32_t h, uint32_t p, const gxbp_b
 }
 
 /* Joins the triangles at the two sides of each wedge of the solid around an edge that more than two triangles share. */
-static void gxbp_join_wedges(gxb_boolean *b, const gxbp_fan *fan, uint32_t i, uint32_t j, uint32_t *parent) {
+static GXBP_COLD void gxbp_join_wedges(gxb_boolean *b, const gxbp_fan *fan, uint32_t i, uint32_t j, uint32_t *parent) {
     const uint32_t p = b->out_points[i], q = b->out_points[j];
     gxbp_blade *blade = NULL;
     uint32_t n = 0, pass, k, m, capacity = 0;
@@ -6141,6 +6826,7 @@ static void gxbp_join_wedges(gxb_boolean *b, const gxbp_fan *fan, uint32_t i, ui
             gxbp_blade mine;
             if (fan->list[k].to != to) continue;
             if (!gxbp_room(b, &blade, sizeof *blade, n, &capacity, 1)) break;
+            if (gxbp_out_plane(b, fan->list[k].half_edge / 3) == GXB_NONE) break;
             gxbp_make_blade(b, fan->list[k].half_edge, p, n == 0 ? NULL : blade, &mine, q);
             for (m = n; m > 1 && gxbp_blade_precedes(b, &mine, &blade[m - 1]); m--) blade[m] = blade[m - 1];
             blade[m] = mine;
@@ -6196,7 +6882,7 @@ static void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *fine) {
 }
 
 /* Six times the volume of a shell (set root in parent), from coordinates of 180 bits. */
-static double gxbp_fine_volume(gxb_boolean *b, uint32_t *parent, uint32_t root) {
+static GXBP_COLD double gxbp_fine_volume(gxb_boolean *b, uint32_t *parent, uint32_t root) {
     GXB_NUM(total); GXB_NUM(sum); GXB_NUM(term);
     gxbp_vec x[3], n;
     uint32_t t, k;
@@ -6256,7 +6942,7 @@ static int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p, uint32_t 
 }
 
 /* The smallest shell with volume around a cavity's (or a sheet's) shell. */
-static uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, uint32_t *parent, const double *volume, int32_t *winding) {
+static GXBP_COLD uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, uint32_t *parent, const double *volume, int32_t *winding) {
     gxbp_ray ray;
     uint32_t t, best = GXB_NONE, k;
     gxbp_set_ray(b, &ray, b->out_planes[cavity] / 2);
@@ -6267,7 +6953,7 @@ static uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, uint32_t *p
         double value, bound;
         int left, behind;
         uint32_t c[3];
-        if (root == cavity || !(volume[root] > 0)) continue;
+        if (root == cavity || !(volume[root] > 0) || plane == GXB_NONE) continue;
         for (k = 0; k < 3; k++) c[k] = gxbp_out_corner(b, t, k);
         left = gxbp_ray_left_of(b, &ray, c[0], c[1]);
         if (left == 0 || gxbp_ray_left_of(b, &ray, c[1], c[2]) != left || gxbp_ray_left_of(b, &ray, c[2], c[0]) != left) continue;
@@ -6285,7 +6971,7 @@ static uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, uint32_t *p
     return best;
 }
 
-static void gxbp_number_components(gxb_boolean *b, uint32_t *parent, double *volume, int32_t *winding) {
+static GXBP_APART void gxbp_number_components(gxb_boolean *b, uint32_t *parent, double *volume, int32_t *winding) {
     uint32_t t, root;
     for (t = 0; t < b->out_source_count; t++) {
         if (parent[t] != t || volume[t] > 0) continue;
@@ -6351,7 +7037,7 @@ static void gxbp_find_components(gxb_boolean *b) {
 
 /* --- the public functions --- */
 
-static void gxbp_drop_boolean(gxb_boolean *b) {
+static GXBP_APART void gxbp_drop_boolean(gxb_boolean *b) {
     uint32_t i;
     for (i = 0; i < b->operand_count; i++)
         gxbp_release(&b->cx.allocator, b->operands[i].order, (size_t)b->operands[i].source_count * sizeof(uint32_t));
@@ -6366,7 +7052,8 @@ static void gxbp_drop_boolean(gxb_boolean *b) {
     gxbp_release(&b->cx.allocator, b->state_table, (size_t)b->state_table_size * sizeof *b->state_table);
     GXBP_DROP(b, operands, operand); GXBP_DROP(b, sources, source); GXBP_DROP(b, bounds, bound); GXBP_DROP(b, boxes, box);
     GXBP_DROP(b, vertices, vertex); GXBP_DROP(b, pieces, piece); GXBP_DROP(b, links, link); GXBP_DROP(b, segments, segment);
-    GXBP_DROP(b, cuts, cut); GXBP_DROP(b, cut_points, cut_point); GXBP_DROP(b, hits, hit); GXBP_DROP(b, dirty, dirty);
+    GXBP_DROP(b, cuts, cut); GXBP_DROP(b, cut_points, cut_point); GXBP_DROP(b, hits, hit); GXBP_DROP(b, dirty, dirty); GXBP_DROP(b, divided, divided);
+    GXBP_DROP(b, projected, projected);
     GXBP_DROP(b, rims, rim); GXBP_DROP(b, lefts, left); GXBP_DROP(b, scratch, scratch); GXBP_DROP(b, chain, chain);
     GXBP_DROP(b, windings, winding); GXBP_DROP(b, states, state);
     GXBP_DROP(b, out_vertices, out_vertex); GXBP_DROP(b, out_origins, out_origin); GXBP_DROP(b, out_points, out_point);
@@ -6378,16 +7065,23 @@ static void gxbp_drop_boolean(gxb_boolean *b) {
 GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean **boolean) {
     gxb_boolean_desc none;
     gxb_boolean *b;
+    size_t arena;
     memset(&none, 0, sizeof none);
     if (boolean == NULL) return GX_ERROR_ARGUMENT;
     if (desc == NULL) desc = &none;
-    if ((desc->allocator.allocate == NULL) != (desc->allocator.release == NULL)) return GX_ERROR_ARGUMENT;
-    b = (gxb_boolean *)gxbp_allocate(&desc->allocator, sizeof *b);
+    if ((desc->allocator.allocate == NULL) != (desc->allocator.release == NULL) || desc->triangulation > GXB_MERGED) return GX_ERROR_ARGUMENT;
+    arena = desc->memory_limit == 0 || desc->memory_limit >= 16 * GXBP_ARENA ? GXBP_ARENA : 0;
+    b = (gxb_boolean *)gxbp_allocate(&desc->allocator, gxbp_whole_words(sizeof *b) + arena);
     if (b == NULL) return GX_ERROR_MEMORY;
     memset(b, 0, sizeof *b);
+    b->arena = (unsigned char *)b + gxbp_whole_words(sizeof *b);
+    b->arena_size = arena;
+    b->used = b->peak = gxbp_whole_words(sizeof *b) + arena;
+    b->allocations = 1;
     b->outer = desc->allocator;
     b->limit = desc->memory_limit;
     b->fine = desc->fine;
+    b->triangulation = desc->triangulation;
     b->inside = desc->inside;
     b->user = desc->user;
     b->cx.allocator.allocate = gxbp_count_allocate;
@@ -6402,7 +7096,7 @@ GXFEM_API void gxb_boolean_destroy(gxb_boolean *boolean) {
     if (boolean == NULL) return;
     outer = boolean->outer;
     gxbp_drop_boolean(boolean);
-    gxbp_release(&outer, boolean, sizeof *boolean);
+    gxbp_release(&outer, boolean, gxbp_whole_words(sizeof *boolean) + boolean->arena_size);
 }
 
 static gx_result gxbp_check_operand(const gxb_boolean *b, const gxb_operand *o, size_t *bad) {
@@ -6418,7 +7112,7 @@ static gx_result gxbp_check_operand(const gxb_boolean *b, const gxb_operand *o, 
 }
 
 /* Forgets the points from count on. */
-static void gxbp_cut_points_back(gxb_boolean *b, uint32_t count) {
+static GXBP_COLD void gxbp_cut_points_back(gxb_boolean *b, uint32_t count) {
     uint32_t i, k, n = 0;
     for (i = 0; i < b->table_size; i++) if (b->table[i] != GXB_NONE && b->table[i] >= count) n++;
     if (n > 0) {
@@ -6456,10 +7150,10 @@ GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, 
 }
 
 /* After an error: the operands are as they came, nothing is arranged. Points that were found stay known. */
-static void gxbp_forget_arrangement(gxb_boolean *b) {
+static GXBP_COLD void gxbp_forget_arrangement(gxb_boolean *b) {
     uint32_t s, k;
-    b->piece_count = b->link_count = b->segment_count = b->cut_count = b->cut_point_count = b->hit_count = b->dirty_count = 0;
-    b->arranged = b->segment_mark = 0;
+    b->piece_count = b->link_count = b->segment_count = b->cut_count = b->cut_point_count = b->hit_count = b->dirty_count = b->divided_count = 0;
+    b->arranged = b->segment_mark = b->stated = 0;
     for (s = 0; s < b->source_count; s++) {
         gxbp_source *t = &b->sources[s];
         gxbp_piece *f = &b->pieces[b->piece_count];
@@ -6517,6 +7211,7 @@ GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *b, gxb_boolean_result *res
     gxbp_arrange(b);
     gxbp_find_states(b);
     if (b->result == GX_OK) gxbp_extract(b);
+    if (b->result == GX_OK && b->triangulation != GXB_DIVIDED && b->out_source_count > 0) gxbp_coarsen(b);
     gxbp_round_vertices(b);
     if (b->result == GX_OK) gxbp_find_defects(b);
     gxbp_find_components(b);

@@ -1,6 +1,6 @@
 /* test_surface_boolean.c - Booleans of closed surfaces: the named workloads against the exact oracle, at once and in sequence; small
    random solids on a lattice (coplanar, touching, nested, self-crossing) against the oracle and against what volumes must satisfy;
-   provenance, sheets, winding rules, memory that runs out, input that is refused. */
+   provenance, sheets, winding rules, coarse results, memory that runs out, input that is refused. */
 #define GXFEM_BOOLEAN_IMPLEMENTATION
 #include "../gxfem_boolean.h"
 #include "workloads.h"
@@ -66,6 +66,7 @@ static void check_closed(const gxb_boolean_result *r) {
     for (t = 0; t < r->triangle_count; ++t) ck_assert_uint_lt(r->triangle_component[t], r->component_count);
     for (t = 0; t < 3 * r->triangle_count; ++t) ck_assert_uint_lt(r->triangles[t], r->vertex_count);
     ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
+    memset(twin, 0xff, (3 * r->triangle_count + 1) * sizeof *twin);
     ck_assert_int_eq(gxbp_make_fan(b, r->triangles, r->triangle_count, (uint32_t)r->vertex_count, &fan), 1);
     ck_assert_uint_eq(gxbp_find_twins(&fan, (uint32_t)r->vertex_count, twin), GXB_NONE);
     gxbp_drop_fan(b, &fan);
@@ -473,6 +474,22 @@ START_TEST(sheets_divide) {
 }
 END_TEST
 
+/* Its triangles within the cube meet nothing, and are there twice. */
+START_TEST(a_wave_divides) {
+    static const double low[3] = { -1, -1, -1 }, high[3] = { 1, 1, 1 };
+    wl_frame axes = wl_axes();
+    wl_surface cube, sheet;
+    answer r;
+    memset(&cube, 0, sizeof cube); memset(&sheet, 0, sizeof sheet);
+    memset(axes.origin, 0, sizeof axes.origin);
+    wl_add_aligned_box(&cube, low, high);
+    wl_add_wave(&sheet, &axes, 16, 2);
+    r = combine(&cube, GXB_SPLIT, &sheet);
+    check_answer("wave", &r, 2, 8);
+    surface_free(&cube); surface_free(&sheet);
+}
+END_TEST
+
 /* ---- provenance ---- */
 
 static const double *corner(const gxb_operand *o, uint32_t operand, size_t triangle, size_t k) {
@@ -539,6 +556,181 @@ START_TEST(everything_knows_where_it_comes_from) {
 }
 END_TEST
 
+/* ---- coarse results ---- */
+
+static const uint32_t triangulations[3] = { GXB_DIVIDED, GXB_COARSE, GXB_MERGED };
+
+/* The answer in each way to divide it; results are read off Booleans that stay until the caller destroys them. */
+static void divide_all_ways(const gxb_operand *o, size_t count, gxb_boolean *b[3], gxb_boolean_result r[3]) {
+    gxb_boolean_desc desc;
+    size_t i;
+    int how;
+    memset(&desc, 0, sizeof desc);
+    for (how = 0; how < 3; ++how) {
+        desc.triangulation = triangulations[how];
+        ck_assert_int_eq(gxb_boolean_create(&desc, &b[how]), GX_OK);
+        for (i = 0; i < count; ++i) ck_assert_int_eq(gxb_boolean_add(b[how], &o[i], NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_evaluate(b[how], &r[how]), GX_OK);
+        check_closed(&r[how]);
+    }
+}
+
+static void count_ways(const gxb_operand *o, size_t count, size_t coarse, size_t merged) {
+    gxb_boolean *b[3];
+    gxb_boolean_result r[3];
+    int how;
+    divide_all_ways(o, count, b, r);
+    ck_assert_uint_eq(r[1].triangle_count, coarse);
+    ck_assert_uint_eq(r[2].triangle_count, merged);
+    for (how = 0; how < 3; ++how) gxb_boolean_destroy(b[how]);
+}
+
+/* Outlines with n corners and h holes take n + 2 h - 2 triangles. */
+START_TEST(faces_in_as_few_triangles_as_possible) {
+    static const double low[5][3] = { { 0, 0, 0 }, { -1, -1, 0.9 }, { 0.5, 0.75, -1 }, { 2, 0, 0 }, { 0, 0, 2 } };
+    static const double high[5][3] = { { 2, 2, 2 }, { 3, 3, 1.1 }, { 1, 1.25, 3 }, { 3, 2, 2 }, { 2, 2, 5 } };
+    wl_surface s[5];
+    gxb_operand o[5];
+    gxb_boolean *b[3];
+    gxb_boolean_result r[3];
+    size_t i;
+    memset(s, 0, sizeof s);
+    for (i = 0; i < 5; ++i) { wl_add_aligned_box(&s[i], low[i], high[i]); o[i] = operand_of(&s[i], i == 0 ? GXB_UNION : GXB_DIFFERENCE); }
+    count_ways(o, 1, 12, 12);
+    /* Two boxes. Each side of each is a triangle and a quadrilateral of the cube's triangles; where these meet, the slab's face has a fifth to
+       eighth corner. */
+    count_ways(o, 2, 2 * (2 + 4 * 3 + 6), 2 * 12);
+    /* A square hole through the cube: merged, two faces with a hole, four without, four walls. */
+    o[1] = o[2];
+    divide_all_ways(o, 2, b, r);
+    ck_assert_uint_eq(r[2].triangle_count, 2 * (4 + 4 + 2 - 2) + 4 * 2 + 4 * 2);
+    ck_assert_uint_lt(r[2].triangle_count, r[1].triangle_count);
+    ck_assert_uint_le(r[1].triangle_count, r[0].triangle_count);
+    for (i = 0; i < 3; ++i) gxb_boolean_destroy(b[i]);
+    /* Boxes side by side and on top of each other: faces that fit are gone, those that meet in one plane become one. */
+    o[1] = operand_of(&s[3], GXB_UNION);
+    count_ways(o, 2, 4 * 4 + 2 * 2, 12);
+    o[1] = operand_of(&s[4], GXB_UNION);
+    count_ways(o, 2, 4 * 4 + 2 * 2, 12);
+    for (i = 0; i < 5; ++i) surface_free(&s[i]);
+}
+END_TEST
+
+static int same_face(const gxb_boolean_result *r, size_t t, size_t u) {
+    return r->triangle_operand[t] == r->triangle_operand[u] && r->triangle_source[t] == r->triangle_source[u];
+}
+
+/* Is q - p opposite to o - p, but for rounding? */
+static int goes_straight(const double *p, const double *o, const double *q) {
+    double a[3], c[3], cross[3], size;
+    int k;
+    for (k = 0; k < 3; ++k) { a[k] = o[k] - p[k]; c[k] = q[k] - p[k]; }
+    for (k = 0; k < 3; ++k) cross[k] = a[(k + 1) % 3] * c[(k + 2) % 3] - a[(k + 2) % 3] * c[(k + 1) % 3];
+    size = sqrt((a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) * (c[0] * c[0] + c[1] * c[1] + c[2] * c[2]));
+    return a[0] * c[0] + a[1] * c[1] + a[2] * c[2] < 0 && fabs(cross[0]) + fabs(cross[1]) + fabs(cross[2]) < 1e-9 * size;
+}
+
+/* Does vertex v end an outline, or does an outline bend or branch there? Counted from the triangles around it alone. */
+static int is_needed(const gxb_boolean_result *r, uint32_t v) {
+    uint32_t ends[64];
+    size_t t, u, n = 0, i;
+    for (t = 0; t < r->triangle_count; ++t) {
+        const uint32_t *p = r->triangles + 3 * t;
+        const int k = p[0] == v ? 0 : p[1] == v ? 1 : p[2] == v ? 2 : -1;
+        uint32_t to;
+        int outline = 0;
+        if (k < 0) continue;
+        to = p[(k + 1) % 3];
+        for (u = 0; u < r->triangle_count; ++u) {
+            const uint32_t *q = r->triangles + 3 * u;
+            const int has_v = q[0] == v || q[1] == v || q[2] == v, has_to = q[0] == to || q[1] == to || q[2] == to;
+            outline = outline || (has_v && has_to && !same_face(r, t, u));
+        }
+        for (i = 0; i < n && ends[i] != to; ++i) {}
+        if (outline && i == n && n < 64) ends[n++] = to;
+    }
+    if (n == 0) return 0;
+    return n != 2 || !goes_straight(r->vertices + 3 * (size_t)v, r->vertices + 3 * (size_t)ends[0], r->vertices + 3 * (size_t)ends[1]);
+}
+
+/* Exactly: no triangle of a result without area or turned over */
+static void check_triangles(gxb_boolean *b) {
+    uint32_t t;
+    for (t = 0; t < b->out_source_count; ++t) {
+        b->plane = gxbp_out_plane(b, t);
+        ck_assert_int_eq(gxbp_turn(b, gxbp_out_corner(b, t, 0), gxbp_out_corner(b, t, 1), gxbp_out_corner(b, t, 2)), b->out_planes[t] & 1 ? -1 : 1);
+    }
+}
+
+/* Does each edge belong to two triangles? */
+static int is_manifold(const gxb_boolean_result *r) {
+    size_t i, j;
+    for (i = 0; i < 3 * r->triangle_count; ++i) {
+        const uint32_t p = r->triangles[i], q = r->triangles[i % 3 == 2 ? i - 2 : i + 1];
+        size_t same = 0;
+        for (j = 0; j < 3 * r->triangle_count; ++j) same += r->triangles[j] == p && r->triangles[j % 3 == 2 ? j - 2 : j + 1] == q;
+        if (same > 1) return 0;
+    }
+    return 1;
+}
+
+static void check_ways(const gxb_operand *o, size_t count, const char *name, unsigned seed) {
+    gxb_boolean *b[3];
+    gxb_boolean_result r[3];
+    uint32_t v;
+    size_t t, gone;
+    int how;
+    divide_all_ways(o, count, b, r);
+    for (how = 1; how < 3; ++how) {
+        const double size = r[0].volume + 1;
+        CHECK_CASE(close_to(r[how].volume, r[0].volume, size), "%s %u: volume %.17g, was %.17g", name, seed, r[how].volume, r[0].volume);
+        CHECK_CASE(r[how].component_count == r[0].component_count, "%s %u: %zu components", name, seed, r[how].component_count);
+        /* the Euler characteristic of the surface is the same: two triangles go with each vertex, more where more than two meet in an edge */
+        gone = 2 * (r[0].vertex_count - r[how].vertex_count);
+        CHECK_CASE(r[0].triangle_count - r[how].triangle_count == gone || (!is_manifold(&r[0]) && r[0].triangle_count - r[how].triangle_count > gone), "%s %u: %zu triangles of %zu, %zu vertices of %zu",
+                   name, seed, r[how].triangle_count, r[0].triangle_count, r[how].vertex_count, r[0].vertex_count);
+        check_triangles(b[how]);
+    }
+    for (v = 0; v < r[1].vertex_count; ++v) CHECK_CASE(is_needed(&r[1], v), "%s %u: vertex %u is needless", name, seed, v);
+    for (t = 0; t < 3 * r[1].triangle_count; ++t)
+        ck_assert(off_plane(o, r[1].triangle_operand[t / 3], r[1].triangle_source[t / 3], r[1].vertices + 3 * (size_t)r[1].triangles[t]) < 1e-10);
+    ck_assert_uint_le(r[2].triangle_count, r[1].triangle_count);
+    for (how = 0; how < 3; ++how) gxb_boolean_destroy(b[how]);
+}
+
+START_TEST(coarse_results_are_the_same_solids) {
+    static const uint32_t operations[5] = { GXB_UNION, GXB_INTERSECTION, GXB_DIFFERENCE, GXB_SYMMETRIC_DIFFERENCE, GXB_SPLIT };
+    unsigned seed;
+    int i;
+    for (seed = 1; seed <= 80; ++seed) {
+        wl_surface s[3];
+        gxb_operand o[3];
+        random_state = 7000 + seed;
+        for (i = 0; i < 3; ++i) {
+            s[i] = random_solid(2);
+            disturb(&s[i], (int)(seed % 3));
+            o[i] = operand_of(&s[i], i == 0 ? (uint32_t)GXB_UNION : operations[random_below(5)]);
+        }
+        check_ways(o, 3, "seed", seed);
+        for (i = 0; i < 3; ++i) surface_free(&s[i]);
+    }
+}
+END_TEST
+
+START_TEST(coarse_sticks) {
+    wl_frame rotated = wl_rotated();
+    workload w = wl_sticks(&rotated);
+    wl_surface body = boundary_of(&w);
+    gxb_operand o[WL_SURFACES + 1];
+    size_t i;
+    o[0] = operand_of(&body, GXB_UNION);
+    for (i = 0; i < w.surface_count; ++i) o[i + 1] = operand_of(&w.surfaces[i], GXB_DIFFERENCE);
+    check_ways(o, w.surface_count + 1, "sticks", 0);
+    surface_free(&body);
+    wl_free(&w);
+}
+END_TEST
+
 /* ---- memory and bad input ---- */
 
 typedef struct memory { size_t live, calls, fail_at; int from_then_on; } memory;
@@ -566,6 +758,8 @@ static answer stubborn(memory *m, const gxb_operand *o, int *failed) {
     int i;
     memset(&desc, 0, sizeof desc);
     desc.allocator.allocate = take; desc.allocator.release = give; desc.allocator.user = m;
+    desc.triangulation = GXB_COARSE;
+    desc.memory_limit = (size_t)1 << 19;        /* so little that each array is allocated by itself */
     *failed = 0;
     for (i = -1; i < 6; ++i) {
         for (;;) {
@@ -650,6 +844,7 @@ START_TEST(bad_input_is_refused) {
     static const double zero[3] = { 0, 0, 0 }, one[3] = { 1, 1, 1 };
     wl_surface s;
     gxb_operand good, o;
+    gxb_boolean_desc desc;
     gxb_boolean *b = NULL;
     gxb_boolean_result r;
     size_t i;
@@ -668,6 +863,9 @@ START_TEST(bad_input_is_refused) {
     s.vertices[10] = 1e300; ck_assert_int_eq(refusal(&good, &i), GX_ERROR_RANGE);
     s.vertices[10] = kept;
     ck_assert_int_eq(gxb_boolean_create(NULL, NULL), GX_ERROR_ARGUMENT);
+    memset(&desc, 0, sizeof desc);
+    desc.triangulation = 3;
+    ck_assert_int_eq(gxb_boolean_create(&desc, &b), GX_ERROR_ARGUMENT);
     ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
     ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_ERROR_EMPTY);
     o = good; o.triangle_count = 11;            /* a refused operand leaves nothing behind */
@@ -697,7 +895,11 @@ int main(void) {
     tcase_add_test(tests, cavities_belong_to_their_component);
     tcase_add_test(tests, touching_solids);
     tcase_add_test(tests, sheets_divide);
+    tcase_add_test(tests, a_wave_divides);
     tcase_add_test(tests, everything_knows_where_it_comes_from);
+    tcase_add_test(tests, faces_in_as_few_triangles_as_possible);
+    tcase_add_test(tests, coarse_results_are_the_same_solids);
+    tcase_add_test(tests, coarse_sticks);
     tcase_add_test(tests, memory_runs_out);
     tcase_add_test(tests, memory_limit);
     tcase_add_test(tests, bad_input_is_refused);
