@@ -23,7 +23,7 @@ enum { CHECK_VOLUMES, CHECK_SAMENESS, CHECK_RULES, CHECK_PROVENANCE, CHECK_AGAIN
 
 typedef struct test_case {
     int complex;                            /* 1: operand[0].mesh is the boundary of the tetrahedra, the others are sheets */
-    int style, fine, check;                 /* check: what else is looked at, CHECK_VOLUMES ... */
+    int style, fine, small, check;          /* small: of tetrahedra; check: what else is looked at, CHECK_VOLUMES ... */
     case_operand operand[CASE_OPERANDS + CASE_SHEETS];
     size_t operands;
     double nodes[8][3];
@@ -327,7 +327,7 @@ static inline void case_operand_of(case_bytes *b, test_case *c) {
         return;
     }
     if (o->operation == 4 && head % 2 == 0) case_random_sheet(b, &o->mesh);
-    else case_shape(b, &o->mesh, head % 16);
+    else case_shape(b, &o->mesh, c->small ? 1 + (head % 16) / 8 : head % 16);
     n = o->mesh.triangles;
     switch (more / 8 % 16) {
     case 0: case_reverse(&o->mesh); break;
@@ -405,7 +405,8 @@ static inline void case_decode(const uint8_t *data, size_t size, test_case *c) {
     c->style = (int)case_below(&b, CASE_STYLES);
     check = case_take(&b);
     c->check = (int)(check % CHECKS);
-    c->fine = check / 16 == 0;
+    c->small = check / 8 % 4 != 0;
+    c->fine = (head >> 3 & 3) == 0 && check / 128 == 0;
     c->complex = head % 8 == 7;
     c->operands = 0;
     if (c->complex) { case_body(&b, c); case_cuts(&b, c); return; }
