@@ -5593,7 +5593,7 @@ static void gxbp_sort_projected(gxbp_projected *p, uint32_t count, gxbp_projecte
 }
 
 /* Points that are new since the last time are compared with all that lie within the errors of both along a direction in which few
-   points agree. */
+   points agree. The older name stays, in whatever order they are found. */
 static void gxbp_merge_points(gxb_boolean *b) {
     static const double direction[3] = {0.6180339887, 0.4142135623, 0.7320508075};
     const size_t size = 2 * (size_t)b->vertex_count * sizeof(gxbp_projected);
@@ -5614,7 +5614,7 @@ static void gxbp_merge_points(gxb_boolean *b) {
     for (i = 0; i < n; i++)
         for (j = i + 1; j < n && p[j].t - p[i].t <= 8 * reach; j++) {
             const uint32_t q = gxbp_same(b, p[i].point), r = gxbp_same(b, p[j].point);
-            if (q != r && (q >= b->merged_points || r >= b->merged_points) && gxbp_points_equal(b, q, r)) gxbp_unite(b, q, r);
+            if (q != r && (q >= b->merged_points || r >= b->merged_points) && gxbp_points_equal(b, q, r)) gxbp_unite(b, q < r ? q : r, q < r ? r : q);
         }
     gxbp_release(&b->cx.allocator, p, size);
     b->merged_points = b->vertex_count;

@@ -28,10 +28,11 @@ static uint64_t scramble(uint64_t z)
     return z ^ z >> 27;
 }
 
-/* Steps of the lattice become 2^16 or 2^44 of them. */
+/* Steps of the lattice become 2^16 or 2^44 of them. What is not on the lattice (copies turned a little) comes back to it first. */
 static void place(case_mesh *m, uint64_t seed)
 {
     uint32_t i, k;
+    for (i = 0; i < m->vertices; ++i) for (k = 0; k < 3; ++k) m->x[i][k] = fabs(m->x[i][k]) < 64 ? floor(m->x[i][k] + 0.3) : m->x[i][k];
     for (i = 0; i < m->vertices && seed % 3 != 0; ++i)
         for (k = 0; k < 3; ++k) {
             const uint64_t random = scramble(seed << 32 ^ i << 8 ^ k) >> 20;
@@ -42,7 +43,6 @@ static void place(case_mesh *m, uint64_t seed)
 static void hash_result(const gxb_boolean_result *r, size_t operands)
 {
     size_t i;
-    mix(&r->vertex_count, sizeof r->vertex_count);
     MIX(r->triangles, 3 * r->triangle_count);
     MIX(r->triangle_operand, r->triangle_count);
     MIX(r->triangle_source, r->triangle_count);
@@ -55,30 +55,53 @@ static void hash_result(const gxb_boolean_result *r, size_t operands)
     for (i = 0; i < r->vertex_count; ++i) MIX(&r->vertex_origin[i], 1);
 }
 
-static void run_case(uint64_t seed)
+/* Two sheets of 5 x 5 squares, one above the other, closed around: enough triangles to be sorted, at thirds, elevenths and 31sts of their box */
+static void add_terrain(case_operand *o, uint64_t seed, int axis)
 {
-    static test_case c;
-    uint8_t bytes[CASE_BYTES];
+    static const double at[6] = { 0, 2, 5, 6, 9, 11 };
+    case_mesh *m = &o->mesh;
+    uint32_t i, j, level;
+    memset(o, 0, sizeof *o);
+    o->operation = axis == 0 ? GXB_UNION : GXB_DIFFERENCE;
+    for (level = 0; level < 2; ++level) for (j = 0; j < 6; ++j) for (i = 0; i < 6; ++i) {
+        const double height = (double)(scramble(seed << 16 ^ j << 8 ^ i) % 8) + (level == 0 ? 0 : 3);
+        const uint32_t v = case_vertex(m, 0, 0, 0);
+        m->x[v][axis] = 31 * at[i]; m->x[v][(axis + 1) % 3] = 31 * at[j]; m->x[v][(axis + 2) % 3] = 31 * height;
+    }
+    for (j = 0; j < 5; ++j) for (i = 0; i < 5; ++i) for (level = 0; level < 2; ++level) {
+        const uint32_t a = 36 * level + 6 * j + i, b = a + (level ? 1 : 6), c = a + (level ? 6 : 1);
+        case_triangle(m, a, b, c);
+        case_triangle(m, b, a + 7, c);
+    }
+    for (i = 0; i < 5; ++i) {
+        const uint32_t rim[4][2] = { { i, i + 1 }, { 31 + i, 30 + i }, { 6 * i + 6, 6 * i }, { 6 * i + 5, 6 * i + 11 } };
+        for (j = 0; j < 4; ++j) {
+            case_triangle(m, rim[j][0], rim[j][1], rim[j][1] + 36);
+            case_triangle(m, rim[j][0], rim[j][1] + 36, rim[j][0] + 36);
+        }
+    }
+}
+
+static void run_operands(const test_case *c, uint64_t seed, int moved)
+{
     gxb_boolean_desc desc;
     gxb_boolean_result r;
     gxb_boolean *b = NULL;
     size_t i, operands = 0;
     int result = 0;
-    case_fill(seed, bytes);
-    bytes[0] &= 0xf8;               /* a Boolean */
-    bytes[1] = 0;                   /* of lattice points */
-    case_decode(bytes, CASE_BYTES, &c);
     memset(&desc, 0, sizeof desc);
     desc.fine = 1;
     desc.mend = seed / 3 % 2;
     if (gxb_boolean_create(&desc, &b) != GX_OK) return;
-    for (i = 0; i < c.operands; ++i) {
+    for (i = 0; i < c->operands; ++i) {
+        static case_mesh m;
         gxb_operand o;
         memset(&o, 0, sizeof o);
-        place(&c.operand[i].mesh, seed + 3 * i);
-        o.vertices = &c.operand[i].mesh.x[0][0]; o.vertex_count = c.operand[i].mesh.vertices;
-        o.triangles = &c.operand[i].mesh.t[0][0]; o.triangle_count = c.operand[i].mesh.triangles;
-        o.operation = c.operand[i].operation; o.rule = c.operand[i].rule;
+        m = c->operand[i].mesh;
+        if (moved) place(&m, seed + 3 * i);
+        o.vertices = &m.x[0][0]; o.vertex_count = m.vertices;
+        o.triangles = &m.t[0][0]; o.triangle_count = m.triangles;
+        o.operation = c->operand[i].operation; o.rule = c->operand[i].rule;
         result = (int)gxb_boolean_add(b, &o, NULL);
         operands += result == GX_OK;
         mix(&result, sizeof result);
@@ -88,6 +111,22 @@ static void run_case(uint64_t seed)
         if (result == GX_OK) hash_result(&r, operands);
     }
     gxb_boolean_destroy(b);
+}
+
+static void run_case(uint64_t seed)
+{
+    static test_case c;
+    uint8_t bytes[CASE_BYTES];
+    case_fill(seed, bytes);
+    bytes[0] &= 0xf8;               /* a Boolean */
+    bytes[1] = 0;                   /* of lattice points */
+    case_decode(bytes, CASE_BYTES, &c);
+    run_operands(&c, seed, 1);
+    if (seed % 20 != 0) return;
+    add_terrain(&c.operand[0], seed, 0);
+    add_terrain(&c.operand[1], seed + 1, (int)(seed / 20 % 3));
+    c.operands = 2;
+    run_operands(&c, seed, 0);
 }
 
 int main(void)
