@@ -381,15 +381,29 @@ static int exact_point(const scene *s, const gxb_origin *o, big h[4])
     }
 }
 
-/* |x - h| beside the largest coordinate of the point: fine results are right to the last place or two of their coordinates */
+/* Is no double nearer to num / den > 0 than x? */
+static int is_nearest(double x, big num, big den)
+{
+    const double beside[2] = { nextafter(x, 0), nextafter(x, INFINITY) };
+    const big twice = big_add(num, num);
+    int k, good = 1;
+    for (k = 0; k < 2; ++k) {
+        const big middle = big_mul(big_add(big_from_double(x), big_from_double(beside[k])), den);
+        good = good && (k == 0 ? big_compare(twice, middle) >= 0 : big_compare(twice, middle) <= 0);
+    }
+    return good;
+}
+
+/* Fine vertices are nearest to the exact point, others within 1e-10 of its largest coordinate. */
 static void check_rounding(const double *x, const big h[4], int fine, size_t vertex)
 {
-    double size = 0, exact[3], bound;
+    double size = 0, exact[3];
     int k;
     for (k = 0; k < 3; ++k) { exact[k] = rat_to_double(rat_ratio(h[k], h[3])); size = fmax(size, fabs(exact[k])); }
     for (k = 0; k < 3; ++k) {
-        bound = fine ? ldexp(fabs(exact[k]), -48) : 1.1e-10 * size;
-        REQUIRE(fabs(x[k] - exact[k]) <= bound, "vertex %zu: %.17g should be %.17g", vertex, x[k], exact[k]);
+        REQUIRE(fine || fabs(x[k] - exact[k]) <= 1.1e-10 * size, "vertex %zu: %.17g should be %.17g", vertex, x[k], exact[k]);
+        REQUIRE(!fine || (x[k] < 0) == (h[k].sign * h[3].sign < 0), "vertex %zu: %.17g should be %.17g", vertex, x[k], exact[k]);
+        REQUIRE(!fine || is_nearest(fabs(x[k]), big_abs(h[k]), big_abs(h[3])), "vertex %zu: %.17g is not the double nearest to it", vertex, x[k]);
     }
 }
 
