@@ -107,15 +107,14 @@ sanitize:
 sanitize-scenes:
 	@$(MAKE) --no-print-directory -j$(JOBS) scenes SMALL=1 BUILD=$(BUILD)/sanitize CFLAGS="$(sanitizers)"
 
-# By libFuzzer where the compiler has it, from the corpus on, for SECONDS; else, or with SEED or CASES, a loop over seeds. What fails is
-# written to $(BUILD)/fuzz and replays by itself: $(BUILD)/fuzz/fuzz FILE.
+# By libFuzzer (with sanitizers) where there is clang with it, from the corpus on, for SECONDS; else, or with SEED or CASES, a loop over seeds.
+# A case that fails is written to $(BUILD)/fuzz and replays by itself: $(BUILD)/fuzz/fuzz FILE.
 SECONDS = 60
+libfuzzer = clang -std=c99 -O1 -g -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all -DFUZZ_LIBFUZZER
 fuzz: $(BUILD)/fuzz/fuzz
-	@if [ -z "$(SEED)$(CASES)" ] && $(fuzz_compiler) -fsanitize=fuzzer -DFUZZ_LIBFUZZER tests/fuzz.c -o $(BUILD)/fuzz/libfuzzer -lm 2>/dev/null; then \
-	    mkdir -p $(BUILD)/fuzz/corpus && cd $(BUILD)/fuzz && ./libfuzzer -max_total_time=$(SECONDS) -max_len=128 corpus $(CURDIR)/tests/corpus; \
+	@if [ -z "$(SEED)$(CASES)" ] && $(libfuzzer) tests/fuzz.c -o $(BUILD)/fuzz/libfuzzer -lm 2>/dev/null; then \
+	    mkdir -p $(BUILD)/fuzz/corpus && $(BUILD)/fuzz/libfuzzer -max_total_time=$(SECONDS) -max_len=128 -artifact_prefix=$(BUILD)/fuzz/ $(BUILD)/fuzz/corpus tests/corpus; \
 	else $(BUILD)/fuzz/fuzz --out=$(BUILD)/fuzz --seed=$(or $(SEED),1) --cases=$(or $(CASES),0) --seconds=$(if $(CASES),0,$(SECONDS)); fi
-
-fuzz_compiler = clang -std=c99 $(WARNINGS) -g $(if $(filter -O0 -O2,$(CFLAGS)),-O1,$(CFLAGS))
 
 $(BUILD)/fuzz/fuzz: tests/fuzz.c tests/fuzz_cases.h tests/fuzz_oracle.h tests/oracle.h tests/rational.h gxfem_boolean.h
 	@mkdir -p $(@D)

@@ -656,9 +656,9 @@ static void give_memory(void *user, void *memory, size_t size)
 }
 
 /* One allocation fails, somewhere: the call says so and, made again, works. */
-static void check_memory(const scene *s, const answer *a, double size, int fine, uint64_t allocations)
+static void check_memory(const scene *s, const answer *a, double size, int fine, uint64_t fail_at)
 {
-    short_memory m = { 0, 0, 0 };
+    short_memory m = { 0, fail_at, 0 };
     gxb_boolean_desc desc;
     gxb_boolean_result r;
     gxb_boolean *b = NULL;
@@ -666,7 +666,6 @@ static void check_memory(const scene *s, const answer *a, double size, int fine,
     size_t i;
     gx_result result;
     memset(&desc, 0, sizeof desc);
-    m.fail_at = at.seed % (allocations + 1);
     desc.fine = (uint32_t)fine;
     desc.allocator.allocate = take_memory; desc.allocator.release = give_memory; desc.allocator.user = &m;
     while ((result = gxb_boolean_create(&desc, &b)) == GX_ERROR_MEMORY) { }
@@ -721,7 +720,7 @@ static void test_boolean(test_case *c, int ask)
     case CHECK_PROVENANCE: check_provenance(&s, &r, c->fine); break;
     case CHECK_AGAIN: check_again(&r, &chain, size); break;
     case CHECK_MENDING: check_mending(&s, &chain, size); break;
-    case CHECK_MEMORY: check_memory(&s, &chain, size, c->fine, r.allocations); break;
+    case CHECK_MEMORY: check_memory(&s, &chain, size, c->fine, c->number % (r.allocations + 1)); break;
     default: break;
     }
     gxb_boolean_destroy(b);

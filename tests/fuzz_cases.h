@@ -23,6 +23,7 @@ enum { CHECK_VOLUMES, CHECK_SAMENESS, CHECK_RULES, CHECK_PROVENANCE, CHECK_AGAIN
 
 typedef struct test_case {
     int complex;                            /* 1: operand[0].mesh is the boundary of the tetrahedra, the others are sheets */
+    uint32_t number;                        /* any, of the bytes */
     int style, fine, small, check;          /* small: of tetrahedra; check: what else is looked at, CHECK_VOLUMES ... */
     case_operand operand[CASE_OPERANDS + CASE_SHEETS];
     size_t operands;
@@ -401,6 +402,8 @@ static inline void case_decode(const uint8_t *data, size_t size, test_case *c) {
     case_bytes b = { NULL, 0, 0 };
     uint32_t head, operands, check;
     b.data = data; b.size = size;
+    for (c->number = 0; b.at < size; b.at++) c->number = c->number * 31 + data[b.at];
+    b.at = 0;
     head = case_take(&b);
     c->style = (int)case_below(&b, CASE_STYLES);
     check = case_take(&b);
