@@ -516,7 +516,7 @@ static void check_sameness(const test_case *c, const answer *a, int fine)
     }
     b = combine(&s, fine, 1);
     check_same("in sequence, other axes", &b, a, size, fine);
-    if (!commutes || c->operands < 2) return;
+    if (!commutes || c->operands < 2 || scale_of(&c->operand[0]) != scale_of(&c->operand[c->operands - 1])) return;
     for (i = 0; i < c->operands; ++i) other.operand[i] = c->operand[c->operands - 1 - i];
     for (i = 0; i < c->operands; ++i) other.operand[i].operation = GXB_UNION;
     b = combine(&s, fine, 0);
