@@ -234,8 +234,22 @@ static inline void case_flap(case_bytes *b, case_mesh *m) {
     case_triangle(m, i, k, j);
 }
 
+/* Boxes within boxes, every other one inside out: shells in cavities; one may be left out, two may touch */
+static inline void case_random_nest(case_bytes *b, case_mesh *m) {
+    const uint32_t head = case_take(b), boxes = 3 + head % 4;
+    double low[3], high[3];
+    uint32_t i, k, n, swap;
+    for (i = 0; i < boxes; ++i) {
+        if (i > 0 && head / 4 % 8 == i) continue;
+        for (k = 0; k < 3; ++k) { low[k] = 0.25 * i + (head >> 5 == i ? 0.25 : 0); high[k] = 4 - 0.25 * i - (head >> 6 == i ? 0.25 : 0); }
+        n = m->triangles;
+        case_box(m, low, high);
+        for (; i % 2 == 1 && n < m->triangles; ++n) { swap = m->t[n][1]; m->t[n][1] = m->t[n][2]; m->t[n][2] = swap; }
+    }
+}
+
 static inline void case_shape(case_bytes *b, case_mesh *m, uint32_t kind) {
-    switch (kind % 12) {
+    switch (kind % 13) {
     case 0: case_random_box(b, m); break;
     case 1: case_random_tetrahedron(b, m); break;
     case 2: case_random_pool(b, m); break;
@@ -247,6 +261,7 @@ static inline void case_shape(case_bytes *b, case_mesh *m, uint32_t kind) {
     case 8: case_random_tetrahedron(b, m); case_random_tetrahedron(b, m); break;
     case 9: case_random_box(b, m); case_random_tetrahedron(b, m); break;
     case 10: case_random_cube(b, m); break;
+    case 11: case_random_nest(b, m); break;
     default: case_random_tetrahedron(b, m); case_flap(b, m); break;
     }
 }

@@ -9,7 +9,11 @@
 
 enum { FUZZ_ORACLE_PLANES = 22, FUZZ_ORACLE_PIECES = 900 };
 
-typedef struct fuzz_truth { size_t components; long euler; double volume; } fuzz_truth;
+typedef struct fuzz_truth {
+    size_t components;
+    long euler;
+    double volume, part[FUZZ_ORACLE_PIECES];    /* part: of the components */
+} fuzz_truth;
 
 /* ---- faces of pieces ---- */
 
@@ -156,18 +160,21 @@ static inline void fuzz_choose_pieces(oracle *o, const test_case *c, int (*insid
     free(region);
 }
 
-static inline fuzz_truth fuzz_read_pieces(oracle *o) {
-    fuzz_truth truth = { 0, 0, 0 };
-    size_t *component = oracle_singles(o->piece_count), i;
+static inline void fuzz_read_pieces(oracle *o, fuzz_truth *truth) {
+    size_t *component = oracle_singles(o->piece_count), *name = oracle_singles(o->piece_count), i;
+    memset(truth, 0, sizeof *truth);
     oracle_join_inside(o, component, 0);
     for (i = 0; i < o->piece_count; ++i) {
+        const size_t root = oracle_root(component, i);
+        double volume;
         if (o->pieces[i].removed) continue;
-        truth.components += oracle_root(component, i) == i;
-        truth.volume += oracle_piece_volume(o, &o->pieces[i]);
+        if (root == i) name[i] = truth->components++;
+        volume = oracle_piece_volume(o, &o->pieces[i]);
+        truth->part[name[root]] += volume;
+        truth->volume += volume;
     }
-    truth.euler = fuzz_euler(o);
-    free(component);
-    return truth;
+    truth->euler = fuzz_euler(o);
+    free(component); free(name);
 }
 
 /* 0: too large for it */
@@ -199,7 +206,7 @@ static inline int fuzz_ask_oracle(const test_case *c, int (*inside)(const case_o
     }
     if (small) {
         fuzz_choose_pieces(o, c, inside);
-        *truth = fuzz_read_pieces(o);
+        fuzz_read_pieces(o, truth);
     }
     oracle_destroy(o);
     return small;
