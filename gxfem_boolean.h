@@ -5832,14 +5832,17 @@ static void gxbp_shoot(gxb_boolean *b, gxbp_ray *ray, const gxbp_operand *o, uin
         if (gxbp_ray_meets(ray, &b->bounds[o->source + c])) gxbp_cross_ray(b, ray, o->order[c]);
 }
 
-/* The start lies on the side of the facet's plane that the first of n_y, n_z, n_x which is not 0 says; from behind (n_x > 0) or from
-   in front (n_x < 0) the ray passes the facet itself. */
-static void gxbp_cross_own(gxb_boolean *b, const gxbp_ray *ray) {
-    const uint32_t plane = gxbp_root_plane(b, ray->f);
-    const int nx = gxbp_normal_sign(&b->cx, plane, 0);
+/* The start lies on the side of the facet's plane that the first of n_y, n_z, n_x which is not 0 says. */
+static int gxbp_start_side(gxb_boolean *b, uint32_t plane) {
     int side = gxbp_normal_sign(&b->cx, plane, 1);
     if (side == 0) side = gxbp_normal_sign(&b->cx, plane, 2);
-    if (side == 0) side = nx;
+    return side != 0 ? side : gxbp_normal_sign(&b->cx, plane, 0);
+}
+
+/* From behind (n_x > 0) or from in front (n_x < 0) the ray passes the facet itself. */
+static void gxbp_cross_own(gxb_boolean *b, const gxbp_ray *ray) {
+    const uint32_t plane = gxbp_root_plane(b, ray->f);
+    const int nx = gxbp_normal_sign(&b->cx, plane, 0), side = gxbp_start_side(b, plane);
     if (nx * side < 0) gxbp_add_covers(b, ray->f, nx, ray->winding);
     if (side < 0) gxbp_add_covers(b, ray->f, -1, ray->winding);         /* from the state behind to the one in front */
 }
@@ -6334,6 +6337,14 @@ static int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p, uint32_t 
     return turn != 0 ? turn : gxbp_compare_points(b, q, p, 1);
 }
 
+/* What a ray from a sheet's facet counts of triangle t, the other side of that facet: it may pass it, and it should have started on the side that
+   t faces. */
+static int gxbp_cross_other_side(gxb_boolean *b, uint32_t t) {
+    const uint32_t plane = gxbp_out_plane(b, t);
+    const int nx = gxbp_normal_sign(&b->cx, plane, 0), side = gxbp_start_side(b, plane), facing = b->out_planes[t] & 1 ? -1 : 1;
+    return (nx * side < 0 ? nx * facing : 0) - (side != facing);
+}
+
 /* The smallest shell with volume around a cavity's (or a sheet's) shell. */
 static uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, uint32_t *parent, const double *volume, int32_t *winding) {
     gxbp_ray ray;
@@ -6347,6 +6358,7 @@ static uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, uint32_t *p
         int left, behind;
         uint32_t c[3];
         if (root == cavity || !(volume[root] > 0)) continue;
+        if (b->out_planes[t] / 2 == b->out_planes[cavity] / 2) { winding[root] += gxbp_cross_other_side(b, t); continue; }
         for (k = 0; k < 3; k++) c[k] = gxbp_out_corner(b, t, k);
         left = gxbp_ray_left_of(b, &ray, c[0], c[1]);
         if (left == 0 || gxbp_ray_left_of(b, &ray, c[1], c[2]) != left || gxbp_ray_left_of(b, &ray, c[2], c[0]) != left) continue;

@@ -519,6 +519,42 @@ START_TEST(sheets_divide) {
 }
 END_TEST
 
+/* A closed sheet within a cube: what is inside it is another component, and what is around it has a cavity, whichever of its triangles comes first. */
+START_TEST(closed_sheets_divide) {
+    static const double zero[3] = { 0, 0, 0 }, three[3] = { 3, 3, 3 }, one[3] = { 1, 1, 1 }, two[3] = { 2, 2, 2 };
+    wl_surface cube, sheet;
+    gxb_operand o[2];
+    size_t i, k;
+    memset(&cube, 0, sizeof cube); memset(&sheet, 0, sizeof sheet);
+    wl_add_aligned_box(&cube, zero, three);
+    wl_add_aligned_box(&sheet, one, two);
+    o[0] = operand_of(&cube, GXB_UNION); o[1] = operand_of(&sheet, GXB_SPLIT);
+    for (i = 0; i < 2 * sheet.triangle_count; ++i) {
+        uint32_t first[3];
+        gxb_boolean *b = NULL;
+        gxb_boolean_result r;
+        memcpy(first, sheet.triangles, sizeof first);
+        memmove(sheet.triangles, sheet.triangles + 3, 3 * (sheet.triangle_count - 1) * sizeof *first);
+        memcpy(sheet.triangles + 3 * (sheet.triangle_count - 1), first, sizeof first);
+        if (i == sheet.triangle_count)                              /* from here on inside out */
+            for (k = 0; k < sheet.triangle_count; ++k) {
+                const uint32_t swap = sheet.triangles[3 * k];
+                sheet.triangles[3 * k] = sheet.triangles[3 * k + 1]; sheet.triangles[3 * k + 1] = swap;
+            }
+        ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
+        for (k = 0; k < 2; ++k) ck_assert_int_eq(gxb_boolean_add(b, &o[k], NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
+        ck_assert_uint_eq(r.component_count, 2);
+        ck_assert(r.component_volume[0] == 26 && r.component_volume[1] == 1);
+        ck_assert(r.component_euler[0] == 4 && r.component_euler[1] == 2);
+        ck_assert_int_eq(r.component_side[1], i < sheet.triangle_count ? 1 : -1);
+        ck_assert_int_eq(r.component_side[3], -r.component_side[1]);
+        gxb_boolean_destroy(b);
+    }
+    surface_free(&cube); surface_free(&sheet);
+}
+END_TEST
+
 /* ---- provenance ---- */
 
 static const double *corner(const gxb_operand *o, uint32_t operand, size_t triangle, size_t k) {
@@ -834,6 +870,7 @@ int main(void) {
     tcase_add_test(tests, touching_solids);
     tcase_add_test(tests, handles_are_counted);
     tcase_add_test(tests, sheets_divide);
+    tcase_add_test(tests, closed_sheets_divide);
     tcase_add_test(tests, everything_knows_where_it_comes_from);
     tcase_add_test(tests, rounding_is_mended);
     tcase_add_test(tests, rounded_sticks_are_mended);
