@@ -30,7 +30,7 @@
 
 /* ---- failures ---- */
 
-enum { CASE_SECONDS = 20, PARTS = 12 };
+enum { CASE_SECONDS = 60, PARTS = 12 };
 
 static struct {
     const uint8_t *bytes;
@@ -909,7 +909,7 @@ static int run_seeds(uint64_t seed, uint64_t cases, long seconds)
     volatile uint64_t i;
     at.random = 1;
     for (i = 0; (cases == 0 || i < cases) && failed < 20; ++i) {
-        if (i % 256 == 0) {
+        if (i % 16 == 0) {
             alarm(CASE_SECONDS);
             if (seconds > 0 && time(NULL) - start >= seconds) break;
         }
