@@ -5832,17 +5832,19 @@ static void gxbp_shoot(gxb_boolean *b, gxbp_ray *ray, const gxbp_operand *o, uin
         if (gxbp_ray_meets(ray, &b->bounds[o->source + c])) gxbp_cross_ray(b, ray, o->order[c]);
 }
 
-/* The start lies on the side of the facet's plane that the first of n_y, n_z, n_x which is not 0 says. */
-static int gxbp_start_side(gxb_boolean *b, uint32_t plane) {
-    int side = gxbp_normal_sign(&b->cx, plane, 1);
-    if (side == 0) side = gxbp_normal_sign(&b->cx, plane, 2);
-    return side != 0 ? side : gxbp_normal_sign(&b->cx, plane, 0);
+/* The side of a plane to which a point of it is moved: 0 for planes across x. */
+static int gxbp_moved_side(gxb_boolean *b, uint32_t plane) {
+    const int side = gxbp_normal_sign(&b->cx, plane, 1);
+    return side != 0 ? side : gxbp_normal_sign(&b->cx, plane, 2);
 }
 
-/* From behind (n_x > 0) or from in front (n_x < 0) the ray passes the facet itself. */
+/* The start lies on the side of the facet's plane that the first of n_y, n_z, n_x which is not 0 says; from behind (n_x > 0) or from
+   in front (n_x < 0) the ray passes the facet itself. */
 static void gxbp_cross_own(gxb_boolean *b, const gxbp_ray *ray) {
     const uint32_t plane = gxbp_root_plane(b, ray->f);
-    const int nx = gxbp_normal_sign(&b->cx, plane, 0), side = gxbp_start_side(b, plane);
+    const int nx = gxbp_normal_sign(&b->cx, plane, 0);
+    int side = gxbp_moved_side(b, plane);
+    if (side == 0) side = nx;
     if (nx * side < 0) gxbp_add_covers(b, ray->f, nx, ray->winding);
     if (side < 0) gxbp_add_covers(b, ray->f, -1, ray->winding);         /* from the state behind to the one in front */
 }
@@ -6324,8 +6326,8 @@ static void gxbp_measure_shells(gxb_boolean *b, uint32_t *parent, double *volume
         if (parent[t] == t && (b->fine || error[t] > GXBP_VOLUME_ERROR * gxbp_abs(volume[t]))) volume[t] = gxbp_fine_volume(b, parent, t);
 }
 
-/* gxbp_ray_left for points of the result */
-static int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p, uint32_t q) {
+/* gxbp_ray_left for points of the result, and a ray moved by way (h, h^2) */
+static int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p, uint32_t q, int way) {
     gxbp_vec s, t;
     const gxb_num *x, *y;
     int turn = gxbp_filter_turn(&b->cx.points[p].ball, &b->cx.points[q].ball, &ray->ball, 1, 2);
@@ -6333,21 +6335,15 @@ static int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p, uint32_t 
     x = gxbp_exact_cpoint(&b->cx, p, &s);
     y = gxbp_exact_cpoint(&b->cx, q, &t);
     turn = gxbp_orient_exact(x, y, gxbp_exact_probe(b, ray)->exact.c, 1, 2);
-    if (turn == 0) turn = gxbp_compare_points(b, p, q, 2);
-    return turn != 0 ? turn : gxbp_compare_points(b, q, p, 1);
+    if (turn == 0) turn = way * gxbp_compare_points(b, p, q, 2);
+    return turn != 0 ? turn : way * gxbp_compare_points(b, q, p, 1);
 }
 
-/* What a ray from a sheet's facet counts of triangle t, the other side of that facet: it may pass it, and it should have started on the side that
-   t faces. */
-static int gxbp_cross_other_side(gxb_boolean *b, uint32_t t) {
-    const uint32_t plane = gxbp_out_plane(b, t);
-    const int nx = gxbp_normal_sign(&b->cx, plane, 0), side = gxbp_start_side(b, plane), facing = b->out_planes[t] & 1 ? -1 : 1;
-    return (nx * side < 0 ? nx * facing : 0) - (side != facing);
-}
-
-/* The smallest shell with volume around a cavity's (or a sheet's) shell. */
+/* The smallest shell with volume around a cavity's (or a sheet's) shell. The ray begins on that side of its facet on which its solid lies: on the
+   other one, of a sheet, begins another's. */
 static uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, uint32_t *parent, const double *volume, int32_t *winding) {
     gxbp_ray ray;
+    const int turned = b->out_planes[cavity] & 1 ? 1 : -1, moved = gxbp_moved_side(b, gxbp_out_plane(b, cavity)), way = moved == 0 ? 1 : moved * turned;
     uint32_t t, best = GXB_NONE, k;
     gxbp_set_ray(b, &ray, b->out_planes[cavity] / 2);
     for (t = 0; t < b->out_source_count; t++) winding[t] = 0;
@@ -6358,10 +6354,9 @@ static uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, uint32_t *p
         int left, behind;
         uint32_t c[3];
         if (root == cavity || !(volume[root] > 0)) continue;
-        if (b->out_planes[t] / 2 == b->out_planes[cavity] / 2) { winding[root] += gxbp_cross_other_side(b, t); continue; }
         for (k = 0; k < 3; k++) c[k] = gxbp_out_corner(b, t, k);
-        left = gxbp_ray_left_of(b, &ray, c[0], c[1]);
-        if (left == 0 || gxbp_ray_left_of(b, &ray, c[1], c[2]) != left || gxbp_ray_left_of(b, &ray, c[2], c[0]) != left) continue;
+        left = gxbp_ray_left_of(b, &ray, c[0], c[1], way);
+        if (left == 0 || gxbp_ray_left_of(b, &ray, c[1], c[2], way) != left || gxbp_ray_left_of(b, &ray, c[2], c[0], way) != left) continue;
         value = gxbp_filter_side(&ray.ball, &b->cx.planes[plane].filter, &bound);
         behind = -gxbp_filter_sign(value, bound);
         if (behind == 0) {
@@ -6370,6 +6365,8 @@ static uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, uint32_t *p
             gxbp_exact_side(&side, gxbp_exact_probe(b, &ray)->exact.c, gxbp_exact_cplane(&b->cx, plane, &store));
             behind = -side.sign;
         }
+        if (behind == 0) behind = -way * gxbp_moved_side(b, plane);
+        if (behind == 0) behind = -facing;              /* the other side of the facet, which lies across x */
         if (behind * facing == left) winding[root] += left;
     }
     for (t = 0; t < b->out_source_count; t++) if (winding[t] != 0 && (best == GXB_NONE || volume[t] < volume[best])) best = t;
