@@ -27,6 +27,7 @@ help:
 	@echo "make lint        house rules of the four headers"
 	@echo "make compile     the headers by every compiler and standard there is, C and C++"
 	@echo "make sanitize    the tests under AddressSanitizer and UndefinedBehaviorSanitizer"
+	@echo "make fuzz        random cases against what must be true of any; SEED=, CASES=, SECONDS= (0: no limit)"
 	@echo "make flags       exact predicates against rationals under each compiler and set of flags"
 	@echo "make hashes      the same cuts give the same topology under each compiler and set of flags"
 	@echo "make bench-solver  time steps by preconditioner, beside CHOLMOD (installs SuiteSparse where it is missing); BENCH=--small: the smallest blocks only"
@@ -83,10 +84,14 @@ check:
 	@sh tests/install.sh check
 	@$(MAKE) --no-print-directory -k -j$(JOBS) check-programs
 
-check-programs: $(tests:%=run-%) run-gxcut
+check-programs: $(tests:%=run-%) run-gxcut run-corpus
 
 run-gxcut: $(BUILD)/gxcut
 	@sh tests/test_gxcut.sh $(BUILD)/gxcut
+
+# Cases that once failed, and a few of each kind
+run-corpus: $(BUILD)/fuzz/fuzz
+	@$< tests/corpus/*
 
 $(tests:%=run-%): run-%: $(BUILD)/tests/%
 	@$< >$<.log 2>&1; code=$$?; cat $<.log; exit $$code
@@ -101,6 +106,19 @@ sanitize:
 
 sanitize-scenes:
 	@$(MAKE) --no-print-directory -j$(JOBS) scenes SMALL=1 BUILD=$(BUILD)/sanitize CFLAGS="$(sanitizers)"
+
+# By libFuzzer (with sanitizers) where there is clang with it, from the corpus on, for SECONDS; else, or with SEED or CASES, a loop over seeds.
+# A case that fails is written to $(BUILD)/fuzz and replays by itself: $(BUILD)/fuzz/fuzz FILE.
+SECONDS = 60
+libfuzzer = clang -std=c99 -O1 -g -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all -DFUZZ_LIBFUZZER
+fuzz: $(BUILD)/fuzz/fuzz
+	@if [ -z "$(SEED)$(CASES)" ] && $(libfuzzer) tests/fuzz.c -o $(BUILD)/fuzz/libfuzzer -lm 2>/dev/null; then \
+	    mkdir -p $(BUILD)/fuzz/corpus && $(BUILD)/fuzz/libfuzzer -max_total_time=$(SECONDS) -max_len=128 -artifact_prefix=$(BUILD)/fuzz/ $(BUILD)/fuzz/corpus tests/corpus; \
+	else $(BUILD)/fuzz/fuzz --out=$(BUILD)/fuzz --seed=$(or $(SEED),1) --cases=$(or $(CASES),0) --seconds=$(if $(CASES),0,$(SECONDS)); fi
+
+$(BUILD)/fuzz/fuzz: tests/fuzz.c tests/fuzz_cases.h tests/fuzz_oracle.h tests/oracle.h tests/rational.h gxfem_boolean.h
+	@mkdir -p $(@D)
+	$(compile) -g $< -o $@ $(LDFLAGS) -lm
 
 compile:
 	@sh tests/compile.sh $(BUILD)/compile
@@ -179,4 +197,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo scenes pictures check check-programs run-gxcut $(tests:%=run-%) sanitize sanitize-scenes compile lint flags hashes bench-solver bench-accuracy bench-drift bench-conditioning bench-frames bench-quadrature bench-skin bench-scaling bench-failure bench-table2 bench-stepping bench-kernel charts check-all clean
+.PHONY: help examples demo scenes pictures check check-programs run-gxcut run-corpus $(tests:%=run-%) sanitize sanitize-scenes compile lint fuzz flags hashes bench-solver bench-accuracy bench-drift bench-conditioning bench-frames bench-quadrature bench-skin bench-scaling bench-failure bench-table2 bench-stepping bench-kernel charts check-all clean

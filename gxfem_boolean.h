@@ -47,7 +47,7 @@
  * along those segments; winding numbers spread from facet to facet; the result is the facets between inside and outside. Vertices are
  * rounded at the output only, and more operands may follow. See docs/KERNEL.md.
  *
- * What it does not do: move a result's rounded vertices so that none of its triangles is turned over.
+ * What it does not do: round a result so that no triangle ever remains turned over (mend does what can be done).
  *
  * Guarantees and limits
  *     - Signs are exact for finite coordinates under every flag, rounding mode and flush-to-zero (but x87 set to 24 bits).
@@ -420,8 +420,11 @@ enum { GXB_DIVIDED = 0,     /* as the operands have divided each other */
 typedef struct gxb_boolean_desc {
     gx_allocator allocator;
     size_t memory_limit;        /* in bytes, of all that the Boolean holds at a time; 0: none */
-    uint32_t fine;              /* 1: vertices and volumes are right to their last digits. 0: vertices proven within 1e-10 of the largest
-                                   coordinate and volumes within 1e-7 of their size; both are mostly far nearer */
+    uint32_t fine;              /* 1: vertices are the doubles nearest to the exact points, volumes right to their last digits. 0: vertices
+                                   proven within 1e-10 of the largest coordinate and volumes within 1e-7 of their size; both are mostly far nearer */
+    uint32_t mend;              /* 1: vertices as by fine; then defects (see the result) are mended where that can be done within the rounding: an
+                                   edge is turned, a vertex becomes one with a neighbour 4 units of the last place away at most, or moves
+                                   by 2. The surface stays closed, input vertices stay, components and their Euler characteristics are the same */
     uint32_t triangulation;     /* GXB_DIVIDED ... */
     /* Instead of operations and rules: is a point around which the operands wind so often inside? NULL: by operations and rules. */
     int (*inside)(void *user, const int32_t *winding, size_t operand_count);
@@ -443,11 +446,16 @@ typedef struct gxb_boolean_result {
     const uint8_t *triangle_reversed;                       /* triangle_count: 1 where it faces against that triangle */
     const uint32_t *triangle_component;                     /* triangle_count */
     const double *component_volume; size_t component_count; /* components: what the interior of the result consists of */
+    /* component_count: vertices - edges + triangles of a component's boundary, taken apart where it only touches itself: 2 for a ball,
+       0 for a ring, 2 more for each cavity */
+    const int32_t *component_euler;
     /* component_count x operands: 1 where a component lies only in front of a sheet (where its normals point), -1 only behind,
        0 both or not at it */
     const int8_t *component_side;
     double volume;
-    const uint32_t *defects;    size_t defect_count;        /* triangles that rounding turned over or left without area */
+    /* Triangles that rounding turned by a right angle or more from their source's plane, or left without area; exact. With mend: what
+       remains of them, and how many are none any more. A mended triangle is a part of its source but for the rounding. */
+    const uint32_t *defects;    size_t defect_count, mended_count;
     uint64_t filter_calls, exact_calls;                     /* signs asked for since creation, and how many took exact arithmetic */
     uint64_t allocations; size_t peak_bytes;                /* since creation */
 } gxb_boolean_result;
@@ -3992,7 +4000,7 @@ struct gxb_boolean {
     uint64_t allocations;
     int over_limit;
     gx_result result;           /* of the evaluation at work */
-    uint32_t fine, triangulation;
+    uint32_t fine, mend, mended, triangulation;
     int (*inside)(void *user, const int32_t *winding, size_t operand_count);
     void *user;
     gxbp_operand *operands; uint32_t operand_count, operand_capacity;
@@ -4036,7 +4044,9 @@ struct gxb_boolean {
     uint8_t *out_reversed; uint32_t out_reversed_count, out_reversed_capacity;
     int8_t *out_sides; uint32_t out_side_count, out_side_capacity;
     double *out_volumes; uint32_t out_volume_count, out_volume_capacity;
+    int32_t *out_eulers; uint32_t out_euler_count, out_euler_capacity;
     uint32_t *out_defects; uint32_t out_defect_count, out_defect_capacity;
+    uint32_t *out_twins; uint32_t out_twin_count, out_twin_capacity;    /* of half-edges, to mend: wedges and corners apart */
 };
 
 /* --- memory --- */
@@ -5895,7 +5905,7 @@ static void gxbp_merge_projected(gxbp_projected *p, uint32_t old, uint32_t count
 }
 
 /* Computed points that are new since the last time are compared with all that lie within the errors of both along a direction in which few
-   points agree. */
+   points agree. The older name stays, in whatever order they are found. */
 static void gxbp_merge_points(gxb_boolean *b) {
     static const double direction[3] = {0.6180339887, 0.4142135623, 0.7320508075};
     const uint32_t old = b->projected_count;
@@ -5917,7 +5927,7 @@ static void gxbp_merge_points(gxb_boolean *b) {
     for (i = 0; i < b->projected_count; i++)
         for (j = i + 1; j < b->projected_count && p[j].t - p[i].t <= 8 * b->reach; j++) {
             const uint32_t q = gxbp_same(b, p[i].point), r = gxbp_same(b, p[j].point);
-            if (q != r && (q >= b->merged_points || r >= b->merged_points) && gxbp_points_equal(b, q, r)) gxbp_unite(b, q, r);
+            if (q != r && (q >= b->merged_points || r >= b->merged_points) && gxbp_points_equal(b, q, r)) gxbp_unite(b, q < r ? q : r, q < r ? r : q);
         }
     gxbp_release(&b->cx.allocator, work, size);
     b->merged_points = b->vertex_count;
@@ -6158,13 +6168,18 @@ static GXBP_APART void gxbp_shoot(gxb_boolean *b, gxbp_ray *ray, const gxbp_oper
         if (gxbp_ray_meets(ray, &b->bounds[o->source + c])) gxbp_cross_ray(b, ray, o->order[c]);
 }
 
+/* The side of a plane to which a point of it is moved: 0 for planes across x. */
+static int gxbp_moved_side(gxb_boolean *b, uint32_t plane) {
+    const int side = gxbp_normal_sign(&b->cx, plane, 1);
+    return side != 0 ? side : gxbp_normal_sign(&b->cx, plane, 2);
+}
+
 /* The start lies on the side of the facet's plane that the first of n_y, n_z, n_x which is not 0 says; from behind (n_x > 0) or from
    in front (n_x < 0) the ray passes the facet itself. */
 static void gxbp_cross_own(gxb_boolean *b, const gxbp_ray *ray) {
     const uint32_t plane = gxbp_root_plane(b, ray->f);
     const int nx = gxbp_normal_sign(&b->cx, plane, 0);
-    int side = gxbp_normal_sign(&b->cx, plane, 1);
-    if (side == 0) side = gxbp_normal_sign(&b->cx, plane, 2);
+    int side = gxbp_moved_side(b, plane);
     if (side == 0) side = nx;
     if (nx * side < 0) gxbp_add_covers(b, ray->f, nx, ray->winding);
     if (side < 0) gxbp_add_covers(b, ray->f, -1, ray->winding);         /* from the state behind to the one in front */
@@ -6431,6 +6446,27 @@ static double gxbp_unscale(const gxb_boolean *b, double y) {
 
 #define GXBP_VERTEX_ERROR 1e-10     /* relative to the largest coordinate: a larger ball gives way to exact coordinates */
 
+/* Sign of |num / den| less the middle of two doubles, given by their bits */
+static int gxbp_beyond_middle(const gxb_num *num, const gxb_num *den, uint64_t low, uint64_t high) {
+    GXB_NUM(p); GXB_NUM(q); GXB_NUM(sum); GXB_NUM(middle); GXB_NUM(twice);
+    gxb_num_set(&p, gxbp_double(low), 0);
+    gxb_num_set(&q, gxbp_double(high), 0);
+    gxb_num_add(&sum, &p, &q);
+    gxb_num_mul(&middle, &sum, den);
+    gxb_num_add(&twice, num, num);
+    return gxbp_num_compare_magnitude(&twice, &middle);
+}
+
+/* The double nearest to num / den, of two the even one: from one a few units of the last place away, step by step. */
+static double gxbp_nearest(const gxb_num *num, const gxb_num *den) {
+    uint64_t bits = gxbp_bits(gxbp_abs(gxb_num_ratio(num, den)));
+    int side;
+    if (gxbp_is_zero(gxbp_double(bits))) return 0;
+    while ((side = gxbp_beyond_middle(num, den, bits, bits + 1)) > 0 || (side == 0 && (bits & 1))) bits++;
+    while ((side = gxbp_beyond_middle(num, den, bits - 1, bits)) < 0 || (side == 0 && (bits & 1))) bits--;
+    return gxbp_double(num->sign * den->sign < 0 ? bits | (uint64_t)1 << 63 : bits);
+}
+
 /* An input vertex as it was given; else the ball's middle where the ball is small, else from exact coordinates. */
 static void gxbp_round_point(gxb_boolean *b, uint32_t point, double out[3]) {
     const gxb_cpoint *p = &b->cx.points[point];
@@ -6438,7 +6474,7 @@ static void gxbp_round_point(gxb_boolean *b, uint32_t point, double out[3]) {
     if (p->kind != GXB_EXPLICIT && (b->fine || p->ball.error > GXBP_VERTEX_ERROR * gxbp_max3(p->ball.x))) {
         gxbp_vec store;
         const gxb_num *x = gxbp_exact_cpoint(&b->cx, point, &store);
-        for (k = 0; k < 3; k++) out[k] = gxbp_unscale(b, gxb_num_ratio(&x[k], &x[3]));
+        for (k = 0; k < 3; k++) out[k] = gxbp_unscale(b, gxbp_nearest(&x[k], &x[3]));
     } else for (k = 0; k < 3; k++) out[k] = gxbp_unscale(b, p->ball.x[k]);
 }
 
@@ -6757,18 +6793,41 @@ static void gxbp_round_vertices(gxb_boolean *b) {
     b->out_origin_count = b->out_point_count;
 }
 
-/* Triangles that rounding has turned over or left without area, seen along the longest axis of their plane's normal. */
+/* Sign of n.((q - p) x (r - p)) for a plane's normal n and rounded points, exact. The filter's bound is that of gxbp_rough_volume, with n
+   for d0. */
+static int gxbp_faces(gxb_boolean *b, uint32_t plane, const double *p, const double *q, const double *r) {
+    const gxb_plane_filter *f = &b->cx.planes[plane].filter;
+    gxb_ball x[3];
+    gxbp_vec store, given[3], n;
+    GXB_NUM(value);
+    double u[3], v[3], m[3];
+    gxbp_ball_explicit(&x[0], p); gxbp_ball_explicit(&x[1], q); gxbp_ball_explicit(&x[2], r);
+    if (b->cx.shift == 0) {             /* else coordinates are not the frame's, and may be too large or too small to filter */
+        const double eu = gxbp_filter_difference(u, &x[0], &x[1]), ev = gxbp_filter_difference(v, &x[0], &x[2]);
+        const double E = gxbp_filter_cross(m, u, eu, v, ev), N = gxbp_max3(m);
+        const int sign = gxbp_filter_sign(f->n[0] * m[0] + f->n[1] * m[1] + f->n[2] * m[2],
+                                          6 * (f->norm * E + f->error * (N + E)) + 48 * GXBP_U * f->norm * N + GXBP_TINY);
+        if (sign != 0) return sign;
+    }
+    gxbp_vec_set(&given[0], p); gxbp_vec_set(&given[1], q); gxbp_vec_set(&given[2], r);
+    gxbp_vec_init(&n);
+    gxbp_exact_plane(n.c, given[0].c, given[1].c, given[2].c);
+    gxbp_num_dot(&value, n.c, gxbp_exact_cplane(&b->cx, plane, &store));
+    return value.sign;
+}
+
+/* Triangles that rounding has turned over or left without area. Those of input vertices are as they were, unless they were mended. */
 static void gxbp_find_defects(gxb_boolean *b) {
     uint32_t t, k;
     b->out_defect_count = 0;
     for (t = 0; t < b->out_source_count && b->result == GX_OK; t++) {
         const double *x[3];
-        int given = 1;
+        int given = !b->mend;
         for (k = 0; k < 3; k++) {
             given = given && b->cx.points[gxbp_out_corner(b, t, k)].kind == GXB_EXPLICIT;
             x[k] = b->out_vertices + 3 * (size_t)b->out_triangles[3 * t + k];
         }
-        if (given || gxbp_flat_turn(b, gxbp_out_plane(b, t), x[0], x[1], x[2]) == (b->out_planes[t] & 1 ? -1 : 1)) continue;
+        if (given || gxbp_faces(b, gxbp_out_plane(b, t), x[0], x[1], x[2]) == (b->out_planes[t] & 1 ? -1 : 1)) continue;
         if (GXBP_ROOM(b, out_defects, out_defect, 1)) b->out_defects[b->out_defect_count++] = t;
     }
 }
@@ -6789,7 +6848,7 @@ static void gxbp_join_sets(uint32_t *parent, uint32_t i, uint32_t j) {
 
 /* Triangles around an edge from p to q, by angle. Seen along the edge, a triangle that passes it forwards (from p to q) has the solid at
    smaller angles, one that passes it backwards at larger ones. */
-typedef struct gxbp_blade { uint32_t triangle, apex, plane; int forward, toward, group; } gxbp_blade;
+typedef struct gxbp_blade { uint32_t half_edge, apex, plane; int forward, toward, group; } gxbp_blade;
 
 /* 1: the apex of g lies at an angle between 0 and pi from f, -1: beyond, 0: in its plane */
 static int gxbp_blade_side(gxb_boolean *b, const gxbp_blade *f, const gxbp_blade *g) { return f->toward * gxbp_point_side(b, g->apex, f->plane); }
@@ -6802,7 +6861,7 @@ static int gxbp_blade_precedes(gxb_boolean *b, const gxbp_blade *f, const gxbp_b
 }
 
 static void gxbp_make_blade(gxb_boolean *b, uint32_t h, uint32_t p, const gxbp_blade *first, gxbp_blade *blade, uint32_t q) {
-    blade->triangle = h / 3;
+    blade->half_edge = h;
     blade->apex = gxbp_out_corner(b, h / 3, h % 3 + 2);
     blade->plane = gxbp_out_plane(b, h / 3);
     blade->forward = gxbp_out_corner(b, h / 3, h % 3) == p;
@@ -6815,8 +6874,8 @@ static void gxbp_make_blade(gxb_boolean *b, uint32_t h, uint32_t p, const gxbp_b
     if (gxbp_turn(b, p, q, blade->apex) == gxbp_turn(b, p, q, first->apex)) blade->group = 0;
 }
 
-/* Joins the triangles at the two sides of each wedge of the solid around an edge that more than two triangles share. */
-static GXBP_COLD void gxbp_join_wedges(gxb_boolean *b, const gxbp_fan *fan, uint32_t i, uint32_t j, uint32_t *parent) {
+/* Joins the triangles at the two sides of each wedge of the solid around an edge that more than two triangles share: there they are twins. */
+static GXBP_COLD void gxbp_join_wedges(gxb_boolean *b, const gxbp_fan *fan, uint32_t i, uint32_t j, uint32_t *parent, uint32_t *twin) {
     const uint32_t p = b->out_points[i], q = b->out_points[j];
     gxbp_blade *blade = NULL;
     uint32_t n = 0, pass, k, m, capacity = 0;
@@ -6833,15 +6892,38 @@ static GXBP_COLD void gxbp_join_wedges(gxb_boolean *b, const gxbp_fan *fan, uint
             n++;
         }
     }
-    for (m = 0; m < n; m++) if (!blade[m].forward) gxbp_join_sets(parent, blade[m].triangle, blade[(m + 1) % n].triangle);
+    for (m = 0; m < n; m++) {
+        const uint32_t h = blade[m].half_edge, g = blade[(m + 1) % n].half_edge;
+        if (blade[m].forward) continue;
+        gxbp_join_sets(parent, h / 3, g / 3);
+        twin[h] = g;
+        twin[g] = h;
+    }
     gxbp_release(&b->cx.allocator, blade, (size_t)capacity * sizeof *blade);
 }
 
-static void gxbp_join_shells(gxb_boolean *b, uint32_t *parent) {
+/* Of each triangle: how many corners of the solid are counted there. A corner is what triangles around a vertex make that are joined by
+   twins; each is counted once. Uses up the twins. */
+static void gxbp_count_corners(uint32_t *twin, uint32_t count, int32_t *corners) {
+    uint32_t h, g;
+    for (h = 0; h < count; h++) corners[h] = 0;
+    for (h = 0; h < 3 * count; h++) {
+        if (twin[h] == GXB_NONE) continue;
+        corners[h / 3]++;
+        for (g = h; twin[g] != GXB_NONE;) {                         /* on to the half-edge that ends there too */
+            const uint32_t next = twin[g];
+            twin[g] = GXB_NONE;
+            g = next % 3 == 0 ? next + 2 : next - 1;
+        }
+    }
+}
+
+static void gxbp_join_shells(gxb_boolean *b, uint32_t *parent, int32_t *corners) {
     const uint32_t count = b->out_source_count;
     const size_t bytes = (size_t)count * 3 * sizeof(uint32_t);
     uint32_t *twin, h;
     gxbp_fan fan;
+    b->out_twin_count = 0;
     if (!gxbp_make_fan(b, b->out_triangles, count, b->out_point_count, &fan)) return;
     twin = (uint32_t *)gxbp_allocate(&b->cx.allocator, bytes);
     if (twin != NULL) {
@@ -6849,9 +6931,11 @@ static void gxbp_join_shells(gxb_boolean *b, uint32_t *parent) {
         gxbp_find_twins(&fan, b->out_point_count, twin);
         for (h = 0; h < 3 * count; h++) {
             const uint32_t i = b->out_triangles[h], j = b->out_triangles[gxbp_next_edge(h)];
-            if (twin[h] == GXB_NONE) { if (i < j) gxbp_join_wedges(b, &fan, i, j, parent); }
+            if (twin[h] == GXB_NONE) { if (i < j) gxbp_join_wedges(b, &fan, i, j, parent, twin); }
             else if (twin[h] > h) gxbp_join_sets(parent, h / 3, twin[h] / 3);
         }
+        if (b->mend && GXBP_ROOM(b, out_twins, out_twin, 3 * (size_t)count)) memcpy(b->out_twins, twin, bytes);
+        gxbp_count_corners(twin, count, corners);
         gxbp_release(&b->cx.allocator, twin, bytes);
     } else gxbp_stop(b, GX_ERROR_MEMORY);
     gxbp_drop_fan(b, &fan);
@@ -6928,8 +7012,8 @@ static void gxbp_measure_shells(gxb_boolean *b, uint32_t *parent, double *volume
         if (parent[t] == t && (b->fine || error[t] > GXBP_VOLUME_ERROR * gxbp_abs(volume[t]))) volume[t] = gxbp_fine_volume(b, parent, t);
 }
 
-/* gxbp_ray_left for points of the result */
-static int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p, uint32_t q) {
+/* gxbp_ray_left for points of the result, and a ray moved by way (h, h^2) */
+static int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p, uint32_t q, int way) {
     gxbp_vec s, t;
     const gxb_num *x, *y;
     int turn = gxbp_filter_turn(&b->cx.points[p].ball, &b->cx.points[q].ball, &ray->ball, 1, 2);
@@ -6937,13 +7021,15 @@ static int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p, uint32_t 
     x = gxbp_exact_cpoint(&b->cx, p, &s);
     y = gxbp_exact_cpoint(&b->cx, q, &t);
     turn = gxbp_orient_exact(x, y, gxbp_exact_probe(b, ray)->exact.c, 1, 2);
-    if (turn == 0) turn = gxbp_compare_points(b, p, q, 2);
-    return turn != 0 ? turn : gxbp_compare_points(b, q, p, 1);
+    if (turn == 0) turn = way * gxbp_compare_points(b, p, q, 2);
+    return turn != 0 ? turn : way * gxbp_compare_points(b, q, p, 1);
 }
 
-/* The smallest shell with volume around a cavity's (or a sheet's) shell. */
+/* The smallest shell with volume around a cavity's (or a sheet's) shell. The ray begins on that side of its facet on which its solid lies: on the
+   other one, of a sheet, begins another's. */
 static GXBP_COLD uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, uint32_t *parent, const double *volume, int32_t *winding) {
     gxbp_ray ray;
+    const int turned = b->out_planes[cavity] & 1 ? 1 : -1, moved = gxbp_moved_side(b, gxbp_out_plane(b, cavity)), way = moved == 0 ? 1 : moved * turned;
     uint32_t t, best = GXB_NONE, k;
     gxbp_set_ray(b, &ray, b->out_planes[cavity] / 2);
     for (t = 0; t < b->out_source_count; t++) winding[t] = 0;
@@ -6955,8 +7041,8 @@ static GXBP_COLD uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, u
         uint32_t c[3];
         if (root == cavity || !(volume[root] > 0) || plane == GXB_NONE) continue;
         for (k = 0; k < 3; k++) c[k] = gxbp_out_corner(b, t, k);
-        left = gxbp_ray_left_of(b, &ray, c[0], c[1]);
-        if (left == 0 || gxbp_ray_left_of(b, &ray, c[1], c[2]) != left || gxbp_ray_left_of(b, &ray, c[2], c[0]) != left) continue;
+        left = gxbp_ray_left_of(b, &ray, c[0], c[1], way);
+        if (left == 0 || gxbp_ray_left_of(b, &ray, c[1], c[2], way) != left || gxbp_ray_left_of(b, &ray, c[2], c[0], way) != left) continue;
         value = gxbp_filter_side(&ray.ball, &b->cx.planes[plane].filter, &bound);
         behind = -gxbp_filter_sign(value, bound);
         if (behind == 0) {
@@ -6965,6 +7051,8 @@ static GXBP_COLD uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, u
             gxbp_exact_side(&side, gxbp_exact_probe(b, &ray)->exact.c, gxbp_exact_cplane(&b->cx, plane, &store));
             behind = -side.sign;
         }
+        if (behind == 0) behind = -way * gxbp_moved_side(b, plane);
+        if (behind == 0) behind = -facing;              /* the other side of the facet, which lies across x */
         if (behind * facing == left) winding[root] += left;
     }
     for (t = 0; t < b->out_source_count; t++) if (winding[t] != 0 && (best == GXB_NONE || volume[t] < volume[best])) best = t;
@@ -6998,6 +7086,17 @@ static GXBP_APART void gxbp_number_components(gxb_boolean *b, uint32_t *parent, 
     b->out_component_count = b->out_source_count;
 }
 
+/* Each triangle is 1 and 3 / 2 edges. */
+static void gxbp_find_eulers(gxb_boolean *b, const int32_t *corners) {
+    uint32_t t;
+    b->out_euler_count = 0;
+    if (b->result != GX_OK || !GXBP_ROOM(b, out_eulers, out_euler, b->out_volume_count)) return;
+    b->out_euler_count = b->out_volume_count;
+    for (t = 0; t < b->out_euler_count; t++) b->out_eulers[t] = 0;
+    for (t = 0; t < b->out_source_count; t++) b->out_eulers[b->out_components[t]] += 2 * corners[t] - 1;
+    for (t = 0; t < b->out_euler_count; t++) b->out_eulers[t] /= 2;
+}
+
 /* On which sides of sheets the components lie, by the triangles that they have of them. */
 static void gxbp_find_sides(gxb_boolean *b) {
     const size_t n = b->operand_count, size = (size_t)b->out_volume_count * n;
@@ -7017,22 +7116,258 @@ static void gxbp_find_sides(gxb_boolean *b) {
 
 static void gxbp_find_components(gxb_boolean *b) {
     const uint32_t count = b->out_source_count;
-    const size_t bytes = (size_t)count * (2 * sizeof(double) + 2 * sizeof(uint32_t)) + 16;
+    const size_t bytes = (size_t)count * (2 * sizeof(double) + 3 * sizeof(uint32_t)) + 16;
     double *volume;
     uint32_t *parent, t;
+    int32_t *corners;
     b->out_component_count = b->out_volume_count = 0;
     if (b->result != GX_OK || count == 0 || !GXBP_ROOM(b, out_components, out_component, count)) return;
     volume = (double *)gxbp_allocate(&b->cx.allocator, bytes);
     if (volume == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
     parent = (uint32_t *)(void *)(volume + 2 * (size_t)count);
+    corners = (int32_t *)(void *)(parent + 2 * (size_t)count);
     for (t = 0; t < count; t++) parent[t] = t;
-    gxbp_join_shells(b, parent);
+    gxbp_join_shells(b, parent, corners);
     if (b->result == GX_OK) {
         gxbp_measure_shells(b, parent, volume, volume + count);
         gxbp_number_components(b, parent, volume, (int32_t *)(void *)(parent + count));
+        gxbp_find_eulers(b, corners);
     }
     gxbp_release(&b->cx.allocator, volume, bytes);
     gxbp_find_sides(b);
+}
+
+/* --- mending: a surface whose triangles rounding has turned over is changed within the rounding, until none is left or nothing helps.
+   The surface taken apart (out_twins: each edge joins two triangles) stays closed, and keeps its Euler characteristic. --- */
+
+#define GXBP_MEND_REACH 4       /* units in the last place of the largest coordinate: how near are two vertices that may become one */
+#define GXBP_MEND_STEPS 2       /* such units by which a coordinate may be moved */
+
+static uint32_t gxbp_before_edge(uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
+
+/* The next half-edge that leaves the same corner of the surface */
+static uint32_t gxbp_around(const gxb_boolean *b, uint32_t h) { return b->out_twins[gxbp_before_edge(h)]; }
+
+static const double *gxbp_out_place(const gxb_boolean *b, uint32_t vertex) { return b->out_vertices + 3 * (size_t)vertex; }
+
+/* 1 where a triangle of three vertices would be a defect on the side of triangle t's plane */
+static int gxbp_is_defect(gxb_boolean *b, uint32_t t, uint32_t p, uint32_t q, uint32_t r) {
+    const int facing = b->out_planes[t] & 1 ? -1 : 1;
+    return gxbp_faces(b, gxbp_out_plane(b, t), gxbp_out_place(b, p), gxbp_out_place(b, q), gxbp_out_place(b, r)) != facing;
+}
+
+static int gxbp_is_defective(gxb_boolean *b, uint32_t t) {
+    const uint32_t *v = b->out_triangles + 3 * (size_t)t;
+    return gxbp_is_defect(b, t, v[0], v[1], v[2]);
+}
+
+/* A unit in the last place of the largest coordinate of a vertex */
+static double gxbp_unit_at(const gxb_boolean *b, uint32_t vertex) {
+    const double size = gxbp_max3(gxbp_out_place(b, vertex));
+    const int e = gxbp_is_zero(size) ? -1022 : gxbp_exponent(size) - 52;
+    return gxbp_power(e < -1022 ? -1022 : e);
+}
+
+static int gxbp_are_near(const gxb_boolean *b, uint32_t v, uint32_t w) {
+    const double *x = gxbp_out_place(b, v), *y = gxbp_out_place(b, w);
+    const double reach = GXBP_MEND_REACH * gxbp_max(gxbp_unit_at(b, v), gxbp_unit_at(b, w));
+    int k;
+    for (k = 0; k < 3; k++) if (gxbp_abs(gxbp_fence(x[k] - y[k])) > reach) return 0;
+    return 1;
+}
+
+static int gxbp_is_given(const gxb_boolean *b, uint32_t vertex) { return b->cx.points[b->out_points[vertex]].kind == GXB_EXPLICIT; }
+
+/* How many edges leave the corner from which h does; *to: how many of them lead to a vertex */
+static uint32_t gxbp_count_around(const gxb_boolean *b, uint32_t h, uint32_t vertex, uint32_t *to) {
+    uint32_t g = h, n = 0;
+    *to = 0;
+    do {
+        n++;
+        *to += b->out_triangles[gxbp_next_edge(g)] == vertex;
+        g = gxbp_around(b, g);
+    } while (g != h);
+    return n;
+}
+
+static void gxbp_set_out_triangle(gxb_boolean *b, uint32_t t, uint32_t p, uint32_t q, uint32_t r) {
+    b->out_triangles[3 * t] = p; b->out_triangles[3 * t + 1] = q; b->out_triangles[3 * t + 2] = r;
+}
+
+static void gxbp_join_out(gxb_boolean *b, uint32_t h, uint32_t g) { b->out_twins[h] = g; b->out_twins[g] = h; }
+
+/* The edge of h, from p to q, between triangles (p, q, r) and (q, p, o), becomes one from r to o. The triangle of h, which has no area to
+   speak of, becomes a part of the other's source. */
+static int gxbp_flip(gxb_boolean *b, uint32_t h) {
+    const uint32_t g = b->out_twins[h], t = h / 3, s = g / 3, h1 = gxbp_next_edge(h), g1 = gxbp_next_edge(g);
+    const uint32_t p = b->out_triangles[h], q = b->out_triangles[h1], r = b->out_triangles[gxbp_before_edge(h)], o = b->out_triangles[gxbp_before_edge(g)];
+    const uint32_t qr = b->out_twins[h1], rp = b->out_twins[gxbp_before_edge(h)], po = b->out_twins[g1], oq = b->out_twins[gxbp_before_edge(g)];
+    uint32_t known;
+    if (r == o || qr / 3 == s || rp / 3 == s) return 0;
+    if (gxbp_is_defect(b, s, p, o, r) + gxbp_is_defect(b, s, o, q, r) >= 1 + gxbp_is_defective(b, s)) return 0;
+    gxbp_count_around(b, gxbp_before_edge(h), o, &known);
+    if (known != 0) return 0;
+    gxbp_set_out_triangle(b, t, p, o, r);
+    gxbp_set_out_triangle(b, s, o, q, r);
+    gxbp_join_out(b, 3 * t, po); gxbp_join_out(b, 3 * t + 1, 3 * s + 2); gxbp_join_out(b, 3 * t + 2, rp);
+    gxbp_join_out(b, 3 * s, oq); gxbp_join_out(b, 3 * s + 1, qr);
+    b->out_operands[t] = b->out_operands[s]; b->out_sources[t] = b->out_sources[s];
+    b->out_planes[t] = b->out_planes[s]; b->out_reversed[t] = b->out_reversed[s];
+    return 1;
+}
+
+/* May the edge of h vanish? Its ends have but two neighbours in common, which keep three edges at least. */
+static int gxbp_links_meet(gxb_boolean *b, uint32_t h) {
+    const uint32_t g = b->out_twins[h], v = b->out_triangles[h], w = b->out_triangles[g];
+    const uint32_t r = gxbp_before_edge(h), o = gxbp_before_edge(g);
+    uint32_t e = h, common = 0, known;
+    if (b->out_triangles[r] == b->out_triangles[o] || gxbp_count_around(b, h, w, &known) < 3 || known != 1) return 0;
+    if (gxbp_count_around(b, r, v, &known) < 4 || gxbp_count_around(b, o, v, &known) < 4) return 0;
+    do {
+        if (b->out_triangles[gxbp_next_edge(e)] != w) {
+            gxbp_count_around(b, g, b->out_triangles[gxbp_next_edge(e)], &known);
+            common += known;
+        }
+        e = gxbp_around(b, e);
+    } while (e != h);
+    return common == 2;
+}
+
+/* The vertex from which h leaves becomes the one to which it leads, if that leaves fewer defects. */
+static int gxbp_collapse(gxb_boolean *b, uint32_t h) {
+    const uint32_t g = b->out_twins[h], v = b->out_triangles[h], w = b->out_triangles[g];
+    const uint32_t h1 = gxbp_next_edge(h), h2 = gxbp_next_edge(h1), g1 = gxbp_next_edge(g), g2 = gxbp_next_edge(g1);
+    uint32_t e, before = 0, after = 0, last = h;
+    if (v == w || gxbp_is_given(b, v) || !gxbp_are_near(b, v, w) || !gxbp_links_meet(b, h)) return 0;
+    for (e = gxbp_around(b, h); e != h; e = gxbp_around(b, e)) {
+        before += (uint32_t)gxbp_is_defective(b, e / 3);
+        if (e != g1) after += (uint32_t)gxbp_is_defect(b, e / 3, w, b->out_triangles[gxbp_next_edge(e)], b->out_triangles[gxbp_before_edge(e)]);
+        last = e;
+    }
+    if (after >= before + (uint32_t)gxbp_is_defective(b, h / 3)) return 0;
+    for (e = gxbp_around(b, h); ; e = gxbp_around(b, e)) {
+        b->out_triangles[e] = w;
+        if (e == last) break;
+    }
+    gxbp_join_out(b, b->out_twins[h1], b->out_twins[h2]);
+    gxbp_join_out(b, b->out_twins[g1], b->out_twins[g2]);
+    b->out_triangles[3 * (h / 3)] = b->out_triangles[3 * (g / 3)] = GXB_NONE;       /* no longer there */
+    return 1;
+}
+
+/* Once through the defects; how many flips and collapses there were. */
+static uint32_t gxbp_mend_edges(gxb_boolean *b) {
+    uint32_t i, k, done = 0;
+    for (i = 0; i < b->out_defect_count; i++) {
+        const uint32_t t = b->out_defects[i];
+        int helped = b->out_triangles[3 * t] == GXB_NONE || !gxbp_is_defective(b, t);
+        for (k = 0; k < 3 && !helped; k++) helped = gxbp_flip(b, 3 * t + k) && ++done;
+        for (k = 0; k < 3 && !helped; k++) helped = (gxbp_collapse(b, 3 * t + k) || gxbp_collapse(b, b->out_twins[3 * t + k])) && ++done;
+    }
+    return done;
+}
+
+/* Triangles that are gone are taken out of all lists; map: room for one word per triangle. */
+static void gxbp_drop_collapsed(gxb_boolean *b, uint32_t *map) {
+    const uint32_t count = b->out_source_count;
+    uint32_t t, n = 0, k;
+    for (t = 0; t < count; t++) map[t] = b->out_triangles[3 * t] == GXB_NONE ? GXB_NONE : n++;
+    for (t = 0; t < count; t++) {
+        if ((n = map[t]) == GXB_NONE) continue;
+        for (k = 0; k < 3; k++) {
+            b->out_triangles[3 * n + k] = b->out_triangles[3 * t + k];
+            b->out_twins[3 * n + k] = 3 * map[b->out_twins[3 * t + k] / 3] + b->out_twins[3 * t + k] % 3;
+        }
+        b->out_operands[n] = b->out_operands[t]; b->out_sources[n] = b->out_sources[t]; b->out_planes[n] = b->out_planes[t];
+        b->out_reversed[n] = b->out_reversed[t]; b->out_components[n] = b->out_components[t];
+    }
+    for (n = t = 0; t < count; t++) n += map[t] != GXB_NONE;
+    b->out_triangle_count = b->out_twin_count = 3 * n;
+    b->out_source_count = b->out_operand_count = b->out_plane_count = b->out_reversed_count = b->out_component_count = n;
+}
+
+/* How many triangles around a vertex are defects, all corners there together */
+static uint32_t gxbp_defects_at(gxb_boolean *b, const gxbp_fan *fan, uint32_t v) {
+    uint32_t i, n = 0;
+    for (i = fan->first[v]; i < fan->first[v + 1]; i++) n += (uint32_t)gxbp_is_defective(b, fan->list[i].half_edge / 3);
+    return n;
+}
+
+/* Tries the places around the vertex's own (home): the first of those with the fewest defects. 1: it moved. */
+static int gxbp_move_vertex(gxb_boolean *b, const gxbp_fan *fan, uint32_t v, const double home[3]) {
+    enum { WIDTH = 2 * GXBP_MEND_STEPS + 1 };
+    double *x = b->out_vertices + 3 * (size_t)v, best[3], old[3];
+    const double unit = gxbp_unit_at(b, v);
+    uint32_t before = gxbp_defects_at(b, fan, v), least = before, i;
+    int k;
+    memcpy(old, x, sizeof old);
+    memcpy(best, x, sizeof best);
+    for (i = 0; i < WIDTH * WIDTH * WIDTH && least > 0; i++) {
+        const uint32_t digit[3] = { i % WIDTH, i / WIDTH % WIDTH, i / (WIDTH * WIDTH) };
+        uint32_t n;
+        for (k = 0; k < 3; k++) {
+            const uint32_t steps = (digit[k] + 1) / 2;
+            x[k] = gxbp_fence(home[k] + (digit[k] % 2 == 0 ? -(double)steps : (double)steps) * unit);
+        }
+        n = gxbp_defects_at(b, fan, v);
+        if (n < least) { least = n; memcpy(best, x, sizeof best); }
+    }
+    memcpy(x, least < before ? best : old, sizeof old);
+    return least < before;
+}
+
+static uint32_t gxbp_mend_places(gxb_boolean *b, const double *home) {
+    gxbp_fan fan;
+    uint32_t i, k, done = 0;
+    if (!gxbp_make_fan(b, b->out_triangles, b->out_source_count, b->out_point_count, &fan)) return 0;
+    for (i = 0; i < b->out_defect_count; i++)
+        for (k = 0; k < 3 && gxbp_is_defective(b, b->out_defects[i]); k++) {
+            const uint32_t v = b->out_triangles[3 * b->out_defects[i] + k];
+            if (!gxbp_is_given(b, v)) done += (uint32_t)gxbp_move_vertex(b, &fan, v, home + 3 * (size_t)v);
+        }
+    gxbp_drop_fan(b, &fan);
+    return done;
+}
+
+/* Vertices that no triangle has any more are taken out. */
+static void gxbp_drop_lonely(gxb_boolean *b, uint32_t *map) {
+    uint32_t i, n = 0;
+    for (i = 0; i < b->out_point_count; i++) map[i] = GXB_NONE;
+    for (i = 0; i < b->out_triangle_count; i++) map[b->out_triangles[i]] = 0;
+    for (i = 0; i < b->out_point_count; i++) {
+        if (map[i] == GXB_NONE) continue;
+        memmove(b->out_vertices + 3 * (size_t)n, b->out_vertices + 3 * (size_t)i, 3 * sizeof *b->out_vertices);
+        b->out_origins[n] = b->out_origins[i];
+        b->out_points[n] = b->out_points[i];
+        map[i] = n++;
+    }
+    for (i = 0; i < b->out_triangle_count; i++) b->out_triangles[i] = map[b->out_triangles[i]];
+    b->out_point_count = b->out_origin_count = n;
+    b->out_vertex_count = 3 * n;
+}
+
+/* Each step leaves fewer defects than there were. */
+static void gxbp_mend(gxb_boolean *b) {
+    const uint32_t words = b->out_source_count > b->out_point_count ? b->out_source_count : b->out_point_count;
+    const size_t places = 3 * (size_t)b->out_point_count * sizeof(double), bytes = places + words * sizeof(uint32_t);
+    double *home;
+    uint32_t *map, found = b->out_defect_count, done = 1;
+    b->mended = 0;
+    if (b->result != GX_OK || !b->mend || found == 0) return;
+    home = (double *)gxbp_allocate(&b->cx.allocator, bytes);
+    if (home == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
+    map = (uint32_t *)(void *)((char *)home + places);
+    memcpy(home, b->out_vertices, places);
+    while (done > 0 && b->out_defect_count > 0 && b->result == GX_OK) {
+        done = gxbp_mend_edges(b);
+        gxbp_drop_collapsed(b, map);
+        gxbp_find_defects(b);
+        done += gxbp_mend_places(b, home);
+        gxbp_find_defects(b);
+    }
+    gxbp_drop_lonely(b, map);
+    b->mended = found - b->out_defect_count;
+    gxbp_release(&b->cx.allocator, home, bytes);
 }
 
 /* --- the public functions --- */
@@ -7060,6 +7395,7 @@ static GXBP_APART void gxbp_drop_boolean(gxb_boolean *b) {
     GXBP_DROP(b, out_triangles, out_triangle); GXBP_DROP(b, out_operands, out_operand); GXBP_DROP(b, out_sources, out_source);
     GXBP_DROP(b, out_components, out_component); GXBP_DROP(b, out_planes, out_plane); GXBP_DROP(b, out_volumes, out_volume);
     GXBP_DROP(b, out_defects, out_defect); GXBP_DROP(b, out_reversed, out_reversed); GXBP_DROP(b, out_sides, out_side);
+    GXBP_DROP(b, out_eulers, out_euler); GXBP_DROP(b, out_twins, out_twin);
 }
 
 GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean **boolean) {
@@ -7080,7 +7416,8 @@ GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean
     b->allocations = 1;
     b->outer = desc->allocator;
     b->limit = desc->memory_limit;
-    b->fine = desc->fine;
+    b->fine = desc->fine || desc->mend;
+    b->mend = desc->mend;
     b->triangulation = desc->triangulation;
     b->inside = desc->inside;
     b->user = desc->user;
@@ -7198,7 +7535,9 @@ static void gxbp_show_result(gxb_boolean *b, gxb_boolean_result *result) {
     }
     result->component_volume = b->out_volumes; result->component_count = b->out_volume_count;
     result->component_side = b->out_sides;
+    result->component_euler = b->out_eulers;
     result->defects = b->out_defects; result->defect_count = b->out_defect_count;
+    result->mended_count = b->mended;
     result->filter_calls = b->cx.filter_calls; result->exact_calls = b->cx.exact_calls;
     result->allocations = b->allocations; result->peak_bytes = b->peak;
 }
@@ -7215,6 +7554,7 @@ GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *b, gxb_boolean_result *res
     gxbp_round_vertices(b);
     if (b->result == GX_OK) gxbp_find_defects(b);
     gxbp_find_components(b);
+    gxbp_mend(b);
     if (b->result == GX_OK) gxbp_show_result(b, result);
     else gxbp_forget_arrangement(b);
     return b->result;

@@ -1,5 +1,6 @@
 #!/bin/sh
-# hashes.sh [DIR] - is topology_hash the same under every compiler and flag? Cuts the same files by gxcut built in many ways.
+# hashes.sh [DIR] - are results the same under every compiler and flag? Cuts the same files by gxcut built in many ways, and compares its
+# topology_hash; and hashes of Booleans of surfaces (hash_boolean.c).
 # Prints a line per build and `N passed, N failed`. JOBS=N: so many builds at a time.
 set -u
 dir=${1:-build/hashes}
@@ -30,13 +31,14 @@ hashes() { # binary
     hash_of "$1" grid:2,2,2,5 --sheet "$dir/sheet0.obj" --solid box:0.5,0.25,0.125,1.5,1,1.75 --sheet plane:1,1,1,1,0,0
 }
 
-# one FILE COMPILER FLAGS...: builds gxcut, writes its hashes to FILE; nothing where it does not build
+# one FILE COMPILER FLAGS...: builds both programs, writes its hashes to FILE; nothing where it does not build
 one() {
     file=$1
     shift
     "$@" -w -I. examples/gxcut.c -o "$file.gxcut" -lm >"$file.log" 2>&1 || return 0
+    "$@" -w -I. tests/hash_boolean.c -o "$file.boolean" -lm >>"$file.log" 2>&1 || return 0
     report=$file.json
-    hashes "$file.gxcut" | tr '\n' ' ' >"$file"
+    { hashes "$file.gxcut"; "$file.boolean" || echo "failed"; } | tr '\n' ' ' >"$file"
 }
 
 count=0

@@ -55,7 +55,7 @@ static wl_surface boundary_of(const workload *w) {
     return s;
 }
 
-typedef struct answer { size_t components, triangles, defects; double volume; } answer;
+typedef struct answer { size_t components, triangles, defects; double volume; long euler; } answer;
 
 /* Every directed edge of the result is matched by one in the other direction, and every triangle names a component. */
 static void check_closed(const gxb_boolean_result *r) {
@@ -81,7 +81,12 @@ static answer read_answer(gxb_boolean *b) {
     double sum = 0;
     ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
     check_closed(&r);
-    for (i = 0; i < r.component_count; ++i) { ck_assert(r.component_volume[i] > 0); sum += r.component_volume[i]; }
+    a.euler = 0;
+    for (i = 0; i < r.component_count; ++i) {
+        ck_assert(r.component_volume[i] > 0);
+        sum += r.component_volume[i];
+        a.euler += r.component_euler[i];
+    }
     ck_assert(fabs(sum - r.volume) <= 1e-12 * sum);
     a.components = r.component_count; a.triangles = r.triangle_count; a.defects = r.defect_count; a.volume = r.volume;
     return a;
@@ -90,7 +95,7 @@ static answer read_answer(gxb_boolean *b) {
 /* All operands at once, or (each) evaluated after each */
 static answer evaluate(const gxb_operand *operands, size_t count, int each) {
     gxb_boolean *b = NULL;
-    answer a = { 0, 0, 0, 0 };
+    answer a = { 0, 0, 0, 0, 0 };
     size_t i;
     ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
     for (i = 0; i < count; ++i) {
@@ -118,7 +123,11 @@ static void check_answer(const char *name, const answer *a, size_t components, d
     CHECK_CASE(fabs(a->volume - volume) <= 1e-10 * volume, "%s: volume %.17g, should be %.17g", name, a->volume, volume);
 }
 
-/* What is kept, at once, in sequence and with every surface vouched for; and what is removed, which shows cuts however thin. */
+static void check_balls(const char *name, const answer *a) {
+    CHECK_CASE(a->euler == 2 * (long)a->components, "%s: Euler characteristic %ld of %zu balls", name, a->euler, a->components);
+}
+
+/* What is kept, every piece of it a ball, at once, in sequence and with every surface vouched for; and what is removed, which shows cuts however thin. */
 static void check_cuts(const char *name, const workload *w, size_t components, double kept, double removed) {
     gxb_operand o[WL_SURFACES + 1];
     wl_surface body = boundary_of(w);
@@ -128,8 +137,10 @@ static void check_cuts(const char *name, const workload *w, size_t components, d
     for (i = 0; i < n; ++i) o[i + 1] = operand_of(&w->surfaces[i], GXB_DIFFERENCE);
     a = evaluate(o, n + 1, 0);
     check_answer(name, &a, components, kept);
+    check_balls(name, &a);
     a = evaluate(o, n + 1, 1);
     check_answer(name, &a, components, kept);
+    check_balls(name, &a);
     for (i = 0; i <= n; ++i) o[i].simple = 1;
     a = evaluate(o, n + 1, 0);
     check_answer(name, &a, components, kept);
@@ -404,8 +415,42 @@ START_TEST(cavities_belong_to_their_component) {
     ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
     ck_assert_uint_eq(r.component_count, 2);
     ck_assert(r.component_volume[0] == 729 - 343 && r.component_volume[1] == 125);
+    ck_assert(r.component_euler[0] == 4 && r.component_euler[1] == 2);
     gxb_boolean_destroy(b);
     for (i = 0; i < 3; ++i) surface_free(&s[i]);
+}
+END_TEST
+
+/* A cube with `holes` slots through it is a ball with so many handles; where the two slots meet there are three. Two that
+   touch in an edge are one. */
+static void check_handles(size_t holes, const double low[][3], const double high[][3], long euler) {
+    static const double zero[3] = { 0, 0, 0 }, nine[3] = { 9, 9, 9 };
+    wl_surface s[3];
+    gxb_operand o[3];
+    answer a;
+    size_t i;
+    memset(s, 0, sizeof s);
+    wl_add_aligned_box(&s[0], zero, nine);
+    o[0] = operand_of(&s[0], GXB_UNION);
+    for (i = 0; i < holes; ++i) {
+        wl_add_aligned_box(&s[i + 1], low[i], high[i]);
+        o[i + 1] = operand_of(&s[i + 1], GXB_DIFFERENCE);
+    }
+    a = evaluate(o, holes + 1, 0);
+    ck_assert_uint_eq(a.components, 1);
+    ck_assert_int_eq(a.euler, euler);
+    for (i = 0; i <= holes; ++i) surface_free(&s[i]);
+}
+
+START_TEST(handles_are_counted) {
+    static const double low[2][3] = { { 2, 2, -1 }, { -1, 5, 5 } }, high[2][3] = { { 3, 3, 10 }, { 10, 6, 6 } };
+    static const double crossing[2][3] = { { 2, 2, -1 }, { -1, 2, 5 } }, across[2][3] = { { 3, 3, 10 }, { 10, 3, 6 } };
+    static const double beside[2][3] = { { 2, 2, -1 }, { 3, 3, -1 } }, touching[2][3] = { { 3, 3, 10 }, { 4, 4, 10 } };
+    check_handles(0, low, high, 2);
+    check_handles(1, low, high, 0);
+    check_handles(2, low, high, -2);
+    check_handles(2, crossing, across, -4);
+    check_handles(2, beside, touching, 0);
 }
 END_TEST
 
@@ -424,6 +469,7 @@ START_TEST(touching_solids) {
         wl_add_aligned_box(&q, offset[i], high);
         a = combine(&p, GXB_UNION, &q);
         check_answer("touching", &a, components[i], 2);
+        check_balls("touching", &a);
         ck_assert_uint_eq(combine(&p, GXB_INTERSECTION, &q).triangles, 0);
         surface_free(&p); surface_free(&q);
     }
@@ -486,6 +532,42 @@ START_TEST(a_wave_divides) {
     wl_add_wave(&sheet, &axes, 16, 2);
     r = combine(&cube, GXB_SPLIT, &sheet);
     check_answer("wave", &r, 2, 8);
+    surface_free(&cube); surface_free(&sheet);
+}
+END_TEST
+
+/* A closed sheet within a cube: what is inside it is another component, and what is around it has a cavity, whichever of its triangles comes first. */
+START_TEST(closed_sheets_divide) {
+    static const double zero[3] = { 0, 0, 0 }, three[3] = { 3, 3, 3 }, one[3] = { 1, 1, 1 }, two[3] = { 2, 2, 2 };
+    wl_surface cube, sheet;
+    gxb_operand o[2];
+    size_t i, k;
+    memset(&cube, 0, sizeof cube); memset(&sheet, 0, sizeof sheet);
+    wl_add_aligned_box(&cube, zero, three);
+    wl_add_aligned_box(&sheet, one, two);
+    o[0] = operand_of(&cube, GXB_UNION); o[1] = operand_of(&sheet, GXB_SPLIT);
+    for (i = 0; i < 2 * sheet.triangle_count; ++i) {
+        uint32_t first[3];
+        gxb_boolean *b = NULL;
+        gxb_boolean_result r;
+        memcpy(first, sheet.triangles, sizeof first);
+        memmove(sheet.triangles, sheet.triangles + 3, 3 * (sheet.triangle_count - 1) * sizeof *first);
+        memcpy(sheet.triangles + 3 * (sheet.triangle_count - 1), first, sizeof first);
+        if (i == sheet.triangle_count)                              /* from here on inside out */
+            for (k = 0; k < sheet.triangle_count; ++k) {
+                const uint32_t swap = sheet.triangles[3 * k];
+                sheet.triangles[3 * k] = sheet.triangles[3 * k + 1]; sheet.triangles[3 * k + 1] = swap;
+            }
+        ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
+        for (k = 0; k < 2; ++k) ck_assert_int_eq(gxb_boolean_add(b, &o[k], NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
+        ck_assert_uint_eq(r.component_count, 2);
+        ck_assert(r.component_volume[0] == 26 && r.component_volume[1] == 1);
+        ck_assert(r.component_euler[0] == 4 && r.component_euler[1] == 2);
+        ck_assert_int_eq(r.component_side[1], i < sheet.triangle_count ? 1 : -1);
+        ck_assert_int_eq(r.component_side[3], -r.component_side[1]);
+        gxb_boolean_destroy(b);
+    }
     surface_free(&cube); surface_free(&sheet);
 }
 END_TEST
@@ -731,6 +813,96 @@ START_TEST(coarse_sticks) {
 }
 END_TEST
 
+/* ---- rounding ---- */
+
+/* In rationals: does the rounded triangle face along its source's, less than a right angle off? */
+static int is_upright(const gxb_operand *o, const gxb_boolean_result *r, size_t t) {
+    const rat_mark mark = rat_arena_mark();
+    const uint32_t *v = r->triangles + 3 * t;
+    big n[2][3], u[3], w[3];
+    int sign;
+    big_difference(corner(o, r->triangle_operand[t], r->triangle_source[t], 1), corner(o, r->triangle_operand[t], r->triangle_source[t], 0), u);
+    big_difference(corner(o, r->triangle_operand[t], r->triangle_source[t], 2), corner(o, r->triangle_operand[t], r->triangle_source[t], 0), w);
+    big_cross(u, w, n[0]);
+    big_difference(r->vertices + 3 * (size_t)v[1], r->vertices + 3 * (size_t)v[0], u);
+    big_difference(r->vertices + 3 * (size_t)v[2], r->vertices + 3 * (size_t)v[0], w);
+    big_cross(u, w, n[1]);
+    sign = big_sign(big_dot(n[0], n[1])) * (r->triangle_reversed[t] ? -1 : 1);
+    rat_arena_release(mark);
+    return sign > 0;
+}
+
+/* Evaluates as asked; the defects are those that there are. Volumes and topology: into *a. */
+static size_t find_defects(const gxb_operand *o, size_t count, const gxb_boolean_desc *desc, answer *a, size_t *mended) {
+    gxb_boolean *b = NULL;
+    gxb_boolean_result r;
+    size_t i, listed = 0;
+    ck_assert_int_eq(gxb_boolean_create(desc, &b), GX_OK);
+    for (i = 0; i < count; ++i) ck_assert_int_eq(gxb_boolean_add(b, &o[i], NULL), GX_OK);
+    *a = read_answer(b);
+    ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
+    for (i = 0; i < r.triangle_count; ++i) {
+        const int defect = listed < r.defect_count && r.defects[listed] == i;
+        ck_assert_int_eq(is_upright(o, &r, i), !defect);
+        listed += (size_t)defect;
+    }
+    ck_assert_uint_eq(listed, r.defect_count);
+    *mended = r.mended_count;
+    gxb_boolean_destroy(b);
+    return listed;
+}
+
+/* Adds what rounding does to a workload, kept or removed, to sum: defects by fine, defects left by mend. */
+static void mend_workload(const char *name, workload w, int removed, size_t sum[2]) {
+    gxb_operand o[WL_SURFACES + 1];
+    wl_surface body = boundary_of(&w);
+    gxb_boolean_desc desc;
+    const size_t n = w.surface_count;
+    size_t i, found, left, mended;
+    answer a, m;
+    for (i = 0; i < n; ++i) o[removed ? i : i + 1] = operand_of(&w.surfaces[i], removed ? GXB_UNION : GXB_DIFFERENCE);
+    o[removed ? n : 0] = operand_of(&body, removed ? GXB_INTERSECTION : GXB_UNION);
+    memset(&desc, 0, sizeof desc);
+    find_defects(o, n + 1, NULL, &a, &mended);
+    desc.fine = 1;
+    found = find_defects(o, n + 1, &desc, &a, &mended);
+    ck_assert_uint_eq(mended, 0);
+    desc.mend = 1;
+    left = find_defects(o, n + 1, &desc, &m, &mended);
+    CHECK_CASE(left + mended == found, "%s: %zu defects, %zu mended, %zu left", name, found, mended, left);
+    CHECK_CASE(m.euler == a.euler && m.components == a.components && m.volume == a.volume && m.triangles <= a.triangles, "%s: mended, it is another", name);
+    sum[0] += found;
+    sum[1] += left;
+    surface_free(&body);
+    wl_free(&w);
+}
+
+/* Each of the hard slabs, and the slabs through one tetrahedron and a ring, can be rounded without any defect. */
+START_TEST(rounding_is_mended) {
+    size_t sum[2] = { 0, 0 }, pieces;
+    const char *name;
+    int removed, i;
+    for (removed = 0; removed < 2; ++removed) {
+        for (i = 0; i < WL_HARD; ++i) { workload w = wl_hard(i, &name, &pieces); mend_workload(name, w, removed, sum); }
+        mend_workload("W1", wl_through(1e-4), removed, sum);
+        mend_workload("W2", wl_ring_cut(6), removed, sum);
+        mend_workload("W2f", wl_ring_cut(5), removed, sum);
+    }
+    ck_assert_uint_gt(sum[0], 0);
+    ck_assert_uint_eq(sum[1], 0);
+}
+END_TEST
+
+/* Many slivers side by side: nearly all of them */
+START_TEST(rounded_sticks_are_mended) {
+    wl_frame rotated = wl_rotated();
+    size_t sum[2] = { 0, 0 };
+    int removed;
+    for (removed = 0; removed < 2; ++removed) mend_workload("W4r", wl_sticks(&rotated), removed, sum);
+    CHECK_CASE(sum[0] >= 30 && 10 * sum[1] <= 2 * sum[0], "%zu defects of %zu left", sum[1], sum[0]);
+}
+END_TEST
+
 /* ---- memory and bad input ---- */
 
 typedef struct memory { size_t live, calls, fail_at; int from_then_on; } memory;
@@ -894,12 +1066,17 @@ int main(void) {
     tcase_add_test(tests, winding_rules);
     tcase_add_test(tests, cavities_belong_to_their_component);
     tcase_add_test(tests, touching_solids);
+    tcase_add_test(tests, handles_are_counted);
     tcase_add_test(tests, sheets_divide);
     tcase_add_test(tests, a_wave_divides);
     tcase_add_test(tests, everything_knows_where_it_comes_from);
     tcase_add_test(tests, faces_in_as_few_triangles_as_possible);
     tcase_add_test(tests, coarse_results_are_the_same_solids);
     tcase_add_test(tests, coarse_sticks);
+    tcase_add_test(tests, closed_sheets_divide);
+    tcase_add_test(tests, everything_knows_where_it_comes_from);
+    tcase_add_test(tests, rounding_is_mended);
+    tcase_add_test(tests, rounded_sticks_are_mended);
     tcase_add_test(tests, memory_runs_out);
     tcase_add_test(tests, memory_limit);
     tcase_add_test(tests, bad_input_is_refused);

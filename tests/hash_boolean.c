@@ -1,0 +1,138 @@
+/* hash_boolean.c - prints a hash of Booleans of random cases: what hashes.sh compares between compilers and flags.
+
+   Coordinates are integers, so that they are the same whatever the flags: lattice points, as they are, with 16 random bits below them (nothing
+   coincides), or with one or two far below (nearly everything does). All of a result counts: triangles in their order, where
+   they come from, components, Euler characteristics, and as vertices are asked for to the last bit, those, what rounding turned over and what was mended. */
+#define GXFEM_BOOLEAN_IMPLEMENTATION
+#include "../gxfem_boolean.h"
+#include "fuzz_cases.h"
+
+#include <stdio.h>
+
+enum { CASES = 400 };
+
+static uint64_t hash = UINT64_C(14695981039346656037);
+
+static void mix(const void *data, size_t size)
+{
+    const unsigned char *bytes = (const unsigned char *)data;
+    size_t i;
+    for (i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * UINT64_C(1099511628211);
+}
+
+#define MIX(array, count) mix(array, (count) * sizeof *(array))
+
+static uint64_t scramble(uint64_t z)
+{
+    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
+    return z ^ z >> 27;
+}
+
+/* Steps of the lattice become 2^16 or 2^44 of them. What is not on the lattice (copies turned a little) comes back to it first. */
+static void place(case_mesh *m, uint64_t seed)
+{
+    uint32_t i, k;
+    for (i = 0; i < m->vertices; ++i) for (k = 0; k < 3; ++k) m->x[i][k] = fabs(m->x[i][k]) < 64 ? floor(m->x[i][k] + 0.3) : m->x[i][k];
+    for (i = 0; i < m->vertices && seed % 3 != 0; ++i)
+        for (k = 0; k < 3; ++k) {
+            const uint64_t random = scramble(seed << 32 ^ i << 8 ^ k) >> 20;
+            m->x[i][k] = seed % 3 == 1 ? m->x[i][k] * 65536 + (double)(random & 0xffff) : m->x[i][k] * 17592186044416.0 + (double)(random & 3);
+        }
+}
+
+static void hash_result(const gxb_boolean_result *r, size_t operands)
+{
+    size_t i;
+    MIX(r->triangles, 3 * r->triangle_count);
+    MIX(r->triangle_operand, r->triangle_count);
+    MIX(r->triangle_source, r->triangle_count);
+    MIX(r->triangle_reversed, r->triangle_count);
+    MIX(r->triangle_component, r->triangle_count);
+    MIX(r->component_euler, r->component_count);
+    MIX(r->component_side, r->component_count * operands);
+    MIX(r->vertices, 3 * r->vertex_count);
+    MIX(r->defects, r->defect_count);
+    for (i = 0; i < r->vertex_count; ++i) MIX(&r->vertex_origin[i], 1);
+}
+
+/* Two sheets of 5 x 5 squares, one above the other, closed around: enough triangles to be sorted, at thirds, elevenths and 31sts of their box */
+static void add_terrain(case_operand *o, uint64_t seed, int axis)
+{
+    static const double at[6] = { 0, 2, 5, 6, 9, 11 };
+    case_mesh *m = &o->mesh;
+    uint32_t i, j, level;
+    memset(o, 0, sizeof *o);
+    o->operation = axis == 0 ? GXB_UNION : GXB_DIFFERENCE;
+    for (level = 0; level < 2; ++level) for (j = 0; j < 6; ++j) for (i = 0; i < 6; ++i) {
+        const double height = (double)(scramble(seed << 16 ^ j << 8 ^ i) % 8) + (level == 0 ? 0 : 3);
+        const uint32_t v = case_vertex(m, 0, 0, 0);
+        m->x[v][axis] = 31 * at[i]; m->x[v][(axis + 1) % 3] = 31 * at[j]; m->x[v][(axis + 2) % 3] = 31 * height;
+    }
+    for (j = 0; j < 5; ++j) for (i = 0; i < 5; ++i) for (level = 0; level < 2; ++level) {
+        const uint32_t a = 36 * level + 6 * j + i, b = a + (level ? 1 : 6), c = a + (level ? 6 : 1);
+        case_triangle(m, a, b, c);
+        case_triangle(m, b, a + 7, c);
+    }
+    for (i = 0; i < 5; ++i) {
+        const uint32_t rim[4][2] = { { i, i + 1 }, { 31 + i, 30 + i }, { 6 * i + 6, 6 * i }, { 6 * i + 5, 6 * i + 11 } };
+        for (j = 0; j < 4; ++j) {
+            case_triangle(m, rim[j][0], rim[j][1], rim[j][1] + 36);
+            case_triangle(m, rim[j][0], rim[j][1] + 36, rim[j][0] + 36);
+        }
+    }
+}
+
+static void run_operands(const test_case *c, uint64_t seed, int moved)
+{
+    gxb_boolean_desc desc;
+    gxb_boolean_result r;
+    gxb_boolean *b = NULL;
+    size_t i, operands = 0;
+    int result = 0;
+    memset(&desc, 0, sizeof desc);
+    desc.fine = 1;
+    desc.mend = seed / 3 % 2;
+    if (gxb_boolean_create(&desc, &b) != GX_OK) return;
+    for (i = 0; i < c->operands; ++i) {
+        static case_mesh m;
+        gxb_operand o;
+        memset(&o, 0, sizeof o);
+        m = c->operand[i].mesh;
+        if (moved) place(&m, seed + 3 * i);
+        o.vertices = &m.x[0][0]; o.vertex_count = m.vertices;
+        o.triangles = &m.t[0][0]; o.triangle_count = m.triangles;
+        o.operation = c->operand[i].operation; o.rule = c->operand[i].rule;
+        result = (int)gxb_boolean_add(b, &o, NULL);
+        operands += result == GX_OK;
+        mix(&result, sizeof result);
+        if (operands == 0) continue;
+        result = (int)gxb_boolean_evaluate(b, &r);
+        mix(&result, sizeof result);
+        if (result == GX_OK) hash_result(&r, operands);
+    }
+    gxb_boolean_destroy(b);
+}
+
+static void run_case(uint64_t seed)
+{
+    static test_case c;
+    uint8_t bytes[CASE_BYTES];
+    case_fill(seed, bytes);
+    bytes[0] &= 0xf8;               /* a Boolean */
+    bytes[1] = 0;                   /* of lattice points */
+    case_decode(bytes, CASE_BYTES, &c);
+    run_operands(&c, seed, 1);
+    if (seed % 20 != 0) return;
+    add_terrain(&c.operand[0], seed, 0);
+    add_terrain(&c.operand[1], seed + 1, (int)(seed / 20 % 3));
+    c.operands = 2;
+    run_operands(&c, seed, 0);
+}
+
+int main(void)
+{
+    uint64_t seed;
+    for (seed = 1; seed <= CASES; ++seed) run_case(seed);
+    printf("%08lx%08lx\n", (unsigned long)(hash >> 32), (unsigned long)(hash & 0xffffffff));
+    return 0;
+}
