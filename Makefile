@@ -39,7 +39,7 @@ help:
 	@echo "make bench-table2  scenes of GXFEM's Table 2 by the library, virtual nodes and the literal Algorithm 1; BENCH=--small: minutes"
 	@echo "make bench-stepping  error of the motion against time per step: steps, integrators, Newton, CG, lumping, virtual nodes; BENCH=--small"
 	@echo "make bench-quadrature  integrals over parts of cut elements: error and time beside RXFEM, adaptive and regular sampling"
-	@echo "make charts      the benches that have charts, then docs/charts/; installs gnuplot where it is missing"
+	@echo "make charts      those benches and scaling, failure, table2, stepping, then docs/charts/ and docs/BENCH.md (half an hour); installs gnuplot"
 	@echo "make bench-kernel  Booleans of closed surfaces; DATA=FOLDER: also of the OFF files there"
 	@echo "make clean       removes $(BUILD)/"
 
@@ -174,8 +174,9 @@ $(sort $(table2:%=$(traces)/%.trace) $(stepping:%=$(traces)/%.trace)): $(traces)
 
 charts:
 	@sh tests/install.sh charts >&2
-	@$(MAKE) --no-print-directory bench-quadrature bench-conditioning >/dev/null
+	@$(MAKE) --no-print-directory bench-quadrature bench-conditioning bench-stepping bench-scaling bench-failure bench-table2 >/dev/null
 	@sh bench/charts.sh $(BUILD)/bench docs/charts
+	@sh bench/page.sh $(BUILD)/bench docs/BENCH.md
 
 bench-kernel: $(BUILD)/bench/kernel
 	@$< $(BUILD)/bench/kernel.csv $(DATA)

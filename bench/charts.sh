@@ -3,7 +3,7 @@
 # usage: sh bench/charts.sh TABLES CHARTS
 #     TABLES  directory of the benches' CSV files
 #     CHARTS  directory of the SVG files
-# quadrature.csv gives quadrature.svg and quadrature_triangles.svg, conditioning.csv conditioning.svg. A table that is missing is an
+# quadrature.csv gives quadrature.svg and quadrature_triangles.svg, the others one of their own name. A table that is missing is an
 # error. Needs gnuplot.
 set -u
 tables=$1
@@ -11,7 +11,7 @@ charts=$2
 mkdir -p "$charts" || exit 2
 where="$(date +%Y-%m-%d), $(uname -m | tr _ -), one thread"
 
-for bench in quadrature conditioning; do
+for bench in quadrature conditioning stepping scaling; do
     [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-$bench" >&2; exit 2; }
 done
 
@@ -132,5 +132,67 @@ unset multiplot
 END
 }
 
-panels | gnuplot && triangles | gnuplot && conditioning | gnuplot || exit 1
-echo "wrote $charts/quadrature.svg, $charts/quadrature_triangles.svg, $charts/conditioning.svg"
+# What a cut costs per element that it touches, and the unknowns that it leaves, against sizes
+scaling() {
+    echo 'set terminal svg size 1180,780 font "sans,12" background "white"'
+    echo "set output '$charts/scaling.svg'"
+    for sweep in "elements plane 3" "elements curved 3" "cuts parallel 4" "cuts crossing 4" "triangles curved 5"; do
+        set -- $sweep
+        echo "\$$1_$2 << EOD"
+        awk -F, -v sweep="$1" -v kind="$2" -v x="$3" '$1 == sweep && $2 == kind { print $x, $9, $10, $11, $12, $13, $14, $15 }' "$tables/scaling.csv"
+        echo "EOD"
+    done
+    cat <<END
+set multiplot layout 2,2 title "What a cut of a block of tetrahedra costs   ($where)" font "sans,15"
+set logscale xy; set grid back lc rgb "#dddddd"
+set style line 1 lc rgb "#c00000" lw 2 pt 7 ps 1.1
+set style line 2 lc rgb "#e08030" lw 2 pt 5 ps 0.9
+set style line 3 lc rgb "#2060b0" lw 2 pt 9 ps 1.1
+set style line 6 lc rgb "#808080" lw 2 pt 11 ps 0.9
+set ylabel "cut, us per touched element"; set yrange [1:1000]; set key left top
+set xlabel "elements of the block"; set format x "10^{%L}"
+plot \$elements_plane using 1:2 with linespoints ls 1 title "a plane", \$elements_curved using 1:2 with linespoints ls 3 title "a curved sheet, two triangles a cell"
+set xlabel "cuts so far, 40 000 elements"; set format x "%g"
+plot \$cuts_parallel using 1:2 with linespoints ls 1 title "parallel planes", \$cuts_crossing using 1:2 with linespoints ls 2 title "crossing planes"
+set xlabel "triangles of the cut, 40 000 elements"; set format x "10^{%L}"
+plot \$triangles_curved using 1:2 with linespoints ls 3 title "a curved sheet"
+set ylabel "unknowns"; set yrange [1e4:1e9]; set format y "10^{%L}"; set xlabel "cuts so far, 40 000 elements"; set format x "%g"
+plot \$cuts_parallel using 1:6 with linespoints ls 1 title "gxfem, parallel", \$cuts_crossing using 1:6 with linespoints ls 2 title "gxfem, crossing", \$cuts_parallel using 1:7 with linespoints ls 1 dt 2 title "remeshed, parallel", \$cuts_crossing using 1:7 with linespoints ls 2 dt 2 title "remeshed, crossing"
+unset multiplot
+END
+}
+
+# Error of the motion against time; a panel for each scene
+stepping() {
+    echo 'set terminal svg size 1180,520 font "sans,12" background "white"'
+    echo "set output '$charts/stepping.svg'"
+    for scene in slab_in_five accordion; do
+        for kind in "BDF1" "BDF2" "midpoint; 2 Newton" "BDF2; lumped" "VNA; BDF2" "CG tolerance" "Newton iterations"; do
+            echo "\$${scene}_$(echo "$kind" | tr -c 'A-Za-z0-9\n' _) << EOD"
+            awk -F, -v scene=$scene -v kind="$kind" '$1 == scene && $2 == kind && $8 != "" { print $7 / 1000, $8 }' "$tables/stepping.csv"
+            echo "EOD"
+        done
+    done
+    cat <<END
+set multiplot layout 1,2 title "Error of the motion of a cut body after 0.33 s, in the same space   ($where)" font "sans,15"
+set logscale xy; set grid back lc rgb "#dddddd"; set format y "10^{%L}"
+set xlabel "computing time, s per simulated second"; set ylabel "error, share of the motion"; set yrange [1e-4:10]
+set style line 1 lc rgb "#c00000" lw 2 pt 7 ps 1.1
+set style line 2 lc rgb "#e08030" lw 2 pt 5 ps 0.9
+set style line 3 lc rgb "#308040" lw 2 pt 13 ps 1.1
+set style line 4 lc rgb "#c00000" lw 1 dt 2 pt 6 ps 1.1
+set style line 5 lc rgb "#2060b0" lw 2 pt 9 ps 1.1
+set style line 6 lc rgb "#808080" lw 1 pt 11 ps 0.9
+set style line 7 lc rgb "#000000" lw 1 pt 1 ps 0.9
+END
+    for scene in slab_in_five accordion; do
+        title=$(echo $scene | tr _ ' ')
+        echo "set title '$title'; set key left bottom font ',10'"
+        [ $scene = slab_in_five ] || echo "set key off"
+        echo "plot \$${scene}_BDF1 using 1:2 with linespoints ls 2 title 'BDF1, dt 33 to 1 ms', \$${scene}_BDF2 using 1:2 with linespoints ls 1 title 'BDF2', \$${scene}_BDF2__lumped using 1:2 with linespoints ls 4 title 'BDF2, lumped mass', \$${scene}_midpoint__2_Newton using 1:2 with linespoints ls 3 title 'midpoint, 2 Newton', \$${scene}_VNA__BDF2 using 1:2 with linespoints ls 5 title 'VNA, BDF2', \$${scene}_CG_tolerance using 1:2 with linespoints ls 6 title 'BDF1, 8 ms: CG 1e-1 to 1e-6', \$${scene}_Newton_iterations using 1:2 with linespoints ls 7 title 'BDF1, 8 ms: Newton 1 to 16'"
+    done
+    echo 'unset multiplot'
+}
+
+panels | gnuplot && triangles | gnuplot && conditioning | gnuplot && stepping | gnuplot && scaling | gnuplot || exit 1
+echo "wrote $charts/quadrature.svg, quadrature_triangles.svg, conditioning.svg, stepping.svg, scaling.svg"
