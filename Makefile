@@ -39,6 +39,7 @@ help:
 	@echo "make bench-table2  scenes of GXFEM's Table 2 by the library, virtual nodes and the literal Algorithm 1; BENCH=--small: minutes"
 	@echo "make bench-stepping  error of the motion against time per step: steps, integrators, Newton, CG, lumping, virtual nodes; BENCH=--small"
 	@echo "make bench-quadrature  integrals over parts of cut elements: error and time beside RXFEM, adaptive and regular sampling"
+	@echo "make bench       all benches, and charts"
 	@echo "make charts      those benches and scaling, failure, table2, stepping, then docs/charts/ and docs/BENCH.md (half an hour); installs gnuplot"
 	@echo "make bench-kernel  Booleans of closed surfaces; DATA=FOLDER: also of the OFF files there"
 	@echo "make clean       removes $(BUILD)/"
@@ -172,6 +173,8 @@ $(sort $(table2:%=$(traces)/%.trace) $(stepping:%=$(traces)/%.trace)): $(traces)
 	@mkdir -p $(@D)
 	@$< --quiet --trace $@ $(if $(BENCH),$(BENCH),$(frames-$*:%=--frames %)) $(if $(OCTOPUS),$(if $(filter octopus,$*),--mesh $(OCTOPUS)))
 
+bench: bench-solver bench-accuracy bench-drift bench-frames bench-skin bench-kernel charts
+
 charts:
 	@sh tests/install.sh charts >&2
 	@$(MAKE) --no-print-directory bench-quadrature bench-conditioning bench-stepping bench-scaling bench-failure bench-table2 >/dev/null
@@ -198,4 +201,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo scenes pictures check check-programs run-gxcut run-corpus $(tests:%=run-%) sanitize sanitize-scenes compile lint fuzz flags hashes bench-solver bench-accuracy bench-drift bench-conditioning bench-frames bench-quadrature bench-skin bench-scaling bench-failure bench-table2 bench-stepping bench-kernel charts check-all clean
+.PHONY: help examples demo scenes pictures check check-programs run-gxcut run-corpus $(tests:%=run-%) sanitize sanitize-scenes compile lint fuzz flags hashes bench-solver bench-accuracy bench-drift bench-conditioning bench-frames bench-quadrature bench-skin bench-scaling bench-failure bench-table2 bench-stepping bench-kernel bench charts check-all clean

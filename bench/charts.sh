@@ -189,7 +189,7 @@ END
         title=$(echo $scene | tr _ ' ')
         echo "set title '$title'; set key left bottom font ',10'"
         [ $scene = slab_in_five ] || echo "set key off"
-        echo "plot \$${scene}_BDF1 using 1:2 with linespoints ls 2 title 'BDF1, dt 33 to 1 ms', \$${scene}_BDF2 using 1:2 with linespoints ls 1 title 'BDF2', \$${scene}_BDF2__lumped using 1:2 with linespoints ls 4 title 'BDF2, lumped mass', \$${scene}_midpoint__2_Newton using 1:2 with linespoints ls 3 title 'midpoint, 2 Newton', \$${scene}_VNA__BDF2 using 1:2 with linespoints ls 5 title 'VNA, BDF2', \$${scene}_CG_tolerance using 1:2 with linespoints ls 6 title 'BDF1, 8 ms: CG 1e-1 to 1e-6', \$${scene}_Newton_iterations using 1:2 with linespoints ls 7 title 'BDF1, 8 ms: Newton 1 to 16'"
+        echo "plot \$${scene}_BDF1 using 1:2 with linespoints ls 2 title 'BDF1, dt 33 to 2 ms', \$${scene}_BDF2 using 1:2 with linespoints ls 1 title 'BDF2', \$${scene}_BDF2__lumped using 1:2 with linespoints ls 4 title 'BDF2, lumped mass', \$${scene}_midpoint__2_Newton using 1:2 with linespoints ls 3 title 'midpoint, 2 Newton', \$${scene}_VNA__BDF2 using 1:2 with linespoints ls 5 title 'VNA, BDF2', \$${scene}_CG_tolerance using 1:2 with linespoints ls 6 title 'BDF1, 8 ms: CG 1e-1 to 1e-6', \$${scene}_Newton_iterations using 1:2 with linespoints ls 7 title 'BDF1, 8 ms: Newton 1 to 16'"
     done
     echo 'unset multiplot'
 }

@@ -317,8 +317,8 @@ static inline double rx_add_point(const double lame[2], const gxs_element *e, co
 }
 
 /* Energy; forces (gradient, 3 (nodes + enrichments), set to 0 first) and, where stiffness is not NULL, each piece's tangent in its four values
-   (piece_count x 144). literal: at each of the rule's points in pieces of cut elements, as published; else once for each piece. */
-static inline double rx_elastic(const rx_body *b, const rx_model *m, double young, double poisson, const double *unknowns, int literal,
+   (piece_count x 144). published: at each of the rule's points in pieces of cut elements; else once for each piece. */
+static inline double rx_elastic(const rx_body *b, const rx_model *m, double young, double poisson, const double *unknowns, int published,
                                 double *forces, double *stiffness)
 {
     const double lame[2] = {young * poisson / ((1 + poisson) * (1 - 2 * poisson)), 0.5 * young / (1 + poisson)};
@@ -329,7 +329,7 @@ static inline double rx_elastic(const rx_body *b, const rx_model *m, double youn
     for (i = 0; i < b->piece_count; ++i) {
         const gxs_element *e = &m->elements[i];
         const uint32_t element = b->pieces[i].element;
-        const int at_points = literal && b->patch_first[element] < b->patch_first[element + 1];
+        const int at_points = published && b->patch_first[element] < b->patch_first[element + 1];
         const size_t points = at_points ? b->rules->volume.point_count : 1;
         const double scale = 6 * rx_element_volume(b, element);
         double force[12] = {0}, tangent[144] = {0}, f[9];

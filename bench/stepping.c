@@ -4,7 +4,7 @@
    the start); it prints CSV and writes it to build/bench/stepping.csv. usage: stepping FILE SCENE=TRACE...
 
    Every run moves the same copies from rest for 0.33 s. Its error is the difference from the reference in displacement, weighted by mass,
-   as a share of how far the reference moves. The reference: implicit midpoint with steps of 0.033/64 s, Newton to 1e-8. How far off it may be
+   as a share of how far the reference moves. The reference: implicit midpoint with steps of 0.033/32 s, Newton to 1e-8. How far off it may be
    itself is in the row "reference": BDF2's difference from it with steps half as long. The space is the same in all runs: its own error,
    under refinement, is in docs/SCENES.md (locking).
    Columns: series and what was turned in it; dt; steps; ms_per_step, the mean; ms_per_second, of simulated time; error. */
@@ -101,17 +101,30 @@ static gxs_solver *make_solver(const setting *s, const knobs *k)
     return solver;
 }
 
-/* Moves u (copy_count x 3, the start) to the end; returns milliseconds per step, or a negative number where a step fails. */
+/* One step; history: state before the last step and before this one, u and v of each, size numbers each. BDF2 needs the former. */
+static gx_result advance(gxs_solver *solver, gxs_step_desc *desc, double *u, double *v, double *history, size_t size)
+{
+    double *before = history, *now = history + 2 * size;
+    gx_result result;
+    memcpy(now, u, size * sizeof(double));
+    memcpy(now + size, v, size * sizeof(double));
+    result = gxs_solver_step(solver, desc, u, v, NULL, NULL);
+    memcpy(before, now, 2 * size * sizeof(double));
+    desc->previous_displacement = before;
+    desc->previous_velocity = before + size;
+    desc->previous_dt = desc->dt;
+    return result;
+}
+
+/* Moves u (copy_count x 3) from the start to the end; returns milliseconds per step, or a negative number where a step fails. */
 static double run(const setting *s, const knobs *k, double *u)
 {
     const size_t size = 3 * s->model.copy_count, steps = (size_t)(duration / k->dt + 0.5);
-    double *v = (double *)calloc(size, sizeof(double)), *before[2], begin;
+    double *v = (double *)calloc(size, sizeof(double)), *history = (double *)method_memory(NULL, 4 * size, sizeof(double)), begin;
     gxs_solver *solver = make_solver(s, k);
     gxs_step_desc desc;
     gx_result result = GX_OK;
     size_t i;
-    before[0] = (double *)method_memory(NULL, size, sizeof(double));
-    before[1] = (double *)method_memory(NULL, size, sizeof(double));
     method_must(v ? GX_OK : GX_ERROR_MEMORY, "run");
     memset(&desc, 0, sizeof desc);
     desc.dt = k->dt;
@@ -122,27 +135,11 @@ static double run(const setting *s, const knobs *k, double *u)
     desc.cg_tolerance = k->cg_tolerance;
     memcpy(u, s->start, size * sizeof(double));
     begin = seconds(NULL);
-    for (i = 0; i < steps && result == GX_OK; i++) {
-        double *last[2];
-        last[0] = before[0]; last[1] = before[1];
-        if (k->integrator == GXS_BDF2) {
-            double *now = (double *)method_memory(NULL, 2 * size, sizeof(double));
-            memcpy(now, u, size * sizeof(double));
-            memcpy(now + size, v, size * sizeof(double));
-            desc.previous_displacement = i > 0 ? last[0] : NULL;
-            desc.previous_velocity = last[1];
-            desc.previous_dt = k->dt;
-            result = gxs_solver_step(solver, &desc, u, v, NULL, NULL);
-            memcpy(before[0], now, size * sizeof(double));
-            memcpy(before[1], now + size, size * sizeof(double));
-            free(now);
-        } else result = gxs_solver_step(solver, &desc, u, v, NULL, NULL);
-    }
+    for (i = 0; i < steps && result == GX_OK; i++) result = advance(solver, &desc, u, v, history, size);
     begin = 1e3 * (seconds(NULL) - begin) / (double)steps;
     gxs_solver_destroy(solver);
     free(v);
-    free(before[0]);
-    free(before[1]);
+    free(history);
     return result == GX_OK ? begin : -1;
 }
 
@@ -174,7 +171,7 @@ static void find_reference(setting *s)
 {
     knobs k;
     memset(&k, 0, sizeof k);
-    k.dt = longest / 64;
+    k.dt = longest / 32;
     k.integrator = GXS_MIDPOINT;
     k.newton = 30;
     k.newton_tolerance = 1e-8;
@@ -183,15 +180,15 @@ static void find_reference(setting *s)
     k.series = "reference";
     k.value = "BDF2";
     k.integrator = GXS_BDF2;
-    k.dt = longest / 128;
+    k.dt = longest / 64;
     row(s, &k);
 }
 
 static void turn_steps(const setting *s, const char *series, gxs_integrator integrator, uint32_t newton, int lumped, int replicas)
 {
-    static const int parts[6] = {1, 2, 4, 8, 16, 32};
+    static const int parts[5] = {1, 2, 4, 8, 16};
     int i;
-    for (i = 0; i < 6; i++) {
+    for (i = 0; i < 5; i++) {
         knobs k;
         char text[32];
         memset(&k, 0, sizeof k);
