@@ -159,7 +159,7 @@ frames-sticks = 145
 frames-thin_slab = 450
 frames-accordion = 540
 frames-octopus = 600
-traces = $(BUILD)/bench/traces$(BENCH)
+traces = $(BUILD)/bench/traces$(if $(filter --small,$(BENCH)),-small)
 
 bench-table2:
 	@$(MAKE) --no-print-directory $(BUILD)/bench/table2 $(table2:%=$(traces)/%.trace) >&2
@@ -171,7 +171,7 @@ bench-stepping:
 
 $(sort $(table2:%=$(traces)/%.trace) $(stepping:%=$(traces)/%.trace)): $(traces)/%.trace: $(BUILD)/%
 	@mkdir -p $(@D)
-	@$< --quiet --trace $@ $(if $(BENCH),$(BENCH),$(frames-$*:%=--frames %)) $(if $(OCTOPUS),$(if $(filter octopus,$*),--mesh $(OCTOPUS)))
+	@$< --quiet --trace $@ $(if $(filter --small,$(BENCH)),--small,$(frames-$*:%=--frames %)) $(if $(OCTOPUS),$(if $(filter octopus,$*),--mesh $(OCTOPUS)))
 
 bench: bench-solver bench-accuracy bench-drift bench-frames bench-skin bench-kernel charts
 
