@@ -12,9 +12,11 @@ BENCH_CFLAGS ?= -O3 -march=native
 
 headers = gxfem.h gxfem_boolean.h gxfem_integrate.h gxfem_solve.h
 tests = $(patsubst tests/%.c,%,$(sort $(wildcard tests/test_*.c)))
+linked_tests = $(patsubst tests/%.c,%,$(shell grep -l GXFEM_LINKED tests/test_*.c))
 examples = $(patsubst examples/%.c,%,$(sort $(wildcard examples/*.c)))
 scenes = $(filter-out embed gxcut,$(examples))
-compile = $(CC) -std=c99 $(WARNINGS) $(CFLAGS)
+compile = $(CC) -std=c99 -g $(WARNINGS) $(CFLAGS)
+linked = $(compile) -DGXFEM_LINKED
 sanitizers = -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all
 
 help:
@@ -54,7 +56,7 @@ $(BUILD)/%: examples/%.c $(headers) $(wildcard examples/*.h)
 
 # Scenes share one object with the library's implementation; each also compiles on its own, as gxcut does.
 $(scenes:%=$(BUILD)/%): $(BUILD)/%: examples/%.c $(BUILD)/gxfem.o $(headers) $(wildcard examples/*.h)
-	$(compile) -DSCENE_LINKS_GXFEM -I. $< $(BUILD)/gxfem.o -o $@ $(LDFLAGS) -lm
+	$(linked) -I. $< $(BUILD)/gxfem.o -o $@ $(LDFLAGS) -lm
 
 $(BUILD)/gxfem.o: $(headers)
 	@mkdir -p $(@D)
@@ -99,7 +101,12 @@ $(tests:%=run-%): run-%: $(BUILD)/tests/%
 
 $(BUILD)/tests/%: tests/%.c $(headers) $(wildcard tests/*.h examples/*.h bench/*.h)
 	@mkdir -p $(@D)
-	$(compile) -g -Itests $(shell pkg-config --cflags check) $< -o $@ $(LDFLAGS) $(shell pkg-config --libs check) -lm
+	$(compile) -Itests $(shell pkg-config --cflags check) $< -o $@ $(LDFLAGS) $(shell pkg-config --libs check) -lm
+
+# Tests that need nothing but the interface, which say GXFEM_LINKED, share the object of the scenes.
+$(linked_tests:%=$(BUILD)/tests/%): $(BUILD)/tests/%: tests/%.c $(BUILD)/gxfem.o $(headers) $(wildcard tests/*.h examples/*.h bench/*.h)
+	@mkdir -p $(@D)
+	$(linked) -Itests $(shell pkg-config --cflags check) $< $(BUILD)/gxfem.o -o $@ $(LDFLAGS) $(shell pkg-config --libs check) -lm
 
 sanitize:
 	@sh tests/install.sh check

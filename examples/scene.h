@@ -31,7 +31,7 @@
 
 #include "gxio.h"
 
-#ifndef SCENE_LINKS_GXFEM       /* make examples compiles the library once for all scenes */
+#ifndef GXFEM_LINKED            /* make examples compiles the library once for all scenes */
 #define GXFEM_IMPLEMENTATION
 #endif
 #include "../gxfem.h"

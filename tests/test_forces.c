@@ -1,6 +1,8 @@
 /* Tests of what acts on bodies in gxfem_solve.h besides their own elasticity: constraints, springs, planes with friction, contact,
  * statics, damping, sleep, time budgets, the assembled matrix; and of memory and random mixtures of all of it. */
+#ifndef GXFEM_LINKED
 #define GXFEM_SOLVE_IMPLEMENTATION
+#endif
 #include "../gxfem_solve.h"
 
 #include "block.h"

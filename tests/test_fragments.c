@@ -1,6 +1,8 @@
 /* test_fragments.c - what one is told of fragments: ids that last, what cuts have changed, inertia, motion. The oracle for ids is the
    displacement field, which no cut changes: each fragment is moved by a number of its own, and its pieces show it. */
+#ifndef GXFEM_LINKED
 #define GXFEM_IMPLEMENTATION
+#endif
 #include "../gxfem.h"
 #include "body.h"
 

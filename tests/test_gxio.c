@@ -3,7 +3,9 @@
 
    Random tests print their seed. */
 #include "../examples/gxio.h"
+#ifndef GXFEM_LINKED
 #define GXFEM_IMPLEMENTATION
+#endif
 #include "../gxfem.h"
 #include "body.h"
 #include <unistd.h>

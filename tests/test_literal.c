@@ -1,8 +1,12 @@
 /* test_literal.c - the bench's literal Algorithm 1 and its virtual node algorithm: the same pieces, copies and integrals as the library
    where cuts are solids in general position, and what is their own elsewhere. */
 #define _POSIX_C_SOURCE 199309L
+#ifndef GXFEM_LINKED
 #define GXFEM_IMPLEMENTATION
+#endif
 #include "../gxfem.h"
+#include "../gxfem_boolean.h"
+#include "../gxfem_integrate.h"
 #include "../bench/literal.h"
 #include "../bench/vna.h"
 #include "body.h"

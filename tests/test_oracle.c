@@ -2,7 +2,9 @@
    fragments, over random and degenerate cuts of small meshes; and the same answer in any order, at any scale.
 
    GXFEM_SEED=n runs scene n alone. */
+#ifndef GXFEM_LINKED
 #define GXFEM_IMPLEMENTATION
+#endif
 #include "../gxfem.h"
 #include "workloads.h"
 #include "runner.h"

@@ -1,5 +1,7 @@
 /* test_scenes.c - what scenes say of themselves, held against the exact oracle. */
+#ifndef GXFEM_LINKED
 #define GXFEM_IMPLEMENTATION
+#endif
 #include "../gxfem.h"
 #include "../examples/cheese.h"
 #include "oracle.h"

@@ -2,7 +2,9 @@
    normals, texture coordinates, rays. More on the skin: test_body.c.
 
    Random tests print their seed. GXFEM_SEED=n runs seed n alone. */
+#ifndef GXFEM_LINKED
 #define GXFEM_IMPLEMENTATION
+#endif
 #include "../gxfem.h"
 #include "body.h"
 #include "skin_check.h"

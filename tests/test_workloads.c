@@ -1,6 +1,8 @@
 /* test_workloads.c - the named workloads (workloads.h) as cuts of a body: fragments, kept volume, removed volume, so that a cut
    that was ignored is seen, however thin. Truth: the exact oracle; for W3, of 1760 triangles, exact cones. */
+#ifndef GXFEM_LINKED
 #define GXFEM_IMPLEMENTATION
+#endif
 #include "../gxfem.h"
 #include "workloads.h"
 #include "skin_check.h"
