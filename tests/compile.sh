@@ -68,6 +68,9 @@ known_standards() {
     done
 }
 
+# output_of STANDARD OBJECT: objects are linked below, of the oldest standards; of the others the warnings are enough
+output_of() { case $1 in c99 | c++11) echo "-c -o $2" ;; *) echo "-fsyntax-only" ;; esac; }
+
 # level_of STANDARD FILE: some warnings need the optimiser; once is enough
 level_of() { case $1:$2 in c99:together | c99:static | c++11:together | c++11:static) echo -O2 ;; *) echo -O0 ;; esac; }
 
@@ -85,7 +88,7 @@ for cc in $compilers; do
                 base=$(basename "$file" .c)
                 level=$(level_of $std "$base")
                 job "$cc $wide -std=$std $level tests/compile/$base.c" \
-                    "$cc $wide -std=$std $level $warnings -c $root/tests/compile/$base.c -o $base.$cc.$width.$std.o"
+                    "$cc $wide -std=$std $level $warnings $root/tests/compile/$base.c $(output_of $std $base.$cc.$width.$std.o)"
             done
         done
         if ! command -v "$cxx" >/dev/null 2>&1; then echo "no $cxx here: left out"; continue; fi
@@ -96,7 +99,7 @@ for cc in $compilers; do
                 base=$(basename "$file" .cc)
                 level=$(level_of $std "$base")
                 job "$cxx $wide -std=$std $level tests/compile/$base.cc" \
-                    "$cxx $wide -std=$std $level $warnings -c $root/tests/compile/$base.cc -o $base.$cxx.$width.$std.o"
+                    "$cxx $wide -std=$std $level $warnings $root/tests/compile/$base.cc $(output_of $std $base.$cxx.$width.$std.o)"
             done
         done
     done
