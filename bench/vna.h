@@ -2,7 +2,7 @@
    and stiffness [Molino, Bao, Fedkiw 2004; without its limits on where cuts run: Sifakis, Der, Fedkiw 2007].
 
    A baseline of the bench. Which replicas there are, and which virtual nodes they share, is what the library finds: replicas share a
-   node where their material hangs together around it, in both methods. Include after gxfem.h. */
+   node where their material hangs together around it, in both methods. Include after gxfem.h or gxfem_solve.h. */
 #ifndef GXFEM_BENCH_VNA_H
 #define GXFEM_BENCH_VNA_H
 
@@ -19,11 +19,12 @@ static double vna_volume(const double gradient[4][3])
 /* Parts of elements (gx_body_model's) as replicas of whole elements; replicas: room for count. densities: by material, kg/m3 */
 static void vna_replicate(const gxs_element *parts, size_t count, const double *densities, gxs_element *replicas)
 {
-    size_t i;
+    static const double mass[10] = {2, 1, 1, 1, 2, 1, 1, 2, 1, 2};      /* / 20 of the whole */
+    size_t i, k;
     memcpy(replicas, parts, count * sizeof *replicas);
     for (i = 0; i < count; i++) {
         replicas[i].weight = vna_volume(parts[i].gradient);
-        gxi_tet_mass(replicas[i].weight, densities[parts[i].material], replicas[i].mass);
+        for (k = 0; k < 10; k++) replicas[i].mass[k] = densities[parts[i].material] * replicas[i].weight / 20 * mass[k];
     }
 }
 
