@@ -3929,13 +3929,13 @@ static void gxp_pass_words(gxb_stream *s, gxp_words *words, uint32_t count) {
     gxb_stream_pass(s, words->data, count, sizeof *words->data);
 }
 
-/* n: of this body when it is written, of what is read else, and there is room. */
 /* The solver forgets, so that it goes on as that of the other body will. */
 static void gxp_resume_in(gx_body *body, const gxs_scene *scene) {
     gxs_solver_resume(body->solver, scene);
     if (body->model_updated) body->model = GXP_MODEL_STALE;
 }
 
+/* n: of this body when it is written, of what is read else, and there is room. */
 static void gxp_pass_state(gxb_stream *s, gx_body *body, const gxp_state_counts *n) {
     const size_t copies = n->copies;
     uint32_t i, look_stale = (uint32_t)body->look_stale;
