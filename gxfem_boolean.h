@@ -5470,13 +5470,14 @@ static uint32_t gxbp_insert_point(gxb_boolean *b, uint32_t s, uint32_t x, uint32
 
 /* --- edges that must be there --- */
 
-static void gxbp_push_rim(gxb_boolean *b, uint32_t vertex, uint32_t f, int k) {
-    gxbp_margin *r;
-    if (!GXBP_ROOM(b, rims, rim, 1)) return;
-    r = &b->rims[b->rim_count++];
+static void gxbp_set_margin(const gxb_boolean *b, gxbp_margin *r, uint32_t vertex, uint32_t f, int k) {
     r->vertex = vertex; r->made = GXB_NONE; r->dangling = 0;
     r->near = f == GXB_NONE ? GXB_NONE : b->pieces[f].near[k];
     r->labels = f == GXB_NONE ? GXBP_LOOSE : b->pieces[f].labels[k];
+}
+
+static void gxbp_push_rim(gxb_boolean *b, uint32_t vertex, uint32_t f, int k) {
+    if (GXBP_ROOM(b, rims, rim, 1)) gxbp_set_margin(b, &b->rims[b->rim_count++], vertex, f, k);
 }
 
 /* The apex over the base from rim[high] to rim[low]: no other vertex between lies in its triangle. */
@@ -5540,12 +5541,7 @@ static uint32_t gxbp_crossing_point(gxb_boolean *b, uint32_t s, uint32_t labels,
 }
 
 static void gxbp_push_left(gxb_boolean *b, uint32_t vertex, uint32_t f, int k) {
-    gxbp_margin *r;
-    if (!GXBP_ROOM(b, lefts, left, 1)) return;
-    r = &b->lefts[b->left_count++];
-    r->vertex = vertex; r->made = GXB_NONE; r->dangling = 0;
-    r->near = f == GXB_NONE ? GXB_NONE : b->pieces[f].near[k];
-    r->labels = f == GXB_NONE ? GXBP_LOOSE : b->pieces[f].labels[k];
+    if (GXBP_ROOM(b, lefts, left, 1)) gxbp_set_margin(b, &b->lefts[b->left_count++], vertex, f, k);
 }
 
 static void gxbp_push(gxb_boolean *b, uint32_t value) {
