@@ -921,7 +921,7 @@ static void give(void *user, void *block, size_t size) {
 }
 
 /* Adds three boxes and evaluates after each; a call that fails is made again, and then succeeds. */
-static answer stubborn(memory *m, const gxb_operand *o, int *failed) {
+static answer despite_failures(memory *m, const gxb_operand *o, int *failed) {
     gxb_boolean_desc desc;
     gxb_boolean *b = NULL;
     gxb_boolean_result r;
@@ -966,7 +966,7 @@ START_TEST(memory_runs_out) {
             answer a;
             m.fail_at = n;
             m.from_then_on = i;
-            a = stubborn(&m, o, &failed);
+            a = despite_failures(&m, o, &failed);
             check_answer("after a failure", &a, 2, 27 - 9 - 2);
             ck_assert_uint_lt(n, 5000);
         }
