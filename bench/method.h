@@ -61,6 +61,18 @@ static inline void method_take_report(const gx_step_report *report, method_times
     times->solve += report->seconds_prepare + report->seconds_solve;
 }
 
+/* A step of copies by a solver, begun at `start` */
+static inline const char *method_solve(gxs_solver *solver, const replay *scene, double *displacement, double *velocity, double start, method_times *times)
+{
+    const gx_step_desc desc = method_step_desc(scene);
+    gx_step_report report;
+    const gx_result result = gxs_solver_step(solver, &desc, displacement, velocity, &report, NULL);
+    if (result != GX_OK) return gx_result_text(result);
+    method_take_report(&report, times);
+    times->total += seconds(NULL) - start;
+    return NULL;
+}
+
 /* ---- the library's body, which the library and virtual nodes cut ---- */
 
 typedef struct method_body {
@@ -167,18 +179,11 @@ static inline void method_vna_renew(method_body *m)
 static inline const char *method_vna_step(void *state, method_times *times)
 {
     method_body *m = (method_body *)state;
-    const gx_step_desc desc = method_step_desc(m->scene);
     const double start = seconds(NULL);
-    gx_step_report report;
-    gx_result result;
     gx_view view;
     method_must(gx_body_view(m->body, &view), "view");
     if (m->changed) method_vna_renew(m);
-    result = gxs_solver_step(m->solver, &desc, view.displacement, view.velocity, &report, NULL);
-    if (result != GX_OK) return gx_result_text(result);
-    method_take_report(&report, times);
-    times->total += seconds(NULL) - start;
-    return NULL;
+    return method_solve(m->solver, m->scene, view.displacement, view.velocity, start, times);
 }
 
 static inline void method_vna_look(void *state, gxs_model *model, const double **displacement)
@@ -275,16 +280,9 @@ static inline void method_literal_renew(method_literal *m, method_times *times)
 static inline const char *method_literal_step(void *state, method_times *times)
 {
     method_literal *m = (method_literal *)state;
-    const gx_step_desc desc = method_step_desc(m->scene);
     const double start = seconds(NULL);
-    gx_step_report report;
-    gx_result result;
     if (m->changed) method_literal_renew(m, times);
-    result = gxs_solver_step(m->solver, &desc, m->cutter->displacement, m->cutter->velocity, &report, NULL);
-    if (result != GX_OK) return gx_result_text(result);
-    method_take_report(&report, times);
-    times->total += seconds(NULL) - start;
-    return NULL;
+    return method_solve(m->solver, m->scene, m->cutter->displacement, m->cutter->velocity, start, times);
 }
 
 static inline size_t method_literal_unknowns(void *state) { return 3 * ((method_literal *)state)->cutter->copy_count; }
@@ -495,18 +493,14 @@ static inline double method_rxfem_elastic(method_rxfem *m)
 static inline const char *method_rxfem_step(void *state, method_times *times)
 {
     method_rxfem *m = (method_rxfem *)state;
-    const gx_step_desc desc = method_step_desc(m->scene);
-    const double start = seconds(NULL);
+    const double start = seconds(NULL), derivatives = times->derivatives;
+    const char *why;
     double elastic;
-    gx_step_report report;
-    gx_result result;
     if (m->changed) method_rxfem_renew(m);
-    result = gxs_solver_step(m->solver, &desc, m->displacement, m->velocity, &report, NULL);
-    if (result != GX_OK) return gx_result_text(result);
-    times->solve += report.seconds_prepare + report.seconds_solve;
-    times->total += seconds(NULL) - start;
+    why = method_solve(m->solver, m->scene, m->displacement, m->velocity, start, times);
+    if (why) return why;
     elastic = method_rxfem_elastic(m);
-    times->derivatives += elastic;
+    times->derivatives = derivatives + elastic;
     times->total += elastic;
     return NULL;
 }

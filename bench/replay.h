@@ -171,6 +171,19 @@ static inline replay replay_read(const char *name)
     return r;
 }
 
+/* SCENE=TRACE on the command line: the scene's name, and what it is; a word that is not so ends the program. */
+static inline replay replay_argument(const char *program, const char *argument, char name[32])
+{
+    const char *file = strchr(argument, '=');
+    if (!file || file - argument >= 32) {
+        fprintf(stderr, "usage: %s FILE SCENE=TRACE...\n", program);
+        exit(2);
+    }
+    memcpy(name, argument, (size_t)(file - argument));
+    name[file - argument] = 0;
+    return replay_read(file + 1);
+}
+
 static inline void replay_free(replay *r)
 {
     size_t i;

@@ -242,17 +242,9 @@ int main(int argc, char **argv)
     int i;
     csv_open(argc > 2 ? 2 : argc, argv, "scene,series,value,dt,steps,ms_per_step,ms_per_second,error");
     for (i = 2; i < argc; i++) {
-        const char *file = strchr(argv[i], '=');
         char name[32];
-        replay scene;
+        replay scene = replay_argument(argv[0], argv[i], name);
         setting s;
-        if (!file || file - argv[i] >= (int)sizeof name) {
-            fprintf(stderr, "usage: %s FILE SCENE=TRACE...\n", argv[0]);
-            return 2;
-        }
-        memcpy(name, argv[i], (size_t)(file - argv[i]));
-        name[file - argv[i]] = 0;
-        scene = replay_read(file + 1);
         setting_make(&s, name, &scene);
         find_reference(&s);
         turn_steps(&s, "BDF1", GXS_BDF1, 1, 0, 0);

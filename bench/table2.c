@@ -93,16 +93,8 @@ int main(int argc, char **argv)
     int i, m;
     csv_open(argc > 2 ? 2 : argc, argv, "scene,method,frames,unknowns,EI_ms,MB_ms,dpsi_ms,CG_s,dt_max_s,dt_avg_s,total_C_s,total_CU_s,ended");
     for (i = 2; i < argc; i++) {
-        const char *file = strchr(argv[i], '=');
         char name[32];
-        replay scene;
-        if (!file || file - argv[i] >= (int)sizeof name) {
-            fprintf(stderr, "usage: %s FILE SCENE=TRACE...\n", argv[0]);
-            return 2;
-        }
-        memcpy(name, argv[i], (size_t)(file - argv[i]));
-        name[file - argv[i]] = 0;
-        scene = replay_read(file + 1);
+        replay scene = replay_argument(argv[0], argv[i], name);
         print_paper(name);
         for (m = 0; m < METHOD_COUNT; m++) play(name, &scene, &methods[m]);
         replay_free(&scene);
