@@ -15,6 +15,16 @@ for bench in quadrature conditioning stepping scaling; do
     [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-$bench" >&2; exit 2; }
 done
 
+# The same in all charts: 1, 2, 8 ours, 3, 4 RXFEM or virtual nodes, 5 to 7 others
+styles='set style line 1 lc rgb "#c00000" lw 2 pt 7 ps 1.1
+set style line 2 lc rgb "#e08030" lw 2 pt 5 ps 0.9
+set style line 3 lc rgb "#2060b0" lw 2 pt 9 ps 1.1
+set style line 4 lc rgb "#2060b0" lw 1 dt 2 pt 8 ps 1.1
+set style line 5 lc rgb "#308040" lw 2 pt 13 ps 1.1
+set style line 6 lc rgb "#808080" lw 2 pt 11 ps 0.9
+set style line 7 lc rgb "#000000" lw 1 pt 1 ps 0.9
+set style line 8 lc rgb "#c00000" lw 1 dt 2 pt 6 ps 1.1'
+
 # series REGION METHOD COLUMNS: an awk expression of rows of quadrature.csv, of the integrand xx+yy+zz, as a gnuplot data block.
 # Errors below 1e-18 are drawn there.
 series() {
@@ -38,15 +48,10 @@ panels() {
         done
     done
     cat <<END
+$styles
 set multiplot layout 2,3 title "Integral of x^2 + y^2 + z^2 over a part of one cut tetrahedron   ($where)" font "sans,15"
 set xlabel font ",11"; set logscale xy; set grid back lc rgb "#dddddd"; set format x "10^{%L}"; set format y "10^{%L}"
 set yrange [3e-19:3]; set ytics 1e3; set key off
-set style line 1 lc rgb "#c00000" lw 2 pt 7 ps 1.1
-set style line 2 lc rgb "#e08030" lw 2 pt 5 ps 0.9
-set style line 3 lc rgb "#2060b0" lw 2 pt 9 ps 1.1
-set style line 4 lc rgb "#2060b0" lw 1 dt 2 pt 8 ps 1.1
-set style line 5 lc rgb "#308040" lw 2 pt 13 ps 1.1
-set style line 6 lc rgb "#808080" lw 2 pt 11 ps 0.9
 END
     for row in make each; do
         for region in plane kink sphere; do
@@ -89,13 +94,10 @@ triangles() {
         echo "EOD"
     done
     cat <<END
+$styles
 set multiplot layout 1,2 title "A sphere's octant cut by more and more triangles in one tetrahedron   ($where)" font "sans,15"
 set logscale xy; set grid back lc rgb "#dddddd"; set format y "10^{%L}"
 set xlabel "triangles that meet the element"; set xrange [2:1000]
-set style line 1 lc rgb "#c00000" lw 2 pt 7 ps 1.1
-set style line 3 lc rgb "#2060b0" lw 2 pt 9 ps 1.1
-set style line 4 lc rgb "#2060b0" lw 1 dt 2 pt 8 ps 1.1
-set style line 6 lc rgb "#808080" lw 2 pt 11 ps 0.9
 set ylabel "time, us"; set yrange [5:1e6]; set key left top
 plot \$gxfem using 1:2 with linespoints ls 1 title "gxfem: the whole cut", \$rxfem using 1:2 with linespoints ls 3 title "RXFEM: path and rule", \$rxfem using 1:4 with linespoints ls 4 title "RXFEM: its rule alone"
 set ylabel "error, share of the element"; set yrange [3e-19:3]; set ytics 1e3; set key right center
@@ -116,18 +118,14 @@ conditioning() {
         done
     done
     cat <<END
+$styles
 set multiplot layout 1,2 title "Condition of M + dt^2 K, a cube of five tetrahedra (RXFEM's Fig. 14)   ($where)" font "sans,15"
 set logscale xy; set grid back lc rgb "#dddddd"; set format x "10^{%L}"; set format y "10^{%L}"; set yrange [1:1e42]; set ytics 1e6
-set style line 1 lc rgb "#c00000" lw 2 pt 7 ps 1.1
-set style line 2 lc rgb "#c00000" lw 1 dt 2 pt 6 ps 1.1
-set style line 3 lc rgb "#808080" lw 2 pt 11 ps 0.9
-set style line 4 lc rgb "#2060b0" lw 1 dt 2 pt 8 ps 1.1
-set style line 5 lc rgb "#2060b0" lw 2 pt 9 ps 1.1
 set ylabel "condition number"; set key right top
 set title "a slice off the cube"; set xlabel "thickness of the slice, m"
 plot \$slice_sign_none_off using 1:2 with linespoints ls 3 title "RXFEM, unscaled", \$slice_sign_diagonal_off using 1:2 with linespoints ls 4 title "RXFEM, diagonal", \$slice_sign_volume_off using 1:2 with linespoints ls 5 title "RXFEM, volume ratios (its own)", \$slice_copies_diagonal_off using 1:2 with linespoints ls 1 title "gxfem's copies, diagonal"
 set title "a corner off one element"; set xlabel "volume of the piece, share of the element"
-plot \$corner_sign_none_off using 1:2 with linespoints ls 3 title "RXFEM, unscaled", \$corner_sign_diagonal_off using 1:2 with linespoints ls 4 title "RXFEM, diagonal", \$corner_sign_volume_off using 1:2 with linespoints ls 5 title "RXFEM, volume ratios (its own)", \$corner_copies_diagonal_off using 1:2 with linespoints ls 1 title "gxfem's copies, diagonal", \$corner_copies_diagonal_on using 1:2 with linespoints ls 2 title "the same, piece moves as a point"
+plot \$corner_sign_none_off using 1:2 with linespoints ls 3 title "RXFEM, unscaled", \$corner_sign_diagonal_off using 1:2 with linespoints ls 4 title "RXFEM, diagonal", \$corner_sign_volume_off using 1:2 with linespoints ls 5 title "RXFEM, volume ratios (its own)", \$corner_copies_diagonal_off using 1:2 with linespoints ls 1 title "gxfem's copies, diagonal", \$corner_copies_diagonal_on using 1:2 with linespoints ls 8 title "the same, piece moves as a point"
 unset multiplot
 END
 }
@@ -143,12 +141,9 @@ scaling() {
         echo "EOD"
     done
     cat <<END
+$styles
 set multiplot layout 2,2 title "What a cut of a block of tetrahedra costs   ($where)" font "sans,15"
 set logscale xy; set grid back lc rgb "#dddddd"
-set style line 1 lc rgb "#c00000" lw 2 pt 7 ps 1.1
-set style line 2 lc rgb "#e08030" lw 2 pt 5 ps 0.9
-set style line 3 lc rgb "#2060b0" lw 2 pt 9 ps 1.1
-set style line 6 lc rgb "#808080" lw 2 pt 11 ps 0.9
 set ylabel "cut, us per touched element"; set yrange [1:1000]; set key left top
 set xlabel "elements of the block"; set format x "10^{%L}"
 plot \$elements_plane using 1:2 with linespoints ls 1 title "a plane", \$elements_curved using 1:2 with linespoints ls 3 title "a curved sheet, two triangles a cell"
@@ -174,22 +169,16 @@ stepping() {
         done
     done
     cat <<END
+$styles
 set multiplot layout 1,2 title "Error of the motion of a cut body after 0.33 s, in the same space   ($where)" font "sans,15"
 set logscale xy; set grid back lc rgb "#dddddd"; set format y "10^{%L}"
 set xlabel "computing time, s per simulated second"; set ylabel "error, share of the motion"; set yrange [1e-4:10]
-set style line 1 lc rgb "#c00000" lw 2 pt 7 ps 1.1
-set style line 2 lc rgb "#e08030" lw 2 pt 5 ps 0.9
-set style line 3 lc rgb "#308040" lw 2 pt 13 ps 1.1
-set style line 4 lc rgb "#c00000" lw 1 dt 2 pt 6 ps 1.1
-set style line 5 lc rgb "#2060b0" lw 2 pt 9 ps 1.1
-set style line 6 lc rgb "#808080" lw 1 pt 11 ps 0.9
-set style line 7 lc rgb "#000000" lw 1 pt 1 ps 0.9
 END
     for scene in slab_in_five accordion; do
         title=$(echo $scene | tr _ ' ')
         echo "set title '$title'; set key left bottom font ',10'"
         [ $scene = slab_in_five ] || echo "set key off"
-        echo "plot \$${scene}_BDF1 using 1:2 with linespoints ls 2 title 'BDF1, dt 33 to 2 ms', \$${scene}_BDF2 using 1:2 with linespoints ls 1 title 'BDF2', \$${scene}_BDF2__lumped using 1:2 with linespoints ls 4 title 'BDF2, lumped mass', \$${scene}_midpoint__2_Newton using 1:2 with linespoints ls 3 title 'midpoint, 2 Newton', \$${scene}_VNA__BDF2 using 1:2 with linespoints ls 5 title 'VNA, BDF2', \$${scene}_CG_tolerance using 1:2 with linespoints ls 6 title 'BDF1, 8 ms: CG 1e-1 to 1e-6', \$${scene}_Newton_iterations using 1:2 with linespoints ls 7 title 'BDF1, 8 ms: Newton 1 to 16'"
+        echo "plot \$${scene}_BDF1 using 1:2 with linespoints ls 2 title 'BDF1, dt 33 to 2 ms', \$${scene}_BDF2 using 1:2 with linespoints ls 1 title 'BDF2', \$${scene}_BDF2__lumped using 1:2 with linespoints ls 8 title 'BDF2, lumped mass', \$${scene}_midpoint__2_Newton using 1:2 with linespoints ls 5 title 'midpoint, 2 Newton', \$${scene}_VNA__BDF2 using 1:2 with linespoints ls 3 title 'VNA, BDF2', \$${scene}_CG_tolerance using 1:2 with linespoints ls 6 title 'BDF1, 8 ms: CG 1e-1 to 1e-6', \$${scene}_Newton_iterations using 1:2 with linespoints ls 7 title 'BDF1, 8 ms: Newton 1 to 16'"
     done
     echo 'unset multiplot'
 }
