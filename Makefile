@@ -15,6 +15,7 @@ tests = $(patsubst tests/%.c,%,$(sort $(wildcard tests/test_*.c)))
 linked_tests = $(patsubst tests/%.c,%,$(shell grep -l GXFEM_LINKED tests/test_*.c))
 examples = $(patsubst examples/%.c,%,$(sort $(wildcard examples/*.c)))
 scenes = $(filter-out embed gxcut,$(examples))
+linked_examples = $(filter-out embed,$(examples))
 compile = $(CC) -std=c99 -g $(WARNINGS) $(CFLAGS)
 linked = $(compile) -DGXFEM_LINKED
 sanitizers = -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all
@@ -54,8 +55,8 @@ $(BUILD)/%: examples/%.c $(headers) $(wildcard examples/*.h)
 	@mkdir -p $(@D)
 	$(compile) -I. $< -o $@ $(LDFLAGS) -lm
 
-# Scenes share one object with the library's implementation; each also compiles on its own, as gxcut does.
-$(scenes:%=$(BUILD)/%): $(BUILD)/%: examples/%.c $(BUILD)/gxfem.o $(headers) $(wildcard examples/*.h)
+# All but embed share one object with the library's implementation; each also compiles on its own.
+$(linked_examples:%=$(BUILD)/%): $(BUILD)/%: examples/%.c $(BUILD)/gxfem.o $(headers) $(wildcard examples/*.h)
 	$(linked) -I. $< $(BUILD)/gxfem.o -o $@ $(LDFLAGS) -lm
 
 $(BUILD)/gxfem.o: $(headers)
@@ -103,7 +104,7 @@ $(BUILD)/tests/%: tests/%.c $(headers) $(wildcard tests/*.h examples/*.h bench/*
 	@mkdir -p $(@D)
 	$(compile) -Itests $(shell pkg-config --cflags check) $< -o $@ $(LDFLAGS) $(shell pkg-config --libs check) -lm
 
-# Tests that need nothing but the interface, which say GXFEM_LINKED, share the object of the scenes.
+# Tests that need nothing but the interface, which say GXFEM_LINKED, share the object of the examples.
 $(linked_tests:%=$(BUILD)/tests/%): $(BUILD)/tests/%: tests/%.c $(BUILD)/gxfem.o $(headers) $(wildcard tests/*.h examples/*.h bench/*.h)
 	@mkdir -p $(@D)
 	$(linked) -Itests $(shell pkg-config --cflags check) $< $(BUILD)/gxfem.o -o $@ $(LDFLAGS) $(shell pkg-config --libs check) -lm

@@ -11,7 +11,9 @@
      >>report      summary and JSON */
 #include "gxio.h"
 
+#ifndef GXFEM_LINKED            /* make examples compiles the library once for all */
 #define GXFEM_IMPLEMENTATION
+#endif
 #include "../gxfem.h"
 
 #ifdef _WIN32

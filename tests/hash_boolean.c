@@ -3,7 +3,9 @@
    Coordinates are integers, so that they are the same whatever the flags: lattice points, as they are, with 16 random bits below them (nothing
    coincides), or with one or two far below (nearly everything does). What counts of a
    result: vertices, to the last bit, from how many triangles of each source it is made, components and their Euler characteristics. */
+#ifndef GXFEM_LINKED
 #define GXFEM_BOOLEAN_IMPLEMENTATION
+#endif
 #include "../gxfem_boolean.h"
 #include "fuzz_cases.h"
 

@@ -31,12 +31,14 @@ hashes() { # binary
     hash_of "$1" grid:2,2,2,5 --sheet "$dir/sheet0.obj" --solid box:0.5,0.25,0.125,1.5,1,1.75 --sheet plane:1,1,1,1,0,0
 }
 
-# one FILE COMPILER FLAGS...: builds both programs, writes its hashes to FILE; nothing where it does not build
+# one FILE COMPILER FLAGS...: builds the library and both programs, writes its hashes to FILE; nothing where it does not build
 one() {
     file=$1
     shift
-    "$@" -w -I. examples/gxcut.c -o "$file.gxcut" -lm >"$file.log" 2>&1 || return 0
-    "$@" -w -I. tests/hash_boolean.c -o "$file.boolean" -lm >>"$file.log" 2>&1 || return 0
+    printf '#define GXFEM_IMPLEMENTATION\n#include "gxfem.h"\n' >"$file.c"
+    "$@" -w -I. -c "$file.c" -o "$file.o" >"$file.log" 2>&1 || return 0
+    "$@" -w -I. -DGXFEM_LINKED examples/gxcut.c "$file.o" -o "$file.gxcut" -lm >>"$file.log" 2>&1 || return 0
+    "$@" -w -I. -DGXFEM_LINKED tests/hash_boolean.c "$file.o" -o "$file.boolean" -lm >>"$file.log" 2>&1 || return 0
     report=$file.json
     { hashes "$file.gxcut"; "$file.boolean" || echo "failed"; } | tr '\n' ' ' >"$file"
 }
@@ -67,9 +69,9 @@ for cc in gcc clang; do
     fi
 done
 if [ "$x86" = 1 ]; then # flush-to-zero and denormals-are-zero from the first instruction on
-    printf '%s\n' '#include <xmmintrin.h>' '__attribute__((constructor)) static void flush(void) { _mm_setcsr(_mm_getcsr() | 0x8040); }' >"$dir/flush.c"
-    try gcc -std=c99 -O2 "$dir/flush.c"
-    try clang -std=c99 -O2 "$dir/flush.c"
+    printf '%s\n' '#include <xmmintrin.h>' '__attribute__((constructor)) static void flush(void) { _mm_setcsr(_mm_getcsr() | 0x8040); }' >"$dir/flush.h"
+    try gcc -std=c99 -O2 -include "$dir/flush.h"
+    try clang -std=c99 -O2 -include "$dir/flush.h"
 fi
 wait
 for i in $(seq $count); do
