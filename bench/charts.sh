@@ -3,19 +3,19 @@
 # usage: sh bench/charts.sh TABLES CHARTS
 #     TABLES  directory of the benches' CSV files
 #     CHARTS  directory of the SVG files
-# quadrature.csv gives quadrature.svg and quadrature_triangles.svg, the others one of their own name. A table that is missing is an
-# error. Needs gnuplot.
+# quadrature.csv gives quadrature.svg and quadrature_triangles.svg, stepping.csv stepping.svg and stepping_cuts.svg, the others one of their
+# own name. A table that is missing is an error. Needs gnuplot.
 set -u
 tables=$1
 charts=$2
 mkdir -p "$charts" || exit 2
 where="$(date +%Y-%m-%d), $(uname -m | tr _ -), one thread"
 
-for bench in quadrature conditioning stepping scaling; do
+for bench in quadrature conditioning stepping space scaling; do
     [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-$bench" >&2; exit 2; }
 done
 
-# The same in all charts: 1, 2, 8 ours, 3, 4 RXFEM or virtual nodes, 5 to 7 others
+# The same in all charts: 1, 2, 8 ours, 3, 4 RXFEM or virtual nodes, 5 to 7 and 9 others
 styles='set style line 1 lc rgb "#c00000" lw 2 pt 7 ps 1.1
 set style line 2 lc rgb "#e08030" lw 2 pt 5 ps 0.9
 set style line 3 lc rgb "#2060b0" lw 2 pt 9 ps 1.1
@@ -23,7 +23,8 @@ set style line 4 lc rgb "#2060b0" lw 1 dt 2 pt 8 ps 1.1
 set style line 5 lc rgb "#308040" lw 2 pt 13 ps 1.1
 set style line 6 lc rgb "#808080" lw 2 pt 11 ps 0.9
 set style line 7 lc rgb "#000000" lw 1 pt 1 ps 0.9
-set style line 8 lc rgb "#c00000" lw 1 dt 2 pt 6 ps 1.1'
+set style line 8 lc rgb "#c00000" lw 1 dt 2 pt 6 ps 1.1
+set style line 9 lc rgb "#000000" lw 1 dt 3 pt 4 ps 0.9'
 
 # series REGION METHOD COLUMNS: an awk expression of rows of quadrature.csv, of the integrand xx+yy+zz, as a gnuplot data block.
 # Errors below 1e-18 are drawn there.
@@ -157,31 +158,117 @@ unset multiplot
 END
 }
 
+# stepping_rows BLOCK SCENE SERIES COLUMNS: an awk expression of rows of stepping.csv that have a motion, as a gnuplot data block.
+# Differences below 1e-9 are drawn there.
+stepping_rows() {
+    echo "\$$1 << EOD"
+    awk -F, -v scene="$2" -v series="$3" '
+        $1 == scene && $2 == series && $8 != "" { beside = $9 < 1e-9 ? 1e-9 : $9; print '"$4"' }' "$tables/stepping.csv"
+    echo "EOD"
+}
+
+block_name() { echo "$1" | tr -c 'A-Za-z0-9\n' _; }
+
 # Error of the motion against time; a panel for each scene
 stepping() {
-    echo 'set terminal svg size 1180,520 font "sans,12" background "white"'
+    echo 'set terminal svg size 1180,560 font "sans,12" background "white"'
     echo "set output '$charts/stepping.svg'"
     for scene in slab_in_five accordion; do
-        for kind in "BDF1" "BDF2" "midpoint; 2 Newton" "BDF2; lumped" "VNA; BDF2" "CG tolerance" "Newton iterations"; do
-            echo "\$${scene}_$(echo "$kind" | tr -c 'A-Za-z0-9\n' _) << EOD"
-            awk -F, -v scene=$scene -v kind="$kind" '$1 == scene && $2 == kind && $8 != "" { print $7 / 1000, $8 }' "$tables/stepping.csv"
-            echo "EOD"
+        for kind in "BDF1" "BDF2" "midpoint; 2 Newton" "BDF2; lumped" "VNA; BDF2" "deletion; BDF2" "CG tolerance" "Newton iterations"; do
+            stepping_rows "${scene}_$(block_name "$kind")" $scene "$kind" '$7 / 1000, $8'
         done
     done
     cat <<END
 $styles
 set multiplot layout 1,2 title "Error of the motion of a cut body after 0.33 s, in the same space   ($where)" font "sans,15"
 set logscale xy; set grid back lc rgb "#dddddd"; set format y "10^{%L}"
-set xlabel "computing time, s per simulated second"; set ylabel "error, share of the motion"; set yrange [1e-4:10]
+set xlabel "computing time, s per simulated second"; set ylabel "error, share of the motion"; set yrange [1e-5:3]
 END
     for scene in slab_in_five accordion; do
-        title=$(echo $scene | tr _ ' ')
-        echo "set title '$title'; set key left bottom font ',10'"
-        [ $scene = slab_in_five ] || echo "set key off"
-        echo "plot \$${scene}_BDF1 using 1:2 with linespoints ls 2 title 'BDF1, dt 33 to 2 ms', \$${scene}_BDF2 using 1:2 with linespoints ls 1 title 'BDF2', \$${scene}_BDF2__lumped using 1:2 with linespoints ls 8 title 'BDF2, lumped mass', \$${scene}_midpoint__2_Newton using 1:2 with linespoints ls 5 title 'midpoint, 2 Newton', \$${scene}_VNA__BDF2 using 1:2 with linespoints ls 3 title 'VNA, BDF2', \$${scene}_CG_tolerance using 1:2 with linespoints ls 6 title 'BDF1, 8 ms: CG 1e-1 to 1e-6', \$${scene}_Newton_iterations using 1:2 with linespoints ls 7 title 'BDF1, 8 ms: Newton 1 to 16'"
+        echo "set title '$(echo $scene | tr _ ' ')'; set key bottom left samplen 1.5 font ',10'"
+        [ $scene = slab_in_five ] || echo "set key off; set ylabel ''"
+        echo "plot \$${scene}_BDF1 using 1:2 with linespoints ls 2 title 'BDF1, dt 33 to 2 ms', \$${scene}_BDF2 using 1:2 with linespoints ls 1 title 'BDF2', \$${scene}_BDF2__lumped using 1:2 with linespoints ls 8 title 'BDF2, lumped mass', \$${scene}_midpoint__2_Newton using 1:2 with linespoints ls 5 title 'midpoint, 2 Newton', \$${scene}_VNA__BDF2 using 1:2 with linespoints ls 3 title 'VNA, BDF2', $(deletion_of $scene) \$${scene}_CG_tolerance using 1:2 with linespoints ls 6 title 'BDF1, 8 ms: CG 1e-1 to 1e-6', \$${scene}_Newton_iterations using 1:2 with linespoints ls 7 title 'BDF1, 8 ms: Newton 1 to 16'"
     done
     echo 'unset multiplot'
 }
 
-panels | gnuplot && triangles | gnuplot && conditioning | gnuplot && stepping | gnuplot && scaling | gnuplot || exit 1
-echo "wrote $charts/quadrature.svg, quadrature_triangles.svg, conditioning.svg, stepping.svg, scaling.svg"
+# Element deletion's part of a plot; where it leaves nothing, its name says so.
+deletion_of() {
+    if grep -q "^$1,deletion; BDF2,.*no element is left" "$tables/stepping.csv"; then
+        echo "NaN with linespoints ls 9 title 'element deletion: nothing is left',"
+    else
+        echo "\$$1_deletion__BDF2 using 1:2 with linespoints ls 9 title 'element deletion, BDF2',"
+    fi
+}
+
+# What integrals by points and the thickness of cuts change of the motion, beside what the time step does
+stepping_cuts() {
+    echo 'set terminal svg size 1180,900 font "sans,12" background "white"'
+    echo "set output '$charts/stepping_cuts.svg'"
+    for scene in slab_in_five accordion; do
+        for kind in exact RXFEM "RXFEM one" positive "positive one" adaptive "adaptive one" regular "regular one"; do
+            stepping_rows "${scene}_$(block_name "$kind")" $scene "$kind" '$7 / 1000, beside'
+        done
+        for kind in "gxfem; solids" "Algorithm 1"; do stepping_rows "${scene}_$(block_name "$kind")" $scene "$kind" '$3, beside'; done
+    done
+    cat <<END
+$styles
+set multiplot layout 2,2 title "How far the motion is off that of exact integrals and thin cuts, by the same steps   ($where)" font "sans,15"
+set logscale xy; set grid back lc rgb "#dddddd"; set format x "10^{%L}"; set format y "10^{%L}"; set yrange [3e-10:30]
+END
+    for scene in slab_in_five accordion; do
+        step=$(awk -F, -v scene=$scene '$1 == scene && $2 == "exact" { print $8 }' "$tables/stepping.csv")
+        title=$(echo $scene | tr _ ' ')
+        if [ $scene = slab_in_five ]; then echo "set ylabel 'difference, share of the motion'"; else echo "set ylabel ''"; fi
+        echo "set title '$title: integrals' offset 0,-0.6; set xlabel 'computing time, s per simulated second (open: one evaluation a part)'; set key at graph 0.99,0.55 right samplen 1.5 font ',10'; set xrange [*:*]"
+        [ $scene = slab_in_five ] || echo "set key off"
+        echo "plot $step with lines ls 7 title 'error of the time step', \$${scene}_exact using 1:2 with points ls 1 ps 1.6 title 'gxfem, exact (0)', $(rxfem_of $scene) \$${scene}_positive using 1:2 with linespoints ls 2 title 'positive rule, degree 1, 2', \$${scene}_positive_one using 1:2 with points ls 2 pt 4 notitle, \$${scene}_adaptive using 1:2 with linespoints ls 5 title 'adaptive, depth 1 to 4', \$${scene}_adaptive_one using 1:2 with points ls 5 pt 12 notitle, \$${scene}_regular using 1:2 with linespoints ls 6 title 'regular, 5 to 50 cells', \$${scene}_regular_one using 1:2 with points ls 6 pt 10 notitle"
+    done
+    for scene in slab_in_five accordion; do
+        step=$(awk -F, -v scene=$scene '$1 == scene && $2 == "exact" { print $8 }' "$tables/stepping.csv")
+        if [ $scene = slab_in_five ]; then echo "set ylabel 'difference, share of the motion'"; else echo "set ylabel ''"; fi
+        echo "set title '$(echo $scene | tr _ ' '): thickness' offset 0,-0.6; set xlabel 'thickness of the cuts, edges'; set xrange [5e-7:2e-2]; set key top left"
+        [ $scene = slab_in_five ] || echo "set key off"
+        echo "plot $step with lines ls 7 title 'error of the time step', \$${scene}_gxfem__solids using 1:2 with linespoints ls 1 title 'gxfem, solids', \$${scene}_Algorithm_1 using 1:2 with linespoints ls 3 title 'Algorithm 1, as published'"
+    done
+    echo 'unset multiplot'
+}
+
+rxfem_of() {
+    if grep -q "^$1,RXFEM,.*cross" "$tables/stepping.csv"; then
+        echo "NaN with points ls 3 title 'RXFEM: refused',"
+    else
+        echo "\$$1_RXFEM using 1:2 with points ls 3 title 'RXFEM, 24 points a side', \$$1_RXFEM_one using 1:2 with points ls 3 pt 8 notitle,"
+    fi
+}
+
+# space_rows BLOCK SCENE METHOD COLUMNS: an awk expression of rows of space.csv that have a drop, as a gnuplot data block
+space_rows() {
+    echo "\$$1 << EOD"
+    awk -F, -v scene="$2" -v method="$3" '$1 == scene && $3 == method && $7 != "" { print '"$4"' }' "$tables/space.csv" | sort -g
+    echo "EOD"
+}
+
+# How far slices and folds bend, by their thickness in elements; and the error by the number of unknowns
+space() {
+    echo 'set terminal svg size 1180,520 font "sans,12" background "white"'
+    echo "set output '$charts/space.svg'"
+    for method in cut VNA deletion conforming; do
+        space_rows slices_$method slices $method '$5, 100 * $7 / $8'
+        space_rows accordion_$method accordion $method '$6, $9'
+    done
+    cat <<END
+$styles
+set multiplot layout 1,2 title "The same cuts under refinement, beside conforming meshes   ($where)" font "sans,15"
+set logscale xy; set grid back lc rgb "#dddddd"
+set title "five slices in one layer of elements, refined"; set xlabel "thickness of a slice, elements"; set ylabel "drop of its end, % of the converged"
+set xrange [0.05:*]; set yrange [0.1:300]; set key bottom right samplen 1.5
+plot \$slices_conforming using 1:2 with points ls 5 title "conforming mesh of each slice", \$slices_cut using 1:2 with points ls 1 title "cut, gxfem (and RXFEM's space)", \$slices_VNA using 1:2 with points ls 3 title "VNA", \$slices_deletion using 1:2 with points ls 9 title "element deletion, where any is left", 100 with lines ls 7 lw 1 notitle
+set title "accordion, 6 folds"; set xlabel "unknowns"; set ylabel "error of the drop of its bottom"; set xrange [*:*]; set yrange [1e-2:2]; set format x "10^{%L}"; set key bottom left
+plot \$accordion_conforming using 1:2 with linespoints ls 5 title "conforming mesh", \$accordion_cut using 1:2 with linespoints ls 1 title "cut, gxfem (and RXFEM's space)", \$accordion_VNA using 1:2 with linespoints ls 3 title "VNA", \$accordion_deletion using 1:2 with linespoints ls 9 title "element deletion"
+unset multiplot
+END
+}
+
+panels | gnuplot && triangles | gnuplot && conditioning | gnuplot && stepping | gnuplot && stepping_cuts | gnuplot && space | gnuplot && scaling | gnuplot || exit 1
+echo "wrote $charts/quadrature.svg, quadrature_triangles.svg, conditioning.svg, stepping.svg, stepping_cuts.svg, space.svg, scaling.svg"

@@ -353,17 +353,6 @@ static inline void *method_rxfem_create(const replay *scene)
     return m;
 }
 
-/* The piece of the element that has the point */
-static inline size_t method_rxfem_piece(const rx_body *b, uint32_t element, const double *x)
-{
-    uint64_t plus = 0;
-    uint32_t p, i;
-    for (p = b->patch_first[element]; p < b->patch_first[element + 1]; p++)
-        if (rx_side_of_patch(b, &b->patches[b->patch_list[p]], x) > 0) plus |= (uint64_t)1 << (p - b->patch_first[element]);
-    for (i = b->piece_first[element]; i + 1 < b->piece_first[element + 1]; i++) if (b->pieces[i].plus == plus) break;
-    return i;
-}
-
 /* The centre of a piece */
 static inline void method_rxfem_center(const rx_body *b, const rx_piece *piece, double x[3])
 {
@@ -386,7 +375,7 @@ static inline double *method_rxfem_carry(const method_rxfem *m, const rx_body *b
         double x[3];
         size_t from;
         method_rxfem_center(body, &body->pieces[i], x);
-        from = method_rxfem_piece(m->body, body->pieces[i].element, x);
+        from = rx_piece_at(m->body, body->pieces[i].element, x);
         for (k = 0; k < 4; k++)
             memcpy(now + 3 * (size_t)model->corners[4 * i + k], old + 3 * (size_t)m->model->corners[4 * from + k], 3 * sizeof(double));
     }

@@ -11,6 +11,7 @@
 
 typedef struct part {
     gxb_complex *complex;
+    uint32_t element;           /* of the complex, whose barycentric coordinates points have */
     uint32_t *leaves;           /* leaf_count: those that are joined with the first by facets that are not walls */
     size_t leaf_count;
     int fine;                   /* points in long double; 0: as doubles */
@@ -120,7 +121,7 @@ static inline void part_fine_point(part *p, uint32_t point, long double x[3])
         memset(&lambda[k], 0, sizeof lambda[k]);
         lambda[k].d = limbs[k];
     }
-    gxb_complex_barycentric_fine(p->complex, point, 0, lambda);
+    gxb_complex_barycentric_fine(p->complex, point, p->element, lambda);
     for (k = 0; k < 3; ++k) x[k] = part_long(&lambda[k + 1]);
 }
 
@@ -133,7 +134,7 @@ static inline void part_point(part *p, uint32_t point, long double x[3])
         part_fine_point(p, point, x);
         return;
     }
-    gxb_complex_barycentric(p->complex, point, 0, lambda);
+    gxb_complex_barycentric(p->complex, point, p->element, lambda);
     for (k = 0; k < 3; ++k) x[k] = lambda[k + 1];
 }
 

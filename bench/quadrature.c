@@ -351,14 +351,15 @@ static void call_adaptive(const region *r, int knob, int option, run *out)
 {
     double start = seconds(NULL), value[INTEGRANDS];
     sampling_surface surface = sampling_surface_create(r->vertices, r->triangles, r->triangle_count);
+    const sampling_region under = sampling_under(&surface);
     sampling_rule rule;
     (void)option;
     memset(&rule, 0, sizeof rule);
     out->geometry = 1e6 * (seconds(NULL) - start);
-    sampling_adaptive(&surface, 1, knob, &rule);
+    sampling_adaptive(&under, 1, knob, &rule);
     integrate(rule.points, 4, rule.points + 3, 4, rule.count, value);
     start = seconds(NULL);
-    sampling_adaptive(&surface, 2, knob, &rule);
+    sampling_adaptive(&under, 2, knob, &rule);
     out->rule = 1e6 * (seconds(NULL) - start);
     out->points = rule.count;
     integrate(rule.points, 4, rule.points + 3, 4, rule.count, out->value);
@@ -371,12 +372,13 @@ static void call_regular(const region *r, int knob, int option, run *out)
 {
     double start = seconds(NULL);
     sampling_surface surface = sampling_surface_create(r->vertices, r->triangles, r->triangle_count);
+    const sampling_region under = sampling_under(&surface);
     sampling_rule rule;
     (void)option;
     memset(&rule, 0, sizeof rule);
     out->geometry = 1e6 * (seconds(NULL) - start);
     start = seconds(NULL);
-    sampling_regular(&surface, knob, &rule);
+    sampling_regular(&under, knob, &rule);
     out->rule = 1e6 * (seconds(NULL) - start);
     out->points = rule.count;
     integrate(rule.points, 4, rule.points + 3, 4, rule.count, out->value);

@@ -1085,6 +1085,18 @@ static inline void rx_list_pieces(rx_body *b, uint32_t element)
     }
 }
 
+/* The piece of the element that has the point */
+static inline size_t rx_piece_at(const rx_body *b, uint32_t element, const double *x)
+{
+    uint64_t plus = 0;
+    uint32_t p, i;
+    for (p = b->patch_first[element]; p < b->patch_first[element + 1]; ++p)
+        if (rx_side_of_patch(b, &b->patches[b->patch_list[p]], x) > 0) plus |= UINT64_C(1) << (p - b->patch_first[element]);
+    for (i = b->piece_first[element]; i + 1 < b->piece_first[element + 1]; ++i)
+        if (b->pieces[i].plus == plus) break;
+    return i;
+}
+
 /* All of the element less what lies beyond each patch that bounds the piece: that is, whose other side is a piece too */
 static inline void rx_piece_moments(const rx_body *b, rx_piece *piece)
 {

@@ -1,11 +1,12 @@
-/* sampling.h - quadrature over a part of the unit tetrahedron by points: three other ways than RXFEM's (bench/rxfem.h).
+/* sampling.h - quadrature over parts of the unit tetrahedron by points: three other ways than RXFEM's (bench/rxfem.h).
 
-   The part is what lies on or under a surface: points from which a ray upward (along z) meets its triangles an odd number of times.
+   Which part has a point is asked of a sampling_region. That of one surface has one part, what lies on or under it: points from which a
+   ray upward (along z) meets its triangles an odd number of times.
        sampling_regular     n^3 cells of the tetrahedron's bounding box, a point in the middle of each, as RXFEM's Table 1 has with n = 50
        sampling_adaptive    the tetrahedron in eight, those again that the surface meets, to a depth; points where the part is. As RXFEM's
                             Table 1 has after Mueller et al. (2012) with depth 4; by its counts one point in each tetrahedron for
                             integrands of degree 1, four for degree 2. The surface meets a tetrahedron that has corners or middles
-                            of edges on both sides
+                            of edges in several parts
        sampling_positive    positive weights at inner points, no more of them than monomials, from exact moments: a positive rule on
                             tetrahedra that make up the part, whose points enter a basis of the moments one by one, each for one that
                             leaves (Caratheodory; Tchakaloff's theorem), then the least change of weights that makes moments the
@@ -25,8 +26,14 @@ enum { SAMPLING_COLUMNS = 64, SAMPLING_DEGREE_MAX = 4, SAMPLING_MONOMIALS = 35 }
 
 typedef struct sampling_rule {
     double *points;             /* count x 4: x y z and weight */
+    int *parts;                 /* count: of the region; sampling_positive's: 0 */
     size_t count, capacity;
 } sampling_rule;
+
+/* The number of the part that has x; SAMPLING_OUTSIDE: none that is asked for */
+typedef struct sampling_region { int (*part_of)(const void *user, const double *x); const void *user; } sampling_region;
+
+enum { SAMPLING_OUTSIDE = -1 };
 
 static inline void sampling_add(sampling_rule *r, double x, double y, double z, double weight)
 {
@@ -34,7 +41,9 @@ static inline void sampling_add(sampling_rule *r, double x, double y, double z, 
     if (r->count == r->capacity) {
         r->capacity = 2 * r->capacity + 64;
         r->points = (double *)dense_memory(r->points, 4 * r->capacity, sizeof(double));
+        r->parts = (int *)dense_memory(r->parts, r->capacity, sizeof(int));
     }
+    r->parts[r->count] = 0;
     p = r->points + 4 * r->count++;
     p[0] = x;
     p[1] = y;
@@ -45,6 +54,7 @@ static inline void sampling_add(sampling_rule *r, double x, double y, double z, 
 static inline void sampling_free(sampling_rule *r)
 {
     free(r->points);
+    free(r->parts);
     memset(r, 0, sizeof *r);
 }
 
@@ -132,13 +142,26 @@ static inline int sampling_inside(const sampling_surface *s, const double *x)
     return odd;
 }
 
+static inline int sampling_part_under(const void *surface, const double *x)
+{
+    return sampling_inside((const sampling_surface *)surface, x) ? 0 : SAMPLING_OUTSIDE;
+}
+
+static inline sampling_region sampling_under(const sampling_surface *s)
+{
+    sampling_region region;
+    region.part_of = sampling_part_under;
+    region.user = s;
+    return region;
+}
+
 /* ---- regular ---- */
 
-static inline void sampling_regular(const sampling_surface *s, int n, sampling_rule *r)
+static inline void sampling_regular(const sampling_region *region, int n, sampling_rule *r)
 {
     const double weight = 1.0 / n / n / n;
     double x[3];
-    int i, j, k;
+    int i, j, k, found;
     r->count = 0;
     for (i = 0; i < n; ++i)
         for (j = 0; i + j + 1.5 <= n; ++j)
@@ -146,7 +169,10 @@ static inline void sampling_regular(const sampling_surface *s, int n, sampling_r
                 x[0] = (i + 0.5) / n;
                 x[1] = (j + 0.5) / n;
                 x[2] = (k + 0.5) / n;
-                if (sampling_inside(s, x)) sampling_add(r, x[0], x[1], x[2], weight);
+                found = region->part_of(region->user, x);
+                if (found == SAMPLING_OUTSIDE) continue;
+                sampling_add(r, x[0], x[1], x[2], weight);
+                r->parts[r->count - 1] = found;
             }
 }
 
@@ -156,57 +182,58 @@ static inline void sampling_regular(const sampling_surface *s, int n, sampling_r
 static inline void sampling_tetrahedron(const double *p, unsigned degree, sampling_rule *r);
 
 /* Corners and middles of edges: 0 1 2 3, 01 02 03 12 13 23 */
-typedef struct sampling_cell { double x[10][3]; int inside[10]; } sampling_cell;
+typedef struct sampling_cell { double x[10][3]; int part[10]; } sampling_cell;
 
-static inline void sampling_middles(const sampling_surface *s, sampling_cell *c)
+static inline void sampling_middles(const sampling_region *region, sampling_cell *c)
 {
     static const int edge[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
     int e, a, k;
     for (e = 0; e < 6; ++e)
         for (a = 0; a < 3; ++a) c->x[4 + e][a] = 0.5 * (c->x[edge[e][0]][a] + c->x[edge[e][1]][a]);
-    for (k = 0; k < 10; ++k) c->inside[k] = sampling_inside(s, c->x[k]);
+    for (k = 0; k < 10; ++k) c->part[k] = region->part_of(region->user, c->x[k]);
 }
 
-static inline void sampling_leaf(const sampling_surface *s, const sampling_cell *c, unsigned degree, sampling_rule *r)
+static inline void sampling_leaf(const sampling_region *region, const sampling_cell *c, unsigned degree, sampling_rule *r)
 {
     const size_t before = r->count;
     size_t i, kept = before;
     sampling_tetrahedron(c->x[0], degree, r);
-    for (i = before; i < r->count; ++i)
-        if (sampling_inside(s, r->points + 4 * i)) memmove(r->points + 4 * kept++, r->points + 4 * i, 4 * sizeof(double));
+    for (i = before; i < r->count; ++i) {
+        const int found = region->part_of(region->user, r->points + 4 * i);
+        if (found == SAMPLING_OUTSIDE) continue;
+        r->parts[kept] = found;
+        memmove(r->points + 4 * kept++, r->points + 4 * i, 4 * sizeof(double));
+    }
     r->count = kept;
 }
 
-static inline void sampling_refine(const sampling_surface *s, sampling_cell *c, unsigned degree, int depth, sampling_rule *r)
+static inline void sampling_refine(const sampling_region *region, sampling_cell *c, unsigned degree, int depth, sampling_rule *r)
 {
     static const int child[8][4] = {{0, 4, 5, 6}, {4, 1, 7, 8}, {5, 7, 2, 9}, {6, 8, 9, 3},     /* at the corners */
                                     {4, 5, 6, 8}, {4, 7, 5, 8}, {5, 9, 6, 8}, {5, 7, 9, 8}};    /* around the diagonal 02, 13 */
-    int i, k, some = 0, all = 1;
-    sampling_middles(s, c);
-    for (k = 0; k < 10; ++k) {
-        some |= c->inside[k];
-        all &= c->inside[k];
-    }
-    if (depth == 0 || some == all) {
-        sampling_leaf(s, c, degree, r);
+    int i, k, same = 1;
+    sampling_middles(region, c);
+    for (k = 1; k < 10; ++k) same &= c->part[k] == c->part[0];
+    if (depth == 0 || same) {
+        sampling_leaf(region, c, degree, r);
         return;
     }
     for (i = 0; i < 8; ++i) {
         sampling_cell inner;
         for (k = 0; k < 4; ++k) memcpy(inner.x[k], c->x[child[i][k]], sizeof inner.x[k]);
-        sampling_refine(s, &inner, degree, depth - 1, r);
+        sampling_refine(region, &inner, degree, depth - 1, r);
     }
 }
 
 /* degree: of the rule in each tetrahedron */
-static inline void sampling_adaptive(const sampling_surface *s, unsigned degree, int depth, sampling_rule *r)
+static inline void sampling_adaptive(const sampling_region *region, unsigned degree, int depth, sampling_rule *r)
 {
     sampling_cell c;
     int k;
     memset(&c, 0, sizeof c);
     for (k = 0; k < 3; ++k) c.x[k + 1][k] = 1;
     r->count = 0;
-    sampling_refine(s, &c, degree, depth, r);
+    sampling_refine(region, &c, degree, depth, r);
 }
 
 /* ---- positive ---- */

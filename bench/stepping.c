@@ -1,19 +1,34 @@
 /* stepping.c - accuracy against speed: the error of a motion against the time that it takes, over what can be turned.
 
-   make bench-stepping builds and runs it on the cut accordion and the slab in five slices (traces of the scenes, all their cuts made at
-   the start); it prints CSV and writes it to build/bench/stepping.csv. usage: stepping FILE SCENE=TRACE...
+   make bench-stepping builds and runs it on the cut accordion and the slab in five slices (traces of the scenes, each blade's whole path
+   cut at the start); it prints CSV and writes it to build/bench/stepping.csv, a table to stderr. usage: stepping FILE SCENE=TRACE...
 
-   Every run moves the same copies from rest for 0.33 s. Its error is the difference from the reference in displacement, weighted by mass,
-   as a share of how far the reference moves. The reference: implicit midpoint with steps of 0.033/32 s, Newton to 1e-8. How far off it may be
-   itself is in the row "reference": BDF2's difference from it with steps half as long. The space is the same in all runs: its own error,
-   under refinement, is in docs/SCENES.md (locking).
-   Columns: series and what was turned in it; dt; steps; ms_per_step, the mean; ms_per_second, of simulated time; error. */
-#define _POSIX_C_SOURCE 199309L
+   Every run moves the body from rest for 0.33 s. Its error is the difference from the reference in displacement, weighted by mass, as a
+   share of how far the reference moves. The reference: thin cuts, exact integrals, the same space, implicit midpoint with steps of
+   0.033/32 s, Newton to 1e-8. How far off it may be itself is in the row "reference": BDF2's difference from it with steps half as
+   long. The error of the space itself, under refinement, is space.c's.
+
+   What is turned: steps, integrators, lumped mass, Newton, CG, preconditioners; element duplication (VNA) and deletion; and, all by BDF2
+   with steps of 0.033/4 s and CG to 1e-6, so that they differ in nothing else,
+       integrals   of divided elements, by points (bench/parts.h): "positive", degree; "adaptive", depth; "regular", cells along an edge;
+                   "RXFEM", degree. A step then takes an elastic evaluation at each point, as published; "one": one for each part, in
+                   which F is constant. RXFEM refuses cuts that cross: the accordion's
+       thickness   of cuts, in edges (their mean): "gxfem; solids", and "Algorithm 1" as published (bench/literal.h), of all blades at
+                   once: one after the other, blades that cross leave pieces stuck. Each part of the thin cut moves as the largest part
+                   of the other body whose centre is in it, and where there is none as if it had stayed where it was
+   Columns: series and what was turned in it; dt; steps; ms_per_step, the mean, the evaluations of its points included; ms_per_second, of
+   simulated time; error; of_exact: the difference from the same steps by thin cuts and exact integrals; integrals_ms: to integrate all
+   divided elements, once; points: of the mean divided part; note: why there is no motion. */
+#define _POSIX_C_SOURCE 200809L
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "csv.h"
+#include "progress.h"
 #include "replay.h"
 #include "method.h"
+#include "part.h"
+#include "sampling.h"
+#include "parts.h"
 
 static const double duration = 0.33, longest = 0.033;     /* s */
 
@@ -26,76 +41,172 @@ typedef struct knobs {
     double newton_tolerance, cg_tolerance;
     gxs_preconditioner preconditioner;
     gxs_matrix matrix;
-    int lumped, replicas;
+    int lumped;
 } knobs;
+
+/* What is moved */
+typedef struct mover {
+    gxs_model model;
+    const double *start;        /* copy_count x 3 */
+    uint32_t *corners;          /* x 4: copies that move the setting's parts, PARTS_NONE: the part is lost; NULL: the setting's own */
+    double integrals_ms;        /* to integrate all divided elements */
+    double evaluate_ms;         /* of all points, in a step */
+    double points;              /* of the mean divided part; 0: no points */
+} mover;
 
 typedef struct setting {
     const char *name;
-    const replay *scene;
+    replay scene;               /* its cuts are each blade's whole path */
+    double edge;                /* mean, m */
     method_body *body;
-    gxs_model model;
-    gxs_element *replicas;
-    double *start, *reference;      /* copy_count x 3 */
-    double *mass;                   /* copy_count, row sums, kg */
+    parts_body parts;
+    mover own;
+    double *reference, *exact;  /* copy_count x 3: at the end; exact: by the steps with which integrals and thicknesses are compared */
 } setting;
+
+/* ---- the table ---- */
+
+typedef struct kept_row { const char *scene; char series[32], value[24]; double ms_per_second, error; } kept_row;
+static kept_row *kept_rows;
+static size_t kept_count, done, total;
+
+/* ms below 0: no motion, and note says why; of_exact below 0: not compared */
+static void print_row(const setting *s, const mover *m, const knobs *k, double ms, double error, double of_exact, const char *note)
+{
+    const unsigned long steps = (unsigned long)(duration / k->dt + 0.5);
+    char head[128], compared[24] = "", integrals[24] = "", points[24] = "";
+    kept_row *kept;
+    progress_draw("stepping", ++done, total, k->series);
+    snprintf(head, sizeof head, "%s,%s,%s,%g,%lu", s->name, k->series, k->value, k->dt, steps);
+    if (of_exact >= 0) snprintf(compared, sizeof compared, "%.3e", of_exact);
+    if (m && m->integrals_ms > 0) snprintf(integrals, sizeof integrals, "%.3f", m->integrals_ms);
+    if (m && m->points > 0) snprintf(points, sizeof points, "%.1f", m->points);
+    if (ms < 0) {
+        csv_row("%s,,,,,%s,%s,%s", head, integrals, points, note);
+        return;
+    }
+    csv_row("%s,%.3f,%.1f,%.3e,%s,%s,%s,%s", head, ms, ms / k->dt, error, compared, integrals, points, note);
+    kept_rows = (kept_row *)method_memory(kept_rows, kept_count + 1, sizeof *kept_rows);
+    kept = &kept_rows[kept_count++];
+    kept->scene = s->name;
+    snprintf(kept->series, sizeof kept->series, "%s", k->series);
+    snprintf(kept->value, sizeof kept->value, "%s", k->value);
+    kept->ms_per_second = ms / k->dt;
+    kept->error = error;
+}
+
+static int cheaper(const void *a, const void *b)
+{
+    const double x = ((const kept_row *)a)->ms_per_second, y = ((const kept_row *)b)->ms_per_second;
+    return (x > y) - (x < y);
+}
+
+/* The front of a scene: rows that nothing cheaper beats */
+static void print_front(const char *scene)
+{
+    double least = HUGE_VAL;
+    size_t i;
+    qsort(kept_rows, kept_count, sizeof *kept_rows, cheaper);
+    fprintf(stderr, "%s, from cheap to exact: what nothing cheaper beats\n%-24s %-16s %14s %10s\n", scene, "series", "value", "s per second", "error");
+    for (i = 0; i < kept_count; i++) {
+        const kept_row *r = &kept_rows[i];
+        if (r->error >= least) continue;
+        least = r->error;
+        fprintf(stderr, "%-24s %-16s %14.3f %10.2e\n", r->series, r->value, 1e-3 * r->ms_per_second, r->error);
+    }
+    kept_count = 0;
+}
 
 /* ---- the cut body ---- */
 
-static void sum_masses(setting *s)
+/* Does a later cut go on where this one ends? */
+static int is_continued(const replay *scene, size_t cut)
 {
-    static const int row[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
-    size_t e;
-    int i, j;
-    memset(s->mass, 0, s->model.copy_count * sizeof *s->mass);
-    for (e = 0; e < s->model.element_count; e++)
-        for (i = 0; i < 4; i++) for (j = 0; j < 4; j++) s->mass[s->model.elements[e].copy[i]] += s->model.elements[e].mass[row[i][j]];
+    const gx_surface *path = &scene->cuts[cut].path;
+    size_t i;
+    for (i = cut + 1; i < scene->cut_count; i++) {
+        const replay_cut *later = &scene->cuts[i];
+        if (later->first == path->triangle_count && later->path.vertex_count >= path->vertex_count &&
+            memcmp(later->path.vertices, path->vertices, 3 * path->vertex_count * sizeof(double)) == 0) return 1;
+    }
+    return 0;
+}
+
+/* The scene with one cut for each blade, all of its path; arrays but for the cuts are borrowed. */
+static replay whole_blades(const replay *scene)
+{
+    replay r = *scene;
+    size_t i;
+    r.cuts = (replay_cut *)method_memory(NULL, scene->cut_count, sizeof *r.cuts);
+    for (r.cut_count = i = 0; i < scene->cut_count; i++) {
+        if (is_continued(scene, i)) continue;
+        r.cuts[r.cut_count] = scene->cuts[i];
+        r.cuts[r.cut_count++].first = 0;
+    }
+    return r;
+}
+
+static double mean_edge(const replay *scene)
+{
+    static const int ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+    double sum = 0;
+    size_t e, i, k;
+    for (e = 0; e < scene->element_count; e++)
+        for (i = 0; i < 6; i++) {
+            const double *a = scene->positions + 3 * (size_t)scene->elements[4 * e + (size_t)ends[i][0]];
+            const double *b = scene->positions + 3 * (size_t)scene->elements[4 * e + (size_t)ends[i][1]];
+            double square = 0;
+            for (k = 0; k < 3; k++) square += (a[k] - b[k]) * (a[k] - b[k]);
+            sum += sqrt(square);
+        }
+    return sum / (6 * (double)scene->element_count);
+}
+
+/* The library's body with all cuts made */
+static method_body *cut_body(const replay *scene, method_times *times)
+{
+    method_body *body = (method_body *)method_body_create(scene);
+    size_t i;
+    memset(times, 0, sizeof *times);
+    for (i = 0; i < scene->cut_count; i++) method_must(method_body_cut(body, &scene->cuts[i], times) ? GX_ERROR_ARGUMENT : GX_OK, "cut");
+    return body;
 }
 
 static void setting_make(setting *s, const char *name, const replay *scene)
 {
-    const double *u;
     method_times times;
-    size_t i;
     memset(s, 0, sizeof *s);
-    memset(&times, 0, sizeof times);
     s->name = name;
-    s->scene = scene;
-    s->body = (method_body *)method_body_create(scene);
-    for (i = 0; i < scene->cut_count; i++) {
-        const char *why = method_body_cut(s->body, &scene->cuts[i], &times);
-        method_must(why ? GX_ERROR_ARGUMENT : GX_OK, "cut");
-    }
-    method_library_look(s->body, &s->model, &u);
-    s->start = (double *)method_memory(NULL, 3 * s->model.copy_count, sizeof(double));
-    s->reference = (double *)method_memory(NULL, 3 * s->model.copy_count, sizeof(double));
-    s->mass = (double *)method_memory(NULL, s->model.copy_count, sizeof(double));
-    s->replicas = (gxs_element *)method_memory(NULL, s->model.element_count, sizeof *s->replicas);
-    memcpy(s->start, u, 3 * s->model.copy_count * sizeof(double));
-    vna_replicate(s->model.elements, s->model.element_count, &scene->density, s->replicas);
-    sum_masses(s);
+    s->scene = whole_blades(scene);
+    s->edge = mean_edge(scene);
+    s->body = cut_body(&s->scene, &times);
+    method_library_look(s->body, &s->own.model, &s->own.start);
+    s->own.integrals_ms = 1e3 * times.integrals;
+    s->parts = parts_create(s->body->body);
+    s->reference = (double *)method_memory(NULL, 3 * s->own.model.copy_count, sizeof(double));
+    s->exact = (double *)method_memory(NULL, 3 * s->own.model.copy_count, sizeof(double));
 }
 
 static void setting_free(setting *s)
 {
+    parts_free(&s->parts);
     method_body_destroy(s->body);
-    free(s->start);
+    free(s->scene.cuts);
     free(s->reference);
-    free(s->mass);
-    free(s->replicas);
+    free(s->exact);
 }
 
 /* ---- a run ---- */
 
-static gxs_solver *make_solver(const setting *s, const knobs *k)
+static gxs_solver *make_solver(const mover *m, const knobs *k)
 {
     gxs_solver_desc desc;
     gxs_solver *solver;
-    gxs_model model = s->model;
+    gxs_model model = m->model;
     memset(&desc, 0, sizeof desc);
     desc.preconditioner = k->preconditioner;
     desc.matrix = k->matrix;
     model.lumped_mass = (uint32_t)k->lumped;
-    if (k->replicas) model.elements = s->replicas;
     method_must(gxs_solver_create(&desc, &solver), "solver");
     method_must(gxs_solver_set_model(solver, &model, NULL), "model");
     return solver;
@@ -116,147 +227,444 @@ static gx_result advance(gxs_solver *solver, gxs_step_desc *desc, double *u, dou
     return result;
 }
 
-/* Moves u (copy_count x 3) from the start to the end; returns milliseconds per step, or a negative number where a step fails. */
-static double run(const setting *s, const knobs *k, double *u)
+/* Moves u (copy_count x 3) from the start to the end; *ms: per step. */
+static gx_result run(const setting *s, const mover *m, const knobs *k, double *u, double *ms)
 {
-    const size_t size = 3 * s->model.copy_count, steps = (size_t)(duration / k->dt + 0.5);
+    const size_t size = 3 * m->model.copy_count, steps = (size_t)(duration / k->dt + 0.5);
     double *v = (double *)calloc(size, sizeof(double)), *history = (double *)method_memory(NULL, 4 * size, sizeof(double)), begin;
-    gxs_solver *solver = make_solver(s, k);
+    gxs_solver *solver = make_solver(m, k);
     gxs_step_desc desc;
     gx_result result = GX_OK;
     size_t i;
     method_must(v ? GX_OK : GX_ERROR_MEMORY, "run");
     memset(&desc, 0, sizeof desc);
     desc.dt = k->dt;
-    memcpy(desc.gravity, s->scene->gravity, sizeof desc.gravity);
+    memcpy(desc.gravity, s->scene.gravity, sizeof desc.gravity);
     desc.integrator = k->integrator;
     desc.newton_iterations = k->newton;
     desc.newton_tolerance = k->newton_tolerance;
     desc.cg_tolerance = k->cg_tolerance;
-    memcpy(u, s->start, size * sizeof(double));
+    memcpy(u, m->start, size * sizeof(double));
     begin = seconds(NULL);
     for (i = 0; i < steps && result == GX_OK; i++) result = advance(solver, &desc, u, v, history, size);
-    begin = 1e3 * (seconds(NULL) - begin) / (double)steps;
+    *ms = 1e3 * (seconds(NULL) - begin) / (double)steps;
     gxs_solver_destroy(solver);
     free(v);
     free(history);
-    return result == GX_OK ? begin : -1;
+    return result;
 }
 
-static double error_of(const setting *s, const double *u)
+/* From `truth` (the setting's copies), over the setting's parts, each corner with its row of the mass, as a share of the reference's motion */
+static double error_of(const setting *s, const mover *m, const double *u, const double *truth)
 {
+    static const int row[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
     double off = 0, moved = 0;
-    size_t i, k;
-    for (i = 0; i < s->model.copy_count; i++)
-        for (k = 0; k < 3; k++) {
-            const double d = u[3 * i + k] - s->reference[3 * i + k], m = s->reference[3 * i + k] - s->start[3 * i + k];
-            off += s->mass[i] * d * d;
-            moved += s->mass[i] * m * m;
+    size_t i, c, j, k;
+    for (i = 0; i < s->own.model.element_count; i++)
+        for (c = 0; c < 4; c++) {
+            const gxs_element *e = &s->own.model.elements[i];
+            const size_t copy = e->copy[c];
+            const uint32_t other = m->corners ? m->corners[4 * i + c] : e->copy[c];
+            double mass = 0;
+            for (j = 0; j < 4; j++) mass += e->mass[row[c][j]];
+            for (k = 0; k < 3; k++) {
+                const double start = s->own.start[3 * copy + k], at = other == PARTS_NONE ? start : u[3 * (size_t)other + k];
+                off += mass * (at - truth[3 * copy + k]) * (at - truth[3 * copy + k]);
+                moved += mass * (s->reference[3 * copy + k] - start) * (s->reference[3 * copy + k] - start);
+            }
         }
     return sqrt(off / moved);
 }
 
-static void row(const setting *s, const knobs *k)
+/* Runs and prints; "SERIES one" beside it where the mover has points: one evaluation for each part. compare: with the exact run of the same steps */
+static void row(const setting *s, const mover *m, const knobs *k, int compare)
 {
-    double *u = (double *)method_memory(NULL, 3 * s->model.copy_count, sizeof(double));
-    const double ms = run(s, k, u);
-    if (ms < 0) csv_row("%s,%s,%s,%g,%lu,,,", s->name, k->series, k->value, k->dt, (unsigned long)(duration / k->dt + 0.5));
-    else csv_row("%s,%s,%s,%g,%lu,%.3f,%.1f,%.3e", s->name, k->series, k->value, k->dt, (unsigned long)(duration / k->dt + 0.5), ms, ms / k->dt, error_of(s, u));
+    double *u = (double *)method_memory(NULL, 3 * m->model.copy_count, sizeof(double)), ms, error, of_exact;
+    const gx_result result = run(s, m, k, u, &ms);
+    error = result == GX_OK ? error_of(s, m, u, s->reference) : 0;
+    of_exact = result == GX_OK && compare ? error_of(s, m, u, s->exact) : -1;
+    if (result != GX_OK) ms = -1;
+    print_row(s, m, k, ms < 0 ? ms : ms + m->evaluate_ms, error, of_exact, result == GX_OK ? "" : gx_result_text(result));
+    if (m->points > 0) {
+        char series[32];
+        knobs one = *k;
+        snprintf(series, sizeof series, "%s one", k->series);
+        one.series = series;
+        print_row(s, m, &one, ms, error, of_exact, result == GX_OK ? "" : gx_result_text(result));
+    }
     free(u);
 }
 
-/* ---- what is turned ---- */
-
-static void find_reference(setting *s)
+static knobs knobs_of(const char *series, const char *value, double dt, gxs_integrator integrator)
 {
     knobs k;
     memset(&k, 0, sizeof k);
-    k.dt = longest / 32;
-    k.integrator = GXS_MIDPOINT;
+    k.series = series;
+    k.value = value;
+    k.dt = dt;
+    k.integrator = integrator;
+    return k;
+}
+
+/* ---- other movers ---- */
+
+/* Which copies of another body stand for the corners of the setting's parts; owners: the element of each of the model's elements */
+static uint32_t *match(const setting *s, const gxs_model *model, const uint32_t *owners)
+{
+    const size_t count = s->own.model.element_count;
+    uint32_t *corners = (uint32_t *)method_memory(NULL, 4 * count, sizeof *corners);
+    double *largest = (double *)calloc(count + 1, sizeof *largest);
+    size_t i;
+    method_must(largest ? GX_OK : GX_ERROR_MEMORY, "match");
+    memset(corners, 255, 4 * count * sizeof *corners);
+    for (i = 0; i < model->element_count; i++) {
+        const uint32_t element = owners ? owners[i] : model->elements[i].group;
+        uint32_t at;
+        double x[3];
+        if (!parts_center(&s->parts, &model->elements[i], element, x)) continue;
+        at = parts_find(&s->parts, element, x);
+        if (at == PARTS_NONE || model->elements[i].weight <= largest[at]) continue;
+        largest[at] = model->elements[i].weight;
+        memcpy(corners + 4 * (size_t)at, model->elements[i].copy, 4 * sizeof *corners);
+    }
+    free(largest);
+    return corners;
+}
+
+/* Milliseconds of forces and tangents of St. Venant-Kirchhoff at the points of divided parts, one by one as RXFEM takes them; counted from the
+   first MEASURED */
+static double evaluate_ms(const setting *s, const gxs_element *elements, const size_t *counts, double *points)
+{
+    enum { MEASURED = 200000 };
+    static const double lame[2] = {1e6, 1e6};
+    double force[12] = {0}, tangent[144] = {0}, f[9], all = 0, seen = 0, parts_seen = 0, begin = seconds(NULL), took = 0;
+    size_t i, j;
+    for (i = 0; i < s->own.model.element_count; i++) {
+        const uint32_t e = elements[i].group;
+        if (s->parts.first[e + 1] - s->parts.first[e] < 2) continue;
+        parts_seen++;
+        all += (double)counts[i];
+        if (seen >= MEASURED) continue;
+        for (j = 0; j < counts[i]; j++) {
+            rx_deformation(&elements[i], s->own.start, f);
+            rx_add_point(lame, &elements[i], f, elements[i].weight, force, tangent);
+        }
+        seen += (double)counts[i];
+        took = seconds(NULL) - begin;
+    }
+    method_must(tangent[0] >= 0 ? GX_OK : GX_ERROR_DIVERGED, "evaluation");     /* read, so that it is not left out */
+    *points = all / parts_seen;
+    return seen > 0 ? 1e3 * took * all / seen : 0;
+}
+
+/* ---- what is turned: steps and solvers ---- */
+
+static void find_reference(setting *s)
+{
+    knobs k = knobs_of("reference", "BDF2", longest / 32, GXS_MIDPOINT);
+    double ms;
     k.newton = 30;
     k.newton_tolerance = 1e-8;
     k.cg_tolerance = 1e-4;
-    method_must(run(s, &k, s->reference) < 0 ? GX_ERROR_DIVERGED : GX_OK, "reference");
-    k.series = "reference";
-    k.value = "BDF2";
+    method_must(run(s, &s->own, &k, s->reference, &ms), "reference");
     k.integrator = GXS_BDF2;
     k.dt = longest / 64;
-    row(s, &k);
+    row(s, &s->own, &k, 0);
 }
 
-static void turn_steps(const setting *s, const char *series, gxs_integrator integrator, uint32_t newton, int lumped, int replicas)
+enum { STEPS = 5, SWEEPS = 6, TOLERANCES = 4, NEWTONS = 4, SOLVERS = 3 };
+
+typedef struct sweep { const char *series; gxs_integrator integrator; uint32_t newton; int lumped; } sweep;
+
+static const sweep sweeps[SWEEPS] = {
+    {"BDF1", GXS_BDF1, 1, 0}, {"BDF2", GXS_BDF2, 1, 0}, {"midpoint", GXS_MIDPOINT, 1, 0}, {"midpoint; 2 Newton", GXS_MIDPOINT, 2, 0},
+    {"BDF1; lumped", GXS_BDF1, 1, 1}, {"BDF2; lumped", GXS_BDF2, 1, 1}};
+
+static void turn_steps(const setting *s, const mover *m, const sweep *w)
 {
-    static const int parts[5] = {1, 2, 4, 8, 16};
+    static const int divisors[STEPS] = {1, 2, 4, 8, 16};
     int i;
-    for (i = 0; i < 5; i++) {
-        knobs k;
+    for (i = 0; i < STEPS; i++) {
         char text[32];
-        memset(&k, 0, sizeof k);
-        snprintf(text, sizeof text, "dt/%d", parts[i]);
-        k.series = series;
-        k.value = text;
-        k.dt = longest / parts[i];
-        k.integrator = integrator;
-        k.newton = newton;
-        k.lumped = lumped;
-        k.replicas = replicas;
-        row(s, &k);
+        knobs k = knobs_of(w->series, text, longest / divisors[i], w->integrator);
+        snprintf(text, sizeof text, "dt/%d", divisors[i]);
+        k.newton = w->newton;
+        k.lumped = w->lumped;
+        row(s, m, &k, 0);
     }
 }
 
 static void turn_solver(const setting *s)
 {
-    static const double tolerances[4] = {1e-1, 1e-2, 1e-4, 1e-6};
-    static const uint32_t newtons[4] = {1, 2, 4, 16};
-    knobs k;
+    static const double tolerances[TOLERANCES] = {1e-1, 1e-2, 1e-4, 1e-6};
+    static const uint32_t newtons[NEWTONS] = {1, 2, 4, 16};
     char text[32];
+    knobs k = knobs_of("CG tolerance", text, longest / 4, GXS_BDF1);
     int i;
-    for (i = 0; i < 8; i++) {
-        memset(&k, 0, sizeof k);
-        k.dt = longest / 4;
-        if (i < 4) k.cg_tolerance = tolerances[i];
-        else k.newton = newtons[i - 4];
-        if (i < 4) snprintf(text, sizeof text, "%g", tolerances[i]);
-        else snprintf(text, sizeof text, "%u", newtons[i - 4]);
-        k.series = i < 4 ? "CG tolerance" : "Newton iterations";
-        k.value = text;
-        row(s, &k);
+    for (i = 0; i < TOLERANCES; i++) {
+        k.cg_tolerance = tolerances[i];
+        snprintf(text, sizeof text, "%g", tolerances[i]);
+        row(s, &s->own, &k, 0);
     }
-    memset(&k, 0, sizeof k);
-    k.dt = longest / 4;
-    k.series = "solver";
-    k.value = "multigrid assembled";
+    k = knobs_of("Newton iterations", text, longest / 4, GXS_BDF1);
+    for (i = 0; i < NEWTONS; i++) {
+        k.newton = newtons[i];
+        snprintf(text, sizeof text, "%u", newtons[i]);
+        row(s, &s->own, &k, 0);
+    }
+    k = knobs_of("solver", "multigrid assembled", longest / 4, GXS_BDF1);
     k.matrix = GXS_MATRIX_ASSEMBLED;
-    row(s, &k);
-    k.value = "block-Jacobi";
-    k.matrix = GXS_MATRIX_FREE;
+    row(s, &s->own, &k, 0);
+    k = knobs_of("solver", "block-Jacobi", longest / 4, GXS_BDF1);
     k.preconditioner = GXS_BLOCK_JACOBI;
-    row(s, &k);
-    k.value = "volume ratio (RXFEM)";
+    row(s, &s->own, &k, 0);
+    k = knobs_of("solver", "volume ratio (RXFEM)", longest / 4, GXS_BDF1);
     k.preconditioner = GXS_VOLUME_RATIO;
-    row(s, &k);
+    row(s, &s->own, &k, 0);
+}
+
+/* ---- duplication and deletion of elements ---- */
+
+static void turn_duplication(const setting *s)
+{
+    static const sweep w = {"VNA; BDF2", GXS_BDF2, 1, 0};
+    mover m = s->own;
+    gxs_element *replicas = (gxs_element *)method_memory(NULL, m.model.element_count, sizeof *replicas);
+    vna_replicate(m.model.elements, m.model.element_count, &s->scene.density, replicas);
+    m.model.elements = replicas;
+    m.integrals_ms = 0;
+    turn_steps(s, &m, &w);
+    free(replicas);
+}
+
+static void turn_deletion(const setting *s)
+{
+    static const sweep w = {"deletion; BDF2", GXS_BDF2, 1, 0};
+    method_body *uncut = (method_body *)method_body_create(&s->scene);
+    gxs_element *elements = (gxs_element *)method_memory(NULL, s->scene.element_count, sizeof *elements);
+    mover m;
+    memset(&m, 0, sizeof m);
+    method_library_look(uncut, &m.model, &m.start);
+    m.model.element_count = parts_delete(&s->parts, &m.model, elements);
+    m.model.elements = elements;
+    m.corners = match(s, &m.model, NULL);
+    if (m.model.element_count > 0) turn_steps(s, &m, &w);
+    else {
+        const knobs k = knobs_of(w.series, "", longest, w.integrator);
+        print_row(s, &m, &k, -1, 0, -1, "no element is left");
+        done += STEPS - 1;
+    }
+    free(m.corners);
+    free(elements);
+    method_body_destroy(uncut);
+}
+
+/* ---- integrals ---- */
+
+enum { RULES = 3, KNOBS = 4 };
+
+static const struct { const char *series; parts_rule_fn make; int knobs[KNOBS]; } rules[RULES] = {
+    {"positive", parts_positive, {1, 2, 0, 0}}, {"adaptive", parts_adaptive, {1, 2, 3, 4}}, {"regular", parts_regular, {5, 10, 20, 50}}};
+
+static knobs compared_knobs(const char *series, const char *value)
+{
+    knobs k = knobs_of(series, value, longest / 4, GXS_BDF2);
+    k.cg_tolerance = 1e-6;
+    return k;
+}
+
+/* Cuts by all blades; NULL, or why RXFEM can't */
+static const char *cut_rxfem(const setting *s, rx_body *b)
+{
+    size_t i;
+    for (i = 0; i < s->scene.cut_count; i++) {
+        const gx_surface *path = &s->scene.cuts[i].path;
+        rx_surface surface;
+        rx_result result;
+        surface.vertices = path->vertices; surface.vertex_count = path->vertex_count;
+        surface.triangles = path->triangles; surface.triangle_count = path->triangle_count;
+        result = rx_body_cut(b, &surface);
+        if (result != RX_OK) return method_rxfem_text(result);
+    }
+    return NULL;
+}
+
+static void turn_rxfem(const setting *s, mover *m, gxs_element *elements, size_t *counts)
+{
+    rx_rules *fitted = rx_rules_create(2, 0);
+    rx_body *b = rx_body_create(fitted, s->scene.positions, s->scene.node_count, s->scene.elements, s->scene.element_count);
+    knobs k = compared_knobs("RXFEM", "2");
+    const char *why;
+    b->clock = seconds;
+    why = cut_rxfem(s, b);
+    if (why) {
+        print_row(s, NULL, &k, -1, 0, -1, why);
+        k.series = "RXFEM one";
+        print_row(s, NULL, &k, -1, 0, -1, why);
+    } else {
+        parts_rxfem(&s->parts, b, s->scene.density, elements, counts);
+        m->integrals_ms = 1e3 * b->seconds_rules;
+        m->evaluate_ms = evaluate_ms(s, elements, counts, &m->points);
+        row(s, m, &k, 1);
+    }
+    rx_body_destroy(b);
+    rx_rules_destroy(fitted);
+}
+
+static void turn_integrals(setting *s)
+{
+    mover m = s->own;
+    const size_t count = m.model.element_count;
+    gxs_element *elements = (gxs_element *)method_memory(NULL, count, sizeof *elements);
+    size_t *counts = (size_t *)method_memory(NULL, count, sizeof *counts);
+    knobs k = compared_knobs("exact", "-");
+    double ms;
+    int i, j;
+    method_must(run(s, &s->own, &k, s->exact, &ms), "exact");
+    row(s, &s->own, &k, 1);
+    m.model.elements = elements;
+    turn_rxfem(s, &m, elements, counts);
+    for (i = 0; i < RULES; i++)
+        for (j = 0; j < KNOBS && rules[i].knobs[j]; j++) {
+            char text[16];
+            const double begin = seconds(NULL);
+            parts_integrate(&s->parts, rules[i].make, rules[i].knobs[j], s->scene.density, elements, counts);
+            m.integrals_ms = 1e3 * (seconds(NULL) - begin);
+            m.evaluate_ms = evaluate_ms(s, elements, counts, &m.points);
+            snprintf(text, sizeof text, "%d", rules[i].knobs[j]);
+            k = compared_knobs(rules[i].series, text);
+            row(s, &m, &k, 1);
+        }
+    free(elements);
+    free(counts);
+}
+
+/* ---- thickness ---- */
+
+enum { THICKNESSES = 5 };
+
+/* Of all blades; the caller's to free */
+static gx_surface *make_solids(const setting *s, double thickness)
+{
+    gx_surface *solids = (gx_surface *)method_memory(NULL, s->scene.cut_count, sizeof *solids);
+    size_t i;
+    for (i = 0; i < s->scene.cut_count; i++) solids[i] = method_solidify(&s->scene.cuts[i].path, thickness);
+    return solids;
+}
+
+static void free_solids(const setting *s, gx_surface *solids)
+{
+    size_t i;
+    for (i = 0; i < s->scene.cut_count; i++) {
+        free((void *)(uintptr_t)solids[i].vertices);
+        free((void *)(uintptr_t)solids[i].triangles);
+    }
+    free(solids);
+}
+
+static void row_solids(const setting *s, const gx_surface *solids, const knobs *k)
+{
+    replay scene = s->scene;
+    method_times times;
+    method_body *body;
+    mover m;
+    size_t i;
+    memset(&m, 0, sizeof m);
+    scene.cuts = (replay_cut *)method_memory(NULL, scene.cut_count, sizeof *scene.cuts);
+    for (i = 0; i < scene.cut_count; i++) {
+        scene.cuts[i] = s->scene.cuts[i];
+        scene.cuts[i].path = solids[i];
+    }
+    body = cut_body(&scene, &times);
+    method_library_look(body, &m.model, &m.start);
+    m.integrals_ms = 1e3 * times.integrals;
+    m.corners = match(s, &m.model, NULL);
+    row(s, &m, k, 1);
+    free(m.corners);
+    method_body_destroy(body);
+    free(scene.cuts);
+}
+
+/* The element of each of Algorithm 1's parts */
+static uint32_t *literal_owners(const literal *l)
+{
+    uint32_t *owners = (uint32_t *)method_memory(NULL, l->element.count, sizeof *owners), e, at;
+    for (e = 0; e < l->desc.element_count; e++)
+        for (at = l->element.first[e]; at != LITERAL_NONE; at = l->element.domains[at].next) owners[at] = e;
+    return owners;
+}
+
+static void row_literal(const setting *s, const gx_surface *solids, const knobs *k)
+{
+    method_literal *body = (method_literal *)method_literal_create(&s->scene);
+    method_times times;
+    uint32_t *owners;
+    mover m;
+    memset(&m, 0, sizeof m);
+    memset(&times, 0, sizeof times);
+    literal_cut(body->cutter, solids, s->scene.cut_count, NULL);
+    owners = literal_owners(body->cutter);
+    method_literal_renew(body, &times);
+    method_literal_look(body, &m.model, &m.start);
+    m.model.held = body->held;
+    m.model.materials = &body->material;
+    m.model.material_count = 1;
+    m.integrals_ms = 1e3 * times.integrals;
+    m.corners = match(s, &m.model, owners);
+    if (body->cutter->report.failures == 0) row(s, &m, k, 1);
+    else print_row(s, &m, k, -1, 0, -1, "a Boolean of rounded subdomains is refused");
+    free(m.corners);
+    free(owners);
+    method_literal_destroy(body);
+}
+
+static void turn_thickness(const setting *s)
+{
+    static const double thicknesses[THICKNESSES] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6};      /* edges */
+    int i;
+    for (i = 0; i < THICKNESSES; i++) {
+        char text[16];
+        gx_surface *solids = make_solids(s, thicknesses[i] * s->edge);
+        knobs k = compared_knobs("gxfem; solids", text);
+        snprintf(text, sizeof text, "%g", thicknesses[i]);
+        row_solids(s, solids, &k);
+        k.series = "Algorithm 1";
+        row_literal(s, solids, &k);
+        free_solids(s, solids);
+    }
+}
+
+/* ---- */
+
+static size_t rows_of_scene(void)
+{
+    size_t rows = 1 + STEPS * (SWEEPS + 2) + TOLERANCES + NEWTONS + SOLVERS + 1 + 2 + 2 * THICKNESSES;
+    int i, j;
+    for (i = 0; i < RULES; i++) for (j = 0; j < KNOBS && rules[i].knobs[j]; j++) rows += 2;
+    return rows;
 }
 
 int main(int argc, char **argv)
 {
-    int i;
-    csv_open(argc > 2 ? 2 : argc, argv, "scene,series,value,dt,steps,ms_per_step,ms_per_second,error");
+    int i, j;
+    csv_open(argc > 2 ? 2 : argc, argv, "scene,series,value,dt,steps,ms_per_step,ms_per_second,error,of_exact,integrals_ms,points,note");
+    total = (size_t)(argc > 2 ? argc - 2 : 0) * rows_of_scene();
     for (i = 2; i < argc; i++) {
         char name[32];
         replay scene = replay_argument(argv[0], argv[i], name);
         setting s;
         setting_make(&s, name, &scene);
         find_reference(&s);
-        turn_steps(&s, "BDF1", GXS_BDF1, 1, 0, 0);
-        turn_steps(&s, "BDF2", GXS_BDF2, 1, 0, 0);
-        turn_steps(&s, "midpoint", GXS_MIDPOINT, 1, 0, 0);
-        turn_steps(&s, "midpoint; 2 Newton", GXS_MIDPOINT, 2, 0, 0);
-        turn_steps(&s, "BDF1; lumped", GXS_BDF1, 1, 1, 0);
-        turn_steps(&s, "BDF2; lumped", GXS_BDF2, 1, 1, 0);
-        turn_steps(&s, "VNA; BDF2", GXS_BDF2, 1, 0, 1);
+        for (j = 0; j < SWEEPS; j++) turn_steps(&s, &s.own, &sweeps[j]);
+        turn_duplication(&s);
+        turn_deletion(&s);
         turn_solver(&s);
+        turn_integrals(&s);
+        turn_thickness(&s);
+        print_front(name);
         setting_free(&s);
         replay_free(&scene);
     }
+    free(kept_rows);
     return csv_close();
 }

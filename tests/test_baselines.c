@@ -1,5 +1,5 @@
-/* test_baselines.c - what the benches compare the library with: bench/dense.h, part.h, rxfem.h and what it rests on, sampling.h. Each must be as good as it is
-   meant to be, else the comparison says nothing.
+/* test_baselines.c - what the benches compare the library with: bench/dense.h, part.h, rxfem.h and what it rests on, sampling.h, parts.h. Each
+   must be as good as it is meant to be, else the comparison says nothing.
 
    truth: part.h against rationals and the oracle; then rules against part.h, enrichments against the library's copies. */
 #define GXFEM_IMPLEMENTATION
@@ -7,6 +7,7 @@
 #include "../bench/part.h"
 #include "../bench/rxfem_model.h"
 #include "../bench/sampling.h"
+#include "../bench/parts.h"
 #include "body.h"
 #include "oracle.h"
 
@@ -890,14 +891,15 @@ START_TEST(published_samples) {
     static const double plane[9] = {1.2, -1.2, 0.3, 0.3, 1.2, -1.2, -1.2, 0.3, 1.2};
     static const uint32_t triangle[3] = {0, 1, 2};
     sampling_surface s = sampling_surface_create(plane, triangle, 1);
+    const sampling_region under = sampling_under(&s);
     sampling_rule r;
     memset(&r, 0, sizeof r);
-    sampling_regular(&s, 50, &r);
+    sampling_regular(&under, 50, &r);
     ck_assert_uint_eq(r.count, 560);
     ck_assert_double_eq_tol(560 / 125000.0 / (0.027 / 6), 1 - 4.44e-3, 1e-5);
-    sampling_adaptive(&s, 1, 4, &r);
+    sampling_adaptive(&under, 1, 4, &r);
     ck_assert_uint_ge(r.count, 45); ck_assert_uint_le(r.count, 60);
-    sampling_adaptive(&s, 2, 4, &r);
+    sampling_adaptive(&under, 2, 4, &r);
     ck_assert_uint_ge(r.count, 160); ck_assert_uint_le(r.count, 200);
     sampling_free(&r);
     sampling_surface_free(&s);
@@ -935,17 +937,18 @@ START_TEST(sampling_converges) {
     static const double high[9] = {-9, -9, 3, 9, -9, 3, 0, 9, 3}, plane[9] = {1.2, -1.2, 0.3, 0.3, 1.2, -1.2, -1.2, 0.3, 1.2};
     static const uint32_t triangle[3] = {0, 1, 2};
     sampling_surface whole = sampling_surface_create(high, triangle, 1), s = sampling_surface_create(plane, triangle, 1);
+    const sampling_region under_high = sampling_under(&whole), under = sampling_under(&s);
     sampling_rule r;
     double square = 0, volume[2] = {0, 0};
     size_t i;
     memset(&r, 0, sizeof r);
-    sampling_adaptive(&whole, 2, 4, &r);
+    sampling_adaptive(&under_high, 2, 4, &r);
     ck_assert_uint_eq(r.count, 4);
     for (i = 0; i < r.count; ++i) square += r.points[4 * i + 3] * r.points[4 * i] * r.points[4 * i];
     ck_assert_double_eq_tol(square, 1.0 / 60, 1e-16);
-    sampling_adaptive(&s, 2, 5, &r);
+    sampling_adaptive(&under, 2, 5, &r);
     for (i = 0; i < r.count; ++i) volume[0] += r.points[4 * i + 3];
-    sampling_regular(&s, 100, &r);
+    sampling_regular(&under, 100, &r);
     for (i = 0; i < r.count; ++i) volume[1] += r.points[4 * i + 3];
     ck_assert_double_eq_tol(volume[0], 0.0045, 0.0045 * 0.02);
     ck_assert_double_eq_tol(volume[1], 0.0045, 0.0045 * 0.002);
@@ -1017,6 +1020,172 @@ START_TEST(positive_rules) {
 }
 END_TEST
 
+/* ---- parts.h ---- */
+
+static const double part_points[3][3] = {{0.9, 0.52, 0.47}, {0.9, 0.52, 0.71}, {0.83, 0.61, 0.5}};
+static const double part_normals[3][3] = {{0.1, 0.05, 1}, {0.1, 0.05, 1}, {1, 0.2, 0.3}};
+
+/* A block cut by this many planes: two beside each other, a third across both */
+static workload cut_block(size_t planes) {
+    workload w = grid(2, 1, 1, 5);
+    size_t i;
+    for (i = 0; i < planes; ++i) add_plane(&w, part_points[i], part_normals[i], 9);
+    return w;
+}
+
+/* Largest difference of volumes and masses from the library's, beside those of the largest element */
+static double worst_integral(const parts_body *p, const gxs_element *elements) {
+    double worst = 0, volume = 0, mass = 0;
+    size_t i, k;
+    for (i = 0; i < p->model.element_count; ++i) {
+        volume = fmax(volume, p->model.elements[i].weight);
+        mass = fmax(mass, p->model.elements[i].mass[0]);
+    }
+    for (i = 0; i < p->model.element_count; ++i) {
+        const gxs_element *e = &p->model.elements[i];
+        worst = fmax(worst, fabs(elements[i].weight - e->weight) / volume);
+        for (k = 0; k < 10; ++k) worst = fmax(worst, fabs(elements[i].mass[k] - e->mass[k]) / mass);
+        ck_assert(memcmp(elements[i].copy, e->copy, sizeof e->copy) == 0);
+    }
+    return worst;
+}
+
+/* By crossing planes: parts are convex, so each has its centre; and no two parts of an element have points with the same sides. */
+START_TEST(points_of_parts) {
+    workload w = cut_block(3);
+    gx_body *body = cut_in_sequence(&w);
+    parts_body p = parts_create(body);
+    size_t i, k;
+    int n;
+    random_seed(5);
+    for (i = 0; i < p.model.element_count; ++i) {
+        double x[3];
+        ck_assert(parts_center(&p, &p.model.elements[i], p.model.elements[i].group, x));
+        ck_assert_uint_eq(parts_find(&p, p.model.elements[i].group, x), i);
+    }
+    for (n = 0; n < 2000; ++n) {
+        const uint32_t e = (uint32_t)random_below((int)w.element_count);
+        double x[2][3], at[3];
+        unsigned side[2] = {0, 0};
+        uint32_t part[2];
+        int q;
+        for (q = 0; q < 2; ++q) {
+            for (k = 0; k < 3; ++k) at[k] = random_real(0, 1.0 / 3);
+            parts_material_point(&p, e, at, x[q]);
+            part[q] = parts_find(&p, e, x[q]);
+            ck_assert_uint_ge(part[q], p.first[e]);
+            ck_assert_uint_lt(part[q], p.first[e + 1]);
+            for (k = 0; k < 3; ++k)
+                side[q] |= (unsigned)(dense_dot(part_normals[k], x[q], 3) > dense_dot(part_normals[k], part_points[k], 3)) << k;
+        }
+        if (side[0] == side[1]) ck_assert_uint_eq(part[0], part[1]);
+        if (p.first[e + 1] - p.first[e] == 8 && side[0] != side[1]) ck_assert_uint_ne(part[0], part[1]);
+    }
+    parts_free(&p);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Rules with positive weights give back the moments they are made of, others come closer with more points, those of uncut elements stay. */
+START_TEST(rules_in_parts) {
+    static const struct { parts_rule_fn make; int knob; double within; } rules_of[5] = {
+        {parts_positive, 2, 1e-13}, {parts_regular, 10, 0.1}, {parts_regular, 40, 0.01}, {parts_adaptive, 3, 0.05}, {parts_adaptive, 5, 0.01}};
+    workload w = cut_block(3);
+    gx_body *body = cut_in_sequence(&w);
+    parts_body p = parts_create(body);
+    gxs_element *elements = (gxs_element *)dense_memory(NULL, p.model.element_count, sizeof *elements);
+    size_t *counts = (size_t *)dense_memory(NULL, p.model.element_count, sizeof *counts), i;
+    int k;
+    for (k = 0; k < 5; ++k) {
+        double worst;
+        parts_integrate(&p, rules_of[k].make, rules_of[k].knob, 1000, elements, counts);
+        worst = worst_integral(&p, elements);
+        ck_assert_msg(worst < rules_of[k].within && (k == 0 || worst > 1e-9), "rule %d: %.2e", k, worst);
+        for (i = 0; i < p.model.element_count; ++i) {
+            const uint32_t e = elements[i].group;
+            if (p.first[e + 1] - p.first[e] == 1) ck_assert_uint_eq(counts[i], 1);
+            else if (k == 0) ck_assert(counts[i] > 0 && counts[i] <= 10);
+        }
+    }
+    free(elements); free(counts);
+    parts_free(&p);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* On planes that do not cross RXFEM's moments are the library's, part by part. */
+START_TEST(rxfem_in_parts) {
+    workload w = cut_block(2);
+    gx_body *body = cut_in_sequence(&w);
+    rx_body *b = rx_body_of(&w);
+    parts_body p = parts_create(body);
+    gxs_element *elements = (gxs_element *)dense_memory(NULL, p.model.element_count, sizeof *elements);
+    size_t *counts = (size_t *)dense_memory(NULL, p.model.element_count, sizeof *counts), i, cut = 0;
+    double worst;
+    for (i = 0; i < 2; ++i) ck_assert_int_eq(rx_cut_by(b, &w, i), RX_OK);
+    parts_rxfem(&p, b, 1000, elements, counts);
+    worst = worst_integral(&p, elements);
+    ck_assert_msg(worst < 1e-8, "%.2e", worst);
+    for (i = 0; i < p.model.element_count; ++i) cut += counts[i] == 24;
+    ck_assert_uint_gt(cut, 10);
+    free(elements); free(counts);
+    parts_free(&p);
+    rx_body_destroy(b);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Deletion takes away what a plane passes through, and no more: elements with nodes on both sides; of a plane that ends inside, also those
+   that it does not divide; of one in faces none. */
+START_TEST(deleted_elements) {
+    static const double level[3] = {0.52, 0.5, 0.4};
+    int k;
+    for (k = 0; k < 3; ++k) {
+        workload w = grid(2, 2, 2, 5);
+        gx_body *body, *uncut = body_of(&w);
+        gxs_model model;
+        gxs_element *left;
+        parts_body p;
+        size_t i, count, expected = 0;
+        if (k == 1) add_axis_plane(&w, 2, 1);
+        else {
+            const double x[4][3] = {{-1, -1, level[k]}, {k == 0 ? 3 : 1.3, -1, level[k]}, {k == 0 ? 3 : 1.3, 3, level[k]}, {-1, 3, level[k]}};
+            wl_add_quad(wl_add_surface(&w, 0), x[0], x[1], x[2], x[3]);
+        }
+        body = cut_in_sequence(&w);
+        p = parts_create(body);
+        ck_assert_int_eq(gx_body_model(uncut, &model), GX_OK);
+        left = (gxs_element *)dense_memory(NULL, model.element_count, sizeof *left);
+        count = parts_delete(&p, &model, left);
+        for (i = 0; i < w.element_count; ++i) {
+            int below = 0, above = 0, n;
+            for (n = 0; n < 4; ++n) {
+                const double z = w.positions[3 * w.elements[4 * i + n] + 2];
+                below |= z < level[k];
+                above |= z > level[k];
+            }
+            expected += k == 1 || !(below && above);
+            if (!(below && above)) ck_assert(!parts_is_met(&p, (uint32_t)i));
+        }
+        if (k < 2) ck_assert_uint_eq(count, expected);
+        else {
+            size_t divided = 0;
+            for (i = 0; i < w.element_count; ++i) divided += p.first[i + 1] - p.first[i] > 1;
+            ck_assert_uint_gt(count, expected);
+            ck_assert_uint_lt(count, w.element_count - divided);
+        }
+        free(left);
+        parts_free(&p);
+        gx_body_destroy(body);
+        gx_body_destroy(uncut);
+        wl_free(&w);
+    }
+}
+END_TEST
+
 static TCase *add_case(Suite *suite, const char *name) {
     TCase *list = tcase_create(name);
     tcase_add_checked_fixture(list, make_rules, free_rules);
@@ -1061,5 +1230,10 @@ int main(void) {
     tcase_add_test(list, inside_by_parity);
     tcase_add_test(list, sampling_converges);
     tcase_add_test(list, positive_rules);
+    list = add_case(suite, "parts");
+    tcase_add_test(list, points_of_parts);
+    tcase_add_test(list, rules_in_parts);
+    tcase_add_test(list, rxfem_in_parts);
+    tcase_add_test(list, deleted_elements);
     return run_suite(suite);
 }
