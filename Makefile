@@ -40,10 +40,11 @@ help:
 	@echo "make bench-scaling  cost of a cut and a step against elements, cuts and triangles; BENCH=--small: seconds"
 	@echo "make bench-failure  hard cases: which method is right, wrong, refuses, crashes"
 	@echo "make bench-table2  scenes of GXFEM's Table 2 by the library, virtual nodes and the literal Algorithm 1; BENCH=--small: minutes"
-	@echo "make bench-stepping  error of the motion against time per step: steps, integrators, Newton, CG, lumping, virtual nodes; BENCH=--small"
+	@echo "make bench-stepping  error of the motion against time: steps, integrators, Newton, CG, lumping, integrals, thickness of cuts, other methods; BENCH=--small"
+	@echo "make bench-space   the same cuts under refinement beside conforming meshes: how thin slices and folds lock; BENCH=--small"
 	@echo "make bench-quadrature  integrals over parts of cut elements: error and time beside RXFEM, adaptive and regular sampling"
 	@echo "make bench       all benches, and charts"
-	@echo "make charts      those benches and scaling, failure, table2, stepping, then docs/charts/ and docs/BENCH.md (half an hour); installs gnuplot"
+	@echo "make charts      those benches and scaling, failure, table2, stepping, space, then docs/charts/ and docs/BENCH.md (half an hour); installs gnuplot"
 	@echo "make bench-kernel  Booleans of closed surfaces; DATA=FOLDER: also of the OFF files there"
 	@echo "make clean       removes $(BUILD)/"
 
@@ -153,10 +154,10 @@ $(BUILD)/bench/solver: bench/solver.c bench/block.h bench/clock.h $(headers)
 	$(CC) -std=c99 $(WARNINGS) $(BENCH_CFLAGS) -pthread $(shell pkg-config --cflags CHOLMOD 2>/dev/null) $< -o $@ $(LDFLAGS) \
 	    $(shell pkg-config --libs CHOLMOD 2>/dev/null || echo -lcholmod) -lm
 
-bench-accuracy bench-drift bench-conditioning bench-frames bench-quadrature bench-skin bench-scaling bench-failure: bench-%: $(BUILD)/bench/%
+bench-accuracy bench-drift bench-conditioning bench-frames bench-quadrature bench-skin bench-scaling bench-failure bench-space: bench-%: $(BUILD)/bench/%
 	@$< $(BUILD)/bench/$*.csv $(BENCH)
 
-$(BUILD)/bench/accuracy $(BUILD)/bench/drift $(BUILD)/bench/conditioning $(BUILD)/bench/frames $(BUILD)/bench/quadrature $(BUILD)/bench/skin $(BUILD)/bench/scaling $(BUILD)/bench/table2 $(BUILD)/bench/stepping $(BUILD)/bench/failure: $(BUILD)/bench/%: bench/%.c $(wildcard bench/*.h) $(headers)
+$(BUILD)/bench/accuracy $(BUILD)/bench/drift $(BUILD)/bench/conditioning $(BUILD)/bench/frames $(BUILD)/bench/quadrature $(BUILD)/bench/skin $(BUILD)/bench/scaling $(BUILD)/bench/table2 $(BUILD)/bench/stepping $(BUILD)/bench/failure $(BUILD)/bench/space: $(BUILD)/bench/%: bench/%.c $(wildcard bench/*.h) $(headers)
 	@mkdir -p $(@D)
 	@$(CC) -std=c99 $(WARNINGS) $(BENCH_CFLAGS) $< -o $@ $(LDFLAGS) -lm
 
@@ -175,7 +176,7 @@ bench-table2:
 
 bench-stepping:
 	@$(MAKE) --no-print-directory $(BUILD)/bench/stepping $(stepping:%=$(traces)/%.trace) >&2
-	@$(BUILD)/bench/stepping $(BUILD)/bench/stepping.csv $(foreach s,$(stepping),$(s)=$(traces)/$(s).trace)
+	@$(BUILD)/bench/stepping $(BUILD)/bench/stepping.csv $(BENCH) $(foreach s,$(stepping),$(s)=$(traces)/$(s).trace)
 
 $(sort $(table2:%=$(traces)/%.trace) $(stepping:%=$(traces)/%.trace)): $(traces)/%.trace: $(BUILD)/%
 	@mkdir -p $(@D)
@@ -185,7 +186,7 @@ bench: bench-solver bench-accuracy bench-drift bench-frames bench-skin bench-ker
 
 charts:
 	@sh tests/install.sh charts >&2
-	@$(MAKE) --no-print-directory bench-quadrature bench-conditioning bench-stepping bench-scaling bench-failure bench-table2 >/dev/null
+	@$(MAKE) --no-print-directory bench-quadrature bench-conditioning bench-stepping bench-space bench-scaling bench-failure bench-table2 >/dev/null
 	@sh bench/charts.sh $(BUILD)/bench docs/charts
 	@sh bench/page.sh $(BUILD)/bench docs/BENCH.md
 
@@ -209,4 +210,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo scenes pictures check check-programs run-gxcut run-corpus $(tests:%=run-%) sanitize sanitize-scenes compile lint fuzz flags hashes bench-solver bench-accuracy bench-drift bench-conditioning bench-frames bench-quadrature bench-skin bench-scaling bench-failure bench-table2 bench-stepping bench-kernel bench charts check-all clean
+.PHONY: help examples demo scenes pictures check check-programs run-gxcut run-corpus $(tests:%=run-%) sanitize sanitize-scenes compile lint fuzz flags hashes bench-solver bench-accuracy bench-drift bench-conditioning bench-frames bench-quadrature bench-skin bench-scaling bench-failure bench-table2 bench-stepping bench-space bench-kernel bench charts check-all clean

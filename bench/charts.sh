@@ -38,7 +38,7 @@ panels() {
     echo 'set terminal svg size 1180,780 font "sans,12" background "white"'
     echo "set output '$charts/quadrature.svg'"
     for region in plane kink sphere; do
-        for method in gxfem positive rxfem "rxfem clipped" adaptive regular; do
+        for method in gxfem positive rxfem "rxfem clipped" adaptive regular "rxfem one"; do
             name=$(echo "$region $method" | tr ' ' _)
             for column in '$11 + $12, error, $4' '$14, error, $4'; do
                 case $column in '$11'*) block=make_$name ;; *) block=each_$name ;; esac
@@ -66,9 +66,11 @@ END
             if [ $row$region = eachsphere ]; then echo 'set key at graph 0.99,0.72 right samplen 1.5 spacing 1.1 font "sans,11"'; else echo 'set key off'; fi
             printf 'plot '
             n=0
-            for method in gxfem positive rxfem "rxfem clipped" adaptive regular; do
+            for method in gxfem positive rxfem "rxfem clipped" adaptive regular "rxfem one"; do
                 n=$((n + 1))
+                style=$n
                 case $method in
+                "rxfem one") [ $row = each ] || continue; style="3 lw 1 dt 3 pt 10"; title="RXFEM, one evaluation a side" ;;
                 gxfem) title="gxfem, moments" ;;
                 positive) title="positive rule, degree 1-4" ;;
                 rxfem) title="RXFEM, degree 1-4" ;;
@@ -77,7 +79,7 @@ END
                 regular) title="regular, 5-100 cells" ;;
                 esac
                 [ $n -eq 1 ] || printf ', '
-                printf '$%s_%s using 1:2 with linespoints ls %d title "%s"' $row "$(echo "$region $method" | tr ' ' _)" $n "$title"
+                printf '$%s_%s using 1:2 with linespoints ls %s title "%s"' $row "$(echo "$region $method" | tr ' ' _)" "$style" "$title"
             done
             echo
         done
@@ -213,16 +215,16 @@ stepping_cuts() {
     done
     cat <<END
 $styles
-set multiplot layout 2,2 title "How far the motion is off that of exact integrals and thin cuts, by the same steps   ($where)" font "sans,15"
+set multiplot layout 2,2 title "Motion beside that of exact integrals and thin cuts, same steps   ($where)" font "sans,15"
 set logscale xy; set grid back lc rgb "#dddddd"; set format x "10^{%L}"; set format y "10^{%L}"; set yrange [3e-10:30]
 END
     for scene in slab_in_five accordion; do
         step=$(awk -F, -v scene=$scene '$1 == scene && $2 == "exact" { print $8 }' "$tables/stepping.csv")
         title=$(echo $scene | tr _ ' ')
         if [ $scene = slab_in_five ]; then echo "set ylabel 'difference, share of the motion'"; else echo "set ylabel ''"; fi
-        echo "set title '$title: integrals' offset 0,-0.6; set xlabel 'computing time, s per simulated second (open: one evaluation a part)'; set key at graph 0.99,0.55 right samplen 1.5 font ',10'; set xrange [*:*]"
+        echo "set title '$title: integrals' offset 0,-0.6; set xlabel 'computing time, s per simulated second (open: one evaluation a part)'; set key bottom right samplen 1.5 font ',10'; set xrange [*:*]"
         [ $scene = slab_in_five ] || echo "set key off"
-        echo "plot $step with lines ls 7 title 'error of the time step', \$${scene}_exact using 1:2 with points ls 1 ps 1.6 title 'gxfem, exact (0)', $(rxfem_of $scene) \$${scene}_positive using 1:2 with linespoints ls 2 title 'positive rule, degree 1, 2', \$${scene}_positive_one using 1:2 with points ls 2 pt 4 notitle, \$${scene}_adaptive using 1:2 with linespoints ls 5 title 'adaptive, depth 1 to 4', \$${scene}_adaptive_one using 1:2 with points ls 5 pt 12 notitle, \$${scene}_regular using 1:2 with linespoints ls 6 title 'regular, 5 to 50 cells', \$${scene}_regular_one using 1:2 with points ls 6 pt 10 notitle"
+        echo "plot $step with lines ls 7 title 'error of the time step', \$${scene}_exact using 1:2 with points ls 1 ps 1.6 title 'gxfem, exact (0, drawn at 1e-9)', $(rxfem_of $scene) \$${scene}_positive using 1:2 with linespoints ls 2 title 'positive rule, degree 1, 2', \$${scene}_positive_one using 1:2 with points ls 2 pt 4 notitle, \$${scene}_adaptive using 1:2 with linespoints ls 5 title 'adaptive, depth 1 to 4', \$${scene}_adaptive_one using 1:2 with points ls 5 pt 12 notitle, \$${scene}_regular using 1:2 with linespoints ls 6 title 'regular, 5 to 50 cells', \$${scene}_regular_one using 1:2 with points ls 6 pt 10 notitle"
     done
     for scene in slab_in_five accordion; do
         step=$(awk -F, -v scene=$scene '$1 == scene && $2 == "exact" { print $8 }' "$tables/stepping.csv")
@@ -259,7 +261,7 @@ space() {
     done
     cat <<END
 $styles
-set multiplot layout 1,2 title "The same cuts under refinement, beside conforming meshes   ($where)" font "sans,15"
+set multiplot layout 1,2 title "The same cuts at rest under refinement, beside conforming meshes   ($where)" font "sans,15"
 set logscale xy; set grid back lc rgb "#dddddd"
 set title "five slices in one layer of elements, refined"; set xlabel "thickness of a slice, elements"; set ylabel "drop of its end, % of the converged"
 set xrange [0.05:*]; set yrange [0.1:300]; set key bottom right samplen 1.5

@@ -38,9 +38,9 @@ table2() {
     echo "# Accuracy against speed, and where methods fail"
     echo
     echo "Written by \`make charts\` on $(date +%Y-%m-%d), $(uname -m | tr _ -), one thread. What each program does and how it judges stands in its first"
-    echo "lines: \`bench/quadrature.c\`, \`stepping.c\`, \`table2.c\`, \`conditioning.c\`, \`failure.c\`, \`scaling.c\`. The baselines are written for"
+    echo "lines: \`bench/quadrature.c\`, \`stepping.c\`, \`space.c\`, \`table2.c\`, \`conditioning.c\`, \`failure.c\`, \`scaling.c\`. The baselines are written for"
     echo "the bench: \`rxfem.h\` (Koschier, Bender, Thuerey 2017), \`vna.h\` (element duplication), \`literal.h\` (GXFEM's Algorithm 1 as published,"
-    echo "a Boolean for each subdomain), \`sampling.h\`. All take the library's time step: only what is compared differs."
+    echo "a Boolean for each subdomain), \`sampling.h\`, \`parts.h\` (integrals by points, element deletion). All take the library's time step: only what is compared differs."
     echo
     echo "## Integrals over parts of cut elements"
     echo
@@ -50,6 +50,11 @@ table2() {
     echo "## Motion"
     echo
     echo "![error of the motion against computing time](charts/stepping.svg)"
+    echo "![what integrals by points and the thickness of cuts change of the motion](charts/stepping_cuts.svg)"
+    echo
+    echo "The error of the space is another matter: linear elements bend too little where a piece is thin beside them, cut or not."
+    echo
+    echo "![drops of slices and folds under refinement](charts/space.svg)"
     echo
     echo "## Scenes of GXFEM's Table 2"
     echo

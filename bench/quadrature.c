@@ -395,7 +395,7 @@ static const method methods[] = {
     {"gxfem", call_gxfem, 0, {1, 0}},
     {"positive", call_positive, 0, {1, 2, 3, 4, 0}},
     {"rxfem", call_rxfem, 0, {1, 2, 3, 4, 0}},
-    {"rxfem one", call_rxfem, 2, {2, 0}},
+    {"rxfem one", call_rxfem, 2, {1, 2, 3, 4, 0}},
     {"rxfem clipped", call_rxfem, 1, {1, 2, 3, 4, 0}},
     {"adaptive", call_adaptive, 0, {1, 2, 3, 4, 5, 6, 0}},
     {"regular", call_regular, 0, {5, 10, 25, 50, 100, 0}}};

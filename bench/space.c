@@ -3,8 +3,8 @@
    make bench-space builds and runs it; it prints CSV and writes it to build/bench/space.csv, a table to stderr.
    usage: space [FILE [--small]]
 
-   Strips of two scenes, one cube wide, of linear elastic material, at rest under gravity: no error of time steps, of large motion or of
-   integrals is in it.
+   Strips of two scenes, one cube of 1 m wide, of linear elastic material, at rest under gravity: no error of time steps, of large motion or
+   of integrals is in it. Being linear, drops mean something beside each other only.
        slices      of slab_in_five: 6 x 1 x 1 cubes held at one end, four planes, slices of 1/15 to 5/15 of a cube; drop of each one's end
        accordion   of accordion: 16 x 1 x 16 cubes held by the top, six cuts from both sides in turn, each through 7/8; drop of the
                    middle of the bottom
