@@ -60,19 +60,19 @@ END
             if [ $row = make ]; then
                 echo "set title '$text' offset 0,-0.6; set xlabel 'time of cut and rule, us'; set xrange [1:1e6]"
             else
-                echo "set title ''; set xlabel 'evaluation + 1/1000 of cut and rule, us'; set xrange [0.03:3e4]"
+                echo "set title ''; set xlabel 'evaluation + 1/1000 of cut and rule, us'; set xrange [0.01:3e4]"
             fi
             if [ $region = plane ]; then echo "set ylabel 'error, share of the element'"; else echo "set ylabel ''"; fi
-            if [ $row$region = eachsphere ]; then echo 'set key at graph 0.99,0.72 right samplen 1.5 spacing 1.1 font "sans,11"'; else echo 'set key off'; fi
+            if [ $row$region = eachsphere ]; then echo 'set key at graph 0.99,0.68 right samplen 1.2 font "sans,10"'; else echo 'set key off'; fi
             printf 'plot '
             n=0
             for method in gxfem positive rxfem "rxfem clipped" adaptive regular "rxfem one"; do
                 n=$((n + 1))
                 style=$n
                 case $method in
-                "rxfem one") [ $row = each ] || continue; style="3 lw 1 dt 3 pt 10"; title="RXFEM, one evaluation a side" ;;
+                "rxfem one") [ $row = each ] || continue; style="3 lw 1 dt 3 pt 10"; title="RXFEM, once a side" ;;
                 gxfem) title="gxfem, moments" ;;
-                positive) title="positive rule, degree 1-4" ;;
+                positive) title="positive, degree 1-4" ;;
                 rxfem) title="RXFEM, degree 1-4" ;;
                 "rxfem clipped") title="RXFEM, clipped" ;;
                 adaptive) title="adaptive, depth 1-6" ;;
