@@ -158,26 +158,36 @@ static gx_result block_make_body(const block_mesh *mesh, const block_desc *block
     return gx_body_create(&desc, body, NULL);
 }
 
+/* jitter: see block_desc. The caller frees it. */
+static gx_result block_make_mesh(uint32_t cell_count, double jitter, block_mesh *mesh)
+{
+    const size_t side = (size_t)cell_count + 1, cells = cell_count;
+    mesh->side = side;
+    mesh->random = 1;
+    mesh->positions = (double *)malloc(side * side * side * 3 * sizeof(double));
+    mesh->elements = (uint32_t *)malloc(cells * cells * cells * 20 * sizeof(uint32_t));
+    if (!mesh->positions || !mesh->elements) return GX_ERROR_MEMORY;
+    block_fill(mesh, jitter);
+    return GX_OK;
+}
+
+static void block_free_mesh(block_mesh *mesh)
+{
+    free(mesh->positions);
+    free(mesh->elements);
+}
+
 static gx_result block_make_mesh_and_body(const block_desc *desc, gx_body **body)
 {
-    const size_t side = (size_t)desc->cells + 1, cells = desc->cells;
-    gx_result result = GX_ERROR_MEMORY;
     block_mesh mesh;
-    mesh.side = side;
-    mesh.random = 1;
-    mesh.positions = (double *)malloc(side * side * side * 3 * sizeof(double));
-    mesh.elements = (uint32_t *)malloc(cells * cells * cells * 20 * sizeof(uint32_t));
-    if (mesh.positions && mesh.elements) {
-        block_fill(&mesh, desc->jitter);
-        result = block_make_body(&mesh, desc, body);
-    }
-    free(mesh.positions);
-    free(mesh.elements);
+    gx_result result = block_make_mesh(desc->cells, desc->jitter, &mesh);
+    if (result == GX_OK) result = block_make_body(&mesh, desc, body);
+    block_free_mesh(&mesh);
     return result;
 }
 
 /* The scene: made, cut and held at z = 1. GX_ERROR_INVERTED if the jitter is so large that it turned an element inside out. */
-static gx_result block_create(const block_desc *desc, gx_body **body)
+static inline gx_result block_create(const block_desc *desc, gx_body **body)
 {
     const gx_region top = {2, 1, 1.0 - 1e-9};
     gx_result result = block_make_mesh_and_body(desc, body);

@@ -10,16 +10,26 @@
                   direction through the middle, which cross each other
        triangles  one cut, curved, of so many triangles
    Columns: times in us and per touched element; the arrangement alone; step_ms, a step after the cuts (its multigrid made before);
-   unknowns before and after; remeshed: the unknowns of a mesh whose elements end at the cuts, at least (its old nodes, doubled at
-   cuts as ours are, and one for each corner of the cut faces on each side); peak_mb, of the body's memory. */
-#define _POSIX_C_SOURCE 199309L
+   peak_mb, of the body's memory. Unknowns, three for each displacement:
+       unknowns_before, unknowns   ours
+       least      what separation demands: for each node, the pieces that the elements around it fall into; counted in doubles by bench/least.h,
+                  which knows nothing of the library
+       vna        corners of the replicas of cut elements, those that links join counted once, from the same cells and links
+       remeshed   a mesh whose elements end at the cuts, at least: its old nodes, and each corner of the cut faces (where the cut's triangles
+                  and their edges cross the elements' edges and faces, and the triangles' corners inside) once for each piece that it is on.
+                  No nodes are counted that a mesher adds for the shape of its elements
+   It ends with 1 if ours are not the least. A table goes to stderr, with how the cost of a touched element grows: the exponent of a power
+   of what is swept, by least squares over its upper decades. */
+#define _POSIX_C_SOURCE 200112L
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "block.h"
 #include "clock.h"
 #include "csv.h"
+#include "least.h"
+#include "progress.h"
 
-enum { MOST_CUTS = 1024, LATER_CUTS = 6 };
+enum { MOST_CUTS = 1024, LATER_CUTS = 6, MOST_ROWS = 64 };
 
 static void check(gx_result result)
 {
@@ -51,18 +61,30 @@ static void meter_release(void *user, void *memory, size_t size)
 /* A square of side x side cells of two triangles, larger than the block */
 typedef struct sheet {
     gx_surface surface;
+    uint32_t side;
+    double *lines;          /* side + 1: of the grid, along x and along y */
     double *vertices;
     uint32_t *triangles;
 } sheet;
 
+static void *memory_of(void *old, size_t count, size_t size)
+{
+    void *memory = realloc(old, count * size);
+    check(memory ? GX_OK : GX_ERROR_MEMORY);
+    return memory;
+}
+
+/* From -1/4 to 5/4, and a little off: no grid line meets a node of the block. */
 static sheet sheet_make(uint32_t side)
 {
     sheet s;
     uint32_t i, j, n = 0;
     memset(&s, 0, sizeof s);
-    s.vertices = (double *)malloc((size_t)(side + 1) * (side + 1) * 3 * sizeof(double));
-    s.triangles = (uint32_t *)malloc((size_t)side * side * 6 * sizeof(uint32_t));
-    check(s.vertices && s.triangles ? GX_OK : GX_ERROR_MEMORY);
+    s.side = side;
+    s.lines = (double *)memory_of(NULL, side + 1, sizeof(double));
+    s.vertices = (double *)memory_of(NULL, (size_t)(side + 1) * (side + 1) * 3, sizeof(double));
+    s.triangles = (uint32_t *)memory_of(NULL, (size_t)side * side * 6, sizeof(uint32_t));
+    for (i = 0; i <= side; i++) s.lines[i] = -0.2513 + 1.5027 * i / side;
     for (j = 0; j < side; j++)
         for (i = 0; i < side; i++) {
             const uint32_t a = j * (side + 1) + i, b = a + side + 1, corners[6] = {a, a + 1, b + 1, a, b + 1, b};
@@ -76,31 +98,34 @@ static sheet sheet_make(uint32_t side)
 
 static void sheet_free(sheet *s)
 {
+    free(s->lines);
     free(s->vertices);
     free(s->triangles);
 }
 
-/* z = height + slope . (x - 1/2, y - 1/2) + wave, over -1/4 to 5/4 */
+/* z = height + slope . (x - 1/2, y - 1/2) + wave */
 static void sheet_place(sheet *s, double height, const double slope[2], double wave)
 {
-    const uint32_t side = (uint32_t)(0.5 + sqrt((double)(s->surface.triangle_count / 2)));
     uint32_t i, j;
-    for (j = 0; j <= side; j++)
-        for (i = 0; i <= side; i++) {
-            double *v = s->vertices + 3 * (size_t)(j * (side + 1) + i);
-            v[0] = -0.25 + 1.5 * i / side;
-            v[1] = -0.25 + 1.5 * j / side;
+    for (j = 0; j <= s->side; j++)
+        for (i = 0; i <= s->side; i++) {
+            double *v = s->vertices + 3 * (size_t)(j * (s->side + 1) + i);
+            v[0] = s->lines[i];
+            v[1] = s->lines[j];
             v[2] = height + slope[0] * (v[0] - 0.5) + slope[1] * (v[1] - 0.5) + wave * sin(5 * v[0]) * cos(4 * v[1]);
         }
 }
 
-/* ---- rows ---- */
+/* ---- scenes ---- */
 
 typedef struct scene {
     gx_body *body;
+    block_mesh mesh;
     meter memory;
     uint32_t random;
     size_t unknowns;        /* before cuts */
+    double *heights;        /* of all sheets so far: sheet_count x their points */
+    size_t sheet_count;
     gx_cut_report report;   /* of the last cut */
 } scene;
 
@@ -113,28 +138,40 @@ static double uniform(scene *s)
 
 static void scene_make(scene *s, uint32_t cells)
 {
+    const gx_region top = {2, 1, 1.0 - 1e-9};
     block_desc desc;
     gx_view view;
     memset(s, 0, sizeof *s);
     memset(&desc, 0, sizeof desc);
     s->random = 1;
-    desc.cells = cells;
-    desc.jitter = 0.2;
     desc.young = 1e6;
     desc.allocator.allocate = meter_allocate;
     desc.allocator.release = meter_release;
     desc.allocator.user = &s->memory;
     desc.clock = seconds;
-    check(block_create(&desc, &s->body));
+    check(block_make_mesh(cells, 0.2, &s->mesh));
+    check(block_make_body(&s->mesh, &desc, &s->body));
+    check(gx_body_hold(s->body, &top, 1));
     check(gx_body_view(s->body, &view));
     s->unknowns = 3 * view.copy_count;
+}
+
+static void scene_free(scene *s)
+{
+    gx_body_destroy(s->body);
+    block_free_mesh(&s->mesh);
+    free(s->heights);
 }
 
 /* Cuts by the sheet; microseconds */
 static double cut(scene *s, const sheet *by)
 {
+    const size_t points = by->surface.vertex_count;
     gx_cut_desc desc;
     double start;
+    size_t i;
+    s->heights = (double *)memory_of(s->heights, ++s->sheet_count * points, sizeof(double));
+    for (i = 0; i < points; i++) s->heights[(s->sheet_count - 1) * points + i] = by->vertices[3 * i + 2];
     memset(&desc, 0, sizeof desc);
     desc.surfaces = &by->surface; desc.surface_count = 1;
     start = seconds(NULL);
@@ -163,7 +200,7 @@ typedef struct corner { uint32_t point, copies[4]; } corner;
 
 static int corner_order(const void *a, const void *b) { return memcmp(a, b, sizeof(corner)); }
 
-/* Corners of the cut faces that are not copies of nodes, each side counted */
+/* Corners of the cut faces that are not nodes, once for each piece that they are on */
 static size_t cut_corners(const gx_skin *skin)
 {
     corner *corners = (corner *)calloc(3 * skin->triangle_count + 1, sizeof *corners);
@@ -182,18 +219,114 @@ static size_t cut_corners(const gx_skin *skin)
     return distinct;
 }
 
-/* One row, of a scene as it is after its cuts: us of a cut, of which the arrangement */
-static void row(scene *s, const char *sweep, const char *kind, size_t cuts, const sheet *by, double first, double us, double arrangement)
+/* ---- rows ---- */
+
+typedef struct line {
+    const char *sweep, *kind;
+    size_t elements, cuts, triangles;
+    double touched, us, first, arrangement, step_ms, megabytes;     /* us, first, arrangement: of a touched element but for us, of a cut */
+    size_t unknowns_before, unknowns, least, vna, remeshed;
+} line;
+
+static line lines[MOST_ROWS];
+static size_t line_count, line_total;
+
+static void count_unknowns(scene *s, const sheet *by, line *l)
 {
-    const double touched = (double)s->report.touched_elements;
+    const size_t side = s->mesh.side, cells = side - 1;
+    least_mesh mesh;
+    least_sheets sheets;
+    least_result counted;
     gx_view view;
     gx_skin skin;
     check(gx_body_view(s->body, &view));
     check(gx_body_skin(s->body, NULL, &skin));
-    csv_row("%s,%s,%lu,%lu,%lu,%.0f,%.0f,%.2f,%.2f,%.2f,%.1f,%lu,%lu,%lu,%.1f", sweep, kind, (unsigned long)view.element_count, (unsigned long)cuts,
-            (unsigned long)by->surface.triangle_count, touched, us, first / touched, us / touched, arrangement / touched, step(s),
-            (unsigned long)s->unknowns, (unsigned long)(3 * view.copy_count), (unsigned long)(3 * (view.copy_count + cut_corners(&skin))),
-            (double)s->memory.peak / 1e6);
+    mesh.positions = s->mesh.positions; mesh.node_count = side * side * side;
+    mesh.elements = s->mesh.elements; mesh.element_count = 5 * cells * cells * cells;
+    sheets.x = sheets.y = by->lines;
+    sheets.z = s->heights;
+    sheets.side = by->side;
+    sheets.count = s->sheet_count;
+    counted = least_of(&mesh, &sheets);
+    l->unknowns_before = s->unknowns;
+    l->unknowns = 3 * view.copy_count;
+    l->least = 3 * counted.least;
+    l->vna = 3 * counted.replicas;
+    l->remeshed = 3 * (view.node_count + cut_corners(&skin));
+}
+
+/* One row, of a scene as it is after its cuts: us of a cut, of which the arrangement */
+static void row(scene *s, const char *sweep, const char *kind, size_t cuts, const sheet *by, double first, double us, double arrangement)
+{
+    const double touched = (double)s->report.touched_elements, peak = (double)s->memory.peak;
+    line *l = &lines[line_count++];
+    l->sweep = sweep;
+    l->kind = kind;
+    l->elements = 5 * (s->mesh.side - 1) * (s->mesh.side - 1) * (s->mesh.side - 1);
+    l->cuts = cuts;
+    l->triangles = by->surface.triangle_count;
+    l->touched = touched;
+    l->us = us;
+    l->first = first / touched;
+    l->arrangement = arrangement / touched;
+    l->megabytes = peak / 1e6;
+    l->step_ms = step(s);
+    count_unknowns(s, by, l);
+    csv_row("%s,%s,%lu,%lu,%lu,%.0f,%.0f,%.2f,%.2f,%.2f,%.1f,%lu,%lu,%lu,%lu,%lu,%.1f", sweep, kind, (unsigned long)l->elements, (unsigned long)cuts,
+            (unsigned long)l->triangles, touched, us, l->first, us / touched, l->arrangement, l->step_ms, (unsigned long)l->unknowns_before,
+            (unsigned long)l->unknowns, (unsigned long)l->least, (unsigned long)l->vna, (unsigned long)l->remeshed, l->megabytes);
+    progress_draw("scaling", line_count, line_total, sweep);
+}
+
+/* ---- the table ---- */
+
+static double swept(const line *l)
+{
+    return (double)(strcmp(l->sweep, "elements") == 0 ? l->elements : strcmp(l->sweep, "cuts") == 0 ? l->cuts : l->triangles);
+}
+
+/* Exponent of the cost of a touched element, or of memory, as a power of what is swept: over the rows from `from` to `to` in the upper half
+   of its decades */
+static double exponent(size_t from, size_t to, double (*cost)(const line *l))
+{
+    const double middle = 0.5 * (log(swept(&lines[from])) + log(swept(&lines[to - 1])));
+    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+    size_t i;
+    for (i = from; i < to; i++) {
+        const double a = log(swept(&lines[i])), b = log(cost(&lines[i]));
+        if (a < middle) continue;
+        n++;
+        x += a;
+        y += b;
+        xx += a * a;
+        xy += a * b;
+    }
+    return n > 1 ? (n * xy - x * y) / (n * xx - x * x) : 0;
+}
+
+static double cost_of_cut(const line *l) { return l->us / l->touched; }
+static double cost_of_unknown(const line *l) { return l->step_ms / (double)l->unknowns; }
+
+/* Returns how many rows have more or fewer unknowns than the least. */
+static int print_table(void)
+{
+    size_t i, from = 0;
+    int wrong = 0;
+    fprintf(stderr, "%-9s %-8s %9s %5s %9s %11s %10s %9s %9s %9s %9s %8s\n", "sweep", "kind", "elements", "cuts", "triangles", "us/touched", "step, ms",
+            "unknowns", "least", "VNA", "remeshed", "MB");
+    for (i = 0; i < line_count; i++) {
+        const line *l = &lines[i];
+        const int off = l->unknowns != l->least;
+        fprintf(stderr, "%-9s %-8s %9lu %5lu %9lu %11.1f %10.1f %9lu %9lu %9lu %9lu %8.1f%s\n", l->sweep, l->kind, (unsigned long)l->elements,
+                (unsigned long)l->cuts, (unsigned long)l->triangles, cost_of_cut(l), l->step_ms, (unsigned long)l->unknowns, (unsigned long)l->least,
+                (unsigned long)l->vna, (unsigned long)l->remeshed, l->megabytes, off ? "  NOT THE LEAST" : "");
+        wrong += off;
+        if (i + 1 < line_count && strcmp(l->sweep, l[1].sweep) == 0 && strcmp(l->kind, l[1].kind) == 0) continue;
+        fprintf(stderr, "%s, %s: a touched element costs as %s^%.2f, an unknown's step as %s^%.2f\n", l->sweep, l->kind, l->sweep,
+                exponent(from, i + 1, cost_of_cut), l->sweep, exponent(from, i + 1, cost_of_unknown));
+        from = i + 1;
+    }
+    return wrong;
 }
 
 /* ---- sweeps ---- */
@@ -214,7 +347,7 @@ static void against_elements(uint32_t cells, double wave, uint32_t side)
         arrangement[i] = 1e6 * s.report.seconds_arrangement;
     }
     row(&s, "elements", wave > 0 ? "curved" : "plane", 1 + LATER_CUTS, &by, first, median(us, LATER_CUTS), median(arrangement, LATER_CUTS));
-    gx_body_destroy(s.body);
+    scene_free(&s);
     sheet_free(&by);
 }
 
@@ -241,7 +374,7 @@ static void against_cuts(uint32_t cells, size_t count, int crossing)
     from = count / 2;
     s.report.touched_elements = (size_t)(touched / (double)(count - from));
     row(&s, "cuts", crossing ? "crossing" : "parallel", count, &by, us[0], median(us + from, count - from), median(arrangement + from, count - from));
-    gx_body_destroy(s.body);
+    scene_free(&s);
     sheet_free(&by);
 }
 
@@ -255,23 +388,26 @@ static void against_triangles(uint32_t cells, uint32_t side)
     sheet_place(&by, 0.5171, slope, 0.05);
     us = cut(&s, &by);
     row(&s, "triangles", "curved", 1, &by, us, us, 1e6 * s.report.seconds_arrangement);
-    gx_body_destroy(s.body);
+    scene_free(&s);
     sheet_free(&by);
 }
 
 int main(int argc, char **argv)
 {
-    static const uint32_t cells[] = {6, 9, 13, 18, 27, 38, 58}, sides[] = {1, 3, 7, 22, 70, 224};
+    static const uint32_t cells[] = {6, 9, 13, 18, 27, 38, 59}, sides[] = {1, 3, 7, 22, 70, 224};
     static const size_t cuts[] = {1, 2, 5, 10, 20, 50, 100, 200, 500, 1000};
     const int small = argc > 2 && strcmp(argv[2], "--small") == 0;
+    const int blocks = small ? 2 : 7, parallel = small ? 4 : 10, crossing = small ? 4 : 7, curved = small ? 3 : 6;
     const uint32_t block = small ? 6 : 20;
-    int i;
+    int i, wrong;
     csv_open(argc > 2 ? 2 : argc, argv, "sweep,kind,elements,cuts,triangles,touched,cut_us,first_us_per_touched,us_per_touched,"
-             "arrangement_us_per_touched,step_ms,unknowns_before,unknowns,remeshed,peak_mb");
-    for (i = 0; i < (small ? 2 : 7); i++) against_elements(cells[i], 0, 1);
-    for (i = 0; i < (small ? 2 : 7); i++) against_elements(cells[i], 0.05, cells[i]);
-    for (i = 0; i < (small ? 4 : 10); i++) against_cuts(block, cuts[i], 0);
-    for (i = 0; i < (small ? 4 : 7); i++) against_cuts(block, cuts[i], 1);
-    for (i = 0; i < (small ? 3 : 6); i++) against_triangles(block, sides[i]);
-    return csv_close();
+             "arrangement_us_per_touched,step_ms,unknowns_before,unknowns,least,vna,remeshed,peak_mb");
+    line_total = (size_t)(2 * blocks + parallel + crossing + curved);
+    for (i = 0; i < blocks; i++) against_elements(cells[i], 0, 1);
+    for (i = 0; i < blocks; i++) against_elements(cells[i], 0.05, cells[i]);
+    for (i = 0; i < parallel; i++) against_cuts(block, cuts[i], 0);
+    for (i = 0; i < crossing; i++) against_cuts(block, cuts[i], 1);
+    for (i = 0; i < curved; i++) against_triangles(block, sides[i]);
+    wrong = print_table();
+    return csv_close() | (wrong > 0);
 }
