@@ -172,7 +172,7 @@ traces = $(BUILD)/bench/traces$(if $(filter --small,$(BENCH)),-small)
 
 bench-table2:
 	@$(MAKE) --no-print-directory $(BUILD)/bench/table2 $(table2:%=$(traces)/%.trace) >&2
-	@$(BUILD)/bench/table2 $(BUILD)/bench/table2.csv $(foreach s,$(table2),$(s)=$(traces)/$(s).trace)
+	@$(BUILD)/bench/table2 $(BUILD)/bench/table2.csv $(BUILD)/bench/table2_ratios.csv $(foreach s,$(table2),$(s)=$(traces)/$(s).trace)
 
 bench-stepping:
 	@$(MAKE) --no-print-directory $(BUILD)/bench/stepping $(stepping:%=$(traces)/%.trace) >&2

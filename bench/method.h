@@ -533,4 +533,11 @@ static const method methods[] = {
 
 enum { METHOD_COUNT = sizeof methods / sizeof methods[0] };
 
+static inline size_t method_index(const char *name)
+{
+    size_t i = 0;
+    while (strcmp(methods[i].name, name) != 0) i++;
+    return i;
+}
+
 #endif
