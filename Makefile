@@ -37,14 +37,14 @@ help:
 	@echo "make bench-accuracy, bench-drift, bench-conditioning   closed forms and published values; what integrators keep; RXFEM's Fig. 14"
 	@echo "make bench-frames   frames in which a cut happens beside those in which none does"
 	@echo "make bench-skin    the visual surface: moved in each frame, rebuilt after a cut"
-	@echo "make bench-scaling  cost of a cut and a step against elements, cuts and triangles; BENCH=--small: seconds"
+	@echo "make bench-scaling  cost of a cut and a step, memory and unknowns against elements, cuts and triangles; BENCH=--small: seconds"
 	@echo "make bench-failure  hard cases: which method is right, wrong, refuses, crashes"
 	@echo "make bench-table2  scenes of GXFEM's Table 2 by the library, virtual nodes and the literal Algorithm 1; BENCH=--small: minutes"
 	@echo "make bench-stepping  error of the motion against time: steps, integrators, Newton, CG, lumping, integrals, thickness of cuts, other methods; BENCH=--small"
 	@echo "make bench-space   the same cuts under refinement beside conforming meshes: how thin slices and folds lock; BENCH=--small"
 	@echo "make bench-quadrature  integrals over parts of cut elements: error and time beside RXFEM, adaptive and regular sampling"
 	@echo "make bench       all benches, and charts"
-	@echo "make charts      those benches and scaling, failure, table2, stepping, space, then docs/charts/ and docs/BENCH.md (half an hour); installs gnuplot"
+	@echo "make charts      those benches and scaling, failure, table2, stepping, space, then docs/charts/, docs/BENCH.md and the matrix in README.md (half an hour); installs gnuplot"
 	@echo "make bench-kernel  Booleans of closed surfaces; DATA=FOLDER: also of the OFF files there"
 	@echo "make clean       removes $(BUILD)/"
 
@@ -188,7 +188,7 @@ charts:
 	@sh tests/install.sh charts >&2
 	@$(MAKE) --no-print-directory bench-quadrature bench-conditioning bench-stepping bench-space bench-scaling bench-failure bench-table2 >/dev/null
 	@sh bench/charts.sh $(BUILD)/bench docs/charts
-	@sh bench/page.sh $(BUILD)/bench docs/BENCH.md
+	@sh bench/page.sh $(BUILD)/bench docs/BENCH.md README.md
 
 bench-kernel: $(BUILD)/bench/kernel
 	@$< $(BUILD)/bench/kernel.csv $(DATA)

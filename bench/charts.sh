@@ -140,7 +140,7 @@ scaling() {
     for sweep in "elements plane 3" "elements curved 3" "cuts parallel 4" "cuts crossing 4" "triangles curved 5"; do
         set -- $sweep
         echo "\$$1_$2 << EOD"
-        awk -F, -v sweep="$1" -v kind="$2" -v x="$3" '$1 == sweep && $2 == kind { print $x, $9, $10, $11, $12, $13, $14, $15 }' "$tables/scaling.csv"
+        awk -F, -v sweep="$1" -v kind="$2" -v x="$3" '$1 == sweep && $2 == kind { print $x, $9, $10, $11, $12, $13, $16, $17 }' "$tables/scaling.csv"
         echo "EOD"
     done
     cat <<END
@@ -155,7 +155,7 @@ plot \$cuts_parallel using 1:2 with linespoints ls 1 title "parallel planes", \$
 set xlabel "triangles of the cut, 40 000 elements"; set format x "10^{%L}"
 plot \$triangles_curved using 1:2 with linespoints ls 3 title "a curved sheet"
 set ylabel "unknowns"; set yrange [1e4:1e9]; set format y "10^{%L}"; set xlabel "cuts so far, 40 000 elements"; set format x "%g"
-plot \$cuts_parallel using 1:6 with linespoints ls 1 title "gxfem, parallel", \$cuts_crossing using 1:6 with linespoints ls 2 title "gxfem, crossing", \$cuts_parallel using 1:7 with linespoints ls 1 dt 2 title "remeshed, parallel", \$cuts_crossing using 1:7 with linespoints ls 2 dt 2 title "remeshed, crossing"
+plot \$cuts_parallel using 1:6 with linespoints ls 1 title "gxfem, VNA, the least: parallel", \$cuts_crossing using 1:6 with linespoints ls 2 title "crossing", \$cuts_parallel using 1:7 with linespoints ls 1 dt 2 title "remeshed, parallel", \$cuts_crossing using 1:7 with linespoints ls 2 dt 2 title "remeshed, crossing"
 unset multiplot
 END
 }
