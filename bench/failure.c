@@ -18,7 +18,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MOST_SECONDS = 30, COLUMNS = METHOD_COUNT + 1 + INTEGRALS };
+enum { MOST_SECONDS = 30, COLUMNS = METHOD_COUNT + 1 + HARD_INTEGRALS };
 
 static void *thin_create(const replay *scene)
 {
@@ -32,21 +32,21 @@ static const method thin = {"Algorithm 1 thin", thin_create, method_literal_cut,
 
 static const char *column_name(int column)
 {
-    return column < METHOD_COUNT ? methods[column].name : column == METHOD_COUNT ? thin.name : integral_methods[column - METHOD_COUNT - 1].name;
+    return column < METHOD_COUNT ? methods[column].name : column == METHOD_COUNT ? thin.name : hard_integral_methods[column - METHOD_COUNT - 1].name;
 }
 
-static void judge_column(const catalogue_row *row, int column, char text[HARD_TEXT])
+static void judge_column(const hard_case *row, int column, char text[HARD_TEXT])
 {
-    trial t;
-    trial_make(&t, row);
+    hard_trial t;
+    hard_trial_make(&t, row);
     if (column == METHOD_COUNT) t.scene.thickness *= 1e-6;
     if (column <= METHOD_COUNT) hard_judge(&t, column < METHOD_COUNT ? &methods[column] : &thin, text);
-    else integral_judge(&t, &integral_methods[column - METHOD_COUNT - 1], text);
-    trial_free(&t);
+    else hard_integral_judge(&t, &hard_integral_methods[column - METHOD_COUNT - 1], text);
+    hard_trial_free(&t);
 }
 
 /* The same in a process of its own */
-static void judge_apart(const catalogue_row *row, int column, char text[HARD_TEXT])
+static void judge_apart(const hard_case *row, int column, char text[HARD_TEXT])
 {
     const struct rlimit limit = {MOST_SECONDS, MOST_SECONDS + 1};
     int pipes[2], status = 0;
@@ -103,16 +103,16 @@ int main(int argc, char **argv)
     static size_t counts[COLUMNS][OUTCOMES];
     int r, c;
     csv_open(argc, argv, "case,method,verdict");
-    for (r = 0; r < CASES; r++)
+    for (r = 0; r < HARD_CASES; r++)
         for (c = 0; c < COLUMNS; c++) {
             char text[HARD_TEXT];
-            progress_draw("failure", (size_t)(r * COLUMNS + c), CASES * COLUMNS, catalogue[r].name);
-            judge_apart(&catalogue[r], c, text);
+            progress_draw("failure", (size_t)(r * COLUMNS + c), HARD_CASES * COLUMNS, hard_cases[r].name);
+            judge_apart(&hard_cases[r], c, text);
             if (text[0] == 0) continue;
-            csv_row("%s,%s,%s", catalogue[r].name, column_name(c), text);
+            csv_row("%s,%s,%s", hard_cases[r].name, column_name(c), text);
             counts[c][outcome_of(text)]++;
         }
-    progress_draw("failure", CASES * COLUMNS, CASES * COLUMNS, "");
+    progress_draw("failure", HARD_CASES * COLUMNS, HARD_CASES * COLUMNS, "");
     print_table(counts);
-    return csv_close() | (counts[0][RIGHT] < CASES);
+    return csv_close() | (counts[0][RIGHT] < HARD_CASES);
 }

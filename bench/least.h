@@ -7,7 +7,7 @@
        least_result.least       for each node: sets of linked cells among those of the elements around it, flooded star by star (GXFEM Eq. 18)
        least_result.replicas    virtual nodes: each cell is a whole element with corners of its own, linked cells share those of the face
                                 between them [Sifakis, Der, Fedkiw 2007]
-   Decisions are signs of doubles: for sheets in general position, as random ones are. */
+   Decisions are signs of doubles: for sheets in general position, as random ones are, and grids whose lines and diagonals meet no node. */
 #ifndef GXFEM_BENCH_LEAST_H
 #define GXFEM_BENCH_LEAST_H
 
@@ -89,7 +89,8 @@ static inline least_corner *least_add_corner(least_piece *p)
 }
 
 /* Where the edge between a (at) and b (below) crosses the plane */
-static inline void least_cross(const least_corner *a, const least_corner *b, const uint32_t common[2], double at, double below, uint32_t plane, least_piece *to)
+static inline void least_cross(const least_corner *a, const least_corner *b, const uint32_t common[2], double at, double below, uint32_t plane,
+                               least_piece *to)
 {
     least_corner *c = least_add_corner(to);
     int k;
@@ -156,7 +157,10 @@ static inline int least_clip(least_piece *p, const least_sheets *s, int wall)
 
 /* ---- an element ---- */
 
-static inline const double *least_position(const least_mesh *m, size_t element, int k) { return m->positions + 3 * (size_t)m->elements[4 * element + (size_t)k]; }
+static inline const double *least_position(const least_mesh *m, size_t element, int k)
+{
+    return m->positions + 3 * (size_t)m->elements[4 * element + (size_t)k];
+}
 
 /* Cells of the grid that the element's box reaches into: from, to (inclusive) along each axis */
 static inline void least_range(const least_count *l, size_t element, uint32_t from[2], uint32_t to[2])
@@ -551,8 +555,8 @@ static inline least_result least_of(const least_mesh *mesh, const least_sheets *
     result.cells = l.cell_count;
     result.replicas = least_count_replicas(&l, element);
     result.least = least_count_components(&l, element);
-    free(element); free(l.names); free(l.pieces); free(l.reaches); free(l.first_reach); free(l.first_cell); free(l.whole); free(l.neighbours);
-    free(l.links);
+    free(element); free(l.names); free(l.pieces); free(l.reaches); free(l.first_reach); free(l.first_cell);
+    free(l.whole); free(l.neighbours); free(l.links);
     return result;
 }
 

@@ -62,7 +62,7 @@ static void meter_release(void *user, void *memory, size_t size)
 typedef struct sheet {
     gx_surface surface;
     uint32_t side;
-    double *lines;          /* side + 1: of the grid, along x and along y */
+    double *x, *y;          /* side + 1: of the grid's lines */
     double *vertices;
     uint32_t *triangles;
 } sheet;
@@ -74,17 +74,21 @@ static void *memory_of(void *old, size_t count, size_t size)
     return memory;
 }
 
-/* From -1/4 to 5/4, and a little off: no grid line meets a node of the block. */
+/* From -1/4 to 5/4, and a little off: no line or diagonal of the grid meets a node of the block. */
 static sheet sheet_make(uint32_t side)
 {
     sheet s;
     uint32_t i, j, n = 0;
     memset(&s, 0, sizeof s);
     s.side = side;
-    s.lines = (double *)memory_of(NULL, side + 1, sizeof(double));
+    s.x = (double *)memory_of(NULL, side + 1, sizeof(double));
+    s.y = (double *)memory_of(NULL, side + 1, sizeof(double));
     s.vertices = (double *)memory_of(NULL, (size_t)(side + 1) * (side + 1) * 3, sizeof(double));
     s.triangles = (uint32_t *)memory_of(NULL, (size_t)side * side * 6, sizeof(uint32_t));
-    for (i = 0; i <= side; i++) s.lines[i] = -0.2513 + 1.5027 * i / side;
+    for (i = 0; i <= side; i++) {
+        s.x[i] = -0.2513 + 1.5027 * i / side;
+        s.y[i] = -0.2541 + 1.5027 * i / side;
+    }
     for (j = 0; j < side; j++)
         for (i = 0; i < side; i++) {
             const uint32_t a = j * (side + 1) + i, b = a + side + 1, corners[6] = {a, a + 1, b + 1, a, b + 1, b};
@@ -98,7 +102,8 @@ static sheet sheet_make(uint32_t side)
 
 static void sheet_free(sheet *s)
 {
-    free(s->lines);
+    free(s->x);
+    free(s->y);
     free(s->vertices);
     free(s->triangles);
 }
@@ -110,8 +115,8 @@ static void sheet_place(sheet *s, double height, const double slope[2], double w
     for (j = 0; j <= s->side; j++)
         for (i = 0; i <= s->side; i++) {
             double *v = s->vertices + 3 * (size_t)(j * (s->side + 1) + i);
-            v[0] = s->lines[i];
-            v[1] = s->lines[j];
+            v[0] = s->x[i];
+            v[1] = s->y[j];
             v[2] = height + slope[0] * (v[0] - 0.5) + slope[1] * (v[1] - 0.5) + wave * sin(5 * v[0]) * cos(4 * v[1]);
         }
 }
@@ -243,7 +248,8 @@ static void count_unknowns(scene *s, const sheet *by, line *l)
     check(gx_body_skin(s->body, NULL, &skin));
     mesh.positions = s->mesh.positions; mesh.node_count = side * side * side;
     mesh.elements = s->mesh.elements; mesh.element_count = 5 * cells * cells * cells;
-    sheets.x = sheets.y = by->lines;
+    sheets.x = by->x;
+    sheets.y = by->y;
     sheets.z = s->heights;
     sheets.side = by->side;
     sheets.count = s->sheet_count;
@@ -272,8 +278,8 @@ static void row(scene *s, const char *sweep, const char *kind, size_t cuts, cons
     l->megabytes = peak / 1e6;
     l->step_ms = step(s);
     count_unknowns(s, by, l);
-    csv_row("%s,%s,%lu,%lu,%lu,%.0f,%.0f,%.2f,%.2f,%.2f,%.1f,%lu,%lu,%lu,%lu,%lu,%.1f", sweep, kind, (unsigned long)l->elements, (unsigned long)cuts,
-            (unsigned long)l->triangles, touched, us, l->first, us / touched, l->arrangement, l->step_ms, (unsigned long)l->unknowns_before,
+    csv_row("%s,%s,%lu,%lu,%lu,%.0f,%.0f,%.2f,%.2f,%.2f,%.1f,%lu,%lu,%lu,%lu,%lu,%.1f", sweep, kind, (unsigned long)l->elements,
+            (unsigned long)cuts, (unsigned long)l->triangles, touched, us, l->first, us / touched, l->arrangement, l->step_ms, (unsigned long)l->unknowns_before,
             (unsigned long)l->unknowns, (unsigned long)l->least, (unsigned long)l->vna, (unsigned long)l->remeshed, l->megabytes);
     progress_draw("scaling", line_count, line_total, sweep);
 }
