@@ -104,7 +104,7 @@ scaling() {
     echo "## Hard cases"
     echo
     echo "Right: as many pieces as the cuts leave, their volume, and a motion that stays finite and falls as a body falls (\`bench/hard.h\`). \"But for"
-    echo "volume\": cuts of some thickness take material away; \"Algorithm 1 thin\": cuts 1e-10 thick instead of 1e-4, results mended. Virtual nodes find"
+    echo "volume\": cuts of some thickness take material away; \"Algorithm 1 mended\": cuts 1e-10 thick instead of 1e-4, and a Boolean that mends. Virtual nodes find"
     echo "all pieces, with the mass of whole elements."
     echo
     failure ""
