@@ -1,8 +1,9 @@
 /* failure.c - hard cases by every method: right, wrong (how), refused (why), diverged, crashed, or still busy after half a minute.
 
    make bench-failure builds and runs it; it prints CSV and writes it to build/bench/failure.csv, a table to stderr. What the cases are, and
-   what is right: bench/hard.h. Methods are those of bench/method.h, and ways of integration where a case is about integrals. "Algorithm 1
-   mended" has what its Boolean allows today, cuts a millionth as thick too. "but for volume": what a cut's thickness takes away.
+   what is right: bench/hard.h. Methods are those of bench/method.h, element deletion, and ways of integration where a case is about
+   integrals. "Algorithm 1 mended" has what its Boolean allows today, cuts a millionth as thick too. "but for volume": what a cut's
+   thickness takes away.
    Each run has a process of its own, and half a minute of its processor. */
 #define _XOPEN_SOURCE 600
 #define GXFEM_IMPLEMENTATION
@@ -17,19 +18,97 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MOST_SECONDS = 30, COLUMNS = METHOD_COUNT + HARD_INTEGRALS };
+enum { MOST_SECONDS = 30, COLUMNS = METHOD_COUNT + 1 + HARD_INTEGRALS };
+
+/* ---- element deletion ---- */
+
+/* Elements whose inside a cut meets are taken away; the others are whole, on uncut nodes. */
+typedef struct deletion {
+    method_body *cut;           /* says which elements are met */
+    method_body *uncut;         /* moves */
+    gxs_element *elements; size_t element_count;
+    gxs_solver *solver;
+    int changed;
+} deletion;
+
+static void *deletion_create(const replay *scene)
+{
+    deletion *d = (deletion *)method_memory(NULL, 1, sizeof *d);
+    memset(d, 0, sizeof *d);
+    d->cut = (method_body *)method_body_create(scene);
+    d->uncut = (method_body *)method_body_create(scene);
+    d->elements = (gxs_element *)method_memory(NULL, scene->element_count, sizeof *d->elements);
+    d->changed = 1;
+    method_must(gxs_solver_create(NULL, &d->solver), "solver");
+    return d;
+}
+
+static const char *deletion_cut(void *state, const replay_cut *cut, method_times *times)
+{
+    deletion *d = (deletion *)state;
+    d->changed = 1;
+    return method_body_cut(d->cut, cut, times);
+}
+
+static void deletion_look(void *state, gxs_model *model, const double **displacement)
+{
+    deletion *d = (deletion *)state;
+    size_t i;
+    method_library_look(d->uncut, model, displacement);
+    for (d->element_count = i = 0; i < model->element_count; i++)
+        if (!(d->cut->body->complex->root[model->elements[i].group] & 1)) d->elements[d->element_count++] = model->elements[i];    /* not divided */
+    model->elements = d->elements;
+    model->element_count = d->element_count;
+}
+
+/* Nothing moves where nothing is left. */
+static const char *deletion_step(void *state, method_times *times)
+{
+    deletion *d = (deletion *)state;
+    const double start = seconds(NULL);
+    const double *displacement;
+    gxs_model model;
+    gx_view view;
+    deletion_look(d, &model, &displacement);
+    if (model.element_count == 0) return NULL;
+    method_must(gx_body_view(d->uncut->body, &view), "view");
+    if (d->changed) method_must(gxs_solver_set_model(d->solver, &model, NULL), "model");
+    d->changed = 0;
+    return method_solve(d->solver, d->uncut->scene, view.displacement, view.velocity, start, times);
+}
+
+static size_t deletion_unknowns(void *state) { return method_body_unknowns(((deletion *)state)->uncut); }
+
+static void deletion_destroy(void *state)
+{
+    deletion *d = (deletion *)state;
+    method_body_destroy(d->cut);
+    method_body_destroy(d->uncut);
+    gxs_solver_destroy(d->solver);
+    free(d->elements);
+    free(d);
+}
+
+static const method deletion_method = {"element deletion", deletion_create, deletion_cut, deletion_step, deletion_unknowns, deletion_look, deletion_destroy};
+
+/* ---- a case by a method ---- */
 
 static const double THINNER = 1e-6;
 
-static const char *column_name(int column) { return column < METHOD_COUNT ? methods[column].name : hard_integral_methods[column - METHOD_COUNT].name; }
+/* NULL: a way of integration */
+static const method *column_method(int column) { return column < METHOD_COUNT ? &methods[column] : column == METHOD_COUNT ? &deletion_method : NULL; }
+
+static const hard_integral_method *column_integral(int column) { return &hard_integral_methods[column - METHOD_COUNT - 1]; }
+
+static const char *column_name(int column) { return column_method(column) ? column_method(column)->name : column_integral(column)->name; }
 
 static void judge_column(const hard_case *row, int column, char text[HARD_TEXT])
 {
     hard_trial t;
     hard_trial_make(&t, row);
     if (strcmp(column_name(column), "Algorithm 1 mended") == 0) t.scene.thickness *= THINNER;
-    if (column < METHOD_COUNT) hard_judge(&t, &methods[column], text);
-    else hard_integral_judge(&t, &hard_integral_methods[column - METHOD_COUNT], text);
+    if (column_method(column)) hard_judge(&t, column_method(column), text);
+    else hard_integral_judge(&t, column_integral(column), text);
     hard_trial_free(&t);
 }
 
