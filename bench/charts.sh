@@ -140,7 +140,7 @@ scaling() {
     for sweep in "elements plane 3" "elements curved 3" "cuts parallel 4" "cuts crossing 4" "triangles curved 5"; do
         set -- $sweep
         echo "\$$1_$2 << EOD"
-        awk -F, -v sweep="$1" -v kind="$2" -v x="$3" '$1 == sweep && $2 == kind { print $x, $9, $10, $11, $12, $13, $16, $17 }' "$tables/scaling.csv"
+        awk -F, -v sweep="$1" -v kind="$2" -v x="$3" '$1 == sweep && $2 == kind { print $x, $10, $11, $12, $13, $14, $17, $18 }' "$tables/scaling.csv"
         echo "EOD"
     done
     cat <<END

@@ -61,9 +61,9 @@ matrix() {
 
 scaling() {
     awk -F, '
-        NR == 1 { print "| against | | elements | cuts | triangles of a cut | cut, us per touched element | step, ms | unknowns | least | VNA | remeshed | MB |"
-                  print "| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"; next }
-        { print "| " $1 " | " $2 " | " $3 " | " $4 " | " $5 " | " $9 " | " $11 " | " $13 " | " $14 " | " $15 " | " $16 " | " $17 " |" }' "$tables/scaling.csv"
+        NR == 1 { print "| against | | elements | cuts | triangles of a cut | cut, us per touched element | per cell made and triangle | step, ms | unknowns | least | VNA | remeshed | MB |"
+                  print "| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"; next }
+        { printf("| %s | %s | %s | %s | %s | %s | %.2f | %s | %s | %s | %s | %s | %s |\n", $1, $2, $3, $4, $5, $10, $8 / ($7 + $5), $12, $14, $15, $16, $17, $18) }' "$tables/scaling.csv"
 }
 
 {

@@ -9,8 +9,8 @@
        cuts       the median of the last half of so many cuts in one block: parallel planes at random heights, or planes of random
                   direction through the middle, which cross each other
        triangles  one cut, curved, of so many triangles
-   Columns: times in us and per touched element; the arrangement alone; step_ms, a step after the cuts (its multigrid made before);
-   peak_mb, of the body's memory. Unknowns, three for each displacement:
+   Columns: created, cells that a cut makes (of the last, or the mean of the last half); times in us and per touched element; the arrangement
+   alone; step_ms, a step after the cuts (its multigrid made before); peak_mb, of the body's memory. Unknowns, three for each displacement:
        unknowns_before, unknowns   ours
        least      what separation demands: for each node, the pieces that the elements around it fall into; counted in doubles by bench/least.h,
                   which knows nothing of the library
@@ -18,8 +18,8 @@
        remeshed   a mesh whose elements end at the cuts, at least: its old nodes, and each corner of the cut faces (where the cut's triangles
                   and their edges cross the elements' edges and faces, and the triangles' corners inside) once for each piece that it is on.
                   No nodes are counted that a mesher adds for the shape of its elements
-   It ends with 1 if ours are not the least. A table goes to stderr, with how the cost of a touched element grows: the exponent of a power
-   of what is swept, by least squares over its upper decades. */
+   It ends with 1 if ours are not the least. A table goes to stderr, with how costs grow: as a power of what is swept, by least squares over
+   the upper half of its decades. What a cut touches are the cells that it makes and its triangles. */
 #define _POSIX_C_SOURCE 200112L
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
@@ -229,7 +229,7 @@ static size_t cut_corners(const gx_skin *skin)
 typedef struct line {
     const char *sweep, *kind;
     size_t elements, cuts, triangles;
-    double touched, us, first, arrangement, step_ms, megabytes;     /* us, first, arrangement: of a touched element but for us, of a cut */
+    double touched, created, us, first, arrangement, step_ms, megabytes;    /* us: of a cut; first, arrangement: of a touched element */
     size_t unknowns_before, unknowns, least, vna, remeshed;
 } line;
 
@@ -272,14 +272,15 @@ static void row(scene *s, const char *sweep, const char *kind, size_t cuts, cons
     l->cuts = cuts;
     l->triangles = by->surface.triangle_count;
     l->touched = touched;
+    l->created = (double)s->report.created_cells;
     l->us = us;
     l->first = first / touched;
     l->arrangement = arrangement / touched;
     l->megabytes = peak / 1e6;
     l->step_ms = step(s);
     count_unknowns(s, by, l);
-    csv_row("%s,%s,%lu,%lu,%lu,%.0f,%.0f,%.2f,%.2f,%.2f,%.1f,%lu,%lu,%lu,%lu,%lu,%.1f", sweep, kind, (unsigned long)l->elements,
-            (unsigned long)cuts, (unsigned long)l->triangles, touched, us, l->first, us / touched, l->arrangement, l->step_ms, (unsigned long)l->unknowns_before,
+    csv_row("%s,%s,%lu,%lu,%lu,%.0f,%.0f,%.0f,%.2f,%.2f,%.2f,%.1f,%lu,%lu,%lu,%lu,%lu,%.1f", sweep, kind, (unsigned long)l->elements,
+            (unsigned long)cuts, (unsigned long)l->triangles, touched, l->created, us, l->first, us / touched, l->arrangement, l->step_ms, (unsigned long)l->unknowns_before,
             (unsigned long)l->unknowns, (unsigned long)l->least, (unsigned long)l->vna, (unsigned long)l->remeshed, l->megabytes);
     progress_draw("scaling", line_count, line_total, sweep);
 }
@@ -311,6 +312,7 @@ static double exponent(size_t from, size_t to, double (*cost)(const line *l))
 }
 
 static double cost_of_cut(const line *l) { return l->us / l->touched; }
+static double cost_of_touched(const line *l) { return l->us / (l->created + (double)l->triangles); }
 static double cost_of_unknown(const line *l) { return l->step_ms / (double)l->unknowns; }
 
 /* Returns how many rows have more or fewer unknowns than the least. */
@@ -328,8 +330,10 @@ static int print_table(void)
                 (unsigned long)l->vna, (unsigned long)l->remeshed, l->megabytes, off ? "  NOT THE LEAST" : "");
         wrong += off;
         if (i + 1 < line_count && strcmp(l->sweep, l[1].sweep) == 0 && strcmp(l->kind, l[1].kind) == 0) continue;
-        fprintf(stderr, "%s, %s: a touched element costs as %s^%.2f, an unknown's step as %s^%.2f\n", l->sweep, l->kind, l->sweep,
-                exponent(from, i + 1, cost_of_cut), l->sweep, exponent(from, i + 1, cost_of_unknown));
+        if (i - from > 2)
+            fprintf(stderr, "%s, %s: a cut, by cells made and triangles, costs as %s^%.2f, by touched elements as %s^%.2f, an unknown's step as %s^%.2f\n",
+                    l->sweep, l->kind, l->sweep, exponent(from, i + 1, cost_of_touched), l->sweep, exponent(from, i + 1, cost_of_cut), l->sweep,
+                    exponent(from, i + 1, cost_of_unknown));
         from = i + 1;
     }
     return wrong;
@@ -366,19 +370,20 @@ static void next_plane(scene *s, sheet *by, int crossing)
 static void against_cuts(uint32_t cells, size_t count, int crossing)
 {
     static double us[MOST_CUTS], arrangement[MOST_CUTS];
-    double touched = 0;
+    size_t touched = 0, created = 0, i;
+    const size_t from = count / 2;
     sheet by = sheet_make(1);
-    size_t i, from;
     scene s;
     scene_make(&s, cells);
     for (i = 0; i < count; i++) {
         next_plane(&s, &by, crossing);
         us[i] = cut(&s, &by);
         arrangement[i] = 1e6 * s.report.seconds_arrangement;
-        if (i + 1 > count / 2) touched += (double)s.report.touched_elements;
+        touched += i < from ? 0 : s.report.touched_elements;
+        created += i < from ? 0 : s.report.created_cells;
     }
-    from = count / 2;
-    s.report.touched_elements = (size_t)(touched / (double)(count - from));
+    s.report.touched_elements = touched / (count - from);
+    s.report.created_cells = created / (count - from);
     row(&s, "cuts", crossing ? "crossing" : "parallel", count, &by, us[0], median(us + from, count - from), median(arrangement + from, count - from));
     scene_free(&s);
     sheet_free(&by);
@@ -406,7 +411,7 @@ int main(int argc, char **argv)
     const int blocks = small ? 2 : 7, parallel = small ? 4 : 10, crossing = small ? 4 : 7, curved = small ? 3 : 6;
     const uint32_t block = small ? 6 : 20;
     int i, wrong;
-    csv_open(argc > 2 ? 2 : argc, argv, "sweep,kind,elements,cuts,triangles,touched,cut_us,first_us_per_touched,us_per_touched,"
+    csv_open(argc > 2 ? 2 : argc, argv, "sweep,kind,elements,cuts,triangles,touched,created,cut_us,first_us_per_touched,us_per_touched,"
              "arrangement_us_per_touched,step_ms,unknowns_before,unknowns,least,vna,remeshed,peak_mb");
     line_total = (size_t)(2 * blocks + parallel + crossing + curved);
     for (i = 0; i < blocks; i++) against_elements(cells[i], 0, 1);
