@@ -1,5 +1,5 @@
 /* Condition numbers of the system matrix of a cut cube: RXFEM's Fig. 14 with RXFEM's basis and ours, and a corner piece.
- * usage: conditioning [FILE]     rows go to stdout and to FILE
+ * usage: conditioning [FILE]     rows go to stdout and to FILE, a table to stderr
  *
  * As in RXFEM section 7: the cube [-1, 1]^3 of five tetrahedra, free; A = M + dt^2 K at rest, E = 1e6 Pa, nu = 0.3,
  * rho = 1000 kg/m3, dt = 1e-3 s.
@@ -17,10 +17,12 @@
  * L, A = L L^T, has small relative errors; any other basis and scaling is a factor F = S^T B^T L, and one-sided Jacobi rotations
  * of F's columns give its singular values with small relative errors too [Demmel and Veselic 1992]. With double in place of long
  * double the same four digits come out. */
+#define _POSIX_C_SOURCE 200112L
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 
 #include "csv.h"
+#include "progress.h"
 #include "rxfem.h"
 
 #include <math.h>
@@ -412,15 +414,52 @@ static real condition(matrix f, size_t n)
     return largest / least;
 }
 
+/* ---- the table: some of the cases */
+
+enum { SCALINGS = 4, SHOWN = 6, RUNS = 41 };
+
+static const char *const scaling[SCALINGS] = {"none", "diagonal", "block", "volume"};
+static const struct { const char *name; double eps; } shown[SHOWN] = {{"uncut", 0},      {"slice", 0.1},    {"slice", 1e-6},
+                                                                      {"slice", 1e-12}, {"corner", 1e-6}, {"corner", 1e-12}};
+static real table[2][2][SCALINGS][SHOWN]; /* by extension and basis; 0: not in the case */
+static size_t runs;
+
+static void keep(const char *name, double eps, int extended, int sign, int k, real number)
+{
+    int i;
+    for (i = 0; i < SHOWN; ++i)
+        if (strcmp(shown[i].name, name) == 0 && fabs(eps - shown[i].eps) <= 1e-3 * eps)
+            table[extended][sign][k][i] = number;
+}
+
+static void print_table(void)
+{
+    int extended, sign, k, i;
+    fprintf(stderr, "%-8s %-9s %-9s", "basis", "scaling", "extension");
+    for (i = 0; i < SHOWN; ++i)
+        fprintf(stderr, " %7s %-6.0e", shown[i].name, shown[i].eps);
+    for (extended = 0; extended < 2; ++extended)
+        for (sign = 0; sign < 2; ++sign)
+            for (k = 0; k < SCALINGS; ++k) {
+                fprintf(stderr, "\n%-8s %-9s %-9s", sign ? "sign" : "copies", scaling[k], extended ? "on" : "off");
+                for (i = 0; i < SHOWN; ++i)
+                    if (table[extended][sign][k][i] > 0)
+                        fprintf(stderr, " %14.2Le", table[extended][sign][k][i]);
+                    else
+                        fprintf(stderr, "%15s", "");
+            }
+    fprintf(stderr, "\n");
+}
+
 /* ---- cases */
 
 static void rows(const cube *c, const char *name, double eps, int extended)
 {
-    static const char *const scaling[] = {"none", "diagonal", "block", "volume"};
     static matrix f;
     int sign, k;
     for (sign = 0; sign < 2; ++sign)
-        for (k = 0; k < 4; ++k) {
+        for (k = 0; k < SCALINGS; ++k) {
+            real number;
             change_basis(c, sign, f);
             if (k == 1)
                 scale_diagonal(c, f);
@@ -428,8 +467,9 @@ static void rows(const cube *c, const char *name, double eps, int extended)
                 scale_block(c, f);
             else if (k == 3)
                 scale_volume(c, sign, f);
-            csv_row("%s,%.6g,%s,%s,%s,%.6Le", name, eps, sign ? "sign" : "copies", scaling[k], extended ? "on" : "off",
-                    condition(f, 3 * c->count));
+            number = condition(f, 3 * c->count);
+            keep(name, eps, extended, sign, k, number);
+            csv_row("%s,%.6g,%s,%s,%s,%.6Le", name, eps, sign ? "sign" : "copies", scaling[k], extended ? "on" : "off", number);
         }
 }
 
@@ -440,6 +480,7 @@ static void run(const char *name, double eps, const double *points, const double
     gx_view view;
     size_t e;
     memset(&c, 0, sizeof c);
+    progress_draw("conditioning", runs++, RUNS, name);
     cube_create(&c, extended ? 0.5 : 0);
     if (points)
         cube_cut(&c, points);
@@ -487,6 +528,8 @@ int main(int argc, char **argv)
         slice(pow(10, -(double)i));
     for (i = 1; i <= 12; ++i)
         corner_piece(pow(10, -(double)i));
+    progress_draw("conditioning", runs, RUNS, "");
+    print_table();
     rx_rules_destroy(rules);
     return csv_close();
 }

@@ -166,7 +166,7 @@ static void hard_add_box(replay *r, const double low[3], const double high[3])
     }
 }
 
-/* ---- the hard_cases ---- */
+/* ---- the catalogue ---- */
 
 static void hard_add_region_level(hard_trial *t, double at)
 {
@@ -467,7 +467,7 @@ static void hard_incompressible(hard_trial *t)
     t->scene.poisson = 0.4999;
 }
 
-/* The lower part hangs on the upper one by a hard_bridge 1e-3 wide. */
+/* The lower part hangs on the upper one by a bridge 1e-3 wide. */
 static void hard_bridge(hard_trial *t)
 {
     const double p[3] = {-1, -1, 0.4}, u[3] = {1.3, 0, 0}, q[3] = {0.301, -1, 0.4}, w[3] = {2, 0, 0}, v[3] = {0, 3, 0};
@@ -507,7 +507,7 @@ static const hard_case hard_cases[] = {
     {"triangle without area", hard_flat_triangle, 0}, {"ends inside", hard_open_end, 0},
     {"1000 parallel in one element", hard_thousand_parallel, 1}, {"3 x 20 crossing in one element", hard_crossing_3_20, 1},
     {"aspect ratio 1e4", hard_aspect_1e4, 0}, {"size of 1e-6", hard_size_1e6, 0}, {"size of 1e6 at 1e8", hard_offset_1e8, 0},
-    {"starts hard_shaken by an edge length", hard_shaken, 0}, {"starts inside out", hard_inverted, 0},
+    {"starts shaken by an edge length", hard_shaken, 0}, {"starts inside out", hard_inverted, 0},
     {"starts in one point", hard_collapsed, 0}, {"steps of 1 s", hard_one_second, 0}, {"Poisson's ratio 0.4999", hard_incompressible, 0},
     {"hangs by 1e-3", hard_bridge, 0}, {"a cell hangs by a face piece", hard_face_piece, 0}};
 

@@ -53,7 +53,7 @@ table() {
 matrix() {
     echo "<!-- matrix -->"
     echo "Written by \`make charts\`. volume: right but for what a cut's thickness takes away; pieces: too many or too few; mass: the right pieces"
-    echo "with a wrong volume; empty: not asked. What each was, in full: [docs/BENCH.md](docs/BENCH.md)."
+    echo "with a wrong volume; fall: a piece falls otherwise than a point; empty: not asked. In full: [docs/BENCH.md](docs/BENCH.md)."
     echo
     failure 1
     echo "<!-- end of matrix -->"
