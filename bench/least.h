@@ -542,6 +542,7 @@ static inline least_result least_of(const least_mesh *mesh, const least_sheets *
     l.first_reach = (size_t *)least_memory(NULL, mesh->element_count + 1, sizeof *l.first_reach);
     l.first_cell = (uint32_t *)least_memory(NULL, mesh->element_count + 1, sizeof *l.first_cell);
     l.whole = (uint8_t *)least_memory(NULL, mesh->element_count, 1);
+    l.reaches = (least_reach *)least_memory(NULL, 0, sizeof *l.reaches);
     for (i = 0; i < mesh->element_count; i++) {
         l.first_reach[i] = l.reach_count;
         l.first_cell[i] = l.cell_count;
