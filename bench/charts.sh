@@ -133,21 +133,21 @@ unset multiplot
 END
 }
 
-# What a cut costs per element that it touches, and the unknowns that it leaves, against sizes
+# What a cut costs by what it touches, and the unknowns that it leaves, against sizes
 scaling() {
     echo 'set terminal svg size 1180,780 font "sans,12" background "white"'
     echo "set output '$charts/scaling.svg'"
     for sweep in "elements plane 3" "elements curved 3" "cuts parallel 4" "cuts crossing 4" "triangles curved 5"; do
         set -- $sweep
         echo "\$$1_$2 << EOD"
-        awk -F, -v sweep="$1" -v kind="$2" -v x="$3" '$1 == sweep && $2 == kind { print $x, $10, $11, $12, $13, $14, $17, $18 }' "$tables/scaling.csv"
+        awk -F, -v sweep="$1" -v kind="$2" -v x="$3" '$1 == sweep && $2 == kind { print $x, $8 / ($7 + $5), $11, $12, $13, $14, $17, $18 }' "$tables/scaling.csv"
         echo "EOD"
     done
     cat <<END
 $styles
 set multiplot layout 2,2 title "What a cut of a block of tetrahedra costs   ($where)" font "sans,15"
 set logscale xy; set grid back lc rgb "#dddddd"
-set ylabel "cut, us per touched element"; set yrange [1:1000]; set key left top
+set ylabel "cut, us per cell that it makes and triangle"; set yrange [1:1000]; set key left top
 set xlabel "elements of the block"; set format x "10^{%L}"
 plot \$elements_plane using 1:2 with linespoints ls 1 title "a plane", \$elements_curved using 1:2 with linespoints ls 3 title "a curved sheet, two triangles a cell"
 set xlabel "cuts so far, 40 000 elements"; set format x "%g"
