@@ -147,7 +147,7 @@ scaling() {
 $styles
 set multiplot layout 2,2 title "What a cut of a block of tetrahedra costs   ($where)" font "sans,15"
 set logscale xy; set grid back lc rgb "#dddddd"
-set ylabel "cut, us per cell that it makes and triangle"; set yrange [1:1000]; set key left top
+set ylabel "cut, us per new cell and triangle"; set yrange [1:1000]; set key left top
 set xlabel "elements of the block"; set format x "10^{%L}"
 plot \$elements_plane using 1:2 with linespoints ls 1 title "a plane", \$elements_curved using 1:2 with linespoints ls 3 title "a curved sheet, two triangles a cell"
 set xlabel "cuts so far, 40 000 elements"; set format x "%g"
