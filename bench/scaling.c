@@ -7,7 +7,7 @@
    A block of tetrahedra (block.h) is cut by planes or by gently curved sheets, all the way through.
        elements   the first cut of a block of so many elements (its arrays still have to grow), and the median of those after it
        cuts       the median of the last half of so many cuts in one block: parallel planes at random heights, or planes of random
-                  direction through the middle, which cross each other
+                  direction through the middle, which cross each other (to 100: the pieces grow with the cube of their number)
        triangles  one cut, curved, of so many triangles
    Columns: created, cells that a cut makes (of the last, or the mean of the last half); times in us and per touched element; the arrangement
    alone; step_ms, a step after the cuts (its multigrid made before); peak_mb, of the body's memory. Unknowns, three for each displacement:
