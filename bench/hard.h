@@ -732,10 +732,11 @@ static const uint32_t hard_region_triangle[3] = {0, 1, 2};
 static double hard_integral_regular(const double vertices[9])
 {
     sampling_surface surface = sampling_surface_create(vertices, hard_region_triangle, 1);
+    const sampling_region under = sampling_under(&surface);
     sampling_rule rule;
     double volume;
     memset(&rule, 0, sizeof rule);
-    sampling_regular(&surface, 50, &rule);
+    sampling_regular(&under, 50, &rule);
     volume = hard_sum_of(&rule);
     sampling_free(&rule);
     sampling_surface_free(&surface);
@@ -745,10 +746,11 @@ static double hard_integral_regular(const double vertices[9])
 static double hard_integral_adaptive(const double vertices[9])
 {
     sampling_surface surface = sampling_surface_create(vertices, hard_region_triangle, 1);
+    const sampling_region under = sampling_under(&surface);
     sampling_rule rule;
     double volume;
     memset(&rule, 0, sizeof rule);
-    sampling_adaptive(&surface, 2, 4, &rule);
+    sampling_adaptive(&under, 2, 4, &rule);
     volume = hard_sum_of(&rule);
     sampling_free(&rule);
     sampling_surface_free(&surface);
