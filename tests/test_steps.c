@@ -1,8 +1,6 @@
 /* test_steps.c - what a body adds to the solver's steps: materials by element, the model for other solvers, BDF2's history and rest
    times through cuts, copies without support, points of the skin. The steps themselves: test_solve.c, test_forces.c. */
-#ifndef GXFEM_LINKED
 #define GXFEM_IMPLEMENTATION
-#endif
 #include "../gxfem.h"
 #include "body.h"
 
