@@ -395,8 +395,8 @@ typedef struct gxp_leaf {       /* beside each leaf of the complex */
 
 typedef struct gxp_box { double low[3], high[3]; uint32_t first, count; } gxp_box;     /* tree node; count 0: children first, first+1 */
 
-enum { GXP_UNDO_CELL, GXP_UNDO_LEAF };
-typedef struct gxp_undo { uint32_t kind, index; gxp_cell cell; gxp_leaf leaf; } gxp_undo;
+typedef struct gxp_saved_cell { uint32_t index; gxp_cell cell; } gxp_saved_cell;   /* as they were when the cut began */
+typedef struct gxp_saved_leaf { uint32_t index; gxp_leaf leaf; } gxp_saved_leaf;
 
 typedef struct gxp_pair { uint32_t node, cell; } gxp_pair;
 typedef struct gxp_link { uint32_t face, other, facet; } gxp_link;       /* a piece of a face, and the cell behind it */
@@ -449,6 +449,8 @@ typedef struct gxp_skin {
     double *normals, *positions; uint32_t normal_capacity, position_capacity;   /* scratch: slots x 3, vertices x 3 */
 } gxp_skin;
 
+typedef struct gxp_counts { uint32_t cells, leaves, copies, labels, surfaces, maps, dirty, splits; } gxp_counts;
+
 /* The solver's model is as the body, but for the last cuts, or not at all. */
 typedef enum gxp_model { GXP_MODEL_KNOWN, GXP_MODEL_CHANGED, GXP_MODEL_STALE } gxp_model;
 
@@ -486,7 +488,11 @@ struct gx_body {
     gxp_words fragment_ids, fragment_origins, fragment_changes, removed_ids;    /* as last looked at */
     uint32_t next_id;               /* of a fragment */
     int look_stale;                 /* a cut has happened since the last look */
-    gxp_undo *undo; uint32_t undo_count, undo_capacity;
+    gxp_saved_cell *saved_cells; uint32_t saved_cell_count, saved_cell_capacity;    /* the undo log of a cut: each cell once */
+    gxp_saved_leaf *saved_leaves; uint32_t saved_leaf_count, saved_leaf_capacity;
+    uint32_t transaction;           /* number of the cut */
+    gxp_counts before;              /* when it began */
+    uint32_t *cell_saved; uint32_t cell_saved_capacity;     /* cells: transaction that saved or made it last */
     uint32_t *cell_stamp; uint32_t cell_stamp_capacity;
     uint32_t stamp, scope_stamp;
     int held_stale, view_stale, sums_stale;
@@ -856,15 +862,18 @@ static void gxp_copy_state(gx_body *body, uint32_t from, uint32_t to) {
     body->copy_before[to] = body->copy_before[from];
 }
 
-static gx_result gxp_reserve_cells(gx_body *body, size_t extra) {
-    const gx_allocator *a = &body->allocator;
-    const uint32_t before = body->cell_stamp_capacity;
-    gx_result r = gxp_reserve(a, &body->cells, sizeof *body->cells, body->cell_count, &body->cell_capacity, extra);
-    if (r == GX_OK) r = gxp_reserve(a, &body->cell_stamp, sizeof *body->cell_stamp, before, &body->cell_stamp_capacity,
-                                    body->cell_capacity > before ? body->cell_capacity - before : 0);
-    if (body->cell_stamp_capacity > before)
-        memset(body->cell_stamp + before, 0, (size_t)(body->cell_stamp_capacity - before) * sizeof *body->cell_stamp);
+/* Room for a number beside each cell that there is room for; new ones are 0. */
+static gx_result gxp_reserve_beside_cells(gx_body *body, uint32_t **words, uint32_t *capacity) {
+    const uint32_t before = *capacity;
+    const gx_result r = gxp_reserve(&body->allocator, words, sizeof **words, before, capacity, body->cell_capacity > before ? body->cell_capacity - before : 0);
+    if (*capacity > before) memset(*words + before, 0, (size_t)(*capacity - before) * sizeof **words);
     return r;
+}
+
+static gx_result gxp_reserve_cells(gx_body *body, size_t extra) {
+    gx_result r = gxp_reserve(&body->allocator, &body->cells, sizeof *body->cells, body->cell_count, &body->cell_capacity, extra);
+    if (r == GX_OK) r = gxp_reserve_beside_cells(body, &body->cell_stamp, &body->cell_stamp_capacity);
+    return r == GX_OK ? gxp_reserve_beside_cells(body, &body->cell_saved, &body->cell_saved_capacity) : r;
 }
 
 static void *gxp_table(gx_body *body, size_t count, size_t item) {
@@ -1020,6 +1029,7 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     gxp_release(&a, body->box_elements, (e + 1) * sizeof(uint32_t));
     gxp_release(&a, body->cells, body->cell_capacity * sizeof *body->cells);
     gxp_release(&a, body->cell_stamp, body->cell_stamp_capacity * sizeof *body->cell_stamp);
+    gxp_release(&a, body->cell_saved, body->cell_saved_capacity * sizeof *body->cell_saved);
     gxp_release(&a, body->leaves, body->leaf_capacity * sizeof *body->leaves);
     gxp_release(&a, body->copy_node, body->copy_capacity * sizeof *body->copy_node);
     gxp_release(&a, body->displacement, (size_t)body->displacement_capacity * 3 * sizeof(double));
@@ -1038,7 +1048,8 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     gxp_words_free(body, &body->removed_ids);
     gxp_release_model(body);
     gxp_release(&a, body->regions, body->region_capacity * sizeof *body->regions);
-    gxp_release(&a, body->undo, body->undo_capacity * sizeof *body->undo);
+    gxp_release(&a, body->saved_cells, body->saved_cell_capacity * sizeof *body->saved_cells);
+    gxp_release(&a, body->saved_leaves, body->saved_leaf_capacity * sizeof *body->saved_leaves);
     gxp_release(&a, body->pairs, body->pair_capacity * sizeof *body->pairs);
     gxp_release(&a, body->links, body->link_capacity * sizeof *body->links);
     gxp_release(&a, body->cell_volume, body->cell_volume_capacity * sizeof(double));
@@ -1063,32 +1074,34 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
 
 /* >>transaction: a cut changes cells and leaves in place; an undo log, the counts and the complex's own log take it back ------- */
 
-typedef struct gxp_counts { uint32_t cells, leaves, copies, labels, surfaces, maps, dirty, splits; } gxp_counts;
-
 /* What one cut works with. */
 typedef struct gxp_cut {
     gx_body *body;
     const gx_cut_desc *desc;
-    gxp_counts before;
     gx_cut_report report;
     gx_failure failure;
 } gxp_cut;
 
+/* Saves a cell that is about to change, unless this cut has saved or made it. */
 static gx_result gxp_save_cell(gx_body *body, uint32_t cell) {
-    const gx_result r = gxp_reserve(&body->allocator, &body->undo, sizeof *body->undo, body->undo_count, &body->undo_capacity, 1);
+    gx_result r;
+    if (body->cell_saved[cell] == body->transaction) return GX_OK;
+    r = gxp_reserve(&body->allocator, &body->saved_cells, sizeof *body->saved_cells, body->saved_cell_count, &body->saved_cell_capacity, 1);
     if (r != GX_OK) return r;
-    body->undo[body->undo_count].kind = GXP_UNDO_CELL;
-    body->undo[body->undo_count].index = cell;
-    body->undo[body->undo_count++].cell = body->cells[cell];
+    body->saved_cells[body->saved_cell_count].index = cell;
+    body->saved_cells[body->saved_cell_count++].cell = body->cells[cell];
+    body->cell_saved[cell] = body->transaction;
     return GX_OK;
 }
 
+/* Gives a leaf to a cell. Leaves that this cut made need not be saved. */
 static gx_result gxp_set_leaf(gx_body *body, uint32_t leaf, uint32_t cell, uint32_t next) {
-    const gx_result r = gxp_reserve(&body->allocator, &body->undo, sizeof *body->undo, body->undo_count, &body->undo_capacity, 1);
-    if (r != GX_OK) return r;
-    body->undo[body->undo_count].kind = GXP_UNDO_LEAF;
-    body->undo[body->undo_count].index = leaf;
-    body->undo[body->undo_count++].leaf = body->leaves[leaf];
+    if (leaf < body->before.leaves) {
+        const gx_result r = gxp_reserve(&body->allocator, &body->saved_leaves, sizeof *body->saved_leaves, body->saved_leaf_count, &body->saved_leaf_capacity, 1);
+        if (r != GX_OK) return r;
+        body->saved_leaves[body->saved_leaf_count].index = leaf;
+        body->saved_leaves[body->saved_leaf_count++].leaf = body->leaves[leaf];
+    }
     body->leaves[leaf].cell = cell;
     body->leaves[leaf].next = next;
     return GX_OK;
@@ -1097,24 +1110,28 @@ static gx_result gxp_set_leaf(gx_body *body, uint32_t leaf, uint32_t cell, uint3
 static void gxp_begin(gxp_cut *cut) {
     gx_body *body = cut->body;
     gxb_complex_begin(body->complex);
-    body->undo_count = 0;
-    cut->before.cells = body->cell_count; cut->before.leaves = body->leaf_count;
-    cut->before.copies = body->copy_count; cut->before.labels = body->label_count;
-    cut->before.surfaces = body->surface_count; cut->before.maps = body->map_count; cut->before.dirty = body->skin.dirty.count;
-    cut->before.splits = body->splits.count;
+    body->saved_cell_count = body->saved_leaf_count = 0;
+    body->transaction++;
+    body->before.cells = body->cell_count; body->before.leaves = body->leaf_count;
+    body->before.copies = body->copy_count; body->before.labels = body->label_count;
+    body->before.surfaces = body->surface_count; body->before.maps = body->map_count; body->before.dirty = body->skin.dirty.count;
+    body->before.splits = body->splits.count;
 }
 
 static void gxp_rollback(gxp_cut *cut) {
     gx_body *body = cut->body;
-    while (body->undo_count > 0) {
-        const gxp_undo *undo = &body->undo[--body->undo_count];
-        if (undo->kind == GXP_UNDO_CELL) body->cells[undo->index] = undo->cell;
-        else body->leaves[undo->index] = undo->leaf;
+    while (body->saved_cell_count > 0) {
+        const gxp_saved_cell *saved = &body->saved_cells[--body->saved_cell_count];
+        body->cells[saved->index] = saved->cell;
     }
-    body->cell_count = cut->before.cells; body->leaf_count = cut->before.leaves;
-    body->copy_count = cut->before.copies; body->label_count = cut->before.labels;
-    body->surface_count = cut->before.surfaces; body->map_count = cut->before.maps; body->skin.dirty.count = cut->before.dirty;
-    body->splits.count = cut->before.splits;
+    while (body->saved_leaf_count > 0) {
+        const gxp_saved_leaf *saved = &body->saved_leaves[--body->saved_leaf_count];
+        body->leaves[saved->index] = saved->leaf;
+    }
+    body->cell_count = body->before.cells; body->leaf_count = body->before.leaves;
+    body->copy_count = body->before.copies; body->label_count = body->before.labels;
+    body->surface_count = body->before.surfaces; body->map_count = body->before.maps; body->skin.dirty.count = body->before.dirty;
+    body->splits.count = body->before.splits;
     gxb_complex_rollback(body->complex);
 }
 
@@ -1859,9 +1876,9 @@ static gx_result gxp_list_new_leaves(gxp_cut *cut) {
     gx_body *body = cut->body;
     uint32_t leaf;
     gx_result result = GX_OK;
-    for (leaf = cut->before.leaves; leaf < body->leaf_count && result == GX_OK; leaf++) {
+    for (leaf = body->before.leaves; leaf < body->leaf_count && result == GX_OK; leaf++) {
         const uint32_t parent = body->complex->leaves[leaf].parent, next = body->leaves[parent].next;
-        body->leaves[leaf].next = next;         /* new leaves need no undo */
+        body->leaves[leaf].next = next;
         result = gxp_set_leaf(body, parent, body->leaves[parent].cell, leaf);
     }
     return result;
@@ -1876,6 +1893,7 @@ static gx_result gxp_new_cell(gx_body *body, uint32_t like, uint32_t *slot) {
     body->cells[like].next = *slot;
     body->cells[*slot].first_leaf = GXP_NONE;
     body->cell_stamp[*slot] = 0;
+    body->cell_saved[*slot] = body->transaction;
     return GX_OK;
 }
 
@@ -2482,8 +2500,7 @@ static void gxp_note_changed(gx_body *body) {
     gx_result result = GX_OK;
     uint32_t i;
     if (body->model == GXP_MODEL_STALE) return;
-    for (i = 0; i < body->undo_count && result == GX_OK; i++)
-        if (body->undo[i].kind == GXP_UNDO_CELL) result = gxp_push(body, &body->changed, body->undo[i].cell.element);
+    for (i = 0; i < body->saved_cell_count && result == GX_OK; i++) result = gxp_push(body, &body->changed, body->saved_cells[i].cell.element);
     for (i = 0; i < body->fresh.count && result == GX_OK; i++) result = gxp_push(body, &body->changed, body->cells[body->fresh.data[i]].element);
     body->model = result == GX_OK ? GXP_MODEL_CHANGED : GXP_MODEL_STALE;
 }
@@ -2504,7 +2521,7 @@ static void gxp_commit(gxp_cut *cut) {
     gxp_sort_unique(&body->dead);
     for (i = body->dead.count; i-- > 0;) gxp_drop_copy(body, body->dead.data[i]);
     gxb_complex_commit(body->complex);
-    body->undo_count = 0;
+    body->saved_cell_count = body->saved_leaf_count = 0;
     body->past = gxp_hash_cut(body->past, cut->desc);
     body->held_stale = body->view_stale = body->look_stale = 1;
     if (body->removed.count + body->dead.count > 0 || body->splits.count > body->copy_count) body->labels_known = 0;
@@ -4264,8 +4281,7 @@ static gx_result gxp_note_touched(gxp_cut *cut, uint32_t first_facet) {
     if (body->skin.dirty.count / 8 > body->element_count) { body->skin.made = 0; return GX_OK; }
     for (i = first_facet; i < cx->facet_count && result == GX_OK; i++) result = gxp_push_leaf_elements(body, i);
     for (i = 0; i < cx->wall_count && result == GX_OK; i++) result = gxp_push_leaf_elements(body, cx->walls[i]);
-    for (i = 0; i < body->undo_count && result == GX_OK; i++)
-        if (body->undo[i].kind == GXP_UNDO_CELL) result = gxp_push(body, &body->skin.dirty, body->undo[i].cell.element);
+    for (i = 0; i < body->saved_cell_count && result == GX_OK; i++) result = gxp_push(body, &body->skin.dirty, body->saved_cells[i].cell.element);
     for (i = body->copy_count - body->dead.count; i < body->copy_count; i++) {
         const uint32_t node = body->copy_node[i];
         for (j = body->node_start[node]; j < body->node_start[node + 1] && result == GX_OK; j++)
