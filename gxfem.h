@@ -672,36 +672,108 @@ static void gxp_build_boxes(gx_body *body) {
     }
 }
 
-/* May the triangle meet the box? Rounding only adds candidates: the margin of the plane test is far above its error. */
-static int gxp_triangle_near_box(const double *const p[3], const double n[3], double scale, const gxp_box *box) {
-    double s = 0, r = 0, far = 0;
-    int k;
-    for (k = 0; k < 3; k++) {
-        const double low = fmin(p[0][k], fmin(p[1][k], p[2][k])), high = fmax(p[0][k], fmax(p[1][k], p[2][k]));
-        const double c = 0.5 * box->low[k] + 0.5 * box->high[k], h = 0.5 * box->high[k] - 0.5 * box->low[k];
-        if (low > box->high[k] || high < box->low[k]) return 0;
-        s += n[k] * (c - p[0][k]);
-        r += fabs(n[k]) * h;
-        far += fabs(c - p[0][k]) + h + fabs(c) + fabs(p[0][k]);
-    }
-    return !gxp_is_finite(s) || fabs(s) <= r + 1e-12 * scale * far;     /* overflow: a candidate, which then is out of range */
+static const uint8_t gxp_outward[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};     /* nodes of the face opposite to each */
+
+/* A triangle whose elements are looked for. Differences are multiplied by a power of two, the frame's, so that no product leaves the range. */
+typedef struct gxp_search {
+    const double *base;     /* its first corner */
+    double unit, low[3], high[3];
+    double axis[4][3];      /* the normal; of each edge the normal in the triangle's plane, outward */
+    double scale[4];        /* size of the products of which they are made */
+    double offset[4];       /* along them, of the triangle's plane and edges from the base */
+    double far;             /* size of the coordinates */
+} gxp_search;
+
+#define GXP_SEARCH_MARGIN 1e-12     /* of the terms' size: far above the rounding, so that rounding only adds candidates */
+
+static double gxp_size(const double a[3]) { return fabs(a[0]) + fabs(a[1]) + fabs(a[2]); }
+
+/* a x b; returns the size of its terms. */
+static double gxp_search_axis(const double a[3], const double b[3], double axis[3]) {
+    axis[0] = a[1] * b[2] - a[2] * b[1];
+    axis[1] = a[2] * b[0] - a[0] * b[2];
+    axis[2] = a[0] * b[1] - a[1] * b[0];
+    return gxp_size(a) * gxp_size(b);
 }
 
-/* Appends to found the elements whose boxes the triangle may meet. */
+/* (x - base) unit; returns the size of what it is made of. */
+static double gxp_search_vector(const gxp_search *s, const double *x, double d[3]) {
+    int k;
+    for (k = 0; k < 3; k++) d[k] = (x[k] - s->base[k]) * s->unit;
+    return gxp_size(d) + gxp_size(x) * s->unit;
+}
+
+static void gxp_search_init(gxp_search *s, const double *const p[3], double unit) {
+    double d[3][3], e[3];
+    int i, k;
+    s->base = p[0];
+    s->unit = unit;
+    s->far = gxp_size(p[0]) * unit;
+    for (i = 0; i < 3; i++) s->far += gxp_search_vector(s, p[i], d[i]);
+    s->scale[0] = gxp_search_axis(d[1], d[2], s->axis[0]);
+    s->offset[0] = 0;
+    for (i = 1; i < 4; i++) {
+        const double *from = d[i - 1], *to = d[i % 3];
+        for (k = 0; k < 3; k++) e[k] = to[k] - from[k];
+        gxp_search_axis(e, s->axis[0], s->axis[i]);
+        s->scale[i] = gxp_size(e) * s->scale[0];
+        s->offset[i] = s->axis[i][0] * from[0] + s->axis[i][1] * from[1] + s->axis[i][2] * from[2];
+    }
+    for (k = 0; k < 3; k++) {
+        s->low[k] = fmin(p[0][k], fmin(p[1][k], p[2][k]));
+        s->high[k] = fmax(p[0][k], fmax(p[1][k], p[2][k]));
+    }
+}
+
+/* May the triangle meet the box? Overflow: a candidate, which then is out of range. */
+static int gxp_triangle_near_box(const gxp_search *s, const gxp_box *box) {
+    double sum = 0, r = 0, far = 0;
+    int k;
+    for (k = 0; k < 3; k++) {
+        const double c = 0.5 * box->low[k] + 0.5 * box->high[k], h = 0.5 * box->high[k] - 0.5 * box->low[k];
+        if (s->low[k] > box->high[k] || s->high[k] < box->low[k]) return 0;
+        sum += s->axis[0][k] * ((c - s->base[k]) * s->unit);
+        r += fabs(s->axis[0][k]) * (h * s->unit);
+        far += (fabs(c) + h) * s->unit;
+    }
+    far += s->far;
+    return !gxp_is_finite(far) || fabs(sum) <= r + GXP_SEARCH_MARGIN * s->scale[0] * far;
+}
+
+/* May the triangle meet the element? Not if its plane, or one along an edge across it, has the element beyond it. */
+static int gxp_triangle_near_element(const gx_body *body, const gxp_search *s, uint32_t element) {
+    double x[4][3], far = s->far;
+    int i, n;
+    for (n = 0; n < 4; n++) far += gxp_search_vector(s, body->positions + 3 * (size_t)body->complex->elements[4 * (size_t)element + (size_t)n], x[n]);
+    if (!gxp_is_finite(far)) return 1;
+    for (i = 0; i < 4; i++) {
+        const double *axis = s->axis[i], margin = GXP_SEARCH_MARGIN * s->scale[i] * far;
+        int beyond = 0, before = 0;
+        for (n = 0; n < 4; n++) {
+            const double height = axis[0] * x[n][0] + axis[1] * x[n][1] + axis[2] * x[n][2] - s->offset[i];
+            beyond += height > margin;
+            before += height < -margin;
+        }
+        if (beyond == 4 || (i == 0 && before == 4)) return 0;
+    }
+    return 1;
+}
+
+/* Appends to found the elements that the triangle may meet. */
 static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_words *found) {
-    double a[3], b[3], n[3], scale;
+    gxp_search search;
     uint32_t stack[128], depth = 0, i;
     gx_result result = GX_OK;
-    int k;
-    for (k = 0; k < 3; k++) { a[k] = p[1][k] - p[0][k]; b[k] = p[2][k] - p[0][k]; }
-    for (k = 0; k < 3; k++) n[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-    scale = (fabs(a[0]) + fabs(a[1]) + fabs(a[2])) * (fabs(b[0]) + fabs(b[1]) + fabs(b[2]));
+    gxp_search_init(&search, p, ldexp(1, body->complex->shift));
     stack[depth++] = 0;
     while (depth > 0 && result == GX_OK) {
         const gxp_box *box = &body->boxes[stack[--depth]];
-        if (!gxp_triangle_near_box(p, n, scale, box)) continue;
+        if (!gxp_triangle_near_box(&search, box)) continue;
         if (box->count == 0) { stack[depth++] = box->first + 1; stack[depth++] = box->first; }
-        for (i = 0; i < box->count && result == GX_OK; i++) result = gxp_push(body, found, body->box_elements[box->first + i]);
+        for (i = 0; i < box->count && result == GX_OK; i++) {
+            const uint32_t element = body->box_elements[box->first + i];
+            if (gxp_triangle_near_element(body, &search, element)) result = gxp_push(body, found, element);
+        }
     }
     return result;
 }
@@ -709,7 +781,6 @@ static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_
 /* >>create --------------------------------------------------------------------------------------------------------------- */
 
 static const uint8_t gxp_edge_nodes[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
-static const uint8_t gxp_outward[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};     /* nodes of the face opposite to each */
 
 static int gxp_local_node(const gx_body *body, uint32_t element, uint32_t node) {
     const uint32_t *n = body->complex->elements + 4 * (size_t)element;
@@ -1410,8 +1481,10 @@ static int gxp_element_in_scope(const gx_body *body, uint32_t element) {
 /* A sheet through an edge or node in which alone elements meet separates them there, even if it enters neither. */
 static gx_result gxp_cover_pinches(gx_body *body, gxb_triangle *t, uint32_t element) {
     const gxb_complex *cx = body->complex;
-    uint32_t k;
+    uint32_t k, pinched = 0;
     gx_result result = GX_OK;
+    for (k = 0; k < 4; k++) pinched |= body->node_pinched[cx->elements[4 * element + k]];
+    if (!pinched) return GX_OK;
     for (k = 0; k < 4 && result == GX_OK; k++) {
         const uint32_t node = cx->elements[4 * element + k];
         int covered = 0;
