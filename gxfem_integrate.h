@@ -391,14 +391,18 @@ static inline size_t gxip_packed4(size_t a, size_t b)
    det/120 (a a^T + b b^T + c c^T + s s^T), where s = a + b + c. */
 GXFEM_API void gxi_moments2_add_triangle(gxi_moments2 *m, const double a[3], const double b[3], const double c[3])
 {
-    double det = gxip_determinant(a, b, c), s[3];
-    size_t i, j, at = 0;
-    for (i = 0; i < 3; i++) s[i] = a[i] + b[i] + c[i];
-    m->volume += det / 6;
-    for (i = 0; i < 3; i++) m->first[i] += det / 24 * s[i];
-    for (i = 0; i < 3; i++)
-        for (j = i; j < 3; j++)
-            m->second[at++] += det / 120 * (a[i] * a[j] + b[i] * b[j] + c[i] * c[j] + s[i] * s[j]);
+    const double det = gxip_determinant(a, b, c), sixth = det / 6, quarter = 0.25 * sixth, part = det / 120;
+    const double s[3] = { a[0] + b[0] + c[0], a[1] + b[1] + c[1], a[2] + b[2] + c[2] };
+    m->volume += sixth;
+    m->first[0] += quarter * s[0];
+    m->first[1] += quarter * s[1];
+    m->first[2] += quarter * s[2];
+    m->second[0] += part * (a[0] * a[0] + b[0] * b[0] + c[0] * c[0] + s[0] * s[0]);
+    m->second[1] += part * (a[0] * a[1] + b[0] * b[1] + c[0] * c[1] + s[0] * s[1]);
+    m->second[2] += part * (a[0] * a[2] + b[0] * b[2] + c[0] * c[2] + s[0] * s[2]);
+    m->second[3] += part * (a[1] * a[1] + b[1] * b[1] + c[1] * c[1] + s[1] * s[1]);
+    m->second[4] += part * (a[1] * a[2] + b[1] * b[2] + c[1] * c[2] + s[1] * s[2]);
+    m->second[5] += part * (a[2] * a[2] + b[2] * b[2] + c[2] * c[2] + s[2] * s[2]);
 }
 
 GXFEM_API void gxi_moments2_add(gxi_moments2 *m, const gxi_moments2 *other)
@@ -859,6 +863,16 @@ GXFEM_API void gxi_part_axes(unsigned k, unsigned axes[3])
     memcpy(axes, table[k], sizeof table[k]);
 }
 
+/* At most GXIP_LAMBDA_MAX, and a number: magnitudes are ordered as their bits are. */
+static inline int gxip_is_lambda(double x)
+{
+    const double most = GXIP_LAMBDA_MAX;
+    uint64_t bits, limit;
+    memcpy(&bits, &x, sizeof bits);
+    memcpy(&limit, &most, sizeof limit);
+    return bits << 1 <= limit << 1;
+}
+
 /* The vertex with the largest sum of lambdas; checks those that are referred to. */
 static gx_result gxip_part_vertex(const double *lambdas, size_t lambda_count, const uint32_t *triangles,
                                   size_t triangle_count, unsigned *k)
@@ -870,11 +884,12 @@ static gx_result gxip_part_vertex(const double *lambdas, size_t lambda_count, co
         const double *lambda;
         if (triangles[c] >= lambda_count) return GX_ERROR_INDEX;
         lambda = lambdas + 4 * (size_t)triangles[c];
-        if (!gxip_all_finite(lambda, 4)) return GX_ERROR_NOT_FINITE;
-        for (i = 0; i < 4; i++) {
-            if (fabs(lambda[i]) > GXIP_LAMBDA_MAX) return GX_ERROR_RANGE;
-            sum[i] += lambda[i];
-        }
+        if (!gxip_is_lambda(lambda[0]) || !gxip_is_lambda(lambda[1]) || !gxip_is_lambda(lambda[2]) || !gxip_is_lambda(lambda[3]))
+            return gxip_all_finite(lambda, 4) ? GX_ERROR_RANGE : GX_ERROR_NOT_FINITE;
+        sum[0] += lambda[0];
+        sum[1] += lambda[1];
+        sum[2] += lambda[2];
+        sum[3] += lambda[3];
     }
     for (i = 1; i < 4; i++)
         if (sum[i] > sum[best]) best = (unsigned)i;
@@ -898,37 +913,60 @@ static void gxip_limit_sum(gxi_moments2 *m, const double lower[3], double limit)
     gxi_moments2_translate(m, lower);
 }
 
+/* What a part's corners span: their box and the largest sum of their coordinates */
+typedef struct gxip_span {
+    double lower[3], upper[3], largest_sum;
+} gxip_span;
+
+static inline void gxip_span_along(gxip_span *span, int d, double x)
+{
+    span->lower[d] = x < span->lower[d] ? x : span->lower[d];
+    span->upper[d] = x > span->upper[d] ? x : span->upper[d];
+}
+
+static inline void gxip_span_add(gxip_span *span, const double p[3])
+{
+    const double sum = p[0] + p[1] + p[2];
+    gxip_span_along(span, 0, p[0]);
+    gxip_span_along(span, 1, p[1]);
+    gxip_span_along(span, 2, p[2]);
+    span->largest_sum = sum > span->largest_sum ? sum : span->largest_sum;
+}
+
+static inline void gxip_part_corner(const double lambda[4], const unsigned axes[3], double p[3])
+{
+    p[0] = lambda[axes[0]];
+    p[1] = lambda[axes[1]];
+    p[2] = lambda[axes[2]];
+}
+
 GXFEM_API gx_result gxi_part_moments(const double *lambdas, size_t lambda_count, const uint32_t *triangles,
                                      size_t triangle_count, unsigned *k, gxi_moments2 *reference)
 {
-    double p[3][3], lower[3] = { 0, 0, 0 }, upper[3] = { 0, 0, 0 }, largest_sum = 0;
+    double p[3][3];
     unsigned axes[3], vertex;
+    gxip_span span;
     gxi_moments2 m;
     gx_result result;
-    size_t t, i, d;
+    size_t t, i;
     if (!lambdas || !triangles || !k || !reference) return GX_ERROR_ARGUMENT;
     if (lambda_count == 0 || triangle_count == 0) return GX_ERROR_EMPTY;
     result = gxip_part_vertex(lambdas, lambda_count, triangles, triangle_count, &vertex);
     if (result != GX_OK) return result;
     gxi_part_axes(vertex, axes);
     memset(&m, 0, sizeof m);
+    gxip_part_corner(lambdas + 4 * (size_t)triangles[0], axes, span.lower);
+    memcpy(span.upper, span.lower, sizeof span.upper);
+    span.largest_sum = span.lower[0] + span.lower[1] + span.lower[2];
     for (t = 0; t < triangle_count; t++) {
         for (i = 0; i < 3; i++) {
-            int first = t == 0 && i == 0;
-            double sum = 0;
-            for (d = 0; d < 3; d++) {
-                double x = lambdas[4 * (size_t)triangles[3 * t + i] + axes[d]];
-                p[i][d] = x;
-                sum += x;
-                if (first || x < lower[d]) lower[d] = x;
-                if (first || x > upper[d]) upper[d] = x;
-            }
-            if (first || sum > largest_sum) largest_sum = sum;
+            gxip_part_corner(lambdas + 4 * (size_t)triangles[3 * t + i], axes, p[i]);
+            gxip_span_add(&span, p[i]);
         }
         gxi_moments2_add_triangle(&m, p[0], p[1], p[2]);
     }
-    gxi_moments2_repair(&m, lower, upper);
-    gxip_limit_sum(&m, lower, largest_sum);
+    gxi_moments2_repair(&m, span.lower, span.upper);
+    gxip_limit_sum(&m, span.lower, span.largest_sum);
     *reference = m;
     *k = vertex;
     return GX_OK;
