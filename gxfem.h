@@ -2359,10 +2359,8 @@ static void gxp_clear_boundary(gx_body *body, int other_element) {
     body->triangles.count = 0;
 }
 
-static gx_result gxp_add_boundary_point(gx_body *body, uint32_t element, uint32_t point, uint32_t *index) {
-    const uint32_t slot = point < body->point_slot.count ? body->point_slot.data[point] : GXP_NONE;
+static gx_result gxp_new_boundary_point(gx_body *body, uint32_t element, uint32_t point, uint32_t *index) {
     gx_result result = GX_OK;
-    if (slot < body->list.count && body->list.data[slot] == point) { *index = slot; return GX_OK; }
     if (point >= body->point_slot.count) {
         result = gxp_words_room(body, &body->point_slot, body->complex->point_count - body->point_slot.count);
         if (result != GX_OK) return result;
@@ -2378,19 +2376,25 @@ static gx_result gxp_add_boundary_point(gx_body *body, uint32_t element, uint32_
     return GX_OK;
 }
 
+static gx_result gxp_add_boundary_point(gx_body *body, uint32_t element, uint32_t point, uint32_t *index) {
+    *index = point < body->point_slot.count ? body->point_slot.data[point] : GXP_NONE;
+    return *index < body->list.count && body->list.data[*index] == point ? GX_OK : gxp_new_boundary_point(body, element, point, index);
+}
+
 /* Adds a facet as a fan of triangles, outward from the leaf. */
 static gx_result gxp_add_boundary_facet(gx_body *body, uint32_t element, uint32_t facet, uint32_t leaf) {
     gxb_complex *cx = body->complex;
     const int inward = cx->facets[facet].leaf[0] == leaf;
     uint32_t e0, en, i, corner[3] = {0, 0, 0};
     gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
+    if (result == GX_OK) result = gxp_words_room(body, &body->triangles, 3 * (size_t)en);
     for (i = 0; i < en && result == GX_OK; i++) {
         const uint32_t e = cx->pool[e0 + i];
+        uint32_t *triangle = body->triangles.data + body->triangles.count;
         result = gxp_add_boundary_point(body, element, cx->edges[e >> 1].v[e & 1], &corner[i < 2 ? i : 2]);
-        if (i < 2 || result != GX_OK) continue;
-        result = gxp_push(body, &body->triangles, corner[0]);
-        if (result == GX_OK) result = gxp_push(body, &body->triangles, corner[inward ? 2 : 1]);
-        if (result == GX_OK) result = gxp_push(body, &body->triangles, corner[inward ? 1 : 2]);
+        if (i < 2) continue;
+        triangle[0] = corner[0]; triangle[inward ? 2 : 1] = corner[1]; triangle[inward ? 1 : 2] = corner[2];
+        body->triangles.count += 3;
         corner[1] = corner[2];
     }
     return result;
