@@ -398,10 +398,8 @@ typedef struct gxp_box { double low[3], high[3]; uint32_t first, count; } gxp_bo
 typedef struct gxp_saved_cell { uint32_t index; gxp_cell cell; } gxp_saved_cell;   /* as they were when the cut began */
 typedef struct gxp_saved_leaf { uint32_t index; gxp_leaf leaf; } gxp_saved_leaf;
 
-typedef struct gxp_pair { uint32_t node, cell; } gxp_pair;
-typedef struct gxp_link { uint32_t face, other, facet; } gxp_link;       /* a piece of a face, and the cell behind it */
-
 typedef struct gxp_words { uint32_t *data, count, capacity; } gxp_words;   /* growing array of indices */
+typedef struct gxp_keys { uint64_t *data; uint32_t count, capacity; } gxp_keys;     /* of pairs of indices, the first << 32 */
 
 typedef struct gxp_surface_record { uint32_t label, map; } gxp_surface_record;  /* its first triangle's label; its first map, or GXP_NONE */
 
@@ -524,8 +522,10 @@ struct gx_body {
     gxp_words fresh;                /* pieces of touched cells: their copies and integrals are to be found */
     gxp_words removed, dead, list;  /* leaves that solids removed, copies without cells */
     gxp_words pinches;              /* nodes at which sheets separated what meets there only */
-    gxp_pair *pairs; uint32_t pair_count, pair_capacity;
-    gxp_link *links; uint32_t link_count, link_capacity;
+    uint32_t *cell_fresh; uint32_t cell_fresh_capacity;     /* cells: index in fresh, where it is there */
+    gxp_keys pairs;                 /* node and fresh cell */
+    gxp_keys links;                 /* of fresh cells in turn: the cell behind a piece of a face, and that facet; sorted */
+    gxp_words link_first;           /* fresh.count + 1, into links */
 };
 
 /* >>memory -------------------------------------------------------------------------------------------------------------- */
@@ -590,6 +590,52 @@ static void gxp_sort_unique(gxp_words *w) {
     gxp_sort_by_bits(w->data, w->count, bit);
     for (i = 0; i < w->count; i++) if (n == 0 || w->data[i] != w->data[n - 1]) w->data[n++] = w->data[i];
     w->count = n;
+}
+
+#define GXP_FIRST(key) ((uint32_t)((key) >> 32))
+#define GXP_SECOND(key) ((uint32_t)(key))
+
+static gx_result gxp_keys_room(gx_body *body, gxp_keys *keys, size_t extra) {
+    return gxp_reserve(&body->allocator, &keys->data, sizeof *keys->data, keys->count, &keys->capacity, extra);
+}
+
+static gx_result gxp_push_key(gx_body *body, gxp_keys *keys, uint32_t first, uint32_t second) {
+    const gx_result result = gxp_keys_room(body, keys, 1);
+    if (result == GX_OK) keys->data[keys->count++] = (uint64_t)first << 32 | second;
+    return result;
+}
+
+static void gxp_sort_few_keys(uint64_t *key, uint32_t count) {
+    uint32_t i, j;
+    for (i = 1; i < count; i++) {
+        const uint64_t k = key[i];
+        for (j = i; j > 0 && key[j - 1] > k; j--) key[j] = key[j - 1];
+        key[j] = k;
+    }
+}
+
+/* Sorts keys from..., ascending: few by insertion, many by digits of 8 bits from the lowest on, but those in which all agree [radix sort,
+   Knuth vol. 3, 5.2.5]. */
+static gx_result gxp_sort_keys(gx_body *body, gxp_keys *keys, uint32_t from) {
+    const uint32_t n = keys->count - from;
+    const gx_result result = n > 64 ? gxp_keys_room(body, keys, n) : GX_OK;
+    uint64_t *source = keys->data + from, *target = source + n, differ = 0;
+    uint32_t shift, i;
+    if (result != GX_OK) return result;
+    if (n <= 64) { gxp_sort_few_keys(source, n); return GX_OK; }
+    for (i = 1; i < n; i++) differ |= source[i] ^ source[0];
+    for (shift = 0; shift < 64; shift += 8) {
+        uint32_t place[257] = {0};
+        uint64_t *const sorted = target;
+        if (!(differ >> shift & 255)) continue;
+        for (i = 0; i < n; i++) place[1 + (source[i] >> shift & 255)]++;
+        for (i = 0; i < 256; i++) place[i + 1] += place[i];
+        for (i = 0; i < n; i++) target[place[source[i] >> shift & 255]++] = source[i];
+        target = source;
+        source = sorted;
+    }
+    if (source != keys->data + from) memcpy(keys->data + from, source, n * sizeof *source);
+    return GX_OK;
 }
 
 static gx_result gxp_fail(gx_failure *failure, gx_result result, size_t index, size_t surface) {
@@ -944,7 +990,8 @@ static gx_result gxp_reserve_beside_cells(gx_body *body, uint32_t **words, uint3
 static gx_result gxp_reserve_cells(gx_body *body, size_t extra) {
     gx_result r = gxp_reserve(&body->allocator, &body->cells, sizeof *body->cells, body->cell_count, &body->cell_capacity, extra);
     if (r == GX_OK) r = gxp_reserve_beside_cells(body, &body->cell_stamp, &body->cell_stamp_capacity);
-    return r == GX_OK ? gxp_reserve_beside_cells(body, &body->cell_saved, &body->cell_saved_capacity) : r;
+    if (r == GX_OK) r = gxp_reserve_beside_cells(body, &body->cell_saved, &body->cell_saved_capacity);
+    return r == GX_OK ? gxp_reserve_beside_cells(body, &body->cell_fresh, &body->cell_fresh_capacity) : r;
 }
 
 static void *gxp_table(gx_body *body, size_t count, size_t item) {
@@ -1101,6 +1148,7 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     gxp_release(&a, body->cells, body->cell_capacity * sizeof *body->cells);
     gxp_release(&a, body->cell_stamp, body->cell_stamp_capacity * sizeof *body->cell_stamp);
     gxp_release(&a, body->cell_saved, body->cell_saved_capacity * sizeof *body->cell_saved);
+    gxp_release(&a, body->cell_fresh, body->cell_fresh_capacity * sizeof *body->cell_fresh);
     gxp_release(&a, body->leaves, body->leaf_capacity * sizeof *body->leaves);
     gxp_release(&a, body->copy_node, body->copy_capacity * sizeof *body->copy_node);
     gxp_release(&a, body->displacement, (size_t)body->displacement_capacity * 3 * sizeof(double));
@@ -1121,8 +1169,9 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     gxp_release(&a, body->regions, body->region_capacity * sizeof *body->regions);
     gxp_release(&a, body->saved_cells, body->saved_cell_capacity * sizeof *body->saved_cells);
     gxp_release(&a, body->saved_leaves, body->saved_leaf_capacity * sizeof *body->saved_leaves);
-    gxp_release(&a, body->pairs, body->pair_capacity * sizeof *body->pairs);
-    gxp_release(&a, body->links, body->link_capacity * sizeof *body->links);
+    gxp_release(&a, body->pairs.data, body->pairs.capacity * sizeof *body->pairs.data);
+    gxp_release(&a, body->links.data, body->links.capacity * sizeof *body->links.data);
+    gxp_words_free(body, &body->link_first);
     gxp_release(&a, body->cell_volume, body->cell_volume_capacity * sizeof(double));
     gxp_release(&a, body->fragments, (size_t)body->fragment_capacity * GXP_FRAGMENT_ARRAYS * sizeof(double));
     gxp_release(&a, body->texture, (2 * n + 1) * sizeof(float));
@@ -1744,21 +1793,23 @@ typedef struct gxp_fine_point { gxb_num c[4]; gxb_limb limbs[4][32]; } gxp_fine_
 
 /* >>links: pieces of element faces that no wall covers ------------------------------------------------------------------------ */
 
-/* Twice the area vector of the polygon of points in body->seeds, from their approximate positions; returns a bound for its error. */
-static double gxp_rough_area(const gxb_complex *cx, const gxp_words *points, double area[3]) {
-    const gxb_ball *o = &cx->points[points->data[0]].ball;
-    double error = 0, a[3], b[3] = {0, 0, 0};
+/* Twice the area of a polygon of points, from their approximate positions; *error: a bound for its error. */
+static double gxp_rough_area(const gxb_complex *cx, const uint32_t *points, uint32_t count, double *error) {
+    const gxb_ball *o = &cx->points[points[0]].ball;
+    double area[3] = {0, 0, 0}, a[3], b[3] = {0, 0, 0};
     uint32_t i;
     int k;
-    area[0] = area[1] = area[2] = 0;
-    for (i = 1; i < points->count; i++) {
-        const gxb_ball *p = &cx->points[points->data[i]].ball;
+    *error = 0;
+    for (i = 1; i < count; i++) {
+        const gxb_ball *p = &cx->points[points[i]].ball;
         double size = 0;
         for (k = 0; k < 3; k++) { a[k] = b[k]; b[k] = p->x[k] - o->x[k]; size += fabs(a[k]) + fabs(b[k]); }
-        for (k = 0; k < 3; k++) area[k] += a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-        error += size * (size * 1e-15 + 4 * (p->error + o->error));
+        area[0] += a[1] * b[2] - a[2] * b[1];
+        area[1] += a[2] * b[0] - a[0] * b[2];
+        area[2] += a[0] * b[1] - a[1] * b[0];
+        *error += size * (size * 1e-15 + 4 * (p->error + o->error));
     }
-    return error;
+    return sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
 }
 
 /* The polygon of the points in body->seeds as a share of the face opposite to node k, in numbers that hold any size: areas in the
@@ -1793,7 +1844,8 @@ static gx_result gxp_facet_points(gx_body *body, uint32_t facet) {
     uint32_t e0, en, i;
     gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
     body->seeds.count = 0;
-    for (i = 0; i < en && result == GX_OK; i++) result = gxp_push(body, &body->seeds, cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1]);
+    if (result == GX_OK) result = gxp_words_room(body, &body->seeds, en);
+    for (i = 0; i < en && result == GX_OK; i++) body->seeds.data[body->seeds.count++] = cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1];
     return result;
 }
 
@@ -1802,27 +1854,6 @@ static uint32_t gxp_face_element(const gxb_complex *cx, uint32_t face, uint32_t 
     const uint32_t element = cx->face_elements[2 * face] != GXB_NONE ? cx->face_elements[2 * face] : cx->face_elements[2 * face + 1];
     for (*k = 0; cx->element_faces[4 * element + *k] != face; ++*k) {}
     return element;
-}
-
-/* Area of a facet as a share of the mesh face that it is part of, roughly, with a bound for its error. */
-static gx_result gxp_rough_share(gx_body *body, uint32_t facet, double *share, double *error) {
-    uint32_t k, i;
-    double part[3], whole[3], size;
-    const uint32_t element = gxp_face_element(body->complex, body->complex->facets[facet].face, &k);
-    gx_result result = GX_OK;
-    body->seeds.count = 0;
-    for (i = 0; i < 4 && result == GX_OK; i++) if (i != k) result = gxp_push(body, &body->seeds, body->complex->elements[4 * element + i]);
-    if (result != GX_OK) return result;
-    *error = gxp_rough_area(body->complex, &body->seeds, whole);
-    size = sqrt(whole[0] * whole[0] + whole[1] * whole[1] + whole[2] * whole[2]);
-    result = gxp_facet_points(body, facet);
-    if (result != GX_OK) return result;
-    *error += gxp_rough_area(body->complex, &body->seeds, part);
-    *share = sqrt(part[0] * part[0] + part[1] * part[1] + part[2] * part[2]);
-    if (!(*error < 0.5 * size) || !(*share < 8 * size)) { *share = 0; *error = 1; return GX_OK; }    /* nothing is known */
-    *share /= size;
-    *error = 4 * *error / size;
-    return GX_OK;
 }
 
 /* Appends the facets into which this one has been divided. */
@@ -1834,64 +1865,83 @@ static gx_result gxp_push_pieces(gx_body *body, uint32_t facet, gxp_words *out) 
     return result == GX_OK ? gxp_push_pieces(body, child + 1, out) : result;
 }
 
-/* Is the facet a link? */
+/* Is the facet, undivided, a link? */
 static int gxp_is_link(const gx_body *body, uint32_t facet) {
     const gxb_facet *f = &body->complex->facets[facet];
     return !f->wall && gxp_is_kept(body, f->leaf[0]) && gxp_is_kept(body, f->leaf[1]);
 }
 
-static int gxp_compare_links(const void *a, const void *b) {
-    const gxp_link *p = (const gxp_link *)a, *q = (const gxp_link *)b;
-    if (p->face != q->face) return p->face < q->face ? -1 : 1;
-    if (p->other != q->other) return p->other < q->other ? -1 : 1;
-    return p->facet < q->facet ? -1 : p->facet > q->facet;
-}
-
-/* Collects the pieces of faces by which a cell hangs together with others; those of one link stand together. Links to cells with a stamp
-   are left out. */
-static gx_result gxp_list_links(gx_body *body, uint32_t cell) {
+/* Appends the links of a cell to body->links, those to one cell together. */
+static gx_result gxp_list_links_of(gx_body *body, uint32_t cell) {
     gxb_complex *cx = body->complex;
+    const uint32_t from = body->links.count;
     uint32_t leaf, first, count, i;
-    gx_result result = GX_OK;
-    body->link_count = 0;
+    gx_result result = gxb_complex_open_element(cx, body->cells[cell].element);
     for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next) {
         result = gxb_leaf_facets(cx, leaf, &first, &count);
+        if (result == GX_OK) result = gxp_keys_room(body, &body->links, count);
         for (i = 0; i < count && result == GX_OK; i++) {
             const uint32_t facet = cx->pool[first + i];
             const gxb_facet *f = &cx->facets[facet];
-            gxp_link *link;
             if (f->face == GXB_NONE || !gxp_is_link(body, facet)) continue;
-            result = gxp_reserve(&body->allocator, &body->links, sizeof *body->links, body->link_count, &body->link_capacity, 1);
-            if (result != GX_OK) break;
-            link = &body->links[body->link_count];
-            link->face = f->face; link->facet = facet;
-            link->other = body->leaves[f->leaf[f->leaf[0] == leaf]].cell;
-            body->link_count += body->cell_stamp[link->other] != body->stamp;
+            body->links.data[body->links.count++] = (uint64_t)body->leaves[f->leaf[f->leaf[0] == leaf]].cell << 32 | facet;
         }
     }
-    if (body->link_count > 1) qsort(body->links, body->link_count, sizeof *body->links, gxp_compare_links);
+    return result == GX_OK ? gxp_sort_keys(body, &body->links, from) : result;
+}
+
+/* Lists the links of all fresh cells. */
+static gx_result gxp_list_links(gx_body *body) {
+    uint32_t i;
+    gx_result result = gxp_keys_room(body, &body->links, 8 * (size_t)body->fresh.count);
+    body->links.count = body->link_first.count = 0;
+    for (i = 0; i < body->fresh.count && result == GX_OK; i++) {
+        body->cell_fresh[body->fresh.data[i]] = i;
+        result = gxp_push(body, &body->link_first, body->links.count);
+        if (result == GX_OK) result = gxp_list_links_of(body, body->fresh.data[i]);
+    }
+    return result == GX_OK ? gxp_push(body, &body->link_first, body->links.count) : result;
+}
+
+/* Index of a cell among the fresh ones, GXP_NONE: it is none of them. */
+static uint32_t gxp_fresh_index(const gx_body *body, uint32_t cell) {
+    const uint32_t i = body->cell_fresh[cell];
+    return i < body->fresh.count && body->fresh.data[i] == cell ? i : GXP_NONE;
+}
+
+/* Share of the link first ... end-1 of its face, roughly, with a bound for its error. */
+static gx_result gxp_rough_share(gx_body *body, uint32_t first, uint32_t end, double *share, double *error) {
+    const gxb_complex *cx = body->complex;
+    uint32_t k, i, n = 0, node[3];
+    const uint32_t element = gxp_face_element(cx, cx->facets[GXP_SECOND(body->links.data[first])].face, &k);
+    double whole, whole_error, part_error;
+    gx_result result = GX_OK;
+    for (i = 0; i < 4; i++) if (i != k) node[n++] = cx->elements[4 * element + i];
+    whole = gxp_rough_area(cx, node, 3, &whole_error);
+    *share = *error = 0;
+    for (; first < end && result == GX_OK; first++) {
+        result = gxp_facet_points(body, GXP_SECOND(body->links.data[first]));
+        if (result == GX_OK) *share += gxp_rough_area(cx, body->seeds.data, body->seeds.count, &part_error);
+        if (result == GX_OK) *error += part_error + whole_error;
+    }
+    if (!(*error < 0.5 * whole) || !(*share < 8 * whole)) { *share = 0; *error = 1; return result; }    /* nothing is known */
+    *share /= whole;
+    *error = 4 * *error / whole;
     return result;
 }
 
-/* Share of the link of pieces first ... end-1 of its face: roughly where it is certainly neither the smallest so far nor to be severed,
-   else exactly. */
+/* Share of the link first ... end-1 of its face: roughly where it is certainly neither the smallest so far nor to be severed, else exactly. */
 static gx_result gxp_weigh_link(gxp_cut *cut, uint32_t first, uint32_t end, double *share) {
     gx_body *body = cut->body;
-    double part = 0, error = 0, errors = 0;
-    uint32_t i, k, element;
-    gx_result result = GX_OK;
-    *share = 0;
-    for (i = first; i < end && result == GX_OK; i++) {
-        result = gxp_rough_share(body, body->links[i].facet, &part, &error);
-        *share += part;
-        errors += error;
-    }
-    if (result != GX_OK || (*share - errors > cut->report.min_link_ratio && *share - errors > cut->desc->sever_below)) return result;
-    element = gxp_face_element(body->complex, body->links[first].face, &k);
+    double error;
+    uint32_t k, element;
+    gx_result result = gxp_rough_share(body, first, end, share, &error);
+    if (result != GX_OK || (*share - error > cut->report.min_link_ratio && *share - error > cut->desc->sever_below)) return result;
+    element = gxp_face_element(body->complex, body->complex->facets[GXP_SECOND(body->links.data[first])].face, &k);
     result = gxb_complex_open_element(body->complex, element);
     *share = 0;
-    for (i = first; i < end && result == GX_OK; i++) {
-        result = gxp_facet_points(body, body->links[i].facet);
+    for (; first < end && result == GX_OK; first++) {
+        result = gxp_facet_points(body, GXP_SECOND(body->links.data[first]));
         if (result == GX_OK) *share += gxp_fine_share(body, element, k);
     }
     return result;
@@ -1906,25 +1956,22 @@ static gx_result gxp_judge_link(gxp_cut *cut, uint32_t first, uint32_t end) {
     if (share < cut->report.min_link_ratio) cut->report.min_link_ratio = share;
     if (share >= cut->desc->sever_below) return GX_OK;
     cut->report.severed_links++;
-    for (; first < end && result == GX_OK; first++) result = gxb_complex_set_wall(body->complex, body->links[first].facet);
+    for (; first < end && result == GX_OK; first++) result = gxb_complex_set_wall(body->complex, GXP_SECOND(body->links.data[first]));
     return result;
 }
 
-/* The links of all pieces of touched cells, but whole faces. All pieces of a face between the same two cells count as one link. */
+/* Weighs the links of fresh cells, but whole faces. All pieces of a face between the same two cells count as one link. */
 static gx_result gxp_weigh_links(gxp_cut *cut) {
     gx_body *body = cut->body;
     uint32_t i, first, end;
     gx_result result = GX_OK;
-    body->stamp++;
-    for (i = 0; i < body->fresh.count && result == GX_OK; i++) {
-        result = gxp_list_links(body, body->fresh.data[i]);
-        for (first = 0; first < body->link_count && result == GX_OK; first = end) {
-            const gxp_link *link = &body->links[first];
-            for (end = first + 1; end < body->link_count && body->links[end].face == link->face && body->links[end].other == link->other; end++) {}
-            if (body->complex->face_facet[link->face] != link->facet) result = gxp_judge_link(cut, first, end);
+    for (i = 0; i < body->fresh.count && result == GX_OK; i++)
+        for (first = body->link_first.data[i]; first < body->link_first.data[i + 1] && result == GX_OK; first = end) {
+            const uint32_t other = GXP_FIRST(body->links.data[first]), facet = GXP_SECOND(body->links.data[first]), j = gxp_fresh_index(body, other);
+            for (end = first + 1; end < body->link_first.data[i + 1] && GXP_FIRST(body->links.data[end]) == other; end++) {}
+            if (j < i || body->complex->face_facet[body->complex->facets[facet].face] == facet) continue;   /* weighed already, or whole */
+            result = gxp_judge_link(cut, first, end);
         }
-        body->cell_stamp[body->fresh.data[i]] = body->stamp;
-    }
     return result;
 }
 
@@ -2049,23 +2096,20 @@ static gx_result gxp_touch_around(gx_body *body, uint32_t leaf) {
 /* Severed links separate cells that may not have been touched before. */
 static gx_result gxp_touch_severed(gxp_cut *cut) {
     gx_body *body = cut->body;
-    gx_result result;
-    uint32_t i, known = body->fresh.count;
-    result = gxp_collect_touched(cut);
-    for (i = 0; i < known; i++) body->cell_stamp[body->fresh.data[i]] = body->stamp + 1;
-    body->stamp++;
+    gx_result result = gxp_collect_touched(cut);
+    uint32_t i;
     for (i = 0; i < body->touched.count && result == GX_OK; i++) {
         const uint32_t cell = body->touched.data[i];
-        if (body->cells[cell].kept && body->cell_stamp[cell] != body->stamp) result = gxp_push(body, &body->fresh, cell);
+        if (body->cells[cell].kept && gxp_fresh_index(body, cell) == GXP_NONE) result = gxp_push(body, &body->fresh, cell);
     }
-    return result;
+    return result == GX_OK ? gxp_list_links(body) : result;
 }
 
-/* Divides all touched cells. Leaves body->touched as it was and appends the pieces to body->fresh. */
+/* Divides all touched cells. Leaves body->touched as it was and makes body->fresh of the pieces. */
 static gx_result gxp_divide_cells(gxp_cut *cut) {
     gx_body *body = cut->body;
     uint32_t i, last = GXP_NONE;
-    gx_result result = GX_OK;
+    gx_result result = gxp_reserve(&body->allocator, &body->saved_cells, sizeof *body->saved_cells, 0, &body->saved_cell_capacity, body->touched.count);
     body->fresh.count = 0;
     for (i = 0; i < body->touched.count && result == GX_OK; i++) {
         const uint32_t element = body->cells[body->touched.data[i]].element;
@@ -2087,7 +2131,9 @@ static gx_result gxp_visit_cell(gx_body *body, uint32_t cell) {
 /* Visits what lies across one piece of an element's face. */
 static gx_result gxp_cross_facet(gx_body *body, uint32_t facet, uint32_t leaf) {
     const gxb_facet *f = &body->complex->facets[facet];
-    return gxp_is_link(body, facet) ? gxp_visit_cell(body, body->leaves[f->leaf[f->leaf[0] == leaf]].cell) : GX_OK;
+    const uint32_t other = f->leaf[f->leaf[0] == leaf];
+    if (other == GXB_NONE || body->cell_stamp[body->leaves[other].cell] == body->stamp || !gxp_is_link(body, facet)) return GX_OK;
+    return gxp_visit_cell(body, body->leaves[other].cell);
 }
 
 /* Visits the cells that links join to the cell of a whole element across the face opposite to local node k. */
@@ -2104,13 +2150,23 @@ static gx_result gxp_cross_whole_face(gx_body *body, uint32_t element, uint32_t 
     return result;
 }
 
+/* Visits the cells that links of a fresh cell join to it, but across the face opposite to the node. */
+static gx_result gxp_cross_links(gx_body *body, uint32_t index, uint32_t opposite) {
+    uint32_t i;
+    gx_result result = GX_OK;
+    for (i = body->link_first.data[index]; i < body->link_first.data[index + 1] && result == GX_OK; i++)
+        if (body->complex->facets[GXP_SECOND(body->links.data[i])].face != opposite) result = gxp_visit_cell(body, GXP_FIRST(body->links.data[i]));
+    return result;
+}
+
 /* Visits the cells around the node that links join to this one. */
 static gx_result gxp_cross_faces(gx_body *body, uint32_t cell, uint32_t node) {
     gxb_complex *cx = body->complex;
-    const uint32_t element = body->cells[cell].element;
+    const uint32_t element = body->cells[cell].element, fresh = gxp_fresh_index(body, cell);
     const uint32_t local = (uint32_t)gxp_local_node(body, element, node), opposite = cx->element_faces[4 * element + local];
     uint32_t leaf, first, count, i, k;
     gx_result result = GX_OK;
+    if (fresh != GXP_NONE) return gxp_cross_links(body, fresh, opposite);
     for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next) {
         if (cx->leaves[leaf].facet_count == 0) {
             for (k = 0; k < 4 && result == GX_OK; k++) if (k != local) result = gxp_cross_whole_face(body, element, k);
@@ -2252,25 +2308,11 @@ static gx_result gxp_set_copy(gx_body *body, uint32_t node, uint32_t copy) {
     return result;
 }
 
-static int gxp_compare_pairs(const void *a, const void *b) {
-    const gxp_pair *p = (const gxp_pair *)a, *q = (const gxp_pair *)b;
-    if (p->node != q->node) return p->node < q->node ? -1 : 1;
-    return p->cell < q->cell ? -1 : p->cell > q->cell;
-}
-
-static gx_result gxp_push_pair(gx_body *body, uint32_t node, uint32_t cell) {
-    const gx_result result = gxp_reserve(&body->allocator, &body->pairs, sizeof *body->pairs, body->pair_count, &body->pair_capacity, 1);
-    if (result != GX_OK) return result;
-    body->pairs[body->pair_count].node = node;
-    body->pairs[body->pair_count++].cell = cell;
-    return GX_OK;
-}
-
 static gx_result gxp_pair_cell(gx_body *body, uint32_t cell) {
+    const uint32_t *node = body->complex->elements + 4 * (size_t)body->cells[cell].element;
     uint32_t k;
-    gx_result result = GX_OK;
-    for (k = 0; k < 4 && result == GX_OK; k++)
-        result = gxp_push_pair(body, body->complex->elements[4 * body->cells[cell].element + k], cell);
+    gx_result result = gxp_keys_room(body, &body->pairs, 4);
+    for (k = 0; k < 4 && result == GX_OK; k++) result = gxp_push_key(body, &body->pairs, node[k], cell);
     return result;
 }
 
@@ -2280,7 +2322,7 @@ static gx_result gxp_pair_node(gx_body *body, uint32_t node) {
     gx_result result = GX_OK;
     for (j = body->node_start[node]; j < body->node_start[node + 1]; j++)
         for (cell = body->node_elements[j]; cell != GXP_NONE && result == GX_OK; cell = body->cells[cell].next)
-            if (body->cells[cell].kept) result = gxp_push_pair(body, node, cell);
+            if (body->cells[cell].kept) result = gxp_push_key(body, &body->pairs, node, cell);
     return result;
 }
 
@@ -2289,16 +2331,16 @@ static gx_result gxp_pair_node(gx_body *body, uint32_t node) {
 static gx_result gxp_collect_pairs(gx_body *body) {
     uint32_t i, n;
     gx_result result = GX_OK;
-    body->pair_count = 0;
+    body->pairs.count = 0;
+    result = gxp_keys_room(body, &body->pairs, 8 * (size_t)body->fresh.count);      /* sorting takes as much again */
     for (i = 0; i < body->fresh.count && result == GX_OK; i++) result = gxp_pair_cell(body, body->fresh.data[i]);
     for (i = 0; i < body->touched.count && result == GX_OK; i++)
         if (!body->cells[body->touched.data[i]].kept) result = gxp_pair_cell(body, body->touched.data[i]);
-    for (i = 0, n = body->pair_count; i < n && result == GX_OK; i++)
-        if (body->node_pinched[body->pairs[i].node]) result = gxp_push(body, &body->pinches, body->pairs[i].node);
+    for (i = 0, n = body->pairs.count; i < n && result == GX_OK; i++)
+        if (body->node_pinched[GXP_FIRST(body->pairs.data[i])]) result = gxp_push(body, &body->pinches, GXP_FIRST(body->pairs.data[i]));
     gxp_sort_unique(&body->pinches);
     for (i = 0; i < body->pinches.count && result == GX_OK; i++) result = gxp_pair_node(body, body->pinches.data[i]);
-    if (body->pair_count > 0) qsort(body->pairs, body->pair_count, sizeof *body->pairs, gxp_compare_pairs);
-    return result;
+    return result == GX_OK ? gxp_sort_keys(body, &body->pairs, 0) : result;
 }
 
 static int gxp_contains(const gxp_words *words, uint32_t value) {
@@ -2311,13 +2353,13 @@ static int gxp_contains(const gxp_words *words, uint32_t value) {
    one. Every piece of a component that fell apart contains a cell of a pair. Old copies that lost all cells join body->dead. */
 static gx_result gxp_divide_node(gxp_cut *cut, uint32_t first, uint32_t end) {
     gx_body *body = cut->body;
-    const uint32_t node = body->pairs[first].node;
+    const uint32_t node = GXP_FIRST(body->pairs.data[first]);
     uint32_t i;
     gx_result result = GX_OK;
     body->seeds.count = 0;              /* old copies that a piece has kept */
     body->stamp++;
     for (i = first; i < end && result == GX_OK; i++) {
-        const uint32_t cell = body->pairs[i].cell;
+        const uint32_t cell = GXP_SECOND(body->pairs.data[i]);
         const int k = gxp_local_node(body, body->cells[cell].element, node);
         const uint32_t old = body->cells[cell].copies[k];
         uint32_t copy;
@@ -2331,7 +2373,7 @@ static gx_result gxp_divide_node(gxp_cut *cut, uint32_t first, uint32_t end) {
         }
     }
     for (i = first; i < end && result == GX_OK; i++) {
-        const gxp_cell *cell = &body->cells[body->pairs[i].cell];
+        const gxp_cell *cell = &body->cells[GXP_SECOND(body->pairs.data[i])];
         const uint32_t old = cell->copies[gxp_local_node(body, cell->element, node)];
         if (!cell->kept && !gxp_contains(&body->seeds, old) && !gxp_contains(&body->dead, old)) result = gxp_push(body, &body->dead, old);
     }
@@ -2343,8 +2385,8 @@ static gx_result gxp_divide_nodes(gxp_cut *cut) {
     uint32_t first, end;
     gx_result result = gxp_collect_pairs(body);
     body->dead.count = 0;
-    for (first = 0; first < body->pair_count && result == GX_OK; first = end) {
-        for (end = first; end < body->pair_count && body->pairs[end].node == body->pairs[first].node; end++) {}
+    for (first = 0; first < body->pairs.count && result == GX_OK; first = end) {
+        for (end = first; end < body->pairs.count && GXP_FIRST(body->pairs.data[end]) == GXP_FIRST(body->pairs.data[first]); end++) {}
         result = gxp_divide_node(cut, first, end);
     }
     return result;
@@ -2652,6 +2694,7 @@ static gx_result gxp_arrange(gxp_cut *cut) {
 static gx_result gxp_enrich(gxp_cut *cut) {
     gx_result result = gxp_collect_touched(cut);
     if (result == GX_OK) result = gxp_divide_cells(cut);
+    if (result == GX_OK) result = gxp_list_links(cut->body);
     if (result == GX_OK) result = gxp_weigh_links(cut);
     if (result == GX_OK && cut->report.severed_links > 0) result = gxp_touch_severed(cut);
     return result == GX_OK ? gxp_divide_nodes(cut) : result;
@@ -5316,19 +5359,18 @@ static gx_result gxp_push_neighbours(gx_body *body, uint32_t cell) {
             const gxb_facet *f = &cx->facets[cx->pool[first + i]];
             const uint32_t other = f->leaf[f->leaf[0] == leaf];
             if (!gxp_is_kept(body, other) || body->leaves[other].cell == cell) continue;
-            result = gxp_push_pair(body, f->face == GXB_NONE ? GXP_BESIDE_WALL : f->wall ? GXP_ACROSS_WALL : f->face, body->leaves[other].cell);
+            result = gxp_push_key(body, &body->pairs, f->face == GXB_NONE ? GXP_BESIDE_WALL : f->wall ? GXP_ACROSS_WALL : f->face, body->leaves[other].cell);
         }
     }
     return result;
 }
 
-static uint64_t gxp_hash_neighbours(gx_body *body, const uint64_t *name) {
+static uint64_t gxp_hash_neighbours(const gx_body *body, const uint64_t *name) {
     uint64_t sum = 0;
     uint32_t i;
-    if (body->pair_count > 0) qsort(body->pairs, body->pair_count, sizeof *body->pairs, gxp_compare_pairs);
-    for (i = 0; i < body->pair_count; i++) {
-        if (i > 0 && gxp_compare_pairs(&body->pairs[i], &body->pairs[i - 1]) == 0) continue;
-        sum += gxp_mix(name[body->pairs[i].cell] ^ gxp_mix(body->pairs[i].node));
+    for (i = 0; i < body->pairs.count; i++) {
+        const uint64_t pair = body->pairs.data[i];
+        if (i == 0 || pair != body->pairs.data[i - 1]) sum += gxp_mix(name[GXP_SECOND(pair)] ^ gxp_mix(GXP_FIRST(pair)));
     }
     return sum;
 }
@@ -5356,8 +5398,9 @@ static gx_result gxp_name_cells(gx_body *body, uint64_t *name, uint64_t *next) {
     for (round = 0; round < 3 && result == GX_OK; round++) {
         for (i = 0; i < body->view_cells.count && result == GX_OK; i++) {
             const uint32_t cell = body->view_cells.data[i];
-            body->pair_count = 0;
+            body->pairs.count = 0;
             result = gxp_push_neighbours(body, cell);
+            if (result == GX_OK) result = gxp_sort_keys(body, &body->pairs, 0);
             next[cell] = gxp_mix(name[cell] * 3 + gxp_hash_neighbours(body, name));
         }
         memcpy(name, next, body->cell_count * sizeof *name);
