@@ -2109,7 +2109,7 @@ static gx_result gxp_touch_severed(gxp_cut *cut) {
 static gx_result gxp_divide_cells(gxp_cut *cut) {
     gx_body *body = cut->body;
     uint32_t i, last = GXP_NONE;
-    gx_result result = gxp_reserve(&body->allocator, &body->saved_cells, sizeof *body->saved_cells, 0, &body->saved_cell_capacity, body->touched.count);
+    gx_result result = gxp_reserve(&body->allocator, &body->saved_cells, sizeof *body->saved_cells, 0, &body->saved_cell_capacity, 4 * (size_t)body->touched.count);
     body->fresh.count = 0;
     for (i = 0; i < body->touched.count && result == GX_OK; i++) {
         const uint32_t element = body->cells[body->touched.data[i]].element;
