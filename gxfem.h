@@ -619,9 +619,10 @@ static void gxp_sort_few_keys(uint64_t *key, uint32_t count) {
 static gx_result gxp_sort_keys(gx_body *body, gxp_keys *keys, uint32_t from) {
     const uint32_t n = keys->count - from;
     const gx_result result = n > 64 ? gxp_keys_room(body, keys, n) : GX_OK;
-    uint64_t *source = keys->data + from, *target = source + n, differ = 0;
+    uint64_t *source, *target, differ = 0;
     uint32_t shift, i;
-    if (result != GX_OK) return result;
+    if (result != GX_OK || n < 2) return result;
+    source = keys->data + from; target = source + n;
     if (n <= 64) { gxp_sort_few_keys(source, n); return GX_OK; }
     for (i = 1; i < n; i++) differ |= source[i] ^ source[0];
     for (shift = 0; shift < 64; shift += 8) {
@@ -1865,7 +1866,7 @@ static gx_result gxp_push_pieces(gx_body *body, uint32_t facet, gxp_words *out) 
     return result == GX_OK ? gxp_push_pieces(body, child + 1, out) : result;
 }
 
-/* Is the facet, undivided, a link? */
+/* Is the facet a link? */
 static int gxp_is_link(const gx_body *body, uint32_t facet) {
     const gxb_facet *f = &body->complex->facets[facet];
     return !f->wall && gxp_is_kept(body, f->leaf[0]) && gxp_is_kept(body, f->leaf[1]);
@@ -2109,7 +2110,8 @@ static gx_result gxp_touch_severed(gxp_cut *cut) {
 static gx_result gxp_divide_cells(gxp_cut *cut) {
     gx_body *body = cut->body;
     uint32_t i, last = GXP_NONE;
-    gx_result result = gxp_reserve(&body->allocator, &body->saved_cells, sizeof *body->saved_cells, 0, &body->saved_cell_capacity, 4 * (size_t)body->touched.count);
+    gx_result result = gxp_reserve(&body->allocator, &body->saved_cells, sizeof *body->saved_cells, body->saved_cell_count,
+                                   &body->saved_cell_capacity, 4 * (size_t)body->touched.count);
     body->fresh.count = 0;
     for (i = 0; i < body->touched.count && result == GX_OK; i++) {
         const uint32_t element = body->cells[body->touched.data[i]].element;
