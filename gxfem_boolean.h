@@ -515,7 +515,14 @@ static double gxbp_power(int e) { return gxbp_double((uint64_t)(e + 1023) << 52)
 static int gxbp_exponent_bits(double x) { return (int)((gxbp_bits(x) >> 52) & 0x7ff); }
 static int gxbp_is_finite(double x) { return gxbp_exponent_bits(x) != 0x7ff; }
 static int gxbp_is_zero(double x) { return (gxbp_bits(x) << 1) == 0; }
-static double gxbp_abs(double x) { return gxbp_double(gxbp_bits(x) & ~((uint64_t)1 << 63)); }
+
+static double gxbp_abs(double x) {
+#if defined(__GNUC__)
+    return __builtin_fabs(x);       /* one instruction, where bits would leave the registers of doubles and come back */
+#else
+    return gxbp_double(gxbp_bits(x) & ~((uint64_t)1 << 63));
+#endif
+}
 
 /* floor(log2 |x|) for finite x other than 0, also for denormals */
 static int gxbp_exponent(double x) {
@@ -1006,12 +1013,11 @@ static int gxbp_orient3d_short(const double a[3], const double b[3], const doubl
     int64_t v[12];
     gxbp_signed_wide high = 0;
     gxbp_wide low = 0;
-    int i, k;
+    int k, m = 1, n = 2;
     x[0] = a; x[1] = b; x[2] = c; x[3] = d;
     if (!gxbp_short_integers(x, 4, 3, v)) return GXBP_UNKNOWN;
-    for (i = 0; i < 9; i++) v[i] -= v[9 + i % 3];
-    for (k = 0; k < 3; k++) {
-        const int m = (k + 1) % 3, n = (k + 2) % 3;
+    for (k = 0; k < 3; k++) { v[k] -= v[9 + k]; v[3 + k] -= v[9 + k]; v[6 + k] -= v[9 + k]; }
+    for (k = 0; k < 3; m = n, n = k++) {
         const gxbp_signed_wide minor = (gxbp_signed_wide)v[3 + m] * v[6 + n] - (gxbp_signed_wide)v[3 + n] * v[6 + m];
         const gxbp_signed_wide part = (gxbp_signed_wide)(uint64_t)minor * v[k];
         high += (gxbp_signed_wide)(int64_t)(minor >> 64) * v[k] + (part >> 64);
@@ -1305,11 +1311,12 @@ static GXBP_COLD int gxbp_orient_exact(const gxb_num a[4], const gxb_num b[4], c
 
 /* Orientation of three points in the plane of coordinates i and j; 0: not certain. Bounds as for one component of a cross product. */
 static int gxbp_filter_turn(const gxb_ball *a, const gxb_ball *b, const gxb_ball *c, int i, int j) {
-    double u[3], v[3];
-    const double eu = gxbp_filter_difference(u, a, b), ev = gxbp_filter_difference(v, a, c);
-    const double U = gxbp_max(gxbp_abs(u[i]), gxbp_abs(u[j])), V = gxbp_max(gxbp_abs(v[i]), gxbp_abs(v[j]));
+    const double ui = gxbp_fence(b->x[i] - a->x[i]), uj = gxbp_fence(b->x[j] - a->x[j]);
+    const double vi = gxbp_fence(c->x[i] - a->x[i]), vj = gxbp_fence(c->x[j] - a->x[j]);
+    const double U = gxbp_max(gxbp_abs(ui), gxbp_abs(uj)), V = gxbp_max(gxbp_abs(vi), gxbp_abs(vj));
+    const double eu = 2 * (a->error + b->error) + 2 * GXBP_U * U + GXBP_TINY, ev = 2 * (a->error + c->error) + 2 * GXBP_U * V + GXBP_TINY;
     const double bound = 4 * (U * ev + V * eu + eu * ev) + 32 * GXBP_U * U * V + GXBP_TINY;
-    return gxbp_filter_sign(u[i] * v[j] - u[j] * v[i], bound);
+    return gxbp_filter_sign(ui * vj - uj * vi, bound);
 }
 
 GXFEM_API int gxb_orient_in_plane(const gxb_point *a, const gxb_point *b, const gxb_point *c, const gxb_plane *plane) {
@@ -4090,16 +4097,15 @@ static int gxbp_stop(gxb_boolean *b, gx_result result) {
     return 0;
 }
 
-static int gxbp_room(gxb_boolean *b, void *array, size_t item, uint32_t count, uint32_t *capacity, size_t extra) {
-    gx_result result;
-    if ((size_t)count + extra <= *capacity) return 1;
-    if (*capacity == 0 && extra < 16) extra = 16;       /* small cases should not pay for growing */
-    result = gxbp_reserve(&b->cx, array, item, count, capacity, extra);
+/* Small cases should not pay for growing. */
+static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, size_t item, uint32_t count, uint32_t *capacity, size_t extra) {
+    const gx_result result = gxbp_reserve(&b->cx, array, item, count, capacity, *capacity == 0 && extra < 16 ? 16 : extra);
     return result == GX_OK ? 1 : gxbp_stop(b, result);
 }
 
 #define GXBP_ROOM(b, array, counter, extra) \
-    gxbp_room(b, &(b)->array, sizeof *(b)->array, (b)->counter##_count, &(b)->counter##_capacity, extra)
+    ((b)->counter##_count + (size_t)(extra) <= (b)->counter##_capacity || \
+     gxbp_room(b, &(b)->array, sizeof *(b)->array, (b)->counter##_count, &(b)->counter##_capacity, extra))
 #define GXBP_DROP(b, array, counter) \
     gxbp_release(&(b)->cx.allocator, (b)->array, (size_t)(b)->counter##_capacity * sizeof *(b)->array)
 
@@ -4268,14 +4274,17 @@ static uint32_t gxbp_last_edge(uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; 
 
 /* Half-edges by the vertex that they leave, with the vertex in which they end, and that from which their triangle comes back. */
 typedef struct gxbp_exit { uint32_t half_edge, to, from; } gxbp_exit;
-typedef struct gxbp_fan { gxbp_exit *list; uint32_t *first; size_t bytes; } gxbp_fan;
+/* An edge from vertex p to a later one: how often it is passed forth and back, and by which half-edges last */
+typedef struct gxbp_passage { uint32_t p, forth, back, there, home; } gxbp_passage;
+typedef struct gxbp_fan { gxbp_exit *list; gxbp_passage *passages; uint32_t *first; size_t bytes; } gxbp_fan;
 
 static int gxbp_make_fan(gxb_boolean *b, const uint32_t *triangles, size_t count, uint32_t vertex_count, gxbp_fan *fan) {
     uint32_t h;
-    fan->bytes = 3 * count * sizeof *fan->list + ((size_t)vertex_count + 1) * sizeof *fan->first;
+    fan->bytes = 3 * count * sizeof *fan->list + vertex_count * sizeof *fan->passages + ((size_t)vertex_count + 1) * sizeof *fan->first;
     fan->list = (gxbp_exit *)gxbp_allocate(&b->cx.allocator, fan->bytes);
     if (fan->list == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
-    fan->first = (uint32_t *)(void *)(fan->list + 3 * count);
+    fan->passages = (gxbp_passage *)(void *)(fan->list + 3 * count);
+    fan->first = (uint32_t *)(void *)(fan->passages + vertex_count);
     memset(fan->first, 0, ((size_t)vertex_count + 1) * sizeof *fan->first);
     for (h = 0; h < 3 * count; h++) fan->first[triangles[h]]++;
     for (h = 1; h <= vertex_count; h++) fan->first[h] += fan->first[h - 1];
@@ -4290,31 +4299,39 @@ static int gxbp_make_fan(gxb_boolean *b, const uint32_t *triangles, size_t count
 
 static void gxbp_drop_fan(gxb_boolean *b, gxbp_fan *fan) { gxbp_release(&b->cx.allocator, fan->list, fan->bytes); }
 
-/* Looks at the half-edges between p and q, all of which are in the fan's list of p: twins, if there is one in each direction; if there are
-   more in one direction, one of those. */
-static uint32_t gxbp_pair_half_edges(const gxbp_fan *fan, uint32_t p, uint32_t q, uint32_t *twin) {
-    const gxbp_exit *e = fan->list + fan->first[p], *end = fan->list + fan->first[p + 1];
-    uint32_t forth = 0, back = 0, there = 0, home = 0;
-    for (; e < end; e++) {
-        if (e->to == q) { forth++; there = e->half_edge; }
-        if (e->from == q) { back++; home = gxbp_last_edge(e->half_edge); }
-    }
-    if (forth == 1 && back == 1) { twin[there] = home; twin[home] = there; }
-    return forth == back ? GXB_NONE : forth > back ? there : home;
+/* The passage to q of the edges that leave p: begun here, or under way. */
+static gxbp_passage *gxbp_passage_to(const gxbp_fan *fan, uint32_t p, uint32_t q) {
+    gxbp_passage *e = &fan->passages[q];
+    if (e->p != p) { e->p = p; e->forth = e->back = 0; }
+    return e;
+}
+
+/* Ends a passage: twins, if it has one half-edge in each direction; if there are more in one direction, returns one of those. */
+static uint32_t gxbp_end_passage(gxbp_passage *e, uint32_t p, uint32_t *twin) {
+    if (e->p != p) return GXB_NONE;
+    e->p = GXB_NONE;
+    if (e->forth == 1 && e->back == 1) { twin[e->there] = e->home; twin[e->home] = e->there; }
+    return e->forth == e->back ? GXB_NONE : e->forth > e->back ? e->there : e->home;
 }
 
 /* twin of each half-edge, left alone where an edge has not one in each direction. Returns a half-edge whose edge is passed more often in
    its direction than in the other, or GXB_NONE: the surface is closed. */
 static uint32_t gxbp_find_twins(const gxbp_fan *fan, uint32_t vertex_count, uint32_t *twin) {
-    uint32_t open = GXB_NONE, p, i;
-    for (p = 0; p < vertex_count; p++)
-        for (i = fan->first[p]; i < fan->first[p + 1]; i++) {
-            const gxbp_exit *e = &fan->list[i];
-            uint32_t odd = GXB_NONE;
-            if (e->to > p) odd = gxbp_pair_half_edges(fan, p, e->to, twin);
-            if (odd == GXB_NONE && e->from > p && twin[gxbp_last_edge(e->half_edge)] == GXB_NONE) odd = gxbp_pair_half_edges(fan, p, e->from, twin);
+    uint32_t open = GXB_NONE, p, odd;
+    for (p = 0; p < vertex_count; p++) fan->passages[p].p = GXB_NONE;
+    for (p = 0; p < vertex_count; p++) {
+        const gxbp_exit *first = fan->list + fan->first[p], *end = fan->list + fan->first[p + 1], *e;
+        gxbp_passage *way;
+        for (e = first; e < end; e++) {
+            if (e->to > p) { way = gxbp_passage_to(fan, p, e->to); way->forth++; way->there = e->half_edge; }
+            if (e->from > p) { way = gxbp_passage_to(fan, p, e->from); way->back++; way->home = gxbp_last_edge(e->half_edge); }
+        }
+        for (e = first; e < end; e++) {
+            odd = e->to > p ? gxbp_end_passage(&fan->passages[e->to], p, twin) : GXB_NONE;
+            if (odd == GXB_NONE && e->from > p) odd = gxbp_end_passage(&fan->passages[e->from], p, twin);
             if (open == GXB_NONE) open = odd;
         }
+    }
     return open;
 }
 
@@ -5055,7 +5072,14 @@ static int gxbp_compare_points(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t 
 static void gxbp_sort_points(gxb_boolean *b, uint32_t *p, uint32_t count, uint32_t axis, int direction, uint32_t *work) {
     const uint32_t half = count / 2;
     uint32_t i, j, k;
-    if (count < 2) return;
+    if (count <= 8) {                   /* by insertion */
+        for (i = 1; i < count; i++) {
+            const uint32_t x = p[i];
+            for (j = i; j > 0 && gxbp_compare_points(b, x, p[j - 1], axis) * direction < 0; j--) p[j] = p[j - 1];
+            p[j] = x;
+        }
+        return;
+    }
     gxbp_sort_points(b, p, half, axis, direction, work);
     gxbp_sort_points(b, p + half, count - half, axis, direction, work);
     memcpy(work, p, half * sizeof *p);
@@ -5347,17 +5371,39 @@ static int gxbp_left_by_filter(gxb_boolean *b, const gxbp_line *line, uint32_t v
 }
 
 /* Where the line leaves the star of a vertex: through the edge opposite to corner k of facet f (u right of it, w left), or along
-   edge k (ahead 1) or k + 2 (ahead 2). goal: an edge that leads there is taken whatever the line says. */
-typedef struct gxbp_way { uint32_t f; int k, ahead; } gxbp_way;
+   edge k (ahead 1) or k + 2 (ahead 2). of_w: what the filter says of w, which is the next facet's u; 2: it was not asked. back: the walk
+   around the vertex has come to the rim and goes the other way from the start. */
+typedef struct gxbp_way { uint32_t f; int k, ahead, of_w, back; } gxbp_way;
 
-static int gxbp_try_way(gxb_boolean *b, const gxbp_line *line, uint32_t goal, gxbp_way *way) {
+static void gxbp_begin_star(const gxb_boolean *b, uint32_t v, gxbp_way *way) {
+    way->f = b->vertices[v].hint;
+    way->k = gxbp_corner_index(&b->pieces[way->f], v);
+    way->of_w = 2;
+    way->back = 0;
+}
+
+/* The next facet around v. 0: that was all. */
+static int gxbp_next_in_star(const gxb_boolean *b, uint32_t v, gxbp_way *way) {
+    uint32_t next = way->back ? GXB_NONE : b->pieces[way->f].near[(way->k + 2) % 3];
+    if (next == GXB_NONE) {
+        if (!way->back) gxbp_begin_star(b, v, way);
+        way->back = 1;
+        way->of_w = 2;
+        next = b->pieces[way->f].near[way->k];
+    }
+    if (next == GXB_NONE || next == b->vertices[v].hint) return 0;
+    way->f = next;
+    way->k = gxbp_corner_index(&b->pieces[next], v);
+    return 1;
+}
+
+static int gxbp_try_way(gxb_boolean *b, const gxbp_line *line, gxbp_way *way) {
     const gxbp_piece *f = &b->pieces[way->f];
     const uint32_t u = f->v[(way->k + 1) % 3], w = f->v[(way->k + 2) % 3];
-    int of_u, of_w;
-    if (u == goal || w == goal) { way->ahead = u == goal ? 1 : 2; return 1; }
-    of_u = gxbp_left_by_filter(b, line, u);
+    int of_u = way->of_w == 2 ? gxbp_left_by_filter(b, line, u) : way->of_w, of_w;
+    way->of_w = 2;
     if (of_u > 0) return 0;
-    of_w = gxbp_left_by_filter(b, line, w);
+    of_w = way->of_w = gxbp_left_by_filter(b, line, w);
     if (of_w < 0) return 0;
     if (of_u == 0) of_u = gxbp_left(b, line, u);
     if (of_u > 0) return 0;
@@ -5368,23 +5414,21 @@ static int gxbp_try_way(gxb_boolean *b, const gxbp_line *line, uint32_t goal, gx
     return of_u < 0 && of_w > 0;
 }
 
-/* Looks around v, first one way, then (at the rim) the other. */
-static int gxbp_find_way(gxb_boolean *b, const gxbp_line *line, uint32_t v, uint32_t goal, gxbp_way *way) {
-    const uint32_t start = b->vertices[v].hint;
-    way->f = start;
+/* Is there an edge from v to goal? It is the way, whatever the line says. */
+static int gxbp_find_edge(const gxb_boolean *b, uint32_t v, uint32_t goal, gxbp_way *way) {
+    gxbp_begin_star(b, v, way);
     do {
-        way->k = gxbp_corner_index(&b->pieces[way->f], v);
-        if (gxbp_try_way(b, line, goal, way)) return 1;
-        way->f = b->pieces[way->f].near[(way->k + 2) % 3];
-    } while (way->f != GXB_NONE && way->f != start);
-    if (way->f == start) return 0;
-    for (way->f = start;;) {
-        way->k = gxbp_corner_index(&b->pieces[way->f], v);
-        way->f = b->pieces[way->f].near[way->k];
-        if (way->f == GXB_NONE) return 0;
-        way->k = gxbp_corner_index(&b->pieces[way->f], v);
-        if (gxbp_try_way(b, line, goal, way)) return 1;
-    }
+        const gxbp_piece *f = &b->pieces[way->f];
+        way->ahead = f->v[(way->k + 1) % 3] == goal ? 1 : 2;
+        if (f->v[(way->k + way->ahead) % 3] == goal) return 1;
+    } while (gxbp_next_in_star(b, v, way));
+    return 0;
+}
+
+static int gxbp_find_way(gxb_boolean *b, const gxbp_line *line, uint32_t v, gxbp_way *way) {
+    gxbp_begin_star(b, v, way);
+    do if (gxbp_try_way(b, line, way)) return 1; while (gxbp_next_in_star(b, v, way));
+    return 0;
 }
 
 /* Where a point of the source lies in its triangulation: at a vertex, on edge k of facet f, inside f (k -1). */
@@ -5425,7 +5469,7 @@ static gxbp_location gxbp_locate(gxb_boolean *b, const gxbp_line *line) {
         gxbp_way way;
         uint32_t ahead;
         int t;
-        if (!gxbp_find_way(b, line, v, GXB_NONE, &way)) { gxbp_stop(b, GX_ERROR_OVERLAP); break; }
+        if (!gxbp_find_way(b, line, v, &way)) { gxbp_stop(b, GX_ERROR_OVERLAP); break; }
         if (way.ahead == 0) {
             if (gxbp_cross_facets(b, line, way, &v, &spot)) return spot;
             continue;
@@ -5611,18 +5655,23 @@ static void gxbp_refill(gxb_boolean *b, uint32_t start) {
     b->pieces[g].near[0] = f;
 }
 
+static uint32_t gxbp_take_way(gxb_boolean *b, const gxbp_way *way, uint32_t label) {
+    const uint32_t ahead = b->pieces[way->f].v[(way->k + way->ahead) % 3];
+    gxbp_label_edge(b, way->f, way->ahead == 1 ? way->k : (way->k + 2) % 3, label);
+    return ahead;
+}
+
 /* Makes p q an edge, or a row of them where vertices lie on it, with a label. */
 static void gxbp_force_edge(gxb_boolean *b, uint32_t s, uint32_t p, uint32_t q, uint32_t label, int left) {
     gxbp_line line;
+    gxbp_way way;
+    if (p == q) return;
+    if (gxbp_find_edge(b, p, q, &way)) { gxbp_take_way(b, &way, label); return; }
     gxbp_set_line(b, &line, s, p, q, label, left);
     while (p != q && b->result == GX_OK) {
-        gxbp_way way;
-        if (!gxbp_find_way(b, &line, p, q, &way)) { gxbp_stop(b, GX_ERROR_OVERLAP); return; }
-        if (way.ahead != 0) {
-            const uint32_t ahead = b->pieces[way.f].v[(way.k + way.ahead) % 3];
-            gxbp_label_edge(b, way.f, way.ahead == 1 ? way.k : (way.k + 2) % 3, label);
-            p = ahead;
-        } else if (gxbp_collect_crossed(b, s, &line, way, label)) gxbp_refill(b, p);
+        if (!gxbp_find_edge(b, p, q, &way) && !gxbp_find_way(b, &line, p, &way)) { gxbp_stop(b, GX_ERROR_OVERLAP); return; }
+        if (way.ahead != 0) p = gxbp_take_way(b, &way, label);
+        else if (gxbp_collect_crossed(b, s, &line, way, label)) gxbp_refill(b, p);
     }
 }
 
@@ -5812,7 +5861,7 @@ static uint32_t gxbp_first_covered(gxb_boolean *b, uint32_t r, uint32_t t) {
     gxbp_line line;
     gxbp_way way;
     gxbp_set_line(b, &line, r, u, gxbp_edge_point(b, t, 0, 1), GXBP_EDGE_LABEL, 0);
-    if (!gxbp_find_way(b, &line, u, line.x, &way) || way.ahead == 0) { gxbp_stop(b, GX_ERROR_OVERLAP); return GXB_NONE; }
+    if (!gxbp_find_edge(b, u, line.x, &way) && (!gxbp_find_way(b, &line, u, &way) || way.ahead == 0)) { gxbp_stop(b, GX_ERROR_OVERLAP); return GXB_NONE; }
     if (way.ahead == (facing > 0 ? 1 : 2)) return way.f;
     return b->pieces[way.f].near[way.ahead == 1 ? way.k : (way.k + 2) % 3];
 }
