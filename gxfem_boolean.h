@@ -4278,6 +4278,11 @@ typedef struct gxbp_exit { uint32_t half_edge, to, from; } gxbp_exit;
 typedef struct gxbp_passage { uint32_t p, forth, back, there, home; } gxbp_passage;
 typedef struct gxbp_fan { gxbp_exit *list; gxbp_passage *passages; uint32_t *first; size_t bytes; } gxbp_fan;
 
+static void gxbp_put_exit(gxbp_fan *fan, uint32_t p, uint32_t half_edge, uint32_t to, uint32_t from) {
+    gxbp_exit *e = &fan->list[--fan->first[p]];
+    e->half_edge = half_edge; e->to = to; e->from = from;
+}
+
 static int gxbp_make_fan(gxb_boolean *b, const uint32_t *triangles, size_t count, uint32_t vertex_count, gxbp_fan *fan) {
     uint32_t h;
     fan->bytes = 3 * count * sizeof *fan->list + vertex_count * sizeof *fan->passages + ((size_t)vertex_count + 1) * sizeof *fan->first;
@@ -4288,11 +4293,11 @@ static int gxbp_make_fan(gxb_boolean *b, const uint32_t *triangles, size_t count
     memset(fan->first, 0, ((size_t)vertex_count + 1) * sizeof *fan->first);
     for (h = 0; h < 3 * count; h++) fan->first[triangles[h]]++;
     for (h = 1; h <= vertex_count; h++) fan->first[h] += fan->first[h - 1];
-    for (h = (uint32_t)(3 * count); h-- > 0;) {
-        gxbp_exit *e = &fan->list[--fan->first[triangles[h]]];
-        e->half_edge = h;
-        e->to = triangles[gxbp_next_edge(h)];
-        e->from = triangles[gxbp_last_edge(h)];
+    for (h = (uint32_t)(3 * count); h > 0;) {
+        const uint32_t *v = triangles + (h -= 3);
+        gxbp_put_exit(fan, v[2], h + 2, v[0], v[1]);
+        gxbp_put_exit(fan, v[1], h + 1, v[2], v[0]);
+        gxbp_put_exit(fan, v[0], h, v[1], v[2]);
     }
     return 1;
 }
@@ -6276,8 +6281,7 @@ static void gxbp_rename_vertices(gxb_boolean *b) {
 static int gxbp_fill_rim_table(gxb_boolean *b, gxbp_rim_table *table) {
     uint32_t f, i, k, count = 0;
     for (i = 0; i < b->divided_count; i++)
-        for (f = gxbp_first_rim_facet(b, i); f != GXB_NONE; f = b->pieces[f].next)
-            for (k = 0; k < 3; k++) count += b->pieces[f].near[k] == GXB_NONE;
+        for (k = 0; k < 3; k++) count += gxbp_edge_points(b, b->divided[i], k) - 1;
     for (table->size = 16; table->size < 2 * count; table->size *= 2) {}
     table->entry = (uint32_t *)gxbp_allocate(&b->cx.allocator, (size_t)table->size * sizeof *table->entry);
     if (table->entry == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
@@ -6323,6 +6327,19 @@ static uint32_t gxbp_neighbour(const gxb_boolean *b, const gxbp_rim_table *table
     return h != GXB_NONE && b->pieces[h / 3].source == s->twin[k] / 3 && b->pieces[h / 3].labels[h % 3] == GXBP_BARE ? h / 3 : GXB_NONE;
 }
 
+/* Facets of one source have their states one soon after the other: where the last facet (head of the list) has one, all do or will. */
+static int gxbp_is_reached(const gxb_boolean *b, uint32_t half_edge) {
+    const gxbp_source *t = &b->sources[half_edge == GXB_NONE ? 0 : half_edge / 3];
+    return half_edge == GXB_NONE || t->flags & GXBP_FLAT || b->pieces[t->facet].state != GXB_NONE;
+}
+
+/* Is there nothing to find beyond edge k of f, on its source's rim? Of a divided source k says nothing of which of its edges that is. */
+static int gxbp_is_settled(const gxb_boolean *b, uint32_t f, int k) {
+    const gxbp_source *s = &b->sources[b->pieces[f].source];
+    if (!(s->flags & (GXBP_DIVIDED | GXBP_FLAT))) return gxbp_is_reached(b, s->twin[k]);
+    return gxbp_is_reached(b, s->twin[0]) && gxbp_is_reached(b, s->twin[1]) && gxbp_is_reached(b, s->twin[2]);
+}
+
 static void gxbp_spread_state(gxb_boolean *b, const gxbp_rim_table *table, uint32_t first) {
     b->scratch_count = 0;
     gxbp_push(b, first);
@@ -6332,7 +6349,7 @@ static void gxbp_spread_state(gxb_boolean *b, const gxbp_rim_table *table, uint3
         for (k = 0; k < 3; k++) {
             const uint32_t near = b->pieces[f].near[k];
             uint32_t g;
-            if (near != GXB_NONE && b->pieces[near].state != GXB_NONE) continue;
+            if (near != GXB_NONE ? b->pieces[near].state != GXB_NONE : gxbp_is_settled(b, f, k)) continue;
             g = gxbp_neighbour(b, table, f, k);
             if (g == GXB_NONE || b->pieces[g].state != GXB_NONE) continue;
             b->pieces[g].state = near == g ? gxbp_state_beyond(b, f, k) : b->pieces[f].state;
