@@ -3955,7 +3955,8 @@ typedef struct gxbp_source {    /* an input triangle */
     uint32_t root, next;        /* flat: union-find parent, next member */
     uint32_t flags;
 } gxbp_source;
-enum { GXBP_DEGENERATE = 1, GXBP_DIRTY = 2, GXBP_DIVIDED = 4, GXBP_FLAT = 8 };
+enum { GXBP_DEGENERATE = 1, GXBP_DIRTY = 2, GXBP_DIVIDED = 4, GXBP_FLAT = 8,
+       GXBP_REACHED = 16 };    /* one of its facets has got a state: all have, or will soon */
 
 typedef struct gxbp_piece {     /* a triangle of a source's triangulation; edge k from v[k] to v[k + 1] */
     uint32_t v[3], near[3], labels[3];
@@ -6327,10 +6328,8 @@ static uint32_t gxbp_neighbour(const gxb_boolean *b, const gxbp_rim_table *table
     return h != GXB_NONE && b->pieces[h / 3].source == s->twin[k] / 3 && b->pieces[h / 3].labels[h % 3] == GXBP_BARE ? h / 3 : GXB_NONE;
 }
 
-/* Facets of one source have their states one soon after the other: where the last facet (head of the list) has one, all do or will. */
 static int gxbp_is_reached(const gxb_boolean *b, uint32_t half_edge) {
-    const gxbp_source *t = &b->sources[half_edge == GXB_NONE ? 0 : half_edge / 3];
-    return half_edge == GXB_NONE || t->flags & GXBP_FLAT || b->pieces[t->facet].state != GXB_NONE;
+    return half_edge == GXB_NONE || b->sources[half_edge / 3].flags & (GXBP_FLAT | GXBP_REACHED);
 }
 
 /* Is there nothing to find beyond edge k of f, on its source's rim? Of a divided source k says nothing of which of its edges that is. */
@@ -6346,6 +6345,7 @@ static void gxbp_spread_state(gxb_boolean *b, const gxbp_rim_table *table, uint3
     while (b->scratch_count > 0 && b->result == GX_OK) {
         const uint32_t f = b->scratch[--b->scratch_count];
         int k;
+        b->sources[b->pieces[f].source].flags |= GXBP_REACHED;
         for (k = 0; k < 3; k++) {
             const uint32_t near = b->pieces[f].near[k];
             uint32_t g;
