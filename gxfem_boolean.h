@@ -5165,18 +5165,38 @@ static int gxbp_on_input_line(const gxb_cpoint *p, uint32_t from, uint32_t to) {
     return p->kind == GXB_LINE_PLANE && ((p->def[0] == from && p->def[1] == to) || (p->def[0] == to && p->def[1] == from));
 }
 
+static uint32_t gxbp_plane_beside(const gxb_boolean *b, uint32_t half_edge) { return half_edge == GXB_NONE ? GXB_NONE : b->sources[half_edge / 3].plane; }
+
+/* Planes that a point is in by its definition: its own, and those of the input triangles at the edge that it is named by */
+static uint32_t gxbp_planes_of(const gxb_boolean *b, uint32_t v, uint32_t plane[3]) {
+    const gxb_cpoint *p = &b->cx.points[v];
+    const uint32_t *key = b->vertices[v].key;
+    if (p->kind == GXB_EXPLICIT) return 0;
+    memcpy(plane, p->def, sizeof p->def);
+    if (p->kind == GXB_THREE_PLANES) return 3;
+    plane[0] = p->def[2];
+    if (key[0] != GXB_FROM_EDGE_TRIANGLE) return 1;
+    plane[1] = gxbp_plane_beside(b, key[1]);
+    plane[2] = gxbp_plane_beside(b, b->sources[key[1] / 3].twin[key[1] % 3]);
+    return 3;
+}
+
+static int gxbp_is_in_plane(const gxb_boolean *b, uint32_t v, uint32_t plane) {
+    const gxb_cpoint *p = &b->cx.points[v];
+    uint32_t of[3], count = gxbp_planes_of(b, v, of), k;
+    for (k = 0; k < count; k++) if (of[k] == plane) return 1;
+    return gxbp_incident(&b->cx, p->kind, p->def, p->kind == GXB_EXPLICIT ? p->def[0] : v, plane);
+}
+
 /* Do three points of a plane lie on one line by their definitions: in a second common plane (one plane may have several names), or on
    one edge? */
-static int gxbp_on_definition_line(gxb_complex *cx, uint32_t p, uint32_t q, uint32_t r, uint32_t plane) {
-    const gxb_cpoint *a = &cx->points[p], *c = &cx->points[q], *d = &cx->points[r];
-    uint32_t k, first = a->kind == GXB_LINE_PLANE ? 2u : 0u;
-    if (a->kind == GXB_EXPLICIT) return 0;
-    if (a->kind == GXB_LINE_PLANE && gxbp_on_input_line(c, a->def[0], a->def[1]) && gxbp_on_input_line(d, a->def[0], a->def[1])) return 1;
-    for (k = first; k < 3; k++) {
-        const uint32_t f = a->def[k];
-        if (f != plane && gxbp_incident(cx, c->kind, c->def, c->kind == GXB_EXPLICIT ? c->def[0] : q, f) &&
-            gxbp_incident(cx, d->kind, d->def, d->kind == GXB_EXPLICIT ? d->def[0] : r, f) && gxbp_planes_cross(cx, f, plane)) return 1;
-    }
+static int gxbp_on_definition_line(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t r, uint32_t plane) {
+    const gxb_cpoint *x = b->cx.points, *a = &x[p];
+    uint32_t of[3], count = gxbp_planes_of(b, p, of), k;
+    if (a->kind == GXB_LINE_PLANE && gxbp_on_input_line(&x[q], a->def[0], a->def[1]) && gxbp_on_input_line(&x[r], a->def[0], a->def[1])) return 1;
+    for (k = 0; k < count; k++)
+        if (of[k] != plane && of[k] != GXB_NONE && gxbp_is_in_plane(b, q, of[k]) && gxbp_is_in_plane(b, r, of[k]) &&
+            gxbp_planes_cross(&b->cx, of[k], plane)) return 1;
     return 0;
 }
 
@@ -5194,8 +5214,8 @@ static int gxbp_turn(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t r) {
     const int turn = gxbp_turn_by_filter(b, p, q, r);
     if (turn != 0) return turn;
     if (p == q || q == r || r == p) return 0;
-    if (gxbp_on_definition_line(cx, p, q, r, b->plane) || gxbp_on_definition_line(cx, q, r, p, b->plane) ||
-        gxbp_on_definition_line(cx, r, p, q, b->plane)) return 0;
+    if (gxbp_on_definition_line(b, p, q, r, b->plane) || gxbp_on_definition_line(b, q, r, p, b->plane) ||
+        gxbp_on_definition_line(b, r, p, q, b->plane)) return 0;
     cx->exact_calls++;
     return gxb_complex_turn(cx, p, q, r, b->plane);
 }
@@ -6394,13 +6414,14 @@ static int gxbp_is_open(const gxb_boolean *b, uint32_t f) { return b->pieces[f].
 
 /* Is the facet certainly beside the box along this axis? */
 static int gxbp_piece_misses(const gxb_boolean *b, uint32_t f, const gxbp_box *box, int axis) {
-    int i, below = 1, above = 1;
+    int i, side = 0;
     for (i = 0; i < 3; i++) {
         const gxb_ball *x = &b->cx.points[b->pieces[f].v[i]].ball;
-        below &= x->x[axis] + 2 * x->error < box->low[axis];
-        above &= x->x[axis] - 2 * x->error > box->high[axis];
+        const int mine = x->x[axis] + 2 * x->error < box->low[axis] ? -1 : x->x[axis] - 2 * x->error > box->high[axis];
+        if (mine == 0 || mine == -side) return 0;
+        side = mine;
     }
-    return below | above;
+    return 1;
 }
 
 /* Along the box's shortest side first */
@@ -6855,27 +6876,30 @@ static void gxbp_round_vertices(gxb_boolean *b) {
     b->out_origin_count = b->out_point_count;
 }
 
-/* Sign of n.((q - p) x (r - p)) for a plane's normal n and rounded points, exact. The filter's bound is that of gxbp_rough_volume, with n
-   for d0. */
-static int gxbp_faces(gxb_boolean *b, uint32_t plane, const double *p, const double *q, const double *r) {
-    const gxb_plane_filter *f = &b->cx.planes[plane].filter;
-    gxb_ball x[3];
+static GXBP_COLD int gxbp_faces_exactly(gxb_boolean *b, uint32_t plane, const double *p, const double *q, const double *r) {
     gxbp_vec store, given[3], n;
     GXB_NUM(value);
-    double u[3], v[3], m[3];
-    gxbp_ball_explicit(&x[0], p); gxbp_ball_explicit(&x[1], q); gxbp_ball_explicit(&x[2], r);
-    if (b->cx.shift == 0) {             /* else coordinates are not the frame's, and may be too large or too small to filter */
-        const double eu = gxbp_filter_difference(u, &x[0], &x[1]), ev = gxbp_filter_difference(v, &x[0], &x[2]);
-        const double E = gxbp_filter_cross(m, u, eu, v, ev), N = gxbp_max3(m);
-        const int sign = gxbp_filter_sign(f->n[0] * m[0] + f->n[1] * m[1] + f->n[2] * m[2],
-                                          6 * (f->norm * E + f->error * (N + E)) + 48 * GXBP_U * f->norm * N + GXBP_TINY);
-        if (sign != 0) return sign;
-    }
     gxbp_vec_set(&given[0], p); gxbp_vec_set(&given[1], q); gxbp_vec_set(&given[2], r);
     gxbp_vec_init(&n);
     gxbp_exact_plane(n.c, given[0].c, given[1].c, given[2].c);
     gxbp_num_dot(&value, n.c, gxbp_exact_cplane(&b->cx, plane, &store));
     return value.sign;
+}
+
+/* Sign of n.((q - p) x (r - p)) for a plane's normal n and rounded points, exact. The filter's bound is that of gxbp_rough_volume, with n
+   for d0. */
+static int gxbp_faces(gxb_boolean *b, uint32_t plane, const double *p, const double *q, const double *r) {
+    const gxb_plane_filter *f = &b->cx.planes[plane].filter;
+    double u[3], v[3], m[3], E, N;
+    int k, sign = 0;
+    if (b->cx.shift == 0) {             /* else coordinates are not the frame's, and may be too large or too small to filter */
+        for (k = 0; k < 3; k++) { u[k] = gxbp_fence(q[k] - p[k]); v[k] = gxbp_fence(r[k] - p[k]); }
+        E = gxbp_filter_cross(m, u, 2 * GXBP_U * gxbp_max3(u) + GXBP_TINY, v, 2 * GXBP_U * gxbp_max3(v) + GXBP_TINY);
+        N = gxbp_max3(m);
+        sign = gxbp_filter_sign(f->n[0] * m[0] + f->n[1] * m[1] + f->n[2] * m[2],
+                                6 * (f->norm * E + f->error * (N + E)) + 48 * GXBP_U * f->norm * N + GXBP_TINY);
+    }
+    return sign != 0 ? sign : gxbp_faces_exactly(b, plane, p, q, r);
 }
 
 /* Triangles that rounding has turned over or left without area. Those of input vertices are as they were, unless they were mended. */
