@@ -767,7 +767,7 @@ static void gxbp_num_cross(gxb_num r[3], const gxb_num a[3], const gxb_num b[3])
 /* A vector of numbers with its limbs. */
 typedef struct gxbp_vec { gxb_num c[4]; gxb_limb limbs[4][GXB_NUM_LIMBS]; } gxbp_vec;
 
-static void gxbp_vec_init(gxbp_vec *v) {
+static GXBP_APART void gxbp_vec_init(gxbp_vec *v) {
     int k;
     memset(v->c, 0, sizeof v->c);
     for (k = 0; k < 4; k++) v->c[k].d = v->limbs[k];
@@ -1341,7 +1341,7 @@ GXFEM_API int gxb_orient_in_plane(const gxb_point *a, const gxb_point *b, const 
 }
 
 /* Order of two finite doubles by their bits: flush-to-zero can't make them equal. */
-static int gxbp_compare_doubles(double a, double b) {
+static GXBP_APART int gxbp_compare_doubles(double a, double b) {
     const int na = (int)(gxbp_bits(a) >> 63), nb = (int)(gxbp_bits(b) >> 63);
     const uint64_t ma = gxbp_bits(a) << 1, mb = gxbp_bits(b) << 1;
     if (ma == 0 && mb == 0) return 0;
@@ -1409,7 +1409,7 @@ GXFEM_API int gxb_winding_number(const double *vertices, const uint32_t *triangl
 
 /* >>memory: growing arrays, transactions --------------------------------------------------------------------------------- */
 
-static void *gxbp_allocate(const gx_allocator *a, size_t size) { return a->allocate ? a->allocate(a->user, size) : malloc(size); }
+static GXBP_APART void *gxbp_allocate(const gx_allocator *a, size_t size) { return a->allocate ? a->allocate(a->user, size) : malloc(size); }
 
 static GXBP_APART void gxbp_release(const gx_allocator *a, void *memory, size_t size) {
     if (memory == NULL) return;
@@ -1538,7 +1538,7 @@ static GXBP_COLD void gxbp_drop_recent_numbers(gxb_complex *cx) {
     if (cx->blocks != NULL) cx->blocks->used = cx->mark_used;
 }
 
-GXFEM_API void gxb_complex_rollback(gxb_complex *cx) {
+GXFEM_API GXBP_COLD void gxb_complex_rollback(gxb_complex *cx) {
     while (cx->undo_count > 0) {
         const gxb_undo *undo = &cx->undo[--cx->undo_count];
         size_t size;
@@ -1849,12 +1849,16 @@ static gx_result gxbp_new_plane(gxb_complex *cx, uint32_t p, uint32_t q, uint32_
     return GX_OK;
 }
 
+static GXBP_COLD int gxbp_exact_normal_sign(gxb_complex *cx, uint32_t plane, uint32_t axis) {
+    gxbp_vec store;
+    return gxbp_exact_cplane(cx, plane, &store)[axis].sign;
+}
+
 /* Sign of one component of a plane's normal. */
 static int gxbp_normal_sign(gxb_complex *cx, uint32_t plane, uint32_t axis) {
     const gxb_plane_filter *f = &cx->planes[plane].filter;
     const int sign = gxbp_filter_sign(f->n[axis], f->error);
-    gxbp_vec store;
-    return sign != 0 ? sign : gxbp_exact_cplane(cx, plane, &store)[axis].sign;
+    return sign != 0 ? sign : gxbp_exact_normal_sign(cx, plane, axis);
 }
 
 /* Finds a component of the normal that is not 0, the largest where the filter can tell. 0: there is none. */
@@ -2062,7 +2066,7 @@ static gx_result gxbp_fill_complex(gxb_complex *cx, const gxb_mesh *mesh, uint32
     return result == GX_OK ? gxbp_make_leaves(cx) : result;
 }
 
-static gx_result gxbp_fail(gx_failure *failure, gx_result result, size_t index) {
+static GXBP_APART gx_result gxbp_fail(gx_failure *failure, gx_result result, size_t index) {
     if (failure != NULL) { failure->result = result; failure->index = index; failure->surface = SIZE_MAX; }
     return result;
 }
@@ -2114,7 +2118,7 @@ typedef struct gxbp_task { uint32_t parent, side, first, count, coplanar; } gxbp
 #define GXBP_TRIANGLE_EDGE 0x80000000u
 #define GXBP_IN_ROOT GXB_NONE   /* task.parent: the reference is the element's root */
 
-GXFEM_API void gxb_complex_destroy(gxb_complex *cx) {
+GXFEM_API GXBP_COLD void gxb_complex_destroy(gxb_complex *cx) {
     gx_allocator a;
     if (cx == NULL) return;
     a = cx->allocator;
@@ -2660,7 +2664,7 @@ static gx_result gxbp_cover_edges(gxb_complex *cx, gxb_triangle *t, uint32_t edg
     return result == GX_OK ? gxbp_cover_edges(cx, t, child + 1, covered) : result;
 }
 
-GXFEM_API gx_result gxb_complex_cover_edge(gxb_complex *cx, gxb_triangle *t, uint32_t element, uint32_t local_edge, int *covered) {
+GXFEM_API GXBP_COLD gx_result gxb_complex_cover_edge(gxb_complex *cx, gxb_triangle *t, uint32_t element, uint32_t local_edge, int *covered) {
     const uint32_t edge = cx->element_edges[6 * element + local_edge];
     const uint32_t a = cx->elements[4 * element + gxbp_edge_nodes[local_edge][0]], b = cx->elements[4 * element + gxbp_edge_nodes[local_edge][1]];
     gx_result result;
@@ -2669,7 +2673,7 @@ GXFEM_API gx_result gxb_complex_cover_edge(gxb_complex *cx, gxb_triangle *t, uin
     return result == GX_OK ? gxbp_cover_edges(cx, t, cx->mesh_edge[edge], covered) : result;
 }
 
-GXFEM_API gx_result gxb_complex_cover_node(gxb_complex *cx, gxb_triangle *t, uint32_t node, int *covered) {
+GXFEM_API GXBP_COLD gx_result gxb_complex_cover_node(gxb_complex *cx, gxb_triangle *t, uint32_t node, int *covered) {
     uint32_t k;
     int front;
     gx_result result = gxbp_reserve_undo(cx, 1);
@@ -3193,7 +3197,7 @@ GXFEM_API void gxb_complex_barycentric(gxb_complex *cx, uint32_t point, uint32_t
 }
 
 /* Each step adds the quotient of what is left: 50 bits, so that four leave less than 2^-180 of the value. */
-GXFEM_API void gxb_complex_barycentric_fine(gxb_complex *cx, uint32_t point, uint32_t element, gxb_num lambda[4]) {
+GXFEM_API GXBP_COLD void gxb_complex_barycentric_fine(gxb_complex *cx, uint32_t point, uint32_t element, gxb_num lambda[4]) {
     uint32_t k;
     int step;
     for (k = 0; k < 4; k++) {
@@ -3235,7 +3239,7 @@ GXFEM_API void gxb_stream_pass(gxb_stream *stream, void *data, size_t count, siz
     stream->at += bytes;
 }
 
-static void gxbp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, word, 1, sizeof *word); }
+static GXBP_APART void gxbp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, word, 1, sizeof *word); }
 
 static void gxbp_require(gxb_stream *s, gx_result result) { if (s->result == GX_OK) s->result = result; }
 static void gxbp_require_true(gxb_stream *s, int holds) { if (!holds) gxbp_require(s, GX_ERROR_DAMAGED); }
@@ -3414,7 +3418,7 @@ static GXBP_COLD void gxbp_pass_rest(gxb_complex *cx, gxb_stream *s) {
 
 enum { GXBP_COUNTS = 7 };
 
-GXFEM_API void gxb_complex_save(gxb_complex *cx, gxb_stream *stream) {
+GXFEM_API GXBP_COLD void gxb_complex_save(gxb_complex *cx, gxb_stream *stream) {
     uint32_t counts[GXBP_COUNTS];
     counts[0] = cx->point_count; counts[1] = cx->plane_count; counts[2] = cx->edge_count; counts[3] = cx->facet_count;
     counts[4] = cx->leaf_count; counts[5] = cx->tree_count; counts[6] = cx->label_count;
@@ -3461,7 +3465,7 @@ static void gxbp_link_trees(gxb_complex *cx) {
         for (n = cx->nodes[i].child[k] & 1 ? GXB_NONE : i; n != GXB_NONE; n = cx->nodes[n].parent) cx->nodes[n].leaves++;
 }
 
-GXFEM_API gx_result gxb_complex_load(gxb_complex *cx, gxb_stream *s, int trusted) {
+GXFEM_API GXBP_COLD gx_result gxb_complex_load(gxb_complex *cx, gxb_stream *s, int trusted) {
     uint32_t counts[GXBP_COUNTS];
     gxb_stream_pass(s, counts, GXBP_COUNTS, sizeof *counts);
     gxbp_load_room(s, cx, counts);
@@ -7433,13 +7437,11 @@ static void gxbp_drop_lonely(gxb_boolean *b, uint32_t *map) {
 }
 
 /* Each step leaves fewer defects than there were. */
-static void gxbp_mend(gxb_boolean *b) {
+static GXBP_COLD void gxbp_mend(gxb_boolean *b) {
     const uint32_t words = b->out_source_count > b->out_point_count ? b->out_source_count : b->out_point_count;
     const size_t places = 3 * (size_t)b->out_point_count * sizeof(double), bytes = places + words * sizeof(uint32_t);
     double *home;
     uint32_t *map, found = b->out_defect_count, done = 1;
-    b->mended = 0;
-    if (b->result != GX_OK || !b->mend || found == 0) return;
     home = (double *)gxbp_allocate(&b->cx.allocator, bytes);
     if (home == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
     map = (uint32_t *)(void *)((char *)home + places);
@@ -7458,7 +7460,7 @@ static void gxbp_mend(gxb_boolean *b) {
 
 /* --- the public functions --- */
 
-static GXBP_APART void gxbp_drop_boolean(gxb_boolean *b) {
+static GXBP_COLD void gxbp_drop_boolean(gxb_boolean *b) {
     uint32_t i;
     for (i = 0; i < b->operand_count; i++)
         gxbp_release(&b->cx.allocator, b->operands[i].order, (size_t)b->operands[i].source_count * sizeof(uint32_t));
@@ -7640,7 +7642,8 @@ GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *b, gxb_boolean_result *res
     gxbp_round_vertices(b);
     if (b->result == GX_OK) gxbp_find_defects(b);
     gxbp_find_components(b);
-    gxbp_mend(b);
+    b->mended = 0;
+    if (b->result == GX_OK && b->mend && b->out_defect_count > 0) gxbp_mend(b);
     if (b->result == GX_OK) gxbp_show_result(b, result);
     else gxbp_forget_arrangement(b);
     return b->result;
