@@ -865,6 +865,7 @@ static double gxbp_fence(double x) {
 }
 
 static double gxbp_max(double a, double b) { return a > b ? a : b; }
+static double gxbp_min(double a, double b) { return a < b ? a : b; }
 static double gxbp_max3(const double a[3]) { return gxbp_max(gxbp_abs(a[0]), gxbp_max(gxbp_abs(a[1]), gxbp_abs(a[2]))); }
 
 /* r = a x b, errors: each component of a within ea, of b within eb. Returns the bound for each component of r:
@@ -4345,30 +4346,36 @@ static uint32_t gxbp_find_twins(const gxbp_fan *fan, uint32_t vertex_count, uint
     return open;
 }
 
-/* m = a x c, and the sizes of its products. A product of three fenced differences suffers three roundings in them, two in itself and at
-   most five in the sum that makes an orientation of it: within 32u of the products' sizes. */
-static void gxbp_cross_sizes(double m[3], double size[3], const double a[3], const double c[3]) {
-    int k;
-    for (k = 0; k < 3; k++) {
-        const int i = (k + 1) % 3, j = (k + 2) % 3;
-        m[k] = a[i] * c[j] - a[j] * c[i];
-        size[k] = gxbp_abs(a[i] * c[j]) + gxbp_abs(a[j] * c[i]);
-    }
+/* Component k of a x c, and the size of its products. A product of three fenced differences suffers three roundings in them, two in itself and
+   at most five in the sum that makes an orientation of it: within 32u of the products' sizes. */
+static double gxbp_cross_size(const double a[3], const double c[3], int i, int j, double *size) {
+    *size = gxbp_abs(a[i] * c[j]) + gxbp_abs(a[j] * c[i]);
+    return a[i] * c[j] - a[j] * c[i];
 }
 
-/* Errors of the components: see gxbp_cross_sizes. */
-static int gxbp_has_area(const double *p, const double *q, const double *r) {
-    double a[3], c[3], m[3], size[3];
+static void gxbp_cross_sizes(double m[3], double size[3], const double a[3], const double c[3]) {
+    int k;
+    for (k = 0; k < 3; k++) m[k] = gxbp_cross_size(a, c, (k + 1) % 3, (k + 2) % 3, &size[k]);
+}
+
+static GXBP_COLD int gxbp_has_area_exactly(const double *p, const double *q, const double *r) {
     gxb_plane plane;
     gxbp_vec n;
-    int k;
-    for (k = 0; k < 3; k++) { a[k] = gxbp_fence(q[k] - p[k]); c[k] = gxbp_fence(r[k] - p[k]); }
-    gxbp_cross_sizes(m, size, a, c);
-    for (k = 0; k < 3; k++) if (gxbp_abs(m[k]) > 32 * GXBP_U * size[k] + GXBP_TINY) return 1;
     gxb_plane_init(&plane, p, q, r);
     gxbp_plane_exact(&n, &plane);
-    for (k = 0; k < 3; k++) if (n.c[k].sign != 0) return 1;
-    return 0;
+    return n.c[0].sign != 0 || n.c[1].sign != 0 || n.c[2].sign != 0;
+}
+
+/* Errors of the components: see gxbp_cross_size. */
+static int gxbp_has_area(const double *p, const double *q, const double *r) {
+    double a[3], c[3], m, size;
+    int k, i = 1, j = 2;
+    for (k = 0; k < 3; k++) { a[k] = gxbp_fence(q[k] - p[k]); c[k] = gxbp_fence(r[k] - p[k]); }
+    for (k = 0; k < 3; i = j, j = k++) {
+        m = gxbp_cross_size(a, c, i, j, &size);
+        if (gxbp_abs(m) > 32 * GXBP_U * size + GXBP_TINY) return 1;
+    }
+    return gxbp_has_area_exactly(p, q, r);
 }
 
 static void gxbp_fill_source(gxb_boolean *b, uint32_t s, uint32_t operand, const uint32_t *twin, uint32_t first) {
@@ -4454,8 +4461,8 @@ static const double *gxbp_corner_of(const gxb_boolean *b, uint32_t s, int k) { r
 static void gxbp_box_join(gxbp_box *a, const gxbp_box *c) {
     int k;
     for (k = 0; k < 3; k++) {
-        if (c->low[k] < a->low[k]) a->low[k] = c->low[k];
-        if (c->high[k] > a->high[k]) a->high[k] = c->high[k];
+        a->low[k] = gxbp_min(c->low[k], a->low[k]);
+        a->high[k] = gxbp_max(c->high[k], a->high[k]);
     }
 }
 
@@ -4465,9 +4472,8 @@ static gxbp_box gxbp_box_of(const gxb_boolean *b, uint32_t s) {
     int k;
     for (k = 0; k < 3; k++) x[k] = b->cx.points[b->sources[s].point[k]].ball.x;
     for (k = 0; k < 3; k++) {
-        const double p = x[0][k], q = x[1][k], r = x[2][k];
-        box.low[k] = p < q ? (p < r ? p : r) : (q < r ? q : r);
-        box.high[k] = p > q ? (p > r ? p : r) : (q > r ? q : r);
+        box.low[k] = gxbp_min(gxbp_min(x[0][k], x[1][k]), x[2][k]);
+        box.high[k] = gxbp_max(gxbp_max(x[0][k], x[1][k]), x[2][k]);
     }
     return box;
 }
@@ -4507,12 +4513,12 @@ static GXBP_APART void gxbp_sort_sources(const gxb_boolean *b, const gxbp_operan
         for (k = 0; k < 3; k++) key |= gxbp_spread(gxbp_lattice((x[k] - all.low[k]) * scale[k])) << k;
         from[i] = (uint64_t)key << 32 | (o->source + i);
     }
-    for (pass = 4; pass < 8; pass++) {
-        uint32_t count[257];
+    for (pass = 32; pass < 62; pass += 10) {
+        uint32_t count[1025];
         memset(count, 0, sizeof count);
-        for (i = 0; i < o->source_count; i++) count[1 + (from[i] >> 8 * pass & 255)]++;
-        for (i = 1; i < 257; i++) count[i] += count[i - 1];
-        for (i = 0; i < o->source_count; i++) to[count[from[i] >> 8 * pass & 255]++] = from[i];
+        for (i = 0; i < o->source_count; i++) count[1 + (from[i] >> pass & 1023)]++;
+        for (i = 1; i < 1025; i++) count[i] += count[i - 1];
+        for (i = 0; i < o->source_count; i++) to[count[from[i] >> pass & 1023]++] = from[i];
         swap = from; from = to; to = swap;
     }
     for (i = 0; i < o->source_count; i++) o->order[i] = (uint32_t)from[i];
@@ -4807,7 +4813,7 @@ static void gxbp_record_crossing(gxb_boolean *b, uint32_t s, int k, uint32_t t, 
     gxbp_found(b, m, point);
 }
 
-/* sign[x][y]: orientation of (p[0], p[y + 1], q[x + 1], q[0]). The differences and products are shared: see gxbp_cross_sizes for the bound. */
+/* sign[x][y]: orientation of (p[0], p[y + 1], q[x + 1], q[0]). The differences and products are shared: see gxbp_cross_size for the bound. */
 static void gxbp_orient_pairs(gxb_boolean *b, const double *const q[3], const double *const p[3], int sign[2][2]) {
     double w[3], u[2][3], v[3], m[3], size[3];
     int x, y, k;
@@ -6607,17 +6613,19 @@ static uint32_t gxbp_cover_of(const gxb_boolean *b, uint32_t f, int sheets) {
 }
 
 /* The arrays with one item for each triangle grow together. */
-static int gxbp_more_triangles(gxb_boolean *b) {
-    return GXBP_ROOM(b, out_operands, out_operand, 1) && GXBP_ROOM(b, out_planes, out_plane, 1) && GXBP_ROOM(b, out_reversed, out_reversed, 1) &&
-           GXBP_ROOM(b, out_sources, out_source, 1);
+static GXBP_APART int gxbp_more_triangles(gxb_boolean *b, size_t extra) {
+    return GXBP_ROOM(b, out_operands, out_operand, extra) && GXBP_ROOM(b, out_planes, out_plane, extra) &&
+           GXBP_ROOM(b, out_reversed, out_reversed, extra) && GXBP_ROOM(b, out_sources, out_source, extra);
 }
 
 /* reversed: the outside is behind the facet's plane. */
 static void gxbp_emit(gxb_boolean *b, uint32_t f, int reversed, uint32_t source) {
-    uint32_t n = b->out_triangle_count, i;
-    int k;
-    if (!GXBP_ROOM(b, out_triangles, out_triangle, 3) || (b->out_source_count == b->out_source_capacity && !gxbp_more_triangles(b))) return;
-    for (k = 0; k < 3; k++) b->out_triangles[n + (uint32_t)k] = gxbp_out_vertex(b, b->pieces[f].v[reversed ? (3 - k) % 3 : k]);
+    const uint32_t n = b->out_triangle_count, *v = b->pieces[f].v;
+    uint32_t i;
+    if (!GXBP_ROOM(b, out_triangles, out_triangle, 3) || (b->out_source_count == b->out_source_capacity && !gxbp_more_triangles(b, 1))) return;
+    b->out_triangles[n] = gxbp_out_vertex(b, v[0]);
+    b->out_triangles[n + 1] = gxbp_out_vertex(b, v[reversed ? 2 : 1]);
+    b->out_triangles[n + 2] = gxbp_out_vertex(b, v[reversed ? 1 : 2]);
     b->out_triangle_count += 3;
     i = b->out_source_count++;
     b->out_operand_count++;
@@ -6630,6 +6638,7 @@ static void gxbp_extract(gxb_boolean *b) {
     uint32_t f;
     for (f = 0; f < b->vertex_count; f++) b->vertices[f].slot = GXB_NONE;
     b->out_point_count = b->out_triangle_count = b->out_operand_count = b->out_source_count = b->out_plane_count = b->out_reversed_count = 0;
+    if (!gxbp_more_triangles(b, b->piece_count / 2) || !GXBP_ROOM(b, out_triangles, out_triangle, 3 * (size_t)(b->piece_count / 2))) return;
     for (f = 0; f < b->piece_count && b->result == GX_OK; f++) {
         uint32_t source, behind;
         int front_in, back_in;
