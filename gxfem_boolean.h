@@ -5392,7 +5392,8 @@ static int gxbp_side_of_source(gxb_boolean *b, uint32_t v, uint32_t s) {
 
 /* 1: v lies to the left */
 static int gxbp_left(gxb_boolean *b, const gxbp_line *line, uint32_t v) {
-    if (v == line->p || v == line->x) return 0;
+    const gxb_cpoint *p = &b->cx.points[v];
+    if (v == line->p || v == line->x || (p->kind == GXB_LINE_PLANE && p->def[2] == line->plane)) return 0;
     if (line->plane != GXB_NONE) return line->sigma * gxbp_side_of_source(b, v, line->source);
     return gxbp_turn(b, line->p, line->x, v);
 }
