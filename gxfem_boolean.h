@@ -57,7 +57,8 @@
  *     - At most 2^31 - 1 points, planes, edges, facets and leaves.
  *     - No global state, no input or output, no heap traffic but the growth of the complex's own arrays.
  *
- * Configuration: GXB_LIMB32 uses 32-bit limbs also where 128-bit products exist (same results, slower).
+ * Configuration: GXB_LIMB32 uses 32-bit limbs also where 128-bit products exist (same results, slower). GXFEM_STATIC leaves out of a
+ * program what it does not call.
  *
  * References: J. R. Shewchuk, Adaptive precision floating-point arithmetic and fast robust geometric predicates (1997);
  *     M. Attene, Indirect predicates for geometric constructions (2020), for the term implicit point;
