@@ -5703,13 +5703,16 @@ static uint32_t gxbp_take_way(gxb_boolean *b, const gxbp_way *way, uint32_t labe
 static void gxbp_force_edge(gxb_boolean *b, uint32_t s, uint32_t p, uint32_t q, uint32_t label, int left) {
     gxbp_line line;
     gxbp_way way;
+    int known = 1;                      /* that there is no edge from p to q: it has been looked for, and nothing was refilled since */
     if (p == q) return;
     if (gxbp_find_edge(b, p, q, &way)) { gxbp_take_way(b, &way, label); return; }
     gxbp_set_line(b, &line, s, p, q, label, left);
     while (p != q && b->result == GX_OK) {
-        if (!gxbp_find_edge(b, p, q, &way) && !gxbp_find_way(b, &line, p, &way)) { gxbp_stop(b, GX_ERROR_OVERLAP); return; }
+        if ((known || !gxbp_find_edge(b, p, q, &way)) && !gxbp_find_way(b, &line, p, &way)) { gxbp_stop(b, GX_ERROR_OVERLAP); return; }
+        known = 0;
         if (way.ahead != 0) p = gxbp_take_way(b, &way, label);
         else if (gxbp_collect_crossed(b, s, &line, way, label)) gxbp_refill(b, p);
+        else known = 1;
     }
 }
 
