@@ -490,9 +490,11 @@ extern "C" {
 /* What is called rarely is small rather than fast; what is called from many places is there once. */
 #if defined(__GNUC__)
 #define GXBP_COLD __attribute__((cold, noinline))
+#define GXBP_RARE __attribute__((cold))     /* of public functions, which GXFEM_STATIC makes inline */
 #define GXBP_APART __attribute__((noinline))
 #else
 #define GXBP_COLD
+#define GXBP_RARE
 #define GXBP_APART
 #endif
 
@@ -1540,7 +1542,7 @@ static GXBP_COLD void gxbp_drop_recent_numbers(gxb_complex *cx) {
     if (cx->blocks != NULL) cx->blocks->used = cx->mark_used;
 }
 
-GXFEM_API GXBP_COLD void gxb_complex_rollback(gxb_complex *cx) {
+GXFEM_API GXBP_RARE void gxb_complex_rollback(gxb_complex *cx) {
     while (cx->undo_count > 0) {
         const gxb_undo *undo = &cx->undo[--cx->undo_count];
         size_t size;
@@ -2120,7 +2122,7 @@ typedef struct gxbp_task { uint32_t parent, side, first, count, coplanar; } gxbp
 #define GXBP_TRIANGLE_EDGE 0x80000000u
 #define GXBP_IN_ROOT GXB_NONE   /* task.parent: the reference is the element's root */
 
-GXFEM_API GXBP_COLD void gxb_complex_destroy(gxb_complex *cx) {
+GXFEM_API GXBP_RARE void gxb_complex_destroy(gxb_complex *cx) {
     gx_allocator a;
     if (cx == NULL) return;
     a = cx->allocator;
@@ -2666,7 +2668,7 @@ static gx_result gxbp_cover_edges(gxb_complex *cx, gxb_triangle *t, uint32_t edg
     return result == GX_OK ? gxbp_cover_edges(cx, t, child + 1, covered) : result;
 }
 
-GXFEM_API GXBP_COLD gx_result gxb_complex_cover_edge(gxb_complex *cx, gxb_triangle *t, uint32_t element, uint32_t local_edge, int *covered) {
+GXFEM_API GXBP_RARE gx_result gxb_complex_cover_edge(gxb_complex *cx, gxb_triangle *t, uint32_t element, uint32_t local_edge, int *covered) {
     const uint32_t edge = cx->element_edges[6 * element + local_edge];
     const uint32_t a = cx->elements[4 * element + gxbp_edge_nodes[local_edge][0]], b = cx->elements[4 * element + gxbp_edge_nodes[local_edge][1]];
     gx_result result;
@@ -2675,7 +2677,7 @@ GXFEM_API GXBP_COLD gx_result gxb_complex_cover_edge(gxb_complex *cx, gxb_triang
     return result == GX_OK ? gxbp_cover_edges(cx, t, cx->mesh_edge[edge], covered) : result;
 }
 
-GXFEM_API GXBP_COLD gx_result gxb_complex_cover_node(gxb_complex *cx, gxb_triangle *t, uint32_t node, int *covered) {
+GXFEM_API GXBP_RARE gx_result gxb_complex_cover_node(gxb_complex *cx, gxb_triangle *t, uint32_t node, int *covered) {
     uint32_t k;
     int front;
     gx_result result = gxbp_reserve_undo(cx, 1);
@@ -3199,7 +3201,7 @@ GXFEM_API void gxb_complex_barycentric(gxb_complex *cx, uint32_t point, uint32_t
 }
 
 /* Each step adds the quotient of what is left: 50 bits, so that four leave less than 2^-180 of the value. */
-GXFEM_API GXBP_COLD void gxb_complex_barycentric_fine(gxb_complex *cx, uint32_t point, uint32_t element, gxb_num lambda[4]) {
+GXFEM_API GXBP_RARE void gxb_complex_barycentric_fine(gxb_complex *cx, uint32_t point, uint32_t element, gxb_num lambda[4]) {
     uint32_t k;
     int step;
     for (k = 0; k < 4; k++) {
@@ -3420,7 +3422,7 @@ static GXBP_COLD void gxbp_pass_rest(gxb_complex *cx, gxb_stream *s) {
 
 enum { GXBP_COUNTS = 7 };
 
-GXFEM_API GXBP_COLD void gxb_complex_save(gxb_complex *cx, gxb_stream *stream) {
+GXFEM_API GXBP_RARE void gxb_complex_save(gxb_complex *cx, gxb_stream *stream) {
     uint32_t counts[GXBP_COUNTS];
     counts[0] = cx->point_count; counts[1] = cx->plane_count; counts[2] = cx->edge_count; counts[3] = cx->facet_count;
     counts[4] = cx->leaf_count; counts[5] = cx->tree_count; counts[6] = cx->label_count;
@@ -3467,7 +3469,7 @@ static void gxbp_link_trees(gxb_complex *cx) {
         for (n = cx->nodes[i].child[k] & 1 ? GXB_NONE : i; n != GXB_NONE; n = cx->nodes[n].parent) cx->nodes[n].leaves++;
 }
 
-GXFEM_API GXBP_COLD gx_result gxb_complex_load(gxb_complex *cx, gxb_stream *s, int trusted) {
+GXFEM_API GXBP_RARE gx_result gxb_complex_load(gxb_complex *cx, gxb_stream *s, int trusted) {
     uint32_t counts[GXBP_COUNTS];
     gxb_stream_pass(s, counts, GXBP_COUNTS, sizeof *counts);
     gxbp_load_room(s, cx, counts);
