@@ -6567,15 +6567,19 @@ static double gxbp_nearest(const gxb_num *num, const gxb_num *den) {
     return gxbp_double(num->sign * den->sign < 0 ? bits | (uint64_t)1 << 63 : bits);
 }
 
+static GXBP_COLD void gxbp_round_exactly(gxb_boolean *b, uint32_t point, double out[3]) {
+    gxbp_vec store;
+    const gxb_num *x = gxbp_exact_cpoint(&b->cx, point, &store);
+    int k;
+    for (k = 0; k < 3; k++) out[k] = gxbp_unscale(b, gxbp_nearest(&x[k], &x[3]));
+}
+
 /* An input vertex as it was given; else the ball's middle where the ball is small, else from exact coordinates. */
 static void gxbp_round_point(gxb_boolean *b, uint32_t point, double out[3]) {
     const gxb_cpoint *p = &b->cx.points[point];
     int k;
-    if (p->kind != GXB_EXPLICIT && (b->fine || p->ball.error > GXBP_VERTEX_ERROR * gxbp_max3(p->ball.x))) {
-        gxbp_vec store;
-        const gxb_num *x = gxbp_exact_cpoint(&b->cx, point, &store);
-        for (k = 0; k < 3; k++) out[k] = gxbp_unscale(b, gxbp_nearest(&x[k], &x[3]));
-    } else for (k = 0; k < 3; k++) out[k] = gxbp_unscale(b, p->ball.x[k]);
+    if (p->kind != GXB_EXPLICIT && (b->fine || p->ball.error > GXBP_VERTEX_ERROR * gxbp_max3(p->ball.x))) gxbp_round_exactly(b, point, out);
+    else for (k = 0; k < 3; k++) out[k] = gxbp_unscale(b, p->ball.x[k]);
 }
 
 static void gxbp_name_source(const gxb_boolean *b, uint32_t s, uint32_t corner, uint32_t *operand, uint32_t *index) {
