@@ -2109,16 +2109,17 @@ static gx_result gxp_touch_severed(gxp_cut *cut) {
 /* Divides all touched cells. Leaves body->touched as it was and makes body->fresh of the pieces. */
 static gx_result gxp_divide_cells(gxp_cut *cut) {
     gx_body *body = cut->body;
-    uint32_t i, last = GXP_NONE;
+    uint32_t i;
     gx_result result = gxp_reserve(&body->allocator, &body->saved_cells, sizeof *body->saved_cells, body->saved_cell_count,
                                    &body->saved_cell_capacity, 4 * (size_t)body->touched.count);
     body->fresh.count = 0;
+    body->stamp++;
     for (i = 0; i < body->touched.count && result == GX_OK; i++) {
-        const uint32_t element = body->cells[body->touched.data[i]].element;
-        cut->report.touched_elements += element != last;
-        last = element;
-        result = gxp_divide_cell(cut, body->touched.data[i]);
+        uint32_t *stamp = &body->cell_stamp[body->cells[body->touched.data[i]].element];
+        cut->report.touched_elements += *stamp != body->stamp;
+        *stamp = body->stamp;
     }
+    for (i = 0; i < body->touched.count && result == GX_OK; i++) result = gxp_divide_cell(cut, body->touched.data[i]);
     return result;
 }
 

@@ -376,6 +376,22 @@ START_TEST(same_cut_twice_changes_nothing) {
 }
 END_TEST
 
+/* However many of an element's cells a cut touches, it is one: all five elements by each of six planes, and by those again. */
+START_TEST(touched_elements_count_once) {
+    workload w = grid(1, 1, 1, 5);
+    gx_body *body = body_of(&w);
+    size_t i;
+    for (i = 0; i < 6; ++i) add_axis_plane(&w, (int)(i % 3), (double)(i + 2) / 10);
+    for (i = 0; i < 6; ++i) {
+        const size_t touched = cut_by(body, &w, i, 1).touched_elements;
+        ck_assert_msg(touched >= 4 && touched <= 5, "cut %zu touches %zu elements", i, touched);
+    }
+    ck_assert_uint_gt(view_of(body).cell_count, 70);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 /* Planes at 1/3 and the next double: a slab one ulp thick, with its own volume. */
 START_TEST(cuts_one_ulp_apart) {
     double x = 1.0 / 3, next = nextafter(x, 1), step = next - x;
@@ -2112,6 +2128,7 @@ int main(void) {
     tcase_add_loop_test(tests, order_does_not_matter, first, last);
     tcase_add_loop_test(tests, scale_and_rotation_do_not_matter, first, last);
     tcase_add_loop_test(tests, same_cut_twice_changes_nothing, first, last);
+    tcase_add_test(tests, touched_elements_count_once);
     tcase_add_test(tests, cuts_one_ulp_apart);
     tcase_add_test(tests, cuts_in_element_faces);
     tcase_add_test(tests, cuts_through_nodes_and_edges);
