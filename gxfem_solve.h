@@ -563,15 +563,15 @@ static double gxsp_dot(const double *a, const double *b, size_t count)
 }
 
 /* sum of a[i] b[i] in eight sums side by side, for vectors */
-static double gxsp_long_dot(const double *a, const double *b, size_t count)
+static double gxsp_long_dot(const float *a, const double *b, size_t count)
 {
     double sum[8] = {0, 0, 0, 0, 0, 0, 0, 0};
     size_t i, k;
     for (i = 0; i + 8 <= count; i += 8)
         for (k = 0; k < 8; ++k)
-            sum[k] += a[i + k] * b[i + k];
+            sum[k] += (double)a[i + k] * b[i + k];
     for (; i < count; ++i)
-        sum[0] += a[i] * b[i];
+        sum[0] += (double)a[i] * b[i];
     return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
 }
 
@@ -735,26 +735,24 @@ typedef struct gxsp_level {
     int32_t (*place)[3];    /* n: lattice point; not of level 0 */
     uint32_t (*parent)[4];  /* n: nodes of the next level, GXSP_NONE where the weight is 0 */
     float (*weight)[4];
-    uint32_t *start;        /* n + 1: rows of the matrix; not of level 0 if it is matrix-free */
-    uint32_t *column;       /* ascending in a row */
-    float *block;           /* 12 per entry: three columns, each of 4 with the last 0 */
-    float *inverse;         /* n x 12: of the diagonal blocks */
+    uint32_t *start;        /* n + 1: rows of the symmetric matrix on and above its diagonal; not of level 0 if it is matrix-free */
+    uint32_t *column;       /* ascending in a row: the first is the row's own */
+    float *block;           /* 9 per entry, by columns */
+    float *inverse;         /* n x 6: of the diagonal blocks, packed */
     gxsp_vector4 *x, *b, *r;/* n: solution, right-hand side, residual; borrowed on level 0 */
-    uint32_t *child_start;  /* n of the next level + 1: nodes by parent */
-    uint32_t *child;
 } gxsp_level;
 
 /* Edges: pairs of a chunk's nodes, i <= j, that share an element; a node is an edge to itself, and these come first. */
 typedef struct gxsp_edges {
     uint16_t *table;        /* nodes x nodes: the edge of two nodes i < j if ends says so, else without meaning: it is never cleared */
     uint32_t *ends;         /* i << 16 | j */
-    float (*block)[12];     /* i's row and j's column of the Hessian, three columns of 4 */
-    float (*turned)[12];    /* transposed */
+    float (*block)[9];      /* i's row and j's column of the Hessian, by columns */
+    float (*turned)[9];     /* transposed */
     uint32_t nodes, count;
     uint32_t *start;        /* nodes + 2: adjacency, by node into other and edge */
     uint16_t *other, *edge;
     uint16_t (*parent)[4];  /* by node: numbers of its parents, see gxsp_pairs */
-    float (*half)[12];      /* by number: a node's row of the Hessian times the transfer */
+    float (*half)[9];       /* by number: a node's row of the Hessian times the transfer */
     uint16_t *touched;      /* numbers of those that are not 0 */
 } gxsp_edges;
 
@@ -767,6 +765,7 @@ typedef struct gxsp_pairs {
     uint32_t *stamp;    /* by coarse node: the round in which it was numbered */
     uint32_t round;     /* one for each visit of a chunk */
     uint32_t count;     /* coarse nodes numbered in this round */
+    float (*half)[9];   /* by coarse node: a row of a level's matrix times its transfer */
 } gxsp_pairs;
 
 /* Cholesky factor of the last level, row by row within its envelope. */
@@ -775,9 +774,9 @@ typedef struct gxsp_factor {
     uint32_t *order;    /* n / 3: node of the level in each place */
     uint32_t *first;    /* n: first column of the row */
     size_t *row;        /* n: where column 0 of the row would be in entry, so entry[row[i] + j] */
-    double *entry;      /* entry_count */
+    float *entry;       /* entry_count; diagonal inverted */
     size_t entry_count;
-    double *x;          /* n */
+    double *x;          /* n: solution; the row at work */
 } gxsp_factor;
 
 typedef struct gxsp_material {
@@ -878,7 +877,6 @@ typedef struct gxsp_system {
     int coarse_worn;        /* to be made anew */
     double term_stiffness, coarse_stiffness; /* sums of springs' and contact's Hessians: now, when coarse matrices were made */
     gxsp_fine *fine;        /* block_count: places in the assembled matrix, levels[0]; NULL: matrix-free */
-    uint32_t *transpose;    /* by entry of levels[0]: the entry that mirrors it */
     uint32_t usual_iterations; /* of the solve with fresh ones */
     uint32_t coarse_age;    /* solves since they were made */
     uint32_t coarse_life;   /* how many solves they serve; 0: as many as they will */
@@ -2652,28 +2650,6 @@ static void gxsp_transfer_places(const gxsp_level *level, const gxsp_transfer *t
         }
 }
 
-/* Nodes by parent. */
-static void gxsp_find_children(gxsp_pool *pool, gxsp_level *level, uint32_t next_count)
-{
-    uint32_t i, total = 0, k;
-    level->child_start = (uint32_t *)gxsp_take(pool, (size_t)next_count + 2, sizeof(uint32_t));
-    if (pool->failed)
-        return;
-    for (i = 0; i < level->n; ++i)
-        for (k = 0; k < 4; ++k)
-            if (level->parent[i][k] != GXSP_NONE)
-                ++level->child_start[level->parent[i][k] + 2], ++total;
-    level->child = (uint32_t *)gxsp_take(pool, total, sizeof(uint32_t));
-    if (pool->failed)
-        return;
-    for (i = 0; i < next_count; ++i)
-        level->child_start[i + 2] += level->child_start[i + 1];
-    for (i = 0; i < level->n; ++i)
-        for (k = 0; k < 4; ++k)
-            if (level->parent[i][k] != GXSP_NONE)
-                level->child[level->child_start[level->parent[i][k] + 1]++] = i;
-}
-
 static void gxsp_sort_row(uint32_t *row, uint32_t count)
 {
     uint32_t i, j;
@@ -2695,7 +2671,7 @@ static void gxsp_level_make(gxsp_pool *pool, gxsp_level *level, uint32_t n, int 
         return;
     level->place = (int32_t(*)[3])gxsp_take(pool, n, sizeof *level->place);
     level->start = (uint32_t *)gxsp_take(pool, (size_t)n + 1, sizeof(uint32_t));
-    level->inverse = (float *)gxsp_take(pool, 12 * (size_t)n, sizeof(float));
+    level->inverse = (float *)gxsp_take(pool, 6 * (size_t)n, sizeof(float));
     level->x = (gxsp_vector4 *)gxsp_take(pool, n, sizeof(gxsp_vector4));
     level->b = (gxsp_vector4 *)gxsp_take(pool, n, sizeof(gxsp_vector4));
     level->r = (gxsp_vector4 *)gxsp_take(pool, n, sizeof(gxsp_vector4));
@@ -2705,49 +2681,86 @@ static void gxsp_level_matrix(gxsp_pool *pool, gxsp_level *level, const uint32_t
 {
     uint32_t entries = level->start[level->n];
     level->column = (uint32_t *)gxsp_take(pool, entries, sizeof(uint32_t));
-    level->block = (float *)gxsp_take(pool, 12 * (size_t)entries, sizeof(float));
+    level->block = (float *)gxsp_take(pool, 9 * (size_t)entries + 1, sizeof(float)); /* products read four numbers of a column */
     if (!pool->failed)
         memcpy(level->column, columns, entries * sizeof(uint32_t));
 }
 
-/* Columns of transfer^T A transfer, row by row; with columns NULL only the rows' starts. seen: next->n, scratch */
-static void gxsp_coarse_pattern(const gxsp_level *level, gxsp_level *next, uint32_t *columns, uint32_t *seen)
+/* Growing list of a matrix's entries: rows and columns, the row the lower; in a pool of temporary memory */
+typedef struct gxsp_list {
+    gxsp_pool *scratch;
+    uint32_t (*pair)[2], count, room;
+} gxsp_list;
+
+static void gxsp_list_add(gxsp_list *list, uint32_t row, uint32_t column)
 {
-    uint32_t row, i, k, count = 0;
-    int b;
-    memset(seen, 0, next->n * sizeof *seen);
-    for (row = 0; row < next->n; ++row) {
-        next->start[row] = count;
-        for (i = level->child_start[row]; i < level->child_start[row + 1]; ++i)
-            for (k = level->start[level->child[i]]; k < level->start[level->child[i] + 1]; ++k)
-                for (b = 0; b < 4; ++b) {
-                    uint32_t parent = level->parent[level->column[k]][b];
-                    if (parent == GXSP_NONE || seen[parent] == row + 1)
-                        continue;
-                    seen[parent] = row + 1;
-                    if (columns)
-                        columns[count] = parent;
-                    ++count;
-                }
-        if (columns)
-            gxsp_sort_row(columns + next->start[row], count - next->start[row]);
+    if (list->count == list->room) {
+        uint32_t (*larger)[2] = (uint32_t(*)[2])gxsp_take(list->scratch, 2 * (size_t)list->room + 1024, sizeof *larger);
+        if (!larger)
+            return;
+        if (list->count > 0)
+            memcpy(larger, list->pair, list->count * sizeof *larger);
+        list->pair = larger;
+        list->room = 2 * list->room + 1024;
     }
-    next->start[next->n] = count;
+    list->pair[list->count][0] = row;
+    list->pair[list->count++][1] = column;
 }
 
-/* Rows of the next level's matrix from a level's */
+/* Rows of a level's matrix from its entries on and above the diagonal, (row, column), of which some may come twice. */
+static void gxsp_rows_make(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *level, uint32_t (*list)[2], uint32_t listed)
+{
+    uint32_t *start = (uint32_t *)gxsp_take(scratch, (size_t)level->n + 2, sizeof(uint32_t));
+    uint32_t *columns = (uint32_t *)gxsp_take(scratch, listed, sizeof(uint32_t));
+    uint32_t *seen = (uint32_t *)gxsp_take(scratch, level->n, sizeof(uint32_t)), i, k, count = 0;
+    if (scratch->failed)
+        return;
+    for (i = 0; i < listed; ++i)
+        ++start[list[i][0] + 2];
+    for (i = 0; i < level->n; ++i)
+        start[i + 2] += start[i + 1];
+    for (i = 0; i < listed; ++i)
+        columns[start[list[i][0] + 1]++] = list[i][1];
+    for (i = 0; i < level->n; ++i) {
+        level->start[i] = count;
+        for (k = start[i]; k < start[i + 1]; ++k)
+            if (seen[columns[k]] != i + 1) {
+                seen[columns[k]] = i + 1;
+                columns[count++] = columns[k]; /* no more are kept than have been read */
+            }
+        gxsp_sort_row(columns + level->start[i], count - level->start[i]);
+    }
+    level->start[level->n] = count;
+    gxsp_level_matrix(pool, level, columns);
+}
+
+/* Rows of the next level's matrix, transfer^T A transfer, from a level's */
 static void gxsp_coarse_rows(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *level)
 {
     gxsp_level *next = level + 1;
-    uint32_t *seen = (uint32_t *)gxsp_take(scratch, next->n, sizeof(uint32_t)), *columns;
-    if (scratch->failed)
-        return;
-    gxsp_coarse_pattern(level, next, NULL, seen);
-    columns = (uint32_t *)gxsp_take(scratch, next->start[next->n], sizeof(uint32_t));
-    if (scratch->failed)
-        return;
-    gxsp_coarse_pattern(level, next, columns, seen);
-    gxsp_level_matrix(pool, next, columns);
+    uint32_t *seen = (uint32_t *)gxsp_take(scratch, next->n, sizeof(uint32_t)), *met = (uint32_t *)gxsp_take(scratch, next->n, sizeof(uint32_t));
+    uint32_t i, k, p, t, count;
+    gxsp_list list;
+    memset(&list, 0, sizeof list);
+    list.scratch = scratch;
+    for (i = 0; i < next->n; ++i)
+        gxsp_list_add(&list, i, i);
+    for (i = 0; i < level->n && !scratch->failed; ++i) {
+        for (k = 4 * level->start[i], count = 0; k < 4 * level->start[i + 1]; ++k) {
+            const uint32_t parent = level->parent[level->column[k / 4]][k % 4];
+            if (parent == GXSP_NONE || seen[parent] == i + 1)
+                continue;
+            seen[parent] = i + 1;
+            met[count++] = parent;
+        }
+        for (p = 0; p < 4; ++p)
+            for (t = 0; t < count && level->parent[i][p] != GXSP_NONE; ++t)
+                if (met[t] != level->parent[i][p])
+                    gxsp_list_add(&list, met[t] < level->parent[i][p] ? met[t] : level->parent[i][p],
+                                  met[t] < level->parent[i][p] ? level->parent[i][p] : met[t]);
+    }
+    if (!scratch->failed)
+        gxsp_rows_make(pool, scratch, next, list.pair, list.count);
 }
 
 /* The level after levels[at], at > 0, of twice its spacing. 0: it would not be much smaller. Scratch is left in the pool of
@@ -2767,14 +2780,12 @@ static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t at)
             place[i][k] = 0.5f * (float)level->place[i][k];
     gxsp_transfer_begin(level, place, NULL, &transfer);
     for (i = 0; i < level->n; ++i)
-        for (k = level->start[i]; k < level->start[i + 1]; ++k)
-            if (level->column[k] < i)
-                gxsp_join_nodes(&transfer, i, level->column[k]);
+        for (k = level->start[i] + 1; k < level->start[i + 1]; ++k)
+            gxsp_join_nodes(&transfer, i, level->column[k]);
     count = gxsp_transfer_end(level, &transfer);
     if (count > level->n - level->n / 3)
         return 0;
     gxsp_level_make(&system->coarse, next, count, 1);
-    gxsp_find_children(&system->coarse, level, count);
     if (system->coarse.failed)
         return 0;
     gxsp_transfer_places(level, &transfer, next);
@@ -2782,43 +2793,77 @@ static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t at)
     return !system->coarse.failed && !scratch->failed;
 }
 
+/* Neighbours of each node of a level, both ways; in temporary memory */
+typedef struct gxsp_graph {
+    uint32_t n, *start, *other; /* start: n + 2 */
+} gxsp_graph;
+
+static gxsp_graph gxsp_graph_make(gxsp_pool *scratch, const gxsp_level *level)
+{
+    gxsp_graph graph;
+    uint32_t i, k;
+    graph.n = level->n;
+    graph.start = (uint32_t *)gxsp_take(scratch, (size_t)level->n + 2, sizeof(uint32_t));
+    graph.other = (uint32_t *)gxsp_take(scratch, 2 * (size_t)level->start[level->n], sizeof(uint32_t));
+    if (scratch->failed)
+        return graph;
+    for (i = 0; i < level->n; ++i)
+        for (k = level->start[i] + 1; k < level->start[i + 1]; ++k)
+            ++graph.start[i + 2], ++graph.start[level->column[k] + 2];
+    for (i = 0; i < level->n; ++i)
+        graph.start[i + 2] += graph.start[i + 1];
+    for (i = 0; i < level->n; ++i)
+        for (k = level->start[i] + 1; k < level->start[i + 1]; ++k) {
+            graph.other[graph.start[i + 1]++] = level->column[k];
+            graph.other[graph.start[level->column[k] + 1]++] = i;
+        }
+    return graph;
+}
+
 /* Breadth-first order of the component of a seed, appended to order; place: those met have theirs, others GXSP_NONE. Returns the new
  * length. */
-static uint32_t gxsp_order_component(const gxsp_level *level, uint32_t seed, uint32_t count, uint32_t *order, uint32_t *place)
+static uint32_t gxsp_order_component(const gxsp_graph *graph, uint32_t seed, uint32_t count, uint32_t *order, uint32_t *place)
 {
     uint32_t done = count, k;
     place[seed] = count;
     order[count++] = seed;
     for (; done < count; ++done)
-        for (k = level->start[order[done]]; k < level->start[order[done] + 1]; ++k)
-            if (place[level->column[k]] == GXSP_NONE) {
-                place[level->column[k]] = count;
-                order[count++] = level->column[k];
+        for (k = graph->start[order[done]]; k < graph->start[order[done] + 1]; ++k)
+            if (place[graph->other[k]] == GXSP_NONE) {
+                place[graph->other[k]] = count;
+                order[count++] = graph->other[k];
             }
     return count;
 }
 
+/* The first place in whose column row i of the factor has an entry */
+static uint32_t gxsp_first_place(const gxsp_graph *graph, const uint32_t *order, const uint32_t *place, uint32_t i)
+{
+    uint32_t first = i, k;
+    for (k = graph->start[order[i]]; k < graph->start[order[i] + 1]; ++k)
+        first = place[graph->other[k]] < first ? place[graph->other[k]] : first;
+    return first;
+}
+
 /* Order for a small envelope: component by component, breadth first from a node that is last from some other. place: n, scratch.
  * Returns the multiplications of a factorisation. */
-static double gxsp_order_level(const gxsp_level *level, uint32_t *order, uint32_t *place)
+static double gxsp_order_level(const gxsp_graph *graph, uint32_t *order, uint32_t *place)
 {
     uint32_t seed, i, k, count = 0, end;
     double cost = 0;
-    memset(place, 0xff, level->n * sizeof *place);
-    for (seed = 0; seed < level->n; ++seed) {
+    memset(place, 0xff, graph->n * sizeof *place);
+    for (seed = 0; seed < graph->n; ++seed) {
         if (place[seed] != GXSP_NONE)
             continue;
-        end = gxsp_order_component(level, seed, count, order, place);
+        end = gxsp_order_component(graph, seed, count, order, place);
         k = order[end - 1];
         for (i = count; i < end; ++i)
             place[order[i]] = GXSP_NONE;
-        count = gxsp_order_component(level, k, count, order, place);
+        count = gxsp_order_component(graph, k, count, order, place);
     }
-    for (i = 0; i < level->n; ++i) {
-        uint32_t first = i;
-        for (k = level->start[order[i]]; k < level->start[order[i] + 1]; ++k)
-            first = place[level->column[k]] < first ? place[level->column[k]] : first;
-        cost += 13.5 * (double)(i - first + 1) * (double)(i - first + 1); /* three rows, each of a width squared / 2 */
+    for (i = 0; i < graph->n; ++i) {
+        const double width = i - gxsp_first_place(graph, order, place, i) + 1;
+        cost += 13.5 * width * width; /* three rows, each of a width squared / 2 */
     }
     return cost;
 }
@@ -2828,7 +2873,8 @@ static int gxsp_factors(gxsp_pool *scratch, const gxsp_level *level, size_t copi
 {
     gxsp_owned *mark = scratch->last;
     uint32_t *order = (uint32_t *)gxsp_take(scratch, 2 * (size_t)level->n, sizeof(uint32_t));
-    const int factors = !scratch->failed && gxsp_order_level(level, order, order + level->n) <= GXSP_FACTOR_COST * (double)copies;
+    const gxsp_graph graph = gxsp_graph_make(scratch, level);
+    const int factors = !scratch->failed && gxsp_order_level(&graph, order, order + level->n) <= GXSP_FACTOR_COST * (double)copies;
     gxsp_release_to(scratch, mark);
     return factors;
 }
@@ -2838,7 +2884,8 @@ static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch)
 {
     const gxsp_level *level = &system->levels[system->level_count - 1];
     gxsp_factor *factor = &system->factor;
-    uint32_t *place = (uint32_t *)gxsp_take(scratch, level->n, sizeof(uint32_t)), i, k;
+    uint32_t *place = (uint32_t *)gxsp_take(scratch, level->n, sizeof(uint32_t)), i;
+    const gxsp_graph graph = gxsp_graph_make(scratch, level);
     size_t entries = 0;
     factor->n = 3 * level->n;
     factor->order = (uint32_t *)gxsp_take(&system->coarse, level->n, sizeof(uint32_t));
@@ -2847,16 +2894,14 @@ static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch)
     factor->x = (double *)gxsp_take(&system->coarse, factor->n, sizeof(double));
     if (scratch->failed || system->coarse.failed)
         return;
-    (void)gxsp_order_level(level, factor->order, place);
+    (void)gxsp_order_level(&graph, factor->order, place);
     for (i = 0; i < factor->n; ++i) {
-        uint32_t node = factor->order[i / 3], first = i / 3;
-        for (k = level->start[node]; k < level->start[node + 1]; ++k)
-            first = place[level->column[k]] < first ? place[level->column[k]] : first;
-        factor->first[i] = 3 * first;
-        factor->row[i] = entries - 3 * (size_t)first;   /* no less than 0: every row before has an entry */
-        entries += i - 3 * first + 1;
+        const uint32_t first = 3 * gxsp_first_place(&graph, factor->order, place, i / 3);
+        factor->first[i] = first;
+        factor->row[i] = entries - first;   /* no less than 0: every row before has an entry */
+        entries += i - first + 1;
     }
-    factor->entry = (double *)gxsp_take(&system->coarse, entries + factor->n, sizeof(double));
+    factor->entry = (float *)gxsp_take(&system->coarse, entries, sizeof(float));
     factor->entry_count = entries;
 }
 
@@ -2882,13 +2927,13 @@ static void gxsp_edges_make(gxsp_system *system)
     }
     edges->table = (uint16_t *)gxsp_take(&system->coarse, nodes * nodes, sizeof(uint16_t));
     edges->ends = (uint32_t *)gxsp_take(&system->coarse, nodes + 6 * lanes, sizeof(uint32_t));
-    edges->block = (float(*)[12])gxsp_take(&system->coarse, nodes + 6 * lanes, sizeof *edges->block);
-    edges->turned = (float(*)[12])gxsp_take(&system->coarse, nodes + 6 * lanes, sizeof *edges->turned);
+    edges->block = (float(*)[9])gxsp_take(&system->coarse, nodes + 6 * lanes, sizeof *edges->block);
+    edges->turned = (float(*)[9])gxsp_take(&system->coarse, nodes + 6 * lanes, sizeof *edges->turned);
     edges->start = (uint32_t *)gxsp_take(&system->coarse, nodes + 2, sizeof(uint32_t));
     edges->other = (uint16_t *)gxsp_take(&system->coarse, nodes + 12 * lanes, sizeof(uint16_t));
     edges->edge = (uint16_t *)gxsp_take(&system->coarse, nodes + 12 * lanes, sizeof(uint16_t));
     edges->parent = (uint16_t(*)[4])gxsp_take(&system->coarse, nodes, sizeof *edges->parent);
-    edges->half = (float(*)[12])gxsp_take(&system->coarse, 4 * nodes, sizeof *edges->half);
+    edges->half = (float(*)[9])gxsp_take(&system->coarse, 4 * nodes, sizeof *edges->half);
     edges->touched = (uint16_t *)gxsp_take(&system->coarse, 4 * nodes, sizeof(uint16_t));
 }
 
@@ -2990,6 +3035,7 @@ static void gxsp_pairs_make(gxsp_system *system)
     system->pairs.stamp = (uint32_t *)gxsp_take(&system->coarse, system->levels[1].n, sizeof(uint32_t));
     system->pairs.node = (uint32_t *)gxsp_take(&system->coarse, system->levels[1].n, sizeof(uint32_t));
     system->pairs.seen = (uint32_t *)gxsp_take(&system->coarse, system->levels[1].n, sizeof(uint32_t));
+    system->pairs.half = (float(*)[9])gxsp_take(&system->coarse, system->levels[1].n, sizeof *system->pairs.half);
     system->pairs.round = 0;
 }
 
@@ -3042,27 +3088,6 @@ static gxsp_sets gxsp_find_sets(gxsp_system *system, const gxsp_chunk *chunk, ui
     return sets;
 }
 
-/* Growing list of a matrix's entries: rows and columns, the row the lower; in a pool of temporary memory */
-typedef struct gxsp_list {
-    gxsp_pool *scratch;
-    uint32_t (*pair)[2], count, room;
-} gxsp_list;
-
-static void gxsp_list_add(gxsp_list *list, uint32_t row, uint32_t column)
-{
-    if (list->count == list->room) {
-        uint32_t (*larger)[2] = (uint32_t(*)[2])gxsp_take(list->scratch, 2 * (size_t)list->room + 1024, sizeof *larger);
-        if (!larger)
-            return;
-        if (list->count > 0)
-            memcpy(larger, list->pair, list->count * sizeof *larger);
-        list->pair = larger;
-        list->room = 2 * list->room + 1024;
-    }
-    list->pair[list->count][0] = row;
-    list->pair[list->count++][1] = column;
-}
-
 /* Lists the entries of level 1's matrix that a chunk needs. dirty: by coarse node; only entries of one at least are listed; NULL: all
  * are. memory: see gxsp_find_sets */
 static void gxsp_list_pairs(gxsp_system *system, const gxsp_chunk *chunk, uint64_t *memory, const uint8_t *dirty, gxsp_list *list)
@@ -3080,42 +3105,6 @@ static void gxsp_list_pairs(gxsp_system *system, const gxsp_chunk *chunk, uint64
                 if ((set & 1) && node[i] < node[j] && (!dirty || dirty[node[i]] || dirty[node[j]]))
                     gxsp_list_add(list, node[i], node[j]);
         }
-}
-
-/* Rows of a level's matrix from its entries on and above the diagonal, (row, column), of which some may come twice. */
-static void gxsp_rows_make(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *level, uint32_t (*list)[2], uint32_t listed)
-{
-    uint32_t *start = (uint32_t *)gxsp_take(scratch, (size_t)level->n + 2, sizeof(uint32_t)), *columns, *kept, *seen, i, k, count = 0;
-    if (scratch->failed)
-        return;
-    for (i = 0; i < listed; ++i) {
-        ++start[list[i][0] + 2];
-        if (list[i][0] != list[i][1])
-            ++start[list[i][1] + 2];
-    }
-    for (i = 0; i < level->n; ++i)
-        start[i + 2] += start[i + 1];
-    columns = (uint32_t *)gxsp_take(scratch, start[level->n + 1], sizeof(uint32_t));
-    kept = (uint32_t *)gxsp_take(scratch, start[level->n + 1], sizeof(uint32_t));
-    seen = (uint32_t *)gxsp_take(scratch, level->n, sizeof(uint32_t));
-    if (scratch->failed)
-        return;
-    for (i = 0; i < listed; ++i) {
-        columns[start[list[i][0] + 1]++] = list[i][1];
-        if (list[i][0] != list[i][1])
-            columns[start[list[i][1] + 1]++] = list[i][0];
-    }
-    for (i = 0; i < level->n; ++i) {
-        level->start[i] = count;
-        for (k = start[i]; k < start[i + 1]; ++k)
-            if (seen[columns[k]] != i + 1) {
-                seen[columns[k]] = i + 1;
-                kept[count++] = columns[k];
-            }
-        gxsp_sort_row(kept + level->start[i], count - level->start[i]);
-    }
-    level->start[level->n] = count;
-    gxsp_level_matrix(pool, level, kept);
 }
 
 /* Does a chunk have a node that follows one of the dirty? */
@@ -3217,11 +3206,11 @@ static uint32_t gxsp_element_pairs(const gxsp_system *system, const uint32_t *co
 static void gxsp_fine_make(gxsp_system *system, gxsp_pool *scratch)
 {
     gxsp_level *fine = &system->levels[0];
-    uint32_t (*list)[2] = NULL, c, b, i, k, count, room = 0;
+    uint32_t (*list)[2] = NULL, c, b, i, count, room = 0;
     int l, pair, pass;
     system->fine = (gxsp_fine *)gxsp_take(&system->pool, system->block_count, sizeof(gxsp_fine));
     fine->start = (uint32_t *)gxsp_take(&system->pool, system->n + 1, sizeof(uint32_t));
-    fine->inverse = (float *)gxsp_take(&system->pool, 12 * system->n, sizeof(float));
+    fine->inverse = (float *)gxsp_take(&system->pool, 6 * system->n, sizeof(float));
     if (system->pool.failed)
         return;
     for (pass = 0; pass < 2; ++pass) { /* count, then list */
@@ -3240,7 +3229,6 @@ static void gxsp_fine_make(gxsp_system *system, gxsp_pool *scratch)
         room = count;
     }
     gxsp_rows_make(&system->pool, scratch, fine, list, count);
-    system->transpose = (uint32_t *)gxsp_take(&system->pool, scratch->failed ? 1 : fine->start[fine->n], sizeof(uint32_t));
     if (scratch->failed || system->pool.failed)
         return;
     for (c = 0; c < system->chunk_count; ++c)
@@ -3253,9 +3241,6 @@ static void gxsp_fine_make(gxsp_system *system, gxsp_pool *scratch)
                     gxsp_element_follows(system, copies) ? GXSP_NONE : gxsp_find_entry(fine, p < q ? p : q, p < q ? q : p);
             }
         }
-    for (i = 0; i < fine->n; ++i)
-        for (k = fine->start[i]; k < fine->start[i + 1]; ++k)
-            system->transpose[k] = gxsp_find_entry(fine, fine->column[k], i);
 }
 
 /* The rows of level 1 and all levels after it. before, dirty: see gxsp_first_pattern */
@@ -3302,8 +3287,6 @@ static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (
     if (count == 0)
         return;
     gxsp_level_make(&system->coarse, fine + 1, count, 1);
-    if (system->fine)
-        gxsp_find_children(&system->coarse, fine, count);
     if (system->coarse.failed)
         return;
     gxsp_transfer_places(fine, &transfer, fine + 1);
@@ -3481,45 +3464,52 @@ static void gxsp_reduce_residual(const gxsp_system *system, double *r)
 
 /* >>operator */
 
-/* --- blocks: three columns of 4, the last of each 0 --- */
+/* --- blocks: nine numbers by columns --- */
 
 static void gxsp_transpose_block(const float *GXSP_RESTRICT a, float *GXSP_RESTRICT transposed)
 {
-    transposed[0] = a[0], transposed[1] = a[4], transposed[2] = a[8], transposed[3] = 0;
-    transposed[4] = a[1], transposed[5] = a[5], transposed[6] = a[9], transposed[7] = 0;
-    transposed[8] = a[2], transposed[9] = a[6], transposed[10] = a[10], transposed[11] = 0;
+    transposed[0] = a[0], transposed[1] = a[3], transposed[2] = a[6];
+    transposed[3] = a[1], transposed[4] = a[4], transposed[5] = a[7];
+    transposed[6] = a[2], transposed[7] = a[5], transposed[8] = a[8];
 }
 
 /* to += lane l of nine numbers by rows, transposed or not, and mass on the diagonal */
 static void gxsp_add_lane(gxsp_singles *GXSP_RESTRICT block, int l, int transposed, float mass, float *GXSP_RESTRICT to)
 {
-    const int r = transposed ? 4 : 1, c = transposed ? 1 : 4;
+    const int r = transposed ? 3 : 1, c = transposed ? 1 : 3;
     to[0] += block[0][l] + mass, to[c] += block[1][l], to[2 * c] += block[2][l];
-    to[r] += block[3][l], to[5] += block[4][l] + mass, to[r + 2 * c] += block[5][l];
-    to[2 * r] += block[6][l], to[2 * r + c] += block[7][l], to[10] += block[8][l] + mass;
+    to[r] += block[3][l], to[4] += block[4][l] + mass, to[r + 2 * c] += block[5][l];
+    to[2 * r] += block[6][l], to[2 * r + c] += block[7][l], to[8] += block[8][l] + mass;
 }
 
-/* y += a x for 12 numbers */
+/* y += a x for nine numbers */
 static void gxsp_add_scaled(float a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y)
 {
     int k;
-    for (k = 0; k < 12; ++k)
+    for (k = 0; k < 8; ++k)
         y[k] += a * x[k];
+    y[8] += a * x[8];
 }
 
-/* y += a x and y -= a x for blocks */
-static void gxsp_add_block(const float *GXSP_RESTRICT a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y)
+static void gxsp_add_mass(float mass, float *to)
 {
-    int k;
-    for (k = 0; k < 4; ++k)
-        y[k] += a[k] * x[0] + a[4 + k] * x[1] + a[8 + k] * x[2];
+    to[0] += mass, to[4] += mass, to[8] += mass;
 }
 
+/* y -= a x; the fourth of y is without meaning, as is what follows a */
 static void gxsp_subtract_block(const float *GXSP_RESTRICT a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y)
 {
     int k;
     for (k = 0; k < 4; ++k)
-        y[k] -= a[k] * x[0] + a[4 + k] * x[1] + a[8 + k] * x[2];
+        y[k] -= a[k] * x[0] + a[3 + k] * x[1] + a[6 + k] * x[2];
+}
+
+/* y -= a^T x */
+static void gxsp_subtract_turned(const float *GXSP_RESTRICT a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y)
+{
+    y[0] -= a[0] * x[0] + a[1] * x[1] + a[2] * x[2];
+    y[1] -= a[3] * x[0] + a[4] * x[1] + a[5] * x[2];
+    y[2] -= a[6] * x[0] + a[7] * x[1] + a[8] * x[2];
 }
 
 /* y = D^-1 x for packed D^-1 */
@@ -3638,18 +3628,23 @@ static void gxsp_task_product_sum(void *context, size_t index)
     }
 }
 
-static void gxsp_task_rows(void *context, size_t index)
+/* y = A x by the assembled matrix, on copies that are not still */
+static void gxsp_rows_product(const gxsp_system *system, gxsp_vector4 *x, gxsp_vector4 *y)
 {
-    const gxsp_pass *pass = (const gxsp_pass *)context;
-    const gxsp_system *system = pass->system;
     const gxsp_level *fine = &system->levels[0];
-    size_t i = index * GXSP_RANGE, end = i + GXSP_RANGE < system->n ? i + GXSP_RANGE : system->n;
-    uint32_t k;
-    for (; i < end; ++i) {
-        gxsp_vector4 sum = {0, 0, 0, 0};
-        for (k = fine->start[i]; k < fine->start[i + 1] && !system->still[i]; ++k)
-            gxsp_add_block(fine->block + 12 * (size_t)k, pass->x[fine->column[k]], sum);
-        memcpy(pass->y[i], sum, sizeof sum);
+    uint32_t i, k;
+    int c;
+    memset(y, 0, system->n * sizeof *y);
+    for (i = 0; i < fine->n; ++i) {
+        gxsp_vector4 minus = {0, 0, 0, 0};
+        float turned[3] = {-x[i][0], -x[i][1], -x[i][2]};
+        gxsp_subtract_block(fine->block + 9 * (size_t)fine->start[i], x[i], minus);
+        for (k = fine->start[i] + 1; k < fine->start[i + 1]; ++k) {
+            gxsp_subtract_block(fine->block + 9 * (size_t)k, x[fine->column[k]], minus);
+            gxsp_subtract_turned(fine->block + 9 * (size_t)k, turned, y[fine->column[k]]);
+        }
+        for (c = 0; c < 3; ++c)
+            y[i][c] = system->still[i] ? 0 : y[i][c] - minus[c]; /* all rows before have added to it */
     }
 }
 
@@ -3683,7 +3678,7 @@ static void gxsp_product(gxsp_system *system, double rate, gxsp_vector4 *x, gxsp
     pass.y = y;
     gxsp_extend(system, x);
     if (system->fine)
-        gxsp_parallel(system->jobs, system->range_count, gxsp_task_rows, &pass);
+        gxsp_rows_product(system, x, y);
     else {
         gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_product, &pass);
         gxsp_parallel(system->jobs, system->range_count, gxsp_task_product_sum, &pass);
@@ -3839,39 +3834,50 @@ static int gxsp_linearise(gxsp_system *system, double rate, const double *from, 
     return 1;
 }
 
-/* >>multigrid: a level's matrix in block rows; block Gauss-Seidel forward before and backward after the coarse correction, so
- * that the whole is symmetric. The order is that of the nodes. */
+/* >>multigrid: a level's matrix in block rows, of which only the upper half is stored; block Gauss-Seidel forward before and backward
+ * after the coarse correction, so that the whole is symmetric. The order is that of the nodes. */
+
+/* r = b without what the entries left of the diagonal make of x; if solve is set, x is solved for on the way, row by row. */
+static void gxsp_sweep_lower(gxsp_level *level, int solve)
+{
+    uint32_t i, k;
+    memcpy(level->r, level->b, level->n * sizeof *level->r);
+    for (i = 0; i < level->n; ++i) {
+        if (solve)
+            gxsp_apply_packed(level->inverse + 6 * (size_t)i, level->r[i], level->x[i]);
+        for (k = level->start[i] + 1; k < level->start[i + 1]; ++k)
+            gxsp_subtract_turned(level->block + 9 * (size_t)k, level->x[i], level->r[level->column[k]]);
+    }
+}
 
 /* x from 0 by one forward sweep: only the rows' entries left of the diagonal count. What the sweep leaves of b is then
  * minus the entries right of the diagonal times x. */
 static void gxsp_sweep_forward(gxsp_level *level)
 {
     uint32_t i, k;
-    for (i = 0; i < level->n; ++i) {
-        gxsp_vector4 r;
-        memcpy(r, level->b[i], sizeof r);
-        for (k = level->start[i]; level->column[k] < i; ++k)
-            gxsp_subtract_block(level->block + 12 * (size_t)k, level->x[level->column[k]], r);
-        memset(level->x[i], 0, sizeof level->x[i]);
-        gxsp_add_block(level->inverse + 12 * (size_t)i, r, level->x[i]);
-    }
+    gxsp_sweep_lower(level, 1);
     for (i = 0; i < level->n; ++i) {
         gxsp_vector4 r = {0, 0, 0, 0};
-        for (k = level->start[i + 1]; level->column[k - 1] > i; --k)
-            gxsp_subtract_block(level->block + 12 * (size_t)(k - 1), level->x[level->column[k - 1]], r);
-        memcpy(level->r[i], r, sizeof r);
+        for (k = level->start[i] + 1; k < level->start[i + 1]; ++k)
+            gxsp_subtract_block(level->block + 9 * (size_t)k, level->x[level->column[k]], r);
+        memcpy(level->r[i], r, 3 * sizeof(float));
     }
 }
 
 static void gxsp_sweep_backward(gxsp_level *level)
 {
     uint32_t i, k;
+    int c;
+    gxsp_sweep_lower(level, 0);
     for (i = level->n; i-- > 0;) {
         gxsp_vector4 r;
-        memcpy(r, level->b[i], sizeof r);
+        float change[3];
+        memcpy(r, level->r[i], sizeof r);
         for (k = level->start[i]; k < level->start[i + 1]; ++k)
-            gxsp_subtract_block(level->block + 12 * (size_t)k, level->x[level->column[k]], r);
-        gxsp_add_block(level->inverse + 12 * (size_t)i, r, level->x[i]);
+            gxsp_subtract_block(level->block + 9 * (size_t)k, level->x[level->column[k]], r);
+        gxsp_apply_packed(level->inverse + 6 * (size_t)i, r, change);
+        for (c = 0; c < 3; ++c)
+            level->x[i][c] += change[c];
     }
 }
 
@@ -3906,16 +3912,16 @@ static void gxsp_factor_solve(const gxsp_factor *factor, gxsp_level *level)
     uint32_t i, j;
     double *x = factor->x;
     for (i = 0; i < factor->n; ++i) {
-        const double *row = factor->entry + factor->row[i];
+        const float *row = factor->entry + factor->row[i];
         const uint32_t first = factor->first[i];
         const double sum = (double)level->b[factor->order[i / 3]][i % 3] - gxsp_long_dot(row + first, x + first, i - first);
-        x[i] = sum * row[i]; /* the diagonal is stored inverted */
+        x[i] = sum * (double)row[i];
     }
     for (i = factor->n; i-- > 0;) {
-        const double *row = factor->entry + factor->row[i];
-        x[i] *= row[i];
+        const float *row = factor->entry + factor->row[i];
+        x[i] *= (double)row[i];
         for (j = factor->first[i]; j < i; ++j)
-            x[j] -= row[j] * x[i];
+            x[j] -= (double)row[j] * x[i];
     }
     for (i = 0; i < factor->n; ++i)
         level->x[factor->order[i / 3]][i % 3] = (float)x[i];
@@ -4015,10 +4021,10 @@ static float *gxsp_pair_block(gxsp_pairs *pairs, gxsp_level *next, uint32_t row,
 {
     uint32_t *found = gxsp_pairs_find(pairs, i, j);
     if (!found)
-        return next->block + 12 * (size_t)gxsp_find_entry(next, row, column);
+        return next->block + 9 * (size_t)gxsp_find_entry(next, row, column);
     if (*found == GXSP_NONE)
         *found = gxsp_find_entry(next, row, column);
-    return next->block + 12 * (size_t)*found;
+    return next->block + 9 * (size_t)*found;
 }
 
 /* A node's row of the Hessian times the transfer, in edges->half by number; only the columns of dirty nodes, unless dirty is NULL.
@@ -4041,7 +4047,7 @@ static uint32_t gxsp_half_row(gxsp_system *system, const uint32_t *copies, uint3
             else {
                 system->pairs.seen[number] = i + 1;
                 edges->touched[count++] = number;
-                for (m = 0; m < 12; ++m)
+                for (m = 0; m < 9; ++m)
                     edges->half[number][m] = fine->weight[copy][q] * block[m];
             }
         }
@@ -4070,12 +4076,10 @@ static void gxsp_coarse_node(gxsp_system *system, const uint32_t *copies, uint32
     }
 }
 
-/* Level 1's matrix from the last linearisation, and below the diagonal what stands above it. dirty: only the rows and columns of dirty
- * nodes, whose blocks are 0; NULL: all */
+/* Level 1's matrix from the last linearisation. dirty: only the rows and columns of dirty nodes, whose blocks are 0; NULL: all */
 static void gxsp_coarse_elements(gxsp_system *system, double rate, const uint8_t *dirty)
 {
-    gxsp_level *next = &system->levels[1];
-    uint32_t c, i, k;
+    uint32_t c, i;
     for (c = 0; c < system->chunk_count; ++c) {
         const gxsp_chunk *chunk = &system->chunks[c];
         if (dirty && !gxsp_follows_dirty(system, chunk, dirty))
@@ -4086,72 +4090,93 @@ static void gxsp_coarse_elements(gxsp_system *system, double rate, const uint8_t
         for (i = 0; i < chunk->node_count; ++i)
             gxsp_coarse_node(system, system->nodes + chunk->first_node, i, dirty);
     }
-    for (i = 0; i < next->n; ++i)
-        for (k = next->start[i]; next->column[k] < i; ++k)
-            if (!dirty || dirty[i] || dirty[next->column[k]])
-                gxsp_transpose_block(next->block + 12 * (size_t)gxsp_find_entry(next, next->column[k], i), next->block + 12 * (size_t)k);
+}
+
+/* Inverse of a symmetric block, packed; 0 where single precision makes nothing of it. 0 if a number overflowed. */
+static int gxsp_invert_block(const float *block, float *inverse)
+{
+    static const int packed[6] = {0, 3, 6, 4, 7, 8};
+    double sum[6];
+    int k;
+    for (k = 0; k < 6; ++k)
+        sum[k] = (double)block[packed[k]];
+    if (sum[0] + sum[3] + sum[5] < GXSP_TINY)
+        memset(sum, 0, sizeof sum);
+    gxsp_invert3(sum);
+    for (k = 0; k < 6; ++k) {
+        inverse[k] = (float)sum[k];
+        if (!gxsp_finite_single(inverse[k]))
+            return 0;
+    }
+    return 1;
 }
 
 /* The diagonal raised by its share, and inverted; of dirty nodes only, unless dirty is NULL. 0 if a number overflowed. */
 static int gxsp_invert_diagonal(gxsp_level *level, const uint8_t *dirty)
 {
-    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    uint32_t i, k;
-    int c;
-    for (i = 0; i < level->n; ++i)
-        for (k = level->start[i]; k < level->start[i + 1]; ++k)
-            if (level->column[k] == i && (!dirty || dirty[i])) {
-                float *block = level->block + 12 * (size_t)k;
-                float raise = GXSP_SHIFT * (block[0] + block[5] + block[10]);
-                double inverse[6];
-                block[0] += raise, block[5] += raise, block[10] += raise;
-                inverse[0] = (double)block[0], inverse[1] = (double)block[1], inverse[2] = (double)block[2];
-                inverse[3] = (double)block[5], inverse[4] = (double)block[6], inverse[5] = (double)block[10];
-                if (inverse[0] + inverse[3] + inverse[5] < GXSP_TINY)
-                    memset(inverse, 0, sizeof inverse);
-                gxsp_invert3(inverse);
-                for (c = 0; c < 9; ++c) {
-                    level->inverse[12 * (size_t)i + (size_t)(c / 3 * 4 + c % 3)] = (float)inverse[full[c]];
-                    if (!gxsp_finite_single((float)inverse[full[c]]))
-                        return 0;
-                }
-            }
+    uint32_t i;
+    for (i = 0; i < level->n; ++i) {
+        float *block = level->block + 9 * (size_t)level->start[i];
+        if (dirty && !dirty[i])
+            continue;
+        gxsp_add_mass(GXSP_SHIFT * (block[0] + block[4] + block[8]), block);
+        if (!gxsp_invert_block(block, level->inverse + 6 * (size_t)i))
+            return 0;
+    }
     return 1;
 }
 
-/* next's matrix = transfer^T A transfer, row by row of next. child: nodes of level by parent. at: next->n, scratch. */
-static void gxsp_coarsen(const gxsp_level *level, gxsp_level *next, const uint32_t *child_start, const uint32_t *child, uint32_t *at)
+/* A node's row, its own block halved, times the transfer, in pairs->half by node of the next level. Returns how many are touched; which,
+ * is in pairs->node. */
+static uint32_t gxsp_level_half_row(const gxsp_level *level, gxsp_pairs *pairs, uint32_t i)
 {
-    uint32_t row, i, k, e;
-    int a, b, c;
-    memset(next->block, 0, 12 * (size_t)next->start[next->n] * sizeof *next->block);
-    for (row = 0; row < next->n; ++row) {
-        for (e = next->start[row]; e < next->start[row + 1]; ++e)
-            at[next->column[e]] = e;
-        for (i = child_start[row]; i < child_start[row + 1]; ++i) {
-            const uint32_t node = child[i];
-            float own = 0;
-            for (a = 0; a < 4; ++a)
-                own += level->parent[node][a] == row ? level->weight[node][a] : 0;
-            for (k = level->start[node]; k < level->start[node + 1]; ++k) {
-                const uint32_t other = level->column[k];
-                for (b = 0; b < 4; ++b)
-                    if (level->parent[other][b] != GXSP_NONE) {
-                        const float factor = own * level->weight[other][b];
-                        float *to = next->block + 12 * (size_t)at[level->parent[other][b]];
-                        for (c = 0; c < 12; ++c)
-                            to[c] += factor * level->block[12 * (size_t)k + (size_t)c];
-                    }
+    uint32_t k, b, count = 0;
+    int m;
+    for (k = level->start[i]; k < level->start[i + 1]; ++k)
+        for (b = 0; b < 4; ++b) {
+            const uint32_t other = level->column[k], parent = level->parent[other][b];
+            const float *block = level->block + 9 * (size_t)k, weight = level->weight[other][b] * (other == i ? 0.5f : 1.0f);
+            if (parent == GXSP_NONE)
+                continue;
+            if (pairs->seen[parent] == i + 1)
+                gxsp_add_scaled(weight, block, pairs->half[parent]);
+            else {
+                pairs->seen[parent] = i + 1;
+                pairs->node[count++] = parent;
+                for (m = 0; m < 9; ++m)
+                    pairs->half[parent][m] = weight * block[m];
             }
         }
+    return count;
+}
+
+/* next's matrix = transfer^T A transfer = S + S^T, S of A's upper half */
+static void gxsp_coarsen(const gxsp_level *level, gxsp_level *next, gxsp_pairs *pairs)
+{
+    uint32_t i, a, t, count;
+    memset(next->block, 0, 9 * (size_t)next->start[next->n] * sizeof *next->block);
+    memset(pairs->seen, 0, next->n * sizeof *pairs->seen);
+    for (i = 0; i < level->n; ++i) {
+        count = gxsp_level_half_row(level, pairs, i);
+        for (a = 0; a < 4; ++a)
+            for (t = 0; t < count && level->parent[i][a] != GXSP_NONE; ++t) {
+                const uint32_t row = level->parent[i][a], column = pairs->node[t];
+                const float weight = level->weight[i][a], *half = pairs->half[column];
+                float turned[9];
+                if (row <= column)
+                    gxsp_add_scaled(weight, half, next->block + 9 * (size_t)gxsp_find_entry(next, row, column));
+                if (row < column)
+                    continue;
+                gxsp_transpose_block(half, turned);
+                gxsp_add_scaled(weight, turned, next->block + 9 * (size_t)gxsp_find_entry(next, column, row));
+            }
     }
 }
 
-/* Cholesky of the last level. A pivot that rounding left at 0 or below is raised to its share of the diagonal. */
-static int gxsp_factorise(gxsp_factor *factor, const gxsp_level *level, uint32_t *place)
+/* A level's matrix into the lower half of the factor's envelope. place: n, scratch */
+static void gxsp_fill_factor(gxsp_factor *factor, const gxsp_level *level, uint32_t *place)
 {
-    uint32_t i, j, k, m;
-    int r, c;
+    uint32_t i, k, r, c;
     memset(factor->entry, 0, factor->entry_count * sizeof *factor->entry);
     for (i = 0; i < level->n; ++i)
         place[factor->order[i]] = i;
@@ -4159,23 +4184,34 @@ static int gxsp_factorise(gxsp_factor *factor, const gxsp_level *level, uint32_t
         for (k = level->start[i]; k < level->start[i + 1]; ++k)
             for (r = 0; r < 3; ++r)
                 for (c = 0; c < 3; ++c) {
-                    uint32_t row = 3 * place[i] + (uint32_t)r, column = 3 * place[level->column[k]] + (uint32_t)c;
-                    if (column <= row)
-                        factor->entry[factor->row[row] + column] = (double)level->block[12 * (size_t)k + (size_t)(4 * c + r)];
+                    const uint32_t row = 3 * place[i] + r, column = 3 * place[level->column[k]] + c;
+                    factor->entry[column <= row ? factor->row[row] + column : factor->row[column] + row] = level->block[9 * (size_t)k + 3 * c + r];
                 }
+}
+
+/* Cholesky of the last level. A pivot that rounding left at 0 or below is raised to its share of the diagonal. Entries are of single
+ * precision, which leaves the product of the factors positive definite; the row at work is of double. 0 if a number overflowed. */
+static int gxsp_factorise(gxsp_factor *factor, const gxsp_level *level, uint32_t *place)
+{
+    uint32_t i, j, m;
+    gxsp_fill_factor(factor, level, place);
     for (i = 0; i < factor->n; ++i) {
-        double *row = factor->entry + factor->row[i], least = 1e-7 * row[i];
+        float *row = factor->entry + factor->row[i];
+        const double own = (double)row[i], least = 1e-7 * own;
+        double *sum = factor->x;
         for (j = factor->first[i]; j <= i; ++j) {
-            const double *other = factor->entry + factor->row[j];
-            double sum;
+            const float *other = factor->entry + factor->row[j];
             m = factor->first[j] > factor->first[i] ? factor->first[j] : factor->first[i];
-            sum = row[j] - gxsp_long_dot(row + m, other + m, j - m);
-            if (j < i)
-                row[j] = sum * other[j];
-            else
-                row[i] = 1 / sqrt(row[i] < GXSP_TINY ? 1 : sum > least ? sum : least);
+            sum[j] = (double)row[j];
+            if (j == i) {
+                sum[i] -= gxsp_long_dot(row + m, sum + m, i - m);
+                row[i] = (float)(1 / sqrt(own < GXSP_TINY ? 1 : sum[i] > least ? sum[i] : least));
+            } else {
+                sum[j] = (sum[j] - gxsp_long_dot(other + m, sum + m, j - m)) * (double)other[j];
+                row[j] = (float)sum[j];
+            }
         }
-        if (!gxsp_finite(row[i]))
+        if (!gxsp_finite_single(row[i]))
             return 0;
     }
     return 1;
@@ -4191,11 +4227,9 @@ static void gxsp_coarse_lumped(gxsp_system *system, double rate)
     for (i = 0; i < fine->n; ++i)
         for (p = 0; p < 4; ++p)
             for (q = 0; q < 4; ++q)
-                if (fine->parent[i][p] != GXSP_NONE && fine->parent[i][q] != GXSP_NONE) {
-                    float *to = next->block + 12 * (size_t)gxsp_find_entry(next, fine->parent[i][p], fine->parent[i][q]);
-                    float mass = (float)(rate * system->lumped[i]) * fine->weight[i][p] * fine->weight[i][q];
-                    to[0] += mass, to[5] += mass, to[10] += mass;
-                }
+                if (fine->parent[i][p] <= fine->parent[i][q] && fine->parent[i][q] != GXSP_NONE)
+                    gxsp_add_mass((float)(rate * system->lumped[i]) * fine->weight[i][p] * fine->weight[i][q],
+                                  next->block + 9 * (size_t)gxsp_find_entry(next, fine->parent[i][p], fine->parent[i][q]));
 }
 
 /* Springs and contact between coarse functions, where level 1's matrix has an entry for them */
@@ -4210,13 +4244,13 @@ static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term)
             const uint32_t a = term->copy[i / 4], b = term->copy[j / 4], row = fine->parent[a][i % 4], column = fine->parent[b][j % 4];
             uint32_t entry;
             p = i % 4, q = j % 4;
-            if (row == GXSP_NONE || column == GXSP_NONE)
+            if (row > column || column == GXSP_NONE)
                 continue;
             entry = gxsp_find_entry(next, row, column);
             if (next->column[entry] != column)
                 continue;
             for (k = 0; k < 9; ++k)
-                next->block[12 * (size_t)entry + (size_t)(k / 3 * 4 + k % 3)] +=
+                next->block[9 * (size_t)entry + (size_t)k] +=
                     term->weight[i / 4] * term->weight[j / 4] * fine->weight[a][p] * fine->weight[b][q] * term->hessian[full[k]];
         }
 }
@@ -4226,14 +4260,14 @@ static void gxsp_assemble_following(gxsp_system *system, uint32_t p, uint32_t q,
 {
     gxsp_level *fine = &system->levels[0];
     uint32_t a[4], b[4];
-    float wa[4], wb[4], turned[12];
+    float wa[4], wb[4], turned[9];
     const int as = gxsp_corner_masters(system, p, a, wa), bs = gxsp_corner_masters(system, q, b, wb);
     int i, j;
     gxsp_transpose_block(block, turned);
     for (i = 0; i < as; ++i)
         for (j = 0; j < bs; ++j) {
             const uint32_t low = a[i] < b[j] ? a[i] : b[j], high = a[i] < b[j] ? b[j] : a[i];
-            float *to = fine->block + 12 * (size_t)gxsp_find_entry(fine, low, high);
+            float *to = fine->block + 9 * (size_t)gxsp_find_entry(fine, low, high);
             if (same && a[i] > b[j]) /* its mirror comes by itself */
                 continue;
             gxsp_add_scaled(wa[i] * wb[j], a[i] <= b[j] ? block : turned, to);
@@ -4261,7 +4295,7 @@ static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, ui
             const uint32_t *copies = system->nodes + chunk->first_node, entry = system->fine[chunk->first_block + b].entry[pair][l];
             const uint32_t i = copies[corner->node[p][l]], j = copies[corner->node[q][l]];
             const float mass = tangent->mass[l] * (p == q ? 2.0f : 1.0f) + (general ? (float)(rate * general->entry[pair][l]) : 0);
-            float own[12] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, *to = entry == GXSP_NONE ? own : fine->block + 12 * (size_t)entry;
+            float own[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0}, *to = entry == GXSP_NONE ? own : fine->block + 9 * (size_t)entry;
             gxsp_add_lane(block, l, entry != GXSP_NONE && i > j, mass, to);
             if (entry == GXSP_NONE)
                 gxsp_assemble_following(system, i, j, p == q, own);
@@ -4294,18 +4328,18 @@ static int gxsp_assemble_term(gxsp_system *system, const gxsp_term *term)
                 if (fine->column[entry] != a[j])
                     return 0;
                 for (k = 0; k < 9 && adds; ++k)
-                    fine->block[12 * (size_t)entry + (size_t)(k / 3 * 4 + k % 3)] += w[i] * w[j] * term->hessian[full[k]];
+                    fine->block[9 * (size_t)entry + (size_t)k] += w[i] * w[j] * term->hessian[full[k]];
             }
     return 1;
 }
 
-/* The assembled matrix from the last linearisation: on and above the diagonal by elements, then what mirrors it */
+/* The assembled matrix from the last linearisation */
 static void gxsp_assemble(gxsp_system *system, double rate)
 {
     gxsp_level *fine = &system->levels[0];
-    uint32_t c, b, i, k;
+    uint32_t c, b, i;
     size_t t;
-    memset(fine->block, 0, 12 * (size_t)fine->start[fine->n] * sizeof(float));
+    memset(fine->block, 0, 9 * (size_t)fine->start[fine->n] * sizeof(float));
     for (c = 0; c < system->chunk_count; ++c)
         for (b = 0; b < system->chunks[c].block_count && !system->chunk_still[c]; ++b)
             gxsp_assemble_block(system, &system->chunks[c], b, rate);
@@ -4315,46 +4349,40 @@ static void gxsp_assemble(gxsp_system *system, double rate)
         const uint32_t count = (uint32_t)gxsp_corner_masters(system, i, a, w);
         for (p = 0; p < count; ++p)
             for (q = 0; q < count; ++q)
-                if (a[p] <= a[q]) {
-                    float *to = fine->block + 12 * (size_t)gxsp_find_entry(fine, a[p], a[q]);
-                    const float mass = w[p] * w[q] * (float)(rate * system->lumped[i]);
-                    to[0] += mass, to[5] += mass, to[10] += mass;
-                }
+                if (a[p] <= a[q])
+                    gxsp_add_mass(w[p] * w[q] * (float)(rate * system->lumped[i]),
+                                  fine->block + 9 * (size_t)gxsp_find_entry(fine, a[p], a[q]));
     }
     for (t = 0; t < system->lasting->count; ++t)
         system->lasting->term[t].assembled = gxsp_assemble_term(system, &system->lasting->term[t]);
-    for (i = 0; i < fine->n; ++i)
-        for (k = fine->start[i]; fine->column[k] < i; ++k)
-            gxsp_transpose_block(fine->block + 12 * (size_t)system->transpose[k], fine->block + 12 * (size_t)k);
 }
 
-/* Inverse diagonal blocks of the assembled matrix with springs and contact, for block Gauss-Seidel. 0 where nothing moves. */
-static void gxsp_invert_fine(gxsp_system *system)
+/* Inverse diagonal blocks of the assembled matrix with springs and contact, for block Gauss-Seidel. 0 where nothing moves. 0 if a number
+ * overflowed. */
+static int gxsp_invert_fine(gxsp_system *system)
 {
-    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5}, packed[6] = {0, 4, 8, 5, 9, 10};
+    static const int packed[6] = {0, 3, 6, 4, 7, 8}, full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
     gxsp_level *fine = &system->levels[0];
     uint32_t i, k;
     size_t t;
     int m;
     for (i = 0; i < fine->n; ++i)
-        memcpy(fine->inverse + 12 * (size_t)i, fine->block + 12 * (size_t)gxsp_find_entry(fine, i, i), 12 * sizeof(float));
+        for (m = 0; m < 6; ++m)
+            fine->inverse[6 * (size_t)i + (size_t)m] = fine->block[9 * (size_t)fine->start[i] + (size_t)packed[m]];
     for (t = 0; t < system->lasting->count; ++t)
         for (k = 0; k < 4 && !system->lasting->term[t].assembled; ++k) {
             const gxsp_term *term = &system->lasting->term[t];
-            for (m = 0; m < 9; ++m)
-                fine->inverse[12 * (size_t)term->copy[k] + (size_t)(m / 3 * 4 + m % 3)] += term->weight[k] * term->weight[k] * term->hessian[full[m]];
+            for (m = 0; m < 6; ++m)
+                fine->inverse[6 * (size_t)term->copy[k] + (size_t)m] += term->weight[k] * term->weight[k] * term->hessian[m];
         }
     for (i = 0; i < fine->n; ++i) {
-        float *inverse = fine->inverse + 12 * (size_t)i;
-        double sum[6];
-        for (m = 0; m < 6; ++m)
-            sum[m] = system->still[i] || system->follower[i] != GXSP_NONE ? 0 : (double)inverse[packed[m]];
-        if (sum[0] + sum[3] + sum[5] < GXSP_TINY)
-            memset(sum, 0, sizeof sum);
-        gxsp_invert3(sum);
+        float *inverse = fine->inverse + 6 * (size_t)i, block[9];
         for (m = 0; m < 9; ++m)
-            inverse[m / 3 * 4 + m % 3] = (float)sum[full[m]];
+            block[m] = system->still[i] || system->follower[i] != GXSP_NONE ? 0 : inverse[full[m]];
+        if (!gxsp_invert_block(block, inverse))
+            return 0;
     }
+    return 1;
 }
 
 /* What follows from level 1's matrix. dirty: nodes of level 1 whose inverses are missing; NULL: all are. 0 if a number overflowed. */
@@ -4366,7 +4394,7 @@ static int gxsp_lower_numbers(gxsp_system *system, const uint8_t *dirty)
         if (!gxsp_invert_diagonal(level, at == 1 ? dirty : NULL))
             return 0;
         if (at + 1 < system->level_count)
-            gxsp_coarsen(level, level + 1, level->child_start, level->child, system->pairs.local);
+            gxsp_coarsen(level, level + 1, &system->pairs);
     }
     return gxsp_factorise(&system->factor, &system->levels[system->level_count - 1], system->pairs.local);
 }
@@ -4377,9 +4405,9 @@ static int gxsp_coarse_numbers(gxsp_system *system, double rate)
     gxsp_level *fine = &system->levels[0];
     size_t t;
     if (system->fine)
-        gxsp_coarsen(fine, fine + 1, fine->child_start, fine->child, system->pairs.local);
+        gxsp_coarsen(fine, fine + 1, &system->pairs);
     else {
-        memset(fine[1].block, 0, 12 * (size_t)fine[1].start[fine[1].n] * sizeof(float));
+        memset(fine[1].block, 0, 9 * (size_t)fine[1].start[fine[1].n] * sizeof(float));
         gxsp_coarse_elements(system, system->scale * rate, NULL);
         if (system->lumped_mass)
             gxsp_coarse_lumped(system, system->scale * rate);
@@ -5074,13 +5102,13 @@ static void gxsp_keep_blocks(const gxsp_level *before, gxsp_level *level, const 
     for (i = 0; i < before->n; ++i) {
         if (dirty[i])
             continue;
-        memcpy(level->inverse + 12 * (size_t)i, before->inverse + 12 * (size_t)i, 12 * sizeof(float));
+        memcpy(level->inverse + 6 * (size_t)i, before->inverse + 6 * (size_t)i, 6 * sizeof(float));
         for (k = before->start[i], at = level->start[i]; k < before->start[i + 1]; ++k) {
             if (dirty[before->column[k]])
                 continue;
             while (level->column[at] < before->column[k])
                 ++at;
-            memcpy(level->block + 12 * (size_t)at, before->block + 12 * (size_t)k, 12 * sizeof(float));
+            memcpy(level->block + 9 * (size_t)at, before->block + 9 * (size_t)k, 9 * sizeof(float));
         }
     }
 }
@@ -5676,7 +5704,8 @@ static int gxsp_prepare(gxsp_problem *problem)
     gxsp_system *system = problem->system;
     if (system->fine) {
         gxsp_assemble(system, system->scale * problem->rate);
-        gxsp_invert_fine(system);
+        if (!gxsp_invert_fine(system))
+            return 0;
     }
     if (system->level_count == 0)
         return 1;
