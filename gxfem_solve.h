@@ -56,7 +56,7 @@
  * and the chunks in their order, so that results are the same for any number of threads. The linear systems go to conjugate
  * gradients with multigrid: the model itself smoothed by block-Jacobi, coarse levels on lattices whose points are doubled where
  * a cut runs between the copies around them, and a factorised one as soon as that is cheap. Coarse matrices serve until
- * iterations rise. The last step's direction is the guess for the next.
+ * iterations rise. The last two steps' directions are the guess for the next.
  * Newton starts at u_n + h v_n; should it end above E(u_n), it is run again from u_n: E(u) <= E(u_n) always, so a step cannot
  * blow up (but for the midpoint rule, which goes on from there as far again). Every loose piece (copies joined by elements, none
  * of them held or touched by springs and contact) then moves as a whole so that its momentum balances, and the later iterates
@@ -440,8 +440,12 @@ extern "C" {
 #define GXSP_COLLAPSED 1e-4
 #define GXSP_NUDGE 0.1
 
-/* Copies that one task of a pass over copies takes. */
+/* Copies that one task of a pass over copies takes, and how many sums it may make. */
 #define GXSP_RANGE 512
+#define GXSP_SUMS 6
+
+/* Square of the sine of the angle between two guesses, measured in energy, below which single precision does not tell them apart */
+#define GXSP_PARALLEL 1e-5
 
 /* Spacing of the first lattice of the multigrid, in edges of an average element. */
 #define GXSP_SPACING 2.5
@@ -834,6 +838,7 @@ typedef struct gxsp_system {
     uint16_t *slot_root;    /* slot_count: number in the chunk of the least node that elements of the chunk join with this one */
     int roots_known;        /* slot_root is there */
     double (*slots)[3];     /* slot_count: what a chunk's pass has for each node: 3 doubles, 4 floats (of products), or 6 */
+    double (*range_sum)[GXSP_SUMS]; /* range_count: of passes over copies; added up in their order */
     double (*chunk_sum)[3]; /* chunk_count: elastic and kinetic energy, size of the terms they are sums of; J. Of linearisations:
                                whether there is a collapsed element */
     double *lumped;         /* n: row sums of the mass, kg */
@@ -885,9 +890,9 @@ typedef struct gxsp_system {
     size_t active;          /* unknowns of this step */
     int base_known;         /* current is what the last step returned, and base_energy its elastic energy */
     double base_energy;
-    gxsp_vector4 *right;    /* n: residual in single precision */
-    gxsp_vector4 *guess;    /* n: direction of the last step's first iteration */
-    int guess_known;
+    gxsp_vector4 *right;    /* n: residual in single precision; of GXS_MATRIX_ASSEMBLED only, else NULL */
+    gxsp_vector4 *guess[2]; /* n: directions of the first iterations of the last step and of the one before */
+    uint32_t guess_count;   /* how many of them there are */
 } gxsp_system;
 
 /* A step under way */
@@ -1801,7 +1806,28 @@ typedef struct gxsp_pass {
     int exact;                  /* Hessians are not projected */
     gxsp_vector4 *x;            /* of products: input */
     gxsp_vector4 *y;            /* output */
+    const double *right;        /* x 3: output is this minus the product; NULL: it is the product */
+    double factor;              /* of passes over copies: what x is multiplied by */
 } gxsp_pass;
+
+/* Copies of the range with this index: from first, not including the one returned */
+static size_t gxsp_range(const gxsp_system *system, size_t index, size_t *first)
+{
+    *first = index * GXSP_RANGE;
+    return *first + GXSP_RANGE < system->n ? *first + GXSP_RANGE : system->n;
+}
+
+/* A pass over all copies; sums: of those that it makes for each range, the first count, or NULL */
+static void gxsp_over_ranges(gxsp_system *system, void (*task)(void *, size_t), gxsp_pass *pass, double *sums, int count)
+{
+    size_t i;
+    int k;
+    pass->system = system;
+    gxsp_parallel(system->jobs, system->range_count, task, pass);
+    for (k = 0; k < count; ++k)
+        for (i = 0, sums[k] = 0; i < system->range_count; ++i)
+            sums[k] += system->range_sum[i][k];
+}
 
 static const gxsp_mass *gxsp_block_masses(const gxsp_chunk *chunk, uint32_t block)
 {
@@ -1913,6 +1939,17 @@ static void gxsp_turn_stress(gxsp_lanes *from, gxsp_lanes *to, gxsp_lanes *p)
     }
 }
 
+/* Is a copy of the chunk elsewhere than inertia alone leads? Where Newton's method starts hardly any is. */
+static int gxsp_accelerates(const gxsp_system *system, const gxsp_chunk *chunk, const double *from)
+{
+    const uint32_t *copies = system->nodes + chunk->first_node;
+    uint32_t i;
+    for (i = 0; i < chunk->node_count; ++i)
+        if (memcmp(from + 3 * (size_t)copies[i], system->target + 3 * (size_t)copies[i], 3 * sizeof(double)) != 0)
+            return 1;
+    return 0;
+}
+
 /* Energies of a chunk at pass->from, and elastic + inertial forces. */
 static void gxsp_task_state(void *context, size_t index)
 {
@@ -1922,12 +1959,13 @@ static void gxsp_task_state(void *context, size_t index)
     double *slots = &system->slots[chunk->first_node][0];
     double elastic = 0, kinetic = 0, size = 0;
     uint32_t b, further;
-    int k, l;
+    int k, l, inertia;
     for (k = 0; k < 3; ++k)
         system->chunk_sum[index][k] = 0;
     memset(slots, 0, 3 * (size_t)chunk->node_count * sizeof *slots);
     if (system->chunk_still[index])
         return;
+    inertia = pass->inertia && gxsp_accelerates(system, chunk, pass->from);
     for (b = 0; b < chunk->block_count; ++b) {
         const gxsp_rest *rest = &chunk->rest[b];
         const gxsp_chunk *next = gxsp_block_ahead(system, index, b, &further);
@@ -1951,7 +1989,7 @@ static void gxsp_task_state(void *context, size_t index)
             elastic += rest->weight[l] * s.energy[l];
             size += rest->weight[l] * s.size[l];
         }
-        if (pass->inertia) {
+        if (inertia) {
             gxsp_lanes moved[12];
             gxsp_block_load(system, chunk, &chunk->corners[b], system->target, moved);
             for (k = 0; k < 12; ++k)
@@ -1973,7 +2011,7 @@ static void gxsp_task_sum(void *context, size_t index)
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
     const double *slots = &system->slots[0][0];
-    size_t i = index * GXSP_RANGE, end = i + GXSP_RANGE < system->n ? i + GXSP_RANGE : system->n;
+    size_t i, end = gxsp_range(system, index, &i);
     for (; i < end; ++i) {
         double x = 0, y = 0, z = 0;
         uint32_t s;
@@ -2003,7 +2041,7 @@ static void gxsp_evaluate_elements(gxsp_system *system, double rate, const doubl
     pass.turned = turned;
     pass.nudge = nudge;
     gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_state, &pass);
-    gxsp_parallel(system->jobs, system->range_count, gxsp_task_sum, &pass);
+    gxsp_over_ranges(system, gxsp_task_sum, &pass, NULL, 0);
     energies[0] = energies[1] = energies[2] = 0;
     for (c = 0; c < system->chunk_count; ++c)
         for (k = 0; k < 3; ++k)
@@ -2517,19 +2555,20 @@ static void gxsp_copies_make(gxsp_system *system)
 static void gxsp_steps_make(gxsp_system *system)
 {
     double **vectors[9];
-    gxsp_vector4 **singles[5];
+    gxsp_vector4 **singles[6];
     int i;
     vectors[0] = &system->base, vectors[1] = &system->target, vectors[2] = &system->load, vectors[3] = &system->current;
     vectors[4] = &system->trial, vectors[5] = &system->force, vectors[6] = &system->residual, vectors[7] = &system->direction;
     vectors[8] = &system->coarse_state;
     for (i = 0; i < 9; ++i)
         *vectors[i] = (double *)gxsp_take(&system->pool, 3 * system->n, sizeof(double));
-    singles[0] = &system->search, singles[1] = &system->product, singles[2] = &system->scaled, singles[3] = &system->right;
-    singles[4] = &system->guess;
-    for (i = 0; i < 5; ++i)
+    singles[0] = &system->search, singles[1] = &system->product, singles[2] = &system->scaled, singles[3] = &system->guess[0];
+    singles[4] = &system->guess[1], singles[5] = &system->right;
+    for (i = 0; i < (system->fine ? 6 : 5); ++i)
         *singles[i] = (gxsp_vector4 *)gxsp_take(&system->pool, system->n, sizeof(gxsp_vector4));
     system->diagonal = (float *)gxsp_take(&system->pool, 6 * system->n, sizeof(float));
     system->renewed = (uint8_t *)gxsp_take(&system->pool, system->n, 1);
+    system->range_sum = (double(*)[GXSP_SUMS])gxsp_take(&system->pool, system->range_count, sizeof *system->range_sum);
     system->slots = (double(*)[3])gxsp_take(&system->pool, system->slot_count, sizeof *system->slots);
     gxsp_tangents_make(&system->pool, system->chunks, system->chunk_count);
 }
@@ -3610,47 +3649,57 @@ static void gxsp_task_product(void *context, size_t index)
     }
 }
 
+/* y = product or right - product, from the slots; sum: x . product */
 static void gxsp_task_product_sum(void *context, size_t index)
 {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
     gxsp_vector4 *slots = (gxsp_vector4 *)(void *)system->slots;
-    size_t i = index * GXSP_RANGE, end = i + GXSP_RANGE < system->n ? i + GXSP_RANGE : system->n;
+    size_t i, end = gxsp_range(system, index, &i);
+    double work = 0;
+    int c;
     for (; i < end; ++i) {
-        float m = system->lumped_mass ? (float)(pass->rate * system->lumped[i]) : 0;
-        float x = m * pass->x[i][0], y = m * pass->x[i][1], z = m * pass->x[i][2];
+        const float *at = pass->x[i], m = system->lumped_mass ? (float)(pass->rate * system->lumped[i]) : 0;
+        gxsp_vector4 sum = {m * at[0], m * at[1], m * at[2], 0};
         uint32_t s;
-        for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->still[i]; ++s) {
-            const float *from = slots[system->copy_slot[s]];
-            x += from[0], y += from[1], z += from[2];
-        }
-        pass->y[i][0] = x, pass->y[i][1] = y, pass->y[i][2] = z;
+        for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->still[i]; ++s)
+            for (c = 0; c < 4; ++c)
+                sum[c] += slots[system->copy_slot[s]][c];
+        work += (double)at[0] * (double)sum[0] + (double)at[1] * (double)sum[1] + (double)at[2] * (double)sum[2];
+        for (c = 0; c < 3; ++c)
+            pass->y[i][c] = pass->right ? (system->still[i] ? 0 : (float)pass->right[3 * i + (size_t)c]) - sum[c] : sum[c];
     }
+    system->range_sum[index][0] = work;
 }
 
-/* y = A x by the assembled matrix, on copies that are not still */
-static void gxsp_rows_product(const gxsp_system *system, gxsp_vector4 *x, gxsp_vector4 *y)
+/* y = A x by the assembled matrix, on copies that are not still. Returns x . y. */
+static double gxsp_rows_product(const gxsp_system *system, gxsp_vector4 *x, gxsp_vector4 *y)
 {
     const gxsp_level *fine = &system->levels[0];
+    double work = 0;
     uint32_t i, k;
     int c;
     memset(y, 0, system->n * sizeof *y);
     for (i = 0; i < fine->n; ++i) {
         gxsp_vector4 minus = {0, 0, 0, 0};
-        float turned[3] = {-x[i][0], -x[i][1], -x[i][2]};
+        const float turned[3] = {-x[i][0], -x[i][1], -x[i][2]};
         gxsp_subtract_block(fine->block + 9 * (size_t)fine->start[i], x[i], minus);
         for (k = fine->start[i] + 1; k < fine->start[i + 1]; ++k) {
             gxsp_subtract_block(fine->block + 9 * (size_t)k, x[fine->column[k]], minus);
             gxsp_subtract_turned(fine->block + 9 * (size_t)k, turned, y[fine->column[k]]);
         }
-        for (c = 0; c < 3; ++c)
-            y[i][c] = system->still[i] ? 0 : y[i][c] - minus[c]; /* all rows before have added to it */
+        for (c = 0; c < 3; ++c) { /* all rows before have added to it */
+            y[i][c] = system->still[i] ? 0 : y[i][c] - minus[c];
+            work += (double)x[i][c] * (double)y[i][c];
+        }
     }
+    return work;
 }
 
-/* y += H x of springs and contact */
-static void gxsp_add_terms(const gxsp_lasting *lasting, gxsp_vector4 *x, gxsp_vector4 *y)
+/* y += sign H x of springs and contact. Returns x . H x. */
+static double gxsp_add_terms(const gxsp_lasting *lasting, float sign, gxsp_vector4 *x, gxsp_vector4 *y)
 {
+    double work = 0;
     size_t t;
     int k, c;
     for (t = 0; t < lasting->count; ++t) {
@@ -3660,31 +3709,43 @@ static void gxsp_add_terms(const gxsp_lasting *lasting, gxsp_vector4 *x, gxsp_ve
             for (c = 0; c < 3; ++c)
                 at[c] += term->weight[k] * x[term->copy[k]][c];
         gxsp_apply_packed(term->hessian, at, force);
+        for (c = 0; c < 3; ++c)
+            work += (double)at[c] * (double)force[c];
         for (k = 0; k < 4 && !term->assembled; ++k)
             for (c = 0; c < 3; ++c)
-                y[term->copy[k]][c] += term->weight[k] * force[c];
+                y[term->copy[k]][c] += sign * term->weight[k] * force[c];
     }
+    return work;
 }
 
-/* y = scale (K + rate M) x, K the projected Hessian of the last linearisation, on copies that follow nothing; x of followers is
- * written too. */
-static void gxsp_product(gxsp_system *system, double rate, gxsp_vector4 *x, gxsp_vector4 *y)
+/* y = A x, or right - A x unless right is NULL, A = scale (K + rate M), K the projected Hessian of the last linearisation, on copies that
+ * follow nothing; x of followers is written too. Matrix-free if there is a right. Returns x . A x. */
+static double gxsp_product_from(gxsp_system *system, double rate, const double *right, gxsp_vector4 *x, gxsp_vector4 *y)
 {
     gxsp_pass pass;
+    double work;
     memset(&pass, 0, sizeof pass);
     pass.system = system;
     pass.rate = system->scale * rate;
     pass.x = x;
     pass.y = y;
+    pass.right = right;
     gxsp_extend(system, x);
     if (system->fine)
-        gxsp_rows_product(system, x, y);
+        work = gxsp_rows_product(system, x, y);
     else {
         gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_product, &pass);
-        gxsp_parallel(system->jobs, system->range_count, gxsp_task_product_sum, &pass);
+        gxsp_over_ranges(system, gxsp_task_product_sum, &pass, &work, 1);
     }
-    gxsp_add_terms(system->lasting, x, y);
+    work += gxsp_add_terms(system->lasting, right ? -1.0f : 1.0f, x, y);
     gxsp_reduce(system, y);
+    return work;
+}
+
+/* y = A x; returns x . y */
+static double gxsp_product(gxsp_system *system, double rate, gxsp_vector4 *x, gxsp_vector4 *y)
+{
+    return gxsp_product_from(system, rate, NULL, x, y);
 }
 
 /* Hessian of a chunk at pass->from, and its diagonal blocks into the slots, 6 floats each. */
@@ -3765,7 +3826,7 @@ static void gxsp_task_diagonal(void *context, size_t index)
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
     const float *slots = (const float *)(const void *)system->slots;
-    size_t i = index * GXSP_RANGE, end = i + GXSP_RANGE < system->n ? i + GXSP_RANGE : system->n;
+    size_t i, end = gxsp_range(system, index, &i);
     for (; i < end; ++i) {
         double sum[6] = {0, 0, 0, 0, 0, 0};
         uint32_t s;
@@ -3824,7 +3885,7 @@ static int gxsp_linearise(gxsp_system *system, double rate, const double *from, 
     pass.exact = exact;
     gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_linearise, &pass);
     gxsp_extra_diagonal(system);
-    gxsp_parallel(system->jobs, system->range_count, gxsp_task_diagonal, &pass);
+    gxsp_over_ranges(system, gxsp_task_diagonal, &pass, NULL, 0);
     *collapsed = 0;
     for (i = 0; i < system->chunk_count; ++i)
         *collapsed |= system->chunk_sum[i][0] > 0;
@@ -3942,38 +4003,41 @@ static void gxsp_cycle(gxsp_system *system, uint32_t at)
     gxsp_sweep_backward(level);
 }
 
-/* z = V-cycle of residual b; z holds D^-1 b on entry. Level 0 is smoothed by omega D^-1, or by block Gauss-Seidel if it is
+/* scaled += omega D^-1 product */
+static void gxsp_task_smooth(void *context, size_t index)
+{
+    const gxsp_system *system = ((const gxsp_pass *)context)->system;
+    size_t i, end = gxsp_range(system, index, &i);
+    for (; i < end; ++i) {
+        float y[3];
+        gxsp_apply_packed(system->diagonal + 6 * i, system->product[i], y);
+        system->scaled[i][0] += system->omega * y[0];
+        system->scaled[i][1] += system->omega * y[1];
+        system->scaled[i][2] += system->omega * y[2];
+    }
+}
+
+/* scaled = V-cycle of the residual. Level 0 is smoothed by omega D^-1, once on entry, see gxsp_scale, or by block Gauss-Seidel if it is
  * assembled. scratch: product */
-static void gxsp_multigrid(gxsp_system *system, double rate, gxsp_vector4 *b, gxsp_vector4 *z)
+static void gxsp_multigrid(gxsp_system *system, double rate)
 {
     gxsp_level *fine = &system->levels[0];
-    const float omega = system->omega;
+    gxsp_pass pass;
     size_t i;
-    int c;
-    fine->x = z, fine->b = b, fine->r = system->product;
+    fine->x = system->scaled, fine->b = system->right, fine->r = system->product;
     if (system->fine) {
+        for (i = 0; i < 3 * system->n; ++i)
+            system->right[i / 3][i % 3] = system->still[i / 3] ? 0 : (float)system->residual[i];
         gxsp_cycle(system, 0);
         return;
     }
-    for (i = 0; i < system->n; ++i)
-        for (c = 0; c < 3; ++c)
-            z[i][c] *= omega;
-    gxsp_product(system, rate, z, fine->r);
-    for (i = 0; i < system->n; ++i)
-        for (c = 0; c < 3; ++c)
-            fine->r[i][c] = b[i][c] - fine->r[i][c];
+    (void)gxsp_product_from(system, rate, system->residual, fine->x, fine->r);
     gxsp_restrict(fine, fine + 1);
     gxsp_cycle(system, 1);
     gxsp_prolong(fine, fine + 1);
-    gxsp_product(system, rate, z, fine->r);
-    for (i = 0; i < system->n; ++i) {
-        float r[3], y[3];
-        for (c = 0; c < 3; ++c)
-            r[c] = omega * (b[i][c] - fine->r[i][c]);
-        gxsp_apply_packed(system->diagonal + 6 * i, r, y);
-        for (c = 0; c < 3; ++c)
-            z[i][c] += y[c];
-    }
+    (void)gxsp_product_from(system, rate, system->residual, fine->x, fine->r);
+    memset(&pass, 0, sizeof pass);
+    gxsp_over_ranges(system, gxsp_task_smooth, &pass, NULL, 0);
 }
 
 /* --- numbers of the coarse levels --- */
@@ -4455,14 +4519,14 @@ static double gxsp_largest_eigenvalue(gxsp_system *system, double rate)
     return largest;
 }
 
-/* The smoother's step length damps the upper half of the spectrum: 4/3 of the inverse of its end. An eigenvalue half as large again would
- * still leave the cycle definite. */
+/* The smoother's step length: 3/2 of the inverse of the spectrum's end, which conjugate gradients like better than the 4/3 that damp its
+ * upper half most. An eigenvalue a third larger would still leave the cycle definite. */
 static float gxsp_omega(const gxsp_system *system, double largest)
 {
     largest = largest > 0 ? 1.05 * largest : 4;
     if (largest > 4 && system->follower_count == 0) /* no element's own D^-1 K exceeds 4 */
         largest = 4;
-    return (float)(4.0 / 3 / largest);
+    return (float)(1.5 / largest);
 }
 
 /* Which copies and chunks the pieces' states leave alone */
@@ -4910,8 +4974,9 @@ static void gxsp_copies_room(gxsp_system *system, size_t count)
     system->search = (gxsp_vector4 *)gxsp_retake(pool, system->search, 0, room, sizeof(gxsp_vector4));
     system->product = (gxsp_vector4 *)gxsp_retake(pool, system->product, 0, room, sizeof(gxsp_vector4));
     system->scaled = (gxsp_vector4 *)gxsp_retake(pool, system->scaled, 0, room, sizeof(gxsp_vector4));
-    system->right = (gxsp_vector4 *)gxsp_retake(pool, system->right, 0, room, sizeof(gxsp_vector4));
-    system->guess = (gxsp_vector4 *)gxsp_retake(pool, system->guess, n, room, sizeof(gxsp_vector4));
+    system->guess[0] = (gxsp_vector4 *)gxsp_retake(pool, system->guess[0], n, room, sizeof(gxsp_vector4));
+    system->guess[1] = (gxsp_vector4 *)gxsp_retake(pool, system->guess[1], n, room, sizeof(gxsp_vector4));
+    system->range_sum = (double(*)[GXSP_SUMS])gxsp_retake(pool, system->range_sum, 0, room / GXSP_RANGE + 1, sizeof *system->range_sum);
     system->diagonal = (float *)gxsp_retake(pool, system->diagonal, 0, 6 * room, sizeof(float));
     system->copy_start = (uint32_t *)gxsp_retake(pool, system->copy_start, 0, room + 2, sizeof(uint32_t));
     system->lumped = (double *)gxsp_retake(pool, system->lumped, n, room, sizeof(double));
@@ -4957,7 +5022,8 @@ static void gxsp_move_copies(gxsp_renewal *update)
     if (update->scratch->failed || system->pool.failed)
         return;
     gxsp_move(change, moved, count, system->current, 3 * sizeof(double), kept);
-    gxsp_move(change, moved, count, system->guess, sizeof(gxsp_vector4), kept);
+    gxsp_move(change, moved, count, system->guess[0], sizeof(gxsp_vector4), kept);
+    gxsp_move(change, moved, count, system->guess[1], sizeof(gxsp_vector4), kept);
     gxsp_move(change, moved, count, system->coarse_state, 3 * sizeof(double), kept);
     gxsp_move(change, moved, count, system->lumped, sizeof(double), kept);
     gxsp_move(change, moved, count, system->piece, sizeof(uint32_t), kept);
@@ -5553,44 +5619,106 @@ static int gxsp_reduced(const gxsp_norms *now, const gxsp_norms *first, double g
     return now->energy <= goal * first->energy && now->displacement <= goal * first->displacement;
 }
 
-/* scaled = D^-1 r */
-static gxsp_norms gxsp_scale(gxsp_system *system, const double *r)
+/* scaled = D^-1 r, times the step length of the smoother, of copies first to end - 1; sums: r . D^-1 r, |D^-1 r|^2 */
+static void gxsp_scale_copies(const gxsp_system *system, const double *r, size_t first, size_t end, double *sums)
 {
-    gxsp_norms norms = {0, 0};
+    const double factor = system->level_count > 0 && !system->fine ? (double)system->omega : 1;
+    double energy = 0, displacement = 0;
     size_t i;
-    for (i = 0; i < system->n; ++i) {
+    for (i = first; i < end; ++i) {
         const float *d = system->diagonal + 6 * i;
         const double a = r[3 * i], b = r[3 * i + 1], c = r[3 * i + 2];
         const double x = (double)d[0] * a + (double)d[1] * b + (double)d[2] * c, y = (double)d[1] * a + (double)d[3] * b + (double)d[4] * c,
                      z = (double)d[2] * a + (double)d[4] * b + (double)d[5] * c;
-        norms.energy += x * a + y * b + z * c;
-        norms.displacement += x * x + y * y + z * z;
-        system->scaled[i][0] = (float)x, system->scaled[i][1] = (float)y, system->scaled[i][2] = (float)z;
+        energy += x * a + y * b + z * c;
+        displacement += x * x + y * y + z * z;
+        system->scaled[i][0] = (float)(factor * x), system->scaled[i][1] = (float)(factor * y), system->scaled[i][2] = (float)(factor * z);
     }
+    sums[0] = energy;
+    sums[1] = displacement;
+}
+
+static void gxsp_task_scale(void *context, size_t index)
+{
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    size_t first, end = gxsp_range(pass->system, index, &first);
+    gxsp_scale_copies(pass->system, pass->from, first, end, pass->system->range_sum[index]);
+}
+
+static gxsp_norms gxsp_scale(gxsp_system *system, const double *r)
+{
+    gxsp_norms norms;
+    gxsp_pass pass;
+    double sums[2];
+    memset(&pass, 0, sizeof pass);
+    pass.from = r;
+    gxsp_over_ranges(system, gxsp_task_scale, &pass, sums, 2);
+    norms.energy = sums[0], norms.displacement = sums[1];
     return norms;
+}
+
+/* direction += factor x, residual -= factor y, and the residual is scaled */
+static void gxsp_task_advance(void *context, size_t index)
+{
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    size_t i, first, end = gxsp_range(system, index, &first), c;
+    for (i = first; i < end; ++i)
+        for (c = 0; c < 3; ++c) {
+            system->direction[3 * i + c] += pass->factor * (double)pass->x[i][c];
+            system->residual[3 * i + c] -= pass->factor * (double)pass->y[i][c];
+        }
+    gxsp_scale_copies(system, system->residual, first, end, system->range_sum[index]);
+}
+
+/* The direction goes on by length x, and the residual by as much of y = A x. Returns what is left. */
+static gxsp_norms gxsp_advance(gxsp_system *system, double length, gxsp_vector4 *x, gxsp_vector4 *y)
+{
+    gxsp_norms norms;
+    gxsp_pass pass;
+    double sums[2];
+    memset(&pass, 0, sizeof pass);
+    pass.factor = length;
+    pass.x = x;
+    pass.y = y;
+    gxsp_over_ranges(system, gxsp_task_advance, &pass, sums, 2);
+    norms.energy = sums[0], norms.displacement = sums[1];
+    return norms;
+}
+
+/* Sums: residual . x, x . y if there is a y */
+static void gxsp_task_work(void *context, size_t index)
+{
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    size_t i, end = gxsp_range(system, index, &i), c;
+    double *sums = system->range_sum[index];
+    sums[0] = sums[1] = 0;
+    for (; i < end; ++i)
+        for (c = 0; c < 3; ++c) {
+            sums[0] += system->residual[3 * i + c] * (double)pass->x[i][c];
+            sums[1] += pass->y ? (double)pass->x[i][c] * (double)pass->y[i][c] : 0;
+        }
 }
 
 /* z = M^-1 r from D^-1 r, both scaled; without translations of loose pieces. Returns r . z. */
 static double gxsp_precondition(gxsp_system *system, double rate)
 {
-    double product = 0;
+    gxsp_pass pass;
+    double sums[2];
     size_t i;
     int c;
-    if (system->level_count > 0) {
-        for (i = 0; i < system->n; ++i)
-            for (c = 0; c < 3; ++c)
-                system->right[i][c] = system->still[i] ? 0 : (float)system->residual[3 * i + (size_t)c];
-        gxsp_multigrid(system, rate, system->right, system->scaled);
-    }
+    if (system->level_count > 0)
+        gxsp_multigrid(system, rate);
     for (i = 0; i < system->n && system->volume; ++i)
         for (c = 0; c < 3; ++c)
             system->scaled[i][c] = system->still[i] ? 0 : system->volume[i] * (float)system->residual[3 * i + (size_t)c];
     gxsp_extend(system, system->scaled);
     gxsp_remove_translations(system, system->scaled);
-    for (i = 0; i < system->n; ++i)
-        for (c = 0; c < 3; ++c)
-            product += system->residual[3 * i + (size_t)c] * (double)system->scaled[i][c];
-    return product;
+    memset(&pass, 0, sizeof pass);
+    pass.x = system->scaled;
+    gxsp_over_ranges(system, gxsp_task_work, &pass, sums, 1);
+    return sums[0];
 }
 
 static double gxsp_now(const gxsp_problem *problem)
@@ -5605,32 +5733,79 @@ static int gxsp_out_of_time(gxsp_problem *problem)
     return problem->report.stop == GXS_STOP_SECONDS;
 }
 
-/* Takes the best multiple of the last step's first direction as the start of conjugate gradients: where the acceleration changes little
- * from step to step, that is most of the solution. */
-static void gxsp_guess_direction(gxsp_system *system, double rate)
+/* A guess made ready for what is still now, and its product. Returns its curvature; work: with the residual, cross: of the product with
+ * the other guess, if there is one. */
+static double gxsp_weigh_guess(gxsp_system *system, double rate, gxsp_vector4 *guess, gxsp_vector4 *other, gxsp_vector4 *product, double *work,
+                               double *cross)
 {
-    double curvature = 0, work = 0, multiple;
+    gxsp_pass pass;
+    double sums[2], curvature;
     size_t i;
-    int c;
     for (i = 0; i < system->n; ++i)
         if (system->still[i])
-            memset(system->guess[i], 0, sizeof system->guess[i]);
-    gxsp_extend(system, system->guess);
-    gxsp_remove_translations(system, system->guess);
-    gxsp_product(system, rate, system->guess, system->product);
-    for (i = 0; i < system->n; ++i)
-        for (c = 0; c < 3; ++c) {
-            curvature += (double)system->guess[i][c] * (double)system->product[i][c];
-            work += (double)system->guess[i][c] * system->residual[3 * i + (size_t)c];
-        }
-    multiple = work / curvature;
-    if (!(curvature > 0) || !gxsp_finite(work) || !gxsp_finite(curvature) || !gxsp_finite(multiple))
-        return;
-    for (i = 0; i < system->n; ++i)
-        for (c = 0; c < 3; ++c) {
-            system->direction[3 * i + (size_t)c] = multiple * (double)system->guess[i][c];
-            system->residual[3 * i + (size_t)c] -= multiple * (double)system->product[i][c];
-        }
+            memset(guess[i], 0, sizeof *guess);
+    gxsp_extend(system, guess);
+    gxsp_remove_translations(system, guess);
+    curvature = gxsp_product(system, rate, guess, product);
+    memset(&pass, 0, sizeof pass);
+    pass.x = guess;
+    gxsp_over_ranges(system, gxsp_task_work, &pass, sums, 1);
+    *work = sums[0];
+    if (other) {
+        pass.x = other;
+        pass.y = product;
+        gxsp_over_ranges(system, gxsp_task_work, &pass, sums, 2);
+        *cross = sums[1];
+    }
+    return curvature;
+}
+
+/* Takes what is best of the plane of the last two steps' first directions as the start of conjugate gradients: where the acceleration
+ * changes little from step to step, that is most of the solution. Returns what is left of the residual, of norms now. */
+static gxsp_norms gxsp_guess_direction(gxsp_system *system, double rate, gxsp_norms now)
+{
+    gxsp_vector4 *product = system->search;
+    double curvature, work, first, cross = 0, second = 0;
+    curvature = gxsp_weigh_guess(system, rate, system->guess[0], NULL, product, &work, NULL);
+    first = work / curvature;
+    if (!(curvature > 0) || !gxsp_finite(work) || !gxsp_finite(curvature) || !gxsp_finite(first))
+        return now;
+    if (system->guess_count > 1) {
+        double further, own = gxsp_weigh_guess(system, rate, system->guess[1], system->guess[0], system->product, &further, &cross);
+        const double share = cross / curvature, rest = own - share * cross;
+        second = (further - share * work) / rest;
+        if (!(rest > GXSP_PARALLEL * own) || !gxsp_finite(own) || !gxsp_finite(share) || !gxsp_finite(second))
+            second = 0;
+        first -= second > 0 || second < 0 ? second * share : 0;
+    }
+    now = gxsp_advance(system, first, system->guess[0], product);
+    if (second > 0 || second < 0)
+        now = gxsp_advance(system, second, system->guess[1], system->product);
+    return now;
+}
+
+/* The direction found is the next step's first guess, the one before its second. */
+static void gxsp_keep_guess(gxsp_system *system)
+{
+    gxsp_vector4 *oldest = system->guess[1];
+    size_t i;
+    system->guess[1] = system->guess[0];
+    system->guess[0] = oldest;
+    for (i = 0; i < 3 * system->n; ++i)
+        oldest[i / 3][i % 3] = (float)system->direction[i];
+    system->guess_count += system->guess_count < 2;
+}
+
+/* search = scaled + factor search */
+static void gxsp_task_search(void *context, size_t index)
+{
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    const float factor = (float)pass->factor;
+    size_t i, end = gxsp_range(system, index, &i), c;
+    for (; i < end; ++i)
+        for (c = 0; c < 4; ++c)
+            system->search[i][c] = system->scaled[i][c] + factor * system->search[i][c];
 }
 
 /* Solves scale (K + rate M) direction = scale residual to a share of the residual, which is used up. The directions of free pieces carry
@@ -5643,57 +5818,43 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
     const double goal = problem->cg_tolerance * problem->cg_tolerance, rate = problem->rate;
     const int start = problem->report.newton_iterations == 0;
     gxsp_norms first, now;
+    gxsp_pass pass;
     uint32_t iteration;
-    double rho;
+    double rho = 0;
     size_t i;
-    int c;
     problem->indefinite = 0;
     for (i = 0; i < 3 * system->n; ++i)
         system->residual[i] *= system->scale;
     now = first = gxsp_scale(system, system->residual);
     memset(system->direction, 0, 3 * system->n * sizeof(double));
-    if (start && system->guess_known) {
-        gxsp_guess_direction(system, rate);
-        now = gxsp_scale(system, system->residual);
-    }
-    rho = gxsp_precondition(system, rate);
+    if (start && system->guess_count > 0)
+        now = gxsp_guess_direction(system, rate, now);
+    if (!gxsp_reduced(&now, &first, goal))
+        rho = gxsp_precondition(system, rate);
     memcpy(system->search, system->scaled, system->n * sizeof *system->search);
+    memset(&pass, 0, sizeof pass);
     for (iteration = 0; iteration < problem->cg_iterations && !gxsp_reduced(&now, &first, goal); ++iteration) {
-        double curvature = 0, alpha, beta;
-        gxsp_product(system, rate, system->search, system->product);
-        for (i = 0; i < system->n; ++i)
-            for (c = 0; c < 3; ++c)
-                curvature += (double)system->search[i][c] * (double)system->product[i][c];
+        const double curvature = gxsp_product(system, rate, system->search, system->product), before = rho;
         if (!gxsp_finite(curvature) || !gxsp_finite(rho))
             return 0;
         if (curvature <= 0 || rho <= 0) { /* of projected Hessians: rounding is all that is left */
             problem->indefinite = 1;
             break;
         }
-        alpha = rho / curvature;
-        for (i = 0; i < system->n; ++i)
-            for (c = 0; c < 3; ++c) {
-                system->direction[3 * i + (size_t)c] += alpha * (double)system->search[i][c];
-                system->residual[3 * i + (size_t)c] -= alpha * (double)system->product[i][c];
-            }
+        now = gxsp_advance(system, rho / curvature, system->search, system->product);
         ++problem->report.cg_iterations;
-        now = gxsp_scale(system, system->residual);
         if (gxsp_reduced(&now, &first, goal) || gxsp_out_of_time(problem))
             break;
-        beta = rho;
         rho = gxsp_precondition(system, rate);
-        beta = rho / beta;
-        for (i = 0; i < system->n; ++i)
-            for (c = 0; c < 3; ++c)
-                system->search[i][c] = system->scaled[i][c] + (float)beta * system->search[i][c];
+        pass.factor = rho / before;
+        gxsp_over_ranges(system, gxsp_task_search, &pass, NULL, 0);
     }
     gxsp_follow(system, NULL, system->direction);
     gxsp_balance_momentum(system, NULL, 1, NULL, system->direction); /* what single precision left of it */
     if (gxsp_first_not_finite(system->direction, 3 * system->n) < 3 * system->n)
         return 0;
-    for (i = 0; i < 3 * system->n && start; ++i)
-        system->guess[i / 3][i % 3] = (float)system->direction[i];
-    system->guess_known |= start;
+    if (start)
+        gxsp_keep_guess(system);
     return 1;
 }
 
@@ -5914,28 +6075,54 @@ static void gxsp_add_reactions(const gxsp_system *system, gxsp_norms *norms)
     norms->displacement += square * compliance * compliance;
 }
 
-/* residual = load - force at current, 0 at fixed copies, and its size relative to load, inertia and elastic forces (see
- * gxs_step_report); inertia by the lumped mass here, where it is but a scale. scratch: direction */
+/* Adds a vector's two measures by the block diagonal d. */
+static void gxsp_add_norms(const float *d, const double *r, double *sums)
+{
+    const double x = (double)d[0] * r[0] + (double)d[1] * r[1] + (double)d[2] * r[2];
+    const double y = (double)d[1] * r[0] + (double)d[3] * r[1] + (double)d[4] * r[2];
+    const double z = (double)d[2] * r[0] + (double)d[4] * r[1] + (double)d[5] * r[2];
+    sums[0] += x * r[0] + y * r[1] + z * r[2];
+    sums[1] += x * x + y * y + z * z;
+}
+
+/* residual = load - force, 0 at fixed copies; sums: measures of load, inertia and elastic forces; inertia by the lumped mass */
+static void gxsp_task_balance(void *context, size_t index)
+{
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    double *sums = system->range_sum[index];
+    size_t i, end = gxsp_range(system, index, &i), k;
+    memset(sums, 0, sizeof *system->range_sum);
+    for (; i < end; ++i) {
+        const float *d = system->diagonal + 6 * i;
+        double inertia[3], elastic[3];
+        for (k = 0; k < 3; ++k) {
+            inertia[k] = pass->rate * system->lumped[i] * (system->current[3 * i + k] - system->target[3 * i + k]);
+            elastic[k] = system->force[3 * i + k] - inertia[k];
+            system->residual[3 * i + k] = system->still[i] ? 0 : system->load[3 * i + k] - system->force[3 * i + k];
+        }
+        gxsp_add_norms(d, system->load + 3 * i, sums);
+        gxsp_add_norms(d, inertia, sums + 2);
+        gxsp_add_norms(d, elastic, sums + 4);
+    }
+}
+
+/* residual at current, and its size relative to load, inertia and elastic forces (see gxs_step_report) */
 static double gxsp_balance(gxsp_problem *problem)
 {
     gxsp_system *system = problem->system;
-    gxsp_norms load, inertia, elastic, residual;
-    double energy, displacement, by_energy, by_displacement, *part = system->direction;
-    size_t i, count = 3 * system->n;
-    load = gxsp_scale(system, system->load);
-    for (i = 0; i < count; ++i)
-        part[i] = problem->rate * system->lumped[i / 3] * (system->current[i] - system->target[i]);
-    inertia = gxsp_scale(system, part);
-    for (i = 0; i < count; ++i)
-        part[i] = system->force[i] - part[i];
-    elastic = gxsp_scale(system, part);
+    gxsp_norms elastic, residual;
+    gxsp_pass pass;
+    double energy, displacement, by_energy, by_displacement, sums[GXSP_SUMS];
+    memset(&pass, 0, sizeof pass);
+    pass.rate = problem->rate;
+    gxsp_over_ranges(system, gxsp_task_balance, &pass, sums, GXSP_SUMS);
+    elastic.energy = sums[4], elastic.displacement = sums[5];
     gxsp_add_reactions(system, &elastic);
-    for (i = 0; i < count; ++i)
-        system->residual[i] = system->still[i / 3] ? 0 : system->load[i] - system->force[i];
     gxsp_reduce_residual(system, system->residual);
     residual = gxsp_scale(system, system->residual);
-    energy = sqrt(load.energy) + sqrt(inertia.energy) + sqrt(elastic.energy);
-    displacement = sqrt(load.displacement) + sqrt(inertia.displacement) + sqrt(elastic.displacement);
+    energy = sqrt(sums[0]) + sqrt(sums[2]) + sqrt(elastic.energy);
+    displacement = sqrt(sums[1]) + sqrt(sums[3]) + sqrt(elastic.displacement);
     by_energy = energy > 0 ? sqrt(residual.energy) / energy : 0;
     by_displacement = displacement > 0 ? sqrt(residual.displacement) / displacement : 0;
     return by_energy > by_displacement ? by_energy : by_displacement;
@@ -6589,7 +6776,8 @@ GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene)
         gxsp_drop_system(solver);
     if (!solver->system)
         return;
-    system->still_known = system->base_known = system->guess_known = 0;
+    system->still_known = system->base_known = 0;
+    system->guess_count = 0;
     system->omega = 0;
     system->coarse_rate = -1;
     system->coarse_stiffness = 0;
