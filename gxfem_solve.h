@@ -506,14 +506,16 @@ extern "C" {
 #define GXSP_INLINE static inline
 #endif
 
-/* Loop over the lanes of a block. Clang is told not to unroll it, since it else does so before it could vectorise. */
+/* Loops over the lanes of a block, and of two. Clang is told not to unroll them, since it else does so before it could vectorise. */
 #if defined(__clang__)
-#define GXSP_EACH_LANE(l) _Pragma("clang loop unroll(disable)") for (l = 0; l < GXSP_LANES; ++l)
+#define GXSP_EACH(l, count) _Pragma("clang loop unroll(disable)") for (l = 0; l < (count); ++l)
 #elif defined(__GNUC__)
-#define GXSP_EACH_LANE(l) _Pragma("GCC ivdep") for (l = 0; l < GXSP_LANES; ++l)
+#define GXSP_EACH(l, count) _Pragma("GCC ivdep") for (l = 0; l < (count); ++l)
 #else
-#define GXSP_EACH_LANE(l) for (l = 0; l < GXSP_LANES; ++l)
+#define GXSP_EACH(l, count) for (l = 0; l < (count); ++l)
 #endif
+#define GXSP_EACH_LANE(l) GXSP_EACH(l, GXSP_LANES)
+#define GXSP_EACH_OF_TWO(l) GXSP_EACH(l, 2 * GXSP_LANES)
 
 /* one number per element of a block */
 typedef double gxsp_lanes[GXSP_LANES];
@@ -1079,8 +1081,13 @@ static void gxsp_kirchhoff(gxsp_state *GXSP_RESTRICT s, double bend)
 typedef struct gxsp_svd {
     gxsp_singles u[9], v[9]; /* rotations, determinant 1 */
     gxsp_singles s[3];       /* signed, in order of size; F = U diag(s) V^T */
-    gxsp_singles b[9];       /* F V on the way */
 } gxsp_svd;
+
+/* F V and V of two blocks on the way there: each turn waits for the one before it, so that the second block costs little. */
+typedef struct gxsp_columns {
+    float b[9][2 * GXSP_LANES], v[9][2 * GXSP_LANES];
+    float scale[2 * GXSP_LANES]; /* what b is to be multiplied by */
+} gxsp_columns;
 
 /* (x, y) turned by the angle of cosine c and sine s */
 static inline void gxsp_turn(float c, float s, float *x, float *y)
@@ -1091,7 +1098,7 @@ static inline void gxsp_turn(float c, float s, float *x, float *y)
 }
 
 /* Columns i and j of b and of v in lane l */
-static inline void gxsp_turn_columns(gxsp_svd *of, int i, int j, int l, float c, float s)
+static inline void gxsp_turn_columns(gxsp_columns *of, int i, int j, int l, float c, float s)
 {
     gxsp_turn(c, s, &of->b[i][l], &of->b[j][l]);
     gxsp_turn(c, s, &of->b[3 + i][l], &of->b[3 + j][l]);
@@ -1101,17 +1108,17 @@ static inline void gxsp_turn_columns(gxsp_svd *of, int i, int j, int l, float c,
     gxsp_turn(c, s, &of->v[6 + i][l], &of->v[6 + j][l]);
 }
 
-static inline float gxsp_column_product(const gxsp_svd *of, int i, int j, int l)
+static inline float gxsp_column_product(const gxsp_columns *of, int i, int j, int l)
 {
     return of->b[i][l] * of->b[j][l] + of->b[3 + i][l] * of->b[3 + j][l] + of->b[6 + i][l] * of->b[6 + j][l];
 }
 
 /* Makes columns i and j of b orthogonal. Whatever the rounding, U and V stay rotations: a Hessian built on them is a congruence
  * of a semi-definite one. */
-GXSP_INLINE void gxsp_orthogonalise(gxsp_svd *GXSP_RESTRICT of, int i, int j)
+GXSP_INLINE void gxsp_orthogonalise(gxsp_columns *GXSP_RESTRICT of, int i, int j)
 {
     int l;
-    GXSP_EACH_LANE(l) {
+    GXSP_EACH_OF_TWO(l) {
         const float gamma = 2 * gxsp_column_product(of, i, j, l);
         const float gap = gxsp_column_product(of, j, j, l) - gxsp_column_product(of, i, i, l);
         const float size = gap < 0 ? -gap : gap, square = gap * gap + gamma * gamma + 1e-35f;
@@ -1122,22 +1129,27 @@ GXSP_INLINE void gxsp_orthogonalise(gxsp_svd *GXSP_RESTRICT of, int i, int j)
 }
 
 /* Brings the longer of columns i and j to i, by a quarter turn, so that det V stays 1. */
-GXSP_INLINE void gxsp_order_columns(gxsp_svd *GXSP_RESTRICT of, int i, int j)
+GXSP_INLINE void gxsp_order_columns(gxsp_columns *GXSP_RESTRICT of, int i, int j)
 {
     int l;
-    GXSP_EACH_LANE(l) {
+    GXSP_EACH_OF_TWO(l) {
         const float s = gxsp_column_product(of, j, j, l) > gxsp_column_product(of, i, i, l) ? -1.0f : 0.0f;
         gxsp_turn_columns(of, i, j, l, 1 + s, s);
     }
 }
 
-/* U and s from the columns of b, orthogonal and the longest first; where columns vanish, U is completed to a rotation. */
-static void gxsp_frame(gxsp_svd *GXSP_RESTRICT of, const float *GXSP_RESTRICT scale)
+/* U, V and s of the block that begins at first_lane, from the columns of b, orthogonal and the longest first; where columns vanish, U is
+ * completed to a rotation. */
+static void gxsp_frame(const gxsp_columns *GXSP_RESTRICT from, int first_lane, gxsp_svd *GXSP_RESTRICT of)
 {
-    int l;
+    const float *scale = from->scale + first_lane;
+    int k, l;
+    for (k = 0; k < 9; ++k)
+        memcpy(of->v[k], from->v[k] + first_lane, sizeof of->v[k]);
     GXSP_EACH_LANE(l) {
-        const float a0 = of->b[0][l], a1 = of->b[3][l], a2 = of->b[6][l], b0 = of->b[1][l], b1 = of->b[4][l], b2 = of->b[7][l];
-        const float c0 = of->b[2][l], c1 = of->b[5][l], c2 = of->b[8][l];
+        const int m = first_lane + l;
+        const float a0 = from->b[0][m], a1 = from->b[3][m], a2 = from->b[6][m], b0 = from->b[1][m], b1 = from->b[4][m], b2 = from->b[7][m];
+        const float c0 = from->b[2][m], c1 = from->b[5][m], c2 = from->b[8][m];
         const float first = a0 * a0 + a1 * a1 + a2 * a2, some = first > 1e-30f ? 1.0f : 0.0f;
         const float reach = gxsp_rsqrt(first + 1e-30f) * some;
         const float u0 = a0 * reach + (1 - some), u1 = a1 * reach, u2 = a2 * reach;
@@ -1163,48 +1175,59 @@ static void gxsp_frame(gxsp_svd *GXSP_RESTRICT of, const float *GXSP_RESTRICT sc
 }
 
 /* Are the columns of b, the largest entry of which is 1, orthogonal to single precision in every lane? */
-static int gxsp_orthogonal(const gxsp_svd *GXSP_RESTRICT of)
+static int gxsp_orthogonal(const gxsp_columns *GXSP_RESTRICT of)
 {
-    gxsp_singles square;
-    float most = 0;
+    float square[2 * GXSP_LANES], most = 0;
     int l;
-    GXSP_EACH_LANE(l) {
+    GXSP_EACH_OF_TWO(l) {
         const float x = gxsp_column_product(of, 0, 1, l), y = gxsp_column_product(of, 0, 2, l), z = gxsp_column_product(of, 1, 2, l);
         square[l] = x * x + y * y + z * z;
     }
-    for (l = 0; l < GXSP_LANES; ++l)
+    for (l = 0; l < 2 * GXSP_LANES; ++l)
         most = square[l] > most ? square[l] : most;
     return most < 1e-13f;
 }
 
-/* F = 1 + G = U diag(s) V^T by one-sided Jacobi, every lane of a block the same number of sweeps. */
-static void gxsp_decompose(gxsp_lanes *GXSP_RESTRICT g, gxsp_svd *GXSP_RESTRICT of)
+/* F = 1 + G of a block as columns at first_lane, and V = 1 */
+static void gxsp_columns_begin(gxsp_lanes *GXSP_RESTRICT g, int first_lane, gxsp_columns *GXSP_RESTRICT of)
 {
-    gxsp_singles scale, inverse;
-    int sweep, k, l;
-    GXSP_EACH_LANE(l) scale[l] = 0;
+    gxsp_singles largest, inverse;
+    int k, l;
+    GXSP_EACH_LANE(l) largest[l] = 0;
     for (k = 0; k < 9; ++k)
         GXSP_EACH_LANE(l) {
             const float f = (float)(g[k][l] + (k % 4 == 0 ? 1.0 : 0.0)), size = f < 0 ? -f : f;
-            of->b[k][l] = f;
-            of->v[k][l] = k % 4 == 0 ? 1.0f : 0.0f;
-            scale[l] = size > scale[l] ? size : scale[l];
+            of->b[k][first_lane + l] = f;
+            of->v[k][first_lane + l] = k % 4 == 0 ? 1.0f : 0.0f;
+            largest[l] = size > largest[l] ? size : largest[l];
         }
     GXSP_EACH_LANE(l) {
-        scale[l] = scale[l] > 1e-30f ? scale[l] : 1.0f;
-        inverse[l] = 1 / scale[l];
+        of->scale[first_lane + l] = largest[l] > 1e-30f ? largest[l] : 1.0f;
+        inverse[l] = 1 / of->scale[first_lane + l];
     }
     for (k = 0; k < 9; ++k)
-        GXSP_EACH_LANE(l) of->b[k][l] *= inverse[l];
-    for (sweep = 0; sweep < 4 && !gxsp_orthogonal(of); ++sweep) { /* quadratic at the end: 4 reach single precision for extreme F too */
-        gxsp_orthogonalise(of, 0, 1);
-        gxsp_orthogonalise(of, 0, 2);
-        gxsp_orthogonalise(of, 1, 2);
+        GXSP_EACH_LANE(l) of->b[k][first_lane + l] *= inverse[l];
+}
+
+/* F = 1 + G = U diag(s) V^T of two blocks, or of one if last is NULL, by one-sided Jacobi, every lane the same number of sweeps.
+ * of: as many. */
+static void gxsp_decompose(gxsp_lanes *first, gxsp_lanes *last, gxsp_svd *of)
+{
+    gxsp_columns at;
+    int sweep;
+    gxsp_columns_begin(first, 0, &at);
+    gxsp_columns_begin(last ? last : first, GXSP_LANES, &at);
+    for (sweep = 0; sweep < 4 && !gxsp_orthogonal(&at); ++sweep) { /* quadratic at the end: 4 reach single precision for extreme F too */
+        gxsp_orthogonalise(&at, 0, 1);
+        gxsp_orthogonalise(&at, 0, 2);
+        gxsp_orthogonalise(&at, 1, 2);
     }
-    gxsp_order_columns(of, 0, 1);
-    gxsp_order_columns(of, 0, 2);
-    gxsp_order_columns(of, 1, 2);
-    gxsp_frame(of, scale);
+    gxsp_order_columns(&at, 0, 1);
+    gxsp_order_columns(&at, 0, 2);
+    gxsp_order_columns(&at, 1, 2);
+    gxsp_frame(&at, 0, &of[0]);
+    if (last)
+        gxsp_frame(&at, GXSP_LANES, &of[1]);
 }
 
 /* Cofactors of a 3x3: the derivative of its determinant. */
@@ -1267,7 +1290,7 @@ static void gxsp_corotated(gxsp_state *GXSP_RESTRICT s)
 {
     gxsp_svd of;
     int l, r, c, k, round;
-    gxsp_decompose(s->g, &of);
+    gxsp_decompose(s->g, NULL, &of);
     for (l = 0; l < GXSP_LANES; ++l) {
         double f[9], rotation[9], cofactor[9], j, strain = 0;
         for (k = 0; k < 9; ++k)
@@ -1531,31 +1554,39 @@ static void gxsp_pack_rotation(gxsp_singles *GXSP_RESTRICT u, gxsp_singles *GXSP
     }
 }
 
-/* The Hessian of a block at s->g, times scale, exact or projected. general: of GXS_CUSTOM only, else NULL. Was an element collapsed? */
-static int gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest, double scale, int exact, gxsp_state *s,
-                             gxsp_tangent *GXSP_RESTRICT tangent, gxsp_general *general)
+/* What Hessians of one or two blocks of a kind are made from, where it is needed; last: NULL if there is but one. Was an element
+ * collapsed? */
+static int gxsp_tangent_begin(gxs_material_kind kind, gxsp_state *first, gxsp_state *last, gxsp_svd *of)
 {
-    gxsp_svd of;
+    int collapsed;
+    if (kind == GXS_CUSTOM || kind == GXS_LINEAR)
+        return 0;
+    collapsed = gxsp_nudge(first->g);
+    collapsed |= last && gxsp_nudge(last->g);
+    gxsp_decompose(first->g, last ? last->g : NULL, of);
+    return collapsed;
+}
+
+/* The Hessian of a block at s->g, times scale, exact or projected. of: by gxsp_tangent_begin. general: of GXS_CUSTOM only, else NULL. */
+static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest, double scale, int exact, gxsp_state *s,
+                              gxsp_svd *GXSP_RESTRICT of, gxsp_tangent *GXSP_RESTRICT tangent, gxsp_general *general)
+{
     gxsp_principal principal;
-    int k, l, r, c, collapsed = 0;
+    int k, l, r, c;
     if (kind == GXS_CUSTOM) {
         gxsp_general_make(rest, scale, exact, s, tangent, general);
-        return 0;
+        return;
     }
     GXSP_EACH_LANE(l) {
         principal.mu[l] = (float)s->mu[l];
         principal.lambda[l] = (float)s->lambda[l];
         principal.weight[l] = (float)(scale * rest->weight[l]);
     }
-    if (kind != GXS_LINEAR) {
-        collapsed = gxsp_nudge(s->g);
-        gxsp_decompose(s->g, &of);
-    }
     switch (kind) {
-    case GXS_ST_VENANT_KIRCHHOFF: gxsp_kirchhoff_principal(&of, &principal); break;
-    case GXS_FIXED_COROTATED: gxsp_corotated_principal(&of, &principal); break;
-    case GXS_LINEAR: gxsp_linear_principal(&of, &principal); break;
-    default: gxsp_neo_hookean_principal(&of, &principal); break;
+    case GXS_ST_VENANT_KIRCHHOFF: gxsp_kirchhoff_principal(of, &principal); break;
+    case GXS_FIXED_COROTATED: gxsp_corotated_principal(of, &principal); break;
+    case GXS_LINEAR: gxsp_linear_principal(of, &principal); break;
+    default: gxsp_neo_hookean_principal(of, &principal); break;
     }
     if (!exact)
         gxsp_project(&principal);
@@ -1568,13 +1599,12 @@ static int gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_RESTR
             tangent->even[k][l] = 0.5f * principal.weight[l] * (flip + twist);
             tangent->odd[k][l] = 0.5f * principal.weight[l] * (flip - twist);
         }
-    gxsp_pack_rotation(of.u, tangent->frame);
+    gxsp_pack_rotation(of->u, tangent->frame);
     for (r = 0; r < 3; ++r)
         for (c = 0; c < 3; ++c)
             GXSP_EACH_LANE(l)
-                tangent->gradient[3 * r + c][l] = (float)rest->gradient[3 * r][l] * of.v[c][l] +
-                    (float)rest->gradient[3 * r + 1][l] * of.v[3 + c][l] + (float)rest->gradient[3 * r + 2][l] * of.v[6 + c][l];
-    return collapsed;
+                tangent->gradient[3 * r + c][l] = (float)rest->gradient[3 * r][l] * of->v[c][l] +
+                    (float)rest->gradient[3 * r + 1][l] * of->v[3 + c][l] + (float)rest->gradient[3 * r + 2][l] * of->v[6 + c][l];
 }
 
 /* >>element: passes over one block. Vectors of its corners: x[3 corner + axis][lane]. */
@@ -1910,18 +1940,17 @@ static void gxsp_block_store(const gxsp_corners *GXSP_RESTRICT corner, gxsp_lane
  * more than a right angle: such an element is tangled. */
 static void gxsp_turn_stress(gxsp_lanes *from, gxsp_lanes *to, gxsp_lanes *p)
 {
-    gxsp_svd first, last;
+    gxsp_svd of[2];
     int r, c, k, l;
-    gxsp_decompose(from, &first);
-    gxsp_decompose(to, &last);
+    gxsp_decompose(from, to, of);
     for (l = 0; l < GXSP_LANES; ++l) {
         double a[9], b[9], turn[9], stress[9], f[9], h[9];
         for (r = 0; r < 3; ++r)
             for (c = 0; c < 3; ++c) {
                 a[3 * r + c] = b[3 * r + c] = 0;
                 for (k = 0; k < 3; ++k) {
-                    a[3 * r + c] += (double)(first.u[3 * r + k][l] * first.v[3 * c + k][l]);
-                    b[3 * r + c] += (double)(last.u[3 * r + k][l] * last.v[3 * c + k][l]);
+                    a[3 * r + c] += (double)(of[0].u[3 * r + k][l] * of[0].v[3 * c + k][l]);
+                    b[3 * r + c] += (double)(of[1].u[3 * r + k][l] * of[1].v[3 * c + k][l]);
                 }
             }
         for (k = 0; k < 9; ++k) {
@@ -3649,7 +3678,7 @@ static void gxsp_task_product(void *context, size_t index)
     }
 }
 
-/* y = product or right - product, from the slots; sum: x . product */
+/* y = product, from the slots, and its sum x . y; or y = right - product */
 static void gxsp_task_product_sum(void *context, size_t index)
 {
     const gxsp_pass *pass = (const gxsp_pass *)context;
@@ -3657,17 +3686,21 @@ static void gxsp_task_product_sum(void *context, size_t index)
     gxsp_vector4 *slots = (gxsp_vector4 *)(void *)system->slots;
     size_t i, end = gxsp_range(system, index, &i);
     double work = 0;
-    int c;
     for (; i < end; ++i) {
         const float *at = pass->x[i], m = system->lumped_mass ? (float)(pass->rate * system->lumped[i]) : 0;
-        gxsp_vector4 sum = {m * at[0], m * at[1], m * at[2], 0};
+        const double *right = pass->right ? pass->right + 3 * i : NULL;
+        float x = m * at[0], y = m * at[1], z = m * at[2], *to = pass->y[i];
         uint32_t s;
-        for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->still[i]; ++s)
-            for (c = 0; c < 4; ++c)
-                sum[c] += slots[system->copy_slot[s]][c];
-        work += (double)at[0] * (double)sum[0] + (double)at[1] * (double)sum[1] + (double)at[2] * (double)sum[2];
-        for (c = 0; c < 3; ++c)
-            pass->y[i][c] = pass->right ? (system->still[i] ? 0 : (float)pass->right[3 * i + (size_t)c]) - sum[c] : sum[c];
+        for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->still[i]; ++s) {
+            const float *from = slots[system->copy_slot[s]];
+            x += from[0], y += from[1], z += from[2];
+        }
+        if (right)
+            to[0] = (float)right[0] - x, to[1] = (float)right[1] - y, to[2] = (float)right[2] - z;
+        else {
+            to[0] = x, to[1] = y, to[2] = z;
+            work += (double)at[0] * (double)x + (double)at[1] * (double)y + (double)at[2] * (double)z;
+        }
     }
     system->range_sum[index][0] = work;
 }
@@ -3719,7 +3752,7 @@ static double gxsp_add_terms(const gxsp_lasting *lasting, float sign, gxsp_vecto
 }
 
 /* y = A x, or right - A x unless right is NULL, A = scale (K + rate M), K the projected Hessian of the last linearisation, on copies that
- * follow nothing; x of followers is written too. Matrix-free if there is a right. Returns x . A x. */
+ * follow nothing; x of followers is written too. right: 0 where nothing moves; matrix-free only. Returns x . A x if there is none. */
 static double gxsp_product_from(gxsp_system *system, double rate, const double *right, gxsp_vector4 *x, gxsp_vector4 *y)
 {
     gxsp_pass pass;
@@ -3748,43 +3781,57 @@ static double gxsp_product(gxsp_system *system, double rate, gxsp_vector4 *x, gx
     return gxsp_product_from(system, rate, NULL, x, y);
 }
 
-/* Hessian of a chunk at pass->from, and its diagonal blocks into the slots, 6 floats each. */
-static void gxsp_task_linearise(void *context, size_t index)
+/* Diagonal blocks of a block's Hessian into the chunk's slots, 6 floats each */
+static void gxsp_block_diagonal(const gxsp_chunk *chunk, uint32_t b, double rate, float *slots)
 {
     static const int own[4] = {0, 4, 7, 9};
     static const int packed[6] = {0, 1, 2, 4, 5, 8};
+    const gxsp_tangent *tangent = &chunk->tangents[b];
+    const gxsp_mass *general = gxsp_block_masses(chunk, b);
+    int corner, k, l;
+    for (corner = 0; corner < 4; ++corner) {
+        gxsp_singles gamma[3], block[9];
+        gxsp_block_corner(tangent, corner, gamma);
+        gxsp_block_couple(tangent, gxsp_block_general(chunk, b), gamma, gamma, block);
+        for (l = 0; l < GXSP_LANES; ++l) {
+            float *to = slots + 6 * (size_t)chunk->corners[b].node[corner][l];
+            float mass = 2 * tangent->mass[l] + (general ? (float)(rate * general->entry[own[corner]][l]) : 0);
+            for (k = 0; k < 6; ++k)
+                to[k] += block[packed[k]][l] + (packed[k] % 4 == 0 ? mass : 0);
+        }
+    }
+}
+
+/* Hessian of a chunk at pass->from, and its diagonal blocks into the slots */
+static void gxsp_task_linearise(void *context, size_t index)
+{
     const gxsp_pass *pass = (const gxsp_pass *)context;
     gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->chunks[index];
     float *slots = (float *)(void *)system->slots[chunk->first_node];
-    uint32_t b;
-    int corner, k, l;
+    uint32_t b, k, blocks;
+    int l;
     system->chunk_sum[index][0] = 0;
     if (system->chunk_still[index])
         return;
     memset(slots, 0, 6 * (size_t)chunk->node_count * sizeof *slots);
-    for (b = 0; b < chunk->block_count; ++b) {
-        const gxsp_rest *rest = &chunk->rest[b];
-        gxsp_tangent *tangent = &chunk->tangents[b];
-        const gxsp_mass *general = gxsp_block_masses(chunk, b);
-        gxsp_lanes x[12];
-        gxsp_state s;
-        gxsp_block_load(system, chunk, &chunk->corners[b], pass->from, x);
-        gxsp_block_parameters(pass->materials, rest, &s);
-        gxsp_block_gradient(rest, x, s.g);
-        system->chunk_sum[index][0] += gxsp_tangent_make(chunk->kind, rest, system->scale, pass->exact, &s, tangent,
-                                                             gxsp_block_general(chunk, b));
-        GXSP_EACH_LANE(l) tangent->mass[l] = (float)(pass->rate * rest->mass[l]);
-        for (corner = 0; corner < 4; ++corner) {
-            gxsp_singles gamma[3], block[9];
-            gxsp_block_corner(tangent, corner, gamma);
-            gxsp_block_couple(tangent, gxsp_block_general(chunk, b), gamma, gamma, block);
-            for (l = 0; l < GXSP_LANES; ++l) {
-                float *to = slots + 6 * (size_t)chunk->corners[b].node[corner][l];
-                float mass = 2 * tangent->mass[l] + (general ? (float)(pass->rate * general->entry[own[corner]][l]) : 0);
-                for (k = 0; k < 6; ++k)
-                    to[k] += block[packed[k]][l] + (packed[k] % 4 == 0 ? mass : 0);
-            }
+    for (b = 0; b < chunk->block_count; b += blocks) { /* two at a time */
+        gxsp_state s[2];
+        gxsp_svd of[2];
+        blocks = b + 1 < chunk->block_count ? 2 : 1;
+        for (k = 0; k < blocks; ++k) {
+            gxsp_lanes x[12];
+            gxsp_block_load(system, chunk, &chunk->corners[b + k], pass->from, x);
+            gxsp_block_parameters(pass->materials, &chunk->rest[b + k], &s[k]);
+            gxsp_block_gradient(&chunk->rest[b + k], x, s[k].g);
+        }
+        system->chunk_sum[index][0] += gxsp_tangent_begin(chunk->kind, &s[0], blocks > 1 ? &s[1] : NULL, of);
+        for (k = 0; k < blocks; ++k) {
+            const gxsp_rest *rest = &chunk->rest[b + k];
+            gxsp_tangent *tangent = &chunk->tangents[b + k];
+            gxsp_tangent_make(chunk->kind, rest, system->scale, pass->exact, &s[k], &of[k], tangent, gxsp_block_general(chunk, b + k));
+            GXSP_EACH_LANE(l) tangent->mass[l] = (float)(pass->rate * rest->mass[l]);
+            gxsp_block_diagonal(chunk, b + k, pass->rate, slots);
         }
     }
 }
@@ -7034,13 +7081,15 @@ GXFEM_API gx_result gxs_model_hessian_product(const gxs_model *model, const doub
         gxsp_tangent tangent;
         gxsp_general general;
         gxsp_lanes x[12];
+        gxsp_svd of;
         gxsp_singles from[12], to[12];
         int k, l;
         gxsp_group_load(model, e, &group);
         gxsp_group_gather(&group, displacement, x);
         gxsp_block_gradient(&group.rest, x, group.state.g);
         memset(&tangent, 0, sizeof tangent);
-        gxsp_tangent_make(group.kind, &group.rest, 1, 0, &group.state, &tangent, &general);
+        (void)gxsp_tangent_begin(group.kind, &group.state, NULL, &of);
+        gxsp_tangent_make(group.kind, &group.rest, 1, 0, &group.state, &of, &tangent, &general);
         gxsp_group_gather(&group, direction, x);
         for (k = 0; k < 12; ++k)
             GXSP_EACH_LANE(l) from[k][l] = (float)(x[k][l] - x[k % 3][l]); /* of translations exactly 0 */
@@ -7113,6 +7162,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
     gxsp_rest rest;
     gxsp_tangent tangent;
     gxsp_general general;
+    gxsp_svd of;
     gxsp_singles from[12], to[12];
     int k, c;
     memset(&rest, 0, sizeof rest);
@@ -7120,7 +7170,8 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
     memset(from, 0, sizeof from);
     rest.weight[0] = 1;
     rest.gradient[0][0] = rest.gradient[4][0] = rest.gradient[8][0] = 1; /* u_i - u_0 are the columns of dF, forces those of dP */
-    gxsp_tangent_make(material->kind, &rest, 1, 0, &state, &tangent, &general);
+    (void)gxsp_tangent_begin(material->kind, &state, NULL, &of);
+    gxsp_tangent_make(material->kind, &rest, 1, 0, &state, &of, &tangent, &general);
     for (k = 0; k < 3; ++k)
         for (c = 0; c < 3; ++c)
             from[3 + 3 * c + k][0] = (float)direction[3 * k + c];
