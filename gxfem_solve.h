@@ -72,7 +72,7 @@
  * LIMITS. poisson in [0, 0.5), beyond 0.49999 the single precision of the Hessian tells; copies and elements below 2^30.
  * Energies, forces and states are doubles; the Hessian, its products and the preconditioner are single precision, which sets no
  * limit to what Newton reaches, only to what one linear solve does (about 1e-6 of the residual; a free body's slowest modes are
- * solved as well while inertia is above some 1e-6 of stiffness, rho h^2 / (E dt^2) for elements of size h). Memory: about 400
+ * solved as well while inertia is above some 1e-6 of stiffness, rho h^2 / (E dt^2) for elements of size h). Memory: about 350
  * bytes per element in all, of a mesh with four elements per copy. The material can invert without a failure and comes back by
  * itself; an element collapsed to a point, where its energy is stationary, is opened as if it were not quite one. Same input,
  * same binary: same bits. Nothing here needs isnan or infinities: it is right under -ffast-math, where sums round otherwise.
@@ -753,7 +753,6 @@ typedef struct gxsp_edges {
     uint16_t *table;        /* nodes x nodes: the edge of two nodes i < j if ends says so, else without meaning: it is never cleared */
     uint32_t *ends;         /* i << 16 | j */
     float (*block)[9];      /* i's row and j's column of the Hessian, by columns */
-    float (*turned)[9];     /* transposed */
     uint32_t nodes, count;
     uint32_t *start;        /* nodes + 2: adjacency, by node into other and edge */
     uint16_t *other, *edge;
@@ -771,7 +770,7 @@ typedef struct gxsp_pairs {
     uint32_t *stamp;    /* by coarse node: the round in which it was numbered */
     uint32_t round;     /* one for each visit of a chunk */
     uint32_t count;     /* coarse nodes numbered in this round */
-    float (*half)[9];   /* by coarse node: a row of a level's matrix times its transfer */
+    float (*half)[9];   /* by node of the first level whose matrix is another level's: a row of that one times its transfer */
 } gxsp_pairs;
 
 /* Cholesky factor of the last level, row by row within its envelope. */
@@ -2996,7 +2995,6 @@ static void gxsp_edges_make(gxsp_system *system)
     edges->table = (uint16_t *)gxsp_take(&system->coarse, nodes * nodes, sizeof(uint16_t));
     edges->ends = (uint32_t *)gxsp_take(&system->coarse, nodes + 6 * lanes, sizeof(uint32_t));
     edges->block = (float(*)[9])gxsp_take(&system->coarse, nodes + 6 * lanes, sizeof *edges->block);
-    edges->turned = (float(*)[9])gxsp_take(&system->coarse, nodes + 6 * lanes, sizeof *edges->turned);
     edges->start = (uint32_t *)gxsp_take(&system->coarse, nodes + 2, sizeof(uint32_t));
     edges->other = (uint16_t *)gxsp_take(&system->coarse, nodes + 12 * lanes, sizeof(uint16_t));
     edges->edge = (uint16_t *)gxsp_take(&system->coarse, nodes + 12 * lanes, sizeof(uint16_t));
@@ -3103,7 +3101,6 @@ static void gxsp_pairs_make(gxsp_system *system)
     system->pairs.stamp = (uint32_t *)gxsp_take(&system->coarse, system->levels[1].n, sizeof(uint32_t));
     system->pairs.node = (uint32_t *)gxsp_take(&system->coarse, system->levels[1].n, sizeof(uint32_t));
     system->pairs.seen = (uint32_t *)gxsp_take(&system->coarse, system->levels[1].n, sizeof(uint32_t));
-    system->pairs.half = (float(*)[9])gxsp_take(&system->coarse, system->levels[1].n, sizeof *system->pairs.half);
     system->pairs.round = 0;
 }
 
@@ -3327,6 +3324,8 @@ static void gxsp_levels_make(gxsp_system *system, gxsp_pool *scratch, const gxsp
     for (at = 1; at + 1 < GXSP_LEVELS && !gxsp_factors(scratch, &system->levels[at], system->n) && gxsp_add_level(system, scratch, at); ++at)
         ;
     system->level_count = at + 1;
+    at = system->fine ? 1 : 2;
+    system->pairs.half = (float(*)[9])gxsp_take(&system->coarse, at < system->level_count ? system->levels[at].n : 0, sizeof *system->pairs.half);
     gxsp_factor_make(system, scratch);
 }
 
@@ -4124,8 +4123,6 @@ static void gxsp_edge_blocks(gxsp_system *system, const gxsp_chunk *chunk, doubl
             }
         }
     }
-    for (k = edges->nodes; k < edges->count; ++k)
-        gxsp_transpose_block(edges->block[k], edges->turned[k]);
 }
 
 static float *gxsp_pair_block(gxsp_pairs *pairs, gxsp_level *next, uint32_t row, uint32_t column, uint32_t i, uint32_t j)
@@ -4148,7 +4145,12 @@ static uint32_t gxsp_half_row(gxsp_system *system, const uint32_t *copies, uint3
     int m;
     for (k = edges->start[i]; k < edges->start[i + 1]; ++k) {
         const uint32_t other = edges->other[k], copy = copies[other];
-        const float *block = other < i ? edges->turned[edges->edge[k]] : edges->block[edges->edge[k]];
+        const float *block = edges->block[edges->edge[k]];
+        float turned[9];
+        if (other < i) {
+            gxsp_transpose_block(block, turned);
+            block = turned;
+        }
         for (q = 0; q < 4; ++q) {
             const uint16_t number = edges->parent[other][q];
             if (fine->parent[copy][q] == GXSP_NONE || (dirty && !dirty[fine->parent[copy][q]]))
