@@ -3592,6 +3592,7 @@ static void gxsp_apply_packed(const float *d, const float *x, float *y)
 /* Four nodes' vectors to three components side by side and back: compilers do not find these shuffles by themselves. */
 typedef __attribute__((vector_size(16), aligned(4), may_alias)) float gxsp_four;
 
+#if defined(__AVX__)
 typedef __attribute__((vector_size(32), aligned(4), may_alias)) float gxsp_eight;
 
 /* All eight lanes at once: narrower stores would not be forwarded to the loads that soon follow. */
@@ -3608,6 +3609,25 @@ static inline void gxsp_gather_eight(const uint16_t *node, const gxsp_vector4 *x
     *(gxsp_eight *)to1 = __builtin_shufflevector(p, q, 2, 3, 10, 11, 6, 7, 14, 15);
     *(gxsp_eight *)to2 = __builtin_shufflevector(r, s, 0, 1, 8, 9, 4, 5, 12, 13);
 }
+#else
+static inline void gxsp_gather_four(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2)
+{
+    const gxsp_four a = *(const gxsp_four *)x[node[0]], b = *(const gxsp_four *)x[node[1]], c = *(const gxsp_four *)x[node[2]],
+                    d = *(const gxsp_four *)x[node[3]];
+    const gxsp_four p = __builtin_shufflevector(a, b, 0, 4, 1, 5), q = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+    const gxsp_four r = __builtin_shufflevector(a, b, 2, 6, 3, 7), s = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+    *(gxsp_four *)to0 = __builtin_shufflevector(p, q, 0, 1, 4, 5);
+    *(gxsp_four *)to1 = __builtin_shufflevector(p, q, 2, 3, 6, 7);
+    *(gxsp_four *)to2 = __builtin_shufflevector(r, s, 0, 1, 4, 5);
+}
+
+/* Of vectors longer than there are, compilers make their shuffles number by number. */
+static inline void gxsp_gather_eight(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2)
+{
+    gxsp_gather_four(node, x, to0, to1, to2);
+    gxsp_gather_four(node + 4, x, to0 + 4, to1 + 4, to2 + 4);
+}
+#endif
 
 static inline void gxsp_scatter_four(const uint16_t *node, const float *from0, const float *from1, const float *from2, gxsp_vector4 *y)
 {
