@@ -3393,17 +3393,16 @@ static void gxsp_find_volumes(gxsp_system *system, gxsp_pool *scratch, const gxs
         system->volume[i] = volume[i] > 1e-20 * largest ? (float)ldexp(largest / volume[i], -GXSP_STIFFNESS) : 0;
 }
 
-/* Are most copies in pieces that multigrid pays for? count: piece_count, scratch */
-static int gxsp_large_pieces(const gxsp_system *system, uint32_t *count)
+/* Does multigrid pay for a piece? All take as many iterations as the one that takes most. count: piece_count, scratch */
+static int gxsp_large_piece(const gxsp_system *system, uint32_t *count)
 {
     const uint32_t from = system->stiff ? GXSP_MULTIGRID_FROM_STIFF : GXSP_MULTIGRID_FROM;
-    size_t i, large = 0;
+    size_t i;
     memset(count, 0, system->piece_count * sizeof *count);
     for (i = 0; i < system->n; ++i)
-        ++count[system->piece[i]];
-    for (i = 0; i < system->n; ++i)
-        large += count[system->piece[i]] >= from;
-    return 2 * large > system->n;
+        if (++count[system->piece[i]] >= from)
+            return 1;
+    return 0;
 }
 
 /* What depends on the choice of matrix and preconditioner. forest: n, scratch */
@@ -3412,7 +3411,7 @@ static void gxsp_preconditioner_make(gxsp_system *system, gxsp_pool *scratch, co
 {
     float (*place)[3]; /* rest positions in spacings of the first lattice */
     const int multigrid = model->positions && (preconditioner == GXS_MULTIGRID ||
-                          (preconditioner == GXS_AUTOMATIC && gxsp_large_pieces(system, forest)));
+                          (preconditioner == GXS_AUTOMATIC && gxsp_large_piece(system, forest)));
     system->chosen = model->positions && preconditioner == GXS_AUTOMATIC;
     if (preconditioner == GXS_VOLUME_RATIO)
         gxsp_find_volumes(system, scratch, model);
@@ -5361,7 +5360,7 @@ static int gxsp_is_compact(gxsp_renewal *update)
         lanes += system->chunks[c].block_count * GXSP_LANES;
     if (lanes > system->element_count + system->element_count / 4 + 2 * GXSP_CHUNK_BLOCKS * GXSP_LANES)
         return 0;
-    return !count || !system->chosen || gxsp_large_pieces(system, count) == (system->level_count > 0);
+    return !count || !system->chosen || gxsp_large_piece(system, count) == (system->level_count > 0);
 }
 
 /* 0: the change does not fit. Memory may also have run out: see the pools. */

@@ -1107,6 +1107,45 @@ START_TEST(multigrid_iterations_do_not_grow)
 }
 END_TEST
 
+/* A block that hangs among loose tetrahedra, which are most of the copies: left to itself, the solver takes what the block needs. */
+START_TEST(largest_piece_chooses_the_preconditioner)
+{
+    static const gxs_preconditioner kinds[3] = {GXS_BLOCK_JACOBI, GXS_MULTIGRID, GXS_AUTOMATIC};
+    enum { LOOSE = 400 };
+    uint32_t counts[3];
+    int which;
+    for (which = 0; which < 3; ++which) {
+        gxs_solver_desc desc;
+        gxs_solver *solver = NULL;
+        gxs_step_desc step = step_make(0.033, -9.81);
+        gxs_step_report report;
+        scene s = scene_block(8, 8, 8, 0.125, 0, 4 * LOOSE);
+        size_t i, k, copies = s.model.copy_count;
+        for (i = 0; i < copies; ++i)
+            s.held[i] = s.rest[3 * i] < 0.05;
+        for (i = 0; i < LOOSE; ++i, copies += 4) {
+            gxs_element *element = &s.elements[s.model.element_count++];
+            *element = s.elements[i];
+            for (k = 0; k < 4; ++k) {
+                memcpy(&s.rest[3 * (copies + k)], &s.rest[3 * element->copy[k]], 3 * sizeof(double));
+                element->copy[k] = (uint32_t)(copies + k);
+            }
+        }
+        s.model.copy_count = copies;
+        step.cg_tolerance = 1e-4;
+        memset(&desc, 0, sizeof desc);
+        desc.preconditioner = kinds[which];
+        ck_assert_int_eq(gxs_solver_create(&desc, &solver), GX_OK);
+        ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+        counts[which] = report.cg_iterations;
+        gxs_solver_destroy(solver);
+        scene_free(&s);
+    }
+    assert_that(2 * counts[1] < counts[0] && counts[2] == counts[1], "block-Jacobi %u, multigrid %u, left to itself %u",
+                (unsigned)counts[0], (unsigned)counts[1], (unsigned)counts[2]);
+}
+END_TEST
+
 /* ---- jobs ---- */
 
 static void backwards(void *user, size_t count, void (*task)(void *, size_t), void *context)
@@ -1199,6 +1238,7 @@ static Suite *solve_suite(void)
     tcase_add_test(model, model_gradient_and_hessian_match_differences);
     tcase_add_loop_test(model, block_product_equals_assembled_forms, 0, 4 * KINDS);
     tcase_add_loop_test(model, multigrid_iterations_do_not_grow, 0, 2);
+    tcase_add_test(model, largest_piece_chooses_the_preconditioner);
     tcase_add_test(step, free_fall_is_exact);
     tcase_add_test(step, momentum_of_a_free_body_is_balanced);
     tcase_add_test(step, stretched_bar_has_youngs_modulus);
