@@ -49,8 +49,14 @@ try() { # compiler flags...
     count=$((count + 1))
     rm -f "$dir/$count"
     echo "$*" >"$dir/$count.build"
-    one "$dir/$count" "$@" &
-    [ $((count % jobs)) -ne 0 ] || wait
+}
+
+each() { # first: every build whose number is first, first + jobs, ...
+    i=$1
+    while [ "$i" -le $count ]; do
+        one "$dir/$i" $(cat "$dir/$i.build")
+        i=$((i + jobs))
+    done
 }
 
 x86=$(uname -m | grep -c -E 'x86_64|i.86')
@@ -73,6 +79,7 @@ if [ "$x86" = 1 ]; then # flush-to-zero and denormals-are-zero from the first in
     try gcc -std=c99 -O2 -include "$dir/flush.h"
     try clang -std=c99 -O2 -include "$dir/flush.h"
 fi
+for first in $(seq "$jobs"); do each "$first" & done
 wait
 for i in $(seq $count); do
     build=$(cat "$dir/$i.build")
