@@ -79,7 +79,7 @@ if [ "$x86" = 1 ]; then # flush-to-zero and denormals-are-zero from the first in
     try gcc -std=c99 -O2 -include "$dir/flush.h"
     try clang -std=c99 -O2 -include "$dir/flush.h"
 fi
-for first in $(seq "$jobs"); do each "$first" & done
+for worker in $(seq "$jobs"); do each "$worker" & done
 wait
 for i in $(seq $count); do
     build=$(cat "$dir/$i.build")
