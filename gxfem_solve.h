@@ -5713,16 +5713,22 @@ static void gxsp_task_scale(void *context, size_t index)
     gxsp_scale_copies(pass->system, pass->from, first, end, pass->system->range_sum[index]);
 }
 
-static gxsp_norms gxsp_scale(gxsp_system *system, const double *r)
+/* Over all ranges, by a task that scales them. */
+static gxsp_norms gxsp_norms_of(gxsp_system *system, void (*task)(void *, size_t), gxsp_pass *pass)
 {
     gxsp_norms norms;
-    gxsp_pass pass;
     double sums[2];
-    memset(&pass, 0, sizeof pass);
-    pass.from = r;
-    gxsp_over_ranges(system, gxsp_task_scale, &pass, sums, 2);
+    gxsp_over_ranges(system, task, pass, sums, 2);
     norms.energy = sums[0], norms.displacement = sums[1];
     return norms;
+}
+
+static gxsp_norms gxsp_scale(gxsp_system *system, const double *r)
+{
+    gxsp_pass pass;
+    memset(&pass, 0, sizeof pass);
+    pass.from = r;
+    return gxsp_norms_of(system, gxsp_task_scale, &pass);
 }
 
 /* direction += factor x, residual -= factor y, and the residual is scaled */
@@ -5742,16 +5748,12 @@ static void gxsp_task_advance(void *context, size_t index)
 /* The direction goes on by length x, and the residual by as much of y = A x. Returns what is left. */
 static gxsp_norms gxsp_advance(gxsp_system *system, double length, gxsp_vector4 *x, gxsp_vector4 *y)
 {
-    gxsp_norms norms;
     gxsp_pass pass;
-    double sums[2];
     memset(&pass, 0, sizeof pass);
     pass.factor = length;
     pass.x = x;
     pass.y = y;
-    gxsp_over_ranges(system, gxsp_task_advance, &pass, sums, 2);
-    norms.energy = sums[0], norms.displacement = sums[1];
-    return norms;
+    return gxsp_norms_of(system, gxsp_task_advance, &pass);
 }
 
 /* Sums: residual . x, x . y if there is a y */
