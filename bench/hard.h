@@ -729,33 +729,24 @@ static double hard_sum_of(const sampling_rule *rule)
 
 static const uint32_t hard_region_triangle[3] = {0, 1, 2};
 
-static double hard_integral_regular(const double vertices[9])
+/* By points: adaptive to a depth, or, where that is 0, 50 cells along an edge */
+static double hard_integral_by_points(const double vertices[9], int depth)
 {
     sampling_surface surface = sampling_surface_create(vertices, hard_region_triangle, 1);
     const sampling_region under = sampling_under(&surface);
     sampling_rule rule;
     double volume;
     memset(&rule, 0, sizeof rule);
-    sampling_regular(&under, 50, &rule);
+    if (depth > 0) sampling_adaptive(&under, 2, depth, &rule);
+    else sampling_regular(&under, 50, &rule);
     volume = hard_sum_of(&rule);
     sampling_free(&rule);
     sampling_surface_free(&surface);
     return volume;
 }
 
-static double hard_integral_adaptive(const double vertices[9])
-{
-    sampling_surface surface = sampling_surface_create(vertices, hard_region_triangle, 1);
-    const sampling_region under = sampling_under(&surface);
-    sampling_rule rule;
-    double volume;
-    memset(&rule, 0, sizeof rule);
-    sampling_adaptive(&under, 2, 4, &rule);
-    volume = hard_sum_of(&rule);
-    sampling_free(&rule);
-    sampling_surface_free(&surface);
-    return volume;
-}
+static double hard_integral_regular(const double vertices[9]) { return hard_integral_by_points(vertices, 0); }
+static double hard_integral_adaptive(const double vertices[9]) { return hard_integral_by_points(vertices, 4); }
 
 /* The part's boundary as a surface of its own; the caller frees index. */
 static gxi_surface hard_boundary_surface(const part_shape *boundary, uint32_t **index)
