@@ -41,7 +41,7 @@
  *     >>hash       of the topology, of the state
  *     >>save       save and load, clone and restore
  *     then, under GXFEM_IMPLEMENTATION: >>memory >>tree >>create >>transaction >>surfaces >>arrange >>solids >>links >>cells
- *     >>components >>integrals >>commit >>regions >>fragments >>parts >>bytes >>boundary
+ *     >>components >>integrals >>commit >>regions >>fragments >>parts >>bytes >>boundary >>hashes
  *
  * Words. Wall: a piece of a sheet inside the body or on an element face. Cell: a connected piece of one element after cutting
  * (GXFEM Eq. 20). Link: a piece of the face between two elements that no wall covers. Copy: a node's displacement for one
@@ -5345,7 +5345,7 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
     return GX_OK;
 }
 
-/* --- hashes --- */
+/* >>hashes ----------------------------------------------------------------------------------------------------------------------- */
 
 #define GXP_BESIDE_WALL 0xfffffff0u     /* neighbour across a wall inside the element */
 #define GXP_ACROSS_WALL 0xfffffff1u     /* neighbour across a wall on a face */
