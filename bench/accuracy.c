@@ -1,28 +1,39 @@
 /* How close static solutions come to closed forms and published values, and with which order.
- * usage: accuracy [FILE]     rows go to stdout and to FILE; Newton's iterations to stderr
+ * usage: accuracy [FILE [--small]]     rows go to stdout and to FILE, a table to stderr; --small: without the finest meshes
  *
  * value and reference are in the units that the case's comment gives; order is log(error / error before) / log(h / h before)
  * within a case; imbalance is the largest force left on a free copy over the largest reaction or load: where it is not small
- * the solve has not converged, whatever value says. What linear tetrahedra can represent (homogeneous states) must come out to
+ * the solve has not converged, whatever value says; newton and cg are its iterations. What linear tetrahedra can represent (homogeneous states) must come out to
  * the tolerance of the solver. All else converges from the stiff side: these elements lock in bending, and coarse levels are
  * off by tens of percent. That is what the rows show. Where the reference itself is a model (beams) or an extrapolation (Cook),
  * its own error is the limit. */
+#define _POSIX_C_SOURCE 200112L
 #define GXFEM_SOLVE_IMPLEMENTATION
 #include "../gxfem_solve.h"
 
 #include "csv.h"
 #include "mesh.h"
-
-#include <time.h>
+#include "progress.h"
 
 static const double pi = 3.14159265358979323846;
 
 static const char *const kind_name[] = {"stable neo-Hookean", "St. Venant-Kirchhoff", "fixed corotated", "linear"};
-enum { KINDS = 4 };
+enum { KINDS = 4, CASES = 10, MOST_SERIES = 32 };
+
+static int small;
+static size_t done; /* cases */
+
+/* The finest mesh of a case, cells along an edge */
+static size_t finest_of(size_t n)
+{
+    return small ? n / 2 : n;
+}
 
 /* ---- rows */
 
-static double imbalance; /* of the last solve */
+/* Of the last solve */
+static double imbalance;
+static gxs_step_report report;
 
 /* A quantity that is followed under refinement; n: cells along an edge */
 typedef struct series {
@@ -41,6 +52,45 @@ static series series_make(const char *name, const char *of, const char *quantity
     return s;
 }
 
+/* For the table: the last row of each series that is refined; of the others the worst */
+typedef struct last_row {
+    series of;
+    char order[32];
+    size_t elements;
+} last_row;
+
+static last_row last_rows[MOST_SERIES];
+static size_t last_count, single_count;
+static double single_worst;
+
+static void keep_single(double error)
+{
+    single_count++;
+    single_worst = fmax(single_worst, error);
+}
+
+static void keep_last(const series *s, size_t elements, const char *order)
+{
+    size_t i = 0;
+    while (i < last_count && (strcmp(last_rows[i].of.name, s->name) != 0 || strcmp(last_rows[i].of.quantity, s->quantity) != 0))
+        ++i;
+    expect(i < MOST_SERIES, "more series than there is room for");
+    last_count = i == last_count ? i + 1 : last_count;
+    last_rows[i].of = *s;
+    last_rows[i].elements = elements;
+    snprintf(last_rows[i].order, sizeof last_rows[i].order, "%s", order);
+}
+
+static void print_table(void)
+{
+    size_t i;
+    fprintf(stderr, "homogeneous states: %lu quantities, largest error %.1e\n", (unsigned long)single_count, single_worst);
+    fprintf(stderr, "%-46s %-22s %9s %9s %6s\n", "case, its finest mesh", "quantity", "elements", "error", "order");
+    for (i = 0; i < last_count; ++i)
+        fprintf(stderr, "%-46s %-22s %9lu %9.1e %6s\n", last_rows[i].of.name, last_rows[i].of.quantity, (unsigned long)last_rows[i].elements,
+                last_rows[i].of.error, last_rows[i].order);
+}
+
 /* error relative to scale */
 static void series_row_scaled(series *s, size_t elements, double n, double value, double reference, double scale)
 {
@@ -48,10 +98,14 @@ static void series_row_scaled(series *s, size_t elements, double n, double value
     char order[32] = "";
     if (s->n > 0 && s->error > 0 && error > 0)
         snprintf(order, sizeof order, "%.2f", log(s->error / error) / log(n / s->n));
-    csv_row("%s,%s,%lu,%.10g,%.10g,%.3e,%s,%s,%.1e", s->name, s->quantity, (unsigned long)elements, value, reference, error,
-            s->source, order, imbalance);
+    csv_row("%s,%s,%lu,%.10g,%.10g,%.3e,%s,%s,%.1e,%u,%u", s->name, s->quantity, (unsigned long)elements, value, reference, error,
+            s->source, order, imbalance, (unsigned)report.newton_iterations, (unsigned)report.cg_iterations);
     s->n = n;
     s->error = error;
+    if (n > 0)
+        keep_last(s, elements, order);
+    else
+        keep_single(error);
 }
 
 static void series_row(series *s, size_t elements, double n, double value, double reference)
@@ -79,8 +133,7 @@ static double measure_imbalance(const scene *s)
 static void solve(scene *s, const char *what)
 {
     gxs_step_desc step;
-    gxs_step_report report;
-    clock_t start = clock();
+    progress_draw("accuracy", done, CASES, what);
     memset(&step, 0, sizeof step);
     step.integrator = GXS_STATIC;
     step.forces = s->forces;
@@ -90,9 +143,6 @@ static void solve(scene *s, const char *what)
     step.cg_tolerance = 1e-4;
     report = scene_step(s, &step);
     imbalance = measure_imbalance(s);
-    fprintf(stderr, "%s: %lu elements, %u newton, %u cg, residual %.1e, %.2f s\n", what, (unsigned long)s->model.element_count,
-            (unsigned)report.newton_iterations, (unsigned)report.cg_iterations, report.residual,
-            (double)(clock() - start) / CLOCKS_PER_SEC);
 }
 
 /* Holds the copies whose rest position has this coordinate. */
@@ -506,7 +556,7 @@ static void cantilever_exact(void)
     series row = series_make("cantilever with parabolic end load", "linear", "end deflection",
                              "Timoshenko and Goodier art. 21; exact for poisson 0");
     size_t n;
-    for (n = 2; n <= 16; n *= 2) {
+    for (n = 2; n <= finest_of(16); n *= 2) {
         mesh m = beam_mesh(&b, n);
         scene *s = scene_make(&m, GXS_LINEAR, b.young, b.poisson, 1000);
         double user[2], exact[3], end[3] = {0};
@@ -538,7 +588,7 @@ static void cantilever_weight(gxs_material_kind kind)
     series row = series_make("cantilever under its weight", kind_name[kind], "end deflection",
                              "Timoshenko beam (shear factor of Cowper 1966); model error about 1e-2");
     size_t n;
-    for (n = 1; n <= 8; n *= 2) {
+    for (n = 1; n <= finest_of(8); n *= 2) {
         mesh m = beam_mesh(&b, n);
         scene *s = scene_make(&m, kind, b.young, b.poisson, 1000);
         size_t e, k;
@@ -615,7 +665,7 @@ static void cantilever_large(gxs_material_kind kind, size_t finest)
     size_t n;
     elastica_end(alpha, &x, &y);
     traction[1] = -load / (b.depth * b.width);
-    for (n = 1; n <= finest; n *= 2) {
+    for (n = 1; n <= finest_of(finest); n *= 2) {
         mesh m = beam_mesh(&b, n);
         scene *s = scene_make(&m, kind, b.young, b.poisson, 1000);
         const double *u;
@@ -678,7 +728,7 @@ static void cook_membrane(const cook *c)
 {
     series row = series_make(c->name, "", "vertical displacement", c->source);
     size_t n;
-    for (n = 4; n <= c->finest; n *= 2) {
+    for (n = 4; n <= finest_of(c->finest); n *= 2) {
         mesh m = cook_mesh(n);
         scene *s = scene_make(&m, GXS_LINEAR, c->young, c->poisson, 1000);
         double traction[3] = {0};
@@ -758,7 +808,7 @@ static void torsion_square(gxs_material_kind kind, double twist)
     series stored = series_make("twisted square column", kind_name[kind], "energy", source);
     size_t n, i, cells[3];
     const double size[3] = {1, 1, 1};
-    for (n = 3; n <= 24; n *= 2) {
+    for (n = 3; n <= finest_of(24); n *= 2) {
         mesh m;
         scene *s;
         cells[0] = cells[1] = cells[2] = n;
@@ -1003,7 +1053,7 @@ static void torsion_cylinder(gxs_material_kind kind, double twist)
     c.poisson = 0.3;
     c.twist = twist;
     cylinder_solve(&c);
-    for (n = 2; n <= 16; n *= 2) {
+    for (n = 2; n <= finest_of(16); n *= 2) {
         mesh m = mesh_cylinder(n);
         scene *s = scene_make(&m, kind, c.young, c.poisson, 1000);
         hold_plane(s, 2, 0);
@@ -1019,18 +1069,25 @@ static void torsion_cylinder(gxs_material_kind kind, double twist)
     }
 }
 
+static void cantilever_weight_linear(void) { cantilever_weight(GXS_LINEAR); }
+static void cantilever_large_neo_hookean(void) { cantilever_large(GXS_STABLE_NEO_HOOKEAN, 8); }
+static void cantilever_large_corotated(void) { cantilever_large(GXS_FIXED_COROTATED, 4); }
+static void torsion_square_linear(void) { torsion_square(GXS_LINEAR, 0.1); }
+static void torsion_cylinder_neo_hookean(void) { torsion_cylinder(GXS_STABLE_NEO_HOOKEAN, 1); }
+/* at 1 a minimum with crumpled elements is lower: the material allows that */
+static void torsion_cylinder_kirchhoff(void) { torsion_cylinder(GXS_ST_VENANT_KIRCHHOFF, 0.5); }
+static void torsion_cylinder_corotated(void) { torsion_cylinder(GXS_FIXED_COROTATED, 1); }
+
 int main(int argc, char **argv)
 {
-    csv_open(argc, argv, "case,quantity,elements,value,reference,relative_error,source,order,imbalance");
-    homogeneous_states();
-    cantilever_exact();
-    cantilever_weight(GXS_LINEAR);
-    cantilever_large(GXS_STABLE_NEO_HOOKEAN, 8);
-    cantilever_large(GXS_FIXED_COROTATED, 4);
-    cook_membranes();
-    torsion_square(GXS_LINEAR, 0.1);
-    torsion_cylinder(GXS_STABLE_NEO_HOOKEAN, 1);
-    torsion_cylinder(GXS_ST_VENANT_KIRCHHOFF, 0.5); /* at 1 a minimum with crumpled elements is lower: the material allows that */
-    torsion_cylinder(GXS_FIXED_COROTATED, 1);
+    static void (*const cases[CASES])(void) = {
+        homogeneous_states, cantilever_exact, cantilever_weight_linear, cantilever_large_neo_hookean, cantilever_large_corotated,
+        cook_membranes, torsion_square_linear, torsion_cylinder_neo_hookean, torsion_cylinder_kirchhoff, torsion_cylinder_corotated};
+    small = argc > 2 && strcmp(argv[2], "--small") == 0;
+    csv_open(argc, argv, "case,quantity,elements,value,reference,relative_error,source,order,imbalance,newton,cg");
+    for (done = 0; done < CASES; ++done)
+        cases[done]();
+    progress_draw("accuracy", done, CASES, "");
+    print_table();
     return csv_close();
 }

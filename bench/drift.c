@@ -1,5 +1,5 @@
 /* What each integrator does to the energy, the momenta and the motion of a free body, and with which order.
- * usage: drift [FILE]     rows go to stdout and to FILE; orders to stderr
+ * usage: drift [FILE]     rows go to stdout and to FILE, a table with orders to stderr
  *
  * The body: 3 x 3 x 6 cubes of 0.2 m, five tetrahedra each, stable neo-Hookean, stretched along z at the start, spinning and
  * flying, no gravity. Newton runs to 1e-12, so that what is left is the integrator's.
@@ -10,11 +10,13 @@
  *                           implicit midpoint rule with the finest step, extrapolated with that of twice the step.
  * Backward Euler and BDF2 keep linear momentum and lose energy and spin; the midpoint rule keeps both momenta to rounding
  * and lets the energy oscillate. */
+#define _POSIX_C_SOURCE 200112L
 #define GXFEM_SOLVE_IMPLEMENTATION
 #include "../gxfem_solve.h"
 
 #include "csv.h"
 #include "mesh.h"
+#include "progress.h"
 
 static const double pi = 3.14159265358979323846;
 static const double duration = 1; /* s */
@@ -189,31 +191,59 @@ static double position_error(const scene *s, const double *u)
     return sqrt(error / scale);
 }
 
+enum { RATES = 5, RUNS = 3 * RATES };
+
+static const size_t rates[RATES] = {30, 60, 120, 240, 480};
+
+typedef struct result {
+    drift worst;
+    double error;
+} result;
+
+static result measure_rate(gxs_integrator kind, size_t rate, const double *u)
+{
+    const size_t steps = (size_t)(duration * (double)rate + 0.5);
+    result r;
+    scene *s = run(kind, steps, &r.worst);
+    r.error = position_error(s, u);
+    scene_free(s);
+    csv_row("%s,%.8f,%lu,%.6e,%.3e,%.3e,%.6e", integrator_name[kind], duration / (double)steps, (unsigned long)steps, r.worst.energy,
+            r.worst.linear, r.worst.angular, r.error);
+    return r;
+}
+
+/* order: between a step and half of it */
+static void print_table(const result *results)
+{
+    size_t i;
+    fprintf(stderr, "%-10s %6s %12s %6s %12s %12s %12s %6s\n", "integrator", "1/dt", "energy", "order", "linear mom.", "angular mom.",
+            "position", "order");
+    for (i = 0; i < RUNS; ++i) {
+        const result *r = &results[i];
+        char energy[16] = "", place[16] = "";
+        if (i % RATES > 0) {
+            snprintf(energy, sizeof energy, "%.2f", log2(fabs(r[-1].worst.energy / r->worst.energy)));
+            snprintf(place, sizeof place, "%.2f", log2(r[-1].error / r->error));
+        }
+        fprintf(stderr, "%-10s %6lu %12.3e %6s %12.1e %12.1e %12.3e %6s\n", integrator_name[i / RATES], (unsigned long)rates[i % RATES],
+                r->worst.energy, energy, r->worst.linear, r->worst.angular, r->error, place);
+    }
+}
+
 int main(int argc, char **argv)
 {
-    static const size_t rates[] = {30, 60, 120, 240, 480};
+    result results[RUNS];
     double *u;
-    int kind;
-    size_t k;
+    size_t i;
     csv_open(argc, argv, "integrator,dt,steps,energy_drift,linear_momentum_drift,angular_momentum_drift,position_error");
+    progress_draw("drift", 0, RUNS + 1, "reference");
     u = reference();
-    for (kind = GXS_BDF1; kind <= GXS_MIDPOINT; ++kind) {
-        double before[2] = {0, 0};
-        for (k = 0; k < sizeof rates / sizeof rates[0]; ++k) {
-            size_t steps = (size_t)(duration * (double)rates[k] + 0.5);
-            drift worst;
-            scene *s = run((gxs_integrator)kind, steps, &worst);
-            double error = position_error(s, u);
-            csv_row("%s,%.8f,%lu,%.6e,%.3e,%.3e,%.6e", integrator_name[kind], duration / (double)steps, (unsigned long)steps,
-                    worst.energy, worst.linear, worst.angular, error);
-            if (k > 0)
-                fprintf(stderr, "%s 1/%lu: order of position %.2f, of energy %.2f\n", integrator_name[kind],
-                        (unsigned long)rates[k], log2(before[0] / error), log2(before[1] / fabs(worst.energy)));
-            before[0] = error;
-            before[1] = fabs(worst.energy);
-            scene_free(s);
-        }
+    for (i = 0; i < RUNS; ++i) {
+        progress_draw("drift", i + 1, RUNS + 1, integrator_name[i / RATES]);
+        results[i] = measure_rate((gxs_integrator)(GXS_BDF1 + (int)(i / RATES)), rates[i % RATES], u);
     }
+    progress_draw("drift", RUNS + 1, RUNS + 1, "");
+    print_table(results);
     free(u);
     return csv_close();
 }

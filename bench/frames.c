@@ -1,18 +1,28 @@
 /* frames.c - frames in which a cut happens beside frames in which none does.
 
-   make bench-frames builds and runs it; it prints CSV and writes it to build/bench/frames.csv.
+   make bench-frames builds and runs it; it prints CSV and writes it to build/bench/frames.csv, a table to stderr.
+   usage: frames [FILE [--small]]     --small: the smallest block only
 
    A block that hangs by its top and swings; after every fourth frame a horizontal cut goes one cell deeper, in strips that share their
    edges exactly, until it has crossed 7/8 of the block. A cut frame is the cut, the renewal of the solver's model and the step.
    Columns: medians in ms; worst: the slowest cut frame; ratio: cut frame to mean frame, those with a cut included; unknowns at the end. */
-#define _POSIX_C_SOURCE 199309L
+#define _POSIX_C_SOURCE 200112L
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "block.h"
 #include "clock.h"
 #include "csv.h"
+#include "progress.h"
 
-enum { FRAMES_BETWEEN = 4, MOST_FRAMES = 1024 };
+enum { FRAMES_BETWEEN = 4, MOST_FRAMES = 1024, BLOCKS = 6 };
+
+static const uint32_t block_cells[BLOCKS / 2] = {12, 19, 24};
+
+typedef struct row {
+    char block[24];
+    size_t unknowns;
+    double plain, cut, frame, worst, ratio;     /* ms */
+} row;
 
 static void check(gx_result result)
 {
@@ -60,7 +70,7 @@ static void cut_frame(gx_body *body, times *t, double low, double high)
     t->worst = ms > t->worst ? ms : t->worst;
 }
 
-static void run(uint32_t cells, double jitter)
+static row run(uint32_t cells, double jitter)
 {
     const uint32_t strips = cells * 7 / 8;
     block_desc desc;
@@ -68,7 +78,7 @@ static void run(uint32_t cells, double jitter)
     gx_view view;
     times *t = (times *)calloc(1, sizeof *t);
     uint32_t i, k;
-    double middle;
+    row r;
     memset(&desc, 0, sizeof desc);
     desc.cells = cells;
     desc.jitter = jitter;
@@ -80,18 +90,39 @@ static void run(uint32_t cells, double jitter)
         for (k = 1; k < FRAMES_BETWEEN; ++k) plain_frame(body, t);
     }
     check(gx_body_view(body, &view));
-    middle = median(t->frame, t->frame_count);
-    csv_row("%s-%u,%lu,%.2f,%.2f,%.2f,%.2f,%.2f", jitter > 0 ? "jittered" : "lattice", cells, (unsigned long)(3 * view.copy_count),
-            median(t->plain, t->plain_count), median(t->cut, t->frame_count), middle, t->worst, middle / (t->sum / (double)t->frames));
+    snprintf(r.block, sizeof r.block, "%s-%u", jitter > 0 ? "jittered" : "lattice", (unsigned)cells);
+    r.unknowns = 3 * view.copy_count;
+    r.plain = median(t->plain, t->plain_count);
+    r.cut = median(t->cut, t->frame_count);
+    r.frame = median(t->frame, t->frame_count);
+    r.worst = t->worst;
+    r.ratio = r.frame / (t->sum / (double)t->frames);
+    csv_row("%s,%lu,%.2f,%.2f,%.2f,%.2f,%.2f", r.block, (unsigned long)r.unknowns, r.plain, r.cut, r.frame, r.worst, r.ratio);
     gx_body_destroy(body);
     free(t);
+    return r;
+}
+
+static void print_table(const row *rows, size_t count)
+{
+    size_t i;
+    fprintf(stderr, "%-12s %9s %12s %9s %14s %9s %7s\n", "block", "unknowns", "no cut, ms", "cut, ms", "cut frame, ms", "worst, ms", "ratio");
+    for (i = 0; i < count; ++i)
+        fprintf(stderr, "%-12s %9lu %12.2f %9.2f %14.2f %9.2f %7.2f\n", rows[i].block, (unsigned long)rows[i].unknowns, rows[i].plain, rows[i].cut,
+                rows[i].frame, rows[i].worst, rows[i].ratio);
 }
 
 int main(int argc, char **argv)
 {
-    static const uint32_t cells[3] = {12, 19, 24};
-    int i;
+    const size_t count = argc > 2 && strcmp(argv[2], "--small") == 0 ? 2 : BLOCKS;
+    row rows[BLOCKS];
+    size_t i;
     csv_open(argc, argv, "block,unknowns,plain_ms,cut_ms,cut_frame_ms,worst_ms,ratio");
-    for (i = 0; i < 6; ++i) run(cells[i / 2], i % 2 ? 0.2 : 0);
+    for (i = 0; i < count; ++i) {
+        progress_draw("frames", i, count, "");
+        rows[i] = run(block_cells[i / 2], i % 2 ? 0.2 : 0);
+    }
+    progress_draw("frames", count, count, "");
+    print_table(rows, count);
     return csv_close();
 }

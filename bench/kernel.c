@@ -1,7 +1,7 @@
 /* kernel.c - Booleans of closed surfaces: A minus B0 (minus B1 ...), doubles in to doubles out.
 
    make bench-kernel builds and runs it on generated workloads; make bench-kernel DATA=FOLDER on the files of a folder too: NAME_A.off,
-   NAME_B0.off, NAME_B1.off ... (as in "W1_A.off"). It prints CSV.
+   NAME_B0.off, NAME_B1.off ... (as in "W1_A.off"). It prints CSV and writes it to build/bench/kernel.csv, a table to stderr.
 
    W1 a tetrahedron less a slab, W3 less a wavy slab of 1760 triangles, W4 a cube less 5 + 5 crossing slabs; "+" after a name: evaluated
    after each operand. S: a bumpy sphere of 8,000 triangles less a turned copy. filter_share and exact_share: of the signs asked for, those that
@@ -13,10 +13,13 @@
 #include "../tests/workloads.h"
 #include "clock.h"
 #include "csv.h"
+#include "progress.h"
 #include <dirent.h>
 
-enum { OPERANDS = 64, CALLS = 100000, NAMES = 512, NAME = 64 };
+enum { OPERANDS = 64, CALLS = 100000, NAMES = 512, NAME = 64, GENERATED = 4 };
 static const double SECONDS = 0.3;
+
+static size_t done, total; /* workloads */
 
 static void stop_at(const char *what, gx_result result)
 {
@@ -49,6 +52,36 @@ static figures run(const char *name, const gxb_operand *operands, size_t count, 
     return f;
 }
 
+/* ---- rows ---- */
+
+typedef struct kept_row { char name[NAME + 2]; double us; figures f; } kept_row;
+
+static kept_row *rows;
+static size_t row_count;
+
+static void keep_row(const char *name, const char *mark, double us, const figures *f)
+{
+    rows = (kept_row *)realloc(rows, (row_count + 1) * sizeof *rows);
+    stop_at("rows", rows ? GX_OK : GX_ERROR_MEMORY);
+    snprintf(rows[row_count].name, sizeof rows[row_count].name, "%s%s", name, mark);
+    rows[row_count].us = us;
+    rows[row_count++].f = *f;
+}
+
+static double exact_share(const figures *f) { return f->filter == 0 ? 0 : (double)f->exact / (double)f->filter; }
+
+static void print_table(void)
+{
+    size_t i;
+    fprintf(stderr, "%-24s %11s %9s %10s %14s %11s %11s\n", "workload", "median, us", "triangles", "components", "volume", "exact signs", "allocations");
+    for (i = 0; i < row_count; ++i) {
+        const kept_row *r = &rows[i];
+        fprintf(stderr, "%-24s %11.1f %9lu %10lu %14.8g %9.2f %% %11lu\n", r->name, r->us, (unsigned long)r->f.triangles, (unsigned long)r->f.components,
+                r->f.volume, 100 * exact_share(&r->f), (unsigned long)r->f.allocations);
+    }
+    free(rows);
+}
+
 static void measure(const char *name, const char *mark, const gxb_operand *operands, size_t count, int each)
 {
     static double us[CALLS];
@@ -63,13 +96,14 @@ static void measure(const char *name, const char *mark, const gxb_operand *opera
     } while (n < CALLS && (n < 3 || seconds(NULL) - start < SECONDS));
     middle = median(us, n);
     csv_row("%s%s,%.1f,%.1f,%lu,%lu,%.17g,%.4f,%.4f,%lu,%lu", name, mark, middle, us[0], (unsigned long)f.triangles,
-            (unsigned long)f.components, f.volume, f.filter == 0 ? 1 : 1 - (double)f.exact / (double)f.filter,
-            f.filter == 0 ? 0 : (double)f.exact / (double)f.filter, (unsigned long)f.allocations, (unsigned long)f.peak);
+            (unsigned long)f.components, f.volume, 1 - exact_share(&f), exact_share(&f), (unsigned long)f.allocations, (unsigned long)f.peak);
+    keep_row(name, mark, middle, &f);
 }
 
 static void measure_all(const char *name, gxb_operand *operands, size_t count)
 {
     size_t i;
+    progress_draw("kernel", done++, total, name);
     for (i = 0; i < count; ++i) { operands[i].operation = i == 0 ? GXB_UNION : GXB_DIFFERENCE; operands[i].simple = 1; }
     measure(name, "", operands, count, 0);
     if (count > 2) measure(name, "+", operands, count, 1);
@@ -212,12 +246,12 @@ static void measure_files(const char *folder, const char *name)
 
 static int by_name(const void *a, const void *b) { return strcmp((const char *)a, (const char *)b); }
 
-static void measure_folder(const char *folder)
+/* Names of the workloads in a folder, in order */
+static size_t list_folder(const char *folder, char (*names)[NAME])
 {
-    static char names[NAMES][NAME];
     DIR *directory = opendir(folder);
     const struct dirent *entry;
-    size_t count = 0, i;
+    size_t count = 0;
     if (!directory) { fprintf(stderr, "kernel: %s: no such folder\n", folder); exit(1); }
     while (count < NAMES && (entry = readdir(directory)) != NULL) {
         const size_t length = strlen(entry->d_name);
@@ -227,14 +261,20 @@ static void measure_folder(const char *folder)
     }
     closedir(directory);
     qsort(names, count, sizeof *names, by_name);
-    for (i = 0; i < count; ++i) measure_files(folder, names[i]);
+    return count;
 }
 
-/* usage: kernel FILE [FOLDER] */
+/* usage: kernel [FILE [FOLDER]] */
 int main(int argc, char **argv)
 {
+    static char names[NAMES][NAME];
+    const size_t count = argc > 2 ? list_folder(argv[2], names) : 0;
+    size_t i;
     csv_open(argc, argv, "workload,median_us,min_us,triangles,components,volume,filter_share,exact_share,allocations,peak_bytes");
+    total = GENERATED + count;
     measure_generated();
-    if (argc > 2) measure_folder(argv[2]);
+    for (i = 0; i < count; ++i) measure_files(argv[2], names[i]);
+    progress_draw("kernel", total, total, "");
+    print_table();
     return csv_close();
 }

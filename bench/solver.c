@@ -1,6 +1,6 @@
 /* solver: what a time step costs, by preconditioner and form of the matrix, beside a direct solver.
 
-   make bench-solver [BENCH="--small --case NAME"] builds and runs it; it prints CSV and writes it to build/bench/solver.csv.
+   make bench-solver [BENCH="--small --case NAME"] builds and runs it; it prints CSV and writes it to build/bench/solver.csv, a table to stderr.
        --small      the smallest size only
        --case NAME  only the cases with NAME in their name: accordion, loose-jittered, 23k-1e8, ...
        --out DIR    where solver.csv and product.csv go; without it they are not written
@@ -35,6 +35,8 @@
 #include "../gxfem.h"
 #include "block.h"
 #include "clock.h"
+#include "csv.h"
+#include "progress.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -65,6 +67,9 @@ static const uint32_t cg_limit = 20000;
 
 /* What CHOLMOD may take: bytes of the factor, operations of the factorisation (minutes with a slow BLAS). */
 static const double direct_bytes = 2e9, direct_operations = 5e11;
+
+/* A step to 1e-5 that differs from CHOLMOD's by this share of it: of stiff blocks 1e-4 is seen. */
+static const double same_system = 1e-2;
 
 /* -------------------------------------------------------------------------------------------------- >>host */
 
@@ -181,6 +186,8 @@ typedef struct samples {
     double seconds, conjugate_gradients, iterations; /* sums */
     size_t count;
 } samples;
+
+static size_t runs, run_total; /* methods on cases */
 
 static int complain(const char *what, gx_result result)
 {
@@ -300,70 +307,71 @@ static int run_method(const method *m, const gxs_model *model, int steps, state 
 
 /* -------------------------------------------------------------------------------------------------- >>rows */
 
-typedef struct timing {
+typedef struct kept_row {
     char name[40];          /* of the case */
     const char *method;
-    size_t elements;
-    double nanoseconds;     /* per element and iteration */
-} timing;
+    size_t unknowns, elements;
+    outcome found;
+} kept_row;
 
-enum { TIMINGS = 400 };     /* cases x methods, and room */
+enum { ROWS = 4 * BLOCK_CUTS * 4 * (METHODS + 1) };  /* sizes, cuts, jittered or not and soft or stiff; methods and cholmod */
 
-typedef struct tables {
-    FILE *solver, *product; /* NULL: not written */
-    timing timings[TIMINGS];
-    size_t timing_count;
-} tables;
+static kept_row rows[ROWS];
+static size_t row_count;
 
-static void print_row(FILE *file, const char *name, const char *method_name, size_t unknowns, const outcome *o)
+static void add_row(const char *name, const char *method_name, const gxs_model *model, const outcome *o)
 {
-    fprintf(file, "%s,%s,%lu,%.1f,%.3f,%.3f,%.3f,%lu,%.3e\n", name, method_name, (unsigned long)unknowns, o->iterations,
-            1e3 * o->setup, 1e3 * o->solve, 1e3 * o->step, (unsigned long)o->peak_bytes, o->residual);
-    fflush(file);
+    kept_row *r = &rows[row_count++];
+    snprintf(r->name, sizeof r->name, "%s", name);
+    r->method = method_name;
+    r->unknowns = 3 * model->copy_count;
+    r->elements = model->element_count;
+    r->found = *o;
+    csv_row("%s,%s,%lu,%.1f,%.3f,%.3f,%.3f,%lu,%.3e", name, method_name, (unsigned long)r->unknowns, o->iterations, 1e3 * o->setup, 1e3 * o->solve,
+            1e3 * o->step, (unsigned long)o->peak_bytes, o->residual);
 }
 
-static void add_row(tables *t, const char *name, const char *method_name, size_t unknowns, const outcome *o)
+/* Nanoseconds of conjugate gradients per element and iteration; 0: there are none */
+static double product_of(const kept_row *r) { return 1e9 * r->found.iteration / (double)r->elements; }
+
+/* Iterations / milliseconds of a step; cholmod: milliseconds. product: that of jacobi-free, which has one in an iteration */
+static void print_table(void)
 {
-    print_row(stdout, name, method_name, unknowns, o);
-    if (t->solver) print_row(t->solver, name, method_name, unknowns, o);
+    double product = 0;
+    size_t i;
+    int m;
+    fprintf(stderr, "iterations / ms of a step; product: ns per element, vector work included\n%-28s %8s", "case", "unknowns");
+    for (m = 0; m < METHODS; m++) fprintf(stderr, " %19s", methods[m].name);
+    fprintf(stderr, " %9s %9s", "cholmod", "product");
+    for (i = 0; i < row_count; i++) {
+        const kept_row *r = &rows[i];
+        if (i == 0 || strcmp(r->name, r[-1].name) != 0) fprintf(stderr, "\n%-28s %8lu", r->name, (unsigned long)r->unknowns);
+        if (strcmp(r->method, methods[0].name) == 0) product = product_of(r);
+        if (strcmp(r->method, "cholmod") == 0) fprintf(stderr, " %9.2f", 1e3 * r->found.step);
+        else fprintf(stderr, " %8.1f / %8.2f", r->found.iterations, 1e3 * r->found.step);
+        if (i + 1 < row_count && strcmp(r->name, r[1].name) == 0) continue;
+        fprintf(stderr, "%*s %9.2f", strcmp(r->method, "cholmod") == 0 ? 0 : 10, "", product);
+    }
+    fprintf(stderr, "\n");
 }
 
-static void add_timing(tables *t, const char *name, const char *method_name, size_t elements, const outcome *o)
-{
-    timing *row = &t->timings[t->timing_count];
-    if (t->timing_count == TIMINGS || !(o->iterations > 0)) return;
-    t->timing_count++;
-    snprintf(row->name, sizeof row->name, "%s", name);
-    row->method = method_name;
-    row->elements = elements;
-    row->nanoseconds = 1e9 * o->iteration / (double)elements;
-    if (!t->product) return;
-    fprintf(t->product, "%s,%s,%lu,%.2f\n", name, method_name, (unsigned long)elements, row->nanoseconds);
-    fflush(t->product);
-}
-
-/* What a product costs: of the methods with one product per iteration. */
-static void print_timings(const tables *t)
+static int write_products(const char *path)
 {
     size_t i;
-    fprintf(stderr, "\n%-28s %-17s %9s  ns per element and iteration (vector work included)\n", "case", "method", "elements");
-    for (i = 0; i < t->timing_count; i++) {
-        const timing *row = &t->timings[i];
-        if (strncmp(row->method, "jacobi", 6) != 0) continue;
-        fprintf(stderr, "%-28s %-17s %9lu %6.2f\n", row->name, row->method, (unsigned long)row->elements, row->nanoseconds);
-    }
+    csv_open_second("solver", path, "case,method,elements,ns_per_element_and_iteration");
+    for (i = 0; i < row_count; i++)
+        if (product_of(&rows[i]) > 0) csv_row("%s,%s,%lu,%.2f", rows[i].name, rows[i].method, (unsigned long)rows[i].elements, product_of(&rows[i]));
+    return csv_close();
 }
 
-static FILE *open_table(const char *folder, const char *file, const char *header)
+/* A line beside the progress bar */
+static void say(const char *format, ...)
 {
-    char path[4096];
-    FILE *f;
-    if (!folder) return NULL;
-    snprintf(path, sizeof path, "%s/%s", folder, file);
-    f = fopen(path, "w");
-    if (f) fprintf(f, "%s\n", header);
-    else perror(path);
-    return f;
+    va_list values;
+    progress_clear();
+    va_start(values, format);
+    vfprintf(stderr, format, values);
+    va_end(values);
 }
 
 /* ------------------------------------------------------------------------------------------------ >>direct */
@@ -586,7 +594,7 @@ static int direct_analyse(direct *d, outcome *o)
     if (!d->factor) return complain("cholmod", GX_ERROR_MEMORY);
     bytes = d->factor->is_super ? 8.0 * (double)d->factor->xsize : 12.0 * d->common.lnz;
     if (bytes <= direct_bytes && d->common.fl <= direct_operations) return 1;
-    fprintf(stderr, "    cholmod: left out: its factor would have %.1f GB and take %.0f Gflop\n", 1e-9 * bytes, 1e-9 * d->common.fl);
+    say("    cholmod: left out: its factor would have %.1f GB and take %.0f Gflop\n", 1e-9 * bytes, 1e-9 * d->common.fl);
     return 0;
 }
 
@@ -598,7 +606,7 @@ static int direct_solve_once(direct *d, double *factorised, double *total)
     cholmod_factorize(d->matrix, d->factor, &d->common);
     *factorised = seconds(NULL) - start;
     if (d->common.status != CHOLMOD_OK) {
-        fprintf(stderr, "solver: cholmod: status %d\n", d->common.status);
+        say("solver: cholmod: status %d\n", d->common.status);
         return 0;
     }
     d->solution = cholmod_solve(CHOLMOD_A, d->factor, d->load, &d->common);
@@ -617,7 +625,7 @@ static int direct_solve(direct *d, outcome *o)
     o->solve = median(total, 3);
     o->peak_bytes = d->common.memory_usage;
     o->residual = direct_residual(d);
-    fprintf(stderr, "    cholmod: %.1f Gflop/s\n", 1e-9 * operations / median(factorised, 3)); /* of a large block 20 with a good BLAS */
+    say("    cholmod: %.1f Gflop/s\n", 1e-9 * operations / median(factorised, 3)); /* of a large block 20 with a good BLAS */
     return 1;
 }
 
@@ -670,11 +678,15 @@ static gx_result step_tightly(const gxs_model *model, const gxs_step_desc *loose
     return result;
 }
 
-static void direct_check(direct *d, const gxs_step_desc *step, const double *start, state *s)
+/* 0: it solved another system. */
+static int direct_check(direct *d, const gxs_step_desc *step, const double *start, state *s)
 {
     const gx_result result = step_tightly(d->model, step, s);
-    if (result != GX_OK) complain("check of cholmod", result);
-    else fprintf(stderr, "    cholmod: a step of multigrid-free to 1e-5 differs by %.1e\n", direct_difference(d, start, s));
+    double difference;
+    if (result != GX_OK) return complain("check of cholmod", result);
+    difference = direct_difference(d, start, s);
+    say("    cholmod: a step of multigrid-free to 1e-5 differs by %.1e%s\n", difference, difference < same_system ? "" : ": ANOTHER SYSTEM");
+    return difference < same_system;
 }
 
 /* The system of the step that follows the state, as the solver has it: linearised where the velocity leads. 0: left out or failed. */
@@ -692,7 +704,7 @@ static int run_direct(const gxs_model *model, state *s, outcome *o)
     if (result == GX_OK) result = direct_assemble(&d, start, &step);
     if (result != GX_OK) complain("cholmod", result);
     else done = direct_analyse(&d, o) && direct_solve(&d, o);
-    if (done) direct_check(&d, &step, start, s);
+    if (done) done = direct_check(&d, &step, start, s);
     direct_end(&d);
     free(start);
     return done;
@@ -735,38 +747,39 @@ static int compare_threads(const state *one, const state *two)
     if (one->steps != two->steps) return 1;
     same = memcmp(one->displacement, two->displacement, one->count * sizeof(double)) == 0 &&
            memcmp(one->velocity, two->velocity, one->count * sizeof(double)) == 0;
-    fprintf(stderr, "    2 threads: %s\n", same ? "the same bits" : "OTHER BITS");
+    say("    2 threads: %s\n", same ? "the same bits" : "OTHER BITS");
     return same;
 }
 
 /* The methods of the library; 0 if one failed. */
-static int run_methods(tables *t, const scene *s, const gxs_model *model, outcome found[METHODS], state ends[METHODS])
+static int run_methods(const scene *s, const gxs_model *model, outcome found[METHODS], state ends[METHODS])
 {
     int m, ok = 1;
     for (m = 0; m < METHODS; m++) {
+        progress_draw("solver", runs++, run_total, methods[m].name);
         if (!run_method(&methods[m], model, s->steps, &ends[m], &found[m])) { ok = 0; continue; }
-        add_row(t, s->name, methods[m].name, 3 * model->copy_count, &found[m]);
-        add_timing(t, s->name, methods[m].name, model->element_count, &found[m]);
+        add_row(s->name, methods[m].name, model, &found[m]);
     }
     return ok && compare_threads(&ends[MULTIGRID_FREE], &ends[MULTIGRID_FREE_2]);
 }
 
-static int run_model(tables *t, const scene *s, const gxs_model *model)
+static int run_model(const scene *s, const gxs_model *model)
 {
     outcome found[METHODS], by_cholmod;
     state ends[METHODS];
     int m, ok;
     memset(ends, 0, sizeof ends);
-    ok = run_methods(t, s, model, found, ends);
+    ok = run_methods(s, model, found, ends);
+    progress_draw("solver", runs++, run_total, "cholmod");
     if (ok && run_direct(model, &ends[MULTIGRID_FREE], &by_cholmod)) {
         by_cholmod.step = found[MULTIGRID_FREE].step - found[MULTIGRID_FREE].solve + by_cholmod.solve;
-        add_row(t, s->name, "cholmod", 3 * model->copy_count, &by_cholmod);
+        add_row(s->name, "cholmod", model, &by_cholmod);
     }
     for (m = 0; m < METHODS; m++) state_end(&ends[m]);
     return ok;
 }
 
-static int run_scene(tables *t, const scene *s)
+static int run_scene(const scene *s)
 {
     gx_body *body = NULL;
     gxs_model model;
@@ -775,9 +788,8 @@ static int run_scene(tables *t, const scene *s)
     if (result == GX_OK) result = gx_body_model(body, &model);
     if (result != GX_OK) ok = complain(s->name, result);
     else {
-        fprintf(stderr, "%s: %lu unknowns, %lu elements\n", s->name, (unsigned long)(3 * model.copy_count),
-                (unsigned long)model.element_count);
-        ok = run_model(t, s, &model);
+        say("%s: %lu unknowns, %lu elements\n", s->name, (unsigned long)(3 * model.copy_count), (unsigned long)model.element_count);
+        ok = run_model(s, &model);
     }
     gx_body_destroy(body);
     return ok;
@@ -803,38 +815,47 @@ static int take_arguments(settings *set, int argc, char **argv)
     return 1;
 }
 
-static int run_scenes(const settings *set, tables *t)
+/* The cases that are asked for; returns how many */
+static size_t list_scenes(const settings *set, scene *list)
 {
     const int sizes = set->small ? 1 : SIZES;
-    int i, ran = 0, ok = 1;
+    size_t count = 0;
+    int i;
     for (i = 0; i < sizes * BLOCK_CUTS * 4; i++) {
         const scene s = scene_make(i / 4 % BLOCK_CUTS, i / 2 % 2, i / (4 * BLOCK_CUTS), i % 2);
-        if (set->filter && !strstr(s.name, set->filter)) continue;
-        ok = run_scene(t, &s) && ok;
-        ran++;
+        if (!set->filter || strstr(s.name, set->filter)) list[count++] = s;
     }
-    if (ran == 0) fprintf(stderr, "solver: no case has '%s' in its name\n", set->filter);
-    return ok && ran > 0;
+    return count;
+}
+
+static char *path_in(const settings *set, const char *file, char path[4096])
+{
+    snprintf(path, 4096, "%s/%s", set->folder, file);
+    return path;
 }
 
 int main(int argc, char **argv)
 {
-    static const char header[] = "case,method,unknowns,iterations,setup_ms,solve_ms,step_ms,peak_bytes,residual";
-    static tables t;
+    static scene list[SIZES * BLOCK_CUTS * 4];
+    char path[4096];
     settings set;
-    int ok;
+    size_t count, i;
+    int ok = 1;
     if (!take_arguments(&set, argc, argv)) {
         fprintf(stderr, "usage: solver [--small] [--case NAME] [--out DIR]\n");
         return 2;
     }
-    t.solver = open_table(set.folder, "solver.csv", header);
-    t.product = open_table(set.folder, "product.csv", "case,method,elements,ns_per_element_and_iteration");
-    if (set.folder && (!t.solver || !t.product)) return 2;
-    printf("%s\n", header);
-    fflush(stdout);
-    ok = run_scenes(&set, &t);
-    print_timings(&t);
-    if (t.solver) fclose(t.solver);
-    if (t.product) fclose(t.product);
+    count = list_scenes(&set, list);
+    if (count == 0) {
+        fprintf(stderr, "solver: no case has '%s' in its name\n", set.filter);
+        return 2;
+    }
+    csv_open_path(argv[0], set.folder ? path_in(&set, "solver.csv", path) : NULL,
+                  "case,method,unknowns,iterations,setup_ms,solve_ms,step_ms,peak_bytes,residual");
+    run_total = count * (METHODS + 1);
+    for (i = 0; i < count; i++) ok = run_scene(&list[i]) && ok;
+    progress_draw("solver", run_total, run_total, "");
+    print_table();
+    if (csv_close() || (set.folder && write_products(path_in(&set, "product.csv", path)))) return 2;
     return !ok;
 }
