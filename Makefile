@@ -33,19 +33,22 @@ help:
 	@echo "make fuzz        random cases against what must be true of any; SEED=, CASES=, SECONDS= (0: no limit)"
 	@echo "make flags       exact predicates against rationals under each compiler and set of flags"
 	@echo "make hashes      the same cuts give the same topology under each compiler and set of flags"
-	@echo "make bench-solver  time steps by preconditioner, beside CHOLMOD (installs SuiteSparse where it is missing); BENCH=--small: the smallest blocks only"
-	@echo "make bench-accuracy, bench-drift, bench-conditioning   closed forms and published values; what integrators keep; RXFEM's Fig. 14"
-	@echo "make bench-frames   frames in which a cut happens beside those in which none does"
-	@echo "make bench-skin    the visual surface: moved in each frame, rebuilt after a cut"
-	@echo "make bench-scaling  cost of a cut and a step, memory and unknowns against elements, cuts and triangles; BENCH=--small: seconds"
-	@echo "make bench-failure  hard cases: which method is right, wrong, refuses, diverges, crashes"
-	@echo "make bench-table2  scenes of GXFEM's Table 2 by the library, RXFEM, virtual nodes and the literal Algorithm 1: ten minutes; BENCH=--small"
-	@echo "make bench-stepping  error of the motion against time: steps, integrators, Newton, CG, lumping, integrals, thickness of cuts, other methods; BENCH=--small"
-	@echo "make bench-space   the same cuts under refinement beside conforming meshes: how thin slices and folds lock; BENCH=--small"
-	@echo "make bench-quadrature  integrals over parts of cut elements: error and time beside RXFEM, adaptive and regular sampling"
-	@echo "make bench       all benches, and charts"
-	@echo "make charts      those benches and scaling, failure, table2, stepping, space, then docs/charts/, docs/BENCH.md and the matrix in README.md (half an hour); installs gnuplot"
-	@echo "make bench-kernel  Booleans of closed surfaces; DATA=FOLDER: also of the OFF files there"
+	@echo "make bench       all benches below (half an hour), and charts; BENCH=--small: minutes, and docs/ stays as it is"
+	@echo "make charts      docs/charts/, docs/BENCH.md and the matrix in README.md from what benches have measured; runs those that have not,"
+	@echo "                 installs gnuplot. One bench: make bench-NAME, CSV on stdout and in $(BUILD)/bench/, a table on stderr:"
+	@echo "  quadrature     integrals over parts of cut elements: error and time beside RXFEM, adaptive and regular sampling"
+	@echo "  stepping       error of the motion against time: steps, integrators, Newton, CG, lumping, integrals, thickness of cuts, other methods"
+	@echo "  space          the same cuts under refinement beside conforming meshes: how thin slices and folds lock"
+	@echo "  table2         scenes of GXFEM's Table 2 by the library, RXFEM, virtual nodes and the literal Algorithm 1"
+	@echo "  conditioning   RXFEM's Fig. 14, and a corner piece"
+	@echo "  failure        hard cases: which method is right, wrong, refuses, diverges, crashes"
+	@echo "  scaling        cost of a cut and a step, memory and unknowns against elements, cuts and triangles"
+	@echo "  kernel         Booleans of closed surfaces; DATA=FOLDER: also of the OFF files there"
+	@echo "  solver         time steps by preconditioner, beside CHOLMOD (installs SuiteSparse where it is missing)"
+	@echo "  accuracy       static solutions beside closed forms and published values"
+	@echo "  drift          what integrators keep: energy, momenta, order"
+	@echo "  frames         frames in which a cut happens beside those in which none does"
+	@echo "  skin           the visual surface: moved in each frame, rebuilt after a cut"
 	@echo "make clean       removes $(BUILD)/"
 
 # ---- programs
@@ -142,60 +145,79 @@ flags:
 hashes:
 	@JOBS=$(JOBS) sh tests/hashes.sh $(BUILD)/hashes
 
-# ---- benches. Only what they print goes to stdout: it is CSV.
+# ---- benches. Only what they print goes to stdout: it is CSV. BENCH=--small: smaller ones, whose tables and charts have a folder of their own
+
+benches = quadrature stepping space table2 conditioning failure scaling kernel solver accuracy drift frames skin
+small = $(filter --small,$(BENCH))
+tables = $(BUILD)/bench$(if $(small),/small)
+traces = $(tables)/traces
+
+bench_programs = $(benches:%=$(BUILD)/bench/%)
+$(filter-out %/solver,$(bench_programs)): $(BUILD)/bench/%: bench/%.c $(wildcard bench/*.h) $(headers)
+	@mkdir -p $(@D)
+	@$(CC) -std=c99 $(WARNINGS) $(BENCH_CFLAGS) $< -o $@ $(LDFLAGS) -lm
+
+$(BUILD)/bench/table2 $(BUILD)/bench/stepping: $(wildcard examples/*.h)
+$(BUILD)/bench/space: examples/gxio.h
+$(BUILD)/bench/kernel: tests/workloads.h tests/oracle.h tests/rational.h
+
+$(BUILD)/bench/solver: bench/solver.c $(wildcard bench/*.h) $(headers)
+	@mkdir -p $(@D)
+	@$(CC) -std=c99 $(WARNINGS) $(BENCH_CFLAGS) -pthread $(shell pkg-config --cflags CHOLMOD 2>/dev/null) $< -o $@ $(LDFLAGS) \
+	    $(shell pkg-config --libs CHOLMOD 2>/dev/null || echo -lcholmod) -lm
 
 bench-solver:
 	@sh tests/install.sh bench >&2
 	@$(MAKE) --no-print-directory $(BUILD)/bench/solver >&2
-	@$(BUILD)/bench/solver --out $(BUILD)/bench $(BENCH)
+	@mkdir -p $(tables)
+	@$(BUILD)/bench/solver --out $(tables) $(BENCH)
 
-$(BUILD)/bench/solver: bench/solver.c bench/block.h bench/clock.h $(headers)
-	@mkdir -p $(@D)
-	$(CC) -std=c99 $(WARNINGS) $(BENCH_CFLAGS) -pthread $(shell pkg-config --cflags CHOLMOD 2>/dev/null) $< -o $@ $(LDFLAGS) \
-	    $(shell pkg-config --libs CHOLMOD 2>/dev/null || echo -lcholmod) -lm
+bench-kernel: $(BUILD)/bench/kernel
+	@mkdir -p $(tables)
+	@$< $(tables)/kernel.csv $(DATA)
 
-bench-accuracy bench-drift bench-conditioning bench-frames bench-quadrature bench-skin bench-scaling bench-failure bench-space: bench-%: $(BUILD)/bench/%
-	@$< $(BUILD)/bench/$*.csv $(BENCH)
+plain_benches = $(filter-out bench-solver bench-kernel bench-table2 bench-stepping,$(benches:%=bench-%))
+$(plain_benches): bench-%: $(BUILD)/bench/%
+	@mkdir -p $(tables)
+	@$< $(tables)/$*.csv $(BENCH)
 
-$(BUILD)/bench/accuracy $(BUILD)/bench/drift $(BUILD)/bench/conditioning $(BUILD)/bench/frames $(BUILD)/bench/quadrature $(BUILD)/bench/skin $(BUILD)/bench/scaling $(BUILD)/bench/table2 $(BUILD)/bench/stepping $(BUILD)/bench/failure $(BUILD)/bench/space: $(BUILD)/bench/%: bench/%.c $(wildcard bench/*.h) $(headers)
-	@mkdir -p $(@D)
-	@$(CC) -std=c99 $(WARNINGS) $(BENCH_CFLAGS) $< -o $@ $(LDFLAGS) -lm
-
-# Scenes with the frames of GXFEM's Table 2; BENCH=--small: small ones. OCTOPUS=FILE: the octopus on that mesh
+# Scenes with the frames of GXFEM's Table 2. OCTOPUS=FILE: the octopus on that mesh
 table2 = sticks thin_slab accordion octopus
 stepping = slab_in_five accordion
 frames-sticks = 145
 frames-thin_slab = 450
 frames-accordion = 540
 frames-octopus = 600
-traces = $(BUILD)/bench/traces$(if $(filter --small,$(BENCH)),-small)
 
 bench-table2:
 	@$(MAKE) --no-print-directory $(BUILD)/bench/table2 $(table2:%=$(traces)/%.trace) >&2
-	@$(BUILD)/bench/table2 $(BUILD)/bench/table2.csv $(BUILD)/bench/table2_ratios.csv $(foreach s,$(table2),$(s)=$(traces)/$(s).trace)
+	@$(BUILD)/bench/table2 $(tables)/table2.csv $(tables)/table2_ratios.csv $(BENCH) $(foreach s,$(table2),$(s)=$(traces)/$(s).trace)
 
 bench-stepping:
 	@$(MAKE) --no-print-directory $(BUILD)/bench/stepping $(stepping:%=$(traces)/%.trace) >&2
-	@$(BUILD)/bench/stepping $(BUILD)/bench/stepping.csv $(BENCH) $(foreach s,$(stepping),$(s)=$(traces)/$(s).trace)
+	@$(BUILD)/bench/stepping $(tables)/stepping.csv $(BENCH) $(foreach s,$(stepping),$(s)=$(traces)/$(s).trace)
 
 $(sort $(table2:%=$(traces)/%.trace) $(stepping:%=$(traces)/%.trace)): $(traces)/%.trace: $(BUILD)/%
 	@mkdir -p $(@D)
-	@$< --quiet --trace $@ $(if $(filter --small,$(BENCH)),--small,$(frames-$*:%=--frames %)) $(if $(OCTOPUS),$(if $(filter octopus,$*),--mesh $(OCTOPUS)))
+	@$< --quiet --trace $@ $(or $(small),$(frames-$*:%=--frames %)) $(if $(OCTOPUS),$(if $(filter octopus,$*),--mesh $(OCTOPUS)))
 
-bench: bench-solver bench-accuracy bench-drift bench-frames bench-skin bench-kernel charts
+bench:
+	@rm -f $(benches:%=$(tables)/%.csv)
+	@$(MAKE) --no-print-directory charts
 
+# One bench after the other: they measure. What fails is told in the end, and what there is is drawn.
 charts:
 	@sh tests/install.sh charts >&2
-	@$(MAKE) --no-print-directory bench-quadrature bench-conditioning bench-stepping bench-space bench-scaling bench-failure bench-table2 >/dev/null
-	@sh bench/charts.sh $(BUILD)/bench docs/charts
-	@sh bench/page.sh $(BUILD)/bench docs/BENCH.md README.md
-
-bench-kernel: $(BUILD)/bench/kernel
-	@$< $(BUILD)/bench/kernel.csv $(DATA)
-
-$(BUILD)/bench/kernel: bench/kernel.c bench/clock.h bench/csv.h tests/workloads.h tests/oracle.h tests/rational.h gxfem_boolean.h
-	@mkdir -p $(@D)
-	@$(CC) -std=c99 $(WARNINGS) $(BENCH_CFLAGS) $< -o $@ $(LDFLAGS) -lm
+	@mkdir -p $(tables) && rm -f $(tables)/failed
+	@for bench in $(benches); do \
+	    [ ! -s $(tables)/$$bench.csv ] || continue; \
+	    echo "make bench-$$bench" >&2; \
+	    $(MAKE) --no-print-directory bench-$$bench >/dev/null || echo "bench-$$bench" >>$(tables)/failed; \
+	done
+	@$(if $(small),cp README.md $(tables)/README.md;) \
+	sh bench/charts.sh $(tables) $(if $(small),$(tables),docs)/charts && \
+	sh bench/page.sh $(tables) $(if $(small),$(tables),docs)/BENCH.md $(if $(small),$(tables)/)README.md || echo charts >>$(tables)/failed
+	@[ ! -e $(tables)/failed ] || { echo "failed: $$(tr '\n' ' ' <$(tables)/failed)" >&2; exit 1; }
 
 check-all: check
 	@$(MAKE) --no-print-directory lint
@@ -210,4 +232,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo scenes pictures check check-programs run-gxcut run-corpus $(tests:%=run-%) sanitize sanitize-scenes compile lint fuzz flags hashes bench-solver bench-accuracy bench-drift bench-conditioning bench-frames bench-quadrature bench-skin bench-scaling bench-failure bench-table2 bench-stepping bench-space bench-kernel bench charts check-all clean
+.PHONY: help examples demo scenes pictures check check-programs run-gxcut run-corpus $(tests:%=run-%) sanitize sanitize-scenes compile lint fuzz flags hashes $(benches:%=bench-%) bench charts check-all clean

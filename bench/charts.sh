@@ -9,7 +9,8 @@ set -u
 tables=$1
 charts=$2
 mkdir -p "$charts" || exit 2
-where="$(date +%Y-%m-%d), $(uname -m | tr _ -), one thread"
+# where BENCH: when its table was made, and on what
+where() { echo "$(date -r "$tables/$1.csv" +%Y-%m-%d), $(uname -m | tr _ -), one thread"; }
 
 for bench in quadrature conditioning stepping space scaling; do
     [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-$bench" >&2; exit 2; }
@@ -50,7 +51,7 @@ panels() {
     done
     cat <<END
 $styles
-set multiplot layout 2,3 title "Integral of x^2 + y^2 + z^2 over a part of one cut tetrahedron   ($where)" font "sans,15"
+set multiplot layout 2,3 title "Integral of x^2 + y^2 + z^2 over a part of one cut tetrahedron   ($(where quadrature))" font "sans,15"
 set xlabel font ",11"; set logscale xy; set grid back lc rgb "#dddddd"; set format x "10^{%L}"; set format y "10^{%L}"
 set yrange [3e-19:3]; set ytics 1e3; set key off
 END
@@ -98,7 +99,7 @@ triangles() {
     done
     cat <<END
 $styles
-set multiplot layout 1,2 title "A sphere's octant cut by more and more triangles in one tetrahedron   ($where)" font "sans,15"
+set multiplot layout 1,2 title "A sphere's octant cut by more and more triangles in one tetrahedron   ($(where quadrature))" font "sans,15"
 set logscale xy; set grid back lc rgb "#dddddd"; set format y "10^{%L}"
 set xlabel "triangles that meet the element"; set xrange [2:1000]
 set ylabel "time, us"; set yrange [5:1e6]; set key left top
@@ -122,7 +123,7 @@ conditioning() {
     done
     cat <<END
 $styles
-set multiplot layout 1,2 title "Condition of M + dt^2 K, a cube of five tetrahedra (RXFEM's Fig. 14)   ($where)" font "sans,15"
+set multiplot layout 1,2 title "Condition of M + dt^2 K, a cube of five tetrahedra (RXFEM's Fig. 14)   ($(where conditioning))" font "sans,15"
 set logscale xy; set grid back lc rgb "#dddddd"; set format x "10^{%L}"; set format y "10^{%L}"; set yrange [1:1e42]; set ytics 1e6
 set ylabel "condition number"; set key right top
 set title "a slice off the cube"; set xlabel "thickness of the slice, m"
@@ -133,29 +134,34 @@ unset multiplot
 END
 }
 
-# What a cut costs by what it touches, and the unknowns that it leaves, against sizes
+# What a cut costs by what it touches, what a step and memory cost, and the unknowns that cuts leave, against sizes
 scaling() {
-    echo 'set terminal svg size 1180,780 font "sans,12" background "white"'
+    echo 'set terminal svg size 1180,740 font "sans,12" background "white"'
     echo "set output '$charts/scaling.svg'"
+    block="$(awk -F, '$1 == "cuts" { print $3; exit }' "$tables/scaling.csv") elements"
     for sweep in "elements plane 3" "elements curved 3" "cuts parallel 4" "cuts crossing 4" "triangles curved 5"; do
         set -- $sweep
         echo "\$$1_$2 << EOD"
-        awk -F, -v sweep="$1" -v kind="$2" -v x="$3" '$1 == sweep && $2 == kind { print $x, $8 / ($7 + $5), $11, $12, $13, $14, $17, $18 }' "$tables/scaling.csv"
+        awk -F, -v sweep="$1" -v kind="$2" -v x="$3" '$1 == sweep && $2 == kind { print $x, $8 / ($7 + $5), $14, $17, 1000 * $12 / $14, 1e3 * $18 / $14 }' "$tables/scaling.csv"
         echo "EOD"
     done
     cat <<END
 $styles
-set multiplot layout 2,2 title "What a cut of a block of tetrahedra costs   ($where)" font "sans,15"
-set logscale xy; set grid back lc rgb "#dddddd"
-set ylabel "cut, us per new cell and triangle"; set yrange [1:1000]; set key left top
-set xlabel "elements of the block"; set format x "10^{%L}"
-plot \$elements_plane using 1:2 with linespoints ls 1 title "a plane", \$elements_curved using 1:2 with linespoints ls 3 title "a curved sheet, two triangles a cell"
-set xlabel "cuts so far, 40 000 elements"; set format x "%g"
+set multiplot layout 2,3 title "A block of tetrahedra under cuts   ($(where scaling))" font "sans,15"
+set logscale xy; set grid back lc rgb "#dddddd"; set key left top samplen 1.5 font ",11"
+set ylabel "cut, us per new cell and triangle"; set yrange [1:300]
+set xlabel "elements"; set xrange [500:2e6]; set format x "10^{%L}"
+plot \$elements_plane using 1:2 with linespoints ls 1 title "a plane", \$elements_curved using 1:2 with linespoints ls 3 title "a curved sheet"
+set xlabel "cuts so far, $block"; set xrange [0.7:1500]; set format x "%g"
 plot \$cuts_parallel using 1:2 with linespoints ls 1 title "parallel planes", \$cuts_crossing using 1:2 with linespoints ls 2 title "crossing planes"
-set xlabel "triangles of the cut, 40 000 elements"; set format x "10^{%L}"
+set xlabel "triangles of the cut, $block"; set xrange [1:2e5]; set format x "10^{%L}"
 plot \$triangles_curved using 1:2 with linespoints ls 3 title "a curved sheet"
-set ylabel "unknowns"; set yrange [1e4:1e9]; set format y "10^{%L}"; set xlabel "cuts so far, 40 000 elements"; set format x "%g"
-plot \$cuts_parallel using 1:6 with linespoints ls 1 title "gxfem, VNA, the least: parallel", \$cuts_crossing using 1:6 with linespoints ls 2 title "crossing", \$cuts_parallel using 1:7 with linespoints ls 1 dt 2 title "remeshed, parallel", \$cuts_crossing using 1:7 with linespoints ls 2 dt 2 title "remeshed, crossing"
+set ylabel "step, us per unknown"; set yrange [0.05:30]; set xlabel "unknowns"; set xrange [2e3:1e7]
+plot \$elements_plane using 3:5 with linespoints ls 1 title "by elements, seven planes", \$cuts_parallel using 3:5 with linespoints ls 8 title "by parallel planes", \$cuts_crossing using 3:5 with linespoints ls 2 title "by crossing planes"
+set ylabel "memory of the cut body, kB per unknown"; set yrange [0.1:10]
+plot \$elements_plane using 3:6 with linespoints ls 1 title "by elements, seven planes", \$cuts_parallel using 3:6 with linespoints ls 8 title "by parallel planes", \$cuts_crossing using 3:6 with linespoints ls 2 title "by crossing planes"
+set ylabel "unknowns"; set yrange [1e4:1e9]; set format y "10^{%L}"; set xlabel "cuts so far, $block"; set xrange [0.7:1500]; set format x "%g"
+plot \$cuts_parallel using 1:3 with linespoints ls 1 title "gxfem = VNA = least", \$cuts_crossing using 1:3 with linespoints ls 2 title "the same, crossing", \$cuts_parallel using 1:4 with linespoints ls 1 dt 2 title "remeshed", \$cuts_crossing using 1:4 with linespoints ls 2 dt 2 title "remeshed, crossing"
 unset multiplot
 END
 }
@@ -176,20 +182,20 @@ stepping() {
     echo 'set terminal svg size 1180,560 font "sans,12" background "white"'
     echo "set output '$charts/stepping.svg'"
     for scene in slab_in_five accordion; do
-        for kind in "BDF1" "BDF2" "midpoint; 2 Newton" "BDF2; lumped" "VNA; BDF2" "deletion; BDF2" "CG tolerance" "Newton iterations"; do
+        for kind in "BDF1" "BDF2" "midpoint" "midpoint; 2 Newton" "BDF2; lumped" "VNA; BDF2" "deletion; BDF2" "CG tolerance" "Newton iterations"; do
             stepping_rows "${scene}_$(block_name "$kind")" $scene "$kind" '$7 / 1000, $8'
         done
     done
     cat <<END
 $styles
-set multiplot layout 1,2 title "Error of the motion of a cut body after 0.33 s, in the same space   ($where)" font "sans,15"
+set multiplot layout 1,2 title "Error of the motion of a cut body after 0.33 s, in the same space   ($(where stepping))" font "sans,15"
 set logscale xy; set grid back lc rgb "#dddddd"; set format y "10^{%L}"
 set xlabel "computing time, s per simulated second"; set ylabel "error, share of the motion"; set yrange [1e-5:3]
 END
     for scene in slab_in_five accordion; do
         echo "set title '$(echo $scene | tr _ ' ')'; set key bottom left samplen 1.5 font ',10'"
         [ $scene = slab_in_five ] || echo "set key off; set ylabel ''"
-        echo "plot \$${scene}_BDF1 using 1:2 with linespoints ls 2 title 'BDF1, dt 33 to 2 ms', \$${scene}_BDF2 using 1:2 with linespoints ls 1 title 'BDF2', \$${scene}_BDF2__lumped using 1:2 with linespoints ls 8 title 'BDF2, lumped mass', \$${scene}_midpoint__2_Newton using 1:2 with linespoints ls 5 title 'midpoint, 2 Newton', \$${scene}_VNA__BDF2 using 1:2 with linespoints ls 3 title 'VNA, BDF2', $(deletion_of $scene) \$${scene}_CG_tolerance using 1:2 with linespoints ls 6 title 'BDF1, 8 ms: CG 1e-1 to 1e-6', \$${scene}_Newton_iterations using 1:2 with linespoints ls 7 title 'BDF1, 8 ms: Newton 1 to 16'"
+        echo "plot \$${scene}_BDF1 using 1:2 with linespoints ls 2 title 'BDF1, dt 33 to 2 ms', \$${scene}_BDF2 using 1:2 with linespoints ls 1 title 'BDF2', \$${scene}_BDF2__lumped using 1:2 with linespoints ls 8 title 'BDF2, lumped mass', \$${scene}_midpoint using 1:2 with linespoints ls 5 lw 1 dt 2 pt 12 title 'midpoint', \$${scene}_midpoint__2_Newton using 1:2 with linespoints ls 5 title 'midpoint, 2 Newton', \$${scene}_VNA__BDF2 using 1:2 with linespoints ls 3 title 'VNA, BDF2', $(deletion_of $scene) \$${scene}_CG_tolerance using 1:2 with linespoints ls 6 title 'BDF1, 8 ms: CG 1e-1 to 1e-6', \$${scene}_Newton_iterations using 1:2 with linespoints ls 7 title 'BDF1, 8 ms: Newton 1 to 16'"
     done
     echo 'unset multiplot'
 }
@@ -215,7 +221,7 @@ stepping_cuts() {
     done
     cat <<END
 $styles
-set multiplot layout 2,2 title "Motion beside that of exact integrals and thin cuts, same steps   ($where)" font "sans,15"
+set multiplot layout 2,2 title "Motion beside that of exact integrals and thin cuts, same steps   ($(where stepping))" font "sans,15"
 set logscale xy; set grid back lc rgb "#dddddd"; set format x "10^{%L}"; set format y "10^{%L}"; set yrange [3e-10:30]
 END
     for scene in slab_in_five accordion; do
@@ -264,7 +270,7 @@ space() {
     done
     cat <<END
 $styles
-set multiplot layout 1,2 title "The same cuts at rest under refinement, beside conforming meshes   ($where)" font "sans,15"
+set multiplot layout 1,2 title "The same cuts at rest under refinement, beside conforming meshes   ($(where space))" font "sans,15"
 set logscale xy; set grid back lc rgb "#dddddd"
 set title "five slices in one layer of elements, refined"; set xlabel "thickness of a slice, elements"; set ylabel "drop of its end, % of the converged"
 set xrange [0.05:*]; set yrange [0.1:300]; set key bottom right samplen 1.5

@@ -1,7 +1,8 @@
 /* failure.c - hard cases by every method: right, wrong (how), refused (why), diverged, crashed, or still busy after half a minute.
 
-   make bench-failure builds and runs it; it prints CSV and writes it to build/bench/failure.csv, a table to stderr. What the cases are, and
-   what is right: bench/hard.h. Methods are those of bench/method.h, element deletion, and ways of integration where a case is about
+   make bench-failure builds and runs it; it prints CSV and writes it to build/bench/failure.csv, a table to stderr.
+   usage: failure [FILE [--small]]     --small: three seconds of a processor for each run
+   What the cases are, and what is right: bench/hard.h. Methods are those of bench/method.h, element deletion, and ways of integration where a case is about
    integrals. "Algorithm 1 mended" has what its Boolean allows today, cuts a millionth as thick too. "but for volume": what a cut's
    thickness takes away.
    Each run has a process of its own, and half a minute of its processor. */
@@ -13,12 +14,15 @@
 #include "replay.h"
 #include "method.h"
 #include "hard.h"
+#include "parts.h"
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MOST_SECONDS = 30, COLUMNS = METHOD_COUNT + 1 + HARD_INTEGRALS };
+enum { COLUMNS = METHOD_COUNT + 1 + HARD_INTEGRALS };
+
+static unsigned most_seconds = 30;
 
 /* ---- element deletion ---- */
 
@@ -56,7 +60,7 @@ static void deletion_look(void *state, gxs_model *model, const double **displace
     size_t i;
     method_library_look(d->uncut, model, displacement);
     for (d->element_count = i = 0; i < model->element_count; i++)
-        if (!(d->cut->body->complex->root[model->elements[i].group] & 1)) d->elements[d->element_count++] = model->elements[i];    /* not divided */
+        if (!parts_is_met(d->cut->body, model->elements[i].group)) d->elements[d->element_count++] = model->elements[i];
     model->elements = d->elements;
     model->element_count = d->element_count;
 }
@@ -115,7 +119,7 @@ static void judge_column(const hard_case *row, int column, char text[HARD_TEXT])
 /* The same in a process of its own */
 static void judge_apart(const hard_case *row, int column, char text[HARD_TEXT])
 {
-    const struct rlimit limit = {MOST_SECONDS, MOST_SECONDS + 1};
+    const struct rlimit limit = {most_seconds, most_seconds + 1};
     int pipes[2], status = 0;
     ssize_t length;
     pid_t child;
@@ -133,7 +137,7 @@ static void judge_apart(const hard_case *row, int column, char text[HARD_TEXT])
     text[length > 0 ? length : 0] = 0;
     close(pipes[0]);
     waitpid(child, &status, 0);
-    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) snprintf(text, HARD_TEXT, "busy after %d s", MOST_SECONDS);
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) snprintf(text, HARD_TEXT, "busy after %u s", most_seconds);
     else if (WIFSIGNALED(status)) snprintf(text, HARD_TEXT, "crashed: signal %d", WTERMSIG(status));
     else if (WEXITSTATUS(status) != 0) snprintf(text, HARD_TEXT, "crashed: exit %d", WEXITSTATUS(status));
 }
@@ -169,6 +173,7 @@ int main(int argc, char **argv)
 {
     static size_t counts[COLUMNS][OUTCOMES];
     int r, c;
+    if (argc > 2 && strcmp(argv[2], "--small") == 0) most_seconds = 3;
     csv_open(argc, argv, "case,method,verdict");
     for (r = 0; r < HARD_CASES; r++)
         for (c = 0; c < COLUMNS; c++) {

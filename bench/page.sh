@@ -1,7 +1,7 @@
 #!/bin/sh
 # Writes what benches have measured as a page with tables and charts, and the matrix of hard cases into the README.
 # usage: sh bench/page.sh TABLES PAGE README
-#     TABLES  directory of the benches' CSV files: failure.csv, table2.csv, table2_ratios.csv, scaling.csv; a missing one is an error
+#     TABLES  directory of the benches' CSV files; a missing one is an error
 #     PAGE    the page; charts are in charts/ beside it
 #     README  what stands between its lines `<!-- matrix -->` and `<!-- end of matrix -->` becomes the matrix
 set -u
@@ -9,7 +9,7 @@ tables=$1
 page=$2
 readme=$3
 
-for bench in failure table2 table2_ratios scaling; do
+for bench in quadrature stepping failure table2 table2_ratios scaling kernel solver accuracy drift frames skin; do
     [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-${bench%_ratios}" >&2; exit 2; }
 done
 for line in '<!-- matrix -->' '<!-- end of matrix -->'; do
@@ -43,6 +43,11 @@ failure() {
         }' "$tables/failure.csv"
 }
 
+# When the oldest table was made
+measured() {
+    for table in "$tables"/*.csv; do date -r "$table" +%Y-%m-%d; done | sort | head -n 1
+}
+
 # A CSV file as a table, under the header given
 table() {
     echo "$2"
@@ -66,12 +71,73 @@ scaling() {
         { printf("| %s | %s | %s | %s | %s | %s | %.2f | %s | %s | %s | %s | %s | %s |\n", $1, $2, $3, $4, $5, $10, $8 / ($7 + $5), $12, $14, $15, $16, $17, $18) }' "$tables/scaling.csv"
 }
 
+# Error of all four integrals, as a share of the element, and times, of gxfem and of RXFEM's published rule
+quadrature() {
+    echo "| region | triangles | gxfem: error | cut, us | RXFEM: error | path, us | rule, us | rule / cut |"
+    echo "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"
+    awk -F, '
+        NR == 1 || ($3 != "gxfem" && !($3 == "rxfem" && $4 == 2)) { next }
+        { region = $1 " | " $2 }
+        !(region in seen) { seen[region] = 1; regions[++n] = region }
+        $9 + 0 > error[region, $3] + 0 { error[region, $3] = $9 }
+        { path[region, $3] = $11; rule[region, $3] = $12 }
+        END {
+            for (i = 1; i <= n; i++) {
+                r = regions[i]; cut = path[r, "gxfem"] + rule[r, "gxfem"]
+                printf("| %s | %.1e | %.1f | %.1e | %.1f | %.1f | %.1f |\n", r, error[r, "gxfem"], cut, error[r, "rxfem"], path[r, "rxfem"], rule[r, "rxfem"], rule[r, "rxfem"] / cut)
+            }
+        }' "$tables/quadrature.csv"
+}
+
+# Rows that nothing cheaper beats
+front() {
+    echo "| scene | what is turned | | s per simulated second | error |"
+    echo "| --- | --- | --- | ---: | ---: |"
+    for scene in slab_in_five accordion; do
+        awk -F, -v scene=$scene '$1 == scene && $8 != "" && $9 == ""' "$tables/stepping.csv" | sort -t, -g -k 7,7 | awk -F, '
+            least == "" || $8 + 0 < least { least = $8 + 0; printf("| %s | %s | %s | %.2f | %.1e |\n", $1, $2, $3, $7 / 1000, $8) }'
+    done
+}
+
+# Iterations / milliseconds of a step, by case and method; cholmod: milliseconds of factorisation and solution
+solver() {
+    awk -F, '
+        NR == 1 { next }
+        !($1 in unknowns) { cases[++n] = $1; unknowns[$1] = $3 }
+        !($2 in known) { known[$2] = 1; methods[++m] = $2 }
+        { said[$1, $2] = $2 == "cholmod" ? sprintf("%.1f", $6) : sprintf("%.1f / %.1f", $4, $7) }
+        END {
+            printf("| case | unknowns |"); for (j = 1; j <= m; j++) printf(" %s |", methods[j]); print ""
+            printf("| --- | ---: |"); for (j = 1; j <= m; j++) printf(" ---: |"); print ""
+            for (i = 1; i <= n; i++) {
+                printf("| %s | %s |", cases[i], unknowns[cases[i]]); for (j = 1; j <= m; j++) printf(" %s |", said[cases[i], methods[j]]); print ""
+            }
+        }' "$tables/solver.csv"
+}
+
+# The finest mesh of each series that is refined
+accuracy() {
+    echo "| case | quantity | elements | error | order |"
+    echo "| --- | --- | ---: | ---: | ---: |"
+    awk -F, '
+        NR == 1 || $8 == "" { next }
+        !(($1, $2) in last) { keys[++n] = $1 SUBSEP $2 }
+        { last[$1, $2] = sprintf("| %s | %s | %s | %s | %s |", $1, $2, $3, $6, $8) }
+        END { for (i = 1; i <= n; i++) print last[keys[i]] }' "$tables/accuracy.csv"
+}
+
+skin() {
+    echo "| cells of the block | vertices | triangles | positions, us | and normals, us | a ray, us | cut, ms | rebuilt, ms | view, ms | made anew, ms | share changed |"
+    echo "| ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"
+    awk -F, 'NR > 1 { for (i = 2; i <= NF; i++) printf("| %s ", $i); print "|" }' "$tables/skin.csv"
+}
+
 {
     echo "# Accuracy against speed, and where methods fail"
     echo
-    echo "Written by \`make charts\` on $(date +%Y-%m-%d), $(uname -m | tr _ -), one thread. What each program does and how it judges stands in its first"
-    echo "lines: \`bench/quadrature.c\`, \`stepping.c\`, \`space.c\`, \`table2.c\`, \`conditioning.c\`, \`failure.c\`, \`scaling.c\`. The baselines are written for"
-    echo "the bench: \`rxfem.h\` (Koschier, Bender, Thuerey 2017), \`vna.h\` (element duplication), \`literal.h\` (GXFEM's Algorithm 1 as published,"
+    echo "Written by \`make charts\` from what was measured on $(measured) and after, $(uname -m | tr _ -), one thread. What each program does and how it"
+    echo "judges stands in its first lines: \`bench/quadrature.c\`, \`stepping.c\`, \`space.c\`, \`table2.c\`, \`conditioning.c\`, \`failure.c\`, \`scaling.c\`,"
+    echo "\`solver.c\`, \`kernel.c\`, \`accuracy.c\`, \`drift.c\`, \`frames.c\`, \`skin.c\`. The baselines are written for the bench: \`rxfem.h\` (Koschier, Bender, Thuerey 2017), \`vna.h\` (element duplication), \`literal.h\` (GXFEM's Algorithm 1 as published,"
     echo "a Boolean for each subdomain), \`sampling.h\`, \`parts.h\` (integrals by points, element deletion). All take the library's time step: only what is compared differs."
     echo
     echo "## Integrals over parts of cut elements"
@@ -79,10 +145,19 @@ scaling() {
     echo "![error against the time to make a rule and to use it](charts/quadrature.svg)"
     echo "![a curved cut by its number of triangles](charts/quadrature_triangles.svg)"
     echo
+    echo "Errors: the largest of the four integrals, beside those over the whole element. Of some hundred triangles RXFEM's rule is made in less time than"
+    echo "our cut takes: it fits the same few functions however many triangles there are, and is off by what that leaves."
+    echo
+    quadrature
+    echo
     echo "## Motion"
     echo
     echo "![error of the motion against computing time](charts/stepping.svg)"
     echo "![what integrals by points and the thickness of cuts change of the motion](charts/stepping_cuts.svg)"
+    echo
+    echo "What nothing cheaper beats, of integrators, steps, Newton, CG, lumping, preconditioners, virtual nodes and deletion:"
+    echo
+    front
     echo
     echo "The error of the space is another matter: linear elements bend too little where a piece is thin beside them, cut or not."
     echo
@@ -117,6 +192,35 @@ scaling() {
     echo "the cuts, at least."
     echo
     scaling
+    echo
+    echo "## Time steps by preconditioner"
+    echo
+    echo "Iterations of conjugate gradients / milliseconds of a step (one Newton iteration to 1e-2); cholmod: milliseconds of factorisation and solution"
+    echo "alone. -2: two threads. 1e6, 1e8: Young's modulus, Pa."
+    echo
+    solver
+    echo
+    echo "## Frames with a cut"
+    echo
+    table frames "| block | unknowns | frame without a cut, ms | cut, ms | frame with a cut, ms | worst, ms | to the mean frame |"
+    echo
+    echo "## The visual surface"
+    echo
+    skin
+    echo
+    echo "## Booleans of closed surfaces"
+    echo
+    echo "\"+\": evaluated after each operand, \"?\": surfaces that nobody vouches for."
+    echo
+    table kernel "| workload | median, us | least, us | triangles | components | volume | signs by filter | exact | allocations | peak, bytes |"
+    echo
+    echo "## Static solutions"
+    echo
+    accuracy
+    echo
+    echo "## What integrators keep"
+    echo
+    table drift "| integrator | dt, s | steps | energy | linear momentum | angular momentum | error of position |"
 } >"$page" || exit 2
 matrix >"$readme.matrix" &&
     awk -v matrix="$readme.matrix" '

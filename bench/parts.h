@@ -286,13 +286,14 @@ static inline void parts_rxfem(const parts_body *p, const rx_body *b, double den
 
 /* ---- element deletion ---- */
 
-static inline int parts_is_met(const parts_body *p, uint32_t element) { return (int)(p->body->complex->root[element] & 1); }
+/* Does a cut meet the element's inside */
+static inline int parts_is_met(const gx_body *body, uint32_t element) { return (int)(body->complex->root[element] & 1); }
 
 /* Whole elements on uncut nodes, as many as there are left; elements: room for those of the mesh. uncut: its model before any cut */
 static inline size_t parts_delete(const parts_body *p, const gxs_model *uncut, gxs_element *elements)
 {
     size_t i, count = 0;
-    for (i = 0; i < uncut->element_count; i++) if (!parts_is_met(p, uncut->elements[i].group)) elements[count++] = uncut->elements[i];
+    for (i = 0; i < uncut->element_count; i++) if (!parts_is_met(p->body, uncut->elements[i].group)) elements[count++] = uncut->elements[i];
     return count;
 }
 

@@ -1,7 +1,8 @@
 /* stepping.c - accuracy against speed: the error of a motion against the time that it takes, over what can be turned.
 
    make bench-stepping builds and runs it on the cut accordion and the slab in five slices (traces of the scenes, each blade's whole path
-   cut at the start); it prints CSV and writes it to build/bench/stepping.csv, a table to stderr.
+   cut at the start); it prints CSV and writes it to build/bench/stepping.csv, to stderr where ours is on the front and where another
+   method is the better choice.
    usage: stepping FILE [--small] SCENE=TRACE...     --small: a fifth of the time
 
    Every run moves the body from rest for 0.33 s. Its error is the difference from the reference in displacement, weighted by mass, as a
@@ -68,16 +69,34 @@ typedef struct setting {
 
 /* ---- the table ---- */
 
-typedef struct kept_row { const char *scene; char series[32], value[24]; double ms_per_second, error; } kept_row;
+typedef struct kept_row {
+    char series[32], value[24];
+    double ms_per_second, error;
+    double of_exact;            /* below 0: not compared with it */
+    double run_ms;              /* of the whole run, integrals once */
+} kept_row;
+
 static kept_row *kept_rows;
 static size_t kept_count, done, total;
+
+static void keep_row(const mover *m, const knobs *k, double ms, double error, double of_exact)
+{
+    kept_row *kept;
+    kept_rows = (kept_row *)method_memory(kept_rows, kept_count + 1, sizeof *kept_rows);
+    kept = &kept_rows[kept_count++];
+    snprintf(kept->series, sizeof kept->series, "%s", k->series);
+    snprintf(kept->value, sizeof kept->value, "%s", k->value);
+    kept->ms_per_second = ms / k->dt;
+    kept->error = error;
+    kept->of_exact = of_exact;
+    kept->run_ms = ms / k->dt * duration + m->integrals_ms;
+}
 
 /* ms below 0: no motion, and note says why; of_exact below 0: not compared with exact, and in the front */
 static void print_row(const setting *s, const mover *m, const knobs *k, double ms, double error, double of_exact, const char *note)
 {
     const unsigned long steps = (unsigned long)(duration / k->dt + 0.5);
     char head[128], compared[24] = "", integrals[24] = "", points[24] = "";
-    kept_row *kept;
     progress_draw("stepping", ++done, total, k->series);
     snprintf(head, sizeof head, "%s,%s,%s,%g,%lu", s->name, k->series, k->value, k->dt, steps);
     if (of_exact >= 0) snprintf(compared, sizeof compared, "%.3e", of_exact);
@@ -88,14 +107,7 @@ static void print_row(const setting *s, const mover *m, const knobs *k, double m
         return;
     }
     csv_row("%s,%.3f,%.1f,%.3e,%s,%s,%s,%s", head, ms, ms / k->dt, error, compared, integrals, points, note);
-    if (of_exact >= 0) return;
-    kept_rows = (kept_row *)method_memory(kept_rows, kept_count + 1, sizeof *kept_rows);
-    kept = &kept_rows[kept_count++];
-    kept->scene = s->name;
-    snprintf(kept->series, sizeof kept->series, "%s", k->series);
-    snprintf(kept->value, sizeof kept->value, "%s", k->value);
-    kept->ms_per_second = ms / k->dt;
-    kept->error = error;
+    keep_row(m, k, ms, error, of_exact);
 }
 
 static int cheaper(const void *a, const void *b)
@@ -104,20 +116,65 @@ static int cheaper(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
+/* Is it by the library's own means? Its block-Jacobi and assembled matrix are. */
+static int is_ours(const kept_row *r)
+{
+    return strncmp(r->series, "VNA", 3) != 0 && strncmp(r->series, "deletion", 8) != 0 && strstr(r->value, "RXFEM") == NULL;
+}
+
+/* The cheapest row of ours that is as exact; NULL: there is none. Rows are in order of time. */
+static const kept_row *cheapest_of_ours(double error)
+{
+    size_t i;
+    for (i = 0; i < kept_count; i++)
+        if (kept_rows[i].of_exact < 0 && is_ours(&kept_rows[i]) && kept_rows[i].error <= error) return &kept_rows[i];
+    return NULL;
+}
+
+static void print_choice(const kept_row *r)
+{
+    const kept_row *ours = cheapest_of_ours(r->error);
+    fprintf(stderr, "%-24s %-16s %14.3f %10.2e", r->series, r->value, 1e-3 * r->ms_per_second, r->error);
+    if (is_ours(r)) fprintf(stderr, "\n");
+    else if (ours) fprintf(stderr, "  the better choice here: as exact, ours takes %.3f (%s, %s)\n", 1e-3 * ours->ms_per_second, ours->series, ours->value);
+    else fprintf(stderr, "  the better choice here: ours is never as exact\n");
+}
+
 /* The front of a scene: rows that nothing cheaper beats. Those of integrals and thickness, all by the same steps, are left out. */
 static void print_front(const char *scene)
 {
     double least = HUGE_VAL;
-    size_t i;
+    size_t i, front = 0, ours = 0;
     qsort(kept_rows, kept_count, sizeof *kept_rows, cheaper);
     fprintf(stderr, "%s, from cheap to exact: what nothing cheaper beats\n%-24s %-16s %14s %10s\n", scene, "series", "value", "s per second", "error");
     for (i = 0; i < kept_count; i++) {
         const kept_row *r = &kept_rows[i];
-        if (r->error >= least) continue;
+        if (r->of_exact >= 0 || r->error >= least) continue;
         least = r->error;
-        fprintf(stderr, "%-24s %-16s %14.3f %10.2e\n", r->series, r->value, 1e-3 * r->ms_per_second, r->error);
+        front++;
+        ours += (size_t)is_ours(r);
+        print_choice(r);
     }
-    kept_count = 0;
+    fprintf(stderr, "of this front %lu of %lu are ours\n", (unsigned long)ours, (unsigned long)front);
+}
+
+/* Integrals by other means, of the same steps: the better choice where the whole run, making them included, takes less by more than the noise
+   of times, and the motion is off by less than the steps' own error */
+static void print_integrals(void)
+{
+    static const double noise = 0.05;
+    const kept_row *exact = NULL;
+    size_t i, better = 0;
+    for (i = 0; i < kept_count; i++) if (strcmp(kept_rows[i].series, "exact") == 0) exact = &kept_rows[i];
+    method_must(exact ? GX_OK : GX_ERROR_ARGUMENT, "exact");
+    for (i = 0; i < kept_count; i++) {
+        const kept_row *r = &kept_rows[i];
+        if (r->of_exact < 0 || r->of_exact >= exact->error || r->run_ms >= (1 - noise) * exact->run_ms) continue;
+        better++;
+        fprintf(stderr, "integrals by \"%s\", %s, are the better choice: the run takes %.0f ms, beside %.0f, and is off by %.1e, the steps by %.1e\n",
+                r->series, r->value, r->run_ms, exact->run_ms, r->of_exact, exact->error);
+    }
+    if (better == 0) fprintf(stderr, "exact integrals of thin cuts: nothing that is off by less than the steps (%.1e) takes less time\n", exact->error);
 }
 
 /* ---- the cut body ---- */
@@ -667,6 +724,8 @@ int main(int argc, char **argv)
         turn_integrals(&s);
         turn_thickness(&s);
         print_front(name);
+        print_integrals();
+        kept_count = 0;
         setting_free(&s);
         replay_free(&scene);
     }
