@@ -34,7 +34,7 @@ help:
 	@echo "make flags       exact predicates against rationals under each compiler and set of flags"
 	@echo "make hashes      the same cuts give the same topology under each compiler and set of flags"
 	@echo "make bench       all benches below (half an hour), and charts; BENCH=--small: minutes, and docs/ stays as it is"
-	@echo "make charts      docs/charts/, docs/BENCH.md and the matrix in README.md from what benches have measured; runs those that have not,"
+	@echo "make charts      docs/charts/, docs/BENCH.md and three tables in README.md from what benches have measured; runs those that have not,"
 	@echo "                 installs gnuplot. One bench: make bench-NAME, CSV on stdout and in $(BUILD)/bench/, a table on stderr:"
 	@echo "  quadrature     integrals over parts of cut elements: error and time beside RXFEM, adaptive and regular sampling"
 	@echo "  stepping       error of the motion against time: steps, integrators, Newton, CG, lumping, integrals, thickness of cuts, other methods"

@@ -1,19 +1,21 @@
 #!/bin/sh
-# Writes what benches have measured as a page with tables and charts, and the matrix of hard cases into the README.
+# Writes what benches have measured as a page with tables and charts, and three of the tables into the README.
 # usage: sh bench/page.sh TABLES PAGE README
 #     TABLES  directory of the benches' CSV files; a missing one is an error
 #     PAGE    the page; charts are in charts/ beside it
-#     README  what stands between its lines `<!-- matrix -->` and `<!-- end of matrix -->` becomes the matrix
+#     README  what stands between its lines `<!-- NAME -->` and `<!-- end of NAME -->` becomes the table: matrix, steps, ratios
 set -u
 tables=$1
 page=$2
 readme=$3
 
-for bench in quadrature stepping failure table2 table2_ratios scaling kernel solver accuracy drift frames skin; do
-    [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-${bench%_ratios}" >&2; exit 2; }
+for bench in quadrature stepping failure table2 table2_ratios scaling kernel solver product accuracy drift frames skin; do
+    [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-$(echo $bench | sed 's/_ratios//; s/product/solver/')" >&2; exit 2; }
 done
-for line in '<!-- matrix -->' '<!-- end of matrix -->'; do
-    [ "$(grep -cx -- "$line" "$readme")" = 1 ] || { echo "$0: $readme: no line \`$line\`, or several" >&2; exit 2; }
+for name in matrix steps ratios; do
+    for line in "<!-- $name -->" "<!-- end of $name -->"; do
+        [ "$(grep -cx -- "$line" "$readme")" = 1 ] || { echo "$0: $readme: no line \`$line\`, or several" >&2; exit 2; }
+    done
 done
 
 # Rows of `case,method,verdict` as a matrix; short: a word for each verdict, and the right ones counted
@@ -56,12 +58,56 @@ table() {
 }
 
 matrix() {
-    echo "<!-- matrix -->"
     echo "Written by \`make charts\`. volume: right but for what a cut's thickness takes away; pieces: too many or too few; mass: the right pieces"
     echo "with a wrong volume; fall: a piece falls otherwise than a point; empty: not asked. In full: [docs/BENCH.md](docs/BENCH.md)."
     echo
     failure 1
-    echo "<!-- end of matrix -->"
+}
+
+# Some cases of the solver's: iterations / milliseconds; memory and the time of an iteration by element
+steps() {
+    echo "| scene | unknowns | block-Jacobi | multigrid | the same, two threads | multigrid, assembled | CHOLMOD | product, ns per element | bytes per element | assembled |"
+    echo "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"
+    for row in "uncut-lattice-23k-1e6|uncut" "accordion-lattice-23k-1e6|accordion: cuts from both sides, 2.5 cells apart" \
+        "accordion-lattice-23k-1e8|the same, E = 1e8" "loose-lattice-23k-1e6|loose: fragments, most of them falling" \
+        "uncut-lattice-150k-1e6|uncut" "accordion-lattice-150k-1e6|accordion"; do
+        awk -F, -v name="${row%|*}" -v text="${row#*|}" '
+            $1 != name { next }
+            FILENAME ~ /product/ { elements = $3; if ($2 == "jacobi-free") product = $4; next }
+            { unknowns = $3; found[$2] = sprintf("%.1f / %.1f", $4, $7); ms[$2] = sprintf("%.1f", $2 == "cholmod" ? $6 : $7); bytes[$2] = $8 }
+            END {
+                if (unknowns)
+                    printf("| %s | %d | %s | %s | %s | %s | %s | %.1f | %.0f | %.0f |\n", text, unknowns, found["jacobi-free"], found["multigrid-free"],
+                           ms["multigrid-free-2"], found["multigrid-assembled"], ms["cholmod"], product, bytes["multigrid-free"] / elements,
+                           bytes["multigrid-assembled"] / elements)
+            }' "$tables/product.csv" "$tables/solver.csv"
+    done
+}
+
+# Ratios to Table 2, a column for each scene
+ratios() {
+    awk -F, '
+        NR == 1 { next }
+        !($1 in scenes) { scenes[$1] = 1; names[++n] = $1 }
+        !($2 in known) { known[$2] = 1; of[++m] = $2 }
+        { said[$2, $1] = $5 ($7 == "not met" ? " (not met)" : ""); promised[$2] = $6 }
+        END {
+            printf("| how many times as long |"); for (j = 1; j <= n; j++) printf(" %s |", names[j]); print " promised |"
+            printf("| --- |"); for (j = 0; j <= n; j++) printf(" ---: |"); print ""
+            for (i = 1; i <= m; i++) {
+                printf("| %s |", of[i]); for (j = 1; j <= n; j++) printf(" %s |", said[of[i], names[j]]); printf(" %s |\n", promised[of[i]])
+            }
+        }' "$tables/table2_ratios.csv"
+}
+
+# fill NAME: the README's part of that name
+fill() {
+    { echo "<!-- $1 -->"; $1; echo "<!-- end of $1 -->"; } >"$readme.part" &&
+        awk -v name="$1" -v part="$readme.part" '
+            $0 == "<!-- " name " -->" { while ((getline line <part) > 0) print line; skip = 1 }
+            !skip { print }
+            $0 == "<!-- end of " name " -->" { skip = 0 }' "$readme" >"$readme.new" &&
+        mv "$readme.new" "$readme" && rm -f "$readme.part"
 }
 
 scaling() {
@@ -222,11 +268,5 @@ skin() {
     echo
     table drift "| integrator | dt, s | steps | energy | linear momentum | angular momentum | error of position |"
 } >"$page" || exit 2
-matrix >"$readme.matrix" &&
-    awk -v matrix="$readme.matrix" '
-        $0 == "<!-- matrix -->" { while ((getline line <matrix) > 0) print line; skip = 1 }
-        !skip { print }
-        $0 == "<!-- end of matrix -->" { skip = 0 }' "$readme" >"$readme.new" &&
-    mv "$readme.new" "$readme" || exit 2
-rm -f "$readme.matrix"
-echo "wrote $page and the matrix in $readme"
+fill matrix && fill steps && fill ratios || exit 2
+echo "wrote $page and three tables in $readme"
