@@ -190,7 +190,7 @@ stepping() {
 $styles
 set multiplot layout 1,2 title "Error of the motion of a cut body after 0.33 s, in the same space   ($(where stepping))" font "sans,15"
 set logscale xy; set grid back lc rgb "#dddddd"; set format y "10^{%L}"
-set xlabel "computing time, s per simulated second"; set ylabel "error, share of the motion"; set yrange [1e-5:3]
+set xlabel "computing time, s per simulated second"; set ylabel "error, share of the motion"; set yrange [3e-7:3]
 END
     for scene in slab_in_five accordion; do
         echo "set title '$(echo $scene | tr _ ' ')'; set key bottom left samplen 1.5 font ',10'"

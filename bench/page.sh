@@ -58,8 +58,9 @@ table() {
 }
 
 matrix() {
-    echo "Written by \`make charts\`. volume: right but for what a cut's thickness takes away; pieces: too many or too few; mass: the right pieces"
-    echo "with a wrong volume; fall: a piece falls otherwise than a point; empty: not asked. In full: [docs/BENCH.md](docs/BENCH.md)."
+    text "Written by \`make charts\`. volume: right but for what a cut's thickness takes away; pieces: too many or too few; mass: \
+the right pieces with a wrong volume; fall: a piece falls otherwise than a point; empty: not asked. In full: \
+[docs/BENCH.md](docs/BENCH.md)."
     echo
     failure 1
 }
@@ -178,21 +179,28 @@ skin() {
     awk -F, 'NR > 1 { for (i = 2; i <= NF; i++) printf("| %s ", $i); print "|" }' "$tables/skin.csv"
 }
 
+# A paragraph
+text() { echo "$*" | fold -s -w 126 | sed 's/ *$//'; }
+
 {
     echo "# Accuracy against speed, and where methods fail"
     echo
-    echo "Written by \`make charts\` from what was measured on $(measured) and after, $(uname -m | tr _ -), one thread. What each program does and how it"
-    echo "judges stands in its first lines: \`bench/quadrature.c\`, \`stepping.c\`, \`space.c\`, \`table2.c\`, \`conditioning.c\`, \`failure.c\`, \`scaling.c\`,"
-    echo "\`solver.c\`, \`kernel.c\`, \`accuracy.c\`, \`drift.c\`, \`frames.c\`, \`skin.c\`. The baselines are written for the bench: \`rxfem.h\` (Koschier, Bender, Thuerey 2017), \`vna.h\` (element duplication), \`literal.h\` (GXFEM's Algorithm 1 as published,"
-    echo "a Boolean for each subdomain), \`sampling.h\`, \`parts.h\` (integrals by points, element deletion). All take the library's time step: only what is compared differs."
+    text "Written by \`make charts\` from what was measured on $(measured) and after, $(uname -m | tr _ -), one thread. What \
+each program does and how it judges stands in its first lines: \`bench/quadrature.c\`, \`stepping.c\`, \`space.c\`, \
+\`table2.c\`, \`conditioning.c\`, \`failure.c\`, \`scaling.c\`, \`solver.c\`, \`kernel.c\`, \`accuracy.c\`, \
+\`drift.c\`, \`frames.c\`, \`skin.c\`. The baselines are written for the bench: \`rxfem.h\` (Koschier, Bender, Thuerey \
+2017), \`vna.h\` (element duplication), \`literal.h\` (GXFEM's Algorithm 1 as published, a Boolean for each \
+subdomain), \`sampling.h\`, \`parts.h\` (integrals by points, element deletion). All take the library's time step: \
+only what is compared differs."
     echo
     echo "## Integrals over parts of cut elements"
     echo
     echo "![error against the time to make a rule and to use it](charts/quadrature.svg)"
     echo "![a curved cut by its number of triangles](charts/quadrature_triangles.svg)"
     echo
-    echo "Errors: the largest of the four integrals, beside those over the whole element. Of some hundred triangles RXFEM's rule is made in less time than"
-    echo "our cut takes: it fits the same few functions however many triangles there are, and is off by what that leaves."
+    text "Errors: the largest of the four integrals, beside those over the whole element. Of some hundred triangles RXFEM's rule \
+is made in less time than our cut takes: it fits the same few functions however many triangles there are, and is off \
+by what that leaves."
     echo
     quadrature
     echo
@@ -201,18 +209,20 @@ skin() {
     echo "![error of the motion against computing time](charts/stepping.svg)"
     echo "![what integrals by points and the thickness of cuts change of the motion](charts/stepping_cuts.svg)"
     echo
-    echo "What nothing cheaper beats, of integrators, steps, Newton, CG, lumping, preconditioners, virtual nodes and deletion:"
+    text "What nothing cheaper beats, of integrators, steps, Newton, CG, lumping, preconditioners, virtual nodes and deletion:"
     echo
     front
     echo
-    echo "The error of the space is another matter: linear elements bend too little where a piece is thin beside them, cut or not."
+    text "The error of the space is another matter: linear elements bend too little where a piece is thin beside them, cut or \
+not."
     echo
     echo "![drops of slices and folds under refinement](charts/space.svg)"
     echo
     echo "## Scenes of GXFEM's Table 2"
     echo
-    echo "EI: integrals, MB: finding the pieces, both per subdomain that a cut made look at; dpsi: Hessians, CG: linear solve, per step;"
-    echo "dt: a frame; C: all frames with a cut, C+U: all frames. Rows (paper): published, Intel i9-13900K. The paper's sticks are six, ours 36."
+    text "EI: integrals, MB: finding the pieces, both per subdomain that a cut made look at; dpsi: Hessians, CG: linear solve, \
+per step; dt: a frame; C: all frames with a cut, C+U: all frames. Rows (paper): published, Intel i9-13900K. The \
+paper's sticks are six, ours 36."
     echo
     table table2 "| scene | method | frames | unknowns | subdomains | EI, ms | MB, ms | dpsi, ms | CG, s | dt max, s | dt avg, s | C, s | C+U, s | ended |"
     echo
@@ -224,9 +234,9 @@ skin() {
     echo
     echo "## Hard cases"
     echo
-    echo "Right: as many pieces as the cuts leave, their volume, and a motion that stays finite and falls as a body falls (\`bench/hard.h\`). \"But for"
-    echo "volume\": cuts of some thickness take material away; \"Algorithm 1 mended\": cuts 1e-10 thick instead of 1e-4, and a Boolean that mends. Virtual nodes find"
-    echo "all pieces, with the mass of whole elements."
+    text "Right: as many pieces as the cuts leave, their volume, and a motion that stays finite and falls as a body falls \
+(\`bench/hard.h\`). \"But for volume\": cuts of some thickness take material away; \"Algorithm 1 mended\": cuts 1e-10 \
+thick instead of 1e-4, and a Boolean that mends. Virtual nodes find all pieces, with the mass of whole elements."
     echo
     failure ""
     echo
@@ -234,15 +244,15 @@ skin() {
     echo
     echo "![cost of a cut against elements, cuts and triangles; unknowns](charts/scaling.svg)"
     echo
-    echo "Least: what separation demands, counted apart from the library (\`bench/least.h\`); VNA: virtual nodes; remeshed: a mesh whose elements end at"
-    echo "the cuts, at least."
+    text "Least: what separation demands, counted apart from the library (\`bench/least.h\`); VNA: virtual nodes; remeshed: a \
+mesh whose elements end at the cuts, at least."
     echo
     scaling
     echo
     echo "## Time steps by preconditioner"
     echo
-    echo "Iterations of conjugate gradients / milliseconds of a step (one Newton iteration to 1e-2); cholmod: milliseconds of factorisation and solution"
-    echo "alone. -2: two threads. 1e6, 1e8: Young's modulus, Pa."
+    text "Iterations of conjugate gradients / milliseconds of a step (one Newton iteration to 1e-2); cholmod: milliseconds of \
+factorisation and solution alone. -2: two threads. 1e6, 1e8: Young's modulus, Pa."
     echo
     solver
     echo
@@ -256,7 +266,7 @@ skin() {
     echo
     echo "## Booleans of closed surfaces"
     echo
-    echo "\"+\": evaluated after each operand, \"?\": surfaces that nobody vouches for."
+    text "\"+\": evaluated after each operand, \"?\": surfaces that nobody vouches for."
     echo
     table kernel "| workload | median, us | least, us | triangles | components | volume | signs by filter | exact | allocations | peak, bytes |"
     echo
