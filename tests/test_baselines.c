@@ -1168,7 +1168,7 @@ START_TEST(deleted_elements) {
                 above |= z > level[k];
             }
             expected += k == 1 || !(below && above);
-            if (!(below && above)) ck_assert(!parts_is_met(&p, (uint32_t)i));
+            if (!(below && above)) ck_assert(!parts_is_met(p.body, (uint32_t)i));
         }
         if (k < 2) ck_assert_uint_eq(count, expected);
         else {
