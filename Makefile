@@ -157,7 +157,6 @@ $(filter-out %/solver,$(bench_programs)): $(BUILD)/bench/%: bench/%.c $(wildcard
 	@mkdir -p $(@D)
 	@$(CC) -std=c99 $(WARNINGS) $(BENCH_CFLAGS) $< -o $@ $(LDFLAGS) -lm
 
-$(BUILD)/bench/table2 $(BUILD)/bench/stepping: $(wildcard examples/*.h)
 $(BUILD)/bench/space: examples/gxio.h
 $(BUILD)/bench/kernel: tests/workloads.h tests/oracle.h tests/rational.h
 
