@@ -1083,8 +1083,8 @@ int main(int argc, char **argv)
     static void (*const cases[CASES])(void) = {
         homogeneous_states, cantilever_exact, cantilever_weight_linear, cantilever_large_neo_hookean, cantilever_large_corotated,
         cook_membranes, torsion_square_linear, torsion_cylinder_neo_hookean, torsion_cylinder_kirchhoff, torsion_cylinder_corotated};
-    small = argc > 2 && strcmp(argv[2], "--small") == 0;
-    csv_open(argc, argv, "case,quantity,elements,value,reference,relative_error,source,order,imbalance,newton,cg");
+    const char *path = csv_arguments(argc, argv, &small);
+    csv_open(argv[0], path, "case,quantity,elements,value,reference,relative_error,source,order,imbalance,newton,cg");
     for (done = 0; done < CASES; ++done)
         cases[done]();
     progress_draw("accuracy", done, CASES, "");

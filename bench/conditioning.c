@@ -1,5 +1,5 @@
 /* Condition numbers of the system matrix of a cut cube: RXFEM's Fig. 14 with RXFEM's basis and ours, and a corner piece.
- * usage: conditioning [FILE]     rows go to stdout and to FILE, a table to stderr
+ * usage: conditioning [FILE [--small]]     rows go to stdout and to FILE, a table to stderr; --small: the same, it takes seconds
  *
  * As in RXFEM section 7: the cube [-1, 1]^3 of five tetrahedra, free; A = M + dt^2 K at rest, E = 1e6 Pa, nu = 0.3,
  * rho = 1000 kg/m3, dt = 1e-3 s.
@@ -518,8 +518,10 @@ static void corner_piece(double eps)
 int main(int argc, char **argv)
 {
     static const double wide[] = {1, 0.75, 0.5, 0.25};
+    int small;
+    const char *path = csv_arguments(argc, argv, &small);
     size_t i;
-    csv_open(argc, argv, "case,eps,basis,scaling,extension,condition");
+    csv_open(argv[0], path, "case,eps,basis,scaling,extension,condition");
     rules = rx_rules_create(2, 0);
     run("uncut", 0, NULL, NULL, 0);
     for (i = 0; i < sizeof wide / sizeof wide[0]; ++i)

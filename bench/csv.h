@@ -1,5 +1,5 @@
-/* csv.h - tables of the benches. Rows go to stdout and, where the program was given a file's name, to that file, which has its name when the
-   table is whole: until then ".part" is behind it. Define _POSIX_C_SOURCE before the first header. */
+/* csv.h - tables of the benches. Rows go to stdout and, where there is one, to a file, which has its name when the table is whole: until then
+   ".part" is behind it. Define _POSIX_C_SOURCE before the first header. */
 #ifndef BENCH_CSV_H
 #define BENCH_CSV_H
 
@@ -8,6 +8,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static FILE *csv_file; /* NULL: stdout only */
 static char csv_path[4096];
@@ -36,8 +37,17 @@ static inline void csv_row(const char *format, ...)
     }
 }
 
+/* usage: program [FILE [--small]]; anything else ends the program. Returns the file's name; NULL: none */
+static inline const char *csv_arguments(int argc, char **argv, int *small)
+{
+    *small = argc > 2 && strcmp(argv[2], "--small") == 0;
+    if (argc <= 2 + *small && (argc < 2 || argv[1][0] != '-')) return argc > 1 ? argv[1] : NULL;
+    fprintf(stderr, "usage: %s [FILE [--small]]\n", argv[0]);
+    exit(2);
+}
+
 /* path: NULL: stdout only */
-static inline void csv_open_path(const char *program, const char *path, const char *header)
+static inline void csv_open(const char *program, const char *path, const char *header)
 {
     char part[sizeof csv_path + 8];
     csv_file = NULL;
@@ -53,18 +63,11 @@ static inline void csv_open_path(const char *program, const char *path, const ch
     csv_row("%s", header);
 }
 
-/* usage: program [FILE] */
-static inline void csv_open(int argc, char **argv, const char *header)
-{
-    csv_to_file_only = 0;
-    csv_open_path(argv[0], argc > 1 ? argv[1] : NULL, header);
-}
-
 /* A second table, which stdout does not get */
 static inline void csv_open_second(const char *program, const char *path, const char *header)
 {
     csv_to_file_only = 1;
-    csv_open_path(program, path, header);
+    csv_open(program, path, header);
 }
 
 /* 1, and says so, if the file could not be written */

@@ -172,9 +172,10 @@ static void print_table(size_t counts[COLUMNS][OUTCOMES])
 int main(int argc, char **argv)
 {
     static size_t counts[COLUMNS][OUTCOMES];
-    int r, c;
-    if (argc > 2 && strcmp(argv[2], "--small") == 0) most_seconds = 3;
-    csv_open(argc, argv, "case,method,verdict");
+    int r, c, small;
+    const char *path = csv_arguments(argc, argv, &small);
+    if (small) most_seconds = 3;
+    csv_open(argv[0], path, "case,method,verdict");
     for (r = 0; r < HARD_CASES; r++)
         for (c = 0; c < COLUMNS; c++) {
             char text[HARD_TEXT];

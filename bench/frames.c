@@ -114,10 +114,12 @@ static void print_table(const row *rows, size_t count)
 
 int main(int argc, char **argv)
 {
-    const size_t count = argc > 2 && strcmp(argv[2], "--small") == 0 ? 2 : BLOCKS;
+    int small;
+    const char *path = csv_arguments(argc, argv, &small);
+    const size_t count = small ? 2 : BLOCKS;
     row rows[BLOCKS];
     size_t i;
-    csv_open(argc, argv, "block,unknowns,plain_ms,cut_ms,cut_frame_ms,worst_ms,ratio");
+    csv_open(argv[0], path, "block,unknowns,plain_ms,cut_ms,cut_frame_ms,worst_ms,ratio");
     for (i = 0; i < count; ++i) {
         progress_draw("frames", i, count, "");
         rows[i] = run(block_cells[i / 2], i % 2 ? 0.2 : 0);

@@ -270,7 +270,7 @@ int main(int argc, char **argv)
     static char names[NAMES][NAME];
     const size_t count = argc > 2 ? list_folder(argv[2], names) : 0;
     size_t i;
-    csv_open(argc, argv, "workload,median_us,min_us,triangles,components,volume,filter_share,exact_share,allocations,peak_bytes");
+    csv_open(argv[0], argc > 1 ? argv[1] : NULL, "workload,median_us,min_us,triangles,components,volume,filter_share,exact_share,allocations,peak_bytes");
     total = GENERATED + count;
     measure_generated();
     for (i = 0; i < count; ++i) measure_files(argv[2], names[i]);

@@ -584,9 +584,10 @@ static size_t count_runs(void)
 int main(int argc, char **argv)
 {
     region made;
-    int degree, clip;
-    if (argc > 2 && strcmp(argv[2], "--small") == 0) patience /= 10;
-    csv_open(argc, argv, "region,triangles,method,knob,integrand,value,truth,error,error_of_element,points,geometry_us,rule_us,evaluate_us,"
+    int degree, clip, small;
+    const char *path = csv_arguments(argc, argv, &small);
+    if (small) patience /= 10;
+    csv_open(argv[0], path, "region,triangles,method,knob,integrand,value,truth,error,error_of_element,points,geometry_us,rule_us,evaluate_us,"
                          "amortised_us");
     for (degree = 1; degree <= RX_DEGREE_MAX; ++degree)
         for (clip = 0; clip < 2; ++clip) rules[degree][clip] = rx_rules_create((unsigned)degree, clip);

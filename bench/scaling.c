@@ -407,11 +407,12 @@ int main(int argc, char **argv)
 {
     static const uint32_t cells[] = {6, 9, 13, 18, 27, 38, 59}, sides[] = {1, 3, 7, 22, 70, 224};
     static const size_t cuts[] = {1, 2, 5, 10, 20, 50, 100, 200, 500, 1000};
-    const int small = argc > 2 && strcmp(argv[2], "--small") == 0;
+    int small;
+    const char *path = csv_arguments(argc, argv, &small);
     const int blocks = small ? 2 : 7, parallel = small ? 4 : 10, crossing = small ? 4 : 7, curved = small ? 3 : 6;
     const uint32_t block = small ? 6 : 20;
     int i, wrong;
-    csv_open(argc > 2 ? 2 : argc, argv, "sweep,kind,elements,cuts,triangles,touched,created,cut_us,first_us_per_touched,us_per_touched,"
+    csv_open(argv[0], path, "sweep,kind,elements,cuts,triangles,touched,created,cut_us,first_us_per_touched,us_per_touched,"
              "arrangement_us_per_touched,step_ms,unknowns_before,unknowns,least,vna,remeshed,peak_mb");
     line_total = (size_t)(2 * blocks + parallel + crossing + curved);
     for (i = 0; i < blocks; i++) against_elements(cells[i], 0, 1);

@@ -1,6 +1,7 @@
 /* skin.c - the visual surface: what it costs to move it in each frame, and to rebuild it after a cut, beside the cut itself.
 
    make bench-skin builds and runs it; it prints CSV and writes it to build/bench/skin.csv, a table to stderr.
+   usage: skin [FILE [--small]]     --small: the same, it takes seconds
 
    A block cut into loose pieces gives a skin of many vertices: positions_us and normals_us are gx_body_skin_vertices without and with
    normals, pick_us a ray. Then a block in which a cut goes one cell deeper, strip by strip: cut_ms is gx_body_cut, rebuild_ms gx_body_skin
@@ -140,8 +141,10 @@ int main(int argc, char **argv)
 {
     static const uint32_t frame_cells[FRAMES] = {16, 24}, cut_cells[CUTS] = {16, 24, 40};
     row frames[FRAMES], cuts[CUTS];
+    int small;
+    const char *path = csv_arguments(argc, argv, &small);
     size_t i;
-    csv_open(argc, argv, "kind,cells,vertices,triangles,positions_us,normals_us,pick_us,cut_ms,rebuild_ms,view_ms,all_ms,changed_share");
+    csv_open(argv[0], path, "kind,cells,vertices,triangles,positions_us,normals_us,pick_us,cut_ms,rebuild_ms,view_ms,all_ms,changed_share");
     for (i = 0; i < FRAMES + CUTS; i++) {
         progress_draw("skin", i, FRAMES + CUTS, i < FRAMES ? "frames" : "cuts");
         if (i < FRAMES) frames[i] = measure_frames(frame_cells[i]);

@@ -853,7 +853,7 @@ int main(int argc, char **argv)
         fprintf(stderr, "solver: no case has '%s' in its name\n", set.filter);
         return 2;
     }
-    csv_open_path(argv[0], set.folder ? path_in(&set, "solver.csv", path) : NULL,
+    csv_open(argv[0], set.folder ? path_in(&set, "solver.csv", path) : NULL,
                   "case,method,unknowns,iterations,setup_ms,solve_ms,step_ms,peak_bytes,residual");
     run_total = count * (METHODS + 1);
     for (i = 0; i < count; i++) ok = run_scene(&list[i]) && ok;

@@ -416,10 +416,11 @@ static size_t count_rows(const strip *s, double most_elements)
 
 int main(int argc, char **argv)
 {
-    const int small = argc > 2 && strcmp(argv[2], "--small") == 0;
+    int small;
+    const char *path = csv_arguments(argc, argv, &small);
     const double most_elements = small ? 60000 : 700000;
     strip slices = make_slices(small ? 4 : 6), accordion = make_accordion(small ? 8 : 16, small ? 2 : FOLDS);
-    csv_open(argc > 2 ? 2 : argc, argv, "scene,piece,method,refinement,thickness,unknowns,drop,truth,error");
+    csv_open(argv[0], path, "scene,piece,method,refinement,thickness,unknowns,drop,truth,error");
     total = count_rows(&slices, most_elements) + count_rows(&accordion, most_elements);
     fprintf(stderr, "%-10s %5s %-11s %10s %12s %9s %12s %12s\n", "scene", "piece", "method", "refinement", "t, elements", "unknowns", "drop, m", "error");
     run_strip(&slices, most_elements);

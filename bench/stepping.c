@@ -708,9 +708,13 @@ int main(int argc, char **argv)
 {
     const int small = argc > 2 && strcmp(argv[2], "--small") == 0;
     int i, j;
+    if (argc < 3 + small) {
+        fprintf(stderr, "usage: %s FILE [--small] SCENE=TRACE...\n", argv[0]);
+        return 2;
+    }
     if (small) duration /= 5;
-    csv_open(argc > 2 ? 2 : argc, argv, "scene,series,value,dt,steps,ms_per_step,ms_per_second,error,of_exact,integrals_ms,points,note");
-    total = (size_t)(argc > 2 + small ? argc - 2 - small : 0) * rows_of_scene();
+    csv_open(argv[0], argv[1], "scene,series,value,dt,steps,ms_per_step,ms_per_second,error,of_exact,integrals_ms,points,note");
+    total = (size_t)(argc - 2 - small) * rows_of_scene();
     for (i = 2 + small; i < argc; i++) {
         char name[32];
         replay scene = replay_argument(argv[0], argv[i], name);

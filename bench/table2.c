@@ -258,8 +258,12 @@ int main(int argc, char **argv)
 {
     int i, failed;
     small = argc > 3 && strcmp(argv[3], "--small") == 0;
+    if (argc < 4 + small) {
+        fprintf(stderr, "usage: %s FILE RATIOS [--small] SCENE=TRACE...\n", argv[0]);
+        return 2;
+    }
     if (small) most_seconds = 10;
-    csv_open(argc > 3 ? 2 : argc, argv, "scene,method,frames,unknowns,domains,EI_ms,MB_ms,dpsi_ms,CG_s,dt_max_s,dt_avg_s,total_C_s,total_CU_s,ended");
+    csv_open(argv[0], argv[1], "scene,method,frames,unknowns,domains,EI_ms,MB_ms,dpsi_ms,CG_s,dt_max_s,dt_avg_s,total_C_s,total_CU_s,ended");
     for (i = 3 + small; i < argc; i++) {
         char name[32];
         replay scene = replay_argument(argv[0], argv[i], name);
@@ -268,7 +272,7 @@ int main(int argc, char **argv)
     }
     print_table();
     failed = csv_close();
-    csv_open_second(argv[0], argc > 2 ? argv[2] : NULL, "scene,ratio_to,theirs_s,ours_s,ratio,promised,verdict");
+    csv_open_second(argv[0], argv[2], "scene,ratio_to,theirs_s,ours_s,ratio,promised,verdict");
     print_ratios();
     return failed | csv_close();
 }
