@@ -156,11 +156,11 @@ set xlabel "cuts so far, $block"; set xrange [0.7:1500]; set format x "%g"
 plot \$cuts_parallel using 1:2 with linespoints ls 1 title "parallel planes", \$cuts_crossing using 1:2 with linespoints ls 2 title "crossing planes"
 set xlabel "triangles of the cut, $block"; set xrange [1:2e5]; set format x "10^{%L}"
 plot \$triangles_curved using 1:2 with linespoints ls 3 title "a curved sheet"
-set ylabel "step, us per unknown"; set yrange [0.05:30]; set xlabel "unknowns"; set xrange [2e3:1e7]
+set ylabel "step, us per unknown"; set yrange [0.05:30]; set xlabel "unknowns"; set xrange [*:*]
 plot \$elements_plane using 3:5 with linespoints ls 1 title "by elements, seven planes", \$cuts_parallel using 3:5 with linespoints ls 8 title "by parallel planes", \$cuts_crossing using 3:5 with linespoints ls 2 title "by crossing planes"
 set ylabel "memory of the cut body, kB per unknown"; set yrange [0.1:10]
 plot \$elements_plane using 3:6 with linespoints ls 1 title "by elements, seven planes", \$cuts_parallel using 3:6 with linespoints ls 8 title "by parallel planes", \$cuts_crossing using 3:6 with linespoints ls 2 title "by crossing planes"
-set ylabel "unknowns"; set yrange [1e4:1e9]; set format y "10^{%L}"; set xlabel "cuts so far, $block"; set xrange [0.7:1500]; set format x "%g"
+set ylabel "unknowns"; set yrange [*:1e9]; set format y "10^{%L}"; set xlabel "cuts so far, $block"; set xrange [0.7:1500]; set format x "%g"
 plot \$cuts_parallel using 1:3 with linespoints ls 1 title "gxfem = VNA = least", \$cuts_crossing using 1:3 with linespoints ls 2 title "the same, crossing", \$cuts_parallel using 1:4 with linespoints ls 1 dt 2 title "remeshed", \$cuts_crossing using 1:4 with linespoints ls 2 dt 2 title "remeshed, crossing"
 unset multiplot
 END
