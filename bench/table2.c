@@ -221,7 +221,7 @@ static void compare(const char *scene, const run *ours, const run *history, cons
         add_ratio(scene, "derivatives (RXFEM's in the paper)", 1e-3 * rxfem_paper->derivatives_ms, per(ours->derivatives, ours->frames), 10);
     if (rxfem->frames == 0) return;
     add_ratio(scene, "derivatives (RXFEM here)", rxfem->derivatives, history[rxfem->frames - 1].derivatives, 10);
-    add_ratio(scene, "derivatives (RXFEM here, once a piece)", rxfem->derivatives_once, history[rxfem->frames - 1].derivatives, 0);
+    add_ratio(scene, "derivatives (RXFEM here; once a piece)", rxfem->derivatives_once, history[rxfem->frames - 1].derivatives, 0);
 }
 
 static void print_ratios(void)
