@@ -115,7 +115,7 @@ conditioning() {
     echo 'set terminal svg size 1180,480 font "sans,12" background "white"'
     echo "set output '$charts/conditioning.svg'"
     for name in slice corner; do
-        for kind in copies,diagonal,off copies,diagonal,on sign,none,off sign,diagonal,off sign,volume,off; do
+        for kind in copies,diagonal,off copies,diagonal,on copies,multigrid,off sign,none,off sign,diagonal,off sign,volume,off; do
             echo "\$${name}_$(echo $kind | tr , _) << EOD"
             awk -F, -v name=$name -v kind=$kind '$1 == name && $3 "," $4 "," $5 == kind { print $2, $6 }' "$tables/conditioning.csv" | sort -g
             echo "EOD"
@@ -127,9 +127,9 @@ set multiplot layout 1,2 title "Condition of M + dt^2 K, a cube of five tetrahed
 set logscale xy; set grid back lc rgb "#dddddd"; set format x "10^{%L}"; set format y "10^{%L}"; set yrange [1:1e42]; set ytics 1e6
 set ylabel "condition number"; set key right top
 set title "a slice off the cube"; set xlabel "thickness of the slice, m"
-plot \$slice_sign_none_off using 1:2 with linespoints ls 3 title "RXFEM, unscaled", \$slice_sign_diagonal_off using 1:2 with linespoints ls 4 title "RXFEM, diagonal", \$slice_sign_volume_off using 1:2 with linespoints ls 5 title "RXFEM, volume ratios (its own)", \$slice_copies_diagonal_off using 1:2 with linespoints ls 1 title "gxfem's copies, diagonal"
+plot \$slice_sign_none_off using 1:2 with linespoints ls 3 title "RXFEM, unscaled", \$slice_sign_diagonal_off using 1:2 with linespoints ls 4 title "RXFEM, diagonal", \$slice_sign_volume_off using 1:2 with linespoints ls 5 title "RXFEM, volume ratios (its own)", \$slice_copies_diagonal_off using 1:2 with linespoints ls 1 title "gxfem's copies, diagonal", \$slice_copies_multigrid_off using 1:2 with linespoints ls 2 title "the same, multigrid"
 set title "a corner off one element"; set xlabel "volume of the piece, share of the element"
-plot \$corner_sign_none_off using 1:2 with linespoints ls 3 title "RXFEM, unscaled", \$corner_sign_diagonal_off using 1:2 with linespoints ls 4 title "RXFEM, diagonal", \$corner_sign_volume_off using 1:2 with linespoints ls 5 title "RXFEM, volume ratios (its own)", \$corner_copies_diagonal_off using 1:2 with linespoints ls 1 title "gxfem's copies, diagonal", \$corner_copies_diagonal_on using 1:2 with linespoints ls 8 title "the same, piece moves as a point"
+plot \$corner_sign_none_off using 1:2 with linespoints ls 3 title "RXFEM, unscaled", \$corner_sign_diagonal_off using 1:2 with linespoints ls 4 title "RXFEM, diagonal", \$corner_sign_volume_off using 1:2 with linespoints ls 5 title "RXFEM, volume ratios (its own)", \$corner_copies_diagonal_off using 1:2 with linespoints ls 1 title "gxfem's copies, diagonal", \$corner_copies_diagonal_on using 1:2 with linespoints ls 8 title "the same, piece moves as a point", \$corner_copies_multigrid_off using 1:2 with linespoints ls 2 title "gxfem's copies, multigrid"
 unset multiplot
 END
 }
