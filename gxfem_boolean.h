@@ -3955,7 +3955,7 @@ enum { GXBP_LEAF = 8 };                 /* triangles in a leaf of a box tree */
 typedef struct gxbp_source {    /* an input triangle */
     uint32_t point[3];
     uint32_t twin[3];           /* the half-edge 3 s + k on the other side of edge k, GXB_NONE where there is not exactly one */
-    uint32_t edge[3];           /* in cuts: the edge's inner points; GXB_NONE: it has none */
+    uint32_t edge[3];           /* in cuts; GXB_NONE: nothing is known of the edge, and it has no inner points */
     uint32_t plane;             /* GXB_NONE until needed */
     uint32_t operand;
     uint32_t facet;             /* first of its facets; of a flat: its root has them all */
@@ -3985,7 +3985,9 @@ typedef struct gxbp_vertex {    /* beside each point of the complex */
 typedef struct gxbp_link { uint32_t value, next; } gxbp_link;
 /* left: the sign of the label's plane to the left of p q, seen from the side to which the source's normal points; 0: not known */
 typedef struct gxbp_segment { uint32_t p, q, label, next; int32_t left; } gxbp_segment;
-typedef struct gxbp_cut { uint32_t half_edge, first, count; } gxbp_cut;     /* inner points of an edge in cut_points, in its direction */
+/* An edge of a surface. Its inner points: in cut_points, in the half-edge's direction. rim: of the facets of divided sources on its two sides (that
+   of the half-edge first) those at its start, as 3 f + k. */
+typedef struct gxbp_cut { uint32_t half_edge, first, count, rim[2]; } gxbp_cut;
 typedef struct gxbp_hit { uint32_t cut, point; } gxbp_hit;
 typedef struct gxbp_margin { uint32_t vertex, near, labels, made, dangling; } gxbp_margin;
 typedef struct gxbp_box { double low[3], high[3]; } gxbp_box;
@@ -4043,7 +4045,7 @@ struct gxb_boolean {
     uint32_t merged_points;     /* points before it were compared with each other */
     struct gxbp_projected *projected; uint32_t projected_count, projected_capacity;     /* the computed ones of these, along a direction */
     double reach;               /* the largest of their errors */
-    uint32_t renamed;           /* 1: an input vertex has got another name */
+    uint32_t united, renamed;   /* 1: since the last evaluation a point has got another name; an input vertex has ever */
     uint32_t plane, stamp, head_stamp;                                  /* of the triangulation at work */
     int32_t *windings; uint32_t winding_count, winding_capacity;        /* state x operand */
     uint32_t *states; uint32_t state_count, state_capacity;             /* of each state: is it inside? */
@@ -4191,6 +4193,7 @@ static void gxbp_unite(gxb_boolean *b, uint32_t keep, uint32_t drop) {
     const gxb_cpoint *q = &b->cx.points[drop];
     if (keep == drop) return;
     b->vertices[drop].same = keep;
+    b->united = 1;
     if (q->kind == GXB_EXPLICIT && q->def[0] == drop) b->renamed = 1;
     if (p->kind == GXB_EXPLICIT || q->kind != GXB_EXPLICIT) return;
     p->kind = GXB_EXPLICIT;
@@ -4281,73 +4284,84 @@ static uint32_t gxbp_input_point(gxb_boolean *b, const double y[3], uint32_t ope
 static uint32_t gxbp_next_edge(uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
 static uint32_t gxbp_last_edge(uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
 
-/* Half-edges by the vertex that they leave, with the vertex in which they end, and that from which their triangle comes back. */
-typedef struct gxbp_exit { uint32_t half_edge, to, from; } gxbp_exit;
-/* An edge from vertex p to a later one: how often it is passed forth and back, and by which half-edges last */
-typedef struct gxbp_passage { uint32_t p, forth, back, there, home; } gxbp_passage;
-typedef struct gxbp_fan { gxbp_exit *list; gxbp_passage *passages; uint32_t *first; size_t bytes; } gxbp_fan;
+/* An edge between vertex p and a later one, with which it is kept: how often it is passed forth (from p) and back, and by which half-edges
+   last. next: the later end of another edge of p. first: of the vertex itself, the half-edges between it and later ones. */
+typedef struct gxbp_passage { uint32_t first, p, next, forth, back, there, home; } gxbp_passage;
 
-static void gxbp_put_exit(gxbp_fan *fan, uint32_t p, uint32_t half_edge, uint32_t to, uint32_t from) {
-    gxbp_exit *e = &fan->list[--fan->first[p]];
-    e->half_edge = half_edge; e->to = to; e->from = from;
+/* Half-edges in lists of their earlier vertices, in ascending order; next: of each half-edge. */
+static void gxbp_list_half_edges(const uint32_t *triangles, uint32_t count, gxbp_passage *passages, uint32_t *next) {
+    uint32_t h, k, i;
+    for (h = 3 * count; h > 0;) {
+        h -= 3;
+        for (k = 0, i = 2; k < 3; i = k++) {
+            const uint32_t p = triangles[h + i], q = triangles[h + k];
+            gxbp_passage *at = &passages[p < q ? p : q];
+            next[h + i] = p == q ? GXB_NONE : at->first;
+            if (p != q) at->first = h + i;
+        }
+    }
 }
 
-static int gxbp_make_fan(gxb_boolean *b, const uint32_t *triangles, size_t count, uint32_t vertex_count, gxbp_fan *fan) {
+/* Takes the half-edges from p's list: the passages of its edges. Returns the later end of the last of these. */
+static uint32_t gxbp_take_passages(const uint32_t *triangles, gxbp_passage *passages, uint32_t p, uint32_t *twin) {
+    uint32_t h, next, last = GXB_NONE;
+    for (h = passages[p].first; h != GXB_NONE; h = next) {
+        const uint32_t from = triangles[h], q = from == p ? triangles[gxbp_next_edge(h)] : from;
+        gxbp_passage *e = &passages[q];
+        next = twin[h];
+        twin[h] = GXB_NONE;
+        if (e->p != p) { e->p = p; e->forth = e->back = 0; e->next = last; last = q; }
+        if (from == p) { e->forth++; e->there = h; }
+        else { e->back++; e->home = h; }
+    }
+    return last;
+}
+
+/* twin of each half-edge, GXB_NONE where an edge has not one in each direction. *open: a half-edge whose edge is passed more often in
+   its direction than in the other, or GXB_NONE: the surface is closed. */
+static int gxbp_find_twins(gxb_boolean *b, const uint32_t *triangles, size_t count, uint32_t vertex_count, uint32_t *twin, uint32_t *open) {
+    const size_t bytes = vertex_count * sizeof(gxbp_passage);
+    gxbp_passage *passages = (gxbp_passage *)gxbp_allocate(&b->cx.allocator, bytes);
+    uint32_t p, q, odd;
+    *open = GXB_NONE;
+    if (passages == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
+    for (p = 0; p < vertex_count; p++) passages[p].first = passages[p].p = GXB_NONE;
+    gxbp_list_half_edges(triangles, (uint32_t)count, passages, twin);
+    for (p = 0; p < vertex_count; p++) {
+        odd = GXB_NONE;
+        for (q = gxbp_take_passages(triangles, passages, p, twin); q != GXB_NONE; q = passages[q].next) {
+            const gxbp_passage *e = &passages[q];
+            if (e->forth == 1 && e->back == 1) { twin[e->there] = e->home; twin[e->home] = e->there; }
+            else if (e->forth != e->back) odd = e->forth > e->back ? e->there : e->home;
+        }
+        if (*open == GXB_NONE) *open = odd;
+    }
+    gxbp_release(&b->cx.allocator, passages, bytes);
+    return 1;
+}
+
+/* Half-edges by the vertex that they leave, with the vertex in which they end. */
+typedef struct gxbp_exit { uint32_t half_edge, to; } gxbp_exit;
+typedef struct gxbp_fan { gxbp_exit *list; uint32_t *first; size_t bytes; } gxbp_fan;
+
+static GXBP_COLD int gxbp_make_fan(gxb_boolean *b, const uint32_t *triangles, size_t count, uint32_t vertex_count, gxbp_fan *fan) {
     uint32_t h;
-    fan->bytes = 3 * count * sizeof *fan->list + vertex_count * sizeof *fan->passages + ((size_t)vertex_count + 1) * sizeof *fan->first;
+    fan->bytes = 3 * count * sizeof *fan->list + ((size_t)vertex_count + 1) * sizeof *fan->first;
     fan->list = (gxbp_exit *)gxbp_allocate(&b->cx.allocator, fan->bytes);
     if (fan->list == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
-    fan->passages = (gxbp_passage *)(void *)(fan->list + 3 * count);
-    fan->first = (uint32_t *)(void *)(fan->passages + vertex_count);
+    fan->first = (uint32_t *)(void *)(fan->list + 3 * count);
     memset(fan->first, 0, ((size_t)vertex_count + 1) * sizeof *fan->first);
     for (h = 0; h < 3 * count; h++) fan->first[triangles[h]]++;
     for (h = 1; h <= vertex_count; h++) fan->first[h] += fan->first[h - 1];
     for (h = (uint32_t)(3 * count); h > 0;) {
-        const uint32_t *v = triangles + (h -= 3);
-        gxbp_put_exit(fan, v[2], h + 2, v[0], v[1]);
-        gxbp_put_exit(fan, v[1], h + 1, v[2], v[0]);
-        gxbp_put_exit(fan, v[0], h, v[1], v[2]);
+        gxbp_exit *e = &fan->list[--fan->first[triangles[--h]]];
+        e->half_edge = h;
+        e->to = triangles[gxbp_next_edge(h)];
     }
     return 1;
 }
 
 static void gxbp_drop_fan(gxb_boolean *b, gxbp_fan *fan) { gxbp_release(&b->cx.allocator, fan->list, fan->bytes); }
-
-/* The passage to q of the edges that leave p: begun here, or under way. */
-static gxbp_passage *gxbp_passage_to(const gxbp_fan *fan, uint32_t p, uint32_t q) {
-    gxbp_passage *e = &fan->passages[q];
-    if (e->p != p) { e->p = p; e->forth = e->back = 0; }
-    return e;
-}
-
-/* Ends a passage: twins, if it has one half-edge in each direction; if there are more in one direction, returns one of those. */
-static uint32_t gxbp_end_passage(gxbp_passage *e, uint32_t p, uint32_t *twin) {
-    if (e->p != p) return GXB_NONE;
-    e->p = GXB_NONE;
-    if (e->forth == 1 && e->back == 1) { twin[e->there] = e->home; twin[e->home] = e->there; }
-    return e->forth == e->back ? GXB_NONE : e->forth > e->back ? e->there : e->home;
-}
-
-/* twin of each half-edge, left alone where an edge has not one in each direction. Returns a half-edge whose edge is passed more often in
-   its direction than in the other, or GXB_NONE: the surface is closed. */
-static uint32_t gxbp_find_twins(const gxbp_fan *fan, uint32_t vertex_count, uint32_t *twin) {
-    uint32_t open = GXB_NONE, p, odd;
-    for (p = 0; p < vertex_count; p++) fan->passages[p].p = GXB_NONE;
-    for (p = 0; p < vertex_count; p++) {
-        const gxbp_exit *first = fan->list + fan->first[p], *end = fan->list + fan->first[p + 1], *e;
-        gxbp_passage *way;
-        for (e = first; e < end; e++) {
-            if (e->to > p) { way = gxbp_passage_to(fan, p, e->to); way->forth++; way->there = e->half_edge; }
-            if (e->from > p) { way = gxbp_passage_to(fan, p, e->from); way->back++; way->home = gxbp_last_edge(e->half_edge); }
-        }
-        for (e = first; e < end; e++) {
-            odd = e->to > p ? gxbp_end_passage(&fan->passages[e->to], p, twin) : GXB_NONE;
-            if (odd == GXB_NONE && e->from > p) odd = gxbp_end_passage(&fan->passages[e->from], p, twin);
-            if (open == GXB_NONE) open = odd;
-        }
-    }
-    return open;
-}
 
 /* Component k of a x c, and the size of its products. A product of three fenced differences suffers three roundings in them, two in itself and
    at most five in the sum that makes an orientation of it: within 32u of the products' sizes. */
@@ -4439,13 +4453,10 @@ static gx_result gxbp_read_triangles(gxb_boolean *b, const gxb_operand *o, uint3
     uint32_t *points = work, *local = points + o->vertex_count, *triangles = local + o->vertex_count;
     uint32_t *twin = triangles + 3 * o->triangle_count, open, first = b->source_count;
     gx_result result = gxbp_read_points(b, o, points, local, bad);
-    gxbp_fan fan;
     size_t h;
     if (result != GX_OK) return result;
-    for (h = 0; h < 3 * o->triangle_count; h++) { triangles[h] = local[o->triangles[h]]; twin[h] = GXB_NONE; }
-    if (!gxbp_make_fan(b, triangles, o->triangle_count, (uint32_t)o->vertex_count, &fan)) return b->result;
-    open = gxbp_find_twins(&fan, (uint32_t)o->vertex_count, twin);
-    gxbp_drop_fan(b, &fan);
+    for (h = 0; h < 3 * o->triangle_count; h++) triangles[h] = local[o->triangles[h]];
+    if (!gxbp_find_twins(b, triangles, o->triangle_count, (uint32_t)o->vertex_count, twin, &open)) return b->result;
     if (open != GXB_NONE && o->operation != GXB_SPLIT) { *bad = open / 3; return GX_ERROR_NOT_CLOSED; }
     for (h = 0; h < o->triangle_count; h++) {
         gxbp_source *t = &b->sources[b->source_count];
@@ -4674,18 +4685,25 @@ static uint32_t gxbp_edge_name(const gxb_boolean *b, uint32_t s, int k) {
     return twin < h ? twin : h;
 }
 
+/* The cut of an edge; GXB_NONE: no memory */
+static uint32_t gxbp_need_cut(gxb_boolean *b, uint32_t s, int k) {
+    const uint32_t twin = b->sources[s].twin[k], cut = b->sources[s].edge[k];
+    gxbp_cut *c;
+    if (cut != GXB_NONE) return cut;
+    if (!GXBP_ROOM(b, cuts, cut, 1)) return GXB_NONE;
+    c = &b->cuts[b->cut_count];
+    c->half_edge = gxbp_edge_name(b, s, k);
+    c->first = c->count = 0;
+    c->rim[0] = c->rim[1] = GXB_NONE;
+    b->sources[s].edge[k] = b->cut_count;
+    if (twin != GXB_NONE) b->sources[twin / 3].edge[twin % 3] = b->cut_count;
+    return b->cut_count++;
+}
+
 /* A point inside an edge. */
 static void gxbp_hit_edge(gxb_boolean *b, uint32_t s, int k, uint32_t point) {
-    const uint32_t name = gxbp_edge_name(b, s, k), twin = b->sources[s].twin[k];
-    uint32_t cut = b->sources[s].edge[k];
-    if (!GXBP_ROOM(b, cuts, cut, 1) || !GXBP_ROOM(b, hits, hit, 1)) return;
-    if (cut == GXB_NONE) {
-        cut = b->cut_count++;
-        b->cuts[cut].half_edge = name;
-        b->cuts[cut].first = b->cuts[cut].count = 0;
-        b->sources[s].edge[k] = cut;
-        if (twin != GXB_NONE) b->sources[twin / 3].edge[twin % 3] = cut;
-    }
+    const uint32_t twin = b->sources[s].twin[k], cut = gxbp_need_cut(b, s, k);
+    if (cut == GXB_NONE || !GXBP_ROOM(b, hits, hit, 1)) return;
     b->hits[b->hit_count].cut = cut;
     b->hits[b->hit_count++].point = point;
     gxbp_mark_dirty(b, s);
@@ -5791,6 +5809,25 @@ static void gxbp_note_divided(gxb_boolean *b, uint32_t s) {
     b->divided[b->divided_count++] = s;
 }
 
+/* Facets at the starts of a source's edges: half-edges that leave the corner, or come to it where the edge starts at its other end. */
+static void gxbp_note_rims(gxb_boolean *b, uint32_t s) {
+    uint32_t leaves[3], comes[3], *rim[3], cut[3], f, k, j;
+    for (k = 0; k < 3; k++) if ((cut[k] = gxbp_need_cut(b, s, (int)k)) == GXB_NONE) return;
+    for (k = 0; k < 3; k++) {
+        const int other = b->cuts[cut[k]].half_edge != 3 * s + k;
+        leaves[k] = other ? GXB_NONE : gxbp_same(b, b->sources[s].point[k]);
+        comes[k] = other ? gxbp_same(b, b->sources[s].point[(k + 1) % 3]) : GXB_NONE;
+        rim[k] = &b->cuts[cut[k]].rim[other];
+    }
+    for (f = b->sources[s].facet; f != GXB_NONE; f = b->pieces[f].next) {
+        const gxbp_piece *piece = &b->pieces[f];
+        for (j = 0; j < 3; j++) {
+            const uint32_t p = piece->v[j], q = piece->v[j == 2 ? 0 : j + 1];
+            if (piece->near[j] == GXB_NONE) for (k = 0; k < 3; k++) if (p == leaves[k] || q == comes[k]) *rim[k] = 3 * f + j;
+        }
+    }
+}
+
 static void gxbp_divide_source(gxb_boolean *b, uint32_t s) {
     uint32_t n, i, k, pass;
     if (!gxbp_need_plane(b, s)) return;
@@ -5805,6 +5842,7 @@ static void gxbp_divide_source(gxb_boolean *b, uint32_t s) {
             segment = &b->segments[b->chain[3 * i]];
             if (pass == 1 || gxbp_is_placed(b, gxbp_same(b, segment->p)) || gxbp_is_placed(b, gxbp_same(b, segment->q))) gxbp_trace_segments(b, s, i);
         }
+    gxbp_note_rims(b, s);
 }
 
 /* --- flats: sources that overlap in one plane are divided together, within a frame around them --- */
@@ -6288,108 +6326,85 @@ static uint32_t gxbp_state_by_ray(gxb_boolean *b, uint32_t f) {
 
 /* --- states spread from facet to facet --- */
 
-/* Facets of divided sources by their edges on the source's rim, as directed pairs of points. */
-typedef struct gxbp_rim_table { uint32_t *entry, size; } gxbp_rim_table;
-
-static uint32_t gxbp_rim_slot(const gxb_boolean *b, const gxbp_rim_table *table, uint32_t p, uint32_t q) {
-    uint32_t k = gxbp_mix(p, q) & (table->size - 1);
-    for (; table->entry[k] != GXB_NONE; k = (k + 1) & (table->size - 1)) {
-        const gxbp_piece *f = &b->pieces[table->entry[k] / 3];
-        if (f->v[table->entry[k] % 3] == p && f->v[(table->entry[k] % 3 + 1) % 3] == q) break;
-    }
-    return k;
-}
-
-/* Facets of divided sources, of those that are alone in their plane the first one (else GXB_NONE). */
-static uint32_t gxbp_first_rim_facet(const gxb_boolean *b, uint32_t i) {
-    const gxbp_source *s = &b->sources[b->divided[i]];
-    return s->flags & GXBP_FLAT ? GXB_NONE : s->facet;
-}
-
-/* Vertices get their last names: those of divided sources, and of all where that changes any. */
+/* Where points were united, vertices get their last names: those of divided sources, and of all where that changes any. */
 static void gxbp_rename_vertices(gxb_boolean *b) {
     uint32_t f, i, k;
-    for (i = 0; i < b->divided_count && !b->renamed; i++)
+    for (i = 0; i < b->divided_count && b->united && !b->renamed; i++)
         for (f = b->sources[b->divided[i]].facet; f != GXB_NONE; f = b->pieces[f].next)
             for (k = 0; k < 3; k++) b->pieces[f].v[k] = gxbp_same(b, b->pieces[f].v[k]);
     for (f = 0; f < b->piece_count && b->renamed; f++)
         for (k = 0; k < 3; k++) b->pieces[f].v[k] = gxbp_same(b, b->pieces[f].v[k]);
+    b->united = 0;
 }
 
-static int gxbp_fill_rim_table(gxb_boolean *b, gxbp_rim_table *table) {
-    uint32_t f, i, k, count = 0;
-    for (i = 0; i < b->divided_count; i++)
-        for (k = 0; k < 3; k++) count += gxbp_edge_points(b, b->divided[i], k) - 1;
-    for (table->size = 16; table->size < 2 * count; table->size *= 2) {}
-    table->entry = (uint32_t *)gxbp_allocate(&b->cx.allocator, (size_t)table->size * sizeof *table->entry);
-    if (table->entry == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
-    memset(table->entry, 0xff, (size_t)table->size * sizeof *table->entry);
-    for (i = 0; i < b->divided_count; i++)
-        for (f = gxbp_first_rim_facet(b, i); f != GXB_NONE; f = b->pieces[f].next)
-            for (k = 0; k < 3; k++)
-                if (b->pieces[f].near[k] == GXB_NONE)
-                    table->entry[gxbp_rim_slot(b, table, b->pieces[f].v[k], b->pieces[f].v[(k + 1) % 3])] = 3 * f + k;
-    return 1;
+/* The facet at the start of edge k of a source that is not in a flat; GXB_NONE where something else meets it there. */
+static uint32_t gxbp_rim_facet(const gxb_boolean *b, uint32_t s, uint32_t k) {
+    const gxbp_source *source = &b->sources[s];
+    const gxbp_cut *cut;
+    uint32_t h;
+    if (!(source->flags & GXBP_DIVIDED)) return source->facet;
+    cut = &b->cuts[source->edge[k]];
+    h = cut->rim[cut->half_edge != 3 * s + k];
+    return b->pieces[h / 3].labels[h % 3] == GXBP_BARE ? h / 3 : GXB_NONE;
 }
 
-/* The facet that shares edge k of f, on the rim of divided source s, across the surface's edge; GXB_NONE unless only the two meet there. */
-static uint32_t gxbp_across_rim(const gxb_boolean *b, const gxbp_rim_table *table, uint32_t f, int k, const gxbp_source *s) {
-    const uint32_t p = b->pieces[f].v[k], q = b->pieces[f].v[(k + 1) % 3];
-    const uint32_t h = table->entry[gxbp_rim_slot(b, table, q, p)];
-    int i, j;
+/* The facet with which that at the start of edge k of a source shares its rim, across the surface's edge; GXB_NONE unless only the two
+   meet there. */
+static uint32_t gxbp_across_rim(const gxb_boolean *b, uint32_t s, uint32_t k) {
+    const uint32_t twin = b->sources[s].twin[k];
+    if (twin == GXB_NONE || b->sources[twin / 3].flags & GXBP_FLAT || gxbp_rim_facet(b, s, k) == GXB_NONE) return GXB_NONE;
+    return gxbp_rim_facet(b, twin / 3, twin % 3);
+}
+
+/* The facet beyond edge k of f. Beyond the rim of a divided source: of each of its edges only at the start. */
+static uint32_t gxbp_neighbour(const gxb_boolean *b, uint32_t f, int k) {
+    const gxbp_piece *piece = &b->pieces[f];
+    const gxbp_source *s = &b->sources[piece->source];
+    uint32_t i;
+    if (s->flags & GXBP_FLAT) return piece->near[k] != GXB_NONE && b->pieces[piece->near[k]].covers != GXB_NONE ? piece->near[k] : GXB_NONE;
+    if (piece->near[k] != GXB_NONE) return piece->near[k];
+    if (!(s->flags & GXBP_DIVIDED)) return gxbp_across_rim(b, piece->source, (uint32_t)k);
     for (i = 0; i < 3; i++) {
-        const uint32_t t = s->twin[i] == GXB_NONE ? GXB_NONE : s->twin[i] / 3;
-        if (t == GXB_NONE || b->sources[t].flags & GXBP_FLAT) continue;
-        if (b->sources[t].flags & GXBP_DIVIDED) {
-            if (h != GXB_NONE && b->pieces[h / 3].source == t && b->pieces[h / 3].labels[h % 3] == GXBP_BARE) return h / 3;
-            continue;
-        }
-        for (j = 0; j < 3; j++)
-            if (b->pieces[b->sources[t].facet].v[j] == q && b->pieces[b->sources[t].facet].v[(j + 1) % 3] == p) return b->sources[t].facet;
+        const gxbp_cut *cut = &b->cuts[s->edge[i]];
+        if (cut->rim[cut->half_edge != 3 * piece->source + i] == 3 * f + (uint32_t)k) return gxbp_across_rim(b, piece->source, i);
     }
     return GXB_NONE;
 }
 
-static uint32_t gxbp_neighbour(const gxb_boolean *b, const gxbp_rim_table *table, uint32_t f, int k) {
-    const gxbp_piece *piece = &b->pieces[f];
-    const gxbp_source *s = &b->sources[piece->source], *t;
-    uint32_t h;
-    if (s->flags & GXBP_FLAT) return piece->near[k] != GXB_NONE && b->pieces[piece->near[k]].covers != GXB_NONE ? piece->near[k] : GXB_NONE;
-    if (piece->near[k] != GXB_NONE) return piece->near[k];
-    if (s->flags & GXBP_DIVIDED) return piece->labels[k] == GXBP_BARE ? gxbp_across_rim(b, table, f, k, s) : GXB_NONE;
-    if (s->twin[k] == GXB_NONE) return GXB_NONE;
-    t = &b->sources[s->twin[k] / 3];
-    if (!(t->flags & (GXBP_DIVIDED | GXBP_FLAT))) return t->facet;
-    if (t->flags & GXBP_FLAT) return GXB_NONE;
-    h = table->entry[gxbp_rim_slot(b, table, piece->v[(k + 1) % 3], piece->v[k])];
-    return h != GXB_NONE && b->pieces[h / 3].source == s->twin[k] / 3 && b->pieces[h / 3].labels[h % 3] == GXBP_BARE ? h / 3 : GXB_NONE;
+/* To all facets of f's triangulation that can be reached */
+static void gxbp_spread_within(gxb_boolean *b, uint32_t f) {
+    const uint32_t base = b->scratch_count, flat = b->sources[b->pieces[f].source].flags & GXBP_FLAT;
+    gxbp_push(b, f);
+    while (b->scratch_count > base && b->result == GX_OK) {
+        int k;
+        f = b->scratch[--b->scratch_count];
+        for (k = 0; k < 3; k++) {
+            const uint32_t near = b->pieces[f].near[k];
+            if (near == GXB_NONE || b->pieces[near].state != GXB_NONE || (flat && b->pieces[near].covers == GXB_NONE)) continue;
+            b->pieces[near].state = gxbp_state_beyond(b, f, k);
+            gxbp_push(b, near);
+        }
+    }
 }
 
-static int gxbp_is_reached(const gxb_boolean *b, uint32_t half_edge) {
-    return half_edge == GXB_NONE || b->sources[half_edge / 3].flags & (GXBP_FLAT | GXBP_REACHED);
-}
-
-/* Is there nothing to find beyond edge k of f, on its source's rim? Of a divided source k says nothing of which of its edges that is. */
-static int gxbp_is_settled(const gxb_boolean *b, uint32_t f, int k) {
-    const gxbp_source *s = &b->sources[b->pieces[f].source];
-    if (!(s->flags & (GXBP_DIVIDED | GXBP_FLAT))) return gxbp_is_reached(b, s->twin[k]);
-    return gxbp_is_reached(b, s->twin[0]) && gxbp_is_reached(b, s->twin[1]) && gxbp_is_reached(b, s->twin[2]);
-}
-
-static void gxbp_spread_state(gxb_boolean *b, const gxbp_rim_table *table, uint32_t first) {
+/* Through a source's facets, then across its edges to sources that have no states yet */
+static void gxbp_spread_state(gxb_boolean *b, uint32_t first) {
     b->scratch_count = 0;
     gxbp_push(b, first);
     while (b->scratch_count > 0 && b->result == GX_OK) {
-        const uint32_t f = b->scratch[--b->scratch_count];
-        int k;
-        b->sources[b->pieces[f].source].flags |= GXBP_REACHED;
+        const uint32_t f = b->scratch[--b->scratch_count], s = b->pieces[f].source;
+        uint32_t k;
+        b->sources[s].flags |= GXBP_REACHED;
+        if (b->sources[s].flags & (GXBP_DIVIDED | GXBP_FLAT)) gxbp_spread_within(b, f);
+        if (b->sources[s].flags & GXBP_FLAT) continue;
         for (k = 0; k < 3; k++) {
-            const uint32_t near = b->pieces[f].near[k];
+            const uint32_t twin = b->sources[s].twin[k];
             uint32_t g;
-            if (near != GXB_NONE ? b->pieces[near].state != GXB_NONE : gxbp_is_settled(b, f, k)) continue;
-            g = gxbp_neighbour(b, table, f, k);
-            if (g == GXB_NONE || b->pieces[g].state != GXB_NONE) continue;
-            b->pieces[g].state = near == g ? gxbp_state_beyond(b, f, k) : b->pieces[f].state;
+            if (twin == GXB_NONE || b->sources[twin / 3].flags & (GXBP_REACHED | GXBP_FLAT)) continue;
+            g = gxbp_across_rim(b, s, k);
+            if (g == GXB_NONE) continue;
+            b->pieces[g].state = b->pieces[gxbp_rim_facet(b, s, k)].state;
+            b->sources[twin / 3].flags |= GXBP_REACHED;
             gxbp_push(b, g);
         }
     }
@@ -6469,14 +6484,14 @@ static uint32_t gxbp_close_state(gxb_boolean *b, uint32_t g, int k, uint32_t f) 
 }
 
 /* From a facet that is not open any more to open ones */
-static void gxbp_spread_closed(gxb_boolean *b, const gxbp_rim_table *table, uint32_t first) {
+static void gxbp_spread_closed(gxb_boolean *b, uint32_t first) {
     b->scratch_count = 0;
     gxbp_push(b, first);
     while (b->scratch_count > 0 && b->result == GX_OK) {
         const uint32_t f = b->scratch[--b->scratch_count];
         int k;
         for (k = 0; k < 3; k++) {
-            const uint32_t g = gxbp_neighbour(b, table, f, k);
+            const uint32_t g = gxbp_neighbour(b, f, k);
             if (g == GXB_NONE || !gxbp_is_open(b, g)) continue;
             b->pieces[g].state = gxbp_close_state(b, f, k, g);
             gxbp_push(b, g);
@@ -6497,7 +6512,7 @@ static void gxbp_close_by_ray(gxb_boolean *b, uint32_t f) {
 }
 
 /* Facets that are not open lend to their open neighbours; where there are none, a ray helps. */
-static void gxbp_close_states(gxb_boolean *b, const gxbp_rim_table *table) {
+static void gxbp_close_states(gxb_boolean *b) {
     uint32_t f, i, pass;
     int k;
     for (i = b->stated; i < b->operand_count; i++) {
@@ -6508,30 +6523,28 @@ static void gxbp_close_states(gxb_boolean *b, const gxbp_rim_table *table) {
         for (f = 0; f < b->piece_count && b->result == GX_OK; f++) {
             if (b->pieces[f].source == GXB_NONE) continue;
             for (k = 0; k < 3 && gxbp_is_open(b, f); k++) {
-                const uint32_t g = gxbp_neighbour(b, table, f, k);
-                if (g != GXB_NONE && b->pieces[g].state != GXB_NONE && !gxbp_is_open(b, g)) gxbp_spread_closed(b, table, g);
+                const uint32_t g = gxbp_neighbour(b, f, k);
+                if (g != GXB_NONE && b->pieces[g].state != GXB_NONE && !gxbp_is_open(b, g)) gxbp_spread_closed(b, g);
             }
             if (pass == 0 || !gxbp_is_open(b, f)) continue;
             gxbp_close_by_ray(b, f);
-            gxbp_spread_closed(b, table, f);
+            gxbp_spread_closed(b, f);
         }
 }
 
 static void gxbp_find_states(gxb_boolean *b) {
-    gxbp_rim_table table;
     uint32_t f, pass;
     if (b->result != GX_OK) return;
     gxbp_rename_vertices(b);
-    if (!gxbp_lengthen_states(b) || !gxbp_fill_rim_table(b, &table)) return;
-    if (b->stated > 0) gxbp_close_states(b, &table);
+    if (!gxbp_lengthen_states(b)) return;
+    if (b->stated > 0) gxbp_close_states(b);
     for (pass = 0; pass < 2; pass++)            /* first from input triangles, whose rays are cheap */
         for (f = 0; f < b->piece_count && b->result == GX_OK; f++) {
             if (b->pieces[f].state != GXB_NONE || !gxbp_is_surface(b, f)) continue;
             if (pass == 0 && b->sources[b->pieces[f].source].flags & GXBP_DIVIDED) continue;
             b->pieces[f].state = gxbp_state_by_ray(b, f);
-            gxbp_spread_state(b, &table, f);
+            gxbp_spread_state(b, f);
         }
-    gxbp_release(&b->cx.allocator, table.entry, (size_t)table.size * sizeof *table.entry);
     b->stated = b->operand_count;
 }
 
@@ -7028,27 +7041,33 @@ static void gxbp_count_corners(uint32_t *twin, uint32_t count, int32_t *corners)
     }
 }
 
+/* Edges that more than two triangles share */
+static GXBP_COLD void gxbp_join_all_wedges(gxb_boolean *b, uint32_t *parent, uint32_t *twin) {
+    const uint32_t *v = b->out_triangles;
+    uint32_t h;
+    gxbp_fan fan;
+    if (!gxbp_make_fan(b, v, b->out_source_count, b->out_point_count, &fan)) return;
+    for (h = 0; h < 3 * b->out_source_count; h++)
+        if (twin[h] == GXB_NONE && v[h] < v[gxbp_next_edge(h)]) gxbp_join_wedges(b, &fan, v[h], v[gxbp_next_edge(h)], parent, twin);
+    gxbp_drop_fan(b, &fan);
+}
+
 static void gxbp_join_shells(gxb_boolean *b, uint32_t *parent, int32_t *corners) {
     const uint32_t count = b->out_source_count;
     const size_t bytes = (size_t)count * 3 * sizeof(uint32_t);
-    uint32_t *twin, h;
-    gxbp_fan fan;
+    uint32_t *twin = (uint32_t *)gxbp_allocate(&b->cx.allocator, bytes), h, open, shared = 0;
     b->out_twin_count = 0;
-    if (!gxbp_make_fan(b, b->out_triangles, count, b->out_point_count, &fan)) return;
-    twin = (uint32_t *)gxbp_allocate(&b->cx.allocator, bytes);
-    if (twin != NULL) {
-        memset(twin, 0xff, bytes);
-        gxbp_find_twins(&fan, b->out_point_count, twin);
+    if (twin == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
+    if (gxbp_find_twins(b, b->out_triangles, count, b->out_point_count, twin, &open)) {
         for (h = 0; h < 3 * count; h++) {
-            const uint32_t i = b->out_triangles[h], j = b->out_triangles[gxbp_next_edge(h)];
-            if (twin[h] == GXB_NONE) { if (i < j) gxbp_join_wedges(b, &fan, i, j, parent, twin); }
+            if (twin[h] == GXB_NONE) shared = 1;
             else if (twin[h] > h) gxbp_join_sets(parent, h / 3, twin[h] / 3);
         }
+        if (shared) gxbp_join_all_wedges(b, parent, twin);
         if (b->mend && GXBP_ROOM(b, out_twins, out_twin, 3 * (size_t)count)) memcpy(b->out_twins, twin, bytes);
         gxbp_count_corners(twin, count, corners);
-        gxbp_release(&b->cx.allocator, twin, bytes);
-    } else gxbp_stop(b, GX_ERROR_MEMORY);
-    gxbp_drop_fan(b, &fan);
+    }
+    gxbp_release(&b->cx.allocator, twin, bytes);
 }
 
 /* Numerator and denominator as one number, relative error below 2^-180: each step adds the quotient of what is left, 50 bits. */
