@@ -3990,7 +3990,7 @@ typedef struct gxbp_segment { uint32_t p, q, label, next; int32_t left; } gxbp_s
 typedef struct gxbp_cut { uint32_t half_edge, first, count, rim[2]; } gxbp_cut;
 typedef struct gxbp_hit { uint32_t cut, point; } gxbp_hit;
 typedef struct gxbp_margin { uint32_t vertex, near, labels, made, dangling; } gxbp_margin;
-typedef struct gxbp_box { double low[3], high[3]; } gxbp_box;
+typedef struct gxbp_box { float low[3], high[3]; } gxbp_box;   /* coordinates / 16, not less wide than what is in it: see gxbp_float_below */
 
 typedef struct gxbp_tree {      /* boxes over groups of GXBP_LEAF sources, then over pairs of boxes, up to one */
     uint32_t first, levels;     /* of its boxes in gxb_boolean.boxes */
@@ -4472,22 +4472,36 @@ static const double *gxbp_corner_of(const gxb_boolean *b, uint32_t s, int k) { r
 
 /* --- box trees --- */
 
+/* Coordinates are below 2^128 and a float can't hold all of these, a sixteenth it can. A float's relative error is at most 2^-23; what is flushed
+   to zero is far below 2^-120. */
+static float gxbp_float_below(double x) { return (float)(x * 0.0625 - (gxbp_abs(x) * gxbp_power(-26) + gxbp_power(-120))); }
+static float gxbp_float_above(double x) { return (float)(x * 0.0625 + (gxbp_abs(x) * gxbp_power(-26) + gxbp_power(-120))); }
+
 static void gxbp_box_join(gxbp_box *a, const gxbp_box *c) {
     int k;
     for (k = 0; k < 3; k++) {
-        a->low[k] = gxbp_min(c->low[k], a->low[k]);
-        a->high[k] = gxbp_max(c->high[k], a->high[k]);
+        a->low[k] = c->low[k] < a->low[k] ? c->low[k] : a->low[k];
+        a->high[k] = c->high[k] > a->high[k] ? c->high[k] : a->high[k];
+    }
+}
+
+static void gxbp_extent(const gxb_boolean *b, uint32_t s, double low[3], double high[3]) {
+    const double *p = gxbp_corner_of(b, s, 0), *q = gxbp_corner_of(b, s, 1), *r = gxbp_corner_of(b, s, 2);
+    int k;
+    for (k = 0; k < 3; k++) {
+        low[k] = gxbp_min(gxbp_min(p[k], q[k]), r[k]);
+        high[k] = gxbp_max(gxbp_max(p[k], q[k]), r[k]);
     }
 }
 
 static gxbp_box gxbp_box_of(const gxb_boolean *b, uint32_t s) {
     gxbp_box box;
-    const double *x[3];
+    double low[3], high[3];
     int k;
-    for (k = 0; k < 3; k++) x[k] = b->cx.points[b->sources[s].point[k]].ball.x;
+    gxbp_extent(b, s, low, high);
     for (k = 0; k < 3; k++) {
-        box.low[k] = gxbp_min(gxbp_min(x[0][k], x[1][k]), x[2][k]);
-        box.high[k] = gxbp_max(gxbp_max(x[0][k], x[1][k]), x[2][k]);
+        box.low[k] = gxbp_float_below(low[k]);
+        box.high[k] = gxbp_float_above(high[k]);
     }
     return box;
 }
@@ -4510,21 +4524,19 @@ static uint32_t gxbp_lattice(double t) { return t > 0 ? t < 1023 ? (uint32_t)t :
 /* Sorts the sources along a Z-order curve by their first corners; work: two words of 64 bits each. */
 static GXBP_APART void gxbp_sort_sources(const gxb_boolean *b, const gxbp_operand *o, uint64_t *work) {
     uint64_t *from = work, *to = work + o->source_count, *swap;
-    gxbp_box all;
-    double scale[3];
+    double low[3], high[3], scale[3];
     uint32_t i, pass, k;
-    for (i = 0; i < o->source_count; i++) {
-        gxbp_box corner;
-        memcpy(corner.low, gxbp_corner_of(b, o->source + i, 0), sizeof corner.low);
-        memcpy(corner.high, corner.low, sizeof corner.high);
-        if (i == 0) all = corner;
-        else gxbp_box_join(&all, &corner);
+    memcpy(low, gxbp_corner_of(b, o->source, 0), sizeof low);
+    memcpy(high, low, sizeof high);
+    for (i = 1; i < o->source_count; i++) {
+        const double *x = gxbp_corner_of(b, o->source + i, 0);
+        for (k = 0; k < 3; k++) { low[k] = gxbp_min(x[k], low[k]); high[k] = gxbp_max(x[k], high[k]); }
     }
-    for (k = 0; k < 3; k++) scale[k] = all.high[k] > all.low[k] ? 1023 / (all.high[k] - all.low[k]) : 0;
+    for (k = 0; k < 3; k++) scale[k] = high[k] > low[k] ? 1023 / (high[k] - low[k]) : 0;
     for (i = 0; i < o->source_count; i++) {
         const double *x = gxbp_corner_of(b, o->source + i, 0);
         uint32_t key = 0;
-        for (k = 0; k < 3; k++) key |= gxbp_spread(gxbp_lattice((x[k] - all.low[k]) * scale[k])) << k;
+        for (k = 0; k < 3; k++) key |= gxbp_spread(gxbp_lattice((x[k] - low[k]) * scale[k])) << k;
         from[i] = (uint64_t)key << 32 | (o->source + i);
     }
     for (pass = 32; pass < 62; pass += 10) {
@@ -5869,18 +5881,19 @@ static GXBP_COLD uint32_t gxbp_frame_corner(gxb_boolean *b, uint32_t plane, doub
 
 static GXBP_COLD void gxbp_make_frame(gxb_boolean *b, uint32_t r) {
     const uint32_t plane = b->sources[r].plane, i = (b->cx.planes[plane].axis + 1) % 3, j = (b->cx.planes[plane].axis + 2) % 3;
-    gxbp_box box = gxbp_box_of(b, r);
-    uint32_t t, corner[4], f, g;
-    double dx, dy;
-    for (t = r; t != GXB_NONE; t = b->sources[t].next) {
-        const gxbp_box more = gxbp_box_of(b, t);
-        gxbp_box_join(&box, &more);
+    uint32_t t, k, corner[4], f, g;
+    double low[3], high[3], dx, dy;
+    gxbp_extent(b, r, low, high);
+    for (t = b->sources[r].next; t != GXB_NONE; t = b->sources[t].next) {
+        double its_low[3], its_high[3];
+        gxbp_extent(b, t, its_low, its_high);
+        for (k = 0; k < 3; k++) { low[k] = gxbp_min(its_low[k], low[k]); high[k] = gxbp_max(its_high[k], high[k]); }
     }
-    dx = gxbp_fence(box.high[i] - box.low[i]); dy = gxbp_fence(box.high[j] - box.low[j]);
-    corner[0] = gxbp_frame_corner(b, plane, box.low[i] - dx, box.low[j] - dy);
-    corner[1] = gxbp_frame_corner(b, plane, box.high[i] + dx, box.low[j] - dy);
-    corner[2] = gxbp_frame_corner(b, plane, box.high[i] + dx, box.high[j] + dy);
-    corner[3] = gxbp_frame_corner(b, plane, box.low[i] - dx, box.high[j] + dy);
+    dx = gxbp_fence(high[i] - low[i]); dy = gxbp_fence(high[j] - low[j]);
+    corner[0] = gxbp_frame_corner(b, plane, low[i] - dx, low[j] - dy);
+    corner[1] = gxbp_frame_corner(b, plane, high[i] + dx, low[j] - dy);
+    corner[2] = gxbp_frame_corner(b, plane, high[i] + dx, high[j] + dy);
+    corner[3] = gxbp_frame_corner(b, plane, low[i] - dx, high[j] + dy);
     f = gxbp_new_piece(b, r);
     g = gxbp_new_piece(b, r);
     if (b->result != GX_OK) return;
@@ -6223,6 +6236,7 @@ static uint32_t gxbp_state_behind(gxb_boolean *b, uint32_t f) {
 
 typedef struct gxbp_ray {
     gxb_ball ball;
+    gxbp_box box;               /* around ball */
     uint32_t f;
     int32_t *winding;
     int exact;                  /* is probe made yet? */
@@ -6254,6 +6268,10 @@ static void gxbp_set_ray(gxb_boolean *b, gxbp_ray *ray, uint32_t f) {
     ray->ball.error = gxbp_max3(ray->ball.x);
     for (k = 0; k < 3 && given; k++) ray->ball.error = gxbp_max(ray->ball.error, gxbp_max3(p[k]->ball.x));
     ray->ball.error = gxbp_power(-49) * ray->ball.error + GXBP_TINY;
+    for (k = 0; k < 3; k++) {
+        ray->box.low[k] = gxbp_float_below(ray->ball.x[k] - 2 * ray->ball.error);
+        ray->box.high[k] = gxbp_float_above(ray->ball.x[k] + 2 * ray->ball.error);
+    }
 }
 
 static int gxbp_ray_left(gxb_boolean *b, gxbp_ray *ray, const gxb_ball *p, const gxb_ball *q) {
@@ -6279,8 +6297,8 @@ static void gxbp_cross_ray(gxb_boolean *b, gxbp_ray *ray, uint32_t s) {
 }
 
 static int gxbp_ray_meets(const gxbp_ray *ray, const gxbp_box *box) {
-    const double *x = ray->ball.x, e = 2 * ray->ball.error;
-    return box->high[0] >= x[0] - e && box->low[1] <= x[1] + e && box->high[1] >= x[1] - e && box->low[2] <= x[2] + e && box->high[2] >= x[2] - e;
+    const gxbp_box *r = &ray->box;
+    return box->high[0] >= r->low[0] && box->low[1] <= r->high[1] && box->high[1] >= r->low[1] && box->low[2] <= r->high[2] && box->high[2] >= r->low[2];
 }
 
 static GXBP_APART void gxbp_shoot(gxb_boolean *b, gxbp_ray *ray, const gxbp_operand *o, uint32_t l, uint32_t i) {
@@ -6449,7 +6467,7 @@ static int gxbp_piece_misses(const gxb_boolean *b, uint32_t f, const gxbp_box *b
     int i, side = 0;
     for (i = 0; i < 3; i++) {
         const gxb_ball *x = &b->cx.points[b->pieces[f].v[i]].ball;
-        const int mine = x->x[axis] + 2 * x->error < box->low[axis] ? -1 : x->x[axis] - 2 * x->error > box->high[axis];
+        const int mine = x->x[axis] + 2 * x->error < 16 * (double)box->low[axis] ? -1 : x->x[axis] - 2 * x->error > 16 * (double)box->high[axis];
         if (mine == 0 || mine == -side) return 0;
         side = mine;
     }
