@@ -3986,8 +3986,8 @@ typedef struct gxbp_link { uint32_t value, next; } gxbp_link;
 /* left: the sign of the label's plane to the left of p q, seen from the side to which the source's normal points; 0: not known */
 typedef struct gxbp_segment { uint32_t p, q, label, next; int32_t left; } gxbp_segment;
 /* An edge of a surface. Its inner points: in cut_points, in the half-edge's direction. rim: of the facets of divided sources on its two sides (that
-   of the half-edge first) those at its start, as 3 f + k. */
-typedef struct gxbp_cut { uint32_t half_edge, first, count, rim[2]; } gxbp_cut;
+   of the half-edge first) those at its start, as 3 f + k. fold: see gxbp_fold. */
+typedef struct gxbp_cut { uint32_t half_edge, first, count, rim[2]; int32_t fold; } gxbp_cut;
 typedef struct gxbp_hit { uint32_t cut, point; } gxbp_hit;
 typedef struct gxbp_margin { uint32_t vertex, near, labels, made, dangling; } gxbp_margin;
 typedef struct gxbp_box { float low[3], high[3]; } gxbp_box;   /* coordinates / 16, not less wide than what is in it: see gxbp_float_below */
@@ -4707,6 +4707,7 @@ static uint32_t gxbp_need_cut(gxb_boolean *b, uint32_t s, int k) {
     c->half_edge = gxbp_edge_name(b, s, k);
     c->first = c->count = 0;
     c->rim[0] = c->rim[1] = GXB_NONE;
+    c->fold = GXBP_UNKNOWN;
     b->sources[s].edge[k] = b->cut_count;
     if (twin != GXB_NONE) b->sources[twin / 3].edge[twin % 3] = b->cut_count;
     return b->cut_count++;
@@ -5821,6 +5822,291 @@ static void gxbp_note_divided(gxb_boolean *b, uint32_t s) {
     b->divided[b->divided_count++] = s;
 }
 
+/* Point i of an edge: its start, its inner points in order, its end. */
+static uint32_t gxbp_edge_point(gxb_boolean *b, uint32_t s, uint32_t k, uint32_t i) {
+    const uint32_t cut = b->sources[s].edge[k], count = cut == GXB_NONE ? 0 : b->cuts[cut].count;
+    if (i == 0) return gxbp_same(b, b->sources[s].point[k]);
+    if (i > count) return gxbp_same(b, b->sources[s].point[(k + 1) % 3]);
+    return gxbp_same(b, b->cut_points[b->cuts[cut].first + (b->cuts[cut].half_edge == 3 * s + k ? i - 1 : count - i)]);
+}
+
+static uint32_t gxbp_edge_points(const gxb_boolean *b, uint32_t s, uint32_t k) {
+    return 2 + (b->sources[s].edge[k] == GXB_NONE ? 0 : b->cuts[b->sources[s].edge[k]].count);
+}
+
+/* --- dividing a source by chains: the generic small case --- */
+
+/* A source that nothing has divided yet, and segments of one simple surface, of which each chain leads from rim to rim and none touches another:
+   its parts are polygons, which are triangulated by cutting off corners. What bends where is known but for the chains' inner points. */
+enum { GXBP_SMALL = 24 };       /* rim points and segments; more are divided in the general way */
+
+/* A vertex of a polygon that is walked with its inside on the left. on: the edges of the source that it lies on, as bits; slot: of the edge to
+   the next vertex, GXB_NONE on the rim; bend: 1 convex, 0 straight, -1 reflex. */
+typedef struct gxbp_knot { uint32_t vertex, on, slot; int bend; uint32_t before, after; } gxbp_knot;
+typedef struct gxbp_strand { uint32_t first, count, from, to; } gxbp_strand;    /* segments in gxbp_division.step, rim points at the ends */
+
+typedef struct gxbp_division {
+    uint32_t source, spare, state;          /* spare: the source's only facet, until it is used */
+    gxbp_knot rim[GXBP_SMALL]; uint32_t rim_count;
+    uint32_t chain[GXBP_SMALL];             /* of each rim point: the strand that ends there, or GXB_NONE */
+    gxbp_strand strand[GXBP_SMALL]; uint32_t strand_count;
+    gxbp_knot step[GXBP_SMALL];             /* of each segment: the point that it leaves; slot: its place in b->chain */
+    uint32_t step_count, labels;            /* the segments' links, one after the other */
+    gxbp_knot polygon[GXBP_SMALL];
+    uint32_t half[4 * GXBP_SMALL]; uint32_t slot_count;     /* of steps, then of diagonals: the facet's edge on the side that is there */
+} gxbp_division;
+
+static int gxbp_is_generic(const gxb_boolean *b, uint32_t s, uint32_t n) {
+    uint32_t i, operand;
+    if (n > GXBP_SMALL || b->pieces[b->sources[s].facet].next != GXB_NONE) return 0;
+    for (i = 0; i < n; i++) {
+        const gxbp_segment *segment = &b->segments[b->chain[3 * i]];
+        operand = b->sources[segment->label].operand;
+        if (segment->left == 0 || !b->operands[operand].simple ||
+            operand != b->sources[b->segments[b->chain[0]].label].operand) return 0;
+    }
+    return 1;
+}
+
+/* Rim points are marked by stamps, with their place in hints. */
+static int gxbp_collect_rim(gxb_boolean *b, gxbp_division *d, uint32_t n) {
+    const uint32_t s = d->source;
+    uint32_t k, i;
+    d->rim_count = 0;
+    b->stamp++;
+    for (k = 0; k < 3; k++) {
+        const uint32_t count = gxbp_edge_points(b, s, k) - 1;
+        if (d->rim_count + count + n > GXBP_SMALL) return 0;
+        for (i = 0; i < count; i++) {
+            gxbp_knot *knot = &d->rim[d->rim_count];
+            knot->vertex = gxbp_edge_point(b, s, k, i);
+            if (gxbp_is_placed(b, knot->vertex)) return 0;
+            b->vertices[knot->vertex].stamp = b->stamp;
+            b->vertices[knot->vertex].hint = d->rim_count;
+            knot->on = 1u << k | (i == 0 ? 1u << (k + 2) % 3 : 0);
+            knot->bend = i == 0;
+            knot->slot = GXB_NONE;
+            d->chain[d->rim_count++] = GXB_NONE;
+        }
+    }
+    return 1;
+}
+
+/* Ends of segments in lists of vertices, see gxbp_chain_segments: 2 i + e. The other end at an inner point of a chain; GXB_NONE: there are not two */
+static uint32_t gxbp_other_end(const gxb_boolean *b, uint32_t v, uint32_t end) {
+    const uint32_t first = b->vertices[v].head, second = b->chain[3 * (first / 2) + 1 + first % 2];
+    if (second == GXB_NONE || b->chain[3 * (second / 2) + 1 + second % 2] != GXB_NONE) return GXB_NONE;
+    return first == end ? second : first;
+}
+
+/* Follows the chain that leaves a rim point by an end of a segment. 0: it is not one that leads to the rim. */
+static int gxbp_follow_chain(gxb_boolean *b, gxbp_division *d, uint32_t from, uint32_t end, uint32_t n) {
+    gxbp_strand *strand = &d->strand[d->strand_count];
+    uint32_t v = d->rim[from].vertex;
+    strand->first = d->step_count;
+    strand->from = from;
+    while (end != GXB_NONE && d->step_count < n) {
+        const gxbp_segment *segment = &b->segments[b->chain[3 * (end / 2)]];
+        d->step[d->step_count].vertex = v;
+        d->step[d->step_count++].slot = end / 2;
+        end ^= 1;
+        v = gxbp_same(b, end % 2 == 0 ? segment->p : segment->q);
+        if (gxbp_is_placed(b, v)) {
+            const uint32_t to = b->vertices[v].hint;
+            strand->to = to;
+            strand->count = d->step_count - strand->first;
+            if (d->chain[to] != GXB_NONE || to == from || (strand->count == 1 && d->rim[from].on & d->rim[to].on)) return 0;
+            d->chain[from] = d->chain[to] = d->strand_count++;
+            d->rim[from].bend = d->rim[to].bend = 1;
+            return 1;
+        }
+        end = gxbp_other_end(b, v, end);
+    }
+    return 0;
+}
+
+/* 1: v lies left of the way from p to q, by a segment (see gxbp_chain_segments) between them; v is not one of them. */
+static int gxbp_left_of_segment(gxb_boolean *b, uint32_t i, uint32_t p, uint32_t q, uint32_t v) {
+    const gxbp_segment *segment = &b->segments[b->chain[3 * i]];
+    gxbp_line line;
+    line.p = p; line.x = q; line.plane = b->sources[segment->label].plane; line.source = segment->label;
+    line.sigma = gxbp_same(b, segment->p) == p ? segment->left : -segment->left;
+    return gxbp_left(b, &line, v);
+}
+
+/* 1: at a divided edge the surface turns towards its front, the corner beyond the edge lies in front of the triangle; -1: to its back */
+static int gxbp_fold(gxb_boolean *b, uint32_t half_edge) {
+    const gxbp_source *s = &b->sources[half_edge / 3];
+    const uint32_t twin = s->twin[half_edge % 3];
+    gxbp_cut *cut = &b->cuts[s->edge[half_edge % 3]];
+    if (cut->fold == GXBP_UNKNOWN)
+        cut->fold = s->plane == b->sources[twin / 3].plane ? 0 : gxbp_point_side(b, b->sources[twin / 3].point[(twin % 3 + 2) % 3], s->plane);
+    return cut->fold;
+}
+
+/* How a chain goes on at an inner point, from one segment to the next: where it passes an edge of the other surface, as that is folded there. */
+static int gxbp_bend_of_chain(gxb_boolean *b, const gxbp_knot *from, const gxbp_knot *at, uint32_t next) {
+    const gxbp_segment *segment = &b->segments[b->chain[3 * from->slot]];
+    const uint32_t *key = b->vertices[at->vertex].key, t = segment->label, u = b->segments[b->chain[3 * at->slot]].label;
+    const uint32_t twin = key[0] == GXB_FROM_EDGE_TRIANGLE ? b->sources[key[1] / 3].twin[key[1] % 3] : GXB_NONE;
+    if (twin == GXB_NONE || !((key[1] / 3 == t && twin / 3 == u) || (key[1] / 3 == u && twin / 3 == t)))
+        return gxbp_left_of_segment(b, from->slot, from->vertex, at->vertex, next);
+    return gxbp_fold(b, key[1]) * (gxbp_same(b, segment->p) == from->vertex ? segment->left : -segment->left);
+}
+
+static int gxbp_collect_chains(gxb_boolean *b, gxbp_division *d, uint32_t n) {
+    uint32_t i, m;
+    d->strand_count = d->step_count = 0;
+    for (i = 0; i < d->rim_count; i++) {
+        const gxbp_vertex *v = &b->vertices[d->rim[i].vertex];
+        if (v->head_stamp != b->head_stamp) continue;
+        if (b->chain[3 * (v->head / 2) + 1 + v->head % 2] != GXB_NONE) return 0;
+        if (d->chain[i] == GXB_NONE && !gxbp_follow_chain(b, d, i, v->head, n)) return 0;
+    }
+    if (d->step_count < n) return 0;
+    for (i = 0; i < d->strand_count; i++)
+        for (m = d->strand[i].first + 1; m < d->strand[i].first + d->strand[i].count; m++) {
+            const int last = m + 1 == d->strand[i].first + d->strand[i].count;
+            d->step[m].on = 0;
+            d->step[m].bend = gxbp_bend_of_chain(b, &d->step[m - 1], &d->step[m], last ? d->rim[d->strand[i].to].vertex : d->step[m + 1].vertex);
+        }
+    return 1;
+}
+
+static int gxbp_knot_turn(gxb_boolean *b, const gxbp_knot *p, const gxbp_knot *q, const gxbp_knot *r) {
+    return p->on & q->on & r->on ? 0 : gxbp_turn(b, p->vertex, q->vertex, r->vertex);
+}
+
+/* Does w lie right of the edge from p to q? */
+static int gxbp_is_beyond(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *p, const gxbp_knot *q, const gxbp_knot *w) {
+    if (p->slot >= d->step_count) return gxbp_knot_turn(b, p, q, w) < 0;
+    return gxbp_left_of_segment(b, d->step[p->slot].slot, p->vertex, q->vertex, w->vertex) < 0;
+}
+
+/* Is no other vertex in the triangle of a convex corner? One of those in it would not be convex; a quadrilateral's fourth one, if not convex, is. */
+static int gxbp_is_ear(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *q) {
+    const gxbp_knot *p = &d->polygon[q->before], *r = &d->polygon[q->after], *w;
+    if (r->after == p->before) return d->polygon[r->after].bend > 0;
+    for (w = &d->polygon[r->after]; w != p; w = &d->polygon[w->after])
+        if (w->bend <= 0 && !(w->before == q->after && r->bend < 0) && !(w->after == q->before && p->bend < 0) && !gxbp_is_beyond(b, d, p, q, w) && !gxbp_is_beyond(b, d, q, r, w) && gxbp_knot_turn(b, r, p, w) >= 0) return 0;
+    return 1;
+}
+
+/* Edge k of a facet is the one in a slot: the second facet there meets the first. */
+static void gxbp_use_slot(gxb_boolean *b, gxbp_division *d, uint32_t f, uint32_t k, uint32_t slot) {
+    gxbp_piece *piece = &b->pieces[f];
+    uint32_t other;
+    piece->near[k] = GXB_NONE;
+    piece->labels[k] = slot == GXB_NONE ? GXBP_BARE : slot < d->step_count ? d->labels + slot : GXBP_LOOSE;
+    if (slot == GXB_NONE) return;
+    other = d->half[slot];
+    d->half[slot] = 3 * f + k;
+    if (other == GXB_NONE) return;
+    piece->near[k] = other / 3;
+    b->pieces[other / 3].near[other % 3] = f;
+}
+
+static void gxbp_cut_ear(gxb_boolean *b, gxbp_division *d, gxbp_knot *p, const gxbp_knot *q, const gxbp_knot *r, uint32_t slot) {
+    const uint32_t f = d->spare != GXB_NONE ? d->spare : gxbp_new_piece(b, d->source);
+    gxbp_piece *piece;
+    if (f == GXB_NONE) return;
+    d->spare = GXB_NONE;
+    piece = &b->pieces[f];
+    piece->v[0] = p->vertex; piece->v[1] = q->vertex; piece->v[2] = r->vertex;
+    piece->state = d->state;
+    gxbp_use_slot(b, d, f, 0, p->slot);
+    gxbp_use_slot(b, d, f, 1, q->slot);
+    gxbp_use_slot(b, d, f, 2, slot);
+}
+
+/* Only a reflex vertex may stay one where a neighbour is cut off. Returns 1 if it became convex. */
+static uint32_t gxbp_bend_again(gxb_boolean *b, gxbp_knot *polygon, gxbp_knot *v) {
+    const int old = v->bend;
+    v->bend = old >= 0 ? 1 : gxbp_knot_turn(b, &polygon[v->before], v, &polygon[v->after]);
+    return old <= 0 && v->bend > 0;
+}
+
+/* First corners beside vertices that are not convex: that a chain is all but straight matters to others. */
+static void gxbp_fill_polygon(gxb_boolean *b, gxbp_division *d, uint32_t n) {
+    gxbp_knot *polygon = d->polygon, *q = polygon, *p, *r;
+    uint32_t i, tried = 0, concave = 0;
+    for (i = 0; i < n; i++) {
+        polygon[i].before = i == 0 ? n - 1 : i - 1;
+        polygon[i].after = i + 1 == n ? 0 : i + 1;
+        concave += polygon[i].bend <= 0;
+    }
+    for (; b->result == GX_OK; q = r) {
+        p = &polygon[q->before];
+        r = &polygon[q->after];
+        if (n == 3) { gxbp_cut_ear(b, d, p, q, r, r->slot); return; }
+        if (tried++ > 2 * n) gxbp_stop(b, GX_ERROR_OVERLAP);
+        if (q->bend <= 0 || (concave > 0 && ((tried <= n && p->bend > 0 && r->bend > 0) || !gxbp_is_ear(b, d, q)))) continue;
+        d->half[d->slot_count] = GXB_NONE;
+        gxbp_cut_ear(b, d, p, q, r, d->slot_count);
+        p->slot = d->slot_count++;
+        p->after = q->after;
+        r->before = q->before;
+        concave -= gxbp_bend_again(b, polygon, p) + gxbp_bend_again(b, polygon, r);
+        tried = 0;
+        n--;
+    }
+}
+
+/* Along a chain from rim point i: what it passes becomes a part of the polygon. Returns the rim point in which it ends. */
+static uint32_t gxbp_walk_chain(gxbp_division *d, uint32_t i, uint32_t *n) {
+    const gxbp_strand *strand = &d->strand[d->chain[i]];
+    const int forward = strand->from == i;
+    uint32_t m;
+    d->polygon[*n] = d->rim[i];
+    d->polygon[(*n)++].slot = forward ? strand->first : strand->first + strand->count - 1;
+    for (m = 1; m < strand->count; m++) {
+        const uint32_t step = strand->first + (forward ? m : strand->count - m);
+        gxbp_knot *knot = &d->polygon[(*n)++];
+        *knot = d->step[step];
+        knot->slot = forward ? step : step - 1;
+        if (!forward) knot->bend = -knot->bend;
+    }
+    return forward ? strand->to : strand->from;
+}
+
+/* The polygons, each from one of its rim's edges on. */
+static void gxbp_fill_polygons(gxb_boolean *b, gxbp_division *d) {
+    uint32_t done = 0, start, i, n;
+    for (start = 0; start < d->rim_count; start++) {
+        if (done >> start & 1) continue;
+        i = start;
+        n = 0;
+        do {
+            done |= 1u << i;
+            d->polygon[n++] = d->rim[i];
+            i = i + 1 == d->rim_count ? 0 : i + 1;
+            if (d->chain[i] != GXB_NONE) i = gxbp_walk_chain(d, i, &n);
+        } while (i != start);
+        gxbp_fill_polygon(b, d, n);
+    }
+}
+
+/* 0: it is another case, and nothing is divided. */
+static int gxbp_divide_by_chains(gxb_boolean *b, uint32_t s, uint32_t n) {
+    gxbp_division d;
+    uint32_t i;
+    if (!gxbp_is_generic(b, s, n)) return 0;
+    d.source = s;
+    b->plane = b->sources[s].plane;
+    if (!gxbp_collect_rim(b, &d, n) || !gxbp_collect_chains(b, &d, n)) return 0;
+    if (!GXBP_ROOM(b, links, link, n)) return 1;
+    for (i = 0; i < n; i++) {
+        gxbp_new_link(b, b->segments[b->chain[3 * d.step[i].slot]].label, GXBP_BARE);
+        d.half[i] = GXB_NONE;
+    }
+    d.slot_count = n;
+    d.labels = b->link_count - n;
+    d.spare = b->sources[s].facet;
+    d.state = b->pieces[d.spare].state;
+    gxbp_fill_polygons(b, &d);
+    return 1;
+}
+
 /* Facets at the starts of a source's edges: half-edges that leave the corner, or come to it where the edge starts at its other end. */
 static void gxbp_note_rims(gxb_boolean *b, uint32_t s) {
     uint32_t leaves[3], comes[3], *rim[3], cut[3], f, k, j;
@@ -5840,13 +6126,11 @@ static void gxbp_note_rims(gxb_boolean *b, uint32_t s) {
     }
 }
 
-static void gxbp_divide_source(gxb_boolean *b, uint32_t s) {
-    uint32_t n, i, k, pass;
-    if (!gxbp_need_plane(b, s)) return;
-    gxbp_note_divided(b, s);
+/* By one segment after the other: first those that begin where there are vertices */
+static void gxbp_divide_by_segments(gxb_boolean *b, uint32_t s, uint32_t n) {
+    uint32_t i, k, pass;
     gxbp_open_triangulation(b, s);
     for (k = 0; k < 3; k++) gxbp_divide_rim(b, s, k);
-    n = gxbp_chain_segments(b, s);
     for (pass = 0; pass < 2; pass++)
         for (i = 0; i < n && b->result == GX_OK; i++) {
             const gxbp_segment *segment;
@@ -5854,7 +6138,16 @@ static void gxbp_divide_source(gxb_boolean *b, uint32_t s) {
             segment = &b->segments[b->chain[3 * i]];
             if (pass == 1 || gxbp_is_placed(b, gxbp_same(b, segment->p)) || gxbp_is_placed(b, gxbp_same(b, segment->q))) gxbp_trace_segments(b, s, i);
         }
-    gxbp_note_rims(b, s);
+}
+
+static void gxbp_divide_source(gxb_boolean *b, uint32_t s) {
+    uint32_t n;
+    if (!gxbp_need_plane(b, s)) return;
+    gxbp_note_divided(b, s);
+    n = gxbp_chain_segments(b, s);
+    if (b->result != GX_OK) return;
+    if (!gxbp_divide_by_chains(b, s, n)) gxbp_divide_by_segments(b, s, n);
+    if (b->result == GX_OK) gxbp_note_rims(b, s);
 }
 
 /* --- flats: sources that overlap in one plane are divided together, within a frame around them --- */
@@ -5903,18 +6196,6 @@ static GXBP_COLD void gxbp_make_frame(gxb_boolean *b, uint32_t r) {
     for (t = 0; t < 3; t++) { gxbp_set_edge(b, f, (int)t, GXB_NONE, GXBP_BARE); gxbp_set_edge(b, g, (int)t, GXB_NONE, GXBP_BARE); }
     gxbp_set_edge(b, f, 2, g, GXBP_LOOSE);
     gxbp_set_edge(b, g, 0, f, GXBP_LOOSE);
-}
-
-/* Point i of an edge: its start, its inner points in order, its end. */
-static uint32_t gxbp_edge_point(gxb_boolean *b, uint32_t s, uint32_t k, uint32_t i) {
-    const uint32_t cut = b->sources[s].edge[k], count = cut == GXB_NONE ? 0 : b->cuts[cut].count;
-    if (i == 0) return gxbp_same(b, b->sources[s].point[k]);
-    if (i > count) return gxbp_same(b, b->sources[s].point[(k + 1) % 3]);
-    return gxbp_same(b, b->cut_points[b->cuts[cut].first + (b->cuts[cut].half_edge == 3 * s + k ? i - 1 : count - i)]);
-}
-
-static uint32_t gxbp_edge_points(const gxb_boolean *b, uint32_t s, uint32_t k) {
-    return 2 + (b->sources[s].edge[k] == GXB_NONE ? 0 : b->cuts[b->sources[s].edge[k]].count);
 }
 
 static void gxbp_place_flat_points(gxb_boolean *b, uint32_t r) {
