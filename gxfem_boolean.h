@@ -5076,26 +5076,32 @@ static void gxbp_meet_leaves(gxb_boolean *b, const gxbp_operand *o, uint32_t i, 
     }
 }
 
-/* Box i of level l of one tree, box j of level m of the other. Depth: the sum of their levels. */
+static int gxbp_boxes_meet(const gxb_boolean *b, const gxbp_tree *s, uint32_t l, uint32_t i, const gxbp_tree *t, uint32_t m, uint32_t j) {
+    return gxbp_box_meets(&b->boxes[s->first + s->level[l] + i], &b->boxes[t->first + t->level[m] + j]);
+}
+
+/* Box i of level l of one tree and box j of level m of the other, which meet. Depth: the sum of their levels. */
 static GXBP_APART void gxbp_meet_boxes(gxb_boolean *b, const gxbp_operand *o, uint32_t l, uint32_t i, const gxbp_operand *q, uint32_t m, uint32_t j) {
     const gxbp_tree *s = &o->tree, *t = &q->tree;
-    uint32_t c;
-    if (b->result != GX_OK || (o == q && l == m && i > j)) return;
-    if (!gxbp_box_meets(&b->boxes[s->first + s->level[l] + i], &b->boxes[t->first + t->level[m] + j])) return;
+    uint32_t c, d;
+    if (b->result != GX_OK) return;
     if (l == 0 && m == 0) gxbp_meet_leaves(b, o, i, q, j);
-    else if (l >= m) {
-        for (c = 2 * i; c < 2 * i + 2 && c < s->size[l - 1]; c++) {
-            uint32_t d;
-            if (l > m) { gxbp_meet_boxes(b, o, l - 1, c, q, m, j); continue; }
-            for (d = 2 * j; d < 2 * j + 2 && d < t->size[m - 1]; d++) gxbp_meet_boxes(b, o, l - 1, c, q, m - 1, d);
-        }
-    } else for (c = 2 * j; c < 2 * j + 2 && c < t->size[m - 1]; c++) gxbp_meet_boxes(b, o, l, i, q, m - 1, c);
+    else if (l > m) {
+        for (c = 2 * i; c < 2 * i + 2 && c < s->size[l - 1]; c++)
+            if (gxbp_boxes_meet(b, s, l - 1, c, t, m, j)) gxbp_meet_boxes(b, o, l - 1, c, q, m, j);
+    } else if (l == m) {
+        for (c = 2 * i; c < 2 * i + 2 && c < s->size[l - 1]; c++)
+            for (d = o == q && c > 2 * j ? c : 2 * j; d < 2 * j + 2 && d < t->size[m - 1]; d++)
+                if (gxbp_boxes_meet(b, s, l - 1, c, t, m - 1, d)) gxbp_meet_boxes(b, o, l - 1, c, q, m - 1, d);
+    } else for (c = 2 * j; c < 2 * j + 2 && c < t->size[m - 1]; c++)
+        if (gxbp_boxes_meet(b, s, l, i, t, m - 1, c)) gxbp_meet_boxes(b, o, l, i, q, m - 1, c);
 }
 
 static void gxbp_meet_operands(gxb_boolean *b, uint32_t i, uint32_t j) {
     const gxbp_operand *o = &b->operands[i], *q = &b->operands[j];
+    const uint32_t l = o->tree.levels - 1, m = q->tree.levels - 1;
     if (i == j && o->simple) return;
-    gxbp_meet_boxes(b, o, o->tree.levels - 1, 0, q, q->tree.levels - 1, 0);
+    if (gxbp_boxes_meet(b, &o->tree, l, 0, &q->tree, m, 0)) gxbp_meet_boxes(b, o, l, 0, q, m, 0);
 }
 
 /* --- edges: their inner points in order --- */
