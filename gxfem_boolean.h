@@ -3992,6 +3992,9 @@ typedef struct gxbp_hit { uint32_t cut, point; } gxbp_hit;
 typedef struct gxbp_margin { uint32_t vertex, near, labels, made, dangling; } gxbp_margin;
 typedef struct gxbp_box { float low[3], high[3]; } gxbp_box;   /* coordinates / 16, not less wide than what is in it: see gxbp_float_below */
 
+/* Of a leaf's triangles, side by side; those that are not there meet nothing. */
+typedef struct gxbp_leaf_boxes { float low[3][GXBP_LEAF], high[3][GXBP_LEAF]; } gxbp_leaf_boxes;
+
 typedef struct gxbp_tree {      /* boxes over groups of GXBP_LEAF sources, then over pairs of boxes, up to one */
     uint32_t first, levels;     /* of its boxes in gxb_boolean.boxes */
     uint32_t level[28];         /* first box of each level, from first */
@@ -4001,6 +4004,7 @@ typedef struct gxbp_tree {      /* boxes over groups of GXBP_LEAF sources, then 
 typedef struct gxbp_operand {
     uint32_t operation, rule, simple;
     uint32_t source, source_count;
+    uint32_t bounds;            /* of its leaves in gxb_boolean.bounds */
     uint32_t *order;            /* sources in the order of the tree's leaves, in one piece of memory of its own */
     gxbp_tree tree;
 } gxbp_operand;
@@ -4023,7 +4027,7 @@ struct gxb_boolean {
     void *user;
     gxbp_operand *operands; uint32_t operand_count, operand_capacity;
     gxbp_source *sources; uint32_t source_count, source_capacity;
-    gxbp_box *bounds; uint32_t bound_count, bound_capacity;             /* of each operand's sources, in its tree's order */
+    gxbp_leaf_boxes *bounds; uint32_t bound_count, bound_capacity;      /* of each operand's sources, in its tree's order */
     gxbp_box *boxes; uint32_t box_count, box_capacity;                  /* of trees */
     gxbp_vertex *vertices; uint32_t vertex_count, vertex_capacity;
     uint32_t *table; uint32_t table_size, table_used;                   /* hash of points by coordinates or key */
@@ -4550,14 +4554,26 @@ static GXBP_APART void gxbp_sort_sources(const gxb_boolean *b, const gxbp_operan
     for (i = 0; i < o->source_count; i++) o->order[i] = (uint32_t)from[i];
 }
 
+/* Boxes of leaf i's sources, and around them */
+static void gxbp_fill_leaf(gxb_boolean *b, const gxbp_operand *o, uint32_t i) {
+    gxbp_leaf_boxes *leaf = &b->bounds[o->bounds + i];
+    gxbp_box *around = &b->boxes[o->tree.first + i];
+    uint32_t x, k;
+    for (x = 0; x < GXBP_LEAF; x++) {
+        gxbp_box box;
+        if (i * GXBP_LEAF + x < o->source_count) {
+            box = gxbp_box_of(b, o->order[i * GXBP_LEAF + x]);
+            if (x == 0) *around = box;
+            else gxbp_box_join(around, &box);
+        } else for (k = 0; k < 3; k++) { box.low[k] = (float)gxbp_power(126); box.high[k] = -box.low[k]; }
+        for (k = 0; k < 3; k++) { leaf->low[k][x] = box.low[k]; leaf->high[k][x] = box.high[k]; }
+    }
+}
+
 static void gxbp_fill_tree(gxb_boolean *b, const gxbp_operand *o) {
     const gxbp_tree *t = &o->tree;
     uint32_t i, l;
-    for (i = 0; i < o->source_count; i++) {
-        gxbp_box *box = &b->boxes[t->first + i / GXBP_LEAF];
-        if (i % GXBP_LEAF == 0) *box = b->bounds[o->source + i];
-        else gxbp_box_join(box, &b->bounds[o->source + i]);
-    }
+    for (i = 0; i < t->size[0]; i++) gxbp_fill_leaf(b, o, i);
     for (l = 1; l < t->levels; l++)
         for (i = 0; i < t->size[l - 1]; i++) {
             gxbp_box *box = &b->boxes[t->first + t->level[l] + i / 2];
@@ -4579,8 +4595,8 @@ static gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
         gxbp_sort_sources(b, o, work);
         gxbp_release(&b->cx.allocator, work, 2 * words * sizeof *work);
     } else for (i = 0; i < o->source_count; i++) o->order[i] = o->source + i;
-    for (i = 0; i < o->source_count; i++) b->bounds[o->source + i] = gxbp_box_of(b, o->order[i]);
-    b->bound_count = o->source + o->source_count;
+    o->bounds = b->bound_count;
+    b->bound_count += size;
     for (t->levels = 0; ; size = (size + 1) / 2) {
         t->level[t->levels] = total;
         t->size[t->levels++] = size;
@@ -4601,10 +4617,11 @@ static size_t gxbp_foresee(const gxb_boolean *b, size_t count, size_t thirds) { 
 static gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operand *o, size_t *bad) {
     const size_t words = 2 * o->vertex_count + 6 * o->triangle_count;
     const size_t sources = gxbp_foresee(b, o->triangle_count, 1), pieces = gxbp_foresee(b, o->triangle_count, 3), points = gxbp_foresee(b, o->vertex_count, 3);
+    const size_t leaves = gxbp_foresee(b, (o->triangle_count + GXBP_LEAF - 1) / GXBP_LEAF, 1);
     gxbp_operand *mine;
     gx_result result;
     uint32_t *work;
-    if (!GXBP_ROOM(b, operands, operand, 1) || !GXBP_ROOM(b, sources, source, sources) || !GXBP_ROOM(b, bounds, bound, sources) ||
+    if (!GXBP_ROOM(b, operands, operand, 1) || !GXBP_ROOM(b, sources, source, sources) || !GXBP_ROOM(b, bounds, bound, leaves) ||
         !GXBP_ROOM(b, pieces, piece, pieces) || !GXBP_ROOM(b, vertices, vertex, points) ||
         !gxbp_grow_table(b, (uint32_t)o->vertex_count)) return b->result;
     result = GXBP_RESERVE(&b->cx, points, point, points);
@@ -5049,29 +5066,32 @@ static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
 
 /* --- broad phase: pairs of boxes of two trees, or of one --- */
 
-/* Sources of box i of a tree that meet a box, as positions in the tree's order. Returns how many. */
-static uint32_t gxbp_leaf_members(const gxb_boolean *b, const gxbp_operand *o, uint32_t i, const gxbp_box *box, uint32_t member[GXBP_LEAF]) {
-    const uint32_t end = i * GXBP_LEAF + GXBP_LEAF < o->source_count ? i * GXBP_LEAF + GXBP_LEAF : o->source_count;
-    uint32_t x, n = 0;
-    for (x = i * GXBP_LEAF; x < end; x++) {
-        member[n] = x;
-        n += (uint32_t)gxbp_box_meets(&b->bounds[o->source + x], box);
-    }
-    return n;
+/* Which of a leaf's boxes meet a box: without branches, all at once where the compiler can */
+static void gxbp_test_leaf(const gxbp_leaf_boxes *leaf, const gxbp_box *box, uint32_t meets[GXBP_LEAF]) {
+    uint32_t x;
+    for (x = 0; x < GXBP_LEAF; x++)
+        meets[x] = (uint32_t)((leaf->low[0][x] <= box->high[0]) & (box->low[0] <= leaf->high[0][x]) & (leaf->low[1][x] <= box->high[1]) &
+                              (box->low[1] <= leaf->high[1][x]) & (leaf->low[2][x] <= box->high[2]) & (box->low[2] <= leaf->high[2][x]));
+}
+
+static gxbp_box gxbp_leaf_box(const gxbp_leaf_boxes *leaf, uint32_t x) {
+    gxbp_box box;
+    uint32_t k;
+    for (k = 0; k < 3; k++) { box.low[k] = leaf->low[k][x]; box.high[k] = leaf->high[k][x]; }
+    return box;
 }
 
 static void gxbp_meet_leaves(gxb_boolean *b, const gxbp_operand *o, uint32_t i, const gxbp_operand *q, uint32_t j) {
-    uint32_t first[GXBP_LEAF], second[GXBP_LEAF], n, m, x, y;
-    n = gxbp_leaf_members(b, o, i, &b->boxes[q->tree.first + j], first);
-    m = n == 0 ? 0 : gxbp_leaf_members(b, q, j, &b->boxes[o->tree.first + i], second);
-    for (x = 0; x < n; x++) {
-        const uint32_t s = o->order[first[x]];
-        const gxbp_box *box = &b->bounds[o->source + first[x]];
-        if (b->sources[s].flags & GXBP_DEGENERATE) continue;
-        for (y = 0; y < m; y++) {
-            const uint32_t t = q->order[second[y]];
-            if ((o == q && second[y] <= first[x]) || !gxbp_box_meets(box, &b->bounds[q->source + second[y]])) continue;
-            if (!(b->sources[t].flags & GXBP_DEGENERATE)) gxbp_meet(b, s, t);
+    uint32_t first[GXBP_LEAF], second[GXBP_LEAF], x, y;
+    gxbp_test_leaf(&b->bounds[o->bounds + i], &b->boxes[q->tree.first + j], first);
+    for (x = 0; x < GXBP_LEAF; x++) {
+        gxbp_box box;
+        if (!first[x] || b->sources[o->order[i * GXBP_LEAF + x]].flags & GXBP_DEGENERATE) continue;
+        box = gxbp_leaf_box(&b->bounds[o->bounds + i], x);
+        gxbp_test_leaf(&b->bounds[q->bounds + j], &box, second);
+        for (y = o == q && i == j ? x + 1 : 0; y < GXBP_LEAF; y++) {
+            if (!second[y] || b->sources[q->order[j * GXBP_LEAF + y]].flags & GXBP_DEGENERATE) continue;
+            gxbp_meet(b, o->order[i * GXBP_LEAF + x], q->order[j * GXBP_LEAF + y]);
         }
     }
 }
@@ -6523,7 +6543,7 @@ static uint32_t gxbp_state_behind(gxb_boolean *b, uint32_t f) {
 
 typedef struct gxbp_ray {
     gxb_ball ball;
-    gxbp_box box;               /* around ball */
+    gxbp_box box;               /* around the whole ray */
     uint32_t f;
     int32_t *winding;
     int exact;                  /* is probe made yet? */
@@ -6557,7 +6577,7 @@ static void gxbp_set_ray(gxb_boolean *b, gxbp_ray *ray, uint32_t f) {
     ray->ball.error = gxbp_power(-49) * ray->ball.error + GXBP_TINY;
     for (k = 0; k < 3; k++) {
         ray->box.low[k] = gxbp_float_below(ray->ball.x[k] - 2 * ray->ball.error);
-        ray->box.high[k] = gxbp_float_above(ray->ball.x[k] + 2 * ray->ball.error);
+        ray->box.high[k] = k == 0 ? (float)gxbp_power(125) : gxbp_float_above(ray->ball.x[k] + 2 * ray->ball.error);
     }
 }
 
@@ -6583,20 +6603,16 @@ static void gxbp_cross_ray(gxb_boolean *b, gxbp_ray *ray, uint32_t s) {
     if (behind == left) ray->winding[b->sources[s].operand] += left;
 }
 
-static int gxbp_ray_meets(const gxbp_ray *ray, const gxbp_box *box) {
-    const gxbp_box *r = &ray->box;
-    return box->high[0] >= r->low[0] && box->low[1] <= r->high[1] && box->high[1] >= r->low[1] && box->low[2] <= r->high[2] && box->high[2] >= r->low[2];
-}
 
 static GXBP_APART void gxbp_shoot(gxb_boolean *b, gxbp_ray *ray, const gxbp_operand *o, uint32_t l, uint32_t i) {
-    uint32_t c;
-    if (!gxbp_ray_meets(ray, &b->boxes[o->tree.first + o->tree.level[l] + i])) return;
+    uint32_t meets[GXBP_LEAF], c;
+    if (!gxbp_box_meets(&ray->box, &b->boxes[o->tree.first + o->tree.level[l] + i])) return;
     if (l > 0) {
         for (c = 2 * i; c < 2 * i + 2 && c < o->tree.size[l - 1]; c++) gxbp_shoot(b, ray, o, l - 1, c);
         return;
     }
-    for (c = i * GXBP_LEAF; c < (i + 1) * GXBP_LEAF && c < o->source_count; c++)
-        if (gxbp_ray_meets(ray, &b->bounds[o->source + c])) gxbp_cross_ray(b, ray, o->order[c]);
+    gxbp_test_leaf(&b->bounds[o->bounds + i], &ray->box, meets);
+    for (c = 0; c < GXBP_LEAF; c++) if (meets[c]) gxbp_cross_ray(b, ray, o->order[i * GXBP_LEAF + c]);
 }
 
 /* The side of a plane to which a point of it is moved: 0 for planes across x. */
@@ -7897,20 +7913,21 @@ static GXBP_COLD void gxbp_cut_points_back(gxb_boolean *b, uint32_t count) {
 }
 
 GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, gx_failure *failure) {
-    uint32_t sources, pieces, points, boxes;
+    uint32_t sources, pieces, points, boxes, bounds;
     size_t bad = SIZE_MAX;
     gx_result result;
     if (b == NULL || operand == NULL) return gxbp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     result = gxbp_check_operand(b, operand, &bad);
     if (result != GX_OK) return gxbp_fail(failure, result, bad);
-    sources = b->source_count; pieces = b->piece_count; points = b->vertex_count; boxes = b->box_count;
+    sources = b->source_count; pieces = b->piece_count; points = b->vertex_count; boxes = b->box_count; bounds = b->bound_count;
     b->result = GX_OK;
     b->over_limit = 0;
     if (b->operand_count == 0) gxbp_choose_scale(b, operand);
     result = gxbp_append_operand(b, operand, &bad);
     if (result == GX_ERROR_MEMORY && b->over_limit) result = GX_ERROR_LIMIT;
     if (result != GX_OK) {
-        b->source_count = b->bound_count = sources;
+        b->source_count = sources;
+        b->bound_count = bounds;
         b->piece_count = pieces;
         b->box_count = boxes;
         gxbp_cut_points_back(b, points);
