@@ -979,23 +979,22 @@ static int gxbp_filter_range(const double *x, int count) {
 #if GXB_LIMB_BITS == 64
 __extension__ typedef __int128 gxbp_signed_wide;
 
-/* count doubles as integers below 2^61 of one unit. 0: the smallest needs a finer one, or is a denormal */
+/* count doubles as integers below 2^61 of one unit. 0: the smallest needs a finer one, or is a denormal. A product by a power of two is exact unless
+   it underflows: then it is no integer, or has become 0. */
 static int gxbp_short_integers(const double *const *x, int count, int dimension, int64_t *out) {
     int top = 0, i, k;
+    double scale;
     for (i = 0; i < count; i++) for (k = 0; k < dimension; k++) {
         const int e = gxbp_exponent_bits(x[i][k]);
         if (e > top) top = e;
     }
+    if (top == 0x7ff || 60 - (top - 1023) > 1023) return 0;
+    scale = gxbp_power(60 - (top - 1023));
     for (i = 0; i < count; i++) for (k = 0; k < dimension; k++) {
-        const uint64_t bits = gxbp_bits(x[i][k]);
-        const int shift = gxbp_exponent_bits(x[i][k]) - top + 8;
-        uint64_t m = (bits & (((uint64_t)1 << 52) - 1)) | (uint64_t)1 << 52;
-        if (bits << 1 == 0) m = 0;
-        else if (gxbp_exponent_bits(x[i][k]) == 0) return 0;
-        else if (shift >= 0) m <<= shift;
-        else if (shift > -53 && (m & (((uint64_t)1 << -shift) - 1)) == 0) m >>= -shift;
-        else return 0;
-        *out++ = bits >> 63 ? -(int64_t)m : (int64_t)m;
+        const double y = gxbp_fence(x[i][k] * scale);
+        const int64_t m = (int64_t)y;
+        if (gxbp_bits((double)m) << 1 != gxbp_bits(y) << 1 || (m == 0 && !gxbp_is_zero(x[i][k]))) return 0;
+        *out++ = m;
     }
     return 1;
 }
@@ -6777,14 +6776,17 @@ static int gxbp_piece_misses(const gxb_boolean *b, uint32_t f, const gxbp_box *b
     return 1;
 }
 
-/* Along the box's shortest side first */
+/* Along the box's shortest side first. The facets go to b->chain. */
 static void gxbp_open_states(gxb_boolean *b, const gxbp_box *box) {
     uint32_t f;
     int axis = 0, k;
     for (k = 1; k < 3; k++) if (box->high[k] - box->low[k] < box->high[axis] - box->low[axis]) axis = k;
     for (f = 0; f < b->piece_count; f++) {
         if (b->pieces[f].source == GXB_NONE || b->pieces[f].state == GXB_NONE || gxbp_piece_misses(b, f, box, axis)) continue;
-        if (!gxbp_piece_misses(b, f, box, (axis + 1) % 3) && !gxbp_piece_misses(b, f, box, (axis + 2) % 3)) b->pieces[f].state |= GXBP_OPEN;
+        if (gxbp_piece_misses(b, f, box, (axis + 1) % 3) || gxbp_piece_misses(b, f, box, (axis + 2) % 3) || gxbp_is_open(b, f)) continue;
+        if (!GXBP_ROOM(b, chain, chain, 1)) return;
+        b->chain[b->chain_count++] = f;
+        b->pieces[f].state |= GXBP_OPEN;
     }
 }
 
@@ -6836,13 +6838,14 @@ static void gxbp_close_by_ray(gxb_boolean *b, uint32_t f) {
 static void gxbp_close_states(gxb_boolean *b) {
     uint32_t f, i, pass;
     int k;
+    b->chain_count = 0;
     for (i = b->stated; i < b->operand_count; i++) {
         const gxbp_tree *tree = &b->operands[i].tree;
         gxbp_open_states(b, &b->boxes[tree->first + tree->level[tree->levels - 1]]);
     }
     for (pass = 0; pass < 2; pass++)
-        for (f = 0; f < b->piece_count && b->result == GX_OK; f++) {
-            if (b->pieces[f].source == GXB_NONE) continue;
+        for (i = 0; i < b->chain_count && b->result == GX_OK; i++) {
+            f = b->chain[i];
             for (k = 0; k < 3 && gxbp_is_open(b, f); k++) {
                 const uint32_t g = gxbp_neighbour(b, f, k);
                 if (g != GXB_NONE && b->pieces[g].state != GXB_NONE && !gxbp_is_open(b, g)) gxbp_spread_closed(b, g);
@@ -7880,7 +7883,7 @@ GXFEM_API void gxb_boolean_destroy(gxb_boolean *boolean) {
     gx_allocator outer;
     if (boolean == NULL) return;
     outer = boolean->outer;
-    gxbp_drop_boolean(boolean);
+    if (boolean->allocations > 1) gxbp_drop_boolean(boolean);      /* else all is in the arena */
     gxbp_release(&outer, boolean, gxbp_whole_words(sizeof *boolean) + boolean->arena_size);
 }
 
@@ -7958,8 +7961,16 @@ static GXBP_COLD void gxbp_forget_arrangement(gxb_boolean *b) {
     }
 }
 
+/* Room for the planes of a sixth of the new triangles: what is not used is not touched, and little is copied. */
+static void gxbp_foresee_planes(gxb_boolean *b) {
+    const uint32_t fresh = b->arranged < b->operand_count ? b->source_count - b->operands[b->arranged].source : 0;
+    const gx_result result = GXBP_RESERVE(&b->cx, planes, plane, fresh / 6);
+    if (result != GX_OK) gxbp_stop(b, result);
+}
+
 static void gxbp_arrange(gxb_boolean *b) {
     uint32_t i, j;
+    gxbp_foresee_planes(b);
     for (i = b->arranged; i < b->operand_count; i++)
         for (j = 0; j <= i && b->result == GX_OK; j++) gxbp_meet_operands(b, i, j);
     gxbp_order_cuts(b);
