@@ -4438,15 +4438,13 @@ static gx_result gxbp_read_points(gxb_boolean *b, const gxb_operand *o, uint32_t
     size_t i;
     for (i = 0; i < o->vertex_count; i++) {
         double y[3];
+        gxbp_vertex *v;
         const gx_result result = gxbp_scale(b, o->vertices + 3 * i, y);
         if (result != GX_OK) { *bad = i; return result; }
         points[i] = gxbp_input_point(b, y, b->operand_count, (uint32_t)i);
         if (points[i] == GXB_NONE) return b->result;
-        b->vertices[points[i]].head = GXB_NONE;
-    }
-    for (i = 0; i < o->vertex_count; i++) {         /* vertices at one place are one */
-        gxbp_vertex *v = &b->vertices[points[i]];
-        if (v->head == GXB_NONE) v->head = (uint32_t)i;
+        v = &b->vertices[points[i]];                /* vertices at one place are one: the first of them */
+        if (v->head >= i || points[v->head] != points[i]) v->head = (uint32_t)i;
         local[i] = v->head;
     }
     return GX_OK;
@@ -6707,12 +6705,14 @@ static void gxbp_spread_within(gxb_boolean *b, uint32_t f) {
     }
 }
 
-/* Through a source's facets, then across its edges to sources that have no states yet */
+/* Through a source's facets, then across its edges to sources that have no states yet; in waves, so that the memory of many is waited for
+   at a time. */
 static void gxbp_spread_state(gxb_boolean *b, uint32_t first) {
+    uint32_t i;
     b->scratch_count = 0;
     gxbp_push(b, first);
-    while (b->scratch_count > 0 && b->result == GX_OK) {
-        const uint32_t f = b->scratch[--b->scratch_count], s = b->pieces[f].source;
+    for (i = 0; i < b->scratch_count && b->result == GX_OK; i++) {
+        const uint32_t f = b->scratch[i], s = b->pieces[f].source;
         uint32_t k;
         b->sources[s].flags |= GXBP_REACHED;
         if (b->sources[s].flags & (GXBP_DIVIDED | GXBP_FLAT)) gxbp_spread_within(b, f);
@@ -7567,26 +7567,31 @@ static void gxbp_find_sides(gxb_boolean *b) {
     b->out_side_count = (uint32_t)size;
 }
 
+/* parent: sets of triangles; winding: room for a word per triangle; corners: see gxbp_count_corners */
+static void gxbp_measure_components(gxb_boolean *b, uint32_t *parent, int32_t *winding, const int32_t *corners) {
+    const size_t count = b->out_source_count, bytes = 2 * count * sizeof(double);
+    double *volume = (double *)gxbp_allocate(&b->cx.allocator, bytes);
+    if (volume == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
+    gxbp_measure_shells(b, parent, volume, volume + count);
+    gxbp_number_components(b, parent, volume, winding);
+    gxbp_find_eulers(b, corners);
+    gxbp_release(&b->cx.allocator, volume, bytes);
+}
+
 static void gxbp_find_components(gxb_boolean *b) {
     const uint32_t count = b->out_source_count;
-    const size_t bytes = (size_t)count * (2 * sizeof(double) + 3 * sizeof(uint32_t)) + 16;
-    double *volume;
+    const size_t bytes = 3 * (size_t)count * sizeof(uint32_t);
     uint32_t *parent, t;
     int32_t *corners;
     b->out_component_count = b->out_volume_count = 0;
     if (b->result != GX_OK || count == 0 || !GXBP_ROOM(b, out_components, out_component, count)) return;
-    volume = (double *)gxbp_allocate(&b->cx.allocator, bytes);
-    if (volume == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
-    parent = (uint32_t *)(void *)(volume + 2 * (size_t)count);
+    parent = (uint32_t *)gxbp_allocate(&b->cx.allocator, bytes);
+    if (parent == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
     corners = (int32_t *)(void *)(parent + 2 * (size_t)count);
     for (t = 0; t < count; t++) parent[t] = t;
     gxbp_join_shells(b, parent, corners);
-    if (b->result == GX_OK) {
-        gxbp_measure_shells(b, parent, volume, volume + count);
-        gxbp_number_components(b, parent, volume, (int32_t *)(void *)(parent + count));
-        gxbp_find_eulers(b, corners);
-    }
-    gxbp_release(&b->cx.allocator, volume, bytes);
+    if (b->result == GX_OK) gxbp_measure_components(b, parent, (int32_t *)(void *)(parent + count), corners);
+    gxbp_release(&b->cx.allocator, parent, bytes);
     gxbp_find_sides(b);
 }
 
