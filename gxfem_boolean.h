@@ -4001,7 +4001,8 @@ typedef struct gxbp_tree {      /* boxes over groups of GXBP_LEAF sources, then 
 } gxbp_tree;
 
 typedef struct gxbp_operand {
-    uint32_t operation, rule, simple;
+    uint32_t operation, rule;
+    uint32_t simple;            /* vouched for, or found */
     uint32_t source, source_count;
     uint32_t bounds;            /* of its leaves in gxb_boolean.bounds */
     uint32_t *order;            /* sources in the order of the tree's leaves, in one piece of memory of its own */
@@ -4037,6 +4038,7 @@ struct gxb_boolean {
     uint32_t *cut_points; uint32_t cut_point_count, cut_point_capacity;
     gxbp_hit *hits; uint32_t hit_count, hit_capacity;
     uint32_t *dirty; uint32_t dirty_count, dirty_capacity;
+    uint32_t marks;             /* how often a source was found to meet something */
     uint32_t *divided; uint32_t divided_count, divided_capacity;        /* sources that were, alone or as a flat's roots */
     gxbp_margin *rims; uint32_t rim_count, rim_capacity;
     gxbp_margin *lefts; uint32_t left_count, left_capacity;
@@ -4690,6 +4692,7 @@ static int gxbp_need_plane(gxb_boolean *b, uint32_t s) {
 }
 
 static void gxbp_mark_dirty(gxb_boolean *b, uint32_t s) {
+    b->marks++;
     if (b->sources[s].flags & GXBP_DIRTY || !GXBP_ROOM(b, dirty, dirty, 1)) return;
     b->sources[s].flags |= GXBP_DIRTY;
     b->dirty[b->dirty_count++] = s;
@@ -5114,11 +5117,13 @@ static GXBP_APART void gxbp_meet_boxes(gxb_boolean *b, const gxbp_operand *o, ui
         if (gxbp_boxes_meet(b, s, l, i, t, m - 1, c)) gxbp_meet_boxes(b, o, l, i, q, m - 1, c);
 }
 
+/* A surface that does not meet itself is known to be simple. */
 static void gxbp_meet_operands(gxb_boolean *b, uint32_t i, uint32_t j) {
-    const gxbp_operand *o = &b->operands[i], *q = &b->operands[j];
-    const uint32_t l = o->tree.levels - 1, m = q->tree.levels - 1;
+    gxbp_operand *o = &b->operands[i], *q = &b->operands[j];
+    const uint32_t l = o->tree.levels - 1, m = q->tree.levels - 1, marks = b->marks;
     if (i == j && o->simple) return;
     if (gxbp_boxes_meet(b, &o->tree, l, 0, &q->tree, m, 0)) gxbp_meet_boxes(b, o, l, 0, q, m, 0);
+    if (i == j) o->simple = b->marks == marks && b->result == GX_OK;
 }
 
 /* --- edges: their inner points in order --- */
