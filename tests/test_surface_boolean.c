@@ -163,6 +163,59 @@ START_TEST(slabs) {
 }
 END_TEST
 
+/* Crossing boxes far away: a surface with them is not simple, and divides others segment by segment instead of by whole chains. */
+static void add_crossing_boxes(wl_surface *s) {
+    static const double low[2][3] = { { 50, 50, 50 }, { 51, 51, 51 } }, high[2][3] = { { 52, 52, 52 }, { 53, 53, 53 } };
+    int i;
+    for (i = 0; i < 2; ++i) wl_add_aligned_box(s, low[i], high[i]);
+}
+
+static void check_chains(const char *name, const wl_surface *body, wl_surface *cut) {
+    answer chains = combine(body, GXB_DIFFERENCE, cut), segments;
+    add_crossing_boxes(cut);
+    segments = combine(body, GXB_DIFFERENCE, cut);
+    CHECK_CASE(chains.components == segments.components && chains.triangles == segments.triangles && chains.euler == segments.euler &&
+               fabs(chains.volume - segments.volume) <= 1e-12 * segments.volume,
+               "%s: %zu components of %zu triangles and volume %.17g by chains, %zu of %zu and %.17g by segments", name, chains.components,
+               chains.triangles, chains.volume, segments.components, segments.triangles, segments.volume);
+}
+
+static void check_chains_of(const char *name, workload w) {
+    wl_surface body = boundary_of(&w);
+    check_chains(name, &body, &w.surfaces[0]);
+    surface_free(&body);
+    wl_free(&w);
+}
+
+START_TEST(chains_divide_as_segments_do) {
+    static const uint32_t faces[4][3] = { { 1, 2, 3 }, { 0, 3, 2 }, { 0, 1, 3 }, { 0, 2, 1 } };
+    static const double low[3] = { 0.25, 0.25, 0.25 }, high[3] = { 0.75, 0.75, 0.75 };
+    int i, k;
+    check_chains_of("W1", wl_through(1e-4));
+    check_chains_of("W2", wl_ring_cut(6));
+    check_chains_of("W2f", wl_ring_cut(5));
+    check_chains_of("W3", wl_wavy(1));
+    random_state = 7;
+    for (i = 0; i < 100; ++i) {
+        wl_surface box, tetrahedron;
+        double x[4][3];
+        char name[32];
+        int turned;
+        memset(&box, 0, sizeof box);
+        memset(&tetrahedron, 0, sizeof tetrahedron);
+        wl_add_aligned_box(&box, low, high);
+        for (k = 0; k < 12; ++k) x[k / 3][k % 3] = (double)(random_bits() >> 11) / 9007199254740992.0;
+        turned = gxb_orient3d(x[1], x[2], x[3], x[0]) < 0;
+        for (k = 0; k < 4; ++k) wl_add_vertex(&tetrahedron, x[k]);
+        for (k = 0; k < 4; ++k) wl_add_triangle(&tetrahedron, faces[k][0], faces[k][turned ? 1 : 2], faces[k][turned ? 2 : 1]);
+        sprintf(name, "tetrahedron %d", i);
+        check_chains(name, &box, &tetrahedron);
+        surface_free(&box);
+        surface_free(&tetrahedron);
+    }
+}
+END_TEST
+
 START_TEST(wavy_sheet) {
     static const double apex[3] = { 0.148, 0.298, 0.398 };
     workload w = wl_wavy(1), uncut = wl_tetrahedron(wl_unit_tetrahedron);
@@ -1054,6 +1107,7 @@ int main(void) {
     tcase_set_timeout(tests, 300);
     tcase_add_test(tests, slabs);
     tcase_add_test(tests, wavy_sheet);
+    tcase_add_test(tests, chains_divide_as_segments_do);
     tcase_add_test(tests, sticks);
     tcase_add_loop_test(tests, hard_slabs_and_corners, 0, WL_HARD);
     tcase_add_test(tests, volumes_add_up);
