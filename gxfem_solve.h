@@ -3567,6 +3567,14 @@ static void gxsp_add_scaled(float a, const float *GXSP_RESTRICT x, float *GXSP_R
     y[8] += a * x[8];
 }
 
+/* y += a x for four numbers */
+static void gxsp_add_four(float a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y)
+{
+    int k;
+    for (k = 0; k < 4; ++k)
+        y[k] += a * x[k];
+}
+
 static void gxsp_add_mass(float mass, float *to)
 {
     to[0] += mass, to[4] += mass, to[8] += mass;
@@ -4021,25 +4029,23 @@ static void gxsp_sweep_backward(gxsp_level *level)
 static void gxsp_restrict(const gxsp_level *level, gxsp_level *next)
 {
     uint32_t i;
-    int k, c;
+    int k;
     memset(next->b, 0, next->n * sizeof *next->b);
     for (i = 0; i < level->n; ++i)
         for (k = 0; k < 4; ++k)
             if (level->parent[i][k] != GXSP_NONE)
-                for (c = 0; c < 4; ++c)
-                    next->b[level->parent[i][k]][c] += level->weight[i][k] * level->r[i][c];
+                gxsp_add_four(level->weight[i][k], level->r[i], next->b[level->parent[i][k]]);
 }
 
 /* x += transfer x of the next level */
 static void gxsp_prolong(gxsp_level *level, const gxsp_level *next)
 {
     uint32_t i;
-    int k, c;
+    int k;
     for (i = 0; i < level->n; ++i)
         for (k = 0; k < 4; ++k)
             if (level->parent[i][k] != GXSP_NONE)
-                for (c = 0; c < 4; ++c)
-                    level->x[i][c] += level->weight[i][k] * next->x[level->parent[i][k]][c];
+                gxsp_add_four(level->weight[i][k], next->x[level->parent[i][k]], level->x[i]);
 }
 
 /* x = (L L^T)^-1 b on the last level */
