@@ -466,10 +466,18 @@ extern "C" {
 /* The stiffness of a whole element in the linear systems: 2^40 leaves room for pieces down to 1e-40 of it, and for masses above. */
 #define GXSP_STIFFNESS 40
 
-/* Coarse matrices cost as much as so many iterations: if they age faster, they are made anew before they cost that, and every
- * GXSP_PATIENCE times serve for one solve more, to see whether they may. */
+/* Coarse matrices cost as much as so many iterations. The first of a model serve for GXSP_LIFE iterations before new ones show what age
+ * has cost; where that is less than GXSP_AGEING of what there is, the next trial comes GXSP_PATIENCE times as late. */
 #define GXSP_REMAKE 10
-#define GXSP_PATIENCE 8
+#define GXSP_LIFE 40
+#define GXSP_AGEING 0.5
+#define GXSP_PATIENCE 4
+
+/* How fast conjugate gradients are is read from so many iterations, of several solves if need be. */
+#define GXSP_READING 10
+
+/* Coarse matrices are of no use any more when it takes so many times as many of them. */
+#define GXSP_WORN 2
 
 /* Where updates have changed the model, the smoother's step length times the largest eigenvalue there is below this; at 2 the cycle would
  * be indefinite, and the eigenvalue is known to a tenth. */
@@ -879,14 +887,17 @@ typedef struct gxsp_system {
     int omega_renewed;      /* there are such copies */
     double coarse_rate;     /* for which the coarse matrices were made; below 0: never made */
     double *coarse_state;   /* displacement at which */
-    int coarse_fresh;       /* made for this solve */
     int coarse_worn;        /* to be made anew */
     double term_stiffness, coarse_stiffness; /* sums of springs' and contact's Hessians: now, when coarse matrices were made */
     gxsp_fine *fine;        /* block_count: places in the assembled matrix, levels[0]; NULL: matrix-free */
-    uint32_t usual_iterations; /* of the solve with fresh ones */
-    uint32_t coarse_age;    /* solves since they were made */
-    uint32_t coarse_life;   /* how many solves they serve; 0: as many as they will */
-    uint32_t coarse_ends;   /* how often this has been their end */
+    uint32_t coarse_served; /* iterations since they were made */
+    uint32_t coarse_life;   /* for how many iterations they are to serve */
+    uint32_t coarse_lived;  /* for how many those before did */
+    uint32_t read;          /* iterations since the last reading */
+    double read_nepers;     /* and by how many factors of e they have reduced residuals */
+    double pace;            /* iterations for each factor of e, by the last reading; 0: none yet */
+    double pace_young;      /* by the first one */
+    double pace_old;        /* by the last one of the matrices before; 0: of another time step, or there was none */
     int still_known;        /* still and chunk_still are those of the pieces' states */
     size_t active;          /* unknowns of this step */
     int base_known;         /* current is what the last step returned, and base_energy its elastic energy */
@@ -905,6 +916,7 @@ typedef struct gxsp_problem {
     double mean[2];         /* its weights: of base and of previous_displacement */
     uint32_t cg_iterations; /* with the defaults put in */
     double cg_tolerance;
+    double nepers;          /* by how many factors of e the last linear solve has reduced the residual that its guess left */
     double energies[3];     /* at current: elastic with springs and contact, kinetic, size of their terms; J */
     double start;           /* on the clock */
     gxs_scene scene;
@@ -3449,6 +3461,7 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
     system->lumped_mass = model->lumped_mass != 0;
     system->scale = gxsp_choose_scale(model);
     system->coarse_rate = -1;
+    system->coarse_life = GXSP_LIFE;
     system->material_count = (uint32_t)model->material_count;
     system->materials = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
     system->damped = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
@@ -5289,7 +5302,7 @@ static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, co
 /* Is it known that the coarse matrices are as old as they can be? */
 static int gxsp_coarse_ends(const gxsp_system *system)
 {
-    return system->coarse_life > 0 && system->coarse_age >= system->coarse_life;
+    return system->coarse_served >= system->coarse_life;
 }
 
 static void gxsp_renew_levels(gxsp_renewal *update)
@@ -5903,7 +5916,7 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
     gxsp_system *system = problem->system;
     const double goal = problem->cg_tolerance * problem->cg_tolerance, rate = problem->rate;
     const int start = problem->report.newton_iterations == 0;
-    gxsp_norms first, now;
+    gxsp_norms first, now, guessed;
     gxsp_pass pass;
     uint32_t iteration;
     double rho = 0;
@@ -5915,6 +5928,7 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
     memset(system->direction, 0, 3 * system->n * sizeof(double));
     if (start && system->guess_count > 0)
         now = gxsp_guess_direction(system, rate, now);
+    guessed = now;
     if (!gxsp_reduced(&now, &first, goal))
         rho = gxsp_precondition(system, rate);
     memcpy(system->search, system->scaled, system->n * sizeof *system->search);
@@ -5935,6 +5949,7 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
         pass.factor = rho / before;
         gxsp_over_ranges(system, gxsp_task_search, &pass, NULL, 0);
     }
+    problem->nepers = now.energy > 0 && guessed.energy > now.energy ? 0.5 * log(guessed.energy / now.energy) : 0;
     gxsp_follow(system, NULL, system->direction);
     gxsp_balance_momentum(system, NULL, 1, NULL, system->direction); /* what single precision left of it */
     if (gxsp_first_not_finite(system->direction, 3 * system->n) < 3 * system->n)
@@ -5945,10 +5960,11 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
 }
 
 /* Brings matrix and preconditioner up to date with the linearisation: the coarse matrices are made anew where they are missing, where
- * the rate has changed, where iterations have risen by half since they were made, or before they rise by more than a renewal costs. */
+ * the rate has changed, where iterations have doubled since they were made, or before they rise by more than a renewal costs. */
 static int gxsp_prepare(gxsp_problem *problem)
 {
     gxsp_system *system = problem->system;
+    int other; /* than the rate of the coarse matrices */
     if (system->fine) {
         gxsp_assemble(system, system->scale * problem->rate);
         if (!gxsp_invert_fine(system))
@@ -5961,13 +5977,13 @@ static int gxsp_prepare(gxsp_problem *problem)
     else if (system->omega_renewed)
         gxsp_renew_omega(system, problem->rate);
     system->omega_renewed = 0;
-    system->coarse_fresh = system->coarse_rate < problem->rate || system->coarse_rate > problem->rate ||
-                           ((system->coarse_worn || gxsp_coarse_ends(system)) && !problem->exact);
-    if (!system->coarse_fresh)
+    other = system->coarse_rate < problem->rate || system->coarse_rate > problem->rate;
+    if (!other && (problem->exact || !(system->coarse_worn || gxsp_coarse_ends(system))))
         return 1;
-    if (!system->coarse_worn && gxsp_coarse_ends(system) && ++system->coarse_ends % GXSP_PATIENCE == 0)
-        ++system->coarse_life;
-    system->coarse_age = 0;
+    system->coarse_lived = system->coarse_served;
+    system->pace_old = other ? 0 : system->pace;
+    system->pace = system->read_nepers = 0;
+    system->read = system->coarse_served = 0;
     system->coarse_rate = problem->rate;
     memcpy(system->coarse_state, system->current, 3 * system->n * sizeof(double));
     system->coarse_worn = 0;
@@ -5975,7 +5991,32 @@ static int gxsp_prepare(gxsp_problem *problem)
     return gxsp_coarse_numbers(system, problem->rate);
 }
 
-/* Solves the linear system and learns from the count of iterations how the coarse matrices have aged. */
+/* For how long the coarse matrices are to serve, now that their first reading tells how much slower the ones before were in the end: if the
+ * share lost grows to that evenly, cost / life + share / lived x life / 2 is least. */
+static void gxsp_learn_life(gxsp_system *system)
+{
+    const double share = system->pace_old / system->pace - 1, lived = system->coarse_lived;
+    const double best = share > GXSP_AGEING ? sqrt(2 * GXSP_REMAKE * lived / share) : GXSP_PATIENCE * lived;
+    system->coarse_life = best < 1e9 ? (uint32_t)best + 1 : 1000000000;
+}
+
+/* Takes a reading when it is due. */
+static void gxsp_read_pace(gxsp_system *system)
+{
+    const int first = !(system->pace > 0);
+    if (system->read < GXSP_READING || !(system->read_nepers > 0))
+        return;
+    system->pace = system->read / system->read_nepers;
+    system->read = 0;
+    system->read_nepers = 0;
+    if (first)
+        system->pace_young = system->pace;
+    if (first && system->pace_old > 0)
+        gxsp_learn_life(system);
+    system->coarse_worn |= system->pace > GXSP_WORN * system->pace_young;
+}
+
+/* Solves the linear system and learns from the count of iterations how the coarse matrices age. */
 static int gxsp_solve(gxsp_problem *problem)
 {
     gxsp_system *system = problem->system;
@@ -5987,14 +6028,10 @@ static int gxsp_solve(gxsp_problem *problem)
     problem->report.seconds_prepare += prepared - start;
     problem->report.seconds_solve += gxsp_now(problem) - prepared;
     count = problem->report.cg_iterations - before;
-    if (system->coarse_fresh)
-        system->usual_iterations = count;
-    else if (count > system->usual_iterations + system->usual_iterations / 2 + 1) {
-        system->coarse_worn = 1;
-        if (count > system->usual_iterations + GXSP_REMAKE)
-            system->coarse_life = system->coarse_age;
-    }
-    ++system->coarse_age;
+    system->coarse_served += count;
+    system->read += count;
+    system->read_nepers += count > 0 ? problem->nepers : 0;
+    gxsp_read_pace(system);
     return solved;
 }
 
@@ -6867,9 +6904,10 @@ GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene)
     system->omega = 0;
     system->coarse_rate = -1;
     system->coarse_stiffness = 0;
-    system->coarse_fresh = system->coarse_worn = 0;
-    system->usual_iterations = 0;
-    system->coarse_age = system->coarse_life = system->coarse_ends = 0;
+    system->coarse_worn = 0;
+    system->coarse_served = system->read = 0;
+    system->coarse_life = GXSP_LIFE;
+    system->pace = system->read_nepers = 0;
     for (p = 0; p < system->piece_count; ++p) {
         gxsp_piece *piece = &system->pieces[p];
         piece->state &= ~(GXSP_TOUCHED | GXSP_ASLEEP);
@@ -7252,7 +7290,11 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_TINY
 #undef GXSP_OMEGA
 #undef GXSP_REMAKE
+#undef GXSP_LIFE
+#undef GXSP_AGEING
 #undef GXSP_PATIENCE
+#undef GXSP_READING
+#undef GXSP_WORN
 #undef GXSP_CHUNK_PARENTS
 #undef GXSP_ALIGNMENT
 #undef GXSP_FILTER
