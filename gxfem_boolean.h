@@ -314,7 +314,7 @@ typedef struct gxb_complex {
     gxb_block *mark_block; size_t mark_used;    /* blocks at begin */
     uint32_t mark[8];               /* counts at begin: points planes edges facets leaves nodes labels pool */
     uint32_t stamp[2], edge_stamp, sign_plane;
-    uint32_t height_element; double height[4];  /* see >>insert, barycentric coordinates */
+    struct gxbp_pairs *pairs;       /* see >>insert, barycentric coordinates */
     uint64_t filter_calls, exact_calls;
     gx_allocator allocator;
 } gxb_complex;
@@ -362,8 +362,7 @@ GXFEM_API int gxb_complex_compare(gxb_complex *complex, uint32_t point, int axis
    Exact for hulls that no double lies in. The surface is in the given coordinates and must not pass through the hull's inside. */
 GXFEM_API int gxb_complex_winding(gxb_complex *complex, const uint32_t *points, size_t point_count, const double *vertices,
                                   const uint32_t *triangles, size_t triangle_count);
-/* Barycentric coordinates of a point in an element, each rounded on its own from its exact value (0 where it is 0), but one above
-   0.2, which is 1 minus the others. */
+/* Barycentric coordinates of a point in an element, each with a relative error below 2^-49 of its own (0 where it is 0). */
 GXFEM_API void gxb_complex_barycentric(gxb_complex *complex, uint32_t point, uint32_t element, double lambda[4]);
 /* Bit k: its coordinate k is not 0 by the point's definition. Needs no arithmetic. */
 GXFEM_API unsigned gxb_complex_support(const gxb_complex *complex, uint32_t point, uint32_t element);
@@ -1541,6 +1540,19 @@ static GXBP_COLD void gxbp_drop_recent_numbers(gxb_complex *cx) {
     if (cx->blocks != NULL) cx->blocks->used = cx->mark_used;
 }
 
+/* What is known of planes and points in pairs of doubles (see barycentric coordinates), by remainders of their numbers */
+enum { GXBP_PAIR_NORMALS = 16, GXBP_PAIR_SIDES = 128 };
+typedef struct gxbp_pair { double high, low, error; } gxbp_pair;       /* a number within error of high + low */
+typedef struct gxbp_pairs {
+    uint32_t plane[GXBP_PAIR_NORMALS], side_plane[GXBP_PAIR_SIDES], side_point[GXBP_PAIR_SIDES];     /* GXB_NONE: nothing */
+    gxbp_pair normal[GXBP_PAIR_NORMALS][3], side[GXBP_PAIR_SIDES];
+} gxbp_pairs;
+
+static void gxbp_forget_pairs(gxb_complex *cx) {
+    memset(cx->pairs->plane, 0xff, sizeof cx->pairs->plane);
+    memset(cx->pairs->side_plane, 0xff, sizeof cx->pairs->side_plane);
+}
+
 GXFEM_API GXBP_RARE void gxb_complex_rollback(gxb_complex *cx) {
     while (cx->undo_count > 0) {
         const gxb_undo *undo = &cx->undo[--cx->undo_count];
@@ -1553,7 +1565,7 @@ GXFEM_API GXBP_RARE void gxb_complex_rollback(gxb_complex *cx) {
     cx->point_count = cx->mark[0]; cx->plane_count = cx->mark[1]; cx->edge_count = cx->mark[2]; cx->facet_count = cx->mark[3];
     cx->leaf_count = cx->mark[4]; cx->tree_count = cx->mark[5]; cx->label_count = cx->mark[6]; cx->pool_count = cx->mark[7];
     cx->stamp[0]++; cx->stamp[1]++; cx->edge_stamp++;
-    cx->height_element = GXB_NONE;
+    gxbp_forget_pairs(cx);
     gxbp_set_marks(cx);
 }
 
@@ -2095,13 +2107,14 @@ GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator 
     cx->element_count = (uint32_t)mesh->element_count;
     table = (uint32_t *)gxbp_allocate(allocator, gxbp_table_words(mesh->element_count) * sizeof *table);
     cx->elements = table;
-    result = table == NULL ? GX_ERROR_MEMORY : gxbp_fill_complex(cx, mesh, table, &bad);
+    cx->pairs = (gxbp_pairs *)gxbp_allocate(allocator, sizeof *cx->pairs);
+    result = table == NULL || cx->pairs == NULL ? GX_ERROR_MEMORY : gxbp_fill_complex(cx, mesh, table, &bad);
     if (result != GX_OK) {
         gxb_complex_destroy(cx);
         return gxbp_fail(failure, result, bad);
     }
     cx->stamp[0] = cx->stamp[1] = cx->edge_stamp = 1;
-    cx->height_element = GXB_NONE;
+    gxbp_forget_pairs(cx);
     gxb_complex_begin(cx);
     *complex = cx;
     return gxbp_fail(failure, GX_OK, SIZE_MAX);
@@ -2135,6 +2148,7 @@ GXFEM_API GXBP_RARE void gxb_complex_destroy(gxb_complex *cx) {
     GXBP_FREE(pool, pool); GXBP_FREE(walls, wall); GXBP_FREE(undo, undo);
     GXBP_FREE(undo_bytes, undo_byte); GXBP_FREE(corners, corner); GXBP_FREE(tasks, task); GXBP_FREE(scratch, scratch);
     gxbp_release(&a, cx->elements, gxbp_table_words(cx->element_count) * sizeof *cx->elements);
+    gxbp_release(&a, cx->pairs, sizeof *cx->pairs);
     gxbp_release(&a, cx, sizeof *cx);
 }
 
@@ -3091,6 +3105,113 @@ GXFEM_API int gxb_complex_winding(gxb_complex *cx, const uint32_t *points, size_
     return winding;
 }
 
+/* --- numbers as sums of two doubles: about 100 bits, with bounds that hold as those of >>filter do ---
+ *
+ * The sum of two doubles is their rounded sum and its error, which the six operations of gxbp_pair_sum find but for 2^-103 of it also where
+ * roundings are not to nearest [Boldo, Graillat, Muller, On the robustness of the 2Sum and Fast2Sum algorithms (2017)]; a product is that of
+ * halves of 26 and 27 bits, taken apart by their bits. What is left out or rounded in a sum or product of pairs is below 2^-100 of
+ * its terms' sizes; GXBP_PAIR_U has room for the rounding of bounds. Numbers are below 2^160, errors below 2^700, GXBP_TINY stands for
+ * underflow.
+ */
+#define GXBP_PAIR_U gxbp_power(-97)
+#define GXBP_PAIR_RANGE 16  /* coordinates are below 2^16: products of three differences, and of three of those, are far from overflow */
+
+static gxbp_pair gxbp_pair_sum(double a, double b) {
+    gxbp_pair r;
+    double part;
+    r.high = gxbp_fence(a + b);
+    part = gxbp_fence(r.high - a);
+    r.low = gxbp_fence(gxbp_fence(a - gxbp_fence(r.high - part)) + gxbp_fence(b - part));
+    r.error = 0;
+    return r;
+}
+
+/* a + b sign */
+static gxbp_pair gxbp_pair_add(const gxbp_pair *a, const gxbp_pair *b, double sign) {
+    gxbp_pair r = gxbp_pair_sum(a->high, sign * b->high);
+    const double size = gxbp_abs(a->high) + gxbp_abs(b->high);
+    r = gxbp_pair_sum(r.high, gxbp_fence(r.low + (a->low + sign * b->low)));
+    r.error = a->error + b->error + GXBP_PAIR_U * size + GXBP_TINY;
+    return r;
+}
+
+static gxbp_pair gxbp_pair_mul(const gxbp_pair *a, const gxbp_pair *b) {
+    const double ah = gxbp_double(gxbp_bits(a->high) >> 27 << 27), al = gxbp_fence(a->high - ah);
+    const double bh = gxbp_double(gxbp_bits(b->high) >> 27 << 27), bl = gxbp_fence(b->high - bh);
+    const double p = gxbp_fence(a->high * b->high), size_a = gxbp_abs(a->high) + a->error;
+    double rest = gxbp_fence(gxbp_fence(ah * bh) - p);
+    gxbp_pair r;
+    rest = gxbp_fence(rest + gxbp_fence(ah * bl));
+    rest = gxbp_fence(rest + gxbp_fence(al * bh));
+    r = gxbp_pair_sum(p, gxbp_fence(rest + (al * bl + (a->high * b->low + a->low * b->high))));
+    r.error = size_a * b->error + gxbp_abs(b->high) * a->error + GXBP_PAIR_U * gxbp_abs(p) + GXBP_TINY;
+    return r;
+}
+
+/* a b - c d */
+static gxbp_pair gxbp_pair_det2(const gxbp_pair *a, const gxbp_pair *b, const gxbp_pair *c, const gxbp_pair *d) {
+    const gxbp_pair s = gxbp_pair_mul(a, b), t = gxbp_pair_mul(c, d);
+    return gxbp_pair_add(&s, &t, -1);
+}
+
+static gxbp_pair gxbp_pair_dot(const gxbp_pair a[3], const gxbp_pair b[3]) {
+    gxbp_pair r = gxbp_pair_mul(&a[0], &b[0]), t = gxbp_pair_mul(&a[1], &b[1]);
+    r = gxbp_pair_add(&r, &t, 1);
+    t = gxbp_pair_mul(&a[2], &b[2]);
+    return gxbp_pair_add(&r, &t, 1);
+}
+
+/* a / b, if its relative error is below 2^-50. The quotient of the high parts has three roundings. */
+static int gxbp_pair_ratio(const gxbp_pair *a, const gxbp_pair *b, double *ratio) {
+    const double most = gxbp_power(-54);
+    if (!(a->error < most * gxbp_abs(a->high)) || !(b->error < most * gxbp_abs(b->high))) return 0;
+    *ratio = a->high / b->high;
+    return 1;
+}
+
+/* q - p; of no use where a coordinate is not a double, or large */
+static void gxbp_pair_difference(gxbp_pair r[3], const gxb_ball *p, const gxb_ball *q) {
+    const double most = gxbp_power(GXBP_PAIR_RANGE);
+    int k;
+    for (k = 0; k < 3; k++) {
+        const int good = p->error == 0 && q->error == 0 && gxbp_abs(p->x[k]) < most && gxbp_abs(q->x[k]) < most;
+        r[k] = gxbp_pair_sum(good ? q->x[k] : 0, good ? -p->x[k] : 0);
+        if (!good) r[k].error = GXBP_NO_BALL;
+    }
+}
+
+static const gxbp_pair *gxbp_pair_normal(gxb_complex *cx, uint32_t plane) {
+    const gxb_cplane *f = &cx->planes[plane];
+    const uint32_t slot = plane % GXBP_PAIR_NORMALS;
+    gxbp_pair *n = cx->pairs->normal[slot], a[3], b[3];
+    int i;
+    if (cx->pairs->plane[slot] == plane) return n;
+    gxbp_pair_difference(a, &cx->points[f->def[0]].ball, &cx->points[f->def[1]].ball);
+    if (!f->along_axis) gxbp_pair_difference(b, &cx->points[f->def[0]].ball, &cx->points[f->def[2]].ball);
+    else for (i = 0; i < 3; i++) b[i] = gxbp_pair_sum(f->def[2] == (uint32_t)i, 0);
+    for (i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        n[i] = gxbp_pair_det2(&a[j], &b[k], &a[k], &b[j]);
+    }
+    cx->pairs->plane[slot] = plane;
+    return n;
+}
+
+/* n.(x - base) for an explicit point */
+static gxbp_pair gxbp_pair_side(gxb_complex *cx, uint32_t point, uint32_t plane) {
+    const uint32_t slot = (plane * 31 + point) % GXBP_PAIR_SIDES;
+    gxbp_pairs *pairs = cx->pairs;
+    if (pairs->side_plane[slot] != plane || pairs->side_point[slot] != point) {
+        const gxbp_pair *n = gxbp_pair_normal(cx, plane);
+        gxbp_pair d[3];
+        gxbp_pair_difference(d, &cx->points[cx->planes[plane].def[0]].ball, &cx->points[point].ball);
+        pairs->side[slot] = gxbp_pair_dot(n, d);
+        pairs->side_plane[slot] = plane;
+        pairs->side_point[slot] = point;
+    }
+    return pairs->side[slot];
+}
+
 /* --- barycentric coordinates --- */
 
 /* Exact distance of a point from a plane, times |n| and the point's weight W, which goes to *weight (may be NULL). */
@@ -3105,29 +3226,22 @@ static uint32_t gxbp_face_plane(const gxb_complex *cx, uint32_t element, uint32_
     return cx->facets[cx->face_facet[cx->element_faces[4 * element + k]]].plane;
 }
 
-/* Distances of the element's nodes from their opposite faces, times |n|: kept for the element last asked for. */
-static const double *gxbp_heights(gxb_complex *cx, uint32_t element) {
-    uint32_t k;
-    if (cx->height_element == element) return cx->height;
-    for (k = 0; k < 4; k++) {
-        GXB_NUM(d);
-        gxbp_distance(cx, cx->elements[4 * element + k], gxbp_face_plane(cx, element, k), &d, NULL);
-        cx->height[k] = gxb_num_to_double(&d);
-    }
-    cx->height_element = element;
-    return cx->height;
+static GXBP_COLD void gxbp_exact_edge_parameter(gxb_complex *cx, gxb_cpoint *p) {
+    GXB_NUM(a); GXB_NUM(b); GXB_NUM(d);
+    gxbp_distance(cx, p->def[0], p->def[2], &a, NULL);
+    gxbp_distance(cx, p->def[1], p->def[2], &b, NULL);
+    gxb_num_sub(&d, &b, &a);
+    p->parameter[0] = gxb_num_ratio(&b, &d);                /* the share of def[0] */
+    p->parameter[1] = -gxb_num_ratio(&a, &d);
 }
 
 /* Where on the mesh edge from node def[0] to node def[1] the point lies: 0 ... 1. Asked for by every element around the edge, so kept. */
 static double gxbp_edge_parameter(gxb_complex *cx, uint32_t point, int from_end) {
     gxb_cpoint *p = &cx->points[point];
     if (p->parameter[0] < 0) {
-        GXB_NUM(a); GXB_NUM(b); GXB_NUM(d);
-        gxbp_distance(cx, p->def[0], p->def[2], &a, NULL);
-        gxbp_distance(cx, p->def[1], p->def[2], &b, NULL);
-        gxb_num_sub(&d, &b, &a);
-        p->parameter[0] = gxb_num_ratio(&b, &d);                /* the share of def[0] */
-        p->parameter[1] = -gxb_num_ratio(&a, &d);
+        const gxbp_pair a = gxbp_pair_side(cx, p->def[0], p->def[2]), b = gxbp_pair_side(cx, p->def[1], p->def[2]);
+        const gxbp_pair d = gxbp_pair_add(&b, &a, -1), e = gxbp_pair_add(&a, &b, -1);
+        if (!gxbp_pair_ratio(&b, &d, &p->parameter[0]) || !gxbp_pair_ratio(&a, &e, &p->parameter[1])) gxbp_exact_edge_parameter(cx, p);
     }
     return p->parameter[from_end];
 }
@@ -3138,19 +3252,6 @@ static int gxbp_known_lambda(const gxb_complex *cx, uint32_t point, uint32_t ele
     const uint32_t face = cx->element_faces[4 * element + k];
     if (point < cx->node_count) return point == cx->elements[4 * element + k];
     return gxbp_incident(cx, p->kind, p->def, point, cx->facets[cx->face_facet[face]].plane) ? 0 : -1;
-}
-
-/* Of the coordinates that are not known, the one that seems largest: 1 minus the others gives it to rounding. 4: can't tell. */
-static uint32_t gxbp_largest_lambda(const gxb_complex *cx, uint32_t point, uint32_t element, const double height[4], const double lambda[4]) {
-    uint32_t k, largest = 4;
-    double most = 0, bound;
-    for (k = 0; k < 4 && cx->points[point].ball.error < GXBP_NO_BALL; k++) {
-        const double value = gxbp_filter_side(&cx->points[point].ball, &cx->planes[gxbp_face_plane(cx, element, k)].filter, &bound) / height[k];
-        if (lambda[k] >= 0 || value < most || gxbp_abs(bound / height[k]) > 0.01) continue;
-        largest = k;
-        most = value;
-    }
-    return most > 0.2 ? largest : 4;
 }
 
 static int gxbp_has_node(const gxb_complex *cx, uint32_t element, uint32_t node) {
@@ -3176,27 +3277,77 @@ GXFEM_API unsigned gxb_complex_support(const gxb_complex *cx, uint32_t point, ui
     return support;
 }
 
+/* Of a line through two points and a plane: with their sides a, b of the plane, the point is b p - a q. */
+static void gxbp_pair_line_shares(gxb_complex *cx, const uint32_t def[3], uint32_t element, const double lambda[4], gxbp_pair share[4]) {
+    const gxbp_pair a = gxbp_pair_side(cx, def[0], def[2]), b = gxbp_pair_side(cx, def[1], def[2]);
+    uint32_t k;
+    for (k = 0; k < 4; k++) if (lambda[k] < 0) {
+        const uint32_t face = gxbp_face_plane(cx, element, k);
+        const gxbp_pair p = gxbp_pair_side(cx, def[0], face), q = gxbp_pair_side(cx, def[1], face);
+        if (cx->face_elements[2 * cx->element_faces[4 * element + k]] == element) share[k] = gxbp_pair_det2(&p, &b, &q, &a);
+        else share[k] = gxbp_pair_det2(&q, &a, &p, &b);
+    }
+}
+
+/* Of three planes, by the sides on which they have the nodes: a plane's sum of sides x coordinates is 0, so these are the minors of the
+   sides. Where one plane is that of a face, the sides of the two others are enough. */
+static void gxbp_pair_plane_shares(gxb_complex *cx, const uint32_t def[3], uint32_t element, const double lambda[4], gxbp_pair share[4]) {
+    const uint32_t *node = cx->elements + 4 * (size_t)element;
+    gxbp_pair side[3][4];
+    uint32_t order[3], face = 4, i, k;
+    for (i = 0; i < 3; i++) order[i] = def[i];
+    for (i = 0; i < 3 && face == 4; i++) for (k = 0; k < 4; k++)
+        if (def[i] == gxbp_face_plane(cx, element, k)) { face = k; order[i] = def[2]; order[2] = def[i]; }
+    for (i = 0; i < (face < 4 ? 2u : 3u); i++) for (k = 0; k < 4; k++) if (k != face) side[i][k] = gxbp_pair_side(cx, node[k], order[i]);
+    for (k = 0; k < 4; k++) if (lambda[k] < 0) {
+        const uint8_t *rest = gxbp_face_nodes[k];       /* k and these are an even permutation of 0 1 2 3 */
+        gxbp_pair row[3], cofactor[3];
+        for (i = 0; i < 3; i++) {
+            const uint32_t j = rest[(i + 1) % 3], l = rest[(i + 2) % 3];
+            if (face < 4 && rest[i] != face) continue;
+            cofactor[i] = gxbp_pair_det2(&side[0][j], &side[1][l], &side[0][l], &side[1][j]);
+            if (face < 4) share[k] = cofactor[i];
+            else row[i] = side[2][rest[i]];
+        }
+        if (face == 4) share[k] = gxbp_pair_dot(row, cofactor);
+    }
+}
+
+/* By pairs, those that they settle; -1 stands for the others. On entry what is known without arithmetic stands there. */
+static void gxbp_pair_barycentric(gxb_complex *cx, uint32_t point, uint32_t element, double lambda[4]) {
+    const gxb_cpoint p = cx->points[point];
+    gxbp_pair share[4], sum = gxbp_pair_sum(0, 0);
+    uint32_t k;
+    if (p.kind == GXB_EXPLICIT) return;
+    if (p.kind == GXB_LINE_PLANE) gxbp_pair_line_shares(cx, p.def, element, lambda, share);
+    else gxbp_pair_plane_shares(cx, p.def, element, lambda, share);
+    for (k = 0; k < 4; k++) if (lambda[k] < 0) sum = gxbp_pair_add(&sum, &share[k], 1);
+    for (k = 0; k < 4; k++) {
+        double ratio;
+        if (lambda[k] < 0 && gxbp_pair_ratio(&share[k], &sum, &ratio)) lambda[k] = ratio;
+    }
+}
+
+static GXBP_COLD double gxbp_exact_lambda(gxb_complex *cx, uint32_t point, uint32_t element, uint32_t k) {
+    const uint32_t plane = gxbp_face_plane(cx, element, k);
+    GXB_NUM(d); GXB_NUM(w); GXB_NUM(h);
+    gxbp_distance(cx, cx->elements[4 * element + k], plane, &h, NULL);
+    gxbp_distance(cx, point, plane, &d, &w);
+    return gxb_num_ratio(&d, &w) / gxb_num_to_double(&h);
+}
+
 GXFEM_API void gxb_complex_barycentric(gxb_complex *cx, uint32_t point, uint32_t element, double lambda[4]) {
     const gxb_cpoint *p = &cx->points[point];
     const int on_edge = gxbp_divides_edge(cx, point, element);
-    const double *height = point < cx->node_count || on_edge ? NULL : gxbp_heights(cx, element);
-    uint32_t k, largest = 4;
-    double rest = 1;
-    for (k = 0; k < 4; k++) lambda[k] = gxbp_known_lambda(cx, point, element, k);
-    if (height != NULL) largest = gxbp_largest_lambda(cx, point, element, height, lambda);
+    uint32_t k;
     for (k = 0; k < 4; k++) {
         const uint32_t node = cx->elements[4 * element + k];
-        if (lambda[k] >= 0 || k == largest) continue;
-        if (on_edge) {
-            lambda[k] = node == p->def[0] ? gxbp_edge_parameter(cx, point, 0) : node == p->def[1] ? gxbp_edge_parameter(cx, point, 1) : 0;
-        } else {
-            GXB_NUM(d); GXB_NUM(w);
-            gxbp_distance(cx, point, gxbp_face_plane(cx, element, k), &d, &w);
-            lambda[k] = gxb_num_ratio(&d, &w) / height[k];
-        }
-        rest -= lambda[k];
+        if (!on_edge) lambda[k] = gxbp_known_lambda(cx, point, element, k);
+        else lambda[k] = node == p->def[0] ? gxbp_edge_parameter(cx, point, 0) : node == p->def[1] ? gxbp_edge_parameter(cx, point, 1) : 0;
     }
-    if (largest < 4) lambda[largest] = rest;
+    if (on_edge || point < cx->node_count) return;
+    gxbp_pair_barycentric(cx, point, element, lambda);
+    for (k = 0; k < 4; k++) if (lambda[k] < 0) lambda[k] = gxbp_exact_lambda(cx, point, element, k);
 }
 
 /* Each step adds the quotient of what is left: 50 bits, so that four leave less than 2^-180 of the value. */
