@@ -1676,6 +1676,27 @@ static const gxb_num *gxbp_exact_cpoint(gxb_complex *cx, uint32_t point, gxbp_ve
     return p->exact != NULL ? p->exact : store->c;
 }
 
+/* The given coordinates of an explicit point: what came into the frame by a shift and a scale, exactly, goes back. */
+static GXBP_COLD void gxbp_given(gxb_complex *cx, uint32_t point, double x[3]) {
+    gxbp_vec store;
+    const gxb_num *c = gxbp_exact_cpoint(cx, point, &store);
+    int k;
+    for (k = 0; k < 3; k++) {
+        GXB_NUM(scale); GXB_NUM(given); GXB_NUM(origin); GXB_NUM(sum);
+        uint64_t m;
+        int power;
+        gxb_num_set(&scale, 1.0, -cx->shift);
+        gxb_num_mul(&given, &c[k], &scale);
+        gxb_num_set(&origin, cx->origin[k], 0);
+        gxb_num_add(&sum, &given, &origin);
+        x[k] = 0;
+        if (sum.sign == 0) continue;
+        m = gxbp_num_mantissa(&sum, &power);
+        if (power >= -1074) x[k] = gxbp_compose(m, power, sum.sign < 0);
+        else x[k] = gxbp_double((m >> (-1074 - power)) | (sum.sign < 0 ? (uint64_t)1 << 63 : 0));    /* a denormal: no bit is lost */
+    }
+}
+
 /* n = (q - p) x e_axis, d = n.p */
 static void gxbp_exact_axis_plane(gxb_num plane[4], const gxb_num p[3], const gxb_num q[3], uint32_t axis) {
     gxbp_vec a;
@@ -2733,11 +2754,13 @@ typedef struct gxbp_rung { uint32_t node, side, off; } gxbp_rung;   /* the chain
 typedef struct gxbp_step { uint32_t node, child[2]; } gxbp_step;
 typedef struct gxbp_plan { gxbp_step *step; uint32_t count; gxbp_rung *spare; } gxbp_plan;    /* what shall hang where, from below */
 
-/* Is the tree far from what a balanced one of so many leaves has? Looked at eight times while it doubles. */
+/* Is the tree far from what a balanced one of so many leaves has? Looked at eight times while it doubles where it is a chain for the
+   most part, else once: what is not a chain is seldom balanced by turning it round. */
 static int gxbp_is_slack(uint32_t height, uint32_t leaves) {
-    uint32_t bits = 0;
+    uint32_t bits = 0, looks;
     while (leaves >> bits > 1) bits++;
-    return height > 2 * bits + 4 && (leaves & ((1u << bits >> 3) - 1)) == 0;
+    looks = height > 2 * bits + leaves / 8 + 4 ? 3 : 0;
+    return height > 2 * bits + 4 && (leaves & ((1u << bits >> looks) - 1)) == 0;
 }
 
 static uint32_t gxbp_depth(const gxb_complex *cx, uint32_t node) {
@@ -2748,27 +2771,21 @@ static uint32_t gxbp_depth(const gxb_complex *cx, uint32_t node) {
 
 static uint32_t gxbp_leaves_below(const gxb_complex *cx, uint32_t reference) { return reference & 1 ? cx->nodes[reference >> 1].leaves : 1; }
 
-/* On which sides of the plane (slot 1's, for its present stamp) the leaf has points: bit 1 in front, bit 2 behind. 3 also where memory
-   fails. */
-static int gxbp_leaf_sides(gxb_complex *cx, uint32_t leaf, uint32_t plane) {
-    uint32_t first, count, i, j, e0, en;
+/* On which sides of the plane (slot 1's, for its present stamp) the leaf has points: bit 1 in front, bit 2 behind. Facets and edges need
+   not be resolved: what divides them lies between their corners. */
+static int gxbp_leaf_sides(gxb_complex *cx, uint32_t leaf, const gxbp_knife *knife) {
+    const gxb_leaf *l = &cx->leaves[leaf];
+    uint32_t i;
     int sides = 0;
-    if (gxb_leaf_facets(cx, leaf, &first, &count) != GX_OK) return 3;
-    for (i = 0; i < count && sides != 3; i++) {
-        if (gxb_facet_edges(cx, cx->pool[first + i], &e0, &en) != GX_OK) return 3;
-        for (j = 0; j < en && sides != 3; j++) {
-            const int sign = gxbp_sign(cx, gxbp_edge_start(cx, cx->pool[e0 + j]), plane, 1);
-            sides |= sign > 0 ? 1 : sign < 0 ? 2 : 0;
-        }
-    }
+    for (i = 0; i < l->facet_count && sides != 3; i++) sides |= gxbp_facet_sides(cx, cx->pool[l->facets + i], knife);
     return sides;
 }
 
-static GXBP_APART int gxbp_sides_below(gxb_complex *cx, uint32_t reference, uint32_t plane) {
+static GXBP_APART int gxbp_sides_below(gxb_complex *cx, uint32_t reference, const gxbp_knife *knife) {
     int sides;
-    if (!(reference & 1)) return gxbp_leaf_sides(cx, reference >> 1, plane);
-    sides = gxbp_sides_below(cx, cx->nodes[reference >> 1].child[0], plane);
-    return sides == 3 ? 3 : sides | gxbp_sides_below(cx, cx->nodes[reference >> 1].child[1], plane);
+    if (!(reference & 1)) return gxbp_leaf_sides(cx, reference >> 1, knife);
+    sides = gxbp_sides_below(cx, cx->nodes[reference >> 1].child[0], knife);
+    return sides == 3 ? 3 : sides | gxbp_sides_below(cx, cx->nodes[reference >> 1].child[1], knife);
 }
 
 static uint32_t gxbp_plan_node(gxbp_plan *plan, uint32_t node, uint32_t side, uint32_t on, uint32_t off) {
@@ -2787,12 +2804,16 @@ static uint32_t gxbp_plan_chain(gxbp_plan *plan, const gxbp_rung *rung, uint32_t
 /* Sorts what hangs above rung middle by its side of that plane: those on the chain's own side last. Their number is *own. 0: the plane
    passes through one of them. spare: middle rungs */
 static int gxbp_part_chain(gxb_complex *cx, gxbp_rung *rung, uint32_t middle, gxbp_rung *spare, uint32_t *own) {
-    const uint32_t plane = cx->nodes[rung[middle].node].plane, side = rung[middle].side;
+    const uint32_t side = rung[middle].side;
     uint32_t i, n = 0;
+    gxbp_knife knife;
+    memset(&knife, 0, sizeof knife);
+    knife.plane = cx->nodes[rung[middle].node].plane;
+    knife.slot = 1;
     cx->stamp[1]++;
     *own = 0;
     for (i = 0; i < middle; i++) {
-        const int sides = gxbp_sides_below(cx, rung[i].off, plane);
+        const int sides = gxbp_sides_below(cx, rung[i].off, &knife);
         if (sides == 3) return 0;
         if ((sides == 1) == (side == 0)) spare[(*own)++] = rung[i];
         else spare[middle - ++n] = rung[i];
@@ -2878,17 +2899,157 @@ static uint32_t *gxbp_reference(gxb_complex *cx, const gxbp_task *task, uint32_t
     return task->parent == GXBP_IN_ROOT ? &cx->root[element] : &cx->nodes[task->parent].child[task->side];
 }
 
-/* The triangle's part in the leaf is the polygon: divide the leaf and label what the triangle covers of the facet between. */
-static gx_result gxbp_divide_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t leaf, const gxbp_task *task) {
-    gxbp_knife knife;
-    uint32_t first, count, i, e0, en, edges = 0, middle, node;
-    size_t total = 0;
+/* Resolves the leaf's facets and their edges, and reserves room to divide it. */
+static gx_result gxbp_ready_leaf(gxb_complex *cx, uint32_t leaf) {
+    uint32_t first, count, i, e0, en;
+    size_t edges = 0;
     gx_result result = gxb_leaf_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
         result = gxb_facet_edges(cx, cx->pool[first + i], &e0, &en);
-        total += en;
+        edges += en;
     }
-    if (result == GX_OK) result = gxbp_reserve_split(cx, count, total);
+    return result == GX_OK ? gxbp_reserve_split(cx, count, edges) : result;
+}
+
+/* Divides a leaf that is ready and hangs at the task's place; *node takes that place. Returns the facet between the halves. */
+static uint32_t gxbp_part_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife *knife, const gxbp_task *task, uint32_t *node) {
+    const uint32_t middle = gxbp_split_leaf(cx, leaf, knife);
+    gxb_node *n = &cx->nodes[*node = cx->tree_count++];
+    n->plane = knife->plane;
+    n->child[0] = 2 * leaf;
+    n->child[1] = 2 * (cx->leaf_count - 1);
+    n->parent = task->parent;
+    n->leaves = 1;
+    if (task->parent == GXBP_IN_ROOT) gxbp_save(cx, GXBP_ROOTS, cx->leaves[leaf].element);
+    else gxbp_save(cx, GXBP_NODES, task->parent);
+    *gxbp_reference(cx, task, cx->leaves[leaf].element) = 2 * *node + 1;
+    return middle;
+}
+
+/* --- free planes: the triangles of a convex surface would all divide one and the same leaf, in a time that grows with their number and its
+   facets. A leaf with many facets inside its element is divided by a plane across them that is no triangle's and makes no wall: the
+   facet between the halves stays open, and they stay one cell. What is chosen depends on given coordinates and exact signs alone. --- */
+
+enum { GXBP_MANY_FACETS = 24, GXBP_SAMPLE = 32 };      /* looked at from so many on; of so many at most the median is taken */
+
+/* A number from a to b > a with few bits */
+static double gxbp_between(double a, double b) {
+    const uint64_t x = gxbp_bits(a), y = gxbp_bits(b);
+    int drop = 52;
+    if (gxbp_compare_doubles(a, 0) < 0) return gxbp_compare_doubles(b, 0) < 0 ? -gxbp_between(-b, -a) : 0;
+    if (x >> 52 == y >> 52) while (drop > 0 && x >> (drop - 1) == y >> (drop - 1)) drop--;
+    return x >> 52 == y >> 52 && drop > 0 ? gxbp_double(y >> (drop - 1) << (drop - 1)) : gxbp_double(y >> 52 << 52);
+}
+
+/* Sorts the numbers. Returns how far apart the first and the last are, roughly: its exponent, and a number between the two in the middle. */
+static int gxbp_median(double *x, uint32_t count, double *median) {
+    uint32_t i, j;
+    for (i = 1; i < count; i++) {
+        const double value = x[i];
+        for (j = i; j > 0 && gxbp_compare_doubles(x[j - 1], value) > 0; j--) x[j] = x[j - 1];
+        x[j] = value;
+    }
+    for (i = count / 2; i + 1 < count && gxbp_compare_doubles(x[i - 1], x[i]) == 0; i++) {}
+    if (gxbp_compare_doubles(x[i - 1], x[i]) == 0) return -2000;
+    *median = gxbp_between(x[i - 1], x[i]);
+    return gxbp_difference_exponent(x[count - 1], x[0]);
+}
+
+/* Where a plane along each axis would leave about as many of the facets on either side: by the first point of each facet's plane. rank: the axes, the one
+   along which these points are furthest apart first. Returns the number of axes along which they are apart at all. */
+static GXBP_COLD int gxbp_medians(gxb_complex *cx, const uint32_t *facets, uint32_t count, double median[3], int rank[3]) {
+    const uint32_t step = (count + GXBP_SAMPLE - 1) / GXBP_SAMPLE;
+    double x[3][GXBP_SAMPLE], given[3];
+    int spread[3], k, j, ranks = 0;
+    uint32_t i, n = 0;
+    for (i = 0; i < count; i += step, n++) {
+        gxbp_given(cx, cx->planes[cx->facets[facets[i]].plane].def[0], given);
+        for (k = 0; k < 3; k++) x[k][n] = given[k];
+    }
+    for (k = 0; k < 3; k++) {
+        spread[k] = gxbp_median(x[k], n, &median[k]);
+        if (spread[k] == -2000) continue;
+        for (j = ranks++; j > 0 && spread[rank[j - 1]] < spread[k]; j--) rank[j] = rank[j - 1];
+        rank[j] = k;
+    }
+    return ranks;
+}
+
+/* A plane across an axis: through points at the corners of the element's box. */
+static GXBP_COLD gx_result gxbp_new_free_plane(gxb_complex *cx, uint32_t element, int axis, double at, uint32_t *plane) {
+    double low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, x[3];
+    uint32_t point[3], i;
+    int k;
+    gx_result result = GX_OK;
+    for (i = 0; i < 4; i++) {
+        gxbp_given(cx, cx->elements[4 * element + i], x);
+        for (k = 0; k < 3; k++) {
+            if (i == 0 || gxbp_compare_doubles(x[k], low[k]) < 0) low[k] = x[k];
+            if (i == 0 || gxbp_compare_doubles(x[k], high[k]) > 0) high[k] = x[k];
+        }
+    }
+    for (i = 0; i < 3 && result == GX_OK; i++) {
+        memcpy(x, low, sizeof x);
+        x[axis] = at;
+        if (i > 0) x[(axis + (int)i) % 3] = high[(axis + (int)i) % 3];
+        result = gxb_complex_add_point(cx, x, &point[i]);
+    }
+    if (result == GX_OK) result = gxbp_new_plane(cx, point[0], point[1], point[2], 0, plane);
+    if (result == GX_OK) gxbp_plane_axis(cx, *plane);
+    return result;
+}
+
+/* Does a quarter of the facets at least lie in front of the plane, and a quarter behind it? */
+static int gxbp_plane_parts(gxb_complex *cx, const uint32_t *facets, uint32_t count, const gxbp_knife *knife) {
+    uint32_t front = 0, behind = 0, i;
+    cx->stamp[1]++;
+    for (i = 0; i < count; i++) {
+        const int sides = gxbp_facet_sides(cx, facets[i], knife);
+        front += sides == 1;
+        behind += sides == 2;
+    }
+    return front >= count / 4 && behind >= count / 4;
+}
+
+/* Divides the leaf at the task's place by a free plane if it has many facets and one parts them well; *node: GXB_NONE, or what has taken its
+   place. Looked at whenever their number is one of eight. */
+static gx_result gxbp_relieve_leaf(gxb_complex *cx, const gxbp_task *task, uint32_t *node) {
+    const uint32_t leaf = cx->nodes[task->parent].child[task->side] >> 1, points = cx->point_count, planes = cx->plane_count;
+    uint32_t first, count, i, n = 0, *inner;
+    double median[3];
+    int rank[3], ranks, k;
+    gxbp_knife knife;
+    gx_result result = gxb_leaf_facets(cx, leaf, &first, &count);
+    *node = GXB_NONE;
+    if (result != GX_OK || count < GXBP_MANY_FACETS) return result;
+    result = GXBP_RESERVE(cx, scratch, scratch, count);
+    if (result != GX_OK) return result;
+    inner = cx->scratch;
+    for (i = 0; i < count; i++) if (cx->facets[cx->pool[first + i]].face == GXB_NONE) inner[n++] = cx->pool[first + i];
+    if (n < GXBP_MANY_FACETS || n % 8 != 0) return result;
+    memset(&knife, 0, sizeof knife);
+    knife.slot = 1;
+    ranks = gxbp_medians(cx, inner, n, median, rank);
+    for (k = 0; k < ranks; k++) {
+        result = gxbp_new_free_plane(cx, cx->leaves[leaf].element, rank[k], median[rank[k]], &knife.plane);
+        if (result != GX_OK) return result;
+        if (gxbp_plane_parts(cx, inner, n, &knife)) break;
+        cx->point_count = points;
+        cx->plane_count = planes;
+    }
+    if (k == ranks) return result;
+    result = gxbp_ready_leaf(cx, leaf);
+    if (result == GX_OK) gxbp_part_leaf(cx, leaf, &knife, task, node);
+    return result;
+}
+
+/* The triangle's part in the leaf is the polygon: divide the leaf and label what the triangle covers of the facet between. */
+static gx_result gxbp_divide_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t leaf, const gxbp_task *task) {
+    const uint32_t element = cx->leaves[leaf].element;
+    gxbp_knife knife;
+    gxbp_task half;
+    uint32_t i, edges = 0, middle, node, freed[2];
+    gx_result result = gxbp_ready_leaf(cx, leaf);
     if (result != GX_OK) return result;
     for (i = 0; i < task->count; i++) {
         const uint32_t carrier = cx->corners[task->first + i].carrier;
@@ -2896,18 +3057,13 @@ static gx_result gxbp_divide_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t lea
     }
     memset(&knife, 0, sizeof knife);
     knife.plane = t->plane;
-    middle = gxbp_split_leaf(cx, leaf, &knife);
-    node = cx->tree_count++;
-    cx->nodes[node].plane = t->plane;
-    cx->nodes[node].child[0] = 2 * leaf;
-    cx->nodes[node].child[1] = 2 * (cx->leaf_count - 1);
-    cx->nodes[node].parent = task->parent;
-    cx->nodes[node].leaves = 1;
-    if (task->parent == GXBP_IN_ROOT) gxbp_save(cx, GXBP_ROOTS, cx->leaves[leaf].element);
-    else gxbp_save(cx, GXBP_NODES, task->parent);
-    *gxbp_reference(cx, task, cx->leaves[leaf].element) = 2 * node + 1;
+    middle = gxbp_part_leaf(cx, leaf, &knife, task, &node);
     result = gxbp_cover_facet(cx, t, middle, edges);
-    return result == GX_OK ? gxbp_grow_tree(cx, node, cx->leaves[leaf].element) : result;
+    half.parent = node;
+    for (half.side = 0; half.side < 2 && result == GX_OK; half.side++) result = gxbp_relieve_leaf(cx, &half, &freed[half.side]);
+    if (result == GX_OK) result = gxbp_grow_tree(cx, node, element);
+    for (i = 0; i < 2 && result == GX_OK; i++) if (freed[i] != GXB_NONE) result = gxbp_grow_tree(cx, freed[i], element);
+    return result;
 }
 
 static void gxbp_push_task(gxb_complex *cx, uint32_t parent, uint32_t side, uint32_t first, uint32_t count, uint32_t coplanar) {
@@ -3397,27 +3553,6 @@ static GXBP_APART void gxbp_pass_word(gxb_stream *s, uint32_t *word) { gxb_strea
 
 static void gxbp_require(gxb_stream *s, gx_result result) { if (s->result == GX_OK) s->result = result; }
 static void gxbp_require_true(gxb_stream *s, int holds) { if (!holds) gxbp_require(s, GX_ERROR_DAMAGED); }
-
-/* The given coordinates of an explicit point: what came into the frame by a shift and a scale, exactly, goes back. */
-static GXBP_COLD void gxbp_given(gxb_complex *cx, uint32_t point, double x[3]) {
-    gxbp_vec store;
-    const gxb_num *c = gxbp_exact_cpoint(cx, point, &store);
-    int k;
-    for (k = 0; k < 3; k++) {
-        GXB_NUM(scale); GXB_NUM(given); GXB_NUM(origin); GXB_NUM(sum);
-        uint64_t m;
-        int power;
-        gxb_num_set(&scale, 1.0, -cx->shift);
-        gxb_num_mul(&given, &c[k], &scale);
-        gxb_num_set(&origin, cx->origin[k], 0);
-        gxb_num_add(&sum, &given, &origin);
-        x[k] = 0;
-        if (sum.sign == 0) continue;
-        m = gxbp_num_mantissa(&sum, &power);
-        if (power >= -1074) x[k] = gxbp_compose(m, power, sum.sign < 0);
-        else x[k] = gxbp_double((m >> (-1074 - power)) | (sum.sign < 0 ? (uint64_t)1 << 63 : 0));    /* a denormal: no bit is lost */
-    }
-}
 
 static GXBP_COLD void gxbp_save_points(gxb_complex *cx, gxb_stream *s) {
     uint32_t i;

@@ -152,6 +152,36 @@ static inline wl_surface *add_box(workload *w, int solid, double x0, double y0, 
     return s;
 }
 
+/* n x n squares of two triangles of a sphere of radius 2, over and beyond the unit square across an axis, bulging to where it points */
+static inline void add_cap(workload *w, uint32_t n, int axis) {
+    wl_surface *s = wl_add_surface(w, 0);
+    uint32_t i, j;
+    for (j = 0; j <= n; ++j) for (i = 0; i <= n; ++i) {
+        const double u = -0.0513 + 1.1027 * i / n, v = -0.0541 + 1.1027 * j / n;
+        double x[3];
+        x[axis] = sqrt(4 - (u - 0.4) * (u - 0.4) - (v - 0.45) * (v - 0.45)) - 1.4;
+        x[(axis + 1) % 3] = u; x[(axis + 2) % 3] = v;
+        wl_add_vertex(s, x);
+    }
+    for (j = 0; j < n; ++j) for (i = 0; i < n; ++i) {
+        const uint32_t a = j * (n + 1) + i, b = a + n + 1;
+        wl_add_triangle(s, a, a + 1, b + 1);
+        wl_add_triangle(s, a, b + 1, b);
+    }
+}
+
+/* Planes of nodes that are no triangle's: no facet of theirs has a label */
+static inline size_t free_planes(const gx_body *body) {
+    const gxb_complex *cx = body->complex;
+    uint8_t *labelled = (uint8_t *)calloc(cx->plane_count, 1);
+    size_t count = 0;
+    uint32_t i;
+    for (i = 0; i < cx->facet_count; ++i) if (cx->facets[i].labels != GXB_NONE) labelled[cx->facets[i].plane] = 1;
+    for (i = 0; i < cx->tree_count; ++i) count += !labelled[cx->nodes[i].plane];
+    free(labelled);
+    return count;
+}
+
 static inline workload corner_tet(void) { return wl_tetrahedron(wl_corner_tetrahedron); }
 
 /* ---- random scenes ---- */

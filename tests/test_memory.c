@@ -118,6 +118,25 @@ static gx_result cut_all(gx_body *body) {
     s[0] = sheet(sheet_a); s[1] = solid(); s[2] = sheet(sheet_b); s[3] = sheet(sheet_part);
     return cut(body, s, 4, 0.01, 0);
 }
+
+/* A ring of squares of two triangles around z inside the middle element: so many that free planes divide its leaves */
+static gx_result cut_ring(gx_body *body) {
+    enum { ROUND = 16, HIGH = 4 };
+    double vertices[3 * ROUND * (HIGH + 1)];
+    uint32_t triangles[6 * ROUND * HIGH], i, j, n = 0;
+    gx_surface s;
+    for (j = 0; j <= HIGH; ++j) for (i = 0; i < ROUND; ++i) {
+        double *x = vertices + 3 * (ROUND * j + i);
+        const double radius = 0.1 + 0.013 * j * (HIGH - j);
+        x[0] = 0.511 + radius * cos(6.28318530717958 * i / ROUND); x[1] = 0.497 + radius * sin(6.28318530717958 * i / ROUND); x[2] = 0.41 + 0.04 * j;
+    }
+    for (j = 0; j < HIGH; ++j) for (i = 0; i < ROUND; ++i, n += 6) {
+        const uint32_t a = ROUND * j + i, b = ROUND * j + (i + 1) % ROUND, corners[6] = { a, b, b + ROUND, a, b + ROUND, a + ROUND };
+        memcpy(triangles + n, corners, sizeof corners);
+    }
+    s = surface(vertices, ROUND * (HIGH + 1), triangles, 2 * ROUND * HIGH, GX_SURFACE_SHEET);
+    return cut(body, &s, 1, 0, 0);
+}
 static gx_result look(gx_body *body) { gx_view view; return gx_body_view(body, &view); }
 static gx_result draw(gx_body *body) { gx_skin skin; return gx_body_skin(body, NULL, &skin); }
 static gx_result hold(gx_body *body) {
@@ -282,7 +301,7 @@ static void sweep(const char *what, const action *before, action act) {
 }
 
 static const action nothing[] = { NULL }, after_a_cut[] = { cut_sheet, NULL }, after_two[] = { cut_sheet, cut_part, look, NULL },
-                    after_solid[] = { cut_solid, NULL }, held[] = { hold, cut_sheet, step, NULL }, drawn[] = { cut_sheet, draw, NULL },
+                    after_solid[] = { cut_solid, NULL }, after_a_ring[] = { cut_ring, NULL }, held[] = { hold, cut_sheet, step, NULL }, drawn[] = { cut_sheet, draw, NULL },
                     drawn_and_cut[] = { draw, cut_sheet, draw, cut_second_sheet, NULL };
 
 START_TEST(creation) {
@@ -313,6 +332,12 @@ START_TEST(first_cut) { sweep("a sheet", nothing, cut_sheet); }
 END_TEST
 
 START_TEST(partial_cut) { sweep("a part of a sheet", nothing, cut_part); }
+END_TEST
+
+START_TEST(cut_of_many_triangles) {
+    sweep("a ring", nothing, cut_ring);
+    sweep("a sheet after a ring", after_a_ring, cut_second_sheet);
+}
 END_TEST
 
 START_TEST(solid_cut) { sweep("a solid", nothing, cut_solid); }
@@ -455,6 +480,7 @@ int main(void) {
     tcase_add_test(tests, creation);
     tcase_add_test(tests, first_cut);
     tcase_add_test(tests, partial_cut);
+    tcase_add_test(tests, cut_of_many_triangles);
     tcase_add_test(tests, solid_cut);
     tcase_add_test(tests, cut_of_a_cut_body);
     tcase_add_test(tests, scoped_cut);

@@ -181,6 +181,31 @@ START_TEST(random_bodies) {
 }
 END_TEST
 
+/* Planes of no triangle, through points made for them, near and far from the origin; further cuts */
+START_TEST(many_triangles_in_an_element) {
+    static const double sizes[3] = { 1, 1e-3, 1e6 }, offsets[3] = { 0, 12345678.9, -3e7 };
+    workload w = grid(1, 1, 1, 5);
+    gx_body *body, *copy;
+    size_t i, k;
+    add_cap(&w, 20, 0); add_cap(&w, 12, 1); add_axis_plane(&w, 2, 0.4);
+    for (i = 0; i < 3 * w.node_count; ++i) w.positions[i] = offsets[_i] + sizes[_i] * w.positions[i];
+    for (k = 0; k < w.surface_count; ++k)
+        for (i = 0; i < 3 * w.surfaces[k].vertex_count; ++i) w.surfaces[k].vertices[i] = offsets[_i] + sizes[_i] * w.surfaces[k].vertices[i];
+    body = body_of(&w);
+    cut_by(body, &w, 0, 1);
+    ck_assert_uint_gt(free_planes(body), 5);
+    copy = twin_of(body, 1);
+    expect_equal(body, copy, (uint64_t)_i);
+    for (k = 1; k < 3; ++k) {
+        cut_by(body, &w, k, 1);
+        cut_by(copy, &w, k, 1);
+        expect_equal(body, copy, (uint64_t)_i);
+    }
+    gx_body_destroy(body); gx_body_destroy(copy);
+    wl_free(&w);
+}
+END_TEST
+
 /* The frame of the complex shifts and scales: given coordinates must come back as they were. */
 START_TEST(far_and_small_bodies) {
     static const double sizes[6] = { 1, 1e-6, 1e6, 1e-300, 3e-308, 1e60 }, offsets[6] = { 1e8, 0.3, 12345678.9, 0, 0, 0 };
@@ -713,6 +738,7 @@ int main(void) {
     TCase *tests = tcase_create("save");
     tcase_set_timeout(tests, 240);
     tcase_add_loop_test(tests, random_bodies, 0, 80 / FEWER);
+    tcase_add_loop_test(tests, many_triangles_in_an_element, 0, 3);
     tcase_add_loop_test(tests, far_and_small_bodies, 0, 6);
     tcase_add_loop_test(tests, pinched_bodies, 0, 2);
     tcase_add_loop_test(tests, steps_go_on, 0, 16);
