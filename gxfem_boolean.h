@@ -41,7 +41,8 @@
  * open. So every leaf stays convex, and all that is ever asked is on which side of a plane a point lies. Points, edges and
  * facets are shared by all leaves around them: they are divided once, their neighbours see the pieces, and the complex
  * conforms at all times. Holes, dangling walls, detached walls and nested shells need no treatment of their own: what is
- * connected is what open facets join. See docs/ARCHITECTURE.md for the reasons.
+ * connected is what open facets join. A leaf with many facets is divided by a plane of no triangle too, without a wall. See
+ * docs/ARCHITECTURE.md for the reasons.
  *
  * How Booleans work. Where triangles of the operands meet is found by predicates of input points; each touched triangle is divided
  * along those segments; winding numbers spread from facet to facet; the result is the facets between inside and outside. Vertices are
@@ -1435,8 +1436,8 @@ static GXBP_APART gx_result gxbp_reserve(gxb_complex *cx, void *array, size_t it
     return GX_OK;
 }
 
-#define GXBP_RESERVE(cx, array, counter, extra) \
-    gxbp_reserve(cx, &(cx)->array, sizeof *(cx)->array, (cx)->counter##_count, &(cx)->counter##_capacity, extra)
+#define GXBP_RESERVE(cx, array, counter, extra) ((size_t)(extra) <= (cx)->counter##_capacity - (cx)->counter##_count ? GX_OK : \
+    gxbp_reserve(cx, &(cx)->array, sizeof *(cx)->array, (cx)->counter##_count, &(cx)->counter##_capacity, extra))
 
 enum { GXBP_EDGES, GXBP_FACETS, GXBP_LEAVES, GXBP_NODES, GXBP_POINTS, GXBP_ROOTS, GXBP_FACES, GXBP_MESH_EDGES };
 
@@ -3011,33 +3012,31 @@ static int gxbp_plane_parts(gxb_complex *cx, const uint32_t *facets, uint32_t co
     return front >= count / 4 && behind >= count / 4;
 }
 
-/* Divides the leaf at the task's place by a free plane if it has many facets and one parts them well; *node: GXB_NONE, or what has taken its
-   place. Looked at whenever their number is one of eight. */
-static gx_result gxbp_relieve_leaf(gxb_complex *cx, const gxbp_task *task, uint32_t *node) {
+/* Divides the leaf at the task's place, which a triangle has just made, by a free plane if it has many facets and one parts them well; *node:
+   GXB_NONE, or what has taken its place. Looked at whenever their number is one of eight. */
+static GXBP_COLD gx_result gxbp_relieve_leaf(gxb_complex *cx, const gxbp_task *task, uint32_t *node) {
     const uint32_t leaf = cx->nodes[task->parent].child[task->side] >> 1, points = cx->point_count, planes = cx->plane_count;
-    uint32_t first, count, i, n = 0, *inner;
+    const gxb_leaf l = cx->leaves[leaf];
+    uint32_t i, n = 0, *inner;
     double median[3];
     int rank[3], ranks, k;
     gxbp_knife knife;
-    gx_result result = gxb_leaf_facets(cx, leaf, &first, &count);
-    *node = GXB_NONE;
-    if (result != GX_OK || count < GXBP_MANY_FACETS) return result;
-    result = GXBP_RESERVE(cx, scratch, scratch, count);
+    gx_result result = GXBP_RESERVE(cx, scratch, scratch, l.facet_count);
     if (result != GX_OK) return result;
     inner = cx->scratch;
-    for (i = 0; i < count; i++) if (cx->facets[cx->pool[first + i]].face == GXB_NONE) inner[n++] = cx->pool[first + i];
-    if (n < GXBP_MANY_FACETS || n % 8 != 0) return result;
+    for (i = 0; i < l.facet_count; i++) if (cx->facets[cx->pool[l.facets + i]].face == GXB_NONE) inner[n++] = cx->pool[l.facets + i];
+    if (n < GXBP_MANY_FACETS || n % 8 != 0) return GX_OK;
     memset(&knife, 0, sizeof knife);
     knife.slot = 1;
     ranks = gxbp_medians(cx, inner, n, median, rank);
     for (k = 0; k < ranks; k++) {
-        result = gxbp_new_free_plane(cx, cx->leaves[leaf].element, rank[k], median[rank[k]], &knife.plane);
+        result = gxbp_new_free_plane(cx, l.element, rank[k], median[rank[k]], &knife.plane);
         if (result != GX_OK) return result;
         if (gxbp_plane_parts(cx, inner, n, &knife)) break;
         cx->point_count = points;
         cx->plane_count = planes;
     }
-    if (k == ranks) return result;
+    if (k == ranks) return GX_OK;
     result = gxbp_ready_leaf(cx, leaf);
     if (result == GX_OK) gxbp_part_leaf(cx, leaf, &knife, task, node);
     return result;
@@ -3048,7 +3047,7 @@ static gx_result gxbp_divide_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t lea
     const uint32_t element = cx->leaves[leaf].element;
     gxbp_knife knife;
     gxbp_task half;
-    uint32_t i, edges = 0, middle, node, freed[2];
+    uint32_t i, edges = 0, middle, node, freed[2] = {GXB_NONE, GXB_NONE};
     gx_result result = gxbp_ready_leaf(cx, leaf);
     if (result != GX_OK) return result;
     for (i = 0; i < task->count; i++) {
@@ -3060,7 +3059,8 @@ static gx_result gxbp_divide_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t lea
     middle = gxbp_part_leaf(cx, leaf, &knife, task, &node);
     result = gxbp_cover_facet(cx, t, middle, edges);
     half.parent = node;
-    for (half.side = 0; half.side < 2 && result == GX_OK; half.side++) result = gxbp_relieve_leaf(cx, &half, &freed[half.side]);
+    for (half.side = 0; half.side < 2 && result == GX_OK; half.side++)
+        if (cx->leaves[cx->nodes[node].child[half.side] >> 1].facet_count >= GXBP_MANY_FACETS) result = gxbp_relieve_leaf(cx, &half, &freed[half.side]);
     if (result == GX_OK) result = gxbp_grow_tree(cx, node, element);
     for (i = 0; i < 2 && result == GX_OK; i++) if (freed[i] != GXB_NONE) result = gxbp_grow_tree(cx, freed[i], element);
     return result;
@@ -3263,14 +3263,14 @@ GXFEM_API int gxb_complex_winding(gxb_complex *cx, const uint32_t *points, size_
 
 /* --- numbers as sums of two doubles: about 100 bits, with bounds that hold as those of >>filter do ---
  *
- * The sum of two doubles is their rounded sum and its error, which the six operations of gxbp_pair_sum find but for 2^-103 of it also where
- * roundings are not to nearest [Boldo, Graillat, Muller, On the robustness of the 2Sum and Fast2Sum algorithms (2017)]; a product is that of
- * halves of 26 and 27 bits, taken apart by their bits. What is left out or rounded in a sum or product of pairs is below 2^-100 of
- * its terms' sizes; GXBP_PAIR_U has room for the rounding of bounds. Numbers are below 2^160, errors below 2^700, GXBP_TINY stands for
- * underflow.
+ * The sum of two doubles is their rounded sum and its error, which the six operations of gxbp_pair_sum find but for 2^-103 of the
+ * terms' sizes also where roundings are not to nearest [Boldo, Graillat, Muller, On the robustness of the 2Sum and Fast2Sum algorithms
+ * (2017)]; a product is that of halves of 26 and 27 bits, taken apart by their bits. What is left out or rounded in a sum or product of
+ * pairs is below 2^-100 of its terms' sizes; GXBP_PAIR_U has room for the rounding of the bounds too. Coordinates are below 2^16, so numbers
+ * of degree 9 below 2^180, their errors below 2^700 even where nothing is known; GXBP_TINY stands for underflow.
  */
 #define GXBP_PAIR_U gxbp_power(-97)
-#define GXBP_PAIR_RANGE 16  /* coordinates are below 2^16: products of three differences, and of three of those, are far from overflow */
+#define GXBP_PAIR_RANGE 16
 
 static gxbp_pair gxbp_pair_sum(double a, double b) {
     gxbp_pair r;
@@ -3282,7 +3282,7 @@ static gxbp_pair gxbp_pair_sum(double a, double b) {
     return r;
 }
 
-/* a + b sign */
+/* a + b, or a - b where sign is -1 */
 static gxbp_pair gxbp_pair_add(const gxbp_pair *a, const gxbp_pair *b, double sign) {
     gxbp_pair r = gxbp_pair_sum(a->high, sign * b->high);
     const double size = gxbp_abs(a->high) + gxbp_abs(b->high);
