@@ -3267,7 +3267,7 @@ GXFEM_API int gxb_complex_winding(gxb_complex *cx, const uint32_t *points, size_
  * terms' sizes also where roundings are not to nearest [Boldo, Graillat, Muller, On the robustness of the 2Sum and Fast2Sum algorithms
  * (2017)]; a product is that of halves of 26 and 27 bits, taken apart by their bits. What is left out or rounded in a sum or product of
  * pairs is below 2^-100 of its terms' sizes; GXBP_PAIR_U has room for the rounding of the bounds too. Coordinates are below 2^16, so numbers
- * of degree 9 below 2^180, their errors below 2^700 even where nothing is known; GXBP_TINY stands for underflow.
+ * of degree 9 below 2^180, their errors below 2^600 even where nothing is known; GXBP_TINY stands for underflow.
  */
 #define GXBP_PAIR_U gxbp_power(-97)
 #define GXBP_PAIR_RANGE 16
@@ -3325,14 +3325,13 @@ static int gxbp_pair_ratio(const gxbp_pair *a, const gxbp_pair *b, double *ratio
     return 1;
 }
 
-/* q - p; of no use where a coordinate is not a double, or large */
+/* q - p; where a coordinate is no double, or large, 0 with an error that no ratio outlives */
 static void gxbp_pair_difference(gxbp_pair r[3], const gxb_ball *p, const gxb_ball *q) {
-    const double most = gxbp_power(GXBP_PAIR_RANGE);
+    const int good = p->error == 0 && q->error == 0 && gxbp_max(gxbp_max3(p->x), gxbp_max3(q->x)) < gxbp_power(GXBP_PAIR_RANGE);
     int k;
     for (k = 0; k < 3; k++) {
-        const int good = p->error == 0 && q->error == 0 && gxbp_abs(p->x[k]) < most && gxbp_abs(q->x[k]) < most;
         r[k] = gxbp_pair_sum(good ? q->x[k] : 0, good ? -p->x[k] : 0);
-        if (!good) r[k].error = GXBP_NO_BALL;
+        if (!good) r[k].error = gxbp_power(4 * GXBP_PAIR_RANGE);
     }
 }
 
