@@ -170,7 +170,8 @@ static inline void add_cap(workload *w, uint32_t n, int axis) {
     }
 }
 
-/* Planes of nodes that are no triangle's: no facet of theirs has a label */
+#ifndef GXFEM_LINKED
+/* Nodes whose planes are no triangle's: no facet of such a plane has a label */
 static inline size_t free_planes(const gx_body *body) {
     const gxb_complex *cx = body->complex;
     uint8_t *labelled = (uint8_t *)calloc(cx->plane_count, 1);
@@ -181,6 +182,7 @@ static inline size_t free_planes(const gx_body *body) {
     free(labelled);
     return count;
 }
+#endif
 
 static inline workload corner_tet(void) { return wl_tetrahedron(wl_corner_tetrahedron); }
 

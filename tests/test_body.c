@@ -1835,111 +1835,6 @@ START_TEST(ordered_cuts_make_no_chains) {
 }
 END_TEST
 
-/* ---- many triangles in one element: leaves are divided by planes of no triangle, which nothing but their number must show ---- */
-
-/* A ball of 2 n (n - 1) triangles; returns its volume. */
-static double add_ball(workload *w, int solid, uint32_t n, const double center[3], double radius) {
-    wl_surface *s = wl_add_surface(w, solid);
-    double volume = 0;
-    uint32_t i, j;
-    size_t t;
-    for (j = 0; j <= n; ++j) for (i = 0; i < (j % n == 0 ? 1 : n); ++i) {
-        const double up = 3.14159265358979 * j / n, round = 6.28318530717958 * i / n;
-        double x[3];
-        x[0] = center[0] + radius * sin(up) * cos(round); x[1] = center[1] + radius * sin(up) * sin(round); x[2] = center[2] - radius * cos(up);
-        wl_add_vertex(s, x);
-    }
-    for (j = 0; j < n; ++j) for (i = 0; i < n; ++i) {
-        const uint32_t next = (i + 1) % n, low = j == 0 ? 0 : 1 + (j - 1) * n, high = 1 + j * n;
-        if (j < n - 1) wl_add_triangle(s, low + (j == 0 ? 0 : i), high + next, high + i);
-        if (j > 0) wl_add_triangle(s, low + i, low + next, j == n - 1 ? high : high + next);
-    }
-    for (t = 0; t < s->triangle_count; ++t) {
-        const double *a = s->vertices + 3 * s->triangles[3 * t], *b = s->vertices + 3 * s->triangles[3 * t + 1], *c = s->vertices + 3 * s->triangles[3 * t + 2];
-        double p[3], q[3], r[3];
-        int k;
-        for (k = 0; k < 3; ++k) { p[k] = a[k] - center[k]; q[k] = b[k] - center[k]; r[k] = c[k] - center[k]; }
-        volume += (p[0] * (q[1] * r[2] - q[2] * r[1]) + p[1] * (q[2] * r[0] - q[0] * r[2]) + p[2] * (q[0] * r[1] - q[1] * r[0])) / 6;
-    }
-    return volume;
-}
-
-/* A fine mesh, in whose elements there are few triangles, is the measure. */
-START_TEST(cap_in_large_and_small_elements) {
-    workload large = grid(1, 1, 1, 5), small = grid(14, 14, 14, 5);
-    gx_body *a, *b;
-    gx_view p, q;
-    size_t i;
-    for (i = 0; i < 3 * small.node_count; ++i) small.positions[i] /= 14;
-    add_cap(&large, 28, _i); add_cap(&small, 28, _i);
-    a = cut_at_once(&large); b = cut_at_once(&small);
-    ck_assert_uint_gt(free_planes(a), 20);
-    ck_assert_uint_eq(free_planes(b), 0);
-    p = view_of(a); q = view_of(b);
-    ck_assert_uint_eq(p.cell_count, 10);
-    ck_assert_uint_eq(p.fragment_count, 2);
-    ck_assert_uint_eq(q.fragment_count, 2);
-    ck_assert_double_eq_tol(fmin(p.fragment_volume[0], p.fragment_volume[1]), fmin(q.fragment_volume[0], q.fragment_volume[1]), 1e-13);
-    ck_assert_double_eq_tol(fmax(p.fragment_volume[0], p.fragment_volume[1]), fmax(q.fragment_volume[0], q.fragment_volume[1]), 1e-13);
-    check_cells(a, "cap", (uint64_t)_i);
-    gx_body_destroy(a); gx_body_destroy(b);
-    wl_free(&large); wl_free(&small);
-}
-END_TEST
-
-/* A ball inside one element, as a sheet and as a solid, and the sheet cut again */
-START_TEST(ball_in_one_element) {
-    static const double center[3] = { 0.2511, 0.2437, 0.2544 };
-    workload w = corner_tet();
-    const double ball = add_ball(&w, 0, 24, center, 0.13), whole = 1.0 / 6;
-    gx_body *body;
-    gx_cut_report report;
-    gx_view view;
-    add_axis_plane(&w, 1, center[1]);
-    body = body_of(&w);
-    cut_by(body, &w, 0, 1);
-    view = view_of(body);
-    ck_assert_uint_gt(free_planes(body), 20);
-    ck_assert_uint_eq(view.cell_count, 2);
-    ck_assert_uint_eq(view.fragment_count, 2);
-    ck_assert_double_eq_tol(fmin(view.cell_volume[0], view.cell_volume[1]), ball, 1e-14);
-    ck_assert_double_eq_tol(view.volume, whole, 1e-14);
-    check_cells(body, "ball", 0);
-    cut_by(body, &w, 1, 1);
-    view = view_of(body);
-    ck_assert_uint_eq(view.cell_count, 4);
-    ck_assert_double_eq_tol(view.volume, whole, 1e-14);
-    gx_body_destroy(body);
-    wl_free(&w);
-    w = corner_tet();
-    add_ball(&w, 1, 24, center, 0.13);
-    body = body_of(&w);
-    report = cut_by(body, &w, 0, 1);
-    ck_assert_uint_gt(free_planes(body), 20);
-    ck_assert_double_eq_tol(report.removed_volume, ball, 1e-14);
-    ck_assert_double_eq_tol(view_of(body).volume, whole - ball, 1e-14);
-    gx_body_destroy(body);
-    wl_free(&w);
-}
-END_TEST
-
-/* Sides asked for by four times the triangles: hardly more than four times as many */
-START_TEST(cost_of_many_triangles) {
-    uint64_t calls[2];
-    int i;
-    for (i = 0; i < 2; ++i) {
-        workload w = corner_tet();
-        gx_body *body;
-        add_cap(&w, i == 0 ? 20 : 40, 2);
-        body = cut_at_once(&w);
-        calls[i] = body->complex->filter_calls;
-        gx_body_destroy(body);
-        wl_free(&w);
-    }
-    ck_assert_msg(calls[1] < 8 * calls[0], "%.0f and %.0f", (double)calls[0], (double)calls[1]);
-}
-END_TEST
-
 /* ---- the skin ---- */
 
 /* Per fragment, the triangles enclose its volume, at rest and after an affine map; outer triangles lie in the mesh's surface. */
@@ -2022,6 +1917,112 @@ START_TEST(skin_tells_cut_faces) {
     free(x);
     gx_body_destroy(body);
     wl_free(&w);
+}
+END_TEST
+
+/* ---- many triangles in one element: leaves are divided by planes of no triangle, which nothing but their number must show ---- */
+
+/* A ball of 2 n (n - 1) triangles; returns its volume. */
+static double add_ball(workload *w, int solid, uint32_t n, const double center[3], double radius) {
+    wl_surface *s = wl_add_surface(w, solid);
+    double volume = 0;
+    uint32_t i, j;
+    size_t t;
+    for (j = 0; j <= n; ++j) for (i = 0; i < (j % n == 0 ? 1 : n); ++i) {
+        const double up = 3.14159265358979 * j / n, round = 6.28318530717958 * i / n;
+        double x[3];
+        x[0] = center[0] + radius * sin(up) * cos(round); x[1] = center[1] + radius * sin(up) * sin(round); x[2] = center[2] - radius * cos(up);
+        wl_add_vertex(s, x);
+    }
+    for (j = 0; j < n; ++j) for (i = 0; i < n; ++i) {
+        const uint32_t next = (i + 1) % n, low = j == 0 ? 0 : 1 + (j - 1) * n, high = 1 + j * n;
+        if (j < n - 1) wl_add_triangle(s, low + (j == 0 ? 0 : i), high + next, high + i);
+        if (j > 0) wl_add_triangle(s, low + i, low + next, j == n - 1 ? high : high + next);
+    }
+    for (t = 0; t < s->triangle_count; ++t) {
+        const double *a = s->vertices + 3 * s->triangles[3 * t], *b = s->vertices + 3 * s->triangles[3 * t + 1], *c = s->vertices + 3 * s->triangles[3 * t + 2];
+        double p[3], q[3], r[3];
+        int k;
+        for (k = 0; k < 3; ++k) { p[k] = a[k] - center[k]; q[k] = b[k] - center[k]; r[k] = c[k] - center[k]; }
+        volume += (p[0] * (q[1] * r[2] - q[2] * r[1]) + p[1] * (q[2] * r[0] - q[0] * r[2]) + p[2] * (q[0] * r[1] - q[1] * r[0])) / 6;
+    }
+    return volume;
+}
+
+/* A fine mesh, in whose elements there are few triangles, is the measure. */
+START_TEST(cap_in_large_and_small_elements) {
+    workload large = grid(1, 1, 1, 5), small = grid(14, 14, 14, 5);
+    gx_body *a, *b;
+    gx_view p, q;
+    size_t i;
+    for (i = 0; i < 3 * small.node_count; ++i) small.positions[i] /= 14;
+    add_cap(&large, 28, _i); add_cap(&small, 28, _i);
+    a = cut_at_once(&large); b = cut_at_once(&small);
+    ck_assert_uint_gt(free_planes(a), 20);
+    ck_assert_uint_eq(free_planes(b), 0);
+    p = view_of(a); q = view_of(b);
+    ck_assert_uint_eq(p.cell_count, 10);
+    ck_assert_uint_eq(p.fragment_count, 2);
+    ck_assert_uint_eq(q.fragment_count, 2);
+    ck_assert_double_eq_tol(fmin(p.fragment_volume[0], p.fragment_volume[1]), fmin(q.fragment_volume[0], q.fragment_volume[1]), 1e-13);
+    ck_assert_double_eq_tol(fmax(p.fragment_volume[0], p.fragment_volume[1]), fmax(q.fragment_volume[0], q.fragment_volume[1]), 1e-13);
+    check_cells(a, "cap", (uint64_t)_i);
+    check_skin(a, (uint64_t)_i);
+    gx_body_destroy(a); gx_body_destroy(b);
+    wl_free(&large); wl_free(&small);
+}
+END_TEST
+
+/* A ball inside one element, as a sheet and as a solid, and the sheet cut again */
+START_TEST(ball_in_one_element) {
+    static const double center[3] = { 0.2511, 0.2437, 0.2544 };
+    workload w = corner_tet();
+    const double ball = add_ball(&w, 0, 24, center, 0.13), whole = 1.0 / 6;
+    gx_body *body;
+    gx_cut_report report;
+    gx_view view;
+    add_axis_plane(&w, 1, center[1]);
+    body = body_of(&w);
+    cut_by(body, &w, 0, 1);
+    view = view_of(body);
+    ck_assert_uint_gt(free_planes(body), 20);
+    ck_assert_uint_eq(view.cell_count, 2);
+    ck_assert_uint_eq(view.fragment_count, 2);
+    ck_assert_double_eq_tol(fmin(view.cell_volume[0], view.cell_volume[1]), ball, 1e-14);
+    ck_assert_double_eq_tol(view.volume, whole, 1e-14);
+    check_cells(body, "ball", 0);
+    cut_by(body, &w, 1, 1);
+    view = view_of(body);
+    ck_assert_uint_eq(view.cell_count, 4);
+    ck_assert_double_eq_tol(view.volume, whole, 1e-14);
+    gx_body_destroy(body);
+    wl_free(&w);
+    w = corner_tet();
+    add_ball(&w, 1, 24, center, 0.13);
+    body = body_of(&w);
+    report = cut_by(body, &w, 0, 1);
+    ck_assert_uint_gt(free_planes(body), 20);
+    ck_assert_double_eq_tol(report.removed_volume, ball, 1e-14);
+    ck_assert_double_eq_tol(view_of(body).volume, whole - ball, 1e-14);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Sides asked for by four times the triangles: hardly more than four times as many */
+START_TEST(cost_of_many_triangles) {
+    uint64_t calls[2];
+    int i;
+    for (i = 0; i < 2; ++i) {
+        workload w = corner_tet();
+        gx_body *body;
+        add_cap(&w, i == 0 ? 20 : 40, 2);
+        body = cut_at_once(&w);
+        calls[i] = body->complex->filter_calls;
+        gx_body_destroy(body);
+        wl_free(&w);
+    }
+    ck_assert_msg(calls[1] < 8 * calls[0], "%.0f and %.0f", (double)calls[0], (double)calls[1]);
 }
 END_TEST
 
