@@ -3317,7 +3317,8 @@ static gxbp_pair gxbp_pair_dot(const gxbp_pair a[3], const gxbp_pair b[3]) {
     return gxbp_pair_add(&r, &t, 1);
 }
 
-/* a / b, if its relative error is below 2^-50. The quotient of the high parts has three roundings. */
+/* a / b, if both are known to 2^-54 of their own values: with the roundings of the high parts and of the quotient the relative error is
+   below 2^-50. */
 static int gxbp_pair_ratio(const gxbp_pair *a, const gxbp_pair *b, double *ratio) {
     const double most = gxbp_power(-54);
     if (!(a->error < most * gxbp_abs(a->high)) || !(b->error < most * gxbp_abs(b->high))) return 0;
@@ -3331,7 +3332,7 @@ static void gxbp_pair_difference(gxbp_pair r[3], const gxb_ball *p, const gxb_ba
     int k;
     for (k = 0; k < 3; k++) {
         r[k] = gxbp_pair_sum(good ? q->x[k] : 0, good ? -p->x[k] : 0);
-        if (!good) r[k].error = gxbp_power(4 * GXBP_PAIR_RANGE);
+        r[k].error = good ? GXBP_PAIR_U * (gxbp_abs(p->x[k]) + gxbp_abs(q->x[k])) : gxbp_power(4 * GXBP_PAIR_RANGE);
     }
 }
 
