@@ -287,7 +287,9 @@ typedef struct gxb_undo { uint32_t array, index; } gxb_undo;
 
 /* All arrays belong to the complex and may be read; [i] is valid for i < count. Points 0 ... node_count-1 are the nodes, leaves
    0 ... element_count-1 the elements' first leaves. */
-typedef struct gxb_complex {
+typedef struct gxb_complex {        /* what is used most comes first: its addresses are short */
+    gxb_cpoint *points; uint32_t point_count, point_capacity;
+    gxb_cplane *planes; uint32_t plane_count, plane_capacity;
     double origin[3]; int shift;
     uint32_t node_count, element_count, face_count, mesh_edge_count;
     uint32_t *elements;             /* the complex's copy, element_count x 4 */
@@ -297,8 +299,6 @@ typedef struct gxb_complex {
     uint32_t *face_facet;           /* face_count: GXB_NONE until touched */
     uint32_t *mesh_edge;            /* mesh_edge_count: GXB_NONE until touched */
     uint32_t *root;                 /* element_count: tree reference */
-    gxb_cpoint *points; uint32_t point_count, point_capacity;
-    gxb_cplane *planes; uint32_t plane_count, plane_capacity;
     gxb_edge *edges; uint32_t edge_count, edge_capacity;
     gxb_facet *facets; uint32_t facet_count, facet_capacity;
     gxb_leaf *leaves; uint32_t leaf_count, leaf_capacity;
@@ -664,7 +664,7 @@ static void gxbp_num_add_signed(gxb_num *r, const gxb_num *a, const gxb_num *b, 
 GXFEM_API void gxb_num_add(gxb_num *r, const gxb_num *a, const gxb_num *b) { gxbp_num_add_signed(r, a, b, 1); }
 GXFEM_API void gxb_num_sub(gxb_num *r, const gxb_num *a, const gxb_num *b) { gxbp_num_add_signed(r, a, b, -1); }
 
-GXFEM_API void gxb_num_mul(gxb_num *r, const gxb_num *a, const gxb_num *b) {
+static GXBP_APART void gxbp_num_product(gxb_num *r, const gxb_num *a, const gxb_num *b) {
     gxb_limb carry = 0;
     uint32_t i, j;
     r->sign = a->sign * b->sign;
@@ -690,6 +690,8 @@ GXFEM_API void gxb_num_mul(gxb_num *r, const gxb_num *a, const gxb_num *b) {
     }
     if (r->d[0] == 0 || r->d[r->n - 1] == 0) gxbp_num_trim(r);
 }
+
+GXFEM_API void gxb_num_mul(gxb_num *r, const gxb_num *a, const gxb_num *b) { gxbp_num_product(r, a, b); }
 
 /* Bits of a limb other than 0, counted up to the highest that is set. */
 static int gxbp_limb_bits(gxb_limb x) {
@@ -1892,7 +1894,7 @@ static GXBP_COLD int gxbp_exact_normal_sign(gxb_complex *cx, uint32_t plane, uin
 }
 
 /* Sign of one component of a plane's normal. */
-static int gxbp_normal_sign(gxb_complex *cx, uint32_t plane, uint32_t axis) {
+static GXBP_APART int gxbp_normal_sign(gxb_complex *cx, uint32_t plane, uint32_t axis) {
     const gxb_plane_filter *f = &cx->planes[plane].filter;
     const int sign = gxbp_filter_sign(f->n[axis], f->error);
     return sign != 0 ? sign : gxbp_exact_normal_sign(cx, plane, axis);
@@ -2108,8 +2110,8 @@ static GXBP_APART gx_result gxbp_fail(gx_failure *failure, gx_result result, siz
     return result;
 }
 
-GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator *allocator, gxb_complex **complex,
-                                       gx_failure *failure) {
+GXFEM_API GXBP_RARE gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator *allocator, gxb_complex **complex,
+                                                 gx_failure *failure) {
     gx_allocator none;
     gxb_complex *cx;
     uint32_t *table;
@@ -3066,7 +3068,7 @@ static gx_result gxbp_divide_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t lea
     return result;
 }
 
-static void gxbp_push_task(gxb_complex *cx, uint32_t parent, uint32_t side, uint32_t first, uint32_t count, uint32_t coplanar) {
+static GXBP_APART void gxbp_push_task(gxb_complex *cx, uint32_t parent, uint32_t side, uint32_t first, uint32_t count, uint32_t coplanar) {
     gxbp_task *task = &cx->tasks[cx->task_count++];
     task->parent = parent; task->side = side; task->first = first; task->count = count; task->coplanar = coplanar;
 }
@@ -4299,7 +4301,11 @@ typedef struct gxbp_operand {
 typedef struct gxbp_crossing { uint32_t from, operand, to; int32_t change; } gxbp_crossing;
 enum { GXBP_STEPS = 64 };
 
-struct gxb_boolean {
+struct gxb_boolean {            /* what is used most comes first: its addresses are short */
+    gxbp_source *sources; uint32_t source_count, source_capacity;
+    gxbp_vertex *vertices; uint32_t vertex_count, vertex_capacity;
+    gxbp_piece *pieces; uint32_t piece_count, piece_capacity;
+    gx_result result;           /* of the evaluation at work */
     gxb_complex cx;             /* points, planes and exact numbers; the complex has no elements */
     gx_allocator outer;
     size_t limit, used, peak;
@@ -4307,17 +4313,13 @@ struct gxb_boolean {
     size_t arena_size, arena_used;
     uint64_t allocations;
     int over_limit;
-    gx_result result;           /* of the evaluation at work */
     uint32_t fine, mend, mended, triangulation;
     int (*inside)(void *user, const int32_t *winding, size_t operand_count);
     void *user;
     gxbp_operand *operands; uint32_t operand_count, operand_capacity;
-    gxbp_source *sources; uint32_t source_count, source_capacity;
     gxbp_leaf_boxes *bounds; uint32_t bound_count, bound_capacity;      /* of each operand's sources, in its tree's order */
     gxbp_box *boxes; uint32_t box_count, box_capacity;                  /* of trees */
-    gxbp_vertex *vertices; uint32_t vertex_count, vertex_capacity;
     uint32_t *table; uint32_t table_size, table_used;                   /* hash of points by coordinates or key */
-    gxbp_piece *pieces; uint32_t piece_count, piece_capacity;
     gxbp_link *links; uint32_t link_count, link_capacity;
     gxbp_segment *segments; uint32_t segment_count, segment_capacity;
     gxbp_cut *cuts; uint32_t cut_count, cut_capacity;
@@ -4394,7 +4396,7 @@ static void gxbp_count_release(void *user, void *memory, size_t size) {
 }
 
 /* The first error of an evaluation stays in b->result; what follows does nothing. */
-static int gxbp_stop(gxb_boolean *b, gx_result result) {
+static GXBP_APART int gxbp_stop(gxb_boolean *b, gx_result result) {
     if (b->result == GX_OK) b->result = result == GX_ERROR_MEMORY && b->over_limit ? GX_ERROR_LIMIT : result;
     return 0;
 }
@@ -4425,11 +4427,11 @@ static uint32_t gxbp_mix(uint32_t hash, uint64_t value) {
     return (uint32_t)(x >> 32) ^ (uint32_t)x;
 }
 
-static uint32_t gxbp_hash_key(const uint32_t key[4]) {
+static GXBP_APART uint32_t gxbp_hash_key(const uint32_t key[4]) {
     return gxbp_mix(gxbp_mix(key[0], (uint64_t)key[1] << 32 | key[2]), key[3]);
 }
 
-static uint32_t gxbp_hash_place(const double x[3]) { return gxbp_mix(gxbp_mix(gxbp_mix(0, gxbp_bits(x[0])), gxbp_bits(x[1])), gxbp_bits(x[2])); }
+static GXBP_APART uint32_t gxbp_hash_place(const double x[3]) { return gxbp_mix(gxbp_mix(gxbp_mix(0, gxbp_bits(x[0])), gxbp_bits(x[1])), gxbp_bits(x[2])); }
 
 static uint32_t gxbp_hash_point(const gxb_boolean *b, uint32_t point) {
     const uint32_t *key = b->vertices[point].key;
@@ -4469,13 +4471,17 @@ static uint32_t gxbp_new_vertex(gxb_boolean *b, uint32_t kind, uint32_t p, uint3
     return id;
 }
 
-static uint32_t gxbp_same(gxb_boolean *b, uint32_t point) {
-    gxbp_vertex *v = b->vertices;
+/* Follows names to the last one, and halves the way for whoever comes next. */
+static GXBP_APART uint32_t gxbp_find_same(gxbp_vertex *v, uint32_t point) {
     while (v[point].same != point) {
         v[point].same = v[v[point].same].same;
         point = v[point].same;
     }
     return point;
+}
+
+static uint32_t gxbp_same(gxb_boolean *b, uint32_t point) {
+    return b->vertices[point].same == point ? point : gxbp_find_same(b->vertices, point);
 }
 
 /* Two names of one point: the first stays, by the second's definition where that is an input vertex. */
