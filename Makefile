@@ -50,6 +50,7 @@ help:
 	@echo "  drift          what integrators keep: energy, momenta, order"
 	@echo "  frames         frames in which a cut happens beside those in which none does"
 	@echo "  skin           the visual surface: moved in each frame, rebuilt after a cut"
+	@echo "make bench-smallest  the smallest program with the kernel: time to compile and size, with and without GXFEM_STATIC"
 	@echo "make clean       removes $(BUILD)/"
 
 # ---- programs
@@ -218,6 +219,9 @@ charts:
 	sh bench/charts.sh $(tables) $(if $(small),$(tables),docs)/charts && \
 	sh bench/page.sh $(tables) $(if $(small),$(tables),docs)/BENCH.md $(if $(small),$(tables)/)README.md || echo charts >>$(tables)/failed
 	@[ ! -e $(tables)/failed ] || { echo "failed: $$(tr '\n' ' ' <$(tables)/failed)" >&2; exit 1; }
+
+bench-smallest:
+	@CC="$(CC)" sh bench/smallest.sh $(BUILD)/bench
 
 check-all: check
 	@$(MAKE) --no-print-directory lint
