@@ -25,15 +25,22 @@
  *         gxb_complex_destroy(cx);
  *     }
  *
- * Contents (search for >>name):
+ * Contents (search for >>name; all functions are here, each after the first without what is in common):
  *     >>shared      result codes, allocator
- *     >>numbers     exact numbers: a double is an integer times a power of two, sums and products are too
- *     >>predicates  orient2d, orient3d, incircle, insphere, side of a plane, comparison, orientation in a plane, winding number
- *     >>complex     the cell complex: points, planes, edges, facets, leaves
- *     >>stream      a complex as bytes
- *     >>boolean     Booleans of closed triangle surfaces, exact and chainable
- *     then, under GXFEM_BOOLEAN_IMPLEMENTATION, in this order: >>bits >>exact >>filter >>points >>memory >>topology
- *     >>split >>clip >>insert >>save >>check >>arrangement
+ *     >>numbers     exact numbers, a double is an integer times a power of two: gxb_num_set, add, sub, mul, to_double, ratio
+ *     >>predicates  of coordinates: gxb_orient2d, orient3d, incircle, insphere, winding_number; gxb_plane_init; points that are given, on a
+ *                   line and a plane, on three planes: gxb_point_explicit, line_plane, three_planes; of these: gxb_side, compare,
+ *                   orient_in_plane
+ *     >>complex     the cell complex (points, planes, edges, facets, leaves): gxb_complex_create, destroy; begin, commit, rollback;
+ *                   to divide: add_point, add_plane, insert, open_element, cover_edge, cover_node, set_wall, set_removed;
+ *                   to read: gxb_leaf_facets, gxb_facet_edges; to ask: gxb_complex_side, turn, compare, winding, barycentric, support,
+ *                   barycentric_fine
+ *     >>stream      a complex as bytes: gxb_stream_pass, has; gxb_complex_save, load
+ *     >>boolean     Booleans of closed triangle surfaces, exact and chainable: gxb_boolean_create, add, evaluate, destroy
+ *     then, under GXFEM_BOOLEAN_IMPLEMENTATION, in this order, from the bottom up:
+ *     of all        >>bits and >>exact (arithmetic), >>filter (doubles with bounds), >>points (predicates), >>memory (arrays, transactions)
+ *     of complexes  >>topology (of the mesh; signs), >>split (by a plane), >>clip and >>insert (a triangle), >>save, >>check (what was read)
+ *     of Booleans   >>arrangement (on points, planes and exact numbers of a complex that has no elements)
  *
  * How the complex works. Each element of the mesh starts as one convex leaf, bounded by four facets, which it shares with its
  * neighbours. A triangle is clipped down the element's tree of planes (a binary space partition); each leaf whose inside it
