@@ -58,7 +58,7 @@
  * a cut runs between the copies around them, and a factorised one as soon as that is cheap. Coarse matrices serve until
  * iterations rise. The last two steps' directions are the guess for the next.
  * Newton starts at u_n + h v_n; should it end above E(u_n), it is run again from u_n: E(u) <= E(u_n) always, so a step cannot
- * blow up (but for the midpoint rule, which goes on from there as far again). Every loose piece (copies joined by elements, none
+ * blow up; the midpoint rule, which goes on from there as far again, goes less far where it would gain energy. Every loose piece (copies joined by elements, none
  * of them held or touched by springs and contact) then moves as a whole so that its momentum balances, and the later iterates
  * leave its momentum alone: it is right to rounding whatever the tolerances are, and free fall takes no iteration.
  * Residuals are measured twice, both times scaled by the block diagonal D of the Hessian: in energy,
@@ -238,7 +238,8 @@ typedef struct gxs_solver_desc {
 typedef enum gxs_integrator {
     GXS_BDF1 = 0,               /* backward Euler: first order, damps what it cannot resolve */
     GXS_BDF2,                   /* second order, damps less; the first step, without one before it, is backward Euler */
-    GXS_MIDPOINT,               /* implicit midpoint: second order, damps nothing; needs steps that resolve the motion */
+    GXS_MIDPOINT,               /* implicit midpoint: second order, damps nothing; needs steps that resolve the motion. Where Newton or CG
+                                   end early, the second half of a step is shortened so that it gains next to no energy */
     GXS_STATIC                  /* no inertia, velocities 0. dt 0: balance of forces, GX_ERROR_FREE where a piece is held by nothing.
                                    dt above 0: the mass over dt^2 holds every copy where it was, so that free pieces have an answer */
 } gxs_integrator;
@@ -283,7 +284,8 @@ typedef struct gxs_step_desc {
     uint32_t newton_iterations; /* at most so many; 0: 1 */
     double newton_tolerance;    /* stop at this residual (see gxs_step_report); 0: 1e-8, far below what one iteration leaves of motion */
     uint32_t cg_iterations;     /* per Newton iteration, at most; 0: 1000 */
-    double cg_tolerance;        /* reduction of the residual by each linear solve; 0: 1e-2 */
+    double cg_tolerance;        /* reduction of the residual by each linear solve, below 1; 0: 1e-2, of the midpoint rule, which does not
+                                   damp what is left, 1e-3 */
     const gxs_spring *springs;  /* spring_count */
     size_t spring_count;
     double *spring_forces;      /* spring_count x 3: written, the force of each spring on the body at the end, N; NULL: not asked for */
@@ -434,6 +436,11 @@ extern "C" {
 #define GXSP_UNBALANCED 2u
 #define GXSP_TOUCHED 4u
 #define GXSP_ASLEEP 8u
+
+/* The midpoint rule's second half gains no more than this share of the kinetic energy: exact solutions gain less where steps resolve the
+ * motion. GXSP_GAIN_TRIALS lengths are tried. */
+#define GXSP_GAIN 0.01
+#define GXSP_GAIN_TRIALS 8
 
 /* An element all whose stretches are smaller is all but a point, where its forces vanish: directions are found as if it were
  * GXSP_NUDGE of its size. */
@@ -918,6 +925,7 @@ typedef struct gxsp_problem {
     double cg_tolerance;
     double nepers;          /* by how many factors of e the last linear solve has reduced the residual that its guess left */
     double energies[3];     /* at current: elastic with springs and contact, kinetic, size of their terms; J */
+    double base_potential;  /* E at base, J; of the midpoint rule */
     double start;           /* on the clock */
     gxs_scene scene;
     int exact;              /* the linearisation is not projected */
@@ -6535,16 +6543,48 @@ static gx_result gxsp_minimise(gxsp_problem *problem)
         result = gxsp_newton(problem);
     found = result == GX_OK ? gxsp_energy(problem) : 0;
     limit = -gxsp_dot(system->load, system->base, system->n);
-    if (result == GX_OK && system->base_known && found <= system->base_energy + limit)
+    if (result == GX_OK && system->base_known && problem->step->integrator != GXS_MIDPOINT && found <= system->base_energy + limit)
         return result; /* lower even without the kinetic energy that staying at base would take */
     memcpy(kept, problem->energies, sizeof kept);
     gxsp_evaluate(problem, system->base, 0, system->force, problem->energies);
     limit += problem->energies[0] + problem->energies[1];
+    problem->base_potential = limit;
     if (!gxsp_finite(limit) || (result == GX_OK && found <= limit + 1e-12 * fabs(limit))) {
         memcpy(problem->energies, kept, sizeof kept);
         return result;
     }
     return gxsp_start(problem, system->base) ? gxsp_newton(problem) : GX_ERROR_DIVERGED;
+}
+
+/* The midpoint rule goes on from current by as much as from base to current, to an energy of E there, as that of the start is E(base).
+ * These are equal but for terms of third order in the way and for what Newton's method and conjugate gradients have left, which would add
+ * up from step to step and grow without end. Where more than a share of the kinetic energy is gained, the second half is shortened, but
+ * for the translations of loose pieces. direction: what is taken off it, m. */
+static void gxsp_bound_gain(gxsp_problem *problem)
+{
+    gxsp_system *system = problem->system;
+    const double low = gxsp_energy(problem) - problem->base_potential;
+    double kept[3], gain, share = 1;
+    size_t i, count = 3 * system->n;
+    int trial;
+    memcpy(kept, problem->energies, sizeof kept);
+    for (i = 0; i < count; ++i)
+        system->direction[i] = system->current[i] - system->base[i];
+    gxsp_balance_momentum(system, NULL, 1, NULL, system->direction);
+    for (trial = 0; trial < GXSP_GAIN_TRIALS; ++trial) {
+        double next; /* E is a parabola with its minimum at current */
+        for (i = 0; i < count; ++i)
+            system->trial[i] = 2 * system->current[i] - system->base[i] - (1 - share) * system->direction[i];
+        gxsp_evaluate(problem, system->trial, 0, system->force, problem->energies);
+        gain = problem->energies[0] + problem->energies[1] - gxsp_dot(system->load, system->trial, system->n) - problem->base_potential;
+        if (gxsp_finite(gain) && gain <= GXSP_GAIN * problem->energies[1] + 1e-12 * fabs(problem->base_potential))
+            break;
+        next = gxsp_finite(gain) && low < 0 && gain > low ? share * sqrt(low / (low - gain)) : 0;
+        share = next < 0.1 * share ? 0.1 * share : next;
+    }
+    for (i = 0; i < count; ++i)
+        system->direction[i] *= trial < GXSP_GAIN_TRIALS ? 1 - share : 1;
+    memcpy(problem->energies, kept, sizeof kept);
 }
 
 /* Writes the state out, all of it or, if a number is not finite, none. */
@@ -6555,12 +6595,18 @@ static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double
     const int midpoint = step->integrator == GXS_MIDPOINT;
     size_t i, count = 3 * system->n;
     double *speeds = system->residual, *ends = system->direction;
+    if (midpoint && system->active > 0)
+        gxsp_bound_gain(problem);
+    else
+        memset(system->direction, 0, count * sizeof(double));
     for (i = 0; i < count; ++i) {
-        ends[i] = midpoint ? 2 * system->current[i] - displacement[i] : system->current[i];
+        const double less = system->direction[i];
+        ends[i] = midpoint ? 2 * system->current[i] - displacement[i] - less : system->current[i];
         if (system->still[i / 3])
             speeds[i] = step->integrator == GXS_STATIC ? 0 : (ends[i] - displacement[i]) / step->dt;
         else
-            speeds[i] = problem->speed * (system->current[i] - gxsp_mean(problem, displacement, i)) * (midpoint ? 2 : 1) - (midpoint ? velocity[i] : 0);
+            speeds[i] = problem->speed * ((system->current[i] - gxsp_mean(problem, displacement, i)) * (midpoint ? 2 : 1) - less) -
+                        (midpoint ? velocity[i] : 0);
     }
     problem->report.energy = gxsp_energy(problem);
     if (gxsp_first_not_finite(speeds, count) < count || gxsp_first_not_finite(ends, count) < count ||
@@ -6683,7 +6729,7 @@ static gx_result gxsp_check_step(const gxs_step_desc *step, gx_failure *failure)
         !gxsp_finite(step->cg_tolerance) || !gxsp_finite(step->previous_dt) || !gxsp_finite(step->mass_damping) ||
         !gxsp_finite(step->sleep_speed) || !gxsp_finite(step->sleep_time) || !gxsp_finite(step->budget_seconds))
         return gxsp_fail(failure, GX_ERROR_NOT_FINITE, SIZE_MAX);
-    if (step->dt < 0 || (step->dt <= 0 && !still) || step->newton_tolerance < 0 || step->cg_tolerance < 0 || step->mass_damping < 0 ||
+    if (step->dt < 0 || (step->dt <= 0 && !still) || step->newton_tolerance < 0 || step->cg_tolerance < 0 || step->cg_tolerance >= 1 || step->mass_damping < 0 ||
         (int)step->integrator < 0 || step->integrator > GXS_STATIC || step->sleep_speed < 0 || step->sleep_time < 0 ||
         step->budget_seconds < 0 || (history && (!step->previous_velocity || step->previous_dt <= 0)) ||
         (step->budget_seconds > 0 && !step->clock) || (step->sleep_speed > 0 && !step->rest_times) ||
@@ -6971,7 +7017,7 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     problem.system = solver->system;
     problem.step = step;
     problem.cg_iterations = step->cg_iterations ? step->cg_iterations : 1000;
-    problem.cg_tolerance = step->cg_tolerance > 0 ? step->cg_tolerance : 1e-2;
+    problem.cg_tolerance = step->cg_tolerance > 0 ? step->cg_tolerance : step->integrator == GXS_MIDPOINT ? 1e-3 : 1e-2;
     problem.start = gxsp_now(&problem);
     gxsp_choose_integrator(&problem);
     gxsp_choose_sleepers(&problem, displacement, velocity);

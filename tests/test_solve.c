@@ -918,6 +918,7 @@ START_TEST(bad_input_is_named)
     attempt_with(a.step.dt = -1, GX_ERROR_ARGUMENT, SIZE_MAX);
     attempt_with(a.step.dt = nan, GX_ERROR_NOT_FINITE, SIZE_MAX);
     attempt_with(a.step.cg_tolerance = -1, GX_ERROR_ARGUMENT, SIZE_MAX);
+    attempt_with(a.step.cg_tolerance = 1, GX_ERROR_ARGUMENT, SIZE_MAX);
     attempt_with(a.step.mass_damping = -1, GX_ERROR_ARGUMENT, SIZE_MAX);
     attempt_with(a.step.mass_damping = nan, GX_ERROR_NOT_FINITE, SIZE_MAX);
     attempt_with(a.step.integrator = (gxs_integrator)(GXS_STATIC + 1), GX_ERROR_ARGUMENT, SIZE_MAX);
