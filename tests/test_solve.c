@@ -1190,6 +1190,56 @@ START_TEST(largest_piece_chooses_the_preconditioner)
 }
 END_TEST
 
+/* A block of so many cells along an edge, held at one side; soft: three quarters of its elements are 1e4 times softer. What the solver chooses;
+ * counts: CG iterations by block-Jacobi, multigrid, and left to itself. Of 4 cells no piece is large. */
+static gxs_preconditioner choice(int cells, double young, double dt, int soft, uint32_t *counts)
+{
+    static const gxs_preconditioner kinds[3] = {GXS_BLOCK_JACOBI, GXS_MULTIGRID, GXS_AUTOMATIC};
+    gxs_step_report report;
+    int which;
+    for (which = 0; which < 3; ++which) {
+        gxs_solver_desc desc;
+        gxs_solver *solver = NULL;
+        gxs_step_desc step = step_make(dt, -9.81);
+        gxs_material materials[2];
+        scene s = scene_block(cells, cells, cells, 1.0 / cells, 0.1, 0);
+        size_t i;
+        materials[0] = materials[1] = *s.material;
+        materials[0].young = young, materials[1].young = 1e-4 * young;
+        s.model.materials = materials;
+        s.model.material_count = 2;
+        for (i = 0; i < s.model.element_count; ++i)
+            s.elements[i].material = soft && 4 * i > s.model.element_count; /* three quarters are soft */
+        for (i = 0; i < s.model.copy_count; ++i)
+            s.held[i] = s.rest[3 * i] < 0.05;
+        memset(&desc, 0, sizeof desc);
+        desc.preconditioner = kinds[which];
+        ck_assert_int_eq(gxs_solver_create(&desc, &solver), GX_OK);
+        ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+        ck_assert(which == 2 || report.preconditioner == kinds[which]);
+        counts[which] = report.cg_iterations;
+        gxs_solver_destroy(solver);
+        scene_free(&s);
+    }
+    ck_assert_uint_eq(counts[2], counts[report.preconditioner == GXS_MULTIGRID]);
+    return report.preconditioner;
+}
+
+/* Multigrid where stiffness outweighs inertia, in a quarter of the body too; block-Jacobi where it does not, or the body is small. */
+START_TEST(inertia_chooses_the_preconditioner)
+{
+    uint32_t counts[3];
+    ck_assert_int_eq(choice(12, 1e6, 0.033, 0, counts), GXS_MULTIGRID);
+    ck_assert_uint_gt(counts[0], 5 * counts[1]);
+    ck_assert_int_eq(choice(12, 1e8, 0.033, 0, counts), GXS_MULTIGRID);
+    ck_assert_int_eq(choice(12, 1e6, 0.033, 1, counts), GXS_MULTIGRID);
+    ck_assert_int_eq(choice(12, 1e6, 0.002, 0, counts), GXS_BLOCK_JACOBI);
+    ck_assert_uint_lt(counts[0], 4 * counts[1]);
+    ck_assert_int_eq(choice(12, 1e4, 0.033, 0, counts), GXS_BLOCK_JACOBI);
+    ck_assert_int_eq(choice(4, 1e6, 0.033, 0, counts), GXS_BLOCK_JACOBI);
+}
+END_TEST
+
 /* ---- jobs ---- */
 
 static void backwards(void *user, size_t count, void (*task)(void *, size_t), void *context)
@@ -1284,6 +1334,7 @@ static Suite *solve_suite(void)
     tcase_add_loop_test(model, multigrid_iterations_do_not_grow, 0, 2);
     tcase_add_loop_test(model, coarse_matrices_do_not_grow_old, 0, 2);
     tcase_add_test(model, largest_piece_chooses_the_preconditioner);
+    tcase_add_test(model, inertia_chooses_the_preconditioner);
     tcase_add_test(step, free_fall_is_exact);
     tcase_add_test(step, momentum_of_a_free_body_is_balanced);
     tcase_add_test(step, stretched_bar_has_youngs_modulus);
