@@ -2494,6 +2494,142 @@ START_TEST(steps_allocate_for_more_points_only)
 }
 END_TEST
 
+/* ---- absurd input ---- */
+
+/* *user says what is wrong with the answer: force, energy, off-diagonal or diagonal of the Hessian, a Hessian far from semi-definite */
+static double bad_contact(void *user, size_t point, const double *position, double *force, double *hessian)
+{
+    const int fault = *(const int *)user;
+    const double nan = not_a_number(0);
+    (void)point, (void)position;
+    if (hessian)
+        hessian[0] = hessian[3] = hessian[5] = 1e3;
+    force[0] = fault == 0 ? nan : fault == 1 ? not_a_number(1) : 1;
+    if (hessian && fault >= 3)
+        hessian[fault == 3 ? 1 : 0] = fault == 5 ? -1e12 : nan;
+    return fault == 2 ? nan : 0;
+}
+
+/* an energy that is not a number where the element is stretched by a tenth */
+static double bad_energy(void *user, const double *f, double *stress, double *hessian)
+{
+    int i;
+    (void)user;
+    for (i = 0; i < 9 && stress; ++i)
+        stress[i] = 1e6 * (f[i] - (i % 4 == 0));
+    for (i = 0; i < 81 && hessian; ++i)
+        hessian[i] = i % 10 == 0 ? 1e6 : 0;
+    return f[0] > 1.1 ? not_a_number(0) : 5e5 * (f[0] - 1) * (f[0] - 1);
+}
+
+enum { ABSURD_SPRING, ABSURD_PLANE, ABSURD_SHORT, ABSURD_LONG, ABSURD_HELD, ABSURD_MASSLESS, ABSURD_TIED, ABSURD_TARGETS, ABSURD_FORCES, ABSURD_ENERGY,
+       ABSURD_CONTACT, ABSURD_COUNT = ABSURD_CONTACT + 6 };
+
+typedef struct absurdity {
+    scene s;
+    gxs_step_desc step;
+    gxs_spring springs[2];
+    gxs_plane plane;
+    gxs_point *points;
+    gxs_constraint *ties;
+    double *targets;
+    int fault;
+} absurdity;
+
+static void absurdity_make(absurdity *a, int which)
+{
+    size_t i, n;
+    memset(a, 0, sizeof *a);
+    seed(7);
+    a->s = scene_block(3, 2, 2, 0.25, 0.1, 0);
+    n = a->s.model.copy_count;
+    a->step = step_make(which == ABSURD_SHORT ? 1e-12 : which == ABSURD_LONG ? 1e6 : 0.033, -9.81);
+    a->step.newton_iterations = 3;
+    a->points = points_of(&a->s, 0, n);
+    a->ties = (gxs_constraint *)zeroed(n, sizeof *a->ties);
+    a->targets = (double *)zeroed(3 * n, sizeof(double));
+    a->plane = plane_make(1e20, 0.5);
+    a->fault = which - ABSURD_CONTACT;
+    for (i = 0; i < 2; ++i) {
+        a->springs[i] = spring_make(point_at(&a->s, n - 1), 1e20);
+        a->springs[i].target[0] += 0.3 * (double)i; /* the two contradict each other */
+    }
+    for (i = 0; i < 3 * n; ++i) {
+        a->s.displacement[i] = 0.02 * uniform(), a->s.velocity[i] = uniform();
+        a->s.forces[i] = 1e30 * uniform(), a->targets[i] = 1e6 * uniform();
+    }
+    if (which != ABSURD_TIED)
+        scene_hold_left(&a->s);
+    for (i = 0; i < n && which == ABSURD_HELD; ++i)
+        a->s.held[i] = 1;
+    for (i = 0; i < a->s.model.element_count && which == ABSURD_MASSLESS; ++i)
+        memset(a->s.elements[i].mass, 0, sizeof a->s.elements[i].mass);
+    for (i = 1; i < n; ++i)
+        a->ties[i - 1].copy = (uint32_t)i, a->ties[i - 1].weight[0] = 1;
+}
+
+/* what a step has of it; an energy that is not a number is the model's */
+static void absurdity_apply(absurdity *a, int which)
+{
+    if (which == ABSURD_SPRING)
+        a->step.springs = a->springs, a->step.spring_count = 2;
+    if (which == ABSURD_PLANE || which >= ABSURD_CONTACT)
+        a->step.points = a->points, a->step.point_count = a->s.model.copy_count;
+    if (which == ABSURD_PLANE)
+        a->step.planes = &a->plane, a->step.plane_count = 1;
+    if (which >= ABSURD_CONTACT)
+        a->step.contact = bad_contact, a->step.contact_user = &a->fault;
+    if (which == ABSURD_TIED)
+        a->s.model.constraints = a->ties, a->s.model.constraint_count = a->s.model.copy_count - 1;
+    if (which == ABSURD_TARGETS)
+        a->step.targets = a->targets;
+    if (which == ABSURD_FORCES)
+        a->step.forces = a->s.forces;
+    if (which == ABSURD_ENERGY)
+        a->s.material->kind = GXS_CUSTOM, a->s.material->energy = bad_energy;
+}
+
+static void absurdity_free(absurdity *a)
+{
+    free(a->points), free(a->ties), free(a->targets);
+    scene_free(&a->s);
+}
+
+/* Whatever it is asked for, a step ends in numbers, or says that it has diverged and leaves the state alone. */
+START_TEST(absurd_steps_lose_nothing)
+{
+    const int which = _i / 4;
+    int solver_index, frame;
+    for (solver_index = 0; solver_index < SOLVERS; ++solver_index) {
+        gxs_solver *solver = solver_of(solver_index);
+        gx_result result = GX_OK;
+        absurdity a;
+        double *before;
+        size_t bytes;
+        absurdity_make(&a, which);
+        absurdity_apply(&a, which);
+        a.step.integrator = (gxs_integrator)(_i % 4);
+        bytes = 3 * a.s.model.copy_count * sizeof(double);
+        before = (double *)zeroed(2, bytes);
+        ck_assert_int_eq(gxs_solver_set_model(solver, &a.s.model, NULL), GX_OK);
+        for (frame = 0; frame < 8 && result == GX_OK; ++frame) {
+            gxs_step_report report;
+            gx_failure failure;
+            memcpy(before, a.s.displacement, bytes), memcpy((char *)before + bytes, a.s.velocity, bytes);
+            result = gxs_solver_step(solver, &a.step, a.s.displacement, a.s.velocity, &report, &failure);
+            assert_that(result == GX_OK || (result == GX_ERROR_DIVERGED && failure.result == result), "result %d", (int)result);
+            check_finite(&a.s);
+            assert_that(result != GX_OK || (finite_bits(report.energy) && finite_bits(report.residual)), "frame %d: report", frame);
+        }
+        assert_that(result == GX_OK || (memcmp(before, a.s.displacement, bytes) == 0 && memcmp((char *)before + bytes, a.s.velocity, bytes) == 0),
+                    "a failed step has changed the state");
+        free(before);
+        gxs_solver_destroy(solver);
+        absurdity_free(&a);
+    }
+}
+END_TEST
+
 /* ---- all at once ---- */
 
 static int dice(int sides)
@@ -2751,6 +2887,7 @@ static Suite *forces_suite(void)
     tcase_add_loop_test(solvers, solvers_agree, 0, 4 * KINDS);
     tcase_add_loop_test(all, every_allocation_may_fail, 0, SOLVERS);
     tcase_add_loop_test(all, steps_allocate_for_more_points_only, 0, SOLVERS);
+    tcase_add_loop_test(input, absurd_steps_lose_nothing, 0, 4 * ABSURD_COUNT);
     tcase_add_loop_test(all, anything_goes, 0, 40);
     for (i = 0; i < 11; ++i) {
         tcase_set_timeout(cases[i], 120);

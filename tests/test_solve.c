@@ -683,7 +683,7 @@ END_TEST
 
 /* ---- violent starts ---- */
 
-enum { INVERTED, FLATTENED, COLLAPSED, TANGLED, START_COUNT };
+enum { INVERTED, FLATTENED, COLLAPSED, STRETCHED, TANGLED, START_COUNT };
 
 static void violate(scene *s, int how, double edge)
 {
@@ -693,6 +693,7 @@ static void violate(scene *s, int how, double edge)
         case INVERTED: s->displacement[i] = i % 3 == 2 ? -2 * s->rest[i] : 0; break;
         case FLATTENED: s->displacement[i] = i % 3 == 2 ? -s->rest[i] : 0; break;
         case COLLAPSED: s->displacement[i] = -s->rest[i]; break;
+        case STRETCHED: s->displacement[i] = 2 * s->rest[i]; break;
         default: s->displacement[i] = edge * uniform();
         }
 }
