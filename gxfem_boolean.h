@@ -5445,34 +5445,42 @@ static int gxbp_compare_points(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t 
     return r.sign;
 }
 
-/* Merge sort of points along an axis; work: count words. */
-static void gxbp_sort_points(gxb_boolean *b, uint32_t *p, uint32_t count, uint32_t axis, int direction, uint32_t *work) {
-    const uint32_t half = count / 2;
-    uint32_t i, j, k;
-    if (count <= 8) {                   /* by insertion */
-        for (i = 1; i < count; i++) {
-            const uint32_t x = p[i];
-            for (j = i; j > 0 && gxbp_compare_points(b, x, p[j - 1], axis) * direction < 0; j--) p[j] = p[j - 1];
-            p[j] = x;
-        }
-        return;
-    }
-    gxbp_sort_points(b, p, half, axis, direction, work);
-    gxbp_sort_points(b, p + half, count - half, axis, direction, work);
-    memcpy(work, p, half * sizeof *p);
-    for (i = 0, j = half, k = 0; i < half; k++)
-        p[k] = j < count && gxbp_compare_points(b, p[j], work[i], axis) * direction < 0 ? p[j++] : work[i++];
-}
-
-/* Equal neighbours become one. Returns how many remain. */
-static uint32_t gxbp_unite_neighbours(gxb_boolean *b, uint32_t *p, uint32_t count, uint32_t axis) {
-    uint32_t i, n = 0;
+/* Points by insertion into those before them; equal ones become the first. Returns how many remain. */
+static uint32_t gxbp_insert_points(gxb_boolean *b, uint32_t *p, uint32_t count, uint32_t axis, int direction) {
+    uint32_t i, j, n = 0;
     for (i = 0; i < count; i++) {
-        const uint32_t q = gxbp_same(b, p[i]);
-        if (n > 0 && (p[n - 1] == q || gxbp_compare_points(b, p[n - 1], q, axis) == 0)) gxbp_unite(b, p[n - 1], q);
-        else p[n++] = q;
+        const uint32_t x = gxbp_same(b, p[i]);
+        int sign = 1;
+        for (j = n; j > 0; j--) {
+            sign = gxbp_compare_points(b, x, p[j - 1], axis) * direction;
+            if (sign >= 0) break;
+        }
+        if (j > 0 && sign == 0) { gxbp_unite(b, p[j - 1], x); continue; }
+        memmove(p + j + 1, p + j, (n++ - j) * sizeof *p);
+        p[j] = x;
     }
     return n;
+}
+
+/* Merge sort of points along an axis, each pair compared once; equal ones become one. work: count words. Returns how many remain. */
+static uint32_t gxbp_sort_points(gxb_boolean *b, uint32_t *p, uint32_t count, uint32_t axis, int direction, uint32_t *work) {
+    const uint32_t half = count / 2;
+    uint32_t i, j, k, left, end;
+    if (count <= 8) return gxbp_insert_points(b, p, count, axis, direction);
+    left = gxbp_sort_points(b, p, half, axis, direction, work);
+    end = half + gxbp_sort_points(b, p + half, count - half, axis, direction, work);
+    memcpy(work, p, left * sizeof *p);
+    for (i = 0, j = half, k = 0; i < left && j < end; k++) {
+        const uint32_t x = gxbp_same(b, work[i]), y = gxbp_same(b, p[j]);   /* the right half may have named what is in the left */
+        const int sign = gxbp_compare_points(b, y, x, axis) * direction;
+        p[k] = sign < 0 ? y : x;
+        i += sign >= 0;
+        j += sign <= 0;
+        if (sign == 0) gxbp_unite(b, x, y);
+    }
+    for (; i < left; i++) p[k++] = gxbp_same(b, work[i]);
+    for (; j < end; j++) p[k++] = p[j];
+    return k;
 }
 
 /* The longest axis of an edge, and its direction along it: an edge has a length, and the longest difference is never lost. */
@@ -5496,8 +5504,7 @@ static void gxbp_order_cut(gxb_boolean *b, uint32_t cut) {
     count = b->scratch_count;
     if (!GXBP_ROOM(b, scratch, scratch, count) || !GXBP_ROOM(b, cut_points, cut_point, count)) return;
     axis = gxbp_edge_axis(p, q, &direction);
-    gxbp_sort_points(b, b->scratch, count, axis, direction, b->scratch + b->scratch_count);
-    count = gxbp_unite_neighbours(b, b->scratch, count, axis);
+    count = gxbp_sort_points(b, b->scratch, count, axis, direction, b->scratch + b->scratch_count);
     c->first = b->cut_point_count;
     c->count = count;
     memcpy(b->cut_points + c->first, b->scratch, count * sizeof *b->cut_points);
