@@ -9,7 +9,8 @@
    The columns are the paper's: EI, recomputing an element's integrals; MB, finding the pieces, per subdomain that was looked at (ours:
    element that was touched; domains says how many); dpsi, Hessians of the elastic energy, per step (the paper: energy derivatives); CG, the
    linear solve with its preconditioner; dt, a frame; C, sum over frames with a cut; C+U, over all. ended: why a method stopped after so many
-   frames (busy: each run is a process that has so many seconds of a processor); its sums are of those. Rows "paper" are the published ones,
+   frames (busy: each run is a process that has so many seconds of a processor); its sums are of those. Of a run below a second three are made,
+   and the median counts. Rows "paper" are the published ones,
    of another machine (Intel i9-13900K). The paper's sticks are six, ours 36: more unknowns for the same cube. */
 #define _XOPEN_SOURCE 600
 #define GXFEM_IMPLEMENTATION
@@ -26,6 +27,7 @@
 enum { MOST_RATIOS = 64 };
 
 static unsigned most_seconds = 120;
+static const double short_run = 1; /* s */
 static int small;
 
 /* Published in GXFEM's Table 2 */
@@ -239,6 +241,26 @@ static void print_ratios(void)
     }
 }
 
+/* Short runs are played three times, and the one of median time counts: a machine's first milliseconds jitter most. */
+static run play_fairly(const char *name, const replay *scene, const method *m, run *history)
+{
+    run *histories[3], runs[3], median;
+    int i, count, at = 0;
+    for (i = 0, count = 3; i < count; i++) {
+        histories[i] = (run *)method_memory(NULL, scene->frames, sizeof(run));
+        runs[i] = play_apart(name, scene, m, histories[i]);
+        if (runs[0].all > short_run) count = 1;
+    }
+    for (i = 0; i < count; i++) {
+        const int quicker = (runs[0].all < runs[i].all) + (runs[1 % count].all < runs[i].all) + (runs[2 % count].all < runs[i].all);
+        if (quicker == count / 2) at = i;
+    }
+    memcpy(history, histories[at], scene->frames * sizeof *history);
+    median = runs[at];
+    for (i = 0; i < count; i++) free(histories[i]);
+    return median;
+}
+
 static void run_scene(const char *name, const replay *scene)
 {
     run *history[METHOD_COUNT], runs[METHOD_COUNT];
@@ -246,7 +268,7 @@ static void run_scene(const char *name, const replay *scene)
     print_paper(name);
     for (m = 0; m < METHOD_COUNT; m++) {
         history[m] = (run *)method_memory(NULL, scene->frames, sizeof(run));
-        runs[m] = play_apart(name, scene, &methods[m], history[m]);
+        runs[m] = play_fairly(name, scene, &methods[m], history[m]);
         print_run(name, &methods[m], &runs[m]);
         keep_run(name, &methods[m], &runs[m]);
     }
