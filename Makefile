@@ -155,6 +155,8 @@ tables = $(BUILD)/bench$(if $(small),/small)
 traces = $(tables)/traces
 
 bench_programs = $(benches:%=$(BUILD)/bench/%)
+bench-programs: $(bench_programs)
+
 $(filter-out %/solver,$(bench_programs)): $(BUILD)/bench/%: bench/%.c $(wildcard bench/*.h) $(headers)
 	@mkdir -p $(@D)
 	@$(CC) -std=c99 $(WARNINGS) $(BENCH_CFLAGS) $< -o $@ $(LDFLAGS) -lm
