@@ -11,7 +11,8 @@ JOBS ?= 2
 BENCH_CFLAGS ?= -O3 -march=native
 
 headers = gxfem.h gxfem_boolean.h gxfem_integrate.h gxfem_solve.h
-tests = $(patsubst tests/%.c,%,$(sort $(wildcard tests/test_*.c)))
+# The largest, which take longest, first
+tests = $(patsubst tests/%.c,%,$(shell ls -S tests/test_*.c))
 linked_tests = $(patsubst tests/%.c,%,$(shell grep -l GXFEM_LINKED tests/test_*.c))
 examples = $(patsubst examples/%.c,%,$(sort $(wildcard examples/*.c)))
 scenes = $(filter-out embed gxcut,$(examples))
@@ -45,12 +46,12 @@ help:
 	@echo "  failure        hard cases: which method is right, wrong, refuses, diverges, crashes"
 	@echo "  scaling        cost of a cut and a step, memory and unknowns against elements, cuts and triangles"
 	@echo "  kernel         Booleans of closed surfaces; DATA=FOLDER: also of the OFF files there"
+	@echo "  smallest       the smallest program with the kernel: time to compile and size, with and without GXFEM_STATIC"
 	@echo "  solver         time steps by preconditioner, beside CHOLMOD (installs SuiteSparse where it is missing)"
 	@echo "  accuracy       static solutions beside closed forms and published values"
 	@echo "  drift          what integrators keep: energy, momenta, order"
 	@echo "  frames         frames in which a cut happens beside those in which none does"
 	@echo "  skin           the visual surface: moved in each frame, rebuilt after a cut"
-	@echo "make bench-smallest  the smallest program with the kernel: time to compile and size, with and without GXFEM_STATIC"
 	@echo "make clean       removes $(BUILD)/"
 
 # ---- programs
@@ -149,12 +150,12 @@ hashes:
 
 # ---- benches. Only what they print goes to stdout: it is CSV. BENCH=--small: smaller ones, whose tables and charts have a folder of their own
 
-benches = quadrature stepping space table2 conditioning failure scaling kernel solver accuracy drift frames skin
+benches = quadrature stepping space table2 conditioning failure scaling kernel smallest solver accuracy drift frames skin
 small = $(filter --small,$(BENCH))
 tables = $(BUILD)/bench$(if $(small),/small)
 traces = $(tables)/traces
 
-bench_programs = $(benches:%=$(BUILD)/bench/%)
+bench_programs = $(patsubst %,$(BUILD)/bench/%,$(filter-out smallest,$(benches)))
 bench-programs: $(bench_programs)
 
 $(filter-out %/solver,$(bench_programs)): $(BUILD)/bench/%: bench/%.c $(wildcard bench/*.h) $(headers)
@@ -179,7 +180,10 @@ bench-kernel: $(BUILD)/bench/kernel
 	@mkdir -p $(tables)
 	@$< $(tables)/kernel.csv $(DATA)
 
-plain_benches = $(filter-out bench-solver bench-kernel bench-table2 bench-stepping,$(benches:%=bench-%))
+bench-smallest:
+	@CC="$(CC)" sh bench/smallest.sh $(tables)
+
+plain_benches = $(filter-out bench-solver bench-kernel bench-smallest bench-table2 bench-stepping,$(benches:%=bench-%))
 $(plain_benches): bench-%: $(BUILD)/bench/%
 	@mkdir -p $(tables)
 	@$< $(tables)/$*.csv $(BENCH)
@@ -222,9 +226,6 @@ charts:
 	sh bench/page.sh $(tables) $(if $(small),$(tables),docs)/BENCH.md $(if $(small),$(tables)/)README.md || echo charts >>$(tables)/failed
 	@[ ! -e $(tables)/failed ] || { echo "failed: $$(tr '\n' ' ' <$(tables)/failed)" >&2; exit 1; }
 
-bench-smallest:
-	@CC="$(CC)" sh bench/smallest.sh $(BUILD)/bench
-
 check-all: check
 	@$(MAKE) --no-print-directory lint
 	@$(MAKE) --no-print-directory examples
@@ -238,4 +239,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo scenes pictures check check-programs run-gxcut run-corpus $(tests:%=run-%) sanitize sanitize-scenes compile lint fuzz flags hashes $(benches:%=bench-%) bench charts check-all clean
+.PHONY: help examples demo scenes pictures bench-programs check check-programs run-gxcut run-corpus $(tests:%=run-%) sanitize sanitize-scenes compile lint fuzz flags hashes $(benches:%=bench-%) bench charts check-all clean

@@ -58,11 +58,11 @@
  * a cut runs between the copies around them, and a factorised one as soon as that is cheap. Coarse matrices serve until
  * iterations rise. The last two steps' directions are the guess for the next.
  * Newton starts at u_n + h v_n; should it end above E(u_n), it is run again from u_n: E(u) <= E(u_n) always, so a step cannot
- * blow up; the midpoint rule, which goes on from there as far again, goes less far where it would gain energy. Every loose piece (copies joined by elements, none
- * of them held or touched by springs and contact) then moves as a whole so that its momentum balances, and the later iterates
- * leave its momentum alone: it is right to rounding whatever the tolerances are, and free fall takes no iteration.
- * Residuals are measured twice, both times scaled by the block diagonal D of the Hessian: in energy,
- * sqrt(sum r_i . D_i^-1 r_i), and in displacement, sqrt(sum |D_i^-1 r_i|^2). The second sees a piece of 1e-12 of its
+ * blow up; the midpoint rule, which goes on from there as far again, goes less far where it would gain energy. Every loose
+ * piece (copies joined by elements, none of them held or touched by springs and contact) then moves as a whole so that its
+ * momentum balances, and the later iterates leave its momentum alone: it is right to rounding whatever the tolerances are, and
+ * free fall takes no iteration. Residuals are measured twice, both times scaled by the block diagonal D of the Hessian: in
+ * energy, sqrt(sum r_i . D_i^-1 r_i), and in displacement, sqrt(sum |D_i^-1 r_i|^2). The second sees a piece of 1e-12 of its
  * neighbour's volume as well as the neighbour.
  * A piece that has been slow for long sleeps if gxs_step_desc.sleep_speed says so; steps do without it until something touches it.
  *
@@ -349,8 +349,8 @@ typedef struct gxs_solver gxs_solver;
  * Held copies keep their displacement or go to their target, copies without an element of any weight or mass stay where they are;
  * both get the velocity of that.
  * GX_ERROR_ARGUMENT if no model is set; GX_ERROR_DIVERGED and (GXS_STATIC) GX_ERROR_FREE are possible: displacement and velocity
- * are then unchanged. A residual above newton_tolerance when the iterations are used up is no error: see the report. Allocates (GX_ERROR_MEMORY) only where there are
- * more springs and contact points than ever before. */
+ * are then unchanged. A residual above newton_tolerance when the iterations are used up is no error: see the report. Allocates
+ * (GX_ERROR_MEMORY) only where there are more springs and contact points than ever before. */
 GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement, double *velocity,
                                     gxs_step_report *report, gx_failure *failure);
 
@@ -360,14 +360,15 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
 
 /* Changes the model in time that goes by the size of the change, but for what is proportional to the number of copies and small. Steps go on
  * with what they have learnt so far. Results are those of the whole model set anew but for rounding and the tolerances of steps.
- * GX_ERROR_ARGUMENT if no model is set or an order is not as it should be (index: of the group or element). GX_ERROR_LIMIT if the change
- * does not fit what there is: a matrix is assembled, mass is lumped, copies follow others, GXS_VOLUME_RATIO, lanes that changes have left
- * behind are a quarter of all, a copy is held and was not or the other way round, no element is left, elements that stay have lost a copy. On this and on GX_ERROR_MEMORY no model is set any
- * more: set it. On other errors the model before stays. */
+ * GX_ERROR_ARGUMENT if no model is set or an order is not as it should be (index: of the group or element). GX_ERROR_LIMIT if
+ * the change does not fit what there is: a matrix is assembled, mass is lumped, copies follow others, GXS_VOLUME_RATIO, lanes
+ * that changes have left behind are a quarter of all, a copy is held and was not or the other way round, no element is left,
+ * elements that stay have lost a copy. On this and on GX_ERROR_MEMORY no model is set any more: set it. On other errors the
+ * model before stays. */
 GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *change, gx_failure *failure);
-
-/* For whoever saves a state and goes on from it later: the scene of the last step, and a solver as if its model had just been set
- * after a step in that scene; a model that has been updated is dropped, and must be set. Two solvers so resumed with the same model, scene and states take the same steps, bit by bit. */
+/* For whoever saves a state and goes on from it later: the scene of the last step, and a solver as if its model had just been
+ * set after a step in that scene; a model that has been updated is dropped, and must be set. Two solvers so resumed with the
+ * same model, scene and states take the same steps, bit by bit. */
 GXFEM_API void gxs_solver_scene(const gxs_solver *solver, gxs_scene *scene);
 GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene);
 
@@ -6634,15 +6635,13 @@ static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double
 {
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
-    const int midpoint = step->integrator == GXS_MIDPOINT;
+    const int midpoint = step->integrator == GXS_MIDPOINT, bounded = midpoint && system->active > 0;
     size_t i, count = 3 * system->n;
     double *speeds = system->residual, *ends = system->direction;
-    if (midpoint && system->active > 0)
+    if (bounded)
         gxsp_bound_gain(problem);
-    else
-        memset(system->direction, 0, count * sizeof(double));
     for (i = 0; i < count; ++i) {
-        const double less = system->direction[i];
+        const double less = bounded ? ends[i] : 0;
         ends[i] = midpoint ? 2 * system->current[i] - displacement[i] - less : system->current[i];
         if (system->still[i / 3])
             speeds[i] = step->integrator == GXS_STATIC ? 0 : (ends[i] - displacement[i]) / step->dt;
@@ -7387,4 +7386,11 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_ALIGNMENT
 #undef GXSP_FILTER
 #undef GXSP_GROUPS
+#undef GXSP_EACH
+#undef GXSP_EACH_OF_TWO
+#undef GXSP_GAIN
+#undef GXSP_GAIN_TRIALS
+#undef GXSP_INERTIA
+#undef GXSP_PARALLEL
+#undef GXSP_SUMS
 #endif /* GXFEM_SOLVE_IMPLEMENTED */

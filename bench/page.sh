@@ -9,7 +9,7 @@ tables=$1
 page=$2
 readme=$3
 
-for bench in quadrature stepping failure table2 table2_ratios scaling kernel solver product accuracy drift frames skin; do
+for bench in quadrature stepping failure table2 table2_ratios scaling kernel smallest solver product accuracy drift frames skin; do
     [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-$(echo $bench | sed 's/_ratios//; s/product/solver/')" >&2; exit 2; }
 done
 for name in matrix steps ratios; do
@@ -187,7 +187,7 @@ text() { echo "$*" | fold -s -w 126 | sed 's/ *$//'; }
     echo
     text "Written by \`make charts\` from what was measured on $(measured) and after, $(uname -m | tr _ -), one thread. What \
 each program does and how it judges stands in its first lines: \`bench/quadrature.c\`, \`stepping.c\`, \`space.c\`, \
-\`table2.c\`, \`conditioning.c\`, \`failure.c\`, \`scaling.c\`, \`solver.c\`, \`kernel.c\`, \`accuracy.c\`, \
+\`table2.c\`, \`conditioning.c\`, \`failure.c\`, \`scaling.c\`, \`solver.c\`, \`kernel.c\`, \`smallest.sh\`, \`accuracy.c\`, \
 \`drift.c\`, \`frames.c\`, \`skin.c\`. The baselines are written for the bench: \`rxfem.h\` (Koschier, Bender, Thuerey \
 2017), \`vna.h\` (element duplication), \`literal.h\` (GXFEM's Algorithm 1 as published, a Boolean for each \
 subdomain), \`sampling.h\`, \`parts.h\` (integrals by points, element deletion). All take the library's time step: \
@@ -269,6 +269,11 @@ factorisation and solution alone. -2: two threads. 1e6, 1e8: Young's modulus, Pa
     text "\"+\": evaluated after each operand, \"?\": surfaces that nobody vouches for."
     echo
     table kernel "| workload | median, us | least, us | triangles | components | volume | signs by filter | exact | allocations | peak, bytes |"
+    echo
+    text "The smallest program with the kernel, a tetrahedron less another, alone and with GXFEM_STATIC: time of the processor to \
+compile it, and its size, stripped."
+    echo
+    table smallest "| program | compiler | s | bytes |"
     echo
     echo "## Static solutions"
     echo

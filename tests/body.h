@@ -8,18 +8,6 @@
 
 #define CHECK_SEED(condition, seed) ck_assert_msg(condition, "seed %llu: %s", (unsigned long long)(seed), #condition)
 
-/* Random tests run on fewer seeds under a sanitizer. */
-#if defined(__SANITIZE_ADDRESS__)
-#define FEWER 4
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(memory_sanitizer) || __has_feature(undefined_behavior_sanitizer)
-#define FEWER 4
-#endif
-#endif
-#ifndef FEWER
-#define FEWER 1
-#endif
-
 /* ---- random numbers: splitmix64 ---- */
 
 static uint64_t random_state;

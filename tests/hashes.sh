@@ -64,7 +64,6 @@ fma=$(grep -c -m1 ' fma ' /proc/cpuinfo 2>/dev/null || true)
 for cc in gcc clang; do
     try $cc -std=c99 -O0
     try $cc -std=c99 -O2
-    try $cc -std=gnu99 -O3
     try $cc -std=gnu99 -O3 -ffast-math
     try $cc -std=c99 -O2 -DGXB_LIMB32
     if [ "$x86" = 1 ]; then

@@ -2841,7 +2841,7 @@ static Suite *forces_suite(void)
     int i;
     cases[0] = constraints, cases[1] = springs, cases[2] = input, cases[3] = contact, cases[4] = statics, cases[5] = damping;
     cases[6] = sleep, cases[7] = budget, cases[8] = solvers, cases[9] = all, cases[10] = midpoint;
-    tcase_add_loop_test(constraints, tied_blocks_move_as_one, 0, 4 * KINDS);
+    ADD_SOME(constraints, tied_blocks_move_as_one, 4 * KINDS);
     tcase_add_loop_test(constraints, momentum_of_tied_blocks_is_balanced, 0, SOLVERS);
     tcase_add_loop_test(constraints, hanging_nodes_pass_the_patch_test, 0, KINDS);
     tcase_add_loop_test(constraints, followers_change_by_their_masters_mean, 0, 3);
@@ -2863,15 +2863,15 @@ static Suite *forces_suite(void)
     tcase_add_loop_test(contact, bounces_gain_no_energy, 0, 2 * SOLVERS);
     tcase_add_loop_test(contact, contact_by_callback_is_the_plane, 0, SOLVERS);
     tcase_add_loop_test(contact, pieces_in_flight_keep_their_momentum, 0, SOLVERS);
-    tcase_add_loop_test(statics, static_balance_is_the_end_of_motion, 0, KINDS * SOLVERS);
+    ADD_SOME(statics, static_balance_is_the_end_of_motion, KINDS * SOLVERS);
     tcase_add_loop_test(statics, static_balance_reaches_through_ties, 0, 4);
     tcase_add_loop_test(statics, static_balance_needs_a_hold, 0, SOLVERS);
     tcase_add_loop_test(statics, static_balance_is_found_from_afar, 0, SOLVERS);
-    tcase_add_loop_test(midpoint, midpoint_gains_no_energy, 0, 2 * SOLVERS);
-    tcase_add_loop_test(damping, modes_decay_by_stiffness_damping, 0, KINDS);
+    ADD_SOME(midpoint, midpoint_gains_no_energy, 2 * SOLVERS);
+    ADD_SOME(damping, modes_decay_by_stiffness_damping, KINDS);
     tcase_add_loop_test(damping, damping_keeps_momentum, 0, 3 * KINDS);
     tcase_add_loop_test(damping, damped_bodies_come_to_rest, 0, KINDS);
-    tcase_add_loop_test(damping, rotation_is_not_damped, 0, 2 * GXS_LINEAR);
+    ADD_SOME(damping, rotation_is_not_damped, 2 * GXS_LINEAR);
     tcase_add_loop_test(sleep, settled_blocks_sleep, 0, SOLVERS);
     tcase_add_loop_test(sleep, a_touch_wakes_one_block, 0, SOLVERS);
     tcase_add_test(sleep, forces_that_come_and_go_wake_one_block);
@@ -2884,11 +2884,11 @@ static Suite *forces_suite(void)
     tcase_add_loop_test(sleep, tied_blocks_sleep_together, 0, SOLVERS);
     tcase_add_loop_test(budget, budgets_end_in_good_states, 0, SOLVERS);
     tcase_add_loop_test(budget, seconds_need_a_clock, 0, SOLVERS);
-    tcase_add_loop_test(solvers, solvers_agree, 0, 4 * KINDS);
+    ADD_SOME(solvers, solvers_agree, 4 * KINDS);
     tcase_add_loop_test(all, every_allocation_may_fail, 0, SOLVERS);
     tcase_add_loop_test(all, steps_allocate_for_more_points_only, 0, SOLVERS);
-    tcase_add_loop_test(input, absurd_steps_lose_nothing, 0, 4 * ABSURD_COUNT);
-    tcase_add_loop_test(all, anything_goes, 0, 40);
+    ADD_SOME(input, absurd_steps_lose_nothing, 4 * ABSURD_COUNT);
+    ADD_SOME(all, anything_goes, 40);
     for (i = 0; i < 11; ++i) {
         tcase_set_timeout(cases[i], 120);
         suite_add_tcase(suite, cases[i]);
