@@ -493,9 +493,12 @@ extern "C" {
 /* Coarse matrices are of no use any more when it takes so many times as many of them. */
 #define GXSP_WORN 2
 
-/* Where updates have changed the model, the smoother's step length times the largest eigenvalue there is below this; at 2 the cycle would
- * be indefinite, and the eigenvalue is known to a tenth. */
+/* The smoother's step length times the largest eigenvalue that is met is below this; at 2 the cycle would be indefinite, and the eigenvalue
+ * is known to a tenth. */
 #define GXSP_OMEGA 1.75
+
+/* Linear solves for which the smoother's step length stays safe after it has proved too large; twice as many each further time */
+#define GXSP_PAUSE 8
 
 /* Stiffness in the linear systems below which single precision makes nothing of an inverse: it is left alone. */
 #define GXSP_TINY 1e-28
@@ -898,6 +901,8 @@ typedef struct gxsp_system {
     gxsp_pairs pairs;
     gxsp_factor factor;
     float omega;            /* step length of the smoother; 0: not known */
+    float omega_found;      /* by the largest eigenvalue found, which may have grown since */
+    uint32_t omega_rest, omega_pause; /* linear solves for which it stays the safe one, 0: it is omega_found; and the next time */
     uint8_t *renewed;       /* n: the copy's diagonal is of other elements than when omega was found; of use if */
     int omega_renewed;      /* there are such copies */
     double coarse_rate;     /* for which the coarse matrices were made; below 0: never made */
@@ -3749,7 +3754,7 @@ static void gxsp_task_product(void *context, size_t index)
     }
 }
 
-/* y = product, from the slots, and its sum x . y; or y = right - product */
+/* y = product, from the slots, or right - product; and the sum of x . product */
 static void gxsp_task_product_sum(void *context, size_t index)
 {
     const gxsp_pass *pass = (const gxsp_pass *)context;
@@ -3768,10 +3773,9 @@ static void gxsp_task_product_sum(void *context, size_t index)
         }
         if (right)
             to[0] = (float)right[0] - x, to[1] = (float)right[1] - y, to[2] = (float)right[2] - z;
-        else {
+        else
             to[0] = x, to[1] = y, to[2] = z;
-            work += (double)at[0] * (double)x + (double)at[1] * (double)y + (double)at[2] * (double)z;
-        }
+        work += (double)at[0] * (double)x + (double)at[1] * (double)y + (double)at[2] * (double)z;
     }
     system->range_sum[index][0] = work;
 }
@@ -3823,7 +3827,7 @@ static double gxsp_add_terms(const gxsp_lasting *lasting, float sign, gxsp_vecto
 }
 
 /* y = A x, or right - A x unless right is NULL, A = scale (K + rate M), K the projected Hessian of the last linearisation, on copies that
- * follow nothing; x of followers is written too. right: 0 where nothing moves; matrix-free only. Returns x . A x if there is none. */
+ * follow nothing; x of followers is written too. right: 0 where nothing moves; matrix-free only. Returns x . A x. */
 static double gxsp_product_from(gxsp_system *system, double rate, const double *right, gxsp_vector4 *x, gxsp_vector4 *y)
 {
     gxsp_pass pass;
@@ -4133,12 +4137,25 @@ static void gxsp_task_smooth(void *context, size_t index)
     }
 }
 
+/* The smoother's step length that keeps the cycle definite at any state: no element's own D^-1 K exceeds 4, and so no sum of them; but for
+ * followers, with what was met. quotient: x . A x / x . D x of an x, by which the length so far was too large; 0: not known */
+static void gxsp_shorten_omega(gxsp_system *system, double quotient)
+{
+    const double largest = system->follower_count > 0 && 1.25 * quotient > 4 ? 1.25 * quotient : 4;
+    system->omega = (float)(1.5 / largest);
+    system->omega_pause = system->omega_pause > 0 ? system->omega_pause : GXSP_PAUSE;
+    system->omega_rest = system->omega_pause;
+    system->omega_pause += system->omega_pause < 1024 ? system->omega_pause : 0;
+}
+
 /* scaled = V-cycle of the residual. Level 0 is smoothed by omega D^-1, once on entry, see gxsp_scale, or by block Gauss-Seidel if it is
- * assembled. scratch: product */
-static void gxsp_multigrid(gxsp_system *system, double rate)
+ * assembled. A state in violent motion may have a larger eigenvalue than omega was found for: the residual, in which it grows, shows it.
+ * energy: residual . D^-1 residual; scratch: product */
+static void gxsp_multigrid(gxsp_system *system, double rate, double energy)
 {
     gxsp_level *fine = &system->levels[0];
     gxsp_pass pass;
+    double work;
     size_t i;
     fine->x = system->scaled, fine->b = system->right, fine->r = system->product;
     if (system->fine) {
@@ -4147,7 +4164,14 @@ static void gxsp_multigrid(gxsp_system *system, double rate)
         gxsp_cycle(system, 0);
         return;
     }
-    (void)gxsp_product_from(system, rate, system->residual, fine->x, fine->r);
+    work = gxsp_product_from(system, rate, system->residual, fine->x, fine->r);
+    if (work > GXSP_OMEGA * (double)system->omega * energy && system->omega_rest == 0) {
+        const float before = system->omega;
+        gxsp_shorten_omega(system, work / ((double)before * (double)before * energy));
+        for (i = 0; i < 3 * system->n; ++i)
+            fine->x[i / 3][i % 3] *= system->omega / before;
+        (void)gxsp_product_from(system, rate, system->residual, fine->x, fine->r);
+    }
     gxsp_restrict(fine, fine + 1);
     gxsp_cycle(system, 1);
     gxsp_prolong(fine, fine + 1);
@@ -4678,9 +4702,22 @@ static void gxsp_renew_omega(gxsp_system *system, double rate)
         system->chunk_still[c] |= still;
     }
     largest = gxsp_largest_eigenvalue(system, rate);
-    if (GXSP_OMEGA < (double)system->omega * largest)
-        system->omega = (float)(GXSP_OMEGA / largest);
+    if (GXSP_OMEGA < (double)system->omega_found * largest)
+        system->omega_found = (float)(GXSP_OMEGA / largest);
     gxsp_mark_still(system);
+}
+
+/* The step length for the solve to come */
+static void gxsp_choose_omega(gxsp_system *system, double rate)
+{
+    if (!(system->omega > 0))
+        system->omega_found = gxsp_omega(system, gxsp_largest_eigenvalue(system, rate));
+    else if (system->omega_renewed)
+        gxsp_renew_omega(system, rate);
+    system->omega_renewed = 0;
+    system->omega_rest -= system->omega_rest > 0;
+    if (system->omega_rest == 0)
+        system->omega = system->omega_found;
 }
 
 /* >>update: what a cut has changed goes into the chunks and levels that there are. Elements are replaced where they were, further ones go
@@ -5822,15 +5859,15 @@ static void gxsp_task_work(void *context, size_t index)
         }
 }
 
-/* z = M^-1 r from D^-1 r, both scaled; without translations of loose pieces. Returns r . z. */
-static double gxsp_precondition(gxsp_system *system, double rate)
+/* z = M^-1 r from D^-1 r, both scaled; without translations of loose pieces. energy: r . D^-1 r. Returns r . z. */
+static double gxsp_precondition(gxsp_system *system, double rate, double energy)
 {
     gxsp_pass pass;
     double sums[2];
     size_t i;
     int c;
     if (system->coarse_used)
-        gxsp_multigrid(system, rate);
+        gxsp_multigrid(system, rate, energy);
     for (i = 0; i < system->n && system->volume; ++i)
         for (c = 0; c < 3; ++c)
             system->scaled[i][c] = system->still[i] ? 0 : system->volume[i] * (float)system->residual[3 * i + (size_t)c];
@@ -5840,6 +5877,27 @@ static double gxsp_precondition(gxsp_system *system, double rate)
     pass.x = system->scaled;
     gxsp_over_ranges(system, gxsp_task_work, &pass, sums, 1);
     return sums[0];
+}
+
+/* As gxsp_precondition, but definite: should the cycle prove not to be, it is smoothed more carefully, and at worst left out of this solve.
+ * now: measures of the residual; changed: the preconditioner is not the one before */
+static double gxsp_precondition_definite(gxsp_system *system, double rate, const gxsp_norms *now, int *changed)
+{
+    const float omega = system->omega;
+    double rho = gxsp_precondition(system, rate, now->energy);
+    if (!(rho > 0) && system->coarse_used && !system->fine && system->omega_rest == 0) {
+        gxsp_shorten_omega(system, 0);
+        (void)gxsp_scale(system, system->residual);
+        rho = gxsp_precondition(system, rate, now->energy);
+    }
+    *changed = omega < system->omega || omega > system->omega;
+    if (!(rho > 0) && system->coarse_used) {
+        system->coarse_used = 0;
+        system->coarse_worn = *changed = 1;
+        (void)gxsp_scale(system, system->residual);
+        rho = gxsp_precondition(system, rate, now->energy);
+    }
+    return rho;
 }
 
 static double gxsp_now(const gxsp_problem *problem)
@@ -5941,6 +5999,7 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
     gxsp_norms first, now, guessed;
     gxsp_pass pass;
     uint32_t iteration;
+    int changed;
     double rho = 0;
     size_t i;
     problem->indefinite = 0;
@@ -5952,7 +6011,7 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
         now = gxsp_guess_direction(system, rate, now);
     guessed = now;
     if (!gxsp_reduced(&now, &first, goal))
-        rho = gxsp_precondition(system, rate);
+        rho = gxsp_precondition_definite(system, rate, &now, &changed);
     memcpy(system->search, system->scaled, system->n * sizeof *system->search);
     memset(&pass, 0, sizeof pass);
     for (iteration = 0; iteration < problem->cg_iterations && !gxsp_reduced(&now, &first, goal); ++iteration) {
@@ -5967,8 +6026,8 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
         ++problem->report.cg_iterations;
         if (gxsp_reduced(&now, &first, goal) || gxsp_out_of_time(problem))
             break;
-        rho = gxsp_precondition(system, rate);
-        pass.factor = rho / before;
+        rho = gxsp_precondition_definite(system, rate, &now, &changed);
+        pass.factor = changed ? 0 : rho / before;
         gxsp_over_ranges(system, gxsp_task_search, &pass, NULL, 0);
     }
     problem->nepers = now.energy > 0 && guessed.energy > now.energy ? 0.5 * log(guessed.energy / now.energy) : 0;
@@ -6020,11 +6079,8 @@ static int gxsp_prepare(gxsp_problem *problem)
     system->coarse_used = system->level_count > 0 && gxsp_coarse_pays(system, problem->rate);
     if (!system->coarse_used)
         return 1;
-    if (!(system->omega > 0) && !system->fine)
-        system->omega = gxsp_omega(system, gxsp_largest_eigenvalue(system, problem->rate));
-    else if (system->omega_renewed)
-        gxsp_renew_omega(system, problem->rate);
-    system->omega_renewed = 0;
+    if (!system->fine)
+        gxsp_choose_omega(system, problem->rate);
     other = system->coarse_rate < problem->rate || system->coarse_rate > problem->rate;
     if (!other && (problem->exact || !(system->coarse_worn || gxsp_coarse_ends(system))))
         return 1;
@@ -6989,6 +7045,7 @@ GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene)
     system->still_known = system->base_known = 0;
     system->guess_count = 0;
     system->omega = 0;
+    system->omega_rest = system->omega_pause = 0;
     system->coarse_rate = -1;
     system->coarse_stiffness = 0;
     system->coarse_worn = 0;
@@ -7376,6 +7433,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_STIFFNESS
 #undef GXSP_TINY
 #undef GXSP_OMEGA
+#undef GXSP_PAUSE
 #undef GXSP_REMAKE
 #undef GXSP_LIFE
 #undef GXSP_AGEING
