@@ -57,11 +57,12 @@
  * gradients with multigrid: the model itself smoothed by block-Jacobi, coarse levels on lattices whose points are doubled where
  * a cut runs between the copies around them, and a factorised one as soon as that is cheap. Coarse matrices serve until
  * iterations rise. The last two steps' directions are the guess for the next.
- * Newton starts at u_n + h v_n; should it end above E(u_n), it is run again from u_n: E(u) <= E(u_n) always, so a step cannot
- * blow up; the midpoint rule, which goes on from there as far again, goes less far where it would gain energy. Every loose
- * piece (copies joined by elements, none of them held or touched by springs and contact) then moves as a whole so that its
- * momentum balances, and the later iterates leave its momentum alone: it is right to rounding whatever the tolerances are, and
- * free fall takes no iteration. Residuals are measured twice, both times scaled by the block diagonal D of the Hessian: in
+ * E is a sum over pieces (copies joined by elements), and each has a step length of its own in the line search, so that none of
+ * them is flung about for what another gains. Every loose piece (none of its copies is held or touched by springs and contact)
+ * moves as a whole first so that its momentum balances, and the later iterates leave its momentum alone: it is right to rounding
+ * whatever the tolerances are, and free fall takes no iteration. Newton starts at u_n + h v_n; a piece that ends above E at u_n,
+ * translated so, is brought down on the way from there: E(u) <= E(u_n) always, piece by piece and however fast it falls, so a
+ * step cannot blow up; the midpoint rule, which goes on from there as far again, goes less far where it would gain energy. Residuals are measured twice, both times scaled by the block diagonal D of the Hessian: in
  * energy, sqrt(sum r_i . D_i^-1 r_i), and in displacement, sqrt(sum |D_i^-1 r_i|^2). The second sees a piece of 1e-12 of its
  * neighbour's volume as well as the neighbour.
  * A piece that has been slow for long sleeps if gxs_step_desc.sleep_speed says so; steps do without it until something touches it.
@@ -829,12 +830,13 @@ typedef struct gxsp_piece {
     double energies[3]; /* of the last evaluation: elastic with springs and contact, kinetic, size of their terms; J */
     double before[3];   /* at current */
     double base_energy; /* elastic, of what the last step returned, J; of use if gxsp_system.base_known */
-    double limit, ended; /* E where the step starts, which it does not exceed, and where Newton's method has ended, J */
-    double slope, work, rounding; /* of the direction: dE/dlength, the load's work; of positions and of the load's terms; J */
+    double limit, ended; /* E where the step starts, which it is not to exceed, and where Newton's method has ended; J */
+    double slope, work; /* dE/dlength of the direction, and the load's work along it; J */
+    double rounding;    /* of positions and of the load's terms, in units in the last place; J */
     double length;      /* share of the direction that it goes */
-    int settled;        /* length is found: its chunks are as they were last evaluated */
+    int settled;        /* its length is found: chunks all of whose pieces are settled are not evaluated again */
     int risen;          /* E has ended above limit */
-    uint32_t lead;      /* number of the piece that leads it */
+    uint32_t lead;      /* which piece leads it; itself: it leads */
     uint64_t forces[2]; /* hash of its nodal forces: of the step before, of this one */
     int sprung[2];      /* a spring acts on it: in the step before, in this one */
     int woken, tired;   /* something touches it in this step; nothing does, and it has been slow for long */
@@ -5811,6 +5813,16 @@ static const gxs_point *gxsp_next_pull(const gxsp_problem *problem, size_t *at, 
     return NULL;
 }
 
+/* Who leads piece p so far */
+static uint32_t gxsp_lead_root(gxsp_piece *pieces, uint32_t p)
+{
+    while (pieces[p].lead != p) {
+        pieces[p].lead = pieces[pieces[p].lead].lead;
+        p = pieces[p].lead;
+    }
+    return p;
+}
+
 /* Which pieces lead which in this step: the first of those that points join */
 static void gxsp_choose_leads(const gxsp_problem *problem)
 {
@@ -5825,13 +5837,14 @@ static void gxsp_choose_leads(const gxsp_problem *problem)
         const gxs_point *point = i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
         uint32_t joined = GXSP_NONE;
         for (k = 0; k < 4; ++k) {
+            uint32_t first;
             if (!(fabs(point->weight[k]) > 0))
                 continue;
-            for (p = problem->system->piece[point->copy[k]]; pieces[p].lead != p; p = pieces[p].lead)
-                ;
+            p = gxsp_lead_root(pieces, problem->system->piece[point->copy[k]]);
             joined = joined == GXSP_NONE ? p : joined;
-            pieces[p < joined ? joined : p].lead = p < joined ? p : joined;
-            joined = p < joined ? p : joined;
+            first = p < joined ? p : joined;
+            pieces[p].lead = pieces[joined].lead = first;
+            joined = first;
         }
     }
     for (p = 0; p < problem->system->piece_count; ++p) /* who leads comes first */
@@ -6383,7 +6396,7 @@ static void gxsp_choose_sleepers(gxsp_problem *problem, const double *displaceme
     if (!changed && system->still_known)
         return;
     system->still_known = 1;
-    system->base_known = 0;
+    system->base_known &= !changed;
     gxsp_mark_still(system);
     system->active = 3 * system->n;
     for (i = 0; i < system->n; ++i)
