@@ -57,11 +57,12 @@
  * gradients with multigrid: the model itself smoothed by block-Jacobi, coarse levels on lattices whose points are doubled where
  * a cut runs between the copies around them, and a factorised one as soon as that is cheap. Coarse matrices serve until
  * iterations rise. The last two steps' directions are the guess for the next.
- * Newton starts at u_n + h v_n; should it end above E(u_n), it is run again from u_n: E(u) <= E(u_n) always, so a step cannot
- * blow up; the midpoint rule, which goes on from there as far again, goes less far where it would gain energy. Every loose
- * piece (copies joined by elements, none of them held or touched by springs and contact) then moves as a whole so that its
- * momentum balances, and the later iterates leave its momentum alone: it is right to rounding whatever the tolerances are, and
- * free fall takes no iteration. Residuals are measured twice, both times scaled by the block diagonal D of the Hessian: in
+ * E is a sum over pieces (copies joined by elements), and each has a step length of its own in the line search, so that none of
+ * them is flung about for what another gains. Every loose piece (none of its copies is held or touched by springs and contact)
+ * moves as a whole first so that its momentum balances, and the later iterates leave its momentum alone: it is right to rounding
+ * whatever the tolerances are, and free fall takes no iteration. Newton starts at u_n + h v_n; a piece that ends above E at u_n,
+ * translated so, is brought down on the way from there: E(u) <= E(u_n) always, piece by piece and however fast it falls, so a
+ * step cannot blow up; the midpoint rule, which goes on from there as far again, goes less far where it would gain energy. Residuals are measured twice, both times scaled by the block diagonal D of the Hessian: in
  * energy, sqrt(sum r_i . D_i^-1 r_i), and in displacement, sqrt(sum |D_i^-1 r_i|^2). The second sees a piece of 1e-12 of its
  * neighbour's volume as well as the neighbour.
  * A piece that has been slow for long sleeps if gxs_step_desc.sleep_speed says so; steps do without it until something touches it.
@@ -743,6 +744,12 @@ typedef struct gxsp_fine {
     uint32_t entry[10][GXSP_LANES]; /* GXSP_NONE: a corner follows others */
 } gxsp_fine;
 
+/* What a chunk has of one piece */
+typedef struct gxsp_part {
+    double energies[3]; /* of the pass under way: elastic, kinetic, size of the terms they are sums of; J */
+    uint32_t piece;
+} gxsp_part;
+
 typedef struct gxsp_chunk {
     gxsp_rest *rest;                 /* block_count, as are the next four */
     gxsp_corners *corners;
@@ -752,6 +759,7 @@ typedef struct gxsp_chunk {
     uint32_t *groups;                /* block_count x GXSP_LANES: group of the element in each lane; GXSP_NONE: there is none */
     uint32_t first_block, block_count; /* blocks are counted through all chunks */
     uint32_t first_node, node_count; /* into nodes and slots */
+    uint32_t first_part, part_count; /* into parts: one for each piece of its nodes, ascending */
     uint32_t class_index;            /* 2 x kind + (masses are not those of whole elements) */
     int open;                        /* made by an update, with room for GXSP_CHUNK_BLOCKS */
     gxs_material_kind kind;
@@ -817,10 +825,21 @@ typedef struct gxsp_material {
     void *user;
 } gxsp_material;
 
-/* Copies joined by elements and constraints */
+/* Copies joined by elements and constraints. E is a sum over pieces, but for points of contact and springs that join some: of those the
+ * first leads, and what is told of energies and steps is that of all that it leads. */
 typedef struct gxsp_piece {
     double sum[3];      /* over its copies, of the pass under way */
     double mass;        /* kg */
+    double energies[3]; /* of the last evaluation: elastic with springs and contact, kinetic, size of their terms; J */
+    double before[3];   /* at current */
+    double base_energy; /* elastic, of what the last step returned, J; of use if gxsp_system.base_known */
+    double limit, ended; /* E where the step starts, which it is not to exceed, and where Newton's method has ended; J */
+    double slope, work; /* dE/dlength of the direction, and the load's work along it; J */
+    double rounding;    /* of positions and of the load's terms, in units in the last place; J */
+    double length;      /* share of the direction that it goes */
+    int settled;        /* its length is found: chunks all of whose pieces are settled are not evaluated again */
+    int risen;          /* E has ended above limit */
+    uint32_t lead;      /* which piece leads it; itself: it leads */
     uint64_t forces[2]; /* hash of its nodal forces: of the step before, of this one */
     int sprung[2];      /* a spring acts on it: in the step before, in this one */
     int woken, tired;   /* something touches it in this step; nothing does, and it has been slow for long */
@@ -865,8 +884,9 @@ typedef struct gxsp_system {
     int roots_known;        /* slot_root is there */
     double (*slots)[3];     /* slot_count: what a chunk's pass has for each node: 3 doubles, 4 floats (of products), or 6 */
     double (*range_sum)[GXSP_SUMS]; /* range_count: of passes over copies; added up in their order */
-    double (*chunk_sum)[3]; /* chunk_count: elastic and kinetic energy, size of the terms they are sums of; J. Of linearisations:
-                               whether there is a collapsed element */
+    gxsp_part *parts;       /* part_count: of the chunks, in their order */
+    uint32_t part_count;
+    uint8_t *chunk_collapsed; /* chunk_count: the last linearisation found an element collapsed to a point */
     double *lumped;         /* n: row sums of the mass, kg */
     uint8_t *held;          /* n: as the model says */
     uint8_t *fixed;         /* n: held, or without an element and a follower of nothing */
@@ -920,8 +940,7 @@ typedef struct gxsp_system {
     double pace_old;        /* by the last one of the matrices before; 0: of another time step, or there was none */
     int still_known;        /* still and chunk_still are those of the pieces' states */
     size_t active;          /* unknowns of this step */
-    int base_known;         /* current is what the last step returned, and base_energy its elastic energy */
-    double base_energy;
+    int base_known;         /* current is what the last step returned, and the pieces know its elastic energies */
     gxsp_vector4 *right;    /* n: residual in single precision; of GXS_MATRIX_ASSEMBLED only, else NULL */
     gxsp_vector4 *guess[2]; /* n: directions of the first iterations of the last step and of the one before */
     uint32_t guess_count;   /* how many of them there are */
@@ -937,7 +956,7 @@ typedef struct gxsp_problem {
     uint32_t cg_iterations; /* with the defaults put in */
     double cg_tolerance;
     double nepers;          /* by how many factors of e the last linear solve has reduced the residual that its guess left */
-    double energies[3];     /* at current: elastic with springs and contact, kinetic, size of their terms; J */
+    double energies[3];     /* at current, sums over pieces; J */
     double base_potential;  /* E at base, J; of the midpoint rule */
     double start;           /* on the clock */
     gxs_scene scene;
@@ -2011,18 +2030,62 @@ static int gxsp_accelerates(const gxsp_system *system, const gxsp_chunk *chunk, 
     return 0;
 }
 
-/* Energies of a chunk at pass->from, and elastic + inertial forces. */
+/* Have all pieces of a chunk found their lengths? */
+static int gxsp_chunk_settled(const gxsp_system *system, const gxsp_chunk *chunk)
+{
+    uint32_t i;
+    for (i = 0; i < chunk->part_count; ++i)
+        if (!system->pieces[system->pieces[system->parts[chunk->first_part + i].piece].lead].settled)
+            return 0;
+    return 1;
+}
+
+/* What a chunk has of a piece of its nodes */
+static gxsp_part *gxsp_find_part(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t piece)
+{
+    gxsp_part *parts = system->parts + chunk->first_part;
+    uint32_t low = 0, high = chunk->part_count - 1;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (parts[middle].piece < piece)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return &parts[low];
+}
+
+/* Energies of a block's elements, added to the parts that they belong to */
+static void gxsp_add_energies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, gxsp_lanes *energies)
+{
+    const uint32_t *copies = system->nodes + chunk->first_node;
+    int k, l;
+    for (k = 0; k < 3 && chunk->part_count == 1; ++k) {
+        double sum = 0;
+        for (l = 0; l < GXSP_LANES; ++l)
+            sum += energies[k][l];
+        system->parts[chunk->first_part].energies[k] += sum;
+    }
+    for (l = 0; l < GXSP_LANES && chunk->part_count > 1; ++l) {
+        gxsp_part *part = gxsp_find_part(system, chunk, system->piece[copies[chunk->corners[b].node[0][l]]]);
+        for (k = 0; k < 3; ++k)
+            part->energies[k] += energies[k][l];
+    }
+}
+
+/* Energies of a chunk at pass->from, part by part, and elastic + inertial forces. */
 static void gxsp_task_state(void *context, size_t index)
 {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->chunks[index];
     double *slots = &system->slots[chunk->first_node][0];
-    double elastic = 0, kinetic = 0, size = 0;
     uint32_t b, further;
     int k, l, inertia;
-    for (k = 0; k < 3; ++k)
-        system->chunk_sum[index][k] = 0;
+    if (gxsp_chunk_settled(system, chunk))
+        return;
+    for (b = 0; b < chunk->part_count; ++b)
+        memset(system->parts[chunk->first_part + b].energies, 0, sizeof system->parts->energies);
     memset(slots, 0, 3 * (size_t)chunk->node_count * sizeof *slots);
     if (system->chunk_still[index])
         return;
@@ -2030,7 +2093,7 @@ static void gxsp_task_state(void *context, size_t index)
     for (b = 0; b < chunk->block_count; ++b) {
         const gxsp_rest *rest = &chunk->rest[b];
         const gxsp_chunk *next = gxsp_block_ahead(system, index, b, &further);
-        gxsp_lanes x[12], forces[12], ahead[9], energy;
+        gxsp_lanes x[12], forces[12], ahead[9], energies[3];
         gxsp_state s;
         gxsp_fetch(&next->rest[further], sizeof(gxsp_rest));
         gxsp_block_load(system, chunk, &chunk->corners[b], pass->from, x);
@@ -2047,23 +2110,22 @@ static void gxsp_task_state(void *context, size_t index)
             gxsp_turn_stress(s.g, ahead, s.p);
         gxsp_block_force(rest, s.p, forces);
         for (l = 0; l < GXSP_LANES; ++l) {
-            elastic += rest->weight[l] * s.energy[l];
-            size += rest->weight[l] * s.size[l];
+            energies[0][l] = rest->weight[l] * s.energy[l];
+            energies[1][l] = 0;
+            energies[2][l] = rest->weight[l] * s.size[l];
         }
         if (inertia) {
             gxsp_lanes moved[12];
             gxsp_block_load(system, chunk, &chunk->corners[b], system->target, moved);
             for (k = 0; k < 12; ++k)
                 GXSP_EACH_LANE(l) moved[k][l] = x[k][l] - moved[k][l];
-            gxsp_block_inertia(rest, gxsp_block_masses(chunk, b), pass->rate, moved, forces, energy);
+            gxsp_block_inertia(rest, gxsp_block_masses(chunk, b), pass->rate, moved, forces, energies[1]);
             for (l = 0; l < GXSP_LANES; ++l)
-                kinetic += energy[l];
+                energies[2][l] += energies[1][l];
         }
+        gxsp_add_energies(system, chunk, b, energies);
         gxsp_block_store(&chunk->corners[b], forces, slots);
     }
-    system->chunk_sum[index][0] = elastic;
-    system->chunk_sum[index][1] = kinetic;
-    system->chunk_sum[index][2] = size + kinetic;
 }
 
 /* sum = over the slots of each copy, 3 doubles each */
@@ -2084,13 +2146,17 @@ static void gxsp_task_sum(void *context, size_t index)
     }
 }
 
-/* Energies of the elements at from (elastic, kinetic, size of terms), and elastic + inertial forces, 0 on what sleeps. turned: see
- * gxsp_pass */
-static void gxsp_evaluate_elements(gxsp_system *system, double rate, const double *from, const double *turned, int nudge, double *force,
-                                   double *energies)
+/* The piece that leads a copy's */
+static gxsp_piece *gxsp_lead_of(const gxsp_system *system, size_t copy)
+{
+    return &system->pieces[system->pieces[system->piece[copy]].lead];
+}
+
+/* Energies of the pieces' elements at from, and elastic + inertial forces, 0 on what sleeps. turned: see gxsp_pass */
+static void gxsp_evaluate_elements(gxsp_system *system, double rate, const double *from, const double *turned, int nudge, double *force)
 {
     gxsp_pass pass;
-    uint32_t c;
+    uint32_t p;
     int k;
     memset(&pass, 0, sizeof pass);
     pass.system = system;
@@ -2103,21 +2169,21 @@ static void gxsp_evaluate_elements(gxsp_system *system, double rate, const doubl
     pass.nudge = nudge;
     gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_state, &pass);
     gxsp_over_ranges(system, gxsp_task_sum, &pass, NULL, 0);
-    energies[0] = energies[1] = energies[2] = 0;
-    for (c = 0; c < system->chunk_count; ++c)
+    for (p = 0; p < system->piece_count; ++p)
+        memset(system->pieces[p].energies, 0, sizeof system->pieces->energies);
+    for (p = 0; p < system->part_count; ++p)
         for (k = 0; k < 3; ++k)
-            energies[k] += system->chunk_sum[c][k];
+            system->pieces[system->pieces[system->parts[p].piece].lead].energies[k] += system->parts[p].energies[k];
     if (rate > 0 && system->lumped_mass) {
         size_t i;
-        double kinetic = 0;
         for (i = 0; i < 3 * system->n; ++i)
             if (!system->still[i / 3]) {
                 double moved = from[i] - system->target[i], inertia = rate * system->lumped[i / 3] * moved;
+                double *energies = gxsp_lead_of(system, i / 3)->energies;
                 force[i] += inertia;
-                kinetic += 0.5 * inertia * moved;
+                energies[1] += 0.5 * inertia * moved;
+                energies[2] += 0.5 * inertia * moved;
             }
-        energies[1] = kinetic;
-        energies[2] += kinetic;
     }
 }
 
@@ -2466,7 +2532,7 @@ static void gxsp_chunks_make(gxsp_system *system, gxsp_pool *scratch, const gxs_
         return;
     system->chunk_count = gxsp_plan_chunks(system, sorted, NULL);
     system->chunks = (gxsp_chunk *)gxsp_take(&system->pool, system->chunk_count, sizeof(gxsp_chunk));
-    system->chunk_sum = (double(*)[3])gxsp_take(&system->pool, system->chunk_count, sizeof *system->chunk_sum);
+    system->chunk_collapsed = (uint8_t *)gxsp_take(&system->pool, system->chunk_count, 1);
     system->chunk_still = (uint8_t *)gxsp_take(&system->pool, system->chunk_count, 1);
     system->copy_start = (uint32_t *)gxsp_take(&system->pool, system->n + 2, sizeof(uint32_t));
     system->nodes = (uint32_t *)gxsp_take(scratch, 4 * system->element_count, sizeof(uint32_t)); /* its size is not known yet */
@@ -2595,6 +2661,45 @@ static void gxsp_fill_pieces(gxsp_system *system)
     }
     for (p = 0; p < system->piece_count; ++p)
         system->pieces[p].state |= system->pieces[p].mass > 0 ? 0 : GXSP_UNBALANCED;
+}
+
+/* The pieces of every chunk, ascending. parts: NULL, or room for all. Returns how many there are. */
+static uint32_t gxsp_list_parts(gxsp_system *system, gxsp_part *parts)
+{
+    uint32_t c, k, count = 0;
+    for (c = 0; c < system->piece_count; ++c)
+        system->pieces[c].lead = GXSP_NONE; /* here: the chunk that has met it last */
+    for (c = 0; c < system->chunk_count; ++c) {
+        gxsp_chunk *chunk = &system->chunks[c];
+        chunk->first_part = count;
+        for (k = 0; k < chunk->node_count; ++k) {
+            const uint32_t piece = system->piece[system->nodes[chunk->first_node + k]];
+            uint32_t at = count;
+            if (system->pieces[piece].lead == c)
+                continue;
+            system->pieces[piece].lead = c;
+            for (; parts && at > chunk->first_part && parts[at - 1].piece > piece; --at)
+                parts[at].piece = parts[at - 1].piece;
+            if (parts)
+                parts[at].piece = piece;
+            ++count;
+        }
+        chunk->part_count = count - chunk->first_part;
+    }
+    for (c = 0; c < system->piece_count; ++c)
+        system->pieces[c].lead = c;
+    return count;
+}
+
+/* Parts of the chunks, in place of those there were */
+static void gxsp_parts_make(gxsp_system *system)
+{
+    const uint32_t count = gxsp_list_parts(system, NULL);
+    system->parts = system->parts ? (gxsp_part *)gxsp_retake(&system->pool, system->parts, 0, count, sizeof(gxsp_part)) :
+                                    (gxsp_part *)gxsp_take(&system->pool, count, sizeof(gxsp_part));
+    system->part_count = count;
+    if (!system->pool.failed)
+        (void)gxsp_list_parts(system, system->parts);
 }
 
 /* Rest positions in spacings of the first lattice: GXSP_SPACING edges of an average whole element. 0: there is none. */
@@ -3512,6 +3617,8 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
     gxsp_fill_pieces(system);
     mark = scratch->last;
     gxsp_chunks_make(system, scratch, model);
+    if (!scratch->failed && !system->pool.failed)
+        gxsp_parts_make(system);
     gxsp_release_to(scratch, mark);
     if (!scratch->failed && !system->pool.failed)
         gxsp_preconditioner_make(system, scratch, model, solver->preconditioner, solver->matrix, forest);
@@ -3886,7 +3993,7 @@ static void gxsp_task_linearise(void *context, size_t index)
     float *slots = (float *)(void *)system->slots[chunk->first_node];
     uint32_t b, k, blocks;
     int l;
-    system->chunk_sum[index][0] = 0;
+    system->chunk_collapsed[index] = 0;
     if (system->chunk_still[index])
         return;
     memset(slots, 0, 6 * (size_t)chunk->node_count * sizeof *slots);
@@ -3900,7 +4007,7 @@ static void gxsp_task_linearise(void *context, size_t index)
             gxsp_block_parameters(pass->materials, &chunk->rest[b + k], &s[k]);
             gxsp_block_gradient(&chunk->rest[b + k], x, s[k].g);
         }
-        system->chunk_sum[index][0] += gxsp_tangent_begin(chunk->kind, &s[0], blocks > 1 ? &s[1] : NULL, of);
+        system->chunk_collapsed[index] |= (uint8_t)gxsp_tangent_begin(chunk->kind, &s[0], blocks > 1 ? &s[1] : NULL, of);
         for (k = 0; k < blocks; ++k) {
             const gxsp_rest *rest = &chunk->rest[b + k];
             gxsp_tangent *tangent = &chunk->tangents[b + k];
@@ -4010,7 +4117,7 @@ static int gxsp_linearise(gxsp_system *system, double rate, const double *from, 
     gxsp_over_ranges(system, gxsp_task_diagonal, &pass, NULL, 0);
     *collapsed = 0;
     for (i = 0; i < system->chunk_count; ++i)
-        *collapsed |= system->chunk_sum[i][0] > 0;
+        *collapsed |= system->chunk_collapsed[i];
     for (i = 0; i < 6 * system->n; ++i)
         if (!gxsp_finite_single(system->diagonal[i]))
             return 0;
@@ -4918,7 +5025,7 @@ static gxsp_chunk *gxsp_open_chunk(gxsp_system *system, uint32_t class_index)
     if (system->chunk_count >= system->chunk_room) {
         const uint32_t room = system->chunk_count + system->chunk_count / 8 + 8;
         system->chunks = (gxsp_chunk *)gxsp_retake(pool, system->chunks, system->chunk_count, room, sizeof(gxsp_chunk));
-        system->chunk_sum = (double(*)[3])gxsp_retake(pool, system->chunk_sum, 0, room, sizeof *system->chunk_sum);
+        system->chunk_collapsed = (uint8_t *)gxsp_retake(pool, system->chunk_collapsed, 0, room, 1);
         system->chunk_still = (uint8_t *)gxsp_retake(pool, system->chunk_still, 0, room, 1);
         system->chunk_room = room;
     }
@@ -5226,14 +5333,39 @@ static void gxsp_recount_copies(const gxsp_renewal *update)
         system->fixed[i] |= system->held[i];
 }
 
+/* Pieces keep the energies that those had which they are now, by copy in former; if one has fallen apart, none is known. next: by piece
+ * of before, GXSP_NONE */
+static void gxsp_keep_base(gxsp_system *system, const gxsp_piece *before, const uint32_t *former, uint32_t *next)
+{
+    uint32_t i;
+    for (i = 0; i < system->n; ++i) {
+        gxsp_piece *piece = &system->pieces[system->piece[i]];
+        if (next[former[i]] == GXSP_NONE && piece->lead == system->piece[i]) {
+            next[former[i]] = system->piece[i];
+            piece->base_energy = before[former[i]].base_energy;
+            piece->lead = GXSP_NONE; /* here: has its energy */
+        }
+        system->base_known &= next[former[i]] == system->piece[i];
+    }
+    for (i = 0; i < system->piece_count; ++i)
+        system->pieces[i].lead = i;
+}
+
 /* Pieces, of which those sleep that are parts of sleeping ones: what has touched them wakes them again */
 static void gxsp_renew_pieces(gxsp_renewal *update)
 {
     gxsp_system *system = update->system;
+    const uint32_t before = system->piece_count;
     uint32_t *forest = (uint32_t *)gxsp_take(update->scratch, system->n, sizeof(uint32_t)), c, i, p;
+    uint32_t *former = (uint32_t *)gxsp_take(update->scratch, system->n, sizeof(uint32_t));
+    uint32_t *next = (uint32_t *)gxsp_take(update->scratch, before, sizeof(uint32_t));
+    gxsp_piece *pieces = (gxsp_piece *)gxsp_take(update->scratch, before, sizeof(gxsp_piece));
     uint8_t *asleep = (uint8_t *)gxsp_take(update->scratch, system->n, 1);
     if (update->scratch->failed)
         return;
+    memcpy(former, system->piece, system->n * sizeof *former);
+    memcpy(pieces, system->pieces, before * sizeof *pieces);
+    memset(next, 0xff, before * sizeof *next);
     for (i = 0; i < system->n; ++i) {
         forest[i] = i;
         asleep[i] = (system->pieces[system->piece[i]].state & GXSP_ASLEEP) != 0;
@@ -5245,9 +5377,12 @@ static void gxsp_renew_pieces(gxsp_renewal *update)
         }
     gxsp_number_pieces(system, forest);
     system->pieces = (gxsp_piece *)gxsp_retake(&system->pool, system->pieces, 0, system->piece_count, sizeof(gxsp_piece));
+    if (!system->pool.failed)
+        gxsp_parts_make(system);
     if (system->pool.failed)
         return;
     gxsp_fill_pieces(system);
+    gxsp_keep_base(system, pieces, former, next);
     for (p = 0; p < system->piece_count; ++p)
         system->pieces[p].state |= GXSP_ASLEEP;
     for (i = 0; i < system->n; ++i)
@@ -5590,6 +5725,15 @@ static void gxsp_point_position(const gxs_point *point, const double *displaceme
             x[c] += point->weight[k] * displacement[3 * (size_t)point->copy[k] + (size_t)c];
 }
 
+/* A copy of the piece that it belongs to */
+static size_t gxsp_point_copy(const gxs_point *point)
+{
+    int k = 0;
+    while (k < 3 && !(fabs(point->weight[k]) > 0))
+        ++k;
+    return point->copy[k];
+}
+
 /* Can the step move it? */
 static int gxsp_point_moves(const gxsp_system *system, const gxs_point *point)
 {
@@ -5706,15 +5850,65 @@ static const gxs_point *gxsp_next_pull(const gxsp_problem *problem, size_t *at, 
     return NULL;
 }
 
-/* Energies of elements and points, and their forces with inertia */
-static void gxsp_evaluate(const gxsp_problem *problem, const double *from, int nudge, double *force, double *energies)
+/* Who leads piece p so far */
+static uint32_t gxsp_lead_root(gxsp_piece *pieces, uint32_t p)
+{
+    while (pieces[p].lead != p) {
+        pieces[p].lead = pieces[pieces[p].lead].lead;
+        p = pieces[p].lead;
+    }
+    return p;
+}
+
+/* Which pieces lead which in this step: the first of those that points join */
+static void gxsp_choose_leads(const gxsp_problem *problem)
+{
+    const gxs_step_desc *step = problem->step;
+    gxsp_piece *pieces = problem->system->pieces;
+    size_t i;
+    uint32_t p;
+    int k;
+    for (p = 0; p < problem->system->piece_count; ++p)
+        pieces[p].lead = p;
+    for (i = 0; i < step->spring_count + step->point_count; ++i) {
+        const gxs_point *point = i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
+        uint32_t joined = GXSP_NONE;
+        for (k = 0; k < 4; ++k) {
+            uint32_t first;
+            if (!(fabs(point->weight[k]) > 0))
+                continue;
+            p = gxsp_lead_root(pieces, problem->system->piece[point->copy[k]]);
+            joined = joined == GXSP_NONE ? p : joined;
+            first = p < joined ? p : joined;
+            pieces[p].lead = pieces[joined].lead = first;
+            joined = first;
+        }
+    }
+    for (p = 0; p < problem->system->piece_count; ++p) /* who leads comes first */
+        pieces[p].lead = pieces[pieces[p].lead].lead;
+}
+
+/* Sums over pieces of what they had when they were evaluated last */
+static void gxsp_sum_energies(const gxsp_system *system, double *energies)
+{
+    uint32_t p;
+    int k;
+    energies[0] = energies[1] = energies[2] = 0;
+    for (p = 0; p < system->piece_count; ++p)
+        for (k = 0; k < 3; ++k)
+            energies[k] += system->pieces[p].energies[k];
+}
+
+/* Energies of elements and points, piece by piece, and their forces with inertia */
+static void gxsp_evaluate(const gxsp_problem *problem, const double *from, int nudge, double *force)
 {
     const gxs_point *point;
     gxsp_pull pull;
     size_t at = 0;
     int k, c;
-    gxsp_evaluate_elements(problem->system, problem->rate, from, NULL, nudge, force, energies);
+    gxsp_evaluate_elements(problem->system, problem->rate, from, NULL, nudge, force);
     while ((point = gxsp_next_pull(problem, &at, from, &pull)) != NULL) {
+        double *energies = gxsp_lead_of(problem->system, gxsp_point_copy(point))->energies;
         energies[0] += pull.energy;
         energies[2] += fabs(pull.energy);
         for (c = 0; c < 3; ++c) /* the gap of a spring is a small difference of positions */
@@ -6258,7 +6452,7 @@ static void gxsp_choose_sleepers(gxsp_problem *problem, const double *displaceme
     if (!changed && system->still_known)
         return;
     system->still_known = 1;
-    system->base_known = 0;
+    system->base_known &= !changed;
     gxsp_mark_still(system);
     system->active = 3 * system->n;
     for (i = 0; i < system->n; ++i)
@@ -6358,11 +6552,22 @@ static double gxsp_balance(gxsp_problem *problem)
     return by_energy > by_displacement ? by_energy : by_displacement;
 }
 
+/* What the pieces were evaluated to last is what they have at current. */
+static void gxsp_keep_energies(gxsp_problem *problem)
+{
+    gxsp_system *system = problem->system;
+    uint32_t p;
+    for (p = 0; p < system->piece_count; ++p)
+        memcpy(system->pieces[p].before, system->pieces[p].energies, sizeof system->pieces->before);
+    gxsp_sum_energies(system, problem->energies);
+}
+
 /* Energies and forces at current. 0 if they are not finite. */
 static int gxsp_update(gxsp_problem *problem)
 {
     gxsp_system *system = problem->system;
-    gxsp_evaluate(problem, system->current, 0, system->force, problem->energies);
+    gxsp_evaluate(problem, system->current, 0, system->force);
+    gxsp_keep_energies(problem);
     return gxsp_finite(problem->energies[0]) && gxsp_finite(problem->energies[1]) &&
            gxsp_first_not_finite(system->force, 3 * system->n) == 3 * system->n;
 }
@@ -6384,45 +6589,113 @@ static int gxsp_start(gxsp_problem *problem, const double *from)
     return gxsp_first_not_finite(system->current, 3 * system->n) == 3 * system->n && gxsp_update(problem);
 }
 
-/* A step length for the direction, by backtracking on E; current becomes the point found, and force and energies its own.
- * 0: no finite point of lower energy. */
+/* What the line search knows of the pieces before its first trial. 0 if a number is not finite. */
+static int gxsp_begin_search(gxsp_system *system)
+{
+    int finite = 1;
+    size_t i, k;
+    uint32_t p;
+    for (p = 0; p < system->piece_count; ++p) {
+        gxsp_piece *piece = &system->pieces[p];
+        piece->slope = piece->work = piece->rounding = 0;
+        piece->length = 1;
+    }
+    for (i = 0; i < system->n; ++i) {
+        gxsp_piece *piece = gxsp_lead_of(system, i);
+        const double *force = system->force + 3 * i, *load = system->load + 3 * i, *way = system->direction + 3 * i;
+        const double work = gxsp_dot(load, way, 1);
+        double rounding = 0;
+        for (k = 0; k < 3; ++k)
+            rounding += fabs(force[k] * system->current[3 * i + k]) + fabs(load[k] * way[k]);
+        piece->slope += gxsp_dot(force, way, 1) - work;
+        piece->work += work;
+        piece->rounding += rounding;
+    }
+    for (p = 0; p < system->piece_count; ++p)
+        finite &= gxsp_finite(system->pieces[p].slope);
+    return finite;
+}
+
+/* Has the piece gone far enough down? If not, it will try a shorter length. */
+static void gxsp_judge_length(gxsp_problem *problem, gxsp_piece *piece)
+{
+    const double *now = piece->energies, *before = piece->before, length = piece->length, promise = length * piece->slope;
+    const double change = (now[0] - before[0]) + (now[1] - before[1]) - length * piece->work;
+    const double slack = 1e-15 * (now[2] + before[2] + piece->rounding);
+    double next;
+    if (gxsp_finite(change) && gxsp_finite(now[2]) && change <= (promise < 0 ? GXSP_ARMIJO * promise : 0) + slack) {
+        problem->noise &= fabs(change) <= slack;
+        piece->settled = 1;
+        return;
+    }
+    /* minimum of the parabola through the two energies and the slope, within 1/10 to 1/2 of the length */
+    next = gxsp_finite(change) && change > promise ? -0.5 * promise * length / (change - promise) : 0.1 * length;
+    next = next < 0.1 * length ? 0.1 * length : next > 0.5 * length ? 0.5 * length : next;
+    piece->length = promise < 0 ? next : 0;
+}
+
+/* Energies and forces at trial: current and each piece's length of the direction from there */
+static void gxsp_try_lengths(gxsp_problem *problem)
+{
+    gxsp_system *system = problem->system;
+    size_t i, k;
+    for (i = 0; i < system->n; ++i) {
+        const double length = gxsp_lead_of(system, i)->length;
+        for (k = 3 * i; k < 3 * i + 3; ++k)
+            system->trial[k] = system->current[k] + length * system->direction[k];
+    }
+    gxsp_evaluate(problem, system->trial, 0, system->force);
+}
+
+/* Pieces that have found no length stay, and all may be evaluated again. Returns how many went down; left: how many stay. */
+static size_t gxsp_end_search(gxsp_system *system, size_t *left)
+{
+    size_t down = 0;
+    uint32_t p;
+    *left = 0;
+    for (p = 0; p < system->piece_count; ++p) {
+        gxsp_piece *piece = &system->pieces[p];
+        if (piece->lead != p)
+            continue;
+        down += piece->settled && piece->slope < 0;
+        *left += !piece->settled;
+        piece->length = piece->settled ? piece->length : 0;
+    }
+    return down;
+}
+
+/* A step length for each piece along the direction, by backtracking on E, which is a sum over pieces: so it falls in each of them,
+ * and none waits for another. current becomes the point found, and force and energies its own. 0: no finite point of lower energy. */
 static int gxsp_line_search(gxsp_problem *problem)
 {
     gxsp_system *system = problem->system;
-    double slope = 0, work = 0, rounding = 0, length = 1, slack; /* rounding: of positions and of the linear terms */
-    double before[3];
-    size_t i, count = 3 * system->n;
+    double *found = system->trial;
+    size_t left = 1, down;
+    uint32_t p;
     int trial;
-    for (i = 0; i < count; ++i) {
-        slope += (system->force[i] - system->load[i]) * system->direction[i];
-        work += system->load[i] * system->direction[i];
-        rounding += fabs(system->force[i] * system->current[i]) + fabs(system->load[i] * system->direction[i]);
-    }
-    if (!gxsp_finite(slope))
+    if (!gxsp_begin_search(system))
         return 0;
-    memcpy(before, problem->energies, sizeof before);
-    for (trial = 0; trial < GXSP_TRIALS && (trial == 0 || !gxsp_out_of_time(problem)); ++trial) {
-        double change, next, *accepted = system->trial;
-        for (i = 0; i < count; ++i)
-            system->trial[i] = system->current[i] + length * system->direction[i];
+    problem->noise = 1;
+    for (trial = 0; trial < GXSP_TRIALS && left > 0 && (trial == 0 || !gxsp_out_of_time(problem)); ++trial) {
         ++problem->report.line_search_steps;
-        gxsp_evaluate(problem, system->trial, 0, system->force, problem->energies);
-        change = (problem->energies[0] - before[0]) + (problem->energies[1] - before[1]) - length * work;
-        slack = 1e-15 * (problem->energies[2] + before[2] + rounding);
-        if (gxsp_finite(change) && gxsp_finite(problem->energies[2]) && change <= GXSP_ARMIJO * length * slope + slack) {
-            problem->noise = fabs(change) <= slack;
-            problem->shortened = trial > 0;
-            system->trial = system->current;
-            system->current = accepted;
-            return 1;
+        gxsp_try_lengths(problem);
+        for (p = 0, left = 0; p < system->piece_count; ++p) {
+            gxsp_piece *piece = &system->pieces[p];
+            if (piece->lead == p && !piece->settled)
+                gxsp_judge_length(problem, piece);
+            left += piece->lead == p && !piece->settled;
         }
-        /* minimum of the parabola through the two energies and the slope, within 1/10 to 1/2 of the length */
-        next = gxsp_finite(change) && change > length * slope ?
-               -0.5 * slope * length * length / (change - length * slope) : 0.1 * length;
-        length = next < 0.1 * length ? 0.1 * length : next > 0.5 * length ? 0.5 * length : next;
     }
-    memcpy(problem->energies, before, sizeof before);
-    return 0;
+    problem->shortened = trial > 1;
+    down = gxsp_end_search(system, &left);
+    if (left > 0)
+        gxsp_try_lengths(problem);
+    for (p = 0; p < system->piece_count; ++p)
+        system->pieces[p].settled = 0;
+    gxsp_keep_energies(problem);
+    system->trial = system->current;
+    system->current = found;
+    return left == 0 || down > 0;
 }
 
 /* E at current, J */
@@ -6463,13 +6736,12 @@ static void gxsp_choose_integrator(gxsp_problem *problem)
 static void gxsp_add_damping(gxsp_problem *problem, double factor, const double *displacement)
 {
     gxsp_system *system = problem->system;
-    double energies[3];
     size_t i;
     for (i = 0; i < system->material_count; ++i) {
         system->damped[i].mu = factor * system->materials[i].damping * system->materials[i].mu;
         system->damped[i].lambda = factor * system->materials[i].damping * system->materials[i].lambda;
     }
-    gxsp_evaluate_elements(system, 0, displacement, system->target, 0, system->force, energies);
+    gxsp_evaluate_elements(system, 0, displacement, system->target, 0, system->force);
     for (i = 0; i < 3 * system->n; ++i)
         system->load[i] += system->force[i];
 }
@@ -6552,8 +6824,7 @@ static int gxsp_linearise_all(gxsp_problem *problem)
  * and its slope. Energies stay as they are. */
 static void gxsp_nudge_forces(gxsp_problem *problem)
 {
-    double energies[3];
-    gxsp_evaluate(problem, problem->system->current, 1, problem->system->force, energies);
+    gxsp_evaluate(problem, problem->system->current, 1, problem->system->force);
     gxsp_balance(problem);
 }
 
@@ -6595,14 +6866,13 @@ static int gxsp_goes_on(gxsp_problem *problem, double before)
     return 1;
 }
 
-/* Newton's method from a start that gxsp_start found finite to balance or to the end of the budget. */
+/* Newton's method, to balance or to the end of the budget, from a start that gxsp_start found finite or from where it has ended. */
 static gx_result gxsp_newton(gxsp_problem *problem)
 {
     uint32_t *done = &problem->report.newton_iterations;
     double before = 0;
-    *done = 0;
     problem->exact = problem->projected_only = problem->stalls = problem->shortened = 0;
-    if (!gxsp_linearise_all(problem))
+    if (*done == 0 && !gxsp_linearise_all(problem))
         return GX_ERROR_DIVERGED;
     for (;;) {
         problem->report.residual = gxsp_balance(problem);
@@ -6626,33 +6896,115 @@ static gx_result gxsp_newton(gxsp_problem *problem)
     }
 }
 
-/* Newton's method from target, which is close to the answer in all but violent motion. If the end is higher in E than base
- * is, or not a number, then from base: so E(u) <= E(base) always, and what a step can add to the energy is bounded. */
+/* E of every piece at current, and its limit: E at a displacement at which all were evaluated last, or, elastic set, of another one without
+ * the kinetic energy */
+static void gxsp_limit_energies(gxsp_system *system, const double *displacement, int elastic)
+{
+    size_t i;
+    uint32_t p;
+    for (p = 0; p < system->piece_count; ++p) {
+        gxsp_piece *piece = &system->pieces[p];
+        piece->limit = elastic ? piece->base_energy : piece->energies[0] + piece->energies[1];
+        piece->ended = piece->before[0] + piece->before[1];
+    }
+    for (i = 0; i < system->n; ++i) {
+        gxsp_piece *piece = gxsp_lead_of(system, i);
+        piece->limit -= gxsp_dot(system->load + 3 * i, displacement + 3 * i, 1);
+        piece->ended -= gxsp_dot(system->load + 3 * i, system->current + 3 * i, 1);
+    }
+}
+
+/* How many pieces have ended above their limit by more than rounding? risen says which. */
+static size_t gxsp_count_risen(gxsp_system *system)
+{
+    size_t count = 0;
+    uint32_t p;
+    for (p = 0; p < system->piece_count; ++p) {
+        gxsp_piece *piece = &system->pieces[p];
+        const double slack = 1e-12 * fabs(piece->limit) + GXSP_ROUNDING * piece->before[2];
+        piece->risen = piece->lead == p && gxsp_finite(piece->limit) && piece->ended > piece->limit + slack;
+        count += piece->risen != 0;
+    }
+    return count;
+}
+
+/* Where the pieces would be without a step, but for translations of loose ones: into trial */
+static void gxsp_stay(gxsp_problem *problem)
+{
+    gxsp_system *system = problem->system;
+    memcpy(system->trial, system->base, 3 * system->n * sizeof(double));
+    gxsp_balance_momentum(system, system->load, problem->rate, system->target, system->trial);
+}
+
+/* E at base, when the pieces' limits are those at trial, to which loose ones were translated: with the energy of that, for E is a parabola
+ * along it */
+static double gxsp_base_potential(const gxsp_problem *problem)
+{
+    const gxsp_system *system = problem->system;
+    double sum = 0;
+    uint32_t p;
+    for (p = 0; p < system->piece_count; ++p) {
+        const gxsp_piece *piece = &system->pieces[p];
+        sum += piece->lead == p ? piece->limit : 0;
+        if (piece->state == 0)
+            sum += 0.5 * piece->mass * gxsp_dot(piece->sum, piece->sum, 1) / problem->rate;
+    }
+    return sum;
+}
+
+/* Pieces whose E is above that at trial go on from there to where they are as far as it falls. Returns how many there were. */
+static size_t gxsp_bring_down(gxsp_problem *problem)
+{
+    gxsp_system *system = problem->system;
+    size_t i, k, count;
+    uint32_t p;
+    gxsp_evaluate(problem, system->trial, 0, system->force);
+    gxsp_limit_energies(system, system->trial, 0);
+    problem->base_potential = gxsp_base_potential(problem);
+    count = gxsp_count_risen(system);
+    if (count == 0)
+        return 0;
+    for (i = 0; i < system->n; ++i) {
+        const int risen = gxsp_lead_of(system, i)->risen;
+        for (k = 3 * i; k < 3 * i + 3; ++k) {
+            system->direction[k] = risen ? system->current[k] - system->trial[k] : 0;
+            system->current[k] = risen ? system->trial[k] : system->current[k];
+        }
+    }
+    for (p = 0; p < system->piece_count; ++p)
+        if (system->pieces[p].risen)
+            memcpy(system->pieces[p].before, system->pieces[p].energies, sizeof system->pieces->before);
+    if (!gxsp_line_search(problem))
+        (void)gxsp_update(problem);
+    return count;
+}
+
+/* Newton's method from target, which is close to the answer in all but violent motion. A piece that ends higher in E than it was at base,
+ * translated as its momentum says if it is loose, is brought down on the way from there, and Newton's method goes on with what is left of
+ * its iterations: so E(u) <= E(base) always, piece by piece, and what a step can add to the energy is bounded. */
 static gx_result gxsp_minimise(gxsp_problem *problem)
 {
     gxsp_system *system = problem->system;
     gx_result result = GX_ERROR_DIVERGED;
-    double found, limit, kept[3];
     if (system->active == 0) {
         memcpy(system->current, system->base, 3 * system->n * sizeof(double));
         problem->report.stop = GXS_STOP_ASLEEP;
         return GX_OK;
     }
+    gxsp_choose_leads(problem);
     if (gxsp_start(problem, system->target))
         result = gxsp_newton(problem);
-    found = result == GX_OK ? gxsp_energy(problem) : 0;
-    limit = -gxsp_dot(system->load, system->base, system->n);
-    if (result == GX_OK && system->base_known && problem->step->integrator != GXS_MIDPOINT && found <= system->base_energy + limit)
-        return result; /* lower even without the kinetic energy that staying at base would take */
-    memcpy(kept, problem->energies, sizeof kept);
-    gxsp_evaluate(problem, system->base, 0, system->force, problem->energies);
-    limit += problem->energies[0] + problem->energies[1];
-    problem->base_potential = limit;
-    if (!gxsp_finite(limit) || (result == GX_OK && found <= limit + 1e-12 * fabs(limit))) {
-        memcpy(problem->energies, kept, sizeof kept);
-        return result;
+    if (result != GX_OK) {
+        problem->report.newton_iterations = 0;
+        return gxsp_start(problem, system->base) ? gxsp_newton(problem) : GX_ERROR_DIVERGED;
     }
-    return gxsp_start(problem, system->base) ? gxsp_newton(problem) : GX_ERROR_DIVERGED;
+    gxsp_stay(problem);
+    gxsp_limit_energies(system, system->trial, 1);
+    if (system->base_known && problem->step->integrator != GXS_MIDPOINT && gxsp_count_risen(system) == 0)
+        return GX_OK; /* lower even without the kinetic energy that staying at base would take */
+    if (gxsp_bring_down(problem) > 0)
+        result = gxsp_newton(problem);
+    return result;
 }
 
 /* The midpoint rule goes on from current by as much as from base to current, to an energy of E there, as that of the start is E(base).
@@ -6663,10 +7015,9 @@ static void gxsp_bound_gain(gxsp_problem *problem)
 {
     gxsp_system *system = problem->system;
     const double low = gxsp_energy(problem) - problem->base_potential;
-    double kept[3], gain, share = 1;
+    double energies[3], gain, share = 1;
     size_t i, count = 3 * system->n;
     int trial;
-    memcpy(kept, problem->energies, sizeof kept);
     for (i = 0; i < count; ++i)
         system->direction[i] = system->current[i] - system->base[i];
     gxsp_balance_momentum(system, NULL, 1, NULL, system->direction);
@@ -6674,16 +7025,16 @@ static void gxsp_bound_gain(gxsp_problem *problem)
         double next; /* E is a parabola with its minimum at current */
         for (i = 0; i < count; ++i)
             system->trial[i] = 2 * system->current[i] - system->base[i] - (1 - share) * system->direction[i];
-        gxsp_evaluate(problem, system->trial, 0, system->force, problem->energies);
-        gain = problem->energies[0] + problem->energies[1] - gxsp_dot(system->load, system->trial, system->n) - problem->base_potential;
-        if (gxsp_finite(gain) && gain <= GXSP_GAIN * problem->energies[1] + 1e-12 * fabs(problem->base_potential))
+        gxsp_evaluate(problem, system->trial, 0, system->force);
+        gxsp_sum_energies(system, energies);
+        gain = energies[0] + energies[1] - gxsp_dot(system->load, system->trial, system->n) - problem->base_potential;
+        if (gxsp_finite(gain) && gain <= GXSP_GAIN * energies[1] + 1e-12 * fabs(problem->base_potential))
             break;
         next = gxsp_finite(gain) && low < 0 && gain > low ? share * sqrt(low / (low - gain)) : 0;
         share = next < 0.1 * share ? 0.1 * share : next;
     }
     for (i = 0; i < count; ++i)
         system->direction[i] *= trial < GXSP_GAIN_TRIALS ? 1 - share : 1;
-    memcpy(problem->energies, kept, sizeof kept);
 }
 
 /* Writes the state out, all of it or, if a number is not finite, none. */
@@ -6714,11 +7065,11 @@ static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double
     if (midpoint)
         memcpy(system->current, ends, count * sizeof(double));
     system->base_known = !midpoint && step->spring_count + step->point_count == 0;
-    system->base_energy = problem->energies[0];
     system->lasting->scene = problem->scene;
     for (i = 0; i < system->piece_count; ++i) {
         system->pieces[i].forces[0] = system->pieces[i].forces[1];
         system->pieces[i].sprung[0] = system->pieces[i].sprung[1];
+        system->pieces[i].base_energy = system->pieces[i].before[0];
     }
     gxsp_count_rest(problem, velocity);
     return GX_OK;

@@ -1440,6 +1440,201 @@ START_TEST(pieces_in_flight_keep_their_momentum)
 }
 END_TEST
 
+/* ---- pieces: what one of them gains is not another's to lose ---- */
+
+enum { PIECES = 3 };
+
+/* A large block, stretched, that falls; a small and a tiny one, of 1/5 and 1/25 of its edges, the last held or falling too, all
+ * of whose nodes are anywhere within two edges and move. first: PIECES + 1 indices of copies */
+static scene scene_of_pieces(uint64_t from, int held, size_t *first)
+{
+    static const double edges[PIECES] = {0.25, 0.05, 0.01};
+    size_t i;
+    int p;
+    scene s, other;
+    seed(from);
+    s = scene_block(4, 2, 2, edges[0], 0.1, 0);
+    first[0] = 0;
+    for (p = 1; p < PIECES; ++p) {
+        first[p] = s.model.copy_count;
+        other = scene_block(2, 1, 1, edges[p], 0.1, 0);
+        scene_add(&s, &other, 2.0 * p, 0, 0);
+    }
+    first[PIECES] = s.model.copy_count;
+    for (i = 0; i < 3 * first[1]; ++i) {
+        s.displacement[i] = s.rest[i];
+        s.velocity[i] = i % 3 == 2 ? -10 : 0;
+    }
+    for (p = 1; p < PIECES; ++p)
+        for (i = 3 * first[p]; i < 3 * first[p + 1]; ++i) {
+            s.held[i / 3] = held && p == PIECES - 1 && i / 3 < first[p] + 2;
+            s.displacement[i] = s.held[i / 3] ? 0 : 2 * edges[p] * uniform();
+            s.velocity[i] = s.held[i / 3] ? 0 : 100 * edges[p] * uniform() - (i % 3 == 2 ? 10 : 0);
+        }
+    return s;
+}
+
+/* x on copies first to end - 1, 0 elsewhere */
+static void part_of(const double *x, size_t first, size_t end, size_t n, double *part)
+{
+    memset(part, 0, 3 * n * sizeof *part);
+    memcpy(part + 3 * first, x + 3 * first, 3 * (end - first) * sizeof *part);
+}
+
+/* E(u) of the copies first to end - 1, a piece, that were at un with velocities vn */
+static double part_potential(const scene *s, const gxs_step_desc *step, size_t first, size_t end, const double *un, const double *vn,
+                             const double *u)
+{
+    const size_t n = s->model.copy_count;
+    double *part = (double *)zeroed(9 * n, sizeof *part), *way = part + 3 * n, *product = way + 3 * n, sum;
+    size_t i;
+    part_of(u, first, end, n, part);
+    ck_assert_int_eq(gxs_model_energy(&s->model, part, &sum), GX_OK);
+    for (i = 3 * first; i < 3 * end; ++i)
+        way[i] = u[i] - un[i] - step->dt * vn[i];
+    mass_times(s, way, product);
+    for (i = 3 * first; i < 3 * end; ++i)
+        sum += 0.5 * way[i] * product[i] / (step->dt * step->dt);
+    for (i = 3 * first; i < 3 * end; ++i)
+        way[i] = step->gravity[i % 3];
+    mass_times(s, way, product);
+    for (i = 3 * first; i < 3 * end; ++i)
+        sum -= product[i] * u[i];
+    free(part);
+    return sum;
+}
+
+/* Where the piece stays but, if it is loose, for falling on: u_n + t, t of its momentum and weight */
+static void part_stay(const scene *s, const gxs_step_desc *step, size_t first, size_t end, const double *un, const double *vn, double *u)
+{
+    const size_t n = s->model.copy_count;
+    double *ones = (double *)zeroed(6 * n, sizeof *ones), *lumped = ones + 3 * n, mass = 0, moved[3] = {0, 0, 0};
+    size_t i;
+    int loose = 1;
+    for (i = 3 * first; i < 3 * end; ++i)
+        ones[i] = 1;
+    mass_times(s, ones, lumped);
+    for (i = 3 * first; i < 3 * end; ++i) {
+        mass += lumped[i] / 3;
+        moved[i % 3] += lumped[i] * step->dt * vn[i];
+        loose &= !s->held[i / 3];
+    }
+    for (i = 3 * first; i < 3 * end; ++i)
+        u[i] = un[i] + (loose ? moved[i % 3] / mass + step->gravity[i % 3] * step->dt * step->dt : 0);
+    free(ones);
+}
+
+/* E of no piece ends above where it would be had the piece only fallen on, though others gain a million times what it may lose. */
+START_TEST(energy_falls_in_every_piece)
+{
+    gxs_solver *solver = solver_of(_i % SOLVERS);
+    const gxs_step_desc step = step_make(0.033, -9.81);
+    size_t first[PIECES + 1], n;
+    double *un, *vn, *stay;
+    int frame, p;
+    scene s = scene_of_pieces((uint64_t)_i, _i % 2, first);
+    n = s.model.copy_count;
+    s.model.lumped_mass = _i / SOLVERS % 2 != 0;
+    un = (double *)zeroed(9 * n, sizeof *un), vn = un + 3 * n, stay = vn + 3 * n;
+    ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
+    for (frame = 0; frame < 30; ++frame) {
+        memcpy(un, s.displacement, 3 * n * sizeof *un);
+        memcpy(vn, s.velocity, 3 * n * sizeof *vn);
+        ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+        for (p = 0; p < PIECES; ++p) {
+            double ends, stays;
+            part_stay(&s, &step, first[p], first[p + 1], un, vn, stay);
+            ends = part_potential(&s, &step, first[p], first[p + 1], un, vn, s.displacement);
+            stays = part_potential(&s, &step, first[p], first[p + 1], un, vn, stay);
+            assert_that(ends <= stays + 1e-9 * (fabs(stays) + fabs(ends)), "%s frame %d piece %d: %.17g above %.17g", solver_name(_i % SOLVERS),
+                        frame, p, ends, stays);
+        }
+    }
+    free(un);
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
+/* A step of pieces is a step of each by itself: none goes less far, or further, for another's sake. To 2 %: linear systems are solved to a
+ * share of the residual of all. */
+START_TEST(pieces_step_as_if_alone)
+{
+    gxs_solver *solver = solver_of(_i % 4);
+    gxs_step_desc step = step_make(0.033, -9.81);
+    size_t first[PIECES + 1], n, i;
+    double *start;
+    int p;
+    scene s = scene_of_pieces((uint64_t)(100 + _i), 1, first);
+    n = s.model.copy_count;
+    step.cg_tolerance = 1e-5;
+    start = (double *)zeroed(12 * n, sizeof *start);
+    memcpy(start, s.displacement, 3 * n * sizeof *start);
+    memcpy(start + 3 * n, s.velocity, 3 * n * sizeof *start);
+    ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+    for (p = 0; p < PIECES; ++p) {
+        double *u = start + 6 * n, *v = u + 3 * n, way = 0, off = 0;
+        uint8_t *held = (uint8_t *)zeroed(n, 1);
+        gxs_model alone = s.model;
+        memset(v, 0, 3 * n * sizeof *v);
+        memset(held, 1, n); /* the others stay at rest */
+        part_of(start, first[p], first[p + 1], n, u);
+        part_of(start + 3 * n, first[p], first[p + 1], n, v);
+        memcpy(held + first[p], s.held + first[p], first[p + 1] - first[p]);
+        alone.held = held;
+        ck_assert_int_eq(advance(solver, &alone, &step, u, v, NULL, NULL), GX_OK);
+        for (i = 3 * first[p]; i < 3 * first[p + 1]; ++i) {
+            way += (u[i] - start[i]) * (u[i] - start[i]);
+            off += (u[i] - s.displacement[i]) * (u[i] - s.displacement[i]);
+        }
+        assert_that(off <= 4e-4 * way, "%s piece %d: %g m off, having gone %g m", solver_name(_i % 4), p, sqrt(off), sqrt(way));
+        free(held);
+    }
+    free(start);
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
+/* Points that lie in several pieces join them: E is no sum over these any more, but falls in them together. */
+START_TEST(energy_falls_in_joined_pieces)
+{
+    gxs_solver *solver = solver_make();
+    size_t first[PIECES + 1], n;
+    uint32_t k;
+    double *u, energy = 0;
+    scene s = scene_of_pieces((uint64_t)(200 + _i), 0, first);
+    gxs_spring springs[2];
+    gxs_step_desc step = step_make(0.033, 0);
+    int p;
+    n = s.model.copy_count;
+    for (p = 0; p < 2; ++p) { /* the first to the last piece, and that to the second */
+        gxs_point point = point_at(&s, first[p] + 3);
+        point.copy[3] = (uint32_t)first[2] + 5;
+        point.weight[0] = point.weight[3] = 0.5;
+        springs[p] = spring_make(point, 1e6);
+        springs[p].target[0] += 0.5;
+    }
+    step.springs = springs;
+    step.spring_count = 2;
+    u = (double *)zeroed(6 * n, sizeof *u);
+    for (k = 1; k <= 15; ++k) {
+        gxs_step_report report;
+        memcpy(u, s.displacement, 3 * n * sizeof *u);
+        memset(u + 3 * n, 0, 3 * n * sizeof *u);
+        step.newton_iterations = k;
+        ck_assert_int_eq(advance(solver, &s.model, &step, u, u + 3 * n, &report, NULL), GX_OK);
+        assert_that(k == 1 || report.energy <= energy + 1e-12 * fabs(energy), "iterate %u: %.17g after %.17g", (unsigned)k, report.energy, energy);
+        energy = report.energy;
+        if (report.newton_iterations < k)
+            break;
+    }
+    free(u);
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
 /* ---- statics ---- */
 
 /* the balance of a hanging bar, of every material, is where damped motion ends */
@@ -2863,6 +3058,9 @@ static Suite *forces_suite(void)
     tcase_add_loop_test(contact, bounces_gain_no_energy, 0, 2 * SOLVERS);
     tcase_add_loop_test(contact, contact_by_callback_is_the_plane, 0, SOLVERS);
     tcase_add_loop_test(contact, pieces_in_flight_keep_their_momentum, 0, SOLVERS);
+    tcase_add_loop_test(contact, energy_falls_in_every_piece, 0, 4 * SOLVERS);
+    tcase_add_loop_test(contact, pieces_step_as_if_alone, 0, 16);
+    tcase_add_loop_test(contact, energy_falls_in_joined_pieces, 0, 10);
     ADD_SOME(statics, static_balance_is_the_end_of_motion, KINDS * SOLVERS);
     tcase_add_loop_test(statics, static_balance_reaches_through_ties, 0, 4);
     tcase_add_loop_test(statics, static_balance_needs_a_hold, 0, SOLVERS);

@@ -1110,7 +1110,8 @@ START_TEST(multigrid_iterations_do_not_grow)
 END_TEST
 
 /* A block that stretches far as it falls, held at a side (0), and one that spins (1): the matrices of a solver that has made all steps are
- * never so old that it takes a tenth more iterations than solvers that begin anew with each step, and without a guess. */
+ * never so old that it takes a tenth more iterations, and one a step, than solvers that begin anew with each step, and without a guess:
+ * new ones cost ten. */
 START_TEST(coarse_matrices_do_not_grow_old)
 {
     gxs_step_desc step = step_make(0.033, _i ? 0 : -9.81);
@@ -1146,7 +1147,7 @@ START_TEST(coarse_matrices_do_not_grow_old)
         gxs_solver_destroy(fresh);
         free(copy);
     }
-    assert_that(10 * kept <= 11 * anew, "%u iterations by old matrices, %u by new ones", (unsigned)kept, (unsigned)anew);
+    assert_that(10 * kept <= 11 * anew + 10 * 30, "%u iterations by old matrices, %u by new ones", (unsigned)kept, (unsigned)anew);
     gxs_solver_destroy(solver);
     scene_free(&s);
 }
