@@ -770,28 +770,29 @@ typedef struct gxsp_level {
     gxsp_vector4 *x, *b, *r;/* n: solution, right-hand side, residual; borrowed on level 0 */
 } gxsp_level;
 
-/* Edges: pairs of a chunk's nodes, i <= j, that share an element; a node is an edge to itself, and these come first. */
+/* Edges: pairs of a chunk's nodes, i < j, that share an element; numbered from 1. */
 typedef struct gxsp_edges {
     uint16_t *table;        /* nodes x nodes: the edge of two nodes i < j if ends says so, else without meaning: it is never cleared */
     uint32_t *ends;         /* i << 16 | j */
     float (*block)[9];      /* i's row and j's column of the Hessian, by columns */
-    uint32_t nodes, count;
-    uint32_t *start;        /* nodes + 2: adjacency, by node into other and edge */
-    uint16_t *other, *edge;
+    uint16_t *first, *next; /* the edges to higher nodes as a list: first by node, next by edge; 0: there is none */
+    uint32_t nodes, count;  /* count: with edge 0, which takes what is not wanted */
+    float (*own)[9];        /* by node: what its edges leave for its own block, see gxsp_half_row */
     uint16_t (*parent)[4];  /* by node: numbers of its parents, see gxsp_pairs */
-    float (*half)[9];       /* by number: a node's row of the Hessian times the transfer */
+    float (*half)[9];       /* by number: a node's row of half the Hessian times the transfer; 0 but for the row at work */
     uint16_t *touched;      /* numbers of those that are not 0 */
 } gxsp_edges;
 
-/* Pairs of coarse nodes that the nodes of one chunk follow, numbered in the chunk: where their entry of level 1's matrix is */
+/* Pairs of coarse nodes that the nodes of one chunk follow, numbered in the chunk from 1: where their entry of level 1's matrix is. Number 0
+ * is where a node has no parent. */
 typedef struct gxsp_pairs {
-    uint32_t *entry;    /* count x count, if that is GXSP_CHUNK_PARENTS at most; GXSP_NONE: not known yet */
+    uint32_t *entry;    /* count x count, if that is GXSP_CHUNK_PARENTS at most: 2 x the entry, + 1 where it is that of the pair turned */
     uint32_t *local;    /* by coarse node: its number in the chunk; of use as scratch elsewhere */
     uint32_t *node;     /* by number: the coarse node */
     uint32_t *seen;     /* by number: the chunk's node, plus 1, that has last touched it */
     uint32_t *stamp;    /* by coarse node: the round in which it was numbered */
     uint32_t round;     /* one for each visit of a chunk */
-    uint32_t count;     /* coarse nodes numbered in this round */
+    uint32_t count;     /* numbers given in this round, with 0 */
     float (*half)[9];   /* by node of the first level whose matrix is another level's: a row of that one times its transfer */
 } gxsp_pairs;
 
@@ -3031,35 +3032,36 @@ static void gxsp_edges_make(gxsp_system *system)
         nodes = system->chunks[c].node_count > nodes ? system->chunks[c].node_count : nodes;
     }
     edges->table = (uint16_t *)gxsp_take(&system->coarse, nodes * nodes, sizeof(uint16_t));
-    edges->ends = (uint32_t *)gxsp_take(&system->coarse, nodes + 6 * lanes, sizeof(uint32_t));
-    edges->block = (float(*)[9])gxsp_take(&system->coarse, nodes + 6 * lanes, sizeof *edges->block);
-    edges->start = (uint32_t *)gxsp_take(&system->coarse, nodes + 2, sizeof(uint32_t));
-    edges->other = (uint16_t *)gxsp_take(&system->coarse, nodes + 12 * lanes, sizeof(uint16_t));
-    edges->edge = (uint16_t *)gxsp_take(&system->coarse, nodes + 12 * lanes, sizeof(uint16_t));
+    edges->ends = (uint32_t *)gxsp_take(&system->coarse, 1 + 6 * lanes, sizeof(uint32_t));
+    edges->block = (float(*)[9])gxsp_take(&system->coarse, 1 + 6 * lanes, sizeof *edges->block);
+    edges->first = (uint16_t *)gxsp_take(&system->coarse, nodes, sizeof(uint16_t));
+    edges->next = (uint16_t *)gxsp_take(&system->coarse, 1 + 6 * lanes, sizeof(uint16_t));
+    edges->own = (float(*)[9])gxsp_take(&system->coarse, nodes, sizeof *edges->own);
     edges->parent = (uint16_t(*)[4])gxsp_take(&system->coarse, nodes, sizeof *edges->parent);
-    edges->half = (float(*)[9])gxsp_take(&system->coarse, 4 * nodes, sizeof *edges->half);
-    edges->touched = (uint16_t *)gxsp_take(&system->coarse, 4 * nodes, sizeof(uint16_t));
+    edges->half = (float(*)[9])gxsp_take(&system->coarse, 1 + 4 * nodes, sizeof *edges->half);
+    edges->touched = (uint16_t *)gxsp_take(&system->coarse, 1 + 4 * nodes, sizeof(uint16_t));
 }
 
 static void gxsp_edges_begin(gxsp_edges *edges, const gxsp_chunk *chunk)
 {
-    uint32_t i;
-    for (i = 0; i < chunk->node_count; ++i)
-        edges->ends[i] = i << 16 | i;
-    edges->nodes = edges->count = chunk->node_count;
+    edges->nodes = chunk->node_count;
+    edges->count = 1;
+    memset(edges->first, 0, edges->nodes * sizeof *edges->first);
 }
 
-/* The edge of two nodes, made where there is none */
+/* The edge of two nodes, made where there is none; 0 of a node and itself */
 static uint32_t gxsp_find_edge(gxsp_edges *edges, uint32_t i, uint32_t j)
 {
-    const uint32_t low = i < j ? i : j, high = i < j ? j : i;
+    const uint32_t low = i < j ? i : j, high = i < j ? j : i, count = edges->count;
     uint16_t *at = &edges->table[low * edges->nodes + high];
     if (low == high)
-        return low;
-    if (*at < edges->count && edges->ends[*at] == (low << 16 | high))
+        return 0;
+    if (*at < count && edges->ends[*at] == (low << 16 | high))
         return *at;
-    edges->ends[edges->count] = low << 16 | high;
-    *at = (uint16_t)edges->count;
+    edges->ends[count] = low << 16 | high;
+    memset(edges->block[count], 0, sizeof *edges->block);
+    edges->next[count] = edges->first[low];
+    edges->first[low] = *at = (uint16_t)count;
     return edges->count++;
 }
 
@@ -3079,39 +3081,17 @@ static void gxsp_list_edges(gxsp_system *system, const gxsp_chunk *chunk)
         }
 }
 
-/* Edges by node, from both ends */
-static void gxsp_edges_adjacency(gxsp_edges *edges)
-{
-    uint32_t e, i;
-    memset(edges->start, 0, (edges->nodes + 2) * sizeof *edges->start);
-    for (e = 0; e < edges->count; ++e) {
-        ++edges->start[(edges->ends[e] >> 16) + 2];
-        if (e >= edges->nodes)
-            ++edges->start[(edges->ends[e] & 0xffff) + 2];
-    }
-    for (i = 0; i < edges->nodes; ++i)
-        edges->start[i + 2] += edges->start[i + 1];
-    for (e = 0; e < edges->count; ++e) {
-        const uint32_t low = edges->ends[e] >> 16, high = edges->ends[e] & 0xffff;
-        edges->other[edges->start[low + 1]] = (uint16_t)high;
-        edges->edge[edges->start[low + 1]++] = (uint16_t)e;
-        if (low == high)
-            continue;
-        edges->other[edges->start[high + 1]] = (uint16_t)low;
-        edges->edge[edges->start[high + 1]++] = (uint16_t)e;
-    }
-}
-
-/* Numbers the coarse nodes that a chunk's nodes follow, and clears the table of their pairs. */
+/* Numbers the coarse nodes that a chunk's nodes follow. */
 static void gxsp_pairs_begin(gxsp_system *system, const gxsp_chunk *chunk)
 {
     gxsp_pairs *pairs = &system->pairs;
     uint32_t i, k;
     ++pairs->round;
-    pairs->count = 0;
+    pairs->count = 1;
     for (i = 0; i < chunk->node_count; ++i)
         for (k = 0; k < 4; ++k) {
             const uint32_t parent = system->levels[0].parent[system->nodes[chunk->first_node + i]][k];
+            system->edges.parent[i][k] = 0;
             if (parent == GXSP_NONE)
                 continue;
             if (pairs->stamp[parent] != pairs->round) {
@@ -3122,14 +3102,6 @@ static void gxsp_pairs_begin(gxsp_system *system, const gxsp_chunk *chunk)
             system->edges.parent[i][k] = (uint16_t)pairs->local[parent];
         }
     memset(pairs->seen, 0, pairs->count * sizeof *pairs->seen);
-    if (pairs->count <= GXSP_CHUNK_PARENTS)
-        memset(pairs->entry, 0xff, (size_t)pairs->count * pairs->count * sizeof(uint32_t));
-}
-
-/* The table's place for a pair of numbers; NULL where there are too many for a table. */
-static uint32_t *gxsp_pairs_find(gxsp_pairs *pairs, uint32_t i, uint32_t j)
-{
-    return pairs->count <= GXSP_CHUNK_PARENTS ? &pairs->entry[i * pairs->count + j] : NULL;
 }
 
 static void gxsp_pairs_make(gxsp_system *system)
@@ -3137,8 +3109,8 @@ static void gxsp_pairs_make(gxsp_system *system)
     system->pairs.entry = (uint32_t *)gxsp_take(&system->coarse, GXSP_CHUNK_PARENTS * GXSP_CHUNK_PARENTS, sizeof(uint32_t));
     system->pairs.local = (uint32_t *)gxsp_take(&system->coarse, system->levels[1].n, sizeof(uint32_t));
     system->pairs.stamp = (uint32_t *)gxsp_take(&system->coarse, system->levels[1].n, sizeof(uint32_t));
-    system->pairs.node = (uint32_t *)gxsp_take(&system->coarse, system->levels[1].n, sizeof(uint32_t));
-    system->pairs.seen = (uint32_t *)gxsp_take(&system->coarse, system->levels[1].n, sizeof(uint32_t));
+    system->pairs.node = (uint32_t *)gxsp_take(&system->coarse, (size_t)system->levels[1].n + 1, sizeof(uint32_t));
+    system->pairs.seen = (uint32_t *)gxsp_take(&system->coarse, (size_t)system->levels[1].n + 1, sizeof(uint32_t));
     system->pairs.round = 0;
 }
 
@@ -3234,7 +3206,7 @@ static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gx
     list.scratch = scratch;
     for (c = 0; c < system->chunk_count; ++c)
         nodes = system->chunks[c].node_count > nodes ? system->chunks[c].node_count : nodes;
-    memory = (uint64_t *)gxsp_take(scratch, 6 * (size_t)nodes * (nodes / 16 + 1), sizeof(uint64_t)); /* four parents to a node */
+    memory = (uint64_t *)gxsp_take(scratch, (6 * (size_t)nodes + 1) * (nodes / 16 + 1), sizeof(uint64_t)); /* four parents to a node */
     if (scratch->failed)
         return;
     for (i = 0; i < system->levels[1].n; ++i)
@@ -3382,7 +3354,7 @@ static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (
     for (c = 0; c < system->chunk_count; ++c) {
         const uint32_t *copies = system->nodes + system->chunks[c].first_node;
         gxsp_list_edges(system, &system->chunks[c]);
-        for (e = system->edges.nodes; e < system->edges.count; ++e)
+        for (e = 1; e < system->edges.count; ++e)
             gxsp_join_nodes(&transfer, copies[system->edges.ends[e] >> 16], copies[system->edges.ends[e] & 0xffff]);
     }
     for (e = 0; e < 4 * system->follower_count; ++e)
@@ -3690,6 +3662,34 @@ static inline void gxsp_scatter_four(const uint16_t *node, const float *from0, c
     *(gxsp_four *)y[node[2]] += __builtin_shufflevector(high, r, 0, 1, 6, 6);
     *(gxsp_four *)y[node[3]] += __builtin_shufflevector(high, r, 2, 3, 7, 7);
 }
+
+static inline void gxsp_turn_four(const float *a, const float *b, const float *c, const float *d, gxsp_four *turned)
+{
+    const gxsp_four p = *(const gxsp_four *)a, q = *(const gxsp_four *)b, r = *(const gxsp_four *)c, s = *(const gxsp_four *)d;
+    const gxsp_four low = __builtin_shufflevector(p, q, 0, 4, 1, 5), high = __builtin_shufflevector(p, q, 2, 6, 3, 7);
+    const gxsp_four next = __builtin_shufflevector(r, s, 0, 4, 1, 5), last = __builtin_shufflevector(r, s, 2, 6, 3, 7);
+    turned[0] = __builtin_shufflevector(low, next, 0, 1, 4, 5);
+    turned[1] = __builtin_shufflevector(low, next, 2, 3, 6, 7);
+    turned[2] = __builtin_shufflevector(high, last, 0, 1, 4, 5);
+    turned[3] = __builtin_shufflevector(high, last, 2, 3, 6, 7);
+}
+
+/* Each lane's nine numbers to those of its entry */
+static inline void gxsp_add_lanes(const uint16_t *entry, gxsp_singles *block, float (*to)[9])
+{
+    int l, k;
+    for (l = 0; l < GXSP_LANES; l += 4) {
+        gxsp_four first[4], second[4];
+        gxsp_turn_four(block[0] + l, block[1] + l, block[2] + l, block[3] + l, first);
+        gxsp_turn_four(block[4] + l, block[5] + l, block[6] + l, block[7] + l, second);
+        for (k = 0; k < 4; ++k) {
+            float *at = to[entry[l + k]];
+            *(gxsp_four *)at += first[k];
+            *(gxsp_four *)(at + 4) += second[k];
+            at[8] += block[8][l + k];
+        }
+    }
+}
 #else
 static void gxsp_gather_eight(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2)
 {
@@ -3703,6 +3703,14 @@ static void gxsp_scatter_four(const uint16_t *node, const float *from0, const fl
     int l;
     for (l = 0; l < 4; ++l)
         y[node[l]][0] += from0[l], y[node[l]][1] += from1[l], y[node[l]][2] += from2[l];
+}
+
+static void gxsp_add_lanes(const uint16_t *entry, gxsp_singles *block, float (*to)[9])
+{
+    int l, k;
+    for (l = 0; l < GXSP_LANES; ++l)
+        for (k = 0; k < 9; ++k)
+            to[entry[l]][k] += block[k][l];
 }
 #endif
 
@@ -4158,103 +4166,155 @@ static void gxsp_multigrid(gxsp_system *system, double rate)
 
 /* --- numbers of the coarse levels --- */
 
-/* Blocks of a chunk's edges: the Hessian of its elements, of i's row and j's column, with their mass */
-static void gxsp_edge_blocks(gxsp_system *system, const gxsp_chunk *chunk, double rate)
+/* Mass between corners of a block, kg/s2. pair: in the order of gxs_element.mass */
+static void gxsp_block_mass(const gxsp_tangent *tangent, const gxsp_mass *general, double rate, int pair, float *mass)
 {
-    gxsp_edges *edges = &system->edges;
-    uint32_t b, k, known;
-    int pair, l;
-    gxsp_edges_begin(edges, chunk);
-    memset(edges->block, 0, chunk->node_count * sizeof *edges->block);
-    for (b = 0; b < chunk->block_count; ++b) {
-        const gxsp_rest *rest = &chunk->rest[b];
-        const gxsp_corners *corner = &chunk->corners[b];
-        const gxsp_tangent *tangent = &chunk->tangents[b];
-        const gxsp_mass *general = gxsp_block_masses(chunk, b);
-        gxsp_singles gamma[4][3];
-        for (k = 0; k < 4; ++k)
-            gxsp_block_corner(tangent, (int)k, gamma[k]);
-        for (pair = 0; pair < 10; ++pair) {
-            const int p = gxsp_pair_corners[pair][0], q = gxsp_pair_corners[pair][1];
-            gxsp_singles block[9];
-            gxsp_block_couple(tangent, gxsp_block_general(chunk, b), gamma[p], gamma[q], block);
-            for (l = 0; l < GXSP_LANES; ++l) {
-                const uint16_t i = corner->node[p][l], j = corner->node[q][l];
-                const float mass = tangent->mass[l] * (p == q ? 2.0f : 1.0f) + (general ? (float)(rate * general->entry[pair][l]) : 0);
-                if (!(rest->weight[l] > 0))
-                    continue;
-                known = edges->count;
-                k = gxsp_find_edge(edges, i, j);
-                if (k == known)
-                    memset(edges->block[k], 0, sizeof edges->block[k]);
-                gxsp_add_lane(block, l, i > j, mass, edges->block[k]);
-                if (i == j && p != q) /* two corners that follow one copy */
-                    gxsp_add_lane(block, l, 1, mass, edges->block[k]);
-            }
-        }
+    int l;
+    GXSP_EACH_LANE(l) mass[l] = tangent->mass[l] + (general ? (float)(rate * general->entry[pair][l]) : 0);
+}
+
+/* A block by rows, with its mass, to one by columns: that of the lower node's row, where corners p and q have the nodes */
+static void gxsp_order_block(const uint16_t *GXSP_RESTRICT p, const uint16_t *GXSP_RESTRICT q, const float *GXSP_RESTRICT mass,
+                             gxsp_singles *GXSP_RESTRICT block)
+{
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float b1 = block[1][l], b2 = block[2][l], b3 = block[3][l], b5 = block[5][l], b6 = block[6][l], b7 = block[7][l];
+        const int turned = p[l] > q[l];
+        block[0][l] += mass[l], block[4][l] += mass[l], block[8][l] += mass[l];
+        block[1][l] = turned ? b1 : b3, block[3][l] = turned ? b3 : b1;
+        block[2][l] = turned ? b2 : b6, block[6][l] = turned ? b6 : b2;
+        block[5][l] = turned ? b5 : b7, block[7][l] = turned ? b7 : b5;
     }
 }
 
-static float *gxsp_pair_block(gxsp_pairs *pairs, gxsp_level *next, uint32_t row, uint32_t column, uint32_t i, uint32_t j)
+/* Half the row sums of a block's masses to its nodes' own blocks */
+static void gxsp_own_mass(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_t b, double rate)
 {
-    uint32_t *found = gxsp_pairs_find(pairs, i, j);
-    if (!found)
-        return next->block + 9 * (size_t)gxsp_find_entry(next, row, column);
-    if (*found == GXSP_NONE)
-        *found = gxsp_find_entry(next, row, column);
-    return next->block + 9 * (size_t)*found;
+    static const int packed[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
+    const gxsp_mass *general = gxsp_block_masses(chunk, b);
+    int k, l;
+    for (k = 0; k < 4; ++k)
+        for (l = 0; l < GXSP_LANES; ++l) {
+            double sum = 5 * (double)chunk->tangents[b].mass[l];
+            if (general)
+                sum += rate * (general->entry[packed[k][0]][l] + general->entry[packed[k][1]][l] + general->entry[packed[k][2]][l] +
+                               general->entry[packed[k][3]][l]);
+            if (chunk->rest[b].weight[l] > 0)
+                gxsp_add_mass((float)(0.5 * sum), edges->own[chunk->corners[b].node[k][l]]);
+        }
 }
 
-/* A node's row of the Hessian times the transfer, in edges->half by number; only the columns of dirty nodes, unless dirty is NULL.
- * Returns how many are touched. */
-static uint32_t gxsp_half_row(gxsp_system *system, const uint32_t *copies, uint32_t i, const uint8_t *dirty)
+/* Blocks of a chunk's edges: the Hessian of its elements, of i's row and j's column, with their mass; and the nodes' mass */
+static void gxsp_edge_blocks(gxsp_system *system, const gxsp_chunk *chunk, double rate)
 {
-    const gxsp_level *fine = &system->levels[0];
     gxsp_edges *edges = &system->edges;
-    uint32_t k, q, count = 0;
-    int m;
-    for (k = edges->start[i]; k < edges->start[i + 1]; ++k) {
-        const uint32_t other = edges->other[k], copy = copies[other];
-        const float *block = edges->block[edges->edge[k]];
-        float turned[9];
-        if (other < i) {
-            gxsp_transpose_block(block, turned);
-            block = turned;
-        }
-        for (q = 0; q < 4; ++q) {
-            const uint16_t number = edges->parent[other][q];
-            if (fine->parent[copy][q] == GXSP_NONE || (dirty && !dirty[fine->parent[copy][q]]))
+    uint32_t b;
+    int pair, k, l;
+    gxsp_edges_begin(edges, chunk);
+    memset(edges->own, 0, chunk->node_count * sizeof *edges->own);
+    for (b = 0; b < chunk->block_count; ++b) {
+        const gxsp_corners *corner = &chunk->corners[b];
+        const gxsp_tangent *tangent = &chunk->tangents[b];
+        gxsp_singles gamma[4][3];
+        for (k = 0; k < 4; ++k)
+            gxsp_block_corner(tangent, k, gamma[k]);
+        for (pair = 0; pair < 10; ++pair) {
+            const int p = gxsp_pair_corners[pair][0], q = gxsp_pair_corners[pair][1];
+            gxsp_singles block[9], mass;
+            uint16_t edge[GXSP_LANES];
+            if (p == q)
                 continue;
-            if (system->pairs.seen[number] == i + 1)
-                gxsp_add_scaled(fine->weight[copy][q], block, edges->half[number]);
-            else {
-                system->pairs.seen[number] = i + 1;
-                edges->touched[count++] = number;
-                for (m = 0; m < 9; ++m)
-                    edges->half[number][m] = fine->weight[copy][q] * block[m];
-            }
+            for (l = 0; l < GXSP_LANES; ++l)
+                edge[l] = chunk->rest[b].weight[l] > 0 ? (uint16_t)gxsp_find_edge(edges, corner->node[p][l], corner->node[q][l]) : 0;
+            gxsp_block_couple(tangent, gxsp_block_general(chunk, b), gamma[p], gamma[q], block);
+            gxsp_block_mass(tangent, gxsp_block_masses(chunk, b), rate, pair, mass);
+            gxsp_order_block(corner->node[p], corner->node[q], mass, block);
+            gxsp_add_lanes(edge, block, edges->block);
         }
+        gxsp_own_mass(edges, chunk, b, rate);
+    }
+}
+
+/* Entries of level 1's matrix for the pairs of a chunk's coarse nodes */
+static void gxsp_pairs_find(gxsp_pairs *pairs, const gxsp_level *next)
+{
+    const uint32_t count = pairs->count;
+    uint32_t i, k;
+    for (i = 1; i < count && count <= GXSP_CHUNK_PARENTS; ++i)
+        for (k = next->start[pairs->node[i]]; k < next->start[pairs->node[i] + 1]; ++k)
+            if (pairs->stamp[next->column[k]] == pairs->round) {
+                const uint32_t j = pairs->local[next->column[k]];
+                pairs->entry[j * count + i] = 2 * k + 1;
+                pairs->entry[i * count + j] = 2 * k;
+            }
+}
+
+/* The entry of one pair: see gxsp_pairs */
+static uint32_t gxsp_pair_entry(const gxsp_pairs *pairs, const gxsp_level *next, uint32_t i, uint32_t j)
+{
+    const uint32_t row = pairs->node[i], column = pairs->node[j];
+    if (pairs->count <= GXSP_CHUNK_PARENTS)
+        return pairs->entry[i * pairs->count + j];
+    return row <= column ? 2 * gxsp_find_entry(next, row, column) : 2 * gxsp_find_entry(next, column, row) + 1;
+}
+
+/* A block of node i's row and another's column, times the transfer, to edges->half. Returns how many numbers are touched, of which count
+ * were. */
+static inline uint32_t gxsp_add_half(const gxsp_system *system, uint32_t i, uint32_t other, const float *weight, const float *block, uint32_t count)
+{
+    const gxsp_edges *edges = &system->edges;
+    uint32_t *seen = system->pairs.seen;
+    int q;
+    for (q = 0; q < 4; ++q) {
+        const uint16_t number = edges->parent[other][q];
+        edges->touched[count] = number;
+        count += seen[number] != i + 1;
+        seen[number] = i + 1;
+        gxsp_add_scaled(weight[q], block, edges->half[number]);
     }
     return count;
 }
 
-/* A node's part of level 1's matrix on and above the diagonal; dirty: of entries in rows or columns of dirty nodes only */
-static void gxsp_coarse_node(gxsp_system *system, const uint32_t *copies, uint32_t i, const uint8_t *dirty)
+/* Node i's row of S, where the Hessian is S + S^T, times the transfer, in edges->half by number; S has the edges to higher nodes and half
+ * of what is on the diagonal. Rows of stiffness add up to 0, so that this half is half the mass less half of all the node's edges, turned
+ * or not. Returns how many numbers are touched. */
+static uint32_t gxsp_half_row(gxsp_system *system, const uint32_t *copies, uint32_t i)
 {
     const gxsp_level *fine = &system->levels[0];
+    gxsp_edges *edges = &system->edges;
+    uint32_t e, count = 0;
+    system->pairs.seen[0] = i + 1;
+    for (e = edges->first[i]; e != 0; e = edges->next[e]) {
+        const uint32_t other = edges->ends[e] & 0xffff;
+        gxsp_add_scaled(-0.5f, edges->block[e], edges->own[i]);
+        gxsp_add_scaled(-0.5f, edges->block[e], edges->own[other]);
+        count = gxsp_add_half(system, i, other, fine->weight[copies[other]], edges->block[e], count);
+    }
+    return gxsp_add_half(system, i, i, fine->weight[copies[i]], edges->own[i], count);
+}
+
+/* A node's part of level 1's matrix; of a coarse node's own entry half, to which its turned half is missing. dirty: of entries in rows or
+ * columns of dirty nodes only */
+static void gxsp_coarse_node(gxsp_system *system, const uint32_t *copies, uint32_t i, const uint8_t *dirty)
+{
+    const float *weight = system->levels[0].weight[copies[i]];
     const gxsp_pairs *pairs = &system->pairs;
-    uint32_t count, p, t;
-    int any = 0;
-    for (p = 0; p < 4 && dirty; ++p)
-        any |= fine->parent[copies[i]][p] != GXSP_NONE && dirty[fine->parent[copies[i]][p]];
-    count = gxsp_half_row(system, copies, i, any ? NULL : dirty);
-    for (p = 0; p < 4; ++p) {
-        const uint32_t row = fine->parent[copies[i]][p], number = system->edges.parent[i][p];
-        for (t = 0; t < count && row != GXSP_NONE; ++t) {
-            const uint32_t other = system->edges.touched[t];
-            if (row <= pairs->node[other] && (!dirty || dirty[row] || dirty[pairs->node[other]]))
-                gxsp_add_scaled(fine->weight[copies[i]][p], system->edges.half[other],
-                                gxsp_pair_block(&system->pairs, &system->levels[1], row, pairs->node[other], number, other));
+    gxsp_level *next = &system->levels[1];
+    const uint32_t count = gxsp_half_row(system, copies, i);
+    uint32_t p, t;
+    for (t = 0; t < count; ++t) {
+        const uint32_t other = system->edges.touched[t];
+        float both[2][9];
+        memcpy(both[0], system->edges.half[other], sizeof both[0]);
+        gxsp_transpose_block(both[0], both[1]);
+        memset(system->edges.half[other], 0, sizeof both[0]);
+        for (p = 0; p < 4; ++p) {
+            const uint32_t number = system->edges.parent[i][p];
+            if (number > 0 && (!dirty || dirty[pairs->node[number]] || dirty[pairs->node[other]])) {
+                const uint32_t entry = gxsp_pair_entry(pairs, next, number, other);
+                gxsp_add_scaled(weight[p], both[entry & 1], next->block + 9 * (size_t)(entry >> 1));
+            }
         }
     }
 }
@@ -4262,17 +4322,24 @@ static void gxsp_coarse_node(gxsp_system *system, const uint32_t *copies, uint32
 /* Level 1's matrix from the last linearisation. dirty: only the rows and columns of dirty nodes, whose blocks are 0; NULL: all */
 static void gxsp_coarse_elements(gxsp_system *system, double rate, const uint8_t *dirty)
 {
+    gxsp_level *next = &system->levels[1];
     uint32_t c, i;
     for (c = 0; c < system->chunk_count; ++c) {
         const gxsp_chunk *chunk = &system->chunks[c];
         if (dirty && !gxsp_follows_dirty(system, chunk, dirty))
             continue;
         gxsp_edge_blocks(system, chunk, rate);
-        gxsp_edges_adjacency(&system->edges);
         gxsp_pairs_begin(system, chunk);
+        gxsp_pairs_find(&system->pairs, next);
         for (i = 0; i < chunk->node_count; ++i)
             gxsp_coarse_node(system, system->nodes + chunk->first_node, i, dirty);
     }
+    for (i = 0; i < next->n; ++i)
+        if (!dirty || dirty[i]) {
+            float *own = next->block + 9 * (size_t)next->start[i], turned[9];
+            gxsp_transpose_block(own, turned);
+            gxsp_add_scaled(1, turned, own);
+        }
 }
 
 /* Inverse of a symmetric block, packed; 0 where single precision makes nothing of it. 0 if a number overflowed. */
@@ -5233,7 +5300,7 @@ static void gxsp_join_dirty(gxsp_renewal *update, uint32_t *forest)
         if (!gxsp_follows_dirty(system, &system->chunks[c], update->dirty))
             continue;
         gxsp_list_edges(system, &system->chunks[c]);
-        for (e = system->edges.nodes; e < system->edges.count; ++e) {
+        for (e = 1; e < system->edges.count; ++e) {
             const uint32_t i = copies[system->edges.ends[e] >> 16], j = copies[system->edges.ends[e] & 0xffff];
             for (p = 0; p < 4; ++p)
                 for (q = 0; q < 4 && fine->parent[i][p] != GXSP_NONE && update->dirty[fine->parent[i][p]]; ++q)
