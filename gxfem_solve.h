@@ -483,10 +483,10 @@ extern "C" {
 
 /* Coarse matrices cost as much as so many iterations. The first of a model serve for GXSP_LIFE iterations before new ones show what age
  * has cost; where that is less than GXSP_AGEING of what there is, the next trial comes GXSP_PATIENCE times as late. */
-#define GXSP_REMAKE 10
+#define GXSP_REMAKE 5
 #define GXSP_LIFE 40
-#define GXSP_AGEING 0.5
-#define GXSP_PATIENCE 4
+#define GXSP_AGEING 0.2
+#define GXSP_PATIENCE 2
 
 /* How fast conjugate gradients are is read from so many iterations, of several solves if need be. */
 #define GXSP_READING 10
@@ -542,6 +542,17 @@ extern "C" {
 #endif
 #define GXSP_EACH_LANE(l) GXSP_EACH(l, GXSP_LANES)
 #define GXSP_EACH_OF_TWO(l) GXSP_EACH(l, 2 * GXSP_LANES)
+
+/* Vectors for what compilers do not make of loops: shuffles of nodes' vectors and blocks, many sums at a time. Shuffles of vectors longer than
+ * there are they make number by number, hence eight only where there are eight. */
+#if defined(__GNUC__) && (defined(__clang__) || __GNUC__ >= 12)
+#define GXSP_SHUFFLES
+typedef __attribute__((vector_size(16), aligned(4), may_alias)) float gxsp_four;
+typedef __attribute__((vector_size(32), aligned(8), may_alias)) double gxsp_four_doubles;
+#if defined(__AVX__)
+typedef __attribute__((vector_size(32), aligned(4), may_alias)) float gxsp_eight;
+#endif
+#endif
 
 /* one number per element of a block */
 typedef double gxsp_lanes[GXSP_LANES];
@@ -781,28 +792,32 @@ typedef struct gxsp_level {
     gxsp_vector4 *x, *b, *r;/* n: solution, right-hand side, residual; borrowed on level 0 */
 } gxsp_level;
 
-/* Edges: pairs of a chunk's nodes, i <= j, that share an element; a node is an edge to itself, and these come first. */
+/* Edges: pairs of a chunk's nodes, i < j, that share an element; numbered from 1. */
 typedef struct gxsp_edges {
     uint16_t *table;        /* nodes x nodes: the edge of two nodes i < j if ends says so, else without meaning: it is never cleared */
     uint32_t *ends;         /* i << 16 | j */
     float (*block)[9];      /* i's row and j's column of the Hessian, by columns */
-    uint32_t nodes, count;
-    uint32_t *start;        /* nodes + 2: adjacency, by node into other and edge */
-    uint16_t *other, *edge;
+    uint16_t *first, *next; /* the edges to higher nodes as a list: first by node, next by edge; 0: there is none */
+    uint8_t *joined;        /* by node: it has an edge */
+    uint32_t nodes, count;  /* count: with edge 0, which takes what is not wanted */
+    uint16_t (*element)[6][GXSP_LANES]; /* by block: edges of its elements */
+    float (*own)[9];        /* by node: what its edges leave for its own block, see gxsp_half_row */
+    float *mass;            /* by node: half the row sum of the mass, scaled, kg/s2 */
     uint16_t (*parent)[4];  /* by node: numbers of its parents, see gxsp_pairs */
-    float (*half)[9];       /* by number: a node's row of the Hessian times the transfer */
+    float (*half)[9];       /* by number: a node's row of half the Hessian times the transfer; 0 but for the row at work */
     uint16_t *touched;      /* numbers of those that are not 0 */
 } gxsp_edges;
 
-/* Pairs of coarse nodes that the nodes of one chunk follow, numbered in the chunk: where their entry of level 1's matrix is */
+/* Pairs of coarse nodes that the nodes of one chunk follow, numbered in the chunk from 1: where their entry of level 1's matrix is. Number 0
+ * is where a node has no parent. */
 typedef struct gxsp_pairs {
-    uint32_t *entry;    /* count x count, if that is GXSP_CHUNK_PARENTS at most; GXSP_NONE: not known yet */
+    uint32_t *entry;    /* count x count, if that is GXSP_CHUNK_PARENTS at most: 2 x the entry, + 1 where it is that of the pair turned */
     uint32_t *local;    /* by coarse node: its number in the chunk; of use as scratch elsewhere */
     uint32_t *node;     /* by number: the coarse node */
     uint32_t *seen;     /* by number: the chunk's node, plus 1, that has last touched it */
     uint32_t *stamp;    /* by coarse node: the round in which it was numbered */
     uint32_t round;     /* one for each visit of a chunk */
-    uint32_t count;     /* coarse nodes numbered in this round */
+    uint32_t count;     /* numbers given in this round, with 0 */
     float (*half)[9];   /* by node of the first level whose matrix is another level's: a row of that one times its transfer */
 } gxsp_pairs;
 
@@ -814,7 +829,7 @@ typedef struct gxsp_factor {
     size_t *row;        /* n: where column 0 of the row would be in entry, so entry[row[i] + j] */
     float *entry;       /* entry_count; diagonal inverted */
     size_t entry_count;
-    double *x;          /* n: solution; the row at work */
+    double *x;          /* 3 x n: solution; the three rows at work */
 } gxsp_factor;
 
 typedef struct gxsp_material {
@@ -3106,7 +3121,7 @@ static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch)
     factor->order = (uint32_t *)gxsp_take(&system->coarse, level->n, sizeof(uint32_t));
     factor->first = (uint32_t *)gxsp_take(&system->coarse, factor->n, sizeof(uint32_t));
     factor->row = (size_t *)gxsp_take(&system->coarse, factor->n, sizeof(size_t));
-    factor->x = (double *)gxsp_take(&system->coarse, factor->n, sizeof(double));
+    factor->x = (double *)gxsp_take(&system->coarse, 3 * (size_t)factor->n, sizeof(double));
     if (scratch->failed || system->coarse.failed)
         return;
     (void)gxsp_order_level(&graph, factor->order, place);
@@ -3141,87 +3156,75 @@ static void gxsp_edges_make(gxsp_system *system)
         nodes = system->chunks[c].node_count > nodes ? system->chunks[c].node_count : nodes;
     }
     edges->table = (uint16_t *)gxsp_take(&system->coarse, nodes * nodes, sizeof(uint16_t));
-    edges->ends = (uint32_t *)gxsp_take(&system->coarse, nodes + 6 * lanes, sizeof(uint32_t));
-    edges->block = (float(*)[9])gxsp_take(&system->coarse, nodes + 6 * lanes, sizeof *edges->block);
-    edges->start = (uint32_t *)gxsp_take(&system->coarse, nodes + 2, sizeof(uint32_t));
-    edges->other = (uint16_t *)gxsp_take(&system->coarse, nodes + 12 * lanes, sizeof(uint16_t));
-    edges->edge = (uint16_t *)gxsp_take(&system->coarse, nodes + 12 * lanes, sizeof(uint16_t));
+    edges->ends = (uint32_t *)gxsp_take(&system->coarse, 2 + 6 * lanes, sizeof(uint32_t));
+    edges->block = (float(*)[9])gxsp_take(&system->coarse, 1 + 6 * lanes, sizeof *edges->block);
+    edges->element = (uint16_t(*)[6][GXSP_LANES])gxsp_take(&system->coarse, lanes / GXSP_LANES, sizeof *edges->element);
+    edges->first = (uint16_t *)gxsp_take(&system->coarse, nodes, sizeof(uint16_t));
+    edges->joined = (uint8_t *)gxsp_take(&system->coarse, nodes, 1);
+    edges->next = (uint16_t *)gxsp_take(&system->coarse, 1 + 6 * lanes, sizeof(uint16_t));
+    edges->own = (float(*)[9])gxsp_take(&system->coarse, nodes, sizeof *edges->own);
+    edges->mass = (float *)gxsp_take(&system->coarse, nodes, sizeof(float));
     edges->parent = (uint16_t(*)[4])gxsp_take(&system->coarse, nodes, sizeof *edges->parent);
-    edges->half = (float(*)[9])gxsp_take(&system->coarse, 4 * nodes, sizeof *edges->half);
-    edges->touched = (uint16_t *)gxsp_take(&system->coarse, 4 * nodes, sizeof(uint16_t));
+    edges->half = (float(*)[9])gxsp_take(&system->coarse, 1 + 4 * nodes, sizeof *edges->half);
+    edges->touched = (uint16_t *)gxsp_take(&system->coarse, 1 + 4 * nodes, sizeof(uint16_t));
 }
 
 static void gxsp_edges_begin(gxsp_edges *edges, const gxsp_chunk *chunk)
 {
-    uint32_t i;
-    for (i = 0; i < chunk->node_count; ++i)
-        edges->ends[i] = i << 16 | i;
-    edges->nodes = edges->count = chunk->node_count;
+    edges->nodes = chunk->node_count;
+    edges->count = 1;
 }
 
-/* The edge of two nodes, made where there is none */
-static uint32_t gxsp_find_edge(gxsp_edges *edges, uint32_t i, uint32_t j)
+/* The edge of two nodes, made where there is none; 0 of a node and itself. There is no branch on whether there is one: it
+ * could not be foretold. count: of edges so far */
+static inline uint16_t gxsp_find_edge(const gxsp_edges *edges, uint32_t i, uint32_t j, uint32_t *count)
 {
-    const uint32_t low = i < j ? i : j, high = i < j ? j : i;
+    const uint32_t low = i < j ? i : j, high = i < j ? j : i, ends = low << 16 | high;
     uint16_t *at = &edges->table[low * edges->nodes + high];
+    int made;
     if (low == high)
-        return low;
-    if (*at < edges->count && edges->ends[*at] == (low << 16 | high))
-        return *at;
-    edges->ends[edges->count] = low << 16 | high;
-    *at = (uint16_t)edges->count;
-    return edges->count++;
+        return 0;
+    made = (*at >= *count) | (edges->ends[*at] != ends);
+    edges->ends[*count] = ends;
+    *at = made ? (uint16_t)*count : *at;
+    *count += (uint32_t)made;
+    return *at;
+}
+
+/* The six edges of each element of a block; 0 where it has no weight */
+static void gxsp_block_edges(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_t b, uint16_t (*edge)[GXSP_LANES])
+{
+    const gxsp_corners *corner = &chunk->corners[b];
+    uint32_t count = edges->count;
+    int i, j, l, pair = 0;
+    for (i = 0; i < 4; ++i)
+        for (j = i + 1; j < 4; ++j, ++pair)
+            for (l = 0; l < GXSP_LANES; ++l)
+                edge[pair][l] = chunk->rest[b].weight[l] > 0 ? gxsp_find_edge(edges, corner->node[i][l], corner->node[j][l], &count) : 0;
+    edges->count = count;
 }
 
 /* All edges of a chunk's elements of any weight */
 static void gxsp_list_edges(gxsp_system *system, const gxsp_chunk *chunk)
 {
+    uint16_t edge[6][GXSP_LANES];
     uint32_t b;
-    int l, i, j;
     gxsp_edges_begin(&system->edges, chunk);
     for (b = 0; b < chunk->block_count; ++b)
-        for (l = 0; l < GXSP_LANES; ++l) {
-            const gxsp_rest *rest = &chunk->rest[b];
-            const gxsp_corners *corner = &chunk->corners[b];
-            for (i = 0; i < 4 && rest->weight[l] > 0; ++i)
-                for (j = i + 1; j < 4; ++j)
-                    (void)gxsp_find_edge(&system->edges, corner->node[i][l], corner->node[j][l]);
-        }
+        gxsp_block_edges(&system->edges, chunk, b, edge);
 }
 
-/* Edges by node, from both ends */
-static void gxsp_edges_adjacency(gxsp_edges *edges)
-{
-    uint32_t e, i;
-    memset(edges->start, 0, (edges->nodes + 2) * sizeof *edges->start);
-    for (e = 0; e < edges->count; ++e) {
-        ++edges->start[(edges->ends[e] >> 16) + 2];
-        if (e >= edges->nodes)
-            ++edges->start[(edges->ends[e] & 0xffff) + 2];
-    }
-    for (i = 0; i < edges->nodes; ++i)
-        edges->start[i + 2] += edges->start[i + 1];
-    for (e = 0; e < edges->count; ++e) {
-        const uint32_t low = edges->ends[e] >> 16, high = edges->ends[e] & 0xffff;
-        edges->other[edges->start[low + 1]] = (uint16_t)high;
-        edges->edge[edges->start[low + 1]++] = (uint16_t)e;
-        if (low == high)
-            continue;
-        edges->other[edges->start[high + 1]] = (uint16_t)low;
-        edges->edge[edges->start[high + 1]++] = (uint16_t)e;
-    }
-}
-
-/* Numbers the coarse nodes that a chunk's nodes follow, and clears the table of their pairs. */
+/* Numbers the coarse nodes that a chunk's nodes follow. */
 static void gxsp_pairs_begin(gxsp_system *system, const gxsp_chunk *chunk)
 {
     gxsp_pairs *pairs = &system->pairs;
     uint32_t i, k;
     ++pairs->round;
-    pairs->count = 0;
+    pairs->count = 1;
     for (i = 0; i < chunk->node_count; ++i)
         for (k = 0; k < 4; ++k) {
             const uint32_t parent = system->levels[0].parent[system->nodes[chunk->first_node + i]][k];
+            system->edges.parent[i][k] = 0;
             if (parent == GXSP_NONE)
                 continue;
             if (pairs->stamp[parent] != pairs->round) {
@@ -3232,14 +3235,6 @@ static void gxsp_pairs_begin(gxsp_system *system, const gxsp_chunk *chunk)
             system->edges.parent[i][k] = (uint16_t)pairs->local[parent];
         }
     memset(pairs->seen, 0, pairs->count * sizeof *pairs->seen);
-    if (pairs->count <= GXSP_CHUNK_PARENTS)
-        memset(pairs->entry, 0xff, (size_t)pairs->count * pairs->count * sizeof(uint32_t));
-}
-
-/* The table's place for a pair of numbers; NULL where there are too many for a table. */
-static uint32_t *gxsp_pairs_find(gxsp_pairs *pairs, uint32_t i, uint32_t j)
-{
-    return pairs->count <= GXSP_CHUNK_PARENTS ? &pairs->entry[i * pairs->count + j] : NULL;
 }
 
 static void gxsp_pairs_make(gxsp_system *system)
@@ -3247,8 +3242,8 @@ static void gxsp_pairs_make(gxsp_system *system)
     system->pairs.entry = (uint32_t *)gxsp_take(&system->coarse, GXSP_CHUNK_PARENTS * GXSP_CHUNK_PARENTS, sizeof(uint32_t));
     system->pairs.local = (uint32_t *)gxsp_take(&system->coarse, system->levels[1].n, sizeof(uint32_t));
     system->pairs.stamp = (uint32_t *)gxsp_take(&system->coarse, system->levels[1].n, sizeof(uint32_t));
-    system->pairs.node = (uint32_t *)gxsp_take(&system->coarse, system->levels[1].n, sizeof(uint32_t));
-    system->pairs.seen = (uint32_t *)gxsp_take(&system->coarse, system->levels[1].n, sizeof(uint32_t));
+    system->pairs.node = (uint32_t *)gxsp_take(&system->coarse, (size_t)system->levels[1].n + 1, sizeof(uint32_t));
+    system->pairs.seen = (uint32_t *)gxsp_take(&system->coarse, (size_t)system->levels[1].n + 1, sizeof(uint32_t));
     system->pairs.round = 0;
 }
 
@@ -3344,7 +3339,7 @@ static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gx
     list.scratch = scratch;
     for (c = 0; c < system->chunk_count; ++c)
         nodes = system->chunks[c].node_count > nodes ? system->chunks[c].node_count : nodes;
-    memory = (uint64_t *)gxsp_take(scratch, 6 * (size_t)nodes * (nodes / 16 + 1), sizeof(uint64_t)); /* four parents to a node */
+    memory = (uint64_t *)gxsp_take(scratch, (6 * (size_t)nodes + 1) * (nodes / 16 + 1), sizeof(uint64_t)); /* four parents to a node */
     if (scratch->failed)
         return;
     for (i = 0; i < system->levels[1].n; ++i)
@@ -3492,7 +3487,7 @@ static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (
     for (c = 0; c < system->chunk_count; ++c) {
         const uint32_t *copies = system->nodes + system->chunks[c].first_node;
         gxsp_list_edges(system, &system->chunks[c]);
-        for (e = system->edges.nodes; e < system->edges.count; ++e)
+        for (e = 1; e < system->edges.count; ++e)
             gxsp_join_nodes(&transfer, copies[system->edges.ends[e] >> 16], copies[system->edges.ends[e] & 0xffff]);
     }
     for (e = 0; e < 4 * system->follower_count; ++e)
@@ -3689,11 +3684,21 @@ static void gxsp_reduce_residual(const gxsp_system *system, double *r)
 
 /* --- blocks: nine numbers by columns --- */
 
-static void gxsp_transpose_block(const float *GXSP_RESTRICT a, float *GXSP_RESTRICT transposed)
+/* By whole vectors: narrower stores would not be forwarded to the loads that soon follow. */
+static inline void gxsp_transpose_block(const float *GXSP_RESTRICT a, float *GXSP_RESTRICT transposed)
 {
-    transposed[0] = a[0], transposed[1] = a[3], transposed[2] = a[6];
-    transposed[3] = a[1], transposed[4] = a[4], transposed[5] = a[7];
-    transposed[6] = a[2], transposed[7] = a[5], transposed[8] = a[8];
+#if defined(GXSP_SHUFFLES) && defined(__AVX__)
+    const gxsp_eight all = *(const gxsp_eight *)a;
+    *(gxsp_eight *)transposed = __builtin_shufflevector(all, all, 0, 3, 6, 1, 4, 7, 2, 5);
+#elif defined(GXSP_SHUFFLES)
+    const gxsp_four low = *(const gxsp_four *)a, high = *(const gxsp_four *)(a + 4);
+    *(gxsp_four *)transposed = __builtin_shufflevector(low, high, 0, 3, 6, 1);
+    *(gxsp_four *)(transposed + 4) = __builtin_shufflevector(low, high, 4, 7, 2, 5);
+#else
+    transposed[0] = a[0], transposed[1] = a[3], transposed[2] = a[6], transposed[3] = a[1];
+    transposed[4] = a[4], transposed[5] = a[7], transposed[6] = a[2], transposed[7] = a[5];
+#endif
+    transposed[8] = a[8];
 }
 
 /* to += lane l of nine numbers by rows, transposed or not, and mass on the diagonal */
@@ -3752,13 +3757,9 @@ static void gxsp_apply_packed(const float *d, const float *x, float *y)
     y[2] = d[2] * a + d[4] * b + d[5] * c;
 }
 
-#if defined(__GNUC__) && (defined(__clang__) || __GNUC__ >= 12)
-/* Four nodes' vectors to three components side by side and back: compilers do not find these shuffles by themselves. */
-typedef __attribute__((vector_size(16), aligned(4), may_alias)) float gxsp_four;
-
+#if defined(GXSP_SHUFFLES)
+/* Four nodes' vectors to three components side by side and back */
 #if defined(__AVX__)
-typedef __attribute__((vector_size(32), aligned(4), may_alias)) float gxsp_eight;
-
 /* All eight lanes at once: narrower stores would not be forwarded to the loads that soon follow. */
 static inline void gxsp_gather_eight(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2)
 {
@@ -3802,6 +3803,34 @@ static inline void gxsp_scatter_four(const uint16_t *node, const float *from0, c
     *(gxsp_four *)y[node[2]] += __builtin_shufflevector(high, r, 0, 1, 6, 6);
     *(gxsp_four *)y[node[3]] += __builtin_shufflevector(high, r, 2, 3, 7, 7);
 }
+
+static inline void gxsp_turn_four(const float *a, const float *b, const float *c, const float *d, gxsp_four *turned)
+{
+    const gxsp_four p = *(const gxsp_four *)a, q = *(const gxsp_four *)b, r = *(const gxsp_four *)c, s = *(const gxsp_four *)d;
+    const gxsp_four low = __builtin_shufflevector(p, q, 0, 4, 1, 5), high = __builtin_shufflevector(p, q, 2, 6, 3, 7);
+    const gxsp_four next = __builtin_shufflevector(r, s, 0, 4, 1, 5), last = __builtin_shufflevector(r, s, 2, 6, 3, 7);
+    turned[0] = __builtin_shufflevector(low, next, 0, 1, 4, 5);
+    turned[1] = __builtin_shufflevector(low, next, 2, 3, 6, 7);
+    turned[2] = __builtin_shufflevector(high, last, 0, 1, 4, 5);
+    turned[3] = __builtin_shufflevector(high, last, 2, 3, 6, 7);
+}
+
+/* Each lane's nine numbers to those of its entry */
+static inline void gxsp_add_lanes(const uint16_t *entry, gxsp_singles *block, float (*to)[9])
+{
+    int l, k;
+    for (l = 0; l < GXSP_LANES; l += 4) {
+        gxsp_four first[4], second[4];
+        gxsp_turn_four(block[0] + l, block[1] + l, block[2] + l, block[3] + l, first);
+        gxsp_turn_four(block[4] + l, block[5] + l, block[6] + l, block[7] + l, second);
+        for (k = 0; k < 4; ++k) {
+            float *at = to[entry[l + k]];
+            *(gxsp_four *)at += first[k];
+            *(gxsp_four *)(at + 4) += second[k];
+            at[8] += block[8][l + k];
+        }
+    }
+}
 #else
 static void gxsp_gather_eight(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2)
 {
@@ -3815,6 +3844,14 @@ static void gxsp_scatter_four(const uint16_t *node, const float *from0, const fl
     int l;
     for (l = 0; l < 4; ++l)
         y[node[l]][0] += from0[l], y[node[l]][1] += from1[l], y[node[l]][2] += from2[l];
+}
+
+static void gxsp_add_lanes(const uint16_t *entry, gxsp_singles *block, float (*to)[9])
+{
+    int l, k;
+    for (l = 0; l < GXSP_LANES; ++l)
+        for (k = 0; k < 9; ++k)
+            to[entry[l]][k] += block[k][l];
 }
 #endif
 
@@ -4289,121 +4326,196 @@ static void gxsp_multigrid(gxsp_system *system, double rate, double energy)
 
 /* --- numbers of the coarse levels --- */
 
-/* Blocks of a chunk's edges: the Hessian of its elements, of i's row and j's column, with their mass */
-static void gxsp_edge_blocks(gxsp_system *system, const gxsp_chunk *chunk, double rate)
+/* Mass between corners of a block, kg/s2. pair: in the order of gxs_element.mass */
+static void gxsp_block_mass(const gxsp_tangent *tangent, const gxsp_mass *general, double rate, int pair, float *mass)
 {
-    gxsp_edges *edges = &system->edges;
-    uint32_t b, k, known;
-    int pair, l;
-    gxsp_edges_begin(edges, chunk);
-    memset(edges->block, 0, chunk->node_count * sizeof *edges->block);
-    for (b = 0; b < chunk->block_count; ++b) {
-        const gxsp_rest *rest = &chunk->rest[b];
-        const gxsp_corners *corner = &chunk->corners[b];
-        const gxsp_tangent *tangent = &chunk->tangents[b];
-        const gxsp_mass *general = gxsp_block_masses(chunk, b);
-        gxsp_singles gamma[4][3];
-        for (k = 0; k < 4; ++k)
-            gxsp_block_corner(tangent, (int)k, gamma[k]);
-        for (pair = 0; pair < 10; ++pair) {
-            const int p = gxsp_pair_corners[pair][0], q = gxsp_pair_corners[pair][1];
-            gxsp_singles block[9];
-            gxsp_block_couple(tangent, gxsp_block_general(chunk, b), gamma[p], gamma[q], block);
-            for (l = 0; l < GXSP_LANES; ++l) {
-                const uint16_t i = corner->node[p][l], j = corner->node[q][l];
-                const float mass = tangent->mass[l] * (p == q ? 2.0f : 1.0f) + (general ? (float)(rate * general->entry[pair][l]) : 0);
-                if (!(rest->weight[l] > 0))
-                    continue;
-                known = edges->count;
-                k = gxsp_find_edge(edges, i, j);
-                if (k == known)
-                    memset(edges->block[k], 0, sizeof edges->block[k]);
-                gxsp_add_lane(block, l, i > j, mass, edges->block[k]);
-                if (i == j && p != q) /* two corners that follow one copy */
-                    gxsp_add_lane(block, l, 1, mass, edges->block[k]);
-            }
-        }
+    int l;
+    GXSP_EACH_LANE(l) mass[l] = tangent->mass[l] + (general ? (float)(rate * general->entry[pair][l]) : 0);
+}
+
+/* A block by rows, with its mass, to one by columns: that of the lower node's row, where corners p and q have the nodes */
+static void gxsp_order_block(const uint16_t *GXSP_RESTRICT p, const uint16_t *GXSP_RESTRICT q, const float *GXSP_RESTRICT mass,
+                             gxsp_singles *GXSP_RESTRICT block)
+{
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float b1 = block[1][l], b2 = block[2][l], b3 = block[3][l], b5 = block[5][l], b6 = block[6][l], b7 = block[7][l];
+        const int turned = p[l] > q[l];
+        block[0][l] += mass[l], block[4][l] += mass[l], block[8][l] += mass[l];
+        block[1][l] = turned ? b1 : b3, block[3][l] = turned ? b3 : b1;
+        block[2][l] = turned ? b2 : b6, block[6][l] = turned ? b6 : b2;
+        block[5][l] = turned ? b5 : b7, block[7][l] = turned ? b7 : b5;
     }
 }
 
-static float *gxsp_pair_block(gxsp_pairs *pairs, gxsp_level *next, uint32_t row, uint32_t column, uint32_t i, uint32_t j)
+/* Half the row sums of a block's masses to its nodes */
+static void gxsp_own_mass(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_t b, double rate)
 {
-    uint32_t *found = gxsp_pairs_find(pairs, i, j);
-    if (!found)
-        return next->block + 9 * (size_t)gxsp_find_entry(next, row, column);
-    if (*found == GXSP_NONE)
-        *found = gxsp_find_entry(next, row, column);
-    return next->block + 9 * (size_t)*found;
+    static const int packed[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
+    const gxsp_mass *general = gxsp_block_masses(chunk, b);
+    gxsp_singles half;
+    int k, j, l;
+    for (k = 0; k < 4; ++k) {
+        GXSP_EACH_LANE(l) half[l] = chunk->rest[b].weight[l] > 0 ? 2.5f * chunk->tangents[b].mass[l] : 0;
+        for (j = 0; j < 4 && general; ++j)
+            GXSP_EACH_LANE(l) half[l] += chunk->rest[b].weight[l] > 0 ? (float)(0.5 * rate * general->entry[packed[k][j]][l]) : 0;
+        for (l = 0; l < GXSP_LANES; ++l)
+            edges->mass[chunk->corners[b].node[k][l]] += half[l];
+    }
 }
 
-/* A node's row of the Hessian times the transfer, in edges->half by number; only the columns of dirty nodes, unless dirty is NULL.
- * Returns how many are touched. */
-static uint32_t gxsp_half_row(gxsp_system *system, const uint32_t *copies, uint32_t i, const uint8_t *dirty)
+/* The edges of a chunk, with lists by node, and all their numbers 0 */
+static void gxsp_edges_clear(gxsp_edges *edges, const gxsp_chunk *chunk)
 {
-    const gxsp_level *fine = &system->levels[0];
+    uint32_t b, e;
+    gxsp_edges_begin(edges, chunk);
+    for (b = 0; b < chunk->block_count; ++b)
+        gxsp_block_edges(edges, chunk, b, edges->element[b]);
+    memset(edges->first, 0, edges->nodes * sizeof *edges->first);
+    memset(edges->joined, 0, edges->nodes);
+    for (e = edges->count; --e > 0;) {
+        const uint32_t low = edges->ends[e] >> 16, high = edges->ends[e] & 0xffff;
+        edges->joined[low] = edges->joined[high] = 1;
+        edges->next[e] = edges->first[low];
+        edges->first[low] = (uint16_t)e;
+    }
+    memset(edges->block, 0, edges->count * sizeof *edges->block);
+    memset(edges->own, 0, edges->nodes * sizeof *edges->own);
+    memset(edges->mass, 0, edges->nodes * sizeof *edges->mass);
+}
+
+/* Blocks of a chunk's edges: the Hessian of its elements, of i's row and j's column, with their mass; and the nodes' mass */
+static void gxsp_edge_blocks(gxsp_system *system, const gxsp_chunk *chunk, double rate)
+{
     gxsp_edges *edges = &system->edges;
-    uint32_t k, q, count = 0;
-    int m;
-    for (k = edges->start[i]; k < edges->start[i + 1]; ++k) {
-        const uint32_t other = edges->other[k], copy = copies[other];
-        const float *block = edges->block[edges->edge[k]];
-        float turned[9];
-        if (other < i) {
-            gxsp_transpose_block(block, turned);
-            block = turned;
-        }
-        for (q = 0; q < 4; ++q) {
-            const uint16_t number = edges->parent[other][q];
-            if (fine->parent[copy][q] == GXSP_NONE || (dirty && !dirty[fine->parent[copy][q]]))
+    uint32_t b;
+    int pair, k, at;
+    gxsp_edges_clear(edges, chunk);
+    for (b = 0; b < chunk->block_count; ++b) {
+        const gxsp_corners *corner = &chunk->corners[b];
+        const gxsp_tangent *tangent = &chunk->tangents[b];
+        gxsp_singles gamma[4][3];
+        for (k = 0; k < 4; ++k)
+            gxsp_block_corner(tangent, k, gamma[k]);
+        for (pair = at = 0; pair < 10; ++pair) {
+            const int p = gxsp_pair_corners[pair][0], q = gxsp_pair_corners[pair][1];
+            gxsp_singles block[9], mass;
+            if (p == q)
                 continue;
-            if (system->pairs.seen[number] == i + 1)
-                gxsp_add_scaled(fine->weight[copy][q], block, edges->half[number]);
-            else {
-                system->pairs.seen[number] = i + 1;
-                edges->touched[count++] = number;
-                for (m = 0; m < 9; ++m)
-                    edges->half[number][m] = fine->weight[copy][q] * block[m];
-            }
+            gxsp_block_couple(tangent, gxsp_block_general(chunk, b), gamma[p], gamma[q], block);
+            gxsp_block_mass(tangent, gxsp_block_masses(chunk, b), rate, pair, mass);
+            gxsp_order_block(corner->node[p], corner->node[q], mass, block);
+            gxsp_add_lanes(edges->element[b][at++], block, edges->block);
         }
+        gxsp_own_mass(edges, chunk, b, rate);
+    }
+}
+
+/* Entries of level 1's matrix for the pairs of a chunk's coarse nodes */
+static void gxsp_pairs_find(gxsp_pairs *pairs, const gxsp_level *next)
+{
+    const uint32_t count = pairs->count;
+    uint32_t i, k;
+    for (i = 1; i < count && count <= GXSP_CHUNK_PARENTS; ++i)
+        for (k = next->start[pairs->node[i]]; k < next->start[pairs->node[i] + 1]; ++k) {
+            const uint32_t column = next->column[k], j = pairs->stamp[column] == pairs->round ? pairs->local[column] : 0;
+            pairs->entry[j * count + i] = 2 * k + 1;
+            pairs->entry[i * count + j] = 2 * k;
+        }
+}
+
+/* The entry of one pair: see gxsp_pairs */
+static uint32_t gxsp_pair_entry(const gxsp_pairs *pairs, const gxsp_level *next, uint32_t i, uint32_t j)
+{
+    const uint32_t row = pairs->node[i], column = pairs->node[j];
+    if (pairs->count <= GXSP_CHUNK_PARENTS)
+        return pairs->entry[i * pairs->count + j];
+    return row <= column ? 2 * gxsp_find_entry(next, row, column) : 2 * gxsp_find_entry(next, column, row) + 1;
+}
+
+/* A block of node i's row and another's column, times the transfer, to edges->half. Returns how many numbers are touched, of which count
+ * were. */
+static inline uint32_t gxsp_add_half(const gxsp_system *system, uint32_t i, uint32_t other, const float *weight, const float *block, uint32_t count)
+{
+    const gxsp_edges *edges = &system->edges;
+    uint32_t *seen = system->pairs.seen;
+    int q;
+    for (q = 0; q < 4; ++q) {
+        const uint16_t number = edges->parent[other][q];
+        edges->touched[count] = number;
+        count += seen[number] != i + 1;
+        seen[number] = i + 1;
+        gxsp_add_scaled(weight[q], block, edges->half[number]);
     }
     return count;
 }
 
-/* A node's part of level 1's matrix on and above the diagonal; dirty: of entries in rows or columns of dirty nodes only */
-static void gxsp_coarse_node(gxsp_system *system, const uint32_t *copies, uint32_t i, const uint8_t *dirty)
+/* Node i's row of S, where the Hessian is S + S^T, times the transfer, in edges->half by number; S has the edges to higher nodes and half
+ * of what is on the diagonal. Rows of stiffness add up to 0, so that this half is half the mass less half of all the node's edges, turned
+ * or not. Returns how many numbers are touched. */
+static uint32_t gxsp_half_row(gxsp_system *system, const uint32_t *copies, uint32_t i)
 {
     const gxsp_level *fine = &system->levels[0];
+    gxsp_edges *edges = &system->edges;
+    uint32_t e, count = 0;
+    system->pairs.seen[0] = i + 1;
+    for (e = edges->first[i]; e != 0; e = edges->next[e]) {
+        const uint32_t other = edges->ends[e] & 0xffff;
+        gxsp_add_scaled(-0.5f, edges->block[e], edges->own[i]);
+        gxsp_add_scaled(-0.5f, edges->block[e], edges->own[other]);
+        count = gxsp_add_half(system, i, other, fine->weight[copies[other]], edges->block[e], count);
+    }
+    gxsp_add_mass(edges->mass[i], edges->own[i]);
+    return gxsp_add_half(system, i, i, fine->weight[copies[i]], edges->own[i], count);
+}
+
+/* A node's part of level 1's matrix; of a coarse node's own entry half, to which its turned half is missing. dirty: of entries in rows or
+ * columns of dirty nodes only */
+static void gxsp_coarse_node(gxsp_system *system, const uint32_t *copies, uint32_t i, const uint8_t *dirty)
+{
+    const float *weight = system->levels[0].weight[copies[i]];
     const gxsp_pairs *pairs = &system->pairs;
-    uint32_t count, p, t;
-    int any = 0;
-    for (p = 0; p < 4 && dirty; ++p)
-        any |= fine->parent[copies[i]][p] != GXSP_NONE && dirty[fine->parent[copies[i]][p]];
-    count = gxsp_half_row(system, copies, i, any ? NULL : dirty);
-    for (p = 0; p < 4; ++p) {
-        const uint32_t row = fine->parent[copies[i]][p], number = system->edges.parent[i][p];
-        for (t = 0; t < count && row != GXSP_NONE; ++t) {
-            const uint32_t other = system->edges.touched[t];
-            if (row <= pairs->node[other] && (!dirty || dirty[row] || dirty[pairs->node[other]]))
-                gxsp_add_scaled(fine->weight[copies[i]][p], system->edges.half[other],
-                                gxsp_pair_block(&system->pairs, &system->levels[1], row, pairs->node[other], number, other));
+    gxsp_level *next = &system->levels[1];
+    uint32_t p, t, count;
+    if (!system->edges.joined[i] && !(system->edges.mass[i] > 0)) /* elements without weight have no entries */
+        return;
+    count = gxsp_half_row(system, copies, i);
+    for (t = 0; t < count; ++t) {
+        const uint32_t other = system->edges.touched[t];
+        float *half = system->edges.half[other], turned[9];
+        gxsp_transpose_block(half, turned);
+        for (p = 0; p < 4; ++p) {
+            const uint32_t number = system->edges.parent[i][p];
+            if (number > 0 && (!dirty || dirty[pairs->node[number]] || dirty[pairs->node[other]])) {
+                const uint32_t entry = gxsp_pair_entry(pairs, next, number, other);
+                gxsp_add_scaled(weight[p], entry & 1 ? turned : half, next->block + 9 * (size_t)(entry >> 1));
+            }
         }
+        memset(half, 0, sizeof turned);
     }
 }
 
 /* Level 1's matrix from the last linearisation. dirty: only the rows and columns of dirty nodes, whose blocks are 0; NULL: all */
 static void gxsp_coarse_elements(gxsp_system *system, double rate, const uint8_t *dirty)
 {
+    gxsp_level *next = &system->levels[1];
     uint32_t c, i;
     for (c = 0; c < system->chunk_count; ++c) {
         const gxsp_chunk *chunk = &system->chunks[c];
         if (dirty && !gxsp_follows_dirty(system, chunk, dirty))
             continue;
         gxsp_edge_blocks(system, chunk, rate);
-        gxsp_edges_adjacency(&system->edges);
         gxsp_pairs_begin(system, chunk);
+        gxsp_pairs_find(&system->pairs, next);
         for (i = 0; i < chunk->node_count; ++i)
             gxsp_coarse_node(system, system->nodes + chunk->first_node, i, dirty);
     }
+    for (i = 0; i < next->n; ++i)
+        if (!dirty || dirty[i]) {
+            float *own = next->block + 9 * (size_t)next->start[i], turned[9];
+            gxsp_transpose_block(own, turned);
+            gxsp_add_scaled(1, turned, own);
+        }
 }
 
 /* Inverse of a symmetric block, packed; 0 where single precision makes nothing of it. 0 if a number overflowed. */
@@ -4503,30 +4615,93 @@ static void gxsp_fill_factor(gxsp_factor *factor, const gxsp_level *level, uint3
                 }
 }
 
-/* Cholesky of the last level. A pivot that rounding left at 0 or below is raised to its share of the diagonal. Entries are of single
- * precision, which leaves the product of the factors positive definite; the row at work is of double. 0 if a number overflowed. */
+/* dots[3 r + c] = sum of row r of a, of three that are n apart, times row c of b, four sums side by side */
+static void gxsp_nine_dots(const double *GXSP_RESTRICT a, size_t n, const float *const *b, size_t count, double *GXSP_RESTRICT dots)
+{
+    size_t k = 0;
+#if defined(GXSP_SHUFFLES)
+    gxsp_four_doubles s0 = {0, 0, 0, 0}, s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0, s8 = s0;
+    for (; k + 4 <= count; k += 4) {
+        const gxsp_four_doubles x = __builtin_convertvector(*(const gxsp_four *)(b[0] + k), gxsp_four_doubles);
+        const gxsp_four_doubles y = __builtin_convertvector(*(const gxsp_four *)(b[1] + k), gxsp_four_doubles);
+        const gxsp_four_doubles z = __builtin_convertvector(*(const gxsp_four *)(b[2] + k), gxsp_four_doubles);
+        const gxsp_four_doubles p = *(const gxsp_four_doubles *)(a + k), q = *(const gxsp_four_doubles *)(a + n + k),
+                                r = *(const gxsp_four_doubles *)(a + 2 * n + k);
+        s0 += p * x, s1 += p * y, s2 += p * z;
+        s3 += q * x, s4 += q * y, s5 += q * z;
+        s6 += r * x, s7 += r * y, s8 += r * z;
+    }
+    dots[0] = (s0[0] + s0[2]) + (s0[1] + s0[3]), dots[1] = (s1[0] + s1[2]) + (s1[1] + s1[3]), dots[2] = (s2[0] + s2[2]) + (s2[1] + s2[3]);
+    dots[3] = (s3[0] + s3[2]) + (s3[1] + s3[3]), dots[4] = (s4[0] + s4[2]) + (s4[1] + s4[3]), dots[5] = (s5[0] + s5[2]) + (s5[1] + s5[3]);
+    dots[6] = (s6[0] + s6[2]) + (s6[1] + s6[3]), dots[7] = (s7[0] + s7[2]) + (s7[1] + s7[3]), dots[8] = (s8[0] + s8[2]) + (s8[1] + s8[3]);
+#else
+    memset(dots, 0, 9 * sizeof *dots);
+#endif
+    for (; k < count; ++k) {
+        const double x = (double)b[0][k], y = (double)b[1][k], z = (double)b[2][k], p = a[k], q = a[n + k], r = a[2 * n + k];
+        dots[0] += p * x, dots[1] += p * y, dots[2] += p * z;
+        dots[3] += q * x, dots[4] += q * y, dots[5] += q * z;
+        dots[6] += r * x, dots[7] += r * y, dots[8] += r * z;
+    }
+}
+
+/* Columns of the factor to the left of a node's own, in its three rows from row i on */
+static void gxsp_factor_left(gxsp_factor *factor, uint32_t i)
+{
+    const uint32_t first = factor->first[i], n = factor->n;
+    uint32_t j, m, r, c;
+    for (r = 0; r < 3; ++r)
+        for (j = first; j <= i + r; ++j)
+            factor->x[r * (size_t)n + j] = (double)factor->entry[factor->row[i + r] + j];
+    for (j = first; j < i; j += 3) {
+        const float *other[3], *from[3];
+        double dots[9];
+        m = factor->first[j] > first ? factor->first[j] : first;
+        for (c = 0; c < 3; ++c) {
+            other[c] = factor->entry + factor->row[j + c];
+            from[c] = other[c] + m;
+        }
+        gxsp_nine_dots(factor->x + m, n, from, j - m, dots);
+        for (r = 0; r < 3; ++r) {
+            double *sum = factor->x + r * (size_t)n + j;
+            sum[0] = (sum[0] - dots[3 * r]) * (double)other[0][j];
+            sum[1] = (sum[1] - dots[3 * r + 1] - (double)other[1][j] * sum[0]) * (double)other[1][j + 1];
+            sum[2] = (sum[2] - dots[3 * r + 2] - (double)other[2][j] * sum[0] - (double)other[2][j + 1] * sum[1]) * (double)other[2][j + 2];
+            for (c = 0; c < 3; ++c)
+                factor->entry[factor->row[i + r] + j + c] = (float)sum[c];
+        }
+    }
+}
+
+/* Columns of a node's own in row i + r, whose other columns are known. 0 if a number overflowed. */
+static int gxsp_factor_own(gxsp_factor *factor, uint32_t i, uint32_t r)
+{
+    const uint32_t first = factor->first[i];
+    float *row = factor->entry + factor->row[i + r];
+    double *sum = factor->x + r * (size_t)factor->n;
+    const double own = sum[i + r], least = 1e-7 * own;
+    uint32_t j;
+    for (j = i; j < i + r; ++j) {
+        const float *other = factor->entry + factor->row[j];
+        sum[j] = (sum[j] - gxsp_long_dot(other + first, sum + first, j - first)) * (double)other[j];
+        row[j] = (float)sum[j];
+    }
+    sum[j] -= gxsp_long_dot(row + first, sum + first, j - first);
+    row[j] = (float)(1 / sqrt(own < GXSP_TINY ? 1 : sum[j] > least ? sum[j] : least));
+    return gxsp_finite_single(row[j]);
+}
+
+/* Cholesky of the last level, node by node. A pivot that rounding left at 0 or below is raised to its share of the diagonal. Entries are of
+ * single precision, which leaves the product of the factors positive definite; the rows at work are of double. 0 if a number overflowed. */
 static int gxsp_factorise(gxsp_factor *factor, const gxsp_level *level, uint32_t *place)
 {
-    uint32_t i, j, m;
+    uint32_t i, r;
     gxsp_fill_factor(factor, level, place);
-    for (i = 0; i < factor->n; ++i) {
-        float *row = factor->entry + factor->row[i];
-        const double own = (double)row[i], least = 1e-7 * own;
-        double *sum = factor->x;
-        for (j = factor->first[i]; j <= i; ++j) {
-            const float *other = factor->entry + factor->row[j];
-            m = factor->first[j] > factor->first[i] ? factor->first[j] : factor->first[i];
-            sum[j] = (double)row[j];
-            if (j == i) {
-                sum[i] -= gxsp_long_dot(row + m, sum + m, i - m);
-                row[i] = (float)(1 / sqrt(own < GXSP_TINY ? 1 : sum[i] > least ? sum[i] : least));
-            } else {
-                sum[j] = (sum[j] - gxsp_long_dot(other + m, sum + m, j - m)) * (double)other[j];
-                row[j] = (float)sum[j];
-            }
-        }
-        if (!gxsp_finite_single(row[i]))
-            return 0;
+    for (i = 0; i < factor->n; i += 3) {
+        gxsp_factor_left(factor, i);
+        for (r = 0; r < 3; ++r)
+            if (!gxsp_factor_own(factor, i, r))
+                return 0;
     }
     return 1;
 }
@@ -5405,7 +5580,7 @@ static void gxsp_join_dirty(gxsp_renewal *update, uint32_t *forest)
         if (!gxsp_follows_dirty(system, &system->chunks[c], update->dirty))
             continue;
         gxsp_list_edges(system, &system->chunks[c]);
-        for (e = system->edges.nodes; e < system->edges.count; ++e) {
+        for (e = 1; e < system->edges.count; ++e) {
             const uint32_t i = copies[system->edges.ends[e] >> 16], j = copies[system->edges.ends[e] & 0xffff];
             for (p = 0; p < 4; ++p)
                 for (q = 0; q < 4 && fine->parent[i][p] != GXSP_NONE && update->dirty[fine->parent[i][p]]; ++q)
@@ -7802,4 +7977,5 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_INERTIA
 #undef GXSP_PARALLEL
 #undef GXSP_SUMS
+#undef GXSP_SHUFFLES
 #endif /* GXFEM_SOLVE_IMPLEMENTED */
