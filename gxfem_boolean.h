@@ -702,9 +702,13 @@ GXFEM_API void gxb_num_mul(gxb_num *r, const gxb_num *a, const gxb_num *b) { gxb
 
 /* Bits of a limb other than 0, counted up to the highest that is set. */
 static int gxbp_limb_bits(gxb_limb x) {
+#if defined(__GNUC__) && GXB_LIMB_BITS == 64
+    return 64 - __builtin_clzll(x);
+#else
     int bits = 1, step;
     for (step = GXB_LIMB_BITS / 2; step > 0; step /= 2) if (x >> step != 0) { bits += step; x >>= step; }
     return bits;
+#endif
 }
 
 /* |a| = m * 2^power with 2^52 <= m < 2^53, cut off below. a is not 0. */
@@ -880,13 +884,17 @@ static double gxbp_max(double a, double b) { return a > b ? a : b; }
 static double gxbp_min(double a, double b) { return a < b ? a : b; }
 static double gxbp_max3(const double a[3]) { return gxbp_max(gxbp_abs(a[0]), gxbp_max(gxbp_abs(a[1]), gxbp_abs(a[2]))); }
 
+static void gxbp_cross(double r[3], const double a[3], const double b[3]) {
+    r[0] = a[1] * b[2] - a[2] * b[1];
+    r[1] = a[2] * b[0] - a[0] * b[2];
+    r[2] = a[0] * b[1] - a[1] * b[0];
+}
+
 /* r = a x b, errors: each component of a within ea, of b within eb. Returns the bound for each component of r:
    two products of sizes A B, inherited A eb + B ea + ea eb each, and 8u of 2 A B. */
 static double gxbp_filter_cross(double r[3], const double a[3], double ea, const double b[3], double eb) {
     const double A = gxbp_max3(a), B = gxbp_max3(b);
-    r[0] = a[1] * b[2] - a[2] * b[1];
-    r[1] = a[2] * b[0] - a[0] * b[2];
-    r[2] = a[0] * b[1] - a[1] * b[0];
+    gxbp_cross(r, a, b);
     return 4 * (A * eb + B * ea + ea * eb) + 32 * GXBP_U * A * B + GXBP_TINY;
 }
 
@@ -7723,57 +7731,138 @@ static void gxbp_num_divide(gxb_num *r, const gxb_num *num, const gxb_num *den) 
 
 static void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *fine) {
     gxbp_vec store;
-    const gxb_num *x = gxbp_exact_cpoint(&b->cx, point, &store);
+    const gxb_num *x = gxbp_exact_cpoint(&b->cx, point, b->cx.points[point].kind == GXB_EXPLICIT ? fine : &store);
     int k;
+    if (x == fine->c) return;
     gxbp_vec_init(fine);
     for (k = 0; k < 3; k++) gxbp_num_divide(&fine->c[k], &x[k], &x[3]);
 }
 
+/* Coordinates of 180 bits of the result's vertices, each made once. first: of a vertex' limbs; GXB_NONE: it has not been made */
+typedef struct gxbp_fine { uint32_t first; gxb_num c[3]; } gxbp_fine;
+typedef struct gxbp_fines { gxbp_fine *vertices; gxb_limb *limbs; uint32_t limb_count, limb_capacity; } gxbp_fines;
+
+static void gxbp_need_fine(gxb_boolean *b, gxbp_fines *fines, uint32_t vertex) {
+    gxbp_fine *v = &fines->vertices[vertex];
+    gxbp_vec x;
+    uint32_t k;
+    if (v->first != GXB_NONE) return;
+    gxbp_fine_point(b, b->out_points[vertex], &x);
+    if (!gxbp_room(b, &fines->limbs, sizeof *fines->limbs, fines->limb_count, &fines->limb_capacity, (size_t)x.c[0].n + x.c[1].n + x.c[2].n)) return;
+    v->first = fines->limb_count;
+    for (k = 0; k < 3; k++) {
+        v->c[k] = x.c[k];
+        memcpy(fines->limbs + fines->limb_count, x.c[k].d, x.c[k].n * sizeof *fines->limbs);
+        fines->limb_count += x.c[k].n;
+    }
+}
+
+/* Of a vertex that has been made; valid until the next one is. */
+static const gxb_num *gxbp_use_fine(gxbp_fines *fines, uint32_t vertex) {
+    gxbp_fine *v = &fines->vertices[vertex];
+    v->c[0].d = fines->limbs + v->first;
+    v->c[1].d = v->c[0].d + v->c[0].n;
+    v->c[2].d = v->c[1].d + v->c[1].n;
+    return v->c;
+}
+
 /* Six times the volume of a shell (set root in parent), from coordinates of 180 bits. */
-static GXBP_COLD double gxbp_fine_volume(gxb_boolean *b, uint32_t *parent, uint32_t root) {
+static double gxbp_fine_volume(gxb_boolean *b, uint32_t *parent, uint32_t root, gxbp_fines *fines) {
     GXB_NUM(total); GXB_NUM(sum); GXB_NUM(term);
-    gxbp_vec x[3], n;
+    gxbp_vec n;
     uint32_t t, k;
+    gxbp_vec_init(&n);
     for (t = root; t < b->out_source_count; t++) {
+        const uint32_t *v = b->out_triangles + 3 * (size_t)t;
         if (gxbp_find_set(parent, t) != root) continue;
-        for (k = 0; k < 3; k++) gxbp_fine_point(b, gxbp_out_corner(b, t, k), &x[k]);
-        gxbp_vec_init(&n);
-        gxbp_num_cross(n.c, x[0].c, x[1].c);
-        gxbp_num_dot(&term, n.c, x[2].c);
+        for (k = 0; k < 3; k++) gxbp_need_fine(b, fines, v[k]);
+        if (b->result != GX_OK) return 0;
+        gxbp_num_cross(n.c, gxbp_use_fine(fines, v[0]), gxbp_use_fine(fines, v[1]));
+        gxbp_num_dot(&term, n.c, gxbp_use_fine(fines, v[2]));
         gxb_num_add(&sum, &total, &term);
         gxbp_num_copy(&total, &sum, 1);
     }
     return gxb_num_to_double(&total);
 }
 
-/* Six times the volume of the tetrahedron from o to a triangle of the result, d0 . n; *error: bounds as in >>filter, for n's error and size
-   E and N, the error e of d0 and its size D: 3 (D E + e (N + E)) and 8u of three products. */
-static double gxbp_rough_volume(const gxb_boolean *b, uint32_t t, const gxb_ball *o, double *error) {
+/* Six times the volume of the tetrahedron from o to a triangle of the result, d0 . n */
+static double gxbp_rough_volume(const gxb_boolean *b, uint32_t t, const double *o) {
+    const double *x = b->cx.points[gxbp_out_corner(b, t, 0)].ball.x, *y = b->cx.points[gxbp_out_corner(b, t, 1)].ball.x;
+    const double *z = b->cx.points[gxbp_out_corner(b, t, 2)].ball.x;
+    double d0[3], d1[3], d2[3], n[3];
+    int k;
+    for (k = 0; k < 3; k++) { d0[k] = gxbp_fence(x[k] - o[k]); d1[k] = gxbp_fence(y[k] - x[k]); d2[k] = gxbp_fence(z[k] - x[k]); }
+    gxbp_cross(n, d1, d2);
+    return d0[0] * n[0] + d0[1] * n[1] + d0[2] * n[2];
+}
+
+/* Its error: bounds as in >>filter, for n's error and size E and N, the error e of d0 and its size D: 3 (D E + e (N + E)) and 8u of three
+   products. */
+static double gxbp_volume_error(double D, double e, double N, double E) { return 6 * (D * E + e * (N + E)) + 48 * GXBP_U * D * N + GXBP_TINY; }
+
+static double gxbp_rough_error(const gxb_boolean *b, uint32_t t, const gxb_ball *o) {
     const gxb_ball *x = &b->cx.points[gxbp_out_corner(b, t, 0)].ball;
-    double d0[3], d1[3], d2[3], n[3], E, D, N;
+    double d0[3], d1[3], d2[3], n[3];
     const double e = gxbp_filter_difference(d0, o, x), e1 = gxbp_filter_difference(d1, x, &b->cx.points[gxbp_out_corner(b, t, 1)].ball);
     const double e2 = gxbp_filter_difference(d2, x, &b->cx.points[gxbp_out_corner(b, t, 2)].ball);
-    E = gxbp_filter_cross(n, d1, e1, d2, e2);
-    D = gxbp_max3(d0);
-    N = gxbp_max3(n);
-    *error = 6 * (D * E + e * (N + E)) + 48 * GXBP_U * D * N + GXBP_TINY;
-    return d0[0] * n[0] + d0[1] * n[1] + d0[2] * n[2];
+    const double E = gxbp_filter_cross(n, d1, e1, d2, e2);
+    return gxbp_volume_error(gxbp_max3(d0), e, gxbp_max3(n), E);
+}
+
+/* A bound of them all: from the size S of the box around all vertices, 8u larger for what rounding takes from it, and the largest of their errors */
+static double gxbp_largest_rough_error(const gxb_boolean *b) {
+    const gxb_ball *first = &b->cx.points[b->out_points[0]].ball;
+    double low[3], high[3], error = first->error, S = 0, e;
+    uint32_t i, k;
+    memcpy(low, first->x, sizeof low);
+    memcpy(high, first->x, sizeof high);
+    for (i = 1; i < b->out_point_count; i++) {
+        const gxb_ball *ball = &b->cx.points[b->out_points[i]].ball;
+        for (k = 0; k < 3; k++) { low[k] = gxbp_min(ball->x[k], low[k]); high[k] = gxbp_max(ball->x[k], high[k]); }
+        error = gxbp_max(ball->error, error);
+    }
+    for (k = 0; k < 3; k++) S = gxbp_max(high[k] - low[k], S);
+    S += 8 * GXBP_U * S;
+    e = 4 * error + 2 * GXBP_U * S + GXBP_TINY;
+    return gxbp_volume_error(S, e, 2 * S * S, 8 * S * e + 4 * e * e + 32 * GXBP_U * S * S + GXBP_TINY);
 }
 
 #define GXBP_VOLUME_ERROR 1e-7     /* relative: sums of doubles with a larger bound, mostly far above their error, give way to exact ones */
 
+static int gxbp_is_rough(const gxb_boolean *b, double volume, double error) { return b->fine || error > GXBP_VOLUME_ERROR * gxbp_abs(volume); }
+
+/* Exact sums where those of doubles are too rough by their triangles' own errors */
+static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, uint32_t *parent, double *volume, double *error) {
+    const size_t bytes = b->out_point_count * sizeof(gxbp_fine);
+    gxbp_fines fines = {NULL, NULL, 0, 0};
+    uint32_t t;
+    fines.vertices = (gxbp_fine *)gxbp_allocate(&b->cx.allocator, bytes);
+    if (fines.vertices == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
+    for (t = 0; t < b->out_point_count; t++) fines.vertices[t].first = GXB_NONE;
+    for (t = 0; t < b->out_source_count; t++) error[t] = 0;
+    for (t = 0; t < b->out_source_count; t++) {
+        const uint32_t root = gxbp_find_set(parent, t);
+        error[root] += 2 * gxbp_rough_error(b, t, &b->cx.points[gxbp_out_corner(b, root, 0)].ball);
+    }
+    for (t = 0; t < b->out_source_count && b->result == GX_OK; t++)
+        if (parent[t] == t && gxbp_is_rough(b, volume[t], error[t])) volume[t] = gxbp_fine_volume(b, parent, t, &fines);
+    gxbp_release(&b->cx.allocator, fines.limbs, fines.limb_capacity * sizeof *fines.limbs);
+    gxbp_release(&b->cx.allocator, fines.vertices, bytes);
+}
+
 /* Six times the volumes of the sets in volume[root], in the frame's units. */
 static void gxbp_measure_shells(gxb_boolean *b, uint32_t *parent, double *volume, double *error) {
+    const double largest = 2 * gxbp_largest_rough_error(b);
     uint32_t t;
+    int rough = 0;
     for (t = 0; t < b->out_source_count; t++) volume[t] = error[t] = 0;
     for (t = 0; t < b->out_source_count; t++) {
         const uint32_t root = gxbp_find_set(parent, t);
-        double bound;
-        volume[root] += gxbp_rough_volume(b, t, &b->cx.points[gxbp_out_corner(b, root, 0)].ball, &bound);
-        error[root] += 2 * bound;
+        volume[root] += gxbp_rough_volume(b, t, b->cx.points[gxbp_out_corner(b, root, 0)].ball.x);
+        error[root] += largest;
     }
-    for (t = 0; t < b->out_source_count; t++)
-        if (parent[t] == t && (b->fine || error[t] > GXBP_VOLUME_ERROR * gxbp_abs(volume[t]))) volume[t] = gxbp_fine_volume(b, parent, t);
+    for (t = 0; t < b->out_source_count; t++) rough |= parent[t] == t && gxbp_is_rough(b, volume[t], error[t]);
+    if (rough) gxbp_refine_volumes(b, parent, volume, error);
 }
 
 /* gxbp_ray_left for points of the result, and a ray moved by way (h, h^2) */
