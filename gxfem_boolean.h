@@ -4726,13 +4726,37 @@ static uint32_t gxbp_take_passages(const uint32_t *triangles, gxbp_passage *pass
     return last;
 }
 
+enum { GXBP_FEW = 32 };         /* vertices, and 80 triangles, of which a table has all pairs */
+
+/* Of few vertices. 0: not all edges have one half-edge in each direction. */
+static int gxbp_find_few_twins(const uint32_t *triangles, uint32_t count, uint32_t vertex_count, uint32_t *twin) {
+    uint8_t at[GXBP_FEW * GXBP_FEW];
+    uint32_t h, k, i;
+    memset(at, 0xff, (size_t)vertex_count * vertex_count);
+    for (h = 0; h < 3 * count; h += 3)
+        for (k = 0, i = 2; k < 3; i = k++) {
+            uint8_t *place = &at[triangles[h + i] * vertex_count + triangles[h + k]];
+            if (*place != 0xff) return 0;
+            *place = (uint8_t)(h + i);
+        }
+    for (h = 0; h < 3 * count; h += 3)
+        for (k = 0, i = 2; k < 3; i = k++) {
+            const uint8_t place = at[triangles[h + k] * vertex_count + triangles[h + i]];
+            if (place == 0xff || place == h + i) return 0;
+            twin[h + i] = place;
+        }
+    return 1;
+}
+
 /* twin of each half-edge, GXB_NONE where an edge has not one in each direction. *open: a half-edge whose edge is passed more often in
    its direction than in the other, or GXB_NONE: the surface is closed. */
 static int gxbp_find_twins(gxb_boolean *b, const uint32_t *triangles, size_t count, uint32_t vertex_count, uint32_t *twin, uint32_t *open) {
     const size_t bytes = vertex_count * sizeof(gxbp_passage);
-    gxbp_passage *passages = (gxbp_passage *)gxbp_allocate(&b->cx.allocator, bytes);
+    gxbp_passage *passages;
     uint32_t p, q, odd;
     *open = GXB_NONE;
+    if (vertex_count <= GXBP_FEW && count <= 80 && gxbp_find_few_twins(triangles, (uint32_t)count, vertex_count, twin)) return 1;
+    passages = (gxbp_passage *)gxbp_allocate(&b->cx.allocator, bytes);
     if (passages == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
     for (p = 0; p < vertex_count; p++) passages[p].first = passages[p].p = GXB_NONE;
     gxbp_list_half_edges(triangles, (uint32_t)count, passages, twin);
