@@ -4726,7 +4726,7 @@ static uint32_t gxbp_take_passages(const uint32_t *triangles, gxbp_passage *pass
     return last;
 }
 
-enum { GXBP_FEW = 32 };         /* vertices, and 80 triangles, of which a table has all pairs */
+enum { GXBP_FEW = 32, GXBP_FEW_TRIANGLES = 80 };        /* vertices of which a table has all pairs; half-edges that a byte names */
 
 /* Of few vertices. 0: not all edges have one half-edge in each direction. */
 static int gxbp_find_few_twins(const uint32_t *triangles, uint32_t count, uint32_t vertex_count, uint32_t *twin) {
@@ -4755,7 +4755,7 @@ static int gxbp_find_twins(gxb_boolean *b, const uint32_t *triangles, size_t cou
     gxbp_passage *passages;
     uint32_t p, q, odd;
     *open = GXB_NONE;
-    if (vertex_count <= GXBP_FEW && count <= 80 && gxbp_find_few_twins(triangles, (uint32_t)count, vertex_count, twin)) return 1;
+    if (vertex_count <= GXBP_FEW && count <= GXBP_FEW_TRIANGLES && gxbp_find_few_twins(triangles, (uint32_t)count, vertex_count, twin)) return 1;
     passages = (gxbp_passage *)gxbp_allocate(&b->cx.allocator, bytes);
     if (passages == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
     for (p = 0; p < vertex_count; p++) passages[p].first = passages[p].p = GXB_NONE;
@@ -4865,9 +4865,10 @@ static void gxbp_forget_degenerate(gxb_boolean *b, uint32_t first) {
     }
 }
 
-/* points and local: room for vertex_count; local triangles and twins: 3 per triangle */
-static gx_result gxbp_read_points(gxb_boolean *b, const gxb_operand *o, uint32_t *points, uint32_t *local, size_t *bad) {
+/* points and local: room for vertex_count; local triangles and twins: 3 per triangle. *distinct: no two vertices are at one place, local is i. */
+static gx_result gxbp_read_points(gxb_boolean *b, const gxb_operand *o, uint32_t *points, uint32_t *local, int *distinct, size_t *bad) {
     size_t i;
+    *distinct = 1;
     for (i = 0; i < o->vertex_count; i++) {
         double y[3];
         gxbp_vertex *v;
@@ -4878,17 +4879,23 @@ static gx_result gxbp_read_points(gxb_boolean *b, const gxb_operand *o, uint32_t
         v = &b->vertices[points[i]];                /* vertices at one place are one: the first of them */
         if (v->head >= i || points[v->head] != points[i]) v->head = (uint32_t)i;
         local[i] = v->head;
+        *distinct &= v->head == i;
     }
     return GX_OK;
 }
 
 static gx_result gxbp_read_triangles(gxb_boolean *b, const gxb_operand *o, uint32_t *work, size_t *bad) {
-    uint32_t *points = work, *local = points + o->vertex_count, *triangles = local + o->vertex_count;
-    uint32_t *twin = triangles + 3 * o->triangle_count, open, first = b->source_count;
-    gx_result result = gxbp_read_points(b, o, points, local, bad);
+    uint32_t *points = work, *local = points + o->vertex_count, *joined = local + o->vertex_count;
+    uint32_t *twin = joined + 3 * o->triangle_count, open, first = b->source_count;
+    const uint32_t *triangles = o->triangles;
+    int distinct;
+    gx_result result = gxbp_read_points(b, o, points, local, &distinct, bad);
     size_t h;
     if (result != GX_OK) return result;
-    for (h = 0; h < 3 * o->triangle_count; h++) triangles[h] = local[o->triangles[h]];
+    if (!distinct) {
+        for (h = 0; h < 3 * o->triangle_count; h++) joined[h] = local[o->triangles[h]];
+        triangles = joined;
+    }
     if (!gxbp_find_twins(b, triangles, o->triangle_count, (uint32_t)o->vertex_count, twin, &open)) return b->result;
     if (open != GXB_NONE && o->operation != GXB_SPLIT) { *bad = open / 3; return GX_ERROR_NOT_CLOSED; }
     for (h = 0; h < o->triangle_count; h++) {
@@ -7971,28 +7978,22 @@ static double gxbp_fine_volume(gxb_boolean *b, uint32_t *parent, uint32_t root, 
     return gxb_num_to_double(&total);
 }
 
-/* Six times the volume of the tetrahedron from o to a triangle of the result, d0 . n */
-static double gxbp_rough_volume(const gxb_boolean *b, uint32_t t, const double *o) {
-    const double *x = b->cx.points[gxbp_out_corner(b, t, 0)].ball.x, *y = b->cx.points[gxbp_out_corner(b, t, 1)].ball.x;
-    const double *z = b->cx.points[gxbp_out_corner(b, t, 2)].ball.x;
-    double d0[3], d1[3], d2[3], n[3];
-    int k;
-    for (k = 0; k < 3; k++) { d0[k] = gxbp_fence(x[k] - o[k]); d1[k] = gxbp_fence(y[k] - x[k]); d2[k] = gxbp_fence(z[k] - x[k]); }
-    gxbp_cross(n, d1, d2);
-    return d0[0] * n[0] + d0[1] * n[1] + d0[2] * n[2];
-}
-
-/* Its error: bounds as in >>filter, for n's error and size E and N, the error e of d0 and its size D: 3 (D E + e (N + E)) and 8u of three
-   products. */
+/* What d0 . n loses: bounds as in >>filter, for n's error and size E and N, the error e of d0 and its size D: 3 (D E + e (N + E)) and 8u of three
+   products */
 static double gxbp_volume_error(double D, double e, double N, double E) { return 6 * (D * E + e * (N + E)) + 48 * GXBP_U * D * N + GXBP_TINY; }
 
-static double gxbp_rough_error(const gxb_boolean *b, uint32_t t, const gxb_ball *o) {
+/* Six times the volume of the tetrahedron from o to a triangle of the result, d0 . n; *error, if not NULL: its bound */
+static double gxbp_rough_volume(const gxb_boolean *b, uint32_t t, const gxb_ball *o, double *error) {
     const gxb_ball *x = &b->cx.points[gxbp_out_corner(b, t, 0)].ball;
     double d0[3], d1[3], d2[3], n[3];
     const double e = gxbp_filter_difference(d0, o, x), e1 = gxbp_filter_difference(d1, x, &b->cx.points[gxbp_out_corner(b, t, 1)].ball);
     const double e2 = gxbp_filter_difference(d2, x, &b->cx.points[gxbp_out_corner(b, t, 2)].ball);
-    const double E = gxbp_filter_cross(n, d1, e1, d2, e2);
-    return gxbp_volume_error(gxbp_max3(d0), e, gxbp_max3(n), E);
+    if (error == NULL) gxbp_cross(n, d1, d2);
+    else {
+        const double E = gxbp_filter_cross(n, d1, e1, d2, e2);
+        *error = gxbp_volume_error(gxbp_max3(d0), e, gxbp_max3(n), E);
+    }
+    return d0[0] * n[0] + d0[1] * n[1] + d0[2] * n[2];
 }
 
 /* A bound of them all: from the size S of the box around all vertices, 8u larger for what rounding takes from it, and the largest of their errors */
@@ -8017,38 +8018,45 @@ static double gxbp_largest_rough_error(const gxb_boolean *b) {
 
 static int gxbp_is_rough(const gxb_boolean *b, double volume, double error) { return b->fine || error > GXBP_VOLUME_ERROR * gxbp_abs(volume); }
 
-/* Exact sums where those of doubles are too rough by their triangles' own errors */
-static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, uint32_t *parent, double *volume, double *error) {
+/* Sums over the sets in volume[root] and error[root]; largest: a bound for all triangles, or 0: each has its own */
+static void gxbp_sum_volumes(const gxb_boolean *b, uint32_t *parent, double *volume, double *error, double largest) {
+    uint32_t t;
+    for (t = 0; t < b->out_source_count; t++) volume[t] = error[t] = 0;
+    for (t = 0; t < b->out_source_count; t++) {
+        const uint32_t root = gxbp_find_set(parent, t);
+        double own = largest;
+        volume[root] += gxbp_rough_volume(b, t, &b->cx.points[gxbp_out_corner(b, root, 0)].ball, largest > 0 ? NULL : &own);
+        error[root] += 2 * own;
+    }
+}
+
+static int gxbp_any_is_rough(const gxb_boolean *b, const uint32_t *parent, const double *volume, const double *error) {
+    uint32_t t;
+    for (t = 0; t < b->out_source_count; t++) if (parent[t] == t && gxbp_is_rough(b, volume[t], error[t])) return 1;
+    return 0;
+}
+
+/* Exact sums where those of doubles are too rough */
+static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, uint32_t *parent, double *volume, const double *error) {
     const size_t bytes = b->out_point_count * sizeof(gxbp_fine);
     gxbp_fines fines = {NULL, NULL, 0, 0};
     uint32_t t;
     fines.vertices = (gxbp_fine *)gxbp_allocate(&b->cx.allocator, bytes);
     if (fines.vertices == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
     for (t = 0; t < b->out_point_count; t++) fines.vertices[t].first = GXB_NONE;
-    for (t = 0; t < b->out_source_count; t++) error[t] = 0;
-    for (t = 0; t < b->out_source_count; t++) {
-        const uint32_t root = gxbp_find_set(parent, t);
-        error[root] += 2 * gxbp_rough_error(b, t, &b->cx.points[gxbp_out_corner(b, root, 0)].ball);
-    }
     for (t = 0; t < b->out_source_count && b->result == GX_OK; t++)
         if (parent[t] == t && gxbp_is_rough(b, volume[t], error[t])) volume[t] = gxbp_fine_volume(b, parent, t, &fines);
     gxbp_release(&b->cx.allocator, fines.limbs, fines.limb_capacity * sizeof *fines.limbs);
     gxbp_release(&b->cx.allocator, fines.vertices, bytes);
 }
 
-/* Six times the volumes of the sets in volume[root], in the frame's units. */
+/* Six times the volumes of the sets in volume[root], in the frame's units. One bound for all triangles costs less; it is too large for many. */
 static void gxbp_measure_shells(gxb_boolean *b, uint32_t *parent, double *volume, double *error) {
-    const double largest = 2 * gxbp_largest_rough_error(b);
-    uint32_t t;
-    int rough = 0;
-    for (t = 0; t < b->out_source_count; t++) volume[t] = error[t] = 0;
-    for (t = 0; t < b->out_source_count; t++) {
-        const uint32_t root = gxbp_find_set(parent, t);
-        volume[root] += gxbp_rough_volume(b, t, b->cx.points[gxbp_out_corner(b, root, 0)].ball.x);
-        error[root] += largest;
-    }
-    for (t = 0; t < b->out_source_count; t++) rough |= parent[t] == t && gxbp_is_rough(b, volume[t], error[t]);
-    if (rough) gxbp_refine_volumes(b, parent, volume, error);
+    const int few = b->out_source_count <= GXBP_FEW_TRIANGLES;
+    gxbp_sum_volumes(b, parent, volume, error, few ? gxbp_largest_rough_error(b) : 0);
+    if (!gxbp_any_is_rough(b, parent, volume, error)) return;
+    if (few) gxbp_sum_volumes(b, parent, volume, error, 0);
+    gxbp_refine_volumes(b, parent, volume, error);
 }
 
 /* gxbp_ray_left for points of the result, and a ray moved by way (h, h^2) */
