@@ -702,13 +702,9 @@ GXFEM_API void gxb_num_mul(gxb_num *r, const gxb_num *a, const gxb_num *b) { gxb
 
 /* Bits of a limb other than 0, counted up to the highest that is set. */
 static int gxbp_limb_bits(gxb_limb x) {
-#if defined(__GNUC__) && GXB_LIMB_BITS == 64
-    return 64 - __builtin_clzll(x);
-#else
     int bits = 1, step;
     for (step = GXB_LIMB_BITS / 2; step > 0; step /= 2) if (x >> step != 0) { bits += step; x >>= step; }
     return bits;
-#endif
 }
 
 /* |a| = m * 2^power with 2^52 <= m < 2^53, cut off below. a is not 0. */
