@@ -709,18 +709,15 @@ static int gxbp_limb_bits(gxb_limb x) {
 
 /* |a| = m * 2^power with 2^52 <= m < 2^53, cut off below. a is not 0. */
 static uint64_t gxbp_num_mantissa(const gxb_num *a, int *power) {
-    uint64_t m = 0;
-    int bits = 0, k = (int)a->n - 1, top = gxbp_limb_bits(a->d[k]);
-    *power = (a->exp + k) * GXB_LIMB_BITS + top - 53;
-    while (bits < 53) {
-        const int take = top < 53 - bits ? top : 53 - bits;
-        const uint64_t limb = k >= 0 ? a->d[k] : 0;
-        m = m << take | ((limb >> (top - take)) & (((uint64_t)1 << take) - 1));
-        bits += take;
-        k--;
-        top = GXB_LIMB_BITS;
+    int k = (int)a->n - 1, bits = gxbp_limb_bits(a->d[k]);
+    uint64_t m = (uint64_t)a->d[k] << (64 - bits);
+    *power = (a->exp + k) * GXB_LIMB_BITS + bits - 53;
+    for (; bits < 53 && k > 0; bits += GXB_LIMB_BITS) {
+        const uint64_t limb = a->d[--k];
+        const int shift = 64 - bits - GXB_LIMB_BITS;
+        m |= shift >= 0 ? limb << shift : limb >> -shift;
     }
-    return m;
+    return m >> 11;
 }
 
 /* m * 2^power; 0 below, infinity above the range of normal doubles */
@@ -880,13 +877,17 @@ static double gxbp_max(double a, double b) { return a > b ? a : b; }
 static double gxbp_min(double a, double b) { return a < b ? a : b; }
 static double gxbp_max3(const double a[3]) { return gxbp_max(gxbp_abs(a[0]), gxbp_max(gxbp_abs(a[1]), gxbp_abs(a[2]))); }
 
+static void gxbp_cross(double r[3], const double a[3], const double b[3]) {
+    r[0] = a[1] * b[2] - a[2] * b[1];
+    r[1] = a[2] * b[0] - a[0] * b[2];
+    r[2] = a[0] * b[1] - a[1] * b[0];
+}
+
 /* r = a x b, errors: each component of a within ea, of b within eb. Returns the bound for each component of r:
    two products of sizes A B, inherited A eb + B ea + ea eb each, and 8u of 2 A B. */
 static double gxbp_filter_cross(double r[3], const double a[3], double ea, const double b[3], double eb) {
     const double A = gxbp_max3(a), B = gxbp_max3(b);
-    r[0] = a[1] * b[2] - a[2] * b[1];
-    r[1] = a[2] * b[0] - a[0] * b[2];
-    r[2] = a[0] * b[1] - a[1] * b[0];
+    gxbp_cross(r, a, b);
     return 4 * (A * eb + B * ea + ea * eb) + 32 * GXBP_U * A * B + GXBP_TINY;
 }
 
@@ -1019,24 +1020,101 @@ static int gxbp_orient2d_short(const double a[2], const double b[2], const doubl
     return s > t ? 1 : s < t ? -1 : 0;
 }
 
-/* Differences are below 2^62, minors below 2^125; each minor is taken apart at 2^64, so that products with its halves stay below 2^127. */
-static int gxbp_orient3d_short(const double a[3], const double b[3], const double c[3], const double d[3]) {
-    const double *x[4];
-    int64_t v[12];
+/* |a-d b-d c-d| for points abc (three, one after the other) and d, as the result * 2^64 + *rest. Differences are below 2^62, minors below 2^125; each
+   minor is taken apart at 2^64, so that products with its halves stay below 2^127. */
+static gxbp_signed_wide gxbp_short_determinant(const int64_t *abc, const int64_t *d, uint64_t *rest) {
+    int64_t v[9];
     gxbp_signed_wide high = 0;
     gxbp_wide low = 0;
     int k, m = 1, n = 2;
-    x[0] = a; x[1] = b; x[2] = c; x[3] = d;
-    if (!gxbp_short_integers(x, 4, 3, v)) return GXBP_UNKNOWN;
-    for (k = 0; k < 3; k++) { v[k] -= v[9 + k]; v[3 + k] -= v[9 + k]; v[6 + k] -= v[9 + k]; }
+    for (k = 0; k < 3; k++) { v[k] = abc[k] - d[k]; v[3 + k] = abc[3 + k] - d[k]; v[6 + k] = abc[6 + k] - d[k]; }
     for (k = 0; k < 3; m = n, n = k++) {
         const gxbp_signed_wide minor = (gxbp_signed_wide)v[3 + m] * v[6 + n] - (gxbp_signed_wide)v[3 + n] * v[6 + m];
         const gxbp_signed_wide part = (gxbp_signed_wide)(uint64_t)minor * v[k];
         high += (gxbp_signed_wide)(int64_t)(minor >> 64) * v[k] + (part >> 64);
         low += (uint64_t)part;
     }
-    high += (gxbp_signed_wide)(low >> 64);
-    return high < 0 ? -1 : high > 0 || (uint64_t)low != 0;
+    *rest = (uint64_t)low;
+    return high + (gxbp_signed_wide)(low >> 64);
+}
+
+static int gxbp_orient3d_short(const double a[3], const double b[3], const double c[3], const double d[3]) {
+    const double *x[4];
+    int64_t v[12];
+    gxbp_signed_wide high;
+    uint64_t rest;
+    x[0] = a; x[1] = b; x[2] = c; x[3] = d;
+    if (!gxbp_short_integers(x, 4, 3, v)) return GXBP_UNKNOWN;
+    high = gxbp_short_determinant(v, v + 9, &rest);
+    return high < 0 ? -1 : high > 0 || rest != 0;
+}
+
+/* Such a determinant's sign and size */
+typedef struct gxbp_short { int sign; uint64_t d[3]; } gxbp_short;
+
+static void gxbp_short_value(gxbp_short *r, const int64_t *abc, const int64_t *d) {
+    uint64_t rest;
+    gxbp_signed_wide high = gxbp_short_determinant(abc, d, &rest);
+    r->sign = high < 0 ? -1 : high > 0 || rest != 0;
+    if (high < 0) { rest = 0 - rest; high = -high - (rest != 0); }
+    r->d[0] = rest; r->d[1] = (uint64_t)high; r->d[2] = (uint64_t)(high >> 64);
+}
+
+static int gxbp_compare_limbs(const uint64_t *x, const uint64_t *y, int count) {
+    while (--count > 0 && x[count] == y[count]) {}
+    return (x[count] > y[count]) - (x[count] < y[count]);
+}
+
+static void gxbp_short_product(uint64_t r[6], const gxbp_short *x, const gxbp_short *y) {
+    int i, j;
+    for (i = 0; i < 3; i++) r[i] = 0;
+    for (i = 0; i < 3; i++) {
+        uint64_t carry = 0;
+        for (j = 0; j < 3; j++) {
+            const gxbp_wide t = (gxbp_wide)x->d[i] * y->d[j] + r[i + j] + carry;
+            r[i + j] = (uint64_t)t;
+            carry = (uint64_t)(t >> 64);
+        }
+        r[i + 3] = carry;
+    }
+}
+
+/* Sign of a b - c d */
+static int gxbp_short_det2(const gxbp_short *a, const gxbp_short *b, const gxbp_short *c, const gxbp_short *d) {
+    const int ab = a->sign * b->sign, cd = c->sign * d->sign;
+    uint64_t x[6], y[6];
+    if (ab != cd || ab == 0) return (ab > cd) - (ab < cd);
+    gxbp_short_product(x, a, b);
+    gxbp_short_product(y, c, d);
+    return ab * gxbp_compare_limbs(x, y, 6);
+}
+
+/* Side of the plane through x[0..2] on which the point lies in which the plane through x[3..5] cuts the line from x[6] to x[7]: for sides s and t of
+   these two against x[3..5], u and v against x[0..2], the sign of (t u - s v) / (t - s). Determinants are the negatives of sides. */
+static int gxbp_line_side_short(const double *const x[8]) {
+    gxbp_short s, t, u, v;
+    int64_t i[24];
+    int order;
+    if (!gxbp_short_integers(x, 8, 3, i)) return GXBP_UNKNOWN;
+    gxbp_short_value(&s, i + 9, i + 18); gxbp_short_value(&t, i + 9, i + 21);
+    gxbp_short_value(&u, i, i + 18); gxbp_short_value(&v, i, i + 21);
+    order = s.sign != t.sign ? (s.sign > t.sign) - (s.sign < t.sign) : s.sign * gxbp_compare_limbs(s.d, t.d, 3);
+    return order == 0 ? GXBP_UNKNOWN : order * gxbp_short_det2(&t, &u, &s, &v);
+}
+
+/* Signs of (b - a) x (c - a) */
+static int gxbp_normal_short(const double a[3], const double b[3], const double c[3], int sign[3]) {
+    const double *x[3];
+    int64_t v[9];
+    int k, m = 1, n = 2;
+    x[0] = a; x[1] = b; x[2] = c;
+    if (!gxbp_short_integers(x, 3, 3, v)) return 0;
+    for (k = 0; k < 3; k++) { v[3 + k] -= v[k]; v[6 + k] -= v[k]; }
+    for (k = 0; k < 3; m = n, n = k++) {
+        const gxbp_signed_wide y = (gxbp_signed_wide)v[3 + m] * v[6 + n], z = (gxbp_signed_wide)v[3 + n] * v[6 + m];
+        sign[k] = (y > z) - (y < z);
+    }
+    return 1;
 }
 #else
 static int gxbp_orient2d_short(const double a[2], const double b[2], const double c[2]) {
@@ -1047,6 +1125,13 @@ static int gxbp_orient2d_short(const double a[2], const double b[2], const doubl
 static int gxbp_orient3d_short(const double a[3], const double b[3], const double c[3], const double d[3]) {
     (void)d;
     return gxbp_orient2d_short(a, b, c);
+}
+
+static int gxbp_line_side_short(const double *const x[8]) { return gxbp_orient2d_short(x[0], x[1], x[2]); }
+
+static int gxbp_normal_short(const double a[3], const double b[3], const double c[3], int sign[3]) {
+    sign[0] = sign[1] = sign[2] = 0;
+    return gxbp_orient2d_short(a, b, c) != GXBP_UNKNOWN;
 }
 #endif
 
@@ -1787,19 +1872,31 @@ static int gxbp_incident_by_line(const gxb_complex *cx, const uint32_t def[3], u
     return 0;
 }
 
-/* Of a point and a plane that are given by doubles */
-static int gxbp_short_side(const gxb_complex *cx, uint32_t point, uint32_t plane) {
-    const gxb_cplane *f = &cx->planes[plane];
-    const double *x[4];
-    int k, turn;
-    if (f->along_axis) return GXBP_UNKNOWN;
-    for (k = 0; k < 4; k++) {
-        const gxb_cpoint *p = &cx->points[k < 3 ? f->def[k] : point];
-        if (p->kind != GXB_EXPLICIT || p->ball.error > 0) return GXBP_UNKNOWN;
+/* x: coordinates of the points (as many as count) where all are given by doubles. Else 0 */
+static int gxbp_given_points(const gxb_complex *cx, const uint32_t *points, int count, const double **x) {
+    int k;
+    for (k = 0; k < count; k++) {
+        const gxb_cpoint *p = &cx->points[points[k]];
+        if (p->kind != GXB_EXPLICIT || p->ball.error > 0) return 0;
         x[k] = p->ball.x;
     }
-    turn = gxbp_orient3d_short(x[0], x[1], x[2], x[3]);
-    return turn == GXBP_UNKNOWN ? turn : -turn;
+    return 1;
+}
+
+/* Of a point and a plane that are given by doubles, or a point of a line and a plane that are */
+static int gxbp_short_side(const gxb_complex *cx, uint32_t kind, const uint32_t def[3], uint32_t point, uint32_t plane) {
+    const gxb_cplane *f = &cx->planes[plane], *g;
+    const double *x[8];
+    int turn;
+    if (f->along_axis || !gxbp_given_points(cx, f->def, 3, x)) return GXBP_UNKNOWN;
+    if (kind == GXB_EXPLICIT) {
+        if (!gxbp_given_points(cx, &point, 1, x + 3)) return GXBP_UNKNOWN;
+        turn = gxbp_orient3d_short(x[0], x[1], x[2], x[3]);
+        return turn == GXBP_UNKNOWN ? turn : -turn;
+    }
+    g = &cx->planes[def[2]];
+    if (kind != GXB_LINE_PLANE || g->along_axis || !gxbp_given_points(cx, g->def, 3, x + 3) || !gxbp_given_points(cx, def, 2, x + 6)) return GXBP_UNKNOWN;
+    return gxbp_line_side_short(x);
 }
 
 /* Sign of the exact value of n.X - d W for a point of the complex, or (point GXB_NONE) for one that only has a definition. */
@@ -1808,8 +1905,8 @@ static int gxbp_exact_sign(gxb_complex *cx, uint32_t kind, const uint32_t def[3]
     gxbp_vec sx, sn;
     const gxb_num *n, *x = sx.c;
     cx->exact_calls++;
-    if (kind == GXB_EXPLICIT) {
-        const int known = gxbp_short_side(cx, point, plane);
+    if (point == GXB_NONE || cx->points[point].exact == NULL) {
+        const int known = gxbp_short_side(cx, kind, def, point, plane);
         if (known != GXBP_UNKNOWN) return known;
     }
     n = gxbp_exact_cplane(cx, plane, &sn);
@@ -1896,7 +1993,11 @@ static gx_result gxbp_new_plane(gxb_complex *cx, uint32_t p, uint32_t q, uint32_
 }
 
 static GXBP_COLD int gxbp_exact_normal_sign(gxb_complex *cx, uint32_t plane, uint32_t axis) {
+    const gxb_cplane *f = &cx->planes[plane];
+    const double *x[3];
     gxbp_vec store;
+    int sign[3];
+    if (!f->along_axis && gxbp_given_points(cx, f->def, 3, x) && gxbp_normal_short(x[0], x[1], x[2], sign)) return sign[axis];
     return gxbp_exact_cplane(cx, plane, &store)[axis].sign;
 }
 
@@ -4621,13 +4722,37 @@ static uint32_t gxbp_take_passages(const uint32_t *triangles, gxbp_passage *pass
     return last;
 }
 
+enum { GXBP_FEW = 32, GXBP_FEW_TRIANGLES = 80 };        /* vertices of which a table has all pairs; half-edges that a byte names */
+
+/* Of few vertices. 0: not all edges have one half-edge in each direction. */
+static int gxbp_find_few_twins(const uint32_t *triangles, uint32_t count, uint32_t vertex_count, uint32_t *twin) {
+    uint8_t at[GXBP_FEW * GXBP_FEW];
+    uint32_t h, k, i;
+    memset(at, 0xff, (size_t)vertex_count * vertex_count);
+    for (h = 0; h < 3 * count; h += 3)
+        for (k = 0, i = 2; k < 3; i = k++) {
+            uint8_t *place = &at[triangles[h + i] * vertex_count + triangles[h + k]];
+            if (*place != 0xff) return 0;
+            *place = (uint8_t)(h + i);
+        }
+    for (h = 0; h < 3 * count; h += 3)
+        for (k = 0, i = 2; k < 3; i = k++) {
+            const uint8_t place = at[triangles[h + k] * vertex_count + triangles[h + i]];
+            if (place == 0xff || place == h + i) return 0;
+            twin[h + i] = place;
+        }
+    return 1;
+}
+
 /* twin of each half-edge, GXB_NONE where an edge has not one in each direction. *open: a half-edge whose edge is passed more often in
    its direction than in the other, or GXB_NONE: the surface is closed. */
 static int gxbp_find_twins(gxb_boolean *b, const uint32_t *triangles, size_t count, uint32_t vertex_count, uint32_t *twin, uint32_t *open) {
     const size_t bytes = vertex_count * sizeof(gxbp_passage);
-    gxbp_passage *passages = (gxbp_passage *)gxbp_allocate(&b->cx.allocator, bytes);
+    gxbp_passage *passages;
     uint32_t p, q, odd;
     *open = GXB_NONE;
+    if (vertex_count <= GXBP_FEW && count <= GXBP_FEW_TRIANGLES && gxbp_find_few_twins(triangles, (uint32_t)count, vertex_count, twin)) return 1;
+    passages = (gxbp_passage *)gxbp_allocate(&b->cx.allocator, bytes);
     if (passages == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
     for (p = 0; p < vertex_count; p++) passages[p].first = passages[p].p = GXB_NONE;
     gxbp_list_half_edges(triangles, (uint32_t)count, passages, twin);
@@ -4682,6 +4807,8 @@ static void gxbp_cross_sizes(double m[3], double size[3], const double a[3], con
 static GXBP_COLD int gxbp_has_area_exactly(const double *p, const double *q, const double *r) {
     gxb_plane plane;
     gxbp_vec n;
+    int sign[3];
+    if (gxbp_normal_short(p, q, r, sign)) return sign[0] != 0 || sign[1] != 0 || sign[2] != 0;
     gxb_plane_init(&plane, p, q, r);
     gxbp_plane_exact(&n, &plane);
     return n.c[0].sign != 0 || n.c[1].sign != 0 || n.c[2].sign != 0;
@@ -4734,9 +4861,10 @@ static void gxbp_forget_degenerate(gxb_boolean *b, uint32_t first) {
     }
 }
 
-/* points and local: room for vertex_count; local triangles and twins: 3 per triangle */
-static gx_result gxbp_read_points(gxb_boolean *b, const gxb_operand *o, uint32_t *points, uint32_t *local, size_t *bad) {
+/* points and local: room for vertex_count; local triangles and twins: 3 per triangle. *distinct: no two vertices are at one place, local is i. */
+static gx_result gxbp_read_points(gxb_boolean *b, const gxb_operand *o, uint32_t *points, uint32_t *local, int *distinct, size_t *bad) {
     size_t i;
+    *distinct = 1;
     for (i = 0; i < o->vertex_count; i++) {
         double y[3];
         gxbp_vertex *v;
@@ -4747,17 +4875,23 @@ static gx_result gxbp_read_points(gxb_boolean *b, const gxb_operand *o, uint32_t
         v = &b->vertices[points[i]];                /* vertices at one place are one: the first of them */
         if (v->head >= i || points[v->head] != points[i]) v->head = (uint32_t)i;
         local[i] = v->head;
+        *distinct &= v->head == i;
     }
     return GX_OK;
 }
 
 static gx_result gxbp_read_triangles(gxb_boolean *b, const gxb_operand *o, uint32_t *work, size_t *bad) {
-    uint32_t *points = work, *local = points + o->vertex_count, *triangles = local + o->vertex_count;
-    uint32_t *twin = triangles + 3 * o->triangle_count, open, first = b->source_count;
-    gx_result result = gxbp_read_points(b, o, points, local, bad);
+    uint32_t *points = work, *local = points + o->vertex_count, *joined = local + o->vertex_count;
+    uint32_t *twin = joined + 3 * o->triangle_count, open, first = b->source_count;
+    const uint32_t *triangles = o->triangles;
+    int distinct;
+    gx_result result = gxbp_read_points(b, o, points, local, &distinct, bad);
     size_t h;
     if (result != GX_OK) return result;
-    for (h = 0; h < 3 * o->triangle_count; h++) triangles[h] = local[o->triangles[h]];
+    if (!distinct) {
+        for (h = 0; h < 3 * o->triangle_count; h++) joined[h] = local[o->triangles[h]];
+        triangles = joined;
+    }
     if (!gxbp_find_twins(b, triangles, o->triangle_count, (uint32_t)o->vertex_count, twin, &open)) return b->result;
     if (open != GXB_NONE && o->operation != GXB_SPLIT) { *bad = open / 3; return GX_ERROR_NOT_CLOSED; }
     for (h = 0; h < o->triangle_count; h++) {
@@ -5427,6 +5561,20 @@ static void gxbp_meet_operands(gxb_boolean *b, uint32_t i, uint32_t j) {
 
 /* --- edges: their inner points in order --- */
 
+/* gxbp_compare_points for points in which two planes cut one line of input points: p lies on the side of q's plane on which the end is that it is nearer
+   to. Signs of points that are given by doubles, and of points of their lines, take no exact numbers. */
+static GXBP_COLD int gxbp_compare_on_line(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t axis) {
+    const gxb_cpoint *x = b->cx.points, *u = &x[p], *v = &x[q];
+    int of_end, along, side;
+    if (u->kind != GXB_LINE_PLANE || v->kind != GXB_LINE_PLANE || u->exact != NULL || v->exact != NULL ||
+        !((u->def[0] == v->def[0] && u->def[1] == v->def[1]) || (u->def[0] == v->def[1] && u->def[1] == v->def[0]))) return GXBP_UNKNOWN;
+    of_end = gxbp_point_side(b, u->def[0], v->def[2]);
+    if (of_end == 0 || gxbp_point_side(b, u->def[1], v->def[2]) != -of_end) return GXBP_UNKNOWN;
+    along = gxbp_compare_doubles(x[u->def[1]].ball.x[axis], x[u->def[0]].ball.x[axis]);
+    side = gxbp_exact_sign(&b->cx, u->kind, u->def, p, v->def[2]);
+    return side == of_end ? -along : side == 0 ? 0 : along;
+}
+
 /* Sign of p[axis] - q[axis] */
 static int gxbp_compare_points(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t axis) {
     const gxb_ball *a = &b->cx.points[p].ball, *c = &b->cx.points[q].ball;
@@ -5436,8 +5584,11 @@ static int gxbp_compare_points(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t 
     gxbp_vec s, t;
     const gxb_num *x, *y;
     GXB_NUM(r);
+    int known;
     b->cx.filter_calls++;
     if (sign != 0 || p == q) return sign;
+    known = gxbp_compare_on_line(b, p, q, axis);
+    if (known != GXBP_UNKNOWN) return known;
     b->cx.exact_calls++;
     x = gxbp_exact_cpoint(&b->cx, p, &s);
     y = gxbp_exact_cpoint(&b->cx, q, &t);
@@ -5890,11 +6041,28 @@ static gxbp_location gxbp_locate(gxb_boolean *b, const gxbp_line *line) {
     return spot;
 }
 
+/* Are two points named by one edge? Then they are not equal, or it would have been found when its points were put in order. */
+static int gxbp_share_edge(const gxb_boolean *b, uint32_t p, uint32_t q) {
+    const uint32_t *k = b->vertices[p].key, *m = b->vertices[q].key;
+    if ((k[0] != GXB_FROM_EDGE_TRIANGLE && k[0] != GXB_FROM_EDGE_EDGE) || (m[0] != GXB_FROM_EDGE_TRIANGLE && m[0] != GXB_FROM_EDGE_EDGE)) return 0;
+    return k[1] == m[1] || (k[0] == GXB_FROM_EDGE_EDGE && k[2] == m[1]) || (m[0] == GXB_FROM_EDGE_EDGE && (k[1] == m[2] || (k[0] == m[0] && k[2] == m[2])));
+}
+
+/* Does q lie off a plane that p is in by its definition? */
+static int gxbp_leaves_plane(gxb_boolean *b, uint32_t p, uint32_t q) {
+    uint32_t of[3], count = gxbp_planes_of(b, p, of), k;
+    for (k = 0; k < count; k++)
+        if (of[k] != GXB_NONE && !gxbp_is_in_plane(b, q, of[k]) && gxbp_point_side(b, q, of[k]) != 0) return 1;
+    return 0;
+}
+
 static int gxbp_points_equal(gxb_boolean *b, uint32_t p, uint32_t q) {
     const gxb_ball *x = &b->cx.points[p].ball, *y = &b->cx.points[q].ball;
     const double reach = 2 * (x->error + y->error) + GXBP_TINY;
     uint32_t k;
     for (k = 0; k < 3; k++) if (gxbp_abs(gxbp_fence(x->x[k] - y->x[k])) > 2 * reach) return 0;
+    if (p == q) return 1;
+    if (gxbp_share_edge(b, p, q) || gxbp_leaves_plane(b, p, q)) return 0;
     for (k = 0; k < 3; k++) if (gxbp_compare_points(b, p, q, k) != 0) return 0;
     return 1;
 }
@@ -6182,6 +6350,7 @@ typedef struct gxbp_strand { uint32_t first, count, from, to; } gxbp_strand;    
 typedef struct gxbp_division {
     uint32_t source, spare, state;          /* spare: the source's only facet, until it is used */
     gxbp_knot rim[GXBP_SMALL]; uint32_t rim_count;
+    uint32_t corner[3];                     /* places of the source's corners in the rim */
     uint32_t chain[GXBP_SMALL];             /* of each rim point: the strand that ends there, or GXB_NONE */
     gxbp_strand strand[GXBP_SMALL]; uint32_t strand_count;
     gxbp_knot step[GXBP_SMALL];             /* of each segment: the point that it leaves; slot: its place in b->chain */
@@ -6211,6 +6380,7 @@ static int gxbp_collect_rim(gxb_boolean *b, gxbp_division *d, uint32_t n) {
     for (k = 0; k < 3; k++) {
         const uint32_t count = gxbp_edge_points(b, s, k) - 1;
         if (d->rim_count + count + n > GXBP_SMALL) return 0;
+        d->corner[k] = d->rim_count;
         for (i = 0; i < count; i++) {
             gxbp_knot *knot = &d->rim[d->rim_count];
             knot->vertex = gxbp_edge_point(b, s, k, i);
@@ -6307,13 +6477,40 @@ static int gxbp_collect_chains(gxb_boolean *b, gxbp_division *d, uint32_t n) {
     return 1;
 }
 
-static int gxbp_knot_turn(gxb_boolean *b, const gxbp_knot *p, const gxbp_knot *q, const gxbp_knot *r) {
-    return p->on & q->on & r->on ? 0 : gxbp_turn(b, p->vertex, q->vertex, r->vertex);
+/* 1: p comes before q along an edge (bit) of the source, the inside of which is to the left; -1: after it */
+static int gxbp_along_rim(const gxb_boolean *b, const gxbp_division *d, const gxbp_knot *p, const gxbp_knot *q, uint32_t edge) {
+    const uint32_t first = d->corner[edge >> 1], i = b->vertices[p->vertex].hint, j = b->vertices[q->vertex].hint;
+    return (i < first ? i + d->rim_count : i) < (j < first ? j + d->rim_count : j) ? 1 : -1;
+}
+
+/* gxbp_knot_turn where the way from p to q is a segment: side of its plane; else GXBP_UNKNOWN */
+static int gxbp_turn_by_segment(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *p, const gxbp_knot *q, const gxbp_knot *r) {
+    if (p->slot >= d->step_count || &d->polygon[p->after] != q) return GXBP_UNKNOWN;
+    return gxbp_left_of_segment(b, d->step[p->slot].slot, p->vertex, q->vertex, r->vertex);
+}
+
+static GXBP_COLD int gxbp_turn_by_segments(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *p, const gxbp_knot *q, const gxbp_knot *r) {
+    int turn = gxbp_turn_by_segment(b, d, p, q, r);
+    if (turn == GXBP_UNKNOWN) turn = gxbp_turn_by_segment(b, d, q, r, p);
+    if (turn == GXBP_UNKNOWN) turn = gxbp_turn_by_segment(b, d, r, p, q);
+    return turn == GXBP_UNKNOWN ? gxbp_turn(b, p->vertex, q->vertex, r->vertex) : turn;
+}
+
+/* Two on one edge of the source say where a third one lies: it is not right of that edge. */
+static int gxbp_knot_turn(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *p, const gxbp_knot *q, const gxbp_knot *r) {
+    const uint32_t pq = p->on & q->on, qr = q->on & r->on, rp = r->on & p->on;
+    int turn;
+    if (pq & r->on) return 0;
+    if (pq) return gxbp_along_rim(b, d, p, q, pq);
+    if (qr) return gxbp_along_rim(b, d, q, r, qr);
+    if (rp) return gxbp_along_rim(b, d, r, p, rp);
+    turn = gxbp_turn_by_filter(b, p->vertex, q->vertex, r->vertex);
+    return turn != 0 ? turn : gxbp_turn_by_segments(b, d, p, q, r);
 }
 
 /* Does w lie right of the edge from p to q? */
 static int gxbp_is_beyond(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *p, const gxbp_knot *q, const gxbp_knot *w) {
-    if (p->slot >= d->step_count) return gxbp_knot_turn(b, p, q, w) < 0;
+    if (p->slot >= d->step_count) return gxbp_knot_turn(b, d, p, q, w) < 0;
     return gxbp_left_of_segment(b, d->step[p->slot].slot, p->vertex, q->vertex, w->vertex) < 0;
 }
 
@@ -6322,7 +6519,7 @@ static int gxbp_is_ear(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *
     const gxbp_knot *p = &d->polygon[q->before], *r = &d->polygon[q->after], *w;
     if (r->after == p->before) return d->polygon[r->after].bend > 0;
     for (w = &d->polygon[r->after]; w != p; w = &d->polygon[w->after])
-        if (w->bend <= 0 && !(w->before == q->after && r->bend < 0) && !(w->after == q->before && p->bend < 0) && !gxbp_is_beyond(b, d, p, q, w) && !gxbp_is_beyond(b, d, q, r, w) && gxbp_knot_turn(b, r, p, w) >= 0) return 0;
+        if (w->bend <= 0 && !(w->before == q->after && r->bend < 0) && !(w->after == q->before && p->bend < 0) && !gxbp_is_beyond(b, d, p, q, w) && !gxbp_is_beyond(b, d, q, r, w) && gxbp_knot_turn(b, d, r, p, w) >= 0) return 0;
     return 1;
 }
 
@@ -6354,9 +6551,9 @@ static void gxbp_cut_ear(gxb_boolean *b, gxbp_division *d, gxbp_knot *p, const g
 }
 
 /* Only a reflex vertex may stay one where a neighbour is cut off. Returns 1 if it became convex. */
-static uint32_t gxbp_bend_again(gxb_boolean *b, gxbp_knot *polygon, gxbp_knot *v) {
+static uint32_t gxbp_bend_again(gxb_boolean *b, gxbp_division *d, gxbp_knot *v) {
     const int old = v->bend;
-    v->bend = old >= 0 ? 1 : gxbp_knot_turn(b, &polygon[v->before], v, &polygon[v->after]);
+    v->bend = old >= 0 ? 1 : gxbp_knot_turn(b, d, &d->polygon[v->before], v, &d->polygon[v->after]);
     return old <= 0 && v->bend > 0;
 }
 
@@ -6380,7 +6577,7 @@ static void gxbp_fill_polygon(gxb_boolean *b, gxbp_division *d, uint32_t n) {
         p->slot = d->slot_count++;
         p->after = q->after;
         r->before = q->before;
-        concave -= gxbp_bend_again(b, polygon, p) + gxbp_bend_again(b, polygon, r);
+        concave -= gxbp_bend_again(b, d, p) + gxbp_bend_again(b, d, r);
         tried = 0;
         n--;
     }
@@ -7723,57 +7920,139 @@ static void gxbp_num_divide(gxb_num *r, const gxb_num *num, const gxb_num *den) 
 
 static void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *fine) {
     gxbp_vec store;
-    const gxb_num *x = gxbp_exact_cpoint(&b->cx, point, &store);
+    const gxb_num *x = gxbp_exact_cpoint(&b->cx, point, b->cx.points[point].kind == GXB_EXPLICIT ? fine : &store);
     int k;
+    if (x == fine->c) return;
     gxbp_vec_init(fine);
     for (k = 0; k < 3; k++) gxbp_num_divide(&fine->c[k], &x[k], &x[3]);
 }
 
+/* Coordinates of 180 bits of the result's vertices, each made once. first: of a vertex' limbs; GXB_NONE: it has not been made */
+typedef struct gxbp_fine { uint32_t first; gxb_num c[3]; } gxbp_fine;
+typedef struct gxbp_fines { gxbp_fine *vertices; gxb_limb *limbs; uint32_t limb_count, limb_capacity; } gxbp_fines;
+
+static void gxbp_need_fine(gxb_boolean *b, gxbp_fines *fines, uint32_t vertex) {
+    gxbp_fine *v = &fines->vertices[vertex];
+    gxbp_vec x;
+    uint32_t k;
+    if (v->first != GXB_NONE) return;
+    gxbp_fine_point(b, b->out_points[vertex], &x);
+    if (!gxbp_room(b, &fines->limbs, sizeof *fines->limbs, fines->limb_count, &fines->limb_capacity, (size_t)x.c[0].n + x.c[1].n + x.c[2].n)) return;
+    v->first = fines->limb_count;
+    for (k = 0; k < 3; k++) {
+        v->c[k] = x.c[k];
+        memcpy(fines->limbs + fines->limb_count, x.c[k].d, x.c[k].n * sizeof *fines->limbs);
+        fines->limb_count += x.c[k].n;
+    }
+}
+
+/* Of a vertex that has been made; valid until the next one is. */
+static const gxb_num *gxbp_use_fine(gxbp_fines *fines, uint32_t vertex) {
+    gxbp_fine *v = &fines->vertices[vertex];
+    v->c[0].d = fines->limbs + v->first;
+    v->c[1].d = v->c[0].d + v->c[0].n;
+    v->c[2].d = v->c[1].d + v->c[1].n;
+    return v->c;
+}
+
 /* Six times the volume of a shell (set root in parent), from coordinates of 180 bits. */
-static GXBP_COLD double gxbp_fine_volume(gxb_boolean *b, uint32_t *parent, uint32_t root) {
+static double gxbp_fine_volume(gxb_boolean *b, uint32_t *parent, uint32_t root, gxbp_fines *fines) {
     GXB_NUM(total); GXB_NUM(sum); GXB_NUM(term);
-    gxbp_vec x[3], n;
+    gxbp_vec n;
     uint32_t t, k;
+    gxbp_vec_init(&n);
     for (t = root; t < b->out_source_count; t++) {
+        const uint32_t *v = b->out_triangles + 3 * (size_t)t;
         if (gxbp_find_set(parent, t) != root) continue;
-        for (k = 0; k < 3; k++) gxbp_fine_point(b, gxbp_out_corner(b, t, k), &x[k]);
-        gxbp_vec_init(&n);
-        gxbp_num_cross(n.c, x[0].c, x[1].c);
-        gxbp_num_dot(&term, n.c, x[2].c);
+        for (k = 0; k < 3; k++) gxbp_need_fine(b, fines, v[k]);
+        if (b->result != GX_OK) return 0;
+        gxbp_num_cross(n.c, gxbp_use_fine(fines, v[0]), gxbp_use_fine(fines, v[1]));
+        gxbp_num_dot(&term, n.c, gxbp_use_fine(fines, v[2]));
         gxb_num_add(&sum, &total, &term);
         gxbp_num_copy(&total, &sum, 1);
     }
     return gxb_num_to_double(&total);
 }
 
-/* Six times the volume of the tetrahedron from o to a triangle of the result, d0 . n; *error: bounds as in >>filter, for n's error and size
-   E and N, the error e of d0 and its size D: 3 (D E + e (N + E)) and 8u of three products. */
+/* What d0 . n loses: bounds as in >>filter, for n's error and size E and N, the error e of d0 and its size D: 3 (D E + e (N + E)) and 8u of three
+   products */
+static double gxbp_volume_error(double D, double e, double N, double E) { return 6 * (D * E + e * (N + E)) + 48 * GXBP_U * D * N + GXBP_TINY; }
+
+/* Six times the volume of the tetrahedron from o to a triangle of the result, d0 . n; *error, if not NULL: its bound */
 static double gxbp_rough_volume(const gxb_boolean *b, uint32_t t, const gxb_ball *o, double *error) {
     const gxb_ball *x = &b->cx.points[gxbp_out_corner(b, t, 0)].ball;
-    double d0[3], d1[3], d2[3], n[3], E, D, N;
+    double d0[3], d1[3], d2[3], n[3];
     const double e = gxbp_filter_difference(d0, o, x), e1 = gxbp_filter_difference(d1, x, &b->cx.points[gxbp_out_corner(b, t, 1)].ball);
     const double e2 = gxbp_filter_difference(d2, x, &b->cx.points[gxbp_out_corner(b, t, 2)].ball);
-    E = gxbp_filter_cross(n, d1, e1, d2, e2);
-    D = gxbp_max3(d0);
-    N = gxbp_max3(n);
-    *error = 6 * (D * E + e * (N + E)) + 48 * GXBP_U * D * N + GXBP_TINY;
+    if (error == NULL) gxbp_cross(n, d1, d2);
+    else {
+        const double E = gxbp_filter_cross(n, d1, e1, d2, e2);
+        *error = gxbp_volume_error(gxbp_max3(d0), e, gxbp_max3(n), E);
+    }
     return d0[0] * n[0] + d0[1] * n[1] + d0[2] * n[2];
+}
+
+/* A bound of them all: from the size S of the box around all vertices, 8u larger for what rounding takes from it, and the largest of their errors */
+static double gxbp_largest_rough_error(const gxb_boolean *b) {
+    const gxb_ball *first = &b->cx.points[b->out_points[0]].ball;
+    double low[3], high[3], error = first->error, S = 0, e;
+    uint32_t i, k;
+    memcpy(low, first->x, sizeof low);
+    memcpy(high, first->x, sizeof high);
+    for (i = 1; i < b->out_point_count; i++) {
+        const gxb_ball *ball = &b->cx.points[b->out_points[i]].ball;
+        for (k = 0; k < 3; k++) { low[k] = gxbp_min(ball->x[k], low[k]); high[k] = gxbp_max(ball->x[k], high[k]); }
+        error = gxbp_max(ball->error, error);
+    }
+    for (k = 0; k < 3; k++) S = gxbp_max(high[k] - low[k], S);
+    S += 8 * GXBP_U * S;
+    e = 4 * error + 2 * GXBP_U * S + GXBP_TINY;
+    return gxbp_volume_error(S, e, 2 * S * S, 8 * S * e + 4 * e * e + 32 * GXBP_U * S * S + GXBP_TINY);
 }
 
 #define GXBP_VOLUME_ERROR 1e-7     /* relative: sums of doubles with a larger bound, mostly far above their error, give way to exact ones */
 
-/* Six times the volumes of the sets in volume[root], in the frame's units. */
-static void gxbp_measure_shells(gxb_boolean *b, uint32_t *parent, double *volume, double *error) {
+static int gxbp_is_rough(const gxb_boolean *b, double volume, double error) { return b->fine || error > GXBP_VOLUME_ERROR * gxbp_abs(volume); }
+
+/* Sums over the sets in volume[root] and error[root]; largest: a bound for all triangles, or 0: each has its own */
+static void gxbp_sum_volumes(const gxb_boolean *b, uint32_t *parent, double *volume, double *error, double largest) {
     uint32_t t;
     for (t = 0; t < b->out_source_count; t++) volume[t] = error[t] = 0;
     for (t = 0; t < b->out_source_count; t++) {
         const uint32_t root = gxbp_find_set(parent, t);
-        double bound;
-        volume[root] += gxbp_rough_volume(b, t, &b->cx.points[gxbp_out_corner(b, root, 0)].ball, &bound);
-        error[root] += 2 * bound;
+        double own = largest;
+        volume[root] += gxbp_rough_volume(b, t, &b->cx.points[gxbp_out_corner(b, root, 0)].ball, largest > 0 ? NULL : &own);
+        error[root] += 2 * own;
     }
-    for (t = 0; t < b->out_source_count; t++)
-        if (parent[t] == t && (b->fine || error[t] > GXBP_VOLUME_ERROR * gxbp_abs(volume[t]))) volume[t] = gxbp_fine_volume(b, parent, t);
+}
+
+static int gxbp_any_is_rough(const gxb_boolean *b, const uint32_t *parent, const double *volume, const double *error) {
+    uint32_t t;
+    for (t = 0; t < b->out_source_count; t++) if (parent[t] == t && gxbp_is_rough(b, volume[t], error[t])) return 1;
+    return 0;
+}
+
+/* Exact sums where those of doubles are too rough */
+static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, uint32_t *parent, double *volume, const double *error) {
+    const size_t bytes = b->out_point_count * sizeof(gxbp_fine);
+    gxbp_fines fines = {NULL, NULL, 0, 0};
+    uint32_t t;
+    fines.vertices = (gxbp_fine *)gxbp_allocate(&b->cx.allocator, bytes);
+    if (fines.vertices == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
+    for (t = 0; t < b->out_point_count; t++) fines.vertices[t].first = GXB_NONE;
+    for (t = 0; t < b->out_source_count && b->result == GX_OK; t++)
+        if (parent[t] == t && gxbp_is_rough(b, volume[t], error[t])) volume[t] = gxbp_fine_volume(b, parent, t, &fines);
+    gxbp_release(&b->cx.allocator, fines.limbs, fines.limb_capacity * sizeof *fines.limbs);
+    gxbp_release(&b->cx.allocator, fines.vertices, bytes);
+}
+
+/* Six times the volumes of the sets in volume[root], in the frame's units. One bound for all triangles costs less; it is too large for many. */
+static void gxbp_measure_shells(gxb_boolean *b, uint32_t *parent, double *volume, double *error) {
+    const int few = b->out_source_count <= GXBP_FEW_TRIANGLES;
+    gxbp_sum_volumes(b, parent, volume, error, few ? gxbp_largest_rough_error(b) : 0);
+    if (!gxbp_any_is_rough(b, parent, volume, error)) return;
+    if (few) gxbp_sum_volumes(b, parent, volume, error, 0);
+    gxbp_refine_volumes(b, parent, volume, error);
 }
 
 /* gxbp_ray_left for points of the result, and a ray moved by way (h, h^2) */
