@@ -396,6 +396,7 @@ GXFEM_API void gxi_moments2_add_triangle(gxi_moments2 *m, const double a[3], con
 {
     const double det = gxip_determinant(a, b, c), sixth = det / 6, quarter = 0.25 * sixth, part = det / 120;
     const double s[3] = { a[0] + b[0] + c[0], a[1] + b[1] + c[1], a[2] + b[2] + c[2] };
+    if (fabs(det) <= 0) return; /* a part of an element: its facets on the faces around the origin, which are most */
     m->volume += sixth;
     m->first[0] += quarter * s[0];
     m->first[1] += quarter * s[1];
