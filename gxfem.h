@@ -787,16 +787,15 @@ static void gxp_search_init(gxp_search *s, const double *const p[3], double unit
 
 /* May the triangle meet the box? Overflow: a candidate, which then is out of range. */
 static int gxp_triangle_near_box(const gxp_search *s, const gxp_box *box) {
-    double sum = 0, r = 0, far = 0;
+    double sum = 0, r = 0, far = s->far;
     int k;
+    for (k = 0; k < 3; k++) if (s->low[k] > box->high[k] || s->high[k] < box->low[k]) return 0;
     for (k = 0; k < 3; k++) {
         const double c = 0.5 * box->low[k] + 0.5 * box->high[k], h = 0.5 * box->high[k] - 0.5 * box->low[k];
-        if (s->low[k] > box->high[k] || s->high[k] < box->low[k]) return 0;
         sum += s->axis[0][k] * ((c - s->base[k]) * s->unit);
         r += fabs(s->axis[0][k]) * (h * s->unit);
         far += (fabs(c) + h) * s->unit;
     }
-    far += s->far;
     return !gxp_is_finite(far) || fabs(sum) <= r + GXP_SEARCH_MARGIN * s->scale[0] * far;
 }
 
