@@ -102,11 +102,14 @@ typedef struct gx_failure {
     size_t surface;         /* of a cut: which of its surfaces; else SIZE_MAX */
 } gx_failure;
 
-/* Where memory comes from. Zero-initialised: malloc and free. */
+/* Where memory comes from. Zero-initialised: malloc, free and realloc. */
 typedef struct gx_allocator {
     void *(*allocate)(void *user, size_t size);             /* NULL when there is none; size is never 0 */
     void (*release)(void *user, void *memory, size_t size); /* size as it was allocated; memory is never NULL */
     void *user;
+    /* A larger block with the bytes of the old one, which is then gone; NULL when there is none, and the old one stays. NULL: memory that
+       grows is allocated, copied and released. Only with the other two. */
+    void *(*reallocate)(void *user, void *memory, size_t size, size_t larger);
 } gx_allocator;
 /* How work is handed to the host's threads. Zero-initialised: the calling thread does it all. Results do not depend on it. */
 typedef struct gx_jobs {
@@ -143,7 +146,7 @@ typedef struct gx_body_desc {
     const uint32_t *element_materials;  /* element_count, below material_count; NULL: all of materials[0] */
     const float *texture;       /* node_count x 2: texture coordinates of the outer surface; NULL: all 0 */
     double support_below;       /* copies with a smaller share of their node's volume follow others, see gx_body_step; 0: none does */
-    gx_allocator allocator;     /* zero: malloc, free */
+    gx_allocator allocator;     /* zero: malloc, free, realloc */
     double (*clock)(void *user);/* seconds, for the reports' timings; NULL: they are 0 */
     void *clock_user;
     gx_jobs jobs;               /* the host's threads, for the steps; zero: none */
@@ -538,17 +541,27 @@ static void gxp_release(const gx_allocator *a, void *memory, size_t size) {
     else free(memory);
 }
 
+/* A larger block with the first `used` bytes of the old one, which is then gone; NULL: there is none, and the old one stays. */
+static void *gxp_reallocate(const gx_allocator *a, void *old, size_t old_size, size_t used, size_t size) {
+    void *memory;
+    if (a->allocate == NULL && a->release == NULL) return realloc(old, size);   /* moves the pages of large blocks, not their bytes */
+    if (a->reallocate != NULL && old != NULL) return a->reallocate(a->user, old, old_size, size);
+    memory = gxp_allocate(a, size);
+    if (memory == NULL) return NULL;
+    if (used > 0) memcpy(memory, old, used);
+    gxp_release(a, old, old_size);
+    return memory;
+}
+
 /* Makes room for count + extra items; array is the address of the pointer. */
 static gx_result gxp_reserve(const gx_allocator *a, void *array, size_t item, size_t count, uint32_t *capacity, size_t extra) {
     const size_t need = count + extra, room = need + need / 2 + 16;
     void *old, *memory;
     if (need <= *capacity) return GX_OK;
     if (room > INT32_MAX || room > SIZE_MAX / item) return GX_ERROR_LIMIT;
-    memory = gxp_allocate(a, room * item);
-    if (memory == NULL) return GX_ERROR_MEMORY;
     memcpy(&old, array, sizeof old);
-    if (count > 0) memcpy(memory, old, count * item);
-    gxp_release(a, old, (size_t)*capacity * item);
+    memory = gxp_reallocate(a, old, (size_t)*capacity * item, count * item, room * item);
+    if (memory == NULL) return GX_ERROR_MEMORY;
     memcpy(array, &memory, sizeof memory);
     *capacity = (uint32_t)room;
     return GX_OK;
@@ -774,16 +787,15 @@ static void gxp_search_init(gxp_search *s, const double *const p[3], double unit
 
 /* May the triangle meet the box? Overflow: a candidate, which then is out of range. */
 static int gxp_triangle_near_box(const gxp_search *s, const gxp_box *box) {
-    double sum = 0, r = 0, far = 0;
+    double sum = 0, r = 0, far = s->far;
     int k;
+    for (k = 0; k < 3; k++) if (s->low[k] > box->high[k] || s->high[k] < box->low[k]) return 0;
     for (k = 0; k < 3; k++) {
         const double c = 0.5 * box->low[k] + 0.5 * box->high[k], h = 0.5 * box->high[k] - 0.5 * box->low[k];
-        if (s->low[k] > box->high[k] || s->high[k] < box->low[k]) return 0;
         sum += s->axis[0][k] * ((c - s->base[k]) * s->unit);
         r += fabs(s->axis[0][k]) * (h * s->unit);
         far += (fabs(c) + h) * s->unit;
     }
-    far += s->far;
     return !gxp_is_finite(far) || fabs(sum) <= r + GXP_SEARCH_MARGIN * s->scale[0] * far;
 }
 
@@ -1070,12 +1082,17 @@ static gx_result gxp_check_material(double young, double poisson, double density
     return young > 0 && density > 0 && poisson >= 0 && poisson < 0.5 ? GX_OK : GX_ERROR_ARGUMENT;
 }
 
+/* allocate and release, or neither, and reallocate only with them */
+static int gxp_is_allocator(const gx_allocator *a) {
+    return a->allocate == NULL ? a->release == NULL && a->reallocate == NULL : a->release != NULL;
+}
+
 /* index: of the material or element to blame */
 static gx_result gxp_check_body_desc(const gx_body_desc *desc, size_t *index) {
     gx_result result = GX_OK;
     size_t i;
     *index = SIZE_MAX;
-    if ((desc->allocator.allocate == NULL) != (desc->allocator.release == NULL)) return GX_ERROR_ARGUMENT;
+    if (!gxp_is_allocator(&desc->allocator)) return GX_ERROR_ARGUMENT;
     if (!gxp_is_finite(desc->support_below)) return GX_ERROR_NOT_FINITE;
     if (desc->support_below < 0 || desc->support_below >= 1) return GX_ERROR_ARGUMENT;
     if (desc->materials == NULL) return gxp_check_material(desc->young, desc->poisson, desc->density);
@@ -4198,7 +4215,7 @@ GXFEM_API gx_result gx_body_load(const void *memory, size_t size, const gx_body_
     gx_result result;
     memset(&none, 0, sizeof none);
     if (desc == NULL) desc = &none;
-    if (memory == NULL || body == NULL || (desc->allocator.allocate == NULL) != (desc->allocator.release == NULL))
+    if (memory == NULL || body == NULL || !gxp_is_allocator(&desc->allocator))
         return gxp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX, SIZE_MAX);
     memset(&s, 0, sizeof s);
     s.in = (const unsigned char *)memory;

@@ -115,11 +115,14 @@ typedef struct gx_failure {
     size_t surface;         /* of a cut: which of its surfaces; else SIZE_MAX */
 } gx_failure;
 
-/* Where memory comes from. Zero-initialised: malloc and free. */
+/* Where memory comes from. Zero-initialised: malloc, free and realloc. */
 typedef struct gx_allocator {
     void *(*allocate)(void *user, size_t size);             /* NULL when there is none; size is never 0 */
     void (*release)(void *user, void *memory, size_t size); /* size as it was allocated; memory is never NULL */
     void *user;
+    /* A larger block with the bytes of the old one, which is then gone; NULL when there is none, and the old one stays. NULL: memory that
+       grows is allocated, copied and released. Only with the other two. */
+    void *(*reallocate)(void *user, void *memory, size_t size, size_t larger);
 } gx_allocator;
 /* How work is handed to the host's threads. Zero-initialised: the calling thread does it all. Results do not depend on it. */
 typedef struct gx_jobs {
@@ -1514,17 +1517,27 @@ static GXBP_APART void gxbp_release(const gx_allocator *a, void *memory, size_t 
     else free(memory);
 }
 
+/* A larger block with the first `used` bytes of the old one, which is then gone; NULL: there is none, and the old one stays. */
+static void *gxbp_reallocate(const gx_allocator *a, void *old, size_t old_size, size_t used, size_t size) {
+    void *memory;
+    if (a->allocate == NULL && a->release == NULL) return realloc(old, size);   /* moves the pages of large blocks, not their bytes */
+    if (a->reallocate != NULL && old != NULL) return a->reallocate(a->user, old, old_size, size);
+    memory = gxbp_allocate(a, size);
+    if (memory == NULL) return NULL;
+    if (used > 0) memcpy(memory, old, used);
+    gxbp_release(a, old, old_size);
+    return memory;
+}
+
 /* Makes room for count + extra items of the given size. */
 static GXBP_APART gx_result gxbp_reserve(gxb_complex *cx, void *array, size_t item, uint32_t count, uint32_t *capacity, size_t extra) {
     const size_t need = (size_t)count + extra, room = need + need / 2 + 16;
     void *old, *memory;
     if (need <= *capacity) return GX_OK;
     if (room > INT32_MAX || room > SIZE_MAX / item) return GX_ERROR_LIMIT;
-    memory = gxbp_allocate(&cx->allocator, room * item);
-    if (memory == NULL) return GX_ERROR_MEMORY;
     memcpy(&old, array, sizeof old);
-    if (count > 0) memcpy(memory, old, count * item);
-    gxbp_release(&cx->allocator, old, (size_t)*capacity * item);
+    memory = gxbp_reallocate(&cx->allocator, old, (size_t)*capacity * item, count * item, room * item);
+    if (memory == NULL) return GX_ERROR_MEMORY;
     memcpy(array, &memory, sizeof memory);
     *capacity = (uint32_t)room;
     return GX_OK;
@@ -8452,6 +8465,7 @@ GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean
     if (boolean == NULL) return GX_ERROR_ARGUMENT;
     if (desc == NULL) desc = &none;
     if ((desc->allocator.allocate == NULL) != (desc->allocator.release == NULL) || desc->triangulation > GXB_MERGED) return GX_ERROR_ARGUMENT;
+    if (desc->allocator.reallocate != NULL && desc->allocator.allocate == NULL) return GX_ERROR_ARGUMENT;
     arena = desc->memory_limit == 0 || desc->memory_limit >= 16 * GXBP_ARENA ? GXBP_ARENA : 0;
     b = (gxb_boolean *)gxbp_allocate(&desc->allocator, gxbp_whole_words(sizeof *b) + arena);
     if (b == NULL) return GX_ERROR_MEMORY;

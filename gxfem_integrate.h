@@ -107,11 +107,14 @@ typedef struct gx_failure {
     size_t surface;         /* of a cut: which of its surfaces; else SIZE_MAX */
 } gx_failure;
 
-/* Where memory comes from. Zero-initialised: malloc and free. */
+/* Where memory comes from. Zero-initialised: malloc, free and realloc. */
 typedef struct gx_allocator {
     void *(*allocate)(void *user, size_t size);             /* NULL when there is none; size is never 0 */
     void (*release)(void *user, void *memory, size_t size); /* size as it was allocated; memory is never NULL */
     void *user;
+    /* A larger block with the bytes of the old one, which is then gone; NULL when there is none, and the old one stays. NULL: memory that
+       grows is allocated, copied and released. Only with the other two. */
+    void *(*reallocate)(void *user, void *memory, size_t size, size_t larger);
 } gx_allocator;
 /* How work is handed to the host's threads. Zero-initialised: the calling thread does it all. Results do not depend on it. */
 typedef struct gx_jobs {
@@ -393,6 +396,7 @@ GXFEM_API void gxi_moments2_add_triangle(gxi_moments2 *m, const double a[3], con
 {
     const double det = gxip_determinant(a, b, c), sixth = det / 6, quarter = 0.25 * sixth, part = det / 120;
     const double s[3] = { a[0] + b[0] + c[0], a[1] + b[1] + c[1], a[2] + b[2] + c[2] };
+    if (fabs(det) <= 0) return; /* a part of an element: its facets on the faces around the origin, which are most */
     m->volume += sixth;
     m->first[0] += quarter * s[0];
     m->first[1] += quarter * s[1];

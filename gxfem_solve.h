@@ -129,11 +129,14 @@ typedef struct gx_failure {
     size_t surface;         /* of a cut: which of its surfaces; else SIZE_MAX */
 } gx_failure;
 
-/* Where memory comes from. Zero-initialised: malloc and free. */
+/* Where memory comes from. Zero-initialised: malloc, free and realloc. */
 typedef struct gx_allocator {
     void *(*allocate)(void *user, size_t size);             /* NULL when there is none; size is never 0 */
     void (*release)(void *user, void *memory, size_t size); /* size as it was allocated; memory is never NULL */
     void *user;
+    /* A larger block with the bytes of the old one, which is then gone; NULL when there is none, and the old one stays. NULL: memory that
+       grows is allocated, copied and released. Only with the other two. */
+    void *(*reallocate)(void *user, void *memory, size_t size, size_t larger);
 } gx_allocator;
 /* How work is handed to the host's threads. Zero-initialised: the calling thread does it all. Results do not depend on it. */
 typedef struct gx_jobs {
@@ -7663,9 +7666,9 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
 
 GXFEM_API gx_result gxs_solver_create(const gxs_solver_desc *desc, gxs_solver **solver)
 {
-    gx_allocator used = {NULL, NULL, NULL};
+    gx_allocator used = {NULL, NULL, NULL, NULL};
     gxs_solver *made;
-    if (!solver || (desc && !desc->allocator.allocate != !desc->allocator.release))
+    if (!solver || (desc && (!desc->allocator.allocate != !desc->allocator.release || (desc->allocator.reallocate && !desc->allocator.allocate))))
         return GX_ERROR_ARGUMENT;
     if (desc)
         used = desc->allocator;

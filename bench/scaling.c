@@ -56,6 +56,16 @@ static void meter_release(void *user, void *memory, size_t size)
     free(memory);
 }
 
+static void *meter_reallocate(void *user, void *memory, size_t size, size_t larger)
+{
+    meter *m = (meter *)user;
+    void *moved = realloc(memory, larger);
+    if (!moved) return NULL;
+    m->now += larger - size;
+    m->peak = m->now > m->peak ? m->now : m->peak;
+    return moved;
+}
+
 /* ---- sheets ---- */
 
 /* A square of side x side cells of two triangles, larger than the block */
@@ -152,6 +162,7 @@ static void scene_make(scene *s, uint32_t cells)
     desc.young = 1e6;
     desc.allocator.allocate = meter_allocate;
     desc.allocator.release = meter_release;
+    desc.allocator.reallocate = meter_reallocate;
     desc.allocator.user = &s->memory;
     desc.clock = seconds;
     check(block_make_mesh(cells, 0.2, &s->mesh));

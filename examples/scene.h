@@ -168,6 +168,15 @@ static inline void scene_release(void *user, void *bytes, size_t size)
     free(bytes);
 }
 
+static inline void *scene_reallocate(void *user, void *bytes, size_t size, size_t larger)
+{
+    scene_memory *memory = (scene_memory *)user;
+    void *moved = realloc(bytes, larger);
+    if (moved) memory->now += larger - size;
+    if (memory->now > memory->peak) memory->peak = memory->now;
+    return moved;
+}
+
 /* ----------------------------------------------------------------------------------------- >>arguments */
 
 static inline void scene_usage(const scene *s)
@@ -317,6 +326,7 @@ static inline void scene_make(scene *s)
     desc->element_count = s->mesh.element_count;
     desc->allocator.allocate = scene_allocate;
     desc->allocator.release = scene_release;
+    desc->allocator.reallocate = scene_reallocate;
     desc->allocator.user = &s->memory;
     desc->clock = gxio_seconds;
     result = gx_body_create(desc, &s->body, &failure);

@@ -2060,6 +2060,7 @@ START_TEST(bad_bodies) {
     d = good; d.poisson = 0.5; EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, SIZE_MAX);
     d = good; d.poisson = -0.1; EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, SIZE_MAX);
     d = good; d.allocator.allocate = (void *(*)(void *, size_t))1; EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, SIZE_MAX);
+    d = good; d.allocator.reallocate = (void *(*)(void *, void *, size_t, size_t))1; EXPECT_NO_BODY(&d, GX_ERROR_ARGUMENT, SIZE_MAX);
     memcpy(e, w.elements, 4 * w.element_count * sizeof *e);
     memcpy(x, w.positions, 3 * w.node_count * sizeof *x);
     d = good; d.elements = e; d.positions = x;

@@ -938,7 +938,7 @@ static void run_scene(const scene *s, pc_random *r) {
     gxb_complex *cx;
     inserted in;
     gx_result result;
-    allocator.allocate = heap_allocate; allocator.release = heap_release; allocator.user = &h;
+    allocator.allocate = heap_allocate; allocator.release = heap_release; allocator.user = &h; allocator.reallocate = NULL;
     cx = open_scene(s, &allocator);
     gxb_complex_begin(cx);
     result = insert_all(cx, s, &in);
@@ -1274,7 +1274,7 @@ START_TEST(every_allocation_may_fail) {
     inserted in;
     size_t n, failures = 0;
     uint64_t good = 0;
-    allocator.allocate = heap_allocate; allocator.release = heap_release; allocator.user = &h;
+    allocator.allocate = heap_allocate; allocator.release = heap_release; allocator.user = &h; allocator.reallocate = NULL;
     make_mesh(&s, &r, 6, 1, _i / 2 == 1 ? 1e6 : 0, 0.05);
     make_cuts(&s, &r, 6, 2, 1, _i / 2 == 1 ? 1e6 : 0);
     for (n = 0; ; n++) {
@@ -1356,7 +1356,7 @@ static void expect_mesh(const scene *s, gx_result want, size_t index) {
     heap h = {0, 0, 0, 0};
     gx_allocator allocator;
     gx_result result;
-    allocator.allocate = heap_allocate; allocator.release = heap_release; allocator.user = &h;
+    allocator.allocate = heap_allocate; allocator.release = heap_release; allocator.user = &h; allocator.reallocate = NULL;
     result = gxb_complex_create(&mesh, &allocator, &cx, &failure);
     assert_that(result == want && failure.result == want, "result %d instead of %d", (int)result, (int)want);
     assert_that(want == GX_OK || cx == NULL, "a complex in spite of error %d", (int)want);

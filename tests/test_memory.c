@@ -1,7 +1,8 @@
 /* test_memory.c - memory runs out. The n-th allocation fails, once or from then on, n = 0, 1, 2 ... until the call succeeds:
    every failed call returns GX_ERROR_MEMORY and leaves the body's state hash alone, nothing leaks, sizes given back are sizes
    taken, and the same call made again gives the topology that it gives without a failure. A call may also succeed all the same
-   (exact coordinates are cached where there is room): then with the same outcome.
+   (exact coordinates are cached where there is room): then with the same outcome. What fails once is asked of an allocator that has no
+   reallocate, what fails from then on and what fails again and again of one that has.
 
    The tests run in one process each (Check's own fork), so they can be run under valgrind with CK_FORK=no. */
 #define GXFEM_IMPLEMENTATION
@@ -15,6 +16,7 @@ typedef struct memory {
     size_t calls;
     size_t fail_at;             /* this call fails, SIZE_MAX: none does */
     int from_then_on;
+    int grows;                  /* blocks are made larger by the allocator */
     int failed, wrong;          /* did one fail; was a block given back with another size */
 } memory;
 
@@ -45,6 +47,17 @@ static void give(void *user, void *block, size_t size) {
     --m->blocks;
     memset((char *)block - HEAD, 0x5a, taken + HEAD);
     free((char *)block - HEAD);
+}
+
+/* Always to another place, so that who keeps the old one shows */
+static void *grow(void *user, void *block, size_t size, size_t larger) {
+    memory *m = (memory *)user;
+    void *moved = take(user, larger);
+    if (block == NULL || larger <= size) m->wrong = 1;
+    if (block == NULL || moved == NULL) return moved;
+    memcpy(moved, block, size);
+    give(user, block, size);
+    return moved;
 }
 
 static void fail_from(memory *m, size_t n, int from_then_on) { m->calls = 0; m->fail_at = n; m->from_then_on = from_then_on; m->failed = 0; }
@@ -83,6 +96,7 @@ static gx_result create(memory *m, gx_body **body) {
     desc.elements = five; desc.element_count = 5;
     desc.young = 1e6; desc.poisson = 0.4; desc.density = 1000;
     desc.allocator.allocate = take; desc.allocator.release = give; desc.allocator.user = m;
+    desc.allocator.reallocate = m->grows ? grow : NULL;
     return gx_body_create(&desc, body, NULL);
 }
 
@@ -241,6 +255,7 @@ static void sweep_fresh(const char *what, const action *before, action act, cons
         gx_result result;
         uint64_t state;
         memset(&m, 0, sizeof m);
+        m.grows = from_then_on;
         never_fail(&m);
         body = prepared(&m, before);
         state = gx_body_state_hash(body);
@@ -269,6 +284,7 @@ static void sweep_stubborn(const char *what, const action *before, action act, c
     uint64_t state;
     size_t n;
     memset(&m, 0, sizeof m);
+    m.grows = 1;
     never_fail(&m);
     body = prepared(&m, before);
     state = gx_body_state_hash(body);
@@ -459,7 +475,7 @@ START_TEST(solidifying) {
     uint32_t triangles[48];
     size_t n, v = 99, t = 98;
     memset(&m, 0, sizeof m);
-    a.allocate = take; a.release = give; a.user = &m;
+    a.allocate = take; a.release = give; a.user = &m; a.reallocate = NULL;
     for (n = 0; result != GX_OK; ++n) {
         fail_from(&m, n, 0);
         result = gx_surface_solidify(&s, 0.1, vertices, &v, triangles, &t, &a);

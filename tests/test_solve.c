@@ -1070,6 +1070,9 @@ START_TEST(steps_do_not_allocate)
     ck_assert_uint_eq(f.balance, 0);
     desc.allocator.release = NULL;
     ck_assert_int_eq(gxs_solver_create(&desc, &solver), GX_ERROR_ARGUMENT);
+    memset(&desc.allocator, 0, sizeof desc.allocator);
+    desc.allocator.reallocate = (void *(*)(void *, void *, size_t, size_t))1;
+    ck_assert_int_eq(gxs_solver_create(&desc, &solver), GX_ERROR_ARGUMENT);
     scene_free(&s);
 }
 END_TEST
