@@ -48,6 +48,7 @@ help:
 	@echo "  kernel         Booleans of closed surfaces; DATA=FOLDER: also of the OFF files there"
 	@echo "  smallest       the smallest program with the kernel: time to compile and size, with and without GXFEM_STATIC"
 	@echo "  solver         time steps by preconditioner, beside CHOLMOD (installs SuiteSparse where it is missing)"
+	@echo "  violent        starts from which Newton's method is known to fail: inverted, flattened, collapsed bodies"
 	@echo "  accuracy       static solutions beside closed forms and published values"
 	@echo "  drift          what integrators keep: energy, momenta, order"
 	@echo "  frames         frames in which a cut happens beside those in which none does"
@@ -150,7 +151,7 @@ hashes:
 
 # ---- benches. Only what they print goes to stdout: it is CSV. BENCH=--small: smaller ones, whose tables and charts have a folder of their own
 
-benches = quadrature stepping space table2 conditioning failure scaling kernel smallest solver accuracy drift frames skin
+benches = quadrature stepping space table2 conditioning failure scaling kernel smallest solver violent accuracy drift frames skin
 small = $(filter --small,$(BENCH))
 tables = $(BUILD)/bench$(if $(small),/small)
 traces = $(tables)/traces

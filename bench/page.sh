@@ -9,7 +9,7 @@ tables=$1
 page=$2
 readme=$3
 
-for bench in quadrature stepping failure table2 table2_ratios scaling kernel smallest solver product accuracy drift frames skin; do
+for bench in quadrature stepping failure table2 table2_ratios scaling kernel smallest solver product violent accuracy drift frames skin; do
     [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-$(echo $bench | sed 's/_ratios//; s/product/solver/')" >&2; exit 2; }
 done
 for name in matrix steps ratios; do
@@ -162,6 +162,28 @@ solver() {
         }' "$tables/solver.csv"
 }
 
+# Four runs a row
+violent() {
+    echo "| body | start | in balance | most iterations | rises | not finite | at rest | most frames | most left |"
+    echo "| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"
+    awk -F, '
+        NR == 1 { next }
+        !(($1, $2) in runs) { keys[++n] = $1 SUBSEP $2 }
+        {
+            k = $1 SUBSEP $2; runs[k]++; name[k] = $1 " | " $2
+            balance[k] += $8 == "balance"; rises[k] += $12; bad[k] += $13; rest[k] += $14 > 0
+            if ($6 > most[k]) most[k] = $6
+            if ($14 > frames[k]) frames[k] = $14
+            if ($15 + 0 > left[k] + 0) left[k] = $15
+        }
+        END {
+            for (i = 1; i <= n; i++) {
+                k = keys[i]
+                printf("| %s | %d of %d | %d | %d | %d | %d of %d | %d | %s |\n", name[k], balance[k], runs[k], most[k], rises[k], bad[k], rest[k], runs[k], frames[k], left[k])
+            }
+        }' "$tables/violent.csv"
+}
+
 # The finest mesh of each series that is refined
 accuracy() {
     echo "| case | quantity | elements | error | order |"
@@ -187,7 +209,7 @@ text() { echo "$*" | fold -s -w 126 | sed 's/ *$//'; }
     echo
     text "Written by \`make charts\` from what was measured on $(measured) and after, $(uname -m | tr _ -), one thread. What \
 each program does and how it judges stands in its first lines: \`bench/quadrature.c\`, \`stepping.c\`, \`space.c\`, \
-\`table2.c\`, \`conditioning.c\`, \`failure.c\`, \`scaling.c\`, \`solver.c\`, \`kernel.c\`, \`smallest.sh\`, \`accuracy.c\`, \
+\`table2.c\`, \`conditioning.c\`, \`failure.c\`, \`scaling.c\`, \`solver.c\`, \`violent.c\`, \`kernel.c\`, \`smallest.sh\`, \`accuracy.c\`, \
 \`drift.c\`, \`frames.c\`, \`skin.c\`. The baselines are written for the bench: \`rxfem.h\` (Koschier, Bender, Thuerey \
 2017), \`vna.h\` (element duplication), \`literal.h\` (GXFEM's Algorithm 1 as published, a Boolean for each \
 subdomain), \`sampling.h\`, \`parts.h\` (integrals by points, element deletion). All take the library's time step: \
@@ -255,6 +277,14 @@ mesh whose elements end at the cuts, at least."
 factorisation and solution alone. -2: two threads. 1e6, 1e8: Young's modulus, Pa."
     echo
     solver
+    echo
+    echo "## Violent starts"
+    echo
+    text "One step to balance, at most 40 iterations, each from the start; then frames of one iteration, at most 300. Poisson's \
+ratio 0.4 and 0.4999, steps of 0.033 and 1 s: four runs a row. Rises: iterates of higher energy than the one before; at rest: \
+frames until a millionth of the start's energy is left."
+    echo
+    violent
     echo
     echo "## Frames with a cut"
     echo
