@@ -62,9 +62,10 @@
  * moves as a whole first so that its momentum balances, and the later iterates leave its momentum alone: it is right to rounding
  * whatever the tolerances are, and free fall takes no iteration. Newton starts at u_n + h v_n; a piece that ends above E at u_n,
  * translated so, is brought down on the way from there: E(u) <= E(u_n) always, piece by piece and however fast it falls, so a
- * step cannot blow up; the midpoint rule, which goes on from there as far again, goes less far where it would gain energy. Residuals are measured twice, both times scaled by the block diagonal D of the Hessian: in
- * energy, sqrt(sum r_i . D_i^-1 r_i), and in displacement, sqrt(sum |D_i^-1 r_i|^2). The second sees a piece of 1e-12 of its
- * neighbour's volume as well as the neighbour.
+ * step cannot blow up; the midpoint rule, which goes on from there as far again, goes less far where it would gain energy.
+ * Residuals are measured twice, both times scaled by the block diagonal D of the Hessian: in energy, sqrt(sum r_i . D_i^-1
+ * r_i), and in displacement, sqrt(sum |D_i^-1 r_i|^2). The second sees a piece of 1e-12 of its neighbour's volume as well as
+ * the neighbour.
  * A piece that has been slow for long sleeps if gxs_step_desc.sleep_speed says so; steps do without it until something touches it.
  *
  * WHAT IT DOES NOT DO. No cutting and no meshes: it sees elements of four copies. No search for contacts between pieces: give

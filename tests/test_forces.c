@@ -1442,13 +1442,13 @@ END_TEST
 
 /* ---- pieces: what one of them gains is not another's to lose ---- */
 
-enum { PIECES = 3 };
+enum { PIECES = 4 };
 
-/* A large block, stretched, that falls; a small and a tiny one, of 1/5 and 1/25 of its edges, the last held or falling too, all
+/* A large block, stretched, that falls; three smaller ones, of 1/5 to 1/1000 of its edges, the last held or falling too, all
  * of whose nodes are anywhere within two edges and move. first: PIECES + 1 indices of copies */
 static scene scene_of_pieces(uint64_t from, int held, size_t *first)
 {
-    static const double edges[PIECES] = {0.25, 0.05, 0.01};
+    static const double edges[PIECES] = {0.25, 0.05, 0.01, 0.00025};
     size_t i;
     int p;
     scene s, other;
