@@ -400,13 +400,14 @@ static gxs_solver *cube_solver(const cube *c)
 static void ask_cycle(const cube *c, gxs_solver *solver, matrix p)
 {
     gxsp_system *system = solver->system;
+    gxsp_norms now;
     size_t i, j, r, k;
     for (j = 0; j < c->model.copy_count; ++j)
         for (r = 0; r < 3 && !constraint_of(c, j); ++r) {
             memset(system->residual, 0, 3 * system->n * sizeof(double));
             system->residual[3 * j + r] = 1;
-            (void)gxsp_scale(system, system->residual);
-            (void)gxsp_precondition(system, 1 / (dt * dt));
+            now = gxsp_scale(system, system->residual);
+            (void)gxsp_precondition(system, 1 / (dt * dt), now.energy);
             for (i = 0; i < c->model.copy_count; ++i)
                 for (k = 0; k < 3 && !constraint_of(c, i); ++k)
                     p[3 * c->free[i] + k][3 * c->free[j] + r] = system->scale / (dt * dt) * (real)system->scaled[i][k];
