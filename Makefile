@@ -108,9 +108,10 @@ run-corpus: $(BUILD)/fuzz/fuzz
 $(tests:%=run-%): run-%: $(BUILD)/tests/%
 	@$< >$<.log 2>&1; code=$$?; cat $<.log; exit $$code
 
+# What a test does not call is left out: compiling is most of the time that tests take.
 $(BUILD)/tests/%: tests/%.c $(headers) $(wildcard tests/*.h examples/*.h bench/*.h)
 	@mkdir -p $(@D)
-	$(compile) -Itests $(shell pkg-config --cflags check) $< -o $@ $(LDFLAGS) $(shell pkg-config --libs check) -lm
+	$(compile) -DGXFEM_STATIC -Itests $(shell pkg-config --cflags check) $< -o $@ $(LDFLAGS) $(shell pkg-config --libs check) -lm
 
 # Tests that need nothing but the interface, which say GXFEM_LINKED, share the object of the examples.
 $(linked_tests:%=$(BUILD)/tests/%): $(BUILD)/tests/%: tests/%.c $(BUILD)/gxfem.o $(headers) $(wildcard tests/*.h examples/*.h bench/*.h)

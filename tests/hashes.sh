@@ -67,7 +67,7 @@ for cc in gcc clang; do
     try $cc -std=gnu99 -O3 -ffast-math
     try $cc -std=c99 -O2 -DGXB_LIMB32
     if [ "$x86" = 1 ]; then
-        if [ "${fma:-0}" != 0 ]; then try $cc -std=gnu99 -O2 -mfma -ffp-contract=fast; try $cc -std=gnu99 -Ofast -march=native; fi
+        if [ "${fma:-0}" != 0 ]; then try $cc -std=gnu99 -Ofast -march=native; fi
         if [ $cc = gcc ]; then try $cc -std=gnu99 -O2 -mfpmath=387; fi
         try $cc -std=c99 -O2 -m32
         try $cc -std=c99 -O2 -m32 -ffast-math
