@@ -5,7 +5,9 @@
    reallocate, what fails from then on and what fails again and again of one that has.
 
    The tests run in one process each (Check's own fork), so they can be run under valgrind with CK_FORK=no. */
+#ifndef GXFEM_LINKED
 #define GXFEM_IMPLEMENTATION
+#endif
 #include "../gxfem.h"
 #include "runner.h"
 
@@ -89,14 +91,17 @@ static gx_surface surface(const double *vertices, size_t vertex_count, const uin
 static gx_surface sheet(const double *vertices) { return surface(vertices, 3, one_triangle, 1, GX_SURFACE_SHEET); }
 static gx_surface solid(void) { return surface(box, 8, box_triangles, 12, GX_SURFACE_SOLID); }
 
+static gx_allocator allocator;  /* of the body made last */
+
 static gx_result create(memory *m, gx_body **body) {
     gx_body_desc desc;
     memset(&desc, 0, sizeof desc);
     desc.positions = &cube[0][0]; desc.node_count = 8;
     desc.elements = five; desc.element_count = 5;
     desc.young = 1e6; desc.poisson = 0.4; desc.density = 1000;
-    desc.allocator.allocate = take; desc.allocator.release = give; desc.allocator.user = m;
-    desc.allocator.reallocate = m->grows ? grow : NULL;
+    allocator.allocate = take; allocator.release = give; allocator.user = m;
+    allocator.reallocate = m->grows ? grow : NULL;
+    desc.allocator = allocator;
     return gx_body_create(&desc, body, NULL);
 }
 
@@ -192,7 +197,7 @@ static gx_result save_and_load(gx_body *body) {
     size_t size;
     ck_assert_int_eq(gx_body_save(body, bytes, sizeof bytes, &size), GX_OK);
     memset(&desc, 0, sizeof desc);
-    desc.allocator = body->allocator;
+    desc.allocator = allocator;
     result = gx_body_load(bytes, size, &desc, &copy, NULL);
     return compare_and_destroy(result, body, copy);
 }
