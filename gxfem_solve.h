@@ -377,6 +377,21 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
 GXFEM_API void gxs_solver_scene(const gxs_solver *solver, gxs_scene *scene);
 GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene);
 
+/* The model's operator for other uses than steps: a Krylov method of one's own, modes, an adjoint. gxs_solver_linearise makes it at a
+ * displacement, gxs_solver_product applies it as often as one likes, matrix-free; both by the solver's jobs:
+ *     product = (K + rate M) direction                    N; m; rate: 1/s2, 0 or more
+ * K: Hessian of U, projected or, exact not 0, as it is; M: the mass, lumped if the model says so. Springs, contact and damping belong to
+ * steps and are not in it, pieces asleep are. It acts on what can move: directions of held copies and of copies without an element count
+ * as 0, those of followers are what their masters' make of them, and the product is 0 there, what acts on followers goes to their masters.
+ * So it is symmetric, and semi-definite unless exact.
+ * Vectors are copy_count x 3 doubles; between them numbers are single precision: of the Hessian, of what an element's copies move by
+ * relative to the first (taken in double precision: translations meet no stiffness at all), of its forces; sums over elements are single
+ * precision within chunks, double between them. A power of two times a direction gives exactly that times its product.
+ * What is made lasts until the next step, update or model; then, or before anything is made, product is GX_ERROR_ARGUMENT. GX_ERROR_RANGE:
+ * the Hessian is beyond single precision. Neither allocates, nor changes what steps do. product may not overlap direction. */
+GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displacement, double rate, uint32_t exact, gx_failure *failure);
+GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *direction, double *product, gx_failure *failure);
+
 GXFEM_API gx_result gxs_solver_create(const gxs_solver_desc *desc /* or NULL */, gxs_solver **solver);
 GXFEM_API void gxs_solver_destroy(gxs_solver *solver); /* NULL is allowed */
 
@@ -960,6 +975,7 @@ typedef struct gxsp_system {
     int still_known;        /* still and chunk_still are those of the pieces' states */
     size_t active;          /* unknowns of this step */
     int base_known;         /* current is what the last step returned, and the pieces know its elastic energies */
+    double product_rate;    /* of the linearisation for gxs_solver_product; below 0: there is none */
     gxsp_vector4 *right;    /* n: residual in single precision; of GXS_MATRIX_ASSEMBLED only, else NULL */
     gxsp_vector4 *guess[2]; /* n: directions of the first iterations of the last step and of the one before */
     uint32_t guess_count;   /* how many of them there are */
@@ -3591,7 +3607,7 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
     system->range_count = (system->n + GXSP_RANGE - 1) / GXSP_RANGE;
     system->lumped_mass = model->lumped_mass != 0;
     system->scale = gxsp_choose_scale(model);
-    system->coarse_rate = -1;
+    system->coarse_rate = system->product_rate = -1;
     system->coarse_life = GXSP_LIFE;
     system->material_count = (uint32_t)model->material_count;
     system->materials = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
@@ -3671,14 +3687,14 @@ static void gxsp_follow(const gxsp_system *system, const double *from, double *d
     }
 }
 
-/* Residuals: those of followers are given to masters, but not to copies that are still. */
-static void gxsp_reduce_residual(const gxsp_system *system, double *r)
+/* Residuals: those of followers are given to masters, but not to copies that are still. still: n */
+static void gxsp_reduce_residual(const gxsp_system *system, const uint8_t *still, double *r)
 {
     uint32_t i, k, c;
     for (i = 0; i < system->follower_count; ++i) {
         const gxsp_follower *follower = &system->followers[i];
         for (k = 0; k < 4; ++k)
-            for (c = 0; c < 3 && !system->still[follower->master[k]]; ++c)
+            for (c = 0; c < 3 && !still[follower->master[k]]; ++c)
                 r[3 * (size_t)follower->master[k] + c] += follower->weight[k] * r[3 * (size_t)follower->copy + c];
         memset(r + 3 * (size_t)follower->copy, 0, 3 * sizeof *r);
     }
@@ -4002,6 +4018,160 @@ static double gxsp_product_from(gxsp_system *system, double rate, const double *
 static double gxsp_product(gxsp_system *system, double rate, gxsp_vector4 *x, gxsp_vector4 *y)
 {
     return gxsp_product_from(system, rate, NULL, x, y);
+}
+
+/* --- products of doubles --- */
+
+/* How a direction moves a copy, times pass->factor: as it says, as its masters' make it if it follows them, not at all if it is fixed */
+static void gxsp_copy_direction(const gxsp_pass *pass, uint32_t copy, double *GXSP_RESTRICT to)
+{
+    const gxsp_system *system = pass->system;
+    const double *from = pass->from + 3 * (size_t)copy;
+    double factor = system->fixed[copy] ? 0 : pass->factor;
+    int k, c;
+    if (system->follower_count == 0 || system->follower[copy] == GXSP_NONE) {
+        to[0] = factor * from[0], to[1] = factor * from[1], to[2] = factor * from[2];
+        return;
+    }
+    to[0] = to[1] = to[2] = 0;
+    for (k = 0; k < 4; ++k) {
+        const gxsp_follower *follower = &system->followers[system->follower[copy]];
+        from = pass->from + 3 * (size_t)follower->master[k];
+        factor = system->fixed[follower->master[k]] ? 0 : pass->factor * follower->weight[k];
+        for (c = 0; c < 3; ++c)
+            to[c] += factor * from[c];
+    }
+}
+
+/* The first three of four doubles less those of origin, in single precision */
+static inline void gxsp_narrow_four(const double *x, const double *origin, float *to)
+{
+#if defined(GXSP_SHUFFLES)
+    *(gxsp_four *)to = __builtin_convertvector(*(const gxsp_four_doubles *)x - *(const gxsp_four_doubles *)origin, gxsp_four);
+#else
+    int k;
+    for (k = 0; k < 3; ++k)
+        to[k] = (float)(x[k] - origin[k]);
+#endif
+}
+
+/* What a block's corners 1 ... 3 move by relative to corner 0; and that one itself, unless first is NULL. in: x 3, and one more double */
+static void gxsp_block_gather_doubles(const gxsp_corners *GXSP_RESTRICT corner, const double *GXSP_RESTRICT in, gxsp_singles *GXSP_RESTRICT first,
+                                      gxsp_singles *GXSP_RESTRICT apart)
+{
+    static const uint16_t own[GXSP_LANES] = {0, 1, 2, 3, 4, 5, 6, 7};
+    static const double zero[4] = {0, 0, 0, 0};
+    gxsp_vector4 lanes[GXSP_LANES];
+    int i, l;
+    for (i = 0; i < 3; ++i) {
+        for (l = 0; l < GXSP_LANES; ++l)
+            gxsp_narrow_four(in + 3 * (size_t)corner->node[i + 1][l], in + 3 * (size_t)corner->node[0][l], lanes[l]);
+        gxsp_gather_eight(own, (const gxsp_vector4 *)lanes, apart[3 * i], apart[3 * i + 1], apart[3 * i + 2]);
+    }
+    for (l = 0; l < GXSP_LANES && first; ++l)
+        gxsp_narrow_four(in + 3 * (size_t)corner->node[0][l], zero, lanes[l]);
+    if (first)
+        gxsp_gather_eight(own, (const gxsp_vector4 *)lanes, first[0], first[1], first[2]);
+}
+
+/* y += rate M of a translation by first; x: what corners move by, and by first more then */
+static void gxsp_block_add_translation(const gxsp_tangent *GXSP_RESTRICT tangent, const gxsp_mass *general, float rate,
+                                       gxsp_singles *GXSP_RESTRICT first, gxsp_singles *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT y)
+{
+    int k, l;
+    for (k = 0; k < 12; ++k)
+        GXSP_EACH_LANE(l) y[k][l] += 5 * tangent->mass[l] * first[k % 3][l];
+    if (!general)
+        return;
+    for (k = 0; k < 12; ++k)
+        GXSP_EACH_LANE(l) x[k][l] += first[k % 3][l];
+    gxsp_block_mass_product(general, rate, x, y);
+}
+
+/* The product of pass->from, times pass->factor, into the chunk's slots, 4 floats each */
+static void gxsp_task_apply(void *context, size_t index)
+{
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    const gxsp_chunk *chunk = &system->chunks[index];
+    const uint32_t *copies = system->nodes + chunk->first_node;
+    double in[3 * 4 * GXSP_CHUNK_BLOCKS * GXSP_LANES + 1]; /* one more than is read as numbers */
+    gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->slots + chunk->first_node;
+    uint32_t b, i, further;
+    for (i = 0; i < chunk->node_count; ++i)
+        gxsp_copy_direction(pass, copies[i], in + 3 * (size_t)i);
+    in[3 * (size_t)i] = 0;
+    memset(out, 0, chunk->node_count * sizeof *out);
+    for (b = 0; b < chunk->block_count; ++b) {
+        const gxsp_corners *corner = &chunk->corners[b];
+        const gxsp_chunk *next = gxsp_block_ahead(system, index, b, &further);
+        gxsp_singles first[3], from[12], to[12];
+        gxsp_fetch(&next->tangents[further], sizeof(gxsp_tangent));
+        memset(from, 0, 3 * sizeof *from);
+        gxsp_block_gather_doubles(corner, in, pass->inertia ? first : NULL, from + 3);
+        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_general(chunk, b), from, to);
+        if (pass->inertia)
+            gxsp_block_add_translation(&chunk->tangents[b], gxsp_block_masses(chunk, b), (float)pass->rate, first, from, to);
+        gxsp_block_scatter(corner, to, out);
+    }
+}
+
+/* pass->sum = the product, from the slots, and what lumped masses make of it */
+static void gxsp_task_apply_sum(void *context, size_t index)
+{
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    gxsp_vector4 *slots = (gxsp_vector4 *)(void *)system->slots;
+    const double unit = 1 / system->scale, back = 1 / pass->factor;
+    size_t i, end = gxsp_range(system, index, &i);
+    for (; i < end; ++i) {
+        double at[3] = {0, 0, 0}, mass = system->lumped_mass ? pass->rate * system->lumped[i] : 0, x, y, z;
+        uint32_t s;
+        if (mass > 0)
+            gxsp_copy_direction(pass, (uint32_t)i, at);
+        x = mass * at[0], y = mass * at[1], z = mass * at[2];
+        for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->fixed[i]; ++s) {
+            const float *from = slots[system->copy_slot[s]];
+            x += (double)from[0], y += (double)from[1], z += (double)from[2];
+        }
+        pass->sum[3 * i] = x * unit * back, pass->sum[3 * i + 1] = y * unit * back, pass->sum[3 * i + 2] = z * unit * back;
+    }
+}
+
+/* 2^k, |k| < 1023, about the inverse of the largest of the values, so that single precision holds them and their product; 0: one is not finite */
+static double gxsp_unit_factor(const double *values, size_t count)
+{
+    const uint64_t exponent = (uint64_t)0x7ff << 52, one = (uint64_t)1 << 52;
+    uint64_t largest = one, bits;
+    double factor;
+    size_t i;
+    for (i = 0; i < count; ++i) {
+        memcpy(&bits, &values[i], sizeof bits);
+        largest = (bits & exponent) > largest ? bits & exponent : largest;
+    }
+    if (largest == exponent)
+        return 0;
+    bits = 2046 * one - (largest < 2045 * one ? largest : 2045 * one);
+    memcpy(&factor, &bits, sizeof factor);
+    return factor;
+}
+
+/* Are the Hessians of all elements finite? */
+static int gxsp_tangents_finite(const gxsp_system *system)
+{
+    uint32_t c;
+    size_t i;
+    for (c = 0; c < system->chunk_count; ++c) {
+        const gxsp_chunk *chunk = &system->chunks[c];
+        const float *numbers = (const float *)(const void *)chunk->tangents, *more = (const float *)(const void *)chunk->generals;
+        for (i = 0; i < chunk->block_count * (sizeof(gxsp_tangent) / sizeof(float)); ++i)
+            if (!gxsp_finite_single(numbers[i]))
+                return 0;
+        for (i = 0; more && i < chunk->block_count * (sizeof(gxsp_general) / sizeof(float)); ++i)
+            if (!gxsp_finite_single(more[i]))
+                return 0;
+    }
+    return 1;
 }
 
 /* Diagonal blocks of a block's Hessian into the chunk's slots, 6 floats each */
@@ -6722,7 +6892,7 @@ static double gxsp_balance(gxsp_problem *problem)
     gxsp_over_ranges(system, gxsp_task_balance, &pass, sums, GXSP_SUMS);
     elastic.energy = sums[4], elastic.displacement = sums[5];
     gxsp_add_reactions(system, &elastic);
-    gxsp_reduce_residual(system, system->residual);
+    gxsp_reduce_residual(system, system->still, system->residual);
     residual = gxsp_scale(system, system->residual);
     energy = sqrt(sums[0]) + sqrt(sums[2]) + sqrt(elastic.energy);
     displacement = sqrt(sums[1]) + sqrt(sums[3]) + sqrt(elastic.displacement);
@@ -7538,6 +7708,7 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
         return failure->result;
     }
     scratch = gxsp_pool_make(&solver->allocator);
+    system->product_rate = -1;
     memset(&update, 0, sizeof update);
     update.system = system;
     update.scratch = &scratch;
@@ -7557,6 +7728,60 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
     return failure->result;
 }
 
+GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displacement, double rate, uint32_t exact, gx_failure *failure)
+{
+    gx_failure ignored;
+    gxsp_system *system;
+    gxsp_pass pass;
+    failure = failure ? failure : &ignored;
+    gxsp_fail(failure, GX_OK, SIZE_MAX);
+    if (!solver || !solver->system)
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    system = solver->system;
+    if (gxsp_check_vector(displacement, system->n, failure) != GX_OK)
+        return failure->result;
+    if (!gxsp_finite(rate))
+        return gxsp_fail(failure, GX_ERROR_NOT_FINITE, SIZE_MAX);
+    if (rate < 0)
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    memset(&pass, 0, sizeof pass);
+    pass.system = system;
+    pass.materials = system->materials;
+    pass.rate = system->scale * rate;
+    pass.from = displacement;
+    pass.exact = exact != 0;
+    memset(system->chunk_still, 0, system->chunk_count); /* what sleeps is part of it */
+    gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_linearise, &pass);
+    gxsp_mark_still(system);
+    system->product_rate = gxsp_tangents_finite(system) ? rate : -1;
+    return system->product_rate < 0 ? gxsp_fail(failure, GX_ERROR_RANGE, SIZE_MAX) : GX_OK;
+}
+
+GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *direction, double *product, gx_failure *failure)
+{
+    gx_failure ignored;
+    gxsp_system *system;
+    gxsp_pass pass;
+    failure = failure ? failure : &ignored;
+    gxsp_fail(failure, GX_OK, SIZE_MAX);
+    if (!solver || !solver->system || solver->system->product_rate < 0 || !direction || !product)
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    system = solver->system;
+    memset(&pass, 0, sizeof pass);
+    pass.system = system;
+    pass.rate = system->scale * system->product_rate;
+    pass.inertia = pass.rate > 0 && !system->lumped_mass;
+    pass.from = direction;
+    pass.sum = product;
+    pass.factor = gxsp_unit_factor(direction, 3 * system->n);
+    if (!(pass.factor > 0))
+        return gxsp_check_vector(direction, system->n, failure);
+    gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_apply, &pass);
+    gxsp_over_ranges(system, gxsp_task_apply_sum, &pass, NULL, 0);
+    gxsp_reduce_residual(system, system->fixed, product);
+    return GX_OK;
+}
+
 GXFEM_API void gxs_solver_scene(const gxs_solver *solver, gxs_scene *scene)
 {
     *scene = solver->lasting.scene;
@@ -7572,6 +7797,7 @@ GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene)
         gxsp_drop_system(solver);
     if (!solver->system)
         return;
+    system->product_rate = -1;
     system->still_known = system->base_known = 0;
     system->guess_count = 0;
     system->omega = 0;
@@ -7643,6 +7869,7 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
         return gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
     memset(&problem, 0, sizeof problem);
     problem.system = solver->system;
+    problem.system->product_rate = -1;
     problem.step = step;
     problem.cg_iterations = step->cg_iterations ? step->cg_iterations : 1000;
     problem.cg_tolerance = step->cg_tolerance > 0 ? step->cg_tolerance : step->integrator == GXS_MIDPOINT ? 1e-3 : 1e-2;
