@@ -1750,17 +1750,19 @@ static void gxsp_block_inertia(const gxsp_rest *GXSP_RESTRICT rest, const gxsp_m
         }
 }
 
-/* y = (K + rate M) x, one lane after the other in registers; without general masses */
-static void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, gxsp_singles *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT y)
+/* y = (K + rate M) x, one lane after the other in registers; without general masses. apart: x of corners 1 ... 3 is what they have more
+ * than corner 0, which callers know better than single precision could tell. */
+GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, int apart, gxsp_singles *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT y)
 {
     int l;
     GXSP_EACH_LANE(l) {
         const float m = b->mass[l], x0 = x[0][l], x1 = x[1][l], x2 = x[2][l];
+        const float o0 = apart ? 0 : x0, o1 = apart ? 0 : x1, o2 = apart ? 0 : x2;
         const float g0 = b->gradient[0][l], g1 = b->gradient[1][l], g2 = b->gradient[2][l], g3 = b->gradient[3][l],
                     g4 = b->gradient[4][l], g5 = b->gradient[5][l], g6 = b->gradient[6][l], g7 = b->gradient[7][l],
                     g8 = b->gradient[8][l];
-        const float a0 = x[3][l] - x0, a1 = x[4][l] - x1, a2 = x[5][l] - x2, b0 = x[6][l] - x0, b1 = x[7][l] - x1,
-                    b2 = x[8][l] - x2, c0 = x[9][l] - x0, c1 = x[10][l] - x1, c2 = x[11][l] - x2;
+        const float a0 = x[3][l] - o0, a1 = x[4][l] - o1, a2 = x[5][l] - o2, b0 = x[6][l] - o0, b1 = x[7][l] - o1,
+                    b2 = x[8][l] - o2, c0 = x[9][l] - o0, c1 = x[10][l] - o1, c2 = x[11][l] - o2;
         /* dF V = sum (x_i - x_0) (V^T grad N_i)^T */
         const float d0 = a0 * g0 + b0 * g3 + c0 * g6, d1 = a0 * g1 + b0 * g4 + c0 * g7, d2 = a0 * g2 + b0 * g5 + c0 * g8,
                     d3 = a1 * g0 + b1 * g3 + c1 * g6, d4 = a1 * g1 + b1 * g4 + c1 * g7, d5 = a1 * g2 + b1 * g5 + c1 * g8,
@@ -1796,15 +1798,16 @@ static void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, gxsp_singles
 }
 
 /* The same for a Hessian without a frame */
-static void gxsp_general_product(const gxsp_tangent *b, const gxsp_general *h, gxsp_singles *x, gxsp_singles *y)
+static void gxsp_general_product(const gxsp_tangent *b, const gxsp_general *h, int apart, gxsp_singles *x, gxsp_singles *y)
 {
+    const float from = apart ? 0.0f : 1.0f;
     gxsp_singles d[9], p[9];
     int i, j, k, l;
     for (i = 0; i < 9; ++i)
         GXSP_EACH_LANE(l) {
             const int r = i / 3, c = i % 3;
-            d[i][l] = (x[3 + r][l] - x[r][l]) * b->gradient[c][l] + (x[6 + r][l] - x[r][l]) * b->gradient[3 + c][l] +
-                      (x[9 + r][l] - x[r][l]) * b->gradient[6 + c][l];
+            const float o = from * x[r][l];
+            d[i][l] = (x[3 + r][l] - o) * b->gradient[c][l] + (x[6 + r][l] - o) * b->gradient[3 + c][l] + (x[9 + r][l] - o) * b->gradient[6 + c][l];
             p[i][l] = 0;
         }
     for (i = 0; i < 9; ++i)
@@ -1812,33 +1815,38 @@ static void gxsp_general_product(const gxsp_tangent *b, const gxsp_general *h, g
             GXSP_EACH_LANE(l) p[i][l] += h->hessian[gxsp_packed9(i, j)][l] * d[j][l];
     for (i = 0; i < 3; ++i)
         GXSP_EACH_LANE(l) {
-            const float sum = x[i][l] + x[3 + i][l] + x[6 + i][l] + x[9 + i][l];
+            const float o = (1 - from) * x[i][l], sum = x[i][l] + x[3 + i][l] + x[6 + i][l] + x[9 + i][l] + 3 * o;
             y[i][l] = b->mass[l] * (sum + x[i][l]);
             for (k = 0; k < 3; ++k) {
                 const float f = p[3 * i][l] * b->gradient[3 * k][l] + p[3 * i + 1][l] * b->gradient[3 * k + 1][l] +
                                 p[3 * i + 2][l] * b->gradient[3 * k + 2][l];
-                y[3 + 3 * k + i][l] = b->mass[l] * (sum + x[3 + 3 * k + i][l]) + f;
+                y[3 + 3 * k + i][l] = b->mass[l] * (sum + o + x[3 + 3 * k + i][l]) + f;
                 y[i][l] -= f;
             }
         }
 }
 
-static void gxsp_kind_product(gxs_material_kind kind, const gxsp_tangent *b, const gxsp_general *h, gxsp_singles *x, gxsp_singles *y)
+/* The same for either */
+static void gxsp_kind_product(gxs_material_kind kind, const gxsp_tangent *b, const gxsp_general *h, int apart, gxsp_singles *x, gxsp_singles *y)
 {
     if (kind == GXS_CUSTOM)
-        gxsp_general_product(b, h, x, y);
+        gxsp_general_product(b, h, apart, x, y);
+    else if (apart)
+        gxsp_block_product(b, 1, x, y);
     else
-        gxsp_block_product(b, x, y);
+        gxsp_block_product(b, 0, x, y);
 }
 
-/* y += rate M x of masses that rest does not have */
-static void gxsp_block_mass_product(const gxsp_mass *GXSP_RESTRICT mass, float rate, gxsp_singles *GXSP_RESTRICT x,
+/* y += rate M x of masses that rest does not have. apart: as of gxsp_block_product */
+static void gxsp_block_mass_product(const gxsp_mass *GXSP_RESTRICT mass, float rate, int apart, gxsp_singles *GXSP_RESTRICT x,
                                     gxsp_singles *GXSP_RESTRICT y)
 {
+    const float from = apart ? 1.0f : 0.0f;
     int r, l;
     for (r = 0; r < 3; ++r)
         GXSP_EACH_LANE(l) {
-            const float a = rate * x[r][l], b = rate * x[3 + r][l], c = rate * x[6 + r][l], d = rate * x[9 + r][l];
+            const float a = rate * x[r][l], o = from * a;
+            const float b = rate * x[3 + r][l] + o, c = rate * x[6 + r][l] + o, d = rate * x[9 + r][l] + o;
             const float m0 = (float)mass->entry[0][l], m1 = (float)mass->entry[1][l], m2 = (float)mass->entry[2][l],
                         m3 = (float)mass->entry[3][l], m4 = (float)mass->entry[4][l], m5 = (float)mass->entry[5][l],
                         m6 = (float)mass->entry[6][l], m7 = (float)mass->entry[7][l], m8 = (float)mass->entry[8][l],
@@ -3911,9 +3919,9 @@ static void gxsp_task_product(void *context, size_t index)
         gxsp_singles from[12], to[12];
         gxsp_fetch(&next->tangents[further], sizeof(gxsp_tangent));
         gxsp_block_gather(corner, (const gxsp_vector4 *)in, from);
-        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_general(chunk, b), from, to);
+        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_general(chunk, b), 0, from, to);
         if (general)
-            gxsp_block_mass_product(general, (float)pass->rate, from, to);
+            gxsp_block_mass_product(general, (float)pass->rate, 0, from, to);
         gxsp_block_scatter(corner, to, out);
     }
 }
@@ -4055,37 +4063,18 @@ static inline void gxsp_narrow_four(const double *x, const double *origin, float
 #endif
 }
 
-/* What a block's corners 1 ... 3 move by relative to corner 0; and that one itself, unless first is NULL. in: x 3, and one more double */
-static void gxsp_block_gather_doubles(const gxsp_corners *GXSP_RESTRICT corner, const double *GXSP_RESTRICT in, gxsp_singles *GXSP_RESTRICT first,
-                                      gxsp_singles *GXSP_RESTRICT apart)
+/* What a block's corner 0 has and what the others have more. in: x 3, and one more double */
+static void gxsp_block_gather_doubles(const gxsp_corners *GXSP_RESTRICT corner, const double *GXSP_RESTRICT in, gxsp_singles *GXSP_RESTRICT to)
 {
     static const uint16_t own[GXSP_LANES] = {0, 1, 2, 3, 4, 5, 6, 7};
     static const double zero[4] = {0, 0, 0, 0};
     gxsp_vector4 lanes[GXSP_LANES];
     int i, l;
-    for (i = 0; i < 3; ++i) {
+    for (i = 0; i < 4; ++i) {
         for (l = 0; l < GXSP_LANES; ++l)
-            gxsp_narrow_four(in + 3 * (size_t)corner->node[i + 1][l], in + 3 * (size_t)corner->node[0][l], lanes[l]);
-        gxsp_gather_eight(own, (const gxsp_vector4 *)lanes, apart[3 * i], apart[3 * i + 1], apart[3 * i + 2]);
+            gxsp_narrow_four(in + 3 * (size_t)corner->node[i][l], i > 0 ? in + 3 * (size_t)corner->node[0][l] : zero, lanes[l]);
+        gxsp_gather_eight(own, (const gxsp_vector4 *)lanes, to[3 * i], to[3 * i + 1], to[3 * i + 2]);
     }
-    for (l = 0; l < GXSP_LANES && first; ++l)
-        gxsp_narrow_four(in + 3 * (size_t)corner->node[0][l], zero, lanes[l]);
-    if (first)
-        gxsp_gather_eight(own, (const gxsp_vector4 *)lanes, first[0], first[1], first[2]);
-}
-
-/* y += rate M of a translation by first; x: what corners move by, and by first more then */
-static void gxsp_block_add_translation(const gxsp_tangent *GXSP_RESTRICT tangent, const gxsp_mass *general, float rate,
-                                       gxsp_singles *GXSP_RESTRICT first, gxsp_singles *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT y)
-{
-    int k, l;
-    for (k = 0; k < 12; ++k)
-        GXSP_EACH_LANE(l) y[k][l] += 5 * tangent->mass[l] * first[k % 3][l];
-    if (!general)
-        return;
-    for (k = 0; k < 12; ++k)
-        GXSP_EACH_LANE(l) x[k][l] += first[k % 3][l];
-    gxsp_block_mass_product(general, rate, x, y);
 }
 
 /* The product of pass->from, times pass->factor, into the chunk's slots, 4 floats each */
@@ -4105,13 +4094,13 @@ static void gxsp_task_apply(void *context, size_t index)
     for (b = 0; b < chunk->block_count; ++b) {
         const gxsp_corners *corner = &chunk->corners[b];
         const gxsp_chunk *next = gxsp_block_ahead(system, index, b, &further);
-        gxsp_singles first[3], from[12], to[12];
+        const gxsp_mass *general = gxsp_block_masses(chunk, b);
+        gxsp_singles from[12], to[12];
         gxsp_fetch(&next->tangents[further], sizeof(gxsp_tangent));
-        memset(from, 0, 3 * sizeof *from);
-        gxsp_block_gather_doubles(corner, in, pass->inertia ? first : NULL, from + 3);
-        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_general(chunk, b), from, to);
-        if (pass->inertia)
-            gxsp_block_add_translation(&chunk->tangents[b], gxsp_block_masses(chunk, b), (float)pass->rate, first, from, to);
+        gxsp_block_gather_doubles(corner, in, from);
+        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_general(chunk, b), 1, from, to);
+        if (general && pass->rate > 0)
+            gxsp_block_mass_product(general, (float)pass->rate, 1, from, to);
         gxsp_block_scatter(corner, to, out);
     }
 }
@@ -7770,7 +7759,6 @@ GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *directi
     memset(&pass, 0, sizeof pass);
     pass.system = system;
     pass.rate = system->scale * system->product_rate;
-    pass.inertia = pass.rate > 0 && !system->lumped_mass;
     pass.from = direction;
     pass.sum = product;
     pass.factor = gxsp_unit_factor(direction, 3 * system->n);
@@ -8071,7 +8059,7 @@ GXFEM_API gx_result gxs_model_hessian_product(const gxs_model *model, const doub
         gxsp_group_gather(&group, direction, x);
         for (k = 0; k < 12; ++k)
             GXSP_EACH_LANE(l) from[k][l] = (float)(x[k][l] - x[k % 3][l]); /* of translations exactly 0 */
-        gxsp_kind_product(group.kind, &tangent, &general, from, to);
+        gxsp_kind_product(group.kind, &tangent, &general, 1, from, to);
         for (k = 0; k < 12; ++k)
             GXSP_EACH_LANE(l) x[k][l] = (double)to[k][l];
         gxsp_group_scatter(&group, x, product);
@@ -8153,7 +8141,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
     for (k = 0; k < 3; ++k)
         for (c = 0; c < 3; ++c)
             from[3 + 3 * c + k][0] = (float)direction[3 * k + c];
-    gxsp_kind_product(material->kind, &tangent, &general, from, to);
+    gxsp_kind_product(material->kind, &tangent, &general, 1, from, to);
     for (k = 0; k < 3; ++k)
         for (c = 0; c < 3; ++c)
             product[3 * k + c] = (double)to[3 + 3 * c + k][0];
