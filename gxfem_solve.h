@@ -1838,14 +1838,13 @@ static void gxsp_kind_product(gxs_material_kind kind, const gxsp_tangent *b, con
 }
 
 /* y += rate M x of masses that rest does not have. apart: as of gxsp_block_product */
-static void gxsp_block_mass_product(const gxsp_mass *GXSP_RESTRICT mass, float rate, int apart, gxsp_singles *GXSP_RESTRICT x,
-                                    gxsp_singles *GXSP_RESTRICT y)
+GXSP_INLINE void gxsp_block_mass_product(const gxsp_mass *GXSP_RESTRICT mass, float rate, int apart, gxsp_singles *GXSP_RESTRICT x,
+                                         gxsp_singles *GXSP_RESTRICT y)
 {
-    const float from = apart ? 1.0f : 0.0f;
     int r, l;
     for (r = 0; r < 3; ++r)
         GXSP_EACH_LANE(l) {
-            const float a = rate * x[r][l], o = from * a;
+            const float a = rate * x[r][l], o = apart ? a : 0;
             const float b = rate * x[3 + r][l] + o, c = rate * x[6 + r][l] + o, d = rate * x[9 + r][l] + o;
             const float m0 = (float)mass->entry[0][l], m1 = (float)mass->entry[1][l], m2 = (float)mass->entry[2][l],
                         m3 = (float)mass->entry[3][l], m4 = (float)mass->entry[4][l], m5 = (float)mass->entry[5][l],
