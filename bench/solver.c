@@ -442,7 +442,8 @@ static void print_table(void)
     const kept_row *first = rows;   /* of the case */
     size_t i;
     int m;
-    fprintf(stderr, "iterations / ms of a step; ns per element: iteration of jacobi-free; product of single and of double vectors\n%-28s %8s", "case", "unknowns");
+    fprintf(stderr, "iterations / ms of a step; ns per element: iteration of jacobi-free; product of single and of double vectors\n");
+    fprintf(stderr, "%-28s %8s", "case", "unknowns");
     for (m = 0; m < METHODS; m++) fprintf(stderr, " %19s", methods[m].name);
     fprintf(stderr, " %9s %9s %9s %9s", "cholmod", "iteration", "single", "double");
     for (i = 0; i < row_count; i++) {
