@@ -377,6 +377,21 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
 GXFEM_API void gxs_solver_scene(const gxs_solver *solver, gxs_scene *scene);
 GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene);
 
+/* The model's operator for other uses than steps: a Krylov method of one's own, modes, an adjoint. gxs_solver_linearise makes it at a
+ * displacement, gxs_solver_product applies it as often as one likes, matrix-free; both by the solver's jobs:
+ *     product = (K + rate M) direction                    N; m; rate: 1/s2, 0 or more
+ * K: Hessian of U, projected or, exact not 0, as it is; M: the mass, lumped if the model says so. Springs, contact and damping belong to
+ * steps and are not in it, pieces asleep are. It acts on what can move: directions of held copies and of copies without an element count
+ * as 0, those of followers are what their masters' make of them, and the product is 0 there, what acts on followers goes to their masters.
+ * So it is symmetric, and semi-definite unless exact.
+ * Vectors are copy_count x 3 doubles; between them numbers are single precision: of the Hessian, of what an element's copies move by
+ * relative to the first (taken in double precision: translations meet no stiffness at all), of its forces; sums over elements are single
+ * precision within chunks, double between them. A power of two times a direction gives exactly that times its product.
+ * What is made lasts until the next step, update or model; then, or before anything is made, product is GX_ERROR_ARGUMENT. GX_ERROR_RANGE:
+ * the Hessian is beyond single precision. Neither allocates, nor changes what steps do. product may not overlap direction. */
+GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displacement, double rate, uint32_t exact, gx_failure *failure);
+GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *direction, double *product, gx_failure *failure);
+
 GXFEM_API gx_result gxs_solver_create(const gxs_solver_desc *desc /* or NULL */, gxs_solver **solver);
 GXFEM_API void gxs_solver_destroy(gxs_solver *solver); /* NULL is allowed */
 
@@ -960,6 +975,7 @@ typedef struct gxsp_system {
     int still_known;        /* still and chunk_still are those of the pieces' states */
     size_t active;          /* unknowns of this step */
     int base_known;         /* current is what the last step returned, and the pieces know its elastic energies */
+    double product_rate;    /* of the linearisation for gxs_solver_product; below 0: there is none */
     gxsp_vector4 *right;    /* n: residual in single precision; of GXS_MATRIX_ASSEMBLED only, else NULL */
     gxsp_vector4 *guess[2]; /* n: directions of the first iterations of the last step and of the one before */
     uint32_t guess_count;   /* how many of them there are */
@@ -1734,17 +1750,19 @@ static void gxsp_block_inertia(const gxsp_rest *GXSP_RESTRICT rest, const gxsp_m
         }
 }
 
-/* y = (K + rate M) x, one lane after the other in registers; without general masses */
-static void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, gxsp_singles *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT y)
+/* y = (K + rate M) x, one lane after the other in registers; without general masses. apart: x of corners 1 ... 3 is what they have more
+ * than corner 0, which callers know better than single precision could tell. */
+GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, int apart, gxsp_singles *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT y)
 {
     int l;
     GXSP_EACH_LANE(l) {
         const float m = b->mass[l], x0 = x[0][l], x1 = x[1][l], x2 = x[2][l];
+        const float o0 = apart ? 0 : x0, o1 = apart ? 0 : x1, o2 = apart ? 0 : x2;
         const float g0 = b->gradient[0][l], g1 = b->gradient[1][l], g2 = b->gradient[2][l], g3 = b->gradient[3][l],
                     g4 = b->gradient[4][l], g5 = b->gradient[5][l], g6 = b->gradient[6][l], g7 = b->gradient[7][l],
                     g8 = b->gradient[8][l];
-        const float a0 = x[3][l] - x0, a1 = x[4][l] - x1, a2 = x[5][l] - x2, b0 = x[6][l] - x0, b1 = x[7][l] - x1,
-                    b2 = x[8][l] - x2, c0 = x[9][l] - x0, c1 = x[10][l] - x1, c2 = x[11][l] - x2;
+        const float a0 = x[3][l] - o0, a1 = x[4][l] - o1, a2 = x[5][l] - o2, b0 = x[6][l] - o0, b1 = x[7][l] - o1,
+                    b2 = x[8][l] - o2, c0 = x[9][l] - o0, c1 = x[10][l] - o1, c2 = x[11][l] - o2;
         /* dF V = sum (x_i - x_0) (V^T grad N_i)^T */
         const float d0 = a0 * g0 + b0 * g3 + c0 * g6, d1 = a0 * g1 + b0 * g4 + c0 * g7, d2 = a0 * g2 + b0 * g5 + c0 * g8,
                     d3 = a1 * g0 + b1 * g3 + c1 * g6, d4 = a1 * g1 + b1 * g4 + c1 * g7, d5 = a1 * g2 + b1 * g5 + c1 * g8,
@@ -1780,15 +1798,16 @@ static void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, gxsp_singles
 }
 
 /* The same for a Hessian without a frame */
-static void gxsp_general_product(const gxsp_tangent *b, const gxsp_general *h, gxsp_singles *x, gxsp_singles *y)
+static void gxsp_general_product(const gxsp_tangent *b, const gxsp_general *h, int apart, gxsp_singles *x, gxsp_singles *y)
 {
+    const float from = apart ? 0.0f : 1.0f;
     gxsp_singles d[9], p[9];
     int i, j, k, l;
     for (i = 0; i < 9; ++i)
         GXSP_EACH_LANE(l) {
             const int r = i / 3, c = i % 3;
-            d[i][l] = (x[3 + r][l] - x[r][l]) * b->gradient[c][l] + (x[6 + r][l] - x[r][l]) * b->gradient[3 + c][l] +
-                      (x[9 + r][l] - x[r][l]) * b->gradient[6 + c][l];
+            const float o = from * x[r][l];
+            d[i][l] = (x[3 + r][l] - o) * b->gradient[c][l] + (x[6 + r][l] - o) * b->gradient[3 + c][l] + (x[9 + r][l] - o) * b->gradient[6 + c][l];
             p[i][l] = 0;
         }
     for (i = 0; i < 9; ++i)
@@ -1796,33 +1815,37 @@ static void gxsp_general_product(const gxsp_tangent *b, const gxsp_general *h, g
             GXSP_EACH_LANE(l) p[i][l] += h->hessian[gxsp_packed9(i, j)][l] * d[j][l];
     for (i = 0; i < 3; ++i)
         GXSP_EACH_LANE(l) {
-            const float sum = x[i][l] + x[3 + i][l] + x[6 + i][l] + x[9 + i][l];
+            const float o = (1 - from) * x[i][l], sum = x[i][l] + x[3 + i][l] + x[6 + i][l] + x[9 + i][l] + 3 * o;
             y[i][l] = b->mass[l] * (sum + x[i][l]);
             for (k = 0; k < 3; ++k) {
                 const float f = p[3 * i][l] * b->gradient[3 * k][l] + p[3 * i + 1][l] * b->gradient[3 * k + 1][l] +
                                 p[3 * i + 2][l] * b->gradient[3 * k + 2][l];
-                y[3 + 3 * k + i][l] = b->mass[l] * (sum + x[3 + 3 * k + i][l]) + f;
+                y[3 + 3 * k + i][l] = b->mass[l] * (sum + o + x[3 + 3 * k + i][l]) + f;
                 y[i][l] -= f;
             }
         }
 }
 
-static void gxsp_kind_product(gxs_material_kind kind, const gxsp_tangent *b, const gxsp_general *h, gxsp_singles *x, gxsp_singles *y)
+/* The same for either */
+static void gxsp_kind_product(gxs_material_kind kind, const gxsp_tangent *b, const gxsp_general *h, int apart, gxsp_singles *x, gxsp_singles *y)
 {
     if (kind == GXS_CUSTOM)
-        gxsp_general_product(b, h, x, y);
+        gxsp_general_product(b, h, apart, x, y);
+    else if (apart)
+        gxsp_block_product(b, 1, x, y);
     else
-        gxsp_block_product(b, x, y);
+        gxsp_block_product(b, 0, x, y);
 }
 
-/* y += rate M x of masses that rest does not have */
-static void gxsp_block_mass_product(const gxsp_mass *GXSP_RESTRICT mass, float rate, gxsp_singles *GXSP_RESTRICT x,
-                                    gxsp_singles *GXSP_RESTRICT y)
+/* y += rate M x of masses that rest does not have. apart: as of gxsp_block_product */
+GXSP_INLINE void gxsp_block_mass_product(const gxsp_mass *GXSP_RESTRICT mass, float rate, int apart, gxsp_singles *GXSP_RESTRICT x,
+                                         gxsp_singles *GXSP_RESTRICT y)
 {
     int r, l;
     for (r = 0; r < 3; ++r)
         GXSP_EACH_LANE(l) {
-            const float a = rate * x[r][l], b = rate * x[3 + r][l], c = rate * x[6 + r][l], d = rate * x[9 + r][l];
+            const float a = rate * x[r][l], o = apart ? a : 0;
+            const float b = rate * x[3 + r][l] + o, c = rate * x[6 + r][l] + o, d = rate * x[9 + r][l] + o;
             const float m0 = (float)mass->entry[0][l], m1 = (float)mass->entry[1][l], m2 = (float)mass->entry[2][l],
                         m3 = (float)mass->entry[3][l], m4 = (float)mass->entry[4][l], m5 = (float)mass->entry[5][l],
                         m6 = (float)mass->entry[6][l], m7 = (float)mass->entry[7][l], m8 = (float)mass->entry[8][l],
@@ -3591,7 +3614,7 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
     system->range_count = (system->n + GXSP_RANGE - 1) / GXSP_RANGE;
     system->lumped_mass = model->lumped_mass != 0;
     system->scale = gxsp_choose_scale(model);
-    system->coarse_rate = -1;
+    system->coarse_rate = system->product_rate = -1;
     system->coarse_life = GXSP_LIFE;
     system->material_count = (uint32_t)model->material_count;
     system->materials = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
@@ -3671,14 +3694,14 @@ static void gxsp_follow(const gxsp_system *system, const double *from, double *d
     }
 }
 
-/* Residuals: those of followers are given to masters, but not to copies that are still. */
-static void gxsp_reduce_residual(const gxsp_system *system, double *r)
+/* Residuals: those of followers are given to masters, but not to copies that are still. still: n */
+static void gxsp_reduce_residual(const gxsp_system *system, const uint8_t *still, double *r)
 {
     uint32_t i, k, c;
     for (i = 0; i < system->follower_count; ++i) {
         const gxsp_follower *follower = &system->followers[i];
         for (k = 0; k < 4; ++k)
-            for (c = 0; c < 3 && !system->still[follower->master[k]]; ++c)
+            for (c = 0; c < 3 && !still[follower->master[k]]; ++c)
                 r[3 * (size_t)follower->master[k] + c] += follower->weight[k] * r[3 * (size_t)follower->copy + c];
         memset(r + 3 * (size_t)follower->copy, 0, 3 * sizeof *r);
     }
@@ -3895,9 +3918,9 @@ static void gxsp_task_product(void *context, size_t index)
         gxsp_singles from[12], to[12];
         gxsp_fetch(&next->tangents[further], sizeof(gxsp_tangent));
         gxsp_block_gather(corner, (const gxsp_vector4 *)in, from);
-        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_general(chunk, b), from, to);
+        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_general(chunk, b), 0, from, to);
         if (general)
-            gxsp_block_mass_product(general, (float)pass->rate, from, to);
+            gxsp_block_mass_product(general, (float)pass->rate, 0, from, to);
         gxsp_block_scatter(corner, to, out);
     }
 }
@@ -4002,6 +4025,141 @@ static double gxsp_product_from(gxsp_system *system, double rate, const double *
 static double gxsp_product(gxsp_system *system, double rate, gxsp_vector4 *x, gxsp_vector4 *y)
 {
     return gxsp_product_from(system, rate, NULL, x, y);
+}
+
+/* --- products of doubles --- */
+
+/* How a direction moves a copy, times pass->factor: as it says, as its masters' make it if it follows them, not at all if it is fixed */
+static void gxsp_copy_direction(const gxsp_pass *pass, uint32_t copy, double *GXSP_RESTRICT to)
+{
+    const gxsp_system *system = pass->system;
+    const double *from = pass->from + 3 * (size_t)copy;
+    double factor = system->fixed[copy] ? 0 : pass->factor;
+    int k, c;
+    if (system->follower_count == 0 || system->follower[copy] == GXSP_NONE) {
+        to[0] = factor * from[0], to[1] = factor * from[1], to[2] = factor * from[2];
+        return;
+    }
+    to[0] = to[1] = to[2] = 0;
+    for (k = 0; k < 4; ++k) {
+        const gxsp_follower *follower = &system->followers[system->follower[copy]];
+        from = pass->from + 3 * (size_t)follower->master[k];
+        factor = system->fixed[follower->master[k]] ? 0 : pass->factor * follower->weight[k];
+        for (c = 0; c < 3; ++c)
+            to[c] += factor * from[c];
+    }
+}
+
+/* The first three of four doubles less those of origin, in single precision */
+static inline void gxsp_narrow_four(const double *x, const double *origin, float *to)
+{
+#if defined(GXSP_SHUFFLES)
+    *(gxsp_four *)to = __builtin_convertvector(*(const gxsp_four_doubles *)x - *(const gxsp_four_doubles *)origin, gxsp_four);
+#else
+    int k;
+    for (k = 0; k < 3; ++k)
+        to[k] = (float)(x[k] - origin[k]);
+#endif
+}
+
+/* What a block's corner 0 has and what the others have more. in: x 3, and one more double */
+static void gxsp_block_gather_doubles(const gxsp_corners *GXSP_RESTRICT corner, const double *GXSP_RESTRICT in, gxsp_singles *GXSP_RESTRICT to)
+{
+    static const uint16_t own[GXSP_LANES] = {0, 1, 2, 3, 4, 5, 6, 7};
+    static const double zero[4] = {0, 0, 0, 0};
+    gxsp_vector4 lanes[GXSP_LANES];
+    int i, l;
+    for (i = 0; i < 4; ++i) {
+        for (l = 0; l < GXSP_LANES; ++l)
+            gxsp_narrow_four(in + 3 * (size_t)corner->node[i][l], i > 0 ? in + 3 * (size_t)corner->node[0][l] : zero, lanes[l]);
+        gxsp_gather_eight(own, (const gxsp_vector4 *)lanes, to[3 * i], to[3 * i + 1], to[3 * i + 2]);
+    }
+}
+
+/* The product of pass->from, times pass->factor, into the chunk's slots, 4 floats each */
+static void gxsp_task_apply(void *context, size_t index)
+{
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    const gxsp_chunk *chunk = &system->chunks[index];
+    const uint32_t *copies = system->nodes + chunk->first_node;
+    double in[3 * 4 * GXSP_CHUNK_BLOCKS * GXSP_LANES + 1]; /* one more than is read as numbers */
+    gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->slots + chunk->first_node;
+    uint32_t b, i, further;
+    for (i = 0; i < chunk->node_count; ++i)
+        gxsp_copy_direction(pass, copies[i], in + 3 * (size_t)i);
+    in[3 * (size_t)i] = 0;
+    memset(out, 0, chunk->node_count * sizeof *out);
+    for (b = 0; b < chunk->block_count; ++b) {
+        const gxsp_corners *corner = &chunk->corners[b];
+        const gxsp_chunk *next = gxsp_block_ahead(system, index, b, &further);
+        const gxsp_mass *general = gxsp_block_masses(chunk, b);
+        gxsp_singles from[12], to[12];
+        gxsp_fetch(&next->tangents[further], sizeof(gxsp_tangent));
+        gxsp_block_gather_doubles(corner, in, from);
+        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_general(chunk, b), 1, from, to);
+        if (general && pass->rate > 0)
+            gxsp_block_mass_product(general, (float)pass->rate, 1, from, to);
+        gxsp_block_scatter(corner, to, out);
+    }
+}
+
+/* pass->sum = the product, from the slots, and what lumped masses make of it */
+static void gxsp_task_apply_sum(void *context, size_t index)
+{
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    const gxsp_system *system = pass->system;
+    gxsp_vector4 *slots = (gxsp_vector4 *)(void *)system->slots;
+    const double unit = 1 / system->scale, back = 1 / pass->factor;
+    size_t i, end = gxsp_range(system, index, &i);
+    for (; i < end; ++i) {
+        double at[3] = {0, 0, 0}, mass = system->lumped_mass ? pass->rate * system->lumped[i] : 0, x, y, z;
+        uint32_t s;
+        if (mass > 0)
+            gxsp_copy_direction(pass, (uint32_t)i, at);
+        x = mass * at[0], y = mass * at[1], z = mass * at[2];
+        for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->fixed[i]; ++s) {
+            const float *from = slots[system->copy_slot[s]];
+            x += (double)from[0], y += (double)from[1], z += (double)from[2];
+        }
+        pass->sum[3 * i] = x * unit * back, pass->sum[3 * i + 1] = y * unit * back, pass->sum[3 * i + 2] = z * unit * back;
+    }
+}
+
+/* 2^k, |k| < 1023, about the inverse of the largest of the values, so that single precision holds them and their product; 0: one is not finite */
+static double gxsp_unit_factor(const double *values, size_t count)
+{
+    const uint64_t exponent = (uint64_t)0x7ff << 52, one = (uint64_t)1 << 52;
+    uint64_t largest = one, bits;
+    double factor;
+    size_t i;
+    for (i = 0; i < count; ++i) {
+        memcpy(&bits, &values[i], sizeof bits);
+        largest = (bits & exponent) > largest ? bits & exponent : largest;
+    }
+    if (largest == exponent)
+        return 0;
+    bits = 2046 * one - (largest < 2045 * one ? largest : 2045 * one);
+    memcpy(&factor, &bits, sizeof factor);
+    return factor;
+}
+
+/* Are the Hessians of all elements finite? */
+static int gxsp_tangents_finite(const gxsp_system *system)
+{
+    uint32_t c;
+    size_t i;
+    for (c = 0; c < system->chunk_count; ++c) {
+        const gxsp_chunk *chunk = &system->chunks[c];
+        const float *numbers = (const float *)(const void *)chunk->tangents, *more = (const float *)(const void *)chunk->generals;
+        for (i = 0; i < chunk->block_count * (sizeof(gxsp_tangent) / sizeof(float)); ++i)
+            if (!gxsp_finite_single(numbers[i]))
+                return 0;
+        for (i = 0; more && i < chunk->block_count * (sizeof(gxsp_general) / sizeof(float)); ++i)
+            if (!gxsp_finite_single(more[i]))
+                return 0;
+    }
+    return 1;
 }
 
 /* Diagonal blocks of a block's Hessian into the chunk's slots, 6 floats each */
@@ -6722,7 +6880,7 @@ static double gxsp_balance(gxsp_problem *problem)
     gxsp_over_ranges(system, gxsp_task_balance, &pass, sums, GXSP_SUMS);
     elastic.energy = sums[4], elastic.displacement = sums[5];
     gxsp_add_reactions(system, &elastic);
-    gxsp_reduce_residual(system, system->residual);
+    gxsp_reduce_residual(system, system->still, system->residual);
     residual = gxsp_scale(system, system->residual);
     energy = sqrt(sums[0]) + sqrt(sums[2]) + sqrt(elastic.energy);
     displacement = sqrt(sums[1]) + sqrt(sums[3]) + sqrt(elastic.displacement);
@@ -7538,6 +7696,7 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
         return failure->result;
     }
     scratch = gxsp_pool_make(&solver->allocator);
+    system->product_rate = -1;
     memset(&update, 0, sizeof update);
     update.system = system;
     update.scratch = &scratch;
@@ -7557,6 +7716,59 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
     return failure->result;
 }
 
+GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displacement, double rate, uint32_t exact, gx_failure *failure)
+{
+    gx_failure ignored;
+    gxsp_system *system;
+    gxsp_pass pass;
+    failure = failure ? failure : &ignored;
+    gxsp_fail(failure, GX_OK, SIZE_MAX);
+    if (!solver || !solver->system)
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    system = solver->system;
+    if (gxsp_check_vector(displacement, system->n, failure) != GX_OK)
+        return failure->result;
+    if (!gxsp_finite(rate))
+        return gxsp_fail(failure, GX_ERROR_NOT_FINITE, SIZE_MAX);
+    if (rate < 0)
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    memset(&pass, 0, sizeof pass);
+    pass.system = system;
+    pass.materials = system->materials;
+    pass.rate = system->scale * rate;
+    pass.from = displacement;
+    pass.exact = exact != 0;
+    memset(system->chunk_still, 0, system->chunk_count); /* what sleeps is part of it */
+    gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_linearise, &pass);
+    gxsp_mark_still(system);
+    system->product_rate = gxsp_tangents_finite(system) ? rate : -1;
+    return system->product_rate < 0 ? gxsp_fail(failure, GX_ERROR_RANGE, SIZE_MAX) : GX_OK;
+}
+
+GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *direction, double *product, gx_failure *failure)
+{
+    gx_failure ignored;
+    gxsp_system *system;
+    gxsp_pass pass;
+    failure = failure ? failure : &ignored;
+    gxsp_fail(failure, GX_OK, SIZE_MAX);
+    if (!solver || !solver->system || solver->system->product_rate < 0 || !direction || !product)
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    system = solver->system;
+    memset(&pass, 0, sizeof pass);
+    pass.system = system;
+    pass.rate = system->scale * system->product_rate;
+    pass.from = direction;
+    pass.sum = product;
+    pass.factor = gxsp_unit_factor(direction, 3 * system->n);
+    if (!(pass.factor > 0))
+        return gxsp_check_vector(direction, system->n, failure);
+    gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_apply, &pass);
+    gxsp_over_ranges(system, gxsp_task_apply_sum, &pass, NULL, 0);
+    gxsp_reduce_residual(system, system->fixed, product);
+    return GX_OK;
+}
+
 GXFEM_API void gxs_solver_scene(const gxs_solver *solver, gxs_scene *scene)
 {
     *scene = solver->lasting.scene;
@@ -7572,6 +7784,7 @@ GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene)
         gxsp_drop_system(solver);
     if (!solver->system)
         return;
+    system->product_rate = -1;
     system->still_known = system->base_known = 0;
     system->guess_count = 0;
     system->omega = 0;
@@ -7643,6 +7856,7 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
         return gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
     memset(&problem, 0, sizeof problem);
     problem.system = solver->system;
+    problem.system->product_rate = -1;
     problem.step = step;
     problem.cg_iterations = step->cg_iterations ? step->cg_iterations : 1000;
     problem.cg_tolerance = step->cg_tolerance > 0 ? step->cg_tolerance : step->integrator == GXS_MIDPOINT ? 1e-3 : 1e-2;
@@ -7844,7 +8058,7 @@ GXFEM_API gx_result gxs_model_hessian_product(const gxs_model *model, const doub
         gxsp_group_gather(&group, direction, x);
         for (k = 0; k < 12; ++k)
             GXSP_EACH_LANE(l) from[k][l] = (float)(x[k][l] - x[k % 3][l]); /* of translations exactly 0 */
-        gxsp_kind_product(group.kind, &tangent, &general, from, to);
+        gxsp_kind_product(group.kind, &tangent, &general, 1, from, to);
         for (k = 0; k < 12; ++k)
             GXSP_EACH_LANE(l) x[k][l] = (double)to[k][l];
         gxsp_group_scatter(&group, x, product);
@@ -7926,7 +8140,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
     for (k = 0; k < 3; ++k)
         for (c = 0; c < 3; ++c)
             from[3 + 3 * c + k][0] = (float)direction[3 * k + c];
-    gxsp_kind_product(material->kind, &tangent, &general, from, to);
+    gxsp_kind_product(material->kind, &tangent, &general, 1, from, to);
     for (k = 0; k < 3; ++k)
         for (c = 0; c < 3; ++c)
             product[3 * k + c] = (double)to[3 + 3 * c + k][0];

@@ -24,12 +24,14 @@
        peak_bytes   CHOLMOD's own count of the matrix, factor and workspace
        residual     |b - A x| / |b| of the linear system: not to be compared with the others
    product.csv has the time of conjugate gradients per element and iteration: one product and some vector work with block-Jacobi,
-   three products with multigrid.
+   three products with multigrid. And that of a product alone, with inertia, matrix-free on one thread: of `single` vectors as conjugate
+   gradients have them (gxsp_product), of `double` ones as callers do (gxs_solver_product); medians of batches.
 
    contents
      >>host      clock, memory, threads       >>direct    the linear system for CHOLMOD
      >>run       one method on one body       >>cases     what is run
-     >>rows      what is printed              >>main      the command line */
+     >>products  the operator alone           >>main      the command line
+     >>rows      what is printed */
 #define _POSIX_C_SOURCE 200809L
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
@@ -305,6 +307,101 @@ static int run_method(const method *m, const gxs_model *model, int steps, state 
     return result == GX_OK || complain(m->name, result);
 }
 
+/* ---------------------------------------------------------------------------------------------- >>products */
+
+enum { PRODUCT_BATCHES = 15 };
+
+/* A batch takes so many seconds. */
+static const double product_batch = 0.01;
+
+typedef struct products {
+    double single, doubles; /* seconds */
+} products;
+
+/* What a product works on: two vectors of either kind */
+typedef struct operands {
+    gxs_solver *solver;
+    double rate, *direction, *product;
+    gxsp_vector4 *single_direction, *single_product;
+} operands;
+
+static int operands_begin(operands *o, size_t copies, double rate)
+{
+    uint32_t random = 1;
+    size_t i;
+    o->rate = rate;
+    o->direction = (double *)calloc(3 * copies, sizeof *o->direction);
+    o->product = (double *)calloc(3 * copies, sizeof *o->product);
+    o->single_direction = (gxsp_vector4 *)calloc(copies, sizeof *o->single_direction);
+    o->single_product = (gxsp_vector4 *)calloc(copies, sizeof *o->single_product);
+    if (!o->direction || !o->product || !o->single_direction || !o->single_product) return 0;
+    for (i = 0; i < 3 * copies; i++) {
+        random = random * 1664525u + 1013904223u;
+        o->direction[i] = (random >> 8) / 8388608.0 - 1.0;
+        o->single_direction[i / 3][i % 3] = (float)o->direction[i];
+    }
+    return 1;
+}
+
+static void operands_end(operands *o)
+{
+    gxs_solver_destroy(o->solver);
+    free(o->direction);
+    free(o->product);
+    free(o->single_direction);
+    free(o->single_product);
+}
+
+static gx_result multiply_single(operands *o)
+{
+    gxsp_product(o->solver->system, o->rate, o->single_direction, o->single_product);
+    return GX_OK;
+}
+
+static gx_result multiply_doubles(operands *o) { return gxs_solver_product(o->solver, o->direction, o->product, NULL); }
+
+/* A batch: seconds of a product. count: products in it, 0 in the first one, which finds out */
+static gx_result time_batch(operands *o, gx_result (*multiply)(operands *), int *count, double *sample)
+{
+    const double start = seconds(NULL);
+    gx_result result = multiply(o);
+    int i;
+    for (i = 1; result == GX_OK && (*count > 0 ? i < *count : seconds(NULL) - start < product_batch); i++) result = multiply(o);
+    *sample = (seconds(NULL) - start) / i;
+    *count = i;
+    return result;
+}
+
+/* Medians; batches of either kind in turn, as the clock of the machine changes */
+static gx_result time_products(operands *o, products *p)
+{
+    double single[PRODUCT_BATCHES], doubles[PRODUCT_BATCHES];
+    int batch, single_count = 0, doubles_count = 0;
+    gx_result result = GX_OK;
+    for (batch = 0; batch < PRODUCT_BATCHES; batch++) {
+        if (result == GX_OK) result = time_batch(o, multiply_single, &single_count, &single[batch]);
+        if (result == GX_OK) result = time_batch(o, multiply_doubles, &doubles_count, &doubles[batch]);
+    }
+    if (result != GX_OK) return result;
+    p->single = median(single, PRODUCT_BATCHES);
+    p->doubles = median(doubles, PRODUCT_BATCHES);
+    return result;
+}
+
+/* At the state s, with the inertia of the steps that led there */
+static int run_products(const gxs_model *model, const state *s, double rate, products *p)
+{
+    operands o;
+    gx_result result;
+    memset(&o, 0, sizeof o);
+    result = operands_begin(&o, model->copy_count, rate) ? gxs_solver_create(NULL, &o.solver) : GX_ERROR_MEMORY;
+    if (result == GX_OK) result = gxs_solver_set_model(o.solver, model, NULL);
+    if (result == GX_OK) result = gxs_solver_linearise(o.solver, s->displacement, rate, 0, NULL);
+    if (result == GX_OK) result = time_products(&o, p);
+    operands_end(&o);
+    return result == GX_OK || complain("products", result);
+}
+
 /* -------------------------------------------------------------------------------------------------- >>rows */
 
 typedef struct kept_row {
@@ -312,6 +409,7 @@ typedef struct kept_row {
     const char *method;
     size_t unknowns, elements;
     outcome found;
+    products alone;         /* with the first method of the case; else 0 */
 } kept_row;
 
 enum { ROWS = 4 * BLOCK_CUTS * 4 * (METHODS + 1) };  /* sizes, cuts, jittered or not and soft or stiff; methods and cholmod */
@@ -327,40 +425,56 @@ static void add_row(const char *name, const char *method_name, const gxs_model *
     r->unknowns = 3 * model->copy_count;
     r->elements = model->element_count;
     r->found = *o;
+    memset(&r->alone, 0, sizeof r->alone);
     csv_row("%s,%s,%lu,%.1f,%.3f,%.3f,%.3f,%lu,%.3e", name, method_name, (unsigned long)r->unknowns, o->iterations, 1e3 * o->setup, 1e3 * o->solve,
             1e3 * o->step, (unsigned long)o->peak_bytes, o->residual);
 }
 
-/* Nanoseconds of conjugate gradients per element and iteration; 0: there are none */
-static double product_of(const kept_row *r) { return 1e9 * r->found.iteration / (double)r->elements; }
+/* Nanoseconds per element */
+static double per_element(const kept_row *r, double time) { return 1e9 * time / (double)r->elements; }
 
-/* Iterations / milliseconds of a step; cholmod: milliseconds. product: that of jacobi-free, which has one in an iteration */
+/* Of conjugate gradients per element and iteration; 0: there are none */
+static double iteration_of(const kept_row *r) { return per_element(r, r->found.iteration); }
+
+/* Iterations / milliseconds of a step; cholmod: milliseconds. iteration: that of jacobi-free, which has one product in it */
 static void print_table(void)
 {
-    double product = 0;
+    const kept_row *first = rows;   /* of the case */
     size_t i;
     int m;
-    fprintf(stderr, "iterations / ms of a step; product: ns per element, vector work included\n%-28s %8s", "case", "unknowns");
+    fprintf(stderr, "iterations / ms of a step; ns per element: iteration of jacobi-free; product of single and of double vectors\n");
+    fprintf(stderr, "%-28s %8s", "case", "unknowns");
     for (m = 0; m < METHODS; m++) fprintf(stderr, " %19s", methods[m].name);
-    fprintf(stderr, " %9s %9s", "cholmod", "product");
+    fprintf(stderr, " %9s %9s %9s %9s", "cholmod", "iteration", "single", "double");
     for (i = 0; i < row_count; i++) {
         const kept_row *r = &rows[i];
-        if (i == 0 || strcmp(r->name, r[-1].name) != 0) fprintf(stderr, "\n%-28s %8lu", r->name, (unsigned long)r->unknowns);
-        if (strcmp(r->method, methods[0].name) == 0) product = product_of(r);
+        if (i == 0 || strcmp(r->name, r[-1].name) != 0) {
+            first = r;
+            fprintf(stderr, "\n%-28s %8lu", r->name, (unsigned long)r->unknowns);
+        }
         if (strcmp(r->method, "cholmod") == 0) fprintf(stderr, " %9.2f", 1e3 * r->found.step);
         else fprintf(stderr, " %8.1f / %8.2f", r->found.iterations, 1e3 * r->found.step);
         if (i + 1 < row_count && strcmp(r->name, r[1].name) == 0) continue;
-        fprintf(stderr, "%*s %9.2f", strcmp(r->method, "cholmod") == 0 ? 0 : 10, "", product);
+        fprintf(stderr, "%*s %9.2f %9.2f %9.2f", strcmp(r->method, "cholmod") == 0 ? 0 : 10, "", iteration_of(first),
+                per_element(first, first->alone.single), per_element(first, first->alone.doubles));
     }
     fprintf(stderr, "\n");
+}
+
+static void write_product(const kept_row *r, const char *method_name, double time)
+{
+    if (time > 0) csv_row("%s,%s,%lu,%.2f", r->name, method_name, (unsigned long)r->elements, per_element(r, time));
 }
 
 static int write_products(const char *path)
 {
     size_t i;
-    csv_open_second("solver", path, "case,method,elements,ns_per_element_and_iteration");
-    for (i = 0; i < row_count; i++)
-        if (product_of(&rows[i]) > 0) csv_row("%s,%s,%lu,%.2f", rows[i].name, rows[i].method, (unsigned long)rows[i].elements, product_of(&rows[i]));
+    csv_open_second("solver", path, "case,method,elements,ns_per_element");
+    for (i = 0; i < row_count; i++) {
+        write_product(&rows[i], rows[i].method, rows[i].found.iteration);
+        write_product(&rows[i], "single", rows[i].alone.single);
+        write_product(&rows[i], "double", rows[i].alone.doubles);
+    }
     return csv_close();
 }
 
@@ -773,6 +887,7 @@ static int run_model(const scene *s, const gxs_model *model)
     int m, ok;
     memset(ends, 0, sizeof ends);
     ok = run_methods(s, model, found, ends);
+    if (ok) ok = run_products(model, &ends[0], 1.0 / (step_make(0).dt * step_make(0).dt), &rows[row_count - METHODS].alone);
     progress_draw("solver", runs++, run_total, "cholmod");
     if (ok && run_direct(model, &ends[MULTIGRID_FREE], &by_cholmod)) {
         by_cholmod.step = found[MULTIGRID_FREE].step - found[MULTIGRID_FREE].solve + by_cholmod.solve;

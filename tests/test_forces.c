@@ -2074,6 +2074,24 @@ static size_t unknowns_of(const bedroom *room, int block)
     return count;
 }
 
+/* The operator has what sleeps, too. */
+static void check_operator(bedroom *room)
+{
+    const size_t n = 3 * room->s.model.copy_count;
+    double *x = (double *)zeroed(n, sizeof *x), *y = (double *)zeroed(n, sizeof *y), *expected = (double *)zeroed(n, sizeof *y), most = 0;
+    size_t i;
+    for (i = 0; i < n; ++i)
+        x[i] = room->s.held[i / 3] ? 0 : uniform();
+    ck_assert_int_eq(gxs_solver_linearise(room->solver, room->s.displacement, 0, 0, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_product(room->solver, x, y, NULL), GX_OK);
+    ck_assert_int_eq(gxs_model_hessian_product(&room->s.model, room->s.displacement, x, expected), GX_OK);
+    for (i = 0; i < n; ++i)
+        most = fabs(expected[i]) > most ? fabs(expected[i]) : most;
+    for (i = 0; i < n; ++i)
+        assert_that(fabs(y[i] - (room->s.held[i / 3] ? 0 : expected[i])) < 4e-6 * most, "%g %g", y[i], expected[i]);
+    free(x), free(y), free(expected);
+}
+
 START_TEST(settled_blocks_sleep)
 {
     bedroom room;
@@ -2095,6 +2113,8 @@ START_TEST(settled_blocks_sleep)
         ck_assert(memcmp(bits, room.s.displacement, 3 * n * sizeof *bits) == 0);
         if (frame == 5)
             room.step.dt = 0.01;
+        if (frame == 7)
+            check_operator(&room);
         if (frame == 10)
             room.step.integrator = GXS_MIDPOINT;
         bedroom_step(&room);

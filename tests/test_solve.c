@@ -307,7 +307,7 @@ END_TEST
 START_TEST(block_product_equals_assembled_forms)
 {
     size_t i, n, k, copies;
-    double *x, *expected, *mass;
+    double *x, *expected, *mass, *product;
     gxsp_vector4 *in, *out;
     gxs_solver *solver = NULL;
     gxsp_system *system;
@@ -330,6 +330,7 @@ START_TEST(block_product_equals_assembled_forms)
     copies = s.model.copy_count;
     n = 3 * copies;
     x = (double *)zeroed(n, sizeof *x), expected = (double *)zeroed(n, sizeof *x), mass = (double *)zeroed(n, sizeof *x);
+    product = (double *)zeroed(n, sizeof *x);
     in = (gxsp_vector4 *)zeroed(copies, sizeof *in), out = (gxsp_vector4 *)zeroed(copies, sizeof *out);
     for (i = 0; i < n; ++i) {
         s.displacement[i] = 0.3 * uniform();
@@ -342,13 +343,17 @@ START_TEST(block_product_equals_assembled_forms)
     if (desc.matrix == GXS_MATRIX_ASSEMBLED)
         gxsp_assemble(system, system->scale * rate);
     gxsp_product(system, rate, in, out);
+    ck_assert_int_eq(gxs_solver_linearise(solver, s.displacement, rate, 0, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_product(solver, x, product, NULL), GX_OK);
     ck_assert_int_eq(gxs_model_hessian_product(&s.model, s.displacement, x, expected), GX_OK);
     ck_assert_int_eq(gxs_model_mass_product(&s.model, x, mass), GX_OK);
     for (i = 0; i < n; ++i) {
         double sum = expected[i] + rate * (s.model.lumped_mass ? system->lumped[i / 3] * x[i] : mass[i]);
         double got = (double)out[i / 3][i % 3] / system->scale;
         assert_that(fabs(got - sum) < 4e-6 * (1e6 + fabs(sum)), "%g %g", got, sum);
+        assert_that(fabs(product[i] - sum) < 4e-6 * (1e6 + fabs(sum)), "%g %g", product[i], sum);
     }
+    ck_assert(gxsp_linearise(system, rate, s.displacement, 0, &collapsed));
     for (i = 0; i < copies; i += 7)
         for (k = 0; k < 3; ++k) { /* D^-1 times column k of D is a unit vector */
             float unit[3];
@@ -362,8 +367,247 @@ START_TEST(block_product_equals_assembled_forms)
             for (r = 0; r < 3; ++r)
                 assert_that(fabs((double)unit[r] - (r == k ? 1 : 0)) < 1e-3, "%g", (double)unit[r]);
         }
-    free(x), free(expected), free(mass), free(in), free(out);
+    free(x), free(expected), free(mass), free(product), free(in), free(out);
     gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
+/* ---- the operator of the interface ---- */
+
+static double inner(const double *a, const double *b, size_t n)
+{
+    double sum = 0;
+    size_t i;
+    for (i = 0; i < n; ++i)
+        sum += a[i] * b[i];
+    return sum;
+}
+
+static double largest(const double *a, size_t n)
+{
+    double most = 0;
+    size_t i;
+    for (i = 0; i < n; ++i)
+        most = fabs(a[i]) > most ? fabs(a[i]) : most;
+    return most;
+}
+
+/* Exact, in a state that would be projected: the difference quotient of the gradient; at rest projected and exact are the same. */
+START_TEST(operator_is_the_derivative_of_forces)
+{
+    gxs_solver *solver = solver_make();
+    size_t i, n;
+    double *x, *y, *up, *down, *force[2];
+    int rest, k;
+    scene s;
+    seed((uint64_t)_i);
+    s = scene_block(3, 3, 2, 0.5, 0.1, 0);
+    n = 3 * s.model.copy_count;
+    x = (double *)zeroed(n, sizeof *x), y = (double *)zeroed(n, sizeof *x);
+    up = (double *)zeroed(n, sizeof *x), down = (double *)zeroed(n, sizeof *x);
+    force[0] = (double *)zeroed(n, sizeof *x), force[1] = (double *)zeroed(n, sizeof *x);
+    set_kind(s.material, _i);
+    ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
+    for (rest = 0; rest < 2; ++rest)
+        for (k = 0; k < 1 + rest; ++k) { /* exact; at rest projected too */
+            for (i = 0; i < n; ++i) {
+                s.displacement[i] = rest ? 0 : -0.25 * s.rest[i] + 0.02 * uniform();
+                x[i] = uniform();
+                up[i] = s.displacement[i] + 1e-6 * x[i], down[i] = s.displacement[i] - 1e-6 * x[i];
+            }
+            ck_assert_int_eq(gxs_solver_linearise(solver, s.displacement, 0, k == 0, NULL), GX_OK);
+            ck_assert_int_eq(gxs_solver_product(solver, x, y, NULL), GX_OK);
+            ck_assert_int_eq(gxs_model_gradient(&s.model, up, force[0]), GX_OK);
+            ck_assert_int_eq(gxs_model_gradient(&s.model, down, force[1]), GX_OK);
+            for (i = 0; i < n; ++i) {
+                const double expected = (force[0][i] - force[1][i]) / 2e-6;
+                assert_that(fabs(y[i] - expected) < 1e-5 * largest(y, n), "%s: %g %g", rest ? "at rest" : "compressed", y[i], expected);
+            }
+        }
+    free(x), free(y), free(up), free(down), free(force[0]), free(force[1]);
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
+/* Masters' motion onto followers, and followers' forces onto masters */
+static void follow(const gxs_constraint *ties, size_t count, double *x)
+{
+    size_t t, k;
+    for (t = 0; t < 3 * count; ++t) {
+        const gxs_constraint *tie = &ties[t / 3];
+        for (x[3 * tie->copy + t % 3] = 0, k = 0; k < 4; ++k)
+            x[3 * tie->copy + t % 3] += tie->weight[k] * x[3 * tie->master[k] + t % 3];
+    }
+}
+
+static void give(const gxs_constraint *ties, size_t count, double *y)
+{
+    size_t t, k;
+    for (t = 0; t < 3 * count; ++t) {
+        const gxs_constraint *tie = &ties[t / 3];
+        for (k = 0; k < 4; ++k)
+            y[3 * tie->master[k] + t % 3] += tie->weight[k] * y[3 * tie->copy + t % 3];
+        y[3 * tie->copy + t % 3] = 0;
+    }
+}
+
+/* Held copies, followers of free and held ones, a copy without an element; far from rest: what is not read, what comes out, symmetry */
+START_TEST(operator_acts_on_what_can_move)
+{
+    static const gxs_constraint ties[3] = {{30, {31, 37, 31, 31}, {0.5, 0.5, 0, 0}},
+                                           {41, {0, 47, 36, 53}, {0.25, 0.25, 0.25, 0.25}},
+                                           {8, {0, 0, 0, 0}, {1, 0, 0, 0}}};
+    const int kind = _i / 4, lumped = _i / 2 % 2;
+    const double rate = 900;
+    gxs_solver_desc desc;
+    gxs_solver *solver = NULL;
+    size_t i, n;
+    double *x, *z, *y, *w, *expected, *mass;
+    scene s;
+    memset(&desc, 0, sizeof desc);
+    desc.matrix = _i % 2 ? GXS_MATRIX_ASSEMBLED : GXS_MATRIX_FREE;
+    ck_assert_int_eq(gxs_solver_create(&desc, &solver), GX_OK);
+    seed((uint64_t)_i);
+    s = scene_block(5, 4, 3, 0.5, 0.1, 1);
+    ++s.model.copy_count;
+    for (i = 0; i < s.model.copy_count; ++i)
+        s.held[i] = i % 6 == 0;
+    s.held[30] = 0;
+    n = 3 * s.model.copy_count;
+    set_kind(s.material, kind);
+    s.model.lumped_mass = (uint32_t)lumped;
+    s.model.constraints = ties;
+    s.model.constraint_count = 3;
+    for (i = 0; i < 40; ++i)
+        s.elements[3 * i].mass[i % 10] *= 1.01;
+    x = (double *)zeroed(n, sizeof *x), y = (double *)zeroed(n, sizeof *x), z = (double *)zeroed(n, sizeof *x), w = (double *)zeroed(n, sizeof *x);
+    expected = (double *)zeroed(n, sizeof *x), mass = (double *)zeroed(n, sizeof *x);
+    for (i = 0; i < n; ++i)
+        s.displacement[i] = 0.2 * uniform(), x[i] = uniform(), z[i] = uniform();
+    ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_linearise(solver, s.displacement, rate, 0, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_product(solver, x, y, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_product(solver, z, w, NULL), GX_OK);
+    assert_that(fabs(inner(x, w, n) - inner(z, y, n)) < 1e-6 * sqrt(inner(x, y, n) * inner(z, w, n)), "%g %g", inner(x, w, n), inner(z, y, n));
+    for (i = 0; i < n; ++i)
+        x[i] = s.held[i / 3] || i / 3 == 30 || i / 3 == 41 || i / 3 == 8 || i == n - 1 ? 1e6 * uniform() : x[i];
+    ck_assert_int_eq(gxs_solver_product(solver, x, w, NULL), GX_OK);
+    for (i = 0; i < n; ++i) /* the power of two by which it is scaled is another one */
+        assert_that(fabs(w[i] - y[i]) < 1e-5 * largest(y, n), "%g %g", w[i], y[i]);
+    for (i = 0; i < n; ++i)
+        x[i] = s.held[i / 3] ? 0 : x[i];
+    follow(ties, 3, x);
+    ck_assert_int_eq(gxs_model_hessian_product(&s.model, s.displacement, x, expected), GX_OK);
+    ck_assert_int_eq(gxs_model_mass_product(&s.model, x, mass), GX_OK);
+    for (i = 0; i < n; ++i)
+        expected[i] += rate * (lumped ? solver->system->lumped[i / 3] * x[i] : mass[i]);
+    give(ties, 3, expected);
+    for (i = 0; i < n; ++i) {
+        const int still = s.held[i / 3] || i / 3 == 30 || i / 3 == 41 || i / 3 == 8 || i >= n - 3;
+        assert_that(still ? y[i] == 0 : fabs(y[i] - expected[i]) < 4e-6 * largest(y, n), "%lu: %g %g", (unsigned long)i, y[i], expected[i]);
+    }
+    free(x), free(y), free(z), free(w), free(expected), free(mass);
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
+/* Translations meet no stiffness, a power of two is a factor, tiny and huge directions lose nothing, no direction is of negative energy. */
+START_TEST(operator_is_linear_and_semidefinite)
+{
+    gxs_solver *solver = solver_make();
+    size_t i, n;
+    double *x, *y, *z, slope;
+    int round;
+    scene s;
+    seed((uint64_t)_i);
+    s = scene_block(4, 3, 3, 0.5, 0.1, 0);
+    n = 3 * s.model.copy_count;
+    x = (double *)zeroed(n, sizeof *x), y = (double *)zeroed(n, sizeof *x), z = (double *)zeroed(n, sizeof *x);
+    set_kind(s.material, _i);
+    ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
+    for (round = 0; round < 20; ++round) {
+        for (i = 0; i < n; ++i)
+            s.displacement[i] = 0.05 * round * uniform(), x[i] = 3.7 * (double)(i % 3) - 1.234567890123;
+        ck_assert_int_eq(gxs_solver_linearise(solver, s.displacement, 0, 0, NULL), GX_OK);
+        ck_assert_int_eq(gxs_solver_product(solver, x, y, NULL), GX_OK);
+        for (i = 0; i < n; ++i)
+            ck_assert(y[i] == 0);
+        for (i = 0; i < n; ++i)
+            x[i] = uniform();
+        ck_assert_int_eq(gxs_solver_product(solver, x, y, NULL), GX_OK);
+        slope = inner(x, y, n);
+        assert_that(slope > -1e-6 * sqrt(inner(x, x, n) * inner(y, y, n)), "%g", slope);
+        for (i = 0; i < n; ++i)
+            x[i] = ldexp(x[i], round % 2 ? 900 : -900);
+        ck_assert_int_eq(gxs_solver_product(solver, x, z, NULL), GX_OK);
+        for (i = 0; i < n; ++i)
+            ck_assert(z[i] == ldexp(y[i], round % 2 ? 900 : -900));
+    }
+    memset(x, 0, n * sizeof *x);
+    ck_assert_int_eq(gxs_solver_product(solver, x, y, NULL), GX_OK);
+    ck_assert(largest(y, n) == 0);
+    free(x), free(y), free(z);
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
+/* What lasts until when, what is bad input; steps are the same with a linearisation between them, of a damped material too. */
+START_TEST(operator_lasts_until_the_next_step)
+{
+    gxs_solver *solver = solver_make(), *other = solver_make();
+    gxs_step_desc step = step_make(0.01, -9.81);
+    gx_failure failure;
+    size_t i, n;
+    double *x, *y, *moved[2], nan = not_a_number(0);
+    int frame;
+    scene s;
+    seed(5);
+    s = scene_block(6, 6, 6, 0.25, 0.1, 0);
+    scene_hold_left(&s);
+    s.material->damping = 0.01;
+    n = 3 * s.model.copy_count;
+    x = (double *)zeroed(n, sizeof *x), y = (double *)zeroed(n, sizeof *x);
+    moved[0] = (double *)zeroed(n, sizeof *x), moved[1] = (double *)zeroed(n, sizeof *x);
+    for (i = 0; i < n; ++i)
+        x[i] = 0.1 * uniform();
+    ck_assert_int_eq(gxs_solver_linearise(NULL, x, 0, 0, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxs_solver_linearise(solver, x, 0, 0, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxs_solver_product(NULL, x, y, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxs_solver_product(solver, x, y, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_set_model(other, &s.model, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_product(solver, x, y, NULL), GX_ERROR_ARGUMENT);
+    for (frame = 0; frame < 6; ++frame) {
+        ck_assert_int_eq(gxs_solver_step(other, &step, moved[0], moved[1], NULL, NULL), GX_OK);
+        ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+        ck_assert(memcmp(moved[0], s.displacement, n * sizeof *x) == 0 && memcmp(moved[1], s.velocity, n * sizeof *x) == 0);
+        ck_assert_int_eq(gxs_solver_product(solver, x, y, NULL), GX_ERROR_ARGUMENT);
+        ck_assert_int_eq(gxs_solver_linearise(solver, x, 100, frame % 2 > 0, NULL), GX_OK);
+        ck_assert_int_eq(gxs_solver_product(solver, x, y, NULL), GX_OK);
+    }
+    ck_assert_int_eq(gxs_solver_linearise(solver, x, -1, 0, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxs_solver_linearise(solver, x, nan, 0, &failure), GX_ERROR_NOT_FINITE);
+    ck_assert_int_eq(gxs_solver_linearise(solver, NULL, 0, 0, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxs_solver_product(solver, NULL, y, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxs_solver_product(solver, x, NULL, &failure), GX_ERROR_ARGUMENT);
+    memcpy(moved[0], y, n * sizeof *y);
+    x[7] = not_a_number(1);
+    ck_assert_int_eq(gxs_solver_product(solver, x, y, &failure), GX_ERROR_NOT_FINITE);
+    ck_assert_uint_eq(failure.index, 2);
+    ck_assert_int_eq(gxs_solver_linearise(solver, x, 0, 0, &failure), GX_ERROR_NOT_FINITE);
+    ck_assert_uint_eq(failure.index, 2);
+    ck_assert(memcmp(moved[0], y, n * sizeof *y) == 0); /* and the linearisation is still there */
+    x[7] = 1e200;
+    ck_assert_int_eq(gxs_solver_product(solver, x, y, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_linearise(solver, x, 0, 0, &failure), GX_ERROR_RANGE);
+    ck_assert_int_eq(gxs_solver_product(solver, x, y, NULL), GX_ERROR_ARGUMENT);
+    free(x), free(y), free(moved[0]), free(moved[1]);
+    gxs_solver_destroy(solver);
+    gxs_solver_destroy(other);
     scene_free(&s);
 }
 END_TEST
@@ -1065,6 +1309,8 @@ START_TEST(steps_do_not_allocate)
     calls = f.calls;
     for (frame = 0; frame < 5; ++frame)
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_linearise(solver, s.displacement, 1, 0, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_product(solver, s.displacement, s.forces, NULL), GX_OK);
     ck_assert_int_eq(f.calls, calls);
     gxs_solver_destroy(solver);
     ck_assert_uint_eq(f.balance, 0);
@@ -1283,7 +1529,7 @@ static void threads(void *user, size_t count, void (*task)(void *, size_t), void
         ck_assert_int_eq(pthread_join(id[k], NULL), 0);
 }
 
-/* ten frames of a falling, tumbling, stretched body: the same bits in whatever order and on however many threads */
+/* ten frames of a falling, tumbling, stretched body, and a product: the same bits in whatever order and on however many threads */
 START_TEST(jobs_do_not_change_results)
 {
     double *first = NULL;
@@ -1311,11 +1557,15 @@ START_TEST(jobs_do_not_change_results)
         ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
         for (frame = 0; frame < 10; ++frame)
             ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+        ck_assert_int_eq(gxs_solver_linearise(solver, s.displacement, 900, 0, NULL), GX_OK);
+        ck_assert_int_eq(gxs_solver_product(solver, s.velocity, s.forces, NULL), GX_OK);
         if (!first) {
-            first = (double *)zeroed(count, sizeof *first);
+            first = (double *)zeroed(2 * count, sizeof *first);
             memcpy(first, s.displacement, count * sizeof *first);
+            memcpy(first + count, s.forces, count * sizeof *first);
         }
         ck_assert_int_eq(memcmp(first, s.displacement, count * sizeof *first), 0);
+        ck_assert_int_eq(memcmp(first + count, s.forces, count * sizeof *first), 0);
         gxs_solver_destroy(solver);
         scene_free(&s);
     }
@@ -1336,6 +1586,10 @@ static Suite *solve_suite(void)
     tcase_add_loop_test(material, projected_hessian_is_semidefinite, 0, KINDS);
     tcase_add_test(model, model_gradient_and_hessian_match_differences);
     tcase_add_loop_test(model, block_product_equals_assembled_forms, 0, 4 * KINDS);
+    tcase_add_loop_test(model, operator_is_the_derivative_of_forces, 0, KINDS);
+    tcase_add_loop_test(model, operator_acts_on_what_can_move, 0, 4 * KINDS);
+    tcase_add_loop_test(model, operator_is_linear_and_semidefinite, 0, KINDS);
+    tcase_add_test(model, operator_lasts_until_the_next_step);
     tcase_add_loop_test(model, multigrid_iterations_do_not_grow, 0, 2);
     tcase_add_loop_test(model, coarse_matrices_do_not_grow_old, 0, 2);
     tcase_add_test(model, largest_piece_chooses_the_preconditioner);
