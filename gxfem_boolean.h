@@ -5088,21 +5088,25 @@ static gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operand *o, size_
 
 /* --- where two triangles meet --- */
 
-/* The side of a plane: filter, then what is known by definition, then exact arithmetic. */
-static int gxbp_point_side(gxb_boolean *b, uint32_t point, uint32_t plane) {
+/* What the filter leaves open: what is known by definition, then exact arithmetic. */
+static GXBP_APART int gxbp_point_side_beyond_filter(gxb_boolean *b, uint32_t point, uint32_t plane) {
     gxb_complex *cx = &b->cx;
     const gxb_cpoint *p = &cx->points[point];
-    double bound;
-    const double value = gxbp_filter_side(&p->ball, &cx->planes[plane].filter, &bound);
     uint32_t def[3];
-    cx->filter_calls++;
-    if (value > bound) return 1;
-    if (value < -bound) return -1;
     memcpy(def, p->def, sizeof def);
     if (p->kind == GXB_EXPLICIT) point = def[0];
     if (gxbp_incident(cx, p->kind, def, point, plane)) return 0;
     if (p->kind == GXB_THREE_PLANES && gxbp_incident_by_line(cx, def, plane)) return 0;
     return gxbp_exact_sign(cx, p->kind, def, point, plane);
+}
+
+/* The side of a plane */
+static int gxbp_point_side(gxb_boolean *b, uint32_t point, uint32_t plane) {
+    double bound;
+    const double value = gxbp_filter_side(&b->cx.points[point].ball, &b->cx.planes[plane].filter, &bound);
+    b->cx.filter_calls++;
+    if (value > bound) return 1;
+    return value < -bound ? -1 : gxbp_point_side_beyond_filter(b, point, plane);
 }
 
 /* Orientation of three input points in a triangle's plane. */
@@ -5297,11 +5301,11 @@ static GXBP_COLD void gxbp_meet_one_way(gxb_boolean *b, uint32_t s, uint32_t t, 
     }
 }
 
-/* Edge k of s crosses t's plane where the signs against the two edges of t that cross s's plane say: y[0] against edge j, y[1] against j + 2. */
+/* Edge k of s crosses t where the signs against the two edges of t that cross s's plane say: y[0] against edge j, y[1] against j + 2; neither is
+   negative. */
 static void gxbp_record_crossing(gxb_boolean *b, uint32_t s, int k, uint32_t t, int j, const int y[2], gxbp_meeting *m) {
     const int edge = y[0] == 0 ? j : (j + 2) % 3;
     uint32_t point;
-    if (y[0] < 0 || y[1] < 0) return;
     if (y[0] > 0 && y[1] > 0) point = gxbp_edge_triangle_point(b, s, k, t);
     else point = gxbp_edge_edge_point(b, s, k, t, edge, b->sources[t].plane);
     if (point == GXB_NONE) return;
@@ -5352,6 +5356,7 @@ static void gxbp_meet_across(gxb_boolean *b, uint32_t s, uint32_t t, const int o
         x = k != i;
         y[0] = -of_s[i] * sign[x][0];
         y[1] = of_s[i] * sign[x][1];
+        if (y[0] < 0 || y[1] < 0) continue;
         gxbp_record_crossing(b, s, k, t, j, y, m);
         if (m->count == 1 && m->left == 0) m->left = x == 0 ? of_s[i] : -of_s[i];
     }
@@ -5360,6 +5365,7 @@ static void gxbp_meet_across(gxb_boolean *b, uint32_t s, uint32_t t, const int o
         x = k != j;
         y[0] = -of_t[j] * sign[0][x];
         y[1] = of_t[j] * sign[1][x];
+        if (y[0] < 0 || y[1] < 0) continue;
         gxbp_record_crossing(b, t, k, s, i, y, m);
         if (m->count == 1 && m->left == 0) m->left = x == 0 ? -of_t[j] : of_t[j];
     }
@@ -5444,18 +5450,20 @@ static GXBP_COLD void gxbp_meet_in_plane(gxb_boolean *b, uint32_t s, uint32_t t)
     else gxbp_record_meeting(b, s, t, &m);
 }
 
-/* Sides of a source's corners; each point remembers two answers, of which slot says the one to replace. */
+/* The side of a source's corner; each point remembers two answers, of which slot says the one to replace. */
+static int gxbp_corner_side(gxb_boolean *b, uint32_t s, int k, uint32_t plane, int slot) {
+    const uint32_t point = b->sources[s].point[k];
+    gxb_cpoint *p = &b->cx.points[point];
+    if (p->stamp[slot] != plane + 1) {
+        p->sign[slot] = b->sources[s].plane == plane ? 0 : gxbp_point_side(b, point, plane);
+        p->stamp[slot] = plane + 1;
+    }
+    return p->sign[slot];
+}
+
 static void gxbp_sides(gxb_boolean *b, uint32_t s, uint32_t plane, int slot, int side[3]) {
     int k;
-    for (k = 0; k < 3; k++) {
-        const uint32_t point = b->sources[s].point[k];
-        gxb_cpoint *p = &b->cx.points[point];
-        if (p->stamp[slot] != plane + 1) {
-            p->sign[slot] = b->sources[s].plane == plane ? 0 : gxbp_point_side(b, point, plane);
-            p->stamp[slot] = plane + 1;
-        }
-        side[k] = p->sign[slot];
-    }
+    for (k = 0; k < 3; k++) side[k] = gxbp_corner_side(b, s, k, plane, slot);
 }
 
 static int gxbp_all_on_one_side(const int side[3]) { return side[0] != 0 && side[0] == side[1] && side[0] == side[2]; }
@@ -6974,16 +6982,19 @@ static int32_t *gxbp_copy_winding(gxb_boolean *b, uint32_t state) {
     return winding;
 }
 
-static uint32_t gxbp_step_state(gxb_boolean *b, uint32_t from, uint32_t operand, int change) {
-    gxbp_crossing *step = &b->steps[(2 * (from + 5 * operand) + (change > 0)) % GXBP_STEPS];
-    int32_t *winding;
-    if (step->change == change && step->from == from && step->operand == operand) return step->to;
-    winding = gxbp_copy_winding(b, from);
+static GXBP_APART uint32_t gxbp_new_step(gxb_boolean *b, gxbp_crossing *step, uint32_t from, uint32_t operand, int change) {
+    int32_t *winding = gxbp_copy_winding(b, from);
     if (winding == NULL) return 0;
     winding[operand] += change;
     step->from = from; step->operand = operand; step->change = change;
     step->to = gxbp_find_state(b);
     return step->to;
+}
+
+static uint32_t gxbp_step_state(gxb_boolean *b, uint32_t from, uint32_t operand, int change) {
+    gxbp_crossing *step = &b->steps[(2 * (from + 5 * operand) + (change > 0)) % GXBP_STEPS];
+    if (step->change == change && step->from == from && step->operand == operand) return step->to;
+    return gxbp_new_step(b, step, from, operand, change);
 }
 
 static uint32_t gxbp_root_plane(const gxb_boolean *b, uint32_t f) { return b->sources[b->pieces[f].source].plane; }
@@ -7011,10 +7022,10 @@ static int gxbp_side_of_piece(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
 /* How a label of edge k changes the winding number of its operand: a triangle with a part in front of f's plane is passed, from the side on
    which f lies. */
 static int gxbp_label_step(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
-    int side[3];
+    int i;
     if (t & GXBP_EDGE_LABEL || b->operands[b->sources[t].operand].operation == GXB_SPLIT) return 0;
-    gxbp_sides(b, t, gxbp_root_plane(b, f), 0, side);
-    return side[0] <= 0 && side[1] <= 0 && side[2] <= 0 ? 0 : gxbp_side_of_piece(b, f, k, t);
+    for (i = 0; i < 3; i++) if (gxbp_corner_side(b, t, i, gxbp_root_plane(b, f), 0) > 0) return gxbp_side_of_piece(b, f, k, t);
+    return 0;
 }
 
 /* The state in front of the facet beyond edge k. */
