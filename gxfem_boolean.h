@@ -888,7 +888,7 @@ static void gxbp_cross(double r[3], const double a[3], const double b[3]) {
 
 /* r = a x b, errors: each component of a within ea, of b within eb. Returns the bound for each component of r:
    two products of sizes A B, inherited A eb + B ea + ea eb each, and 8u of 2 A B. */
-static double gxbp_filter_cross(double r[3], const double a[3], double ea, const double b[3], double eb) {
+static inline double gxbp_filter_cross(double r[3], const double a[3], double ea, const double b[3], double eb) {
     const double A = gxbp_max3(a), B = gxbp_max3(b);
     gxbp_cross(r, a, b);
     return 4 * (A * eb + B * ea + ea * eb) + 32 * GXBP_U * A * B + GXBP_TINY;
@@ -1529,9 +1529,11 @@ static void *gxbp_reallocate(const gx_allocator *a, void *old, size_t old_size, 
     return memory;
 }
 
+static size_t gxbp_room_for(size_t need) { return need + need / 2 + 16; }
+
 /* Makes room for count + extra items of the given size. */
 static GXBP_APART gx_result gxbp_reserve(gxb_complex *cx, void *array, size_t item, uint32_t count, uint32_t *capacity, size_t extra) {
-    const size_t need = (size_t)count + extra, room = need + need / 2 + 16;
+    const size_t need = (size_t)count + extra, room = gxbp_room_for(need);
     void *old, *memory;
     if (need <= *capacity) return GX_OK;
     if (room > INT32_MAX || room > SIZE_MAX / item) return GX_ERROR_LIMIT;
@@ -4487,14 +4489,18 @@ struct gxb_boolean {            /* what is used most comes first: its addresses 
 
 static size_t gxbp_whole_words(size_t size) { return (size + 15) & ~(size_t)15; }
 
+/* From the arena; NULL: it has no such room. */
+static void *gxbp_take(gxb_boolean *b, size_t size) {
+    unsigned char *memory = b->arena + b->arena_used;
+    if (size > b->arena_size - b->arena_used) return NULL;
+    b->arena_used += gxbp_whole_words(size);
+    return memory;
+}
+
 static void *gxbp_count_allocate(void *user, size_t size) {
     gxb_boolean *b = (gxb_boolean *)user;
-    void *memory;
-    if (size <= b->arena_size - b->arena_used) {
-        memory = b->arena + b->arena_used;
-        b->arena_used += gxbp_whole_words(size);
-        return memory;
-    }
+    void *memory = gxbp_take(b, size);
+    if (memory != NULL) return memory;
     if (b->limit != 0 && (size > b->limit || b->used > b->limit - size)) { b->over_limit = 1; return NULL; }
     memory = gxbp_allocate(&b->outer, size);
     if (memory == NULL) return NULL;
@@ -4522,9 +4528,17 @@ static GXBP_APART int gxbp_stop(gxb_boolean *b, gx_result result) {
     return 0;
 }
 
-/* Small cases should not pay for growing. */
+/* Small cases should not pay for growing: an array's first items come from the arena at once. */
 static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, size_t item, uint32_t count, uint32_t *capacity, size_t extra) {
-    const gx_result result = gxbp_reserve(&b->cx, array, item, count, capacity, *capacity == 0 && extra < 16 ? 16 : extra);
+    const size_t least = *capacity == 0 && extra < 16 ? 16 : extra, room = gxbp_room_for(least);
+    void *memory = *capacity == 0 && least < GXBP_ARENA ? gxbp_take(b, room * item) : NULL;
+    gx_result result;
+    if (memory != NULL) {
+        memcpy(array, &memory, sizeof memory);
+        *capacity = (uint32_t)room;
+        return 1;
+    }
+    result = gxbp_reserve(&b->cx, array, item, count, capacity, least);
     return result == GX_OK ? 1 : gxbp_stop(b, result);
 }
 
@@ -4578,7 +4592,7 @@ static GXBP_APART int gxbp_grow_table(gxb_boolean *b, uint32_t extra) {
 }
 
 /* A point without coordinates yet. */
-static uint32_t gxbp_new_vertex(gxb_boolean *b, uint32_t kind, uint32_t p, uint32_t q, uint32_t r) {
+static inline uint32_t gxbp_new_vertex(gxb_boolean *b, uint32_t kind, uint32_t p, uint32_t q, uint32_t r) {
     uint32_t id;
     gx_result result;
     gxbp_vertex *v;
@@ -5131,21 +5145,27 @@ static int gxbp_share_plane(gxb_boolean *b, uint32_t s) {
     return 0;
 }
 
-static int gxbp_need_plane(gxb_boolean *b, uint32_t s) {
+static GXBP_APART int gxbp_find_plane(gxb_boolean *b, uint32_t s) {
     gxbp_source *t = &b->sources[s];
     gx_result result;
-    if (t->plane != GXB_NONE || gxbp_share_plane(b, s)) return 1;
+    if (gxbp_share_plane(b, s)) return 1;
     result = gxbp_new_plane(&b->cx, t->point[0], t->point[1], t->point[2], 0, &t->plane);
     if (result != GX_OK) { t->plane = GXB_NONE; return gxbp_stop(b, result); }
     gxbp_plane_axis(&b->cx, t->plane);
     return 1;
 }
 
-static void gxbp_mark_dirty(gxb_boolean *b, uint32_t s) {
-    b->marks++;
-    if (b->sources[s].flags & GXBP_DIRTY || !GXBP_ROOM(b, dirty, dirty, 1)) return;
+static int gxbp_need_plane(gxb_boolean *b, uint32_t s) { return b->sources[s].plane != GXB_NONE || gxbp_find_plane(b, s); }
+
+static GXBP_APART void gxbp_list_dirty(gxb_boolean *b, uint32_t s) {
+    if (!GXBP_ROOM(b, dirty, dirty, 1)) return;
     b->sources[s].flags |= GXBP_DIRTY;
     b->dirty[b->dirty_count++] = s;
+}
+
+static void gxbp_mark_dirty(gxb_boolean *b, uint32_t s) {
+    b->marks++;
+    if (!(b->sources[s].flags & GXBP_DIRTY)) gxbp_list_dirty(b, s);
 }
 
 /* A segment (a point, if p is q) in which a triangle (label) meets a source. */
@@ -5303,7 +5323,7 @@ static GXBP_COLD void gxbp_meet_one_way(gxb_boolean *b, uint32_t s, uint32_t t, 
 
 /* Edge k of s crosses t where the signs against the two edges of t that cross s's plane say: y[0] against edge j, y[1] against j + 2; neither is
    negative. */
-static void gxbp_record_crossing(gxb_boolean *b, uint32_t s, int k, uint32_t t, int j, const int y[2], gxbp_meeting *m) {
+static inline void gxbp_record_crossing(gxb_boolean *b, uint32_t s, int k, uint32_t t, int j, const int y[2], gxbp_meeting *m) {
     const int edge = y[0] == 0 ? j : (j + 2) % 3;
     uint32_t point;
     if (y[0] > 0 && y[1] > 0) point = gxbp_edge_triangle_point(b, s, k, t);
@@ -5718,7 +5738,7 @@ static int gxbp_on_input_line(const gxb_cpoint *p, uint32_t from, uint32_t to) {
 static uint32_t gxbp_plane_beside(const gxb_boolean *b, uint32_t half_edge) { return half_edge == GXB_NONE ? GXB_NONE : b->sources[half_edge / 3].plane; }
 
 /* Planes that a point is in by its definition: its own, and those of the input triangles at the edge that it is named by */
-static uint32_t gxbp_planes_of(const gxb_boolean *b, uint32_t v, uint32_t plane[3]) {
+static inline uint32_t gxbp_planes_of(const gxb_boolean *b, uint32_t v, uint32_t plane[3]) {
     const gxb_cpoint *p = &b->cx.points[v];
     const uint32_t *key = b->vertices[v].key;
     if (p->kind == GXB_EXPLICIT) return 0;
@@ -6451,7 +6471,7 @@ static int gxbp_follow_chain(gxb_boolean *b, gxbp_division *d, uint32_t from, ui
 }
 
 /* 1: v lies left of the way from p to q, by a segment (see gxbp_chain_segments) between them; v is not one of them. */
-static int gxbp_left_of_segment(gxb_boolean *b, uint32_t i, uint32_t p, uint32_t q, uint32_t v) {
+static inline int gxbp_left_of_segment(gxb_boolean *b, uint32_t i, uint32_t p, uint32_t q, uint32_t v) {
     const gxbp_segment *segment = &b->segments[b->chain[3 * i]];
     gxbp_line line;
     line.p = p; line.x = q; line.plane = b->sources[segment->label].plane; line.source = segment->label;
@@ -6549,8 +6569,9 @@ static void gxbp_use_slot(gxb_boolean *b, gxbp_division *d, uint32_t f, uint32_t
     gxbp_piece *piece = &b->pieces[f];
     uint32_t other;
     piece->near[k] = GXB_NONE;
-    piece->labels[k] = slot == GXB_NONE ? GXBP_BARE : slot < d->step_count ? d->labels + slot : GXBP_LOOSE;
+    piece->labels[k] = GXBP_BARE;
     if (slot == GXB_NONE) return;
+    piece->labels[k] = slot < d->step_count ? d->labels + slot : GXBP_LOOSE;
     other = d->half[slot];
     d->half[slot] = 3 * f + k;
     if (other == GXB_NONE) return;
@@ -6590,11 +6611,13 @@ static void gxbp_fill_polygon(gxb_boolean *b, gxbp_division *d, uint32_t n) {
     for (; b->result == GX_OK; q = r) {
         p = &polygon[q->before];
         r = &polygon[q->after];
-        if (n == 3) { gxbp_cut_ear(b, d, p, q, r, r->slot); return; }
-        if (tried++ > 2 * n) gxbp_stop(b, GX_ERROR_OVERLAP);
-        if (q->bend <= 0 || (concave > 0 && ((tried <= n && p->bend > 0 && r->bend > 0) || !gxbp_is_ear(b, d, q)))) continue;
-        d->half[d->slot_count] = GXB_NONE;
-        gxbp_cut_ear(b, d, p, q, r, d->slot_count);
+        if (n > 3) {
+            if (tried++ > 2 * n) gxbp_stop(b, GX_ERROR_OVERLAP);
+            if (q->bend <= 0 || (concave > 0 && ((tried <= n && p->bend > 0 && r->bend > 0) || !gxbp_is_ear(b, d, q)))) continue;
+            d->half[d->slot_count] = GXB_NONE;
+        }
+        gxbp_cut_ear(b, d, p, q, r, n == 3 ? r->slot : d->slot_count);
+        if (n == 3) return;
         p->slot = d->slot_count++;
         p->after = q->after;
         r->before = q->before;
@@ -6916,7 +6939,7 @@ static int gxbp_counts(uint32_t rule, int32_t winding) {
     }
 }
 
-static int gxbp_is_inside(const gxb_boolean *b, const int32_t *winding) {
+static inline int gxbp_is_inside(const gxb_boolean *b, const int32_t *winding) {
     uint32_t i;
     int inside = 0;
     if (b->inside != NULL) return b->inside(b->user, winding, b->operand_count) != 0;
@@ -7200,7 +7223,7 @@ static uint32_t gxbp_rim_facet(const gxb_boolean *b, uint32_t s, uint32_t k) {
 
 /* The facet with which that at the start of edge k of a source shares its rim, across the surface's edge; GXB_NONE unless only the two
    meet there. */
-static uint32_t gxbp_across_rim(const gxb_boolean *b, uint32_t s, uint32_t k) {
+static inline uint32_t gxbp_across_rim(const gxb_boolean *b, uint32_t s, uint32_t k) {
     const uint32_t twin = b->sources[s].twin[k];
     if (twin == GXB_NONE || b->sources[twin / 3].flags & GXBP_FLAT || gxbp_rim_facet(b, s, k) == GXB_NONE) return GXB_NONE;
     return gxbp_rim_facet(b, twin / 3, twin % 3);
