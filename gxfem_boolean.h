@@ -4522,6 +4522,27 @@ static void gxbp_count_release(void *user, void *memory, size_t size) {
     gxbp_release(&b->outer, memory, size);
 }
 
+/* Where the caller's memory can grow: what is not in the arena. */
+static void *gxbp_count_reallocate(void *user, void *old, size_t size, size_t larger) {
+    gxb_boolean *b = (gxb_boolean *)user;
+    const unsigned char *m = (const unsigned char *)old;
+    const int in_arena = m >= b->arena && m < b->arena + b->arena_size;
+    const size_t more = larger - size;
+    void *memory;
+    if (!in_arena && b->limit != 0 && (more > b->limit || b->used > b->limit - more)) { b->over_limit = 1; return NULL; }
+    memory = in_arena ? gxbp_count_allocate(user, larger) : gxbp_reallocate(&b->outer, old, size, size, larger);
+    if (memory == NULL) return NULL;
+    if (in_arena) {
+        memcpy(memory, old, size);
+        gxbp_count_release(user, old, size);
+        return memory;
+    }
+    b->allocations++;
+    b->used += more;
+    if (b->used > b->peak) b->peak = b->used;
+    return memory;
+}
+
 /* The first error of an evaluation stays in b->result; what follows does nothing. */
 static GXBP_APART int gxbp_stop(gxb_boolean *b, gx_result result) {
     if (b->result == GX_OK) b->result = result == GX_ERROR_MEMORY && b->over_limit ? GX_ERROR_LIMIT : result;
@@ -4547,6 +4568,12 @@ static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, size_t item, uint32
      gxbp_room(b, &(b)->array, sizeof *(b)->array, (b)->counter##_count, &(b)->counter##_capacity, extra))
 #define GXBP_DROP(b, array, counter) \
     gxbp_release(&(b)->cx.allocator, (b)->array, (size_t)(b)->counter##_capacity * sizeof *(b)->array)
+
+/* Memory for as long as nobody else takes scratch; NULL: there is none. It is kept: what needs some next finds pages that have been touched. */
+static void *gxbp_borrow(gxb_boolean *b, size_t bytes) {
+    b->scratch_count = 0;
+    return GXBP_ROOM(b, scratch, scratch, bytes / sizeof *b->scratch + 1) ? b->scratch : NULL;
+}
 
 static uint32_t gxbp_new_link(gxb_boolean *b, uint32_t value, uint32_t next) {
     if (!GXBP_ROOM(b, links, link, 1)) return next;
@@ -4771,16 +4798,16 @@ static int gxbp_find_few_twins(const uint32_t *triangles, uint32_t count, uint32
     return 1;
 }
 
+/* Words of room that gxbp_find_twins works in */
+static size_t gxbp_twin_room(size_t vertex_count) { return vertex_count * (sizeof(gxbp_passage) / sizeof(uint32_t)); }
+
 /* twin of each half-edge, GXB_NONE where an edge has not one in each direction. *open: a half-edge whose edge is passed more often in
    its direction than in the other, or GXB_NONE: the surface is closed. */
-static int gxbp_find_twins(gxb_boolean *b, const uint32_t *triangles, size_t count, uint32_t vertex_count, uint32_t *twin, uint32_t *open) {
-    const size_t bytes = vertex_count * sizeof(gxbp_passage);
-    gxbp_passage *passages;
+static void gxbp_find_twins(const uint32_t *triangles, size_t count, uint32_t vertex_count, uint32_t *twin, uint32_t *open, uint32_t *room) {
+    gxbp_passage *passages = (gxbp_passage *)(void *)room;
     uint32_t p, q, odd;
     *open = GXB_NONE;
-    if (vertex_count <= GXBP_FEW && count <= GXBP_FEW_TRIANGLES && gxbp_find_few_twins(triangles, (uint32_t)count, vertex_count, twin)) return 1;
-    passages = (gxbp_passage *)gxbp_allocate(&b->cx.allocator, bytes);
-    if (passages == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
+    if (vertex_count <= GXBP_FEW && count <= GXBP_FEW_TRIANGLES && gxbp_find_few_twins(triangles, (uint32_t)count, vertex_count, twin)) return;
     for (p = 0; p < vertex_count; p++) passages[p].first = passages[p].p = GXB_NONE;
     gxbp_list_half_edges(triangles, (uint32_t)count, passages, twin);
     for (p = 0; p < vertex_count; p++) {
@@ -4792,8 +4819,6 @@ static int gxbp_find_twins(gxb_boolean *b, const uint32_t *triangles, size_t cou
         }
         if (*open == GXB_NONE) *open = odd;
     }
-    gxbp_release(&b->cx.allocator, passages, bytes);
-    return 1;
 }
 
 /* Half-edges by the vertex that they leave, with the vertex in which they end. */
@@ -4919,7 +4944,7 @@ static gx_result gxbp_read_triangles(gxb_boolean *b, const gxb_operand *o, uint3
         for (h = 0; h < 3 * o->triangle_count; h++) joined[h] = local[o->triangles[h]];
         triangles = joined;
     }
-    if (!gxbp_find_twins(b, triangles, o->triangle_count, (uint32_t)o->vertex_count, twin, &open)) return b->result;
+    gxbp_find_twins(triangles, o->triangle_count, (uint32_t)o->vertex_count, twin, &open, twin + 3 * o->triangle_count);
     if (open != GXB_NONE && o->operation != GXB_SPLIT) { *bad = open / 3; return GX_ERROR_NOT_CLOSED; }
     for (h = 0; h < o->triangle_count; h++) {
         gxbp_source *t = &b->sources[b->source_count];
@@ -5049,10 +5074,9 @@ static gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
     o->order = (uint32_t *)gxbp_allocate(&b->cx.allocator, words * sizeof *o->order);
     if (o->order == NULL) return GX_ERROR_MEMORY;
     if (o->source_count > 4 * GXBP_LEAF) {
-        uint64_t *work = (uint64_t *)gxbp_allocate(&b->cx.allocator, 2 * words * sizeof *work);
-        if (work == NULL) return GX_ERROR_MEMORY;
+        uint64_t *work = (uint64_t *)gxbp_borrow(b, 2 * words * sizeof *work);
+        if (work == NULL) return b->result;
         gxbp_sort_sources(b, o, work);
-        gxbp_release(&b->cx.allocator, work, 2 * words * sizeof *work);
     } else for (i = 0; i < o->source_count; i++) o->order[i] = o->source + i;
     o->bounds = b->bound_count;
     b->bound_count += size;
@@ -5074,7 +5098,7 @@ static gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
 static size_t gxbp_foresee(const gxb_boolean *b, size_t count, size_t thirds) { return b->operand_count > 0 ? count : count + thirds * count / 3; }
 
 static gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operand *o, size_t *bad) {
-    const size_t words = 2 * o->vertex_count + 6 * o->triangle_count;
+    const size_t words = 2 * o->vertex_count + 6 * o->triangle_count + gxbp_twin_room(o->vertex_count);
     const size_t sources = gxbp_foresee(b, o->triangle_count, 1), pieces = gxbp_foresee(b, o->triangle_count, 3), points = gxbp_foresee(b, o->vertex_count, 3);
     const size_t leaves = gxbp_foresee(b, (o->triangle_count + GXBP_LEAF - 1) / GXBP_LEAF, 1);
     gxbp_operand *mine;
@@ -5085,14 +5109,13 @@ static gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operand *o, size_
         !gxbp_grow_table(b, (uint32_t)o->vertex_count)) return b->result;
     result = GXBP_RESERVE(&b->cx, points, point, points);
     if (result != GX_OK) return result;
-    work = (uint32_t *)gxbp_allocate(&b->cx.allocator, words * sizeof *work);
-    if (work == NULL) return GX_ERROR_MEMORY;
+    work = (uint32_t *)gxbp_borrow(b, words * sizeof *work);
+    if (work == NULL) return b->result;
     mine = &b->operands[b->operand_count];
     memset(mine, 0, sizeof *mine);
     mine->operation = o->operation; mine->rule = o->rule; mine->simple = o->simple;
     mine->source = b->source_count; mine->source_count = (uint32_t)o->triangle_count;
     result = gxbp_read_triangles(b, o, work, bad);
-    gxbp_release(&b->cx.allocator, work, words * sizeof *work);
     if (result == GX_OK) result = gxbp_make_tree(b, mine);
     if (result != GX_OK) { gxbp_release(&b->cx.allocator, mine->order, o->triangle_count * sizeof *mine->order); return result; }
     b->operand_count++;
@@ -5540,12 +5563,14 @@ static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
 
 /* --- broad phase: pairs of boxes of two trees, or of one --- */
 
-/* Which of a leaf's boxes meet a box: without branches, all at once where the compiler can */
-static void gxbp_test_leaf(const gxbp_leaf_boxes *leaf, const gxbp_box *box, uint32_t meets[GXBP_LEAF]) {
-    uint32_t x;
+/* Which of a leaf's boxes meet a box: without branches, all at once where the compiler can. Returns 0 where none does. */
+static uint32_t gxbp_test_leaf(const gxbp_leaf_boxes *leaf, const gxbp_box *box, uint32_t meets[GXBP_LEAF]) {
+    uint32_t x, any = 0;
     for (x = 0; x < GXBP_LEAF; x++)
         meets[x] = (uint32_t)((leaf->low[0][x] <= box->high[0]) & (box->low[0] <= leaf->high[0][x]) & (leaf->low[1][x] <= box->high[1]) &
                               (box->low[1] <= leaf->high[1][x]) & (leaf->low[2][x] <= box->high[2]) & (box->low[2] <= leaf->high[2][x]));
+    for (x = 0; x < GXBP_LEAF; x++) any |= meets[x];
+    return any;
 }
 
 static gxbp_box gxbp_leaf_box(const gxbp_leaf_boxes *leaf, uint32_t x) {
@@ -5562,7 +5587,7 @@ static void gxbp_meet_leaves(gxb_boolean *b, const gxbp_operand *o, uint32_t i, 
         gxbp_box box;
         if (!first[x] || b->sources[o->order[i * GXBP_LEAF + x]].flags & GXBP_DEGENERATE) continue;
         box = gxbp_leaf_box(&b->bounds[o->bounds + i], x);
-        gxbp_test_leaf(&b->bounds[q->bounds + j], &box, second);
+        if (!gxbp_test_leaf(&b->bounds[q->bounds + j], &box, second)) continue;
         for (y = o == q && i == j ? x + 1 : 0; y < GXBP_LEAF; y++) {
             if (!second[y] || b->sources[q->order[j * GXBP_LEAF + y]].flags & GXBP_DEGENERATE) continue;
             gxbp_meet(b, o->order[i * GXBP_LEAF + x], q->order[j * GXBP_LEAF + y]);
@@ -7933,20 +7958,18 @@ static GXBP_COLD void gxbp_join_all_wedges(gxb_boolean *b, uint32_t *parent, uin
 
 static void gxbp_join_shells(gxb_boolean *b, uint32_t *parent, int32_t *corners) {
     const uint32_t count = b->out_source_count;
-    const size_t bytes = (size_t)count * 3 * sizeof(uint32_t);
-    uint32_t *twin = (uint32_t *)gxbp_allocate(&b->cx.allocator, bytes), h, open, shared = 0;
+    const size_t words = 3 * (size_t)count;
+    uint32_t *twin = (uint32_t *)gxbp_borrow(b, (words + gxbp_twin_room(b->out_point_count)) * sizeof *twin), h, open, shared = 0;
     b->out_twin_count = 0;
-    if (twin == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
-    if (gxbp_find_twins(b, b->out_triangles, count, b->out_point_count, twin, &open)) {
-        for (h = 0; h < 3 * count; h++) {
-            if (twin[h] == GXB_NONE) shared = 1;
-            else if (twin[h] > h) gxbp_join_sets(parent, h / 3, twin[h] / 3);
-        }
-        if (shared) gxbp_join_all_wedges(b, parent, twin);
-        if (b->mend && GXBP_ROOM(b, out_twins, out_twin, 3 * (size_t)count)) memcpy(b->out_twins, twin, bytes);
-        gxbp_count_corners(twin, count, corners);
+    if (twin == NULL) return;
+    gxbp_find_twins(b->out_triangles, count, b->out_point_count, twin, &open, twin + words);
+    for (h = 0; h < 3 * count; h++) {
+        if (twin[h] == GXB_NONE) shared = 1;
+        else if (twin[h] > h) gxbp_join_sets(parent, h / 3, twin[h] / 3);
     }
-    gxbp_release(&b->cx.allocator, twin, bytes);
+    if (shared) gxbp_join_all_wedges(b, parent, twin);
+    if (b->mend && GXBP_ROOM(b, out_twins, out_twin, words)) memcpy(b->out_twins, twin, words * sizeof *twin);
+    gxbp_count_corners(twin, count, corners);
 }
 
 /* Numerator and denominator as one number, relative error below 2^-180: each step adds the quotient of what is left, 50 bits. */
@@ -7974,18 +7997,20 @@ static void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *fine) {
     for (k = 0; k < 3; k++) gxbp_num_divide(&fine->c[k], &x[k], &x[3]);
 }
 
-/* Coordinates of 180 bits of the result's vertices, each made once. first: of a vertex' limbs; GXB_NONE: it has not been made */
+/* Coordinates of 180 bits of the result's vertices, each made once (then it has the stamp of b->head_stamp). first: of a vertex' limbs */
 typedef struct gxbp_fine { uint32_t first; gxb_num c[3]; } gxbp_fine;
 typedef struct gxbp_fines { gxbp_fine *vertices; gxb_limb *limbs; uint32_t limb_count, limb_capacity; } gxbp_fines;
 
 static void gxbp_need_fine(gxb_boolean *b, gxbp_fines *fines, uint32_t vertex) {
+    const uint32_t point = b->out_points[vertex];
     gxbp_fine *v = &fines->vertices[vertex];
     gxbp_vec x;
     uint32_t k;
-    if (v->first != GXB_NONE) return;
-    gxbp_fine_point(b, b->out_points[vertex], &x);
+    if (b->vertices[point].head_stamp == b->head_stamp) return;
+    gxbp_fine_point(b, point, &x);
     if (!gxbp_room(b, &fines->limbs, sizeof *fines->limbs, fines->limb_count, &fines->limb_capacity, (size_t)x.c[0].n + x.c[1].n + x.c[2].n)) return;
     v->first = fines->limb_count;
+    b->vertices[point].head_stamp = b->head_stamp;
     for (k = 0; k < 3; k++) {
         v->c[k] = x.c[k];
         memcpy(fines->limbs + fines->limb_count, x.c[k].d, x.c[k].n * sizeof *fines->limbs);
@@ -8086,7 +8111,7 @@ static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, uint32_t *parent, doub
     uint32_t t;
     fines.vertices = (gxbp_fine *)gxbp_allocate(&b->cx.allocator, bytes);
     if (fines.vertices == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
-    for (t = 0; t < b->out_point_count; t++) fines.vertices[t].first = GXB_NONE;
+    b->head_stamp++;
     for (t = 0; t < b->out_source_count && b->result == GX_OK; t++)
         if (parent[t] == t && gxbp_is_rough(b, volume[t], error[t])) volume[t] = gxbp_fine_volume(b, parent, t, &fines);
     gxbp_release(&b->cx.allocator, fines.limbs, fines.limb_capacity * sizeof *fines.limbs);
@@ -8206,13 +8231,12 @@ static void gxbp_find_sides(gxb_boolean *b) {
 
 /* parent: sets of triangles; winding: room for a word per triangle; corners: see gxbp_count_corners */
 static void gxbp_measure_components(gxb_boolean *b, uint32_t *parent, int32_t *winding, const int32_t *corners) {
-    const size_t count = b->out_source_count, bytes = 2 * count * sizeof(double);
-    double *volume = (double *)gxbp_allocate(&b->cx.allocator, bytes);
-    if (volume == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
+    const size_t count = b->out_source_count;
+    double *volume = (double *)gxbp_borrow(b, 2 * count * sizeof *volume);
+    if (volume == NULL) return;
     gxbp_measure_shells(b, parent, volume, volume + count);
     gxbp_number_components(b, parent, volume, winding);
     gxbp_find_eulers(b, corners);
-    gxbp_release(&b->cx.allocator, volume, bytes);
 }
 
 static void gxbp_find_components(gxb_boolean *b) {
@@ -8517,6 +8541,7 @@ GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean
     b->user = desc->user;
     b->cx.allocator.allocate = gxbp_count_allocate;
     b->cx.allocator.release = gxbp_count_release;
+    if (desc->allocator.allocate == NULL || desc->allocator.reallocate != NULL) b->cx.allocator.reallocate = gxbp_count_reallocate;
     b->cx.allocator.user = b;
     *boolean = b;
     return GX_OK;
