@@ -1599,7 +1599,6 @@ static void gxbp_move_list(const gxb_complex *cx, uint32_t *pool, uint32_t *used
    that it stays as it is. */
 static GXBP_COLD void gxbp_compact_pool(gxb_complex *cx) {
     uint32_t *pool, used = 0, i;
-    if (cx->pool_count / 2 < cx->pool_live + 4096) return;
     pool = (uint32_t *)gxbp_allocate(&cx->allocator, (size_t)cx->pool_capacity * sizeof *pool);
     if (pool == NULL) return;
     for (i = 0; i < cx->facet_count; i++) {
@@ -1622,7 +1621,7 @@ static void gxbp_set_marks(gxb_complex *cx) {
 }
 
 GXFEM_API void gxb_complex_begin(gxb_complex *cx) {
-    gxbp_compact_pool(cx);
+    if (cx->pool_count / 2 >= cx->pool_live + 4096) gxbp_compact_pool(cx);
     gxbp_set_marks(cx);
 }
 
@@ -2336,10 +2335,12 @@ static void gxbp_push_edges(gxb_complex *cx, uint32_t signed_edge) {
 GXFEM_API gx_result gxb_facet_edges(gxb_complex *cx, uint32_t facet, uint32_t *first, uint32_t *count) {
     gxb_facet *f = &cx->facets[facet];
     uint32_t i, total = 0;
-    for (i = 0; i < f->loop_count; i++) total += gxbp_count_edges(cx, cx->pool[f->loop + i] >> 1);
-    if (total != f->loop_count) {
+    for (i = 0; i < f->loop_count && cx->edges[cx->pool[f->loop + i] >> 1].child == GXB_NONE; i++) {}
+    if (i < f->loop_count) {
         const uint32_t start = cx->pool_count;
-        gx_result result = GXBP_RESERVE(cx, pool, pool, total);
+        gx_result result;
+        for (i = 0; i < f->loop_count; i++) total += gxbp_count_edges(cx, cx->pool[f->loop + i] >> 1);
+        result = GXBP_RESERVE(cx, pool, pool, total);
         if (result == GX_OK) result = gxbp_reserve_undo(cx, 1);
         if (result != GX_OK) return result;
         gxbp_save(cx, GXBP_FACETS, facet);
@@ -2355,10 +2356,12 @@ GXFEM_API gx_result gxb_facet_edges(gxb_complex *cx, uint32_t facet, uint32_t *f
 GXFEM_API gx_result gxb_leaf_facets(gxb_complex *cx, uint32_t leaf, uint32_t *first, uint32_t *count) {
     gxb_leaf *l = &cx->leaves[leaf];
     uint32_t i, total = 0;
-    for (i = 0; i < l->facet_count; i++) total += gxbp_count_facets(cx, cx->pool[l->facets + i]);
-    if (total != l->facet_count) {
+    for (i = 0; i < l->facet_count && cx->facets[cx->pool[l->facets + i]].child == GXB_NONE; i++) {}
+    if (i < l->facet_count) {
         const uint32_t start = cx->pool_count;
-        gx_result result = GXBP_RESERVE(cx, pool, pool, total);
+        gx_result result;
+        for (i = 0; i < l->facet_count; i++) total += gxbp_count_facets(cx, cx->pool[l->facets + i]);
+        result = GXBP_RESERVE(cx, pool, pool, total);
         if (result == GX_OK) result = gxbp_reserve_undo(cx, 1);
         if (result != GX_OK) return result;
         gxbp_save(cx, GXBP_LEAVES, leaf);
