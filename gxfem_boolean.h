@@ -5766,7 +5766,7 @@ static int gxbp_on_input_line(const gxb_cpoint *p, uint32_t from, uint32_t to) {
 static uint32_t gxbp_plane_beside(const gxb_boolean *b, uint32_t half_edge) { return half_edge == GXB_NONE ? GXB_NONE : b->sources[half_edge / 3].plane; }
 
 /* Planes that a point is in by its definition: its own, and those of the input triangles at the edge that it is named by */
-static inline uint32_t gxbp_planes_of(const gxb_boolean *b, uint32_t v, uint32_t plane[3]) {
+static uint32_t gxbp_planes_of(const gxb_boolean *b, uint32_t v, uint32_t plane[3]) {
     const gxb_cpoint *p = &b->cx.points[v];
     const uint32_t *key = b->vertices[v].key;
     if (p->kind == GXB_EXPLICIT) return 0;
@@ -6499,7 +6499,7 @@ static int gxbp_follow_chain(gxb_boolean *b, gxbp_division *d, uint32_t from, ui
 }
 
 /* 1: v lies left of the way from p to q, by a segment (see gxbp_chain_segments) between them; v is not one of them. */
-static inline int gxbp_left_of_segment(gxb_boolean *b, uint32_t i, uint32_t p, uint32_t q, uint32_t v) {
+static int gxbp_left_of_segment(gxb_boolean *b, uint32_t i, uint32_t p, uint32_t q, uint32_t v) {
     const gxbp_segment *segment = &b->segments[b->chain[3 * i]];
     gxbp_line line;
     line.p = p; line.x = q; line.plane = b->sources[segment->label].plane; line.source = segment->label;
@@ -6967,7 +6967,7 @@ static int gxbp_counts(uint32_t rule, int32_t winding) {
     }
 }
 
-static inline int gxbp_is_inside(const gxb_boolean *b, const int32_t *winding) {
+static int gxbp_is_inside(const gxb_boolean *b, const int32_t *winding) {
     uint32_t i;
     int inside = 0;
     if (b->inside != NULL) return b->inside(b->user, winding, b->operand_count) != 0;
@@ -7251,7 +7251,7 @@ static uint32_t gxbp_rim_facet(const gxb_boolean *b, uint32_t s, uint32_t k) {
 
 /* The facet with which that at the start of edge k of a source shares its rim, across the surface's edge; GXB_NONE unless only the two
    meet there. */
-static inline uint32_t gxbp_across_rim(const gxb_boolean *b, uint32_t s, uint32_t k) {
+static uint32_t gxbp_across_rim(const gxb_boolean *b, uint32_t s, uint32_t k) {
     const uint32_t twin = b->sources[s].twin[k];
     if (twin == GXB_NONE || b->sources[twin / 3].flags & GXBP_FLAT || gxbp_rim_facet(b, s, k) == GXB_NONE) return GXB_NONE;
     return gxbp_rim_facet(b, twin / 3, twin % 3);
