@@ -799,11 +799,17 @@ static int gxp_triangle_near_box(const gxp_search *s, const gxp_box *box) {
     return !gxp_is_finite(far) || fabs(sum) <= r + GXP_SEARCH_MARGIN * s->scale[0] * far;
 }
 
-/* May the triangle meet the element? Not if its plane, or one along an edge across it, has the element beyond it. */
+/* May the triangle meet the element? Not if a plane along the axes, its own, or one along an edge across it has the element beyond it. */
 static int gxp_triangle_near_element(const gx_body *body, const gxp_search *s, uint32_t element) {
+    const double *p[4];
     double x[4][3], far = s->far;
     int i, n;
-    for (n = 0; n < 4; n++) far += gxp_search_vector(s, body->positions + 3 * (size_t)body->complex->elements[4 * (size_t)element + (size_t)n], x[n]);
+    for (n = 0; n < 4; n++) p[n] = body->positions + 3 * (size_t)body->complex->elements[4 * (size_t)element + (size_t)n];
+    for (i = 0; i < 3; i++) {
+        if (p[0][i] < s->low[i] && p[1][i] < s->low[i] && p[2][i] < s->low[i] && p[3][i] < s->low[i]) return 0;
+        if (p[0][i] > s->high[i] && p[1][i] > s->high[i] && p[2][i] > s->high[i] && p[3][i] > s->high[i]) return 0;
+    }
+    for (n = 0; n < 4; n++) far += gxp_search_vector(s, p[n], x[n]);
     if (!gxp_is_finite(far)) return 1;
     for (i = 0; i < 4; i++) {
         const double *axis = s->axis[i], margin = GXP_SEARCH_MARGIN * s->scale[i] * far;

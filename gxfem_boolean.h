@@ -888,7 +888,7 @@ static void gxbp_cross(double r[3], const double a[3], const double b[3]) {
 
 /* r = a x b, errors: each component of a within ea, of b within eb. Returns the bound for each component of r:
    two products of sizes A B, inherited A eb + B ea + ea eb each, and 8u of 2 A B. */
-static double gxbp_filter_cross(double r[3], const double a[3], double ea, const double b[3], double eb) {
+static inline double gxbp_filter_cross(double r[3], const double a[3], double ea, const double b[3], double eb) {
     const double A = gxbp_max3(a), B = gxbp_max3(b);
     gxbp_cross(r, a, b);
     return 4 * (A * eb + B * ea + ea * eb) + 32 * GXBP_U * A * B + GXBP_TINY;
@@ -1529,9 +1529,11 @@ static void *gxbp_reallocate(const gx_allocator *a, void *old, size_t old_size, 
     return memory;
 }
 
+static size_t gxbp_room_for(size_t need) { return need + need / 2 + 16; }
+
 /* Makes room for count + extra items of the given size. */
 static GXBP_APART gx_result gxbp_reserve(gxb_complex *cx, void *array, size_t item, uint32_t count, uint32_t *capacity, size_t extra) {
-    const size_t need = (size_t)count + extra, room = need + need / 2 + 16;
+    const size_t need = (size_t)count + extra, room = gxbp_room_for(need);
     void *old, *memory;
     if (need <= *capacity) return GX_OK;
     if (room > INT32_MAX || room > SIZE_MAX / item) return GX_ERROR_LIMIT;
@@ -1597,7 +1599,6 @@ static void gxbp_move_list(const gxb_complex *cx, uint32_t *pool, uint32_t *used
    that it stays as it is. */
 static GXBP_COLD void gxbp_compact_pool(gxb_complex *cx) {
     uint32_t *pool, used = 0, i;
-    if (cx->pool_count / 2 < cx->pool_live + 4096) return;
     pool = (uint32_t *)gxbp_allocate(&cx->allocator, (size_t)cx->pool_capacity * sizeof *pool);
     if (pool == NULL) return;
     for (i = 0; i < cx->facet_count; i++) {
@@ -1620,7 +1621,7 @@ static void gxbp_set_marks(gxb_complex *cx) {
 }
 
 GXFEM_API void gxb_complex_begin(gxb_complex *cx) {
-    gxbp_compact_pool(cx);
+    if (cx->pool_count / 2 >= cx->pool_live + 4096) gxbp_compact_pool(cx);
     gxbp_set_marks(cx);
 }
 
@@ -2334,10 +2335,12 @@ static void gxbp_push_edges(gxb_complex *cx, uint32_t signed_edge) {
 GXFEM_API gx_result gxb_facet_edges(gxb_complex *cx, uint32_t facet, uint32_t *first, uint32_t *count) {
     gxb_facet *f = &cx->facets[facet];
     uint32_t i, total = 0;
-    for (i = 0; i < f->loop_count; i++) total += gxbp_count_edges(cx, cx->pool[f->loop + i] >> 1);
-    if (total != f->loop_count) {
+    for (i = 0; i < f->loop_count && cx->edges[cx->pool[f->loop + i] >> 1].child == GXB_NONE; i++) {}
+    if (i < f->loop_count) {
         const uint32_t start = cx->pool_count;
-        gx_result result = GXBP_RESERVE(cx, pool, pool, total);
+        gx_result result;
+        for (i = 0; i < f->loop_count; i++) total += gxbp_count_edges(cx, cx->pool[f->loop + i] >> 1);
+        result = GXBP_RESERVE(cx, pool, pool, total);
         if (result == GX_OK) result = gxbp_reserve_undo(cx, 1);
         if (result != GX_OK) return result;
         gxbp_save(cx, GXBP_FACETS, facet);
@@ -2353,10 +2356,12 @@ GXFEM_API gx_result gxb_facet_edges(gxb_complex *cx, uint32_t facet, uint32_t *f
 GXFEM_API gx_result gxb_leaf_facets(gxb_complex *cx, uint32_t leaf, uint32_t *first, uint32_t *count) {
     gxb_leaf *l = &cx->leaves[leaf];
     uint32_t i, total = 0;
-    for (i = 0; i < l->facet_count; i++) total += gxbp_count_facets(cx, cx->pool[l->facets + i]);
-    if (total != l->facet_count) {
+    for (i = 0; i < l->facet_count && cx->facets[cx->pool[l->facets + i]].child == GXB_NONE; i++) {}
+    if (i < l->facet_count) {
         const uint32_t start = cx->pool_count;
-        gx_result result = GXBP_RESERVE(cx, pool, pool, total);
+        gx_result result;
+        for (i = 0; i < l->facet_count; i++) total += gxbp_count_facets(cx, cx->pool[l->facets + i]);
+        result = GXBP_RESERVE(cx, pool, pool, total);
         if (result == GX_OK) result = gxbp_reserve_undo(cx, 1);
         if (result != GX_OK) return result;
         gxbp_save(cx, GXBP_LEAVES, leaf);
@@ -4487,14 +4492,18 @@ struct gxb_boolean {            /* what is used most comes first: its addresses 
 
 static size_t gxbp_whole_words(size_t size) { return (size + 15) & ~(size_t)15; }
 
+/* From the arena; NULL: it has no such room. */
+static void *gxbp_take(gxb_boolean *b, size_t size) {
+    unsigned char *memory = b->arena + b->arena_used;
+    if (size > b->arena_size - b->arena_used) return NULL;
+    b->arena_used += gxbp_whole_words(size);
+    return memory;
+}
+
 static void *gxbp_count_allocate(void *user, size_t size) {
     gxb_boolean *b = (gxb_boolean *)user;
-    void *memory;
-    if (size <= b->arena_size - b->arena_used) {
-        memory = b->arena + b->arena_used;
-        b->arena_used += gxbp_whole_words(size);
-        return memory;
-    }
+    void *memory = gxbp_take(b, size);
+    if (memory != NULL) return memory;
     if (b->limit != 0 && (size > b->limit || b->used > b->limit - size)) { b->over_limit = 1; return NULL; }
     memory = gxbp_allocate(&b->outer, size);
     if (memory == NULL) return NULL;
@@ -4516,15 +4525,44 @@ static void gxbp_count_release(void *user, void *memory, size_t size) {
     gxbp_release(&b->outer, memory, size);
 }
 
+/* Where the caller's memory can grow: what is not in the arena. */
+static void *gxbp_count_reallocate(void *user, void *old, size_t size, size_t larger) {
+    gxb_boolean *b = (gxb_boolean *)user;
+    const unsigned char *m = (const unsigned char *)old;
+    const int in_arena = m >= b->arena && m < b->arena + b->arena_size;
+    const size_t more = larger - size;
+    void *memory;
+    if (!in_arena && b->limit != 0 && (more > b->limit || b->used > b->limit - more)) { b->over_limit = 1; return NULL; }
+    memory = in_arena ? gxbp_count_allocate(user, larger) : gxbp_reallocate(&b->outer, old, size, size, larger);
+    if (memory == NULL) return NULL;
+    if (in_arena) {
+        memcpy(memory, old, size);
+        gxbp_count_release(user, old, size);
+        return memory;
+    }
+    b->allocations++;
+    b->used += more;
+    if (b->used > b->peak) b->peak = b->used;
+    return memory;
+}
+
 /* The first error of an evaluation stays in b->result; what follows does nothing. */
 static GXBP_APART int gxbp_stop(gxb_boolean *b, gx_result result) {
     if (b->result == GX_OK) b->result = result == GX_ERROR_MEMORY && b->over_limit ? GX_ERROR_LIMIT : result;
     return 0;
 }
 
-/* Small cases should not pay for growing. */
+/* Small cases should not pay for growing: an array's first items come from the arena at once. */
 static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, size_t item, uint32_t count, uint32_t *capacity, size_t extra) {
-    const gx_result result = gxbp_reserve(&b->cx, array, item, count, capacity, *capacity == 0 && extra < 16 ? 16 : extra);
+    const size_t least = *capacity == 0 && extra < 16 ? 16 : extra, room = gxbp_room_for(least);
+    void *memory = *capacity == 0 && least < GXBP_ARENA ? gxbp_take(b, room * item) : NULL;
+    gx_result result;
+    if (memory != NULL) {
+        memcpy(array, &memory, sizeof memory);
+        *capacity = (uint32_t)room;
+        return 1;
+    }
+    result = gxbp_reserve(&b->cx, array, item, count, capacity, least);
     return result == GX_OK ? 1 : gxbp_stop(b, result);
 }
 
@@ -4533,6 +4571,12 @@ static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, size_t item, uint32
      gxbp_room(b, &(b)->array, sizeof *(b)->array, (b)->counter##_count, &(b)->counter##_capacity, extra))
 #define GXBP_DROP(b, array, counter) \
     gxbp_release(&(b)->cx.allocator, (b)->array, (size_t)(b)->counter##_capacity * sizeof *(b)->array)
+
+/* Memory for as long as nobody else takes scratch; NULL: there is none. It is kept: what needs some next finds pages that have been touched. */
+static void *gxbp_borrow(gxb_boolean *b, size_t bytes) {
+    b->scratch_count = 0;
+    return GXBP_ROOM(b, scratch, scratch, bytes / sizeof *b->scratch + 1) ? b->scratch : NULL;
+}
 
 static uint32_t gxbp_new_link(gxb_boolean *b, uint32_t value, uint32_t next) {
     if (!GXBP_ROOM(b, links, link, 1)) return next;
@@ -4578,7 +4622,7 @@ static GXBP_APART int gxbp_grow_table(gxb_boolean *b, uint32_t extra) {
 }
 
 /* A point without coordinates yet. */
-static uint32_t gxbp_new_vertex(gxb_boolean *b, uint32_t kind, uint32_t p, uint32_t q, uint32_t r) {
+static inline uint32_t gxbp_new_vertex(gxb_boolean *b, uint32_t kind, uint32_t p, uint32_t q, uint32_t r) {
     uint32_t id;
     gx_result result;
     gxbp_vertex *v;
@@ -4757,16 +4801,16 @@ static int gxbp_find_few_twins(const uint32_t *triangles, uint32_t count, uint32
     return 1;
 }
 
+/* Words of room that gxbp_find_twins works in */
+static size_t gxbp_twin_room(size_t vertex_count) { return vertex_count * (sizeof(gxbp_passage) / sizeof(uint32_t)); }
+
 /* twin of each half-edge, GXB_NONE where an edge has not one in each direction. *open: a half-edge whose edge is passed more often in
    its direction than in the other, or GXB_NONE: the surface is closed. */
-static int gxbp_find_twins(gxb_boolean *b, const uint32_t *triangles, size_t count, uint32_t vertex_count, uint32_t *twin, uint32_t *open) {
-    const size_t bytes = vertex_count * sizeof(gxbp_passage);
-    gxbp_passage *passages;
+static void gxbp_find_twins(const uint32_t *triangles, size_t count, uint32_t vertex_count, uint32_t *twin, uint32_t *open, uint32_t *room) {
+    gxbp_passage *passages = (gxbp_passage *)(void *)room;
     uint32_t p, q, odd;
     *open = GXB_NONE;
-    if (vertex_count <= GXBP_FEW && count <= GXBP_FEW_TRIANGLES && gxbp_find_few_twins(triangles, (uint32_t)count, vertex_count, twin)) return 1;
-    passages = (gxbp_passage *)gxbp_allocate(&b->cx.allocator, bytes);
-    if (passages == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
+    if (vertex_count <= GXBP_FEW && count <= GXBP_FEW_TRIANGLES && gxbp_find_few_twins(triangles, (uint32_t)count, vertex_count, twin)) return;
     for (p = 0; p < vertex_count; p++) passages[p].first = passages[p].p = GXB_NONE;
     gxbp_list_half_edges(triangles, (uint32_t)count, passages, twin);
     for (p = 0; p < vertex_count; p++) {
@@ -4778,8 +4822,6 @@ static int gxbp_find_twins(gxb_boolean *b, const uint32_t *triangles, size_t cou
         }
         if (*open == GXB_NONE) *open = odd;
     }
-    gxbp_release(&b->cx.allocator, passages, bytes);
-    return 1;
 }
 
 /* Half-edges by the vertex that they leave, with the vertex in which they end. */
@@ -4905,7 +4947,7 @@ static gx_result gxbp_read_triangles(gxb_boolean *b, const gxb_operand *o, uint3
         for (h = 0; h < 3 * o->triangle_count; h++) joined[h] = local[o->triangles[h]];
         triangles = joined;
     }
-    if (!gxbp_find_twins(b, triangles, o->triangle_count, (uint32_t)o->vertex_count, twin, &open)) return b->result;
+    gxbp_find_twins(triangles, o->triangle_count, (uint32_t)o->vertex_count, twin, &open, twin + 3 * o->triangle_count);
     if (open != GXB_NONE && o->operation != GXB_SPLIT) { *bad = open / 3; return GX_ERROR_NOT_CLOSED; }
     for (h = 0; h < o->triangle_count; h++) {
         gxbp_source *t = &b->sources[b->source_count];
@@ -5035,10 +5077,9 @@ static gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
     o->order = (uint32_t *)gxbp_allocate(&b->cx.allocator, words * sizeof *o->order);
     if (o->order == NULL) return GX_ERROR_MEMORY;
     if (o->source_count > 4 * GXBP_LEAF) {
-        uint64_t *work = (uint64_t *)gxbp_allocate(&b->cx.allocator, 2 * words * sizeof *work);
-        if (work == NULL) return GX_ERROR_MEMORY;
+        uint64_t *work = (uint64_t *)gxbp_borrow(b, 2 * words * sizeof *work);
+        if (work == NULL) return b->result;
         gxbp_sort_sources(b, o, work);
-        gxbp_release(&b->cx.allocator, work, 2 * words * sizeof *work);
     } else for (i = 0; i < o->source_count; i++) o->order[i] = o->source + i;
     o->bounds = b->bound_count;
     b->bound_count += size;
@@ -5060,7 +5101,7 @@ static gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
 static size_t gxbp_foresee(const gxb_boolean *b, size_t count, size_t thirds) { return b->operand_count > 0 ? count : count + thirds * count / 3; }
 
 static gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operand *o, size_t *bad) {
-    const size_t words = 2 * o->vertex_count + 6 * o->triangle_count;
+    const size_t words = 2 * o->vertex_count + 6 * o->triangle_count + gxbp_twin_room(o->vertex_count);
     const size_t sources = gxbp_foresee(b, o->triangle_count, 1), pieces = gxbp_foresee(b, o->triangle_count, 3), points = gxbp_foresee(b, o->vertex_count, 3);
     const size_t leaves = gxbp_foresee(b, (o->triangle_count + GXBP_LEAF - 1) / GXBP_LEAF, 1);
     gxbp_operand *mine;
@@ -5071,14 +5112,13 @@ static gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operand *o, size_
         !gxbp_grow_table(b, (uint32_t)o->vertex_count)) return b->result;
     result = GXBP_RESERVE(&b->cx, points, point, points);
     if (result != GX_OK) return result;
-    work = (uint32_t *)gxbp_allocate(&b->cx.allocator, words * sizeof *work);
-    if (work == NULL) return GX_ERROR_MEMORY;
+    work = (uint32_t *)gxbp_borrow(b, words * sizeof *work);
+    if (work == NULL) return b->result;
     mine = &b->operands[b->operand_count];
     memset(mine, 0, sizeof *mine);
     mine->operation = o->operation; mine->rule = o->rule; mine->simple = o->simple;
     mine->source = b->source_count; mine->source_count = (uint32_t)o->triangle_count;
     result = gxbp_read_triangles(b, o, work, bad);
-    gxbp_release(&b->cx.allocator, work, words * sizeof *work);
     if (result == GX_OK) result = gxbp_make_tree(b, mine);
     if (result != GX_OK) { gxbp_release(&b->cx.allocator, mine->order, o->triangle_count * sizeof *mine->order); return result; }
     b->operand_count++;
@@ -5088,21 +5128,25 @@ static gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operand *o, size_
 
 /* --- where two triangles meet --- */
 
-/* The side of a plane: filter, then what is known by definition, then exact arithmetic. */
-static int gxbp_point_side(gxb_boolean *b, uint32_t point, uint32_t plane) {
+/* What the filter leaves open: what is known by definition, then exact arithmetic. */
+static GXBP_APART int gxbp_point_side_beyond_filter(gxb_boolean *b, uint32_t point, uint32_t plane) {
     gxb_complex *cx = &b->cx;
     const gxb_cpoint *p = &cx->points[point];
-    double bound;
-    const double value = gxbp_filter_side(&p->ball, &cx->planes[plane].filter, &bound);
     uint32_t def[3];
-    cx->filter_calls++;
-    if (value > bound) return 1;
-    if (value < -bound) return -1;
     memcpy(def, p->def, sizeof def);
     if (p->kind == GXB_EXPLICIT) point = def[0];
     if (gxbp_incident(cx, p->kind, def, point, plane)) return 0;
     if (p->kind == GXB_THREE_PLANES && gxbp_incident_by_line(cx, def, plane)) return 0;
     return gxbp_exact_sign(cx, p->kind, def, point, plane);
+}
+
+/* The side of a plane */
+static int gxbp_point_side(gxb_boolean *b, uint32_t point, uint32_t plane) {
+    double bound;
+    const double value = gxbp_filter_side(&b->cx.points[point].ball, &b->cx.planes[plane].filter, &bound);
+    b->cx.filter_calls++;
+    if (value > bound) return 1;
+    return value < -bound ? -1 : gxbp_point_side_beyond_filter(b, point, plane);
 }
 
 /* Orientation of three input points in a triangle's plane. */
@@ -5127,21 +5171,27 @@ static int gxbp_share_plane(gxb_boolean *b, uint32_t s) {
     return 0;
 }
 
-static int gxbp_need_plane(gxb_boolean *b, uint32_t s) {
+static GXBP_APART int gxbp_find_plane(gxb_boolean *b, uint32_t s) {
     gxbp_source *t = &b->sources[s];
     gx_result result;
-    if (t->plane != GXB_NONE || gxbp_share_plane(b, s)) return 1;
+    if (gxbp_share_plane(b, s)) return 1;
     result = gxbp_new_plane(&b->cx, t->point[0], t->point[1], t->point[2], 0, &t->plane);
     if (result != GX_OK) { t->plane = GXB_NONE; return gxbp_stop(b, result); }
     gxbp_plane_axis(&b->cx, t->plane);
     return 1;
 }
 
-static void gxbp_mark_dirty(gxb_boolean *b, uint32_t s) {
-    b->marks++;
-    if (b->sources[s].flags & GXBP_DIRTY || !GXBP_ROOM(b, dirty, dirty, 1)) return;
+static int gxbp_need_plane(gxb_boolean *b, uint32_t s) { return b->sources[s].plane != GXB_NONE || gxbp_find_plane(b, s); }
+
+static GXBP_APART void gxbp_list_dirty(gxb_boolean *b, uint32_t s) {
+    if (!GXBP_ROOM(b, dirty, dirty, 1)) return;
     b->sources[s].flags |= GXBP_DIRTY;
     b->dirty[b->dirty_count++] = s;
+}
+
+static void gxbp_mark_dirty(gxb_boolean *b, uint32_t s) {
+    b->marks++;
+    if (!(b->sources[s].flags & GXBP_DIRTY)) gxbp_list_dirty(b, s);
 }
 
 /* A segment (a point, if p is q) in which a triangle (label) meets a source. */
@@ -5297,11 +5347,11 @@ static GXBP_COLD void gxbp_meet_one_way(gxb_boolean *b, uint32_t s, uint32_t t, 
     }
 }
 
-/* Edge k of s crosses t's plane where the signs against the two edges of t that cross s's plane say: y[0] against edge j, y[1] against j + 2. */
-static void gxbp_record_crossing(gxb_boolean *b, uint32_t s, int k, uint32_t t, int j, const int y[2], gxbp_meeting *m) {
+/* Edge k of s crosses t where the signs against the two edges of t that cross s's plane say: y[0] against edge j, y[1] against j + 2; neither is
+   negative. */
+static inline void gxbp_record_crossing(gxb_boolean *b, uint32_t s, int k, uint32_t t, int j, const int y[2], gxbp_meeting *m) {
     const int edge = y[0] == 0 ? j : (j + 2) % 3;
     uint32_t point;
-    if (y[0] < 0 || y[1] < 0) return;
     if (y[0] > 0 && y[1] > 0) point = gxbp_edge_triangle_point(b, s, k, t);
     else point = gxbp_edge_edge_point(b, s, k, t, edge, b->sources[t].plane);
     if (point == GXB_NONE) return;
@@ -5352,6 +5402,7 @@ static void gxbp_meet_across(gxb_boolean *b, uint32_t s, uint32_t t, const int o
         x = k != i;
         y[0] = -of_s[i] * sign[x][0];
         y[1] = of_s[i] * sign[x][1];
+        if (y[0] < 0 || y[1] < 0) continue;
         gxbp_record_crossing(b, s, k, t, j, y, m);
         if (m->count == 1 && m->left == 0) m->left = x == 0 ? of_s[i] : -of_s[i];
     }
@@ -5360,6 +5411,7 @@ static void gxbp_meet_across(gxb_boolean *b, uint32_t s, uint32_t t, const int o
         x = k != j;
         y[0] = -of_t[j] * sign[0][x];
         y[1] = of_t[j] * sign[1][x];
+        if (y[0] < 0 || y[1] < 0) continue;
         gxbp_record_crossing(b, t, k, s, i, y, m);
         if (m->count == 1 && m->left == 0) m->left = x == 0 ? -of_t[j] : of_t[j];
     }
@@ -5444,18 +5496,20 @@ static GXBP_COLD void gxbp_meet_in_plane(gxb_boolean *b, uint32_t s, uint32_t t)
     else gxbp_record_meeting(b, s, t, &m);
 }
 
-/* Sides of a source's corners; each point remembers two answers, of which slot says the one to replace. */
+/* The side of a source's corner; each point remembers two answers, of which slot says the one to replace. */
+static int gxbp_corner_side(gxb_boolean *b, uint32_t s, int k, uint32_t plane, int slot) {
+    const uint32_t point = b->sources[s].point[k];
+    gxb_cpoint *p = &b->cx.points[point];
+    if (p->stamp[slot] != plane + 1) {
+        p->sign[slot] = b->sources[s].plane == plane ? 0 : gxbp_point_side(b, point, plane);
+        p->stamp[slot] = plane + 1;
+    }
+    return p->sign[slot];
+}
+
 static void gxbp_sides(gxb_boolean *b, uint32_t s, uint32_t plane, int slot, int side[3]) {
     int k;
-    for (k = 0; k < 3; k++) {
-        const uint32_t point = b->sources[s].point[k];
-        gxb_cpoint *p = &b->cx.points[point];
-        if (p->stamp[slot] != plane + 1) {
-            p->sign[slot] = b->sources[s].plane == plane ? 0 : gxbp_point_side(b, point, plane);
-            p->stamp[slot] = plane + 1;
-        }
-        side[k] = p->sign[slot];
-    }
+    for (k = 0; k < 3; k++) side[k] = gxbp_corner_side(b, s, k, plane, slot);
 }
 
 static int gxbp_all_on_one_side(const int side[3]) { return side[0] != 0 && side[0] == side[1] && side[0] == side[2]; }
@@ -5512,12 +5566,14 @@ static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
 
 /* --- broad phase: pairs of boxes of two trees, or of one --- */
 
-/* Which of a leaf's boxes meet a box: without branches, all at once where the compiler can */
-static void gxbp_test_leaf(const gxbp_leaf_boxes *leaf, const gxbp_box *box, uint32_t meets[GXBP_LEAF]) {
-    uint32_t x;
+/* Which of a leaf's boxes meet a box: without branches, all at once where the compiler can. Returns 0 where none does. */
+static uint32_t gxbp_test_leaf(const gxbp_leaf_boxes *leaf, const gxbp_box *box, uint32_t meets[GXBP_LEAF]) {
+    uint32_t x, any = 0;
     for (x = 0; x < GXBP_LEAF; x++)
         meets[x] = (uint32_t)((leaf->low[0][x] <= box->high[0]) & (box->low[0] <= leaf->high[0][x]) & (leaf->low[1][x] <= box->high[1]) &
                               (box->low[1] <= leaf->high[1][x]) & (leaf->low[2][x] <= box->high[2]) & (box->low[2] <= leaf->high[2][x]));
+    for (x = 0; x < GXBP_LEAF; x++) any |= meets[x];
+    return any;
 }
 
 static gxbp_box gxbp_leaf_box(const gxbp_leaf_boxes *leaf, uint32_t x) {
@@ -5534,7 +5590,7 @@ static void gxbp_meet_leaves(gxb_boolean *b, const gxbp_operand *o, uint32_t i, 
         gxbp_box box;
         if (!first[x] || b->sources[o->order[i * GXBP_LEAF + x]].flags & GXBP_DEGENERATE) continue;
         box = gxbp_leaf_box(&b->bounds[o->bounds + i], x);
-        gxbp_test_leaf(&b->bounds[q->bounds + j], &box, second);
+        if (!gxbp_test_leaf(&b->bounds[q->bounds + j], &box, second)) continue;
         for (y = o == q && i == j ? x + 1 : 0; y < GXBP_LEAF; y++) {
             if (!second[y] || b->sources[q->order[j * GXBP_LEAF + y]].flags & GXBP_DEGENERATE) continue;
             gxbp_meet(b, o->order[i * GXBP_LEAF + x], q->order[j * GXBP_LEAF + y]);
@@ -6541,8 +6597,9 @@ static void gxbp_use_slot(gxb_boolean *b, gxbp_division *d, uint32_t f, uint32_t
     gxbp_piece *piece = &b->pieces[f];
     uint32_t other;
     piece->near[k] = GXB_NONE;
-    piece->labels[k] = slot == GXB_NONE ? GXBP_BARE : slot < d->step_count ? d->labels + slot : GXBP_LOOSE;
+    piece->labels[k] = GXBP_BARE;
     if (slot == GXB_NONE) return;
+    piece->labels[k] = slot < d->step_count ? d->labels + slot : GXBP_LOOSE;
     other = d->half[slot];
     d->half[slot] = 3 * f + k;
     if (other == GXB_NONE) return;
@@ -6582,11 +6639,13 @@ static void gxbp_fill_polygon(gxb_boolean *b, gxbp_division *d, uint32_t n) {
     for (; b->result == GX_OK; q = r) {
         p = &polygon[q->before];
         r = &polygon[q->after];
-        if (n == 3) { gxbp_cut_ear(b, d, p, q, r, r->slot); return; }
-        if (tried++ > 2 * n) gxbp_stop(b, GX_ERROR_OVERLAP);
-        if (q->bend <= 0 || (concave > 0 && ((tried <= n && p->bend > 0 && r->bend > 0) || !gxbp_is_ear(b, d, q)))) continue;
-        d->half[d->slot_count] = GXB_NONE;
-        gxbp_cut_ear(b, d, p, q, r, d->slot_count);
+        if (n > 3) {
+            if (tried++ > 2 * n) gxbp_stop(b, GX_ERROR_OVERLAP);
+            if (q->bend <= 0 || (concave > 0 && ((tried <= n && p->bend > 0 && r->bend > 0) || !gxbp_is_ear(b, d, q)))) continue;
+            d->half[d->slot_count] = GXB_NONE;
+        }
+        gxbp_cut_ear(b, d, p, q, r, n == 3 ? r->slot : d->slot_count);
+        if (n == 3) return;
         p->slot = d->slot_count++;
         p->after = q->after;
         r->before = q->before;
@@ -6974,16 +7033,19 @@ static int32_t *gxbp_copy_winding(gxb_boolean *b, uint32_t state) {
     return winding;
 }
 
-static uint32_t gxbp_step_state(gxb_boolean *b, uint32_t from, uint32_t operand, int change) {
-    gxbp_crossing *step = &b->steps[(2 * (from + 5 * operand) + (change > 0)) % GXBP_STEPS];
-    int32_t *winding;
-    if (step->change == change && step->from == from && step->operand == operand) return step->to;
-    winding = gxbp_copy_winding(b, from);
+static GXBP_APART uint32_t gxbp_new_step(gxb_boolean *b, gxbp_crossing *step, uint32_t from, uint32_t operand, int change) {
+    int32_t *winding = gxbp_copy_winding(b, from);
     if (winding == NULL) return 0;
     winding[operand] += change;
     step->from = from; step->operand = operand; step->change = change;
     step->to = gxbp_find_state(b);
     return step->to;
+}
+
+static uint32_t gxbp_step_state(gxb_boolean *b, uint32_t from, uint32_t operand, int change) {
+    gxbp_crossing *step = &b->steps[(2 * (from + 5 * operand) + (change > 0)) % GXBP_STEPS];
+    if (step->change == change && step->from == from && step->operand == operand) return step->to;
+    return gxbp_new_step(b, step, from, operand, change);
 }
 
 static uint32_t gxbp_root_plane(const gxb_boolean *b, uint32_t f) { return b->sources[b->pieces[f].source].plane; }
@@ -7011,10 +7073,10 @@ static int gxbp_side_of_piece(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
 /* How a label of edge k changes the winding number of its operand: a triangle with a part in front of f's plane is passed, from the side on
    which f lies. */
 static int gxbp_label_step(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
-    int side[3];
+    int i;
     if (t & GXBP_EDGE_LABEL || b->operands[b->sources[t].operand].operation == GXB_SPLIT) return 0;
-    gxbp_sides(b, t, gxbp_root_plane(b, f), 0, side);
-    return side[0] <= 0 && side[1] <= 0 && side[2] <= 0 ? 0 : gxbp_side_of_piece(b, f, k, t);
+    for (i = 0; i < 3; i++) if (gxbp_corner_side(b, t, i, gxbp_root_plane(b, f), 0) > 0) return gxbp_side_of_piece(b, f, k, t);
+    return 0;
 }
 
 /* The state in front of the facet beyond edge k. */
@@ -7899,20 +7961,18 @@ static GXBP_COLD void gxbp_join_all_wedges(gxb_boolean *b, uint32_t *parent, uin
 
 static void gxbp_join_shells(gxb_boolean *b, uint32_t *parent, int32_t *corners) {
     const uint32_t count = b->out_source_count;
-    const size_t bytes = (size_t)count * 3 * sizeof(uint32_t);
-    uint32_t *twin = (uint32_t *)gxbp_allocate(&b->cx.allocator, bytes), h, open, shared = 0;
+    const size_t words = 3 * (size_t)count;
+    uint32_t *twin = (uint32_t *)gxbp_borrow(b, (words + gxbp_twin_room(b->out_point_count)) * sizeof *twin), h, open, shared = 0;
     b->out_twin_count = 0;
-    if (twin == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
-    if (gxbp_find_twins(b, b->out_triangles, count, b->out_point_count, twin, &open)) {
-        for (h = 0; h < 3 * count; h++) {
-            if (twin[h] == GXB_NONE) shared = 1;
-            else if (twin[h] > h) gxbp_join_sets(parent, h / 3, twin[h] / 3);
-        }
-        if (shared) gxbp_join_all_wedges(b, parent, twin);
-        if (b->mend && GXBP_ROOM(b, out_twins, out_twin, 3 * (size_t)count)) memcpy(b->out_twins, twin, bytes);
-        gxbp_count_corners(twin, count, corners);
+    if (twin == NULL) return;
+    gxbp_find_twins(b->out_triangles, count, b->out_point_count, twin, &open, twin + words);
+    for (h = 0; h < 3 * count; h++) {
+        if (twin[h] == GXB_NONE) shared = 1;
+        else if (twin[h] > h) gxbp_join_sets(parent, h / 3, twin[h] / 3);
     }
-    gxbp_release(&b->cx.allocator, twin, bytes);
+    if (shared) gxbp_join_all_wedges(b, parent, twin);
+    if (b->mend && GXBP_ROOM(b, out_twins, out_twin, words)) memcpy(b->out_twins, twin, words * sizeof *twin);
+    gxbp_count_corners(twin, count, corners);
 }
 
 /* Numerator and denominator as one number, relative error below 2^-180: each step adds the quotient of what is left, 50 bits. */
@@ -7940,18 +8000,20 @@ static void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *fine) {
     for (k = 0; k < 3; k++) gxbp_num_divide(&fine->c[k], &x[k], &x[3]);
 }
 
-/* Coordinates of 180 bits of the result's vertices, each made once. first: of a vertex' limbs; GXB_NONE: it has not been made */
+/* Coordinates of 180 bits of the result's vertices, each made once (then it has the stamp of b->head_stamp). first: of a vertex' limbs */
 typedef struct gxbp_fine { uint32_t first; gxb_num c[3]; } gxbp_fine;
 typedef struct gxbp_fines { gxbp_fine *vertices; gxb_limb *limbs; uint32_t limb_count, limb_capacity; } gxbp_fines;
 
 static void gxbp_need_fine(gxb_boolean *b, gxbp_fines *fines, uint32_t vertex) {
+    const uint32_t point = b->out_points[vertex];
     gxbp_fine *v = &fines->vertices[vertex];
     gxbp_vec x;
     uint32_t k;
-    if (v->first != GXB_NONE) return;
-    gxbp_fine_point(b, b->out_points[vertex], &x);
+    if (b->vertices[point].head_stamp == b->head_stamp) return;
+    gxbp_fine_point(b, point, &x);
     if (!gxbp_room(b, &fines->limbs, sizeof *fines->limbs, fines->limb_count, &fines->limb_capacity, (size_t)x.c[0].n + x.c[1].n + x.c[2].n)) return;
     v->first = fines->limb_count;
+    b->vertices[point].head_stamp = b->head_stamp;
     for (k = 0; k < 3; k++) {
         v->c[k] = x.c[k];
         memcpy(fines->limbs + fines->limb_count, x.c[k].d, x.c[k].n * sizeof *fines->limbs);
@@ -8052,7 +8114,7 @@ static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, uint32_t *parent, doub
     uint32_t t;
     fines.vertices = (gxbp_fine *)gxbp_allocate(&b->cx.allocator, bytes);
     if (fines.vertices == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
-    for (t = 0; t < b->out_point_count; t++) fines.vertices[t].first = GXB_NONE;
+    b->head_stamp++;
     for (t = 0; t < b->out_source_count && b->result == GX_OK; t++)
         if (parent[t] == t && gxbp_is_rough(b, volume[t], error[t])) volume[t] = gxbp_fine_volume(b, parent, t, &fines);
     gxbp_release(&b->cx.allocator, fines.limbs, fines.limb_capacity * sizeof *fines.limbs);
@@ -8172,13 +8234,12 @@ static void gxbp_find_sides(gxb_boolean *b) {
 
 /* parent: sets of triangles; winding: room for a word per triangle; corners: see gxbp_count_corners */
 static void gxbp_measure_components(gxb_boolean *b, uint32_t *parent, int32_t *winding, const int32_t *corners) {
-    const size_t count = b->out_source_count, bytes = 2 * count * sizeof(double);
-    double *volume = (double *)gxbp_allocate(&b->cx.allocator, bytes);
-    if (volume == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
+    const size_t count = b->out_source_count;
+    double *volume = (double *)gxbp_borrow(b, 2 * count * sizeof *volume);
+    if (volume == NULL) return;
     gxbp_measure_shells(b, parent, volume, volume + count);
     gxbp_number_components(b, parent, volume, winding);
     gxbp_find_eulers(b, corners);
-    gxbp_release(&b->cx.allocator, volume, bytes);
 }
 
 static void gxbp_find_components(gxb_boolean *b) {
@@ -8483,6 +8544,7 @@ GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean
     b->user = desc->user;
     b->cx.allocator.allocate = gxbp_count_allocate;
     b->cx.allocator.release = gxbp_count_release;
+    if (desc->allocator.allocate == NULL || desc->allocator.reallocate != NULL) b->cx.allocator.reallocate = gxbp_count_reallocate;
     b->cx.allocator.user = b;
     *boolean = b;
     return GX_OK;
