@@ -62,7 +62,7 @@
  *     - Coordinates in a complex: after subtraction of the mesh's origin and scaling by a power of two to its box they are 0 or
  *       of magnitude 2^-128 to 2^128, else GX_ERROR_RANGE. orient2d, orient3d, incircle and insphere take any
  *       finite double. Coordinates of a Boolean are 0 or of magnitude 2^-128 to 2^128, beside its first operand's if that is outside 2^+-60.
- *     - At most 2^31 - 1 points, planes, edges, facets and leaves.
+ *     - At most 2^31 - 1 points, planes, edges, facets and leaves; an operand of a Boolean: about 130 million triangles.
  *     - No global state, no input or output, no heap traffic but the growth of the complex's own arrays.
  *
  * Configuration: GXB_LIMB32 uses 32-bit limbs also where 128-bit products exist (same results, slower). GXFEM_STATIC leaves out of a

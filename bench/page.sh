@@ -65,22 +65,22 @@ the right pieces with a wrong volume; fall: a piece falls otherwise than a point
     failure 1
 }
 
-# Some cases of the solver's: iterations / milliseconds; memory and the time of an iteration by element
+# Some cases of the solver's: iterations / milliseconds; memory and the time of a product by element
 steps() {
-    echo "| scene | unknowns | block-Jacobi | multigrid | the same, two threads | multigrid, assembled | CHOLMOD | product, ns per element | bytes per element | assembled |"
+    echo "| scene | unknowns | block-Jacobi | multigrid | the same, two threads | multigrid, assembled | CHOLMOD | product, ns per element: single / double | bytes per element | assembled |"
     echo "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"
     for row in "uncut-lattice-23k-1e6|uncut" "accordion-lattice-23k-1e6|accordion: cuts from both sides, 2.5 cells apart" \
         "accordion-lattice-23k-1e8|the same, E = 1e8" "loose-lattice-23k-1e6|loose: fragments, most of them falling" \
         "uncut-lattice-150k-1e6|uncut" "accordion-lattice-150k-1e6|accordion"; do
         awk -F, -v name="${row%|*}" -v text="${row#*|}" '
             $1 != name { next }
-            FILENAME ~ /product/ { elements = $3; if ($2 == "jacobi-free") product = $4; next }
+            FILENAME ~ /product/ { elements = $3; product[$2] = $4; next }
             { unknowns = $3; found[$2] = sprintf("%.1f / %.1f", $4, $7); ms[$2] = sprintf("%.1f", $2 == "cholmod" ? $6 : $7); bytes[$2] = $8 }
             END {
                 if (unknowns)
-                    printf("| %s | %d | %s | %s | %s | %s | %s | %.1f | %.0f | %.0f |\n", text, unknowns, found["jacobi-free"], found["multigrid-free"],
-                           ms["multigrid-free-2"], found["multigrid-assembled"], ms["cholmod"], product, bytes["multigrid-free"] / elements,
-                           bytes["multigrid-assembled"] / elements)
+                    printf("| %s | %d | %s | %s | %s | %s | %s | %.1f / %.1f | %.0f | %.0f |\n", text, unknowns, found["jacobi-free"], found["multigrid-free"],
+                           ms["multigrid-free-2"], found["multigrid-assembled"], ms["cholmod"], product["single"], product["double"],
+                           bytes["multigrid-free"] / elements, bytes["multigrid-assembled"] / elements)
             }' "$tables/product.csv" "$tables/solver.csv"
     done
 }
