@@ -424,6 +424,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #if defined(GXFEM_SOLVE_IMPLEMENTATION) && !defined(GXFEM_SOLVE_IMPLEMENTED)
 #define GXFEM_SOLVE_IMPLEMENTED
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -437,6 +438,7 @@ extern "C" {
 
 /* Blocks of a chunk: 384 elements, whose nodes (about 150) stay in the first-level cache. */
 #define GXSP_CHUNK_BLOCKS 48
+#define GXSP_CHUNK (GXSP_CHUNK_BLOCKS * GXSP_LANES)
 
 /* A residual below this (about 50 units in the last place) is rounding: no iteration can lower it. */
 #define GXSP_ROUNDING 1e-14
@@ -566,6 +568,7 @@ extern "C" {
  * there are they make number by number, hence eight only where there are eight. */
 #if defined(__GNUC__) && (defined(__clang__) || __GNUC__ >= 12)
 #define GXSP_SHUFFLES
+typedef __attribute__((vector_size(8), aligned(4), may_alias)) float gxsp_two;
 typedef __attribute__((vector_size(16), aligned(4), may_alias)) float gxsp_four;
 typedef __attribute__((vector_size(32), aligned(8), may_alias)) double gxsp_four_doubles;
 #if defined(__AVX__)
@@ -736,8 +739,8 @@ static gxsp_pool gxsp_pool_make(const gx_allocator *allocator)
     return pool;
 }
 
-/* What a step works on, cut into elements of a block, blocks of a chunk. Lanes without an element have weight and mass 0 and
- * name the chunk's first node, to which they add zeros. */
+/* What a step works on, cut into elements of a block, blocks of a chunk. Lanes without an element have weight, mass and
+ * gradients 0 and name nodes of the chunk, to which they add zeros. */
 typedef struct gxsp_rest {
     double gradient[9][GXSP_LANES]; /* of shape functions 1..3, by rows, 1/m */
     double weight[GXSP_LANES];      /* m3 */
@@ -781,8 +784,9 @@ typedef struct gxsp_part {
 } gxsp_part;
 
 typedef struct gxsp_chunk {
-    gxsp_rest *rest;                 /* block_count, as are the next four */
+    gxsp_rest *rest;                 /* block_count, as are those without a count of their own */
     gxsp_corners *corners;
+    uint8_t *fresh;                  /* block_count + 1: bit i: corner i is not the one of the block before, in each lane; at the end all */
     gxsp_tangent *tangents;
     gxsp_mass *masses;               /* NULL: gxsp_rest has them all */
     gxsp_general *generals;          /* of GXS_CUSTOM; NULL: gxsp_tangent has the Hessians */
@@ -1274,25 +1278,29 @@ static int gxsp_orthogonal(const gxsp_columns *GXSP_RESTRICT of)
     return most < 1e-13f;
 }
 
-/* F = 1 + G of a block as columns at first_lane, and V = 1 */
+static inline float gxsp_larger(float a, float b)
+{
+    const float x = a < 0 ? -a : a, y = b < 0 ? -b : b;
+    return x > y ? x : y;
+}
+
+/* F = 1 + G of a block as columns at first_lane, by its largest entry, and V = 1 */
 static void gxsp_columns_begin(gxsp_lanes *GXSP_RESTRICT g, int first_lane, gxsp_columns *GXSP_RESTRICT of)
 {
-    gxsp_singles largest, inverse;
     int k, l;
-    GXSP_EACH_LANE(l) largest[l] = 0;
-    for (k = 0; k < 9; ++k)
-        GXSP_EACH_LANE(l) {
-            const float f = (float)(g[k][l] + (k % 4 == 0 ? 1.0 : 0.0)), size = f < 0 ? -f : f;
-            of->b[k][first_lane + l] = f;
-            of->v[k][first_lane + l] = k % 4 == 0 ? 1.0f : 0.0f;
-            largest[l] = size > largest[l] ? size : largest[l];
-        }
     GXSP_EACH_LANE(l) {
-        of->scale[first_lane + l] = largest[l] > 1e-30f ? largest[l] : 1.0f;
-        inverse[l] = 1 / of->scale[first_lane + l];
+        const int m = first_lane + l;
+        const float f0 = (float)(g[0][l] + 1), f1 = (float)g[1][l], f2 = (float)g[2][l], f3 = (float)g[3][l], f4 = (float)(g[4][l] + 1),
+                    f5 = (float)g[5][l], f6 = (float)g[6][l], f7 = (float)g[7][l], f8 = (float)(g[8][l] + 1);
+        const float a = gxsp_larger(gxsp_larger(f0, f1), gxsp_larger(f2, f3)), b = gxsp_larger(gxsp_larger(f4, f5), gxsp_larger(f6, f7));
+        const float largest = gxsp_larger(gxsp_larger(a, b), f8), scale = largest > 1e-30f ? largest : 1.0f, inverse = 1 / scale;
+        of->scale[m] = scale;
+        of->b[0][m] = inverse * f0, of->b[1][m] = inverse * f1, of->b[2][m] = inverse * f2;
+        of->b[3][m] = inverse * f3, of->b[4][m] = inverse * f4, of->b[5][m] = inverse * f5;
+        of->b[6][m] = inverse * f6, of->b[7][m] = inverse * f7, of->b[8][m] = inverse * f8;
     }
     for (k = 0; k < 9; ++k)
-        GXSP_EACH_LANE(l) of->b[k][first_lane + l] *= inverse[l];
+        GXSP_EACH_LANE(l) of->v[k][first_lane + l] = k % 4 == 0 ? 1.0f : 0.0f;
 }
 
 /* F = 1 + G = U diag(s) V^T of two blocks, or of one if last is NULL, by one-sided Jacobi, every lane the same number of sweeps.
@@ -1657,6 +1665,7 @@ static int gxsp_tangent_begin(gxs_material_kind kind, gxsp_state *first, gxsp_st
 static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest, double scale, int exact, gxsp_state *s,
                               gxsp_svd *GXSP_RESTRICT of, gxsp_tangent *GXSP_RESTRICT tangent, gxsp_general *general)
 {
+    const float least = exact ? -FLT_MAX : 0;
     gxsp_principal principal;
     int k, l, r, c;
     if (kind == GXS_CUSTOM) {
@@ -1680,8 +1689,8 @@ static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_REST
         GXSP_EACH_LANE(l) tangent->stretch[k][l] = principal.weight[l] * principal.stretch[k][l];
     for (k = 0; k < 3; ++k)
         GXSP_EACH_LANE(l) {
-            const float flip = exact || principal.flip[k][l] > 0 ? principal.flip[k][l] : 0;
-            const float twist = exact || principal.twist[k][l] > 0 ? principal.twist[k][l] : 0;
+            const float flip = principal.flip[k][l] > least ? principal.flip[k][l] : least;
+            const float twist = principal.twist[k][l] > least ? principal.twist[k][l] : least;
             tangent->even[k][l] = 0.5f * principal.weight[l] * (flip + twist);
             tangent->odd[k][l] = 0.5f * principal.weight[l] * (flip - twist);
         }
@@ -1708,7 +1717,7 @@ static void gxsp_block_gradient(const gxsp_rest *GXSP_RESTRICT rest, gxsp_lanes 
         }
 }
 
-/* force = weight x P : grad N; the four add up to zero but for rounding */
+/* force += weight x P : grad N; the four add up to zero but for rounding */
 static void gxsp_block_force(const gxsp_rest *GXSP_RESTRICT rest, gxsp_lanes *GXSP_RESTRICT p, gxsp_lanes *GXSP_RESTRICT force)
 {
     int r, l;
@@ -1718,10 +1727,10 @@ static void gxsp_block_force(const gxsp_rest *GXSP_RESTRICT rest, gxsp_lanes *GX
             const double a = x * rest->gradient[0][l] + y * rest->gradient[1][l] + z * rest->gradient[2][l];
             const double b = x * rest->gradient[3][l] + y * rest->gradient[4][l] + z * rest->gradient[5][l];
             const double c = x * rest->gradient[6][l] + y * rest->gradient[7][l] + z * rest->gradient[8][l];
-            force[r][l] = -(a + b + c);
-            force[3 + r][l] = a;
-            force[6 + r][l] = b;
-            force[9 + r][l] = c;
+            force[r][l] -= a + b + c;
+            force[3 + r][l] += a;
+            force[6 + r][l] += b;
+            force[9 + r][l] += c;
         }
 }
 
@@ -1750,7 +1759,7 @@ static void gxsp_block_inertia(const gxsp_rest *GXSP_RESTRICT rest, const gxsp_m
         }
 }
 
-/* y = (K + rate M) x, one lane after the other in registers; without general masses. apart: x of corners 1 ... 3 is what they have more
+/* y += (K + rate M) x, one lane after the other in registers; without general masses. apart: x of corners 1 ... 3 is what they have more
  * than corner 0, which callers know better than single precision could tell. */
 GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, int apart, gxsp_singles *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT y)
 {
@@ -1790,10 +1799,10 @@ GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, int apa
                     f3 = p0 * g3 + p1 * g4 + p2 * g5, f4 = p3 * g3 + p4 * g4 + p5 * g5, f5 = p6 * g3 + p7 * g4 + p8 * g5,
                     f6 = p0 * g6 + p1 * g7 + p2 * g8, f7 = p3 * g6 + p4 * g7 + p5 * g8, f8 = p6 * g6 + p7 * g7 + p8 * g8;
         const float m0 = m * (a0 + b0 + c0 + 5 * x0), m1 = m * (a1 + b1 + c1 + 5 * x1), m2 = m * (a2 + b2 + c2 + 5 * x2);
-        y[0][l] = m0 - (f0 + f3 + f6), y[1][l] = m1 - (f1 + f4 + f7), y[2][l] = m2 - (f2 + f5 + f8);
-        y[3][l] = m0 + m * a0 + f0, y[4][l] = m1 + m * a1 + f1, y[5][l] = m2 + m * a2 + f2;
-        y[6][l] = m0 + m * b0 + f3, y[7][l] = m1 + m * b1 + f4, y[8][l] = m2 + m * b2 + f5;
-        y[9][l] = m0 + m * c0 + f6, y[10][l] = m1 + m * c1 + f7, y[11][l] = m2 + m * c2 + f8;
+        y[0][l] += m0 - (f0 + f3 + f6), y[1][l] += m1 - (f1 + f4 + f7), y[2][l] += m2 - (f2 + f5 + f8);
+        y[3][l] += m0 + m * a0 + f0, y[4][l] += m1 + m * a1 + f1, y[5][l] += m2 + m * a2 + f2;
+        y[6][l] += m0 + m * b0 + f3, y[7][l] += m1 + m * b1 + f4, y[8][l] += m2 + m * b2 + f5;
+        y[9][l] += m0 + m * c0 + f6, y[10][l] += m1 + m * c1 + f7, y[11][l] += m2 + m * c2 + f8;
     }
 }
 
@@ -1816,11 +1825,11 @@ static void gxsp_general_product(const gxsp_tangent *b, const gxsp_general *h, i
     for (i = 0; i < 3; ++i)
         GXSP_EACH_LANE(l) {
             const float o = (1 - from) * x[i][l], sum = x[i][l] + x[3 + i][l] + x[6 + i][l] + x[9 + i][l] + 3 * o;
-            y[i][l] = b->mass[l] * (sum + x[i][l]);
+            y[i][l] += b->mass[l] * (sum + x[i][l]);
             for (k = 0; k < 3; ++k) {
                 const float f = p[3 * i][l] * b->gradient[3 * k][l] + p[3 * i + 1][l] * b->gradient[3 * k + 1][l] +
                                 p[3 * i + 2][l] * b->gradient[3 * k + 2][l];
-                y[3 + 3 * k + i][l] = b->mass[l] * (sum + o + x[3 + 3 * k + i][l]) + f;
+                y[3 + 3 * k + i][l] += b->mass[l] * (sum + o + x[3 + 3 * k + i][l]) + f;
                 y[i][l] -= f;
             }
         }
@@ -1990,14 +1999,14 @@ static const gxsp_chunk *gxsp_block_ahead(const gxsp_system *system, size_t inde
     return chunk;
 }
 
-/* x of a block's corners, and the parameters of their material */
-static void gxsp_block_load(const gxsp_system *system, const gxsp_chunk *chunk, const gxsp_corners *GXSP_RESTRICT corner, const double *x,
-                            gxsp_lanes *GXSP_RESTRICT corners)
+/* x of a block's corners; of those that are not fresh it is there from the block before */
+static void gxsp_block_load(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, const double *x, gxsp_lanes *GXSP_RESTRICT corners)
 {
     const uint32_t *copies = system->nodes + chunk->first_node;
+    const gxsp_corners *corner = &chunk->corners[b];
     int i, l;
     for (i = 0; i < 4; ++i)
-        for (l = 0; l < GXSP_LANES; ++l) {
+        for (l = 0; l < GXSP_LANES && chunk->fresh[b] >> i & 1; ++l) {
             const double *from = x + 3 * (size_t)copies[corner->node[i][l]];
             corners[3 * i][l] = from[0];
             corners[3 * i + 1][l] = from[1];
@@ -2005,6 +2014,7 @@ static void gxsp_block_load(const gxsp_system *system, const gxsp_chunk *chunk, 
         }
 }
 
+/* Parameters of a block's materials */
 static void gxsp_block_parameters(const gxsp_material *materials, const gxsp_rest *rest, gxsp_state *s)
 {
     int l;
@@ -2016,17 +2026,23 @@ static void gxsp_block_parameters(const gxsp_material *materials, const gxsp_res
     }
 }
 
-/* Forces of a block into the chunk's slots, 3 doubles each. */
-static void gxsp_block_store(const gxsp_corners *GXSP_RESTRICT corner, gxsp_lanes *GXSP_RESTRICT values, double *slots)
+/* Forces of a block into the chunk's slots, 3 doubles each, and 0 in their place; those of corners that the next block has too stay. */
+static void gxsp_block_store(const gxsp_chunk *chunk, uint32_t b, gxsp_lanes *GXSP_RESTRICT values, double *GXSP_RESTRICT slots)
 {
-    int i, l;
-    for (l = 0; l < GXSP_LANES; ++l)
-        for (i = 0; i < 4; ++i) {
+    const gxsp_corners *corner = &chunk->corners[b];
+    int i, k, l;
+    for (i = 0; i < 4; ++i) {
+        if (!(chunk->fresh[b + 1] >> i & 1))
+            continue;
+        for (l = 0; l < GXSP_LANES; ++l) {
             double *to = slots + 3 * (size_t)corner->node[i][l];
             to[0] += values[3 * i][l];
             to[1] += values[3 * i + 1][l];
             to[2] += values[3 * i + 2][l];
         }
+        for (k = 3 * i; k < 3 * i + 3; ++k)
+            GXSP_EACH_LANE(l) values[k][l] = 0;
+    }
 }
 
 /* P of elements with displacement gradients from, turned by what turns their rotations into those at to; left alone where that is
@@ -2124,6 +2140,7 @@ static void gxsp_task_state(void *context, size_t index)
     double *slots = &system->slots[chunk->first_node][0];
     uint32_t b, further;
     int k, l, inertia;
+    gxsp_lanes x[12], led[12], target[12], forces[12];
     if (gxsp_chunk_settled(system, chunk))
         return;
     for (b = 0; b < chunk->part_count; ++b)
@@ -2132,18 +2149,19 @@ static void gxsp_task_state(void *context, size_t index)
     if (system->chunk_still[index])
         return;
     inertia = pass->inertia && gxsp_accelerates(system, chunk, pass->from);
+    memset(forces, 0, sizeof forces);
     for (b = 0; b < chunk->block_count; ++b) {
         const gxsp_rest *rest = &chunk->rest[b];
         const gxsp_chunk *next = gxsp_block_ahead(system, index, b, &further);
-        gxsp_lanes x[12], forces[12], ahead[9], energies[3];
+        gxsp_lanes ahead[9], energies[3];
         gxsp_state s;
         gxsp_fetch(&next->rest[further], sizeof(gxsp_rest));
-        gxsp_block_load(system, chunk, &chunk->corners[b], pass->from, x);
+        gxsp_block_load(system, chunk, b, pass->from, x);
         gxsp_block_parameters(pass->materials, rest, &s);
         gxsp_block_gradient(rest, x, s.g);
         if (pass->turned) {
-            gxsp_block_load(system, chunk, &chunk->corners[b], pass->turned, x);
-            gxsp_block_gradient(rest, x, ahead);
+            gxsp_block_load(system, chunk, b, pass->turned, led);
+            gxsp_block_gradient(rest, led, ahead);
         }
         if (pass->nudge && chunk->kind != GXS_LINEAR && chunk->kind != GXS_CUSTOM)
             gxsp_nudge(s.g);
@@ -2158,15 +2176,15 @@ static void gxsp_task_state(void *context, size_t index)
         }
         if (inertia) {
             gxsp_lanes moved[12];
-            gxsp_block_load(system, chunk, &chunk->corners[b], system->target, moved);
+            gxsp_block_load(system, chunk, b, system->target, target);
             for (k = 0; k < 12; ++k)
-                GXSP_EACH_LANE(l) moved[k][l] = x[k][l] - moved[k][l];
+                GXSP_EACH_LANE(l) moved[k][l] = x[k][l] - target[k][l];
             gxsp_block_inertia(rest, gxsp_block_masses(chunk, b), pass->rate, moved, forces, energies[1]);
             for (l = 0; l < GXSP_LANES; ++l)
                 energies[2][l] += energies[1][l];
         }
         gxsp_add_energies(system, chunk, b, energies);
-        gxsp_block_store(&chunk->corners[b], forces, slots);
+        gxsp_block_store(chunk, b, forces, slots);
     }
 }
 
@@ -2379,21 +2397,28 @@ static gxsp_sorted *gxsp_order_elements(const gxsp_system *system, const gxs_mod
     return gxsp_sort(sorted, other, count);
 }
 
-static void gxsp_place_element(const gxsp_chunk *chunk, const gxs_element *element, uint32_t at, uint32_t lumped)
+/* Entries of gxs_element.mass */
+static const int gxsp_packed_mass[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
+
+static const uint8_t gxsp_own_order[4] = {0, 1, 2, 3};
+
+/* order: which of the element's corners come to be the lane's */
+static void gxsp_place_element(const gxsp_chunk *chunk, const gxs_element *element, const uint8_t *order, uint32_t at, uint32_t lumped)
 {
     gxsp_rest *rest = &chunk->rest[at / GXSP_LANES];
     size_t lane = at % GXSP_LANES;
-    int k;
-    for (k = 0; k < 9; ++k)
-        rest->gradient[k][lane] = element->gradient[1 + k / 3][k % 3];
+    int i, j, k;
+    for (i = 0; i < 3; ++i)
+        for (k = 0; k < 3; ++k)
+            rest->gradient[3 * i + k][lane] = order[1 + i] > 0 ? element->gradient[order[1 + i]][k] :
+                                              -(element->gradient[1][k] + element->gradient[2][k] + element->gradient[3][k]);
     rest->weight[lane] = element->weight;
     rest->material[lane] = element->material;
     chunk->groups[at] = element->group % GXSP_GROUPS; /* who does not update may have left it unset */
-    if (chunk->masses)
-        for (k = 0; k < 10; ++k)
-            chunk->masses[at / GXSP_LANES].entry[k][lane] = element->mass[k];
-    else
-        rest->mass[lane] = lumped ? 0 : 0.5 * element->mass[0];
+    rest->mass[lane] = lumped || chunk->masses ? 0 : 0.5 * element->mass[0];
+    for (i = 0; i < 4 && chunk->masses; ++i)
+        for (j = i; j < 4; ++j)
+            chunk->masses[at / GXSP_LANES].entry[gxsp_packed_mass[i][j]][lane] = element->mass[gxsp_packed_mass[order[i]][order[j]]];
 }
 
 /* Ascending, by insertion */
@@ -2415,40 +2440,223 @@ typedef struct gxsp_numbers {
     uint32_t round;     /* one for each chunk */
 } gxsp_numbers;
 
-/* The nodes of a chunk in the order of their copies, which is that of memory, and its corners. copies: by lane; not read where there is
- * no element. Returns how many nodes there are. */
-static uint32_t gxsp_number_nodes(const gxsp_chunk *chunk, uint32_t (*copies)[4], gxsp_numbers *numbers, uint32_t *nodes)
+/* The nodes of a chunk in the order of their copies, which is that of memory. copies: of count elements; GXSP_NONE where there is none, else
+ * numbers of nodes come in their place. Returns how many nodes there are. */
+static uint32_t gxsp_number_nodes(uint32_t (*copies)[4], uint32_t count, gxsp_numbers *numbers, uint32_t *nodes)
 {
-    const uint32_t lanes = chunk->block_count * GXSP_LANES;
-    uint32_t lane, i, k, count = 0;
+    uint32_t e, i, k, found = 0;
     ++numbers->round;
-    for (lane = 0; lane < lanes; ++lane)
-        for (k = 0; k < 4 && chunk->groups[lane] != GXSP_NONE; ++k)
-            if (numbers->stamp[copies[lane][k]] != numbers->round) {
-                numbers->stamp[copies[lane][k]] = numbers->round;
-                nodes[count++] = copies[lane][k];
+    for (e = 0; e < count; ++e)
+        for (k = 0; k < 4 && copies[e][0] != GXSP_NONE; ++k)
+            if (numbers->stamp[copies[e][k]] != numbers->round) {
+                numbers->stamp[copies[e][k]] = numbers->round;
+                nodes[found++] = copies[e][k];
             }
-    gxsp_sort_row(nodes, count);
-    for (i = 0; i < count; ++i)
+    gxsp_sort_row(nodes, found);
+    for (i = 0; i < found; ++i)
         numbers->local[nodes[i]] = i;
-    for (lane = 0; lane < lanes; ++lane)
-        for (k = 0; k < 4; ++k)
-            chunk->corners[lane / GXSP_LANES].node[k][lane % GXSP_LANES] =
-                chunk->groups[lane] == GXSP_NONE ? 0 : (uint16_t)numbers->local[copies[lane][k]];
-    return count;
+    for (e = 0; e < count; ++e)
+        for (k = 0; k < 4 && copies[e][k] != GXSP_NONE; ++k)
+            copies[e][k] = numbers->local[copies[e][k]];
+    return found;
 }
 
-/* Where element e of a chunk goes: neighbours come to lie in successive blocks, so that those of one block hardly share nodes. Where they
- * do, sums into slots wait for the ones before them: a third of a product's time. */
-static uint32_t gxsp_lane(const gxsp_chunk *chunk, uint32_t e)
+/* Corners of a chunk's blocks. nodes: by lane, GXSP_NONE where there is no element: such a lane has the corners of the block before */
+static void gxsp_set_corners(const gxsp_chunk *chunk, uint32_t (*nodes)[4])
 {
-    return e % chunk->block_count * GXSP_LANES + e / chunk->block_count;
+    uint32_t b, l, k;
+    for (b = 0; b < chunk->block_count; ++b) {
+        gxsp_corners *corner = &chunk->corners[b];
+        const gxsp_corners *before = b > 0 ? corner - 1 : corner;
+        chunk->fresh[b] = b > 0 ? 0 : 15;
+        for (k = 0; k < 4; ++k)
+            for (l = 0; l < GXSP_LANES; ++l) {
+                const uint32_t node = nodes[b * GXSP_LANES + l][k];
+                corner->node[k][l] = node != GXSP_NONE ? (uint16_t)node : b > 0 ? before->node[k][l] : 0;
+                chunk->fresh[b] |= (uint8_t)(corner->node[k][l] != before->node[k][l]) << k;
+            }
+    }
+    chunk->fresh[b] = 15;
+}
+
+/* --- lanes: which element of a chunk goes where ---
+ * Neighbours come to lie in successive blocks, so that those of one block hardly share nodes: where they do, sums into slots wait for the
+ * ones before them. And a pass over blocks neither reads nor writes a corner that is the same as in the block before, in each lane. So
+ * lanes are made of chains around an edge: four elements, each with all but one corner of the one before. */
+
+enum { GXSP_CHAIN = 4, GXSP_FACES = 4096 };
+
+typedef struct gxsp_seating {
+    uint32_t (*nodes)[4];               /* count: of each element */
+    uint32_t count;
+    uint16_t across[GXSP_CHUNK][4];     /* the element beyond the face that a corner is not on, or count */
+    uint8_t seated[GXSP_CHUNK];
+    uint16_t chain[GXSP_CHUNK];         /* elements of the chains of one length, one after the other */
+    uint8_t turn[GXSP_CHUNK][4];        /* and the order of their corners */
+    uint16_t seat[GXSP_CHUNK];          /* by lane: the element there, or count */
+    uint8_t order[GXSP_CHUNK][4];       /* by lane */
+} gxsp_seating;
+
+/* Where three nodes stand in an element: their corners, and the fourth one; 4: not each is there once. Without branches, which could not be
+ * foretold */
+static int gxsp_find_face(const uint32_t *element, const uint32_t *face, uint8_t *corners)
+{
+    static const uint8_t corner_of[16] = {4, 0, 1, 4, 2, 4, 4, 4, 3, 4, 4, 4, 4, 4, 4, 4}; /* of a single bit */
+    unsigned met[3];
+    int i;
+    for (i = 0; i < 3; ++i) {
+        const uint32_t node = face[i];
+        met[i] = (element[0] == node ? 1u : 0u) | (element[1] == node ? 2u : 0u) | (element[2] == node ? 4u : 0u) | (element[3] == node ? 8u : 0u);
+        corners[i] = corner_of[met[i]];
+    }
+    return (corners[0] | corners[1] | corners[2]) & 4 ? 4 : corner_of[15 & ~(met[0] | met[1] | met[2])];
+}
+
+/* The nodes of the face that a corner is not on */
+static void gxsp_face_of(const uint32_t *element, int corner, uint32_t *face)
+{
+    int i;
+    for (i = 0; i < 3; ++i)
+        face[i] = element[i < corner ? i : i + 1];
+}
+
+/* Fills across by a table of faces that have been met. */
+static void gxsp_find_across(gxsp_seating *seating)
+{
+    uint16_t table[GXSP_FACES]; /* 4 x element + corner, from 1 */
+    uint32_t f, at, face[3];
+    uint8_t corners[3];
+    memset(table, 0, sizeof table);
+    for (f = 0; f < 4 * seating->count; ++f) {
+        seating->across[f / 4][f % 4] = (uint16_t)seating->count;
+        gxsp_face_of(seating->nodes[f / 4], (int)(f % 4), face);
+        for (at = (face[0] * face[0] + face[1] * face[1] + face[2] * face[2]) * 40503u / 16 % GXSP_FACES; table[at]; at = (at + 1) % GXSP_FACES) {
+            const uint32_t other = (table[at] - 1u) / 4;
+            const int corner = gxsp_find_face(seating->nodes[other], face, corners);
+            if (corner != (int)((table[at] - 1u) % 4))
+                continue;
+            seating->across[f / 4][f % 4] = (uint16_t)other;
+            seating->across[other][corner] = (uint16_t)(f / 4);
+            break;
+        }
+        if (!table[at])
+            table[at] = (uint16_t)(f + 1);
+    }
+}
+
+/* Walks from the chain's first element around the edge of its first two corners. Is there a way for length elements? */
+static int gxsp_walk_chain(const gxsp_seating *seating, uint32_t length, uint16_t *chain, uint8_t (*order)[4])
+{
+    uint32_t i, k;
+    for (i = 1; i < length; ++i) {
+        const uint32_t moving = i % 2 ? 2 : 3, e = seating->across[chain[i - 1]][order[i - 1][moving]];
+        const uint32_t *before = seating->nodes[chain[i - 1]];
+        uint32_t face[3];
+        uint8_t corners[3] = {0, 0, 0};
+        int other;
+        if (e == seating->count || seating->seated[e])
+            return 0;
+        for (k = 0; k < i; ++k)
+            if (chain[k] == e)
+                return 0;
+        face[0] = before[order[i - 1][0]], face[1] = before[order[i - 1][1]], face[2] = before[order[i - 1][5 - moving]];
+        other = gxsp_find_face(seating->nodes[e], face, corners);
+        if (other == 4)
+            return 0;
+        order[i][moving] = (uint8_t)other;
+        order[i][0] = corners[0], order[i][1] = corners[1], order[i][5 - moving] = corners[2];
+        chain[i] = (uint16_t)e;
+    }
+    return 1;
+}
+
+/* A chain of so many elements that begins with e, which is not seated */
+static int gxsp_find_chain(const gxsp_seating *seating, uint32_t e, uint32_t length, uint16_t *chain, uint8_t (*order)[4])
+{
+    static const uint8_t edges[6][4] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 0, 2}, {2, 3, 0, 1}};
+    int edge, turned;
+    for (edge = 0; edge < 6; ++edge)
+        for (turned = 0; turned < 2; ++turned) {
+            chain[0] = (uint16_t)e;
+            memcpy(order[0], edges[edge], 4);
+            order[0][2] = edges[edge][2 + turned], order[0][3] = edges[edge][3 - turned];
+            if (gxsp_walk_chain(seating, length, chain, order))
+                return 1;
+        }
+    return 0;
+}
+
+/* Chains of so many elements, of those not seated yet. Returns how many chains there are. */
+static uint32_t gxsp_list_chains(gxsp_seating *seating, uint32_t length)
+{
+    uint32_t e, i, found = 0;
+    for (e = 0; e < seating->count; ++e)
+        if (!seating->seated[e] && gxsp_find_chain(seating, e, length, &seating->chain[found * length], &seating->turn[found * length])) {
+            for (i = 0; i < length; ++i)
+                seating->seated[seating->chain[found * length + i]] = 1;
+            ++found;
+        }
+    return found;
+}
+
+/* Seats chains of so many elements in the blocks from first on, side by side, each in a lane. All of single elements; of longer ones those that
+ * fill blocks. Returns the first block that is left. */
+static uint32_t gxsp_seat_chains(gxsp_seating *seating, uint32_t blocks, uint32_t length, uint32_t first)
+{
+    const uint32_t chains = gxsp_list_chains(seating, length), rows = length > 1 ? chains / GXSP_LANES : blocks - first;
+    uint32_t c, i;
+    for (c = 0; c < chains; ++c)
+        for (i = 0; i < length; ++i) {
+            const uint32_t at = c * length + i, e = seating->chain[at];
+            const uint32_t lane = c < rows * GXSP_LANES ? (first + c % rows * length + i) * GXSP_LANES + c / rows : 0;
+            seating->seated[e] = c < rows * GXSP_LANES;
+            if (!seating->seated[e])
+                continue;
+            seating->seat[lane] = (uint16_t)e;
+            memcpy(seating->order[lane], seating->turn[at], 4);
+        }
+    return first + rows * length;
+}
+
+/* The lane of each element of a chunk. nodes: of the elements, neighbours together */
+static void gxsp_seat_elements(gxsp_seating *seating, uint32_t (*nodes)[4], uint32_t count, uint32_t blocks)
+{
+    uint32_t lane, length, first = 0;
+    seating->nodes = nodes;
+    seating->count = count;
+    memset(seating->seated, 0, sizeof seating->seated);
+    for (lane = 0; lane < GXSP_CHUNK; ++lane)
+        seating->seat[lane] = (uint16_t)count;
+    gxsp_find_across(seating);
+    for (length = GXSP_CHAIN; length > 0; length /= 2)
+        first = gxsp_seat_chains(seating, blocks, length, first);
+}
+
+/* Elements of a chunk in their lanes. elements: sorted; nodes: theirs, numbered in the chunk */
+static void gxsp_fill_chunk(const gxsp_chunk *chunk, const gxs_model *model, const gxsp_sorted *elements, uint32_t (*nodes)[4], uint32_t count)
+{
+    gxsp_seating seating;
+    uint32_t seated[GXSP_CHUNK][4], lane;
+    int k;
+    gxsp_seat_elements(&seating, nodes, count, chunk->block_count);
+    memset(seated, 0xff, sizeof seated);
+    for (lane = 0; lane < chunk->block_count * GXSP_LANES; ++lane) {
+        const uint32_t e = seating.seat[lane];
+        if (e == count) { /* of no weight, but of a material there is */
+            chunk->rest[lane / GXSP_LANES].material[lane % GXSP_LANES] = model->elements[elements[0].index].material;
+            continue;
+        }
+        gxsp_place_element(chunk, &model->elements[elements[e].index], seating.order[lane], lane, model->lumped_mass);
+        for (k = 0; k < 4; ++k)
+            seated[lane][k] = nodes[e][seating.order[lane][k]];
+    }
+    gxsp_set_corners(chunk, seated);
 }
 
 /* Blocks and nodes of the chunks */
 static void gxsp_fill_chunks(gxsp_system *system, const gxs_model *model, const gxsp_sorted *sorted, gxsp_numbers *numbers)
 {
-    uint32_t copies[GXSP_CHUNK_BLOCKS * GXSP_LANES][4], c;
+    uint32_t copies[GXSP_CHUNK][4], c;
     size_t first = 0;
     for (c = 0; c < system->chunk_count; ++c) {
         gxsp_chunk *chunk = &system->chunks[c];
@@ -2456,17 +2664,13 @@ static void gxsp_fill_chunks(gxsp_system *system, const gxs_model *model, const 
         for (e = 0; first + e < model->element_count && e < chunk->block_count * GXSP_LANES &&
              sorted[first + e].class_index == chunk->class_index; ++e) {
             const gxs_element *element = &model->elements[sorted[first + e].index];
-            const uint32_t lane = gxsp_lane(chunk, e);
-            gxsp_place_element(chunk, element, lane, model->lumped_mass);
-            memcpy(copies[lane], element->copy, sizeof copies[lane]);
-        }
-        first += e;
-        for (; e < chunk->block_count * GXSP_LANES; ++e) { /* of no weight, but of a material there is */
-            const uint32_t lane = gxsp_lane(chunk, e);
-            chunk->rest[lane / GXSP_LANES].material[lane % GXSP_LANES] = chunk->rest[0].material[0];
+            gxsp_fetch(element, sizeof *element);
+            memcpy(copies[e], element->copy, sizeof copies[e]);
         }
         chunk->first_node = (uint32_t)system->slot_count;
-        chunk->node_count = gxsp_number_nodes(chunk, copies, numbers, system->nodes + system->slot_count);
+        chunk->node_count = gxsp_number_nodes(copies, e, numbers, system->nodes + system->slot_count);
+        gxsp_fill_chunk(chunk, model, sorted + first, copies, e);
+        first += e;
         system->slot_count += chunk->node_count;
     }
 }
@@ -2481,7 +2685,7 @@ static uint32_t gxsp_plan_chunks(gxsp_system *system, const gxsp_sorted *sorted,
         uint32_t class_index = sorted[i].class_index, count = 0;
         gxsp_chunk chunk;
         memset(&chunk, 0, sizeof chunk);
-        while (i < system->element_count && sorted[i].class_index == class_index && count < GXSP_CHUNK_BLOCKS * GXSP_LANES)
+        while (i < system->element_count && sorted[i].class_index == class_index && count < GXSP_CHUNK)
             ++i, ++count;
         chunk.class_index = class_index;
         chunk.kind = (gxs_material_kind)(class_index / 2);
@@ -2502,6 +2706,7 @@ static void gxsp_blocks_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count
     gxsp_corners *corners;
     gxsp_mass *masses;
     uint32_t *groups;
+    uint8_t *fresh;
     size_t blocks = 0, general = 0;
     uint32_t c;
     for (c = 0; c < count; ++c) {
@@ -2512,6 +2717,7 @@ static void gxsp_blocks_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count
     corners = (gxsp_corners *)gxsp_take(pool, blocks, sizeof(gxsp_corners));
     groups = (uint32_t *)gxsp_take(pool, blocks * GXSP_LANES, sizeof(uint32_t));
     masses = (gxsp_mass *)gxsp_take(pool, general, sizeof(gxsp_mass));
+    fresh = (uint8_t *)gxsp_take(pool, blocks + count, 1);
     if (pool->failed)
         return;
     memset(groups, 0xff, blocks * GXSP_LANES * sizeof *groups);
@@ -2519,10 +2725,12 @@ static void gxsp_blocks_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count
         chunks[c].rest = rest;
         chunks[c].corners = corners;
         chunks[c].groups = groups;
+        chunks[c].fresh = fresh;
         chunks[c].masses = chunks[c].class_index % 2 ? masses : NULL;
         rest += chunks[c].block_count;
         corners += chunks[c].block_count;
         groups += chunks[c].block_count * GXSP_LANES;
+        fresh += chunks[c].block_count + 1;
         masses += chunks[c].class_index % 2 ? chunks[c].block_count : 0;
     }
 }
@@ -2605,7 +2813,6 @@ static int gxsp_supports(const gxs_element *element, int i)
 /* Copies that no element supports are fixed like held ones; row sums of the mass. */
 static void gxsp_find_fixed(gxsp_system *system, const gxs_model *model)
 {
-    static const int packed[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
     size_t e, i;
     int k, j;
     memset(system->fixed, 1, system->n);
@@ -2615,7 +2822,7 @@ static void gxsp_find_fixed(gxsp_system *system, const gxs_model *model)
             if (gxsp_supports(element, k))
                 system->fixed[element->copy[k]] = 0;
             for (j = 0; j < 4; ++j)
-                system->lumped[element->copy[k]] += element->mass[packed[k][j]];
+                system->lumped[element->copy[k]] += element->mass[gxsp_packed_mass[k][j]];
         }
     if (model->held)
         for (i = 0; i < system->n; ++i)
@@ -3747,11 +3954,15 @@ static void gxsp_add_scaled(float a, const float *GXSP_RESTRICT x, float *GXSP_R
 }
 
 /* y += a x for four numbers */
-static void gxsp_add_four(float a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y)
+static inline void gxsp_add_four(float a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y)
 {
+#if defined(GXSP_SHUFFLES)
+    *(gxsp_four *)y += a * *(const gxsp_four *)x;
+#else
     int k;
     for (k = 0; k < 4; ++k)
         y[k] += a * x[k];
+#endif
 }
 
 static void gxsp_add_mass(float mass, float *to)
@@ -3842,6 +4053,22 @@ static inline void gxsp_turn_four(const float *a, const float *b, const float *c
     turned[3] = __builtin_shufflevector(high, last, 2, 3, 6, 7);
 }
 
+/* Six numbers of each of four lanes to those of their nodes, six side by side */
+static inline void gxsp_scatter_six(const uint16_t *node, gxsp_singles *from, int lane, float *y)
+{
+    const gxsp_four p = *(const gxsp_four *)(from[4] + lane), q = *(const gxsp_four *)(from[5] + lane);
+    const gxsp_four low = __builtin_shufflevector(p, q, 0, 4, 1, 5), high = __builtin_shufflevector(p, q, 2, 6, 3, 7);
+    gxsp_four first[4];
+    int k;
+    gxsp_turn_four(from[0] + lane, from[1] + lane, from[2] + lane, from[3] + lane, first);
+    for (k = 0; k < 4; ++k)
+        *(gxsp_four *)(y + 6 * (size_t)node[k]) += first[k];
+    *(gxsp_two *)(y + 6 * (size_t)node[0] + 4) += __builtin_shufflevector(low, low, 0, 1);
+    *(gxsp_two *)(y + 6 * (size_t)node[1] + 4) += __builtin_shufflevector(low, low, 2, 3);
+    *(gxsp_two *)(y + 6 * (size_t)node[2] + 4) += __builtin_shufflevector(high, high, 0, 1);
+    *(gxsp_two *)(y + 6 * (size_t)node[3] + 4) += __builtin_shufflevector(high, high, 2, 3);
+}
+
 /* Each lane's nine numbers to those of its entry */
 static inline void gxsp_add_lanes(const uint16_t *entry, gxsp_singles *block, float (*to)[9])
 {
@@ -3873,6 +4100,14 @@ static void gxsp_scatter_four(const uint16_t *node, const float *from0, const fl
         y[node[l]][0] += from0[l], y[node[l]][1] += from1[l], y[node[l]][2] += from2[l];
 }
 
+static void gxsp_scatter_six(const uint16_t *node, gxsp_singles *from, int lane, float *y)
+{
+    int k, l;
+    for (l = 0; l < 4; ++l)
+        for (k = 0; k < 6; ++k)
+            y[6 * (size_t)node[l] + (size_t)k] += from[k][lane + l];
+}
+
 static void gxsp_add_lanes(const uint16_t *entry, gxsp_singles *block, float (*to)[9])
 {
     int l, k;
@@ -3882,19 +4117,29 @@ static void gxsp_add_lanes(const uint16_t *entry, gxsp_singles *block, float (*t
 }
 #endif
 
-static void gxsp_block_gather(const gxsp_corners *GXSP_RESTRICT corner, const gxsp_vector4 *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT to)
+/* x of a block's corners; of those that are not fresh it is there from the block before */
+static void gxsp_block_gather(const gxsp_chunk *chunk, uint32_t b, const gxsp_vector4 *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT to)
 {
+    const gxsp_corners *corner = &chunk->corners[b];
     int i;
     for (i = 0; i < 4; ++i)
-        gxsp_gather_eight(corner->node[i], x, to[3 * i], to[3 * i + 1], to[3 * i + 2]);
+        if (chunk->fresh[b] >> i & 1)
+            gxsp_gather_eight(corner->node[i], x, to[3 * i], to[3 * i + 1], to[3 * i + 2]);
 }
 
-static void gxsp_block_scatter(const gxsp_corners *GXSP_RESTRICT corner, gxsp_singles *GXSP_RESTRICT from, gxsp_vector4 *GXSP_RESTRICT y)
+/* What a block adds to its corners, and 0 in its place; what those get that the next block has too stays. */
+static void gxsp_block_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_singles *GXSP_RESTRICT from, gxsp_vector4 *GXSP_RESTRICT y)
 {
-    int i, l;
-    for (i = 0; i < 4; ++i)
+    const gxsp_corners *corner = &chunk->corners[b];
+    int i, k, l;
+    for (i = 0; i < 4; ++i) {
+        if (!(chunk->fresh[b + 1] >> i & 1))
+            continue;
         for (l = 0; l < GXSP_LANES; l += 4)
             gxsp_scatter_four(corner->node[i] + l, from[3 * i] + l, from[3 * i + 1] + l, from[3 * i + 2] + l, y);
+        for (k = 3 * i; k < 3 * i + 3; ++k)
+            GXSP_EACH_LANE(l) from[k][l] = 0;
+    }
 }
 
 static void gxsp_task_product(void *context, size_t index)
@@ -3903,25 +4148,25 @@ static void gxsp_task_product(void *context, size_t index)
     const gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->chunks[index];
     const uint32_t *copies = system->nodes + chunk->first_node;
-    gxsp_vector4 in[4 * GXSP_CHUNK_BLOCKS * GXSP_LANES]; /* apart from the chunks', so that it stays in the cache */
+    gxsp_vector4 in[4 * GXSP_CHUNK]; /* apart from the chunks', so that it stays in the cache */
     gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->slots + chunk->first_node;
+    gxsp_singles from[12], to[12];
     uint32_t b, i, further;
     if (system->chunk_still[index])
         return;
     for (i = 0; i < chunk->node_count; ++i)
         memcpy(in[i], pass->x[copies[i]], sizeof *in);
     memset(out, 0, chunk->node_count * sizeof *out);
+    memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; ++b) {
-        const gxsp_corners *corner = &chunk->corners[b];
         const gxsp_mass *general = gxsp_block_masses(chunk, b);
         const gxsp_chunk *next = gxsp_block_ahead(system, index, b, &further);
-        gxsp_singles from[12], to[12];
         gxsp_fetch(&next->tangents[further], sizeof(gxsp_tangent));
-        gxsp_block_gather(corner, (const gxsp_vector4 *)in, from);
+        gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
         gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_general(chunk, b), 0, from, to);
         if (general)
             gxsp_block_mass_product(general, (float)pass->rate, 0, from, to);
-        gxsp_block_scatter(corner, to, out);
+        gxsp_block_scatter(chunk, b, to, out);
     }
 }
 
@@ -4062,14 +4307,18 @@ static inline void gxsp_narrow_four(const double *x, const double *origin, float
 #endif
 }
 
-/* What a block's corner 0 has and what the others have more. in: x 3, and one more double */
-static void gxsp_block_gather_doubles(const gxsp_corners *GXSP_RESTRICT corner, const double *GXSP_RESTRICT in, gxsp_singles *GXSP_RESTRICT to)
+/* What a block's corner 0 has and what the others have more; where neither is fresh it is there from the block before. in: x 3, and one more
+ * double */
+static void gxsp_block_gather_doubles(const gxsp_chunk *chunk, uint32_t b, const double *GXSP_RESTRICT in, gxsp_singles *GXSP_RESTRICT to)
 {
+    const gxsp_corners *corner = &chunk->corners[b];
     static const uint16_t own[GXSP_LANES] = {0, 1, 2, 3, 4, 5, 6, 7};
     static const double zero[4] = {0, 0, 0, 0};
     gxsp_vector4 lanes[GXSP_LANES];
     int i, l;
     for (i = 0; i < 4; ++i) {
+        if (!((chunk->fresh[b] | chunk->fresh[b] >> i) & 1))
+            continue;
         for (l = 0; l < GXSP_LANES; ++l)
             gxsp_narrow_four(in + 3 * (size_t)corner->node[i][l], i > 0 ? in + 3 * (size_t)corner->node[0][l] : zero, lanes[l]);
         gxsp_gather_eight(own, (const gxsp_vector4 *)lanes, to[3 * i], to[3 * i + 1], to[3 * i + 2]);
@@ -4083,24 +4332,24 @@ static void gxsp_task_apply(void *context, size_t index)
     const gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->chunks[index];
     const uint32_t *copies = system->nodes + chunk->first_node;
-    double in[3 * 4 * GXSP_CHUNK_BLOCKS * GXSP_LANES + 1]; /* one more than is read as numbers */
+    double in[3 * 4 * GXSP_CHUNK + 1]; /* one more than is read as numbers */
     gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->slots + chunk->first_node;
+    gxsp_singles from[12], to[12];
     uint32_t b, i, further;
     for (i = 0; i < chunk->node_count; ++i)
         gxsp_copy_direction(pass, copies[i], in + 3 * (size_t)i);
     in[3 * (size_t)i] = 0;
     memset(out, 0, chunk->node_count * sizeof *out);
+    memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; ++b) {
-        const gxsp_corners *corner = &chunk->corners[b];
         const gxsp_chunk *next = gxsp_block_ahead(system, index, b, &further);
         const gxsp_mass *general = gxsp_block_masses(chunk, b);
-        gxsp_singles from[12], to[12];
         gxsp_fetch(&next->tangents[further], sizeof(gxsp_tangent));
-        gxsp_block_gather_doubles(corner, in, from);
+        gxsp_block_gather_doubles(chunk, b, in, from);
         gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_general(chunk, b), 1, from, to);
         if (general && pass->rate > 0)
             gxsp_block_mass_product(general, (float)pass->rate, 1, from, to);
-        gxsp_block_scatter(corner, to, out);
+        gxsp_block_scatter(chunk, b, to, out);
     }
 }
 
@@ -4162,24 +4411,84 @@ static int gxsp_tangents_finite(const gxsp_system *system)
     return 1;
 }
 
-/* Diagonal blocks of a block's Hessian into the chunk's slots, 6 floats each */
-static void gxsp_block_diagonal(const gxsp_chunk *chunk, uint32_t b, double rate, float *slots)
+/* U of a block's Hessian, by rows */
+static void gxsp_block_frame(const gxsp_tangent *GXSP_RESTRICT t, gxsp_singles *GXSP_RESTRICT u)
 {
-    static const int own[4] = {0, 4, 7, 9};
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float a = t->frame[0][l], b = t->frame[1][l], c = t->frame[2][l], d = t->frame[3][l];
+        u[0][l] = 1 - (b * b + c * c), u[1][l] = a * b - c * d, u[2][l] = a * c + b * d;
+        u[3][l] = a * b + c * d, u[4][l] = 1 - (a * a + c * c), u[5][l] = b * c - a * d;
+        u[6][l] = a * c - b * d, u[7][l] = b * c + a * d, u[8][l] = 1 - (a * a + b * b);
+    }
+}
+
+/* own += U B U^T, packed, B as of gxsp_block_couple: what couples a shape function with itself. p: its gradient */
+static void gxsp_block_own(const gxsp_tangent *GXSP_RESTRICT t, gxsp_singles *GXSP_RESTRICT u, gxsp_singles *GXSP_RESTRICT p,
+                           gxsp_singles *GXSP_RESTRICT own)
+{
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float p0 = p[0][l], p1 = p[1][l], p2 = p[2][l], q0 = p0 * p0, q1 = p1 * p1, q2 = p2 * p2;
+        const float e0 = t->even[0][l], e1 = t->even[1][l], e2 = t->even[2][l];
+        const float b0 = t->stretch[0][l] * q0 + e2 * q1 + e1 * q2, b3 = t->stretch[3][l] * q1 + e2 * q0 + e0 * q2,
+                    b5 = t->stretch[5][l] * q2 + e1 * q0 + e0 * q1, b1 = (t->stretch[1][l] + t->odd[2][l]) * p0 * p1,
+                    b2 = (t->stretch[2][l] + t->odd[1][l]) * p0 * p2, b4 = (t->stretch[4][l] + t->odd[0][l]) * p1 * p2;
+        const float u0 = u[0][l], u1 = u[1][l], u2 = u[2][l], u3 = u[3][l], u4 = u[4][l], u5 = u[5][l], u6 = u[6][l], u7 = u[7][l], u8 = u[8][l];
+        const float a0 = u0 * b0 + u1 * b1 + u2 * b2, a1 = u0 * b1 + u1 * b3 + u2 * b4, a2 = u0 * b2 + u1 * b4 + u2 * b5,
+                    a3 = u3 * b0 + u4 * b1 + u5 * b2, a4 = u3 * b1 + u4 * b3 + u5 * b4, a5 = u3 * b2 + u4 * b4 + u5 * b5,
+                    a6 = u6 * b0 + u7 * b1 + u8 * b2, a7 = u6 * b1 + u7 * b3 + u8 * b4, a8 = u6 * b2 + u7 * b4 + u8 * b5;
+        own[0][l] += a0 * u0 + a1 * u1 + a2 * u2, own[1][l] += a0 * u3 + a1 * u4 + a2 * u5, own[2][l] += a0 * u6 + a1 * u7 + a2 * u8;
+        own[3][l] += a3 * u3 + a4 * u4 + a5 * u5, own[4][l] += a3 * u6 + a4 * u7 + a5 * u8, own[5][l] += a6 * u6 + a7 * u7 + a8 * u8;
+    }
+}
+
+/* The same of a Hessian without a frame */
+static void gxsp_general_own(const gxsp_general *general, gxsp_singles *p, gxsp_singles *own)
+{
     static const int packed[6] = {0, 1, 2, 4, 5, 8};
+    gxsp_singles block[9];
+    int k, l;
+    gxsp_general_couple(general, p, p, block);
+    for (k = 0; k < 6; ++k)
+        GXSP_EACH_LANE(l) own[k][l] += block[packed[k]][l];
+}
+
+/* Diagonal blocks of a block's Hessian, packed: own[6 corner ...] += */
+static void gxsp_block_diagonal(const gxsp_chunk *chunk, uint32_t b, double rate, gxsp_singles *own)
+{
+    static const int diagonal[3] = {0, 3, 5};
     const gxsp_tangent *tangent = &chunk->tangents[b];
     const gxsp_mass *general = gxsp_block_masses(chunk, b);
+    gxsp_singles u[9];
+    int corner, k, l;
+    gxsp_block_frame(tangent, u);
+    for (corner = 0; corner < 4; ++corner) {
+        gxsp_singles gamma[3], mass;
+        gxsp_block_corner(tangent, corner, gamma);
+        if (chunk->generals)
+            gxsp_general_own(&chunk->generals[b], gamma, own + 6 * corner);
+        else
+            gxsp_block_own(tangent, u, gamma, own + 6 * corner);
+        GXSP_EACH_LANE(l) mass[l] = 2 * tangent->mass[l];
+        if (general)
+            GXSP_EACH_LANE(l) mass[l] = (float)(rate * general->entry[gxsp_packed_mass[corner][corner]][l]);
+        for (k = 0; k < 3; ++k)
+            GXSP_EACH_LANE(l) own[6 * corner + diagonal[k]][l] += mass[l];
+    }
+}
+
+/* Diagonal blocks into the chunk's slots, 6 floats each, and 0 in their place; those of corners that the next block has too stay. */
+static void gxsp_diagonal_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_singles *GXSP_RESTRICT own, float *GXSP_RESTRICT slots)
+{
     int corner, k, l;
     for (corner = 0; corner < 4; ++corner) {
-        gxsp_singles gamma[3], block[9];
-        gxsp_block_corner(tangent, corner, gamma);
-        gxsp_block_couple(tangent, gxsp_block_general(chunk, b), gamma, gamma, block);
-        for (l = 0; l < GXSP_LANES; ++l) {
-            float *to = slots + 6 * (size_t)chunk->corners[b].node[corner][l];
-            float mass = 2 * tangent->mass[l] + (general ? (float)(rate * general->entry[own[corner]][l]) : 0);
-            for (k = 0; k < 6; ++k)
-                to[k] += block[packed[k]][l] + (packed[k] % 4 == 0 ? mass : 0);
-        }
+        if (!(chunk->fresh[b + 1] >> corner & 1))
+            continue;
+        for (l = 0; l < GXSP_LANES; l += 4)
+            gxsp_scatter_six(chunk->corners[b].node[corner] + l, own + 6 * corner, l, slots);
+        for (k = 6 * corner; k < 6 * corner + 6; ++k)
+            GXSP_EACH_LANE(l) own[k][l] = 0;
     }
 }
 
@@ -4190,19 +4499,23 @@ static void gxsp_task_linearise(void *context, size_t index)
     gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->chunks[index];
     float *slots = (float *)(void *)system->slots[chunk->first_node];
-    uint32_t b, k, blocks;
+    gxsp_lanes x[12];
+    gxsp_singles own[24];
+    uint32_t b, k, blocks, further;
     int l;
     system->chunk_collapsed[index] = 0;
     if (system->chunk_still[index])
         return;
     memset(slots, 0, 6 * (size_t)chunk->node_count * sizeof *slots);
+    memset(own, 0, sizeof own);
     for (b = 0; b < chunk->block_count; b += blocks) { /* two at a time */
         gxsp_state s[2];
         gxsp_svd of[2];
         blocks = b + 1 < chunk->block_count ? 2 : 1;
         for (k = 0; k < blocks; ++k) {
-            gxsp_lanes x[12];
-            gxsp_block_load(system, chunk, &chunk->corners[b + k], pass->from, x);
+            const gxsp_chunk *next = gxsp_block_ahead(system, index, b + k, &further);
+            gxsp_fetch(&next->rest[further], sizeof(gxsp_rest));
+            gxsp_block_load(system, chunk, b + k, pass->from, x);
             gxsp_block_parameters(pass->materials, &chunk->rest[b + k], &s[k]);
             gxsp_block_gradient(&chunk->rest[b + k], x, s[k].g);
         }
@@ -4212,7 +4525,8 @@ static void gxsp_task_linearise(void *context, size_t index)
             gxsp_tangent *tangent = &chunk->tangents[b + k];
             gxsp_tangent_make(chunk->kind, rest, system->scale, pass->exact, &s[k], &of[k], tangent, gxsp_block_general(chunk, b + k));
             GXSP_EACH_LANE(l) tangent->mass[l] = (float)(pass->rate * rest->mass[l]);
-            gxsp_block_diagonal(chunk, b + k, pass->rate, slots);
+            gxsp_block_diagonal(chunk, b + k, pass->rate, own);
+            gxsp_diagonal_scatter(chunk, b + k, own, slots);
         }
     }
 }
@@ -4513,14 +4827,13 @@ static void gxsp_order_block(const uint16_t *GXSP_RESTRICT p, const uint16_t *GX
 /* Half the row sums of a block's masses to its nodes */
 static void gxsp_own_mass(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_t b, double rate)
 {
-    static const int packed[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
     const gxsp_mass *general = gxsp_block_masses(chunk, b);
     gxsp_singles half;
     int k, j, l;
     for (k = 0; k < 4; ++k) {
         GXSP_EACH_LANE(l) half[l] = chunk->rest[b].weight[l] > 0 ? 2.5f * chunk->tangents[b].mass[l] : 0;
         for (j = 0; j < 4 && general; ++j)
-            GXSP_EACH_LANE(l) half[l] += chunk->rest[b].weight[l] > 0 ? (float)(0.5 * rate * general->entry[packed[k][j]][l]) : 0;
+            GXSP_EACH_LANE(l) half[l] += chunk->rest[b].weight[l] > 0 ? (float)(0.5 * rate * general->entry[gxsp_packed_mass[k][j]][l]) : 0;
         for (l = 0; l < GXSP_LANES; ++l)
             edges->mass[chunk->corners[b].node[k][l]] += half[l];
     }
@@ -5198,11 +5511,10 @@ static int gxsp_lane_supports(const gxsp_chunk *chunk, uint32_t lane, int k)
 /* Row sum of its mass */
 static double gxsp_lane_mass(const gxsp_chunk *chunk, uint32_t lane, int k)
 {
-    static const int packed[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
     double sum = 5 * chunk->rest[lane / GXSP_LANES].mass[lane % GXSP_LANES];
     int j;
     for (j = 0; j < 4 && chunk->masses; ++j)
-        sum += chunk->masses[lane / GXSP_LANES].entry[packed[k][j]][lane % GXSP_LANES];
+        sum += chunk->masses[lane / GXSP_LANES].entry[gxsp_packed_mass[k][j]][lane % GXSP_LANES];
     return sum;
 }
 
@@ -5350,6 +5662,8 @@ static void gxsp_empty_lane(const gxsp_chunk *chunk, uint32_t lane)
     int k;
     chunk->groups[lane] = GXSP_NONE;
     rest->weight[l] = rest->mass[l] = 0;
+    for (k = 0; k < 9; ++k)
+        rest->gradient[k][l] = 0; /* wherever its corners are: F = 1 */
     for (k = 0; k < 10 && chunk->masses; ++k)
         chunk->masses[lane / GXSP_LANES].entry[k][l] = 0;
 }
@@ -5422,7 +5736,7 @@ static void gxsp_place_class(gxsp_renewal *update, uint32_t class_index)
         if (lane == system->chunks[c].block_count * GXSP_LANES)
             ++system->chunks[c].block_count;
         hole->chunk = c, hole->lane = lane, hole->element = update->left[i];
-        gxsp_place_element(&system->chunks[c], &update->change->elements[hole->element], lane, 0);
+        gxsp_place_element(&system->chunks[c], &update->change->elements[hole->element], gxsp_own_order, lane, 0);
         ++update->placed_count;
         ++lane;
     }
@@ -5438,7 +5752,7 @@ static void gxsp_replace_elements(gxsp_renewal *update)
         if (hole->element == GXSP_NONE)
             gxsp_empty_lane(chunk, hole->lane);
         else
-            gxsp_place_element(chunk, &update->change->elements[hole->element], hole->lane, 0);
+            gxsp_place_element(chunk, &update->change->elements[hole->element], gxsp_own_order, hole->lane, 0);
     }
     for (class_index = 0; class_index < 2 * (GXS_CUSTOM + 1) && !update->system->pool.failed; ++class_index)
         gxsp_place_class(update, class_index);
@@ -5448,10 +5762,12 @@ static void gxsp_replace_elements(gxsp_renewal *update)
 static int gxsp_renew_chunk(gxsp_renewal *update, gxsp_chunk *chunk, uint32_t hole, const uint32_t *next, gxsp_numbers *numbers, uint32_t *nodes)
 {
     const gxsp_system *system = update->system;
-    uint32_t copies[GXSP_CHUNK_BLOCKS * GXSP_LANES][4], lane, used = 0;
+    uint32_t copies[GXSP_CHUNK][4], lane, used = 0;
     int k;
-    memset(copies, 0, sizeof copies);
+    memset(copies, 0xff, sizeof copies);
     for (lane = 0; lane < chunk->block_count * GXSP_LANES && chunk->node_count > 0; ++lane) {
+        if (chunk->groups[lane] == GXSP_NONE)
+            continue;
         gxsp_lane_copies(system, chunk, lane / GXSP_LANES, (int)(lane % GXSP_LANES), copies[lane]);
         for (k = 0; k < 4; ++k)
             copies[lane][k] = update->successor[copies[lane][k]];
@@ -5467,14 +5783,15 @@ static int gxsp_renew_chunk(gxsp_renewal *update, gxsp_chunk *chunk, uint32_t ho
                     return 0;
         }
     chunk->block_count = (used + GXSP_LANES - 1) / GXSP_LANES;
-    chunk->node_count = gxsp_number_nodes(chunk, copies, numbers, nodes);
+    chunk->node_count = gxsp_number_nodes(copies, chunk->block_count * GXSP_LANES, numbers, nodes);
+    gxsp_set_corners(chunk, copies);
     return 1;
 }
 
 /* Nodes of a chunk joined by its elements: by node, the least one that it is joined with */
 static void gxsp_find_roots(const gxsp_chunk *chunk, uint16_t *roots)
 {
-    uint32_t forest[GXSP_CHUNK_BLOCKS * GXSP_LANES * 4], i, lane;
+    uint32_t forest[GXSP_CHUNK * 4], i, lane;
     int k;
     for (i = 0; i < chunk->node_count; ++i)
         forest[i] = i;
@@ -5918,7 +6235,7 @@ static int gxsp_is_compact(gxsp_renewal *update)
     size_t lanes = 0;
     for (c = 0; c < system->chunk_count; ++c)
         lanes += system->chunks[c].block_count * GXSP_LANES;
-    if (lanes > system->element_count + system->element_count / 4 + 2 * GXSP_CHUNK_BLOCKS * GXSP_LANES)
+    if (lanes > system->element_count + system->element_count / 4 + 2 * GXSP_CHUNK)
         return 0;
     return !count || !system->chosen || gxsp_large_piece(system, count) == (system->level_count > 0);
 }
@@ -8023,6 +8340,7 @@ GXFEM_API gx_result gxs_model_gradient(const gxs_model *model, const double *dis
         gxsp_group_gather(&group, displacement, x);
         gxsp_block_gradient(&group.rest, x, group.state.g);
         gxsp_material_state(group.kind, &group.state);
+        memset(force, 0, sizeof force);
         gxsp_block_force(&group.rest, group.state.p, force);
         gxsp_group_scatter(&group, force, gradient);
         e += group.count;
@@ -8058,6 +8376,7 @@ GXFEM_API gx_result gxs_model_hessian_product(const gxs_model *model, const doub
         gxsp_group_gather(&group, direction, x);
         for (k = 0; k < 12; ++k)
             GXSP_EACH_LANE(l) from[k][l] = (float)(x[k][l] - x[k % 3][l]); /* of translations exactly 0 */
+        memset(to, 0, sizeof to);
         gxsp_kind_product(group.kind, &tangent, &general, 1, from, to);
         for (k = 0; k < 12; ++k)
             GXSP_EACH_LANE(l) x[k][l] = (double)to[k][l];
@@ -8133,6 +8452,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
     memset(&rest, 0, sizeof rest);
     memset(&tangent, 0, sizeof tangent);
     memset(from, 0, sizeof from);
+    memset(to, 0, sizeof to);
     rest.weight[0] = 1;
     rest.gradient[0][0] = rest.gradient[4][0] = rest.gradient[8][0] = 1; /* u_i - u_0 are the columns of dF, forces those of dP */
     (void)gxsp_tangent_begin(material->kind, &state, NULL, &of);
@@ -8152,6 +8472,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 
 #undef GXSP_LANES
 #undef GXSP_CHUNK_BLOCKS
+#undef GXSP_CHUNK
 #undef GXSP_EACH_LANE
 #undef GXSP_RESTRICT
 #undef GXSP_INLINE
