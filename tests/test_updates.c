@@ -105,6 +105,33 @@ static void check_operator(gx_body *changed, gx_body *whole) {
     free(x);
 }
 
+/* What is told of blocks holds: which corners are not those of the block before, where there is no element. Returns how many corners of a block
+ * differ from those of the one before, on average. */
+static double check_lanes(gx_body *body) {
+    const gxsp_system *system = body->solver->system;
+    const uint32_t lanes = (uint32_t)(sizeof(gxsp_singles) / sizeof(float));
+    size_t blocks = 0, fresh = 0;
+    uint32_t c, b, i, l, k;
+    for (c = 0; c < system->chunk_count; ++c) {
+        const gxsp_chunk *chunk = &system->chunks[c];
+        ck_assert_uint_eq(chunk->fresh[chunk->block_count], 15);
+        blocks += chunk->block_count;
+        for (b = 0; b < chunk->block_count; ++b)
+            for (i = 0; i < 4; ++i) {
+                const uint16_t *node = chunk->corners[b].node[i];
+                const int differs = b == 0 || memcmp(node, chunk->corners[b - 1].node[i], lanes * sizeof *node) != 0;
+                ck_assert_int_eq(chunk->fresh[b] >> i & 1, differs);
+                fresh += (size_t)differs;
+                for (l = 0; l < lanes; ++l) {
+                    ck_assert_uint_lt(node[l], chunk->node_count);
+                    for (k = 0; k < 9 && chunk->groups[b * lanes + l] == UINT32_MAX; ++k)
+                        ck_assert(!(fabs(chunk->rest[b].gradient[k][l]) > 0) && !(chunk->rest[b].weight[l] > 0));
+                }
+            }
+    }
+    return (double)fresh / (double)blocks;
+}
+
 /* ---- the same motion ---- */
 
 START_TEST(cuts_change_the_model) {
@@ -123,6 +150,8 @@ START_TEST(cuts_change_the_model) {
         ck_assert(!whole->model_updated);
         ck_assert_msg(apart(changed, whole) < 1e-6, "after cut %zu: %g", c, apart(changed, whole));
         check_operator(changed, whole);
+        check_lanes(changed);
+        ck_assert_double_lt(check_lanes(whole), 2.5);
     }
     ck_assert_uint_gt(updates, 3);
     gx_body_destroy(changed); gx_body_destroy(whole);
