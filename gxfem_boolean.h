@@ -300,8 +300,11 @@ typedef struct gxb_undo { uint32_t array, index; } gxb_undo;
 typedef struct gxb_complex {        /* what is used most comes first: its addresses are short */
     gxb_cpoint *points; uint32_t point_count, point_capacity;
     gxb_cplane *planes; uint32_t plane_count, plane_capacity;
-    double origin[3]; int shift;
-    uint32_t node_count, element_count, face_count, mesh_edge_count;
+    gxb_edge *edges; uint32_t edge_count, edge_capacity;
+    gxb_facet *facets; uint32_t facet_count, facet_capacity;
+    gxb_leaf *leaves; uint32_t leaf_count, leaf_capacity;
+    gxb_node *nodes; uint32_t tree_count, tree_capacity;
+    uint32_t *pool; uint32_t pool_count, pool_capacity;
     uint32_t *elements;             /* the complex's copy, element_count x 4 */
     uint32_t *element_faces;        /* element_count x 4: face opposite to node k */
     uint32_t *element_edges;        /* element_count x 6: 01 02 03 12 13 23 */
@@ -309,13 +312,11 @@ typedef struct gxb_complex {        /* what is used most comes first: its addres
     uint32_t *face_facet;           /* face_count: GXB_NONE until touched */
     uint32_t *mesh_edge;            /* mesh_edge_count: GXB_NONE until touched */
     uint32_t *root;                 /* element_count: tree reference */
-    gxb_edge *edges; uint32_t edge_count, edge_capacity;
-    gxb_facet *facets; uint32_t facet_count, facet_capacity;
-    gxb_leaf *leaves; uint32_t leaf_count, leaf_capacity;
-    gxb_node *nodes; uint32_t tree_count, tree_capacity;
+    uint32_t node_count, element_count, face_count, mesh_edge_count, pool_live;
+    int shift;
+    double origin[3];
     gxb_label *labels; uint32_t label_count, label_capacity;
     gxb_block *blocks;              /* exact coordinates, computed when first needed and kept */
-    uint32_t *pool; uint32_t pool_count, pool_capacity, pool_live;
     uint32_t *walls; uint32_t wall_count, wall_capacity;    /* facets that became walls, or were labelled, since begin */
     gxb_undo *undo; uint32_t undo_count, undo_capacity;     /* what begin ... rollback restores, and the old contents */
     unsigned char *undo_bytes; uint32_t undo_byte_count, undo_byte_capacity;
@@ -4431,6 +4432,8 @@ struct gxb_boolean {            /* what is used most comes first: its addresses 
     gxbp_source *sources; uint32_t source_count, source_capacity;
     gxbp_vertex *vertices; uint32_t vertex_count, vertex_capacity;
     gxbp_piece *pieces; uint32_t piece_count, piece_capacity;
+    uint32_t *scratch; uint32_t scratch_count, scratch_capacity;
+    gxbp_link *links; uint32_t link_count, link_capacity;
     gx_result result;           /* of the evaluation at work */
     gxb_complex cx;             /* points, planes and exact numbers; the complex has no elements */
     gx_allocator outer;
@@ -4446,7 +4449,6 @@ struct gxb_boolean {            /* what is used most comes first: its addresses 
     gxbp_leaf_boxes *bounds; uint32_t bound_count, bound_capacity;      /* of each operand's sources, in its tree's order */
     gxbp_box *boxes; uint32_t box_count, box_capacity;                  /* of trees */
     uint32_t *table; uint32_t table_size, table_used;                   /* hash of points by coordinates or key */
-    gxbp_link *links; uint32_t link_count, link_capacity;
     gxbp_segment *segments; uint32_t segment_count, segment_capacity;
     gxbp_cut *cuts; uint32_t cut_count, cut_capacity;
     uint32_t *cut_points; uint32_t cut_point_count, cut_point_capacity;
@@ -4457,7 +4459,6 @@ struct gxb_boolean {            /* what is used most comes first: its addresses 
     gxbp_margin *rims; uint32_t rim_count, rim_capacity;
     gxbp_margin *lefts; uint32_t left_count, left_capacity;
     uint32_t *chain; uint32_t chain_count, chain_capacity;
-    uint32_t *scratch; uint32_t scratch_count, scratch_capacity;
     uint32_t arranged;          /* operands that are in the arrangement */
     uint32_t stated;            /* operands that states count; 0: facets have no states */
     uint32_t segment_mark;      /* segments before it are in the triangulations */
