@@ -1532,22 +1532,39 @@ static void *gxbp_reallocate(const gx_allocator *a, void *old, size_t old_size, 
 
 static size_t gxbp_room_for(size_t need) { return need + need / 2 + 16; }
 
-/* Makes room for count + extra items of the given size. */
-static GXBP_APART gx_result gxbp_reserve(gxb_complex *cx, void *array, size_t item, uint32_t count, uint32_t *capacity, size_t extra) {
-    const size_t need = (size_t)count + extra, room = gxbp_room_for(need);
+/* Where an array stands there are a pointer, the number of its items and the number of those that it has room for. */
+static uint32_t *gxbp_extent_of(void *array) { return (uint32_t *)(void *)((unsigned char *)array + sizeof(void *)); }
+
+/* Makes room for so many items more of the given size. */
+static GXBP_APART gx_result gxbp_reserve(gxb_complex *cx, void *array, size_t item, size_t extra) {
+    uint32_t *count = gxbp_extent_of(array);
+    const size_t need = (size_t)count[0] + extra, room = gxbp_room_for(need);
     void *old, *memory;
-    if (need <= *capacity) return GX_OK;
+    if (need <= count[1]) return GX_OK;
     if (room > INT32_MAX || room > SIZE_MAX / item) return GX_ERROR_LIMIT;
     memcpy(&old, array, sizeof old);
-    memory = gxbp_reallocate(&cx->allocator, old, (size_t)*capacity * item, count * item, room * item);
+    memory = gxbp_reallocate(&cx->allocator, old, (size_t)count[1] * item, count[0] * item, room * item);
     if (memory == NULL) return GX_ERROR_MEMORY;
     memcpy(array, &memory, sizeof memory);
-    *capacity = (uint32_t)room;
+    count[1] = (uint32_t)room;
     return GX_OK;
 }
 
 #define GXBP_RESERVE(cx, array, counter, extra) ((size_t)(extra) <= (cx)->counter##_capacity - (cx)->counter##_count ? GX_OK : \
-    gxbp_reserve(cx, &(cx)->array, sizeof *(cx)->array, (cx)->counter##_count, &(cx)->counter##_capacity, extra))
+    gxbp_reserve(cx, &(cx)->array, sizeof *(cx)->array, extra))
+
+/* Arrays of a structure: where they stand, size of an item */
+typedef struct gxbp_array { uint16_t at, item; } gxbp_array;
+#define GXBP_ARRAY(type, array) { offsetof(type, array), sizeof *((type *)NULL)->array }
+
+static GXBP_COLD void gxbp_drop_arrays(const gx_allocator *a, void *owner, const gxbp_array *array, size_t count) {
+    for (; count > 0; count--, array++) {
+        unsigned char *at = (unsigned char *)owner + array->at;
+        void *memory;
+        memcpy(&memory, at, sizeof memory);
+        gxbp_release(a, memory, (size_t)gxbp_extent_of(at)[1] * array->item);
+    }
+}
 
 enum { GXBP_EDGES, GXBP_FACETS, GXBP_LEAVES, GXBP_NODES, GXBP_POINTS, GXBP_ROOTS, GXBP_FACES, GXBP_MESH_EDGES };
 
@@ -1637,16 +1654,21 @@ static int gxbp_is_recent(const gxb_complex *cx, const void *memory) {
     return block != NULL && m >= (const unsigned char *)block + cx->mark_used && m < (const unsigned char *)block + block->size;
 }
 
+/* Gives back the blocks of exact numbers that are newer than this one. */
+static GXBP_COLD void gxbp_drop_numbers(gxb_complex *cx, const gxb_block *last) {
+    while (cx->blocks != last) {
+        gxb_block *next = cx->blocks->next;
+        gxbp_release(&cx->allocator, cx->blocks, cx->blocks->size);
+        cx->blocks = next;
+    }
+}
+
 /* Gives back exact numbers kept since begin; those of older points and planes are computed again when needed. */
 static GXBP_COLD void gxbp_drop_recent_numbers(gxb_complex *cx) {
     uint32_t i;
     for (i = 0; i < cx->mark[0]; i++) if (cx->points[i].exact != NULL && gxbp_is_recent(cx, cx->points[i].exact)) cx->points[i].exact = NULL;
     for (i = 0; i < cx->mark[1]; i++) if (cx->planes[i].exact != NULL && gxbp_is_recent(cx, cx->planes[i].exact)) cx->planes[i].exact = NULL;
-    while (cx->blocks != cx->mark_block) {
-        gxb_block *next = cx->blocks->next;
-        gxbp_release(&cx->allocator, cx->blocks, cx->blocks->size);
-        cx->blocks = next;
-    }
+    gxbp_drop_numbers(cx, cx->mark_block);
     if (cx->blocks != NULL) cx->blocks->used = cx->mark_used;
 }
 
@@ -2267,8 +2289,6 @@ GXFEM_API GXBP_RARE gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_
     return gxbp_fail(failure, GX_OK, SIZE_MAX);
 }
 
-#define GXBP_FREE(array, counter) gxbp_release(&a, cx->array, (size_t)cx->counter##_capacity * sizeof *cx->array)
-
 typedef struct gxbp_corner {    /* of a clipped polygon: its point, and what carries the edge to the next corner */
     gxb_ball ball;
     uint32_t kind, def[3], point;
@@ -2281,19 +2301,19 @@ typedef struct gxbp_task { uint32_t parent, side, first, count, coplanar; } gxbp
 #define GXBP_TRIANGLE_EDGE 0x80000000u
 #define GXBP_IN_ROOT GXB_NONE   /* task.parent: the reference is the element's root */
 
+static const gxbp_array gxbp_complex_arrays[] = {
+    GXBP_ARRAY(gxb_complex, points), GXBP_ARRAY(gxb_complex, planes), GXBP_ARRAY(gxb_complex, edges), GXBP_ARRAY(gxb_complex, facets),
+    GXBP_ARRAY(gxb_complex, leaves), GXBP_ARRAY(gxb_complex, nodes), GXBP_ARRAY(gxb_complex, labels), GXBP_ARRAY(gxb_complex, pool),
+    GXBP_ARRAY(gxb_complex, walls), GXBP_ARRAY(gxb_complex, undo), GXBP_ARRAY(gxb_complex, undo_bytes), GXBP_ARRAY(gxb_complex, corners),
+    GXBP_ARRAY(gxb_complex, tasks), GXBP_ARRAY(gxb_complex, scratch)
+};
+
 GXFEM_API GXBP_RARE void gxb_complex_destroy(gxb_complex *cx) {
     gx_allocator a;
     if (cx == NULL) return;
     a = cx->allocator;
-    while (cx->blocks != NULL) {
-        gxb_block *next = cx->blocks->next;
-        gxbp_release(&a, cx->blocks, cx->blocks->size);
-        cx->blocks = next;
-    }
-    GXBP_FREE(points, point); GXBP_FREE(planes, plane); GXBP_FREE(edges, edge); GXBP_FREE(facets, facet);
-    GXBP_FREE(leaves, leaf); GXBP_FREE(nodes, tree); GXBP_FREE(labels, label);
-    GXBP_FREE(pool, pool); GXBP_FREE(walls, wall); GXBP_FREE(undo, undo);
-    GXBP_FREE(undo_bytes, undo_byte); GXBP_FREE(corners, corner); GXBP_FREE(tasks, task); GXBP_FREE(scratch, scratch);
+    gxbp_drop_numbers(cx, NULL);
+    gxbp_drop_arrays(&a, cx, gxbp_complex_arrays, sizeof gxbp_complex_arrays / sizeof *gxbp_complex_arrays);
     gxbp_release(&a, cx->elements, gxbp_table_words(cx->element_count) * sizeof *cx->elements);
     gxbp_release(&a, cx->pairs, sizeof *cx->pairs);
     gxbp_release(&a, cx, sizeof *cx);
@@ -4554,7 +4574,8 @@ static GXBP_APART int gxbp_stop(gxb_boolean *b, gx_result result) {
 }
 
 /* Small cases should not pay for growing: an array's first items come from the arena at once. */
-static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, size_t item, uint32_t count, uint32_t *capacity, size_t extra) {
+static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, size_t item, size_t extra) {
+    uint32_t *capacity = gxbp_extent_of(array) + 1;
     const size_t least = *capacity == 0 && extra < 16 ? 16 : extra, room = gxbp_room_for(least);
     void *memory = *capacity == 0 && least < GXBP_ARENA ? gxbp_take(b, room * item) : NULL;
     gx_result result;
@@ -4563,15 +4584,13 @@ static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, size_t item, uint32
         *capacity = (uint32_t)room;
         return 1;
     }
-    result = gxbp_reserve(&b->cx, array, item, count, capacity, least);
+    result = gxbp_reserve(&b->cx, array, item, least);
     return result == GX_OK ? 1 : gxbp_stop(b, result);
 }
 
 #define GXBP_ROOM(b, array, counter, extra) \
     ((b)->counter##_count + (size_t)(extra) <= (b)->counter##_capacity || \
-     gxbp_room(b, &(b)->array, sizeof *(b)->array, (b)->counter##_count, &(b)->counter##_capacity, extra))
-#define GXBP_DROP(b, array, counter) \
-    gxbp_release(&(b)->cx.allocator, (b)->array, (size_t)(b)->counter##_capacity * sizeof *(b)->array)
+     gxbp_room(b, &(b)->array, sizeof *(b)->array, extra))
 
 /* Memory for as long as nobody else takes scratch; NULL: there is none. It is kept: what needs some next finds pages that have been touched. */
 static void *gxbp_borrow(gxb_boolean *b, size_t bytes) {
@@ -7880,6 +7899,7 @@ static void gxbp_join_sets(uint32_t *parent, uint32_t i, uint32_t j) {
 /* Triangles around an edge from p to q, by angle. Seen along the edge, a triangle that passes it forwards (from p to q) has the solid at
    smaller angles, one that passes it backwards at larger ones. */
 typedef struct gxbp_blade { uint32_t half_edge, apex, plane; int forward, toward, group; } gxbp_blade;
+typedef struct gxbp_blades { gxbp_blade *list; uint32_t count, capacity; } gxbp_blades;
 
 /* 1: the apex of g lies at an angle between 0 and pi from f, -1: beyond, 0: in its plane */
 static int gxbp_blade_side(gxb_boolean *b, const gxbp_blade *f, const gxbp_blade *g) { return f->toward * gxbp_point_side(b, g->apex, f->plane); }
@@ -7908,29 +7928,28 @@ static void gxbp_make_blade(gxb_boolean *b, uint32_t h, uint32_t p, const gxbp_b
 /* Joins the triangles at the two sides of each wedge of the solid around an edge that more than two triangles share: there they are twins. */
 static GXBP_COLD void gxbp_join_wedges(gxb_boolean *b, const gxbp_fan *fan, uint32_t i, uint32_t j, uint32_t *parent, uint32_t *twin) {
     const uint32_t p = b->out_points[i], q = b->out_points[j];
-    gxbp_blade *blade = NULL;
-    uint32_t n = 0, pass, k, m, capacity = 0;
+    gxbp_blades blades = {NULL, 0, 0};
+    uint32_t pass, k, m;
     for (pass = 0; pass < 2; pass++) {
         const uint32_t from = pass == 0 ? i : j, to = pass == 0 ? j : i;
         for (k = fan->first[from]; k < fan->first[from + 1]; k++) {
-            gxbp_blade mine;
+            gxbp_blade mine, *blade;
             if (fan->list[k].to != to) continue;
-            if (!gxbp_room(b, &blade, sizeof *blade, n, &capacity, 1)) break;
-            if (gxbp_out_plane(b, fan->list[k].half_edge / 3) == GXB_NONE) break;
-            gxbp_make_blade(b, fan->list[k].half_edge, p, n == 0 ? NULL : blade, &mine, q);
-            for (m = n; m > 1 && gxbp_blade_precedes(b, &mine, &blade[m - 1]); m--) blade[m] = blade[m - 1];
+            if (!gxbp_room(b, &blades, sizeof *blades.list, 1) || gxbp_out_plane(b, fan->list[k].half_edge / 3) == GXB_NONE) break;
+            blade = blades.list;
+            gxbp_make_blade(b, fan->list[k].half_edge, p, blades.count == 0 ? NULL : blade, &mine, q);
+            for (m = blades.count++; m > 1 && gxbp_blade_precedes(b, &mine, &blade[m - 1]); m--) blade[m] = blade[m - 1];
             blade[m] = mine;
-            n++;
         }
     }
-    for (m = 0; m < n; m++) {
-        const uint32_t h = blade[m].half_edge, g = blade[(m + 1) % n].half_edge;
-        if (blade[m].forward) continue;
+    for (m = 0; m < blades.count; m++) {
+        const uint32_t h = blades.list[m].half_edge, g = blades.list[(m + 1) % blades.count].half_edge;
+        if (blades.list[m].forward) continue;
         gxbp_join_sets(parent, h / 3, g / 3);
         twin[h] = g;
         twin[g] = h;
     }
-    gxbp_release(&b->cx.allocator, blade, (size_t)capacity * sizeof *blade);
+    gxbp_release(&b->cx.allocator, blades.list, (size_t)blades.capacity * sizeof *blades.list);
 }
 
 /* Of each triangle: how many corners of the solid are counted there. A corner is what triangles around a vertex make that are joined by
@@ -8012,7 +8031,7 @@ static void gxbp_need_fine(gxb_boolean *b, gxbp_fines *fines, uint32_t vertex) {
     uint32_t k;
     if (b->vertices[point].head_stamp == b->head_stamp) return;
     gxbp_fine_point(b, point, &x);
-    if (!gxbp_room(b, &fines->limbs, sizeof *fines->limbs, fines->limb_count, &fines->limb_capacity, (size_t)x.c[0].n + x.c[1].n + x.c[2].n)) return;
+    if (!gxbp_room(b, &fines->limbs, sizeof *fines->limbs, (size_t)x.c[0].n + x.c[1].n + x.c[2].n)) return;
     v->first = fines->limb_count;
     b->vertices[point].head_stamp = b->head_stamp;
     for (k = 0; k < 3; k++) {
@@ -8493,30 +8512,28 @@ static GXBP_COLD void gxbp_mend(gxb_boolean *b) {
 
 /* --- the public functions --- */
 
+static const gxbp_array gxbp_boolean_arrays[] = {
+    GXBP_ARRAY(gxb_boolean, operands), GXBP_ARRAY(gxb_boolean, sources), GXBP_ARRAY(gxb_boolean, bounds), GXBP_ARRAY(gxb_boolean, boxes),
+    GXBP_ARRAY(gxb_boolean, vertices), GXBP_ARRAY(gxb_boolean, pieces), GXBP_ARRAY(gxb_boolean, links), GXBP_ARRAY(gxb_boolean, segments),
+    GXBP_ARRAY(gxb_boolean, cuts), GXBP_ARRAY(gxb_boolean, cut_points), GXBP_ARRAY(gxb_boolean, hits), GXBP_ARRAY(gxb_boolean, dirty),
+    GXBP_ARRAY(gxb_boolean, divided), GXBP_ARRAY(gxb_boolean, projected), GXBP_ARRAY(gxb_boolean, rims), GXBP_ARRAY(gxb_boolean, lefts),
+    GXBP_ARRAY(gxb_boolean, scratch), GXBP_ARRAY(gxb_boolean, chain), GXBP_ARRAY(gxb_boolean, windings), GXBP_ARRAY(gxb_boolean, states),
+    GXBP_ARRAY(gxb_boolean, out_vertices), GXBP_ARRAY(gxb_boolean, out_origins), GXBP_ARRAY(gxb_boolean, out_points),
+    GXBP_ARRAY(gxb_boolean, out_triangles), GXBP_ARRAY(gxb_boolean, out_operands), GXBP_ARRAY(gxb_boolean, out_sources),
+    GXBP_ARRAY(gxb_boolean, out_components), GXBP_ARRAY(gxb_boolean, out_planes), GXBP_ARRAY(gxb_boolean, out_volumes),
+    GXBP_ARRAY(gxb_boolean, out_defects), GXBP_ARRAY(gxb_boolean, out_reversed), GXBP_ARRAY(gxb_boolean, out_sides),
+    GXBP_ARRAY(gxb_boolean, out_eulers), GXBP_ARRAY(gxb_boolean, out_twins)
+};
+
 static GXBP_COLD void gxbp_drop_boolean(gxb_boolean *b) {
     uint32_t i;
     for (i = 0; i < b->operand_count; i++)
         gxbp_release(&b->cx.allocator, b->operands[i].order, (size_t)b->operands[i].source_count * sizeof(uint32_t));
-    while (b->cx.blocks != NULL) {
-        gxb_block *next = b->cx.blocks->next;
-        gxbp_release(&b->cx.allocator, b->cx.blocks, b->cx.blocks->size);
-        b->cx.blocks = next;
-    }
-    gxbp_release(&b->cx.allocator, b->cx.points, (size_t)b->cx.point_capacity * sizeof *b->cx.points);
-    gxbp_release(&b->cx.allocator, b->cx.planes, (size_t)b->cx.plane_capacity * sizeof *b->cx.planes);
+    gxbp_drop_numbers(&b->cx, NULL);
+    gxbp_drop_arrays(&b->cx.allocator, &b->cx, gxbp_complex_arrays, 2);      /* points and planes: there are no others */
+    gxbp_drop_arrays(&b->cx.allocator, b, gxbp_boolean_arrays, sizeof gxbp_boolean_arrays / sizeof *gxbp_boolean_arrays);
     gxbp_release(&b->cx.allocator, b->table, (size_t)b->table_size * sizeof *b->table);
     gxbp_release(&b->cx.allocator, b->state_table, (size_t)b->state_table_size * sizeof *b->state_table);
-    GXBP_DROP(b, operands, operand); GXBP_DROP(b, sources, source); GXBP_DROP(b, bounds, bound); GXBP_DROP(b, boxes, box);
-    GXBP_DROP(b, vertices, vertex); GXBP_DROP(b, pieces, piece); GXBP_DROP(b, links, link); GXBP_DROP(b, segments, segment);
-    GXBP_DROP(b, cuts, cut); GXBP_DROP(b, cut_points, cut_point); GXBP_DROP(b, hits, hit); GXBP_DROP(b, dirty, dirty); GXBP_DROP(b, divided, divided);
-    GXBP_DROP(b, projected, projected);
-    GXBP_DROP(b, rims, rim); GXBP_DROP(b, lefts, left); GXBP_DROP(b, scratch, scratch); GXBP_DROP(b, chain, chain);
-    GXBP_DROP(b, windings, winding); GXBP_DROP(b, states, state);
-    GXBP_DROP(b, out_vertices, out_vertex); GXBP_DROP(b, out_origins, out_origin); GXBP_DROP(b, out_points, out_point);
-    GXBP_DROP(b, out_triangles, out_triangle); GXBP_DROP(b, out_operands, out_operand); GXBP_DROP(b, out_sources, out_source);
-    GXBP_DROP(b, out_components, out_component); GXBP_DROP(b, out_planes, out_plane); GXBP_DROP(b, out_volumes, out_volume);
-    GXBP_DROP(b, out_defects, out_defect); GXBP_DROP(b, out_reversed, out_reversed); GXBP_DROP(b, out_sides, out_side);
-    GXBP_DROP(b, out_eulers, out_euler); GXBP_DROP(b, out_twins, out_twin);
 }
 
 GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean **boolean) {
