@@ -752,6 +752,26 @@ GXFEM_API double gxb_num_ratio(const gxb_num *a, const gxb_num *b) {
     return (a->sign * b->sign < 0 ? -q : q) * gxbp_power(power_a);
 }
 
+/* r += factor * a, for a factor of 1 or -1 */
+static GXBP_COLD void gxbp_num_increase(gxb_num *r, const gxb_num *a, int factor) {
+    GXB_NUM(sum);
+    gxbp_num_add_signed(&sum, r, a, factor);
+    gxbp_num_copy(r, &sum, 1);
+}
+
+/* r = num / den, relative error below 2^-180: each of four steps adds the quotient of what is left (it uses num up), 50 bits. */
+static GXBP_COLD void gxbp_num_divide(gxb_num *r, gxb_num *num, const gxb_num *den) {
+    GXB_NUM(q); GXB_NUM(t);
+    int step;
+    gxb_num_set(r, 0, 0);
+    for (step = 0; step < 4 && num->sign != 0; step++) {
+        gxb_num_set(&q, gxb_num_ratio(num, den), 0);
+        gxbp_num_increase(r, &q, 1);
+        gxb_num_mul(&t, &q, den);
+        gxbp_num_increase(num, &t, -1);
+    }
+}
+
 /* r = a.b for vectors of three numbers; the worst length is that of one product plus 2 limbs */
 static void gxbp_num_dot(gxb_num *r, const gxb_num a[3], const gxb_num b[3]) {
     GXB_NUM(t); GXB_NUM(s);
@@ -784,6 +804,14 @@ static GXBP_APART void gxbp_vec_init(gxbp_vec *v) {
     int k;
     memset(v->c, 0, sizeof v->c);
     for (k = 0; k < 4; k++) v->c[k].d = v->limbs[k];
+}
+
+/* r = a.(b x c) */
+static GXBP_COLD void gxbp_num_det3(gxb_num *r, const gxb_num a[3], const gxb_num b[3], const gxb_num c[3]) {
+    gxbp_vec normal;
+    gxbp_vec_init(&normal);
+    gxbp_num_cross(normal.c, b, c);
+    gxbp_num_dot(r, a, normal.c);
 }
 
 static void gxbp_vec_set(gxbp_vec *v, const double x[3]) {
@@ -981,9 +1009,15 @@ static void gxbp_filter_three_planes(gxb_ball *out, const gxb_plane_filter *cons
 
 /* >>points: the predicates on their own ------------------------------------------------------------------------------ */
 
-/* Do all differences and products of these coordinates keep away from overflow? (underflow: see GXBP_TINY) */
-static int gxbp_filter_range(const double *x, int count) {
-    for (; count > 0; count--, x++) if (gxbp_exponent_bits(*x) > 1023 + 128) return 0;
+static void gxbp_ball_explicit(gxb_ball *ball, const double p[3]) {
+    memcpy(ball->x, p, sizeof ball->x);
+    ball->error = 0;
+}
+
+/* Do all differences and products of these points' coordinates keep away from overflow? (underflow: see GXBP_TINY) */
+static GXBP_APART int gxbp_filter_range(const double *const *x, int count, int dimension) {
+    int i, k;
+    for (i = 0; i < count; i++) for (k = 0; k < dimension; k++) if (gxbp_exponent_bits(x[i][k]) > 1023 + 128) return 0;
     return 1;
 }
 
@@ -1013,11 +1047,9 @@ static int gxbp_short_integers(const double *const *x, int count, int dimension,
     return 1;
 }
 
-static int gxbp_orient2d_short(const double a[2], const double b[2], const double c[2]) {
-    const double *x[3];
+static int gxbp_orient2d_short(const double *const x[3]) {
     int64_t v[6];
     gxbp_signed_wide s, t;
-    x[0] = a; x[1] = b; x[2] = c;
     if (!gxbp_short_integers(x, 3, 2, v)) return GXBP_UNKNOWN;
     s = (gxbp_signed_wide)(v[0] - v[4]) * (v[3] - v[5]);
     t = (gxbp_signed_wide)(v[1] - v[5]) * (v[2] - v[4]);
@@ -1042,12 +1074,10 @@ static gxbp_signed_wide gxbp_short_determinant(const int64_t *abc, const int64_t
     return high + (gxbp_signed_wide)(low >> 64);
 }
 
-static int gxbp_orient3d_short(const double a[3], const double b[3], const double c[3], const double d[3]) {
-    const double *x[4];
+static int gxbp_orient3d_short(const double *const x[4]) {
     int64_t v[12];
     gxbp_signed_wide high;
     uint64_t rest;
-    x[0] = a; x[1] = b; x[2] = c; x[3] = d;
     if (!gxbp_short_integers(x, 4, 3, v)) return GXBP_UNKNOWN;
     high = gxbp_short_determinant(v, v + 9, &rest);
     return high < 0 ? -1 : high > 0 || rest != 0;
@@ -1106,12 +1136,10 @@ static int gxbp_line_side_short(const double *const x[8]) {
     return order == 0 ? GXBP_UNKNOWN : order * gxbp_short_det2(&t, &u, &s, &v);
 }
 
-/* Signs of (b - a) x (c - a) */
-static int gxbp_normal_short(const double a[3], const double b[3], const double c[3], int sign[3]) {
-    const double *x[3];
+/* Signs of (x[1] - x[0]) x (x[2] - x[0]) */
+static int gxbp_normal_short(const double *const x[3], int sign[3]) {
     int64_t v[9];
     int k, m = 1, n = 2;
-    x[0] = a; x[1] = b; x[2] = c;
     if (!gxbp_short_integers(x, 3, 3, v)) return 0;
     for (k = 0; k < 3; k++) { v[3 + k] -= v[k]; v[6 + k] -= v[k]; }
     for (k = 0; k < 3; m = n, n = k++) {
@@ -1121,89 +1149,91 @@ static int gxbp_normal_short(const double a[3], const double b[3], const double 
     return 1;
 }
 #else
-static int gxbp_orient2d_short(const double a[2], const double b[2], const double c[2]) {
-    (void)a; (void)b; (void)c;
+static int gxbp_orient2d_short(const double *const x[3]) {
+    (void)x;
     return GXBP_UNKNOWN;
 }
 
-static int gxbp_orient3d_short(const double a[3], const double b[3], const double c[3], const double d[3]) {
-    (void)d;
-    return gxbp_orient2d_short(a, b, c);
-}
+static int gxbp_orient3d_short(const double *const x[4]) { return gxbp_orient2d_short(x); }
+static int gxbp_line_side_short(const double *const x[8]) { return gxbp_orient2d_short(x); }
 
-static int gxbp_line_side_short(const double *const x[8]) { return gxbp_orient2d_short(x[0], x[1], x[2]); }
-
-static int gxbp_normal_short(const double a[3], const double b[3], const double c[3], int sign[3]) {
+static int gxbp_normal_short(const double *const x[3], int sign[3]) {
     sign[0] = sign[1] = sign[2] = 0;
-    return gxbp_orient2d_short(a, b, c) != GXBP_UNKNOWN;
+    return gxbp_orient2d_short(x) != GXBP_UNKNOWN;
 }
 #endif
 
-static GXBP_COLD int gxbp_orient2d_exact(const double a[2], const double b[2], const double c[2]) {
-    const int known = gxbp_orient2d_short(a, b, c);
+/* p[i] - p[count - 1] for the points before the last, of two or three coordinates, as exact numbers */
+static GXBP_COLD void gxbp_exact_differences(gxbp_vec *row, const double *const *p, int count, int dimension) {
+    gxbp_vec last, x;
+    double given[3] = {0, 0, 0};
+    int i;
+    for (i = count - 1; i >= 0; i--) {
+        memcpy(given, p[i], (size_t)dimension * sizeof *given);
+        gxbp_vec_set(i == count - 1 ? &last : &x, given);
+        if (i == count - 1) continue;
+        gxbp_vec_init(&row[i]);
+        gxbp_num_sub3(row[i].c, x.c, last.c);
+    }
+}
+
+static GXBP_COLD int gxbp_orient2d_exact(const double *const p[3]) {
+    const int known = gxbp_orient2d_short(p);
     GXB_NUM(r);
-    gxbp_vec p, q, o, u, v;
-    double x[3] = {0, 0, 0};
+    gxbp_vec row[2];
     if (known != GXBP_UNKNOWN) return known;
-    x[0] = a[0]; x[1] = a[1]; gxbp_vec_set(&p, x);
-    x[0] = b[0]; x[1] = b[1]; gxbp_vec_set(&q, x);
-    x[0] = c[0]; x[1] = c[1]; gxbp_vec_set(&o, x);
-    gxbp_vec_init(&u);
-    gxbp_vec_init(&v);
-    gxbp_num_sub3(u.c, p.c, o.c);
-    gxbp_num_sub3(v.c, q.c, o.c);
-    gxbp_num_det2(&r, &u.c[0], &v.c[1], &u.c[1], &v.c[0]);
+    gxbp_exact_differences(row, p, 3, 2);
+    gxbp_num_det2(&r, &row[0].c[0], &row[1].c[1], &row[0].c[1], &row[1].c[0]);
     return r.sign;
 }
 
 GXFEM_API int gxb_orient2d(const double a[2], const double b[2], const double c[2]) {
-    if (gxbp_filter_range(a, 2) && gxbp_filter_range(b, 2) && gxbp_filter_range(c, 2)) {
+    const double *p[3];
+    p[0] = a; p[1] = b; p[2] = c;
+    if (gxbp_filter_range(p, 3, 2)) {
         const double ax = gxbp_fence(a[0] - c[0]), ay = gxbp_fence(a[1] - c[1]);
         const double bx = gxbp_fence(b[0] - c[0]), by = gxbp_fence(b[1] - c[1]);
         const double bound = 16 * GXBP_U * (gxbp_abs(ax * by) + gxbp_abs(ay * bx)) + GXBP_TINY;
         const int sign = gxbp_filter_sign(ax * by - ay * bx, bound);
         if (sign != 0) return sign;
     }
-    return gxbp_orient2d_exact(a, b, c);
+    return gxbp_orient2d_exact(p);
 }
 
-static GXBP_APART int gxbp_orient3d_exact(const double a[3], const double b[3], const double c[3], const double d[3]) {
-    const int known = gxbp_orient3d_short(a, b, c, d);
+static GXBP_APART int gxbp_orient3d_exact(const double *const p[4]) {
+    const int known = gxbp_orient3d_short(p);
     GXB_NUM(r);
-    gxbp_vec p, q, s, o, n;
+    gxbp_vec row[3];
     if (known != GXBP_UNKNOWN) return known;
-    gxbp_vec_set(&p, a); gxbp_vec_set(&q, b); gxbp_vec_set(&s, c); gxbp_vec_set(&o, d);
-    gxbp_vec_init(&n);
-    gxbp_exact_plane(n.c, p.c, q.c, s.c);
-    gxbp_exact_side(&r, o.c, n.c);
-    return -r.sign;
+    gxbp_exact_differences(row, p, 4, 3);
+    gxbp_num_det3(&r, row[0].c, row[1].c, row[2].c);
+    return r.sign;
 }
 
 GXFEM_API int gxb_orient3d(const double a[3], const double b[3], const double c[3], const double d[3]) {
-    if (gxbp_filter_range(a, 3) && gxbp_filter_range(b, 3) && gxbp_filter_range(c, 3) && gxbp_filter_range(d, 3)) {
+    const double *p[4];
+    p[0] = a; p[1] = b; p[2] = c; p[3] = d;
+    if (gxbp_filter_range(p, 4, 3)) {
         gxb_plane plane;
         gxb_ball ball;
         double value, bound;
         int sign;
         gxb_plane_init(&plane, a, b, c);
-        memcpy(ball.x, d, sizeof ball.x);
-        ball.error = 0;
+        gxbp_ball_explicit(&ball, d);
         value = gxbp_filter_side(&ball, &plane.filter, &bound);
         sign = gxbp_filter_sign(value, bound);
         if (sign != 0) return -sign;
     }
-    return gxbp_orient3d_exact(a, b, c, d);
+    return gxbp_orient3d_exact(p);
 }
 
 /* Rows are the points less the last, with their squared lengths; the determinant along the column of squares. An elementary product of
    the filter has four fenced differences, three products and is one of twelve: at most 4 + 3 + 11 roundings whatever the order; in 3D
    five, four, one of 72: 80. Ranges as for gxb_orient3d keep all products from overflow and errors of underflow below GXBP_TINY. */
-static int gxbp_filter_incircle(const double a[2], const double b[2], const double c[2], const double d[2]) {
-    const double *p[3];
+static int gxbp_filter_incircle(const double *const p[4]) {
     double x[3], y[3], value = 0, size = 0;
     int i;
-    p[0] = a; p[1] = b; p[2] = c;
-    for (i = 0; i < 3; i++) { x[i] = gxbp_fence(p[i][0] - d[0]); y[i] = gxbp_fence(p[i][1] - d[1]); }
+    for (i = 0; i < 3; i++) { x[i] = gxbp_fence(p[i][0] - p[3][0]); y[i] = gxbp_fence(p[i][1] - p[3][1]); }
     for (i = 0; i < 3; i++) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
         const double lift = x[i] * x[i] + y[i] * y[i];
@@ -1213,13 +1243,11 @@ static int gxbp_filter_incircle(const double a[2], const double b[2], const doub
     return gxbp_filter_sign(value, 48 * GXBP_U * size + GXBP_TINY);
 }
 
-static int gxbp_filter_insphere(const double a[3], const double b[3], const double c[3], const double d[3], const double e[3]) {
-    const double *p[4];
+static int gxbp_filter_insphere(const double *const p[5]) {
     double x[4][3], lift[4], value = 0, size = 0;
     int i, k;
-    p[0] = a; p[1] = b; p[2] = c; p[3] = d;
     for (i = 0; i < 4; i++) {
-        for (k = 0; k < 3; k++) x[i][k] = gxbp_fence(p[i][k] - e[k]);
+        for (k = 0; k < 3; k++) x[i][k] = gxbp_fence(p[i][k] - p[4][k]);
         lift[i] = x[i][0] * x[i][0] + x[i][1] * x[i][1] + x[i][2] * x[i][2];
     }
     for (i = 0; i < 4; i++) {
@@ -1234,72 +1262,46 @@ static int gxbp_filter_insphere(const double a[3], const double b[3], const doub
     return gxbp_filter_sign(value, 128 * GXBP_U * size + GXBP_TINY);
 }
 
-/* p - o as exact numbers; c[3] = its squared length */
-static void gxbp_exact_lifted(gxbp_vec *v, const double p[3], const double o[3]) {
-    gxbp_vec x, y;
-    gxbp_vec_set(&x, p); gxbp_vec_set(&y, o);
-    gxbp_vec_init(v);
-    gxbp_num_sub3(v->c, x.c, y.c);
-    gxbp_num_dot(&v->c[3], v->c, v->c);
-}
-
 /* Degree 4: 140 limbs of 64 bits for any finite doubles. */
-static GXBP_COLD int gxbp_incircle_exact(const double a[2], const double b[2], const double c[2], const double d[2]) {
-    const double *p[4];
-    double x[4][3];
-    gxbp_vec row[3], minor, lift;
+static GXBP_COLD int gxbp_incircle_exact(const double *const p[4]) {
+    gxbp_vec row[3];
     GXB_NUM(r);
     int i;
-    p[0] = a; p[1] = b; p[2] = c; p[3] = d;
-    for (i = 0; i < 4; i++) { x[i][0] = p[i][0]; x[i][1] = p[i][1]; x[i][2] = 0; }
-    gxbp_vec_init(&minor); gxbp_vec_init(&lift);
-    for (i = 0; i < 3; i++) gxbp_exact_lifted(&row[i], x[i], x[3]);
-    for (i = 0; i < 3; i++) {
-        const gxbp_vec *u = &row[(i + 1) % 3], *v = &row[(i + 2) % 3];
-        gxbp_num_det2(&minor.c[i], &u->c[0], &v->c[1], &v->c[0], &u->c[1]);
-        gxbp_num_copy(&lift.c[i], &row[i].c[3], 1);
-    }
-    gxbp_num_dot(&r, lift.c, minor.c);
+    gxbp_exact_differences(row, p, 4, 2);
+    for (i = 0; i < 3; i++) { gxbp_num_dot(&row[i].c[3], row[i].c, row[i].c); row[i].c[2] = row[i].c[3]; }
+    gxbp_num_det3(&r, row[0].c, row[1].c, row[2].c);
     return r.sign;
 }
 
 /* Degree 5: a difference of any finite doubles has 34 limbs of 64 bits, its square 67, a minor 100, their product and the sum of four 167. */
-static GXBP_COLD int gxbp_insphere_exact(const double a[3], const double b[3], const double c[3], const double d[3], const double e[3]) {
-    gxbp_vec row[4], normal;
-    GXB_NUM(minor); GXB_NUM(term); GXB_NUM(sum); GXB_NUM(next);
+static GXBP_COLD int gxbp_insphere_exact(const double *const p[5]) {
+    gxbp_vec row[4];
+    GXB_NUM(minor); GXB_NUM(term); GXB_NUM(sum);
     int i;
-    gxbp_exact_lifted(&row[0], a, e); gxbp_exact_lifted(&row[1], b, e); gxbp_exact_lifted(&row[2], c, e); gxbp_exact_lifted(&row[3], d, e);
+    gxbp_exact_differences(row, p, 5, 3);
     for (i = 0; i < 4; i++) {
-        gxbp_vec_init(&normal);
-        gxbp_num_cross(normal.c, row[i <= 1 ? 2 : 1].c, row[i <= 2 ? 3 : 2].c);
-        gxbp_num_dot(&minor, row[i == 0].c, normal.c);
+        gxbp_num_det3(&minor, row[i == 0].c, row[i <= 1 ? 2 : 1].c, row[i <= 2 ? 3 : 2].c);
+        gxbp_num_dot(&row[i].c[3], row[i].c, row[i].c);
         gxb_num_mul(&term, &row[i].c[3], &minor);
-        if (i % 2 == 0) term.sign = -term.sign;
-        gxb_num_add(&next, &sum, &term);
-        gxbp_num_copy(&sum, &next, 1);
+        gxbp_num_increase(&sum, &term, i % 2 == 0 ? -1 : 1);
     }
     return sum.sign;
 }
 
 GXFEM_API int gxb_incircle(const double a[2], const double b[2], const double c[2], const double d[2]) {
-    if (gxbp_filter_range(a, 2) && gxbp_filter_range(b, 2) && gxbp_filter_range(c, 2) && gxbp_filter_range(d, 2)) {
-        const int sign = gxbp_filter_incircle(a, b, c, d);
-        if (sign != 0) return sign;
-    }
-    return gxbp_incircle_exact(a, b, c, d);
+    const double *p[4];
+    int sign;
+    p[0] = a; p[1] = b; p[2] = c; p[3] = d;
+    sign = gxbp_filter_range(p, 4, 2) ? gxbp_filter_incircle(p) : 0;
+    return sign != 0 ? sign : gxbp_incircle_exact(p);
 }
 
 GXFEM_API int gxb_insphere(const double a[3], const double b[3], const double c[3], const double d[3], const double e[3]) {
-    if (gxbp_filter_range(a, 3) && gxbp_filter_range(b, 3) && gxbp_filter_range(c, 3) && gxbp_filter_range(d, 3) && gxbp_filter_range(e, 3)) {
-        const int sign = gxbp_filter_insphere(a, b, c, d, e);
-        if (sign != 0) return sign;
-    }
-    return gxbp_insphere_exact(a, b, c, d, e);
-}
-
-static void gxbp_ball_explicit(gxb_ball *ball, const double p[3]) {
-    memcpy(ball->x, p, sizeof ball->x);
-    ball->error = 0;
+    const double *p[5];
+    int sign;
+    p[0] = a; p[1] = b; p[2] = c; p[3] = d; p[4] = e;
+    sign = gxbp_filter_range(p, 5, 3) ? gxbp_filter_insphere(p) : 0;
+    return sign != 0 ? sign : gxbp_insphere_exact(p);
 }
 
 GXFEM_API void gxb_plane_init(gxb_plane *plane, const double p[3], const double q[3], const double r[3]) {
@@ -1928,7 +1930,7 @@ static int gxbp_short_side(const gxb_complex *cx, uint32_t kind, const uint32_t 
     if (f->along_axis || !gxbp_given_points(cx, f->def, 3, x)) return GXBP_UNKNOWN;
     if (kind == GXB_EXPLICIT) {
         if (!gxbp_given_points(cx, &point, 1, x + 3)) return GXBP_UNKNOWN;
-        turn = gxbp_orient3d_short(x[0], x[1], x[2], x[3]);
+        turn = gxbp_orient3d_short(x);
         return turn == GXBP_UNKNOWN ? turn : -turn;
     }
     g = &cx->planes[def[2]];
@@ -2034,7 +2036,7 @@ static GXBP_COLD int gxbp_exact_normal_sign(gxb_complex *cx, uint32_t plane, uin
     const double *x[3];
     gxbp_vec store;
     int sign[3];
-    if (!f->along_axis && gxbp_given_points(cx, f->def, 3, x) && gxbp_normal_short(x[0], x[1], x[2], sign)) return sign[axis];
+    if (!f->along_axis && gxbp_given_points(cx, f->def, 3, x) && gxbp_normal_short(x, sign)) return sign[axis];
     return gxbp_exact_cplane(cx, plane, &store)[axis].sign;
 }
 
@@ -3323,18 +3325,13 @@ static GXBP_COLD void gxbp_probe_init(gxb_complex *cx, const uint32_t *points, s
     for (i = 0; i < count; i++) {
         gxbp_vec store;
         const gxb_num *x = gxbp_exact_cpoint(cx, points[i], &store);
-        for (k = 0; k < 4; k++) {
-            GXB_NUM(sum);
-            gxb_num_add(&sum, &probe->exact.c[k], &x[k]);
-            gxbp_num_copy(&probe->exact.c[k], &sum, 1);
-        }
+        for (k = 0; k < 4; k++) gxbp_num_increase(&probe->exact.c[k], &x[k], 1);
     }
     for (k = 0; k < 3; k++) {
-        GXB_NUM(origin); GXB_NUM(t); GXB_NUM(sum);
+        GXB_NUM(origin); GXB_NUM(t);
         gxb_num_set(&origin, cx->origin[k], cx->shift);
         gxb_num_mul(&t, &origin, &probe->exact.c[3]);
-        gxb_num_add(&sum, &probe->exact.c[k], &t);
-        gxbp_num_copy(&probe->exact.c[k], &sum, 1);
+        gxbp_num_increase(&probe->exact.c[k], &t, 1);
         probe->rough[k] = gxb_num_ratio(&probe->exact.c[k], &probe->exact.c[3]);
     }
 }
@@ -3655,26 +3652,17 @@ GXFEM_API void gxb_complex_barycentric(gxb_complex *cx, uint32_t point, uint32_t
     for (k = 0; k < 4; k++) if (lambda[k] < 0) lambda[k] = gxbp_exact_lambda(cx, point, element, k);
 }
 
-/* Each step adds the quotient of what is left: 50 bits, so that four leave less than 2^-180 of the value. */
 GXFEM_API GXBP_RARE void gxb_complex_barycentric_fine(gxb_complex *cx, uint32_t point, uint32_t element, gxb_num lambda[4]) {
     uint32_t k;
-    int step;
     for (k = 0; k < 4; k++) {
         const int known = gxbp_known_lambda(cx, point, element, k);
-        GXB_NUM(num); GXB_NUM(den); GXB_NUM(q); GXB_NUM(t); GXB_NUM(s);
+        GXB_NUM(num); GXB_NUM(den); GXB_NUM(weight); GXB_NUM(height);
         gxb_num_set(&lambda[k], known > 0 ? 1.0 : 0.0, 0);
         if (known >= 0) continue;
-        gxbp_distance(cx, point, gxbp_face_plane(cx, element, k), &num, &q);
-        gxbp_distance(cx, cx->elements[4 * element + k], gxbp_face_plane(cx, element, k), &t, NULL);
-        gxb_num_mul(&den, &q, &t);
-        for (step = 0; step < 4 && num.sign != 0; step++) {
-            gxb_num_set(&q, gxb_num_ratio(&num, &den), 0);
-            gxb_num_add(&s, &lambda[k], &q);
-            gxbp_num_copy(&lambda[k], &s, 1);
-            gxb_num_mul(&t, &q, &den);
-            gxb_num_sub(&s, &num, &t);
-            gxbp_num_copy(&num, &s, 1);
-        }
+        gxbp_distance(cx, point, gxbp_face_plane(cx, element, k), &num, &weight);
+        gxbp_distance(cx, cx->elements[4 * element + k], gxbp_face_plane(cx, element, k), &height, NULL);
+        gxb_num_mul(&den, &weight, &height);
+        gxbp_num_divide(&lambda[k], &num, &den);
     }
 }
 
@@ -4880,10 +4868,12 @@ static void gxbp_cross_sizes(double m[3], double size[3], const double a[3], con
 }
 
 static GXBP_COLD int gxbp_has_area_exactly(const double *p, const double *q, const double *r) {
+    const double *x[3];
     gxb_plane plane;
     gxbp_vec n;
     int sign[3];
-    if (gxbp_normal_short(p, q, r, sign)) return sign[0] != 0 || sign[1] != 0 || sign[2] != 0;
+    x[0] = p; x[1] = q; x[2] = r;
+    if (gxbp_normal_short(x, sign)) return sign[0] != 0 || sign[1] != 0 || sign[2] != 0;
     gxb_plane_init(&plane, p, q, r);
     gxbp_plane_exact(&n, &plane);
     return n.c[0].sign != 0 || n.c[1].sign != 0 || n.c[2].sign != 0;
@@ -5282,12 +5272,13 @@ static gxbp_spot gxbp_spot_of_point(const gxb_boolean *b, const double *x, uint3
 /* Where the line from p (in front of the plane: side 1) to q (behind) passes: signs of gxbp_orient of the triangle's edges with p and q,
    with the same bounds, from differences and products that they share. */
 static GXBP_COLD gxbp_spot gxbp_spot_of_line(gxb_boolean *b, const double *p, const double *q, int side, uint32_t s) {
+    const double *x[4];
     double d[3], c[3][3], m[3][3], size[3][3];
     int sign[3], k, i;
     for (i = 0; i < 3; i++) d[i] = gxbp_fence(p[i] - q[i]);
     for (k = 0; k < 3; k++) {
-        const double *x = gxbp_corner_of(b, s, k);
-        for (i = 0; i < 3; i++) c[k][i] = gxbp_fence(x[i] - q[i]);
+        x[0] = gxbp_corner_of(b, s, k);
+        for (i = 0; i < 3; i++) c[k][i] = gxbp_fence(x[0][i] - q[i]);
         gxbp_cross_sizes(m[k], size[k], c[k], d);
     }
     for (k = 0; k < 3; k++) {
@@ -5297,7 +5288,8 @@ static GXBP_COLD gxbp_spot gxbp_spot_of_line(gxb_boolean *b, const double *p, co
         b->cx.filter_calls++;
         if (sign[k] == 0) {
             b->cx.exact_calls++;
-            sign[k] = side * gxbp_orient3d_exact(gxbp_corner_of(b, s, k), gxbp_corner_of(b, s, (k + 1) % 3), p, q);
+            x[0] = gxbp_corner_of(b, s, k); x[1] = gxbp_corner_of(b, s, (k + 1) % 3); x[2] = p; x[3] = q;
+            sign[k] = side * gxbp_orient3d_exact(x);
         }
         if (sign[k] < 0) break;
     }
@@ -5382,6 +5374,7 @@ static inline void gxbp_record_crossing(gxb_boolean *b, uint32_t s, int k, uint3
 
 /* sign[x][y]: orientation of (p[0], p[y + 1], q[x + 1], q[0]). The differences and products are shared: see gxbp_cross_size for the bound. */
 static void gxbp_orient_pairs(gxb_boolean *b, const double *const q[3], const double *const p[3], int sign[2][2]) {
+    const double *at[4];
     double w[3], u[2][3], v[3], m[3], size[3];
     int x, y, k;
     for (k = 0; k < 3; k++) {
@@ -5398,7 +5391,8 @@ static void gxbp_orient_pairs(gxb_boolean *b, const double *const q[3], const do
             b->cx.filter_calls++;
             if (sign[x][y] != 0) continue;
             b->cx.exact_calls++;
-            sign[x][y] = gxbp_orient3d_exact(p[0], p[y + 1], q[x + 1], q[0]);
+            at[0] = p[0]; at[1] = p[y + 1]; at[2] = q[x + 1]; at[3] = q[0];
+            sign[x][y] = gxbp_orient3d_exact(at);
         }
     }
 }
@@ -7995,29 +7989,17 @@ static void gxbp_join_shells(gxb_boolean *b, uint32_t *parent, int32_t *corners)
     gxbp_count_corners(twin, count, corners);
 }
 
-/* Numerator and denominator as one number, relative error below 2^-180: each step adds the quotient of what is left, 50 bits. */
-static void gxbp_num_divide(gxb_num *r, const gxb_num *num, const gxb_num *den) {
-    GXB_NUM(rest); GXB_NUM(q); GXB_NUM(t); GXB_NUM(s);
-    int step;
-    gxb_num_set(r, 0, 0);
-    gxbp_num_copy(&rest, num, 1);
-    for (step = 0; step < 4 && rest.sign != 0; step++) {
-        gxb_num_set(&q, gxb_num_ratio(&rest, den), 0);
-        gxb_num_add(&s, r, &q);
-        gxbp_num_copy(r, &s, 1);
-        gxb_num_mul(&t, &q, den);
-        gxb_num_sub(&s, &rest, &t);
-        gxbp_num_copy(&rest, &s, 1);
-    }
-}
-
 static void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *fine) {
-    gxbp_vec store;
+    gxbp_vec store, rest;
     const gxb_num *x = gxbp_exact_cpoint(&b->cx, point, b->cx.points[point].kind == GXB_EXPLICIT ? fine : &store);
     int k;
     if (x == fine->c) return;
     gxbp_vec_init(fine);
-    for (k = 0; k < 3; k++) gxbp_num_divide(&fine->c[k], &x[k], &x[3]);
+    gxbp_vec_init(&rest);
+    for (k = 0; k < 3; k++) {
+        gxbp_num_copy(&rest.c[k], &x[k], 1);
+        gxbp_num_divide(&fine->c[k], &rest.c[k], &x[3]);
+    }
 }
 
 /* Coordinates of 180 bits of the result's vertices, each made once (then it has the stamp of b->head_stamp). first: of a vertex' limbs */
@@ -8052,19 +8034,15 @@ static const gxb_num *gxbp_use_fine(gxbp_fines *fines, uint32_t vertex) {
 
 /* Six times the volume of a shell (set root in parent), from coordinates of 180 bits. */
 static double gxbp_fine_volume(gxb_boolean *b, uint32_t *parent, uint32_t root, gxbp_fines *fines) {
-    GXB_NUM(total); GXB_NUM(sum); GXB_NUM(term);
-    gxbp_vec n;
+    GXB_NUM(total); GXB_NUM(term);
     uint32_t t, k;
-    gxbp_vec_init(&n);
     for (t = root; t < b->out_source_count; t++) {
         const uint32_t *v = b->out_triangles + 3 * (size_t)t;
         if (gxbp_find_set(parent, t) != root) continue;
         for (k = 0; k < 3; k++) gxbp_need_fine(b, fines, v[k]);
         if (b->result != GX_OK) return 0;
-        gxbp_num_cross(n.c, gxbp_use_fine(fines, v[0]), gxbp_use_fine(fines, v[1]));
-        gxbp_num_dot(&term, n.c, gxbp_use_fine(fines, v[2]));
-        gxb_num_add(&sum, &total, &term);
-        gxbp_num_copy(&total, &sum, 1);
+        gxbp_num_det3(&term, gxbp_use_fine(fines, v[0]), gxbp_use_fine(fines, v[1]), gxbp_use_fine(fines, v[2]));
+        gxbp_num_increase(&total, &term, 1);
     }
     return gxb_num_to_double(&total);
 }
