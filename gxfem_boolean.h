@@ -4611,22 +4611,40 @@ static uint32_t gxbp_hash_point(const gxb_boolean *b, uint32_t point) {
     return key[0] == GXB_FROM_VERTEX ? gxbp_hash_place(b->cx.points[point].ball.x) : gxbp_hash_key(key);
 }
 
-static GXBP_APART int gxbp_grow_table(gxb_boolean *b, uint32_t extra) {
-    uint32_t size = b->table_size == 0 ? 64 : b->table_size, *table, i, k;
-    if ((uint64_t)(b->table_used + (uint64_t)extra) * 2 <= b->table_size) return 1;
-    while ((uint64_t)size < ((uint64_t)b->table_used + extra) * 3 && size < (uint32_t)1 << 31) size *= 2;
-    table = (uint32_t *)gxbp_allocate(&b->cx.allocator, (size_t)size * sizeof *table);
-    if (table == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
-    memset(table, 0xff, (size_t)size * sizeof *table);
-    for (i = 0; i < b->table_size; i++) {
-        if (b->table[i] == GXB_NONE) continue;
-        for (k = gxbp_hash_point(b, b->table[i]) & (size - 1); table[k] != GXB_NONE; k = (k + 1) & (size - 1)) {}
-        table[k] = b->table[i];
-    }
-    gxbp_release(&b->cx.allocator, b->table, (size_t)b->table_size * sizeof *table);
-    b->table = table;
-    b->table_size = size;
+/* Another table, and all that is in it is to be listed again. */
+static GXBP_COLD int gxbp_renew_table(gxb_boolean *b, uint32_t **table, uint32_t *size, uint32_t larger) {
+    uint32_t *fresh = (uint32_t *)gxbp_allocate(&b->cx.allocator, (size_t)larger * sizeof **table);
+    if (fresh == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
+    gxbp_release(&b->cx.allocator, *table, (size_t)*size * sizeof **table);
+    *table = fresh;
+    *size = larger;
     return 1;
+}
+
+/* Lists the points up to a number, but for those of frames. */
+static GXBP_COLD void gxbp_list_points(gxb_boolean *b, uint32_t count) {
+    const uint32_t last = b->table_size - 1;
+    uint32_t i, k;
+    memset(b->table, 0xff, (size_t)b->table_size * sizeof *b->table);
+    for (i = b->table_used = 0; i < count; i++) {
+        if (b->vertices[i].key[0] == GXB_FROM_VERTEX && b->vertices[i].key[1] == GXB_NONE) continue;
+        for (k = gxbp_hash_point(b, i) & last; b->table[k] != GXB_NONE; k = (k + 1) & last) {}
+        b->table[k] = i;
+        b->table_used++;
+    }
+}
+
+static GXBP_COLD int gxbp_grow_table(gxb_boolean *b, uint32_t extra) {
+    uint32_t size = b->table_size == 0 ? 64 : b->table_size;
+    while ((uint64_t)size < ((uint64_t)b->table_used + extra) * 3 && size < (uint32_t)1 << 31) size *= 2;
+    if (!gxbp_renew_table(b, &b->table, &b->table_size, size)) return 0;
+    gxbp_list_points(b, b->vertex_count);
+    return 1;
+}
+
+/* Room in the table for so many points more */
+static int gxbp_table_room(gxb_boolean *b, uint32_t extra) {
+    return ((uint64_t)b->table_used + extra) * 2 <= b->table_size || gxbp_grow_table(b, extra);
 }
 
 /* A point without coordinates yet. */
@@ -4697,7 +4715,7 @@ static void gxbp_place_point(gxb_boolean *b, uint32_t point, uint32_t kind, uint
 static uint32_t gxbp_keyed_point(gxb_boolean *b, uint32_t kind, uint32_t p, uint32_t q, uint32_t r, int *fresh) {
     uint32_t key[4], k, id;
     *fresh = 0;
-    if (!gxbp_grow_table(b, 1)) return GXB_NONE;
+    if (!gxbp_table_room(b, 1)) return GXB_NONE;
     key[0] = kind; key[1] = p; key[2] = q; key[3] = r;
     for (k = gxbp_hash_key(key) & (b->table_size - 1); b->table[k] != GXB_NONE; k = (k + 1) & (b->table_size - 1))
         if (memcmp(b->vertices[b->table[k]].key, key, sizeof key) == 0) return gxbp_same(b, b->table[k]);
@@ -4891,24 +4909,33 @@ static int gxbp_has_area(const double *p, const double *q, const double *r) {
     return gxbp_has_area_exactly(p, q, r);
 }
 
-static void gxbp_fill_source(gxb_boolean *b, uint32_t s, uint32_t operand, const uint32_t *twin, uint32_t first) {
+/* A source on its own: one facet, behind those that there are, and room for it. */
+static void gxbp_reset_source(gxb_boolean *b, uint32_t s) {
     gxbp_source *t = &b->sources[s];
     gxbp_piece *f = &b->pieces[b->piece_count];
-    const double *x[3];
     int k;
     for (k = 0; k < 3; k++) {
-        x[k] = b->cx.points[t->point[k]].ball.x;
-        t->twin[k] = twin[k] == GXB_NONE ? GXB_NONE : twin[k] + 3 * first;
         t->edge[k] = GXB_NONE;
         f->v[k] = t->point[k];
         f->near[k] = GXB_NONE;
         f->labels[k] = GXBP_BARE;
     }
-    t->plane = GXB_NONE; t->operand = operand; t->segments = GXB_NONE;
-    t->root = s; t->next = GXB_NONE;
-    t->flags = gxbp_has_area(x[0], x[1], x[2]) ? 0 : (uint32_t)GXBP_DEGENERATE;
-    f->source = s; f->next = GXB_NONE; f->covers = GXB_NONE; f->state = GXB_NONE;
+    t->segments = t->next = GXB_NONE;
+    t->root = s;
+    f->source = t->flags & GXBP_DEGENERATE ? GXB_NONE : s;
+    f->next = f->covers = f->state = GXB_NONE;
     t->facet = b->piece_count++;
+}
+
+static void gxbp_fill_source(gxb_boolean *b, uint32_t s, uint32_t operand, const uint32_t *twin, uint32_t first) {
+    gxbp_source *t = &b->sources[s];
+    const gxb_cpoint *x = b->cx.points;
+    int k;
+    for (k = 0; k < 3; k++) t->twin[k] = twin[k] == GXB_NONE ? GXB_NONE : twin[k] + 3 * first;
+    t->plane = GXB_NONE;
+    t->operand = operand;
+    t->flags = gxbp_has_area(x[t->point[0]].ball.x, x[t->point[1]].ball.x, x[t->point[2]].ball.x) ? 0 : (uint32_t)GXBP_DEGENERATE;
+    gxbp_reset_source(b, s);
 }
 
 /* Neighbours across an edge of a triangle without area are none. */
@@ -4916,7 +4943,6 @@ static void gxbp_forget_degenerate(gxb_boolean *b, uint32_t first) {
     uint32_t s, k;
     for (s = first; s < b->source_count; s++) {
         if (!(b->sources[s].flags & GXBP_DEGENERATE)) continue;
-        b->pieces[b->sources[s].facet].source = GXB_NONE;
         for (k = 0; k < 3; k++) {
             const uint32_t h = b->sources[s].twin[k];
             if (h != GXB_NONE) b->sources[h / 3].twin[h % 3] = GXB_NONE;
@@ -5119,7 +5145,7 @@ static gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operand *o, size_
     uint32_t *work;
     if (!GXBP_ROOM(b, operands, operand, 1) || !GXBP_ROOM(b, sources, source, sources) || !GXBP_ROOM(b, bounds, bound, leaves) ||
         !GXBP_ROOM(b, pieces, piece, pieces) || !GXBP_ROOM(b, vertices, vertex, points) ||
-        !gxbp_grow_table(b, (uint32_t)o->vertex_count)) return b->result;
+        !gxbp_table_room(b, (uint32_t)o->vertex_count)) return b->result;
     result = GXBP_RESERVE(&b->cx, points, point, points);
     if (result != GX_OK) return result;
     work = (uint32_t *)gxbp_borrow(b, words * sizeof *work);
@@ -7005,20 +7031,19 @@ static uint32_t gxbp_hash_winding(const int32_t *winding, uint32_t count) {
     return hash;
 }
 
-static GXBP_APART int gxbp_grow_states(gxb_boolean *b) {
-    const uint32_t n = b->operand_count, size = b->state_table_size == 0 ? 64 : 2 * b->state_table_size;
-    uint32_t *table, i, k;
-    if (2 * (b->state_count + 1) <= b->state_table_size) return 1;
-    table = (uint32_t *)gxbp_allocate(&b->cx.allocator, (size_t)size * sizeof *table);
-    if (table == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
-    memset(table, 0xff, (size_t)size * sizeof *table);
+static GXBP_COLD void gxbp_list_states(gxb_boolean *b) {
+    const uint32_t n = b->operand_count, last = b->state_table_size - 1;
+    uint32_t i, k;
+    memset(b->state_table, 0xff, (size_t)b->state_table_size * sizeof *b->state_table);
     for (i = 0; i < b->state_count; i++) {
-        for (k = gxbp_hash_winding(b->windings + (size_t)i * n, n) & (size - 1); table[k] != GXB_NONE; k = (k + 1) & (size - 1)) {}
-        table[k] = i;
+        for (k = gxbp_hash_winding(b->windings + (size_t)i * n, n) & last; b->state_table[k] != GXB_NONE; k = (k + 1) & last) {}
+        b->state_table[k] = i;
     }
-    gxbp_release(&b->cx.allocator, b->state_table, (size_t)b->state_table_size * sizeof *table);
-    b->state_table = table;
-    b->state_table_size = size;
+}
+
+static GXBP_COLD int gxbp_grow_states(gxb_boolean *b) {
+    if (!gxbp_renew_table(b, &b->state_table, &b->state_table_size, b->state_table_size == 0 ? 64 : 2 * b->state_table_size)) return 0;
+    gxbp_list_states(b);
     return 1;
 }
 
@@ -7027,7 +7052,7 @@ static uint32_t gxbp_find_state(gxb_boolean *b) {
     const uint32_t n = b->operand_count;
     const int32_t *winding = b->windings + (size_t)b->state_count * n;
     uint32_t k;
-    if (!gxbp_grow_states(b) || !GXBP_ROOM(b, states, state, 1)) return 0;
+    if ((2 * (b->state_count + 1) > b->state_table_size && !gxbp_grow_states(b)) || !GXBP_ROOM(b, states, state, 1)) return 0;
     for (k = gxbp_hash_winding(winding, n) & (b->state_table_size - 1); b->state_table[k] != GXB_NONE; k = (k + 1) & (b->state_table_size - 1))
         if (memcmp(b->windings + (size_t)b->state_table[k] * n, winding, n * sizeof *winding) == 0) return b->state_table[k];
     b->state_table[k] = b->state_count;
@@ -7226,16 +7251,17 @@ static void gxbp_cross_own(gxb_boolean *b, const gxbp_ray *ray) {
     if (side < 0) gxbp_add_covers(b, ray->f, -1, ray->winding);         /* from the state behind to the one in front */
 }
 
-static uint32_t gxbp_state_by_ray(gxb_boolean *b, uint32_t f) {
+/* The state in front of a facet, from one (GXB_NONE: zeros) that does not count operands from the first on. */
+static uint32_t gxbp_state_by_ray(gxb_boolean *b, uint32_t f, uint32_t state, uint32_t first) {
     gxbp_ray ray;
     uint32_t i;
     if (!gxbp_need_plane(b, b->pieces[f].source)) return 0;
-    ray.winding = gxbp_copy_winding(b, GXB_NONE);
+    ray.winding = gxbp_copy_winding(b, state);
     if (ray.winding == NULL) return 0;
     gxbp_set_ray(b, &ray, f);
-    for (i = 0; i < b->operand_count && b->result == GX_OK; i++)
+    for (i = first; i < b->operand_count && b->result == GX_OK; i++)
         if (b->operands[i].operation != GXB_SPLIT) gxbp_shoot(b, &ray, &b->operands[i], b->operands[i].tree.levels - 1, 0);
-    gxbp_cross_own(b, &ray);
+    if (first == 0) gxbp_cross_own(b, &ray);            /* else the facet is of an older operand, and its own surfaces are counted */
     return gxbp_find_state(b);
 }
 
@@ -7337,9 +7363,8 @@ static int gxbp_is_surface(const gxb_boolean *b, uint32_t f) {
 /* Lengthens the states by the numbers of new operands, all 0: each state keeps its place. */
 static int gxbp_lengthen_states(gxb_boolean *b) {
     const uint32_t n = b->operand_count, m = b->stated;
-    uint32_t i, k;
+    uint32_t i;
     memset(b->steps, 0, sizeof b->steps);
-    if (b->state_table_size > 0) memset(b->state_table, 0xff, (size_t)b->state_table_size * sizeof *b->state_table);
     if (m == 0) b->state_count = 0;
     b->winding_count = b->state_count * m;
     if (!GXBP_ROOM(b, windings, winding, (size_t)b->state_count * (n - m) + n)) return 0;
@@ -7347,12 +7372,8 @@ static int gxbp_lengthen_states(gxb_boolean *b) {
         memmove(b->windings + (size_t)i * n, b->windings + (size_t)i * m, m * sizeof *b->windings);
         memset(b->windings + (size_t)i * n + m, 0, (n - m) * sizeof *b->windings);
     }
-    for (i = 0; i < b->state_count; i++) {
-        const int32_t *winding = b->windings + (size_t)i * n;
-        b->states[i] = (uint32_t)gxbp_is_inside(b, winding);
-        for (k = gxbp_hash_winding(winding, n) & (b->state_table_size - 1); b->state_table[k] != GXB_NONE; k = (k + 1) & (b->state_table_size - 1)) {}
-        b->state_table[k] = i;
-    }
+    for (i = 0; i < b->state_count; i++) b->states[i] = (uint32_t)gxbp_is_inside(b, b->windings + (size_t)i * n);
+    if (b->state_table_size > 0) gxbp_list_states(b);
     return 1;
 }
 
@@ -7419,18 +7440,6 @@ static void gxbp_spread_closed(gxb_boolean *b, uint32_t first) {
     }
 }
 
-static void gxbp_close_by_ray(gxb_boolean *b, uint32_t f) {
-    gxbp_ray ray;
-    uint32_t i;
-    if (!gxbp_need_plane(b, b->pieces[f].source)) return;
-    ray.winding = gxbp_copy_winding(b, b->pieces[f].state & ~GXBP_OPEN);
-    if (ray.winding == NULL) return;
-    gxbp_set_ray(b, &ray, f);
-    for (i = b->stated; i < b->operand_count && b->result == GX_OK; i++)
-        if (b->operands[i].operation != GXB_SPLIT) gxbp_shoot(b, &ray, &b->operands[i], b->operands[i].tree.levels - 1, 0);
-    b->pieces[f].state = gxbp_find_state(b);
-}
-
 /* Facets that are not open lend to their open neighbours; where there are none, a ray helps. */
 static void gxbp_close_states(gxb_boolean *b) {
     uint32_t f, i, pass;
@@ -7448,7 +7457,7 @@ static void gxbp_close_states(gxb_boolean *b) {
                 if (g != GXB_NONE && b->pieces[g].state != GXB_NONE && !gxbp_is_open(b, g)) gxbp_spread_closed(b, g);
             }
             if (pass == 0 || !gxbp_is_open(b, f)) continue;
-            gxbp_close_by_ray(b, f);
+            b->pieces[f].state = gxbp_state_by_ray(b, f, b->pieces[f].state & ~GXBP_OPEN, b->stated);
             gxbp_spread_closed(b, f);
         }
 }
@@ -7463,7 +7472,7 @@ static void gxbp_find_states(gxb_boolean *b) {
         for (f = 0; f < b->piece_count && b->result == GX_OK; f++) {
             if (b->pieces[f].state != GXB_NONE || !gxbp_is_surface(b, f)) continue;
             if (pass == 0 && b->sources[b->pieces[f].source].flags & GXBP_DIVIDED) continue;
-            b->pieces[f].state = gxbp_state_by_ray(b, f);
+            b->pieces[f].state = gxbp_state_by_ray(b, f, GXB_NONE, 0);
             gxbp_spread_state(b, f);
         }
     b->stated = b->operand_count;
@@ -7579,10 +7588,16 @@ static void gxbp_emit(gxb_boolean *b, uint32_t f, int reversed, uint32_t source)
     b->out_reversed[b->out_reversed_count++] = reversed != (gxbp_facing(b, b->pieces[f].source, source) < 0);
 }
 
+static GXBP_APART void gxbp_set_triangle_count(gxb_boolean *b, uint32_t n) {
+    b->out_triangle_count = 3 * n;
+    b->out_source_count = b->out_operand_count = b->out_plane_count = b->out_reversed_count = b->out_component_count = n;
+}
+
 static void gxbp_extract(gxb_boolean *b) {
     uint32_t f;
     for (f = 0; f < b->vertex_count; f++) b->vertices[f].slot = GXB_NONE;
-    b->out_point_count = b->out_triangle_count = b->out_operand_count = b->out_source_count = b->out_plane_count = b->out_reversed_count = 0;
+    gxbp_set_triangle_count(b, 0);
+    b->out_point_count = b->out_vertex_count = b->out_origin_count = 0;
     if (!gxbp_more_triangles(b, b->piece_count / 2) || !GXBP_ROOM(b, out_triangles, out_triangle, 3 * (size_t)(b->piece_count / 2))) return;
     for (f = 0; f < b->piece_count && b->result == GX_OK; f++) {
         uint32_t source, behind;
@@ -7777,25 +7792,42 @@ static void gxbp_take_vertex(gxb_boolean *b, gxbp_coarse *c, uint32_t v) {
     }
 }
 
-/* What is left becomes the result; needed: a word for each vertex. */
-static void gxbp_close_coarse(gxb_boolean *b, const gxbp_coarse *c, uint32_t *needed) {
-    uint32_t t, k, n = 0, points = 0;
-    memset(needed, 0, b->out_point_count * sizeof *needed);
+/* Of which source a triangle is, and how it faces */
+static GXBP_COLD void gxbp_copy_origin(gxb_boolean *b, uint32_t to, uint32_t from) {
+    b->out_operands[to] = b->out_operands[from]; b->out_sources[to] = b->out_sources[from];
+    b->out_planes[to] = b->out_planes[from]; b->out_reversed[to] = b->out_reversed[from];
+}
+
+/* Vertices that no triangle has any more are taken out, rounded or not yet; map: a word for each. */
+static GXBP_COLD void gxbp_drop_lonely(gxb_boolean *b, uint32_t *map) {
+    const int rounded = b->out_vertex_count > 0;
+    uint32_t i, n = 0;
+    memset(map, 0xff, b->out_point_count * sizeof *map);
+    for (i = 0; i < b->out_triangle_count; i++) map[b->out_triangles[i]] = 0;
+    for (i = 0; i < b->out_point_count; i++) {
+        if (map[i] == GXB_NONE) continue;
+        if (rounded) {
+            memmove(b->out_vertices + 3 * (size_t)n, b->out_vertices + 3 * (size_t)i, 3 * sizeof *b->out_vertices);
+            b->out_origins[n] = b->out_origins[i];
+        }
+        b->out_points[n] = b->out_points[i];
+        map[i] = n++;
+    }
+    for (i = 0; i < b->out_triangle_count; i++) b->out_triangles[i] = map[b->out_triangles[i]];
+    b->out_point_count = n;
+    if (rounded) { b->out_origin_count = n; b->out_vertex_count = 3 * n; }
+}
+
+/* What is left becomes the result. */
+static void gxbp_close_coarse(gxb_boolean *b, const gxbp_coarse *c) {
+    uint32_t t, k, n = 0;
     for (t = 0; t < b->out_source_count; t++) {
         if (c->corner[3 * t] == GXB_NONE) continue;
-        for (k = 0; k < 3; k++) needed[b->out_triangles[3 * n + k] = c->umbrellas[c->corner[3 * t + k]].vertex] = 1;
-        b->out_operands[n] = b->out_operands[t]; b->out_sources[n] = b->out_sources[t];
-        b->out_planes[n] = b->out_planes[t]; b->out_reversed[n++] = b->out_reversed[t];
+        for (k = 0; k < 3; k++) b->out_triangles[3 * n + k] = c->umbrellas[c->corner[3 * t + k]].vertex;
+        gxbp_copy_origin(b, n++, t);
     }
-    for (k = 0; k < b->out_point_count; k++) {
-        if (!needed[k]) continue;
-        b->out_points[points] = b->out_points[k];
-        needed[k] = points++;
-    }
-    for (k = 0; k < 3 * n; k++) b->out_triangles[k] = needed[b->out_triangles[k]];
-    b->out_point_count = points;
-    b->out_triangle_count = 3 * n;
-    b->out_operand_count = b->out_source_count = b->out_plane_count = b->out_reversed_count = n;
+    gxbp_set_triangle_count(b, n);
+    gxbp_drop_lonely(b, c->degree);
 }
 
 static GXBP_COLD void gxbp_coarsen(gxb_boolean *b) {
@@ -7815,7 +7847,7 @@ static GXBP_COLD void gxbp_coarsen(gxb_boolean *b) {
         gxbp_find_outlines(b, &fan, &c);
         gxbp_make_umbrellas(b, &c);
         for (v = 0; v < points && b->result == GX_OK; v++) if (gxbp_is_needless(b, &c, v)) gxbp_take_vertex(b, &c, v);
-        if (b->result == GX_OK) gxbp_close_coarse(b, &c, c.degree);
+        if (b->result == GX_OK) gxbp_close_coarse(b, &c);
         gxbp_release(&b->cx.allocator, c.near, bytes);
     } else gxbp_stop(b, GX_ERROR_MEMORY);
     gxbp_drop_fan(b, &fan);
@@ -7823,7 +7855,6 @@ static GXBP_COLD void gxbp_coarsen(gxb_boolean *b) {
 
 static void gxbp_round_vertices(gxb_boolean *b) {
     uint32_t i;
-    b->out_vertex_count = b->out_origin_count = 0;
     if (b->result != GX_OK || !GXBP_ROOM(b, out_vertices, out_vertex, 3 * (size_t)b->out_point_count) ||
         !GXBP_ROOM(b, out_origins, out_origin, b->out_point_count)) return;
     for (i = 0; i < b->out_point_count; i++) {
@@ -8331,8 +8362,7 @@ static int gxbp_flip(gxb_boolean *b, uint32_t h) {
     gxbp_set_out_triangle(b, s, o, q, r);
     gxbp_join_out(b, 3 * t, po); gxbp_join_out(b, 3 * t + 1, 3 * s + 2); gxbp_join_out(b, 3 * t + 2, rp);
     gxbp_join_out(b, 3 * s, oq); gxbp_join_out(b, 3 * s + 1, qr);
-    b->out_operands[t] = b->out_operands[s]; b->out_sources[t] = b->out_sources[s];
-    b->out_planes[t] = b->out_planes[s]; b->out_reversed[t] = b->out_reversed[s];
+    gxbp_copy_origin(b, t, s);
     return 1;
 }
 
@@ -8390,20 +8420,20 @@ static uint32_t gxbp_mend_edges(gxb_boolean *b) {
 /* Triangles that are gone are taken out of all lists; map: room for one word per triangle. */
 static void gxbp_drop_collapsed(gxb_boolean *b, uint32_t *map) {
     const uint32_t count = b->out_source_count;
-    uint32_t t, n = 0, k;
-    for (t = 0; t < count; t++) map[t] = b->out_triangles[3 * t] == GXB_NONE ? GXB_NONE : n++;
+    uint32_t t, k, left = 0;
+    for (t = 0; t < count; t++) map[t] = b->out_triangles[3 * t] == GXB_NONE ? GXB_NONE : left++;
     for (t = 0; t < count; t++) {
-        if ((n = map[t]) == GXB_NONE) continue;
+        const uint32_t n = map[t];
+        if (n == GXB_NONE) continue;
         for (k = 0; k < 3; k++) {
             b->out_triangles[3 * n + k] = b->out_triangles[3 * t + k];
             b->out_twins[3 * n + k] = 3 * map[b->out_twins[3 * t + k] / 3] + b->out_twins[3 * t + k] % 3;
         }
-        b->out_operands[n] = b->out_operands[t]; b->out_sources[n] = b->out_sources[t]; b->out_planes[n] = b->out_planes[t];
-        b->out_reversed[n] = b->out_reversed[t]; b->out_components[n] = b->out_components[t];
+        gxbp_copy_origin(b, n, t);
+        b->out_components[n] = b->out_components[t];
     }
-    for (n = t = 0; t < count; t++) n += map[t] != GXB_NONE;
-    b->out_triangle_count = b->out_twin_count = 3 * n;
-    b->out_source_count = b->out_operand_count = b->out_plane_count = b->out_reversed_count = b->out_component_count = n;
+    gxbp_set_triangle_count(b, left);
+    b->out_twin_count = 3 * left;
 }
 
 /* How many triangles around a vertex are defects, all corners there together */
@@ -8447,23 +8477,6 @@ static uint32_t gxbp_mend_places(gxb_boolean *b, const double *home) {
         }
     gxbp_drop_fan(b, &fan);
     return done;
-}
-
-/* Vertices that no triangle has any more are taken out. */
-static void gxbp_drop_lonely(gxb_boolean *b, uint32_t *map) {
-    uint32_t i, n = 0;
-    for (i = 0; i < b->out_point_count; i++) map[i] = GXB_NONE;
-    for (i = 0; i < b->out_triangle_count; i++) map[b->out_triangles[i]] = 0;
-    for (i = 0; i < b->out_point_count; i++) {
-        if (map[i] == GXB_NONE) continue;
-        memmove(b->out_vertices + 3 * (size_t)n, b->out_vertices + 3 * (size_t)i, 3 * sizeof *b->out_vertices);
-        b->out_origins[n] = b->out_origins[i];
-        b->out_points[n] = b->out_points[i];
-        map[i] = n++;
-    }
-    for (i = 0; i < b->out_triangle_count; i++) b->out_triangles[i] = map[b->out_triangles[i]];
-    b->out_point_count = b->out_origin_count = n;
-    b->out_vertex_count = 3 * n;
 }
 
 /* Each step leaves fewer defects than there were. */
@@ -8568,17 +8581,7 @@ static gx_result gxbp_check_operand(const gxb_boolean *b, const gxb_operand *o, 
 
 /* Forgets the points from count on. */
 static GXBP_COLD void gxbp_cut_points_back(gxb_boolean *b, uint32_t count) {
-    uint32_t i, k, n = 0;
-    for (i = 0; i < b->table_size; i++) if (b->table[i] != GXB_NONE && b->table[i] >= count) n++;
-    if (n > 0) {
-        memset(b->table, 0xff, (size_t)b->table_size * sizeof *b->table);
-        for (i = 0; i < count; i++) {
-            if (b->vertices[i].key[0] == GXB_FROM_VERTEX && b->vertices[i].key[1] == GXB_NONE) continue;      /* of a frame */
-            for (k = gxbp_hash_point(b, i) & (b->table_size - 1); b->table[k] != GXB_NONE; k = (k + 1) & (b->table_size - 1)) {}
-            b->table[k] = i;
-        }
-        b->table_used -= n;
-    }
+    if (b->table_size > 0) gxbp_list_points(b, count);
     b->vertex_count = b->cx.point_count = count;
 }
 
@@ -8607,24 +8610,12 @@ GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, 
 
 /* After an error: the operands are as they came, nothing is arranged. Points that were found stay known. */
 static GXBP_COLD void gxbp_forget_arrangement(gxb_boolean *b) {
-    uint32_t s, k;
+    uint32_t s;
     b->piece_count = b->link_count = b->segment_count = b->cut_count = b->cut_point_count = b->hit_count = b->dirty_count = b->divided_count = 0;
     b->arranged = b->segment_mark = b->stated = 0;
     for (s = 0; s < b->source_count; s++) {
-        gxbp_source *t = &b->sources[s];
-        gxbp_piece *f = &b->pieces[b->piece_count];
-        for (k = 0; k < 3; k++) {
-            t->edge[k] = GXB_NONE;
-            f->v[k] = t->point[k];
-            f->near[k] = GXB_NONE;
-            f->labels[k] = GXBP_BARE;
-        }
-        t->segments = t->next = GXB_NONE;
-        t->root = s;
-        t->flags &= (uint32_t)GXBP_DEGENERATE;
-        f->source = t->flags & GXBP_DEGENERATE ? GXB_NONE : s;
-        f->next = f->covers = f->state = GXB_NONE;
-        t->facet = b->piece_count++;
+        b->sources[s].flags &= (uint32_t)GXBP_DEGENERATE;
+        gxbp_reset_source(b, s);
     }
 }
 
