@@ -1632,7 +1632,7 @@ static GXBP_COLD void gxbp_compact_pool(gxb_complex *cx) {
     cx->pool_count = cx->pool_live = used;
 }
 
-static void gxbp_set_marks(gxb_complex *cx) {
+static GXBP_APART void gxbp_set_marks(gxb_complex *cx) {
     cx->mark[0] = cx->point_count; cx->mark[1] = cx->plane_count; cx->mark[2] = cx->edge_count; cx->mark[3] = cx->facet_count;
     cx->mark[4] = cx->leaf_count; cx->mark[5] = cx->tree_count; cx->mark[6] = cx->label_count; cx->mark[7] = cx->pool_count;
     cx->mark_block = cx->blocks;
@@ -1912,7 +1912,7 @@ static int gxbp_incident_by_line(const gxb_complex *cx, const uint32_t def[3], u
 }
 
 /* x: coordinates of the points (as many as count) where all are given by doubles. Else 0 */
-static int gxbp_given_points(const gxb_complex *cx, const uint32_t *points, int count, const double **x) {
+static GXBP_APART int gxbp_given_points(const gxb_complex *cx, const uint32_t *points, int count, const double **x) {
     int k;
     for (k = 0; k < count; k++) {
         const gxb_cpoint *p = &cx->points[points[k]];
@@ -2846,7 +2846,7 @@ static gx_result gxbp_cover_edge(gxb_complex *cx, gxb_triangle *t, uint32_t edge
     return GX_OK;
 }
 
-static gx_result gxbp_cover_edges(gxb_complex *cx, gxb_triangle *t, uint32_t edge, int *covered) {
+static GXBP_COLD gx_result gxbp_cover_edges(gxb_complex *cx, gxb_triangle *t, uint32_t edge, int *covered) {
     const uint32_t child = cx->edges[edge].child;
     gx_result result;
     if (child == GXB_NONE) return gxbp_cover_edge(cx, t, edge, 0, covered);
@@ -2933,7 +2933,7 @@ static int gxbp_leaf_sides(gxb_complex *cx, uint32_t leaf, const gxbp_knife *kni
     return sides;
 }
 
-static GXBP_APART int gxbp_sides_below(gxb_complex *cx, uint32_t reference, const gxbp_knife *knife) {
+static GXBP_COLD int gxbp_sides_below(gxb_complex *cx, uint32_t reference, const gxbp_knife *knife) {
     int sides;
     if (!(reference & 1)) return gxbp_leaf_sides(cx, reference >> 1, knife);
     sides = gxbp_sides_below(cx, cx->nodes[reference >> 1].child[0], knife);
@@ -3014,7 +3014,7 @@ static gx_result gxbp_follow_plan(gxb_complex *cx, const gxbp_plan *plan, uint32
 }
 
 /* Balances the tree below top along the path to a node. */
-static gx_result gxbp_balance(gxb_complex *cx, uint32_t top, uint32_t node, uint32_t element) {
+static GXBP_COLD gx_result gxbp_balance(gxb_complex *cx, uint32_t top, uint32_t node, uint32_t element) {
     const uint32_t count = gxbp_depth(cx, node) - gxbp_depth(cx, cx->nodes[top].parent);
     const size_t size = count * (2 * sizeof(gxbp_rung) + sizeof(gxbp_step));
     gxbp_rung *rung = (gxbp_rung *)gxbp_allocate(&cx->allocator, size);
@@ -3085,7 +3085,7 @@ static uint32_t gxbp_part_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife 
 enum { GXBP_MANY_FACETS = 24, GXBP_SAMPLE = 32 };      /* looked at from so many on; of so many at most the median is taken */
 
 /* A number from a to b > a with few bits */
-static double gxbp_between(double a, double b) {
+static GXBP_COLD double gxbp_between(double a, double b) {
     const uint64_t x = gxbp_bits(a), y = gxbp_bits(b);
     int drop = 52;
     if (gxbp_compare_doubles(a, 0) < 0) return gxbp_compare_doubles(b, 0) < 0 ? -gxbp_between(-b, -a) : 0;
@@ -4061,7 +4061,7 @@ typedef struct gxbp_checker {
 } gxbp_checker;
 
 /* Appends the pieces of a signed edge; none may come twice in a facet. */
-static void gxbp_collect_edges(gxbp_checker *c, uint32_t signed_edge) {
+static GXBP_COLD void gxbp_collect_edges(gxbp_checker *c, uint32_t signed_edge) {
     const uint32_t child = c->cx->edges[signed_edge >> 1].child, back = signed_edge & 1;
     if (c->s->result != GX_OK) return;
     if (child != GXB_NONE) {
@@ -4154,7 +4154,7 @@ static void gxbp_check_facets(gxbp_checker *c) {
 }
 
 /* Collects the facets into which one was divided; those of a leaf's list must be its own, each listed once. */
-static void gxbp_collect_facets(gxbp_checker *c, uint32_t facet, uint32_t leaf) {
+static GXBP_COLD void gxbp_collect_facets(gxbp_checker *c, uint32_t facet, uint32_t leaf) {
     const gxb_facet *f = &c->cx->facets[facet];
     if (c->s->result != GX_OK) return;
     if (f->child != GXB_NONE) {
@@ -4186,7 +4186,7 @@ static void gxbp_add_border(gxbp_checker *c, uint32_t facet, uint32_t flip, uint
 /* --- mesh faces: their facets cover them once, up to the pieces of their mesh edges --- */
 
 /* Are all pieces of the signed edge on the border? Returns how many there are. */
-static uint32_t gxbp_border_pieces(gxbp_checker *c, uint32_t signed_edge, uint32_t round) {
+static GXBP_COLD uint32_t gxbp_border_pieces(gxbp_checker *c, uint32_t signed_edge, uint32_t round) {
     const uint32_t child = c->cx->edges[signed_edge >> 1].child, back = signed_edge & 1;
     if (child != GXB_NONE)
         return gxbp_border_pieces(c, child << 1 | back, round) + gxbp_border_pieces(c, (child + 1) << 1 | back, round);
@@ -4581,7 +4581,7 @@ static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, size_t item, size_t
      gxbp_room(b, &(b)->array, sizeof *(b)->array, extra))
 
 /* Memory for as long as nobody else takes scratch; NULL: there is none. It is kept: what needs some next finds pages that have been touched. */
-static void *gxbp_borrow(gxb_boolean *b, size_t bytes) {
+static GXBP_APART void *gxbp_borrow(gxb_boolean *b, size_t bytes) {
     b->scratch_count = 0;
     return GXBP_ROOM(b, scratch, scratch, bytes / sizeof *b->scratch + 1) ? b->scratch : NULL;
 }
@@ -4648,7 +4648,7 @@ static int gxbp_table_room(gxb_boolean *b, uint32_t extra) {
 }
 
 /* A point without coordinates yet. */
-static inline uint32_t gxbp_new_vertex(gxb_boolean *b, uint32_t kind, uint32_t p, uint32_t q, uint32_t r) {
+static GXBP_APART uint32_t gxbp_new_vertex(gxb_boolean *b, uint32_t kind, uint32_t p, uint32_t q, uint32_t r) {
     uint32_t id;
     gx_result result;
     gxbp_vertex *v;
@@ -4910,7 +4910,7 @@ static int gxbp_has_area(const double *p, const double *q, const double *r) {
 }
 
 /* A source on its own: one facet, behind those that there are, and room for it. */
-static void gxbp_reset_source(gxb_boolean *b, uint32_t s) {
+static inline void gxbp_reset_source(gxb_boolean *b, uint32_t s) {
     gxbp_source *t = &b->sources[s];
     gxbp_piece *f = &b->pieces[b->piece_count];
     int k;
@@ -5981,7 +5981,7 @@ static void gxbp_label_edge(gxb_boolean *b, uint32_t f, int k, uint32_t label) {
 /* The line from p to x. In a triangle's plane (label) its sides are those of the plane, times sigma (gxbp_segment.left where that is known). */
 typedef struct gxbp_line { uint32_t p, x, plane, source; int sigma; } gxbp_line;
 
-static void gxbp_set_line(gxb_boolean *b, gxbp_line *line, uint32_t s, uint32_t p, uint32_t x, uint32_t label, int left) {
+static GXBP_APART void gxbp_set_line(gxb_boolean *b, gxbp_line *line, uint32_t s, uint32_t p, uint32_t x, uint32_t label, int left) {
     int k;
     line->p = p; line->x = x; line->plane = GXB_NONE; line->source = label; line->sigma = 1;
     if (label & GXBP_EDGE_LABEL) return;
@@ -7007,7 +7007,7 @@ static int gxbp_counts(uint32_t rule, int32_t winding) {
     }
 }
 
-static int gxbp_is_inside(const gxb_boolean *b, const int32_t *winding) {
+static GXBP_COLD int gxbp_is_inside(const gxb_boolean *b, const int32_t *winding) {
     uint32_t i;
     int inside = 0;
     if (b->inside != NULL) return b->inside(b->user, winding, b->operand_count) != 0;
@@ -7134,7 +7134,7 @@ static uint32_t gxbp_state_beyond(gxb_boolean *b, uint32_t f, int k) {
 }
 
 /* Adds sign times the facet's own surfaces: behind it the winding number is larger by one for each that faces as its plane does. */
-static void gxbp_add_covers(const gxb_boolean *b, uint32_t f, int sign, int32_t *winding) {
+static GXBP_COLD void gxbp_add_covers(const gxb_boolean *b, uint32_t f, int sign, int32_t *winding) {
     const uint32_t r = b->pieces[f].source;
     uint32_t c;
     if (b->pieces[f].covers == GXB_NONE) {
@@ -7441,7 +7441,7 @@ static void gxbp_spread_closed(gxb_boolean *b, uint32_t first) {
 }
 
 /* Facets that are not open lend to their open neighbours; where there are none, a ray helps. */
-static void gxbp_close_states(gxb_boolean *b) {
+static GXBP_COLD void gxbp_close_states(gxb_boolean *b) {
     uint32_t f, i, pass;
     int k;
     b->chain_count = 0;
