@@ -1571,16 +1571,14 @@ static GXBP_COLD void gxbp_drop_arrays(const gx_allocator *a, void *owner, const
 enum { GXBP_EDGES, GXBP_FACETS, GXBP_LEAVES, GXBP_NODES, GXBP_POINTS, GXBP_ROOTS, GXBP_FACES, GXBP_MESH_EDGES };
 
 static void *gxbp_item(gxb_complex *cx, uint32_t array, uint32_t index, size_t *size) {
-    switch (array) {
-    case GXBP_EDGES: *size = sizeof *cx->edges; return cx->edges + index;
-    case GXBP_FACETS: *size = sizeof *cx->facets; return cx->facets + index;
-    case GXBP_LEAVES: *size = sizeof *cx->leaves; return cx->leaves + index;
-    case GXBP_NODES: *size = sizeof *cx->nodes; return cx->nodes + index;
-    case GXBP_POINTS: *size = sizeof *cx->points; return cx->points + index;
-    case GXBP_ROOTS: *size = sizeof *cx->root; return cx->root + index;
-    case GXBP_FACES: *size = sizeof *cx->face_facet; return cx->face_facet + index;
-    default: *size = sizeof *cx->mesh_edge; return cx->mesh_edge + index;
-    }
+    static const gxbp_array arrays[] = {
+        GXBP_ARRAY(gxb_complex, edges), GXBP_ARRAY(gxb_complex, facets), GXBP_ARRAY(gxb_complex, leaves), GXBP_ARRAY(gxb_complex, nodes),
+        GXBP_ARRAY(gxb_complex, points), GXBP_ARRAY(gxb_complex, root), GXBP_ARRAY(gxb_complex, face_facet), GXBP_ARRAY(gxb_complex, mesh_edge)
+    };
+    unsigned char *items;
+    memcpy(&items, (unsigned char *)cx + arrays[array].at, sizeof items);
+    *size = arrays[array].item;
+    return items + index * *size;
 }
 
 /* Items older than the transaction. */
@@ -2086,7 +2084,7 @@ static int gxbp_compare_keys(const void *a, const void *b) {
 static const uint8_t gxbp_face_nodes[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};     /* outward, opposite to node k */
 static const uint8_t gxbp_edge_nodes[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 
-static void gxbp_sort3(uint32_t a[3]) {
+static GXBP_APART void gxbp_sort3(uint32_t a[3]) {
     uint32_t t;
     if (a[0] > a[1]) { t = a[0]; a[0] = a[1]; a[1] = t; }
     if (a[1] > a[2]) { t = a[1]; a[1] = a[2]; a[2] = t; }
@@ -5502,6 +5500,17 @@ static int gxbp_no_edge_separates(int turn[3][3], int orientation) {
     return 1;
 }
 
+/* Corner k of s in t; turn[j][k]: against t's edge j */
+static GXBP_COLD void gxbp_meet_corner(gxb_boolean *b, uint32_t s, int k, uint32_t t, int turn[3][3], int orientation, gxbp_meeting *m) {
+    int sign[3], j;
+    gxbp_spot spot;
+    for (j = 0; j < 3; j++) sign[j] = turn[j][k] * orientation;
+    spot = gxbp_spot_of(sign);
+    if (spot.outside) return;
+    gxbp_found(b, m, b->sources[s].point[k]);
+    if (spot.edge >= 0) gxbp_hit_edge(b, t, spot.edge, b->sources[s].point[k]);
+}
+
 static GXBP_COLD void gxbp_meet_in_plane(gxb_boolean *b, uint32_t s, uint32_t t) {
     const uint32_t plane = b->sources[s].plane;
     int of_s[3][3], of_t[3][3], k, j, facing;
@@ -5513,16 +5522,8 @@ static GXBP_COLD void gxbp_meet_in_plane(gxb_boolean *b, uint32_t s, uint32_t t)
     }
     facing = gxbp_flat_turn(b, plane, gxbp_corner_of(b, t, 0), gxbp_corner_of(b, t, 1), gxbp_corner_of(b, t, 2));
     for (k = 0; k < 3; k++) {
-        int sign[3];
-        gxbp_spot spot;
-        for (j = 0; j < 3; j++) sign[j] = of_t[j][k] * facing;
-        spot = gxbp_spot_of(sign);
-        if (!spot.outside) gxbp_found(b, &m, b->sources[s].point[k]);
-        if (!spot.outside && spot.edge >= 0) gxbp_hit_edge(b, t, spot.edge, b->sources[s].point[k]);
-        for (j = 0; j < 3; j++) sign[j] = of_s[j][k];
-        spot = gxbp_spot_of(sign);
-        if (!spot.outside) gxbp_found(b, &m, b->sources[t].point[k]);
-        if (!spot.outside && spot.edge >= 0) gxbp_hit_edge(b, s, spot.edge, b->sources[t].point[k]);
+        gxbp_meet_corner(b, s, k, t, of_t, facing, &m);
+        gxbp_meet_corner(b, t, k, s, of_s, 1, &m);
     }
     for (k = 0; k < 3; k++) for (j = 0; j < 3; j++) {
         uint32_t point;
@@ -5623,7 +5624,7 @@ static gxbp_box gxbp_leaf_box(const gxbp_leaf_boxes *leaf, uint32_t x) {
     return box;
 }
 
-static void gxbp_meet_leaves(gxb_boolean *b, const gxbp_operand *o, uint32_t i, const gxbp_operand *q, uint32_t j) {
+static GXBP_APART void gxbp_meet_leaves(gxb_boolean *b, const gxbp_operand *o, uint32_t i, const gxbp_operand *q, uint32_t j) {
     uint32_t first[GXBP_LEAF], second[GXBP_LEAF], x, y;
     gxbp_test_leaf(&b->bounds[o->bounds + i], &b->boxes[q->tree.first + j], first);
     for (x = 0; x < GXBP_LEAF; x++) {
@@ -5642,21 +5643,16 @@ static int gxbp_boxes_meet(const gxb_boolean *b, const gxbp_tree *s, uint32_t l,
     return gxbp_box_meets(&b->boxes[s->first + s->level[l] + i], &b->boxes[t->first + t->level[m] + j]);
 }
 
-/* Box i of level l of one tree and box j of level m of the other, which meet. Depth: the sum of their levels. */
+/* Box i of level l of one tree and box j of level m of the other, which meet: of the larger, or of both, those in it. Depth: the larger level. */
 static GXBP_APART void gxbp_meet_boxes(gxb_boolean *b, const gxbp_operand *o, uint32_t l, uint32_t i, const gxbp_operand *q, uint32_t m, uint32_t j) {
     const gxbp_tree *s = &o->tree, *t = &q->tree;
+    const uint32_t of_s = l >= m, of_t = m >= l;
     uint32_t c, d;
     if (b->result != GX_OK) return;
-    if (l == 0 && m == 0) gxbp_meet_leaves(b, o, i, q, j);
-    else if (l > m) {
-        for (c = 2 * i; c < 2 * i + 2 && c < s->size[l - 1]; c++)
-            if (gxbp_boxes_meet(b, s, l - 1, c, t, m, j)) gxbp_meet_boxes(b, o, l - 1, c, q, m, j);
-    } else if (l == m) {
-        for (c = 2 * i; c < 2 * i + 2 && c < s->size[l - 1]; c++)
-            for (d = o == q && c > 2 * j ? c : 2 * j; d < 2 * j + 2 && d < t->size[m - 1]; d++)
-                if (gxbp_boxes_meet(b, s, l - 1, c, t, m - 1, d)) gxbp_meet_boxes(b, o, l - 1, c, q, m - 1, d);
-    } else for (c = 2 * j; c < 2 * j + 2 && c < t->size[m - 1]; c++)
-        if (gxbp_boxes_meet(b, s, l, i, t, m - 1, c)) gxbp_meet_boxes(b, o, l, i, q, m - 1, c);
+    if (l == 0 && m == 0) { gxbp_meet_leaves(b, o, i, q, j); return; }
+    for (c = i << of_s; c < (i + 1) << of_s && c < s->size[l - of_s]; c++)
+        for (d = o == q && c > j << of_t ? c : j << of_t; d < (j + 1) << of_t && d < t->size[m - of_t]; d++)
+            if (gxbp_boxes_meet(b, s, l - of_s, c, t, m - of_t, d)) gxbp_meet_boxes(b, o, l - of_s, c, q, m - of_t, d);
 }
 
 /* A surface that does not meet itself is known to be simple. */
@@ -6949,22 +6945,18 @@ static void gxbp_divide_dirty(gxb_boolean *b) {
 
 typedef struct gxbp_projected { double t; uint32_t point; } gxbp_projected;
 
-static GXBP_APART void gxbp_sort_projected(gxbp_projected *p, uint32_t count, gxbp_projected *work) {
-    const uint32_t half = count / 2;
+/* Merges the first half items with the others; work: room for these. */
+static inline void gxbp_merge_projected(gxbp_projected *p, uint32_t half, uint32_t count, gxbp_projected *work) {
     uint32_t i, j, k;
-    if (count < 2) return;
-    gxbp_sort_projected(p, half, work);
-    gxbp_sort_projected(p + half, count - half, work);
     memcpy(work, p, half * sizeof *p);
     for (i = 0, j = half, k = 0; i < half; k++) p[k] = j < count && p[j].t < work[i].t ? p[j++] : work[i++];
 }
 
-/* Sorts the new ones behind the others, then merges them with these; work: room for all. */
-static void gxbp_merge_projected(gxbp_projected *p, uint32_t old, uint32_t count, gxbp_projected *work) {
-    uint32_t i = 0, j = old, k;
-    gxbp_sort_projected(p + old, count - old, work);
-    memcpy(work, p, old * sizeof *p);
-    for (k = 0; i < old; k++) p[k] = j < count && p[j].t < work[i].t ? p[j++] : work[i++];
+static GXBP_APART void gxbp_sort_projected(gxbp_projected *p, uint32_t count, gxbp_projected *work) {
+    if (count < 2) return;
+    gxbp_sort_projected(p, count / 2, work);
+    gxbp_sort_projected(p + count / 2, count - count / 2, work);
+    gxbp_merge_projected(p, count / 2, count, work);
 }
 
 /* Computed points that are new since the last time are compared with all that lie within the errors of both along a direction in which few
@@ -6986,6 +6978,7 @@ static void gxbp_merge_points(gxb_boolean *b) {
         p[b->projected_count++].point = i;
         b->reach = gxbp_max(b->reach, x->error + 4 * GXBP_U * gxbp_max3(x->x));
     }
+    gxbp_sort_projected(p + old, b->projected_count - old, work);
     gxbp_merge_projected(p, old, b->projected_count, work);
     for (i = 0; i < b->projected_count; i++)
         for (j = i + 1; j < b->projected_count && p[j].t - p[i].t <= 8 * b->reach; j++) {
