@@ -915,12 +915,16 @@ static void gxbp_cross(double r[3], const double a[3], const double b[3]) {
     r[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* r = a x b, errors: each component of a within ea, of b within eb. Returns the bound for each component of r:
-   two products of sizes A B, inherited A eb + B ea + ea eb each, and 8u of 2 A B. */
-static inline double gxbp_filter_cross(double r[3], const double a[3], double ea, const double b[3], double eb) {
-    const double A = gxbp_max3(a), B = gxbp_max3(b);
-    gxbp_cross(r, a, b);
+/* The bound for each component of a x b, for sizes A and B and errors ea and eb of the components of a and b: two products of sizes A B, inherited
+   A eb + B ea + ea eb each, and 8u of 2 A B */
+static double gxbp_cross_error(double A, double ea, double B, double eb) {
     return 4 * (A * eb + B * ea + ea * eb) + 32 * GXBP_U * A * B + GXBP_TINY;
+}
+
+/* r = a x b. Returns its bound. */
+static inline double gxbp_filter_cross(double r[3], const double a[3], double ea, const double b[3], double eb) {
+    gxbp_cross(r, a, b);
+    return gxbp_cross_error(gxbp_max3(a), ea, gxbp_max3(b), eb);
 }
 
 /* c = b - a with the bound for each component */
@@ -975,7 +979,7 @@ static void gxbp_filter_line_plane(gxb_ball *r, const gxb_ball *p, const gxb_bal
    r_i = n_i.(base_i - b). */
 static void gxbp_filter_three_planes(gxb_ball *out, const gxb_plane_filter *const f[3]) {
     gxb_ball b;
-    double r[3], er[3], c[3][3], ec[3], D = 0, eD, size;
+    double r[3], er[3], c[3][3], ec[3], C[3], D = 0, eD, size;
     int i, k;
     memcpy(b.x, f[0]->base, sizeof b.x);
     b.error = 0;
@@ -983,10 +987,12 @@ static void gxbp_filter_three_planes(gxb_ball *out, const gxb_plane_filter *cons
     r[0] = 0;
     for (i = 0; i < 3; i++) {
         const gxb_plane_filter *g = f[(i + 1) % 3], *h = f[(i + 2) % 3];
-        ec[i] = gxbp_filter_cross(c[i], g->n, g->error, h->n, h->error);
+        gxbp_cross(c[i], g->n, h->n);
+        C[i] = gxbp_max3(c[i]);
+        ec[i] = gxbp_cross_error(g->norm, g->error, h->norm, h->error);
     }
     for (k = 0; k < 3; k++) D += f[0]->n[k] * c[0][k];
-    eD = 6 * (f[0]->norm * ec[0] + f[0]->error * (gxbp_max3(c[0]) + ec[0])) + 48 * GXBP_U * f[0]->norm * gxbp_max3(c[0]) + GXBP_TINY;
+    eD = 6 * (f[0]->norm * ec[0] + f[0]->error * (C[0] + ec[0])) + 48 * GXBP_U * f[0]->norm * C[0] + GXBP_TINY;
     D = gxbp_fence(D);
     size = gxbp_abs(D);
     memcpy(out->x, b.x, sizeof out->x);
@@ -994,10 +1000,7 @@ static void gxbp_filter_three_planes(gxb_ball *out, const gxb_plane_filter *cons
     if (!(size > 4 * eD)) return;
     {
         double e = 0, largest = 0;
-        for (i = 0; i < 3; i++) {
-            const double C = gxbp_max3(c[i]);
-            e += 2 * (gxbp_abs(r[i]) * ec[i] + er[i] * (C + ec[i])) + 24 * GXBP_U * gxbp_abs(r[i]) * C;
-        }
+        for (i = 0; i < 3; i++) e += 2 * (gxbp_abs(r[i]) * ec[i] + er[i] * (C[i] + ec[i])) + 24 * GXBP_U * gxbp_abs(r[i]) * C[i];
         for (k = 0; k < 3; k++) {
             const double step = gxbp_fence((r[0] * c[0][k] + r[1] * c[1][k] + r[2] * c[2][k]) / D);
             largest = gxbp_max(largest, gxbp_abs(step));
@@ -3449,7 +3452,7 @@ static gxbp_pair gxbp_pair_mul(const gxbp_pair *a, const gxbp_pair *b) {
 }
 
 /* a b - c d */
-static gxbp_pair gxbp_pair_det2(const gxbp_pair *a, const gxbp_pair *b, const gxbp_pair *c, const gxbp_pair *d) {
+static GXBP_APART gxbp_pair gxbp_pair_det2(const gxbp_pair *a, const gxbp_pair *b, const gxbp_pair *c, const gxbp_pair *d) {
     const gxbp_pair s = gxbp_pair_mul(a, b), t = gxbp_pair_mul(c, d);
     return gxbp_pair_add(&s, &t, -1);
 }
@@ -3981,8 +3984,9 @@ static int gxbp_same_place(gxb_complex *cx, uint32_t a, uint32_t b) {
 static GXBP_COLD int gxbp_planes_cross(gxb_complex *cx, uint32_t a, uint32_t b) {
     const gxb_plane_filter *f = &cx->planes[a].filter, *g = &cx->planes[b].filter;
     double r[3];
-    const double bound = gxbp_filter_cross(r, f->n, f->error, g->n, g->error);
+    const double bound = gxbp_cross_error(f->norm, f->error, g->norm, g->error);
     gxbp_vec sa, sb, cross;
+    gxbp_cross(r, f->n, g->n);
     if (gxbp_max3(r) > bound) return 1;
     gxbp_vec_init(&cross);
     gxbp_num_cross(cross.c, gxbp_exact_cplane(cx, a, &sa), gxbp_exact_cplane(cx, b, &sb));
@@ -7214,7 +7218,6 @@ static void gxbp_cross_ray(gxb_boolean *b, gxbp_ray *ray, uint32_t s) {
     if (behind == 0) behind = gxbp_probe_orient(gxbp_exact_probe(b, ray), x);
     if (behind == left) ray->winding[b->sources[s].operand] += left;
 }
-
 
 static GXBP_APART void gxbp_shoot(gxb_boolean *b, gxbp_ray *ray, const gxbp_operand *o, uint32_t l, uint32_t i) {
     uint32_t meets[GXBP_LEAF], c;
