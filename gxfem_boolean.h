@@ -1467,11 +1467,10 @@ static int gxbp_ray_reaches(const double a[3], const double b[3], const double c
     return 1;
 }
 
-/* In a triangle's plane a point lies in the triangle where no projection to a coordinate plane sees it on both sides of edges. A
+/* In a triangle's plane a point (for which this is asked) lies in the triangle where no projection to a coordinate plane sees it on both sides of edges. A
    triangle without area, all of whose projections are flat, contains what of its line is in its box. p is in the box prolonged to -x. */
-static int gxbp_point_in_triangle(const double a[3], const double b[3], const double c[3], const double p[3]) {
+static GXBP_COLD int gxbp_point_in_triangle(const double a[3], const double b[3], const double c[3], const double p[3]) {
     int k, flat = 1;
-    if (gxb_orient3d(a, b, c, p) != 0) return 0;
     for (k = 0; k < 3; k++) {
         const int i = (k + 1) % 3, j = (k + 2) % 3;
         double pa[2], pb[2], pc[2], pp[2];
@@ -1504,11 +1503,10 @@ GXFEM_API int gxb_winding_number(const double *vertices, const uint32_t *triangl
         const double *c = vertices + 3 * (size_t)triangles[3 * t + 2];
         int ab, side;
         if (!gxbp_ray_reaches(a, b, c, p)) continue;
-        if (gxbp_point_in_triangle(a, b, c, p)) *on_surface = 1;
-        ab = gxbp_ray_side(a, b, p);
-        if (ab == 0 || gxbp_ray_side(b, c, p) != ab || gxbp_ray_side(c, a, p) != ab) continue;
         side = gxb_orient3d(a, b, c, p);                /* 1: p is behind the triangle, the ray leaves through it if ab > 0 */
-        if (side == ab) winding += ab;
+        if (side == 0 && gxbp_point_in_triangle(a, b, c, p)) *on_surface = 1;
+        ab = gxbp_ray_side(a, b, p);
+        if (ab != 0 && side == ab && gxbp_ray_side(b, c, p) == ab && gxbp_ray_side(c, a, p) == ab) winding += ab;
     }
     return winding;
 }
@@ -4614,7 +4612,7 @@ static uint32_t gxbp_hash_point(const gxb_boolean *b, uint32_t point) {
 }
 
 /* Another table, and all that is in it is to be listed again. */
-static GXBP_COLD int gxbp_renew_table(gxb_boolean *b, uint32_t **table, uint32_t *size, uint32_t larger) {
+static GXBP_APART int gxbp_renew_table(gxb_boolean *b, uint32_t **table, uint32_t *size, uint32_t larger) {
     uint32_t *fresh = (uint32_t *)gxbp_allocate(&b->cx.allocator, (size_t)larger * sizeof **table);
     if (fresh == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
     gxbp_release(&b->cx.allocator, *table, (size_t)*size * sizeof **table);
@@ -4624,7 +4622,7 @@ static GXBP_COLD int gxbp_renew_table(gxb_boolean *b, uint32_t **table, uint32_t
 }
 
 /* Lists the points up to a number, but for those of frames. */
-static GXBP_COLD void gxbp_list_points(gxb_boolean *b, uint32_t count) {
+static void gxbp_list_points(gxb_boolean *b, uint32_t count) {
     const uint32_t last = b->table_size - 1;
     uint32_t i, k;
     memset(b->table, 0xff, (size_t)b->table_size * sizeof *b->table);
@@ -4636,7 +4634,7 @@ static GXBP_COLD void gxbp_list_points(gxb_boolean *b, uint32_t count) {
     }
 }
 
-static GXBP_COLD int gxbp_grow_table(gxb_boolean *b, uint32_t extra) {
+static GXBP_APART int gxbp_grow_table(gxb_boolean *b, uint32_t extra) {
     uint32_t size = b->table_size == 0 ? 64 : b->table_size;
     while ((uint64_t)size < ((uint64_t)b->table_used + extra) * 3 && size < (uint32_t)1 << 31) size *= 2;
     if (!gxbp_renew_table(b, &b->table, &b->table_size, size)) return 0;
@@ -7028,7 +7026,7 @@ static uint32_t gxbp_hash_winding(const int32_t *winding, uint32_t count) {
     return hash;
 }
 
-static GXBP_COLD void gxbp_list_states(gxb_boolean *b) {
+static void gxbp_list_states(gxb_boolean *b) {
     const uint32_t n = b->operand_count, last = b->state_table_size - 1;
     uint32_t i, k;
     memset(b->state_table, 0xff, (size_t)b->state_table_size * sizeof *b->state_table);
@@ -7038,7 +7036,7 @@ static GXBP_COLD void gxbp_list_states(gxb_boolean *b) {
     }
 }
 
-static GXBP_COLD int gxbp_grow_states(gxb_boolean *b) {
+static GXBP_APART int gxbp_grow_states(gxb_boolean *b) {
     if (!gxbp_renew_table(b, &b->state_table, &b->state_table_size, b->state_table_size == 0 ? 64 : 2 * b->state_table_size)) return 0;
     gxbp_list_states(b);
     return 1;
@@ -8156,7 +8154,7 @@ static void gxbp_measure_shells(gxb_boolean *b, uint32_t *parent, double *volume
 }
 
 /* gxbp_ray_left for points of the result, and a ray moved by way (h, h^2) */
-static int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p, uint32_t q, int way) {
+static GXBP_COLD int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p, uint32_t q, int way) {
     gxbp_vec s, t;
     const gxb_num *x, *y;
     int turn = gxbp_filter_turn(&b->cx.points[p].ball, &b->cx.points[q].ball, &ray->ball, 1, 2);
