@@ -921,7 +921,7 @@ static double gxbp_cross_error(double A, double ea, double B, double eb) {
     return 4 * (A * eb + B * ea + ea * eb) + 32 * GXBP_U * A * B + GXBP_TINY;
 }
 
-/* r = a x b. Returns its bound. */
+/* r = a x b, with errors ea and eb of the components of a and b. Returns the bound of r's. */
 static inline double gxbp_filter_cross(double r[3], const double a[3], double ea, const double b[3], double eb) {
     gxbp_cross(r, a, b);
     return gxbp_cross_error(gxbp_max3(a), ea, gxbp_max3(b), eb);
@@ -1467,8 +1467,9 @@ static int gxbp_ray_reaches(const double a[3], const double b[3], const double c
     return 1;
 }
 
-/* In a triangle's plane a point (for which this is asked) lies in the triangle where no projection to a coordinate plane sees it on both sides of edges. A
-   triangle without area, all of whose projections are flat, contains what of its line is in its box. p is in the box prolonged to -x. */
+/* A point of a triangle's plane, for which this is asked, lies in the triangle where no projection to a coordinate plane sees it on both sides
+   of edges. A triangle without area, all of whose projections are flat, contains what of its line is in its box. p is in the box prolonged
+   to -x. */
 static GXBP_COLD int gxbp_point_in_triangle(const double a[3], const double b[3], const double c[3], const double p[3]) {
     int k, flat = 1;
     for (k = 0; k < 3; k++) {
