@@ -4649,7 +4649,7 @@ static int gxbp_table_room(gxb_boolean *b, uint32_t extra) {
 }
 
 /* A point without coordinates yet. */
-static GXBP_APART uint32_t gxbp_new_vertex(gxb_boolean *b, uint32_t kind, uint32_t p, uint32_t q, uint32_t r) {
+static inline uint32_t gxbp_new_vertex(gxb_boolean *b, uint32_t kind, uint32_t p, uint32_t q, uint32_t r) {
     uint32_t id;
     gx_result result;
     gxbp_vertex *v;
@@ -5980,7 +5980,7 @@ static void gxbp_label_edge(gxb_boolean *b, uint32_t f, int k, uint32_t label) {
 /* The line from p to x. In a triangle's plane (label) its sides are those of the plane, times sigma (gxbp_segment.left where that is known). */
 typedef struct gxbp_line { uint32_t p, x, plane, source; int sigma; } gxbp_line;
 
-static GXBP_APART void gxbp_set_line(gxb_boolean *b, gxbp_line *line, uint32_t s, uint32_t p, uint32_t x, uint32_t label, int left) {
+static void gxbp_set_line(gxb_boolean *b, gxbp_line *line, uint32_t s, uint32_t p, uint32_t x, uint32_t label, int left) {
     int k;
     line->p = p; line->x = x; line->plane = GXB_NONE; line->source = label; line->sigma = 1;
     if (label & GXBP_EDGE_LABEL) return;
@@ -6195,14 +6195,15 @@ static uint32_t gxbp_insert_point(gxb_boolean *b, uint32_t s, uint32_t x, uint32
 
 /* --- edges that must be there --- */
 
-static void gxbp_set_margin(const gxb_boolean *b, gxbp_margin *r, uint32_t vertex, uint32_t f, int k) {
+/* Appends to b->rims or b->lefts a vertex, with what lies beyond edge k of f. */
+static void gxbp_push_margin(gxb_boolean *b, gxbp_margin **list, uint32_t vertex, uint32_t f, int k) {
+    uint32_t *count = gxbp_extent_of(list);
+    gxbp_margin *r;
+    if (count[0] == count[1] && !gxbp_room(b, list, sizeof **list, 1)) return;
+    r = *list + count[0]++;
     r->vertex = vertex; r->made = GXB_NONE; r->dangling = 0;
     r->near = f == GXB_NONE ? GXB_NONE : b->pieces[f].near[k];
     r->labels = f == GXB_NONE ? GXBP_LOOSE : b->pieces[f].labels[k];
-}
-
-static void gxbp_push_rim(gxb_boolean *b, uint32_t vertex, uint32_t f, int k) {
-    if (GXBP_ROOM(b, rims, rim, 1)) gxbp_set_margin(b, &b->rims[b->rim_count++], vertex, f, k);
 }
 
 /* The apex over the base from rim[high] to rim[low]: no other vertex between lies in its triangle. */
@@ -6265,10 +6266,6 @@ static uint32_t gxbp_crossing_point(gxb_boolean *b, uint32_t s, uint32_t labels,
     return other;
 }
 
-static void gxbp_push_left(gxb_boolean *b, uint32_t vertex, uint32_t f, int k) {
-    if (GXBP_ROOM(b, lefts, left, 1)) gxbp_set_margin(b, &b->lefts[b->left_count++], vertex, f, k);
-}
-
 static void gxbp_push(gxb_boolean *b, uint32_t value) {
     if (GXBP_ROOM(b, scratch, scratch, 1)) b->scratch[b->scratch_count++] = value;
 }
@@ -6279,8 +6276,8 @@ static int gxbp_collect_crossed(gxb_boolean *b, uint32_t s, const gxbp_line *lin
     uint32_t f = way.f, u = b->pieces[f].v[(way.k + 1) % 3], w = b->pieces[f].v[(way.k + 2) % 3];
     int k = (way.k + 1) % 3;
     b->scratch_count = b->rim_count = b->left_count = 0;
-    gxbp_push_rim(b, b->pieces[f].v[way.k], f, way.k);
-    gxbp_push_left(b, w, f, (way.k + 2) % 3);
+    gxbp_push_margin(b, &b->rims, b->pieces[f].v[way.k], f, way.k);
+    gxbp_push_margin(b, &b->lefts, w, f, (way.k + 2) % 3);
     gxbp_push(b, f);
     while (b->result == GX_OK) {
         uint32_t c;
@@ -6298,9 +6295,9 @@ static int gxbp_collect_crossed(gxb_boolean *b, uint32_t s, const gxbp_line *lin
         j = gxbp_corner_index(&b->pieces[f], w);
         c = b->pieces[f].v[(j + 2) % 3];
         of_c = gxbp_left(b, line, c);
-        if (of_c <= 0) gxbp_push_rim(b, u, f, (j + 1) % 3);
-        if (of_c >= 0) gxbp_push_left(b, c, f, (j + 2) % 3);
-        if (of_c == 0) { gxbp_push_rim(b, c, GXB_NONE, 0); return b->result == GX_OK; }
+        if (of_c <= 0) gxbp_push_margin(b, &b->rims, u, f, (j + 1) % 3);
+        if (of_c >= 0) gxbp_push_margin(b, &b->lefts, c, f, (j + 2) % 3);
+        if (of_c == 0) { gxbp_push_margin(b, &b->rims, c, GXB_NONE, 0); return b->result == GX_OK; }
         if (of_c < 0) { u = c; k = (j + 2) % 3; }
         else { w = c; k = (j + 1) % 3; }
     }
@@ -6319,7 +6316,7 @@ static void gxbp_refill(gxb_boolean *b, uint32_t start) {
     const uint32_t state = b->pieces[b->scratch[0]].state;      /* of all: no label is between them */
     uint32_t i, n, f, g;
     for (i = 0; i < b->scratch_count; i++) b->pieces[b->scratch[i]].state = GXBP_REMOVED;
-    gxbp_push_left(b, start, GXB_NONE, 0);
+    gxbp_push_margin(b, &b->lefts, start, GXB_NONE, 0);
     if (b->result != GX_OK) return;
     n = b->left_count - 1;                              /* the left rim goes backwards: turn it round, all but the start */
     for (i = 0; i < n / 2; i++) {
