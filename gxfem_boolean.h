@@ -300,8 +300,11 @@ typedef struct gxb_undo { uint32_t array, index; } gxb_undo;
 typedef struct gxb_complex {        /* what is used most comes first: its addresses are short */
     gxb_cpoint *points; uint32_t point_count, point_capacity;
     gxb_cplane *planes; uint32_t plane_count, plane_capacity;
-    double origin[3]; int shift;
-    uint32_t node_count, element_count, face_count, mesh_edge_count;
+    gxb_edge *edges; uint32_t edge_count, edge_capacity;
+    gxb_facet *facets; uint32_t facet_count, facet_capacity;
+    gxb_leaf *leaves; uint32_t leaf_count, leaf_capacity;
+    gxb_node *nodes; uint32_t tree_count, tree_capacity;
+    uint32_t *pool; uint32_t pool_count, pool_capacity;
     uint32_t *elements;             /* the complex's copy, element_count x 4 */
     uint32_t *element_faces;        /* element_count x 4: face opposite to node k */
     uint32_t *element_edges;        /* element_count x 6: 01 02 03 12 13 23 */
@@ -309,13 +312,11 @@ typedef struct gxb_complex {        /* what is used most comes first: its addres
     uint32_t *face_facet;           /* face_count: GXB_NONE until touched */
     uint32_t *mesh_edge;            /* mesh_edge_count: GXB_NONE until touched */
     uint32_t *root;                 /* element_count: tree reference */
-    gxb_edge *edges; uint32_t edge_count, edge_capacity;
-    gxb_facet *facets; uint32_t facet_count, facet_capacity;
-    gxb_leaf *leaves; uint32_t leaf_count, leaf_capacity;
-    gxb_node *nodes; uint32_t tree_count, tree_capacity;
+    uint32_t node_count, element_count, face_count, mesh_edge_count, pool_live;
+    int shift;
+    double origin[3];
     gxb_label *labels; uint32_t label_count, label_capacity;
     gxb_block *blocks;              /* exact coordinates, computed when first needed and kept */
-    uint32_t *pool; uint32_t pool_count, pool_capacity, pool_live;
     uint32_t *walls; uint32_t wall_count, wall_capacity;    /* facets that became walls, or were labelled, since begin */
     gxb_undo *undo; uint32_t undo_count, undo_capacity;     /* what begin ... rollback restores, and the old contents */
     unsigned char *undo_bytes; uint32_t undo_byte_count, undo_byte_capacity;
@@ -751,6 +752,26 @@ GXFEM_API double gxb_num_ratio(const gxb_num *a, const gxb_num *b) {
     return (a->sign * b->sign < 0 ? -q : q) * gxbp_power(power_a);
 }
 
+/* r += factor * a, for a factor of 1 or -1 */
+static GXBP_COLD void gxbp_num_increase(gxb_num *r, const gxb_num *a, int factor) {
+    GXB_NUM(sum);
+    gxbp_num_add_signed(&sum, r, a, factor);
+    gxbp_num_copy(r, &sum, 1);
+}
+
+/* r = num / den, relative error below 2^-180: each of four steps adds the quotient of what is left (it uses num up), 50 bits. */
+static GXBP_COLD void gxbp_num_divide(gxb_num *r, gxb_num *num, const gxb_num *den) {
+    GXB_NUM(q); GXB_NUM(t);
+    int step;
+    gxb_num_set(r, 0, 0);
+    for (step = 0; step < 4 && num->sign != 0; step++) {
+        gxb_num_set(&q, gxb_num_ratio(num, den), 0);
+        gxbp_num_increase(r, &q, 1);
+        gxb_num_mul(&t, &q, den);
+        gxbp_num_increase(num, &t, -1);
+    }
+}
+
 /* r = a.b for vectors of three numbers; the worst length is that of one product plus 2 limbs */
 static void gxbp_num_dot(gxb_num *r, const gxb_num a[3], const gxb_num b[3]) {
     GXB_NUM(t); GXB_NUM(s);
@@ -783,6 +804,14 @@ static GXBP_APART void gxbp_vec_init(gxbp_vec *v) {
     int k;
     memset(v->c, 0, sizeof v->c);
     for (k = 0; k < 4; k++) v->c[k].d = v->limbs[k];
+}
+
+/* r = a.(b x c) */
+static GXBP_COLD void gxbp_num_det3(gxb_num *r, const gxb_num a[3], const gxb_num b[3], const gxb_num c[3]) {
+    gxbp_vec normal;
+    gxbp_vec_init(&normal);
+    gxbp_num_cross(normal.c, b, c);
+    gxbp_num_dot(r, a, normal.c);
 }
 
 static void gxbp_vec_set(gxbp_vec *v, const double x[3]) {
@@ -886,12 +915,16 @@ static void gxbp_cross(double r[3], const double a[3], const double b[3]) {
     r[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* r = a x b, errors: each component of a within ea, of b within eb. Returns the bound for each component of r:
-   two products of sizes A B, inherited A eb + B ea + ea eb each, and 8u of 2 A B. */
-static inline double gxbp_filter_cross(double r[3], const double a[3], double ea, const double b[3], double eb) {
-    const double A = gxbp_max3(a), B = gxbp_max3(b);
-    gxbp_cross(r, a, b);
+/* The bound for each component of a x b, for sizes A and B and errors ea and eb of the components of a and b: two products of sizes A B, inherited
+   A eb + B ea + ea eb each, and 8u of 2 A B */
+static double gxbp_cross_error(double A, double ea, double B, double eb) {
     return 4 * (A * eb + B * ea + ea * eb) + 32 * GXBP_U * A * B + GXBP_TINY;
+}
+
+/* r = a x b, with errors ea and eb of the components of a and b. Returns the bound of r's. */
+static inline double gxbp_filter_cross(double r[3], const double a[3], double ea, const double b[3], double eb) {
+    gxbp_cross(r, a, b);
+    return gxbp_cross_error(gxbp_max3(a), ea, gxbp_max3(b), eb);
 }
 
 /* c = b - a with the bound for each component */
@@ -946,7 +979,7 @@ static void gxbp_filter_line_plane(gxb_ball *r, const gxb_ball *p, const gxb_bal
    r_i = n_i.(base_i - b). */
 static void gxbp_filter_three_planes(gxb_ball *out, const gxb_plane_filter *const f[3]) {
     gxb_ball b;
-    double r[3], er[3], c[3][3], ec[3], D = 0, eD, size;
+    double r[3], er[3], c[3][3], ec[3], C[3], D = 0, eD, size;
     int i, k;
     memcpy(b.x, f[0]->base, sizeof b.x);
     b.error = 0;
@@ -954,10 +987,12 @@ static void gxbp_filter_three_planes(gxb_ball *out, const gxb_plane_filter *cons
     r[0] = 0;
     for (i = 0; i < 3; i++) {
         const gxb_plane_filter *g = f[(i + 1) % 3], *h = f[(i + 2) % 3];
-        ec[i] = gxbp_filter_cross(c[i], g->n, g->error, h->n, h->error);
+        gxbp_cross(c[i], g->n, h->n);
+        C[i] = gxbp_max3(c[i]);
+        ec[i] = gxbp_cross_error(g->norm, g->error, h->norm, h->error);
     }
     for (k = 0; k < 3; k++) D += f[0]->n[k] * c[0][k];
-    eD = 6 * (f[0]->norm * ec[0] + f[0]->error * (gxbp_max3(c[0]) + ec[0])) + 48 * GXBP_U * f[0]->norm * gxbp_max3(c[0]) + GXBP_TINY;
+    eD = 6 * (f[0]->norm * ec[0] + f[0]->error * (C[0] + ec[0])) + 48 * GXBP_U * f[0]->norm * C[0] + GXBP_TINY;
     D = gxbp_fence(D);
     size = gxbp_abs(D);
     memcpy(out->x, b.x, sizeof out->x);
@@ -965,10 +1000,7 @@ static void gxbp_filter_three_planes(gxb_ball *out, const gxb_plane_filter *cons
     if (!(size > 4 * eD)) return;
     {
         double e = 0, largest = 0;
-        for (i = 0; i < 3; i++) {
-            const double C = gxbp_max3(c[i]);
-            e += 2 * (gxbp_abs(r[i]) * ec[i] + er[i] * (C + ec[i])) + 24 * GXBP_U * gxbp_abs(r[i]) * C;
-        }
+        for (i = 0; i < 3; i++) e += 2 * (gxbp_abs(r[i]) * ec[i] + er[i] * (C[i] + ec[i])) + 24 * GXBP_U * gxbp_abs(r[i]) * C[i];
         for (k = 0; k < 3; k++) {
             const double step = gxbp_fence((r[0] * c[0][k] + r[1] * c[1][k] + r[2] * c[2][k]) / D);
             largest = gxbp_max(largest, gxbp_abs(step));
@@ -980,9 +1012,15 @@ static void gxbp_filter_three_planes(gxb_ball *out, const gxb_plane_filter *cons
 
 /* >>points: the predicates on their own ------------------------------------------------------------------------------ */
 
-/* Do all differences and products of these coordinates keep away from overflow? (underflow: see GXBP_TINY) */
-static int gxbp_filter_range(const double *x, int count) {
-    for (; count > 0; count--, x++) if (gxbp_exponent_bits(*x) > 1023 + 128) return 0;
+static void gxbp_ball_explicit(gxb_ball *ball, const double p[3]) {
+    memcpy(ball->x, p, sizeof ball->x);
+    ball->error = 0;
+}
+
+/* Do all differences and products of these points' coordinates keep away from overflow? (underflow: see GXBP_TINY) */
+static GXBP_APART int gxbp_filter_range(const double *const *x, int count, int dimension) {
+    int i, k;
+    for (i = 0; i < count; i++) for (k = 0; k < dimension; k++) if (gxbp_exponent_bits(x[i][k]) > 1023 + 128) return 0;
     return 1;
 }
 
@@ -1012,11 +1050,9 @@ static int gxbp_short_integers(const double *const *x, int count, int dimension,
     return 1;
 }
 
-static int gxbp_orient2d_short(const double a[2], const double b[2], const double c[2]) {
-    const double *x[3];
+static int gxbp_orient2d_short(const double *const x[3]) {
     int64_t v[6];
     gxbp_signed_wide s, t;
-    x[0] = a; x[1] = b; x[2] = c;
     if (!gxbp_short_integers(x, 3, 2, v)) return GXBP_UNKNOWN;
     s = (gxbp_signed_wide)(v[0] - v[4]) * (v[3] - v[5]);
     t = (gxbp_signed_wide)(v[1] - v[5]) * (v[2] - v[4]);
@@ -1041,12 +1077,10 @@ static gxbp_signed_wide gxbp_short_determinant(const int64_t *abc, const int64_t
     return high + (gxbp_signed_wide)(low >> 64);
 }
 
-static int gxbp_orient3d_short(const double a[3], const double b[3], const double c[3], const double d[3]) {
-    const double *x[4];
+static int gxbp_orient3d_short(const double *const x[4]) {
     int64_t v[12];
     gxbp_signed_wide high;
     uint64_t rest;
-    x[0] = a; x[1] = b; x[2] = c; x[3] = d;
     if (!gxbp_short_integers(x, 4, 3, v)) return GXBP_UNKNOWN;
     high = gxbp_short_determinant(v, v + 9, &rest);
     return high < 0 ? -1 : high > 0 || rest != 0;
@@ -1105,12 +1139,10 @@ static int gxbp_line_side_short(const double *const x[8]) {
     return order == 0 ? GXBP_UNKNOWN : order * gxbp_short_det2(&t, &u, &s, &v);
 }
 
-/* Signs of (b - a) x (c - a) */
-static int gxbp_normal_short(const double a[3], const double b[3], const double c[3], int sign[3]) {
-    const double *x[3];
+/* Signs of (x[1] - x[0]) x (x[2] - x[0]) */
+static int gxbp_normal_short(const double *const x[3], int sign[3]) {
     int64_t v[9];
     int k, m = 1, n = 2;
-    x[0] = a; x[1] = b; x[2] = c;
     if (!gxbp_short_integers(x, 3, 3, v)) return 0;
     for (k = 0; k < 3; k++) { v[3 + k] -= v[k]; v[6 + k] -= v[k]; }
     for (k = 0; k < 3; m = n, n = k++) {
@@ -1120,89 +1152,91 @@ static int gxbp_normal_short(const double a[3], const double b[3], const double 
     return 1;
 }
 #else
-static int gxbp_orient2d_short(const double a[2], const double b[2], const double c[2]) {
-    (void)a; (void)b; (void)c;
+static int gxbp_orient2d_short(const double *const x[3]) {
+    (void)x;
     return GXBP_UNKNOWN;
 }
 
-static int gxbp_orient3d_short(const double a[3], const double b[3], const double c[3], const double d[3]) {
-    (void)d;
-    return gxbp_orient2d_short(a, b, c);
-}
+static int gxbp_orient3d_short(const double *const x[4]) { return gxbp_orient2d_short(x); }
+static int gxbp_line_side_short(const double *const x[8]) { return gxbp_orient2d_short(x); }
 
-static int gxbp_line_side_short(const double *const x[8]) { return gxbp_orient2d_short(x[0], x[1], x[2]); }
-
-static int gxbp_normal_short(const double a[3], const double b[3], const double c[3], int sign[3]) {
+static int gxbp_normal_short(const double *const x[3], int sign[3]) {
     sign[0] = sign[1] = sign[2] = 0;
-    return gxbp_orient2d_short(a, b, c) != GXBP_UNKNOWN;
+    return gxbp_orient2d_short(x) != GXBP_UNKNOWN;
 }
 #endif
 
-static GXBP_COLD int gxbp_orient2d_exact(const double a[2], const double b[2], const double c[2]) {
-    const int known = gxbp_orient2d_short(a, b, c);
+/* p[i] - p[count - 1] for the points before the last, of two or three coordinates, as exact numbers */
+static GXBP_COLD void gxbp_exact_differences(gxbp_vec *row, const double *const *p, int count, int dimension) {
+    gxbp_vec last, x;
+    double given[3] = {0, 0, 0};
+    int i;
+    for (i = count - 1; i >= 0; i--) {
+        memcpy(given, p[i], (size_t)dimension * sizeof *given);
+        gxbp_vec_set(i == count - 1 ? &last : &x, given);
+        if (i == count - 1) continue;
+        gxbp_vec_init(&row[i]);
+        gxbp_num_sub3(row[i].c, x.c, last.c);
+    }
+}
+
+static GXBP_COLD int gxbp_orient2d_exact(const double *const p[3]) {
+    const int known = gxbp_orient2d_short(p);
     GXB_NUM(r);
-    gxbp_vec p, q, o, u, v;
-    double x[3] = {0, 0, 0};
+    gxbp_vec row[2];
     if (known != GXBP_UNKNOWN) return known;
-    x[0] = a[0]; x[1] = a[1]; gxbp_vec_set(&p, x);
-    x[0] = b[0]; x[1] = b[1]; gxbp_vec_set(&q, x);
-    x[0] = c[0]; x[1] = c[1]; gxbp_vec_set(&o, x);
-    gxbp_vec_init(&u);
-    gxbp_vec_init(&v);
-    gxbp_num_sub3(u.c, p.c, o.c);
-    gxbp_num_sub3(v.c, q.c, o.c);
-    gxbp_num_det2(&r, &u.c[0], &v.c[1], &u.c[1], &v.c[0]);
+    gxbp_exact_differences(row, p, 3, 2);
+    gxbp_num_det2(&r, &row[0].c[0], &row[1].c[1], &row[0].c[1], &row[1].c[0]);
     return r.sign;
 }
 
 GXFEM_API int gxb_orient2d(const double a[2], const double b[2], const double c[2]) {
-    if (gxbp_filter_range(a, 2) && gxbp_filter_range(b, 2) && gxbp_filter_range(c, 2)) {
+    const double *p[3];
+    p[0] = a; p[1] = b; p[2] = c;
+    if (gxbp_filter_range(p, 3, 2)) {
         const double ax = gxbp_fence(a[0] - c[0]), ay = gxbp_fence(a[1] - c[1]);
         const double bx = gxbp_fence(b[0] - c[0]), by = gxbp_fence(b[1] - c[1]);
         const double bound = 16 * GXBP_U * (gxbp_abs(ax * by) + gxbp_abs(ay * bx)) + GXBP_TINY;
         const int sign = gxbp_filter_sign(ax * by - ay * bx, bound);
         if (sign != 0) return sign;
     }
-    return gxbp_orient2d_exact(a, b, c);
+    return gxbp_orient2d_exact(p);
 }
 
-static GXBP_APART int gxbp_orient3d_exact(const double a[3], const double b[3], const double c[3], const double d[3]) {
-    const int known = gxbp_orient3d_short(a, b, c, d);
+static GXBP_APART int gxbp_orient3d_exact(const double *const p[4]) {
+    const int known = gxbp_orient3d_short(p);
     GXB_NUM(r);
-    gxbp_vec p, q, s, o, n;
+    gxbp_vec row[3];
     if (known != GXBP_UNKNOWN) return known;
-    gxbp_vec_set(&p, a); gxbp_vec_set(&q, b); gxbp_vec_set(&s, c); gxbp_vec_set(&o, d);
-    gxbp_vec_init(&n);
-    gxbp_exact_plane(n.c, p.c, q.c, s.c);
-    gxbp_exact_side(&r, o.c, n.c);
-    return -r.sign;
+    gxbp_exact_differences(row, p, 4, 3);
+    gxbp_num_det3(&r, row[0].c, row[1].c, row[2].c);
+    return r.sign;
 }
 
 GXFEM_API int gxb_orient3d(const double a[3], const double b[3], const double c[3], const double d[3]) {
-    if (gxbp_filter_range(a, 3) && gxbp_filter_range(b, 3) && gxbp_filter_range(c, 3) && gxbp_filter_range(d, 3)) {
+    const double *p[4];
+    p[0] = a; p[1] = b; p[2] = c; p[3] = d;
+    if (gxbp_filter_range(p, 4, 3)) {
         gxb_plane plane;
         gxb_ball ball;
         double value, bound;
         int sign;
         gxb_plane_init(&plane, a, b, c);
-        memcpy(ball.x, d, sizeof ball.x);
-        ball.error = 0;
+        gxbp_ball_explicit(&ball, d);
         value = gxbp_filter_side(&ball, &plane.filter, &bound);
         sign = gxbp_filter_sign(value, bound);
         if (sign != 0) return -sign;
     }
-    return gxbp_orient3d_exact(a, b, c, d);
+    return gxbp_orient3d_exact(p);
 }
 
 /* Rows are the points less the last, with their squared lengths; the determinant along the column of squares. An elementary product of
    the filter has four fenced differences, three products and is one of twelve: at most 4 + 3 + 11 roundings whatever the order; in 3D
    five, four, one of 72: 80. Ranges as for gxb_orient3d keep all products from overflow and errors of underflow below GXBP_TINY. */
-static int gxbp_filter_incircle(const double a[2], const double b[2], const double c[2], const double d[2]) {
-    const double *p[3];
+static int gxbp_filter_incircle(const double *const p[4]) {
     double x[3], y[3], value = 0, size = 0;
     int i;
-    p[0] = a; p[1] = b; p[2] = c;
-    for (i = 0; i < 3; i++) { x[i] = gxbp_fence(p[i][0] - d[0]); y[i] = gxbp_fence(p[i][1] - d[1]); }
+    for (i = 0; i < 3; i++) { x[i] = gxbp_fence(p[i][0] - p[3][0]); y[i] = gxbp_fence(p[i][1] - p[3][1]); }
     for (i = 0; i < 3; i++) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
         const double lift = x[i] * x[i] + y[i] * y[i];
@@ -1212,13 +1246,11 @@ static int gxbp_filter_incircle(const double a[2], const double b[2], const doub
     return gxbp_filter_sign(value, 48 * GXBP_U * size + GXBP_TINY);
 }
 
-static int gxbp_filter_insphere(const double a[3], const double b[3], const double c[3], const double d[3], const double e[3]) {
-    const double *p[4];
+static int gxbp_filter_insphere(const double *const p[5]) {
     double x[4][3], lift[4], value = 0, size = 0;
     int i, k;
-    p[0] = a; p[1] = b; p[2] = c; p[3] = d;
     for (i = 0; i < 4; i++) {
-        for (k = 0; k < 3; k++) x[i][k] = gxbp_fence(p[i][k] - e[k]);
+        for (k = 0; k < 3; k++) x[i][k] = gxbp_fence(p[i][k] - p[4][k]);
         lift[i] = x[i][0] * x[i][0] + x[i][1] * x[i][1] + x[i][2] * x[i][2];
     }
     for (i = 0; i < 4; i++) {
@@ -1233,72 +1265,46 @@ static int gxbp_filter_insphere(const double a[3], const double b[3], const doub
     return gxbp_filter_sign(value, 128 * GXBP_U * size + GXBP_TINY);
 }
 
-/* p - o as exact numbers; c[3] = its squared length */
-static void gxbp_exact_lifted(gxbp_vec *v, const double p[3], const double o[3]) {
-    gxbp_vec x, y;
-    gxbp_vec_set(&x, p); gxbp_vec_set(&y, o);
-    gxbp_vec_init(v);
-    gxbp_num_sub3(v->c, x.c, y.c);
-    gxbp_num_dot(&v->c[3], v->c, v->c);
-}
-
 /* Degree 4: 140 limbs of 64 bits for any finite doubles. */
-static GXBP_COLD int gxbp_incircle_exact(const double a[2], const double b[2], const double c[2], const double d[2]) {
-    const double *p[4];
-    double x[4][3];
-    gxbp_vec row[3], minor, lift;
+static GXBP_COLD int gxbp_incircle_exact(const double *const p[4]) {
+    gxbp_vec row[3];
     GXB_NUM(r);
     int i;
-    p[0] = a; p[1] = b; p[2] = c; p[3] = d;
-    for (i = 0; i < 4; i++) { x[i][0] = p[i][0]; x[i][1] = p[i][1]; x[i][2] = 0; }
-    gxbp_vec_init(&minor); gxbp_vec_init(&lift);
-    for (i = 0; i < 3; i++) gxbp_exact_lifted(&row[i], x[i], x[3]);
-    for (i = 0; i < 3; i++) {
-        const gxbp_vec *u = &row[(i + 1) % 3], *v = &row[(i + 2) % 3];
-        gxbp_num_det2(&minor.c[i], &u->c[0], &v->c[1], &v->c[0], &u->c[1]);
-        gxbp_num_copy(&lift.c[i], &row[i].c[3], 1);
-    }
-    gxbp_num_dot(&r, lift.c, minor.c);
+    gxbp_exact_differences(row, p, 4, 2);
+    for (i = 0; i < 3; i++) { gxbp_num_dot(&row[i].c[3], row[i].c, row[i].c); row[i].c[2] = row[i].c[3]; }
+    gxbp_num_det3(&r, row[0].c, row[1].c, row[2].c);
     return r.sign;
 }
 
 /* Degree 5: a difference of any finite doubles has 34 limbs of 64 bits, its square 67, a minor 100, their product and the sum of four 167. */
-static GXBP_COLD int gxbp_insphere_exact(const double a[3], const double b[3], const double c[3], const double d[3], const double e[3]) {
-    gxbp_vec row[4], normal;
-    GXB_NUM(minor); GXB_NUM(term); GXB_NUM(sum); GXB_NUM(next);
+static GXBP_COLD int gxbp_insphere_exact(const double *const p[5]) {
+    gxbp_vec row[4];
+    GXB_NUM(minor); GXB_NUM(term); GXB_NUM(sum);
     int i;
-    gxbp_exact_lifted(&row[0], a, e); gxbp_exact_lifted(&row[1], b, e); gxbp_exact_lifted(&row[2], c, e); gxbp_exact_lifted(&row[3], d, e);
+    gxbp_exact_differences(row, p, 5, 3);
     for (i = 0; i < 4; i++) {
-        gxbp_vec_init(&normal);
-        gxbp_num_cross(normal.c, row[i <= 1 ? 2 : 1].c, row[i <= 2 ? 3 : 2].c);
-        gxbp_num_dot(&minor, row[i == 0].c, normal.c);
+        gxbp_num_det3(&minor, row[i == 0].c, row[i <= 1 ? 2 : 1].c, row[i <= 2 ? 3 : 2].c);
+        gxbp_num_dot(&row[i].c[3], row[i].c, row[i].c);
         gxb_num_mul(&term, &row[i].c[3], &minor);
-        if (i % 2 == 0) term.sign = -term.sign;
-        gxb_num_add(&next, &sum, &term);
-        gxbp_num_copy(&sum, &next, 1);
+        gxbp_num_increase(&sum, &term, i % 2 == 0 ? -1 : 1);
     }
     return sum.sign;
 }
 
 GXFEM_API int gxb_incircle(const double a[2], const double b[2], const double c[2], const double d[2]) {
-    if (gxbp_filter_range(a, 2) && gxbp_filter_range(b, 2) && gxbp_filter_range(c, 2) && gxbp_filter_range(d, 2)) {
-        const int sign = gxbp_filter_incircle(a, b, c, d);
-        if (sign != 0) return sign;
-    }
-    return gxbp_incircle_exact(a, b, c, d);
+    const double *p[4];
+    int sign;
+    p[0] = a; p[1] = b; p[2] = c; p[3] = d;
+    sign = gxbp_filter_range(p, 4, 2) ? gxbp_filter_incircle(p) : 0;
+    return sign != 0 ? sign : gxbp_incircle_exact(p);
 }
 
 GXFEM_API int gxb_insphere(const double a[3], const double b[3], const double c[3], const double d[3], const double e[3]) {
-    if (gxbp_filter_range(a, 3) && gxbp_filter_range(b, 3) && gxbp_filter_range(c, 3) && gxbp_filter_range(d, 3) && gxbp_filter_range(e, 3)) {
-        const int sign = gxbp_filter_insphere(a, b, c, d, e);
-        if (sign != 0) return sign;
-    }
-    return gxbp_insphere_exact(a, b, c, d, e);
-}
-
-static void gxbp_ball_explicit(gxb_ball *ball, const double p[3]) {
-    memcpy(ball->x, p, sizeof ball->x);
-    ball->error = 0;
+    const double *p[5];
+    int sign;
+    p[0] = a; p[1] = b; p[2] = c; p[3] = d; p[4] = e;
+    sign = gxbp_filter_range(p, 5, 3) ? gxbp_filter_insphere(p) : 0;
+    return sign != 0 ? sign : gxbp_insphere_exact(p);
 }
 
 GXFEM_API void gxb_plane_init(gxb_plane *plane, const double p[3], const double q[3], const double r[3]) {
@@ -1461,11 +1467,11 @@ static int gxbp_ray_reaches(const double a[3], const double b[3], const double c
     return 1;
 }
 
-/* In a triangle's plane a point lies in the triangle where no projection to a coordinate plane sees it on both sides of edges. A
-   triangle without area, all of whose projections are flat, contains what of its line is in its box. p is in the box prolonged to -x. */
-static int gxbp_point_in_triangle(const double a[3], const double b[3], const double c[3], const double p[3]) {
+/* A point of a triangle's plane, for which this is asked, lies in the triangle where no projection to a coordinate plane sees it on both sides
+   of edges. A triangle without area, all of whose projections are flat, contains what of its line is in its box. p is in the box prolonged
+   to -x. */
+static GXBP_COLD int gxbp_point_in_triangle(const double a[3], const double b[3], const double c[3], const double p[3]) {
     int k, flat = 1;
-    if (gxb_orient3d(a, b, c, p) != 0) return 0;
     for (k = 0; k < 3; k++) {
         const int i = (k + 1) % 3, j = (k + 2) % 3;
         double pa[2], pb[2], pc[2], pp[2];
@@ -1498,11 +1504,10 @@ GXFEM_API int gxb_winding_number(const double *vertices, const uint32_t *triangl
         const double *c = vertices + 3 * (size_t)triangles[3 * t + 2];
         int ab, side;
         if (!gxbp_ray_reaches(a, b, c, p)) continue;
-        if (gxbp_point_in_triangle(a, b, c, p)) *on_surface = 1;
-        ab = gxbp_ray_side(a, b, p);
-        if (ab == 0 || gxbp_ray_side(b, c, p) != ab || gxbp_ray_side(c, a, p) != ab) continue;
         side = gxb_orient3d(a, b, c, p);                /* 1: p is behind the triangle, the ray leaves through it if ab > 0 */
-        if (side == ab) winding += ab;
+        if (side == 0 && gxbp_point_in_triangle(a, b, c, p)) *on_surface = 1;
+        ab = gxbp_ray_side(a, b, p);
+        if (ab != 0 && side == ab && gxbp_ray_side(b, c, p) == ab && gxbp_ray_side(c, a, p) == ab) winding += ab;
     }
     return winding;
 }
@@ -1531,36 +1536,51 @@ static void *gxbp_reallocate(const gx_allocator *a, void *old, size_t old_size, 
 
 static size_t gxbp_room_for(size_t need) { return need + need / 2 + 16; }
 
-/* Makes room for count + extra items of the given size. */
-static GXBP_APART gx_result gxbp_reserve(gxb_complex *cx, void *array, size_t item, uint32_t count, uint32_t *capacity, size_t extra) {
-    const size_t need = (size_t)count + extra, room = gxbp_room_for(need);
+/* Where an array stands there are a pointer, the number of its items and the number of those that it has room for. */
+static uint32_t *gxbp_extent_of(void *array) { return (uint32_t *)(void *)((unsigned char *)array + sizeof(void *)); }
+
+/* Makes room for so many items more of the given size. */
+static GXBP_APART gx_result gxbp_reserve(gxb_complex *cx, void *array, size_t item, size_t extra) {
+    uint32_t *count = gxbp_extent_of(array);
+    const size_t need = (size_t)count[0] + extra, room = gxbp_room_for(need);
     void *old, *memory;
-    if (need <= *capacity) return GX_OK;
+    if (need <= count[1]) return GX_OK;
     if (room > INT32_MAX || room > SIZE_MAX / item) return GX_ERROR_LIMIT;
     memcpy(&old, array, sizeof old);
-    memory = gxbp_reallocate(&cx->allocator, old, (size_t)*capacity * item, count * item, room * item);
+    memory = gxbp_reallocate(&cx->allocator, old, (size_t)count[1] * item, count[0] * item, room * item);
     if (memory == NULL) return GX_ERROR_MEMORY;
     memcpy(array, &memory, sizeof memory);
-    *capacity = (uint32_t)room;
+    count[1] = (uint32_t)room;
     return GX_OK;
 }
 
 #define GXBP_RESERVE(cx, array, counter, extra) ((size_t)(extra) <= (cx)->counter##_capacity - (cx)->counter##_count ? GX_OK : \
-    gxbp_reserve(cx, &(cx)->array, sizeof *(cx)->array, (cx)->counter##_count, &(cx)->counter##_capacity, extra))
+    gxbp_reserve(cx, &(cx)->array, sizeof *(cx)->array, extra))
+
+/* Arrays of a structure: where they stand, size of an item */
+typedef struct gxbp_array { uint16_t at, item; } gxbp_array;
+#define GXBP_ARRAY(type, array) { offsetof(type, array), sizeof *((type *)NULL)->array }
+
+static GXBP_COLD void gxbp_drop_arrays(const gx_allocator *a, void *owner, const gxbp_array *array, size_t count) {
+    for (; count > 0; count--, array++) {
+        unsigned char *at = (unsigned char *)owner + array->at;
+        void *memory;
+        memcpy(&memory, at, sizeof memory);
+        gxbp_release(a, memory, (size_t)gxbp_extent_of(at)[1] * array->item);
+    }
+}
 
 enum { GXBP_EDGES, GXBP_FACETS, GXBP_LEAVES, GXBP_NODES, GXBP_POINTS, GXBP_ROOTS, GXBP_FACES, GXBP_MESH_EDGES };
 
 static void *gxbp_item(gxb_complex *cx, uint32_t array, uint32_t index, size_t *size) {
-    switch (array) {
-    case GXBP_EDGES: *size = sizeof *cx->edges; return cx->edges + index;
-    case GXBP_FACETS: *size = sizeof *cx->facets; return cx->facets + index;
-    case GXBP_LEAVES: *size = sizeof *cx->leaves; return cx->leaves + index;
-    case GXBP_NODES: *size = sizeof *cx->nodes; return cx->nodes + index;
-    case GXBP_POINTS: *size = sizeof *cx->points; return cx->points + index;
-    case GXBP_ROOTS: *size = sizeof *cx->root; return cx->root + index;
-    case GXBP_FACES: *size = sizeof *cx->face_facet; return cx->face_facet + index;
-    default: *size = sizeof *cx->mesh_edge; return cx->mesh_edge + index;
-    }
+    static const gxbp_array arrays[] = {
+        GXBP_ARRAY(gxb_complex, edges), GXBP_ARRAY(gxb_complex, facets), GXBP_ARRAY(gxb_complex, leaves), GXBP_ARRAY(gxb_complex, nodes),
+        GXBP_ARRAY(gxb_complex, points), GXBP_ARRAY(gxb_complex, root), GXBP_ARRAY(gxb_complex, face_facet), GXBP_ARRAY(gxb_complex, mesh_edge)
+    };
+    unsigned char *items;
+    memcpy(&items, (unsigned char *)cx + arrays[array].at, sizeof items);
+    *size = arrays[array].item;
+    return items + index * *size;
 }
 
 /* Items older than the transaction. */
@@ -1612,7 +1632,7 @@ static GXBP_COLD void gxbp_compact_pool(gxb_complex *cx) {
     cx->pool_count = cx->pool_live = used;
 }
 
-static void gxbp_set_marks(gxb_complex *cx) {
+static GXBP_APART void gxbp_set_marks(gxb_complex *cx) {
     cx->mark[0] = cx->point_count; cx->mark[1] = cx->plane_count; cx->mark[2] = cx->edge_count; cx->mark[3] = cx->facet_count;
     cx->mark[4] = cx->leaf_count; cx->mark[5] = cx->tree_count; cx->mark[6] = cx->label_count; cx->mark[7] = cx->pool_count;
     cx->mark_block = cx->blocks;
@@ -1636,16 +1656,21 @@ static int gxbp_is_recent(const gxb_complex *cx, const void *memory) {
     return block != NULL && m >= (const unsigned char *)block + cx->mark_used && m < (const unsigned char *)block + block->size;
 }
 
+/* Gives back the blocks of exact numbers that are newer than this one. */
+static GXBP_COLD void gxbp_drop_numbers(gxb_complex *cx, const gxb_block *last) {
+    while (cx->blocks != last) {
+        gxb_block *next = cx->blocks->next;
+        gxbp_release(&cx->allocator, cx->blocks, cx->blocks->size);
+        cx->blocks = next;
+    }
+}
+
 /* Gives back exact numbers kept since begin; those of older points and planes are computed again when needed. */
 static GXBP_COLD void gxbp_drop_recent_numbers(gxb_complex *cx) {
     uint32_t i;
     for (i = 0; i < cx->mark[0]; i++) if (cx->points[i].exact != NULL && gxbp_is_recent(cx, cx->points[i].exact)) cx->points[i].exact = NULL;
     for (i = 0; i < cx->mark[1]; i++) if (cx->planes[i].exact != NULL && gxbp_is_recent(cx, cx->planes[i].exact)) cx->planes[i].exact = NULL;
-    while (cx->blocks != cx->mark_block) {
-        gxb_block *next = cx->blocks->next;
-        gxbp_release(&cx->allocator, cx->blocks, cx->blocks->size);
-        cx->blocks = next;
-    }
+    gxbp_drop_numbers(cx, cx->mark_block);
     if (cx->blocks != NULL) cx->blocks->used = cx->mark_used;
 }
 
@@ -1887,7 +1912,7 @@ static int gxbp_incident_by_line(const gxb_complex *cx, const uint32_t def[3], u
 }
 
 /* x: coordinates of the points (as many as count) where all are given by doubles. Else 0 */
-static int gxbp_given_points(const gxb_complex *cx, const uint32_t *points, int count, const double **x) {
+static GXBP_APART int gxbp_given_points(const gxb_complex *cx, const uint32_t *points, int count, const double **x) {
     int k;
     for (k = 0; k < count; k++) {
         const gxb_cpoint *p = &cx->points[points[k]];
@@ -1905,7 +1930,7 @@ static int gxbp_short_side(const gxb_complex *cx, uint32_t kind, const uint32_t 
     if (f->along_axis || !gxbp_given_points(cx, f->def, 3, x)) return GXBP_UNKNOWN;
     if (kind == GXB_EXPLICIT) {
         if (!gxbp_given_points(cx, &point, 1, x + 3)) return GXBP_UNKNOWN;
-        turn = gxbp_orient3d_short(x[0], x[1], x[2], x[3]);
+        turn = gxbp_orient3d_short(x);
         return turn == GXBP_UNKNOWN ? turn : -turn;
     }
     g = &cx->planes[def[2]];
@@ -2011,7 +2036,7 @@ static GXBP_COLD int gxbp_exact_normal_sign(gxb_complex *cx, uint32_t plane, uin
     const double *x[3];
     gxbp_vec store;
     int sign[3];
-    if (!f->along_axis && gxbp_given_points(cx, f->def, 3, x) && gxbp_normal_short(x[0], x[1], x[2], sign)) return sign[axis];
+    if (!f->along_axis && gxbp_given_points(cx, f->def, 3, x) && gxbp_normal_short(x, sign)) return sign[axis];
     return gxbp_exact_cplane(cx, plane, &store)[axis].sign;
 }
 
@@ -2061,7 +2086,7 @@ static int gxbp_compare_keys(const void *a, const void *b) {
 static const uint8_t gxbp_face_nodes[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};     /* outward, opposite to node k */
 static const uint8_t gxbp_edge_nodes[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 
-static void gxbp_sort3(uint32_t a[3]) {
+static GXBP_APART void gxbp_sort3(uint32_t a[3]) {
     uint32_t t;
     if (a[0] > a[1]) { t = a[0]; a[0] = a[1]; a[1] = t; }
     if (a[1] > a[2]) { t = a[1]; a[1] = a[2]; a[2] = t; }
@@ -2266,8 +2291,6 @@ GXFEM_API GXBP_RARE gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_
     return gxbp_fail(failure, GX_OK, SIZE_MAX);
 }
 
-#define GXBP_FREE(array, counter) gxbp_release(&a, cx->array, (size_t)cx->counter##_capacity * sizeof *cx->array)
-
 typedef struct gxbp_corner {    /* of a clipped polygon: its point, and what carries the edge to the next corner */
     gxb_ball ball;
     uint32_t kind, def[3], point;
@@ -2280,19 +2303,19 @@ typedef struct gxbp_task { uint32_t parent, side, first, count, coplanar; } gxbp
 #define GXBP_TRIANGLE_EDGE 0x80000000u
 #define GXBP_IN_ROOT GXB_NONE   /* task.parent: the reference is the element's root */
 
+static const gxbp_array gxbp_complex_arrays[] = {
+    GXBP_ARRAY(gxb_complex, points), GXBP_ARRAY(gxb_complex, planes), GXBP_ARRAY(gxb_complex, edges), GXBP_ARRAY(gxb_complex, facets),
+    GXBP_ARRAY(gxb_complex, leaves), GXBP_ARRAY(gxb_complex, nodes), GXBP_ARRAY(gxb_complex, labels), GXBP_ARRAY(gxb_complex, pool),
+    GXBP_ARRAY(gxb_complex, walls), GXBP_ARRAY(gxb_complex, undo), GXBP_ARRAY(gxb_complex, undo_bytes), GXBP_ARRAY(gxb_complex, corners),
+    GXBP_ARRAY(gxb_complex, tasks), GXBP_ARRAY(gxb_complex, scratch)
+};
+
 GXFEM_API GXBP_RARE void gxb_complex_destroy(gxb_complex *cx) {
     gx_allocator a;
     if (cx == NULL) return;
     a = cx->allocator;
-    while (cx->blocks != NULL) {
-        gxb_block *next = cx->blocks->next;
-        gxbp_release(&a, cx->blocks, cx->blocks->size);
-        cx->blocks = next;
-    }
-    GXBP_FREE(points, point); GXBP_FREE(planes, plane); GXBP_FREE(edges, edge); GXBP_FREE(facets, facet);
-    GXBP_FREE(leaves, leaf); GXBP_FREE(nodes, tree); GXBP_FREE(labels, label);
-    GXBP_FREE(pool, pool); GXBP_FREE(walls, wall); GXBP_FREE(undo, undo);
-    GXBP_FREE(undo_bytes, undo_byte); GXBP_FREE(corners, corner); GXBP_FREE(tasks, task); GXBP_FREE(scratch, scratch);
+    gxbp_drop_numbers(cx, NULL);
+    gxbp_drop_arrays(&a, cx, gxbp_complex_arrays, sizeof gxbp_complex_arrays / sizeof *gxbp_complex_arrays);
     gxbp_release(&a, cx->elements, gxbp_table_words(cx->element_count) * sizeof *cx->elements);
     gxbp_release(&a, cx->pairs, sizeof *cx->pairs);
     gxbp_release(&a, cx, sizeof *cx);
@@ -2823,7 +2846,7 @@ static gx_result gxbp_cover_edge(gxb_complex *cx, gxb_triangle *t, uint32_t edge
     return GX_OK;
 }
 
-static gx_result gxbp_cover_edges(gxb_complex *cx, gxb_triangle *t, uint32_t edge, int *covered) {
+static GXBP_COLD gx_result gxbp_cover_edges(gxb_complex *cx, gxb_triangle *t, uint32_t edge, int *covered) {
     const uint32_t child = cx->edges[edge].child;
     gx_result result;
     if (child == GXB_NONE) return gxbp_cover_edge(cx, t, edge, 0, covered);
@@ -2910,7 +2933,7 @@ static int gxbp_leaf_sides(gxb_complex *cx, uint32_t leaf, const gxbp_knife *kni
     return sides;
 }
 
-static GXBP_APART int gxbp_sides_below(gxb_complex *cx, uint32_t reference, const gxbp_knife *knife) {
+static GXBP_COLD int gxbp_sides_below(gxb_complex *cx, uint32_t reference, const gxbp_knife *knife) {
     int sides;
     if (!(reference & 1)) return gxbp_leaf_sides(cx, reference >> 1, knife);
     sides = gxbp_sides_below(cx, cx->nodes[reference >> 1].child[0], knife);
@@ -2991,7 +3014,7 @@ static gx_result gxbp_follow_plan(gxb_complex *cx, const gxbp_plan *plan, uint32
 }
 
 /* Balances the tree below top along the path to a node. */
-static gx_result gxbp_balance(gxb_complex *cx, uint32_t top, uint32_t node, uint32_t element) {
+static GXBP_COLD gx_result gxbp_balance(gxb_complex *cx, uint32_t top, uint32_t node, uint32_t element) {
     const uint32_t count = gxbp_depth(cx, node) - gxbp_depth(cx, cx->nodes[top].parent);
     const size_t size = count * (2 * sizeof(gxbp_rung) + sizeof(gxbp_step));
     gxbp_rung *rung = (gxbp_rung *)gxbp_allocate(&cx->allocator, size);
@@ -3062,7 +3085,7 @@ static uint32_t gxbp_part_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife 
 enum { GXBP_MANY_FACETS = 24, GXBP_SAMPLE = 32 };      /* looked at from so many on; of so many at most the median is taken */
 
 /* A number from a to b > a with few bits */
-static double gxbp_between(double a, double b) {
+static GXBP_COLD double gxbp_between(double a, double b) {
     const uint64_t x = gxbp_bits(a), y = gxbp_bits(b);
     int drop = 52;
     if (gxbp_compare_doubles(a, 0) < 0) return gxbp_compare_doubles(b, 0) < 0 ? -gxbp_between(-b, -a) : 0;
@@ -3302,18 +3325,13 @@ static GXBP_COLD void gxbp_probe_init(gxb_complex *cx, const uint32_t *points, s
     for (i = 0; i < count; i++) {
         gxbp_vec store;
         const gxb_num *x = gxbp_exact_cpoint(cx, points[i], &store);
-        for (k = 0; k < 4; k++) {
-            GXB_NUM(sum);
-            gxb_num_add(&sum, &probe->exact.c[k], &x[k]);
-            gxbp_num_copy(&probe->exact.c[k], &sum, 1);
-        }
+        for (k = 0; k < 4; k++) gxbp_num_increase(&probe->exact.c[k], &x[k], 1);
     }
     for (k = 0; k < 3; k++) {
-        GXB_NUM(origin); GXB_NUM(t); GXB_NUM(sum);
+        GXB_NUM(origin); GXB_NUM(t);
         gxb_num_set(&origin, cx->origin[k], cx->shift);
         gxb_num_mul(&t, &origin, &probe->exact.c[3]);
-        gxb_num_add(&sum, &probe->exact.c[k], &t);
-        gxbp_num_copy(&probe->exact.c[k], &sum, 1);
+        gxbp_num_increase(&probe->exact.c[k], &t, 1);
         probe->rough[k] = gxb_num_ratio(&probe->exact.c[k], &probe->exact.c[3]);
     }
 }
@@ -3433,7 +3451,7 @@ static gxbp_pair gxbp_pair_mul(const gxbp_pair *a, const gxbp_pair *b) {
 }
 
 /* a b - c d */
-static gxbp_pair gxbp_pair_det2(const gxbp_pair *a, const gxbp_pair *b, const gxbp_pair *c, const gxbp_pair *d) {
+static GXBP_APART gxbp_pair gxbp_pair_det2(const gxbp_pair *a, const gxbp_pair *b, const gxbp_pair *c, const gxbp_pair *d) {
     const gxbp_pair s = gxbp_pair_mul(a, b), t = gxbp_pair_mul(c, d);
     return gxbp_pair_add(&s, &t, -1);
 }
@@ -3634,26 +3652,17 @@ GXFEM_API void gxb_complex_barycentric(gxb_complex *cx, uint32_t point, uint32_t
     for (k = 0; k < 4; k++) if (lambda[k] < 0) lambda[k] = gxbp_exact_lambda(cx, point, element, k);
 }
 
-/* Each step adds the quotient of what is left: 50 bits, so that four leave less than 2^-180 of the value. */
 GXFEM_API GXBP_RARE void gxb_complex_barycentric_fine(gxb_complex *cx, uint32_t point, uint32_t element, gxb_num lambda[4]) {
     uint32_t k;
-    int step;
     for (k = 0; k < 4; k++) {
         const int known = gxbp_known_lambda(cx, point, element, k);
-        GXB_NUM(num); GXB_NUM(den); GXB_NUM(q); GXB_NUM(t); GXB_NUM(s);
+        GXB_NUM(num); GXB_NUM(den); GXB_NUM(weight); GXB_NUM(height);
         gxb_num_set(&lambda[k], known > 0 ? 1.0 : 0.0, 0);
         if (known >= 0) continue;
-        gxbp_distance(cx, point, gxbp_face_plane(cx, element, k), &num, &q);
-        gxbp_distance(cx, cx->elements[4 * element + k], gxbp_face_plane(cx, element, k), &t, NULL);
-        gxb_num_mul(&den, &q, &t);
-        for (step = 0; step < 4 && num.sign != 0; step++) {
-            gxb_num_set(&q, gxb_num_ratio(&num, &den), 0);
-            gxb_num_add(&s, &lambda[k], &q);
-            gxbp_num_copy(&lambda[k], &s, 1);
-            gxb_num_mul(&t, &q, &den);
-            gxb_num_sub(&s, &num, &t);
-            gxbp_num_copy(&num, &s, 1);
-        }
+        gxbp_distance(cx, point, gxbp_face_plane(cx, element, k), &num, &weight);
+        gxbp_distance(cx, cx->elements[4 * element + k], gxbp_face_plane(cx, element, k), &height, NULL);
+        gxb_num_mul(&den, &weight, &height);
+        gxbp_num_divide(&lambda[k], &num, &den);
     }
 }
 
@@ -3974,8 +3983,9 @@ static int gxbp_same_place(gxb_complex *cx, uint32_t a, uint32_t b) {
 static GXBP_COLD int gxbp_planes_cross(gxb_complex *cx, uint32_t a, uint32_t b) {
     const gxb_plane_filter *f = &cx->planes[a].filter, *g = &cx->planes[b].filter;
     double r[3];
-    const double bound = gxbp_filter_cross(r, f->n, f->error, g->n, g->error);
+    const double bound = gxbp_cross_error(f->norm, f->error, g->norm, g->error);
     gxbp_vec sa, sb, cross;
+    gxbp_cross(r, f->n, g->n);
     if (gxbp_max3(r) > bound) return 1;
     gxbp_vec_init(&cross);
     gxbp_num_cross(cross.c, gxbp_exact_cplane(cx, a, &sa), gxbp_exact_cplane(cx, b, &sb));
@@ -4052,7 +4062,7 @@ typedef struct gxbp_checker {
 } gxbp_checker;
 
 /* Appends the pieces of a signed edge; none may come twice in a facet. */
-static void gxbp_collect_edges(gxbp_checker *c, uint32_t signed_edge) {
+static GXBP_COLD void gxbp_collect_edges(gxbp_checker *c, uint32_t signed_edge) {
     const uint32_t child = c->cx->edges[signed_edge >> 1].child, back = signed_edge & 1;
     if (c->s->result != GX_OK) return;
     if (child != GXB_NONE) {
@@ -4145,7 +4155,7 @@ static void gxbp_check_facets(gxbp_checker *c) {
 }
 
 /* Collects the facets into which one was divided; those of a leaf's list must be its own, each listed once. */
-static void gxbp_collect_facets(gxbp_checker *c, uint32_t facet, uint32_t leaf) {
+static GXBP_COLD void gxbp_collect_facets(gxbp_checker *c, uint32_t facet, uint32_t leaf) {
     const gxb_facet *f = &c->cx->facets[facet];
     if (c->s->result != GX_OK) return;
     if (f->child != GXB_NONE) {
@@ -4177,7 +4187,7 @@ static void gxbp_add_border(gxbp_checker *c, uint32_t facet, uint32_t flip, uint
 /* --- mesh faces: their facets cover them once, up to the pieces of their mesh edges --- */
 
 /* Are all pieces of the signed edge on the border? Returns how many there are. */
-static uint32_t gxbp_border_pieces(gxbp_checker *c, uint32_t signed_edge, uint32_t round) {
+static GXBP_COLD uint32_t gxbp_border_pieces(gxbp_checker *c, uint32_t signed_edge, uint32_t round) {
     const uint32_t child = c->cx->edges[signed_edge >> 1].child, back = signed_edge & 1;
     if (child != GXB_NONE)
         return gxbp_border_pieces(c, child << 1 | back, round) + gxbp_border_pieces(c, (child + 1) << 1 | back, round);
@@ -4431,6 +4441,8 @@ struct gxb_boolean {            /* what is used most comes first: its addresses 
     gxbp_source *sources; uint32_t source_count, source_capacity;
     gxbp_vertex *vertices; uint32_t vertex_count, vertex_capacity;
     gxbp_piece *pieces; uint32_t piece_count, piece_capacity;
+    uint32_t *scratch; uint32_t scratch_count, scratch_capacity;
+    gxbp_link *links; uint32_t link_count, link_capacity;
     gx_result result;           /* of the evaluation at work */
     gxb_complex cx;             /* points, planes and exact numbers; the complex has no elements */
     gx_allocator outer;
@@ -4446,7 +4458,6 @@ struct gxb_boolean {            /* what is used most comes first: its addresses 
     gxbp_leaf_boxes *bounds; uint32_t bound_count, bound_capacity;      /* of each operand's sources, in its tree's order */
     gxbp_box *boxes; uint32_t box_count, box_capacity;                  /* of trees */
     uint32_t *table; uint32_t table_size, table_used;                   /* hash of points by coordinates or key */
-    gxbp_link *links; uint32_t link_count, link_capacity;
     gxbp_segment *segments; uint32_t segment_count, segment_capacity;
     gxbp_cut *cuts; uint32_t cut_count, cut_capacity;
     uint32_t *cut_points; uint32_t cut_point_count, cut_point_capacity;
@@ -4457,7 +4468,6 @@ struct gxb_boolean {            /* what is used most comes first: its addresses 
     gxbp_margin *rims; uint32_t rim_count, rim_capacity;
     gxbp_margin *lefts; uint32_t left_count, left_capacity;
     uint32_t *chain; uint32_t chain_count, chain_capacity;
-    uint32_t *scratch; uint32_t scratch_count, scratch_capacity;
     uint32_t arranged;          /* operands that are in the arrangement */
     uint32_t stated;            /* operands that states count; 0: facets have no states */
     uint32_t segment_mark;      /* segments before it are in the triangulations */
@@ -4553,7 +4563,8 @@ static GXBP_APART int gxbp_stop(gxb_boolean *b, gx_result result) {
 }
 
 /* Small cases should not pay for growing: an array's first items come from the arena at once. */
-static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, size_t item, uint32_t count, uint32_t *capacity, size_t extra) {
+static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, size_t item, size_t extra) {
+    uint32_t *capacity = gxbp_extent_of(array) + 1;
     const size_t least = *capacity == 0 && extra < 16 ? 16 : extra, room = gxbp_room_for(least);
     void *memory = *capacity == 0 && least < GXBP_ARENA ? gxbp_take(b, room * item) : NULL;
     gx_result result;
@@ -4562,18 +4573,16 @@ static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, size_t item, uint32
         *capacity = (uint32_t)room;
         return 1;
     }
-    result = gxbp_reserve(&b->cx, array, item, count, capacity, least);
+    result = gxbp_reserve(&b->cx, array, item, least);
     return result == GX_OK ? 1 : gxbp_stop(b, result);
 }
 
 #define GXBP_ROOM(b, array, counter, extra) \
     ((b)->counter##_count + (size_t)(extra) <= (b)->counter##_capacity || \
-     gxbp_room(b, &(b)->array, sizeof *(b)->array, (b)->counter##_count, &(b)->counter##_capacity, extra))
-#define GXBP_DROP(b, array, counter) \
-    gxbp_release(&(b)->cx.allocator, (b)->array, (size_t)(b)->counter##_capacity * sizeof *(b)->array)
+     gxbp_room(b, &(b)->array, sizeof *(b)->array, extra))
 
 /* Memory for as long as nobody else takes scratch; NULL: there is none. It is kept: what needs some next finds pages that have been touched. */
-static void *gxbp_borrow(gxb_boolean *b, size_t bytes) {
+static GXBP_APART void *gxbp_borrow(gxb_boolean *b, size_t bytes) {
     b->scratch_count = 0;
     return GXBP_ROOM(b, scratch, scratch, bytes / sizeof *b->scratch + 1) ? b->scratch : NULL;
 }
@@ -4603,22 +4612,40 @@ static uint32_t gxbp_hash_point(const gxb_boolean *b, uint32_t point) {
     return key[0] == GXB_FROM_VERTEX ? gxbp_hash_place(b->cx.points[point].ball.x) : gxbp_hash_key(key);
 }
 
-static GXBP_APART int gxbp_grow_table(gxb_boolean *b, uint32_t extra) {
-    uint32_t size = b->table_size == 0 ? 64 : b->table_size, *table, i, k;
-    if ((uint64_t)(b->table_used + (uint64_t)extra) * 2 <= b->table_size) return 1;
-    while ((uint64_t)size < ((uint64_t)b->table_used + extra) * 3 && size < (uint32_t)1 << 31) size *= 2;
-    table = (uint32_t *)gxbp_allocate(&b->cx.allocator, (size_t)size * sizeof *table);
-    if (table == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
-    memset(table, 0xff, (size_t)size * sizeof *table);
-    for (i = 0; i < b->table_size; i++) {
-        if (b->table[i] == GXB_NONE) continue;
-        for (k = gxbp_hash_point(b, b->table[i]) & (size - 1); table[k] != GXB_NONE; k = (k + 1) & (size - 1)) {}
-        table[k] = b->table[i];
-    }
-    gxbp_release(&b->cx.allocator, b->table, (size_t)b->table_size * sizeof *table);
-    b->table = table;
-    b->table_size = size;
+/* Another table, and all that is in it is to be listed again. */
+static GXBP_APART int gxbp_renew_table(gxb_boolean *b, uint32_t **table, uint32_t *size, uint32_t larger) {
+    uint32_t *fresh = (uint32_t *)gxbp_allocate(&b->cx.allocator, (size_t)larger * sizeof **table);
+    if (fresh == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
+    gxbp_release(&b->cx.allocator, *table, (size_t)*size * sizeof **table);
+    *table = fresh;
+    *size = larger;
     return 1;
+}
+
+/* Lists the points up to a number, but for those of frames. */
+static void gxbp_list_points(gxb_boolean *b, uint32_t count) {
+    const uint32_t last = b->table_size - 1;
+    uint32_t i, k;
+    memset(b->table, 0xff, (size_t)b->table_size * sizeof *b->table);
+    for (i = b->table_used = 0; i < count; i++) {
+        if (b->vertices[i].key[0] == GXB_FROM_VERTEX && b->vertices[i].key[1] == GXB_NONE) continue;
+        for (k = gxbp_hash_point(b, i) & last; b->table[k] != GXB_NONE; k = (k + 1) & last) {}
+        b->table[k] = i;
+        b->table_used++;
+    }
+}
+
+static GXBP_APART int gxbp_grow_table(gxb_boolean *b, uint32_t extra) {
+    uint32_t size = b->table_size == 0 ? 64 : b->table_size;
+    while ((uint64_t)size < ((uint64_t)b->table_used + extra) * 3 && size < (uint32_t)1 << 31) size *= 2;
+    if (!gxbp_renew_table(b, &b->table, &b->table_size, size)) return 0;
+    gxbp_list_points(b, b->vertex_count);
+    return 1;
+}
+
+/* Room in the table for so many points more */
+static int gxbp_table_room(gxb_boolean *b, uint32_t extra) {
+    return ((uint64_t)b->table_used + extra) * 2 <= b->table_size || gxbp_grow_table(b, extra);
 }
 
 /* A point without coordinates yet. */
@@ -4689,7 +4716,7 @@ static void gxbp_place_point(gxb_boolean *b, uint32_t point, uint32_t kind, uint
 static uint32_t gxbp_keyed_point(gxb_boolean *b, uint32_t kind, uint32_t p, uint32_t q, uint32_t r, int *fresh) {
     uint32_t key[4], k, id;
     *fresh = 0;
-    if (!gxbp_grow_table(b, 1)) return GXB_NONE;
+    if (!gxbp_table_room(b, 1)) return GXB_NONE;
     key[0] = kind; key[1] = p; key[2] = q; key[3] = r;
     for (k = gxbp_hash_key(key) & (b->table_size - 1); b->table[k] != GXB_NONE; k = (k + 1) & (b->table_size - 1))
         if (memcmp(b->vertices[b->table[k]].key, key, sizeof key) == 0) return gxbp_same(b, b->table[k]);
@@ -4860,10 +4887,12 @@ static void gxbp_cross_sizes(double m[3], double size[3], const double a[3], con
 }
 
 static GXBP_COLD int gxbp_has_area_exactly(const double *p, const double *q, const double *r) {
+    const double *x[3];
     gxb_plane plane;
     gxbp_vec n;
     int sign[3];
-    if (gxbp_normal_short(p, q, r, sign)) return sign[0] != 0 || sign[1] != 0 || sign[2] != 0;
+    x[0] = p; x[1] = q; x[2] = r;
+    if (gxbp_normal_short(x, sign)) return sign[0] != 0 || sign[1] != 0 || sign[2] != 0;
     gxb_plane_init(&plane, p, q, r);
     gxbp_plane_exact(&n, &plane);
     return n.c[0].sign != 0 || n.c[1].sign != 0 || n.c[2].sign != 0;
@@ -4881,24 +4910,33 @@ static int gxbp_has_area(const double *p, const double *q, const double *r) {
     return gxbp_has_area_exactly(p, q, r);
 }
 
-static void gxbp_fill_source(gxb_boolean *b, uint32_t s, uint32_t operand, const uint32_t *twin, uint32_t first) {
+/* A source on its own: one facet, behind those that there are, and room for it. */
+static inline void gxbp_reset_source(gxb_boolean *b, uint32_t s) {
     gxbp_source *t = &b->sources[s];
     gxbp_piece *f = &b->pieces[b->piece_count];
-    const double *x[3];
     int k;
     for (k = 0; k < 3; k++) {
-        x[k] = b->cx.points[t->point[k]].ball.x;
-        t->twin[k] = twin[k] == GXB_NONE ? GXB_NONE : twin[k] + 3 * first;
         t->edge[k] = GXB_NONE;
         f->v[k] = t->point[k];
         f->near[k] = GXB_NONE;
         f->labels[k] = GXBP_BARE;
     }
-    t->plane = GXB_NONE; t->operand = operand; t->segments = GXB_NONE;
-    t->root = s; t->next = GXB_NONE;
-    t->flags = gxbp_has_area(x[0], x[1], x[2]) ? 0 : (uint32_t)GXBP_DEGENERATE;
-    f->source = s; f->next = GXB_NONE; f->covers = GXB_NONE; f->state = GXB_NONE;
+    t->segments = t->next = GXB_NONE;
+    t->root = s;
+    f->source = t->flags & GXBP_DEGENERATE ? GXB_NONE : s;
+    f->next = f->covers = f->state = GXB_NONE;
     t->facet = b->piece_count++;
+}
+
+static void gxbp_fill_source(gxb_boolean *b, uint32_t s, uint32_t operand, const uint32_t *twin, uint32_t first) {
+    gxbp_source *t = &b->sources[s];
+    const gxb_cpoint *x = b->cx.points;
+    int k;
+    for (k = 0; k < 3; k++) t->twin[k] = twin[k] == GXB_NONE ? GXB_NONE : twin[k] + 3 * first;
+    t->plane = GXB_NONE;
+    t->operand = operand;
+    t->flags = gxbp_has_area(x[t->point[0]].ball.x, x[t->point[1]].ball.x, x[t->point[2]].ball.x) ? 0 : (uint32_t)GXBP_DEGENERATE;
+    gxbp_reset_source(b, s);
 }
 
 /* Neighbours across an edge of a triangle without area are none. */
@@ -4906,7 +4944,6 @@ static void gxbp_forget_degenerate(gxb_boolean *b, uint32_t first) {
     uint32_t s, k;
     for (s = first; s < b->source_count; s++) {
         if (!(b->sources[s].flags & GXBP_DEGENERATE)) continue;
-        b->pieces[b->sources[s].facet].source = GXB_NONE;
         for (k = 0; k < 3; k++) {
             const uint32_t h = b->sources[s].twin[k];
             if (h != GXB_NONE) b->sources[h / 3].twin[h % 3] = GXB_NONE;
@@ -5109,7 +5146,7 @@ static gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operand *o, size_
     uint32_t *work;
     if (!GXBP_ROOM(b, operands, operand, 1) || !GXBP_ROOM(b, sources, source, sources) || !GXBP_ROOM(b, bounds, bound, leaves) ||
         !GXBP_ROOM(b, pieces, piece, pieces) || !GXBP_ROOM(b, vertices, vertex, points) ||
-        !gxbp_grow_table(b, (uint32_t)o->vertex_count)) return b->result;
+        !gxbp_table_room(b, (uint32_t)o->vertex_count)) return b->result;
     result = GXBP_RESERVE(&b->cx, points, point, points);
     if (result != GX_OK) return result;
     work = (uint32_t *)gxbp_borrow(b, words * sizeof *work);
@@ -5262,12 +5299,13 @@ static gxbp_spot gxbp_spot_of_point(const gxb_boolean *b, const double *x, uint3
 /* Where the line from p (in front of the plane: side 1) to q (behind) passes: signs of gxbp_orient of the triangle's edges with p and q,
    with the same bounds, from differences and products that they share. */
 static GXBP_COLD gxbp_spot gxbp_spot_of_line(gxb_boolean *b, const double *p, const double *q, int side, uint32_t s) {
+    const double *x[4];
     double d[3], c[3][3], m[3][3], size[3][3];
     int sign[3], k, i;
     for (i = 0; i < 3; i++) d[i] = gxbp_fence(p[i] - q[i]);
     for (k = 0; k < 3; k++) {
-        const double *x = gxbp_corner_of(b, s, k);
-        for (i = 0; i < 3; i++) c[k][i] = gxbp_fence(x[i] - q[i]);
+        x[0] = gxbp_corner_of(b, s, k);
+        for (i = 0; i < 3; i++) c[k][i] = gxbp_fence(x[0][i] - q[i]);
         gxbp_cross_sizes(m[k], size[k], c[k], d);
     }
     for (k = 0; k < 3; k++) {
@@ -5277,7 +5315,8 @@ static GXBP_COLD gxbp_spot gxbp_spot_of_line(gxb_boolean *b, const double *p, co
         b->cx.filter_calls++;
         if (sign[k] == 0) {
             b->cx.exact_calls++;
-            sign[k] = side * gxbp_orient3d_exact(gxbp_corner_of(b, s, k), gxbp_corner_of(b, s, (k + 1) % 3), p, q);
+            x[0] = gxbp_corner_of(b, s, k); x[1] = gxbp_corner_of(b, s, (k + 1) % 3); x[2] = p; x[3] = q;
+            sign[k] = side * gxbp_orient3d_exact(x);
         }
         if (sign[k] < 0) break;
     }
@@ -5362,6 +5401,7 @@ static inline void gxbp_record_crossing(gxb_boolean *b, uint32_t s, int k, uint3
 
 /* sign[x][y]: orientation of (p[0], p[y + 1], q[x + 1], q[0]). The differences and products are shared: see gxbp_cross_size for the bound. */
 static void gxbp_orient_pairs(gxb_boolean *b, const double *const q[3], const double *const p[3], int sign[2][2]) {
+    const double *at[4];
     double w[3], u[2][3], v[3], m[3], size[3];
     int x, y, k;
     for (k = 0; k < 3; k++) {
@@ -5378,7 +5418,8 @@ static void gxbp_orient_pairs(gxb_boolean *b, const double *const q[3], const do
             b->cx.filter_calls++;
             if (sign[x][y] != 0) continue;
             b->cx.exact_calls++;
-            sign[x][y] = gxbp_orient3d_exact(p[0], p[y + 1], q[x + 1], q[0]);
+            at[0] = p[0]; at[1] = p[y + 1]; at[2] = q[x + 1]; at[3] = q[0];
+            sign[x][y] = gxbp_orient3d_exact(at);
         }
     }
 }
@@ -5462,6 +5503,17 @@ static int gxbp_no_edge_separates(int turn[3][3], int orientation) {
     return 1;
 }
 
+/* Corner k of s in t; turn[j][k]: against t's edge j */
+static GXBP_COLD void gxbp_meet_corner(gxb_boolean *b, uint32_t s, int k, uint32_t t, int turn[3][3], int orientation, gxbp_meeting *m) {
+    int sign[3], j;
+    gxbp_spot spot;
+    for (j = 0; j < 3; j++) sign[j] = turn[j][k] * orientation;
+    spot = gxbp_spot_of(sign);
+    if (spot.outside) return;
+    gxbp_found(b, m, b->sources[s].point[k]);
+    if (spot.edge >= 0) gxbp_hit_edge(b, t, spot.edge, b->sources[s].point[k]);
+}
+
 static GXBP_COLD void gxbp_meet_in_plane(gxb_boolean *b, uint32_t s, uint32_t t) {
     const uint32_t plane = b->sources[s].plane;
     int of_s[3][3], of_t[3][3], k, j, facing;
@@ -5473,16 +5525,8 @@ static GXBP_COLD void gxbp_meet_in_plane(gxb_boolean *b, uint32_t s, uint32_t t)
     }
     facing = gxbp_flat_turn(b, plane, gxbp_corner_of(b, t, 0), gxbp_corner_of(b, t, 1), gxbp_corner_of(b, t, 2));
     for (k = 0; k < 3; k++) {
-        int sign[3];
-        gxbp_spot spot;
-        for (j = 0; j < 3; j++) sign[j] = of_t[j][k] * facing;
-        spot = gxbp_spot_of(sign);
-        if (!spot.outside) gxbp_found(b, &m, b->sources[s].point[k]);
-        if (!spot.outside && spot.edge >= 0) gxbp_hit_edge(b, t, spot.edge, b->sources[s].point[k]);
-        for (j = 0; j < 3; j++) sign[j] = of_s[j][k];
-        spot = gxbp_spot_of(sign);
-        if (!spot.outside) gxbp_found(b, &m, b->sources[t].point[k]);
-        if (!spot.outside && spot.edge >= 0) gxbp_hit_edge(b, s, spot.edge, b->sources[t].point[k]);
+        gxbp_meet_corner(b, s, k, t, of_t, facing, &m);
+        gxbp_meet_corner(b, t, k, s, of_s, 1, &m);
     }
     for (k = 0; k < 3; k++) for (j = 0; j < 3; j++) {
         uint32_t point;
@@ -5583,7 +5627,7 @@ static gxbp_box gxbp_leaf_box(const gxbp_leaf_boxes *leaf, uint32_t x) {
     return box;
 }
 
-static void gxbp_meet_leaves(gxb_boolean *b, const gxbp_operand *o, uint32_t i, const gxbp_operand *q, uint32_t j) {
+static GXBP_APART void gxbp_meet_leaves(gxb_boolean *b, const gxbp_operand *o, uint32_t i, const gxbp_operand *q, uint32_t j) {
     uint32_t first[GXBP_LEAF], second[GXBP_LEAF], x, y;
     gxbp_test_leaf(&b->bounds[o->bounds + i], &b->boxes[q->tree.first + j], first);
     for (x = 0; x < GXBP_LEAF; x++) {
@@ -5602,21 +5646,16 @@ static int gxbp_boxes_meet(const gxb_boolean *b, const gxbp_tree *s, uint32_t l,
     return gxbp_box_meets(&b->boxes[s->first + s->level[l] + i], &b->boxes[t->first + t->level[m] + j]);
 }
 
-/* Box i of level l of one tree and box j of level m of the other, which meet. Depth: the sum of their levels. */
+/* Box i of level l of one tree and box j of level m of the other, which meet: of the larger, or of both, those in it. Depth: the larger level. */
 static GXBP_APART void gxbp_meet_boxes(gxb_boolean *b, const gxbp_operand *o, uint32_t l, uint32_t i, const gxbp_operand *q, uint32_t m, uint32_t j) {
     const gxbp_tree *s = &o->tree, *t = &q->tree;
+    const uint32_t of_s = l >= m, of_t = m >= l;
     uint32_t c, d;
     if (b->result != GX_OK) return;
-    if (l == 0 && m == 0) gxbp_meet_leaves(b, o, i, q, j);
-    else if (l > m) {
-        for (c = 2 * i; c < 2 * i + 2 && c < s->size[l - 1]; c++)
-            if (gxbp_boxes_meet(b, s, l - 1, c, t, m, j)) gxbp_meet_boxes(b, o, l - 1, c, q, m, j);
-    } else if (l == m) {
-        for (c = 2 * i; c < 2 * i + 2 && c < s->size[l - 1]; c++)
-            for (d = o == q && c > 2 * j ? c : 2 * j; d < 2 * j + 2 && d < t->size[m - 1]; d++)
-                if (gxbp_boxes_meet(b, s, l - 1, c, t, m - 1, d)) gxbp_meet_boxes(b, o, l - 1, c, q, m - 1, d);
-    } else for (c = 2 * j; c < 2 * j + 2 && c < t->size[m - 1]; c++)
-        if (gxbp_boxes_meet(b, s, l, i, t, m - 1, c)) gxbp_meet_boxes(b, o, l, i, q, m - 1, c);
+    if (l == 0 && m == 0) { gxbp_meet_leaves(b, o, i, q, j); return; }
+    for (c = i << of_s; c < (i + 1) << of_s && c < s->size[l - of_s]; c++)
+        for (d = o == q && c > j << of_t ? c : j << of_t; d < (j + 1) << of_t && d < t->size[m - of_t]; d++)
+            if (gxbp_boxes_meet(b, s, l - of_s, c, t, m - of_t, d)) gxbp_meet_boxes(b, o, l - of_s, c, q, m - of_t, d);
 }
 
 /* A surface that does not meet itself is known to be simple. */
@@ -6156,14 +6195,15 @@ static uint32_t gxbp_insert_point(gxb_boolean *b, uint32_t s, uint32_t x, uint32
 
 /* --- edges that must be there --- */
 
-static void gxbp_set_margin(const gxb_boolean *b, gxbp_margin *r, uint32_t vertex, uint32_t f, int k) {
+/* Appends to b->rims or b->lefts a vertex, with what lies beyond edge k of f. */
+static void gxbp_push_margin(gxb_boolean *b, gxbp_margin **list, uint32_t vertex, uint32_t f, int k) {
+    uint32_t *count = gxbp_extent_of(list);
+    gxbp_margin *r;
+    if (count[0] == count[1] && !gxbp_room(b, list, sizeof **list, 1)) return;
+    r = *list + count[0]++;
     r->vertex = vertex; r->made = GXB_NONE; r->dangling = 0;
     r->near = f == GXB_NONE ? GXB_NONE : b->pieces[f].near[k];
     r->labels = f == GXB_NONE ? GXBP_LOOSE : b->pieces[f].labels[k];
-}
-
-static void gxbp_push_rim(gxb_boolean *b, uint32_t vertex, uint32_t f, int k) {
-    if (GXBP_ROOM(b, rims, rim, 1)) gxbp_set_margin(b, &b->rims[b->rim_count++], vertex, f, k);
 }
 
 /* The apex over the base from rim[high] to rim[low]: no other vertex between lies in its triangle. */
@@ -6226,10 +6266,6 @@ static uint32_t gxbp_crossing_point(gxb_boolean *b, uint32_t s, uint32_t labels,
     return other;
 }
 
-static void gxbp_push_left(gxb_boolean *b, uint32_t vertex, uint32_t f, int k) {
-    if (GXBP_ROOM(b, lefts, left, 1)) gxbp_set_margin(b, &b->lefts[b->left_count++], vertex, f, k);
-}
-
 static void gxbp_push(gxb_boolean *b, uint32_t value) {
     if (GXBP_ROOM(b, scratch, scratch, 1)) b->scratch[b->scratch_count++] = value;
 }
@@ -6240,8 +6276,8 @@ static int gxbp_collect_crossed(gxb_boolean *b, uint32_t s, const gxbp_line *lin
     uint32_t f = way.f, u = b->pieces[f].v[(way.k + 1) % 3], w = b->pieces[f].v[(way.k + 2) % 3];
     int k = (way.k + 1) % 3;
     b->scratch_count = b->rim_count = b->left_count = 0;
-    gxbp_push_rim(b, b->pieces[f].v[way.k], f, way.k);
-    gxbp_push_left(b, w, f, (way.k + 2) % 3);
+    gxbp_push_margin(b, &b->rims, b->pieces[f].v[way.k], f, way.k);
+    gxbp_push_margin(b, &b->lefts, w, f, (way.k + 2) % 3);
     gxbp_push(b, f);
     while (b->result == GX_OK) {
         uint32_t c;
@@ -6259,9 +6295,9 @@ static int gxbp_collect_crossed(gxb_boolean *b, uint32_t s, const gxbp_line *lin
         j = gxbp_corner_index(&b->pieces[f], w);
         c = b->pieces[f].v[(j + 2) % 3];
         of_c = gxbp_left(b, line, c);
-        if (of_c <= 0) gxbp_push_rim(b, u, f, (j + 1) % 3);
-        if (of_c >= 0) gxbp_push_left(b, c, f, (j + 2) % 3);
-        if (of_c == 0) { gxbp_push_rim(b, c, GXB_NONE, 0); return b->result == GX_OK; }
+        if (of_c <= 0) gxbp_push_margin(b, &b->rims, u, f, (j + 1) % 3);
+        if (of_c >= 0) gxbp_push_margin(b, &b->lefts, c, f, (j + 2) % 3);
+        if (of_c == 0) { gxbp_push_margin(b, &b->rims, c, GXB_NONE, 0); return b->result == GX_OK; }
         if (of_c < 0) { u = c; k = (j + 2) % 3; }
         else { w = c; k = (j + 1) % 3; }
     }
@@ -6280,7 +6316,7 @@ static void gxbp_refill(gxb_boolean *b, uint32_t start) {
     const uint32_t state = b->pieces[b->scratch[0]].state;      /* of all: no label is between them */
     uint32_t i, n, f, g;
     for (i = 0; i < b->scratch_count; i++) b->pieces[b->scratch[i]].state = GXBP_REMOVED;
-    gxbp_push_left(b, start, GXB_NONE, 0);
+    gxbp_push_margin(b, &b->lefts, start, GXB_NONE, 0);
     if (b->result != GX_OK) return;
     n = b->left_count - 1;                              /* the left rim goes backwards: turn it round, all but the start */
     for (i = 0; i < n / 2; i++) {
@@ -6909,22 +6945,18 @@ static void gxbp_divide_dirty(gxb_boolean *b) {
 
 typedef struct gxbp_projected { double t; uint32_t point; } gxbp_projected;
 
-static GXBP_APART void gxbp_sort_projected(gxbp_projected *p, uint32_t count, gxbp_projected *work) {
-    const uint32_t half = count / 2;
+/* Merges the first half items with the others; work: room for these. */
+static inline void gxbp_merge_projected(gxbp_projected *p, uint32_t half, uint32_t count, gxbp_projected *work) {
     uint32_t i, j, k;
-    if (count < 2) return;
-    gxbp_sort_projected(p, half, work);
-    gxbp_sort_projected(p + half, count - half, work);
     memcpy(work, p, half * sizeof *p);
     for (i = 0, j = half, k = 0; i < half; k++) p[k] = j < count && p[j].t < work[i].t ? p[j++] : work[i++];
 }
 
-/* Sorts the new ones behind the others, then merges them with these; work: room for all. */
-static void gxbp_merge_projected(gxbp_projected *p, uint32_t old, uint32_t count, gxbp_projected *work) {
-    uint32_t i = 0, j = old, k;
-    gxbp_sort_projected(p + old, count - old, work);
-    memcpy(work, p, old * sizeof *p);
-    for (k = 0; i < old; k++) p[k] = j < count && p[j].t < work[i].t ? p[j++] : work[i++];
+static GXBP_APART void gxbp_sort_projected(gxbp_projected *p, uint32_t count, gxbp_projected *work) {
+    if (count < 2) return;
+    gxbp_sort_projected(p, count / 2, work);
+    gxbp_sort_projected(p + count / 2, count - count / 2, work);
+    gxbp_merge_projected(p, count / 2, count, work);
 }
 
 /* Computed points that are new since the last time are compared with all that lie within the errors of both along a direction in which few
@@ -6946,6 +6978,7 @@ static void gxbp_merge_points(gxb_boolean *b) {
         p[b->projected_count++].point = i;
         b->reach = gxbp_max(b->reach, x->error + 4 * GXBP_U * gxbp_max3(x->x));
     }
+    gxbp_sort_projected(p + old, b->projected_count - old, work);
     gxbp_merge_projected(p, old, b->projected_count, work);
     for (i = 0; i < b->projected_count; i++)
         for (j = i + 1; j < b->projected_count && p[j].t - p[i].t <= 8 * b->reach; j++) {
@@ -6967,7 +7000,7 @@ static int gxbp_counts(uint32_t rule, int32_t winding) {
     }
 }
 
-static int gxbp_is_inside(const gxb_boolean *b, const int32_t *winding) {
+static GXBP_COLD int gxbp_is_inside(const gxb_boolean *b, const int32_t *winding) {
     uint32_t i;
     int inside = 0;
     if (b->inside != NULL) return b->inside(b->user, winding, b->operand_count) != 0;
@@ -6991,20 +7024,19 @@ static uint32_t gxbp_hash_winding(const int32_t *winding, uint32_t count) {
     return hash;
 }
 
-static GXBP_APART int gxbp_grow_states(gxb_boolean *b) {
-    const uint32_t n = b->operand_count, size = b->state_table_size == 0 ? 64 : 2 * b->state_table_size;
-    uint32_t *table, i, k;
-    if (2 * (b->state_count + 1) <= b->state_table_size) return 1;
-    table = (uint32_t *)gxbp_allocate(&b->cx.allocator, (size_t)size * sizeof *table);
-    if (table == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
-    memset(table, 0xff, (size_t)size * sizeof *table);
+static void gxbp_list_states(gxb_boolean *b) {
+    const uint32_t n = b->operand_count, last = b->state_table_size - 1;
+    uint32_t i, k;
+    memset(b->state_table, 0xff, (size_t)b->state_table_size * sizeof *b->state_table);
     for (i = 0; i < b->state_count; i++) {
-        for (k = gxbp_hash_winding(b->windings + (size_t)i * n, n) & (size - 1); table[k] != GXB_NONE; k = (k + 1) & (size - 1)) {}
-        table[k] = i;
+        for (k = gxbp_hash_winding(b->windings + (size_t)i * n, n) & last; b->state_table[k] != GXB_NONE; k = (k + 1) & last) {}
+        b->state_table[k] = i;
     }
-    gxbp_release(&b->cx.allocator, b->state_table, (size_t)b->state_table_size * sizeof *table);
-    b->state_table = table;
-    b->state_table_size = size;
+}
+
+static GXBP_APART int gxbp_grow_states(gxb_boolean *b) {
+    if (!gxbp_renew_table(b, &b->state_table, &b->state_table_size, b->state_table_size == 0 ? 64 : 2 * b->state_table_size)) return 0;
+    gxbp_list_states(b);
     return 1;
 }
 
@@ -7013,7 +7045,7 @@ static uint32_t gxbp_find_state(gxb_boolean *b) {
     const uint32_t n = b->operand_count;
     const int32_t *winding = b->windings + (size_t)b->state_count * n;
     uint32_t k;
-    if (!gxbp_grow_states(b) || !GXBP_ROOM(b, states, state, 1)) return 0;
+    if ((2 * (b->state_count + 1) > b->state_table_size && !gxbp_grow_states(b)) || !GXBP_ROOM(b, states, state, 1)) return 0;
     for (k = gxbp_hash_winding(winding, n) & (b->state_table_size - 1); b->state_table[k] != GXB_NONE; k = (k + 1) & (b->state_table_size - 1))
         if (memcmp(b->windings + (size_t)b->state_table[k] * n, winding, n * sizeof *winding) == 0) return b->state_table[k];
     b->state_table[k] = b->state_count;
@@ -7095,7 +7127,7 @@ static uint32_t gxbp_state_beyond(gxb_boolean *b, uint32_t f, int k) {
 }
 
 /* Adds sign times the facet's own surfaces: behind it the winding number is larger by one for each that faces as its plane does. */
-static void gxbp_add_covers(const gxb_boolean *b, uint32_t f, int sign, int32_t *winding) {
+static GXBP_COLD void gxbp_add_covers(const gxb_boolean *b, uint32_t f, int sign, int32_t *winding) {
     const uint32_t r = b->pieces[f].source;
     uint32_t c;
     if (b->pieces[f].covers == GXB_NONE) {
@@ -7183,7 +7215,6 @@ static void gxbp_cross_ray(gxb_boolean *b, gxbp_ray *ray, uint32_t s) {
     if (behind == left) ray->winding[b->sources[s].operand] += left;
 }
 
-
 static GXBP_APART void gxbp_shoot(gxb_boolean *b, gxbp_ray *ray, const gxbp_operand *o, uint32_t l, uint32_t i) {
     uint32_t meets[GXBP_LEAF], c;
     if (!gxbp_box_meets(&ray->box, &b->boxes[o->tree.first + o->tree.level[l] + i])) return;
@@ -7212,16 +7243,17 @@ static void gxbp_cross_own(gxb_boolean *b, const gxbp_ray *ray) {
     if (side < 0) gxbp_add_covers(b, ray->f, -1, ray->winding);         /* from the state behind to the one in front */
 }
 
-static uint32_t gxbp_state_by_ray(gxb_boolean *b, uint32_t f) {
+/* The state in front of a facet, from one (GXB_NONE: zeros) that does not count operands from the first on. */
+static uint32_t gxbp_state_by_ray(gxb_boolean *b, uint32_t f, uint32_t state, uint32_t first) {
     gxbp_ray ray;
     uint32_t i;
     if (!gxbp_need_plane(b, b->pieces[f].source)) return 0;
-    ray.winding = gxbp_copy_winding(b, GXB_NONE);
+    ray.winding = gxbp_copy_winding(b, state);
     if (ray.winding == NULL) return 0;
     gxbp_set_ray(b, &ray, f);
-    for (i = 0; i < b->operand_count && b->result == GX_OK; i++)
+    for (i = first; i < b->operand_count && b->result == GX_OK; i++)
         if (b->operands[i].operation != GXB_SPLIT) gxbp_shoot(b, &ray, &b->operands[i], b->operands[i].tree.levels - 1, 0);
-    gxbp_cross_own(b, &ray);
+    if (first == 0) gxbp_cross_own(b, &ray);            /* else the facet is of an older operand, and its own surfaces are counted */
     return gxbp_find_state(b);
 }
 
@@ -7323,9 +7355,8 @@ static int gxbp_is_surface(const gxb_boolean *b, uint32_t f) {
 /* Lengthens the states by the numbers of new operands, all 0: each state keeps its place. */
 static int gxbp_lengthen_states(gxb_boolean *b) {
     const uint32_t n = b->operand_count, m = b->stated;
-    uint32_t i, k;
+    uint32_t i;
     memset(b->steps, 0, sizeof b->steps);
-    if (b->state_table_size > 0) memset(b->state_table, 0xff, (size_t)b->state_table_size * sizeof *b->state_table);
     if (m == 0) b->state_count = 0;
     b->winding_count = b->state_count * m;
     if (!GXBP_ROOM(b, windings, winding, (size_t)b->state_count * (n - m) + n)) return 0;
@@ -7333,12 +7364,8 @@ static int gxbp_lengthen_states(gxb_boolean *b) {
         memmove(b->windings + (size_t)i * n, b->windings + (size_t)i * m, m * sizeof *b->windings);
         memset(b->windings + (size_t)i * n + m, 0, (n - m) * sizeof *b->windings);
     }
-    for (i = 0; i < b->state_count; i++) {
-        const int32_t *winding = b->windings + (size_t)i * n;
-        b->states[i] = (uint32_t)gxbp_is_inside(b, winding);
-        for (k = gxbp_hash_winding(winding, n) & (b->state_table_size - 1); b->state_table[k] != GXB_NONE; k = (k + 1) & (b->state_table_size - 1)) {}
-        b->state_table[k] = i;
-    }
+    for (i = 0; i < b->state_count; i++) b->states[i] = (uint32_t)gxbp_is_inside(b, b->windings + (size_t)i * n);
+    if (b->state_table_size > 0) gxbp_list_states(b);
     return 1;
 }
 
@@ -7405,20 +7432,8 @@ static void gxbp_spread_closed(gxb_boolean *b, uint32_t first) {
     }
 }
 
-static void gxbp_close_by_ray(gxb_boolean *b, uint32_t f) {
-    gxbp_ray ray;
-    uint32_t i;
-    if (!gxbp_need_plane(b, b->pieces[f].source)) return;
-    ray.winding = gxbp_copy_winding(b, b->pieces[f].state & ~GXBP_OPEN);
-    if (ray.winding == NULL) return;
-    gxbp_set_ray(b, &ray, f);
-    for (i = b->stated; i < b->operand_count && b->result == GX_OK; i++)
-        if (b->operands[i].operation != GXB_SPLIT) gxbp_shoot(b, &ray, &b->operands[i], b->operands[i].tree.levels - 1, 0);
-    b->pieces[f].state = gxbp_find_state(b);
-}
-
 /* Facets that are not open lend to their open neighbours; where there are none, a ray helps. */
-static void gxbp_close_states(gxb_boolean *b) {
+static GXBP_COLD void gxbp_close_states(gxb_boolean *b) {
     uint32_t f, i, pass;
     int k;
     b->chain_count = 0;
@@ -7434,7 +7449,7 @@ static void gxbp_close_states(gxb_boolean *b) {
                 if (g != GXB_NONE && b->pieces[g].state != GXB_NONE && !gxbp_is_open(b, g)) gxbp_spread_closed(b, g);
             }
             if (pass == 0 || !gxbp_is_open(b, f)) continue;
-            gxbp_close_by_ray(b, f);
+            b->pieces[f].state = gxbp_state_by_ray(b, f, b->pieces[f].state & ~GXBP_OPEN, b->stated);
             gxbp_spread_closed(b, f);
         }
 }
@@ -7449,7 +7464,7 @@ static void gxbp_find_states(gxb_boolean *b) {
         for (f = 0; f < b->piece_count && b->result == GX_OK; f++) {
             if (b->pieces[f].state != GXB_NONE || !gxbp_is_surface(b, f)) continue;
             if (pass == 0 && b->sources[b->pieces[f].source].flags & GXBP_DIVIDED) continue;
-            b->pieces[f].state = gxbp_state_by_ray(b, f);
+            b->pieces[f].state = gxbp_state_by_ray(b, f, GXB_NONE, 0);
             gxbp_spread_state(b, f);
         }
     b->stated = b->operand_count;
@@ -7565,10 +7580,16 @@ static void gxbp_emit(gxb_boolean *b, uint32_t f, int reversed, uint32_t source)
     b->out_reversed[b->out_reversed_count++] = reversed != (gxbp_facing(b, b->pieces[f].source, source) < 0);
 }
 
+static GXBP_APART void gxbp_set_triangle_count(gxb_boolean *b, uint32_t n) {
+    b->out_triangle_count = 3 * n;
+    b->out_source_count = b->out_operand_count = b->out_plane_count = b->out_reversed_count = b->out_component_count = n;
+}
+
 static void gxbp_extract(gxb_boolean *b) {
     uint32_t f;
     for (f = 0; f < b->vertex_count; f++) b->vertices[f].slot = GXB_NONE;
-    b->out_point_count = b->out_triangle_count = b->out_operand_count = b->out_source_count = b->out_plane_count = b->out_reversed_count = 0;
+    gxbp_set_triangle_count(b, 0);
+    b->out_point_count = b->out_vertex_count = b->out_origin_count = 0;
     if (!gxbp_more_triangles(b, b->piece_count / 2) || !GXBP_ROOM(b, out_triangles, out_triangle, 3 * (size_t)(b->piece_count / 2))) return;
     for (f = 0; f < b->piece_count && b->result == GX_OK; f++) {
         uint32_t source, behind;
@@ -7763,25 +7784,42 @@ static void gxbp_take_vertex(gxb_boolean *b, gxbp_coarse *c, uint32_t v) {
     }
 }
 
-/* What is left becomes the result; needed: a word for each vertex. */
-static void gxbp_close_coarse(gxb_boolean *b, const gxbp_coarse *c, uint32_t *needed) {
-    uint32_t t, k, n = 0, points = 0;
-    memset(needed, 0, b->out_point_count * sizeof *needed);
+/* Of which source a triangle is, and how it faces */
+static GXBP_COLD void gxbp_copy_origin(gxb_boolean *b, uint32_t to, uint32_t from) {
+    b->out_operands[to] = b->out_operands[from]; b->out_sources[to] = b->out_sources[from];
+    b->out_planes[to] = b->out_planes[from]; b->out_reversed[to] = b->out_reversed[from];
+}
+
+/* Vertices that no triangle has any more are taken out, rounded or not yet; map: a word for each. */
+static GXBP_COLD void gxbp_drop_lonely(gxb_boolean *b, uint32_t *map) {
+    const int rounded = b->out_vertex_count > 0;
+    uint32_t i, n = 0;
+    memset(map, 0xff, b->out_point_count * sizeof *map);
+    for (i = 0; i < b->out_triangle_count; i++) map[b->out_triangles[i]] = 0;
+    for (i = 0; i < b->out_point_count; i++) {
+        if (map[i] == GXB_NONE) continue;
+        if (rounded) {
+            memmove(b->out_vertices + 3 * (size_t)n, b->out_vertices + 3 * (size_t)i, 3 * sizeof *b->out_vertices);
+            b->out_origins[n] = b->out_origins[i];
+        }
+        b->out_points[n] = b->out_points[i];
+        map[i] = n++;
+    }
+    for (i = 0; i < b->out_triangle_count; i++) b->out_triangles[i] = map[b->out_triangles[i]];
+    b->out_point_count = n;
+    if (rounded) { b->out_origin_count = n; b->out_vertex_count = 3 * n; }
+}
+
+/* What is left becomes the result. */
+static void gxbp_close_coarse(gxb_boolean *b, const gxbp_coarse *c) {
+    uint32_t t, k, n = 0;
     for (t = 0; t < b->out_source_count; t++) {
         if (c->corner[3 * t] == GXB_NONE) continue;
-        for (k = 0; k < 3; k++) needed[b->out_triangles[3 * n + k] = c->umbrellas[c->corner[3 * t + k]].vertex] = 1;
-        b->out_operands[n] = b->out_operands[t]; b->out_sources[n] = b->out_sources[t];
-        b->out_planes[n] = b->out_planes[t]; b->out_reversed[n++] = b->out_reversed[t];
+        for (k = 0; k < 3; k++) b->out_triangles[3 * n + k] = c->umbrellas[c->corner[3 * t + k]].vertex;
+        gxbp_copy_origin(b, n++, t);
     }
-    for (k = 0; k < b->out_point_count; k++) {
-        if (!needed[k]) continue;
-        b->out_points[points] = b->out_points[k];
-        needed[k] = points++;
-    }
-    for (k = 0; k < 3 * n; k++) b->out_triangles[k] = needed[b->out_triangles[k]];
-    b->out_point_count = points;
-    b->out_triangle_count = 3 * n;
-    b->out_operand_count = b->out_source_count = b->out_plane_count = b->out_reversed_count = n;
+    gxbp_set_triangle_count(b, n);
+    gxbp_drop_lonely(b, c->degree);
 }
 
 static GXBP_COLD void gxbp_coarsen(gxb_boolean *b) {
@@ -7801,7 +7839,7 @@ static GXBP_COLD void gxbp_coarsen(gxb_boolean *b) {
         gxbp_find_outlines(b, &fan, &c);
         gxbp_make_umbrellas(b, &c);
         for (v = 0; v < points && b->result == GX_OK; v++) if (gxbp_is_needless(b, &c, v)) gxbp_take_vertex(b, &c, v);
-        if (b->result == GX_OK) gxbp_close_coarse(b, &c, c.degree);
+        if (b->result == GX_OK) gxbp_close_coarse(b, &c);
         gxbp_release(&b->cx.allocator, c.near, bytes);
     } else gxbp_stop(b, GX_ERROR_MEMORY);
     gxbp_drop_fan(b, &fan);
@@ -7809,7 +7847,6 @@ static GXBP_COLD void gxbp_coarsen(gxb_boolean *b) {
 
 static void gxbp_round_vertices(gxb_boolean *b) {
     uint32_t i;
-    b->out_vertex_count = b->out_origin_count = 0;
     if (b->result != GX_OK || !GXBP_ROOM(b, out_vertices, out_vertex, 3 * (size_t)b->out_point_count) ||
         !GXBP_ROOM(b, out_origins, out_origin, b->out_point_count)) return;
     for (i = 0; i < b->out_point_count; i++) {
@@ -7879,6 +7916,7 @@ static void gxbp_join_sets(uint32_t *parent, uint32_t i, uint32_t j) {
 /* Triangles around an edge from p to q, by angle. Seen along the edge, a triangle that passes it forwards (from p to q) has the solid at
    smaller angles, one that passes it backwards at larger ones. */
 typedef struct gxbp_blade { uint32_t half_edge, apex, plane; int forward, toward, group; } gxbp_blade;
+typedef struct gxbp_blades { gxbp_blade *list; uint32_t count, capacity; } gxbp_blades;
 
 /* 1: the apex of g lies at an angle between 0 and pi from f, -1: beyond, 0: in its plane */
 static int gxbp_blade_side(gxb_boolean *b, const gxbp_blade *f, const gxbp_blade *g) { return f->toward * gxbp_point_side(b, g->apex, f->plane); }
@@ -7907,29 +7945,28 @@ static void gxbp_make_blade(gxb_boolean *b, uint32_t h, uint32_t p, const gxbp_b
 /* Joins the triangles at the two sides of each wedge of the solid around an edge that more than two triangles share: there they are twins. */
 static GXBP_COLD void gxbp_join_wedges(gxb_boolean *b, const gxbp_fan *fan, uint32_t i, uint32_t j, uint32_t *parent, uint32_t *twin) {
     const uint32_t p = b->out_points[i], q = b->out_points[j];
-    gxbp_blade *blade = NULL;
-    uint32_t n = 0, pass, k, m, capacity = 0;
+    gxbp_blades blades = {NULL, 0, 0};
+    uint32_t pass, k, m;
     for (pass = 0; pass < 2; pass++) {
         const uint32_t from = pass == 0 ? i : j, to = pass == 0 ? j : i;
         for (k = fan->first[from]; k < fan->first[from + 1]; k++) {
-            gxbp_blade mine;
+            gxbp_blade mine, *blade;
             if (fan->list[k].to != to) continue;
-            if (!gxbp_room(b, &blade, sizeof *blade, n, &capacity, 1)) break;
-            if (gxbp_out_plane(b, fan->list[k].half_edge / 3) == GXB_NONE) break;
-            gxbp_make_blade(b, fan->list[k].half_edge, p, n == 0 ? NULL : blade, &mine, q);
-            for (m = n; m > 1 && gxbp_blade_precedes(b, &mine, &blade[m - 1]); m--) blade[m] = blade[m - 1];
+            if (!gxbp_room(b, &blades, sizeof *blades.list, 1) || gxbp_out_plane(b, fan->list[k].half_edge / 3) == GXB_NONE) break;
+            blade = blades.list;
+            gxbp_make_blade(b, fan->list[k].half_edge, p, blades.count == 0 ? NULL : blade, &mine, q);
+            for (m = blades.count++; m > 1 && gxbp_blade_precedes(b, &mine, &blade[m - 1]); m--) blade[m] = blade[m - 1];
             blade[m] = mine;
-            n++;
         }
     }
-    for (m = 0; m < n; m++) {
-        const uint32_t h = blade[m].half_edge, g = blade[(m + 1) % n].half_edge;
-        if (blade[m].forward) continue;
+    for (m = 0; m < blades.count; m++) {
+        const uint32_t h = blades.list[m].half_edge, g = blades.list[(m + 1) % blades.count].half_edge;
+        if (blades.list[m].forward) continue;
         gxbp_join_sets(parent, h / 3, g / 3);
         twin[h] = g;
         twin[g] = h;
     }
-    gxbp_release(&b->cx.allocator, blade, (size_t)capacity * sizeof *blade);
+    gxbp_release(&b->cx.allocator, blades.list, (size_t)blades.capacity * sizeof *blades.list);
 }
 
 /* Of each triangle: how many corners of the solid are counted there. A corner is what triangles around a vertex make that are joined by
@@ -7975,29 +8012,17 @@ static void gxbp_join_shells(gxb_boolean *b, uint32_t *parent, int32_t *corners)
     gxbp_count_corners(twin, count, corners);
 }
 
-/* Numerator and denominator as one number, relative error below 2^-180: each step adds the quotient of what is left, 50 bits. */
-static void gxbp_num_divide(gxb_num *r, const gxb_num *num, const gxb_num *den) {
-    GXB_NUM(rest); GXB_NUM(q); GXB_NUM(t); GXB_NUM(s);
-    int step;
-    gxb_num_set(r, 0, 0);
-    gxbp_num_copy(&rest, num, 1);
-    for (step = 0; step < 4 && rest.sign != 0; step++) {
-        gxb_num_set(&q, gxb_num_ratio(&rest, den), 0);
-        gxb_num_add(&s, r, &q);
-        gxbp_num_copy(r, &s, 1);
-        gxb_num_mul(&t, &q, den);
-        gxb_num_sub(&s, &rest, &t);
-        gxbp_num_copy(&rest, &s, 1);
-    }
-}
-
 static void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *fine) {
-    gxbp_vec store;
+    gxbp_vec store, rest;
     const gxb_num *x = gxbp_exact_cpoint(&b->cx, point, b->cx.points[point].kind == GXB_EXPLICIT ? fine : &store);
     int k;
     if (x == fine->c) return;
     gxbp_vec_init(fine);
-    for (k = 0; k < 3; k++) gxbp_num_divide(&fine->c[k], &x[k], &x[3]);
+    gxbp_vec_init(&rest);
+    for (k = 0; k < 3; k++) {
+        gxbp_num_copy(&rest.c[k], &x[k], 1);
+        gxbp_num_divide(&fine->c[k], &rest.c[k], &x[3]);
+    }
 }
 
 /* Coordinates of 180 bits of the result's vertices, each made once (then it has the stamp of b->head_stamp). first: of a vertex' limbs */
@@ -8011,7 +8036,7 @@ static void gxbp_need_fine(gxb_boolean *b, gxbp_fines *fines, uint32_t vertex) {
     uint32_t k;
     if (b->vertices[point].head_stamp == b->head_stamp) return;
     gxbp_fine_point(b, point, &x);
-    if (!gxbp_room(b, &fines->limbs, sizeof *fines->limbs, fines->limb_count, &fines->limb_capacity, (size_t)x.c[0].n + x.c[1].n + x.c[2].n)) return;
+    if (!gxbp_room(b, &fines->limbs, sizeof *fines->limbs, (size_t)x.c[0].n + x.c[1].n + x.c[2].n)) return;
     v->first = fines->limb_count;
     b->vertices[point].head_stamp = b->head_stamp;
     for (k = 0; k < 3; k++) {
@@ -8032,19 +8057,15 @@ static const gxb_num *gxbp_use_fine(gxbp_fines *fines, uint32_t vertex) {
 
 /* Six times the volume of a shell (set root in parent), from coordinates of 180 bits. */
 static double gxbp_fine_volume(gxb_boolean *b, uint32_t *parent, uint32_t root, gxbp_fines *fines) {
-    GXB_NUM(total); GXB_NUM(sum); GXB_NUM(term);
-    gxbp_vec n;
+    GXB_NUM(total); GXB_NUM(term);
     uint32_t t, k;
-    gxbp_vec_init(&n);
     for (t = root; t < b->out_source_count; t++) {
         const uint32_t *v = b->out_triangles + 3 * (size_t)t;
         if (gxbp_find_set(parent, t) != root) continue;
         for (k = 0; k < 3; k++) gxbp_need_fine(b, fines, v[k]);
         if (b->result != GX_OK) return 0;
-        gxbp_num_cross(n.c, gxbp_use_fine(fines, v[0]), gxbp_use_fine(fines, v[1]));
-        gxbp_num_dot(&term, n.c, gxbp_use_fine(fines, v[2]));
-        gxb_num_add(&sum, &total, &term);
-        gxbp_num_copy(&total, &sum, 1);
+        gxbp_num_det3(&term, gxbp_use_fine(fines, v[0]), gxbp_use_fine(fines, v[1]), gxbp_use_fine(fines, v[2]));
+        gxbp_num_increase(&total, &term, 1);
     }
     return gxb_num_to_double(&total);
 }
@@ -8131,7 +8152,7 @@ static void gxbp_measure_shells(gxb_boolean *b, uint32_t *parent, double *volume
 }
 
 /* gxbp_ray_left for points of the result, and a ray moved by way (h, h^2) */
-static int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p, uint32_t q, int way) {
+static GXBP_COLD int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p, uint32_t q, int way) {
     gxbp_vec s, t;
     const gxb_num *x, *y;
     int turn = gxbp_filter_turn(&b->cx.points[p].ball, &b->cx.points[q].ball, &ray->ball, 1, 2);
@@ -8333,8 +8354,7 @@ static int gxbp_flip(gxb_boolean *b, uint32_t h) {
     gxbp_set_out_triangle(b, s, o, q, r);
     gxbp_join_out(b, 3 * t, po); gxbp_join_out(b, 3 * t + 1, 3 * s + 2); gxbp_join_out(b, 3 * t + 2, rp);
     gxbp_join_out(b, 3 * s, oq); gxbp_join_out(b, 3 * s + 1, qr);
-    b->out_operands[t] = b->out_operands[s]; b->out_sources[t] = b->out_sources[s];
-    b->out_planes[t] = b->out_planes[s]; b->out_reversed[t] = b->out_reversed[s];
+    gxbp_copy_origin(b, t, s);
     return 1;
 }
 
@@ -8392,20 +8412,20 @@ static uint32_t gxbp_mend_edges(gxb_boolean *b) {
 /* Triangles that are gone are taken out of all lists; map: room for one word per triangle. */
 static void gxbp_drop_collapsed(gxb_boolean *b, uint32_t *map) {
     const uint32_t count = b->out_source_count;
-    uint32_t t, n = 0, k;
-    for (t = 0; t < count; t++) map[t] = b->out_triangles[3 * t] == GXB_NONE ? GXB_NONE : n++;
+    uint32_t t, k, left = 0;
+    for (t = 0; t < count; t++) map[t] = b->out_triangles[3 * t] == GXB_NONE ? GXB_NONE : left++;
     for (t = 0; t < count; t++) {
-        if ((n = map[t]) == GXB_NONE) continue;
+        const uint32_t n = map[t];
+        if (n == GXB_NONE) continue;
         for (k = 0; k < 3; k++) {
             b->out_triangles[3 * n + k] = b->out_triangles[3 * t + k];
             b->out_twins[3 * n + k] = 3 * map[b->out_twins[3 * t + k] / 3] + b->out_twins[3 * t + k] % 3;
         }
-        b->out_operands[n] = b->out_operands[t]; b->out_sources[n] = b->out_sources[t]; b->out_planes[n] = b->out_planes[t];
-        b->out_reversed[n] = b->out_reversed[t]; b->out_components[n] = b->out_components[t];
+        gxbp_copy_origin(b, n, t);
+        b->out_components[n] = b->out_components[t];
     }
-    for (n = t = 0; t < count; t++) n += map[t] != GXB_NONE;
-    b->out_triangle_count = b->out_twin_count = 3 * n;
-    b->out_source_count = b->out_operand_count = b->out_plane_count = b->out_reversed_count = b->out_component_count = n;
+    gxbp_set_triangle_count(b, left);
+    b->out_twin_count = 3 * left;
 }
 
 /* How many triangles around a vertex are defects, all corners there together */
@@ -8451,23 +8471,6 @@ static uint32_t gxbp_mend_places(gxb_boolean *b, const double *home) {
     return done;
 }
 
-/* Vertices that no triangle has any more are taken out. */
-static void gxbp_drop_lonely(gxb_boolean *b, uint32_t *map) {
-    uint32_t i, n = 0;
-    for (i = 0; i < b->out_point_count; i++) map[i] = GXB_NONE;
-    for (i = 0; i < b->out_triangle_count; i++) map[b->out_triangles[i]] = 0;
-    for (i = 0; i < b->out_point_count; i++) {
-        if (map[i] == GXB_NONE) continue;
-        memmove(b->out_vertices + 3 * (size_t)n, b->out_vertices + 3 * (size_t)i, 3 * sizeof *b->out_vertices);
-        b->out_origins[n] = b->out_origins[i];
-        b->out_points[n] = b->out_points[i];
-        map[i] = n++;
-    }
-    for (i = 0; i < b->out_triangle_count; i++) b->out_triangles[i] = map[b->out_triangles[i]];
-    b->out_point_count = b->out_origin_count = n;
-    b->out_vertex_count = 3 * n;
-}
-
 /* Each step leaves fewer defects than there were. */
 static GXBP_COLD void gxbp_mend(gxb_boolean *b) {
     const uint32_t words = b->out_source_count > b->out_point_count ? b->out_source_count : b->out_point_count;
@@ -8492,30 +8495,28 @@ static GXBP_COLD void gxbp_mend(gxb_boolean *b) {
 
 /* --- the public functions --- */
 
+static const gxbp_array gxbp_boolean_arrays[] = {
+    GXBP_ARRAY(gxb_boolean, operands), GXBP_ARRAY(gxb_boolean, sources), GXBP_ARRAY(gxb_boolean, bounds), GXBP_ARRAY(gxb_boolean, boxes),
+    GXBP_ARRAY(gxb_boolean, vertices), GXBP_ARRAY(gxb_boolean, pieces), GXBP_ARRAY(gxb_boolean, links), GXBP_ARRAY(gxb_boolean, segments),
+    GXBP_ARRAY(gxb_boolean, cuts), GXBP_ARRAY(gxb_boolean, cut_points), GXBP_ARRAY(gxb_boolean, hits), GXBP_ARRAY(gxb_boolean, dirty),
+    GXBP_ARRAY(gxb_boolean, divided), GXBP_ARRAY(gxb_boolean, projected), GXBP_ARRAY(gxb_boolean, rims), GXBP_ARRAY(gxb_boolean, lefts),
+    GXBP_ARRAY(gxb_boolean, scratch), GXBP_ARRAY(gxb_boolean, chain), GXBP_ARRAY(gxb_boolean, windings), GXBP_ARRAY(gxb_boolean, states),
+    GXBP_ARRAY(gxb_boolean, out_vertices), GXBP_ARRAY(gxb_boolean, out_origins), GXBP_ARRAY(gxb_boolean, out_points),
+    GXBP_ARRAY(gxb_boolean, out_triangles), GXBP_ARRAY(gxb_boolean, out_operands), GXBP_ARRAY(gxb_boolean, out_sources),
+    GXBP_ARRAY(gxb_boolean, out_components), GXBP_ARRAY(gxb_boolean, out_planes), GXBP_ARRAY(gxb_boolean, out_volumes),
+    GXBP_ARRAY(gxb_boolean, out_defects), GXBP_ARRAY(gxb_boolean, out_reversed), GXBP_ARRAY(gxb_boolean, out_sides),
+    GXBP_ARRAY(gxb_boolean, out_eulers), GXBP_ARRAY(gxb_boolean, out_twins)
+};
+
 static GXBP_COLD void gxbp_drop_boolean(gxb_boolean *b) {
     uint32_t i;
     for (i = 0; i < b->operand_count; i++)
         gxbp_release(&b->cx.allocator, b->operands[i].order, (size_t)b->operands[i].source_count * sizeof(uint32_t));
-    while (b->cx.blocks != NULL) {
-        gxb_block *next = b->cx.blocks->next;
-        gxbp_release(&b->cx.allocator, b->cx.blocks, b->cx.blocks->size);
-        b->cx.blocks = next;
-    }
-    gxbp_release(&b->cx.allocator, b->cx.points, (size_t)b->cx.point_capacity * sizeof *b->cx.points);
-    gxbp_release(&b->cx.allocator, b->cx.planes, (size_t)b->cx.plane_capacity * sizeof *b->cx.planes);
+    gxbp_drop_numbers(&b->cx, NULL);
+    gxbp_drop_arrays(&b->cx.allocator, &b->cx, gxbp_complex_arrays, 2);      /* points and planes: there are no others */
+    gxbp_drop_arrays(&b->cx.allocator, b, gxbp_boolean_arrays, sizeof gxbp_boolean_arrays / sizeof *gxbp_boolean_arrays);
     gxbp_release(&b->cx.allocator, b->table, (size_t)b->table_size * sizeof *b->table);
     gxbp_release(&b->cx.allocator, b->state_table, (size_t)b->state_table_size * sizeof *b->state_table);
-    GXBP_DROP(b, operands, operand); GXBP_DROP(b, sources, source); GXBP_DROP(b, bounds, bound); GXBP_DROP(b, boxes, box);
-    GXBP_DROP(b, vertices, vertex); GXBP_DROP(b, pieces, piece); GXBP_DROP(b, links, link); GXBP_DROP(b, segments, segment);
-    GXBP_DROP(b, cuts, cut); GXBP_DROP(b, cut_points, cut_point); GXBP_DROP(b, hits, hit); GXBP_DROP(b, dirty, dirty); GXBP_DROP(b, divided, divided);
-    GXBP_DROP(b, projected, projected);
-    GXBP_DROP(b, rims, rim); GXBP_DROP(b, lefts, left); GXBP_DROP(b, scratch, scratch); GXBP_DROP(b, chain, chain);
-    GXBP_DROP(b, windings, winding); GXBP_DROP(b, states, state);
-    GXBP_DROP(b, out_vertices, out_vertex); GXBP_DROP(b, out_origins, out_origin); GXBP_DROP(b, out_points, out_point);
-    GXBP_DROP(b, out_triangles, out_triangle); GXBP_DROP(b, out_operands, out_operand); GXBP_DROP(b, out_sources, out_source);
-    GXBP_DROP(b, out_components, out_component); GXBP_DROP(b, out_planes, out_plane); GXBP_DROP(b, out_volumes, out_volume);
-    GXBP_DROP(b, out_defects, out_defect); GXBP_DROP(b, out_reversed, out_reversed); GXBP_DROP(b, out_sides, out_side);
-    GXBP_DROP(b, out_eulers, out_euler); GXBP_DROP(b, out_twins, out_twin);
 }
 
 GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean **boolean) {
@@ -8572,17 +8573,7 @@ static gx_result gxbp_check_operand(const gxb_boolean *b, const gxb_operand *o, 
 
 /* Forgets the points from count on. */
 static GXBP_COLD void gxbp_cut_points_back(gxb_boolean *b, uint32_t count) {
-    uint32_t i, k, n = 0;
-    for (i = 0; i < b->table_size; i++) if (b->table[i] != GXB_NONE && b->table[i] >= count) n++;
-    if (n > 0) {
-        memset(b->table, 0xff, (size_t)b->table_size * sizeof *b->table);
-        for (i = 0; i < count; i++) {
-            if (b->vertices[i].key[0] == GXB_FROM_VERTEX && b->vertices[i].key[1] == GXB_NONE) continue;      /* of a frame */
-            for (k = gxbp_hash_point(b, i) & (b->table_size - 1); b->table[k] != GXB_NONE; k = (k + 1) & (b->table_size - 1)) {}
-            b->table[k] = i;
-        }
-        b->table_used -= n;
-    }
+    if (b->table_size > 0) gxbp_list_points(b, count);
     b->vertex_count = b->cx.point_count = count;
 }
 
@@ -8611,24 +8602,12 @@ GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, 
 
 /* After an error: the operands are as they came, nothing is arranged. Points that were found stay known. */
 static GXBP_COLD void gxbp_forget_arrangement(gxb_boolean *b) {
-    uint32_t s, k;
+    uint32_t s;
     b->piece_count = b->link_count = b->segment_count = b->cut_count = b->cut_point_count = b->hit_count = b->dirty_count = b->divided_count = 0;
     b->arranged = b->segment_mark = b->stated = 0;
     for (s = 0; s < b->source_count; s++) {
-        gxbp_source *t = &b->sources[s];
-        gxbp_piece *f = &b->pieces[b->piece_count];
-        for (k = 0; k < 3; k++) {
-            t->edge[k] = GXB_NONE;
-            f->v[k] = t->point[k];
-            f->near[k] = GXB_NONE;
-            f->labels[k] = GXBP_BARE;
-        }
-        t->segments = t->next = GXB_NONE;
-        t->root = s;
-        t->flags &= (uint32_t)GXBP_DEGENERATE;
-        f->source = t->flags & GXBP_DEGENERATE ? GXB_NONE : s;
-        f->next = f->covers = f->state = GXB_NONE;
-        t->facet = b->piece_count++;
+        b->sources[s].flags &= (uint32_t)GXBP_DEGENERATE;
+        gxbp_reset_source(b, s);
     }
 }
 
