@@ -741,7 +741,7 @@ typedef struct gxp_search {
     double axis[4][3];      /* the normal; of each edge the normal in the triangle's plane, outward */
     double scale[4];        /* size of the products of which they are made */
     double offset[4];       /* along them, of the triangle's plane and edges from the base */
-    double far;             /* size of the coordinates */
+    double far;             /* size of the coordinates of this triangle and of any element */
 } gxp_search;
 
 #define GXP_SEARCH_MARGIN 1e-12     /* of the terms' size: far above the rounding, so that rounding only adds candidates */
@@ -756,20 +756,19 @@ static double gxp_search_axis(const double a[3], const double b[3], double axis[
     return gxp_size(a) * gxp_size(b);
 }
 
-/* (x - base) unit; returns the size of what it is made of. */
-static double gxp_search_vector(const gxp_search *s, const double *x, double d[3]) {
+/* (x - base) unit */
+static void gxp_search_vector(const gxp_search *s, const double *x, double d[3]) {
     int k;
     for (k = 0; k < 3; k++) d[k] = (x[k] - s->base[k]) * s->unit;
-    return gxp_size(d) + gxp_size(x) * s->unit;
 }
 
-static void gxp_search_init(gxp_search *s, const double *const p[3], double unit) {
+/* all: the box of all elements */
+static void gxp_search_init(gxp_search *s, const double *const p[3], double unit, const gxp_box *all) {
     double d[3][3], e[3];
     int i, k;
     s->base = p[0];
     s->unit = unit;
-    s->far = gxp_size(p[0]) * unit;
-    for (i = 0; i < 3; i++) s->far += gxp_search_vector(s, p[i], d[i]);
+    for (i = 0; i < 3; i++) gxp_search_vector(s, p[i], d[i]);
     s->scale[0] = gxp_search_axis(d[1], d[2], s->axis[0]);
     s->offset[0] = 0;
     for (i = 1; i < 4; i++) {
@@ -779,47 +778,71 @@ static void gxp_search_init(gxp_search *s, const double *const p[3], double unit
         s->scale[i] = gxp_size(e) * s->scale[0];
         s->offset[i] = s->axis[i][0] * from[0] + s->axis[i][1] * from[1] + s->axis[i][2] * from[2];
     }
+    s->far = 0;
     for (k = 0; k < 3; k++) {
         s->low[k] = fmin(p[0][k], fmin(p[1][k], p[2][k]));
         s->high[k] = fmax(p[0][k], fmax(p[1][k], p[2][k]));
+        s->far += 8 * (fabs(s->low[k]) + fabs(s->high[k]) + fabs(all->low[k]) + fabs(all->high[k])) * unit;
     }
 }
 
-/* May the triangle meet the box? Overflow: a candidate, which then is out of range. */
+#define GXP_SEARCH_RANGE 1e42   /* what is further is out of range, and a candidate, so that this is told: products of heights (7 factors) stay in theirs */
+
+/* May the triangle meet the box? */
 static int gxp_triangle_near_box(const gxp_search *s, const gxp_box *box) {
-    double sum = 0, r = 0, far = s->far;
+    double sum = 0, r = 0;
     int k;
     for (k = 0; k < 3; k++) if (s->low[k] > box->high[k] || s->high[k] < box->low[k]) return 0;
     for (k = 0; k < 3; k++) {
         const double c = 0.5 * box->low[k] + 0.5 * box->high[k], h = 0.5 * box->high[k] - 0.5 * box->low[k];
         sum += s->axis[0][k] * ((c - s->base[k]) * s->unit);
         r += fabs(s->axis[0][k]) * (h * s->unit);
-        far += (fabs(c) + h) * s->unit;
     }
-    return !gxp_is_finite(far) || fabs(sum) <= r + GXP_SEARCH_MARGIN * s->scale[0] * far;
+    return s->far > GXP_SEARCH_RANGE || fabs(sum) <= r + GXP_SEARCH_MARGIN * s->scale[0] * s->far;
 }
 
-/* May the triangle meet the element? Not if a plane along the axes, its own, or one along an edge across it has the element beyond it. */
+/* Heights of the element's nodes along an axis, and how far they may be off */
+typedef struct gxp_heights { double at[4], margin; } gxp_heights;
+
+/* Does the element meet the triangle's plane (over: heights of its nodes) beyond one of its edges (along) only? Where an edge of the element
+   crosses the plane, the height along is (along_i |over_j| + along_j |over_i|) / (|over_i| + |over_j|). */
+static int gxp_section_is_beyond(const gxp_heights *over, const gxp_heights *along) {
+    int i, j;
+    for (i = 0; i < 4; i++) {
+        if (fabs(over->at[i]) <= over->margin && !(along->at[i] > along->margin)) return 0;
+        for (j = 0; j < i; j++) {
+            const double p = fabs(over->at[i]), q = fabs(over->at[j]), sum = along->at[i] * q + along->at[j] * p;
+            if ((over->at[i] > over->margin && over->at[j] > over->margin) || (over->at[i] < -over->margin && over->at[j] < -over->margin)) continue;
+            if (!(sum > along->margin * (p + q) + over->margin * (fabs(along->at[i]) + fabs(along->at[j])))) return 0;
+        }
+    }
+    return 1;
+}
+
+/* May the triangle meet the element? Not if a plane along the axes or its own has the element beyond it, or one along an edge across it what of the
+   element is in the triangle's plane. */
 static int gxp_triangle_near_element(const gx_body *body, const gxp_search *s, uint32_t element) {
     const double *p[4];
-    double x[4][3], far = s->far;
+    double x[4][3];
+    gxp_heights over, along;
     int i, n;
     for (n = 0; n < 4; n++) p[n] = body->positions + 3 * (size_t)body->complex->elements[4 * (size_t)element + (size_t)n];
     for (i = 0; i < 3; i++) {
         if (p[0][i] < s->low[i] && p[1][i] < s->low[i] && p[2][i] < s->low[i] && p[3][i] < s->low[i]) return 0;
         if (p[0][i] > s->high[i] && p[1][i] > s->high[i] && p[2][i] > s->high[i] && p[3][i] > s->high[i]) return 0;
     }
-    for (n = 0; n < 4; n++) far += gxp_search_vector(s, p[n], x[n]);
-    if (!gxp_is_finite(far)) return 1;
+    if (s->far > GXP_SEARCH_RANGE) return 1;
+    for (n = 0; n < 4; n++) gxp_search_vector(s, p[n], x[n]);
     for (i = 0; i < 4; i++) {
-        const double *axis = s->axis[i], margin = GXP_SEARCH_MARGIN * s->scale[i] * far;
+        gxp_heights *h = i == 0 ? &over : &along;
         int beyond = 0, before = 0;
+        h->margin = GXP_SEARCH_MARGIN * s->scale[i] * s->far;
         for (n = 0; n < 4; n++) {
-            const double height = axis[0] * x[n][0] + axis[1] * x[n][1] + axis[2] * x[n][2] - s->offset[i];
-            beyond += height > margin;
-            before += height < -margin;
+            h->at[n] = s->axis[i][0] * x[n][0] + s->axis[i][1] * x[n][1] + s->axis[i][2] * x[n][2] - s->offset[i];
+            beyond += h->at[n] > h->margin;
+            before += h->at[n] < -h->margin;
         }
-        if (beyond == 4 || (i == 0 && before == 4)) return 0;
+        if (beyond == 4 || (i == 0 && before == 4) || (i > 0 && beyond > 0 && gxp_section_is_beyond(&over, &along))) return 0;
     }
     return 1;
 }
@@ -829,7 +852,7 @@ static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_
     gxp_search search;
     uint32_t stack[128], depth = 0, i;
     gx_result result = GX_OK;
-    gxp_search_init(&search, p, ldexp(1, body->complex->shift));
+    gxp_search_init(&search, p, ldexp(1, body->complex->shift), &body->boxes[0]);
     stack[depth++] = 0;
     while (depth > 0 && result == GX_OK) {
         const gxp_box *box = &body->boxes[stack[--depth]];
@@ -1593,24 +1616,47 @@ static gx_result gxp_insert_triangle(gxp_cut *cut, gxp_surface *s, uint32_t inde
     return result;
 }
 
-/* Inserts the triangles in a shuffled order, always the same one: planes in random order make shallow trees. */
+/* Which of 512 intervals a coordinate lies in, in the frame of the body, which is there at most 1 long (further out it begins again): bits of
+   x 2^(shift + 9), rounded down. No arithmetic of doubles: the same under every flag. */
+static uint32_t gxp_grid_place(double x, int shift) {
+    uint64_t bits, m;
+    int power;
+    memcpy(&bits, &x, sizeof bits);
+    power = (int)(bits >> 52 & 0x7ff) - 1075 + shift + 9;
+    m = (bits & 0xfffffffffffffu) | 0x10000000000000u;
+    m = power > 8 || power < -52 ? 0 : power >= 0 ? m << power : m >> -power;
+    return (uint32_t)(bits >> 63 ? ~m : m) & 511;
+}
+
+/* Number of a triangle's first corner on a Z-curve through the body: bits of its three places in turn */
+static uint32_t gxp_curve_place(const gxp_cut *cut, const gxp_surface *s, uint32_t triangle) {
+    const double *x = s->given->vertices + 3 * (size_t)s->given->triangles[3 * (size_t)triangle];
+    uint32_t place = 0, k, b;
+    for (k = 0; k < 3; k++) {
+        const uint32_t along = gxp_grid_place(x[k], cut->body->complex->shift);
+        for (b = 0; b < 9; b++) place |= (along >> b & 1) << (3 * b + k);
+    }
+    return place;
+}
+
+/* Inserts the triangles in rounds, each eight times as large as the one before it: planes in random order make shallow trees. Within a round
+   they come along a curve, so that an element's triangles find its data in the cache [Amenta, Choi, Rote, Incremental constructions
+   con BRIO (2003)]. Always the same order. */
 static gx_result gxp_insert_surface(gxp_cut *cut, gxp_surface *s, int scoped) {
     const uint32_t count = (uint32_t)s->given->triangle_count;
     gx_body *body = cut->body;
-    uint64_t random = 0x9e3779b97f4a7c15u;
     uint32_t i;
     gx_result result;
-    body->seeds.count = 0;
-    result = gxp_words_room(body, &body->seeds, count);
-    for (i = 0; i < count && result == GX_OK; i++) body->seeds.data[i] = i;
-    for (i = count; i > 1 && result == GX_OK; i--) {
-        uint32_t j, t;
-        random = random * 6364136223846793005u + 1442695040888963407u;
-        j = (uint32_t)((random >> 33) % i);
-        t = body->seeds.data[i - 1]; body->seeds.data[i - 1] = body->seeds.data[j]; body->seeds.data[j] = t;
+    body->pairs.count = 0;
+    result = gxp_keys_room(body, &body->pairs, 2 * (size_t)count);      /* sorting takes as much again */
+    for (i = 0; i < count && result == GX_OK; i++) {
+        const uint64_t random = gxp_mix(i);
+        uint32_t round = 31;
+        while (round > 16 && !(random >> 3 * (31 - round) & 7)) round--;
+        if (!s->flat[i]) result = gxp_push_key(body, &body->pairs, round << 27 | gxp_curve_place(cut, s, i), i);
     }
-    for (i = 0; i < count && result == GX_OK; i++)
-        if (!s->flat[body->seeds.data[i]]) result = gxp_insert_triangle(cut, s, body->seeds.data[i], scoped);
+    if (result == GX_OK) result = gxp_sort_keys(body, &body->pairs, 0);
+    for (i = 0; i < body->pairs.count && result == GX_OK; i++) result = gxp_insert_triangle(cut, s, GXP_SECOND(body->pairs.data[i]), scoped);
     return result;
 }
 
@@ -2579,22 +2625,71 @@ static gx_result gxp_boundary_moments(gx_body *body, uint32_t element, unsigned 
     return result;
 }
 
-static gx_result gxp_integrate_cell(gx_body *body, uint32_t cell, int other_element) {
+/* volume: of the element */
+static gx_result gxp_integrate_cell(gx_body *body, uint32_t cell, double volume) {
     const uint32_t element = body->cells[cell].element;
-    const double volume = gxp_element_volume(body, element);
     gxi_moments2 m;
     unsigned k;
     uint32_t leaf;
-    gx_result result = gxb_complex_open_element(body->complex, element);
-    gxp_clear_boundary(body, other_element);
+    gx_result result = gxp_save_cell(body, cell);
+    gxp_clear_boundary(body, 0);
     for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next)
         result = gxp_add_boundary_leaf(body, leaf, 0);
     if (result == GX_OK) result = gxp_boundary_moments(body, element, &k, &m);
-    if (result == GX_OK) result = gxp_save_cell(body, cell);
     if (result != GX_OK) return result;
     body->cells[cell].volume = 6 * volume * m.volume;
-    gxi_part_mass(&m, k, volume, gxp_density(body, body->cells[cell].element), body->cells[cell].mass);
+    gxi_part_mass(&m, k, volume, gxp_density(body, element), body->cells[cell].mass);
     return GX_OK;
+}
+
+/* The fresh cell of the element with the most leaves; GXP_NONE: something has been removed from the element, so that its cells are not all of it. */
+static uint32_t gxp_rest_cell(const gx_body *body, uint32_t element) {
+    const uint32_t root = body->complex->root[element], all = root & 1 ? body->complex->nodes[root >> 1].leaves : 1;
+    uint32_t cell, leaf, rest = GXP_NONE, most = 0, sum = 0, count;
+    for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next) {
+        for (leaf = body->cells[cell].first_leaf, count = 0; leaf != GXP_NONE; leaf = body->leaves[leaf].next) count++;
+        sum += count;
+        if (count <= most || gxp_fresh_index(body, cell) == GXP_NONE) continue;
+        most = count;
+        rest = cell;
+    }
+    return sum == all ? rest : GXP_NONE;
+}
+
+#define GXP_REST 0.25   /* a cell with at least this share of its element may be what the others leave: its smallest moments lose two digits by that */
+
+/* Makes the cell, which has been saved, what the element's other cells leave. 0: that is too little. */
+static int gxp_leave_rest(gx_body *body, uint32_t rest, double volume) {
+    const uint32_t element = body->cells[rest].element;
+    double mass[10], left = volume;
+    uint32_t cell;
+    int i;
+    gxi_tet_mass(volume, gxp_density(body, element), mass);
+    for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next) {
+        if (cell == rest) continue;
+        left -= body->cells[cell].volume;
+        for (i = 0; i < 10; i++) mass[i] -= body->cells[cell].mass[i];
+    }
+    if (!(left >= GXP_REST * volume)) return 0;
+    body->cells[rest].volume = left;
+    memcpy(body->cells[rest].mass, mass, sizeof mass);
+    return 1;
+}
+
+/* The fresh cells of the element. Most often the one with the most leaves, which takes the longest, is what the others leave. */
+static gx_result gxp_integrate_element(gx_body *body, uint32_t element) {
+    const double volume = gxp_element_volume(body, element);
+    const uint32_t rest = gxp_rest_cell(body, element);
+    uint32_t cell;
+    int done = 0;
+    gx_result result = gxb_complex_open_element(body->complex, element);
+    gxp_clear_boundary(body, 1);
+    for (cell = element; cell != GXP_NONE && result == GX_OK; cell = body->cells[cell].next)
+        if (cell != rest && gxp_fresh_index(body, cell) != GXP_NONE) result = gxp_integrate_cell(body, cell, volume);
+    if (rest == GXP_NONE || result != GX_OK) return result;
+    result = gxp_save_cell(body, rest);
+    if (result == GX_OK) done = gxp_leave_rest(body, rest, volume);
+    return result != GX_OK || done ? result : gxp_integrate_cell(body, rest, volume);
 }
 
 /* Volume of what the cut removed, leaf by leaf, so that a thin slab keeps its digits. */
@@ -2731,8 +2826,13 @@ static gx_result gxp_integrate(gxp_cut *cut) {
     const uint32_t *fresh = body->fresh.data;
     uint32_t i;
     gx_result result = gxp_integrate_removed(cut, &body->removed);
-    for (i = 0; i < body->fresh.count && result == GX_OK; i++)
-        result = gxp_integrate_cell(body, fresh[i], i == 0 || body->cells[fresh[i]].element != body->cells[fresh[i - 1]].element);
+    body->stamp++;
+    for (i = 0; i < body->fresh.count && result == GX_OK; i++) {
+        const uint32_t element = body->cells[fresh[i]].element;
+        if (body->cell_stamp[element] == body->stamp) continue;
+        body->cell_stamp[element] = body->stamp;
+        result = gxp_integrate_element(body, element);
+    }
     return result;
 }
 

@@ -312,7 +312,8 @@ typedef struct gxb_complex {        /* what is used most comes first: its addres
     uint32_t *face_facet;           /* face_count: GXB_NONE until touched */
     uint32_t *mesh_edge;            /* mesh_edge_count: GXB_NONE until touched */
     uint32_t *root;                 /* element_count: tree reference */
-    uint32_t node_count, element_count, face_count, mesh_edge_count, pool_live;
+    uint32_t node_count, element_count, face_count, mesh_edge_count;
+    uint32_t pool_live, mark_live;  /* words of lists in use, now and at begin */
     int shift;
     double origin[3];
     gxb_label *labels; uint32_t label_count, label_capacity;
@@ -500,10 +501,12 @@ extern "C" {
 
 /* What is called rarely is small rather than fast; what is called from many places is there once. */
 #if defined(__GNUC__)
+#define GXBP_FETCH(address) __builtin_prefetch(address)
 #define GXBP_COLD __attribute__((cold, noinline))
 #define GXBP_RARE __attribute__((cold))     /* of public functions, which GXFEM_STATIC makes inline */
 #define GXBP_APART __attribute__((noinline))
 #else
+#define GXBP_FETCH(address) ((void)0)
 #define GXBP_COLD
 #define GXBP_RARE
 #define GXBP_APART
@@ -1635,13 +1638,14 @@ static GXBP_COLD void gxbp_compact_pool(gxb_complex *cx) {
 static GXBP_APART void gxbp_set_marks(gxb_complex *cx) {
     cx->mark[0] = cx->point_count; cx->mark[1] = cx->plane_count; cx->mark[2] = cx->edge_count; cx->mark[3] = cx->facet_count;
     cx->mark[4] = cx->leaf_count; cx->mark[5] = cx->tree_count; cx->mark[6] = cx->label_count; cx->mark[7] = cx->pool_count;
+    cx->mark_live = cx->pool_live;
     cx->mark_block = cx->blocks;
     cx->mark_used = cx->blocks != NULL ? cx->blocks->used : 0;
     cx->undo_count = cx->undo_byte_count = cx->wall_count = cx->corner_count = cx->task_count = 0;
 }
 
 GXFEM_API void gxb_complex_begin(gxb_complex *cx) {
-    if (cx->pool_count / 2 >= cx->pool_live + 4096) gxbp_compact_pool(cx);
+    if (cx->pool_count / 2 >= cx->pool_live + 1024) gxbp_compact_pool(cx);
     gxbp_set_marks(cx);
 }
 
@@ -1698,6 +1702,7 @@ GXFEM_API GXBP_RARE void gxb_complex_rollback(gxb_complex *cx) {
     gxbp_drop_recent_numbers(cx);
     cx->point_count = cx->mark[0]; cx->plane_count = cx->mark[1]; cx->edge_count = cx->mark[2]; cx->facet_count = cx->mark[3];
     cx->leaf_count = cx->mark[4]; cx->tree_count = cx->mark[5]; cx->label_count = cx->mark[6]; cx->pool_count = cx->mark[7];
+    cx->pool_live = cx->mark_live;
     cx->stamp[0]++; cx->stamp[1]++; cx->edge_stamp++;
     gxbp_forget_pairs(cx);
     gxbp_set_marks(cx);
@@ -1977,14 +1982,17 @@ GXFEM_API int gxb_complex_side(gxb_complex *cx, uint32_t point, uint32_t plane) 
     return gxbp_side_of(cx, &p.ball, p.kind, p.def, point, plane);
 }
 
+static GXBP_APART int gxbp_new_sign(gxb_complex *cx, uint32_t point, uint32_t plane, int slot) {
+    const int sign = gxb_complex_side(cx, point, plane);
+    cx->points[point].sign[slot] = sign;
+    cx->points[point].stamp[slot] = cx->stamp[slot];
+    return sign;
+}
+
 /* The side with a memory: slot 0 for the triangle being inserted, slot 1 for its edges' planes. */
 static int gxbp_sign(gxb_complex *cx, uint32_t point, uint32_t plane, int slot) {
-    if (cx->points[point].stamp[slot] != cx->stamp[slot]) {
-        const int sign = gxb_complex_side(cx, point, plane);
-        cx->points[point].sign[slot] = sign;
-        cx->points[point].stamp[slot] = cx->stamp[slot];
-    }
-    return cx->points[point].sign[slot];
+    const gxb_cpoint *p = &cx->points[point];
+    return p->stamp[slot] == cx->stamp[slot] ? p->sign[slot] : gxbp_new_sign(cx, point, plane, slot);
 }
 
 GXFEM_API int gxb_complex_turn(gxb_complex *cx, uint32_t a, uint32_t b, uint32_t c, uint32_t plane) {
@@ -2358,8 +2366,9 @@ static void gxbp_push_edges(gxb_complex *cx, uint32_t signed_edge) {
 GXFEM_API gx_result gxb_facet_edges(gxb_complex *cx, uint32_t facet, uint32_t *first, uint32_t *count) {
     gxb_facet *f = &cx->facets[facet];
     uint32_t i, total = 0;
-    for (i = 0; i < f->loop_count && cx->edges[cx->pool[f->loop + i] >> 1].child == GXB_NONE; i++) {}
-    if (i < f->loop_count) {
+    int divided = 0;
+    for (i = 0; i < f->loop_count; i++) divided |= cx->edges[cx->pool[f->loop + i] >> 1].child != GXB_NONE;
+    if (divided) {
         const uint32_t start = cx->pool_count;
         gx_result result;
         for (i = 0; i < f->loop_count; i++) total += gxbp_count_edges(cx, cx->pool[f->loop + i] >> 1);
@@ -2368,6 +2377,7 @@ GXFEM_API gx_result gxb_facet_edges(gxb_complex *cx, uint32_t facet, uint32_t *f
         if (result != GX_OK) return result;
         gxbp_save(cx, GXBP_FACETS, facet);
         for (i = 0; i < f->loop_count; i++) gxbp_push_edges(cx, cx->pool[f->loop + i]);
+        cx->pool_live += total - f->loop_count;
         f->loop = start;
         f->loop_count = total;
     }
@@ -2379,8 +2389,13 @@ GXFEM_API gx_result gxb_facet_edges(gxb_complex *cx, uint32_t facet, uint32_t *f
 GXFEM_API gx_result gxb_leaf_facets(gxb_complex *cx, uint32_t leaf, uint32_t *first, uint32_t *count) {
     gxb_leaf *l = &cx->leaves[leaf];
     uint32_t i, total = 0;
-    for (i = 0; i < l->facet_count && cx->facets[cx->pool[l->facets + i]].child == GXB_NONE; i++) {}
-    if (i < l->facet_count) {
+    int divided = 0;
+    for (i = 0; i < l->facet_count; i++) {
+        const gxb_facet *f = &cx->facets[cx->pool[l->facets + i]];
+        GXBP_FETCH(cx->pool + f->loop);
+        divided |= f->child != GXB_NONE;
+    }
+    if (divided) {
         const uint32_t start = cx->pool_count;
         gx_result result;
         for (i = 0; i < l->facet_count; i++) total += gxbp_count_facets(cx, cx->pool[l->facets + i]);
@@ -2389,6 +2404,7 @@ GXFEM_API gx_result gxb_leaf_facets(gxb_complex *cx, uint32_t leaf, uint32_t *fi
         if (result != GX_OK) return result;
         gxbp_save(cx, GXBP_LEAVES, leaf);
         for (i = 0; i < l->facet_count; i++) gxbp_push_facets(cx, cx->pool[l->facets + i]);
+        cx->pool_live += total - l->facet_count;
         l->facets = start;
         l->facet_count = total;
     }
@@ -2424,18 +2440,34 @@ static uint32_t gxbp_new_edge(gxb_complex *cx, uint32_t a, uint32_t b, const uin
     return cx->edge_count++;
 }
 
+/* A given point of the edge's line that is in the plane by definition, as where two edges of a triangle meet; GXB_NONE: there is none. */
+static uint32_t gxbp_given_crossing(const gxb_complex *cx, const gxb_edge *e, uint32_t plane) {
+    uint32_t i;
+    for (i = 0; i < 2 && e->explicit_line; i++) if (gxbp_incident(cx, GXB_EXPLICIT, NULL, e->line[i], plane)) return e->line[i];
+    return GXB_NONE;
+}
+
+/* The point in which the plane crosses an edge: a new one, unless it has been given. Room was reserved. */
+static uint32_t gxbp_cross_edge(gxb_complex *cx, const gxb_edge *e, uint32_t plane) {
+    uint32_t id = gxbp_given_crossing(cx, e, plane);
+    gxb_cpoint *p;
+    if (id != GXB_NONE) return id;
+    id = cx->point_count++;
+    p = &cx->points[id];
+    memset(p, 0, sizeof *p);
+    p->parameter[0] = -1;
+    p->kind = e->explicit_line ? GXB_LINE_PLANE : GXB_THREE_PLANES;
+    p->def[0] = e->line[0]; p->def[1] = e->line[1]; p->def[2] = plane;
+    gxbp_definition_ball(cx, p->kind, p->def, &p->ball);
+    return id;
+}
+
 /* Divides the edge where the plane crosses it; its ends lie strictly on either side. */
 static void gxbp_split_edge(gxb_complex *cx, uint32_t edge, const gxbp_knife *knife) {
     const gxb_edge e = cx->edges[edge];
-    const uint32_t id = cx->point_count++;
-    gxb_cpoint *p = &cx->points[id];
-    memset(p, 0, sizeof *p);
-    p->parameter[0] = -1;
-    p->kind = e.explicit_line ? GXB_LINE_PLANE : GXB_THREE_PLANES;
-    p->def[0] = e.line[0]; p->def[1] = e.line[1]; p->def[2] = knife->plane;
-    gxbp_definition_ball(cx, p->kind, p->def, &p->ball);
-    p->stamp[knife->slot] = cx->stamp[knife->slot];
-    p->sign[knife->slot] = 0;
+    const uint32_t id = gxbp_cross_edge(cx, &e, knife->plane);
+    cx->points[id].stamp[knife->slot] = cx->stamp[knife->slot];
+    cx->points[id].sign[knife->slot] = 0;
     gxbp_save(cx, GXBP_EDGES, edge);
     cx->edges[edge].child = cx->edge_count;
     gxbp_new_edge(cx, e.v[0], id, e.line, e.explicit_line);
@@ -2443,68 +2475,76 @@ static void gxbp_split_edge(gxb_complex *cx, uint32_t edge, const gxbp_knife *kn
     cx->edges[cx->edge_count - 2].wall = cx->edges[cx->edge_count - 1].wall = e.wall;
 }
 
-/* Divides the edges of a facet that the plane crosses and renews its loop. Room was reserved. */
-static void gxbp_split_facet_edges(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife) {
-    gxb_facet *f = &cx->facets[facet];
-    const uint32_t start = cx->pool_count, loop = f->loop, count = f->loop_count;
-    uint32_t i;
-    for (i = 0; i < count; i++) {
-        const uint32_t e = cx->pool[loop + i] >> 1;
-        if (cx->edges[e].child == GXB_NONE &&
-            gxbp_sign(cx, cx->edges[e].v[0], knife->plane, knife->slot) * gxbp_sign(cx, cx->edges[e].v[1], knife->plane, knife->slot) < 0)
-            gxbp_split_edge(cx, e, knife);
-    }
-    for (i = 0; i < count; i++) gxbp_push_edges(cx, cx->pool[loop + i]);
-    if (cx->pool_count - start == count) { cx->pool_count = start; return; }
-    gxbp_save(cx, GXBP_FACETS, facet);
-    f->loop = start;
-    f->loop_count = cx->pool_count - start;
-}
-
-/* Bit 1: the facet has points in front of the plane, bit 2: behind it. */
-static int gxbp_facet_sides(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife) {
+/* Of a facet: bit 1, it has points in front of the plane; bit 2, behind it; the rest, how many are in it. */
+static uint32_t gxbp_facet_signs(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife) {
     const gxb_facet *f = &cx->facets[facet];
-    int sides = 0;
-    uint32_t i;
+    uint32_t signs = 0, i;
     for (i = 0; i < f->loop_count; i++) {
         const int sign = gxbp_sign(cx, gxbp_edge_start(cx, cx->pool[f->loop + i]), knife->plane, knife->slot);
-        sides |= sign > 0 ? 1 : sign < 0 ? 2 : 0;
+        if (sign == 0) signs += 4;
+        else signs |= sign > 0 ? 1u : 2u;
     }
-    return sides;
+    return signs;
 }
 
-static void gxbp_copy_arc(gxb_complex *cx, const gxb_facet *f, uint32_t from, uint32_t to, uint32_t closing, gxb_facet *child) {
+static int gxbp_facet_sides(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife) { return (int)(gxbp_facet_signs(cx, facet, knife) & 3); }
+
+/* Divides the edges of a facet that the plane crosses. Its loop is then at *loop in the pool, behind the room for its children's: only there for these.
+   zero: where the two points in the plane start edges. */
+static uint32_t gxbp_split_facet_edges(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife, uint32_t *loop, uint32_t zero[2]) {
+    const uint32_t count = cx->facets[facet].loop_count;
+    const uint32_t *old = cx->pool + cx->facets[facet].loop;
+    uint32_t *list = cx->pool + cx->pool_count + count + 4, n = 0, zeros = 0, i;
+    for (i = 0; i < count; i++) {
+        const uint32_t back = old[i] & 1;
+        const gxb_edge *e = &cx->edges[old[i] >> 1];
+        const int sign = gxbp_sign(cx, e->v[back], knife->plane, knife->slot);
+        uint32_t child = e->child;
+        if (sign == 0 && zeros < 2) zero[zeros++] = n;
+        if (child == GXB_NONE && sign * gxbp_sign(cx, e->v[1 - back], knife->plane, knife->slot) < 0) {
+            child = cx->edge_count;
+            gxbp_split_edge(cx, old[i] >> 1, knife);
+        }
+        if (child == GXB_NONE) { list[n++] = old[i]; continue; }
+        list[n++] = (child + back) << 1 | back;
+        if (zeros < 2) zero[zeros++] = n;
+        list[n++] = (child + 1 - back) << 1 | back;
+    }
+    *loop = cx->pool_count + count + 4;
+    return n;
+}
+
+static void gxbp_copy_arc(gxb_complex *cx, const uint32_t *loop, uint32_t count, uint32_t from, uint32_t to, uint32_t closing, gxb_facet *child) {
     uint32_t i;
     child->loop = cx->pool_count;
-    for (i = from; i != to; i = (i + 1) % f->loop_count) cx->pool[cx->pool_count++] = cx->pool[f->loop + i];
+    for (i = from; i != to; i = i + 1 == count ? 0 : i + 1) cx->pool[cx->pool_count++] = loop[i];
     cx->pool[cx->pool_count++] = closing;
     child->loop_count = cx->pool_count - child->loop;
 }
 
-/* Divides a facet that has points on both sides of the plane. Its children are child (in front) and child + 1. Returns the new edge,
-   signed as the front child walks it. */
+/* Divides a facet that has points on both sides of the plane, and whose edges are resolved. Its children are child (in front) and child + 1. Returns the
+   new edge, signed as the front child walks it. */
 static uint32_t gxbp_split_facet(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife) {
     const uint32_t child = cx->facet_count;
-    uint32_t line[2], zero[2] = {0, 0}, zeros = 0, i, edge, front;
+    uint32_t line[2], zero[2] = {0, 0}, edge, front, first, count;
+    const uint32_t *loop;
     gxb_facet f;
-    gxbp_split_facet_edges(cx, facet, knife);
+    count = gxbp_split_facet_edges(cx, facet, knife, &first, zero);
+    loop = cx->pool + first;
     f = cx->facets[facet];
-    for (i = 0; i < f.loop_count && zeros < 2; i++) {
-        if (gxbp_sign(cx, gxbp_edge_start(cx, cx->pool[f.loop + i]), knife->plane, knife->slot) == 0) zero[zeros++] = i;
-    }
     line[0] = knife->explicit_line ? knife->line[0] : f.plane;
     line[1] = knife->explicit_line ? knife->line[1] : knife->plane;
-    edge = gxbp_new_edge(cx, gxbp_edge_start(cx, cx->pool[f.loop + zero[0]]), gxbp_edge_start(cx, cx->pool[f.loop + zero[1]]), line,
-                         (uint32_t)knife->explicit_line);
-    front = gxbp_sign(cx, gxbp_edge_start(cx, cx->pool[f.loop + zero[0] + 1]), knife->plane, knife->slot) > 0 ? 0u : 1u;
+    edge = gxbp_new_edge(cx, gxbp_edge_start(cx, loop[zero[0]]), gxbp_edge_start(cx, loop[zero[1]]), line, (uint32_t)knife->explicit_line);
+    front = gxbp_sign(cx, gxbp_edge_start(cx, loop[zero[0] + 1]), knife->plane, knife->slot) > 0 ? 0u : 1u;
     gxbp_save(cx, GXBP_FACETS, facet);
     cx->facets[facet].child = child;
     cx->facets[child] = f;
     cx->facets[child + 1] = f;
     /* arc 0 runs from zero[0] to zero[1] and is closed backwards along the edge, arc 1 is the rest, closed forwards */
-    gxbp_copy_arc(cx, &f, zero[front], zero[1 - front], edge << 1 | (1u - front), &cx->facets[child]);
-    gxbp_copy_arc(cx, &f, zero[1 - front], zero[front], edge << 1 | front, &cx->facets[child + 1]);
+    gxbp_copy_arc(cx, loop, count, zero[front], zero[1 - front], edge << 1 | (1u - front), &cx->facets[child]);
+    gxbp_copy_arc(cx, loop, count, zero[1 - front], zero[front], edge << 1 | front, &cx->facets[child + 1]);
     cx->facet_count += 2;
+    cx->pool_live += count + 2 - f.loop_count;
     return edge << 1 | (1u - front);
 }
 
@@ -2547,6 +2587,7 @@ static uint32_t gxbp_close_rim(gxb_complex *cx, const gxbp_rim *rim, const gxbp_
         cx->pool[cx->pool_count++] = e;
         e = cx->points[cx->edges[e >> 1].v[1 - (e & 1)]].scratch;
     }
+    cx->pool_live += rim->count;
     return cx->facet_count++;
 }
 
@@ -2568,7 +2609,7 @@ static uint32_t gxbp_split_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife
     for (i = 0; i < count; i++) {
         const uint32_t facet = cx->pool[first + i];
         const uint32_t inward = cx->facets[facet].leaf[0] == leaf ? 1u : 0u;     /* its normal points into the leaf */
-        const int sides = gxbp_facet_sides(cx, facet, knife);
+        const uint32_t signs = gxbp_facet_signs(cx, facet, knife), sides = signs & 3;
         if (sides == 3) {
             const uint32_t edge = gxbp_split_facet(cx, facet, knife), child = cx->facets[facet].child;
             gxbp_add_rim(cx, &rim, edge ^ inward);
@@ -2576,7 +2617,7 @@ static uint32_t gxbp_split_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife
             front_list[fronts++] = child;
             behind_list[behinds++] = child + 1;
         } else {
-            gxbp_add_flat_edges(cx, &rim, facet, inward ^ (sides == 1 ? 0u : 1u), knife);
+            if (signs >= 8) gxbp_add_flat_edges(cx, &rim, facet, inward ^ (sides == 1 ? 0u : 1u), knife);
             if (sides == 1) front_list[fronts++] = facet;
             else {
                 gxbp_move_facet(cx, facet, leaf, behind);
@@ -2598,6 +2639,7 @@ static uint32_t gxbp_split_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife
     cx->leaves[behind].facets = cx->pool_count;
     cx->leaves[behind].facet_count = behinds;
     for (i = 0; i < behinds; i++) cx->pool[cx->pool_count++] = behind_list[i];
+    cx->pool_live += fronts + behinds - count;
     return middle;
 }
 
@@ -2648,6 +2690,7 @@ static GXBP_APART gx_result gxbp_open_face(gxb_complex *cx, uint32_t element, ui
         const uint32_t a = local[j], b = local[(j + 1) % 3];
         cx->pool[cx->pool_count++] = gxbp_open_edge(cx, cx->element_edges[6 * element + gxbp_local_edge(a, b)], node[a], node[b]);
     }
+    cx->pool_live += 3;
     gxbp_save(cx, GXBP_FACES, face);
     cx->face_facet[face] = cx->facet_count++;
     return GX_OK;
@@ -2667,6 +2710,7 @@ GXFEM_API gx_result gxb_complex_open_element(gxb_complex *cx, uint32_t element) 
     list = cx->pool_count;
     for (k = 0; k < 4; k++) cx->pool[cx->pool_count++] = cx->face_facet[cx->element_faces[4 * element + k]];
     gxbp_save(cx, GXBP_LEAVES, element);
+    cx->pool_live += 4;
     cx->leaves[element].facets = list;
     cx->leaves[element].facet_count = 4;
     return GX_OK;
@@ -2674,29 +2718,39 @@ GXFEM_API gx_result gxb_complex_open_element(gxb_complex *cx, uint32_t element) 
 
 /* >>clip: a triangle against the tree of an element ------------------------------------------------------------------------ */
 
+static uint32_t gxbp_face_plane(const gxb_complex *cx, uint32_t element, uint32_t k) {
+    return cx->facets[cx->face_facet[cx->element_faces[4 * element + k]]].plane;
+}
+
 static int gxbp_corner_sign(gxb_complex *cx, const gxbp_corner *c, uint32_t plane) {
     return gxbp_side_of(cx, &c->ball, c->kind, c->def, c->point, plane);
 }
 
-/* The point in which the edge that leaves corner c meets the plane. */
-static void gxbp_clip_corner(gxb_complex *cx, const gxb_triangle *t, const gxbp_corner *c, uint32_t plane, gxbp_corner *r) {
-    if (c->carrier >= GXBP_TRIANGLE_EDGE) {
-        const uint32_t k = c->carrier - GXBP_TRIANGLE_EDGE;
+/* The point in which two carriers meet in the triangle's plane. */
+static void gxbp_clip_corner(gxb_complex *cx, const gxb_triangle *t, uint32_t a, uint32_t b, gxbp_corner *r) {
+    const uint32_t edge = a >= GXBP_TRIANGLE_EDGE ? a : b, k = edge - GXBP_TRIANGLE_EDGE, other = a >= GXBP_TRIANGLE_EDGE ? b : a;
+    r->sign = 0;
+    r->point = GXB_NONE;
+    r->def[2] = other;
+    if (other >= GXBP_TRIANGLE_EDGE) {
+        r->kind = GXB_EXPLICIT;
+        r->point = t->point[other - GXBP_TRIANGLE_EDGE == (k + 1) % 3 ? (k + 1) % 3 : k];
+        r->ball = cx->points[r->point].ball;
+        return;
+    }
+    if (edge >= GXBP_TRIANGLE_EDGE) {
         r->kind = GXB_LINE_PLANE;
         r->def[0] = t->point[k]; r->def[1] = t->point[(k + 1) % 3];
     } else {
         r->kind = GXB_THREE_PLANES;
-        r->def[0] = t->plane; r->def[1] = c->carrier;
+        r->def[0] = t->plane; r->def[1] = edge;
     }
-    r->def[2] = plane;
-    r->point = GXB_NONE;
-    r->sign = 0;
     gxbp_definition_ball(cx, r->kind, r->def, &r->ball);
 }
 
-/* Appends to the corner stack what of corners first ... first+count-1 (signs known) lies on one side of the plane. Returns the number
+/* Appends to the corner stack what of corners first ... first+count-1 (signs known) lies on one side of a carrier. Returns the number
    of corners, 0 where that part has no area. */
-static uint32_t gxbp_clip(gxb_complex *cx, const gxb_triangle *t, uint32_t first, uint32_t count, uint32_t plane, int side) {
+static uint32_t gxbp_clip(gxb_complex *cx, const gxb_triangle *t, uint32_t first, uint32_t count, uint32_t carrier, int side) {
     const uint32_t start = cx->corner_count;
     uint32_t i;
     int inside = 0;
@@ -2708,12 +2762,12 @@ static uint32_t gxbp_clip(gxb_complex *cx, const gxb_triangle *t, uint32_t first
         if (s >= 0) {
             r = &cx->corners[cx->corner_count++];
             *r = *c;
-            if (s == 0 && n < 0) r->carrier = plane;
+            if (s == 0 && n < 0) r->carrier = carrier;
         }
         if (s * n < 0) {
             r = &cx->corners[cx->corner_count++];
-            gxbp_clip_corner(cx, t, c, plane, r);
-            r->carrier = s > 0 ? plane : c->carrier;
+            gxbp_clip_corner(cx, t, c->carrier, carrier, r);
+            r->carrier = s > 0 ? carrier : c->carrier;
         }
     }
     if (!inside) cx->corner_count = start;
@@ -2923,13 +2977,20 @@ static uint32_t gxbp_depth(const gxb_complex *cx, uint32_t node) {
 
 static uint32_t gxbp_leaves_below(const gxb_complex *cx, uint32_t reference) { return reference & 1 ? cx->nodes[reference >> 1].leaves : 1; }
 
-/* On which sides of the plane (slot 1's, for its present stamp) the leaf has points: bit 1 in front, bit 2 behind. Facets and edges need
-   not be resolved: what divides them lies between their corners. */
+/* Those of the facets into which one was divided: its own loop may be gone. */
+static GXBP_APART int gxbp_pieces_sides(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife) {
+    const uint32_t child = cx->facets[facet].child;
+    if (child == GXB_NONE) return gxbp_facet_sides(cx, facet, knife);
+    return gxbp_pieces_sides(cx, child, knife) | gxbp_pieces_sides(cx, child + 1, knife);
+}
+
+/* On which sides of the plane (slot 1's, for its present stamp) the leaf has points: bit 1 in front, bit 2 behind. Edges need not be
+   resolved: what divides them lies between their ends. */
 static int gxbp_leaf_sides(gxb_complex *cx, uint32_t leaf, const gxbp_knife *knife) {
     const gxb_leaf *l = &cx->leaves[leaf];
     uint32_t i;
     int sides = 0;
-    for (i = 0; i < l->facet_count && sides != 3; i++) sides |= gxbp_facet_sides(cx, cx->pool[l->facets + i], knife);
+    for (i = 0; i < l->facet_count && sides != 3; i++) sides |= gxbp_pieces_sides(cx, cx->pool[l->facets + i], knife);
     return sides;
 }
 
@@ -3242,12 +3303,79 @@ static gx_result gxbp_descend(gxb_complex *cx, gxb_triangle *t, const gxbp_task 
     return GX_OK;
 }
 
-/* Clips the triangle by the faces of the element. *count 0: nothing of it lies in the element. */
-static gx_result gxbp_clip_to_element(gxb_complex *cx, gxb_triangle *t, uint32_t element, gxbp_task *task) {
+/* What the triangle's plane, in front and behind of which there are nodes (or three in it), has of an element: a polygon of three corners where one
+   node is alone on its side, else of four. Each is a node, or a point of the edge between two, and starts a side in the face opposite to a third. */
+static uint32_t gxbp_choose_section(const int sign[4], uint8_t corners[4][3]) {
+    uint8_t node[2][4];
+    uint32_t count[2] = {0, 0}, k, side;
+    for (k = 0; k < 4; k++) { side = sign[k] > 0 ? 0u : 1u; if (sign[k] != 0) node[side][count[side]++] = (uint8_t)k; }
+    if (count[0] == 2 && count[1] == 2) {
+        for (k = 0; k < 4; k++) {
+            corners[k][0] = node[0][k >> 1]; corners[k][1] = node[1][(k + 1) >> 1 & 1];
+            corners[k][2] = k & 1 ? node[1][k >> 1] : node[0][1 - (k >> 1)];
+        }
+        return 4;
+    }
+    side = count[0] == 1 ? 0u : 1u;
+    for (k = 0; k < 3; k++) {
+        const uint8_t *rest = gxbp_face_nodes[node[side][0]];
+        corners[k][0] = node[side][0]; corners[k][1] = rest[k]; corners[k][2] = rest[(k + 2) % 3];
+    }
+    return 3;
+}
+
+/* Pushes a corner of the section: node j, or the point of the edge between nodes i and j. */
+static void gxbp_push_section_corner(gxb_complex *cx, const gxb_triangle *t, uint32_t i, uint32_t j, int sign, uint32_t carrier) {
+    gxbp_corner *c = &cx->corners[cx->corner_count++];
+    memset(c, 0, sizeof *c);
+    c->carrier = carrier;
+    c->point = GXB_NONE;
+    if (sign == 0) {
+        c->kind = GXB_EXPLICIT;
+        c->point = j;
+        c->ball = cx->points[j].ball;
+        return;
+    }
+    c->kind = GXB_LINE_PLANE;
+    c->def[0] = i < j ? i : j; c->def[1] = i < j ? j : i; c->def[2] = t->plane;
+    gxbp_definition_ball(cx, c->kind, c->def, &c->ball);
+}
+
+/* Signs of corners: 1 on the triangle's side of its edge k, -1 beyond. Bit 1 of *sides: some are on its side, bit 2: some beyond. */
+static gx_result gxbp_edge_sides(gxb_complex *cx, gxb_triangle *t, uint32_t k, uint32_t first, uint32_t count, int *sides) {
+    const gxb_cplane *f = &cx->planes[t->plane];
+    const gxb_ball *p = &cx->points[t->point[k]].ball, *q = &cx->points[t->point[(k + 1) % 3]].ball;
+    const int x = (int)(f->axis + 1) % 3, y = (int)(f->axis + 2) % 3, turn = f->axis_sign * t->orientation;
+    uint32_t i;
+    *sides = 0;
+    for (i = first; i < first + count; i++) {
+        gxbp_corner *c = &cx->corners[i];
+        c->sign = c->ball.error < GXBP_NO_BALL ? turn * gxbp_filter_turn(p, q, &c->ball, x, y) : 0;
+        if (c->sign == 0) {
+            int front;
+            const gx_result result = gxbp_edge_plane(cx, t, k, &front);
+            if (result != GX_OK) return result;
+            c->sign = front * gxbp_corner_sign(cx, c, t->edge_plane[k]);
+        }
+        *sides |= c->sign > 0 ? 1 : c->sign < 0 ? 2 : 0;
+    }
+    return GX_OK;
+}
+
+/* Is the triangle inside the element, or at most on faces of it? */
+static int gxbp_triangle_is_inside(gxb_complex *cx, const gxb_triangle *t, uint32_t element) {
+    uint32_t k, i;
+    for (k = 0; k < 4; k++) {
+        const uint32_t face = cx->element_faces[4 * element + k], plane = cx->facets[cx->face_facet[face]].plane;
+        const int inside = cx->face_elements[2 * face] == element ? 1 : -1;
+        for (i = 0; i < 3; i++) if (inside * gxb_complex_side(cx, t->point[i], plane) < 0) return 0;
+    }
+    return 1;
+}
+
+/* The triangle as a polygon. */
+static void gxbp_push_triangle(gxb_complex *cx, const gxb_triangle *t) {
     uint32_t k;
-    gx_result result = GXBP_RESERVE(cx, corners, corner, 40);
-    if (result != GX_OK) return result;
-    cx->corner_count = cx->task_count = 0;
     for (k = 0; k < 3; k++) {
         gxbp_corner *c = &cx->corners[cx->corner_count++];
         memset(c, 0, sizeof *c);
@@ -3256,49 +3384,60 @@ static gx_result gxbp_clip_to_element(gxb_complex *cx, gxb_triangle *t, uint32_t
         c->point = t->point[k];
         c->carrier = GXBP_TRIANGLE_EDGE + k;
     }
-    task->parent = GXBP_IN_ROOT; task->side = 0; task->first = 0; task->count = 3; task->coplanar = 0;
-    for (k = 0; k < 4 && task->count > 0; k++) {
-        const uint32_t face = cx->element_faces[4 * element + k];
-        const int inside = cx->face_elements[2 * face] == element ? 1 : -1;
-        uint32_t plane, first;
-        int sides;
-        result = gxbp_open_face(cx, element, k);
+}
+
+/* What of the triangle lies in an element, on both sides of whose plane it has nodes, or three in the plane: the triangle itself, or the plane's section
+   clipped by the triangle's edges. task->count 0: nothing. */
+static gx_result gxbp_clip_to_element(gxb_complex *cx, gxb_triangle *t, uint32_t element, const int sign[4], gxbp_task *task) {
+    const uint32_t *node = cx->elements + 4 * (size_t)element;
+    uint8_t corners[4][3];
+    uint32_t k, first;
+    int sides;
+    gx_result result = GXBP_RESERVE(cx, corners, corner, 40);
+    if (result != GX_OK) return result;
+    cx->corner_count = cx->task_count = 0;
+    task->parent = GXBP_IN_ROOT; task->side = 0; task->first = 0; task->count = 3;
+    task->coplanar = (sign[0] == 0) + (sign[1] == 0) + (sign[2] == 0) + (sign[3] == 0) == 3;
+    if (gxbp_triangle_is_inside(cx, t, element)) { gxbp_push_triangle(cx, t); return GX_OK; }
+    task->count = gxbp_choose_section(sign, corners);
+    for (k = 0; k < task->count; k++)
+        gxbp_push_section_corner(cx, t, node[corners[k][0]], node[corners[k][1]], sign[corners[k][1]], gxbp_face_plane(cx, element, corners[k][2]));
+    for (k = 0; k < 3 && task->count > 0; k++) {
+        result = gxbp_edge_sides(cx, t, k, task->first, task->count, &sides);
         if (result != GX_OK) return result;
-        plane = cx->facets[cx->face_facet[face]].plane;
-        sides = gxbp_corner_sides(cx, task->first, task->count, plane);
-        if (sides == 0) task->coplanar = 1;
-        if (sides == 0 || sides == (inside > 0 ? 1 : 2)) continue;
+        if (sides == 1) continue;
         first = cx->corner_count;
-        task->count = gxbp_clip(cx, t, task->first, task->count, plane, inside);
+        task->count = gxbp_clip(cx, t, task->first, task->count, GXBP_TRIANGLE_EDGE + k, 1);
         task->first = first;
     }
     return GX_OK;
 }
 
-/* Do all nodes of the element lie strictly on one side of the triangle's plane? */
-static int gxbp_misses_plane(gxb_complex *cx, const gxb_triangle *t, uint32_t element) {
-    int sides = 0, k;
+/* Signs of the element's nodes against the triangle's plane. Has that plane nothing of the element but a node or an edge, or nothing at all? */
+static int gxbp_misses_plane(gxb_complex *cx, const gxb_triangle *t, uint32_t element, int sign[4]) {
+    int sides = 0, zeros = 0, k;
     for (k = 0; k < 4; k++) {
-        const int sign = gxbp_sign(cx, cx->elements[4 * element + (uint32_t)k], t->plane, 0);
-        sides |= sign > 0 ? 1 : sign < 0 ? 2 : 3;
+        sign[k] = gxbp_sign(cx, cx->elements[4 * element + (uint32_t)k], t->plane, 0);
+        sides |= sign[k] > 0 ? 1 : sign[k] < 0 ? 2 : 0;
+        zeros += sign[k] == 0;
     }
-    return sides != 3;
+    return sides != 3 && zeros < 3;
 }
 
 GXFEM_API gx_result gxb_complex_insert(gxb_complex *cx, gxb_triangle *t, uint32_t element,
                                        int (*allowed)(void *user, uint32_t leaf), void *user) {
     gxbp_task task;
     gx_result result;
+    int sign[4];
     if (cx->sign_plane != t->plane) {
         cx->sign_plane = t->plane;
         cx->stamp[0]++;
     }
-    if (gxbp_misses_plane(cx, t, element)) return GX_OK;
-    result = gxbp_clip_to_element(cx, t, element, &task);
-    if (result != GX_OK || task.count == 0) return result;
+    if (gxbp_misses_plane(cx, t, element, sign)) return GX_OK;
     result = gxb_complex_open_element(cx, element);
+    if (result == GX_OK) result = gxbp_clip_to_element(cx, t, element, sign, &task);
     if (result == GX_OK) result = GXBP_RESERVE(cx, tasks, task, 1);
-    if (result != GX_OK) return result;
+    if (result != GX_OK || task.count == 0) return result;
     cx->tasks[cx->task_count++] = task;
     while (cx->task_count > 0 && result == GX_OK) {
         uint32_t reference;
@@ -3524,10 +3663,6 @@ static void gxbp_distance(gxb_complex *cx, uint32_t point, uint32_t plane, gxb_n
     if (weight != NULL) gxbp_num_copy(weight, &x[3], 1);
 }
 
-static uint32_t gxbp_face_plane(const gxb_complex *cx, uint32_t element, uint32_t k) {
-    return cx->facets[cx->face_facet[cx->element_faces[4 * element + k]]].plane;
-}
-
 static GXBP_COLD void gxbp_exact_edge_parameter(gxb_complex *cx, gxb_cpoint *p) {
     GXB_NUM(a); GXB_NUM(b); GXB_NUM(d);
     gxbp_distance(cx, p->def[0], p->def[2], &a, NULL);
@@ -3579,6 +3714,15 @@ GXFEM_API unsigned gxb_complex_support(const gxb_complex *cx, uint32_t point, ui
     return support;
 }
 
+/* Of a given point: by its sides of the faces */
+static void gxbp_pair_point_shares(gxb_complex *cx, uint32_t point, uint32_t element, gxbp_pair share[4]) {
+    uint32_t k;
+    for (k = 0; k < 4; k++) {
+        share[k] = gxbp_pair_side(cx, point, gxbp_face_plane(cx, element, k));
+        if (cx->face_elements[2 * cx->element_faces[4 * element + k]] != element) { share[k].high = -share[k].high; share[k].low = -share[k].low; }
+    }
+}
+
 /* Of a line through two points and a plane: with their sides a, b of the plane, the point is b p - a q. */
 static void gxbp_pair_line_shares(gxb_complex *cx, const uint32_t def[3], uint32_t element, const double lambda[4], gxbp_pair share[4]) {
     const gxbp_pair a = gxbp_pair_side(cx, def[0], def[2]), b = gxbp_pair_side(cx, def[1], def[2]);
@@ -3620,8 +3764,8 @@ static void gxbp_pair_barycentric(gxb_complex *cx, uint32_t point, uint32_t elem
     const gxb_cpoint p = cx->points[point];
     gxbp_pair share[4], sum = gxbp_pair_sum(0, 0);
     uint32_t k;
-    if (p.kind == GXB_EXPLICIT) return;
-    if (p.kind == GXB_LINE_PLANE) gxbp_pair_line_shares(cx, p.def, element, lambda, share);
+    if (p.kind == GXB_EXPLICIT) gxbp_pair_point_shares(cx, point, element, share);
+    else if (p.kind == GXB_LINE_PLANE) gxbp_pair_line_shares(cx, p.def, element, lambda, share);
     else gxbp_pair_plane_shares(cx, p.def, element, lambda, share);
     for (k = 0; k < 4; k++) if (lambda[k] < 0) sum = gxbp_pair_add(&sum, &share[k], 1);
     for (k = 0; k < 4; k++) {
@@ -4008,13 +4152,24 @@ static int gxbp_on_line(gxb_complex *cx, uint32_t point, const gxb_edge *e) {
     return planes >= 2 || gxbp_collinear(cx, point, e->line[0], e->line[1]);
 }
 
-/* The halves of a divided edge: they meet in the point of its line and a plane between its ends. */
+/* Does a given point lie between the ends of an edge whose line it defines? */
+static int gxbp_given_divides(gxb_complex *cx, const gxb_edge *e, uint32_t point) {
+    double x[3];
+    int k, divides = 0;
+    if (!e->explicit_line || (point != e->line[0] && point != e->line[1])) return 0;
+    gxbp_given(cx, point, x);
+    for (k = 0; k < 3; k++) divides |= gxb_complex_compare(cx, e->v[0], k, x[k]) * gxb_complex_compare(cx, e->v[1], k, x[k]) < 0;
+    return divides;
+}
+
+/* The halves of a divided edge: they meet in the point of its line and a plane between its ends, or in a given point of it. */
 static int gxbp_edge_is_divided(gxb_complex *cx, const gxb_edge *e) {
     const gxb_edge *a = &cx->edges[e->child], *b = a + 1;
     const gxb_cpoint *p = &cx->points[a->v[1]];
     if (a->v[0] != e->v[0] || b->v[1] != e->v[1] || a->v[1] != b->v[0]) return 0;
     if (a->explicit_line != e->explicit_line || b->explicit_line != e->explicit_line) return 0;
     if (memcmp(a->line, e->line, sizeof e->line) != 0 || memcmp(b->line, e->line, sizeof e->line) != 0) return 0;
+    if (p->kind == GXB_EXPLICIT) return gxbp_given_divides(cx, e, a->v[1]);
     if (p->kind != (e->explicit_line ? GXB_LINE_PLANE : GXB_THREE_PLANES) || p->def[0] != e->line[0] || p->def[1] != e->line[1]) return 0;
     return gxb_complex_side(cx, e->v[0], p->def[2]) * gxb_complex_side(cx, e->v[1], p->def[2]) < 0;
 }
