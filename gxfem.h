@@ -2642,20 +2642,32 @@ static gx_result gxp_integrate_cell(gx_body *body, uint32_t cell, double volume)
     return GX_OK;
 }
 
-/* The fresh cell of the element with the most leaves; GXP_NONE: something has been removed from the element, so that its cells are not all of it. */
+static uint32_t gxp_count_leaves(const gx_body *body, uint32_t cell) {
+    uint32_t leaf, count = 0;
+    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next) count++;
+    return count;
+}
+
+/* The fresh cell of the element with the most leaves. GXP_NONE: something has been removed from the element, so that its cells are not all of it, or
+   its other cells have more leaves to look at than that one has. */
 static uint32_t gxp_rest_cell(const gx_body *body, uint32_t element) {
     const uint32_t root = body->complex->root[element], all = root & 1 ? body->complex->nodes[root >> 1].leaves : 1;
-    uint32_t cell, leaf, rest = GXP_NONE, most = 0, sum = 0, count;
+    uint32_t cell, leaf, rest = GXP_NONE, most = 0, sum = 0, others = 0;
     for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next) {
-        for (leaf = body->cells[cell].first_leaf, count = 0; leaf != GXP_NONE; leaf = body->leaves[leaf].next) count++;
+        const uint32_t count = gxp_fresh_index(body, cell) == GXP_NONE ? 0 : gxp_count_leaves(body, cell);
         sum += count;
-        if (count <= most || gxp_fresh_index(body, cell) == GXP_NONE) continue;
+        if (count <= most) continue;
         most = count;
         rest = cell;
     }
-    return sum == all ? rest : GXP_NONE;
+    for (cell = element; cell != GXP_NONE && others <= most; cell = body->cells[cell].next) {
+        if (gxp_fresh_index(body, cell) != GXP_NONE) continue;
+        for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && others <= most; leaf = body->leaves[leaf].next) others++;
+    }
+    return others <= most && sum + others == all ? rest : GXP_NONE;
 }
 
+#define GXP_REST_CELLS 4    /* an element with more cells is not looked at as a whole: a cut may touch few of them */
 #define GXP_REST 0.25   /* a cell with at least this share of its element may be what the others leave: its smallest moments lose two digits by that */
 
 /* Makes the cell, which has been saved, what the element's other cells leave. 0: that is too little. */
@@ -2676,6 +2688,12 @@ static int gxp_leave_rest(gx_body *body, uint32_t rest, double volume) {
     return 1;
 }
 
+static int gxp_has_few_cells(const gx_body *body, uint32_t element) {
+    uint32_t cell = element, count = 0;
+    for (; cell != GXP_NONE && count <= GXP_REST_CELLS; cell = body->cells[cell].next) count++;
+    return count <= GXP_REST_CELLS;
+}
+
 /* The fresh cells of the element. Most often the one with the most leaves, which takes the longest, is what the others leave. */
 static gx_result gxp_integrate_element(gx_body *body, uint32_t element) {
     const double volume = gxp_element_volume(body, element);
@@ -2683,7 +2701,6 @@ static gx_result gxp_integrate_element(gx_body *body, uint32_t element) {
     uint32_t cell;
     int done = 0;
     gx_result result = gxb_complex_open_element(body->complex, element);
-    gxp_clear_boundary(body, 1);
     for (cell = element; cell != GXP_NONE && result == GX_OK; cell = body->cells[cell].next)
         if (cell != rest && gxp_fresh_index(body, cell) != GXP_NONE) result = gxp_integrate_cell(body, cell, volume);
     if (rest == GXP_NONE || result != GX_OK) return result;
@@ -2824,12 +2841,18 @@ static gx_result gxp_enrich(gxp_cut *cut) {
 static gx_result gxp_integrate(gxp_cut *cut) {
     gx_body *body = cut->body;
     const uint32_t *fresh = body->fresh.data;
-    uint32_t i;
+    uint32_t i, before = GXP_NONE;
     gx_result result = gxp_integrate_removed(cut, &body->removed);
     body->stamp++;
     for (i = 0; i < body->fresh.count && result == GX_OK; i++) {
         const uint32_t element = body->cells[fresh[i]].element;
         if (body->cell_stamp[element] == body->stamp) continue;
+        gxp_clear_boundary(body, element != before);
+        before = element;
+        if (!gxp_has_few_cells(body, element)) {
+            result = gxp_integrate_cell(body, fresh[i], gxp_element_volume(body, element));
+            continue;
+        }
         body->cell_stamp[element] = body->stamp;
         result = gxp_integrate_element(body, element);
     }
