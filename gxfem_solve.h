@@ -2473,7 +2473,7 @@ static void gxsp_set_corners(const gxsp_chunk *chunk, uint32_t (*nodes)[4])
             for (l = 0; l < GXSP_LANES; ++l) {
                 const uint32_t node = nodes[b * GXSP_LANES + l][k];
                 corner->node[k][l] = node != GXSP_NONE ? (uint16_t)node : b > 0 ? before->node[k][l] : 0;
-                chunk->fresh[b] |= (uint8_t)(corner->node[k][l] != before->node[k][l]) << k;
+                chunk->fresh[b] = (uint8_t)(chunk->fresh[b] | (corner->node[k][l] != before->node[k][l] ? 1u << k : 0u));
             }
     }
     chunk->fresh[b] = 15;

@@ -56,13 +56,17 @@ static int filter_orient(const gxb_ball *a, const gxb_ball *b, const gxb_ball *c
 
 static int filter_decides(const pc_objects *k, int kind) {
     const pc_case *c = k->input;
+    const double *circle[4], *sphere[5];
+    int i;
+    for (i = 0; i < 4; i++) circle[i] = c->circle[i];
+    for (i = 0; i < 5; i++) sphere[i] = c->sphere[i];
     switch (kind) {
     case PC_ORIENT2D: return filter_orient2d(c->point, c->line[0], c->line[1]) != 0;
     case PC_ORIENT3D: case PC_SIDE_EXPLICIT: return filter_side(&k->point, &k->plane[3]) != 0;
     case PC_SIDE_LINE: return filter_side(&k->line, &k->plane[3]) != 0;
     case PC_SIDE_PLANES: return filter_side(&k->planes, &k->plane[3]) != 0;
-    case PC_INCIRCLE: return gxbp_filter_incircle(c->circle[0], c->circle[1], c->circle[2], c->circle[3]) != 0;
-    case PC_INSPHERE: return gxbp_filter_insphere(c->sphere[0], c->sphere[1], c->sphere[2], c->sphere[3], c->sphere[4]) != 0;
+    case PC_INCIRCLE: return gxbp_filter_incircle(circle) != 0;
+    case PC_INSPHERE: return gxbp_filter_insphere(sphere) != 0;
     case PC_COMPARE: return filter_compare(&k->line.ball, &k->planes.ball, k->axis) != 0;
     default: return filter_orient(&k->line.ball, &k->planes.ball, &k->other.ball, &k->plane[0]) != 0;
     }
