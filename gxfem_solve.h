@@ -41,7 +41,7 @@
  *   >>tangent     Hessian of one block             >>newton      line search, Newton, integrators
  *   >>element     passes over one block            >>check       of what is given
  *   >>chunk       passes over chunks               >>api         the public functions
- *   >>model       order of elements, chunks        >>forms       assembled forms, the material at one F
+ *   >>model       order of elements, chunks, lanes >>forms       assembled forms, the material at one F
  *
  * WHAT IT DOES. A step of length h is the minimum over the displacements u of the incremental potential
  *
@@ -2247,7 +2247,7 @@ static void gxsp_evaluate_elements(gxsp_system *system, double rate, const doubl
     }
 }
 
-/* >>model: elements sorted by material kind, by whether they are whole, and along a curve through space, then cut into chunks */
+/* >>model: elements sorted by material kind, by whether they are whole, and along a curve through space, then cut into chunks, seated in lanes */
 
 /* Forests of joined indices: the root of a tree is its least. */
 static uint32_t gxsp_root(uint32_t *parent, uint32_t i)
