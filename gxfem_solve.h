@@ -767,6 +767,11 @@ typedef struct gxsp_tangent {
     float mass[GXSP_LANES];        /* gxsp_rest.mass x rate, kg/s2 */
 } gxsp_tangent;
 
+/* Masses of a block that gxsp_rest does not have, for products: gxsp_mass x rate, kg/s2 */
+typedef struct gxsp_inertia {
+    float entry[10][GXSP_LANES];
+} gxsp_inertia;
+
 /* Projected Hessian of a block of GXS_CUSTOM, which has no frame (U and V are 1): weight x dP_i/dF_j, upper triangle by rows; J */
 typedef struct gxsp_general {
     float hessian[45][GXSP_LANES];
@@ -789,6 +794,7 @@ typedef struct gxsp_chunk {
     uint8_t *fresh;                  /* block_count + 1: bit i: corner i is not the one of the block before, in each lane; at the end all */
     gxsp_tangent *tangents;
     gxsp_mass *masses;               /* NULL: gxsp_rest has them all */
+    gxsp_inertia *inertias;          /* NULL: gxsp_tangent has them all */
     gxsp_general *generals;          /* of GXS_CUSTOM; NULL: gxsp_tangent has the Hessians */
     uint32_t *groups;                /* block_count x GXSP_LANES: group of the element in each lane; GXSP_NONE: there is none */
     uint32_t first_block, block_count; /* blocks are counted through all chunks */
@@ -1846,23 +1852,17 @@ static void gxsp_kind_product(gxs_material_kind kind, const gxsp_tangent *b, con
         gxsp_block_product(b, 0, x, y);
 }
 
-/* y += rate M x of masses that rest does not have. apart: as of gxsp_block_product */
-GXSP_INLINE void gxsp_block_mass_product(const gxsp_mass *GXSP_RESTRICT mass, float rate, int apart, gxsp_singles *GXSP_RESTRICT x,
-                                         gxsp_singles *GXSP_RESTRICT y)
+/* y += rate M x of masses that the tangent does not have. apart: as of gxsp_block_product */
+GXSP_INLINE void gxsp_inertia_product(const gxsp_inertia *GXSP_RESTRICT m, int apart, gxsp_singles *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT y)
 {
     int r, l;
     for (r = 0; r < 3; ++r)
         GXSP_EACH_LANE(l) {
-            const float a = rate * x[r][l], o = apart ? a : 0;
-            const float b = rate * x[3 + r][l] + o, c = rate * x[6 + r][l] + o, d = rate * x[9 + r][l] + o;
-            const float m0 = (float)mass->entry[0][l], m1 = (float)mass->entry[1][l], m2 = (float)mass->entry[2][l],
-                        m3 = (float)mass->entry[3][l], m4 = (float)mass->entry[4][l], m5 = (float)mass->entry[5][l],
-                        m6 = (float)mass->entry[6][l], m7 = (float)mass->entry[7][l], m8 = (float)mass->entry[8][l],
-                        m9 = (float)mass->entry[9][l];
-            y[r][l] += m0 * a + m1 * b + m2 * c + m3 * d;
-            y[3 + r][l] += m1 * a + m4 * b + m5 * c + m6 * d;
-            y[6 + r][l] += m2 * a + m5 * b + m7 * c + m8 * d;
-            y[9 + r][l] += m3 * a + m6 * b + m8 * c + m9 * d;
+            const float a = x[r][l], o = apart ? a : 0, b = x[3 + r][l] + o, c = x[6 + r][l] + o, d = x[9 + r][l] + o;
+            y[r][l] += m->entry[0][l] * a + m->entry[1][l] * b + m->entry[2][l] * c + m->entry[3][l] * d;
+            y[3 + r][l] += m->entry[1][l] * a + m->entry[4][l] * b + m->entry[5][l] * c + m->entry[6][l] * d;
+            y[6 + r][l] += m->entry[2][l] * a + m->entry[5][l] * b + m->entry[7][l] * c + m->entry[8][l] * d;
+            y[9 + r][l] += m->entry[3][l] * a + m->entry[6][l] * b + m->entry[8][l] * c + m->entry[9][l] * d;
         }
 }
 
@@ -1964,6 +1964,11 @@ static void gxsp_over_ranges(gxsp_system *system, void (*task)(void *, size_t), 
 static const gxsp_mass *gxsp_block_masses(const gxsp_chunk *chunk, uint32_t block)
 {
     return chunk->masses ? &chunk->masses[block] : NULL;
+}
+
+static gxsp_inertia *gxsp_block_inertias(const gxsp_chunk *chunk, uint32_t block)
+{
+    return chunk->inertias ? &chunk->inertias[block] : NULL;
 }
 
 static gxsp_general *gxsp_block_general(const gxsp_chunk *chunk, uint32_t block)
@@ -2739,19 +2744,24 @@ static void gxsp_blocks_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count
 static void gxsp_tangents_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count)
 {
     gxsp_tangent *tangents;
+    gxsp_inertia *inertias;
     gxsp_general *generals;
-    size_t blocks = 0, custom = 0;
+    size_t blocks = 0, cut = 0, custom = 0;
     uint32_t c;
     for (c = 0; c < count; ++c) {
         blocks += chunks[c].block_count;
+        cut += chunks[c].masses ? chunks[c].block_count : 0;
         custom += chunks[c].kind == GXS_CUSTOM ? chunks[c].block_count : 0;
     }
     tangents = (gxsp_tangent *)gxsp_take(pool, blocks, sizeof(gxsp_tangent));
+    inertias = (gxsp_inertia *)gxsp_take(pool, cut, sizeof(gxsp_inertia));
     generals = (gxsp_general *)gxsp_take(pool, custom, sizeof(gxsp_general));
     for (c = 0; c < count && !pool->failed; ++c) {
         chunks[c].tangents = tangents;
+        chunks[c].inertias = chunks[c].masses ? inertias : NULL;
         chunks[c].generals = chunks[c].kind == GXS_CUSTOM ? generals : NULL;
         tangents += chunks[c].block_count;
+        inertias += chunks[c].masses ? chunks[c].block_count : 0;
         generals += chunks[c].kind == GXS_CUSTOM ? chunks[c].block_count : 0;
     }
 }
@@ -4159,13 +4169,13 @@ static void gxsp_task_product(void *context, size_t index)
     memset(out, 0, chunk->node_count * sizeof *out);
     memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; ++b) {
-        const gxsp_mass *general = gxsp_block_masses(chunk, b);
+        const gxsp_inertia *inertia = gxsp_block_inertias(chunk, b);
         const gxsp_chunk *next = gxsp_block_ahead(system, index, b, &further);
         gxsp_fetch(&next->tangents[further], sizeof(gxsp_tangent));
         gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
         gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_general(chunk, b), 0, from, to);
-        if (general)
-            gxsp_block_mass_product(general, (float)pass->rate, 0, from, to);
+        if (inertia)
+            gxsp_inertia_product(inertia, 0, from, to);
         gxsp_block_scatter(chunk, b, to, out);
     }
 }
@@ -4343,12 +4353,12 @@ static void gxsp_task_apply(void *context, size_t index)
     memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; ++b) {
         const gxsp_chunk *next = gxsp_block_ahead(system, index, b, &further);
-        const gxsp_mass *general = gxsp_block_masses(chunk, b);
+        const gxsp_inertia *inertia = gxsp_block_inertias(chunk, b);
         gxsp_fetch(&next->tangents[further], sizeof(gxsp_tangent));
         gxsp_block_gather_doubles(chunk, b, in, from);
         gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_general(chunk, b), 1, from, to);
-        if (general && pass->rate > 0)
-            gxsp_block_mass_product(general, (float)pass->rate, 1, from, to);
+        if (inertia)
+            gxsp_inertia_product(inertia, 1, from, to);
         gxsp_block_scatter(chunk, b, to, out);
     }
 }
@@ -4455,11 +4465,11 @@ static void gxsp_general_own(const gxsp_general *general, gxsp_singles *p, gxsp_
 }
 
 /* Diagonal blocks of a block's Hessian, packed: own[6 corner ...] += */
-static void gxsp_block_diagonal(const gxsp_chunk *chunk, uint32_t b, double rate, gxsp_singles *own)
+static void gxsp_block_diagonal(const gxsp_chunk *chunk, uint32_t b, gxsp_singles *own)
 {
     static const int diagonal[3] = {0, 3, 5};
     const gxsp_tangent *tangent = &chunk->tangents[b];
-    const gxsp_mass *general = gxsp_block_masses(chunk, b);
+    const gxsp_inertia *inertia = gxsp_block_inertias(chunk, b);
     gxsp_singles u[9];
     int corner, k, l;
     gxsp_block_frame(tangent, u);
@@ -4471,8 +4481,8 @@ static void gxsp_block_diagonal(const gxsp_chunk *chunk, uint32_t b, double rate
         else
             gxsp_block_own(tangent, u, gamma, own + 6 * corner);
         GXSP_EACH_LANE(l) mass[l] = 2 * tangent->mass[l];
-        if (general)
-            GXSP_EACH_LANE(l) mass[l] = (float)(rate * general->entry[gxsp_packed_mass[corner][corner]][l]);
+        if (inertia)
+            GXSP_EACH_LANE(l) mass[l] = inertia->entry[gxsp_packed_mass[corner][corner]][l];
         for (k = 0; k < 3; ++k)
             GXSP_EACH_LANE(l) own[6 * corner + diagonal[k]][l] += mass[l];
     }
@@ -4490,6 +4500,14 @@ static void gxsp_diagonal_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_sing
         for (k = 6 * corner; k < 6 * corner + 6; ++k)
             GXSP_EACH_LANE(l) own[k][l] = 0;
     }
+}
+
+/* Masses of a block in single precision; none if mass is NULL */
+static void gxsp_inertia_make(const gxsp_mass *mass, double rate, gxsp_inertia *inertia)
+{
+    int k, l;
+    for (k = 0; mass && k < 10; ++k)
+        GXSP_EACH_LANE(l) inertia->entry[k][l] = (float)(rate * mass->entry[k][l]);
 }
 
 /* Hessian of a chunk at pass->from, and its diagonal blocks into the slots */
@@ -4525,7 +4543,8 @@ static void gxsp_task_linearise(void *context, size_t index)
             gxsp_tangent *tangent = &chunk->tangents[b + k];
             gxsp_tangent_make(chunk->kind, rest, system->scale, pass->exact, &s[k], &of[k], tangent, gxsp_block_general(chunk, b + k));
             GXSP_EACH_LANE(l) tangent->mass[l] = (float)(pass->rate * rest->mass[l]);
-            gxsp_block_diagonal(chunk, b + k, pass->rate, own);
+            gxsp_inertia_make(gxsp_block_masses(chunk, b + k), pass->rate, gxsp_block_inertias(chunk, b + k));
+            gxsp_block_diagonal(chunk, b + k, own);
             gxsp_diagonal_scatter(chunk, b + k, own, slots);
         }
     }
@@ -4803,10 +4822,10 @@ static void gxsp_multigrid(gxsp_system *system, double rate, double energy)
 /* --- numbers of the coarse levels --- */
 
 /* Mass between corners of a block, kg/s2. pair: in the order of gxs_element.mass */
-static void gxsp_block_mass(const gxsp_tangent *tangent, const gxsp_mass *general, double rate, int pair, float *mass)
+static void gxsp_block_mass(const gxsp_tangent *tangent, const gxsp_inertia *inertia, int pair, float *mass)
 {
     int l;
-    GXSP_EACH_LANE(l) mass[l] = tangent->mass[l] + (general ? (float)(rate * general->entry[pair][l]) : 0);
+    GXSP_EACH_LANE(l) mass[l] = inertia ? inertia->entry[pair][l] : tangent->mass[l];
 }
 
 /* A block by rows, with its mass, to one by columns: that of the lower node's row, where corners p and q have the nodes */
@@ -4825,15 +4844,15 @@ static void gxsp_order_block(const uint16_t *GXSP_RESTRICT p, const uint16_t *GX
 }
 
 /* Half the row sums of a block's masses to its nodes */
-static void gxsp_own_mass(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_t b, double rate)
+static void gxsp_own_mass(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_t b)
 {
-    const gxsp_mass *general = gxsp_block_masses(chunk, b);
+    const gxsp_inertia *inertia = gxsp_block_inertias(chunk, b);
     gxsp_singles half;
     int k, j, l;
     for (k = 0; k < 4; ++k) {
         GXSP_EACH_LANE(l) half[l] = chunk->rest[b].weight[l] > 0 ? 2.5f * chunk->tangents[b].mass[l] : 0;
-        for (j = 0; j < 4 && general; ++j)
-            GXSP_EACH_LANE(l) half[l] += chunk->rest[b].weight[l] > 0 ? (float)(0.5 * rate * general->entry[gxsp_packed_mass[k][j]][l]) : 0;
+        for (j = 0; j < 4 && inertia; ++j)
+            GXSP_EACH_LANE(l) half[l] += chunk->rest[b].weight[l] > 0 ? 0.5f * inertia->entry[gxsp_packed_mass[k][j]][l] : 0;
         for (l = 0; l < GXSP_LANES; ++l)
             edges->mass[chunk->corners[b].node[k][l]] += half[l];
     }
@@ -4860,7 +4879,7 @@ static void gxsp_edges_clear(gxsp_edges *edges, const gxsp_chunk *chunk)
 }
 
 /* Blocks of a chunk's edges: the Hessian of its elements, of i's row and j's column, with their mass; and the nodes' mass */
-static void gxsp_edge_blocks(gxsp_system *system, const gxsp_chunk *chunk, double rate)
+static void gxsp_edge_blocks(gxsp_system *system, const gxsp_chunk *chunk)
 {
     gxsp_edges *edges = &system->edges;
     uint32_t b;
@@ -4878,11 +4897,11 @@ static void gxsp_edge_blocks(gxsp_system *system, const gxsp_chunk *chunk, doubl
             if (p == q)
                 continue;
             gxsp_block_couple(tangent, gxsp_block_general(chunk, b), gamma[p], gamma[q], block);
-            gxsp_block_mass(tangent, gxsp_block_masses(chunk, b), rate, pair, mass);
+            gxsp_block_mass(tangent, gxsp_block_inertias(chunk, b), pair, mass);
             gxsp_order_block(corner->node[p], corner->node[q], mass, block);
             gxsp_add_lanes(edges->element[b][at++], block, edges->block);
         }
-        gxsp_own_mass(edges, chunk, b, rate);
+        gxsp_own_mass(edges, chunk, b);
     }
 }
 
@@ -4971,7 +4990,7 @@ static void gxsp_coarse_node(gxsp_system *system, const uint32_t *copies, uint32
 }
 
 /* Level 1's matrix from the last linearisation. dirty: only the rows and columns of dirty nodes, whose blocks are 0; NULL: all */
-static void gxsp_coarse_elements(gxsp_system *system, double rate, const uint8_t *dirty)
+static void gxsp_coarse_elements(gxsp_system *system, const uint8_t *dirty)
 {
     gxsp_level *next = &system->levels[1];
     uint32_t c, i;
@@ -4979,7 +4998,7 @@ static void gxsp_coarse_elements(gxsp_system *system, double rate, const uint8_t
         const gxsp_chunk *chunk = &system->chunks[c];
         if (dirty && !gxsp_follows_dirty(system, chunk, dirty))
             continue;
-        gxsp_edge_blocks(system, chunk, rate);
+        gxsp_edge_blocks(system, chunk);
         gxsp_pairs_begin(system, chunk);
         gxsp_pairs_find(&system->pairs, next);
         for (i = 0; i < chunk->node_count; ++i)
@@ -5241,12 +5260,12 @@ static void gxsp_assemble_following(gxsp_system *system, uint32_t p, uint32_t q,
 }
 
 /* A block's elements, of which each lane's corner pair adds to one entry, or to those of its masters */
-static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, double rate)
+static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, uint32_t b)
 {
     gxsp_level *fine = &system->levels[0];
     const gxsp_corners *corner = &chunk->corners[b];
     const gxsp_tangent *tangent = &chunk->tangents[b];
-    const gxsp_mass *general = gxsp_block_masses(chunk, b);
+    const gxsp_inertia *inertia = gxsp_block_inertias(chunk, b);
     gxsp_singles gamma[4][3];
     int pair, l;
     for (l = 0; l < 4; ++l)
@@ -5258,7 +5277,7 @@ static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, ui
         for (l = 0; l < GXSP_LANES; ++l) {
             const uint32_t *copies = system->nodes + chunk->first_node, entry = system->fine[chunk->first_block + b].entry[pair][l];
             const uint32_t i = copies[corner->node[p][l]], j = copies[corner->node[q][l]];
-            const float mass = tangent->mass[l] * (p == q ? 2.0f : 1.0f) + (general ? (float)(rate * general->entry[pair][l]) : 0);
+            const float mass = inertia ? inertia->entry[pair][l] : tangent->mass[l] * (p == q ? 2.0f : 1.0f);
             float own[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0}, *to = entry == GXSP_NONE ? own : fine->block + 9 * (size_t)entry;
             gxsp_add_lane(block, l, entry != GXSP_NONE && i > j, mass, to);
             if (entry == GXSP_NONE)
@@ -5306,7 +5325,7 @@ static void gxsp_assemble(gxsp_system *system, double rate)
     memset(fine->block, 0, 9 * (size_t)fine->start[fine->n] * sizeof(float));
     for (c = 0; c < system->chunk_count; ++c)
         for (b = 0; b < system->chunks[c].block_count && !system->chunk_still[c]; ++b)
-            gxsp_assemble_block(system, &system->chunks[c], b, rate);
+            gxsp_assemble_block(system, &system->chunks[c], b);
     for (i = 0; i < fine->n && system->lumped_mass; ++i) {
         uint32_t a[4], p, q;
         float w[4];
@@ -5372,7 +5391,7 @@ static int gxsp_coarse_numbers(gxsp_system *system, double rate)
         gxsp_coarsen(fine, fine + 1, &system->pairs);
     else {
         memset(fine[1].block, 0, 9 * (size_t)fine[1].start[fine[1].n] * sizeof(float));
-        gxsp_coarse_elements(system, system->scale * rate, NULL);
+        gxsp_coarse_elements(system, NULL);
         if (system->lumped_mass)
             gxsp_coarse_lumped(system, system->scale * rate);
     }
@@ -6129,21 +6148,20 @@ static void gxsp_keep_blocks(const gxsp_level *before, gxsp_level *level, const 
 static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, const uint8_t *dirty)
 {
     gxsp_system *system = update->system;
-    const double rate = system->scale * system->coarse_rate;
     gxsp_pass pass;
     uint32_t c;
     gxsp_keep_blocks(before, &system->levels[1], dirty);
     memset(&pass, 0, sizeof pass);
     pass.system = system;
     pass.materials = system->damped;
-    pass.rate = rate;
+    pass.rate = system->scale * system->coarse_rate;
     pass.from = system->coarse_state;
     for (c = 0; c < system->chunk_count; ++c)
         if (gxsp_follows_dirty(system, &system->chunks[c], dirty)) {
             system->chunk_still[c] = 0;
             gxsp_task_linearise(&pass, c);
         }
-    gxsp_coarse_elements(system, rate, dirty);
+    gxsp_coarse_elements(system, dirty);
     return gxsp_lower_numbers(system, dirty);
 }
 
