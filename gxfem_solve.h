@@ -1710,6 +1710,9 @@ static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_REST
 
 /* >>element: passes over one block. Vectors of its corners: x[3 corner + axis][lane]. */
 
+/* Entries of gxs_element.mass */
+static const int gxsp_packed_mass[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
+
 /* G = sum (u_i - u_0) grad N_i, exactly 0 for translations */
 static void gxsp_block_gradient(const gxsp_rest *GXSP_RESTRICT rest, gxsp_lanes *GXSP_RESTRICT x, gxsp_lanes *GXSP_RESTRICT g)
 {
@@ -1765,13 +1768,14 @@ static void gxsp_block_inertia(const gxsp_rest *GXSP_RESTRICT rest, const gxsp_m
         }
 }
 
-/* y += (K + rate M) x, one lane after the other in registers; without general masses. apart: x of corners 1 ... 3 is what they have more
- * than corner 0, which callers know better than single precision could tell. */
-GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, int apart, gxsp_singles *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT y)
+/* y += (K + rate M) x, one lane after the other in registers. m: NULL where the tangent has the masses. apart: x of corners 1 ... 3 is what
+ * they have more than corner 0, which callers know better than single precision could tell. */
+GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, const gxsp_inertia *GXSP_RESTRICT m, int apart, gxsp_singles *GXSP_RESTRICT x,
+                                    gxsp_singles *GXSP_RESTRICT y)
 {
     int l;
     GXSP_EACH_LANE(l) {
-        const float m = b->mass[l], x0 = x[0][l], x1 = x[1][l], x2 = x[2][l];
+        const float x0 = x[0][l], x1 = x[1][l], x2 = x[2][l];
         const float o0 = apart ? 0 : x0, o1 = apart ? 0 : x1, o2 = apart ? 0 : x2;
         const float g0 = b->gradient[0][l], g1 = b->gradient[1][l], g2 = b->gradient[2][l], g3 = b->gradient[3][l],
                     g4 = b->gradient[4][l], g5 = b->gradient[5][l], g6 = b->gradient[6][l], g7 = b->gradient[7][l],
@@ -1804,11 +1808,27 @@ GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, int apa
         const float f0 = p0 * g0 + p1 * g1 + p2 * g2, f1 = p3 * g0 + p4 * g1 + p5 * g2, f2 = p6 * g0 + p7 * g1 + p8 * g2,
                     f3 = p0 * g3 + p1 * g4 + p2 * g5, f4 = p3 * g3 + p4 * g4 + p5 * g5, f5 = p6 * g3 + p7 * g4 + p8 * g5,
                     f6 = p0 * g6 + p1 * g7 + p2 * g8, f7 = p3 * g6 + p4 * g7 + p5 * g8, f8 = p6 * g6 + p7 * g7 + p8 * g8;
-        const float m0 = m * (a0 + b0 + c0 + 5 * x0), m1 = m * (a1 + b1 + c1 + 5 * x1), m2 = m * (a2 + b2 + c2 + 5 * x2);
-        y[0][l] += m0 - (f0 + f3 + f6), y[1][l] += m1 - (f1 + f4 + f7), y[2][l] += m2 - (f2 + f5 + f8);
-        y[3][l] += m0 + m * a0 + f0, y[4][l] += m1 + m * a1 + f1, y[5][l] += m2 + m * a2 + f2;
-        y[6][l] += m0 + m * b0 + f3, y[7][l] += m1 + m * b1 + f4, y[8][l] += m2 + m * b2 + f5;
-        y[9][l] += m0 + m * c0 + f6, y[10][l] += m1 + m * c1 + f7, y[11][l] += m2 + m * c2 + f8;
+        if (m) {
+            const float n0 = m->entry[0][l], n1 = m->entry[1][l], n2 = m->entry[2][l], n3 = m->entry[3][l], n4 = m->entry[4][l], n5 = m->entry[5][l],
+                        n6 = m->entry[6][l], n7 = m->entry[7][l], n8 = m->entry[8][l], n9 = m->entry[9][l];
+            const float o3 = apart ? x0 : 0, o4 = apart ? x1 : 0, o5 = apart ? x2 : 0;
+            const float x3 = x[3][l] + o3, x4 = x[4][l] + o4, x5 = x[5][l] + o5, x6 = x[6][l] + o3, x7 = x[7][l] + o4, x8 = x[8][l] + o5,
+                        x9 = x[9][l] + o3, x10 = x[10][l] + o4, x11 = x[11][l] + o5;
+            y[0][l] += n0 * x0 + n1 * x3 + n2 * x6 + n3 * x9 - (f0 + f3 + f6), y[1][l] += n0 * x1 + n1 * x4 + n2 * x7 + n3 * x10 - (f1 + f4 + f7),
+                y[2][l] += n0 * x2 + n1 * x5 + n2 * x8 + n3 * x11 - (f2 + f5 + f8);
+            y[3][l] += n1 * x0 + n4 * x3 + n5 * x6 + n6 * x9 + f0, y[4][l] += n1 * x1 + n4 * x4 + n5 * x7 + n6 * x10 + f1,
+                y[5][l] += n1 * x2 + n4 * x5 + n5 * x8 + n6 * x11 + f2;
+            y[6][l] += n2 * x0 + n5 * x3 + n7 * x6 + n8 * x9 + f3, y[7][l] += n2 * x1 + n5 * x4 + n7 * x7 + n8 * x10 + f4,
+                y[8][l] += n2 * x2 + n5 * x5 + n7 * x8 + n8 * x11 + f5;
+            y[9][l] += n3 * x0 + n6 * x3 + n8 * x6 + n9 * x9 + f6, y[10][l] += n3 * x1 + n6 * x4 + n8 * x7 + n9 * x10 + f7,
+                y[11][l] += n3 * x2 + n6 * x5 + n8 * x8 + n9 * x11 + f8;
+        } else {
+            const float n = b->mass[l], m0 = n * (a0 + b0 + c0 + 5 * x0), m1 = n * (a1 + b1 + c1 + 5 * x1), m2 = n * (a2 + b2 + c2 + 5 * x2);
+            y[0][l] += m0 - (f0 + f3 + f6), y[1][l] += m1 - (f1 + f4 + f7), y[2][l] += m2 - (f2 + f5 + f8);
+            y[3][l] += m0 + n * a0 + f0, y[4][l] += m1 + n * a1 + f1, y[5][l] += m2 + n * a2 + f2;
+            y[6][l] += m0 + n * b0 + f3, y[7][l] += m1 + n * b1 + f4, y[8][l] += m2 + n * b2 + f5;
+            y[9][l] += m0 + n * c0 + f6, y[10][l] += m1 + n * c1 + f7, y[11][l] += m2 + n * c2 + f8;
+        }
     }
 }
 
@@ -1841,29 +1861,32 @@ static void gxsp_general_product(const gxsp_tangent *b, const gxsp_general *h, i
         }
 }
 
-/* The same for either */
-static void gxsp_kind_product(gxs_material_kind kind, const gxsp_tangent *b, const gxsp_general *h, int apart, gxsp_singles *x, gxsp_singles *y)
+/* y += rate M x of masses that the tangent does not have. apart: as of gxsp_block_product */
+static void gxsp_inertia_product(const gxsp_inertia *m, int apart, gxsp_singles *x, gxsp_singles *y)
 {
-    if (kind == GXS_CUSTOM)
-        gxsp_general_product(b, h, apart, x, y);
-    else if (apart)
-        gxsp_block_product(b, 1, x, y);
-    else
-        gxsp_block_product(b, 0, x, y);
+    int i, j, r, l;
+    for (i = 0; i < 4; ++i)
+        for (j = 0; j < 4; ++j)
+            for (r = 0; r < 3; ++r)
+                GXSP_EACH_LANE(l) y[3 * i + r][l] += m->entry[gxsp_packed_mass[i][j]][l] * (x[3 * j + r][l] + (apart && j > 0 ? x[r][l] : 0));
 }
 
-/* y += rate M x of masses that the tangent does not have. apart: as of gxsp_block_product */
-GXSP_INLINE void gxsp_inertia_product(const gxsp_inertia *GXSP_RESTRICT m, int apart, gxsp_singles *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT y)
+/* The same for either */
+GXSP_INLINE void gxsp_kind_product(gxs_material_kind kind, const gxsp_tangent *b, const gxsp_inertia *m, const gxsp_general *h, int apart,
+                                   gxsp_singles *x, gxsp_singles *y)
 {
-    int r, l;
-    for (r = 0; r < 3; ++r)
-        GXSP_EACH_LANE(l) {
-            const float a = x[r][l], o = apart ? a : 0, b = x[3 + r][l] + o, c = x[6 + r][l] + o, d = x[9 + r][l] + o;
-            y[r][l] += m->entry[0][l] * a + m->entry[1][l] * b + m->entry[2][l] * c + m->entry[3][l] * d;
-            y[3 + r][l] += m->entry[1][l] * a + m->entry[4][l] * b + m->entry[5][l] * c + m->entry[6][l] * d;
-            y[6 + r][l] += m->entry[2][l] * a + m->entry[5][l] * b + m->entry[7][l] * c + m->entry[8][l] * d;
-            y[9 + r][l] += m->entry[3][l] * a + m->entry[6][l] * b + m->entry[8][l] * c + m->entry[9][l] * d;
-        }
+    if (kind == GXS_CUSTOM) {
+        gxsp_general_product(b, h, apart, x, y);
+        if (m)
+            gxsp_inertia_product(m, apart, x, y);
+    } else if (m && apart)
+        gxsp_block_product(b, m, 1, x, y);
+    else if (m)
+        gxsp_block_product(b, m, 0, x, y);
+    else if (apart)
+        gxsp_block_product(b, NULL, 1, x, y);
+    else
+        gxsp_block_product(b, NULL, 0, x, y);
 }
 
 static void gxsp_general_couple(const gxsp_general *general, gxsp_singles *p, gxsp_singles *q, gxsp_singles *block)
@@ -2401,9 +2424,6 @@ static gxsp_sorted *gxsp_order_elements(const gxsp_system *system, const gxs_mod
     }
     return gxsp_sort(sorted, other, count);
 }
-
-/* Entries of gxs_element.mass */
-static const int gxsp_packed_mass[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
 
 static const uint8_t gxsp_own_order[4] = {0, 1, 2, 3};
 
@@ -4169,13 +4189,10 @@ static void gxsp_task_product(void *context, size_t index)
     memset(out, 0, chunk->node_count * sizeof *out);
     memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; ++b) {
-        const gxsp_inertia *inertia = gxsp_block_inertias(chunk, b);
         const gxsp_chunk *next = gxsp_block_ahead(system, index, b, &further);
         gxsp_fetch(&next->tangents[further], sizeof(gxsp_tangent));
         gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
-        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_general(chunk, b), 0, from, to);
-        if (inertia)
-            gxsp_inertia_product(inertia, 0, from, to);
+        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_inertias(chunk, b), gxsp_block_general(chunk, b), 0, from, to);
         gxsp_block_scatter(chunk, b, to, out);
     }
 }
@@ -4353,12 +4370,9 @@ static void gxsp_task_apply(void *context, size_t index)
     memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; ++b) {
         const gxsp_chunk *next = gxsp_block_ahead(system, index, b, &further);
-        const gxsp_inertia *inertia = gxsp_block_inertias(chunk, b);
         gxsp_fetch(&next->tangents[further], sizeof(gxsp_tangent));
         gxsp_block_gather_doubles(chunk, b, in, from);
-        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_general(chunk, b), 1, from, to);
-        if (inertia)
-            gxsp_inertia_product(inertia, 1, from, to);
+        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_inertias(chunk, b), gxsp_block_general(chunk, b), 1, from, to);
         gxsp_block_scatter(chunk, b, to, out);
     }
 }
@@ -8395,7 +8409,7 @@ GXFEM_API gx_result gxs_model_hessian_product(const gxs_model *model, const doub
         for (k = 0; k < 12; ++k)
             GXSP_EACH_LANE(l) from[k][l] = (float)(x[k][l] - x[k % 3][l]); /* of translations exactly 0 */
         memset(to, 0, sizeof to);
-        gxsp_kind_product(group.kind, &tangent, &general, 1, from, to);
+        gxsp_kind_product(group.kind, &tangent, NULL, &general, 1, from, to);
         for (k = 0; k < 12; ++k)
             GXSP_EACH_LANE(l) x[k][l] = (double)to[k][l];
         gxsp_group_scatter(&group, x, product);
@@ -8478,7 +8492,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
     for (k = 0; k < 3; ++k)
         for (c = 0; c < 3; ++c)
             from[3 + 3 * c + k][0] = (float)direction[3 * k + c];
-    gxsp_kind_product(material->kind, &tangent, &general, 1, from, to);
+    gxsp_kind_product(material->kind, &tangent, NULL, &general, 1, from, to);
     for (k = 0; k < 3; ++k)
         for (c = 0; c < 3; ++c)
             product[3 * k + c] = (double)to[3 + 3 * c + k][0];
