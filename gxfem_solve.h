@@ -1749,7 +1749,7 @@ static void gxsp_block_inertia(const gxsp_rest *GXSP_RESTRICT rest, const gxsp_m
 {
     int r, l;
     GXSP_EACH_LANE(l) energy[l] = 0;
-    for (r = 0; r < 3; ++r)
+    for (r = 0; !general && r < 3; ++r)
         GXSP_EACH_LANE(l) {
             const double m = rate * rest->mass[l], a = x[r][l], b = x[3 + r][l], c = x[6 + r][l], d = x[9 + r][l];
             const double sum = a + b + c + d, fa = m * (sum + a), fb = m * (sum + b), fc = m * (sum + c), fd = m * (sum + d);
@@ -2027,19 +2027,43 @@ static const gxsp_chunk *gxsp_block_ahead(const gxsp_system *system, size_t inde
     return chunk;
 }
 
-/* x of a block's corners; of those that are not fresh it is there from the block before */
-static void gxsp_block_load(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, const double *x, gxsp_lanes *GXSP_RESTRICT corners)
+/* x of a chunk's nodes, less that of origin unless it is NULL: x 3, and one more number */
+static void gxsp_chunk_load(const gxsp_system *system, const gxsp_chunk *chunk, const double *x, const double *origin, double *GXSP_RESTRICT to)
 {
     const uint32_t *copies = system->nodes + chunk->first_node;
+    size_t i, c;
+    for (i = 0; i < chunk->node_count; ++i)
+        for (c = 0; c < 3; ++c)
+            to[3 * i + c] = x[3 * (size_t)copies[i] + c] - (origin ? origin[3 * (size_t)copies[i] + c] : 0);
+    to[3 * i] = 0;
+}
+
+/* Three numbers of each of four nodes to three arrays; behind those of the last node there is one more. */
+static inline void gxsp_load_four(const uint16_t *node, const double *x, double *to0, double *to1, double *to2)
+{
+#if defined(GXSP_SHUFFLES)
+    const gxsp_four_doubles a = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[0]), b = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[1]),
+                            c = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[2]), d = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[3]);
+    const gxsp_four_doubles p = __builtin_shufflevector(a, b, 0, 4, 2, 6), q = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+    const gxsp_four_doubles r = __builtin_shufflevector(a, b, 1, 5, 3, 7), s = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    *(gxsp_four_doubles *)to0 = __builtin_shufflevector(p, q, 0, 1, 4, 5);
+    *(gxsp_four_doubles *)to1 = __builtin_shufflevector(r, s, 0, 1, 4, 5);
+    *(gxsp_four_doubles *)to2 = __builtin_shufflevector(p, q, 2, 3, 6, 7);
+#else
+    int l;
+    for (l = 0; l < 4; ++l)
+        to0[l] = x[3 * (size_t)node[l]], to1[l] = x[3 * (size_t)node[l] + 1], to2[l] = x[3 * (size_t)node[l] + 2];
+#endif
+}
+
+/* x of a block's corners from that of the chunk's nodes; of those that are not fresh it is there from the block before */
+static void gxsp_block_load(const gxsp_chunk *chunk, uint32_t b, const double *GXSP_RESTRICT x, gxsp_lanes *GXSP_RESTRICT corners)
+{
     const gxsp_corners *corner = &chunk->corners[b];
     int i, l;
     for (i = 0; i < 4; ++i)
-        for (l = 0; l < GXSP_LANES && chunk->fresh[b] >> i & 1; ++l) {
-            const double *from = x + 3 * (size_t)copies[corner->node[i][l]];
-            corners[3 * i][l] = from[0];
-            corners[3 * i + 1][l] = from[1];
-            corners[3 * i + 2][l] = from[2];
-        }
+        for (l = 0; l < GXSP_LANES && chunk->fresh[b] >> i & 1; l += 4)
+            gxsp_load_four(corner->node[i] + l, x, corners[3 * i] + l, corners[3 * i + 1] + l, corners[3 * i + 2] + l);
 }
 
 /* Parameters of a block's materials */
@@ -2167,8 +2191,9 @@ static void gxsp_task_state(void *context, size_t index)
     const gxsp_chunk *chunk = &system->chunks[index];
     double *slots = &system->slots[chunk->first_node][0];
     uint32_t b, further;
-    int k, l, inertia;
-    gxsp_lanes x[12], led[12], target[12], forces[12];
+    int l, inertia;
+    double at[3 * 4 * GXSP_CHUNK + 1], other[3 * 4 * GXSP_CHUNK + 1];
+    gxsp_lanes x[12], led[12], forces[12];
     if (gxsp_chunk_settled(system, chunk))
         return;
     for (b = 0; b < chunk->part_count; ++b)
@@ -2177,6 +2202,9 @@ static void gxsp_task_state(void *context, size_t index)
     if (system->chunk_still[index])
         return;
     inertia = pass->inertia && gxsp_accelerates(system, chunk, pass->from);
+    gxsp_chunk_load(system, chunk, pass->from, NULL, at);
+    if (inertia || pass->turned) /* never both: what is turned has no inertia */
+        gxsp_chunk_load(system, chunk, inertia ? pass->from : pass->turned, inertia ? system->target : NULL, other);
     memset(forces, 0, sizeof forces);
     for (b = 0; b < chunk->block_count; ++b) {
         const gxsp_rest *rest = &chunk->rest[b];
@@ -2184,13 +2212,13 @@ static void gxsp_task_state(void *context, size_t index)
         gxsp_lanes ahead[9], energies[3];
         gxsp_state s;
         gxsp_fetch(&next->rest[further], sizeof(gxsp_rest));
-        gxsp_block_load(system, chunk, b, pass->from, x);
+        gxsp_block_load(chunk, b, at, x);
+        if (inertia || pass->turned)
+            gxsp_block_load(chunk, b, other, led);
         gxsp_block_parameters(pass->materials, rest, &s);
         gxsp_block_gradient(rest, x, s.g);
-        if (pass->turned) {
-            gxsp_block_load(system, chunk, b, pass->turned, led);
+        if (pass->turned)
             gxsp_block_gradient(rest, led, ahead);
-        }
         if (pass->nudge && chunk->kind != GXS_LINEAR && chunk->kind != GXS_CUSTOM)
             gxsp_nudge(s.g);
         gxsp_material_state(chunk->kind, &s);
@@ -2203,11 +2231,7 @@ static void gxsp_task_state(void *context, size_t index)
             energies[2][l] = rest->weight[l] * s.size[l];
         }
         if (inertia) {
-            gxsp_lanes moved[12];
-            gxsp_block_load(system, chunk, b, system->target, target);
-            for (k = 0; k < 12; ++k)
-                GXSP_EACH_LANE(l) moved[k][l] = x[k][l] - target[k][l];
-            gxsp_block_inertia(rest, gxsp_block_masses(chunk, b), pass->rate, moved, forces, energies[1]);
+            gxsp_block_inertia(rest, gxsp_block_masses(chunk, b), pass->rate, led, forces, energies[1]);
             for (l = 0; l < GXSP_LANES; ++l)
                 energies[2][l] += energies[1][l];
         }
@@ -4531,6 +4555,7 @@ static void gxsp_task_linearise(void *context, size_t index)
     gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->chunks[index];
     float *slots = (float *)(void *)system->slots[chunk->first_node];
+    double at[3 * 4 * GXSP_CHUNK + 1];
     gxsp_lanes x[12];
     gxsp_singles own[24];
     uint32_t b, k, blocks, further;
@@ -4540,6 +4565,7 @@ static void gxsp_task_linearise(void *context, size_t index)
         return;
     memset(slots, 0, 6 * (size_t)chunk->node_count * sizeof *slots);
     memset(own, 0, sizeof own);
+    gxsp_chunk_load(system, chunk, pass->from, NULL, at);
     for (b = 0; b < chunk->block_count; b += blocks) { /* two at a time */
         gxsp_state s[2];
         gxsp_svd of[2];
@@ -4547,7 +4573,7 @@ static void gxsp_task_linearise(void *context, size_t index)
         for (k = 0; k < blocks; ++k) {
             const gxsp_chunk *next = gxsp_block_ahead(system, index, b + k, &further);
             gxsp_fetch(&next->rest[further], sizeof(gxsp_rest));
-            gxsp_block_load(system, chunk, b + k, pass->from, x);
+            gxsp_block_load(chunk, b + k, at, x);
             gxsp_block_parameters(pass->materials, &chunk->rest[b + k], &s[k]);
             gxsp_block_gradient(&chunk->rest[b + k], x, s[k].g);
         }
