@@ -471,6 +471,9 @@ extern "C" {
 #define GXSP_COLLAPSED 1e-4
 #define GXSP_NUDGE 0.1
 
+/* How many nodes or slots ahead of themselves passes ask for what is in no order in memory */
+#define GXSP_AHEAD 64
+
 /* Copies that one task of a pass over copies takes, and how many sums it may make. */
 #define GXSP_RANGE 512
 #define GXSP_SUMS 6
@@ -921,9 +924,10 @@ typedef struct gxsp_system {
     gxsp_material *materials;   /* material_count: as given */
     gxsp_material *damped;      /* material_count: what the step under way works with: Rayleigh damping makes them stiffer */
     gxsp_chunk *chunks;
-    uint32_t *nodes;        /* slot_count: the copy of each node of each chunk */
+    uint32_t *nodes;        /* slot_count: the copy of each node of each chunk; and GXSP_AHEAD more, any copies */
     uint32_t *copy_start;   /* n + 1, into copy_slot */
-    uint32_t *copy_slot;    /* slot_count: a copy's slots, in the order of chunks: sums over them are the same for any number of threads */
+    uint32_t *copy_slot;    /* slot_count: a copy's slots, in the order of chunks: sums over them are the same for any number of threads;
+                               and GXSP_AHEAD more, any slots */
     uint16_t *slot_root;    /* slot_count: number in the chunk of the least node that elements of the chunk join with this one */
     int roots_known;        /* slot_root is there */
     double (*slots)[3];     /* slot_count: what a chunk's pass has for each node: 3 doubles, 4 floats (of products), or 6 */
@@ -2032,9 +2036,11 @@ static void gxsp_chunk_load(const gxsp_system *system, const gxsp_chunk *chunk, 
 {
     const uint32_t *copies = system->nodes + chunk->first_node;
     size_t i, c;
-    for (i = 0; i < chunk->node_count; ++i)
+    for (i = 0; i < chunk->node_count; ++i) {
+        gxsp_fetch(x + 3 * (size_t)copies[i + GXSP_AHEAD], 3 * sizeof *x);
         for (c = 0; c < 3; ++c)
             to[3 * i + c] = x[3 * (size_t)copies[i] + c] - (origin ? origin[3 * (size_t)copies[i] + c] : 0);
+    }
     to[3 * i] = 0;
 }
 
@@ -2252,6 +2258,7 @@ static void gxsp_task_sum(void *context, size_t index)
         uint32_t s;
         for (s = system->copy_start[i]; s < system->copy_start[i + 1]; ++s) {
             const double *from = slots + 3 * (size_t)system->copy_slot[s];
+            gxsp_fetch(slots + 3 * (size_t)system->copy_slot[s + GXSP_AHEAD], 3 * sizeof *slots);
             x += from[0], y += from[1], z += from[2];
         }
         pass->sum[3 * i] = x, pass->sum[3 * i + 1] = y, pass->sum[3 * i + 2] = z;
@@ -2847,9 +2854,9 @@ static void gxsp_chunks_make(gxsp_system *system, gxsp_pool *scratch, const gxs_
     if (system->pool.failed)
         return;
     gxsp_fill_chunks(system, model, sorted, &numbers);
-    system->copy_slot = (uint32_t *)gxsp_take(&system->pool, system->slot_count, sizeof(uint32_t));
+    system->copy_slot = (uint32_t *)gxsp_take(&system->pool, system->slot_count + GXSP_AHEAD, sizeof(uint32_t));
     system->slot_root = (uint16_t *)gxsp_take(&system->pool, system->slot_count, sizeof(uint16_t));
-    nodes = (uint32_t *)gxsp_take(&system->pool, system->slot_count, sizeof(uint32_t));
+    nodes = (uint32_t *)gxsp_take(&system->pool, system->slot_count + GXSP_AHEAD, sizeof(uint32_t));
     if (system->pool.failed)
         return;
     memcpy(nodes, system->nodes, system->slot_count * sizeof(uint32_t));
@@ -4236,6 +4243,7 @@ static void gxsp_task_product_sum(void *context, size_t index)
         uint32_t s;
         for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->still[i]; ++s) {
             const float *from = slots[system->copy_slot[s]];
+            gxsp_fetch(slots[system->copy_slot[s + GXSP_AHEAD]], sizeof *slots);
             x += from[0], y += from[1], z += from[2];
         }
         if (right)
@@ -5871,8 +5879,8 @@ static void gxsp_slots_room(gxsp_system *system, size_t count)
     gxsp_pool *pool = &system->pool;
     if (count > system->slot_room) {
         system->slot_room = count + count / 8;
-        system->nodes = (uint32_t *)gxsp_retake(pool, system->nodes, 0, system->slot_room, sizeof(uint32_t));
-        system->copy_slot = (uint32_t *)gxsp_retake(pool, system->copy_slot, 0, system->slot_room, sizeof(uint32_t));
+        system->nodes = (uint32_t *)gxsp_retake(pool, system->nodes, 0, system->slot_room + GXSP_AHEAD, sizeof(uint32_t));
+        system->copy_slot = (uint32_t *)gxsp_retake(pool, system->copy_slot, 0, system->slot_room + GXSP_AHEAD, sizeof(uint32_t));
         system->slots = (double(*)[3])gxsp_retake(pool, system->slots, 0, system->slot_room, sizeof *system->slots);
         system->slot_root = (uint16_t *)gxsp_retake(pool, system->slot_root, 0, system->slot_room, sizeof(uint16_t));
     }
@@ -8545,6 +8553,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_ASLEEP
 #undef GXSP_COLLAPSED
 #undef GXSP_NUDGE
+#undef GXSP_AHEAD
 #undef GXSP_RANGE
 #undef GXSP_SPACING
 #undef GXSP_MULTIGRID_FROM
