@@ -675,15 +675,19 @@ static double gxp_seconds(const gx_body *body) { return body->clock ? body->cloc
 /* >>tree: axis-aligned boxes over the elements, median split ------------------------------------------------------------- */
 
 static void gxp_box_of(const gx_body *body, gxp_box *box) {
+    double low[3], high[3];
     uint32_t i;
     int k, n;
     for (i = box->first; i < box->first + box->count; i++) for (n = 0; n < 4; n++) {
         const double *x = body->positions + 3 * (size_t)body->complex->elements[4 * (size_t)body->box_elements[i] + (size_t)n];
+        for (k = 0; k < 3 && i == box->first && n == 0; k++) low[k] = high[k] = x[k];
         for (k = 0; k < 3; k++) {
-            if ((i == box->first && n == 0) || x[k] < box->low[k]) box->low[k] = x[k];
-            if ((i == box->first && n == 0) || x[k] > box->high[k]) box->high[k] = x[k];
+            low[k] = x[k] < low[k] ? x[k] : low[k];
+            high[k] = x[k] > high[k] ? x[k] : high[k];
         }
     }
+    memcpy(box->low, low, sizeof low);
+    memcpy(box->high, high, sizeof high);
 }
 
 static double gxp_element_key(const gx_body *body, uint32_t element, int axis) {

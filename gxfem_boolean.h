@@ -2083,14 +2083,6 @@ GXFEM_API gx_result gxb_complex_add_plane(gxb_complex *cx, gxb_triangle *t) {
 
 typedef struct gxbp_key { uint32_t node[3], element, local; } gxbp_key;
 
-static int gxbp_compare_keys(const void *a, const void *b) {
-    const gxbp_key *p = (const gxbp_key *)a, *q = (const gxbp_key *)b;
-    int k;
-    for (k = 0; k < 3; k++) if (p->node[k] != q->node[k]) return p->node[k] < q->node[k] ? -1 : 1;
-    if (p->element != q->element) return p->element < q->element ? -1 : 1;
-    return 0;
-}
-
 static const uint8_t gxbp_face_nodes[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};     /* outward, opposite to node k */
 static const uint8_t gxbp_edge_nodes[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 
@@ -2109,9 +2101,27 @@ static int gxbp_face_is_even(const uint32_t *element, uint32_t face) {
     return (a < b) == ((b < c) == (a < c));
 }
 
+/* Keys of the mesh's faces or edges, with room for as many again, and for one count per node and one more */
+typedef struct gxbp_keys { gxbp_key *key, *other; uint32_t *place; size_t nodes; } gxbp_keys;
+
+/* Sorts by the first digits nodes, last first, each time without changing the order of what is equal. */
+static void gxbp_sort_keys(gxbp_keys *keys, size_t count, int digits) {
+    size_t i;
+    while (digits-- > 0) {
+        gxbp_key *sorted = keys->other;
+        memset(keys->place, 0, (keys->nodes + 1) * sizeof *keys->place);
+        for (i = 0; i < count; i++) keys->place[keys->key[i].node[digits] + 1]++;
+        for (i = 0; i < keys->nodes; i++) keys->place[i + 1] += keys->place[i];
+        for (i = 0; i < count; i++) sorted[keys->place[keys->key[i].node[digits]]++] = keys->key[i];
+        keys->other = keys->key;
+        keys->key = sorted;
+    }
+}
+
 /* Numbers the faces in the order of their sorted nodes. */
-static gx_result gxbp_number_faces(gxb_complex *cx, gxbp_key *keys, size_t *bad) {
+static gx_result gxbp_number_faces(gxb_complex *cx, gxbp_keys *all, size_t *bad) {
     const size_t count = (size_t)cx->element_count * 4;
+    gxbp_key *keys = all->key;
     size_t i;
     uint32_t e, k, j;
     for (e = 0, i = 0; e < cx->element_count; e++) for (k = 0; k < 4; k++, i++) {
@@ -2119,7 +2129,8 @@ static gx_result gxbp_number_faces(gxb_complex *cx, gxbp_key *keys, size_t *bad)
         gxbp_sort3(keys[i].node);
         keys[i].element = e; keys[i].local = k;
     }
-    qsort(keys, count, sizeof *keys, gxbp_compare_keys);
+    gxbp_sort_keys(all, count, 3);
+    keys = all->key;
     cx->face_count = 0;
     for (i = 0; i < count; i++) {
         const int again = i > 0 && gxbp_same_nodes(&keys[i], &keys[i - 1]);
@@ -2135,8 +2146,9 @@ static gx_result gxbp_number_faces(gxb_complex *cx, gxbp_key *keys, size_t *bad)
     return GX_OK;
 }
 
-static void gxbp_number_edges(gxb_complex *cx, gxbp_key *keys) {
+static void gxbp_number_edges(gxb_complex *cx, gxbp_keys *all) {
     const size_t count = (size_t)cx->element_count * 6;
+    gxbp_key *keys = all->key;
     size_t i;
     uint32_t e, k;
     for (e = 0, i = 0; e < cx->element_count; e++) for (k = 0; k < 6; k++, i++) {
@@ -2144,7 +2156,8 @@ static void gxbp_number_edges(gxb_complex *cx, gxbp_key *keys) {
         keys[i].node[0] = a < b ? a : b; keys[i].node[1] = a < b ? b : a; keys[i].node[2] = 0;
         keys[i].element = e; keys[i].local = k;
     }
-    qsort(keys, count, sizeof *keys, gxbp_compare_keys);
+    gxbp_sort_keys(all, count, 2);
+    keys = all->key;
     for (i = 0, cx->mesh_edge_count = 0; i < count; i++) {
         if (i == 0 || !gxbp_same_nodes(&keys[i], &keys[i - 1])) cx->mesh_edge_count++;
         cx->element_edges[6 * keys[i].element + keys[i].local] = cx->mesh_edge_count - 1;
@@ -2242,9 +2255,10 @@ static size_t gxbp_table_words(size_t elements) { return elements * (4 + 4 + 6 +
 
 static gx_result gxbp_fill_complex(gxb_complex *cx, const gxb_mesh *mesh, uint32_t *table, size_t *bad) {
     const size_t n = mesh->element_count;
-    const size_t key_bytes = n * 6 * sizeof(gxbp_key);
+    const size_t key_bytes = n * 12 * sizeof(gxbp_key) + (mesh->node_count + 1) * sizeof(uint32_t);
     gx_result result = gxbp_choose_frame(cx, mesh, bad);
-    gxbp_key *keys;
+    gxbp_key *memory;
+    gxbp_keys keys;
     memcpy(table, mesh->elements, n * 4 * sizeof *table);
     cx->elements = table;
     cx->element_faces = table + 4 * n; cx->element_edges = table + 8 * n; cx->face_elements = table + 14 * n;
@@ -2252,11 +2266,12 @@ static gx_result gxbp_fill_complex(gxb_complex *cx, const gxb_mesh *mesh, uint32
     if (result == GX_OK) result = gxbp_check_elements(cx, mesh, bad);
     if (result == GX_OK) result = gxbp_add_nodes(cx, mesh, bad);
     if (result != GX_OK) return result;
-    keys = (gxbp_key *)gxbp_allocate(&cx->allocator, key_bytes);
-    if (keys == NULL) return GX_ERROR_MEMORY;
-    result = gxbp_number_faces(cx, keys, bad);
-    if (result == GX_OK) gxbp_number_edges(cx, keys);
-    gxbp_release(&cx->allocator, keys, key_bytes);
+    memory = (gxbp_key *)gxbp_allocate(&cx->allocator, key_bytes);
+    if (memory == NULL) return GX_ERROR_MEMORY;
+    keys.key = memory; keys.other = memory + 6 * n; keys.place = (uint32_t *)(memory + 12 * n); keys.nodes = mesh->node_count;
+    result = gxbp_number_faces(cx, &keys, bad);
+    if (result == GX_OK) gxbp_number_edges(cx, &keys);
+    gxbp_release(&cx->allocator, memory, key_bytes);
     return result == GX_OK ? gxbp_make_leaves(cx) : result;
 }
 
@@ -2265,7 +2280,7 @@ static GXBP_APART gx_result gxbp_fail(gx_failure *failure, gx_result result, siz
     return result;
 }
 
-GXFEM_API GXBP_RARE gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator *allocator, gxb_complex **complex,
+GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator *allocator, gxb_complex **complex,
                                                  gx_failure *failure) {
     gx_allocator none;
     gxb_complex *cx;

@@ -471,6 +471,9 @@ extern "C" {
 #define GXSP_COLLAPSED 1e-4
 #define GXSP_NUDGE 0.1
 
+/* How many nodes or slots ahead of themselves passes ask for what is in no order in memory */
+#define GXSP_AHEAD 64
+
 /* Copies that one task of a pass over copies takes, and how many sums it may make. */
 #define GXSP_RANGE 512
 #define GXSP_SUMS 6
@@ -767,6 +770,11 @@ typedef struct gxsp_tangent {
     float mass[GXSP_LANES];        /* gxsp_rest.mass x rate, kg/s2 */
 } gxsp_tangent;
 
+/* Masses of a block that gxsp_rest does not have, for products: gxsp_mass x rate, kg/s2 */
+typedef struct gxsp_inertia {
+    float entry[10][GXSP_LANES];
+} gxsp_inertia;
+
 /* Projected Hessian of a block of GXS_CUSTOM, which has no frame (U and V are 1): weight x dP_i/dF_j, upper triangle by rows; J */
 typedef struct gxsp_general {
     float hessian[45][GXSP_LANES];
@@ -789,6 +797,7 @@ typedef struct gxsp_chunk {
     uint8_t *fresh;                  /* block_count + 1: bit i: corner i is not the one of the block before, in each lane; at the end all */
     gxsp_tangent *tangents;
     gxsp_mass *masses;               /* NULL: gxsp_rest has them all */
+    gxsp_inertia *inertias;          /* NULL: gxsp_tangent has them all */
     gxsp_general *generals;          /* of GXS_CUSTOM; NULL: gxsp_tangent has the Hessians */
     uint32_t *groups;                /* block_count x GXSP_LANES: group of the element in each lane; GXSP_NONE: there is none */
     uint32_t first_block, block_count; /* blocks are counted through all chunks */
@@ -915,9 +924,10 @@ typedef struct gxsp_system {
     gxsp_material *materials;   /* material_count: as given */
     gxsp_material *damped;      /* material_count: what the step under way works with: Rayleigh damping makes them stiffer */
     gxsp_chunk *chunks;
-    uint32_t *nodes;        /* slot_count: the copy of each node of each chunk */
+    uint32_t *nodes;        /* slot_count: the copy of each node of each chunk; and GXSP_AHEAD more, any copies */
     uint32_t *copy_start;   /* n + 1, into copy_slot */
-    uint32_t *copy_slot;    /* slot_count: a copy's slots, in the order of chunks: sums over them are the same for any number of threads */
+    uint32_t *copy_slot;    /* slot_count: a copy's slots, in the order of chunks: sums over them are the same for any number of threads;
+                               and GXSP_AHEAD more, any slots */
     uint16_t *slot_root;    /* slot_count: number in the chunk of the least node that elements of the chunk join with this one */
     int roots_known;        /* slot_root is there */
     double (*slots)[3];     /* slot_count: what a chunk's pass has for each node: 3 doubles, 4 floats (of products), or 6 */
@@ -1704,6 +1714,9 @@ static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_REST
 
 /* >>element: passes over one block. Vectors of its corners: x[3 corner + axis][lane]. */
 
+/* Entries of gxs_element.mass */
+static const int gxsp_packed_mass[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
+
 /* G = sum (u_i - u_0) grad N_i, exactly 0 for translations */
 static void gxsp_block_gradient(const gxsp_rest *GXSP_RESTRICT rest, gxsp_lanes *GXSP_RESTRICT x, gxsp_lanes *GXSP_RESTRICT g)
 {
@@ -1740,7 +1753,7 @@ static void gxsp_block_inertia(const gxsp_rest *GXSP_RESTRICT rest, const gxsp_m
 {
     int r, l;
     GXSP_EACH_LANE(l) energy[l] = 0;
-    for (r = 0; r < 3; ++r)
+    for (r = 0; !general && r < 3; ++r)
         GXSP_EACH_LANE(l) {
             const double m = rate * rest->mass[l], a = x[r][l], b = x[3 + r][l], c = x[6 + r][l], d = x[9 + r][l];
             const double sum = a + b + c + d, fa = m * (sum + a), fb = m * (sum + b), fc = m * (sum + c), fd = m * (sum + d);
@@ -1759,13 +1772,14 @@ static void gxsp_block_inertia(const gxsp_rest *GXSP_RESTRICT rest, const gxsp_m
         }
 }
 
-/* y += (K + rate M) x, one lane after the other in registers; without general masses. apart: x of corners 1 ... 3 is what they have more
- * than corner 0, which callers know better than single precision could tell. */
-GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, int apart, gxsp_singles *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT y)
+/* y += (K + rate M) x, one lane after the other in registers. m: NULL where the tangent has the masses. apart: x of corners 1 ... 3 is what
+ * they have more than corner 0, which callers know better than single precision could tell. */
+GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, const gxsp_inertia *GXSP_RESTRICT m, int apart, gxsp_singles *GXSP_RESTRICT x,
+                                    gxsp_singles *GXSP_RESTRICT y)
 {
     int l;
     GXSP_EACH_LANE(l) {
-        const float m = b->mass[l], x0 = x[0][l], x1 = x[1][l], x2 = x[2][l];
+        const float x0 = x[0][l], x1 = x[1][l], x2 = x[2][l];
         const float o0 = apart ? 0 : x0, o1 = apart ? 0 : x1, o2 = apart ? 0 : x2;
         const float g0 = b->gradient[0][l], g1 = b->gradient[1][l], g2 = b->gradient[2][l], g3 = b->gradient[3][l],
                     g4 = b->gradient[4][l], g5 = b->gradient[5][l], g6 = b->gradient[6][l], g7 = b->gradient[7][l],
@@ -1798,11 +1812,27 @@ GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, int apa
         const float f0 = p0 * g0 + p1 * g1 + p2 * g2, f1 = p3 * g0 + p4 * g1 + p5 * g2, f2 = p6 * g0 + p7 * g1 + p8 * g2,
                     f3 = p0 * g3 + p1 * g4 + p2 * g5, f4 = p3 * g3 + p4 * g4 + p5 * g5, f5 = p6 * g3 + p7 * g4 + p8 * g5,
                     f6 = p0 * g6 + p1 * g7 + p2 * g8, f7 = p3 * g6 + p4 * g7 + p5 * g8, f8 = p6 * g6 + p7 * g7 + p8 * g8;
-        const float m0 = m * (a0 + b0 + c0 + 5 * x0), m1 = m * (a1 + b1 + c1 + 5 * x1), m2 = m * (a2 + b2 + c2 + 5 * x2);
-        y[0][l] += m0 - (f0 + f3 + f6), y[1][l] += m1 - (f1 + f4 + f7), y[2][l] += m2 - (f2 + f5 + f8);
-        y[3][l] += m0 + m * a0 + f0, y[4][l] += m1 + m * a1 + f1, y[5][l] += m2 + m * a2 + f2;
-        y[6][l] += m0 + m * b0 + f3, y[7][l] += m1 + m * b1 + f4, y[8][l] += m2 + m * b2 + f5;
-        y[9][l] += m0 + m * c0 + f6, y[10][l] += m1 + m * c1 + f7, y[11][l] += m2 + m * c2 + f8;
+        if (m) {
+            const float n0 = m->entry[0][l], n1 = m->entry[1][l], n2 = m->entry[2][l], n3 = m->entry[3][l], n4 = m->entry[4][l], n5 = m->entry[5][l],
+                        n6 = m->entry[6][l], n7 = m->entry[7][l], n8 = m->entry[8][l], n9 = m->entry[9][l];
+            const float o3 = apart ? x0 : 0, o4 = apart ? x1 : 0, o5 = apart ? x2 : 0;
+            const float x3 = x[3][l] + o3, x4 = x[4][l] + o4, x5 = x[5][l] + o5, x6 = x[6][l] + o3, x7 = x[7][l] + o4, x8 = x[8][l] + o5,
+                        x9 = x[9][l] + o3, x10 = x[10][l] + o4, x11 = x[11][l] + o5;
+            y[0][l] += n0 * x0 + n1 * x3 + n2 * x6 + n3 * x9 - (f0 + f3 + f6), y[1][l] += n0 * x1 + n1 * x4 + n2 * x7 + n3 * x10 - (f1 + f4 + f7),
+                y[2][l] += n0 * x2 + n1 * x5 + n2 * x8 + n3 * x11 - (f2 + f5 + f8);
+            y[3][l] += n1 * x0 + n4 * x3 + n5 * x6 + n6 * x9 + f0, y[4][l] += n1 * x1 + n4 * x4 + n5 * x7 + n6 * x10 + f1,
+                y[5][l] += n1 * x2 + n4 * x5 + n5 * x8 + n6 * x11 + f2;
+            y[6][l] += n2 * x0 + n5 * x3 + n7 * x6 + n8 * x9 + f3, y[7][l] += n2 * x1 + n5 * x4 + n7 * x7 + n8 * x10 + f4,
+                y[8][l] += n2 * x2 + n5 * x5 + n7 * x8 + n8 * x11 + f5;
+            y[9][l] += n3 * x0 + n6 * x3 + n8 * x6 + n9 * x9 + f6, y[10][l] += n3 * x1 + n6 * x4 + n8 * x7 + n9 * x10 + f7,
+                y[11][l] += n3 * x2 + n6 * x5 + n8 * x8 + n9 * x11 + f8;
+        } else {
+            const float n = b->mass[l], m0 = n * (a0 + b0 + c0 + 5 * x0), m1 = n * (a1 + b1 + c1 + 5 * x1), m2 = n * (a2 + b2 + c2 + 5 * x2);
+            y[0][l] += m0 - (f0 + f3 + f6), y[1][l] += m1 - (f1 + f4 + f7), y[2][l] += m2 - (f2 + f5 + f8);
+            y[3][l] += m0 + n * a0 + f0, y[4][l] += m1 + n * a1 + f1, y[5][l] += m2 + n * a2 + f2;
+            y[6][l] += m0 + n * b0 + f3, y[7][l] += m1 + n * b1 + f4, y[8][l] += m2 + n * b2 + f5;
+            y[9][l] += m0 + n * c0 + f6, y[10][l] += m1 + n * c1 + f7, y[11][l] += m2 + n * c2 + f8;
+        }
     }
 }
 
@@ -1835,35 +1865,32 @@ static void gxsp_general_product(const gxsp_tangent *b, const gxsp_general *h, i
         }
 }
 
-/* The same for either */
-static void gxsp_kind_product(gxs_material_kind kind, const gxsp_tangent *b, const gxsp_general *h, int apart, gxsp_singles *x, gxsp_singles *y)
+/* y += rate M x of masses that the tangent does not have. apart: as of gxsp_block_product */
+static void gxsp_inertia_product(const gxsp_inertia *m, int apart, gxsp_singles *x, gxsp_singles *y)
 {
-    if (kind == GXS_CUSTOM)
-        gxsp_general_product(b, h, apart, x, y);
-    else if (apart)
-        gxsp_block_product(b, 1, x, y);
-    else
-        gxsp_block_product(b, 0, x, y);
+    int i, j, r, l;
+    for (i = 0; i < 4; ++i)
+        for (j = 0; j < 4; ++j)
+            for (r = 0; r < 3; ++r)
+                GXSP_EACH_LANE(l) y[3 * i + r][l] += m->entry[gxsp_packed_mass[i][j]][l] * (x[3 * j + r][l] + (apart && j > 0 ? x[r][l] : 0));
 }
 
-/* y += rate M x of masses that rest does not have. apart: as of gxsp_block_product */
-GXSP_INLINE void gxsp_block_mass_product(const gxsp_mass *GXSP_RESTRICT mass, float rate, int apart, gxsp_singles *GXSP_RESTRICT x,
-                                         gxsp_singles *GXSP_RESTRICT y)
+/* The same for either */
+GXSP_INLINE void gxsp_kind_product(gxs_material_kind kind, const gxsp_tangent *b, const gxsp_inertia *m, const gxsp_general *h, int apart,
+                                   gxsp_singles *x, gxsp_singles *y)
 {
-    int r, l;
-    for (r = 0; r < 3; ++r)
-        GXSP_EACH_LANE(l) {
-            const float a = rate * x[r][l], o = apart ? a : 0;
-            const float b = rate * x[3 + r][l] + o, c = rate * x[6 + r][l] + o, d = rate * x[9 + r][l] + o;
-            const float m0 = (float)mass->entry[0][l], m1 = (float)mass->entry[1][l], m2 = (float)mass->entry[2][l],
-                        m3 = (float)mass->entry[3][l], m4 = (float)mass->entry[4][l], m5 = (float)mass->entry[5][l],
-                        m6 = (float)mass->entry[6][l], m7 = (float)mass->entry[7][l], m8 = (float)mass->entry[8][l],
-                        m9 = (float)mass->entry[9][l];
-            y[r][l] += m0 * a + m1 * b + m2 * c + m3 * d;
-            y[3 + r][l] += m1 * a + m4 * b + m5 * c + m6 * d;
-            y[6 + r][l] += m2 * a + m5 * b + m7 * c + m8 * d;
-            y[9 + r][l] += m3 * a + m6 * b + m8 * c + m9 * d;
-        }
+    if (kind == GXS_CUSTOM) {
+        gxsp_general_product(b, h, apart, x, y);
+        if (m)
+            gxsp_inertia_product(m, apart, x, y);
+    } else if (m && apart)
+        gxsp_block_product(b, m, 1, x, y);
+    else if (m)
+        gxsp_block_product(b, m, 0, x, y);
+    else if (apart)
+        gxsp_block_product(b, NULL, 1, x, y);
+    else
+        gxsp_block_product(b, NULL, 0, x, y);
 }
 
 static void gxsp_general_couple(const gxsp_general *general, gxsp_singles *p, gxsp_singles *q, gxsp_singles *block)
@@ -1966,6 +1993,11 @@ static const gxsp_mass *gxsp_block_masses(const gxsp_chunk *chunk, uint32_t bloc
     return chunk->masses ? &chunk->masses[block] : NULL;
 }
 
+static gxsp_inertia *gxsp_block_inertias(const gxsp_chunk *chunk, uint32_t block)
+{
+    return chunk->inertias ? &chunk->inertias[block] : NULL;
+}
+
 static gxsp_general *gxsp_block_general(const gxsp_chunk *chunk, uint32_t block)
 {
     return chunk->generals ? &chunk->generals[block] : NULL;
@@ -1999,19 +2031,45 @@ static const gxsp_chunk *gxsp_block_ahead(const gxsp_system *system, size_t inde
     return chunk;
 }
 
-/* x of a block's corners; of those that are not fresh it is there from the block before */
-static void gxsp_block_load(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, const double *x, gxsp_lanes *GXSP_RESTRICT corners)
+/* x of a chunk's nodes, less that of origin unless it is NULL: x 3, and one more number */
+static void gxsp_chunk_load(const gxsp_system *system, const gxsp_chunk *chunk, const double *x, const double *origin, double *GXSP_RESTRICT to)
 {
     const uint32_t *copies = system->nodes + chunk->first_node;
+    size_t i, c;
+    for (i = 0; i < chunk->node_count; ++i) {
+        gxsp_fetch(x + 3 * (size_t)copies[i + GXSP_AHEAD], 3 * sizeof *x);
+        for (c = 0; c < 3; ++c)
+            to[3 * i + c] = x[3 * (size_t)copies[i] + c] - (origin ? origin[3 * (size_t)copies[i] + c] : 0);
+    }
+    to[3 * i] = 0;
+}
+
+/* Three numbers of each of four nodes to three arrays; behind those of the last node there is one more. */
+static inline void gxsp_load_four(const uint16_t *node, const double *x, double *to0, double *to1, double *to2)
+{
+#if defined(GXSP_SHUFFLES)
+    const gxsp_four_doubles a = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[0]), b = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[1]),
+                            c = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[2]), d = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[3]);
+    const gxsp_four_doubles p = __builtin_shufflevector(a, b, 0, 4, 2, 6), q = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+    const gxsp_four_doubles r = __builtin_shufflevector(a, b, 1, 5, 3, 7), s = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    *(gxsp_four_doubles *)to0 = __builtin_shufflevector(p, q, 0, 1, 4, 5);
+    *(gxsp_four_doubles *)to1 = __builtin_shufflevector(r, s, 0, 1, 4, 5);
+    *(gxsp_four_doubles *)to2 = __builtin_shufflevector(p, q, 2, 3, 6, 7);
+#else
+    int l;
+    for (l = 0; l < 4; ++l)
+        to0[l] = x[3 * (size_t)node[l]], to1[l] = x[3 * (size_t)node[l] + 1], to2[l] = x[3 * (size_t)node[l] + 2];
+#endif
+}
+
+/* x of a block's corners from that of the chunk's nodes; of those that are not fresh it is there from the block before */
+static void gxsp_block_load(const gxsp_chunk *chunk, uint32_t b, const double *GXSP_RESTRICT x, gxsp_lanes *GXSP_RESTRICT corners)
+{
     const gxsp_corners *corner = &chunk->corners[b];
     int i, l;
     for (i = 0; i < 4; ++i)
-        for (l = 0; l < GXSP_LANES && chunk->fresh[b] >> i & 1; ++l) {
-            const double *from = x + 3 * (size_t)copies[corner->node[i][l]];
-            corners[3 * i][l] = from[0];
-            corners[3 * i + 1][l] = from[1];
-            corners[3 * i + 2][l] = from[2];
-        }
+        for (l = 0; l < GXSP_LANES && chunk->fresh[b] >> i & 1; l += 4)
+            gxsp_load_four(corner->node[i] + l, x, corners[3 * i] + l, corners[3 * i + 1] + l, corners[3 * i + 2] + l);
 }
 
 /* Parameters of a block's materials */
@@ -2139,8 +2197,9 @@ static void gxsp_task_state(void *context, size_t index)
     const gxsp_chunk *chunk = &system->chunks[index];
     double *slots = &system->slots[chunk->first_node][0];
     uint32_t b, further;
-    int k, l, inertia;
-    gxsp_lanes x[12], led[12], target[12], forces[12];
+    int l, inertia;
+    double at[3 * 4 * GXSP_CHUNK + 1], other[3 * 4 * GXSP_CHUNK + 1];
+    gxsp_lanes x[12], led[12], forces[12];
     if (gxsp_chunk_settled(system, chunk))
         return;
     for (b = 0; b < chunk->part_count; ++b)
@@ -2149,6 +2208,9 @@ static void gxsp_task_state(void *context, size_t index)
     if (system->chunk_still[index])
         return;
     inertia = pass->inertia && gxsp_accelerates(system, chunk, pass->from);
+    gxsp_chunk_load(system, chunk, pass->from, NULL, at);
+    if (inertia || pass->turned) /* never both: what is turned has no inertia */
+        gxsp_chunk_load(system, chunk, inertia ? pass->from : pass->turned, inertia ? system->target : NULL, other);
     memset(forces, 0, sizeof forces);
     for (b = 0; b < chunk->block_count; ++b) {
         const gxsp_rest *rest = &chunk->rest[b];
@@ -2156,13 +2218,13 @@ static void gxsp_task_state(void *context, size_t index)
         gxsp_lanes ahead[9], energies[3];
         gxsp_state s;
         gxsp_fetch(&next->rest[further], sizeof(gxsp_rest));
-        gxsp_block_load(system, chunk, b, pass->from, x);
+        gxsp_block_load(chunk, b, at, x);
+        if (inertia || pass->turned)
+            gxsp_block_load(chunk, b, other, led);
         gxsp_block_parameters(pass->materials, rest, &s);
         gxsp_block_gradient(rest, x, s.g);
-        if (pass->turned) {
-            gxsp_block_load(system, chunk, b, pass->turned, led);
+        if (pass->turned)
             gxsp_block_gradient(rest, led, ahead);
-        }
         if (pass->nudge && chunk->kind != GXS_LINEAR && chunk->kind != GXS_CUSTOM)
             gxsp_nudge(s.g);
         gxsp_material_state(chunk->kind, &s);
@@ -2175,11 +2237,7 @@ static void gxsp_task_state(void *context, size_t index)
             energies[2][l] = rest->weight[l] * s.size[l];
         }
         if (inertia) {
-            gxsp_lanes moved[12];
-            gxsp_block_load(system, chunk, b, system->target, target);
-            for (k = 0; k < 12; ++k)
-                GXSP_EACH_LANE(l) moved[k][l] = x[k][l] - target[k][l];
-            gxsp_block_inertia(rest, gxsp_block_masses(chunk, b), pass->rate, moved, forces, energies[1]);
+            gxsp_block_inertia(rest, gxsp_block_masses(chunk, b), pass->rate, led, forces, energies[1]);
             for (l = 0; l < GXSP_LANES; ++l)
                 energies[2][l] += energies[1][l];
         }
@@ -2200,6 +2258,7 @@ static void gxsp_task_sum(void *context, size_t index)
         uint32_t s;
         for (s = system->copy_start[i]; s < system->copy_start[i + 1]; ++s) {
             const double *from = slots + 3 * (size_t)system->copy_slot[s];
+            gxsp_fetch(slots + 3 * (size_t)system->copy_slot[s + GXSP_AHEAD], 3 * sizeof *slots);
             x += from[0], y += from[1], z += from[2];
         }
         pass->sum[3 * i] = x, pass->sum[3 * i + 1] = y, pass->sum[3 * i + 2] = z;
@@ -2396,9 +2455,6 @@ static gxsp_sorted *gxsp_order_elements(const gxsp_system *system, const gxs_mod
     }
     return gxsp_sort(sorted, other, count);
 }
-
-/* Entries of gxs_element.mass */
-static const int gxsp_packed_mass[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
 
 static const uint8_t gxsp_own_order[4] = {0, 1, 2, 3};
 
@@ -2739,19 +2795,24 @@ static void gxsp_blocks_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count
 static void gxsp_tangents_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count)
 {
     gxsp_tangent *tangents;
+    gxsp_inertia *inertias;
     gxsp_general *generals;
-    size_t blocks = 0, custom = 0;
+    size_t blocks = 0, cut = 0, custom = 0;
     uint32_t c;
     for (c = 0; c < count; ++c) {
         blocks += chunks[c].block_count;
+        cut += chunks[c].masses ? chunks[c].block_count : 0;
         custom += chunks[c].kind == GXS_CUSTOM ? chunks[c].block_count : 0;
     }
     tangents = (gxsp_tangent *)gxsp_take(pool, blocks, sizeof(gxsp_tangent));
+    inertias = (gxsp_inertia *)gxsp_take(pool, cut, sizeof(gxsp_inertia));
     generals = (gxsp_general *)gxsp_take(pool, custom, sizeof(gxsp_general));
     for (c = 0; c < count && !pool->failed; ++c) {
         chunks[c].tangents = tangents;
+        chunks[c].inertias = chunks[c].masses ? inertias : NULL;
         chunks[c].generals = chunks[c].kind == GXS_CUSTOM ? generals : NULL;
         tangents += chunks[c].block_count;
+        inertias += chunks[c].masses ? chunks[c].block_count : 0;
         generals += chunks[c].kind == GXS_CUSTOM ? chunks[c].block_count : 0;
     }
 }
@@ -2793,9 +2854,9 @@ static void gxsp_chunks_make(gxsp_system *system, gxsp_pool *scratch, const gxs_
     if (system->pool.failed)
         return;
     gxsp_fill_chunks(system, model, sorted, &numbers);
-    system->copy_slot = (uint32_t *)gxsp_take(&system->pool, system->slot_count, sizeof(uint32_t));
+    system->copy_slot = (uint32_t *)gxsp_take(&system->pool, system->slot_count + GXSP_AHEAD, sizeof(uint32_t));
     system->slot_root = (uint16_t *)gxsp_take(&system->pool, system->slot_count, sizeof(uint16_t));
-    nodes = (uint32_t *)gxsp_take(&system->pool, system->slot_count, sizeof(uint32_t));
+    nodes = (uint32_t *)gxsp_take(&system->pool, system->slot_count + GXSP_AHEAD, sizeof(uint32_t));
     if (system->pool.failed)
         return;
     memcpy(nodes, system->nodes, system->slot_count * sizeof(uint32_t));
@@ -4159,13 +4220,10 @@ static void gxsp_task_product(void *context, size_t index)
     memset(out, 0, chunk->node_count * sizeof *out);
     memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; ++b) {
-        const gxsp_mass *general = gxsp_block_masses(chunk, b);
         const gxsp_chunk *next = gxsp_block_ahead(system, index, b, &further);
         gxsp_fetch(&next->tangents[further], sizeof(gxsp_tangent));
         gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
-        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_general(chunk, b), 0, from, to);
-        if (general)
-            gxsp_block_mass_product(general, (float)pass->rate, 0, from, to);
+        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_inertias(chunk, b), gxsp_block_general(chunk, b), 0, from, to);
         gxsp_block_scatter(chunk, b, to, out);
     }
 }
@@ -4185,6 +4243,7 @@ static void gxsp_task_product_sum(void *context, size_t index)
         uint32_t s;
         for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->still[i]; ++s) {
             const float *from = slots[system->copy_slot[s]];
+            gxsp_fetch(slots[system->copy_slot[s + GXSP_AHEAD]], sizeof *slots);
             x += from[0], y += from[1], z += from[2];
         }
         if (right)
@@ -4343,12 +4402,9 @@ static void gxsp_task_apply(void *context, size_t index)
     memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; ++b) {
         const gxsp_chunk *next = gxsp_block_ahead(system, index, b, &further);
-        const gxsp_mass *general = gxsp_block_masses(chunk, b);
         gxsp_fetch(&next->tangents[further], sizeof(gxsp_tangent));
         gxsp_block_gather_doubles(chunk, b, in, from);
-        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_general(chunk, b), 1, from, to);
-        if (general && pass->rate > 0)
-            gxsp_block_mass_product(general, (float)pass->rate, 1, from, to);
+        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_inertias(chunk, b), gxsp_block_general(chunk, b), 1, from, to);
         gxsp_block_scatter(chunk, b, to, out);
     }
 }
@@ -4455,11 +4511,11 @@ static void gxsp_general_own(const gxsp_general *general, gxsp_singles *p, gxsp_
 }
 
 /* Diagonal blocks of a block's Hessian, packed: own[6 corner ...] += */
-static void gxsp_block_diagonal(const gxsp_chunk *chunk, uint32_t b, double rate, gxsp_singles *own)
+static void gxsp_block_diagonal(const gxsp_chunk *chunk, uint32_t b, gxsp_singles *own)
 {
     static const int diagonal[3] = {0, 3, 5};
     const gxsp_tangent *tangent = &chunk->tangents[b];
-    const gxsp_mass *general = gxsp_block_masses(chunk, b);
+    const gxsp_inertia *inertia = gxsp_block_inertias(chunk, b);
     gxsp_singles u[9];
     int corner, k, l;
     gxsp_block_frame(tangent, u);
@@ -4471,8 +4527,8 @@ static void gxsp_block_diagonal(const gxsp_chunk *chunk, uint32_t b, double rate
         else
             gxsp_block_own(tangent, u, gamma, own + 6 * corner);
         GXSP_EACH_LANE(l) mass[l] = 2 * tangent->mass[l];
-        if (general)
-            GXSP_EACH_LANE(l) mass[l] = (float)(rate * general->entry[gxsp_packed_mass[corner][corner]][l]);
+        if (inertia)
+            GXSP_EACH_LANE(l) mass[l] = inertia->entry[gxsp_packed_mass[corner][corner]][l];
         for (k = 0; k < 3; ++k)
             GXSP_EACH_LANE(l) own[6 * corner + diagonal[k]][l] += mass[l];
     }
@@ -4492,6 +4548,14 @@ static void gxsp_diagonal_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_sing
     }
 }
 
+/* Masses of a block in single precision; none if mass is NULL */
+static void gxsp_inertia_make(const gxsp_mass *mass, double rate, gxsp_inertia *inertia)
+{
+    int k, l;
+    for (k = 0; mass && k < 10; ++k)
+        GXSP_EACH_LANE(l) inertia->entry[k][l] = (float)(rate * mass->entry[k][l]);
+}
+
 /* Hessian of a chunk at pass->from, and its diagonal blocks into the slots */
 static void gxsp_task_linearise(void *context, size_t index)
 {
@@ -4499,6 +4563,7 @@ static void gxsp_task_linearise(void *context, size_t index)
     gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->chunks[index];
     float *slots = (float *)(void *)system->slots[chunk->first_node];
+    double at[3 * 4 * GXSP_CHUNK + 1];
     gxsp_lanes x[12];
     gxsp_singles own[24];
     uint32_t b, k, blocks, further;
@@ -4508,6 +4573,7 @@ static void gxsp_task_linearise(void *context, size_t index)
         return;
     memset(slots, 0, 6 * (size_t)chunk->node_count * sizeof *slots);
     memset(own, 0, sizeof own);
+    gxsp_chunk_load(system, chunk, pass->from, NULL, at);
     for (b = 0; b < chunk->block_count; b += blocks) { /* two at a time */
         gxsp_state s[2];
         gxsp_svd of[2];
@@ -4515,7 +4581,7 @@ static void gxsp_task_linearise(void *context, size_t index)
         for (k = 0; k < blocks; ++k) {
             const gxsp_chunk *next = gxsp_block_ahead(system, index, b + k, &further);
             gxsp_fetch(&next->rest[further], sizeof(gxsp_rest));
-            gxsp_block_load(system, chunk, b + k, pass->from, x);
+            gxsp_block_load(chunk, b + k, at, x);
             gxsp_block_parameters(pass->materials, &chunk->rest[b + k], &s[k]);
             gxsp_block_gradient(&chunk->rest[b + k], x, s[k].g);
         }
@@ -4525,7 +4591,8 @@ static void gxsp_task_linearise(void *context, size_t index)
             gxsp_tangent *tangent = &chunk->tangents[b + k];
             gxsp_tangent_make(chunk->kind, rest, system->scale, pass->exact, &s[k], &of[k], tangent, gxsp_block_general(chunk, b + k));
             GXSP_EACH_LANE(l) tangent->mass[l] = (float)(pass->rate * rest->mass[l]);
-            gxsp_block_diagonal(chunk, b + k, pass->rate, own);
+            gxsp_inertia_make(gxsp_block_masses(chunk, b + k), pass->rate, gxsp_block_inertias(chunk, b + k));
+            gxsp_block_diagonal(chunk, b + k, own);
             gxsp_diagonal_scatter(chunk, b + k, own, slots);
         }
     }
@@ -4803,10 +4870,10 @@ static void gxsp_multigrid(gxsp_system *system, double rate, double energy)
 /* --- numbers of the coarse levels --- */
 
 /* Mass between corners of a block, kg/s2. pair: in the order of gxs_element.mass */
-static void gxsp_block_mass(const gxsp_tangent *tangent, const gxsp_mass *general, double rate, int pair, float *mass)
+static void gxsp_block_mass(const gxsp_tangent *tangent, const gxsp_inertia *inertia, int pair, float *mass)
 {
     int l;
-    GXSP_EACH_LANE(l) mass[l] = tangent->mass[l] + (general ? (float)(rate * general->entry[pair][l]) : 0);
+    GXSP_EACH_LANE(l) mass[l] = inertia ? inertia->entry[pair][l] : tangent->mass[l];
 }
 
 /* A block by rows, with its mass, to one by columns: that of the lower node's row, where corners p and q have the nodes */
@@ -4825,15 +4892,15 @@ static void gxsp_order_block(const uint16_t *GXSP_RESTRICT p, const uint16_t *GX
 }
 
 /* Half the row sums of a block's masses to its nodes */
-static void gxsp_own_mass(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_t b, double rate)
+static void gxsp_own_mass(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_t b)
 {
-    const gxsp_mass *general = gxsp_block_masses(chunk, b);
+    const gxsp_inertia *inertia = gxsp_block_inertias(chunk, b);
     gxsp_singles half;
     int k, j, l;
     for (k = 0; k < 4; ++k) {
         GXSP_EACH_LANE(l) half[l] = chunk->rest[b].weight[l] > 0 ? 2.5f * chunk->tangents[b].mass[l] : 0;
-        for (j = 0; j < 4 && general; ++j)
-            GXSP_EACH_LANE(l) half[l] += chunk->rest[b].weight[l] > 0 ? (float)(0.5 * rate * general->entry[gxsp_packed_mass[k][j]][l]) : 0;
+        for (j = 0; j < 4 && inertia; ++j)
+            GXSP_EACH_LANE(l) half[l] += chunk->rest[b].weight[l] > 0 ? 0.5f * inertia->entry[gxsp_packed_mass[k][j]][l] : 0;
         for (l = 0; l < GXSP_LANES; ++l)
             edges->mass[chunk->corners[b].node[k][l]] += half[l];
     }
@@ -4860,7 +4927,7 @@ static void gxsp_edges_clear(gxsp_edges *edges, const gxsp_chunk *chunk)
 }
 
 /* Blocks of a chunk's edges: the Hessian of its elements, of i's row and j's column, with their mass; and the nodes' mass */
-static void gxsp_edge_blocks(gxsp_system *system, const gxsp_chunk *chunk, double rate)
+static void gxsp_edge_blocks(gxsp_system *system, const gxsp_chunk *chunk)
 {
     gxsp_edges *edges = &system->edges;
     uint32_t b;
@@ -4878,11 +4945,11 @@ static void gxsp_edge_blocks(gxsp_system *system, const gxsp_chunk *chunk, doubl
             if (p == q)
                 continue;
             gxsp_block_couple(tangent, gxsp_block_general(chunk, b), gamma[p], gamma[q], block);
-            gxsp_block_mass(tangent, gxsp_block_masses(chunk, b), rate, pair, mass);
+            gxsp_block_mass(tangent, gxsp_block_inertias(chunk, b), pair, mass);
             gxsp_order_block(corner->node[p], corner->node[q], mass, block);
             gxsp_add_lanes(edges->element[b][at++], block, edges->block);
         }
-        gxsp_own_mass(edges, chunk, b, rate);
+        gxsp_own_mass(edges, chunk, b);
     }
 }
 
@@ -4971,7 +5038,7 @@ static void gxsp_coarse_node(gxsp_system *system, const uint32_t *copies, uint32
 }
 
 /* Level 1's matrix from the last linearisation. dirty: only the rows and columns of dirty nodes, whose blocks are 0; NULL: all */
-static void gxsp_coarse_elements(gxsp_system *system, double rate, const uint8_t *dirty)
+static void gxsp_coarse_elements(gxsp_system *system, const uint8_t *dirty)
 {
     gxsp_level *next = &system->levels[1];
     uint32_t c, i;
@@ -4979,7 +5046,7 @@ static void gxsp_coarse_elements(gxsp_system *system, double rate, const uint8_t
         const gxsp_chunk *chunk = &system->chunks[c];
         if (dirty && !gxsp_follows_dirty(system, chunk, dirty))
             continue;
-        gxsp_edge_blocks(system, chunk, rate);
+        gxsp_edge_blocks(system, chunk);
         gxsp_pairs_begin(system, chunk);
         gxsp_pairs_find(&system->pairs, next);
         for (i = 0; i < chunk->node_count; ++i)
@@ -5241,12 +5308,12 @@ static void gxsp_assemble_following(gxsp_system *system, uint32_t p, uint32_t q,
 }
 
 /* A block's elements, of which each lane's corner pair adds to one entry, or to those of its masters */
-static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, double rate)
+static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, uint32_t b)
 {
     gxsp_level *fine = &system->levels[0];
     const gxsp_corners *corner = &chunk->corners[b];
     const gxsp_tangent *tangent = &chunk->tangents[b];
-    const gxsp_mass *general = gxsp_block_masses(chunk, b);
+    const gxsp_inertia *inertia = gxsp_block_inertias(chunk, b);
     gxsp_singles gamma[4][3];
     int pair, l;
     for (l = 0; l < 4; ++l)
@@ -5258,7 +5325,7 @@ static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, ui
         for (l = 0; l < GXSP_LANES; ++l) {
             const uint32_t *copies = system->nodes + chunk->first_node, entry = system->fine[chunk->first_block + b].entry[pair][l];
             const uint32_t i = copies[corner->node[p][l]], j = copies[corner->node[q][l]];
-            const float mass = tangent->mass[l] * (p == q ? 2.0f : 1.0f) + (general ? (float)(rate * general->entry[pair][l]) : 0);
+            const float mass = inertia ? inertia->entry[pair][l] : tangent->mass[l] * (p == q ? 2.0f : 1.0f);
             float own[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0}, *to = entry == GXSP_NONE ? own : fine->block + 9 * (size_t)entry;
             gxsp_add_lane(block, l, entry != GXSP_NONE && i > j, mass, to);
             if (entry == GXSP_NONE)
@@ -5306,7 +5373,7 @@ static void gxsp_assemble(gxsp_system *system, double rate)
     memset(fine->block, 0, 9 * (size_t)fine->start[fine->n] * sizeof(float));
     for (c = 0; c < system->chunk_count; ++c)
         for (b = 0; b < system->chunks[c].block_count && !system->chunk_still[c]; ++b)
-            gxsp_assemble_block(system, &system->chunks[c], b, rate);
+            gxsp_assemble_block(system, &system->chunks[c], b);
     for (i = 0; i < fine->n && system->lumped_mass; ++i) {
         uint32_t a[4], p, q;
         float w[4];
@@ -5372,7 +5439,7 @@ static int gxsp_coarse_numbers(gxsp_system *system, double rate)
         gxsp_coarsen(fine, fine + 1, &system->pairs);
     else {
         memset(fine[1].block, 0, 9 * (size_t)fine[1].start[fine[1].n] * sizeof(float));
-        gxsp_coarse_elements(system, system->scale * rate, NULL);
+        gxsp_coarse_elements(system, NULL);
         if (system->lumped_mass)
             gxsp_coarse_lumped(system, system->scale * rate);
     }
@@ -5812,8 +5879,8 @@ static void gxsp_slots_room(gxsp_system *system, size_t count)
     gxsp_pool *pool = &system->pool;
     if (count > system->slot_room) {
         system->slot_room = count + count / 8;
-        system->nodes = (uint32_t *)gxsp_retake(pool, system->nodes, 0, system->slot_room, sizeof(uint32_t));
-        system->copy_slot = (uint32_t *)gxsp_retake(pool, system->copy_slot, 0, system->slot_room, sizeof(uint32_t));
+        system->nodes = (uint32_t *)gxsp_retake(pool, system->nodes, 0, system->slot_room + GXSP_AHEAD, sizeof(uint32_t));
+        system->copy_slot = (uint32_t *)gxsp_retake(pool, system->copy_slot, 0, system->slot_room + GXSP_AHEAD, sizeof(uint32_t));
         system->slots = (double(*)[3])gxsp_retake(pool, system->slots, 0, system->slot_room, sizeof *system->slots);
         system->slot_root = (uint16_t *)gxsp_retake(pool, system->slot_root, 0, system->slot_room, sizeof(uint16_t));
     }
@@ -6129,21 +6196,20 @@ static void gxsp_keep_blocks(const gxsp_level *before, gxsp_level *level, const 
 static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, const uint8_t *dirty)
 {
     gxsp_system *system = update->system;
-    const double rate = system->scale * system->coarse_rate;
     gxsp_pass pass;
     uint32_t c;
     gxsp_keep_blocks(before, &system->levels[1], dirty);
     memset(&pass, 0, sizeof pass);
     pass.system = system;
     pass.materials = system->damped;
-    pass.rate = rate;
+    pass.rate = system->scale * system->coarse_rate;
     pass.from = system->coarse_state;
     for (c = 0; c < system->chunk_count; ++c)
         if (gxsp_follows_dirty(system, &system->chunks[c], dirty)) {
             system->chunk_still[c] = 0;
             gxsp_task_linearise(&pass, c);
         }
-    gxsp_coarse_elements(system, rate, dirty);
+    gxsp_coarse_elements(system, dirty);
     return gxsp_lower_numbers(system, dirty);
 }
 
@@ -8377,7 +8443,7 @@ GXFEM_API gx_result gxs_model_hessian_product(const gxs_model *model, const doub
         for (k = 0; k < 12; ++k)
             GXSP_EACH_LANE(l) from[k][l] = (float)(x[k][l] - x[k % 3][l]); /* of translations exactly 0 */
         memset(to, 0, sizeof to);
-        gxsp_kind_product(group.kind, &tangent, &general, 1, from, to);
+        gxsp_kind_product(group.kind, &tangent, NULL, &general, 1, from, to);
         for (k = 0; k < 12; ++k)
             GXSP_EACH_LANE(l) x[k][l] = (double)to[k][l];
         gxsp_group_scatter(&group, x, product);
@@ -8460,7 +8526,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
     for (k = 0; k < 3; ++k)
         for (c = 0; c < 3; ++c)
             from[3 + 3 * c + k][0] = (float)direction[3 * k + c];
-    gxsp_kind_product(material->kind, &tangent, &general, 1, from, to);
+    gxsp_kind_product(material->kind, &tangent, NULL, &general, 1, from, to);
     for (k = 0; k < 3; ++k)
         for (c = 0; c < 3; ++c)
             product[3 * k + c] = (double)to[3 + 3 * c + k][0];
@@ -8487,6 +8553,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_ASLEEP
 #undef GXSP_COLLAPSED
 #undef GXSP_NUDGE
+#undef GXSP_AHEAD
 #undef GXSP_RANGE
 #undef GXSP_SPACING
 #undef GXSP_MULTIGRID_FROM
