@@ -221,14 +221,15 @@ enum { GXB_EXPLICIT = 0, GXB_LINE_PLANE = 1, GXB_THREE_PLANES = 2 };
 
 typedef struct gxb_cpoint {     /* a point of the complex */
     gxb_ball ball;              /* in the complex's frame: (x - origin) * 2^shift */
-    uint32_t kind;              /* GXB_EXPLICIT ... */
     uint32_t def[3];            /* two points and a plane, or three planes */
-    gxb_num *exact;             /* X Y Z W, or NULL until they were needed */
+    uint8_t kind;               /* GXB_EXPLICIT ... */
+    uint8_t wall;               /* 1: a triangle was made to separate here what meets in this node only */
+    int8_t sign[2];
     uint32_t stamp[2];          /* when sign[i] was decided (complex.stamp[i]) */
-    int32_t sign[2];
+    gxb_num *exact;             /* X Y Z W, or NULL until they were needed */
+    double parameter[3];        /* barycentric coordinates on a mesh edge (of its two ends) or in a mesh face (of its plane's three nodes);
+                                   the first is negative until asked for */
     uint32_t scratch;
-    uint32_t wall;              /* 1: a triangle was made to separate here what meets in this node only */
-    double parameter[2];        /* on a mesh edge: barycentric coordinates of its ends; negative until asked for */
 } gxb_cpoint;
 
 typedef struct gxb_cplane {     /* a plane: of three points, or through points 0 and 1 along coordinate axis def[2] */
@@ -1984,7 +1985,7 @@ GXFEM_API int gxb_complex_side(gxb_complex *cx, uint32_t point, uint32_t plane) 
 
 static GXBP_APART int gxbp_new_sign(gxb_complex *cx, uint32_t point, uint32_t plane, int slot) {
     const int sign = gxb_complex_side(cx, point, plane);
-    cx->points[point].sign[slot] = sign;
+    cx->points[point].sign[slot] = (int8_t)sign;
     cx->points[point].stamp[slot] = cx->stamp[slot];
     return sign;
 }
@@ -3736,27 +3737,70 @@ static void gxbp_pair_line_shares(gxb_complex *cx, const uint32_t def[3], uint32
 }
 
 /* Of three planes, by the sides on which they have the nodes: a plane's sum of sides x coordinates is 0, so these are the minors of the
-   sides. Where one plane is that of a face, the sides of the two others are enough. */
+   sides. */
 static void gxbp_pair_plane_shares(gxb_complex *cx, const uint32_t def[3], uint32_t element, const double lambda[4], gxbp_pair share[4]) {
     const uint32_t *node = cx->elements + 4 * (size_t)element;
     gxbp_pair side[3][4];
-    uint32_t order[3], face = 4, i, k;
-    for (i = 0; i < 3; i++) order[i] = def[i];
-    for (i = 0; i < 3 && face == 4; i++) for (k = 0; k < 4; k++)
-        if (def[i] == gxbp_face_plane(cx, element, k)) { face = k; order[i] = def[2]; order[2] = def[i]; }
-    for (i = 0; i < (face < 4 ? 2u : 3u); i++) for (k = 0; k < 4; k++) if (k != face) side[i][k] = gxbp_pair_side(cx, node[k], order[i]);
+    uint32_t i, k;
+    for (i = 0; i < 3; i++) for (k = 0; k < 4; k++) side[i][k] = gxbp_pair_side(cx, node[k], def[i]);
     for (k = 0; k < 4; k++) if (lambda[k] < 0) {
         const uint8_t *rest = gxbp_face_nodes[k];       /* k and these are an even permutation of 0 1 2 3 */
         gxbp_pair row[3], cofactor[3];
         for (i = 0; i < 3; i++) {
             const uint32_t j = rest[(i + 1) % 3], l = rest[(i + 2) % 3];
-            if (face < 4 && rest[i] != face) continue;
             cofactor[i] = gxbp_pair_det2(&side[0][j], &side[1][l], &side[0][l], &side[1][j]);
-            if (face < 4) share[k] = cofactor[i];
-            else row[i] = side[2][rest[i]];
+            row[i] = side[2][rest[i]];
         }
-        if (face == 4) share[k] = gxbp_pair_dot(row, cofactor);
+        share[k] = gxbp_pair_dot(row, cofactor);
     }
+}
+
+/* Is this the plane of a mesh face? Such are defined by nodes. */
+static int gxbp_is_face_plane(const gxb_complex *cx, uint32_t plane) {
+    const gxb_cplane *f = &cx->planes[plane];
+    return f->def[0] < cx->node_count && f->def[1] < cx->node_count && f->def[2] < cx->node_count && !f->along_axis;
+}
+
+/* Of a point in a mesh face, by the sides on which its two other planes have the face's nodes: the minors of these. 0: pairs do not tell, or it is in
+   two of such planes. */
+static int gxbp_pair_in_face(gxb_complex *cx, uint32_t point, uint32_t face) {
+    gxb_cpoint *p = &cx->points[point];
+    const uint32_t *node = cx->planes[p->def[face]].def;
+    gxbp_pair side[2][3], share[3], sum;
+    double parameter[3];
+    uint32_t i, k;
+    for (i = 0; i < 2; i++) {
+        const uint32_t plane = p->def[(face + 1 + i) % 3];
+        if (gxbp_is_face_plane(cx, plane)) return 0;
+        for (k = 0; k < 3; k++) side[i][k] = gxbp_pair_side(cx, node[k], plane);
+    }
+    for (k = 0; k < 3; k++) {
+        const uint32_t j = (k + 1) % 3, l = (k + 2) % 3;
+        share[k] = gxbp_pair_det2(&side[0][j], &side[1][l], &side[0][l], &side[1][j]);
+    }
+    sum = gxbp_pair_add(&share[0], &share[1], 1);
+    sum = gxbp_pair_add(&sum, &share[2], 1);
+    for (k = 0; k < 3; k++) if (!gxbp_pair_ratio(&share[k], &sum, &parameter[k])) return 0;
+    memcpy(p->parameter, parameter, sizeof p->parameter);
+    return 1;
+}
+
+/* Coordinates of a point of three planes one of which is that of a mesh face of the element: those in the face, which are asked for by both elements
+   beside it, so kept. 0: there is no such plane, or pairs do not tell. */
+static int gxbp_face_barycentric(gxb_complex *cx, uint32_t point, uint32_t element, double lambda[4]) {
+    const gxb_cpoint *p = &cx->points[point];
+    const uint32_t *n = cx->elements + 4 * (size_t)element, *node;
+    uint32_t face = 0, found = 0, i, k;
+    while (face < 3 && !gxbp_is_face_plane(cx, p->def[face])) face++;
+    if (face == 3) return 0;
+    node = cx->planes[p->def[face]].def;
+    for (k = 0; k < 4; k++) found += n[k] == node[0] || n[k] == node[1] || n[k] == node[2];
+    if (found < 3 || (p->parameter[0] < 0 && !gxbp_pair_in_face(cx, point, face))) return 0;
+    for (k = 0; k < 4; k++) {
+        lambda[k] = 0;
+        for (i = 0; i < 3; i++) if (n[k] == node[i]) lambda[k] = p->parameter[i];
+    }
+    return 1;
 }
 
 /* By pairs, those that they settle; -1 stands for the others. On entry what is known without arithmetic stands there. */
@@ -3786,6 +3830,7 @@ GXFEM_API void gxb_complex_barycentric(gxb_complex *cx, uint32_t point, uint32_t
     const gxb_cpoint *p = &cx->points[point];
     const int on_edge = gxbp_divides_edge(cx, point, element);
     uint32_t k;
+    if (p->kind == GXB_THREE_PLANES && gxbp_face_barycentric(cx, point, element, lambda)) return;
     for (k = 0; k < 4; k++) {
         const uint32_t node = cx->elements[4 * element + k];
         if (!on_edge) lambda[k] = gxbp_known_lambda(cx, point, element, k);
@@ -3839,7 +3884,7 @@ static GXBP_COLD void gxbp_save_points(gxb_complex *cx, gxb_stream *s) {
     uint32_t i;
     for (i = 0; i < cx->point_count; i++) {
         gxb_cpoint *p = &cx->points[i];
-        uint32_t head = p->kind | p->wall << 2;
+        uint32_t head = (uint32_t)p->kind | (uint32_t)p->wall << 2;
         double x[3];
         gxbp_pass_word(s, &head);
         if (i < cx->node_count) continue;
@@ -3857,7 +3902,7 @@ static GXBP_COLD void gxbp_load_points(gxb_complex *cx, gxb_stream *s, uint32_t 
         double x[3];
         gxbp_pass_word(s, &head);
         gxbp_require_true(s, head < 8 && (head & 3) <= (i < cx->node_count ? 0u : 2u));
-        if (i < cx->node_count) { cx->points[i].wall = head >> 2; continue; }
+        if (i < cx->node_count) { cx->points[i].wall = (uint8_t)(head >> 2); continue; }
         if ((head & 3) == GXB_EXPLICIT) gxb_stream_pass(s, x, 3, sizeof *x);
         else gxb_stream_pass(s, def, 3, sizeof *def);
         if (s->result != GX_OK) return;
@@ -3869,8 +3914,8 @@ static GXBP_COLD void gxbp_load_points(gxb_complex *cx, gxb_stream *s, uint32_t 
             if (s->result == GX_OK) memcpy(cx->points[id].def, def, sizeof def);
         }
         if (s->result != GX_OK) return;
-        cx->points[id].kind = head & 3;
-        cx->points[id].wall = head >> 2;
+        cx->points[id].kind = (uint8_t)(head & 3);
+        cx->points[id].wall = (uint8_t)(head >> 2);
     }
 }
 
@@ -4850,7 +4895,7 @@ static void gxbp_unite(gxb_boolean *b, uint32_t keep, uint32_t drop) {
    coordinates: the ratio's relative error is below 2^-50. */
 static void gxbp_place_point(gxb_boolean *b, uint32_t point, uint32_t kind, uint32_t p, uint32_t q, uint32_t r) {
     gxb_cpoint *c = &b->cx.points[point];
-    c->kind = kind;
+    c->kind = (uint8_t)kind;
     c->def[0] = p; c->def[1] = q; c->def[2] = r;
     gxbp_definition_ball(&b->cx, kind, c->def, &c->ball);
     if (c->ball.error > gxbp_power(-30) * gxbp_max3(c->ball.x)) {
@@ -5700,7 +5745,7 @@ static int gxbp_corner_side(gxb_boolean *b, uint32_t s, int k, uint32_t plane, i
     const uint32_t point = b->sources[s].point[k];
     gxb_cpoint *p = &b->cx.points[point];
     if (p->stamp[slot] != plane + 1) {
-        p->sign[slot] = b->sources[s].plane == plane ? 0 : gxbp_point_side(b, point, plane);
+        p->sign[slot] = (int8_t)(b->sources[s].plane == plane ? 0 : gxbp_point_side(b, point, plane));
         p->stamp[slot] = plane + 1;
     }
     return p->sign[slot];
