@@ -527,7 +527,7 @@ struct gx_body {
     gxp_words pinches;              /* nodes at which sheets separated what meets there only */
     uint32_t *cell_fresh; uint32_t cell_fresh_capacity;     /* cells: index in fresh, where it is there */
     gxp_keys pairs;                 /* node and fresh cell */
-    gxp_keys links;                 /* of fresh cells in turn: the cell behind a piece of a face, and that facet; sorted */
+    gxp_keys links;                 /* of fresh cells in turn: the cell behind a piece of a face, that facet, which of the element's faces; sorted */
     gxp_words link_first;           /* fresh.count + 1, into links */
 };
 
@@ -607,6 +607,9 @@ static void gxp_sort_unique(gxp_words *w) {
 
 #define GXP_FIRST(key) ((uint32_t)((key) >> 32))
 #define GXP_SECOND(key) ((uint32_t)(key))
+#define GXP_LINK_CELL(link) ((uint32_t)((link) >> 33))      /* see gx_body.links: 31, 31 and 2 bits */
+#define GXP_LINK_FACET(link) ((uint32_t)((link) >> 2) & 0x7fffffffu)
+#define GXP_LINK_FACE(link) ((uint32_t)(link) & 3)
 
 static gx_result gxp_keys_room(gx_body *body, gxp_keys *keys, size_t extra) {
     return gxp_reserve(&body->allocator, &keys->data, sizeof *keys->data, keys->count, &keys->capacity, extra);
@@ -1922,10 +1925,16 @@ static gx_result gxp_facet_points(gx_body *body, uint32_t facet) {
     return result;
 }
 
+/* The local node of the element that the face does not have */
+static uint32_t gxp_local_face(const gxb_complex *cx, uint32_t element, uint32_t face) {
+    const uint32_t *faces = cx->element_faces + 4 * (size_t)element;
+    return faces[0] == face ? 0 : faces[1] == face ? 1 : faces[2] == face ? 2 : 3;
+}
+
 /* An element with the face, and the node of it that the face does not have. */
 static uint32_t gxp_face_element(const gxb_complex *cx, uint32_t face, uint32_t *k) {
     const uint32_t element = cx->face_elements[2 * face] != GXB_NONE ? cx->face_elements[2 * face] : cx->face_elements[2 * face + 1];
-    for (*k = 0; cx->element_faces[4 * element + *k] != face; ++*k) {}
+    *k = gxp_local_face(cx, element, face);
     return element;
 }
 
@@ -1952,7 +1961,7 @@ static gx_result gxp_settle_links(gx_body *body) {
         const uint32_t from = body->link_first.data[i], to = body->link_first.data[i + 1];
         uint64_t *link = body->links.data;
         body->cell_fresh[body->fresh.data[i]] = i;
-        for (j = from; j < to; j++) link[j] = (uint64_t)body->leaves[GXP_FIRST(link[j])].cell << 32 | GXP_SECOND(link[j]);
+        for (j = from; j < to; j++) link[j] = (uint64_t)body->leaves[GXP_LINK_CELL(link[j])].cell << 33 | (link[j] & 0x1ffffffffu);
         result = gxp_sort_keys(body, &body->links, from, to);
     }
     return result;
@@ -1967,13 +1976,13 @@ static uint32_t gxp_fresh_index(const gx_body *body, uint32_t cell) {
 /* Share of the link first ... end-1 of its face, roughly, with a bound for its error. */
 static gx_result gxp_rough_share(gx_body *body, uint32_t first, uint32_t end, double *share, double *error) {
     gxb_complex *cx = body->complex;
-    const gxb_cplane *plane = &cx->planes[cx->facets[GXP_SECOND(body->links.data[first])].plane];
+    const gxb_cplane *plane = &cx->planes[cx->facets[GXP_LINK_FACET(body->links.data[first])].plane];
     const double whole = fabs(plane->filter.n[plane->axis]);    /* the normal is a product of two of the face's edges */
     double part, part_error;
     gx_result result = GX_OK;
     *share = *error = 0;
     for (; first < end && result == GX_OK; first++) {
-        result = gxp_rough_area(cx, GXP_SECOND(body->links.data[first]), &part, &part_error);
+        result = gxp_rough_area(cx, GXP_LINK_FACET(body->links.data[first]), &part, &part_error);
         *share += part;
         *error += part_error + plane->filter.error;
     }
@@ -1995,11 +2004,11 @@ static gx_result gxp_is_wide(gxp_cut *cut, uint32_t first, uint32_t end, double 
 /* Share of the link first ... end-1 of its face */
 static gx_result gxp_weigh_link(gx_body *body, uint32_t first, uint32_t end, double *share) {
     uint32_t k;
-    const uint32_t element = gxp_face_element(body->complex, body->complex->facets[GXP_SECOND(body->links.data[first])].face, &k);
+    const uint32_t element = gxp_face_element(body->complex, body->complex->facets[GXP_LINK_FACET(body->links.data[first])].face, &k);
     gx_result result = gxb_complex_open_element(body->complex, element);
     *share = 0;
     for (; first < end && result == GX_OK; first++) {
-        result = gxp_facet_points(body, GXP_SECOND(body->links.data[first]));
+        result = gxp_facet_points(body, GXP_LINK_FACET(body->links.data[first]));
         if (result == GX_OK) *share += gxp_fine_share(body, element, k);
     }
     return result;
@@ -2014,7 +2023,7 @@ static gx_result gxp_judge_link(gxp_cut *cut, uint32_t first, uint32_t end) {
     if (share < cut->report.min_link_ratio) cut->report.min_link_ratio = share;
     if (share >= cut->desc->sever_below) return GX_OK;
     cut->report.severed_links++;
-    for (; first < end && result == GX_OK; first++) result = gxb_complex_set_wall(body->complex, GXP_SECOND(body->links.data[first]));
+    for (; first < end && result == GX_OK; first++) result = gxb_complex_set_wall(body->complex, GXP_LINK_FACET(body->links.data[first]));
     return result;
 }
 
@@ -2030,8 +2039,8 @@ static gx_result gxp_weigh_links(gxp_cut *cut) {
     narrow->count = 0;
     for (i = 0; i < body->fresh.count && result == GX_OK; i++)
         for (first = body->link_first.data[i]; first < body->link_first.data[i + 1] && result == GX_OK; first = end) {
-            const uint32_t other = GXP_FIRST(body->links.data[first]), facet = GXP_SECOND(body->links.data[first]), j = gxp_fresh_index(body, other);
-            for (end = first + 1; end < body->link_first.data[i + 1] && GXP_FIRST(body->links.data[end]) == other; end++) {}
+            const uint32_t other = GXP_LINK_CELL(body->links.data[first]), facet = GXP_LINK_FACET(body->links.data[first]), j = gxp_fresh_index(body, other);
+            for (end = first + 1; end < body->link_first.data[i + 1] && GXP_LINK_CELL(body->links.data[end]) == other; end++) {}
             if (j < i || body->complex->face_facet[body->complex->facets[facet].face] == facet) continue;   /* weighed already, or whole */
             result = gxp_is_wide(cut, first, end, &bound, &wide);
             if (result == GX_OK && !wide) result = gxp_push(body, narrow, first);
@@ -2104,7 +2113,7 @@ static gx_result gxp_walk_leaves(gx_body *body, uint32_t start) {
             const gxb_facet *f = &cx->facets[facet];
             const uint32_t other = f->leaf[f->leaf[0] == leaf];
             if (!gxp_is_link(body, facet)) continue;
-            if (f->face != GXB_NONE) body->links.data[body->links.count++] = (uint64_t)other << 32 | facet;
+            if (f->face != GXB_NONE) body->links.data[body->links.count++] = (uint64_t)other << 33 | (uint64_t)facet << 2 | gxp_local_face(cx, cx->leaves[leaf].element, f->face);
             else if (body->leaves[other].stamp != body->stamp) {
                 body->leaves[other].stamp = body->stamp;
                 result = gxp_push(body, &body->queue, other);
@@ -2230,12 +2239,12 @@ static gx_result gxp_cross_whole_face(gx_body *body, uint32_t element, uint32_t 
     return result;
 }
 
-/* Visits the cells that links of a fresh cell join to it, but across the face opposite to the node. */
-static gx_result gxp_cross_links(gx_body *body, uint32_t index, uint32_t opposite) {
+/* Visits the cells that links of a fresh cell join to it, but across the face opposite to local node k. */
+static gx_result gxp_cross_links(gx_body *body, uint32_t index, uint32_t k) {
     uint32_t i;
     gx_result result = GX_OK;
     for (i = body->link_first.data[index]; i < body->link_first.data[index + 1] && result == GX_OK; i++)
-        if (body->complex->facets[GXP_SECOND(body->links.data[i])].face != opposite) result = gxp_visit_cell(body, GXP_FIRST(body->links.data[i]));
+        if (GXP_LINK_FACE(body->links.data[i]) != k) result = gxp_visit_cell(body, GXP_LINK_CELL(body->links.data[i]));
     return result;
 }
 
@@ -2246,7 +2255,7 @@ static gx_result gxp_cross_faces(gx_body *body, uint32_t cell, uint32_t node) {
     const uint32_t local = (uint32_t)gxp_local_node(body, element, node), opposite = cx->element_faces[4 * element + local];
     uint32_t leaf, first, count, i, k;
     gx_result result = GX_OK;
-    if (fresh != GXP_NONE) return gxp_cross_links(body, fresh, opposite);
+    if (fresh != GXP_NONE) return gxp_cross_links(body, fresh, local);
     for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next) {
         if (cx->leaves[leaf].facet_count == 0) {
             for (k = 0; k < 4 && result == GX_OK; k++) if (k != local) result = gxp_cross_whole_face(body, element, k);

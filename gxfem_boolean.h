@@ -1979,8 +1979,8 @@ static int gxbp_side_of(gxb_complex *cx, const gxb_ball *ball, uint32_t kind, co
 }
 
 GXFEM_API int gxb_complex_side(gxb_complex *cx, uint32_t point, uint32_t plane) {
-    const gxb_cpoint p = cx->points[point];
-    return gxbp_side_of(cx, &p.ball, p.kind, p.def, point, plane);
+    const gxb_cpoint *p = &cx->points[point];
+    return gxbp_side_of(cx, &p->ball, p->kind, p->def, point, plane);
 }
 
 static GXBP_APART int gxbp_new_sign(gxb_complex *cx, uint32_t point, uint32_t plane, int slot) {
@@ -2341,18 +2341,39 @@ static GXBP_APART uint32_t gxbp_count_facets(const gxb_complex *cx, uint32_t fac
     return child == GXB_NONE ? 1 : gxbp_count_facets(cx, child) + gxbp_count_facets(cx, child + 1);
 }
 
-static GXBP_APART void gxbp_push_facets(gxb_complex *cx, uint32_t facet) {
+/* Writes them; returns where the list ends. */
+static GXBP_APART uint32_t *gxbp_list_facets(const gxb_complex *cx, uint32_t facet, uint32_t *out) {
     const uint32_t child = cx->facets[facet].child;
-    if (child == GXB_NONE) cx->pool[cx->pool_count++] = facet;
-    else {
-        gxbp_push_facets(cx, child);
-        gxbp_push_facets(cx, child + 1);
+    if (child != GXB_NONE) return gxbp_list_facets(cx, child + 1, gxbp_list_facets(cx, child, out));
+    *out = facet;
+    return out + 1;
+}
+
+/* How many facets a leaf has when they are resolved */
+static uint32_t gxbp_count_list(const gxb_complex *cx, const gxb_leaf *l) {
+    uint32_t i, count = 0;
+    for (i = 0; i < l->facet_count; i++) {
+        const gxb_facet *f = &cx->facets[cx->pool[l->facets + i]];
+        GXBP_FETCH(cx->pool + f->loop);
+        count += f->child == GXB_NONE ? 1 : gxbp_count_facets(cx, cx->pool[l->facets + i]);
     }
+    return count;
 }
 
 static GXBP_APART uint32_t gxbp_count_edges(const gxb_complex *cx, uint32_t edge) {
     const uint32_t child = cx->edges[edge].child;
     return child == GXB_NONE ? 1 : gxbp_count_edges(cx, child) + gxbp_count_edges(cx, child + 1);
+}
+
+/* How many edges a facet's loop has when it is resolved */
+static uint32_t gxbp_count_loop(const gxb_complex *cx, uint32_t facet) {
+    const gxb_facet *f = &cx->facets[facet];
+    uint32_t i, count = 0;
+    for (i = 0; i < f->loop_count; i++) {
+        const uint32_t edge = cx->pool[f->loop + i] >> 1;
+        count += cx->edges[edge].child == GXB_NONE ? 1 : gxbp_count_edges(cx, edge);
+    }
+    return count;
 }
 
 static void gxbp_push_edges(gxb_complex *cx, uint32_t signed_edge) {
@@ -2366,14 +2387,11 @@ static void gxbp_push_edges(gxb_complex *cx, uint32_t signed_edge) {
 
 GXFEM_API gx_result gxb_facet_edges(gxb_complex *cx, uint32_t facet, uint32_t *first, uint32_t *count) {
     gxb_facet *f = &cx->facets[facet];
-    uint32_t i, total = 0;
-    int divided = 0;
-    for (i = 0; i < f->loop_count; i++) divided |= cx->edges[cx->pool[f->loop + i] >> 1].child != GXB_NONE;
-    if (divided) {
+    const uint32_t total = gxbp_count_loop(cx, facet);
+    if (total != f->loop_count) {
         const uint32_t start = cx->pool_count;
-        gx_result result;
-        for (i = 0; i < f->loop_count; i++) total += gxbp_count_edges(cx, cx->pool[f->loop + i] >> 1);
-        result = GXBP_RESERVE(cx, pool, pool, total);
+        uint32_t i;
+        gx_result result = GXBP_RESERVE(cx, pool, pool, total);
         if (result == GX_OK) result = gxbp_reserve_undo(cx, 1);
         if (result != GX_OK) return result;
         gxbp_save(cx, GXBP_FACETS, facet);
@@ -2389,25 +2407,19 @@ GXFEM_API gx_result gxb_facet_edges(gxb_complex *cx, uint32_t facet, uint32_t *f
 
 GXFEM_API gx_result gxb_leaf_facets(gxb_complex *cx, uint32_t leaf, uint32_t *first, uint32_t *count) {
     gxb_leaf *l = &cx->leaves[leaf];
-    uint32_t i, total = 0;
-    int divided = 0;
-    for (i = 0; i < l->facet_count; i++) {
-        const gxb_facet *f = &cx->facets[cx->pool[l->facets + i]];
-        GXBP_FETCH(cx->pool + f->loop);
-        divided |= f->child != GXB_NONE;
-    }
-    if (divided) {
-        const uint32_t start = cx->pool_count;
-        gx_result result;
-        for (i = 0; i < l->facet_count; i++) total += gxbp_count_facets(cx, cx->pool[l->facets + i]);
-        result = GXBP_RESERVE(cx, pool, pool, total);
+    const uint32_t total = gxbp_count_list(cx, l);
+    if (total != l->facet_count) {
+        uint32_t i, *out;
+        gx_result result = GXBP_RESERVE(cx, pool, pool, total);
         if (result == GX_OK) result = gxbp_reserve_undo(cx, 1);
         if (result != GX_OK) return result;
         gxbp_save(cx, GXBP_LEAVES, leaf);
-        for (i = 0; i < l->facet_count; i++) gxbp_push_facets(cx, cx->pool[l->facets + i]);
+        out = cx->pool + cx->pool_count;
+        for (i = 0; i < l->facet_count; i++) out = gxbp_list_facets(cx, cx->pool[l->facets + i], out);
         cx->pool_live += total - l->facet_count;
-        l->facets = start;
+        l->facets = cx->pool_count;
         l->facet_count = total;
+        cx->pool_count += total;
     }
     *first = l->facets;
     *count = l->facet_count;
@@ -2427,7 +2439,7 @@ static gx_result gxbp_reserve_split(gxb_complex *cx, size_t facets, size_t edges
     if (result == GX_OK) result = GXBP_RESERVE(cx, leaves, leaf, 1);
     if (result == GX_OK) result = GXBP_RESERVE(cx, nodes, tree, 1);
     if (result == GX_OK) result = GXBP_RESERVE(cx, pool, pool, 8 * (edges + facets) + 64);
-    if (result == GX_OK) result = GXBP_RESERVE(cx, scratch, scratch, 4 * (edges + facets) + 64);
+    if (result == GX_OK) result = GXBP_RESERVE(cx, scratch, scratch, 8 * (edges + facets) + 64);
     return result == GX_OK ? gxbp_reserve_undo(cx, edges + 3 * facets + 8) : result;
 }
 
@@ -2490,29 +2502,29 @@ static uint32_t gxbp_facet_signs(gxb_complex *cx, uint32_t facet, const gxbp_kni
 
 static int gxbp_facet_sides(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife) { return (int)(gxbp_facet_signs(cx, facet, knife) & 3); }
 
-/* Divides the edges of a facet that the plane crosses. Its loop is then at *loop in the pool, behind the room for its children's: only there for these.
-   zero: where the two points in the plane start edges. */
-static uint32_t gxbp_split_facet_edges(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife, uint32_t *loop, uint32_t zero[2]) {
-    const uint32_t count = cx->facets[facet].loop_count;
-    const uint32_t *old = cx->pool + cx->facets[facet].loop;
-    uint32_t *list = cx->pool + cx->pool_count + count + 4, n = 0, zeros = 0, i;
-    for (i = 0; i < count; i++) {
-        const uint32_t back = old[i] & 1;
-        const gxb_edge *e = &cx->edges[old[i] >> 1];
-        const int sign = gxbp_sign(cx, e->v[back], knife->plane, knife->slot);
-        uint32_t child = e->child;
-        if (sign == 0 && zeros < 2) zero[zeros++] = n;
-        if (child == GXB_NONE && sign * gxbp_sign(cx, e->v[1 - back], knife->plane, knife->slot) < 0) {
-            child = cx->edge_count;
-            gxbp_split_edge(cx, old[i] >> 1, knife);
-        }
-        if (child == GXB_NONE) { list[n++] = old[i]; continue; }
-        list[n++] = (child + back) << 1 | back;
-        if (zeros < 2) zero[zeros++] = n;
-        list[n++] = (child + 1 - back) << 1 | back;
+/* A facet's loop while it is divided: in the middle of complex.scratch. zero: where the two points in the plane start edges. */
+typedef struct gxbp_parting { uint32_t *loop, count, zero[2], zeros; } gxbp_parting;
+
+/* Appends an edge, or what it has been divided into; divides what the plane crosses. */
+static void gxbp_part_edge(gxb_complex *cx, uint32_t signed_edge, const gxbp_knife *knife, gxbp_parting *parting) {
+    const uint32_t back = signed_edge & 1;
+    const gxb_edge *e = &cx->edges[signed_edge >> 1];
+    uint32_t child = e->child;
+    if (child != GXB_NONE) {
+        gxbp_part_edge(cx, (child + back) << 1 | back, knife, parting);
+        gxbp_part_edge(cx, (child + 1 - back) << 1 | back, knife, parting);
+        return;
     }
-    *loop = cx->pool_count + count + 4;
-    return n;
+    {
+        const int sign = gxbp_sign(cx, e->v[back], knife->plane, knife->slot);
+        if (sign == 0 && parting->zeros < 2) parting->zero[parting->zeros++] = parting->count;
+        if (sign * gxbp_sign(cx, e->v[1 - back], knife->plane, knife->slot) >= 0) { parting->loop[parting->count++] = signed_edge; return; }
+    }
+    child = cx->edge_count;
+    gxbp_split_edge(cx, signed_edge >> 1, knife);
+    parting->loop[parting->count++] = (child + back) << 1 | back;
+    if (parting->zeros < 2) parting->zero[parting->zeros++] = parting->count;
+    parting->loop[parting->count++] = (child + 1 - back) << 1 | back;
 }
 
 static void gxbp_copy_arc(gxb_complex *cx, const uint32_t *loop, uint32_t count, uint32_t from, uint32_t to, uint32_t closing, gxb_facet *child) {
@@ -2523,29 +2535,30 @@ static void gxbp_copy_arc(gxb_complex *cx, const uint32_t *loop, uint32_t count,
     child->loop_count = cx->pool_count - child->loop;
 }
 
-/* Divides a facet that has points on both sides of the plane, and whose edges are resolved. Its children are child (in front) and child + 1. Returns the
-   new edge, signed as the front child walks it. */
+/* Divides a facet that has points on both sides of the plane. Its children are child (in front) and child + 1. Returns the new edge, signed as the front
+   child walks it. */
 static uint32_t gxbp_split_facet(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife) {
-    const uint32_t child = cx->facet_count;
-    uint32_t line[2], zero[2] = {0, 0}, edge, front, first, count;
-    const uint32_t *loop;
-    gxb_facet f;
-    count = gxbp_split_facet_edges(cx, facet, knife, &first, zero);
-    loop = cx->pool + first;
-    f = cx->facets[facet];
+    const gxb_facet f = cx->facets[facet];
+    const uint32_t child = cx->facet_count, *zero;
+    uint32_t line[2], edge, front, i;
+    gxbp_parting parting;
+    memset(&parting, 0, sizeof parting);
+    parting.loop = cx->scratch + cx->scratch_capacity / 4;
+    zero = parting.zero;
+    for (i = 0; i < f.loop_count; i++) gxbp_part_edge(cx, cx->pool[f.loop + i], knife, &parting);
     line[0] = knife->explicit_line ? knife->line[0] : f.plane;
     line[1] = knife->explicit_line ? knife->line[1] : knife->plane;
-    edge = gxbp_new_edge(cx, gxbp_edge_start(cx, loop[zero[0]]), gxbp_edge_start(cx, loop[zero[1]]), line, (uint32_t)knife->explicit_line);
-    front = gxbp_sign(cx, gxbp_edge_start(cx, loop[zero[0] + 1]), knife->plane, knife->slot) > 0 ? 0u : 1u;
+    edge = gxbp_new_edge(cx, gxbp_edge_start(cx, parting.loop[zero[0]]), gxbp_edge_start(cx, parting.loop[zero[1]]), line, (uint32_t)knife->explicit_line);
+    front = gxbp_sign(cx, gxbp_edge_start(cx, parting.loop[zero[0] + 1]), knife->plane, knife->slot) > 0 ? 0u : 1u;
     gxbp_save(cx, GXBP_FACETS, facet);
     cx->facets[facet].child = child;
     cx->facets[child] = f;
     cx->facets[child + 1] = f;
     /* arc 0 runs from zero[0] to zero[1] and is closed backwards along the edge, arc 1 is the rest, closed forwards */
-    gxbp_copy_arc(cx, loop, count, zero[front], zero[1 - front], edge << 1 | (1u - front), &cx->facets[child]);
-    gxbp_copy_arc(cx, loop, count, zero[1 - front], zero[front], edge << 1 | front, &cx->facets[child + 1]);
+    gxbp_copy_arc(cx, parting.loop, parting.count, zero[front], zero[1 - front], edge << 1 | (1u - front), &cx->facets[child]);
+    gxbp_copy_arc(cx, parting.loop, parting.count, zero[1 - front], zero[front], edge << 1 | front, &cx->facets[child + 1]);
     cx->facet_count += 2;
-    cx->pool_live += count + 2 - f.loop_count;
+    cx->pool_live += parting.count + 2 - f.loop_count;
     return edge << 1 | (1u - front);
 }
 
@@ -2553,8 +2566,14 @@ static uint32_t gxbp_split_facet(gxb_complex *cx, uint32_t facet, const gxbp_kni
 
 typedef struct gxbp_rim { uint32_t first, count; } gxbp_rim;    /* signed edges in complex.scratch */
 
+/* Adds an edge, or what it has been divided into. */
 static void gxbp_add_rim(gxb_complex *cx, gxbp_rim *rim, uint32_t signed_edge) {
     gxb_edge *e = &cx->edges[signed_edge >> 1];
+    if (e->child != GXB_NONE) {
+        gxbp_add_rim(cx, rim, e->child << 1 | (signed_edge & 1));
+        gxbp_add_rim(cx, rim, (e->child + 1) << 1 | (signed_edge & 1));
+        return;
+    }
     if (e->stamp == cx->edge_stamp) return;
     e->stamp = cx->edge_stamp;
     cx->scratch[rim->first + rim->count++] = signed_edge;
@@ -2597,20 +2616,19 @@ static void gxbp_move_facet(gxb_complex *cx, uint32_t facet, uint32_t from, uint
     cx->facets[facet].leaf[cx->facets[facet].leaf[0] == from ? 0 : 1] = to;
 }
 
-/* Divides a leaf whose inside the plane meets; its facets are resolved and room is reserved. The leaf becomes the half in front, the
+/* Divides a leaf whose inside the plane meets and which is ready: its facets and their signs are in complex.scratch. It becomes the half in front, the
    new one lies behind. Returns the facet between them. */
 static uint32_t gxbp_split_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife *knife) {
-    const uint32_t behind = cx->leaf_count++, first = cx->leaves[leaf].facets, count = cx->leaves[leaf].facet_count;
+    const uint32_t behind = cx->leaf_count++, listed = cx->leaves[leaf].facet_count, count = cx->scratch_count / 2;
     gxbp_rim rim;
     uint32_t *front_list, *behind_list, fronts = 0, behinds = 0, i, middle;
-    rim.first = 0; rim.count = 0;
+    rim.first = 2 * count; rim.count = 0;
     cx->edge_stamp++;
     front_list = cx->scratch + cx->scratch_capacity - 2 * count - 2;
     behind_list = cx->scratch + cx->scratch_capacity - count - 1;
     for (i = 0; i < count; i++) {
-        const uint32_t facet = cx->pool[first + i];
+        const uint32_t facet = cx->scratch[i], signs = cx->scratch[count + i], sides = signs & 3;
         const uint32_t inward = cx->facets[facet].leaf[0] == leaf ? 1u : 0u;     /* its normal points into the leaf */
-        const uint32_t signs = gxbp_facet_signs(cx, facet, knife), sides = signs & 3;
         if (sides == 3) {
             const uint32_t edge = gxbp_split_facet(cx, facet, knife), child = cx->facets[facet].child;
             gxbp_add_rim(cx, &rim, edge ^ inward);
@@ -2640,7 +2658,8 @@ static uint32_t gxbp_split_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife
     cx->leaves[behind].facets = cx->pool_count;
     cx->leaves[behind].facet_count = behinds;
     for (i = 0; i < behinds; i++) cx->pool[cx->pool_count++] = behind_list[i];
-    cx->pool_live += fronts + behinds - count;
+    cx->pool_live += fronts + behinds - listed;
+    cx->scratch_count = 0;
     return middle;
 }
 
@@ -2854,20 +2873,20 @@ static void gxbp_set_knife(const gxb_triangle *t, uint32_t k, gxbp_knife *knife)
 
 /* Labels the part of a facet, in the triangle's plane, that the triangle covers; edges: bit k where edge k may bound that part. */
 static gx_result gxbp_cover_facet(gxb_complex *cx, gxb_triangle *t, uint32_t facet, uint32_t edges) {
-    uint32_t k, first, count;
+    uint32_t k;
     for (k = 0; k < 3; k++) {
         gxbp_knife knife;
         gx_result result;
         int front, sides;
         if (!(edges >> k & 1)) continue;
         result = gxbp_edge_plane(cx, t, k, &front);
-        if (result == GX_OK) result = gxb_facet_edges(cx, facet, &first, &count);
-        if (result == GX_OK) result = gxbp_reserve_split(cx, 1, count);
         if (result != GX_OK) return result;
         gxbp_set_knife(t, k, &knife);
         cx->stamp[1]++;
         sides = gxbp_facet_sides(cx, facet, &knife);
         if (sides == 3) {
+            result = gxbp_reserve_split(cx, 1, gxbp_count_loop(cx, facet));
+            if (result != GX_OK) return result;
             gxbp_split_facet(cx, facet, &knife);
             facet = cx->facets[facet].child + (front > 0 ? 0u : 1u);
         } else if (sides != (front > 0 ? 1 : 2)) return GX_OK;      /* outside of the triangle */
@@ -2936,19 +2955,14 @@ GXFEM_API GXBP_RARE gx_result gxb_complex_cover_node(gxb_complex *cx, gxb_triang
 
 /* The triangle lies in the plane of some of the leaf's facets. */
 static gx_result gxbp_cover_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t leaf) {
-    gxbp_knife knife;
-    uint32_t first, count, i, j, edge_first, edge_count;
+    uint32_t first, count, i, j;
     gx_result result = gxb_leaf_facets(cx, leaf, &first, &count);
-    memset(&knife, 0, sizeof knife);
-    knife.plane = t->plane;
     for (i = 0; i < count && result == GX_OK; i++) {
         uint32_t facet = cx->pool[first + i];
         for (j = 0; j < cx->facets[facet].loop_count; j++) {
             if (gxbp_sign(cx, gxbp_edge_start(cx, cx->pool[cx->facets[facet].loop + j]), t->plane, 0) != 0) break;
         }
-        if (j < cx->facets[facet].loop_count) continue;
-        result = gxb_facet_edges(cx, facet, &edge_first, &edge_count);
-        if (result == GX_OK) result = gxbp_cover_facet(cx, t, facet, 7);
+        if (j == cx->facets[facet].loop_count) result = gxbp_cover_facet(cx, t, facet, 7);
     }
     return result;
 }
@@ -3113,16 +3127,24 @@ static uint32_t *gxbp_reference(gxb_complex *cx, const gxbp_task *task, uint32_t
     return task->parent == GXBP_IN_ROOT ? &cx->root[element] : &cx->nodes[task->parent].child[task->side];
 }
 
-/* Resolves the leaf's facets and their edges, and reserves room to divide it. */
-static gx_result gxbp_ready_leaf(gxb_complex *cx, uint32_t leaf) {
-    uint32_t first, count, i, e0, en;
+/* Lists the leaf's facets and then their signs in complex.scratch, and reserves room to divide it. */
+static gx_result gxbp_ready_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife *knife) {
+    const gxb_leaf *l = &cx->leaves[leaf];
+    const uint32_t count = gxbp_count_list(cx, l);
+    uint32_t *out, i;
     size_t edges = 0;
-    gx_result result = gxb_leaf_facets(cx, leaf, &first, &count);
-    for (i = 0; i < count && result == GX_OK; i++) {
-        result = gxb_facet_edges(cx, cx->pool[first + i], &e0, &en);
-        edges += en;
+    gx_result result = GXBP_RESERVE(cx, scratch, scratch, 2 * count);
+    if (result != GX_OK) return result;
+    out = cx->scratch;
+    for (i = 0; i < l->facet_count; i++) out = gxbp_list_facets(cx, cx->pool[l->facets + i], out);
+    for (i = 0; i < count; i++) {
+        const uint32_t facet = cx->scratch[i], signs = cx->scratch[count + i] = gxbp_facet_signs(cx, facet, knife);
+        if ((signs & 3) == 3 || signs >= 8) edges += gxbp_count_loop(cx, facet);
     }
-    return result == GX_OK ? gxbp_reserve_split(cx, count, edges) : result;
+    cx->scratch_count = 2 * count;      /* these stay where scratch moves */
+    result = gxbp_reserve_split(cx, count, edges);
+    if (result != GX_OK) cx->scratch_count = 0;
+    return result;
 }
 
 /* Divides a leaf that is ready and hangs at the task's place; *node takes that place. Returns the facet between the halves. */
@@ -3250,7 +3272,7 @@ static GXBP_COLD gx_result gxbp_relieve_leaf(gxb_complex *cx, const gxbp_task *t
         cx->plane_count = planes;
     }
     if (k == ranks) return GX_OK;
-    result = gxbp_ready_leaf(cx, leaf);
+    result = gxbp_ready_leaf(cx, leaf, &knife);
     if (result == GX_OK) gxbp_part_leaf(cx, leaf, &knife, task, node);
     return result;
 }
@@ -3261,14 +3283,15 @@ static gx_result gxbp_divide_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t lea
     gxbp_knife knife;
     gxbp_task half;
     uint32_t i, edges = 0, middle, node, freed[2] = {GXB_NONE, GXB_NONE};
-    gx_result result = gxbp_ready_leaf(cx, leaf);
+    gx_result result;
+    memset(&knife, 0, sizeof knife);
+    knife.plane = t->plane;
+    result = gxbp_ready_leaf(cx, leaf, &knife);
     if (result != GX_OK) return result;
     for (i = 0; i < task->count; i++) {
         const uint32_t carrier = cx->corners[task->first + i].carrier;
         if (carrier >= GXBP_TRIANGLE_EDGE) edges |= 1u << (carrier - GXBP_TRIANGLE_EDGE);
     }
-    memset(&knife, 0, sizeof knife);
-    knife.plane = t->plane;
     middle = gxbp_part_leaf(cx, leaf, &knife, task, &node);
     result = gxbp_cover_facet(cx, t, middle, edges);
     half.parent = node;
