@@ -2063,8 +2063,13 @@ static gx_result gxp_collect_touched(gxp_cut *cut) {
     body->seeds.count = 0;
     for (i = 0; i < body->complex->wall_count && result == GX_OK; i++)
         if (body->complex->facets[body->complex->walls[i]].wall) result = gxp_wall_leaves(body, body->complex->walls[i], &body->seeds);
-    for (i = 0; i < body->seeds.count && result == GX_OK; i++)
-        if (!body->complex->leaves[body->seeds.data[i]].removed) result = gxp_push(body, &body->touched, body->leaves[body->seeds.data[i]].cell);
+    body->stamp++;
+    for (i = 0; i < body->seeds.count && result == GX_OK; i++) {
+        const uint32_t cell = body->leaves[body->seeds.data[i]].cell;
+        if (body->complex->leaves[body->seeds.data[i]].removed || body->cell_stamp[cell] == body->stamp) continue;
+        body->cell_stamp[cell] = body->stamp;
+        result = gxp_push(body, &body->touched, cell);
+    }
     gxp_sort_unique(&body->touched);
     return result;
 }

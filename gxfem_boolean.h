@@ -3348,21 +3348,31 @@ static uint32_t gxbp_choose_section(const int sign[4], uint8_t corners[4][3]) {
     return 3;
 }
 
-/* Pushes a corner of the section: node j, or the point of the edge between nodes i and j. */
-static void gxbp_push_section_corner(gxb_complex *cx, const gxb_triangle *t, uint32_t i, uint32_t j, int sign, uint32_t carrier) {
+/* The point that has divided a mesh edge first, if the plane has done that, as for another element around the edge; GXB_NONE: it has not. */
+static uint32_t gxbp_made_crossing(const gxb_complex *cx, uint32_t mesh_edge, uint32_t plane) {
+    const uint32_t child = cx->edges[cx->mesh_edge[mesh_edge]].child;
+    const uint32_t point = child != GXB_NONE ? cx->edges[child].v[1] : GXB_NONE;
+    return point != GXB_NONE && cx->points[point].kind == GXB_LINE_PLANE && cx->points[point].def[2] == plane ? point : GXB_NONE;
+}
+
+/* Pushes a corner of an element's section: local node j, or the point of the edge between nodes i and j. */
+static void gxbp_push_section_corner(gxb_complex *cx, const gxb_triangle *t, uint32_t element, uint32_t i, uint32_t j, int sign, uint32_t carrier) {
+    const uint32_t *node = cx->elements + 4 * (size_t)element, p = node[i], q = node[j];
     gxbp_corner *c = &cx->corners[cx->corner_count++];
     memset(c, 0, sizeof *c);
     c->carrier = carrier;
     c->point = GXB_NONE;
     if (sign == 0) {
         c->kind = GXB_EXPLICIT;
-        c->point = j;
-        c->ball = cx->points[j].ball;
+        c->point = q;
+        c->ball = cx->points[q].ball;
         return;
     }
     c->kind = GXB_LINE_PLANE;
-    c->def[0] = i < j ? i : j; c->def[1] = i < j ? j : i; c->def[2] = t->plane;
-    gxbp_definition_ball(cx, c->kind, c->def, &c->ball);
+    c->def[0] = p < q ? p : q; c->def[1] = p < q ? q : p; c->def[2] = t->plane;
+    c->point = gxbp_made_crossing(cx, cx->element_edges[6 * element + gxbp_local_edge(i, j)], t->plane);
+    if (c->point != GXB_NONE) c->ball = cx->points[c->point].ball;
+    else gxbp_definition_ball(cx, c->kind, c->def, &c->ball);
 }
 
 /* Signs of corners: 1 on the triangle's side of its edge k, -1 beyond. Bit 1 of *sides: some are on its side, bit 2: some beyond. */
@@ -3413,7 +3423,6 @@ static void gxbp_push_triangle(gxb_complex *cx, const gxb_triangle *t) {
 /* What of the triangle lies in an element, on both sides of whose plane it has nodes, or three in the plane: the triangle itself, or the plane's section
    clipped by the triangle's edges. task->count 0: nothing. */
 static gx_result gxbp_clip_to_element(gxb_complex *cx, gxb_triangle *t, uint32_t element, const int sign[4], gxbp_task *task) {
-    const uint32_t *node = cx->elements + 4 * (size_t)element;
     uint8_t corners[4][3];
     uint32_t k, first;
     int sides;
@@ -3425,7 +3434,7 @@ static gx_result gxbp_clip_to_element(gxb_complex *cx, gxb_triangle *t, uint32_t
     if (gxbp_triangle_is_inside(cx, t, element)) { gxbp_push_triangle(cx, t); return GX_OK; }
     task->count = gxbp_choose_section(sign, corners);
     for (k = 0; k < task->count; k++)
-        gxbp_push_section_corner(cx, t, node[corners[k][0]], node[corners[k][1]], sign[corners[k][1]], gxbp_face_plane(cx, element, corners[k][2]));
+        gxbp_push_section_corner(cx, t, element, corners[k][0], corners[k][1], sign[corners[k][1]], gxbp_face_plane(cx, element, corners[k][2]));
     for (k = 0; k < 3 && task->count > 0; k++) {
         result = gxbp_edge_sides(cx, t, k, task->first, task->count, &sides);
         if (result != GX_OK) return result;
