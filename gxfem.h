@@ -1642,24 +1642,33 @@ static uint32_t gxp_curve_place(const gxp_cut *cut, const gxp_surface *s, uint32
     return place;
 }
 
+enum { GXP_LAST_ROUND = 31, GXP_EXPECTED = 7 };    /* at most so many times more than rounds before the last have made */
+
 /* Inserts the triangles in rounds, each eight times as large as the one before it: planes in random order make shallow trees. Within a round
    they come along a curve, so that an element's triangles find its data in the cache [Amenta, Choi, Rote, Incremental constructions
-   con BRIO (2003)]. Always the same order. */
+   con BRIO (2003)]. Always the same order. The rounds before the last one, which is most of all, tell how much room that will take. */
 static gx_result gxp_insert_surface(gxp_cut *cut, gxp_surface *s, int scoped) {
     const uint32_t count = (uint32_t)s->given->triangle_count;
     gx_body *body = cut->body;
-    uint32_t i;
+    uint32_t i, before = 0;
     gx_result result;
     body->pairs.count = 0;
     result = gxp_keys_room(body, &body->pairs, 2 * (size_t)count);      /* sorting takes as much again */
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint64_t random = gxp_mix(i);
-        uint32_t round = 31;
-        while (round > 16 && !(random >> 3 * (31 - round) & 7)) round--;
+        uint32_t round = GXP_LAST_ROUND;
+        while (round > 16 && !(random >> 3 * (GXP_LAST_ROUND - round) & 7)) round--;
+        before += round < GXP_LAST_ROUND && !s->flat[i];
         if (!s->flat[i]) result = gxp_push_key(body, &body->pairs, round << 27 | gxp_curve_place(cut, s, i), i);
     }
     if (result == GX_OK) result = gxp_sort_keys(body, &body->pairs, 0, body->pairs.count);
-    for (i = 0; i < body->pairs.count && result == GX_OK; i++) result = gxp_insert_triangle(cut, s, GXP_SECOND(body->pairs.data[i]), scoped);
+    for (i = 0; i < body->pairs.count && result == GX_OK; i++) {
+        if (i == before && before >= 4) {
+            const uint32_t times = (body->pairs.count - before) / before;
+            gxb_complex_reserve(body->complex, times < GXP_EXPECTED ? times : GXP_EXPECTED);
+        }
+        result = gxp_insert_triangle(cut, s, GXP_SECOND(body->pairs.data[i]), scoped);
+    }
     return result;
 }
 
@@ -2203,6 +2212,7 @@ static gx_result gxp_divide_cells(gxp_cut *cut) {
     gx_result result = gxp_reserve(&body->allocator, &body->saved_cells, sizeof *body->saved_cells, body->saved_cell_count,
                                    &body->saved_cell_capacity, 4 * (size_t)body->touched.count);
     if (result == GX_OK) result = gxp_keys_room(body, &body->links, 16 * (size_t)body->touched.count);
+    if (result == GX_OK) result = gxp_reserve_cells(body, body->touched.count);
     body->fresh.count = body->links.count = body->link_first.count = 0;
     body->stamp++;
     for (i = 0; i < body->touched.count && result == GX_OK; i++) {

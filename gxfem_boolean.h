@@ -31,7 +31,7 @@
  *     >>predicates  of coordinates: gxb_orient2d, orient3d, incircle, insphere, winding_number; gxb_plane_init; points that are given, on a
  *                   line and a plane, on three planes: gxb_point_explicit, line_plane, three_planes; of these: gxb_side, compare,
  *                   orient_in_plane
- *     >>complex     the cell complex (points, planes, edges, facets, leaves): gxb_complex_create, destroy; begin, commit, rollback;
+ *     >>complex     the cell complex (points, planes, edges, facets, leaves): gxb_complex_create, destroy; begin, commit, rollback, reserve;
  *                   to divide: add_point, add_plane, insert, open_element, cover_edge, cover_node, set_wall, set_removed;
  *                   to read: gxb_leaf_facets, gxb_facet_edges; to ask: gxb_complex_side, turn, compare, winding, barycentric, support,
  *                   barycentric_fine
@@ -343,6 +343,10 @@ GXFEM_API void gxb_complex_destroy(gxb_complex *complex);
 GXFEM_API void gxb_complex_begin(gxb_complex *complex);
 GXFEM_API void gxb_complex_commit(gxb_complex *complex);
 GXFEM_API void gxb_complex_rollback(gxb_complex *complex);
+
+/* Makes room for so many times more of everything as has been made since begin, where there is memory for that: early in a large transaction it saves
+   arrays from being moved many times. Nothing else depends on it. */
+GXFEM_API void gxb_complex_reserve(gxb_complex *complex, uint32_t times);
 
 /* Errors: NOT_FINITE, RANGE, MEMORY, LIMIT. */
 GXFEM_API gx_result gxb_complex_add_point(gxb_complex *complex, const double x[3], uint32_t *point);
@@ -2312,12 +2316,23 @@ typedef struct gxbp_task { uint32_t parent, side, first, count, coplanar; } gxbp
 #define GXBP_TRIANGLE_EDGE 0x80000000u
 #define GXBP_IN_ROOT GXB_NONE   /* task.parent: the reference is the element's root */
 
-static const gxbp_array gxbp_complex_arrays[] = {
+static const gxbp_array gxbp_complex_arrays[] = {      /* the first eight as in complex.mark */
     GXBP_ARRAY(gxb_complex, points), GXBP_ARRAY(gxb_complex, planes), GXBP_ARRAY(gxb_complex, edges), GXBP_ARRAY(gxb_complex, facets),
     GXBP_ARRAY(gxb_complex, leaves), GXBP_ARRAY(gxb_complex, nodes), GXBP_ARRAY(gxb_complex, labels), GXBP_ARRAY(gxb_complex, pool),
     GXBP_ARRAY(gxb_complex, walls), GXBP_ARRAY(gxb_complex, undo), GXBP_ARRAY(gxb_complex, undo_bytes), GXBP_ARRAY(gxb_complex, corners),
     GXBP_ARRAY(gxb_complex, tasks), GXBP_ARRAY(gxb_complex, scratch)
 };
+
+/* An array grows to what is expected or by half, whichever is more: gxbp_reserve adds half of what it is asked for. */
+GXFEM_API GXBP_RARE void gxb_complex_reserve(gxb_complex *cx, uint32_t times) {
+    uint32_t k;
+    for (k = 0; k < 8; k++) {       /* those with marks, which stand first */
+        unsigned char *at = (unsigned char *)cx + gxbp_complex_arrays[k].at;
+        const size_t count = gxbp_extent_of(at)[0], capacity = gxbp_extent_of(at)[1], need = count + (count - cx->mark[k]) * times;
+        const size_t ask = need / 3 * 2 > capacity ? need / 3 * 2 : capacity;
+        if (need > capacity) (void)gxbp_reserve(cx, at, gxbp_complex_arrays[k].item, ask + 1 - count);
+    }
+}
 
 GXFEM_API GXBP_RARE void gxb_complex_destroy(gxb_complex *cx) {
     gx_allocator a;

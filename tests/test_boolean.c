@@ -500,6 +500,7 @@ static gx_result insert_cut(gxb_complex *cx, const scene *s, inserted *in, uint3
     t->wall = 1;
     if (result == GX_OK) result = gxb_complex_add_plane(cx, t);
     for (e = 0; e < s->element_count && result == GX_OK; e++) result = gxb_complex_insert(cx, t, e, NULL, NULL);
+    gxb_complex_reserve(cx, 1 + c % 3);     /* changes nothing, whether there is memory for it or not */
     return result;
 }
 
