@@ -2036,30 +2036,46 @@ static gx_result gxp_judge_link(gxp_cut *cut, uint32_t first, uint32_t end) {
     return result;
 }
 
-/* Weighs the links of fresh cells, but whole faces: all roughly, exactly those that may be the smallest or are to be severed. All pieces of a face between
-   the same two cells count as one link. */
-static gx_result gxp_weigh_links(gxp_cut *cut) {
+/* Weighs the links of a fresh cell roughly, but whole faces and those of fresh cells before it. All pieces of a face between the same two cells count as
+   one link. Those that may be the smallest or are to be severed go to body->nodes. *bound: of the smallest so far. */
+static gx_result gxp_weigh_links(gxp_cut *cut, uint32_t index, double *bound) {
     gx_body *body = cut->body;
-    gxp_words *narrow = &body->nodes;
-    double bound = 1;
-    uint32_t i, first, end;
+    const uint32_t last = body->link_first.data[index + 1];
+    uint32_t first, end;
     int wide = 1;
     gx_result result = GX_OK;
-    narrow->count = 0;
-    for (i = 0; i < body->fresh.count && result == GX_OK; i++)
-        for (first = body->link_first.data[i]; first < body->link_first.data[i + 1] && result == GX_OK; first = end) {
-            const uint32_t other = GXP_LINK_CELL(body->links.data[first]), facet = GXP_LINK_FACET(body->links.data[first]), j = gxp_fresh_index(body, other);
-            for (end = first + 1; end < body->link_first.data[i + 1] && GXP_LINK_CELL(body->links.data[end]) == other; end++) {}
-            if (j < i || body->complex->face_facet[body->complex->facets[facet].face] == facet) continue;   /* weighed already, or whole */
-            result = gxp_is_wide(cut, first, end, &bound, &wide);
-            if (result == GX_OK && !wide) result = gxp_push(body, narrow, first);
-            if (result == GX_OK && !wide) result = gxp_push(body, narrow, end);
-        }
+    for (first = body->link_first.data[index]; first < last && result == GX_OK; first = end) {
+        const uint32_t other = GXP_LINK_CELL(body->links.data[first]), facet = GXP_LINK_FACET(body->links.data[first]);
+        for (end = first + 1; end < last && GXP_LINK_CELL(body->links.data[end]) == other; end++) {}
+        if (gxp_fresh_index(body, other) < index || body->complex->face_facet[body->complex->facets[facet].face] == facet) continue;
+        result = gxp_is_wide(cut, first, end, bound, &wide);
+        if (result == GX_OK && !wide) result = gxp_push(body, &body->nodes, first);
+        if (result == GX_OK && !wide) result = gxp_push(body, &body->nodes, end);
+    }
+    return result;
+}
+
+/* Weighs exactly what is still among the smallest, or is to be severed. */
+static gx_result gxp_judge_links(gxp_cut *cut, double bound) {
+    const gxp_words *narrow = &cut->body->nodes;
+    uint32_t i;
+    int wide = 1;
+    gx_result result = GX_OK;
     for (i = 0; i + 1 < narrow->count && result == GX_OK; i += 2) {
         result = gxp_is_wide(cut, narrow->data[i], narrow->data[i + 1], &bound, &wide);
         if (result == GX_OK && !wide) result = gxp_judge_link(cut, narrow->data[i], narrow->data[i + 1]);
     }
     return result;
+}
+
+/* Severs the links that are small enough. */
+static gx_result gxp_sever_links(gxp_cut *cut) {
+    double bound = 1;
+    uint32_t i;
+    gx_result result = GX_OK;
+    cut->body->nodes.count = 0;
+    for (i = 0; i < cut->body->fresh.count && result == GX_OK; i++) result = gxp_weigh_links(cut, i, &bound);
+    return result == GX_OK ? gxp_judge_links(cut, bound) : result;
 }
 
 /* >>cells: the touched ones fall apart ---------------------------------------------------------------------------------------- */
@@ -2864,30 +2880,36 @@ static gx_result gxp_arrange(gxp_cut *cut) {
 static gx_result gxp_enrich(gxp_cut *cut) {
     gx_result result = gxp_collect_touched(cut);
     if (result == GX_OK) result = gxp_divide_cells(cut);
-    if (result == GX_OK) result = gxp_weigh_links(cut);
+    if (result == GX_OK && cut->desc->sever_below > 0) result = gxp_sever_links(cut);
     if (result == GX_OK && cut->report.severed_links > 0) result = gxp_touch_severed(cut);
     return result == GX_OK ? gxp_divide_nodes(cut) : result;
 }
 
+/* The integrals of a fresh cell, and of all others of its element, unless they are many. *before: the element of the fresh cell before it */
+static gx_result gxp_integrate_fresh(gx_body *body, uint32_t cell, uint32_t *before) {
+    const uint32_t element = body->cells[cell].element;
+    if (body->cell_stamp[element] == body->stamp) return GX_OK;
+    gxp_clear_boundary(body, element != *before);
+    *before = element;
+    if (!gxp_has_few_cells(body, element)) return gxp_integrate_cell(body, cell, gxp_element_volume(body, element));
+    body->cell_stamp[element] = body->stamp;
+    return gxp_integrate_element(body, element);
+}
+
+/* Links are weighed here, where their facets are looked at anyway, unless they were before, to be severed. */
 static gx_result gxp_integrate(gxp_cut *cut) {
     gx_body *body = cut->body;
-    const uint32_t *fresh = body->fresh.data;
+    const int weighed = cut->desc->sever_below > 0;
+    double bound = 1;
     uint32_t i, before = GXP_NONE;
     gx_result result = gxp_integrate_removed(cut, &body->removed);
+    body->nodes.count = 0;
     body->stamp++;
     for (i = 0; i < body->fresh.count && result == GX_OK; i++) {
-        const uint32_t element = body->cells[fresh[i]].element;
-        if (body->cell_stamp[element] == body->stamp) continue;
-        gxp_clear_boundary(body, element != before);
-        before = element;
-        if (!gxp_has_few_cells(body, element)) {
-            result = gxp_integrate_cell(body, fresh[i], gxp_element_volume(body, element));
-            continue;
-        }
-        body->cell_stamp[element] = body->stamp;
-        result = gxp_integrate_element(body, element);
+        if (!weighed) result = gxp_weigh_links(cut, i, &bound);
+        if (result == GX_OK) result = gxp_integrate_fresh(body, body->fresh.data[i], &before);
     }
-    return result;
+    return result == GX_OK ? gxp_judge_links(cut, bound) : result;
 }
 
 static gx_result gxp_check_cut(gxp_cut *cut) {
