@@ -1642,7 +1642,8 @@ static uint32_t gxp_curve_place(const gxp_cut *cut, const gxp_surface *s, uint32
     return place;
 }
 
-enum { GXP_LAST_ROUND = 31, GXP_EXPECTED = 7 };    /* at most so many times more than rounds before the last have made */
+#define GXP_LAST_ROUND 31u
+#define GXP_EXPECTED 7u     /* room for at most so many times more than rounds before the last have made */
 
 /* Inserts the triangles in rounds, each eight times as large as the one before it: planes in random order make shallow trees. Within a round
    they come along a curve, so that an element's triangles find its data in the cache [Amenta, Choi, Rote, Incremental constructions
