@@ -527,7 +527,7 @@ struct gx_body {
     gxp_words pinches;              /* nodes at which sheets separated what meets there only */
     uint32_t *cell_fresh; uint32_t cell_fresh_capacity;     /* cells: index in fresh, where it is there */
     gxp_keys pairs;                 /* node and fresh cell */
-    gxp_keys links;                 /* of fresh cells in turn: the cell behind a piece of a face, and that facet; sorted */
+    gxp_keys links;                 /* of fresh cells in turn: the cell behind a piece of a face, that facet, which of the element's faces; sorted */
     gxp_words link_first;           /* fresh.count + 1, into links */
 };
 
@@ -607,6 +607,9 @@ static void gxp_sort_unique(gxp_words *w) {
 
 #define GXP_FIRST(key) ((uint32_t)((key) >> 32))
 #define GXP_SECOND(key) ((uint32_t)(key))
+#define GXP_LINK_CELL(link) ((uint32_t)((link) >> 33))      /* see gx_body.links: 31, 31 and 2 bits */
+#define GXP_LINK_FACET(link) ((uint32_t)((link) >> 2) & 0x7fffffffu)
+#define GXP_LINK_FACE(link) ((uint32_t)(link) & 3)
 
 static gx_result gxp_keys_room(gx_body *body, gxp_keys *keys, size_t extra) {
     return gxp_reserve(&body->allocator, &keys->data, sizeof *keys->data, keys->count, &keys->capacity, extra);
@@ -627,15 +630,15 @@ static void gxp_sort_few_keys(uint64_t *key, uint32_t count) {
     }
 }
 
-/* Sorts keys from..., ascending: few by insertion, many by digits of 8 bits from the lowest on, but those in which all agree [radix sort,
+/* Sorts keys from ... to-1, ascending: few by insertion, many by digits of 8 bits from the lowest on, but those in which all agree [radix sort,
    Knuth vol. 3, 5.2.5]. */
-static gx_result gxp_sort_keys(gx_body *body, gxp_keys *keys, uint32_t from) {
-    const uint32_t n = keys->count - from;
+static gx_result gxp_sort_keys(gx_body *body, gxp_keys *keys, uint32_t from, uint32_t to) {
+    const uint32_t n = to - from;
     const gx_result result = n > 64 ? gxp_keys_room(body, keys, n) : GX_OK;
     uint64_t *source, *target, differ = 0;
     uint32_t shift, i;
     if (result != GX_OK || n < 2) return result;
-    source = keys->data + from; target = source + n;
+    source = keys->data + from; target = keys->data + keys->count;
     if (n <= 64) { gxp_sort_few_keys(source, n); return GX_OK; }
     for (i = 1; i < n; i++) differ |= source[i] ^ source[0];
     for (shift = 0; shift < 64; shift += 8) {
@@ -1643,24 +1646,34 @@ static uint32_t gxp_curve_place(const gxp_cut *cut, const gxp_surface *s, uint32
     return place;
 }
 
+#define GXP_LAST_ROUND 31u
+#define GXP_EXPECTED 7u     /* room for at most so many times more than rounds before the last have made */
+
 /* Inserts the triangles in rounds, each eight times as large as the one before it: planes in random order make shallow trees. Within a round
    they come along a curve, so that an element's triangles find its data in the cache [Amenta, Choi, Rote, Incremental constructions
-   con BRIO (2003)]. Always the same order. */
+   con BRIO (2003)]. Always the same order. The rounds before the last one, which is most of all, tell how much room that will take. */
 static gx_result gxp_insert_surface(gxp_cut *cut, gxp_surface *s, int scoped) {
     const uint32_t count = (uint32_t)s->given->triangle_count;
     gx_body *body = cut->body;
-    uint32_t i;
+    uint32_t i, before = 0;
     gx_result result;
     body->pairs.count = 0;
     result = gxp_keys_room(body, &body->pairs, 2 * (size_t)count);      /* sorting takes as much again */
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint64_t random = gxp_mix(i);
-        uint32_t round = 31;
-        while (round > 16 && !(random >> 3 * (31 - round) & 7)) round--;
+        uint32_t round = GXP_LAST_ROUND;
+        while (round > 16 && !(random >> 3 * (GXP_LAST_ROUND - round) & 7)) round--;
+        before += round < GXP_LAST_ROUND && !s->flat[i];
         if (!s->flat[i]) result = gxp_push_key(body, &body->pairs, round << 27 | gxp_curve_place(cut, s, i), i);
     }
-    if (result == GX_OK) result = gxp_sort_keys(body, &body->pairs, 0);
-    for (i = 0; i < body->pairs.count && result == GX_OK; i++) result = gxp_insert_triangle(cut, s, GXP_SECOND(body->pairs.data[i]), scoped);
+    if (result == GX_OK) result = gxp_sort_keys(body, &body->pairs, 0, body->pairs.count);
+    for (i = 0; i < body->pairs.count && result == GX_OK; i++) {
+        if (i == before && before >= 4) {
+            const uint32_t times = (body->pairs.count - before) / before;
+            gxb_complex_reserve(body->complex, times < GXP_EXPECTED ? times : GXP_EXPECTED);
+        }
+        result = gxp_insert_triangle(cut, s, GXP_SECOND(body->pairs.data[i]), scoped);
+    }
     return result;
 }
 
@@ -1867,23 +1880,26 @@ typedef struct gxp_fine_point { gxb_num c[4]; gxb_limb limbs[4][32]; } gxp_fine_
 
 /* >>links: pieces of element faces that no wall covers ------------------------------------------------------------------------ */
 
-/* Twice the area of a polygon of points, from their approximate positions; *error: a bound for its error. */
-static double gxp_rough_area(const gxb_complex *cx, const uint32_t *points, uint32_t count, double *error) {
-    const gxb_ball *o = &cx->points[points[0]].ball;
-    double area[3] = {0, 0, 0}, a[3], b[3] = {0, 0, 0};
-    uint32_t i;
-    int k;
+/* Twice the area of a facet as seen along the axis of its plane, from approximate positions; *error: a bound for its error. */
+static gx_result gxp_rough_area(gxb_complex *cx, uint32_t facet, double *area, double *error) {
+    const uint32_t axis = cx->planes[cx->facets[facet].plane].axis, x = (axis + 1) % 3, y = (axis + 2) % 3;
+    const gxb_ball *o = NULL;
+    double a[2] = {0, 0}, b[2] = {0, 0}, sum = 0;
+    uint32_t e0, en, i;
+    const gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
     *error = 0;
-    for (i = 1; i < count; i++) {
-        const gxb_ball *p = &cx->points[points[i]].ball;
-        double size = 0;
-        for (k = 0; k < 3; k++) { a[k] = b[k]; b[k] = p->x[k] - o->x[k]; size += fabs(a[k]) + fabs(b[k]); }
-        area[0] += a[1] * b[2] - a[2] * b[1];
-        area[1] += a[2] * b[0] - a[0] * b[2];
-        area[2] += a[0] * b[1] - a[1] * b[0];
+    for (i = 0; i < en && result == GX_OK; i++) {
+        const gxb_ball *p = &cx->points[cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1]].ball;
+        double size;
+        if (i == 0) o = p;
+        a[0] = b[0]; a[1] = b[1];
+        b[0] = p->x[x] - o->x[x]; b[1] = p->x[y] - o->x[y];
+        size = fabs(a[0]) + fabs(a[1]) + fabs(b[0]) + fabs(b[1]);
+        sum += a[0] * b[1] - a[1] * b[0];
         *error += size * (size * 1e-15 + 4 * (p->error + o->error));
     }
-    return sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
+    *area = fabs(sum);
+    return result;
 }
 
 /* The polygon of the points in body->seeds as a share of the face opposite to node k, in numbers that hold any size: areas in the
@@ -1923,10 +1939,16 @@ static gx_result gxp_facet_points(gx_body *body, uint32_t facet) {
     return result;
 }
 
+/* The local node of the element that the face does not have */
+static uint32_t gxp_local_face(const gxb_complex *cx, uint32_t element, uint32_t face) {
+    const uint32_t *faces = cx->element_faces + 4 * (size_t)element;
+    return faces[0] == face ? 0 : faces[1] == face ? 1 : faces[2] == face ? 2 : 3;
+}
+
 /* An element with the face, and the node of it that the face does not have. */
 static uint32_t gxp_face_element(const gxb_complex *cx, uint32_t face, uint32_t *k) {
     const uint32_t element = cx->face_elements[2 * face] != GXB_NONE ? cx->face_elements[2 * face] : cx->face_elements[2 * face + 1];
-    for (*k = 0; cx->element_faces[4 * element + *k] != face; ++*k) {}
+    *k = gxp_local_face(cx, element, face);
     return element;
 }
 
@@ -1945,36 +1967,18 @@ static int gxp_is_link(const gx_body *body, uint32_t facet) {
     return !f->wall && gxp_is_kept(body, f->leaf[0]) && gxp_is_kept(body, f->leaf[1]);
 }
 
-/* Appends the links of a cell to body->links, those to one cell together. */
-static gx_result gxp_list_links_of(gx_body *body, uint32_t cell) {
-    gxb_complex *cx = body->complex;
-    const uint32_t from = body->links.count;
-    uint32_t leaf, first, count, i;
-    gx_result result = gxb_complex_open_element(cx, body->cells[cell].element);
-    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next) {
-        result = gxb_leaf_facets(cx, leaf, &first, &count);
-        if (result == GX_OK) result = gxp_keys_room(body, &body->links, count);
-        for (i = 0; i < count && result == GX_OK; i++) {
-            const uint32_t facet = cx->pool[first + i];
-            const gxb_facet *f = &cx->facets[facet];
-            if (f->face == GXB_NONE || !gxp_is_link(body, facet)) continue;
-            body->links.data[body->links.count++] = (uint64_t)body->leaves[f->leaf[f->leaf[0] == leaf]].cell << 32 | facet;
-        }
-    }
-    return result == GX_OK ? gxp_sort_keys(body, &body->links, from) : result;
-}
-
-/* Lists the links of all fresh cells. */
-static gx_result gxp_list_links(gx_body *body) {
-    uint32_t i;
-    gx_result result = gxp_keys_room(body, &body->links, 8 * (size_t)body->fresh.count);
-    body->links.count = body->link_first.count = 0;
+/* Puts cells in the place of leaves in the links of all fresh cells, those to one cell together. */
+static gx_result gxp_settle_links(gx_body *body) {
+    uint32_t i, j;
+    gx_result result = gxp_push(body, &body->link_first, body->links.count);
     for (i = 0; i < body->fresh.count && result == GX_OK; i++) {
+        const uint32_t from = body->link_first.data[i], to = body->link_first.data[i + 1];
+        uint64_t *link = body->links.data;
         body->cell_fresh[body->fresh.data[i]] = i;
-        result = gxp_push(body, &body->link_first, body->links.count);
-        if (result == GX_OK) result = gxp_list_links_of(body, body->fresh.data[i]);
+        for (j = from; j < to; j++) link[j] = (uint64_t)body->leaves[GXP_LINK_CELL(link[j])].cell << 33 | (link[j] & 0x1ffffffffu);
+        result = gxp_sort_keys(body, &body->links, from, to);
     }
-    return result == GX_OK ? gxp_push(body, &body->link_first, body->links.count) : result;
+    return result;
 }
 
 /* Index of a cell among the fresh ones, GXP_NONE: it is none of them. */
@@ -1985,18 +1989,16 @@ static uint32_t gxp_fresh_index(const gx_body *body, uint32_t cell) {
 
 /* Share of the link first ... end-1 of its face, roughly, with a bound for its error. */
 static gx_result gxp_rough_share(gx_body *body, uint32_t first, uint32_t end, double *share, double *error) {
-    const gxb_complex *cx = body->complex;
-    uint32_t k, i, n = 0, node[3];
-    const uint32_t element = gxp_face_element(cx, cx->facets[GXP_SECOND(body->links.data[first])].face, &k);
-    double whole, whole_error, part_error;
+    gxb_complex *cx = body->complex;
+    const gxb_cplane *plane = &cx->planes[cx->facets[GXP_LINK_FACET(body->links.data[first])].plane];
+    const double whole = fabs(plane->filter.n[plane->axis]);    /* the normal is a product of two of the face's edges */
+    double part, part_error;
     gx_result result = GX_OK;
-    for (i = 0; i < 4; i++) if (i != k) node[n++] = cx->elements[4 * element + i];
-    whole = gxp_rough_area(cx, node, 3, &whole_error);
     *share = *error = 0;
     for (; first < end && result == GX_OK; first++) {
-        result = gxp_facet_points(body, GXP_SECOND(body->links.data[first]));
-        if (result == GX_OK) *share += gxp_rough_area(cx, body->seeds.data, body->seeds.count, &part_error);
-        if (result == GX_OK) *error += part_error + whole_error;
+        result = gxp_rough_area(cx, GXP_LINK_FACET(body->links.data[first]), &part, &part_error);
+        *share += part;
+        *error += part_error + plane->filter.error;
     }
     if (!(*error < 0.5 * whole) || !(*share < 8 * whole)) { *share = 0; *error = 1; return result; }    /* nothing is known */
     *share /= whole;
@@ -2004,18 +2006,23 @@ static gx_result gxp_rough_share(gx_body *body, uint32_t first, uint32_t end, do
     return result;
 }
 
-/* Share of the link first ... end-1 of its face: roughly where it is certainly neither the smallest so far nor to be severed, else exactly. */
-static gx_result gxp_weigh_link(gxp_cut *cut, uint32_t first, uint32_t end, double *share) {
-    gx_body *body = cut->body;
-    double error;
-    uint32_t k, element;
-    gx_result result = gxp_rough_share(body, first, end, share, &error);
-    if (result != GX_OK || (*share - error > cut->report.min_link_ratio && *share - error > cut->desc->sever_below)) return result;
-    element = gxp_face_element(body->complex, body->complex->facets[GXP_SECOND(body->links.data[first])].face, &k);
-    result = gxb_complex_open_element(body->complex, element);
+/* Is the link first ... end-1 certainly neither the smallest, which has a share of at most *bound (made smaller), nor to be severed? */
+static gx_result gxp_is_wide(gxp_cut *cut, uint32_t first, uint32_t end, double *bound, int *wide) {
+    double share, error;
+    const gx_result result = gxp_rough_share(cut->body, first, end, &share, &error);
+    *wide = share - error > *bound && share - error > cut->desc->sever_below;
+    if (share + error < *bound) *bound = share + error;
+    return result;
+}
+
+/* Share of the link first ... end-1 of its face */
+static gx_result gxp_weigh_link(gx_body *body, uint32_t first, uint32_t end, double *share) {
+    uint32_t k;
+    const uint32_t element = gxp_face_element(body->complex, body->complex->facets[GXP_LINK_FACET(body->links.data[first])].face, &k);
+    gx_result result = gxb_complex_open_element(body->complex, element);
     *share = 0;
     for (; first < end && result == GX_OK; first++) {
-        result = gxp_facet_points(body, GXP_SECOND(body->links.data[first]));
+        result = gxp_facet_points(body, GXP_LINK_FACET(body->links.data[first]));
         if (result == GX_OK) *share += gxp_fine_share(body, element, k);
     }
     return result;
@@ -2025,28 +2032,55 @@ static gx_result gxp_weigh_link(gxp_cut *cut, uint32_t first, uint32_t end, doub
 static gx_result gxp_judge_link(gxp_cut *cut, uint32_t first, uint32_t end) {
     gx_body *body = cut->body;
     double share;
-    gx_result result = gxp_weigh_link(cut, first, end, &share);
+    gx_result result = gxp_weigh_link(body, first, end, &share);
     if (result != GX_OK) return result;
     if (share < cut->report.min_link_ratio) cut->report.min_link_ratio = share;
     if (share >= cut->desc->sever_below) return GX_OK;
     cut->report.severed_links++;
-    for (; first < end && result == GX_OK; first++) result = gxb_complex_set_wall(body->complex, GXP_SECOND(body->links.data[first]));
+    for (; first < end && result == GX_OK; first++) result = gxb_complex_set_wall(body->complex, GXP_LINK_FACET(body->links.data[first]));
     return result;
 }
 
-/* Weighs the links of fresh cells, but whole faces. All pieces of a face between the same two cells count as one link. */
-static gx_result gxp_weigh_links(gxp_cut *cut) {
+/* Weighs the links of a fresh cell roughly, but whole faces and those of fresh cells before it. All pieces of a face between the same two cells count as
+   one link. Those that may be the smallest or are to be severed go to body->nodes. *bound: of the smallest so far. */
+static gx_result gxp_weigh_links(gxp_cut *cut, uint32_t index, double *bound) {
     gx_body *body = cut->body;
-    uint32_t i, first, end;
+    const uint32_t last = body->link_first.data[index + 1];
+    uint32_t first, end;
+    int wide = 1;
     gx_result result = GX_OK;
-    for (i = 0; i < body->fresh.count && result == GX_OK; i++)
-        for (first = body->link_first.data[i]; first < body->link_first.data[i + 1] && result == GX_OK; first = end) {
-            const uint32_t other = GXP_FIRST(body->links.data[first]), facet = GXP_SECOND(body->links.data[first]), j = gxp_fresh_index(body, other);
-            for (end = first + 1; end < body->link_first.data[i + 1] && GXP_FIRST(body->links.data[end]) == other; end++) {}
-            if (j < i || body->complex->face_facet[body->complex->facets[facet].face] == facet) continue;   /* weighed already, or whole */
-            result = gxp_judge_link(cut, first, end);
-        }
+    for (first = body->link_first.data[index]; first < last && result == GX_OK; first = end) {
+        const uint32_t other = GXP_LINK_CELL(body->links.data[first]), facet = GXP_LINK_FACET(body->links.data[first]);
+        for (end = first + 1; end < last && GXP_LINK_CELL(body->links.data[end]) == other; end++) {}
+        if (gxp_fresh_index(body, other) < index || body->complex->face_facet[body->complex->facets[facet].face] == facet) continue;
+        result = gxp_is_wide(cut, first, end, bound, &wide);
+        if (result == GX_OK && !wide) result = gxp_push(body, &body->nodes, first);
+        if (result == GX_OK && !wide) result = gxp_push(body, &body->nodes, end);
+    }
     return result;
+}
+
+/* Weighs exactly what is still among the smallest, or is to be severed. */
+static gx_result gxp_judge_links(gxp_cut *cut, double bound) {
+    const gxp_words *narrow = &cut->body->nodes;
+    uint32_t i;
+    int wide = 1;
+    gx_result result = GX_OK;
+    for (i = 0; i + 1 < narrow->count && result == GX_OK; i += 2) {
+        result = gxp_is_wide(cut, narrow->data[i], narrow->data[i + 1], &bound, &wide);
+        if (result == GX_OK && !wide) result = gxp_judge_link(cut, narrow->data[i], narrow->data[i + 1]);
+    }
+    return result;
+}
+
+/* Severs the links that are small enough. */
+static gx_result gxp_sever_links(gxp_cut *cut) {
+    double bound = 1;
+    uint32_t i;
+    gx_result result = GX_OK;
+    cut->body->nodes.count = 0;
+    for (i = 0; i < cut->body->fresh.count && result == GX_OK; i++) result = gxp_weigh_links(cut, i, &bound);
+    return result == GX_OK ? gxp_judge_links(cut, bound) : result;
 }
 
 /* >>cells: the touched ones fall apart ---------------------------------------------------------------------------------------- */
@@ -2059,8 +2093,13 @@ static gx_result gxp_collect_touched(gxp_cut *cut) {
     body->seeds.count = 0;
     for (i = 0; i < body->complex->wall_count && result == GX_OK; i++)
         if (body->complex->facets[body->complex->walls[i]].wall) result = gxp_wall_leaves(body, body->complex->walls[i], &body->seeds);
-    for (i = 0; i < body->seeds.count && result == GX_OK; i++)
-        if (!body->complex->leaves[body->seeds.data[i]].removed) result = gxp_push(body, &body->touched, body->leaves[body->seeds.data[i]].cell);
+    body->stamp++;
+    for (i = 0; i < body->seeds.count && result == GX_OK; i++) {
+        const uint32_t cell = body->leaves[body->seeds.data[i]].cell;
+        if (body->complex->leaves[body->seeds.data[i]].removed || body->cell_stamp[cell] == body->stamp) continue;
+        body->cell_stamp[cell] = body->stamp;
+        result = gxp_push(body, &body->touched, cell);
+    }
     gxp_sort_unique(&body->touched);
     return result;
 }
@@ -2091,24 +2130,29 @@ static gx_result gxp_new_cell(gx_body *body, uint32_t like, uint32_t *slot) {
     return GX_OK;
 }
 
-/* Walks the leaves that open facets inside the element join to the first in the queue. */
+/* Walks the leaves that open facets inside the element join to the first in the queue, and lists their links, for now with the leaf behind each. */
 static gx_result gxp_walk_leaves(gx_body *body, uint32_t start) {
     gxb_complex *cx = body->complex;
     uint32_t done = 0, first, count, i;
-    gx_result result;
+    gx_result result = gxb_complex_open_element(cx, cx->leaves[start].element);
     body->queue.count = 0;
     body->leaves[start].stamp = body->stamp;
-    result = gxp_push(body, &body->queue, start);
+    if (result == GX_OK) result = gxp_push(body, &body->queue, start);
+    if (result == GX_OK) result = gxp_push(body, &body->link_first, body->links.count);
     while (done < body->queue.count && result == GX_OK) {
         const uint32_t leaf = body->queue.data[done++];
         result = gxb_leaf_facets(cx, leaf, &first, &count);
+        if (result == GX_OK) result = gxp_keys_room(body, &body->links, count);
         for (i = 0; i < count && result == GX_OK; i++) {
             const uint32_t facet = cx->pool[first + i];
             const gxb_facet *f = &cx->facets[facet];
             const uint32_t other = f->leaf[f->leaf[0] == leaf];
-            if (f->face != GXB_NONE || !gxp_is_link(body, facet) || body->leaves[other].stamp == body->stamp) continue;
-            body->leaves[other].stamp = body->stamp;
-            result = gxp_push(body, &body->queue, other);
+            if (!gxp_is_link(body, facet)) continue;
+            if (f->face != GXB_NONE) body->links.data[body->links.count++] = (uint64_t)other << 33 | (uint64_t)facet << 2 | gxp_local_face(cx, cx->leaves[leaf].element, f->face);
+            else if (body->leaves[other].stamp != body->stamp) {
+                body->leaves[other].stamp = body->stamp;
+                result = gxp_push(body, &body->queue, other);
+            }
         }
     }
     return result;
@@ -2176,16 +2220,21 @@ static gx_result gxp_touch_severed(gxp_cut *cut) {
         const uint32_t cell = body->touched.data[i];
         if (body->cells[cell].kept && gxp_fresh_index(body, cell) == GXP_NONE) result = gxp_push(body, &body->fresh, cell);
     }
-    return result == GX_OK ? gxp_list_links(body) : result;
+    body->links.count = body->link_first.count = 0;
+    body->stamp++;
+    for (i = 0; i < body->fresh.count && result == GX_OK; i++) result = gxp_walk_leaves(body, body->cells[body->fresh.data[i]].first_leaf);
+    return result == GX_OK ? gxp_settle_links(body) : result;
 }
 
-/* Divides all touched cells. Leaves body->touched as it was and makes body->fresh of the pieces. */
+/* Divides all touched cells. Leaves body->touched as it was, makes body->fresh of the pieces and lists their links. */
 static gx_result gxp_divide_cells(gxp_cut *cut) {
     gx_body *body = cut->body;
     uint32_t i;
     gx_result result = gxp_reserve(&body->allocator, &body->saved_cells, sizeof *body->saved_cells, body->saved_cell_count,
                                    &body->saved_cell_capacity, 4 * (size_t)body->touched.count);
-    body->fresh.count = 0;
+    if (result == GX_OK) result = gxp_keys_room(body, &body->links, 16 * (size_t)body->touched.count);
+    if (result == GX_OK) result = gxp_reserve_cells(body, body->touched.count);
+    body->fresh.count = body->links.count = body->link_first.count = 0;
     body->stamp++;
     for (i = 0; i < body->touched.count && result == GX_OK; i++) {
         uint32_t *stamp = &body->cell_stamp[body->cells[body->touched.data[i]].element];
@@ -2193,7 +2242,7 @@ static gx_result gxp_divide_cells(gxp_cut *cut) {
         *stamp = body->stamp;
     }
     for (i = 0; i < body->touched.count && result == GX_OK; i++) result = gxp_divide_cell(cut, body->touched.data[i]);
-    return result;
+    return result == GX_OK ? gxp_settle_links(body) : result;
 }
 
 /* >>components: nodal subdomains, and the copies that move them ---------------------------------------------------------------- */
@@ -2226,12 +2275,12 @@ static gx_result gxp_cross_whole_face(gx_body *body, uint32_t element, uint32_t 
     return result;
 }
 
-/* Visits the cells that links of a fresh cell join to it, but across the face opposite to the node. */
-static gx_result gxp_cross_links(gx_body *body, uint32_t index, uint32_t opposite) {
+/* Visits the cells that links of a fresh cell join to it, but across the face opposite to local node k. */
+static gx_result gxp_cross_links(gx_body *body, uint32_t index, uint32_t k) {
     uint32_t i;
     gx_result result = GX_OK;
     for (i = body->link_first.data[index]; i < body->link_first.data[index + 1] && result == GX_OK; i++)
-        if (body->complex->facets[GXP_SECOND(body->links.data[i])].face != opposite) result = gxp_visit_cell(body, GXP_FIRST(body->links.data[i]));
+        if (GXP_LINK_FACE(body->links.data[i]) != k) result = gxp_visit_cell(body, GXP_LINK_CELL(body->links.data[i]));
     return result;
 }
 
@@ -2242,7 +2291,7 @@ static gx_result gxp_cross_faces(gx_body *body, uint32_t cell, uint32_t node) {
     const uint32_t local = (uint32_t)gxp_local_node(body, element, node), opposite = cx->element_faces[4 * element + local];
     uint32_t leaf, first, count, i, k;
     gx_result result = GX_OK;
-    if (fresh != GXP_NONE) return gxp_cross_links(body, fresh, opposite);
+    if (fresh != GXP_NONE) return gxp_cross_links(body, fresh, local);
     for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next) {
         if (cx->leaves[leaf].facet_count == 0) {
             for (k = 0; k < 4 && result == GX_OK; k++) if (k != local) result = gxp_cross_whole_face(body, element, k);
@@ -2416,7 +2465,7 @@ static gx_result gxp_collect_pairs(gx_body *body) {
         if (body->node_pinched[GXP_FIRST(body->pairs.data[i])]) result = gxp_push(body, &body->pinches, GXP_FIRST(body->pairs.data[i]));
     gxp_sort_unique(&body->pinches);
     for (i = 0; i < body->pinches.count && result == GX_OK; i++) result = gxp_pair_node(body, body->pinches.data[i]);
-    return result == GX_OK ? gxp_sort_keys(body, &body->pairs, 0) : result;
+    return result == GX_OK ? gxp_sort_keys(body, &body->pairs, 0, body->pairs.count) : result;
 }
 
 static int gxp_contains(const gxp_words *words, uint32_t value) {
@@ -2836,31 +2885,36 @@ static gx_result gxp_arrange(gxp_cut *cut) {
 static gx_result gxp_enrich(gxp_cut *cut) {
     gx_result result = gxp_collect_touched(cut);
     if (result == GX_OK) result = gxp_divide_cells(cut);
-    if (result == GX_OK) result = gxp_list_links(cut->body);
-    if (result == GX_OK) result = gxp_weigh_links(cut);
+    if (result == GX_OK && cut->desc->sever_below > 0) result = gxp_sever_links(cut);
     if (result == GX_OK && cut->report.severed_links > 0) result = gxp_touch_severed(cut);
     return result == GX_OK ? gxp_divide_nodes(cut) : result;
 }
 
+/* The integrals of a fresh cell, and of all others of its element, unless they are many. *before: the element of the fresh cell before it */
+static gx_result gxp_integrate_fresh(gx_body *body, uint32_t cell, uint32_t *before) {
+    const uint32_t element = body->cells[cell].element;
+    if (body->cell_stamp[element] == body->stamp) return GX_OK;
+    gxp_clear_boundary(body, element != *before);
+    *before = element;
+    if (!gxp_has_few_cells(body, element)) return gxp_integrate_cell(body, cell, gxp_element_volume(body, element));
+    body->cell_stamp[element] = body->stamp;
+    return gxp_integrate_element(body, element);
+}
+
+/* Links are weighed here, where their facets are looked at anyway, unless they were before, to be severed. */
 static gx_result gxp_integrate(gxp_cut *cut) {
     gx_body *body = cut->body;
-    const uint32_t *fresh = body->fresh.data;
+    const int weighed = cut->desc->sever_below > 0;
+    double bound = 1;
     uint32_t i, before = GXP_NONE;
     gx_result result = gxp_integrate_removed(cut, &body->removed);
+    body->nodes.count = 0;
     body->stamp++;
     for (i = 0; i < body->fresh.count && result == GX_OK; i++) {
-        const uint32_t element = body->cells[fresh[i]].element;
-        if (body->cell_stamp[element] == body->stamp) continue;
-        gxp_clear_boundary(body, element != before);
-        before = element;
-        if (!gxp_has_few_cells(body, element)) {
-            result = gxp_integrate_cell(body, fresh[i], gxp_element_volume(body, element));
-            continue;
-        }
-        body->cell_stamp[element] = body->stamp;
-        result = gxp_integrate_element(body, element);
+        if (!weighed) result = gxp_weigh_links(cut, i, &bound);
+        if (result == GX_OK) result = gxp_integrate_fresh(body, body->fresh.data[i], &before);
     }
-    return result;
+    return result == GX_OK ? gxp_judge_links(cut, bound) : result;
 }
 
 static gx_result gxp_check_cut(gxp_cut *cut) {
@@ -5553,7 +5607,7 @@ static gx_result gxp_name_cells(gx_body *body, uint64_t *name, uint64_t *next) {
             const uint32_t cell = body->view_cells.data[i];
             body->pairs.count = 0;
             result = gxp_push_neighbours(body, cell);
-            if (result == GX_OK) result = gxp_sort_keys(body, &body->pairs, 0);
+            if (result == GX_OK) result = gxp_sort_keys(body, &body->pairs, 0, body->pairs.count);
             next[cell] = gxp_mix(name[cell] * 3 + gxp_hash_neighbours(body, name));
         }
         memcpy(name, next, body->cell_count * sizeof *name);

@@ -31,7 +31,7 @@
  *     >>predicates  of coordinates: gxb_orient2d, orient3d, incircle, insphere, winding_number; gxb_plane_init; points that are given, on a
  *                   line and a plane, on three planes: gxb_point_explicit, line_plane, three_planes; of these: gxb_side, compare,
  *                   orient_in_plane
- *     >>complex     the cell complex (points, planes, edges, facets, leaves): gxb_complex_create, destroy; begin, commit, rollback;
+ *     >>complex     the cell complex (points, planes, edges, facets, leaves): gxb_complex_create, destroy; begin, commit, rollback, reserve;
  *                   to divide: add_point, add_plane, insert, open_element, cover_edge, cover_node, set_wall, set_removed;
  *                   to read: gxb_leaf_facets, gxb_facet_edges; to ask: gxb_complex_side, turn, compare, winding, barycentric, support,
  *                   barycentric_fine
@@ -221,14 +221,15 @@ enum { GXB_EXPLICIT = 0, GXB_LINE_PLANE = 1, GXB_THREE_PLANES = 2 };
 
 typedef struct gxb_cpoint {     /* a point of the complex */
     gxb_ball ball;              /* in the complex's frame: (x - origin) * 2^shift */
-    uint32_t kind;              /* GXB_EXPLICIT ... */
     uint32_t def[3];            /* two points and a plane, or three planes */
-    gxb_num *exact;             /* X Y Z W, or NULL until they were needed */
+    uint8_t kind;               /* GXB_EXPLICIT ... */
+    uint8_t wall;               /* 1: a triangle was made to separate here what meets in this node only */
+    int8_t sign[2];
     uint32_t stamp[2];          /* when sign[i] was decided (complex.stamp[i]) */
-    int32_t sign[2];
+    gxb_num *exact;             /* X Y Z W, or NULL until they were needed */
+    double parameter[3];        /* barycentric coordinates on a mesh edge (of its two ends) or in a mesh face (of its plane's three nodes);
+                                   the first is negative until asked for */
     uint32_t scratch;
-    uint32_t wall;              /* 1: a triangle was made to separate here what meets in this node only */
-    double parameter[2];        /* on a mesh edge: barycentric coordinates of its ends; negative until asked for */
 } gxb_cpoint;
 
 typedef struct gxb_cplane {     /* a plane: of three points, or through points 0 and 1 along coordinate axis def[2] */
@@ -342,6 +343,10 @@ GXFEM_API void gxb_complex_destroy(gxb_complex *complex);
 GXFEM_API void gxb_complex_begin(gxb_complex *complex);
 GXFEM_API void gxb_complex_commit(gxb_complex *complex);
 GXFEM_API void gxb_complex_rollback(gxb_complex *complex);
+
+/* Makes room for so many times more of everything as has been made since begin, where there is memory for that: early in a large transaction it saves
+   arrays from being moved many times. Nothing else depends on it. */
+GXFEM_API void gxb_complex_reserve(gxb_complex *complex, uint32_t times);
 
 /* Errors: NOT_FINITE, RANGE, MEMORY, LIMIT. */
 GXFEM_API gx_result gxb_complex_add_point(gxb_complex *complex, const double x[3], uint32_t *point);
@@ -1978,13 +1983,13 @@ static int gxbp_side_of(gxb_complex *cx, const gxb_ball *ball, uint32_t kind, co
 }
 
 GXFEM_API int gxb_complex_side(gxb_complex *cx, uint32_t point, uint32_t plane) {
-    const gxb_cpoint p = cx->points[point];
-    return gxbp_side_of(cx, &p.ball, p.kind, p.def, point, plane);
+    const gxb_cpoint *p = &cx->points[point];
+    return gxbp_side_of(cx, &p->ball, p->kind, p->def, point, plane);
 }
 
 static GXBP_APART int gxbp_new_sign(gxb_complex *cx, uint32_t point, uint32_t plane, int slot) {
     const int sign = gxb_complex_side(cx, point, plane);
-    cx->points[point].sign[slot] = sign;
+    cx->points[point].sign[slot] = (int8_t)sign;
     cx->points[point].stamp[slot] = cx->stamp[slot];
     return sign;
 }
@@ -2326,12 +2331,23 @@ typedef struct gxbp_task { uint32_t parent, side, first, count, coplanar; } gxbp
 #define GXBP_TRIANGLE_EDGE 0x80000000u
 #define GXBP_IN_ROOT GXB_NONE   /* task.parent: the reference is the element's root */
 
-static const gxbp_array gxbp_complex_arrays[] = {
+static const gxbp_array gxbp_complex_arrays[] = {      /* the first eight as in complex.mark */
     GXBP_ARRAY(gxb_complex, points), GXBP_ARRAY(gxb_complex, planes), GXBP_ARRAY(gxb_complex, edges), GXBP_ARRAY(gxb_complex, facets),
     GXBP_ARRAY(gxb_complex, leaves), GXBP_ARRAY(gxb_complex, nodes), GXBP_ARRAY(gxb_complex, labels), GXBP_ARRAY(gxb_complex, pool),
     GXBP_ARRAY(gxb_complex, walls), GXBP_ARRAY(gxb_complex, undo), GXBP_ARRAY(gxb_complex, undo_bytes), GXBP_ARRAY(gxb_complex, corners),
     GXBP_ARRAY(gxb_complex, tasks), GXBP_ARRAY(gxb_complex, scratch)
 };
+
+/* An array grows to what is expected or by half, whichever is more: gxbp_reserve adds half of what it is asked for. */
+GXFEM_API GXBP_RARE void gxb_complex_reserve(gxb_complex *cx, uint32_t times) {
+    uint32_t k;
+    for (k = 0; k < 8; k++) {       /* those with marks, which stand first */
+        unsigned char *at = (unsigned char *)cx + gxbp_complex_arrays[k].at;
+        const size_t count = gxbp_extent_of(at)[0], capacity = gxbp_extent_of(at)[1], need = count + (count - cx->mark[k]) * times;
+        const size_t ask = need / 3 * 2 > capacity ? need / 3 * 2 : capacity;
+        if (need > capacity) (void)gxbp_reserve(cx, at, gxbp_complex_arrays[k].item, ask + 1 - count);
+    }
+}
 
 GXFEM_API GXBP_RARE void gxb_complex_destroy(gxb_complex *cx) {
     gx_allocator a;
@@ -2355,18 +2371,39 @@ static GXBP_APART uint32_t gxbp_count_facets(const gxb_complex *cx, uint32_t fac
     return child == GXB_NONE ? 1 : gxbp_count_facets(cx, child) + gxbp_count_facets(cx, child + 1);
 }
 
-static GXBP_APART void gxbp_push_facets(gxb_complex *cx, uint32_t facet) {
+/* Writes them; returns where the list ends. */
+static GXBP_APART uint32_t *gxbp_list_facets(const gxb_complex *cx, uint32_t facet, uint32_t *out) {
     const uint32_t child = cx->facets[facet].child;
-    if (child == GXB_NONE) cx->pool[cx->pool_count++] = facet;
-    else {
-        gxbp_push_facets(cx, child);
-        gxbp_push_facets(cx, child + 1);
+    if (child != GXB_NONE) return gxbp_list_facets(cx, child + 1, gxbp_list_facets(cx, child, out));
+    *out = facet;
+    return out + 1;
+}
+
+/* How many facets a leaf has when they are resolved */
+static uint32_t gxbp_count_list(const gxb_complex *cx, const gxb_leaf *l) {
+    uint32_t i, count = 0;
+    for (i = 0; i < l->facet_count; i++) {
+        const gxb_facet *f = &cx->facets[cx->pool[l->facets + i]];
+        GXBP_FETCH(cx->pool + f->loop);
+        count += f->child == GXB_NONE ? 1 : gxbp_count_facets(cx, cx->pool[l->facets + i]);
     }
+    return count;
 }
 
 static GXBP_APART uint32_t gxbp_count_edges(const gxb_complex *cx, uint32_t edge) {
     const uint32_t child = cx->edges[edge].child;
     return child == GXB_NONE ? 1 : gxbp_count_edges(cx, child) + gxbp_count_edges(cx, child + 1);
+}
+
+/* How many edges a facet's loop has when it is resolved */
+static uint32_t gxbp_count_loop(const gxb_complex *cx, uint32_t facet) {
+    const gxb_facet *f = &cx->facets[facet];
+    uint32_t i, count = 0;
+    for (i = 0; i < f->loop_count; i++) {
+        const uint32_t edge = cx->pool[f->loop + i] >> 1;
+        count += cx->edges[edge].child == GXB_NONE ? 1 : gxbp_count_edges(cx, edge);
+    }
+    return count;
 }
 
 static void gxbp_push_edges(gxb_complex *cx, uint32_t signed_edge) {
@@ -2380,14 +2417,11 @@ static void gxbp_push_edges(gxb_complex *cx, uint32_t signed_edge) {
 
 GXFEM_API gx_result gxb_facet_edges(gxb_complex *cx, uint32_t facet, uint32_t *first, uint32_t *count) {
     gxb_facet *f = &cx->facets[facet];
-    uint32_t i, total = 0;
-    int divided = 0;
-    for (i = 0; i < f->loop_count; i++) divided |= cx->edges[cx->pool[f->loop + i] >> 1].child != GXB_NONE;
-    if (divided) {
+    const uint32_t total = gxbp_count_loop(cx, facet);
+    if (total != f->loop_count) {
         const uint32_t start = cx->pool_count;
-        gx_result result;
-        for (i = 0; i < f->loop_count; i++) total += gxbp_count_edges(cx, cx->pool[f->loop + i] >> 1);
-        result = GXBP_RESERVE(cx, pool, pool, total);
+        uint32_t i;
+        gx_result result = GXBP_RESERVE(cx, pool, pool, total);
         if (result == GX_OK) result = gxbp_reserve_undo(cx, 1);
         if (result != GX_OK) return result;
         gxbp_save(cx, GXBP_FACETS, facet);
@@ -2403,25 +2437,19 @@ GXFEM_API gx_result gxb_facet_edges(gxb_complex *cx, uint32_t facet, uint32_t *f
 
 GXFEM_API gx_result gxb_leaf_facets(gxb_complex *cx, uint32_t leaf, uint32_t *first, uint32_t *count) {
     gxb_leaf *l = &cx->leaves[leaf];
-    uint32_t i, total = 0;
-    int divided = 0;
-    for (i = 0; i < l->facet_count; i++) {
-        const gxb_facet *f = &cx->facets[cx->pool[l->facets + i]];
-        GXBP_FETCH(cx->pool + f->loop);
-        divided |= f->child != GXB_NONE;
-    }
-    if (divided) {
-        const uint32_t start = cx->pool_count;
-        gx_result result;
-        for (i = 0; i < l->facet_count; i++) total += gxbp_count_facets(cx, cx->pool[l->facets + i]);
-        result = GXBP_RESERVE(cx, pool, pool, total);
+    const uint32_t total = gxbp_count_list(cx, l);
+    if (total != l->facet_count) {
+        uint32_t i, *out;
+        gx_result result = GXBP_RESERVE(cx, pool, pool, total);
         if (result == GX_OK) result = gxbp_reserve_undo(cx, 1);
         if (result != GX_OK) return result;
         gxbp_save(cx, GXBP_LEAVES, leaf);
-        for (i = 0; i < l->facet_count; i++) gxbp_push_facets(cx, cx->pool[l->facets + i]);
+        out = cx->pool + cx->pool_count;
+        for (i = 0; i < l->facet_count; i++) out = gxbp_list_facets(cx, cx->pool[l->facets + i], out);
         cx->pool_live += total - l->facet_count;
-        l->facets = start;
+        l->facets = cx->pool_count;
         l->facet_count = total;
+        cx->pool_count += total;
     }
     *first = l->facets;
     *count = l->facet_count;
@@ -2441,7 +2469,7 @@ static gx_result gxbp_reserve_split(gxb_complex *cx, size_t facets, size_t edges
     if (result == GX_OK) result = GXBP_RESERVE(cx, leaves, leaf, 1);
     if (result == GX_OK) result = GXBP_RESERVE(cx, nodes, tree, 1);
     if (result == GX_OK) result = GXBP_RESERVE(cx, pool, pool, 8 * (edges + facets) + 64);
-    if (result == GX_OK) result = GXBP_RESERVE(cx, scratch, scratch, 4 * (edges + facets) + 64);
+    if (result == GX_OK) result = GXBP_RESERVE(cx, scratch, scratch, 8 * (edges + facets) + 64);
     return result == GX_OK ? gxbp_reserve_undo(cx, edges + 3 * facets + 8) : result;
 }
 
@@ -2504,29 +2532,29 @@ static uint32_t gxbp_facet_signs(gxb_complex *cx, uint32_t facet, const gxbp_kni
 
 static int gxbp_facet_sides(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife) { return (int)(gxbp_facet_signs(cx, facet, knife) & 3); }
 
-/* Divides the edges of a facet that the plane crosses. Its loop is then at *loop in the pool, behind the room for its children's: only there for these.
-   zero: where the two points in the plane start edges. */
-static uint32_t gxbp_split_facet_edges(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife, uint32_t *loop, uint32_t zero[2]) {
-    const uint32_t count = cx->facets[facet].loop_count;
-    const uint32_t *old = cx->pool + cx->facets[facet].loop;
-    uint32_t *list = cx->pool + cx->pool_count + count + 4, n = 0, zeros = 0, i;
-    for (i = 0; i < count; i++) {
-        const uint32_t back = old[i] & 1;
-        const gxb_edge *e = &cx->edges[old[i] >> 1];
-        const int sign = gxbp_sign(cx, e->v[back], knife->plane, knife->slot);
-        uint32_t child = e->child;
-        if (sign == 0 && zeros < 2) zero[zeros++] = n;
-        if (child == GXB_NONE && sign * gxbp_sign(cx, e->v[1 - back], knife->plane, knife->slot) < 0) {
-            child = cx->edge_count;
-            gxbp_split_edge(cx, old[i] >> 1, knife);
-        }
-        if (child == GXB_NONE) { list[n++] = old[i]; continue; }
-        list[n++] = (child + back) << 1 | back;
-        if (zeros < 2) zero[zeros++] = n;
-        list[n++] = (child + 1 - back) << 1 | back;
+/* A facet's loop while it is divided: in the middle of complex.scratch. zero: where the two points in the plane start edges. */
+typedef struct gxbp_parting { uint32_t *loop, count, zero[2], zeros; } gxbp_parting;
+
+/* Appends an edge, or what it has been divided into; divides what the plane crosses. */
+static void gxbp_part_edge(gxb_complex *cx, uint32_t signed_edge, const gxbp_knife *knife, gxbp_parting *parting) {
+    const uint32_t back = signed_edge & 1;
+    const gxb_edge *e = &cx->edges[signed_edge >> 1];
+    uint32_t child = e->child;
+    if (child != GXB_NONE) {
+        gxbp_part_edge(cx, (child + back) << 1 | back, knife, parting);
+        gxbp_part_edge(cx, (child + 1 - back) << 1 | back, knife, parting);
+        return;
     }
-    *loop = cx->pool_count + count + 4;
-    return n;
+    {
+        const int sign = gxbp_sign(cx, e->v[back], knife->plane, knife->slot);
+        if (sign == 0 && parting->zeros < 2) parting->zero[parting->zeros++] = parting->count;
+        if (sign * gxbp_sign(cx, e->v[1 - back], knife->plane, knife->slot) >= 0) { parting->loop[parting->count++] = signed_edge; return; }
+    }
+    child = cx->edge_count;
+    gxbp_split_edge(cx, signed_edge >> 1, knife);
+    parting->loop[parting->count++] = (child + back) << 1 | back;
+    if (parting->zeros < 2) parting->zero[parting->zeros++] = parting->count;
+    parting->loop[parting->count++] = (child + 1 - back) << 1 | back;
 }
 
 static void gxbp_copy_arc(gxb_complex *cx, const uint32_t *loop, uint32_t count, uint32_t from, uint32_t to, uint32_t closing, gxb_facet *child) {
@@ -2537,29 +2565,30 @@ static void gxbp_copy_arc(gxb_complex *cx, const uint32_t *loop, uint32_t count,
     child->loop_count = cx->pool_count - child->loop;
 }
 
-/* Divides a facet that has points on both sides of the plane, and whose edges are resolved. Its children are child (in front) and child + 1. Returns the
-   new edge, signed as the front child walks it. */
+/* Divides a facet that has points on both sides of the plane. Its children are child (in front) and child + 1. Returns the new edge, signed as the front
+   child walks it. */
 static uint32_t gxbp_split_facet(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife) {
-    const uint32_t child = cx->facet_count;
-    uint32_t line[2], zero[2] = {0, 0}, edge, front, first, count;
-    const uint32_t *loop;
-    gxb_facet f;
-    count = gxbp_split_facet_edges(cx, facet, knife, &first, zero);
-    loop = cx->pool + first;
-    f = cx->facets[facet];
+    const gxb_facet f = cx->facets[facet];
+    const uint32_t child = cx->facet_count, *zero;
+    uint32_t line[2], edge, front, i;
+    gxbp_parting parting;
+    memset(&parting, 0, sizeof parting);
+    parting.loop = cx->scratch + cx->scratch_capacity / 4;
+    zero = parting.zero;
+    for (i = 0; i < f.loop_count; i++) gxbp_part_edge(cx, cx->pool[f.loop + i], knife, &parting);
     line[0] = knife->explicit_line ? knife->line[0] : f.plane;
     line[1] = knife->explicit_line ? knife->line[1] : knife->plane;
-    edge = gxbp_new_edge(cx, gxbp_edge_start(cx, loop[zero[0]]), gxbp_edge_start(cx, loop[zero[1]]), line, (uint32_t)knife->explicit_line);
-    front = gxbp_sign(cx, gxbp_edge_start(cx, loop[zero[0] + 1]), knife->plane, knife->slot) > 0 ? 0u : 1u;
+    edge = gxbp_new_edge(cx, gxbp_edge_start(cx, parting.loop[zero[0]]), gxbp_edge_start(cx, parting.loop[zero[1]]), line, (uint32_t)knife->explicit_line);
+    front = gxbp_sign(cx, gxbp_edge_start(cx, parting.loop[zero[0] + 1]), knife->plane, knife->slot) > 0 ? 0u : 1u;
     gxbp_save(cx, GXBP_FACETS, facet);
     cx->facets[facet].child = child;
     cx->facets[child] = f;
     cx->facets[child + 1] = f;
     /* arc 0 runs from zero[0] to zero[1] and is closed backwards along the edge, arc 1 is the rest, closed forwards */
-    gxbp_copy_arc(cx, loop, count, zero[front], zero[1 - front], edge << 1 | (1u - front), &cx->facets[child]);
-    gxbp_copy_arc(cx, loop, count, zero[1 - front], zero[front], edge << 1 | front, &cx->facets[child + 1]);
+    gxbp_copy_arc(cx, parting.loop, parting.count, zero[front], zero[1 - front], edge << 1 | (1u - front), &cx->facets[child]);
+    gxbp_copy_arc(cx, parting.loop, parting.count, zero[1 - front], zero[front], edge << 1 | front, &cx->facets[child + 1]);
     cx->facet_count += 2;
-    cx->pool_live += count + 2 - f.loop_count;
+    cx->pool_live += parting.count + 2 - f.loop_count;
     return edge << 1 | (1u - front);
 }
 
@@ -2567,8 +2596,14 @@ static uint32_t gxbp_split_facet(gxb_complex *cx, uint32_t facet, const gxbp_kni
 
 typedef struct gxbp_rim { uint32_t first, count; } gxbp_rim;    /* signed edges in complex.scratch */
 
+/* Adds an edge, or what it has been divided into. */
 static void gxbp_add_rim(gxb_complex *cx, gxbp_rim *rim, uint32_t signed_edge) {
     gxb_edge *e = &cx->edges[signed_edge >> 1];
+    if (e->child != GXB_NONE) {
+        gxbp_add_rim(cx, rim, e->child << 1 | (signed_edge & 1));
+        gxbp_add_rim(cx, rim, (e->child + 1) << 1 | (signed_edge & 1));
+        return;
+    }
     if (e->stamp == cx->edge_stamp) return;
     e->stamp = cx->edge_stamp;
     cx->scratch[rim->first + rim->count++] = signed_edge;
@@ -2611,20 +2646,19 @@ static void gxbp_move_facet(gxb_complex *cx, uint32_t facet, uint32_t from, uint
     cx->facets[facet].leaf[cx->facets[facet].leaf[0] == from ? 0 : 1] = to;
 }
 
-/* Divides a leaf whose inside the plane meets; its facets are resolved and room is reserved. The leaf becomes the half in front, the
+/* Divides a leaf whose inside the plane meets and which is ready: its facets and their signs are in complex.scratch. It becomes the half in front, the
    new one lies behind. Returns the facet between them. */
 static uint32_t gxbp_split_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife *knife) {
-    const uint32_t behind = cx->leaf_count++, first = cx->leaves[leaf].facets, count = cx->leaves[leaf].facet_count;
+    const uint32_t behind = cx->leaf_count++, listed = cx->leaves[leaf].facet_count, count = cx->scratch_count / 2;
     gxbp_rim rim;
     uint32_t *front_list, *behind_list, fronts = 0, behinds = 0, i, middle;
-    rim.first = 0; rim.count = 0;
+    rim.first = 2 * count; rim.count = 0;
     cx->edge_stamp++;
     front_list = cx->scratch + cx->scratch_capacity - 2 * count - 2;
     behind_list = cx->scratch + cx->scratch_capacity - count - 1;
     for (i = 0; i < count; i++) {
-        const uint32_t facet = cx->pool[first + i];
+        const uint32_t facet = cx->scratch[i], signs = cx->scratch[count + i], sides = signs & 3;
         const uint32_t inward = cx->facets[facet].leaf[0] == leaf ? 1u : 0u;     /* its normal points into the leaf */
-        const uint32_t signs = gxbp_facet_signs(cx, facet, knife), sides = signs & 3;
         if (sides == 3) {
             const uint32_t edge = gxbp_split_facet(cx, facet, knife), child = cx->facets[facet].child;
             gxbp_add_rim(cx, &rim, edge ^ inward);
@@ -2654,7 +2688,8 @@ static uint32_t gxbp_split_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife
     cx->leaves[behind].facets = cx->pool_count;
     cx->leaves[behind].facet_count = behinds;
     for (i = 0; i < behinds; i++) cx->pool[cx->pool_count++] = behind_list[i];
-    cx->pool_live += fronts + behinds - count;
+    cx->pool_live += fronts + behinds - listed;
+    cx->scratch_count = 0;
     return middle;
 }
 
@@ -2868,20 +2903,20 @@ static void gxbp_set_knife(const gxb_triangle *t, uint32_t k, gxbp_knife *knife)
 
 /* Labels the part of a facet, in the triangle's plane, that the triangle covers; edges: bit k where edge k may bound that part. */
 static gx_result gxbp_cover_facet(gxb_complex *cx, gxb_triangle *t, uint32_t facet, uint32_t edges) {
-    uint32_t k, first, count;
+    uint32_t k;
     for (k = 0; k < 3; k++) {
         gxbp_knife knife;
         gx_result result;
         int front, sides;
         if (!(edges >> k & 1)) continue;
         result = gxbp_edge_plane(cx, t, k, &front);
-        if (result == GX_OK) result = gxb_facet_edges(cx, facet, &first, &count);
-        if (result == GX_OK) result = gxbp_reserve_split(cx, 1, count);
         if (result != GX_OK) return result;
         gxbp_set_knife(t, k, &knife);
         cx->stamp[1]++;
         sides = gxbp_facet_sides(cx, facet, &knife);
         if (sides == 3) {
+            result = gxbp_reserve_split(cx, 1, gxbp_count_loop(cx, facet));
+            if (result != GX_OK) return result;
             gxbp_split_facet(cx, facet, &knife);
             facet = cx->facets[facet].child + (front > 0 ? 0u : 1u);
         } else if (sides != (front > 0 ? 1 : 2)) return GX_OK;      /* outside of the triangle */
@@ -2950,19 +2985,14 @@ GXFEM_API GXBP_RARE gx_result gxb_complex_cover_node(gxb_complex *cx, gxb_triang
 
 /* The triangle lies in the plane of some of the leaf's facets. */
 static gx_result gxbp_cover_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t leaf) {
-    gxbp_knife knife;
-    uint32_t first, count, i, j, edge_first, edge_count;
+    uint32_t first, count, i, j;
     gx_result result = gxb_leaf_facets(cx, leaf, &first, &count);
-    memset(&knife, 0, sizeof knife);
-    knife.plane = t->plane;
     for (i = 0; i < count && result == GX_OK; i++) {
         uint32_t facet = cx->pool[first + i];
         for (j = 0; j < cx->facets[facet].loop_count; j++) {
             if (gxbp_sign(cx, gxbp_edge_start(cx, cx->pool[cx->facets[facet].loop + j]), t->plane, 0) != 0) break;
         }
-        if (j < cx->facets[facet].loop_count) continue;
-        result = gxb_facet_edges(cx, facet, &edge_first, &edge_count);
-        if (result == GX_OK) result = gxbp_cover_facet(cx, t, facet, 7);
+        if (j == cx->facets[facet].loop_count) result = gxbp_cover_facet(cx, t, facet, 7);
     }
     return result;
 }
@@ -3127,16 +3157,24 @@ static uint32_t *gxbp_reference(gxb_complex *cx, const gxbp_task *task, uint32_t
     return task->parent == GXBP_IN_ROOT ? &cx->root[element] : &cx->nodes[task->parent].child[task->side];
 }
 
-/* Resolves the leaf's facets and their edges, and reserves room to divide it. */
-static gx_result gxbp_ready_leaf(gxb_complex *cx, uint32_t leaf) {
-    uint32_t first, count, i, e0, en;
+/* Lists the leaf's facets and then their signs in complex.scratch, and reserves room to divide it. */
+static gx_result gxbp_ready_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife *knife) {
+    const gxb_leaf *l = &cx->leaves[leaf];
+    const uint32_t count = gxbp_count_list(cx, l);
+    uint32_t *out, i;
     size_t edges = 0;
-    gx_result result = gxb_leaf_facets(cx, leaf, &first, &count);
-    for (i = 0; i < count && result == GX_OK; i++) {
-        result = gxb_facet_edges(cx, cx->pool[first + i], &e0, &en);
-        edges += en;
+    gx_result result = GXBP_RESERVE(cx, scratch, scratch, 2 * count);
+    if (result != GX_OK) return result;
+    out = cx->scratch;
+    for (i = 0; i < l->facet_count; i++) out = gxbp_list_facets(cx, cx->pool[l->facets + i], out);
+    for (i = 0; i < count; i++) {
+        const uint32_t facet = cx->scratch[i], signs = cx->scratch[count + i] = gxbp_facet_signs(cx, facet, knife);
+        if ((signs & 3) == 3 || signs >= 8) edges += gxbp_count_loop(cx, facet);
     }
-    return result == GX_OK ? gxbp_reserve_split(cx, count, edges) : result;
+    cx->scratch_count = 2 * count;      /* these stay where scratch moves */
+    result = gxbp_reserve_split(cx, count, edges);
+    if (result != GX_OK) cx->scratch_count = 0;
+    return result;
 }
 
 /* Divides a leaf that is ready and hangs at the task's place; *node takes that place. Returns the facet between the halves. */
@@ -3264,7 +3302,7 @@ static GXBP_COLD gx_result gxbp_relieve_leaf(gxb_complex *cx, const gxbp_task *t
         cx->plane_count = planes;
     }
     if (k == ranks) return GX_OK;
-    result = gxbp_ready_leaf(cx, leaf);
+    result = gxbp_ready_leaf(cx, leaf, &knife);
     if (result == GX_OK) gxbp_part_leaf(cx, leaf, &knife, task, node);
     return result;
 }
@@ -3275,14 +3313,15 @@ static gx_result gxbp_divide_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t lea
     gxbp_knife knife;
     gxbp_task half;
     uint32_t i, edges = 0, middle, node, freed[2] = {GXB_NONE, GXB_NONE};
-    gx_result result = gxbp_ready_leaf(cx, leaf);
+    gx_result result;
+    memset(&knife, 0, sizeof knife);
+    knife.plane = t->plane;
+    result = gxbp_ready_leaf(cx, leaf, &knife);
     if (result != GX_OK) return result;
     for (i = 0; i < task->count; i++) {
         const uint32_t carrier = cx->corners[task->first + i].carrier;
         if (carrier >= GXBP_TRIANGLE_EDGE) edges |= 1u << (carrier - GXBP_TRIANGLE_EDGE);
     }
-    memset(&knife, 0, sizeof knife);
-    knife.plane = t->plane;
     middle = gxbp_part_leaf(cx, leaf, &knife, task, &node);
     result = gxbp_cover_facet(cx, t, middle, edges);
     half.parent = node;
@@ -3339,21 +3378,31 @@ static uint32_t gxbp_choose_section(const int sign[4], uint8_t corners[4][3]) {
     return 3;
 }
 
-/* Pushes a corner of the section: node j, or the point of the edge between nodes i and j. */
-static void gxbp_push_section_corner(gxb_complex *cx, const gxb_triangle *t, uint32_t i, uint32_t j, int sign, uint32_t carrier) {
+/* The point that has divided a mesh edge first, if the plane has done that, as for another element around the edge; GXB_NONE: it has not. */
+static uint32_t gxbp_made_crossing(const gxb_complex *cx, uint32_t mesh_edge, uint32_t plane) {
+    const uint32_t child = cx->edges[cx->mesh_edge[mesh_edge]].child;
+    const uint32_t point = child != GXB_NONE ? cx->edges[child].v[1] : GXB_NONE;
+    return point != GXB_NONE && cx->points[point].kind == GXB_LINE_PLANE && cx->points[point].def[2] == plane ? point : GXB_NONE;
+}
+
+/* Pushes a corner of an element's section: local node j, or the point of the edge between nodes i and j. */
+static void gxbp_push_section_corner(gxb_complex *cx, const gxb_triangle *t, uint32_t element, uint32_t i, uint32_t j, int sign, uint32_t carrier) {
+    const uint32_t *node = cx->elements + 4 * (size_t)element, p = node[i], q = node[j];
     gxbp_corner *c = &cx->corners[cx->corner_count++];
     memset(c, 0, sizeof *c);
     c->carrier = carrier;
     c->point = GXB_NONE;
     if (sign == 0) {
         c->kind = GXB_EXPLICIT;
-        c->point = j;
-        c->ball = cx->points[j].ball;
+        c->point = q;
+        c->ball = cx->points[q].ball;
         return;
     }
     c->kind = GXB_LINE_PLANE;
-    c->def[0] = i < j ? i : j; c->def[1] = i < j ? j : i; c->def[2] = t->plane;
-    gxbp_definition_ball(cx, c->kind, c->def, &c->ball);
+    c->def[0] = p < q ? p : q; c->def[1] = p < q ? q : p; c->def[2] = t->plane;
+    c->point = gxbp_made_crossing(cx, cx->element_edges[6 * element + gxbp_local_edge(i, j)], t->plane);
+    if (c->point != GXB_NONE) c->ball = cx->points[c->point].ball;
+    else gxbp_definition_ball(cx, c->kind, c->def, &c->ball);
 }
 
 /* Signs of corners: 1 on the triangle's side of its edge k, -1 beyond. Bit 1 of *sides: some are on its side, bit 2: some beyond. */
@@ -3404,7 +3453,6 @@ static void gxbp_push_triangle(gxb_complex *cx, const gxb_triangle *t) {
 /* What of the triangle lies in an element, on both sides of whose plane it has nodes, or three in the plane: the triangle itself, or the plane's section
    clipped by the triangle's edges. task->count 0: nothing. */
 static gx_result gxbp_clip_to_element(gxb_complex *cx, gxb_triangle *t, uint32_t element, const int sign[4], gxbp_task *task) {
-    const uint32_t *node = cx->elements + 4 * (size_t)element;
     uint8_t corners[4][3];
     uint32_t k, first;
     int sides;
@@ -3416,7 +3464,7 @@ static gx_result gxbp_clip_to_element(gxb_complex *cx, gxb_triangle *t, uint32_t
     if (gxbp_triangle_is_inside(cx, t, element)) { gxbp_push_triangle(cx, t); return GX_OK; }
     task->count = gxbp_choose_section(sign, corners);
     for (k = 0; k < task->count; k++)
-        gxbp_push_section_corner(cx, t, node[corners[k][0]], node[corners[k][1]], sign[corners[k][1]], gxbp_face_plane(cx, element, corners[k][2]));
+        gxbp_push_section_corner(cx, t, element, corners[k][0], corners[k][1], sign[corners[k][1]], gxbp_face_plane(cx, element, corners[k][2]));
     for (k = 0; k < 3 && task->count > 0; k++) {
         result = gxbp_edge_sides(cx, t, k, task->first, task->count, &sides);
         if (result != GX_OK) return result;
@@ -3751,27 +3799,70 @@ static void gxbp_pair_line_shares(gxb_complex *cx, const uint32_t def[3], uint32
 }
 
 /* Of three planes, by the sides on which they have the nodes: a plane's sum of sides x coordinates is 0, so these are the minors of the
-   sides. Where one plane is that of a face, the sides of the two others are enough. */
+   sides. */
 static void gxbp_pair_plane_shares(gxb_complex *cx, const uint32_t def[3], uint32_t element, const double lambda[4], gxbp_pair share[4]) {
     const uint32_t *node = cx->elements + 4 * (size_t)element;
     gxbp_pair side[3][4];
-    uint32_t order[3], face = 4, i, k;
-    for (i = 0; i < 3; i++) order[i] = def[i];
-    for (i = 0; i < 3 && face == 4; i++) for (k = 0; k < 4; k++)
-        if (def[i] == gxbp_face_plane(cx, element, k)) { face = k; order[i] = def[2]; order[2] = def[i]; }
-    for (i = 0; i < (face < 4 ? 2u : 3u); i++) for (k = 0; k < 4; k++) if (k != face) side[i][k] = gxbp_pair_side(cx, node[k], order[i]);
+    uint32_t i, k;
+    for (i = 0; i < 3; i++) for (k = 0; k < 4; k++) side[i][k] = gxbp_pair_side(cx, node[k], def[i]);
     for (k = 0; k < 4; k++) if (lambda[k] < 0) {
         const uint8_t *rest = gxbp_face_nodes[k];       /* k and these are an even permutation of 0 1 2 3 */
         gxbp_pair row[3], cofactor[3];
         for (i = 0; i < 3; i++) {
             const uint32_t j = rest[(i + 1) % 3], l = rest[(i + 2) % 3];
-            if (face < 4 && rest[i] != face) continue;
             cofactor[i] = gxbp_pair_det2(&side[0][j], &side[1][l], &side[0][l], &side[1][j]);
-            if (face < 4) share[k] = cofactor[i];
-            else row[i] = side[2][rest[i]];
+            row[i] = side[2][rest[i]];
         }
-        if (face == 4) share[k] = gxbp_pair_dot(row, cofactor);
+        share[k] = gxbp_pair_dot(row, cofactor);
     }
+}
+
+/* Is this the plane of a mesh face? Such are defined by nodes. */
+static int gxbp_is_face_plane(const gxb_complex *cx, uint32_t plane) {
+    const gxb_cplane *f = &cx->planes[plane];
+    return f->def[0] < cx->node_count && f->def[1] < cx->node_count && f->def[2] < cx->node_count && !f->along_axis;
+}
+
+/* Of a point in a mesh face, by the sides on which its two other planes have the face's nodes: the minors of these. 0: pairs do not tell, or it is in
+   two of such planes. */
+static int gxbp_pair_in_face(gxb_complex *cx, uint32_t point, uint32_t face) {
+    gxb_cpoint *p = &cx->points[point];
+    const uint32_t *node = cx->planes[p->def[face]].def;
+    gxbp_pair side[2][3], share[3], sum;
+    double parameter[3];
+    uint32_t i, k;
+    for (i = 0; i < 2; i++) {
+        const uint32_t plane = p->def[(face + 1 + i) % 3];
+        if (gxbp_is_face_plane(cx, plane)) return 0;
+        for (k = 0; k < 3; k++) side[i][k] = gxbp_pair_side(cx, node[k], plane);
+    }
+    for (k = 0; k < 3; k++) {
+        const uint32_t j = (k + 1) % 3, l = (k + 2) % 3;
+        share[k] = gxbp_pair_det2(&side[0][j], &side[1][l], &side[0][l], &side[1][j]);
+    }
+    sum = gxbp_pair_add(&share[0], &share[1], 1);
+    sum = gxbp_pair_add(&sum, &share[2], 1);
+    for (k = 0; k < 3; k++) if (!gxbp_pair_ratio(&share[k], &sum, &parameter[k])) return 0;
+    memcpy(p->parameter, parameter, sizeof p->parameter);
+    return 1;
+}
+
+/* Coordinates of a point of three planes one of which is that of a mesh face of the element: those in the face, which are asked for by both elements
+   beside it, so kept. 0: there is no such plane, or pairs do not tell. */
+static int gxbp_face_barycentric(gxb_complex *cx, uint32_t point, uint32_t element, double lambda[4]) {
+    const gxb_cpoint *p = &cx->points[point];
+    const uint32_t *n = cx->elements + 4 * (size_t)element, *node;
+    uint32_t face = 0, found = 0, i, k;
+    while (face < 3 && !gxbp_is_face_plane(cx, p->def[face])) face++;
+    if (face == 3) return 0;
+    node = cx->planes[p->def[face]].def;
+    for (k = 0; k < 4; k++) found += n[k] == node[0] || n[k] == node[1] || n[k] == node[2];
+    if (found < 3 || (p->parameter[0] < 0 && !gxbp_pair_in_face(cx, point, face))) return 0;
+    for (k = 0; k < 4; k++) {
+        lambda[k] = 0;
+        for (i = 0; i < 3; i++) if (n[k] == node[i]) lambda[k] = p->parameter[i];
+    }
+    return 1;
 }
 
 /* By pairs, those that they settle; -1 stands for the others. On entry what is known without arithmetic stands there. */
@@ -3801,6 +3892,7 @@ GXFEM_API void gxb_complex_barycentric(gxb_complex *cx, uint32_t point, uint32_t
     const gxb_cpoint *p = &cx->points[point];
     const int on_edge = gxbp_divides_edge(cx, point, element);
     uint32_t k;
+    if (p->kind == GXB_THREE_PLANES && gxbp_face_barycentric(cx, point, element, lambda)) return;
     for (k = 0; k < 4; k++) {
         const uint32_t node = cx->elements[4 * element + k];
         if (!on_edge) lambda[k] = gxbp_known_lambda(cx, point, element, k);
@@ -3854,7 +3946,7 @@ static GXBP_COLD void gxbp_save_points(gxb_complex *cx, gxb_stream *s) {
     uint32_t i;
     for (i = 0; i < cx->point_count; i++) {
         gxb_cpoint *p = &cx->points[i];
-        uint32_t head = p->kind | p->wall << 2;
+        uint32_t head = (uint32_t)p->kind | (uint32_t)p->wall << 2;
         double x[3];
         gxbp_pass_word(s, &head);
         if (i < cx->node_count) continue;
@@ -3872,7 +3964,7 @@ static GXBP_COLD void gxbp_load_points(gxb_complex *cx, gxb_stream *s, uint32_t 
         double x[3];
         gxbp_pass_word(s, &head);
         gxbp_require_true(s, head < 8 && (head & 3) <= (i < cx->node_count ? 0u : 2u));
-        if (i < cx->node_count) { cx->points[i].wall = head >> 2; continue; }
+        if (i < cx->node_count) { cx->points[i].wall = (uint8_t)(head >> 2); continue; }
         if ((head & 3) == GXB_EXPLICIT) gxb_stream_pass(s, x, 3, sizeof *x);
         else gxb_stream_pass(s, def, 3, sizeof *def);
         if (s->result != GX_OK) return;
@@ -3884,8 +3976,8 @@ static GXBP_COLD void gxbp_load_points(gxb_complex *cx, gxb_stream *s, uint32_t 
             if (s->result == GX_OK) memcpy(cx->points[id].def, def, sizeof def);
         }
         if (s->result != GX_OK) return;
-        cx->points[id].kind = head & 3;
-        cx->points[id].wall = head >> 2;
+        cx->points[id].kind = (uint8_t)(head & 3);
+        cx->points[id].wall = (uint8_t)(head >> 2);
     }
 }
 
@@ -4865,7 +4957,7 @@ static void gxbp_unite(gxb_boolean *b, uint32_t keep, uint32_t drop) {
    coordinates: the ratio's relative error is below 2^-50. */
 static void gxbp_place_point(gxb_boolean *b, uint32_t point, uint32_t kind, uint32_t p, uint32_t q, uint32_t r) {
     gxb_cpoint *c = &b->cx.points[point];
-    c->kind = kind;
+    c->kind = (uint8_t)kind;
     c->def[0] = p; c->def[1] = q; c->def[2] = r;
     gxbp_definition_ball(&b->cx, kind, c->def, &c->ball);
     if (c->ball.error > gxbp_power(-30) * gxbp_max3(c->ball.x)) {
@@ -5715,7 +5807,7 @@ static int gxbp_corner_side(gxb_boolean *b, uint32_t s, int k, uint32_t plane, i
     const uint32_t point = b->sources[s].point[k];
     gxb_cpoint *p = &b->cx.points[point];
     if (p->stamp[slot] != plane + 1) {
-        p->sign[slot] = b->sources[s].plane == plane ? 0 : gxbp_point_side(b, point, plane);
+        p->sign[slot] = (int8_t)(b->sources[s].plane == plane ? 0 : gxbp_point_side(b, point, plane));
         p->stamp[slot] = plane + 1;
     }
     return p->sign[slot];

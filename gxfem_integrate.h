@@ -877,30 +877,6 @@ static inline int gxip_is_lambda(double x)
     return bits << 1 <= limit << 1;
 }
 
-/* The vertex with the largest sum of lambdas; checks those that are referred to. */
-static gx_result gxip_part_vertex(const double *lambdas, size_t lambda_count, const uint32_t *triangles,
-                                  size_t triangle_count, unsigned *k)
-{
-    double sum[4] = { 0, 0, 0, 0 };
-    size_t i, c;
-    unsigned best = 0;
-    for (c = 0; c < 3 * triangle_count; c++) {
-        const double *lambda;
-        if (triangles[c] >= lambda_count) return GX_ERROR_INDEX;
-        lambda = lambdas + 4 * (size_t)triangles[c];
-        if (!gxip_is_lambda(lambda[0]) || !gxip_is_lambda(lambda[1]) || !gxip_is_lambda(lambda[2]) || !gxip_is_lambda(lambda[3]))
-            return gxip_all_finite(lambda, 4) ? GX_ERROR_RANGE : GX_ERROR_NOT_FINITE;
-        sum[0] += lambda[0];
-        sum[1] += lambda[1];
-        sum[2] += lambda[2];
-        sum[3] += lambda[3];
-    }
-    for (i = 1; i < 4; i++)
-        if (sum[i] > sum[best]) best = (unsigned)i;
-    *k = best;
-    return GX_OK;
-}
-
 /* If the centre lies beyond x + y + z = limit (lambda_k below that of every corner), which only noise does, contracts the mass
    towards `lower` until it does not. Covariances shrink with it and stay what they must be. */
 static void gxip_limit_sum(gxi_moments2 *m, const double lower[3], double limit)
@@ -917,24 +893,50 @@ static void gxip_limit_sum(gxi_moments2 *m, const double lower[3], double limit)
     gxi_moments2_translate(m, lower);
 }
 
-/* What a part's corners span: their box and the largest sum of their coordinates */
+/* What a part's corners span: their lambdas, for each frame the largest sum of its three, and their sums over the triangles' corners */
 typedef struct gxip_span {
-    double lower[3], upper[3], largest_sum;
+    double lower[4], upper[4], largest_sum[4], sum[4];
 } gxip_span;
 
-static inline void gxip_span_along(gxip_span *span, int d, double x)
+/* Adds a corner that so many triangles have. */
+static inline gx_result gxip_span_add(gxip_span *span, const double lambda[4], double count)
 {
-    span->lower[d] = x < span->lower[d] ? x : span->lower[d];
-    span->upper[d] = x > span->upper[d] ? x : span->upper[d];
+    const double rest[4] = { lambda[1] + lambda[2] + lambda[3], lambda[0] + lambda[3] + lambda[2],
+                             lambda[0] + lambda[1] + lambda[3], lambda[0] + lambda[2] + lambda[1] };
+    size_t i;
+    if (!gxip_is_lambda(lambda[0]) || !gxip_is_lambda(lambda[1]) || !gxip_is_lambda(lambda[2]) || !gxip_is_lambda(lambda[3]))
+        return gxip_all_finite(lambda, 4) ? GX_ERROR_RANGE : GX_ERROR_NOT_FINITE;
+    for (i = 0; i < 4; i++) {
+        span->lower[i] = lambda[i] < span->lower[i] ? lambda[i] : span->lower[i];
+        span->upper[i] = lambda[i] > span->upper[i] ? lambda[i] : span->upper[i];
+        span->largest_sum[i] = rest[i] > span->largest_sum[i] ? rest[i] : span->largest_sum[i];
+        span->sum[i] += count * lambda[i];
+    }
+    return GX_OK;
 }
 
-static inline void gxip_span_add(gxip_span *span, const double p[3])
+#define GXIP_FEW 64 /* corners: each is looked at once, not with each of its triangles */
+
+/* The span of the corners that are referred to, which are checked. */
+static gx_result gxip_part_span(const double *lambdas, size_t lambda_count, const uint32_t *triangles, size_t triangle_count,
+                                gxip_span *span)
 {
-    const double sum = p[0] + p[1] + p[2];
-    gxip_span_along(span, 0, p[0]);
-    gxip_span_along(span, 1, p[1]);
-    gxip_span_along(span, 2, p[2]);
-    span->largest_sum = sum > span->largest_sum ? sum : span->largest_sum;
+    uint32_t uses[GXIP_FEW] = { 0 };
+    gx_result result = GX_OK;
+    size_t i;
+    for (i = 0; i < 4; i++) {
+        span->lower[i] = GXIP_LAMBDA_MAX;
+        span->upper[i] = span->largest_sum[i] = -3 * GXIP_LAMBDA_MAX;
+        span->sum[i] = 0;
+    }
+    for (i = 0; i < 3 * triangle_count && result == GX_OK; i++) {
+        if (triangles[i] >= lambda_count) return GX_ERROR_INDEX;
+        if (lambda_count <= GXIP_FEW) uses[triangles[i]]++;
+        else result = gxip_span_add(span, lambdas + 4 * (size_t)triangles[i], 1);
+    }
+    for (i = 0; i < lambda_count && lambda_count <= GXIP_FEW && result == GX_OK; i++)
+        if (uses[i] > 0) result = gxip_span_add(span, lambdas + 4 * i, uses[i]);
+    return result;
 }
 
 static inline void gxip_part_corner(const double lambda[4], const unsigned axes[3], double p[3])
@@ -947,30 +949,29 @@ static inline void gxip_part_corner(const double lambda[4], const unsigned axes[
 GXFEM_API gx_result gxi_part_moments(const double *lambdas, size_t lambda_count, const uint32_t *triangles,
                                      size_t triangle_count, unsigned *k, gxi_moments2 *reference)
 {
-    double p[3][3];
-    unsigned axes[3], vertex;
+    double p[3][3], lower[3], upper[3];
+    unsigned axes[3], vertex = 0;
     gxip_span span;
     gxi_moments2 m;
     gx_result result;
-    size_t t, i;
+    size_t t;
+    unsigned i;
     if (!lambdas || !triangles || !k || !reference) return GX_ERROR_ARGUMENT;
     if (lambda_count == 0 || triangle_count == 0) return GX_ERROR_EMPTY;
-    result = gxip_part_vertex(lambdas, lambda_count, triangles, triangle_count, &vertex);
+    result = gxip_part_span(lambdas, lambda_count, triangles, triangle_count, &span);
     if (result != GX_OK) return result;
+    for (i = 1; i < 4; i++)
+        if (span.sum[i] > span.sum[vertex]) vertex = i;
     gxi_part_axes(vertex, axes);
     memset(&m, 0, sizeof m);
-    gxip_part_corner(lambdas + 4 * (size_t)triangles[0], axes, span.lower);
-    memcpy(span.upper, span.lower, sizeof span.upper);
-    span.largest_sum = span.lower[0] + span.lower[1] + span.lower[2];
     for (t = 0; t < triangle_count; t++) {
-        for (i = 0; i < 3; i++) {
-            gxip_part_corner(lambdas + 4 * (size_t)triangles[3 * t + i], axes, p[i]);
-            gxip_span_add(&span, p[i]);
-        }
+        for (i = 0; i < 3; i++) gxip_part_corner(lambdas + 4 * (size_t)triangles[3 * t + i], axes, p[i]);
         gxi_moments2_add_triangle(&m, p[0], p[1], p[2]);
     }
-    gxi_moments2_repair(&m, span.lower, span.upper);
-    gxip_limit_sum(&m, span.lower, span.largest_sum);
+    gxip_part_corner(span.lower, axes, lower);
+    gxip_part_corner(span.upper, axes, upper);
+    gxi_moments2_repair(&m, lower, upper);
+    gxip_limit_sum(&m, lower, span.largest_sum[vertex]);
     *reference = m;
     *k = vertex;
     return GX_OK;
@@ -1034,6 +1035,7 @@ GXFEM_API void gxi_face_mass_add(const double a[4], const double b[4], const dou
 
 #undef GXIP_ROUNDING
 #undef GXIP_LAMBDA_MAX
+#undef GXIP_FEW
 #undef GXIP_EXPONENT_MAX
 
 #ifdef __cplusplus
