@@ -924,10 +924,10 @@ typedef struct gxsp_system {
     gxsp_material *materials;   /* material_count: as given */
     gxsp_material *damped;      /* material_count: what the step under way works with: Rayleigh damping makes them stiffer */
     gxsp_chunk *chunks;
-    uint32_t *nodes;        /* slot_count: the copy of each node of each chunk; and GXSP_AHEAD more, any copies */
+    uint32_t *nodes;        /* slot_count: the copy of each node of each chunk; and GXSP_AHEAD zeros */
     uint32_t *copy_start;   /* n + 1, into copy_slot */
     uint32_t *copy_slot;    /* slot_count: a copy's slots, in the order of chunks: sums over them are the same for any number of threads;
-                               and GXSP_AHEAD more, any slots */
+                               and GXSP_AHEAD zeros */
     uint16_t *slot_root;    /* slot_count: number in the chunk of the least node that elements of the chunk join with this one */
     int roots_known;        /* slot_root is there */
     double (*slots)[3];     /* slot_count: what a chunk's pass has for each node: 3 doubles, 4 floats (of products), or 6 */
@@ -2829,6 +2829,8 @@ static void gxsp_list_slots(gxsp_system *system)
         system->copy_start[i + 2] += system->copy_start[i + 1];
     for (s = 0; s < system->slot_count; ++s) /* slots are in the order of chunks */
         system->copy_slot[system->copy_start[system->nodes[s] + 1]++] = (uint32_t)s;
+    memset(system->copy_slot + system->slot_count, 0, GXSP_AHEAD * sizeof *system->copy_slot);
+    memset(system->nodes + system->slot_count, 0, GXSP_AHEAD * sizeof *system->nodes);
 }
 
 static void gxsp_chunks_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model)
