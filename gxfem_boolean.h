@@ -2084,9 +2084,7 @@ GXFEM_API gx_result gxb_complex_add_plane(gxb_complex *cx, gxb_triangle *t) {
     return gxbp_plane_axis(cx, t->plane) ? GX_OK : GX_ERROR_FLAT;
 }
 
-/* --- faces and edges of the mesh by sorting --- */
-
-typedef struct gxbp_key { uint32_t node[3], element, local; } gxbp_key;
+/* --- faces and edges of the mesh by sorting: an element's are 4 x element + k, opposite to node k, and 6 x element + k --- */
 
 static const uint8_t gxbp_face_nodes[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};     /* outward, opposite to node k */
 static const uint8_t gxbp_edge_nodes[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
@@ -2098,74 +2096,77 @@ static GXBP_APART void gxbp_sort3(uint32_t a[3]) {
     if (a[0] > a[1]) { t = a[0]; a[0] = a[1]; a[1] = t; }
 }
 
-static int gxbp_same_nodes(const gxbp_key *a, const gxbp_key *b) { return memcmp(a->node, b->node, sizeof a->node) == 0; }
-
 /* 1 where the outward order of the element's face is an even permutation of the sorted nodes */
 static int gxbp_face_is_even(const uint32_t *element, uint32_t face) {
     const uint32_t a = element[gxbp_face_nodes[face][0]], b = element[gxbp_face_nodes[face][1]], c = element[gxbp_face_nodes[face][2]];
     return (a < b) == ((b < c) == (a < c));
 }
 
-/* Keys of the mesh's faces or edges, with room for as many again, and for one count per node and one more */
-typedef struct gxbp_keys { gxbp_key *key, *other; uint32_t *place; size_t nodes; } gxbp_keys;
-
-/* Sorts by the first digits nodes, last first, each time without changing the order of what is equal. */
-static void gxbp_sort_keys(gxbp_keys *keys, size_t count, int digits) {
-    size_t i;
-    while (digits-- > 0) {
-        gxbp_key *sorted = keys->other;
-        memset(keys->place, 0, (keys->nodes + 1) * sizeof *keys->place);
-        for (i = 0; i < count; i++) keys->place[keys->key[i].node[digits] + 1]++;
-        for (i = 0; i < keys->nodes; i++) keys->place[i + 1] += keys->place[i];
-        for (i = 0; i < count; i++) sorted[keys->place[keys->key[i].node[digits]]++] = keys->key[i];
-        keys->other = keys->key;
-        keys->key = sorted;
+/* Ascending nodes of an element's face (of 3) or edge (of 2) */
+static void gxbp_nodes_of(const gxb_complex *cx, uint32_t which, int of, uint32_t node[3]) {
+    if (of == 3) {
+        const uint32_t *n = cx->elements + 4 * (which / 4);
+        const uint8_t *face = gxbp_face_nodes[which % 4];
+        const uint32_t a = n[face[0]], b = n[face[1]], c = n[face[2]], low = a < b ? a : b, high = a < b ? b : a;
+        node[0] = c < low ? c : low; node[2] = c > high ? c : high; node[1] = a + b + c - node[0] - node[2];
+    } else {
+        const uint32_t *n = cx->elements + 4 * (which / 6);
+        const uint32_t a = n[gxbp_edge_nodes[which % 6][0]], b = n[gxbp_edge_nodes[which % 6][1]];
+        node[0] = a < b ? a : b; node[1] = a < b ? b : a; node[2] = 0;
     }
 }
 
-/* Numbers the faces in the order of their sorted nodes. */
-static gx_result gxbp_number_faces(gxb_complex *cx, gxbp_keys *all, size_t *bad) {
-    const size_t count = (size_t)cx->element_count * 4;
-    gxbp_key *keys = all->key;
-    size_t i;
-    uint32_t e, k, j;
-    for (e = 0, i = 0; e < cx->element_count; e++) for (k = 0; k < 4; k++, i++) {
-        for (j = 0; j < 3; j++) keys[i].node[j] = cx->elements[4 * e + gxbp_face_nodes[k][j]];
-        gxbp_sort3(keys[i].node);
-        keys[i].element = e; keys[i].local = k;
+/* Sorts the faces (of 3) or edges (of 2) of all elements by their nodes, by each node in turn, the last first, so that what is equal keeps its order
+   [radix sort, Knuth vol. 3, 5.2.5]. to, other: room for all of them each; place: for node_count + 1. Returns where they are. */
+static uint32_t *gxbp_sort_parts(const gxb_complex *cx, int of, uint32_t *to, uint32_t *other, uint32_t *place) {
+    const uint32_t count = cx->element_count * (of == 3 ? 4 : 6);
+    uint32_t *from = NULL, node[3], i;
+    int digit = of;
+    while (digit-- > 0) {
+        memset(place, 0, ((size_t)cx->node_count + 1) * sizeof *place);
+        for (i = 0; i < count; i++) { gxbp_nodes_of(cx, i, of, node); place[node[digit] + 1]++; }
+        for (i = 0; i < cx->node_count; i++) place[i + 1] += place[i];
+        for (i = 0; i < count; i++) {
+            const uint32_t which = from == NULL ? i : from[i];
+            gxbp_nodes_of(cx, which, of, node);
+            to[place[node[digit]]++] = which;
+        }
+        from = to; to = other; other = from;
     }
-    gxbp_sort_keys(all, count, 3);
-    keys = all->key;
+    return from;
+}
+
+/* Numbers the faces in the order of their sorted nodes. Tables that are filled later are scratch. */
+static gx_result gxbp_number_faces(gxb_complex *cx, uint32_t *place, size_t *bad) {
+    const uint32_t count = cx->element_count * 4, *sorted = gxbp_sort_parts(cx, 3, cx->element_edges, cx->mesh_edge, place);
+    uint32_t before[3] = {0, 0, 0}, node[3], i;
     cx->face_count = 0;
     for (i = 0; i < count; i++) {
-        const int again = i > 0 && gxbp_same_nodes(&keys[i], &keys[i - 1]);
-        const int side = gxbp_face_is_even(cx->elements + 4 * keys[i].element, keys[i].local);  /* behind the sorted normal */
-        if (!again) {
+        const uint32_t e = sorted[i] / 4, k = sorted[i] % 4, side = (uint32_t)gxbp_face_is_even(cx->elements + 4 * e, k);  /* behind the sorted normal */
+        uint32_t *sides;
+        gxbp_nodes_of(cx, sorted[i], 3, node);
+        if (memcmp(node, before, sizeof node) != 0) {
+            memcpy(before, node, sizeof node);
             cx->face_elements[2 * cx->face_count] = cx->face_elements[2 * cx->face_count + 1] = GXB_NONE;
             cx->face_count++;
         }
-        if (cx->face_elements[2 * (cx->face_count - 1) + (uint32_t)side] != GXB_NONE) { *bad = keys[i].element; return GX_ERROR_OVERLAP; }
-        cx->face_elements[2 * (cx->face_count - 1) + (uint32_t)side] = keys[i].element;
-        cx->element_faces[4 * keys[i].element + keys[i].local] = cx->face_count - 1;
+        sides = cx->face_elements + 2 * (size_t)(cx->face_count - 1);
+        if (sides[side] != GXB_NONE) { *bad = e; return GX_ERROR_OVERLAP; }
+        sides[side] = e;
+        cx->element_faces[sorted[i]] = cx->face_count - 1;
     }
     return GX_OK;
 }
 
-static void gxbp_number_edges(gxb_complex *cx, gxbp_keys *all) {
-    const size_t count = (size_t)cx->element_count * 6;
-    gxbp_key *keys = all->key;
-    size_t i;
-    uint32_t e, k;
-    for (e = 0, i = 0; e < cx->element_count; e++) for (k = 0; k < 6; k++, i++) {
-        const uint32_t a = cx->elements[4 * e + gxbp_edge_nodes[k][0]], b = cx->elements[4 * e + gxbp_edge_nodes[k][1]];
-        keys[i].node[0] = a < b ? a : b; keys[i].node[1] = a < b ? b : a; keys[i].node[2] = 0;
-        keys[i].element = e; keys[i].local = k;
-    }
-    gxbp_sort_keys(all, count, 2);
-    keys = all->key;
-    for (i = 0, cx->mesh_edge_count = 0; i < count; i++) {
-        if (i == 0 || !gxbp_same_nodes(&keys[i], &keys[i - 1])) cx->mesh_edge_count++;
-        cx->element_edges[6 * keys[i].element + keys[i].local] = cx->mesh_edge_count - 1;
+static void gxbp_number_edges(gxb_complex *cx, uint32_t *place) {
+    const uint32_t count = cx->element_count * 6, *sorted = gxbp_sort_parts(cx, 2, cx->element_edges, cx->mesh_edge, place);
+    uint32_t before[3] = {0, 0, 0}, node[3], i;
+    cx->mesh_edge_count = 0;
+    for (i = 0; i < count; i++) {
+        gxbp_nodes_of(cx, sorted[i], 2, node);
+        if (memcmp(node, before, sizeof node) != 0) cx->mesh_edge_count++;
+        memcpy(before, node, sizeof node);
+        cx->element_edges[sorted[i]] = cx->mesh_edge_count - 1;
     }
 }
 
@@ -2260,10 +2261,9 @@ static size_t gxbp_table_words(size_t elements) { return elements * (4 + 4 + 6 +
 
 static gx_result gxbp_fill_complex(gxb_complex *cx, const gxb_mesh *mesh, uint32_t *table, size_t *bad) {
     const size_t n = mesh->element_count;
-    const size_t key_bytes = n * 12 * sizeof(gxbp_key) + (mesh->node_count + 1) * sizeof(uint32_t);
+    const size_t place_bytes = (mesh->node_count + 1) * sizeof(uint32_t);
     gx_result result = gxbp_choose_frame(cx, mesh, bad);
-    gxbp_key *memory;
-    gxbp_keys keys;
+    uint32_t *place;
     memcpy(table, mesh->elements, n * 4 * sizeof *table);
     cx->elements = table;
     cx->element_faces = table + 4 * n; cx->element_edges = table + 8 * n; cx->face_elements = table + 14 * n;
@@ -2271,12 +2271,11 @@ static gx_result gxbp_fill_complex(gxb_complex *cx, const gxb_mesh *mesh, uint32
     if (result == GX_OK) result = gxbp_check_elements(cx, mesh, bad);
     if (result == GX_OK) result = gxbp_add_nodes(cx, mesh, bad);
     if (result != GX_OK) return result;
-    memory = (gxbp_key *)gxbp_allocate(&cx->allocator, key_bytes);
-    if (memory == NULL) return GX_ERROR_MEMORY;
-    keys.key = memory; keys.other = memory + 6 * n; keys.place = (uint32_t *)(memory + 12 * n); keys.nodes = mesh->node_count;
-    result = gxbp_number_faces(cx, &keys, bad);
-    if (result == GX_OK) gxbp_number_edges(cx, &keys);
-    gxbp_release(&cx->allocator, memory, key_bytes);
+    place = (uint32_t *)gxbp_allocate(&cx->allocator, place_bytes);
+    if (place == NULL) return GX_ERROR_MEMORY;
+    result = gxbp_number_faces(cx, place, bad);
+    if (result == GX_OK) gxbp_number_edges(cx, place);
+    gxbp_release(&cx->allocator, place, place_bytes);
     return result == GX_OK ? gxbp_make_leaves(cx) : result;
 }
 
