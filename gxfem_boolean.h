@@ -2285,7 +2285,7 @@ static GXBP_APART gx_result gxbp_fail(gx_failure *failure, gx_result result, siz
 }
 
 GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator *allocator, gxb_complex **complex,
-                                                 gx_failure *failure) {
+                                       gx_failure *failure) {
     gx_allocator none;
     gxb_complex *cx;
     uint32_t *table;

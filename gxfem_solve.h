@@ -69,7 +69,7 @@
  * A piece that has been slow for long sleeps if gxs_step_desc.sleep_speed says so; steps do without it until something touches it.
  *
  * WHAT IT DOES NOT DO. No cutting and no meshes: it sees elements of four copies. No search for contacts between pieces: give
- * points, planes and your own forces. No threads of its own: see gx_jobs.
+ * points, planes and your own forces. No threads of its own: see gx_jobs; a task takes up to 80 kB of stack.
  *
  * LIMITS. poisson in [0, 0.5), beyond 0.49999 the single precision of the Hessian tells; copies and elements below 2^30.
  * Energies, forces and states are doubles; the Hessian, its products and the preconditioner are single precision, which sets no
@@ -4451,20 +4451,26 @@ static double gxsp_unit_factor(const double *values, size_t count)
     return factor;
 }
 
-/* Are the Hessians of all elements finite? */
+static int gxsp_all_finite_single(const void *numbers, size_t bytes)
+{
+    const float *number = (const float *)numbers;
+    size_t i;
+    for (i = 0; i < bytes / sizeof *number; ++i)
+        if (!gxsp_finite_single(number[i]))
+            return 0;
+    return 1;
+}
+
+/* Are the Hessians and masses of all elements finite? */
 static int gxsp_tangents_finite(const gxsp_system *system)
 {
     uint32_t c;
-    size_t i;
     for (c = 0; c < system->chunk_count; ++c) {
         const gxsp_chunk *chunk = &system->chunks[c];
-        const float *numbers = (const float *)(const void *)chunk->tangents, *more = (const float *)(const void *)chunk->generals;
-        for (i = 0; i < chunk->block_count * (sizeof(gxsp_tangent) / sizeof(float)); ++i)
-            if (!gxsp_finite_single(numbers[i]))
-                return 0;
-        for (i = 0; more && i < chunk->block_count * (sizeof(gxsp_general) / sizeof(float)); ++i)
-            if (!gxsp_finite_single(more[i]))
-                return 0;
+        if (!gxsp_all_finite_single(chunk->tangents, chunk->block_count * sizeof *chunk->tangents) ||
+            !gxsp_all_finite_single(chunk->inertias, chunk->inertias ? chunk->block_count * sizeof *chunk->inertias : 0) ||
+            !gxsp_all_finite_single(chunk->generals, chunk->generals ? chunk->block_count * sizeof *chunk->generals : 0))
+            return 0;
     }
     return 1;
 }
@@ -4528,9 +4534,7 @@ static void gxsp_block_diagonal(const gxsp_chunk *chunk, uint32_t b, gxsp_single
             gxsp_general_own(&chunk->generals[b], gamma, own + 6 * corner);
         else
             gxsp_block_own(tangent, u, gamma, own + 6 * corner);
-        GXSP_EACH_LANE(l) mass[l] = 2 * tangent->mass[l];
-        if (inertia)
-            GXSP_EACH_LANE(l) mass[l] = inertia->entry[gxsp_packed_mass[corner][corner]][l];
+        GXSP_EACH_LANE(l) mass[l] = inertia ? inertia->entry[gxsp_packed_mass[corner][corner]][l] : 2 * tangent->mass[l];
         for (k = 0; k < 3; ++k)
             GXSP_EACH_LANE(l) own[6 * corner + diagonal[k]][l] += mass[l];
     }
