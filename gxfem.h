@@ -521,7 +521,7 @@ struct gx_body {
     double *lambdas; uint32_t lambda_capacity;          /* x 4 */
     gxp_words triangles;
     /* scratch of a cut */
-    gxp_words touched, nodes, queue, seeds, faces;
+    gxp_words touched, nodes, queue, pieces, seeds, faces;
     gxp_words fresh;                /* pieces of touched cells: their copies and integrals are to be found */
     gxp_words removed, dead, list;  /* leaves that solids removed, copies without cells */
     gxp_words pinches;              /* nodes at which sheets separated what meets there only */
@@ -795,11 +795,12 @@ static void gxp_search_init(gxp_search *s, const double *const p[3], double unit
 
 #define GXP_SEARCH_RANGE 1e42   /* what is further is out of range, and a candidate, so that this is told: products of heights (7 factors) stay in theirs */
 
-/* May the triangle meet the box? */
+/* May the triangle meet the box? (One branch for all axes: which of them tells is a toss of a coin.) */
 static int gxp_triangle_near_box(const gxp_search *s, const gxp_box *box) {
     double sum = 0, r = 0;
-    int k;
-    for (k = 0; k < 3; k++) if (s->low[k] > box->high[k] || s->high[k] < box->low[k]) return 0;
+    int k, beyond = 0;
+    for (k = 0; k < 3; k++) beyond |= (s->low[k] > box->high[k]) | (s->high[k] < box->low[k]);
+    if (beyond) return 0;
     for (k = 0; k < 3; k++) {
         const double c = 0.5 * box->low[k] + 0.5 * box->high[k], h = 0.5 * box->high[k] - 0.5 * box->low[k];
         sum += s->axis[0][k] * ((c - s->base[k]) * s->unit);
@@ -810,6 +811,13 @@ static int gxp_triangle_near_box(const gxp_search *s, const gxp_box *box) {
 
 /* Heights of the element's nodes along an axis, and how far they may be off */
 typedef struct gxp_heights { double at[4], margin; } gxp_heights;
+
+/* x: the nodes' coordinates from the base, by axis */
+static void gxp_set_heights(const gxp_search *s, int i, double x[3][4], gxp_heights *h) {
+    int n;
+    for (n = 0; n < 4; n++) h->at[n] = s->axis[i][0] * x[0][n] + s->axis[i][1] * x[1][n] + s->axis[i][2] * x[2][n] - s->offset[i];
+    h->margin = GXP_SEARCH_MARGIN * s->scale[i] * s->far;
+}
 
 /* Does the element meet the triangle's plane (over: heights of its nodes) beyond one of its edges (along) only? Where an edge of the element
    crosses the plane, the height along is (along_i |over_j| + along_j |over_i|) / (|over_i| + |over_j|). */
@@ -826,30 +834,34 @@ static int gxp_section_is_beyond(const gxp_heights *over, const gxp_heights *alo
     return 1;
 }
 
+/* Least and greatest of four */
+static double gxp_least(const double x[4]) {
+    const double a = x[0] < x[1] ? x[0] : x[1], b = x[2] < x[3] ? x[2] : x[3];
+    return a < b ? a : b;
+}
+
+static double gxp_greatest(const double x[4]) {
+    const double a = x[0] > x[1] ? x[0] : x[1], b = x[2] > x[3] ? x[2] : x[3];
+    return a > b ? a : b;
+}
+
 /* May the triangle meet the element? Not if a plane along the axes or its own has the element beyond it, or one along an edge across it what of the
    element is in the triangle's plane. */
 static int gxp_triangle_near_element(const gx_body *body, const gxp_search *s, uint32_t element) {
-    const double *p[4];
-    double x[4][3];
+    const uint32_t *node = body->complex->elements + 4 * (size_t)element;
+    double x[3][4];
     gxp_heights over, along;
-    int i, n;
-    for (n = 0; n < 4; n++) p[n] = body->positions + 3 * (size_t)body->complex->elements[4 * (size_t)element + (size_t)n];
-    for (i = 0; i < 3; i++) {
-        if (p[0][i] < s->low[i] && p[1][i] < s->low[i] && p[2][i] < s->low[i] && p[3][i] < s->low[i]) return 0;
-        if (p[0][i] > s->high[i] && p[1][i] > s->high[i] && p[2][i] > s->high[i] && p[3][i] > s->high[i]) return 0;
-    }
+    int i, n, beyond = 0;
+    for (n = 0; n < 4; n++) for (i = 0; i < 3; i++) x[i][n] = body->positions[3 * (size_t)node[n] + (size_t)i];
+    for (i = 0; i < 3; i++) beyond |= (gxp_greatest(x[i]) < s->low[i]) | (gxp_least(x[i]) > s->high[i]);
+    if (beyond) return 0;
     if (s->far > GXP_SEARCH_RANGE) return 1;
-    for (n = 0; n < 4; n++) gxp_search_vector(s, p[n], x[n]);
-    for (i = 0; i < 4; i++) {
-        gxp_heights *h = i == 0 ? &over : &along;
-        int beyond = 0, before = 0;
-        h->margin = GXP_SEARCH_MARGIN * s->scale[i] * s->far;
-        for (n = 0; n < 4; n++) {
-            h->at[n] = s->axis[i][0] * x[n][0] + s->axis[i][1] * x[n][1] + s->axis[i][2] * x[n][2] - s->offset[i];
-            beyond += h->at[n] > h->margin;
-            before += h->at[n] < -h->margin;
-        }
-        if (beyond == 4 || (i == 0 && before == 4) || (i > 0 && beyond > 0 && gxp_section_is_beyond(&over, &along))) return 0;
+    for (i = 0; i < 3; i++) for (n = 0; n < 4; n++) x[i][n] = (x[i][n] - s->base[i]) * s->unit;
+    gxp_set_heights(s, 0, x, &over);
+    if (gxp_least(over.at) > over.margin || gxp_greatest(over.at) < -over.margin) return 0;
+    for (i = 1; i < 4; i++) {
+        gxp_set_heights(s, i, x, &along);
+        if (gxp_least(along.at) > along.margin || (gxp_greatest(along.at) > along.margin && gxp_section_is_beyond(&over, &along))) return 0;
     }
     return 1;
 }
@@ -1234,12 +1246,13 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     gxp_skin_free(body);
     gxp_release(&a, body->lambdas, (size_t)body->lambda_capacity * 4 * sizeof(double));
     {
-        gxp_words *words[19];
+        gxp_words *words[20];
         words[0] = &body->view_cells; words[1] = &body->view_fragments; words[2] = &body->copy_fragment; words[3] = &body->cell_element;
         words[4] = &body->cell_copies; words[5] = &body->fragment_number; words[6] = &body->point_slot; words[7] = &body->triangles;
         words[8] = &body->touched; words[9] = &body->nodes; words[10] = &body->queue; words[11] = &body->seeds; words[12] = &body->faces;
         words[13] = &body->fresh; words[14] = &body->list; words[15] = &body->removed; words[16] = &body->dead; words[17] = &body->pinches; words[18] = &body->splits;
-        for (i = 0; i < 19; i++) gxp_words_free(body, words[i]);
+        words[19] = &body->pieces;
+        for (i = 0; i < 20; i++) gxp_words_free(body, words[i]);
     }
     gxs_solver_destroy(body->solver);
     gxb_complex_destroy(body->complex);
@@ -2275,23 +2288,27 @@ static gx_result gxp_cross_whole_face(gx_body *body, uint32_t element, uint32_t 
     return result;
 }
 
-/* Visits the cells that links of a fresh cell join to it, but across the face opposite to local node k. */
-static gx_result gxp_cross_links(gx_body *body, uint32_t index, uint32_t k) {
+/* Visits the cells that links of a fresh cell join to it, but across the face opposite to local node k; unless all is set only fresh ones. *open
+   is set to 1 where there are others. */
+static gx_result gxp_cross_links(gx_body *body, uint32_t index, uint32_t k, int all, uint32_t *open) {
     uint32_t i;
     gx_result result = GX_OK;
-    for (i = body->link_first.data[index]; i < body->link_first.data[index + 1] && result == GX_OK; i++)
-        if (GXP_LINK_FACE(body->links.data[i]) != k) result = gxp_visit_cell(body, GXP_LINK_CELL(body->links.data[i]));
+    for (i = body->link_first.data[index]; i < body->link_first.data[index + 1] && result == GX_OK; i++) {
+        const uint32_t other = GXP_LINK_CELL(body->links.data[i]);
+        if (GXP_LINK_FACE(body->links.data[i]) == k || body->cell_stamp[other] == body->stamp) continue;
+        if (gxp_fresh_index(body, other) == GXP_NONE) *open = 1;
+        if (all || gxp_fresh_index(body, other) != GXP_NONE) result = gxp_visit_cell(body, other);
+    }
     return result;
 }
 
-/* Visits the cells around the node that links join to this one. */
+/* Visits the cells around the node that links join to one that is not fresh. */
 static gx_result gxp_cross_faces(gx_body *body, uint32_t cell, uint32_t node) {
     gxb_complex *cx = body->complex;
-    const uint32_t element = body->cells[cell].element, fresh = gxp_fresh_index(body, cell);
+    const uint32_t element = body->cells[cell].element;
     const uint32_t local = (uint32_t)gxp_local_node(body, element, node), opposite = cx->element_faces[4 * element + local];
     uint32_t leaf, first, count, i, k;
     gx_result result = GX_OK;
-    if (fresh != GXP_NONE) return gxp_cross_links(body, fresh, local);
     for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next) {
         if (cx->leaves[leaf].facet_count == 0) {
             for (k = 0; k < 4 && result == GX_OK; k++) if (k != local) result = gxp_cross_whole_face(body, element, k);
@@ -2394,15 +2411,16 @@ static gx_result gxp_cross_pinches(gx_body *body, uint32_t cell, uint32_t node) 
     return result;
 }
 
-/* The nodal component that contains the cell: body->queue, every cell stamped. */
-static gx_result gxp_walk_component(gx_body *body, uint32_t cell, uint32_t node) {
-    uint32_t done = 0;
-    gx_result result;
-    body->queue.count = 0;
-    result = gxp_visit_cell(body, cell);
+/* The piece of a nodal component that contains a fresh cell: appended to body->queue, every cell stamped. all 0: of its fresh cells alone, from one to
+   the next; *open: do links go on to others? */
+static gx_result gxp_walk_piece(gx_body *body, uint32_t cell, uint32_t node, int all, uint32_t *open) {
+    uint32_t done = body->queue.count;
+    gx_result result = gxp_visit_cell(body, cell);
+    *open = 0;
     while (done < body->queue.count && result == GX_OK) {
-        const uint32_t c = body->queue.data[done++];
-        result = gxp_cross_faces(body, c, node);
+        const uint32_t c = body->queue.data[done++], fresh = gxp_fresh_index(body, c);
+        if (fresh == GXP_NONE) result = gxp_cross_faces(body, c, node);
+        else result = gxp_cross_links(body, fresh, (uint32_t)gxp_local_node(body, body->cells[c].element, node), all, open);
         if (result == GX_OK && body->node_pinched[node]) result = gxp_cross_pinches(body, c, node);
     }
     return result;
@@ -2422,10 +2440,11 @@ static gx_result gxp_new_copy(gx_body *body, uint32_t from, uint32_t *copy) {
     return result == GX_OK ? gxp_push(body, &body->splits, from) : result;
 }
 
-static gx_result gxp_set_copy(gx_body *body, uint32_t node, uint32_t copy) {
+/* Gives a copy to the cells first ... end-1 of body->queue. */
+static gx_result gxp_set_copy(gx_body *body, uint32_t node, uint32_t copy, uint32_t first, uint32_t end) {
     uint32_t i;
     gx_result result = GX_OK;
-    for (i = 0; i < body->queue.count && result == GX_OK; i++) {
+    for (i = first; i < end && result == GX_OK; i++) {
         const uint32_t cell = body->queue.data[i];
         result = gxp_save_cell(body, cell);
         body->cells[cell].copies[gxp_local_node(body, body->cells[cell].element, node)] = copy;
@@ -2474,33 +2493,53 @@ static int gxp_contains(const gxp_words *words, uint32_t value) {
     return 0;
 }
 
-/* Around one node (pairs first ... end-1): the pieces of each old component get copies of their own, the first piece keeps the old
-   one. Every piece of a component that fell apart contains a cell of a pair. Old copies that lost all cells join body->dead. */
+static uint32_t gxp_copy_of(const gx_body *body, uint32_t cell, uint32_t node) {
+    return body->cells[cell].copies[gxp_local_node(body, body->cells[cell].element, node)];
+}
+
+/* Finds the pieces of the components around a node (pairs first ... end-1). Every piece of a component that fell apart contains a cell of a pair. Their
+   cells go to body->queue, where each starts to body->pieces, times two, 1 more if it is open; body->seeds: the copies of components with an open
+   piece. all 0: only fresh cells are looked at, which tells the pieces apart unless a component has two open ones: *sure. */
+static gx_result gxp_find_pieces(gx_body *body, uint32_t first, uint32_t end, int all, int *sure) {
+    const uint32_t node = GXP_FIRST(body->pairs.data[first]);
+    uint32_t i, open;
+    gx_result result = GX_OK;
+    body->queue.count = body->pieces.count = body->seeds.count = 0;
+    body->stamp++;
+    *sure = all || !body->node_pinched[node];
+    for (i = first; i < end && result == GX_OK && *sure; i++) {
+        const uint32_t cell = GXP_SECOND(body->pairs.data[i]), start = body->queue.count, copy = gxp_copy_of(body, cell, node);
+        if (!body->cells[cell].kept || body->cell_stamp[cell] == body->stamp) continue;
+        result = gxp_walk_piece(body, cell, node, all, &open);
+        if (open && gxp_contains(&body->seeds, copy)) { *sure = all; open = 0; }
+        if (result == GX_OK && open) result = gxp_push(body, &body->seeds, copy);
+        if (result == GX_OK) result = gxp_push(body, &body->pieces, start << 1 | open);
+    }
+    return result;
+}
+
+/* Around one node: the pieces of each old component get copies of their own; one keeps the old copy, the open one, else the first. Old copies that lost
+   all cells join body->dead. */
 static gx_result gxp_divide_node(gxp_cut *cut, uint32_t first, uint32_t end) {
     gx_body *body = cut->body;
     const uint32_t node = GXP_FIRST(body->pairs.data[first]);
     uint32_t i;
-    gx_result result = GX_OK;
-    body->seeds.count = 0;              /* old copies that a piece has kept */
-    body->stamp++;
-    for (i = first; i < end && result == GX_OK; i++) {
-        const uint32_t cell = GXP_SECOND(body->pairs.data[i]);
-        const int k = gxp_local_node(body, body->cells[cell].element, node);
-        const uint32_t old = body->cells[cell].copies[k];
+    int sure = 0;
+    gx_result result = gxp_find_pieces(body, first, end, 0, &sure);
+    if (result == GX_OK && !sure) result = gxp_find_pieces(body, first, end, 1, &sure);
+    for (i = 0; i < body->pieces.count && result == GX_OK; i++) {
+        const uint32_t from = body->pieces.data[i] >> 1, to = i + 1 < body->pieces.count ? body->pieces.data[i + 1] >> 1 : body->queue.count;
+        const uint32_t old = gxp_copy_of(body, body->queue.data[from], node);
         uint32_t copy;
-        if (!body->cells[cell].kept || body->cell_stamp[cell] == body->stamp) continue;
-        result = gxp_walk_component(body, cell, node);
-        if (result == GX_OK && !gxp_contains(&body->seeds, old)) result = gxp_push(body, &body->seeds, old);
-        else if (result == GX_OK) {
-            result = gxp_new_copy(body, old, &copy);
-            if (result == GX_OK) result = gxp_set_copy(body, node, copy);
-            cut->report.created_copies++;
-        }
+        if (body->pieces.data[i] & 1) continue;
+        if (!gxp_contains(&body->seeds, old)) { result = gxp_push(body, &body->seeds, old); continue; }
+        result = gxp_new_copy(body, old, &copy);
+        if (result == GX_OK) result = gxp_set_copy(body, node, copy, from, to);
+        cut->report.created_copies++;
     }
     for (i = first; i < end && result == GX_OK; i++) {
-        const gxp_cell *cell = &body->cells[GXP_SECOND(body->pairs.data[i])];
-        const uint32_t old = cell->copies[gxp_local_node(body, cell->element, node)];
-        if (!cell->kept && !gxp_contains(&body->seeds, old) && !gxp_contains(&body->dead, old)) result = gxp_push(body, &body->dead, old);
+        const uint32_t cell = GXP_SECOND(body->pairs.data[i]), old = gxp_copy_of(body, cell, node);
+        if (!body->cells[cell].kept && !gxp_contains(&body->seeds, old) && !gxp_contains(&body->dead, old)) result = gxp_push(body, &body->dead, old);
     }
     return result;
 }
@@ -2523,7 +2562,7 @@ static gx_result gxp_divide_nodes(gxp_cut *cut) {
    the parts before it are kept where they may be met again: parts of one element share those of its walls. */
 static void gxp_clear_boundary(gx_body *body, int other_element) {
     if (other_element || body->list.count > 64) body->list.count = 0;
-    body->triangles.count = 0;
+    body->triangles.count = body->faces.count = 0;
 }
 
 static gx_result gxp_new_boundary_point(gx_body *body, uint32_t element, uint32_t point, uint32_t *index) {
@@ -2548,10 +2587,9 @@ static gx_result gxp_add_boundary_point(gx_body *body, uint32_t element, uint32_
     return *index < body->list.count && body->list.data[*index] == point ? GX_OK : gxp_new_boundary_point(body, element, point, index);
 }
 
-/* Adds a facet as a fan of triangles, outward from the leaf. */
-static gx_result gxp_add_boundary_facet(gx_body *body, uint32_t element, uint32_t facet, uint32_t leaf) {
+/* Adds a facet as a fan of triangles; inward: the part is in front of it. */
+static gx_result gxp_add_boundary_facet(gx_body *body, uint32_t element, uint32_t facet, int inward) {
     gxb_complex *cx = body->complex;
-    const int inward = cx->facets[facet].leaf[0] == leaf;
     uint32_t e0, en, i, corner[3] = {0, 0, 0};
     gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
     if (result == GX_OK) result = gxp_words_room(body, &body->triangles, 3 * (size_t)en);
@@ -2567,16 +2605,20 @@ static gx_result gxp_add_boundary_facet(gx_body *body, uint32_t element, uint32_
     return result;
 }
 
-/* Adds the leaf's facets; inner ones, with the same cell on both sides, cancel and are left out unless all is set. */
+/* Adds the leaf's facets inside the element; those with the same cell on both sides cancel and are left out unless all is set. Those in faces of
+   the element are kept in body->faces, times two, 1 more if the part is in front. */
 static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, int all) {
     gxb_complex *cx = body->complex;
     uint32_t first, count, i;
     gx_result result = gxb_leaf_facets(cx, leaf, &first, &count);
     for (i = 0; i < count && result == GX_OK; i++) {
-        const gxb_facet *f = &cx->facets[cx->pool[first + i]];
-        const uint32_t other = f->leaf[f->leaf[0] == leaf];
-        if (!all && f->face == GXB_NONE && gxp_is_kept(body, other) && body->leaves[other].cell == body->leaves[leaf].cell) continue;
-        result = gxp_add_boundary_facet(body, cx->leaves[leaf].element, cx->pool[first + i], leaf);
+        const uint32_t facet = cx->pool[first + i];
+        const gxb_facet *f = &cx->facets[facet];
+        const int inward = f->leaf[0] == leaf;
+        const uint32_t other = f->leaf[inward];
+        if (f->face != GXB_NONE) result = gxp_push(body, &body->faces, facet << 1 | (uint32_t)inward);
+        else if (all || !gxp_is_kept(body, other) || body->leaves[other].cell != body->leaves[leaf].cell)
+            result = gxp_add_boundary_facet(body, cx->leaves[leaf].element, facet, inward);
     }
     return result;
 }
@@ -2671,9 +2713,29 @@ static double gxp_cone_volumes(const gx_body *body, unsigned k) {
     return sum / 6;
 }
 
-/* Moments of the collected boundary; *k: the vertex of the element that is their frame's origin. */
+/* The vertex of the element that the collected triangles lie at */
+static unsigned gxp_nearest_vertex(const gx_body *body) {
+    double sum[4] = {0, 0, 0, 0};
+    unsigned nearest = 0, k;
+    uint32_t i;
+    for (i = 0; i < body->triangles.count; i++) for (k = 0; k < 4; k++) sum[k] += body->lambdas[4 * (size_t)body->triangles.data[i] + k];
+    for (k = 1; k < 4; k++) if (sum[k] > sum[nearest]) nearest = k;
+    return nearest;
+}
+
+/* Moments of the collected boundary; *k: the vertex of the element that is their frame's origin. Seen from there, of the facets in faces of the
+   element only those in the opposite one span cones. */
 static gx_result gxp_boundary_moments(gx_body *body, uint32_t element, unsigned *k, gxi_moments2 *m) {
-    gx_result result = gxi_part_moments(body->lambdas, body->list.count, body->triangles.data, body->triangles.count / 3, k, m);
+    const gxb_complex *cx = body->complex;
+    uint32_t i;
+    gx_result result = GX_OK;
+    *k = gxp_nearest_vertex(body);
+    for (i = 0; i < body->faces.count && result == GX_OK; i++) {
+        const uint32_t facet = body->faces.data[i] >> 1;
+        if (cx->facets[facet].face == cx->element_faces[4 * (size_t)element + *k])
+            result = gxp_add_boundary_facet(body, element, facet, (int)(body->faces.data[i] & 1));
+    }
+    if (result == GX_OK) result = gxi_part_moments_at(body->lambdas, body->list.count, body->triangles.data, body->triangles.count / 3, *k, m);
     if (result == GX_OK && m->volume < GXP_CANCELLATION * gxp_cone_volumes(body, *k)) result = gxp_fine_moments(body, element, *k, m);
     return result;
 }

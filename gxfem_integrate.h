@@ -248,6 +248,11 @@ GXFEM_API void gxi_part_axes(unsigned k, unsigned axes[3]);
 GXFEM_API gx_result gxi_part_moments(const double *lambdas, size_t lambda_count, const uint32_t *triangles,
                                      size_t triangle_count, unsigned *k, gxi_moments2 *reference);
 
+/* The same in the frame of a given k <= 3, where triangles in the element's faces through vertex k add nothing and may be left out: the
+   others do not have to close the surface. The vertex counts as a corner. */
+GXFEM_API gx_result gxi_part_moments_at(const double *lambdas, size_t lambda_count, const uint32_t *triangles,
+                                        size_t triangle_count, unsigned k, gxi_moments2 *reference);
+
 /* Mass block of the part, density * integral of lambda_i lambda_j (GXFEM Eq. 13); semi-definite up to rounding of its own size.
    reference: the part's moments in the frame with origin k. The part's volume is 6 element_volume reference->volume.
    Linear in the moments: blocks of parts that make up the element add up to the block of the element. Precondition: k <= 3. */
@@ -946,34 +951,57 @@ static inline void gxip_part_corner(const double lambda[4], const unsigned axes[
     p[2] = lambda[axes[2]];
 }
 
+/* Adds up the moments of a part whose corners have been looked at. */
+static void gxip_part_sums(const double *lambdas, const uint32_t *triangles, size_t triangle_count, const gxip_span *span,
+                           unsigned k, gxi_moments2 *reference)
+{
+    double p[3][3], lower[3], upper[3];
+    unsigned axes[3], i;
+    gxi_moments2 m;
+    size_t t;
+    gxi_part_axes(k, axes);
+    memset(&m, 0, sizeof m);
+    for (t = 0; t < triangle_count; t++) {
+        for (i = 0; i < 3; i++) gxip_part_corner(lambdas + 4 * (size_t)triangles[3 * t + i], axes, p[i]);
+        gxi_moments2_add_triangle(&m, p[0], p[1], p[2]);
+    }
+    gxip_part_corner(span->lower, axes, lower);
+    gxip_part_corner(span->upper, axes, upper);
+    gxi_moments2_repair(&m, lower, upper);
+    gxip_limit_sum(&m, lower, span->largest_sum[k]);
+    *reference = m;
+}
+
 GXFEM_API gx_result gxi_part_moments(const double *lambdas, size_t lambda_count, const uint32_t *triangles,
                                      size_t triangle_count, unsigned *k, gxi_moments2 *reference)
 {
-    double p[3][3], lower[3], upper[3];
-    unsigned axes[3], vertex = 0;
+    unsigned vertex = 0, i;
     gxip_span span;
-    gxi_moments2 m;
     gx_result result;
-    size_t t;
-    unsigned i;
     if (!lambdas || !triangles || !k || !reference) return GX_ERROR_ARGUMENT;
     if (lambda_count == 0 || triangle_count == 0) return GX_ERROR_EMPTY;
     result = gxip_part_span(lambdas, lambda_count, triangles, triangle_count, &span);
     if (result != GX_OK) return result;
     for (i = 1; i < 4; i++)
         if (span.sum[i] > span.sum[vertex]) vertex = i;
-    gxi_part_axes(vertex, axes);
-    memset(&m, 0, sizeof m);
-    for (t = 0; t < triangle_count; t++) {
-        for (i = 0; i < 3; i++) gxip_part_corner(lambdas + 4 * (size_t)triangles[3 * t + i], axes, p[i]);
-        gxi_moments2_add_triangle(&m, p[0], p[1], p[2]);
-    }
-    gxip_part_corner(span.lower, axes, lower);
-    gxip_part_corner(span.upper, axes, upper);
-    gxi_moments2_repair(&m, lower, upper);
-    gxip_limit_sum(&m, lower, span.largest_sum[vertex]);
-    *reference = m;
+    gxip_part_sums(lambdas, triangles, triangle_count, &span, vertex, reference);
     *k = vertex;
+    return GX_OK;
+}
+
+GXFEM_API gx_result gxi_part_moments_at(const double *lambdas, size_t lambda_count, const uint32_t *triangles,
+                                        size_t triangle_count, unsigned k, gxi_moments2 *reference)
+{
+    double vertex[4] = { 0, 0, 0, 0 };
+    gxip_span span;
+    gx_result result;
+    if (!lambdas || !triangles || k > 3 || !reference) return GX_ERROR_ARGUMENT;
+    if (lambda_count == 0 || triangle_count == 0) return GX_ERROR_EMPTY;
+    result = gxip_part_span(lambdas, lambda_count, triangles, triangle_count, &span);
+    if (result != GX_OK) return result;
+    vertex[k] = 1;
+    (void)gxip_span_add(&span, vertex, 0);
+    gxip_part_sums(lambdas, triangles, triangle_count, &span, k, reference);
     return GX_OK;
 }
 
