@@ -396,7 +396,7 @@ typedef struct gxp_leaf {       /* beside each leaf of the complex */
     int32_t winding;            /* where stamp is the current solid's */
 } gxp_leaf;
 
-typedef struct gxp_box { double low[3], high[3]; uint32_t first, count; } gxp_box;     /* tree node; count 0: children first, first+1 */
+typedef struct gxp_box { float low[3], high[3]; uint32_t first, count; } gxp_box;      /* tree node; count 0: children first, first+1 */
 
 typedef struct gxp_saved_cell { uint32_t index; gxp_cell cell; } gxp_saved_cell;   /* as they were when the cut began */
 typedef struct gxp_saved_leaf { uint32_t index; gxp_leaf leaf; } gxp_saved_leaf;
@@ -470,7 +470,8 @@ struct gx_body {
     uint32_t *node_elements;        /* element_count x 4: elements around each node */
     uint8_t *node_pinched;          /* node_count: bit 1: elements around it are not joined by faces; bit 2: one of its edges is pinched */
     uint8_t *edge_pinched;          /* mesh_edge_count: elements around it meet in the edge only */
-    gxp_box *boxes; uint32_t box_count;
+    gxp_box *boxes; uint32_t box_count;     /* from the mesh's lower corner, in units in which it is at most 1 long */
+    double corner[3];
     uint32_t *box_elements;         /* element_count, in tree order */
     gxp_cell *cells; uint32_t cell_count, cell_capacity;
     gxp_leaf *leaves; uint32_t leaf_count, leaf_capacity;
@@ -677,8 +678,13 @@ static double gxp_seconds(const gx_body *body) { return body->clock ? body->cloc
 
 /* >>tree: axis-aligned boxes over the elements, median split ------------------------------------------------------------- */
 
-static void gxp_box_of(const gx_body *body, gxp_box *box) {
-    double low[3], high[3];
+#define GXP_BOX_MARGIN 4e-7     /* more than is lost where boxes become floats */
+
+/* As boxes have it: within a body 0 ... 1 */
+static double gxp_boxed(const gx_body *body, double x, int axis, double unit) { return (x - body->corner[axis]) * unit; }
+
+static void gxp_box_of(const gx_body *body, gxp_box *box, double unit) {
+    double low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
     uint32_t i;
     int k, n;
     for (i = box->first; i < box->first + box->count; i++) for (n = 0; n < 4; n++) {
@@ -689,8 +695,10 @@ static void gxp_box_of(const gx_body *body, gxp_box *box) {
             high[k] = x[k] > high[k] ? x[k] : high[k];
         }
     }
-    memcpy(box->low, low, sizeof low);
-    memcpy(box->high, high, sizeof high);
+    for (k = 0; k < 3; k++) {
+        box->low[k] = (float)(gxp_boxed(body, low[k], k, unit) - GXP_BOX_MARGIN);
+        box->high[k] = (float)(gxp_boxed(body, high[k], k, unit) + GXP_BOX_MARGIN);
+    }
 }
 
 static double gxp_element_key(const gx_body *body, uint32_t element, int axis) {
@@ -716,7 +724,14 @@ static void gxp_select(const gx_body *body, uint32_t *e, int64_t count, int64_t 
 }
 
 static void gxp_build_boxes(gx_body *body) {
+    const double unit = ldexp(1, body->complex->shift);
     uint32_t i, b;
+    int k;
+    memcpy(body->corner, body->positions, sizeof body->corner);
+    for (i = 1; i < body->node_count; i++) for (k = 0; k < 3; k++) {
+        const double x = body->positions[3 * (size_t)i + (size_t)k];
+        if (x < body->corner[k]) body->corner[k] = x;
+    }
     for (i = 0; i < body->element_count; i++) body->box_elements[i] = i;
     memset(&body->boxes[0], 0, sizeof body->boxes[0]);
     body->boxes[0].count = body->element_count;
@@ -724,8 +739,8 @@ static void gxp_build_boxes(gx_body *body) {
     for (b = 0; b < body->box_count; b++) {
         gxp_box *box = &body->boxes[b];
         const uint32_t first = box->first, count = box->count, half = count / 2;
-        int axis = 0, k;
-        gxp_box_of(body, box);
+        int axis = 0;
+        gxp_box_of(body, box, unit);
         if (count <= 4) continue;
         for (k = 1; k < 3; k++) if (box->high[k] - box->low[k] > box->high[axis] - box->low[axis]) axis = k;
         gxp_select(body, body->box_elements + first, count, half, axis);
@@ -745,6 +760,8 @@ static const uint8_t gxp_outward[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2
 typedef struct gxp_search {
     const double *base;     /* its first corner */
     double unit, low[3], high[3];
+    float near_low[3], near_high[3];    /* those as boxes have them, where they lie near the body */
+    double boxed[3];        /* so the first corner */
     double axis[4][3];      /* the normal; of each edge the normal in the triangle's plane, outward */
     double scale[4];        /* size of the products of which they are made */
     double offset[4];       /* along them, of the triangle's plane and edges from the base */
@@ -769,8 +786,11 @@ static void gxp_search_vector(const gxp_search *s, const double *x, double d[3])
     for (k = 0; k < 3; k++) d[k] = (x[k] - s->base[k]) * s->unit;
 }
 
-/* all: the box of all elements */
-static void gxp_search_init(gxp_search *s, const double *const p[3], double unit, const gxp_box *all) {
+/* As a float, within -2 ... 2 */
+static float gxp_near(double x) { return (float)(x < -2 ? -2 : x > 2 ? 2 : x); }
+
+static void gxp_search_init(gxp_search *s, const gx_body *body, const double *const p[3]) {
+    const double unit = ldexp(1, body->complex->shift);
     double d[3][3], e[3];
     int i, k;
     s->base = p[0];
@@ -789,7 +809,10 @@ static void gxp_search_init(gxp_search *s, const double *const p[3], double unit
     for (k = 0; k < 3; k++) {
         s->low[k] = fmin(p[0][k], fmin(p[1][k], p[2][k]));
         s->high[k] = fmax(p[0][k], fmax(p[1][k], p[2][k]));
-        s->far += 8 * (fabs(s->low[k]) + fabs(s->high[k]) + fabs(all->low[k]) + fabs(all->high[k])) * unit;
+        s->near_low[k] = gxp_near(gxp_boxed(body, s->low[k], k, unit) - GXP_BOX_MARGIN);
+        s->near_high[k] = gxp_near(gxp_boxed(body, s->high[k], k, unit) + GXP_BOX_MARGIN);
+        s->boxed[k] = gxp_boxed(body, p[0][k], k, unit);
+        s->far += 8 * ((fabs(s->low[k]) + fabs(s->high[k]) + 2 * fabs(body->corner[k])) * unit + 2);
     }
 }
 
@@ -799,12 +822,12 @@ static void gxp_search_init(gxp_search *s, const double *const p[3], double unit
 static int gxp_triangle_near_box(const gxp_search *s, const gxp_box *box) {
     double sum = 0, r = 0;
     int k, beyond = 0;
-    for (k = 0; k < 3; k++) beyond |= (s->low[k] > box->high[k]) | (s->high[k] < box->low[k]);
+    for (k = 0; k < 3; k++) beyond |= (s->near_low[k] > box->high[k]) | (s->near_high[k] < box->low[k]);
     if (beyond) return 0;
     for (k = 0; k < 3; k++) {
-        const double c = 0.5 * box->low[k] + 0.5 * box->high[k], h = 0.5 * box->high[k] - 0.5 * box->low[k];
-        sum += s->axis[0][k] * ((c - s->base[k]) * s->unit);
-        r += fabs(s->axis[0][k]) * (h * s->unit);
+        const double low = (double)box->low[k], high = (double)box->high[k];
+        sum += s->axis[0][k] * (0.5 * (low + high) - s->boxed[k]);
+        r += fabs(s->axis[0][k]) * (0.5 * (high - low));
     }
     return s->far > GXP_SEARCH_RANGE || fabs(sum) <= r + GXP_SEARCH_MARGIN * s->scale[0] * s->far;
 }
@@ -866,22 +889,36 @@ static int gxp_triangle_near_element(const gx_body *body, const gxp_search *s, u
     return 1;
 }
 
-/* Appends to found the elements that the triangle may meet. */
+/* Finds the elements that the triangle may meet: those in boxes that it may meet are listed first, so that what there is to read of them comes while
+   others are looked at. */
 static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_words *found) {
+    const uint32_t *elements = body->complex->elements;
     gxp_search search;
-    uint32_t stack[128], depth = 0, i;
+    uint32_t stack[128], depth = 0, count = 0, i, k;
     gx_result result = GX_OK;
-    gxp_search_init(&search, p, ldexp(1, body->complex->shift), &body->boxes[0]);
+    found->count = 0;
+    gxp_search_init(&search, body, p);
     stack[depth++] = 0;
     while (depth > 0 && result == GX_OK) {
         const gxp_box *box = &body->boxes[stack[--depth]];
         if (!gxp_triangle_near_box(&search, box)) continue;
         if (box->count == 0) { stack[depth++] = box->first + 1; stack[depth++] = box->first; }
+        else result = gxp_words_room(body, found, box->count);
         for (i = 0; i < box->count && result == GX_OK; i++) {
-            const uint32_t element = body->box_elements[box->first + i];
-            if (gxp_triangle_near_element(body, &search, element)) result = gxp_push(body, found, element);
+            const uint32_t element = found->data[found->count++] = body->box_elements[box->first + i];
+            GXBP_FETCH(elements + 4 * (size_t)element);
         }
     }
+    for (i = 0; i < found->count && result == GX_OK; i++) {
+        for (k = 0; k < 4 && i + 4 < found->count; k++) GXBP_FETCH(body->positions + 3 * (size_t)elements[4 * (size_t)found->data[i + 4] + k]);
+        if (!gxp_triangle_near_element(body, &search, found->data[i])) continue;
+        GXBP_FETCH(&body->complex->leaves[found->data[i]]);
+        GXBP_FETCH(body->complex->element_faces + 4 * (size_t)found->data[i]);
+        GXBP_FETCH(body->complex->element_edges + 6 * (size_t)found->data[i]);
+        GXBP_FETCH(body->complex->root + found->data[i]);
+        found->data[count++] = found->data[i];
+    }
+    found->count = count;
     return result;
 }
 
@@ -1069,7 +1106,7 @@ static gx_result gxp_allocate_tables(gx_body *body) {
     body->node_elements = (uint32_t *)gxp_table(body, 4 * e, sizeof(uint32_t));
     body->node_pinched = (uint8_t *)gxp_table(body, n, 1);
     body->edge_pinched = (uint8_t *)gxp_table(body, body->complex->mesh_edge_count, 1);
-    body->boxes = (gxp_box *)gxp_table(body, 2 * e, sizeof(gxp_box));
+    body->boxes = (gxp_box *)gxp_table(body, e, sizeof(gxp_box));
     body->box_elements = (uint32_t *)gxp_table(body, e, sizeof(uint32_t));
     body->element_materials = (uint32_t *)gxp_table(body, e, sizeof(uint32_t));
     body->materials = (gx_material *)gxp_table(body, body->material_count, sizeof *body->materials);
@@ -1209,7 +1246,7 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     gxp_release(&a, body->node_elements, (4 * e + 1) * sizeof(uint32_t));
     gxp_release(&a, body->node_pinched, n + 1);
     if (body->complex) gxp_release(&a, body->edge_pinched, (size_t)body->complex->mesh_edge_count + 1);
-    gxp_release(&a, body->boxes, (2 * e + 1) * sizeof(gxp_box));
+    gxp_release(&a, body->boxes, (e + 1) * sizeof(gxp_box));
     gxp_release(&a, body->box_elements, (e + 1) * sizeof(uint32_t));
     gxp_release(&a, body->cells, body->cell_capacity * sizeof *body->cells);
     gxp_release(&a, body->cell_stamp, body->cell_stamp_capacity * sizeof *body->cell_stamp);
@@ -1624,7 +1661,6 @@ static gx_result gxp_insert_triangle(gxp_cut *cut, gxp_surface *s, uint32_t inde
     uint32_t k, i;
     gx_result result;
     for (k = 0; k < 3; k++) p[k] = s->given->vertices + 3 * (size_t)s->given->triangles[3 * index + k];
-    body->list.count = 0;
     result = gxp_find_elements(body, p, &body->list);
     if (result == GX_OK && body->list.count > 0) result = gxp_prepare_triangle(cut, s, index);
     for (i = 0; i < body->list.count && result == GX_OK; i++) {
@@ -2239,6 +2275,23 @@ static gx_result gxp_touch_severed(gxp_cut *cut) {
     return result == GX_OK ? gxp_settle_links(body) : result;
 }
 
+/* Asks for what dividing the next touched cells reads: their leaves, four ahead, their lists of facets three and two, the facets of the next. */
+static void gxp_fetch_leaves(const gx_body *body, uint32_t index) {
+    const gxb_complex *cx = body->complex;
+    const uint32_t *touched = body->touched.data, count = body->touched.count;
+    uint32_t leaf, i;
+    if (index + 4 < count && (leaf = body->cells[touched[index + 4]].first_leaf) != GXP_NONE) {
+        GXBP_FETCH(&body->leaves[leaf]);
+        GXBP_FETCH(&cx->leaves[leaf]);
+    }
+    if (index + 3 < count) for (leaf = body->cells[touched[index + 3]].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next)
+        GXBP_FETCH(&cx->leaves[leaf]);
+    if (index + 2 < count) for (leaf = body->cells[touched[index + 2]].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next)
+        GXBP_FETCH(cx->pool + cx->leaves[leaf].facets);
+    if (index + 1 < count) for (leaf = body->cells[touched[index + 1]].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next)
+        for (i = 0; i < cx->leaves[leaf].facet_count; i++) GXBP_FETCH(&cx->facets[cx->pool[cx->leaves[leaf].facets + i]]);
+}
+
 /* Divides all touched cells. Leaves body->touched as it was, makes body->fresh of the pieces and lists their links. */
 static gx_result gxp_divide_cells(gxp_cut *cut) {
     gx_body *body = cut->body;
@@ -2254,7 +2307,10 @@ static gx_result gxp_divide_cells(gxp_cut *cut) {
         cut->report.touched_elements += *stamp != body->stamp;
         *stamp = body->stamp;
     }
-    for (i = 0; i < body->touched.count && result == GX_OK; i++) result = gxp_divide_cell(cut, body->touched.data[i]);
+    for (i = 0; i < body->touched.count && result == GX_OK; i++) {
+        gxp_fetch_leaves(body, i);
+        result = gxp_divide_cell(cut, body->touched.data[i]);
+    }
     return result == GX_OK ? gxp_settle_links(body) : result;
 }
 
@@ -2963,6 +3019,24 @@ static gx_result gxp_integrate_fresh(gx_body *body, uint32_t cell, uint32_t *bef
     return gxp_integrate_element(body, element);
 }
 
+/* Asks for what weighing the links of the next fresh cells reads: facets three ahead, their loops two ahead, the edges of the next. */
+static void gxp_fetch_links(const gx_body *body, uint32_t index) {
+    const gxb_complex *cx = body->complex;
+    const uint32_t *at = body->link_first.data;
+    const uint32_t count = body->fresh.count;
+    uint32_t j, i;
+    if (index + 3 < count) for (j = at[index + 3]; j < at[index + 4]; j++) GXBP_FETCH(&cx->facets[GXP_LINK_FACET(body->links.data[j])]);
+    if (index + 2 < count) for (j = at[index + 2]; j < at[index + 3]; j++) {
+        const gxb_facet *f = &cx->facets[GXP_LINK_FACET(body->links.data[j])];
+        GXBP_FETCH(cx->pool + f->loop);
+        GXBP_FETCH(&cx->planes[f->plane].axis);
+    }
+    if (index + 1 < count) for (j = at[index + 1]; j < at[index + 2]; j++) {
+        const gxb_facet *f = &cx->facets[GXP_LINK_FACET(body->links.data[j])];
+        for (i = 0; i < f->loop_count; i++) GXBP_FETCH(&cx->edges[cx->pool[f->loop + i] >> 1]);
+    }
+}
+
 /* Links are weighed here, where their facets are looked at anyway, unless they were before, to be severed. */
 static gx_result gxp_integrate(gxp_cut *cut) {
     gx_body *body = cut->body;
@@ -2973,6 +3047,7 @@ static gx_result gxp_integrate(gxp_cut *cut) {
     body->nodes.count = 0;
     body->stamp++;
     for (i = 0; i < body->fresh.count && result == GX_OK; i++) {
+        gxp_fetch_links(body, i);
         if (!weighed) result = gxp_weigh_links(cut, i, &bound);
         if (result == GX_OK) result = gxp_integrate_fresh(body, body->fresh.data[i], &before);
     }

@@ -984,6 +984,26 @@ static void cell_mass(const cell *c, double mass[10], double load[4], long doubl
     cell_oracle(lambdas, triangles, count, oracle);
 }
 
+/* The same about vertex k, without the triangles in the element's faces through it; returns how many of them there are. */
+static size_t cell_mass_at(const cell *c, unsigned k, double mass[10])
+{
+    static double lambdas[4 * CELL_FACES * FACE_POINTS];
+    static uint32_t triangles[3 * CELL_FACES * FACE_POINTS];
+    size_t count = triangulate(c, lambdas, triangles), kept = 0, t;
+    gxi_moments2 m;
+    for (t = 0; t < count; t++) {
+        const double *p[3];
+        unsigned i;
+        int beside = 0;
+        for (i = 0; i < 3; i++) p[i] = lambdas + 4 * (size_t)triangles[3 * t + i];
+        for (i = 0; i < 4; i++) beside |= i != k && !(p[0][i] > 0 || p[1][i] > 0 || p[2][i] > 0);
+        if (!beside) memcpy(triangles + 3 * kept++, triangles + 3 * t, 3 * sizeof *triangles);
+    }
+    ck_assert_int_eq(gxi_part_moments_at(lambdas, CELL_FACES * FACE_POINTS, triangles, kept, k, &m), GX_OK);
+    gxi_part_mass(&m, k, 1, 1, mass);
+    return count - kept;
+}
+
 #define CELLS 256
 
 START_TEST(split_by_planes)
@@ -991,6 +1011,8 @@ START_TEST(split_by_planes)
     cell *cells[CELLS] = { NULL };
     double total[10] = { 0 }, load_total[4] = { 0 }, mass[10], load[4], whole[10];
     long double oracle[10];
+    size_t left_out = 0;
+    unsigned k;
     int count = 1, planes = 2 + _i % 5, p, i, j;
     seed_random(first_seed() + (uint64_t)_i);
     cells[0] = whole_cell();
@@ -1019,8 +1041,14 @@ START_TEST(split_by_planes)
             row += mass[gxip_packed4(0, (size_t)j)];
         }
         ASSERT_NEAR(row, load[0], 2e-15); /* shape functions add up to 1 */
+        for (k = 0; k < 4; k++) {
+            left_out += cell_mass_at(cells[i], k, mass);
+            assert_semidefinite(mass);
+            for (j = 0; j < 10; j++) ASSERT_NEAR(mass[j], oracle[j], 4e-15);
+        }
         free(cells[i]);
     }
+    ck_assert_uint_ge(left_out, 12); /* a whole element has 3 for each of its vertices */
     gxi_tet_mass(1, 1, whole);
     for (j = 0; j < 10; j++) ASSERT_NEAR(total[j], whole[j], 2e-15);
     for (j = 0; j < 4; j++) ASSERT_NEAR(load_total[j], 0.25, 4e-15);
@@ -1363,6 +1391,12 @@ START_TEST(bad_parts)
     ck_assert_int_eq(gxi_part_moments(lambdas, 4, NULL, 4, &k, &m), GX_ERROR_ARGUMENT);
     ck_assert_int_eq(gxi_part_moments(lambdas, 4, triangles, 4, NULL, &m), GX_ERROR_ARGUMENT);
     ck_assert_int_eq(gxi_part_moments(lambdas, 4, triangles, 4, &k, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxi_part_moments_at(NULL, 4, triangles, 4, 0, &m), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxi_part_moments_at(lambdas, 4, NULL, 4, 0, &m), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxi_part_moments_at(lambdas, 4, triangles, 4, 4, &m), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxi_part_moments_at(lambdas, 4, triangles, 4, 0, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxi_part_moments_at(lambdas, 4, triangles, 0, 0, &m), GX_ERROR_EMPTY);
+    ck_assert_int_eq(gxi_part_moments_at(lambdas, 0, triangles, 4, 0, &m), GX_ERROR_EMPTY);
     ck_assert_int_eq(gxi_part_moments(lambdas, 4, triangles, 0, &k, &m), GX_ERROR_EMPTY);
     ck_assert_int_eq(gxi_part_moments(lambdas, 0, triangles, 4, &k, &m), GX_ERROR_EMPTY);
     triangles[11] = 4;
@@ -1372,6 +1406,7 @@ START_TEST(bad_parts)
     ck_assert_int_eq(gxi_part_moments(lambdas, 4, triangles, 4, &k, &m), GX_ERROR_NOT_FINITE);
     lambdas[3] = 1e6;
     ck_assert_int_eq(gxi_part_moments(lambdas, 4, triangles, 4, &k, &m), GX_ERROR_RANGE);
+    ck_assert_int_eq(gxi_part_moments_at(lambdas, 4, triangles, 4, 0, &m), GX_ERROR_RANGE);
     ck_assert_mem_eq(&m, &before, sizeof m);
     ck_assert_uint_eq(k, 42);
     lambdas[3] = 0; /* inside out: no mass */
