@@ -822,7 +822,10 @@ static void gxp_search_init(gxp_search *s, const gx_body *body, const double *co
 static int gxp_triangle_near_box(const gxp_search *s, const gxp_box *box) {
     double sum = 0, r = 0;
     int k, beyond = 0;
-    for (k = 0; k < 3; k++) beyond |= (s->near_low[k] > box->high[k]) | (s->near_high[k] < box->low[k]);
+    for (k = 0; k < 3; k++) {
+        beyond |= s->near_low[k] > box->high[k];
+        beyond |= s->near_high[k] < box->low[k];
+    }
     if (beyond) return 0;
     for (k = 0; k < 3; k++) {
         const double low = (double)box->low[k], high = (double)box->high[k];
@@ -876,7 +879,10 @@ static int gxp_triangle_near_element(const gx_body *body, const gxp_search *s, u
     gxp_heights over, along;
     int i, n, beyond = 0;
     for (n = 0; n < 4; n++) for (i = 0; i < 3; i++) x[i][n] = body->positions[3 * (size_t)node[n] + (size_t)i];
-    for (i = 0; i < 3; i++) beyond |= (gxp_greatest(x[i]) < s->low[i]) | (gxp_least(x[i]) > s->high[i]);
+    for (i = 0; i < 3; i++) {
+        beyond |= gxp_greatest(x[i]) < s->low[i];
+        beyond |= gxp_least(x[i]) > s->high[i];
+    }
     if (beyond) return 0;
     if (s->far > GXP_SEARCH_RANGE) return 1;
     for (i = 0; i < 3; i++) for (n = 0; n < 4; n++) x[i][n] = (x[i][n] - s->base[i]) * s->unit;
@@ -2819,23 +2825,35 @@ static uint32_t gxp_count_leaves(const gx_body *body, uint32_t cell) {
     return count;
 }
 
-/* The fresh cell of the element with the most leaves. GXP_NONE: something has been removed from the element, so that its cells are not all of it, or
-   its other cells have more leaves to look at than that one has. */
+/* The leaf in which the middle of the element lies, roughly */
+static uint32_t gxp_middle_leaf(const gxb_complex *cx, uint32_t element) {
+    uint32_t reference = cx->root[element], n;
+    double middle[3] = {0, 0, 0};
+    int k;
+    for (n = 0; n < 4; n++) for (k = 0; k < 3; k++) middle[k] += 0.25 * cx->points[cx->elements[4 * (size_t)element + n]].ball.x[k];
+    while (reference & 1) {
+        const gxb_node *node = &cx->nodes[reference >> 1];
+        const gxb_plane_filter *f = &cx->planes[node->plane].filter;
+        double height = 0;
+        for (k = 0; k < 3; k++) height += f->n[k] * (middle[k] - f->base[k]);
+        reference = node->child[height > 0 ? 0 : 1];
+    }
+    return reference >> 1;
+}
+
+/* The cell in the middle of the element, which is seldom small. GXP_NONE: it is not fresh, or something has been removed from the element, so that its
+   cells are not all of it, or its other cells have more leaves to look at than the fresh ones have. */
 static uint32_t gxp_rest_cell(const gx_body *body, uint32_t element) {
     const uint32_t root = body->complex->root[element], all = root & 1 ? body->complex->nodes[root >> 1].leaves : 1;
-    uint32_t cell, leaf, rest = GXP_NONE, most = 0, sum = 0, others = 0;
-    for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next) {
-        const uint32_t count = gxp_fresh_index(body, cell) == GXP_NONE ? 0 : gxp_count_leaves(body, cell);
-        sum += count;
-        if (count <= most) continue;
-        most = count;
-        rest = cell;
-    }
-    for (cell = element; cell != GXP_NONE && others <= most; cell = body->cells[cell].next) {
+    const uint32_t rest = body->leaves[gxp_middle_leaf(body->complex, element)].cell;
+    uint32_t cell, leaf, sum = 0, others = 0;
+    if (gxp_fresh_index(body, rest) == GXP_NONE) return GXP_NONE;
+    for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next) if (gxp_fresh_index(body, cell) != GXP_NONE) sum += gxp_count_leaves(body, cell);
+    for (cell = element; cell != GXP_NONE && others <= sum; cell = body->cells[cell].next) {
         if (gxp_fresh_index(body, cell) != GXP_NONE) continue;
-        for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && others <= most; leaf = body->leaves[leaf].next) others++;
+        for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && others <= sum; leaf = body->leaves[leaf].next) others++;
     }
-    return others <= most && sum + others == all ? rest : GXP_NONE;
+    return others <= sum && sum + others == all ? rest : GXP_NONE;
 }
 
 #define GXP_REST_CELLS 4    /* an element with more cells is not looked at as a whole: a cut may touch few of them */
@@ -2865,7 +2883,7 @@ static int gxp_has_few_cells(const gx_body *body, uint32_t element) {
     return count <= GXP_REST_CELLS;
 }
 
-/* The fresh cells of the element. Most often the one with the most leaves, which takes the longest, is what the others leave. */
+/* The fresh cells of the element. Most often the one in the middle is what the others leave. */
 static gx_result gxp_integrate_element(gx_body *body, uint32_t element) {
     const double volume = gxp_element_volume(body, element);
     const uint32_t rest = gxp_rest_cell(body, element);

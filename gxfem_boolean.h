@@ -1684,7 +1684,7 @@ static GXBP_COLD void gxbp_drop_recent_numbers(gxb_complex *cx) {
 }
 
 /* What is known of planes and points in pairs of doubles (see barycentric coordinates), by remainders of their numbers */
-enum { GXBP_PAIR_NORMALS = 16, GXBP_PAIR_SIDES = 128 };
+enum { GXBP_PAIR_NORMALS = 32, GXBP_PAIR_SIDES = 256 };
 typedef struct gxbp_pair { double high, low, error; } gxbp_pair;       /* a number within error of high + low */
 typedef struct gxbp_pairs {
     uint32_t plane[GXBP_PAIR_NORMALS], side_plane[GXBP_PAIR_SIDES], side_point[GXBP_PAIR_SIDES];     /* GXB_NONE: nothing */
@@ -3689,14 +3689,19 @@ static const gxbp_pair *gxbp_pair_normal(gxb_complex *cx, uint32_t plane) {
     gxbp_pair *n = cx->pairs->normal[slot], a[3], b[3];
     int i;
     if (cx->pairs->plane[slot] == plane) return n;
+    cx->pairs->plane[slot] = plane;
     gxbp_pair_difference(a, &cx->points[f->def[0]].ball, &cx->points[f->def[1]].ball);
-    if (!f->along_axis) gxbp_pair_difference(b, &cx->points[f->def[0]].ball, &cx->points[f->def[2]].ball);
-    else for (i = 0; i < 3; i++) b[i] = gxbp_pair_sum(f->def[2] == (uint32_t)i, 0);
+    if (f->along_axis) {        /* a x e */
+        const uint32_t j = (f->def[2] + 1) % 3, k = (f->def[2] + 2) % 3;
+        n[j] = a[k];
+        n[k].high = -a[j].high; n[k].low = -a[j].low; n[k].error = a[j].error;
+        return n;
+    }
+    gxbp_pair_difference(b, &cx->points[f->def[0]].ball, &cx->points[f->def[2]].ball);
     for (i = 0; i < 3; i++) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
         n[i] = gxbp_pair_det2(&a[j], &b[k], &a[k], &b[j]);
     }
-    cx->pairs->plane[slot] = plane;
     return n;
 }
 
@@ -3706,9 +3711,14 @@ static gxbp_pair gxbp_pair_side(gxb_complex *cx, uint32_t point, uint32_t plane)
     gxbp_pairs *pairs = cx->pairs;
     if (pairs->side_plane[slot] != plane || pairs->side_point[slot] != point) {
         const gxbp_pair *n = gxbp_pair_normal(cx, plane);
+        const gxb_cplane *f = &cx->planes[plane];
         gxbp_pair d[3];
-        gxbp_pair_difference(d, &cx->points[cx->planes[plane].def[0]].ball, &cx->points[point].ball);
-        pairs->side[slot] = gxbp_pair_dot(n, d);
+        gxbp_pair_difference(d, &cx->points[f->def[0]].ball, &cx->points[point].ball);
+        if (f->along_axis) {    /* its normal has no component along the axis */
+            const uint32_t j = (f->def[2] + 1) % 3, k = (f->def[2] + 2) % 3;
+            const gxbp_pair s = gxbp_pair_mul(&n[j], &d[j]), t = gxbp_pair_mul(&n[k], &d[k]);
+            pairs->side[slot] = gxbp_pair_add(&s, &t, 1);
+        } else pairs->side[slot] = gxbp_pair_dot(n, d);
         pairs->side_plane[slot] = plane;
         pairs->side_point[slot] = point;
     }
