@@ -396,7 +396,7 @@ typedef struct gxp_leaf {       /* beside each leaf of the complex */
     int32_t winding;            /* where stamp is the current solid's */
 } gxp_leaf;
 
-typedef struct gxp_box { float low[3], high[3]; uint32_t first, count; } gxp_box;      /* tree node; count 0: children first, first+1 */
+typedef struct gxp_box { double low[3], high[3]; uint32_t first, count; } gxp_box;     /* tree node; count 0: children first, first+1 */
 
 typedef struct gxp_saved_cell { uint32_t index; gxp_cell cell; } gxp_saved_cell;   /* as they were when the cut began */
 typedef struct gxp_saved_leaf { uint32_t index; gxp_leaf leaf; } gxp_saved_leaf;
@@ -470,8 +470,7 @@ struct gx_body {
     uint32_t *node_elements;        /* element_count x 4: elements around each node */
     uint8_t *node_pinched;          /* node_count: bit 1: elements around it are not joined by faces; bit 2: one of its edges is pinched */
     uint8_t *edge_pinched;          /* mesh_edge_count: elements around it meet in the edge only */
-    gxp_box *boxes; uint32_t box_count;     /* from the mesh's lower corner, in units in which it is at most 1 long */
-    double corner[3];
+    gxp_box *boxes; uint32_t box_count;
     uint32_t *box_elements;         /* element_count, in tree order */
     gxp_cell *cells; uint32_t cell_count, cell_capacity;
     gxp_leaf *leaves; uint32_t leaf_count, leaf_capacity;
@@ -678,13 +677,8 @@ static double gxp_seconds(const gx_body *body) { return body->clock ? body->cloc
 
 /* >>tree: axis-aligned boxes over the elements, median split ------------------------------------------------------------- */
 
-#define GXP_BOX_MARGIN 4e-7     /* more than is lost where boxes become floats */
-
-/* As boxes have it: within a body 0 ... 1 */
-static double gxp_boxed(const gx_body *body, double x, int axis, double unit) { return (x - body->corner[axis]) * unit; }
-
-static void gxp_box_of(const gx_body *body, gxp_box *box, double unit) {
-    double low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
+static void gxp_box_of(const gx_body *body, gxp_box *box) {
+    double low[3], high[3];
     uint32_t i;
     int k, n;
     for (i = box->first; i < box->first + box->count; i++) for (n = 0; n < 4; n++) {
@@ -695,10 +689,8 @@ static void gxp_box_of(const gx_body *body, gxp_box *box, double unit) {
             high[k] = x[k] > high[k] ? x[k] : high[k];
         }
     }
-    for (k = 0; k < 3; k++) {
-        box->low[k] = (float)(gxp_boxed(body, low[k], k, unit) - GXP_BOX_MARGIN);
-        box->high[k] = (float)(gxp_boxed(body, high[k], k, unit) + GXP_BOX_MARGIN);
-    }
+    memcpy(box->low, low, sizeof low);
+    memcpy(box->high, high, sizeof high);
 }
 
 static double gxp_element_key(const gx_body *body, uint32_t element, int axis) {
@@ -724,14 +716,7 @@ static void gxp_select(const gx_body *body, uint32_t *e, int64_t count, int64_t 
 }
 
 static void gxp_build_boxes(gx_body *body) {
-    const double unit = ldexp(1, body->complex->shift);
     uint32_t i, b;
-    int k;
-    memcpy(body->corner, body->positions, sizeof body->corner);
-    for (i = 1; i < body->node_count; i++) for (k = 0; k < 3; k++) {
-        const double x = body->positions[3 * (size_t)i + (size_t)k];
-        if (x < body->corner[k]) body->corner[k] = x;
-    }
     for (i = 0; i < body->element_count; i++) body->box_elements[i] = i;
     memset(&body->boxes[0], 0, sizeof body->boxes[0]);
     body->boxes[0].count = body->element_count;
@@ -739,8 +724,8 @@ static void gxp_build_boxes(gx_body *body) {
     for (b = 0; b < body->box_count; b++) {
         gxp_box *box = &body->boxes[b];
         const uint32_t first = box->first, count = box->count, half = count / 2;
-        int axis = 0;
-        gxp_box_of(body, box, unit);
+        int axis = 0, k;
+        gxp_box_of(body, box);
         if (count <= 4) continue;
         for (k = 1; k < 3; k++) if (box->high[k] - box->low[k] > box->high[axis] - box->low[axis]) axis = k;
         gxp_select(body, body->box_elements + first, count, half, axis);
@@ -760,8 +745,6 @@ static const uint8_t gxp_outward[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2
 typedef struct gxp_search {
     const double *base;     /* its first corner */
     double unit, low[3], high[3];
-    float near_low[3], near_high[3];    /* those as boxes have them, where they lie near the body */
-    double boxed[3];        /* so the first corner */
     double axis[4][3];      /* the normal; of each edge the normal in the triangle's plane, outward */
     double scale[4];        /* size of the products of which they are made */
     double offset[4];       /* along them, of the triangle's plane and edges from the base */
@@ -786,11 +769,8 @@ static void gxp_search_vector(const gxp_search *s, const double *x, double d[3])
     for (k = 0; k < 3; k++) d[k] = (x[k] - s->base[k]) * s->unit;
 }
 
-/* As a float, within -2 ... 2 */
-static float gxp_near(double x) { return (float)(x < -2 ? -2 : x > 2 ? 2 : x); }
-
-static void gxp_search_init(gxp_search *s, const gx_body *body, const double *const p[3]) {
-    const double unit = ldexp(1, body->complex->shift);
+/* all: the box of all elements */
+static void gxp_search_init(gxp_search *s, const double *const p[3], double unit, const gxp_box *all) {
     double d[3][3], e[3];
     int i, k;
     s->base = p[0];
@@ -809,10 +789,7 @@ static void gxp_search_init(gxp_search *s, const gx_body *body, const double *co
     for (k = 0; k < 3; k++) {
         s->low[k] = fmin(p[0][k], fmin(p[1][k], p[2][k]));
         s->high[k] = fmax(p[0][k], fmax(p[1][k], p[2][k]));
-        s->near_low[k] = gxp_near(gxp_boxed(body, s->low[k], k, unit) - GXP_BOX_MARGIN);
-        s->near_high[k] = gxp_near(gxp_boxed(body, s->high[k], k, unit) + GXP_BOX_MARGIN);
-        s->boxed[k] = gxp_boxed(body, p[0][k], k, unit);
-        s->far += 8 * ((fabs(s->low[k]) + fabs(s->high[k]) + 2 * fabs(body->corner[k])) * unit + 2);
+        s->far += 8 * (fabs(s->low[k]) + fabs(s->high[k]) + fabs(all->low[k]) + fabs(all->high[k])) * unit;
     }
 }
 
@@ -823,14 +800,14 @@ static int gxp_triangle_near_box(const gxp_search *s, const gxp_box *box) {
     double sum = 0, r = 0;
     int k, beyond = 0;
     for (k = 0; k < 3; k++) {
-        beyond |= s->near_low[k] > box->high[k];
-        beyond |= s->near_high[k] < box->low[k];
+        beyond |= s->low[k] > box->high[k];
+        beyond |= s->high[k] < box->low[k];
     }
     if (beyond) return 0;
     for (k = 0; k < 3; k++) {
-        const double low = (double)box->low[k], high = (double)box->high[k];
-        sum += s->axis[0][k] * (0.5 * (low + high) - s->boxed[k]);
-        r += fabs(s->axis[0][k]) * (0.5 * (high - low));
+        const double c = 0.5 * box->low[k] + 0.5 * box->high[k], h = 0.5 * box->high[k] - 0.5 * box->low[k];
+        sum += s->axis[0][k] * ((c - s->base[k]) * s->unit);
+        r += fabs(s->axis[0][k]) * (h * s->unit);
     }
     return s->far > GXP_SEARCH_RANGE || fabs(sum) <= r + GXP_SEARCH_MARGIN * s->scale[0] * s->far;
 }
@@ -903,7 +880,7 @@ static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_
     uint32_t stack[128], depth = 0, count = 0, i, k;
     gx_result result = GX_OK;
     found->count = 0;
-    gxp_search_init(&search, body, p);
+    gxp_search_init(&search, p, ldexp(1, body->complex->shift), &body->boxes[0]);
     stack[depth++] = 0;
     while (depth > 0 && result == GX_OK) {
         const gxp_box *box = &body->boxes[stack[--depth]];
@@ -1397,6 +1374,7 @@ typedef struct gxp_surface {
     uint8_t *flat;                  /* triangle_count: no area */
     gxp_half_edge *edges;           /* 3 x triangle_count, sorted: edges with the same ends stand together */
     uint32_t *merged;               /* vertex_count: the first vertex with the same coordinates */
+    double low[3], high[3];         /* of its vertices */
 } gxp_surface;
 
 static void gxp_surface_free(gx_body *body, gxp_surface *s) {
@@ -1529,7 +1507,7 @@ static gx_result gxp_surface_open(gxp_cut *cut, gxp_surface *s, const gx_surface
     gx_body *body = cut->body;
     const size_t v = given->vertex_count, t = given->triangle_count;
     gx_result result;
-    uint32_t i;
+    size_t i;
     memset(s, 0, sizeof *s);
     s->given = given; s->number = number; s->label = body->label_count;
     if (t > INT32_MAX - (size_t)body->label_count) return GX_ERROR_LIMIT;
@@ -1543,8 +1521,15 @@ static gx_result gxp_surface_open(gxp_cut *cut, gxp_surface *s, const gx_surface
     s->merged = (uint32_t *)gxp_allocate(&body->allocator, v * sizeof *s->merged);
     if (!s->point || !s->triangles || !s->flat || !s->edges || !s->merged) return GX_ERROR_MEMORY;
     memset(s->point, 0xff, v * sizeof *s->point);
+    memcpy(s->low, given->vertices, sizeof s->low);
+    memcpy(s->high, given->vertices, sizeof s->high);
+    for (i = 3; i < 3 * v; i++) {
+        const double x = given->vertices[i];
+        if (x < s->low[i % 3]) s->low[i % 3] = x;
+        if (x > s->high[i % 3]) s->high[i % 3] = x;
+    }
     for (i = 0; i < t; i++) {
-        const uint32_t *n = given->triangles + 3 * (size_t)i;
+        const uint32_t *n = given->triangles + 3 * i;
         s->triangles[i].plane = GXP_NONE;
         s->flat[i] = (uint8_t)gxp_is_flat(given->vertices + 3 * (size_t)n[0], given->vertices + 3 * (size_t)n[1], given->vertices + 3 * (size_t)n[2]);
         cut->report.ignored_triangles += s->flat[i];
@@ -1807,32 +1792,44 @@ static gx_result gxp_leaf_points(gx_body *body, uint32_t leaf) {
     return result;
 }
 
+/* Is the winding number around a node known without asking for exact numbers? Not on the surface. */
+static int gxp_ask_node(const gx_body *body, const gxp_surface *s, uint32_t node, int32_t *winding) {
+    const double *x = body->positions + 3 * (size_t)node;
+    int on_surface, k;
+    *winding = 0;
+    for (k = 0; k < 3; k++) if (x[k] < s->low[k] || x[k] > s->high[k]) return 1;
+    *winding = gxb_winding_number(s->given->vertices, s->given->triangles, s->given->triangle_count, x, &on_surface);
+    return !on_surface;
+}
+
 /* The winding number around a leaf: around one of its nodes that is off the surface, else around a point inside it. */
 static gx_result gxp_ask_winding(gx_body *body, const gxp_surface *s, uint32_t leaf, int32_t *winding) {
     const gx_surface *g = s->given;
+    const gxb_leaf *l = &body->complex->leaves[leaf];
     uint32_t i;
-    gx_result result = gxp_leaf_points(body, leaf);
-    for (i = 0; i < body->list.count && result == GX_OK; i++) {
-        int on_surface;
-        if (body->list.data[i] >= body->node_count) continue;
-        *winding = gxb_winding_number(g->vertices, g->triangles, g->triangle_count, body->positions + 3 * (size_t)body->list.data[i], &on_surface);
-        if (!on_surface) return GX_OK;
-    }
+    gx_result result;
+    for (i = 0; i < 4 && l->facet_count == 0; i++) if (gxp_ask_node(body, s, body->complex->elements[4 * (size_t)l->element + i], winding)) return GX_OK;
+    result = gxp_leaf_points(body, leaf);
+    for (i = 0; i < body->list.count && result == GX_OK; i++)
+        if (body->list.data[i] < body->node_count && gxp_ask_node(body, s, body->list.data[i], winding)) return GX_OK;
     if (result == GX_OK) *winding = gxb_complex_winding(body->complex, body->list.data, body->list.count, g->vertices, g->triangles, g->triangle_count);
     return result;
 }
 
 static int gxp_is_kept(const gx_body *body, uint32_t leaf) { return leaf != GXB_NONE && !body->complex->leaves[leaf].removed; }
 
+/* Was the leaf kept and, where the cut has a scope, in it? Others were not divided by the solid and can't pass on anything. */
+static int gxp_has_winding(gx_body *body, uint32_t leaf, int scoped) { return gxp_is_kept(body, leaf) && (!scoped || gxp_in_scope(body, leaf)); }
+
 static gx_result gxp_visit_winding(gx_body *body, uint32_t leaf, int32_t winding) {
-    if (!gxp_is_kept(body, leaf) || body->leaves[leaf].stamp == body->stamp) return GX_OK;
+    if (body->leaves[leaf].stamp == body->stamp) return GX_OK;
     body->leaves[leaf].stamp = body->stamp;
     body->leaves[leaf].winding = winding;
     return gxp_push(body, &body->queue, leaf);
 }
 
-/* The neighbours of a leaf inside the solid know their winding numbers; of one outside, those across the solid's surface. What was removed before this cut was not divided by it and can't pass on anything. */
-static gx_result gxp_spread_winding(gx_body *body, const gxp_surface *s, uint32_t leaf) {
+/* The neighbours of a leaf inside the solid know their winding numbers; of one outside, those across the solid's surface. */
+static gx_result gxp_spread_winding(gx_body *body, const gxp_surface *s, uint32_t leaf, int scoped) {
     gxb_complex *cx = body->complex;
     const int32_t winding = body->leaves[leaf].winding;
     uint32_t first, count = 0, i;
@@ -1844,15 +1841,16 @@ static gx_result gxp_spread_winding(gx_body *body, const gxp_surface *s, uint32_
         const int front = f->leaf[0] == leaf;
         int labelled;
         const int32_t step = gxp_winding_step(body, s, cx->pool[first + i], &labelled);
-        if (winding != 0 || labelled) result = gxp_visit_winding(body, f->leaf[front], winding + (front ? step : -step));
+        if ((winding != 0 || labelled) && gxp_has_winding(body, f->leaf[front], scoped))
+            result = gxp_visit_winding(body, f->leaf[front], winding + (front ? step : -step));
     }
     return result;
 }
 
 /* Works the queue off from where it stands. */
-static gx_result gxp_flood_winding(gx_body *body, const gxp_surface *s, uint32_t *done) {
+static gx_result gxp_flood_winding(gx_body *body, const gxp_surface *s, uint32_t *done, int scoped) {
     gx_result result = GX_OK;
-    while (*done < body->queue.count && result == GX_OK) result = gxp_spread_winding(body, s, body->queue.data[(*done)++]);
+    while (*done < body->queue.count && result == GX_OK) result = gxp_spread_winding(body, s, body->queue.data[(*done)++], scoped);
     return result;
 }
 
@@ -1870,8 +1868,20 @@ static gx_result gxp_wall_leaves(gx_body *body, uint32_t facet, gxp_words *seeds
     return result;
 }
 
-/* Fragments (of before the cut) that the surface does not touch may lie in the solid as a whole: one leaf of each joins the seeds. */
-static gx_result gxp_seed_untouched_fragments(gx_body *body) {
+/* Does the flood, which goes across faces and stays in the scope, reach this cell from others of its fragment? Not for certain where elements meet in
+   nodes or edges only, or where the caller lists the cells of a scope. */
+static int gxp_is_flooded(const gxp_cut *cut, uint32_t cell) {
+    const uint32_t *node = cut->body->complex->elements + 4 * (size_t)cut->body->cells[cell].element;
+    uint32_t k;
+    if (cut->desc->scope_cell_count > 0) return 0;
+    for (k = 0; k < 4; k++) if (cut->body->node_pinched[node[k]]) return 0;
+    return 1;
+}
+
+/* Fragments (of before the cut) that the surface does not touch may lie in the solid as a whole: one leaf of each joins the seeds, and one of each
+   cell that the flood may not reach. */
+static gx_result gxp_seed_untouched(gxp_cut *cut) {
+    gx_body *body = cut->body;
     gx_result result = gxp_update_view(body);
     uint32_t i;
     body->nodes.count = 0;
@@ -1881,15 +1891,16 @@ static gx_result gxp_seed_untouched_fragments(gx_body *body) {
     for (i = 0; i < body->seeds.count; i++)
         if (gxp_is_kept(body, body->seeds.data[i])) body->nodes.data[gxp_cell_fragment(body, body->leaves[body->seeds.data[i]].cell)] = 1;
     for (i = 0; i < body->view_cells.count && result == GX_OK; i++) {
-        if (body->nodes.data[body->view_fragments.data[i]]) continue;
+        const uint32_t cell = body->view_cells.data[i];
+        if (body->nodes.data[body->view_fragments.data[i]] && gxp_is_flooded(cut, cell)) continue;
         body->nodes.data[body->view_fragments.data[i]] = 1;
-        result = gxp_push(body, &body->seeds, body->cells[body->view_cells.data[i]].first_leaf);
+        result = gxp_push(body, &body->seeds, body->cells[cell].first_leaf);
     }
     return result;
 }
 
 /* Finds the winding numbers of the seeds and of what they lead to: body->queue. */
-static gx_result gxp_find_windings(gx_body *body, const gxp_surface *s) {
+static gx_result gxp_find_windings(gx_body *body, const gxp_surface *s, int scoped) {
     uint32_t i, done = 0;
     gx_result result = GX_OK;
     body->queue.count = 0;
@@ -1897,26 +1908,25 @@ static gx_result gxp_find_windings(gx_body *body, const gxp_surface *s) {
     for (i = 0; i < body->seeds.count && result == GX_OK; i++) {
         const uint32_t leaf = body->seeds.data[i];
         int32_t winding = 0;
-        if (!gxp_is_kept(body, leaf) || body->leaves[leaf].stamp == body->stamp) continue;
+        if (!gxp_has_winding(body, leaf, scoped) || body->leaves[leaf].stamp == body->stamp) continue;
         result = gxp_ask_winding(body, s, leaf, &winding);
         if (result == GX_OK) result = gxp_visit_winding(body, leaf, winding);
-        if (result == GX_OK) result = gxp_flood_winding(body, s, &done);
+        if (result == GX_OK) result = gxp_flood_winding(body, s, &done, scoped);
     }
     return result;
 }
 
 /* Appends to body->removed the leaves around which the solid winds. All surfaces of the cut are in the complex. */
-static gx_result gxp_find_solid(gx_body *body, const gxp_surface *s, int scoped) {
+static gx_result gxp_find_solid(gxp_cut *cut, const gxp_surface *s, int scoped) {
+    gx_body *body = cut->body;
     uint32_t i;
     gx_result result = GX_OK;
     body->seeds.count = 0;
     for (i = 0; i < body->complex->wall_count && result == GX_OK; i++) result = gxp_wall_leaves(body, body->complex->walls[i], &body->seeds);
-    if (result == GX_OK) result = gxp_seed_untouched_fragments(body);
-    if (result == GX_OK) result = gxp_find_windings(body, s);
-    for (i = 0; i < body->queue.count && result == GX_OK; i++) {
-        const uint32_t leaf = body->queue.data[i];
-        if (body->leaves[leaf].winding != 0 && (!scoped || gxp_in_scope(body, leaf))) result = gxp_push(body, &body->removed, leaf);
-    }
+    if (result == GX_OK) result = gxp_seed_untouched(cut);
+    if (result == GX_OK) result = gxp_find_windings(body, s, scoped);
+    for (i = 0; i < body->queue.count && result == GX_OK; i++)
+        if (body->leaves[body->queue.data[i]].winding != 0) result = gxp_push(body, &body->removed, body->queue.data[i]);
     return result;
 }
 
@@ -2759,18 +2769,20 @@ static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, g
 
 #define GXP_CANCELLATION 1e-3   /* moments whose terms cancel to less than this share are summed in exact numbers: doubles lose 3 digits there */
 
-/* Sum of |volume| over the cones from vertex k to the collected triangles: how large the terms are that make up the volume. */
+/* Over the cones from vertex k to the collected triangles, the sizes of what makes up their volumes: of a x b . c, whose terms take on the errors of the
+   corners, and of a . (b - a) x (c - a), by which they are computed. */
 static double gxp_cone_volumes(const gx_body *body, unsigned k) {
-    unsigned axes[3];
+    unsigned axes[3], d;
     double sum = 0;
     uint32_t t;
     gxi_part_axes(k, axes);
     for (t = 0; t + 2 < body->triangles.count; t += 3) {
         const double *a = body->lambdas + 4 * (size_t)body->triangles.data[t], *b = body->lambdas + 4 * (size_t)body->triangles.data[t + 1];
         const double *c = body->lambdas + 4 * (size_t)body->triangles.data[t + 2];
-        const unsigned x = axes[0], y = axes[1], z = axes[2];
-        sum += fabs(a[x] * b[y] * c[z]) + fabs(a[x] * b[z] * c[y]) + fabs(a[y] * b[z] * c[x]) + fabs(a[y] * b[x] * c[z]) +
-               fabs(a[z] * b[x] * c[y]) + fabs(a[z] * b[y] * c[x]);
+        for (d = 0; d < 3; d++) {
+            const unsigned x = axes[d], y = axes[(d + 1) % 3], z = axes[(d + 2) % 3];
+            sum += a[x] * (b[y] * c[z] + b[z] * c[y] + fabs(b[y] - a[y]) * fabs(c[z] - a[z]) + fabs(b[z] - a[z]) * fabs(c[y] - a[y]));
+        }
     }
     return sum / 6;
 }
@@ -2998,7 +3010,7 @@ static gx_result gxp_arrange_surfaces(gxp_cut *cut, gxp_surface *surfaces) {
     }
     if (result == GX_OK) result = gxp_follow_leaves(cut->body);
     for (i = 0; i < count && result == GX_OK; i++)
-        if (surfaces[i].given->kind == GX_SURFACE_SOLID) result = gxp_find_solid(cut->body, &surfaces[i], scoped);
+        if (surfaces[i].given->kind == GX_SURFACE_SOLID) result = gxp_find_solid(cut, &surfaces[i], scoped);
     return result;
 }
 

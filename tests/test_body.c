@@ -84,6 +84,11 @@ static int by_size(const void *a, const void *b) {
     return (p->volume > q->volume) - (p->volume < q->volume);
 }
 
+static int by_number(const void *a, const void *b) {
+    const double p = *(const double *)a, q = *(const double *)b;
+    return (p > q) - (p < q);
+}
+
 static sized *sorted_cells(const gx_view *view, double scale) {
     sized *cells = (sized *)oracle_memory(NULL, view->cell_count + 1, sizeof *cells);
     size_t i;
@@ -906,6 +911,45 @@ START_TEST(slivers_in_general_position) {
 }
 END_TEST
 
+/* Thin wedges beside an edge of an element, whose cones have coordinates that are 0 and so terms much smaller than their rounding: volumes as exact
+   numbers say */
+START_TEST(wedges) {
+    uint64_t seed = (uint64_t)_i;
+    int trial, k;
+    random_seed(seed);
+    for (trial = 0; trial < 5; ++trial) {
+        workload w = corner_tet();
+        const double share = random_real(0.2, 0.7), more = pow(10, -random_real(4, 14));
+        double p[3];
+        gx_body *body;
+        oracle *truth;
+        size_t i;
+        gx_view view;
+        for (i = 0; i < 12; ++i) w.positions[i] += random_real(-0.1, 0.1);
+        for (i = 0; i < 2; ++i) {
+            const double t = share + (i == 1 ? more : 0), *c = w.positions + 6, *d = w.positions + 9;
+            for (k = 0; k < 3; ++k) p[k] = c[k] + t * (d[k] - c[k]);
+            add_plane_through(&w, w.positions, w.positions + 3, p);
+        }
+        truth = wl_oracle(&w);
+        body = cut_at_once(&w);
+        view = view_of(body);
+        CHECK_SEED(view.cell_count == truth->cell_count, seed);
+        qsort(truth->cell_volume, truth->cell_count, sizeof *truth->cell_volume, by_number);
+        {
+            sized *cells = sorted_cells(&view, 1);
+            for (i = 0; i < view.cell_count; ++i)
+                ck_assert_msg(fabs(cells[i].volume - truth->cell_volume[i]) <= 1e-11 * truth->cell_volume[i], "seed %llu: cell of %.17g, should be %.17g",
+                              (unsigned long long)seed, cells[i].volume, truth->cell_volume[i]);
+            free(cells);
+        }
+        oracle_destroy(truth);
+        gx_body_destroy(body);
+        wl_free(&w);
+    }
+}
+END_TEST
+
 /* A solid 1e-12 thick takes the cube apart and removes what it should: its thickness, as doubles hold it. */
 START_TEST(thin_solid) {
     workload w = grid(1, 1, 1, 5);
@@ -960,6 +1004,60 @@ START_TEST(scope_of_a_cut) {
         cut_by(body, &w, 2, 1);     /* the same blade, without a scope */
         ck_assert_uint_eq(view_of(body).fragment_count, 4);
         gx_body_destroy(body);
+        wl_free(&w);
+    }
+}
+END_TEST
+
+/* Volumes of what is left of each element */
+static double *left_of_elements(gx_body *body, const workload *w) {
+    const gx_view view = view_of(body);
+    double *left = (double *)oracle_memory(NULL, w->element_count, sizeof *left);
+    size_t i;
+    for (i = 0; i < w->element_count; ++i) left[i] = 0;
+    for (i = 0; i < view.cell_count; ++i) left[view.cell_element[i]] += view.cell_volume[i];
+    return left;
+}
+
+/* Of elements in scope a solid takes what it would take without a scope, of others nothing; also where elements are missing, so that parts of the
+   scope hang together by what is out of it, by a node, or not at all. */
+START_TEST(scope_of_a_solid) {
+    uint64_t seed = (uint64_t)_i;
+    int trial;
+    random_seed(seed);
+    for (trial = 0; trial < 10; ++trial) {
+        workload w = grid(3, 2, 2, random_below(2) ? 5 : 6);
+        wl_frame f = random_below(2) ? wl_axes() : wl_rotated();
+        const int missing = random_below(3);
+        uint32_t cells[256];
+        double *before, *all, *some;
+        gx_body *body;
+        size_t i, n = 0;
+        int k;
+        for (i = 0; i < w.element_count; ++i) if (random_below(4) >= missing) memmove(w.elements + 4 * n++, w.elements + 4 * i, 4 * sizeof *w.elements);
+        w.element_count = n;
+        if (n == 0) { wl_free(&w); continue; }
+        for (k = 0; k < 3; ++k) f.origin[k] = random_real(0, 2);
+        wl_add_box(wl_add_surface(&w, 1), &f, random_real(0.02, 1.5), random_real(0.02, 1.5), random_real(0.02, 1.5));
+        body = body_of(&w);
+        before = left_of_elements(body, &w);
+        gx_body_destroy(body);
+        body = cut_at_once(&w);
+        all = left_of_elements(body, &w);
+        gx_body_destroy(body);
+        body = body_of(&w);
+        for (i = n = 0; i < w.element_count; ++i) if (random_below(2)) cells[n++] = (uint32_t)i;
+        if (n > 0) ck_assert_int_eq(cut_in_scope(body, &w, 0, NULL, 0, cells, n, NULL), GX_OK);
+        some = left_of_elements(body, &w);
+        for (i = 0, k = 0; i < w.element_count; ++i) {
+            const int scoped = (size_t)k < n && cells[k] == i;
+            const double should = scoped ? all[i] : before[i];
+            k += scoped;
+            ck_assert_msg(fabs(some[i] - should) <= 1e-12 * before[i], "seed %llu: of element %zu %.17g is left, should be %.17g of %.17g",
+                          (unsigned long long)seed, i, some[i], should, before[i]);
+        }
+        gx_body_destroy(body);
+        free(before); free(all); free(some);
         wl_free(&w);
     }
 }
@@ -2252,6 +2350,8 @@ int main(void) {
     tcase_add_test(tests, three_times_twenty_planes);
     tcase_add_test(tests, slivers);
     tcase_add_loop_test(tests, slivers_in_general_position, first, last);
+    tcase_add_loop_test(tests, wedges, first, last);
+    tcase_add_loop_test(tests, scope_of_a_solid, first, last);
     tcase_add_test(tests, thin_solid);
     tcase_add_test(tests, scope_of_a_cut);
     tcase_add_test(tests, scope_of_everything_and_of_nothing);
