@@ -795,7 +795,7 @@ static void gxp_search_init(gxp_search *s, const double *const p[3], double unit
 
 #define GXP_SEARCH_RANGE 1e42   /* what is further is out of range, and a candidate, so that this is told: products of heights (7 factors) stay in theirs */
 
-/* May the triangle meet the box? (One branch for all axes: which of them tells is a toss of a coin.) */
+/* May the triangle meet the box? One branch for all axes, since which of them tells can't be predicted. */
 static int gxp_triangle_near_box(const gxp_search *s, const gxp_box *box) {
     double sum = 0, r = 0;
     int k, beyond = 0;
@@ -1792,7 +1792,7 @@ static gx_result gxp_leaf_points(gx_body *body, uint32_t leaf) {
     return result;
 }
 
-/* Is the winding number around a node known without asking for exact numbers? Not on the surface. */
+/* The winding number around a node. 0: the node is on the surface, and has none. */
 static int gxp_ask_node(const gx_body *body, const gxp_surface *s, uint32_t node, int32_t *winding) {
     const double *x = body->positions + 3 * (size_t)node;
     int on_surface, k;
@@ -2291,7 +2291,7 @@ static gx_result gxp_touch_severed(gxp_cut *cut) {
     return result == GX_OK ? gxp_settle_links(body) : result;
 }
 
-/* Asks for what dividing the next touched cells reads: their leaves, four ahead, their lists of facets three and two, the facets of the next. */
+/* Asks for what dividing the next touched cells reads: leaves four and three ahead, their lists of facets two ahead, the facets of the next. */
 static void gxp_fetch_leaves(const gx_body *body, uint32_t index) {
     const gxb_complex *cx = body->complex;
     const uint32_t *touched = body->touched.data, count = body->touched.count;
