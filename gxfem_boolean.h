@@ -2517,38 +2517,45 @@ static void gxbp_split_edge(gxb_complex *cx, uint32_t edge, const gxbp_knife *kn
     cx->edges[cx->edge_count - 2].wall = cx->edges[cx->edge_count - 1].wall = e.wall;
 }
 
-/* Of a facet: bit 1, it has points in front of the plane; bit 2, behind it; the rest, how many are in it. */
-static uint32_t gxbp_facet_signs(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife) {
-    const gxb_facet *f = &cx->facets[facet];
-    uint32_t signs = 0, i;
-    for (i = 0; i < f->loop_count; i++) {
-        const int sign = gxbp_sign(cx, gxbp_edge_start(cx, cx->pool[f->loop + i]), knife->plane, knife->slot);
-        if (sign == 0) signs += 4;
-        else signs |= sign > 0 ? 1u : 2u;
+/* Of a facet: bit 1, it has points in front of the plane; bit 2, behind it; the rest, how many are in it. *edges: how many its loop has when it is
+   resolved */
+static uint32_t gxbp_facet_signs(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife, uint32_t *edges) {
+    const uint32_t *loop = cx->pool + cx->facets[facet].loop, *end = loop + cx->facets[facet].loop_count;
+    uint32_t signs = 0, count = 0;
+    for (; loop < end; loop++) {
+        static const uint8_t add[3] = {2, 4, 1};
+        const gxb_edge *e = &cx->edges[*loop >> 1];
+        const uint32_t one = add[1 + gxbp_sign(cx, e->v[*loop & 1], knife->plane, knife->slot)];
+        signs = one == 4 ? signs + 4 : signs | one;
+        count += e->child == GXB_NONE ? 1 : gxbp_count_edges(cx, *loop >> 1);
     }
+    *edges = count;
     return signs;
 }
 
-static int gxbp_facet_sides(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife) { return (int)(gxbp_facet_signs(cx, facet, knife) & 3); }
+static int gxbp_facet_sides(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife) {
+    uint32_t edges;
+    return (int)(gxbp_facet_signs(cx, facet, knife, &edges) & 3);
+}
 
-/* A facet's loop while it is divided: in the middle of complex.scratch. zero: where the two points in the plane start edges. */
-typedef struct gxbp_parting { uint32_t *loop, count, zero[2], zeros; } gxbp_parting;
+/* A facet's loop while it is divided: in the middle of complex.scratch. zero: where the two points in the plane start edges. sign:
+   the side that the next edge starts on */
+typedef struct gxbp_parting { uint32_t *loop, count, zero[2], zeros; int sign; } gxbp_parting;
 
-/* Appends an edge, or what it has been divided into; divides what the plane crosses. */
+/* Appends an edge that starts on the side parting->sign, or what it has been divided into; divides what the plane crosses. */
 static void gxbp_part_edge(gxb_complex *cx, uint32_t signed_edge, const gxbp_knife *knife, gxbp_parting *parting) {
     const uint32_t back = signed_edge & 1;
     const gxb_edge *e = &cx->edges[signed_edge >> 1];
     uint32_t child = e->child;
+    const int from = parting->sign;
     if (child != GXB_NONE) {
         gxbp_part_edge(cx, (child + back) << 1 | back, knife, parting);
         gxbp_part_edge(cx, (child + 1 - back) << 1 | back, knife, parting);
         return;
     }
-    {
-        const int sign = gxbp_sign(cx, e->v[back], knife->plane, knife->slot);
-        if (sign == 0 && parting->zeros < 2) parting->zero[parting->zeros++] = parting->count;
-        if (sign * gxbp_sign(cx, e->v[1 - back], knife->plane, knife->slot) >= 0) { parting->loop[parting->count++] = signed_edge; return; }
-    }
+    parting->sign = gxbp_sign(cx, e->v[1 - back], knife->plane, knife->slot);
+    if (from == 0 && parting->zeros < 2) parting->zero[parting->zeros++] = parting->count;
+    if (from * parting->sign >= 0) { parting->loop[parting->count++] = signed_edge; return; }
     child = cx->edge_count;
     gxbp_split_edge(cx, signed_edge >> 1, knife);
     parting->loop[parting->count++] = (child + back) << 1 | back;
@@ -2556,12 +2563,30 @@ static void gxbp_part_edge(gxb_complex *cx, uint32_t signed_edge, const gxbp_kni
     parting->loop[parting->count++] = (child + 1 - back) << 1 | back;
 }
 
-static void gxbp_copy_arc(gxb_complex *cx, const uint32_t *loop, uint32_t count, uint32_t from, uint32_t to, uint32_t closing, gxb_facet *child) {
-    uint32_t i;
-    child->loop = cx->pool_count;
-    for (i = from; i != to; i = i + 1 == count ? 0 : i + 1) cx->pool[cx->pool_count++] = loop[i];
-    cx->pool[cx->pool_count++] = closing;
-    child->loop_count = cx->pool_count - child->loop;
+/* A list that has been replaced and that no rollback needs: room for one of those that replace it */
+typedef struct gxbp_gap { uint32_t first, count; } gxbp_gap;
+
+static gxbp_gap gxbp_list_gap(const gxb_complex *cx, uint32_t first, uint32_t count) {
+    gxbp_gap gap;
+    gap.first = first; gap.count = first >= cx->mark[7] ? count : 0;
+    return gap;
+}
+
+/* Where a new list of the pool stands: in the gap if it fits, and else behind all others. */
+static uint32_t gxbp_place_list(gxb_complex *cx, uint32_t count, gxbp_gap *gap) {
+    const uint32_t end = cx->pool_count;
+    if (count <= gap->count) { gap->count = 0; return gap->first; }
+    cx->pool_count += count;
+    return end;
+}
+
+static void gxbp_copy_arc(gxb_complex *cx, const gxbp_parting *parting, uint32_t from, uint32_t to, uint32_t closing, gxbp_gap *gap, gxb_facet *child) {
+    uint32_t i, *out;
+    child->loop_count = (to > from ? 0 : parting->count) + to - from + 1;
+    child->loop = gxbp_place_list(cx, child->loop_count, gap);
+    out = cx->pool + child->loop;
+    for (i = from; i != to; i = i + 1 == parting->count ? 0 : i + 1) *out++ = parting->loop[i];
+    *out = closing;
 }
 
 /* Divides a facet that has points on both sides of the plane. Its children are child (in front) and child + 1. Returns the new edge, signed as the front
@@ -2570,10 +2595,12 @@ static uint32_t gxbp_split_facet(gxb_complex *cx, uint32_t facet, const gxbp_kni
     const gxb_facet f = cx->facets[facet];
     const uint32_t child = cx->facet_count, *zero;
     uint32_t line[2], edge, front, i;
+    gxbp_gap gap = gxbp_list_gap(cx, f.loop, f.loop_count);
     gxbp_parting parting;
     memset(&parting, 0, sizeof parting);
     parting.loop = cx->scratch + cx->scratch_capacity / 4;
     zero = parting.zero;
+    parting.sign = gxbp_sign(cx, gxbp_edge_start(cx, cx->pool[f.loop]), knife->plane, knife->slot);
     for (i = 0; i < f.loop_count; i++) gxbp_part_edge(cx, cx->pool[f.loop + i], knife, &parting);
     line[0] = knife->explicit_line ? knife->line[0] : f.plane;
     line[1] = knife->explicit_line ? knife->line[1] : knife->plane;
@@ -2584,8 +2611,8 @@ static uint32_t gxbp_split_facet(gxb_complex *cx, uint32_t facet, const gxbp_kni
     cx->facets[child] = f;
     cx->facets[child + 1] = f;
     /* arc 0 runs from zero[0] to zero[1] and is closed backwards along the edge, arc 1 is the rest, closed forwards */
-    gxbp_copy_arc(cx, parting.loop, parting.count, zero[front], zero[1 - front], edge << 1 | (1u - front), &cx->facets[child]);
-    gxbp_copy_arc(cx, parting.loop, parting.count, zero[1 - front], zero[front], edge << 1 | front, &cx->facets[child + 1]);
+    gxbp_copy_arc(cx, &parting, zero[front], zero[1 - front], edge << 1 | (1u - front), &gap, &cx->facets[child]);
+    gxbp_copy_arc(cx, &parting, zero[1 - front], zero[front], edge << 1 | front, &gap, &cx->facets[child + 1]);
     cx->facet_count += 2;
     cx->pool_live += parting.count + 2 - f.loop_count;
     return edge << 1 | (1u - front);
@@ -2645,11 +2672,20 @@ static void gxbp_move_facet(gxb_complex *cx, uint32_t facet, uint32_t from, uint
     cx->facets[facet].leaf[cx->facets[facet].leaf[0] == from ? 0 : 1] = to;
 }
 
+static void gxbp_set_list(gxb_complex *cx, uint32_t leaf, const uint32_t *facets, uint32_t count, gxbp_gap *gap) {
+    gxb_leaf *l = &cx->leaves[leaf];
+    uint32_t i;
+    l->facets = gxbp_place_list(cx, count, gap);
+    l->facet_count = count;
+    for (i = 0; i < count; i++) cx->pool[l->facets + i] = facets[i];
+}
+
 /* Divides a leaf whose inside the plane meets and which is ready: its facets and their signs are in complex.scratch. It becomes the half in front, the
    new one lies behind. Returns the facet between them. */
 static uint32_t gxbp_split_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife *knife) {
     const uint32_t behind = cx->leaf_count++, listed = cx->leaves[leaf].facet_count, count = cx->scratch_count / 2;
     gxbp_rim rim;
+    gxbp_gap gap;
     uint32_t *front_list, *behind_list, fronts = 0, behinds = 0, i, middle;
     rim.first = 2 * count; rim.count = 0;
     cx->edge_stamp++;
@@ -2681,12 +2717,9 @@ static uint32_t gxbp_split_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife
     gxbp_save(cx, GXBP_LEAVES, leaf);
     cx->leaves[behind] = cx->leaves[leaf];
     cx->leaves[behind].parent = leaf;
-    cx->leaves[leaf].facets = cx->pool_count;
-    cx->leaves[leaf].facet_count = fronts;
-    for (i = 0; i < fronts; i++) cx->pool[cx->pool_count++] = front_list[i];
-    cx->leaves[behind].facets = cx->pool_count;
-    cx->leaves[behind].facet_count = behinds;
-    for (i = 0; i < behinds; i++) cx->pool[cx->pool_count++] = behind_list[i];
+    gap = gxbp_list_gap(cx, cx->leaves[leaf].facets, listed);
+    gxbp_set_list(cx, leaf, front_list, fronts, &gap);
+    gxbp_set_list(cx, behind, behind_list, behinds, &gap);
     cx->pool_live += fronts + behinds - listed;
     cx->scratch_count = 0;
     return middle;
@@ -2907,14 +2940,15 @@ static gx_result gxbp_cover_facet(gxb_complex *cx, gxb_triangle *t, uint32_t fac
         gxbp_knife knife;
         gx_result result;
         int front, sides;
+        uint32_t count;
         if (!(edges >> k & 1)) continue;
         result = gxbp_edge_plane(cx, t, k, &front);
         if (result != GX_OK) return result;
         gxbp_set_knife(t, k, &knife);
         cx->stamp[1]++;
-        sides = gxbp_facet_sides(cx, facet, &knife);
+        sides = (int)(gxbp_facet_signs(cx, facet, &knife, &count) & 3);
         if (sides == 3) {
-            result = gxbp_reserve_split(cx, 1, gxbp_count_loop(cx, facet));
+            result = gxbp_reserve_split(cx, 1, count);
             if (result != GX_OK) return result;
             gxbp_split_facet(cx, facet, &knife);
             facet = cx->facets[facet].child + (front > 0 ? 0u : 1u);
@@ -3167,8 +3201,9 @@ static gx_result gxbp_ready_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knif
     out = cx->scratch;
     for (i = 0; i < l->facet_count; i++) out = gxbp_list_facets(cx, cx->pool[l->facets + i], out);
     for (i = 0; i < count; i++) {
-        const uint32_t facet = cx->scratch[i], signs = cx->scratch[count + i] = gxbp_facet_signs(cx, facet, knife);
-        if ((signs & 3) == 3 || signs >= 8) edges += gxbp_count_loop(cx, facet);
+        uint32_t own;
+        const uint32_t signs = cx->scratch[count + i] = gxbp_facet_signs(cx, cx->scratch[i], knife, &own);
+        if ((signs & 3) == 3 || signs >= 8) edges += own;
     }
     cx->scratch_count = 2 * count;      /* these stay where scratch moves */
     result = gxbp_reserve_split(cx, count, edges);

@@ -418,7 +418,7 @@ static void heap_release(void *user, void *memory, size_t size) {
     free(memory);
 }
 
-enum { MAX_CUTS = 24, MAX_NODES = 16, MAX_ELEMENTS = 8 };
+enum { MAX_CUTS = 32, MAX_NODES = 16, MAX_ELEMENTS = 8 };
 
 /* A mesh and the triangles that cut it. */
 typedef struct scene {
