@@ -2837,7 +2837,7 @@ static uint32_t gxbp_clip(gxb_complex *cx, const gxb_triangle *t, uint32_t first
     uint32_t i;
     int inside = 0;
     for (i = 0; i < count; i++) {
-        const gxbp_corner *c = &cx->corners[first + i], *next = &cx->corners[first + (i + 1) % count];
+        const gxbp_corner *c = &cx->corners[first + i], *next = &cx->corners[first + (i + 1 < count ? i + 1 : 0)];
         const int s = c->sign * side, n = next->sign * side;
         gxbp_corner *r;
         if (s > 0) inside = 1;
