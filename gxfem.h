@@ -2052,15 +2052,15 @@ static uint32_t gxp_fresh_index(const gx_body *body, uint32_t cell) {
     return i < body->fresh.count && body->fresh.data[i] == cell ? i : GXP_NONE;
 }
 
-/* Share of the link first ... end-1 of its face, roughly, with a bound for its error. */
-static gx_result gxp_rough_share(gx_body *body, uint32_t first, uint32_t end, double *share, double *error) {
+/* Share of the link first ... end-1 of its face, roughly, with a bound for its error; of its first facets, where those have certainly more than enough. */
+static gx_result gxp_rough_share(gx_body *body, uint32_t first, uint32_t end, double enough, double *share, double *error) {
     gxb_complex *cx = body->complex;
     const gxb_cplane *plane = &cx->planes[cx->facets[GXP_LINK_FACET(body->links.data[first])].plane];
     const double whole = fabs(plane->filter.n[plane->axis]);    /* the normal is a product of two of the face's edges */
     double part, part_error;
     gx_result result = GX_OK;
     *share = *error = 0;
-    for (; first < end && result == GX_OK; first++) {
+    for (; first < end && !(*share - 4 * *error > enough * whole) && result == GX_OK; first++) {
         result = gxp_rough_area(cx, GXP_LINK_FACET(body->links.data[first]), &part, &part_error);
         *share += part;
         *error += part_error + plane->filter.error;
@@ -2073,9 +2073,10 @@ static gx_result gxp_rough_share(gx_body *body, uint32_t first, uint32_t end, do
 
 /* Is the link first ... end-1 certainly neither the smallest, which has a share of at most *bound (made smaller), nor to be severed? */
 static gx_result gxp_is_wide(gxp_cut *cut, uint32_t first, uint32_t end, double *bound, int *wide) {
+    const double enough = fmax(*bound, cut->desc->sever_below);
     double share, error;
-    const gx_result result = gxp_rough_share(cut->body, first, end, &share, &error);
-    *wide = share - error > *bound && share - error > cut->desc->sever_below;
+    const gx_result result = gxp_rough_share(cut->body, first, end, enough, &share, &error);
+    *wide = share - error > enough;
     if (share + error < *bound) *bound = share + error;
     return result;
 }
