@@ -252,7 +252,7 @@ typedef struct gxb_edge {
 
 typedef struct gxb_facet {      /* a convex polygon */
     uint32_t plane;
-    uint32_t loop, loop_count;  /* in complex.pool: edge * 2 + (1 if walked backwards), counter-clockwise about the normal */
+    uint32_t loop, loop_count;  /* in complex.pool: edge * 2 + (1 if walked backwards), counter-clockwise about the normal; count 0 of what was divided */
     uint32_t leaf[2];           /* in front (where the normal points), behind; GXB_NONE outside the mesh */
     uint32_t child;             /* GXB_NONE, or the first of the two facets (child, child + 1) into which it was divided */
     uint32_t labels;            /* in complex.labels, or GXB_NONE: triangles that cover it */
@@ -1631,7 +1631,6 @@ static GXBP_COLD void gxbp_compact_pool(gxb_complex *cx) {
     if (pool == NULL) return;
     for (i = 0; i < cx->facet_count; i++) {
         gxb_facet *f = &cx->facets[i];
-        if (f->child != GXB_NONE) f->loop_count = 0;    /* its children have loops of their own */
         gxbp_move_list(cx, pool, &used, &f->loop, f->loop_count);
     }
     for (i = 0; i < cx->leaf_count; i++) gxbp_move_list(cx, pool, &used, &cx->leaves[i].facets, cx->leaves[i].facet_count);
@@ -2608,6 +2607,7 @@ static uint32_t gxbp_split_facet(gxb_complex *cx, uint32_t facet, const gxbp_kni
     front = gxbp_sign(cx, gxbp_edge_start(cx, parting.loop[zero[0] + 1]), knife->plane, knife->slot) > 0 ? 0u : 1u;
     gxbp_save(cx, GXBP_FACETS, facet);
     cx->facets[facet].child = child;
+    cx->facets[facet].loop_count = 0;
     cx->facets[child] = f;
     cx->facets[child + 1] = f;
     /* arc 0 runs from zero[0] to zero[1] and is closed backwards along the edge, arc 1 is the rest, closed forwards */
@@ -3055,7 +3055,7 @@ static uint32_t gxbp_depth(const gxb_complex *cx, uint32_t node) {
 
 static uint32_t gxbp_leaves_below(const gxb_complex *cx, uint32_t reference) { return reference & 1 ? cx->nodes[reference >> 1].leaves : 1; }
 
-/* Those of the facets into which one was divided: its own loop may be gone. */
+/* Those of the facets into which one was divided */
 static GXBP_APART int gxbp_pieces_sides(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife) {
     const uint32_t child = cx->facets[facet].child;
     if (child == GXB_NONE) return gxbp_facet_sides(cx, facet, knife);
@@ -4099,14 +4099,13 @@ static GXBP_COLD void gxbp_pass_facets(gxb_complex *cx, gxb_stream *s) {
     uint32_t i;
     for (i = 0; i < cx->facet_count; i++) {
         gxb_facet *f = &cx->facets[i];
-        uint32_t none = 0;
         gxbp_pass_word(s, &f->plane);
         gxb_stream_pass(s, f->leaf, 2, sizeof *f->leaf);
         gxbp_pass_word(s, &f->child);
         gxbp_pass_word(s, &f->labels);
         gxbp_pass_word(s, &f->face);
         gxbp_pass_word(s, &f->wall);
-        gxbp_pass_list(cx, s, &f->loop, f->child == GXB_NONE ? &f->loop_count : &none);    /* children have loops of their own */
+        gxbp_pass_list(cx, s, &f->loop, &f->loop_count);
     }
 }
 
