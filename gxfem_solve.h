@@ -974,7 +974,7 @@ typedef struct gxsp_system {
     uint8_t *renewed;       /* n: the copy's diagonal is of other elements than when omega was found; of use if */
     int omega_renewed;      /* there are such copies */
     double coarse_rate;     /* for which the coarse matrices were made; below 0: never made */
-    double *coarse_state;   /* displacement at which */
+    double *coarse_state;   /* displacement at which; of a multigrid only */
     int coarse_worn;        /* to be made anew */
     double term_stiffness, coarse_stiffness; /* sums of springs' and contact's Hessians: now, when coarse matrices were made */
     gxsp_fine *fine;        /* block_count: places in the assembled matrix, levels[0]; NULL: matrix-free */
@@ -3059,7 +3059,7 @@ static void gxsp_steps_make(gxsp_system *system)
     vectors[0] = &system->base, vectors[1] = &system->target, vectors[2] = &system->load, vectors[3] = &system->current;
     vectors[4] = &system->trial, vectors[5] = &system->force, vectors[6] = &system->residual, vectors[7] = &system->direction;
     vectors[8] = &system->coarse_state;
-    for (i = 0; i < 9; ++i)
+    for (i = 0; i < (system->level_count > 0 ? 9 : 8); ++i)
         *vectors[i] = (double *)gxsp_take(&system->pool, 3 * system->n, sizeof(double));
     singles[0] = &system->search, singles[1] = &system->product, singles[2] = &system->scaled, singles[3] = &system->guess[0];
     singles[4] = &system->guess[1], singles[5] = &system->right;
@@ -5956,7 +5956,6 @@ static void gxsp_copies_room(gxsp_system *system, size_t count)
     system->target = (double *)gxsp_retake(pool, system->target, 0, 3 * room, sizeof(double));
     system->load = (double *)gxsp_retake(pool, system->load, 0, 3 * room, sizeof(double));
     system->current = (double *)gxsp_retake(pool, system->current, 3 * n, 3 * room, sizeof(double));
-    system->coarse_state = (double *)gxsp_retake(pool, system->coarse_state, 3 * n, 3 * room, sizeof(double));
     system->trial = (double *)gxsp_retake(pool, system->trial, 0, 3 * room, sizeof(double));
     system->force = (double *)gxsp_retake(pool, system->force, 0, 3 * room, sizeof(double));
     system->residual = (double *)gxsp_retake(pool, system->residual, 0, 3 * room, sizeof(double));
@@ -5977,6 +5976,7 @@ static void gxsp_copies_room(gxsp_system *system, size_t count)
     system->follower = (uint32_t *)gxsp_retake(pool, system->follower, 0, room, sizeof(uint32_t));
     system->renewed = (uint8_t *)gxsp_retake(pool, system->renewed, 0, room, 1);
     if (system->level_count > 0) {
+        system->coarse_state = (double *)gxsp_retake(pool, system->coarse_state, 3 * n, 3 * room, sizeof(double));
         fine->parent = (uint32_t(*)[4])gxsp_retake(pool, fine->parent, n, room, sizeof *fine->parent);
         fine->weight = (float(*)[4])gxsp_retake(pool, fine->weight, n, room, sizeof *fine->weight);
     }
@@ -6014,12 +6014,12 @@ static void gxsp_move_copies(gxsp_renewal *update)
     gxsp_move(change, moved, count, system->current, 3 * sizeof(double), kept);
     gxsp_move(change, moved, count, system->guess[0], sizeof(gxsp_vector4), kept);
     gxsp_move(change, moved, count, system->guess[1], sizeof(gxsp_vector4), kept);
-    gxsp_move(change, moved, count, system->coarse_state, 3 * sizeof(double), kept);
     gxsp_move(change, moved, count, system->lumped, sizeof(double), kept);
     gxsp_move(change, moved, count, system->piece, sizeof(uint32_t), kept);
     gxsp_move(change, moved, count, system->fixed, 1, kept);
     gxsp_move(change, moved, count, system->held, 1, kept);
     if (system->level_count > 0) {
+        gxsp_move(change, moved, count, system->coarse_state, 3 * sizeof(double), kept);
         gxsp_move(change, moved, count, system->levels[0].parent, sizeof *system->levels[0].parent, kept);
         gxsp_move(change, moved, count, system->levels[0].weight, sizeof *system->levels[0].weight, kept);
     }
