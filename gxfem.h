@@ -171,8 +171,8 @@ typedef struct gx_surface {
 } gx_surface;
 typedef struct gx_cut_desc {
     const gx_surface *surfaces; size_t surface_count;
-    const uint32_t *scope_fragments; size_t scope_fragment_count;   /* 0: the whole body; ids of gx_view */
-    const uint32_t *scope_cells; size_t scope_cell_count;           /* 0: the whole body; ids of gx_view */
+    const uint32_t *scope_fragments; size_t scope_fragment_count;   /* 0: the whole body; places in gx_view: of cell_fragment, not fragment_id */
+    const uint32_t *scope_cells; size_t scope_cell_count;           /* 0: the whole body; places in gx_view */
     double sever_below;         /* links of touched cells with a smaller share of their face are severed; 0: never */
 } gx_cut_desc;
 typedef struct gx_cut_report {
@@ -184,7 +184,7 @@ typedef struct gx_cut_report {
     double seconds_arrangement, seconds_enrichment, seconds_integrals;
 } gx_cut_report;
 /* Cuts by all surfaces at once. The displacement and velocity fields are the same functions of material points before and after.
-   Errors: ARGUMENT, EMPTY, INDEX (triangle), NOT_FINITE and RANGE (vertex), NOT_CLOSED (triangle), LIMIT, MEMORY; the body is then
+   Errors: ARGUMENT, EMPTY, INDEX (triangle, or place in the scope), NOT_FINITE and RANGE (vertex), NOT_CLOSED (triangle), LIMIT, MEMORY; the body is then
    exactly as it was. */
 GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_report *report /* or NULL */, gx_failure *failure /* or NULL */);
 
@@ -3856,8 +3856,8 @@ static void gxp_choose_fullest(const gx_body *body, gxp_supports *of) {
     for (i = 0; i < body->part_count; i++)
         for (k = 1; k < 4; k++) gxp_unite(of->root, body->parts[i].copy[0], body->parts[i].copy[k]);
     for (i = 0; i < body->part_count; i++) {
-        const uint32_t root = gxp_find(of->root, body->parts[i].copy[0]), best = of->part[root];
-        if (of->part[body->parts[i].copy[0]] != GXP_NONE && best == GXP_NONE) continue;
+        const uint32_t *c = body->parts[i].copy, root = gxp_find(of->root, c[0]), best = of->part[root];
+        if (of->part[c[c[0] == root]] != GXP_NONE) continue;    /* has been spread to all of its fragment; here only roots are told theirs */
         if (best == GXP_NONE || body->parts[i].weight / gxp_part_volume(&body->parts[i]) > body->parts[best].weight / gxp_part_volume(&body->parts[best]))
             of->part[root] = i;
     }
@@ -5594,7 +5594,7 @@ static void gxp_move_vertices(const gx_body *body, double *positions) {
 static void gxp_deformed_normals(gxp_skin *s, float *normals) {
     size_t i;
     int k, n;
-    memset(s->normals, 0, 3 * (size_t)s->slot_count * sizeof *s->normals);
+    if (s->slot_count > 0) memset(s->normals, 0, 3 * (size_t)s->slot_count * sizeof *s->normals);
     for (i = 0; i < s->triangle_count; i++) {
         double a[3];
         gxp_triangle_normal(s->positions, s->triangles + 3 * i, a);

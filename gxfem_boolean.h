@@ -8652,7 +8652,7 @@ static int gxbp_flip(gxb_boolean *b, uint32_t h) {
     const uint32_t qr = b->out_twins[h1], rp = b->out_twins[gxbp_before_edge(h)], po = b->out_twins[g1], oq = b->out_twins[gxbp_before_edge(g)];
     uint32_t known;
     if (r == o || qr / 3 == s || rp / 3 == s) return 0;
-    if (gxbp_is_defect(b, s, p, o, r) + gxbp_is_defect(b, s, o, q, r) >= 1 + gxbp_is_defective(b, s)) return 0;
+    if (gxbp_is_defect(b, s, p, o, r) || gxbp_is_defect(b, s, o, q, r)) return 0;   /* one of them might be large */
     gxbp_count_around(b, gxbp_before_edge(h), o, &known);
     if (known != 0) return 0;
     gxbp_set_out_triangle(b, t, p, o, r);

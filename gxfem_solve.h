@@ -301,7 +301,8 @@ typedef struct gxs_step_desc {
     gxs_contact_fn contact;     /* for every contact point; NULL: none */
     void *contact_user;
     double sleep_speed;         /* m/s: a piece (copies joined by elements) none of whose copies has been faster for sleep_time sleeps:
-                                   steps leave it out until something touches it; 0: none sleeps */
+                                   steps leave it out until something touches it: what is given here changes for it, or its state is written.
+                                   What contact() knows is not seen: where that moves, set rest_times to 0. 0: none sleeps */
     double sleep_time;          /* s; 0: 0.5 */
     double *rest_times;         /* copy_count: for how long each copy has been slower, s; read and written. Needed by sleep_speed */
     double (*clock)(void *user);/* s; NULL: none, and the report's seconds are 0 */
@@ -465,6 +466,11 @@ extern "C" {
  * motion. GXSP_GAIN_TRIALS lengths are tried. */
 #define GXSP_GAIN 0.01
 #define GXSP_GAIN_TRIALS 8
+
+/* Hessians of elements stretched further are those of elements stretched so far, times the fourth power of the rest, as which they grow at most;
+ * up to this weight, J: single precision holds the one times the other. */
+#define GXSP_STRETCHED 1e3f
+#define GXSP_HEAVIEST 1e25
 
 /* An element all whose stretches are smaller is all but a point, where its forces vanish: directions are found as if it were
  * GXSP_NUDGE of its size. */
@@ -887,7 +893,7 @@ typedef struct gxsp_piece {
     int settled;        /* its length is found: chunks all of whose pieces are settled are not evaluated again */
     int risen;          /* E has ended above limit */
     uint32_t lead;      /* which piece leads it; itself: it leads */
-    uint64_t forces[2]; /* hash of its nodal forces: of the step before, of this one */
+    uint64_t forces[2]; /* hash of its nodal forces and contact points: of the step before, of this one */
     int sprung[2];      /* a spring acts on it: in the step before, in this one */
     int woken, tired;   /* something touches it in this step; nothing does, and it has been slow for long */
     uint32_t state;     /* GXSP_HELD ... GXSP_ASLEEP; 0: a translation of it meets no stiffness */
@@ -988,6 +994,7 @@ typedef struct gxsp_system {
     double pace_old;        /* by the last one of the matrices before; 0: of another time step, or there was none */
     int still_known;        /* still and chunk_still are those of the pieces' states */
     size_t active;          /* unknowns of this step */
+    int stepped;            /* current is what the last step returned, copies of cuts since where theirs were */
     int base_known;         /* current is what the last step returned, and the pieces know its elastic energies */
     double product_rate;    /* of the linearisation for gxs_solver_product; below 0: there is none */
     gxsp_vector4 *right;    /* n: residual in single precision; of GXS_MATRIX_ASSEMBLED only, else NULL */
@@ -1671,6 +1678,30 @@ static int gxsp_tangent_begin(gxs_material_kind kind, gxsp_state *first, gxsp_st
     return collapsed;
 }
 
+/* What principal Hessians are made from, such that single precision holds them: moduli beside their sum, by which weights grow, and stretches up
+ * to GXSP_STRETCHED, for further ones of which weights grow as energies do at most */
+static void gxsp_scale_principal(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest, double scale, gxsp_state *GXSP_RESTRICT s,
+                                 gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to)
+{
+    gxsp_lanes weight;
+    int l;
+    GXSP_EACH_LANE(l) {
+        const double modulus = s->mu[l] + s->lambda[l];
+        to->mu[l] = (float)(s->mu[l] / modulus);
+        to->lambda[l] = (float)(s->lambda[l] / modulus);
+        weight[l] = scale * rest->weight[l] * modulus;
+    }
+    if (kind != GXS_LINEAR) /* else there are no stretches */
+        GXSP_EACH_LANE(l) {
+            const float largest = of->s[0][l] < 0 ? -of->s[0][l] : of->s[0][l], further = largest > GXSP_STRETCHED ? largest / GXSP_STRETCHED : 1;
+            const double square = (double)further * (double)further, grown = weight[l] * square * square;
+            const double most = weight[l] > GXSP_HEAVIEST ? weight[l] : GXSP_HEAVIEST;
+            of->s[0][l] /= further, of->s[1][l] /= further, of->s[2][l] /= further;
+            weight[l] = grown < most ? grown : most;
+        }
+    GXSP_EACH_LANE(l) to->weight[l] = (float)weight[l];
+}
+
 /* The Hessian of a block at s->g, times scale, exact or projected. of: by gxsp_tangent_begin. general: of GXS_CUSTOM only, else NULL. */
 static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest, double scale, int exact, gxsp_state *s,
                               gxsp_svd *GXSP_RESTRICT of, gxsp_tangent *GXSP_RESTRICT tangent, gxsp_general *general)
@@ -1682,11 +1713,7 @@ static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_REST
         gxsp_general_make(rest, scale, exact, s, tangent, general);
         return;
     }
-    GXSP_EACH_LANE(l) {
-        principal.mu[l] = (float)s->mu[l];
-        principal.lambda[l] = (float)s->lambda[l];
-        principal.weight[l] = (float)(scale * rest->weight[l]);
-    }
+    gxsp_scale_principal(kind, rest, scale, s, of, &principal);
     switch (kind) {
     case GXS_ST_VENANT_KIRCHHOFF: gxsp_kirchhoff_principal(of, &principal); break;
     case GXS_FIXED_COROTATED: gxsp_corotated_principal(of, &principal); break;
@@ -5710,24 +5737,6 @@ static void gxsp_touch_added(const gxsp_renewal *update)
             update->touched[update->change->elements[e].copy[k]] = 1;
 }
 
-/* Does every group have the weight that it had? Then a state has the energy that it had. */
-static int gxsp_keeps_weight(const gxsp_renewal *update)
-{
-    const gxs_change *change = update->change;
-    uint32_t hole = 0;
-    size_t e = 0, g;
-    for (g = 0; g < change->group_count; ++g) {
-        double gone = 0, come = 0;
-        for (; hole < update->hole_count && update->holes[hole].group == change->groups[g]; ++hole)
-            gone += update->system->chunks[update->holes[hole].chunk].rest[update->holes[hole].lane / GXSP_LANES].weight[update->holes[hole].lane % GXSP_LANES];
-        for (; e < change->element_count && change->elements[e].group == change->groups[g]; ++e)
-            come += change->elements[e].weight;
-        if (fabs(gone - come) > 1e-12 * gone)
-            return 0;
-    }
-    return 1;
-}
-
 static void gxsp_empty_lane(const gxsp_chunk *chunk, uint32_t lane)
 {
     gxsp_rest *rest = &chunk->rest[lane / GXSP_LANES];
@@ -5794,7 +5803,7 @@ static uint32_t gxsp_find_open(const gxsp_system *system, uint32_t class_index)
 static void gxsp_place_class(gxsp_renewal *update, uint32_t class_index)
 {
     gxsp_system *system = update->system;
-    uint32_t i, c = gxsp_find_open(system, class_index), lane = 0;
+    uint32_t i, l, c = gxsp_find_open(system, class_index), lane = 0;
     for (i = 0; i < update->left_count; ++i) {
         gxsp_hole *hole = &update->holes[update->hole_count + update->placed_count];
         if (gxsp_class_of(system, &update->change->elements[update->left[i]]) != class_index)
@@ -5806,8 +5815,11 @@ static void gxsp_place_class(gxsp_renewal *update, uint32_t class_index)
             if (!gxsp_open_chunk(system, class_index))
                 return;
         }
-        if (lane == system->chunks[c].block_count * GXSP_LANES)
+        if (lane == system->chunks[c].block_count * GXSP_LANES) { /* its other lanes are of no weight, but of a material there is */
+            for (l = 0; l < GXSP_LANES; ++l)
+                system->chunks[c].rest[lane / GXSP_LANES].material[l] = update->change->elements[update->left[i]].material;
             ++system->chunks[c].block_count;
+        }
         hole->chunk = c, hole->lane = lane, hole->element = update->left[i];
         gxsp_place_element(&system->chunks[c], &update->change->elements[hole->element], gxsp_own_order, lane, 0);
         ++update->placed_count;
@@ -6060,39 +6072,14 @@ static void gxsp_recount_copies(const gxsp_renewal *update)
         system->fixed[i] |= system->held[i];
 }
 
-/* Pieces keep the energies that those had which they are now, by copy in former; if one has fallen apart, none is known. next: by piece
- * of before, GXSP_NONE */
-static void gxsp_keep_base(gxsp_system *system, const gxsp_piece *before, const uint32_t *former, uint32_t *next)
-{
-    uint32_t i;
-    for (i = 0; i < system->n; ++i) {
-        gxsp_piece *piece = &system->pieces[system->piece[i]];
-        if (next[former[i]] == GXSP_NONE && piece->lead == system->piece[i]) {
-            next[former[i]] = system->piece[i];
-            piece->base_energy = before[former[i]].base_energy;
-            piece->lead = GXSP_NONE; /* here: has its energy */
-        }
-        system->base_known &= next[former[i]] == system->piece[i];
-    }
-    for (i = 0; i < system->piece_count; ++i)
-        system->pieces[i].lead = i;
-}
-
 /* Pieces, of which those sleep that are parts of sleeping ones: what has touched them wakes them again */
 static void gxsp_renew_pieces(gxsp_renewal *update)
 {
     gxsp_system *system = update->system;
-    const uint32_t before = system->piece_count;
     uint32_t *forest = (uint32_t *)gxsp_take(update->scratch, system->n, sizeof(uint32_t)), c, i, p;
-    uint32_t *former = (uint32_t *)gxsp_take(update->scratch, system->n, sizeof(uint32_t));
-    uint32_t *next = (uint32_t *)gxsp_take(update->scratch, before, sizeof(uint32_t));
-    gxsp_piece *pieces = (gxsp_piece *)gxsp_take(update->scratch, before, sizeof(gxsp_piece));
     uint8_t *asleep = (uint8_t *)gxsp_take(update->scratch, system->n, 1);
     if (update->scratch->failed)
         return;
-    memcpy(former, system->piece, system->n * sizeof *former);
-    memcpy(pieces, system->pieces, before * sizeof *pieces);
-    memset(next, 0xff, before * sizeof *next);
     for (i = 0; i < system->n; ++i) {
         forest[i] = i;
         asleep[i] = (system->pieces[system->piece[i]].state & GXSP_ASLEEP) != 0;
@@ -6109,7 +6096,6 @@ static void gxsp_renew_pieces(gxsp_renewal *update)
     if (system->pool.failed)
         return;
     gxsp_fill_pieces(system);
-    gxsp_keep_base(system, pieces, former, next);
     for (p = 0; p < system->piece_count; ++p)
         system->pieces[p].state |= GXSP_ASLEEP;
     for (i = 0; i < system->n; ++i)
@@ -6280,12 +6266,12 @@ static int gxsp_find_successors(gxsp_renewal *update)
 }
 
 /* What steps have learnt and what depends on all copies */
-static void gxsp_renew_steps(gxsp_renewal *update, int keeps_weight)
+static void gxsp_renew_steps(gxsp_renewal *update)
 {
     gxsp_system *system = update->system;
     size_t i;
     system->still_known = 0;
-    system->base_known &= keeps_weight;
+    system->base_known = 0;
     for (i = 0; i < system->n; ++i)
         system->renewed[i] = update->touched[i] | (system->omega_renewed ? system->renewed[i] : 0);
     system->omega_renewed = 1;
@@ -6316,13 +6302,11 @@ static int gxsp_is_compact(gxsp_renewal *update)
 static int gxsp_update_system(gxsp_renewal *update)
 {
     gxsp_system *system = update->system;
-    int keeps_weight;
     gxsp_find_holes(update);
     gxsp_match_holes(update);
     if (update->scratch->failed)
         return 1;
     gxsp_touch_removed(update);
-    keeps_weight = gxsp_keeps_weight(update);
     system->element_count += update->change->element_count;
     system->element_count -= update->hole_count;
     gxsp_replace_elements(update);
@@ -6333,7 +6317,7 @@ static int gxsp_update_system(gxsp_renewal *update)
     gxsp_move_copies(update);
     if (update->scratch->failed || system->pool.failed)
         return 1;
-    gxsp_renew_steps(update, keeps_weight);
+    gxsp_renew_steps(update);
     gxsp_touch_added(update);
     gxsp_recount_copies(update);
     gxsp_renew_pieces(update);
@@ -7062,8 +7046,8 @@ static int gxsp_solve(gxsp_problem *problem)
     return solved;
 }
 
-/* >>sleep: a piece that has been slow for long is left out until something touches it: loads, targets, springs or planes that change, a
- * state or a rest time that the caller has written */
+/* >>sleep: a piece that has been slow for long is left out until something touches it: loads, targets, springs, contact points or planes that
+ * change, a state or a rest time that the caller has written */
 
 /* 1 of no values, never 0 */
 static uint64_t gxsp_hash(uint64_t hash, const double *values, size_t count)
@@ -7083,8 +7067,8 @@ static int gxsp_differs(const double *a, const double *b)
     return memcmp(a, b, 3 * sizeof *a) != 0;
 }
 
-/* Hashes of nodal forces, in all and by piece. Copies without a force do not count. */
-static uint64_t gxsp_hash_forces(gxsp_system *system, const double *forces)
+/* Hashes of nodal forces and contact points, in all and by piece. Copies without a force do not count. */
+static uint64_t gxsp_hash_forces(gxsp_system *system, const gxs_step_desc *step)
 {
     static const double zero[3] = {0, 0, 0};
     uint64_t all = 1;
@@ -7092,13 +7076,22 @@ static uint64_t gxsp_hash_forces(gxsp_system *system, const double *forces)
     size_t i;
     for (p = 0; p < system->piece_count; ++p)
         system->pieces[p].forces[1] = 1;
-    for (i = 0; forces && i < system->n; ++i)
-        if (gxsp_differs(forces + 3 * i, zero)) {
+    for (i = 0; step->forces && i < system->n; ++i)
+        if (gxsp_differs(step->forces + 3 * i, zero)) {
             uint64_t *hash = &system->pieces[system->piece[i]].forces[1];
             const double index = (double)i;
-            *hash = gxsp_hash(gxsp_hash(*hash, &index, 1), forces + 3 * i, 3);
-            all = gxsp_hash(gxsp_hash(all, &index, 1), forces + 3 * i, 3);
+            *hash = gxsp_hash(gxsp_hash(*hash, &index, 1), step->forces + 3 * i, 3);
+            all = gxsp_hash(gxsp_hash(all, &index, 1), step->forces + 3 * i, 3);
         }
+    for (i = 0; i < 4 * step->point_count; ++i) {
+        const gxs_point *point = &step->points[i / 4];
+        const double values[2] = {(double)point->copy[i % 4], point->weight[i % 4]};
+        uint64_t *hash = &system->pieces[system->piece[point->copy[i % 4]]].forces[1];
+        if (fabs(values[1]) > 0) {
+            *hash = gxsp_hash(gxsp_hash(*hash, values, 2), point->position, 3);
+            all = gxsp_hash(gxsp_hash(all, values, 2), point->position, 3);
+        }
+    }
     return all;
 }
 
@@ -7113,7 +7106,7 @@ static gxs_scene gxsp_scene_make(gxsp_system *system, const gxs_step_desc *step)
         const double values[4] = {plane->offset, plane->stiffness, plane->friction, plane->sticking_speed};
         scene.planes = gxsp_hash(gxsp_hash(scene.planes, plane->normal, 3), values, 4);
     }
-    scene.forces = gxsp_hash_forces(system, step->forces);
+    scene.forces = gxsp_hash_forces(system, step);
     scene.springs = 1;
     for (i = 0; i < system->piece_count; ++i)
         system->pieces[i].sprung[1] = 0;
@@ -7146,10 +7139,35 @@ static void gxsp_wake_touched(gxsp_problem *problem, const double *displacement,
         gxsp_piece *piece = &system->pieces[system->piece[i]];
         if (step->targets && system->held[i] && gxsp_differs(step->targets + 3 * i, displacement + 3 * i))
             piece->woken = 1;
-        if ((piece->state & GXSP_ASLEEP) && !system->fixed[i] &&
-            (gxsp_differs(velocity + 3 * i, zero) || gxsp_differs(displacement + 3 * i, system->current + 3 * i)))
+        if (!system->fixed[i] && (((piece->state & GXSP_ASLEEP) && gxsp_differs(velocity + 3 * i, zero)) ||
+            (system->stepped && gxsp_differs(displacement + 3 * i, system->current + 3 * i))))
             piece->woken = 1;
     }
+}
+
+/* Is a copy faster than what may sleep? velocity: its own */
+static int gxsp_too_fast(const gxs_step_desc *step, const double *velocity)
+{
+    return gxsp_dot(velocity, velocity, 1) > step->sleep_speed * step->sleep_speed;
+}
+
+/* Rouses the pieces that springs and contact points tie to those that are awake. Were there any? */
+static int gxsp_rouse_tied(gxsp_system *system, const gxs_step_desc *step)
+{
+    int any = 0, k;
+    size_t i;
+    for (i = 0; i < step->spring_count + step->point_count; ++i) {
+        const gxs_point *point = i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
+        int awake = 0;
+        for (k = 0; k < 4; ++k)
+            awake |= fabs(point->weight[k]) > 0 && !system->fixed[point->copy[k]] && !system->pieces[system->piece[point->copy[k]]].tired;
+        for (k = 0; k < 4 && awake; ++k) {
+            gxsp_piece *piece = &system->pieces[system->piece[point->copy[k]]];
+            any |= fabs(point->weight[k]) > 0 && piece->tired;
+            piece->tired &= !(fabs(point->weight[k]) > 0);
+        }
+    }
+    return any;
 }
 
 /* Which pieces sleep in this step, and so which copies are still. */
@@ -7166,8 +7184,9 @@ static void gxsp_choose_sleepers(gxsp_problem *problem, const double *displaceme
     for (p = 0; p < system->piece_count; ++p)
         system->pieces[p].tired = step->sleep_speed > 0 && !system->pieces[p].woken;
     for (i = 0; i < system->n && step->sleep_speed > 0; ++i)
-        if (!system->fixed[i] && step->rest_times[i] < time)
+        if (!system->fixed[i] && (step->rest_times[i] < time || gxsp_too_fast(step, velocity + 3 * i)))
             system->pieces[system->piece[i]].tired = 0;
+    while (gxsp_rouse_tied(system, step)) {}
     for (p = 0; p < system->piece_count; ++p) {
         gxsp_piece *piece = &system->pieces[p];
         const uint32_t state = (piece->state & ~GXSP_ASLEEP) | (piece->tired ? GXSP_ASLEEP : 0);
@@ -7196,8 +7215,7 @@ static void gxsp_count_rest(const gxsp_problem *problem, const double *velocity)
     if (!(step->sleep_speed > 0))
         return;
     for (i = 0; i < system->n; ++i) {
-        const double square = gxsp_dot(velocity + 3 * i, velocity + 3 * i, 1);
-        const int rests = square <= step->sleep_speed * step->sleep_speed && !system->pieces[system->piece[i]].woken;
+        const int rests = !gxsp_too_fast(step, velocity + 3 * i) && !system->pieces[system->piece[i]].woken;
         step->rest_times[i] = rests ? step->rest_times[i] + step->dt : 0;
     }
 }
@@ -7790,6 +7808,7 @@ static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double
     memcpy(velocity, speeds, count * sizeof(double));
     if (midpoint)
         memcpy(system->current, ends, count * sizeof(double));
+    system->stepped = 1;
     system->base_known = !midpoint && step->spring_count + step->point_count == 0;
     system->lasting->scene = problem->scene;
     for (i = 0; i < system->piece_count; ++i) {
@@ -7801,7 +7820,7 @@ static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double
     return GX_OK;
 }
 
-/* The force of every spring on the body at the end of the step; of the midpoint rule in its middle */
+/* The force of every spring on the body at the end of the step */
 static void gxsp_report_springs(const gxsp_problem *problem)
 {
     const gxs_step_desc *step = problem->step;
@@ -8274,6 +8293,9 @@ GXFEM_API gx_result gxs_solver_create(const gxs_solver_desc *desc, gxs_solver **
     gxs_solver *made;
     if (!solver || (desc && (!desc->allocator.allocate != !desc->allocator.release || (desc->allocator.reallocate && !desc->allocator.allocate))))
         return GX_ERROR_ARGUMENT;
+    if (desc && ((int)desc->preconditioner < 0 || desc->preconditioner > GXS_VOLUME_RATIO || (int)desc->matrix < 0 ||
+                 desc->matrix > GXS_MATRIX_ASSEMBLED))
+        return GX_ERROR_ARGUMENT;
     if (desc)
         used = desc->allocator;
     if (!used.allocate) {
@@ -8558,6 +8580,8 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_TOUCHED
 #undef GXSP_ASLEEP
 #undef GXSP_COLLAPSED
+#undef GXSP_STRETCHED
+#undef GXSP_HEAVIEST
 #undef GXSP_NUDGE
 #undef GXSP_AHEAD
 #undef GXSP_RANGE

@@ -1557,14 +1557,14 @@ START_TEST(energy_falls_in_every_piece)
 }
 END_TEST
 
-/* A step of pieces is a step of each by itself: none goes less far, or further, for another's sake. To 2 %: linear systems are solved to a
- * share of the residual of all. */
+/* A step of pieces is a step of each by itself: none goes less far, or further, for another's sake. To 4 %, and a thousandth of how far all
+ * go: linear systems are solved to a share of the residual of all. */
 START_TEST(pieces_step_as_if_alone)
 {
     gxs_solver *solver = solver_of(_i % 4);
     gxs_step_desc step = step_make(0.033, -9.81);
     size_t first[PIECES + 1], n, i;
-    double *start;
+    double *start, all = 0;
     int p;
     scene s = scene_of_pieces((uint64_t)(100 + _i), 1, first);
     n = s.model.copy_count;
@@ -1573,6 +1573,8 @@ START_TEST(pieces_step_as_if_alone)
     memcpy(start, s.displacement, 3 * n * sizeof *start);
     memcpy(start + 3 * n, s.velocity, 3 * n * sizeof *start);
     ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+    for (i = 0; i < 3 * n; ++i)
+        all += (s.displacement[i] - start[i]) * (s.displacement[i] - start[i]);
     for (p = 0; p < PIECES; ++p) {
         double *u = start + 6 * n, *v = u + 3 * n, way = 0, off = 0;
         uint8_t *held = (uint8_t *)zeroed(n, 1);
@@ -1588,7 +1590,7 @@ START_TEST(pieces_step_as_if_alone)
             way += (u[i] - start[i]) * (u[i] - start[i]);
             off += (u[i] - s.displacement[i]) * (u[i] - s.displacement[i]);
         }
-        assert_that(off <= 4e-4 * way, "%s piece %d: %g m off, having gone %g m", solver_name(_i % 4), p, sqrt(off), sqrt(way));
+        assert_that(off <= 1.6e-3 * way + 1e-6 * all, "%s piece %d: %g m off, having gone %g m", solver_name(_i % 4), p, sqrt(off), sqrt(way));
         free(held);
     }
     free(start);

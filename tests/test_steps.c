@@ -338,6 +338,61 @@ START_TEST(tiny_corners_fall) {
 }
 END_TEST
 
+/* Bodies most of whose copies have too little support for themselves can be stepped, and copies that follow others follow none that do. */
+START_TEST(few_supports_are_enough) {
+    const gx_step_desc step = step_of(0.01, -9.81);
+    int n, i, k, j;
+    random_seed((uint64_t)_i * 11 + 3);
+    for (n = 0; n < 60; ++n) {
+        workload w = grid(1 + (size_t)random_below(2), 1 + (size_t)random_below(2), 1, 5);
+        gx_body_desc desc = desc_of(&w);
+        gx_body *body = NULL;
+        gxs_model model;
+        size_t c;
+        uint8_t *follows;
+        desc.support_below = n % 2 ? 0.3 : pow(10, random_real(-5, -0.5));
+        ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+        for (i = 0; i < 10; ++i) {
+            double point[3], normal[3];
+            for (k = 0; k < 3; ++k) { point[k] = random_real(0, 1); normal[k] = random_real(-1, 1); }
+            add_plane(&w, point, normal, random_below(2) ? 40 : 0.7);
+            cut_by(body, &w, (size_t)i, 1);
+        }
+        ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
+        follows = (uint8_t *)calloc(model.copy_count, 1);
+        for (c = 0; c < model.constraint_count; ++c) follows[model.constraints[c].copy] = 1;
+        for (c = 0; c < model.constraint_count; ++c)
+            for (j = 0; j < 4; ++j) ck_assert(!(fabs(model.constraints[c].weight[j]) > 0) || !follows[model.constraints[c].master[j]]);
+        ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
+        free(follows);
+        gx_body_destroy(body);
+        wl_free(&w);
+    }
+}
+END_TEST
+
+/* What is at rest is kicked, or moved, in one of the steps around the one in which it would fall asleep: it is awake then. */
+START_TEST(the_step_of_falling_asleep_sees_what_is_written) {
+    workload w = grid(1, 1, 1, 5);
+    gx_body *body = body_of(&w);
+    gx_step_desc step = step_of(0.02, 0);
+    gxs_step_report report;
+    gx_view view = view_of(body);
+    size_t c;
+    int n;
+    step.sleep_speed = 1e-3;
+    for (n = 0; n < 20 + _i / 2; ++n) ck_assert_int_eq(gx_body_step(body, &step, &report, NULL), GX_OK);
+    if (_i % 2) view.displacement[0] += 0.3;
+    else for (c = 0; c < view.copy_count; ++c) view.velocity[3 * c] = 1;
+    ck_assert_int_eq(gx_body_step(body, &step, &report, NULL), GX_OK);
+    ck_assert_uint_eq(report.active_unknowns, 3 * view.copy_count);
+    if (_i % 2) ck_assert(view.displacement[0] < 0.29);
+    else ck_assert_double_eq_tol(view.displacement[3], 0.02, 1e-9);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 /* A plane so close to a layer of nodes that the copies behind it have next to no support, in a block that hangs by them: extended, they
    follow the field of what is before it, and the block hangs as the uncut one below. */
 START_TEST(copies_without_support_follow_their_fragment) {
@@ -443,6 +498,8 @@ int main(void) {
     tcase_add_test(tests, cuts_wake_what_they_touch);
     tcase_add_loop_test(tests, tiny_corners_fall, 0, 6);
     tcase_add_test(tests, copies_without_support_follow_their_fragment);
+    tcase_add_loop_test(tests, few_supports_are_enough, 0, 4);
+    tcase_add_loop_test(tests, the_step_of_falling_asleep_sees_what_is_written, 0, 20);
     tcase_add_test(tests, springs_pull_points_of_the_skin);
     suite_add_tcase(suite, tests);
     return run_suite(suite);

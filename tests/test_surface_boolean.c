@@ -925,6 +925,75 @@ static void mend_workload(const char *name, workload w, int removed, size_t sum[
     wl_free(&w);
 }
 
+/* A ball of 9 x 6 faces around a random place near 0 */
+static wl_surface random_ball(double radius) {
+    enum { AROUND = 9, DOWN = 6 };
+    wl_surface s;
+    double middle[3];
+    size_t i, j, k;
+    for (k = 0; k < 3; ++k) middle[k] = (random_below(2001) - 1000) / 1000.0;
+    s.vertex_count = AROUND * (DOWN - 1) + 2; s.triangle_count = 2 * AROUND * (DOWN - 1);
+    s.vertices = (double *)malloc(3 * s.vertex_count * sizeof *s.vertices);
+    s.triangles = (uint32_t *)malloc(3 * s.triangle_count * sizeof *s.triangles);
+    for (i = 0; i < s.vertex_count; ++i) {
+        const double pi = 3.14159265358979323846, down = i + 1 == s.vertex_count ? pi : i == 0 ? 0 : pi * (double)(1 + (i - 1) / AROUND) / DOWN;
+        const double around = 2 * pi * (double)((i + AROUND - 1) % AROUND) / AROUND;
+        s.vertices[3 * i] = middle[0] + radius * sin(down) * cos(around);
+        s.vertices[3 * i + 1] = middle[1] + radius * sin(down) * sin(around);
+        s.vertices[3 * i + 2] = middle[2] + radius * cos(down);
+    }
+    for (i = 0, k = 0; i < AROUND; ++i) {
+        const uint32_t a = 1 + (uint32_t)i, b = 1 + (uint32_t)((i + 1) % AROUND), end = (uint32_t)s.vertex_count - 1;
+        const uint32_t caps[6] = { 0, a, b, end, b + AROUND * (DOWN - 2), a + AROUND * (DOWN - 2) };
+        memcpy(s.triangles + k, caps, sizeof caps);
+        for (k += 6, j = 0; j + 2 < DOWN; ++j, k += 6) {
+            const uint32_t p = a + AROUND * (uint32_t)j, q = b + AROUND * (uint32_t)j, sides[6] = { p, p + AROUND, q + AROUND, p, q + AROUND, q };
+            memcpy(s.triangles + k, sides, sizeof sides);
+        }
+    }
+    return s;
+}
+
+/* A ball less others, one after the other, each result mended and fed into the next: mending moves no more of the surface than rounding does. */
+START_TEST(mending_keeps_volumes) {
+    gxb_boolean_desc desc;
+    wl_surface a;
+    int step;
+    random_state = 0x9e3779b97f4a7c15u * (uint64_t)(_i + 1);
+    memset(&desc, 0, sizeof desc);
+    desc.mend = 1;
+    a = random_ball(1);
+    for (step = 0; step < 8 && a.triangle_count > 0 && a.triangle_count < 3000; ++step) {
+        wl_surface ball = random_ball(0.3 + random_below(401) / 1000.0), next;
+        gxb_operand o[2];
+        gxb_boolean *b = NULL;
+        gxb_boolean_result r;
+        double sum = 0;
+        size_t t;
+        o[0] = operand_of(&a, GXB_UNION);
+        o[1] = operand_of(&ball, GXB_DIFFERENCE);
+        ck_assert_int_eq(gxb_boolean_create(&desc, &b), GX_OK);
+        for (t = 0; t < 2; ++t) ck_assert_int_eq(gxb_boolean_add(b, &o[t], NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
+        for (t = 0; t < r.triangle_count; ++t) {
+            const double *p = r.vertices + 3 * r.triangles[3 * t], *q = r.vertices + 3 * r.triangles[3 * t + 1], *s = r.vertices + 3 * r.triangles[3 * t + 2];
+            sum += (p[0] * (q[1] * s[2] - q[2] * s[1]) - p[1] * (q[0] * s[2] - q[2] * s[0]) + p[2] * (q[0] * s[1] - q[1] * s[0])) / 6;
+        }
+        CHECK_CASE(fabs(sum - r.volume) <= 1e-10, "seed %d, step %d: volume %.17g, by its triangles %.17g", _i, step, r.volume, sum);
+        next.vertex_count = r.vertex_count; next.triangle_count = r.triangle_count;
+        next.vertices = (double *)malloc((3 * r.vertex_count + 1) * sizeof *next.vertices);
+        next.triangles = (uint32_t *)malloc((3 * r.triangle_count + 1) * sizeof *next.triangles);
+        memcpy(next.vertices, r.vertices, 3 * r.vertex_count * sizeof *next.vertices);
+        memcpy(next.triangles, r.triangles, 3 * r.triangle_count * sizeof *next.triangles);
+        gxb_boolean_destroy(b);
+        surface_free(&a);
+        surface_free(&ball);
+        a = next;
+    }
+    surface_free(&a);
+}
+END_TEST
+
 /* Each of the hard slabs, and the slabs through one tetrahedron and a ring, can be rounded without any defect. */
 START_TEST(rounding_is_mended) {
     size_t sum[2] = { 0, 0 }, pieces;
@@ -1125,6 +1194,7 @@ int main(void) {
     tcase_add_test(tests, closed_sheets_divide);
     tcase_add_test(tests, everything_knows_where_it_comes_from);
     tcase_add_test(tests, rounding_is_mended);
+    tcase_add_loop_test(tests, mending_keeps_volumes, 0, 12);
     tcase_add_test(tests, rounded_sticks_are_mended);
     tcase_add_test(tests, memory_runs_out);
     tcase_add_test(tests, memory_limit);
