@@ -7140,7 +7140,7 @@ static void gxsp_wake_touched(gxsp_problem *problem, const double *displacement,
         if (step->targets && system->held[i] && gxsp_differs(step->targets + 3 * i, displacement + 3 * i))
             piece->woken = 1;
         if (!system->fixed[i] && (((piece->state & GXSP_ASLEEP) && gxsp_differs(velocity + 3 * i, zero)) ||
-            (system->stepped && gxsp_differs(displacement + 3 * i, system->current + 3 * i))))
+            (system->stepped && step->sleep_speed > 0 && gxsp_differs(displacement + 3 * i, system->current + 3 * i))))
             piece->woken = 1;
     }
 }
