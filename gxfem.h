@@ -216,8 +216,8 @@ typedef struct gx_view {
     size_t copy_count;
     const uint32_t *copy_node;      /* copy_count */
     const uint8_t *copy_held;       /* copy_count, 1: held by a Dirichlet region */
-    double *displacement;           /* copy_count x 3, m; the caller may write */
-    double *velocity;               /* copy_count x 3, m/s; the caller may write */
+    double *displacement;           /* copy_count x 3, m; the caller may write, and then takes a step of GXS_BDF1 before one of GXS_BDF2 */
+    double *velocity;               /* copy_count x 3, m/s; likewise */
     double *rest_time;              /* copy_count: for how long it has been slower than sleep_speed, s; the caller may write 0 to wake it */
     size_t fragment_count;
     const double *fragment_volume;  /* fragment_count, m3 */
