@@ -467,10 +467,10 @@ extern "C" {
 #define GXSP_GAIN 0.01
 #define GXSP_GAIN_TRIALS 8
 
-/* Hessians of elements stretched further are those of elements stretched so far, times the fourth power of the rest, as which they grow at most;
- * up to this weight, J: single precision holds the one times the other. */
-#define GXSP_STRETCHED 1e3f
-#define GXSP_HEAVIEST 1e25
+/* Hessians of elements so stretched that their entries, beside the moduli, were larger than this are those of elements stretched less, times the
+ * fourth power of the rest, as which they grow at most; up to this weight, J: single precision holds the one times the other. */
+#define GXSP_STRETCHED 1e24
+#define GXSP_HEAVIEST 1e12
 
 /* An element all whose stretches are smaller is all but a point, where its forces vanish: directions are found as if it were
  * GXSP_NUDGE of its size. */
@@ -1678,27 +1678,28 @@ static int gxsp_tangent_begin(gxs_material_kind kind, gxsp_state *first, gxsp_st
     return collapsed;
 }
 
-/* What principal Hessians are made from, such that single precision holds them: moduli beside their sum, by which weights grow, and stretches up
- * to GXSP_STRETCHED, for further ones of which weights grow as energies do at most */
+/* What principal Hessians are made from, such that single precision holds them: moduli beside their sum, by which weights grow, and stretches that
+ * are not too large */
 static void gxsp_scale_principal(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest, double scale, gxsp_state *GXSP_RESTRICT s,
                                  gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to)
 {
     gxsp_lanes weight;
-    int l;
+    int k, l;
     GXSP_EACH_LANE(l) {
         const double modulus = s->mu[l] + s->lambda[l];
         to->mu[l] = (float)(s->mu[l] / modulus);
         to->lambda[l] = (float)(s->lambda[l] / modulus);
         weight[l] = scale * rest->weight[l] * modulus;
     }
-    if (kind != GXS_LINEAR) /* else there are no stretches */
-        GXSP_EACH_LANE(l) {
-            const float largest = of->s[0][l] < 0 ? -of->s[0][l] : of->s[0][l], further = largest > GXSP_STRETCHED ? largest / GXSP_STRETCHED : 1;
-            const double square = (double)further * (double)further, grown = weight[l] * square * square;
-            const double most = weight[l] > GXSP_HEAVIEST ? weight[l] : GXSP_HEAVIEST;
-            of->s[0][l] /= further, of->s[1][l] /= further, of->s[2][l] /= further;
+    for (l = 0; l < GXSP_LANES && kind != GXS_LINEAR; ++l) { /* whose Hessians have no stretches */
+        const double a = (double)of->s[0][l] * (double)of->s[0][l], b = (double)of->s[1][l] * (double)of->s[1][l], size = a * (b > 1 ? b : 1);
+        if (size > GXSP_STRETCHED) {
+            const double most = weight[l] > GXSP_HEAVIEST ? weight[l] : GXSP_HEAVIEST, grown = weight[l] * (size / GXSP_STRETCHED);
+            for (k = 0; k < 3; ++k)
+                of->s[k][l] = (float)((double)of->s[k][l] / sqrt(sqrt(size / GXSP_STRETCHED)));
             weight[l] = grown < most ? grown : most;
         }
+    }
     GXSP_EACH_LANE(l) to->weight[l] = (float)weight[l];
 }
 

@@ -2393,6 +2393,48 @@ START_TEST(blocks_on_constant_springs_sleep)
 }
 END_TEST
 
+/* What contact held is awake when its points are gone, and falls. */
+START_TEST(points_that_go_wake_what_they_held)
+{
+    bedroom room;
+    double before;
+    int frame;
+    bedroom_make(&room, _i);
+    settle(&room);
+    before = room.s.displacement[3 * room.first[2] - 1];
+    room.step.point_count = room.first[1]; /* those of the block that hangs are still there */
+    for (frame = 0; frame < 20; ++frame) {
+        bedroom_step(&room);
+        ck_assert_uint_eq(room.report.active_unknowns, unknowns_of(&room, 1));
+    }
+    ck_assert(room.s.displacement[3 * room.first[2] - 1] < before - 0.1);
+    bedroom_free(&room);
+}
+END_TEST
+
+/* A spring between two blocks ties them: neither sleeps while the other is awake. */
+START_TEST(a_spring_between_blocks_wakes_both)
+{
+    bedroom room;
+    size_t i;
+    bedroom_make(&room, _i);
+    room.spring = spring_make(point_at(&room.s, room.first[1] - 1), 10);
+    room.spring.point.copy[1] = (uint32_t)room.first[1];
+    room.spring.point.weight[0] = room.spring.point.weight[1] = 0.5;
+    for (i = 0; i < 3; ++i) {
+        room.spring.point.position[i] = 0.5 * (room.s.rest[3 * (room.first[1] - 1) + i] + room.s.rest[3 * room.first[1] + i]);
+        room.spring.target[i] = room.spring.point.position[i];
+    }
+    room.step.springs = &room.spring;
+    room.step.spring_count = 1;
+    settle(&room);
+    touch(&room, TOUCH_VELOCITY, room.first[2] - 1);
+    bedroom_step(&room);
+    ck_assert_uint_eq(room.report.active_unknowns, unknowns_of(&room, 0) + unknowns_of(&room, 1));
+    bedroom_free(&room);
+}
+END_TEST
+
 /* tied blocks are one piece: they fall asleep and wake together */
 START_TEST(tied_blocks_sleep_together)
 {
@@ -3102,6 +3144,8 @@ static Suite *forces_suite(void)
     tcase_add_loop_test(sleep, bodies_sleep_in_mid_air, 0, SOLVERS);
     tcase_add_loop_test(sleep, sleep_outlasts_a_new_model, 0, 4);
     tcase_add_test(sleep, blocks_on_constant_springs_sleep);
+    tcase_add_loop_test(sleep, points_that_go_wake_what_they_held, 0, SOLVERS);
+    tcase_add_loop_test(sleep, a_spring_between_blocks_wakes_both, 0, SOLVERS);
     tcase_add_loop_test(sleep, tied_blocks_sleep_together, 0, SOLVERS);
     tcase_add_loop_test(budget, budgets_end_in_good_states, 0, SOLVERS);
     tcase_add_loop_test(budget, seconds_need_a_clock, 0, SOLVERS);
