@@ -7084,7 +7084,7 @@ static uint64_t gxsp_hash_forces(gxsp_system *system, const gxs_step_desc *step)
             *hash = gxsp_hash(gxsp_hash(*hash, &index, 1), step->forces + 3 * i, 3);
             all = gxsp_hash(gxsp_hash(all, &index, 1), step->forces + 3 * i, 3);
         }
-    for (i = 0; i < 4 * step->point_count; ++i) {
+    for (i = 0; i < 4 * step->point_count && step->sleep_speed > 0; ++i) {
         const gxs_point *point = &step->points[i / 4];
         const double values[2] = {(double)point->copy[i % 4], point->weight[i % 4]};
         uint64_t *hash = &system->pieces[system->piece[point->copy[i % 4]]].forces[1];
@@ -7187,7 +7187,7 @@ static void gxsp_choose_sleepers(gxsp_problem *problem, const double *displaceme
     for (i = 0; i < system->n && step->sleep_speed > 0; ++i)
         if (!system->fixed[i] && (step->rest_times[i] < time || gxsp_too_fast(step, velocity + 3 * i)))
             system->pieces[system->piece[i]].tired = 0;
-    while (gxsp_rouse_tied(system, step)) {}
+    while (step->sleep_speed > 0 && gxsp_rouse_tied(system, step)) {}
     for (p = 0; p < system->piece_count; ++p) {
         gxsp_piece *piece = &system->pieces[p];
         const uint32_t state = (piece->state & ~GXSP_ASLEEP) | (piece->tired ? GXSP_ASLEEP : 0);
