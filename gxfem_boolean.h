@@ -8624,6 +8624,15 @@ static int gxbp_are_near(const gxb_boolean *b, uint32_t v, uint32_t w) {
     return 1;
 }
 
+/* Does a vertex that lies near the line through p and q lie between them? */
+static int gxbp_is_between(const gxb_boolean *b, uint32_t vertex, uint32_t p, uint32_t q) {
+    const double *x = gxbp_out_place(b, vertex), *y = gxbp_out_place(b, p), *z = gxbp_out_place(b, q);
+    const double reach = GXBP_MEND_REACH * gxbp_max(gxbp_unit_at(b, p), gxbp_unit_at(b, q));
+    int k;
+    for (k = 0; k < 3; k++) if (gxbp_fence(gxbp_min(y[k], z[k]) - x[k]) > reach || gxbp_fence(x[k] - gxbp_max(y[k], z[k])) > reach) return 0;
+    return 1;
+}
+
 static int gxbp_is_given(const gxb_boolean *b, uint32_t vertex) { return b->cx.points[b->out_points[vertex]].kind == GXB_EXPLICIT; }
 
 /* How many edges leave the corner from which h does; *to: how many of them lead to a vertex */
@@ -8645,13 +8654,13 @@ static void gxbp_set_out_triangle(gxb_boolean *b, uint32_t t, uint32_t p, uint32
 static void gxbp_join_out(gxb_boolean *b, uint32_t h, uint32_t g) { b->out_twins[h] = g; b->out_twins[g] = h; }
 
 /* The edge of h, from p to q, between triangles (p, q, r) and (q, p, o), becomes one from r to o. The triangle of h, which has no area to
-   speak of, becomes a part of the other's source. */
+   speak of, becomes a part of the other's source; r lies between p and q, or what is made would lie beyond the old ones. */
 static int gxbp_flip(gxb_boolean *b, uint32_t h) {
     const uint32_t g = b->out_twins[h], t = h / 3, s = g / 3, h1 = gxbp_next_edge(h), g1 = gxbp_next_edge(g);
     const uint32_t p = b->out_triangles[h], q = b->out_triangles[h1], r = b->out_triangles[gxbp_before_edge(h)], o = b->out_triangles[gxbp_before_edge(g)];
     const uint32_t qr = b->out_twins[h1], rp = b->out_twins[gxbp_before_edge(h)], po = b->out_twins[g1], oq = b->out_twins[gxbp_before_edge(g)];
     uint32_t known;
-    if (r == o || qr / 3 == s || rp / 3 == s) return 0;
+    if (r == o || qr / 3 == s || rp / 3 == s || !gxbp_is_between(b, r, p, q)) return 0;
     if (gxbp_is_defect(b, s, p, o, r) || gxbp_is_defect(b, s, o, q, r)) return 0;   /* one of them might be large */
     gxbp_count_around(b, gxbp_before_edge(h), o, &known);
     if (known != 0) return 0;

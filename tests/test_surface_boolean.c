@@ -954,7 +954,29 @@ static wl_surface random_ball(double radius) {
     return s;
 }
 
-/* A ball less others, one after the other, each result mended and fed into the next: mending moves no more of the surface than rounding does. */
+static double dot_of(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/* Distance of a point from the triangle of an operand, by doubles */
+static double distance_from(const gxb_operand *o, uint32_t triangle, const double x[3]) {
+    const double *p[3];
+    double least = HUGE_VAL, normal[3], edge[3][3], off[3][3], inward[3];
+    int inside = 1, i, k;
+    for (i = 0; i < 3; ++i) p[i] = o->vertices + 3 * o->triangles[3 * triangle + (uint32_t)i];
+    for (i = 0; i < 3; ++i) for (k = 0; k < 3; ++k) { edge[i][k] = p[(i + 1) % 3][k] - p[i][k]; off[i][k] = x[k] - p[i][k]; }
+    for (k = 0; k < 3; ++k) normal[k] = edge[0][(k + 1) % 3] * edge[1][(k + 2) % 3] - edge[0][(k + 2) % 3] * edge[1][(k + 1) % 3];
+    for (i = 0; i < 3; ++i) {
+        const double along = fmax(0, fmin(1, dot_of(off[i], edge[i]) / dot_of(edge[i], edge[i])));
+        double away[3];
+        for (k = 0; k < 3; ++k) away[k] = off[i][k] - along * edge[i][k];
+        least = fmin(least, sqrt(dot_of(away, away)));
+        for (k = 0; k < 3; ++k) inward[k] = normal[(k + 1) % 3] * edge[i][(k + 2) % 3] - normal[(k + 2) % 3] * edge[i][(k + 1) % 3];
+        inside &= dot_of(inward, off[i]) > 0;
+    }
+    return inside ? fabs(dot_of(normal, off[0])) / sqrt(dot_of(normal, normal)) : least;
+}
+
+/* A ball less others, one after the other, each result mended and fed into the next: mending moves no more of the surface than rounding does,
+   and leaves no triangle beyond its source. */
 START_TEST(mending_keeps_volumes) {
     gxb_boolean_desc desc;
     wl_surface a;
@@ -968,7 +990,7 @@ START_TEST(mending_keeps_volumes) {
         gxb_operand o[2];
         gxb_boolean *b = NULL;
         gxb_boolean_result r;
-        double sum = 0;
+        double sum = 0, away = 0;
         size_t t;
         o[0] = operand_of(&a, GXB_UNION);
         o[1] = operand_of(&ball, GXB_DIFFERENCE);
@@ -978,7 +1000,11 @@ START_TEST(mending_keeps_volumes) {
         for (t = 0; t < r.triangle_count; ++t) {
             const double *p = r.vertices + 3 * r.triangles[3 * t], *q = r.vertices + 3 * r.triangles[3 * t + 1], *s = r.vertices + 3 * r.triangles[3 * t + 2];
             sum += (p[0] * (q[1] * s[2] - q[2] * s[1]) - p[1] * (q[0] * s[2] - q[2] * s[0]) + p[2] * (q[0] * s[1] - q[1] * s[0])) / 6;
+            away = fmax(away, distance_from(&o[r.triangle_operand[t]], r.triangle_source[t], p));
+            away = fmax(away, distance_from(&o[r.triangle_operand[t]], r.triangle_source[t], q));
+            away = fmax(away, distance_from(&o[r.triangle_operand[t]], r.triangle_source[t], s));
         }
+        CHECK_CASE(away <= 1e-14, "seed %d, step %d: a triangle %g beyond its source", _i, step, away);
         CHECK_CASE(fabs(sum - r.volume) <= 1e-10, "seed %d, step %d: volume %.17g, by its triangles %.17g", _i, step, r.volume, sum);
         next.vertex_count = r.vertex_count; next.triangle_count = r.triangle_count;
         next.vertices = (double *)malloc((3 * r.vertex_count + 1) * sizeof *next.vertices);
