@@ -972,7 +972,7 @@ static double distance_from(const gxb_operand *o, uint32_t triangle, const doubl
         for (k = 0; k < 3; ++k) inward[k] = normal[(k + 1) % 3] * edge[i][(k + 2) % 3] - normal[(k + 2) % 3] * edge[i][(k + 1) % 3];
         inside &= dot_of(inward, off[i]) > 0;
     }
-    return inside ? fabs(dot_of(normal, off[0])) / sqrt(dot_of(normal, normal)) : least;
+    return inside ? fmin(least, fabs(dot_of(normal, off[0])) / sqrt(dot_of(normal, normal))) : least;
 }
 
 /* A ball less others, one after the other, each result mended and fed into the next: mending moves no more of the surface than rounding does,
