@@ -7828,7 +7828,27 @@ static void gxbp_name_source(const gxb_boolean *b, uint32_t s, uint32_t corner, 
     if (corner < 3) *index = 3 * *index + corner;
 }
 
-static GXBP_APART void gxbp_describe_point(const gxb_boolean *b, uint32_t point, gxb_origin *o) {
+/* Is a point of its plane in a source, edges included? */
+static GXBP_COLD int gxbp_holds_point(gxb_boolean *b, uint32_t s, uint32_t plane, uint32_t point) {
+    int k, left = 0, right = 0;
+    for (k = 0; k < 3; k++) {
+        const int turn = gxb_complex_turn(&b->cx, b->sources[s].point[k], b->sources[s].point[(k + 1) % 3], point, plane);
+        left |= turn > 0;
+        right |= turn < 0;
+    }
+    return !(left && right);
+}
+
+/* The source of a point that was found in s: in a flat, whose members share their triangulation, it may lie in another of them. */
+static uint32_t gxbp_member_at(gxb_boolean *b, uint32_t s, uint32_t point) {
+    const uint32_t root = gxbp_root(b, s), plane = b->sources[root].plane;
+    uint32_t t;
+    if (!(b->sources[s].flags & GXBP_FLAT) || gxbp_holds_point(b, s, plane, point)) return s;
+    for (t = root; t != GXB_NONE && !gxbp_holds_point(b, t, plane, point); t = b->sources[t].next) {}
+    return t == GXB_NONE ? s : t;
+}
+
+static GXBP_APART void gxbp_describe_point(gxb_boolean *b, uint32_t point, gxb_origin *o) {
     const gxb_cpoint *p = &b->cx.points[point];
     const uint32_t *key = b->vertices[p->kind == GXB_EXPLICIT ? p->def[0] : point].key;
     int k;
@@ -7836,7 +7856,7 @@ static GXBP_APART void gxbp_describe_point(const gxb_boolean *b, uint32_t point,
     o->kind = key[0];
     if (key[0] == GXB_FROM_VERTEX) { o->operand[0] = key[1]; o->index[0] = key[2]; return; }
     if (key[0] == GXB_FROM_THREE_TRIANGLES) {
-        for (k = 0; k < 3; k++) gxbp_name_source(b, key[1 + k], 3, &o->operand[k], &o->index[k]);
+        for (k = 0; k < 3; k++) gxbp_name_source(b, gxbp_member_at(b, key[1 + k], point), 3, &o->operand[k], &o->index[k]);
         return;
     }
     gxbp_name_source(b, key[1] / 3, key[1] % 3, &o->operand[0], &o->index[0]);

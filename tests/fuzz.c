@@ -9,7 +9,8 @@
    more: the first says what is tested, the next how coordinates are made, then operands follow (fuzz_cases.h). What is checked:
        results      an operand is refused with the code that the documentation has for it, and leaves nothing behind
        surface      every directed edge is matched, every index in range, every component has a volume, an even Euler characteristic
-       provenance   the exact point of each vertex lies in the exact plane of each triangle around it; how far rounding moved it
+       provenance   the exact point of each vertex lies in each triangle and edge that it is said to be of, and in the source of each
+                    triangle around it; how far rounding moved it
        volumes      vol(A) + vol(B) = vol(A or B) + vol(A and B), and what follows for the others
        sameness     whatever the order of operands and axes, at once or one after the other, by rules or by a callback
        rounding     a rounded result is a closed surface, and worth the same volume
@@ -376,6 +377,32 @@ static void edge_plane(const scene *s, uint32_t operand, uint32_t half_edge, ora
     *across = oracle_edge_plane(&t, (int)(half_edge % 3));
 }
 
+/* Is a point of a triangle's plane in the triangle, or on its edges? */
+static int is_in_source(const scene *s, uint32_t operand, uint32_t triangle, const big h[4])
+{
+    const double *x[3];
+    uint32_t k;
+    source_corners(s, operand, triangle, x);
+    for (k = 0; k < 3; ++k) {
+        oracle_plane own, across;
+        edge_plane(s, operand, 3 * triangle + k, &own, &across);
+        if (oracle_side(&across, h) * big_sign(h[3]) * oracle_side_of(&across, x[(k + 2) % 3]) < 0) return 0;
+    }
+    return 1;
+}
+
+/* Is the point in each triangle, and on each edge, that defines it? */
+static int is_in_sources(const scene *s, const gxb_origin *o, const big h[4])
+{
+    const uint32_t count = o->kind == GXB_FROM_VERTEX ? 0 : o->kind == GXB_FROM_THREE_TRIANGLES ? 3 : 2;
+    uint32_t k;
+    for (k = 0; k < count; ++k) {
+        const int edge = o->kind == GXB_FROM_EDGE_EDGE || (o->kind == GXB_FROM_EDGE_TRIANGLE && k == 0);
+        if (!is_in_source(s, o->operand[k], edge ? o->index[k] / 3 : o->index[k], h)) return 0;
+    }
+    return 1;
+}
+
 /* The point that an origin names: 0 where what it names does not meet in one point */
 static int exact_point(const scene *s, const gxb_origin *o, big h[4])
 {
@@ -434,6 +461,7 @@ static void check_provenance(const scene *s, const gxb_boolean_result *r, int fi
     for (i = 0; i < r->vertex_count; ++i) {
         const gxb_origin *o = &r->vertex_origin[i];
         REQUIRE(exact_point(s, o, h[i]), "vertex %zu: its origin (%u) is no point", i, (unsigned)o->kind);
+        REQUIRE(is_in_sources(s, o, h[i]), "vertex %zu: not in all that it is of (%u)", i, (unsigned)o->kind);
         if (o->kind == GXB_FROM_VERTEX)
             for (k = 0; k < 3; ++k) REQUIRE(r->vertices[3 * i + k] == s->operand[o->operand[0]].mesh.x[o->index[0]][k], "vertex %zu moved", i);
         else check_rounding(r->vertices + 3 * i, h[i], fine, i);
@@ -448,6 +476,7 @@ static void check_provenance(const scene *s, const gxb_boolean_result *r, int fi
         for (k = 0; k < 3; ++k) {
             x[k] = h[r->triangles[3 * i + k]];
             REQUIRE(oracle_side(&p, x[k]) == 0, "triangle %zu: corner %zu is not in its source's plane", i, k);
+            REQUIRE(is_in_source(s, r->triangle_operand[i], r->triangle_source[i], x[k]), "triangle %zu: corner %zu is not in its source", i, k);
         }
         for (k = 0; k < 3; ++k) {
             u[k] = big_det2(x[0][3], x[0][k], x[1][3], x[1][k]);
