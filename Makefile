@@ -15,7 +15,7 @@ headers = gxfem.h gxfem_boolean.h gxfem_integrate.h gxfem_solve.h
 tests = $(patsubst tests/%.c,%,$(shell ls -S tests/test_*.c))
 linked_tests = $(patsubst tests/%.c,%,$(shell grep -l GXFEM_LINKED tests/test_*.c))
 examples = $(patsubst examples/%.c,%,$(sort $(wildcard examples/*.c)))
-scenes = $(filter-out embed gxcut,$(examples))
+scenes = $(filter-out embed gxcut gxboolean,$(examples))
 linked_examples = $(filter-out embed,$(examples))
 compile = $(CC) -std=c99 -g $(WARNINGS) $(CFLAGS)
 linked = $(compile) -DGXFEM_LINKED
@@ -96,10 +96,10 @@ check:
 	@sh tests/install.sh check
 	@$(MAKE) --no-print-directory -k -j$(JOBS) check-programs
 
-check-programs: $(tests:%=run-%) run-gxcut run-corpus
+check-programs: $(tests:%=run-%) run-gxcut run-gxboolean run-corpus
 
-run-gxcut: $(BUILD)/gxcut
-	@sh tests/test_gxcut.sh $(BUILD)/gxcut
+run-gxcut run-gxboolean: run-%: $(BUILD)/%
+	@sh tests/test_$*.sh $(BUILD)/$*
 
 # Cases that once failed, and a few of each kind
 run-corpus: $(BUILD)/fuzz/fuzz
@@ -245,4 +245,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo scenes pictures bench-programs check check-programs run-gxcut run-corpus $(tests:%=run-%) sanitize sanitize-scenes compile lint fuzz flags hashes $(benches:%=bench-%) bench charts check-all clean
+.PHONY: help examples demo scenes pictures bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(tests:%=run-%) sanitize sanitize-scenes compile lint fuzz flags hashes $(benches:%=bench-%) bench charts check-all clean

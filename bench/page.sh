@@ -93,7 +93,7 @@ ratios() {
         !($2 in known) { known[$2] = 1; of[++m] = $2 }
         { said[$2, $1] = $5 ($7 == "not met" ? " (not met)" : ""); promised[$2] = $6 }
         END {
-            printf("| how many times as long |"); for (j = 1; j <= n; j++) printf(" %s |", names[j]); print " promised |"
+            printf("| how many times as long |"); for (j = 1; j <= n; j++) printf(" %s |", names[j]); print " aim |"
             printf("| --- |"); for (j = 0; j <= n; j++) printf(" ---: |"); print ""
             for (i = 1; i <= m; i++) {
                 printf("| %s |", of[i]); for (j = 1; j <= n; j++) printf(" %s |", said[of[i], names[j]]); printf(" %s |\n", promised[of[i]])
@@ -248,7 +248,7 @@ paper's sticks are six, ours 36."
     echo
     table table2 "| scene | method | frames | unknowns | subdomains | EI, ms | MB, ms | dpsi, ms | CG, s | dt max, s | dt avg, s | C, s | C+U, s | ended |"
     echo
-    table table2_ratios "| scene | ratio to | theirs, s | ours, s | ratio | promised | |"
+    table table2_ratios "| scene | ratio to | theirs, s | ours, s | ratio | aim | |"
     echo
     echo "## Conditioning"
     echo

@@ -331,13 +331,15 @@ static int thicken(run *r, size_t i)
 
 static int load(run *r)
 {
+    gxio_box body;
     size_t i;
     int code = EXIT_DONE;
     if (!gxio_mesh_load(r->set.mesh, &r->mesh, &r->error)) return complain(r, EXIT_MISUSED);
     r->cuts = (gxio_surface *)calloc(r->set.cut_count + 1, sizeof *r->cuts);
     if (!r->cuts) { misused(&r->error, "cuts", "out of memory"); return complain(r, EXIT_FAILED); }
+    gxio_mesh_bounds(&r->mesh, body.low, body.high);
     for (i = 0; i < r->set.cut_count; i++)
-        if (!gxio_surface_load(r->set.cuts[i], &r->mesh, &r->cuts[i], &r->error)) return complain(r, EXIT_MISUSED);
+        if (!gxio_surface_load(r->set.cuts[i], &body, &r->cuts[i], &r->error)) return complain(r, EXIT_MISUSED);
     for (i = 0; i < r->set.cut_count && code == EXIT_DONE && r->set.thickness > 0.0; i++)
         if (r->set.kinds[i] == GX_SURFACE_SHEET) code = thicken(r, i);
     return code;

@@ -144,6 +144,9 @@ static inline void gxio_next_line(gxio_reader *reader)
     reader->line++;
 }
 
+/* Length of a backslash at the end of a line with the line's end, behind which an OBJ line goes on; 0: there is none. */
+static inline size_t gxio_continued(const char *at) { return at[0] != '\\' ? 0 : at[1] == '\n' ? 2 : at[1] == '\r' && at[2] == '\n' ? 3 : 0; }
+
 /* Advances to the next token: text up to a blank, past comments (# to the end of the line).
    Returns 0 where there is none: at the end of the file, or of the line if it must stand on the same one. */
 static inline int gxio_next(gxio_reader *reader, int where)
@@ -152,13 +155,14 @@ static inline int gxio_next(gxio_reader *reader, int where)
         const char c = *reader->at;
         if (c == '#') gxio_skip_line(reader);
         else if (gxio_is_blank(c)) reader->at++;
+        else if (gxio_continued(reader->at)) { reader->at += gxio_continued(reader->at); reader->line++; }
         else if (c == '\n' && where == GXIO_ANY_LINE) { reader->at++; reader->line++; }
         else break;
     }
     if (!*reader->at || *reader->at == '\n') return 0;
     reader->token = reader->at;
     reader->token_line = reader->line;
-    while (*reader->at && *reader->at != '\n' && *reader->at != '#' && !gxio_is_blank(*reader->at)) reader->at++;
+    while (*reader->at && *reader->at != '\n' && *reader->at != '#' && !gxio_is_blank(*reader->at) && !gxio_continued(reader->at)) reader->at++;
     reader->token_length = (size_t)(reader->at - reader->token);
     return 1;
 }
@@ -343,6 +347,8 @@ static inline int gxio_mesh_elements(gxio_mesh *mesh, size_t count)
     mesh->element_lines = (uint32_t *)gxio_array(count, sizeof(uint32_t));
     return mesh->elements && mesh->element_lines;
 }
+
+typedef struct gxio_box { double low[3], high[3]; } gxio_box;      /* m */
 
 static inline void gxio_bounds(const double *points, size_t count, double low[3], double high[3])
 {
@@ -1560,9 +1566,9 @@ static inline int gxio_normalise(double d[3])
 
 /* u is the coordinate axis closest to the plane (the first of equals), projected onto it: with n along an axis, u and v
    are axes too, with exact zeros, so that every vertex has exactly p's coordinate along n. */
-static inline int gxio_frame_make(gxio_frame *frame, const double point[3], const double normal[3], const gxio_mesh *mesh)
+static inline int gxio_frame_make(gxio_frame *frame, const double point[3], const double normal[3], const gxio_box *body)
 {
-    double low[3], high[3], square = 0.0;
+    double square = 0.0;
     int i, axis = 0;
     memcpy(frame->p, point, sizeof frame->p);
     memcpy(frame->n, normal, sizeof frame->n);
@@ -1572,13 +1578,12 @@ static inline int gxio_frame_make(gxio_frame *frame, const double point[3], cons
     gxio_normalise(frame->u);
     for (i = 0; i < 3; i++)
         frame->v[i] = frame->n[(i + 1) % 3] * frame->u[(i + 2) % 3] - frame->n[(i + 2) % 3] * frame->u[(i + 1) % 3];
-    gxio_mesh_bounds(mesh, low, high);
     frame->at[0] = frame->at[1] = 0.0;
     for (i = 0; i < 3; i++) {
-        const double offset = 0.5 * (low[i] + high[i]) - point[i];
+        const double offset = 0.5 * (body->low[i] + body->high[i]) - point[i];
         frame->at[0] += offset * frame->u[i];
         frame->at[1] += offset * frame->v[i];
-        square += (high[i] - low[i]) * (high[i] - low[i]);
+        square += (body->high[i] - body->low[i]) * (body->high[i] - body->low[i]);
     }
     frame->radius = 0.5 * sqrt(square);
     return frame->radius > 0.0;
@@ -1596,12 +1601,12 @@ static inline int gxio_frame_vertex(const gxio_frame *frame, double a, double b,
 /* plane:PX,PY,PZ,NX,NY,NZ: a square that covers the body's shadow on the plane through P with normal N. Its diagonal, at
    which rounding makes a crease if N is oblique, passes beside the body: the body's ball lies in the first triangle, whose
    inscribed circle has the radius edge (1 - 1/sqrt 2) = 1.1 ball radii. */
-static inline int gxio_generate_plane(const double number[6], const gxio_mesh *mesh, gxio_surface *surface)
+static inline int gxio_generate_plane(const double number[6], const gxio_box *body, gxio_surface *surface)
 {
     const double inscribed = 1.1, edge = 3.7556;    /* in ball radii */
     gxio_frame frame;
     double a0, b0, a1, b1;
-    if (!gxio_frame_make(&frame, number, number + 3, mesh)) return 0;
+    if (!gxio_frame_make(&frame, number, number + 3, body)) return 0;
     a0 = frame.at[0] - inscribed * frame.radius;
     b0 = frame.at[1] - inscribed * frame.radius;
     a1 = a0 + edge * frame.radius;
@@ -1613,13 +1618,13 @@ static inline int gxio_generate_plane(const double number[6], const gxio_mesh *m
 
 /* wave:PX,PY,PZ,NX,NY,NZ,AMPLITUDE,WAVELENGTH[,RESOLUTION]: the points p + s u + t v + A sin(2 pi s / L) n, as strips
    along v, RESOLUTION (16) strips per wavelength, s a multiple of L / RESOLUTION, across the whole body. */
-static inline int gxio_generate_wave(const double number[9], const gxio_mesh *mesh, gxio_surface *surface)
+static inline int gxio_generate_wave(const double number[9], const gxio_box *body, gxio_surface *surface)
 {
     const double amplitude = number[6], wavelength = number[7], step = wavelength / number[8], turn = 6.283185307179586;
     gxio_frame frame;
     double first, last, reach;
     uint32_t i, strips;
-    if (!(wavelength > 0.0) || !(number[8] >= 3.0) || !gxio_frame_make(&frame, number, number + 3, mesh)) return 0;
+    if (!(wavelength > 0.0) || !(number[8] >= 3.0) || !gxio_frame_make(&frame, number, number + 3, body)) return 0;
     reach = 1.1 * frame.radius;
     first = floor((frame.at[0] - reach) / step);
     last = ceil((frame.at[0] + reach) / step);
@@ -1652,12 +1657,12 @@ static inline int gxio_generate_box(const double number[6], gxio_surface *surfac
     return 1;
 }
 
-static inline int gxio_surface_generate(const char *spec, const gxio_mesh *mesh, gxio_surface *surface, gxio_error *error)
+static inline int gxio_surface_generate(const char *spec, const gxio_box *body, gxio_surface *surface, gxio_error *error)
 {
     double number[9] = {0, 0, 0, 0, 0, 0, 0, 0, 16};
     const char *list;
     if ((list = gxio_after(spec, "plane:")) != NULL) {
-        if (gxio_argument_list(list, number, 6, 6) > 0 && gxio_generate_plane(number, mesh, surface)) return 1;
+        if (gxio_argument_list(list, number, 6, 6) > 0 && gxio_generate_plane(number, body, surface)) return 1;
         return gxio_fail(error, spec, 0, "is not plane:PX,PY,PZ,NX,NY,NZ with a normal N that is not 0");
     }
     if ((list = gxio_after(spec, "box:")) != NULL) {
@@ -1665,18 +1670,18 @@ static inline int gxio_surface_generate(const char *spec, const gxio_mesh *mesh,
         return gxio_fail(error, spec, 0, "is not box:X0,Y0,Z0,X1,Y1,Z1 with X0 < X1, Y0 < Y1, Z0 < Z1");
     }
     list = gxio_after(spec, "wave:");
-    if (gxio_argument_list(list, number, 8, 9) > 0 && gxio_generate_wave(number, mesh, surface)) return 1;
+    if (gxio_argument_list(list, number, 8, 9) > 0 && gxio_generate_wave(number, body, surface)) return 1;
     return gxio_fail(error, spec, 0, "is not wave:PX,PY,PZ,NX,NY,NZ,AMPLITUDE,WAVELENGTH[,RESOLUTION] with N not 0, "
                                      "WAVELENGTH > 0, RESOLUTION >= 3 and at most 10^6 strips");
 }
 
-/* mesh: the body that plane and wave sheets must cross. */
-static inline int gxio_surface_load(const char *spec, const gxio_mesh *mesh, gxio_surface *surface, gxio_error *error)
+/* body: what plane and wave sheets must cross. */
+static inline int gxio_surface_load(const char *spec, const gxio_box *body, gxio_surface *surface, gxio_error *error)
 {
     int good;
     memset(surface, 0, sizeof *surface);
     if (gxio_after(spec, "plane:") || gxio_after(spec, "box:") || gxio_after(spec, "wave:"))
-        good = gxio_surface_generate(spec, mesh, surface, error);
+        good = gxio_surface_generate(spec, body, surface, error);
     else
         good = gxio_surface_read(spec, surface, error);
     if (!good) gxio_surface_release(surface);

@@ -58,7 +58,7 @@ static void refuse_mesh(const char *ending, const char *text, const char *what, 
 
 static gxio_surface load_surface(const char *spec, int *good, gxio_error *error) {
     gxio_surface surface;
-    gxio_mesh none;
+    gxio_box none;
     memset(&none, 0, sizeof none);
     *good = gxio_surface_load(spec, &none, &surface, error);
     return surface;
@@ -338,6 +338,7 @@ static const char stl[] = "solid a # name\n" FACET("0 0 .5", "1 0 .5", "1 1 .5")
 
 START_TEST(the_same_surface_in_every_format) {
     expect_square(surface_from(".off", "OFF 4 1 0\n0 0 .5\n1 0 .5\n1 1 .5\n0 1 .5\n4 0 1 2 3\n"));
+    expect_square(surface_from(".obj", "v 0 0 .5\nv 1 0\\\n .5\nv 1 1 .5\nvn 0 \\\n0 1\nv 0 1 \\\r\n.5\nf 1//1 2\\\n 3 \\\n4\n"));
     expect_square(surface_from(".stl", stl));
     expect_square(surface_from(".stl", "solid\n" FACET("0 0 .5", "1 0 .5", "1 1 .5") "endsolid\n\n  solid b\n" FACET("0 0 .5", "1 1 .5", "0 1 .5") "endsolid b"));
     expect_square(surface_from(".vtk", POLY "POLYGONS 1 5\n4 0 1 2 3\nPOINT_DATA 4\nSCALARS a int\n"));

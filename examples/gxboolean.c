@@ -1,0 +1,238 @@
+/* gxboolean: Booleans of closed triangle surfaces, and their splitting by sheets, with gxfem_boolean.h alone.
+
+   gxboolean SURFACE [--union|--intersection|--difference|--symmetric|--split SURFACE]... [options]; `gxboolean --help` says the rest.
+   Exit codes: 0 done; 1 the kernel refused a surface or failed; 2 usage error, or a file that can't be read or written.
+   On 1 and 2 one line on stderr says what, where and why.
+
+   contents
+     >>settings    the command line
+     >>kernel      operands in, result out
+     >>output      a table, a file */
+#include "gxio.h"
+
+#ifndef GXFEM_LINKED            /* make examples compiles the library once for all */
+#define GXFEM_BOOLEAN_IMPLEMENTATION
+#endif
+#include "../gxfem_boolean.h"
+
+enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_MISUSED = 2 };
+
+/* -------------------------------------------------------------------------------------------- >>settings */
+
+typedef struct settings {
+    const char **surfaces;      /* count, as given */
+    uint32_t *operations;       /* count, GXB_UNION ... */
+    size_t count;
+    const char *out;            /* NULL: no file */
+    uint32_t rule;
+    gxb_boolean_desc desc;
+    int help;
+} settings;
+
+static const char usage[] =
+    "usage: gxboolean SURFACE [OPERATION SURFACE]... [options]\n"
+    "\n"
+    "Combines closed triangle surfaces exactly, one after the other; prints volume and Euler characteristic of each component.\n"
+    "\n"
+    "SURFACE  FILE.obj, FILE.off, FILE.stl, FILE.vtk, or box:X0,Y0,Z0,X1,Y1,Z1; to split by: also a file of an open surface,\n"
+    "         plane:PX,PY,PZ,NX,NY,NZ or wave:PX,PY,PZ,NX,NY,NZ,AMPLITUDE,WAVELENGTH, across the first surface\n"
+    "\n"
+    "  --union SURFACE, --intersection SURFACE, --difference SURFACE, --symmetric SURFACE\n"
+    "                      what the surface does to what there is\n"
+    "  --split SURFACE     separates what lies on its two sides\n"
+    "  --rule NAME         inside is where surfaces wind nonzero (default), positive, negative or odd times\n"
+    "  --coarse            each source face in as few triangles as its outline allows\n"
+    "  --merged            the same of faces beside each other in one plane\n"
+    "  --fine              vertices are the doubles nearest to the exact points\n"
+    "  --mend              the same, and triangles that this turns over are mended\n"
+    "  --out FILE          writes the result as FILE.off, or as FILE.obj with an object per component\n"
+    "  --help              this text\n";
+
+static const char *const operations[] = {"--union", "--intersection", "--difference", "--symmetric", "--split"};    /* GXB_UNION ... */
+static const char *const rules[] = {"nonzero", "positive", "negative", "odd"};                                      /* GXB_NONZERO ... */
+
+/* Where a word stands in a list; the list's length if it does not. */
+static uint32_t find_word(const char *word, const char *const *list, uint32_t count)
+{
+    uint32_t i;
+    for (i = 0; i < count && strcmp(word, list[i]) != 0; i++) {}
+    return i;
+}
+
+static int take_flag(settings *set, const char *name)
+{
+    if (strcmp(name, "--coarse") == 0) set->desc.triangulation = GXB_COARSE;
+    else if (strcmp(name, "--merged") == 0) set->desc.triangulation = GXB_MERGED;
+    else if (strcmp(name, "--fine") == 0) set->desc.fine = 1;
+    else if (strcmp(name, "--mend") == 0) set->desc.mend = 1;
+    else if (strcmp(name, "--help") == 0) set->help = 1;
+    else return 0;
+    return 1;
+}
+
+static int take_value(settings *set, const char *name, const char *value, gxio_error *error)
+{
+    const uint32_t operation = find_word(name, operations, 5);
+    if (operation < 5) {
+        if (set->count == 0) return gxio_fail(error, name, 0, "comes before the first surface");
+        set->operations[set->count] = operation;
+        set->surfaces[set->count++] = value;
+    } else if (strcmp(name, "--rule") == 0) {
+        set->rule = find_word(value, rules, 4);
+        if (set->rule == 4) return gxio_fail(error, name, 0, "'%s' is none of nonzero, positive, negative and odd", value);
+    } else if (!gxio_ends_with(value, ".off") && !gxio_ends_with(value, ".obj")) {
+        return gxio_fail(error, name, 0, "'%s' does not end in .off or .obj", value);
+    } else set->out = value;
+    return 1;
+}
+
+static int take_arguments(settings *set, int argc, char **argv, gxio_error *error)
+{
+    int i;
+    for (i = 1; i < argc; i++) {
+        const char *name = argv[i];
+        if (name[0] != '-') {
+            if (set->count > 0) return gxio_fail(error, name, 0, "has no operation before it");
+            set->surfaces[set->count++] = name;
+        } else if (!take_flag(set, name)) {
+            if (find_word(name, operations, 5) == 5 && strcmp(name, "--rule") != 0 && strcmp(name, "--out") != 0)
+                return gxio_fail(error, name, 0, "unknown option, see gxboolean --help");
+            if (++i == argc || strncmp(argv[i], "--", 2) == 0) return gxio_fail(error, name, 0, "needs a value");
+            if (!take_value(set, name, argv[i], error)) return 0;
+        }
+    }
+    return set->help || set->count > 0 ? 1 : gxio_fail(error, "usage", 0, "gxboolean SURFACE [OPERATION SURFACE]..., see gxboolean --help");
+}
+
+/* ---------------------------------------------------------------------------------------------- >>kernel */
+
+static const char *text_of(gx_result result)
+{
+    switch (result) {
+    case GX_ERROR_MEMORY: return "out of memory";
+    case GX_ERROR_NOT_FINITE: return "a coordinate is not finite";
+    case GX_ERROR_RANGE: return "a coordinate is too large or too small";
+    case GX_ERROR_EMPTY: return "there are no triangles";
+    case GX_ERROR_NOT_CLOSED: return "the surface is not closed, or its triangles are not oriented alike";
+    case GX_ERROR_LIMIT: return "there are too many triangles";
+    default: return "the kernel failed";
+    }
+}
+
+/* Reads a surface and gives it to the Boolean, which copies it. first: the first surface, across which planes go; empty: this is it. */
+static int add_surface(const settings *set, size_t i, gxb_boolean *boolean, gxio_surface *first, gxio_error *error)
+{
+    gxio_box body;
+    gxio_surface surface;
+    gxb_operand operand;
+    gx_failure failure;
+    gxio_bounds(first->vertices, first->vertex_count, body.low, body.high);
+    if (i == 0 && (gxio_after(set->surfaces[0], "plane:") || gxio_after(set->surfaces[0], "wave:"))) {
+        gxio_fail(error, set->surfaces[0], 0, "is not closed: it can only split");
+        return EXIT_MISUSED;
+    }
+    if (!gxio_surface_load(set->surfaces[i], &body, &surface, error)) return EXIT_MISUSED;
+    memset(&operand, 0, sizeof operand);
+    operand.vertices = surface.vertices;
+    operand.vertex_count = surface.vertex_count;
+    operand.triangles = surface.triangles;
+    operand.triangle_count = surface.triangle_count;
+    operand.operation = set->operations[i];
+    operand.rule = set->rule;
+    failure.index = SIZE_MAX;
+    failure.result = gxb_boolean_add(boolean, &operand, &failure);
+    if (failure.result != GX_OK) {
+        const int known = failure.result == GX_ERROR_NOT_CLOSED && failure.index < surface.triangle_count;
+        gxio_fail(error, set->surfaces[i], known ? surface.triangle_lines[failure.index] : 0, "%s", text_of(failure.result));
+    }
+    if (i == 0) *first = surface;
+    else gxio_surface_release(&surface);
+    return failure.result == GX_OK ? EXIT_DONE : EXIT_FAILED;
+}
+
+static int combine(const settings *set, gxb_boolean **boolean, gxb_boolean_result *result, gxio_error *error)
+{
+    gxio_surface first;
+    size_t i;
+    int code = EXIT_DONE;
+    gx_result failed = gxb_boolean_create(&set->desc, boolean);
+    memset(&first, 0, sizeof first);
+    for (i = 0; i < set->count && failed == GX_OK && code == EXIT_DONE; i++) code = add_surface(set, i, *boolean, &first, error);
+    gxio_surface_release(&first);
+    if (failed == GX_OK && code == EXIT_DONE) failed = gxb_boolean_evaluate(*boolean, result);
+    if (failed == GX_OK) return code;
+    gxio_fail(error, "Boolean", 0, "%s", text_of(failed));
+    return EXIT_FAILED;
+}
+
+/* ---------------------------------------------------------------------------------------------- >>output */
+
+static void print_table(const gxb_boolean_result *r)
+{
+    size_t c, t;
+    printf("component  triangles  Euler  volume\n");
+    for (c = 0; c < r->component_count; c++) {
+        unsigned long triangles = 0;
+        for (t = 0; t < r->triangle_count; t++) triangles += r->triangle_component[t] == c;
+        printf("%9lu  %9lu  %5ld  %.17g\n", (unsigned long)c, triangles, (long)r->component_euler[c], r->component_volume[c]);
+    }
+    printf("      all  %9lu         %.17g\n", (unsigned long)r->triangle_count, r->volume);
+    if (r->mended_count > 0 || r->defect_count > 0)
+        printf("turned over or flat by rounding: %lu; mended: %lu\n", (unsigned long)r->defect_count, (unsigned long)r->mended_count);
+}
+
+static void write_off(FILE *stream, const gxb_boolean_result *r)
+{
+    size_t i;
+    fprintf(stream, "OFF\n%lu %lu 0\n", (unsigned long)r->vertex_count, (unsigned long)r->triangle_count);
+    for (i = 0; i < r->vertex_count; i++)
+        fprintf(stream, "%.17g %.17g %.17g\n", r->vertices[3 * i], r->vertices[3 * i + 1], r->vertices[3 * i + 2]);
+    for (i = 0; i < r->triangle_count; i++)
+        fprintf(stream, "3 %lu %lu %lu\n", (unsigned long)r->triangles[3 * i], (unsigned long)r->triangles[3 * i + 1], (unsigned long)r->triangles[3 * i + 2]);
+}
+
+static void write_obj(FILE *stream, const gxb_boolean_result *r)
+{
+    size_t i, c;
+    for (i = 0; i < r->vertex_count; i++)
+        fprintf(stream, "v %.17g %.17g %.17g\n", r->vertices[3 * i], r->vertices[3 * i + 1], r->vertices[3 * i + 2]);
+    for (c = 0; c < r->component_count; c++) {
+        fprintf(stream, "o component_%lu\n", (unsigned long)c);
+        for (i = 0; i < r->triangle_count; i++)
+            if (r->triangle_component[i] == c)
+                fprintf(stream, "f %lu %lu %lu\n", r->triangles[3 * i] + 1ul, r->triangles[3 * i + 1] + 1ul, r->triangles[3 * i + 2] + 1ul);
+    }
+}
+
+static int write_result(const char *path, const gxb_boolean_result *r, gxio_error *error)
+{
+    gxio_writer writer;
+    if (!gxio_writer_open(&writer, path, error)) return EXIT_MISUSED;
+    if (gxio_ends_with(path, ".obj")) write_obj(writer.stream, r);
+    else write_off(writer.stream, r);
+    return gxio_writer_close(&writer, 1, error) ? EXIT_DONE : EXIT_MISUSED;
+}
+
+int main(int argc, char **argv)
+{
+    settings set;
+    gxb_boolean *boolean = NULL;
+    gxb_boolean_result result;
+    gxio_error error;
+    int code = EXIT_MISUSED;
+    memset(&set, 0, sizeof set);
+    set.surfaces = (const char **)gxio_array((size_t)argc + 1, sizeof *set.surfaces);
+    set.operations = (uint32_t *)gxio_array((size_t)argc + 1, sizeof *set.operations);
+    if (!set.surfaces || !set.operations) gxio_fail(&error, "arguments", 0, "out of memory");
+    else if (take_arguments(&set, argc, argv, &error)) code = set.help ? EXIT_DONE : combine(&set, &boolean, &result, &error);
+    if (code == EXIT_DONE && set.help) fputs(usage, stdout);
+    else if (code == EXIT_DONE) {
+        if (set.out) code = write_result(set.out, &result, &error);
+        if (code == EXIT_DONE) print_table(&result);
+    }
+    if (code != EXIT_DONE) fprintf(stderr, "gxboolean: %s\n", error.text);
+    gxb_boolean_destroy(boolean);
+    free(set.surfaces);
+    free(set.operations);
+    return code;
+}
