@@ -5255,7 +5255,7 @@ static int gxsp_factor_own(gxsp_factor *factor, uint32_t i, uint32_t r)
     const uint32_t first = factor->first[i];
     float *row = factor->entry + factor->row[i + r];
     double *sum = factor->x + r * (size_t)factor->n;
-    const double own = sum[i + r], least = 1e-7 * own;
+    const double own = sum[i + r], least = 0.5 * (double)GXSP_SHIFT * own;
     uint32_t j;
     for (j = i; j < i + r; ++j) {
         const float *other = factor->entry + factor->row[j];
@@ -5263,12 +5263,14 @@ static int gxsp_factor_own(gxsp_factor *factor, uint32_t i, uint32_t r)
         row[j] = (float)sum[j];
     }
     sum[j] -= gxsp_long_dot(row + first, sum + first, j - first);
-    row[j] = (float)(1 / sqrt(own < GXSP_TINY ? 1 : sum[j] > least ? sum[j] : least));
+    row[j] = own < GXSP_TINY ? 1 : sum[j] > least ? (float)(1 / sqrt(sum[j])) : 0;
     return gxsp_finite_single(row[j]);
 }
 
-/* Cholesky of the last level, node by node. A pivot that rounding left at 0 or below is raised to its share of the diagonal. Entries are of
- * single precision, which leaves the product of the factors positive definite; the rows at work are of double. 0 if a number overflowed. */
+/* Cholesky of the last level, node by node. Without rounding no pivot is below GXSP_SHIFT of its diagonal. One below half of that is rounding
+ * (of pieces that are small beside the lattice, whose coarse functions are nearly alike): its unknown is left out, for with any other pivot
+ * later entries could grow without bound. Entries are of single precision, which leaves the product of the factors positive semi-definite;
+ * the rows at work are of double. 0 if a number overflowed. */
 static int gxsp_factorise(gxsp_factor *factor, const gxsp_level *level, uint32_t *place)
 {
     uint32_t i, r;

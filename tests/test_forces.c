@@ -1557,8 +1557,8 @@ START_TEST(energy_falls_in_every_piece)
 }
 END_TEST
 
-/* A step of pieces is a step of each by itself: none goes less far, or further, for another's sake. To 4 %, and a thousandth of how far all
- * go: linear systems are solved to a share of the residual of all. */
+/* A step of pieces is a step of each by itself: none goes less far, or further, for another's sake. To 2 % (single precision, most of all
+ * of block-Jacobi), and 2e-4 of how far all go: linear systems are solved to a share of the residual of all. */
 START_TEST(pieces_step_as_if_alone)
 {
     gxs_solver *solver = solver_of(_i % 4);
@@ -1566,9 +1566,9 @@ START_TEST(pieces_step_as_if_alone)
     size_t first[PIECES + 1], n, i;
     double *start, all = 0;
     int p;
-    scene s = scene_of_pieces((uint64_t)(100 + _i), 1, first);
+    scene s = scene_of_pieces((uint64_t)(100 + 17 * _i), 1, first);
     n = s.model.copy_count;
-    step.cg_tolerance = 1e-5;
+    step.cg_tolerance = 1e-6; /* as far as single precision goes */
     start = (double *)zeroed(12 * n, sizeof *start);
     memcpy(start, s.displacement, 3 * n * sizeof *start);
     memcpy(start + 3 * n, s.velocity, 3 * n * sizeof *start);
@@ -1590,7 +1590,7 @@ START_TEST(pieces_step_as_if_alone)
             way += (u[i] - start[i]) * (u[i] - start[i]);
             off += (u[i] - s.displacement[i]) * (u[i] - s.displacement[i]);
         }
-        assert_that(off <= 1.6e-3 * way + 1e-6 * all, "%s piece %d: %g m off, having gone %g m", solver_name(_i % 4), p, sqrt(off), sqrt(way));
+        assert_that(off <= 4e-4 * way + 4e-8 * all, "%s piece %d: %g m off, having gone %g m", solver_name(_i % 4), p, sqrt(off), sqrt(way));
         free(held);
     }
     free(start);
