@@ -498,12 +498,14 @@ struct gx_body {
     uint32_t stamp, scope_stamp;
     int held_stale, view_stale, sums_stale;
     gxp_model model;
+    int nothing_moves;              /* the model has no elements: the solver has not been given it */
     int model_updated;              /* it has been changed since it was set */
+    uint64_t resumed;               /* hash of the state when the body was saved, copied, read; 0: it has stepped since then */
     gxp_words changed;              /* elements of which a cell or its copies have changed since the solver's model was; some more than once */
     uint32_t *copy_before; uint32_t copy_before_capacity;   /* copies: 2 x index then of the copy that it is, or, + 1, that it comes from */
     int labels_known;               /* copy_fragment and fragment_number hold for copies older than splits, and nothing has been removed */
     gxp_words splits;               /* copies made since then, each with the one it comes from */
-    gxs_element *parts; uint32_t part_count, part_capacity;     /* there only while the solver's model is made; part_count stays */
+    gxs_element *parts; uint32_t part_count, part_capacity;     /* there only while the solver's model is made */
     double *rest; uint32_t rest_capacity;               /* copies, x 3 doubles: where they are at rest, m; as long */
     gxs_material *elastic; uint32_t elastic_capacity;   /* materials for the solver; as long */
     gxs_constraint *constraints; uint32_t constraint_count, constraint_capacity;    /* as long */
@@ -1397,6 +1399,7 @@ static gx_result gxp_check_surface(gxp_cut *cut, const gx_surface *s, size_t num
         cut->failure.index = i;
         if (!gxp_is_finite(s->vertices[3 * i]) || !gxp_is_finite(s->vertices[3 * i + 1]) || !gxp_is_finite(s->vertices[3 * i + 2]))
             return GX_ERROR_NOT_FINITE;
+        if (s->texture != NULL && (!gxp_is_finite((double)s->texture[2 * i]) || !gxp_is_finite((double)s->texture[2 * i + 1]))) return GX_ERROR_NOT_FINITE;
     }
     for (i = 0; i < s->triangle_count; i++) {
         cut->failure.index = i;
@@ -1485,6 +1488,7 @@ static void gxp_map_triangle(const gx_body *body, const gx_surface *s, size_t tr
             const int x = (k + 1) % 3, y = (k + 2) % 3;
             const double g = q[x] * n[y] - q[y] * n[x], h = n[x] * p[y] - n[y] * p[x];
             map[4 * i + k] = square > 0 ? (du * g + dv * h) / square : 0;
+            if (!gxp_is_finite(map[4 * i + k])) map[4 * i + k] = 0;     /* of sizes whose fourth powers doubles do not have */
             map[4 * i + 3] -= map[4 * i + k] * (a[k] - body->complex->origin[k]);
         }
     }
@@ -2230,7 +2234,7 @@ static gx_result gxp_give_leaves(gx_body *body, uint32_t cell) {
     gx_result result = gxp_save_cell(body, cell);
     for (i = body->queue.count; i-- > 0 && result == GX_OK;)
         result = gxp_set_leaf(body, body->queue.data[i], cell, i + 1 < body->queue.count ? body->queue.data[i + 1] : GXP_NONE);
-    body->cells[cell].first_leaf = body->queue.data[0];
+    if (result == GX_OK) body->cells[cell].first_leaf = body->queue.data[0];
     return result;
 }
 
@@ -2257,6 +2261,7 @@ static gx_result gxp_divide_cell(gxp_cut *cut, uint32_t cell) {
     }
     if (result == GX_OK && pieces == 0) {
         result = gxp_save_cell(body, cell);
+        if (result != GX_OK) return result;
         body->cells[cell].kept = 0;
         body->cells[cell].first_leaf = GXP_NONE;
         cut->report.removed_cells++;
@@ -2520,7 +2525,7 @@ static gx_result gxp_set_copy(gx_body *body, uint32_t node, uint32_t copy, uint3
     for (i = first; i < end && result == GX_OK; i++) {
         const uint32_t cell = body->queue.data[i];
         result = gxp_save_cell(body, cell);
-        body->cells[cell].copies[gxp_local_node(body, body->cells[cell].element, node)] = copy;
+        if (result == GX_OK) body->cells[cell].copies[gxp_local_node(body, body->cells[cell].element, node)] = copy;
     }
     return result;
 }
@@ -2945,6 +2950,20 @@ static void gxp_drop_copy(gx_body *body, uint32_t copy) {
     gxp_copy_state(body, last, copy);
 }
 
+static uint64_t gxp_hash_doubles(uint64_t hash, const double *x, size_t count);     /* see hashes */
+
+static uint64_t gxp_hash_state(const gx_body *body, size_t copies) {
+    return gxp_hash_doubles(gxp_hash_doubles(1, body->displacement, 3 * copies), body->velocity, 3 * copies) | 1;
+}
+
+/* Since the body was saved, copied or read its solver knows of no step: if the state of its first copies has been written, all wakes, in a copy as
+   in the original. */
+static void gxp_wake_resumed(gx_body *body, size_t copies) {
+    uint32_t i;
+    if (body->resumed == 0 || body->resumed == gxp_hash_state(body, copies)) return;
+    for (i = 0; i < body->copy_count; i++) body->rest_time[i] = 0;
+}
+
 /* What a cut touches wakes, and its fragment is no more as it was. */
 static void gxp_touch_copies(gx_body *body, const gxp_cell *cell) {
     int k;
@@ -3126,7 +3145,9 @@ GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_r
         gxp_rollback(&cut);
         return gxp_fail(failure, result, cut.failure.index, cut.failure.surface);
     }
+    gxp_wake_resumed(body, body->before.copies);
     gxp_commit(&cut);
+    if (body->resumed != 0) body->resumed = gxp_hash_state(body, body->copy_count);
     if (report != NULL) *report = cut.report;
     return gxp_fail(failure, GX_OK, SIZE_MAX, SIZE_MAX);
 }
@@ -3272,6 +3293,7 @@ static gx_result gxp_update_held(gx_body *body) {
     for (c = 0; c < body->copy_count && result == GX_OK; c++) {
         int held = 0;
         for (r = 0; r < body->region_count && result == GX_OK && !held; r++) result = gxp_copy_in_region(body, c, &body->regions[r], &held);
+        if (body->held[c] && !held) body->rest_time[c] = 0;     /* what is let go wakes */
         body->held[c] = (uint8_t)held;
     }
     if (result == GX_OK) body->held_stale = 0;
@@ -3932,9 +3954,8 @@ static gx_result gxp_make_model(gx_body *body, gxs_model *model) {
     return GX_OK;
 }
 
-/* The solver's model changed as the body was. part_count is left alone: something is left to move. */
+/* The solver's model changed as the body was. Errors: besides MEMORY LIMIT and, if nothing is left, EMPTY: it is to be set anew. */
 static gx_result gxp_change_model(gx_body *body) {
-    const uint32_t count = body->part_count;
     size_t room = 0;
     uint32_t i, cell;
     gxs_change change;
@@ -3949,14 +3970,22 @@ static gx_result gxp_change_model(gx_body *body) {
     change.copy_count = body->copy_count; change.origins = body->copy_before; change.held = body->held;
     change.groups = body->changed.data; change.group_count = body->changed.count;
     change.elements = body->parts; change.element_count = body->part_count;
-    body->part_count = count;
     return result == GX_OK ? gxs_solver_update(body->solver, &change, NULL) : result;
+}
+
+/* What has been written to the state since the last step still wakes in the next one. */
+static void gxp_note_written(gx_body *body) {
+    gxp_wake_resumed(body, body->copy_count);
+    gxs_solver_note_written(body->solver, body->copy_before, body->copy_count, body->displacement, body->velocity, body->rest_time);
 }
 
 static gx_result gxp_set_model(gx_body *body) {
     gxs_model model;
     gx_result result = gxp_make_model(body, &model);
-    return result == GX_OK && body->part_count > 0 ? gxs_solver_set_model(body->solver, &model, NULL) : result;
+    gxp_note_written(body);
+    if (result != GX_OK) return result;
+    body->nothing_moves = model.element_count == 0;
+    return body->nothing_moves ? GX_OK : gxs_solver_set_model(body->solver, &model, NULL);
 }
 
 /* The solver's model, after a cut or a hold only. The solver copies it, so that it need not be kept. */
@@ -3968,7 +3997,7 @@ static gx_result gxp_update_model(gx_body *body) {
         result = body->support_below > 0 ? GX_ERROR_LIMIT : gxp_change_model(body);
         body->model = result == GX_OK ? GXP_MODEL_KNOWN : GXP_MODEL_STALE;
         body->model_updated = 1;
-        if (result == GX_ERROR_LIMIT) result = GX_OK;
+        if (result == GX_ERROR_LIMIT || result == GX_ERROR_EMPTY) result = GX_OK;
     }
     if (result == GX_OK && body->model == GXP_MODEL_STALE) {
         result = gxp_set_model(body);
@@ -4031,11 +4060,13 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
     gx_step_desc step;
     gx_result result;
     if (body == NULL || desc == NULL) return gxp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX, SIZE_MAX);
+    gxp_wake_resumed(body, body->copy_count);
     result = gxp_update_model(body);
     if (result == GX_OK) result = gxp_complete_step(body, desc, &step);
-    if (result == GX_OK && body->part_count == 0 && report != NULL) memset(report, 0, sizeof *report);
-    if (result != GX_OK || body->part_count == 0) return gxp_fail(failure, result, SIZE_MAX, SIZE_MAX);    /* nothing left to move */
+    if (result == GX_OK && body->nothing_moves && report != NULL) memset(report, 0, sizeof *report);
+    if (result != GX_OK || body->nothing_moves) return gxp_fail(failure, result, SIZE_MAX, SIZE_MAX);
     result = gxp_step(body, &step, report, failure);
+    if (result == GX_OK) body->resumed = 0;
     if (result == GX_OK && report != NULL) report->seconds = gxp_seconds(body) - start;
     return result;
 }
@@ -4045,8 +4076,6 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
  * One stream of bytes does all four. A clone is written to memory and read back, without the checks; what the same functions write
  * and read stands once, in gxp_pass_cells (topology, beside gxb_complex_save) and gxp_pass_state (all else).
  */
-
-static uint64_t gxp_hash_doubles(uint64_t hash, const double *x, size_t count);     /* see hashes */
 
 static uint64_t gxp_hash_words(uint64_t hash, const uint32_t *words, size_t count) {
     size_t i;
@@ -4445,6 +4474,7 @@ static void gxp_pass_words(gxb_stream *s, gxp_words *words, uint32_t count) {
 static void gxp_resume_in(gx_body *body, const gxs_scene *scene) {
     gxs_solver_resume(body->solver, scene);
     if (body->model_updated) body->model = GXP_MODEL_STALE;
+    body->resumed = gxp_hash_state(body, body->copy_count);
 }
 
 /* n: of this body when it is written, of what is read else, and there is room. */
@@ -4529,6 +4559,7 @@ GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, s
     size_t start;
     gxp_head head;
     if (body == NULL || size == NULL) return GX_ERROR_ARGUMENT;
+    gxp_note_written(body);
     memset(&s, 0, sizeof s);
     gxp_pass_head(&s, &head);
     start = s.at; s.at = 0;
@@ -4640,6 +4671,7 @@ static gx_result gxp_restore_state(gx_body *body, gx_body *from) {
     size_t size;
     gx_result result = gxp_state_room(body, &n);
     if (result != GX_OK) return result;
+    gxp_note_written(from);
     memset(&s, 0, sizeof s);
     gxp_pass_state(&s, from, &n);
     size = s.at;
@@ -4650,7 +4682,11 @@ static gx_result gxp_restore_state(gx_body *body, gx_body *from) {
     s.in = bytes; s.out = NULL; s.at = 0;
     gxp_pass_state(&s, body, &n);
     gxp_release(&body->allocator, bytes, size);
-    if (!same_held) { body->held_stale = 1; body->model = GXP_MODEL_STALE; }
+    if (!same_held) {
+        memset(body->held, 0, body->copy_count);
+        body->held_stale = 1;
+        body->model = GXP_MODEL_STALE;
+    }
     gxp_resume(from);
     return GX_OK;
 }
@@ -4777,6 +4813,9 @@ static gx_result gxp_note_touched(gxp_cut *cut, uint32_t first_facet) {
     for (i = first_facet; i < cx->facet_count && result == GX_OK; i++) result = gxp_push_leaf_elements(body, i);
     for (i = 0; i < cx->wall_count && result == GX_OK; i++) result = gxp_push_leaf_elements(body, cx->walls[i]);
     for (i = 0; i < body->saved_cell_count && result == GX_OK; i++) result = gxp_push(body, &body->skin.dirty, body->saved_cells[i].cell.element);
+    for (i = 0; i < body->pinches.count; i++)   /* edges that were divided there without a new facet */
+        for (j = body->node_start[body->pinches.data[i]]; j < body->node_start[body->pinches.data[i] + 1] && result == GX_OK; j++)
+            result = gxp_push(body, &body->skin.dirty, body->node_elements[j]);
     for (i = body->copy_count - body->dead.count; i < body->copy_count; i++) {
         const uint32_t node = body->copy_node[i];
         for (j = body->node_start[node]; j < body->node_start[node + 1] && result == GX_OK; j++)
@@ -5143,10 +5182,11 @@ static gx_result gxp_find_vertex(gx_body *body, const gxp_skin_face *face, uint3
 }
 
 /* Takes a vertex without triangles away. */
-static void gxp_drop_vertex(gx_body *body, uint32_t vertex) {
+static gx_result gxp_drop_vertex(gx_body *body, uint32_t vertex) {
     gxp_skin *s = &body->skin;
     const uint32_t last = --s->vertex_count;
     uint32_t *link, corner;
+    gx_result result = GX_OK;
     void *arrays[8];
     size_t items[8];
     for (link = gxp_vertex_bucket(s, &s->vertices[vertex].key); *link != vertex; link = &s->vertices[*link].next) {}
@@ -5155,13 +5195,17 @@ static void gxp_drop_vertex(gx_body *body, uint32_t vertex) {
         s->slots[s->vertices[vertex].slots[0]].next = s->free_slot;
         s->free_slot = s->vertices[vertex].slots[0];
     }
-    if (vertex == last) return;
+    if (vertex == last) return GX_OK;
     for (link = gxp_vertex_bucket(s, &s->vertices[last].key); *link != last; link = &s->vertices[*link].next) {}
     *link = vertex;
-    for (corner = s->vertices[last].corner; corner != GXP_NONE; corner = s->links[corner / 3].corner_next[corner % 3]) s->triangles[corner] = vertex;
+    for (corner = s->vertices[last].corner; corner != GXP_NONE; corner = s->links[corner / 3].corner_next[corner % 3]) {
+        s->triangles[corner] = vertex;
+        if (result == GX_OK) result = gxp_push(body, &s->changed[1], corner / 3);
+    }
     gxp_vertex_columns(s, arrays, items);
     gxp_move_column_item(arrays, items, GXP_VERTEX_COLUMNS, last, vertex);
     s->vertices[vertex].fresh = 1;
+    return result;
 }
 
 /* --- triangles --- */
@@ -5444,14 +5488,16 @@ static void gxp_rest_normal(const gxp_skin *s, uint32_t vertex, float *normal) {
     gxp_set_normal(normal, n);
 }
 
-static void gxp_drop_lonely_vertices(gx_body *body) {
+static gx_result gxp_drop_lonely_vertices(gx_body *body) {
     gxp_skin *s = &body->skin;
     uint32_t i;
+    gx_result result = GX_OK;
     gxp_sort_unique(&s->changed[0]);
-    for (i = s->changed[0].count; i-- > 0;) {   /* from the end, so that none of them takes another's place */
+    for (i = s->changed[0].count; i-- > 0 && result == GX_OK;) {    /* from the end, so that none of them takes another's place */
         const uint32_t vertex = s->changed[0].data[i];
-        if (s->vertices[vertex].corner == GXP_NONE) gxp_drop_vertex(body, vertex);
+        if (s->vertices[vertex].corner == GXP_NONE) result = gxp_drop_vertex(body, vertex);
     }
+    return result;
 }
 
 /* Normals of the vertices around what was made anew; s->changed[0] keeps those that are other than they were. */
@@ -5516,9 +5562,9 @@ static gx_result gxp_remake_elements(gx_body *body) {
     for (i = 0; i < s->dirty.count && result == GX_OK; i++) result = gxp_skin_element(body, s->dirty.data[i]);
     s->dirty.count = 0;
     if (result != GX_OK) return result;
-    gxp_drop_lonely_vertices(body);
-    gxp_renew_normals(s);
-    return GX_OK;
+    result = gxp_drop_lonely_vertices(body);
+    if (result == GX_OK) gxp_renew_normals(s);
+    return result;
 }
 
 static gx_result gxp_mark_fragments(gx_body *body) {

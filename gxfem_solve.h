@@ -372,6 +372,10 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
  * elements that stay have lost a copy. On this and on GX_ERROR_MEMORY no model is set any more: set it. On other errors the
  * model before stays. */
 GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *change, gx_failure *failure);
+/* Sets the rest times of copies to 0 whose state has been written since the last step, so that their pieces wake although another model is
+ * set before the next one, or another solver takes it. Vectors are of the copies of now; origins (count): as in gxs_change. */
+GXFEM_API void gxs_solver_note_written(const gxs_solver *solver, const uint32_t *origins, size_t count, const double *displacement,
+                                       const double *velocity, double *rest_times);
 /* For whoever saves a state and goes on from it later: the scene of the last step, and a solver as if its model had just been
  * set after a step in that scene; a model that has been updated is dropped, and must be set. Two solvers so resumed with the
  * same model, scene and states take the same steps, bit by bit. */
@@ -996,6 +1000,7 @@ typedef struct gxsp_system {
     size_t active;          /* unknowns of this step */
     int stepped;            /* current is what the last step returned, copies of cuts since where theirs were */
     int base_known;         /* current is what the last step returned, and the pieces know its elastic energies */
+    int failed;             /* the last step has: what woke in it stays awake */
     double product_rate;    /* of the linearisation for gxs_solver_product; below 0: there is none */
     gxsp_vector4 *right;    /* n: residual in single precision; of GXS_MATRIX_ASSEMBLED only, else NULL */
     gxsp_vector4 *guess[2]; /* n: directions of the first iterations of the last step and of the one before */
@@ -1014,6 +1019,7 @@ typedef struct gxsp_problem {
     double nepers;          /* by how many factors of e the last linear solve has reduced the residual that its guess left */
     double energies[3];     /* at current, sums over pieces; J */
     double base_potential;  /* E at base, J; of the midpoint rule */
+    const double *given;    /* displacement at the step's start; base has held copies where their targets lead */
     double start;           /* on the clock */
     gxs_scene scene;
     int exact;              /* the linearisation is not projected */
@@ -5963,7 +5969,7 @@ static int gxsp_renew_nodes(gxsp_renewal *update)
 static void gxsp_copies_room(gxsp_system *system, size_t count)
 {
     gxsp_pool *pool = &system->pool;
-    const size_t n = system->n, room = count + count / 8;
+    const size_t n = system->n, most = count > n ? count : n, room = most + most / 8;
     gxsp_level *fine = &system->levels[0];
     if (count <= system->copy_room)
         return;
@@ -6530,7 +6536,7 @@ static void gxsp_contact_pull(const gxsp_problem *problem, size_t i, const doubl
     int c;
     memset(pull, 0, sizeof *pull);
     gxsp_point_position(&step->points[i], displacement, pull->position);
-    gxsp_point_position(&step->points[i], problem->system->base, before);
+    gxsp_point_position(&step->points[i], problem->given, before);
     for (p = 0; p < step->plane_count; ++p)
         gxsp_plane_pull(&step->planes[p], step->integrator == GXS_MIDPOINT ? 0.5 * step->dt : step->dt, before,
                         problem->shortened, pull);
@@ -6656,7 +6662,7 @@ static void gxsp_terms_make(const gxsp_problem *problem, const double *displacem
     lasting->count = 0;
     while ((point = gxsp_next_pull(problem, &at, displacement, &pull)) != NULL) {
         gxsp_term *term = &lasting->term[lasting->count];
-        if (!(pull.hessian[0] + pull.hessian[3] + pull.hessian[5] > 0))
+        if (!(pull.hessian[0] + pull.hessian[3] + pull.hessian[5] > 0) && !(gxsp_dot(pull.force, pull.force, 1) > 0))
             continue;
         ++lasting->count;
         memcpy(term->copy, point->copy, sizeof term->copy);
@@ -7123,10 +7129,19 @@ static gxs_scene gxsp_scene_make(gxsp_system *system, const gxs_step_desc *step)
     return scene;
 }
 
+/* Is the state of a copy not what the last step returned? Of velocities only those of sleepers are known: 0. */
+static int gxsp_is_written(const gxsp_system *system, size_t copy, const double *displacement, const double *velocity)
+{
+    static const double zero[3] = {0, 0, 0};
+    if (system->fixed[copy])
+        return 0;
+    return ((system->pieces[system->piece[copy]].state & GXSP_ASLEEP) && gxsp_differs(velocity, zero)) ||
+           (system->stepped && gxsp_differs(displacement, system->current + 3 * copy));
+}
+
 /* Wakes the pieces of which something has changed. */
 static void gxsp_wake_touched(gxsp_problem *problem, const double *displacement, const double *velocity)
 {
-    static const double zero[3] = {0, 0, 0};
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
     const gxs_scene *before = &system->lasting->scene, *now = &problem->scene;
@@ -7136,14 +7151,14 @@ static void gxsp_wake_touched(gxsp_problem *problem, const double *displacement,
     uint32_t p;
     for (p = 0; p < system->piece_count; ++p) {
         gxsp_piece *piece = &system->pieces[p];
-        piece->woken = all || (forces && piece->forces[0] != piece->forces[1]) || (springs && (piece->sprung[0] || piece->sprung[1]));
+        piece->woken = (system->failed && piece->woken) || all || (forces && piece->forces[0] != piece->forces[1]) ||
+                       (springs && (piece->sprung[0] || piece->sprung[1]));
     }
     for (i = 0; i < system->n; ++i) {
         gxsp_piece *piece = &system->pieces[system->piece[i]];
         if (step->targets && system->held[i] && gxsp_differs(step->targets + 3 * i, displacement + 3 * i))
             piece->woken = 1;
-        if (!system->fixed[i] && (((piece->state & GXSP_ASLEEP) && gxsp_differs(velocity + 3 * i, zero)) ||
-            (system->stepped && step->sleep_speed > 0 && gxsp_differs(displacement + 3 * i, system->current + 3 * i))))
+        if (step->sleep_speed > 0 && gxsp_is_written(system, i, displacement + 3 * i, velocity + 3 * i))
             piece->woken = 1;
     }
 }
@@ -8180,6 +8195,18 @@ GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *directi
     return GX_OK;
 }
 
+GXFEM_API void gxs_solver_note_written(const gxs_solver *solver, const uint32_t *origins, size_t count, const double *displacement,
+                                       const double *velocity, double *rest_times)
+{
+    const gxsp_system *system = solver->system;
+    size_t i;
+    for (i = 0; system && i < count; ++i) {
+        const size_t before = origins[i] >> 1;
+        if (before < system->n && gxsp_is_written(system, before, displacement + 3 * i, velocity + 3 * i))
+            rest_times[i] = 0;
+    }
+}
+
 GXFEM_API void gxs_solver_scene(const gxs_solver *solver, gxs_scene *scene)
 {
     *scene = solver->lasting.scene;
@@ -8196,7 +8223,7 @@ GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene)
     if (!solver->system)
         return;
     system->product_rate = -1;
-    system->still_known = system->base_known = 0;
+    system->still_known = system->base_known = system->stepped = 0;
     system->guess_count = 0;
     system->omega = 0;
     system->omega_rest = system->omega_pause = 0;
@@ -8269,11 +8296,13 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     problem.system = solver->system;
     problem.system->product_rate = -1;
     problem.step = step;
+    problem.given = displacement;
     problem.cg_iterations = step->cg_iterations ? step->cg_iterations : 1000;
     problem.cg_tolerance = step->cg_tolerance > 0 ? step->cg_tolerance : step->integrator == GXS_MIDPOINT ? 1e-3 : 1e-2;
     problem.start = gxsp_now(&problem);
     gxsp_choose_integrator(&problem);
     gxsp_choose_sleepers(&problem, displacement, velocity);
+    problem.system->failed = 1;
     if ((result = gxsp_check_free(&problem, failure)) != GX_OK)
         return result;
     gxsp_begin(&problem, displacement, velocity);
@@ -8283,6 +8312,7 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
         result = gxsp_finish(&problem, displacement, velocity);
     if (result != GX_OK)
         return gxsp_fail(failure, result, SIZE_MAX);
+    problem.system->failed = 0;
     gxsp_report_springs(&problem);
     problem.report.seconds = gxsp_now(&problem) - problem.start;
     if (report)

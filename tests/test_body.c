@@ -1589,6 +1589,28 @@ static double momentum(gx_body *body, double p[3]) {
     return size;
 }
 
+/* A body of which a solid has left nothing since the last step can be stepped, whether or not small corners have supports. */
+START_TEST(nothing_is_left_to_step) {
+    workload w = grid(1, 1, 1, 5);
+    gx_body_desc desc = desc_of(&w);
+    const gx_step_desc step = still_step();
+    gx_body *body = NULL;
+    int i;
+    add_box(&w, 1, -1, -1, -1, 2, 2, 2);
+    desc.support_below = 0.1 * _i;
+    ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
+    cut_by(body, &w, 0, 1);
+    for (i = 0; i < 2; ++i) {
+        gx_result result = gx_body_step(body, &step, NULL, NULL);
+        ck_assert_msg(result == GX_OK, "step %d: %s", i, gx_result_text(result));
+    }
+    ck_assert_uint_eq(view_of(body).copy_count, 0);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 START_TEST(free_bodies_keep_their_momentum) {
     uint64_t seed = (uint64_t)_i;
     workload w = random_scene(seed, 2, 0);
@@ -2244,6 +2266,7 @@ START_TEST(bad_cuts) {
     gx_surface good, s[2];
     gx_cut_desc desc;
     double x[9], bad[3];
+    float texture[6] = { 0, 0, 0, 0, 0, 0 };
     uint32_t t[6], i;
     add_axis_plane(&w, 0, 0.5);
     body = cut_at_once(&w);
@@ -2271,6 +2294,11 @@ START_TEST(bad_cuts) {
     memcpy(x, v, sizeof x); x[3] = 1e60; EXPECT_NO_CUT(GX_ERROR_RANGE, 1, 1);
     memcpy(x, v, sizeof x); x[3] = 1e200; EXPECT_NO_CUT(GX_ERROR_RANGE, 1, 1);
     memcpy(x, v, sizeof x); x[3] = DBL_MAX; x[7] = DBL_MAX; EXPECT_NO_CUT(GX_ERROR_RANGE, 1, 1);
+    s[1] = good; s[1].texture = texture;
+    for (i = 0; i < 6; ++i) {
+        texture[i] = (float)bad[i % 3]; EXPECT_NO_CUT(GX_ERROR_NOT_FINITE, i / 2, 1);
+        texture[i] = 0;
+    }
     s[1] = good; s[1].kind = GX_SURFACE_SOLID; EXPECT_NO_CUT(GX_ERROR_NOT_CLOSED, 0, 1);
     gx_body_destroy(body);
     wl_free(&w);
@@ -2368,6 +2396,7 @@ int main(void) {
     tcase_add_test(tests, solid_around_a_pinch);
     tcase_add_loop_test(tests, held_copies, first, last);
     tcase_add_test(tests, pieces_outside_the_region_are_free);
+    tcase_add_loop_test(tests, nothing_is_left_to_step, 0, 2);
     tcase_add_loop_test(tests, free_bodies_keep_their_momentum, first, last);
     tcase_add_test(tests, fragments_fall);
     tcase_add_test(tests, held_body_hangs);

@@ -1368,6 +1368,111 @@ START_TEST(contact_by_callback_is_the_plane)
 }
 END_TEST
 
+/* the same force wherever the point is */
+static double constant_push(void *user, size_t point, const double *position, double *force, double *hessian)
+{
+    const double *push = (const double *)user;
+    (void)point;
+    memcpy(force, push, 3 * sizeof *force);
+    if (hessian)
+        memset(hessian, 0, 6 * sizeof *hessian);
+    return -(push[0] * position[0] + push[1] * position[1] + push[2] * position[2]);
+}
+
+/* A constant force by the callback, of no stiffness, gives a loose block the momentum of force x dt on each point. */
+START_TEST(constant_contact_forces_give_their_momentum)
+{
+    gxs_solver *solver = solver_of(_i);
+    gxs_step_desc step = step_tight(0.01, 0);
+    double push[3] = {1000, -300, 200}, p[3];
+    gxs_point *points;
+    int frame, r;
+    scene s = scene_block(2, 2, 2, 0.25, 0, 0);
+    points = points_of(&s, 0, s.model.copy_count);
+    step.points = points;
+    step.point_count = s.model.copy_count;
+    step.contact = constant_push;
+    step.contact_user = push;
+    ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
+    for (frame = 1; frame <= 3; ++frame) {
+        ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+        momentum(&s, p);
+        for (r = 0; r < 3; ++r) {
+            const double expected = frame * step.dt * push[r] * (double)step.point_count;
+            assert_that(fabs(p[r] - expected) < 1e-6 * fabs(expected), "%s frame %d axis %d: %g kg m/s, not %g", solver_name(_i), frame, r,
+                        p[r], expected);
+        }
+    }
+    free(points);
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
+/* Friction opposes the way of a point since the step's start by friction x the normal force then, also of points that hang on held copies,
+ * carried sideways (0) or lifted (1) by targets: forces on free copies balance, by the assembled forms. */
+START_TEST(friction_acts_on_points_that_targets_carry)
+{
+    const int lifted = _i % 2;
+    gxs_solver *solver = solver_of(_i / 2);
+    gxs_step_desc step = step_tight(0.01, 0);
+    gxs_plane plane = plane_make(1000, 0.5);
+    gxs_point points[6];
+    double *work, *targets, *un, *y, *my, *g;
+    size_t i, k, count;
+    int frame, r;
+    scene s = scene_block(1, 1, 1, 1, 0, 0);
+    count = 3 * s.model.copy_count;
+    work = (double *)zeroed(5 * count, sizeof *work);
+    targets = work, un = work + count, y = work + 2 * count, my = work + 3 * count, g = work + 4 * count;
+    s.material->young = 1e4;
+    scene_hold_left(&s);
+    for (i = 0; i < 6; ++i) {
+        const double weights[4] = {0.25, 0.25, 0.25, 0.25};
+        points[i] = point_within(&s, i, weights);
+    }
+    plane.offset = 1.1; /* all points are below */
+    step.points = points;
+    step.point_count = 6;
+    step.planes = &plane;
+    step.plane_count = 1;
+    step.targets = targets;
+    for (i = 0; i < s.model.copy_count; ++i)
+        s.velocity[3 * i] = lifted && !s.held[i] ? 5 : 0;
+    ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
+    for (frame = 0; frame < 3; ++frame) {
+        double worst = 0, friction = 0, push[3];
+        for (i = 0; i < s.model.copy_count; ++i)
+            targets[3 * i + (lifted ? 2 : 1)] = 0.05 * (frame + 1);
+        memcpy(un, s.displacement, count * sizeof *un);
+        for (i = 0; i < count; ++i)
+            y[i] = -s.displacement[i] - step.dt * s.velocity[i];
+        ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
+        for (i = 0; i < count; ++i)
+            y[i] = (y[i] + s.displacement[i]) / (step.dt * step.dt);
+        ck_assert_int_eq(gxs_model_mass_product(&s.model, y, my), GX_OK);
+        ck_assert_int_eq(gxs_model_gradient(&s.model, s.displacement, g), GX_OK);
+        for (i = 0; i < 6; ++i) {
+            gxs_step_desc one = step;
+            one.points = &points[i];
+            one.point_count = 1;
+            plane_forces(&one, un, s.displacement, push);
+            friction += sqrt(push[0] * push[0] + push[1] * push[1]);
+            for (k = 0; k < 4; ++k)
+                for (r = 0; r < 3; ++r)
+                    g[3 * points[i].copy[k] + (uint32_t)r] -= points[i].weight[k] * push[r];
+        }
+        for (i = 0; i < count; ++i)
+            worst = !s.held[i / 3] && fabs(my[i] + g[i]) > worst ? fabs(my[i] + g[i]) : worst;
+        assert_that(friction > 100 && worst < 1e-5 * friction, "%s %s frame %d: off balance by %g N beside a friction of %g N",
+                    solver_name(_i / 2), lifted ? "lifted" : "carried", frame, worst, friction);
+    }
+    free(work);
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
 /* momentum of the copies from first to end */
 static void part_momentum(const scene *s, size_t first, size_t end, double *p)
 {
@@ -2261,6 +2366,42 @@ START_TEST(a_failed_step_swallows_no_touch)
 }
 END_TEST
 
+/* A velocity below sleep_speed that is written to a sleeper moves it, also when a step that fails comes before the one that succeeds. */
+START_TEST(a_failed_step_swallows_no_slow_kick)
+{
+    gxs_solver *solver = solver_of(_i);
+    gxs_step_desc step = step_make(0.01, 0);
+    gxs_step_report report;
+    double *rest_times;
+    size_t i, n;
+    int frame;
+    scene s = scene_block(1, 1, 1, 0.25, 0, 0);
+    n = s.model.copy_count;
+    rest_times = (double *)zeroed(n, sizeof *rest_times);
+    step.sleep_speed = 1e-2;
+    step.rest_times = rest_times;
+    ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
+    for (frame = 0; frame < 100; ++frame)
+        ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+    ck_assert_uint_eq(report.active_unknowns, 0);
+    for (i = 0; i < n; ++i)
+        s.velocity[3 * i] = 5e-3;
+    step.integrator = GXS_STATIC;
+    step.dt = 0;
+    ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_ERROR_FREE);
+    step.integrator = GXS_BDF1;
+    step.dt = 0.01;
+    ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+    ck_assert_uint_eq(report.active_unknowns, 3 * n);
+    for (i = 0; i < n; ++i)
+        assert_that(fabs(s.displacement[3 * i] - 5e-5) < 1e-9 && fabs(s.velocity[3 * i] - 5e-3) < 1e-7, "copy %lu at %g with %g m/s",
+                    (unsigned long)i, s.displacement[3 * i], s.velocity[3 * i]);
+    free(rest_times);
+    gxs_solver_destroy(solver);
+    scene_free(&s);
+}
+END_TEST
+
 /* the same push moves a sleeping block as it moves one that was at rest awake */
 START_TEST(a_woken_block_moves_as_before)
 {
@@ -3122,6 +3263,8 @@ static Suite *forces_suite(void)
     tcase_add_loop_test(contact, friction_holds_and_slides, 0, SOLVERS);
     ADD_SOME(contact, bounces_gain_no_energy, 2 * SOLVERS);
     tcase_add_loop_test(contact, contact_by_callback_is_the_plane, 0, SOLVERS);
+    tcase_add_loop_test(contact, constant_contact_forces_give_their_momentum, 0, SOLVERS);
+    tcase_add_loop_test(contact, friction_acts_on_points_that_targets_carry, 0, 2 * SOLVERS);
     tcase_add_loop_test(contact, pieces_in_flight_keep_their_momentum, 0, SOLVERS);
     ADD_SOME(contact, energy_falls_in_every_piece, 4 * SOLVERS);
     ADD_SOME(contact, pieces_step_as_if_alone, 16);
@@ -3140,6 +3283,7 @@ static Suite *forces_suite(void)
     tcase_add_test(sleep, forces_that_come_and_go_wake_one_block);
     tcase_add_loop_test(sleep, changes_of_the_scene_wake_all, 0, 2);
     tcase_add_test(sleep, a_failed_step_swallows_no_touch);
+    tcase_add_loop_test(sleep, a_failed_step_swallows_no_slow_kick, 0, SOLVERS);
     ADD_SOME(sleep, a_woken_block_moves_as_before, SOLVERS);
     tcase_add_loop_test(sleep, bodies_sleep_in_mid_air, 0, SOLVERS);
     tcase_add_loop_test(sleep, sleep_outlasts_a_new_model, 0, 4);

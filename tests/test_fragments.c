@@ -280,6 +280,83 @@ START_TEST(pinched_fragments) {
 }
 END_TEST
 
+/* A cut of one fragment alone, through the node that joins the elements of another: the other stays whole. */
+START_TEST(scope_beside_a_pinch) {
+    static const double x[7][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { -1, 0, 0 }, { 0, -1, 0 }, { 0, 0, -1 } };
+    static const double through[3][3] = { { -60, 30, 30 }, { 30, -60, 30 }, { 30, 30, -60 } };
+    workload w = wl_empty();
+    wl_surface *s;
+    gx_body *body;
+    gx_surface surface;
+    gx_cut_desc cut;
+    gx_view v;
+    uint32_t tip, cell = 0;
+    int i;
+    for (i = 0; i < 7; ++i) wl_add_node(&w, x[i][0], x[i][1], x[i][2]);
+    wl_add_element(&w, 0, 1, 2, 3);
+    wl_add_element(&w, 0, 4, 5, 6);
+    add_axis_plane(&w, 0, 0.5);
+    s = wl_add_surface(&w, 0);
+    for (i = 0; i < 3; ++i) wl_add_vertex(s, through[i]);
+    wl_add_triangle(s, 0, 1, 2);
+    body = body_of(&w);
+    cut_by(body, &w, 0, 1);
+    v = view_of(body);
+    ck_assert_uint_eq(v.fragment_count, 2);
+    tip = v.fragment_center[3] > v.fragment_center[0];
+    while (v.cell_fragment[cell] != tip) ++cell;
+    surface = surface_of(s);
+    memset(&cut, 0, sizeof cut);
+    cut.surfaces = &surface; cut.surface_count = 1;
+    if (_i == 0) { cut.scope_fragments = &tip; cut.scope_fragment_count = 1; }
+    else { cut.scope_cells = &cell; cut.scope_cell_count = 1; }
+    ck_assert_int_eq(gx_body_cut(body, &cut, NULL, NULL), GX_OK);
+    v = view_of(body);
+    ck_assert_uint_eq(v.fragment_count, 2);
+    for (i = 0; i < 2; ++i) ck_assert(v.fragment_center[3 * i] > 0.5 || v.fragment_change[i] == GX_FRAGMENT_UNCHANGED);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A sheet in the face between two fragments, again and of one of them alone: a thin link inside of the other is not severed. */
+START_TEST(scope_of_severing) {
+    static const double x[6][3] = { { 0, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { -1, 0.25, 0.25 }, { 1, 0, 0 }, { 1, 1, 1 } };
+    static const double most[3][3] = { { 0.125, 2.4375, -1.5625 }, { 0.125, -1.5625, 2.4375 }, { 3, -1, -1 } };  /* of the face 1 2 4 */
+    workload w = wl_empty();
+    wl_surface *s;
+    gx_body *body;
+    gx_surface surface;
+    gx_cut_desc cut;
+    gx_cut_report report;
+    uint32_t left;
+    int i;
+    for (i = 0; i < 6; ++i) wl_add_node(&w, x[i][0], x[i][1], x[i][2]);
+    wl_add_element(&w, 0, 1, 2, 3);
+    wl_add_element(&w, 0, 1, 2, 4);
+    wl_add_element(&w, 1, 2, 4, 5);
+    add_axis_plane(&w, 0, 0);
+    s = wl_add_surface(&w, 0);
+    for (i = 0; i < 3; ++i) wl_add_vertex(s, most[i]);
+    wl_add_triangle(s, 0, 1, 2);
+    body = body_of(&w);
+    cut_by(body, &w, 0, 1);
+    report = cut_by(body, &w, 1, 1);
+    ck_assert_uint_eq(view_of(body).fragment_count, 2);
+    left = view_of(body).fragment_center[0] > 0;
+    surface = surface_of(&w.surfaces[0]);
+    memset(&cut, 0, sizeof cut);
+    cut.surfaces = &surface; cut.surface_count = 1;
+    cut.scope_fragments = &left; cut.scope_fragment_count = 1;
+    cut.sever_below = 2 * report.min_link_ratio;
+    ck_assert_int_eq(gx_body_cut(body, &cut, &report, NULL), GX_OK);
+    ck_assert_uint_eq(report.severed_links, 0);
+    ck_assert_uint_eq(view_of(body).fragment_count, 2);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 /* ---- inertia ---- */
 
 /* The unit cube at an offset, cut across x: boxes of length a and 1 - a */
@@ -501,6 +578,8 @@ int main(void) {
     tcase_add_test(tests, equal_halves);
     tcase_add_test(tests, many_meshes_and_nothing);
     tcase_add_loop_test(tests, pinched_fragments, 0, 2);
+    tcase_add_loop_test(tests, scope_beside_a_pinch, 0, 2);
+    tcase_add_test(tests, scope_of_severing);
     tcase_add_loop_test(tests, inertia_of_boxes, 0, 3);
     tcase_add_loop_test(tests, inertia_adds_up, 0, 10);
     tcase_add_loop_test(tests, rigid_motion, 0, 20);

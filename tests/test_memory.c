@@ -1,8 +1,8 @@
 /* test_memory.c - memory runs out. The n-th allocation fails, once or from then on, n = 0, 1, 2 ... until the call succeeds:
    every failed call returns GX_ERROR_MEMORY and leaves the body's state hash alone, nothing leaks, sizes given back are sizes
-   taken, and the same call made again gives the topology that it gives without a failure. A call may also succeed all the same
-   (exact coordinates are cached where there is room): then with the same outcome. What fails once is asked of an allocator that has no
-   reallocate, what fails from then on and what fails again and again of one that has.
+   taken, nothing is written behind a block, and the same call made again gives the topology that it gives without a failure. A call may
+   also succeed all the same (exact coordinates are cached where there is room): then with the same outcome. What fails once is asked of
+   an allocator that has no reallocate, what fails from then on and what fails again and again of one that has.
 
    The tests run in one process each (Check's own fork), so they can be run under valgrind with CK_FORK=no. */
 #ifndef GXFEM_LINKED
@@ -19,10 +19,12 @@ typedef struct memory {
     size_t fail_at;             /* this call fails, SIZE_MAX: none does */
     int from_then_on;
     int grows;                  /* blocks are made larger by the allocator */
-    int failed, wrong;          /* did one fail; was a block given back with another size */
+    int failed, wrong, overrun; /* did one fail; was a block given back with another size; was something written behind one */
 } memory;
 
-enum { HEAD = 16 };             /* bytes before each block: its size; keeps alignment */
+enum { HEAD = 16, TAIL = 64 };  /* bytes before each block: its size; keeps alignment. Bytes behind it: stay as they are */
+
+static const unsigned char behind = 0xc3;
 
 static void *take(void *user, size_t size) {
     memory *m = (memory *)user;
@@ -30,10 +32,11 @@ static void *take(void *user, size_t size) {
     char *block;
     if (size == 0) m->wrong = 1;
     if (call == m->fail_at || (m->from_then_on && call > m->fail_at)) { m->failed = 1; return NULL; }
-    block = (char *)malloc(size + HEAD);
+    block = (char *)malloc(HEAD + size + TAIL);
     if (block == NULL) abort();
     memcpy(block, &size, sizeof size);
     memset(block + HEAD, 0xa5, size);       /* what is not initialised shows */
+    memset(block + HEAD + size, behind, TAIL);
     m->bytes += size;
     ++m->blocks;
     return block + HEAD;
@@ -41,10 +44,11 @@ static void *take(void *user, size_t size) {
 
 static void give(void *user, void *block, size_t size) {
     memory *m = (memory *)user;
-    size_t taken;
+    size_t taken, i;
     if (block == NULL) { m->wrong = 1; return; }
     memcpy(&taken, (char *)block - HEAD, sizeof taken);
     if (taken != size) m->wrong = 1;
+    for (i = 0; i < TAIL; ++i) if (((unsigned char *)block)[taken + i] != behind) m->overrun = 1;
     m->bytes -= taken;
     --m->blocks;
     memset((char *)block - HEAD, 0x5a, taken + HEAD);
@@ -68,6 +72,7 @@ static void never_fail(memory *m) { fail_from(m, SIZE_MAX, 0); }
 static void check_empty(const memory *m, const char *what) {
     ck_assert_msg(m->bytes == 0 && m->blocks == 0, "%s: %zu bytes in %zu blocks are lost", what, m->bytes, m->blocks);
     ck_assert_msg(!m->wrong, "%s: a block was given back with another size", what);
+    ck_assert_msg(!m->overrun, "%s: something was written behind a block", what);
 }
 
 /* ---- bodies and cuts ---- */
@@ -91,13 +96,16 @@ static gx_surface surface(const double *vertices, size_t vertex_count, const uin
 static gx_surface sheet(const double *vertices) { return surface(vertices, 3, one_triangle, 1, GX_SURFACE_SHEET); }
 static gx_surface solid(void) { return surface(box, 8, box_triangles, 12, GX_SURFACE_SOLID); }
 
+typedef struct mesh { const double *positions; size_t node_count; const uint32_t *elements; size_t element_count; } mesh;
+static const mesh cube_mesh = { &cube[0][0], 8, five, 5 };
+static const mesh *mesh_of_bodies = &cube_mesh;
 static gx_allocator allocator;  /* of the body made last */
 
 static gx_result create(memory *m, gx_body **body) {
     gx_body_desc desc;
     memset(&desc, 0, sizeof desc);
-    desc.positions = &cube[0][0]; desc.node_count = 8;
-    desc.elements = five; desc.element_count = 5;
+    desc.positions = mesh_of_bodies->positions; desc.node_count = mesh_of_bodies->node_count;
+    desc.elements = mesh_of_bodies->elements; desc.element_count = mesh_of_bodies->element_count;
     desc.young = 1e6; desc.poisson = 0.4; desc.density = 1000;
     allocator.allocate = take; allocator.release = give; allocator.user = m;
     allocator.reallocate = m->grows ? grow : NULL;
@@ -472,6 +480,87 @@ END_TEST
 START_TEST(cut_after_steps) { sweep("a cut between steps", held, cut_second_sheet); }
 END_TEST
 
+/* A solid takes away the element at corner 1, and its copy of that corner */
+static gx_result cut_corner(gx_body *body) {
+    static const double corner[12] = { -1, -1, 0, 3, 3, 0, 3, -1, 4, 3, -9, -9 };
+    static const uint32_t triangles[12] = { 0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3 };
+    gx_surface s = surface(corner, 4, triangles, 4, GX_SURFACE_SOLID);
+    return cut(body, &s, 1, 0, 0);
+}
+static const action stepped_and_smaller[] = { step, cut_corner, NULL };
+
+/* A step of a body that has fewer copies than at the step before stays in its memory. */
+START_TEST(step_with_fewer_copies) {
+    memory m;
+    gx_body *body;
+    gx_view view;
+    memset(&m, 0, sizeof m);
+    never_fail(&m);
+    body = prepared(&m, stepped_and_smaller);
+    ck_assert_int_eq(gx_body_view(body, &view), GX_OK);
+    ck_assert_uint_lt(view.copy_count, 8);
+    gx_body_destroy(body);
+    sweep("a step with fewer copies", stepped_and_smaller, step);
+}
+END_TEST
+
+/* Two fans around the edge from node 0 to node 1, which join in that edge only */
+enum { FAN = 60, FANS_NODES = 2 + 2 * (FAN + 1) };
+static double fan_angle(int fan, double i) { return 0.2 + 2.6 * i / FAN + 3.14159 * fan; }
+
+static gx_result cut_fan(gx_body *body) {
+    double x[9] = { 0, 0, -9, 0, 0, 9, 0, 0, 0.5 };
+    gx_surface s = sheet(x);
+    x[6] = 3 * cos(fan_angle(0, FAN / 2 + 0.5)); x[7] = 3 * sin(fan_angle(0, FAN / 2 + 0.5));
+    return cut(body, &s, 1, 0, 0);
+}
+
+/* A cut through an edge of many elements that fails leaves all of their copies as they were. */
+START_TEST(cut_of_a_fan) {
+    static double x[3 * FANS_NODES] = { 0, 0, 0, 0, 0, 1 };
+    static uint32_t elements[4 * 2 * FAN];
+    static const mesh fans = { x, FANS_NODES, elements, 2 * FAN };
+    uint32_t n = 2, *e = elements;
+    int fan, i;
+    for (fan = 0; fan < 2; ++fan) for (i = 0; i <= FAN; ++i, ++n) {
+        x[3 * n] = cos(fan_angle(fan, i)); x[3 * n + 1] = sin(fan_angle(fan, i)); x[3 * n + 2] = 0.5;
+        if (i > 0) { e[0] = 0; e[1] = n - 1; e[2] = n; e[3] = 1; e += 4; }
+    }
+    mesh_of_bodies = &fans;
+    sweep("a sheet in a fan", nothing, cut_fan);
+    mesh_of_bodies = &cube_mesh;
+}
+END_TEST
+
+/* A model that there is no memory for does not keep the body from stepping: it moves as if none had been asked for. */
+START_TEST(step_after_a_failed_model) {
+    static const action one_step[] = { step, NULL }, two_steps[] = { step, step, NULL };
+    gxs_model model;
+    memory m;
+    gx_body *body;
+    gx_result result;
+    uint64_t state;
+    int from_then_on;
+    size_t n;
+    memset(&m, 0, sizeof m);
+    never_fail(&m);
+    body = prepared(&m, two_steps);
+    state = gx_body_state_hash(body);
+    gx_body_destroy(body);
+    for (from_then_on = 0; from_then_on < 2; ++from_then_on) for (n = 0, result = GX_ERROR_MEMORY; result != GX_OK; n = next(n)) {
+        body = prepared(&m, one_step);
+        fail_from(&m, n, from_then_on);
+        result = gx_body_model(body, &model);
+        ck_assert_int_eq(result, m.failed ? GX_ERROR_MEMORY : GX_OK);
+        never_fail(&m);
+        ck_assert_int_eq(step(body), GX_OK);
+        ck_assert_msg(gx_body_state_hash(body) == state, "allocation %zu: another motion", n);
+        gx_body_destroy(body);
+        check_empty(&m, "a step after a model");
+    }
+}
+END_TEST
+
 START_TEST(solidifying) {
     static const double square[12] = { 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0 };
     static const uint32_t two[6] = { 0, 1, 2, 0, 2, 3 };
@@ -517,6 +606,9 @@ int main(void) {
     tcase_add_test(tests, copies);
     tcase_add_test(tests, restoring);
     tcase_add_test(tests, cut_after_steps);
+    tcase_add_test(tests, step_with_fewer_copies);
+    tcase_add_test(tests, cut_of_a_fan);
+    tcase_add_test(tests, step_after_a_failed_model);
     tcase_add_test(tests, solidifying);
     suite_add_tcase(suite, tests);
     return run_suite(suite);

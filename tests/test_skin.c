@@ -224,6 +224,39 @@ START_TEST(follows_restores) {
 END_TEST
 
 /* A small cut in a large body changes little of its skin. */
+/* Elements that an edge joins until half of it is cut and then the element beside it: the skin that follows is closed, as made anew. */
+START_TEST(follows_cuts_at_a_pinch) {
+    static const double x[8][3] = { { 0, 0, 0 }, { 0, 0, 1 }, { 1, -0.5, 0.5 }, { 1, 0.5, 0.5 }, { -1, 0.5, 0.5 }, { -1, -0.5, 0.5 },
+                                    { 1, 0, -2 }, { 0.2, 1.5, 0.5 } };
+    static const double through[3][3] = { { 0, -1, 0.5 }, { 0, 1, 0.3 }, { 0, 1, 0.7 } };
+    workload w = wl_empty();
+    wl_surface *s = wl_add_surface(&w, 0);
+    gx_body *body, *copy;
+    gx_skin skin, whole;
+    int i;
+    for (i = 0; i < 8; ++i) wl_add_node(&w, x[i][0], x[i][1], x[i][2]);
+    wl_add_element(&w, 0, 1, 2, 3); wl_add_element(&w, 0, 1, 4, 5); wl_add_element(&w, 0, 2, 3, 6); wl_add_element(&w, 0, 1, 3, 7);
+    for (i = 0; i < 3; ++i) wl_add_vertex(s, through[i]);
+    wl_add_triangle(s, 0, 1, 2);
+    add_axis_plane(&w, 2, -1.5);
+    body = body_of(&w);
+    skin_of(body, NULL);
+    hash_of(body);
+    for (i = 0; i < 2; ++i) {
+        cut_by(body, &w, (size_t)i, 1);
+        skin = skin_of(body, NULL);
+        ck_assert_int_eq(gx_body_clone(body, &copy), GX_OK);
+        whole = skin_of(copy, NULL);
+        check_whole(copy, &whole, 0);
+        check_whole(body, &skin, 0);
+        if (i == 1) check_same(&skin, &whole, 0, 1);
+        gx_body_destroy(copy);
+    }
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 START_TEST(changes_are_local) {
     workload w = grid(12, 12, 12, 5);
     gx_body *body = body_of(&w);
@@ -578,6 +611,7 @@ int main(void) {
     tcase_set_timeout(tests, 120);
     tcase_add_loop_test(tests, follows_cuts, first, last);
     tcase_add_loop_test(tests, follows_restores, first, last);
+    tcase_add_test(tests, follows_cuts_at_a_pinch);
     tcase_add_test(tests, changes_are_local);
     tcase_add_test(tests, partial_cuts_show_nothing);
     tcase_add_loop_test(tests, flat_normals, 0, 2);

@@ -299,6 +299,108 @@ START_TEST(cuts_wake_what_they_touch) {
 }
 END_TEST
 
+/* A block cut in two at x = 2.25 hangs by its top, asleep. */
+static gx_body *hung_asleep(const workload *w, double support_below, const gx_step_desc *step) {
+    gx_body_desc desc = desc_of(w);
+    gx_body *body = NULL;
+    int n;
+    desc.support_below = support_below;
+    ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+    cut_by(body, w, 0, 1);
+    hold_above(body, 2 - 1e-9);
+    for (n = 0; n < 400 && advance(body, step, 1).stop != GXS_STOP_ASLEEP; ++n) continue;
+    ck_assert_uint_eq(advance(body, step, 1).active_unknowns, 0);
+    return body;
+}
+
+/* What hangs asleep falls when its hold is released. */
+START_TEST(released_sleepers_fall) {
+    workload w = grid(4, 2, 2, 5);
+    gx_step_desc step = step_of(0.033, -9.81);
+    gx_body *body;
+    gx_view view;
+    size_t i;
+    add_axis_plane(&w, 0, 2.25);
+    step.sleep_speed = 1e-3; step.mass_damping = 5;
+    body = hung_asleep(&w, 0, &step);
+    ck_assert_int_eq(gx_body_hold(body, NULL, 0), GX_OK);
+    view = view_of(body);
+    ck_assert_uint_eq(advance(body, &step, 1).active_unknowns, 3 * view.copy_count);
+    advance(body, &step, 9);
+    for (i = 0; i < view.copy_count; ++i)
+        ck_assert_msg(view.displacement[3 * i + 2] < -0.2, "copy %zu has fallen %g m", i, -view.displacement[3 * i + 2]);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+enum { HELD_AGAIN, CLONED, LOADED, CUT_ELSEWHERE, CUT_WITHOUT_SUPPORT, CHANGE_COUNT };
+
+/* A free copy far right */
+static size_t right_of(const gx_view *view, const workload *w) {
+    size_t i = 0;
+    while (view->copy_held[i] || w->positions[3 * view->copy_node[i]] < 3.5) ++i;
+    return i;
+}
+
+/* Writes a displacement to it, or a velocity below sleep_speed. */
+static void write_right(gx_body *body, const workload *w, int velocity) {
+    gx_view view = view_of(body);
+    if (velocity) view.velocity[3 * right_of(&view, w)] = 5e-4;
+    else view.displacement[3 * right_of(&view, w)] += 0.3;
+}
+
+/* What is written to a sleeper wakes it, and its clone and loaded copy alike, bit for bit, whatever happens to the body before the step:
+   after the write (late 0) or before it (1). */
+START_TEST(sleepers_see_what_is_written_through_changes) {
+    const int change = _i / 4, velocity = _i / 2 % 2, late = _i % 2;
+    workload w = grid(4, 2, 2, 5);
+    gx_step_desc step = step_of(0.033, -9.81);
+    gxs_step_report report, twins;
+    gx_body *body, *twin = NULL;
+    gx_view view, other;
+    size_t at, size;
+    double was;
+    void *bytes;
+    int n;
+    add_axis_plane(&w, 0, 2.25); add_box(&w, 0, -1, -1, 0.5, 1.75, 4, 0.75);
+    step.sleep_speed = 1e-3; step.mass_damping = 5;
+    body = hung_asleep(&w, change == CUT_WITHOUT_SUPPORT ? 1e-4 : 0, &step);
+    if (!late) write_right(body, &w, velocity);
+    switch (change) {
+    case HELD_AGAIN: hold_above(body, 2 - 1e-9); break;
+    case CLONED: ck_assert_int_eq(gx_body_clone(body, &twin), GX_OK); break;
+    case LOADED:
+        ck_assert_int_eq(gx_body_save(body, NULL, 0, &size), GX_OK);
+        bytes = malloc(size);
+        ck_assert_int_eq(gx_body_save(body, bytes, size, &size), GX_OK);
+        ck_assert_int_eq(gx_body_load(bytes, size, NULL, &twin, NULL), GX_OK);
+        free(bytes);
+        break;
+    default: cut_by(body, &w, 1, 1);
+    }
+    if (late) write_right(body, &w, velocity);
+    if (late && twin) write_right(twin, &w, velocity);
+    view = view_of(body);
+    at = right_of(&view, &w);
+    was = view.displacement[3 * at];
+    for (n = 0; n < 20; ++n) {
+        report = advance(body, &step, 1);
+        ck_assert_msg(n > 0 || (report.active_unknowns > 0 && view.displacement[3 * at] != was && view.rest_time[at] < 0.5),
+                      "%zu unknowns awake, moved by %g m", report.active_unknowns, view.displacement[3 * at] - was);
+        if (!twin) continue;
+        twins = advance(twin, &step, 1);
+        other = view_of(twin);
+        ck_assert_uint_eq(report.active_unknowns, twins.active_unknowns);
+        ck_assert_msg(memcmp(view.displacement, other.displacement, 3 * view.copy_count * sizeof was) == 0 &&
+                      memcmp(view.velocity, other.velocity, 3 * view.copy_count * sizeof was) == 0, "step %d", n);
+    }
+    if (!velocity) ck_assert(view.displacement[3 * at] < was - 0.2);
+    gx_body_destroy(body); gx_body_destroy(twin);
+    wl_free(&w);
+}
+END_TEST
+
 /* ---- copies without support ---- */
 
 /* A corner cut off so close to its node that it has 1e-12 ... 1e-3 of its element: falls like the rest, as a point if support_below says
@@ -527,6 +629,8 @@ int main(void) {
     ADD_SOME(tests, energy_of_cut_bodies_falls_from_violent_starts, 4 * START_COUNT);
     tcase_add_test(tests, bdf2_goes_on_after_a_cut);
     tcase_add_test(tests, cuts_wake_what_they_touch);
+    tcase_add_test(tests, released_sleepers_fall);
+    tcase_add_loop_test(tests, sleepers_see_what_is_written_through_changes, 0, 4 * CHANGE_COUNT);
     tcase_add_loop_test(tests, tiny_corners_fall, 0, 6);
     tcase_add_test(tests, copies_without_support_follow_their_fragment);
     tcase_add_loop_test(tests, few_supports_are_enough, 0, 4);
