@@ -1926,7 +1926,7 @@ static gx_result gxp_find_solid(gxp_cut *cut, const gxp_surface *s, int scoped) 
     uint32_t i;
     gx_result result = GX_OK;
     body->seeds.count = 0;
-    for (i = 0; i < body->complex->wall_count && result == GX_OK; i++) result = gxp_wall_leaves(body, body->complex->walls[i], &body->seeds);
+    for (i = 0; i < body->complex->wall_count && result == GX_OK; i++) result = gxp_wall_leaves(body, body->complex->walls[i] >> 1, &body->seeds);
     if (result == GX_OK) result = gxp_seed_untouched(cut);
     if (result == GX_OK) result = gxp_find_windings(body, s, scoped);
     for (i = 0; i < body->queue.count && result == GX_OK; i++)
@@ -2162,7 +2162,7 @@ static gx_result gxp_collect_touched(gxp_cut *cut) {
     gx_result result = GX_OK;
     body->seeds.count = 0;
     for (i = 0; i < body->complex->wall_count && result == GX_OK; i++)
-        if (body->complex->facets[body->complex->walls[i]].wall) result = gxp_wall_leaves(body, body->complex->walls[i], &body->seeds);
+        if (body->complex->walls[i] & 1) result = gxp_wall_leaves(body, body->complex->walls[i] >> 1, &body->seeds);
     body->stamp++;
     for (i = 0; i < body->seeds.count && result == GX_OK; i++) {
         const uint32_t cell = body->leaves[body->seeds.data[i]].cell;
@@ -4811,7 +4811,7 @@ static gx_result gxp_note_touched(gxp_cut *cut, uint32_t first_facet) {
     if (!body->skin.made) return GX_OK;
     if (body->skin.dirty.count / 8 > body->element_count) { body->skin.made = 0; return GX_OK; }
     for (i = first_facet; i < cx->facet_count && result == GX_OK; i++) result = gxp_push_leaf_elements(body, i);
-    for (i = 0; i < cx->wall_count && result == GX_OK; i++) result = gxp_push_leaf_elements(body, cx->walls[i]);
+    for (i = 0; i < cx->wall_count && result == GX_OK; i++) result = gxp_push_leaf_elements(body, cx->walls[i] >> 1);
     for (i = 0; i < body->saved_cell_count && result == GX_OK; i++) result = gxp_push(body, &body->skin.dirty, body->saved_cells[i].cell.element);
     for (i = 0; i < body->pinches.count; i++)   /* edges that were divided there without a new facet */
         for (j = body->node_start[body->pinches.data[i]]; j < body->node_start[body->pinches.data[i] + 1] && result == GX_OK; j++)

@@ -319,7 +319,7 @@ typedef struct gxb_complex {        /* what is used most comes first: its addres
     double origin[3];
     gxb_label *labels; uint32_t label_count, label_capacity;
     gxb_block *blocks;              /* exact coordinates, computed when first needed and kept */
-    uint32_t *walls; uint32_t wall_count, wall_capacity;    /* facets that became walls, or were labelled, since begin */
+    uint32_t *walls; uint32_t wall_count, wall_capacity;    /* facets that were labelled, or made walls, since begin: 2 x facet, + 1 if none before */
     gxb_undo *undo; uint32_t undo_count, undo_capacity;     /* what begin ... rollback restores, and the old contents */
     unsigned char *undo_bytes; uint32_t undo_byte_count, undo_byte_capacity;
     struct gxbp_corner *corners; uint32_t corner_count, corner_capacity;    /* stack of clipped polygons */
@@ -2902,8 +2902,8 @@ static gx_result gxbp_add_label(gxb_complex *cx, const gxb_triangle *t, uint32_t
     cx->labels[cx->label_count].orientation = gxbp_relative_orientation(cx, t, cx->facets[facet].plane);
     cx->labels[cx->label_count].next = cx->facets[facet].labels;
     cx->facets[facet].labels = cx->label_count++;
+    cx->walls[cx->wall_count++] = facet << 1 | (t->wall && !cx->facets[facet].wall);
     if (t->wall) cx->facets[facet].wall = 1;
-    cx->walls[cx->wall_count++] = facet;
     return GX_OK;
 }
 
@@ -2912,8 +2912,8 @@ GXFEM_API gx_result gxb_complex_set_wall(gxb_complex *cx, uint32_t facet) {
     if (result == GX_OK) result = gxbp_reserve_undo(cx, 1);
     if (result != GX_OK) return result;
     gxbp_save(cx, GXBP_FACETS, facet);
+    cx->walls[cx->wall_count++] = facet << 1 | !cx->facets[facet].wall;
     cx->facets[facet].wall = 1;
-    cx->walls[cx->wall_count++] = facet;
     return GX_OK;
 }
 
