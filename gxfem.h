@@ -1619,15 +1619,69 @@ static int gxp_in_scope(void *user, uint32_t leaf) {
     return body->cell_stamp[body->leaves[gxp_old_leaf(body, leaf)].cell] == body->scope_stamp;
 }
 
-/* Has the element a cell that the cut may touch? */
-static int gxp_element_in_scope(const gx_body *body, uint32_t element) {
-    uint32_t cell;
-    for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next) if (body->cell_stamp[cell] == body->scope_stamp) return 1;
-    return 0;
+typedef struct gxp_joint { uint32_t point, edge; int found, walled; } gxp_joint;    /* a point, or an edge of the complex */
+
+/* Does the leaf have the joint on its boundary, and does a wall touch it there? */
+static gx_result gxp_look_for_joint(gx_body *body, uint32_t leaf, gxp_joint *joint) {
+    gxb_complex *cx = body->complex;
+    uint32_t first, count = 0, i, j, e0, en;
+    gx_result result = gxb_complex_open_element(cx, cx->leaves[leaf].element);
+    if (result == GX_OK) result = gxb_leaf_facets(cx, leaf, &first, &count);
+    joint->found = 0;
+    for (i = 0; i < count && result == GX_OK; i++) {
+        const uint32_t facet = cx->pool[first + i];
+        result = gxb_facet_edges(cx, facet, &e0, &en);
+        for (j = 0; j < en && result == GX_OK; j++) {
+            const uint32_t e = cx->pool[e0 + j];
+            if (joint->point != GXB_NONE ? cx->edges[e >> 1].v[e & 1] != joint->point : e >> 1 != joint->edge) continue;
+            joint->found = 1;
+            joint->walled |= cx->facets[facet].wall != 0 || cx->leaves[leaf].removed != 0 ||
+                             (joint->point != GXB_NONE ? cx->points[joint->point].wall : cx->edges[joint->edge].wall) != 0;
+        }
+    }
+    return result;
+}
+
+/* Appends the leaves below a reference of an element's tree. */
+static gx_result gxp_push_leaves(gx_body *body, uint32_t reference, gxp_words *out) {
+    const gxb_node *node = &body->complex->nodes[reference >> 1];
+    gx_result result;
+    if (!(reference & 1)) return gxp_push(body, out, reference >> 1);
+    result = gxp_push_leaves(body, node->child[0], out);
+    return result == GX_OK ? gxp_push_leaves(body, node->child[1], out) : result;
+}
+
+static gx_result gxp_push_edge_pieces(gx_body *body, uint32_t edge, gxp_words *out) {
+    const uint32_t child = body->complex->edges[edge].child;
+    gx_result result;
+    if (child == GXB_NONE) return gxp_push(body, out, edge);
+    result = gxp_push_edge_pieces(body, child, out);
+    return result == GX_OK ? gxp_push_edge_pieces(body, child + 1, out) : result;
+}
+
+/* Has a leaf of the element that the cut may touch the node, or a piece of the mesh edge, on its boundary? The other is GXB_NONE. */
+static gx_result gxp_look_in_scope(gx_body *body, uint32_t element, uint32_t node, uint32_t edge, int *found) {
+    gx_result result = GX_OK;
+    uint32_t i, j;
+    *found = 0;
+    body->triangles.count = body->faces.count = 0;
+    if (edge == GXB_NONE) result = gxp_push(body, &body->faces, GXB_NONE);
+    else result = gxp_push_edge_pieces(body, body->complex->mesh_edge[edge], &body->faces);
+    if (result == GX_OK) result = gxp_push_leaves(body, body->complex->root[element], &body->triangles);
+    for (i = 0; i < body->triangles.count && result == GX_OK; i++) {
+        gxp_joint joint;
+        if (!gxp_in_scope(body, body->triangles.data[i])) continue;
+        for (j = 0; j < body->faces.count && result == GX_OK && !*found; j++) {
+            joint.point = node; joint.edge = body->faces.data[j]; joint.walled = 0;
+            result = gxp_look_for_joint(body, body->triangles.data[i], &joint);
+            *found |= joint.found;
+        }
+    }
+    return result;
 }
 
 /* A sheet through an edge or node in which alone elements meet separates them there, even if it enters neither. */
-static gx_result gxp_cover_pinches(gx_body *body, gxb_triangle *t, uint32_t element) {
+static gx_result gxp_cover_pinches(gx_body *body, gxb_triangle *t, uint32_t element, int scoped) {
     const gxb_complex *cx = body->complex;
     uint32_t k, pinched = 0;
     gx_result result = GX_OK;
@@ -1635,15 +1689,17 @@ static gx_result gxp_cover_pinches(gx_body *body, gxb_triangle *t, uint32_t elem
     if (!pinched) return GX_OK;
     for (k = 0; k < 4 && result == GX_OK; k++) {
         const uint32_t node = cx->elements[4 * element + k];
-        int covered = 0;
+        int covered = 0, allowed = 1;
         if (!(body->node_pinched[node] & 1)) continue;
-        result = gxb_complex_cover_node(body->complex, t, node, &covered);
+        if (scoped) result = gxp_look_in_scope(body, element, node, GXB_NONE, &allowed);
+        if (result == GX_OK && allowed) result = gxb_complex_cover_node(body->complex, t, node, &covered);
         if (covered && result == GX_OK) result = gxp_push(body, &body->pinches, node);
     }
     for (k = 0; k < 6 && result == GX_OK; k++) {
-        int covered = 0;
+        int covered = 0, allowed = 1;
         if (!body->edge_pinched[cx->element_edges[6 * element + k]]) continue;
-        result = gxb_complex_cover_edge(body->complex, t, element, k, &covered);
+        if (scoped) result = gxp_look_in_scope(body, element, GXB_NONE, cx->element_edges[6 * element + k], &allowed);
+        if (result == GX_OK && allowed) result = gxb_complex_cover_edge(body->complex, t, element, k, &covered);
         if (covered && result == GX_OK) result = gxp_push(body, &body->pinches, cx->elements[4 * element + gxp_edge_nodes[k][0]]);
         if (covered && result == GX_OK) result = gxp_push(body, &body->pinches, cx->elements[4 * element + gxp_edge_nodes[k][1]]);
     }
@@ -1661,8 +1717,7 @@ static gx_result gxp_insert_triangle(gxp_cut *cut, gxp_surface *s, uint32_t inde
     for (i = 0; i < body->list.count && result == GX_OK; i++) {
         const uint32_t element = body->list.data[i];
         result = gxb_complex_insert(body->complex, &s->triangles[index], element, scoped ? gxp_in_scope : NULL, body);
-        if (result == GX_OK && s->triangles[index].wall && (!scoped || gxp_element_in_scope(body, element)))
-            result = gxp_cover_pinches(body, &s->triangles[index], element);
+        if (result == GX_OK && s->triangles[index].wall) result = gxp_cover_pinches(body, &s->triangles[index], element, scoped);
     }
     return result;
 }
@@ -2403,38 +2458,6 @@ static gx_result gxp_cross_faces(gx_body *body, uint32_t cell, uint32_t node) {
 
 /* --- pinched nodes and edges: an edge piece or node that no wall touches joins the cells around it --- */
 
-typedef struct gxp_joint { uint32_t point, edge; int found, walled; } gxp_joint;    /* a point, or an edge of the complex */
-
-/* Does the leaf have the joint on its boundary, and does a wall touch it there? */
-static gx_result gxp_look_for_joint(gx_body *body, uint32_t leaf, gxp_joint *joint) {
-    gxb_complex *cx = body->complex;
-    uint32_t first, count = 0, i, j, e0, en;
-    gx_result result = gxb_complex_open_element(cx, cx->leaves[leaf].element);
-    if (result == GX_OK) result = gxb_leaf_facets(cx, leaf, &first, &count);
-    joint->found = 0;
-    for (i = 0; i < count && result == GX_OK; i++) {
-        const uint32_t facet = cx->pool[first + i];
-        result = gxb_facet_edges(cx, facet, &e0, &en);
-        for (j = 0; j < en && result == GX_OK; j++) {
-            const uint32_t e = cx->pool[e0 + j];
-            if (joint->point != GXB_NONE ? cx->edges[e >> 1].v[e & 1] != joint->point : e >> 1 != joint->edge) continue;
-            joint->found = 1;
-            joint->walled |= cx->facets[facet].wall != 0 || cx->leaves[leaf].removed != 0 ||
-                             (joint->point != GXB_NONE ? cx->points[joint->point].wall : cx->edges[joint->edge].wall) != 0;
-        }
-    }
-    return result;
-}
-
-/* Appends the leaves below a reference of an element's tree. */
-static gx_result gxp_push_leaves(gx_body *body, uint32_t reference, gxp_words *out) {
-    const gxb_node *node = &body->complex->nodes[reference >> 1];
-    gx_result result;
-    if (!(reference & 1)) return gxp_push(body, out, reference >> 1);
-    result = gxp_push_leaves(body, node->child[0], out);
-    return result == GX_OK ? gxp_push_leaves(body, node->child[1], out) : result;
-}
-
 /* Appends to found the cells around the node that have the joint on their boundary. Removed leaves count as walls. */
 static gx_result gxp_find_joint(gx_body *body, uint32_t node, gxp_joint *joint, gxp_words *found) {
     uint32_t j, i;
@@ -2462,14 +2485,6 @@ static gx_result gxp_cross_joint(gx_body *body, uint32_t cell, uint32_t node, ui
     for (i = 0; i < body->list.count; i++) member |= body->list.data[i] == cell;
     for (i = 0; i < body->list.count && result == GX_OK && member && !joint.walled; i++) result = gxp_visit_cell(body, body->list.data[i]);
     return result;
-}
-
-static gx_result gxp_push_edge_pieces(gx_body *body, uint32_t edge, gxp_words *out) {
-    const uint32_t child = body->complex->edges[edge].child;
-    gx_result result;
-    if (child == GXB_NONE) return gxp_push(body, out, edge);
-    result = gxp_push_edge_pieces(body, child, out);
-    return result == GX_OK ? gxp_push_edge_pieces(body, child + 1, out) : result;
 }
 
 static gx_result gxp_cross_pinches(gx_body *body, uint32_t cell, uint32_t node) {

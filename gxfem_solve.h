@@ -170,7 +170,7 @@ typedef double (*gxs_energy_fn)(void *user, const double *deformation, double *s
 typedef struct gxs_material {
     gxs_material_kind kind;
     double young;               /* Pa, above 0; of GXS_CUSTOM: about its stiffness, for scaling only */
-    double poisson;             /* 0 <= poisson < 0.5; of GXS_CUSTOM: not read */
+    double poisson;             /* 0 <= poisson < 0.5; of GXS_CUSTOM: checked, not used */
     double damping;             /* Rayleigh's beta, s, 0 or more: stress grows by beta times its rate of change */
     gxs_energy_fn energy;       /* GXS_CUSTOM only */
     void *user;
@@ -402,7 +402,7 @@ GXFEM_API void gxs_solver_destroy(gxs_solver *solver); /* NULL is allowed */
 
 /* Assembled forms, for tests and benches: no held copies, no constraints, no time. Vectors are copy_count x 3.
  * energy: U, J. gradient: dU/du, N. hessian_product: projected Hessian of U at displacement times direction, N, in single
- * precision as the solver has it. mass_product: M times direction. The output may not overlap an input. */
+ * precision as the solver has it. mass_product: M, not lumped, times direction. The output may not overlap an input. */
 GXFEM_API gx_result gxs_model_energy(const gxs_model *model, const double *displacement, double *energy);
 GXFEM_API gx_result gxs_model_gradient(const gxs_model *model, const double *displacement, double *gradient);
 GXFEM_API gx_result gxs_model_hessian_product(const gxs_model *model, const double *displacement,

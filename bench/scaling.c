@@ -5,8 +5,7 @@
    BENCH=--small: sizes that take seconds.
 
    A block of tetrahedra (block.h) is cut by planes or by gently curved sheets, all the way through.
-       elements   the first cut of a block of so many elements (its arrays still have to grow), and the median of those after it; curved-large-pages:
-                  the same with an allocator of pages of 2 MB
+       elements   the first cut of a block of so many elements (its arrays still have to grow), and the median of those after it
        cuts       the median of the last half of so many cuts in one block: parallel planes at random heights, or planes of random
                   direction through the middle, which cross each other (to 100: the pieces grow with the cube of their number)
        triangles  one cut, curved, of so many triangles
@@ -22,7 +21,6 @@
    It ends with 1 if ours are not the least. A table goes to stderr, with how costs grow: as a power of what is swept, by least squares over
    the upper half of its decades. What a cut touches are the cells that it makes and its triangles. */
 #define _POSIX_C_SOURCE 200112L
-#define _DEFAULT_SOURCE             /* madvise */
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "block.h"
@@ -30,7 +28,6 @@
 #include "csv.h"
 #include "least.h"
 #include "progress.h"
-#include <sys/mman.h>
 
 enum { MOST_CUTS = 1024, LATER_CUTS = 6, MOST_ROWS = 64 };
 
@@ -43,29 +40,14 @@ static void check(gx_result result)
 
 /* ---- memory ---- */
 
-/* large: blocks of a large page and more lie on such pages, where the system has them for the asking, as a host's allocator may see to */
-typedef struct meter { size_t now, peak; int large; } meter;
-
-enum { LARGE_PAGE = 1 << 21 };
-
-/* A block on pages of its own, which are large if the system will */
-static void *large_block(size_t size)
-{
-    const size_t room = (size + LARGE_PAGE - 1) / LARGE_PAGE * LARGE_PAGE;
-    void *memory = NULL;
-    if (posix_memalign(&memory, LARGE_PAGE, room) != 0) return NULL;
-#ifdef MADV_HUGEPAGE
-    madvise(memory, room, MADV_HUGEPAGE);
-#endif
-    return memory;
-}
+typedef struct meter { size_t now, peak; } meter;
 
 static void *meter_allocate(void *user, size_t size)
 {
     meter *m = (meter *)user;
     m->now += size;
     m->peak = m->now > m->peak ? m->now : m->peak;
-    return m->large && size >= LARGE_PAGE ? large_block(size) : malloc(size);
+    return malloc(size);
 }
 
 static void meter_release(void *user, void *memory, size_t size)
@@ -77,12 +59,8 @@ static void meter_release(void *user, void *memory, size_t size)
 static void *meter_reallocate(void *user, void *memory, size_t size, size_t larger)
 {
     meter *m = (meter *)user;
-    void *moved = m->large && larger >= LARGE_PAGE ? large_block(larger) : realloc(memory, larger);
+    void *moved = realloc(memory, larger);
     if (!moved) return NULL;
-    if (m->large && larger >= LARGE_PAGE) {
-        memcpy(moved, memory, size);
-        free(memory);
-    }
     m->now += larger - size;
     m->peak = m->now > m->peak ? m->now : m->peak;
     return moved;
@@ -173,7 +151,7 @@ static double uniform(scene *s)
     return (s->random >> 8) / 16777216.0;
 }
 
-static void scene_make(scene *s, uint32_t cells, int large_pages)
+static void scene_make(scene *s, uint32_t cells)
 {
     const gx_region top = {2, 1, 1.0 - 1e-9};
     block_desc desc;
@@ -181,7 +159,6 @@ static void scene_make(scene *s, uint32_t cells, int large_pages)
     memset(s, 0, sizeof *s);
     memset(&desc, 0, sizeof desc);
     s->random = 1;
-    s->memory.large = large_pages;
     desc.young = 1e6;
     desc.allocator.allocate = meter_allocate;
     desc.allocator.release = meter_release;
@@ -354,12 +331,12 @@ static int print_table(void)
 {
     size_t i, from = 0;
     int wrong = 0;
-    fprintf(stderr, "%-9s %-18s %9s %5s %9s %11s %10s %9s %9s %9s %9s %8s\n", "sweep", "kind", "elements", "cuts", "triangles", "us/touched", "step, ms",
+    fprintf(stderr, "%-9s %-8s %9s %5s %9s %11s %10s %9s %9s %9s %9s %8s\n", "sweep", "kind", "elements", "cuts", "triangles", "us/touched", "step, ms",
             "unknowns", "least", "VNA", "remeshed", "MB");
     for (i = 0; i < line_count; i++) {
         const line *l = &lines[i];
         const int off = l->unknowns != l->least;
-        fprintf(stderr, "%-9s %-18s %9lu %5lu %9lu %11.1f %10.1f %9lu %9lu %9lu %9lu %8.1f%s\n", l->sweep, l->kind, (unsigned long)l->elements,
+        fprintf(stderr, "%-9s %-8s %9lu %5lu %9lu %11.1f %10.1f %9lu %9lu %9lu %9lu %8.1f%s\n", l->sweep, l->kind, (unsigned long)l->elements,
                 (unsigned long)l->cuts, (unsigned long)l->triangles, cost_of_cut(l), l->step_ms, (unsigned long)l->unknowns, (unsigned long)l->least,
                 (unsigned long)l->vna, (unsigned long)l->remeshed, l->megabytes, off ? "  NOT THE LEAST" : "");
         wrong += off;
@@ -375,14 +352,14 @@ static int print_table(void)
 
 /* ---- sweeps ---- */
 
-static void against_elements(uint32_t cells, double wave, uint32_t side, int large_pages)
+static void against_elements(uint32_t cells, double wave, uint32_t side)
 {
     const double slope[2] = {0.05, 0.03};
     double us[LATER_CUTS], arrangement[LATER_CUTS], first;
     sheet by = sheet_make(side);
     scene s;
     int i;
-    scene_make(&s, cells, large_pages);
+    scene_make(&s, cells);
     sheet_place(&by, 0.5171, slope, wave);
     first = cut(&s, &by);
     for (i = 0; i < LATER_CUTS; i++) {
@@ -390,7 +367,7 @@ static void against_elements(uint32_t cells, double wave, uint32_t side, int lar
         us[i] = cut(&s, &by);
         arrangement[i] = 1e6 * s.report.seconds_arrangement;
     }
-    row(&s, "elements", large_pages ? "curved-large-pages" : wave > 0 ? "curved" : "plane", 1 + LATER_CUTS, &by, first, median(us, LATER_CUTS), median(arrangement, LATER_CUTS));
+    row(&s, "elements", wave > 0 ? "curved" : "plane", 1 + LATER_CUTS, &by, first, median(us, LATER_CUTS), median(arrangement, LATER_CUTS));
     scene_free(&s);
     sheet_free(&by);
 }
@@ -408,7 +385,7 @@ static void against_cuts(uint32_t cells, size_t count, int crossing)
     const size_t from = count / 2;
     sheet by = sheet_make(1);
     scene s;
-    scene_make(&s, cells, 0);
+    scene_make(&s, cells);
     for (i = 0; i < count; i++) {
         next_plane(&s, &by, crossing);
         us[i] = cut(&s, &by);
@@ -429,7 +406,7 @@ static void against_triangles(uint32_t cells, uint32_t side)
     sheet by = sheet_make(side);
     scene s;
     double us;
-    scene_make(&s, cells, 0);
+    scene_make(&s, cells);
     sheet_place(&by, 0.5171, slope, 0.05);
     us = cut(&s, &by);
     row(&s, "triangles", "curved", 1, &by, us, us, 1e6 * s.report.seconds_arrangement);
@@ -448,10 +425,9 @@ int main(int argc, char **argv)
     int i, wrong;
     csv_open(argv[0], path, "sweep,kind,elements,cuts,triangles,touched,created,cut_us,first_us_per_touched,us_per_touched,"
              "arrangement_us_per_touched,step_ms,unknowns_before,unknowns,least,vna,remeshed,peak_mb");
-    line_total = (size_t)(3 * blocks + parallel + crossing + curved);
-    for (i = 0; i < blocks; i++) against_elements(cells[i], 0, 1, 0);
-    for (i = 0; i < blocks; i++) against_elements(cells[i], 0.05, cells[i], 0);
-    for (i = 0; i < blocks; i++) against_elements(cells[i], 0.05, cells[i], 1);
+    line_total = (size_t)(2 * blocks + parallel + crossing + curved);
+    for (i = 0; i < blocks; i++) against_elements(cells[i], 0, 1);
+    for (i = 0; i < blocks; i++) against_elements(cells[i], 0.05, cells[i]);
     for (i = 0; i < parallel; i++) against_cuts(block, cuts[i], 0);
     for (i = 0; i < crossing; i++) against_cuts(block, cuts[i], 1);
     for (i = 0; i < curved; i++) against_triangles(block, sides[i]);
