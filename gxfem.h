@@ -3574,7 +3574,7 @@ static void gxp_label_copies(gx_body *body) {
 }
 
 static void gxp_find_origins(gx_body *body, gxp_change *change) {
-    const double *mass = body->fragments + body->fragment_capacity;
+    const double *mass = body->fragments != NULL ? body->fragments + body->fragment_capacity : NULL;
     uint32_t i, k, f;
     for (i = 0; i < body->view_cells.count; i++) for (k = 0; k < 4; k++) {
         const uint32_t label = body->copy_label[body->cell_copies.data[4 * i + k]];

@@ -93,6 +93,7 @@ static int take_arguments(settings *set, int argc, char **argv, gxio_error *erro
         const char *name = argv[i];
         if (name[0] != '-') {
             if (set->count > 0) return gxio_fail(error, name, 0, "has no operation before it");
+            set->operations[set->count] = GXB_UNION;
             set->surfaces[set->count++] = name;
         } else if (!take_flag(set, name)) {
             if (find_word(name, operations, 5) == 5 && strcmp(name, "--rule") != 0 && strcmp(name, "--out") != 0)
