@@ -218,7 +218,8 @@ typedef struct gx_view {
     const uint8_t *copy_held;       /* copy_count, 1: held by a Dirichlet region */
     double *displacement;           /* copy_count x 3, m; the caller may write, and then takes a step of GXS_BDF1 before one of GXS_BDF2 */
     double *velocity;               /* copy_count x 3, m/s; likewise */
-    double *rest_time;              /* copy_count: for how long it has been slower than sleep_speed, s; the caller may write 0 to wake it */
+    double *rest_time;              /* copy_count: for how long it has been slower than sleep_speed, s; the caller may write 0 to wake it; calls
+                                       that find its state written since the last step do, whether they succeed or not */
     size_t fragment_count;
     const double *fragment_volume;  /* fragment_count, m3 */
     const double *fragment_mass;    /* kg */
@@ -1651,6 +1652,7 @@ static gx_result gxp_push_leaves(gx_body *body, uint32_t reference, gxp_words *o
     return result == GX_OK ? gxp_push_leaves(body, node->child[1], out) : result;
 }
 
+/* Appends the edges of the complex into which this one has been divided. */
 static gx_result gxp_push_edge_pieces(gx_body *body, uint32_t edge, gxp_words *out) {
     const uint32_t child = body->complex->edges[edge].child;
     gx_result result;
@@ -1659,7 +1661,7 @@ static gx_result gxp_push_edge_pieces(gx_body *body, uint32_t edge, gxp_words *o
     return result == GX_OK ? gxp_push_edge_pieces(body, child + 1, out) : result;
 }
 
-/* Has a leaf of the element that the cut may touch the node, or a piece of the mesh edge, on its boundary? The other is GXB_NONE. */
+/* Has a leaf of the element that the cut may touch the node on its boundary, or any piece of the mesh edge? The other of the two is GXB_NONE. */
 static gx_result gxp_look_in_scope(gx_body *body, uint32_t element, uint32_t node, uint32_t edge, int *found) {
     gx_result result = GX_OK;
     uint32_t i, j;

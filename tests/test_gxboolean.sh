@@ -1,28 +1,14 @@
 #!/bin/sh
 # Tests the program examples/gxboolean.c from outside: exit codes, messages, files, figures.
 # usage: sh tests/test_gxboolean.sh PATH/TO/gxboolean
-set -u
-[ $# -eq 1 ] || { echo "usage: $0 GXBOOLEAN" >&2; exit 2; }
-case $1 in /*) gxboolean=$1 ;; *) gxboolean=$(pwd)/$1 ;; esac
-[ -x "$gxboolean" ] || { echo "$0: $1 is not a program" >&2; exit 2; }
-work=$(mktemp -d) || exit 2
-trap 'rm -rf "$work"' EXIT
-trap 'exit 2' HUP INT TERM
-cd "$work" || exit 2
-passed=0
-failed=0
-
-# check NAME WHY: counts a test, which failed if WHY is not empty
-check() {
-    if [ -z "$2" ]; then passed=$((passed + 1)); else failed=$((failed + 1)); echo "FAILED $1: $2"; fi
-}
+. "$(dirname -- "$0")/program.sh"
 
 # refuses NAME CODE PATTERN ARGUMENTS...: exits with CODE, says one line that matches PATTERN, leaves no file behind
 refuses() {
     name=$1 code=$2 pattern=$3
     shift 3
     rm -f out.off
-    "$gxboolean" "$@" >stdout 2>stderr
+    "$program" "$@" >stdout 2>stderr
     got=$? why=
     [ $got -eq "$code" ] || why="exit $got, not $code"
     [ "$(wc -l <stderr)" -eq 1 ] || why="$why; stderr is not one line"
@@ -36,7 +22,7 @@ refuses() {
 gives() {
     name=$1 want=$2
     shift 2
-    "$gxboolean" "$@" >stdout 2>stderr
+    "$program" "$@" >stdout 2>stderr
     got=$? why=
     [ $got -eq 0 ] || why="exit $got"
     [ ! -s stderr ] || why="$why; stderr says '$(head -n 1 stderr)'"
@@ -58,7 +44,7 @@ refuses "a plane alone" 2 "plane:0,0,0,0,0,1: is not closed" plane:0,0,0,0,0,1
 printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >open.off
 refuses "open surface" 1 "open.off:6: the surface is not closed" box:0,0,0,1,1,1 --union open.off --out out.off
 refuses "no such folder" 2 "none/r.off: cannot be written" box:0,0,0,1,1,1 --out none/r.off
-"$gxboolean" --help >stdout 2>stderr
+"$program" --help >stdout 2>stderr
 check "help" "$([ $? -eq 0 ] && grep -q '^usage: gxboolean' stdout && [ ! -s stderr ] || echo 'exit code or output')"
 
 set -- box:0,0,0,3,3,3 --difference box:1,1,-1,2,2,4 --difference box:-1,1,1,4,2,2 --difference box:1,-1,1,2,4,2

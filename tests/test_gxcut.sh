@@ -1,28 +1,14 @@
 #!/bin/sh
 # Tests the program examples/gxcut.c from outside: exit codes, messages, files, figures.
 # usage: sh tests/test_gxcut.sh PATH/TO/gxcut
-set -u
-[ $# -eq 1 ] || { echo "usage: $0 GXCUT" >&2; exit 2; }
-case $1 in /*) gxcut=$1 ;; *) gxcut=$(pwd)/$1 ;; esac
-[ -x "$gxcut" ] || { echo "$0: $1 is not a program" >&2; exit 2; }
-work=$(mktemp -d) || exit 2
-trap 'rm -rf "$work"' EXIT
-trap 'exit 2' HUP INT TERM
-cd "$work" || exit 2
-passed=0
-failed=0
-
-# check NAME WHY: counts a test, which failed if WHY is not empty
-check() {
-    if [ -z "$2" ]; then passed=$((passed + 1)); else failed=$((failed + 1)); echo "FAILED $1: $2"; fi
-}
+. "$(dirname -- "$0")/program.sh"
 
 # refuses NAME CODE PATTERN ARGUMENTS...: exits with CODE, says one line that matches PATTERN, leaves no file behind
 refuses() {
     name=$1 code=$2 pattern=$3
     shift 3
     rm -rf out r.json
-    "$gxcut" "$@" >stdout 2>stderr
+    "$program" "$@" >stdout 2>stderr
     got=$? why=
     [ $got -eq "$code" ] || why="exit $got, not $code"
     [ "$(wc -l <stderr)" -eq 1 ] || why="$why; stderr is not one line"
@@ -37,7 +23,7 @@ runs() {
     name=$1
     shift
     rm -rf out r.json
-    "$gxcut" "$@" >stdout 2>stderr
+    "$program" "$@" >stdout 2>stderr
     got=$? why=
     [ $got -eq 0 ] || why="exit $got"
     [ ! -s stderr ] || why="$why; stderr says '$(head -n 1 stderr)'"
@@ -98,7 +84,7 @@ refuses "plane without normal" 2 "plane:0,0,0,0,0,0" cube5 --sheet plane:0,0,0,0
 refuses "box turned over" 2 "box:1,0,0,0,1,1" cube5 --solid box:1,0,0,0,1,1
 refuses "wave of length 0" 2 "wave:" cube5 --sheet wave:0,0,0,0,0,1,0.1,0
 refuses "unknown cut" 2 "cut.ply: is no cut" cube5 --sheet cut.ply
-"$gxcut" --help >stdout 2>stderr
+"$program" --help >stdout 2>stderr
 [ $? -eq 0 ] && grep -q "^usage: gxcut" stdout && [ ! -s stderr ]
 check "help" "$([ $? -eq 0 ] || echo 'exit code or output')"
 
