@@ -74,7 +74,8 @@
  * LIMITS. poisson in [0, 0.5), beyond 0.49999 the single precision of the Hessian tells; copies and elements below 2^30.
  * Energies, forces and states are doubles; the Hessian, its products and the preconditioner are single precision, which sets no
  * limit to what Newton reaches, only to what one linear solve does (about 1e-6 of the residual; a free body's slowest modes are
- * solved as well while inertia is above some 1e-6 of stiffness, rho h^2 / (E dt^2) for elements of size h). Memory: about 350
+ * solved as well while inertia is above some 1e-6 of stiffness, rho h^2 / (E dt^2) for elements of size h). Where the mass of a part
+ * of an element has its centre is rounded once, by at most 1e-7 of the element, and all is right for the mass so placed. Memory: about 350
  * bytes per element in all, of a mesh with four elements per copy. The material can invert without a failure and comes back by
  * itself; an element collapsed to a point, where its energy is stationary, is opened as if it were not quite one. Same input,
  * same binary: same bits. Nothing here needs isnan or infinities: it is right under -ffast-math, where sums round otherwise.
@@ -757,7 +758,7 @@ static gxsp_pool gxsp_pool_make(const gx_allocator *allocator)
 typedef struct gxsp_rest {
     double gradient[9][GXSP_LANES]; /* of shape functions 1..3, by rows, 1/m */
     double weight[GXSP_LANES];      /* m3 */
-    double mass[GXSP_LANES];        /* m of the block m (1 + delta_ij), kg; 0 where gxsp_mass has it */
+    double mass[GXSP_LANES];        /* kg: m of the block m (1 + delta_ij); in chunks that have moments all of the element's */
     uint32_t material[GXSP_LANES];
 } gxsp_rest;
 
@@ -766,9 +767,12 @@ typedef struct gxsp_corners {
     uint16_t node[4][GXSP_LANES];
 } gxsp_corners;
 
-typedef struct gxsp_mass {
-    double entry[10][GXSP_LANES]; /* kg, order of gxs_element.mass */
-} gxsp_mass;
+/* Moments of masses that are not those of whole elements: M_ij = mass (c_i c_j + R_i . R_j), semi-definite however it is rounded, of slivers
+ * too. c: centre of mass in barycentric coordinates, R R^T: their covariance; c_0 = 1 - sum c, R_0 = -sum R. */
+typedef struct gxsp_moments {
+    float centre[3][GXSP_LANES]; /* of corners 1 ... 3, in whole units of 2^-24: with c_0 they are exactly 1 in sum */
+    float root[6][GXSP_LANES];   /* of corners 1 ... 3, lower triangle by rows */
+} gxsp_moments;
 
 /* Projected Hessian of a block: dP = U (h : U^T dF V) V^T. */
 typedef struct gxsp_tangent {
@@ -779,11 +783,6 @@ typedef struct gxsp_tangent {
     float odd[3][GXSP_LANES];      /* and to each other; J */
     float mass[GXSP_LANES];        /* gxsp_rest.mass x rate, kg/s2 */
 } gxsp_tangent;
-
-/* Masses of a block that gxsp_rest does not have, for products: gxsp_mass x rate, kg/s2 */
-typedef struct gxsp_inertia {
-    float entry[10][GXSP_LANES];
-} gxsp_inertia;
 
 /* Projected Hessian of a block of GXS_CUSTOM, which has no frame (U and V are 1): weight x dP_i/dF_j, upper triangle by rows; J */
 typedef struct gxsp_general {
@@ -806,8 +805,7 @@ typedef struct gxsp_chunk {
     gxsp_corners *corners;
     uint8_t *fresh;                  /* block_count + 1: bit i: corner i is not the one of the block before, in each lane; at the end all */
     gxsp_tangent *tangents;
-    gxsp_mass *masses;               /* NULL: gxsp_rest has them all */
-    gxsp_inertia *inertias;          /* NULL: gxsp_tangent has them all */
+    gxsp_moments *moments;           /* NULL: elements are whole, or masses lumped */
     gxsp_general *generals;          /* of GXS_CUSTOM; NULL: gxsp_tangent has the Hessians */
     uint32_t *groups;                /* block_count x GXSP_LANES: group of the element in each lane; GXSP_NONE: there is none */
     uint32_t first_block, block_count; /* blocks are counted through all chunks */
@@ -1781,34 +1779,35 @@ static void gxsp_block_force(const gxsp_rest *GXSP_RESTRICT rest, gxsp_lanes *GX
         }
 }
 
-/* y += rate M x; energy = rate/2 x M x. general: NULL where rest->mass says it all */
-static void gxsp_block_inertia(const gxsp_rest *GXSP_RESTRICT rest, const gxsp_mass *GXSP_RESTRICT general, double rate,
+/* y += rate M x; energy = rate/2 x M x. moments: NULL where rest->mass says it all */
+static void gxsp_block_inertia(const gxsp_rest *GXSP_RESTRICT rest, const gxsp_moments *GXSP_RESTRICT moments, double rate,
                                gxsp_lanes *GXSP_RESTRICT x, gxsp_lanes *GXSP_RESTRICT y, double *GXSP_RESTRICT energy)
 {
     int r, l;
     GXSP_EACH_LANE(l) energy[l] = 0;
-    for (r = 0; !general && r < 3; ++r)
+    for (r = 0; !moments && r < 3; ++r)
         GXSP_EACH_LANE(l) {
             const double m = rate * rest->mass[l], a = x[r][l], b = x[3 + r][l], c = x[6 + r][l], d = x[9 + r][l];
             const double sum = a + b + c + d, fa = m * (sum + a), fb = m * (sum + b), fc = m * (sum + c), fd = m * (sum + d);
             y[r][l] += fa, y[3 + r][l] += fb, y[6 + r][l] += fc, y[9 + r][l] += fd;
             energy[l] += 0.5 * (fa * a + fb * b + fc * c + fd * d);
         }
-    for (r = 0; general && r < 3; ++r)
+    for (r = 0; moments && r < 3; ++r)
         GXSP_EACH_LANE(l) {
-            const double a = x[r][l], b = x[3 + r][l], c = x[6 + r][l], d = x[9 + r][l];
-            const double fa = rate * (general->entry[0][l] * a + general->entry[1][l] * b + general->entry[2][l] * c + general->entry[3][l] * d);
-            const double fb = rate * (general->entry[1][l] * a + general->entry[4][l] * b + general->entry[5][l] * c + general->entry[6][l] * d);
-            const double fc = rate * (general->entry[2][l] * a + general->entry[5][l] * b + general->entry[7][l] * c + general->entry[8][l] * d);
-            const double fd = rate * (general->entry[3][l] * a + general->entry[6][l] * b + general->entry[8][l] * c + general->entry[9][l] * d);
-            y[r][l] += fa, y[3 + r][l] += fb, y[6 + r][l] += fc, y[9 + r][l] += fd;
-            energy[l] += 0.5 * (fa * a + fb * b + fc * c + fd * d);
+            const double m = rate * rest->mass[l], o = x[r][l], a = x[3 + r][l] - o, b = x[6 + r][l] - o, c = x[9 + r][l] - o;
+            const double ca = (double)moments->centre[0][l], cb = (double)moments->centre[1][l], cc = (double)moments->centre[2][l];
+            const double raa = (double)moments->root[0][l], rba = (double)moments->root[1][l], rbb = (double)moments->root[2][l],
+                         rca = (double)moments->root[3][l], rcb = (double)moments->root[4][l], rcc = (double)moments->root[5][l];
+            const double at = o + (ca * a + cb * b + cc * c), u = raa * a + rba * b + rca * c, v = rbb * b + rcb * c, w = rcc * c;
+            const double fa = m * (ca * at + raa * u), fb = m * (cb * at + rba * u + rbb * v), fc = m * (cc * at + rca * u + rcb * v + rcc * w);
+            y[r][l] += m * at - (fa + fb + fc), y[3 + r][l] += fa, y[6 + r][l] += fb, y[9 + r][l] += fc;
+            energy[l] += 0.5 * m * (at * at + u * u + v * v + w * w);
         }
 }
 
-/* y += (K + rate M) x, one lane after the other in registers. m: NULL where the tangent has the masses. apart: x of corners 1 ... 3 is what
- * they have more than corner 0, which callers know better than single precision could tell. */
-GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, const gxsp_inertia *GXSP_RESTRICT m, int apart, gxsp_singles *GXSP_RESTRICT x,
+/* y += (K + rate M) x, one lane after the other in registers. m: NULL where elements are whole. apart: x of corners 1 ... 3 is what they
+ * have more than corner 0, which callers know better than single precision could tell. */
+GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, const gxsp_moments *GXSP_RESTRICT m, int apart, gxsp_singles *GXSP_RESTRICT x,
                                     gxsp_singles *GXSP_RESTRICT y)
 {
     int l;
@@ -1847,19 +1846,20 @@ GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, const g
                     f3 = p0 * g3 + p1 * g4 + p2 * g5, f4 = p3 * g3 + p4 * g4 + p5 * g5, f5 = p6 * g3 + p7 * g4 + p8 * g5,
                     f6 = p0 * g6 + p1 * g7 + p2 * g8, f7 = p3 * g6 + p4 * g7 + p5 * g8, f8 = p6 * g6 + p7 * g7 + p8 * g8;
         if (m) {
-            const float n0 = m->entry[0][l], n1 = m->entry[1][l], n2 = m->entry[2][l], n3 = m->entry[3][l], n4 = m->entry[4][l], n5 = m->entry[5][l],
-                        n6 = m->entry[6][l], n7 = m->entry[7][l], n8 = m->entry[8][l], n9 = m->entry[9][l];
-            const float o3 = apart ? x0 : 0, o4 = apart ? x1 : 0, o5 = apart ? x2 : 0;
-            const float x3 = x[3][l] + o3, x4 = x[4][l] + o4, x5 = x[5][l] + o5, x6 = x[6][l] + o3, x7 = x[7][l] + o4, x8 = x[8][l] + o5,
-                        x9 = x[9][l] + o3, x10 = x[10][l] + o4, x11 = x[11][l] + o5;
-            y[0][l] += n0 * x0 + n1 * x3 + n2 * x6 + n3 * x9 - (f0 + f3 + f6), y[1][l] += n0 * x1 + n1 * x4 + n2 * x7 + n3 * x10 - (f1 + f4 + f7),
-                y[2][l] += n0 * x2 + n1 * x5 + n2 * x8 + n3 * x11 - (f2 + f5 + f8);
-            y[3][l] += n1 * x0 + n4 * x3 + n5 * x6 + n6 * x9 + f0, y[4][l] += n1 * x1 + n4 * x4 + n5 * x7 + n6 * x10 + f1,
-                y[5][l] += n1 * x2 + n4 * x5 + n5 * x8 + n6 * x11 + f2;
-            y[6][l] += n2 * x0 + n5 * x3 + n7 * x6 + n8 * x9 + f3, y[7][l] += n2 * x1 + n5 * x4 + n7 * x7 + n8 * x10 + f4,
-                y[8][l] += n2 * x2 + n5 * x5 + n7 * x8 + n8 * x11 + f5;
-            y[9][l] += n3 * x0 + n6 * x3 + n8 * x6 + n9 * x9 + f6, y[10][l] += n3 * x1 + n6 * x4 + n8 * x7 + n9 * x10 + f7,
-                y[11][l] += n3 * x2 + n6 * x5 + n8 * x8 + n9 * x11 + f8;
+            const float n = b->mass[l], k0 = m->centre[0][l], k1 = m->centre[1][l], k2 = m->centre[2][l], r0 = m->root[0][l], r1 = m->root[1][l],
+                        r2 = m->root[2][l], r3 = m->root[3][l], r4 = m->root[4][l], r5 = m->root[5][l];
+            const float m0 = n * (x0 + (k0 * a0 + k1 * b0 + k2 * c0)), m1 = n * (x1 + (k0 * a1 + k1 * b1 + k2 * c1)),
+                        m2 = n * (x2 + (k0 * a2 + k1 * b2 + k2 * c2));
+            const float v0 = n * (r0 * a0 + r1 * b0 + r3 * c0), v1 = n * (r0 * a1 + r1 * b1 + r3 * c1), v2 = n * (r0 * a2 + r1 * b2 + r3 * c2),
+                        v3 = n * (r2 * b0 + r4 * c0), v4 = n * (r2 * b1 + r4 * c1), v5 = n * (r2 * b2 + r4 * c2), v6 = n * (r5 * c0),
+                        v7 = n * (r5 * c1), v8 = n * (r5 * c2);
+            const float h0 = k0 * m0 + r0 * v0 + f0, h1 = k0 * m1 + r0 * v1 + f1, h2 = k0 * m2 + r0 * v2 + f2,
+                        h3 = k1 * m0 + r1 * v0 + r2 * v3 + f3, h4 = k1 * m1 + r1 * v1 + r2 * v4 + f4, h5 = k1 * m2 + r1 * v2 + r2 * v5 + f5,
+                        h6 = k2 * m0 + r3 * v0 + r4 * v3 + r5 * v6 + f6, h7 = k2 * m1 + r3 * v1 + r4 * v4 + r5 * v7 + f7,
+                        h8 = k2 * m2 + r3 * v2 + r4 * v5 + r5 * v8 + f8;
+            y[0][l] += m0 - (h0 + h3 + h6), y[1][l] += m1 - (h1 + h4 + h7), y[2][l] += m2 - (h2 + h5 + h8);
+            y[3][l] += h0, y[4][l] += h1, y[5][l] += h2, y[6][l] += h3, y[7][l] += h4, y[8][l] += h5, y[9][l] += h6, y[10][l] += h7,
+                y[11][l] += h8;
         } else {
             const float n = b->mass[l], m0 = n * (a0 + b0 + c0 + 5 * x0), m1 = n * (a1 + b1 + c1 + 5 * x1), m2 = n * (a2 + b2 + c2 + 5 * x2);
             y[0][l] += m0 - (f0 + f3 + f6), y[1][l] += m1 - (f1 + f4 + f7), y[2][l] += m2 - (f2 + f5 + f8);
@@ -1870,7 +1870,7 @@ GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, const g
     }
 }
 
-/* The same for a Hessian without a frame */
+/* y += K x for a Hessian without a frame */
 static void gxsp_general_product(const gxsp_tangent *b, const gxsp_general *h, int apart, gxsp_singles *x, gxsp_singles *y)
 {
     const float from = apart ? 0.0f : 1.0f;
@@ -1887,36 +1887,61 @@ static void gxsp_general_product(const gxsp_tangent *b, const gxsp_general *h, i
         for (j = 0; j < 9; ++j)
             GXSP_EACH_LANE(l) p[i][l] += h->hessian[gxsp_packed9(i, j)][l] * d[j][l];
     for (i = 0; i < 3; ++i)
-        GXSP_EACH_LANE(l) {
-            const float o = (1 - from) * x[i][l], sum = x[i][l] + x[3 + i][l] + x[6 + i][l] + x[9 + i][l] + 3 * o;
-            y[i][l] += b->mass[l] * (sum + x[i][l]);
+        GXSP_EACH_LANE(l)
             for (k = 0; k < 3; ++k) {
                 const float f = p[3 * i][l] * b->gradient[3 * k][l] + p[3 * i + 1][l] * b->gradient[3 * k + 1][l] +
                                 p[3 * i + 2][l] * b->gradient[3 * k + 2][l];
-                y[3 + 3 * k + i][l] += b->mass[l] * (sum + o + x[3 + 3 * k + i][l]) + f;
+                y[3 + 3 * k + i][l] += f;
                 y[i][l] -= f;
             }
+}
+
+/* c and R of a corner: out[0], out[1 ... 3] */
+static void gxsp_corner_moments(const gxsp_moments *moments, int corner, gxsp_singles *out)
+{
+    int k, l;
+    for (k = 0; k < 4; ++k)
+        GXSP_EACH_LANE(l) {
+            const float a = k == 0 ? moments->centre[0][l] : k == 1 ? moments->root[0][l] : 0;
+            const float b = k == 0 ? moments->centre[1][l] : k < 3 ? moments->root[k][l] : 0;
+            const float c = k == 0 ? moments->centre[2][l] : moments->root[2 + k][l];
+            out[k][l] = corner == 0 ? (k == 0 ? 1.0f : 0.0f) - (a + b + c) : corner == 1 ? a : corner == 2 ? b : c;
         }
 }
 
-/* y += rate M x of masses that the tangent does not have. apart: as of gxsp_block_product */
-static void gxsp_inertia_product(const gxsp_inertia *m, int apart, gxsp_singles *x, gxsp_singles *y)
+/* M_pq x rate */
+static void gxsp_block_mass(const gxsp_tangent *tangent, const gxsp_moments *moments, int p, int q, float *mass)
 {
+    gxsp_singles of[8];
+    int l;
+    if (moments) {
+        gxsp_corner_moments(moments, p, of);
+        gxsp_corner_moments(moments, q, of + 4);
+        GXSP_EACH_LANE(l) mass[l] = tangent->mass[l] * (of[0][l] * of[4][l] + of[1][l] * of[5][l] + of[2][l] * of[6][l] + of[3][l] * of[7][l]);
+    } else
+        GXSP_EACH_LANE(l) mass[l] = tangent->mass[l] * (p == q ? 2.0f : 1.0f);
+}
+
+/* y += rate M x. apart: as of gxsp_block_product */
+static void gxsp_inertia_product(const gxsp_tangent *b, const gxsp_moments *moments, int apart, gxsp_singles *x, gxsp_singles *y)
+{
+    gxsp_singles mass;
     int i, j, r, l;
     for (i = 0; i < 4; ++i)
-        for (j = 0; j < 4; ++j)
+        for (j = 0; j < 4; ++j) {
+            gxsp_block_mass(b, moments, i, j, mass);
             for (r = 0; r < 3; ++r)
-                GXSP_EACH_LANE(l) y[3 * i + r][l] += m->entry[gxsp_packed_mass[i][j]][l] * (x[3 * j + r][l] + (apart && j > 0 ? x[r][l] : 0));
+                GXSP_EACH_LANE(l) y[3 * i + r][l] += mass[l] * (x[3 * j + r][l] + (apart && j > 0 ? x[r][l] : 0));
+        }
 }
 
 /* The same for either */
-GXSP_INLINE void gxsp_kind_product(gxs_material_kind kind, const gxsp_tangent *b, const gxsp_inertia *m, const gxsp_general *h, int apart,
+GXSP_INLINE void gxsp_kind_product(gxs_material_kind kind, const gxsp_tangent *b, const gxsp_moments *m, const gxsp_general *h, int apart,
                                    gxsp_singles *x, gxsp_singles *y)
 {
     if (kind == GXS_CUSTOM) {
         gxsp_general_product(b, h, apart, x, y);
-        if (m)
-            gxsp_inertia_product(m, apart, x, y);
+        gxsp_inertia_product(b, m, apart, x, y);
     } else if (m && apart)
         gxsp_block_product(b, m, 1, x, y);
     else if (m)
@@ -2022,14 +2047,9 @@ static void gxsp_over_ranges(gxsp_system *system, void (*task)(void *, size_t), 
             sums[k] += system->range_sum[i][k];
 }
 
-static const gxsp_mass *gxsp_block_masses(const gxsp_chunk *chunk, uint32_t block)
+static const gxsp_moments *gxsp_block_moments(const gxsp_chunk *chunk, uint32_t block)
 {
-    return chunk->masses ? &chunk->masses[block] : NULL;
-}
-
-static gxsp_inertia *gxsp_block_inertias(const gxsp_chunk *chunk, uint32_t block)
-{
-    return chunk->inertias ? &chunk->inertias[block] : NULL;
+    return chunk->moments ? &chunk->moments[block] : NULL;
 }
 
 static gxsp_general *gxsp_block_general(const gxsp_chunk *chunk, uint32_t block)
@@ -2271,7 +2291,7 @@ static void gxsp_task_state(void *context, size_t index)
             energies[2][l] = rest->weight[l] * s.size[l];
         }
         if (inertia) {
-            gxsp_block_inertia(rest, gxsp_block_masses(chunk, b), pass->rate, led, forces, energies[1]);
+            gxsp_block_inertia(rest, gxsp_block_moments(chunk, b), pass->rate, led, forces, energies[1]);
             for (l = 0; l < GXSP_LANES; ++l)
                 energies[2][l] += energies[1][l];
         }
@@ -2492,12 +2512,78 @@ static gxsp_sorted *gxsp_order_elements(const gxsp_system *system, const gxs_mod
 
 static const uint8_t gxsp_own_order[4] = {0, 1, 2, 3};
 
+/* An element's mass, returned, and its centre in barycentric coordinates: row sums over their sum. rounded: to whole units of 2^-24, so that
+ * the four are 1 in sum, and none below 0 */
+static double gxsp_find_centre(const double *mass, double *centre, double *rounded)
+{
+    const double unit = 16777216;
+    double sum = 0;
+    int k, j, most = 1;
+    for (k = 0; k < 4; ++k) {
+        for (j = 0, centre[k] = 0; j < 4; ++j)
+            centre[k] += mass[gxsp_packed_mass[k][j]];
+        sum += centre[k];
+    }
+    rounded[0] = 1;
+    for (k = 3; k >= 0; --k) {
+        centre[k] = sum > 0 ? centre[k] / sum : 0;
+        if (k > 0)
+            rounded[0] -= rounded[k] = floor(unit * centre[k] + 0.5) / unit;
+    }
+    most = rounded[2] > rounded[most] ? 2 : most;
+    most = rounded[3] > rounded[most] ? 3 : most;
+    if (rounded[0] < 0)
+        rounded[most] += rounded[0], rounded[0] = 0;
+    return sum > 0 ? sum : 0;
+}
+
+/* What each corner's copy has of an element's mass: row sums as the solver has them */
+static void gxsp_row_masses(const gxs_element *element, double *rows)
+{
+    double centre[4], mass;
+    int k;
+    mass = gxsp_find_centre(element->mass, centre, rows);
+    for (k = 0; k < 4; ++k)
+        rows[k] = gxsp_whole(element->mass) ? 2.5 * element->mass[0] : mass * rows[k];
+}
+
+/* x / root, of no larger square than limit: entry of a Cholesky factor, whatever rounding has made of a matrix that is next to singular */
+static double gxsp_factor_entry(double x, double root, double limit)
+{
+    const double most = limit > 0 ? sqrt(limit) : 0;
+    return fabs(x) < root * most ? x / root : root > 0 ? copysign(most, x) : 0;
+}
+
+/* Masses of a lane that are not those of a whole element. Returns all of it. */
+static double gxsp_place_moments(const double *mass, const uint8_t *order, gxsp_moments *moments, size_t lane)
+{
+    double centre[4], rounded[4], root[3][3];
+    const double sum = gxsp_find_centre(mass, centre, rounded), over = sum > 0 ? 1 / sum : 0;
+    int i, j, k;
+    for (i = 0; i < 3; ++i) {
+        const uint8_t *own = order + 1;
+        double left = over * mass[gxsp_packed_mass[own[i]][own[i]]] - centre[own[i]] * centre[own[i]];
+        moments->centre[i][lane] = (float)rounded[own[i]];
+        for (j = 0; j < i; ++j) {
+            double x = over * mass[gxsp_packed_mass[own[i]][own[j]]] - centre[own[i]] * centre[own[j]];
+            for (k = 0; k < j; ++k)
+                x -= root[i][k] * root[j][k];
+            root[i][j] = gxsp_factor_entry(x, root[j][j], left);
+            left -= root[i][j] * root[i][j];
+        }
+        root[i][i] = left > 0 ? sqrt(left) : 0;
+        for (j = 0; j <= i; ++j)
+            moments->root[i * (i + 1) / 2 + j][lane] = (float)root[i][j];
+    }
+    return sum;
+}
+
 /* order: which of the element's corners come to be the lane's */
 static void gxsp_place_element(const gxsp_chunk *chunk, const gxs_element *element, const uint8_t *order, uint32_t at, uint32_t lumped)
 {
     gxsp_rest *rest = &chunk->rest[at / GXSP_LANES];
     size_t lane = at % GXSP_LANES;
-    int i, j, k;
+    int i, k;
     for (i = 0; i < 3; ++i)
         for (k = 0; k < 3; ++k)
             rest->gradient[3 * i + k][lane] = order[1 + i] > 0 ? element->gradient[order[1 + i]][k] :
@@ -2505,10 +2591,10 @@ static void gxsp_place_element(const gxsp_chunk *chunk, const gxs_element *eleme
     rest->weight[lane] = element->weight;
     rest->material[lane] = element->material;
     chunk->groups[at] = element->group % GXSP_GROUPS; /* who does not update may have left it unset */
-    rest->mass[lane] = lumped || chunk->masses ? 0 : 0.5 * element->mass[0];
-    for (i = 0; i < 4 && chunk->masses; ++i)
-        for (j = i; j < 4; ++j)
-            chunk->masses[at / GXSP_LANES].entry[gxsp_packed_mass[i][j]][lane] = element->mass[gxsp_packed_mass[order[i]][order[j]]];
+    if (chunk->moments)
+        rest->mass[lane] = gxsp_place_moments(element->mass, order, &chunk->moments[at / GXSP_LANES], lane);
+    else
+        rest->mass[lane] = lumped ? 0 : 0.5 * element->mass[0];
 }
 
 /* Ascending, by insertion */
@@ -2794,7 +2880,7 @@ static void gxsp_blocks_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count
 {
     gxsp_rest *rest;
     gxsp_corners *corners;
-    gxsp_mass *masses;
+    gxsp_moments *moments;
     uint32_t *groups;
     uint8_t *fresh;
     size_t blocks = 0, general = 0;
@@ -2806,7 +2892,7 @@ static void gxsp_blocks_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count
     rest = (gxsp_rest *)gxsp_take(pool, blocks, sizeof(gxsp_rest));
     corners = (gxsp_corners *)gxsp_take(pool, blocks, sizeof(gxsp_corners));
     groups = (uint32_t *)gxsp_take(pool, blocks * GXSP_LANES, sizeof(uint32_t));
-    masses = (gxsp_mass *)gxsp_take(pool, general, sizeof(gxsp_mass));
+    moments = (gxsp_moments *)gxsp_take(pool, general, sizeof(gxsp_moments));
     fresh = (uint8_t *)gxsp_take(pool, blocks + count, 1);
     if (pool->failed)
         return;
@@ -2816,12 +2902,12 @@ static void gxsp_blocks_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count
         chunks[c].corners = corners;
         chunks[c].groups = groups;
         chunks[c].fresh = fresh;
-        chunks[c].masses = chunks[c].class_index % 2 ? masses : NULL;
+        chunks[c].moments = chunks[c].class_index % 2 ? moments : NULL;
         rest += chunks[c].block_count;
         corners += chunks[c].block_count;
         groups += chunks[c].block_count * GXSP_LANES;
         fresh += chunks[c].block_count + 1;
-        masses += chunks[c].class_index % 2 ? chunks[c].block_count : 0;
+        moments += chunks[c].class_index % 2 ? chunks[c].block_count : 0;
     }
 }
 
@@ -2829,24 +2915,19 @@ static void gxsp_blocks_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count
 static void gxsp_tangents_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count)
 {
     gxsp_tangent *tangents;
-    gxsp_inertia *inertias;
     gxsp_general *generals;
-    size_t blocks = 0, cut = 0, custom = 0;
+    size_t blocks = 0, custom = 0;
     uint32_t c;
     for (c = 0; c < count; ++c) {
         blocks += chunks[c].block_count;
-        cut += chunks[c].masses ? chunks[c].block_count : 0;
         custom += chunks[c].kind == GXS_CUSTOM ? chunks[c].block_count : 0;
     }
     tangents = (gxsp_tangent *)gxsp_take(pool, blocks, sizeof(gxsp_tangent));
-    inertias = (gxsp_inertia *)gxsp_take(pool, cut, sizeof(gxsp_inertia));
     generals = (gxsp_general *)gxsp_take(pool, custom, sizeof(gxsp_general));
     for (c = 0; c < count && !pool->failed; ++c) {
         chunks[c].tangents = tangents;
-        chunks[c].inertias = chunks[c].masses ? inertias : NULL;
         chunks[c].generals = chunks[c].kind == GXS_CUSTOM ? generals : NULL;
         tangents += chunks[c].block_count;
-        inertias += chunks[c].masses ? chunks[c].block_count : 0;
         generals += chunks[c].kind == GXS_CUSTOM ? chunks[c].block_count : 0;
     }
 }
@@ -2911,16 +2992,18 @@ static int gxsp_supports(const gxs_element *element, int i)
 static void gxsp_find_fixed(gxsp_system *system, const gxs_model *model)
 {
     size_t e, i;
-    int k, j;
+    int k;
     memset(system->fixed, 1, system->n);
-    for (e = 0; e < model->element_count; ++e)
+    for (e = 0; e < model->element_count; ++e) {
+        const gxs_element *element = &model->elements[e];
+        double rows[4];
+        gxsp_row_masses(element, rows);
         for (k = 0; k < 4; ++k) {
-            const gxs_element *element = &model->elements[e];
             if (gxsp_supports(element, k))
                 system->fixed[element->copy[k]] = 0;
-            for (j = 0; j < 4; ++j)
-                system->lumped[element->copy[k]] += element->mass[gxsp_packed_mass[k][j]];
+            system->lumped[element->copy[k]] += rows[k];
         }
+    }
     if (model->held)
         for (i = 0; i < system->n; ++i)
             if (model->held[i])
@@ -4259,7 +4342,7 @@ static void gxsp_task_product(void *context, size_t index)
         const gxsp_chunk *next = gxsp_block_ahead(system, index, b, &further);
         gxsp_fetch(&next->tangents[further], sizeof(gxsp_tangent));
         gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
-        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_inertias(chunk, b), gxsp_block_general(chunk, b), 0, from, to);
+        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_moments(chunk, b), gxsp_block_general(chunk, b), 0, from, to);
         gxsp_block_scatter(chunk, b, to, out);
     }
 }
@@ -4440,7 +4523,7 @@ static void gxsp_task_apply(void *context, size_t index)
         const gxsp_chunk *next = gxsp_block_ahead(system, index, b, &further);
         gxsp_fetch(&next->tangents[further], sizeof(gxsp_tangent));
         gxsp_block_gather_doubles(chunk, b, in, from);
-        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_inertias(chunk, b), gxsp_block_general(chunk, b), 1, from, to);
+        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_moments(chunk, b), gxsp_block_general(chunk, b), 1, from, to);
         gxsp_block_scatter(chunk, b, to, out);
     }
 }
@@ -4502,7 +4585,6 @@ static int gxsp_tangents_finite(const gxsp_system *system)
     for (c = 0; c < system->chunk_count; ++c) {
         const gxsp_chunk *chunk = &system->chunks[c];
         if (!gxsp_all_finite_single(chunk->tangents, chunk->block_count * sizeof *chunk->tangents) ||
-            !gxsp_all_finite_single(chunk->inertias, chunk->inertias ? chunk->block_count * sizeof *chunk->inertias : 0) ||
             !gxsp_all_finite_single(chunk->generals, chunk->generals ? chunk->block_count * sizeof *chunk->generals : 0))
             return 0;
     }
@@ -4557,7 +4639,6 @@ static void gxsp_block_diagonal(const gxsp_chunk *chunk, uint32_t b, gxsp_single
 {
     static const int diagonal[3] = {0, 3, 5};
     const gxsp_tangent *tangent = &chunk->tangents[b];
-    const gxsp_inertia *inertia = gxsp_block_inertias(chunk, b);
     gxsp_singles u[9];
     int corner, k, l;
     gxsp_block_frame(tangent, u);
@@ -4568,7 +4649,7 @@ static void gxsp_block_diagonal(const gxsp_chunk *chunk, uint32_t b, gxsp_single
             gxsp_general_own(&chunk->generals[b], gamma, own + 6 * corner);
         else
             gxsp_block_own(tangent, u, gamma, own + 6 * corner);
-        GXSP_EACH_LANE(l) mass[l] = inertia ? inertia->entry[gxsp_packed_mass[corner][corner]][l] : 2 * tangent->mass[l];
+        gxsp_block_mass(tangent, gxsp_block_moments(chunk, b), corner, corner, mass);
         for (k = 0; k < 3; ++k)
             GXSP_EACH_LANE(l) own[6 * corner + diagonal[k]][l] += mass[l];
     }
@@ -4586,14 +4667,6 @@ static void gxsp_diagonal_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_sing
         for (k = 6 * corner; k < 6 * corner + 6; ++k)
             GXSP_EACH_LANE(l) own[k][l] = 0;
     }
-}
-
-/* Masses of a block in single precision; none if mass is NULL */
-static void gxsp_inertia_make(const gxsp_mass *mass, double rate, gxsp_inertia *inertia)
-{
-    int k, l;
-    for (k = 0; mass && k < 10; ++k)
-        GXSP_EACH_LANE(l) inertia->entry[k][l] = (float)(rate * mass->entry[k][l]);
 }
 
 /* Hessian of a chunk at pass->from, and its diagonal blocks into the slots */
@@ -4631,7 +4704,6 @@ static void gxsp_task_linearise(void *context, size_t index)
             gxsp_tangent *tangent = &chunk->tangents[b + k];
             gxsp_tangent_make(chunk->kind, rest, system->scale, pass->exact, &s[k], &of[k], tangent, gxsp_block_general(chunk, b + k));
             GXSP_EACH_LANE(l) tangent->mass[l] = (float)(pass->rate * rest->mass[l]);
-            gxsp_inertia_make(gxsp_block_masses(chunk, b + k), pass->rate, gxsp_block_inertias(chunk, b + k));
             gxsp_block_diagonal(chunk, b + k, own);
             gxsp_diagonal_scatter(chunk, b + k, own, slots);
         }
@@ -4909,13 +4981,6 @@ static void gxsp_multigrid(gxsp_system *system, double rate, double energy)
 
 /* --- numbers of the coarse levels --- */
 
-/* Mass between corners of a block, kg/s2. pair: in the order of gxs_element.mass */
-static void gxsp_block_mass(const gxsp_tangent *tangent, const gxsp_inertia *inertia, int pair, float *mass)
-{
-    int l;
-    GXSP_EACH_LANE(l) mass[l] = inertia ? inertia->entry[pair][l] : tangent->mass[l];
-}
-
 /* A block by rows, with its mass, to one by columns: that of the lower node's row, where corners p and q have the nodes */
 static void gxsp_order_block(const uint16_t *GXSP_RESTRICT p, const uint16_t *GXSP_RESTRICT q, const float *GXSP_RESTRICT mass,
                              gxsp_singles *GXSP_RESTRICT block)
@@ -4934,13 +4999,13 @@ static void gxsp_order_block(const uint16_t *GXSP_RESTRICT p, const uint16_t *GX
 /* Half the row sums of a block's masses to its nodes */
 static void gxsp_own_mass(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_t b)
 {
-    const gxsp_inertia *inertia = gxsp_block_inertias(chunk, b);
-    gxsp_singles half;
-    int k, j, l;
+    const gxsp_moments *moments = gxsp_block_moments(chunk, b);
+    gxsp_singles of[4], half;
+    int k, l;
     for (k = 0; k < 4; ++k) {
-        GXSP_EACH_LANE(l) half[l] = chunk->rest[b].weight[l] > 0 ? 2.5f * chunk->tangents[b].mass[l] : 0;
-        for (j = 0; j < 4 && inertia; ++j)
-            GXSP_EACH_LANE(l) half[l] += chunk->rest[b].weight[l] > 0 ? 0.5f * inertia->entry[gxsp_packed_mass[k][j]][l] : 0;
+        if (moments)
+            gxsp_corner_moments(moments, k, of);
+        GXSP_EACH_LANE(l) half[l] = chunk->rest[b].weight[l] > 0 ? (moments ? 0.5f * of[0][l] : 2.5f) * chunk->tangents[b].mass[l] : 0;
         for (l = 0; l < GXSP_LANES; ++l)
             edges->mass[chunk->corners[b].node[k][l]] += half[l];
     }
@@ -4985,7 +5050,7 @@ static void gxsp_edge_blocks(gxsp_system *system, const gxsp_chunk *chunk)
             if (p == q)
                 continue;
             gxsp_block_couple(tangent, gxsp_block_general(chunk, b), gamma[p], gamma[q], block);
-            gxsp_block_mass(tangent, gxsp_block_inertias(chunk, b), pair, mass);
+            gxsp_block_mass(tangent, gxsp_block_moments(chunk, b), p, q, mass);
             gxsp_order_block(corner->node[p], corner->node[q], mass, block);
             gxsp_add_lanes(edges->element[b][at++], block, edges->block);
         }
@@ -5355,25 +5420,24 @@ static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, ui
     gxsp_level *fine = &system->levels[0];
     const gxsp_corners *corner = &chunk->corners[b];
     const gxsp_tangent *tangent = &chunk->tangents[b];
-    const gxsp_inertia *inertia = gxsp_block_inertias(chunk, b);
     gxsp_singles gamma[4][3];
     int pair, l;
     for (l = 0; l < 4; ++l)
         gxsp_block_corner(tangent, l, gamma[l]);
     for (pair = 0; pair < 10; ++pair) {
         const int p = gxsp_pair_corners[pair][0], q = gxsp_pair_corners[pair][1];
-        gxsp_singles block[9];
+        gxsp_singles block[9], masses;
         gxsp_block_couple(tangent, gxsp_block_general(chunk, b), gamma[p], gamma[q], block);
+        gxsp_block_mass(tangent, gxsp_block_moments(chunk, b), p, q, masses);
         for (l = 0; l < GXSP_LANES; ++l) {
             const uint32_t *copies = system->nodes + chunk->first_node, entry = system->fine[chunk->first_block + b].entry[pair][l];
             const uint32_t i = copies[corner->node[p][l]], j = copies[corner->node[q][l]];
-            const float mass = inertia ? inertia->entry[pair][l] : tangent->mass[l] * (p == q ? 2.0f : 1.0f);
             float own[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0}, *to = entry == GXSP_NONE ? own : fine->block + 9 * (size_t)entry;
-            gxsp_add_lane(block, l, entry != GXSP_NONE && i > j, mass, to);
+            gxsp_add_lane(block, l, entry != GXSP_NONE && i > j, masses[l], to);
             if (entry == GXSP_NONE)
                 gxsp_assemble_following(system, i, j, p == q, own);
             else if (p != q && i == j) /* two corners that follow one copy */
-                gxsp_add_lane(block, l, 1, mass, to);
+                gxsp_add_lane(block, l, 1, masses[l], to);
         }
     }
 }
@@ -5608,23 +5672,18 @@ typedef struct gxsp_renewal {
     uint8_t *dirty;         /* by node of level 1 so far: some that follow it are touched */
 } gxsp_renewal;
 
+/* What corner k's copy has of the mass of a lane's element: its row sum */
+static double gxsp_lane_mass(const gxsp_chunk *chunk, uint32_t lane, int k)
+{
+    const size_t b = lane / GXSP_LANES, l = lane % GXSP_LANES;
+    const gxsp_moments *of = gxsp_block_moments(chunk, (uint32_t)b);
+    return chunk->rest[b].mass[l] * (!of ? 5 : (double)(k > 0 ? of->centre[k - 1][l] : 1 - (of->centre[0][l] + of->centre[1][l] + of->centre[2][l])));
+}
+
 /* Does the element of a lane give corner k stiffness or mass? */
 static int gxsp_lane_supports(const gxsp_chunk *chunk, uint32_t lane, int k)
 {
-    static const int own[4] = {0, 4, 7, 9};
-    const gxsp_rest *rest = &chunk->rest[lane / GXSP_LANES];
-    const size_t l = lane % GXSP_LANES;
-    return rest->weight[l] > 0 || rest->mass[l] > 0 || (chunk->masses && chunk->masses[lane / GXSP_LANES].entry[own[k]][l] > 0);
-}
-
-/* Row sum of its mass */
-static double gxsp_lane_mass(const gxsp_chunk *chunk, uint32_t lane, int k)
-{
-    double sum = 5 * chunk->rest[lane / GXSP_LANES].mass[lane % GXSP_LANES];
-    int j;
-    for (j = 0; j < 4 && chunk->masses; ++j)
-        sum += chunk->masses[lane / GXSP_LANES].entry[gxsp_packed_mass[k][j]][lane % GXSP_LANES];
-    return sum;
+    return chunk->rest[lane / GXSP_LANES].weight[lane % GXSP_LANES] > 0 || gxsp_lane_mass(chunk, lane, k) > 0;
 }
 
 /* --- which lanes change --- */
@@ -5755,8 +5814,6 @@ static void gxsp_empty_lane(const gxsp_chunk *chunk, uint32_t lane)
     rest->weight[l] = rest->mass[l] = 0;
     for (k = 0; k < 9; ++k)
         rest->gradient[k][l] = 0; /* wherever its corners are: F = 1 */
-    for (k = 0; k < 10 && chunk->masses; ++k)
-        chunk->masses[lane / GXSP_LANES].entry[k][l] = 0;
 }
 
 /* A new chunk at the end, without a block in use but with room for all that a chunk can have */
@@ -8366,7 +8423,6 @@ GXFEM_API void gxs_solver_destroy(gxs_solver *solver)
 typedef struct gxsp_group {
     gxsp_rest rest;
     gxsp_state state;
-    gxsp_mass mass;
     gxsp_material material[GXSP_LANES];
     gxs_material_kind kind;
     uint32_t count; /* elements in it, of one kind */
@@ -8391,8 +8447,6 @@ static void gxsp_group_load(const gxs_model *model, size_t at, gxsp_group *group
         for (k = 0; k < 9; ++k)
             group->rest.gradient[k][lane] = element->gradient[1 + k / 3][k % 3];
         group->rest.weight[lane] = element->weight;
-        for (k = 0; k < 10; ++k)
-            group->mass.entry[k][lane] = element->mass[k];
     }
     group->count = (uint32_t)lane;
     for (lane = 0; lane < GXSP_LANES; ++lane)
@@ -8516,19 +8570,17 @@ GXFEM_API gx_result gxs_model_hessian_product(const gxs_model *model, const doub
 GXFEM_API gx_result gxs_model_mass_product(const gxs_model *model, const double *direction, double *product)
 {
     gx_result result = gxsp_check_form(model, direction, product);
-    size_t e;
+    size_t e, r;
+    int i, j;
     if (result != GX_OK)
         return result;
     memset(product, 0, 3 * model->copy_count * sizeof(double));
-    for (e = 0; e < model->element_count;) {
-        gxsp_group group;
-        gxsp_lanes x[12], y[12], energy;
-        gxsp_group_load(model, e, &group);
-        gxsp_group_gather(&group, direction, x);
-        memset(y, 0, sizeof y);
-        gxsp_block_inertia(&group.rest, &group.mass, 1, x, y, energy);
-        gxsp_group_scatter(&group, y, product);
-        e += group.count;
+    for (e = 0; e < model->element_count; ++e) {
+        const gxs_element *element = &model->elements[e];
+        for (i = 0; i < 4; ++i)
+            for (j = 0; j < 4; ++j)
+                for (r = 0; r < 3; ++r)
+                    product[3 * (size_t)element->copy[i] + r] += element->mass[gxsp_packed_mass[i][j]] * direction[3 * (size_t)element->copy[j] + r];
     }
     return GX_OK;
 }

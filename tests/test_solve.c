@@ -1056,6 +1056,68 @@ START_TEST(tiny_weights_keep_iterations_bounded)
 }
 END_TEST
 
+/* Parts of tetrahedra around a point: corners' motions that leave the point where it is move hardly any mass. Single precision must not make
+ * that negative, nor of another size. [rho int N_i N_j of a tetrahedron with corners b_a in barycentric coordinates] */
+START_TEST(masses_of_slivers_are_semidefinite)
+{
+    gxs_solver *solver = solver_make();
+    gxs_material material = material_make(GXS_STABLE_NEO_HOOKEAN, 0.3);
+    gxs_element element;
+    gxs_model model;
+    double rest[12] = {0}, still[12] = {0}, size;
+    seed(31);
+    material.young = 1e-20;
+    memset(&model, 0, sizeof model);
+    model.copy_count = 4, model.elements = &element, model.element_count = 1, model.materials = &material, model.material_count = 1;
+    rest[3] = rest[7] = rest[11] = 1;
+    model.positions = rest;
+    for (size = 1; size > 1e-7; size *= 0.1) {
+        int round;
+        for (round = 0; round < 50; ++round) {
+            const uint32_t order[4] = {(uint32_t)round % 4, (uint32_t)(round + 1) % 4, (uint32_t)(round + 2) % 4, (uint32_t)(round + 3) % 4};
+            double at[4], off[4][4], d[12] = {0}, y[12], all = 0, sum, centre = 0, expected = 0, got = 0, most = 0;
+            int i, j, a;
+            memset(&element, 0, sizeof element);
+            for (i = 0; i < 4; ++i)
+                all += at[i] = pow(0.5 + 0.5 * uniform(), round % 7 + 1);
+            for (i = 0; i < 4; ++i) {
+                at[i] /= all;
+                element.copy[i] = order[i];
+                for (a = 0, sum = 0; a < 4; ++a)
+                    sum += off[a][i] = i < 3 ? size * uniform() : -off[a][0] - off[a][1] - off[a][2];
+                for (a = 0; a < 4; ++a)
+                    off[a][i] -= 0.25 * sum;
+            }
+            element.weight = 1;
+            for (i = 1; i < 4; ++i)
+                element.gradient[i][i - 1] = 1;
+            for (i = 0, j = 0; i < 4; ++i)
+                for (a = i; a < 4; ++a, ++j)
+                    element.mass[j] = at[i] * at[a] + (off[0][i] * off[0][a] + off[1][i] * off[1][a] + off[2][i] * off[2][a] + off[3][i] * off[3][a]) / 20;
+            for (i = 0; i < 4; ++i)
+                centre += at[i] * (d[3 * order[i]] = uniform());
+            for (i = 0; i < 4; ++i) {
+                d[3 * i] -= centre;
+                most = fabs(d[3 * i]) > most ? fabs(d[3 * i]) : most;
+            }
+            for (a = 0; a < 4; ++a) {
+                double moved = 0;
+                for (i = 0; i < 4; ++i)
+                    moved += off[a][i] * d[3 * order[i]];
+                expected += moved * moved / 20;
+            }
+            ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);
+            ck_assert_int_eq(gxs_solver_linearise(solver, still, 1, 0, NULL), GX_OK);
+            ck_assert_int_eq(gxs_solver_product(solver, d, y, NULL), GX_OK);
+            for (i = 0; i < 12; ++i)
+                got += d[i] * y[i];
+            assert_that(fabs(got - expected) < 1e-4 * expected + 1e-13 * most * most, "of size %g: %g, not %g", size, got, expected);
+        }
+    }
+    gxs_solver_destroy(solver);
+}
+END_TEST
+
 /* a tiny loose element stretched to twice its size beside a large body at rest must be seen and come back */
 START_TEST(tiny_pieces_are_seen)
 {
@@ -1661,6 +1723,7 @@ static Suite *solve_suite(void)
     tcase_add_loop_test(step, another_material_does_not_lift_energy, 0, 20);
     tcase_add_test(step, reported_energy_is_the_incremental_potential);
     tcase_add_test(step, tiny_weights_keep_iterations_bounded);
+    tcase_add_test(step, masses_of_slivers_are_semidefinite);
     tcase_add_test(step, tiny_pieces_are_seen);
     tcase_add_loop_test(step, integrators_have_their_order, 0, 6);
     tcase_add_loop_test(step, targets_move_held_copies, 0, 2);

@@ -609,7 +609,7 @@ START_TEST(springs_pull_points_of_the_skin) {
         for (j = 0; j < 4; ++j) speed += model.elements[i].mass[rows[k][j]] * view.velocity[3 * model.elements[i].copy[k] + 1];
     }
     ck_assert(mass > 0 && force[1] > 900 && force[1] <= 1000);
-    ck_assert_double_eq_tol(speed, 0.01 * force[1], 1e-9 * speed);
+    ck_assert_double_eq_tol(speed, 0.01 * force[1], 1e-7 * speed); /* the solver has centres of masses in single precision */
     spring.point.copy[2] = 100000;
     ck_assert_int_eq(gx_body_step(body, &step, NULL, &failure), GX_ERROR_INDEX);
     ck_assert_uint_eq(failure.index, 0);
