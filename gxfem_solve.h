@@ -69,7 +69,7 @@
  * A piece that has been slow for long sleeps if gxs_step_desc.sleep_speed says so; steps do without it until something touches it.
  *
  * WHAT IT DOES NOT DO. No cutting and no meshes: it sees elements of four copies. No search for contacts between pieces: give
- * points, planes and your own forces. No threads of its own: see gx_jobs; a task takes up to 80 kB of stack.
+ * points, planes and your own forces. No threads of its own: see gx_jobs; a task takes up to 90 kB of stack.
  *
  * LIMITS. poisson in [0, 0.5), beyond 0.49999 the single precision of the Hessian tells; copies and elements below 2^30.
  * Energies, forces and states are doubles; the Hessian, its products and the preconditioner are single precision, which sets no
@@ -198,7 +198,8 @@ typedef struct gxs_constraint {
 /* Borrowed for the time of a call. */
 typedef struct gxs_model {
     size_t copy_count;
-    const double *positions;    /* copy_count x 3: the copies' nodes at rest, m; NULL: no multigrid */
+    const double *positions;    /* copy_count x 3: the copies' nodes at rest, m; NULL: no multigrid, and more memory: elements whose gradients
+                                   are those of their copies' positions (to 1e-11) are kept without them */
     const gxs_element *elements;/* element_count */
     size_t element_count;
     const gxs_material *materials; /* material_count, as many as there are differing elements if need be */
@@ -466,6 +467,9 @@ extern "C" {
 #define GXSP_UNBALANCED 2u
 #define GXSP_TOUCHED 4u
 #define GXSP_ASLEEP 8u
+
+/* Gradients within so much of those of the rest positions, beside their largest entry, are taken to be rounded ones of these. */
+#define GXSP_PLACED 1e-11
 
 /* The midpoint rule's second half gains no more than this share of the kinetic energy: exact solutions gain less where steps resolve the
  * motion. GXSP_GAIN_TRIALS lengths are tried. */
@@ -756,11 +760,15 @@ static gxsp_pool gxsp_pool_make(const gx_allocator *allocator)
 /* What a step works on, cut into elements of a block, blocks of a chunk. Lanes without an element have weight, mass and
  * gradients 0 and name nodes of the chunk, to which they add zeros. */
 typedef struct gxsp_rest {
-    double gradient[9][GXSP_LANES]; /* of shape functions 1..3, by rows, 1/m */
     double weight[GXSP_LANES];      /* m3 */
     double mass[GXSP_LANES];        /* kg: m of the block m (1 + delta_ij); in chunks that have moments all of the element's */
     uint32_t material[GXSP_LANES];
 } gxsp_rest;
+
+/* Gradients of shape functions 1 ... 3 of a block, by rows, 1/m, where they are not what rest positions say */
+typedef struct gxsp_gradients {
+    double entry[9][GXSP_LANES];
+} gxsp_gradients;
 
 /* Nodes of a block, numbered in its chunk; apart from the rest, of which products need nothing else */
 typedef struct gxsp_corners {
@@ -805,13 +813,14 @@ typedef struct gxsp_chunk {
     gxsp_corners *corners;
     uint8_t *fresh;                  /* block_count + 1: bit i: corner i is not the one of the block before, in each lane; at the end all */
     gxsp_tangent *tangents;
+    gxsp_gradients *gradients;       /* NULL: they are found in each pass, of system->positions */
     gxsp_moments *moments;           /* NULL: elements are whole, or masses lumped */
     gxsp_general *generals;          /* of GXS_CUSTOM; NULL: gxsp_tangent has the Hessians */
     uint32_t *groups;                /* block_count x GXSP_LANES: group of the element in each lane; GXSP_NONE: there is none */
     uint32_t first_block, block_count; /* blocks are counted through all chunks */
     uint32_t first_node, node_count; /* into nodes and slots */
     uint32_t first_part, part_count; /* into parts: one for each piece of its nodes, ascending */
-    uint32_t class_index;            /* 2 x kind + (masses are not those of whole elements) */
+    uint32_t class_index;            /* see gxsp_class */
     int open;                        /* made by an update, with room for GXSP_CHUNK_BLOCKS */
     gxs_material_kind kind;
 } gxsp_chunk;
@@ -943,6 +952,7 @@ typedef struct gxsp_system {
     gxsp_part *parts;       /* part_count: of the chunks, in their order */
     uint32_t part_count;
     uint8_t *chunk_collapsed; /* chunk_count: the last linearisation found an element collapsed to a point */
+    double *positions;      /* rest, m; NULL: not given */
     double *lumped;         /* n: row sums of the mass, kg */
     uint8_t *held;          /* n: as the model says */
     uint8_t *fixed;         /* n: held, or without an element and a follower of nothing */
@@ -1612,14 +1622,15 @@ static void gxsp_project(gxsp_principal *GXSP_RESTRICT of)
 }
 
 /* The Hessian of a block of the caller's energy at s->g, times scale, exact or projected */
-static void gxsp_general_make(const gxsp_rest *rest, double scale, int exact, gxsp_state *s, gxsp_tangent *tangent, gxsp_general *general)
+static void gxsp_general_make(const gxsp_rest *rest, gxsp_lanes *gradients, double scale, int exact, gxsp_state *s, gxsp_tangent *tangent,
+                              gxsp_general *general)
 {
     int k, l, i, j;
     for (l = 0; l < GXSP_LANES; ++l) {
         double f[9], h[81];
         for (k = 0; k < 9; ++k) {
             f[k] = s->g[k][l] + (k % 4 == 0 ? 1 : 0);
-            tangent->gradient[k][l] = (float)rest->gradient[k][l];
+            tangent->gradient[k][l] = (float)gradients[k][l];
         }
         s->material[l]->energy(s->material[l]->user, f, NULL, h);
         if (!exact)
@@ -1708,14 +1719,14 @@ static void gxsp_scale_principal(gxs_material_kind kind, const gxsp_rest *GXSP_R
 }
 
 /* The Hessian of a block at s->g, times scale, exact or projected. of: by gxsp_tangent_begin. general: of GXS_CUSTOM only, else NULL. */
-static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest, double scale, int exact, gxsp_state *s,
-                              gxsp_svd *GXSP_RESTRICT of, gxsp_tangent *GXSP_RESTRICT tangent, gxsp_general *general)
+static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest, gxsp_lanes *GXSP_RESTRICT gradients, double scale, int exact,
+                              gxsp_state *s, gxsp_svd *GXSP_RESTRICT of, gxsp_tangent *GXSP_RESTRICT tangent, gxsp_general *general)
 {
     const float least = exact ? -FLT_MAX : 0;
     gxsp_principal principal;
     int k, l, r, c;
     if (kind == GXS_CUSTOM) {
-        gxsp_general_make(rest, scale, exact, s, tangent, general);
+        gxsp_general_make(rest, gradients, scale, exact, s, tangent, general);
         return;
     }
     gxsp_scale_principal(kind, rest, scale, s, of, &principal);
@@ -1740,8 +1751,8 @@ static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_REST
     for (r = 0; r < 3; ++r)
         for (c = 0; c < 3; ++c)
             GXSP_EACH_LANE(l)
-                tangent->gradient[3 * r + c][l] = (float)rest->gradient[3 * r][l] * of->v[c][l] +
-                    (float)rest->gradient[3 * r + 1][l] * of->v[3 + c][l] + (float)rest->gradient[3 * r + 2][l] * of->v[6 + c][l];
+                tangent->gradient[3 * r + c][l] = (float)gradients[3 * r][l] * of->v[c][l] + (float)gradients[3 * r + 1][l] * of->v[3 + c][l] +
+                                                  (float)gradients[3 * r + 2][l] * of->v[6 + c][l];
 }
 
 /* >>element: passes over one block. Vectors of its corners: x[3 corner + axis][lane]. */
@@ -1749,29 +1760,45 @@ static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_REST
 /* Entries of gxs_element.mass */
 static const int gxsp_packed_mass[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
 
+/* Gradients of shape functions 1 ... 3 of elements whose corners are at x, by rows; 0 in lanes without weight */
+static void gxsp_gradients_make(const double *GXSP_RESTRICT weight, gxsp_lanes *GXSP_RESTRICT x, gxsp_lanes *GXSP_RESTRICT gradients)
+{
+    int l;
+    GXSP_EACH_LANE(l) {
+        const double a0 = x[3][l] - x[0][l], a1 = x[4][l] - x[1][l], a2 = x[5][l] - x[2][l], b0 = x[6][l] - x[0][l], b1 = x[7][l] - x[1][l],
+                     b2 = x[8][l] - x[2][l], c0 = x[9][l] - x[0][l], c1 = x[10][l] - x[1][l], c2 = x[11][l] - x[2][l];
+        const double g0 = b1 * c2 - b2 * c1, g1 = b2 * c0 - b0 * c2, g2 = b0 * c1 - b1 * c0, determinant = a0 * g0 + a1 * g1 + a2 * g2;
+        const double scale = (weight[l] > 0 ? 1.0 : 0.0) / (weight[l] > 0 ? determinant : 1.0);
+        gradients[0][l] = scale * g0, gradients[1][l] = scale * g1, gradients[2][l] = scale * g2;
+        gradients[3][l] = scale * (c1 * a2 - c2 * a1), gradients[4][l] = scale * (c2 * a0 - c0 * a2), gradients[5][l] = scale * (c0 * a1 - c1 * a0);
+        gradients[6][l] = scale * (a1 * b2 - a2 * b1), gradients[7][l] = scale * (a2 * b0 - a0 * b2), gradients[8][l] = scale * (a0 * b1 - a1 * b0);
+    }
+}
+
 /* G = sum (u_i - u_0) grad N_i, exactly 0 for translations */
-static void gxsp_block_gradient(const gxsp_rest *GXSP_RESTRICT rest, gxsp_lanes *GXSP_RESTRICT x, gxsp_lanes *GXSP_RESTRICT g)
+static void gxsp_block_gradient(gxsp_lanes *GXSP_RESTRICT gradients, gxsp_lanes *GXSP_RESTRICT x, gxsp_lanes *GXSP_RESTRICT g)
 {
     int r, l;
     for (r = 0; r < 3; ++r)
         GXSP_EACH_LANE(l) {
             const double a = x[3 + r][l] - x[r][l], b = x[6 + r][l] - x[r][l], c = x[9 + r][l] - x[r][l];
-            g[3 * r][l] = a * rest->gradient[0][l] + b * rest->gradient[3][l] + c * rest->gradient[6][l];
-            g[3 * r + 1][l] = a * rest->gradient[1][l] + b * rest->gradient[4][l] + c * rest->gradient[7][l];
-            g[3 * r + 2][l] = a * rest->gradient[2][l] + b * rest->gradient[5][l] + c * rest->gradient[8][l];
+            g[3 * r][l] = a * gradients[0][l] + b * gradients[3][l] + c * gradients[6][l];
+            g[3 * r + 1][l] = a * gradients[1][l] + b * gradients[4][l] + c * gradients[7][l];
+            g[3 * r + 2][l] = a * gradients[2][l] + b * gradients[5][l] + c * gradients[8][l];
         }
 }
 
 /* force += weight x P : grad N; the four add up to zero but for rounding */
-static void gxsp_block_force(const gxsp_rest *GXSP_RESTRICT rest, gxsp_lanes *GXSP_RESTRICT p, gxsp_lanes *GXSP_RESTRICT force)
+static void gxsp_block_force(const double *GXSP_RESTRICT weight, gxsp_lanes *GXSP_RESTRICT gradients, gxsp_lanes *GXSP_RESTRICT p,
+                             gxsp_lanes *GXSP_RESTRICT force)
 {
     int r, l;
     for (r = 0; r < 3; ++r)
         GXSP_EACH_LANE(l) {
-            const double w = rest->weight[l], x = w * p[3 * r][l], y = w * p[3 * r + 1][l], z = w * p[3 * r + 2][l];
-            const double a = x * rest->gradient[0][l] + y * rest->gradient[1][l] + z * rest->gradient[2][l];
-            const double b = x * rest->gradient[3][l] + y * rest->gradient[4][l] + z * rest->gradient[5][l];
-            const double c = x * rest->gradient[6][l] + y * rest->gradient[7][l] + z * rest->gradient[8][l];
+            const double w = weight[l], x = w * p[3 * r][l], y = w * p[3 * r + 1][l], z = w * p[3 * r + 2][l];
+            const double a = x * gradients[0][l] + y * gradients[1][l] + z * gradients[2][l];
+            const double b = x * gradients[3][l] + y * gradients[4][l] + z * gradients[5][l];
+            const double c = x * gradients[6][l] + y * gradients[7][l] + z * gradients[8][l];
             force[r][l] -= a + b + c;
             force[3 + r][l] += a;
             force[6 + r][l] += b;
@@ -2085,15 +2112,15 @@ static const gxsp_chunk *gxsp_block_ahead(const gxsp_system *system, size_t inde
     return chunk;
 }
 
-/* x of a chunk's nodes, less that of origin unless it is NULL: x 3, and one more number */
-static void gxsp_chunk_load(const gxsp_system *system, const gxsp_chunk *chunk, const double *x, const double *origin, double *GXSP_RESTRICT to)
+/* x of a chunk's nodes: x 3, and one more number */
+static void gxsp_chunk_load(const gxsp_system *system, const gxsp_chunk *chunk, const double *x, double *GXSP_RESTRICT to)
 {
     const uint32_t *copies = system->nodes + chunk->first_node;
     size_t i, c;
     for (i = 0; i < chunk->node_count; ++i) {
         gxsp_fetch(x + 3 * (size_t)copies[i + GXSP_AHEAD], 3 * sizeof *x);
         for (c = 0; c < 3; ++c)
-            to[3 * i + c] = x[3 * (size_t)copies[i] + c] - (origin ? origin[3 * (size_t)copies[i] + c] : 0);
+            to[3 * i + c] = x[3 * (size_t)copies[i] + c];
     }
     to[3 * i] = 0;
 }
@@ -2124,6 +2151,28 @@ static void gxsp_block_load(const gxsp_chunk *chunk, uint32_t b, const double *G
     for (i = 0; i < 4; ++i)
         for (l = 0; l < GXSP_LANES && chunk->fresh[b] >> i & 1; l += 4)
             gxsp_load_four(corner->node[i] + l, x, corners[3 * i] + l, corners[3 * i + 1] + l, corners[3 * i + 2] + l);
+}
+
+/* The same of x of all copies, without that of the chunk's nodes */
+static void gxsp_block_load_copies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, const double *x, gxsp_lanes *corners)
+{
+    const uint32_t *copies = system->nodes + chunk->first_node;
+    int i, l;
+    for (i = 0; i < 4; ++i)
+        for (l = 0; l < GXSP_LANES && chunk->fresh[b] >> i & 1; ++l) {
+            const double *of = x + 3 * (size_t)copies[chunk->corners[b].node[i][l]];
+            corners[3 * i][l] = of[0], corners[3 * i + 1][l] = of[1], corners[3 * i + 2][l] = of[2];
+        }
+}
+
+/* Shape function gradients of a block. rest: positions of the chunk's nodes; corners: of the block's, as of gxsp_block_load */
+static gxsp_lanes *gxsp_block_gradients(const gxsp_chunk *chunk, uint32_t b, const double *rest, gxsp_lanes *corners, gxsp_lanes *made)
+{
+    if (chunk->gradients)
+        return chunk->gradients[b].entry;
+    gxsp_block_load(chunk, b, rest, corners);
+    gxsp_gradients_make(chunk->rest[b].weight, corners, made);
+    return made;
 }
 
 /* Parameters of a block's materials */
@@ -2251,9 +2300,9 @@ static void gxsp_task_state(void *context, size_t index)
     const gxsp_chunk *chunk = &system->chunks[index];
     double *slots = &system->slots[chunk->first_node][0];
     uint32_t b, further;
-    int l, inertia;
-    double at[3 * 4 * GXSP_CHUNK + 1], other[3 * 4 * GXSP_CHUNK + 1];
-    gxsp_lanes x[12], led[12], forces[12];
+    int k, l, inertia;
+    double rest_at[3 * 4 * GXSP_CHUNK + 1], at[3 * 4 * GXSP_CHUNK + 1];
+    gxsp_lanes corners[12], x[12], other[12], forces[12], made[9];
     if (gxsp_chunk_settled(system, chunk))
         return;
     for (b = 0; b < chunk->part_count; ++b)
@@ -2262,35 +2311,38 @@ static void gxsp_task_state(void *context, size_t index)
     if (system->chunk_still[index])
         return;
     inertia = pass->inertia && gxsp_accelerates(system, chunk, pass->from);
-    gxsp_chunk_load(system, chunk, pass->from, NULL, at);
-    if (inertia || pass->turned) /* never both: what is turned has no inertia */
-        gxsp_chunk_load(system, chunk, inertia ? pass->from : pass->turned, inertia ? system->target : NULL, other);
+    gxsp_chunk_load(system, chunk, pass->from, at);
+    if (!chunk->gradients)
+        gxsp_chunk_load(system, chunk, system->positions, rest_at);
     memset(forces, 0, sizeof forces);
     for (b = 0; b < chunk->block_count; ++b) {
         const gxsp_rest *rest = &chunk->rest[b];
         const gxsp_chunk *next = gxsp_block_ahead(system, index, b, &further);
-        gxsp_lanes ahead[9], energies[3];
+        gxsp_lanes ahead[9], led[12], energies[3], *gradients;
         gxsp_state s;
         gxsp_fetch(&next->rest[further], sizeof(gxsp_rest));
         gxsp_block_load(chunk, b, at, x);
-        if (inertia || pass->turned)
-            gxsp_block_load(chunk, b, other, led);
+        gradients = gxsp_block_gradients(chunk, b, rest_at, corners, made);
+        if (inertia || pass->turned) /* never both: what is turned has no inertia */
+            gxsp_block_load_copies(system, chunk, b, inertia ? system->target : pass->turned, other);
         gxsp_block_parameters(pass->materials, rest, &s);
-        gxsp_block_gradient(rest, x, s.g);
+        gxsp_block_gradient(gradients, x, s.g);
         if (pass->turned)
-            gxsp_block_gradient(rest, led, ahead);
+            gxsp_block_gradient(gradients, other, ahead);
         if (pass->nudge && chunk->kind != GXS_LINEAR && chunk->kind != GXS_CUSTOM)
             gxsp_nudge(s.g);
         gxsp_material_state(chunk->kind, &s);
         if (pass->turned && chunk->kind != GXS_LINEAR)
             gxsp_turn_stress(s.g, ahead, s.p);
-        gxsp_block_force(rest, s.p, forces);
+        gxsp_block_force(rest->weight, gradients, s.p, forces);
         for (l = 0; l < GXSP_LANES; ++l) {
             energies[0][l] = rest->weight[l] * s.energy[l];
             energies[1][l] = 0;
             energies[2][l] = rest->weight[l] * s.size[l];
         }
         if (inertia) {
+            for (k = 0; k < 12; ++k)
+                GXSP_EACH_LANE(l) led[k][l] = x[k][l] - other[k][l];
             gxsp_block_inertia(rest, gxsp_block_moments(chunk, b), pass->rate, led, forces, energies[1]);
             for (l = 0; l < GXSP_LANES; ++l)
                 energies[2][l] += energies[1][l];
@@ -2416,7 +2468,7 @@ static int gxsp_whole(const double *mass)
 
 /* An element's place in the order: class, then piece, then curve, the last of each ten bits first */
 typedef struct gxsp_sorted {
-    uint32_t place, piece, class_index; /* class: 2 x kind + (general mass) */
+    uint32_t place, piece, class_index;
     uint32_t index;                     /* of the element or, while pieces are sorted, of the piece */
 } gxsp_sorted;
 
@@ -2487,6 +2539,37 @@ static void gxsp_rank_pieces(const gxsp_system *system, const gxs_model *model, 
         rank[pieces[i].index] = (uint32_t)i;
 }
 
+/* Are an element's gradients those that the rest positions of its corners say, but for rounding? x: as of gxsp_gradients_make */
+static int gxsp_is_placed(const gxs_element *element, gxsp_lanes *x)
+{
+    gxsp_lanes weight = {1}, made[9];
+    double most = 0, off = 0;
+    int k;
+    gxsp_gradients_make(weight, x, made);
+    for (k = 0; k < 9; ++k) {
+        const double given = element->gradient[1 + k / 3][k % 3];
+        if (!gxsp_finite(made[k][0]))
+            return 0;
+        most = fabs(given) > most ? fabs(given) : most;
+        off = fabs(given - made[k][0]) > off ? fabs(given - made[k][0]) : off;
+    }
+    return off <= GXSP_PLACED * most;
+}
+
+/* What elements of one chunk are alike in: 4 x kind + 2 x (gradients are not those of the positions) + (masses are not those of whole
+ * elements). positions: at 3 x copy, or, origins (as of gxs_change) given, of what the copy was; NULL: there are none */
+static uint32_t gxsp_class(gxs_material_kind kind, const gxs_element *element, uint32_t lumped, const double *positions, const uint32_t *origins)
+{
+    gxsp_lanes x[12];
+    int k;
+    memset(x, 0, sizeof x);
+    for (k = 0; k < 12 && positions; ++k) {
+        const uint32_t copy = element->copy[k / 3];
+        x[k][0] = positions[3 * (size_t)(origins ? origins[copy] >> 1 : copy) + (size_t)k % 3];
+    }
+    return 4 * (uint32_t)kind + (positions && gxsp_is_placed(element, x) ? 0u : 2u) + (lumped || gxsp_whole(element->mass) ? 0u : 1u);
+}
+
 /* The order of elements. Elements of one piece are together, so that chunks have few nodes and sleep with their piece. */
 static gxsp_sorted *gxsp_order_elements(const gxsp_system *system, const gxs_model *model, gxsp_pool *scratch)
 {
@@ -2504,8 +2587,7 @@ static gxsp_sorted *gxsp_order_elements(const gxsp_system *system, const gxs_mod
         const gxs_element *element = &model->elements[i];
         sorted[i].index = (uint32_t)i;
         sorted[i].piece = rank[system->piece[element->copy[0]]];
-        sorted[i].class_index = 2 * (uint32_t)model->materials[element->material].kind +
-                                (model->lumped_mass || gxsp_whole(element->mass) ? 0u : 1u);
+        sorted[i].class_index = gxsp_class(model->materials[element->material].kind, element, model->lumped_mass, model->positions, NULL);
     }
     return gxsp_sort(sorted, other, count);
 }
@@ -2584,10 +2666,10 @@ static void gxsp_place_element(const gxsp_chunk *chunk, const gxs_element *eleme
     gxsp_rest *rest = &chunk->rest[at / GXSP_LANES];
     size_t lane = at % GXSP_LANES;
     int i, k;
-    for (i = 0; i < 3; ++i)
+    for (i = 0; i < 3 && chunk->gradients; ++i)
         for (k = 0; k < 3; ++k)
-            rest->gradient[3 * i + k][lane] = order[1 + i] > 0 ? element->gradient[order[1 + i]][k] :
-                                              -(element->gradient[1][k] + element->gradient[2][k] + element->gradient[3][k]);
+            chunk->gradients[at / GXSP_LANES].entry[3 * i + k][lane] =
+                order[1 + i] > 0 ? element->gradient[order[1 + i]][k] : -(element->gradient[1][k] + element->gradient[2][k] + element->gradient[3][k]);
     rest->weight[lane] = element->weight;
     rest->material[lane] = element->material;
     chunk->groups[at] = element->group % GXSP_GROUPS; /* who does not update may have left it unset */
@@ -2864,7 +2946,7 @@ static uint32_t gxsp_plan_chunks(gxsp_system *system, const gxsp_sorted *sorted,
         while (i < system->element_count && sorted[i].class_index == class_index && count < GXSP_CHUNK)
             ++i, ++count;
         chunk.class_index = class_index;
-        chunk.kind = (gxs_material_kind)(class_index / 2);
+        chunk.kind = (gxs_material_kind)(class_index / 4);
         chunk.first_block = (uint32_t)system->block_count;
         chunk.block_count = (count + GXSP_LANES - 1) / GXSP_LANES;
         system->block_count += chunk.block_count;
@@ -2880,18 +2962,21 @@ static void gxsp_blocks_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count
 {
     gxsp_rest *rest;
     gxsp_corners *corners;
+    gxsp_gradients *gradients;
     gxsp_moments *moments;
     uint32_t *groups;
     uint8_t *fresh;
-    size_t blocks = 0, general = 0;
+    size_t blocks = 0, own = 0, general = 0;
     uint32_t c;
     for (c = 0; c < count; ++c) {
         blocks += chunks[c].block_count;
-        general += chunks[c].class_index % 2 ? chunks[c].block_count : 0;
+        own += chunks[c].class_index & 2 ? chunks[c].block_count : 0;
+        general += chunks[c].class_index & 1 ? chunks[c].block_count : 0;
     }
     rest = (gxsp_rest *)gxsp_take(pool, blocks, sizeof(gxsp_rest));
     corners = (gxsp_corners *)gxsp_take(pool, blocks, sizeof(gxsp_corners));
     groups = (uint32_t *)gxsp_take(pool, blocks * GXSP_LANES, sizeof(uint32_t));
+    gradients = (gxsp_gradients *)gxsp_take(pool, own, sizeof(gxsp_gradients));
     moments = (gxsp_moments *)gxsp_take(pool, general, sizeof(gxsp_moments));
     fresh = (uint8_t *)gxsp_take(pool, blocks + count, 1);
     if (pool->failed)
@@ -2902,12 +2987,14 @@ static void gxsp_blocks_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count
         chunks[c].corners = corners;
         chunks[c].groups = groups;
         chunks[c].fresh = fresh;
-        chunks[c].moments = chunks[c].class_index % 2 ? moments : NULL;
+        chunks[c].gradients = chunks[c].class_index & 2 ? gradients : NULL;
+        chunks[c].moments = chunks[c].class_index & 1 ? moments : NULL;
         rest += chunks[c].block_count;
         corners += chunks[c].block_count;
         groups += chunks[c].block_count * GXSP_LANES;
         fresh += chunks[c].block_count + 1;
-        moments += chunks[c].class_index % 2 ? chunks[c].block_count : 0;
+        gradients += chunks[c].class_index & 2 ? chunks[c].block_count : 0;
+        moments += chunks[c].class_index & 1 ? chunks[c].block_count : 0;
     }
 }
 
@@ -3158,8 +3245,12 @@ static int gxsp_find_places(const gxsp_system *system, const gxs_model *model, f
 }
 
 /* What is known of every copy */
-static void gxsp_copies_make(gxsp_system *system)
+static void gxsp_copies_make(gxsp_system *system, const double *positions)
 {
+    if (positions)
+        system->positions = (double *)gxsp_take(&system->pool, 3 * system->n, sizeof(double));
+    if (system->positions)
+        memcpy(system->positions, positions, 3 * system->n * sizeof(double));
     system->lumped = (double *)gxsp_take(&system->pool, system->n, sizeof(double));
     system->piece = (uint32_t *)gxsp_take(&system->pool, system->n, sizeof(uint32_t));
     system->fixed = (uint8_t *)gxsp_take(&system->pool, system->n, 1);
@@ -4006,7 +4097,7 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
     system->material_count = (uint32_t)model->material_count;
     system->materials = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
     system->damped = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
-    gxsp_copies_make(system);
+    gxsp_copies_make(system, model->positions);
     if (scratch->failed || system->pool.failed)
         return SIZE_MAX;
     for (i = 0; i < system->material_count; ++i) {
@@ -4676,8 +4767,8 @@ static void gxsp_task_linearise(void *context, size_t index)
     gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->chunks[index];
     float *slots = (float *)(void *)system->slots[chunk->first_node];
-    double at[3 * 4 * GXSP_CHUNK + 1];
-    gxsp_lanes x[12];
+    double rest_at[3 * 4 * GXSP_CHUNK + 1], at[3 * 4 * GXSP_CHUNK + 1];
+    gxsp_lanes corners[12], x[12], made[2][9], *gradients[2];
     gxsp_singles own[24];
     uint32_t b, k, blocks, further;
     int l;
@@ -4686,7 +4777,9 @@ static void gxsp_task_linearise(void *context, size_t index)
         return;
     memset(slots, 0, 6 * (size_t)chunk->node_count * sizeof *slots);
     memset(own, 0, sizeof own);
-    gxsp_chunk_load(system, chunk, pass->from, NULL, at);
+    gxsp_chunk_load(system, chunk, pass->from, at);
+    if (!chunk->gradients)
+        gxsp_chunk_load(system, chunk, system->positions, rest_at);
     for (b = 0; b < chunk->block_count; b += blocks) { /* two at a time */
         gxsp_state s[2];
         gxsp_svd of[2];
@@ -4696,13 +4789,14 @@ static void gxsp_task_linearise(void *context, size_t index)
             gxsp_fetch(&next->rest[further], sizeof(gxsp_rest));
             gxsp_block_load(chunk, b + k, at, x);
             gxsp_block_parameters(pass->materials, &chunk->rest[b + k], &s[k]);
-            gxsp_block_gradient(&chunk->rest[b + k], x, s[k].g);
+            gradients[k] = gxsp_block_gradients(chunk, b + k, rest_at, corners, made[k]);
+            gxsp_block_gradient(gradients[k], x, s[k].g);
         }
         system->chunk_collapsed[index] |= (uint8_t)gxsp_tangent_begin(chunk->kind, &s[0], blocks > 1 ? &s[1] : NULL, of);
         for (k = 0; k < blocks; ++k) {
             const gxsp_rest *rest = &chunk->rest[b + k];
             gxsp_tangent *tangent = &chunk->tangents[b + k];
-            gxsp_tangent_make(chunk->kind, rest, system->scale, pass->exact, &s[k], &of[k], tangent, gxsp_block_general(chunk, b + k));
+            gxsp_tangent_make(chunk->kind, rest, gradients[k], system->scale, pass->exact, &s[k], &of[k], tangent, gxsp_block_general(chunk, b + k));
             GXSP_EACH_LANE(l) tangent->mass[l] = (float)(pass->rate * rest->mass[l]);
             gxsp_block_diagonal(chunk, b + k, own);
             gxsp_diagonal_scatter(chunk, b + k, own, slots);
@@ -5749,9 +5843,11 @@ static void gxsp_find_holes(gxsp_renewal *update)
     update->hole_count = count;
 }
 
-static uint32_t gxsp_class_of(const gxsp_system *system, const gxs_element *element)
+/* Before copies are moved */
+static uint32_t gxsp_class_of(const gxsp_renewal *update, const gxs_element *element)
 {
-    return 2 * (uint32_t)system->materials[element->material].kind + (gxsp_whole(element->mass) ? 0u : 1u);
+    const gxsp_system *system = update->system;
+    return gxsp_class(system->materials[element->material].kind, element, 0, system->positions, update->change->origins);
 }
 
 /* Elements take the lanes of their group as far as these are of their class. */
@@ -5762,7 +5858,7 @@ static void gxsp_match_holes(gxsp_renewal *update)
     update->left = (uint32_t *)gxsp_take(update->scratch, change->element_count, sizeof(uint32_t));
     for (e = 0; e < change->element_count && !update->scratch->failed; ++e) {
         const gxs_element *element = &change->elements[e];
-        const uint32_t class_index = gxsp_class_of(update->system, element);
+        const uint32_t class_index = gxsp_class_of(update, element);
         while (first < update->hole_count && update->holes[first].group < element->group)
             ++first;
         for (i = first; i < update->hole_count && update->holes[i].group == element->group; ++i)
@@ -5812,8 +5908,8 @@ static void gxsp_empty_lane(const gxsp_chunk *chunk, uint32_t lane)
     int k;
     chunk->groups[lane] = GXSP_NONE;
     rest->weight[l] = rest->mass[l] = 0;
-    for (k = 0; k < 9; ++k)
-        rest->gradient[k][l] = 0; /* wherever its corners are: F = 1 */
+    for (k = 0; k < 9 && chunk->gradients; ++k)
+        chunk->gradients[lane / GXSP_LANES].entry[k][l] = 0; /* wherever its corners are: F = 1 */
 }
 
 /* A new chunk at the end, without a block in use but with room for all that a chunk can have */
@@ -5833,7 +5929,7 @@ static gxsp_chunk *gxsp_open_chunk(gxsp_system *system, uint32_t class_index)
     chunk = &system->chunks[system->chunk_count];
     memset(chunk, 0, sizeof *chunk);
     chunk->class_index = class_index;
-    chunk->kind = (gxs_material_kind)(class_index / 2);
+    chunk->kind = (gxs_material_kind)(class_index / 4);
     chunk->block_count = GXSP_CHUNK_BLOCKS;
     chunk->open = 1;
     gxsp_blocks_make(pool, chunk, 1);
@@ -5872,7 +5968,7 @@ static void gxsp_place_class(gxsp_renewal *update, uint32_t class_index)
     uint32_t i, l, c = gxsp_find_open(system, class_index), lane = 0;
     for (i = 0; i < update->left_count; ++i) {
         gxsp_hole *hole = &update->holes[update->hole_count + update->placed_count];
-        if (gxsp_class_of(system, &update->change->elements[update->left[i]]) != class_index)
+        if (gxsp_class_of(update, &update->change->elements[update->left[i]]) != class_index)
             continue;
         lane = c < system->chunk_count ? gxsp_free_lane(&system->chunks[c], lane) : GXSP_NONE;
         if (lane == GXSP_NONE) {
@@ -5905,7 +6001,7 @@ static void gxsp_replace_elements(gxsp_renewal *update)
         else
             gxsp_place_element(chunk, &update->change->elements[hole->element], gxsp_own_order, hole->lane, 0);
     }
-    for (class_index = 0; class_index < 2 * (GXS_CUSTOM + 1) && !update->system->pool.failed; ++class_index)
+    for (class_index = 0; class_index < 4 * (GXS_CUSTOM + 1) && !update->system->pool.failed; ++class_index)
         gxsp_place_class(update, class_index);
 }
 
@@ -6046,6 +6142,8 @@ static void gxsp_copies_room(gxsp_system *system, size_t count)
     system->range_sum = (double(*)[GXSP_SUMS])gxsp_retake(pool, system->range_sum, 0, room / GXSP_RANGE + 1, sizeof *system->range_sum);
     system->diagonal = (float *)gxsp_retake(pool, system->diagonal, 0, 6 * room, sizeof(float));
     system->copy_start = (uint32_t *)gxsp_retake(pool, system->copy_start, 0, room + 2, sizeof(uint32_t));
+    if (system->positions)
+        system->positions = (double *)gxsp_retake(pool, system->positions, 3 * n, 3 * room, sizeof(double));
     system->lumped = (double *)gxsp_retake(pool, system->lumped, n, room, sizeof(double));
     system->piece = (uint32_t *)gxsp_retake(pool, system->piece, n, room, sizeof(uint32_t));
     system->fixed = (uint8_t *)gxsp_retake(pool, system->fixed, n, room, 1);
@@ -6092,6 +6190,8 @@ static void gxsp_move_copies(gxsp_renewal *update)
     gxsp_move(change, moved, count, system->current, 3 * sizeof(double), kept);
     gxsp_move(change, moved, count, system->guess[0], sizeof(gxsp_vector4), kept);
     gxsp_move(change, moved, count, system->guess[1], sizeof(gxsp_vector4), kept);
+    if (system->positions)
+        gxsp_move(change, moved, count, system->positions, 3 * sizeof(double), kept);
     gxsp_move(change, moved, count, system->lumped, sizeof(double), kept);
     gxsp_move(change, moved, count, system->piece, sizeof(uint32_t), kept);
     gxsp_move(change, moved, count, system->fixed, 1, kept);
@@ -8422,6 +8522,7 @@ GXFEM_API void gxs_solver_destroy(gxs_solver *solver)
 
 typedef struct gxsp_group {
     gxsp_rest rest;
+    gxsp_lanes gradients[9];
     gxsp_state state;
     gxsp_material material[GXSP_LANES];
     gxs_material_kind kind;
@@ -8445,7 +8546,7 @@ static void gxsp_group_load(const gxs_model *model, size_t at, gxsp_group *group
         group->state.mu[lane] = group->material[lane].mu;
         group->state.lambda[lane] = group->material[lane].lambda;
         for (k = 0; k < 9; ++k)
-            group->rest.gradient[k][lane] = element->gradient[1 + k / 3][k % 3];
+            group->gradients[k][lane] = element->gradient[1 + k / 3][k % 3];
         group->rest.weight[lane] = element->weight;
     }
     group->count = (uint32_t)lane;
@@ -8497,7 +8598,7 @@ GXFEM_API gx_result gxs_model_energy(const gxs_model *model, const double *displ
         gxsp_lanes x[12];
         gxsp_group_load(model, e, &group);
         gxsp_group_gather(&group, displacement, x);
-        gxsp_block_gradient(&group.rest, x, group.state.g);
+        gxsp_block_gradient(group.gradients, x, group.state.g);
         gxsp_material_state(group.kind, &group.state);
         for (lane = 0; lane < group.count; ++lane)
             sum += group.rest.weight[lane] * group.state.energy[lane];
@@ -8519,10 +8620,10 @@ GXFEM_API gx_result gxs_model_gradient(const gxs_model *model, const double *dis
         gxsp_lanes x[12], force[12];
         gxsp_group_load(model, e, &group);
         gxsp_group_gather(&group, displacement, x);
-        gxsp_block_gradient(&group.rest, x, group.state.g);
+        gxsp_block_gradient(group.gradients, x, group.state.g);
         gxsp_material_state(group.kind, &group.state);
         memset(force, 0, sizeof force);
-        gxsp_block_force(&group.rest, group.state.p, force);
+        gxsp_block_force(group.rest.weight, group.gradients, group.state.p, force);
         gxsp_group_scatter(&group, force, gradient);
         e += group.count;
     }
@@ -8550,10 +8651,10 @@ GXFEM_API gx_result gxs_model_hessian_product(const gxs_model *model, const doub
         int k, l;
         gxsp_group_load(model, e, &group);
         gxsp_group_gather(&group, displacement, x);
-        gxsp_block_gradient(&group.rest, x, group.state.g);
+        gxsp_block_gradient(group.gradients, x, group.state.g);
         memset(&tangent, 0, sizeof tangent);
         (void)gxsp_tangent_begin(group.kind, &group.state, NULL, &of);
-        gxsp_tangent_make(group.kind, &group.rest, 1, 0, &group.state, &of, &tangent, &general);
+        gxsp_tangent_make(group.kind, &group.rest, group.gradients, 1, 0, &group.state, &of, &tangent, &general);
         gxsp_group_gather(&group, direction, x);
         for (k = 0; k < 12; ++k)
             GXSP_EACH_LANE(l) from[k][l] = (float)(x[k][l] - x[k % 3][l]); /* of translations exactly 0 */
@@ -8623,6 +8724,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
     const gxsp_material own = gxsp_material_make(material);
     gxsp_state state = gxsp_single_state(&own, deformation);
     gxsp_rest rest;
+    gxsp_lanes gradients[9];
     gxsp_tangent tangent;
     gxsp_general general;
     gxsp_svd of;
@@ -8633,9 +8735,10 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
     memset(from, 0, sizeof from);
     memset(to, 0, sizeof to);
     rest.weight[0] = 1;
-    rest.gradient[0][0] = rest.gradient[4][0] = rest.gradient[8][0] = 1; /* u_i - u_0 are the columns of dF, forces those of dP */
+    memset(gradients, 0, sizeof gradients);
+    gradients[0][0] = gradients[4][0] = gradients[8][0] = 1; /* u_i - u_0 are the columns of dF, forces those of dP */
     (void)gxsp_tangent_begin(material->kind, &state, NULL, &of);
-    gxsp_tangent_make(material->kind, &rest, 1, 0, &state, &of, &tangent, &general);
+    gxsp_tangent_make(material->kind, &rest, gradients, 1, 0, &state, &of, &tangent, &general);
     for (k = 0; k < 3; ++k)
         for (c = 0; c < 3; ++c)
             from[3 + 3 * c + k][0] = (float)direction[3 * k + c];
@@ -8656,6 +8759,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_RESTRICT
 #undef GXSP_INLINE
 #undef GXSP_ROUNDING
+#undef GXSP_PLACED
 #undef GXSP_ARMIJO
 #undef GXSP_TRIALS
 #undef GXSP_STALLS

@@ -326,6 +326,8 @@ START_TEST(block_product_equals_assembled_forms)
     for (i = 0; i < 300; ++i) {
         s.elements[i].weight *= 0.3;
         s.elements[i].mass[i % 10] *= 1.01; /* no longer that of a whole element */
+        for (k = 0; k < 12 && i % 3 == 0; ++k)
+            s.elements[i].gradient[k / 3][k % 3] *= 1.02; /* nor what its corners' positions say */
     }
     copies = s.model.copy_count;
     n = 3 * copies;
@@ -1208,6 +1210,104 @@ START_TEST(another_material_does_not_lift_energy)
 }
 END_TEST
 
+/* ---- gradients ---- */
+
+/* Elements whose gradients the solver has by itself */
+static size_t own_gradients(const gxs_solver *solver)
+{
+    const gxsp_system *system = solver->system;
+    size_t count = 0;
+    uint32_t c, b;
+    size_t lane;
+    for (c = 0; c < system->chunk_count; ++c)
+        for (b = 0; b < system->chunks[c].block_count && system->chunks[c].gradients; ++b)
+            for (lane = 0; lane < sizeof(gxsp_lanes) / sizeof(double); ++lane)
+                count += system->chunks[c].rest[b].weight[lane] > 0;
+    return count;
+}
+
+static void scale_gradient(gxs_element *element, double factor)
+{
+    int k;
+    for (k = 0; k < 12; ++k)
+        element->gradient[k / 3][k % 3] *= factor;
+}
+
+/* Steps of a and of b, which has no positions, end alike. */
+static void advance_both(gxs_solver **solvers, scene *s, gxs_step_desc *step, double *displacement, double *velocity)
+{
+    const size_t n = 3 * s->model.copy_count;
+    size_t i;
+    int k;
+    for (k = 0; k < 3; ++k) {
+        ck_assert_int_eq(gxs_solver_step(solvers[0], step, s->displacement, s->velocity, NULL, NULL), GX_OK);
+        ck_assert_int_eq(gxs_solver_step(solvers[1], step, displacement, velocity, NULL, NULL), GX_OK);
+    }
+    for (i = 0; i < n; ++i)
+        assert_that(fabs(s->displacement[i] - displacement[i]) < 1e-9 * largest(displacement, n), "%g %g", s->displacement[i], displacement[i]);
+}
+
+/* Elements need not fit their places: some of a body's have gradients of their own, before an update and after it, which others have then.
+ * A solver that has no positions, and so all gradients, takes the same steps. */
+START_TEST(gradients_need_not_be_those_of_positions)
+{
+    gxs_solver *solvers[2];
+    gxs_solver_desc desc;
+    gxs_step_desc step = step_make(0.02, -9.81);
+    gxs_change change;
+    uint32_t *origins, groups[200];
+    double *displacement, *velocity;
+    size_t i, n, own = 0;
+    scene s;
+    memset(&desc, 0, sizeof desc);
+    memset(&change, 0, sizeof change);
+    desc.preconditioner = GXS_BLOCK_JACOBI;
+    seed((uint64_t)_i);
+    s = scene_block(6, 4, 4, 0.25, 0.1, 0);
+    set_kind(s.material, _i);
+    n = 3 * s.model.copy_count;
+    displacement = (double *)zeroed(n, sizeof *displacement), velocity = (double *)zeroed(n, sizeof *velocity);
+    origins = (uint32_t *)zeroed(n / 3, sizeof *origins);
+    for (i = 0; i < n / 3; ++i) {
+        s.held[i] = s.rest[3 * i] < 0.1;
+        origins[i] = 2 * (uint32_t)i;
+    }
+    for (i = 0; i < s.model.element_count; ++i) {
+        s.elements[i].group = (uint32_t)i;
+        if (i % 5 == 0)
+            scale_gradient(&s.elements[i], 1.04), ++own;
+        if (i % 3 == 0)
+            s.elements[i].mass[0] *= 1.01; /* not that of a whole element */
+    }
+    step.newton_iterations = 30;
+    step.newton_tolerance = 1e-12;
+    step.cg_tolerance = 1e-4;
+    for (i = 0; i < 2; ++i) {
+        s.model.positions = i == 0 ? s.rest : NULL;
+        ck_assert_int_eq(gxs_solver_create(&desc, &solvers[i]), GX_OK);
+        ck_assert_int_eq(gxs_solver_set_model(solvers[i], &s.model, NULL), GX_OK);
+    }
+    ck_assert_uint_eq(own_gradients(solvers[0]), own);
+    ck_assert_uint_eq(own_gradients(solvers[1]), s.model.element_count);
+    advance_both(solvers, &s, &step, displacement, velocity);
+    for (i = 0; i < 200; ++i) {
+        const uint32_t of = groups[i] = (uint32_t)i;
+        if (i % 2 == 0)
+            scale_gradient(&s.elements[of], of % 5 == 0 ? 1 / 1.04 : 1.05);
+        own += i % 2 != 0 ? 0 : of % 5 == 0 ? (size_t)-1 : 1;
+    }
+    change.copy_count = n / 3, change.origins = origins, change.held = s.held, change.groups = groups;
+    change.group_count = change.element_count = 200, change.elements = s.elements;
+    for (i = 0; i < 2; ++i)
+        ck_assert_int_eq(gxs_solver_update(solvers[i], &change, NULL), GX_OK);
+    ck_assert_uint_eq(own_gradients(solvers[0]), own);
+    advance_both(solvers, &s, &step, displacement, velocity);
+    gxs_solver_destroy(solvers[0]), gxs_solver_destroy(solvers[1]);
+    free(origins), free(displacement), free(velocity);
+    scene_free(&s);
+}
+END_TEST
+
 /* the report's energy is E of the manual */
 START_TEST(reported_energy_is_the_incremental_potential)
 {
@@ -1724,6 +1824,7 @@ static Suite *solve_suite(void)
     tcase_add_test(step, reported_energy_is_the_incremental_potential);
     tcase_add_test(step, tiny_weights_keep_iterations_bounded);
     tcase_add_test(step, masses_of_slivers_are_semidefinite);
+    tcase_add_loop_test(step, gradients_need_not_be_those_of_positions, 0, KINDS);
     tcase_add_test(step, tiny_pieces_are_seen);
     tcase_add_loop_test(step, integrators_have_their_order, 0, 6);
     tcase_add_loop_test(step, targets_move_held_copies, 0, 2);
