@@ -966,18 +966,18 @@ typedef struct gxsp_system {
     uint32_t *follower;     /* n: index of the copy's entry in followers; GXSP_NONE: it follows none */
     gxsp_lasting *lasting;  /* of the solver */
     float *volume;          /* n: inverse volume of the support, scaled; of GXS_VOLUME_RATIO only */
-    double *base;           /* displacement at the start of the step */
-    double *target;         /* where inertia (and mass damping) alone lead; of backward Euler base + dt v */
-    double *load;           /* gravity and nodal forces, N */
+    double *target;         /* where inertia (and mass damping) alone lead; of backward Euler u_n + dt v_n */
+    double *damping;        /* what Rayleigh damping adds to the load, N; NULL: no material is damped */
     double *current;        /* displacement: Newton's iterate */
-    double *trial;          /* displacement: tried by the line search */
     double *force;          /* inertia + elastic at the iterate, N */
     double *residual;       /* load - force; conjugate gradients use it up */
+    double *trial;          /* displacement: tried by the line search; in the memory of the residual, of which there is no need then */
     double *direction;      /* the solution of the linear system */
     gxsp_vector4 *search, *product, *scaled; /* of conjugate gradients: direction, Hessian times it, preconditioned residual */
     float *diagonal;        /* n x 6: inverse of the Hessian's diagonal blocks, packed; 0 for fixed copies */
     int lumped_mass;
     int stiff;              /* a material is nearly incompressible */
+    int damps;              /* a material is damped */
     int chosen;             /* the preconditioner was chosen by the size of pieces */
     double scale;           /* power of two by which the linear systems are multiplied, so that single precision holds tiny pieces too */
     gxsp_level levels[GXSP_LEVELS];
@@ -1021,19 +1021,20 @@ typedef struct gxsp_problem {
     const gxs_step_desc *step;
     double rate;            /* of the inertia: rate/2 |u - target|_M^2, 1/s2 */
     double speed;           /* v = speed (u - a mean of the displacements before), 1/s */
-    double mean[2];         /* its weights: of base and of previous_displacement */
+    double mean[2];         /* its weights: of given and of previous_displacement */
     uint32_t cg_iterations; /* with the defaults put in */
     double cg_tolerance;
     double nepers;          /* by how many factors of e the last linear solve has reduced the residual that its guess left */
     double energies[3];     /* at current, sums over pieces; J */
     double base_potential;  /* E at base, J; of the midpoint rule */
-    const double *given;    /* displacement at the step's start; base has held copies where their targets lead */
+    const double *given;    /* displacement at the step's start, u_n */
     double start;           /* on the clock */
     gxs_scene scene;
     int exact;              /* the linearisation is not projected */
     int indefinite;         /* conjugate gradients met negative curvature */
     int projected_only;     /* the exact one has proved indefinite in this step */
     int shortened;          /* the line search did not take the whole step */
+    int damps;              /* damping adds to the load */
     int stalls;             /* iterations in a row that noise ended and that gained next to nothing */
     double least;           /* residual so far */
     int noise;              /* the line search ended where energies differ by rounding only */
@@ -2053,6 +2054,7 @@ typedef struct gxsp_pass {
     gxsp_vector4 *y;            /* output */
     const double *right;        /* x 3: output is this minus the product; NULL: it is the product */
     double factor;              /* of passes over copies: what x is multiplied by */
+    const gxsp_problem *problem; /* of what needs the load */
 } gxsp_pass;
 
 /* Copies of the range with this index: from first, not including the one returned */
@@ -3261,14 +3263,16 @@ static void gxsp_copies_make(gxsp_system *system, const double *positions)
 /* What only steps need: taken last, when all that a model is made with has been given back */
 static void gxsp_steps_make(gxsp_system *system)
 {
-    double **vectors[9];
+    double **vectors[6];
     gxsp_vector4 **singles[6];
     int i;
-    vectors[0] = &system->base, vectors[1] = &system->target, vectors[2] = &system->load, vectors[3] = &system->current;
-    vectors[4] = &system->trial, vectors[5] = &system->force, vectors[6] = &system->residual, vectors[7] = &system->direction;
-    vectors[8] = &system->coarse_state;
-    for (i = 0; i < (system->level_count > 0 ? 9 : 8); ++i)
+    vectors[0] = &system->target, vectors[1] = &system->current, vectors[2] = &system->force, vectors[3] = &system->residual;
+    vectors[4] = &system->direction, vectors[5] = &system->coarse_state;
+    for (i = 0; i < (system->level_count > 0 ? 6 : 5); ++i)
         *vectors[i] = (double *)gxsp_take(&system->pool, 3 * system->n, sizeof(double));
+    system->trial = system->residual;
+    if (system->damps)
+        system->damping = (double *)gxsp_take(&system->pool, 3 * system->n, sizeof(double));
     singles[0] = &system->search, singles[1] = &system->product, singles[2] = &system->scaled, singles[3] = &system->guess[0];
     singles[4] = &system->guess[1], singles[5] = &system->right;
     for (i = 0; i < (system->fine ? 6 : 5); ++i)
@@ -4102,6 +4106,7 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
         return SIZE_MAX;
     for (i = 0; i < system->material_count; ++i) {
         system->damped[i] = system->materials[i] = gxsp_material_make(&model->materials[i]);
+        system->damps |= model->materials[i].damping > 0;
         system->stiff |= model->materials[i].kind != GXS_CUSTOM && model->materials[i].poisson > GXSP_STIFF_POISSON;
     }
     gxsp_find_fixed(system, model);
@@ -6126,13 +6131,12 @@ static void gxsp_copies_room(gxsp_system *system, size_t count)
     gxsp_level *fine = &system->levels[0];
     if (count <= system->copy_room)
         return;
-    system->base = (double *)gxsp_retake(pool, system->base, 0, 3 * room, sizeof(double));
     system->target = (double *)gxsp_retake(pool, system->target, 0, 3 * room, sizeof(double));
-    system->load = (double *)gxsp_retake(pool, system->load, 0, 3 * room, sizeof(double));
+    if (system->damping)
+        system->damping = (double *)gxsp_retake(pool, system->damping, 0, 3 * room, sizeof(double));
     system->current = (double *)gxsp_retake(pool, system->current, 3 * n, 3 * room, sizeof(double));
-    system->trial = (double *)gxsp_retake(pool, system->trial, 0, 3 * room, sizeof(double));
     system->force = (double *)gxsp_retake(pool, system->force, 0, 3 * room, sizeof(double));
-    system->residual = (double *)gxsp_retake(pool, system->residual, 0, 3 * room, sizeof(double));
+    system->trial = system->residual = (double *)gxsp_retake(pool, system->residual, 0, 3 * room, sizeof(double));
     system->direction = (double *)gxsp_retake(pool, system->direction, 0, 3 * room, sizeof(double));
     system->search = (gxsp_vector4 *)gxsp_retake(pool, system->search, 0, room, sizeof(gxsp_vector4));
     system->product = (gxsp_vector4 *)gxsp_retake(pool, system->product, 0, room, sizeof(gxsp_vector4));
@@ -6494,6 +6498,19 @@ static int gxsp_update_system(gxsp_renewal *update)
 
 /* >>pieces */
 
+/* Gravity, nodal forces and what damping adds to them on a copy, N; 0 on what this step leaves alone */
+static void gxsp_load(const gxsp_problem *problem, size_t copy, double *load)
+{
+    const gxsp_system *system = problem->system;
+    const gxs_step_desc *step = problem->step;
+    size_t r;
+    for (r = 0; r < 3; ++r) {
+        const size_t k = 3 * copy + r;
+        load[r] = system->still[copy] ? 0 : system->lumped[copy] * step->gravity[r] + (step->forces ? step->forces[k] : 0);
+        load[r] += problem->damps ? system->damping[k] : 0;
+    }
+}
+
 /* Sums over pieces: cleared, copies added one by one, then as a mean over each piece's mass. Only of pieces of state 0. */
 static void gxsp_clear_pieces(gxsp_system *system)
 {
@@ -6536,26 +6553,43 @@ static void gxsp_remove_translations(gxsp_system *system, gxsp_vector4 *x)
             x[i][r] -= (float)system->pieces[system->piece[i]].sum[r];
 }
 
-/* Translates every loose piece of x so that load = rate M (x - from) in sum. load and from may be NULL: zeros; without both, x's own
- * momentum is taken out. */
-static void gxsp_balance_momentum(gxsp_system *system, const double *load, double rate, const double *from, double *x)
+/* Takes the momentum of every loose piece out of x. */
+static void gxsp_remove_momentum(gxsp_system *system, double *x)
 {
     size_t i, r;
     if (system->loose_count == 0)
         return;
     gxsp_clear_pieces(system);
     for (i = 0; i < system->n; ++i) {
+        const double m = system->lumped[i];
+        gxsp_add_to_piece(system, i, m * x[3 * i], m * x[3 * i + 1], m * x[3 * i + 2]);
+    }
+    gxsp_average_pieces(system);
+    for (i = 0; i < system->n; ++i)
+        for (r = 0; r < 3; ++r)
+            x[3 * i + r] -= system->pieces[system->piece[i]].sum[r];
+}
+
+/* Translates every loose piece of x so that load = rate M (x - target) in sum. */
+static void gxsp_balance_momentum(const gxsp_problem *problem, double *x)
+{
+    gxsp_system *system = problem->system;
+    size_t i, r;
+    if (system->loose_count == 0)
+        return;
+    gxsp_clear_pieces(system);
+    for (i = 0; i < system->n; ++i) {
+        const double rate = problem->rate * system->lumped[i], *from = system->target + 3 * i;
         double f[3];
-        for (r = 0; r < 3; ++r) {
-            const size_t k = 3 * i + r;
-            f[r] = (load ? load[k] : 0) - rate * system->lumped[i] * (x[k] - (from ? from[k] : 0));
-        }
+        gxsp_load(problem, i, f);
+        for (r = 0; r < 3; ++r)
+            f[r] -= rate * (x[3 * i + r] - from[r]);
         gxsp_add_to_piece(system, i, f[0], f[1], f[2]);
     }
     gxsp_average_pieces(system);
     for (i = 0; i < system->n; ++i)
         for (r = 0; r < 3; ++r)
-            x[3 * i + r] += system->pieces[system->piece[i]].sum[r] / rate;
+            x[3 * i + r] += system->pieces[system->piece[i]].sum[r] / problem->rate;
 }
 
 /* Forgets what springs and contact have acted on. */
@@ -7102,7 +7136,7 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
     }
     problem->nepers = now.energy > 0 && guessed.energy > now.energy ? 0.5 * log(guessed.energy / now.energy) : 0;
     gxsp_follow(system, NULL, system->direction);
-    gxsp_balance_momentum(system, NULL, 1, NULL, system->direction); /* what single precision left of it */
+    gxsp_remove_momentum(system, system->direction); /* what single precision left of it */
     if (gxsp_first_not_finite(system->direction, 3 * system->n) < 3 * system->n)
         return 0;
     if (start)
@@ -7438,13 +7472,14 @@ static void gxsp_task_balance(void *context, size_t index)
     memset(sums, 0, sizeof *system->range_sum);
     for (; i < end; ++i) {
         const float *d = system->diagonal + 6 * i;
-        double inertia[3], elastic[3];
+        double load[3], inertia[3], elastic[3];
+        gxsp_load(pass->problem, i, load);
         for (k = 0; k < 3; ++k) {
             inertia[k] = pass->rate * system->lumped[i] * (system->current[3 * i + k] - system->target[3 * i + k]);
             elastic[k] = system->force[3 * i + k] - inertia[k];
-            system->residual[3 * i + k] = system->still[i] ? 0 : system->load[3 * i + k] - system->force[3 * i + k];
+            system->residual[3 * i + k] = system->still[i] ? 0 : load[k] - system->force[3 * i + k];
         }
-        gxsp_add_norms(d, system->load + 3 * i, sums);
+        gxsp_add_norms(d, load, sums);
         gxsp_add_norms(d, inertia, sums + 2);
         gxsp_add_norms(d, elastic, sums + 4);
     }
@@ -7459,6 +7494,7 @@ static double gxsp_balance(gxsp_problem *problem)
     double energy, displacement, by_energy, by_displacement, sums[GXSP_SUMS];
     memset(&pass, 0, sizeof pass);
     pass.rate = problem->rate;
+    pass.problem = problem;
     gxsp_over_ranges(system, gxsp_task_balance, &pass, sums, GXSP_SUMS);
     elastic.energy = sums[4], elastic.displacement = sums[5];
     gxsp_add_reactions(system, &elastic);
@@ -7491,26 +7527,40 @@ static int gxsp_update(gxsp_problem *problem)
            gxsp_first_not_finite(system->force, 3 * system->n) == 3 * system->n;
 }
 
-/* Start of Newton at from (target or base), each loose piece translated so that its momentum balances. The rest of the
+/* Where everything is in a step that moves only held copies, to their targets, and what follows these: base */
+static void gxsp_find_base(const gxsp_problem *problem, double *to)
+{
+    const gxsp_system *system = problem->system;
+    const double *targets = problem->step->targets;
+    size_t k;
+    memcpy(to, problem->given, 3 * system->n * sizeof *to);
+    for (k = 0; k < 3 * system->n && targets; ++k)
+        if (system->held[k / 3])
+            to[k] = problem->step->integrator == GXS_MIDPOINT ? 0.5 * (to[k] + targets[k]) : targets[k];
+    gxsp_follow(system, problem->given, to);
+}
+
+/* Start of Newton at base or where inertia leads, each loose piece translated so that its momentum balances. The rest of the
  * iteration cannot change momentum: elastic forces have none, nor do the directions. */
-static int gxsp_start(gxsp_problem *problem, const double *from)
+static int gxsp_start(gxsp_problem *problem, int led)
 {
     gxsp_system *system = problem->system;
     size_t i;
-    memcpy(system->current, from, 3 * system->n * sizeof(double));
-    for (i = 0; i < system->n; ++i)
-        if (system->still[i])
-            memcpy(system->current + 3 * i, system->base + 3 * i, 3 * sizeof(double));
-    gxsp_follow(system, system->base, system->current);
+    gxsp_find_base(problem, system->current);
+    for (i = 0; i < system->n && led; ++i)
+        if (!system->still[i])
+            memcpy(system->current + 3 * i, system->target + 3 * i, 3 * sizeof(double));
+    gxsp_follow(system, problem->given, system->current);
     gxsp_untouch_pieces(system);
     gxsp_terms_make(problem, system->current);
-    gxsp_balance_momentum(system, system->load, problem->rate, system->target, system->current);
+    gxsp_balance_momentum(problem, system->current);
     return gxsp_first_not_finite(system->current, 3 * system->n) == 3 * system->n && gxsp_update(problem);
 }
 
 /* What the line search knows of the pieces before its first trial. 0 if a number is not finite. */
-static int gxsp_begin_search(gxsp_system *system)
+static int gxsp_begin_search(const gxsp_problem *problem)
 {
+    gxsp_system *system = problem->system;
     int finite = 1;
     size_t i, k;
     uint32_t p;
@@ -7521,9 +7571,10 @@ static int gxsp_begin_search(gxsp_system *system)
     }
     for (i = 0; i < system->n; ++i) {
         gxsp_piece *piece = gxsp_lead_of(system, i);
-        const double *force = system->force + 3 * i, *load = system->load + 3 * i, *way = system->direction + 3 * i;
-        const double work = gxsp_dot(load, way, 1);
-        double rounding = 0;
+        const double *force = system->force + 3 * i, *way = system->direction + 3 * i;
+        double load[3], work, rounding = 0;
+        gxsp_load(problem, i, load);
+        work = gxsp_dot(load, way, 1);
         for (k = 0; k < 3; ++k)
             rounding += fabs(force[k] * system->current[3 * i + k]) + fabs(load[k] * way[k]);
         piece->slope += gxsp_dot(force, way, 1) - work;
@@ -7592,7 +7643,7 @@ static int gxsp_line_search(gxsp_problem *problem)
     size_t left = 1, down;
     uint32_t p;
     int trial;
-    if (!gxsp_begin_search(system))
+    if (!gxsp_begin_search(problem))
         return 0;
     problem->noise = 1;
     for (trial = 0; trial < GXSP_TRIALS && left > 0 && (trial == 0 || !gxsp_out_of_time(problem)); ++trial) {
@@ -7612,16 +7663,22 @@ static int gxsp_line_search(gxsp_problem *problem)
     for (p = 0; p < system->piece_count; ++p)
         system->pieces[p].settled = 0;
     gxsp_keep_energies(problem);
-    system->trial = system->current;
+    system->trial = system->residual = system->current;
     system->current = found;
     return left == 0 || down > 0;
 }
 
-/* E at current, J */
-static double gxsp_energy(const gxsp_problem *problem)
+/* E at a displacement of these energies, J */
+static double gxsp_potential(const gxsp_problem *problem, const double *energies, const double *displacement)
 {
-    const gxsp_system *system = problem->system;
-    return problem->energies[0] + problem->energies[1] - gxsp_dot(system->load, system->current, system->n);
+    double work = 0;
+    size_t i;
+    for (i = 0; i < problem->system->n; ++i) {
+        double load[3];
+        gxsp_load(problem, i, load);
+        work += gxsp_dot(load, displacement + 3 * i, 1);
+    }
+    return energies[0] + energies[1] - work;
 }
 
 /* The step's integrator as rate and target: the equation of motion is M rate (u - target) = f - dU/du. With v = speed (u - mean)
@@ -7651,7 +7708,7 @@ static void gxsp_choose_integrator(gxsp_problem *problem)
     problem->rate = problem->speed * problem->speed + problem->speed * step->mass_damping;
 }
 
-/* Elastic forces at a displacement with the materials times their damping x factor, added to the load */
+/* Elastic forces at a displacement with the materials times their damping x factor, added to those of damping */
 static void gxsp_add_damping(gxsp_problem *problem, double factor, const double *displacement)
 {
     gxsp_system *system = problem->system;
@@ -7662,22 +7719,21 @@ static void gxsp_add_damping(gxsp_problem *problem, double factor, const double 
     }
     gxsp_evaluate_elements(system, 0, displacement, system->target, 0, system->force);
     for (i = 0; i < 3 * system->n; ++i)
-        system->load[i] += system->force[i];
+        system->damping[i] += system->force[i];
 }
 
 /* Rayleigh's stiffness damping: stress P(F) + beta dP/dt, the rate taken as that of the integrator, speed (P(F) - P of the mean before).
  * All energies are linear in their moduli, so that is the energy (1 + beta speed) U(u) with a load of the forces before. These are
  * turned as the elements are by inertia alone: rotations of what is under stress are not damped, to first order in the step. */
-static void gxsp_begin_damping(gxsp_problem *problem, const double *displacement)
+static void gxsp_begin_damping(gxsp_problem *problem)
 {
     gxsp_system *system = problem->system;
-    int any = 0;
     size_t i;
-    for (i = 0; i < system->material_count; ++i)
-        any |= system->materials[i].damping > 0;
-    if (any && problem->speed > 0) {
+    problem->damps = system->damps && problem->speed > 0;
+    if (problem->damps) {
         system->base_known = 0;
-        gxsp_add_damping(problem, problem->speed * problem->mean[0], displacement);
+        memset(system->damping, 0, 3 * system->n * sizeof(double));
+        gxsp_add_damping(problem, problem->speed * problem->mean[0], problem->given);
         if (problem->mean[1] < 0)
             gxsp_add_damping(problem, problem->speed * problem->mean[1], problem->step->previous_displacement);
     }
@@ -7696,36 +7752,25 @@ static double gxsp_mean(const gxsp_problem *problem, const double *displacement,
     return problem->mean[1] < 0 ? mean + problem->mean[1] * problem->step->previous_displacement[k] : mean;
 }
 
-/* Load, target, base: that of held copies is where they will be. */
-static void gxsp_begin(gxsp_problem *problem, const double *displacement, const double *velocity)
+/* Target; forces of damping */
+static void gxsp_begin(gxsp_problem *problem, const double *velocity)
 {
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
+    const double *displacement = problem->given;
     const double lead = problem->speed > 0 ? problem->speed / problem->rate : 0; /* s; the rest of the rate is mass damping's */
-    size_t i, r;
+    size_t k;
     system->base_known = system->base_known && !step->targets && step->spring_count + step->point_count == 0 &&
                          memcmp(displacement, system->current, 3 * system->n * sizeof(double)) == 0;
-    memcpy(system->base, displacement, 3 * system->n * sizeof(double));
-    for (i = 0; i < system->n; ++i)
-        for (r = 0; r < 3; ++r) {
-            size_t k = 3 * i + r;
-            double mean = gxsp_mean(problem, displacement, k), speed = problem->mean[0] * velocity[k];
-            if (problem->mean[1] < 0)
-                speed += problem->mean[1] * step->previous_velocity[k];
-            system->target[k] = mean + lead * speed;
-            if (step->targets && system->held[i])
-                system->base[k] = step->integrator == GXS_MIDPOINT ? 0.5 * (displacement[k] + step->targets[k]) : step->targets[k];
-            if (system->still[i] && !system->held[i]) /* what a held copy is accelerated by acts on its neighbours */
-                system->target[k] = system->base[k];
-            system->load[k] = system->still[i] ? 0 : system->lumped[i] * step->gravity[r] + (step->forces ? step->forces[k] : 0);
-        }
-    for (i = 0; i < system->follower_count; ++i) /* of masters that targets move */
-        for (r = 0; r < 12; ++r) {
-            const gxsp_follower *follower = &system->followers[i];
-            const size_t master = 3 * (size_t)follower->master[r / 3] + r % 3;
-            system->base[3 * (size_t)follower->copy + r % 3] += follower->weight[r / 3] * (system->base[master] - displacement[master]);
-        }
-    gxsp_begin_damping(problem, displacement);
+    for (k = 0; k < 3 * system->n; ++k) {
+        double speed = problem->mean[0] * velocity[k];
+        if (problem->mean[1] < 0)
+            speed += problem->mean[1] * step->previous_velocity[k];
+        system->target[k] = gxsp_mean(problem, displacement, k) + lead * speed;
+        if (system->still[k / 3] && !system->held[k / 3]) /* what a held copy is accelerated by acts on its neighbours */
+            system->target[k] = displacement[k];
+    }
+    gxsp_begin_damping(problem);
 }
 
 static int gxsp_linearise_all(gxsp_problem *problem)
@@ -7817,8 +7862,9 @@ static gx_result gxsp_newton(gxsp_problem *problem)
 
 /* E of every piece at current, and its limit: E at a displacement at which all were evaluated last, or, elastic set, of another one without
  * the kinetic energy */
-static void gxsp_limit_energies(gxsp_system *system, const double *displacement, int elastic)
+static void gxsp_limit_energies(const gxsp_problem *problem, const double *displacement, int elastic)
 {
+    gxsp_system *system = problem->system;
     size_t i;
     uint32_t p;
     for (p = 0; p < system->piece_count; ++p) {
@@ -7828,8 +7874,10 @@ static void gxsp_limit_energies(gxsp_system *system, const double *displacement,
     }
     for (i = 0; i < system->n; ++i) {
         gxsp_piece *piece = gxsp_lead_of(system, i);
-        piece->limit -= gxsp_dot(system->load + 3 * i, displacement + 3 * i, 1);
-        piece->ended -= gxsp_dot(system->load + 3 * i, system->current + 3 * i, 1);
+        double load[3];
+        gxsp_load(problem, i, load);
+        piece->limit -= gxsp_dot(load, displacement + 3 * i, 1);
+        piece->ended -= gxsp_dot(load, system->current + 3 * i, 1);
     }
 }
 
@@ -7850,9 +7898,8 @@ static size_t gxsp_count_risen(gxsp_system *system)
 /* Where the pieces would be without a step, but for translations of loose ones: into trial */
 static void gxsp_stay(gxsp_problem *problem)
 {
-    gxsp_system *system = problem->system;
-    memcpy(system->trial, system->base, 3 * system->n * sizeof(double));
-    gxsp_balance_momentum(system, system->load, problem->rate, system->target, system->trial);
+    gxsp_find_base(problem, problem->system->trial);
+    gxsp_balance_momentum(problem, problem->system->trial);
 }
 
 /* E at base, when the pieces' limits are those at trial, to which loose ones were translated: with the energy of that, for E is a parabola
@@ -7878,7 +7925,7 @@ static size_t gxsp_bring_down(gxsp_problem *problem)
     size_t i, k, count;
     uint32_t p;
     gxsp_evaluate(problem, system->trial, 0, system->force);
-    gxsp_limit_energies(system, system->trial, 0);
+    gxsp_limit_energies(problem, system->trial, 0);
     problem->base_potential = gxsp_base_potential(problem);
     count = gxsp_count_risen(system);
     if (count == 0)
@@ -7906,19 +7953,19 @@ static gx_result gxsp_minimise(gxsp_problem *problem)
     gxsp_system *system = problem->system;
     gx_result result = GX_ERROR_DIVERGED;
     if (system->active == 0) {
-        memcpy(system->current, system->base, 3 * system->n * sizeof(double));
+        gxsp_find_base(problem, system->current);
         problem->report.stop = GXS_STOP_ASLEEP;
         return GX_OK;
     }
     gxsp_choose_leads(problem);
-    if (gxsp_start(problem, system->target))
+    if (gxsp_start(problem, 1))
         result = gxsp_newton(problem);
     if (result != GX_OK) {
         problem->report.newton_iterations = 0;
-        return gxsp_start(problem, system->base) ? gxsp_newton(problem) : GX_ERROR_DIVERGED;
+        return gxsp_start(problem, 0) ? gxsp_newton(problem) : GX_ERROR_DIVERGED;
     }
     gxsp_stay(problem);
-    gxsp_limit_energies(system, system->trial, 1);
+    gxsp_limit_energies(problem, system->trial, 1);
     if (system->base_known && problem->step->integrator != GXS_MIDPOINT && gxsp_count_risen(system) == 0)
         return GX_OK; /* lower even without the kinetic energy that staying at base would take */
     if (gxsp_bring_down(problem) > 0)
@@ -7933,20 +7980,22 @@ static gx_result gxsp_minimise(gxsp_problem *problem)
 static void gxsp_bound_gain(gxsp_problem *problem)
 {
     gxsp_system *system = problem->system;
-    const double low = gxsp_energy(problem) - problem->base_potential;
+    const double low = gxsp_potential(problem, problem->energies, system->current) - problem->base_potential;
     double energies[3], gain, share = 1;
     size_t i, count = 3 * system->n;
     int trial;
+    gxsp_find_base(problem, system->trial);
     for (i = 0; i < count; ++i)
-        system->direction[i] = system->current[i] - system->base[i];
-    gxsp_balance_momentum(system, NULL, 1, NULL, system->direction);
+        system->direction[i] = system->current[i] - system->trial[i];
+    gxsp_remove_momentum(system, system->direction);
     for (trial = 0; trial < GXSP_GAIN_TRIALS; ++trial) {
         double next; /* E is a parabola with its minimum at current */
+        gxsp_find_base(problem, system->trial);
         for (i = 0; i < count; ++i)
-            system->trial[i] = 2 * system->current[i] - system->base[i] - (1 - share) * system->direction[i];
+            system->trial[i] = 2 * system->current[i] - system->trial[i] - (1 - share) * system->direction[i];
         gxsp_evaluate(problem, system->trial, 0, system->force);
         gxsp_sum_energies(system, energies);
-        gain = energies[0] + energies[1] - gxsp_dot(system->load, system->trial, system->n) - problem->base_potential;
+        gain = gxsp_potential(problem, energies, system->trial) - problem->base_potential;
         if (gxsp_finite(gain) && gain <= GXSP_GAIN * energies[1] + 1e-12 * fabs(problem->base_potential))
             break;
         next = gxsp_finite(gain) && low < 0 && gain > low ? share * sqrt(low / (low - gain)) : 0;
@@ -7975,7 +8024,7 @@ static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double
             speeds[i] = problem->speed * ((system->current[i] - gxsp_mean(problem, displacement, i)) * (midpoint ? 2 : 1) - less) -
                         (midpoint ? velocity[i] : 0);
     }
-    problem->report.energy = gxsp_energy(problem);
+    problem->report.energy = gxsp_potential(problem, problem->energies, system->current);
     if (gxsp_first_not_finite(speeds, count) < count || gxsp_first_not_finite(ends, count) < count ||
         !gxsp_finite(problem->report.energy))
         return GX_ERROR_DIVERGED;
@@ -8462,7 +8511,7 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     problem.system->failed = 1;
     if ((result = gxsp_check_free(&problem, failure)) != GX_OK)
         return result;
-    gxsp_begin(&problem, displacement, velocity);
+    gxsp_begin(&problem, velocity);
     problem.report.active_unknowns = problem.system->active;
     result = gxsp_minimise(&problem);
     if (result == GX_OK)
