@@ -6499,16 +6499,16 @@ static int gxsp_update_system(gxsp_renewal *update)
 /* >>pieces */
 
 /* Gravity, nodal forces and what damping adds to them on a copy, N; 0 on what this step leaves alone */
-static void gxsp_load(const gxsp_problem *problem, size_t copy, double *load)
+GXSP_INLINE void gxsp_load(const gxsp_problem *problem, size_t copy, double *load)
 {
     const gxsp_system *system = problem->system;
-    const gxs_step_desc *step = problem->step;
-    size_t r;
-    for (r = 0; r < 3; ++r) {
-        const size_t k = 3 * copy + r;
-        load[r] = system->still[copy] ? 0 : system->lumped[copy] * step->gravity[r] + (step->forces ? step->forces[k] : 0);
-        load[r] += problem->damps ? system->damping[k] : 0;
-    }
+    const double *gravity = problem->step->gravity, *forces = problem->step->forces, *damping = system->damping;
+    const double mass = system->still[copy] ? 0 : system->lumped[copy];
+    load[0] = mass * gravity[0], load[1] = mass * gravity[1], load[2] = mass * gravity[2];
+    if (forces && !system->still[copy])
+        load[0] += forces[3 * copy], load[1] += forces[3 * copy + 1], load[2] += forces[3 * copy + 2];
+    if (problem->damps)
+        load[0] += damping[3 * copy], load[1] += damping[3 * copy + 1], load[2] += damping[3 * copy + 2];
 }
 
 /* Sums over pieces: cleared, copies added one by one, then as a mean over each piece's mass. Only of pieces of state 0. */
