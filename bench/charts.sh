@@ -139,9 +139,9 @@ scaling() {
     echo 'set terminal svg size 1180,740 font "sans,12" background "white"'
     echo "set output '$charts/scaling.svg'"
     block="$(awk -F, '$1 == "cuts" { print $3; exit }' "$tables/scaling.csv") elements"
-    for sweep in "elements plane 3" "elements curved 3" "cuts parallel 4" "cuts crossing 4" "triangles curved 5"; do
+    for sweep in "elements plane 3" "elements curved 3" "elements curved-pool 3" "cuts parallel 4" "cuts crossing 4" "triangles curved 5"; do
         set -- $sweep
-        echo "\$$1_$2 << EOD"
+        echo "\$$1_$2 << EOD" | tr - _
         awk -F, -v sweep="$1" -v kind="$2" -v x="$3" '$1 == sweep && $2 == kind { print $x, $8 / ($7 + $5), $14, $17, 1000 * $12 / $14, 1e3 * $18 / $14 }' "$tables/scaling.csv"
         echo "EOD"
     done
@@ -151,7 +151,7 @@ set multiplot layout 2,3 title "A block of tetrahedra under cuts   ($(where scal
 set logscale xy; set grid back lc rgb "#dddddd"; set key left top samplen 1.5 font ",11"
 set ylabel "cut, us per new cell and triangle"; set yrange [1:300]
 set xlabel "elements"; set xrange [500:2e6]; set format x "10^{%L}"
-plot \$elements_plane using 1:2 with linespoints ls 1 title "a plane", \$elements_curved using 1:2 with linespoints ls 3 title "a curved sheet"
+plot \$elements_plane using 1:2 with linespoints ls 1 title "a plane", \$elements_curved using 1:2 with linespoints ls 3 title "a curved sheet", \$elements_curved_pool using 1:2 with linespoints ls 3 dt 2 title "in memory that was there"
 set xlabel "cuts so far, $block"; set xrange [0.7:1500]; set format x "%g"
 plot \$cuts_parallel using 1:2 with linespoints ls 1 title "parallel planes", \$cuts_crossing using 1:2 with linespoints ls 2 title "crossing planes"
 set xlabel "triangles of the cut, $block"; set xrange [1:2e5]; set format x "10^{%L}"

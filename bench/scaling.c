@@ -5,7 +5,8 @@
    BENCH=--small: sizes that take seconds.
 
    A block of tetrahedra (block.h) is cut by planes or by gently curved sheets, all the way through.
-       elements   the first cut of a block of so many elements (its arrays still have to grow), and the median of those after it
+       elements   the first cut of a block of so many elements (its arrays still have to grow), and the median of those after it; curved-pool: in
+                  memory that the host has had before, on pages of 2 MB
        cuts       the median of the last half of so many cuts in one block: parallel planes at random heights, or planes of random
                   direction through the middle, which cross each other (to 100: the pieces grow with the cube of their number)
        triangles  one cut, curved, of so many triangles
@@ -21,6 +22,7 @@
    It ends with 1 if ours are not the least. A table goes to stderr, with how costs grow: as a power of what is swept, by least squares over
    the upper half of its decades. What a cut touches are the cells that it makes and its triangles. */
 #define _POSIX_C_SOURCE 200112L
+#define _DEFAULT_SOURCE             /* madvise */
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "block.h"
@@ -28,6 +30,7 @@
 #include "csv.h"
 #include "least.h"
 #include "progress.h"
+#include <sys/mman.h>
 
 enum { MOST_CUTS = 1024, LATER_CUTS = 6, MOST_ROWS = 64 };
 
@@ -40,29 +43,96 @@ static void check(gx_result result)
 
 /* ---- memory ---- */
 
-typedef struct meter { size_t now, peak; } meter;
+/* What a host may do that has its memory before the scene begins: blocks of powers of two out of one piece of large pages (where the system has
+   them for the asking), all touched before, and given back to the list of their size. */
+typedef struct pool { unsigned char *memory; size_t size, used; void *spare[48]; } pool;
+
+enum { LARGE_PAGE = 1 << 21, POOL_LEAST = 12 }; /* smaller blocks than 2^12 bytes are malloc's */
+
+static int power_of(size_t size)
+{
+    int power = POOL_LEAST;
+    while ((size_t)1 << power < size) power++;
+    return power;
+}
+
+static int pool_make(pool *p, size_t size)
+{
+    void *memory;
+    memset(p, 0, sizeof *p);
+    if (posix_memalign(&memory, LARGE_PAGE, size) != 0) return 0;
+#ifdef MADV_HUGEPAGE
+    madvise(memory, size, MADV_HUGEPAGE);
+#endif
+    memset(memory, 0, size);
+    p->memory = (unsigned char *)memory;
+    p->size = size;
+    return 1;
+}
+
+static void *pool_take(pool *p, size_t size)
+{
+    const int power = power_of(size);
+    void *memory = p->spare[power];
+    if (memory) memcpy(&p->spare[power], memory, sizeof memory);
+    else if (p->size - p->used >= (size_t)1 << power) {
+        memory = p->memory + p->used;
+        p->used += (size_t)1 << power;
+    }
+    return memory;
+}
+
+static void pool_give_back(pool *p, void *memory, size_t size)
+{
+    void **list = &p->spare[power_of(size)];
+    memcpy(memory, list, sizeof *list);
+    *list = memory;
+}
+
+/* Memory of a body, counted; of the pool if there is one */
+typedef struct meter { size_t now, peak; pool *pool; } meter;
+
+static int is_pooled(const meter *m, const void *memory)
+{
+    const uintptr_t at = (uintptr_t)memory, from = m->pool ? (uintptr_t)m->pool->memory : 0;
+    return m->pool && at >= from && at < from + m->pool->size;
+}
+
+static void count(meter *m, size_t more, size_t less)
+{
+    m->now += more - less;
+    m->peak = m->now > m->peak ? m->now : m->peak;
+}
 
 static void *meter_allocate(void *user, size_t size)
 {
     meter *m = (meter *)user;
-    m->now += size;
-    m->peak = m->now > m->peak ? m->now : m->peak;
-    return malloc(size);
+    void *memory = m->pool && size >> POOL_LEAST > 0 ? pool_take(m->pool, size) : NULL;
+    if (!memory) memory = malloc(size);
+    if (memory) count(m, size, 0);
+    return memory;
 }
 
 static void meter_release(void *user, void *memory, size_t size)
 {
-    ((meter *)user)->now -= size;
-    free(memory);
+    meter *m = (meter *)user;
+    count(m, 0, size);
+    if (is_pooled(m, memory)) pool_give_back(m->pool, memory, size);
+    else free(memory);
 }
 
 static void *meter_reallocate(void *user, void *memory, size_t size, size_t larger)
 {
     meter *m = (meter *)user;
-    void *moved = realloc(memory, larger);
-    if (!moved) return NULL;
-    m->now += larger - size;
-    m->peak = m->now > m->peak ? m->now : m->peak;
+    void *moved = memory;
+    if (m->pool && (!is_pooled(m, memory) || power_of(size) != power_of(larger))) {
+        if (!(moved = meter_allocate(user, larger))) return NULL;
+        memcpy(moved, memory, size);
+        meter_release(user, memory, size);
+        return moved;
+    }
+    if (!m->pool && !(moved = realloc(memory, larger))) return NULL;
+    count(m, larger, size);
     return moved;
 }
 
@@ -151,7 +221,7 @@ static double uniform(scene *s)
     return (s->random >> 8) / 16777216.0;
 }
 
-static void scene_make(scene *s, uint32_t cells)
+static void scene_make(scene *s, uint32_t cells, pool *p)
 {
     const gx_region top = {2, 1, 1.0 - 1e-9};
     block_desc desc;
@@ -159,6 +229,7 @@ static void scene_make(scene *s, uint32_t cells)
     memset(s, 0, sizeof *s);
     memset(&desc, 0, sizeof desc);
     s->random = 1;
+    s->memory.pool = p;
     desc.young = 1e6;
     desc.allocator.allocate = meter_allocate;
     desc.allocator.release = meter_release;
@@ -331,12 +402,12 @@ static int print_table(void)
 {
     size_t i, from = 0;
     int wrong = 0;
-    fprintf(stderr, "%-9s %-8s %9s %5s %9s %11s %10s %9s %9s %9s %9s %8s\n", "sweep", "kind", "elements", "cuts", "triangles", "us/touched", "step, ms",
+    fprintf(stderr, "%-9s %-11s %9s %5s %9s %11s %10s %9s %9s %9s %9s %8s\n", "sweep", "kind", "elements", "cuts", "triangles", "us/touched", "step, ms",
             "unknowns", "least", "VNA", "remeshed", "MB");
     for (i = 0; i < line_count; i++) {
         const line *l = &lines[i];
         const int off = l->unknowns != l->least;
-        fprintf(stderr, "%-9s %-8s %9lu %5lu %9lu %11.1f %10.1f %9lu %9lu %9lu %9lu %8.1f%s\n", l->sweep, l->kind, (unsigned long)l->elements,
+        fprintf(stderr, "%-9s %-11s %9lu %5lu %9lu %11.1f %10.1f %9lu %9lu %9lu %9lu %8.1f%s\n", l->sweep, l->kind, (unsigned long)l->elements,
                 (unsigned long)l->cuts, (unsigned long)l->triangles, cost_of_cut(l), l->step_ms, (unsigned long)l->unknowns, (unsigned long)l->least,
                 (unsigned long)l->vna, (unsigned long)l->remeshed, l->megabytes, off ? "  NOT THE LEAST" : "");
         wrong += off;
@@ -352,14 +423,14 @@ static int print_table(void)
 
 /* ---- sweeps ---- */
 
-static void against_elements(uint32_t cells, double wave, uint32_t side)
+static void against_elements(uint32_t cells, double wave, uint32_t side, pool *p)
 {
     const double slope[2] = {0.05, 0.03};
     double us[LATER_CUTS], arrangement[LATER_CUTS], first;
     sheet by = sheet_make(side);
     scene s;
     int i;
-    scene_make(&s, cells);
+    scene_make(&s, cells, p);
     sheet_place(&by, 0.5171, slope, wave);
     first = cut(&s, &by);
     for (i = 0; i < LATER_CUTS; i++) {
@@ -367,7 +438,8 @@ static void against_elements(uint32_t cells, double wave, uint32_t side)
         us[i] = cut(&s, &by);
         arrangement[i] = 1e6 * s.report.seconds_arrangement;
     }
-    row(&s, "elements", wave > 0 ? "curved" : "plane", 1 + LATER_CUTS, &by, first, median(us, LATER_CUTS), median(arrangement, LATER_CUTS));
+    row(&s, "elements", p ? "curved-pool" : wave > 0 ? "curved" : "plane", 1 + LATER_CUTS, &by, first, median(us, LATER_CUTS),
+        median(arrangement, LATER_CUTS));
     scene_free(&s);
     sheet_free(&by);
 }
@@ -385,7 +457,7 @@ static void against_cuts(uint32_t cells, size_t count, int crossing)
     const size_t from = count / 2;
     sheet by = sheet_make(1);
     scene s;
-    scene_make(&s, cells);
+    scene_make(&s, cells, NULL);
     for (i = 0; i < count; i++) {
         next_plane(&s, &by, crossing);
         us[i] = cut(&s, &by);
@@ -406,7 +478,7 @@ static void against_triangles(uint32_t cells, uint32_t side)
     sheet by = sheet_make(side);
     scene s;
     double us;
-    scene_make(&s, cells);
+    scene_make(&s, cells, NULL);
     sheet_place(&by, 0.5171, slope, 0.05);
     us = cut(&s, &by);
     row(&s, "triangles", "curved", 1, &by, us, us, 1e6 * s.report.seconds_arrangement);
@@ -425,9 +497,15 @@ int main(int argc, char **argv)
     int i, wrong;
     csv_open(argv[0], path, "sweep,kind,elements,cuts,triangles,touched,created,cut_us,first_us_per_touched,us_per_touched,"
              "arrangement_us_per_touched,step_ms,unknowns_before,unknowns,least,vna,remeshed,peak_mb");
-    line_total = (size_t)(2 * blocks + parallel + crossing + curved);
-    for (i = 0; i < blocks; i++) against_elements(cells[i], 0, 1);
-    for (i = 0; i < blocks; i++) against_elements(cells[i], 0.05, cells[i]);
+    line_total = (size_t)(3 * blocks + parallel + crossing + curved);
+    for (i = 0; i < blocks; i++) against_elements(cells[i], 0, 1, NULL);
+    for (i = 0; i < blocks; i++) against_elements(cells[i], 0.05, cells[i], NULL);
+    for (i = 0; i < blocks; i++) {
+        pool p; /* more than cuts take; steps may go on with malloc */
+        if (!pool_make(&p, (size_t)64 * LARGE_PAGE + (size_t)12500 * cells[i] * cells[i] * cells[i])) check(GX_ERROR_MEMORY);
+        against_elements(cells[i], 0.05, cells[i], &p);
+        free(p.memory);
+    }
     for (i = 0; i < parallel; i++) against_cuts(block, cuts[i], 0);
     for (i = 0; i < crossing; i++) against_cuts(block, cuts[i], 1);
     for (i = 0; i < curved; i++) against_triangles(block, sides[i]);
