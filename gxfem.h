@@ -189,7 +189,8 @@ typedef struct gx_cut_report {
 GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_report *report /* or NULL */, gx_failure *failure /* or NULL */);
 
 /* A sheet made solid (GXFEM section 4.1): offset by thickness/2 to both sides along its vertex normals, rim closed.
-   vertices: room for 2 x vertex_count x 3; triangles: room for 8 x triangle_count x 3. */
+   vertices: room for 2 x vertex_count x 3; triangles: room for 8 x triangle_count x 3. Vertices where normals cancel stay.
+   Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, LIMIT, MEMORY; what has been written then means nothing. */
 GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thickness, double *vertices, size_t *vertex_count,
                                         uint32_t *triangles, size_t *triangle_count, const gx_allocator *allocator /* or NULL */);
 
@@ -1594,12 +1595,11 @@ static gx_result gxp_prepare_triangle(gxp_cut *cut, gxp_surface *s, uint32_t ind
         const uint32_t v = s->merged[s->given->triangles[3 * index + k]];
         if (s->point[v] == GXP_NONE) {
             const gx_result result = gxb_complex_add_point(body->complex, s->given->vertices + 3 * (size_t)v, &s->point[v]);
-            cut->failure.index = v; cut->failure.surface = s->number;
+            if (result == GX_ERROR_NOT_FINITE || result == GX_ERROR_RANGE) { cut->failure.index = v; cut->failure.surface = s->number; }
             if (result != GX_OK) return result;
         }
         t->point[k] = s->point[v];
     }
-    cut->failure.index = cut->failure.surface = SIZE_MAX;
     t->label = s->label + index;
     t->wall = s->given->kind == GX_SURFACE_SHEET;
     if (gxp_borrow_plane(body, s, index)) {
@@ -3171,6 +3171,24 @@ GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_r
 
 /* --- solidified sheets --- */
 
+static double gxp_dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/* n made of length 1, however long it is. 0: it has no length, or is not finite, and unit is left alone. */
+static int gxp_unit(const double n[3], double unit[3]) {
+    double m[3] = {n[0], n[1], n[2]}, square = gxp_dot(n, n);
+    int exponent, k;
+    if (!gxp_is_finite(square) || square < 1e-280 || square > 1e280) {
+        const double a = fabs(n[0]), b = fabs(n[1]), c = fabs(n[2]), most = a > b ? (a > c ? a : c) : b > c ? b : c;
+        if (!gxp_is_finite(a) || !gxp_is_finite(b) || !gxp_is_finite(c) || !(most > 0)) return 0;
+        (void)frexp(most, &exponent);
+        for (k = 0; k < 3; k++) m[k] = ldexp(n[k], -exponent);
+        square = gxp_dot(m, m);
+    }
+    square = 1 / sqrt(square);
+    for (k = 0; k < 3; k++) unit[k] = square * m[k];
+    return 1;
+}
+
 /* Sums of area normals at the vertices of the sheet go to normals; then each is scaled to half the thickness. */
 static gx_result gxp_offset_vectors(const gx_surface *s, double half, double *normals) {
     size_t i;
@@ -3191,9 +3209,8 @@ static gx_result gxp_offset_vectors(const gx_surface *s, double half, double *no
     }
     for (i = 0; i < s->vertex_count; i++) {
         double *n = normals + 3 * i;
-        const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-        if (!gxp_is_finite(length)) return GX_ERROR_NOT_FINITE;
-        for (k = 0; k < 3; k++) n[k] *= length > 0 ? half / length : 0;
+        for (k = 0; k < 3; k++) if (!gxp_is_finite(n[k]) || !gxp_is_finite(s->vertices[3 * i + (size_t)k])) return GX_ERROR_NOT_FINITE;
+        if (gxp_unit(n, n)) for (k = 0; k < 3; k++) n[k] *= half;
     }
     return GX_OK;
 }
@@ -4881,8 +4898,6 @@ static gx_result gxp_spread_touched(gx_body *body) {
 
 /* --- normals --- */
 
-static double gxp_dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
 /* (b - a) x (c - a) of a triangle's corners */
 static void gxp_triangle_normal(const double *x, const uint32_t *t, double n[3]) {
     const double *a = x + 3 * (size_t)t[0], *b = x + 3 * (size_t)t[1], *c = x + 3 * (size_t)t[2];
@@ -4894,11 +4909,9 @@ static void gxp_triangle_normal(const double *x, const uint32_t *t, double n[3])
 
 /* Of length 1; left alone where it has none, or one that is not finite. */
 static void gxp_set_normal(float *normal, const double n[3]) {
-    const double square = gxp_dot(n, n);
-    const double scale = square > 0 ? 1 / sqrt(square) : 0;
+    double unit[3];
     int k;
-    if (!(scale > 0) || !gxp_is_finite(scale)) return;
-    for (k = 0; k < 3; k++) normal[k] = (float)(scale * n[k]);
+    if (gxp_unit(n, unit)) for (k = 0; k < 3; k++) normal[k] = (float)unit[k];
 }
 
 /* --- the outer surface before any cut: which of its corners are shaded as one --- */
@@ -4935,7 +4948,7 @@ static void gxp_join_corners(gx_body *body, uint32_t p, uint32_t q, uint32_t a, 
     double m[3], n[3];
     gxp_outer_normal(body, ep / 4, ep % 4, m);
     gxp_outer_normal(body, eq / 4, eq % 4, n);
-    if (gxp_dot(m, n) < cos(body->skin.desc.crease_angle) * sqrt(gxp_dot(m, m) * gxp_dot(n, n))) return;
+    if (gxp_unit(m, m) && gxp_unit(n, n) && gxp_dot(m, n) < cos(body->skin.desc.crease_angle)) return;
     gxp_unite(group, 4 * p + (uint32_t)gxp_local_node(body, ep / 4, a), 4 * q + (uint32_t)gxp_local_node(body, eq / 4, a));
     gxp_unite(group, 4 * p + (uint32_t)gxp_local_node(body, ep / 4, b), 4 * q + (uint32_t)gxp_local_node(body, eq / 4, b));
 }
@@ -5492,7 +5505,7 @@ static gx_result gxp_skin_element(gx_body *body, uint32_t element) {
 /* At rest: outer ones from the uncut mesh's, others from the facets around, weighted by area: their own normals, since a triangle's
    corners may be rounded to a line. */
 static void gxp_rest_normal(const gxp_skin *s, uint32_t vertex, float *normal) {
-    double n[3] = {0, 0, 0}, a[3];
+    double n[3] = {0, 0, 0}, a[3], unit[3];
     uint32_t corner, i;
     int k;
     if (s->vertices[vertex].outer) {
@@ -5500,7 +5513,7 @@ static void gxp_rest_normal(const gxp_skin *s, uint32_t vertex, float *normal) {
             n[k] += s->weights[4 * vertex + i] * s->group_normals[3 * (size_t)s->slots[s->vertices[vertex].slots[i]].group + (size_t)k];
     } else for (corner = s->vertices[vertex].corner; corner != GXP_NONE; corner = s->links[corner / 3].corner_next[corner % 3]) {
         gxp_triangle_normal(s->rest, s->triangles + 3 * (size_t)(corner / 3), a);
-        for (k = 0; k < 3; k++) n[k] += sqrt(gxp_dot(a, a)) * (double)s->links[corner / 3].normal[k];
+        if (gxp_unit(a, unit)) for (k = 0; k < 3; k++) n[k] += gxp_dot(a, unit) * (double)s->links[corner / 3].normal[k];
     }
     gxp_set_normal(normal, n);
 }

@@ -1321,6 +1321,7 @@ START_TEST(solidified_sheets) {
     double v, vertices[64];
     uint32_t triangles[64];
     size_t nv, nt;
+    int e;
     add_rectangle(&w, 0.5, -0.5, -0.5, 1.5, 1.5);           /* a plane: area times thickness; 1/16 of the cube goes */
     v = solidify(&w, 0, 0.0625);
     ck_assert_double_eq_tol(v, 4 * 0.0625, 1e-14);
@@ -1368,6 +1369,20 @@ START_TEST(solidified_sheets) {
     sheet.triangle_count = 0;
     ck_assert_int_eq(gx_surface_solidify(&sheet, 1, vertices, &nv, triangles, &nt, NULL), GX_ERROR_EMPTY);
     wl_free(&w);
+    for (e = -300; e <= 300; e += 300) {                    /* of any size, an eighth thick; a vertex that no triangle uses */
+        static const double corners[12] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0 };
+        static const uint32_t corner[3] = { 0, 1, 2 };
+        double x[12], thick[3];
+        int i;
+        for (i = 0; i < 12; ++i) x[i] = ldexp(corners[i], e);
+        memset(&sheet, 0, sizeof sheet);
+        sheet.vertices = x; sheet.vertex_count = 4; sheet.triangles = corner; sheet.triangle_count = 1;
+        ck_assert_int_eq(gx_surface_solidify(&sheet, ldexp(0.125, e), vertices, &nv, triangles, &nt, NULL), GX_OK);
+        for (i = 0; i < 3; ++i) thick[i] = ldexp(vertices[i] - vertices[12 + i], -e);
+        ck_assert_double_eq_tol(thick[2], 0.125, 1e-15);
+        x[10] = NAN;
+        ck_assert_int_eq(gx_surface_solidify(&sheet, ldexp(0.125, e), vertices, &nv, triangles, &nt, NULL), GX_ERROR_NOT_FINITE);
+    }
 }
 END_TEST
 

@@ -358,6 +358,42 @@ START_TEST(flat_normals) {
 }
 END_TEST
 
+/* A body of 1e-90 or 1e90 m, whose squares of areas are no doubles, has the normals that it has of 1 m. */
+START_TEST(normals_at_any_size) {
+    const double p[3] = { 0.93, 1.07, 0.55 }, q[3] = { 1, 0.3, 0.2 }, r[3] = { 0.1, 1, 0.4 };
+    static const int powers[4] = { 0, -300, 300, 150 };
+    float *normals[4], *x;
+    size_t vertices = 0, i, k;
+    gx_skin_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.smooth_cuts = _i % 2;
+    desc.crease_angle = _i / 2 ? 1.5 : 0;
+    for (i = 0; i < 4; ++i) {
+        workload w = grid(2, 2, 1, 5);
+        gx_body *body;
+        gx_skin skin;
+        add_plane(&w, p, q, 40); add_plane(&w, p, r, 40);
+        for (k = 0; k < 3 * w.node_count; ++k) w.positions[k] = ldexp(w.positions[k], powers[i]);
+        for (k = 0; k < 3 * w.surfaces[0].vertex_count; ++k) w.surfaces[0].vertices[k] = ldexp(w.surfaces[0].vertices[k], powers[i]);
+        for (k = 0; k < 3 * w.surfaces[1].vertex_count; ++k) w.surfaces[1].vertices[k] = ldexp(w.surfaces[1].vertices[k], powers[i]);
+        body = cut_in_sequence(&w);
+        skin = skin_of(body, &desc);
+        normals[i] = (float *)malloc(6 * skin.vertex_count * sizeof **normals);
+        x = (float *)malloc(3 * skin.vertex_count * sizeof *x);
+        memcpy(normals[i], skin.vertex_normal, 3 * skin.vertex_count * sizeof **normals);
+        ck_assert_int_eq(gx_body_skin_vertices(body, NULL, x, normals[i] + 3 * skin.vertex_count), GX_OK);
+        free(x);
+        ck_assert(i == 0 || skin.vertex_count == vertices);
+        vertices = skin.vertex_count;
+        for (k = 0; k < 6 * vertices; ++k) ck_assert_msg(fabsf(normals[i][k] - normals[0][k]) < 1e-6f, "2^%d: %g, not %g", powers[i],
+                                                         (double)normals[i][k], (double)normals[0][k]);
+        gx_body_destroy(body);
+        wl_free(&w);
+    }
+    for (i = 0; i < 4; ++i) free(normals[i]);
+}
+END_TEST
+
 /* Smooth everywhere: a block has one vertex per outer node; its corner's normal is the mean by area of three faces. A cut leaves the rest
    normals of the outer surface alone, and stays sharp against it. */
 START_TEST(smooth_normals) {
@@ -615,6 +651,7 @@ int main(void) {
     tcase_add_test(tests, changes_are_local);
     tcase_add_test(tests, partial_cuts_show_nothing);
     tcase_add_loop_test(tests, flat_normals, 0, 2);
+    tcase_add_loop_test(tests, normals_at_any_size, 0, 4);
     tcase_add_test(tests, smooth_normals);
     tcase_add_test(tests, smooth_cuts);
     tcase_add_loop_test(tests, texture, first, last);
