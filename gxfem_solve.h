@@ -468,6 +468,9 @@ extern "C" {
 #define GXSP_TOUCHED 4u
 #define GXSP_ASLEEP 8u
 
+/* A cycle of the multigrid that makes a residual's energy so many times as large has met a coarse matrix that rounding has made senseless. */
+#define GXSP_ABSURD 1e20
+
 /* Gradients within so much of those of the rest positions, beside their largest entry, are taken to be rounded ones of these. */
 #define GXSP_PLACED 1e-11
 
@@ -4811,11 +4814,13 @@ static void gxsp_task_linearise(void *context, size_t index)
 
 /* Inverse of a positive semi-definite 3x3, packed in place, as W^T W with W the inverse Cholesky factor: semi-definite in spite
  * of rounding. 1e-7 of the trace is added (the entries are sums in single precision), so that a direction without stiffness gives
- * a large number, not an infinite one. Zero stays zero: such a copy is left alone. */
+ * a large number, not an infinite one. Zero stays zero: such a copy is left alone; what is not finite stays so. */
 static void gxsp_invert3(double *a)
 {
     const double shift = 1e-7;
     double trace = a[0] + a[3] + a[5], scale, l00, l10, l20, l11, l21, l22, w10, w20, w21;
+    if (!gxsp_finite(trace))
+        return;
     if (!(trace > 0)) {
         memset(a, 0, 6 * sizeof *a);
         return;
@@ -6983,19 +6988,25 @@ static double gxsp_precondition(gxsp_system *system, double rate, double energy)
     return sums[0];
 }
 
+/* Is r . z that of something definite, and of a size that can be? energy: r . D^-1 r, of which single precision tells 1e7 times as much at most */
+static int gxsp_is_definite(double rho, double energy)
+{
+    return gxsp_finite(rho) && rho > 0 && rho <= GXSP_ABSURD * energy;
+}
+
 /* As gxsp_precondition, but definite: should the cycle prove not to be, it is smoothed more carefully, and at worst left out of this solve.
  * now: measures of the residual; changed: the preconditioner is not the one before */
 static double gxsp_precondition_definite(gxsp_system *system, double rate, const gxsp_norms *now, int *changed)
 {
     const float omega = system->omega;
     double rho = gxsp_precondition(system, rate, now->energy);
-    if (!(rho > 0) && system->coarse_used && !system->fine && system->omega_rest == 0) {
+    if (!gxsp_is_definite(rho, now->energy) && system->coarse_used && !system->fine && system->omega_rest == 0) {
         gxsp_shorten_omega(system, 0);
         (void)gxsp_scale(system, system->residual);
         rho = gxsp_precondition(system, rate, now->energy);
     }
     *changed = omega < system->omega || omega > system->omega;
-    if (!(rho > 0) && system->coarse_used) {
+    if (!gxsp_is_definite(rho, now->energy) && system->coarse_used) {
         system->coarse_used = 0;
         system->coarse_worn = *changed = 1;
         (void)gxsp_scale(system, system->residual);
@@ -7846,18 +7857,17 @@ static gx_result gxsp_newton(gxsp_problem *problem)
             return GX_OK;
         before = problem->report.residual;
         if (*done > 0 && !gxsp_linearise_all(problem))
-            return GX_ERROR_DIVERGED;
+            break;
         if (problem->collapsed)
             gxsp_nudge_forces(problem);
-        if (!gxsp_find_direction(problem))
-            return GX_ERROR_DIVERGED;
-        if (!gxsp_line_search(problem)) { /* after a first success: no more to gain in doubles */
-            if (problem->report.stop != GXS_STOP_SECONDS)
-                problem->report.stop = GXS_STOP_ROUNDING;
-            return *done > 0 || problem->report.stop == GXS_STOP_SECONDS ? GX_OK : GX_ERROR_DIVERGED;
-        }
+        if (!gxsp_find_direction(problem) || !gxsp_line_search(problem))
+            break;
         ++*done;
     }
+    /* no further: what there is after a first success is lower than the start */
+    if (problem->report.stop != GXS_STOP_SECONDS)
+        problem->report.stop = GXS_STOP_ROUNDING;
+    return *done > 0 || problem->report.stop == GXS_STOP_SECONDS ? GX_OK : GX_ERROR_DIVERGED;
 }
 
 /* E of every piece at current, and its limit: E at a displacement at which all were evaluated last, or, elastic set, of another one without
@@ -8808,6 +8818,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_RESTRICT
 #undef GXSP_INLINE
 #undef GXSP_ROUNDING
+#undef GXSP_ABSURD
 #undef GXSP_PLACED
 #undef GXSP_ARMIJO
 #undef GXSP_TRIALS

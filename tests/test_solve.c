@@ -1427,6 +1427,78 @@ START_TEST(bad_input_is_named)
 END_TEST
 
 /* numbers that are finite and too large to step with */
+/* An energy whose Hessians are beyond single precision once `left` of them have been asked for */
+typedef struct failing_energy {
+    const gxs_material *material;
+    size_t left;
+} failing_energy;
+
+static double fail_later(void *user, const double *f, double *stress, double *hessian_at_f)
+{
+    failing_energy *of = (failing_energy *)user;
+    double h[9][9];
+    int i, j;
+    if (stress)
+        gxs_material_stress(of->material, f, stress);
+    if (hessian_at_f) {
+        hessian(of->material, f, h);
+        for (i = 0; i < 9; ++i)
+            for (j = 0; j < 9; ++j)
+                hessian_at_f[9 * i + j] = of->left > 0 ? h[i][j] : i == j ? 1e200 : 0;
+        of->left -= of->left > 0;
+    }
+    return gxs_material_energy(of->material, f);
+}
+
+/* A step that fails after iterations that went well ends with what these have found; one that fails at once, with an error. */
+START_TEST(late_failures_keep_what_was_found)
+{
+    gxs_solver *solver = solver_make();
+    gxs_material inner_material = material_make(GXS_STABLE_NEO_HOOKEAN, 0.3), custom = inner_material;
+    failing_energy energy;
+    gxs_step_desc step = step_make(0.05, -9.81);
+    gxs_step_report report;
+    double *un, *vn, *first, start;
+    size_t i, n, lanes;
+    scene s;
+    seed(5);
+    s = scene_block(2, 2, 2, 0.25, 0.05, 0);
+    n = 3 * s.model.copy_count, lanes = 8 * ((s.model.element_count + 7) / 8);
+    un = (double *)zeroed(n, sizeof *un), vn = (double *)zeroed(n, sizeof *vn), first = (double *)zeroed(n, sizeof *first);
+    for (i = 0; i < n; ++i) {
+        s.held[i / 3] = s.rest[3 * (i / 3)] < 0.1;
+        un[i] = s.displacement[i] = s.held[i / 3] ? 0 : 0.1 * uniform();
+    }
+    energy.material = &inner_material;
+    custom.kind = GXS_CUSTOM, custom.energy = fail_later, custom.user = &energy;
+    s.model.materials = &custom;
+    step.newton_iterations = 1;
+    energy.left = lanes;
+    ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+    memcpy(first, s.displacement, n * sizeof *first);
+    memcpy(s.displacement, un, n * sizeof *un), memcpy(s.velocity, vn, n * sizeof *vn);
+    step.newton_iterations = 10;
+    step.newton_tolerance = 1e-12;
+    energy.left = lanes;
+    ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+    assert_that(report.stop == GXS_STOP_ROUNDING && report.newton_iterations == 1, "stop %d after %u iterations, residual %g", (int)report.stop,
+                (unsigned)report.newton_iterations, report.residual);
+    for (i = 0; i < n; ++i)
+        assert_that(fabs(s.displacement[i] - first[i]) < 1e-12, "%g %g", s.displacement[i], first[i]);
+    s.model.materials = &inner_material;
+    start = incremental_potential(&s, &step, un, vn, un);
+    ck_assert(incremental_potential(&s, &step, un, vn, s.displacement) < start);
+    s.model.materials = &custom;
+    memcpy(s.displacement, un, n * sizeof *un), memcpy(s.velocity, vn, n * sizeof *vn);
+    energy.left = 0;
+    ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_ERROR_DIVERGED);
+    ck_assert(memcmp(s.displacement, un, n * sizeof *un) == 0);
+    gxs_solver_destroy(solver);
+    free(un), free(vn), free(first);
+    scene_free(&s);
+}
+END_TEST
+
 START_TEST(overflow_is_divergence)
 {
     attempt_with(a.s.displacement[0] = 1e200, GX_ERROR_DIVERGED, SIZE_MAX);
@@ -1832,6 +1904,7 @@ static Suite *solve_suite(void)
     ADD_SOME(violent, energy_falls_from_violent_starts, 4 * START_COUNT);
     tcase_add_test(violent, tangled_body_recovers);
     tcase_add_test(input, bad_input_is_named);
+    tcase_add_test(input, late_failures_keep_what_was_found);
     tcase_add_test(input, overflow_is_divergence);
     tcase_add_test(input, degenerate_models_are_harmless);
     tcase_add_test(input, every_allocation_may_fail);
