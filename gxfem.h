@@ -3189,23 +3189,27 @@ static int gxp_unit(const double n[3], double unit[3]) {
     return 1;
 }
 
-/* Sums of area normals at the vertices of the sheet go to normals; then each is scaled to half the thickness. */
+/* Sums of area normals at the vertices of the sheet go to normals, of edges in units of the longest one's power of two, so that areas are
+   numbers; then each is scaled to half the thickness. */
 static gx_result gxp_offset_vectors(const gx_surface *s, double half, double *normals) {
+    double longest = 0;
     size_t i;
-    int k, c;
+    int k, c, pass, exponent = 0;
     memset(normals, 0, 3 * s->vertex_count * sizeof *normals);
-    for (i = 0; i < s->triangle_count; i++) {
-        const double *p[3];
-        double n[3];
-        for (c = 0; c < 3; c++) {
-            if (s->triangles[3 * i + (size_t)c] >= s->vertex_count) return GX_ERROR_INDEX;
-            p[c] = s->vertices + 3 * (size_t)s->triangles[3 * i + (size_t)c];
+    for (i = 0; i < 3 * s->triangle_count; i++) if (s->triangles[i] >= s->vertex_count) return GX_ERROR_INDEX;
+    for (pass = 0; pass < 2; pass++) {
+        for (i = 0; i < s->triangle_count; i++) {
+            const uint32_t *t = s->triangles + 3 * i;
+            double e[2][3], n[3];
+            for (c = 0; c < 2; c++) for (k = 0; k < 3; k++) {
+                e[c][k] = s->vertices[3 * (size_t)t[c + 1] + (size_t)k] - s->vertices[3 * (size_t)t[0] + (size_t)k];
+                if (pass == 0 && fabs(e[c][k]) > longest) longest = fabs(e[c][k]);
+                e[c][k] = ldexp(e[c][k], -exponent);
+            }
+            for (k = 0; k < 3; k++) n[k] = e[0][(k + 1) % 3] * e[1][(k + 2) % 3] - e[0][(k + 2) % 3] * e[1][(k + 1) % 3];
+            for (c = 0; c < 3 && pass == 1; c++) for (k = 0; k < 3; k++) normals[3 * (size_t)t[c] + (size_t)k] += n[k];
         }
-        for (k = 0; k < 3; k++) {
-            const int a = (k + 1) % 3, b = (k + 2) % 3;
-            n[k] = (p[1][a] - p[0][a]) * (p[2][b] - p[0][b]) - (p[1][b] - p[0][b]) * (p[2][a] - p[0][a]);
-        }
-        for (c = 0; c < 3; c++) for (k = 0; k < 3; k++) normals[3 * (size_t)s->triangles[3 * i + (size_t)c] + (size_t)k] += n[k];
+        if (gxp_is_finite(longest)) (void)frexp(longest, &exponent);
     }
     for (i = 0; i < s->vertex_count; i++) {
         double *n = normals + 3 * i;

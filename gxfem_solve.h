@@ -182,7 +182,8 @@ typedef struct gxs_element {
     uint32_t copy[4];           /* whose displacement each corner follows; below copy_count */
     double gradient[4][3];      /* of the four shape functions, 1/m; row 0 is minus the sum of the others and not read */
     double weight;              /* volume, m3; 0 or more */
-    double mass[10];            /* rho int N_i N_j, kg, symmetric 4x4 block: 00 01 02 03 11 12 13 22 23 33 */
+    double mass[10];            /* rho int N_i N_j, kg, symmetric, semi-definite (made so, if it is not) 4x4 block: 00 01 02 03 11 12 13 22 23 33;
+                                   of a row sum below 2^-25 of all, nothing */
     uint32_t material;          /* below material_count */
     uint32_t group;             /* the caller's, below 2^30: elements of one group are replaced together, see gxs_solver_update; else not read */
 } gxs_element;
@@ -2547,9 +2548,15 @@ static void gxsp_rank_pieces(const gxsp_system *system, const gxs_model *model, 
 /* Are an element's gradients those that the rest positions of its corners say, but for rounding? x: as of gxsp_gradients_make */
 static int gxsp_is_placed(const gxs_element *element, gxsp_lanes *x)
 {
-    gxsp_lanes weight = {1}, made[9];
-    double most = 0, off = 0;
+    gxsp_lanes weight = {0}, made[9];
+    double e[9], determinant, most = 0, off = 0;
     int k;
+    for (k = 0; k < 9; ++k)
+        e[k] = x[3 + k][0] - x[k % 3][0];
+    determinant = e[0] * (e[4] * e[8] - e[5] * e[7]) + e[1] * (e[5] * e[6] - e[3] * e[8]) + e[2] * (e[3] * e[7] - e[4] * e[6]);
+    if (!gxsp_finite(determinant) || !(fabs(determinant) >= DBL_MIN))
+        return 0;
+    weight[0] = 1;
     gxsp_gradients_make(weight, x, made);
     for (k = 0; k < 9; ++k) {
         const double given = element->gradient[1 + k / 3][k % 3];
@@ -2634,31 +2641,55 @@ static void gxsp_row_masses(const gxs_element *element, double *rows)
         rows[k] = gxsp_whole(element->mass) ? 2.5 * element->mass[0] : mass * rows[k];
 }
 
-/* x / root, of no larger square than limit: entry of a Cholesky factor, whatever rounding has made of a matrix that is next to singular */
-static double gxsp_factor_entry(double x, double root, double limit)
+/* Cholesky factor of a symmetric 3x3, which is used up, the largest pivot first, so that rounding stays as small as it was where the matrix is
+ * next to singular or worse; then made lower triangular by turning columns, which leaves factor factor^T as it is. */
+static void gxsp_factor3(double c[3][3], double factor[3][3])
 {
-    const double most = limit > 0 ? sqrt(limit) : 0;
-    return fabs(x) < root * most ? x / root : root > 0 ? copysign(most, x) : 0;
+    int done[3] = {0, 0, 0}, step, i, j, k;
+    memset(factor, 0, 9 * sizeof(double));
+    for (step = 0; step < 3; ++step) {
+        double root;
+        for (i = 0, k = -1; i < 3; ++i)
+            if (!done[i] && (k < 0 || c[i][i] > c[k][k]))
+                k = i;
+        if (!(c[k][k] > 0))
+            break;
+        root = sqrt(c[k][k]);
+        done[k] = 1;
+        for (i = 0; i < 3; ++i)
+            if (!done[i]) {
+                const double most = c[i][i] > 0 ? sqrt(c[i][i]) : 0;
+                factor[i][step] = fabs(c[i][k]) < root * most ? c[i][k] / root : copysign(most, c[i][k]);
+            }
+        factor[k][step] = root;
+        for (i = 0; i < 3; ++i)
+            for (j = 0; j < 3 && !done[i]; ++j)
+                c[i][j] -= factor[i][step] * factor[j][step];
+    }
+    for (i = 0; i < 2; ++i)
+        for (j = i + 1; j < 3; ++j) {
+            const double length = sqrt(factor[i][i] * factor[i][i] + factor[i][j] * factor[i][j]);
+            const double cosine = length > 0 ? factor[i][i] / length : 1, sine = length > 0 ? factor[i][j] / length : 0;
+            for (k = i; k < 3; ++k) {
+                const double a = factor[k][i], b = factor[k][j];
+                factor[k][i] = cosine * a + sine * b, factor[k][j] = cosine * b - sine * a;
+            }
+        }
 }
 
 /* Masses of a lane that are not those of a whole element. Returns all of it. */
 static double gxsp_place_moments(const double *mass, const uint8_t *order, gxsp_moments *moments, size_t lane)
 {
-    double centre[4], rounded[4], root[3][3];
-    const double sum = gxsp_find_centre(mass, centre, rounded), over = sum > 0 ? 1 / sum : 0;
-    int i, j, k;
+    double centre[4], rounded[4], covariance[3][3], root[3][3];
+    const double sum = gxsp_find_centre(mass, centre, rounded), all = sum > 0 ? sum : 1;
+    const uint8_t *own = order + 1;
+    int i, j;
+    for (i = 0; i < 3; ++i)
+        for (j = 0; j < 3; ++j)
+            covariance[i][j] = mass[gxsp_packed_mass[own[i]][own[j]]] / all - centre[own[i]] * centre[own[j]];
+    gxsp_factor3(covariance, root);
     for (i = 0; i < 3; ++i) {
-        const uint8_t *own = order + 1;
-        double left = over * mass[gxsp_packed_mass[own[i]][own[i]]] - centre[own[i]] * centre[own[i]];
         moments->centre[i][lane] = (float)rounded[own[i]];
-        for (j = 0; j < i; ++j) {
-            double x = over * mass[gxsp_packed_mass[own[i]][own[j]]] - centre[own[i]] * centre[own[j]];
-            for (k = 0; k < j; ++k)
-                x -= root[i][k] * root[j][k];
-            root[i][j] = gxsp_factor_entry(x, root[j][j], left);
-            left -= root[i][j] * root[i][j];
-        }
-        root[i][i] = left > 0 ? sqrt(left) : 0;
         for (j = 0; j <= i; ++j)
             moments->root[i * (i + 1) / 2 + j][lane] = (float)root[i][j];
     }
@@ -3073,11 +3104,10 @@ static void gxsp_chunks_make(gxsp_system *system, gxsp_pool *scratch, const gxs_
     gxsp_list_slots(system);
 }
 
-/* Does the element give corner i stiffness or mass? */
-static int gxsp_supports(const gxs_element *element, int i)
+/* Does the element give corner i stiffness or mass? rows: by gxsp_row_masses */
+static int gxsp_supports(const gxs_element *element, const double *rows, int i)
 {
-    static const int own[4] = {0, 4, 7, 9};
-    return element->weight > 0 || element->mass[own[i]] > 0;
+    return element->weight > 0 || rows[i] > 0;
 }
 
 /* Copies that no element supports are fixed like held ones; row sums of the mass. */
@@ -3091,7 +3121,7 @@ static void gxsp_find_fixed(gxsp_system *system, const gxs_model *model)
         double rows[4];
         gxsp_row_masses(element, rows);
         for (k = 0; k < 4; ++k) {
-            if (gxsp_supports(element, k))
+            if (gxsp_supports(element, rows, k))
                 system->fixed[element->copy[k]] = 0;
             system->lumped[element->copy[k]] += rows[k];
         }
@@ -3143,10 +3173,14 @@ static void gxsp_join_copies(const gxsp_system *system, const gxs_model *model, 
     int k;
     for (i = 0; i < system->n; ++i)
         forest[i] = (uint32_t)i;
-    for (e = 0; e < model->element_count; ++e)
+    for (e = 0; e < model->element_count; ++e) {
+        const gxs_element *element = &model->elements[e];
+        double rows[4];
+        gxsp_row_masses(element, rows);
         for (k = 1; k < 4; ++k)
-            if (gxsp_supports(&model->elements[e], 0) || gxsp_supports(&model->elements[e], k))
-                gxsp_join(forest, model->elements[e].copy[0], model->elements[e].copy[k]);
+            if (gxsp_supports(element, rows, 0) || gxsp_supports(element, rows, k))
+                gxsp_join(forest, element->copy[0], element->copy[k]);
+    }
     for (i = 0; i < system->follower_count; ++i)
         for (k = 0; k < 4; ++k)
             if (fabs(system->followers[i].weight[k]) > 0)
@@ -5772,7 +5806,7 @@ typedef struct gxsp_renewal {
     uint8_t *touched;       /* change->copy_count: an element around the copy has gone or come */
     gxsp_hole *holes;       /* hole_count; then, as holes of new chunks, what is placed elsewhere */
     uint32_t hole_count, placed_count; /* placed: of elements that took no hole */
-    uint32_t *left, left_count; /* elements of the change that take no hole */
+    uint32_t *left, *left_class, left_count; /* elements of the change that take no hole, and what they are alike in */
     uint8_t *dirty;         /* by node of level 1 so far: some that follow it are touched */
 } gxsp_renewal;
 
@@ -5866,6 +5900,7 @@ static void gxsp_match_holes(gxsp_renewal *update)
     const gxs_change *change = update->change;
     uint32_t first = 0, e, i;
     update->left = (uint32_t *)gxsp_take(update->scratch, change->element_count, sizeof(uint32_t));
+    update->left_class = (uint32_t *)gxsp_take(update->scratch, change->element_count, sizeof(uint32_t));
     for (e = 0; e < change->element_count && !update->scratch->failed; ++e) {
         const gxs_element *element = &change->elements[e];
         const uint32_t class_index = gxsp_class_of(update, element);
@@ -5876,8 +5911,10 @@ static void gxsp_match_holes(gxsp_renewal *update)
                 break;
         if (i < update->hole_count && update->holes[i].group == element->group)
             update->holes[i].element = e;
-        else
+        else {
+            update->left_class[update->left_count] = class_index;
             update->left[update->left_count++] = e;
+        }
     }
 }
 
@@ -5978,7 +6015,7 @@ static void gxsp_place_class(gxsp_renewal *update, uint32_t class_index)
     uint32_t i, l, c = gxsp_find_open(system, class_index), lane = 0;
     for (i = 0; i < update->left_count; ++i) {
         gxsp_hole *hole = &update->holes[update->hole_count + update->placed_count];
-        if (gxsp_class_of(update, &update->change->elements[update->left[i]]) != class_index)
+        if (update->left_class[i] != class_index)
             continue;
         lane = c < system->chunk_count ? gxsp_free_lane(&system->chunks[c], lane) : GXSP_NONE;
         if (lane == GXSP_NONE) {

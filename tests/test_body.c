@@ -1369,7 +1369,7 @@ START_TEST(solidified_sheets) {
     sheet.triangle_count = 0;
     ck_assert_int_eq(gx_surface_solidify(&sheet, 1, vertices, &nv, triangles, &nt, NULL), GX_ERROR_EMPTY);
     wl_free(&w);
-    for (e = -300; e <= 300; e += 300) {                    /* of any size, an eighth thick; a vertex that no triangle uses */
+    for (e = -560; e <= 560; e += 280) {                    /* of any size, an eighth thick; a vertex that no triangle uses */
         static const double corners[12] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0 };
         static const uint32_t corner[3] = { 0, 1, 2 };
         double x[12], thick[3];
