@@ -75,8 +75,8 @@
  * Energies, forces and states are doubles; the Hessian, its products and the preconditioner are single precision, which sets no
  * limit to what Newton reaches, only to what one linear solve does (about 1e-6 of the residual; a free body's slowest modes are
  * solved as well while inertia is above some 1e-6 of stiffness, rho h^2 / (E dt^2) for elements of size h). Where the mass of a part
- * of an element has its centre is rounded once, by at most 1e-7 of the element, and all is right for the mass so placed. Memory: about 350
- * bytes per element in all, of a mesh with four elements per copy. The material can invert without a failure and comes back by
+ * of an element has its centre is rounded once, by at most 1e-7 of the element, and all is right for the mass so placed. Memory: about 260
+ * bytes per element in all, of a mesh with four elements per copy; 310 to 350 where cuts leave two or three. The material can invert without a failure and comes back by
  * itself; an element collapsed to a point, where its energy is stationary, is opened as if it were not quite one. Same input,
  * same binary: same bits. Nothing here needs isnan or infinities: it is right under -ffast-math, where sums round otherwise.
  *
