@@ -2545,25 +2545,28 @@ static void gxsp_rank_pieces(const gxsp_system *system, const gxs_model *model, 
         rank[pieces[i].index] = (uint32_t)i;
 }
 
-/* Are an element's gradients those that the rest positions of its corners say, but for rounding? x: as of gxsp_gradients_make */
-static int gxsp_is_placed(const gxs_element *element, gxsp_lanes *x)
+/* Are an element's gradients those that the rest positions x of its corners say, but for rounding? */
+static int gxsp_is_placed(const gxs_element *element, const double x[4][3])
 {
-    gxsp_lanes weight = {0}, made[9];
-    double e[9], determinant, most = 0, off = 0;
-    int k;
-    for (k = 0; k < 9; ++k)
-        e[k] = x[3 + k][0] - x[k % 3][0];
-    determinant = e[0] * (e[4] * e[8] - e[5] * e[7]) + e[1] * (e[5] * e[6] - e[3] * e[8]) + e[2] * (e[3] * e[7] - e[4] * e[6]);
+    double edge[3][3], made[3][3], determinant = 0, most = 0, off = 0;
+    int i, k;
+    for (i = 0; i < 3; ++i)
+        for (k = 0; k < 3; ++k)
+            edge[i][k] = x[1 + i][k] - x[0][k];
+    for (i = 0; i < 3; ++i) {
+        const double *a = edge[(i + 1) % 3], *b = edge[(i + 2) % 3];
+        made[i][0] = a[1] * b[2] - a[2] * b[1], made[i][1] = a[2] * b[0] - a[0] * b[2], made[i][2] = a[0] * b[1] - a[1] * b[0];
+    }
+    for (k = 0; k < 3; ++k)
+        determinant += edge[0][k] * made[0][k];
     if (!gxsp_finite(determinant) || !(fabs(determinant) >= DBL_MIN))
         return 0;
-    weight[0] = 1;
-    gxsp_gradients_make(weight, x, made);
     for (k = 0; k < 9; ++k) {
-        const double given = element->gradient[1 + k / 3][k % 3];
-        if (!gxsp_finite(made[k][0]))
+        const double given = element->gradient[1 + k / 3][k % 3], found = made[k / 3][k % 3] / determinant;
+        if (!gxsp_finite(found))
             return 0;
         most = fabs(given) > most ? fabs(given) : most;
-        off = fabs(given - made[k][0]) > off ? fabs(given - made[k][0]) : off;
+        off = fabs(given - found) > off ? fabs(given - found) : off;
     }
     return off <= GXSP_PLACED * most;
 }
@@ -2572,14 +2575,13 @@ static int gxsp_is_placed(const gxs_element *element, gxsp_lanes *x)
  * elements). positions: at 3 x copy, or, origins (as of gxs_change) given, of what the copy was; NULL: there are none */
 static uint32_t gxsp_class(gxs_material_kind kind, const gxs_element *element, uint32_t lumped, const double *positions, const uint32_t *origins)
 {
-    gxsp_lanes x[12];
+    double x[4][3];
     int k;
-    memset(x, 0, sizeof x);
-    for (k = 0; k < 12 && positions; ++k) {
-        const uint32_t copy = element->copy[k / 3];
-        x[k][0] = positions[3 * (size_t)(origins ? origins[copy] >> 1 : copy) + (size_t)k % 3];
+    for (k = 0; k < 4 && positions; ++k) {
+        const uint32_t copy = origins ? origins[element->copy[k]] >> 1 : element->copy[k];
+        memcpy(x[k], positions + 3 * (size_t)copy, sizeof x[k]);
     }
-    return 4 * (uint32_t)kind + (positions && gxsp_is_placed(element, x) ? 0u : 2u) + (lumped || gxsp_whole(element->mass) ? 0u : 1u);
+    return 4 * (uint32_t)kind + (positions && gxsp_is_placed(element, (const double(*)[3])x) ? 0u : 2u) + (lumped || gxsp_whole(element->mass) ? 0u : 1u);
 }
 
 /* The order of elements. Elements of one piece are together, so that chunks have few nodes and sleep with their piece. */
@@ -2634,11 +2636,11 @@ static double gxsp_find_centre(const double *mass, double *centre, double *round
 /* What each corner's copy has of an element's mass: row sums as the solver has them */
 static void gxsp_row_masses(const gxs_element *element, double *rows)
 {
-    double centre[4], mass;
+    const int whole = gxsp_whole(element->mass);
+    double centre[4], mass = whole ? 2.5 * element->mass[0] : gxsp_find_centre(element->mass, centre, rows);
     int k;
-    mass = gxsp_find_centre(element->mass, centre, rows);
     for (k = 0; k < 4; ++k)
-        rows[k] = gxsp_whole(element->mass) ? 2.5 * element->mass[0] : mass * rows[k];
+        rows[k] = whole ? mass : mass * rows[k];
 }
 
 /* Cholesky factor of a symmetric 3x3, which is used up, the largest pivot first, so that rounding stays as small as it was where the matrix is
@@ -3104,10 +3106,14 @@ static void gxsp_chunks_make(gxsp_system *system, gxsp_pool *scratch, const gxs_
     gxsp_list_slots(system);
 }
 
-/* Does the element give corner i stiffness or mass? rows: by gxsp_row_masses */
-static int gxsp_supports(const gxs_element *element, const double *rows, int i)
+/* Does the element give corner i stiffness or mass? */
+static int gxsp_supports(const gxs_element *element, int i)
 {
-    return element->weight > 0 || rows[i] > 0;
+    double rows[4];
+    if (element->weight > 0)
+        return 1;
+    gxsp_row_masses(element, rows);
+    return rows[i] > 0;
 }
 
 /* Copies that no element supports are fixed like held ones; row sums of the mass. */
@@ -3121,7 +3127,7 @@ static void gxsp_find_fixed(gxsp_system *system, const gxs_model *model)
         double rows[4];
         gxsp_row_masses(element, rows);
         for (k = 0; k < 4; ++k) {
-            if (gxsp_supports(element, rows, k))
+            if (gxsp_supports(element, k))
                 system->fixed[element->copy[k]] = 0;
             system->lumped[element->copy[k]] += rows[k];
         }
@@ -3173,14 +3179,10 @@ static void gxsp_join_copies(const gxsp_system *system, const gxs_model *model, 
     int k;
     for (i = 0; i < system->n; ++i)
         forest[i] = (uint32_t)i;
-    for (e = 0; e < model->element_count; ++e) {
-        const gxs_element *element = &model->elements[e];
-        double rows[4];
-        gxsp_row_masses(element, rows);
+    for (e = 0; e < model->element_count; ++e)
         for (k = 1; k < 4; ++k)
-            if (gxsp_supports(element, rows, 0) || gxsp_supports(element, rows, k))
-                gxsp_join(forest, element->copy[0], element->copy[k]);
-    }
+            if (gxsp_supports(&model->elements[e], 0) || gxsp_supports(&model->elements[e], k))
+                gxsp_join(forest, model->elements[e].copy[0], model->elements[e].copy[k]);
     for (i = 0; i < system->follower_count; ++i)
         for (k = 0; k < 4; ++k)
             if (fabs(system->followers[i].weight[k]) > 0)
