@@ -438,12 +438,6 @@ enum { GXB_DIVIDED = 0,     /* as the operands have divided each other */
 typedef struct gxb_boolean_desc {
     gx_allocator allocator;
     size_t memory_limit;        /* in bytes, of all that the Boolean holds at a time; 0: none */
-    uint32_t fine;              /* 1: vertices are the doubles nearest to the exact points, volumes right to their last digits. 0: vertices
-                                   proven within 1e-10 of the largest coordinate and volumes within 1e-7 of their size; both are mostly far nearer */
-    uint32_t mend;              /* 1: vertices as by fine; then defects (see the result) are mended where that can be done within the rounding: an
-                                   edge is turned, a vertex becomes one with a neighbour 4 units of the last place away at most, or moves
-                                   by 2. The surface stays closed, input vertices stay, components and their Euler characteristics are the same */
-    uint32_t triangulation;     /* GXB_DIVIDED ... */
     /* Instead of operations and rules: is a point around which the operands wind so often inside? NULL: by operations and rules. */
     int (*inside)(void *user, const int32_t *winding, size_t operand_count);
     void *user;
@@ -481,6 +475,17 @@ typedef struct gxb_boolean_result {
 /* desc may be NULL. */
 GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean **boolean);
 GXFEM_API void gxb_boolean_destroy(gxb_boolean *boolean);
+/* How results are read off the arrangement from now on: as divided, neither fine nor mended, unless set. All results are of the same exact surface.
+   With GXFEM_STATIC a program that does not call one of these does not compile what it does. Errors: ARGUMENT. */
+/* GXB_DIVIDED ... */
+GXFEM_API gx_result gxb_boolean_set_triangulation(gxb_boolean *boolean, uint32_t triangulation);
+/* 1: vertices are the doubles nearest to the exact points, volumes right to their last digits. 0: vertices proven within 1e-10 of the largest
+   coordinate and volumes within 1e-7 of their size; both are mostly far nearer. */
+GXFEM_API gx_result gxb_boolean_set_fine(gxb_boolean *boolean, int fine);
+/* 1: vertices and volumes as by fine; then defects (see the result) are mended where that can be done within the rounding: an edge is turned, a vertex
+   becomes one with a neighbour 4 units of the last place away at most, or moves by 2. The surface stays closed, input vertices stay, components and
+   their Euler characteristics are the same. */
+GXFEM_API gx_result gxb_boolean_set_mend(gxb_boolean *boolean, int mend);
 /* Copies an operand. Errors: ARGUMENT, EMPTY, INDEX (triangle), NOT_FINITE and RANGE (vertex), NOT_CLOSED (triangle), LIMIT, MEMORY. */
 GXFEM_API gx_result gxb_boolean_add(gxb_boolean *boolean, const gxb_operand *operand, gx_failure *failure);
 /* The result of all operands so far. Errors: EMPTY (no operand), MEMORY, LIMIT, OVERLAP (a surface vouched for as simple is not). After an error the
@@ -504,11 +509,12 @@ GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *boolean, gxb_boolean_resul
 extern "C" {
 #endif
 
-/* What is called rarely is small rather than fast; what is called from many places is there once. */
+/* What is called rarely is small rather than fast; what is called from many places, and each stage, is there once and by itself: compilers take longer
+   for a large function than for its parts. */
 #if defined(__GNUC__)
 #define GXBP_FETCH(address) __builtin_prefetch(address)
 #define GXBP_COLD __attribute__((cold, noinline))
-#define GXBP_RARE __attribute__((cold))     /* of public functions, which GXFEM_STATIC makes inline */
+#define GXBP_RARE __attribute__((cold))     /* may be inlined where there is one call; of public functions, which GXFEM_STATIC makes inline */
 #define GXBP_APART __attribute__((noinline))
 #else
 #define GXBP_FETCH(address) ((void)0)
@@ -799,7 +805,7 @@ static void gxbp_num_det2(gxb_num *r, const gxb_num *a, const gxb_num *b, const 
     gxb_num_sub(r, &s, &t);
 }
 
-static void gxbp_num_cross(gxb_num r[3], const gxb_num a[3], const gxb_num b[3]) {
+static GXBP_RARE void gxbp_num_cross(gxb_num r[3], const gxb_num a[3], const gxb_num b[3]) {
     gxbp_num_det2(&r[0], &a[1], &b[2], &a[2], &b[1]);
     gxbp_num_det2(&r[1], &a[2], &b[0], &a[0], &b[2]);
     gxbp_num_det2(&r[2], &a[0], &b[1], &a[1], &b[0]);
@@ -1531,7 +1537,7 @@ static GXBP_APART void gxbp_release(const gx_allocator *a, void *memory, size_t 
 }
 
 /* A larger block with the first `used` bytes of the old one, which is then gone; NULL: there is none, and the old one stays. */
-static void *gxbp_reallocate(const gx_allocator *a, void *old, size_t old_size, size_t used, size_t size) {
+static GXBP_RARE void *gxbp_reallocate(const gx_allocator *a, void *old, size_t old_size, size_t used, size_t size) {
     void *memory;
     if (a->allocate == NULL && a->release == NULL) return realloc(old, size);   /* moves the pages of large blocks, not their bytes */
     if (a->reallocate != NULL && old != NULL) return a->reallocate(a->user, old, old_size, size);
@@ -1841,7 +1847,7 @@ static GXBP_COLD void gxbp_given(gxb_complex *cx, uint32_t point, double x[3]) {
 }
 
 /* n = (q - p) x e_axis, d = n.p */
-static void gxbp_exact_axis_plane(gxb_num plane[4], const gxb_num p[3], const gxb_num q[3], uint32_t axis) {
+static GXBP_RARE void gxbp_exact_axis_plane(gxb_num plane[4], const gxb_num p[3], const gxb_num q[3], uint32_t axis) {
     gxbp_vec a;
     const uint32_t i = (axis + 1) % 3, j = (axis + 2) % 3;
     gxbp_vec_init(&a);
@@ -1908,7 +1914,7 @@ static int gxbp_plane_has_line(const gxb_cplane *f, uint32_t p, uint32_t q) {
 
 /* Is the point in the plane because two of its own planes meet in a line that the plane contains too? So it is where a sheet's
    triangles meet in their common edge: what a filter never settles, and exact arithmetic need not. */
-static int gxbp_incident_by_line(const gxb_complex *cx, const uint32_t def[3], uint32_t plane) {
+static GXBP_RARE int gxbp_incident_by_line(const gxb_complex *cx, const uint32_t def[3], uint32_t plane) {
     const gxb_cplane *f = &cx->planes[plane];
     const uint32_t line_count = f->along_axis ? 1u : 3u;
     uint32_t k, i;
@@ -2278,7 +2284,7 @@ static gx_result gxbp_fill_complex(gxb_complex *cx, const gxb_mesh *mesh, uint32
     return result == GX_OK ? gxbp_make_leaves(cx) : result;
 }
 
-static GXBP_APART gx_result gxbp_fail(gx_failure *failure, gx_result result, size_t index) {
+static GXBP_COLD gx_result gxbp_fail(gx_failure *failure, gx_result result, size_t index) {
     if (failure != NULL) { failure->result = result; failure->index = index; failure->surface = SIZE_MAX; }
     return result;
 }
@@ -4756,7 +4762,8 @@ struct gxb_boolean {            /* what is used most comes first: its addresses 
     size_t arena_size, arena_used;
     uint64_t allocations;
     int over_limit;
-    uint32_t fine, mend, mended, triangulation;
+    uint32_t fine, mended, triangulation;
+    void (*coarsen)(gxb_boolean *b), (*mend)(gxb_boolean *b);       /* NULL where not asked for: the setters name them, nothing else does */
     int (*inside)(void *user, const int32_t *winding, size_t operand_count);
     void *user;
     gxbp_operand *operands; uint32_t operand_count, operand_capacity;
@@ -4841,7 +4848,7 @@ static void gxbp_count_release(void *user, void *memory, size_t size) {
 }
 
 /* Where the caller's memory can grow: what is not in the arena. */
-static void *gxbp_count_reallocate(void *user, void *old, size_t size, size_t larger) {
+static GXBP_RARE void *gxbp_count_reallocate(void *user, void *old, size_t size, size_t larger) {
     gxb_boolean *b = (gxb_boolean *)user;
     const unsigned char *m = (const unsigned char *)old;
     const int in_arena = m >= b->arena && m < b->arena + b->arena_size;
@@ -4862,7 +4869,7 @@ static void *gxbp_count_reallocate(void *user, void *old, size_t size, size_t la
 }
 
 /* The first error of an evaluation stays in b->result; what follows does nothing. */
-static GXBP_APART int gxbp_stop(gxb_boolean *b, gx_result result) {
+static GXBP_COLD int gxbp_stop(gxb_boolean *b, gx_result result) {
     if (b->result == GX_OK) b->result = result == GX_ERROR_MEMORY && b->over_limit ? GX_ERROR_LIMIT : result;
     return 0;
 }
@@ -4918,7 +4925,7 @@ static uint32_t gxbp_hash_point(const gxb_boolean *b, uint32_t point) {
 }
 
 /* Another table, and all that is in it is to be listed again. */
-static GXBP_APART int gxbp_renew_table(gxb_boolean *b, uint32_t **table, uint32_t *size, uint32_t larger) {
+static GXBP_COLD int gxbp_renew_table(gxb_boolean *b, uint32_t **table, uint32_t *size, uint32_t larger) {
     uint32_t *fresh = (uint32_t *)gxbp_allocate(&b->cx.allocator, (size_t)larger * sizeof **table);
     if (fresh == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
     gxbp_release(&b->cx.allocator, *table, (size_t)*size * sizeof **table);
@@ -4928,7 +4935,7 @@ static GXBP_APART int gxbp_renew_table(gxb_boolean *b, uint32_t **table, uint32_
 }
 
 /* Lists the points up to a number, but for those of frames. */
-static void gxbp_list_points(gxb_boolean *b, uint32_t count) {
+static GXBP_RARE void gxbp_list_points(gxb_boolean *b, uint32_t count) {
     const uint32_t last = b->table_size - 1;
     uint32_t i, k;
     memset(b->table, 0xff, (size_t)b->table_size * sizeof *b->table);
@@ -4940,7 +4947,7 @@ static void gxbp_list_points(gxb_boolean *b, uint32_t count) {
     }
 }
 
-static GXBP_APART int gxbp_grow_table(gxb_boolean *b, uint32_t extra) {
+static GXBP_COLD int gxbp_grow_table(gxb_boolean *b, uint32_t extra) {
     uint32_t size = b->table_size == 0 ? 64 : b->table_size;
     while ((uint64_t)size < ((uint64_t)b->table_used + extra) * 3 && size < (uint32_t)1 << 31) size *= 2;
     if (!gxbp_renew_table(b, &b->table, &b->table_size, size)) return 0;
@@ -4982,7 +4989,7 @@ static uint32_t gxbp_same(gxb_boolean *b, uint32_t point) {
 }
 
 /* Two names of one point: the first stays, by the second's definition where that is an input vertex. */
-static void gxbp_unite(gxb_boolean *b, uint32_t keep, uint32_t drop) {
+static GXBP_RARE void gxbp_unite(gxb_boolean *b, uint32_t keep, uint32_t drop) {
     gxb_cpoint *p = &b->cx.points[keep];
     const gxb_cpoint *q = &b->cx.points[drop];
     if (keep == drop) return;
@@ -5277,7 +5284,7 @@ static gx_result gxbp_read_points(gxb_boolean *b, const gxb_operand *o, uint32_t
     return GX_OK;
 }
 
-static gx_result gxbp_read_triangles(gxb_boolean *b, const gxb_operand *o, uint32_t *work, size_t *bad) {
+static GXBP_APART gx_result gxbp_read_triangles(gxb_boolean *b, const gxb_operand *o, uint32_t *work, size_t *bad) {
     uint32_t *points = work, *local = points + o->vertex_count, *joined = local + o->vertex_count;
     uint32_t *twin = joined + 3 * o->triangle_count, open, first = b->source_count;
     const uint32_t *triangles = o->triangles;
@@ -5399,7 +5406,7 @@ static void gxbp_fill_leaf(gxb_boolean *b, const gxbp_operand *o, uint32_t i) {
     }
 }
 
-static void gxbp_fill_tree(gxb_boolean *b, const gxbp_operand *o) {
+static GXBP_RARE void gxbp_fill_tree(gxb_boolean *b, const gxbp_operand *o) {
     const gxbp_tree *t = &o->tree;
     uint32_t i, l;
     for (i = 0; i < t->size[0]; i++) gxbp_fill_leaf(b, o, i);
@@ -5412,7 +5419,7 @@ static void gxbp_fill_tree(gxb_boolean *b, const gxbp_operand *o) {
         }
 }
 
-static gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
+static GXBP_APART gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
     gxbp_tree *t = &o->tree;
     uint32_t size = (o->source_count + GXBP_LEAF - 1) / GXBP_LEAF, total = 0, i;
     const size_t words = o->source_count;
@@ -5442,7 +5449,7 @@ static gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
    two divide: what is not used is not touched, and nothing large is copied. */
 static size_t gxbp_foresee(const gxb_boolean *b, size_t count, size_t thirds) { return b->operand_count > 0 ? count : count + thirds * count / 3; }
 
-static gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operand *o, size_t *bad) {
+static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operand *o, size_t *bad) {
     const size_t words = 2 * o->vertex_count + 6 * o->triangle_count + gxbp_twin_room(o->vertex_count);
     const size_t sources = gxbp_foresee(b, o->triangle_count, 1), pieces = gxbp_foresee(b, o->triangle_count, 3), points = gxbp_foresee(b, o->vertex_count, 3);
     const size_t leaves = gxbp_foresee(b, (o->triangle_count + GXBP_LEAF - 1) / GXBP_LEAF, 1);
@@ -5788,7 +5795,7 @@ static uint32_t gxbp_root(gxb_boolean *b, uint32_t s) {
 }
 
 /* The two overlap in their plane: they are divided together. */
-static void gxbp_join_flats(gxb_boolean *b, uint32_t s, uint32_t t) {
+static GXBP_RARE void gxbp_join_flats(gxb_boolean *b, uint32_t s, uint32_t t) {
     uint32_t r = gxbp_root(b, s), q = gxbp_root(b, t), last;
     gxbp_mark_dirty(b, s);
     gxbp_mark_dirty(b, t);
@@ -5872,7 +5879,7 @@ static int gxbp_are_neighbours(const gxb_boolean *b, uint32_t s, uint32_t t) {
 }
 
 /* Neighbours in one plane: do they lie on the two sides of their edge? */
-static int gxbp_flat_apart(const gxb_boolean *b, uint32_t s, uint32_t t) {
+static GXBP_RARE int gxbp_flat_apart(const gxb_boolean *b, uint32_t s, uint32_t t) {
     int k, j;
     for (k = 0; k < 3; k++) {
         const double *p = gxbp_corner_of(b, s, k), *q = gxbp_corner_of(b, s, (k + 1) % 3);
@@ -6027,7 +6034,7 @@ static uint32_t gxbp_insert_points(gxb_boolean *b, uint32_t *p, uint32_t count, 
 }
 
 /* Merge sort of points along an axis, each pair compared once; equal ones become one. work: count words. Returns how many remain. */
-static uint32_t gxbp_sort_points(gxb_boolean *b, uint32_t *p, uint32_t count, uint32_t axis, int direction, uint32_t *work) {
+static GXBP_RARE uint32_t gxbp_sort_points(gxb_boolean *b, uint32_t *p, uint32_t count, uint32_t axis, int direction, uint32_t *work) {
     const uint32_t half = count / 2;
     uint32_t i, j, k, left, end;
     if (count <= 8) return gxbp_insert_points(b, p, count, axis, direction);
@@ -6056,7 +6063,7 @@ static uint32_t gxbp_edge_axis(const double *p, const double *q, int *direction)
 }
 
 /* Puts the new points of a cut, which are in b->scratch, in order with the old ones. */
-static void gxbp_order_cut(gxb_boolean *b, uint32_t cut) {
+static GXBP_RARE void gxbp_order_cut(gxb_boolean *b, uint32_t cut) {
     gxbp_cut *c = &b->cuts[cut];
     const uint32_t s = c->half_edge / 3, k = c->half_edge % 3;
     const double *p = gxbp_corner_of(b, s, (int)k), *q = gxbp_corner_of(b, s, (int)(k + 1) % 3);
@@ -6076,7 +6083,7 @@ static void gxbp_order_cut(gxb_boolean *b, uint32_t cut) {
 }
 
 /* Sorts the hits by cut (counting), then each cut's points. */
-static void gxbp_order_cuts(gxb_boolean *b) {
+static GXBP_APART void gxbp_order_cuts(gxb_boolean *b) {
     const size_t words = (size_t)b->cut_count + 1 + b->hit_count;
     uint32_t *first, *points, i;
     if (b->result != GX_OK || b->hit_count == 0) return;
@@ -6285,7 +6292,7 @@ static void gxbp_label_edge(gxb_boolean *b, uint32_t f, int k, uint32_t label) {
 /* The line from p to x. In a triangle's plane (label) its sides are those of the plane, times sigma (gxbp_segment.left where that is known). */
 typedef struct gxbp_line { uint32_t p, x, plane, source; int sigma; } gxbp_line;
 
-static void gxbp_set_line(gxb_boolean *b, gxbp_line *line, uint32_t s, uint32_t p, uint32_t x, uint32_t label, int left) {
+static GXBP_RARE void gxbp_set_line(gxb_boolean *b, gxbp_line *line, uint32_t s, uint32_t p, uint32_t x, uint32_t label, int left) {
     int k;
     line->p = p; line->x = x; line->plane = GXB_NONE; line->source = label; line->sigma = 1;
     if (label & GXBP_EDGE_LABEL) return;
@@ -6430,7 +6437,7 @@ static int gxbp_cross_facets(gxb_boolean *b, const gxbp_line *line, gxbp_way way
     }
 }
 
-static gxbp_location gxbp_locate(gxb_boolean *b, const gxbp_line *line) {
+static GXBP_RARE gxbp_location gxbp_locate(gxb_boolean *b, const gxbp_line *line) {
     gxbp_location spot;
     uint32_t v = line->p;
     memset(&spot, 0, sizeof spot);
@@ -6455,14 +6462,14 @@ static gxbp_location gxbp_locate(gxb_boolean *b, const gxbp_line *line) {
 }
 
 /* Are two points named by one edge? Then they are not equal, or it would have been found when its points were put in order. */
-static int gxbp_share_edge(const gxb_boolean *b, uint32_t p, uint32_t q) {
+static GXBP_RARE int gxbp_share_edge(const gxb_boolean *b, uint32_t p, uint32_t q) {
     const uint32_t *k = b->vertices[p].key, *m = b->vertices[q].key;
     if ((k[0] != GXB_FROM_EDGE_TRIANGLE && k[0] != GXB_FROM_EDGE_EDGE) || (m[0] != GXB_FROM_EDGE_TRIANGLE && m[0] != GXB_FROM_EDGE_EDGE)) return 0;
     return k[1] == m[1] || (k[0] == GXB_FROM_EDGE_EDGE && k[2] == m[1]) || (m[0] == GXB_FROM_EDGE_EDGE && (k[1] == m[2] || (k[0] == m[0] && k[2] == m[2])));
 }
 
 /* Does q lie off a plane that p is in by its definition? */
-static int gxbp_leaves_plane(gxb_boolean *b, uint32_t p, uint32_t q) {
+static GXBP_RARE int gxbp_leaves_plane(gxb_boolean *b, uint32_t p, uint32_t q) {
     uint32_t of[3], count = gxbp_planes_of(b, p, of), k;
     for (k = 0; k < count; k++)
         if (of[k] != GXB_NONE && !gxbp_is_in_plane(b, q, of[k]) && gxbp_point_side(b, q, of[k]) != 0) return 1;
@@ -6558,7 +6565,7 @@ static GXBP_APART uint32_t gxbp_fill_rim(gxb_boolean *b, gxbp_margin *rim, uint3
 }
 
 /* The point where the line of a triangle (label) crosses an edge that must stay. */
-static uint32_t gxbp_crossing_point(gxb_boolean *b, uint32_t s, uint32_t labels, uint32_t label) {
+static GXBP_RARE uint32_t gxbp_crossing_point(gxb_boolean *b, uint32_t s, uint32_t labels, uint32_t label) {
     uint32_t other = GXB_NONE, id[3];
     int fresh;
     for (; other == GXB_NONE && labels != GXBP_BARE; labels = b->links[labels].next)
@@ -6814,7 +6821,7 @@ static uint32_t gxbp_other_end(const gxb_boolean *b, uint32_t v, uint32_t end) {
 }
 
 /* Follows the chain that leaves a rim point by an end of a segment. 0: it is not one that leads to the rim. */
-static int gxbp_follow_chain(gxb_boolean *b, gxbp_division *d, uint32_t from, uint32_t end, uint32_t n) {
+static GXBP_APART int gxbp_follow_chain(gxb_boolean *b, gxbp_division *d, uint32_t from, uint32_t end, uint32_t n) {
     gxbp_strand *strand = &d->strand[d->strand_count];
     uint32_t v = d->rim[from].vertex;
     strand->first = d->step_count;
@@ -6868,7 +6875,7 @@ static int gxbp_bend_of_chain(gxb_boolean *b, const gxbp_knot *from, const gxbp_
     return gxbp_fold(b, key[1]) * (gxbp_same(b, segment->p) == from->vertex ? segment->left : -segment->left);
 }
 
-static int gxbp_collect_chains(gxb_boolean *b, gxbp_division *d, uint32_t n) {
+static GXBP_APART int gxbp_collect_chains(gxb_boolean *b, gxbp_division *d, uint32_t n) {
     uint32_t i, m;
     d->strand_count = d->step_count = 0;
     for (i = 0; i < d->rim_count; i++) {
@@ -6907,7 +6914,7 @@ static GXBP_COLD int gxbp_turn_by_segments(gxb_boolean *b, const gxbp_division *
 }
 
 /* Two on one edge of the source say where a third one lies: it is not right of that edge. */
-static int gxbp_knot_turn(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *p, const gxbp_knot *q, const gxbp_knot *r) {
+static GXBP_RARE int gxbp_knot_turn(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *p, const gxbp_knot *q, const gxbp_knot *r) {
     const uint32_t pq = p->on & q->on, qr = q->on & r->on, rp = r->on & p->on;
     int turn;
     if (pq & r->on) return 0;
@@ -6969,7 +6976,7 @@ static uint32_t gxbp_bend_again(gxb_boolean *b, gxbp_division *d, gxbp_knot *v) 
 }
 
 /* First corners beside vertices that are not convex: that a chain is all but straight matters to others. */
-static void gxbp_fill_polygon(gxb_boolean *b, gxbp_division *d, uint32_t n) {
+static GXBP_APART void gxbp_fill_polygon(gxb_boolean *b, gxbp_division *d, uint32_t n) {
     gxbp_knot *polygon = d->polygon, *q = polygon, *p, *r;
     uint32_t i, tried = 0, concave = 0;
     for (i = 0; i < n; i++) {
@@ -7014,7 +7021,7 @@ static uint32_t gxbp_walk_chain(gxbp_division *d, uint32_t i, uint32_t *n) {
 }
 
 /* The polygons, each from one of its rim's edges on. */
-static void gxbp_fill_polygons(gxb_boolean *b, gxbp_division *d) {
+static GXBP_APART void gxbp_fill_polygons(gxb_boolean *b, gxbp_division *d) {
     uint32_t done = 0, start, i, n;
     for (start = 0; start < d->rim_count; start++) {
         if (done >> start & 1) continue;
@@ -7031,7 +7038,7 @@ static void gxbp_fill_polygons(gxb_boolean *b, gxbp_division *d) {
 }
 
 /* 0: it is another case, and nothing is divided. */
-static int gxbp_divide_by_chains(gxb_boolean *b, uint32_t s, uint32_t n) {
+static GXBP_APART int gxbp_divide_by_chains(gxb_boolean *b, uint32_t s, uint32_t n) {
     gxbp_division d;
     uint32_t i;
     if (!gxbp_is_generic(b, s, n)) return 0;
@@ -7071,7 +7078,7 @@ static void gxbp_note_rims(gxb_boolean *b, uint32_t s) {
 }
 
 /* By one segment after the other: first those that begin where there are vertices */
-static void gxbp_divide_by_segments(gxb_boolean *b, uint32_t s, uint32_t n) {
+static GXBP_APART void gxbp_divide_by_segments(gxb_boolean *b, uint32_t s, uint32_t n) {
     uint32_t i, k, pass;
     gxbp_open_triangulation(b, s);
     for (k = 0; k < 3; k++) gxbp_divide_rim(b, s, k);
@@ -7142,7 +7149,7 @@ static GXBP_COLD void gxbp_make_frame(gxb_boolean *b, uint32_t r) {
     gxbp_set_edge(b, g, 0, f, GXBP_LOOSE);
 }
 
-static void gxbp_place_flat_points(gxb_boolean *b, uint32_t r) {
+static GXBP_RARE void gxbp_place_flat_points(gxb_boolean *b, uint32_t r) {
     uint32_t last = b->pieces[b->sources[r].facet].v[0], t, k, i;
     for (t = r; t != GXB_NONE; t = b->sources[t].next) {
         for (k = 0; k < 3; k++)
@@ -7155,7 +7162,7 @@ static void gxbp_place_flat_points(gxb_boolean *b, uint32_t r) {
     }
 }
 
-static void gxbp_place_flat_edges(gxb_boolean *b, uint32_t r) {
+static GXBP_RARE void gxbp_place_flat_edges(gxb_boolean *b, uint32_t r) {
     uint32_t t, k, i;
     for (t = r; t != GXB_NONE; t = b->sources[t].next)
         for (k = 0; k < 3; k++)
@@ -7174,7 +7181,7 @@ static int gxbp_facing(const gxb_boolean *b, uint32_t r, uint32_t t) {
 }
 
 /* A facet at the start of t's first edge, inside t. */
-static uint32_t gxbp_first_covered(gxb_boolean *b, uint32_t r, uint32_t t) {
+static GXBP_RARE uint32_t gxbp_first_covered(gxb_boolean *b, uint32_t r, uint32_t t) {
     const uint32_t u = gxbp_edge_point(b, t, 0, 0);
     const int facing = gxbp_facing(b, r, t);
     gxbp_line line;
@@ -7198,7 +7205,7 @@ static int gxbp_is_edge_of(const gxb_boolean *b, uint32_t labels, uint32_t t) {
 }
 
 /* Gives its name to all facets within a member's edges. */
-static void gxbp_cover_facets(gxb_boolean *b, uint32_t r, uint32_t t) {
+static GXBP_RARE void gxbp_cover_facets(gxb_boolean *b, uint32_t r, uint32_t t) {
     const uint32_t first = gxbp_first_covered(b, r, t);
     int k;
     b->scratch_count = 0;
@@ -7234,7 +7241,7 @@ static GXBP_COLD void gxbp_divide_flat(gxb_boolean *b, uint32_t r) {
     for (t = r; t != GXB_NONE && b->result == GX_OK; t = b->sources[t].next) gxbp_cover_facets(b, r, t);
 }
 
-static void gxbp_divide_dirty(gxb_boolean *b) {
+static GXBP_APART void gxbp_divide_dirty(gxb_boolean *b) {
     uint32_t i;
     for (i = 0; i < b->dirty_count && b->result == GX_OK; i++) {
         const uint32_t s = b->dirty[i], r = gxbp_root(b, s);
@@ -7266,7 +7273,7 @@ static GXBP_APART void gxbp_sort_projected(gxbp_projected *p, uint32_t count, gx
 
 /* Computed points that are new since the last time are compared with all that lie within the errors of both along a direction in which few
    points agree. The older name stays, in whatever order they are found. */
-static void gxbp_merge_points(gxb_boolean *b) {
+static GXBP_APART void gxbp_merge_points(gxb_boolean *b) {
     static const double direction[3] = {0.6180339887, 0.4142135623, 0.7320508075};
     const uint32_t old = b->projected_count;
     const size_t fresh = b->vertex_count - b->merged_points, size = (old + fresh) * sizeof(gxbp_projected);
@@ -7329,7 +7336,7 @@ static uint32_t gxbp_hash_winding(const int32_t *winding, uint32_t count) {
     return hash;
 }
 
-static void gxbp_list_states(gxb_boolean *b) {
+static GXBP_RARE void gxbp_list_states(gxb_boolean *b) {
     const uint32_t n = b->operand_count, last = b->state_table_size - 1;
     uint32_t i, k;
     memset(b->state_table, 0xff, (size_t)b->state_table_size * sizeof *b->state_table);
@@ -7339,7 +7346,7 @@ static void gxbp_list_states(gxb_boolean *b) {
     }
 }
 
-static GXBP_APART int gxbp_grow_states(gxb_boolean *b) {
+static GXBP_COLD int gxbp_grow_states(gxb_boolean *b) {
     if (!gxbp_renew_table(b, &b->state_table, &b->state_table_size, b->state_table_size == 0 ? 64 : 2 * b->state_table_size)) return 0;
     gxbp_list_states(b);
     return 1;
@@ -7539,7 +7546,7 @@ static int gxbp_moved_side(gxb_boolean *b, uint32_t plane) {
 
 /* The start lies on the side of the facet's plane that the first of n_y, n_z, n_x which is not 0 says; from behind (n_x > 0) or from
    in front (n_x < 0) the ray passes the facet itself. */
-static void gxbp_cross_own(gxb_boolean *b, const gxbp_ray *ray) {
+static GXBP_RARE void gxbp_cross_own(gxb_boolean *b, const gxbp_ray *ray) {
     const uint32_t plane = gxbp_root_plane(b, ray->f);
     const int nx = gxbp_normal_sign(&b->cx, plane, 0);
     int side = gxbp_moved_side(b, plane);
@@ -7549,7 +7556,7 @@ static void gxbp_cross_own(gxb_boolean *b, const gxbp_ray *ray) {
 }
 
 /* The state in front of a facet, from one (GXB_NONE: zeros) that does not count operands from the first on. */
-static uint32_t gxbp_state_by_ray(gxb_boolean *b, uint32_t f, uint32_t state, uint32_t first) {
+static GXBP_RARE uint32_t gxbp_state_by_ray(gxb_boolean *b, uint32_t f, uint32_t state, uint32_t first) {
     gxbp_ray ray;
     uint32_t i;
     if (!gxbp_need_plane(b, b->pieces[f].source)) return 0;
@@ -7565,7 +7572,7 @@ static uint32_t gxbp_state_by_ray(gxb_boolean *b, uint32_t f, uint32_t state, ui
 /* --- states spread from facet to facet --- */
 
 /* Where points were united, vertices get their last names: those of divided sources, and of all where that changes any. */
-static void gxbp_rename_vertices(gxb_boolean *b) {
+static GXBP_RARE void gxbp_rename_vertices(gxb_boolean *b) {
     uint32_t f, i, k;
     for (i = 0; i < b->divided_count && b->united && !b->renamed; i++)
         for (f = b->sources[b->divided[i]].facet; f != GXB_NONE; f = b->pieces[f].next)
@@ -7658,7 +7665,7 @@ static int gxbp_is_surface(const gxb_boolean *b, uint32_t f) {
 /* --- states that are there already: new operands have the number 0 in them, which is right wherever their boxes are not --- */
 
 /* Lengthens the states by the numbers of new operands, all 0: each state keeps its place. */
-static int gxbp_lengthen_states(gxb_boolean *b) {
+static GXBP_RARE int gxbp_lengthen_states(gxb_boolean *b) {
     const uint32_t n = b->operand_count, m = b->stated;
     uint32_t i;
     memset(b->steps, 0, sizeof b->steps);
@@ -7692,7 +7699,7 @@ static int gxbp_piece_misses(const gxb_boolean *b, uint32_t f, const gxbp_box *b
 }
 
 /* Along the box's shortest side first. The facets go to b->chain. */
-static void gxbp_open_states(gxb_boolean *b, const gxbp_box *box) {
+static GXBP_RARE void gxbp_open_states(gxb_boolean *b, const gxbp_box *box) {
     uint32_t f;
     int axis = 0, k;
     for (k = 1; k < 3; k++) if (box->high[k] - box->low[k] < box->high[axis] - box->low[axis]) axis = k;
@@ -7759,7 +7766,7 @@ static GXBP_COLD void gxbp_close_states(gxb_boolean *b) {
         }
 }
 
-static void gxbp_find_states(gxb_boolean *b) {
+static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
     uint32_t f, pass;
     if (b->result != GX_OK) return;
     gxbp_rename_vertices(b);
@@ -7787,7 +7794,7 @@ static double gxbp_unscale(const gxb_boolean *b, double y) {
 #define GXBP_VERTEX_ERROR 1e-10     /* relative to the largest coordinate: a larger ball gives way to exact coordinates */
 
 /* Sign of |num / den| less the middle of two doubles, given by their bits */
-static int gxbp_beyond_middle(const gxb_num *num, const gxb_num *den, uint64_t low, uint64_t high) {
+static GXBP_RARE int gxbp_beyond_middle(const gxb_num *num, const gxb_num *den, uint64_t low, uint64_t high) {
     GXB_NUM(p); GXB_NUM(q); GXB_NUM(sum); GXB_NUM(middle); GXB_NUM(twice);
     gxb_num_set(&p, gxbp_double(low), 0);
     gxb_num_set(&q, gxbp_double(high), 0);
@@ -7798,7 +7805,7 @@ static int gxbp_beyond_middle(const gxb_num *num, const gxb_num *den, uint64_t l
 }
 
 /* The double nearest to num / den, of two the even one: from one a few units of the last place away, step by step. */
-static double gxbp_nearest(const gxb_num *num, const gxb_num *den) {
+static GXBP_RARE double gxbp_nearest(const gxb_num *num, const gxb_num *den) {
     uint64_t bits = gxbp_bits(gxbp_abs(gxb_num_ratio(num, den)));
     int side;
     if (gxbp_is_zero(gxbp_double(bits))) return 0;
@@ -7818,7 +7825,7 @@ static GXBP_COLD void gxbp_round_exactly(gxb_boolean *b, uint32_t point, double 
 static void gxbp_round_point(gxb_boolean *b, uint32_t point, double out[3]) {
     const gxb_cpoint *p = &b->cx.points[point];
     int k;
-    if (p->kind != GXB_EXPLICIT && (b->fine || p->ball.error > GXBP_VERTEX_ERROR * gxbp_max3(p->ball.x))) gxbp_round_exactly(b, point, out);
+    if (p->kind != GXB_EXPLICIT && (b->fine || b->mend != NULL || p->ball.error > GXBP_VERTEX_ERROR * gxbp_max3(p->ball.x))) gxbp_round_exactly(b, point, out);
     else for (k = 0; k < 3; k++) out[k] = gxbp_unscale(b, p->ball.x[k]);
 }
 
@@ -7840,7 +7847,7 @@ static GXBP_COLD int gxbp_holds_point(gxb_boolean *b, uint32_t s, uint32_t plane
 }
 
 /* The source of a point that was found in s: in a flat, whose members share their triangulation, it may lie in another of them. */
-static uint32_t gxbp_member_at(gxb_boolean *b, uint32_t s, uint32_t point) {
+static GXBP_RARE uint32_t gxbp_member_at(gxb_boolean *b, uint32_t s, uint32_t point) {
     const uint32_t root = gxbp_root(b, s), plane = b->sources[root].plane;
     uint32_t t;
     if (!(b->sources[s].flags & GXBP_FLAT) || gxbp_holds_point(b, s, plane, point)) return s;
@@ -7910,7 +7917,7 @@ static GXBP_APART void gxbp_set_triangle_count(gxb_boolean *b, uint32_t n) {
     b->out_source_count = b->out_operand_count = b->out_plane_count = b->out_reversed_count = b->out_component_count = n;
 }
 
-static void gxbp_extract(gxb_boolean *b) {
+static GXBP_APART void gxbp_extract(gxb_boolean *b) {
     uint32_t f;
     for (f = 0; f < b->vertex_count; f++) b->vertices[f].slot = GXB_NONE;
     gxbp_set_triangle_count(b, 0);
@@ -8170,7 +8177,7 @@ static GXBP_COLD void gxbp_coarsen(gxb_boolean *b) {
     gxbp_drop_fan(b, &fan);
 }
 
-static void gxbp_round_vertices(gxb_boolean *b) {
+static GXBP_APART void gxbp_round_vertices(gxb_boolean *b) {
     uint32_t i;
     if (b->result != GX_OK || !GXBP_ROOM(b, out_vertices, out_vertex, 3 * (size_t)b->out_point_count) ||
         !GXBP_ROOM(b, out_origins, out_origin, b->out_point_count)) return;
@@ -8209,12 +8216,12 @@ static int gxbp_faces(gxb_boolean *b, uint32_t plane, const double *p, const dou
 }
 
 /* Triangles that rounding has turned over or left without area. Those of input vertices are as they were, unless they were mended. */
-static void gxbp_find_defects(gxb_boolean *b) {
+static GXBP_APART void gxbp_find_defects(gxb_boolean *b) {
     uint32_t t, k;
     b->out_defect_count = 0;
     for (t = 0; t < b->out_source_count && b->result == GX_OK; t++) {
         const double *x[3];
-        int given = !b->mend;
+        int given = b->mend == NULL;
         for (k = 0; k < 3; k++) {
             given = given && b->cx.points[gxbp_out_corner(b, t, k)].kind == GXB_EXPLICIT;
             x[k] = b->out_vertices + 3 * (size_t)b->out_triangles[3 * t + k];
@@ -8253,7 +8260,7 @@ static int gxbp_blade_precedes(gxb_boolean *b, const gxbp_blade *f, const gxbp_b
     return side != 0 ? side > 0 : f->forward && !g->forward;
 }
 
-static void gxbp_make_blade(gxb_boolean *b, uint32_t h, uint32_t p, const gxbp_blade *first, gxbp_blade *blade, uint32_t q) {
+static GXBP_RARE void gxbp_make_blade(gxb_boolean *b, uint32_t h, uint32_t p, const gxbp_blade *first, gxbp_blade *blade, uint32_t q) {
     blade->half_edge = h;
     blade->apex = gxbp_out_corner(b, h / 3, h % 3 + 2);
     blade->plane = gxbp_out_plane(b, h / 3);
@@ -8321,7 +8328,7 @@ static GXBP_COLD void gxbp_join_all_wedges(gxb_boolean *b, uint32_t *parent, uin
     gxbp_drop_fan(b, &fan);
 }
 
-static void gxbp_join_shells(gxb_boolean *b, uint32_t *parent, int32_t *corners) {
+static GXBP_APART void gxbp_join_shells(gxb_boolean *b, uint32_t *parent, int32_t *corners) {
     const uint32_t count = b->out_source_count;
     const size_t words = 3 * (size_t)count;
     uint32_t *twin = (uint32_t *)gxbp_borrow(b, (words + gxbp_twin_room(b->out_point_count)) * sizeof *twin), h, open, shared = 0;
@@ -8333,11 +8340,11 @@ static void gxbp_join_shells(gxb_boolean *b, uint32_t *parent, int32_t *corners)
         else if (twin[h] > h) gxbp_join_sets(parent, h / 3, twin[h] / 3);
     }
     if (shared) gxbp_join_all_wedges(b, parent, twin);
-    if (b->mend && GXBP_ROOM(b, out_twins, out_twin, words)) memcpy(b->out_twins, twin, words * sizeof *twin);
+    if (b->mend != NULL && GXBP_ROOM(b, out_twins, out_twin, words)) memcpy(b->out_twins, twin, words * sizeof *twin);
     gxbp_count_corners(twin, count, corners);
 }
 
-static void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *fine) {
+static GXBP_RARE void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *fine) {
     gxbp_vec store, rest;
     const gxb_num *x = gxbp_exact_cpoint(&b->cx, point, b->cx.points[point].kind == GXB_EXPLICIT ? fine : &store);
     int k;
@@ -8354,7 +8361,7 @@ static void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *fine) {
 typedef struct gxbp_fine { uint32_t first; gxb_num c[3]; } gxbp_fine;
 typedef struct gxbp_fines { gxbp_fine *vertices; gxb_limb *limbs; uint32_t limb_count, limb_capacity; } gxbp_fines;
 
-static void gxbp_need_fine(gxb_boolean *b, gxbp_fines *fines, uint32_t vertex) {
+static GXBP_RARE void gxbp_need_fine(gxb_boolean *b, gxbp_fines *fines, uint32_t vertex) {
     const uint32_t point = b->out_points[vertex];
     gxbp_fine *v = &fines->vertices[vertex];
     gxbp_vec x;
@@ -8381,7 +8388,7 @@ static const gxb_num *gxbp_use_fine(gxbp_fines *fines, uint32_t vertex) {
 }
 
 /* Six times the volume of a shell (set root in parent), from coordinates of 180 bits. */
-static double gxbp_fine_volume(gxb_boolean *b, uint32_t *parent, uint32_t root, gxbp_fines *fines) {
+static GXBP_RARE double gxbp_fine_volume(gxb_boolean *b, uint32_t *parent, uint32_t root, gxbp_fines *fines) {
     GXB_NUM(total); GXB_NUM(term);
     uint32_t t, k;
     for (t = root; t < b->out_source_count; t++) {
@@ -8433,7 +8440,7 @@ static double gxbp_largest_rough_error(const gxb_boolean *b) {
 
 #define GXBP_VOLUME_ERROR 1e-7     /* relative: sums of doubles with a larger bound, mostly far above their error, give way to exact ones */
 
-static int gxbp_is_rough(const gxb_boolean *b, double volume, double error) { return b->fine || error > GXBP_VOLUME_ERROR * gxbp_abs(volume); }
+static int gxbp_is_rough(const gxb_boolean *b, double volume, double error) { return b->fine || b->mend != NULL || error > GXBP_VOLUME_ERROR * gxbp_abs(volume); }
 
 /* Sums over the sets in volume[root] and error[root]; largest: a bound for all triangles, or 0: each has its own */
 static void gxbp_sum_volumes(const gxb_boolean *b, uint32_t *parent, double *volume, double *error, double largest) {
@@ -8468,7 +8475,7 @@ static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, uint32_t *parent, doub
 }
 
 /* Six times the volumes of the sets in volume[root], in the frame's units. One bound for all triangles costs less; it is too large for many. */
-static void gxbp_measure_shells(gxb_boolean *b, uint32_t *parent, double *volume, double *error) {
+static GXBP_APART void gxbp_measure_shells(gxb_boolean *b, uint32_t *parent, double *volume, double *error) {
     const int few = b->out_source_count <= GXBP_FEW_TRIANGLES;
     gxbp_sum_volumes(b, parent, volume, error, few ? gxbp_largest_rough_error(b) : 0);
     if (!gxbp_any_is_rough(b, parent, volume, error)) return;
@@ -8562,7 +8569,7 @@ static void gxbp_find_eulers(gxb_boolean *b, const int32_t *corners) {
 }
 
 /* On which sides of sheets the components lie, by the triangles that they have of them. */
-static void gxbp_find_sides(gxb_boolean *b) {
+static GXBP_RARE void gxbp_find_sides(gxb_boolean *b) {
     const size_t n = b->operand_count, size = (size_t)b->out_volume_count * n;
     size_t i;
     uint32_t t;
@@ -8588,7 +8595,7 @@ static void gxbp_measure_components(gxb_boolean *b, uint32_t *parent, int32_t *w
     gxbp_find_eulers(b, corners);
 }
 
-static void gxbp_find_components(gxb_boolean *b) {
+static GXBP_APART void gxbp_find_components(gxb_boolean *b) {
     const uint32_t count = b->out_source_count;
     const size_t bytes = 3 * (size_t)count * sizeof(uint32_t);
     uint32_t *parent, t;
@@ -8860,7 +8867,7 @@ GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean
     memset(&none, 0, sizeof none);
     if (boolean == NULL) return GX_ERROR_ARGUMENT;
     if (desc == NULL) desc = &none;
-    if ((desc->allocator.allocate == NULL) != (desc->allocator.release == NULL) || desc->triangulation > GXB_MERGED) return GX_ERROR_ARGUMENT;
+    if ((desc->allocator.allocate == NULL) != (desc->allocator.release == NULL)) return GX_ERROR_ARGUMENT;
     if (desc->allocator.reallocate != NULL && desc->allocator.allocate == NULL) return GX_ERROR_ARGUMENT;
     arena = desc->memory_limit == 0 || desc->memory_limit >= 16 * GXBP_ARENA ? GXBP_ARENA : 0;
     b = (gxb_boolean *)gxbp_allocate(&desc->allocator, gxbp_whole_words(sizeof *b) + arena);
@@ -8872,9 +8879,6 @@ GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean
     b->allocations = 1;
     b->outer = desc->allocator;
     b->limit = desc->memory_limit;
-    b->fine = desc->fine || desc->mend;
-    b->mend = desc->mend;
-    b->triangulation = desc->triangulation;
     b->inside = desc->inside;
     b->user = desc->user;
     b->cx.allocator.allocate = gxbp_count_allocate;
@@ -8891,6 +8895,25 @@ GXFEM_API void gxb_boolean_destroy(gxb_boolean *boolean) {
     outer = boolean->outer;
     if (boolean->allocations > 1) gxbp_drop_boolean(boolean);      /* else all is in the arena */
     gxbp_release(&outer, boolean, gxbp_whole_words(sizeof *boolean) + boolean->arena_size);
+}
+
+GXFEM_API gx_result gxb_boolean_set_triangulation(gxb_boolean *boolean, uint32_t triangulation) {
+    if (boolean == NULL || triangulation > GXB_MERGED) return GX_ERROR_ARGUMENT;
+    boolean->triangulation = triangulation;
+    boolean->coarsen = triangulation == GXB_DIVIDED ? NULL : gxbp_coarsen;
+    return GX_OK;
+}
+
+GXFEM_API gx_result gxb_boolean_set_fine(gxb_boolean *boolean, int fine) {
+    if (boolean == NULL) return GX_ERROR_ARGUMENT;
+    boolean->fine = fine != 0;
+    return GX_OK;
+}
+
+GXFEM_API gx_result gxb_boolean_set_mend(gxb_boolean *boolean, int mend) {
+    if (boolean == NULL) return GX_ERROR_ARGUMENT;
+    boolean->mend = mend != 0 ? gxbp_mend : NULL;
+    return GX_OK;
 }
 
 static gx_result gxbp_check_operand(const gxb_boolean *b, const gxb_operand *o, size_t *bad) {
@@ -8952,7 +8975,7 @@ static void gxbp_foresee_planes(gxb_boolean *b) {
     if (result != GX_OK) gxbp_stop(b, result);
 }
 
-static void gxbp_arrange(gxb_boolean *b) {
+static GXBP_APART void gxbp_arrange(gxb_boolean *b) {
     uint32_t i, j;
     gxbp_foresee_planes(b);
     for (i = b->arranged; i < b->operand_count; i++)
@@ -8964,7 +8987,7 @@ static void gxbp_arrange(gxb_boolean *b) {
     b->arranged = b->operand_count;
 }
 
-static void gxbp_show_result(gxb_boolean *b, gxb_boolean_result *result) {
+static GXBP_APART void gxbp_show_result(gxb_boolean *b, gxb_boolean_result *result) {
     const int shift = b->cx.shift > 300 ? 300 : b->cx.shift < -300 ? -300 : b->cx.shift;       /* volumes beyond doubles become 0 or infinite */
     uint32_t i;
     memset(result, 0, sizeof *result);
@@ -8994,12 +9017,12 @@ GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *b, gxb_boolean_result *res
     gxbp_arrange(b);
     gxbp_find_states(b);
     if (b->result == GX_OK) gxbp_extract(b);
-    if (b->result == GX_OK && b->triangulation != GXB_DIVIDED && b->out_source_count > 0) gxbp_coarsen(b);
+    if (b->result == GX_OK && b->coarsen != NULL && b->out_source_count > 0) b->coarsen(b);
     gxbp_round_vertices(b);
     if (b->result == GX_OK) gxbp_find_defects(b);
     gxbp_find_components(b);
     b->mended = 0;
-    if (b->result == GX_OK && b->mend && b->out_defect_count > 0) gxbp_mend(b);
+    if (b->result == GX_OK && b->mend != NULL && b->out_defect_count > 0) b->mend(b);
     if (b->result == GX_OK) gxbp_show_result(b, result);
     else gxbp_forget_arrangement(b);
     return b->result;

@@ -44,7 +44,7 @@ typedef struct literal_desc {
     const double *positions; size_t node_count;     /* x 3 */
     const uint32_t *elements; size_t element_count; /* x 4, of positive volume */
     double density;                                 /* kg/m3 */
-    int mended;                                     /* 1: not as published: results in few triangles, defects of rounding mended (gxb_boolean_desc) */
+    int mended;                                     /* 1: not as published: results in few triangles, defects of rounding mended (gxb_boolean_set_mend) */
 } literal_desc;
 
 /* Of all cuts so far */
@@ -452,13 +452,13 @@ static gx_result literal_add_operand(gxb_boolean *boolean, const double *vertice
 /* Domain less solids. 0: none of them is near, or it cannot be had; there is no Boolean then */
 static int literal_subtract(literal *l, const literal_domain *domain, const gx_surface *solids, size_t count, gxb_boolean **boolean, gxb_boolean_result *result)
 {
-    gxb_boolean_desc desc;
     gx_result code;
     size_t i, near = 0;
-    memset(&desc, 0, sizeof desc);
-    desc.mend = (uint32_t)l->desc.mended;
-    desc.triangulation = l->desc.mended ? GXB_COARSE : GXB_DIVIDED;
-    code = gxb_boolean_create(&desc, boolean);
+    code = gxb_boolean_create(NULL, boolean);
+    if (code == GX_OK && l->desc.mended) {
+        gxb_boolean_set_mend(*boolean, 1);
+        gxb_boolean_set_triangulation(*boolean, GXB_COARSE);
+    }
     if (code == GX_OK) code = literal_add_operand(*boolean, domain->vertices, domain->vertex_count, domain->triangles, domain->triangle_count, GXB_UNION);
     for (i = 0; i < count && code == GX_OK; i++) {
         const gx_surface *s = &solids[i];

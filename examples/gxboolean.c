@@ -25,7 +25,8 @@ typedef struct settings {
     size_t count;
     const char *out;            /* NULL: no file */
     uint32_t rule;
-    gxb_boolean_desc desc;
+    uint32_t triangulation;
+    int fine, mend;
     int help;
 } settings;
 
@@ -61,10 +62,10 @@ static uint32_t find_word(const char *word, const char *const *list, uint32_t co
 
 static int take_flag(settings *set, const char *name)
 {
-    if (strcmp(name, "--coarse") == 0) set->desc.triangulation = GXB_COARSE;
-    else if (strcmp(name, "--merged") == 0) set->desc.triangulation = GXB_MERGED;
-    else if (strcmp(name, "--fine") == 0) set->desc.fine = 1;
-    else if (strcmp(name, "--mend") == 0) set->desc.mend = 1;
+    if (strcmp(name, "--coarse") == 0) set->triangulation = GXB_COARSE;
+    else if (strcmp(name, "--merged") == 0) set->triangulation = GXB_MERGED;
+    else if (strcmp(name, "--fine") == 0) set->fine = 1;
+    else if (strcmp(name, "--mend") == 0) set->mend = 1;
     else if (strcmp(name, "--help") == 0) set->help = 1;
     else return 0;
     return 1;
@@ -156,8 +157,13 @@ static int combine(const settings *set, gxb_boolean **boolean, gxb_boolean_resul
     gxio_surface first;
     size_t i;
     int code = EXIT_DONE;
-    gx_result failed = gxb_boolean_create(&set->desc, boolean);
+    gx_result failed = gxb_boolean_create(NULL, boolean);
     memset(&first, 0, sizeof first);
+    if (failed == GX_OK) {
+        gxb_boolean_set_triangulation(*boolean, set->triangulation);
+        gxb_boolean_set_fine(*boolean, set->fine);
+        gxb_boolean_set_mend(*boolean, set->mend);
+    }
     for (i = 0; i < set->count && failed == GX_OK && code == EXIT_DONE; i++) code = add_surface(set, i, *boolean, &first, error);
     gxio_surface_release(&first);
     if (failed == GX_OK && code == EXIT_DONE) failed = gxb_boolean_evaluate(*boolean, result);

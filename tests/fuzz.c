@@ -234,9 +234,8 @@ static gxb_boolean *create(scene *s, int fine, int callback)
     gxb_boolean *b = NULL;
     gxb_boolean_desc desc;
     memset(&desc, 0, sizeof desc);
-    desc.fine = (uint32_t)fine;
     if (callback) { desc.inside = is_inside; desc.user = s; }
-    REQUIRE(gxb_boolean_create(&desc, &b) == GX_OK, "create");
+    REQUIRE(gxb_boolean_create(&desc, &b) == GX_OK && gxb_boolean_set_fine(b, fine) == GX_OK, "create");
     return b;
 }
 
@@ -657,17 +656,14 @@ static long count_euler(const gxb_boolean_result *r, int *plain)
 /* Mended: closed, of the same topology, no more defects than before, and those it says. */
 static void check_mending(scene *s, const answer *a, double size)
 {
-    gxb_boolean_desc desc;
     gxb_boolean_result r[2];
     gxb_boolean *b[2] = { NULL, NULL };
     answer m;
     int plain;
     size_t i, k;
-    memset(&desc, 0, sizeof desc);
-    desc.fine = 1;
     for (k = 0; k < 2; ++k) {
-        desc.mend = (uint32_t)k;
-        REQUIRE(gxb_boolean_create(&desc, &b[k]) == GX_OK, "create");
+        b[k] = create(s, 1, 0);
+        REQUIRE(gxb_boolean_set_mend(b[k], (int)k) == GX_OK, "mend");
         for (i = 0; i < s->count; ++i) {
             const gxb_operand o = operand_of(&s->operand[i]);
             REQUIRE(gxb_boolean_add(b[k], &o, NULL) == GX_OK, "operand %zu refused the second time", i);
@@ -713,9 +709,9 @@ static void check_memory(const scene *s, const answer *a, double size, int fine,
     size_t i;
     gx_result result;
     memset(&desc, 0, sizeof desc);
-    desc.fine = (uint32_t)fine;
     desc.allocator.allocate = take_memory; desc.allocator.release = give_memory; desc.allocator.user = &m;
     while ((result = gxb_boolean_create(&desc, &b)) == GX_ERROR_MEMORY) { }
+    if (result == GX_OK) result = gxb_boolean_set_fine(b, fine);
     for (i = 0; i < s->count && result == GX_OK; ++i) {
         const gxb_operand o = operand_of(&s->operand[i]);
         while ((result = gxb_boolean_add(b, &o, NULL)) == GX_ERROR_MEMORY) { }

@@ -100,14 +100,12 @@ static void add_terrain(case_operand *o, uint64_t seed, int axis)
 
 static void run_operands(const test_case *c, uint64_t seed, int moved)
 {
-    gxb_boolean_desc desc;
     gxb_boolean_result r;
     gxb_boolean *b = NULL;
     size_t i, operands = 0;
     int result = 0;
-    memset(&desc, 0, sizeof desc);
-    desc.fine = 1;
-    if (gxb_boolean_create(&desc, &b) != GX_OK) return;
+    if (gxb_boolean_create(NULL, &b) != GX_OK) return;
+    gxb_boolean_set_fine(b, 1);
     for (i = 0; i < c->operands; ++i) {
         static case_mesh m;
         gxb_operand o;
