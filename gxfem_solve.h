@@ -1320,6 +1320,10 @@ static inline float gxsp_larger(float a, float b)
     return x > y ? x : y;
 }
 
+/* An entry of what has others of size 1; 0 where that is far from being told apart in single precision: the next powers of such entries would be
+ * denormal, over which processors take a hundred cycles. Bodies that fall have many. */
+GXSP_INLINE float gxsp_clean(float entry) { return entry < 1e-9f && entry > -1e-9f ? 0.0f : entry; }
+
 /* F = 1 + G of a block as columns at first_lane, by its largest entry, and V = 1 */
 static void gxsp_columns_begin(gxsp_lanes *GXSP_RESTRICT g, int first_lane, gxsp_columns *GXSP_RESTRICT of)
 {
@@ -1331,9 +1335,9 @@ static void gxsp_columns_begin(gxsp_lanes *GXSP_RESTRICT g, int first_lane, gxsp
         const float a = gxsp_larger(gxsp_larger(f0, f1), gxsp_larger(f2, f3)), b = gxsp_larger(gxsp_larger(f4, f5), gxsp_larger(f6, f7));
         const float largest = gxsp_larger(gxsp_larger(a, b), f8), scale = largest > 1e-30f ? largest : 1.0f, inverse = 1 / scale;
         of->scale[m] = scale;
-        of->b[0][m] = inverse * f0, of->b[1][m] = inverse * f1, of->b[2][m] = inverse * f2;
-        of->b[3][m] = inverse * f3, of->b[4][m] = inverse * f4, of->b[5][m] = inverse * f5;
-        of->b[6][m] = inverse * f6, of->b[7][m] = inverse * f7, of->b[8][m] = inverse * f8;
+        of->b[0][m] = gxsp_clean(inverse * f0), of->b[1][m] = gxsp_clean(inverse * f1), of->b[2][m] = gxsp_clean(inverse * f2);
+        of->b[3][m] = gxsp_clean(inverse * f3), of->b[4][m] = gxsp_clean(inverse * f4), of->b[5][m] = gxsp_clean(inverse * f5);
+        of->b[6][m] = gxsp_clean(inverse * f6), of->b[7][m] = gxsp_clean(inverse * f7), of->b[8][m] = gxsp_clean(inverse * f8);
     }
     for (k = 0; k < 9; ++k)
         GXSP_EACH_LANE(l) of->v[k][first_lane + l] = k % 4 == 0 ? 1.0f : 0.0f;
@@ -1673,8 +1677,8 @@ static void gxsp_pack_rotation(gxsp_singles *GXSP_RESTRICT u, gxsp_singles *GXSP
     GXSP_EACH_LANE(l) {
         const float a = u[0][l], b = u[4][l], c = u[8][l];
         const float xx = 1 + a - b - c, yy = 1 - a + b - c, zz = 1 - a - b + c, ww = 1 + a + b + c;
-        const float xy = u[1][l] + u[3][l], xz = u[2][l] + u[6][l], yz = u[5][l] + u[7][l];
-        const float xw = u[7][l] - u[5][l], yw = u[2][l] - u[6][l], zw = u[3][l] - u[1][l];
+        const float xy = gxsp_clean(u[1][l] + u[3][l]), xz = gxsp_clean(u[2][l] + u[6][l]), yz = gxsp_clean(u[5][l] + u[7][l]);
+        const float xw = gxsp_clean(u[7][l] - u[5][l]), yw = gxsp_clean(u[2][l] - u[6][l]), zw = gxsp_clean(u[3][l] - u[1][l]);
         const float first = xx > yy ? xx : yy, second = zz > ww ? zz : ww;
         const float half = first > second ? 1.0f : 0.0f, one = half * (xx > yy ? 1.0f : 0.0f), two = half - one;
         const float three = (1 - half) * (zz > ww ? 1.0f : 0.0f), four = 1 - half - three;
