@@ -36,7 +36,8 @@
  *                   to read: gxb_leaf_facets, gxb_facet_edges; to ask: gxb_complex_side, turn, compare, winding, barycentric, support,
  *                   barycentric_fine
  *     >>stream      a complex as bytes: gxb_stream_pass, has; gxb_complex_save, load
- *     >>boolean     Booleans of closed triangle surfaces, exact and chainable: gxb_boolean_create, add, evaluate, destroy
+ *     >>boolean     Booleans of closed triangle surfaces, exact and chainable: gxb_boolean_create, add, evaluate, destroy; how results are
+ *                   read off: set_triangulation, set_fine, set_mend
  *     then, under GXFEM_BOOLEAN_IMPLEMENTATION, in this order, from the bottom up:
  *     of all        >>bits and >>exact (arithmetic), >>filter (doubles with bounds), >>points (predicates), >>memory (arrays, transactions)
  *     of complexes  >>topology (of the mesh; signs), >>split (by a plane), >>clip and >>insert (a triangle), >>save, >>check (what was read)
@@ -55,7 +56,7 @@
  * along those segments; winding numbers spread from facet to facet; the result is the facets between inside and outside. Vertices are
  * rounded at the output only, and more operands may follow. See docs/KERNEL.md.
  *
- * What it does not do: round a result so that no triangle ever remains turned over (mend does what can be done).
+ * What it does not do: round a result so that no triangle ever remains turned over (gxb_boolean_set_mend does what can be done).
  *
  * Guarantees and limits
  *     - Signs are exact for finite coordinates under every flag, rounding mode and flush-to-zero (but x87 set to 24 bits).
@@ -475,14 +476,14 @@ typedef struct gxb_boolean_result {
 /* desc may be NULL. */
 GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean **boolean);
 GXFEM_API void gxb_boolean_destroy(gxb_boolean *boolean);
-/* How results are read off the arrangement from now on: as divided, neither fine nor mended, unless set. All results are of the same exact surface.
-   With GXFEM_STATIC a program that does not call one of these does not compile what it does. Errors: ARGUMENT. */
-/* GXB_DIVIDED ... */
+/* How results are read off the arrangement from now on; all are of the same exact surface. Errors: ARGUMENT. With GXFEM_STATIC, programs that call
+   neither the first nor the last leave out what these do. */
+/* GXB_DIVIDED (unless set) ... */
 GXFEM_API gx_result gxb_boolean_set_triangulation(gxb_boolean *boolean, uint32_t triangulation);
-/* 1: vertices are the doubles nearest to the exact points, volumes right to their last digits. 0: vertices proven within 1e-10 of the largest
+/* 1: vertices are the doubles nearest to the exact points, volumes right to their last digits. 0 (unless set): vertices proven within 1e-10 of the largest
    coordinate and volumes within 1e-7 of their size; both are mostly far nearer. */
 GXFEM_API gx_result gxb_boolean_set_fine(gxb_boolean *boolean, int fine);
-/* 1: vertices and volumes as by fine; then defects (see the result) are mended where that can be done within the rounding: an edge is turned, a vertex
+/* 1: vertices and volumes as by gxb_boolean_set_fine; then defects (see the result) are mended where that can be done within the rounding: an edge is turned, a vertex
    becomes one with a neighbour 4 units of the last place away at most, or moves by 2. The surface stays closed, input vertices stay, components and
    their Euler characteristics are the same. */
 GXFEM_API gx_result gxb_boolean_set_mend(gxb_boolean *boolean, int mend);
@@ -7821,11 +7822,13 @@ static GXBP_COLD void gxbp_round_exactly(gxb_boolean *b, uint32_t point, double 
     for (k = 0; k < 3; k++) out[k] = gxbp_unscale(b, gxbp_nearest(&x[k], &x[3]));
 }
 
+static int gxbp_is_fine(const gxb_boolean *b) { return b->fine || b->mend != NULL; }
+
 /* An input vertex as it was given; else the ball's middle where the ball is small, else from exact coordinates. */
 static void gxbp_round_point(gxb_boolean *b, uint32_t point, double out[3]) {
     const gxb_cpoint *p = &b->cx.points[point];
     int k;
-    if (p->kind != GXB_EXPLICIT && (b->fine || b->mend != NULL || p->ball.error > GXBP_VERTEX_ERROR * gxbp_max3(p->ball.x))) gxbp_round_exactly(b, point, out);
+    if (p->kind != GXB_EXPLICIT && (gxbp_is_fine(b) || p->ball.error > GXBP_VERTEX_ERROR * gxbp_max3(p->ball.x))) gxbp_round_exactly(b, point, out);
     else for (k = 0; k < 3; k++) out[k] = gxbp_unscale(b, p->ball.x[k]);
 }
 
@@ -8440,7 +8443,7 @@ static double gxbp_largest_rough_error(const gxb_boolean *b) {
 
 #define GXBP_VOLUME_ERROR 1e-7     /* relative: sums of doubles with a larger bound, mostly far above their error, give way to exact ones */
 
-static int gxbp_is_rough(const gxb_boolean *b, double volume, double error) { return b->fine || b->mend != NULL || error > GXBP_VOLUME_ERROR * gxbp_abs(volume); }
+static int gxbp_is_rough(const gxb_boolean *b, double volume, double error) { return gxbp_is_fine(b) || error > GXBP_VOLUME_ERROR * gxbp_abs(volume); }
 
 /* Sums over the sets in volume[root] and error[root]; largest: a bound for all triangles, or 0: each has its own */
 static void gxbp_sum_volumes(const gxb_boolean *b, uint32_t *parent, double *volume, double *error, double largest) {

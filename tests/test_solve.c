@@ -461,7 +461,7 @@ static void give(const gxs_constraint *ties, size_t count, double *y)
 START_TEST(small_strains_are_not_denormal)
 {
     static const double rate = 900;
-    double size;
+    double size; /* m */
     scene s;
     gxs_solver *solver = NULL;
     gxsp_vector4 *in, *out;

@@ -1033,7 +1033,6 @@ START_TEST(rounding_is_mended) {
 }
 END_TEST
 
-/* Many slivers side by side: nearly all of them */
 /* What was asked for before leaves no trace: one Boolean whose results are read off in all ways, there and back, gives those of new ones. */
 START_TEST(read_off_in_all_ways) {
     enum { WAYS = 12 };
@@ -1072,6 +1071,7 @@ START_TEST(read_off_in_all_ways) {
 }
 END_TEST
 
+/* Many slivers side by side: nearly all of them */
 START_TEST(rounded_sticks_are_mended) {
     wl_frame rotated = wl_rotated();
     size_t sum[2] = { 0, 0 };
