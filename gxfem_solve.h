@@ -4276,7 +4276,8 @@ static void gxsp_add_scaled(float a, const float *GXSP_RESTRICT x, float *GXSP_R
 static inline void gxsp_add_four(float a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y)
 {
 #if defined(GXSP_SHUFFLES)
-    *(gxsp_four *)y += a * *(const gxsp_four *)x;
+    const gxsp_four all = {a, a, a, a}; /* of a alone x87 makes a long double, which no vector is multiplied by */
+    *(gxsp_four *)y += all * *(const gxsp_four *)x;
 #else
     int k;
     for (k = 0; k < 4; ++k)

@@ -1,10 +1,11 @@
 #!/bin/sh
 # hashes.sh [DIR] - are results the same under every compiler and flag? Cuts the same files by gxcut built in many ways, and compares its
-# topology_hash; and hashes of Booleans of surfaces (hash_boolean.c).
-# Prints a line per build and `N passed, N failed`. JOBS=N: so many builds at a time.
+# topology_hash; and hashes of Booleans of surfaces (hash_boolean.c). Are they true? Random cases (fuzz.c), by the same library.
+# Prints a line per build and `N passed, N failed`. JOBS=N: so many builds at a time. CASES=N: so many random cases in each (500).
 set -u
 dir=${1:-build/hashes}
 jobs=${JOBS:-2}
+cases=${CASES:-500}
 mkdir -p "$dir" || exit 1
 passed=0
 failed=0
@@ -31,7 +32,12 @@ hashes() { # binary
     hash_of "$1" grid:2,2,2,5 --sheet "$dir/sheet0.obj" --solid box:0.5,0.25,0.125,1.5,1,1.75 --sheet plane:1,1,1,1,0,0
 }
 
-# one FILE COMPILER FLAGS...: builds the library and both programs, writes its hashes to FILE; nothing where it does not build
+# The checks of random cases, built without the flags that the library is built with: they count by doubles too.
+checks() { # compiler, what programs that are linked must have in common
+    "$@" -std=c99 -O1 -w -DGXFEM_LINKED -c tests/fuzz.c -o "$dir/fuzz$(echo "$*" | tr ' ' '_').o" 2>/dev/null
+}
+
+# one FILE COMPILER FLAGS...: builds the library and the programs, writes its hashes to FILE; nothing where it does not build
 one() {
     file=$1
     shift
@@ -39,8 +45,11 @@ one() {
     "$@" -w -I. -c "$file.c" -o "$file.o" >"$file.log" 2>&1 || return 0
     "$@" -w -I. -DGXFEM_LINKED examples/gxcut.c "$file.o" -o "$file.gxcut" -lm >>"$file.log" 2>&1 || return 0
     "$@" -w -I. -DGXFEM_LINKED tests/hash_boolean.c "$file.o" -o "$file.boolean" -lm >>"$file.log" 2>&1 || return 0
+    words=$1
+    case "$*" in *-m32*) words="$1 -m32" ;; esac
+    $words "$dir/fuzz$(echo "$words" | tr ' ' '_').o" "$file.o" -o "$file.fuzz" -lm >>"$file.log" 2>&1 || return 0
     report=$file.json
-    { hashes "$file.gxcut"; "$file.boolean" || echo "failed"; } | tr '\n' ' ' >"$file"
+    { hashes "$file.gxcut"; "$file.boolean" && "$file.fuzz" tests/corpus/* >>"$file.log" 2>&1 && "$file.fuzz" --out="$dir" --cases=$cases >>"$file.log" 2>&1 || echo "failed"; } | tr '\n' ' ' >"$file"
 }
 
 count=0
@@ -78,6 +87,7 @@ if [ "$x86" = 1 ]; then # flush-to-zero and denormals-are-zero from the first in
     try gcc -std=c99 -O2 -include "$dir/flush.h"
     try clang -std=c99 -O2 -include "$dir/flush.h"
 fi
+for cc in gcc clang; do checks $cc; checks $cc -m32; done
 for worker in $(seq "$jobs"); do each "$worker" & done
 wait
 for i in $(seq $count); do
