@@ -37,19 +37,23 @@ checks() { # compiler, what programs that are linked must have in common
     "$@" -std=c99 -O1 -w -DGXFEM_LINKED -c tests/fuzz.c -o "$dir/fuzz$(echo "$*" | tr ' ' '_').o" 2>/dev/null
 }
 
-# one FILE COMPILER FLAGS...: builds the library and the programs, writes its hashes to FILE; nothing where it does not build
+random() { "$1" tests/corpus/* && "$1" --out="$dir" --cases="$cases"; } # binary
+
+# one FILE COMPILER FLAGS...: builds the library and the programs, writes its hashes to FILE; nothing where no program at all is built
 one() {
     file=$1
     shift
+    printf '#include <stdint.h>\n#include <stdio.h>\nint main(void) { return 0; }\n' >"$file.c"
+    "$@" -w "$file.c" -o "$file.probe" -lm >"$file.log" 2>&1 || return 0
     printf '#define GXFEM_IMPLEMENTATION\n#include "gxfem.h"\n' >"$file.c"
-    "$@" -w -I. -c "$file.c" -o "$file.o" >"$file.log" 2>&1 || return 0
-    "$@" -w -I. -DGXFEM_LINKED examples/gxcut.c "$file.o" -o "$file.gxcut" -lm >>"$file.log" 2>&1 || return 0
-    "$@" -w -I. -DGXFEM_LINKED tests/hash_boolean.c "$file.o" -o "$file.boolean" -lm >>"$file.log" 2>&1 || return 0
     words=$1
     case "$*" in *-m32*) words="$1 -m32" ;; esac
-    $words "$dir/fuzz$(echo "$words" | tr ' ' '_').o" "$file.o" -o "$file.fuzz" -lm >>"$file.log" 2>&1 || return 0
+    "$@" -w -I. -c "$file.c" -o "$file.o" >>"$file.log" 2>&1 &&
+        "$@" -w -I. -DGXFEM_LINKED examples/gxcut.c "$file.o" -o "$file.gxcut" -lm >>"$file.log" 2>&1 &&
+        "$@" -w -I. -DGXFEM_LINKED tests/hash_boolean.c "$file.o" -o "$file.boolean" -lm >>"$file.log" 2>&1 &&
+        $words "$dir/fuzz$(echo "$words" | tr ' ' '_').o" "$file.o" -o "$file.fuzz" -lm >>"$file.log" 2>&1 || { echo "failed" >"$file"; return; }
     report=$file.json
-    { hashes "$file.gxcut"; "$file.boolean" && "$file.fuzz" tests/corpus/* >>"$file.log" 2>&1 && "$file.fuzz" --out="$dir" --cases=$cases >>"$file.log" 2>&1 || echo "failed"; } | tr '\n' ' ' >"$file"
+    { hashes "$file.gxcut"; "$file.boolean" && random "$file.fuzz" >>"$file.log" 2>&1 || echo "failed"; } | tr '\n' ' ' >"$file"
 }
 
 count=0
@@ -77,7 +81,7 @@ for cc in gcc clang; do
     try $cc -std=c99 -O2 -DGXB_LIMB32
     if [ "$x86" = 1 ]; then
         if [ "${fma:-0}" != 0 ]; then try $cc -std=gnu99 -Ofast -march=native; fi
-        if [ $cc = gcc ]; then try $cc -std=gnu99 -O2 -mfpmath=387; fi
+        if [ $cc = gcc ]; then try $cc -std=c99 -O2 -mfpmath=387; fi
         try $cc -std=c99 -O2 -m32
         try $cc -std=c99 -O2 -m32 -ffast-math
     fi
@@ -95,7 +99,7 @@ for i in $(seq $count); do
     if [ ! -f "$dir/$i" ]; then echo "skipped  $build (does not build here)"; continue; fi
     got=$(cat "$dir/$i")
     : "${first:=$got}"
-    case $got in *failed*) got="a failure" ;; esac
+    case $got in *failed*) got="a failure (see $dir/$i.log)" ;; esac
     if [ "$got" = "$first" ]; then passed=$((passed + 1)); echo "same     $build"
     else failed=$((failed + 1)); echo "DIFFERS  $build: $got, not $first"; fi
 done
