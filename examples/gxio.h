@@ -604,7 +604,7 @@ static inline int gxio_gmsh_header(gxio_gmsh *file, gxio_error *error)
     int64_t binary = 0;
     if (!gxio_expect(reader, "$MeshFormat", error)) return 0;
     if (!gxio_read_number(reader, GXIO_ANY_LINE, "the format's version", &version, error)) return 0;
-    file->version = version >= 2.0 && version < 3.0 ? 2 : version > 4.05 && version < 4.15 ? 4 : 0;
+    file->version = version >= 2.0 && version < 3.0 ? 2 : version > 4.05 && version < 4.15 ? 4 : 0; /* x87: 4.1 has more digits than a double */
     if (!file->version) return gxio_bad_token(reader, "is the format's version, but 2.2 or 4.1 is needed", error);
     if (!gxio_read_integer(reader, GXIO_SAME_LINE, "the file's type", &binary, error)) return 0;
     if (binary) return gxio_bad_token(reader, "is the file's type, but 0 (ASCII) is needed", error);

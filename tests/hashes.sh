@@ -33,8 +33,8 @@ hashes() { # binary
 }
 
 # The checks of random cases, built without the flags that the library is built with: they count by doubles too.
-checks() { # compiler, what programs that are linked must have in common
-    "$@" -std=c99 -O1 -w -DGXFEM_LINKED -c tests/fuzz.c -o "$dir/fuzz$(echo "$*" | tr ' ' '_').o" 2>/dev/null
+checks() { # compiler, -m32 or nothing
+    "$@" -std=c99 -O1 -w -DGXFEM_LINKED -c tests/fuzz.c -o "$dir/fuzz_$*.o" 2>/dev/null
 }
 
 random() { "$1" tests/corpus/* && "$1" --out="$dir" --cases="$cases"; } # binary
@@ -46,12 +46,12 @@ one() {
     printf '#include <stdint.h>\n#include <stdio.h>\nint main(void) { return 0; }\n' >"$file.c"
     "$@" -w "$file.c" -o "$file.probe" -lm >"$file.log" 2>&1 || return 0
     printf '#define GXFEM_IMPLEMENTATION\n#include "gxfem.h"\n' >"$file.c"
-    words=$1
-    case "$*" in *-m32*) words="$1 -m32" ;; esac
+    plain=$1 # what remains of the flags where the checks are linked
+    case "$*" in *-m32*) plain="$1 -m32" ;; esac
     "$@" -w -I. -c "$file.c" -o "$file.o" >>"$file.log" 2>&1 &&
         "$@" -w -I. -DGXFEM_LINKED examples/gxcut.c "$file.o" -o "$file.gxcut" -lm >>"$file.log" 2>&1 &&
         "$@" -w -I. -DGXFEM_LINKED tests/hash_boolean.c "$file.o" -o "$file.boolean" -lm >>"$file.log" 2>&1 &&
-        $words "$dir/fuzz$(echo "$words" | tr ' ' '_').o" "$file.o" -o "$file.fuzz" -lm >>"$file.log" 2>&1 || { echo "failed" >"$file"; return; }
+        $plain "$dir/fuzz_$plain.o" "$file.o" -o "$file.fuzz" -lm >>"$file.log" 2>&1 || { echo "failed" >"$file"; return; }
     report=$file.json
     { hashes "$file.gxcut"; "$file.boolean" && random "$file.fuzz" >>"$file.log" 2>&1 || echo "failed"; } | tr '\n' ' ' >"$file"
 }
