@@ -37,7 +37,7 @@
  *                   barycentric_fine
  *     >>stream      a complex as bytes: gxb_stream_pass, has; gxb_complex_save, load
  *     >>boolean     Booleans of closed triangle surfaces, exact and chainable: gxb_boolean_create, add, evaluate, destroy; how results are
- *                   read off: set_triangulation, set_fine, set_mend
+ *                   read off: set_triangulation, set_fine, set_mend; what else there is to know of one: components, defects, statistics
  *     then, under GXFEM_BOOLEAN_IMPLEMENTATION, in this order, from the bottom up:
  *     of all        >>bits and >>exact (arithmetic), >>filter (doubles with bounds), >>points (predicates), >>memory (arrays, transactions)
  *     of complexes  >>topology (of the mesh; signs), >>split (by a plane), >>clip and >>insert (a triangle), >>save, >>check (what was read)
@@ -457,33 +457,41 @@ typedef struct gxb_boolean_result {
     const gxb_origin *vertex_origin;                        /* vertex_count */
     const uint32_t *triangle_operand, *triangle_source;     /* triangle_count: operand, and its triangle there */
     const uint8_t *triangle_reversed;                       /* triangle_count: 1 where it faces against that triangle */
-    const uint32_t *triangle_component;                     /* triangle_count */
-    const double *component_volume; size_t component_count; /* components: what the interior of the result consists of */
-    /* component_count: vertices - edges + triangles of a component's boundary, taken apart where it only touches itself: 2 for a ball,
-       0 for a ring, 2 more for each cavity */
-    const int32_t *component_euler;
-    /* component_count x operands: 1 where a component lies only in front of a sheet (where its normals point), -1 only behind,
-       0 both or not at it */
-    const int8_t *component_side;
-    double volume;
-    /* Triangles that rounding turned by a right angle or more from their source's plane, or left without area; exact. With mend: what
-       remains of them, and how many are none any more. A mended triangle is a part of its source but for the rounding. */
-    const uint32_t *defects;    size_t defect_count, mended_count;
-    uint64_t filter_calls, exact_calls;                     /* signs asked for since creation, and how many took exact arithmetic */
-    uint64_t allocations; size_t peak_bytes;                /* since creation */
 } gxb_boolean_result;
+
+/* What the interior of a result consists of. Arrays are valid as long as the result's. */
+typedef struct gxb_components {
+    size_t count;
+    const double *volume;       /* count */
+    /* count: vertices - edges + triangles of a component's boundary, taken apart where it only touches itself: 2 for a ball, 0 for a
+       ring, 2 more for each cavity */
+    const int32_t *euler;
+    /* count x operands: 1 where a component lies only in front of a sheet (where its normals point), -1 only behind, 0 both or not at it */
+    const int8_t *side;
+    const uint32_t *triangle;   /* of each triangle of the result: its component */
+    double total_volume;
+} gxb_components;
+
+/* Triangles that rounding turned by a right angle or more from their source's plane, or left without area; exact. With gxb_boolean_set_mend: what
+   remains of them, and how many are none any more. A mended triangle is a part of its source but for the rounding. */
+typedef struct gxb_defects { const uint32_t *triangles; size_t count, mended_count; } gxb_defects;
+
+/* Since creation */
+typedef struct gxb_statistics {
+    uint64_t filter_calls, exact_calls;                     /* signs asked for, and how many took exact arithmetic */
+    uint64_t allocations; size_t peak_bytes;
+} gxb_statistics;
 
 /* desc may be NULL. */
 GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean **boolean);
 GXFEM_API void gxb_boolean_destroy(gxb_boolean *boolean);
-/* How results are read off the arrangement from now on; all are of the same exact surface. Errors: ARGUMENT. With GXFEM_STATIC, programs that call
-   neither the first nor the last leave out what these do. */
+/* How results are read off the arrangement from now on; all are of the same exact surface. Errors: ARGUMENT. */
 /* GXB_DIVIDED (unless set) ... */
 GXFEM_API gx_result gxb_boolean_set_triangulation(gxb_boolean *boolean, uint32_t triangulation);
 /* 1: vertices are the doubles nearest to the exact points, volumes right to their last digits. 0 (unless set): vertices proven within 1e-10 of the largest
    coordinate and volumes within 1e-7 of their size; both are mostly far nearer. */
 GXFEM_API gx_result gxb_boolean_set_fine(gxb_boolean *boolean, int fine);
-/* 1: vertices and volumes as by gxb_boolean_set_fine; then defects (see the result) are mended where that can be done within the rounding: an edge is turned, a vertex
+/* 1: vertices and volumes as by gxb_boolean_set_fine; then defects are mended where that can be done within the rounding: an edge is turned, a vertex
    becomes one with a neighbour 4 units of the last place away at most, or moves by 2. The surface stays closed, input vertices stay, components and
    their Euler characteristics are the same. */
 GXFEM_API gx_result gxb_boolean_set_mend(gxb_boolean *boolean, int mend);
@@ -492,6 +500,11 @@ GXFEM_API gx_result gxb_boolean_add(gxb_boolean *boolean, const gxb_operand *ope
 /* The result of all operands so far. Errors: EMPTY (no operand), MEMORY, LIMIT, OVERLAP (a surface vouched for as simple is not). After an error the
    Boolean holds its operands and may be asked again. */
 GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *boolean, gxb_boolean_result *result);
+/* Of the last result, found when first asked for. Errors: EMPTY (there is no result, or an operand has come since), MEMORY, LIMIT. After an error
+   the result is as it was. */
+GXFEM_API gx_result gxb_boolean_components(gxb_boolean *boolean, gxb_components *components);
+GXFEM_API gx_result gxb_boolean_defects(gxb_boolean *boolean, gxb_defects *defects);
+GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *boolean, gxb_statistics *statistics);
 
 #ifdef __cplusplus
 }
@@ -4763,6 +4776,7 @@ struct gxb_boolean {            /* what is used most comes first: its addresses 
     size_t arena_size, arena_used;
     uint64_t allocations;
     int over_limit;
+    int evaluated, measured, examined;      /* 1: there is a result; its components, its defects are known */
     uint32_t fine, mended, triangulation;
     void (*coarsen)(gxb_boolean *b), (*mend)(gxb_boolean *b);       /* NULL where not asked for: the setters name them, nothing else does */
     int (*inside)(void *user, const int32_t *winding, size_t operand_count);
@@ -4799,7 +4813,7 @@ struct gxb_boolean {            /* what is used most comes first: its addresses 
     uint32_t *out_triangles; uint32_t out_triangle_count, out_triangle_capacity;
     uint32_t *out_operands; uint32_t out_operand_count, out_operand_capacity;
     uint32_t *out_sources; uint32_t out_source_count, out_source_capacity;
-    uint32_t *out_components; uint32_t out_component_count, out_component_capacity;
+    uint32_t *out_components; uint32_t out_component_count, out_component_capacity;     /* of triangles */
     uint32_t *out_planes; uint32_t out_plane_count, out_plane_capacity;
     uint8_t *out_reversed; uint32_t out_reversed_count, out_reversed_capacity;
     int8_t *out_sides; uint32_t out_side_count, out_side_capacity;
@@ -7917,7 +7931,7 @@ static void gxbp_emit(gxb_boolean *b, uint32_t f, int reversed, uint32_t source)
 
 static GXBP_APART void gxbp_set_triangle_count(gxb_boolean *b, uint32_t n) {
     b->out_triangle_count = 3 * n;
-    b->out_source_count = b->out_operand_count = b->out_plane_count = b->out_reversed_count = b->out_component_count = n;
+    b->out_source_count = b->out_operand_count = b->out_plane_count = b->out_reversed_count = n;
 }
 
 static GXBP_APART void gxbp_extract(gxb_boolean *b) {
@@ -8232,6 +8246,7 @@ static GXBP_APART void gxbp_find_defects(gxb_boolean *b) {
         if (given || gxbp_faces(b, gxbp_out_plane(b, t), x[0], x[1], x[2]) == (b->out_planes[t] & 1 ? -1 : 1)) continue;
         if (GXBP_ROOM(b, out_defects, out_defect, 1)) b->out_defects[b->out_defect_count++] = t;
     }
+    b->examined = b->result == GX_OK;
 }
 
 /* --- components: shells (triangles joined where the solid between them is one), and which shell lies in which --- */
@@ -8588,6 +8603,13 @@ static GXBP_RARE void gxbp_find_sides(gxb_boolean *b) {
     b->out_side_count = (uint32_t)size;
 }
 
+/* From the frame's units; volumes beyond doubles become 0 or infinite. */
+static void gxbp_scale_volumes(gxb_boolean *b) {
+    const int shift = b->cx.shift > 300 ? 300 : b->cx.shift < -300 ? -300 : b->cx.shift;
+    uint32_t i;
+    for (i = 0; i < b->out_volume_count; i++) b->out_volumes[i] *= gxbp_power(-3 * shift);
+}
+
 /* parent: sets of triangles; winding: room for a word per triangle; corners: see gxbp_count_corners */
 static void gxbp_measure_components(gxb_boolean *b, uint32_t *parent, int32_t *winding, const int32_t *corners) {
     const size_t count = b->out_source_count;
@@ -8595,6 +8617,7 @@ static void gxbp_measure_components(gxb_boolean *b, uint32_t *parent, int32_t *w
     if (volume == NULL) return;
     gxbp_measure_shells(b, parent, volume, volume + count);
     gxbp_number_components(b, parent, volume, winding);
+    gxbp_scale_volumes(b);
     gxbp_find_eulers(b, corners);
 }
 
@@ -8613,6 +8636,7 @@ static GXBP_APART void gxbp_find_components(gxb_boolean *b) {
     if (b->result == GX_OK) gxbp_measure_components(b, parent, (int32_t *)(void *)(parent + count), corners);
     gxbp_release(&b->cx.allocator, parent, bytes);
     gxbp_find_sides(b);
+    b->measured = b->result == GX_OK;
 }
 
 /* --- mending: a surface whose triangles rounding has turned over is changed within the rounding, until none is left or nothing helps.
@@ -8769,6 +8793,7 @@ static void gxbp_drop_collapsed(gxb_boolean *b, uint32_t *map) {
         b->out_components[n] = b->out_components[t];
     }
     gxbp_set_triangle_count(b, left);
+    b->out_component_count = left;
     b->out_twin_count = 3 * left;
 }
 
@@ -8816,7 +8841,7 @@ static uint32_t gxbp_mend_places(gxb_boolean *b, const double *home) {
 }
 
 /* Each step leaves fewer defects than there were. */
-static GXBP_COLD void gxbp_mend(gxb_boolean *b) {
+static GXBP_COLD void gxbp_mend_defects(gxb_boolean *b) {
     const uint32_t words = b->out_source_count > b->out_point_count ? b->out_source_count : b->out_point_count;
     const size_t places = 3 * (size_t)b->out_point_count * sizeof(double), bytes = places + words * sizeof(uint32_t);
     double *home;
@@ -8835,6 +8860,13 @@ static GXBP_COLD void gxbp_mend(gxb_boolean *b) {
     gxbp_drop_lonely(b, map);
     b->mended = found - b->out_defect_count;
     gxbp_release(&b->cx.allocator, home, bytes);
+}
+
+/* Components and twins are the exact surface's: they are found before it is changed. */
+static GXBP_COLD void gxbp_mend(gxb_boolean *b) {
+    gxbp_find_defects(b);
+    gxbp_find_components(b);
+    if (b->result == GX_OK && b->out_defect_count > 0) gxbp_mend_defects(b);
 }
 
 /* --- the public functions --- */
@@ -8956,7 +8988,7 @@ GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, 
         b->piece_count = pieces;
         b->box_count = boxes;
         gxbp_cut_points_back(b, points);
-    }
+    } else b->evaluated = 0;
     return gxbp_fail(failure, result, bad);
 }
 
@@ -8990,45 +9022,65 @@ static GXBP_APART void gxbp_arrange(gxb_boolean *b) {
     b->arranged = b->operand_count;
 }
 
-static GXBP_APART void gxbp_show_result(gxb_boolean *b, gxb_boolean_result *result) {
-    const int shift = b->cx.shift > 300 ? 300 : b->cx.shift < -300 ? -300 : b->cx.shift;       /* volumes beyond doubles become 0 or infinite */
-    uint32_t i;
+static GXBP_APART void gxbp_show_result(const gxb_boolean *b, gxb_boolean_result *result) {
     memset(result, 0, sizeof *result);
     result->vertices = b->out_vertices; result->vertex_count = b->out_point_count;
     result->triangles = b->out_triangles; result->triangle_count = b->out_source_count;
     result->vertex_origin = b->out_origins;
     result->triangle_operand = b->out_operands; result->triangle_source = b->out_sources; result->triangle_reversed = b->out_reversed;
-    result->triangle_component = b->out_components;
-    for (i = 0; i < b->out_volume_count; i++) {
-        b->out_volumes[i] *= gxbp_power(-3 * shift);
-        result->volume += b->out_volumes[i];
-    }
-    result->component_volume = b->out_volumes; result->component_count = b->out_volume_count;
-    result->component_side = b->out_sides;
-    result->component_euler = b->out_eulers;
-    result->defects = b->out_defects; result->defect_count = b->out_defect_count;
-    result->mended_count = b->mended;
-    result->filter_calls = b->cx.filter_calls; result->exact_calls = b->cx.exact_calls;
-    result->allocations = b->allocations; result->peak_bytes = b->peak;
 }
 
 GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *b, gxb_boolean_result *result) {
     if (b == NULL || result == NULL) return GX_ERROR_ARGUMENT;
     if (b->operand_count == 0) return GX_ERROR_EMPTY;
     b->result = GX_OK;
-    b->over_limit = 0;
+    b->over_limit = b->measured = b->examined = 0;
+    b->mended = 0;
     gxbp_arrange(b);
     gxbp_find_states(b);
     if (b->result == GX_OK) gxbp_extract(b);
     if (b->result == GX_OK && b->coarsen != NULL && b->out_source_count > 0) b->coarsen(b);
     gxbp_round_vertices(b);
-    if (b->result == GX_OK) gxbp_find_defects(b);
-    gxbp_find_components(b);
-    b->mended = 0;
-    if (b->result == GX_OK && b->mend != NULL && b->out_defect_count > 0) b->mend(b);
-    if (b->result == GX_OK) gxbp_show_result(b, result);
+    if (b->result == GX_OK && b->mend != NULL) b->mend(b);
+    b->evaluated = b->result == GX_OK;
+    if (b->evaluated) gxbp_show_result(b, result);
     else gxbp_forget_arrangement(b);
     return b->result;
+}
+
+GXFEM_API gx_result gxb_boolean_components(gxb_boolean *b, gxb_components *components) {
+    uint32_t i;
+    if (b == NULL || components == NULL) return GX_ERROR_ARGUMENT;
+    if (!b->evaluated) return GX_ERROR_EMPTY;
+    b->result = GX_OK;
+    b->over_limit = 0;
+    if (!b->measured) gxbp_find_components(b);
+    if (b->result != GX_OK) return b->result;
+    memset(components, 0, sizeof *components);
+    components->count = b->out_volume_count;
+    components->volume = b->out_volumes; components->euler = b->out_eulers; components->side = b->out_sides;
+    components->triangle = b->out_components;
+    for (i = 0; i < b->out_volume_count; i++) components->total_volume += b->out_volumes[i];
+    return GX_OK;
+}
+
+GXFEM_API gx_result gxb_boolean_defects(gxb_boolean *b, gxb_defects *defects) {
+    if (b == NULL || defects == NULL) return GX_ERROR_ARGUMENT;
+    if (!b->evaluated) return GX_ERROR_EMPTY;
+    b->result = GX_OK;
+    b->over_limit = 0;
+    if (!b->examined) gxbp_find_defects(b);
+    if (b->result != GX_OK) return b->result;
+    defects->triangles = b->out_defects;
+    defects->count = b->out_defect_count; defects->mended_count = b->mended;
+    return GX_OK;
+}
+
+GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics *statistics) {
+    if (b == NULL || statistics == NULL) return GX_ERROR_ARGUMENT;
+    statistics->filter_calls = b->cx.filter_calls; statistics->exact_calls = b->cx.exact_calls;
+    statistics->allocations = b->allocations; statistics->peak_bytes = b->peak;
+    return GX_OK;
 }
 
 #ifdef __cplusplus

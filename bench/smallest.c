@@ -14,7 +14,7 @@ int main(void)
     gx_result result = gxb_boolean_create(NULL, &boolean);
     for (int i = 0; i < 2 && result == GX_OK; i++) result = gxb_boolean_add(boolean, &operands[i], NULL);
     if (result == GX_OK) result = gxb_boolean_evaluate(boolean, &r);
-    printf("%g\n", r.volume);
+    printf("%lu triangles\n", (unsigned long)r.triangle_count);
     gxb_boolean_destroy(boolean);
     return result != GX_OK;
 }

@@ -152,7 +152,21 @@ static int add_surface(const settings *set, size_t i, gxb_boolean *boolean, gxio
     return failure.result == GX_OK ? EXIT_DONE : EXIT_FAILED;
 }
 
-static int combine(const settings *set, gxb_boolean **boolean, gxb_boolean_result *result, gxio_error *error)
+/* A result, and what is known of it */
+typedef struct answer {
+    gxb_boolean_result result;
+    gxb_components components;
+    gxb_defects defects;
+} answer;
+
+static gx_result ask(gxb_boolean *boolean, answer *a)
+{
+    gx_result result = gxb_boolean_evaluate(boolean, &a->result);
+    if (result == GX_OK) result = gxb_boolean_components(boolean, &a->components);
+    return result == GX_OK ? gxb_boolean_defects(boolean, &a->defects) : result;
+}
+
+static int combine(const settings *set, gxb_boolean **boolean, answer *a, gxio_error *error)
 {
     gxio_surface first;
     size_t i;
@@ -166,7 +180,7 @@ static int combine(const settings *set, gxb_boolean **boolean, gxb_boolean_resul
     }
     for (i = 0; i < set->count && failed == GX_OK && code == EXIT_DONE; i++) code = add_surface(set, i, *boolean, &first, error);
     gxio_surface_release(&first);
-    if (failed == GX_OK && code == EXIT_DONE) failed = gxb_boolean_evaluate(*boolean, result);
+    if (failed == GX_OK && code == EXIT_DONE) failed = ask(*boolean, a);
     if (failed == GX_OK) return code;
     gxio_fail(error, "Boolean", 0, "%s", text_of(failed));
     return EXIT_FAILED;
@@ -174,18 +188,19 @@ static int combine(const settings *set, gxb_boolean **boolean, gxb_boolean_resul
 
 /* ---------------------------------------------------------------------------------------------- >>output */
 
-static void print_table(const gxb_boolean_result *r)
+static void print_table(const answer *a)
 {
+    const size_t count = a->result.triangle_count;
     size_t c, t;
     printf("component  triangles  Euler  volume\n");
-    for (c = 0; c < r->component_count; c++) {
+    for (c = 0; c < a->components.count; c++) {
         unsigned long triangles = 0;
-        for (t = 0; t < r->triangle_count; t++) triangles += r->triangle_component[t] == c;
-        printf("%9lu  %9lu  %5ld  %.17g\n", (unsigned long)c, triangles, (long)r->component_euler[c], r->component_volume[c]);
+        for (t = 0; t < count; t++) triangles += a->components.triangle[t] == c;
+        printf("%9lu  %9lu  %5ld  %.17g\n", (unsigned long)c, triangles, (long)a->components.euler[c], a->components.volume[c]);
     }
-    printf("      all  %9lu         %.17g\n", (unsigned long)r->triangle_count, r->volume);
-    if (r->mended_count > 0 || r->defect_count > 0)
-        printf("turned over or flat by rounding: %lu; mended: %lu\n", (unsigned long)r->defect_count, (unsigned long)r->mended_count);
+    printf("      all  %9lu         %.17g\n", (unsigned long)count, a->components.total_volume);
+    if (a->defects.mended_count > 0 || a->defects.count > 0)
+        printf("turned over or flat by rounding: %lu; mended: %lu\n", (unsigned long)a->defects.count, (unsigned long)a->defects.mended_count);
 }
 
 static void write_off(FILE *stream, const gxb_boolean_result *r)
@@ -198,25 +213,25 @@ static void write_off(FILE *stream, const gxb_boolean_result *r)
         fprintf(stream, "3 %lu %lu %lu\n", (unsigned long)r->triangles[3 * i], (unsigned long)r->triangles[3 * i + 1], (unsigned long)r->triangles[3 * i + 2]);
 }
 
-static void write_obj(FILE *stream, const gxb_boolean_result *r)
+static void write_obj(FILE *stream, const gxb_boolean_result *r, const gxb_components *components)
 {
     size_t i, c;
     for (i = 0; i < r->vertex_count; i++)
         fprintf(stream, "v %.17g %.17g %.17g\n", r->vertices[3 * i], r->vertices[3 * i + 1], r->vertices[3 * i + 2]);
-    for (c = 0; c < r->component_count; c++) {
+    for (c = 0; c < components->count; c++) {
         fprintf(stream, "o component_%lu\n", (unsigned long)c);
         for (i = 0; i < r->triangle_count; i++)
-            if (r->triangle_component[i] == c)
+            if (components->triangle[i] == c)
                 fprintf(stream, "f %lu %lu %lu\n", r->triangles[3 * i] + 1ul, r->triangles[3 * i + 1] + 1ul, r->triangles[3 * i + 2] + 1ul);
     }
 }
 
-static int write_result(const char *path, const gxb_boolean_result *r, gxio_error *error)
+static int write_answer(const char *path, const answer *a, gxio_error *error)
 {
     gxio_writer writer;
     if (!gxio_writer_open(&writer, path, error)) return EXIT_MISUSED;
-    if (gxio_ends_with(path, ".obj")) write_obj(writer.stream, r);
-    else write_off(writer.stream, r);
+    if (gxio_ends_with(path, ".obj")) write_obj(writer.stream, &a->result, &a->components);
+    else write_off(writer.stream, &a->result);
     return gxio_writer_close(&writer, 1, error) ? EXIT_DONE : EXIT_MISUSED;
 }
 
@@ -224,18 +239,18 @@ int main(int argc, char **argv)
 {
     settings set;
     gxb_boolean *boolean = NULL;
-    gxb_boolean_result result;
+    answer found;
     gxio_error error;
     int code = EXIT_MISUSED;
     memset(&set, 0, sizeof set);
     set.surfaces = (const char **)gxio_array((size_t)argc + 1, sizeof *set.surfaces);
     set.operations = (uint32_t *)gxio_array((size_t)argc + 1, sizeof *set.operations);
     if (!set.surfaces || !set.operations) gxio_fail(&error, "arguments", 0, "out of memory");
-    else if (take_arguments(&set, argc, argv, &error)) code = set.help ? EXIT_DONE : combine(&set, &boolean, &result, &error);
+    else if (take_arguments(&set, argc, argv, &error)) code = set.help ? EXIT_DONE : combine(&set, &boolean, &found, &error);
     if (code == EXIT_DONE && set.help) fputs(usage, stdout);
     else if (code == EXIT_DONE) {
-        if (set.out) code = write_result(set.out, &result, &error);
-        if (code == EXIT_DONE) print_table(&result);
+        if (set.out) code = write_answer(set.out, &found, &error);
+        if (code == EXIT_DONE) print_table(&found);
     }
     if (code != EXIT_DONE) fprintf(stderr, "gxboolean: %s\n", error.text);
     gxb_boolean_destroy(boolean);

@@ -200,34 +200,46 @@ static void check_indices(const scene *s, const gxb_boolean_result *r)
         const uint32_t *t = r->triangles + 3 * i;
         REQUIRE(t[0] < r->vertex_count && t[1] < r->vertex_count && t[2] < r->vertex_count, "triangle %zu: no such vertex", i);
         REQUIRE(t[0] != t[1] && t[1] != t[2] && t[2] != t[0], "triangle %zu has one vertex twice", i);
-        REQUIRE(r->triangle_component[i] < r->component_count, "triangle %zu: no such component", i);
         REQUIRE(r->triangle_operand[i] < s->count && r->triangle_source[i] < s->operand[r->triangle_operand[i]].mesh.triangles,
                 "triangle %zu: no such source", i);
     }
-    for (i = 0; i < r->defect_count; ++i) REQUIRE(r->defects[i] < r->triangle_count, "defect %zu: no such triangle", i);
 }
 
-static answer check_result(const scene *s, const gxb_boolean_result *r)
+static gxb_defects defects_of(gxb_boolean *b, const gxb_boolean_result *r)
+{
+    gxb_defects d;
+    size_t i;
+    const gx_result result = gxb_boolean_defects(b, &d);
+    REQUIRE(result == GX_OK, "defects: error %d", (int)result);
+    for (i = 0; i < d.count; ++i) REQUIRE(d.triangles[i] < r->triangle_count, "defect %zu: no such triangle", i);
+    return d;
+}
+
+static answer check_result(gxb_boolean *b, const scene *s, const gxb_boolean_result *r)
 {
     answer a = { 0, 0, 0, 0, { 0 } };
+    gxb_components c;
     size_t i, k;
     double sum = 0;
+    const gx_result result = gxb_boolean_components(b, &c);
     count.evaluations++;
+    REQUIRE(result == GX_OK, "components: error %d", (int)result);
     check_indices(s, r);
     REQUIRE(is_closed(r->triangles, r->triangle_count, NULL), "the result is not closed");
-    for (i = 0; i < r->component_count; ++i) {
-        REQUIRE(r->component_volume[i] > 0, "component %zu has volume %g", i, r->component_volume[i]);
-        REQUIRE(r->component_euler[i] % 2 == 0, "component %zu has Euler characteristic %ld", i, (long)r->component_euler[i]);
-        sum += r->component_volume[i];
-        a.euler += r->component_euler[i];
-        if (i < PARTS) a.part[i] = r->component_volume[i];
+    for (i = 0; i < r->triangle_count; ++i) REQUIRE(c.triangle[i] < c.count, "triangle %zu: no such component", i);
+    for (i = 0; i < c.count; ++i) {
+        REQUIRE(c.volume[i] > 0, "component %zu has volume %g", i, c.volume[i]);
+        REQUIRE(c.euler[i] % 2 == 0, "component %zu has Euler characteristic %ld", i, (long)c.euler[i]);
+        sum += c.volume[i];
+        a.euler += c.euler[i];
+        if (i < PARTS) a.part[i] = c.volume[i];
         for (k = 0; k < s->count; ++k) {
-            const int side = r->component_side[i * s->count + k];
+            const int side = c.side[i * s->count + k];
             REQUIRE(side == 0 || (s->operand[k].operation == GXB_SPLIT && (side == 1 || side == -1)), "component %zu is on side %d of %zu", i, side, k);
         }
     }
-    REQUIRE(fabs(sum - r->volume) <= 1e-12 * sum, "volume %.17g, of components %.17g", r->volume, sum);
-    a.components = r->component_count; a.triangles = r->triangle_count; a.volume = r->volume;
+    REQUIRE(fabs(sum - c.total_volume) <= 1e-12 * sum, "volume %.17g, of components %.17g", c.total_volume, sum);
+    a.components = c.count; a.triangles = r->triangle_count; a.volume = c.total_volume;
     if (a.components <= PARTS) qsort(a.part, a.components, sizeof a.part[0], compare_doubles);
     return a;
 }
@@ -246,7 +258,7 @@ static answer evaluate(gxb_boolean *b, const scene *s, gxb_boolean_result *r)
 {
     const gx_result result = gxb_boolean_evaluate(b, r);
     REQUIRE(result == GX_OK, "evaluate: error %d", (int)result);
-    return check_result(s, r);
+    return check_result(b, s, r);
 }
 
 /* All operands; each: evaluated after each; the last result. */
@@ -597,6 +609,7 @@ static void check_again(const gxb_boolean_result *r, const answer *a, double siz
 {
     gxb_boolean *b = NULL;
     gxb_boolean_result again;
+    gxb_components parts;
     gxb_operand o;
     gx_result result;
     if (r->triangle_count == 0 || 3 * r->triangle_count > 2000) return;
@@ -609,7 +622,9 @@ static void check_again(const gxb_boolean_result *r, const answer *a, double siz
     if (result == GX_OK) {
         result = gxb_boolean_evaluate(b, &again);
         REQUIRE(result == GX_OK, "the result again: error %d", (int)result);
-        REQUIRE(fabs(again.volume - a->volume) <= 1e-6 * size + rounding_of(r), "the result again: volume %.17g, was %.17g", again.volume, a->volume);
+        result = gxb_boolean_components(b, &parts);
+        REQUIRE(result == GX_OK, "components of the result again: error %d", (int)result);
+        REQUIRE(fabs(parts.total_volume - a->volume) <= 1e-6 * size + rounding_of(r), "the result again: volume %.17g, was %.17g", parts.total_volume, a->volume);
     }
     gxb_boolean_destroy(b);
 }
@@ -629,11 +644,11 @@ static int is_upright(const scene *s, const gxb_boolean_result *r, size_t t)
     return sign > 0;
 }
 
-static void check_defects(const scene *s, const gxb_boolean_result *r)
+static void check_defects(const scene *s, const gxb_boolean_result *r, const gxb_defects *d)
 {
     size_t t, i = 0;
     for (t = 0; t < r->triangle_count; ++t) {
-        const int listed = i < r->defect_count && r->defects[i] == t;
+        const int listed = i < d->count && d->triangles[i] == t;
         REQUIRE(is_upright(s, r, t) != listed, "triangle %zu is %sa defect", t, listed ? "listed as, but not " : "not listed, but ");
         i += (size_t)listed;
     }
@@ -662,6 +677,7 @@ static long count_euler(const gxb_boolean_result *r, int *plain)
 static void check_mending(scene *s, const answer *a, double size)
 {
     gxb_boolean_result r[2];
+    gxb_defects d[2];
     gxb_boolean *b[2] = { NULL, NULL };
     answer m;
     int plain;
@@ -675,15 +691,16 @@ static void check_mending(scene *s, const answer *a, double size)
         }
         m = evaluate(b[k], s, &r[k]);
         check_same("mended", &m, a, size, 0);
-        if (3 * r[k].triangle_count < EDGE_TABLE / 2) check_defects(s, &r[k]);
+        d[k] = defects_of(b[k], &r[k]);
+        if (3 * r[k].triangle_count < EDGE_TABLE / 2) check_defects(s, &r[k], &d[k]);
     }
-    REQUIRE(r[1].defect_count + r[1].mended_count == r[0].defect_count, "%zu defects, %zu mended, %zu left", r[0].defect_count, r[1].mended_count, r[1].defect_count);
+    REQUIRE(d[1].count + d[1].mended_count == d[0].count, "%zu defects, %zu mended, %zu left", d[0].count, d[1].mended_count, d[1].count);
     if (count_euler(&r[0], &plain) == a->euler && plain) {                            /* it touches itself nowhere */
         const long euler = count_euler(&r[1], &plain);
         REQUIRE(plain && euler == a->euler, "Euler characteristic %ld, mended %ld%s", a->euler, euler, plain ? "" : ", not a manifold any more");
     }
-    count.defects += r[0].defect_count;
-    count.mended += r[1].mended_count;
+    count.defects += d[0].count;
+    count.mended += d[1].mended_count;
     for (k = 0; k < 2; ++k) gxb_boolean_destroy(b[k]);
 }
 
@@ -703,12 +720,21 @@ static void give_memory(void *user, void *memory, size_t size)
     free(memory);
 }
 
+static uint64_t allocations_of(const gxb_boolean *b)
+{
+    gxb_statistics s;
+    REQUIRE(gxb_boolean_statistics(b, &s) == GX_OK, "statistics");
+    return s.allocations;
+}
+
 /* One allocation fails, somewhere: the call says so and, made again, works. */
 static void check_memory(const scene *s, const answer *a, double size, int fine, uint64_t fail_at)
 {
     short_memory m = { 0, fail_at, 0 };
     gxb_boolean_desc desc;
     gxb_boolean_result r;
+    gxb_components components;
+    gxb_defects defects;
     gxb_boolean *b = NULL;
     answer again;
     size_t i;
@@ -722,8 +748,10 @@ static void check_memory(const scene *s, const answer *a, double size, int fine,
         while ((result = gxb_boolean_add(b, &o, NULL)) == GX_ERROR_MEMORY) { }
     }
     while (result == GX_OK && (result = gxb_boolean_evaluate(b, &r)) == GX_ERROR_MEMORY) result = GX_OK;
+    while (result == GX_OK && (result = gxb_boolean_components(b, &components)) == GX_ERROR_MEMORY) result = GX_OK;
+    while (result == GX_OK && (result = gxb_boolean_defects(b, &defects)) == GX_ERROR_MEMORY) result = GX_OK;
     REQUIRE(result == GX_OK, "after a lack of memory: error %d", (int)result);
-    again = check_result(s, &r);
+    again = check_result(b, s, &r);
     check_same("after a lack of memory", &again, a, size, fine);
     gxb_boolean_destroy(b);
     REQUIRE(m.live == 0, "%zu bytes are left", m.live);
@@ -772,7 +800,7 @@ static void test_boolean(test_case *c, int ask)
     case CHECK_PROVENANCE: check_provenance(&s, &r, c->fine); break;
     case CHECK_AGAIN: check_again(&r, &chain, size); break;
     case CHECK_MENDING: check_mending(&s, &chain, size); break;
-    case CHECK_MEMORY: check_memory(&s, &chain, size, c->fine, c->number % (r.allocations + 1)); break;
+    case CHECK_MEMORY: check_memory(&s, &chain, size, c->fine, c->number % (allocations_of(b) + 1)); break;
     default: break;
     }
     gxb_boolean_destroy(b);

@@ -50,23 +50,23 @@ static uint64_t hash_bytes(uint64_t h, const void *data, size_t size)
 
 /* A triangle by where it comes from and by its component. Its corners are not in it: of a flat polygon there are several triangulations,
    and which one there is goes by the order of boxes, which are sorted by rounded numbers. */
-static uint64_t hash_triangle(const gxb_boolean_result *r, size_t t, size_t operands)
+static uint64_t hash_triangle(const gxb_boolean_result *r, const gxb_components *c, size_t t, size_t operands)
 {
-    const uint32_t component = r->triangle_component[t];
+    const uint32_t component = c->triangle[t];
     uint64_t h = UINT64_C(14695981039346656037);
     h = hash_bytes(h, &r->triangle_operand[t], sizeof *r->triangle_operand);
     h = hash_bytes(h, &r->triangle_source[t], sizeof *r->triangle_source);
     h = hash_bytes(h, &r->triangle_reversed[t], sizeof *r->triangle_reversed);
-    h = hash_bytes(h, &r->component_euler[component], sizeof *r->component_euler);
-    return hash_bytes(h, r->component_side + component * operands, operands);
+    h = hash_bytes(h, &c->euler[component], sizeof *c->euler);
+    return hash_bytes(h, c->side + component * operands, operands);
 }
 
 /* Sums: triangles and vertices may stand in another order. */
-static void hash_result(const gxb_boolean_result *r, size_t operands)
+static void hash_result(const gxb_boolean_result *r, const gxb_components *c, size_t operands)
 {
-    uint64_t sum = r->component_count;
+    uint64_t sum = c->count;
     size_t i;
-    for (i = 0; i < r->triangle_count; ++i) sum += scramble(hash_triangle(r, i, operands));
+    for (i = 0; i < r->triangle_count; ++i) sum += scramble(hash_triangle(r, c, i, operands));
     for (i = 0; i < r->vertex_count; ++i) sum += scramble(hash_bytes(1, r->vertices + 3 * i, 3 * sizeof(double)) + r->vertex_origin[i].kind);
     mix(&sum, sizeof sum);
 }
@@ -101,6 +101,7 @@ static void add_terrain(case_operand *o, uint64_t seed, int axis)
 static void run_operands(const test_case *c, uint64_t seed, int moved)
 {
     gxb_boolean_result r;
+    gxb_components parts;
     gxb_boolean *b = NULL;
     size_t i, operands = 0;
     int result = 0;
@@ -120,8 +121,9 @@ static void run_operands(const test_case *c, uint64_t seed, int moved)
         mix(&result, sizeof result);
         if (operands == 0) continue;
         result = (int)gxb_boolean_evaluate(b, &r);
+        if (result == GX_OK) result = (int)gxb_boolean_components(b, &parts);
         mix(&result, sizeof result);
-        if (result == GX_OK) hash_result(&r, operands);
+        if (result == GX_OK) hash_result(&r, &parts, operands);
     }
     gxb_boolean_destroy(b);
 }

@@ -57,33 +57,47 @@ static wl_surface boundary_of(const workload *w) {
 
 typedef struct answer { size_t components, triangles, defects; double volume; long euler; } answer;
 
-/* Every directed edge of the result is matched by one in the other direction, and every triangle names a component. */
+/* Every directed edge of the result is matched by one in the other direction. */
 static void check_closed(const gxb_boolean_result *r) {
     const size_t words = 3 * r->triangle_count;
     uint32_t *twin = (uint32_t *)malloc((words + gxbp_twin_room(r->vertex_count) + 1) * sizeof *twin), open;
     size_t t;
-    for (t = 0; t < r->triangle_count; ++t) ck_assert_uint_lt(r->triangle_component[t], r->component_count);
     for (t = 0; t < 3 * r->triangle_count; ++t) ck_assert_uint_lt(r->triangles[t], r->vertex_count);
     gxbp_find_twins(r->triangles, r->triangle_count, (uint32_t)r->vertex_count, twin, &open, twin + words);
     ck_assert_uint_eq(open, GXB_NONE);
     free(twin);
 }
 
+static gxb_defects defects_of(gxb_boolean *b) {
+    gxb_defects d;
+    ck_assert_int_eq(gxb_boolean_defects(b, &d), GX_OK);
+    return d;
+}
+
+static gxb_components components_of(gxb_boolean *b) {
+    gxb_components c;
+    ck_assert_int_eq(gxb_boolean_components(b, &c), GX_OK);
+    return c;
+}
+
 static answer read_answer(gxb_boolean *b) {
     gxb_boolean_result r;
+    gxb_components c;
     answer a;
     size_t i;
     double sum = 0;
     ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
     check_closed(&r);
+    c = components_of(b);
+    for (i = 0; i < r.triangle_count; ++i) ck_assert_uint_lt(c.triangle[i], c.count);
     a.euler = 0;
-    for (i = 0; i < r.component_count; ++i) {
-        ck_assert(r.component_volume[i] > 0);
-        sum += r.component_volume[i];
-        a.euler += r.component_euler[i];
+    for (i = 0; i < c.count; ++i) {
+        ck_assert(c.volume[i] > 0);
+        sum += c.volume[i];
+        a.euler += c.euler[i];
     }
-    ck_assert(fabs(sum - r.volume) <= 1e-12 * sum);
-    a.components = r.component_count; a.triangles = r.triangle_count; a.defects = r.defect_count; a.volume = r.volume;
+    ck_assert(fabs(sum - c.total_volume) <= 1e-12 * sum);
+    a.components = c.count; a.triangles = r.triangle_count; a.defects = defects_of(b).count; a.volume = c.total_volume;
     return a;
 }
 
@@ -464,6 +478,7 @@ START_TEST(cavities_belong_to_their_component) {
     gxb_operand o[3];
     gxb_boolean *b = NULL;
     gxb_boolean_result r;
+    gxb_components c;
     int i;
     memset(s, 0, sizeof s);
     for (i = 0; i < 3; ++i) {
@@ -473,9 +488,10 @@ START_TEST(cavities_belong_to_their_component) {
     ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
     for (i = 0; i < 3; ++i) ck_assert_int_eq(gxb_boolean_add(b, &o[i], NULL), GX_OK);
     ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
-    ck_assert_uint_eq(r.component_count, 2);
-    ck_assert(r.component_volume[0] == 729 - 343 && r.component_volume[1] == 125);
-    ck_assert(r.component_euler[0] == 4 && r.component_euler[1] == 2);
+    c = components_of(b);
+    ck_assert_uint_eq(c.count, 2);
+    ck_assert(c.volume[0] == 729 - 343 && c.volume[1] == 125);
+    ck_assert(c.euler[0] == 4 && c.euler[1] == 2);
     gxb_boolean_destroy(b);
     for (i = 0; i < 3; ++i) surface_free(&s[i]);
 }
@@ -541,17 +557,19 @@ static void check_sides(const wl_surface *cube, const wl_surface *sheet, size_t 
     gxb_operand o[2];
     gxb_boolean *b = NULL;
     gxb_boolean_result r;
+    gxb_components c;
     size_t i;
     o[0] = operand_of(cube, GXB_UNION); o[1] = operand_of(sheet, GXB_SPLIT);
     ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
     for (i = 0; i < 2; ++i) ck_assert_int_eq(gxb_boolean_add(b, &o[i], NULL), GX_OK);
     ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
-    ck_assert_uint_eq(r.component_count, components);
-    for (i = 0; i < components; ++i) ck_assert(r.component_side[2 * i] == 0 && (r.component_side[2 * i + 1] == 0) == (components == 1));
-    if (components == 2) ck_assert_int_eq(r.component_side[1], -r.component_side[3]);
+    c = components_of(b);
+    ck_assert_uint_eq(c.count, components);
+    for (i = 0; i < components; ++i) ck_assert(c.side[2 * i] == 0 && (c.side[2 * i + 1] == 0) == (components == 1));
+    if (components == 2) ck_assert_int_eq(c.side[1], -c.side[3]);
     for (i = 0; i < r.triangle_count; ++i) {        /* the sheet faces up: what lies in front of it is above */
         const double z = r.vertices[3 * r.triangles[3 * i] + 2] + r.vertices[3 * r.triangles[3 * i + 1] + 2] + r.vertices[3 * r.triangles[3 * i + 2] + 2];
-        const int side = r.component_side[2 * r.triangle_component[i] + 1];
+        const int side = c.side[2 * c.triangle[i] + 1];
         ck_assert(side == 0 || (z - 1.5) * side >= 0);
         ck_assert(side == 0 || r.triangle_operand[i] == 0 || r.triangle_reversed[i] == (side == 1));
     }
@@ -610,6 +628,7 @@ START_TEST(closed_sheets_divide) {
         uint32_t first[3];
         gxb_boolean *b = NULL;
         gxb_boolean_result r;
+        gxb_components c;
         memcpy(first, sheet.triangles, sizeof first);
         memmove(sheet.triangles, sheet.triangles + 3, 3 * (sheet.triangle_count - 1) * sizeof *first);
         memcpy(sheet.triangles + 3 * (sheet.triangle_count - 1), first, sizeof first);
@@ -621,11 +640,12 @@ START_TEST(closed_sheets_divide) {
         ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
         for (k = 0; k < 2; ++k) ck_assert_int_eq(gxb_boolean_add(b, &o[k], NULL), GX_OK);
         ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
-        ck_assert_uint_eq(r.component_count, 2);
-        ck_assert(r.component_volume[0] == 26 && r.component_volume[1] == 1);
-        ck_assert(r.component_euler[0] == 4 && r.component_euler[1] == 2);
-        ck_assert_int_eq(r.component_side[1], i < sheet.triangle_count ? 1 : -1);
-        ck_assert_int_eq(r.component_side[3], -r.component_side[1]);
+        c = components_of(b);
+        ck_assert_uint_eq(c.count, 2);
+        ck_assert(c.volume[0] == 26 && c.volume[1] == 1);
+        ck_assert(c.euler[0] == 4 && c.euler[1] == 2);
+        ck_assert_int_eq(c.side[1], i < sheet.triangle_count ? 1 : -1);
+        ck_assert_int_eq(c.side[3], -c.side[1]);
         gxb_boolean_destroy(b);
     }
     surface_free(&cube); surface_free(&sheet);
@@ -814,14 +834,17 @@ static int is_manifold(const gxb_boolean_result *r) {
 static void check_ways(const gxb_operand *o, size_t count, const char *name, unsigned seed) {
     gxb_boolean *b[3];
     gxb_boolean_result r[3];
+    gxb_components c[3];
     uint32_t v;
     size_t t, gone;
     int how;
     divide_all_ways(o, count, b, r);
+    c[0] = components_of(b[0]);
     for (how = 1; how < 3; ++how) {
-        const double size = r[0].volume + 1;
-        CHECK_CASE(close_to(r[how].volume, r[0].volume, size), "%s %u: volume %.17g, was %.17g", name, seed, r[how].volume, r[0].volume);
-        CHECK_CASE(r[how].component_count == r[0].component_count, "%s %u: %zu components", name, seed, r[how].component_count);
+        const double size = c[0].total_volume + 1;
+        c[how] = components_of(b[how]);
+        CHECK_CASE(close_to(c[how].total_volume, c[0].total_volume, size), "%s %u: volume %.17g, was %.17g", name, seed, c[how].total_volume, c[0].total_volume);
+        CHECK_CASE(c[how].count == c[0].count, "%s %u: %zu components", name, seed, c[how].count);
         /* the Euler characteristic of the surface is the same: two triangles go with each vertex, more where more than two meet in an edge */
         gone = 2 * (r[0].vertex_count - r[how].vertex_count);
         CHECK_CASE(r[0].triangle_count - r[how].triangle_count == gone || (!is_manifold(&r[0]) && r[0].triangle_count - r[how].triangle_count > gone), "%s %u: %zu triangles of %zu, %zu vertices of %zu",
@@ -891,16 +914,18 @@ static int is_upright(const gxb_operand *o, const gxb_boolean_result *r, size_t 
 static size_t find_defects(const gxb_operand *o, size_t count, int fine, int mend, answer *a, size_t *mended) {
     gxb_boolean *b = boolean_of(o, count, GXB_DIVIDED, fine, mend);
     gxb_boolean_result r;
+    gxb_defects d;
     size_t i, listed = 0;
     *a = read_answer(b);
     ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
+    d = defects_of(b);
     for (i = 0; i < r.triangle_count; ++i) {
-        const int defect = listed < r.defect_count && r.defects[listed] == i;
+        const int defect = listed < d.count && d.triangles[listed] == i;
         ck_assert_int_eq(is_upright(o, &r, i), !defect);
         listed += (size_t)defect;
     }
-    ck_assert_uint_eq(listed, r.defect_count);
-    *mended = r.mended_count;
+    ck_assert_uint_eq(listed, d.count);
+    *mended = d.mended_count;
     gxb_boolean_destroy(b);
     return listed;
 }
@@ -988,7 +1013,7 @@ START_TEST(mending_keeps_volumes) {
         gxb_operand o[2];
         gxb_boolean *b;
         gxb_boolean_result r;
-        double sum = 0, away = 0;
+        double sum = 0, away = 0, volume;
         size_t t;
         o[0] = operand_of(&a, GXB_UNION);
         o[1] = operand_of(&ball, GXB_DIFFERENCE);
@@ -1002,7 +1027,8 @@ START_TEST(mending_keeps_volumes) {
             away = fmax(away, distance_from(&o[r.triangle_operand[t]], r.triangle_source[t], s));
         }
         CHECK_CASE(away <= 1e-14, "seed %d, step %d: a triangle %g beyond its source", _i, step, away);
-        CHECK_CASE(fabs(sum - r.volume) <= 1e-10, "seed %d, step %d: volume %.17g, by its triangles %.17g", _i, step, r.volume, sum);
+        volume = components_of(b).total_volume;
+        CHECK_CASE(fabs(sum - volume) <= 1e-10, "seed %d, step %d: volume %.17g, by its triangles %.17g", _i, step, volume, sum);
         next.vertex_count = r.vertex_count; next.triangle_count = r.triangle_count;
         next.vertices = (double *)malloc((3 * r.vertex_count + 1) * sizeof *next.vertices);
         next.triangles = (uint32_t *)malloc((3 * r.triangle_count + 1) * sizeof *next.triangles);
@@ -1050,18 +1076,22 @@ START_TEST(read_off_in_all_ways) {
         const int way = turn < WAYS ? turn : 2 * WAYS - 1 - turn, fine = way / 3 % 2, mend = way / 6;
         gxb_boolean *fresh = boolean_of(o, w.surface_count + 1, triangulations[way % 3], fine, mend);
         gxb_boolean_result r[2];
+        gxb_components c[2];
+        gxb_defects d[2];
         ck_assert_int_eq(gxb_boolean_set_triangulation(all, triangulations[way % 3]), GX_OK);
         ck_assert_int_eq(gxb_boolean_set_fine(all, fine), GX_OK);
         ck_assert_int_eq(gxb_boolean_set_mend(all, mend), GX_OK);
         ck_assert_int_eq(gxb_boolean_evaluate(all, &r[0]), GX_OK);
         ck_assert_int_eq(gxb_boolean_evaluate(fresh, &r[1]), GX_OK);
-        CHECK_CASE(r[0].vertex_count == r[1].vertex_count && r[0].triangle_count == r[1].triangle_count && r[0].component_count == r[1].component_count &&
-                   r[0].defect_count == r[1].defect_count && r[0].mended_count == r[1].mended_count, "way %d: other counts", way);
+        c[0] = components_of(all); c[1] = components_of(fresh);
+        d[0] = defects_of(all); d[1] = defects_of(fresh);
+        CHECK_CASE(r[0].vertex_count == r[1].vertex_count && r[0].triangle_count == r[1].triangle_count && c[0].count == c[1].count &&
+                   d[0].count == d[1].count && d[0].mended_count == d[1].mended_count, "way %d: other counts", way);
         ck_assert_mem_eq(r[0].vertices, r[1].vertices, 3 * r[0].vertex_count * sizeof(double));
         ck_assert_mem_eq(r[0].triangles, r[1].triangles, 3 * r[0].triangle_count * sizeof(uint32_t));
-        ck_assert_mem_eq(r[0].component_volume, r[1].component_volume, r[0].component_count * sizeof(double));
-        if (mend) mended += r[0].mended_count;
-        else ck_assert_uint_eq(r[0].mended_count, 0);
+        ck_assert_mem_eq(c[0].volume, c[1].volume, c[0].count * sizeof(double));
+        if (mend) mended += d[0].mended_count;
+        else ck_assert_uint_eq(d[0].mended_count, 0);
         gxb_boolean_destroy(fresh);
     }
     ck_assert_uint_gt(mended, 0);
@@ -1098,11 +1128,21 @@ static void give(void *user, void *block, size_t size) {
     free(block);
 }
 
-/* Adds three boxes and evaluates after each; a call that fails is made again, and then succeeds. */
+/* Create, and for each operand: add, evaluate, components, defects */
+static gx_result make_call(int i, const gxb_boolean_desc *desc, const gxb_operand *o, gxb_boolean **b) {
+    gxb_boolean_result r;
+    gxb_components c;
+    gxb_defects d;
+    if (i < 0) return gxb_boolean_create(desc, b);
+    if (i % 4 == 0) return gxb_boolean_add(*b, &o[i / 4], NULL);
+    if (i % 4 == 1) return gxb_boolean_evaluate(*b, &r);
+    return i % 4 == 2 ? gxb_boolean_components(*b, &c) : gxb_boolean_defects(*b, &d);
+}
+
+/* Adds three boxes, evaluates after each, and asks for all; a call that fails is made again, and then succeeds. */
 static answer despite_failures(memory *m, const gxb_operand *o, int *failed) {
     gxb_boolean_desc desc;
     gxb_boolean *b = NULL;
-    gxb_boolean_result r;
     gx_result result;
     answer a;
     int i;
@@ -1110,9 +1150,9 @@ static answer despite_failures(memory *m, const gxb_operand *o, int *failed) {
     desc.allocator.allocate = take; desc.allocator.release = give; desc.allocator.user = m;
     desc.memory_limit = (size_t)1 << 19;        /* so little that each array is allocated by itself */
     *failed = 0;
-    for (i = -1; i < 6; ++i) {
+    for (i = -1; i < 12; ++i) {
         for (;;) {
-            result = i < 0 ? gxb_boolean_create(&desc, &b) : i % 2 == 0 ? gxb_boolean_add(b, &o[i / 2], NULL) : gxb_boolean_evaluate(b, &r);
+            result = make_call(i, &desc, o, &b);
             if (result == GX_OK) break;
             ck_assert_int_eq(result, GX_ERROR_MEMORY);
             ck_assert(m->fail_at != SIZE_MAX);
@@ -1158,6 +1198,8 @@ START_TEST(memory_limit) {
     gxb_operand o[2];
     gxb_boolean_desc desc;
     gxb_boolean_result r;
+    gxb_components c;
+    gxb_statistics s;
     size_t limit, refused = 0;
     int i;
     o[0] = operand_of(&body, GXB_UNION); o[1] = operand_of(&w.surfaces[0], GXB_DIFFERENCE);
@@ -1169,8 +1211,12 @@ START_TEST(memory_limit) {
         ck_assert_int_eq(gxb_boolean_create(&desc, &b), GX_OK);
         for (i = 0; i < 2 && result == GX_OK; ++i) result = gxb_boolean_add(b, &o[i], NULL);
         if (result == GX_OK) result = gxb_boolean_evaluate(b, &r);
-        if (result == GX_OK) ck_assert(r.peak_bytes <= limit && r.component_count == 2);
-        else { ck_assert_int_eq(result, GX_ERROR_LIMIT); ++refused; }
+        if (result == GX_OK) result = gxb_boolean_components(b, &c);
+        if (result == GX_OK) {
+            ck_assert_uint_eq(c.count, 2);
+            ck_assert_int_eq(gxb_boolean_statistics(b, &s), GX_OK);
+            ck_assert(s.peak_bytes <= limit && s.allocations > 0 && s.filter_calls >= s.exact_calls);
+        } else { ck_assert_int_eq(result, GX_ERROR_LIMIT); ++refused; }
         gxb_boolean_destroy(b);
     }
     ck_assert(refused > 0 && refused < 12);
@@ -1197,6 +1243,9 @@ START_TEST(bad_input_is_refused) {
     gxb_boolean_desc desc;
     gxb_boolean *b = NULL;
     gxb_boolean_result r;
+    gxb_components c;
+    gxb_defects d;
+    gxb_statistics statistics;
     size_t i;
     double kept;
     memset(&s, 0, sizeof s);
@@ -1222,11 +1271,25 @@ START_TEST(bad_input_is_refused) {
     ck_assert_int_eq(gxb_boolean_set_fine(NULL, 1), GX_ERROR_ARGUMENT);
     ck_assert_int_eq(gxb_boolean_set_mend(NULL, 1), GX_ERROR_ARGUMENT);
     ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_ERROR_EMPTY);
+    ck_assert_int_eq(gxb_boolean_components(b, &c), GX_ERROR_EMPTY);
+    ck_assert_int_eq(gxb_boolean_defects(b, &d), GX_ERROR_EMPTY);
+    ck_assert_int_eq(gxb_boolean_components(NULL, &c), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxb_boolean_components(b, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxb_boolean_defects(NULL, &d), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxb_boolean_defects(b, NULL), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxb_boolean_statistics(NULL, &statistics), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxb_boolean_statistics(b, NULL), GX_ERROR_ARGUMENT);
     o = good; o.triangle_count = 11;            /* a refused operand leaves nothing behind */
     ck_assert_int_eq(gxb_boolean_add(b, &o, NULL), GX_ERROR_NOT_CLOSED);
     ck_assert_int_eq(gxb_boolean_add(b, &good, NULL), GX_OK);
     ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
-    ck_assert(r.volume == 1 && r.component_count == 1 && r.triangle_count == 12);
+    ck_assert_uint_eq(r.triangle_count, 12);
+    ck_assert_int_eq(gxb_boolean_add(b, &o, NULL), GX_ERROR_NOT_CLOSED);        /* nor does it take the result away */
+    c = components_of(b);
+    ck_assert(c.total_volume == 1 && c.count == 1);
+    ck_assert_int_eq(gxb_boolean_add(b, &good, NULL), GX_OK);
+    ck_assert_int_eq(gxb_boolean_components(b, &c), GX_ERROR_EMPTY);            /* an operand does */
+    ck_assert_int_eq(gxb_boolean_defects(b, &d), GX_ERROR_EMPTY);
     gxb_boolean_destroy(b);
     surface_free(&s);
 }
