@@ -4863,7 +4863,7 @@ static void gxbp_count_release(void *user, void *memory, size_t size) {
 }
 
 /* Where the caller's memory can grow: what is not in the arena. */
-static GXBP_RARE void *gxbp_count_reallocate(void *user, void *old, size_t size, size_t larger) {
+static void *gxbp_count_reallocate(void *user, void *old, size_t size, size_t larger) {
     gxb_boolean *b = (gxb_boolean *)user;
     const unsigned char *m = (const unsigned char *)old;
     const int in_arena = m >= b->arena && m < b->arena + b->arena_size;
@@ -5421,7 +5421,7 @@ static void gxbp_fill_leaf(gxb_boolean *b, const gxbp_operand *o, uint32_t i) {
     }
 }
 
-static GXBP_RARE void gxbp_fill_tree(gxb_boolean *b, const gxbp_operand *o) {
+static void gxbp_fill_tree(gxb_boolean *b, const gxbp_operand *o) {
     const gxbp_tree *t = &o->tree;
     uint32_t i, l;
     for (i = 0; i < t->size[0]; i++) gxbp_fill_leaf(b, o, i);
@@ -6049,7 +6049,7 @@ static uint32_t gxbp_insert_points(gxb_boolean *b, uint32_t *p, uint32_t count, 
 }
 
 /* Merge sort of points along an axis, each pair compared once; equal ones become one. work: count words. Returns how many remain. */
-static GXBP_RARE uint32_t gxbp_sort_points(gxb_boolean *b, uint32_t *p, uint32_t count, uint32_t axis, int direction, uint32_t *work) {
+static uint32_t gxbp_sort_points(gxb_boolean *b, uint32_t *p, uint32_t count, uint32_t axis, int direction, uint32_t *work) {
     const uint32_t half = count / 2;
     uint32_t i, j, k, left, end;
     if (count <= 8) return gxbp_insert_points(b, p, count, axis, direction);
@@ -6078,7 +6078,7 @@ static uint32_t gxbp_edge_axis(const double *p, const double *q, int *direction)
 }
 
 /* Puts the new points of a cut, which are in b->scratch, in order with the old ones. */
-static GXBP_RARE void gxbp_order_cut(gxb_boolean *b, uint32_t cut) {
+static void gxbp_order_cut(gxb_boolean *b, uint32_t cut) {
     gxbp_cut *c = &b->cuts[cut];
     const uint32_t s = c->half_edge / 3, k = c->half_edge % 3;
     const double *p = gxbp_corner_of(b, s, (int)k), *q = gxbp_corner_of(b, s, (int)(k + 1) % 3);
@@ -7351,7 +7351,7 @@ static uint32_t gxbp_hash_winding(const int32_t *winding, uint32_t count) {
     return hash;
 }
 
-static GXBP_RARE void gxbp_list_states(gxb_boolean *b) {
+static void gxbp_list_states(gxb_boolean *b) {
     const uint32_t n = b->operand_count, last = b->state_table_size - 1;
     uint32_t i, k;
     memset(b->state_table, 0xff, (size_t)b->state_table_size * sizeof *b->state_table);
@@ -7571,7 +7571,7 @@ static GXBP_RARE void gxbp_cross_own(gxb_boolean *b, const gxbp_ray *ray) {
 }
 
 /* The state in front of a facet, from one (GXB_NONE: zeros) that does not count operands from the first on. */
-static GXBP_RARE uint32_t gxbp_state_by_ray(gxb_boolean *b, uint32_t f, uint32_t state, uint32_t first) {
+static GXBP_APART uint32_t gxbp_state_by_ray(gxb_boolean *b, uint32_t f, uint32_t state, uint32_t first) {
     gxbp_ray ray;
     uint32_t i;
     if (!gxbp_need_plane(b, b->pieces[f].source)) return 0;
@@ -7680,7 +7680,7 @@ static int gxbp_is_surface(const gxb_boolean *b, uint32_t f) {
 /* --- states that are there already: new operands have the number 0 in them, which is right wherever their boxes are not --- */
 
 /* Lengthens the states by the numbers of new operands, all 0: each state keeps its place. */
-static GXBP_RARE int gxbp_lengthen_states(gxb_boolean *b) {
+static GXBP_APART int gxbp_lengthen_states(gxb_boolean *b) {
     const uint32_t n = b->operand_count, m = b->stated;
     uint32_t i;
     memset(b->steps, 0, sizeof b->steps);
@@ -7784,7 +7784,7 @@ static GXBP_COLD void gxbp_close_states(gxb_boolean *b) {
 static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
     uint32_t f, pass;
     if (b->result != GX_OK) return;
-    gxbp_rename_vertices(b);
+    if (b->united || b->renamed) gxbp_rename_vertices(b);
     if (!gxbp_lengthen_states(b)) return;
     if (b->stated > 0) gxbp_close_states(b);
     for (pass = 0; pass < 2; pass++)            /* first from input triangles, whose rays are cheap */
@@ -8263,6 +8263,12 @@ static void gxbp_join_sets(uint32_t *parent, uint32_t i, uint32_t j) {
     else parent[i] = j;
 }
 
+/* Afterwards parent[i] is the set of i: parents come before their children. */
+static void gxbp_flatten_sets(uint32_t *parent, uint32_t count) {
+    uint32_t i;
+    for (i = 0; i < count; i++) parent[i] = parent[parent[i]];
+}
+
 /* Triangles around an edge from p to q, by angle. Seen along the edge, a triangle that passes it forwards (from p to q) has the solid at
    smaller angles, one that passes it backwards at larger ones. */
 typedef struct gxbp_blade { uint32_t half_edge, apex, plane; int forward, toward, group; } gxbp_blade;
@@ -8406,12 +8412,12 @@ static const gxb_num *gxbp_use_fine(gxbp_fines *fines, uint32_t vertex) {
 }
 
 /* Six times the volume of a shell (set root in parent), from coordinates of 180 bits. */
-static GXBP_RARE double gxbp_fine_volume(gxb_boolean *b, uint32_t *parent, uint32_t root, gxbp_fines *fines) {
+static GXBP_RARE double gxbp_fine_volume(gxb_boolean *b, const uint32_t *parent, uint32_t root, gxbp_fines *fines) {
     GXB_NUM(total); GXB_NUM(term);
     uint32_t t, k;
     for (t = root; t < b->out_source_count; t++) {
         const uint32_t *v = b->out_triangles + 3 * (size_t)t;
-        if (gxbp_find_set(parent, t) != root) continue;
+        if (parent[t] != root) continue;
         for (k = 0; k < 3; k++) gxbp_need_fine(b, fines, v[k]);
         if (b->result != GX_OK) return 0;
         gxbp_num_det3(&term, gxbp_use_fine(fines, v[0]), gxbp_use_fine(fines, v[1]), gxbp_use_fine(fines, v[2]));
@@ -8461,11 +8467,11 @@ static double gxbp_largest_rough_error(const gxb_boolean *b) {
 static int gxbp_is_rough(const gxb_boolean *b, double volume, double error) { return gxbp_is_fine(b) || error > GXBP_VOLUME_ERROR * gxbp_abs(volume); }
 
 /* Sums over the sets in volume[root] and error[root]; largest: a bound for all triangles, or 0: each has its own */
-static void gxbp_sum_volumes(const gxb_boolean *b, uint32_t *parent, double *volume, double *error, double largest) {
+static void gxbp_sum_volumes(const gxb_boolean *b, const uint32_t *parent, double *volume, double *error, double largest) {
     uint32_t t;
     for (t = 0; t < b->out_source_count; t++) volume[t] = error[t] = 0;
     for (t = 0; t < b->out_source_count; t++) {
-        const uint32_t root = gxbp_find_set(parent, t);
+        const uint32_t root = parent[t];
         double own = largest;
         volume[root] += gxbp_rough_volume(b, t, &b->cx.points[gxbp_out_corner(b, root, 0)].ball, largest > 0 ? NULL : &own);
         error[root] += 2 * own;
@@ -8479,7 +8485,7 @@ static int gxbp_any_is_rough(const gxb_boolean *b, const uint32_t *parent, const
 }
 
 /* Exact sums where those of doubles are too rough */
-static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, uint32_t *parent, double *volume, const double *error) {
+static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent, double *volume, const double *error) {
     const size_t bytes = b->out_point_count * sizeof(gxbp_fine);
     gxbp_fines fines = {NULL, NULL, 0, 0};
     uint32_t t;
@@ -8493,7 +8499,7 @@ static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, uint32_t *parent, doub
 }
 
 /* Six times the volumes of the sets in volume[root], in the frame's units. One bound for all triangles costs less; it is too large for many. */
-static GXBP_APART void gxbp_measure_shells(gxb_boolean *b, uint32_t *parent, double *volume, double *error) {
+static GXBP_APART void gxbp_measure_shells(gxb_boolean *b, const uint32_t *parent, double *volume, double *error) {
     const int few = b->out_source_count <= GXBP_FEW_TRIANGLES;
     gxbp_sum_volumes(b, parent, volume, error, few ? gxbp_largest_rough_error(b) : 0);
     if (!gxbp_any_is_rough(b, parent, volume, error)) return;
@@ -8516,14 +8522,14 @@ static GXBP_COLD int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p,
 
 /* The smallest shell with volume around a cavity's (or a sheet's) shell. The ray begins on that side of its facet on which its solid lies: on the
    other one, of a sheet, begins another's. */
-static GXBP_COLD uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, uint32_t *parent, const double *volume, int32_t *winding) {
+static GXBP_COLD uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, const uint32_t *parent, const double *volume, int32_t *winding) {
     gxbp_ray ray;
     const int turned = b->out_planes[cavity] & 1 ? 1 : -1, moved = gxbp_moved_side(b, gxbp_out_plane(b, cavity)), way = moved == 0 ? 1 : moved * turned;
     uint32_t t, best = GXB_NONE, k;
     gxbp_set_ray(b, &ray, b->out_planes[cavity] / 2);
     for (t = 0; t < b->out_source_count; t++) winding[t] = 0;
     for (t = 0; t < b->out_source_count; t++) {
-        const uint32_t root = gxbp_find_set(parent, t), plane = gxbp_out_plane(b, t);
+        const uint32_t root = parent[parent[t]], plane = gxbp_out_plane(b, t);         /* of cavities that have theirs: it */
         const int facing = b->out_planes[t] & 1 ? -1 : 1;
         double value, bound;
         int left, behind;
@@ -8549,22 +8555,19 @@ static GXBP_COLD uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, u
 }
 
 static GXBP_APART void gxbp_number_components(gxb_boolean *b, uint32_t *parent, double *volume, int32_t *winding) {
+    const uint32_t count = b->out_source_count;
     uint32_t t, root;
-    for (t = 0; t < b->out_source_count; t++) {
+    for (t = 0; t < count; t++) {
         if (parent[t] != t || volume[t] > 0) continue;
         root = gxbp_find_container(b, t, parent, volume, winding);
         if (root == GXB_NONE) continue;
         volume[root] += volume[t];
         parent[t] = root;
     }
-    b->out_component_count = b->out_volume_count = 0;
-    for (t = 0; t < b->out_source_count; t++) {
-        root = gxbp_find_set(parent, t);
-        winding[t] = -1;
-        if (root == t) winding[t] = 0;
-    }
-    for (t = 0; t < b->out_source_count && b->result == GX_OK; t++) {
-        root = gxbp_find_set(parent, t);
+    gxbp_flatten_sets(parent, count);
+    memset(winding, 0, count * sizeof *winding);            /* of roots, now: number of the component + 1 */
+    for (t = 0; t < count && b->result == GX_OK; t++) {
+        root = parent[t];
         if (winding[root] == 0) {
             if (!GXBP_ROOM(b, out_volumes, out_volume, 1)) return;
             b->out_volumes[b->out_volume_count++] = volume[root] / 6;
@@ -8572,7 +8575,7 @@ static GXBP_APART void gxbp_number_components(gxb_boolean *b, uint32_t *parent, 
         }
         b->out_components[t] = (uint32_t)winding[root] - 1;
     }
-    b->out_component_count = b->out_source_count;
+    b->out_component_count = count;
 }
 
 /* Each triangle is 1 and 3 / 2 edges. */
@@ -8615,6 +8618,7 @@ static void gxbp_measure_components(gxb_boolean *b, uint32_t *parent, int32_t *w
     const size_t count = b->out_source_count;
     double *volume = (double *)gxbp_borrow(b, 2 * count * sizeof *volume);
     if (volume == NULL) return;
+    gxbp_flatten_sets(parent, b->out_source_count);
     gxbp_measure_shells(b, parent, volume, volume + count);
     gxbp_number_components(b, parent, volume, winding);
     gxbp_scale_volumes(b);

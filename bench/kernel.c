@@ -6,8 +6,8 @@
    W1 a tetrahedron less a slab, W3 less a wavy slab of 1760 triangles, W4 a cube less 5 + 5 crossing slabs; "+" after a name: evaluated
    after each operand. S: a bumpy sphere of 8,000 triangles less a turned copy. filter_share and exact_share: of the signs asked for, those that
    the filter or the definitions decided, and those that took exact arithmetic. Surfaces are vouched for as simple; "?": they are not.
-   Each call creates, adds, evaluates, asks for components and defects, and destroys; surface_us: the median where it does not ask. SECONDS per workload
-   and way, at least three calls. */
+   Each call creates, adds, evaluates, asks for the components, and destroys; surface_us: the median where it does not ask. SECONDS per workload and
+   way, at least three calls. */
 #define _POSIX_C_SOURCE 200809L
 #define GXFEM_BOOLEAN_IMPLEMENTATION
 #include "../gxfem_boolean.h"
@@ -40,7 +40,6 @@ static figures run(const char *name, const gxb_operand *operands, size_t count, 
     gxb_boolean *b = NULL;
     gxb_boolean_result r;
     gxb_components c;
-    gxb_defects d;
     gxb_statistics s;
     figures f;
     size_t i;
@@ -51,10 +50,7 @@ static figures run(const char *name, const gxb_operand *operands, size_t count, 
         stop_at(name, gxb_boolean_add(b, &operands[i], NULL));
         if (i + 1 == count || (each && i > 0)) stop_at(name, gxb_boolean_evaluate(b, &r));
     }
-    if (ask) {
-        stop_at(name, gxb_boolean_components(b, &c));
-        stop_at(name, gxb_boolean_defects(b, &d));
-    }
+    if (ask) stop_at(name, gxb_boolean_components(b, &c));
     stop_at(name, gxb_boolean_statistics(b, &s));
     f.triangles = r.triangle_count; f.components = c.count; f.volume = c.total_volume;
     f.filter = s.filter_calls; f.exact = s.exact_calls; f.allocations = s.allocations; f.peak = s.peak_bytes;
