@@ -296,9 +296,10 @@ frames until a millionth of the start's energy is left."
     echo
     echo "## Booleans of closed surfaces"
     echo
-    text "\"+\": evaluated after each operand, \"?\": surfaces that nobody vouches for."
+    text "\"+\": evaluated after each operand, \"?\": surfaces that nobody vouches for. With components and their volumes; surface: \
+without."
     echo
-    table kernel "| workload | median, us | least, us | triangles | components | volume | signs by filter | exact | allocations | peak, bytes |"
+    table kernel "| workload | median, us | least, us | triangles | components | volume | signs by filter | exact | allocations | peak, bytes | surface, us |"
     echo
     text "The smallest program with the kernel, a tetrahedron less another, alone and with GXFEM_STATIC: time of the processor to \
 compile it, and its size, stripped."
