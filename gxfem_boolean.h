@@ -8411,11 +8411,11 @@ static const gxb_num *gxbp_use_fine(gxbp_fines *fines, uint32_t vertex) {
     return v->c;
 }
 
-/* Six times the volume of a shell (set root in parent), from coordinates of 180 bits. */
+/* Six times the volume of a set, from coordinates of 180 bits. */
 static GXBP_RARE double gxbp_fine_volume(gxb_boolean *b, const uint32_t *parent, uint32_t root, gxbp_fines *fines) {
     GXB_NUM(total); GXB_NUM(term);
     uint32_t t, k;
-    for (t = root; t < b->out_source_count; t++) {
+    for (t = 0; t < b->out_source_count; t++) {
         const uint32_t *v = b->out_triangles + 3 * (size_t)t;
         if (parent[t] != root) continue;
         for (k = 0; k < 3; k++) gxbp_need_fine(b, fines, v[k]);
@@ -8464,7 +8464,7 @@ static double gxbp_largest_rough_error(const gxb_boolean *b) {
 
 #define GXBP_VOLUME_ERROR 1e-7     /* relative: sums of doubles with a larger bound, mostly far above their error, give way to exact ones */
 
-static int gxbp_is_rough(const gxb_boolean *b, double volume, double error) { return gxbp_is_fine(b) || error > GXBP_VOLUME_ERROR * gxbp_abs(volume); }
+static int gxbp_is_rough(double volume, double error) { return error > GXBP_VOLUME_ERROR * gxbp_abs(volume); }
 
 /* Sums over the sets in volume[root] and error[root]; largest: a bound for all triangles, or 0: each has its own */
 static void gxbp_sum_volumes(const gxb_boolean *b, const uint32_t *parent, double *volume, double *error, double largest) {
@@ -8480,12 +8480,12 @@ static void gxbp_sum_volumes(const gxb_boolean *b, const uint32_t *parent, doubl
 
 static int gxbp_any_is_rough(const gxb_boolean *b, const uint32_t *parent, const double *volume, const double *error) {
     uint32_t t;
-    for (t = 0; t < b->out_source_count; t++) if (parent[t] == t && gxbp_is_rough(b, volume[t], error[t])) return 1;
+    for (t = 0; t < b->out_source_count; t++) if (parent[t] == t && gxbp_is_rough(volume[t], error[t])) return 1;
     return 0;
 }
 
-/* Exact sums where those of doubles are too rough */
-static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent, double *volume, const double *error) {
+/* Exact sums where those of doubles are too rough, or of all */
+static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent, double *volume, double *error, int all) {
     const size_t bytes = b->out_point_count * sizeof(gxbp_fine);
     gxbp_fines fines = {NULL, NULL, 0, 0};
     uint32_t t;
@@ -8493,7 +8493,10 @@ static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent
     if (fines.vertices == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
     b->head_stamp++;
     for (t = 0; t < b->out_source_count && b->result == GX_OK; t++)
-        if (parent[t] == t && gxbp_is_rough(b, volume[t], error[t])) volume[t] = gxbp_fine_volume(b, parent, t, &fines);
+        if (parent[t] == t && (all || gxbp_is_rough(volume[t], error[t]))) {
+            volume[t] = gxbp_fine_volume(b, parent, t, &fines);
+            error[t] = 2 * GXBP_U * gxbp_abs(volume[t]);
+        }
     gxbp_release(&b->cx.allocator, fines.limbs, fines.limb_capacity * sizeof *fines.limbs);
     gxbp_release(&b->cx.allocator, fines.vertices, bytes);
 }
@@ -8504,7 +8507,7 @@ static GXBP_APART void gxbp_measure_shells(gxb_boolean *b, const uint32_t *paren
     gxbp_sum_volumes(b, parent, volume, error, few ? gxbp_largest_rough_error(b) : 0);
     if (!gxbp_any_is_rough(b, parent, volume, error)) return;
     if (few) gxbp_sum_volumes(b, parent, volume, error, 0);
-    gxbp_refine_volumes(b, parent, volume, error);
+    gxbp_refine_volumes(b, parent, volume, error, 0);
 }
 
 /* gxbp_ray_left for points of the result, and a ray moved by way (h, h^2) */
@@ -8520,60 +8523,97 @@ static GXBP_COLD int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p,
     return turn != 0 ? turn : way * gxbp_compare_points(b, q, p, 1);
 }
 
-/* The smallest shell with volume around a cavity's (or a sheet's) shell. The ray begins on that side of its facet on which its solid lies: on the
-   other one, of a sheet, begins another's. */
+/* A ray from a triangle. It begins on the side on which that one's solid lies: on the other one, of a sheet, begins another's. */
+static GXBP_COLD int gxbp_ray_from(gxb_boolean *b, gxbp_ray *ray, uint32_t t) {
+    const int turned = b->out_planes[t] & 1 ? 1 : -1, moved = gxbp_moved_side(b, gxbp_out_plane(b, t));
+    gxbp_set_ray(b, ray, b->out_planes[t] / 2);
+    return moved == 0 ? 1 : moved * turned;
+}
+
+/* By how much passing a triangle changes the number of its shell, along a ray moved by way (h, h^2) */
+static GXBP_COLD int gxbp_ray_passes(gxb_boolean *b, gxbp_ray *ray, int way, uint32_t t) {
+    const uint32_t plane = gxbp_out_plane(b, t);
+    const int facing = b->out_planes[t] & 1 ? -1 : 1;
+    double value, bound;
+    int left, behind;
+    uint32_t c[3], k;
+    if (plane == GXB_NONE) return 0;
+    for (k = 0; k < 3; k++) c[k] = gxbp_out_corner(b, t, k);
+    left = gxbp_ray_left_of(b, ray, c[0], c[1], way);
+    if (left == 0 || gxbp_ray_left_of(b, ray, c[1], c[2], way) != left || gxbp_ray_left_of(b, ray, c[2], c[0], way) != left) return 0;
+    value = gxbp_filter_side(&ray->ball, &b->cx.planes[plane].filter, &bound);
+    behind = -gxbp_filter_sign(value, bound);
+    if (behind == 0) {
+        GXB_NUM(side);
+        gxbp_vec store;
+        gxbp_exact_side(&side, gxbp_exact_probe(b, ray)->exact.c, gxbp_exact_cplane(&b->cx, plane, &store));
+        behind = -side.sign;
+    }
+    if (behind == 0) behind = -way * gxbp_moved_side(b, plane);
+    if (behind == 0) behind = -facing;              /* the other side of the facet, which lies across x */
+    return behind * facing == left ? left : 0;
+}
+
+/* Of triangle t: the shell that it belongs to, of a cavity whose container is known that one */
+static uint32_t gxbp_shell_of(const uint32_t *parent, uint32_t t) { return parent[parent[t]]; }
+
+/* Does shell t lie in shell u? Shells do not cross: one of its triangles says it. */
+static GXBP_COLD int gxbp_lies_in(gxb_boolean *b, uint32_t t, uint32_t u, const uint32_t *parent) {
+    gxbp_ray ray;
+    const int way = gxbp_ray_from(b, &ray, t);
+    int winding = 0;
+    uint32_t i;
+    for (i = 0; i < b->out_source_count; i++) if (gxbp_shell_of(parent, i) == u) winding += gxbp_ray_passes(b, &ray, way, i);
+    return winding != 0;
+}
+
+/* The innermost shell with volume around a cavity's (or a sheet's) shell. */
 static GXBP_COLD uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, const uint32_t *parent, const double *volume, int32_t *winding) {
     gxbp_ray ray;
-    const int turned = b->out_planes[cavity] & 1 ? 1 : -1, moved = gxbp_moved_side(b, gxbp_out_plane(b, cavity)), way = moved == 0 ? 1 : moved * turned;
-    uint32_t t, best = GXB_NONE, k;
-    gxbp_set_ray(b, &ray, b->out_planes[cavity] / 2);
-    for (t = 0; t < b->out_source_count; t++) winding[t] = 0;
-    for (t = 0; t < b->out_source_count; t++) {
-        const uint32_t root = parent[parent[t]], plane = gxbp_out_plane(b, t);         /* of cavities that have theirs: it */
-        const int facing = b->out_planes[t] & 1 ? -1 : 1;
-        double value, bound;
-        int left, behind;
-        uint32_t c[3];
-        if (root == cavity || !(volume[root] > 0) || plane == GXB_NONE) continue;
-        for (k = 0; k < 3; k++) c[k] = gxbp_out_corner(b, t, k);
-        left = gxbp_ray_left_of(b, &ray, c[0], c[1], way);
-        if (left == 0 || gxbp_ray_left_of(b, &ray, c[1], c[2], way) != left || gxbp_ray_left_of(b, &ray, c[2], c[0], way) != left) continue;
-        value = gxbp_filter_side(&ray.ball, &b->cx.planes[plane].filter, &bound);
-        behind = -gxbp_filter_sign(value, bound);
-        if (behind == 0) {
-            GXB_NUM(side);
-            gxbp_vec store;
-            gxbp_exact_side(&side, gxbp_exact_probe(b, &ray)->exact.c, gxbp_exact_cplane(&b->cx, plane, &store));
-            behind = -side.sign;
-        }
-        if (behind == 0) behind = -way * gxbp_moved_side(b, plane);
-        if (behind == 0) behind = -facing;              /* the other side of the facet, which lies across x */
-        if (behind * facing == left) winding[root] += left;
+    const int way = gxbp_ray_from(b, &ray, cavity);
+    const uint32_t count = b->out_source_count;
+    uint32_t t, best = GXB_NONE;
+    memset(winding, 0, count * sizeof *winding);
+    for (t = 0; t < count; t++) {
+        const uint32_t shell = gxbp_shell_of(parent, t);
+        if (shell != cavity && volume[shell] > 0) winding[shell] += gxbp_ray_passes(b, &ray, way, t);
     }
-    for (t = 0; t < b->out_source_count; t++) if (winding[t] != 0 && (best == GXB_NONE || volume[t] < volume[best])) best = t;
+    for (t = 0; t < count; t++) if (winding[t] != 0 && (best == GXB_NONE || gxbp_lies_in(b, t, best, parent))) best = t;
     return best;
 }
 
-static GXBP_APART void gxbp_number_components(gxb_boolean *b, uint32_t *parent, double *volume, int32_t *winding) {
+/* Cavities and sheets go to their containers: then the sets are components. A shell and a cavity in it may nearly cancel: what is left is
+   summed anew. */
+static GXBP_APART void gxbp_join_cavities(gxb_boolean *b, uint32_t *parent, double *volume, double *error, int32_t *winding) {
     const uint32_t count = b->out_source_count;
-    uint32_t t, root;
+    uint32_t t, container;
     for (t = 0; t < count; t++) {
         if (parent[t] != t || volume[t] > 0) continue;
-        root = gxbp_find_container(b, t, parent, volume, winding);
-        if (root == GXB_NONE) continue;
-        volume[root] += volume[t];
-        parent[t] = root;
+        container = gxbp_find_container(b, t, parent, volume, winding);
+        if (container != GXB_NONE) parent[t] = container;
     }
     gxbp_flatten_sets(parent, count);
-    memset(winding, 0, count * sizeof *winding);            /* of roots, now: number of the component + 1 */
+    for (t = 0; t < count; t++) {
+        if (parent[t] == t) continue;
+        volume[parent[t]] += volume[t];
+        error[parent[t]] += error[t];
+    }
+    if (gxbp_is_fine(b) || gxbp_any_is_rough(b, parent, volume, error)) gxbp_refine_volumes(b, parent, volume, error, gxbp_is_fine(b));
+}
+
+/* number: room for a word per triangle */
+static GXBP_APART void gxbp_number_components(gxb_boolean *b, const uint32_t *parent, const double *volume, uint32_t *number) {
+    const uint32_t count = b->out_source_count;
+    uint32_t t;
+    memset(number, 0, count * sizeof *number);              /* of a set, + 1 */
     for (t = 0; t < count && b->result == GX_OK; t++) {
-        root = parent[t];
-        if (winding[root] == 0) {
+        const uint32_t set = parent[t];
+        if (number[set] == 0) {
             if (!GXBP_ROOM(b, out_volumes, out_volume, 1)) return;
-            b->out_volumes[b->out_volume_count++] = volume[root] / 6;
-            winding[root] = (int32_t)b->out_volume_count;
+            b->out_volumes[b->out_volume_count++] = volume[set] / 6;
+            number[set] = b->out_volume_count;
         }
-        b->out_components[t] = (uint32_t)winding[root] - 1;
+        b->out_components[t] = number[set] - 1;
     }
     b->out_component_count = count;
 }
@@ -8613,14 +8653,15 @@ static void gxbp_scale_volumes(gxb_boolean *b) {
     for (i = 0; i < b->out_volume_count; i++) b->out_volumes[i] *= gxbp_power(-3 * shift);
 }
 
-/* parent: sets of triangles; winding: room for a word per triangle; corners: see gxbp_count_corners */
-static void gxbp_measure_components(gxb_boolean *b, uint32_t *parent, int32_t *winding, const int32_t *corners) {
+/* parent: sets of triangles; work: room for a word per triangle; corners: see gxbp_count_corners */
+static void gxbp_measure_components(gxb_boolean *b, uint32_t *parent, uint32_t *work, const int32_t *corners) {
     const size_t count = b->out_source_count;
     double *volume = (double *)gxbp_borrow(b, 2 * count * sizeof *volume);
     if (volume == NULL) return;
     gxbp_flatten_sets(parent, b->out_source_count);
     gxbp_measure_shells(b, parent, volume, volume + count);
-    gxbp_number_components(b, parent, volume, winding);
+    gxbp_join_cavities(b, parent, volume, volume + count, (int32_t *)work);
+    gxbp_number_components(b, parent, volume, work);
     gxbp_scale_volumes(b);
     gxbp_find_eulers(b, corners);
 }
@@ -8637,7 +8678,7 @@ static GXBP_APART void gxbp_find_components(gxb_boolean *b) {
     corners = (int32_t *)(void *)(parent + 2 * (size_t)count);
     for (t = 0; t < count; t++) parent[t] = t;
     gxbp_join_shells(b, parent, corners);
-    if (b->result == GX_OK) gxbp_measure_components(b, parent, (int32_t *)(void *)(parent + count), corners);
+    if (b->result == GX_OK) gxbp_measure_components(b, parent, parent + count, corners);
     gxbp_release(&b->cx.allocator, parent, bytes);
     gxbp_find_sides(b);
     b->measured = b->result == GX_OK;

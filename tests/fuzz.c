@@ -280,23 +280,22 @@ static answer combine(scene *s, int fine, int each)
     return a;
 }
 
-/* Volumes of shells are right to 1e-7 of themselves at least, to their last digits if fine; their sum adds the size of what they are part of.
-   A shell and a cavity in it nearly cancel: errors are relative to `size`. */
+/* Volumes are right to 1e-7 of themselves at least, to their last digits if fine. */
 static int near(double x, double y, double size, int fine) { return fabs(x - y) <= (fine ? 1e-12 : 4e-7) * size; }
 
-static void check_parts(const char *how, const answer *a, const double *part, double size, int fine)
+static void check_parts(const char *how, const answer *a, const double *part, int fine)
 {
     size_t i;
     for (i = 0; i < a->components && a->components <= PARTS; ++i)
-        REQUIRE(near(a->part[i], part[i], size, fine), "%s: component of %.17g, %.17g", how, a->part[i], part[i]);
+        REQUIRE(near(a->part[i], part[i], part[i], fine), "%s: component of %.17g, %.17g", how, a->part[i], part[i]);
 }
 
-static void check_same(const char *how, const answer *a, const answer *b, double size, int fine)
+static void check_same(const char *how, const answer *a, const answer *b, int fine)
 {
     REQUIRE(a->components == b->components, "%s: %zu components, %zu", how, a->components, b->components);
     REQUIRE(a->euler == b->euler, "%s: Euler characteristic %ld, %ld", how, a->euler, b->euler);
-    REQUIRE(near(a->volume, b->volume, size, fine), "%s: volume %.17g, %.17g", how, a->volume, b->volume);
-    check_parts(how, a, b->part, size, fine);
+    REQUIRE(near(a->volume, b->volume, b->volume, fine), "%s: volume %.17g, %.17g", how, a->volume, b->volume);
+    check_parts(how, a, b->part, fine);
 }
 
 /* ---- results: what an operand should be refused with ---- */
@@ -567,7 +566,6 @@ static void check_sameness(const test_case *c, const answer *a, int fine)
 {
     static test_case other;
     scene s = { other.operand, c->operands, WHAT_CHAIN, 0 };
-    const double size = size_of(c);
     size_t i;
     int commutes = 1;
     answer b;
@@ -578,12 +576,12 @@ static void check_sameness(const test_case *c, const answer *a, int fine)
         if (other.operand[i].operation != (i == 0 ? other.operand[0].operation : (uint32_t)GXB_UNION) || other.operand[0].operation == GXB_SPLIT) commutes = 0;
     }
     b = combine(&s, fine, 1);
-    check_same("in sequence, other axes", &b, a, size, fine);
+    check_same("in sequence, other axes", &b, a, fine);
     if (!commutes || c->operands < 2 || scale_of(&c->operand[0]) != scale_of(&c->operand[c->operands - 1])) return;
     for (i = 0; i < c->operands; ++i) other.operand[i] = c->operand[c->operands - 1 - i];
     for (i = 0; i < c->operands; ++i) other.operand[i].operation = GXB_UNION;
     b = combine(&s, fine, 0);
-    check_same("operands the other way round", &b, a, size, fine);
+    check_same("operands the other way round", &b, a, fine);
 }
 
 /* What moving vertices by 1e-10 of the largest coordinate may do to the volume: so much of the surface's area, taken large */
@@ -674,7 +672,7 @@ static long count_euler(const gxb_boolean_result *r, int *plain)
 }
 
 /* Mended: closed, of the same topology, no more defects than before, and those it says. */
-static void check_mending(scene *s, const answer *a, double size)
+static void check_mending(scene *s, const answer *a)
 {
     gxb_boolean_result r[2];
     gxb_defects d[2];
@@ -690,7 +688,7 @@ static void check_mending(scene *s, const answer *a, double size)
             REQUIRE(gxb_boolean_add(b[k], &o, NULL) == GX_OK, "operand %zu refused the second time", i);
         }
         m = evaluate(b[k], s, &r[k]);
-        check_same("mended", &m, a, size, 0);
+        check_same("mended", &m, a, 0);
         d[k] = defects_of(b[k], &r[k]);
         if (3 * r[k].triangle_count < EDGE_TABLE / 2) check_defects(s, &r[k], &d[k]);
     }
@@ -728,7 +726,7 @@ static uint64_t allocations_of(const gxb_boolean *b)
 }
 
 /* One allocation fails, somewhere: the call says so and, made again, works. */
-static void check_memory(const scene *s, const answer *a, double size, int fine, uint64_t fail_at)
+static void check_memory(const scene *s, const answer *a, int fine, uint64_t fail_at)
 {
     short_memory m = { 0, fail_at, 0 };
     gxb_boolean_desc desc;
@@ -752,7 +750,7 @@ static void check_memory(const scene *s, const answer *a, double size, int fine,
     while (result == GX_OK && (result = gxb_boolean_defects(b, &defects)) == GX_ERROR_MEMORY) result = GX_OK;
     REQUIRE(result == GX_OK, "after a lack of memory: error %d", (int)result);
     again = check_result(b, s, &r);
-    check_same("after a lack of memory", &again, a, size, fine);
+    check_same("after a lack of memory", &again, a, fine);
     gxb_boolean_destroy(b);
     REQUIRE(m.live == 0, "%zu bytes are left", m.live);
 }
@@ -766,9 +764,9 @@ static void check_oracle(const test_case *c, const answer *a)
     REQUIRE(a->euler == truth.euler, "Euler characteristic %ld, by the oracle %ld", a->euler, truth.euler);
     if (truth.components <= PARTS) {
         qsort(truth.part, truth.components, sizeof truth.part[0], compare_doubles);
-        check_parts("by the oracle", a, truth.part, size_of(c), c->fine);
+        check_parts("by the oracle", a, truth.part, c->fine);
     }
-    REQUIRE(fabs(a->volume - truth.volume) <= (c->fine ? 1e-12 : 4e-7) * size_of(c), "volume %.17g, by the oracle %.17g", a->volume, truth.volume);
+    REQUIRE(near(a->volume, truth.volume, truth.volume, c->fine), "volume %.17g, by the oracle %.17g", a->volume, truth.volume);
 }
 
 static void test_boolean(test_case *c, int ask)
@@ -795,12 +793,12 @@ static void test_boolean(test_case *c, int ask)
     case CHECK_SAMENESS: check_sameness(c, &chain, c->fine); break;
     case CHECK_RULES:
         rules = combine(&s, c->fine, 0);
-        check_same("by rules", &rules, &chain, size, c->fine);
+        check_same("by rules", &rules, &chain, c->fine);
         break;
     case CHECK_PROVENANCE: check_provenance(&s, &r, c->fine); break;
     case CHECK_AGAIN: check_again(&r, &chain, size); break;
-    case CHECK_MENDING: check_mending(&s, &chain, size); break;
-    case CHECK_MEMORY: check_memory(&s, &chain, size, c->fine, c->number % (allocations_of(b) + 1)); break;
+    case CHECK_MENDING: check_mending(&s, &chain); break;
+    case CHECK_MEMORY: check_memory(&s, &chain, c->fine, c->number % (allocations_of(b) + 1)); break;
     default: break;
     }
     gxb_boolean_destroy(b);

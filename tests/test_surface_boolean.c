@@ -951,33 +951,38 @@ static void mend_workload(const char *name, workload w, int removed, size_t sum[
     wl_free(&w);
 }
 
-/* A ball of 9 x 6 faces around a random place near 0 */
-static wl_surface random_ball(double radius) {
-    enum { AROUND = 9, DOWN = 6 };
+/* A ball of around x down faces */
+static wl_surface ball_of(const double middle[3], double radius, size_t around, size_t down) {
     wl_surface s;
-    double middle[3];
     size_t i, j, k;
-    for (k = 0; k < 3; ++k) middle[k] = (random_below(2001) - 1000) / 1000.0;
-    s.vertex_count = AROUND * (DOWN - 1) + 2; s.triangle_count = 2 * AROUND * (DOWN - 1);
+    s.vertex_count = around * (down - 1) + 2; s.triangle_count = 2 * around * (down - 1);
     s.vertices = (double *)malloc(3 * s.vertex_count * sizeof *s.vertices);
     s.triangles = (uint32_t *)malloc(3 * s.triangle_count * sizeof *s.triangles);
     for (i = 0; i < s.vertex_count; ++i) {
-        const double pi = 3.14159265358979323846, down = i + 1 == s.vertex_count ? pi : i == 0 ? 0 : pi * (double)(1 + (i - 1) / AROUND) / DOWN;
-        const double around = 2 * pi * (double)((i + AROUND - 1) % AROUND) / AROUND;
-        s.vertices[3 * i] = middle[0] + radius * sin(down) * cos(around);
-        s.vertices[3 * i + 1] = middle[1] + radius * sin(down) * sin(around);
-        s.vertices[3 * i + 2] = middle[2] + radius * cos(down);
+        const double pi = 3.14159265358979323846, low = i + 1 == s.vertex_count ? pi : i == 0 ? 0 : pi * (double)(1 + (i - 1) / around) / (double)down;
+        const double turn = 2 * pi * (double)((i + around - 1) % around) / (double)around;
+        s.vertices[3 * i] = middle[0] + radius * sin(low) * cos(turn);
+        s.vertices[3 * i + 1] = middle[1] + radius * sin(low) * sin(turn);
+        s.vertices[3 * i + 2] = middle[2] + radius * cos(low);
     }
-    for (i = 0, k = 0; i < AROUND; ++i) {
-        const uint32_t a = 1 + (uint32_t)i, b = 1 + (uint32_t)((i + 1) % AROUND), end = (uint32_t)s.vertex_count - 1;
-        const uint32_t caps[6] = { 0, a, b, end, b + AROUND * (DOWN - 2), a + AROUND * (DOWN - 2) };
+    for (i = 0, k = 0; i < around; ++i) {
+        const uint32_t n = (uint32_t)around, a = 1 + (uint32_t)i, b = 1 + (uint32_t)((i + 1) % around), end = (uint32_t)s.vertex_count - 1;
+        const uint32_t caps[6] = { 0, a, b, end, b + n * ((uint32_t)down - 2), a + n * ((uint32_t)down - 2) };
         memcpy(s.triangles + k, caps, sizeof caps);
-        for (k += 6, j = 0; j + 2 < DOWN; ++j, k += 6) {
-            const uint32_t p = a + AROUND * (uint32_t)j, q = b + AROUND * (uint32_t)j, sides[6] = { p, p + AROUND, q + AROUND, p, q + AROUND, q };
+        for (k += 6, j = 0; j + 2 < down; ++j, k += 6) {
+            const uint32_t p = a + n * (uint32_t)j, q = b + n * (uint32_t)j, sides[6] = { p, p + n, q + n, p, q + n, q };
             memcpy(s.triangles + k, sides, sizeof sides);
         }
     }
     return s;
+}
+
+/* A ball of 9 x 6 faces around a random place near 0 */
+static wl_surface random_ball(double radius) {
+    double middle[3];
+    int k;
+    for (k = 0; k < 3; ++k) middle[k] = (random_below(2001) - 1000) / 1000.0;
+    return ball_of(middle, radius, 9, 6);
 }
 
 static double dot_of(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -1040,6 +1045,71 @@ START_TEST(mending_keeps_volumes) {
         a = next;
     }
     surface_free(&a);
+}
+END_TEST
+
+static void swap_bytes(void *a, void *b, size_t size) {
+    unsigned char *p = (unsigned char *)a, *q = (unsigned char *)b;
+    for (; size > 0; --size, ++p, ++q) { const unsigned char kept = *p; *p = *q; *q = kept; }
+}
+
+/* Six times a surface's volume, exactly */
+static big exact_volume_of(const wl_surface *s) {
+    big sum = big_zero();
+    size_t t;
+    int k;
+    for (t = 0; t < s->triangle_count; ++t) {
+        big x[3][3];
+        for (k = 0; k < 3; ++k) big_vector(s->vertices + 3 * (size_t)s->triangles[3 * t + (size_t)k], x[k]);
+        sum = big_add(sum, big_det3(x[0], x[1], x[2]));
+    }
+    return sum;
+}
+
+/* The volume of each component is that of one wall, each wall has one, and all have two sides. */
+static void check_walls(const gxb_operand *o, const double *wall, size_t walls, int fine) {
+    gxb_boolean *b = boolean_of(o, 2 * walls, GXB_DIVIDED, fine, 0);
+    gxb_boolean_result r;
+    gxb_components c;
+    size_t i, j;
+    ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
+    c = components_of(b);
+    CHECK_CASE(c.count == walls, "%zu components", c.count);
+    for (i = 0; i < walls; ++i) {
+        size_t same = 0;
+        ck_assert_int_eq(c.euler[i], 4);
+        for (j = 0; j < c.count; ++j) same += fabs(c.volume[j] - wall[i]) <= (fine ? 1e-15 : 1e-7) * wall[i];
+        CHECK_CASE(same == 1, "wall %zu: volume %g, %g or %g instead of %g", i, c.volume[0], c.volume[1], c.volume[2], wall[i]);
+    }
+    gxb_boolean_destroy(b);
+}
+
+/* Three hollow balls, one in the other, whose walls are four units of the last place thick: all six shells have nearly one volume, of which the walls'
+   are some 1e-15. Triangles and shells come in any order. */
+START_TEST(walls_of_a_few_units) {
+    enum { SHELLS = 6 };
+    static const double zero[3] = { 0, 0, 0 };
+    const rat_mark mark = rat_arena_mark();
+    wl_surface s[SHELLS];
+    gxb_operand o[SHELLS];
+    big volume[SHELLS];
+    double wall[SHELLS / 2];
+    size_t i, k;
+    random_state = 0x9e3779b97f4a7c15u * (uint64_t)(_i + 1);
+    for (i = 0; i < SHELLS; ++i) {
+        s[i] = ball_of(zero, 1, 24, 13);
+        for (k = 0; k < 3 * s[i].vertex_count; ++k)
+            s[i].vertices[k] = i == 0 ? s[i].vertices[k] * (1 + random_below(100) * 1e-4) : s[0].vertices[k] * (1 - (double)i * 0x1p-51);
+        for (k = s[i].triangle_count - 1; k > 0; --k) swap_bytes(s[i].triangles + 3 * k, s[i].triangles + 3 * (size_t)random_below((int)k + 1), 3 * sizeof(uint32_t));
+        volume[i] = exact_volume_of(&s[i]);
+        o[i] = operand_of(&s[i], GXB_SYMMETRIC_DIFFERENCE);
+    }
+    for (i = 0; i < SHELLS / 2; ++i) wall[i] = big_to_double(big_sub(volume[2 * i], volume[2 * i + 1])) / 6;
+    for (i = SHELLS - 1; i > 0; --i) swap_bytes(&o[i], &o[random_below((int)i + 1)], sizeof o[0]);
+    check_walls(o, wall, SHELLS / 2, 0);
+    check_walls(o, wall, SHELLS / 2, 1);
+    for (i = 0; i < SHELLS; ++i) surface_free(&s[i]);
+    rat_arena_release(mark);
 }
 END_TEST
 
@@ -1323,6 +1393,7 @@ int main(void) {
     tcase_add_test(tests, read_off_in_all_ways);
     tcase_add_test(tests, rounding_is_mended);
     tcase_add_loop_test(tests, mending_keeps_volumes, 0, 12);
+    tcase_add_loop_test(tests, walls_of_a_few_units, 0, 30);
     tcase_add_test(tests, rounded_sticks_are_mended);
     tcase_add_test(tests, memory_runs_out);
     tcase_add_test(tests, memory_limit);
