@@ -8411,13 +8411,12 @@ static const gxb_num *gxbp_use_fine(gxbp_fines *fines, uint32_t vertex) {
     return v->c;
 }
 
-/* Six times the volume of a set, from coordinates of 180 bits. */
-static GXBP_RARE double gxbp_fine_volume(gxb_boolean *b, const uint32_t *parent, uint32_t root, gxbp_fines *fines) {
+/* Six times the volume of a list of triangles, from coordinates of 180 bits. */
+static GXBP_RARE double gxbp_fine_volume(gxb_boolean *b, uint32_t t, const uint32_t *next, gxbp_fines *fines) {
     GXB_NUM(total); GXB_NUM(term);
-    uint32_t t, k;
-    for (t = 0; t < b->out_source_count; t++) {
+    uint32_t k;
+    for (; t != GXB_NONE; t = next[t]) {
         const uint32_t *v = b->out_triangles + 3 * (size_t)t;
-        if (parent[t] != root) continue;
         for (k = 0; k < 3; k++) gxbp_need_fine(b, fines, v[k]);
         if (b->result != GX_OK) return 0;
         gxbp_num_det3(&term, gxbp_use_fine(fines, v[0]), gxbp_use_fine(fines, v[1]), gxbp_use_fine(fines, v[2]));
@@ -8486,15 +8485,20 @@ static int gxbp_any_is_rough(const gxb_boolean *b, const uint32_t *parent, const
 
 /* Exact sums where those of doubles are too rough, or of all */
 static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent, double *volume, double *error, int all) {
-    const size_t bytes = b->out_point_count * sizeof(gxbp_fine);
+    const uint32_t count = b->out_source_count;
+    const size_t vertices = b->out_point_count * sizeof(gxbp_fine), bytes = vertices + 2 * count * sizeof(uint32_t);
     gxbp_fines fines = {NULL, NULL, 0, 0};
-    uint32_t t;
+    uint32_t t, *first, *next;
     fines.vertices = (gxbp_fine *)gxbp_allocate(&b->cx.allocator, bytes);
     if (fines.vertices == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
+    first = (uint32_t *)(void *)((char *)fines.vertices + vertices);
+    next = first + count;
+    memset(first, 0xff, count * sizeof *first);
+    for (t = count; t-- > 0;) { next[t] = first[parent[t]]; first[parent[t]] = t; }
     b->head_stamp++;
-    for (t = 0; t < b->out_source_count && b->result == GX_OK; t++)
+    for (t = 0; t < count && b->result == GX_OK; t++)
         if (parent[t] == t && (all || gxbp_is_rough(volume[t], error[t]))) {
-            volume[t] = gxbp_fine_volume(b, parent, t, &fines);
+            volume[t] = gxbp_fine_volume(b, first[t], next, &fines);
             error[t] = 2 * GXBP_U * gxbp_abs(volume[t]);
         }
     gxbp_release(&b->cx.allocator, fines.limbs, fines.limb_capacity * sizeof *fines.limbs);
@@ -8557,28 +8561,118 @@ static GXBP_COLD int gxbp_ray_passes(gxb_boolean *b, gxbp_ray *ray, int way, uin
 /* Of triangle t: the shell that it belongs to, of a cavity whose container is known that one */
 static uint32_t gxbp_shell_of(const uint32_t *parent, uint32_t t) { return parent[parent[t]]; }
 
+/* Columns along x, side x side of them, and the triangles of each: those that rays in it may pass */
+typedef struct gxbp_columns {
+    uint32_t *first, *list;     /* side x side + 1; where a column's triangles are in the list */
+    uint32_t *hit;              /* room for one word per triangle */
+    uint32_t side;
+    size_t words;               /* of the three, which begin with hit */
+    double low[2], size[2], margin;
+} gxbp_columns;
+
+static uint32_t gxbp_column_at(const gxbp_columns *c, uint32_t k, double x) {
+    const double at = (x - c->low[k]) / c->size[k] * c->side;
+    return !(at > 0) ? 0 : at >= c->side ? c->side - 1 : (uint32_t)at;
+}
+
+/* The columns of a triangle: from[0] to upto[0] along y, from[1] to upto[1] along z; how many they are */
+static uint32_t gxbp_columns_of(const gxb_boolean *b, const gxbp_columns *c, uint32_t t, uint32_t from[2], uint32_t upto[2]) {
+    uint32_t i, k;
+    for (k = 0; k < 2; k++) {
+        double low = b->cx.points[gxbp_out_corner(b, t, 0)].ball.x[k + 1], high = low;
+        for (i = 1; i < 3; i++) {
+            const double x = b->cx.points[gxbp_out_corner(b, t, i)].ball.x[k + 1];
+            low = gxbp_min(x, low);
+            high = gxbp_max(x, high);
+        }
+        from[k] = gxbp_column_at(c, k, low - c->margin);
+        upto[k] = gxbp_column_at(c, k, high + c->margin);
+    }
+    return (upto[0] - from[0] + 1) * (upto[1] - from[1] + 1);
+}
+
+/* The margin is more than points and rays may be away from where their balls are. */
+static void gxbp_bound_columns(const gxb_boolean *b, gxbp_columns *c) {
+    const gxb_ball *first = &b->cx.points[b->out_points[0]].ball;
+    double high[2], error = 0, largest = 0;
+    uint32_t i, k;
+    memcpy(c->low, first->x + 1, sizeof c->low);
+    memcpy(high, first->x + 1, sizeof high);
+    for (i = 0; i < b->out_point_count; i++) {
+        const gxb_ball *ball = &b->cx.points[b->out_points[i]].ball;
+        for (k = 0; k < 2; k++) { c->low[k] = gxbp_min(ball->x[k + 1], c->low[k]); high[k] = gxbp_max(ball->x[k + 1], high[k]); }
+        error = gxbp_max(ball->error, error);
+        largest = gxbp_max(gxbp_max3(ball->x), largest);
+    }
+    c->margin = 2 * (error + gxbp_power(-48) * largest + GXBP_TINY);
+    for (k = 0; k < 2; k++) c->size[k] = high[k] - c->low[k] + c->margin;
+}
+
+/* As many columns as triangles, or fewer where these would be in more than eight columns each */
+static GXBP_COLD int gxbp_make_columns(gxb_boolean *b, gxbp_columns *c) {
+    const uint32_t count = b->out_source_count;
+    uint32_t side = 1, t, i, j, from[2], upto[2];
+    size_t total;
+    gxbp_bound_columns(b, c);
+    while (side < 1024 && (size_t)side * side < count) side *= 2;
+    for (;; side /= 2) {
+        c->side = side;
+        for (t = 0, total = 0; t < count && total <= 8 * (size_t)count; t++) total += gxbp_columns_of(b, c, t, from, upto);
+        if (side == 1 || total <= 8 * (size_t)count) break;
+    }
+    c->words = count + (size_t)side * side + 1 + total;
+    c->hit = (uint32_t *)gxbp_allocate(&b->cx.allocator, c->words * sizeof *c->hit);
+    if (c->hit == NULL) return gxbp_stop(b, GX_ERROR_MEMORY);
+    c->first = c->hit + count;
+    c->list = c->first + (size_t)side * side + 1;
+    memset(c->first, 0, ((size_t)side * side + 1) * sizeof *c->first);
+    for (t = 0; t < count; t++) {
+        gxbp_columns_of(b, c, t, from, upto);
+        for (i = from[0]; i <= upto[0]; i++) for (j = from[1]; j <= upto[1]; j++) c->first[i * side + j]++;
+    }
+    for (i = 1; i <= side * side; i++) c->first[i] += c->first[i - 1];
+    for (t = count; t-- > 0;) {
+        gxbp_columns_of(b, c, t, from, upto);
+        for (i = from[0]; i <= upto[0]; i++) for (j = from[1]; j <= upto[1]; j++) c->list[--c->first[i * side + j]] = t;
+    }
+    return 1;
+}
+
+/* The column that a ray is in */
+static const uint32_t *gxbp_column_of(const gxbp_columns *c, const gxbp_ray *ray) {
+    return c->first + gxbp_column_at(c, 0, ray->ball.x[1]) * c->side + gxbp_column_at(c, 1, ray->ball.x[2]);
+}
+
 /* Does shell t lie in shell u? Shells do not cross: one of its triangles says it. */
-static GXBP_COLD int gxbp_lies_in(gxb_boolean *b, uint32_t t, uint32_t u, const uint32_t *parent) {
+static GXBP_COLD int gxbp_lies_in(gxb_boolean *b, uint32_t t, uint32_t u, const uint32_t *parent, const gxbp_columns *c) {
     gxbp_ray ray;
     const int way = gxbp_ray_from(b, &ray, t);
+    const uint32_t *column = gxbp_column_of(c, &ray);
     int winding = 0;
     uint32_t i;
-    for (i = 0; i < b->out_source_count; i++) if (gxbp_shell_of(parent, i) == u) winding += gxbp_ray_passes(b, &ray, way, i);
+    for (i = column[0]; i < column[1]; i++)
+        if (gxbp_shell_of(parent, c->list[i]) == u) winding += gxbp_ray_passes(b, &ray, way, c->list[i]);
     return winding != 0;
 }
 
-/* The innermost shell with volume around a cavity's (or a sheet's) shell. */
-static GXBP_COLD uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, const uint32_t *parent, const double *volume, int32_t *winding) {
+/* The innermost shell with volume around a cavity's (or a sheet's) shell. winding: 0 for each triangle, and so again afterwards */
+static GXBP_COLD uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, const uint32_t *parent, const double *volume, int32_t *winding, const gxbp_columns *c) {
     gxbp_ray ray;
     const int way = gxbp_ray_from(b, &ray, cavity);
-    const uint32_t count = b->out_source_count;
-    uint32_t t, best = GXB_NONE;
-    memset(winding, 0, count * sizeof *winding);
-    for (t = 0; t < count; t++) {
-        const uint32_t shell = gxbp_shell_of(parent, t);
-        if (shell != cavity && volume[shell] > 0) winding[shell] += gxbp_ray_passes(b, &ray, way, t);
+    const uint32_t *column = gxbp_column_of(c, &ray);
+    uint32_t i, hits = 0, best = GXB_NONE;
+    for (i = column[0]; i < column[1]; i++) {
+        const uint32_t shell = gxbp_shell_of(parent, c->list[i]);
+        const int passes = shell == cavity || !(volume[shell] > 0) ? 0 : gxbp_ray_passes(b, &ray, way, c->list[i]);
+        if (passes == 0) continue;
+        c->hit[hits++] = shell;
+        winding[shell] += passes;
     }
-    for (t = 0; t < count; t++) if (winding[t] != 0 && (best == GXB_NONE || gxbp_lies_in(b, t, best, parent))) best = t;
+    for (i = 0; i < hits; i++) {
+        const uint32_t shell = c->hit[i];
+        if (winding[shell] != 0 && (best == GXB_NONE || gxbp_lies_in(b, shell, best, parent, c))) best = shell;
+        winding[shell] = 0;
+    }
     return best;
 }
 
@@ -8586,12 +8680,18 @@ static GXBP_COLD uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, c
    summed anew. */
 static GXBP_APART void gxbp_join_cavities(gxb_boolean *b, uint32_t *parent, double *volume, double *error, int32_t *winding) {
     const uint32_t count = b->out_source_count;
+    gxbp_columns columns;
     uint32_t t, container;
+    memset(winding, 0, count * sizeof *winding);
+    columns.hit = NULL;
+    columns.words = 0;
     for (t = 0; t < count; t++) {
         if (parent[t] != t || volume[t] > 0) continue;
-        container = gxbp_find_container(b, t, parent, volume, winding);
+        if (columns.hit == NULL && !gxbp_make_columns(b, &columns)) return;
+        container = gxbp_find_container(b, t, parent, volume, winding, &columns);
         if (container != GXB_NONE) parent[t] = container;
     }
+    gxbp_release(&b->cx.allocator, columns.hit, columns.words * sizeof *columns.hit);
     gxbp_flatten_sets(parent, count);
     for (t = 0; t < count; t++) {
         if (parent[t] == t) continue;

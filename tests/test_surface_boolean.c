@@ -552,6 +552,47 @@ START_TEST(touching_solids) {
 }
 END_TEST
 
+/* A cube with 216 cavities, each with a core in it: each core is a component of its own, the cube has all cavities, wherever they are. */
+START_TEST(cavities_and_cores) {
+    enum { SIDE = 6, ALL = SIDE * SIDE * SIDE };
+    static const double zero[3] = { 0, 0, 0 }, far[3] = { 64 * SIDE, 64 * SIDE, 64 * SIDE };
+    wl_surface s[3];
+    gxb_operand o[3];
+    gxb_boolean *b;
+    gxb_boolean_result r;
+    gxb_components c;
+    double volume[2] = { 0, 0 }, cores = 0, whole = 0;
+    size_t i, k;
+    memset(s, 0, sizeof s);
+    random_state = 0x9e3779b97f4a7c15u;
+    wl_add_aligned_box(&s[0], zero, far);
+    for (i = 0; i < ALL; ++i) {
+        const size_t at[3] = { i % SIDE, i / SIDE % SIDE, i / (SIDE * SIDE) };
+        double low[2][3], high[2][3], size[2] = { 1, 1 };
+        for (k = 0; k < 3; ++k) {
+            low[0][k] = 64.0 * (double)at[k] + 1 + random_below(20); high[0][k] = 64.0 * (double)at[k] + 63 - random_below(20);
+            low[1][k] = low[0][k] + 1 + random_below(5); high[1][k] = high[0][k] - 1 - random_below(5);
+            size[0] *= high[0][k] - low[0][k]; size[1] *= high[1][k] - low[1][k];
+        }
+        for (k = 0; k < 2; ++k) { wl_add_aligned_box(&s[k + 1], low[k], high[k]); volume[k] += size[k]; }
+    }
+    for (i = 0; i < 3; ++i) o[i] = operand_of(&s[i], i == 1 ? GXB_DIFFERENCE : GXB_UNION);
+    b = boolean_of(o, 3, GXB_DIVIDED, 0, 0);
+    ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
+    c = components_of(b);
+    ck_assert_uint_eq(c.count, ALL + 1);
+    for (i = 0; i < c.count; ++i) {
+        if (c.euler[i] == 2) { cores += c.volume[i]; continue; }
+        ck_assert_int_eq(c.euler[i], 2 + 2 * ALL);
+        whole = c.volume[i];
+    }
+    ck_assert(cores == volume[1]);
+    ck_assert(whole == far[0] * far[1] * far[2] - volume[0]);
+    gxb_boolean_destroy(b);
+    for (i = 0; i < 3; ++i) surface_free(&s[i]);
+}
+END_TEST
+
 /* A sheet across a cube divides it; one that ends inside, or floats there, does not. Nothing is lost. Component, side of the sheet: */
 static void check_sides(const wl_surface *cube, const wl_surface *sheet, size_t components) {
     gxb_operand o[2];
@@ -1381,6 +1422,7 @@ int main(void) {
     tcase_add_test(tests, chains_are_exact);
     tcase_add_test(tests, winding_rules);
     tcase_add_test(tests, cavities_belong_to_their_component);
+    tcase_add_test(tests, cavities_and_cores);
     tcase_add_test(tests, touching_solids);
     tcase_add_test(tests, handles_are_counted);
     tcase_add_test(tests, sheets_divide);
