@@ -4727,7 +4727,7 @@ typedef struct gxbp_vertex {    /* beside each point of the complex */
     uint32_t same;              /* union-find: points found to be equal */
     uint32_t stamp, hint;       /* a facet around it in the triangulation at work */
     uint32_t head, head_stamp;  /* scratch */
-    uint32_t slot;              /* scratch: number in the output */
+    uint32_t slot;              /* scratch: place on the rim of the source at work; number in the output */
 } gxbp_vertex;
 
 typedef struct gxbp_link { uint32_t value, next; } gxbp_link;
@@ -6685,22 +6685,57 @@ static void gxbp_force_edge(gxb_boolean *b, uint32_t s, uint32_t p, uint32_t q, 
 
 /* --- dividing a source that is alone in its plane --- */
 
-static void gxbp_divide_rim(gxb_boolean *b, uint32_t s, uint32_t k) {
-    const uint32_t cut = b->sources[s].edge[k];
-    uint32_t u = gxbp_same(b, b->sources[s].point[k]), i;
-    if (cut == GXB_NONE) return;
-    for (i = 0; i < b->cuts[cut].count && b->result == GX_OK; i++) {
-        const int forward = b->cuts[cut].half_edge == 3 * s + k;
-        const uint32_t x = gxbp_same(b, b->cut_points[b->cuts[cut].first + (forward ? i : b->cuts[cut].count - 1 - i)]);
-        uint32_t f = b->vertices[u].hint;
-        int j = gxbp_corner_index(&b->pieces[f], u);
-        while (b->pieces[f].near[j] != GXB_NONE) {
-            f = b->pieces[f].near[j];
-            j = gxbp_corner_index(&b->pieces[f], u);
-        }
-        if (b->pieces[f].v[(j + 1) % 3] != x) gxbp_split_side(b, f, j, x);
-        u = x;
+/* Point i of an edge: its start, its inner points in order, its end. */
+static uint32_t gxbp_edge_point(gxb_boolean *b, uint32_t s, uint32_t k, uint32_t i) {
+    const uint32_t cut = b->sources[s].edge[k], count = cut == GXB_NONE ? 0 : b->cuts[cut].count;
+    if (i == 0) return gxbp_same(b, b->sources[s].point[k]);
+    if (i > count) return gxbp_same(b, b->sources[s].point[(k + 1) % 3]);
+    return gxbp_same(b, b->cut_points[b->cuts[cut].first + (b->cuts[cut].half_edge == 3 * s + k ? i - 1 : count - i)]);
+}
+
+static uint32_t gxbp_edge_points(const gxb_boolean *b, uint32_t s, uint32_t k) {
+    return 2 + (b->sources[s].edge[k] == GXB_NONE ? 0 : b->cuts[b->sources[s].edge[k]].count);
+}
+
+/* Makes inner point x of an edge a vertex; u: a vertex before it on that edge, with none between */
+static void gxbp_split_rim(gxb_boolean *b, uint32_t u, uint32_t x) {
+    uint32_t f = b->vertices[u].hint;
+    int j = gxbp_corner_index(&b->pieces[f], u);
+    while (b->pieces[f].near[j] != GXB_NONE) {
+        f = b->pieces[f].near[j];
+        j = gxbp_corner_index(&b->pieces[f], u);
     }
+    if (b->pieces[f].v[(j + 1) % 3] != x) gxbp_split_side(b, f, j, x);
+}
+
+/* All inner points of edge k that are no vertices yet */
+static void gxbp_divide_rim(gxb_boolean *b, uint32_t s, uint32_t k) {
+    const uint32_t points = gxbp_edge_points(b, s, k);
+    uint32_t i;
+    for (i = 1; i + 1 < points && b->result == GX_OK; i++) gxbp_split_rim(b, gxbp_edge_point(b, s, k, i - 1), gxbp_edge_point(b, s, k, i));
+}
+
+/* Ends of segments that are inner points of the source's edges learn where. */
+static void gxbp_find_rim_ends(gxb_boolean *b, uint32_t s, uint32_t n) {
+    uint32_t i, k;
+    for (i = 0; i < n; i++) {
+        const gxbp_segment *segment = &b->segments[b->chain[3 * i]];
+        b->vertices[gxbp_same(b, segment->p)].slot = b->vertices[gxbp_same(b, segment->q)].slot = GXB_NONE;
+    }
+    for (k = 0; k < 3; k++)
+        for (i = 1; i + 1 < gxbp_edge_points(b, s, k); i++) b->vertices[gxbp_edge_point(b, s, k, i)].slot = 3 * i + k;
+}
+
+/* Is the end of a segment in the triangulation? One on the rim is put there now: what nobody needs yet would only be in the way, as facets that
+   a segment must cross. */
+static int gxbp_enter(gxb_boolean *b, uint32_t s, uint32_t v) {
+    const uint32_t k = b->vertices[v].slot % 3;
+    uint32_t i = b->vertices[v].slot / 3, u;
+    if (gxbp_is_placed(b, v)) return 1;
+    if (b->vertices[v].slot == GXB_NONE) return 0;
+    do u = gxbp_edge_point(b, s, k, --i); while (!gxbp_is_placed(b, u));
+    gxbp_split_rim(b, u, v);
+    return b->result == GX_OK;
 }
 
 /* A segment that is not done yet and ends in v, by the lists that gxbp_chain_segments made. */
@@ -6735,16 +6770,16 @@ static uint32_t gxbp_chain_segments(gxb_boolean *b, uint32_t s) {
 static void gxbp_trace_segments(gxb_boolean *b, uint32_t s, uint32_t i) {
     const gxbp_segment *first = &b->segments[b->chain[3 * i]];
     uint32_t v = gxbp_same(b, first->p);
-    if (!gxbp_is_placed(b, v) && gxbp_is_placed(b, gxbp_same(b, first->q))) v = gxbp_same(b, first->q);
+    if (!gxbp_enter(b, s, v) && gxbp_enter(b, s, gxbp_same(b, first->q))) v = gxbp_same(b, first->q);
     if (!gxbp_is_placed(b, v)) v = gxbp_insert_point(b, s, v, gxbp_same(b, b->sources[s].point[0]), GXBP_EDGE_LABEL, 0);
     for (; i != GXB_NONE && b->result == GX_OK; i = gxbp_next_segment(b, v)) {
         const gxbp_segment segment = b->segments[b->chain[3 * i]];
         const int forward = gxbp_same(b, segment.p) == v;
-        const uint32_t other = forward ? segment.q : segment.p;
+        const uint32_t other = gxbp_same(b, forward ? segment.q : segment.p);
         const int left = forward ? segment.left : -segment.left;
-        uint32_t end;
+        uint32_t end = other;
         b->chain[3 * i] = GXB_NONE;
-        end = gxbp_insert_point(b, s, other, v, segment.label, left);
+        if (!gxbp_enter(b, s, other)) end = gxbp_insert_point(b, s, other, v, segment.label, left);
         gxbp_force_edge(b, s, v, end, segment.label, left);
         v = end;
     }
@@ -6754,18 +6789,6 @@ static void gxbp_note_divided(gxb_boolean *b, uint32_t s) {
     if (b->sources[s].flags & GXBP_DIVIDED || !GXBP_ROOM(b, divided, divided, 1)) return;
     b->sources[s].flags |= GXBP_DIVIDED;
     b->divided[b->divided_count++] = s;
-}
-
-/* Point i of an edge: its start, its inner points in order, its end. */
-static uint32_t gxbp_edge_point(gxb_boolean *b, uint32_t s, uint32_t k, uint32_t i) {
-    const uint32_t cut = b->sources[s].edge[k], count = cut == GXB_NONE ? 0 : b->cuts[cut].count;
-    if (i == 0) return gxbp_same(b, b->sources[s].point[k]);
-    if (i > count) return gxbp_same(b, b->sources[s].point[(k + 1) % 3]);
-    return gxbp_same(b, b->cut_points[b->cuts[cut].first + (b->cuts[cut].half_edge == 3 * s + k ? i - 1 : count - i)]);
-}
-
-static uint32_t gxbp_edge_points(const gxb_boolean *b, uint32_t s, uint32_t k) {
-    return 2 + (b->sources[s].edge[k] == GXB_NONE ? 0 : b->cuts[b->sources[s].edge[k]].count);
 }
 
 /* --- dividing a source by chains: the generic small case --- */
@@ -7096,14 +7119,15 @@ static void gxbp_note_rims(gxb_boolean *b, uint32_t s) {
 static GXBP_APART void gxbp_divide_by_segments(gxb_boolean *b, uint32_t s, uint32_t n) {
     uint32_t i, k, pass;
     gxbp_open_triangulation(b, s);
-    for (k = 0; k < 3; k++) gxbp_divide_rim(b, s, k);
+    gxbp_find_rim_ends(b, s, n);
     for (pass = 0; pass < 2; pass++)
         for (i = 0; i < n && b->result == GX_OK; i++) {
             const gxbp_segment *segment;
             if (b->chain[3 * i] == GXB_NONE) continue;
             segment = &b->segments[b->chain[3 * i]];
-            if (pass == 1 || gxbp_is_placed(b, gxbp_same(b, segment->p)) || gxbp_is_placed(b, gxbp_same(b, segment->q))) gxbp_trace_segments(b, s, i);
+            if (pass == 1 || gxbp_enter(b, s, gxbp_same(b, segment->p)) || gxbp_enter(b, s, gxbp_same(b, segment->q))) gxbp_trace_segments(b, s, i);
         }
+    for (k = 0; k < 3; k++) gxbp_divide_rim(b, s, k);
 }
 
 static void gxbp_divide_source(gxb_boolean *b, uint32_t s) {
