@@ -7188,29 +7188,27 @@ static GXBP_COLD void gxbp_make_frame(gxb_boolean *b, uint32_t r) {
     gxbp_set_edge(b, g, 0, f, GXBP_LOOSE);
 }
 
-static GXBP_RARE void gxbp_place_flat_points(gxb_boolean *b, uint32_t r) {
+/* Each edge is there before points of the next one come: what they have to cross stays short. Returns the last vertex. */
+static GXBP_RARE uint32_t gxbp_place_flat_edges(gxb_boolean *b, uint32_t r) {
     uint32_t last = b->pieces[b->sources[r].facet].v[0], t, k, i;
-    for (t = r; t != GXB_NONE; t = b->sources[t].next) {
-        for (k = 0; k < 3; k++)
-            for (i = 0; i + 1 < gxbp_edge_points(b, t, k) && b->result == GX_OK; i++)
-                last = gxbp_insert_point(b, r, gxbp_edge_point(b, t, k, i), last, GXBP_EDGE_LABEL, 0);
-        for (i = b->sources[t].segments; i != GXB_NONE && b->result == GX_OK; i = b->segments[i].next) {
-            last = gxbp_insert_point(b, r, b->segments[i].p, last, GXBP_EDGE_LABEL, 0);
-            last = gxbp_insert_point(b, r, b->segments[i].q, last, GXBP_EDGE_LABEL, 0);
-        }
-    }
-}
-
-static GXBP_RARE void gxbp_place_flat_edges(gxb_boolean *b, uint32_t r) {
-    uint32_t t, k, i;
     for (t = r; t != GXB_NONE; t = b->sources[t].next)
         for (k = 0; k < 3; k++)
-            for (i = 1; i < gxbp_edge_points(b, t, k) && b->result == GX_OK; i++)
-                gxbp_force_edge(b, r, gxbp_edge_point(b, t, k, i - 1), gxbp_edge_point(b, t, k, i), gxbp_edge_name(b, t, (int)k) | GXBP_EDGE_LABEL, 0);
+            for (i = 0; i < gxbp_edge_points(b, t, k) && b->result == GX_OK; i++) {
+                const uint32_t v = last;
+                last = gxbp_insert_point(b, r, gxbp_edge_point(b, t, k, i), v, GXBP_EDGE_LABEL, 0);
+                if (i > 0) gxbp_force_edge(b, r, v, last, gxbp_edge_name(b, t, (int)k) | GXBP_EDGE_LABEL, 0);
+            }
+    return last;
+}
+
+static GXBP_RARE void gxbp_place_flat_segments(gxb_boolean *b, uint32_t r, uint32_t last) {
+    uint32_t t, i;
     for (t = r; t != GXB_NONE; t = b->sources[t].next)
         for (i = b->sources[t].segments; i != GXB_NONE && b->result == GX_OK; i = b->segments[i].next) {
             const gxbp_segment segment = b->segments[i];
-            gxbp_force_edge(b, r, gxbp_same(b, segment.p), gxbp_same(b, segment.q), segment.label, 0);
+            const uint32_t v = gxbp_insert_point(b, r, segment.p, last, GXBP_EDGE_LABEL, 0);
+            last = gxbp_insert_point(b, r, segment.q, v, GXBP_EDGE_LABEL, 0);
+            gxbp_force_edge(b, r, v, last, segment.label, 0);
         }
 }
 
@@ -7275,8 +7273,7 @@ static GXBP_COLD void gxbp_divide_flat(gxb_boolean *b, uint32_t r) {
     gxbp_open_triangulation(b, r);
     gxbp_make_frame(b, r);
     if (b->result != GX_OK) return;
-    gxbp_place_flat_points(b, r);
-    gxbp_place_flat_edges(b, r);
+    gxbp_place_flat_segments(b, r, gxbp_place_flat_edges(b, r));
     for (t = r; t != GXB_NONE && b->result == GX_OK; t = b->sources[t].next) gxbp_cover_facets(b, r, t);
 }
 
