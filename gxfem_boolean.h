@@ -5816,8 +5816,9 @@ static GXBP_RARE void gxbp_join_flats(gxb_boolean *b, uint32_t s, uint32_t t) {
     gxbp_mark_dirty(b, t);
     if (r == q) return;
     if (q < r) { const uint32_t swap = r; r = q; q = swap; }
-    for (last = r; b->sources[last].next != GXB_NONE; last = b->sources[last].next) {}
-    b->sources[last].next = q;
+    for (last = q; b->sources[last].next != GXB_NONE; last = b->sources[last].next) {}      /* mostly alone */
+    b->sources[last].next = b->sources[r].next;
+    b->sources[r].next = q;
     b->sources[q].root = r;
     b->sources[r].flags |= GXBP_FLAT;
 }

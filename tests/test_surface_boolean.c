@@ -55,6 +55,11 @@ static wl_surface boundary_of(const workload *w) {
     return s;
 }
 
+static void swap_bytes(void *a, void *b, size_t size) {
+    unsigned char *p = (unsigned char *)a, *q = (unsigned char *)b;
+    for (; size > 0; --size, ++p, ++q) { const unsigned char kept = *p; *p = *q; *q = kept; }
+}
+
 typedef struct answer { size_t components, triangles, defects; double volume; long euler; } answer;
 
 /* Every directed edge of the result is matched by one in the other direction. */
@@ -593,6 +598,37 @@ START_TEST(cavities_and_cores) {
 }
 END_TEST
 
+/* A cube less 16 slabs across x and 16 across y, whose ends lie in common planes: 17 x 17 sticks. Then 16 x 16 columns upon its top, which they
+   overlap within: all at once, and in any order. */
+START_TEST(many_surfaces_at_once) {
+    enum { SIDE = 16, WIDE = 64 * SIDE };
+    static const double zero[3] = { 0, 0, 0 }, far[3] = { WIDE, WIDE, WIDE };
+    wl_surface s[2 * SIDE + 2];
+    gxb_operand o[2 * SIDE + 2];
+    answer a;
+    size_t i, j;
+    memset(s, 0, sizeof s);
+    random_state = 0x9e3779b97f4a7c15u * (uint64_t)(_i + 1);
+    wl_add_aligned_box(&s[0], zero, far);
+    for (i = 0; i < 2 * SIDE; ++i) {
+        double low[3] = { -1, -1, -1 }, high[3] = { WIDE + 1, WIDE + 1, WIDE + 1 };
+        low[i % 2] = 64.0 * (double)(i / 2) + 28; high[i % 2] = low[i % 2] + 8;
+        wl_add_aligned_box(&s[i + 1], low, high);
+    }
+    for (i = 0; i < SIDE; ++i) for (j = 0; j < SIDE; ++j) {
+        const double low[3] = { 64.0 * (double)i + 40, 64.0 * (double)j + 40, WIDE }, high[3] = { low[0] + 8, low[1] + 8, WIDE + 8 };
+        wl_add_aligned_box(&s[2 * SIDE + 1], low, high);
+    }
+    for (i = 0; i < 2 * SIDE + 2; ++i) o[i] = operand_of(&s[i], i == 0 || i > 2 * SIDE ? GXB_UNION : GXB_DIFFERENCE);
+    for (i = 2 * SIDE; i > 1; --i) swap_bytes(&o[i], &o[1 + (size_t)random_below((int)i)], sizeof o[0]);
+    a = evaluate(o, 2 * SIDE + 2, _i % 2);
+    ck_assert_uint_eq(a.components, (SIDE + 1) * (SIDE + 1));
+    ck_assert_int_eq(a.euler, 2 * (SIDE + 1) * (SIDE + 1));
+    ck_assert(a.volume == (double)WIDE * (56 * SIDE) * (56 * SIDE) + 512 * SIDE * SIDE);
+    for (i = 0; i < 2 * SIDE + 2; ++i) surface_free(&s[i]);
+}
+END_TEST
+
 /* A sheet across a cube divides it; one that ends inside, or floats there, does not. Nothing is lost. Component, side of the sheet: */
 static void check_sides(const wl_surface *cube, const wl_surface *sheet, size_t components) {
     gxb_operand o[2];
@@ -1089,11 +1125,6 @@ START_TEST(mending_keeps_volumes) {
 }
 END_TEST
 
-static void swap_bytes(void *a, void *b, size_t size) {
-    unsigned char *p = (unsigned char *)a, *q = (unsigned char *)b;
-    for (; size > 0; --size, ++p, ++q) { const unsigned char kept = *p; *p = *q; *q = kept; }
-}
-
 /* Six times a surface's volume, exactly */
 static big exact_volume_of(const wl_surface *s) {
     big sum = big_zero();
@@ -1423,6 +1454,7 @@ int main(void) {
     tcase_add_test(tests, winding_rules);
     tcase_add_test(tests, cavities_belong_to_their_component);
     tcase_add_test(tests, cavities_and_cores);
+    tcase_add_loop_test(tests, many_surfaces_at_once, 0, 4);
     tcase_add_test(tests, touching_solids);
     tcase_add_test(tests, handles_are_counted);
     tcase_add_test(tests, sheets_divide);
