@@ -6781,7 +6781,7 @@ static void gxbp_trace_segments(gxb_boolean *b, uint32_t s, uint32_t i) {
         uint32_t end = other;
         b->chain[3 * i] = GXB_NONE;
         if (!gxbp_enter(b, s, other)) end = gxbp_insert_point(b, s, other, v, segment.label, left);
-        gxbp_force_edge(b, s, v, end, segment.label, left);
+        if (b->result == GX_OK) gxbp_force_edge(b, s, v, end, segment.label, left);
         v = end;
     }
 }
@@ -7197,7 +7197,7 @@ static GXBP_RARE uint32_t gxbp_place_flat_edges(gxb_boolean *b, uint32_t r) {
             for (i = 0; i < gxbp_edge_points(b, t, k) && b->result == GX_OK; i++) {
                 const uint32_t v = last;
                 last = gxbp_insert_point(b, r, gxbp_edge_point(b, t, k, i), v, GXBP_EDGE_LABEL, 0);
-                if (i > 0) gxbp_force_edge(b, r, v, last, gxbp_edge_name(b, t, (int)k) | GXBP_EDGE_LABEL, 0);
+                if (i > 0 && b->result == GX_OK) gxbp_force_edge(b, r, v, last, gxbp_edge_name(b, t, (int)k) | GXBP_EDGE_LABEL, 0);
             }
     return last;
 }
@@ -7208,8 +7208,9 @@ static GXBP_RARE void gxbp_place_flat_segments(gxb_boolean *b, uint32_t r, uint3
         for (i = b->sources[t].segments; i != GXB_NONE && b->result == GX_OK; i = b->segments[i].next) {
             const gxbp_segment segment = b->segments[i];
             const uint32_t v = gxbp_insert_point(b, r, segment.p, last, GXBP_EDGE_LABEL, 0);
+            if (b->result != GX_OK) return;
             last = gxbp_insert_point(b, r, segment.q, v, GXBP_EDGE_LABEL, 0);
-            gxbp_force_edge(b, r, v, last, segment.label, 0);
+            if (b->result == GX_OK) gxbp_force_edge(b, r, v, last, segment.label, 0);
         }
 }
 
