@@ -2355,7 +2355,7 @@ static gx_result gxp_touch_severed(gxp_cut *cut) {
 }
 
 /* Asks for what dividing the next touched cells reads: leaves four and three ahead, their lists of facets two ahead, the facets of the next. */
-static void gxp_fetch_leaves(const gx_body *body, uint32_t index) {
+GXBP_FETCHES void gxp_fetch_leaves(const gx_body *body, uint32_t index) {
     const gxb_complex *cx = body->complex;
     const uint32_t *touched = body->touched.data, count = body->touched.count;
     uint32_t leaf, i;
@@ -3087,7 +3087,7 @@ static gx_result gxp_integrate_fresh(gx_body *body, uint32_t cell, uint32_t *bef
 }
 
 /* Asks for what weighing the links of the next fresh cells reads: facets three ahead, their loops two ahead, the edges of the next. */
-static void gxp_fetch_links(const gx_body *body, uint32_t index) {
+GXBP_FETCHES void gxp_fetch_links(const gx_body *body, uint32_t index) {
     const gxb_complex *cx = body->complex;
     const uint32_t *at = body->link_first.data;
     const uint32_t count = body->fresh.count;

@@ -527,11 +527,13 @@ extern "C" {
    for a large function than for its parts. */
 #if defined(__GNUC__)
 #define GXBP_FETCH(address) __builtin_prefetch(address)
+#define GXBP_FETCHES static inline __attribute__((always_inline)) /* nothing else: gcc takes such a function for one without effect, and drops calls */
 #define GXBP_COLD __attribute__((cold, noinline))
 #define GXBP_RARE __attribute__((cold))     /* may be inlined where there is one call; of public functions, which GXFEM_STATIC makes inline */
 #define GXBP_APART __attribute__((noinline))
 #else
 #define GXBP_FETCH(address) ((void)0)
+#define GXBP_FETCHES static inline
 #define GXBP_COLD
 #define GXBP_RARE
 #define GXBP_APART

@@ -493,6 +493,10 @@ extern "C" {
 /* How many nodes or slots ahead of themselves passes ask for what is in no order in memory */
 #define GXSP_AHEAD 64
 
+/* How many blocks ahead passes ask for what products read, and for what forces and Hessians are made of, which takes longer */
+#define GXSP_TANGENTS_AHEAD 8
+#define GXSP_RESTS_AHEAD 2
+
 /* Copies that one task of a pass over copies takes, and how many sums it may make. */
 #define GXSP_RANGE 512
 #define GXSP_SUMS 6
@@ -2094,8 +2098,9 @@ static gxsp_general *gxsp_block_general(const gxsp_chunk *chunk, uint32_t block)
     return chunk->generals ? &chunk->generals[block] : NULL;
 }
 
-/* Asks for memory that is soon read: a block is too long for processors to see the next one in time. */
-static inline void gxsp_fetch(const void *memory, size_t size)
+/* Asks for memory that is soon read: a block is too long for processors to see the next one in time. Always inline: gcc takes functions that
+ * do nothing else for functions without effect, and leaves calls of them out. */
+GXSP_INLINE void gxsp_fetch(const void *memory, size_t size)
 {
 #if defined(__GNUC__)
     const char *line = (const char *)memory;
@@ -2108,18 +2113,24 @@ static inline void gxsp_fetch(const void *memory, size_t size)
 #endif
 }
 
-/* The chunk of the block two further on, and which one it is there */
-static const gxsp_chunk *gxsp_block_ahead(const gxsp_system *system, size_t index, uint32_t block, uint32_t *ahead)
+/* Asks for what a pass soon reads of the block this many further on, in the chunk or the next one: its tangents, or what they are made of. */
+GXSP_INLINE void gxsp_fetch_block(const gxsp_system *system, size_t index, uint32_t block, uint32_t ahead, int tangents)
 {
     const gxsp_chunk *chunk = &system->chunks[index];
-    *ahead = block + 2;
-    if (*ahead < chunk->block_count)
-        return chunk;
-    *ahead -= chunk->block_count;
-    if (index + 1 < system->chunk_count && *ahead < chunk[1].block_count)
-        return chunk + 1;
-    *ahead = block;
-    return chunk;
+    uint32_t b = block + ahead;
+    if (b >= chunk->block_count) {
+        b -= chunk->block_count;
+        if (index + 1 == system->chunk_count || b >= chunk[1].block_count)
+            return;
+        ++chunk;
+    }
+    gxsp_fetch(&chunk->corners[b], sizeof *chunk->corners);
+    if (tangents)
+        gxsp_fetch(&chunk->tangents[b], sizeof *chunk->tangents);
+    else
+        gxsp_fetch(&chunk->rest[b], sizeof *chunk->rest);
+    if (chunk->moments)
+        gxsp_fetch(&chunk->moments[b], sizeof *chunk->moments);
 }
 
 /* x of a chunk's nodes: x 3, and one more number */
@@ -2309,7 +2320,7 @@ static void gxsp_task_state(void *context, size_t index)
     gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->chunks[index];
     double *slots = &system->slots[chunk->first_node][0];
-    uint32_t b, further;
+    uint32_t b;
     int k, l, inertia;
     double rest_at[3 * 4 * GXSP_CHUNK + 1], at[3 * 4 * GXSP_CHUNK + 1];
     gxsp_lanes corners[12], x[12], other[12], forces[12], made[9];
@@ -2327,10 +2338,9 @@ static void gxsp_task_state(void *context, size_t index)
     memset(forces, 0, sizeof forces);
     for (b = 0; b < chunk->block_count; ++b) {
         const gxsp_rest *rest = &chunk->rest[b];
-        const gxsp_chunk *next = gxsp_block_ahead(system, index, b, &further);
         gxsp_lanes ahead[9], led[12], energies[3], *gradients;
         gxsp_state s;
-        gxsp_fetch(&next->rest[further], sizeof(gxsp_rest));
+        gxsp_fetch_block(system, index, b, GXSP_RESTS_AHEAD, 0);
         gxsp_block_load(chunk, b, at, x);
         gradients = gxsp_block_gradients(chunk, b, rest_at, corners, made);
         if (inertia || pass->turned) /* never both: what is turned has no inertia */
@@ -4471,7 +4481,7 @@ static void gxsp_task_product(void *context, size_t index)
     gxsp_vector4 in[4 * GXSP_CHUNK]; /* apart from the chunks', so that it stays in the cache */
     gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->slots + chunk->first_node;
     gxsp_singles from[12], to[12];
-    uint32_t b, i, further;
+    uint32_t b, i;
     if (system->chunk_still[index])
         return;
     for (i = 0; i < chunk->node_count; ++i)
@@ -4479,8 +4489,7 @@ static void gxsp_task_product(void *context, size_t index)
     memset(out, 0, chunk->node_count * sizeof *out);
     memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; ++b) {
-        const gxsp_chunk *next = gxsp_block_ahead(system, index, b, &further);
-        gxsp_fetch(&next->tangents[further], sizeof(gxsp_tangent));
+        gxsp_fetch_block(system, index, b, GXSP_TANGENTS_AHEAD, 1);
         gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
         gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_moments(chunk, b), gxsp_block_general(chunk, b), 0, from, to);
         gxsp_block_scatter(chunk, b, to, out);
@@ -4653,15 +4662,14 @@ static void gxsp_task_apply(void *context, size_t index)
     double in[3 * 4 * GXSP_CHUNK + 1]; /* one more than is read as numbers */
     gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->slots + chunk->first_node;
     gxsp_singles from[12], to[12];
-    uint32_t b, i, further;
+    uint32_t b, i;
     for (i = 0; i < chunk->node_count; ++i)
         gxsp_copy_direction(pass, copies[i], in + 3 * (size_t)i);
     in[3 * (size_t)i] = 0;
     memset(out, 0, chunk->node_count * sizeof *out);
     memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; ++b) {
-        const gxsp_chunk *next = gxsp_block_ahead(system, index, b, &further);
-        gxsp_fetch(&next->tangents[further], sizeof(gxsp_tangent));
+        gxsp_fetch_block(system, index, b, GXSP_TANGENTS_AHEAD, 1);
         gxsp_block_gather_doubles(chunk, b, in, from);
         gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_moments(chunk, b), gxsp_block_general(chunk, b), 1, from, to);
         gxsp_block_scatter(chunk, b, to, out);
@@ -4684,6 +4692,7 @@ static void gxsp_task_apply_sum(void *context, size_t index)
         x = mass * at[0], y = mass * at[1], z = mass * at[2];
         for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->fixed[i]; ++s) {
             const float *from = slots[system->copy_slot[s]];
+            gxsp_fetch(slots[system->copy_slot[s + GXSP_AHEAD]], sizeof *slots);
             x += (double)from[0], y += (double)from[1], z += (double)from[2];
         }
         pass->sum[3 * i] = x * unit * back, pass->sum[3 * i + 1] = y * unit * back, pass->sum[3 * i + 2] = z * unit * back;
@@ -4819,7 +4828,7 @@ static void gxsp_task_linearise(void *context, size_t index)
     double rest_at[3 * 4 * GXSP_CHUNK + 1], at[3 * 4 * GXSP_CHUNK + 1];
     gxsp_lanes corners[12], x[12], made[2][9], *gradients[2];
     gxsp_singles own[24];
-    uint32_t b, k, blocks, further;
+    uint32_t b, k, blocks;
     int l;
     system->chunk_collapsed[index] = 0;
     if (system->chunk_still[index])
@@ -4834,8 +4843,7 @@ static void gxsp_task_linearise(void *context, size_t index)
         gxsp_svd of[2];
         blocks = b + 1 < chunk->block_count ? 2 : 1;
         for (k = 0; k < blocks; ++k) {
-            const gxsp_chunk *next = gxsp_block_ahead(system, index, b + k, &further);
-            gxsp_fetch(&next->rest[further], sizeof(gxsp_rest));
+            gxsp_fetch_block(system, index, b + k, GXSP_RESTS_AHEAD, 0);
             gxsp_block_load(chunk, b + k, at, x);
             gxsp_block_parameters(pass->materials, &chunk->rest[b + k], &s[k]);
             gradients[k] = gxsp_block_gradients(chunk, b + k, rest_at, corners, made[k]);
@@ -4897,9 +4905,11 @@ static void gxsp_task_diagonal(void *context, size_t index)
         double sum[6] = {0, 0, 0, 0, 0, 0};
         uint32_t s;
         int k;
-        for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->still[i]; ++s)
+        for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->still[i]; ++s) {
+            gxsp_fetch(slots + 6 * (size_t)system->copy_slot[s + GXSP_AHEAD], 6 * sizeof *slots);
             for (k = 0; k < 6; ++k)
                 sum[k] += (double)slots[6 * (size_t)system->copy_slot[s] + (size_t)k];
+        }
         for (k = 0; system->lumped_mass && k < 6; ++k)
             sum[k] += k == 0 || k == 3 || k == 5 ? pass->rate * system->lumped[i] : 0;
         if (system->still[i] || sum[0] + sum[3] + sum[5] < GXSP_TINY) /* only what is coarser moves such a copy */
@@ -8877,6 +8887,8 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_HEAVIEST
 #undef GXSP_NUDGE
 #undef GXSP_AHEAD
+#undef GXSP_TANGENTS_AHEAD
+#undef GXSP_RESTS_AHEAD
 #undef GXSP_RANGE
 #undef GXSP_SPACING
 #undef GXSP_MULTIGRID_FROM
