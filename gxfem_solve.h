@@ -491,7 +491,7 @@ extern "C" {
 #define GXSP_NUDGE 0.1
 
 /* How many nodes or slots ahead of themselves passes ask for what is in no order in memory */
-#define GXSP_AHEAD 64
+#define GXSP_AHEAD 128
 
 /* How many blocks ahead passes ask for what products read, and for what forces and Hessians are made of, which takes longer */
 #define GXSP_TANGENTS_AHEAD 8
@@ -4484,8 +4484,10 @@ static void gxsp_task_product(void *context, size_t index)
     uint32_t b, i;
     if (system->chunk_still[index])
         return;
-    for (i = 0; i < chunk->node_count; ++i)
+    for (i = 0; i < chunk->node_count; ++i) {
+        gxsp_fetch(pass->x[copies[i + GXSP_AHEAD]], sizeof *pass->x);
         memcpy(in[i], pass->x[copies[i]], sizeof *in);
+    }
     memset(out, 0, chunk->node_count * sizeof *out);
     memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; ++b) {
