@@ -957,10 +957,14 @@ static inline double gxbp_filter_cross(double r[3], const double a[3], double ea
     return gxbp_cross_error(gxbp_max3(a), ea, gxbp_max3(b), eb);
 }
 
-/* c = b - a with the bound for each component */
-static double gxbp_filter_difference(double c[3], const gxb_ball *a, const gxb_ball *b) {
+static inline void gxbp_difference(double c[3], const gxb_ball *a, const gxb_ball *b) {
     int k;
     for (k = 0; k < 3; k++) c[k] = gxbp_fence(b->x[k] - a->x[k]);
+}
+
+/* c = b - a with the bound for each component */
+static double gxbp_filter_difference(double c[3], const gxb_ball *a, const gxb_ball *b) {
+    gxbp_difference(c, a, b);
     return 2 * (a->error + b->error) + 2 * GXBP_U * gxbp_max3(c) + GXBP_TINY;
 }
 
@@ -8386,7 +8390,7 @@ static GXBP_APART void gxbp_join_shells(gxb_boolean *b, uint32_t *parent, int32_
     gxbp_find_twins(b->out_triangles, count, b->out_point_count, twin, &open, twin + words);
     for (h = 0; h < 3 * count; h++) {
         if (twin[h] == GXB_NONE) shared = 1;
-        else if (twin[h] > h) gxbp_join_sets(parent, h / 3, twin[h] / 3);
+        else if (twin[h] > h && parent[h / 3] != parent[twin[h] / 3]) gxbp_join_sets(parent, h / 3, twin[h] / 3);
     }
     if (shared) gxbp_join_all_wedges(b, parent, twin);
     if (b->mend != NULL && GXBP_ROOM(b, out_twins, out_twin, words)) memcpy(b->out_twins, twin, words * sizeof *twin);
@@ -8454,18 +8458,24 @@ static GXBP_RARE double gxbp_fine_volume(gxb_boolean *b, uint32_t t, const uint3
    products */
 static double gxbp_volume_error(double D, double e, double N, double E) { return 6 * (D * E + e * (N + E)) + 48 * GXBP_U * D * N + GXBP_TINY; }
 
-/* Six times the volume of the tetrahedron from o to a triangle of the result, d0 . n; *error, if not NULL: its bound */
-static double gxbp_rough_volume(const gxb_boolean *b, uint32_t t, const gxb_ball *o, double *error) {
+/* Six times the volume of the tetrahedron from o to a triangle of the result, d0 . n */
+static double gxbp_rough_volume(const gxb_boolean *b, uint32_t t, const gxb_ball *o) {
+    const gxb_ball *x = &b->cx.points[gxbp_out_corner(b, t, 0)].ball;
+    double d0[3], d1[3], d2[3], n[3];
+    gxbp_difference(d0, o, x);
+    gxbp_difference(d1, x, &b->cx.points[gxbp_out_corner(b, t, 1)].ball);
+    gxbp_difference(d2, x, &b->cx.points[gxbp_out_corner(b, t, 2)].ball);
+    gxbp_cross(n, d1, d2);
+    return d0[0] * n[0] + d0[1] * n[1] + d0[2] * n[2];
+}
+
+/* A bound of its error */
+static double gxbp_rough_error(const gxb_boolean *b, uint32_t t, const gxb_ball *o) {
     const gxb_ball *x = &b->cx.points[gxbp_out_corner(b, t, 0)].ball;
     double d0[3], d1[3], d2[3], n[3];
     const double e = gxbp_filter_difference(d0, o, x), e1 = gxbp_filter_difference(d1, x, &b->cx.points[gxbp_out_corner(b, t, 1)].ball);
-    const double e2 = gxbp_filter_difference(d2, x, &b->cx.points[gxbp_out_corner(b, t, 2)].ball);
-    if (error == NULL) gxbp_cross(n, d1, d2);
-    else {
-        const double E = gxbp_filter_cross(n, d1, e1, d2, e2);
-        *error = gxbp_volume_error(gxbp_max3(d0), e, gxbp_max3(n), E);
-    }
-    return d0[0] * n[0] + d0[1] * n[1] + d0[2] * n[2];
+    const double e2 = gxbp_filter_difference(d2, x, &b->cx.points[gxbp_out_corner(b, t, 2)].ball), E = gxbp_filter_cross(n, d1, e1, d2, e2);
+    return gxbp_volume_error(gxbp_max3(d0), e, gxbp_max3(n), E);
 }
 
 /* A bound of them all: from the size S of the box around all vertices, 8u larger for what rounding takes from it, and the largest of their errors */
@@ -8496,9 +8506,9 @@ static void gxbp_sum_volumes(const gxb_boolean *b, const uint32_t *parent, doubl
     for (t = 0; t < b->out_source_count; t++) volume[t] = error[t] = 0;
     for (t = 0; t < b->out_source_count; t++) {
         const uint32_t root = parent[t];
-        double own = largest;
-        volume[root] += gxbp_rough_volume(b, t, &b->cx.points[gxbp_out_corner(b, root, 0)].ball, largest > 0 ? NULL : &own);
-        error[root] += 2 * own;
+        const gxb_ball *o = &b->cx.points[gxbp_out_corner(b, root, 0)].ball;
+        volume[root] += gxbp_rough_volume(b, t, o);
+        error[root] += 2 * (largest > 0 ? largest : gxbp_rough_error(b, t, o));
     }
 }
 
@@ -8701,29 +8711,40 @@ static GXBP_COLD uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, c
     return best;
 }
 
-/* Cavities and sheets go to their containers: then the sets are components. A shell and a cavity in it may nearly cancel: what is left is
-   summed anew. */
-static GXBP_APART void gxbp_join_cavities(gxb_boolean *b, uint32_t *parent, double *volume, double *error, int32_t *winding) {
+/* Cavities and sheets go to their containers. Returns how many there are. */
+static GXBP_APART uint32_t gxbp_place_cavities(gxb_boolean *b, uint32_t *parent, const double *volume, int32_t *winding) {
     const uint32_t count = b->out_source_count;
     gxbp_columns columns;
-    uint32_t t, container;
-    memset(winding, 0, count * sizeof *winding);
+    uint32_t t, container, cavities = 0;
     columns.hit = NULL;
     columns.words = 0;
     for (t = 0; t < count; t++) {
         if (parent[t] != t || volume[t] > 0) continue;
-        if (columns.hit == NULL && !gxbp_make_columns(b, &columns)) return;
+        if (cavities++ == 0) {
+            if (!gxbp_make_columns(b, &columns)) return 0;
+            memset(winding, 0, count * sizeof *winding);
+        }
         container = gxbp_find_container(b, t, parent, volume, winding, &columns);
         if (container != GXB_NONE) parent[t] = container;
     }
     gxbp_release(&b->cx.allocator, columns.hit, columns.words * sizeof *columns.hit);
-    gxbp_flatten_sets(parent, count);
-    for (t = 0; t < count; t++) {
-        if (parent[t] == t) continue;
-        volume[parent[t]] += volume[t];
-        error[parent[t]] += error[t];
+    return cavities;
+}
+
+/* Afterwards the sets are components. A shell and a cavity in it may nearly cancel: what is left is summed anew. */
+static void gxbp_join_cavities(gxb_boolean *b, uint32_t *parent, double *volume, double *error, int32_t *winding) {
+    int rough = 0;
+    uint32_t t;
+    if (gxbp_place_cavities(b, parent, volume, winding) > 0) {
+        gxbp_flatten_sets(parent, b->out_source_count);
+        for (t = 0; t < b->out_source_count; t++) {
+            if (parent[t] == t) continue;
+            volume[parent[t]] += volume[t];
+            error[parent[t]] += error[t];
+        }
+        rough = gxbp_any_is_rough(b, parent, volume, error);
     }
-    if (gxbp_is_fine(b) || gxbp_any_is_rough(b, parent, volume, error)) gxbp_refine_volumes(b, parent, volume, error, gxbp_is_fine(b));
+    if (rough || gxbp_is_fine(b)) gxbp_refine_volumes(b, parent, volume, error, gxbp_is_fine(b));
 }
 
 /* number: room for a word per triangle */
@@ -8758,16 +8779,17 @@ static void gxbp_find_eulers(gxb_boolean *b, const int32_t *corners) {
 static GXBP_RARE void gxbp_find_sides(gxb_boolean *b) {
     const size_t n = b->operand_count, size = (size_t)b->out_volume_count * n;
     size_t i;
-    uint32_t t;
+    uint32_t t, sheets = 0;
     b->out_side_count = 0;
     if (b->result != GX_OK || !GXBP_ROOM(b, out_sides, out_side, size)) return;
     memset(b->out_sides, 0, size);
-    for (t = 0; t < b->out_source_count; t++) {
+    for (i = 0; i < n; i++) sheets += b->operands[i].operation == GXB_SPLIT;
+    for (t = 0; t < b->out_source_count && sheets > 0; t++) {
         int8_t *side = &b->out_sides[b->out_components[t] * n + b->out_operands[t]];
         const int8_t mine = b->out_reversed[t] ? 1 : -1;
         if (b->operands[b->out_operands[t]].operation == GXB_SPLIT) *side = *side == 0 || *side == mine ? mine : 2;
     }
-    for (i = 0; i < size; i++) if (b->out_sides[i] == 2) b->out_sides[i] = 0;
+    for (i = 0; i < size && sheets > 0; i++) if (b->out_sides[i] == 2) b->out_sides[i] = 0;
     b->out_side_count = (uint32_t)size;
 }
 
