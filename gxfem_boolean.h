@@ -9240,12 +9240,19 @@ GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *b, gxb_boolean_result *res
     return b->result;
 }
 
-GXFEM_API gx_result gxb_boolean_components(gxb_boolean *b, gxb_components *components) {
-    uint32_t i;
-    if (b == NULL || components == NULL) return GX_ERROR_ARGUMENT;
+/* Whether there is a result to ask about, and room for the answer */
+static gx_result gxbp_ask(gxb_boolean *b, const void *answer) {
+    if (b == NULL || answer == NULL) return GX_ERROR_ARGUMENT;
     if (!b->evaluated) return GX_ERROR_EMPTY;
     b->result = GX_OK;
     b->over_limit = 0;
+    return GX_OK;
+}
+
+GXFEM_API gx_result gxb_boolean_components(gxb_boolean *b, gxb_components *components) {
+    const gx_result asked = gxbp_ask(b, components);
+    uint32_t i;
+    if (asked != GX_OK) return asked;
     if (!b->measured) gxbp_find_components(b);
     if (b->result != GX_OK) return b->result;
     memset(components, 0, sizeof *components);
@@ -9257,10 +9264,8 @@ GXFEM_API gx_result gxb_boolean_components(gxb_boolean *b, gxb_components *compo
 }
 
 GXFEM_API gx_result gxb_boolean_defects(gxb_boolean *b, gxb_defects *defects) {
-    if (b == NULL || defects == NULL) return GX_ERROR_ARGUMENT;
-    if (!b->evaluated) return GX_ERROR_EMPTY;
-    b->result = GX_OK;
-    b->over_limit = 0;
+    const gx_result asked = gxbp_ask(b, defects);
+    if (asked != GX_OK) return asked;
     if (!b->examined) gxbp_find_defects(b);
     if (b->result != GX_OK) return b->result;
     defects->triangles = b->out_defects;
