@@ -1,7 +1,7 @@
 # gxfem: everything is built in build/; the library itself needs no building. `make help` lists what there is.
 #
 # CC, CFLAGS, LDFLAGS, JOBS and BUILD may be given on the command line: make check CC=clang BUILD=build/clang; so may what a bench
-# is built and called with: make bench-solver BENCH_CFLAGS=-O2 BENCH=--small
+# is built and called with: make bench-solver BUILD=build/o2 BENCH_CFLAGS=-O2 BENCH=--small (a place of its own: tables and programs of other flags stay)
 
 CC ?= cc
 CFLAGS ?= -O2

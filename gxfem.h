@@ -147,7 +147,7 @@ typedef struct gx_body_desc {
     const float *texture;       /* node_count x 2: texture coordinates of the outer surface; NULL: all 0 */
     double support_below;       /* copies with a smaller share of their node's volume follow others, see gx_body_step; 0: none does */
     gx_allocator allocator;     /* zero: malloc, free, realloc */
-    double (*clock)(void *user);/* seconds, for the reports' timings; NULL: they are 0 */
+    double (*clock)(void *user);/* seconds, for the reports' timings and the steps' budgets; NULL: timings are 0 */
     void *clock_user;
     gx_jobs jobs;               /* the host's threads, for the steps; zero: none */
 } gx_body_desc;
@@ -247,7 +247,7 @@ typedef struct gx_motion {
     double energy;              /* kinetic, J */
 } gx_motion;
 /* Motions of all fragments from the present displacement and velocity, in the order of gx_view; capacity: how many there is room for.
-   Errors: ARGUMENT, MEMORY, LIMIT (capacity is below gx_view.fragment_count). */
+   Errors: ARGUMENT, MEMORY, LIMIT (as well where capacity is below gx_view.fragment_count). */
 GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t capacity);
 
 /* >>step ----------------------------------------------------------------------------------------------------------------- */
@@ -255,7 +255,8 @@ GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t cap
 /* Half-space of material coordinates: X[axis] < value (side -1) or > value (side +1), strictly. */
 typedef struct gx_region { uint32_t axis; int32_t side; double value; } gx_region;
 /* Holds (Dirichlet) the copies of nodes in one of the regions whose own component has material there, at their present
-   displacement, now and after later cuts. Replaces what was held before. */
+   displacement, now and after later cuts. Replaces what was held before. Errors: ARGUMENT, NOT_FINITE, LIMIT, MEMORY; what was held
+   is then as it was. */
 GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t region_count);
 
 /* A step as the solver takes it; arrays are by copy, as in gx_view. previous_displacement, previous_velocity, previous_dt and rest_times
@@ -270,8 +271,8 @@ typedef gxs_step_report gx_step_report;
    as full as support_below says; else the fragment moves as a point. */
 GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report /* or NULL */, gx_failure *failure /* or NULL */);
 
-/* What the solver sees of the body as it is cut now: for solvers of one's own. Arrays are the body's, valid until its next cut, hold or
-   step. Errors: ARGUMENT, MEMORY. */
+/* What the solver sees of the body as it is cut now: for solvers of one's own. Arrays are the body's, valid until its next cut, hold, step or
+   restore. Errors: ARGUMENT, LIMIT, MEMORY; RANGE, FLAT, INVERTED: an element's gradients are not numbers in doubles. */
 GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model);
 
 /* >>skin ----------------------------------------------------------------------------------------------------------------- */
@@ -287,7 +288,7 @@ enum { GX_SKIN_OUTER = 0 };
 typedef struct gx_range { uint32_t first, count; } gx_range;
 
 /* The visual surface: the outer surface and both faces of every cut that has separated material. Arrays are the body's, valid until the
-   next cut or gx_body_skin. A vertex is a point of one piece with one normal: at creases and along cuts there are several. */
+   next cut, restore or gx_body_skin. A vertex is a point of one piece with one normal: at creases and along cuts there are several. */
 typedef struct gx_skin {
     size_t vertex_count;
     const uint32_t *vertex_copies;  /* vertex_count x 4: the copies that move it; those of weight 0 stand last */
@@ -997,7 +998,8 @@ static double gxp_element_volume(const gx_body *body, uint32_t element) {
 
 static double gxp_density(const gx_body *body, uint32_t element) { return body->materials[body->element_materials[element]].density; }
 
-static void gxp_make_first_cells(gx_body *body) {
+/* *flat: an element whose volume, though positive, is negative in doubles */
+static gx_result gxp_make_first_cells(gx_body *body, size_t *flat) {
     uint32_t e;
     body->cell_count = body->leaf_count = body->element_count;
     for (e = 0; e < body->element_count; e++) {
@@ -1008,11 +1010,13 @@ static void gxp_make_first_cells(gx_body *body) {
         cell->next = GXP_NONE;
         cell->kept = 1;
         cell->volume = gxp_element_volume(body, e);
+        if (cell->volume < 0) { *flat = e; return GX_ERROR_FLAT; }
         gxi_tet_mass(cell->volume, gxp_density(body, e), cell->mass);
         memset(&body->leaves[e], 0, sizeof body->leaves[e]);
         body->leaves[e].cell = e;
         body->leaves[e].next = GXP_NONE;
     }
+    return GX_OK;
 }
 
 /* A node that no element uses has no copy: copies are numbered over the used nodes. */
@@ -1123,7 +1127,8 @@ static gx_result gxp_first_look(gx_body *body);     /* see >>fragments */
 static uint64_t gxp_hash_mesh(const gx_body *body); /* see >>bytes */
 static uint64_t gxp_hash_cut(uint64_t past, const gx_cut_desc *desc);
 
-static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc) {
+/* index: of the element to blame */
+static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc, size_t *index) {
     gx_result result = gxp_allocate_tables(body);
     if (result == GX_OK && desc->texture != NULL) {
         body->texture = (float *)gxp_table(body, 2 * (size_t)body->node_count, sizeof(float));
@@ -1139,8 +1144,8 @@ static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc) {
     if (body->texture != NULL) memcpy(body->texture, desc->texture, 2 * (size_t)body->node_count * sizeof(float));
     gxp_list_node_elements(body);
     result = gxp_find_pinches(body);
+    if (result == GX_OK) result = gxp_make_first_cells(body, index);
     if (result != GX_OK) return result;
-    gxp_make_first_cells(body);
     gxp_make_first_copies(body);
     gxp_build_boxes(body);
     body->view_stale = 1;
@@ -1154,17 +1159,12 @@ static gx_result gxp_check_material(double young, double poisson, double density
     return young > 0 && density > 0 && poisson >= 0 && poisson < 0.5 ? GX_OK : GX_ERROR_ARGUMENT;
 }
 
-/* allocate and release, or neither, and reallocate only with them */
-static int gxp_is_allocator(const gx_allocator *a) {
-    return a->allocate == NULL ? a->release == NULL && a->reallocate == NULL : a->release != NULL;
-}
-
 /* index: of the material or element to blame */
 static gx_result gxp_check_body_desc(const gx_body_desc *desc, size_t *index) {
     gx_result result = GX_OK;
     size_t i;
     *index = SIZE_MAX;
-    if (!gxp_is_allocator(&desc->allocator)) return GX_ERROR_ARGUMENT;
+    if (!gxbp_is_allocator(&desc->allocator)) return GX_ERROR_ARGUMENT;
     if (!gxp_is_finite(desc->support_below)) return GX_ERROR_NOT_FINITE;
     if (desc->support_below < 0 || desc->support_below >= 1) return GX_ERROR_ARGUMENT;
     if (desc->materials == NULL) return gxp_check_material(desc->young, desc->poisson, desc->density);
@@ -1203,8 +1203,9 @@ GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **out, gx_f
     if (result != GX_OK) { gx_body_destroy(body); return result; }
     body->node_count = body->complex->node_count;
     body->element_count = body->complex->element_count;
-    result = gxp_fill_body(body, desc);
-    if (result != GX_OK) { gx_body_destroy(body); return gxp_fail(failure, result, SIZE_MAX, SIZE_MAX); }
+    index = SIZE_MAX;
+    result = gxp_fill_body(body, desc, &index);
+    if (result != GX_OK) { gx_body_destroy(body); return gxp_fail(failure, result, index, SIZE_MAX); }
     *out = body;
     return gxp_fail(failure, GX_OK, SIZE_MAX, SIZE_MAX);
 }
@@ -3258,7 +3259,7 @@ GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thicknes
     double *normals;
     memset(&none, 0, sizeof none);
     if (allocator == NULL) allocator = &none;
-    if (!sheet || !vertices || !vertex_count || !triangles || !triangle_count) return GX_ERROR_ARGUMENT;
+    if (!sheet || !vertices || !vertex_count || !triangles || !triangle_count || !gxbp_is_allocator(allocator)) return GX_ERROR_ARGUMENT;
     if (!gxp_is_finite(thickness)) return GX_ERROR_NOT_FINITE;
     if (!(thickness > 0)) return GX_ERROR_ARGUMENT;
     if (sheet->vertex_count == 0 || sheet->triangle_count == 0) return GX_ERROR_EMPTY;
@@ -4095,14 +4096,19 @@ static gx_result gxp_step(gx_body *body, const gx_step_desc *step, gx_step_repor
 
 GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report, gx_failure *failure) {
     const double start = body != NULL ? gxp_seconds(body) : 0;
+    gx_failure ignored;
     gx_step_desc step;
     gx_result result;
     if (body == NULL || desc == NULL) return gxp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX, SIZE_MAX);
     gxp_wake_resumed(body, body->copy_count);
     result = gxp_update_model(body);
     if (result == GX_OK) result = gxp_complete_step(body, desc, &step);
-    if (result == GX_OK && body->nothing_moves && report != NULL) memset(report, 0, sizeof *report);
-    if (result != GX_OK || body->nothing_moves) return gxp_fail(failure, result, SIZE_MAX, SIZE_MAX);
+    if (gxp_fail(failure, result, SIZE_MAX, SIZE_MAX) != GX_OK) return result;
+    if (body->nothing_moves) {
+        result = gxsp_check_step(&step, failure != NULL ? failure : &ignored);
+        if (result == GX_OK && report != NULL) { memset(report, 0, sizeof *report); report->stop = GXS_STOP_ASLEEP; }
+        return result;
+    }
     result = gxp_step(body, &step, report, failure);
     if (result == GX_OK) body->resumed = 0;
     if (result == GX_OK && report != NULL) report->seconds = gxp_seconds(body) - start;
@@ -4267,8 +4273,7 @@ static gx_result gxp_give_energies(gxp_mesh *mesh, const gx_body_desc *desc, siz
     for (i = 0; i < mesh->material_count; i++) {
         gxs_material *m = &mesh->materials[i].elastic;
         if (m->kind != GXS_CUSTOM) continue;
-        *material = i;
-        if (desc->materials == NULL || i >= desc->material_count || desc->materials[i].elastic.energy == NULL) return GX_ERROR_ARGUMENT;
+        if (desc->materials == NULL || i >= desc->material_count || desc->materials[i].elastic.energy == NULL) { *material = i; return GX_ERROR_ARGUMENT; }
         m->energy = desc->materials[i].elastic.energy;
         m->user = desc->materials[i].elastic.user;
     }
@@ -4639,7 +4644,7 @@ GXFEM_API gx_result gx_body_load(const void *memory, size_t size, const gx_body_
     gx_result result;
     memset(&none, 0, sizeof none);
     if (desc == NULL) desc = &none;
-    if (memory == NULL || body == NULL || !gxp_is_allocator(&desc->allocator))
+    if (memory == NULL || body == NULL || !gxbp_is_allocator(&desc->allocator))
         return gxp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX, SIZE_MAX);
     memset(&s, 0, sizeof s);
     s.in = (const unsigned char *)memory;

@@ -60,10 +60,10 @@
  *
  * Guarantees and limits
  *     - Signs are exact for finite coordinates under every flag, rounding mode and flush-to-zero (but x87 set to 24 bits).
- *     - Coordinates in a complex: after subtraction of the mesh's origin and scaling by a power of two to its box they are 0 or
- *       of magnitude 2^-128 to 2^128, else GX_ERROR_RANGE. orient2d, orient3d, incircle and insphere take any
+ *     - Coordinates in a complex: scaled by a power of two to the mesh's box they are 0 or of magnitude 2^-128 to 2^128, and after
+ *       subtraction of its origin at most 2^128, else GX_ERROR_RANGE. orient2d, orient3d, incircle and insphere take any
  *       finite double. Coordinates of a Boolean are 0 or of magnitude 2^-128 to 2^128, beside its first operand's if that is outside 2^+-60.
- *     - At most 2^31 - 1 points, planes, edges, facets and leaves; an operand of a Boolean: about 130 million triangles.
+ *     - At most 2^28 elements and some 1.4e9 points, planes, edges, facets and leaves; an operand of a Boolean: about 130 million triangles.
  *     - No global state, no input or output, no heap traffic but the growth of the complex's own arrays.
  *
  * Configuration: GXB_LIMB32 uses 32-bit limbs also where 128-bit products exist (same results, slower). GXFEM_STATIC leaves out of a
@@ -334,7 +334,7 @@ typedef struct gxb_complex {        /* what is used most comes first: its addres
     gx_allocator allocator;
 } gxb_complex;
 
-/* The complex of a mesh. Errors: EMPTY, INDEX (element), NOT_FINITE and RANGE (node), INVERTED and FLAT (element), OVERLAP
+/* The complex of a mesh. Errors: ARGUMENT, EMPTY, INDEX (element), NOT_FINITE and RANGE (node), INVERTED and FLAT (element), OVERLAP
    (element: one of its faces is shared by more than two elements, or by two on the same side), LIMIT, MEMORY. */
 GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator *allocator, gxb_complex **complex,
                                        gx_failure *failure);
@@ -482,7 +482,7 @@ typedef struct gxb_statistics {
     uint64_t allocations; size_t peak_bytes;
 } gxb_statistics;
 
-/* desc may be NULL. */
+/* desc may be NULL. Errors: ARGUMENT, LIMIT, MEMORY. */
 GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean **boolean);
 GXFEM_API void gxb_boolean_destroy(gxb_boolean *boolean);
 /* How results are read off the arrangement from now on; all are of the same exact surface. Errors: ARGUMENT. */
@@ -2309,6 +2309,11 @@ static GXBP_COLD gx_result gxbp_fail(gx_failure *failure, gx_result result, size
     return result;
 }
 
+/* allocate and release, or neither, and reallocate only with them */
+static int gxbp_is_allocator(const gx_allocator *a) {
+    return a->allocate == NULL ? a->release == NULL && a->reallocate == NULL : a->release != NULL;
+}
+
 GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator *allocator, gxb_complex **complex,
                                        gx_failure *failure) {
     gx_allocator none;
@@ -2318,7 +2323,7 @@ GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator 
     gx_result result;
     memset(&none, 0, sizeof none);
     if (allocator == NULL) allocator = &none;
-    if (mesh == NULL || complex == NULL) return gxbp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    if (mesh == NULL || complex == NULL || !gxbp_is_allocator(allocator)) return gxbp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     if (mesh->node_count == 0 || mesh->element_count == 0) return gxbp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
     if (mesh->positions == NULL || mesh->elements == NULL) return gxbp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     if (mesh->element_count > INT32_MAX / 8 || mesh->element_count > SIZE_MAX / 256 || mesh->node_count > INT32_MAX) return gxbp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
@@ -9094,8 +9099,8 @@ GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean
     memset(&none, 0, sizeof none);
     if (boolean == NULL) return GX_ERROR_ARGUMENT;
     if (desc == NULL) desc = &none;
-    if ((desc->allocator.allocate == NULL) != (desc->allocator.release == NULL)) return GX_ERROR_ARGUMENT;
-    if (desc->allocator.reallocate != NULL && desc->allocator.allocate == NULL) return GX_ERROR_ARGUMENT;
+    if (!gxbp_is_allocator(&desc->allocator)) return GX_ERROR_ARGUMENT;
+    if (desc->memory_limit > 0 && desc->memory_limit < sizeof *b) return GX_ERROR_LIMIT;
     arena = desc->memory_limit == 0 || desc->memory_limit >= 16 * GXBP_ARENA ? GXBP_ARENA : 0;
     b = (gxb_boolean *)gxbp_allocate(&desc->allocator, gxbp_whole_words(sizeof *b) + arena);
     if (b == NULL) return GX_ERROR_MEMORY;

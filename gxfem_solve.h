@@ -308,7 +308,7 @@ typedef struct gxs_step_desc {
                                    What contact() knows is not seen: where that moves, set rest_times to 0. 0: none sleeps */
     double sleep_time;          /* s; 0: 0.5 */
     double *rest_times;         /* copy_count: for how long each copy has been slower, s; read and written. Needed by sleep_speed */
-    double (*clock)(void *user);/* s; NULL: none, and the report's seconds are 0 */
+    double (*clock)(void *user);/* s; NULL: none, the report's seconds are 0, and there may be no budget_seconds */
     void *clock_user;
     double budget_seconds;      /* after so long no further iteration begins, and the step ends with what it has; 0: no limit.
                                    Results then depend on the machine */

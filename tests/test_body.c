@@ -1313,6 +1313,7 @@ static double solidify(workload *w, size_t sheet, double thickness) {
 }
 
 START_TEST(solidified_sheets) {
+    gx_allocator half;
     static const double c[3] = { 0.5, 0.5, 0.5 };
     workload w = grid(1, 1, 1, 5);
     wl_frame f = wl_rotated();
@@ -1366,6 +1367,9 @@ START_TEST(solidified_sheets) {
     ck_assert_int_eq(gx_surface_solidify(&sheet, -1, vertices, &nv, triangles, &nt, NULL), GX_ERROR_ARGUMENT);
     ck_assert_int_eq(gx_surface_solidify(&sheet, NAN, vertices, &nv, triangles, &nt, NULL), GX_ERROR_NOT_FINITE);
     ck_assert_int_eq(gx_surface_solidify(NULL, 1, vertices, &nv, triangles, &nt, NULL), GX_ERROR_ARGUMENT);
+    memset(&half, 0, sizeof half);
+    half.allocate = (void *(*)(void *, size_t))1;
+    ck_assert_int_eq(gx_surface_solidify(&sheet, 1, vertices, &nv, triangles, &nt, &half), GX_ERROR_ARGUMENT);
     sheet.triangle_count = 0;
     ck_assert_int_eq(gx_surface_solidify(&sheet, 1, vertices, &nv, triangles, &nt, NULL), GX_ERROR_EMPTY);
     wl_free(&w);
@@ -1609,6 +1613,7 @@ START_TEST(nothing_is_left_to_step) {
     workload w = grid(1, 1, 1, 5);
     gx_body_desc desc = desc_of(&w);
     const gx_step_desc step = still_step();
+    gx_step_desc wrong = step;
     gx_body *body = NULL;
     int i;
     add_box(&w, 1, -1, -1, -1, 2, 2, 2);
@@ -1617,9 +1622,13 @@ START_TEST(nothing_is_left_to_step) {
     ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
     cut_by(body, &w, 0, 1);
     for (i = 0; i < 2; ++i) {
-        gx_result result = gx_body_step(body, &step, NULL, NULL);
+        gx_step_report report;
+        gx_result result = gx_body_step(body, &step, &report, NULL);
         ck_assert_msg(result == GX_OK, "step %d: %s", i, gx_result_text(result));
+        ck_assert_int_eq(report.stop, GXS_STOP_ASLEEP);
     }
+    wrong.dt = -1;
+    ck_assert_int_eq(gx_body_step(body, &wrong, NULL, NULL), GX_ERROR_ARGUMENT);
     ck_assert_uint_eq(view_of(body).copy_count, 0);
     gx_body_destroy(body);
     wl_free(&w);
@@ -2234,6 +2243,28 @@ START_TEST(bad_bodies) {
 }
 END_TEST
 
+/* Elements so flat that their volume, exactly positive, is negative in doubles: such a body would have a negative mass. */
+START_TEST(volumes_that_round_below_zero) {
+    static const uint32_t n[4] = { 0, 1, 2, 3 };
+    workload w = corner_tet();
+    gx_body_desc d = desc_of(&w);
+    int found = 0, i, k;
+    d.elements = n;
+    random_seed(11);
+    for (i = 0; i < 2000; ++i) {
+        double x[12], s = random_real(0, 1), t = random_real(0, 1);
+        for (k = 0; k < 9; ++k) x[k] = random_real(0, 1);
+        for (k = 0; k < 3; ++k) x[9 + k] = x[k] + s * (x[3 + k] - x[k]) + t * (x[6 + k] - x[k]);
+        if (gxb_orient3d(x, x + 3, x + 6, x + 9) >= 0 || !(gxi_tet_volume(x) < 0)) continue;
+        d.positions = x;
+        EXPECT_NO_BODY(&d, GX_ERROR_FLAT, 0);
+        ++found;
+    }
+    ck_assert(found > 0 || FLT_EVAL_METHOD != 0);
+    wl_free(&w);
+}
+END_TEST
+
 /* A node that no element uses has no copy. */
 START_TEST(unused_nodes) {
     static const double x[6][3] = { { 5, 5, 5 }, { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { -7, 0, 0 } };
@@ -2429,6 +2460,7 @@ int main(void) {
     tcase_add_loop_test(tests, skin_encloses_the_volume, first, last);
     tcase_add_test(tests, skin_tells_cut_faces);
     tcase_add_test(tests, bad_bodies);
+    tcase_add_test(tests, volumes_that_round_below_zero);
     tcase_add_test(tests, unused_nodes);
     tcase_add_test(tests, bad_cuts);
     tcase_add_test(tests, bad_arguments_elsewhere);

@@ -1381,6 +1381,7 @@ START_TEST(bad_meshes_are_named) {
     const double infinity = pc_from_bits(UINT64_C(0x7ff0000000000000)), nan = pc_from_bits(UINT64_C(0x7ff8000000000001));
     scene good, s;
     gxb_mesh none;
+    gx_allocator half;
     gxb_complex *cx = NULL;
     gx_failure failure;
     make_mesh(&good, &r, 6, 1, 0, 0);
@@ -1404,6 +1405,9 @@ START_TEST(bad_meshes_are_named) {
     ck_assert_int_eq(gxb_complex_create(NULL, NULL, &cx, NULL), GX_ERROR_ARGUMENT);
     none = mesh_of(&good);
     ck_assert_int_eq(gxb_complex_create(&none, NULL, NULL, NULL), GX_ERROR_ARGUMENT);
+    memset(&half, 0, sizeof half);
+    half.allocate = (void *(*)(void *, size_t))1;
+    ck_assert_int_eq(gxb_complex_create(&none, &half, &cx, NULL), GX_ERROR_ARGUMENT);
     gxb_complex_destroy(NULL);
 } END_TEST
 

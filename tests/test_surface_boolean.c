@@ -1345,6 +1345,13 @@ START_TEST(memory_limit) {
     size_t limit, refused = 0;
     int i;
     o[0] = operand_of(&body, GXB_UNION); o[1] = operand_of(&w.surfaces[0], GXB_DIFFERENCE);
+    memset(&desc, 0, sizeof desc);
+    desc.memory_limit = 100;                    /* not even the Boolean itself */
+    {
+        gxb_boolean *b = NULL;
+        ck_assert_int_eq(gxb_boolean_create(&desc, &b), GX_ERROR_LIMIT);
+        ck_assert(b == NULL);
+    }
     for (limit = 1 << 12; limit <= 1 << 23; limit *= 2) {
         gxb_boolean *b = NULL;
         gx_result result = GX_OK;
