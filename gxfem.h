@@ -272,7 +272,7 @@ typedef gxs_step_report gx_step_report;
 GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report /* or NULL */, gx_failure *failure /* or NULL */);
 
 /* What the solver sees of the body as it is cut now: for solvers of one's own. Arrays are the body's, valid until its next cut, hold, step or
-   restore. Errors: ARGUMENT, LIMIT, MEMORY; RANGE, FLAT, INVERTED: an element's gradients are not numbers in doubles. */
+   restore. Errors: ARGUMENT, LIMIT, MEMORY; RANGE, FLAT: an element's gradients are not numbers in doubles. */
 GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model);
 
 /* >>skin ----------------------------------------------------------------------------------------------------------------- */
@@ -996,9 +996,16 @@ static double gxp_element_volume(const gx_body *body, uint32_t element) {
     return gxi_tet_volume(x);
 }
 
+/* Exactly positive as its volume is: doubles may see it below zero, as the solver would. */
+static int gxp_rounds_inverted(const gx_body *body, uint32_t element) {
+    double x[12], gradients[12];
+    gxp_element_positions(body, element, x);
+    return gxi_tet_gradients(x, gradients, NULL) == GX_ERROR_INVERTED;
+}
+
 static double gxp_density(const gx_body *body, uint32_t element) { return body->materials[body->element_materials[element]].density; }
 
-/* *flat: an element whose volume, though positive, is negative in doubles */
+/* *flat: an element that is inverted in doubles, though not exactly */
 static gx_result gxp_make_first_cells(gx_body *body, size_t *flat) {
     uint32_t e;
     body->cell_count = body->leaf_count = body->element_count;
@@ -1010,7 +1017,7 @@ static gx_result gxp_make_first_cells(gx_body *body, size_t *flat) {
         cell->next = GXP_NONE;
         cell->kept = 1;
         cell->volume = gxp_element_volume(body, e);
-        if (cell->volume < 0) { *flat = e; return GX_ERROR_FLAT; }
+        if (cell->volume < 0 || gxp_rounds_inverted(body, e)) { *flat = e; return GX_ERROR_FLAT; }
         gxi_tet_mass(cell->volume, gxp_density(body, e), cell->mass);
         memset(&body->leaves[e], 0, sizeof body->leaves[e]);
         body->leaves[e].cell = e;
