@@ -916,7 +916,7 @@ static const uint8_t gxp_edge_nodes[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1,
 
 static int gxp_local_node(const gx_body *body, uint32_t element, uint32_t node) {
     const uint32_t *n = body->complex->elements + 4 * (size_t)element;
-    return n[0] == node ? 0 : n[1] == node ? 1 : n[2] == node ? 2 : n[3] == node ? 3 : -1;
+    return (n[0] == node) + 2 * (n[1] == node) + 3 * (n[2] == node) + 4 * (n[3] == node) - 1;
 }
 
 static uint32_t gxp_neighbour(const gx_body *body, uint32_t element, uint32_t k) {
@@ -2076,7 +2076,7 @@ static gx_result gxp_facet_points(gx_body *body, uint32_t facet) {
 /* The local node of the element that the face does not have */
 static uint32_t gxp_local_face(const gxb_complex *cx, uint32_t element, uint32_t face) {
     const uint32_t *faces = cx->element_faces + 4 * (size_t)element;
-    return faces[0] == face ? 0 : faces[1] == face ? 1 : faces[2] == face ? 2 : 3;
+    return 3 - 3 * (uint32_t)(faces[0] == face) - 2 * (uint32_t)(faces[1] == face) - (uint32_t)(faces[2] == face);
 }
 
 /* An element with the face, and the node of it that the face does not have. */

@@ -235,30 +235,30 @@ typedef struct gxb_cpoint {     /* a point of the complex */
 
 typedef struct gxb_cplane {     /* a plane: of three points, or through points 0 and 1 along coordinate axis def[2] */
     gxb_plane_filter filter;
-    uint32_t along_axis;
-    uint32_t def[3];
     gxb_num *exact;             /* n and d, or NULL until they were needed */
-    uint32_t axis;              /* a component of the normal that is not 0 */
-    int32_t axis_sign;          /* its sign */
+    uint32_t def[3];
+    uint8_t along_axis;
+    uint8_t axis;               /* a component of the normal that is not 0 */
+    int8_t axis_sign;           /* its sign */
 } gxb_cplane;
 
 typedef struct gxb_edge {
     uint32_t v[2];              /* points */
     uint32_t line[2];           /* two points (explicit_line) or two planes whose intersection carries the edge */
-    uint32_t explicit_line;
     uint32_t child;             /* GXB_NONE, or the first of the two edges (child, child + 1) into which it was divided */
-    uint32_t stamp;
-    uint32_t wall;              /* 1: a triangle was made to separate here what meets in this edge only */
+    uint32_t explicit_line : 1;
+    uint32_t wall : 1;          /* 1: a triangle was made to separate here what meets in this edge only */
+    uint32_t stamp : 30;        /* when it was added to a rim last (complex.edge_stamp) */
 } gxb_edge;
 
 typedef struct gxb_facet {      /* a convex polygon */
     uint32_t plane;
-    uint32_t loop, loop_count;  /* in complex.pool: edge * 2 + (1 if walked backwards), counter-clockwise about the normal; count 0 of what was divided */
+    uint32_t loop, loop_count : 31;     /* in complex.pool: edge * 2 + (1 if walked backwards), counter-clockwise about the normal; count 0 of what was divided */
+    uint32_t wall : 1;          /* 1: material on its two sides is separated */
     uint32_t leaf[2];           /* in front (where the normal points), behind; GXB_NONE outside the mesh */
     uint32_t child;             /* GXB_NONE, or the first of the two facets (child, child + 1) into which it was divided */
     uint32_t labels;            /* in complex.labels, or GXB_NONE: triangles that cover it */
     uint32_t face;              /* the mesh face that it is part of, or GXB_NONE inside an element */
-    uint32_t wall;              /* 1: material on its two sides is separated */
 } gxb_facet;
 
 typedef struct gxb_label { uint32_t triangle; int32_t orientation; uint32_t next; } gxb_label;
@@ -988,7 +988,7 @@ static double gxbp_filter_side(const gxb_ball *x, const gxb_plane_filter *f, dou
 }
 
 /* 1 or -1 where certain, else 0 */
-static int gxbp_filter_sign(double value, double bound) { return value > bound ? 1 : value < -bound ? -1 : 0; }
+static int gxbp_filter_sign(double value, double bound) { return (value > bound) - (value < -bound); }
 
 /* The plane cuts the line from p to q at t = s_p / (s_p - s_q). */
 static void gxbp_filter_line_plane(gxb_ball *r, const gxb_ball *p, const gxb_ball *q, const gxb_plane_filter *f) {
@@ -1721,6 +1721,24 @@ static void gxbp_forget_pairs(gxb_complex *cx) {
     memset(cx->pairs->side_plane, 0xff, sizeof cx->pairs->side_plane);
 }
 
+#define GXBP_LAST_STAMP 0x3fffffffu     /* of an edge */
+
+/* Signs in the slot were of another plane; they are not looked at where their stamp is not the last. */
+static void gxbp_forget_signs(gxb_complex *cx, int slot) {
+    uint32_t i;
+    if (cx->stamp[slot]++ < UINT32_MAX) return;
+    for (i = 0; i < cx->point_count; i++) cx->points[i].stamp[slot] = 0;
+    cx->stamp[slot] = 1;
+}
+
+/* No edge is in a rim. */
+static void gxbp_forget_rim(gxb_complex *cx) {
+    uint32_t i;
+    if (cx->edge_stamp++ < GXBP_LAST_STAMP) return;
+    for (i = 0; i < cx->edge_count; i++) cx->edges[i].stamp = 0;
+    cx->edge_stamp = 1;
+}
+
 GXFEM_API GXBP_RARE void gxb_complex_rollback(gxb_complex *cx) {
     while (cx->undo_count > 0) {
         const gxb_undo *undo = &cx->undo[--cx->undo_count];
@@ -1733,7 +1751,9 @@ GXFEM_API GXBP_RARE void gxb_complex_rollback(gxb_complex *cx) {
     cx->point_count = cx->mark[0]; cx->plane_count = cx->mark[1]; cx->edge_count = cx->mark[2]; cx->facet_count = cx->mark[3];
     cx->leaf_count = cx->mark[4]; cx->tree_count = cx->mark[5]; cx->label_count = cx->mark[6]; cx->pool_count = cx->mark[7];
     cx->pool_live = cx->mark_live;
-    cx->stamp[0]++; cx->stamp[1]++; cx->edge_stamp++;
+    gxbp_forget_signs(cx, 0);
+    gxbp_forget_signs(cx, 1);
+    gxbp_forget_rim(cx);
     gxbp_forget_pairs(cx);
     gxbp_set_marks(cx);
 }
@@ -2061,7 +2081,7 @@ static gx_result gxbp_new_plane(gxb_complex *cx, uint32_t p, uint32_t q, uint32_
     f = &cx->planes[*id];
     memset(f, 0, sizeof *f);
     f->def[0] = p; f->def[1] = q; f->def[2] = r;
-    f->along_axis = (uint32_t)along_axis;
+    f->along_axis = (uint8_t)along_axis;
     ea = gxbp_filter_difference(a, &cx->points[p].ball, &cx->points[q].ball);
     if (along_axis) b[r] = 1;
     else eb = gxbp_filter_difference(b, &cx->points[p].ball, &cx->points[r].ball);
@@ -2096,8 +2116,8 @@ static int gxbp_plane_axis(gxb_complex *cx, uint32_t plane) {
         axis = k;
         sign = gxbp_normal_sign(cx, plane, axis);
     }
-    cx->planes[plane].axis = axis;
-    cx->planes[plane].axis_sign = sign;
+    cx->planes[plane].axis = (uint8_t)axis;
+    cx->planes[plane].axis_sign = (int8_t)sign;
     return sign != 0;
 }
 
@@ -2394,6 +2414,11 @@ GXFEM_API GXBP_RARE void gxb_complex_destroy(gxb_complex *cx) {
  * Every function here that can run out of memory reserves room first and then changes the complex without a way to fail.
  */
 
+static void gxbp_set_loop(gxb_facet *f, uint32_t first, uint32_t count) {
+    f->loop = first;
+    f->loop_count = count & INT32_MAX;
+}
+
 /* The facets (edges) into which one was divided stand behind it as a binary tree; walks its leaves in order. */
 static GXBP_APART uint32_t gxbp_count_facets(const gxb_complex *cx, uint32_t facet) {
     const uint32_t child = cx->facets[facet].child;
@@ -2456,8 +2481,7 @@ GXFEM_API gx_result gxb_facet_edges(gxb_complex *cx, uint32_t facet, uint32_t *f
         gxbp_save(cx, GXBP_FACETS, facet);
         for (i = 0; i < f->loop_count; i++) gxbp_push_edges(cx, cx->pool[f->loop + i]);
         cx->pool_live += total - f->loop_count;
-        f->loop = start;
-        f->loop_count = total;
+        gxbp_set_loop(f, start, total);
     }
     *first = f->loop;
     *count = f->loop_count;
@@ -2507,7 +2531,7 @@ static uint32_t gxbp_new_edge(gxb_complex *cx, uint32_t a, uint32_t b, const uin
     memset(e, 0, sizeof *e);
     e->v[0] = a; e->v[1] = b;
     e->line[0] = line[0]; e->line[1] = line[1];
-    e->explicit_line = explicit_line;
+    e->explicit_line = explicit_line & 1;
     e->child = GXB_NONE;
     return cx->edge_count++;
 }
@@ -2611,9 +2635,9 @@ static uint32_t gxbp_place_list(gxb_complex *cx, uint32_t count, gxbp_gap *gap) 
 }
 
 static void gxbp_copy_arc(gxb_complex *cx, const gxbp_parting *parting, uint32_t from, uint32_t to, uint32_t closing, gxbp_gap *gap, gxb_facet *child) {
+    const uint32_t count = (to > from ? 0 : parting->count) + to - from + 1;
     uint32_t i, *out;
-    child->loop_count = (to > from ? 0 : parting->count) + to - from + 1;
-    child->loop = gxbp_place_list(cx, child->loop_count, gap);
+    gxbp_set_loop(child, gxbp_place_list(cx, count, gap), count);
     out = cx->pool + child->loop;
     for (i = from; i != to; i = i + 1 == parting->count ? 0 : i + 1) *out++ = parting->loop[i];
     *out = closing;
@@ -2662,7 +2686,7 @@ static void gxbp_add_rim(gxb_complex *cx, gxbp_rim *rim, uint32_t signed_edge) {
         return;
     }
     if (e->stamp == cx->edge_stamp) return;
-    e->stamp = cx->edge_stamp;
+    e->stamp = cx->edge_stamp & GXBP_LAST_STAMP;
     cx->scratch[rim->first + rim->count++] = signed_edge;
 }
 
@@ -2687,8 +2711,7 @@ static uint32_t gxbp_close_rim(gxb_complex *cx, const gxbp_rim *rim, const gxbp_
     }
     memset(f, 0, sizeof *f);
     f->plane = knife->plane;
-    f->loop = cx->pool_count;
-    f->loop_count = rim->count;
+    gxbp_set_loop(f, cx->pool_count, rim->count);
     f->child = f->labels = f->face = GXB_NONE;
     for (i = 0; i < rim->count; i++) {
         cx->pool[cx->pool_count++] = e;
@@ -2719,7 +2742,7 @@ static uint32_t gxbp_split_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife
     gxbp_gap gap;
     uint32_t *front_list, *behind_list, fronts = 0, behinds = 0, i, middle;
     rim.first = 2 * count; rim.count = 0;
-    cx->edge_stamp++;
+    gxbp_forget_rim(cx);
     front_list = cx->scratch + cx->scratch_capacity - 2 * count - 2;
     behind_list = cx->scratch + cx->scratch_capacity - count - 1;
     for (i = 0; i < count; i++) {
@@ -2793,8 +2816,7 @@ static GXBP_APART gx_result gxbp_open_face(gxb_complex *cx, uint32_t element, ui
     f = &cx->facets[cx->facet_count];
     memset(f, 0, sizeof *f);
     f->plane = plane;
-    f->loop = cx->pool_count;
-    f->loop_count = 3;
+    gxbp_set_loop(f, cx->pool_count, 3);
     f->child = f->labels = GXB_NONE;
     f->face = face;
     f->leaf[0] = cx->face_elements[2 * face];       /* the first leaf of an element has the element's number */
@@ -2976,7 +2998,7 @@ static gx_result gxbp_cover_facet(gxb_complex *cx, gxb_triangle *t, uint32_t fac
         result = gxbp_edge_plane(cx, t, k, &front);
         if (result != GX_OK) return result;
         gxbp_set_knife(t, k, &knife);
-        cx->stamp[1]++;
+        gxbp_forget_signs(cx, 1);
         sides = (int)(gxbp_facet_signs(cx, facet, &knife, &count) & 3);
         if (sides == 3) {
             result = gxbp_reserve_split(cx, 1, count);
@@ -3132,7 +3154,7 @@ static int gxbp_part_chain(gxb_complex *cx, gxbp_rung *rung, uint32_t middle, gx
     memset(&knife, 0, sizeof knife);
     knife.plane = cx->nodes[rung[middle].node].plane;
     knife.slot = 1;
-    cx->stamp[1]++;
+    gxbp_forget_signs(cx, 1);
     *own = 0;
     for (i = 0; i < middle; i++) {
         const int sides = gxbp_sides_below(cx, rung[i].off, &knife);
@@ -3333,7 +3355,7 @@ static GXBP_COLD gx_result gxbp_new_free_plane(gxb_complex *cx, uint32_t element
 /* Does a quarter of the facets at least lie in front of the plane, and a quarter behind it? */
 static int gxbp_plane_parts(gxb_complex *cx, const uint32_t *facets, uint32_t count, const gxbp_knife *knife) {
     uint32_t front = 0, behind = 0, i;
-    cx->stamp[1]++;
+    gxbp_forget_signs(cx, 1);
     for (i = 0; i < count; i++) {
         const int sides = gxbp_facet_sides(cx, facets[i], knife);
         front += sides == 1;
@@ -3559,7 +3581,7 @@ GXFEM_API gx_result gxb_complex_insert(gxb_complex *cx, gxb_triangle *t, uint32_
     int sign[4];
     if (cx->sign_plane != t->plane) {
         cx->sign_plane = t->plane;
-        cx->stamp[0]++;
+        gxbp_forget_signs(cx, 0);
     }
     if (gxbp_misses_plane(cx, t, element, sign)) return GX_OK;
     result = gxb_complex_open_element(cx, element);
@@ -4017,6 +4039,13 @@ static GXBP_APART void gxbp_pass_word(gxb_stream *s, uint32_t *word) { gxb_strea
 static void gxbp_require(gxb_stream *s, gx_result result) { if (s->result == GX_OK) s->result = result; }
 static void gxbp_require_true(gxb_stream *s, int holds) { if (!holds) gxbp_require(s, GX_ERROR_DAMAGED); }
 
+/* A word that is 0 or 1 */
+static uint32_t gxbp_pass_bit(gxb_stream *s, uint32_t bit) {
+    gxbp_pass_word(s, &bit);
+    gxbp_require_true(s, bit <= 1);
+    return bit;
+}
+
 static GXBP_COLD void gxbp_save_points(gxb_complex *cx, gxb_stream *s) {
     uint32_t i;
     for (i = 0; i < cx->point_count; i++) {
@@ -4062,7 +4091,7 @@ static GXBP_COLD void gxbp_save_planes(gxb_complex *cx, gxb_stream *s) {
     uint32_t i;
     for (i = 0; i < cx->plane_count; i++) {
         gxb_stream_pass(s, cx->planes[i].def, 3, sizeof *cx->planes[i].def);
-        gxbp_pass_word(s, &cx->planes[i].along_axis);
+        gxbp_pass_bit(s, cx->planes[i].along_axis);
     }
 }
 
@@ -4073,8 +4102,8 @@ static GXBP_COLD void gxbp_load_planes(gxb_complex *cx, gxb_stream *s, uint32_t 
         uint32_t def[3], along_axis, id = 0;
         int normal = 0;
         gxb_stream_pass(s, def, 3, sizeof *def);
-        gxbp_pass_word(s, &along_axis);
-        gxbp_require_true(s, along_axis <= 1 && gxbp_is_explicit(cx, def[0]) && gxbp_is_explicit(cx, def[1]) &&
+        along_axis = gxbp_pass_bit(s, 0);
+        gxbp_require_true(s, gxbp_is_explicit(cx, def[0]) && gxbp_is_explicit(cx, def[1]) &&
                              (along_axis ? def[2] < 3 : gxbp_is_explicit(cx, def[2])));
         if (s->result == GX_OK) gxbp_require(s, gxbp_new_plane(cx, def[0], def[1], def[2], (int)along_axis, &id));
         if (s->result != GX_OK) return;
@@ -4120,9 +4149,9 @@ static GXBP_COLD void gxbp_pass_edges(gxb_complex *cx, gxb_stream *s) {
         gxb_edge *e = &cx->edges[i];
         gxb_stream_pass(s, e->v, 2, sizeof *e->v);
         gxb_stream_pass(s, e->line, 2, sizeof *e->line);
-        gxbp_pass_word(s, &e->explicit_line);
+        e->explicit_line = gxbp_pass_bit(s, e->explicit_line) & 1;
         gxbp_pass_word(s, &e->child);
-        gxbp_pass_word(s, &e->wall);
+        e->wall = gxbp_pass_bit(s, e->wall) & 1;
     }
 }
 
@@ -4130,13 +4159,15 @@ static GXBP_COLD void gxbp_pass_facets(gxb_complex *cx, gxb_stream *s) {
     uint32_t i;
     for (i = 0; i < cx->facet_count; i++) {
         gxb_facet *f = &cx->facets[i];
+        uint32_t first = f->loop, count = f->loop_count;
         gxbp_pass_word(s, &f->plane);
         gxb_stream_pass(s, f->leaf, 2, sizeof *f->leaf);
         gxbp_pass_word(s, &f->child);
         gxbp_pass_word(s, &f->labels);
         gxbp_pass_word(s, &f->face);
-        gxbp_pass_word(s, &f->wall);
-        gxbp_pass_list(cx, s, &f->loop, &f->loop_count);
+        f->wall = gxbp_pass_bit(s, f->wall) & 1;
+        gxbp_pass_list(cx, s, &first, &count);
+        gxbp_set_loop(f, first, count);
     }
 }
 
@@ -4266,12 +4297,12 @@ static void gxbp_check_indices(gxb_complex *cx, gxb_stream *s) {
     int good = 1;
     for (i = 0; i < cx->edge_count; i++) {
         const gxb_edge *e = &cx->edges[i];
-        good &= e->explicit_line <= 1 && e->wall <= 1 && e->v[0] < cx->point_count && e->v[1] < cx->point_count && e->v[0] != e->v[1];
+        good &= e->v[0] < cx->point_count && e->v[1] < cx->point_count && e->v[0] != e->v[1];
         for (j = 0; j < 2; j++) good &= e->explicit_line == 1 ? gxbp_is_explicit(cx, e->line[j]) : e->line[j] < cx->plane_count;
     }
     for (i = 0; i < cx->facet_count; i++) {
         const gxb_facet *f = &cx->facets[i];
-        good &= f->plane < cx->plane_count && !cx->planes[f->plane < cx->plane_count ? f->plane : 0].along_axis && f->wall <= 1 &&
+        good &= f->plane < cx->plane_count && !cx->planes[f->plane < cx->plane_count ? f->plane : 0].along_axis &&
                 gxbp_below(f->leaf[0], cx->leaf_count) && gxbp_below(f->leaf[1], cx->leaf_count) && f->leaf[0] != f->leaf[1] &&
                 gxbp_below(f->labels, cx->label_count) && gxbp_below(f->face, cx->face_count);
         for (j = 0; j < f->loop_count; j++) good &= cx->pool[f->loop + j] >> 1 < cx->edge_count;
@@ -4597,7 +4628,7 @@ static void gxbp_check_tree(gxbp_checker *c) {
 static int gxbp_lies_beside(gxbp_checker *c, uint32_t plane, int side, int *off) {
     uint32_t i;
     *off = 0;
-    c->cx->stamp[0]++;
+    gxbp_forget_signs(c->cx, 0);
     for (i = 0; i < c->points; i++) {
         const int sign = gxbp_sign(c->cx, c->point[i], plane, 0) * side;
         if (sign < 0) return 0;
@@ -5527,7 +5558,7 @@ static int gxbp_point_side(gxb_boolean *b, uint32_t point, uint32_t plane) {
 /* Orientation of three input points in a triangle's plane. */
 static int gxbp_flat_turn(const gxb_boolean *b, uint32_t plane, const double *p, const double *q, const double *r) {
     const gxb_cplane *f = &b->cx.planes[plane];
-    const uint32_t i = (f->axis + 1) % 3, j = (f->axis + 2) % 3;
+    const uint32_t i = (f->axis + 1u) % 3, j = (f->axis + 2u) % 3;
     double a[2], c[2], d[2];
     a[0] = p[i]; a[1] = p[j]; c[0] = q[i]; c[1] = q[j]; d[0] = r[i]; d[1] = r[j];
     return gxb_orient2d(a, c, d) * f->axis_sign;
@@ -7175,7 +7206,7 @@ static GXBP_COLD uint32_t gxbp_frame_corner(gxb_boolean *b, uint32_t plane, doub
 }
 
 static GXBP_COLD void gxbp_make_frame(gxb_boolean *b, uint32_t r) {
-    const uint32_t plane = b->sources[r].plane, i = (b->cx.planes[plane].axis + 1) % 3, j = (b->cx.planes[plane].axis + 2) % 3;
+    const uint32_t plane = b->sources[r].plane, i = (b->cx.planes[plane].axis + 1u) % 3, j = (b->cx.planes[plane].axis + 2u) % 3;
     uint32_t t, k, corner[4], f, g;
     double low[3], high[3], dx, dy;
     gxbp_extent(b, r, low, high);

@@ -1098,6 +1098,28 @@ START_TEST(topology_is_the_same_moved_and_scaled) {
     }
 } END_TEST
 
+/* Stamps that have reached their last begin again, and none that points and edges still have counts as new. */
+START_TEST(stamps_begin_again) {
+    pc_random r = seeded((uint64_t)_i + 1);
+    scene s;
+    inserted in;
+    gxb_complex *cx;
+    uint32_t c;
+    make_mesh(&s, &r, 6, 1, 0, 0);
+    make_cuts(&s, &r, 6, 1, 1, 0);
+    cx = open_scene(&s, NULL);
+    for (c = 0; c < s.cut_count; c++) {
+        if (c == s.cut_count / 2) {
+            cx->stamp[0] = cx->stamp[1] = UINT32_MAX - 1;
+            cx->edge_stamp = 0x3ffffffeu;
+        }
+        ck_assert_int_eq(insert_cut(cx, &s, &in, c), GX_OK);
+    }
+    assert_that(cx->stamp[0] < 100 && cx->stamp[1] < 100000 && cx->edge_stamp < 100000, "no stamp began again");
+    assert_that(hash_complex(cx, 0) == topology_of(&s), "another topology");
+    gxb_complex_destroy(cx);
+} END_TEST
+
 /* ---- what walls separate does not depend on the order of the cuts ---- */
 
 static uint32_t find_root(uint32_t *parent, uint32_t i) {
@@ -1480,6 +1502,7 @@ static Suite *boolean_suite(void) {
     tcase_add_loop_test(complex, far_and_scaled_meshes_conform, 0, 6);
     tcase_add_loop_test(complex, rests_below_the_last_bit_count, 0, 8);
     tcase_add_loop_test(complex, topology_is_the_same_moved_and_scaled, 0, 4);
+    tcase_add_loop_test(complex, stamps_begin_again, 0, 4);
     tcase_add_loop_test(complex, pieces_do_not_depend_on_the_order, 0, 6);
     tcase_add_loop_test(complex, coincident_cuts_share_their_facets, 0, 4);
     tcase_add_test(complex, refused_and_removed_leaves_stay_whole);
