@@ -1,6 +1,6 @@
 /* test_updates.c - a cut changes the solver's model instead of making it anew (gxs_solver_update): the same motion as with a model that is
    set whole after each cut, no more iterations, the same bits in any order of jobs and after a save, sleepers that wake, bad changes,
-   memory that runs out. */
+   memory that runs out; how much of it solvers take. */
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "body.h"
@@ -527,6 +527,59 @@ START_TEST(memory_may_run_out) {
 }
 END_TEST
 
+/* ---- how much memory that takes ---- */
+
+static void *counted(void *user, size_t size) { *(size_t *)user += size; return malloc(size); }
+static void uncounted(void *user, void *memory, size_t size) { *(size_t *)user -= size; free(memory); }
+
+/* Bytes per element that a solver has after a step */
+static double bytes_of(const gxs_model *model, gxs_preconditioner preconditioner) {
+    double *state = (double *)calloc(6 * model->copy_count, sizeof *state);
+    const gx_step_desc step = step_of(0.033);
+    gxs_solver_desc desc;
+    gxs_step_desc own;
+    gxs_solver *solver;
+    size_t bytes = 0;
+    double each;
+    memset(&desc, 0, sizeof desc);
+    memset(&own, 0, sizeof own);
+    own.dt = step.dt; own.gravity[2] = step.gravity[2];
+    desc.preconditioner = preconditioner;
+    desc.allocator.allocate = counted; desc.allocator.release = uncounted; desc.allocator.user = &bytes;
+    ck_assert_int_eq(gxs_solver_create(&desc, &solver), GX_OK);
+    ck_assert_int_eq(gxs_solver_set_model(solver, model, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_step(solver, &own, state, state + 3 * model->copy_count, NULL, NULL), GX_OK);
+    each = (double)bytes / (double)model->element_count;
+    gxs_solver_destroy(solver);
+    ck_assert_uint_eq(bytes, 0);
+    free(state);
+    return each;
+}
+
+/* Whole, cut by strips that leave it in one piece, cut to crumbs of about five cells a side: 350 bytes for an element of the model with what the solver
+   chooses, lists and multigrid included; of multigrid forced upon crumbs, 450. */
+START_TEST(solvers_take_bounded_memory) {
+    workload w = grid(16, 16, 16, 6);
+    gxs_model model;
+    gx_body *body;
+    double chosen, forced;
+    int i, axis;
+    for (i = 0; i < 3 && _i == 1; ++i) {
+        const double z = 4.37 + 4 * i, low = i % 2 ? -1 : 2.3, high = i % 2 ? 13.7 : 17;
+        const double a[3] = { low, -1, z }, b[3] = { high, -1, z }, c[3] = { high, 17, z }, d[3] = { low, 17, z };
+        wl_add_quad(wl_add_surface(&w, 0), a, b, c, d);
+    }
+    for (axis = 0; axis < 3 && _i == 2; ++axis) for (i = 0; i < 3; ++i) add_axis_plane(&w, axis, 4.37 + 4 * i);
+    body = cut_at_once(&w);
+    ck_assert_uint_eq(view_of(body).fragment_count, _i == 2 ? 64 : 1);
+    ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
+    chosen = bytes_of(&model, GXS_AUTOMATIC);
+    forced = bytes_of(&model, GXS_MULTIGRID);
+    ck_assert_msg(chosen < 350 && forced < (_i == 2 ? 450 : 350), "%g and %g bytes per element", chosen, forced);
+    gx_body_destroy(body);
+    wl_free(&w);
+} END_TEST
+
 static Suite *updates_suite(void) {
     Suite *suite = suite_create("updates");
     TCase *tests = tcase_create("updates");
@@ -542,6 +595,7 @@ static Suite *updates_suite(void) {
     tcase_add_test(tests, bad_changes_are_named);
     tcase_add_test(tests, changes_of_nothing_change_nothing);
     tcase_add_loop_test(tests, memory_may_run_out, 0, 2);
+    tcase_add_loop_test(tests, solvers_take_bounded_memory, 0, 3);
     suite_add_tcase(suite, tests);
     return suite;
 }
