@@ -558,9 +558,6 @@ extern "C" {
 /* Up to so many coarse nodes a chunk has a table of matrix entries; of more, entries are looked for each time. */
 #define GXSP_CHUNK_PARENTS 192
 
-/* Places for the edges of a chunk, of which there are 6 GXSP_CHUNK at most; a power of two */
-#define GXSP_EDGE_SLOTS 4096u
-
 /* Memory begins at multiples of this: no vector lies across two cache lines. */
 #define GXSP_ALIGNMENT 64
 
@@ -858,7 +855,8 @@ typedef struct gxsp_level {
 
 /* Edges: pairs of a chunk's nodes, i < j, that share an element; numbered from 1. */
 typedef struct gxsp_edges {
-    uint16_t *table;        /* GXSP_EDGE_SLOTS: the edges, each in the first free slot from its hash on; 0: free */
+    uint16_t *table;        /* nodes (nodes - 1) / 2: the edge of two nodes i < j, at j (j - 1) / 2 + i, if ends says so, else without meaning: it is
+                               never cleared */
     uint32_t *ends;         /* i << 16 | j */
     float (*block)[9];      /* i's row and j's column of the Hessian, by columns */
     uint16_t *first, *next; /* the edges to higher nodes as a list: first by node, next by edge; 0: there is none */
@@ -3724,7 +3722,7 @@ static void gxsp_edges_make(gxsp_system *system)
         lanes = system->chunks[c].block_count * GXSP_LANES > lanes ? system->chunks[c].block_count * GXSP_LANES : lanes;
         nodes = system->chunks[c].node_count > nodes ? system->chunks[c].node_count : nodes;
     }
-    edges->table = (uint16_t *)gxsp_take(&system->coarse, GXSP_EDGE_SLOTS, sizeof(uint16_t));
+    edges->table = (uint16_t *)gxsp_take(&system->coarse, nodes * (nodes - 1) / 2, sizeof(uint16_t));
     edges->ends = (uint32_t *)gxsp_take(&system->coarse, 2 + 6 * lanes, sizeof(uint32_t));
     edges->block = (float(*)[9])gxsp_take(&system->coarse, 1 + 6 * lanes, sizeof *edges->block);
     edges->element = (uint16_t(*)[6][GXSP_LANES])gxsp_take(&system->coarse, lanes / GXSP_LANES, sizeof *edges->element);
@@ -3740,7 +3738,6 @@ static void gxsp_edges_begin(gxsp_edges *edges, const gxsp_chunk *chunk)
 {
     edges->nodes = chunk->node_count;
     edges->count = 1;
-    memset(edges->table, 0, GXSP_EDGE_SLOTS * sizeof *edges->table);
 }
 
 /* The edge of two nodes, made where there is none; 0 of a node and itself. There is no branch on whether there is one: it
@@ -3748,17 +3745,15 @@ static void gxsp_edges_begin(gxsp_edges *edges, const gxsp_chunk *chunk)
 static inline uint16_t gxsp_find_edge(const gxsp_edges *edges, uint32_t i, uint32_t j, uint32_t *count)
 {
     const uint32_t low = i < j ? i : j, high = i < j ? j : i, ends = low << 16 | high;
-    uint32_t slot = (ends * 0x9e3779b1u) / (UINT32_MAX / GXSP_EDGE_SLOTS + 1);
-    uint16_t edge;
+    uint16_t *at = &edges->table[high * (high - 1) / 2 + low];
+    int made;
     if (low == high)
         return 0;
-    while (edges->table[slot] != 0 && edges->ends[edges->table[slot]] != ends)
-        slot = (slot + 1) % GXSP_EDGE_SLOTS;
-    edge = edges->table[slot] != 0 ? edges->table[slot] : (uint16_t)*count;
+    made = (*at >= *count) | (edges->ends[*at] != ends);
     edges->ends[*count] = ends;
-    edges->table[slot] = edge;
-    *count += edge == *count;
-    return edge;
+    *at = made ? (uint16_t)*count : *at;
+    *count += (uint32_t)made;
+    return *at;
 }
 
 /* The six edges of each element of a block; 0 where it has no weight */
@@ -8942,7 +8937,6 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_READING
 #undef GXSP_WORN
 #undef GXSP_CHUNK_PARENTS
-#undef GXSP_EDGE_SLOTS
 #undef GXSP_ALIGNMENT
 #undef GXSP_FILTER
 #undef GXSP_GROUPS
