@@ -1746,6 +1746,8 @@ GXFEM_API GXBP_RARE void gxb_complex_rollback(gxb_complex *cx) {
         void *item = gxbp_item(cx, undo->array, undo->index, &size);
         cx->undo_byte_count -= (uint32_t)size;
         memcpy(item, cx->undo_bytes + cx->undo_byte_count, size);
+        if (undo->array == GXBP_EDGES) cx->edges[undo->index].stamp = 0;    /* may be of before stamps began again */
+        if (undo->array == GXBP_POINTS) cx->points[undo->index].stamp[0] = cx->points[undo->index].stamp[1] = 0;
     }
     gxbp_drop_recent_numbers(cx);
     cx->point_count = cx->mark[0]; cx->plane_count = cx->mark[1]; cx->edge_count = cx->mark[2]; cx->facet_count = cx->mark[3];

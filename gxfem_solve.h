@@ -76,7 +76,8 @@
  * limit to what Newton reaches, only to what one linear solve does (about 1e-6 of the residual; a free body's slowest modes are
  * solved as well while inertia is above some 1e-6 of stiffness, rho h^2 / (E dt^2) for elements of size h). Where the mass of a part
  * of an element has its centre is rounded once, by at most 1e-7 of the element, and all is right for the mass so placed. Memory: about 260
- * bytes per element in all, of a mesh with four elements per copy; 310 to 350 where cuts leave two or three. The material can invert without a failure and comes back by
+ * bytes per element in all, of a mesh with four elements per copy; 310 to 350 where cuts leave two or three; up to 450 of crumbs upon which
+ * multigrid is forced. The material can invert without a failure and comes back by
  * itself; an element collapsed to a point, where its energy is stationary, is opened as if it were not quite one. Same input,
  * same binary: same bits. Nothing here needs isnan or infinities: it is right under -ffast-math, where sums round otherwise.
  *
@@ -507,9 +508,10 @@ extern "C" {
 /* Spacing of the first lattice of the multigrid, in edges of an average element. */
 #define GXSP_SPACING 2.5
 
-/* More nodes of the first lattice for each copy, and the spacing is twice that. Measured: 0.08 to 0.16 of bodies in one piece, cut or not,
- * 0.37 to 0.44 of those in pieces of 60 copies. */
-#define GXSP_CROWDED 0.25
+/* Where a piece has more nodes of the first lattice for each copy and is shorter than so many spacings along each axis, its spacing is twice
+ * that. Measured: 0.08 to 0.16 nodes of bodies in one piece, cut or not, 0.37 to 0.44 of those in pieces of 60 copies. */
+#define GXSP_CROWDED 0.25f
+#define GXSP_CRUMB 3
 
 /* In pieces of fewer copies block-Jacobi is at least as fast as multigrid; but for nearly incompressible ones. */
 #define GXSP_MULTIGRID_FROM 150
@@ -4063,26 +4065,61 @@ static uint32_t gxsp_first_transfer(gxsp_system *system, float (*place)[3], gxsp
     return gxsp_transfer_end(&system->levels[0], transfer);
 }
 
-/* All levels of the multigrid below the model; place: n x 3, see gxsp_find_places. level_count stays 0 if there is nothing to coarsen.
- * Pieces of few elements have so many lattice points about them that twice the spacing serves as well, in less room. */
+/* What the first lattice has of a piece */
+typedef struct gxsp_crumb {
+    uint32_t copies, nodes;
+    float low[3], high[3]; /* in spacings */
+} gxsp_crumb;
+
+/* Small pieces have so many lattice points about them that twice the spacing serves as well, in half the room: halves the places of those that
+ * are crowded after gxsp_first_transfer. Not of slender ones, which would hardly bend. Returns whether there are any. */
+static int gxsp_spread_crumbs(gxsp_system *system, gxsp_pool *scratch, float (*place)[3])
+{
+    gxsp_crumb *crumbs = (gxsp_crumb *)gxsp_take(scratch, system->piece_count, sizeof *crumbs);
+    uint32_t slot, i, k, nodes = 0;
+    int any = 0;
+    if (scratch->failed)
+        return 0;
+    for (slot = 0; slot < 4 * system->n; ++slot) /* nodes are numbered as they are met */
+        if (system->levels[0].parent[slot / 4][slot % 4] == nodes) {
+            ++crumbs[system->piece[slot / 4]].nodes;
+            ++nodes;
+        }
+    for (i = 0; i < system->n; ++i) {
+        gxsp_crumb *crumb = &crumbs[system->piece[i]];
+        for (k = 0; k < 3; ++k) {
+            crumb->low[k] = crumb->copies == 0 || place[i][k] < crumb->low[k] ? place[i][k] : crumb->low[k];
+            crumb->high[k] = crumb->copies == 0 || place[i][k] > crumb->high[k] ? place[i][k] : crumb->high[k];
+        }
+        ++crumb->copies;
+    }
+    for (i = 0; i < system->n; ++i) {
+        const gxsp_crumb *crumb = &crumbs[system->piece[i]];
+        if ((float)crumb->nodes > GXSP_CROWDED * (float)crumb->copies && crumb->high[0] - crumb->low[0] < GXSP_CRUMB &&
+            crumb->high[1] - crumb->low[1] < GXSP_CRUMB && crumb->high[2] - crumb->low[2] < GXSP_CRUMB) {
+            any = 1;
+            for (k = 0; k < 3; ++k)
+                place[i][k] *= 0.5f;
+        }
+    }
+    return any;
+}
+
+/* All levels of the multigrid below the model; place: n x 3, see gxsp_find_places. level_count stays 0 if there is nothing to coarsen. */
 static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (*place)[3])
 {
     gxsp_level *fine = &system->levels[0];
     gxsp_transfer transfer;
-    uint32_t count, i, k;
+    uint32_t count;
     gxsp_edges_make(system);
     transfer.key = (uint64_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint64_t));
     transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint32_t));
     if (scratch->failed || system->coarse.failed)
         return;
     count = gxsp_first_transfer(system, place, &transfer);
-    if (count > GXSP_CROWDED * (double)system->n) {
-        for (i = 0; i < system->n; ++i)
-            for (k = 0; k < 3; ++k)
-                place[i][k] *= 0.5f;
+    if (gxsp_spread_crumbs(system, scratch, place))
         count = gxsp_first_transfer(system, place, &transfer);
-    }
-    if (count == 0)
+    if (count == 0 || scratch->failed)
         return;
     gxsp_level_make(&system->coarse, fine + 1, count, 1);
     if (system->coarse.failed)
@@ -8920,6 +8957,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_RANGE
 #undef GXSP_SPACING
 #undef GXSP_CROWDED
+#undef GXSP_CRUMB
 #undef GXSP_MULTIGRID_FROM
 #undef GXSP_MULTIGRID_FROM_STIFF
 #undef GXSP_STIFF_POISSON

@@ -1104,19 +1104,24 @@ START_TEST(stamps_begin_again) {
     scene s;
     inserted in;
     gxb_complex *cx;
-    uint32_t c;
+    uint32_t c, before, turn;
     make_mesh(&s, &r, 6, 1, 0, 0);
     make_cuts(&s, &r, 6, 1, 1, 0);
     cx = open_scene(&s, NULL);
-    for (c = 0; c < s.cut_count; c++) {
-        if (c == s.cut_count / 2) {
-            cx->stamp[0] = cx->stamp[1] = UINT32_MAX - 1;
-            cx->edge_stamp = 0x3ffffffeu;
+    gxb_complex_begin(cx);
+    for (c = 0; c < s.cut_count / 2; c++) ck_assert_int_eq(insert_cut(cx, &s, &in, c), GX_OK);
+    gxb_complex_commit(cx);
+    for (before = 0; before < 2; before++) {
+        for (turn = 0; turn < 2; turn++) {      /* what is undone stamped what is there again the next time */
+            cx->stamp[0] = cx->stamp[1] = UINT32_MAX - before;
+            cx->edge_stamp = 0x3fffffffu - before;
+            gxb_complex_begin(cx);
+            for (c = s.cut_count / 2; c < s.cut_count; c++) ck_assert_int_eq(insert_cut(cx, &s, &in, c), GX_OK);
+            assert_that(cx->stamp[0] < 100 && cx->stamp[1] < 100000 && cx->edge_stamp < 100000, "no stamp began again");
+            assert_that(hash_complex(cx, 0) == topology_of(&s), "another topology, %lu before, turn %lu", (unsigned long)before, (unsigned long)turn);
+            gxb_complex_rollback(cx);
         }
-        ck_assert_int_eq(insert_cut(cx, &s, &in, c), GX_OK);
     }
-    assert_that(cx->stamp[0] < 100 && cx->stamp[1] < 100000 && cx->edge_stamp < 100000, "no stamp began again");
-    assert_that(hash_complex(cx, 0) == topology_of(&s), "another topology");
     gxb_complex_destroy(cx);
 } END_TEST
 
