@@ -76,7 +76,7 @@
  * limit to what Newton reaches, only to what one linear solve does (about 1e-6 of the residual; a free body's slowest modes are
  * solved as well while inertia is above some 1e-6 of stiffness, rho h^2 / (E dt^2) for elements of size h). Where the mass of a part
  * of an element has its centre is rounded once, by at most 1e-7 of the element, and all is right for the mass so placed. Memory: about 260
- * bytes per element in all, of a mesh with four elements per copy; 310 to 350 where cuts leave two or three; up to 450 of crumbs upon which
+ * bytes per element in all, of a mesh with four elements per copy; 310 to 350 where cuts leave two or three; 400 to 460 of crumbs upon which
  * multigrid is forced. The material can invert without a failure and comes back by
  * itself; an element collapsed to a point, where its energy is stationary, is opened as if it were not quite one. Same input,
  * same binary: same bits. Nothing here needs isnan or infinities: it is right under -ffast-math, where sums round otherwise.
@@ -4071,7 +4071,7 @@ typedef struct gxsp_crumb {
     float low[3], high[3]; /* in spacings */
 } gxsp_crumb;
 
-/* Small pieces have so many lattice points about them that twice the spacing serves as well, in half the room: halves the places of those that
+/* Small pieces have so many lattice points about them that twice the spacing serves nearly as well, in half the room: halves the places of those that
  * are crowded after gxsp_first_transfer. Not of slender ones, which would hardly bend. Returns whether there are any. */
 static int gxsp_spread_crumbs(gxsp_system *system, gxsp_pool *scratch, float (*place)[3])
 {
