@@ -75,9 +75,8 @@
  * Energies, forces and states are doubles; the Hessian, its products and the preconditioner are single precision, which sets no
  * limit to what Newton reaches, only to what one linear solve does (about 1e-6 of the residual; a free body's slowest modes are
  * solved as well while inertia is above some 1e-6 of stiffness, rho h^2 / (E dt^2) for elements of size h). Where the mass of a part
- * of an element has its centre is rounded once, by at most 1e-7 of the element, and all is right for the mass so placed. Memory: about 260
- * bytes per element in all, of a mesh with four elements per copy; 310 to 350 where cuts leave two or three; 400 to 460 of crumbs upon which
- * multigrid is forced. The material can invert without a failure and comes back by
+ * of an element has its centre is rounded once, by at most 1e-7 of the element, and all is right for the mass so placed. Memory: 240 to 270
+ * bytes per element in all, of a mesh with four elements per copy; 290 to 350 where cuts leave two or three. The material can invert without a failure and comes back by
  * itself; an element collapsed to a point, where its energy is stationary, is opened as if it were not quite one. Same input,
  * same binary: same bits. Nothing here needs isnan or infinities: it is right under -ffast-math, where sums round otherwise.
  *
@@ -508,18 +507,21 @@ extern "C" {
 /* Spacing of the first lattice of the multigrid, in edges of an average element. */
 #define GXSP_SPACING 2.5
 
-/* Where a piece has more nodes of the first lattice for each copy and is shorter than so many spacings along each axis, its spacing is twice
- * that. Measured: 0.08 to 0.16 nodes of bodies in one piece, cut or not, 0.37 to 0.44 of those in pieces of 60 copies. */
+/* Where a piece has more nodes of the first lattice for each copy than GXSP_CROWDED, it is given fewer: if it is shorter than so many spacings
+ * along each axis, its four affine motions or twice the spacing. Measured: 0.08 to 0.16 nodes of bodies in one piece, cut or not, 0.37 to 0.44
+ * of those in pieces of 60 copies. */
 #define GXSP_CROWDED 0.25f
-#define GXSP_CRUMB 3
+#define GXSP_AFFINE 2
+#define GXSP_COARSE 3
 
 /* In pieces of fewer copies block-Jacobi is at least as fast as multigrid; but for nearly incompressible ones. */
 #define GXSP_MULTIGRID_FROM 150
 #define GXSP_MULTIGRID_FROM_STIFF 60
 #define GXSP_STIFF_POISSON 0.48
 
-/* A level is factored that takes no more multiplications than this for each copy, or that the next would not make smaller by a third.
- * Slender bodies need it: coarser levels hardly bend with them, and an exact solution two levels down saves two iterations in three. */
+/* A level is factored that takes no more multiplications than this for each copy, level 1 than half of that, which takes most memory; or that the
+ * next would not make smaller by a third. Slender bodies need it: coarser levels hardly bend with them, and an exact solution two levels down
+ * saves two iterations in three. */
 #define GXSP_FACTOR_COST 3000
 #define GXSP_LEVELS 12
 
@@ -735,14 +737,14 @@ static void *gxsp_take(gxsp_pool *pool, size_t count, size_t size)
     return memset(gxsp_memory(owned), 0, bytes);
 }
 
-/* Memory of room x size bytes in place of some of used x size, whose contents it has; the old one is given back. NULL, and the old one
- * stays, when there is none. */
+/* Memory of room x size bytes in place of some of used x size, or of NULL, whose contents it has; the old one is given back. NULL, and the
+ * old one stays, when there is none. */
 static void *gxsp_retake(gxsp_pool *pool, void *memory, size_t used, size_t room, size_t size)
 {
     void *larger = gxsp_take(pool, room, size);
     gxsp_owned **link = &pool->last, *owned;
-    if (!larger)
-        return NULL;
+    if (!larger || !memory)
+        return larger;
     memcpy(larger, memory, used * size);
     while (gxsp_memory(*link) != memory)
         link = &(*link)->next;
@@ -769,6 +771,20 @@ static gxsp_pool gxsp_pool_make(const gx_allocator *allocator)
     pool.last = NULL;
     pool.failed = 0;
     return pool;
+}
+
+/* Memory that is cut into arrays, one after the other */
+typedef struct gxsp_space {
+    unsigned char *memory;  /* NULL: arrays are only counted */
+    size_t used;
+} gxsp_space;
+
+/* The next array of a space: count x size bytes. NULL if there is no memory. */
+static void *gxsp_carve(gxsp_space *space, size_t count, size_t size)
+{
+    const size_t at = space->used;
+    space->used = at + (count * size + GXSP_ALIGNMENT - 1) / GXSP_ALIGNMENT * GXSP_ALIGNMENT;
+    return space->memory ? space->memory + at : NULL;
 }
 
 /* What a step works on, cut into elements of a block, blocks of a chunk. Lanes without an element have weight, mass and
@@ -835,6 +851,7 @@ typedef struct gxsp_chunk {
     uint32_t first_node, node_count; /* into nodes and slots */
     uint32_t first_part, part_count; /* into parts: one for each piece of its nodes, ascending */
     uint32_t class_index;            /* see gxsp_class */
+    uint32_t edge_count;             /* see gxsp_edges; 0: not known */
     int open;                        /* made by an update, with room for GXSP_CHUNK_BLOCKS */
     gxs_material_kind kind;
 } gxsp_chunk;
@@ -852,13 +869,13 @@ typedef struct gxsp_level {
     uint32_t *column;       /* ascending in a row: the first is the row's own */
     float *block;           /* 9 per entry, by columns */
     float *inverse;         /* n x 6: of the diagonal blocks, packed */
-    gxsp_vector4 *x, *b, *r;/* n: solution, right-hand side, residual; borrowed on level 0 */
+    gxsp_vector4 *x, *b, *r;/* n: solution, right-hand side, residual; borrowed on level 0. The last level has no parents, weights, inverses, residual */
 } gxsp_level;
 
 /* Edges: pairs of a chunk's nodes, i < j, that share an element; numbered from 1. */
 typedef struct gxsp_edges {
-    uint16_t *table;        /* nodes (nodes - 1) / 2: the edge of two nodes i < j, at j (j - 1) / 2 + i, if ends says so, else without meaning: it is
-                               never cleared */
+    size_t table_size;
+    uint16_t *table;        /* table_size, nodes (nodes - 1) / 2 of the chunk that has most: the edge of two nodes i < j, at j (j - 1) / 2 + i, if ends says so, else one of another chunk */
     uint32_t *ends;         /* i << 16 | j */
     float (*block)[9];      /* i's row and j's column of the Hessian, by columns */
     uint16_t *first, *next; /* the edges to higher nodes as a list: first by node, next by edge; 0: there is none */
@@ -882,6 +899,7 @@ typedef struct gxsp_pairs {
     uint32_t *stamp;    /* by coarse node: the round in which it was numbered */
     uint32_t round;     /* one for each visit of a chunk */
     uint32_t count;     /* numbers given in this round, with 0 */
+    uint32_t most;      /* of any chunk; 0: the matrix is made from an assembled one */
     float (*half)[9];   /* by node of the first level whose matrix is another level's: a row of that one times its transfer */
 } gxsp_pairs;
 
@@ -889,11 +907,12 @@ typedef struct gxsp_pairs {
 typedef struct gxsp_factor {
     uint32_t n;         /* unknowns */
     uint32_t *order;    /* n / 3: node of the level in each place */
-    uint32_t *first;    /* n: first column of the row */
-    size_t *row;        /* n: where column 0 of the row would be in entry, so entry[row[i] + j] */
+    uint32_t *first;    /* n / 3: first column of the rows of each place */
+    size_t *row;        /* n / 3: where column 0 of the first of them would be in entry, see gxsp_factor_row */
     float *entry;       /* entry_count; diagonal inverted */
     size_t entry_count;
-    double *x;          /* 3 x n: solution; the three rows at work */
+    double *x;          /* n: solution */
+    double *rows;       /* 3 x n: the three rows at work */
 } gxsp_factor;
 
 typedef struct gxsp_material {
@@ -952,6 +971,8 @@ typedef struct gxsp_system {
     const gx_jobs *jobs;
     size_t n, element_count, block_count, slot_count, range_count;
     size_t copy_room, slot_room; /* of arrays over copies and slots, from the first update on */
+    unsigned char *shared;  /* shared_room bytes: slots, search, product and scaled; while coarse numbers are made, what they are made with */
+    size_t shared_room;
     uint32_t chunk_count, chunk_room, material_count;
     gxsp_material *materials;   /* material_count: as given */
     gxsp_material *damped;      /* material_count: what the step under way works with: Rayleigh damping makes them stiffer */
@@ -960,8 +981,8 @@ typedef struct gxsp_system {
     uint32_t *copy_start;   /* n + 1, into copy_slot */
     uint32_t *copy_slot;    /* slot_count: a copy's slots, in the order of chunks: sums over them are the same for any number of threads;
                                and GXSP_AHEAD zeros */
-    uint16_t *slot_root;    /* slot_count: number in the chunk of the least node that elements of the chunk join with this one */
-    int roots_known;        /* slot_root is there */
+    uint16_t *slot_root;    /* slot_count: number in the chunk of the least node that elements of the chunk join with this one; from the first */
+    int roots_known;        /* update on, when this is set */
     double (*slots)[3];     /* slot_count: what a chunk's pass has for each node: 3 doubles, 4 floats (of products), or 6 */
     double (*range_sum)[GXSP_SUMS]; /* range_count: of passes over copies; added up in their order */
     gxsp_part *parts;       /* part_count: of the chunks, in their order */
@@ -978,7 +999,7 @@ typedef struct gxsp_system {
     uint32_t piece_count, loose_count; /* loose: of state 0 */
     gxsp_follower *followers;
     uint32_t follower_count;
-    uint32_t *follower;     /* n: index of the copy's entry in followers; GXSP_NONE: it follows none */
+    uint32_t *follower;     /* n: index of the copy's entry in followers; GXSP_NONE: it follows none; NULL: none does */
     gxsp_lasting *lasting;  /* of the solver */
     float *volume;          /* n: inverse volume of the support, scaled; of GXS_VOLUME_RATIO only */
     double *target;         /* where inertia (and mass damping) alone lead; of backward Euler u_n + dt v_n */
@@ -998,13 +1019,13 @@ typedef struct gxsp_system {
     gxsp_level levels[GXSP_LEVELS];
     uint32_t level_count;   /* 0: no multigrid */
     int coarse_used;        /* the levels precondition the solve at work */
-    gxsp_edges edges;       /* of the chunk at work on level 1's matrix */
+    gxsp_edges edges;       /* of the chunk at work on level 1's matrix; in scratch or in shared memory, as pairs are */
     gxsp_pairs pairs;
     gxsp_factor factor;
     float omega;            /* step length of the smoother; 0: not known */
     float omega_found;      /* by the largest eigenvalue found, which may have grown since */
     uint32_t omega_rest, omega_pause; /* linear solves for which it stays the safe one, 0: it is omega_found; and the next time */
-    uint8_t *renewed;       /* n: the copy's diagonal is of other elements than when omega was found; of use if */
+    uint8_t *renewed;       /* n: the copy's diagonal is of other elements than when omega was found; from the first update on, of use if */
     int omega_renewed;      /* there are such copies */
     double coarse_rate;     /* for which the coarse matrices were made; below 0: never made */
     double *coarse_state;   /* displacement at which; of a multigrid only */
@@ -3118,7 +3139,6 @@ static void gxsp_chunks_make(gxsp_system *system, gxsp_pool *scratch, const gxs_
         return;
     gxsp_fill_chunks(system, model, sorted, &numbers);
     system->copy_slot = (uint32_t *)gxsp_take(&system->pool, system->slot_count + GXSP_AHEAD, sizeof(uint32_t));
-    system->slot_root = (uint16_t *)gxsp_take(&system->pool, system->slot_count, sizeof(uint16_t));
     nodes = (uint32_t *)gxsp_take(&system->pool, system->slot_count + GXSP_AHEAD, sizeof(uint32_t));
     if (system->pool.failed)
         return;
@@ -3159,6 +3179,11 @@ static void gxsp_find_fixed(gxsp_system *system, const gxs_model *model)
                 system->held[i] = system->fixed[i] = 1;
 }
 
+static inline int gxsp_follows(const gxsp_system *system, size_t copy)
+{
+    return system->follower && system->follower[copy] != GXSP_NONE;
+}
+
 /* Which copies follow others. Returns the index of a constraint that cannot be, SIZE_MAX if all can. */
 static size_t gxsp_find_followers(gxsp_system *system, const gxs_model *model)
 {
@@ -3184,6 +3209,8 @@ static size_t gxsp_find_followers(gxsp_system *system, const gxs_model *model)
             if (fabs(model->constraints[i].weight[k]) > 0 && system->still[model->constraints[i].master[k]])
                 return i;
     memset(system->still, 0, system->n);
+    if (system->follower_count == 0)
+        return SIZE_MAX;
     system->follower = (uint32_t *)gxsp_take(&system->pool, system->n, sizeof(uint32_t));
     if (system->pool.failed)
         return SIZE_MAX;
@@ -3273,8 +3300,7 @@ static uint32_t gxsp_list_parts(gxsp_system *system, gxsp_part *parts)
 static void gxsp_parts_make(gxsp_system *system)
 {
     const uint32_t count = gxsp_list_parts(system, NULL);
-    system->parts = system->parts ? (gxsp_part *)gxsp_retake(&system->pool, system->parts, 0, count, sizeof(gxsp_part)) :
-                                    (gxsp_part *)gxsp_take(&system->pool, count, sizeof(gxsp_part));
+    system->parts = (gxsp_part *)gxsp_retake(&system->pool, system->parts, 0, count, sizeof(gxsp_part));
     system->part_count = count;
     if (!system->pool.failed)
         (void)gxsp_list_parts(system, system->parts);
@@ -3318,30 +3344,6 @@ static void gxsp_copies_make(gxsp_system *system, const double *positions)
     system->fixed = (uint8_t *)gxsp_take(&system->pool, system->n, 1);
     system->still = (uint8_t *)gxsp_take(&system->pool, system->n, 1);
     system->held = (uint8_t *)gxsp_take(&system->pool, system->n, 1);
-}
-
-/* What only steps need: taken last, when all that a model is made with has been given back */
-static void gxsp_steps_make(gxsp_system *system)
-{
-    double **vectors[6];
-    gxsp_vector4 **singles[6];
-    int i;
-    vectors[0] = &system->target, vectors[1] = &system->current, vectors[2] = &system->force, vectors[3] = &system->residual;
-    vectors[4] = &system->direction, vectors[5] = &system->coarse_state;
-    for (i = 0; i < (system->level_count > 0 ? 6 : 5); ++i)
-        *vectors[i] = (double *)gxsp_take(&system->pool, 3 * system->n, sizeof(double));
-    system->trial = system->residual;
-    if (system->damps)
-        system->damping = (double *)gxsp_take(&system->pool, 3 * system->n, sizeof(double));
-    singles[0] = &system->search, singles[1] = &system->product, singles[2] = &system->scaled, singles[3] = &system->guess[0];
-    singles[4] = &system->guess[1], singles[5] = &system->right;
-    for (i = 0; i < (system->fine ? 6 : 5); ++i)
-        *singles[i] = (gxsp_vector4 *)gxsp_take(&system->pool, system->n, sizeof(gxsp_vector4));
-    system->diagonal = (float *)gxsp_take(&system->pool, 6 * system->n, sizeof(float));
-    system->renewed = (uint8_t *)gxsp_take(&system->pool, system->n, 1);
-    system->range_sum = (double(*)[GXSP_SUMS])gxsp_take(&system->pool, system->range_count, sizeof *system->range_sum);
-    system->slots = (double(*)[3])gxsp_take(&system->pool, system->slot_count, sizeof *system->slots);
-    gxsp_tangents_make(&system->pool, system->chunks, system->chunk_count);
 }
 
 /* >>lattice: the multigrid's structure. A coarse node is a point of a lattice together with one connected component of the nodes
@@ -3460,29 +3462,27 @@ static void gxsp_transfer_places(const gxsp_level *level, const gxsp_transfer *t
         }
 }
 
-/* Room for a level of n nodes, but for its matrix */
-static void gxsp_level_make(gxsp_pool *pool, gxsp_level *level, uint32_t n, int coarse)
+/* Room for the transfer of a level to the next */
+static void gxsp_transfer_make(gxsp_pool *pool, gxsp_level *level)
 {
-    level->n = n;
-    level->parent = (uint32_t(*)[4])gxsp_take(pool, n, sizeof *level->parent);
-    level->weight = (float(*)[4])gxsp_take(pool, n, sizeof *level->weight);
-    if (!coarse)
-        return;
-    level->place = (int32_t(*)[3])gxsp_take(pool, n, sizeof *level->place);
-    level->start = (uint32_t *)gxsp_take(pool, (size_t)n + 1, sizeof(uint32_t));
-    level->inverse = (float *)gxsp_take(pool, 6 * (size_t)n, sizeof(float));
-    level->x = (gxsp_vector4 *)gxsp_take(pool, n, sizeof(gxsp_vector4));
-    level->b = (gxsp_vector4 *)gxsp_take(pool, n, sizeof(gxsp_vector4));
-    level->r = (gxsp_vector4 *)gxsp_take(pool, n, sizeof(gxsp_vector4));
+    level->parent = (uint32_t(*)[4])gxsp_take(pool, level->n, sizeof *level->parent);
+    level->weight = (float(*)[4])gxsp_take(pool, level->n, sizeof *level->weight);
 }
 
-static void gxsp_level_matrix(gxsp_pool *pool, gxsp_level *level, const uint32_t *columns)
+/* Room for a coarse level of n nodes, but for its matrix and what only those have that are not the last */
+static void gxsp_level_make(gxsp_pool *pool, gxsp_level *level, uint32_t n)
 {
-    uint32_t entries = level->start[level->n];
-    level->column = (uint32_t *)gxsp_take(pool, entries, sizeof(uint32_t));
-    level->block = (float *)gxsp_take(pool, 9 * (size_t)entries + 1, sizeof(float)); /* products read four numbers of a column */
-    if (!pool->failed)
-        memcpy(level->column, columns, entries * sizeof(uint32_t));
+    level->n = n;
+    level->place = (int32_t(*)[3])gxsp_take(pool, n, sizeof *level->place);
+    level->start = (uint32_t *)gxsp_take(pool, (size_t)n + 1, sizeof(uint32_t));
+    level->x = (gxsp_vector4 *)gxsp_take(pool, n, sizeof(gxsp_vector4));
+    level->b = (gxsp_vector4 *)gxsp_take(pool, n, sizeof(gxsp_vector4));
+}
+
+/* Numbers of the blocks of a level's matrix; products read four numbers of a column, hence one more */
+static size_t gxsp_block_numbers(const gxsp_level *level)
+{
+    return 9 * (size_t)level->start[level->n] + 1;
 }
 
 /* Growing list of a matrix's entries: rows and columns, the row the lower; in a pool of temporary memory */
@@ -3530,7 +3530,9 @@ static void gxsp_rows_make(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *leve
         gxsp_sort_row(columns + level->start[i], count - level->start[i]);
     }
     level->start[level->n] = count;
-    gxsp_level_matrix(pool, level, columns);
+    level->column = (uint32_t *)gxsp_take(pool, count, sizeof(uint32_t));
+    if (!pool->failed)
+        memcpy(level->column, columns, count * sizeof(uint32_t));
 }
 
 /* Rows of the next level's matrix, transfer^T A transfer, from a level's */
@@ -3567,12 +3569,15 @@ static void gxsp_coarse_rows(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *le
 static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t at)
 {
     gxsp_level *level = &system->levels[at], *next = level + 1;
+    gxsp_pool *pool = &system->coarse;
+    gxsp_owned *mark = pool->last;
     gxsp_transfer transfer;
     float (*place)[3] = (float(*)[3])gxsp_take(scratch, level->n, sizeof *place);
     uint32_t i, k, count;
     transfer.key = (uint64_t *)gxsp_take(scratch, 4 * (size_t)level->n, sizeof(uint64_t));
     transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * (size_t)level->n, sizeof(uint32_t));
-    if (scratch->failed)
+    gxsp_transfer_make(pool, level);
+    if (scratch->failed || pool->failed)
         return 0;
     for (i = 0; i < level->n; ++i)
         for (k = 0; k < 3; ++k)
@@ -3582,14 +3587,19 @@ static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t at)
         for (k = level->start[i] + 1; k < level->start[i + 1]; ++k)
             gxsp_join_nodes(&transfer, i, level->column[k]);
     count = gxsp_transfer_end(level, &transfer);
-    if (count > level->n - level->n / 3)
+    if (count > level->n - level->n / 3) {
+        gxsp_release_to(pool, mark);
+        level->parent = NULL, level->weight = NULL;
         return 0;
-    gxsp_level_make(&system->coarse, next, count, 1);
-    if (system->coarse.failed)
+    }
+    level->inverse = (float *)gxsp_take(pool, 6 * (size_t)level->n, sizeof(float));
+    level->r = (gxsp_vector4 *)gxsp_take(pool, level->n, sizeof(gxsp_vector4));
+    gxsp_level_make(pool, next, count);
+    if (pool->failed)
         return 0;
     gxsp_transfer_places(level, &transfer, next);
-    gxsp_coarse_rows(&system->coarse, scratch, level);
-    return !system->coarse.failed && !scratch->failed;
+    gxsp_coarse_rows(pool, scratch, level);
+    return !pool->failed && !scratch->failed;
 }
 
 /* Neighbours of each node of a level, both ways; in temporary memory */
@@ -3678,6 +3688,13 @@ static int gxsp_factors(gxsp_pool *scratch, const gxsp_level *level, size_t copi
     return factors;
 }
 
+/* Row i of the factor, by columns from 0 on, of which it has those from first on. Rows of a place are one column longer each. */
+static inline float *gxsp_factor_row(const gxsp_factor *factor, uint32_t i)
+{
+    const uint32_t place = i / 3, r = i % 3;
+    return factor->entry + (factor->row[place] + r * (size_t)(3 * place - factor->first[place] + 1) + (r == 2));
+}
+
 /* Order and envelope of the last level */
 static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch)
 {
@@ -3688,17 +3705,17 @@ static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch)
     size_t entries = 0;
     factor->n = 3 * level->n;
     factor->order = (uint32_t *)gxsp_take(&system->coarse, level->n, sizeof(uint32_t));
-    factor->first = (uint32_t *)gxsp_take(&system->coarse, factor->n, sizeof(uint32_t));
-    factor->row = (size_t *)gxsp_take(&system->coarse, factor->n, sizeof(size_t));
-    factor->x = (double *)gxsp_take(&system->coarse, 3 * (size_t)factor->n, sizeof(double));
+    factor->first = (uint32_t *)gxsp_take(&system->coarse, level->n, sizeof(uint32_t));
+    factor->row = (size_t *)gxsp_take(&system->coarse, level->n, sizeof(size_t));
+    factor->x = (double *)gxsp_take(&system->coarse, factor->n, sizeof(double));
     if (scratch->failed || system->coarse.failed)
         return;
     (void)gxsp_order_level(&graph, factor->order, place);
-    for (i = 0; i < factor->n; ++i) {
-        const uint32_t first = 3 * gxsp_first_place(&graph, factor->order, place, i / 3);
+    for (i = 0; i < level->n; ++i) {
+        const uint32_t first = 3 * gxsp_first_place(&graph, factor->order, place, i);
         factor->first[i] = first;
         factor->row[i] = entries - first;   /* no less than 0: every row before has an entry */
-        entries += i - first + 1;
+        entries += 3 * (size_t)(3 * i - first) + 6;
     }
     factor->entry = (float *)gxsp_take(&system->coarse, entries, sizeof(float));
     factor->entry_count = entries;
@@ -3715,25 +3732,41 @@ static void gxsp_lane_copies(const gxsp_system *system, const gxsp_chunk *chunk,
 /* Corners of the ten blocks of an element, in the order of gxs_element.mass */
 static const int gxsp_pair_corners[10][2] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {1, 1}, {1, 2}, {1, 3}, {2, 2}, {2, 3}, {3, 3}};
 
-/* Room for the edges of any chunk */
-static void gxsp_edges_make(gxsp_system *system)
+/* Arrays for the edges of any chunk; numbers: with those of the Hessian's blocks, for which edges have been counted */
+static void gxsp_edges_carve(gxsp_system *system, gxsp_space *space, int numbers)
 {
     gxsp_edges *edges = &system->edges;
-    size_t c, lanes = 0, nodes = 0;
+    size_t c, lanes = 0, nodes = 1, most = 0;
     for (c = 0; c < system->chunk_count; ++c) {
-        lanes = system->chunks[c].block_count * GXSP_LANES > lanes ? system->chunks[c].block_count * GXSP_LANES : lanes;
-        nodes = system->chunks[c].node_count > nodes ? system->chunks[c].node_count : nodes;
+        const gxsp_chunk *chunk = &system->chunks[c];
+        const size_t of = chunk->block_count * GXSP_LANES, count = numbers ? chunk->edge_count : 1 + 6 * of;
+        lanes = of > lanes ? of : lanes;
+        nodes = chunk->node_count > nodes ? chunk->node_count : nodes;
+        most = count > most ? count : most;
     }
-    edges->table = (uint16_t *)gxsp_take(&system->coarse, nodes * (nodes - 1) / 2, sizeof(uint16_t));
-    edges->ends = (uint32_t *)gxsp_take(&system->coarse, 2 + 6 * lanes, sizeof(uint32_t));
-    edges->block = (float(*)[9])gxsp_take(&system->coarse, 1 + 6 * lanes, sizeof *edges->block);
-    edges->element = (uint16_t(*)[6][GXSP_LANES])gxsp_take(&system->coarse, lanes / GXSP_LANES, sizeof *edges->element);
-    edges->first = (uint16_t *)gxsp_take(&system->coarse, nodes, sizeof(uint16_t));
-    edges->joined = (uint8_t *)gxsp_take(&system->coarse, nodes, 1);
-    edges->next = (uint16_t *)gxsp_take(&system->coarse, 1 + 6 * lanes, sizeof(uint16_t));
-    edges->own = (float(*)[9])gxsp_take(&system->coarse, nodes, sizeof *edges->own);
-    edges->mass = (float *)gxsp_take(&system->coarse, nodes, sizeof(float));
-    edges->parent = (uint16_t(*)[4])gxsp_take(&system->coarse, nodes, sizeof *edges->parent);
+    edges->table = (uint16_t *)gxsp_carve(space, nodes * (nodes - 1) / 2, sizeof(uint16_t));
+    edges->table_size = nodes * (nodes - 1) / 2;
+    edges->ends = (uint32_t *)gxsp_carve(space, most + 1, sizeof(uint32_t)); /* one more is written than counts */
+    edges->parent = (uint16_t(*)[4])gxsp_carve(space, nodes, sizeof *edges->parent);
+    if (!numbers)
+        return;
+    edges->block = (float(*)[9])gxsp_carve(space, most, sizeof *edges->block);
+    edges->element = (uint16_t(*)[6][GXSP_LANES])gxsp_carve(space, lanes / GXSP_LANES, sizeof *edges->element);
+    edges->first = (uint16_t *)gxsp_carve(space, nodes, sizeof(uint16_t));
+    edges->next = (uint16_t *)gxsp_carve(space, most, sizeof(uint16_t));
+    edges->joined = (uint8_t *)gxsp_carve(space, nodes, 1);
+    edges->own = (float(*)[9])gxsp_carve(space, nodes, sizeof *edges->own);
+    edges->mass = (float *)gxsp_carve(space, nodes, sizeof(float));
+}
+
+/* Room for listing the edges of any chunk, in temporary memory */
+static void gxsp_edges_make(gxsp_system *system, gxsp_pool *scratch)
+{
+    gxsp_space space = {NULL, 0};
+    gxsp_edges_carve(system, &space, 0);
+    space.memory = (unsigned char *)gxsp_take(scratch, space.used, 1);
+    space.used = 0;
+    gxsp_edges_carve(system, &space, 0);
 }
 
 static void gxsp_edges_begin(gxsp_edges *edges, const gxsp_chunk *chunk)
@@ -3772,13 +3805,23 @@ static void gxsp_block_edges(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_
 }
 
 /* All edges of a chunk's elements of any weight */
-static void gxsp_list_edges(gxsp_system *system, const gxsp_chunk *chunk)
+static void gxsp_list_edges(gxsp_system *system, gxsp_chunk *chunk)
 {
     uint16_t edge[6][GXSP_LANES];
     uint32_t b;
     gxsp_edges_begin(&system->edges, chunk);
     for (b = 0; b < chunk->block_count; ++b)
         gxsp_block_edges(&system->edges, chunk, b, edge);
+    chunk->edge_count = system->edges.count;
+}
+
+/* Counts the edges of chunks of which they are not known. */
+static void gxsp_count_edges(gxsp_system *system)
+{
+    uint32_t c;
+    for (c = 0; c < system->chunk_count; ++c)
+        if (system->chunks[c].edge_count == 0)
+            gxsp_list_edges(system, &system->chunks[c]);
 }
 
 /* Numbers the coarse nodes that a chunk's nodes follow. */
@@ -3804,23 +3847,38 @@ static void gxsp_pairs_begin(gxsp_system *system, const gxsp_chunk *chunk)
     memset(pairs->seen, 0, pairs->count * sizeof *pairs->seen);
 }
 
-/* Room for the pairs of any chunk, and for a row of one */
-static void gxsp_pairs_make(gxsp_system *system)
+/* Arrays for the pairs of any chunk; numbers: with those for entries of matrices */
+static void gxsp_pairs_carve(gxsp_system *system, gxsp_space *space, int numbers)
 {
-    size_t most = 0, side, c;
-    system->pairs.local = (uint32_t *)gxsp_take(&system->coarse, system->levels[1].n, sizeof(uint32_t));
-    system->pairs.stamp = (uint32_t *)gxsp_take(&system->coarse, system->levels[1].n, sizeof(uint32_t));
-    system->pairs.node = (uint32_t *)gxsp_take(&system->coarse, (size_t)system->levels[1].n + 1, sizeof(uint32_t));
-    system->pairs.seen = (uint32_t *)gxsp_take(&system->coarse, (size_t)system->levels[1].n + 1, sizeof(uint32_t));
-    system->pairs.round = 0;
-    for (c = 0; c < system->chunk_count && !system->coarse.failed; ++c) {
+    gxsp_pairs *pairs = &system->pairs;
+    const size_t n = system->levels[1].n, side = pairs->most < GXSP_CHUNK_PARENTS ? pairs->most : GXSP_CHUNK_PARENTS;
+    const uint32_t next = system->fine ? 1 : 2; /* the first level whose matrix is that of another one times transfers */
+    pairs->local = (uint32_t *)gxsp_carve(space, n, sizeof(uint32_t));
+    pairs->stamp = (uint32_t *)gxsp_carve(space, n, sizeof(uint32_t));
+    pairs->node = (uint32_t *)gxsp_carve(space, n + 1, sizeof(uint32_t));
+    pairs->seen = (uint32_t *)gxsp_carve(space, n + 1, sizeof(uint32_t));
+    if (!numbers)
+        return;
+    pairs->entry = (uint32_t *)gxsp_carve(space, side * side, sizeof(uint32_t));
+    system->edges.half = (float(*)[9])gxsp_carve(space, pairs->most, sizeof *system->edges.half);
+    system->edges.touched = (uint16_t *)gxsp_carve(space, (size_t)pairs->most + 1, sizeof(uint16_t)); /* one more is written than counts */
+    pairs->half = (float(*)[9])gxsp_carve(space, next < system->level_count ? system->levels[next].n : 0, sizeof *pairs->half);
+}
+
+/* Room for listing the pairs of any chunk, in temporary memory, and how many coarse nodes it has at most */
+static void gxsp_pairs_make(gxsp_system *system, gxsp_pool *scratch)
+{
+    gxsp_space space = {NULL, 0};
+    uint32_t c;
+    gxsp_pairs_carve(system, &space, 0);
+    space.memory = (unsigned char *)gxsp_take(scratch, space.used, 1);
+    space.used = 0;
+    gxsp_pairs_carve(system, &space, 0);
+    system->pairs.round = system->pairs.most = 0;
+    for (c = 0; c < system->chunk_count && !scratch->failed && !system->fine; ++c) {
         gxsp_pairs_begin(system, &system->chunks[c]);
-        most = system->pairs.count > most ? system->pairs.count : most;
+        system->pairs.most = system->pairs.count > system->pairs.most ? system->pairs.count : system->pairs.most;
     }
-    side = most < GXSP_CHUNK_PARENTS ? most : GXSP_CHUNK_PARENTS;
-    system->pairs.entry = (uint32_t *)gxsp_take(&system->coarse, side * side, sizeof(uint32_t));
-    system->edges.half = (float(*)[9])gxsp_take(&system->coarse, most, sizeof *system->edges.half);
-    system->edges.touched = (uint16_t *)gxsp_take(&system->coarse, most + 1, sizeof(uint16_t)); /* one more is written than counts */
 }
 
 /* Sets of a chunk's coarse nodes, a bit for each, words to a set */
@@ -3950,7 +4008,7 @@ static int gxsp_corner_masters(const gxsp_system *system, uint32_t copy, uint32_
 {
     const gxsp_follower *follower;
     int k, count = 0;
-    if (system->follower[copy] == GXSP_NONE) {
+    if (!gxsp_follows(system, copy)) {
         masters[0] = copy;
         weights[0] = 1;
         return 1;
@@ -3966,8 +4024,7 @@ static int gxsp_corner_masters(const gxsp_system *system, uint32_t copy, uint32_
 
 static int gxsp_element_follows(const gxsp_system *system, const uint32_t *copies)
 {
-    return system->follower[copies[0]] != GXSP_NONE || system->follower[copies[1]] != GXSP_NONE ||
-           system->follower[copies[2]] != GXSP_NONE || system->follower[copies[3]] != GXSP_NONE;
+    return gxsp_follows(system, copies[0]) || gxsp_follows(system, copies[1]) || gxsp_follows(system, copies[2]) || gxsp_follows(system, copies[3]);
 }
 
 /* Rows and columns, the row the lower, that an element adds to. Returns how many. */
@@ -4013,6 +4070,8 @@ static void gxsp_fine_make(gxsp_system *system, gxsp_pool *scratch)
         room = count;
     }
     gxsp_rows_make(&system->pool, scratch, fine, list, count);
+    if (!scratch->failed)
+        fine->block = (float *)gxsp_take(&system->pool, gxsp_block_numbers(fine), sizeof(float));
     if (scratch->failed || system->pool.failed)
         return;
     for (c = 0; c < system->chunk_count; ++c)
@@ -4031,8 +4090,8 @@ static void gxsp_fine_make(gxsp_system *system, gxsp_pool *scratch)
 static void gxsp_levels_make(gxsp_system *system, gxsp_pool *scratch, const gxsp_level *before, const uint8_t *dirty)
 {
     uint32_t at;
-    gxsp_pairs_make(system);
-    if (system->coarse.failed)
+    gxsp_pairs_make(system, scratch);
+    if (scratch->failed)
         return;
     if (system->fine)
         gxsp_coarse_rows(&system->coarse, scratch, &system->levels[0]);
@@ -4040,11 +4099,12 @@ static void gxsp_levels_make(gxsp_system *system, gxsp_pool *scratch, const gxsp
         gxsp_first_pattern(system, scratch, before, dirty);
     if (scratch->failed || system->coarse.failed)
         return;
-    for (at = 1; at + 1 < GXSP_LEVELS && !gxsp_factors(scratch, &system->levels[at], system->n) && gxsp_add_level(system, scratch, at); ++at)
+    for (at = 1; at + 1 < GXSP_LEVELS && !gxsp_factors(scratch, &system->levels[at], at == 1 ? system->n / 2 : system->n) &&
+                 gxsp_add_level(system, scratch, at); ++at)
         ;
     system->level_count = at + 1;
-    at = system->fine ? 1 : 2;
-    system->pairs.half = (float(*)[9])gxsp_take(&system->coarse, at < system->level_count ? system->levels[at].n : 0, sizeof *system->pairs.half);
+    for (at = 1; !scratch->failed && !system->coarse.failed && (at == 1 || at + 1 < system->level_count); ++at)
+        system->levels[at].block = (float *)gxsp_take(&system->coarse, gxsp_block_numbers(&system->levels[at]), sizeof(float));
     gxsp_factor_make(system, scratch);
 }
 
@@ -4071,15 +4131,12 @@ typedef struct gxsp_crumb {
     float low[3], high[3]; /* in spacings */
 } gxsp_crumb;
 
-/* Small pieces have so many lattice points about them that twice the spacing serves nearly as well, in half the room: halves the places of those that
- * are crowded after gxsp_first_transfer. Not of slender ones, which would hardly bend. Returns whether there are any. */
-static int gxsp_spread_crumbs(gxsp_system *system, gxsp_pool *scratch, float (*place)[3])
+static gxsp_crumb *gxsp_find_crumbs(const gxsp_system *system, gxsp_pool *scratch, float (*place)[3])
 {
     gxsp_crumb *crumbs = (gxsp_crumb *)gxsp_take(scratch, system->piece_count, sizeof *crumbs);
     uint32_t slot, i, k, nodes = 0;
-    int any = 0;
-    if (scratch->failed)
-        return 0;
+    if (!crumbs)
+        return NULL;
     for (slot = 0; slot < 4 * system->n; ++slot) /* nodes are numbered as they are met */
         if (system->levels[0].parent[slot / 4][slot % 4] == nodes) {
             ++crumbs[system->piece[slot / 4]].nodes;
@@ -4093,14 +4150,31 @@ static int gxsp_spread_crumbs(gxsp_system *system, gxsp_pool *scratch, float (*p
         }
         ++crumb->copies;
     }
-    for (i = 0; i < system->n; ++i) {
+    return crumbs;
+}
+
+/* Is a piece shorter along each axis? */
+static int gxsp_is_shorter(const gxsp_crumb *crumb, float length)
+{
+    return crumb->high[0] - crumb->low[0] < length && crumb->high[1] - crumb->low[1] < length && crumb->high[2] - crumb->low[2] < length;
+}
+
+/* Small pieces have so many lattice points about them that fewer serve nearly as well: places of those that are crowded after
+ * gxsp_first_transfer go into one tetrahedron of a lattice of their own, whose functions are their affine motions, or, where pieces are larger,
+ * into a lattice of twice the spacing. Not of slender pieces, which would hardly bend. Returns whether there are any. */
+static int gxsp_thin_crumbs(const gxsp_system *system, gxsp_pool *scratch, float (*place)[3])
+{
+    const gxsp_crumb *crumbs = gxsp_find_crumbs(system, scratch, place);
+    uint32_t i, k;
+    int any = 0;
+    for (i = 0; i < system->n && crumbs; ++i) {
         const gxsp_crumb *crumb = &crumbs[system->piece[i]];
-        if ((float)crumb->nodes > GXSP_CROWDED * (float)crumb->copies && crumb->high[0] - crumb->low[0] < GXSP_CRUMB &&
-            crumb->high[1] - crumb->low[1] < GXSP_CRUMB && crumb->high[2] - crumb->low[2] < GXSP_CRUMB) {
-            any = 1;
-            for (k = 0; k < 3; ++k)
-                place[i][k] *= 0.5f;
-        }
+        if ((float)crumb->nodes <= GXSP_CROWDED * (float)crumb->copies || !gxsp_is_shorter(crumb, GXSP_COARSE))
+            continue;
+        any = 1;
+        for (k = 0; k < 3; ++k)
+            place[i][k] = !gxsp_is_shorter(crumb, GXSP_AFFINE) ? 0.5f * place[i][k] : /* else where coordinates descend: in thirds of a cell */
+                          0.3f / GXSP_AFFINE * (place[i][k] - crumb->low[k]) + (float)(2 - k) / 3 + 0.01f;
     }
     return any;
 }
@@ -4111,17 +4185,17 @@ static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (
     gxsp_level *fine = &system->levels[0];
     gxsp_transfer transfer;
     uint32_t count;
-    gxsp_edges_make(system);
+    gxsp_edges_make(system, scratch);
     transfer.key = (uint64_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint64_t));
     transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint32_t));
-    if (scratch->failed || system->coarse.failed)
+    if (scratch->failed)
         return;
     count = gxsp_first_transfer(system, place, &transfer);
-    if (gxsp_spread_crumbs(system, scratch, place))
+    if (gxsp_thin_crumbs(system, scratch, place))
         count = gxsp_first_transfer(system, place, &transfer);
     if (count == 0 || scratch->failed)
         return;
-    gxsp_level_make(&system->coarse, fine + 1, count, 1);
+    gxsp_level_make(&system->coarse, fine + 1, count);
     if (system->coarse.failed)
         return;
     gxsp_transfer_places(fine, &transfer, fine + 1);
@@ -4194,7 +4268,7 @@ static void gxsp_preconditioner_make(gxsp_system *system, gxsp_pool *scratch, co
         gxsp_fine_make(system, scratch);
     if (!multigrid)
         return;
-    gxsp_level_make(&system->pool, &system->levels[0], (uint32_t)system->n, 0);
+    gxsp_transfer_make(&system->pool, &system->levels[0]);
     place = (float(*)[3])gxsp_take(scratch, system->n, sizeof *place);
     if (!system->pool.failed && !scratch->failed && gxsp_find_places(system, model, place))
         gxsp_multigrid_make(system, scratch, place);
@@ -4244,6 +4318,78 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
     if (!scratch->failed && !system->pool.failed)
         gxsp_preconditioner_make(system, scratch, model, solver->preconditioner, solver->matrix, forest);
     return SIZE_MAX;
+}
+
+/* --- memory of steps --- */
+
+/* Arrays with which coarse numbers are made */
+static void gxsp_numbers_carve(gxsp_system *system, gxsp_space *space)
+{
+    gxsp_level *last = &system->levels[system->level_count - 1];
+    if (!system->fine)
+        gxsp_edges_carve(system, space, 1);
+    gxsp_pairs_carve(system, space, 1);
+    if (system->level_count > 2) /* level 1 keeps its own: updates make only a part of it anew */
+        last->block = (float *)gxsp_carve(space, gxsp_block_numbers(last), sizeof(float));
+    system->factor.rows = (double *)gxsp_carve(space, 3 * (size_t)system->factor.n, sizeof(double));
+}
+
+static void gxsp_passes_carve(gxsp_system *system, gxsp_space *space)
+{
+    system->slots = (double(*)[3])gxsp_carve(space, system->slot_count, sizeof *system->slots);
+    system->search = (gxsp_vector4 *)gxsp_carve(space, system->n, sizeof(gxsp_vector4));
+    system->product = (gxsp_vector4 *)gxsp_carve(space, system->n, sizeof(gxsp_vector4));
+    system->scaled = (gxsp_vector4 *)gxsp_carve(space, system->n, sizeof(gxsp_vector4));
+}
+
+/* Vectors in shared memory are 0 again: what is unused of them, too, takes part in sums. */
+static void gxsp_give_back(gxsp_system *system)
+{
+    memset(system->search, 0, system->n * sizeof *system->search);
+    memset(system->product, 0, system->n * sizeof *system->product);
+    memset(system->scaled, 0, system->n * sizeof *system->scaled);
+}
+
+/* Room in shared memory for passes and for coarse numbers, in turn */
+static void gxsp_share(gxsp_system *system)
+{
+    gxsp_space passes = {NULL, 0}, numbers = {NULL, 0};
+    size_t size;
+    gxsp_passes_carve(system, &passes);
+    if (system->level_count > 0)
+        gxsp_numbers_carve(system, &numbers);
+    size = passes.used > numbers.used ? passes.used : numbers.used;
+    if (size > system->shared_room) {
+        system->shared_room = system->shared ? size + size / 8 : size;
+        system->shared = (unsigned char *)gxsp_retake(&system->pool, system->shared, 0, system->shared_room, 1);
+    }
+    passes.memory = system->shared;
+    passes.used = 0;
+    gxsp_passes_carve(system, &passes);
+    if (!system->pool.failed)
+        gxsp_give_back(system);
+}
+
+/* What only steps need: taken last, when all that a model is made with has been given back */
+static void gxsp_steps_make(gxsp_system *system)
+{
+    double **vectors[6];
+    gxsp_vector4 **singles[3];
+    int i;
+    vectors[0] = &system->target, vectors[1] = &system->current, vectors[2] = &system->force, vectors[3] = &system->residual;
+    vectors[4] = &system->direction, vectors[5] = &system->coarse_state;
+    for (i = 0; i < (system->level_count > 0 ? 6 : 5); ++i)
+        *vectors[i] = (double *)gxsp_take(&system->pool, 3 * system->n, sizeof(double));
+    system->trial = system->residual;
+    if (system->damps)
+        system->damping = (double *)gxsp_take(&system->pool, 3 * system->n, sizeof(double));
+    singles[0] = &system->guess[0], singles[1] = &system->guess[1], singles[2] = &system->right;
+    for (i = 0; i < (system->fine ? 3 : 2); ++i)
+        *singles[i] = (gxsp_vector4 *)gxsp_take(&system->pool, system->n, sizeof(gxsp_vector4));
+    system->diagonal = (float *)gxsp_take(&system->pool, 6 * system->n, sizeof(float));
+    system->range_sum = (double(*)[GXSP_SUMS])gxsp_take(&system->pool, system->range_count, sizeof *system->range_sum);
+    gxsp_share(system);
+    gxsp_tangents_make(&system->pool, system->chunks, system->chunk_count);
 }
 
 /* >>followers: what follows a copy gets its motion, and gives it its forces */
@@ -4673,7 +4819,7 @@ static void gxsp_copy_direction(const gxsp_pass *pass, uint32_t copy, double *GX
     const double *from = pass->from + 3 * (size_t)copy;
     double factor = system->fixed[copy] ? 0 : pass->factor;
     int k, c;
-    if (system->follower_count == 0 || system->follower[copy] == GXSP_NONE) {
+    if (!gxsp_follows(system, copy)) {
         to[0] = factor * from[0], to[1] = factor * from[1], to[2] = factor * from[2];
         return;
     }
@@ -5112,15 +5258,15 @@ static void gxsp_factor_solve(const gxsp_factor *factor, gxsp_level *level)
     uint32_t i, j;
     double *x = factor->x;
     for (i = 0; i < factor->n; ++i) {
-        const float *row = factor->entry + factor->row[i];
-        const uint32_t first = factor->first[i];
+        const float *row = gxsp_factor_row(factor, i);
+        const uint32_t first = factor->first[i / 3];
         const double sum = (double)level->b[factor->order[i / 3]][i % 3] - gxsp_long_dot(row + first, x + first, i - first);
         x[i] = sum * (double)row[i];
     }
     for (i = factor->n; i-- > 0;) {
-        const float *row = factor->entry + factor->row[i];
+        const float *row = gxsp_factor_row(factor, i);
         x[i] *= (double)row[i];
-        for (j = factor->first[i]; j < i; ++j)
+        for (j = factor->first[i / 3]; j < i; ++j)
             x[j] -= (double)row[j] * x[i];
     }
     for (i = 0; i < factor->n; ++i)
@@ -5404,16 +5550,15 @@ static int gxsp_invert_block(const float *block, float *inverse)
     return 1;
 }
 
-/* The diagonal raised by its share, and inverted; of dirty nodes only, unless dirty is NULL. 0 if a number overflowed. */
+/* The diagonal raised by its share, of dirty nodes only unless dirty is NULL, and inverted. 0 if a number overflowed. */
 static int gxsp_invert_diagonal(gxsp_level *level, const uint8_t *dirty)
 {
     uint32_t i;
     for (i = 0; i < level->n; ++i) {
         float *block = level->block + 9 * (size_t)level->start[i];
-        if (dirty && !dirty[i])
-            continue;
-        gxsp_add_mass(GXSP_SHIFT * (block[0] + block[4] + block[8]), block);
-        if (!gxsp_invert_block(block, level->inverse + 6 * (size_t)i))
+        if (!dirty || dirty[i])
+            gxsp_add_mass(GXSP_SHIFT * (block[0] + block[4] + block[8]), block);
+        if (level->inverse && !gxsp_invert_block(block, level->inverse + 6 * (size_t)i))
             return 0;
     }
     return 1;
@@ -5478,7 +5623,7 @@ static void gxsp_fill_factor(gxsp_factor *factor, const gxsp_level *level, uint3
             for (r = 0; r < 3; ++r)
                 for (c = 0; c < 3; ++c) {
                     const uint32_t row = 3 * place[i] + r, column = 3 * place[level->column[k]] + c;
-                    factor->entry[column <= row ? factor->row[row] + column : factor->row[column] + row] = level->block[9 * (size_t)k + 3 * c + r];
+                    gxsp_factor_row(factor, column <= row ? row : column)[column <= row ? column : row] = level->block[9 * (size_t)k + 3 * c + r];
                 }
 }
 
@@ -5515,27 +5660,30 @@ static void gxsp_nine_dots(const double *GXSP_RESTRICT a, size_t n, const float 
 /* Columns of the factor to the left of a node's own, in its three rows from row i on */
 static void gxsp_factor_left(gxsp_factor *factor, uint32_t i)
 {
-    const uint32_t first = factor->first[i], n = factor->n;
+    const uint32_t first = factor->first[i / 3], n = factor->n;
+    float *own[3];
     uint32_t j, m, r, c;
-    for (r = 0; r < 3; ++r)
+    for (r = 0; r < 3; ++r) {
+        own[r] = gxsp_factor_row(factor, i + r);
         for (j = first; j <= i + r; ++j)
-            factor->x[r * (size_t)n + j] = (double)factor->entry[factor->row[i + r] + j];
+            factor->rows[r * (size_t)n + j] = (double)own[r][j];
+    }
     for (j = first; j < i; j += 3) {
         const float *other[3], *from[3];
         double dots[9];
-        m = factor->first[j] > first ? factor->first[j] : first;
+        m = factor->first[j / 3] > first ? factor->first[j / 3] : first;
         for (c = 0; c < 3; ++c) {
-            other[c] = factor->entry + factor->row[j + c];
+            other[c] = gxsp_factor_row(factor, j + c);
             from[c] = other[c] + m;
         }
-        gxsp_nine_dots(factor->x + m, n, from, j - m, dots);
+        gxsp_nine_dots(factor->rows + m, n, from, j - m, dots);
         for (r = 0; r < 3; ++r) {
-            double *sum = factor->x + r * (size_t)n + j;
+            double *sum = factor->rows + r * (size_t)n + j;
             sum[0] = (sum[0] - dots[3 * r]) * (double)other[0][j];
             sum[1] = (sum[1] - dots[3 * r + 1] - (double)other[1][j] * sum[0]) * (double)other[1][j + 1];
             sum[2] = (sum[2] - dots[3 * r + 2] - (double)other[2][j] * sum[0] - (double)other[2][j + 1] * sum[1]) * (double)other[2][j + 2];
             for (c = 0; c < 3; ++c)
-                factor->entry[factor->row[i + r] + j + c] = (float)sum[c];
+                own[r][j + c] = (float)sum[c];
         }
     }
 }
@@ -5543,13 +5691,13 @@ static void gxsp_factor_left(gxsp_factor *factor, uint32_t i)
 /* Columns of a node's own in row i + r, whose other columns are known. 0 if a number overflowed. */
 static int gxsp_factor_own(gxsp_factor *factor, uint32_t i, uint32_t r)
 {
-    const uint32_t first = factor->first[i];
-    float *row = factor->entry + factor->row[i + r];
-    double *sum = factor->x + r * (size_t)factor->n;
+    const uint32_t first = factor->first[i / 3];
+    float *row = gxsp_factor_row(factor, i + r);
+    double *sum = factor->rows + r * (size_t)factor->n;
     const double own = sum[i + r], least = 0.5 * (double)GXSP_SHIFT * own;
     uint32_t j;
     for (j = i; j < i + r; ++j) {
-        const float *other = factor->entry + factor->row[j];
+        const float *other = gxsp_factor_row(factor, j);
         sum[j] = (sum[j] - gxsp_long_dot(other + first, sum + first, j - first)) * (double)other[j];
         row[j] = (float)sum[j];
     }
@@ -5735,14 +5883,14 @@ static int gxsp_invert_fine(gxsp_system *system)
     for (i = 0; i < fine->n; ++i) {
         float *inverse = fine->inverse + 6 * (size_t)i, block[9];
         for (m = 0; m < 9; ++m)
-            block[m] = system->still[i] || system->follower[i] != GXSP_NONE ? 0 : inverse[full[m]];
+            block[m] = system->still[i] || gxsp_follows(system, i) ? 0 : inverse[full[m]];
         if (!gxsp_invert_block(block, inverse))
             return 0;
     }
     return 1;
 }
 
-/* What follows from level 1's matrix. dirty: nodes of level 1 whose inverses are missing; NULL: all are. 0 if a number overflowed. */
+/* What follows from level 1's matrix. dirty: nodes of level 1 whose numbers are new; NULL: all are. 0 if a number overflowed. */
 static int gxsp_lower_numbers(gxsp_system *system, const uint8_t *dirty)
 {
     uint32_t at;
@@ -5756,11 +5904,27 @@ static int gxsp_lower_numbers(gxsp_system *system, const uint8_t *dirty)
     return gxsp_factorise(&system->factor, &system->levels[system->level_count - 1], system->pairs.local);
 }
 
+/* Shared memory while coarse numbers are made */
+static void gxsp_lend(gxsp_system *system)
+{
+    gxsp_space space = {NULL, 0};
+    space.memory = system->shared;
+    gxsp_numbers_carve(system, &space);
+    if (!system->fine) {
+        memset(system->edges.table, 0, system->edges.table_size * sizeof *system->edges.table);
+        memset(system->edges.half, 0, system->pairs.most * sizeof *system->edges.half);
+        memset(system->pairs.stamp, 0, system->levels[1].n * sizeof *system->pairs.stamp);
+        system->pairs.round = 0;
+    }
+}
+
 /* The matrices of all coarse levels from the last linearisation. 0 if a number overflowed. */
 static int gxsp_coarse_numbers(gxsp_system *system, double rate)
 {
     gxsp_level *fine = &system->levels[0];
+    int finite;
     size_t t;
+    gxsp_lend(system);
     if (system->fine)
         gxsp_coarsen(fine, fine + 1, &system->pairs);
     else {
@@ -5772,7 +5936,9 @@ static int gxsp_coarse_numbers(gxsp_system *system, double rate)
     for (t = 0; t < system->lasting->count; ++t)
         if (!system->lasting->term[t].assembled)
             gxsp_coarse_term(system, &system->lasting->term[t]);
-    return gxsp_lower_numbers(system, NULL);
+    finite = gxsp_lower_numbers(system, NULL);
+    gxsp_give_back(system);
+    return finite;
 }
 
 /* Largest eigenvalue of D^-1 (K + rate M) on what is not still, by the power method from a start that favours none; 0 if nothing moves */
@@ -6160,6 +6326,7 @@ static int gxsp_renew_chunk(gxsp_renewal *update, gxsp_chunk *chunk, uint32_t ho
         }
     chunk->block_count = (used + GXSP_LANES - 1) / GXSP_LANES;
     chunk->node_count = gxsp_number_nodes(copies, chunk->block_count * GXSP_LANES, numbers, nodes);
+    chunk->edge_count = 0;
     gxsp_set_corners(chunk, copies);
     return 1;
 }
@@ -6190,7 +6357,6 @@ static void gxsp_slots_room(gxsp_system *system, size_t count)
         system->slot_room = count + count / 8;
         system->nodes = (uint32_t *)gxsp_retake(pool, system->nodes, 0, system->slot_room + GXSP_AHEAD, sizeof(uint32_t));
         system->copy_slot = (uint32_t *)gxsp_retake(pool, system->copy_slot, 0, system->slot_room + GXSP_AHEAD, sizeof(uint32_t));
-        system->slots = (double(*)[3])gxsp_retake(pool, system->slots, 0, system->slot_room, sizeof *system->slots);
         system->slot_root = (uint16_t *)gxsp_retake(pool, system->slot_root, 0, system->slot_room, sizeof(uint16_t));
     }
     system->slot_count = count;
@@ -6262,9 +6428,6 @@ static void gxsp_copies_room(gxsp_system *system, size_t count)
     system->force = (double *)gxsp_retake(pool, system->force, 0, 3 * room, sizeof(double));
     system->trial = system->residual = (double *)gxsp_retake(pool, system->residual, 0, 3 * room, sizeof(double));
     system->direction = (double *)gxsp_retake(pool, system->direction, 0, 3 * room, sizeof(double));
-    system->search = (gxsp_vector4 *)gxsp_retake(pool, system->search, 0, room, sizeof(gxsp_vector4));
-    system->product = (gxsp_vector4 *)gxsp_retake(pool, system->product, 0, room, sizeof(gxsp_vector4));
-    system->scaled = (gxsp_vector4 *)gxsp_retake(pool, system->scaled, 0, room, sizeof(gxsp_vector4));
     system->guess[0] = (gxsp_vector4 *)gxsp_retake(pool, system->guess[0], n, room, sizeof(gxsp_vector4));
     system->guess[1] = (gxsp_vector4 *)gxsp_retake(pool, system->guess[1], n, room, sizeof(gxsp_vector4));
     system->range_sum = (double(*)[GXSP_SUMS])gxsp_retake(pool, system->range_sum, 0, room / GXSP_RANGE + 1, sizeof *system->range_sum);
@@ -6277,7 +6440,6 @@ static void gxsp_copies_room(gxsp_system *system, size_t count)
     system->fixed = (uint8_t *)gxsp_retake(pool, system->fixed, n, room, 1);
     system->still = (uint8_t *)gxsp_retake(pool, system->still, 0, room, 1);
     system->held = (uint8_t *)gxsp_retake(pool, system->held, n, room, 1);
-    system->follower = (uint32_t *)gxsp_retake(pool, system->follower, 0, room, sizeof(uint32_t));
     system->renewed = (uint8_t *)gxsp_retake(pool, system->renewed, 0, room, 1);
     if (system->level_count > 0) {
         system->coarse_state = (double *)gxsp_retake(pool, system->coarse_state, 3 * n, 3 * room, sizeof(double));
@@ -6285,8 +6447,6 @@ static void gxsp_copies_room(gxsp_system *system, size_t count)
         fine->weight = (float(*)[4])gxsp_retake(pool, fine->weight, n, room, sizeof *fine->weight);
     }
     system->copy_room = room;
-    if (!pool->failed)
-        memset(system->follower, 0xff, room * sizeof *system->follower);
 }
 
 /* Entries of an array over copies go where their copies go. moved: copies that are not what they were, moved_count; kept: scratch */
@@ -6459,14 +6619,13 @@ static void gxsp_drop_fixed(const gxsp_renewal *update)
         }
 }
 
-/* Blocks of level 1's entries between nodes that are not dirty, and these nodes' inverses, from the level as it was */
+/* Blocks of level 1's entries between nodes that are not dirty, from the level as it was */
 static void gxsp_keep_blocks(const gxsp_level *before, gxsp_level *level, const uint8_t *dirty)
 {
     uint32_t i, k, at;
     for (i = 0; i < before->n; ++i) {
         if (dirty[i])
             continue;
-        memcpy(level->inverse + 6 * (size_t)i, before->inverse + 6 * (size_t)i, 6 * sizeof(float));
         for (k = before->start[i], at = level->start[i]; k < before->start[i + 1]; ++k) {
             if (dirty[before->column[k]])
                 continue;
@@ -6484,6 +6643,7 @@ static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, co
     gxsp_system *system = update->system;
     gxsp_pass pass;
     uint32_t c;
+    int finite;
     gxsp_keep_blocks(before, &system->levels[1], dirty);
     memset(&pass, 0, sizeof pass);
     pass.system = system;
@@ -6495,8 +6655,11 @@ static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, co
             system->chunk_still[c] = 0;
             gxsp_task_linearise(&pass, c);
         }
+    gxsp_lend(system);
     gxsp_coarse_elements(system, dirty);
-    return gxsp_lower_numbers(system, dirty);
+    finite = gxsp_lower_numbers(system, dirty);
+    gxsp_give_back(system);
+    return finite;
 }
 
 /* Is it known that the coarse matrices are as old as they can be? */
@@ -6514,13 +6677,13 @@ static void gxsp_renew_levels(gxsp_renewal *update)
     uint32_t *from = (uint32_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint32_t)), count = 0, i;
     uint8_t *dirty = NULL;
     system->coarse = gxsp_pool_make(&old.allocator);
-    gxsp_edges_make(system);
+    gxsp_edges_make(system, scratch);
     if (!scratch->failed && !system->coarse.failed) {
         gxsp_drop_fixed(update);
         gxsp_join_dirty(update, forest);
         count = gxsp_number_dirty(update, forest, from);
         memset(&system->levels[1], 0, (GXSP_LEVELS - 1) * sizeof system->levels[1]);
-        gxsp_level_make(&system->coarse, &system->levels[1], count, 1);
+        gxsp_level_make(&system->coarse, &system->levels[1], count);
         dirty = (uint8_t *)gxsp_take(scratch, count, 1);
     }
     if (!scratch->failed && !system->coarse.failed) {
@@ -6530,8 +6693,11 @@ static void gxsp_renew_levels(gxsp_renewal *update)
         for (i = before.n; i < count; ++i)
             memcpy(system->levels[1].place[i], before.place[from[i - before.n]], sizeof *before.place);
         gxsp_levels_make(system, scratch, &before, dirty);
+        gxsp_count_edges(system);
     }
-    if (!scratch->failed && !system->coarse.failed && system->coarse_rate >= 0 &&
+    if (!scratch->failed && !system->coarse.failed)
+        gxsp_share(system);
+    if (!scratch->failed && !system->coarse.failed && !system->pool.failed && system->coarse_rate >= 0 &&
         (system->coarse_stiffness > 0 || system->coarse_worn || gxsp_coarse_ends(system) || !gxsp_renew_numbers(update, &before, dirty)))
         system->coarse_rate = -1; /* all numbers are made anew by the next step; springs and contact are not known any more */
     gxsp_release_to(&old, NULL);
@@ -6617,6 +6783,8 @@ static int gxsp_update_system(gxsp_renewal *update)
     gxsp_renew_pieces(update);
     if (!update->scratch->failed && !system->pool.failed && system->level_count > 0)
         gxsp_renew_levels(update);
+    else if (!system->pool.failed)
+        gxsp_share(system);
     return gxsp_is_compact(update);
 }
 
