@@ -995,7 +995,7 @@ static void gxbp_filter_line_plane(gxb_ball *r, const gxb_ball *p, const gxb_bal
     double ep, eq, l[3], t, et;
     const double sp = gxbp_filter_side(p, f, &ep), sq = gxbp_filter_side(q, f, &eq);
     const double den = gxbp_fence(sp - sq), size = gxbp_abs(den), el = gxbp_filter_difference(l, p, q);
-    const double eden = ep + eq + 4 * GXBP_U * (gxbp_abs(sp) + gxbp_abs(sq));
+    const double eden = ep + eq + 4 * GXBP_U * (gxbp_abs(sp) + gxbp_abs(sq)), inverse = 1 / size;   /* while t is divided, too */
     int k;
     r->error = GXBP_NO_BALL;
     if (!(size > 4 * eden) || p->error >= GXBP_NO_BALL || q->error >= GXBP_NO_BALL) {
@@ -1003,7 +1003,7 @@ static void gxbp_filter_line_plane(gxb_ball *r, const gxb_ball *p, const gxb_bal
         return;
     }
     t = gxbp_fence(sp / den);
-    et = 4 * (ep + gxbp_abs(t) * eden) / size + 8 * GXBP_U * gxbp_abs(t);
+    et = 4 * (ep + gxbp_abs(t) * eden) * inverse + 8 * GXBP_U * gxbp_abs(t);
     for (k = 0; k < 3; k++) r->x[k] = gxbp_fence(p->x[k] + t * l[k]);
     r->error = 2 * (gxbp_max3(l) * et + (gxbp_abs(t) + et) * el + p->error) +
                8 * GXBP_U * (gxbp_max3(p->x) + gxbp_abs(t) * gxbp_max3(l) + gxbp_max3(r->x)) + GXBP_TINY;
@@ -4757,6 +4757,7 @@ typedef struct gxbp_source {    /* an input triangle */
 } gxbp_source;
 enum { GXBP_DEGENERATE = 1, GXBP_DIRTY = 2, GXBP_DIVIDED = 4, GXBP_FLAT = 8,
        GXBP_REACHED = 16 };    /* one of its facets has got a state: all have, or will soon */
+enum { GXBP_FOLDS = 8 };        /* two bits of the flags for each edge from this one on, see gxbp_fold_beyond_filter */
 
 typedef struct gxbp_piece {     /* a triangle of a source's triangulation; edge k from v[k] to v[k + 1] */
     uint32_t v[3], near[3], labels[3];
@@ -4778,8 +4779,8 @@ typedef struct gxbp_link { uint32_t value, next; } gxbp_link;
 /* left: the sign of the label's plane to the left of p q, seen from the side to which the source's normal points; 0: not known */
 typedef struct gxbp_segment { uint32_t p, q, label, next; int32_t left; } gxbp_segment;
 /* An edge of a surface. Its inner points: in cut_points, in the half-edge's direction. rim: of the facets of divided sources on its two sides (that
-   of the half-edge first) those at its start, as 3 f + k. fold: see gxbp_fold. */
-typedef struct gxbp_cut { uint32_t half_edge, first, count, rim[2]; int32_t fold; } gxbp_cut;
+   of the half-edge first) those at its start, as 3 f + k. */
+typedef struct gxbp_cut { uint32_t half_edge, first, count, rim[2]; } gxbp_cut;
 typedef struct gxbp_hit { uint32_t cut, point; } gxbp_hit;
 typedef struct gxbp_margin { uint32_t vertex, near, labels, made, dangling; } gxbp_margin;
 typedef struct gxbp_box { float low[3], high[3]; } gxbp_box;   /* coordinates / 16, not less wide than what is in it: see gxbp_float_below */
@@ -4796,6 +4797,7 @@ typedef struct gxbp_tree {      /* boxes over groups of GXBP_LEAF sources, then 
 typedef struct gxbp_operand {
     uint32_t operation, rule;
     uint32_t simple;            /* vouched for, or found */
+    uint32_t reached;           /* a facet has got a state in the evaluation at work */
     uint32_t source, source_count;
     uint32_t bounds;            /* of its leaves in gxb_boolean.bounds */
     uint32_t *order;            /* sources in the order of the tree's leaves, in one piece of memory of its own */
@@ -4841,6 +4843,7 @@ struct gxb_boolean {            /* what is used most comes first: its addresses 
     uint32_t *chain; uint32_t chain_count, chain_capacity;
     uint32_t arranged;          /* operands that are in the arrangement */
     uint32_t stated;            /* operands that states count; 0: facets have no states */
+    uint32_t unreached;         /* operands of which no facet has a state yet */
     uint32_t segment_mark;      /* segments before it are in the triangulations */
     uint32_t merged_points;     /* points before it were compared with each other */
     struct gxbp_projected *projected; uint32_t projected_count, projected_capacity;     /* the computed ones of these, along a direction */
@@ -5566,12 +5569,37 @@ static int gxbp_flat_turn(const gxb_boolean *b, uint32_t plane, const double *p,
     return gxb_orient2d(a, c, d) * f->axis_sign;
 }
 
+/* Where the filter leaves a fold open, it is remembered with both triangles at the edge, which ask for it in turn. */
+static GXBP_APART int gxbp_fold_beyond_filter(gxb_boolean *b, uint32_t half_edge, uint32_t twin) {
+    gxbp_source *s = &b->sources[half_edge / 3], *t = &b->sources[twin / 3];
+    const uint32_t mine = GXBP_FOLDS + 2 * (half_edge % 3), other = GXBP_FOLDS + 2 * (twin % 3);
+    uint32_t fold = s->flags >> mine & 3;                           /* 0: not known, else 2 more than it is */
+    if (fold == 0) {
+        fold = (uint32_t)(gxbp_point_side_beyond_filter(b, t->point[(twin % 3 + 2) % 3], s->plane) + 2);
+        s->flags |= fold << mine;
+        t->flags |= fold << other;
+    }
+    return (int)fold - 2;
+}
+
+/* How the surface is folded between a triangle that has a plane, at a half-edge, and its twin, edge k of s: 1 towards its front, as the corner
+   beyond the edge lies in front of each, -1 to its back. */
+static inline int gxbp_fold(gxb_boolean *b, uint32_t half_edge, uint32_t s, uint32_t k) {
+    const uint32_t plane = b->sources[half_edge / 3].plane, corner = b->sources[s].point[k == 0 ? 2 : k - 1];
+    double bound, value;
+    if (b->sources[s].plane == plane) return 0;
+    value = gxbp_filter_side(&b->cx.points[corner].ball, &b->cx.planes[plane].filter, &bound);
+    b->cx.filter_calls++;
+    if (value > bound) return 1;
+    return value < -bound ? -1 : gxbp_fold_beyond_filter(b, half_edge, 3 * s + k);
+}
+
 /* A triangle that lies in the plane of a neighbour, and faces as it does, has the same plane: points on both are known to be in it. */
 static int gxbp_share_plane(gxb_boolean *b, uint32_t s) {
-    int k;
+    uint32_t k;
     for (k = 0; k < 3; k++) {
         const uint32_t twin = b->sources[s].twin[k], plane = twin == GXB_NONE ? GXB_NONE : b->sources[twin / 3].plane;
-        if (plane == GXB_NONE || gxbp_point_side(b, b->sources[s].point[(k + 2) % 3], plane) != 0 ||
+        if (plane == GXB_NONE || gxbp_fold(b, twin, s, k) != 0 ||
             gxbp_flat_turn(b, plane, gxbp_corner_of(b, s, 0), gxbp_corner_of(b, s, 1), gxbp_corner_of(b, s, 2)) <= 0) continue;
         b->sources[s].plane = plane;
         return 1;
@@ -5618,20 +5646,22 @@ static uint32_t gxbp_edge_name(const gxb_boolean *b, uint32_t s, int k) {
     return twin < h ? twin : h;
 }
 
-/* The cut of an edge; GXB_NONE: no memory */
-static uint32_t gxbp_need_cut(gxb_boolean *b, uint32_t s, int k) {
-    const uint32_t twin = b->sources[s].twin[k], cut = b->sources[s].edge[k];
+static GXBP_APART uint32_t gxbp_new_cut(gxb_boolean *b, uint32_t s, int k) {
+    const uint32_t twin = b->sources[s].twin[k];
     gxbp_cut *c;
-    if (cut != GXB_NONE) return cut;
     if (!GXBP_ROOM(b, cuts, cut, 1)) return GXB_NONE;
     c = &b->cuts[b->cut_count];
     c->half_edge = gxbp_edge_name(b, s, k);
     c->first = c->count = 0;
     c->rim[0] = c->rim[1] = GXB_NONE;
-    c->fold = GXBP_UNKNOWN;
     b->sources[s].edge[k] = b->cut_count;
     if (twin != GXB_NONE) b->sources[twin / 3].edge[twin % 3] = b->cut_count;
     return b->cut_count++;
+}
+
+/* The cut of an edge; GXB_NONE: no memory */
+static inline uint32_t gxbp_need_cut(gxb_boolean *b, uint32_t s, int k) {
+    return b->sources[s].edge[k] != GXB_NONE ? b->sources[s].edge[k] : gxbp_new_cut(b, s, k);
 }
 
 /* A point inside an edge. */
@@ -6843,7 +6873,8 @@ static void gxbp_note_divided(gxb_boolean *b, uint32_t s) {
 enum { GXBP_SMALL = 24 };       /* rim points and segments; more are divided in the general way */
 
 /* A vertex of a polygon that is walked with its inside on the left. on: the edges of the source that it lies on, as bits; slot: of the edge to
-   the next vertex, GXB_NONE on the rim; bend: 1 convex, 0 straight, -1 reflex. */
+   the next vertex, GXB_NONE on the rim, but at the starts of the source's edges GXBP_RIM and the edge; bend: 1 convex, 0 straight, -1 reflex. */
+#define GXBP_RIM (UINT32_MAX - 3)
 typedef struct gxbp_knot { uint32_t vertex, on, slot; int bend; uint32_t before, after; } gxbp_knot;
 typedef struct gxbp_strand { uint32_t first, count, from, to; } gxbp_strand;    /* segments in gxbp_division.step, rim points at the ends */
 
@@ -6851,6 +6882,7 @@ typedef struct gxbp_division {
     uint32_t source, spare, state;          /* spare: the source's only facet, until it is used */
     gxbp_knot rim[GXBP_SMALL]; uint32_t rim_count;
     uint32_t corner[3];                     /* places of the source's corners in the rim */
+    uint32_t cut[3], other[3];              /* of the source's edges; 1: the cut has its half-edge from the other triangle */
     uint32_t chain[GXBP_SMALL];             /* of each rim point: the strand that ends there, or GXB_NONE */
     gxbp_strand strand[GXBP_SMALL]; uint32_t strand_count;
     gxbp_knot step[GXBP_SMALL];             /* of each segment: the point that it leaves; slot: its place in b->chain */
@@ -6892,6 +6924,18 @@ static int gxbp_collect_rim(gxb_boolean *b, gxbp_division *d, uint32_t n) {
             knot->slot = GXB_NONE;
             d->chain[d->rim_count++] = GXB_NONE;
         }
+    }
+    return 1;
+}
+
+/* Where the source's edges start, on their first side or their other one. 0: no memory */
+static int gxbp_mark_starts(gxb_boolean *b, gxbp_division *d) {
+    uint32_t k;
+    for (k = 0; k < 3; k++) {
+        const uint32_t cut = d->cut[k] = gxbp_need_cut(b, d->source, (int)k), end = d->corner[k == 2 ? 0 : k + 1];
+        if (cut == GXB_NONE) return 0;
+        d->other[k] = b->cuts[cut].half_edge != 3 * d->source + k;
+        d->rim[!d->other[k] ? d->corner[k] : (end == 0 ? d->rim_count : end) - 1].slot = GXBP_RIM + k;
     }
     return 1;
 }
@@ -6938,16 +6982,6 @@ static int gxbp_left_of_segment(gxb_boolean *b, uint32_t i, uint32_t p, uint32_t
     return gxbp_left(b, &line, v);
 }
 
-/* 1: at a divided edge the surface turns towards its front, the corner beyond the edge lies in front of the triangle; -1: to its back */
-static int gxbp_fold(gxb_boolean *b, uint32_t half_edge) {
-    const gxbp_source *s = &b->sources[half_edge / 3];
-    const uint32_t twin = s->twin[half_edge % 3];
-    gxbp_cut *cut = &b->cuts[s->edge[half_edge % 3]];
-    if (cut->fold == GXBP_UNKNOWN)
-        cut->fold = s->plane == b->sources[twin / 3].plane ? 0 : gxbp_point_side(b, b->sources[twin / 3].point[(twin % 3 + 2) % 3], s->plane);
-    return cut->fold;
-}
-
 /* How a chain goes on at an inner point, from one segment to the next: where it passes an edge of the other surface, as that is folded there. */
 static int gxbp_bend_of_chain(gxb_boolean *b, const gxbp_knot *from, const gxbp_knot *at, uint32_t next) {
     const gxbp_segment *segment = &b->segments[b->chain[3 * from->slot]];
@@ -6955,7 +6989,7 @@ static int gxbp_bend_of_chain(gxb_boolean *b, const gxbp_knot *from, const gxbp_
     const uint32_t twin = key[0] == GXB_FROM_EDGE_TRIANGLE ? b->sources[key[1] / 3].twin[key[1] % 3] : GXB_NONE;
     if (twin == GXB_NONE || !((key[1] / 3 == t && twin / 3 == u) || (key[1] / 3 == u && twin / 3 == t)))
         return gxbp_left_of_segment(b, from->slot, from->vertex, at->vertex, next);
-    return gxbp_fold(b, key[1]) * (gxbp_same(b, segment->p) == from->vertex ? segment->left : -segment->left);
+    return gxbp_fold(b, key[1], twin / 3, twin % 3) * (gxbp_same(b, segment->p) == from->vertex ? segment->left : -segment->left);
 }
 
 static GXBP_APART int gxbp_collect_chains(gxb_boolean *b, gxbp_division *d, uint32_t n) {
@@ -7024,12 +7058,15 @@ static int gxbp_is_ear(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *
 }
 
 /* Edge k of a facet is the one in a slot: the second facet there meets the first. */
-static void gxbp_use_slot(gxb_boolean *b, gxbp_division *d, uint32_t f, uint32_t k, uint32_t slot) {
+static inline void gxbp_use_slot(gxb_boolean *b, gxbp_division *d, uint32_t f, uint32_t k, uint32_t slot) {
     gxbp_piece *piece = &b->pieces[f];
     uint32_t other;
     piece->near[k] = GXB_NONE;
     piece->labels[k] = GXBP_BARE;
-    if (slot == GXB_NONE) return;
+    if (slot >= GXBP_RIM) {
+        if (slot != GXB_NONE) b->cuts[d->cut[slot - GXBP_RIM]].rim[d->other[slot - GXBP_RIM]] = 3 * f + k;
+        return;
+    }
     piece->labels[k] = slot < d->step_count ? d->labels + slot : GXBP_LOOSE;
     other = d->half[slot];
     d->half[slot] = 3 * f + k;
@@ -7128,7 +7165,7 @@ static GXBP_APART int gxbp_divide_by_chains(gxb_boolean *b, uint32_t s, uint32_t
     d.source = s;
     b->plane = b->sources[s].plane;
     if (!gxbp_collect_rim(b, &d, n) || !gxbp_collect_chains(b, &d, n)) return 0;
-    if (!GXBP_ROOM(b, links, link, n)) return 1;
+    if (!GXBP_ROOM(b, links, link, n) || !gxbp_mark_starts(b, &d)) return 1;
     for (i = 0; i < n; i++) {
         gxbp_new_link(b, b->segments[b->chain[3 * d.step[i].slot]].label, GXBP_BARE);
         d.half[i] = GXB_NONE;
@@ -7181,7 +7218,8 @@ static void gxbp_divide_source(gxb_boolean *b, uint32_t s) {
     gxbp_note_divided(b, s);
     n = gxbp_chain_segments(b, s);
     if (b->result != GX_OK) return;
-    if (!gxbp_divide_by_chains(b, s, n)) gxbp_divide_by_segments(b, s, n);
+    if (gxbp_divide_by_chains(b, s, n)) return;
+    gxbp_divide_by_segments(b, s, n);
     if (b->result == GX_OK) gxbp_note_rims(b, s);
 }
 
@@ -7698,6 +7736,49 @@ static uint32_t gxbp_neighbour(const gxb_boolean *b, uint32_t f, int k) {
     return GXB_NONE;
 }
 
+/* The source that alone crosses the edge of a facet; GXB_NONE: none or several do, or one has an edge there. */
+static uint32_t gxbp_crossing_source(const gxb_boolean *b, uint32_t f, int k) {
+    const uint32_t list = b->pieces[f].labels[k];
+    if (b->pieces[f].near[k] == GXB_NONE || list == GXBP_LOOSE || list == GXBP_BARE || b->links[list].next != GXBP_BARE) return GXB_NONE;
+    return b->links[list].value & GXBP_EDGE_LABEL ? GXB_NONE : b->links[list].value;
+}
+
+/* The facet of a source on the left of the edge from u to w, which is its edge *k; GXB_NONE: there is none. */
+static uint32_t gxbp_facet_at(const gxb_boolean *b, uint32_t s, uint32_t u, uint32_t w, int *k) {
+    uint32_t f;
+    for (f = b->sources[s].facet; f != GXB_NONE; f = b->pieces[f].next)
+        for (*k = 0; *k < 3; ++*k) if (b->pieces[f].v[*k] == u && b->pieces[f].v[(*k + 1) % 3] == w) return f;
+    return GXB_NONE;
+}
+
+static void gxbp_note_reached(gxb_boolean *b, uint32_t s) {
+    gxbp_operand *o = &b->operands[b->sources[s].operand];
+    b->unreached -= !o->reached;
+    o->reached = 1;
+}
+
+static int gxbp_winds(const gxb_boolean *b, uint32_t s) { return b->operands[b->sources[s].operand].operation != GXB_SPLIT; }
+
+/* From a facet to an operand of which no facet has a state yet, whose triangle crosses it in its edge k, where nothing else is: four facets meet
+   there, with the plane of each between two of the winding numbers. The facet that gets a state goes to b->chain. */
+static void gxbp_reach_operand(gxb_boolean *b, uint32_t f, int k) {
+    const uint32_t s = b->pieces[f].source, t = gxbp_crossing_source(b, f, k);
+    int32_t *winding;
+    uint32_t g;
+    int j, side, other;
+    if (t == GXB_NONE || b->operands[b->sources[t].operand].reached || b->sources[t].flags & GXBP_FLAT) return;
+    g = gxbp_facet_at(b, t, b->pieces[f].v[k], b->pieces[f].v[(k + 1) % 3], &j);
+    if (g == GXB_NONE || gxbp_crossing_source(b, g, j) != s || b->pieces[g].state != GXB_NONE || !GXBP_ROOM(b, chain, chain, 1)) return;
+    side = gxbp_side_of_piece(b, f, k, t);
+    other = gxbp_side_of_piece(b, g, j, s);
+    if (side == 0 || other == 0 || (winding = gxbp_copy_winding(b, b->pieces[f].state)) == NULL) return;
+    if (other < 0 && gxbp_winds(b, s)) winding[b->sources[s].operand]++;
+    if (side < 0 && gxbp_winds(b, t)) winding[b->sources[t].operand]--;
+    b->pieces[g].state = gxbp_find_state(b);
+    gxbp_note_reached(b, t);
+    b->chain[b->chain_count++] = g;
+}
+
 /* To all facets of f's triangulation that can be reached */
 static void gxbp_spread_within(gxb_boolean *b, uint32_t f) {
     const uint32_t base = b->scratch_count, flat = b->sources[b->pieces[f].source].flags & GXBP_FLAT;
@@ -7709,6 +7790,7 @@ static void gxbp_spread_within(gxb_boolean *b, uint32_t f) {
             const uint32_t near = b->pieces[f].near[k];
             if (near == GXB_NONE || b->pieces[near].state != GXB_NONE || (flat && b->pieces[near].covers == GXB_NONE)) continue;
             b->pieces[near].state = gxbp_state_beyond(b, f, k);
+            if (b->unreached > 0 && !flat) gxbp_reach_operand(b, f, k);
             gxbp_push(b, near);
         }
     }
@@ -7848,19 +7930,30 @@ static GXBP_COLD void gxbp_close_states(gxb_boolean *b) {
         }
 }
 
+/* By a ray from a facet to all that can be reached from it */
+static void gxbp_find_state_of(gxb_boolean *b, uint32_t f) {
+    gxbp_note_reached(b, b->pieces[f].source);
+    b->pieces[f].state = gxbp_state_by_ray(b, f, GXB_NONE, 0);
+    if (!GXBP_ROOM(b, chain, chain, 1)) return;
+    for (b->chain[b->chain_count++] = f; b->chain_count > 0 && b->result == GX_OK;) gxbp_spread_state(b, b->chain[--b->chain_count]);
+}
+
 static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
-    uint32_t f, pass;
+    uint32_t s, f;
     if (b->result != GX_OK) return;
     if (b->united || b->renamed) gxbp_rename_vertices(b);
     if (!gxbp_lengthen_states(b)) return;
+    for (s = 0; s < b->operand_count; s++) b->operands[s].reached = s < b->stated;
+    b->unreached = b->operand_count - b->stated;
     if (b->stated > 0) gxbp_close_states(b);
-    for (pass = 0; pass < 2; pass++)            /* first from input triangles, whose rays are cheap */
-        for (f = 0; f < b->piece_count && b->result == GX_OK; f++) {
-            if (b->pieces[f].state != GXB_NONE || !gxbp_is_surface(b, f)) continue;
-            if (pass == 0 && b->sources[b->pieces[f].source].flags & GXBP_DIVIDED) continue;
-            b->pieces[f].state = gxbp_state_by_ray(b, f, GXB_NONE, 0);
-            gxbp_spread_state(b, f);
-        }
+    b->chain_count = 0;
+    for (s = 0; s < b->source_count && b->result == GX_OK; s++) {    /* first from input triangles, whose rays are cheap */
+        f = b->sources[s].facet;
+        if (b->sources[s].flags & GXBP_DIVIDED || f == GXB_NONE || b->pieces[f].state != GXB_NONE || !gxbp_is_surface(b, f)) continue;
+        gxbp_find_state_of(b, f);
+    }
+    for (f = 0; f < b->piece_count && b->result == GX_OK; f++)
+        if (b->pieces[f].state == GXB_NONE && gxbp_is_surface(b, f)) gxbp_find_state_of(b, f);
     b->stated = b->operand_count;
 }
 
