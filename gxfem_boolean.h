@@ -4852,7 +4852,7 @@ struct gxb_boolean {            /* what is used most comes first: its addresses 
     uint32_t plane, stamp, head_stamp;                                  /* of the triangulation at work */
     int32_t *windings; uint32_t winding_count, winding_capacity;        /* state x operand */
     uint32_t *states; uint32_t state_count, state_capacity;             /* of each state: is it inside? */
-    uint32_t *state_table; uint32_t state_table_size;
+    uint32_t *state_table; uint32_t state_table_size, listed;           /* listed: how many states it has */
     gxbp_crossing steps[GXBP_STEPS];                                        /* the last ones asked for */
     double *out_vertices; uint32_t out_vertex_count, out_vertex_capacity;
     gxb_origin *out_origins; uint32_t out_origin_count, out_origin_capacity;
@@ -5185,21 +5185,19 @@ enum { GXBP_FEW = 32, GXBP_FEW_TRIANGLES = 80 };        /* vertices of which a t
 /* Of few vertices. 0: not all edges have one half-edge in each direction. */
 static int gxbp_find_few_twins(const uint32_t *triangles, uint32_t count, uint32_t vertex_count, uint32_t *twin) {
     uint8_t at[GXBP_FEW * GXBP_FEW];
-    uint32_t h, k, i;
+    uint32_t h, k, i, alone = 3 * count;
     memset(at, 0xff, (size_t)vertex_count * vertex_count);
     for (h = 0; h < 3 * count; h += 3)
         for (k = 0, i = 2; k < 3; i = k++) {
-            uint8_t *place = &at[triangles[h + i] * vertex_count + triangles[h + k]];
-            if (*place != 0xff) return 0;
-            *place = (uint8_t)(h + i);
+            const uint32_t p = triangles[h + i], q = triangles[h + k], back = at[q * vertex_count + p];
+            if (p == q || at[p * vertex_count + q] != 0xff) return 0;
+            at[p * vertex_count + q] = (uint8_t)(h + i);
+            if (back == 0xff) continue;
+            twin[h + i] = back;
+            twin[back] = h + i;
+            alone -= 2;
         }
-    for (h = 0; h < 3 * count; h += 3)
-        for (k = 0, i = 2; k < 3; i = k++) {
-            const uint8_t place = at[triangles[h + k] * vertex_count + triangles[h + i]];
-            if (place == 0xff || place == h + i) return 0;
-            twin[h + i] = place;
-        }
-    return 1;
+    return alone == 0;
 }
 
 /* Words of room that gxbp_find_twins works in */
@@ -5991,7 +5989,7 @@ static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
     gxbp_sides(b, t, b->sources[s].plane, 0, of_t);
     if (gxbp_all_on_one_side(of_t) || !gxbp_need_plane(b, t)) return;
     flat = of_t[0] == 0 && of_t[1] == 0 && of_t[2] == 0;
-    neighbours = gxbp_are_neighbours(b, s, t);
+    neighbours = b->sources[s].operand == b->sources[t].operand && gxbp_are_neighbours(b, s, t);
     if (neighbours && !flat) return;
     if (flat) {
         if (!neighbours || !gxbp_flat_apart(b, s, t)) gxbp_meet_in_plane(b, s, t);
@@ -6906,20 +6904,21 @@ static int gxbp_is_generic(const gxb_boolean *b, uint32_t s, uint32_t n) {
 /* Rim points are marked by stamps, with their place in hints. */
 static int gxbp_collect_rim(gxb_boolean *b, gxbp_division *d, uint32_t n) {
     const uint32_t s = d->source;
-    uint32_t k, i;
+    uint32_t k, i, on;
     d->rim_count = 0;
     b->stamp++;
     for (k = 0; k < 3; k++) {
         const uint32_t count = gxbp_edge_points(b, s, k) - 1;
         if (d->rim_count + count + n > GXBP_SMALL) return 0;
         d->corner[k] = d->rim_count;
-        for (i = 0; i < count; i++) {
+        on = 1u << k | 1u << (k == 0 ? 2 : k - 1);
+        for (i = 0; i < count; i++, on = 1u << k) {
             gxbp_knot *knot = &d->rim[d->rim_count];
             knot->vertex = gxbp_edge_point(b, s, k, i);
             if (gxbp_is_placed(b, knot->vertex)) return 0;
             b->vertices[knot->vertex].stamp = b->stamp;
             b->vertices[knot->vertex].hint = d->rim_count;
-            knot->on = 1u << k | (i == 0 ? 1u << (k + 2) % 3 : 0);
+            knot->on = on;
             knot->bend = i == 0;
             knot->slot = GXB_NONE;
             d->chain[d->rim_count++] = GXB_NONE;
@@ -7384,8 +7383,17 @@ static inline void gxbp_merge_projected(gxbp_projected *p, uint32_t half, uint32
     for (i = 0, j = half, k = 0; i < half; k++) p[k] = j < count && p[j].t < work[i].t ? p[j++] : work[i++];
 }
 
+static inline void gxbp_sort_few_projected(gxbp_projected *p, uint32_t count) {
+    uint32_t i, j;
+    for (i = 1; i < count; i++) {
+        const gxbp_projected mine = p[i];
+        for (j = i; j > 0 && mine.t < p[j - 1].t; j--) p[j] = p[j - 1];
+        p[j] = mine;
+    }
+}
+
 static GXBP_APART void gxbp_sort_projected(gxbp_projected *p, uint32_t count, gxbp_projected *work) {
-    if (count < 2) return;
+    if (count <= 16) { gxbp_sort_few_projected(p, count); return; }
     gxbp_sort_projected(p, count / 2, work);
     gxbp_sort_projected(p + count / 2, count - count / 2, work);
     gxbp_merge_projected(p, count / 2, count, work);
@@ -7456,19 +7464,20 @@ static uint32_t gxbp_hash_winding(const int32_t *winding, uint32_t count) {
     return hash;
 }
 
-static void gxbp_list_states(gxb_boolean *b) {
-    const uint32_t n = b->operand_count, last = b->state_table_size - 1;
-    uint32_t i, k;
+enum { GXBP_FEW_STATES = 8 };   /* among which a state is looked for without a table */
+
+/* A table of all states, with room for one more */
+static GXBP_COLD int gxbp_list_states(gxb_boolean *b) {
+    const uint32_t n = b->operand_count;
+    uint32_t size = b->state_table_size == 0 ? 64 : b->state_table_size, i, k;
+    while (2 * (b->state_count + 1) > size) size *= 2;
+    if (size > b->state_table_size && !gxbp_renew_table(b, &b->state_table, &b->state_table_size, size)) return 0;
     memset(b->state_table, 0xff, (size_t)b->state_table_size * sizeof *b->state_table);
     for (i = 0; i < b->state_count; i++) {
-        for (k = gxbp_hash_winding(b->windings + (size_t)i * n, n) & last; b->state_table[k] != GXB_NONE; k = (k + 1) & last) {}
+        for (k = gxbp_hash_winding(b->windings + (size_t)i * n, n) & (size - 1); b->state_table[k] != GXB_NONE; k = (k + 1) & (size - 1)) {}
         b->state_table[k] = i;
     }
-}
-
-static GXBP_COLD int gxbp_grow_states(gxb_boolean *b) {
-    if (!gxbp_renew_table(b, &b->state_table, &b->state_table_size, b->state_table_size == 0 ? 64 : 2 * b->state_table_size)) return 0;
-    gxbp_list_states(b);
+    b->listed = b->state_count;
     return 1;
 }
 
@@ -7476,11 +7485,17 @@ static GXBP_COLD int gxbp_grow_states(gxb_boolean *b) {
 static uint32_t gxbp_find_state(gxb_boolean *b) {
     const uint32_t n = b->operand_count;
     const int32_t *winding = b->windings + (size_t)b->state_count * n;
-    uint32_t k;
-    if ((2 * (b->state_count + 1) > b->state_table_size && !gxbp_grow_states(b)) || !GXBP_ROOM(b, states, state, 1)) return 0;
-    for (k = gxbp_hash_winding(winding, n) & (b->state_table_size - 1); b->state_table[k] != GXB_NONE; k = (k + 1) & (b->state_table_size - 1))
-        if (memcmp(b->windings + (size_t)b->state_table[k] * n, winding, n * sizeof *winding) == 0) return b->state_table[k];
-    b->state_table[k] = b->state_count;
+    uint32_t k = 0;
+    if (!GXBP_ROOM(b, states, state, 1)) return 0;
+    if (b->state_count < GXBP_FEW_STATES) {
+        for (; k < b->state_count; k++) if (memcmp(b->windings + (size_t)k * n, winding, n * sizeof *winding) == 0) return k;
+    } else {
+        if ((b->listed < b->state_count || 2 * (b->state_count + 1) > b->state_table_size) && !gxbp_list_states(b)) return 0;
+        for (k = gxbp_hash_winding(winding, n) & (b->state_table_size - 1); b->state_table[k] != GXB_NONE; k = (k + 1) & (b->state_table_size - 1))
+            if (memcmp(b->windings + (size_t)b->state_table[k] * n, winding, n * sizeof *winding) == 0) return b->state_table[k];
+        b->state_table[k] = b->state_count;
+        b->listed++;
+    }
     b->states[b->state_count] = (uint32_t)gxbp_is_inside(b, winding);
     return b->state_count++;
 }
@@ -7779,10 +7794,13 @@ static void gxbp_reach_operand(gxb_boolean *b, uint32_t f, int k) {
     b->chain[b->chain_count++] = g;
 }
 
+/* Without a look at the room: see gxbp_find_states. */
+static void gxbp_stack(gxb_boolean *b, uint32_t value) { b->scratch[b->scratch_count++] = value; }
+
 /* To all facets of f's triangulation that can be reached */
 static void gxbp_spread_within(gxb_boolean *b, uint32_t f) {
     const uint32_t base = b->scratch_count, flat = b->sources[b->pieces[f].source].flags & GXBP_FLAT;
-    gxbp_push(b, f);
+    gxbp_stack(b, f);
     while (b->scratch_count > base && b->result == GX_OK) {
         int k;
         f = b->scratch[--b->scratch_count];
@@ -7791,7 +7809,7 @@ static void gxbp_spread_within(gxb_boolean *b, uint32_t f) {
             if (near == GXB_NONE || b->pieces[near].state != GXB_NONE || (flat && b->pieces[near].covers == GXB_NONE)) continue;
             b->pieces[near].state = gxbp_state_beyond(b, f, k);
             if (b->unreached > 0 && !flat) gxbp_reach_operand(b, f, k);
-            gxbp_push(b, near);
+            gxbp_stack(b, near);
         }
     }
 }
@@ -7801,7 +7819,7 @@ static void gxbp_spread_within(gxb_boolean *b, uint32_t f) {
 static void gxbp_spread_state(gxb_boolean *b, uint32_t first) {
     uint32_t i;
     b->scratch_count = 0;
-    gxbp_push(b, first);
+    gxbp_stack(b, first);
     for (i = 0; i < b->scratch_count && b->result == GX_OK; i++) {
         const uint32_t f = b->scratch[i], s = b->pieces[f].source;
         uint32_t k;
@@ -7816,7 +7834,7 @@ static void gxbp_spread_state(gxb_boolean *b, uint32_t first) {
             if (g == GXB_NONE) continue;
             b->pieces[g].state = b->pieces[gxbp_rim_facet(b, s, k)].state;
             b->sources[twin / 3].flags |= GXBP_REACHED;
-            gxbp_push(b, g);
+            gxbp_stack(b, g);
         }
     }
 }
@@ -7841,7 +7859,7 @@ static GXBP_APART int gxbp_lengthen_states(gxb_boolean *b) {
         memset(b->windings + (size_t)i * n + m, 0, (n - m) * sizeof *b->windings);
     }
     for (i = 0; i < b->state_count; i++) b->states[i] = (uint32_t)gxbp_is_inside(b, b->windings + (size_t)i * n);
-    if (b->state_table_size > 0) gxbp_list_states(b);
+    b->listed = 0;
     return 1;
 }
 
@@ -7946,14 +7964,15 @@ static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
     for (s = 0; s < b->operand_count; s++) b->operands[s].reached = s < b->stated;
     b->unreached = b->operand_count - b->stated;
     if (b->stated > 0) gxbp_close_states(b);
-    b->chain_count = 0;
+    b->chain_count = b->scratch_count = 0;
+    if (!GXBP_ROOM(b, scratch, scratch, (size_t)b->source_count + b->piece_count)) return;      /* each source and each facet is reached once */
     for (s = 0; s < b->source_count && b->result == GX_OK; s++) {    /* first from input triangles, whose rays are cheap */
         f = b->sources[s].facet;
         if (b->sources[s].flags & GXBP_DIVIDED || f == GXB_NONE || b->pieces[f].state != GXB_NONE || !gxbp_is_surface(b, f)) continue;
         gxbp_find_state_of(b, f);
     }
-    for (f = 0; f < b->piece_count && b->result == GX_OK; f++)
-        if (b->pieces[f].state == GXB_NONE && gxbp_is_surface(b, f)) gxbp_find_state_of(b, f);
+    for (f = 0; f < b->piece_count; f++)
+        if (b->pieces[f].state == GXB_NONE && b->result == GX_OK && gxbp_is_surface(b, f)) gxbp_find_state_of(b, f);
     b->stated = b->operand_count;
 }
 
@@ -8095,18 +8114,23 @@ static GXBP_APART void gxbp_set_triangle_count(gxb_boolean *b, uint32_t n) {
 }
 
 static GXBP_APART void gxbp_extract(gxb_boolean *b) {
-    uint32_t f;
+    uint32_t f, state = GXB_NONE, operand = GXB_NONE;       /* of the last facet that only its own source covers */
+    int front_in = 0, back_in = 0;
     for (f = 0; f < b->vertex_count; f++) b->vertices[f].slot = GXB_NONE;
     gxbp_set_triangle_count(b, 0);
     b->out_point_count = b->out_vertex_count = b->out_origin_count = 0;
     if (!gxbp_more_triangles(b, b->piece_count / 2) || !GXBP_ROOM(b, out_triangles, out_triangle, 3 * (size_t)(b->piece_count / 2))) return;
     for (f = 0; f < b->piece_count && b->result == GX_OK; f++) {
-        uint32_t source, behind;
-        int front_in, back_in;
+        const gxbp_piece *piece = &b->pieces[f];
+        uint32_t source;
         if (!gxbp_is_surface(b, f)) continue;
-        behind = gxbp_state_behind(b, f);           /* may move the states */
-        back_in = b->states[behind] != 0;
-        front_in = b->states[b->pieces[f].state] != 0;
+        if (piece->covers != GXB_NONE || piece->state != state || b->sources[piece->source].operand != operand) {
+            const uint32_t behind = gxbp_state_behind(b, f);        /* may move the states */
+            back_in = b->states[behind] != 0;
+            front_in = b->states[piece->state] != 0;
+            state = piece->covers == GXB_NONE ? piece->state : GXB_NONE;
+            operand = b->sources[piece->source].operand;
+        }
         if (front_in != back_in) {
             source = gxbp_cover_of(b, f, 0);
             gxbp_emit(b, f, front_in, source);
