@@ -543,6 +543,10 @@ extern "C" {
 #define GXSP_AGEING 0.2
 #define GXSP_PATIENCE 2
 
+/* After a cut, coarse numbers are made for entries of dirty nodes only, where no larger a share of chunks follows such: these need a Hessian of
+ * their own, at the state of the other numbers. */
+#define GXSP_DIRTY 0.6
+
 /* How fast conjugate gradients are is read from so many iterations, of several solves if need be. */
 #define GXSP_READING 10
 
@@ -6574,10 +6578,15 @@ static void gxsp_join_dirty(gxsp_renewal *update, uint32_t *forest)
         gxsp_list_edges(system, &system->chunks[c]);
         for (e = 1; e < system->edges.count; ++e) {
             const uint32_t i = copies[system->edges.ends[e] >> 16], j = copies[system->edges.ends[e] & 0xffff];
-            for (p = 0; p < 4; ++p)
-                for (q = 0; q < 4 && fine->parent[i][p] != GXSP_NONE && update->dirty[fine->parent[i][p]]; ++q)
-                    if (fine->parent[i][p] == fine->parent[j][q])
-                        gxsp_join(forest, 4 * i + p, 4 * j + q);
+            for (p = 0; p < 4; ++p) {
+                const uint32_t parent = fine->parent[i][p];
+                if (parent == GXSP_NONE || !update->dirty[parent])
+                    continue;
+                for (q = 0; q < 4 && fine->parent[j][q] != parent; ++q)
+                    ;
+                if (q < 4)
+                    gxsp_join(forest, 4 * i + p, 4 * j + q);
+            }
         }
     }
 }
@@ -6662,6 +6671,15 @@ static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, co
     return finite;
 }
 
+/* Do so many chunks follow dirty nodes that all numbers anew, from the Hessian of the next step, cost no more than some of them? */
+static int gxsp_most_are_dirty(const gxsp_system *system, const uint8_t *dirty)
+{
+    uint32_t c, count = 0;
+    for (c = 0; c < system->chunk_count; ++c)
+        count += (uint32_t)gxsp_follows_dirty(system, &system->chunks[c], dirty);
+    return (double)count > GXSP_DIRTY * (double)system->chunk_count;
+}
+
 /* Is it known that the coarse matrices are as old as they can be? */
 static int gxsp_coarse_ends(const gxsp_system *system)
 {
@@ -6698,7 +6716,8 @@ static void gxsp_renew_levels(gxsp_renewal *update)
     if (!scratch->failed && !system->coarse.failed)
         gxsp_share(system);
     if (!scratch->failed && !system->coarse.failed && !system->pool.failed && system->coarse_rate >= 0 &&
-        (system->coarse_stiffness > 0 || system->coarse_worn || gxsp_coarse_ends(system) || !gxsp_renew_numbers(update, &before, dirty)))
+        (system->coarse_stiffness > 0 || system->coarse_worn || gxsp_coarse_ends(system) || gxsp_most_are_dirty(system, dirty) ||
+         !gxsp_renew_numbers(update, &before, dirty)))
         system->coarse_rate = -1; /* all numbers are made anew by the next step; springs and contact are not known any more */
     gxsp_release_to(&old, NULL);
 }

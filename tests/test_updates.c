@@ -197,6 +197,59 @@ START_TEST(changed_models_are_of_any_kind) {
 }
 END_TEST
 
+/* Largest difference of the numbers of level 1, relative to the largest of both rows */
+static double coarse_difference(const gxsp_level *level, const float *block) {
+    uint32_t i, k;
+    double most = 0;
+    int m;
+    for (i = 0; i < level->n; ++i)
+        for (k = level->start[i]; k < level->start[i + 1]; ++k) {
+            const float *own = block + 9 * (size_t)level->start[i], *other = block + 9 * (size_t)level->start[level->column[k]];
+            const double size = sqrt((double)(own[0] + own[4] + own[8]) * (double)(other[0] + other[4] + other[8]));
+            for (m = 0; m < 9; ++m) most = fmax(most, fabs((double)(level->block[9 * (size_t)k + (size_t)m] - block[9 * (size_t)k + (size_t)m])) / size);
+        }
+    return most;
+}
+
+/* A cut at one end of a long body: the coarse numbers are made anew there, at the state of those that stay, and are what all anew are there. */
+START_TEST(small_cuts_keep_coarse_numbers) {
+    workload w = grid(40, 4, 4, 5 + (uint32_t)(_i % 2));
+    const gx_region left = { 0, -1, 1e-9 };
+    gx_step_desc step = step_of(0.2);
+    gx_body *body;
+    size_t c;
+    for (c = 0; c < 3; ++c) {
+        const double x = 39 - (double)c - 0.37, a[3] = { x, -1, 2.23 }, b[3] = { x + 1, -1, 2.23 }, d[3] = { x + 1, 5, 2.23 }, e[3] = { x, 5, 2.23 };
+        wl_add_quad(wl_add_surface(&w, 0), a, b, d, e);
+    }
+    body = body_of(&w);
+    ck_assert_int_eq(gx_body_hold(body, &left, 1), GX_OK);
+    advance(body, &step, 3);
+    for (c = 0; c < w.surface_count; ++c) {
+        gxsp_system *system = body->solver->system;
+        const double before[3] = { system->coarse_state[3], system->coarse_state[4], system->coarse_state[5] };
+        const gxsp_level *level = &system->levels[1];
+        size_t bytes;
+        float *block;
+        int collapsed;
+        ck_assert_uint_gt(system->level_count, 1);
+        cut_by(body, &w, c, 1);
+        advance(body, &step, 1);
+        ck_assert(body->model_updated);
+        ck_assert(memcmp(before, system->coarse_state + 3, sizeof before) == 0);     /* no step has made them */
+        ck_assert(system->coarse_rate > 0);
+        bytes = 9 * (size_t)level->start[level->n] * sizeof *block;
+        block = (float *)malloc(bytes);
+        memcpy(block, level->block, bytes);
+        ck_assert(gxsp_linearise(system, system->coarse_rate, system->coarse_state, 0, &collapsed));
+        ck_assert(gxsp_coarse_numbers(system, system->coarse_rate));
+        ck_assert_msg(coarse_difference(level, block) < 3e-5, "cut %zu: %g", c, coarse_difference(level, block));
+        free(block);
+    }
+    gx_body_destroy(body);
+    wl_free(&w);
+} END_TEST
+
 /* One Newton iteration a step, as in a game: what is kept of the preconditioner is worth what a new one is. */
 START_TEST(changed_models_take_no_more_iterations) {
     workload w = grid(12, 12, 12, 5);
@@ -588,6 +641,7 @@ static Suite *updates_suite(void) {
     tcase_set_timeout(tests, 120);
     tcase_add_loop_test(tests, cuts_change_the_model, 0, 6 / FEWER);
     tcase_add_loop_test(tests, changed_models_are_of_any_kind, 0, 4);
+    tcase_add_loop_test(tests, small_cuts_keep_coarse_numbers, 0, 2);
     tcase_add_test(tests, changed_models_take_no_more_iterations);
     tcase_add_test(tests, order_of_jobs_does_not_matter);
     tcase_add_loop_test(tests, saved_bodies_go_on_alike, 0, 2);
