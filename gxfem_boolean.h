@@ -992,10 +992,10 @@ static int gxbp_filter_sign(double value, double bound) { return (value > bound)
 
 /* The plane cuts the line from p to q at t = s_p / (s_p - s_q). */
 static void gxbp_filter_line_plane(gxb_ball *r, const gxb_ball *p, const gxb_ball *q, const gxb_plane_filter *f) {
-    double ep, eq, l[3], t, et;
+    double ep, eq, l[3], t, et, inverse;
     const double sp = gxbp_filter_side(p, f, &ep), sq = gxbp_filter_side(q, f, &eq);
     const double den = gxbp_fence(sp - sq), size = gxbp_abs(den), el = gxbp_filter_difference(l, p, q);
-    const double eden = ep + eq + 4 * GXBP_U * (gxbp_abs(sp) + gxbp_abs(sq)), inverse = 1 / size;   /* while t is divided, too */
+    const double eden = ep + eq + 4 * GXBP_U * (gxbp_abs(sp) + gxbp_abs(sq));
     int k;
     r->error = GXBP_NO_BALL;
     if (!(size > 4 * eden) || p->error >= GXBP_NO_BALL || q->error >= GXBP_NO_BALL) {
@@ -1003,6 +1003,7 @@ static void gxbp_filter_line_plane(gxb_ball *r, const gxb_ball *p, const gxb_bal
         return;
     }
     t = gxbp_fence(sp / den);
+    inverse = 1 / size;         /* while t is divided, too */
     et = 4 * (ep + gxbp_abs(t) * eden) * inverse + 8 * GXBP_U * gxbp_abs(t);
     for (k = 0; k < 3; k++) r->x[k] = gxbp_fence(p->x[k] + t * l[k]);
     r->error = 2 * (gxbp_max3(l) * et + (gxbp_abs(t) + et) * el + p->error) +

@@ -508,7 +508,7 @@ extern "C" {
 #define GXSP_SPACING 2.5
 
 /* Where a piece has more nodes of the first lattice for each copy than GXSP_CROWDED, it is given fewer: if it is shorter than so many spacings
- * along each axis, its four affine motions or twice the spacing. Measured: 0.08 to 0.16 nodes of bodies in one piece, cut or not, 0.37 to 0.44
+ * along each axis, its affine motions, which are four nodes, or twice the spacing. Measured: 0.08 to 0.16 nodes of bodies in one piece, cut or not, 0.37 to 0.44
  * of those in pieces of 60 copies. */
 #define GXSP_CROWDED 0.25f
 #define GXSP_AFFINE 2
@@ -871,7 +871,7 @@ typedef struct gxsp_level {
     float (*weight)[4];
     uint32_t *start;        /* n + 1: rows of the symmetric matrix on and above its diagonal; not of level 0 if it is matrix-free */
     uint32_t *column;       /* ascending in a row: the first is the row's own */
-    float *block;           /* 9 per entry, by columns */
+    float *block;           /* 9 per entry, by columns; of a last level after the first in shared memory: only from gxsp_lend to gxsp_give_back */
     float *inverse;         /* n x 6: of the diagonal blocks, packed */
     gxsp_vector4 *x, *b, *r;/* n: solution, right-hand side, residual; borrowed on level 0. The last level has no parents, weights, inverses, residual */
 } gxsp_level;
@@ -916,7 +916,7 @@ typedef struct gxsp_factor {
     float *entry;       /* entry_count; diagonal inverted */
     size_t entry_count;
     double *x;          /* n: solution */
-    double *rows;       /* 3 x n: the three rows at work */
+    double *rows;       /* 3 x n: the three rows at work; in shared memory */
 } gxsp_factor;
 
 typedef struct gxsp_material {
@@ -1023,7 +1023,7 @@ typedef struct gxsp_system {
     gxsp_level levels[GXSP_LEVELS];
     uint32_t level_count;   /* 0: no multigrid */
     int coarse_used;        /* the levels precondition the solve at work */
-    gxsp_edges edges;       /* of the chunk at work on level 1's matrix; in scratch or in shared memory, as pairs are */
+    gxsp_edges edges;       /* of the chunk at work on level 1's matrix; in scratch or shared memory, and else nowhere, as pairs are */
     gxsp_pairs pairs;
     gxsp_factor factor;
     float omega;            /* step length of the smoother; 0: not known */
@@ -4101,6 +4101,7 @@ static void gxsp_levels_make(gxsp_system *system, gxsp_pool *scratch, const gxsp
         gxsp_coarse_rows(&system->coarse, scratch, &system->levels[0]);
     else
         gxsp_first_pattern(system, scratch, before, dirty);
+    gxsp_count_edges(system);
     if (scratch->failed || system->coarse.failed)
         return;
     for (at = 1; at + 1 < GXSP_LEVELS && !gxsp_factors(scratch, &system->levels[at], at == 1 ? system->n / 2 : system->n) &&
@@ -4132,7 +4133,7 @@ static uint32_t gxsp_first_transfer(gxsp_system *system, float (*place)[3], gxsp
 /* What the first lattice has of a piece */
 typedef struct gxsp_crumb {
     uint32_t copies, nodes;
-    float low[3], high[3]; /* in spacings */
+    float low[3], high[3], length; /* in spacings; length: the longest of high - low */
 } gxsp_crumb;
 
 static gxsp_crumb *gxsp_find_crumbs(const gxsp_system *system, gxsp_pool *scratch, float (*place)[3])
@@ -4154,18 +4155,15 @@ static gxsp_crumb *gxsp_find_crumbs(const gxsp_system *system, gxsp_pool *scratc
         }
         ++crumb->copies;
     }
+    for (i = 0; i < system->piece_count; ++i)
+        for (k = 0; k < 3; ++k)
+            crumbs[i].length = crumbs[i].high[k] - crumbs[i].low[k] > crumbs[i].length ? crumbs[i].high[k] - crumbs[i].low[k] : crumbs[i].length;
     return crumbs;
 }
 
-/* Is a piece shorter along each axis? */
-static int gxsp_is_shorter(const gxsp_crumb *crumb, float length)
-{
-    return crumb->high[0] - crumb->low[0] < length && crumb->high[1] - crumb->low[1] < length && crumb->high[2] - crumb->low[2] < length;
-}
-
 /* Small pieces have so many lattice points about them that fewer serve nearly as well: places of those that are crowded after
- * gxsp_first_transfer go into one tetrahedron of a lattice of their own, whose functions are their affine motions, or, where pieces are larger,
- * into a lattice of twice the spacing. Not of slender pieces, which would hardly bend. Returns whether there are any. */
+ * gxsp_first_transfer go into one tetrahedron of a lattice of their own size, whose functions are their affine motions, or, where pieces are
+ * larger, into a lattice of twice the spacing. Not of long ones, which would hardly bend. Returns whether there are any. */
 static int gxsp_thin_crumbs(const gxsp_system *system, gxsp_pool *scratch, float (*place)[3])
 {
     const gxsp_crumb *crumbs = gxsp_find_crumbs(system, scratch, place);
@@ -4173,12 +4171,12 @@ static int gxsp_thin_crumbs(const gxsp_system *system, gxsp_pool *scratch, float
     int any = 0;
     for (i = 0; i < system->n && crumbs; ++i) {
         const gxsp_crumb *crumb = &crumbs[system->piece[i]];
-        if ((float)crumb->nodes <= GXSP_CROWDED * (float)crumb->copies || !gxsp_is_shorter(crumb, GXSP_COARSE))
+        if ((float)crumb->nodes <= GXSP_CROWDED * (float)crumb->copies || !(crumb->length < GXSP_COARSE))
             continue;
         any = 1;
         for (k = 0; k < 3; ++k)
-            place[i][k] = !gxsp_is_shorter(crumb, GXSP_AFFINE) ? 0.5f * place[i][k] : /* else where coordinates descend: in thirds of a cell */
-                          0.3f / GXSP_AFFINE * (place[i][k] - crumb->low[k]) + (float)(2 - k) / 3 + 0.01f;
+            place[i][k] = crumb->length >= GXSP_AFFINE ? 0.5f * place[i][k] : /* else where coordinates descend: in thirds of a cell */
+                          0.3f * (place[i][k] - crumb->low[k]) / (crumb->length + 1e-30f) + (float)(2 - k) / 3 + 0.01f;
     }
     return any;
 }
@@ -4364,14 +4362,17 @@ static void gxsp_share(gxsp_system *system)
         gxsp_numbers_carve(system, &numbers);
     size = passes.used > numbers.used ? passes.used : numbers.used;
     if (size > system->shared_room) {
-        system->shared_room = system->shared ? size + size / 8 : size;
-        system->shared = (unsigned char *)gxsp_retake(&system->pool, system->shared, 0, system->shared_room, 1);
+        const size_t room = system->shared ? size + size / 8 : size;
+        unsigned char *larger = (unsigned char *)gxsp_retake(&system->pool, system->shared, 0, room, 1);
+        if (!larger)
+            return;
+        system->shared = larger;
+        system->shared_room = room;
     }
     passes.memory = system->shared;
     passes.used = 0;
     gxsp_passes_carve(system, &passes);
-    if (!system->pool.failed)
-        gxsp_give_back(system);
+    gxsp_give_back(system);
 }
 
 /* What only steps need: taken last, when all that a model is made with has been given back */
@@ -6711,7 +6712,6 @@ static void gxsp_renew_levels(gxsp_renewal *update)
         for (i = before.n; i < count; ++i)
             memcpy(system->levels[1].place[i], before.place[from[i - before.n]], sizeof *before.place);
         gxsp_levels_make(system, scratch, &before, dirty);
-        gxsp_count_edges(system);
     }
     if (!scratch->failed && !system->coarse.failed)
         gxsp_share(system);
@@ -9144,7 +9144,9 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_RANGE
 #undef GXSP_SPACING
 #undef GXSP_CROWDED
-#undef GXSP_CRUMB
+#undef GXSP_AFFINE
+#undef GXSP_COARSE
+#undef GXSP_DIRTY
 #undef GXSP_MULTIGRID_FROM
 #undef GXSP_MULTIGRID_FROM_STIFF
 #undef GXSP_STIFF_POISSON

@@ -1,6 +1,7 @@
 /* test_updates.c - a cut changes the solver's model instead of making it anew (gxs_solver_update): the same motion as with a model that is
    set whole after each cut, no more iterations, the same bits in any order of jobs and after a save, sleepers that wake, bad changes,
-   memory that runs out; how much of it solvers take. */
+   memory that runs out; how much of it solvers take; coarse functions of
+   small pieces. */
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "body.h"
@@ -635,6 +636,56 @@ START_TEST(solvers_take_bounded_memory) {
     wl_free(&w);
 } END_TEST
 
+/* ---- coarse functions of small pieces ---- */
+
+/* Appends a bar of cells of one size, apart from the others */
+static void add_bar(workload *w, double x, double size, uint32_t nx, uint32_t ny) {
+    workload bar = grid(nx, ny, 1, 6);
+    const size_t nodes = w->node_count, elements = w->element_count;
+    size_t i;
+    w->positions = (double *)realloc(w->positions, 3 * (nodes + bar.node_count) * sizeof *w->positions);
+    w->elements = (uint32_t *)realloc(w->elements, 4 * (elements + bar.element_count) * sizeof *w->elements);
+    for (i = 0; i < 3 * bar.node_count; ++i) w->positions[3 * nodes + i] = (i % 3 == 0 ? x : 3) + size * bar.positions[i];
+    for (i = 0; i < 4 * bar.element_count; ++i) w->elements[4 * elements + i] = bar.elements[i] + (uint32_t)nodes;
+    w->node_count += bar.node_count; w->element_count += bar.element_count;
+    wl_free(&bar);
+}
+
+/* Fifty pieces of a hundredth to a half of a large one's cells beside it: their coarse functions go by their own size (13,000 iterations
+   where they went by the lattice's). */
+START_TEST(small_pieces_beside_a_large_one) {
+    workload w = grid(8, 8, 8, 6);
+    gx_body *body;
+    gxs_model model;
+    gxs_solver_desc desc;
+    gxs_solver *solver;
+    gxs_step_desc step;
+    gxs_step_report report;
+    double *state;
+    uint32_t i, iterations = 0;
+    for (i = 0; i < 50; ++i) add_bar(&w, 10 + i, 0.01 + 0.01 * i, 1 + i % 3, 1 + i % 2);
+    body = body_of(&w);
+    ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
+    state = (double *)calloc(6 * model.copy_count, sizeof *state);
+    random_seed(5);
+    for (i = 0; i < 3 * model.copy_count; ++i) state[3 * model.copy_count + i] = random_real(-0.05, 0.05);
+    memset(&desc, 0, sizeof desc);
+    memset(&step, 0, sizeof step);
+    step.dt = 0.3; step.gravity[2] = -9.81; step.newton_iterations = 30; step.newton_tolerance = 1e-10; step.cg_tolerance = 1e-4;
+    ck_assert_int_eq(gxs_solver_create(&desc, &solver), GX_OK);
+    ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);
+    ck_assert_uint_gt(solver->system->level_count, 1);
+    for (i = 0; i < 3; ++i) {
+        ck_assert_int_eq(gxs_solver_step(solver, &step, state, state + 3 * model.copy_count, &report, NULL), GX_OK);
+        iterations += report.cg_iterations;
+    }
+    ck_assert_uint_lt(iterations, 3500);
+    gxs_solver_destroy(solver);
+    gx_body_destroy(body);
+    free(state);
+    wl_free(&w);
+} END_TEST
+
 static Suite *updates_suite(void) {
     Suite *suite = suite_create("updates");
     TCase *tests = tcase_create("updates");
@@ -652,6 +703,7 @@ static Suite *updates_suite(void) {
     tcase_add_test(tests, changes_of_nothing_change_nothing);
     tcase_add_loop_test(tests, memory_may_run_out, 0, 2);
     tcase_add_loop_test(tests, solvers_take_bounded_memory, 0, 8);
+    tcase_add_test(tests, small_pieces_beside_a_large_one);
     suite_add_tcase(suite, tests);
     return suite;
 }
