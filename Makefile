@@ -44,7 +44,7 @@ help:
 	@echo "  table2         scenes of GXFEM's Table 2 by RXFEM, virtual nodes and the literal Algorithm 1 too"
 	@echo "  conditioning   RXFEM's Fig. 14, and a corner piece"
 	@echo "  failure        hard cases: which method is right, wrong, refuses, diverges, crashes"
-	@echo "  scaling        cost of a cut and a step, memory and unknowns against elements, cuts and triangles"
+	@echo "  scaling        cost of a cut and a step, memory and unknowns against elements, cuts and triangles; MESH=FILE: that body too"
 	@echo "  kernel         Booleans of closed surfaces; DATA=FOLDER: also of the OFF files there"
 	@echo "  smallest       the smallest program with the kernel: time to compile and size, with and without GXFEM_STATIC"
 	@echo "  solver         time steps by preconditioner, beside CHOLMOD (installs SuiteSparse where it is missing)"
@@ -136,7 +136,7 @@ fuzz: $(BUILD)/fuzz/fuzz
 	    mkdir -p $(BUILD)/fuzz/corpus && $(BUILD)/fuzz/libfuzzer -max_total_time=$(SECONDS) -max_len=128 -artifact_prefix=$(BUILD)/fuzz/ $(BUILD)/fuzz/corpus tests/corpus; \
 	else $(BUILD)/fuzz/fuzz --out=$(BUILD)/fuzz --seed=$(or $(SEED),1) --cases=$(or $(CASES),0) --seconds=$(if $(CASES),0,$(SECONDS)); fi
 
-$(BUILD)/fuzz/fuzz: tests/fuzz.c tests/fuzz_cases.h tests/fuzz_oracle.h tests/oracle.h tests/rational.h gxfem_boolean.h
+$(BUILD)/fuzz/fuzz: tests/fuzz.c tests/fuzz_cases.h tests/boolean_oracle.h tests/oracle.h tests/rational.h gxfem_boolean.h
 	@mkdir -p $(@D)
 	$(compile) -g $< -o $@ $(LDFLAGS) -lm
 
@@ -168,7 +168,7 @@ $(filter-out %/solver,$(bench_programs)): $(BUILD)/bench/%: bench/%.c $(wildcard
 	@mkdir -p $(@D)
 	@$(CC) $(bench_standard) $(WARNINGS) $(BENCH_CFLAGS) $< -o $@ $(LDFLAGS) -lm
 
-$(BUILD)/bench/space: examples/gxio.h
+$(BUILD)/bench/space $(BUILD)/bench/scaling: examples/gxio.h
 $(BUILD)/bench/kernel: tests/workloads.h tests/oracle.h tests/rational.h
 
 $(BUILD)/bench/solver: bench/solver.c $(wildcard bench/*.h) $(headers)
@@ -192,7 +192,7 @@ bench-smallest:
 plain_benches = $(filter-out bench-solver bench-kernel bench-smallest bench-table2 bench-stepping,$(benches:%=bench-%))
 $(plain_benches): bench-%: $(BUILD)/bench/%
 	@mkdir -p $(tables)
-	@$< $(tables)/$*.csv $(BENCH)
+	@$< $(tables)/$*.csv $(BENCH) $(if $(filter scaling,$*),$(MESH))
 
 # Scenes with the frames of GXFEM's Table 2. OCTOPUS=FILE: the octopus on that mesh
 table2 = sticks thin_slab accordion octopus

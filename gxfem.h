@@ -378,6 +378,14 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from);
 extern "C" {
 #endif
 
+#if defined(__GNUC__)
+#define GXP_FETCH(address) __builtin_prefetch(address)
+#define GXP_FETCHES static inline __attribute__((always_inline))    /* nothing else: gcc takes such a function for one without effect, and drops calls */
+#else
+#define GXP_FETCH(address) ((void)0)
+#define GXP_FETCHES static inline
+#endif
+
 /* --- types --- */
 
 #define GXP_NONE UINT32_MAX
@@ -894,16 +902,16 @@ static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_
         else result = gxp_words_room(body, found, box->count);
         for (i = 0; i < box->count && result == GX_OK; i++) {
             const uint32_t element = found->data[found->count++] = body->box_elements[box->first + i];
-            GXBP_FETCH(elements + 4 * (size_t)element);
+            GXP_FETCH(elements + 4 * (size_t)element);
         }
     }
     for (i = 0; i < found->count && result == GX_OK; i++) {
-        for (k = 0; k < 4 && i + 4 < found->count; k++) GXBP_FETCH(body->positions + 3 * (size_t)elements[4 * (size_t)found->data[i + 4] + k]);
+        for (k = 0; k < 4 && i + 4 < found->count; k++) GXP_FETCH(body->positions + 3 * (size_t)elements[4 * (size_t)found->data[i + 4] + k]);
         if (!gxp_triangle_near_element(body, &search, found->data[i])) continue;
-        GXBP_FETCH(&body->complex->leaves[found->data[i]]);
-        GXBP_FETCH(body->complex->element_faces + 4 * (size_t)found->data[i]);
-        GXBP_FETCH(body->complex->element_edges + 6 * (size_t)found->data[i]);
-        GXBP_FETCH(body->complex->root + found->data[i]);
+        GXP_FETCH(&body->complex->leaves[found->data[i]]);
+        GXP_FETCH(body->complex->element_faces + 4 * (size_t)found->data[i]);
+        GXP_FETCH(body->complex->element_edges + 6 * (size_t)found->data[i]);
+        GXP_FETCH(body->complex->root + found->data[i]);
         found->data[count++] = found->data[i];
     }
     found->count = count;
@@ -2363,20 +2371,20 @@ static gx_result gxp_touch_severed(gxp_cut *cut) {
 }
 
 /* Asks for what dividing the next touched cells reads: leaves four and three ahead, their lists of facets two ahead, the facets of the next. */
-GXBP_FETCHES void gxp_fetch_leaves(const gx_body *body, uint32_t index) {
+GXP_FETCHES void gxp_fetch_leaves(const gx_body *body, uint32_t index) {
     const gxb_complex *cx = body->complex;
     const uint32_t *touched = body->touched.data, count = body->touched.count;
     uint32_t leaf, i;
     if (index + 4 < count && (leaf = body->cells[touched[index + 4]].first_leaf) != GXP_NONE) {
-        GXBP_FETCH(&body->leaves[leaf]);
-        GXBP_FETCH(&cx->leaves[leaf]);
+        GXP_FETCH(&body->leaves[leaf]);
+        GXP_FETCH(&cx->leaves[leaf]);
     }
     if (index + 3 < count) for (leaf = body->cells[touched[index + 3]].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next)
-        GXBP_FETCH(&cx->leaves[leaf]);
+        GXP_FETCH(&cx->leaves[leaf]);
     if (index + 2 < count) for (leaf = body->cells[touched[index + 2]].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next)
-        GXBP_FETCH(cx->pool + cx->leaves[leaf].facets);
+        GXP_FETCH(cx->pool + cx->leaves[leaf].facets);
     if (index + 1 < count) for (leaf = body->cells[touched[index + 1]].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next)
-        for (i = 0; i < cx->leaves[leaf].facet_count; i++) GXBP_FETCH(&cx->facets[cx->pool[cx->leaves[leaf].facets + i]]);
+        for (i = 0; i < cx->leaves[leaf].facet_count; i++) GXP_FETCH(&cx->facets[cx->pool[cx->leaves[leaf].facets + i]]);
 }
 
 /* Divides all touched cells. Leaves body->touched as it was, makes body->fresh of the pieces and lists their links. */
@@ -3095,20 +3103,20 @@ static gx_result gxp_integrate_fresh(gx_body *body, uint32_t cell, uint32_t *bef
 }
 
 /* Asks for what weighing the links of the next fresh cells reads: facets three ahead, their loops two ahead, the edges of the next. */
-GXBP_FETCHES void gxp_fetch_links(const gx_body *body, uint32_t index) {
+GXP_FETCHES void gxp_fetch_links(const gx_body *body, uint32_t index) {
     const gxb_complex *cx = body->complex;
     const uint32_t *at = body->link_first.data;
     const uint32_t count = body->fresh.count;
     uint32_t j, i;
-    if (index + 3 < count) for (j = at[index + 3]; j < at[index + 4]; j++) GXBP_FETCH(&cx->facets[GXP_LINK_FACET(body->links.data[j])]);
+    if (index + 3 < count) for (j = at[index + 3]; j < at[index + 4]; j++) GXP_FETCH(&cx->facets[GXP_LINK_FACET(body->links.data[j])]);
     if (index + 2 < count) for (j = at[index + 2]; j < at[index + 3]; j++) {
         const gxb_facet *f = &cx->facets[GXP_LINK_FACET(body->links.data[j])];
-        GXBP_FETCH(cx->pool + f->loop);
-        GXBP_FETCH(&cx->planes[f->plane].axis);
+        GXP_FETCH(cx->pool + f->loop);
+        GXP_FETCH(&cx->planes[f->plane].axis);
     }
     if (index + 1 < count) for (j = at[index + 1]; j < at[index + 2]; j++) {
         const gxb_facet *f = &cx->facets[GXP_LINK_FACET(body->links.data[j])];
-        for (i = 0; i < f->loop_count; i++) GXBP_FETCH(&cx->edges[cx->pool[f->loop + i] >> 1]);
+        for (i = 0; i < f->loop_count; i++) GXP_FETCH(&cx->edges[cx->pool[f->loop + i] >> 1]);
     }
 }
 
@@ -5963,6 +5971,28 @@ GXFEM_API const char *gx_result_text(gx_result result) {
     }
     return "unknown result";
 }
+
+#undef GXP_FETCH
+#undef GXP_FETCHES
+#undef GXP_NONE
+#undef GXP_FRAGMENT_ARRAYS
+#undef GXP_FIRST
+#undef GXP_SECOND
+#undef GXP_LINK_CELL
+#undef GXP_LINK_FACET
+#undef GXP_LINK_FACE
+#undef GXP_SEARCH_MARGIN
+#undef GXP_SEARCH_RANGE
+#undef GXP_LAST_ROUND
+#undef GXP_EXPECTED
+#undef GXP_CANCELLATION
+#undef GXP_REST_CELLS
+#undef GXP_REST
+#undef GXP_NO_INERTIA
+#undef GXP_SAVE_VERSION
+#undef GXP_BYTE_ORDER
+#undef GXP_BESIDE_WALL
+#undef GXP_ACROSS_WALL
 
 #ifdef __cplusplus
 }

@@ -527,13 +527,11 @@ extern "C" {
    for a large function than for its parts. */
 #if defined(__GNUC__)
 #define GXBP_FETCH(address) __builtin_prefetch(address)
-#define GXBP_FETCHES static inline __attribute__((always_inline)) /* nothing else: gcc takes such a function for one without effect, and drops calls */
 #define GXBP_COLD __attribute__((cold, noinline))
 #define GXBP_RARE __attribute__((cold))     /* may be inlined where there is one call; of public functions, which GXFEM_STATIC makes inline */
 #define GXBP_APART __attribute__((noinline))
 #else
 #define GXBP_FETCH(address) ((void)0)
-#define GXBP_FETCHES static inline
 #define GXBP_COLD
 #define GXBP_RARE
 #define GXBP_APART
@@ -9435,6 +9433,38 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics 
     statistics->allocations = b->allocations; statistics->peak_bytes = b->peak;
     return GX_OK;
 }
+
+#undef GXBP_FETCH
+#undef GXBP_COLD
+#undef GXBP_RARE
+#undef GXBP_APART
+#undef GXBP_NO_BALL_EXPONENT
+#undef GXBP_U
+#undef GXBP_TINY
+#undef GXBP_NO_BALL
+#undef GXBP_UNKNOWN
+#undef GXBP_RESERVE
+#undef GXBP_ARRAY
+#undef GXBP_UNDO_ITEM
+#undef GXBP_LAST_STAMP
+#undef GXBP_TRIANGLE_EDGE
+#undef GXBP_IN_ROOT
+#undef GXBP_PAIR_U
+#undef GXBP_PAIR_RANGE
+#undef GXBP_DEPTH
+#undef GXBP_UNSEEN
+#undef GXBP_EDGE_LABEL
+#undef GXBP_LOOSE
+#undef GXBP_BARE
+#undef GXBP_ARENA
+#undef GXBP_ROOM
+#undef GXBP_REMOVED
+#undef GXBP_RIM
+#undef GXBP_OPEN
+#undef GXBP_VERTEX_ERROR
+#undef GXBP_VOLUME_ERROR
+#undef GXBP_MEND_REACH
+#undef GXBP_MEND_STEPS
 
 #ifdef __cplusplus
 }

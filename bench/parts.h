@@ -42,7 +42,7 @@ static inline void parts_label_leaves(parts_body *p)
     for (cell = 0; cell < body->cell_count; cell++) {
         const gxp_cell *c = &body->cells[cell];
         if (!c->kept) continue;
-        for (leaf = c->first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next) p->leaf_part[leaf] = parts_of_copies(p, c->element, c->copies);
+        for (leaf = c->first_leaf; leaf != UINT32_MAX; leaf = body->leaves[leaf].next) p->leaf_part[leaf] = parts_of_copies(p, c->element, c->copies);
     }
 }
 
@@ -208,9 +208,9 @@ static inline part parts_shape(const parts_body *p, uint32_t element, uint32_t i
     shape.complex = body->complex;
     shape.element = element;
     shape.leaves = p->leaves;
-    for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next) {
+    for (cell = element; cell != UINT32_MAX; cell = body->cells[cell].next) {
         if (!body->cells[cell].kept || parts_of_copies(p, element, body->cells[cell].copies) != index) continue;
-        for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next) shape.leaves[shape.leaf_count++] = leaf;
+        for (leaf = body->cells[cell].first_leaf; leaf != UINT32_MAX; leaf = body->leaves[leaf].next) shape.leaves[shape.leaf_count++] = leaf;
     }
     return shape;
 }

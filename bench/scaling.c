@@ -2,7 +2,7 @@
    is touched.
 
    make bench-scaling builds and runs it; it prints CSV and writes it to build/bench/scaling.csv; make charts draws it.
-   BENCH=--small: sizes that take seconds.
+   BENCH=--small: sizes that take seconds. MESH=FILE: also cuts through that body, of what examples/gxio.h reads.
 
    A block of tetrahedra (block.h) is cut by planes or by gently curved sheets, all the way through.
        elements   the first cut of a block of so many elements (its arrays still have to grow), and the median of those after it; curved-pool: in
@@ -10,6 +10,8 @@
        cuts       the median of the last half of so many cuts in one block: parallel planes at random heights, or planes of random
                   direction through the middle, which cross each other (to 100: the pieces grow with the cube of their number)
        triangles  one cut, curved, of so many triangles
+       mesh       as elements, through the body of the file, its longest side 1 m: across each of its axes, planes and curved sheets of so many
+                  triangles
    Columns: created, cells that a cut makes (of the last, or the mean of the last half); times in us and per touched element; the arrangement
    alone; step_ms, a step after the cuts (its multigrid made before); peak_mb, of the body's memory. Unknowns, three for each displacement:
        unknowns_before, unknowns   ours
@@ -25,6 +27,7 @@
 #define _DEFAULT_SOURCE             /* madvise */
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
+#include "../examples/gxio.h"
 #include "block.h"
 #include "clock.h"
 #include "csv.h"
@@ -205,7 +208,8 @@ static void sheet_place(sheet *s, double height, const double slope[2], double w
 
 typedef struct scene {
     gx_body *body;
-    block_mesh mesh;
+    least_mesh mesh;
+    double top;             /* z; it begins at 0, as do x and y */
     meter memory;
     uint32_t random;
     size_t unknowns;        /* before cuts */
@@ -221,24 +225,30 @@ static double uniform(scene *s)
     return (s->random >> 8) / 16777216.0;
 }
 
-static void scene_make(scene *s, uint32_t cells, pool *p)
+/* The mesh stays the caller's until scene_free. held: from which z on it is */
+static void scene_make(scene *s, const least_mesh *mesh, double top, double held, pool *p)
 {
-    const gx_region top = {2, 1, 1.0 - 1e-9};
-    block_desc desc;
+    const gx_region region = {2, 1, held};
+    gx_body_desc desc;
     gx_view view;
     memset(s, 0, sizeof *s);
     memset(&desc, 0, sizeof desc);
+    s->mesh = *mesh;
+    s->top = top;
     s->random = 1;
     s->memory.pool = p;
+    desc.positions = mesh->positions; desc.node_count = mesh->node_count;
+    desc.elements = mesh->elements; desc.element_count = mesh->element_count;
     desc.young = 1e6;
+    desc.poisson = 0.4;
+    desc.density = 1000;
     desc.allocator.allocate = meter_allocate;
     desc.allocator.release = meter_release;
     desc.allocator.reallocate = meter_reallocate;
     desc.allocator.user = &s->memory;
     desc.clock = seconds;
-    check(block_make_mesh(cells, 0.2, &s->mesh));
-    check(block_make_body(&s->mesh, &desc, &s->body));
-    check(gx_body_hold(s->body, &top, 1));
+    check(gx_body_create(&desc, &s->body, NULL));
+    check(gx_body_hold(s->body, &region, 1));
     check(gx_body_view(s->body, &view));
     s->unknowns = 3 * view.copy_count;
 }
@@ -246,8 +256,23 @@ static void scene_make(scene *s, uint32_t cells, pool *p)
 static void scene_free(scene *s)
 {
     gx_body_destroy(s->body);
-    block_free_mesh(&s->mesh);
     free(s->heights);
+}
+
+/* A block of cells^3 x 5 elements */
+static least_mesh block_of(uint32_t cells, block_mesh *block)
+{
+    least_mesh mesh;
+    check(block_make_mesh(cells, 0.2, block));
+    mesh.positions = block->positions; mesh.node_count = block->side * block->side * block->side;
+    mesh.elements = block->elements; mesh.element_count = 5 * (size_t)cells * cells * cells;
+    return mesh;
+}
+
+static void scene_make_block(scene *s, uint32_t cells, block_mesh *block, pool *p)
+{
+    const least_mesh mesh = block_of(cells, block);
+    scene_make(s, &mesh, 1, 1 - 1e-9, p);
 }
 
 /* Cuts by the sheet; microseconds */
@@ -320,22 +345,18 @@ static size_t line_count, line_total;
 
 static void count_unknowns(scene *s, const sheet *by, line *l)
 {
-    const size_t side = s->mesh.side, cells = side - 1;
-    least_mesh mesh;
     least_sheets sheets;
     least_result counted;
     gx_view view;
     gx_skin skin;
     check(gx_body_view(s->body, &view));
     check(gx_body_skin(s->body, NULL, &skin));
-    mesh.positions = s->mesh.positions; mesh.node_count = side * side * side;
-    mesh.elements = s->mesh.elements; mesh.element_count = 5 * cells * cells * cells;
     sheets.x = by->x;
     sheets.y = by->y;
     sheets.z = s->heights;
     sheets.side = by->side;
     sheets.count = s->sheet_count;
-    counted = least_of(&mesh, &sheets);
+    counted = least_of(&s->mesh, &sheets);
     l->unknowns_before = s->unknowns;
     l->unknowns = 3 * view.copy_count;
     l->least = 3 * counted.least;
@@ -350,7 +371,7 @@ static void row(scene *s, const char *sweep, const char *kind, size_t cuts, cons
     line *l = &lines[line_count++];
     l->sweep = sweep;
     l->kind = kind;
-    l->elements = 5 * (s->mesh.side - 1) * (s->mesh.side - 1) * (s->mesh.side - 1);
+    l->elements = s->mesh.element_count;
     l->cuts = cuts;
     l->triangles = by->surface.triangle_count;
     l->touched = touched;
@@ -423,25 +444,69 @@ static int print_table(void)
 
 /* ---- sweeps ---- */
 
-static void against_elements(uint32_t cells, double wave, uint32_t side, pool *p)
+/* The first cut of the scene, and those after it, all across z */
+static void cut_across(scene *s, const char *sweep, const char *kind, double wave, uint32_t side)
 {
     const double slope[2] = {0.05, 0.03};
     double us[LATER_CUTS], arrangement[LATER_CUTS], first;
     sheet by = sheet_make(side);
-    scene s;
     int i;
-    scene_make(&s, cells, p);
-    sheet_place(&by, 0.5171, slope, wave);
-    first = cut(&s, &by);
+    sheet_place(&by, 0.5171 * s->top, slope, wave);
+    first = cut(s, &by);
     for (i = 0; i < LATER_CUTS; i++) {
-        sheet_place(&by, 0.22 + 0.0911 * i, slope, wave);
-        us[i] = cut(&s, &by);
-        arrangement[i] = 1e6 * s.report.seconds_arrangement;
+        sheet_place(&by, (0.22 + 0.0911 * i) * s->top, slope, wave);
+        us[i] = cut(s, &by);
+        arrangement[i] = 1e6 * s->report.seconds_arrangement;
     }
-    row(&s, "elements", p ? "curved-pool" : wave > 0 ? "curved" : "plane", 1 + LATER_CUTS, &by, first, median(us, LATER_CUTS),
-        median(arrangement, LATER_CUTS));
-    scene_free(&s);
+    row(s, sweep, kind, 1 + LATER_CUTS, &by, first, median(us, LATER_CUTS), median(arrangement, LATER_CUTS));
     sheet_free(&by);
+}
+
+static void against_elements(uint32_t cells, double wave, uint32_t side, pool *p)
+{
+    block_mesh block;
+    scene s;
+    scene_make_block(&s, cells, &block, p);
+    cut_across(&s, "elements", p ? "curved-pool" : wave > 0 ? "curved" : "plane", wave, side);
+    scene_free(&s);
+    block_free_mesh(&block);
+}
+
+/* The mesh from 0 on, its longest side 1 m, its axes exchanged in turn so that the given one is z. Returns its height. */
+static double turn_mesh(gxio_mesh *mesh, int axis)
+{
+    double low[3], high[3], size = 0;
+    size_t i;
+    int k;
+    gxio_mesh_bounds(mesh, low, high);
+    for (k = 0; k < 3; k++) size = high[k] - low[k] > size ? high[k] - low[k] : size;
+    for (i = 0; i < mesh->node_count; i++) {
+        double at[3];
+        for (k = 0; k < 3; k++) at[k] = (mesh->positions[3 * i + (size_t)((axis + 1 + k) % 3)] - low[(axis + 1 + k) % 3]) / size;
+        memcpy(mesh->positions + 3 * i, at, sizeof at);
+    }
+    return (high[axis] - low[axis]) / size;
+}
+
+static void through_mesh(const char *path, int axis, double wave, uint32_t side)
+{
+    static const char *const kinds[2][3] = {{"plane-x", "plane-y", "plane-z"}, {"curved-x", "curved-y", "curved-z"}};
+    least_mesh mesh;
+    gxio_mesh file;
+    gxio_error error;
+    scene s;
+    double top;
+    if (!gxio_mesh_load(path, &file, &error)) {
+        fprintf(stderr, "scaling: %s\n", error.text);
+        exit(1);
+    }
+    top = turn_mesh(&file, axis);
+    mesh.positions = file.positions; mesh.node_count = file.node_count;
+    mesh.elements = file.elements; mesh.element_count = file.element_count;
+    scene_make(&s, &mesh, top, 0.95 * top, NULL);
+    cut_across(&s, "mesh", kinds[wave > 0][axis], wave, side);
+    scene_free(&s);
+    gxio_mesh_release(&file);
 }
 
 static void next_plane(scene *s, sheet *by, int crossing)
@@ -456,8 +521,9 @@ static void against_cuts(uint32_t cells, size_t count, int crossing)
     size_t touched = 0, created = 0, i;
     const size_t from = count / 2;
     sheet by = sheet_make(1);
+    block_mesh block;
     scene s;
-    scene_make(&s, cells, NULL);
+    scene_make_block(&s, cells, &block, NULL);
     for (i = 0; i < count; i++) {
         next_plane(&s, &by, crossing);
         us[i] = cut(&s, &by);
@@ -469,6 +535,7 @@ static void against_cuts(uint32_t cells, size_t count, int crossing)
     s.report.created_cells = created / (count - from);
     row(&s, "cuts", crossing ? "crossing" : "parallel", count, &by, us[0], median(us + from, count - from), median(arrangement + from, count - from));
     scene_free(&s);
+    block_free_mesh(&block);
     sheet_free(&by);
 }
 
@@ -476,13 +543,15 @@ static void against_triangles(uint32_t cells, uint32_t side)
 {
     const double slope[2] = {0.05, 0.03};
     sheet by = sheet_make(side);
+    block_mesh block;
     scene s;
     double us;
-    scene_make(&s, cells, NULL);
+    scene_make_block(&s, cells, &block, NULL);
     sheet_place(&by, 0.5171, slope, 0.05);
     us = cut(&s, &by);
     row(&s, "triangles", "curved", 1, &by, us, us, 1e6 * s.report.seconds_arrangement);
     scene_free(&s);
+    block_free_mesh(&block);
     sheet_free(&by);
 }
 
@@ -490,14 +559,15 @@ int main(int argc, char **argv)
 {
     static const uint32_t cells[] = {6, 9, 13, 18, 27, 38, 59}, sides[] = {1, 3, 7, 22, 70, 224};
     static const size_t cuts[] = {1, 2, 5, 10, 20, 50, 100, 200, 500, 1000};
+    const char *mesh = argc > 2 && argv[argc - 1][0] != '-' ? argv[argc - 1] : NULL;
     int small;
-    const char *path = csv_arguments(argc, argv, &small);
+    const char *path = csv_arguments(argc - (mesh != NULL), argv, &small);
     const int blocks = small ? 2 : 7, parallel = small ? 4 : 10, crossing = small ? 4 : 7, curved = small ? 3 : 6;
     const uint32_t block = small ? 6 : 20;
     int i, wrong;
     csv_open(argv[0], path, "sweep,kind,elements,cuts,triangles,touched,created,cut_us,first_us_per_touched,us_per_touched,"
              "arrangement_us_per_touched,step_ms,unknowns_before,unknowns,least,vna,remeshed,peak_mb");
-    line_total = (size_t)(3 * blocks + parallel + crossing + curved);
+    line_total = (size_t)(3 * blocks + parallel + crossing + curved + (mesh ? 12 : 0));
     for (i = 0; i < blocks; i++) against_elements(cells[i], 0, 1, NULL);
     for (i = 0; i < blocks; i++) against_elements(cells[i], 0.05, cells[i], NULL);
     for (i = 0; i < blocks; i++) {
@@ -509,6 +579,8 @@ int main(int argc, char **argv)
     for (i = 0; i < parallel; i++) against_cuts(block, cuts[i], 0);
     for (i = 0; i < crossing; i++) against_cuts(block, cuts[i], 1);
     for (i = 0; i < curved; i++) against_triangles(block, sides[i]);
+    for (i = 0; mesh && i < 3; i++) through_mesh(mesh, i, 0, 1);
+    for (i = 0; mesh && i < 9; i++) through_mesh(mesh, i / 3, 0.05, 8u << i % 3);
     wrong = print_table();
     return csv_close() | (wrong > 0);
 }

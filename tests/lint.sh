@@ -3,7 +3,7 @@
 # usage: sh tests/lint.sh HEADER...
 #     the shared block is the same in all; names have their header's prefix, and no name is reserved; only the C standard
 #     library and our own headers are included (the lower three include none of ours); no function is longer than 120 lines;
-#     no pragma is left open, nothing is left to be done; the README's program is examples/embed.c
+#     no pragma is left open and no helper macro defined, nothing is left to be done; the README's program is examples/embed.c
 set -u
 cd "$(dirname -- "$0")/.." || exit 2
 [ $# -gt 0 ] || set -- gxfem.h gxfem_boolean.h gxfem_integrate.h gxfem_solve.h
@@ -104,6 +104,9 @@ for header in "$@"; do
         /^[A-Za-z].*\) *\{ *$/ || (/^\{/ && before ~ /\)$/) { start = NR; name = /^\{/ ? before : $0 }
         /^}/ && start { if (NR - start > 120) print header ":" start ": " NR - start + 1 " lines: " name; start = 0 }
         { before = $0 }' "$work/code")"
+
+    rule "$header: every helper macro is undefined at the end" "$(grep -oE '^ *# *define '"$(echo "$private" | tr a-z A-Z)"'_[A-Z0-9_]+' "$work/code" | awk '{ print $NF }' | sort -u |
+        while read -r macro; do grep -qE "^#undef $macro\$" "$work/code" || echo "$header: $macro"; done)"
 
     rule "$header: every pragma pushed is popped" "$([ "$(grep -c 'pragma.*push' "$work/code")" -eq "$(grep -c 'pragma.*pop' "$work/code")" ] || echo 'not so')"
 done

@@ -338,18 +338,19 @@ static inline double pc_share(double value, big offset, big num, big den, double
 
 static inline void pc_worst(double *worst, double share) { if (share > *worst) *worst = share; }
 
+#define PC_NO_BALL gxbp_power(200)     /* the error of a point that has no ball, as in the kernel */
 enum { PC_BOUND_NORMAL, PC_BOUND_LINE, PC_BOUND_PLANES, PC_BOUND_SIDE, PC_BOUNDS };
 static const char *const pc_bound_names[PC_BOUNDS] = {"normal", "line-plane ball", "three-plane ball", "side"};
 
 static inline void pc_ball_share(const gxb_ball *ball, const pc_point *x, const double o[3], double *worst) {
     int k;
-    if (x->w.sign == 0 || !(ball->error < GXBP_NO_BALL)) return;
+    if (x->w.sign == 0 || !(ball->error < PC_NO_BALL)) return;
     for (k = 0; k < 3; k++) pc_worst(worst, pc_share(ball->x[k], big_from_double(o[k]), x->x[k], x->w, ball->error));
 }
 
 static inline void pc_side_share(const gxb_ball *ball, const pc_point *x, const gxb_plane *f, const pc_plane *plane, double *worst) {
     double value, bound;
-    if (x->w.sign == 0 || !(ball->error < GXBP_NO_BALL)) return;
+    if (x->w.sign == 0 || !(ball->error < PC_NO_BALL)) return;
     value = gxbp_filter_side(ball, &f->filter, &bound);
     pc_worst(worst, pc_share(value, big_zero(), pc_scaled_height(x, plane), x->w, bound));
 }

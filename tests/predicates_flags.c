@@ -25,19 +25,19 @@ typedef struct tally { uint64_t calls[2], timed[2], wrong; clock_t ticks[2]; } t
 
 static int filter_side(const gxb_point *point, const gxb_plane *plane) {
     double bound, value;
-    if (!(point->ball.error < GXBP_NO_BALL)) return 0;
+    if (!(point->ball.error < PC_NO_BALL)) return 0;
     value = gxbp_filter_side(&point->ball, &plane->filter, &bound);
     return gxbp_filter_sign(value, bound);
 }
 
 static int filter_orient2d(const double a[2], const double b[2], const double c[2]) {
     const double ax = gxbp_fence(a[0] - c[0]), ay = gxbp_fence(a[1] - c[1]), bx = gxbp_fence(b[0] - c[0]), by = gxbp_fence(b[1] - c[1]);
-    return gxbp_filter_sign(ax * by - ay * bx, 16 * GXBP_U * (gxbp_abs(ax * by) + gxbp_abs(ay * bx)) + GXBP_TINY);
+    return gxbp_filter_sign(ax * by - ay * bx, 16 * gxbp_power(-52) * (gxbp_abs(ax * by) + gxbp_abs(ay * bx)) + gxbp_power(-600));
 }
 
 static int filter_compare(const gxb_ball *a, const gxb_ball *b, int axis) {
     const double difference = gxbp_fence(a->x[axis] - b->x[axis]);
-    return gxbp_filter_sign(difference, 2 * (a->error + b->error) + 2 * GXBP_U * gxbp_abs(difference) + GXBP_TINY);
+    return gxbp_filter_sign(difference, 2 * (a->error + b->error) + 2 * gxbp_power(-52) * gxbp_abs(difference) + gxbp_power(-600));
 }
 
 static int filter_orient(const gxb_ball *a, const gxb_ball *b, const gxb_ball *c, const gxb_plane *plane) {
@@ -49,7 +49,7 @@ static int filter_orient(const gxb_ball *a, const gxb_ball *b, const gxb_ball *c
     {
         const int i = (axis + 1) % 3, j = (axis + 2) % 3;
         const double U = gxbp_max(gxbp_abs(u[i]), gxbp_abs(u[j])), V = gxbp_max(gxbp_abs(v[i]), gxbp_abs(v[j]));
-        const double bound = 4 * (U * ev + V * eu + eu * ev) + 32 * GXBP_U * U * V + GXBP_TINY;
+        const double bound = 4 * (U * ev + V * eu + eu * ev) + 32 * gxbp_power(-52) * U * V + gxbp_power(-600);
         return gxbp_filter_sign(u[i] * v[j] - u[j] * v[i], bound);
     }
 }

@@ -141,11 +141,11 @@ static int is_inside(gxb_complex *cx, uint32_t leaf, const double x[3]) {
 }
 
 static uint32_t slot_at(gx_body *body, uint32_t element, const double x[3]) {
-    uint32_t cell, leaf, found = GXP_NONE;
+    uint32_t cell, leaf, found = UINT32_MAX;
     gxb_complex_begin(body->complex);
-    for (cell = element; cell != GXP_NONE && found == GXP_NONE; cell = body->cells[cell].next) {
+    for (cell = element; cell != UINT32_MAX && found == UINT32_MAX; cell = body->cells[cell].next) {
         if (!body->cells[cell].kept) continue;
-        for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && found == GXP_NONE; leaf = body->leaves[leaf].next) {
+        for (leaf = body->cells[cell].first_leaf; leaf != UINT32_MAX && found == UINT32_MAX; leaf = body->leaves[leaf].next) {
             if (body->complex->leaves[leaf].facet_count == 0 || is_inside(body->complex, leaf, x)) found = cell;
         }
     }
@@ -161,7 +161,7 @@ static int field_at(gx_body *body, uint32_t element, const double lambda[4], dou
     for (i = 0; i < 4; ++i)
         for (k = 0; k < 3; ++k) x[k] += lambda[i] * body->positions[3 * body->complex->elements[4 * element + (uint32_t)i] + (uint32_t)k];
     cell = slot_at(body, element, x);
-    if (cell == GXP_NONE) return 0;
+    if (cell == UINT32_MAX) return 0;
     for (k = 0; k < 3; ++k) {
         u[k] = v[k] = 0;
         for (i = 0; i < 4; ++i) {
@@ -1500,7 +1500,7 @@ static int cell_reaches(gx_body *body, uint32_t cell, const gx_region *r) {
     double reach = -1e300;
     uint32_t leaf, i, j, first, count, e0, en;
     ck_assert_int_eq(gxb_complex_open_element(cx, body->cells[cell].element), GX_OK);
-    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next) {
+    for (leaf = body->cells[cell].first_leaf; leaf != UINT32_MAX; leaf = body->leaves[leaf].next) {
         ck_assert_int_eq(gxb_leaf_facets(cx, leaf, &first, &count), GX_OK);
         for (i = 0; i < count; ++i) {
             ck_assert_int_eq(gxb_facet_edges(cx, cx->pool[first + i], &e0, &en), GX_OK);

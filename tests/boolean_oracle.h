@@ -1,44 +1,51 @@
-/* fuzz_oracle.h - what a Boolean of a few small surfaces must be, by oracle.h: space, as one large tetrahedron, divided by all planes. Pieces
+/* boolean_oracle.h - what a Boolean of a few small surfaces must be, by oracle.h: space, as one large tetrahedron, divided by all planes. Pieces
    are inside or not by exact winding numbers; components are pieces joined across faces in which no sheet lies; the Euler characteristic is
    that of the faces between inside and outside (or at a sheet), joined around edges through the inside. */
-#ifndef GXFEM_TESTS_FUZZ_ORACLE_H
-#define GXFEM_TESTS_FUZZ_ORACLE_H
+#ifndef GXFEM_TESTS_BOOLEAN_ORACLE_H
+#define GXFEM_TESTS_BOOLEAN_ORACLE_H
 
-#include "fuzz_cases.h"
 #include "oracle.h"
 
-enum { FUZZ_ORACLE_PLANES = 22, FUZZ_ORACLE_PIECES = 900 };
+enum { TRUTH_OPERANDS = 16, TRUTH_PARTS = 900 };
 
-typedef struct fuzz_truth {
+typedef struct truth_question {
+    const oracle_surface *surface;  /* count; those that are no solids divide, and do not wind */
+    const size_t *vertex_count;     /* count */
+    size_t count, planes, pieces;   /* at most so many planes and pieces */
+    int (*inside)(void *user, const int32_t *winding, size_t count);
+    void *user;
+} truth_question;
+
+typedef struct truth {
     size_t components;
     long euler;
-    double volume, part[FUZZ_ORACLE_PIECES];    /* part: of the components */
-} fuzz_truth;
+    double volume, part[TRUTH_PARTS];   /* part: of the components, of so many */
+} truth;
 
 /* ---- faces of pieces ---- */
 
-typedef struct fuzz_face {
+typedef struct truth_face {
     size_t piece, neighbour;        /* SIZE_MAX: there is none */
-    size_t corners, corner_count;   /* into fuzz_faces.corner: points */
+    size_t corners, corner_count;   /* into truth_faces.corner: points */
     int plane, open;                /* open: inside goes on behind it */
-} fuzz_face;
+} truth_face;
 
-typedef struct fuzz_faces {
+typedef struct truth_faces {
     const oracle *o;
-    fuzz_face *face; size_t count;
+    truth_face *face; size_t count;
     size_t *corner; size_t corner_count;
     size_t *of;                     /* piece x plane: face, SIZE_MAX: none */
-} fuzz_faces;
+} truth_faces;
 
-static inline size_t fuzz_face_at(const fuzz_faces *f, size_t piece, int plane) { return f->of[piece * f->o->plane_count + (size_t)plane]; }
+static inline size_t truth_face_at(const truth_faces *f, size_t piece, int plane) { return f->of[piece * f->o->plane_count + (size_t)plane]; }
 
-static inline void fuzz_add_face(fuzz_faces *f, size_t piece, int plane) {
+static inline void truth_add_face(truth_faces *f, size_t piece, int plane) {
     const oracle_piece *p = &f->o->pieces[piece];
-    fuzz_face *face;
+    truth_face *face;
     size_t i, on = 0;
     for (i = 0; i < p->point_count; ++i) on += (size_t)oracle_set_has(&oracle_corner(f->o, p, i)->zero, plane);
     if (on < 3) return;
-    f->face = (fuzz_face *)oracle_grow(f->face, f->count, sizeof *f->face);
+    f->face = (truth_face *)oracle_grow(f->face, f->count, sizeof *f->face);
     face = &f->face[f->count];
     face->piece = piece; face->plane = plane; face->neighbour = SIZE_MAX; face->open = 0;
     face->corners = f->corner_count; face->corner_count = on;
@@ -50,7 +57,7 @@ static inline void fuzz_add_face(fuzz_faces *f, size_t piece, int plane) {
     f->of[piece * f->o->plane_count + (size_t)plane] = f->count++;
 }
 
-static inline void fuzz_join_faces(fuzz_faces *f) {
+static inline void truth_join_faces(truth_faces *f) {
     size_t i, j;
     for (i = 0; i < f->o->piece_count; ++i)
         for (j = 0; j < f->o->piece_count; ++j) {
@@ -60,7 +67,7 @@ static inline void fuzz_join_faces(fuzz_faces *f) {
             oracle_set on = oracle_set_empty();
             oracle_contact c;
             if (i == j || k == ORACLE_NONE || f->o->pieces[i].removed || f->o->pieces[j].removed) continue;
-            face = fuzz_face_at(f, i, k);
+            face = truth_face_at(f, i, k);
             oracle_set_add(&on, k);
             c = oracle_contact_of(f->o, &f->o->pieces[i], &on);
             f->face[face].neighbour = j;
@@ -69,8 +76,8 @@ static inline void fuzz_join_faces(fuzz_faces *f) {
         }
 }
 
-static inline fuzz_faces fuzz_find_faces(const oracle *o) {
-    fuzz_faces f;
+static inline truth_faces truth_find_faces(const oracle *o) {
+    truth_faces f;
     size_t i;
     int k;
     memset(&f, 0, sizeof f);
@@ -78,32 +85,32 @@ static inline fuzz_faces fuzz_find_faces(const oracle *o) {
     f.of = (size_t *)oracle_memory(NULL, o->piece_count * o->plane_count, sizeof *f.of);
     for (i = 0; i < o->piece_count * o->plane_count; ++i) f.of[i] = SIZE_MAX;
     for (i = 0; i < o->piece_count; ++i)
-        for (k = 0; k < (int)o->plane_count && !o->pieces[i].removed; ++k) fuzz_add_face(&f, i, k);
-    fuzz_join_faces(&f);
+        for (k = 0; k < (int)o->plane_count && !o->pieces[i].removed; ++k) truth_add_face(&f, i, k);
+    truth_join_faces(&f);
     return f;
 }
 
 /* The other face of its piece around the edge between two points */
-static inline size_t fuzz_turn(const fuzz_faces *f, size_t face, size_t a, size_t b) {
+static inline size_t truth_turn(const truth_faces *f, size_t face, size_t a, size_t b) {
     const size_t piece = f->face[face].piece;
     int k;
     for (k = 0; k < (int)f->o->plane_count; ++k) {
-        const size_t other = fuzz_face_at(f, piece, k);
+        const size_t other = truth_face_at(f, piece, k);
         if (other != SIZE_MAX && other != face && oracle_set_has(&f->o->points[a].zero, k) && oracle_set_has(&f->o->points[b].zero, k)) return other;
     }
     rat_stop("oracle: an edge of one face");
     return 0;
 }
 
-static inline size_t fuzz_corner_of(const fuzz_faces *f, size_t face, size_t point) {
+static inline size_t truth_corner_of(const truth_faces *f, size_t face, size_t point) {
     size_t i = f->face[face].corners;
     while (f->corner[i] != point) ++i;
     return i;
 }
 
 /* Vertices - edges + faces of the boundary: corners of faces that meet around a vertex are one vertex. */
-static inline long fuzz_euler(const oracle *o) {
-    fuzz_faces f = fuzz_find_faces(o);
+static inline long truth_euler(const oracle *o) {
+    truth_faces f = truth_find_faces(o);
     size_t *parent = oracle_singles(f.corner_count), i, a, b, sides = 0;
     oracle_set done = oracle_done(o->plane_count);
     long euler = 0;
@@ -117,10 +124,10 @@ static inline long fuzz_euler(const oracle *o) {
             if (!oracle_set_has(&o->points[x].zero, f.face[i].plane) || !oracle_set_has(&o->points[y].zero, f.face[i].plane)) continue;
             if (!oracle_adjacent(o, p, a, b, &done)) continue;
             ++sides;
-            mate = fuzz_turn(&f, i, x, y);
-            while (f.face[mate].open) mate = fuzz_turn(&f, fuzz_face_at(&f, f.face[mate].neighbour, f.face[mate].plane), x, y);
-            oracle_join(parent, fuzz_corner_of(&f, i, x), fuzz_corner_of(&f, mate, x));
-            oracle_join(parent, fuzz_corner_of(&f, i, y), fuzz_corner_of(&f, mate, y));
+            mate = truth_turn(&f, i, x, y);
+            while (f.face[mate].open) mate = truth_turn(&f, truth_face_at(&f, f.face[mate].neighbour, f.face[mate].plane), x, y);
+            oracle_join(parent, truth_corner_of(&f, i, x), truth_corner_of(&f, mate, x));
+            oracle_join(parent, truth_corner_of(&f, i, y), truth_corner_of(&f, mate, y));
         }
     }
     for (i = 0; i < f.count; ++i)
@@ -132,84 +139,75 @@ static inline long fuzz_euler(const oracle *o) {
 /* ---- the whole ---- */
 
 /* A tetrahedron around all operands */
-static inline void fuzz_frame(const test_case *c, double x[4][3]) {
+static inline void truth_frame(const truth_question *q, double x[4][3]) {
     double size = 0;
     size_t i, j;
     int k, e;
-    for (i = 0; i < c->operands; ++i)
-        for (j = 0; j < c->operand[i].mesh.vertices; ++j) for (k = 0; k < 3; ++k) size = fmax(size, fabs(c->operand[i].mesh.x[j][k]));
+    for (i = 0; i < q->count; ++i) for (j = 0; j < 3 * q->vertex_count[i]; ++j) size = fmax(size, fabs(q->surface[i].vertices[j]));
     frexp(size, &e);
     for (i = 0; i < 4; ++i) for (k = 0; k < 3; ++k) x[i][k] = ldexp((int)i == k + 1 ? 4 : -1, e + 1);
 }
 
-static inline void fuzz_choose_pieces(oracle *o, const test_case *c, int (*inside)(const case_operand *, size_t, const int32_t *)) {
+static inline void truth_choose_pieces(oracle *o, const truth_question *q) {
     size_t *region = oracle_singles(o->piece_count), i, s;
     oracle_join_inside(o, region, 1);
     for (i = 0; i < o->piece_count; ++i) {
-        int32_t winding[CASE_OPERANDS + CASE_SHEETS];
+        int32_t winding[TRUTH_OPERANDS];
         rat_mark mark = rat_arena_mark();
         oracle_set nothing = oracle_set_empty();
         oracle_contact middle;
         o->pieces[i].region = oracle_root(region, i);
         if (o->pieces[i].region != i) { o->pieces[i].removed = o->pieces[o->pieces[i].region].removed; continue; }
         middle = oracle_contact_of(o, &o->pieces[i], &nothing);
-        for (s = 0; s < c->operands; ++s) winding[s] = c->operand[s].operation == 4 ? 0 : oracle_winding(o, s, middle.center);
-        o->pieces[i].removed = !inside(c->operand, c->operands, winding);
+        for (s = 0; s < q->count; ++s) winding[s] = q->surface[s].solid ? oracle_winding(o, s, middle.center) : 0;
+        o->pieces[i].removed = !q->inside(q->user, winding, q->count);
         rat_arena_release(mark);
     }
     free(region);
 }
 
-static inline void fuzz_read_pieces(oracle *o, fuzz_truth *truth) {
+static inline void truth_read_pieces(oracle *o, truth *t) {
     size_t *component = oracle_singles(o->piece_count), *name = oracle_singles(o->piece_count), i;
-    memset(truth, 0, sizeof *truth);
+    memset(t, 0, sizeof *t);
     oracle_join_inside(o, component, 0);
     for (i = 0; i < o->piece_count; ++i) {
         const size_t root = oracle_root(component, i);
         double volume;
         if (o->pieces[i].removed) continue;
-        if (root == i) name[i] = truth->components++;
+        if (root == i) name[i] = t->components++;
         volume = oracle_piece_volume(o, &o->pieces[i]);
-        truth->part[name[root]] += volume;
-        truth->volume += volume;
+        if (name[root] < TRUTH_PARTS) t->part[name[root]] += volume;
+        t->volume += volume;
     }
-    truth->euler = fuzz_euler(o);
+    t->euler = truth_euler(o);
     free(component); free(name);
 }
 
 /* 0: too large for it */
-static inline int fuzz_ask_oracle(const test_case *c, int (*inside)(const case_operand *, size_t, const int32_t *), fuzz_truth *truth) {
+static inline int truth_ask(const truth_question *q, truth *t) {
     static const uint32_t nodes[4] = { 0, 1, 2, 3 };
-    oracle_surface surfaces[CASE_OPERANDS + CASE_SHEETS];
     double frame[4][3];
     oracle *o = (oracle *)oracle_memory(NULL, 1, sizeof *o);
     int small;
-    size_t i;
     memset(o, 0, sizeof *o);
     o->mark = rat_arena_mark();
-    fuzz_frame(c, frame);
+    truth_frame(q, frame);
     o->mesh.positions = &frame[0][0]; o->mesh.node_count = 4;
     o->mesh.elements = nodes; o->mesh.element_count = 1;
-    for (i = 0; i < c->operands; ++i) {
-        surfaces[i].vertices = &c->operand[i].mesh.x[0][0];
-        surfaces[i].triangles = &c->operand[i].mesh.t[0][0];
-        surfaces[i].triangle_count = c->operand[i].mesh.triangles;
-        surfaces[i].solid = c->operand[i].operation != 4;
-    }
-    oracle_find_planes(o, surfaces, c->operands);
-    small = o->plane_count <= FUZZ_ORACLE_PLANES;
+    oracle_find_planes(o, q->surface, q->count);
+    small = o->plane_count <= q->planes;
     if (small) {
         o->element_pieces = (size_t *)oracle_memory(NULL, 2, sizeof *o->element_pieces);
         o->element_pieces[0] = 0;
         oracle_divide_element(o, 0);
-        small = o->piece_count <= FUZZ_ORACLE_PIECES;
+        small = o->piece_count <= q->pieces;
     }
     if (small) {
-        fuzz_choose_pieces(o, c, inside);
-        fuzz_read_pieces(o, truth);
+        truth_choose_pieces(o, q);
+        truth_read_pieces(o, t);
     }
     oracle_destroy(o);
     return small;
 }
 
-#endif /* GXFEM_TESTS_FUZZ_ORACLE_H */
+#endif /* GXFEM_TESTS_BOOLEAN_ORACLE_H */
