@@ -7,7 +7,8 @@
    after each operand. S: a bumpy sphere of 8,000 triangles less a turned copy. filter_share and exact_share: of the signs asked for, those that
    the filter or the definitions decided, and those that took exact arithmetic. Surfaces are vouched for as simple; "?": they are not.
    Each call creates, adds, evaluates, asks for the components, and destroys; surface_us: the median where it does not ask. SECONDS per workload and
-   way, at least three calls. */
+   way, at least three calls. What a call gives back stays with the process, as with whoever calls often: otherwise the C library hands it to the
+   system or not, by what was there before, and where it does a third is added to large workloads by the system's fresh pages. */
 #define _POSIX_C_SOURCE 200809L
 #define GXFEM_BOOLEAN_IMPLEMENTATION
 #include "../gxfem_boolean.h"
@@ -16,6 +17,9 @@
 #include "csv.h"
 #include "progress.h"
 #include <dirent.h>
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 
 enum { OPERANDS = 64, CALLS = 100000, NAMES = 512, NAME = 64, GENERATED = 4 };
 static const double SECONDS = 0.3;
@@ -287,6 +291,10 @@ int main(int argc, char **argv)
     static char names[NAMES][NAME];
     const size_t count = argc > 2 ? list_folder(argv[2], names) : 0;
     size_t i;
+#if defined(__GLIBC__)
+    mallopt(M_MMAP_THRESHOLD, 1 << 25);
+    mallopt(M_TRIM_THRESHOLD, 1 << 30);
+#endif
     csv_open(argv[0], argc > 1 ? argv[1] : NULL, "workload,median_us,min_us,triangles,components,volume,filter_share,exact_share,allocations,peak_bytes,surface_us");
     total = GENERATED + count;
     measure_generated();
