@@ -10,7 +10,7 @@
 #include "boolean_oracle.h"
 #include "runner.h"
 
-enum { PLANES = 48, PIECES = 12000, MCUT_PAIRS = 32 };
+enum { PLANES = 80, PIECES = 60000, MCUT_PAIRS = 32 };
 enum { UNION, INTERSECTION, DIFFERENCE, SYMMETRIC, SPLIT, OPERATIONS };
 static const char *const operation_names[OPERATIONS] = {"union", "intersection", "difference", "symmetric difference", "split"};
 static const uint32_t operations[OPERATIONS] = {GXB_UNION, GXB_INTERSECTION, GXB_DIFFERENCE, GXB_SYMMETRIC_DIFFERENCE, GXB_SPLIT};
