@@ -389,6 +389,14 @@ extern "C" {
 /* --- types --- */
 
 #define GXP_NONE UINT32_MAX
+/* Shares of an element (gx_body_desc.support_below is 0): copies that nothing larger carries follow others; fragments without anything larger
+   move as points. */
+#define GXP_SUPPORT 1e-3
+#define GXP_SPECK 1e-9
+
+/* So far a fragment reaches at least, beside an element, or it moves as a point: else its copies would go ten times as far as what it is made of. */
+#define GXP_CRUMB 0.1
+
 #define GXP_FRAGMENT_ARRAYS 11      /* 1 + 1 + 3 + 6 */
 
 typedef struct gxp_cell {       /* slot; slots 0 ... element_count-1 are the elements' first cells */
@@ -475,7 +483,8 @@ struct gx_body {
     uint32_t node_count, element_count;
     gx_material *materials; uint32_t material_count;
     uint32_t *element_materials;    /* element_count */
-    double support_below;
+    double support_below;           /* as given */
+    double follow_below, point_below;   /* see gxp_supports */
     double *positions;              /* node_count x 3 */
     uint32_t *node_start;           /* node_count + 1, into node_elements */
     uint32_t *node_elements;        /* element_count x 4: elements around each node */
@@ -520,6 +529,7 @@ struct gx_body {
     double *rest; uint32_t rest_capacity;               /* copies, x 3 doubles: where they are at rest, m; as long */
     gxs_material *elastic; uint32_t elastic_capacity;   /* materials for the solver; as long */
     gxs_constraint *constraints; uint32_t constraint_count, constraint_capacity;    /* as long */
+    gxp_words thin;                 /* elements with a part of a share below follow_below, ascending; of use if model is not STALE */
     gxp_words view_cells, view_fragments;               /* slot of each kept cell; fragment of each */
     gxp_words copy_fragment, fragment_number, cell_element, cell_copies;
     double *cell_volume; uint32_t cell_volume_capacity;
@@ -1212,6 +1222,8 @@ GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **out, gx_f
     body->jobs = desc->jobs;
     body->material_count = desc->materials != NULL ? (uint32_t)desc->material_count : 1;
     body->support_below = desc->support_below;
+    body->follow_below = desc->support_below > 0 ? desc->support_below : GXP_SUPPORT;
+    body->point_below = desc->support_below > 0 ? desc->support_below : GXP_SPECK;
     mesh.positions = desc->positions; mesh.node_count = desc->node_count;
     mesh.elements = desc->elements; mesh.element_count = desc->element_count;
     result = gxb_complex_create(&mesh, &desc->allocator, &body->complex, failure);
@@ -1267,6 +1279,7 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     gxp_release(&a, body->copy_label, body->copy_label_capacity * sizeof *body->copy_label);
     gxp_release(&a, body->copy_before, body->copy_before_capacity * sizeof *body->copy_before);
     gxp_words_free(body, &body->changed);
+    gxp_words_free(body, &body->thin);
     gxp_words_free(body, &body->fragment_ids);
     gxp_words_free(body, &body->fragment_origins);
     gxp_words_free(body, &body->fragment_changes);
@@ -3872,119 +3885,228 @@ static gx_result gxp_make_parts(gx_body *body) {
     return result;
 }
 
-/* --- copies with next to no support follow others --- */
+/* --- copies that only slivers carry follow others (RXFEM Eq. 22) ---
+   The share of a part is its volume over that of its element. A copy is weak if no part around it has a share of follow_below or more: so little
+   moves it that nothing else would keep it from running away. It takes the increment of the field of a strong cell near it, one without
+   weak copies. A fragment without a strong cell is thin everywhere: weak are then the copies that are so beside its fullest part; but if
+   that has a share below point_below, the fragment moves as a point. All work is around thin elements, those with a part of so small a share. */
 
-/* What is found about copies on the way */
+enum { GXP_FREE, GXP_FOLLOWS, GXP_FOLLOWS_POINT };
+
 typedef struct gxp_supports {
-    double *share;          /* copy_count: volume around it, as a share of its node's */
-    uint32_t *part;         /* copy_count: the part whose field it shall follow; GXP_NONE: not known, or none */
-    uint32_t *root;         /* copy_count: union-find over parts: fragments */
+    uint8_t *weak;          /* copy_count: GXP_FREE ... */
+    uint32_t *cell;         /* copy_count: whose field the copy follows, or, of a point, whose first copy; GXP_NONE: not known, or none */
+    uint32_t *queue;        /* copy_count: copies found by a search */
+    uint32_t *seen;         /* copy_count: the search that has met it last */
+    uint32_t search;
 } gxp_supports;
 
-static double gxp_part_volume(const gxs_element *part) {
-    const double *g = part->gradient[1];
-    const double det = g[0] * (g[4] * g[8] - g[5] * g[7]) + g[1] * (g[5] * g[6] - g[3] * g[8]) + g[2] * (g[3] * g[7] - g[4] * g[6]);
-    return 1 / (6 * fabs(det));
+/* Cells around a copy, one after the other */
+typedef struct gxp_around { uint32_t copy, at, cell; } gxp_around;
+
+static gxp_around gxp_around_copy(const gx_body *body, uint32_t copy) {
+    gxp_around around;
+    around.copy = copy;
+    around.at = body->node_start[body->copy_node[copy]];
+    around.cell = GXP_NONE;
+    return around;
 }
 
-/* Shares of all copies. node: node_count, scratch, zero: volumes of the elements around each node */
-static void gxp_find_shares(const gx_body *body, gxp_supports *of, double *node) {
-    uint32_t e, i;
+/* 0: there are no more */
+static int gxp_next_around(const gx_body *body, gxp_around *around) {
+    const uint32_t copy = around->copy, end = body->node_start[body->copy_node[copy] + 1];
+    for (;;) {
+        const gxp_cell *cell;
+        if (around->cell != GXP_NONE) around->cell = body->cells[around->cell].next;
+        if (around->cell == GXP_NONE && around->at == end) return 0;
+        if (around->cell == GXP_NONE) around->cell = body->node_elements[around->at++];
+        cell = &body->cells[around->cell];
+        if (cell->kept && (cell->copies[0] == copy || cell->copies[1] == copy || cell->copies[2] == copy || cell->copies[3] == copy)) return 1;
+    }
+}
+
+/* Share of the part that a cell belongs to */
+static double gxp_part_share(const gx_body *body, uint32_t cell) {
+    const gxp_cell *of = &body->cells[cell];
+    double volume = 0;
+    for (cell = of->element; cell != GXP_NONE; cell = body->cells[cell].next)
+        if (body->cells[cell].kept && memcmp(body->cells[cell].copies, of->copies, sizeof of->copies) == 0) volume += body->cells[cell].volume;
+    return volume / gxp_element_volume(body, of->element);
+}
+
+static int gxp_is_thin(const gx_body *body, uint32_t element) {
+    uint32_t cell;
+    for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next)
+        if (body->cells[cell].kept && gxp_part_share(body, cell) < body->follow_below) return 1;
+    return 0;
+}
+
+/* Brings the list of thin elements up to date: all anew, or those that have changed. */
+static gx_result gxp_list_thin(gx_body *body, int anew) {
+    const uint32_t looked_at = anew ? body->element_count : body->changed.count;
+    gx_result result = GX_OK;
+    uint32_t i, k, count = 0;
+    for (i = k = 0; i < body->thin.count && !anew; i++) {
+        while (k < body->changed.count && body->changed.data[k] < body->thin.data[i]) k++;
+        if (k == body->changed.count || body->changed.data[k] != body->thin.data[i]) body->thin.data[count++] = body->thin.data[i];
+    }
+    body->thin.count = count;
+    for (i = 0; i < looked_at && result == GX_OK; i++) {
+        const uint32_t element = anew ? i : body->changed.data[i];
+        if (gxp_is_thin(body, element)) result = gxp_push(body, &body->thin, element);
+    }
+    gxp_sort_unique(&body->thin);
+    return result;
+}
+
+/* Do all parts around the copy have a smaller share? */
+static int gxp_is_weak(const gx_body *body, uint32_t copy, double share) {
+    gxp_around around = gxp_around_copy(body, copy);
+    while (gxp_next_around(body, &around)) if (gxp_part_share(body, around.cell) >= share) return 0;
+    return 1;
+}
+
+static int gxp_is_strong(const gx_body *body, const gxp_supports *of, uint32_t cell) {
+    const uint32_t *copies = body->cells[cell].copies;
+    return !(of->weak[copies[0]] | of->weak[copies[1]] | of->weak[copies[2]] | of->weak[copies[3]]);
+}
+
+/* Weights by which a copy follows the field of a cell at its node, 1 in sum. Returns the sum of their sizes: 1 within the element, more outside. */
+static double gxp_follow_weights(const gx_body *body, uint32_t copy, uint32_t cell, double weight[4]) {
+    const double *at = body->positions + 3 * (size_t)body->copy_node[copy];
+    double x[12], gradients[12];
+    int k, c;
+    gxp_element_positions(body, body->cells[cell].element, x);
+    (void)gxi_tet_gradients(x, gradients, NULL);
+    for (k = 1; k < 4; k++)
+        for (c = 0, weight[k] = 0; c < 3; c++) weight[k] += gradients[3 * k + c] * (at[c] - x[c]);
+    weight[0] = 1 - weight[1] - weight[2] - weight[3];
+    return fabs(weight[0]) + fabs(weight[1]) + fabs(weight[2]) + fabs(weight[3]);
+}
+
+/* What a weak copy follows: of the strong cells nearest to it, by cells between, the one whose field is extended least, or, where a copy that
+   already follows is as near, what that follows. So do weak copies on the way that are further than one cell from it. Returns how many
+   copies the search has met if there is no strong cell: all of the fragment. */
+static uint32_t gxp_find_cell(const gx_body *body, gxp_supports *of, uint32_t copy) {
+    uint32_t begin, end, i, count = 1, best = GXP_NONE;
     int k;
-    for (e = 0; e < body->element_count; e++) {
-        double x[12], gradients[12], volume = 0;
-        gxp_element_positions(body, e, x);
-        (void)gxi_tet_gradients(x, gradients, &volume);
-        for (k = 0; k < 4; k++) node[body->complex->elements[4 * (size_t)e + (size_t)k]] += volume;
+    of->search++;
+    of->queue[0] = copy;
+    of->seen[copy] = of->search;
+    for (begin = 0; begin < count && best == GXP_NONE; begin = end) {
+        double least = HUGE_VAL, weight[4], sum;
+        uint32_t known = GXP_NONE;
+        for (i = begin, end = count; i < end; i++) {
+            gxp_around around = gxp_around_copy(body, of->queue[i]);
+            if (known == GXP_NONE) known = of->cell[of->queue[i]];
+            while (gxp_next_around(body, &around)) {
+                if (gxp_is_strong(body, of, around.cell) && (sum = gxp_follow_weights(body, copy, around.cell, weight)) < least) {
+                    least = sum;
+                    best = around.cell;
+                }
+                for (k = 0; k < 4; k++) {
+                    const uint32_t other = body->cells[around.cell].copies[k];
+                    if (of->seen[other] == of->search) continue;
+                    of->seen[other] = of->search;
+                    of->queue[count++] = other;
+                }
+            }
+        }
+        if (best == GXP_NONE) best = known;
+        for (i = 0; i < begin && best != GXP_NONE; i++)
+            if (of->weak[of->queue[i]] && of->cell[of->queue[i]] == GXP_NONE) of->cell[of->queue[i]] = best;
     }
-    for (i = 0; i < body->part_count; i++)
-        for (k = 0; k < 4; k++) of->share[body->parts[i].copy[k]] += body->parts[i].weight;
-    for (i = 0; i < body->copy_count; i++) of->share[i] /= node[body->copy_node[i]];
+    return best == GXP_NONE ? count : 0;
 }
 
-static int gxp_low(const gx_body *body, const gxp_supports *of, uint32_t copy) { return of->share[copy] < body->support_below; }
-
-/* Parts whose copies are all well supported are followed, by their own copies first, then from neighbour to neighbour. */
-static void gxp_spread_supports(const gx_body *body, gxp_supports *of) {
-    uint32_t i, changed = 1;
-    int k, j;
-    for (i = 0; i < body->part_count; i++) {
-        const uint32_t *c = body->parts[i].copy;
-        if (gxp_low(body, of, c[0]) || gxp_low(body, of, c[1]) || gxp_low(body, of, c[2]) || gxp_low(body, of, c[3])) continue;
-        for (k = 0; k < 4; k++) if (of->part[c[k]] == GXP_NONE) of->part[c[k]] = i;
+/* How far a cell reaches beside its element: square root of the trace of its covariance in barycentric coordinates over that of the element, which
+   is 4 (1/10 - 1/16). A crumb of an element's corner reaches as far as it is large, a layer of any thickness about as far as the element. */
+static double gxp_cell_reach(const gxp_cell *cell) {
+    static const int rows[4][4] = { {0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9} };
+    double mass = 0, trace = 0, row;
+    int i, k;
+    for (i = 0; i < 4; i++) for (k = 0; k < 4; k++) mass += cell->mass[rows[i][k]];
+    for (i = 0; i < 4 && mass > 0; i++) {
+        for (k = 0, row = 0; k < 4; k++) row += cell->mass[rows[i][k]];
+        trace += cell->mass[rows[i][i]] / mass - row / mass * (row / mass);
     }
-    while (changed) {
-        changed = 0;
-        for (i = 0; i < body->part_count; i++) {
-            const uint32_t *c = body->parts[i].copy;
-            for (k = 0; k < 4 && of->part[c[k]] == GXP_NONE; k++) continue;
-            for (j = 0; j < 4 && k < 4; j++)
-                if (of->part[c[j]] == GXP_NONE) { of->part[c[j]] = of->part[c[k]]; changed = 1; }
+    return trace > 0 ? sqrt(trace / 0.15) : 0;
+}
+
+/* A fragment without a strong cell, the first `count` copies of the queue: weak is what is so beside its fullest part, or it is a point. */
+static void gxp_weigh_fragment(const gx_body *body, gxp_supports *of, uint32_t count) {
+    uint32_t i, fullest = GXP_NONE, lead;
+    double most = 0, reach = 0;
+    for (i = 0; i < count; i++) {
+        gxp_around around = gxp_around_copy(body, of->queue[i]);
+        while (gxp_next_around(body, &around)) {
+            const double share = gxp_part_share(body, around.cell);
+            if (fullest == GXP_NONE || share > most) { most = share; fullest = around.cell; }
+            reach = fmax(reach, gxp_cell_reach(&body->cells[around.cell]));
         }
     }
+    lead = body->cells[fullest].copies[0];
+    for (i = 0; i < count; i++) {
+        const uint32_t copy = of->queue[i];
+        if (most >= body->point_below && reach >= GXP_CRUMB) of->weak[copy] = gxp_is_weak(body, copy, body->follow_below * most) ? GXP_FOLLOWS : GXP_FREE;
+        else { of->weak[copy] = copy == lead ? GXP_FREE : GXP_FOLLOWS_POINT; of->cell[copy] = fullest; }
+    }
 }
 
-/* Fragments that are left follow their fullest part. */
-static void gxp_choose_fullest(const gx_body *body, gxp_supports *of) {
-    uint32_t i;
+/* Weak copies of the body, and what each follows. Returns how many there are. */
+static uint32_t gxp_find_supports(const gx_body *body, gxp_supports *of) {
+    uint32_t i, cell, count = 0;
     int k;
-    for (i = 0; i < body->copy_count; i++) of->root[i] = i;
-    for (i = 0; i < body->part_count; i++)
-        for (k = 1; k < 4; k++) gxp_unite(of->root, body->parts[i].copy[0], body->parts[i].copy[k]);
-    for (i = 0; i < body->part_count; i++) {
-        const uint32_t *c = body->parts[i].copy, root = gxp_find(of->root, c[0]), best = of->part[root];
-        if (of->part[c[c[0] == root]] != GXP_NONE) continue;    /* has been spread to all of its fragment; here only roots are told theirs */
-        if (best == GXP_NONE || body->parts[i].weight / gxp_part_volume(&body->parts[i]) > body->parts[best].weight / gxp_part_volume(&body->parts[best]))
-            of->part[root] = i;
+    of->search = 1;
+    for (i = 0; i < body->thin.count; i++)
+        for (cell = body->thin.data[i]; cell != GXP_NONE; cell = body->cells[cell].next)
+            for (k = 0; k < 4 && body->cells[cell].kept; k++) {
+                const uint32_t copy = body->cells[cell].copies[k];
+                if (of->seen[copy] == of->search) continue;
+                of->seen[copy] = of->search;
+                of->weak[copy] = gxp_is_weak(body, copy, body->follow_below) ? GXP_FOLLOWS : GXP_FREE;
+            }
+    for (i = 0; i < body->copy_count; i++) {
+        while (of->weak[i] && of->cell[i] == GXP_NONE) {
+            const uint32_t met = gxp_find_cell(body, of, i);
+            if (met > 0) gxp_weigh_fragment(body, of, met);
+        }
+        count += of->weak[i] != GXP_FREE;
     }
-    for (i = 0; i < body->copy_count; i++) if (of->part[i] == GXP_NONE) of->part[i] = of->part[gxp_find(of->root, i)];
+    return count;
 }
 
-/* The copy follows the field of its part at its node, or, where that part is all but empty, the part's best supported copy. */
 static void gxp_add_constraint(gx_body *body, const gxp_supports *of, uint32_t copy) {
-    const gxs_element *part = &body->parts[of->part[copy]];
-    const double *x = body->positions + 3 * (size_t)body->copy_node[copy], *x0 = body->positions + 3 * (size_t)body->copy_node[part->copy[0]];
-    gxs_constraint *constraint = &body->constraints[body->constraint_count];
-    int k, best = 0, c;
-    for (k = 1; k < 4; k++) if (of->share[part->copy[k]] > of->share[part->copy[best]]) best = k;
+    gxs_constraint *constraint = &body->constraints[body->constraint_count++];
     constraint->copy = copy;
-    for (k = 0; k < 4; k++) {
-        const int point = part->weight < body->support_below * gxp_part_volume(part);
-        constraint->master[k] = part->copy[k];
-        constraint->weight[k] = point ? k == best : k == 0;
-        for (c = 0; c < 3 && !point; c++) constraint->weight[k] += part->gradient[k][c] * (x[c] - x0[c]);
-        if (part->copy[k] == copy && (!point || k == best)) return;   /* a master itself */
-    }
-    body->constraint_count++;
+    memcpy(constraint->master, body->cells[of->cell[copy]].copies, sizeof constraint->master);
+    memset(constraint->weight, 0, sizeof constraint->weight);
+    if (of->weak[copy] == GXP_FOLLOWS) (void)gxp_follow_weights(body, copy, of->cell[copy], constraint->weight);
+    else constraint->weight[0] = 1;
 }
 
 static gx_result gxp_make_constraints(gx_body *body) {
     const gx_allocator *a = &body->allocator;
-    const size_t n = (size_t)body->copy_count + 1, node_bytes = ((size_t)body->node_count + 1) * sizeof(double);
+    const size_t n = body->copy_count;
     gxp_supports of;
-    double *node;
-    uint32_t i;
-    gx_result result;
+    uint32_t i, count;
+    gx_result result = GX_OK;
     body->constraint_count = 0;
-    if (!(body->support_below > 0)) return GX_OK;
-    result = gxp_reserve(a, &body->constraints, sizeof *body->constraints, 0, &body->constraint_capacity, body->copy_count);
-    if (result != GX_OK) return result;
-    of.share = (double *)gxp_allocate(a, n * sizeof(double));
-    of.part = (uint32_t *)gxp_allocate(a, 2 * n * sizeof(uint32_t));
-    node = (double *)gxp_allocate(a, node_bytes);
-    if (of.share != NULL && of.part != NULL && node != NULL) {
-        of.root = of.part + n;
-        memset(of.share, 0, n * sizeof(double));
-        memset(of.part, 0xff, n * sizeof(uint32_t));
-        memset(node, 0, node_bytes);
-        gxp_find_shares(body, &of, node);
-        gxp_spread_supports(body, &of);
-        gxp_choose_fullest(body, &of);
-        for (i = 0; i < body->copy_count; i++) if (gxp_low(body, &of, i) && of.part[i] != GXP_NONE) gxp_add_constraint(body, &of, i);
+    if (body->thin.count == 0) return GX_OK;
+    of.weak = (uint8_t *)gxp_allocate(a, n);
+    of.cell = (uint32_t *)gxp_allocate(a, 3 * n * sizeof(uint32_t));
+    if (of.weak != NULL && of.cell != NULL) {
+        of.queue = of.cell + n;
+        of.seen = of.queue + n;
+        memset(of.weak, 0, n);
+        memset(of.cell, 0xff, n * sizeof *of.cell);
+        memset(of.seen, 0, n * sizeof *of.seen);
+        count = gxp_find_supports(body, &of);
+        result = gxp_reserve(a, &body->constraints, sizeof *body->constraints, 0, &body->constraint_capacity, count);
+        for (i = 0; i < n && result == GX_OK; i++) if (of.weak[i]) gxp_add_constraint(body, &of, i);
     } else result = GX_ERROR_MEMORY;
-    gxp_release(a, of.share, n * sizeof(double));
-    gxp_release(a, of.part, 2 * n * sizeof(uint32_t));
-    gxp_release(a, node, node_bytes);
+    gxp_release(a, of.weak, n);
+    gxp_release(a, of.cell, 3 * n * sizeof(uint32_t));
     return result;
 }
 
@@ -3992,6 +4114,7 @@ static gx_result gxp_make_model(gx_body *body, gxs_model *model) {
     const gx_allocator *a = &body->allocator;
     uint32_t i;
     gx_result result = gxp_make_parts(body);
+    if (result == GX_OK) result = gxp_list_thin(body, 1);
     if (result == GX_OK) result = gxp_make_constraints(body);
     if (result == GX_OK) result = gxp_reserve(a, &body->rest, 3 * sizeof(double), 0, &body->rest_capacity, body->copy_count);
     if (result == GX_OK) result = gxp_reserve(a, &body->elastic, sizeof *body->elastic, 0, &body->elastic_capacity, body->material_count);
@@ -4020,10 +4143,13 @@ static gx_result gxp_change_model(gx_body *body) {
     result = gxp_reserve(&body->allocator, &body->parts, sizeof *body->parts, 0, &body->part_capacity, room);
     body->part_count = 0;
     for (i = 0; i < body->changed.count && result == GX_OK; i++) result = gxp_add_parts(body, body->changed.data[i]);
+    if (result == GX_OK) result = gxp_list_thin(body, 0);
+    if (result == GX_OK) result = gxp_make_constraints(body);
     memset(&change, 0, sizeof change);
     change.copy_count = body->copy_count; change.origins = body->copy_before; change.held = body->held;
     change.groups = body->changed.data; change.group_count = body->changed.count;
     change.elements = body->parts; change.element_count = body->part_count;
+    change.constraints = body->constraints; change.constraint_count = body->constraint_count;
     return result == GX_OK ? gxs_solver_update(body->solver, &change, NULL) : result;
 }
 
@@ -4048,7 +4174,7 @@ static gx_result gxp_update_model(gx_body *body) {
     uint32_t i;
     if (result != GX_OK || body->model == GXP_MODEL_KNOWN) { gxp_release_model(body); return result; }
     if (body->model == GXP_MODEL_CHANGED) {
-        result = body->support_below > 0 ? GX_ERROR_LIMIT : gxp_change_model(body);
+        result = gxp_change_model(body);
         body->model = result == GX_OK ? GXP_MODEL_KNOWN : GXP_MODEL_STALE;
         body->model_updated = 1;
         if (result == GX_ERROR_LIMIT || result == GX_ERROR_EMPTY) result = GX_OK;

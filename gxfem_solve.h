@@ -221,6 +221,8 @@ typedef struct gxs_change {
     size_t group_count;
     const gxs_element *elements;/* element_count, by ascending group: what comes in their place; of the model's materials */
     size_t element_count;
+    const gxs_constraint *constraints; /* constraint_count: all that there are from now on */
+    size_t constraint_count;
 } gxs_change;
 
 typedef enum gxs_preconditioner {
@@ -370,7 +372,7 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
 /* Changes the model in time that goes by the size of the change, but for what is proportional to the number of copies and small. Steps go on
  * with what they have learnt so far. Results are those of the whole model set anew but for rounding and the tolerances of steps.
  * GX_ERROR_ARGUMENT if no model is set or an order is not as it should be (index: of the group or element). GX_ERROR_LIMIT if
- * the change does not fit what there is: a matrix is assembled, mass is lumped, copies follow others, GXS_VOLUME_RATIO, lanes
+ * the change does not fit what there is: a matrix is assembled, mass is lumped, GXS_VOLUME_RATIO, lanes
  * that changes have left behind are a quarter of all, a copy is held and was not or the other way round, no element is left,
  * elements that stay have lost a copy. On this and on GX_ERROR_MEMORY no model is set any more: set it. On other errors the
  * model before stays. */
@@ -457,6 +459,9 @@ extern "C" {
 /* Newton ends after so many iterations in a row without a gain that doubles can tell. */
 #define GXSP_STALLS 4
 
+/* A direction that goes twice as far as the linear model's minimum along it, or further, is begun at that minimum. */
+#define GXSP_TOO_LONG 0.5
+
 /* Line search: at worst each trial halves the step; after 60 nothing of it is left. */
 #define GXSP_TRIALS 60
 
@@ -484,6 +489,14 @@ extern "C" {
  * fourth power of the rest, as which they grow at most; up to this weight, J: single precision holds the one times the other. */
 #define GXSP_STRETCHED 1e24
 #define GXSP_HEAVIEST 1e12
+
+/* A copy is light if it has a smaller share than this of the mass of its elements; those of whole ones are 1/4. What guides it are corners with half
+ * as much of their element at least. */
+#define GXSP_LIGHT 0.1
+
+/* Directions of light copies are bounded in so many iterations of a step, where that takes no more than this share of the slope of their piece. */
+#define GXSP_BOUNDED 8
+#define GXSP_BOUND_COST 0.1
 
 /* An element all whose stretches are smaller is all but a point, where its forces vanish: directions are found as if it were
  * GXSP_NUDGE of its size. */
@@ -936,7 +949,9 @@ typedef struct gxsp_piece {
     double before[3];   /* at current */
     double base_energy; /* elastic, of what the last step returned, J; of use if gxsp_system.base_known */
     double limit, ended; /* E where the step starts, which it is not to exceed, and where Newton's method has ended; J */
+    double base, low, gain; /* of the midpoint rule: E at base, and less that E at the end without what is taken off it, and at a trial; J */
     double slope, work; /* dE/dlength of the direction, and the load's work along it; J */
+    double left;        /* what the linear solve has left of the residual, along the direction; J */
     double rounding;    /* of positions and of the load's terms, in units in the last place; J */
     double length;      /* share of the direction that it goes */
     int settled;        /* its length is found: chunks all of whose pieces are settled are not evaluated again */
@@ -953,6 +968,12 @@ typedef struct gxsp_follower {
     uint32_t copy, master[4];
     double weight[4];
 } gxsp_follower;
+
+/* A copy at which its elements have next to nothing of their mass: the far corner of what a cut has left of them. Which lane's others guide it */
+typedef struct gxsp_light {
+    uint32_t copy, chunk;
+    uint16_t lane, corner;
+} gxsp_light;
 
 /* Hessian of springs and contact at one point, times scale */
 typedef struct gxsp_term {
@@ -1003,8 +1024,12 @@ typedef struct gxsp_system {
     uint32_t piece_count, loose_count; /* loose: of state 0 */
     gxsp_follower *followers;
     uint32_t follower_count;
-    uint32_t *follower;     /* n: index of the copy's entry in followers; GXSP_NONE: it follows none; NULL: none does */
+    uint32_t follower_room; /* of followers */
+    uint32_t *follower;     /* n: index of the copy's entry in followers; GXSP_NONE: it follows none; of use if there are followers */
+    size_t follower_copies; /* room of follower */
     gxsp_lasting *lasting;  /* of the solver */
+    gxsp_light *lights;     /* light_count */
+    uint32_t light_count, light_room;
     float *volume;          /* n: inverse volume of the support, scaled; of GXS_VOLUME_RATIO only */
     double *target;         /* where inertia (and mass damping) alone lead; of backward Euler u_n + dt v_n */
     double *damping;        /* what Rayleigh damping adds to the load, N; NULL: no material is damped */
@@ -1066,7 +1091,6 @@ typedef struct gxsp_problem {
     double cg_tolerance;
     double nepers;          /* by how many factors of e the last linear solve has reduced the residual that its guess left */
     double energies[3];     /* at current, sums over pieces; J */
-    double base_potential;  /* E at base, J; of the midpoint rule */
     const double *given;    /* displacement at the step's start, u_n */
     double start;           /* on the clock */
     gxs_scene scene;
@@ -3185,43 +3209,73 @@ static void gxsp_find_fixed(gxsp_system *system, const gxs_model *model)
 
 static inline int gxsp_follows(const gxsp_system *system, size_t copy)
 {
-    return system->follower && system->follower[copy] != GXSP_NONE;
+    return system->follower_count > 0 && system->follower[copy] != GXSP_NONE;
 }
 
-/* Which copies follow others. Returns the index of a constraint that cannot be, SIZE_MAX if all can. */
-static size_t gxsp_find_followers(gxsp_system *system, const gxs_model *model)
+/* Index of a constraint that cannot be, as its copy has two or a master follows others; SIZE_MAX if all can. held: n flags or NULL; follows: n,
+ * scratch, 0 */
+static size_t gxsp_bad_constraint(const gxs_constraint *constraints, size_t count, const uint8_t *held, uint8_t *follows)
 {
     size_t i;
     int k;
-    system->followers = (gxsp_follower *)gxsp_take(&system->pool, model->constraint_count, sizeof(gxsp_follower));
-    for (i = 0; i < model->constraint_count && !system->pool.failed; ++i) {
-        const gxs_constraint *constraint = &model->constraints[i];
-        gxsp_follower *follower = &system->followers[system->follower_count];
-        if (system->held[constraint->copy])
+    for (i = 0; i < count; ++i) {
+        if (held && held[constraints[i].copy])
             continue;
-        if (system->still[constraint->copy]) /* here: has been met */
+        if (follows[constraints[i].copy])
             return i;
-        system->still[constraint->copy] = 1;
-        system->fixed[constraint->copy] = 0;
-        follower->copy = constraint->copy;
-        memcpy(follower->master, constraint->master, sizeof follower->master);
-        memcpy(follower->weight, constraint->weight, sizeof follower->weight);
-        ++system->follower_count;
+        follows[constraints[i].copy] = 1;
     }
-    for (i = 0; i < model->constraint_count && !system->pool.failed; ++i)
-        for (k = 0; k < 4 && !system->held[model->constraints[i].copy]; ++k)
-            if (fabs(model->constraints[i].weight[k]) > 0 && system->still[model->constraints[i].master[k]])
+    for (i = 0; i < count; ++i)
+        for (k = 0; k < 4 && !(held && held[constraints[i].copy]); ++k)
+            if (fabs(constraints[i].weight[k]) > 0 && follows[constraints[i].master[k]])
                 return i;
-    memset(system->still, 0, system->n);
-    if (system->follower_count == 0)
-        return SIZE_MAX;
-    system->follower = (uint32_t *)gxsp_take(&system->pool, system->n, sizeof(uint32_t));
-    if (system->pool.failed)
-        return SIZE_MAX;
-    memset(system->follower, 0xff, system->n * sizeof *system->follower);
-    for (i = 0; i < system->follower_count; ++i)
-        system->follower[system->followers[i].copy] = (uint32_t)i;
     return SIZE_MAX;
+}
+
+/* Room for so many followers, and for the copies that there are */
+static void gxsp_followers_room(gxsp_system *system, size_t count)
+{
+    gxsp_pool *pool = &system->pool;
+    if (count > system->follower_room) {
+        system->follower_room = (uint32_t)(count + count / 8);
+        system->followers = (gxsp_follower *)gxsp_retake(pool, system->followers, 0, system->follower_room, sizeof(gxsp_follower));
+    }
+    if (count > 0 && system->n > system->follower_copies) {
+        system->follower_copies = system->n > system->copy_room ? system->n : system->copy_room;
+        system->follower = (uint32_t *)gxsp_retake(pool, system->follower, 0, system->follower_copies, sizeof(uint32_t));
+    }
+}
+
+/* Which copies follow others: none of them is fixed unless it is held. */
+static void gxsp_set_followers(gxsp_system *system, const gxs_constraint *constraints, size_t count)
+{
+    size_t i;
+    gxsp_followers_room(system, count);
+    system->follower_count = 0;
+    if (system->pool.failed || count == 0)
+        return;
+    memset(system->follower, 0xff, system->n * sizeof *system->follower);
+    for (i = 0; i < count; ++i) {
+        gxsp_follower *follower = &system->followers[system->follower_count];
+        if (system->held[constraints[i].copy])
+            continue;
+        follower->copy = constraints[i].copy;
+        memcpy(follower->master, constraints[i].master, sizeof follower->master);
+        memcpy(follower->weight, constraints[i].weight, sizeof follower->weight);
+        system->fixed[follower->copy] = 0;
+        system->follower[follower->copy] = system->follower_count++;
+    }
+}
+
+/* Joins what constraints couple. forest: n */
+static void gxsp_join_followers(const gxsp_system *system, uint32_t *forest)
+{
+    size_t i;
+    int k;
+    for (i = 0; i < system->follower_count; ++i)
+        for (k = 0; k < 4; ++k)
+            if (fabs(system->followers[i].weight[k]) > 0)
+                gxsp_join(forest, system->followers[i].copy, system->followers[i].master[k]);
 }
 
 /* Joins what elements and constraints couple. forest: n */
@@ -3235,10 +3289,7 @@ static void gxsp_join_copies(const gxsp_system *system, const gxs_model *model, 
         for (k = 1; k < 4; ++k)
             if (gxsp_supports(&model->elements[e], 0) || gxsp_supports(&model->elements[e], k))
                 gxsp_join(forest, model->elements[e].copy[0], model->elements[e].copy[k]);
-    for (i = 0; i < system->follower_count; ++i)
-        for (k = 0; k < 4; ++k)
-            if (fabs(system->followers[i].weight[k]) > 0)
-                gxsp_join(forest, system->followers[i].copy, system->followers[i].master[k]);
+    gxsp_join_followers(system, forest);
 }
 
 /* Numbers the pieces: trees of a forest of copies */
@@ -4204,6 +4255,102 @@ static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (
     gxsp_levels_make(system, scratch, NULL, NULL);
 }
 
+/* What corner k's copy has of the mass of a lane's element: its row sum */
+static double gxsp_lane_mass(const gxsp_chunk *chunk, uint32_t lane, int k)
+{
+    const size_t b = lane / GXSP_LANES, l = lane % GXSP_LANES;
+    const gxsp_moments *of = gxsp_block_moments(chunk, (uint32_t)b);
+    return chunk->rest[b].mass[l] * (!of ? 5 : (double)(k > 0 ? of->centre[k - 1][l] : 1 - (of->centre[0][l] + of->centre[1][l] + of->centre[2][l])));
+}
+
+/* --- light copies: nearly all of their inertia is that of others --- */
+
+/* Notes for each copy, or each that is touched, all the mass of its elements, and the lane of the heaviest. touched: n flags, or NULL: all */
+static void gxsp_weigh_copies(const gxsp_system *system, const uint8_t *touched, double *all, gxsp_light *heaviest, double *most)
+{
+    uint32_t c, lane, copies[4];
+    int k;
+    for (c = 0; c < system->chunk_count; ++c) {
+        const gxsp_chunk *chunk = &system->chunks[c];
+        uint32_t i = 0;
+        while (touched && i < chunk->node_count && !touched[system->nodes[chunk->first_node + i]])
+            ++i;
+        for (lane = 0; lane < chunk->block_count * GXSP_LANES && !(touched && i == chunk->node_count); ++lane) {
+            const double mass = chunk->rest[lane / GXSP_LANES].mass[lane % GXSP_LANES] * (chunk->moments ? 1 : 20);
+            if (chunk->groups[lane] == GXSP_NONE)
+                continue;
+            gxsp_lane_copies(system, chunk, lane / GXSP_LANES, (int)(lane % GXSP_LANES), copies);
+            for (k = 0; k < 4; ++k) {
+                const uint32_t copy = copies[k];
+                if (touched && !touched[copy])
+                    continue;
+                all[copy] += mass;
+                if (mass > most[copy]) {
+                    most[copy] = mass;
+                    heaviest[copy].copy = copy, heaviest[copy].chunk = c;
+                    heaviest[copy].lane = (uint16_t)lane, heaviest[copy].corner = (uint16_t)k;
+                }
+            }
+        }
+    }
+}
+
+/* Lists light copies. touched: n flags: those of others stay as they are listed; NULL: all are listed anew */
+static void gxsp_list_lights(gxsp_system *system, gxsp_pool *scratch, const uint8_t *touched)
+{
+    double *all = (double *)gxsp_take(scratch, system->n, sizeof(double)), *most = (double *)gxsp_take(scratch, system->n, sizeof(double));
+    gxsp_light *heaviest = (gxsp_light *)gxsp_take(scratch, system->n, sizeof *heaviest);
+    uint32_t i, count = 0, pass;
+    if (scratch->failed)
+        return;
+    gxsp_weigh_copies(system, touched, all, heaviest, most);
+    for (i = 0; i < system->light_count && touched; ++i)
+        if (!touched[system->lights[i].copy])
+            system->lights[count++] = system->lights[i];
+    system->light_count = count;
+    for (pass = 0; pass < 2; ++pass) { /* count, then list */
+        for (i = 0, count = system->light_count; i < system->n; ++i) {
+            if (system->fixed[i] || !(all[i] > 0) || system->lumped[i] >= GXSP_LIGHT * all[i])
+                continue;
+            if (pass == 1)
+                system->lights[count] = heaviest[i];
+            ++count;
+        }
+        if (pass == 0 && count > system->light_room) {
+            system->light_room = count + count / 8;
+            system->lights = (gxsp_light *)gxsp_retake(&system->pool, system->lights, system->light_count, system->light_room, sizeof(gxsp_light));
+            if (system->pool.failed)
+                return;
+        }
+    }
+    system->light_count = count;
+}
+
+/* What guides a light copy at vector x (n x 3): the mean over the lane's other corners that have some of its mass. Returns the heaviest of them. */
+static uint32_t gxsp_guide(const gxsp_system *system, const gxsp_light *light, const double *x, const double *less, double *mean)
+{
+    const gxsp_chunk *chunk = &system->chunks[light->chunk];
+    const double enough = 0.5 * GXSP_LIGHT * chunk->rest[light->lane / GXSP_LANES].mass[light->lane % GXSP_LANES];
+    double sum = 0, most = 0;
+    uint32_t copies[4], heaviest = light->copy;
+    int k, c;
+    gxsp_lane_copies(system, chunk, light->lane / GXSP_LANES, light->lane % GXSP_LANES, copies);
+    mean[0] = mean[1] = mean[2] = 0;
+    for (k = 0; k < 4; ++k) {
+        const double mass = gxsp_lane_mass(chunk, light->lane, k);
+        if (k == light->corner || mass < enough)
+            continue;
+        sum += mass;
+        for (c = 0; c < 3; ++c)
+            mean[c] += mass * (x[3 * (size_t)copies[k] + (size_t)c] - (less ? less[3 * (size_t)copies[k] + (size_t)c] : 0));
+        if (mass > most)
+            most = mass, heaviest = copies[k];
+    }
+    for (c = 0; c < 3; ++c)
+        mean[c] = sum > 0 ? mean[c] / sum : 0;
+    return heaviest;
+}
+
 /* 2^GXSP_STIFFNESS over Young's modulus times the length of the largest element, but for the mantissa */
 static double gxsp_choose_scale(const gxs_model *model)
 {
@@ -4302,7 +4449,9 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
         system->stiff |= model->materials[i].kind != GXS_CUSTOM && model->materials[i].poisson > GXSP_STIFF_POISSON;
     }
     gxsp_find_fixed(system, model);
-    bad = gxsp_find_followers(system, model);
+    bad = gxsp_bad_constraint(model->constraints, model->constraint_count, model->held, system->still);
+    if (bad == SIZE_MAX)
+        gxsp_set_followers(system, model->constraints, model->constraint_count);
     if (bad != SIZE_MAX || system->pool.failed)
         return bad;
     memcpy(system->still, system->fixed, system->n);
@@ -4316,6 +4465,8 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
     gxsp_chunks_make(system, scratch, model);
     if (!scratch->failed && !system->pool.failed)
         gxsp_parts_make(system);
+    if (!scratch->failed && !system->pool.failed)
+        gxsp_list_lights(system, scratch, NULL);
     gxsp_release_to(scratch, mark);
     if (!scratch->failed && !system->pool.failed)
         gxsp_preconditioner_make(system, scratch, model, solver->preconditioner, solver->matrix, forest);
@@ -6061,15 +6212,8 @@ typedef struct gxsp_renewal {
     uint32_t hole_count, placed_count; /* placed: of elements that took no hole */
     uint32_t *left, *left_class, left_count; /* elements of the change that take no hole, and what they are alike in */
     uint8_t *dirty;         /* by node of level 1 so far: some that follow it are touched */
+    uint8_t *alike;         /* change->copy_count: the copy follows what it followed */
 } gxsp_renewal;
-
-/* What corner k's copy has of the mass of a lane's element: its row sum */
-static double gxsp_lane_mass(const gxsp_chunk *chunk, uint32_t lane, int k)
-{
-    const size_t b = lane / GXSP_LANES, l = lane % GXSP_LANES;
-    const gxsp_moments *of = gxsp_block_moments(chunk, (uint32_t)b);
-    return chunk->rest[b].mass[l] * (!of ? 5 : (double)(k > 0 ? of->centre[k - 1][l] : 1 - (of->centre[0][l] + of->centre[1][l] + of->centre[2][l])));
-}
 
 /* Does the element of a lane give corner k stiffness or mass? */
 static int gxsp_lane_supports(const gxsp_chunk *chunk, uint32_t lane, int k)
@@ -6499,6 +6643,52 @@ static void gxsp_move_copies(gxsp_renewal *update)
     system->range_count = (system->n + GXSP_RANGE - 1) / GXSP_RANGE;
 }
 
+/* A follower is as it was, but for the numbers of copies? */
+static int gxsp_follows_alike(const gxsp_renewal *update, const gxsp_follower *follower, const gxs_constraint *constraint)
+{
+    int k;
+    for (k = 0; k < 4; ++k)
+        if (update->successor[follower->master[k]] != constraint->master[k])
+            return 0;
+    return memcmp(follower->weight, constraint->weight, sizeof follower->weight) == 0;
+}
+
+/* Copies that follow others from now on or no more, and what they follow, are touched, and the coarse nodes of both; not those of which all is
+ * alike. */
+static void gxsp_touch_followers(gxsp_renewal *update)
+{
+    const gxsp_system *system = update->system;
+    const gxs_change *change = update->change;
+    size_t i;
+    int k, q;
+    for (i = 0; i < change->constraint_count && system->follower_count > 0; ++i) {
+        const uint32_t copy = change->constraints[i].copy, origin = change->origins[copy];
+        if (!(origin & 1) && gxsp_follows(system, origin >> 1))
+            update->alike[copy] = (uint8_t)gxsp_follows_alike(update, &system->followers[system->follower[origin >> 1]], &change->constraints[i]);
+    }
+    for (i = 0; i < system->follower_count; ++i) { /* as they were */
+        const uint32_t copy = system->followers[i].copy;
+        if (update->successor[copy] != GXSP_NONE && update->alike[update->successor[copy]])
+            continue;
+        for (k = -1; k < 4; ++k) {
+            const uint32_t other = k < 0 ? copy : system->followers[i].master[k];
+            if (update->successor[other] != GXSP_NONE)
+                update->touched[update->successor[other]] = 1;
+            for (q = 0; q < 4 && system->level_count > 0; ++q)
+                if (system->levels[0].parent[other][q] != GXSP_NONE)
+                    update->dirty[system->levels[0].parent[other][q]] = 1;
+        }
+    }
+    for (i = 0; i < change->constraint_count; ++i) /* as they are */
+        for (k = -1; k < 4 && !update->alike[change->constraints[i].copy]; ++k) {
+            const uint32_t other = k < 0 ? change->constraints[i].copy : change->constraints[i].master[k], origin = change->origins[other] >> 1;
+            update->touched[other] = 1;
+            for (q = 0; q < 4 && system->level_count > 0; ++q)
+                if (system->levels[0].parent[origin][q] != GXSP_NONE)
+                    update->dirty[system->levels[0].parent[origin][q]] = 1;
+        }
+}
+
 /* Masses of touched copies, and whether anything supports them */
 static void gxsp_recount_copies(const gxsp_renewal *update)
 {
@@ -6531,6 +6721,20 @@ static void gxsp_recount_copies(const gxsp_renewal *update)
         system->fixed[i] |= system->held[i];
 }
 
+/* Light copies, by their numbers of now */
+static void gxsp_renew_lights(gxsp_renewal *update)
+{
+    gxsp_system *system = update->system;
+    uint32_t i, count = 0;
+    for (i = 0; i < system->light_count; ++i) {
+        system->lights[count] = system->lights[i];
+        system->lights[count].copy = update->successor[system->lights[i].copy];
+        count += system->lights[count].copy != GXSP_NONE;
+    }
+    system->light_count = count;
+    gxsp_list_lights(system, update->scratch, update->touched);
+}
+
 /* Pieces, of which those sleep that are parts of sleeping ones: what has touched them wakes them again */
 static void gxsp_renew_pieces(gxsp_renewal *update)
 {
@@ -6548,6 +6752,7 @@ static void gxsp_renew_pieces(gxsp_renewal *update)
             const uint32_t at = system->chunks[c].first_node + i;
             gxsp_join(forest, system->nodes[at], system->nodes[system->chunks[c].first_node + system->slot_root[at]]);
         }
+    gxsp_join_followers(system, forest);
     gxsp_number_pieces(system, forest);
     system->pieces = (gxsp_piece *)gxsp_retake(&system->pool, system->pieces, 0, system->piece_count, sizeof(gxsp_piece));
     if (!system->pool.failed)
@@ -6564,12 +6769,28 @@ static void gxsp_renew_pieces(gxsp_renewal *update)
 
 /* --- multigrid --- */
 
+/* Copies i and j are neighbours: they belong to one component of each dirty node that both follow. */
+static void gxsp_join_parents(const gxsp_renewal *update, uint32_t i, uint32_t j, uint32_t *forest)
+{
+    const gxsp_level *fine = &update->system->levels[0];
+    uint32_t p, q;
+    for (p = 0; p < 4; ++p) {
+        const uint32_t parent = fine->parent[i][p];
+        if (parent == GXSP_NONE || !update->dirty[parent])
+            continue;
+        for (q = 0; q < 4 && fine->parent[j][q] != parent; ++q)
+            ;
+        if (q < 4)
+            gxsp_join(forest, 4 * i + p, 4 * j + q);
+    }
+}
+
 /* Of components that touched copies belong to, what is joined now. forest: n x 4 */
 static void gxsp_join_dirty(gxsp_renewal *update, uint32_t *forest)
 {
     gxsp_system *system = update->system;
     const gxsp_level *fine = &system->levels[0];
-    uint32_t c, e, p, q, slot;
+    uint32_t c, e, slot;
     for (slot = 0; slot < 4 * fine->n; ++slot)
         forest[slot] = slot;
     for (c = 0; c < system->chunk_count; ++c) {
@@ -6577,19 +6798,12 @@ static void gxsp_join_dirty(gxsp_renewal *update, uint32_t *forest)
         if (!gxsp_follows_dirty(system, &system->chunks[c], update->dirty))
             continue;
         gxsp_list_edges(system, &system->chunks[c]);
-        for (e = 1; e < system->edges.count; ++e) {
-            const uint32_t i = copies[system->edges.ends[e] >> 16], j = copies[system->edges.ends[e] & 0xffff];
-            for (p = 0; p < 4; ++p) {
-                const uint32_t parent = fine->parent[i][p];
-                if (parent == GXSP_NONE || !update->dirty[parent])
-                    continue;
-                for (q = 0; q < 4 && fine->parent[j][q] != parent; ++q)
-                    ;
-                if (q < 4)
-                    gxsp_join(forest, 4 * i + p, 4 * j + q);
-            }
-        }
+        for (e = 1; e < system->edges.count; ++e)
+            gxsp_join_parents(update, copies[system->edges.ends[e] >> 16], copies[system->edges.ends[e] & 0xffff], forest);
     }
+    for (e = 0; e < 4 * system->follower_count; ++e)
+        if (fabs(system->followers[e / 4].weight[e % 4]) > 0)
+            gxsp_join_parents(update, system->followers[e / 4].copy, system->followers[e / 4].master[e % 4], forest);
 }
 
 /* Dirty coarse nodes fall apart: the first component of each keeps its number, further ones get new ones. from: n x 4, room: by new node,
@@ -6761,7 +6975,7 @@ static void gxsp_renew_steps(gxsp_renewal *update)
 /* Can the model's form take changes? */
 static int gxsp_is_flexible(const gxsp_system *system)
 {
-    return !system->fine && !system->volume && !system->lumped_mass && system->follower_count == 0;
+    return !system->fine && !system->volume && !system->lumped_mass;
 }
 
 /* Are the chunks still worth keeping, and the choice of preconditioner? */
@@ -6786,6 +7000,7 @@ static int gxsp_update_system(gxsp_renewal *update)
     if (update->scratch->failed)
         return 1;
     gxsp_touch_removed(update);
+    gxsp_touch_followers(update);
     system->element_count += update->change->element_count;
     system->element_count -= update->hole_count;
     gxsp_replace_elements(update);
@@ -6799,6 +7014,10 @@ static int gxsp_update_system(gxsp_renewal *update)
     gxsp_renew_steps(update);
     gxsp_touch_added(update);
     gxsp_recount_copies(update);
+    gxsp_renew_lights(update);
+    gxsp_set_followers(system, update->change->constraints, update->change->constraint_count);
+    if (system->pool.failed)
+        return 1;
     gxsp_renew_pieces(update);
     if (!update->scratch->failed && !system->pool.failed && system->level_count > 0)
         gxsp_renew_levels(update);
@@ -7408,6 +7627,17 @@ static void gxsp_task_search(void *context, size_t index)
             system->search[i][c] = system->scaled[i][c] + factor * system->search[i][c];
 }
 
+/* For each piece the work along the direction of what is left of the residual */
+static void gxsp_note_left(gxsp_system *system)
+{
+    size_t i;
+    uint32_t p;
+    for (p = 0; p < system->piece_count; ++p)
+        system->pieces[p].left = 0;
+    for (i = 0; i < system->n; ++i)
+        gxsp_lead_of(system, i)->left += gxsp_dot(system->residual + 3 * i, system->direction + 3 * i, 1) / system->scale;
+}
+
 /* Solves scale (K + rate M) direction = scale residual to a share of the residual, which is used up. The directions of free pieces carry
  * no momentum: their translations are projected out of the preconditioned residual (deflated conjugate gradients; the residual
  * has none, see gxsp_start). Operator and preconditioner are of single precision, vectors and sums of double. 0 if a number
@@ -7452,6 +7682,7 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
         gxsp_over_ranges(system, gxsp_task_search, &pass, NULL, 0);
     }
     problem->nepers = now.energy > 0 && guessed.energy > now.energy ? 0.5 * log(guessed.energy / now.energy) : 0;
+    gxsp_note_left(system);
     gxsp_follow(system, NULL, system->direction);
     gxsp_remove_momentum(system, system->direction); /* what single precision left of it */
     if (gxsp_first_not_finite(system->direction, 3 * system->n) < 3 * system->n)
@@ -7857,6 +8088,24 @@ static void gxsp_find_base(const gxsp_problem *problem, double *to)
     gxsp_follow(system, problem->given, to);
 }
 
+/* Light copies start where inertia leads what guides them: they have next to none of their own, and were they to start where they fly, the
+ * linearisation would be that of an element torn apart. */
+static void gxsp_lead_lights(const gxsp_problem *problem)
+{
+    gxsp_system *system = problem->system;
+    uint32_t i;
+    int c;
+    for (i = 0; i < system->light_count; ++i) {
+        const uint32_t copy = system->lights[i].copy;
+        double mean[3];
+        if (system->still[copy])
+            continue;
+        (void)gxsp_guide(system, &system->lights[i], system->target, problem->given, mean);
+        for (c = 0; c < 3; ++c)
+            system->current[3 * (size_t)copy + (size_t)c] = problem->given[3 * (size_t)copy + (size_t)c] + mean[c];
+    }
+}
+
 /* Start of Newton at base or where inertia leads, each loose piece translated so that its momentum balances. The rest of the
  * iteration cannot change momentum: elastic forces have none, nor do the directions. */
 static int gxsp_start(gxsp_problem *problem, int led)
@@ -7867,6 +8116,8 @@ static int gxsp_start(gxsp_problem *problem, int led)
     for (i = 0; i < system->n && led; ++i)
         if (!system->still[i])
             memcpy(system->current + 3 * i, system->target + 3 * i, 3 * sizeof(double));
+    if (led)
+        gxsp_lead_lights(problem);
     gxsp_follow(system, problem->given, system->current);
     gxsp_untouch_pieces(system);
     gxsp_terms_make(problem, system->current);
@@ -7874,7 +8125,50 @@ static int gxsp_start(gxsp_problem *problem, int led)
     return gxsp_first_not_finite(system->current, 3 * system->n) == 3 * system->n && gxsp_update(problem);
 }
 
-/* What the line search knows of the pieces before its first trial. 0 if a number is not finite. */
+/* The direction takes no light copy further from what guides it than they are apart, at rest or now, unless the piece's way down depends on that: what
+ * a copy of so little weight is left with hardly shows in E, which so could not tell a length for it. Later iterations, which few steps
+ * have, are left alone: they converge by themselves. */
+static void gxsp_bound_lights(const gxsp_problem *problem)
+{
+    gxsp_system *system = problem->system;
+    const double *rest = system->positions, *moved = system->current;
+    uint32_t i;
+    size_t c;
+    int any = 0;
+    for (i = 0; i < system->light_count && rest && problem->report.newton_iterations < GXSP_BOUNDED; ++i) {
+        const size_t copy = 3 * (size_t)system->lights[i].copy;
+        gxsp_piece *piece = gxsp_lead_of(system, copy / 3);
+        double *way = system->direction + copy, mean[3], less[3], gap[3], now[3], load[3], size, most, work;
+        const size_t guide = 3 * (size_t)gxsp_guide(system, &system->lights[i], system->direction, NULL, mean);
+        for (c = 0; c < 3; ++c) {
+            less[c] = mean[c] - way[c];
+            gap[c] = rest[copy + c] - rest[guide + c];
+            now[c] = gap[c] + moved[copy + c] - moved[guide + c];
+        }
+        size = gxsp_dot(less, less, 1);
+        most = fmax(gxsp_dot(gap, gap, 1), gxsp_dot(now, now, 1));
+        if (system->still[copy / 3] || gxsp_follows(system, copy / 3) || size <= most)
+            continue;
+        for (c = 0; c < 3; ++c)
+            less[c] *= 1 - sqrt(most / size);
+        gxsp_load(problem, copy / 3, load);
+        work = gxsp_dot(load, less, 1);
+        if (gxsp_dot(system->force + copy, less, 1) - work > GXSP_BOUND_COST * -piece->slope)
+            continue;
+        piece->slope += gxsp_dot(system->force + copy, less, 1) - work;
+        piece->work += work;
+        for (c = 0; c < 3; ++c)
+            way[c] += less[c];
+        any = 1;
+    }
+    if (any) {
+        gxsp_follow(system, NULL, system->direction);
+        gxsp_remove_momentum(system, system->direction);
+    }
+}
+
+/* What the line search knows of the pieces before its first trial. Linear solves end by a measure of all pieces together, and may have left one
+ * that weighs next to nothing far beyond the minimum of its own linear model: it begins at that. 0 if a number is not finite. */
 static int gxsp_begin_search(const gxsp_problem *problem)
 {
     gxsp_system *system = problem->system;
@@ -7898,8 +8192,14 @@ static int gxsp_begin_search(const gxsp_problem *problem)
         piece->work += work;
         piece->rounding += rounding;
     }
-    for (p = 0; p < system->piece_count; ++p)
-        finite &= gxsp_finite(system->pieces[p].slope);
+    gxsp_bound_lights(problem);
+    for (p = 0; p < system->piece_count; ++p) {
+        gxsp_piece *piece = &system->pieces[p];
+        const double curvature = -piece->slope - piece->left; /* of the linear model */
+        finite &= gxsp_finite(piece->slope);
+        if (piece->slope < 0 && -piece->slope < GXSP_TOO_LONG * curvature)
+            piece->length = -piece->slope / curvature;
+    }
     return finite;
 }
 
@@ -8218,20 +8518,18 @@ static void gxsp_stay(gxsp_problem *problem)
     gxsp_balance_momentum(problem, problem->system->trial);
 }
 
-/* E at base, when the pieces' limits are those at trial, to which loose ones were translated: with the energy of that, for E is a parabola
- * along it */
-static double gxsp_base_potential(const gxsp_problem *problem)
+/* E of every piece at base, when the limits are those at trial, to which loose pieces were translated: E is a parabola along that */
+static void gxsp_note_base(const gxsp_problem *problem)
 {
-    const gxsp_system *system = problem->system;
-    double sum = 0;
+    gxsp_system *system = problem->system;
     uint32_t p;
+    for (p = 0; p < system->piece_count; ++p)
+        system->pieces[p].base = system->pieces[p].limit;
     for (p = 0; p < system->piece_count; ++p) {
         const gxsp_piece *piece = &system->pieces[p];
-        sum += piece->lead == p ? piece->limit : 0;
         if (piece->state == 0)
-            sum += 0.5 * piece->mass * gxsp_dot(piece->sum, piece->sum, 1) / problem->rate;
+            system->pieces[piece->lead].base += 0.5 * piece->mass * gxsp_dot(piece->sum, piece->sum, 1) / problem->rate;
     }
-    return sum;
 }
 
 /* Pieces whose E is above that at trial go on from there to where they are as far as it falls. Returns how many there were. */
@@ -8242,7 +8540,7 @@ static size_t gxsp_bring_down(gxsp_problem *problem)
     uint32_t p;
     gxsp_evaluate(problem, system->trial, 0, system->force);
     gxsp_limit_energies(problem, system->trial, 0);
-    problem->base_potential = gxsp_base_potential(problem);
+    gxsp_note_base(problem);
     count = gxsp_count_risen(system);
     if (count == 0)
         return 0;
@@ -8253,6 +8551,8 @@ static size_t gxsp_bring_down(gxsp_problem *problem)
             system->current[k] = risen ? system->trial[k] : system->current[k];
         }
     }
+    for (p = 0; p < system->piece_count; ++p)
+        system->pieces[p].left = 0;
     for (p = 0; p < system->piece_count; ++p)
         if (system->pieces[p].risen)
             memcpy(system->pieces[p].before, system->pieces[p].energies, sizeof system->pieces->before);
@@ -8289,36 +8589,112 @@ static gx_result gxsp_minimise(gxsp_problem *problem)
     return result;
 }
 
+/* E of every piece at a displacement, less that at base: into gain. energies: 1: those evaluated last; 0: those at current */
+static void gxsp_find_gains(const gxsp_problem *problem, const double *displacement, int evaluated)
+{
+    gxsp_system *system = problem->system;
+    size_t i;
+    uint32_t p;
+    for (p = 0; p < system->piece_count; ++p) {
+        gxsp_piece *piece = &system->pieces[p];
+        const double *energies = evaluated ? piece->energies : piece->before;
+        piece->gain = energies[0] + energies[1] - piece->base;
+    }
+    for (i = 0; i < system->n; ++i) {
+        double load[3];
+        gxsp_load(problem, i, load);
+        gxsp_lead_of(system, i)->gain -= gxsp_dot(load, displacement + 3 * i, 1);
+    }
+}
+
+/* Pieces that springs or contact act on at a displacement are not loose any more. */
+static void gxsp_touch_pieces_at(const gxsp_problem *problem, const double *displacement)
+{
+    gxsp_system *system = problem->system;
+    const gxs_point *point;
+    gxsp_pull pull;
+    size_t at = 0;
+    int k;
+    while ((point = gxsp_next_pull(problem, &at, displacement, &pull)) != NULL)
+        for (k = 0; k < 4 && (fabs(pull.energy) > 0 || gxsp_dot(pull.force, pull.force, 1) > 0); ++k)
+            if (fabs(point->weight[k]) > 0)
+                system->pieces[system->piece[point->copy[k]]].state |= GXSP_TOUCHED;
+}
+
+/* Is the second half short enough for the piece? If not, it will try a shorter one, in the end none: E is about a parabola with its minimum, low,
+ * where nothing is left of what is taken off. */
+static void gxsp_judge_gain(gxsp_piece *piece, int last)
+{
+    const double low = piece->low, gain = piece->gain;
+    double next;
+    if (gxsp_finite(gain) &&
+        gain <= GXSP_GAIN * piece->energies[1] + 1e-12 * fabs(piece->base) + GXSP_ROUNDING * piece->energies[2]) {
+        piece->settled = 1;
+        return;
+    }
+    next = gxsp_finite(gain) && low < 0 && gain > low ? piece->length * sqrt(low / (low - gain)) : 0;
+    piece->length = last ? 0 : next < 0.1 * piece->length ? 0.1 * piece->length : next;
+}
+
 /* The midpoint rule goes on from current by as much as from base to current, to an energy of E there, as that of the start is E(base).
- * These are equal but for terms of third order in the way and for what Newton's method and conjugate gradients have left, which would add
- * up from step to step and grow without end. Where more than a share of the kinetic energy is gained, the second half is shortened, but
- * for the translations of loose pieces. direction: what is taken off it, m. */
+ * These are equal but for terms of third order in the way, for what Newton's method and conjugate gradients have left, which would add
+ * up from step to step and grow without end, and for springs and contact that first act beyond current. Where a piece would gain more than a
+ * share of its kinetic energy, its second half is shortened, but for the translation of a piece that nothing acts on at either place. At worst
+ * the step ends at current, where E is not above E(base). direction: what is taken off the second half, m. */
 static void gxsp_bound_gain(gxsp_problem *problem)
 {
     gxsp_system *system = problem->system;
-    const double low = gxsp_potential(problem, problem->energies, system->current) - problem->base_potential;
-    double energies[3], gain, share = 1;
-    size_t i, count = 3 * system->n;
+    const size_t count = 3 * system->n;
+    size_t i, left = 1;
+    uint32_t p;
     int trial;
+    if (problem->step->spring_count + problem->step->point_count > 0) { /* no parabola: these begin to act anywhere */
+        gxsp_find_base(problem, system->trial);
+        gxsp_evaluate(problem, system->trial, 0, system->force);
+        for (p = 0; p < system->piece_count; ++p)
+            system->pieces[p].base = 0;
+        gxsp_find_gains(problem, system->trial, 1);
+        for (p = 0; p < system->piece_count; ++p)
+            system->pieces[p].base = system->pieces[p].gain;
+    }
+    gxsp_find_gains(problem, system->current, 0);
+    for (p = 0; p < system->piece_count; ++p) {
+        system->pieces[p].low = system->pieces[p].gain;
+        system->pieces[p].length = 1;
+    }
     gxsp_find_base(problem, system->trial);
-    for (i = 0; i < count; ++i)
+    for (i = 0; i < count; ++i) {
         system->direction[i] = system->current[i] - system->trial[i];
+        system->trial[i] += 2 * system->direction[i];
+    }
+    gxsp_touch_pieces_at(problem, system->trial);
     gxsp_remove_momentum(system, system->direction);
-    for (trial = 0; trial < GXSP_GAIN_TRIALS; ++trial) {
-        double next; /* E is a parabola with its minimum at current */
+    for (p = 0; p < system->piece_count; ++p) { /* a translation that stays, sum, has its own part of the kinetic energy */
+        const gxsp_piece *piece = &system->pieces[p];
+        if (piece->state == 0)
+            system->pieces[piece->lead].low += 0.5 * problem->rate * piece->mass * gxsp_dot(piece->sum, piece->sum, 1);
+    }
+    for (trial = 0; trial < GXSP_GAIN_TRIALS && left > 0; ++trial) {
         gxsp_find_base(problem, system->trial);
         for (i = 0; i < count; ++i)
-            system->trial[i] = 2 * system->current[i] - system->trial[i] - (1 - share) * system->direction[i];
+            system->trial[i] = 2 * system->current[i] - system->trial[i] -
+                               (1 - gxsp_lead_of(system, i / 3)->length) * system->direction[i];
         gxsp_evaluate(problem, system->trial, 0, system->force);
-        gxsp_sum_energies(system, energies);
-        gain = gxsp_potential(problem, energies, system->trial) - problem->base_potential;
-        if (gxsp_finite(gain) && gain <= GXSP_GAIN * energies[1] + 1e-12 * fabs(problem->base_potential))
-            break;
-        next = gxsp_finite(gain) && low < 0 && gain > low ? share * sqrt(low / (low - gain)) : 0;
-        share = next < 0.1 * share ? 0.1 * share : next;
+        gxsp_find_gains(problem, system->trial, 1);
+        for (p = 0, left = 0; p < system->piece_count; ++p) {
+            gxsp_piece *piece = &system->pieces[p];
+            if (piece->lead == p && !piece->settled)
+                gxsp_judge_gain(piece, trial + 2 >= GXSP_GAIN_TRIALS);
+            left += piece->lead == p && !piece->settled;
+        }
     }
-    for (i = 0; i < count; ++i)
-        system->direction[i] *= trial < GXSP_GAIN_TRIALS ? 1 - share : 1;
+    gxsp_find_base(problem, system->trial);
+    for (i = 0; i < count; ++i) {
+        const gxsp_piece *piece = gxsp_lead_of(system, i / 3);
+        system->direction[i] = piece->settled ? (1 - piece->length) * system->direction[i] : system->current[i] - system->trial[i];
+    }
+    for (p = 0; p < system->piece_count; ++p)
+        system->pieces[p].settled = 0;
 }
 
 /* Writes the state out, all of it or, if a number is not finite, none. */
@@ -8602,11 +8978,13 @@ static gx_result gxsp_check_change(const gxsp_system *system, const gxs_change *
     gxs_model model;
     gx_result result = GX_OK;
     size_t i;
-    if (!change || !change->origins || (!change->groups && change->group_count > 0) || (!change->elements && change->element_count > 0))
+    if (!change || !change->origins || (!change->groups && change->group_count > 0) || (!change->elements && change->element_count > 0) ||
+        (!change->constraints && change->constraint_count > 0))
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     if (change->copy_count == 0)
         return gxsp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
-    if (change->copy_count >= UINT32_MAX / 4 || change->element_count >= UINT32_MAX / 4 - system->element_count)
+    if (change->copy_count >= UINT32_MAX / 4 || change->element_count >= UINT32_MAX / 4 - system->element_count ||
+        change->constraint_count > change->copy_count)
         return gxsp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
     for (i = 0; i < change->copy_count; ++i)
         if (change->origins[i] >> 1 >= system->n)
@@ -8623,6 +9001,8 @@ static gx_result gxsp_check_change(const gxsp_system *system, const gxs_change *
     for (i = 0; i < change->element_count && result == GX_OK; ++i)
         result = change->elements[i].group < GXSP_GROUPS ? gxsp_check_element(&change->elements[i], &model, i, failure) :
                                                            gxsp_fail(failure, GX_ERROR_LIMIT, i);
+    for (i = 0; i < change->constraint_count && result == GX_OK; ++i)
+        result = gxsp_check_constraint(&change->constraints[i], change->copy_count, i, failure);
     return result;
 }
 
@@ -8632,6 +9012,8 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
     gxsp_pool scratch;
     gxsp_renewal update;
     gxsp_system *system;
+    uint8_t *follows;
+    size_t bad;
     int fits;
     failure = failure ? failure : &ignored;
     gxsp_fail(failure, GX_OK, SIZE_MAX);
@@ -8653,6 +9035,13 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
     update.successor = (uint32_t *)gxsp_take(&scratch, system->n, sizeof(uint32_t));
     update.touched = (uint8_t *)gxsp_take(&scratch, change->copy_count, 1);
     update.dirty = (uint8_t *)gxsp_take(&scratch, system->levels[1].n, 1);
+    update.alike = (uint8_t *)gxsp_take(&scratch, change->copy_count, 1);
+    follows = (uint8_t *)gxsp_take(&scratch, change->copy_count, 1);
+    bad = scratch.failed ? SIZE_MAX : gxsp_bad_constraint(change->constraints, change->constraint_count, change->held, follows);
+    if (bad != SIZE_MAX) {
+        gxsp_release_to(&scratch, NULL);
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, bad);
+    }
     fits = scratch.failed || (gxsp_is_flexible(system) && gxsp_find_successors(&update) && gxsp_update_system(&update));
     gxsp_release_to(&scratch, NULL);
     if (scratch.failed || system->pool.failed || system->coarse.failed)
@@ -9170,6 +9559,10 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_EACH
 #undef GXSP_EACH_OF_TWO
 #undef GXSP_GAIN
+#undef GXSP_LIGHT
+#undef GXSP_BOUND_COST
+#undef GXSP_BOUNDED
+#undef GXSP_TOO_LONG
 #undef GXSP_GAIN_TRIALS
 #undef GXSP_INERTIA
 #undef GXSP_PARALLEL
