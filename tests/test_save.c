@@ -208,7 +208,7 @@ END_TEST
 
 /* The frame of the complex shifts and scales: given coordinates must come back as they were. */
 START_TEST(far_and_small_bodies) {
-    static const double sizes[6] = { 1, 1e-6, 1e6, 1e-300, 3e-308, 1e60 }, offsets[6] = { 1e8, 0.3, 12345678.9, 0, 0, 0 };
+    static const double sizes[6] = { 1, 1e-6, 1e6, 1e-30, 4e-31, 6e29 }, offsets[6] = { 1e8, 0.3, 12345678.9, 0, 0, 0 };
     size_t i, k;
     workload w = grid(2, 2, 1, 5);
     gx_body *body, *copy;
@@ -659,6 +659,32 @@ START_TEST(damage_is_seen) {
 }
 END_TEST
 
+/* What no body can be is damage: a density with which elements are too heavy or too light, a cell larger than its element. */
+START_TEST(damage_beyond_the_range) {
+    workload w;
+    gx_body *body = small_body(&w, SEEN), *other = NULL;
+    bytes b = saved(body);
+    double right[3], wrong[3] = { 1e300, 1e308, 1e308 };
+    size_t i, k, found[3] = { 0, 0, 0 };
+    right[0] = body->materials[0].density; right[1] = body->cells[0].volume; right[2] = body->cells[0].mass[0];
+    for (i = HEAD_BYTES; i + 8 <= b.size; ++i)
+        for (k = 0; k < 3; ++k) {
+            if (memcmp(b.data + i, &right[k], 8) != 0) continue;
+            memcpy(b.data + i, &wrong[k], 8);
+            seal(b);
+            ck_assert_int_eq(gx_body_load(b.data, b.size, NULL, &other, NULL), GX_ERROR_DAMAGED);
+            memcpy(b.data + i, &right[k], 8);
+            found[k]++;
+        }
+    for (k = 0; k < 3; ++k) ck_assert_uint_eq(found[k], 1);
+    seal(b);
+    ck_assert(try_bytes(b, &w, "as it was", 0));
+    free(b.data);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 /* A bit of every byte flipped, each time another, and the checksum made right: an error, or a body that can be used. */
 START_TEST(hostile_bits) {
     workload w;
@@ -749,6 +775,7 @@ int main(void) {
     tcase_add_test(tests, arguments);
     tcase_add_test(tests, foreign_bytes);
     tcase_add_test(tests, damage_is_seen);
+    tcase_add_test(tests, damage_beyond_the_range);
     tcase_add_loop_test(tests, hostile_bits, 0, 4);
     ADD_SOME(tests, hostile_words, 16);
     tcase_add_loop_test(tests, hostile_mixtures, 0, 4);
