@@ -94,7 +94,8 @@ typedef enum gx_result {
     GX_ERROR_DIVERGED,      /* a time step found no finite state of lower energy */
     GX_ERROR_FREE,          /* a static balance is asked of a piece that nothing holds */
     GX_ERROR_FORMAT,        /* not a saved body, or one of another version or another kind of machine */
-    GX_ERROR_DAMAGED        /* a saved body is cut short, or what it says cannot be */
+    GX_ERROR_DAMAGED,       /* a saved body is cut short, or what it says cannot be */
+    GX_ERROR_STALE          /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
 } gx_result;
 
 /* What went wrong, and where: index of the node, element, triangle or copy concerned. */
@@ -220,6 +221,8 @@ typedef struct gx_view {
     size_t copy_count;
     const uint32_t *copy_node;      /* copy_count */
     const uint8_t *copy_held;       /* copy_count, 1: held by a Dirichlet region */
+    uint64_t epoch;                 /* names this numbering of copies. A cut that creates or removes copies begins another, any other cut
+                                       leaves it; 0: no cut has done so yet. Bodies with the same epoch that is not 0 have the same copies */
     double *displacement;           /* copy_count x 3, m; the caller may write, and then takes a step of GXS_BDF1 before one of GXS_BDF2 */
     double *velocity;               /* copy_count x 3, m/s; likewise */
     double *rest_time;              /* copy_count: for how long it has been slower than sleep_speed, s; the caller may write 0 to wake it; calls
@@ -263,7 +266,9 @@ typedef struct gx_region { uint32_t axis; int32_t side; double value; } gx_regio
    is then as it was. */
 GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t region_count);
 
-/* A step as the solver takes it; arrays are by copy, as in gx_view. previous_displacement, previous_velocity, previous_dt and rest_times
+/* A step as the solver takes it; arrays are by copy, as in gx_view, and so are points: epoch of the step (where it has forces or targets)
+   and of each gxs_point is that of the view, skin or hit that they were made from. After a cut that has begun another epoch they are
+   refused (GX_ERROR_STALE) until they are made anew. previous_displacement, previous_velocity, previous_dt and rest_times
    are the body's own and not read. clock: where it is NULL, that of the body. A point of the skin is a gxs_point by its copies and
    weights. */
 typedef gxs_step_desc gx_step_desc;
@@ -312,6 +317,7 @@ typedef struct gx_skin {
     /* What differs from the arrays of the call before, ascending; counts may differ too. Fragment ids may differ anywhere. */
     const gx_range *vertex_ranges; size_t vertex_range_count;
     const gx_range *triangle_ranges; size_t triangle_range_count;
+    uint64_t epoch;                 /* of the numbering of copies, as in gx_view: for gxs_point */
 } gx_skin;
 /* Rebuilds what cuts have touched since the last call; all of it if desc is another. Errors: ARGUMENT, NOT_FINITE, MEMORY, LIMIT. */
 GXFEM_API gx_result gx_body_skin(gx_body *body, const gx_skin_desc *desc /* or NULL: zero */, gx_skin *skin);
@@ -331,6 +337,7 @@ typedef struct gx_hit {
     double position[3], material[3];/* deformed, m; material coordinates, m */
     uint32_t copies[4];
     double weights[4];
+    uint64_t epoch;                 /* of the numbering of copies, as in gx_view: for gxs_point */
 } gx_hit;
 /* Errors: as of gx_body_skin_positions; ARGUMENT (direction 0), NOT_FINITE. */
 GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit);
@@ -499,6 +506,7 @@ struct gx_body {
     gx_region *regions; uint32_t region_count, region_capacity;
     gx_jobs jobs;
     uint64_t past;                  /* hash of the mesh and of all cuts: bodies with the same one have the same cells and copies */
+    uint64_t epoch;                 /* the past when copies were created or removed last; 0: never */
     uint32_t label_count;           /* cut triangles so far */
     uint32_t *copy_label; uint32_t copy_label_capacity;     /* copies: 2 x index of its fragment at the last look, + 1 where it was cut since */
     gxp_words fragment_ids, fragment_origins, fragment_changes, removed_ids;    /* as last looked at */
@@ -3066,6 +3074,7 @@ static void gxp_commit(gxp_cut *cut) {
     gxb_complex_commit(body->complex);
     body->saved_cell_count = body->saved_leaf_count = 0;
     body->past = gxp_hash_cut(body->past, cut->desc);
+    if (cut->report.created_copies + cut->report.removed_copies > 0) body->epoch = body->past != 0 ? body->past : 1;
     body->held_stale = body->view_stale = body->look_stale = 1;
     if (body->removed.count + body->dead.count > 0 || body->splits.count > body->copy_count) body->labels_known = 0;
     if (!body->labels_known) body->splits.count = 0;
@@ -3737,6 +3746,7 @@ GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view) {
     view->cell_element = body->cell_element.data; view->cell_copies = body->cell_copies.data;
     view->cell_volume = body->cell_volume; view->cell_fragment = body->view_fragments.data;
     view->copy_count = body->copy_count; view->copy_node = body->copy_node; view->copy_held = body->held;
+    view->epoch = body->epoch;
     view->displacement = body->displacement; view->velocity = body->velocity; view->rest_time = body->rest_time;
     view->fragment_count = body->fragment_count;
     view->fragment_volume = body->fragments;
@@ -4057,6 +4067,7 @@ static gx_result gxp_make_model(gx_body *body, gxs_model *model) {
     model->materials = body->elastic; model->material_count = body->material_count;
     model->held = body->held;
     model->constraints = body->constraints; model->constraint_count = body->constraint_count;
+    model->epoch = body->epoch;
     return GX_OK;
 }
 
@@ -4076,6 +4087,7 @@ static gx_result gxp_change_model(gx_body *body) {
     change.copy_count = body->copy_count; change.origins = body->copy_before; change.held = body->held;
     change.groups = body->changed.data; change.group_count = body->changed.count;
     change.elements = body->parts; change.element_count = body->part_count;
+    change.epoch = body->epoch;
     return result == GX_OK ? gxs_solver_update(body->solver, &change, NULL) : result;
 }
 
@@ -4172,7 +4184,9 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
     if (result == GX_OK) result = gxp_complete_step(body, desc, &step);
     if (gxp_fail(failure, result, SIZE_MAX, SIZE_MAX) != GX_OK) return result;
     if (body->nothing_moves) {
-        result = gxsp_check_step(&step, failure != NULL ? failure : &ignored);
+        if (failure == NULL) failure = &ignored;
+        result = gxsp_check_step(&step, failure);
+        if (result == GX_OK) result = gxsp_check_epochs(&step, body->epoch, failure);
         if (result == GX_OK && report != NULL) { memset(report, 0, sizeof *report); report->stop = GXS_STOP_ASLEEP; }
         return result;
     }
@@ -4232,7 +4246,7 @@ static void gxp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, wo
 
 /* --- head --- */
 
-#define GXP_SAVE_VERSION 1u     /* raised by every change of what follows */
+#define GXP_SAVE_VERSION 2u     /* raised by every change of what follows */
 #define GXP_BYTE_ORDER 0x01020304u
 
 typedef struct gxp_head {
@@ -4424,6 +4438,7 @@ static void gxp_pass_cells(gxb_stream *s, gx_body *body) {
     }
     gxb_stream_pass(s, body->maps, body->map_count, 8 * sizeof *body->maps);
     gxb_stream_pass(s, &body->past, 1, sizeof body->past);
+    gxb_stream_pass(s, &body->epoch, 1, sizeof body->epoch);
 }
 
 static void gxp_save_topology(gxb_stream *s, gx_body *body) {
@@ -5702,7 +5717,8 @@ static gx_result gxp_update_skin(gx_body *body, const gx_skin_desc *desc) {
     return result;
 }
 
-static void gxp_show_skin(const gxp_skin *s, gx_skin *skin) {
+static void gxp_show_skin(const gx_body *body, gx_skin *skin) {
+    const gxp_skin *s = &body->skin;
     skin->vertex_count = s->vertex_count;
     skin->vertex_copies = s->copies; skin->vertex_weights = s->weights; skin->vertex_point = s->point;
     skin->vertex_rest = s->rest; skin->vertex_normal = s->normal; skin->vertex_texture = s->texture;
@@ -5711,6 +5727,7 @@ static void gxp_show_skin(const gxp_skin *s, gx_skin *skin) {
     skin->triangle_material = s->material; skin->triangle_surface = s->surface;
     skin->vertex_ranges = s->ranges[0]; skin->vertex_range_count = s->range_count[0];
     skin->triangle_ranges = s->ranges[1]; skin->triangle_range_count = s->range_count[1];
+    skin->epoch = body->epoch;
 }
 
 GXFEM_API gx_result gx_body_skin(gx_body *body, const gx_skin_desc *desc, gx_skin *skin) {
@@ -5722,7 +5739,7 @@ GXFEM_API gx_result gx_body_skin(gx_body *body, const gx_skin_desc *desc, gx_ski
     if (!gxp_is_finite(desc->crease_angle)) return GX_ERROR_NOT_FINITE;
     if (desc->crease_angle < 0) return GX_ERROR_ARGUMENT;
     result = gxp_update_skin(body, desc);
-    if (result == GX_OK) gxp_show_skin(&body->skin, skin);
+    if (result == GX_OK) gxp_show_skin(body, skin);
     return result;
 }
 
@@ -5828,7 +5845,7 @@ static void gxp_fill_hit(const gx_body *body, uint32_t triangle, const double sh
     const gxp_skin *s = &body->skin;
     uint32_t i, k, n, count = 0;
     int j;
-    hit->triangle = triangle;
+    hit->triangle = triangle; hit->epoch = body->epoch;
     hit->fragment = s->fragment[triangle]; hit->element = s->element[triangle]; hit->surface = s->surface[triangle];
     for (i = 0; i < 3; i++) {
         const size_t v = s->triangles[3 * (size_t)triangle + i];
@@ -5989,7 +6006,7 @@ GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
     }
     for (i = 0; i < body->complex->leaf_count; i++)
         hash = gxp_mix(hash ^ body->leaves[i].cell ^ (uint64_t)body->complex->leaves[i].removed << 32);
-    hash = gxp_mix(hash ^ body->copy_count);
+    hash = gxp_mix(gxp_mix(hash ^ body->copy_count) ^ body->epoch);
     for (i = 0; i < body->copy_count; i++) hash = gxp_mix(hash ^ body->copy_node[i]);
     hash = gxp_hash_doubles(hash, body->displacement, 3 * (size_t)body->copy_count);
     hash = gxp_hash_doubles(hash, body->velocity, 3 * (size_t)body->copy_count);
@@ -6021,6 +6038,7 @@ GXFEM_API const char *gx_result_text(gx_result result) {
     case GX_ERROR_FREE: return "a piece is held by nothing";
     case GX_ERROR_FORMAT: return "not a saved body, or one of another version or kind of machine";
     case GX_ERROR_DAMAGED: return "a saved body is damaged";
+    case GX_ERROR_STALE: return "copies are named as before a cut";
     }
     return "unknown result";
 }

@@ -1843,7 +1843,7 @@ START_TEST(forces_act_on_copies) {
     forces = (double *)oracle_memory(NULL, 3 * view.copy_count, sizeof *forces);
     memset(forces, 0, 3 * view.copy_count * sizeof *forces);
     forces[3 * (view.copy_count - 1)] = 10;
-    step.forces = forces; step.cg_tolerance = 1e-10; step.newton_iterations = 20; step.newton_tolerance = 1e-10;
+    step.forces = forces; step.epoch = view.epoch; step.cg_tolerance = 1e-10; step.newton_iterations = 20; step.newton_tolerance = 1e-10;
     ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
     momentum(body, p);
     ck_assert_double_eq_tol(p[0], 10 * step.dt, 1e-7);
