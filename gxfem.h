@@ -53,10 +53,11 @@
  * What it does not do (yet): contact between pieces, cuts given in the deformed state,
  * unknowns within a partly cut element (a sheet that ends inside an element separates nothing there until another completes it).
  *
- * Limits: 2^31 - 1 of each kind of object; one body is for one thread at a time; no global state, no output, no clock of its own.
- * A body's coordinates are at most 2^100 (1.3e30), its longest side is at least 2^-100 (7.9e-31), and each element has a mass of
- * 2^-700 ... 2^700: so all volumes, masses, centres and inertia are finite, those of whole bodies are normal numbers, and floats hold
- * the skin. Beside the body's size, coordinates of bodies and cuts are 0 or 2^-128 ... 2^128. GX_ERROR_RANGE where they are not.
+ * Limits: 2^31 - 1 of each kind of object; one body is for one thread at a time; no global state, no output, no clock
+ * of its own. A body's coordinates are at most 2^100 (1.3e30), its longest side is at least 2^-100 (7.9e-31), each
+ * element has a mass of 2^-700 ... 2^700. So all volumes, masses, centres and inertia are finite, those of whole
+ * bodies are normal numbers, and floats hold the skin. Beside the body's size, coordinates of bodies and cuts are 0
+ * or 2^-128 ... 2^128. What is not within these limits is refused (GX_ERROR_RANGE).
  *
  * References: GXFEM = Ton-That, Kry, Andrews: Generalized eXtended Finite Element Method for Deformable Cutting via Boolean
  * Operations (2024). RXFEM = Koschier, Bender, Thuerey: Robust eXtended Finite Elements for Complex Cutting of Deformables (2017).
@@ -154,8 +155,9 @@ typedef struct gx_body_desc {
     void *clock_user;
     gx_jobs jobs;               /* the host's threads, for the steps; zero: none */
 } gx_body_desc;
-/* Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE, INVERTED, FLAT, OVERLAP (index: the node, element or material; none where the whole
-   body is too small), LIMIT, MEMORY. FLAT: also where the volume is 0 or less in doubles. The arrays of the description are copied. */
+/* Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE (index: the node that is too far out, the element that is too
+   heavy or too light, SIZE_MAX where the body is too small), INVERTED, FLAT (exactly, or in doubles), OVERLAP (index:
+   the node, element or material), LIMIT, MEMORY. The arrays of the description are copied. */
 GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **body, gx_failure *failure /* or NULL */);
 GXFEM_API void gx_body_destroy(gx_body *body);      /* NULL is fine */
 
@@ -193,8 +195,8 @@ GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_r
 
 /* A sheet made solid (GXFEM section 4.1): offset by thickness/2 to both sides along its vertex normals, rim closed.
    vertices: room for 2 x vertex_count x 3; triangles: room for 8 x triangle_count x 3. Vertices where normals cancel stay.
-   Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE (a sum or difference of coordinates is beyond doubles), LIMIT, MEMORY; what has
-   been written then means nothing. */
+   Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE (a sum or difference of coordinates is beyond doubles), LIMIT,
+   MEMORY; what has been written then means nothing. */
 GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thickness, double *vertices, size_t *vertex_count,
                                         uint32_t *triangles, size_t *triangle_count, const gx_allocator *allocator /* or NULL */);
 
@@ -221,8 +223,9 @@ typedef struct gx_view {
     size_t copy_count;
     const uint32_t *copy_node;      /* copy_count */
     const uint8_t *copy_held;       /* copy_count, 1: held by a Dirichlet region */
-    uint64_t epoch;                 /* names this numbering of copies. A cut that creates or removes copies begins another, any other cut
-                                       leaves it; 0: no cut has done so yet. Bodies with the same epoch that is not 0 have the same copies */
+    uint64_t epoch;                 /* names this numbering of copies. A cut that creates or removes copies begins
+                                       another one, any other cut leaves it. 0: no cut has begun one yet. Bodies cut
+                                       alike have the same epoch, bodies cut otherwise have others */
     double *displacement;           /* copy_count x 3, m; the caller may write, and then takes a step of GXS_BDF1 before one of GXS_BDF2 */
     double *velocity;               /* copy_count x 3, m/s; likewise */
     double *rest_time;              /* copy_count: for how long it has been slower than sleep_speed, s; the caller may write 0 to wake it; calls
@@ -253,8 +256,9 @@ typedef struct gx_motion {
     double energy;              /* kinetic, J */
 } gx_motion;
 /* Motions of all fragments from the present displacement and velocity, in the order of gx_view; capacity: how many there is room for.
-   Errors: ARGUMENT, NOT_FINITE (a displacement or velocity), RANGE (they are so large that a motion is beyond doubles), MEMORY, LIMIT (as
-   well where capacity is below gx_view.fragment_count); what has been written then means nothing. */
+   Errors: ARGUMENT, NOT_FINITE (a displacement or velocity), RANGE (these are so large that a motion is beyond
+   doubles), MEMORY, LIMIT (as well where capacity is below gx_view.fragment_count); what has been written then means
+   nothing. */
 GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t capacity);
 
 /* >>step ----------------------------------------------------------------------------------------------------------------- */
@@ -266,11 +270,11 @@ typedef struct gx_region { uint32_t axis; int32_t side; double value; } gx_regio
    is then as it was. */
 GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t region_count);
 
-/* A step as the solver takes it; arrays are by copy, as in gx_view, and so are points: epoch of the step (where it has forces or targets)
-   and of each gxs_point is that of the view, skin or hit that they were made from. After a cut that has begun another epoch they are
-   refused (GX_ERROR_STALE) until they are made anew. previous_displacement, previous_velocity, previous_dt and rest_times
-   are the body's own and not read. clock: where it is NULL, that of the body. A point of the skin is a gxs_point by its copies and
-   weights. */
+/* A step as the solver takes it; arrays are by copy, as in gx_view. A point of the skin is a gxs_point by its copies
+   and weights. A gxs_point has the epoch of the view, skin or hit that it is from; so has the step, where it has
+   forces or targets. After a cut that has begun another epoch they are refused (GX_ERROR_STALE) until they are made
+   anew. previous_displacement, previous_velocity, previous_dt and rest_times are the body's own and not read. clock:
+   where it is NULL, that of the body. */
 typedef gxs_step_desc gx_step_desc;
 typedef gxs_step_report gx_step_report;
 /* One time step (GXFEM Eq. 10). A cut wakes the fragments that it touches. Errors: those of gxs_solver_step, MEMORY; the body is then as
@@ -773,7 +777,8 @@ typedef struct gxp_search {
     double axis[4][3];      /* the normal; of each edge the normal in the triangle's plane, outward */
     double scale[4];        /* size of the products of which they are made */
     double offset[4];       /* along them, of the triangle's plane and edges from the base */
-    double far;             /* size of the coordinates of this triangle and of any element: below 2^135, products of 7 stay in the range */
+    double far;             /* size of the coordinates of this triangle and of any element: below 2^135, and heights are
+                               products of 7 such numbers at most */
 } gxp_search;
 
 #define GXP_SEARCH_MARGIN 1e-12     /* of the terms' size: far above the rounding, so that rounding only adds candidates */
@@ -1023,7 +1028,7 @@ static int gxp_rounds_inverted(const gx_body *body, uint32_t element) {
 static double gxp_density(const gx_body *body, uint32_t element) { return body->materials[body->element_materials[element]].density; }
 
 #define GXP_REACH 100   /* coordinates are at most 2^this, the longest side is at least 2^-this */
-#define GXP_WEIGHT 700  /* masses of elements are 2^-this ... 2^this: 2^28 of them times squares of such coordinates stay in the range */
+#define GXP_WEIGHT 700  /* masses of elements are 2^-this ... 2^this: the inertia of 2^28 of them is below 2^940 */
 
 /* index: of a node that is too far out; none is where the body is too small */
 static gx_result gxp_check_size(const gx_body_desc *desc, size_t *index) {
@@ -3329,7 +3334,8 @@ GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thicknes
     for (i = 0; i < 3 * sheet->vertex_count && result == GX_OK; i++) {
         vertices[i] = sheet->vertices[i] + normals[i];
         vertices[3 * sheet->vertex_count + i] = sheet->vertices[i] - normals[i];
-        if (!gxp_is_finite(vertices[i]) || !gxp_is_finite(vertices[3 * sheet->vertex_count + i])) result = GX_ERROR_RANGE;
+        if (!gxp_is_finite(vertices[i]) || !gxp_is_finite(vertices[3 * sheet->vertex_count + i]))
+            result = GX_ERROR_RANGE;
     }
     for (i = 0; i < 3 * sheet->triangle_count && result == GX_OK; i++) {
         triangles[i] = sheet->triangles[i];
@@ -4453,11 +4459,12 @@ static void gxp_save_topology(gxb_stream *s, gx_body *body) {
 /* Marks, one byte for each cell, leaf and copy: it has its place. */
 typedef struct gxp_places { unsigned char *cell, *leaf, *copy; } gxp_places;
 
-/* The cell's leaves are its own, kept, of its element and of no other cell; its copies are those of its element's nodes, and it is no larger. */
+/* The cell's leaves are its own, kept, of its element and of no other cell; its copies are those of its element's
+   nodes. It is no larger than the element; twice allows for rounding. */
 static void gxp_check_cell(gxb_stream *s, gx_body *body, uint32_t cell, const gxp_places *seen) {
     gxp_cell *c = &body->cells[cell];
     const uint32_t *node = body->complex->elements + 4 * (size_t)c->element;
-    const double most = 2 * gxp_element_volume(body, c->element);      /* twice: that is rounded */
+    const double density = gxp_density(body, c->element), most = 2 * gxp_element_volume(body, c->element);
     uint32_t leaf, k;
     gxp_require_true(s, c->kept <= 1 && (c->first_leaf != GXP_NONE) == (c->kept != 0));
     for (leaf = c->first_leaf; leaf != GXP_NONE && s->result == GX_OK; leaf = body->leaves[leaf].next) {
@@ -4467,7 +4474,7 @@ static void gxp_check_cell(gxb_stream *s, gx_body *body, uint32_t cell, const gx
         gxp_require_true(s, body->leaves[leaf].cell == cell && gxp_is_kept(body, leaf) && body->complex->leaves[leaf].element == c->element);
     }
     gxp_require_true(s, gxp_is_finite(c->volume) && c->volume >= 0 && c->volume <= most);
-    for (k = 0; k < 10; k++) gxp_require_true(s, gxp_is_finite(c->mass[k]) && fabs(c->mass[k]) <= most * gxp_density(body, c->element));
+    for (k = 0; k < 10; k++) gxp_require_true(s, gxp_is_finite(c->mass[k]) && fabs(c->mass[k]) <= most * density);
     for (k = 0; k < 4 && s->result == GX_OK; k++) {
         if (!c->kept) { gxp_require_true(s, c->copies[k] == GXP_NONE); continue; }
         gxp_require_true(s, c->copies[k] < body->copy_count && body->copy_node[c->copies[k] < body->copy_count ? c->copies[k] : 0] == node[k]);

@@ -62,8 +62,8 @@
  *     - Signs are exact for finite coordinates under every flag, rounding mode and flush-to-zero (but x87 set to 24 bits).
  *     - Coordinates in a complex: scaled by a power of two to the mesh's box they are 0 or of magnitude 2^-128 to 2^128, and after
  *       subtraction of its origin at most 2^128, else GX_ERROR_RANGE. orient2d, orient3d, incircle and insphere take any
- *       finite double. Coordinates of a Boolean are 0 or of magnitude 2^-128 to 2^128, beside its first operand's largest if that is
- *       outside 2^+-60; that one is 2^-200 to 2^200, so that volumes are numbers.
+ *       finite double. Coordinates of a Boolean are 0 or of magnitude 2^-128 to 2^128, beside its first operand's
+ *       largest if that is outside 2^+-60. That one is 2^-200 to 2^200 (GX_ERROR_RANGE), so that volumes are numbers.
  *     - At most 2^28 elements and some 1.4e9 points, planes, edges, facets and leaves; an operand of a Boolean: about 130 million triangles.
  *     - No global state, no input or output, no heap traffic but the growth of the complex's own arrays.
  *
@@ -1830,8 +1830,9 @@ GXFEM_API gx_result gxb_complex_check_point(const gxb_complex *cx, const double 
     gxbp_vec v;
     int k, plain = 1;
     for (k = 0; k < 3; k++) {
-        const int e = gxbp_exponent_bits(x[k]) - 1023 + cx->shift, o = gxbp_exponent_bits(cx->origin[k]) - 1023 + cx->shift;
-        plain = plain && (gxbp_is_zero(x[k]) || (gxbp_exponent_bits(x[k]) > 0 && e >= -128 && e < 127)) && o < 127;
+        const int bits = gxbp_exponent_bits(x[k]), e = bits - 1023 + cx->shift;
+        const int origin = gxbp_exponent_bits(cx->origin[k]) - 1023 + cx->shift;
+        plain = plain && (gxbp_is_zero(x[k]) || (bits > 0 && e >= -128 && e < 127)) && origin < 127;
         if (!gxbp_is_finite(x[k])) return GX_ERROR_NOT_FINITE;
     }
     return plain ? GX_OK : gxbp_frame_exact(cx, x, &v);
@@ -5133,7 +5134,7 @@ static gx_result gxbp_scale(const gxb_boolean *b, const double x[3], double y[3]
     return GX_OK;
 }
 
-#define GXBP_LARGEST 200        /* the first operand's largest coordinate is 2^+-this: cubes of what is 2^128 times that are numbers */
+#define GXBP_LARGEST 200    /* the first operand's largest coordinate is 2^+-this: cubes of 2^128 times it are finite */
 
 /* Scenes of ordinary size keep their scale. *bad: the vertex with the largest coordinate, where that is out of range */
 static gx_result gxbp_choose_scale(gxb_boolean *b, const gxb_operand *operand, size_t *bad) {

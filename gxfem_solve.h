@@ -210,8 +210,9 @@ typedef struct gxs_model {
     uint32_t lumped_mass;       /* not 0: row sums of the mass; 0: as given (consistent) */
     const gxs_constraint *constraints; /* constraint_count, each of another copy */
     size_t constraint_count;
-    uint64_t epoch;             /* names this numbering of copies: springs, contact points, forces and targets of steps say which one they
-                                   are of, and GX_ERROR_STALE refuses those of another. Where nothing is ever renumbered: 0, as there */
+    uint64_t epoch;             /* names this numbering of copies. Springs, contact points, forces and targets of a step
+                                   say which one they are of: those of another are GX_ERROR_STALE. 0 everywhere is fine
+                                   as long as copies keep their numbers */
 } gxs_model;
 
 /* What a cut has changed of a model. Borrowed for the time of a call. */
@@ -293,7 +294,8 @@ typedef struct gxs_step_desc {
     const double *previous_displacement, *previous_velocity; /* copy_count x 3, of the step before; BDF2 only; NULL: none */
     double previous_dt;         /* s, of the step before; BDF2 only */
     const double *targets;      /* copy_count x 3: displacement of held copies at the step's end, others not read; NULL: they stay */
-    uint64_t epoch;             /* of the numbering that forces and targets are of: the model's, else GX_ERROR_STALE; without them not read */
+    uint64_t epoch;             /* of the numbering of forces and targets: the model's, else GX_ERROR_STALE; read where
+                                   one of them is given */
     double mass_damping;        /* Rayleigh's alpha, 1/s, 0 or more: force -alpha M v */
     uint32_t newton_iterations; /* at most so many; 0: 1 */
     double newton_tolerance;    /* stop at this residual (see gxs_step_report); 0: 1e-8, far below what one iteration leaves of motion */
@@ -357,9 +359,9 @@ typedef struct gxs_solver gxs_solver;
 
 /* >>functions
  * Those that return a gx_result check all they read: GX_ERROR_ARGUMENT, _EMPTY, _LIMIT, _RANGE, _INDEX, _NOT_FINITE (index: of
- * the element, material, constraint, copy, spring, point or plane), _INVERTED (weight below 0; index: element), _STALE (copies of
- * another epoch than the model's; index: of the spring or point, SIZE_MAX: the forces or targets). Outputs are
- * written on GX_OK only. failure and report may be NULL. */
+ * the element, material, constraint, copy, spring, point or plane), _INVERTED (weight below 0; index: element). Steps
+ * also GX_ERROR_STALE (copies of another epoch than the model's; index: spring or point, SIZE_MAX: forces or targets).
+ * Outputs are written on GX_OK only. failure and report may be NULL. */
 
 /* Advances displacement (m) and velocity (m/s), both copy_count x 3 of the model set last and not overlapping, by one step.
  * Held copies keep their displacement or go to their target, copies without an element of any weight or mass stay where they are;

@@ -312,7 +312,8 @@ static gx_result check_coordinate(double x, int shift)
     return e - 1 + shift < -128 || e - 1 + shift > 127 ? GX_ERROR_RANGE : GX_OK;
 }
 
-/* A scene's scale is that of its first operand where it is outside of 2^-60 ... 2^60; beyond 2^-200 ... 2^200 there is none. */
+/* A scene's scale is that of its first operand where it is outside of 2^-60 ... 2^60; beyond 2^-200 ... 2^200 there is
+   none. */
 static int scale_of(const case_operand *first)
 {
     int largest = -2000, e;

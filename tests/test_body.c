@@ -1843,7 +1843,8 @@ START_TEST(forces_act_on_copies) {
     forces = (double *)oracle_memory(NULL, 3 * view.copy_count, sizeof *forces);
     memset(forces, 0, 3 * view.copy_count * sizeof *forces);
     forces[3 * (view.copy_count - 1)] = 10;
-    step.forces = forces; step.epoch = view.epoch; step.cg_tolerance = 1e-10; step.newton_iterations = 20; step.newton_tolerance = 1e-10;
+    step.forces = forces; step.epoch = view.epoch;
+    step.cg_tolerance = 1e-10; step.newton_iterations = 20; step.newton_tolerance = 1e-10;
     ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
     momentum(body, p);
     ck_assert_double_eq_tol(p[0], 10 * step.dt, 1e-7);
@@ -2302,20 +2303,24 @@ static void expect_numbers(gx_body *body) {
     for (i = 0; i < view.fragment_count; ++i) {
         ck_assert(is_number(view.fragment_volume[i]) && is_number(view.fragment_mass[i]));
         for (k = 0; k < 3; ++k) ck_assert(is_number(view.fragment_center[3 * i + k]));
-        for (k = 0; k < 6; ++k) ck_assert(is_number(view.fragment_inertia[6 * i + k]) && is_number(motions[i].inertia[k]));
+        for (k = 0; k < 6; ++k)
+            ck_assert(is_number(view.fragment_inertia[6 * i + k]) && is_number(motions[i].inertia[k]));
         ck_assert(view.fragment_inertia[6 * i] > 0 && motions[i].mass > 0 && is_number(motions[i].mass));
     }
     ck_assert_int_eq(gx_body_skin(body, NULL, &skin), GX_OK);
     drawn = (float *)oracle_memory(NULL, 3 * skin.vertex_count, sizeof *drawn);
     ck_assert_int_eq(gx_body_skin_vertices(body, NULL, drawn, NULL), GX_OK);
-    for (i = 0; i < 3 * skin.vertex_count; ++i)
-        ck_assert(isfinite(drawn[i]) && fabs((double)drawn[i] - skin.vertex_rest[i]) <= FLT_EPSILON * fabs(skin.vertex_rest[i]));
+    for (i = 0; i < 3 * skin.vertex_count; ++i) {
+        const double x = skin.vertex_rest[i];
+        ck_assert(isfinite(drawn[i]) && fabs((double)drawn[i] - x) <= FLT_EPSILON * fabs(x));
+    }
     free(drawn);
 }
 
-/* A body within the limits is all numbers, as light and as heavy as it may be; others are refused, and the node is named. */
+/* A body within the limits is all numbers, as light and as heavy as it may be; others are refused. */
 START_TEST(bodies_are_numbers_or_refused) {
-    static const int powers[17] = { -1022, -600, -400, -350, -101, -100, -50, 0, 50, 99, 100, 101, 333, 345, 400, 700, 1000 };
+    static const int powers[17] = { -1022, -600, -400, -350, -101, -100, -50, 0, 50, 99, 100, 101, 333, 345, 400, 700,
+                                    1000 };
     const int e = powers[_i];
     workload w = corner_tet();
     gx_body_desc desc;
@@ -2323,7 +2328,8 @@ START_TEST(bodies_are_numbers_or_refused) {
     int heavy;
     add_axis_plane(&w, 2, 0.25);
     for (i = 0; i < 3 * w.node_count; ++i) w.positions[i] = ldexp(w.positions[i], e);
-    for (i = 0; i < 3 * w.surfaces[0].vertex_count; ++i) w.surfaces[0].vertices[i] = ldexp(w.surfaces[0].vertices[i], e);
+    for (i = 0; i < 3 * w.surfaces[0].vertex_count; ++i)
+        w.surfaces[0].vertices[i] = ldexp(w.surfaces[0].vertices[i], e);
     desc = desc_of(&w);
     if (e > 100) EXPECT_NO_BODY(&desc, GX_ERROR_RANGE, 1);
     if (e < -100) EXPECT_NO_BODY(&desc, GX_ERROR_RANGE, SIZE_MAX);
@@ -2472,7 +2478,7 @@ START_TEST(bad_cuts) {
     memcpy(x, v, sizeof x); x[3] = 1e60; EXPECT_NO_CUT(GX_ERROR_RANGE, 1, 1);
     memcpy(x, v, sizeof x); x[3] = 1e200; EXPECT_NO_CUT(GX_ERROR_RANGE, 1, 1);
     memcpy(x, v, sizeof x); x[3] = DBL_MAX; x[7] = DBL_MAX; EXPECT_NO_CUT(GX_ERROR_RANGE, 1, 1);
-    for (i = 0; i < 9; ++i) x[i] = v[i] + 40;                       /* wherever they are, and whether a triangle uses them */
+    for (i = 0; i < 9; ++i) x[i] = v[i] + 40;                       /* far away, and such that no triangle uses */
     s[1].triangle_count = 1;
     x[2] = 1e-60; EXPECT_NO_CUT(GX_ERROR_RANGE, 0, 1);
     x[2] = 40;

@@ -701,7 +701,7 @@ START_TEST(damage_is_seen) {
 }
 END_TEST
 
-/* What no body can be is damage: a density with which elements are too heavy or too light, a cell larger than its element. */
+/* What no body can be is damage: a density with which elements are too heavy, a cell larger than its element. */
 START_TEST(damage_beyond_the_range) {
     workload w;
     gx_body *body = small_body(&w, SEEN), *other = NULL;

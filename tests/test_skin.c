@@ -358,7 +358,7 @@ START_TEST(flat_normals) {
 }
 END_TEST
 
-/* A body as small or as large as bodies may be, whose squares of areas are no floats, has the normals that it has of 1 m. */
+/* A body as small or as large as may be, whose squares of areas are no floats, has the normals that it has of 1 m. */
 START_TEST(normals_at_any_size) {
     const double p[3] = { 0.93, 1.07, 0.55 }, q[3] = { 1, 0.3, 0.2 }, r[3] = { 0.1, 1, 0.4 };
     static const int powers[4] = { 0, -100, 98, 50 };

@@ -1,5 +1,6 @@
-/* test_steps.c - what a body adds to the solver's steps: materials by element, the model for other solvers, BDF2's history and rest
-   times through cuts, copies without support, points of the skin, copies named by an old numbering. The steps themselves: test_solve.c, test_forces.c. */
+/* test_steps.c - what a body adds to the solver's steps: materials by element, the model for other solvers, BDF2's
+   history and rest times through cuts, copies without support, points of the skin, copies named as before a cut. The
+   steps themselves: test_solve.c, test_forces.c. */
 #ifndef GXFEM_LINKED
 #define GXFEM_IMPLEMENTATION
 #endif
@@ -661,8 +662,9 @@ static void expect_stale(naming *n, gx_body *body, int kind) {
     ck_assert(gx_body_state_hash(body) == state);
 }
 
-/* A cut that leaves all copies leaves what names them; one that creates or removes some makes it stale until it is made anew; a body of which
-   nothing is left tells it as well. With support_below the solver is given each model anew, else it may be told of changes. */
+/* A cut that leaves all copies leaves what names them. One that creates or removes some makes it stale until it is made
+   anew; a body of which nothing is left tells it as well. With support_below the solver is given each model anew, else
+   it may be told of changes. */
 START_TEST(names_of_copies_go_stale) {
     const int kind = _i % KINDS_OF_NAMES;
     workload w = grid(2, 2, 2, 5);
@@ -691,7 +693,7 @@ START_TEST(names_of_copies_go_stale) {
         advance(body, &n.step, 1);
         epoch = view_of(body).epoch;
         report = cut_by(body, &w, i, 1);
-        ck_assert(i < 2 ? report.created_copies + report.removed_copies == 0 : i == 2 ? report.created_copies > 0 : report.removed_copies > 0);
+        ck_assert((report.created_copies > 0) == (i == 2) && (report.removed_copies > 0) == (i > 2));
         ck_assert(report.touched_elements > 0 || i == 0);
         ck_assert((view_of(body).epoch == epoch) == (i < 2));
         if (i < 2) continue;

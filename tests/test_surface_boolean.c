@@ -1385,9 +1385,10 @@ static gx_result refusal(const gxb_operand *o, size_t *index) {
     return result;
 }
 
-/* What two boxes have in common, each size apart: in the first operand's units it is always the same, or the first operand is refused. */
+/* What two boxes have in common: the same at any size, or the first operand is refused. */
 START_TEST(sizes_are_numbers_or_refused) {
-    static const int powers[17] = { -1022, -1000, -400, -310, -201, -200, -100, -61, 0, 61, 100, 200, 201, 310, 400, 1000, 1020 };
+    static const int powers[17] = { -1022, -1000, -400, -310, -201, -200, -100, -61, 0, 61, 100, 200, 201, 310, 400,
+                                    1000, 1020 };
     const int e = powers[_i], fits = e >= -200 && e <= 200;
     const double size = ldexp(1, e);
     double corner[3][3];

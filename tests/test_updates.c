@@ -484,7 +484,7 @@ START_TEST(bad_changes_are_named) {
     ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);
     origins[7] = 6; EXPECT(GX_ERROR_LIMIT, SIZE_MAX); origins[7] = 14;              /* two copies that are one */
 #undef EXPECT
-    ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);            /* steps say of which numbering they are */
+    ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);    /* steps say of which numbering they are */
     step.forces = u + 6 * model.copy_count;
     ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * model.copy_count, NULL, NULL), GX_OK);
     change.epoch = 9;
