@@ -53,8 +53,11 @@
  * What it does not do (yet): contact between pieces, cuts given in the deformed state,
  * unknowns within a partly cut element (a sheet that ends inside an element separates nothing there until another completes it).
  *
- * Limits: 2^31 - 1 of each kind of object; coordinates within 2^-128 ... 2^128 of the body's size (GX_ERROR_RANGE);
- * one body is for one thread at a time; no global state, no output, no clock of its own.
+ * Limits: 2^31 - 1 of each kind of object; one body is for one thread at a time; no global state, no output, no clock
+ * of its own. A body's coordinates are at most 2^100 (1.3e30), its longest side is at least 2^-100 (7.9e-31), each
+ * element has a mass of 2^-700 ... 2^700. So all volumes, masses, centres and inertia are finite, those of whole
+ * bodies are normal numbers, and floats hold the skin. Beside the body's size, coordinates of bodies and cuts are 0
+ * or 2^-128 ... 2^128. What is not within these limits is refused (GX_ERROR_RANGE).
  *
  * References: GXFEM = Ton-That, Kry, Andrews: Generalized eXtended Finite Element Method for Deformable Cutting via Boolean
  * Operations (2024). RXFEM = Koschier, Bender, Thuerey: Robust eXtended Finite Elements for Complex Cutting of Deformables (2017).
@@ -81,7 +84,7 @@ typedef enum gx_result {
     GX_ERROR_ARGUMENT,      /* a required pointer is NULL, a required field is zero or senseless */
     GX_ERROR_MEMORY,        /* the allocator returned NULL */
     GX_ERROR_NOT_FINITE,    /* a coordinate or parameter is NaN or infinite */
-    GX_ERROR_RANGE,         /* a coordinate is too large or too small beside the others (see "limits") */
+    GX_ERROR_RANGE,         /* a coordinate or a mass is too large or too small (see "limits") */
     GX_ERROR_INDEX,         /* an index points outside its array */
     GX_ERROR_EMPTY,         /* no elements, no nodes or no triangles */
     GX_ERROR_INVERTED,      /* an element has negative volume */
@@ -92,7 +95,8 @@ typedef enum gx_result {
     GX_ERROR_DIVERGED,      /* a time step found no finite state of lower energy */
     GX_ERROR_FREE,          /* a static balance is asked of a piece that nothing holds */
     GX_ERROR_FORMAT,        /* not a saved body, or one of another version or another kind of machine */
-    GX_ERROR_DAMAGED        /* a saved body is cut short, or what it says cannot be */
+    GX_ERROR_DAMAGED,       /* a saved body is cut short, or what it says cannot be */
+    GX_ERROR_STALE          /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
 } gx_result;
 
 /* What went wrong, and where: index of the node, element, triangle or copy concerned. */
@@ -151,8 +155,9 @@ typedef struct gx_body_desc {
     void *clock_user;
     gx_jobs jobs;               /* the host's threads, for the steps; zero: none */
 } gx_body_desc;
-/* Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE, INVERTED, FLAT, OVERLAP (index: the node, element or material), LIMIT, MEMORY.
-   The arrays of the description are copied. */
+/* Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE (index: the node that is too far out, the element that is too
+   heavy or too light, SIZE_MAX where the body is too small), INVERTED, FLAT (exactly, or in doubles), OVERLAP (index:
+   the node, element or material), LIMIT, MEMORY. The arrays of the description are copied. */
 GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **body, gx_failure *failure /* or NULL */);
 GXFEM_API void gx_body_destroy(gx_body *body);      /* NULL is fine */
 
@@ -190,7 +195,8 @@ GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_r
 
 /* A sheet made solid (GXFEM section 4.1): offset by thickness/2 to both sides along its vertex normals, rim closed.
    vertices: room for 2 x vertex_count x 3; triangles: room for 8 x triangle_count x 3. Vertices where normals cancel stay.
-   Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, LIMIT, MEMORY; what has been written then means nothing. */
+   Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE (a sum or difference of coordinates is beyond doubles), LIMIT,
+   MEMORY; what has been written then means nothing. */
 GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thickness, double *vertices, size_t *vertex_count,
                                         uint32_t *triangles, size_t *triangle_count, const gx_allocator *allocator /* or NULL */);
 
@@ -217,6 +223,9 @@ typedef struct gx_view {
     size_t copy_count;
     const uint32_t *copy_node;      /* copy_count */
     const uint8_t *copy_held;       /* copy_count, 1: held by a Dirichlet region */
+    uint64_t epoch;                 /* names this numbering of copies. A cut that creates or removes copies begins
+                                       another one, any other cut leaves it. 0: no cut has begun one yet. Bodies cut
+                                       alike have the same epoch, bodies cut otherwise have others */
     double *displacement;           /* copy_count x 3, m; the caller may write, and then takes a step of GXS_BDF1 before one of GXS_BDF2 */
     double *velocity;               /* copy_count x 3, m/s; likewise */
     double *rest_time;              /* copy_count: for how long it has been slower than sleep_speed, s; the caller may write 0 to wake it; calls
@@ -247,7 +256,9 @@ typedef struct gx_motion {
     double energy;              /* kinetic, J */
 } gx_motion;
 /* Motions of all fragments from the present displacement and velocity, in the order of gx_view; capacity: how many there is room for.
-   Errors: ARGUMENT, MEMORY, LIMIT (as well where capacity is below gx_view.fragment_count). */
+   Errors: ARGUMENT, NOT_FINITE (a displacement or velocity), RANGE (these are so large that a motion is beyond
+   doubles), MEMORY, LIMIT (as well where capacity is below gx_view.fragment_count); what has been written then means
+   nothing. */
 GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t capacity);
 
 /* >>step ----------------------------------------------------------------------------------------------------------------- */
@@ -259,9 +270,11 @@ typedef struct gx_region { uint32_t axis; int32_t side; double value; } gx_regio
    is then as it was. */
 GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t region_count);
 
-/* A step as the solver takes it; arrays are by copy, as in gx_view. previous_displacement, previous_velocity, previous_dt and rest_times
-   are the body's own and not read. clock: where it is NULL, that of the body. A point of the skin is a gxs_point by its copies and
-   weights. */
+/* A step as the solver takes it; arrays are by copy, as in gx_view. A point of the skin is a gxs_point by its copies
+   and weights. A gxs_point has the epoch of the view, skin or hit that it is from; so has the step, where it has
+   forces or targets. After a cut that has begun another epoch they are refused (GX_ERROR_STALE) until they are made
+   anew. previous_displacement, previous_velocity, previous_dt and rest_times are the body's own and not read. clock:
+   where it is NULL, that of the body. */
 typedef gxs_step_desc gx_step_desc;
 typedef gxs_step_report gx_step_report;
 /* One time step (GXFEM Eq. 10). A cut wakes the fragments that it touches. Errors: those of gxs_solver_step, MEMORY; the body is then as
@@ -308,6 +321,7 @@ typedef struct gx_skin {
     /* What differs from the arrays of the call before, ascending; counts may differ too. Fragment ids may differ anywhere. */
     const gx_range *vertex_ranges; size_t vertex_range_count;
     const gx_range *triangle_ranges; size_t triangle_range_count;
+    uint64_t epoch;                 /* of the numbering of copies, as in gx_view: for gxs_point */
 } gx_skin;
 /* Rebuilds what cuts have touched since the last call; all of it if desc is another. Errors: ARGUMENT, NOT_FINITE, MEMORY, LIMIT. */
 GXFEM_API gx_result gx_body_skin(gx_body *body, const gx_skin_desc *desc /* or NULL: zero */, gx_skin *skin);
@@ -327,6 +341,7 @@ typedef struct gx_hit {
     double position[3], material[3];/* deformed, m; material coordinates, m */
     uint32_t copies[4];
     double weights[4];
+    uint64_t epoch;                 /* of the numbering of copies, as in gx_view: for gxs_point */
 } gx_hit;
 /* Errors: as of gx_body_skin_positions; ARGUMENT (direction 0), NOT_FINITE. */
 GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit);
@@ -504,6 +519,7 @@ struct gx_body {
     gx_region *regions; uint32_t region_count, region_capacity;
     gx_jobs jobs;
     uint64_t past;                  /* hash of the mesh and of all cuts: bodies with the same one have the same cells and copies */
+    uint64_t epoch;                 /* the past when copies were created or removed last; 0: never */
     uint32_t label_count;           /* cut triangles so far */
     uint32_t *copy_label; uint32_t copy_label_capacity;     /* copies: 2 x index of its fragment at the last look, + 1 where it was cut since */
     gxp_words fragment_ids, fragment_origins, fragment_changes, removed_ids;    /* as last looked at */
@@ -771,7 +787,8 @@ typedef struct gxp_search {
     double axis[4][3];      /* the normal; of each edge the normal in the triangle's plane, outward */
     double scale[4];        /* size of the products of which they are made */
     double offset[4];       /* along them, of the triangle's plane and edges from the base */
-    double far;             /* size of the coordinates of this triangle and of any element */
+    double far;             /* size of the coordinates of this triangle and of any element: below 2^135, and heights are
+                               products of 7 such numbers at most */
 } gxp_search;
 
 #define GXP_SEARCH_MARGIN 1e-12     /* of the terms' size: far above the rounding, so that rounding only adds candidates */
@@ -816,8 +833,6 @@ static void gxp_search_init(gxp_search *s, const double *const p[3], double unit
     }
 }
 
-#define GXP_SEARCH_RANGE 1e42   /* what is further is out of range, and a candidate, so that this is told: products of heights (7 factors) stay in theirs */
-
 /* May the triangle meet the box? One branch for all axes, since which of them tells can't be predicted. */
 static int gxp_triangle_near_box(const gxp_search *s, const gxp_box *box) {
     double sum = 0, r = 0;
@@ -832,7 +847,7 @@ static int gxp_triangle_near_box(const gxp_search *s, const gxp_box *box) {
         sum += s->axis[0][k] * ((c - s->base[k]) * s->unit);
         r += fabs(s->axis[0][k]) * (h * s->unit);
     }
-    return s->far > GXP_SEARCH_RANGE || fabs(sum) <= r + GXP_SEARCH_MARGIN * s->scale[0] * s->far;
+    return fabs(sum) <= r + GXP_SEARCH_MARGIN * s->scale[0] * s->far;
 }
 
 /* Heights of the element's nodes along an axis, and how far they may be off */
@@ -884,7 +899,6 @@ static int gxp_triangle_near_element(const gx_body *body, const gxp_search *s, u
         beyond |= gxp_least(x[i]) > s->high[i];
     }
     if (beyond) return 0;
-    if (s->far > GXP_SEARCH_RANGE) return 1;
     for (i = 0; i < 3; i++) for (n = 0; n < 4; n++) x[i][n] = (x[i][n] - s->base[i]) * s->unit;
     gxp_set_heights(s, 0, x, &over);
     if (gxp_least(over.at) > over.margin || gxp_greatest(over.at) < -over.margin) return 0;
@@ -1014,7 +1028,7 @@ static double gxp_element_volume(const gx_body *body, uint32_t element) {
     return gxi_tet_volume(x);
 }
 
-/* Exactly positive as its volume is: doubles may see it below zero, as the solver would. */
+/* Doubles may see an element as inverted that is not, as the solver would. */
 static int gxp_rounds_inverted(const gx_body *body, uint32_t element) {
     double x[12], gradients[12];
     gxp_element_positions(body, element, x);
@@ -1023,8 +1037,38 @@ static int gxp_rounds_inverted(const gx_body *body, uint32_t element) {
 
 static double gxp_density(const gx_body *body, uint32_t element) { return body->materials[body->element_materials[element]].density; }
 
-/* *flat: an element that is inverted in doubles, though not exactly */
-static gx_result gxp_make_first_cells(gx_body *body, size_t *flat) {
+#define GXP_REACH 100   /* coordinates are at most 2^this, the longest side is at least 2^-this */
+#define GXP_WEIGHT 700  /* masses of elements are 2^-this ... 2^this: the inertia of 2^28 of them is below 2^940 */
+
+/* index: of a node that is too far out; none is where the body is too small */
+static gx_result gxp_check_size(const gx_body_desc *desc, size_t *index) {
+    const double most = ldexp(1, GXP_REACH);
+    double longest = 0;
+    size_t i;
+    int k;
+    for (k = 0; k < 3; k++) {
+        double low = desc->positions[k], high = low;
+        for (i = 0; i < desc->node_count; i++) {
+            const double x = desc->positions[3 * i + (size_t)k];
+            if (fabs(x) > most) { *index = i; return GX_ERROR_RANGE; }
+            if (x < low) low = x;
+            if (x > high) high = x;
+        }
+        if (high - low > longest) longest = high - low;
+    }
+    return longest < 1 / most ? GX_ERROR_RANGE : GX_OK;
+}
+
+/* Exactly the volume is positive: in doubles it may be below. */
+static gx_result gxp_check_volume(const gx_body *body, uint32_t element, double volume) {
+    const double mass = volume * gxp_density(body, element);
+    if (volume <= 0 || gxp_rounds_inverted(body, element)) return GX_ERROR_FLAT;
+    return mass >= ldexp(1, -GXP_WEIGHT) && mass <= ldexp(1, GXP_WEIGHT) ? GX_OK : GX_ERROR_RANGE;
+}
+
+/* *bad: an element that is flat or out of range */
+static gx_result gxp_make_first_cells(gx_body *body, size_t *bad) {
+    gx_result result = GX_OK;
     uint32_t e;
     body->cell_count = body->leaf_count = body->element_count;
     for (e = 0; e < body->element_count; e++) {
@@ -1035,7 +1079,8 @@ static gx_result gxp_make_first_cells(gx_body *body, size_t *flat) {
         cell->next = GXP_NONE;
         cell->kept = 1;
         cell->volume = gxp_element_volume(body, e);
-        if (cell->volume < 0 || gxp_rounds_inverted(body, e)) { *flat = e; return GX_ERROR_FLAT; }
+        result = gxp_check_volume(body, e, cell->volume);
+        if (result != GX_OK) { *bad = e; return result; }
         gxi_tet_mass(cell->volume, gxp_density(body, e), cell->mass);
         memset(&body->leaves[e], 0, sizeof body->leaves[e]);
         body->leaves[e].cell = e;
@@ -1152,9 +1197,10 @@ static gx_result gxp_first_look(gx_body *body);     /* see >>fragments */
 static uint64_t gxp_hash_mesh(const gx_body *body); /* see >>bytes */
 static uint64_t gxp_hash_cut(uint64_t past, const gx_cut_desc *desc);
 
-/* index: of the element to blame */
+/* index: of the node or element to blame */
 static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc, size_t *index) {
-    gx_result result = gxp_allocate_tables(body);
+    gx_result result = gxp_check_size(desc, index);
+    if (result == GX_OK) result = gxp_allocate_tables(body);
     if (result == GX_OK && desc->texture != NULL) {
         body->texture = (float *)gxp_table(body, 2 * (size_t)body->node_count, sizeof(float));
         if (body->texture == NULL) result = GX_ERROR_MEMORY;
@@ -1427,9 +1473,9 @@ static gx_result gxp_check_surface(gxp_cut *cut, const gx_surface *s, size_t num
     if (s->vertices == NULL || s->triangles == NULL) return GX_ERROR_ARGUMENT;
     if (s->vertex_count > INT32_MAX / 4 || s->triangle_count > INT32_MAX / 4) return GX_ERROR_LIMIT;
     for (i = 0; i < s->vertex_count; i++) {
+        const gx_result result = gxb_complex_check_point(cut->body->complex, s->vertices + 3 * i);
         cut->failure.index = i;
-        if (!gxp_is_finite(s->vertices[3 * i]) || !gxp_is_finite(s->vertices[3 * i + 1]) || !gxp_is_finite(s->vertices[3 * i + 2]))
-            return GX_ERROR_NOT_FINITE;
+        if (result != GX_OK) return result;
         if (s->texture != NULL && (!gxp_is_finite((double)s->texture[2 * i]) || !gxp_is_finite((double)s->texture[2 * i + 1]))) return GX_ERROR_NOT_FINITE;
     }
     for (i = 0; i < s->triangle_count; i++) {
@@ -1624,7 +1670,6 @@ static gx_result gxp_prepare_triangle(gxp_cut *cut, gxp_surface *s, uint32_t ind
         const uint32_t v = s->merged[s->given->triangles[3 * index + k]];
         if (s->point[v] == GXP_NONE) {
             const gx_result result = gxb_complex_add_point(body->complex, s->given->vertices + 3 * (size_t)v, &s->point[v]);
-            if (result == GX_ERROR_NOT_FINITE || result == GX_ERROR_RANGE) { cut->failure.index = v; cut->failure.surface = s->number; }
             if (result != GX_OK) return result;
         }
         t->point[k] = s->point[v];
@@ -3047,6 +3092,7 @@ static void gxp_commit(gxp_cut *cut) {
     gxb_complex_commit(body->complex);
     body->saved_cell_count = body->saved_leaf_count = 0;
     body->past = gxp_hash_cut(body->past, cut->desc);
+    if (cut->report.created_copies + cut->report.removed_copies > 0) body->epoch = body->past != 0 ? body->past : 1;
     body->held_stale = body->view_stale = body->look_stale = 1;
     if (body->removed.count + body->dead.count > 0 || body->splits.count > body->copy_count) body->labels_known = 0;
     if (!body->labels_known) body->splits.count = 0;
@@ -3225,6 +3271,7 @@ static gx_result gxp_offset_vectors(const gx_surface *s, double half, double *no
     size_t i;
     int k, c, pass, exponent = 0;
     memset(normals, 0, 3 * s->vertex_count * sizeof *normals);
+    for (i = 0; i < 3 * s->vertex_count; i++) if (!gxp_is_finite(s->vertices[i])) return GX_ERROR_NOT_FINITE;
     for (i = 0; i < 3 * s->triangle_count; i++) if (s->triangles[i] >= s->vertex_count) return GX_ERROR_INDEX;
     for (pass = 0; pass < 2; pass++) {
         for (i = 0; i < s->triangle_count; i++) {
@@ -3242,7 +3289,6 @@ static gx_result gxp_offset_vectors(const gx_surface *s, double half, double *no
     }
     for (i = 0; i < s->vertex_count; i++) {
         double *n = normals + 3 * i;
-        for (k = 0; k < 3; k++) if (!gxp_is_finite(n[k]) || !gxp_is_finite(s->vertices[3 * i + (size_t)k])) return GX_ERROR_NOT_FINITE;
         if (gxp_unit(n, n)) for (k = 0; k < 3; k++) n[k] *= half;
     }
     return GX_OK;
@@ -3301,6 +3347,8 @@ GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thicknes
     for (i = 0; i < 3 * sheet->vertex_count && result == GX_OK; i++) {
         vertices[i] = sheet->vertices[i] + normals[i];
         vertices[3 * sheet->vertex_count + i] = sheet->vertices[i] - normals[i];
+        if (!gxp_is_finite(vertices[i]) || !gxp_is_finite(vertices[3 * sheet->vertex_count + i]))
+            result = GX_ERROR_RANGE;
     }
     for (i = 0; i < 3 * sheet->triangle_count && result == GX_OK; i++) {
         triangles[i] = sheet->triangles[i];
@@ -3717,6 +3765,7 @@ GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view) {
     view->cell_element = body->cell_element.data; view->cell_copies = body->cell_copies.data;
     view->cell_volume = body->cell_volume; view->cell_fragment = body->view_fragments.data;
     view->copy_count = body->copy_count; view->copy_node = body->copy_node; view->copy_held = body->held;
+    view->epoch = body->epoch;
     view->displacement = body->displacement; view->velocity = body->velocity; view->rest_time = body->rest_time;
     view->fragment_count = body->fragment_count;
     view->fragment_volume = body->fragments;
@@ -3813,6 +3862,24 @@ static void gxp_find_centers(const gx_body *body, gx_motion *motions) {
     }
 }
 
+/* Where a motion is not finite: is it the state, or only what doubles can hold of it? */
+static gx_result gxp_check_motion(const gx_body *body, const gx_motion *motion) {
+    double number[17];
+    size_t i;
+    int finite = 1;
+    memcpy(number, &motion->mass, sizeof *number);
+    memcpy(number + 1, motion->center, 3 * sizeof *number);
+    memcpy(number + 4, motion->inertia, 6 * sizeof *number);
+    memcpy(number + 10, motion->velocity, 3 * sizeof *number);
+    memcpy(number + 13, motion->angular_velocity, 3 * sizeof *number);
+    memcpy(number + 16, &motion->energy, sizeof *number);
+    for (i = 0; i < 17; i++) finite = finite && gxp_is_finite(number[i]);
+    if (finite) return GX_OK;
+    for (i = 0; i < 3 * (size_t)body->copy_count; i++)
+        if (!gxp_is_finite(body->displacement[i]) || !gxp_is_finite(body->velocity[i])) return GX_ERROR_NOT_FINITE;
+    return GX_ERROR_RANGE;
+}
+
 GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t capacity) {
     double (*momentum)[3];
     size_t bytes;
@@ -3839,9 +3906,10 @@ GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t cap
     for (i = 0; i < body->fragment_count; i++) {
         gxp_spin(motions[i].inertia, momentum[i], motions[i].angular_velocity);
         for (k = 0; k < 3; k++) motions[i].energy += 0.5 * motions[i].mass * motions[i].velocity[k] * motions[i].velocity[k];
+        if (result == GX_OK) result = gxp_check_motion(body, &motions[i]);
     }
     gxp_release(&body->allocator, momentum, bytes);
-    return GX_OK;
+    return result;
 }
 
 /* >>parts: what the solver sees: the cells of an element whose four copies coincide are one --------------------------------------- */
@@ -4128,6 +4196,7 @@ static gx_result gxp_make_model(gx_body *body, gxs_model *model) {
     model->materials = body->elastic; model->material_count = body->material_count;
     model->held = body->held;
     model->constraints = body->constraints; model->constraint_count = body->constraint_count;
+    model->epoch = body->epoch;
     return GX_OK;
 }
 
@@ -4150,6 +4219,7 @@ static gx_result gxp_change_model(gx_body *body) {
     change.groups = body->changed.data; change.group_count = body->changed.count;
     change.elements = body->parts; change.element_count = body->part_count;
     change.constraints = body->constraints; change.constraint_count = body->constraint_count;
+    change.epoch = body->epoch;
     return result == GX_OK ? gxs_solver_update(body->solver, &change, NULL) : result;
 }
 
@@ -4246,7 +4316,9 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
     if (result == GX_OK) result = gxp_complete_step(body, desc, &step);
     if (gxp_fail(failure, result, SIZE_MAX, SIZE_MAX) != GX_OK) return result;
     if (body->nothing_moves) {
-        result = gxsp_check_step(&step, failure != NULL ? failure : &ignored);
+        if (failure == NULL) failure = &ignored;
+        result = gxsp_check_step(&step, failure);
+        if (result == GX_OK) result = gxsp_check_epochs(&step, body->epoch, failure);
         if (result == GX_OK && report != NULL) { memset(report, 0, sizeof *report); report->stop = GXS_STOP_ASLEEP; }
         return result;
     }
@@ -4306,7 +4378,7 @@ static void gxp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, wo
 
 /* --- head --- */
 
-#define GXP_SAVE_VERSION 1u     /* raised by every change of what follows */
+#define GXP_SAVE_VERSION 2u     /* raised by every change of what follows */
 #define GXP_BYTE_ORDER 0x01020304u
 
 typedef struct gxp_head {
@@ -4498,6 +4570,7 @@ static void gxp_pass_cells(gxb_stream *s, gx_body *body) {
     }
     gxb_stream_pass(s, body->maps, body->map_count, 8 * sizeof *body->maps);
     gxb_stream_pass(s, &body->past, 1, sizeof body->past);
+    gxb_stream_pass(s, &body->epoch, 1, sizeof body->epoch);
 }
 
 static void gxp_save_topology(gxb_stream *s, gx_body *body) {
@@ -4512,10 +4585,12 @@ static void gxp_save_topology(gxb_stream *s, gx_body *body) {
 /* Marks, one byte for each cell, leaf and copy: it has its place. */
 typedef struct gxp_places { unsigned char *cell, *leaf, *copy; } gxp_places;
 
-/* The cell's leaves are its own, kept, of its element and of no other cell; its copies are those of its element's nodes. */
+/* The cell's leaves are its own, kept, of its element and of no other cell; its copies are those of its element's
+   nodes. It is no larger than the element; twice allows for rounding. */
 static void gxp_check_cell(gxb_stream *s, gx_body *body, uint32_t cell, const gxp_places *seen) {
     gxp_cell *c = &body->cells[cell];
     const uint32_t *node = body->complex->elements + 4 * (size_t)c->element;
+    const double density = gxp_density(body, c->element), most = 2 * gxp_element_volume(body, c->element);
     uint32_t leaf, k;
     gxp_require_true(s, c->kept <= 1 && (c->first_leaf != GXP_NONE) == (c->kept != 0));
     for (leaf = c->first_leaf; leaf != GXP_NONE && s->result == GX_OK; leaf = body->leaves[leaf].next) {
@@ -4524,8 +4599,8 @@ static void gxp_check_cell(gxb_stream *s, gx_body *body, uint32_t cell, const gx
         seen->leaf[leaf] = 1;
         gxp_require_true(s, body->leaves[leaf].cell == cell && gxp_is_kept(body, leaf) && body->complex->leaves[leaf].element == c->element);
     }
-    gxp_require_true(s, gxp_is_finite(c->volume) && c->volume >= 0);
-    for (k = 0; k < 10; k++) gxp_require_true(s, gxp_is_finite(c->mass[k]));
+    gxp_require_true(s, gxp_is_finite(c->volume) && c->volume >= 0 && c->volume <= most);
+    for (k = 0; k < 10; k++) gxp_require_true(s, gxp_is_finite(c->mass[k]) && fabs(c->mass[k]) <= most * density);
     for (k = 0; k < 4 && s->result == GX_OK; k++) {
         if (!c->kept) { gxp_require_true(s, c->copies[k] == GXP_NONE); continue; }
         gxp_require_true(s, c->copies[k] < body->copy_count && body->copy_node[c->copies[k] < body->copy_count ? c->copies[k] : 0] == node[k]);
@@ -5775,7 +5850,8 @@ static gx_result gxp_update_skin(gx_body *body, const gx_skin_desc *desc) {
     return result;
 }
 
-static void gxp_show_skin(const gxp_skin *s, gx_skin *skin) {
+static void gxp_show_skin(const gx_body *body, gx_skin *skin) {
+    const gxp_skin *s = &body->skin;
     skin->vertex_count = s->vertex_count;
     skin->vertex_copies = s->copies; skin->vertex_weights = s->weights; skin->vertex_point = s->point;
     skin->vertex_rest = s->rest; skin->vertex_normal = s->normal; skin->vertex_texture = s->texture;
@@ -5784,6 +5860,7 @@ static void gxp_show_skin(const gxp_skin *s, gx_skin *skin) {
     skin->triangle_material = s->material; skin->triangle_surface = s->surface;
     skin->vertex_ranges = s->ranges[0]; skin->vertex_range_count = s->range_count[0];
     skin->triangle_ranges = s->ranges[1]; skin->triangle_range_count = s->range_count[1];
+    skin->epoch = body->epoch;
 }
 
 GXFEM_API gx_result gx_body_skin(gx_body *body, const gx_skin_desc *desc, gx_skin *skin) {
@@ -5795,7 +5872,7 @@ GXFEM_API gx_result gx_body_skin(gx_body *body, const gx_skin_desc *desc, gx_ski
     if (!gxp_is_finite(desc->crease_angle)) return GX_ERROR_NOT_FINITE;
     if (desc->crease_angle < 0) return GX_ERROR_ARGUMENT;
     result = gxp_update_skin(body, desc);
-    if (result == GX_OK) gxp_show_skin(&body->skin, skin);
+    if (result == GX_OK) gxp_show_skin(body, skin);
     return result;
 }
 
@@ -5901,7 +5978,7 @@ static void gxp_fill_hit(const gx_body *body, uint32_t triangle, const double sh
     const gxp_skin *s = &body->skin;
     uint32_t i, k, n, count = 0;
     int j;
-    hit->triangle = triangle;
+    hit->triangle = triangle; hit->epoch = body->epoch;
     hit->fragment = s->fragment[triangle]; hit->element = s->element[triangle]; hit->surface = s->surface[triangle];
     for (i = 0; i < 3; i++) {
         const size_t v = s->triangles[3 * (size_t)triangle + i];
@@ -6062,7 +6139,7 @@ GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
     }
     for (i = 0; i < body->complex->leaf_count; i++)
         hash = gxp_mix(hash ^ body->leaves[i].cell ^ (uint64_t)body->complex->leaves[i].removed << 32);
-    hash = gxp_mix(hash ^ body->copy_count);
+    hash = gxp_mix(gxp_mix(hash ^ body->copy_count) ^ body->epoch);
     for (i = 0; i < body->copy_count; i++) hash = gxp_mix(hash ^ body->copy_node[i]);
     hash = gxp_hash_doubles(hash, body->displacement, 3 * (size_t)body->copy_count);
     hash = gxp_hash_doubles(hash, body->velocity, 3 * (size_t)body->copy_count);
@@ -6082,7 +6159,7 @@ GXFEM_API const char *gx_result_text(gx_result result) {
     case GX_ERROR_ARGUMENT: return "a required argument is missing or senseless";
     case GX_ERROR_MEMORY: return "out of memory";
     case GX_ERROR_NOT_FINITE: return "a number is not finite";
-    case GX_ERROR_RANGE: return "a coordinate is too large or too small beside the others";
+    case GX_ERROR_RANGE: return "a coordinate or a mass is too large or too small";
     case GX_ERROR_INDEX: return "an index is out of range";
     case GX_ERROR_EMPTY: return "empty: no elements, nodes or triangles";
     case GX_ERROR_INVERTED: return "an element is inverted (negative volume)";
@@ -6094,6 +6171,7 @@ GXFEM_API const char *gx_result_text(gx_result result) {
     case GX_ERROR_FREE: return "a piece is held by nothing";
     case GX_ERROR_FORMAT: return "not a saved body, or one of another version or kind of machine";
     case GX_ERROR_DAMAGED: return "a saved body is damaged";
+    case GX_ERROR_STALE: return "copies are named as before a cut";
     }
     return "unknown result";
 }
@@ -6108,7 +6186,8 @@ GXFEM_API const char *gx_result_text(gx_result result) {
 #undef GXP_LINK_FACET
 #undef GXP_LINK_FACE
 #undef GXP_SEARCH_MARGIN
-#undef GXP_SEARCH_RANGE
+#undef GXP_REACH
+#undef GXP_WEIGHT
 #undef GXP_LAST_ROUND
 #undef GXP_EXPECTED
 #undef GXP_CANCELLATION

@@ -62,7 +62,8 @@
  *     - Signs are exact for finite coordinates under every flag, rounding mode and flush-to-zero (but x87 set to 24 bits).
  *     - Coordinates in a complex: scaled by a power of two to the mesh's box they are 0 or of magnitude 2^-128 to 2^128, and after
  *       subtraction of its origin at most 2^128, else GX_ERROR_RANGE. orient2d, orient3d, incircle and insphere take any
- *       finite double. Coordinates of a Boolean are 0 or of magnitude 2^-128 to 2^128, beside its first operand's if that is outside 2^+-60.
+ *       finite double. Coordinates of a Boolean are 0 or of magnitude 2^-128 to 2^128, beside its first operand's
+ *       largest if that is outside 2^+-60. That one is 2^-200 to 2^200 (GX_ERROR_RANGE), so that volumes are numbers.
  *     - At most 2^28 elements and some 1.4e9 points, planes, edges, facets and leaves; an operand of a Boolean: about 130 million triangles.
  *     - No global state, no input or output, no heap traffic but the growth of the complex's own arrays.
  *
@@ -95,7 +96,7 @@ typedef enum gx_result {
     GX_ERROR_ARGUMENT,      /* a required pointer is NULL, a required field is zero or senseless */
     GX_ERROR_MEMORY,        /* the allocator returned NULL */
     GX_ERROR_NOT_FINITE,    /* a coordinate or parameter is NaN or infinite */
-    GX_ERROR_RANGE,         /* a coordinate is too large or too small beside the others (see "limits") */
+    GX_ERROR_RANGE,         /* a coordinate or a mass is too large or too small (see "limits") */
     GX_ERROR_INDEX,         /* an index points outside its array */
     GX_ERROR_EMPTY,         /* no elements, no nodes or no triangles */
     GX_ERROR_INVERTED,      /* an element has negative volume */
@@ -106,7 +107,8 @@ typedef enum gx_result {
     GX_ERROR_DIVERGED,      /* a time step found no finite state of lower energy */
     GX_ERROR_FREE,          /* a static balance is asked of a piece that nothing holds */
     GX_ERROR_FORMAT,        /* not a saved body, or one of another version or another kind of machine */
-    GX_ERROR_DAMAGED        /* a saved body is cut short, or what it says cannot be */
+    GX_ERROR_DAMAGED,       /* a saved body is cut short, or what it says cannot be */
+    GX_ERROR_STALE          /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
 } gx_result;
 
 /* What went wrong, and where: index of the node, element, triangle or copy concerned. */
@@ -349,6 +351,8 @@ GXFEM_API void gxb_complex_rollback(gxb_complex *complex);
    arrays from being moved many times. Nothing else depends on it. */
 GXFEM_API void gxb_complex_reserve(gxb_complex *complex, uint32_t times);
 
+/* What gxb_complex_add_point would refuse a point with. Errors: NOT_FINITE, RANGE. */
+GXFEM_API gx_result gxb_complex_check_point(const gxb_complex *complex, const double x[3]);
 /* Errors: NOT_FINITE, RANGE, MEMORY, LIMIT. */
 GXFEM_API gx_result gxb_complex_add_point(gxb_complex *complex, const double x[3], uint32_t *point);
 /* Sets plane and orientation from the points. GX_ERROR_FLAT: the triangle has no area. */
@@ -1819,6 +1823,19 @@ static gx_result gxbp_frame_exact(const gxb_complex *cx, const double x[3], gxbp
         if (v->c[k].sign != 0 && (gxbp_num_mantissa(&v->c[k], &power), power + 52 > 128)) return GX_ERROR_RANGE;
     }
     return GX_OK;
+}
+
+/* Most points need no arithmetic. */
+GXFEM_API gx_result gxb_complex_check_point(const gxb_complex *cx, const double x[3]) {
+    gxbp_vec v;
+    int k, plain = 1;
+    for (k = 0; k < 3; k++) {
+        const int bits = gxbp_exponent_bits(x[k]), e = bits - 1023 + cx->shift;
+        const int origin = gxbp_exponent_bits(cx->origin[k]) - 1023 + cx->shift;
+        plain = plain && (gxbp_is_zero(x[k]) || (bits > 0 && e >= -128 && e < 127)) && origin < 127;
+        if (!gxbp_is_finite(x[k])) return GX_ERROR_NOT_FINITE;
+    }
+    return plain ? GX_OK : gxbp_frame_exact(cx, x, &v);
 }
 
 GXFEM_API gx_result gxb_complex_add_point(gxb_complex *cx, const double x[3], uint32_t *point) {
@@ -5117,15 +5134,20 @@ static gx_result gxbp_scale(const gxb_boolean *b, const double x[3], double y[3]
     return GX_OK;
 }
 
-/* Scenes of ordinary size keep their scale. */
-static void gxbp_choose_scale(gxb_boolean *b, const gxb_operand *operand) {
+#define GXBP_LARGEST 200    /* the first operand's largest coordinate is 2^+-this: cubes of 2^128 times it are finite */
+
+/* Scenes of ordinary size keep their scale. *bad: the vertex with the largest coordinate, where that is out of range */
+static gx_result gxbp_choose_scale(gxb_boolean *b, const gxb_operand *operand, size_t *bad) {
     int largest = -2000;
-    size_t i;
+    size_t i, at = 0;
     for (i = 0; i < 3 * operand->vertex_count; i++) {
         const int e = gxbp_exponent_bits(operand->vertices[i]) - 1023;
-        if (e > largest && e < 1024 && e > -1023) largest = e;
+        if (e > largest && e < 1024 && !gxbp_is_zero(operand->vertices[i])) { largest = e; at = i / 3; }
     }
-    b->cx.shift = largest < -60 || largest > 60 ? (largest == -2000 ? 0 : -largest) : 0;
+    b->cx.shift = largest == -2000 || (largest >= -60 && largest <= 60) ? 0 : -largest;
+    if (largest == -2000 || (largest >= -GXBP_LARGEST && largest <= GXBP_LARGEST)) return GX_OK;
+    *bad = at;
+    return GX_ERROR_RANGE;
 }
 
 static uint32_t gxbp_input_point(gxb_boolean *b, const double y[3], uint32_t operand, uint32_t index) {
@@ -7981,7 +8003,7 @@ static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
 static double gxbp_unscale(const gxb_boolean *b, double y) {
     const int e = gxbp_exponent_bits(y);
     if (e - b->cx.shift <= 0 || e == 0) return 0;
-    return e - b->cx.shift >= 0x7ff ? y : gxbp_double(gxbp_bits(y) - ((uint64_t)(int64_t)b->cx.shift << 52));
+    return gxbp_double(gxbp_bits(y) - ((uint64_t)(int64_t)b->cx.shift << 52));
 }
 
 #define GXBP_VERTEX_ERROR 1e-10     /* relative to the largest coordinate: a larger ball gives way to exact coordinates */
@@ -8947,11 +8969,10 @@ static GXBP_RARE void gxbp_find_sides(gxb_boolean *b) {
     b->out_side_count = (uint32_t)size;
 }
 
-/* From the frame's units; volumes beyond doubles become 0 or infinite. */
+/* From the frame's units */
 static void gxbp_scale_volumes(gxb_boolean *b) {
-    const int shift = b->cx.shift > 300 ? 300 : b->cx.shift < -300 ? -300 : b->cx.shift;
     uint32_t i;
-    for (i = 0; i < b->out_volume_count; i++) b->out_volumes[i] *= gxbp_power(-3 * shift);
+    for (i = 0; i < b->out_volume_count; i++) b->out_volumes[i] *= gxbp_power(-3 * b->cx.shift);
 }
 
 /* parent: sets of triangles; work: room for a word per triangle; corners: see gxbp_count_corners */
@@ -9325,8 +9346,8 @@ GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, 
     sources = b->source_count; pieces = b->piece_count; points = b->vertex_count; boxes = b->box_count; bounds = b->bound_count;
     b->result = GX_OK;
     b->over_limit = 0;
-    if (b->operand_count == 0) gxbp_choose_scale(b, operand);
-    result = gxbp_append_operand(b, operand, &bad);
+    result = b->operand_count == 0 ? gxbp_choose_scale(b, operand, &bad) : GX_OK;
+    if (result == GX_OK) result = gxbp_append_operand(b, operand, &bad);
     if (result == GX_ERROR_MEMORY && b->over_limit) result = GX_ERROR_LIMIT;
     if (result != GX_OK) {
         b->source_count = sources;
@@ -9457,6 +9478,7 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics 
 #undef GXBP_LOOSE
 #undef GXBP_BARE
 #undef GXBP_ARENA
+#undef GXBP_LARGEST
 #undef GXBP_ROOM
 #undef GXBP_REMOVED
 #undef GXBP_RIM

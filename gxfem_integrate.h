@@ -86,7 +86,7 @@ typedef enum gx_result {
     GX_ERROR_ARGUMENT,      /* a required pointer is NULL, a required field is zero or senseless */
     GX_ERROR_MEMORY,        /* the allocator returned NULL */
     GX_ERROR_NOT_FINITE,    /* a coordinate or parameter is NaN or infinite */
-    GX_ERROR_RANGE,         /* a coordinate is too large or too small beside the others (see "limits") */
+    GX_ERROR_RANGE,         /* a coordinate or a mass is too large or too small (see "limits") */
     GX_ERROR_INDEX,         /* an index points outside its array */
     GX_ERROR_EMPTY,         /* no elements, no nodes or no triangles */
     GX_ERROR_INVERTED,      /* an element has negative volume */
@@ -97,7 +97,8 @@ typedef enum gx_result {
     GX_ERROR_DIVERGED,      /* a time step found no finite state of lower energy */
     GX_ERROR_FREE,          /* a static balance is asked of a piece that nothing holds */
     GX_ERROR_FORMAT,        /* not a saved body, or one of another version or another kind of machine */
-    GX_ERROR_DAMAGED        /* a saved body is cut short, or what it says cannot be */
+    GX_ERROR_DAMAGED,       /* a saved body is cut short, or what it says cannot be */
+    GX_ERROR_STALE          /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
 } gx_result;
 
 /* What went wrong, and where: index of the node, element, triangle or copy concerned. */

@@ -14,7 +14,7 @@
  *             1.0 / 6, {17, 8, 8, 8, 17, 8, 8, 17, 8, 17}, 0, 0};                   // m3; kg
  *         gxs_material material = {GXS_STABLE_NEO_HOOKEAN, 1e6, 0.4, 0, NULL, NULL};
  *         double displacement[12] = {0}, velocity[12] = {0};
- *         gxs_model model = {4, NULL, &element, 1, &material, 1, NULL, 0, NULL, 0};
+ *         gxs_model model = {4, NULL, &element, 1, &material, 1, NULL, 0, NULL, 0, 0};
  *         gxs_step_desc step = {0};
  *         gxs_solver *solver = NULL;
  *         gx_result result = gxs_solver_create(NULL, &solver);
@@ -110,7 +110,7 @@ typedef enum gx_result {
     GX_ERROR_ARGUMENT,      /* a required pointer is NULL, a required field is zero or senseless */
     GX_ERROR_MEMORY,        /* the allocator returned NULL */
     GX_ERROR_NOT_FINITE,    /* a coordinate or parameter is NaN or infinite */
-    GX_ERROR_RANGE,         /* a coordinate is too large or too small beside the others (see "limits") */
+    GX_ERROR_RANGE,         /* a coordinate or a mass is too large or too small (see "limits") */
     GX_ERROR_INDEX,         /* an index points outside its array */
     GX_ERROR_EMPTY,         /* no elements, no nodes or no triangles */
     GX_ERROR_INVERTED,      /* an element has negative volume */
@@ -121,7 +121,8 @@ typedef enum gx_result {
     GX_ERROR_DIVERGED,      /* a time step found no finite state of lower energy */
     GX_ERROR_FREE,          /* a static balance is asked of a piece that nothing holds */
     GX_ERROR_FORMAT,        /* not a saved body, or one of another version or another kind of machine */
-    GX_ERROR_DAMAGED        /* a saved body is cut short, or what it says cannot be */
+    GX_ERROR_DAMAGED,       /* a saved body is cut short, or what it says cannot be */
+    GX_ERROR_STALE          /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
 } gx_result;
 
 /* What went wrong, and where: index of the node, element, triangle or copy concerned. */
@@ -209,6 +210,9 @@ typedef struct gxs_model {
     uint32_t lumped_mass;       /* not 0: row sums of the mass; 0: as given (consistent) */
     const gxs_constraint *constraints; /* constraint_count, each of another copy */
     size_t constraint_count;
+    uint64_t epoch;             /* names this numbering of copies. Springs, contact points, forces and targets of a step
+                                   say which one they are of: those of another are GX_ERROR_STALE. 0 everywhere is fine
+                                   as long as copies keep their numbers */
 } gxs_model;
 
 /* What a cut has changed of a model. Borrowed for the time of a call. */
@@ -223,6 +227,7 @@ typedef struct gxs_change {
     size_t element_count;
     const gxs_constraint *constraints; /* constraint_count: all that there are from now on */
     size_t constraint_count;
+    uint64_t epoch;             /* of the numbering from now on */
 } gxs_change;
 
 typedef enum gxs_preconditioner {
@@ -259,6 +264,7 @@ typedef struct gxs_point {
     uint32_t copy[4];           /* below copy_count, also where the weight is 0 */
     double weight[4];           /* of the shape functions there, 1 in sum */
     double position[3];         /* at rest, m */
+    uint64_t epoch;             /* of the numbering that copy is of: the model's, else GX_ERROR_STALE */
 } gxs_point;
 
 /* Pulls a point to a target: a hand, a haptic tool, an elastic tether. Energy stiffness/2 |x - target|^2 */
@@ -290,6 +296,8 @@ typedef struct gxs_step_desc {
     const double *previous_displacement, *previous_velocity; /* copy_count x 3, of the step before; BDF2 only; NULL: none */
     double previous_dt;         /* s, of the step before; BDF2 only */
     const double *targets;      /* copy_count x 3: displacement of held copies at the step's end, others not read; NULL: they stay */
+    uint64_t epoch;             /* of the numbering of forces and targets: the model's, else GX_ERROR_STALE; read where
+                                   one of them is given */
     double mass_damping;        /* Rayleigh's alpha, 1/s, 0 or more: force -alpha M v */
     uint32_t newton_iterations; /* at most so many; 0: 1 */
     double newton_tolerance;    /* stop at this residual (see gxs_step_report); 0: 1e-8, far below what one iteration leaves of motion */
@@ -353,8 +361,9 @@ typedef struct gxs_solver gxs_solver;
 
 /* >>functions
  * Those that return a gx_result check all they read: GX_ERROR_ARGUMENT, _EMPTY, _LIMIT, _RANGE, _INDEX, _NOT_FINITE (index: of
- * the element, material, constraint, copy, spring, point or plane), _INVERTED (weight below 0; index: element). Outputs are
- * written on GX_OK only. failure and report may be NULL. */
+ * the element, material, constraint, copy, spring, point or plane), _INVERTED (weight below 0; index: element). Steps
+ * also GX_ERROR_STALE (copies of another epoch than the model's; index: spring or point, SIZE_MAX: forces or targets).
+ * Outputs are written on GX_OK only. failure and report may be NULL. */
 
 /* Advances displacement (m) and velocity (m/s), both copy_count x 3 of the model set last and not overlapping, by one step.
  * Held copies keep their displacement or go to their target, copies without an element of any weight or mass stay where they are;
@@ -995,6 +1004,7 @@ typedef struct gxsp_system {
     gxsp_pool coarse;       /* levels of the multigrid below the model, and what their numbers are made with */
     const gx_jobs *jobs;
     size_t n, element_count, block_count, slot_count, range_count;
+    uint64_t epoch;         /* of the copies' numbering */
     size_t copy_room, slot_room; /* of arrays over copies and slots, from the first update on */
     unsigned char *shared;  /* shared_room bytes: slots, search, product and scaled; while coarse numbers are made, what they are made with */
     size_t shared_room;
@@ -4431,6 +4441,7 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
     gxsp_owned *mark;
     size_t bad;
     system->n = model->copy_count;
+    system->epoch = model->epoch;
     system->element_count = model->element_count;
     system->range_count = (system->n + GXSP_RANGE - 1) / GXSP_RANGE;
     system->lumped_mass = model->lumped_mass != 0;
@@ -6639,6 +6650,7 @@ static void gxsp_move_copies(gxsp_renewal *update)
         gxsp_move(change, moved, count, system->levels[0].weight, sizeof *system->levels[0].weight, kept);
     }
     system->n = change->copy_count;
+    system->epoch = change->epoch;
     system->levels[0].n = (uint32_t)change->copy_count;
     system->range_count = (system->n + GXSP_RANGE - 1) / GXSP_RANGE;
 }
@@ -8851,6 +8863,21 @@ static gx_result gxsp_check_step(const gxs_step_desc *step, gx_failure *failure)
     return GX_OK;
 }
 
+/* Is all that names copies of one numbering? */
+static gx_result gxsp_check_epochs(const gxs_step_desc *step, uint64_t epoch, gx_failure *failure)
+{
+    size_t i;
+    if ((step->forces || step->targets) && step->epoch != epoch)
+        return gxsp_fail(failure, GX_ERROR_STALE, SIZE_MAX);
+    for (i = 0; i < step->spring_count; ++i)
+        if (step->springs[i].point.epoch != epoch)
+            return gxsp_fail(failure, GX_ERROR_STALE, i);
+    for (i = 0; i < step->point_count; ++i)
+        if (step->points[i].epoch != epoch)
+            return gxsp_fail(failure, GX_ERROR_STALE, i);
+    return GX_OK;
+}
+
 static gx_result gxsp_check_point(const gxs_point *point, size_t n, size_t index, gx_failure *failure)
 {
     int k;
@@ -9198,7 +9225,9 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     if (!solver || !solver->system)
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     n = solver->system->n;
-    if ((result = gxsp_check_step(step, failure)) != GX_OK || (result = gxsp_check_points(step, n, failure)) != GX_OK ||
+    if ((result = gxsp_check_step(step, failure)) != GX_OK ||
+        (result = gxsp_check_epochs(step, solver->system->epoch, failure)) != GX_OK ||
+        (result = gxsp_check_points(step, n, failure)) != GX_OK ||
         (result = gxsp_check_vectors(step, n, displacement, velocity, solver->system->held, failure)) != GX_OK)
         return result;
     if (!gxsp_reserve_terms(solver, step->spring_count + step->point_count))

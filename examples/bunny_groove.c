@@ -120,6 +120,7 @@ int main(int argc, char **argv)
         scene_advance(&s, &second, 0.45, 0.5);
         targets = turn_table(&s);
         s.step.targets = targets;
+        s.step.epoch = s.view.epoch;
         scene_step(&s);
         free(targets);
     }

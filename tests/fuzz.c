@@ -312,7 +312,8 @@ static gx_result check_coordinate(double x, int shift)
     return e - 1 + shift < -128 || e - 1 + shift > 127 ? GX_ERROR_RANGE : GX_OK;
 }
 
-/* A scene's scale is that of its first operand where it is outside of 2^-60 ... 2^60. */
+/* A scene's scale is that of its first operand where it is outside of 2^-60 ... 2^60; beyond 2^-200 ... 2^200 there is
+   none. */
 static int scale_of(const case_operand *first)
 {
     int largest = -2000, e;
@@ -331,6 +332,7 @@ static gx_result expected(const case_operand *c, int shift)
     uint32_t name[CASE_VERTICES], i, j;
     if (c->mesh.vertices == 0 || c->mesh.triangles == 0) return GX_ERROR_EMPTY;
     for (i = 0; i < 3 * c->mesh.triangles; ++i) if ((&c->mesh.t[0][0])[i] >= c->mesh.vertices) return GX_ERROR_INDEX;
+    if (shift < -200 || shift > 200) return GX_ERROR_RANGE;
     for (i = 0; i < c->mesh.vertices; ++i)
         for (j = 0; j < 3; ++j) {
             const gx_result result = check_coordinate(c->mesh.x[i][j], shift);

@@ -1386,6 +1386,14 @@ START_TEST(solidified_sheets) {
         ck_assert_double_eq_tol(thick[2], 0.125, 1e-15);
         x[10] = NAN;
         ck_assert_int_eq(gx_surface_solidify(&sheet, ldexp(0.125, e), vertices, &nv, triangles, &nt, NULL), GX_ERROR_NOT_FINITE);
+        for (i = 0; i < 24; ++i) {                          /* what is beyond doubles is refused, on either side */
+            x[i % 12] = i % 3 < 2 ? corners[i % 12] : i < 12 ? DBL_MAX : -DBL_MAX;
+            if (i % 12 < 11) continue;
+            ck_assert_int_eq(gx_surface_solidify(&sheet, 1, vertices, &nv, triangles, &nt, NULL), GX_OK);
+            ck_assert_int_eq(gx_surface_solidify(&sheet, 1e300, vertices, &nv, triangles, &nt, NULL), GX_ERROR_RANGE);
+        }
+        for (i = 0; i < 9; ++i) x[i] = (2 * corners[i] - 1) * DBL_MAX;
+        ck_assert_int_eq(gx_surface_solidify(&sheet, 1, vertices, &nv, triangles, &nt, NULL), GX_ERROR_RANGE);
     }
 }
 END_TEST
@@ -1835,7 +1843,8 @@ START_TEST(forces_act_on_copies) {
     forces = (double *)oracle_memory(NULL, 3 * view.copy_count, sizeof *forces);
     memset(forces, 0, 3 * view.copy_count * sizeof *forces);
     forces[3 * (view.copy_count - 1)] = 10;
-    step.forces = forces; step.cg_tolerance = 1e-10; step.newton_iterations = 20; step.newton_tolerance = 1e-10;
+    step.forces = forces; step.epoch = view.epoch;
+    step.cg_tolerance = 1e-10; step.newton_iterations = 20; step.newton_tolerance = 1e-10;
     ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
     momentum(body, p);
     ck_assert_double_eq_tol(p[0], 10 * step.dt, 1e-7);
@@ -2261,7 +2270,7 @@ START_TEST(volumes_that_round_below_zero) {
         for (k = 0; k < 3; ++k) x[9 + k] = x[k] + s * (x[3 + k] - x[k]) + t * (x[6 + k] - x[k]);
         if (gxb_orient3d(x, x + 3, x + 6, x + 9) >= 0) continue;
         d.positions = x;
-        if (gxi_tet_volume(x) < 0) {
+        if (gxi_tet_volume(x) <= 0) {
             EXPECT_NO_BODY(&d, GX_ERROR_FLAT, 0);
             ++found;
         }
@@ -2273,6 +2282,123 @@ START_TEST(volumes_that_round_below_zero) {
         gx_body_destroy(body);
     }
     ck_assert(found > 0 || FLT_EVAL_METHOD != 0);
+    wl_free(&w);
+}
+END_TEST
+
+/* ---- ranges ---- */
+
+static int is_number(double x) { return isfinite(x) && (fabs(x) >= DBL_MIN || x == 0); }
+
+/* All that a body says of itself in numbers */
+static void expect_numbers(gx_body *body) {
+    gx_view view = view_of(body);
+    gx_motion motions[4];
+    gx_skin skin;
+    float *drawn;
+    size_t i, k;
+    ck_assert(is_number(view.volume) && view.volume > 0 && is_number(view.mass) && view.mass > 0);
+    for (i = 0; i < view.cell_count; ++i) ck_assert(is_number(view.cell_volume[i]) && view.cell_volume[i] > 0);
+    ck_assert_int_eq(gx_body_motion(body, motions, 4), GX_OK);
+    for (i = 0; i < view.fragment_count; ++i) {
+        ck_assert(is_number(view.fragment_volume[i]) && is_number(view.fragment_mass[i]));
+        for (k = 0; k < 3; ++k) ck_assert(is_number(view.fragment_center[3 * i + k]));
+        for (k = 0; k < 6; ++k)
+            ck_assert(is_number(view.fragment_inertia[6 * i + k]) && is_number(motions[i].inertia[k]));
+        ck_assert(view.fragment_inertia[6 * i] > 0 && motions[i].mass > 0 && is_number(motions[i].mass));
+    }
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin), GX_OK);
+    drawn = (float *)oracle_memory(NULL, 3 * skin.vertex_count, sizeof *drawn);
+    ck_assert_int_eq(gx_body_skin_vertices(body, NULL, drawn, NULL), GX_OK);
+    for (i = 0; i < 3 * skin.vertex_count; ++i) {
+        const double x = skin.vertex_rest[i];
+        ck_assert(isfinite(drawn[i]) && fabs((double)drawn[i] - x) <= FLT_EPSILON * fabs(x));
+    }
+    free(drawn);
+}
+
+/* A body within the limits is all numbers, as light and as heavy as it may be; others are refused. */
+START_TEST(bodies_are_numbers_or_refused) {
+    static const int powers[17] = { -1022, -600, -400, -350, -101, -100, -50, 0, 50, 99, 100, 101, 333, 345, 400, 700,
+                                    1000 };
+    const int e = powers[_i];
+    workload w = corner_tet();
+    gx_body_desc desc;
+    size_t i;
+    int heavy;
+    add_axis_plane(&w, 2, 0.25);
+    for (i = 0; i < 3 * w.node_count; ++i) w.positions[i] = ldexp(w.positions[i], e);
+    for (i = 0; i < 3 * w.surfaces[0].vertex_count; ++i)
+        w.surfaces[0].vertices[i] = ldexp(w.surfaces[0].vertices[i], e);
+    desc = desc_of(&w);
+    if (e > 100) EXPECT_NO_BODY(&desc, GX_ERROR_RANGE, 1);
+    if (e < -100) EXPECT_NO_BODY(&desc, GX_ERROR_RANGE, SIZE_MAX);
+    for (heavy = -1; heavy <= 1 && e >= -100 && e <= 100; ++heavy) {
+        gx_body *body = NULL;
+        desc.density = heavy == 0 ? 1000 : 6 * ldexp(1, 700 * heavy - 3 * e);
+        ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+        expect_numbers(body);
+        cut_by(body, &w, 0, 1);
+        ck_assert_uint_eq(view_of(body).fragment_count, 2);
+        expect_numbers(body);
+        gx_body_destroy(body);
+        if (heavy == 0) continue;
+        desc.density *= heavy > 0 ? 1.001 : 0.999;
+        EXPECT_NO_BODY(&desc, GX_ERROR_RANGE, 0);
+    }
+    wl_free(&w);
+}
+END_TEST
+
+/* The node that is too far out, the element that is too heavy or too light */
+START_TEST(what_is_out_of_range_is_named) {
+    workload w = grid(2, 1, 1, 5);
+    gx_material materials[3];
+    uint32_t of[10] = { 0 };
+    gx_body_desc desc = desc_of(&w);
+    int i;
+    memset(materials, 0, sizeof materials);
+    for (i = 0; i < 3; ++i) {
+        materials[i].elastic.young = 1;
+        materials[i].density = i == 0 ? 1 : i == 1 ? 1e300 : 1e-300;
+    }
+    desc.materials = materials; desc.material_count = 3; desc.element_materials = of;
+    for (i = 1; i < 3; ++i) {
+        of[7] = (uint32_t)i; EXPECT_NO_BODY(&desc, GX_ERROR_RANGE, 7);
+        of[7] = 0;
+    }
+    wl_free(&w);
+    w = corner_tet();
+    desc = desc_of(&w);
+    for (i = 0; i < 3; ++i) {
+        double *const x = w.positions + 3 * (i + 1) + i;
+        *x = 0x1.000001p100; EXPECT_NO_BODY(&desc, GX_ERROR_RANGE, (size_t)i + 1);
+        *x = 1;
+    }
+    wl_free(&w);
+}
+END_TEST
+
+/* A displacement or velocity that a motion can't be told from: of all that may overflow each by itself. */
+START_TEST(motions_are_numbers_or_refused) {
+    static const double far[3] = { 1e200, 1e308, 1e140 };
+    workload w = corner_tet();
+    gx_body *body = body_of(&w);
+    gx_view view = view_of(body);
+    gx_motion motion;
+    int i;
+    for (i = 0; i < 3; ++i) {
+        view.displacement[3 * i] = far[i];
+        ck_assert_int_eq(gx_body_motion(body, &motion, 1), i == 2 ? GX_OK : GX_ERROR_RANGE);
+        view.displacement[3 * i] = 0;
+        view.velocity[3 * i + 1] = -far[i];
+        ck_assert_int_eq(gx_body_motion(body, &motion, 1), i == 2 ? GX_OK : GX_ERROR_RANGE);
+        view.velocity[3 * i + 1] = i == 1 ? NAN : INFINITY;
+        ck_assert_int_eq(gx_body_motion(body, &motion, 1), GX_ERROR_NOT_FINITE);
+        view.velocity[3 * i + 1] = 0;
+        ck_assert_int_eq(gx_body_motion(body, &motion, 1), GX_OK);
+    }
+    gx_body_destroy(body);
     wl_free(&w);
 }
 END_TEST
@@ -2352,6 +2478,17 @@ START_TEST(bad_cuts) {
     memcpy(x, v, sizeof x); x[3] = 1e60; EXPECT_NO_CUT(GX_ERROR_RANGE, 1, 1);
     memcpy(x, v, sizeof x); x[3] = 1e200; EXPECT_NO_CUT(GX_ERROR_RANGE, 1, 1);
     memcpy(x, v, sizeof x); x[3] = DBL_MAX; x[7] = DBL_MAX; EXPECT_NO_CUT(GX_ERROR_RANGE, 1, 1);
+    for (i = 0; i < 9; ++i) x[i] = v[i] + 40;                       /* far away, and such that no triangle uses */
+    s[1].triangle_count = 1;
+    x[2] = 1e-60; EXPECT_NO_CUT(GX_ERROR_RANGE, 0, 1);
+    x[2] = 40;
+    for (i = 0; i < 9; ++i) x[i] *= 1e60;
+    EXPECT_NO_CUT(GX_ERROR_RANGE, 0, 1);
+    for (i = 0; i < 9; ++i) x[i] = 1e300 + 1e299 * v[i];
+    EXPECT_NO_CUT(GX_ERROR_RANGE, 0, 1);
+    for (i = 0; i < 9; ++i) x[i] = v[i] + 40;
+    s[1].triangles = t; t[0] = t[1] = t[2] = 0;
+    x[8] = -1e300; EXPECT_NO_CUT(GX_ERROR_RANGE, 2, 1);
     s[1] = good; s[1].texture = texture;
     for (i = 0; i < 6; ++i) {
         texture[i] = (float)bad[i % 3]; EXPECT_NO_CUT(GX_ERROR_NOT_FINITE, i / 2, 1);
@@ -2473,6 +2610,9 @@ int main(void) {
     tcase_add_test(tests, skin_tells_cut_faces);
     tcase_add_test(tests, bad_bodies);
     tcase_add_test(tests, volumes_that_round_below_zero);
+    tcase_add_loop_test(tests, bodies_are_numbers_or_refused, 0, 17);
+    tcase_add_test(tests, what_is_out_of_range_is_named);
+    tcase_add_test(tests, motions_are_numbers_or_refused);
     tcase_add_test(tests, unused_nodes);
     tcase_add_test(tests, bad_cuts);
     tcase_add_test(tests, bad_arguments_elsewhere);

@@ -1074,6 +1074,14 @@ START_TEST(bad_input_is_named)
     attempt_with(a.springs[2].stiffness = -1, GX_ERROR_ARGUMENT, 2);
     attempt_with(a.step.springs = NULL, GX_ERROR_ARGUMENT, SIZE_MAX);
     attempt_with(a.points[2].copy[1] = 12, GX_ERROR_INDEX, 2);
+    attempt_with(a.springs[1].point.epoch = 1, GX_ERROR_STALE, 1);
+    attempt_with(a.points[2].epoch = 1; a.points[2].copy[1] = 12, GX_ERROR_STALE, 2);
+    attempt_with(a.s.model.epoch = 1; a.springs[0].point.epoch = 1, GX_ERROR_STALE, 1);
+    attempt_with(a.s.model.epoch = 1; a.step.spring_count = 0, GX_ERROR_STALE, 0);
+    attempt_with(a.step.epoch = 1, GX_OK, SIZE_MAX);
+    attempt_with(a.step.epoch = 1; a.step.forces = a.s.forces, GX_ERROR_STALE, SIZE_MAX);
+    attempt_with(a.step.epoch = 1; a.step.targets = a.s.forces, GX_ERROR_STALE, SIZE_MAX);
+    attempt_with(a.step.forces = a.step.targets = a.s.forces, GX_OK, SIZE_MAX);
     attempt_with(a.points[2].weight[0] = nan, GX_ERROR_NOT_FINITE, 2);
     attempt_with(a.points[0].position[2] = nan, GX_ERROR_NOT_FINITE, 0);
     attempt_with(a.step.points = NULL, GX_ERROR_ARGUMENT, SIZE_MAX);

@@ -208,7 +208,7 @@ END_TEST
 
 /* The frame of the complex shifts and scales: given coordinates must come back as they were. */
 START_TEST(far_and_small_bodies) {
-    static const double sizes[6] = { 1, 1e-6, 1e6, 1e-300, 3e-308, 1e60 }, offsets[6] = { 1e8, 0.3, 12345678.9, 0, 0, 0 };
+    static const double sizes[6] = { 1, 1e-6, 1e6, 1e-30, 4e-31, 6e29 }, offsets[6] = { 1e8, 0.3, 12345678.9, 0, 0, 0 };
     size_t i, k;
     workload w = grid(2, 2, 1, 5);
     gx_body *body, *copy;
@@ -328,6 +328,7 @@ START_TEST(steps_go_on) {
     step.dt = 0.01; step.gravity[0] = 3; step.gravity[2] = -9.81; step.integrator = integrators[variant];
     if (variant == 3) step.dt = 0;
     for (k = 0; k < 4; ++k) { spring.point.copy[k] = point.copy[k] = (uint32_t)(200 + k); spring.point.weight[k] = point.weight[k] = 0.25; }
+    spring.point.epoch = point.epoch = view_of(body).epoch;
     spring.target[0] = 2; spring.target[1] = 1; spring.target[2] = 4; spring.stiffness = 1e3;
     plane.normal[2] = 1; plane.offset = -1; plane.stiffness = 1e4; plane.friction = 0.3;
     step.springs = &spring; step.spring_count = 1;
@@ -352,6 +353,8 @@ START_TEST(steps_go_on) {
     cut_by(body, &w, 1, 1);
     cut_by(copy, &w, 1, 1);
     step.spring_count = 1; spring.stiffness = 1e6;
+    spring.point.epoch = point.epoch = view_of(body).epoch;
+    ck_assert(view_of(copy).epoch == point.epoch);
     step.integrator = GXS_BDF1; step.dt = 0.01;
     expect_same_steps(body, copy, &step, 2, seed);
     ck_assert_int_eq(user.calls > 0, custom_material);
@@ -460,6 +463,45 @@ START_TEST(restoring_from_strangers) {
     expect_same_steps(a, c, &step, 2, 1);
     gx_body_destroy(a); gx_body_destroy(b); gx_body_destroy(c);
     wl_free(&w); wl_free(&v);
+}
+END_TEST
+
+/* Bodies that have been cut alike have the same epoch, however they came to be; others have others. */
+START_TEST(epochs_go_with_the_copies) {
+    workload w = grid(2, 2, 1, 5);
+    gx_body *body = body_of(&w), *twin, *clone;
+    uint64_t first, second;
+    int by_bytes;
+    add_axis_plane(&w, 0, 0.7); add_axis_plane(&w, 1, 1.3); add_axis_plane(&w, 0, 40);
+    for (by_bytes = 0; by_bytes < 2; ++by_bytes) {
+        twin = twin_of(body, by_bytes);
+        ck_assert(view_of(twin).epoch == 0);
+        gx_body_destroy(twin);
+    }
+    cut_by(body, &w, 0, 1);
+    cut_by(body, &w, 2, 1);                     /* the epoch is not that of the last cut */
+    first = view_of(body).epoch;
+    ck_assert(first != 0 && first != body->past);
+    clone = clone_of(body);
+    for (by_bytes = 0; by_bytes < 2; ++by_bytes) {
+        twin = twin_of(body, by_bytes);
+        ck_assert(view_of(twin).epoch == first);
+        cut_by(twin, &w, 1, 1);
+        cut_by(body, &w, 1, 1);
+        second = view_of(body).epoch;
+        ck_assert(second != first && view_of(twin).epoch == second);
+        ck_assert_int_eq(gx_body_restore(twin, clone), GX_OK);
+        ck_assert(view_of(twin).epoch == first);
+        cut_by(twin, &w, 0, 1);                 /* nothing new: the same place again */
+        ck_assert(view_of(twin).epoch == first);
+        gx_body_destroy(twin);
+        ck_assert_int_eq(gx_body_restore(body, clone), GX_OK);
+    }
+    twin = body_of(&w);
+    cut_by(twin, &w, 1, 1);
+    ck_assert(view_of(twin).copy_count != 0 && view_of(twin).epoch != first);
+    gx_body_destroy(twin); gx_body_destroy(clone); gx_body_destroy(body);
+    wl_free(&w);
 }
 END_TEST
 
@@ -659,6 +701,32 @@ START_TEST(damage_is_seen) {
 }
 END_TEST
 
+/* What no body can be is damage: a density with which elements are too heavy, a cell larger than its element. */
+START_TEST(damage_beyond_the_range) {
+    workload w;
+    gx_body *body = small_body(&w, SEEN), *other = NULL;
+    bytes b = saved(body);
+    double right[3], wrong[3] = { 1e300, 1e308, 1e308 };
+    size_t i, k, found[3] = { 0, 0, 0 };
+    right[0] = body->materials[0].density; right[1] = body->cells[0].volume; right[2] = body->cells[0].mass[0];
+    for (i = HEAD_BYTES; i + 8 <= b.size; ++i)
+        for (k = 0; k < 3; ++k) {
+            if (memcmp(b.data + i, &right[k], 8) != 0) continue;
+            memcpy(b.data + i, &wrong[k], 8);
+            seal(b);
+            ck_assert_int_eq(gx_body_load(b.data, b.size, NULL, &other, NULL), GX_ERROR_DAMAGED);
+            memcpy(b.data + i, &right[k], 8);
+            found[k]++;
+        }
+    for (k = 0; k < 3; ++k) ck_assert_uint_eq(found[k], 1);
+    seal(b);
+    ck_assert(try_bytes(b, &w, "as it was", 0));
+    free(b.data);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 /* A bit of every byte flipped, each time another, and the checksum made right: an error, or a body that can be used. */
 START_TEST(hostile_bits) {
     workload w;
@@ -745,10 +813,12 @@ int main(void) {
     tcase_add_test(tests, sleepers_sleep_on);
     tcase_add_loop_test(tests, rollback, 0, 4);
     tcase_add_test(tests, restoring_from_strangers);
+    tcase_add_test(tests, epochs_go_with_the_copies);
     tcase_add_test(tests, copies_stand_alone);
     tcase_add_test(tests, arguments);
     tcase_add_test(tests, foreign_bytes);
     tcase_add_test(tests, damage_is_seen);
+    tcase_add_test(tests, damage_beyond_the_range);
     tcase_add_loop_test(tests, hostile_bits, 0, 4);
     ADD_SOME(tests, hostile_words, 16);
     tcase_add_loop_test(tests, hostile_mixtures, 0, 4);

@@ -1,5 +1,6 @@
-/* test_steps.c - what a body adds to the solver's steps: materials by element, the model for other solvers, BDF2's history and rest
-   times through cuts, copies without support, points of the skin. The steps themselves: test_solve.c, test_forces.c. */
+/* test_steps.c - what a body adds to the solver's steps: materials by element, the model for other solvers, BDF2's
+   history and rest times through cuts, copies without support, points of the skin, copies named as before a cut. The
+   steps themselves: test_solve.c, test_forces.c. */
 #ifndef GXFEM_LINKED
 #define GXFEM_IMPLEMENTATION
 #endif
@@ -595,6 +596,7 @@ START_TEST(springs_pull_points_of_the_skin) {
     memcpy(spring.point.copy, skin.vertex_copies, sizeof spring.point.copy);
     memcpy(spring.point.weight, skin.vertex_weights, sizeof spring.point.weight);
     memcpy(spring.point.position, x, sizeof spring.point.position);
+    spring.point.epoch = skin.epoch;
     memcpy(spring.target, x, sizeof spring.target);
     spring.target[1] += 1;
     spring.stiffness = 1000;
@@ -619,6 +621,125 @@ START_TEST(springs_pull_points_of_the_skin) {
 }
 END_TEST
 
+/* ---- copies by the numbering of before a cut ---- */
+
+/* Something of each kind that names copies; kind: which is given to the step */
+enum { BY_SPRING, BY_POINT, BY_FORCES, BY_TARGETS, KINDS_OF_NAMES };
+typedef struct naming { gxs_spring springs[2]; gxs_point points[3]; double *vector; gx_step_desc step; } naming;
+
+/* All are made anew, of the first vertices of the skin. */
+static void name_copies(naming *n, gx_body *body, int kind) {
+    gx_view view = view_of(body);
+    gx_skin skin;
+    int i;
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin), GX_OK);
+    free(n->vector);
+    memset(n, 0, sizeof *n);
+    n->vector = (double *)calloc(3 * view.copy_count + 1, sizeof *n->vector);
+    n->step = step_of(0.01, -9.81);
+    for (i = 0; i < 3; ++i) {
+        n->points[i].epoch = skin.epoch;
+        if (skin.vertex_count == 0) continue;
+        memcpy(n->points[i].copy, skin.vertex_copies + 4 * i, sizeof n->points[i].copy);
+        memcpy(n->points[i].weight, skin.vertex_weights + 4 * i, sizeof n->points[i].weight);
+    }
+    for (i = 0; i < 2; ++i) { n->springs[i].point = n->points[i]; n->springs[i].stiffness = 1; }
+    if (kind == BY_SPRING) { n->step.springs = n->springs; n->step.spring_count = 2; }
+    if (kind == BY_POINT) { n->step.points = n->points; n->step.point_count = 3; }
+    if (kind == BY_FORCES) n->step.forces = n->vector;
+    if (kind == BY_TARGETS) n->step.targets = n->vector;
+    if (kind == BY_FORCES || kind == BY_TARGETS) n->step.epoch = view.epoch;
+}
+
+/* The first ones are told the present epoch, so that the last one is to blame. */
+static void expect_stale(naming *n, gx_body *body, int kind) {
+    const uint64_t epoch = view_of(body).epoch, state = gx_body_state_hash(body);
+    gx_failure failure;
+    n->springs[0].point.epoch = n->points[0].epoch = n->points[1].epoch = epoch;
+    ck_assert_int_eq(gx_body_step(body, &n->step, NULL, &failure), GX_ERROR_STALE);
+    ck_assert_int_eq(failure.result, GX_ERROR_STALE);
+    ck_assert_uint_eq(failure.index, kind == BY_SPRING ? 1 : kind == BY_POINT ? 2 : SIZE_MAX);
+    ck_assert(gx_body_state_hash(body) == state);
+}
+
+/* A cut that leaves all copies leaves what names them. One that creates or removes some makes it stale until it is made
+   anew; a body of which nothing is left tells it as well. With support_below the solver is given each model anew, else
+   it may be told of changes. */
+START_TEST(names_of_copies_go_stale) {
+    const int kind = _i % KINDS_OF_NAMES;
+    workload w = grid(2, 2, 2, 5);
+    gx_body_desc desc = desc_of(&w);
+    gx_body *body = NULL;
+    gx_cut_report report;
+    wl_surface *part;
+    naming n;
+    uint64_t epoch;
+    size_t i;
+    const double corners[3][3] = { { 0.2, 0.2, 0.3 }, { 0.3, 0.2, 0.3 }, { 0.2, 0.3, 0.3 } };
+    memset(&n, 0, sizeof n);
+    desc.support_below = _i / KINDS_OF_NAMES ? 1e-3 : 0;
+    ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+    hold_above(body, 2 - 1e-9);
+    add_axis_plane(&w, 0, 40);
+    part = wl_add_surface(&w, 0);
+    for (i = 0; i < 3; ++i) wl_add_vertex(part, corners[i]);
+    wl_add_triangle(part, 0, 1, 2);
+    add_axis_plane(&w, 0, 1.3);
+    add_box(&w, 1, -1, -1, -1, 1.1, 3, 3);
+    add_box(&w, 1, -1, -1, -1, 3, 3, 3);
+    ck_assert(view_of(body).epoch == 0);
+    name_copies(&n, body, kind);
+    for (i = 0; i < 5; ++i) {
+        advance(body, &n.step, 1);
+        epoch = view_of(body).epoch;
+        report = cut_by(body, &w, i, 1);
+        ck_assert((report.created_copies > 0) == (i == 2) && (report.removed_copies > 0) == (i > 2));
+        ck_assert(report.touched_elements > 0 || i == 0);
+        ck_assert((view_of(body).epoch == epoch) == (i < 2));
+        if (i < 2) continue;
+        ck_assert(view_of(body).epoch != 0);
+        expect_stale(&n, body, kind);
+        name_copies(&n, body, kind);
+    }
+    ck_assert_uint_eq(view_of(body).copy_count, 0);
+    advance(body, &n.step, 1);
+    free(n.vector);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* View, skin, hit and model of a cut body; a spring at the hit is fine. */
+START_TEST(whoever_tells_copies_tells_the_epoch) {
+    static const double origin[3] = { 0.3, 0.4, -5 }, up[3] = { 0, 0, 1 };
+    workload w = grid(2, 2, 2, 5);
+    gx_body *body;
+    gx_step_desc step = step_of(0.01, 0);
+    gxs_spring spring;
+    gxs_model model;
+    gx_view view;
+    gx_skin skin;
+    gx_hit hit;
+    add_axis_plane(&w, 1, 0.8);
+    body = cut_at_once(&w);
+    view = view_of(body);
+    ck_assert(view.epoch != 0);
+    ck_assert_int_eq(gx_body_skin(body, NULL, &skin), GX_OK);
+    ck_assert_int_eq(gx_body_pick(body, origin, up, &hit), GX_OK);
+    ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
+    ck_assert(skin.epoch == view.epoch && hit.epoch == view.epoch && model.epoch == view.epoch);
+    memset(&spring, 0, sizeof spring);
+    memcpy(spring.point.copy, hit.copies, sizeof hit.copies);
+    memcpy(spring.point.weight, hit.weights, sizeof hit.weights);
+    spring.point.epoch = hit.epoch;
+    spring.stiffness = 1;
+    step.springs = &spring; step.spring_count = 1;
+    advance(body, &step, 1);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("steps");
     TCase *tests = tcase_create("steps");
@@ -637,6 +758,8 @@ int main(void) {
     tcase_add_loop_test(tests, flung_slivers_stop_no_step, 0, 4);
     tcase_add_loop_test(tests, the_step_of_falling_asleep_sees_what_is_written, 0, 20);
     tcase_add_test(tests, springs_pull_points_of_the_skin);
+    tcase_add_loop_test(tests, names_of_copies_go_stale, 0, 2 * KINDS_OF_NAMES);
+    tcase_add_test(tests, whoever_tells_copies_tells_the_epoch);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }

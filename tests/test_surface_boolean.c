@@ -1385,6 +1385,70 @@ static gx_result refusal(const gxb_operand *o, size_t *index) {
     return result;
 }
 
+/* What two boxes have in common: the same at any size, or the first operand is refused. */
+START_TEST(sizes_are_numbers_or_refused) {
+    static const int powers[17] = { -1022, -1000, -400, -310, -201, -200, -100, -61, 0, 61, 100, 200, 201, 310, 400,
+                                    1000, 1020 };
+    const int e = powers[_i], fits = e >= -200 && e <= 200;
+    const double size = ldexp(1, e);
+    double corner[3][3];
+    gxb_operand o[2];
+    gxb_boolean *b = NULL;
+    gxb_boolean_result r;
+    gxb_components c;
+    wl_surface s[2];
+    size_t i;
+    int k;
+    for (i = 0; i < 3; ++i) for (k = 0; k < 3; ++k) corner[i][k] = i == 0 ? 0 : i == 1 ? size : ldexp(1.5 + k / 8.0, e);
+    memset(s, 0, sizeof s);
+    wl_add_aligned_box(&s[0], corner[0], corner[1]);
+    for (k = 0; k < 3; ++k) corner[0][k] = 0.75 * size;
+    wl_add_aligned_box(&s[1], corner[0], corner[2]);
+    ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
+    for (i = 0; i < 2; ++i) {
+        o[i] = operand_of(&s[i], i == 0 ? GXB_UNION : GXB_INTERSECTION);
+        ck_assert_int_eq(gxb_boolean_add(b, &o[i], NULL), fits ? GX_OK : GX_ERROR_RANGE);
+    }
+    if (fits) {
+        ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
+        ck_assert_int_eq(gxb_boolean_components(b, &c), GX_OK);
+        ck_assert_uint_eq(c.count, 1);
+        ck_assert_double_eq_tol(c.total_volume, ldexp(1, 3 * e - 6), ldexp(1, 3 * e - 50));
+        for (i = 0; i < 3 * r.vertex_count; ++i) ck_assert(fabs(r.vertices[i] / size - 0.875) <= 0.125 + 1e-10);
+    }
+    gxb_boolean_destroy(b);
+    surface_free(&s[0]); surface_free(&s[1]);
+}
+END_TEST
+
+/* The largest that there may be: a second operand 2^128 times as large as the first one */
+START_TEST(largest_volumes_are_numbers) {
+    static const double zero[3] = { 0, 0, 0 };
+    const double one[3] = { 0x1p200, 0x1p200, 0x1p200 }, more[3] = { 0x1p327, 0x1p327, 0x1p327 };
+    gxb_operand o[2];
+    gxb_boolean *b = NULL;
+    gxb_boolean_result r;
+    gxb_components c;
+    wl_surface s[2];
+    size_t i;
+    memset(s, 0, sizeof s);
+    wl_add_aligned_box(&s[0], zero, one);
+    wl_add_aligned_box(&s[1], zero, more);
+    ck_assert_int_eq(gxb_boolean_create(NULL, &b), GX_OK);
+    for (i = 0; i < 2; ++i) {
+        o[i] = operand_of(&s[i], GXB_UNION);
+        ck_assert_int_eq(gxb_boolean_add(b, &o[i], NULL), GX_OK);
+    }
+    ck_assert_int_eq(gxb_boolean_evaluate(b, &r), GX_OK);
+    ck_assert_int_eq(gxb_boolean_components(b, &c), GX_OK);
+    ck_assert(c.total_volume == 0x1p981);
+    for (i = 0; i < 3 * s[1].vertex_count; ++i) s[1].vertices[i] *= 2;
+    ck_assert_int_eq(gxb_boolean_add(b, &o[1], NULL), GX_ERROR_RANGE);
+    gxb_boolean_destroy(b);
+    surface_free(&s[0]); surface_free(&s[1]);
+}
+END_TEST
+
 START_TEST(bad_input_is_refused) {
     static const double zero[3] = { 0, 0, 0 }, one[3] = { 1, 1, 1 };
     wl_surface s;
@@ -1408,7 +1472,7 @@ START_TEST(bad_input_is_refused) {
     o = good; o.vertex_count = 7; ck_assert_int_eq(refusal(&o, &i), GX_ERROR_INDEX);
     kept = s.vertices[10];
     s.vertices[10] = INFINITY; ck_assert_int_eq(refusal(&good, &i), GX_ERROR_NOT_FINITE); ck_assert_uint_eq(i, 3);
-    s.vertices[10] = 1e300; ck_assert_int_eq(refusal(&good, &i), GX_ERROR_RANGE);
+    s.vertices[10] = 1e300; ck_assert_int_eq(refusal(&good, &i), GX_ERROR_RANGE); ck_assert_uint_eq(i, 3);
     s.vertices[10] = kept;
     ck_assert_int_eq(gxb_boolean_create(NULL, NULL), GX_ERROR_ARGUMENT);
     memset(&desc, 0, sizeof desc);
@@ -1478,6 +1542,8 @@ int main(void) {
     tcase_add_test(tests, rounded_sticks_are_mended);
     tcase_add_test(tests, memory_runs_out);
     tcase_add_test(tests, memory_limit);
+    tcase_add_loop_test(tests, sizes_are_numbers_or_refused, 0, 17);
+    tcase_add_test(tests, largest_volumes_are_numbers);
     tcase_add_test(tests, bad_input_is_refused);
     suite_add_tcase(suite, tests);
     result = run_suite(suite);

@@ -452,7 +452,7 @@ START_TEST(bad_changes_are_named) {
     gxs_change change;
     gxs_step_desc step;
     gx_failure failure;
-    double *u = (double *)calloc(6 * model.copy_count, sizeof *u);
+    double *u = (double *)calloc(9 * model.copy_count, sizeof *u);
     size_t i;
     for (i = 0; i < model.copy_count; ++i) origins[i] = 2 * (uint32_t)i;
     memset(&change, 0, sizeof change); memset(&step, 0, sizeof step);
@@ -484,6 +484,19 @@ START_TEST(bad_changes_are_named) {
     ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);
     origins[7] = 6; EXPECT(GX_ERROR_LIMIT, SIZE_MAX); origins[7] = 14;              /* two copies that are one */
 #undef EXPECT
+    ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);    /* steps say of which numbering they are */
+    step.forces = u + 6 * model.copy_count;
+    ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * model.copy_count, NULL, NULL), GX_OK);
+    change.epoch = 9;
+    ck_assert_int_eq(gxs_solver_update(solver, &change, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * model.copy_count, NULL, NULL), GX_ERROR_STALE);
+    step.epoch = 9;
+    ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * model.copy_count, NULL, NULL), GX_OK);
+    model.epoch = 3;
+    ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * model.copy_count, NULL, NULL), GX_ERROR_STALE);
+    step.epoch = 3;
+    ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * model.copy_count, NULL, NULL), GX_OK);
     gxs_solver_destroy(solver);
     free(origins); free(u);
     gx_body_destroy(body);
