@@ -34,6 +34,8 @@ help:
 	@echo "make fuzz        random cases against what must be true of any; SEED=, CASES=, SECONDS= (0: no limit)"
 	@echo "make flags       exact predicates against rationals under each compiler and set of flags"
 	@echo "make hashes      the same cuts give the same topology under each compiler and set of flags"
+	@echo "make check-wasm  cuts, Booleans and random cases as WebAssembly, run by node, beside the native build; installs clang's"
+	@echo "                 parts for it and node where they are missing"
 	@echo "make bench       all benches anew (half an hour), then charts; BENCH=--small: minutes, and docs/ stays as it is"
 	@echo "make charts      docs/charts/, docs/BENCH.md, tables in README.md from what benches have measured; runs those"
 	@echo "                 that have not; installs gnuplot"
@@ -152,6 +154,10 @@ flags:
 hashes:
 	@JOBS=$(JOBS) sh tests/hashes.sh $(BUILD)/hashes
 
+check-wasm:
+	@sh tests/install.sh wasm
+	@JOBS=$(JOBS) sh tests/wasm.sh $(BUILD)/wasm
+
 # ---- benches. Only what they print goes to stdout: it is CSV. BENCH=--small: smaller ones, whose tables and charts have a folder of their own
 
 benches = quadrature stepping space table2 conditioning failure scaling kernel smallest solver violent accuracy drift frames skin
@@ -245,4 +251,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo scenes pictures bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(tests:%=run-%) sanitize sanitize-scenes compile lint fuzz flags hashes $(benches:%=bench-%) bench charts check-all clean
+.PHONY: help examples demo scenes pictures bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(tests:%=run-%) sanitize sanitize-scenes compile lint fuzz flags hashes check-wasm $(benches:%=bench-%) bench charts check-all clean

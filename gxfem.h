@@ -71,11 +71,20 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* With -msimd128 clang before 16 moves a load that fills a vector behind stores to the same address: the headers'
+   functions are compiled without vectors then (GXFEM_SCALAR), and not inlined where there are some. */
+#if defined(__wasm_simd128__) && defined(__clang__) && __clang_major__ < 16
+#define GXFEM_SCALAR
+#define GXFEM_APART __attribute__((noinline))
+#else
+#define GXFEM_APART
+#endif
+
 /* GXFEM_STATIC makes every function private to the file that includes the headers */
 #ifdef GXFEM_STATIC
-#define GXFEM_API static inline
+#define GXFEM_API GXFEM_APART static inline
 #else
-#define GXFEM_API extern
+#define GXFEM_API GXFEM_APART extern
 #endif
 
 /* What a function that can fail returns. On anything but GX_OK its inputs are as they were. */
@@ -96,7 +105,8 @@ typedef enum gx_result {
     GX_ERROR_FREE,          /* a static balance is asked of a piece that nothing holds */
     GX_ERROR_FORMAT,        /* not a saved body, or one of another version or another kind of machine */
     GX_ERROR_DAMAGED,       /* a saved body is cut short, or what it says cannot be */
-    GX_ERROR_STALE          /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
+    GX_ERROR_STALE,         /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
+    GX_ERROR_CONFIGURATION  /* arithmetic is not what exact predicates need: see >>numbers in gxfem_boolean.h */
 } gx_result;
 
 /* What went wrong, and where: index of the node, element, triangle or copy concerned. */
@@ -157,7 +167,7 @@ typedef struct gx_body_desc {
 } gx_body_desc;
 /* Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE (index: the node that is too far out, the element that is too
    heavy or too light, SIZE_MAX where the body is too small), INVERTED, FLAT (exactly, or in doubles), OVERLAP (index:
-   the node, element or material), LIMIT, MEMORY. The arrays of the description are copied. */
+   the node, element or material), LIMIT, MEMORY, CONFIGURATION. The arrays of the description are copied. */
 GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **body, gx_failure *failure /* or NULL */);
 GXFEM_API void gx_body_destroy(gx_body *body);      /* NULL is fine */
 
@@ -366,13 +376,15 @@ GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, s
 /* Whatever the bytes are, they do no harm: a checksum tells damage by accident, and all that a body relies on is checked. Of desc
    (NULL: all zero) allocator, clock and jobs are read, and, for each saved material of kind GXS_CUSTOM, energy and user of the
    material with its number. Errors: ARGUMENT (index: a material without its energy), MEMORY, LIMIT (also: one edge, face or element
-   divided 10,000 times in a row), FORMAT, DAMAGED (index: bytes read until then). */
+   divided 10,000 times in a row), FORMAT, DAMAGED (index: bytes read until then), CONFIGURATION. */
 GXFEM_API gx_result gx_body_load(const void *memory, size_t size, const gx_body_desc *desc, gx_body **body, gx_failure *failure /* or NULL */);
-/* Another body of the same state, with the same allocator, clock, jobs and energies. Errors: ARGUMENT, MEMORY, LIMIT. */
+/* Another body of the same state, with the same allocator, clock, jobs and energies. Errors: ARGUMENT, MEMORY, LIMIT,
+   CONFIGURATION. */
 GXFEM_API gx_result gx_body_clone(gx_body *body, gx_body **clone);
 /* The body becomes what from is now: to go back to a clone, or to bring a clone up to date. Where neither has been cut since they were
    the same, only the state is copied, and neither cells nor the solver's model are made anew; else arrays of the view end, as by a
-   cut. Allocator, clock and jobs stay the body's own. Errors: ARGUMENT, MEMORY, LIMIT; the body is then as it was. */
+   cut. Allocator, clock and jobs stay the body's own. Errors: ARGUMENT, MEMORY, LIMIT, CONFIGURATION; the body is then
+   as it was. */
 GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from);
 
 #ifdef __cplusplus
@@ -391,6 +403,9 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from);
 
 #ifdef __cplusplus
 extern "C" {
+#endif
+#ifdef GXFEM_SCALAR
+#pragma clang attribute push(__attribute__((target("no-simd128"))), apply_to = function)
 #endif
 
 #if defined(__GNUC__)
@@ -4510,7 +4525,8 @@ static void gxp_create_again(gxb_stream *s, const gx_body_desc *given, gxp_mesh 
     desc.texture = mesh->textured ? mesh->texture : NULL;
     desc.support_below = mesh->support_below;
     result = gx_body_create(&desc, body, NULL);
-    gxp_require(s, result == GX_OK || result == GX_ERROR_MEMORY || result == GX_ERROR_LIMIT ? result : GX_ERROR_DAMAGED);
+    gxp_require(s, result == GX_OK || result == GX_ERROR_MEMORY || result == GX_ERROR_LIMIT ||
+                   result == GX_ERROR_CONFIGURATION ? result : GX_ERROR_DAMAGED);
 }
 
 static void gxp_load_mesh(gxb_stream *s, const gx_body_desc *desc, gx_body **body, size_t *index) {
@@ -6172,6 +6188,7 @@ GXFEM_API const char *gx_result_text(gx_result result) {
     case GX_ERROR_FORMAT: return "not a saved body, or one of another version or kind of machine";
     case GX_ERROR_DAMAGED: return "a saved body is damaged";
     case GX_ERROR_STALE: return "copies are named as before a cut";
+    case GX_ERROR_CONFIGURATION: return "floating-point arithmetic is not what exact predicates need";
     }
     return "unknown result";
 }
@@ -6198,7 +6215,9 @@ GXFEM_API const char *gx_result_text(gx_result result) {
 #undef GXP_BYTE_ORDER
 #undef GXP_BESIDE_WALL
 #undef GXP_ACROSS_WALL
-
+#ifdef GXFEM_SCALAR
+#pragma clang attribute pop
+#endif
 #ifdef __cplusplus
 }
 #endif

@@ -59,7 +59,9 @@
  * What it does not do: round a result so that no triangle ever remains turned over (gxb_boolean_set_mend does what can be done).
  *
  * Guarantees and limits
- *     - Signs are exact for finite coordinates under every flag, rounding mode and flush-to-zero (but x87 set to 24 bits).
+ *     - Signs are exact for finite coordinates under every flag, rounding mode and flush-to-zero. What they ask of
+ *       doubles (>>numbers) is tried out wherever a complex or a Boolean is created: GX_ERROR_CONFIGURATION where it
+ *       does not hold, as on x87 set to 24 bits.
  *     - Coordinates in a complex: scaled by a power of two to the mesh's box they are 0 or of magnitude 2^-128 to 2^128, and after
  *       subtraction of its origin at most 2^128, else GX_ERROR_RANGE. orient2d, orient3d, incircle and insphere take any
  *       finite double. Coordinates of a Boolean are 0 or of magnitude 2^-128 to 2^128, beside its first operand's
@@ -83,11 +85,20 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* With -msimd128 clang before 16 moves a load that fills a vector behind stores to the same address: the headers'
+   functions are compiled without vectors then (GXFEM_SCALAR), and not inlined where there are some. */
+#if defined(__wasm_simd128__) && defined(__clang__) && __clang_major__ < 16
+#define GXFEM_SCALAR
+#define GXFEM_APART __attribute__((noinline))
+#else
+#define GXFEM_APART
+#endif
+
 /* GXFEM_STATIC makes every function private to the file that includes the headers */
 #ifdef GXFEM_STATIC
-#define GXFEM_API static inline
+#define GXFEM_API GXFEM_APART static inline
 #else
-#define GXFEM_API extern
+#define GXFEM_API GXFEM_APART extern
 #endif
 
 /* What a function that can fail returns. On anything but GX_OK its inputs are as they were. */
@@ -108,7 +119,8 @@ typedef enum gx_result {
     GX_ERROR_FREE,          /* a static balance is asked of a piece that nothing holds */
     GX_ERROR_FORMAT,        /* not a saved body, or one of another version or another kind of machine */
     GX_ERROR_DAMAGED,       /* a saved body is cut short, or what it says cannot be */
-    GX_ERROR_STALE          /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
+    GX_ERROR_STALE,         /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
+    GX_ERROR_CONFIGURATION  /* arithmetic is not what exact predicates need: see >>numbers in gxfem_boolean.h */
 } gx_result;
 
 /* What went wrong, and where: index of the node, element, triangle or copy concerned. */
@@ -139,6 +151,11 @@ extern "C" {
 #endif
 
 /* >>numbers ---------------------------------------------------------------------------------------------------------- */
+
+/* Exact predicates ask of a double that it is one of IEEE 754: 53 digits, 11 bits of exponent. They ask of an operation
+   that its relative error is at most 2^-52. They ask of the compiler that it does not see through gxbp_fence, and does
+   not read a number after it is overwritten. GX_ERROR_CONFIGURATION: a trial at creation (15 to 120 ns) found that this
+   does not hold. Predicates of coordinates need no object, and do not try. */
 
 #if defined(__SIZEOF_INT128__) && !defined(GXB_LIMB32)
 typedef uint64_t gxb_limb;
@@ -337,7 +354,8 @@ typedef struct gxb_complex {        /* what is used most comes first: its addres
 } gxb_complex;
 
 /* The complex of a mesh. Errors: ARGUMENT, EMPTY, INDEX (element), NOT_FINITE and RANGE (node), INVERTED and FLAT (element), OVERLAP
-   (element: one of its faces is shared by more than two elements, or by two on the same side), LIMIT, MEMORY. */
+   (element: one of its faces is shared by more than two elements, or by two on the same side), LIMIT, MEMORY,
+   CONFIGURATION. */
 GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator *allocator, gxb_complex **complex,
                                        gx_failure *failure);
 GXFEM_API void gxb_complex_destroy(gxb_complex *complex);
@@ -486,7 +504,7 @@ typedef struct gxb_statistics {
     uint64_t allocations; size_t peak_bytes;
 } gxb_statistics;
 
-/* desc may be NULL. Errors: ARGUMENT, LIMIT, MEMORY. */
+/* desc may be NULL. Errors: ARGUMENT, LIMIT, MEMORY, CONFIGURATION. */
 GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean **boolean);
 GXFEM_API void gxb_boolean_destroy(gxb_boolean *boolean);
 /* How results are read off the arrangement from now on; all are of the same exact surface. Errors: ARGUMENT. */
@@ -525,6 +543,9 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *boolean, gxb_stati
 
 #ifdef __cplusplus
 extern "C" {
+#endif
+#ifdef GXFEM_SCALAR
+#pragma clang attribute push(__attribute__((target("no-simd128"))), apply_to = function)
 #endif
 
 /* What is called rarely is small rather than fast; what is called from many places, and each stage, is there once and by itself: compilers take longer
@@ -924,12 +945,22 @@ static GXBP_COLD void gxbp_exact_three_planes(gxb_num point[4], const gxb_num a[
 #define GXBP_TINY gxbp_power(-600)
 #define GXBP_NO_BALL gxbp_power(GXBP_NO_BALL_EXPONENT)
 
+/* The constraint of a register that holds a double and no more bits. x87 has no such registers, cl no such assembly. */
+#if !defined(__GNUC__) && !defined(__clang__)
+#elif defined(__SSE2_MATH__)
+#define GXBP_REGISTER "+x"
+#elif defined(__wasm__)
+#define GXBP_REGISTER "+r"
+#elif defined(__aarch64__) || (defined(__arm__) && defined(__ARM_FP) && (__ARM_FP & 8))
+#define GXBP_REGISTER "+w"
+#elif defined(__s390x__) || defined(__powerpc64__) || (defined(__riscv_flen) && __riscv_flen >= 64)
+#define GXBP_REGISTER "+f"
+#endif
+
+/* x, in a way that the compiler can not see through: no code where there is such a register. */
 static double gxbp_fence(double x) {
-#if defined(__GNUC__) && defined(__SSE2_MATH__)
-    __asm__("" : "+x"(x));      /* no code; the compiler can not see through it, and registers hold doubles only */
-    return x;
-#elif defined(__GNUC__) && defined(__aarch64__)
-    __asm__("" : "+w"(x));
+#ifdef GXBP_REGISTER
+    __asm__("" : GXBP_REGISTER(x));
     return x;
 #else
     volatile double v = x;
@@ -1481,6 +1512,107 @@ GXFEM_API int gxb_orient_in_plane(const gxb_point *a, const gxb_point *b, const 
         gxbp_point_exact(&x[0], a); gxbp_point_exact(&x[1], b); gxbp_point_exact(&x[2], c);
         return gxbp_orient_exact(x[0].c, x[1].c, x[2].c, i, j) * sign;
     }
+}
+
+/* --- what all this rests on, tried out ---
+ *
+ * A processor's mode or a compiler that breaks it makes GX_ERROR_CONFIGURATION of every creation. The compiler knows
+ * none of the numbers. Results are exact, and so the same under every flag and in every mode that is allowed; where one
+ * is not, each rounding of it passes.
+ */
+
+/* Distance of two numbers of one sign in units of the last place */
+static uint64_t gxbp_units_between(double a, double b) {
+    const uint64_t x = gxbp_bits(a), y = gxbp_bits(b);
+    return x > y ? x - y : y - x;
+}
+
+/* 2^e where the compiler knows nothing of it; zero is 0 */
+static double gxbp_hidden_power(int e, int zero) { return gxbp_power(e + zero); }
+
+/* 53 bits, the range that bounds take, and sums whose errors are computed as written */
+static int gxbp_operations_hold(int zero) {
+    const uint64_t one_bits = (uint64_t)1023 << 52;
+    const double one = gxbp_hidden_power(0, zero), unit = gxbp_hidden_power(-52, zero);
+    const double half = gxbp_hidden_power(-26, zero), small = gxbp_hidden_power(-60, zero);
+    const double large = gxbp_hidden_power(500, zero), tiny = gxbp_fence(GXBP_TINY);
+    const double above = gxbp_fence(one + half), below = gxbp_fence(one - half), product = gxbp_fence(above * below);
+    const double sum = gxbp_fence(one + small), part = gxbp_fence(sum - one);
+    const double low = gxbp_fence(gxbp_fence(one - gxbp_fence(sum - part)) + gxbp_fence(small - part));
+    const double lost = gxbp_fence(low - small);
+    if (sizeof(double) != 8 || gxbp_bits(gxbp_fence(1)) != one_bits || gxbp_bits(one) != one_bits) return 0;
+    if (gxbp_bits(gxbp_fence(one + unit)) != one_bits + 1 || gxbp_bits(product) != one_bits - 2) return 0;
+    if (gxbp_units_between(gxbp_fence(product / above), below) > 4) return 0;   /* may be by a reciprocal */
+    if (gxbp_exponent(gxbp_fence(tiny * large)) != -100 || gxbp_exponent(gxbp_fence(large * large)) != 1000) return 0;
+    if (gxbp_is_zero(lost)) return gxbp_bits(sum) == one_bits;
+    return gxbp_bits(sum) == one_bits + 1 && gxbp_bits(lost) == gxbp_bits(-unit);   /* rounded up */
+}
+
+/* Reads a number, then overwrites it: what clang 14 and 15 get wrong in vectors for WebAssembly (GXFEM_SCALAR) */
+static GXBP_APART void gxbp_in_place(double x[3]) {
+    const double a = 2 * x[2] + 1, b = 3 * x[2] + 5;
+    x[2] = 7 * x[2];
+    x[0] = a; x[1] = b;
+}
+
+/* A small slanted triangle, edges 2^-20 (3, 1, -2) and 2^-20 (-1, 4, 1), at (1, 1, 1); x[3] lies in its plane, x[4] and
+   x[5] on a line through that. All differences and products are exact. */
+typedef struct gxbp_trial { double x[6][3], step, unit; gxb_plane plane; } gxbp_trial;
+
+/* Sides of a point of the plane, and of those a unit in the last place below and above. Multiplied out (n.x - n.b) the
+   sums would not tell them apart. */
+static int gxbp_sides_hold(gxbp_trial *t, int zero) {
+    static const signed char at[6][3] = { {0, 0, 0}, {3, 1, -2}, {-1, 4, 1},
+                                          {9, -10, -7}, {18, -11, 6}, {-18, -7, -46} };
+    const double one = gxbp_hidden_power(0, zero);
+    gxb_ball ball;
+    int i, k;
+    t->step = gxbp_hidden_power(-20, zero); t->unit = gxbp_hidden_power(-52, zero);
+    for (i = 0; i < 6; i++) for (k = 0; k < 3; k++) t->x[i][k] = gxbp_fence(one + t->step * at[i][k]);
+    gxb_plane_init(&t->plane, t->x[0], t->x[1], t->x[2]);
+    for (i = -1; i <= 1; i++) {
+        double value, bound;
+        gxbp_ball_explicit(&ball, t->x[3]);
+        ball.x[2] = gxbp_fence(ball.x[2] + t->unit * i);
+        value = gxbp_filter_side(&ball, &t->plane.filter, &bound);
+        if (gxbp_filter_sign(value, bound) != i) return 0;
+    }
+    return 1;
+}
+
+/* Is the point where the plane meets the line, and the planes of x and y, near x[3] and within its error? */
+static int gxbp_meetings_hold(const gxbp_trial *t) {
+    const gxb_plane_filter *planes[3];
+    gxb_plane upright[2];
+    gxb_ball end[2], met[2];
+    int i, k;
+    for (i = 0; i < 2; i++) {
+        double side[2][3];
+        for (k = 0; k < 3; k++) side[0][k] = side[1][k] = t->x[3][k];
+        side[0][1 - i] = gxbp_fence(side[0][1 - i] + t->step);
+        side[1][2] = gxbp_fence(side[1][2] + t->step);
+        gxb_plane_init(&upright[i], t->x[3], side[0], side[1]);
+        planes[i + 1] = &upright[i].filter;
+        gxbp_ball_explicit(&end[i], t->x[4 + i]);
+    }
+    planes[0] = &t->plane.filter;
+    gxbp_filter_line_plane(&met[0], &end[0], &end[1], &t->plane.filter);
+    gxbp_filter_three_planes(&met[1], planes);
+    for (i = 0; i < 2; i++) for (k = 0; k < 3; k++)
+        if (!(met[i].error < 256 * t->unit) || gxbp_abs(gxbp_fence(met[i].x[k] - t->x[3][k])) > met[i].error) return 0;
+    return 1;
+}
+
+/* meetings: those too, which take twice as long as all else */
+static GXBP_APART int gxbp_arithmetic_holds(int meetings) {
+    const volatile int hidden = 0;
+    const int zero = hidden;
+    gxbp_trial t;
+    double x[3] = {0, 0, 0};
+    x[2] = gxbp_hidden_power(0, zero);
+    gxbp_in_place(x);
+    return x[0] == 3 && x[1] == 8 && x[2] == 7 && gxbp_operations_hold(zero) && gxbp_sides_hold(&t, zero) &&
+           (!meetings || gxbp_meetings_hold(&t));
 }
 
 /* Order of two finite doubles by their bits: flush-to-zero can't make them equal. */
@@ -2365,6 +2497,7 @@ GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator 
     if (mesh->node_count == 0 || mesh->element_count == 0) return gxbp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
     if (mesh->positions == NULL || mesh->elements == NULL) return gxbp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     if (mesh->element_count > INT32_MAX / 8 || mesh->element_count > SIZE_MAX / 256 || mesh->node_count > INT32_MAX) return gxbp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
+    if (!gxbp_arithmetic_holds(1)) return gxbp_fail(failure, GX_ERROR_CONFIGURATION, SIZE_MAX);
     cx = (gxb_complex *)gxbp_allocate(allocator, sizeof *cx);
     if (cx == NULL) return gxbp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
     memset(cx, 0, sizeof *cx);
@@ -9271,6 +9404,7 @@ GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean
     if (desc == NULL) desc = &none;
     if (!gxbp_is_allocator(&desc->allocator)) return GX_ERROR_ARGUMENT;
     if (desc->memory_limit > 0 && desc->memory_limit < sizeof *b) return GX_ERROR_LIMIT;
+    if (!gxbp_arithmetic_holds(0)) return GX_ERROR_CONFIGURATION;
     arena = desc->memory_limit == 0 || desc->memory_limit >= 16 * GXBP_ARENA ? GXBP_ARENA : 0;
     b = (gxb_boolean *)gxbp_allocate(&desc->allocator, gxbp_whole_words(sizeof *b) + arena);
     if (b == NULL) return GX_ERROR_MEMORY;
@@ -9459,6 +9593,7 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics 
 #undef GXBP_COLD
 #undef GXBP_RARE
 #undef GXBP_APART
+#undef GXBP_REGISTER
 #undef GXBP_NO_BALL_EXPONENT
 #undef GXBP_U
 #undef GXBP_TINY
@@ -9487,7 +9622,9 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics 
 #undef GXBP_VOLUME_ERROR
 #undef GXBP_MEND_REACH
 #undef GXBP_MEND_STEPS
-
+#ifdef GXFEM_SCALAR
+#pragma clang attribute pop
+#endif
 #ifdef __cplusplus
 }
 #endif

@@ -73,11 +73,20 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* With -msimd128 clang before 16 moves a load that fills a vector behind stores to the same address: the headers'
+   functions are compiled without vectors then (GXFEM_SCALAR), and not inlined where there are some. */
+#if defined(__wasm_simd128__) && defined(__clang__) && __clang_major__ < 16
+#define GXFEM_SCALAR
+#define GXFEM_APART __attribute__((noinline))
+#else
+#define GXFEM_APART
+#endif
+
 /* GXFEM_STATIC makes every function private to the file that includes the headers */
 #ifdef GXFEM_STATIC
-#define GXFEM_API static inline
+#define GXFEM_API GXFEM_APART static inline
 #else
-#define GXFEM_API extern
+#define GXFEM_API GXFEM_APART extern
 #endif
 
 /* What a function that can fail returns. On anything but GX_OK its inputs are as they were. */
@@ -98,7 +107,8 @@ typedef enum gx_result {
     GX_ERROR_FREE,          /* a static balance is asked of a piece that nothing holds */
     GX_ERROR_FORMAT,        /* not a saved body, or one of another version or another kind of machine */
     GX_ERROR_DAMAGED,       /* a saved body is cut short, or what it says cannot be */
-    GX_ERROR_STALE          /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
+    GX_ERROR_STALE,         /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
+    GX_ERROR_CONFIGURATION  /* arithmetic is not what exact predicates need: see >>numbers in gxfem_boolean.h */
 } gx_result;
 
 /* What went wrong, and where: index of the node, element, triangle or copy concerned. */
@@ -293,6 +303,9 @@ GXFEM_API void gxi_face_mass_add(const double a[4], const double b[4], const dou
 
 #ifdef __cplusplus
 extern "C" {
+#endif
+#ifdef GXFEM_SCALAR
+#pragma clang attribute push(__attribute__((target("no-simd128"))), apply_to = function)
 #endif
 
 /* >>config */
@@ -1066,7 +1079,9 @@ GXFEM_API void gxi_face_mass_add(const double a[4], const double b[4], const dou
 #undef GXIP_LAMBDA_MAX
 #undef GXIP_FEW
 #undef GXIP_EXPONENT_MAX
-
+#ifdef GXFEM_SCALAR
+#pragma clang attribute pop
+#endif
 #ifdef __cplusplus
 }
 #endif

@@ -97,11 +97,20 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* With -msimd128 clang before 16 moves a load that fills a vector behind stores to the same address: the headers'
+   functions are compiled without vectors then (GXFEM_SCALAR), and not inlined where there are some. */
+#if defined(__wasm_simd128__) && defined(__clang__) && __clang_major__ < 16
+#define GXFEM_SCALAR
+#define GXFEM_APART __attribute__((noinline))
+#else
+#define GXFEM_APART
+#endif
+
 /* GXFEM_STATIC makes every function private to the file that includes the headers */
 #ifdef GXFEM_STATIC
-#define GXFEM_API static inline
+#define GXFEM_API GXFEM_APART static inline
 #else
-#define GXFEM_API extern
+#define GXFEM_API GXFEM_APART extern
 #endif
 
 /* What a function that can fail returns. On anything but GX_OK its inputs are as they were. */
@@ -122,7 +131,8 @@ typedef enum gx_result {
     GX_ERROR_FREE,          /* a static balance is asked of a piece that nothing holds */
     GX_ERROR_FORMAT,        /* not a saved body, or one of another version or another kind of machine */
     GX_ERROR_DAMAGED,       /* a saved body is cut short, or what it says cannot be */
-    GX_ERROR_STALE          /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
+    GX_ERROR_STALE,         /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
+    GX_ERROR_CONFIGURATION  /* arithmetic is not what exact predicates need: see >>numbers in gxfem_boolean.h */
 } gx_result;
 
 /* What went wrong, and where: index of the node, element, triangle or copy concerned. */
@@ -451,6 +461,9 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #ifdef __cplusplus
 extern "C" {
 #endif
+#ifdef GXFEM_SCALAR
+#pragma clang attribute push(__attribute__((target("no-simd128"))), apply_to = function)
+#endif
 
 /* elements side by side in a block: whole vectors on every instruction set up to 512 bits of doubles */
 #define GXSP_LANES 8
@@ -626,7 +639,7 @@ extern "C" {
 
 /* Vectors for what compilers do not make of loops: shuffles of nodes' vectors and blocks, many sums at a time. Shuffles of vectors longer than
  * there are they make number by number, hence eight only where there are eight. */
-#if defined(__GNUC__) && (defined(__clang__) || __GNUC__ >= 12)
+#if defined(__GNUC__) && (defined(__clang__) || __GNUC__ >= 12) && !defined(GXFEM_SCALAR)
 #define GXSP_SHUFFLES
 typedef __attribute__((vector_size(8), aligned(4), may_alias)) float gxsp_two;
 typedef __attribute__((vector_size(16), aligned(4), may_alias)) float gxsp_four;
@@ -9597,4 +9610,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_PARALLEL
 #undef GXSP_SUMS
 #undef GXSP_SHUFFLES
+#ifdef GXFEM_SCALAR
+#pragma clang attribute pop
+#endif
 #endif /* GXFEM_SOLVE_IMPLEMENTED */

@@ -1,5 +1,6 @@
 #!/bin/sh
-# flags.sh - the predicates against exact rationals under each compiler and set of flags.
+# flags.sh - the predicates against exact rationals under each compiler and set of flags; and what creating says of builds that would
+# mislead them (creation.c).
 #
 #     flags.sh [CASES] [PATTERN]...
 #
@@ -59,14 +60,43 @@ run_one() {
     if [ -n "${VERBOSE-}" ]; then cat "$out.log"; fi
 }
 
+# What creating says: run_creation NAME MODE FOLDER COMPILER FLAGS...; FOLDER has the headers, and creation.c in tests/
+run_creation() {
+    name=$1 mode=$2 folder=$3
+    shift 3
+    out=$work/$(echo "$name" | tr ' /' '__')
+    if ! builds "$out.probe" "$@"; then
+        echo "skipped" > "$out.state"
+        echo "skipped  $name (this compiler or system has no such mode)"
+    elif "$@" -w -o "$out" "$folder/tests/creation.c" -lm > "$out.log" 2>&1 && "$out" "$mode" >> "$out.log" 2>&1; then
+        echo "passed" > "$out.state"
+        echo "passed   $name: $mode"
+    else
+        echo "failed" > "$out.state"
+        echo "FAILED   $name"
+        cat "$out.log"
+    fi
+}
+
 count=0
-# configuration NAME ARGUMENTS COMPILER FLAGS...
-configuration() {
-    chosen "$1" || return 0
-    run_one "$@" &
+# Side by side, so many at a time: next FUNCTION NAME ARGUMENTS...
+next() {
+    chosen "$2" || return 0
+    "$@" &
     count=$((count + 1))
     if [ $((count % jobs)) -eq 0 ]; then wait; fi
 }
+
+# configuration NAME ARGUMENTS COMPILER FLAGS...
+configuration() { next run_one "$@"; }
+creation() { next run_creation "$@"; }
+
+# The headers with a fence that does nothing
+mkdir -p "$work/unfenced/tests"
+for header in "$here"/../gxfem*.h; do
+    sed '/__asm__("" : GXBP_REGISTER(x));/d' "$header" > "$work/unfenced/$(basename "$header")"
+done
+cp "$here/creation.c" "$work/unfenced/tests/"
 
 for compiler in gcc clang; do
     command -v $compiler > /dev/null 2>&1 || { echo "skipped  $compiler (not installed)"; continue; }
@@ -92,7 +122,12 @@ for compiler in gcc clang; do
         configuration "$compiler round $mode" "$mode" $compiler -std=c99 -O2
         configuration "$compiler round $mode fast-math flush" "$mode flush" $compiler -std=gnu99 -O3 -ffast-math
     done
+    creation "$compiler creating" made "$here/.." $compiler -std=c99 -O2
+    creation "$compiler creating fast-math" made "$here/.." $compiler -std=gnu99 -Ofast
+    creation "$compiler creating fast-math, no fence" refused "$work/unfenced" $compiler -std=gnu99 -Ofast
     if [ $compiler = gcc ]; then
+        creation "gcc creating x87 24 bits" single "$here/.." gcc -std=c99 -O2 -mfpmath=387
+        creation "gcc creating x87 24 bits m32" single "$here/.." gcc -std=c99 -O2 -m32 -mfpmath=387
         configuration "gcc x87 c99" "" gcc -std=c99 -O2 -mfpmath=387
         configuration "gcc x87 gnu99" "" gcc -std=gnu99 -O2 -mfpmath=387
         configuration "gcc x87 gnu99 O0" "" gcc -std=gnu99 -O0 -mfpmath=387

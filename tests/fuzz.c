@@ -26,12 +26,18 @@
 #include "fuzz_cases.h"
 
 #include <fcntl.h>
-#include <setjmp.h>
-#include <signal.h>
 #include <stdarg.h>
-#include <sys/time.h>
 #include <time.h>
 #include <unistd.h>
+#if defined(__wasi__)       /* has no signals, and no way back: the first failure ends the program */
+typedef int jmp_buf[1];
+#define setjmp(buffer) ((void)(buffer), 0)
+#define longjmp(buffer, value) exit(value)
+#else
+#include <setjmp.h>
+#include <signal.h>
+#include <sys/time.h>
+#endif
 
 /* ---- failures ---- */
 
@@ -973,6 +979,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
 #else
 
+#if defined(__wasi__)
+static void catch_signals(void) {}
+static void allow_a_case(void) {}
+#else
 static void on_signal(int number)
 {
     static const char crash[] = "fuzz: a crash\n", slow[] = "fuzz: a case without end\n";
@@ -987,6 +997,15 @@ static void allow_a_case(void)
     const struct itimerval limit = { { 0, 0 }, { CASE_SECONDS, 0 } };
     setitimer(ITIMER_VIRTUAL, &limit, NULL);
 }
+
+static void catch_signals(void)
+{
+    signal(SIGSEGV, on_signal);
+    signal(SIGABRT, on_signal);
+    signal(SIGFPE, on_signal);
+    signal(SIGVTALRM, on_signal);
+}
+#endif
 
 static int run_seeds(uint64_t seed, uint64_t cases, long seconds)
 {
@@ -1034,10 +1053,7 @@ int main(int argc, char **argv)
     int i, files = 0, failed = 0;
     at.folder = "build/fuzz";
     at.oracle = 100;
-    signal(SIGSEGV, on_signal);
-    signal(SIGABRT, on_signal);
-    signal(SIGFPE, on_signal);
-    signal(SIGVTALRM, on_signal);
+    catch_signals();
     for (i = 1; i < argc; ++i) {
         if (strncmp(argv[i], "--seed=", 7) == 0) seed = strtoull(argv[i] + 7, NULL, 10);
         else if (strncmp(argv[i], "--cases=", 8) == 0) cases = strtoull(argv[i] + 8, NULL, 10);

@@ -5,6 +5,7 @@
 #     cxx     a C++ compiler, for the compile tests
 #     bench   SuiteSparse, for the direct solver that benches compare with
 #     charts  gnuplot, for charts
+#     wasm    clang with what it takes to make WebAssembly of C, and node, which runs it
 #     pictures  f3d, and a virtual display where there is no other, for pictures of scenes
 set -u
 
@@ -19,12 +20,30 @@ header() {
     printf '#include <%s>\n' "$1" | "${CC:-cc}" $(pkg-config --cflags CHOLMOD 2>/dev/null) -E - >/dev/null 2>&1
 }
 
+# Does clang link a program for WebAssembly?
+links_wasm() {
+    object=$(mktemp) || return 1
+    echo 'int main(void) { return 0; }' | clang --target=wasm32-wasi --sysroot=/usr -x c - -o "$object" -lm >/dev/null 2>&1
+    code=$?
+    rm -f "$object"
+    return $code
+}
+
+# The version of its parts is clang's own.
+wasm_packages() {
+    has clang || echo clang
+    has node || echo nodejs
+    version=$(clang -dumpversion 2>/dev/null | cut -d . -f 1)
+    echo lld wasi-libc "libclang-rt-${version:+$version-}dev-wasm32"
+}
+
 have() {
     case $1 in
     check) has pkg-config && pkg-config --exists check ;;
     cxx) has g++ || has clang++ || has c++ ;;
     bench) header cholmod.h || header suitesparse/cholmod.h ;;
     charts) has gnuplot ;;
+    wasm) has node && links_wasm ;;
     pictures) has f3d && { [ -n "${DISPLAY:-}" ] || has xvfb-run; } ;;
     *) echo "$0: no group '$1'" >&2; exit 2 ;;
     esac
@@ -46,6 +65,7 @@ packages() {
     bench:brew) echo suite-sparse pkg-config ;;
     charts:apt-get) echo gnuplot-nox ;;
     charts:*) echo gnuplot ;;
+    wasm:apt-get) wasm_packages ;;
     pictures:apt-get) echo f3d xvfb xauth ;;
     pictures:dnf) echo f3d xorg-x11-server-Xvfb ;;
     pictures:pacman) echo f3d xorg-server-xvfb ;;
@@ -65,7 +85,7 @@ install() {
     esac
 }
 
-[ $# -gt 0 ] || { echo "usage: $0 check|cxx|bench|charts|pictures..." >&2; exit 2; }
+[ $# -gt 0 ] || { echo "usage: $0 check|cxx|bench|charts|wasm|pictures..." >&2; exit 2; }
 missing=
 for group in "$@"; do have "$group" || missing="$missing $group"; done
 [ -n "$missing" ] || exit 0

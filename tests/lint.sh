@@ -93,7 +93,7 @@ for header in "$@"; do
 
     # Reserved: a leading underscore, two in a row. What compilers provide may be used.
     rule "$header: no reserved names" "$(sed 's/##[A-Za-z0-9_]*//g' "$work/code" | grep -noE '\b(_[A-Za-z0-9_]*|[A-Za-z0-9_]*__[A-Za-z0-9_]*)\b' |
-        grep -vE ':(__cplusplus|__SIZEOF_INT128__|__extension__|__int128|__GNUC__|__clang__|_MSC_VER|__restrict|_Pragma|__attribute__|__asm__|__SSE2_MATH__|__AVX__|__aarch64__|__builtin_shufflevector|__builtin_convertvector|__builtin_prefetch|__builtin_fabs)$' | sed "s/^/$header:/")"
+        grep -vE ':(__cplusplus|__SIZEOF_INT128__|__extension__|__int128|__GNUC__|__clang__|_MSC_VER|__restrict|_Pragma|__attribute__|__asm__|__clang_major__|__SSE2_MATH__|__AVX__|__aarch64__|__arm__|__ARM_FP|__riscv_flen|__s390x__|__powerpc64__|__wasm__|__wasm_simd128__|__builtin_shufflevector|__builtin_convertvector|__builtin_prefetch|__builtin_fabs)$' | sed "s/^/$header:/")"
 
     rule "$header: includes only the C standard library$([ $ours = 1 ] && echo ' and the other headers')" "$(
         grep -nE '^ *# *include' "$work/code" | grep -vE '<(assert|ctype|errno|float|limits|math|stdarg|stddef|stdint|stdio|stdlib|string)\.h>' |

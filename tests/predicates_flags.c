@@ -4,7 +4,7 @@
 
    Prints the wrong signs of CASES near-degenerate cases (100000) times nine predicates, nanoseconds per call where the filter
    decides and where the exact stage does, the exact stage's share, and how much of each of the filter's bounds the true errors
-   used up. Exit status 1 where a sign is wrong or a bound was exceeded. */
+   used up. Exit status 1 where a sign is wrong, a bound was exceeded, or arithmetic is refused that is good enough. */
 #define GXFEM_STATIC
 #define GXFEM_BOOLEAN_IMPLEMENTATION
 #include "../gxfem_boolean.h"
@@ -181,6 +181,7 @@ int main(int argc, char **argv) {
         else if (strncmp(argv[i], "seed=", 5) == 0) seed = strtoull(argv[i] + 5, NULL, 10);
         else if (!set_environment(argv[i])) { fprintf(stderr, "predicates_flags: %s: not known here\n", argv[i]); return 2; }
     }
+    if (!gxbp_arithmetic_holds(1)) { printf("the trial of arithmetic fails\n"); return 1; }
     random = pc_seeded(seed);
     for (done = 0; done < wanted; done += BATCH) {
         prepare(&random, worst);

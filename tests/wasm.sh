@@ -1,0 +1,101 @@
+#!/bin/sh
+# wasm.sh [DIR] - the library as WebAssembly, with and without vectors, run by node: are results those of the native build?
+# Hashes of cuts (gxcut) and of Booleans of surfaces (hash_boolean.c), random cases (fuzz.c), and what creation says of a build that is
+# known to be wrong. Prints a line per build and `N passed, N failed`. JOBS=N: so many builds at a time (2). CASES=N: so many
+# random cases in each (2000). CLANG=: which (clang); its wasm-ld, wasi-libc in SYSROOT= (/usr).
+set -u
+dir=${1:-build/wasm}
+jobs=${JOBS:-2}
+cases=${CASES:-2000}
+clang=${CLANG:-clang}
+wasm="$clang --target=wasm32-wasi --sysroot=${SYSROOT:-/usr} -std=c99 -w -I."
+stack=-Wl,-z,stack-size=4194304         # wasm-ld's own 64 kB are too few: frames of 82 kB
+mkdir -p "$dir" || exit 1
+rm -rf "${dir:?}"/*
+printf '#define GXFEM_IMPLEMENTATION\n#include "gxfem.h"\n' >"$dir/library.c"
+
+node_run() { node --no-warnings tests/run_wasi.mjs "$@"; }
+
+topology() { # FILE COMMAND...: its topology hash
+    report=$1
+    shift
+    "$@" --frames 0 --quiet --report "$report" >/dev/null && sed -n 's/.*"topology_hash": *"\([0-9a-f]*\)".*/\1/p' "$report"
+}
+
+cuts() { # FILE COMMAND...
+    file=$1
+    shift
+    topology "$file" "$@" cube5 --sheet plane:0.3333,0.5,0.5,1,0,0 --sheet plane:0.5,0.6667,0.5,0,1,0 --sheet plane:0.5,0.5,0.5,1,1,1
+    topology "$file" "$@" grid:2,2,2,6 --sheet plane:1,1,1,1,0,0 --sheet plane:1,1,0.75,0,0.5,1 --solid box:0.5,0.25,0.125,1.5,1,1.75
+    topology "$file" "$@" grid:3,2,2,5 --solid box:0.9,0.9,0.9,2.1,2.1,2.1 --sheet plane:1.5,1,1,1,0.25,0.125
+}
+
+# What it counts is compared too, but not how long it took.
+random() { "$@" --out="$dir" --cases="$cases" | sed 's/, [0-9]* s$//'; }
+
+outcome() { # FILE GXCUT HASH_BOOLEAN FUZZ: commands
+    { cuts "$1.json" $2; $3; random $4; } >"$1.out" 2>"$1.err"
+}
+
+# Programs come without the flags of the library: what is wrong is then the library's.
+programs() {
+    for program in examples/gxcut tests/hash_boolean tests/fuzz; do
+        "$@" -O1 -DGXFEM_LINKED -c $program.c -o "$dir/$prefix$(basename $program).o" || return
+    done
+}
+
+native() {
+    prefix=native_ && programs ${CC:-cc} -std=c99 -w -I. && ${CC:-cc} -std=c99 -w -O2 -I. -c "$dir/library.c" -o "$dir/native.o" || return
+    for program in gxcut hash_boolean fuzz; do ${CC:-cc} "$dir/native_$program.o" "$dir/native.o" -o "$dir/native_$program" -lm || return; done
+    outcome "$dir/native" "$dir/native_gxcut" "$dir/native_hash_boolean" "$dir/native_fuzz"
+}
+
+one() { # NAME FLAGS...
+    name=$dir/$1
+    shift
+    $wasm "$@" -c "$dir/library.c" -o "$name.o" || return
+    for program in gxcut hash_boolean fuzz; do
+        $wasm "$dir/wasm_$program.o" "$name.o" $stack -o "${name}_$program.wasm" -lm || return
+    done
+    outcome "$name" "node_run ${name}_gxcut.wasm" "node_run ${name}_hash_boolean.wasm" "node_run ${name}_fuzz.wasm"
+}
+
+# creation.c as it is, and with vectors where the headers make none: clang before 16 is then wrong, and creation must say so
+creation() { # NAME WHAT FOLDER
+    $wasm -O2 -msimd128 "$3/tests/creation.c" $stack -o "$dir/$1.wasm" -lm && node_run "$dir/$1.wasm" "$2" >"$dir/$1.out" && echo "$2" >>"$dir/$1.out"
+}
+
+vectors() {
+    mkdir -p "$dir/vectors/tests" || return
+    for header in gxfem*.h; do sed 's/"no-simd128"/"simd128"/' $header >"$dir/vectors/$header"; done
+    cp tests/creation.c "$dir/vectors/tests/"
+    creation made made .
+    creation vectors $forced "$dir/vectors"
+}
+
+forced=made
+if [ "$($clang -dumpversion | cut -d . -f 1)" -lt 16 ]; then forced=refused; fi
+prefix=wasm_
+programs $wasm || exit 1
+first() { native; one O2 -O2; one O3 -O3; }
+second() { one O2_simd -O2 -msimd128; one O3_simd -O3 -msimd128; vectors; }
+if [ "$jobs" -gt 1 ]; then first & second & wait; else first; second; fi
+
+passed=0
+failed=0
+judge() { # NAME WHAT CONDITION...
+    name=$1 what=$2
+    shift 2
+    if "$@"; then passed=$((passed + 1)); echo "passed   $what"; return; fi
+    failed=$((failed + 1))
+    echo "FAILED   $what"
+    for file in "$dir/$name.out" "$dir/$name.err"; do if [ -s "$file" ]; then cat "$file"; fi; done
+}
+whole() { [ "$(grep -c . "$dir/$1.out")" -eq 5 ] && grep -q ' 0 failed;' "$dir/$1.out"; }
+same() { whole "$1" && cmp -s "$dir/native.out" "$dir/$1.out"; }
+judge native "native: $(sed -n 5p "$dir/native.out" 2>/dev/null | cut -d ';' -f 1)" whole native
+for name in O2 O2_simd O3 O3_simd; do judge $name "WebAssembly, $name: the same" same $name; done
+judge made "WebAssembly, O2_simd: objects are made" grep -q '^made$' "$dir/made.out"
+judge vectors "WebAssembly, O2_simd, with vectors in all functions: $forced" grep -q "^$forced\$" "$dir/vectors.out"
+echo "$passed passed, $failed failed"
+[ $failed -eq 0 ]
