@@ -6196,6 +6196,9 @@ GXFEM_API const char *gx_result_text(gx_result result) {
 #undef GXP_FETCH
 #undef GXP_FETCHES
 #undef GXP_NONE
+#undef GXP_SUPPORT
+#undef GXP_SPECK
+#undef GXP_CRUMB
 #undef GXP_FRAGMENT_ARRAYS
 #undef GXP_FIRST
 #undef GXP_SECOND

@@ -512,9 +512,9 @@ extern "C" {
 #define GXSP_STRETCHED 1e24
 #define GXSP_HEAVIEST 1e12
 
-/* A copy is light if it has a smaller share than this of the mass of its elements; those of whole ones are 1/4. What guides it are corners with half
- * as much of their element at least. */
+/* A copy between parts of elements is light if it has a smaller share than this of their mass (of whole ones it is 1/4), or of a neighbour's. */
 #define GXSP_LIGHT 0.1
+#define GXSP_LIGHTER 0.02
 
 /* Directions of light copies are bounded in so many iterations of a step, where that takes no more than this share of the slope of their piece. */
 #define GXSP_BOUNDED 8
@@ -991,7 +991,7 @@ typedef struct gxsp_follower {
     double weight[4];
 } gxsp_follower;
 
-/* A copy at which its elements have next to nothing of their mass: the far corner of what a cut has left of them. Which lane's others guide it */
+/* A copy with next to nothing of the mass around it, such as the far corner of what a cut has left of an element; the lane whose others guide it */
 typedef struct gxsp_light {
     uint32_t copy, chunk;
     uint16_t lane, corner;
@@ -4278,91 +4278,89 @@ static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (
     gxsp_levels_make(system, scratch, NULL, NULL);
 }
 
-/* What corner k's copy has of the mass of a lane's element: its row sum */
-static double gxsp_lane_mass(const gxsp_chunk *chunk, uint32_t lane, int k)
+/* --- light copies: only parts of elements are around them, and nearly all mass there is that of others --- */
+
+/* What is known of a copy before it is called light */
+typedef struct gxsp_weighed {
+    gxsp_light light;       /* in the lane with its heaviest neighbour */
+    double all, most;       /* mass of the elements around it; of the neighbour, kg */
+    int whole;              /* an element around it is whole */
+} gxsp_weighed;
+
+static void gxsp_weigh_corner(const gxsp_system *system, uint32_t c, uint32_t lane, int corner, const uint32_t *copies, gxsp_weighed *weighed)
 {
-    const size_t b = lane / GXSP_LANES, l = lane % GXSP_LANES;
-    const gxsp_moments *of = gxsp_block_moments(chunk, (uint32_t)b);
-    return chunk->rest[b].mass[l] * (!of ? 5 : (double)(k > 0 ? of->centre[k - 1][l] : 1 - (of->centre[0][l] + of->centre[1][l] + of->centre[2][l])));
+    const gxsp_chunk *chunk = &system->chunks[c];
+    int k;
+    weighed->whole |= !chunk->moments;
+    weighed->all += chunk->rest[lane / GXSP_LANES].mass[lane % GXSP_LANES];
+    for (k = 0; k < 4; ++k)
+        if (k != corner && system->lumped[copies[k]] > weighed->most) {
+            weighed->most = system->lumped[copies[k]];
+            weighed->light.copy = copies[corner], weighed->light.chunk = c;
+            weighed->light.lane = (uint16_t)lane, weighed->light.corner = (uint16_t)corner;
+        }
 }
 
-/* --- light copies: nearly all of their inertia is that of others --- */
-
-/* Notes for each copy, or each that is touched, all the mass of its elements, and the lane of the heaviest. touched: n flags, or NULL: all */
-static void gxsp_weigh_copies(const gxsp_system *system, const uint8_t *touched, double *all, gxsp_light *heaviest, double *most)
+/* Of each copy, or each that is touched. touched: n flags, or NULL: all */
+static void gxsp_weigh_copies(const gxsp_system *system, const uint8_t *touched, gxsp_weighed *weighed)
 {
-    uint32_t c, lane, copies[4];
+    uint32_t c, i, lane, copies[4];
     int k;
     for (c = 0; c < system->chunk_count; ++c) {
         const gxsp_chunk *chunk = &system->chunks[c];
-        uint32_t i = 0;
-        while (touched && i < chunk->node_count && !touched[system->nodes[chunk->first_node + i]])
-            ++i;
+        for (i = 0; touched && i < chunk->node_count && !touched[system->nodes[chunk->first_node + i]]; ++i)
+            ;
         for (lane = 0; lane < chunk->block_count * GXSP_LANES && !(touched && i == chunk->node_count); ++lane) {
-            const double mass = chunk->rest[lane / GXSP_LANES].mass[lane % GXSP_LANES] * (chunk->moments ? 1 : 20);
             if (chunk->groups[lane] == GXSP_NONE)
                 continue;
             gxsp_lane_copies(system, chunk, lane / GXSP_LANES, (int)(lane % GXSP_LANES), copies);
-            for (k = 0; k < 4; ++k) {
-                const uint32_t copy = copies[k];
-                if (touched && !touched[copy])
-                    continue;
-                all[copy] += mass;
-                if (mass > most[copy]) {
-                    most[copy] = mass;
-                    heaviest[copy].copy = copy, heaviest[copy].chunk = c;
-                    heaviest[copy].lane = (uint16_t)lane, heaviest[copy].corner = (uint16_t)k;
-                }
-            }
+            for (k = 0; k < 4; ++k)
+                if (!touched || touched[copies[k]])
+                    gxsp_weigh_corner(system, c, lane, k, copies, &weighed[copies[k]]);
         }
     }
+}
+
+static int gxsp_is_light(const gxsp_system *system, size_t copy, const gxsp_weighed *weighed)
+{
+    const double mass = system->lumped[copy];
+    return !weighed->whole && !system->fixed[copy] && weighed->most > 0 &&
+           (mass < GXSP_LIGHT * weighed->all || mass < GXSP_LIGHTER * weighed->most);
 }
 
 /* Lists light copies. touched: n flags: those of others stay as they are listed; NULL: all are listed anew */
 static void gxsp_list_lights(gxsp_system *system, gxsp_pool *scratch, const uint8_t *touched)
 {
-    double *all = (double *)gxsp_take(scratch, system->n, sizeof(double)), *most = (double *)gxsp_take(scratch, system->n, sizeof(double));
-    gxsp_light *heaviest = (gxsp_light *)gxsp_take(scratch, system->n, sizeof *heaviest);
-    uint32_t i, count = 0, pass;
+    gxsp_weighed *weighed = (gxsp_weighed *)gxsp_take(scratch, system->n, sizeof *weighed);
+    uint32_t i, count = 0, room;
     if (scratch->failed)
         return;
-    gxsp_weigh_copies(system, touched, all, heaviest, most);
+    gxsp_weigh_copies(system, touched, weighed);
     for (i = 0; i < system->light_count && touched; ++i)
         if (!touched[system->lights[i].copy])
             system->lights[count++] = system->lights[i];
-    system->light_count = count;
-    for (pass = 0; pass < 2; ++pass) { /* count, then list */
-        for (i = 0, count = system->light_count; i < system->n; ++i) {
-            if (system->fixed[i] || !(all[i] > 0) || system->lumped[i] >= GXSP_LIGHT * all[i])
-                continue;
-            if (pass == 1)
-                system->lights[count] = heaviest[i];
-            ++count;
-        }
-        if (pass == 0 && count > system->light_room) {
-            system->light_room = count + count / 8;
-            system->lights = (gxsp_light *)gxsp_retake(&system->pool, system->lights, system->light_count, system->light_room, sizeof(gxsp_light));
-            if (system->pool.failed)
-                return;
-        }
+    system->light_count = room = count;
+    for (i = 0; i < system->n; ++i)
+        room += (uint32_t)gxsp_is_light(system, i, &weighed[i]);
+    if (room > system->light_room) {
+        system->light_room = room + room / 8;
+        system->lights = (gxsp_light *)gxsp_retake(&system->pool, system->lights, count, system->light_room, sizeof(gxsp_light));
     }
-    system->light_count = count;
+    for (i = 0; i < system->n && !system->pool.failed; ++i)
+        if (gxsp_is_light(system, i, &weighed[i]))
+            system->lights[system->light_count++] = weighed[i].light;
 }
 
-/* What guides a light copy at vector x (n x 3): the mean over the lane's other corners that have some of its mass. Returns the heaviest of them. */
+/* What guides a light copy at vector x, less another one or NULL (n x 3): the mean over the other corners, by their masses. Returns the heaviest. */
 static uint32_t gxsp_guide(const gxsp_system *system, const gxsp_light *light, const double *x, const double *less, double *mean)
 {
-    const gxsp_chunk *chunk = &system->chunks[light->chunk];
-    const double enough = 0.5 * GXSP_LIGHT * chunk->rest[light->lane / GXSP_LANES].mass[light->lane % GXSP_LANES];
     double sum = 0, most = 0;
     uint32_t copies[4], heaviest = light->copy;
     int k, c;
-    gxsp_lane_copies(system, chunk, light->lane / GXSP_LANES, light->lane % GXSP_LANES, copies);
+    gxsp_lane_copies(system, &system->chunks[light->chunk], light->lane / GXSP_LANES, light->lane % GXSP_LANES, copies);
     mean[0] = mean[1] = mean[2] = 0;
     for (k = 0; k < 4; ++k) {
-        const double mass = gxsp_lane_mass(chunk, light->lane, k);
-        if (k == light->corner || mass < enough)
-            continue;
+        const double mass = k == light->corner ? 0 : system->lumped[copies[k]];
         sum += mass;
         for (c = 0; c < 3; ++c)
             mean[c] += mass * (x[3 * (size_t)copies[k] + (size_t)c] - (less ? less[3 * (size_t)copies[k] + (size_t)c] : 0));
@@ -4370,7 +4368,7 @@ static uint32_t gxsp_guide(const gxsp_system *system, const gxsp_light *light, c
             most = mass, heaviest = copies[k];
     }
     for (c = 0; c < 3; ++c)
-        mean[c] = sum > 0 ? mean[c] / sum : 0;
+        mean[c] /= sum;
     return heaviest;
 }
 
@@ -6238,6 +6236,14 @@ typedef struct gxsp_renewal {
     uint8_t *dirty;         /* by node of level 1 so far: some that follow it are touched */
     uint8_t *alike;         /* change->copy_count: the copy follows what it followed */
 } gxsp_renewal;
+
+/* What corner k's copy has of the mass of a lane's element: its row sum */
+static double gxsp_lane_mass(const gxsp_chunk *chunk, uint32_t lane, int k)
+{
+    const size_t b = lane / GXSP_LANES, l = lane % GXSP_LANES;
+    const gxsp_moments *of = gxsp_block_moments(chunk, (uint32_t)b);
+    return chunk->rest[b].mass[l] * (!of ? 5 : (double)(k > 0 ? of->centre[k - 1][l] : 1 - (of->centre[0][l] + of->centre[1][l] + of->centre[2][l])));
+}
 
 /* Does the element of a lane give corner k stiffness or mass? */
 static int gxsp_lane_supports(const gxsp_chunk *chunk, uint32_t lane, int k)
@@ -9602,6 +9608,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_EACH_OF_TWO
 #undef GXSP_GAIN
 #undef GXSP_LIGHT
+#undef GXSP_LIGHTER
 #undef GXSP_BOUND_COST
 #undef GXSP_BOUNDED
 #undef GXSP_TOO_LONG

@@ -215,6 +215,7 @@ static gx_result find_points(life *l)
         memcpy(point->copy, skin.vertex_copies + 4 * i, sizeof point->copy);
         memcpy(point->weight, skin.vertex_weights + 4 * i, sizeof point->weight);
         memcpy(point->position, skin.vertex_rest + 3 * i, sizeof point->position);
+        point->epoch = skin.epoch;
     }
     return GX_OK;
 }
