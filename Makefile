@@ -53,6 +53,7 @@ help:
 	@echo "  violent        starts from which Newton's method is known to fail: inverted, flattened, collapsed bodies"
 	@echo "  accuracy       static solutions beside closed forms and published values"
 	@echo "  drift          what integrators keep: energy, momenta, order"
+	@echo "  soak           100,000 steps of bodies that are cut, kicked and dropped: does a copy run away?"
 	@echo "  frames         frames in which a cut happens beside those in which none does"
 	@echo "  skin           the visual surface: moved in each frame, rebuilt after a cut"
 	@echo "make clean       removes $(BUILD)/"
@@ -160,7 +161,7 @@ check-wasm:
 
 # ---- benches. Only what they print goes to stdout: it is CSV. BENCH=--small: smaller ones, whose tables and charts have a folder of their own
 
-benches = quadrature stepping space table2 conditioning failure scaling kernel smallest solver violent accuracy drift frames skin
+benches = quadrature stepping space table2 conditioning failure scaling kernel smallest solver violent accuracy drift frames skin soak
 small = $(filter --small,$(BENCH))
 tables = $(BUILD)/bench$(if $(small),/small)
 # What a compiler that is told nothing of a standard does: with -std=c99 gcc fuses no multiplications with additions, whatever -march says
@@ -220,15 +221,17 @@ $(sort $(table2:%=$(traces)/%.trace) $(stepping:%=$(traces)/%.trace)): $(traces)
 	@mkdir -p $(@D)
 	@$< --quiet --trace $@ $(or $(small),$(frames-$*:%=--frames %)) $(if $(OCTOPUS),$(if $(filter octopus,$*),--mesh $(OCTOPUS)))
 
+# The soak takes longer than all others, and has no chart.
+charted = $(filter-out soak,$(benches))
 bench:
-	@rm -f $(benches:%=$(tables)/%.csv)
+	@rm -f $(charted:%=$(tables)/%.csv)
 	@$(MAKE) --no-print-directory charts
 
 # One bench after the other: they measure. What fails is told in the end, and what there is is drawn.
 charts:
 	@sh tests/install.sh charts >&2
 	@mkdir -p $(tables) && rm -f $(tables)/failed
-	@for bench in $(benches); do \
+	@for bench in $(charted); do \
 	    [ ! -s $(tables)/$$bench.csv ] || continue; \
 	    echo "make bench-$$bench" >&2; \
 	    $(MAKE) --no-print-directory bench-$$bench >/dev/null || echo "bench-$$bench" >>$(tables)/failed; \

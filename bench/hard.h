@@ -240,6 +240,26 @@ static void hard_missing_by_a_rounding(hard_trial *t)
     t->scene.sever_below = 1e-9;
 }
 
+/* Three planes a unit in the last place beside the layers of nodes; every node is kicked. */
+static void hard_beside_nodes(hard_trial *t)
+{
+    const double beside = nextafter(0.5, 1);
+    uint32_t random = 1;
+    size_t i;
+    for (i = 0; i < 3; i++) {
+        double c[3] = {0, 0, 0}, n[3] = {0, 0, 0};
+        c[i] = beside;
+        n[i] = 1;
+        hard_add_plane(&t->scene, 0, c, n);
+    }
+    for (i = 0; i < 3 * t->scene.node_count; i++) {
+        random = random * 1664525u + 1013904223u;
+        t->scene.velocity[i] = 5 * ((random >> 8) / 8388608.0 - 1.0);
+    }
+    t->pieces = 8;
+    t->held = 1;
+}
+
 static void hard_same_cut_twice(hard_trial *t)
 {
     hard_add_level(&t->scene, 0, 0.37, 0.1, 0.2);
@@ -499,7 +519,8 @@ static const hard_case hard_cases[] = {
     {"tangent to a face", hard_tangent_face, 0}, {"tangent to an edge", hard_tangent_edge, 0},
     {"tangent to a corner", hard_tangent_corner, 0}, {"three through a line", hard_three_in_a_line, 0},
     {"four through a point", hard_four_through_a_point, 0}, {"two 1e-15 apart", hard_apart_1e15, 0},
-    {"two sheets miss by a rounding", hard_missing_by_a_rounding, 0}, {"the same cut twice", hard_same_cut_twice, 0},
+    {"two sheets miss by a rounding", hard_missing_by_a_rounding, 0},
+    {"an ulp beside nodes, kicked", hard_beside_nodes, 0}, {"the same cut twice", hard_same_cut_twice, 0},
     {"solid 1e-12 thick", hard_slab_1e12, 0}, {"slice of 1e-3", hard_slice_1e3, 0}, {"slice of 1e-8", hard_slice_1e8, 0},
     {"slice of 1e-15", hard_slice_1e15, 0}, {"corner of 1e-9", hard_corner_1e9, 0}, {"corner of 1e-15", hard_corner_1e15, 0},
     {"piece inside an element", hard_bubble, 0}, {"fold", hard_fold, 0}, {"self-crossing", hard_self_crossing, 0}, {"hole", hard_hole, 0},

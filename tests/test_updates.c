@@ -142,7 +142,7 @@ START_TEST(cuts_change_the_model) {
     workload w = block_with_cuts((uint64_t)_i);
     gx_body *changed = body_of(&w), *whole = body_of(&w);
     gx_step_desc step = exact_step(0.02);
-    size_t c, updates = 0;
+    size_t c, updates = 0, followers = 0;
     hold_top(changed); hold_top(whole);
     advance(changed, &step, 2); advance(whole, &step, 2);
     for (c = 0; c < w.surface_count; ++c) {
@@ -152,12 +152,16 @@ START_TEST(cuts_change_the_model) {
         advance(changed, &step, 2); advance(whole, &step, 2);
         updates += changed->model_updated != 0;
         ck_assert(!whole->model_updated);
+        ck_assert_uint_eq(changed->solver->system->follower_count, whole->solver->system->follower_count);
+        ck_assert_uint_eq(changed->solver->system->light_count, whole->solver->system->light_count);
+        followers += changed->model_updated ? changed->solver->system->follower_count : 0;
         ck_assert_msg(apart(changed, whole) < 1e-6, "after cut %zu: %g", c, apart(changed, whole));
         check_operator(changed, whole);
         check_lanes(changed);
         ck_assert_double_lt(check_lanes(whole), 2.5);
     }
     ck_assert_uint_gt(updates, 3);
+    ck_assert_uint_gt(followers, 0);
     gx_body_destroy(changed); gx_body_destroy(whole);
     wl_free(&w);
 }
