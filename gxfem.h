@@ -159,7 +159,8 @@ typedef struct gx_body_desc {
     const gx_material *materials; size_t material_count;
     const uint32_t *element_materials;  /* element_count, below material_count; NULL: all of materials[0] */
     const float *texture;       /* node_count x 2: texture coordinates of the outer surface; NULL: all 0 */
-    double support_below;       /* copies with a smaller share of their node's volume follow others, see gx_body_step; 0: none does */
+    double support_below;       /* below 1: copies around which no part of an element is as large a share of it follow
+                                   others, see gx_body_step; 0: 1e-3. 1e-300: none does, and slivers may be flung about */
     gx_allocator allocator;     /* zero: malloc, free, realloc */
     double (*clock)(void *user);/* seconds, for the reports' timings and the steps' budgets; NULL: timings are 0 */
     void *clock_user;
@@ -289,9 +290,11 @@ typedef gxs_step_desc gx_step_desc;
 typedef gxs_step_report gx_step_report;
 /* One time step (GXFEM Eq. 10). A cut wakes the fragments that it touches. Errors: those of gxs_solver_step, MEMORY; the body is then as
    it was.
-   Copies below gx_body_desc.support_below (RXFEM Eq. 22) take the increment of the displacement field of a well supported element near
-   them. Where a fragment has no element all of whose copies are well supported, its fullest element takes that part, if it is at least
-   as full as support_below says; else the fragment moves as a point. */
+   Copies that only slivers carry (RXFEM Eq. 22; gx_body_desc.support_below) take the increment of the displacement field
+   of the nearest element without such copies: else next to nothing would hold them where they are. A fragment without such
+   an element is thin everywhere. It goes by what is thin beside its fullest part. It moves as a point if that part is
+   smaller than support_below of its element; where support_below is 0, smaller than 1e-9, or if no part reaches a tenth
+   as far as its element does. */
 GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report /* or NULL */, gx_failure *failure /* or NULL */);
 
 /* What the solver sees of the body as it is cut now: for solvers of one's own. Arrays are the body's, valid until its next cut, hold, step or
@@ -419,8 +422,8 @@ extern "C" {
 /* --- types --- */
 
 #define GXP_NONE UINT32_MAX
-/* Shares of an element (gx_body_desc.support_below is 0): copies that nothing larger carries follow others; fragments without anything larger
-   move as points. */
+/* Shares of an element, where gx_body_desc.support_below is 0: copies that nothing larger carries follow others;
+   fragments without anything larger move as points. */
 #define GXP_SUPPORT 1e-3
 #define GXP_SPECK 1e-9
 
@@ -514,7 +517,7 @@ struct gx_body {
     gx_material *materials; uint32_t material_count;
     uint32_t *element_materials;    /* element_count */
     double support_below;           /* as given */
-    double follow_below, point_below;   /* see gxp_supports */
+    double follow_below, point_below, crumb_reach;  /* see gxp_supports */
     double *positions;              /* node_count x 3 */
     uint32_t *node_start;           /* node_count + 1, into node_elements */
     uint32_t *node_elements;        /* element_count x 4: elements around each node */
@@ -1285,6 +1288,7 @@ GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **out, gx_f
     body->support_below = desc->support_below;
     body->follow_below = desc->support_below > 0 ? desc->support_below : GXP_SUPPORT;
     body->point_below = desc->support_below > 0 ? desc->support_below : GXP_SPECK;
+    body->crumb_reach = desc->support_below > 0 ? 0 : GXP_CRUMB;
     mesh.positions = desc->positions; mesh.node_count = desc->node_count;
     mesh.elements = desc->elements; mesh.element_count = desc->element_count;
     result = gxb_complex_create(&mesh, &desc->allocator, &body->complex, failure);
@@ -4131,7 +4135,7 @@ static void gxp_weigh_fragment(const gx_body *body, gxp_supports *of, uint32_t c
     lead = body->cells[fullest].copies[0];
     for (i = 0; i < count; i++) {
         const uint32_t copy = of->queue[i];
-        if (most >= body->point_below && reach >= GXP_CRUMB) of->weak[copy] = gxp_is_weak(body, copy, body->follow_below * most) ? GXP_FOLLOWS : GXP_FREE;
+        if (most >= body->point_below && reach >= body->crumb_reach) of->weak[copy] = gxp_is_weak(body, copy, body->follow_below * most) ? GXP_FOLLOWS : GXP_FREE;
         else { of->weak[copy] = copy == lead ? GXP_FREE : GXP_FOLLOWS_POINT; of->cell[copy] = fullest; }
     }
 }

@@ -12,7 +12,8 @@
  *              volumes: RXFEM's rules are right to 1e-15 of the element only, and it constrains functions below 1e-9; multigrid,
  *              of the copies' basis: the solver's own V-cycle P in place of S S^T, asked for P of each unit vector, in single
  *              precision as it comes. Translations of whole fragments are solved apart, exactly, and count as 1
- *   extension  on: gx_body_desc.support_below is 1/2, so that the four copies of the corner piece move together, as a point.
+ *   extension  off: no copy follows others (support_below is 1e-300)
+ *              on: gx_body_desc.support_below is 1/2, so that the four copies of the corner piece move together, as a point.
  *              The constraints are those of gx_body_model; in the sign basis what they leave is spanned by u_i and a_i
  *
  * Condition numbers go up to 1e41, so eigenvalues are not taken from A. A in the copies' basis is a graded matrix whose factor
@@ -575,7 +576,7 @@ static void run(const char *name, double eps, const double *points, const double
     size_t e;
     memset(&c, 0, sizeof c);
     progress_draw("conditioning", runs++, RUNS, name);
-    cube_create(&c, extended ? 0.5 : 0);
+    cube_create(&c, extended ? 0.5 : 1e-300);
     if (points)
         cube_cut(&c, points);
     expect(gx_body_view(c.body, &view) == GX_OK && gx_body_model(c.body, &c.model) == GX_OK, "no model");
