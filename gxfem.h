@@ -4043,6 +4043,7 @@ static gx_result gxp_list_thin(gx_body *body, int anew) {
         if (gxp_is_thin(body, element)) result = gxp_push(body, &body->thin, element);
     }
     gxp_sort_unique(&body->thin);
+    if (result != GX_OK) body->model = GXP_MODEL_STALE;     /* the list is not whole */
     return result;
 }
 

@@ -391,7 +391,7 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
 
 /* Changes the model in time that goes by the size of the change, but for what is proportional to the number of copies and small. Steps go on
  * with what they have learnt so far. Results are those of the whole model set anew but for rounding and the tolerances of steps.
- * GX_ERROR_ARGUMENT if no model is set or an order is not as it should be (index: of the group or element). GX_ERROR_LIMIT if
+ * GX_ERROR_ARGUMENT if no model is set or an order is not as it should be (index: of the group or element), or for a constraint that cannot be (its index). GX_ERROR_LIMIT if
  * the change does not fit what there is: a matrix is assembled, mass is lumped, GXS_VOLUME_RATIO, lanes
  * that changes have left behind are a quarter of all, a copy is held and was not or the other way round, no element is left,
  * elements that stay have lost a copy. On this and on GX_ERROR_MEMORY no model is set any more: set it. On other errors the
@@ -1125,6 +1125,7 @@ typedef struct gxsp_problem {
     int damps;              /* damping adds to the load */
     int stalls;             /* iterations in a row that noise ended and that gained next to nothing */
     double least;           /* residual so far */
+    int based;              /* pieces know E at base */
     int noise;              /* the line search ended where energies differ by rounding only */
     int collapsed;          /* the linearisation found elements collapsed to a point */
     gxs_step_report report;
@@ -8573,6 +8574,7 @@ static size_t gxsp_bring_down(gxsp_problem *problem)
     gxsp_evaluate(problem, system->trial, 0, system->force);
     gxsp_limit_energies(problem, system->trial, 0);
     gxsp_note_base(problem);
+    problem->based = 1;
     count = gxsp_count_risen(system);
     if (count == 0)
         return 0;
@@ -8680,7 +8682,7 @@ static void gxsp_bound_gain(gxsp_problem *problem)
     size_t i, left = 1;
     uint32_t p;
     int trial;
-    if (problem->step->spring_count + problem->step->point_count > 0) { /* no parabola: these begin to act anywhere */
+    if (!problem->based || problem->step->spring_count + problem->step->point_count > 0) { /* which begin to act anywhere */
         gxsp_find_base(problem, system->trial);
         gxsp_evaluate(problem, system->trial, 0, system->force);
         for (p = 0; p < system->piece_count; ++p)

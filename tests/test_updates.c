@@ -453,6 +453,7 @@ START_TEST(bad_changes_are_named) {
     gxs_solver *solver = solver_with(&model);
     uint32_t *origins = (uint32_t *)malloc(model.copy_count * sizeof *origins), groups[2] = { 3, 5 };
     gxs_element elements[2];
+    gxs_constraint constraints[2];
     gxs_change change;
     gxs_step_desc step;
     gx_failure failure;
@@ -479,6 +480,21 @@ START_TEST(bad_changes_are_named) {
     elements[1].material = 1; EXPECT(GX_ERROR_INDEX, 1); elements[1].material = 0;
     elements[0].weight = NAN; EXPECT(GX_ERROR_NOT_FINITE, 0);
     elements[0].weight = -1; EXPECT(GX_ERROR_INVERTED, 0); elements[0].weight = model.elements[3].weight;
+    memset(constraints, 0, sizeof constraints);
+    constraints[0].copy = 1; constraints[0].weight[0] = constraints[1].weight[0] = 1; constraints[1].copy = 2;
+    change.constraint_count = 2; EXPECT(GX_ERROR_ARGUMENT, SIZE_MAX); change.constraints = constraints;
+    constraints[1].copy = 1; EXPECT(GX_ERROR_ARGUMENT, 1); constraints[1].copy = 2;     /* follows twice */
+    constraints[1].master[0] = 1; EXPECT(GX_ERROR_ARGUMENT, 1);                         /* follows a follower */
+    constraints[1].master[0] = (uint32_t)model.copy_count; EXPECT(GX_ERROR_INDEX, 1); constraints[1].master[0] = 0;
+    constraints[0].weight[2] = NAN; EXPECT(GX_ERROR_NOT_FINITE, 0); constraints[0].weight[2] = 0;
+    change.constraint_count = model.copy_count + 1; EXPECT(GX_ERROR_LIMIT, SIZE_MAX);
+    ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);
+    change.constraint_count = 2; EXPECT(GX_OK, SIZE_MAX);
+    u[5 + 3 * model.copy_count] = 1;
+    ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * model.copy_count, NULL, NULL), GX_OK);
+    for (i = 0; i < 6; ++i) ck_assert_double_eq_tol(u[3 + i], u[i % 3], 1e-15);         /* both follow copy 0 */
+    change.constraints = NULL; change.constraint_count = 0;
+    memset(u, 0, 9 * model.copy_count * sizeof *u);
     ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * model.copy_count, NULL, NULL), GX_OK);  /* the model is still set */
     EXPECT(GX_OK, SIZE_MAX);
     ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * model.copy_count, NULL, NULL), GX_OK);
