@@ -43,7 +43,7 @@ random() { "$1" tests/corpus/* && "$1" --out="$dir" --cases="$cases"; } # binary
 one() {
     file=$1
     shift
-    printf '#include <stdint.h>\n#include <stdio.h>\nint main(void) { return 0; }\n' >"$file.c"
+    printf '#include <errno.h>\n#include <stdint.h>\n#include <stdio.h>\nint main(void) { return 0; }\n' >"$file.c"
     "$@" -w "$file.c" -o "$file.probe" -lm >"$file.log" 2>&1 || return 0
     printf '#define GXFEM_IMPLEMENTATION\n#include "gxfem.h"\n' >"$file.c"
     plain=$1 # what remains of the flags where the checks are linked
