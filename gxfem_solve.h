@@ -30,18 +30,19 @@
  *
  * CONTENTS (search for the anchors; in the order of the file)
  *   >>shared      result codes, allocator, jobs    >>lattice     structure of the multigrid
- *   >>types       materials, elements, step        >>followers   constraints between copies
- *   >>functions   the API                          >>operator    product, linearisation, block diagonal
- *   >>platform    finite by bits                   >>multigrid   the cycle, numbers of its levels, assembly
- *   >>memory      pools, the solver's own form     >>update      what a cut changes
- *   >>jobs        a loop, by threads or not        >>pieces      translations of loose pieces
- *   >>lanes       rsqrt, log for vectors           >>points      springs and contact
- *   >>material    energies and stresses            >>cg          conjugate gradients
- *   >>svd         stretches and rotations of F     >>sleep       what rests is left out
- *   >>tangent     Hessian of one block             >>newton      line search, Newton, integrators
- *   >>element     passes over one block            >>check       of what is given
- *   >>chunk       passes over chunks               >>api         the public functions
- *   >>model       order of elements, chunks, lanes >>forms       assembled forms, the material at one F
+ *   >>types       materials, elements, step        >>lights      copies with next to no mass
+ *   >>functions   the API                          >>system      all that a model is made into
+ *   >>platform    finite by bits                   >>followers   constraints between copies
+ *   >>memory      pools, the solver's own form     >>operator    product, linearisation, block diagonal
+ *   >>jobs        a loop, by threads or not        >>multigrid   the cycle, numbers of its levels, assembly
+ *   >>lanes       rsqrt, log for vectors           >>update      what a cut changes
+ *   >>material    energies and stresses            >>pieces      translations of loose pieces
+ *   >>svd         stretches and rotations of F     >>points      springs and contact
+ *   >>tangent     Hessian of one block             >>cg          conjugate gradients
+ *   >>element     passes over one block            >>sleep       what rests is left out
+ *   >>chunk       passes over chunks               >>newton      line search, Newton, integrators
+ *   >>model       order of elements, chunks, lanes >>check       of what is given
+ *   >>forms       assembled forms, one F (last)    >>api         the public functions
  *
  * WHAT IT DOES. A step of length h is the minimum over the displacements u of the incremental potential
  *
@@ -391,9 +392,9 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
 
 /* Changes the model in time that goes by the size of the change, but for what is proportional to the number of copies and small. Steps go on
  * with what they have learnt so far. Results are those of the whole model set anew but for rounding and the tolerances of steps.
- * GX_ERROR_ARGUMENT if no model is set or an order is not as it should be (index: of the group or element), or for a constraint that cannot be (its index). GX_ERROR_LIMIT if
- * the change does not fit what there is: a matrix is assembled, mass is lumped, GXS_VOLUME_RATIO, lanes
- * that changes have left behind are a quarter of all, a copy is held and was not or the other way round, no element is left,
+ * GX_ERROR_ARGUMENT if no model is set, an order is not as it should be (index: of the group or element), or a
+ * constraint cannot be (its index). GX_ERROR_LIMIT if the change does not fit what there is: a matrix is assembled,
+ * mass is lumped, GXS_VOLUME_RATIO, lanes that changes have left behind are a quarter of all, a copy is held and was not or the other way round, no element is left,
  * elements that stay have lost a copy. On this and on GX_ERROR_MEMORY no model is set any more: set it. On other errors the
  * model before stays. */
 GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *change, gx_failure *failure);
@@ -4280,7 +4281,8 @@ static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (
     gxsp_levels_make(system, scratch, NULL, NULL);
 }
 
-/* --- light copies: only parts of elements are around them, and nearly all mass there is that of others --- */
+/* >>lights: copies around which there are only parts of elements, nearly all of whose mass is that of others. They are
+ * listed with the model and by its updates; >>newton starts them where their neighbours lead, and bounds their way. */
 
 /* What is known of a copy before it is called light */
 typedef struct gxsp_weighed {
@@ -4373,6 +4375,8 @@ static uint32_t gxsp_guide(const gxsp_system *system, const gxsp_light *light, c
         mean[c] /= sum;
     return heaviest;
 }
+
+/* >>system: a model in the solver's own form, all that does not depend on its state */
 
 /* 2^GXSP_STIFFNESS over Young's modulus times the length of the largest element, but for the mantissa */
 static double gxsp_choose_scale(const gxs_model *model)
@@ -8585,11 +8589,11 @@ static size_t gxsp_bring_down(gxsp_problem *problem)
             system->current[k] = risen ? system->trial[k] : system->current[k];
         }
     }
-    for (p = 0; p < system->piece_count; ++p)
+    for (p = 0; p < system->piece_count; ++p) {
         system->pieces[p].left = 0;
-    for (p = 0; p < system->piece_count; ++p)
         if (system->pieces[p].risen)
             memcpy(system->pieces[p].before, system->pieces[p].energies, sizeof system->pieces->before);
+    }
     if (!gxsp_line_search(problem))
         (void)gxsp_update(problem);
     return count;
@@ -8623,7 +8627,7 @@ static gx_result gxsp_minimise(gxsp_problem *problem)
     return result;
 }
 
-/* E of every piece at a displacement, less that at base: into gain. energies: 1: those evaluated last; 0: those at current */
+/* E of every piece at a displacement, less that at base: into gain. evaluated: 1: that was evaluated last; 0: it is current */
 static void gxsp_find_gains(const gxsp_problem *problem, const double *displacement, int evaluated)
 {
     gxsp_system *system = problem->system;
