@@ -492,11 +492,13 @@ extern "C" {
 /* no piece, no node, no chunk */
 #define GXSP_NONE UINT32_MAX
 
-/* States of a piece: a copy is held; it has no mass, or constraints that do not follow translations; springs or contact act on it */
+/* States of a piece: a copy is held; it has no mass, or constraints that do not follow translations; springs or contact have acted on it since
+ * Newton's method began; it sleeps; they act on it at this linearisation */
 #define GXSP_HELD 1u
 #define GXSP_UNBALANCED 2u
 #define GXSP_TOUCHED 4u
 #define GXSP_ASLEEP 8u
+#define GXSP_TOUCHES 16u
 
 /* A cycle of the multigrid that makes a residual's energy so many times as large has met a coarse matrix that rounding has made senseless. */
 #define GXSP_ABSURD 1e20
@@ -973,7 +975,8 @@ typedef struct gxsp_piece {
     double before[3];   /* at current */
     double base_energy; /* elastic, of what the last step returned, J; of use if gxsp_system.base_known */
     double limit, ended; /* E where the step starts, which it is not to exceed, and where Newton's method has ended; J */
-    double base, low, gain; /* of the midpoint rule: E at base, and less that E at the end without what is taken off it, and at a trial; J */
+    double base, low, gain; /* of the midpoint rule: E at base, and less that E at the middle without drift, and at a trial; J */
+    double drift[3];        /* of its second half, what is not shortened, m */
     double slope, work; /* dE/dlength of the direction, and the load's work along it; J */
     double left;        /* what the linear solve has left of the residual, along the direction; J */
     double rounding;    /* of positions and of the load's terms, in units in the last place; J */
@@ -984,7 +987,7 @@ typedef struct gxsp_piece {
     uint64_t forces[2]; /* hash of its nodal forces and contact points: of the step before, of this one */
     int sprung[2];      /* a spring acts on it: in the step before, in this one */
     int woken, tired;   /* something touches it in this step; nothing does, and it has been slow for long */
-    uint32_t state;     /* GXSP_HELD ... GXSP_ASLEEP; 0: a translation of it meets no stiffness */
+    uint32_t state;     /* GXSP_HELD ... GXSP_TOUCHES; 0: loose, a translation of it meets no stiffness */
 } gxsp_piece;
 
 /* A follower of the model */
@@ -1046,7 +1049,7 @@ typedef struct gxsp_system {
     uint8_t *chunk_still;   /* chunk_count: all copies are */
     uint32_t *piece;        /* n: number of the piece */
     gxsp_piece *pieces;     /* piece_count */
-    uint32_t piece_count, loose_count; /* loose: of state 0 */
+    uint32_t piece_count, loose_count, free_count; /* loose: of state 0; free: but for GXSP_TOUCHED */
     gxsp_follower *followers;
     uint32_t follower_count;
     uint32_t follower_room; /* of followers */
@@ -7078,7 +7081,7 @@ GXSP_INLINE void gxsp_load(const gxsp_problem *problem, size_t copy, double *loa
         load[0] += damping[3 * copy], load[1] += damping[3 * copy + 1], load[2] += damping[3 * copy + 2];
 }
 
-/* Sums over pieces: cleared, copies added one by one, then as a mean over each piece's mass. Only of pieces of state 0. */
+/* Sums over pieces: cleared, copies added one by one, then as a mean over each piece's mass. 0: of pieces that have any state but those ignored */
 static void gxsp_clear_pieces(gxsp_system *system)
 {
     uint32_t p;
@@ -7088,18 +7091,18 @@ static void gxsp_clear_pieces(gxsp_system *system)
 
 static void gxsp_add_to_piece(gxsp_system *system, size_t copy, double x, double y, double z)
 {
-    gxsp_piece *piece = &system->pieces[system->piece[copy]];
-    if (piece->state != 0)
-        return;
-    piece->sum[0] += x, piece->sum[1] += y, piece->sum[2] += z;
+    double *sum = system->pieces[system->piece[copy]].sum;
+    sum[0] += x, sum[1] += y, sum[2] += z;
 }
 
-static void gxsp_average_pieces(gxsp_system *system)
+static void gxsp_average_pieces(gxsp_system *system, uint32_t ignored)
 {
     uint32_t p, r;
-    for (p = 0; p < system->piece_count; ++p)
-        for (r = 0; r < 3 && system->pieces[p].state == 0; ++r)
-            system->pieces[p].sum[r] /= system->pieces[p].mass;
+    for (p = 0; p < system->piece_count; ++p) {
+        gxsp_piece *piece = &system->pieces[p];
+        for (r = 0; r < 3; ++r)
+            piece->sum[r] = piece->state & ~ignored ? 0 : piece->sum[r] / piece->mass;
+    }
 }
 
 /* Subtracts from x, piece by piece, the translation with x's momentum. */
@@ -7114,7 +7117,7 @@ static void gxsp_remove_translations(gxsp_system *system, gxsp_vector4 *x)
         const double m = system->lumped[i];
         gxsp_add_to_piece(system, i, m * (double)x[i][0], m * (double)x[i][1], m * (double)x[i][2]);
     }
-    gxsp_average_pieces(system);
+    gxsp_average_pieces(system, 0);
     for (i = 0; i < system->n; ++i)
         for (r = 0; r < 3; ++r)
             x[i][r] -= (float)system->pieces[system->piece[i]].sum[r];
@@ -7131,18 +7134,18 @@ static void gxsp_remove_momentum(gxsp_system *system, double *x)
         const double m = system->lumped[i];
         gxsp_add_to_piece(system, i, m * x[3 * i], m * x[3 * i + 1], m * x[3 * i + 2]);
     }
-    gxsp_average_pieces(system);
+    gxsp_average_pieces(system, 0);
     for (i = 0; i < system->n; ++i)
         for (r = 0; r < 3; ++r)
             x[3 * i + r] -= system->pieces[system->piece[i]].sum[r];
 }
 
-/* Translates every loose piece of x so that load = rate M (x - target) in sum. */
-static void gxsp_balance_momentum(const gxsp_problem *problem, double *x)
+/* Translates every piece of x that has no state but those ignored so that load = rate M (base + x - target) in sum. base: n x 3, or NULL: 0 */
+static void gxsp_balance_momentum(const gxsp_problem *problem, uint32_t ignored, const double *base, double *x)
 {
     gxsp_system *system = problem->system;
     size_t i, r;
-    if (system->loose_count == 0)
+    if ((ignored ? system->free_count : system->loose_count) == 0)
         return;
     gxsp_clear_pieces(system);
     for (i = 0; i < system->n; ++i) {
@@ -7150,13 +7153,20 @@ static void gxsp_balance_momentum(const gxsp_problem *problem, double *x)
         double f[3];
         gxsp_load(problem, i, f);
         for (r = 0; r < 3; ++r)
-            f[r] -= rate * (x[3 * i + r] - from[r]);
+            f[r] -= rate * (x[3 * i + r] + (base ? base[3 * i + r] : 0) - from[r]);
         gxsp_add_to_piece(system, i, f[0], f[1], f[2]);
     }
-    gxsp_average_pieces(system);
+    gxsp_average_pieces(system, ignored);
     for (i = 0; i < system->n; ++i)
         for (r = 0; r < 3; ++r)
             x[3 * i + r] += system->pieces[system->piece[i]].sum[r] / problem->rate;
+}
+
+/* Translates every piece of the direction that nothing acts on now so that its momentum balances: linear solves are in single precision, to which
+ * that of a piece of next to no mass, which contact has pushed before, is rounding. */
+static void gxsp_balance_direction(const gxsp_problem *problem)
+{
+    gxsp_balance_momentum(problem, GXSP_TOUCHED, problem->system->current, problem->system->direction);
 }
 
 /* Forgets what springs and contact have acted on. */
@@ -7164,7 +7174,7 @@ static void gxsp_untouch_pieces(gxsp_system *system)
 {
     uint32_t p;
     for (p = 0; p < system->piece_count; ++p)
-        system->pieces[p].state &= ~GXSP_TOUCHED;
+        system->pieces[p].state &= ~(GXSP_TOUCHED | GXSP_TOUCHES);
 }
 
 /* Pieces that springs and contact act on, of which terms tells, are not loose, nor are they again in this run of Newton's method: their
@@ -7174,13 +7184,17 @@ static void gxsp_touch_pieces(gxsp_system *system)
     size_t t;
     uint32_t p;
     int k;
+    for (p = 0; p < system->piece_count; ++p)
+        system->pieces[p].state &= ~GXSP_TOUCHES;
     for (t = 0; t < system->lasting->count; ++t)
         for (k = 0; k < 4; ++k)
             if (system->lasting->term[t].weight[k] * system->lasting->term[t].weight[k] > 0)
-                system->pieces[system->piece[system->lasting->term[t].copy[k]]].state |= GXSP_TOUCHED;
-    system->loose_count = 0;
-    for (p = 0; p < system->piece_count; ++p)
+                system->pieces[system->piece[system->lasting->term[t].copy[k]]].state |= GXSP_TOUCHED | GXSP_TOUCHES;
+    system->loose_count = system->free_count = 0;
+    for (p = 0; p < system->piece_count; ++p) {
         system->loose_count += system->pieces[p].state == 0;
+        system->free_count += (system->pieces[p].state & ~GXSP_TOUCHED) == 0;
+    }
 }
 
 /* >>points: springs and contact at material points */
@@ -7721,7 +7735,7 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
     problem->nepers = now.energy > 0 && guessed.energy > now.energy ? 0.5 * log(guessed.energy / now.energy) : 0;
     gxsp_note_left(system);
     gxsp_follow(system, NULL, system->direction);
-    gxsp_remove_momentum(system, system->direction); /* what single precision left of it */
+    gxsp_balance_direction(problem);
     if (gxsp_first_not_finite(system->direction, 3 * system->n) < 3 * system->n)
         return 0;
     if (start)
@@ -8144,7 +8158,7 @@ static void gxsp_lead_lights(const gxsp_problem *problem)
 }
 
 /* Start of Newton at base or where inertia leads, each loose piece translated so that its momentum balances. The rest of the
- * iteration cannot change momentum: elastic forces have none, nor do the directions. */
+ * iteration cannot change momentum: elastic forces have none, and directions balance it. */
 static int gxsp_start(gxsp_problem *problem, int led)
 {
     gxsp_system *system = problem->system;
@@ -8158,7 +8172,7 @@ static int gxsp_start(gxsp_problem *problem, int led)
     gxsp_follow(system, problem->given, system->current);
     gxsp_untouch_pieces(system);
     gxsp_terms_make(problem, system->current);
-    gxsp_balance_momentum(problem, system->current);
+    gxsp_balance_momentum(problem, 0, NULL, system->current);
     return gxsp_first_not_finite(system->current, 3 * system->n) == 3 * system->n && gxsp_update(problem);
 }
 
@@ -8200,7 +8214,7 @@ static void gxsp_bound_lights(const gxsp_problem *problem)
     }
     if (any) {
         gxsp_follow(system, NULL, system->direction);
-        gxsp_remove_momentum(system, system->direction);
+        gxsp_balance_direction(problem);
     }
 }
 
@@ -8552,7 +8566,7 @@ static size_t gxsp_count_risen(gxsp_system *system)
 static void gxsp_stay(gxsp_problem *problem)
 {
     gxsp_find_base(problem, problem->system->trial);
-    gxsp_balance_momentum(problem, problem->system->trial);
+    gxsp_balance_momentum(problem, 0, NULL, problem->system->trial);
 }
 
 /* E of every piece at base, when the limits are those at trial, to which loose pieces were translated: E is a parabola along that */
@@ -8674,11 +8688,56 @@ static void gxsp_judge_gain(gxsp_piece *piece, int last)
     piece->length = last ? 0 : next < 0.1 * piece->length ? 0.1 * piece->length : next;
 }
 
+/* Light copies keep their place beside what guides them: in x, n x 3, they go as the mean of their guides. */
+static void gxsp_guide_lights(const gxsp_system *system, double *x)
+{
+    uint32_t i;
+    for (i = 0; i < system->light_count; ++i) {
+        const uint32_t copy = system->lights[i].copy;
+        if (!system->still[copy] && !gxsp_follows(system, copy)) {
+            double mean[3];
+            (void)gxsp_guide(system, &system->lights[i], x, NULL, mean);
+            memcpy(x + 3 * (size_t)copy, mean, sizeof mean);
+        }
+    }
+}
+
+/* The second half of the midpoint rule from current: drift of loose pieces, and direction. What springs or contact act on at its end is not loose.
+ * trial: that end. */
+static void gxsp_find_second_half(const gxsp_problem *problem)
+{
+    gxsp_system *system = problem->system;
+    const size_t count = 3 * system->n;
+    size_t i;
+    uint32_t p;
+    gxsp_find_base(problem, system->trial);
+    for (i = 0; i < count; ++i)
+        system->direction[i] = system->current[i] - system->trial[i];
+    gxsp_clear_pieces(system); /* nothing does if none is loose */
+    gxsp_remove_momentum(system, system->direction);
+    for (p = 0; p < system->piece_count; ++p)
+        memcpy(system->pieces[p].drift, system->pieces[p].sum, sizeof system->pieces->drift);
+    gxsp_guide_lights(system, system->direction);
+    gxsp_remove_momentum(system, system->direction);
+    for (i = 0; i < count; ++i)
+        system->trial[i] = system->current[i] + (system->direction[i] + system->pieces[system->piece[i / 3]].drift[i % 3]);
+    gxsp_touch_pieces_at(problem, system->trial);
+    for (i = 0; i < count; ++i)
+        system->direction[i] = system->pieces[system->piece[i / 3]].state == 0 ? system->direction[i] : system->trial[i] - system->current[i];
+    for (p = 0; p < system->piece_count; ++p) { /* a drift has its own part of the kinetic energy */
+        gxsp_piece *piece = &system->pieces[p];
+        if (piece->state == 0)
+            system->pieces[piece->lead].low += 0.5 * problem->rate * piece->mass * gxsp_dot(piece->drift, piece->drift, 1);
+        else
+            memset(piece->drift, 0, sizeof piece->drift);
+    }
+}
+
 /* The midpoint rule goes on from current by as much as from base to current, to an energy of E there, as that of the start is E(base).
  * These are equal but for terms of third order in the way, for what Newton's method and conjugate gradients have left, which would add
  * up from step to step and grow without end, and for springs and contact that first act beyond current. Where a piece would gain more than a
  * share of its kinetic energy, its second half is shortened, but for the translation of a piece that nothing acts on at either place. At worst
- * the step ends at current, where E is not above E(base). direction: what is taken off the second half, m. */
+ * the step ends at current, where E is not above E(base). Light copies go as what guides them: nothing would damp them. direction becomes the end. */
 static void gxsp_bound_gain(gxsp_problem *problem)
 {
     gxsp_system *system = problem->system;
@@ -8700,23 +8759,11 @@ static void gxsp_bound_gain(gxsp_problem *problem)
         system->pieces[p].low = system->pieces[p].gain;
         system->pieces[p].length = 1;
     }
-    gxsp_find_base(problem, system->trial);
-    for (i = 0; i < count; ++i) {
-        system->direction[i] = system->current[i] - system->trial[i];
-        system->trial[i] += 2 * system->direction[i];
-    }
-    gxsp_touch_pieces_at(problem, system->trial);
-    gxsp_remove_momentum(system, system->direction);
-    for (p = 0; p < system->piece_count; ++p) { /* a translation that stays, sum, has its own part of the kinetic energy */
-        const gxsp_piece *piece = &system->pieces[p];
-        if (piece->state == 0)
-            system->pieces[piece->lead].low += 0.5 * problem->rate * piece->mass * gxsp_dot(piece->sum, piece->sum, 1);
-    }
+    gxsp_find_second_half(problem);
     for (trial = 0; trial < GXSP_GAIN_TRIALS && left > 0; ++trial) {
-        gxsp_find_base(problem, system->trial);
         for (i = 0; i < count; ++i)
-            system->trial[i] = 2 * system->current[i] - system->trial[i] -
-                               (1 - gxsp_lead_of(system, i / 3)->length) * system->direction[i];
+            system->trial[i] = system->current[i] + (system->pieces[system->piece[i / 3]].drift[i % 3] +
+                                                     gxsp_lead_of(system, i / 3)->length * system->direction[i]);
         gxsp_evaluate(problem, system->trial, 0, system->force);
         gxsp_find_gains(problem, system->trial, 1);
         for (p = 0, left = 0; p < system->piece_count; ++p) {
@@ -8726,11 +8773,8 @@ static void gxsp_bound_gain(gxsp_problem *problem)
             left += piece->lead == p && !piece->settled;
         }
     }
-    gxsp_find_base(problem, system->trial);
-    for (i = 0; i < count; ++i) {
-        const gxsp_piece *piece = gxsp_lead_of(system, i / 3);
-        system->direction[i] = piece->settled ? (1 - piece->length) * system->direction[i] : system->current[i] - system->trial[i];
-    }
+    for (i = 0; i < count; ++i)
+        system->direction[i] = gxsp_lead_of(system, i / 3)->settled ? system->trial[i] : system->current[i];
     for (p = 0; p < system->piece_count; ++p)
         system->pieces[p].settled = 0;
 }
@@ -8745,14 +8789,15 @@ static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double
     double *speeds = system->residual, *ends = system->direction;
     if (bounded)
         gxsp_bound_gain(problem);
+    for (i = 0; i < count; ++i)
+        if (!bounded || system->still[i / 3])
+            ends[i] = midpoint ? 2 * system->current[i] - displacement[i] : system->current[i];
+    gxsp_follow(system, displacement, ends);
     for (i = 0; i < count; ++i) {
-        const double less = bounded ? ends[i] : 0;
-        ends[i] = midpoint ? 2 * system->current[i] - displacement[i] - less : system->current[i];
         if (system->still[i / 3])
             speeds[i] = step->integrator == GXS_STATIC ? 0 : (ends[i] - displacement[i]) / step->dt;
         else
-            speeds[i] = problem->speed * ((system->current[i] - gxsp_mean(problem, displacement, i)) * (midpoint ? 2 : 1) - less) -
-                        (midpoint ? velocity[i] : 0);
+            speeds[i] = problem->speed * (ends[i] - gxsp_mean(problem, displacement, i)) - (midpoint ? velocity[i] : 0);
     }
     problem->report.energy = gxsp_potential(problem, problem->energies, system->current);
     if (gxsp_first_not_finite(speeds, count) < count || gxsp_first_not_finite(ends, count) < count ||
@@ -9199,7 +9244,7 @@ GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene)
     system->pace = system->read_nepers = 0;
     for (p = 0; p < system->piece_count; ++p) {
         gxsp_piece *piece = &system->pieces[p];
-        piece->state &= ~(GXSP_TOUCHED | GXSP_ASLEEP);
+        piece->state &= ~(GXSP_TOUCHED | GXSP_TOUCHES | GXSP_ASLEEP);
         piece->forces[0] = piece->forces[1] = 0;
         piece->sprung[0] = piece->sprung[1] = 0;
     }
@@ -9577,6 +9622,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_HELD
 #undef GXSP_UNBALANCED
 #undef GXSP_TOUCHED
+#undef GXSP_TOUCHES
 #undef GXSP_ASLEEP
 #undef GXSP_COLLAPSED
 #undef GXSP_STRETCHED

@@ -88,8 +88,8 @@ static gx_result make_body(life *l)
     elements = 5 * (size_t)l->cells * l->cells * l->cells;
     memset(material, 0, sizeof material);
     memset(&desc, 0, sizeof desc);
-    for (i = 0; i < 3; ++i) {
-        material[i].elastic.kind = (gxs_material_kind)(same < 3 ? same : below(4));
+    for (i = 0; i < 3; ++i) { /* not GXS_LINEAR, which is for small rotations: loose fragments of it that tumble grow without end */
+        material[i].elastic.kind = (gxs_material_kind)(same < 3 ? same : below(3));
         material[i].elastic.young = pow(10, 4 + 2 * uniform());
         material[i].elastic.poisson = below(4) ? 0.3 : 0.49;
         material[i].density = density[i];
