@@ -29,6 +29,7 @@ help:
 	@echo "make scenes      runs the scenes of the papers, writes docs/SCENES.md; SMALL=1: small ones, $(BUILD)/scenes/SCENES.md"
 	@echo "make pictures    renders the scenes into docs/pictures/; installs f3d and a virtual display where they are missing"
 	@echo "make lint        house rules of the four headers"
+	@echo "make format      lays out all C files by .clang-format; installs clang-format where it is missing"
 	@echo "make compile     the headers by every compiler and standard there is, C and C++"
 	@echo "make sanitize    the tests under AddressSanitizer and UndefinedBehaviorSanitizer"
 	@echo "make fuzz        random cases against what must be true of any; SEED=, CASES=, SECONDS= (0: no limit)"
@@ -149,6 +150,12 @@ compile:
 lint:
 	@sh tests/lint.sh $(headers)
 
+# By clang-format 14, whose versions differ in details. What is between "clang-format off" and "on" stays: tables.
+formatted = $(headers) $(wildcard examples/*.[ch] tests/*.[ch] tests/compile/*.[ch] tests/compile/*.cc bench/*.[ch])
+format:
+	@sh tests/install.sh format
+	@clang-format -i $(formatted)
+
 flags:
 	@JOBS=$(JOBS) sh tests/flags.sh
 
@@ -254,4 +261,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo scenes pictures bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(tests:%=run-%) sanitize sanitize-scenes compile lint fuzz flags hashes check-wasm $(benches:%=bench-%) bench charts check-all clean
+.PHONY: help examples demo scenes pictures bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(tests:%=run-%) sanitize sanitize-scenes compile lint format fuzz flags hashes check-wasm $(benches:%=bench-%) bench charts check-all clean

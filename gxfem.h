@@ -1,8 +1,9 @@
 /* gxfem.h - cuts deformable bodies: exact where others guess. Part of gxfem 0.1.
  *
- * A body is a tetrahedral mesh with a material. Cuts are triangle surfaces in material (rest) coordinates, any number of them,
- * crossing each other as they like. The mesh is never remeshed: where material separates, nodes get further copies of their
- * displacement (GXFEM Eq. 18), and every integral over a cut element is exact. Implicit time steps move it (gxfem_solve.h).
+ * A body is a tetrahedral mesh with a material. Cuts are triangle surfaces in material (rest) coordinates, any number
+ * of them, crossing each other as they like. The mesh is never remeshed: where material separates, nodes get further
+ * copies of their displacement (GXFEM Eq. 18), and every integral over a cut element is exact. Implicit time steps move
+ * it (gxfem_solve.h).
  *
  * One minute:
  *
@@ -40,18 +41,22 @@
  *     >>skin       the visual surface, rays
  *     >>hash       of the topology, of the state
  *     >>save       save and load, clone and restore
- *     then, under GXFEM_IMPLEMENTATION: >>memory >>tree >>create >>transaction >>surfaces >>arrange >>solids >>links >>cells
+ *     then, under GXFEM_IMPLEMENTATION: >>memory >>tree >>create >>transaction >>surfaces >>arrange >>solids >>links
+ * >>cells
  *     >>components >>integrals >>commit >>regions >>fragments >>parts >>bytes >>boundary >>hashes
  *
- * Words. Wall: a piece of a sheet inside the body or on an element face. Cell: a connected piece of one element after cutting
- * (GXFEM Eq. 20). Link: a piece of the face between two elements that no wall covers. Copy: a node's displacement for one
- * connected set of cells around the node (GXFEM Eq. 18). Fragment: a connected set of cells of the body.
+ * Words. Wall: a piece of a sheet inside the body or on an element face. Cell: a connected piece of one element after
+ * cutting (GXFEM Eq. 20). Link: a piece of the face between two elements that no wall covers. Copy: a node's
+ * displacement for one connected set of cells around the node (GXFEM Eq. 18). Fragment: a connected set of cells of the
+ * body.
  *
- * What is exact: which cells there are, what they are linked to, hence copies and fragments; decisions are signs of polynomials
- * in the given coordinates (gxfem_boolean.h). What is rounded, once: volumes, masses and vertices, as doubles.
+ * What is exact: which cells there are, what they are linked to, hence copies and fragments; decisions are signs of
+ * polynomials in the given coordinates (gxfem_boolean.h). What is rounded, once: volumes, masses and vertices, as
+ * doubles.
  *
  * What it does not do (yet): contact between pieces, cuts given in the deformed state,
- * unknowns within a partly cut element (a sheet that ends inside an element separates nothing there until another completes it).
+ * unknowns within a partly cut element (a sheet that ends inside an element separates nothing there until another
+ * completes it).
  *
  * Limits: 2^31 - 1 of each kind of object; one body is for one thread at a time; no global state, no output, no clock
  * of its own. A body's coordinates are at most 2^100 (1.3e30), its longest side is at least 2^-100 (7.9e-31), each
@@ -59,8 +64,9 @@
  * bodies are normal numbers, and floats hold the skin. Beside the body's size, coordinates of bodies and cuts are 0
  * or 2^-128 ... 2^128. What is not within these limits is refused (GX_ERROR_RANGE).
  *
- * References: GXFEM = Ton-That, Kry, Andrews: Generalized eXtended Finite Element Method for Deformable Cutting via Boolean
- * Operations (2024). RXFEM = Koschier, Bender, Thuerey: Robust eXtended Finite Elements for Complex Cutting of Deformables (2017).
+ * References: GXFEM = Ton-That, Kry, Andrews: Generalized eXtended Finite Element Method for Deformable Cutting via
+ * Boolean Operations (2024). RXFEM = Koschier, Bender, Thuerey: Robust eXtended Finite Elements for Complex Cutting of
+ * Deformables (2017).
  */
 #ifndef GXFEM_H
 #define GXFEM_H
@@ -90,30 +96,30 @@
 /* What a function that can fail returns. On anything but GX_OK its inputs are as they were. */
 typedef enum gx_result {
     GX_OK = 0,
-    GX_ERROR_ARGUMENT,      /* a required pointer is NULL, a required field is zero or senseless */
-    GX_ERROR_MEMORY,        /* the allocator returned NULL */
-    GX_ERROR_NOT_FINITE,    /* a coordinate or parameter is NaN or infinite */
-    GX_ERROR_RANGE,         /* a coordinate or a mass is too large or too small (see "limits") */
-    GX_ERROR_INDEX,         /* an index points outside its array */
-    GX_ERROR_EMPTY,         /* no elements, no nodes or no triangles */
-    GX_ERROR_INVERTED,      /* an element has negative volume */
-    GX_ERROR_FLAT,          /* an element has no volume */
-    GX_ERROR_OVERLAP,       /* an element face is shared by more than two elements, or by two on one side */
-    GX_ERROR_NOT_CLOSED,    /* a solid's surface has a boundary, or its triangles are not oriented alike */
-    GX_ERROR_LIMIT,         /* more objects than 32-bit indices can name, or a caller's limit is reached */
-    GX_ERROR_DIVERGED,      /* a time step found no finite state of lower energy */
-    GX_ERROR_FREE,          /* a static balance is asked of a piece that nothing holds */
-    GX_ERROR_FORMAT,        /* not a saved body, or one of another version or another kind of machine */
-    GX_ERROR_DAMAGED,       /* a saved body is cut short, or what it says cannot be */
-    GX_ERROR_STALE,         /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
-    GX_ERROR_CONFIGURATION  /* arithmetic is not what exact predicates need: see >>numbers in gxfem_boolean.h */
+    GX_ERROR_ARGUMENT,     /* a required pointer is NULL, a required field is zero or senseless */
+    GX_ERROR_MEMORY,       /* the allocator returned NULL */
+    GX_ERROR_NOT_FINITE,   /* a coordinate or parameter is NaN or infinite */
+    GX_ERROR_RANGE,        /* a coordinate or a mass is too large or too small (see "limits") */
+    GX_ERROR_INDEX,        /* an index points outside its array */
+    GX_ERROR_EMPTY,        /* no elements, no nodes or no triangles */
+    GX_ERROR_INVERTED,     /* an element has negative volume */
+    GX_ERROR_FLAT,         /* an element has no volume */
+    GX_ERROR_OVERLAP,      /* an element face is shared by more than two elements, or by two on one side */
+    GX_ERROR_NOT_CLOSED,   /* a solid's surface has a boundary, or its triangles are not oriented alike */
+    GX_ERROR_LIMIT,        /* more objects than 32-bit indices can name, or a caller's limit is reached */
+    GX_ERROR_DIVERGED,     /* a time step found no finite state of lower energy */
+    GX_ERROR_FREE,         /* a static balance is asked of a piece that nothing holds */
+    GX_ERROR_FORMAT,       /* not a saved body, or one of another version or another kind of machine */
+    GX_ERROR_DAMAGED,      /* a saved body is cut short, or what it says cannot be */
+    GX_ERROR_STALE,        /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
+    GX_ERROR_CONFIGURATION /* arithmetic is not what exact predicates need: see >>numbers in gxfem_boolean.h */
 } gx_result;
 
 /* What went wrong, and where: index of the node, element, triangle or copy concerned. */
 typedef struct gx_failure {
     gx_result result;
-    size_t index;           /* SIZE_MAX: no single object is to blame */
-    size_t surface;         /* of a cut: which of its surfaces; else SIZE_MAX */
+    size_t index;   /* SIZE_MAX: no single object is to blame */
+    size_t surface; /* of a cut: which of its surfaces; else SIZE_MAX */
 } gx_failure;
 
 /* Where memory comes from. Zero-initialised: malloc, free and realloc. */
@@ -121,13 +127,15 @@ typedef struct gx_allocator {
     void *(*allocate)(void *user, size_t size);             /* NULL when there is none; size is never 0 */
     void (*release)(void *user, void *memory, size_t size); /* size as it was allocated; memory is never NULL */
     void *user;
-    /* A larger block with the bytes of the old one, which is then gone; NULL when there is none, and the old one stays. NULL: memory that
-       grows is allocated, copied and released. Only with the other two. */
+    /* A larger block with the bytes of the old one, which is then gone; NULL when there is none, and the old one stays.
+       NULL: memory that grows is allocated, copied and released. Only with the other two. */
     void *(*reallocate)(void *user, void *memory, size_t size, size_t larger);
 } gx_allocator;
-/* How work is handed to the host's threads. Zero-initialised: the calling thread does it all. Results do not depend on it. */
+/* How work is handed to the host's threads. Zero-initialised: the calling thread does it all. Results do not depend on
+ * it. */
 typedef struct gx_jobs {
-    /* Calls task(context, i) once for each i below count, on any threads, in any order, and returns when all have returned. */
+    /* Calls task(context, i) once for each i below count, on any threads, in any order, and returns when all have
+     * returned. */
     void (*parallel_for)(void *user, size_t count, void (*task)(void *context, size_t index), void *context);
     void *user;
 } gx_jobs;
@@ -139,146 +147,166 @@ typedef struct gx_jobs {
 extern "C" {
 #endif
 
-/* >>body: units are the caller's, here SI ------------------------------------------------------------------------------ */
+/* >>body: units are the caller's, here SI -------------------------------------------------------------------------- */
 
-typedef struct gx_body gx_body;                     /* opaque */
+typedef struct gx_body gx_body; /* opaque */
 
 typedef struct gx_material {
     gxs_material elastic;
-    double density;             /* kg/m3, > 0 */
+    double density; /* kg/m3, > 0 */
 } gx_material;
 
 typedef struct gx_body_desc {
-    const double *positions;    /* node_count x 3, material coordinates, m */
+    const double *positions; /* node_count x 3, material coordinates, m */
     size_t node_count;
-    const uint32_t *elements;   /* element_count x 4 node indices, positive volume: det(x1-x0, x2-x0, x3-x0) > 0 */
+    const uint32_t *elements; /* element_count x 4 node indices, positive volume: det(x1-x0, x2-x0, x3-x0) > 0 */
     size_t element_count;
-    double young;               /* Pa, > 0: of one stable neo-Hookean material, if materials is NULL */
-    double poisson;             /* 0 <= poisson < 0.5 */
-    double density;             /* kg/m3, > 0 */
-    const gx_material *materials; size_t material_count;
-    const uint32_t *element_materials;  /* element_count, below material_count; NULL: all of materials[0] */
-    const float *texture;       /* node_count x 2: texture coordinates of the outer surface; NULL: all 0 */
-    double support_below;       /* below 1: copies around which no part of an element is as large a share of it follow
-                                   others, see gx_body_step; 0: 1e-3. 1e-300: none does, and slivers may be flung about */
-    gx_allocator allocator;     /* zero: malloc, free, realloc */
-    double (*clock)(void *user);/* seconds, for the reports' timings and the steps' budgets; NULL: timings are 0 */
+    double young;   /* Pa, > 0: of one stable neo-Hookean material, if materials is NULL */
+    double poisson; /* 0 <= poisson < 0.5 */
+    double density; /* kg/m3, > 0 */
+    const gx_material *materials;
+    size_t material_count;
+    const uint32_t *element_materials; /* element_count, below material_count; NULL: all of materials[0] */
+    const float *texture;              /* node_count x 2: texture coordinates of the outer surface; NULL: all 0 */
+    /* below 1: copies around which no part of an element is as large a share of it follow others, see gx_body_step; 0:
+     * 1e-3. 1e-300: none does, and slivers may be flung about */
+    double support_below;
+    gx_allocator allocator;      /* zero: malloc, free, realloc */
+    double (*clock)(void *user); /* seconds, for the reports' timings and the steps' budgets; NULL: timings are 0 */
     void *clock_user;
-    gx_jobs jobs;               /* the host's threads, for the steps; zero: none */
+    gx_jobs jobs; /* the host's threads, for the steps; zero: none */
 } gx_body_desc;
 /* Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE (index: the node that is too far out, the element that is too
    heavy or too light, SIZE_MAX where the body is too small), INVERTED, FLAT (exactly, or in doubles), OVERLAP (index:
    the node, element or material), LIMIT, MEMORY, CONFIGURATION. The arrays of the description are copied. */
 GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **body, gx_failure *failure /* or NULL */);
-GXFEM_API void gx_body_destroy(gx_body *body);      /* NULL is fine */
+GXFEM_API void gx_body_destroy(gx_body *body); /* NULL is fine */
 
-/* >>cut ------------------------------------------------------------------------------------------------------------------ */
+/* >>cut ------------------------------------------------------------------------------------------------------------ */
 
-/* A sheet separates what lies on its two sides; it may be open, closed, curved, cross itself, be non-manifold. A solid is closed
-   and consistently oriented; it removes the material around which it winds. */
+/* A sheet separates what lies on its two sides; it may be open, closed, curved, cross itself, be non-manifold. A solid
+   is closed and consistently oriented; it removes the material around which it winds. */
 enum { GX_SURFACE_SHEET = 0, GX_SURFACE_SOLID = 1 };
 typedef struct gx_surface {
-    const double *vertices;     /* vertex_count x 3, material coordinates */
+    const double *vertices; /* vertex_count x 3, material coordinates */
     size_t vertex_count;
-    const uint32_t *triangles;  /* triangle_count x 3 */
+    const uint32_t *triangles; /* triangle_count x 3 */
     size_t triangle_count;
-    uint32_t kind;              /* GX_SURFACE_SHEET or GX_SURFACE_SOLID */
-    const float *texture;       /* vertex_count x 2: texture coordinates of the faces that it cuts; NULL: all 0 */
+    uint32_t kind;        /* GX_SURFACE_SHEET or GX_SURFACE_SOLID */
+    const float *texture; /* vertex_count x 2: texture coordinates of the faces that it cuts; NULL: all 0 */
 } gx_surface;
 typedef struct gx_cut_desc {
-    const gx_surface *surfaces; size_t surface_count;
-    const uint32_t *scope_fragments; size_t scope_fragment_count;   /* 0: the whole body; places in gx_view: of cell_fragment, not fragment_id */
-    const uint32_t *scope_cells; size_t scope_cell_count;           /* 0: the whole body; places in gx_view */
-    double sever_below;         /* links of touched cells with a smaller share of their face are severed; 0: never */
+    const gx_surface *surfaces;
+    size_t surface_count;
+    /* 0: the whole body; places in gx_view: of cell_fragment, not fragment_id */
+    const uint32_t *scope_fragments;
+    size_t scope_fragment_count;
+    /* 0: the whole body; places in gx_view */
+    const uint32_t *scope_cells;
+    size_t scope_cell_count;
+    double sever_below; /* links of touched cells with a smaller share of their face are severed; 0: never */
 } gx_cut_desc;
 typedef struct gx_cut_report {
     size_t touched_elements, created_cells, removed_cells, created_copies, removed_copies;
-    size_t ignored_triangles;   /* of zero area */
+    size_t ignored_triangles; /* of zero area */
     size_t severed_links;
-    double min_link_ratio;      /* smallest link area / face area among the links of cells that this cut touched; 1 if none is smaller */
+    /* smallest link area / face area among the links of cells that this cut touched; 1 if none is smaller */
+    double min_link_ratio;
     double removed_volume;
     double seconds_arrangement, seconds_enrichment, seconds_integrals;
 } gx_cut_report;
-/* Cuts by all surfaces at once. The displacement and velocity fields are the same functions of material points before and after.
-   Errors: ARGUMENT, EMPTY, INDEX (triangle, or place in the scope), NOT_FINITE and RANGE (vertex), NOT_CLOSED (triangle), LIMIT, MEMORY; the body is then
-   exactly as it was. */
-GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_report *report /* or NULL */, gx_failure *failure /* or NULL */);
+/* Cuts by all surfaces at once. The displacement and velocity fields are the same functions of material points before
+   and after. Errors: ARGUMENT, EMPTY, INDEX (triangle, or place in the scope), NOT_FINITE and RANGE (vertex),
+   NOT_CLOSED (triangle), LIMIT, MEMORY; the body is then exactly as it was. */
+GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_report *report /* or NULL */,
+                                gx_failure *failure /* or NULL */);
 
 /* A sheet made solid (GXFEM section 4.1): offset by thickness/2 to both sides along its vertex normals, rim closed.
-   vertices: room for 2 x vertex_count x 3; triangles: room for 8 x triangle_count x 3. Vertices where normals cancel stay.
-   Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE (a sum or difference of coordinates is beyond doubles), LIMIT,
-   MEMORY; what has been written then means nothing. */
-GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thickness, double *vertices, size_t *vertex_count,
-                                        uint32_t *triangles, size_t *triangle_count, const gx_allocator *allocator /* or NULL */);
+   vertices: room for 2 x vertex_count x 3; triangles: room for 8 x triangle_count x 3. Vertices where normals cancel
+   stay. Errors: ARGUMENT, EMPTY, INDEX, NOT_FINITE, RANGE (a sum or difference of coordinates is beyond doubles),
+   LIMIT, MEMORY; what has been written then means nothing. */
+GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thickness, double *vertices,
+                                        size_t *vertex_count, uint32_t *triangles, size_t *triangle_count,
+                                        const gx_allocator *allocator /* or NULL */);
 
-/* >>view ----------------------------------------------------------------------------------------------------------------- */
+/* >>view ----------------------------------------------------------------------------------------------------------- */
 
 /* What cuts have done to a fragment */
 enum {
     GX_FRAGMENT_UNCHANGED = 0,
-    GX_FRAGMENT_TOUCHED,        /* cut but whole, or less than it was: partial cuts, material removed */
-    GX_FRAGMENT_SPLIT,          /* lost pieces that are fragments now, and kept its id as the heaviest piece (the first of equals) */
-    GX_FRAGMENT_CREATED         /* a piece that fell off: its id is new, fragment_origin says from what */
+    GX_FRAGMENT_TOUCHED, /* cut but whole, or less than it was: partial cuts, material removed */
+    /* lost pieces that are fragments now, and kept its id as the heaviest piece (the first of equals) */
+    GX_FRAGMENT_SPLIT,
+    GX_FRAGMENT_CREATED /* a piece that fell off: its id is new, fragment_origin says from what */
 };
 
-/* Everything one reads off a body: arrays owned by the body, valid until the next cut, restore or its destruction. Changes of
-   fragments are those between the last view before a cut (the creation counts as one) and the first view after it; cuts without a
-   view between them are one change. Views without a cut between them tell the same. */
+/* Everything one reads off a body: arrays owned by the body, valid until the next cut, restore or its destruction.
+   Changes of fragments are those between the last view before a cut (the creation counts as one) and the first view
+   after it; cuts without a view between them are one change. Views without a cut between them tell the same. */
 typedef struct gx_view {
     size_t node_count, element_count;
-    size_t cell_count;              /* kept cells, sorted by element */
-    const uint32_t *cell_element;   /* cell_count */
-    const uint32_t *cell_copies;    /* cell_count x 4 */
-    const double *cell_volume;      /* cell_count, m3 */
-    const uint32_t *cell_fragment;  /* cell_count */
+    size_t cell_count;             /* kept cells, sorted by element */
+    const uint32_t *cell_element;  /* cell_count */
+    const uint32_t *cell_copies;   /* cell_count x 4 */
+    const double *cell_volume;     /* cell_count, m3 */
+    const uint32_t *cell_fragment; /* cell_count */
     size_t copy_count;
-    const uint32_t *copy_node;      /* copy_count */
-    const uint8_t *copy_held;       /* copy_count, 1: held by a Dirichlet region */
-    uint64_t epoch;                 /* names this numbering of copies. A cut that creates or removes copies begins
-                                       another one, any other cut leaves it. 0: no cut has begun one yet. Bodies cut
-                                       alike have the same epoch, bodies cut otherwise have others */
-    double *displacement;           /* copy_count x 3, m; the caller may write, and then takes a step of GXS_BDF1 before one of GXS_BDF2 */
-    double *velocity;               /* copy_count x 3, m/s; likewise */
-    double *rest_time;              /* copy_count: for how long it has been slower than sleep_speed, s; the caller may write 0 to wake it; calls
-                                       that find its state written since the last step do, whether they succeed or not */
+    const uint32_t *copy_node; /* copy_count */
+    const uint8_t *copy_held;  /* copy_count, 1: held by a Dirichlet region */
+    /* names this numbering of copies. A cut that creates or removes copies begins another one, any other cut leaves it.
+     * 0: no cut has begun one yet. Bodies cut alike have the same epoch, bodies cut otherwise have others */
+    uint64_t epoch;
+    /* copy_count x 3, m; the caller may write, and then takes a step of GXS_BDF1 before one of GXS_BDF2 */
+    double *displacement;
+    double *velocity; /* copy_count x 3, m/s; likewise */
+    /* copy_count: for how long it has been slower than sleep_speed, s; the caller may write 0 to wake it; calls that
+     * find its state written since the last step do, whether they succeed or not */
+    double *rest_time;
     size_t fragment_count;
-    const double *fragment_volume;  /* fragment_count, m3 */
-    const double *fragment_mass;    /* kg */
-    const double *fragment_center;  /* fragment_count x 3, centre of mass, material coordinates */
-    const double *fragment_inertia; /* fragment_count x 6, about the centre, material coordinates: 00 01 02 11 12 22, kg m2 */
-    const uint32_t *fragment_id;    /* fragment_count; 1, 2 ...: of this fragment as long as it is there, of no other ever after */
-    const uint32_t *fragment_origin;/* fragment_count: id of the fragment that it was part of before the change */
-    const uint32_t *fragment_change;/* fragment_count: GX_FRAGMENT_ */
+    const double *fragment_volume; /* fragment_count, m3 */
+    const double *fragment_mass;   /* kg */
+    const double *fragment_center; /* fragment_count x 3, centre of mass, material coordinates */
+    /* fragment_count x 6, about the centre, material coordinates: 00 01 02 11 12 22, kg m2 */
+    const double *fragment_inertia;
+    /* fragment_count; 1, 2 ...: of this fragment as long as it is there, of no other ever after */
+    const uint32_t *fragment_id;
+    const uint32_t *fragment_origin; /* fragment_count: id of the fragment that it was part of before the change */
+    const uint32_t *fragment_change; /* fragment_count: GX_FRAGMENT_ */
     size_t removed_count;
-    const uint32_t *removed_ids;    /* removed_count: ids of the fragments of which the change left nothing */
-    double volume, mass;            /* of the body */
+    const uint32_t *removed_ids; /* removed_count: ids of the fragments of which the change left nothing */
+    double volume, mass;         /* of the body */
 } gx_view;
 /* Errors: ARGUMENT, MEMORY, LIMIT (no ids left). */
 GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view);
 
 /* How a fragment moves: integrals over its deformed shape by the consistent mass. */
 typedef struct gx_motion {
-    double mass;                /* kg */
-    double center[3];           /* centre of mass, m, in space */
-    double inertia[6];          /* about it: 00 01 02 11 12 22, kg m2 */
-    double velocity[3];         /* of the centre: momentum / mass, m/s */
-    double angular_velocity[3]; /* inverse of inertia times angular momentum about the centre, 1/s; no part around an axis about which
-                                   there is no inertia to speak of (a point, a line) */
-    double energy;              /* kinetic, J */
+    double mass;        /* kg */
+    double center[3];   /* centre of mass, m, in space */
+    double inertia[6];  /* about it: 00 01 02 11 12 22, kg m2 */
+    double velocity[3]; /* of the centre: momentum / mass, m/s */
+    /* inverse of inertia times angular momentum about the centre, 1/s; no part around an axis about which there is no
+     * inertia to speak of (a point, a line) */
+    double angular_velocity[3];
+    double energy; /* kinetic, J */
 } gx_motion;
-/* Motions of all fragments from the present displacement and velocity, in the order of gx_view; capacity: how many there is room for.
-   Errors: ARGUMENT, NOT_FINITE (a displacement or velocity), RANGE (these are so large that a motion is beyond
-   doubles), MEMORY, LIMIT (as well where capacity is below gx_view.fragment_count); what has been written then means
-   nothing. */
+/* Motions of all fragments from the present displacement and velocity, in the order of gx_view; capacity: how many
+   there is room for. Errors: ARGUMENT, NOT_FINITE (a displacement or velocity), RANGE (these are so large that a motion
+   is beyond doubles), MEMORY, LIMIT (as well where capacity is below gx_view.fragment_count); what has been written
+   then means nothing. */
 GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t capacity);
 
-/* >>step ----------------------------------------------------------------------------------------------------------------- */
+/* >>step ----------------------------------------------------------------------------------------------------------- */
 
 /* Half-space of material coordinates: X[axis] < value (side -1) or > value (side +1), strictly. */
-typedef struct gx_region { uint32_t axis; int32_t side; double value; } gx_region;
+typedef struct gx_region {
+    uint32_t axis;
+    int32_t side;
+    double value;
+} gx_region;
 /* Holds (Dirichlet) the copies of nodes in one of the regions whose own component has material there, at their present
-   displacement, now and after later cuts. Replaces what was held before. Errors: ARGUMENT, NOT_FINITE, LIMIT, MEMORY; what was held
-   is then as it was. */
+   displacement, now and after later cuts. Replaces what was held before. Errors: ARGUMENT, NOT_FINITE, LIMIT, MEMORY;
+   what was held is then as it was. */
 GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t region_count);
 
 /* A step as the solver takes it; arrays are by copy, as in gx_view. A point of the skin is a gxs_point by its copies
@@ -288,106 +316,123 @@ GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t
    where it is NULL, that of the body. */
 typedef gxs_step_desc gx_step_desc;
 typedef gxs_step_report gx_step_report;
-/* One time step (GXFEM Eq. 10). A cut wakes the fragments that it touches. Errors: those of gxs_solver_step, MEMORY; the body is then as
-   it was.
-   Copies that only slivers carry (RXFEM Eq. 22; gx_body_desc.support_below) take the increment of the displacement field
-   of the nearest element without such copies: else next to nothing would hold them where they are. A fragment without such
-   an element is thin everywhere. It goes by what is thin beside its fullest part. It moves as a point if that part is
-   smaller than support_below of its element; where support_below is 0, smaller than 1e-9, or if no part reaches a tenth
-   as far as its element does. */
-GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report /* or NULL */, gx_failure *failure /* or NULL */);
+/* One time step (GXFEM Eq. 10). A cut wakes the fragments that it touches. Errors: those of gxs_solver_step, MEMORY;
+   the body is then as it was. Copies that only slivers carry (RXFEM Eq. 22; gx_body_desc.support_below) take the
+   increment of the displacement field of the nearest element without such copies: else next to nothing would hold them
+   where they are. A fragment without such an element is thin everywhere. It goes by what is thin beside its fullest
+   part. It moves as a point if that part is smaller than support_below of its element; where support_below is 0,
+   smaller than 1e-9, or if no part reaches a tenth as far as its element does. */
+GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report /* or NULL */,
+                                 gx_failure *failure /* or NULL */);
 
-/* What the solver sees of the body as it is cut now: for solvers of one's own. Arrays are the body's, valid until its next cut, hold, step or
-   restore. Errors: ARGUMENT, LIMIT, MEMORY; RANGE, FLAT: an element's gradients are not numbers in doubles. */
+/* What the solver sees of the body as it is cut now: for solvers of one's own. Arrays are the body's, valid until its
+   next cut, hold, step or restore. Errors: ARGUMENT, LIMIT, MEMORY; RANGE, FLAT: an element's gradients are not numbers
+   in doubles. */
 GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model);
 
-/* >>skin ----------------------------------------------------------------------------------------------------------------- */
+/* >>skin ----------------------------------------------------------------------------------------------------------- */
 
 typedef struct gx_skin_desc {
-    double crease_angle;        /* the outer surface is shaded smooth across mesh edges that bend by less, rad; 0: each face is flat */
-    int smooth_cuts;            /* 1: faces of a cut are shaded smooth across the edges of its triangles; 0: each of its planes is flat */
+    /* the outer surface is shaded smooth across mesh edges that bend by less, rad; 0: each face is flat */
+    double crease_angle;
+    /* 1: faces of a cut are shaded smooth across the edges of its triangles; 0: each of its planes is flat */
+    int smooth_cuts;
 } gx_skin_desc;
 
 enum { GX_SKIN_OUTER = 0 };
 #define GX_SKIN_SEVERED UINT32_MAX
 
-typedef struct gx_range { uint32_t first, count; } gx_range;
+typedef struct gx_range {
+    uint32_t first, count;
+} gx_range;
 
-/* The visual surface: the outer surface and both faces of every cut that has separated material. Arrays are the body's, valid until the
-   next cut, restore or gx_body_skin. A vertex is a point of one piece with one normal: at creases and along cuts there are several. */
+/* The visual surface: the outer surface and both faces of every cut that has separated material. Arrays are the body's,
+   valid until the next cut, restore or gx_body_skin. A vertex is a point of one piece with one normal: at creases and
+   along cuts there are several. */
 typedef struct gx_skin {
     size_t vertex_count;
-    const uint32_t *vertex_copies;  /* vertex_count x 4: the copies that move it; those of weight 0 stand last */
-    const double *vertex_weights;   /* vertex_count x 4, barycentric: x = sum of weight (X + u) over the copies */
-    const uint32_t *vertex_point;   /* vertex_count; equal: the same material point, exactly. Where the copies of weight not 0 are
-                                       equal too, it is one corner of the surface: with corners so merged it is watertight */
-    const double *vertex_rest;      /* vertex_count x 3, material coordinates, m */
-    const float *vertex_normal;     /* vertex_count x 3, outward, of length 1, at rest */
-    const float *vertex_texture;    /* vertex_count x 2 */
+    const uint32_t *vertex_copies; /* vertex_count x 4: the copies that move it; those of weight 0 stand last */
+    const double *vertex_weights;  /* vertex_count x 4, barycentric: x = sum of weight (X + u) over the copies */
+    /* vertex_count; equal: the same material point, exactly. Where the copies of weight not 0 are equal too, it is one
+     * corner of the surface: with corners so merged it is watertight */
+    const uint32_t *vertex_point;
+    const double *vertex_rest;   /* vertex_count x 3, material coordinates, m */
+    const float *vertex_normal;  /* vertex_count x 3, outward, of length 1, at rest */
+    const float *vertex_texture; /* vertex_count x 2 */
     size_t triangle_count;
-    const uint32_t *triangles;      /* triangle_count x 3, counter-clockwise from outside */
-    const uint32_t *triangle_fragment;  /* triangle_count */
-    const uint32_t *triangle_element;   /* triangle_count */
-    const uint32_t *triangle_material;  /* triangle_count, that of the element (gx_body_desc.element_materials) */
-    const uint32_t *triangle_surface;   /* triangle_count; GX_SKIN_OUTER; 1 + n: face of the n-th surface that the body was cut by, counted
-                                           over all its cuts (where several coincide, the first); GX_SKIN_SEVERED: where a link was severed */
-    /* What differs from the arrays of the call before, ascending; counts may differ too. Fragment ids may differ anywhere. */
-    const gx_range *vertex_ranges; size_t vertex_range_count;
-    const gx_range *triangle_ranges; size_t triangle_range_count;
-    uint64_t epoch;                 /* of the numbering of copies, as in gx_view: for gxs_point */
+    const uint32_t *triangles;         /* triangle_count x 3, counter-clockwise from outside */
+    const uint32_t *triangle_fragment; /* triangle_count */
+    const uint32_t *triangle_element;  /* triangle_count */
+    const uint32_t *triangle_material; /* triangle_count, that of the element (gx_body_desc.element_materials) */
+    /* triangle_count; GX_SKIN_OUTER; 1 + n: face of the n-th surface that the body was cut by, counted over all its
+     * cuts (where several coincide, the first); GX_SKIN_SEVERED: where a link was severed */
+    const uint32_t *triangle_surface;
+    /* What differs from the arrays of the call before, ascending; counts may differ too. Fragment ids may differ
+     * anywhere. */
+    const gx_range *vertex_ranges;
+    size_t vertex_range_count;
+    const gx_range *triangle_ranges;
+    size_t triangle_range_count;
+    uint64_t epoch; /* of the numbering of copies, as in gx_view: for gxs_point */
 } gx_skin;
-/* Rebuilds what cuts have touched since the last call; all of it if desc is another. Errors: ARGUMENT, NOT_FINITE, MEMORY, LIMIT. */
+/* Rebuilds what cuts have touched since the last call; all of it if desc is another. Errors: ARGUMENT, NOT_FINITE,
+ * MEMORY, LIMIT. */
 GXFEM_API gx_result gx_body_skin(gx_body *body, const gx_skin_desc *desc /* or NULL: zero */, gx_skin *skin);
-/* The deformed skin as the last gx_body_skin gave it. Errors: ARGUMENT (also where there is none, or a cut has been since). */
+/* The deformed skin as the last gx_body_skin gave it. Errors: ARGUMENT (also where there is none, or a cut has been
+ * since). */
 GXFEM_API gx_result gx_body_skin_positions(const gx_body *body, double *positions /* vertex_count x 3 */);
-/* The same less an origin, and normals, for drawing. Normals of the outer surface are interpolated from those at nodes, each the mean over
-   the faces of its piece around it, weighted by area. */
+/* The same less an origin, and normals, for drawing. Normals of the outer surface are interpolated from those at nodes,
+   each the mean over the faces of its piece around it, weighted by area. */
 GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3] /* or NULL: 0 */,
                                           float *positions /* vertex_count x 3, or NULL */,
                                           float *normals /* vertex_count x 3, of length 1, or NULL */);
 
 /* Where a ray first meets the deformed skin. With copies and weights it can be held on to: see gxs_spring. */
 typedef struct gx_hit {
-    uint32_t triangle;              /* of the skin; UINT32_MAX: the ray meets nothing, and the rest is 0 */
-    uint32_t fragment, element, surface;    /* as of the triangle */
-    double distance;                /* in lengths of direction */
-    double position[3], material[3];/* deformed, m; material coordinates, m */
+    uint32_t triangle;                   /* of the skin; UINT32_MAX: the ray meets nothing, and the rest is 0 */
+    uint32_t fragment, element, surface; /* as of the triangle */
+    double distance;                     /* in lengths of direction */
+    double position[3], material[3];     /* deformed, m; material coordinates, m */
     uint32_t copies[4];
     double weights[4];
-    uint64_t epoch;                 /* of the numbering of copies, as in gx_view: for gxs_point */
+    uint64_t epoch; /* of the numbering of copies, as in gx_view: for gxs_point */
 } gx_hit;
 /* Errors: as of gx_body_skin_positions; ARGUMENT (direction 0), NOT_FINITE. */
 GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const double direction[3], gx_hit *hit);
 
-/* >>hash ----------------------------------------------------------------------------------------------------------------- */
+/* >>hash ----------------------------------------------------------------------------------------------------------- */
 
-GXFEM_API uint64_t gx_body_topology_hash(gx_body *body, gx_result *result);   /* of the cell complex: same on every compiler */
-GXFEM_API uint64_t gx_body_state_hash(const gx_body *body);                   /* of all that a failed call must leave alone, and of the
-                                                                                 ids that views have told */
+/* of the cell complex: same on every compiler */
+GXFEM_API uint64_t gx_body_topology_hash(gx_body *body, gx_result *result);
+/* of all that a failed call must leave alone, and of the ids that views have told */
+GXFEM_API uint64_t gx_body_state_hash(const gx_body *body);
 GXFEM_API const char *gx_result_text(gx_result result);
 
-/* >>save ----------------------------------------------------------------------------------------------------------------- */
+/* >>save ----------------------------------------------------------------------------------------------------------- */
 
-/* A body as bytes or as another body, with all that it is: mesh, materials, cuts, displacement, velocity, rest times, the history of
-   BDF2, what is held, ids of fragments and what has changed. Further cuts then give the same cells, and further steps the same bits in
-   the same program; for that, saving, cloning and restoring let the solvers of all bodies concerned start anew (the next step
-   makes its preconditioner and takes no guess from the last), but what sleeps goes on sleeping. Pointers are not saved. */
+/* A body as bytes or as another body, with all that it is: mesh, materials, cuts, displacement, velocity, rest times,
+   the history of BDF2, what is held, ids of fragments and what has changed. Further cuts then give the same cells, and
+   further steps the same bits in the same program; for that, saving, cloning and restoring let the solvers of all
+   bodies concerned start anew (the next step makes its preconditioner and takes no guess from the last), but what
+   sleeps goes on sleeping. Pointers are not saved. */
 
-/* *size: how many bytes it takes. memory NULL: nothing is written. Fields have fixed widths, in the machine's byte order, which the
-   bytes tell. Errors: ARGUMENT, LIMIT (capacity is below *size). */
+/* *size: how many bytes it takes. memory NULL: nothing is written. Fields have fixed widths, in the machine's byte
+   order, which the bytes tell. Errors: ARGUMENT, LIMIT (capacity is below *size). */
 GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, size_t *size);
-/* Whatever the bytes are, they do no harm: a checksum tells damage by accident, and all that a body relies on is checked. Of desc
-   (NULL: all zero) allocator, clock and jobs are read, and, for each saved material of kind GXS_CUSTOM, energy and user of the
-   material with its number. Errors: ARGUMENT (index: a material without its energy), MEMORY, LIMIT (also: one edge, face or element
-   divided 10,000 times in a row), FORMAT, DAMAGED (index: bytes read until then), CONFIGURATION. */
-GXFEM_API gx_result gx_body_load(const void *memory, size_t size, const gx_body_desc *desc, gx_body **body, gx_failure *failure /* or NULL */);
+/* Whatever the bytes are, they do no harm: a checksum tells damage by accident, and all that a body relies on is
+   checked. Of desc (NULL: all zero) allocator, clock and jobs are read, and, for each saved material of kind
+   GXS_CUSTOM, energy and user of the material with its number. Errors: ARGUMENT (index: a material without its energy),
+   MEMORY, LIMIT (also: one edge, face or element divided 10,000 times in a row), FORMAT, DAMAGED (index: bytes read
+   until then), CONFIGURATION. */
+GXFEM_API gx_result gx_body_load(const void *memory, size_t size, const gx_body_desc *desc, gx_body **body,
+                                 gx_failure *failure /* or NULL */);
 /* Another body of the same state, with the same allocator, clock, jobs and energies. Errors: ARGUMENT, MEMORY, LIMIT,
    CONFIGURATION. */
 GXFEM_API gx_result gx_body_clone(gx_body *body, gx_body **clone);
-/* The body becomes what from is now: to go back to a clone, or to bring a clone up to date. Where neither has been cut since they were
-   the same, only the state is copied, and neither cells nor the solver's model are made anew; else arrays of the view end, as by a
-   cut. Allocator, clock and jobs stay the body's own. Errors: ARGUMENT, MEMORY, LIMIT, CONFIGURATION; the body is then
-   as it was. */
+/* The body becomes what from is now: to go back to a clone, or to bring a clone up to date. Where neither has been cut
+   since they were the same, only the state is copied, and neither cells nor the solver's model are made anew; else
+   arrays of the view end, as by a cut. Allocator, clock and jobs stay the body's own. Errors: ARGUMENT, MEMORY, LIMIT,
+   CONFIGURATION; the body is then as it was. */
 GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from);
 
 #ifdef __cplusplus
@@ -399,7 +444,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from);
 #define GXFEM_IMPLEMENTED
 #include "gxfem_boolean.h"
 #include "gxfem_integrate.h"
-#include "gxfem_solve.h"    /* again: now with its implementation */
+#include "gxfem_solve.h" /* again: now with its implementation */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -413,10 +458,12 @@ extern "C" {
 
 #if defined(__GNUC__)
 #define GXP_FETCH(address) __builtin_prefetch(address)
-#define GXP_FETCHES static inline __attribute__((always_inline))    /* nothing else: gcc takes such a function for one without effect, and drops calls */
+#define GXP_FETCHES                                                                                                    \
+    static inline __attribute__((always_inline)) /* nothing else: gcc takes such a function for one without effect,    \
+                                                    and drops calls */
 #else
 #define GXP_FETCH(address) ((void)0)
-#define GXP_FETCHES static inline
+#define GXP_FETCHES        static inline
 #endif
 
 /* --- types --- */
@@ -425,84 +472,121 @@ extern "C" {
 /* Shares of an element, where gx_body_desc.support_below is 0: copies that nothing larger carries follow others;
    fragments without anything larger move as points. */
 #define GXP_SUPPORT 1e-3
-#define GXP_SPECK 1e-9
+#define GXP_SPECK   1e-9
 
-/* So far a fragment reaches at least, beside an element, or it moves as a point: else its copies would go ten times as far as what it is made of. */
+/* So far a fragment reaches at least, beside an element, or it moves as a point: else its copies would go ten times as
+ * far as what it is made of. */
 #define GXP_CRUMB 0.1
 
-#define GXP_FRAGMENT_ARRAYS 11      /* 1 + 1 + 3 + 6 */
+#define GXP_FRAGMENT_ARRAYS 11 /* 1 + 1 + 3 + 6 */
 
-typedef struct gxp_cell {       /* slot; slots 0 ... element_count-1 are the elements' first cells */
+typedef struct gxp_cell { /* slot; slots 0 ... element_count-1 are the elements' first cells */
     uint32_t element;
     uint32_t copies[4];
-    uint32_t first_leaf;        /* list through gxp_leaf.next; GXP_NONE: removed */
-    uint32_t next;              /* next slot of the element, GXP_NONE: last */
+    uint32_t first_leaf; /* list through gxp_leaf.next; GXP_NONE: removed */
+    uint32_t next;       /* next slot of the element, GXP_NONE: last */
     uint32_t kept;
-    double volume;              /* m3 */
-    double mass[10];            /* kg, order of gxs_element.mass */
+    double volume;   /* m3 */
+    double mass[10]; /* kg, order of gxs_element.mass */
 } gxp_cell;
 
-typedef struct gxp_leaf {       /* beside each leaf of the complex */
+typedef struct gxp_leaf { /* beside each leaf of the complex */
     uint32_t cell, next;
     uint32_t stamp;
-    int32_t winding;            /* where stamp is the current solid's */
+    int32_t winding; /* where stamp is the current solid's */
 } gxp_leaf;
 
-typedef struct gxp_box { double low[3], high[3]; uint32_t first, count; } gxp_box;     /* tree node; count 0: children first, first+1 */
+/* tree node; count 0: children first, first+1 */
+typedef struct gxp_box {
+    double low[3], high[3];
+    uint32_t first, count;
+} gxp_box;
 
-typedef struct gxp_saved_cell { uint32_t index; gxp_cell cell; } gxp_saved_cell;   /* as they were when the cut began */
-typedef struct gxp_saved_leaf { uint32_t index; gxp_leaf leaf; } gxp_saved_leaf;
+/* as they were when the cut began */
+typedef struct gxp_saved_cell {
+    uint32_t index;
+    gxp_cell cell;
+} gxp_saved_cell;
+typedef struct gxp_saved_leaf {
+    uint32_t index;
+    gxp_leaf leaf;
+} gxp_saved_leaf;
 
-typedef struct gxp_words { uint32_t *data, count, capacity; } gxp_words;   /* growing array of indices */
-typedef struct gxp_keys { uint64_t *data; uint32_t count, capacity; } gxp_keys;     /* of pairs of indices, the first << 32 */
+typedef struct gxp_words {
+    uint32_t *data, count, capacity;
+} gxp_words; /* growing array of indices */
+/* of pairs of indices, the first << 32 */
+typedef struct gxp_keys {
+    uint64_t *data;
+    uint32_t count, capacity;
+} gxp_keys;
 
-typedef struct gxp_surface_record { uint32_t label, map; } gxp_surface_record;  /* its first triangle's label; its first map, or GXP_NONE */
+/* its first triangle's label; its first map, or GXP_NONE */
+typedef struct gxp_surface_record {
+    uint32_t label, map;
+} gxp_surface_record;
 
-/* What a vertex of the skin is looked up by: a point of the complex, four names in ascending order, a group. Of the outer surface the names
-   are slots and the group is 0; of a face of a cut they are copies, and the group is its surface, and its side or plane and side. */
-typedef struct gxp_skin_key { uint32_t point, name[4], group[2]; } gxp_skin_key;
+/* What a vertex of the skin is looked up by: a point of the complex, four names in ascending order, a group. Of the
+   outer surface the names are slots and the group is 0; of a face of a cut they are copies, and the group is its
+   surface, and its side or plane and side. */
+typedef struct gxp_skin_key {
+    uint32_t point, name[4], group[2];
+} gxp_skin_key;
 
-typedef struct gxp_skin_vertex {    /* beside the columns that users see */
+typedef struct gxp_skin_vertex { /* beside the columns that users see */
     gxp_skin_key key;
-    uint32_t slots[4];          /* from which it has its normal, by its weights */
-    uint32_t next;              /* of its bucket */
-    uint32_t corner;            /* 3 x triangle + k: its first corner */
-    uint8_t outer, fresh, noted;    /* of the outer surface; new in its place; among those that may have changed */
+    uint32_t slots[4];           /* from which it has its normal, by its weights */
+    uint32_t next;               /* of its bucket */
+    uint32_t corner;             /* 3 x triangle + k: its first corner */
+    uint8_t outer, fresh, noted; /* of the outer surface; new in its place; among those that may have changed */
 } gxp_skin_vertex;
 
 typedef struct gxp_skin_links {
-    uint32_t slots[3];          /* to which it adds its normal */
-    float normal[3];            /* of its facet, outward at rest, of length 1 */
-    uint32_t next, previous;    /* of its element */
-    uint32_t corner_next[3], corner_previous[3];    /* of the same vertex */
+    uint32_t slots[3];                           /* to which it adds its normal */
+    float normal[3];                             /* of its facet, outward at rest, of length 1 */
+    uint32_t next, previous;                     /* of its element */
+    uint32_t corner_next[3], corner_previous[3]; /* of the same vertex */
 } gxp_skin_links;
 
-typedef struct gxp_skin_slot { uint32_t copy, group, next; } gxp_skin_slot;    /* copy GXP_NONE: belongs to one vertex; next: in its bucket, or free */
+/* copy GXP_NONE: belongs to one vertex; next: in its bucket, or free */
+typedef struct gxp_skin_slot {
+    uint32_t copy, group, next;
+} gxp_skin_slot;
 
 typedef struct gxp_skin {
-    int made;                   /* 0: all of it is to be made */
+    int made; /* 0: all of it is to be made */
     gx_skin_desc desc;
-    gxp_words dirty;            /* elements that cuts have touched since; some more than once */
+    gxp_words dirty; /* elements that cuts have touched since; some more than once */
     /* columns: one entry for each vertex; see gx_skin */
     gxp_skin_vertex *vertices;
-    uint32_t *copies, *point; double *weights, *rest; float *normal, *texture;
+    uint32_t *copies, *point;
+    double *weights, *rest;
+    float *normal, *texture;
     uint32_t vertex_count, vertex_capacity;
     /* columns: one entry for each triangle */
     gxp_skin_links *links;
     uint32_t *triangles, *fragment, *element, *material, *surface;
     uint32_t triangle_count, triangle_capacity;
-    gxp_words first;            /* element_count: the first of its triangles */
-    gxp_skin_slot *slots; uint32_t slot_count, slot_capacity, free_slot;
+    gxp_words first; /* element_count: the first of its triangles */
+    gxp_skin_slot *slots;
+    uint32_t slot_count, slot_capacity, free_slot;
     gxp_words vertex_buckets, slot_buckets;
-    gxp_words boundary;         /* face_count: number among the outer faces */
-    gxp_words groups;           /* outer faces x 4: group of each node's corner */
-    double *group_normals; uint32_t group_normal_capacity;      /* x 3, by group */
-    gxp_words changed[2];       /* vertices, triangles */
-    gx_range *ranges[2]; uint32_t range_count[2], range_capacity[2];
-    double *normals, *positions; uint32_t normal_capacity, position_capacity;   /* scratch: slots x 3, vertices x 3 */
+    gxp_words boundary; /* face_count: number among the outer faces */
+    gxp_words groups;   /* outer faces x 4: group of each node's corner */
+    /* x 3, by group */
+    double *group_normals;
+    uint32_t group_normal_capacity;
+    gxp_words changed[2]; /* vertices, triangles */
+    gx_range *ranges[2];
+    uint32_t range_count[2], range_capacity[2];
+    /* scratch: slots x 3, vertices x 3 */
+    double *normals, *positions;
+    uint32_t normal_capacity, position_capacity;
 } gxp_skin;
 
-typedef struct gxp_counts { uint32_t cells, leaves, copies, labels, surfaces, maps, dirty, splits; } gxp_counts;
+typedef struct gxp_counts {
+    uint32_t cells, leaves, copies, labels, surfaces, maps, dirty, splits;
+} gxp_counts;
 
 /* The solver's model is as the body, but for the last cuts, or not at all. */
 typedef enum gxp_model { GXP_MODEL_KNOWN, GXP_MODEL_CHANGED, GXP_MODEL_STALE } gxp_model;
@@ -514,94 +598,147 @@ struct gx_body {
     gxb_complex *complex;
     gxs_solver *solver;
     uint32_t node_count, element_count;
-    gx_material *materials; uint32_t material_count;
-    uint32_t *element_materials;    /* element_count */
-    double support_below;           /* as given */
-    double follow_below, point_below, crumb_reach;  /* see gxp_supports */
-    double *positions;              /* node_count x 3 */
-    uint32_t *node_start;           /* node_count + 1, into node_elements */
-    uint32_t *node_elements;        /* element_count x 4: elements around each node */
-    uint8_t *node_pinched;          /* node_count: bit 1: elements around it are not joined by faces; bit 2: one of its edges is pinched */
-    uint8_t *edge_pinched;          /* mesh_edge_count: elements around it meet in the edge only */
-    gxp_box *boxes; uint32_t box_count;
-    uint32_t *box_elements;         /* element_count, in tree order */
-    gxp_cell *cells; uint32_t cell_count, cell_capacity;
-    gxp_leaf *leaves; uint32_t leaf_count, leaf_capacity;
-    uint32_t *copy_node; uint32_t copy_count, copy_capacity;
-    double *displacement, *velocity; uint32_t displacement_capacity, velocity_capacity;   /* copies, x 3 doubles */
-    uint8_t *held; uint32_t held_capacity;
-    double *rest_time; uint32_t rest_time_capacity;
-    double *history[4]; uint32_t history_capacity[4];   /* displacement and velocity a step ago, x 3, and room for those of now; from the
-                                                           first BDF2 step on */
-    double previous_dt;                                 /* s; 0: there was none */
-    gx_region *regions; uint32_t region_count, region_capacity;
+    gx_material *materials;
+    uint32_t material_count;
+    uint32_t *element_materials;                   /* element_count */
+    double support_below;                          /* as given */
+    double follow_below, point_below, crumb_reach; /* see gxp_supports */
+    double *positions;                             /* node_count x 3 */
+    uint32_t *node_start;                          /* node_count + 1, into node_elements */
+    uint32_t *node_elements;                       /* element_count x 4: elements around each node */
+    /* node_count: bit 1: elements around it are not joined by faces; bit 2: one of its edges is pinched */
+    uint8_t *node_pinched;
+    uint8_t *edge_pinched; /* mesh_edge_count: elements around it meet in the edge only */
+    gxp_box *boxes;
+    uint32_t box_count;
+    uint32_t *box_elements; /* element_count, in tree order */
+    gxp_cell *cells;
+    uint32_t cell_count, cell_capacity;
+    gxp_leaf *leaves;
+    uint32_t leaf_count, leaf_capacity;
+    uint32_t *copy_node;
+    uint32_t copy_count, copy_capacity;
+    /* copies, x 3 doubles */
+    double *displacement, *velocity;
+    uint32_t displacement_capacity, velocity_capacity;
+    uint8_t *held;
+    uint32_t held_capacity;
+    double *rest_time;
+    uint32_t rest_time_capacity;
+    /* displacement and velocity a step ago, x 3, and room for those of now; from the first BDF2 step on */
+    double *history[4];
+    uint32_t history_capacity[4];
+    double previous_dt; /* s; 0: there was none */
+    gx_region *regions;
+    uint32_t region_count, region_capacity;
     gx_jobs jobs;
-    uint64_t past;                  /* hash of the mesh and of all cuts: bodies with the same one have the same cells and copies */
-    uint64_t epoch;                 /* the past when copies were created or removed last; 0: never */
-    uint32_t label_count;           /* cut triangles so far */
-    uint32_t *copy_label; uint32_t copy_label_capacity;     /* copies: 2 x index of its fragment at the last look, + 1 where it was cut since */
-    gxp_words fragment_ids, fragment_origins, fragment_changes, removed_ids;    /* as last looked at */
-    uint32_t next_id;               /* of a fragment */
-    int look_stale;                 /* a cut has happened since the last look */
-    gxp_saved_cell *saved_cells; uint32_t saved_cell_count, saved_cell_capacity;    /* the undo log of a cut: each cell once */
-    gxp_saved_leaf *saved_leaves; uint32_t saved_leaf_count, saved_leaf_capacity;
-    uint32_t transaction;           /* number of the cut */
-    gxp_counts before;              /* when it began */
-    uint32_t *cell_saved; uint32_t cell_saved_capacity;     /* cells: transaction that saved or made it last */
-    uint32_t *cell_stamp; uint32_t cell_stamp_capacity;
+    /* hash of the mesh and of all cuts: bodies with the same one have the same cells and copies */
+    uint64_t past;
+    uint64_t epoch;       /* the past when copies were created or removed last; 0: never */
+    uint32_t label_count; /* cut triangles so far */
+    /* copies: 2 x index of its fragment at the last look, + 1 where it was cut since */
+    uint32_t *copy_label;
+    uint32_t copy_label_capacity;
+    gxp_words fragment_ids, fragment_origins, fragment_changes, removed_ids; /* as last looked at */
+    uint32_t next_id;                                                        /* of a fragment */
+    int look_stale; /* a cut has happened since the last look */
+    /* the undo log of a cut: each cell once */
+    gxp_saved_cell *saved_cells;
+    uint32_t saved_cell_count, saved_cell_capacity;
+    gxp_saved_leaf *saved_leaves;
+    uint32_t saved_leaf_count, saved_leaf_capacity;
+    uint32_t transaction; /* number of the cut */
+    gxp_counts before;    /* when it began */
+    /* cells: transaction that saved or made it last */
+    uint32_t *cell_saved;
+    uint32_t cell_saved_capacity;
+    uint32_t *cell_stamp;
+    uint32_t cell_stamp_capacity;
     uint32_t stamp, scope_stamp;
     int held_stale, view_stale, sums_stale;
     gxp_model model;
-    int nothing_moves;              /* the model has no elements: the solver has not been given it */
-    int model_updated;              /* it has been changed since it was set */
-    uint64_t resumed;               /* hash of the state when the body was saved, copied, read; 0: it has stepped since then */
-    gxp_words changed;              /* elements of which a cell or its copies have changed since the solver's model was; some more than once */
-    uint32_t *copy_before; uint32_t copy_before_capacity;   /* copies: 2 x index then of the copy that it is, or, + 1, that it comes from */
-    int labels_known;               /* copy_fragment and fragment_number hold for copies older than splits, and nothing has been removed */
-    gxp_words splits;               /* copies made since then, each with the one it comes from */
-    gxs_element *parts; uint32_t part_count, part_capacity;     /* there only while the solver's model is made */
-    double *rest; uint32_t rest_capacity;               /* copies, x 3 doubles: where they are at rest, m; as long */
-    gxs_material *elastic; uint32_t elastic_capacity;   /* materials for the solver; as long */
-    gxs_constraint *constraints; uint32_t constraint_count, constraint_capacity;    /* as long */
-    gxp_words thin;                 /* elements with a part of a share below follow_below, ascending; of use if model is not STALE */
-    gxp_words view_cells, view_fragments;               /* slot of each kept cell; fragment of each */
+    int nothing_moves; /* the model has no elements: the solver has not been given it */
+    int model_updated; /* it has been changed since it was set */
+    /* hash of the state when the body was saved, copied, read; 0: it has stepped since then */
+    uint64_t resumed;
+    /* elements of which a cell or its copies have changed since the solver's model was; some more than once */
+    gxp_words changed;
+    /* copies: 2 x index then of the copy that it is, or, + 1, that it comes from */
+    uint32_t *copy_before;
+    uint32_t copy_before_capacity;
+    /* copy_fragment and fragment_number hold for copies older than splits, and nothing has been removed */
+    int labels_known;
+    gxp_words splits; /* copies made since then, each with the one it comes from */
+    /* there only while the solver's model is made */
+    gxs_element *parts;
+    uint32_t part_count, part_capacity;
+    /* copies, x 3 doubles: where they are at rest, m; as long */
+    double *rest;
+    uint32_t rest_capacity;
+    /* materials for the solver; as long */
+    gxs_material *elastic;
+    uint32_t elastic_capacity;
+    /* as long */
+    gxs_constraint *constraints;
+    uint32_t constraint_count, constraint_capacity;
+    /* elements with a part of a share below follow_below, ascending; of use if model is not STALE */
+    gxp_words thin;
+    gxp_words view_cells, view_fragments; /* slot of each kept cell; fragment of each */
     gxp_words copy_fragment, fragment_number, cell_element, cell_copies;
-    double *cell_volume; uint32_t cell_volume_capacity;
-    double *fragments; uint32_t fragment_capacity, fragment_count;  /* volume, mass, centre, inertia: GXP_FRAGMENT_ARRAYS of fragment_capacity */
+    double *cell_volume;
+    uint32_t cell_volume_capacity;
+    /* volume, mass, centre, inertia: GXP_FRAGMENT_ARRAYS of fragment_capacity */
+    double *fragments;
+    uint32_t fragment_capacity, fragment_count;
     double volume, mass;
-    float *texture;                 /* node_count x 2, or NULL */
-    gxp_surface_record *surfaces; uint32_t surface_count, surface_capacity;     /* that have cut the body */
-    double *maps; uint32_t map_count, map_capacity;     /* x 8: material coordinates less the complex's origin to texture coordinates, for
-                                                           each triangle of surfaces with a texture: 3 factors and a constant, twice */
+    float *texture; /* node_count x 2, or NULL */
+    /* that have cut the body */
+    gxp_surface_record *surfaces;
+    uint32_t surface_count, surface_capacity;
+    /* x 8: material coordinates less the complex's origin to texture coordinates, for each triangle of surfaces with a
+     * texture: 3 factors and a constant, twice */
+    double *maps;
+    uint32_t map_count, map_capacity;
     gxp_skin skin;
-    gxp_words point_slot;           /* of the complex's points, while a cell is integrated or drawn */
-    double *lambdas; uint32_t lambda_capacity;          /* x 4 */
+    gxp_words point_slot; /* of the complex's points, while a cell is integrated or drawn */
+    /* x 4 */
+    double *lambdas;
+    uint32_t lambda_capacity;
     gxp_words triangles;
     /* scratch of a cut */
     gxp_words touched, nodes, queue, pieces, seeds, faces;
-    gxp_words fresh;                /* pieces of touched cells: their copies and integrals are to be found */
-    gxp_words removed, dead, list;  /* leaves that solids removed, copies without cells */
-    gxp_words pinches;              /* nodes at which sheets separated what meets there only */
-    uint32_t *cell_fresh; uint32_t cell_fresh_capacity;     /* cells: index in fresh, where it is there */
-    gxp_keys pairs;                 /* node and fresh cell */
-    gxp_keys links;                 /* of fresh cells in turn: the cell behind a piece of a face, that facet, which of the element's faces; sorted */
-    gxp_words link_first;           /* fresh.count + 1, into links */
+    gxp_words fresh;               /* pieces of touched cells: their copies and integrals are to be found */
+    gxp_words removed, dead, list; /* leaves that solids removed, copies without cells */
+    gxp_words pinches;             /* nodes at which sheets separated what meets there only */
+    /* cells: index in fresh, where it is there */
+    uint32_t *cell_fresh;
+    uint32_t cell_fresh_capacity;
+    gxp_keys pairs; /* node and fresh cell */
+    /* of fresh cells in turn: the cell behind a piece of a face, that facet, which of the element's faces; sorted */
+    gxp_keys links;
+    gxp_words link_first; /* fresh.count + 1, into links */
 };
 
-/* >>memory -------------------------------------------------------------------------------------------------------------- */
+/* >>memory --------------------------------------------------------------------------------------------------------- */
 
-static void *gxp_allocate(const gx_allocator *a, size_t size) { return a->allocate ? a->allocate(a->user, size) : malloc(size); }
+static void *gxp_allocate(const gx_allocator *a, size_t size) {
+    return a->allocate ? a->allocate(a->user, size) : malloc(size);
+}
 
 static void gxp_release(const gx_allocator *a, void *memory, size_t size) {
     if (memory == NULL) return;
-    if (a->release) a->release(a->user, memory, size);
-    else free(memory);
+    if (a->release)
+        a->release(a->user, memory, size);
+    else
+        free(memory);
 }
 
-/* A larger block with the first `used` bytes of the old one, which is then gone; NULL: there is none, and the old one stays. */
+/* A larger block with the first `used` bytes of the old one, which is then gone; NULL: there is none, and the old one
+ * stays. */
 static void *gxp_reallocate(const gx_allocator *a, void *old, size_t old_size, size_t used, size_t size) {
     void *memory;
-    if (a->allocate == NULL && a->release == NULL) return realloc(old, size);   /* moves the pages of large blocks, not their bytes */
+    /* moves the pages of large blocks, not their bytes */
+    if (a->allocate == NULL && a->release == NULL) return realloc(old, size);
     if (a->reallocate != NULL && old != NULL) return a->reallocate(a->user, old, old_size, size);
     memory = gxp_allocate(a, size);
     if (memory == NULL) return NULL;
@@ -611,7 +748,8 @@ static void *gxp_reallocate(const gx_allocator *a, void *old, size_t old_size, s
 }
 
 /* Makes room for count + extra items; array is the address of the pointer. */
-static gx_result gxp_reserve(const gx_allocator *a, void *array, size_t item, size_t count, uint32_t *capacity, size_t extra) {
+static gx_result gxp_reserve(const gx_allocator *a, void *array, size_t item, size_t count, uint32_t *capacity,
+                             size_t extra) {
     const size_t need = count + extra, room = need + need / 2 + 16;
     void *old, *memory;
     if (need <= *capacity) return GX_OK;
@@ -625,7 +763,8 @@ static gx_result gxp_reserve(const gx_allocator *a, void *array, size_t item, si
 }
 
 static gx_result gxp_push(gx_body *body, gxp_words *words, uint32_t value) {
-    const gx_result result = gxp_reserve(&body->allocator, &words->data, sizeof *words->data, words->count, &words->capacity, 1);
+    const gx_result result =
+        gxp_reserve(&body->allocator, &words->data, sizeof *words->data, words->count, &words->capacity, 1);
     if (result == GX_OK) words->data[words->count++] = value;
     return result;
 }
@@ -643,9 +782,16 @@ static void gxp_sort_by_bits(uint32_t *w, uint32_t count, uint32_t bit) {
     while (count > 1 && bit != 0) {
         uint32_t i = 0, j = count;
         while (i < j) {
-            if (!(w[i] & bit)) { i++; continue; }
+            if (!(w[i] & bit)) {
+                i++;
+                continue;
+            }
             while (--j > i && (w[j] & bit)) continue;
-            if (j > i) { const uint32_t t = w[i]; w[i++] = w[j]; w[j] = t; }
+            if (j > i) {
+                const uint32_t t = w[i];
+                w[i++] = w[j];
+                w[j] = t;
+            }
         }
         bit >>= 1;
         gxp_sort_by_bits(w + i, count - i, bit);
@@ -658,15 +804,16 @@ static void gxp_sort_unique(gxp_words *w) {
     for (i = 0; i < w->count; i++) all |= w->data[i];
     while (all >> 1 >= bit) bit <<= 1;
     gxp_sort_by_bits(w->data, w->count, bit);
-    for (i = 0; i < w->count; i++) if (n == 0 || w->data[i] != w->data[n - 1]) w->data[n++] = w->data[i];
+    for (i = 0; i < w->count; i++)
+        if (n == 0 || w->data[i] != w->data[n - 1]) w->data[n++] = w->data[i];
     w->count = n;
 }
 
-#define GXP_FIRST(key) ((uint32_t)((key) >> 32))
-#define GXP_SECOND(key) ((uint32_t)(key))
-#define GXP_LINK_CELL(link) ((uint32_t)((link) >> 33))      /* see gx_body.links: 31, 31 and 2 bits */
+#define GXP_FIRST(key)       ((uint32_t)((key) >> 32))
+#define GXP_SECOND(key)      ((uint32_t)(key))
+#define GXP_LINK_CELL(link)  ((uint32_t)((link) >> 33)) /* see gx_body.links: 31, 31 and 2 bits */
 #define GXP_LINK_FACET(link) ((uint32_t)((link) >> 2) & 0x7fffffffu)
-#define GXP_LINK_FACE(link) ((uint32_t)(link) & 3)
+#define GXP_LINK_FACE(link)  ((uint32_t)(link)&3)
 
 static gx_result gxp_keys_room(gx_body *body, gxp_keys *keys, size_t extra) {
     return gxp_reserve(&body->allocator, &keys->data, sizeof *keys->data, keys->count, &keys->capacity, extra);
@@ -687,16 +834,20 @@ static void gxp_sort_few_keys(uint64_t *key, uint32_t count) {
     }
 }
 
-/* Sorts keys from ... to-1, ascending: few by insertion, many by digits of 8 bits from the lowest on, but those in which all agree [radix sort,
-   Knuth vol. 3, 5.2.5]. */
+/* Sorts keys from ... to-1, ascending: few by insertion, many by digits of 8 bits from the lowest on, but those in
+   which all agree [radix sort, Knuth vol. 3, 5.2.5]. */
 static gx_result gxp_sort_keys(gx_body *body, gxp_keys *keys, uint32_t from, uint32_t to) {
     const uint32_t n = to - from;
     const gx_result result = n > 64 ? gxp_keys_room(body, keys, n) : GX_OK;
     uint64_t *source, *target, differ = 0;
     uint32_t shift, i;
     if (result != GX_OK || n < 2) return result;
-    source = keys->data + from; target = keys->data + keys->count;
-    if (n <= 64) { gxp_sort_few_keys(source, n); return GX_OK; }
+    source = keys->data + from;
+    target = keys->data + keys->count;
+    if (n <= 64) {
+        gxp_sort_few_keys(source, n);
+        return GX_OK;
+    }
     for (i = 1; i < n; i++) differ |= source[i] ^ source[0];
     for (shift = 0; shift < 64; shift += 8) {
         uint32_t place[257] = {0};
@@ -713,7 +864,11 @@ static gx_result gxp_sort_keys(gx_body *body, gxp_keys *keys, uint32_t from, uin
 }
 
 static gx_result gxp_fail(gx_failure *failure, gx_result result, size_t index, size_t surface) {
-    if (failure != NULL) { failure->result = result; failure->index = index; failure->surface = surface; }
+    if (failure != NULL) {
+        failure->result = result;
+        failure->index = index;
+        failure->surface = surface;
+    }
     return result;
 }
 
@@ -723,7 +878,7 @@ static int gxp_is_finite(double x) {
     return ((b >> 52) & 0x7ff) != 0x7ff;
 }
 
-static uint64_t gxp_mix(uint64_t x) {   /* splitmix64's finaliser */
+static uint64_t gxp_mix(uint64_t x) { /* splitmix64's finaliser */
     x += 0x9e3779b97f4a7c15u;
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
     x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
@@ -732,20 +887,22 @@ static uint64_t gxp_mix(uint64_t x) {   /* splitmix64's finaliser */
 
 static double gxp_seconds(const gx_body *body) { return body->clock ? body->clock(body->clock_user) : 0; }
 
-/* >>tree: axis-aligned boxes over the elements, median split ------------------------------------------------------------- */
+/* >>tree: axis-aligned boxes over the elements, median split ------------------------------------------------------- */
 
 static void gxp_box_of(const gx_body *body, gxp_box *box) {
     double low[3], high[3];
     uint32_t i;
     int k, n;
-    for (i = box->first; i < box->first + box->count; i++) for (n = 0; n < 4; n++) {
-        const double *x = body->positions + 3 * (size_t)body->complex->elements[4 * (size_t)body->box_elements[i] + (size_t)n];
-        for (k = 0; k < 3 && i == box->first && n == 0; k++) low[k] = high[k] = x[k];
-        for (k = 0; k < 3; k++) {
-            low[k] = x[k] < low[k] ? x[k] : low[k];
-            high[k] = x[k] > high[k] ? x[k] : high[k];
+    for (i = box->first; i < box->first + box->count; i++)
+        for (n = 0; n < 4; n++) {
+            const double *x =
+                body->positions + 3 * (size_t)body->complex->elements[4 * (size_t)body->box_elements[i] + (size_t)n];
+            for (k = 0; k < 3 && i == box->first && n == 0; k++) low[k] = high[k] = x[k];
+            for (k = 0; k < 3; k++) {
+                low[k] = x[k] < low[k] ? x[k] : low[k];
+                high[k] = x[k] > high[k] ? x[k] : high[k];
+            }
         }
-    }
     memcpy(box->low, low, sizeof low);
     memcpy(box->high, high, sizeof high);
 }
@@ -753,7 +910,8 @@ static void gxp_box_of(const gx_body *body, gxp_box *box) {
 static double gxp_element_key(const gx_body *body, uint32_t element, int axis) {
     const uint32_t *n = body->complex->elements + 4 * (size_t)element;
     const double *x = body->positions + axis;
-    return x[3 * (size_t)n[0]] * 0.25 + x[3 * (size_t)n[1]] * 0.25 + x[3 * (size_t)n[2]] * 0.25 + x[3 * (size_t)n[3]] * 0.25;
+    return x[3 * (size_t)n[0]] * 0.25 + x[3 * (size_t)n[1]] * 0.25 + x[3 * (size_t)n[2]] * 0.25 +
+           x[3 * (size_t)n[3]] * 0.25;
 }
 
 /* Partial order: the element of rank middle stands at middle, smaller keys before it (Hoare's FIND). */
@@ -765,7 +923,11 @@ static void gxp_select(const gx_body *body, uint32_t *e, int64_t count, int64_t 
         while (i <= j) {
             while (gxp_element_key(body, e[i], axis) < pivot) i++;
             while (gxp_element_key(body, e[j], axis) > pivot) j--;
-            if (i <= j) { const uint32_t t = e[i]; e[i++] = e[j]; e[j--] = t; }
+            if (i <= j) {
+                const uint32_t t = e[i];
+                e[i++] = e[j];
+                e[j--] = t;
+            }
         }
         if (j < middle) low = i;
         if (middle < i) high = j;
@@ -784,7 +946,8 @@ static void gxp_build_boxes(gx_body *body) {
         int axis = 0, k;
         gxp_box_of(body, box);
         if (count <= 4) continue;
-        for (k = 1; k < 3; k++) if (box->high[k] - box->low[k] > box->high[axis] - box->low[axis]) axis = k;
+        for (k = 1; k < 3; k++)
+            if (box->high[k] - box->low[k] > box->high[axis] - box->low[axis]) axis = k;
         gxp_select(body, body->box_elements + first, count, half, axis);
         box->first = body->box_count;
         box->count = 0;
@@ -796,20 +959,25 @@ static void gxp_build_boxes(gx_body *body) {
     }
 }
 
-static const uint8_t gxp_outward[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};     /* nodes of the face opposite to each */
+/* nodes of the face opposite to each */
+static const uint8_t gxp_outward[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
-/* A triangle whose elements are looked for. Differences are multiplied by a power of two, the frame's, so that no product leaves the range. */
+/* A triangle whose elements are looked for. Differences are multiplied by a power of two, the frame's, so that no
+ * product leaves the range. */
 typedef struct gxp_search {
-    const double *base;     /* its first corner */
+    const double *base; /* its first corner */
     double unit, low[3], high[3];
-    double axis[4][3];      /* the normal; of each edge the normal in the triangle's plane, outward */
-    double scale[4];        /* size of the products of which they are made */
-    double offset[4];       /* along them, of the triangle's plane and edges from the base */
-    double far;             /* size of the coordinates of this triangle and of any element: below 2^135, and heights are
-                               products of 7 such numbers at most */
+    double axis[4][3]; /* the normal; of each edge the normal in the triangle's plane, outward */
+    double scale[4];   /* size of the products of which they are made */
+    double offset[4];  /* along them, of the triangle's plane and edges from the base */
+    /* size of the coordinates of this triangle and of any element: below 2^135, and heights are products of 7 such
+     * numbers at most */
+    double far;
 } gxp_search;
 
-#define GXP_SEARCH_MARGIN 1e-12     /* of the terms' size: far above the rounding, so that rounding only adds candidates */
+#define GXP_SEARCH_MARGIN                                                                                              \
+    1e-12 /* of the terms' size: far above the rounding, so that rounding only adds candidates                         \
+           */
 
 static double gxp_size(const double a[3]) { return fabs(a[0]) + fabs(a[1]) + fabs(a[2]); }
 
@@ -869,24 +1037,30 @@ static int gxp_triangle_near_box(const gxp_search *s, const gxp_box *box) {
 }
 
 /* Heights of the element's nodes along an axis, and how far they may be off */
-typedef struct gxp_heights { double at[4], margin; } gxp_heights;
+typedef struct gxp_heights {
+    double at[4], margin;
+} gxp_heights;
 
 /* x: the nodes' coordinates from the base, by axis */
 static void gxp_set_heights(const gxp_search *s, int i, double x[3][4], gxp_heights *h) {
     int n;
-    for (n = 0; n < 4; n++) h->at[n] = s->axis[i][0] * x[0][n] + s->axis[i][1] * x[1][n] + s->axis[i][2] * x[2][n] - s->offset[i];
+    for (n = 0; n < 4; n++)
+        h->at[n] = s->axis[i][0] * x[0][n] + s->axis[i][1] * x[1][n] + s->axis[i][2] * x[2][n] - s->offset[i];
     h->margin = GXP_SEARCH_MARGIN * s->scale[i] * s->far;
 }
 
-/* Does the element meet the triangle's plane (over: heights of its nodes) beyond one of its edges (along) only? Where an edge of the element
-   crosses the plane, the height along is (along_i |over_j| + along_j |over_i|) / (|over_i| + |over_j|). */
+/* Does the element meet the triangle's plane (over: heights of its nodes) beyond one of its edges (along) only? Where
+   an edge of the element crosses the plane, the height along is (along_i |over_j| + along_j |over_i|) / (|over_i| +
+   |over_j|). */
 static int gxp_section_is_beyond(const gxp_heights *over, const gxp_heights *along) {
     int i, j;
     for (i = 0; i < 4; i++) {
         if (fabs(over->at[i]) <= over->margin && !(along->at[i] > along->margin)) return 0;
         for (j = 0; j < i; j++) {
             const double p = fabs(over->at[i]), q = fabs(over->at[j]), sum = along->at[i] * q + along->at[j] * p;
-            if ((over->at[i] > over->margin && over->at[j] > over->margin) || (over->at[i] < -over->margin && over->at[j] < -over->margin)) continue;
+            if ((over->at[i] > over->margin && over->at[j] > over->margin) ||
+                (over->at[i] < -over->margin && over->at[j] < -over->margin))
+                continue;
             if (!(sum > along->margin * (p + q) + over->margin * (fabs(along->at[i]) + fabs(along->at[j])))) return 0;
         }
     }
@@ -904,31 +1078,35 @@ static double gxp_greatest(const double x[4]) {
     return a > b ? a : b;
 }
 
-/* May the triangle meet the element? Not if a plane along the axes or its own has the element beyond it, or one along an edge across it what of the
-   element is in the triangle's plane. */
+/* May the triangle meet the element? Not if a plane along the axes or its own has the element beyond it, or one along
+   an edge across it what of the element is in the triangle's plane. */
 static int gxp_triangle_near_element(const gx_body *body, const gxp_search *s, uint32_t element) {
     const uint32_t *node = body->complex->elements + 4 * (size_t)element;
     double x[3][4];
     gxp_heights over, along;
     int i, n, beyond = 0;
-    for (n = 0; n < 4; n++) for (i = 0; i < 3; i++) x[i][n] = body->positions[3 * (size_t)node[n] + (size_t)i];
+    for (n = 0; n < 4; n++)
+        for (i = 0; i < 3; i++) x[i][n] = body->positions[3 * (size_t)node[n] + (size_t)i];
     for (i = 0; i < 3; i++) {
         beyond |= gxp_greatest(x[i]) < s->low[i];
         beyond |= gxp_least(x[i]) > s->high[i];
     }
     if (beyond) return 0;
-    for (i = 0; i < 3; i++) for (n = 0; n < 4; n++) x[i][n] = (x[i][n] - s->base[i]) * s->unit;
+    for (i = 0; i < 3; i++)
+        for (n = 0; n < 4; n++) x[i][n] = (x[i][n] - s->base[i]) * s->unit;
     gxp_set_heights(s, 0, x, &over);
     if (gxp_least(over.at) > over.margin || gxp_greatest(over.at) < -over.margin) return 0;
     for (i = 1; i < 4; i++) {
         gxp_set_heights(s, i, x, &along);
-        if (gxp_least(along.at) > along.margin || (gxp_greatest(along.at) > along.margin && gxp_section_is_beyond(&over, &along))) return 0;
+        if (gxp_least(along.at) > along.margin ||
+            (gxp_greatest(along.at) > along.margin && gxp_section_is_beyond(&over, &along)))
+            return 0;
     }
     return 1;
 }
 
-/* Finds the elements that the triangle may meet: those in boxes that it may meet are listed first, so that what there is to read of them comes while
-   others are looked at. */
+/* Finds the elements that the triangle may meet: those in boxes that it may meet are listed first, so that what there
+   is to read of them comes while others are looked at. */
 static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_words *found) {
     const uint32_t *elements = body->complex->elements;
     gxp_search search;
@@ -940,15 +1118,19 @@ static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_
     while (depth > 0 && result == GX_OK) {
         const gxp_box *box = &body->boxes[stack[--depth]];
         if (!gxp_triangle_near_box(&search, box)) continue;
-        if (box->count == 0) { stack[depth++] = box->first + 1; stack[depth++] = box->first; }
-        else result = gxp_words_room(body, found, box->count);
+        if (box->count == 0) {
+            stack[depth++] = box->first + 1;
+            stack[depth++] = box->first;
+        } else
+            result = gxp_words_room(body, found, box->count);
         for (i = 0; i < box->count && result == GX_OK; i++) {
             const uint32_t element = found->data[found->count++] = body->box_elements[box->first + i];
             GXP_FETCH(elements + 4 * (size_t)element);
         }
     }
     for (i = 0; i < found->count && result == GX_OK; i++) {
-        for (k = 0; k < 4 && i + 4 < found->count; k++) GXP_FETCH(body->positions + 3 * (size_t)elements[4 * (size_t)found->data[i + 4] + k]);
+        for (k = 0; k < 4 && i + 4 < found->count; k++)
+            GXP_FETCH(body->positions + 3 * (size_t)elements[4 * (size_t)found->data[i + 4] + k]);
         if (!gxp_triangle_near_element(body, &search, found->data[i])) continue;
         GXP_FETCH(&body->complex->leaves[found->data[i]]);
         GXP_FETCH(body->complex->element_faces + 4 * (size_t)found->data[i]);
@@ -960,7 +1142,7 @@ static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_
     return result;
 }
 
-/* >>create --------------------------------------------------------------------------------------------------------------- */
+/* >>create --------------------------------------------------------------------------------------------------------- */
 
 static const uint8_t gxp_edge_nodes[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 
@@ -970,7 +1152,8 @@ static int gxp_local_node(const gx_body *body, uint32_t element, uint32_t node) 
 }
 
 static uint32_t gxp_neighbour(const gx_body *body, uint32_t element, uint32_t k) {
-    const uint32_t *pair = body->complex->face_elements + 2 * (size_t)body->complex->element_faces[4 * (size_t)element + k];
+    const uint32_t *pair =
+        body->complex->face_elements + 2 * (size_t)body->complex->element_faces[4 * (size_t)element + k];
     return pair[0] == element ? pair[1] : pair[0];
 }
 
@@ -1005,8 +1188,8 @@ static gx_result gxp_walk_around(gx_body *body, uint32_t start, uint32_t node, u
     return result;
 }
 
-/* Marks nodes and edges whose elements do not hang together through faces around them: there, edges and nodes link too. (An
-   edge's elements come in as many fans as it has pairs of boundary faces.) */
+/* Marks nodes and edges whose elements do not hang together through faces around them: there, edges and nodes link too.
+   (An edge's elements come in as many fans as it has pairs of boundary faces.) */
 static gx_result gxp_find_pinches(gx_body *body) {
     const gxb_complex *cx = body->complex;
     uint32_t i, j, k, reached;
@@ -1020,24 +1203,29 @@ static gx_result gxp_find_pinches(gx_body *body) {
         body->node_pinched[i] = 1;
     }
     /* an edge with one fan of elements has no or two boundary faces */
-    for (i = 0; i < body->element_count; i++) for (k = 0; k < 4; k++) for (j = 0; j < 6; j++) {
-        const uint32_t edge = cx->element_edges[6 * i + j];
-        if (gxp_neighbour(body, i, k) != GXP_NONE || gxp_edge_nodes[j][0] == k || gxp_edge_nodes[j][1] == k) continue;
-        if (body->edge_pinched[edge] < 3) body->edge_pinched[edge]++;
-    }
+    for (i = 0; i < body->element_count; i++)
+        for (k = 0; k < 4; k++)
+            for (j = 0; j < 6; j++) {
+                const uint32_t edge = cx->element_edges[6 * i + j];
+                if (gxp_neighbour(body, i, k) != GXP_NONE || gxp_edge_nodes[j][0] == k || gxp_edge_nodes[j][1] == k)
+                    continue;
+                if (body->edge_pinched[edge] < 3) body->edge_pinched[edge]++;
+            }
     for (i = 0; i < cx->mesh_edge_count; i++) body->edge_pinched[i] = body->edge_pinched[i] > 2;
-    for (i = 0; i < body->element_count; i++) for (j = 0; j < 6; j++) {
-        if (!body->edge_pinched[cx->element_edges[6 * i + j]]) continue;
-        body->node_pinched[cx->elements[4 * i + gxp_edge_nodes[j][0]]] |= 2;
-        body->node_pinched[cx->elements[4 * i + gxp_edge_nodes[j][1]]] |= 2;
-    }
+    for (i = 0; i < body->element_count; i++)
+        for (j = 0; j < 6; j++) {
+            if (!body->edge_pinched[cx->element_edges[6 * i + j]]) continue;
+            body->node_pinched[cx->elements[4 * i + gxp_edge_nodes[j][0]]] |= 2;
+            body->node_pinched[cx->elements[4 * i + gxp_edge_nodes[j][1]]] |= 2;
+        }
     return result;
 }
 
 static void gxp_element_positions(const gx_body *body, uint32_t element, double x[12]) {
     int k;
     for (k = 0; k < 4; k++)
-        memcpy(x + 3 * k, body->positions + 3 * (size_t)body->complex->elements[4 * (size_t)element + (size_t)k], 3 * sizeof *x);
+        memcpy(x + 3 * k, body->positions + 3 * (size_t)body->complex->elements[4 * (size_t)element + (size_t)k],
+               3 * sizeof *x);
 }
 
 static double gxp_element_volume(const gx_body *body, uint32_t element) {
@@ -1053,10 +1241,12 @@ static int gxp_rounds_inverted(const gx_body *body, uint32_t element) {
     return gxi_tet_gradients(x, gradients, NULL) == GX_ERROR_INVERTED;
 }
 
-static double gxp_density(const gx_body *body, uint32_t element) { return body->materials[body->element_materials[element]].density; }
+static double gxp_density(const gx_body *body, uint32_t element) {
+    return body->materials[body->element_materials[element]].density;
+}
 
-#define GXP_REACH 100   /* coordinates are at most 2^this, the longest side is at least 2^-this */
-#define GXP_WEIGHT 700  /* masses of elements are 2^-this ... 2^this: the inertia of 2^28 of them is below 2^940 */
+#define GXP_REACH  100 /* coordinates are at most 2^this, the longest side is at least 2^-this */
+#define GXP_WEIGHT 700 /* masses of elements are 2^-this ... 2^this: the inertia of 2^28 of them is below 2^940 */
 
 /* index: of a node that is too far out; none is where the body is too small */
 static gx_result gxp_check_size(const gx_body_desc *desc, size_t *index) {
@@ -1068,7 +1258,10 @@ static gx_result gxp_check_size(const gx_body_desc *desc, size_t *index) {
         double low = desc->positions[k], high = low;
         for (i = 0; i < desc->node_count; i++) {
             const double x = desc->positions[3 * i + (size_t)k];
-            if (fabs(x) > most) { *index = i; return GX_ERROR_RANGE; }
+            if (fabs(x) > most) {
+                *index = i;
+                return GX_ERROR_RANGE;
+            }
             if (x < low) low = x;
             if (x > high) high = x;
         }
@@ -1098,7 +1291,10 @@ static gx_result gxp_make_first_cells(gx_body *body, size_t *bad) {
         cell->kept = 1;
         cell->volume = gxp_element_volume(body, e);
         result = gxp_check_volume(body, e, cell->volume);
-        if (result != GX_OK) { *bad = e; return result; }
+        if (result != GX_OK) {
+            *bad = e;
+            return result;
+        }
         gxi_tet_mass(cell->volume, gxp_density(body, e), cell->mass);
         memset(&body->leaves[e], 0, sizeof body->leaves[e]);
         body->leaves[e].cell = e;
@@ -1136,8 +1332,10 @@ static gx_result gxp_reserve_copies(gx_body *body, size_t extra) {
     if (r == GX_OK) r = gxp_reserve(a, &body->displacement, 3 * sizeof(double), n, &body->displacement_capacity, extra);
     if (r == GX_OK) r = gxp_reserve(a, &body->velocity, 3 * sizeof(double), n, &body->velocity_capacity, extra);
     if (r == GX_OK) r = gxp_reserve(a, &body->rest_time, sizeof(double), n, &body->rest_time_capacity, extra);
-    if (r == GX_OK) r = gxp_reserve(a, &body->copy_label, sizeof *body->copy_label, n, &body->copy_label_capacity, extra);
-    if (r == GX_OK) r = gxp_reserve(a, &body->copy_before, sizeof *body->copy_before, n, &body->copy_before_capacity, extra);
+    if (r == GX_OK)
+        r = gxp_reserve(a, &body->copy_label, sizeof *body->copy_label, n, &body->copy_label_capacity, extra);
+    if (r == GX_OK)
+        r = gxp_reserve(a, &body->copy_before, sizeof *body->copy_before, n, &body->copy_before_capacity, extra);
     for (i = 0; i < 4 && r == GX_OK && body->history[i] != NULL; i++)
         r = gxp_reserve(a, &body->history[i], 3 * sizeof(double), n, &body->history_capacity[i], extra);
     return r == GX_OK ? gxp_reserve(a, &body->held, 1, n, &body->held_capacity, extra) : r;
@@ -1159,13 +1357,15 @@ static void gxp_copy_state(gx_body *body, uint32_t from, uint32_t to) {
 /* Room for a number beside each cell that there is room for; new ones are 0. */
 static gx_result gxp_reserve_beside_cells(gx_body *body, uint32_t **words, uint32_t *capacity) {
     const uint32_t before = *capacity;
-    const gx_result r = gxp_reserve(&body->allocator, words, sizeof **words, before, capacity, body->cell_capacity > before ? body->cell_capacity - before : 0);
+    const gx_result r = gxp_reserve(&body->allocator, words, sizeof **words, before, capacity,
+                                    body->cell_capacity > before ? body->cell_capacity - before : 0);
     if (*capacity > before) memset(*words + before, 0, (size_t)(*capacity - before) * sizeof **words);
     return r;
 }
 
 static gx_result gxp_reserve_cells(gx_body *body, size_t extra) {
-    gx_result r = gxp_reserve(&body->allocator, &body->cells, sizeof *body->cells, body->cell_count, &body->cell_capacity, extra);
+    gx_result r =
+        gxp_reserve(&body->allocator, &body->cells, sizeof *body->cells, body->cell_count, &body->cell_capacity, extra);
     if (r == GX_OK) r = gxp_reserve_beside_cells(body, &body->cell_stamp, &body->cell_stamp_capacity);
     if (r == GX_OK) r = gxp_reserve_beside_cells(body, &body->cell_saved, &body->cell_saved_capacity);
     return r == GX_OK ? gxp_reserve_beside_cells(body, &body->cell_fresh, &body->cell_fresh_capacity) : r;
@@ -1189,8 +1389,10 @@ static gx_result gxp_allocate_tables(gx_body *body) {
     body->box_elements = (uint32_t *)gxp_table(body, e, sizeof(uint32_t));
     body->element_materials = (uint32_t *)gxp_table(body, e, sizeof(uint32_t));
     body->materials = (gx_material *)gxp_table(body, body->material_count, sizeof *body->materials);
-    return body->element_materials && body->materials && body->positions && body->node_start && body->node_elements && body->node_pinched && body->edge_pinched &&
-           body->boxes && body->box_elements ? GX_OK : GX_ERROR_MEMORY;
+    return body->element_materials && body->materials && body->positions && body->node_start && body->node_elements &&
+                   body->node_pinched && body->edge_pinched && body->boxes && body->box_elements
+             ? GX_OK
+             : GX_ERROR_MEMORY;
 }
 
 static gx_result gxp_create_solver(gx_body *body) {
@@ -1202,9 +1404,11 @@ static gx_result gxp_create_solver(gx_body *body) {
 }
 
 static void gxp_fill_materials(gx_body *body, const gx_body_desc *desc) {
-    if (desc->materials != NULL) memcpy(body->materials, desc->materials, body->material_count * sizeof *body->materials);
+    if (desc->materials != NULL)
+        memcpy(body->materials, desc->materials, body->material_count * sizeof *body->materials);
     else {
-        body->materials->elastic.young = desc->young; body->materials->elastic.poisson = desc->poisson;
+        body->materials->elastic.young = desc->young;
+        body->materials->elastic.poisson = desc->poisson;
         body->materials->density = desc->density;
     }
     if (desc->materials != NULL && desc->element_materials != NULL)
@@ -1225,7 +1429,9 @@ static gx_result gxp_fill_body(gx_body *body, const gx_body_desc *desc, size_t *
     }
     if (result == GX_OK) result = gxp_create_solver(body);
     if (result == GX_OK) result = gxp_reserve_cells(body, body->element_count);
-    if (result == GX_OK) result = gxp_reserve(&body->allocator, &body->leaves, sizeof *body->leaves, 0, &body->leaf_capacity, body->element_count);
+    if (result == GX_OK)
+        result = gxp_reserve(&body->allocator, &body->leaves, sizeof *body->leaves, 0, &body->leaf_capacity,
+                             body->element_count);
     if (result == GX_OK) result = gxp_reserve_copies(body, body->node_count);
     if (result != GX_OK) return result;
     memcpy(body->positions, desc->positions, 3 * (size_t)body->node_count * sizeof(double));
@@ -1257,16 +1463,18 @@ static gx_result gxp_check_body_desc(const gx_body_desc *desc, size_t *index) {
     if (!gxp_is_finite(desc->support_below)) return GX_ERROR_NOT_FINITE;
     if (desc->support_below < 0 || desc->support_below >= 1) return GX_ERROR_ARGUMENT;
     if (desc->materials == NULL) return gxp_check_material(desc->young, desc->poisson, desc->density);
-    if (desc->material_count == 0 || desc->material_count >= INT32_MAX) return desc->material_count == 0 ? GX_ERROR_EMPTY : GX_ERROR_LIMIT;
+    if (desc->material_count == 0 || desc->material_count >= INT32_MAX)
+        return desc->material_count == 0 ? GX_ERROR_EMPTY : GX_ERROR_LIMIT;
     for (i = 0; i < desc->material_count && result == GX_OK; i++) {
-        const gxs_material *m = &desc->materials[*index = i].elastic;
+        const gxs_material *m = &desc->materials[ *index = i].elastic;
         result = gxp_check_material(m->young, m->poisson, desc->materials[i].density);
         if (result == GX_OK && !gxp_is_finite(m->damping)) result = GX_ERROR_NOT_FINITE;
-        if (result == GX_OK && ((int)m->kind < 0 || m->kind > GXS_CUSTOM || m->damping < 0 || (m->kind == GXS_CUSTOM && m->energy == NULL)))
+        if (result == GX_OK && ((int)m->kind < 0 || m->kind > GXS_CUSTOM || m->damping < 0 ||
+                                (m->kind == GXS_CUSTOM && m->energy == NULL)))
             result = GX_ERROR_ARGUMENT;
     }
     for (i = 0; i < desc->element_count && result == GX_OK && desc->element_materials != NULL; i++)
-        if (desc->element_materials[*index = i] >= desc->material_count) result = GX_ERROR_INDEX;
+        if (desc->element_materials[ *index = i] >= desc->material_count) result = GX_ERROR_INDEX;
     return result;
 }
 
@@ -1282,22 +1490,31 @@ GXFEM_API gx_result gx_body_create(const gx_body_desc *desc, gx_body **out, gx_f
     if (body == NULL) return gxp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX, SIZE_MAX);
     memset(body, 0, sizeof *body);
     body->allocator = desc->allocator;
-    body->clock = desc->clock; body->clock_user = desc->clock_user;
+    body->clock = desc->clock;
+    body->clock_user = desc->clock_user;
     body->jobs = desc->jobs;
     body->material_count = desc->materials != NULL ? (uint32_t)desc->material_count : 1;
     body->support_below = desc->support_below;
     body->follow_below = desc->support_below > 0 ? desc->support_below : GXP_SUPPORT;
     body->point_below = desc->support_below > 0 ? desc->support_below : GXP_SPECK;
     body->crumb_reach = desc->support_below > 0 ? 0 : GXP_CRUMB;
-    mesh.positions = desc->positions; mesh.node_count = desc->node_count;
-    mesh.elements = desc->elements; mesh.element_count = desc->element_count;
+    mesh.positions = desc->positions;
+    mesh.node_count = desc->node_count;
+    mesh.elements = desc->elements;
+    mesh.element_count = desc->element_count;
     result = gxb_complex_create(&mesh, &desc->allocator, &body->complex, failure);
-    if (result != GX_OK) { gx_body_destroy(body); return result; }
+    if (result != GX_OK) {
+        gx_body_destroy(body);
+        return result;
+    }
     body->node_count = body->complex->node_count;
     body->element_count = body->complex->element_count;
     index = SIZE_MAX;
     result = gxp_fill_body(body, desc, &index);
-    if (result != GX_OK) { gx_body_destroy(body); return gxp_fail(failure, result, index, SIZE_MAX); }
+    if (result != GX_OK) {
+        gx_body_destroy(body);
+        return gxp_fail(failure, result, index, SIZE_MAX);
+    }
     *out = body;
     return gxp_fail(failure, GX_OK, SIZE_MAX, SIZE_MAX);
 }
@@ -1309,18 +1526,22 @@ static void gxp_release_model(gx_body *body) {
     gxp_release(a, body->rest, (size_t)body->rest_capacity * 3 * sizeof(double));
     gxp_release(a, body->elastic, body->elastic_capacity * sizeof *body->elastic);
     gxp_release(a, body->constraints, body->constraint_capacity * sizeof *body->constraints);
-    body->parts = NULL; body->rest = NULL; body->elastic = NULL; body->constraints = NULL;
+    body->parts = NULL;
+    body->rest = NULL;
+    body->elastic = NULL;
+    body->constraints = NULL;
     body->part_capacity = body->rest_capacity = body->elastic_capacity = body->constraint_capacity = 0;
 }
 
-static void gxp_skin_free(gx_body *body);   /* see >>boundary */
+static void gxp_skin_free(gx_body *body); /* see >>boundary */
 
 GXFEM_API void gx_body_destroy(gx_body *body) {
     gx_allocator a;
     size_t n, e, i;
     if (body == NULL) return;
     a = body->allocator;
-    n = body->node_count; e = body->element_count;
+    n = body->node_count;
+    e = body->element_count;
     gxp_release(&a, body->positions, (3 * n + 1) * sizeof(double));
     gxp_release(&a, body->node_start, (n + 1) * sizeof(uint32_t));
     gxp_release(&a, body->node_elements, (4 * e + 1) * sizeof(uint32_t));
@@ -1365,10 +1586,25 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     gxp_release(&a, body->lambdas, (size_t)body->lambda_capacity * 4 * sizeof(double));
     {
         gxp_words *words[20];
-        words[0] = &body->view_cells; words[1] = &body->view_fragments; words[2] = &body->copy_fragment; words[3] = &body->cell_element;
-        words[4] = &body->cell_copies; words[5] = &body->fragment_number; words[6] = &body->point_slot; words[7] = &body->triangles;
-        words[8] = &body->touched; words[9] = &body->nodes; words[10] = &body->queue; words[11] = &body->seeds; words[12] = &body->faces;
-        words[13] = &body->fresh; words[14] = &body->list; words[15] = &body->removed; words[16] = &body->dead; words[17] = &body->pinches; words[18] = &body->splits;
+        words[0] = &body->view_cells;
+        words[1] = &body->view_fragments;
+        words[2] = &body->copy_fragment;
+        words[3] = &body->cell_element;
+        words[4] = &body->cell_copies;
+        words[5] = &body->fragment_number;
+        words[6] = &body->point_slot;
+        words[7] = &body->triangles;
+        words[8] = &body->touched;
+        words[9] = &body->nodes;
+        words[10] = &body->queue;
+        words[11] = &body->seeds;
+        words[12] = &body->faces;
+        words[13] = &body->fresh;
+        words[14] = &body->list;
+        words[15] = &body->removed;
+        words[16] = &body->dead;
+        words[17] = &body->pinches;
+        words[18] = &body->splits;
         words[19] = &body->pieces;
         for (i = 0; i < 20; i++) gxp_words_free(body, words[i]);
     }
@@ -1377,7 +1613,8 @@ GXFEM_API void gx_body_destroy(gx_body *body) {
     gxp_release(&a, body, sizeof *body);
 }
 
-/* >>transaction: a cut changes cells and leaves in place; an undo log, the counts and the complex's own log take it back ------- */
+/* >>transaction: a cut changes cells and leaves in place; an undo log, the counts and the complex's own log take it
+ * back --- */
 
 /* What one cut works with. */
 typedef struct gxp_cut {
@@ -1391,7 +1628,8 @@ typedef struct gxp_cut {
 static gx_result gxp_save_cell(gx_body *body, uint32_t cell) {
     gx_result r;
     if (body->cell_saved[cell] == body->transaction) return GX_OK;
-    r = gxp_reserve(&body->allocator, &body->saved_cells, sizeof *body->saved_cells, body->saved_cell_count, &body->saved_cell_capacity, 1);
+    r = gxp_reserve(&body->allocator, &body->saved_cells, sizeof *body->saved_cells, body->saved_cell_count,
+                    &body->saved_cell_capacity, 1);
     if (r != GX_OK) return r;
     body->saved_cells[body->saved_cell_count].index = cell;
     body->saved_cells[body->saved_cell_count++].cell = body->cells[cell];
@@ -1402,7 +1640,8 @@ static gx_result gxp_save_cell(gx_body *body, uint32_t cell) {
 /* Gives a leaf to a cell. Leaves that this cut made need not be saved. */
 static gx_result gxp_set_leaf(gx_body *body, uint32_t leaf, uint32_t cell, uint32_t next) {
     if (leaf < body->before.leaves) {
-        const gx_result r = gxp_reserve(&body->allocator, &body->saved_leaves, sizeof *body->saved_leaves, body->saved_leaf_count, &body->saved_leaf_capacity, 1);
+        const gx_result r = gxp_reserve(&body->allocator, &body->saved_leaves, sizeof *body->saved_leaves,
+                                        body->saved_leaf_count, &body->saved_leaf_capacity, 1);
         if (r != GX_OK) return r;
         body->saved_leaves[body->saved_leaf_count].index = leaf;
         body->saved_leaves[body->saved_leaf_count++].leaf = body->leaves[leaf];
@@ -1417,9 +1656,13 @@ static void gxp_begin(gxp_cut *cut) {
     gxb_complex_begin(body->complex);
     body->saved_cell_count = body->saved_leaf_count = 0;
     body->transaction++;
-    body->before.cells = body->cell_count; body->before.leaves = body->leaf_count;
-    body->before.copies = body->copy_count; body->before.labels = body->label_count;
-    body->before.surfaces = body->surface_count; body->before.maps = body->map_count; body->before.dirty = body->skin.dirty.count;
+    body->before.cells = body->cell_count;
+    body->before.leaves = body->leaf_count;
+    body->before.copies = body->copy_count;
+    body->before.labels = body->label_count;
+    body->before.surfaces = body->surface_count;
+    body->before.maps = body->map_count;
+    body->before.dirty = body->skin.dirty.count;
     body->before.splits = body->splits.count;
 }
 
@@ -1433,16 +1676,22 @@ static void gxp_rollback(gxp_cut *cut) {
         const gxp_saved_leaf *saved = &body->saved_leaves[--body->saved_leaf_count];
         body->leaves[saved->index] = saved->leaf;
     }
-    body->cell_count = body->before.cells; body->leaf_count = body->before.leaves;
-    body->copy_count = body->before.copies; body->label_count = body->before.labels;
-    body->surface_count = body->before.surfaces; body->map_count = body->before.maps; body->skin.dirty.count = body->before.dirty;
+    body->cell_count = body->before.cells;
+    body->leaf_count = body->before.leaves;
+    body->copy_count = body->before.copies;
+    body->label_count = body->before.labels;
+    body->surface_count = body->before.surfaces;
+    body->map_count = body->before.maps;
+    body->skin.dirty.count = body->before.dirty;
     body->splits.count = body->before.splits;
     gxb_complex_rollback(body->complex);
 }
 
-/* >>surfaces: what the caller gave ------------------------------------------------------------------------------------------- */
+/* >>surfaces: what the caller gave --------------------------------------------------------------------------------- */
 
-typedef struct gxp_half_edge { uint32_t from, to, triangle, corner; } gxp_half_edge;
+typedef struct gxp_half_edge {
+    uint32_t from, to, triangle, corner;
+} gxp_half_edge;
 
 static int gxp_compare_half_edges(const void *a, const void *b) {
     const gxp_half_edge *p = (const gxp_half_edge *)a, *q = (const gxp_half_edge *)b;
@@ -1453,26 +1702,31 @@ static int gxp_compare_half_edges(const void *a, const void *b) {
     return p->triangle != q->triangle ? p->triangle < q->triangle ? -1 : 1 : 0;
 }
 
-typedef struct gxp_named_point { double x[3]; uint32_t index; } gxp_named_point;
+typedef struct gxp_named_point {
+    double x[3];
+    uint32_t index;
+} gxp_named_point;
 
 static int gxp_compare_points(const void *a, const void *b) {
     const gxp_named_point *p = (const gxp_named_point *)a, *q = (const gxp_named_point *)b;
     int k;
-    for (k = 0; k < 3; k++) if (p->x[k] != q->x[k]) return p->x[k] < q->x[k] ? -1 : 1;
+    for (k = 0; k < 3; k++)
+        if (p->x[k] != q->x[k]) return p->x[k] < q->x[k] ? -1 : 1;
     return p->index != q->index ? p->index < q->index ? -1 : 1 : 0;
 }
 
-/* One surface while it cuts: its triangles, the vertices and planes already in the complex, and which triangles meet at edges. */
+/* One surface while it cuts: its triangles, the vertices and planes already in the complex, and which triangles meet at
+ * edges. */
 typedef struct gxp_surface {
     const gx_surface *given;
-    size_t number;                  /* among the cut's surfaces */
-    uint32_t label;                 /* of its first triangle */
-    uint32_t *point;                /* vertex_count: in the complex, or GXP_NONE */
-    gxb_triangle *triangles;        /* triangle_count; plane GXP_NONE: not in the complex yet */
-    uint8_t *flat;                  /* triangle_count: no area */
-    gxp_half_edge *edges;           /* 3 x triangle_count, sorted: edges with the same ends stand together */
-    uint32_t *merged;               /* vertex_count: the first vertex with the same coordinates */
-    double low[3], high[3];         /* of its vertices */
+    size_t number;           /* among the cut's surfaces */
+    uint32_t label;          /* of its first triangle */
+    uint32_t *point;         /* vertex_count: in the complex, or GXP_NONE */
+    gxb_triangle *triangles; /* triangle_count; plane GXP_NONE: not in the complex yet */
+    uint8_t *flat;           /* triangle_count: no area */
+    gxp_half_edge *edges;    /* 3 x triangle_count, sorted: edges with the same ends stand together */
+    uint32_t *merged;        /* vertex_count: the first vertex with the same coordinates */
+    double low[3], high[3];  /* of its vertices */
 } gxp_surface;
 
 static void gxp_surface_free(gx_body *body, gxp_surface *s) {
@@ -1495,12 +1749,15 @@ static gx_result gxp_check_surface(gxp_cut *cut, const gx_surface *s, size_t num
         const gx_result result = gxb_complex_check_point(cut->body->complex, s->vertices + 3 * i);
         cut->failure.index = i;
         if (result != GX_OK) return result;
-        if (s->texture != NULL && (!gxp_is_finite((double)s->texture[2 * i]) || !gxp_is_finite((double)s->texture[2 * i + 1]))) return GX_ERROR_NOT_FINITE;
+        if (s->texture != NULL &&
+            (!gxp_is_finite((double)s->texture[2 * i]) || !gxp_is_finite((double)s->texture[2 * i + 1])))
+            return GX_ERROR_NOT_FINITE;
     }
     for (i = 0; i < s->triangle_count; i++) {
         cut->failure.index = i;
         if (s->triangles[3 * i] >= s->vertex_count || s->triangles[3 * i + 1] >= s->vertex_count ||
-            s->triangles[3 * i + 2] >= s->vertex_count) return GX_ERROR_INDEX;
+            s->triangles[3 * i + 2] >= s->vertex_count)
+            return GX_ERROR_INDEX;
     }
     cut->failure.index = SIZE_MAX;
     return GX_OK;
@@ -1512,7 +1769,12 @@ static int gxp_is_flat(const double *a, const double *b, const double *c) {
     for (k = 0; k < 3; k++) {
         const int i = (k + 1) % 3, j = (k + 2) % 3;
         double p[2], q[2], r[2];
-        p[0] = a[i]; p[1] = a[j]; q[0] = b[i]; q[1] = b[j]; r[0] = c[i]; r[1] = c[j];
+        p[0] = a[i];
+        p[1] = a[j];
+        q[0] = b[i];
+        q[1] = b[j];
+        r[0] = c[i];
+        r[1] = c[j];
         if (gxb_orient2d(p, q, r) != 0) return 0;
     }
     return 1;
@@ -1529,7 +1791,8 @@ static gx_result gxp_merge_vertices(gx_body *body, gxp_surface *s) {
     }
     qsort(named, n, sizeof *named, gxp_compare_points);
     for (i = 0; i < n; i++) {
-        const int same = i > 0 && named[i].x[0] == named[i - 1].x[0] && named[i].x[1] == named[i - 1].x[1] && named[i].x[2] == named[i - 1].x[2];
+        const int same = i > 0 && named[i].x[0] == named[i - 1].x[0] && named[i].x[1] == named[i - 1].x[1] &&
+                         named[i].x[2] == named[i - 1].x[2];
         s->merged[named[i].index] = same ? s->merged[named[i - 1].index] : named[i].index;
     }
     gxp_release(&body->allocator, named, n * sizeof *named);
@@ -1538,12 +1801,14 @@ static gx_result gxp_merge_vertices(gx_body *body, gxp_surface *s) {
 
 static void gxp_sort_edges(gxp_surface *s) {
     uint32_t t, k;
-    for (t = 0; t < s->given->triangle_count; t++) for (k = 0; k < 3; k++) {
-        gxp_half_edge *e = &s->edges[3 * t + k];
-        e->from = s->merged[s->given->triangles[3 * t + k]];
-        e->to = s->merged[s->given->triangles[3 * t + (k + 1) % 3]];
-        e->triangle = t; e->corner = k;
-    }
+    for (t = 0; t < s->given->triangle_count; t++)
+        for (k = 0; k < 3; k++) {
+            gxp_half_edge *e = &s->edges[3 * t + k];
+            e->from = s->merged[s->given->triangles[3 * t + k]];
+            e->to = s->merged[s->given->triangles[3 * t + (k + 1) % 3]];
+            e->triangle = t;
+            e->corner = k;
+        }
     qsort(s->edges, 3 * s->given->triangle_count, sizeof *s->edges, gxp_compare_half_edges);
 }
 
@@ -1557,7 +1822,8 @@ static gx_result gxp_check_closed(gxp_cut *cut, const gxp_surface *s) {
     size_t i, j;
     for (i = 0; i < n; i = j) {
         long balance = 0;
-        for (j = i; j < n && gxp_same_ends(&s->edges[i], &s->edges[j]); j++) balance += s->edges[j].from < s->edges[j].to ? 1 : s->edges[j].from > s->edges[j].to ? -1 : 0;
+        for (j = i; j < n && gxp_same_ends(&s->edges[i], &s->edges[j]); j++)
+            balance += s->edges[j].from < s->edges[j].to ? 1 : s->edges[j].from > s->edges[j].to ? -1 : 0;
         if (balance != 0) {
             cut->failure.index = s->edges[i].triangle;
             cut->failure.surface = s->number;
@@ -1567,24 +1833,31 @@ static gx_result gxp_check_closed(gxp_cut *cut, const gxp_surface *s) {
     return GX_OK;
 }
 
-/* The affine map from material coordinates (less the complex's origin) to the texture of one triangle: with edges p and q and n = p x q, a
-   vector has the share g . (x - a) of p, with g = (q x n) / |n|^2, and of q with (n x p) / |n|^2. */
+/* The affine map from material coordinates (less the complex's origin) to the texture of one triangle: with edges p and
+   q and n = p x q, a vector has the share g . (x - a) of p, with g = (q x n) / |n|^2, and of q with (n x p) / |n|^2. */
 static void gxp_map_triangle(const gx_body *body, const gx_surface *s, size_t triangle, double map[8]) {
     const uint32_t *t = s->triangles + 3 * triangle;
-    const double *a = s->vertices + 3 * (size_t)t[0], *b = s->vertices + 3 * (size_t)t[1], *c = s->vertices + 3 * (size_t)t[2];
+    const double *a = s->vertices + 3 * (size_t)t[0], *b = s->vertices + 3 * (size_t)t[1],
+                 *c = s->vertices + 3 * (size_t)t[2];
     double p[3], q[3], n[3], square = 0;
     int i, k;
-    for (k = 0; k < 3; k++) { p[k] = b[k] - a[k]; q[k] = c[k] - a[k]; }
+    for (k = 0; k < 3; k++) {
+        p[k] = b[k] - a[k];
+        q[k] = c[k] - a[k];
+    }
     for (k = 0; k < 3; k++) n[k] = p[(k + 1) % 3] * q[(k + 2) % 3] - p[(k + 2) % 3] * q[(k + 1) % 3];
     for (k = 0; k < 3; k++) square += n[k] * n[k];
     for (i = 0; i < 2; i++) {
-        const double u = (double)s->texture[2 * t[0] + (uint32_t)i], du = (double)s->texture[2 * t[1] + (uint32_t)i] - u, dv = (double)s->texture[2 * t[2] + (uint32_t)i] - u;
+        const double u = (double)s->texture[2 * t[0] + (uint32_t)i],
+                     du = (double)s->texture[2 * t[1] + (uint32_t)i] - u,
+                     dv = (double)s->texture[2 * t[2] + (uint32_t)i] - u;
         map[4 * i + 3] = u;
         for (k = 0; k < 3; k++) {
             const int x = (k + 1) % 3, y = (k + 2) % 3;
             const double g = q[x] * n[y] - q[y] * n[x], h = n[x] * p[y] - n[y] * p[x];
             map[4 * i + k] = square > 0 ? (du * g + dv * h) / square : 0;
-            if (!gxp_is_finite(map[4 * i + k])) map[4 * i + k] = 0;     /* of sizes whose fourth powers doubles do not have */
+            /* of sizes whose fourth powers doubles do not have */
+            if (!gxp_is_finite(map[4 * i + k])) map[4 * i + k] = 0;
             map[4 * i + 3] -= map[4 * i + k] * (a[k] - body->complex->origin[k]);
         }
     }
@@ -1593,9 +1866,12 @@ static void gxp_map_triangle(const gx_body *body, const gx_surface *s, size_t tr
 /* Notes a surface that begins to cut: where its labels start, and how material points map to its texture. */
 static gx_result gxp_note_surface(gx_body *body, const gx_surface *given) {
     const size_t maps = given->texture != NULL ? given->triangle_count : 0;
-    gx_result result = gxp_reserve(&body->allocator, &body->surfaces, sizeof *body->surfaces, body->surface_count, &body->surface_capacity, 1);
+    gx_result result = gxp_reserve(&body->allocator, &body->surfaces, sizeof *body->surfaces, body->surface_count,
+                                   &body->surface_capacity, 1);
     uint32_t i;
-    if (result == GX_OK) result = gxp_reserve(&body->allocator, &body->maps, 8 * sizeof(double), body->map_count, &body->map_capacity, maps);
+    if (result == GX_OK)
+        result =
+            gxp_reserve(&body->allocator, &body->maps, 8 * sizeof(double), body->map_count, &body->map_capacity, maps);
     if (result != GX_OK) return result;
     body->surfaces[body->surface_count].label = body->label_count;
     body->surfaces[body->surface_count++].map = maps > 0 ? body->map_count : GXP_NONE;
@@ -1609,7 +1885,9 @@ static gx_result gxp_surface_open(gxp_cut *cut, gxp_surface *s, const gx_surface
     gx_result result;
     size_t i;
     memset(s, 0, sizeof *s);
-    s->given = given; s->number = number; s->label = body->label_count;
+    s->given = given;
+    s->number = number;
+    s->label = body->label_count;
     if (t > INT32_MAX - (size_t)body->label_count) return GX_ERROR_LIMIT;
     result = gxp_note_surface(body, given);
     if (result != GX_OK) return result;
@@ -1631,7 +1909,8 @@ static gx_result gxp_surface_open(gxp_cut *cut, gxp_surface *s, const gx_surface
     for (i = 0; i < t; i++) {
         const uint32_t *n = given->triangles + 3 * i;
         s->triangles[i].plane = GXP_NONE;
-        s->flat[i] = (uint8_t)gxp_is_flat(given->vertices + 3 * (size_t)n[0], given->vertices + 3 * (size_t)n[1], given->vertices + 3 * (size_t)n[2]);
+        s->flat[i] = (uint8_t)gxp_is_flat(given->vertices + 3 * (size_t)n[0], given->vertices + 3 * (size_t)n[1],
+                                          given->vertices + 3 * (size_t)n[2]);
         cut->report.ignored_triangles += s->flat[i];
     }
     result = gxp_merge_vertices(body, s);
@@ -1640,7 +1919,7 @@ static gx_result gxp_surface_open(gxp_cut *cut, gxp_surface *s, const gx_surface
     return given->kind == GX_SURFACE_SOLID ? gxp_check_closed(cut, s) : GX_OK;
 }
 
-/* >>arrange: the surfaces go into the complex --------------------------------------------------------------------------------- */
+/* >>arrange: the surfaces go into the complex ---------------------------------------------------------------------- */
 
 /* A coplanar neighbour across an edge that already has a plane lends it. */
 static int gxp_borrow_plane(gx_body *body, gxp_surface *s, uint32_t t) {
@@ -1649,8 +1928,10 @@ static int gxp_borrow_plane(gx_body *body, gxp_surface *s, uint32_t t) {
     uint32_t k;
     for (k = 0; k < 3; k++) {
         gxp_half_edge key, *e;
-        key.from = s->merged[s->given->triangles[3 * t + k]]; key.to = s->merged[s->given->triangles[3 * t + (k + 1) % 3]];
-        key.triangle = t; key.corner = k;
+        key.from = s->merged[s->given->triangles[3 * t + k]];
+        key.to = s->merged[s->given->triangles[3 * t + (k + 1) % 3]];
+        key.triangle = t;
+        key.corner = k;
         e = (gxp_half_edge *)bsearch(&key, s->edges, n, sizeof *s->edges, gxp_compare_half_edges);
         if (e == NULL) continue;
         while (e > s->edges && gxp_same_ends(e - 1, e)) e--;
@@ -1659,7 +1940,7 @@ static int gxp_borrow_plane(gx_body *body, gxp_surface *s, uint32_t t) {
             if (e->triangle == t || other->plane == GXP_NONE || s->flat[e->triangle]) continue;
             if (gxb_complex_side(body->complex, own->point[(k + 2) % 3], other->plane) != 0) continue;
             own->plane = other->plane;
-            own->orientation = 0;       /* settled by gxp_settle_orientation */
+            own->orientation = 0; /* settled by gxp_settle_orientation */
             own->edge_plane[0] = own->edge_plane[1] = own->edge_plane[2] = GXB_NONE;
             return 1;
         }
@@ -1675,7 +1956,8 @@ static void gxp_settle_orientation(const gx_body *body, const gxp_surface *s, gx
     int k;
     for (k = 0; k < 3; k++) {
         const double *x = s->given->vertices + 3 * (size_t)s->given->triangles[3 * (size_t)index + (size_t)k];
-        p[k][0] = x[i]; p[k][1] = x[j];
+        p[k][0] = x[i];
+        p[k][1] = x[j];
     }
     t->orientation = gxb_orient2d(p[0], p[1], p[2]) * plane->axis_sign;
 }
@@ -1688,7 +1970,8 @@ static gx_result gxp_prepare_triangle(gxp_cut *cut, gxp_surface *s, uint32_t ind
     for (k = 0; k < 3; k++) {
         const uint32_t v = s->merged[s->given->triangles[3 * index + k]];
         if (s->point[v] == GXP_NONE) {
-            const gx_result result = gxb_complex_add_point(body->complex, s->given->vertices + 3 * (size_t)v, &s->point[v]);
+            const gx_result result =
+                gxb_complex_add_point(body->complex, s->given->vertices + 3 * (size_t)v, &s->point[v]);
             if (result != GX_OK) return result;
         }
         t->point[k] = s->point[v];
@@ -1713,7 +1996,11 @@ static int gxp_in_scope(void *user, uint32_t leaf) {
     return body->cell_stamp[body->leaves[gxp_old_leaf(body, leaf)].cell] == body->scope_stamp;
 }
 
-typedef struct gxp_joint { uint32_t point, edge; int found, walled; } gxp_joint;    /* a point, or an edge of the complex */
+/* a point, or an edge of the complex */
+typedef struct gxp_joint {
+    uint32_t point, edge;
+    int found, walled;
+} gxp_joint;
 
 /* Does the leaf have the joint on its boundary, and does a wall touch it there? */
 static gx_result gxp_look_for_joint(gx_body *body, uint32_t leaf, gxp_joint *joint) {
@@ -1729,8 +2016,9 @@ static gx_result gxp_look_for_joint(gx_body *body, uint32_t leaf, gxp_joint *joi
             const uint32_t e = cx->pool[e0 + j];
             if (joint->point != GXB_NONE ? cx->edges[e >> 1].v[e & 1] != joint->point : e >> 1 != joint->edge) continue;
             joint->found = 1;
-            joint->walled |= cx->facets[facet].wall != 0 || cx->leaves[leaf].removed != 0 ||
-                             (joint->point != GXB_NONE ? cx->points[joint->point].wall : cx->edges[joint->edge].wall) != 0;
+            joint->walled |=
+                cx->facets[facet].wall != 0 || cx->leaves[leaf].removed != 0 ||
+                (joint->point != GXB_NONE ? cx->points[joint->point].wall : cx->edges[joint->edge].wall) != 0;
         }
     }
     return result;
@@ -1754,20 +2042,25 @@ static gx_result gxp_push_edge_pieces(gx_body *body, uint32_t edge, gxp_words *o
     return result == GX_OK ? gxp_push_edge_pieces(body, child + 1, out) : result;
 }
 
-/* Has a leaf of the element that the cut may touch the node on its boundary, or any piece of the mesh edge? The other of the two is GXB_NONE. */
+/* Has a leaf of the element that the cut may touch the node on its boundary, or any piece of the mesh edge? The other
+ * of the two is GXB_NONE. */
 static gx_result gxp_look_in_scope(gx_body *body, uint32_t element, uint32_t node, uint32_t edge, int *found) {
     gx_result result = GX_OK;
     uint32_t i, j;
     *found = 0;
     body->triangles.count = body->faces.count = 0;
-    if (edge == GXB_NONE) result = gxp_push(body, &body->faces, GXB_NONE);
-    else result = gxp_push_edge_pieces(body, body->complex->mesh_edge[edge], &body->faces);
+    if (edge == GXB_NONE)
+        result = gxp_push(body, &body->faces, GXB_NONE);
+    else
+        result = gxp_push_edge_pieces(body, body->complex->mesh_edge[edge], &body->faces);
     if (result == GX_OK) result = gxp_push_leaves(body, body->complex->root[element], &body->triangles);
     for (i = 0; i < body->triangles.count && result == GX_OK; i++) {
         gxp_joint joint;
         if (!gxp_in_scope(body, body->triangles.data[i])) continue;
         for (j = 0; j < body->faces.count && result == GX_OK && !*found; j++) {
-            joint.point = node; joint.edge = body->faces.data[j]; joint.walled = 0;
+            joint.point = node;
+            joint.edge = body->faces.data[j];
+            joint.walled = 0;
             result = gxp_look_for_joint(body, body->triangles.data[i], &joint);
             *found |= joint.found;
         }
@@ -1795,8 +2088,10 @@ static gx_result gxp_cover_pinches(gx_body *body, gxb_triangle *t, uint32_t elem
         if (!body->edge_pinched[cx->element_edges[6 * element + k]]) continue;
         if (scoped) result = gxp_look_in_scope(body, element, GXB_NONE, cx->element_edges[6 * element + k], &allowed);
         if (result == GX_OK && allowed) result = gxb_complex_cover_edge(body->complex, t, element, k, &covered);
-        if (covered && result == GX_OK) result = gxp_push(body, &body->pinches, cx->elements[4 * element + gxp_edge_nodes[k][0]]);
-        if (covered && result == GX_OK) result = gxp_push(body, &body->pinches, cx->elements[4 * element + gxp_edge_nodes[k][1]]);
+        if (covered && result == GX_OK)
+            result = gxp_push(body, &body->pinches, cx->elements[4 * element + gxp_edge_nodes[k][0]]);
+        if (covered && result == GX_OK)
+            result = gxp_push(body, &body->pinches, cx->elements[4 * element + gxp_edge_nodes[k][1]]);
     }
     return result;
 }
@@ -1812,13 +2107,14 @@ static gx_result gxp_insert_triangle(gxp_cut *cut, gxp_surface *s, uint32_t inde
     for (i = 0; i < body->list.count && result == GX_OK; i++) {
         const uint32_t element = body->list.data[i];
         result = gxb_complex_insert(body->complex, &s->triangles[index], element, scoped ? gxp_in_scope : NULL, body);
-        if (result == GX_OK && s->triangles[index].wall) result = gxp_cover_pinches(body, &s->triangles[index], element, scoped);
+        if (result == GX_OK && s->triangles[index].wall)
+            result = gxp_cover_pinches(body, &s->triangles[index], element, scoped);
     }
     return result;
 }
 
-/* Which of 512 intervals a coordinate lies in, in the frame of the body, which is there at most 1 long (further out it begins again): bits of
-   x 2^(shift + 9), rounded down. No arithmetic of doubles: the same under every flag. */
+/* Which of 512 intervals a coordinate lies in, in the frame of the body, which is there at most 1 long (further out it
+   begins again): bits of x 2^(shift + 9), rounded down. No arithmetic of doubles: the same under every flag. */
 static uint32_t gxp_grid_place(double x, int shift) {
     uint64_t bits, m;
     int power;
@@ -1841,18 +2137,19 @@ static uint32_t gxp_curve_place(const gxp_cut *cut, const gxp_surface *s, uint32
 }
 
 #define GXP_LAST_ROUND 31u
-#define GXP_EXPECTED 7u     /* room for at most so many times more than rounds before the last have made */
+#define GXP_EXPECTED   7u /* room for at most so many times more than rounds before the last have made */
 
-/* Inserts the triangles in rounds, each eight times as large as the one before it: planes in random order make shallow trees. Within a round
-   they come along a curve, so that an element's triangles find its data in the cache [Amenta, Choi, Rote, Incremental constructions
-   con BRIO (2003)]. Always the same order. The rounds before the last one, which is most of all, tell how much room that will take. */
+/* Inserts the triangles in rounds, each eight times as large as the one before it: planes in random order make shallow
+   trees. Within a round they come along a curve, so that an element's triangles find its data in the cache [Amenta,
+   Choi, Rote, Incremental constructions con BRIO (2003)]. Always the same order. The rounds before the last one, which
+   is most of all, tell how much room that will take. */
 static gx_result gxp_insert_surface(gxp_cut *cut, gxp_surface *s, int scoped) {
     const uint32_t count = (uint32_t)s->given->triangle_count;
     gx_body *body = cut->body;
     uint32_t i, before = 0;
     gx_result result;
     body->pairs.count = 0;
-    result = gxp_keys_room(body, &body->pairs, 2 * (size_t)count);      /* sorting takes as much again */
+    result = gxp_keys_room(body, &body->pairs, 2 * (size_t)count); /* sorting takes as much again */
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint64_t random = gxp_mix(i);
         uint32_t round = GXP_LAST_ROUND;
@@ -1887,24 +2184,31 @@ static gx_result gxp_stamp_scope(gxp_cut *cut, int *scoped) {
     if (result != GX_OK) return result;
     body->scope_stamp = ++body->stamp;
     for (i = 0; i < desc->scope_cell_count; i++) {
-        if (desc->scope_cells[i] >= body->view_cells.count) { cut->failure.index = i; return GX_ERROR_INDEX; }
+        if (desc->scope_cells[i] >= body->view_cells.count) {
+            cut->failure.index = i;
+            return GX_ERROR_INDEX;
+        }
         body->cell_stamp[body->view_cells.data[desc->scope_cells[i]]] = body->scope_stamp;
     }
     for (i = 0; i < desc->scope_fragment_count; i++) {
-        if (desc->scope_fragments[i] >= body->fragment_count) { cut->failure.index = i; return GX_ERROR_INDEX; }
+        if (desc->scope_fragments[i] >= body->fragment_count) {
+            cut->failure.index = i;
+            return GX_ERROR_INDEX;
+        }
         for (j = 0; j < body->view_cells.count; j++)
-            if (body->view_fragments.data[j] == desc->scope_fragments[i]) body->cell_stamp[body->view_cells.data[j]] = body->scope_stamp;
+            if (body->view_fragments.data[j] == desc->scope_fragments[i])
+                body->cell_stamp[body->view_cells.data[j]] = body->scope_stamp;
     }
     return GX_OK;
 }
 
-/* >>solids: winding numbers of leaves ---------------------------------------------------------------------------------------- */
+/* >>solids: winding numbers of leaves ------------------------------------------------------------------------------ */
 
 /* Room beside new leaves of the complex; new leaves start in their parent's cell, outside its list. */
 static gx_result gxp_follow_leaves(gx_body *body) {
     const uint32_t count = body->complex->leaf_count;
-    const gx_result result = gxp_reserve(&body->allocator, &body->leaves, sizeof *body->leaves, body->leaf_count, &body->leaf_capacity,
-                                         count - body->leaf_count);
+    const gx_result result = gxp_reserve(&body->allocator, &body->leaves, sizeof *body->leaves, body->leaf_count,
+                                         &body->leaf_capacity, count - body->leaf_count);
     if (result != GX_OK) return result;
     for (; body->leaf_count < count; body->leaf_count++) {
         gxp_leaf *leaf = &body->leaves[body->leaf_count];
@@ -1915,14 +2219,16 @@ static gx_result gxp_follow_leaves(gx_body *body) {
     return GX_OK;
 }
 
-/* By how much the solid's winding number is larger behind the facet than in front: triangles that face its front count 1. */
+/* By how much the solid's winding number is larger behind the facet than in front: triangles that face its front
+ * count 1. */
 static int32_t gxp_winding_step(const gx_body *body, const gxp_surface *s, uint32_t facet, int *labelled) {
     const gxb_complex *cx = body->complex;
     int32_t step = 0;
     uint32_t l;
     *labelled = 0;
     for (l = cx->facets[facet].labels; l != GXB_NONE; l = cx->labels[l].next) {
-        if (cx->labels[l].triangle < s->label || cx->labels[l].triangle - s->label >= s->given->triangle_count) continue;
+        if (cx->labels[l].triangle < s->label || cx->labels[l].triangle - s->label >= s->given->triangle_count)
+            continue;
         *labelled = 1;
         step += cx->labels[l].orientation;
     }
@@ -1951,7 +2257,8 @@ static int gxp_ask_node(const gx_body *body, const gxp_surface *s, uint32_t node
     const double *x = body->positions + 3 * (size_t)node;
     int on_surface, k;
     *winding = 0;
-    for (k = 0; k < 3; k++) if (x[k] < s->low[k] || x[k] > s->high[k]) return 1;
+    for (k = 0; k < 3; k++)
+        if (x[k] < s->low[k] || x[k] > s->high[k]) return 1;
     *winding = gxb_winding_number(s->given->vertices, s->given->triangles, s->given->triangle_count, x, &on_surface);
     return !on_surface;
 }
@@ -1962,18 +2269,26 @@ static gx_result gxp_ask_winding(gx_body *body, const gxp_surface *s, uint32_t l
     const gxb_leaf *l = &body->complex->leaves[leaf];
     uint32_t i;
     gx_result result;
-    for (i = 0; i < 4 && l->facet_count == 0; i++) if (gxp_ask_node(body, s, body->complex->elements[4 * (size_t)l->element + i], winding)) return GX_OK;
+    for (i = 0; i < 4 && l->facet_count == 0; i++)
+        if (gxp_ask_node(body, s, body->complex->elements[4 * (size_t)l->element + i], winding)) return GX_OK;
     result = gxp_leaf_points(body, leaf);
     for (i = 0; i < body->list.count && result == GX_OK; i++)
         if (body->list.data[i] < body->node_count && gxp_ask_node(body, s, body->list.data[i], winding)) return GX_OK;
-    if (result == GX_OK) *winding = gxb_complex_winding(body->complex, body->list.data, body->list.count, g->vertices, g->triangles, g->triangle_count);
+    if (result == GX_OK)
+        *winding = gxb_complex_winding(body->complex, body->list.data, body->list.count, g->vertices, g->triangles,
+                                       g->triangle_count);
     return result;
 }
 
-static int gxp_is_kept(const gx_body *body, uint32_t leaf) { return leaf != GXB_NONE && !body->complex->leaves[leaf].removed; }
+static int gxp_is_kept(const gx_body *body, uint32_t leaf) {
+    return leaf != GXB_NONE && !body->complex->leaves[leaf].removed;
+}
 
-/* Was the leaf kept and, where the cut has a scope, in it? Others were not divided by the solid and can't pass on anything. */
-static int gxp_has_winding(gx_body *body, uint32_t leaf, int scoped) { return gxp_is_kept(body, leaf) && (!scoped || gxp_in_scope(body, leaf)); }
+/* Was the leaf kept and, where the cut has a scope, in it? Others were not divided by the solid and can't pass on
+ * anything. */
+static int gxp_has_winding(gx_body *body, uint32_t leaf, int scoped) {
+    return gxp_is_kept(body, leaf) && (!scoped || gxp_in_scope(body, leaf));
+}
 
 static gx_result gxp_visit_winding(gx_body *body, uint32_t leaf, int32_t winding) {
     if (body->leaves[leaf].stamp == body->stamp) return GX_OK;
@@ -1982,7 +2297,8 @@ static gx_result gxp_visit_winding(gx_body *body, uint32_t leaf, int32_t winding
     return gxp_push(body, &body->queue, leaf);
 }
 
-/* The neighbours of a leaf inside the solid know their winding numbers; of one outside, those across the solid's surface. */
+/* The neighbours of a leaf inside the solid know their winding numbers; of one outside, those across the solid's
+ * surface. */
 static gx_result gxp_spread_winding(gx_body *body, const gxp_surface *s, uint32_t leaf, int scoped) {
     gxb_complex *cx = body->complex;
     const int32_t winding = body->leaves[leaf].winding;
@@ -2004,7 +2320,8 @@ static gx_result gxp_spread_winding(gx_body *body, const gxp_surface *s, uint32_
 /* Works the queue off from where it stands. */
 static gx_result gxp_flood_winding(gx_body *body, const gxp_surface *s, uint32_t *done, int scoped) {
     gx_result result = GX_OK;
-    while (*done < body->queue.count && result == GX_OK) result = gxp_spread_winding(body, s, body->queue.data[(*done)++], scoped);
+    while (*done < body->queue.count && result == GX_OK)
+        result = gxp_spread_winding(body, s, body->queue.data[(*done)++], scoped);
     return result;
 }
 
@@ -2022,18 +2339,19 @@ static gx_result gxp_wall_leaves(gx_body *body, uint32_t facet, gxp_words *seeds
     return result;
 }
 
-/* Does the flood, which goes across faces and stays in the scope, reach this cell from others of its fragment? Not for certain where elements meet in
-   nodes or edges only, or where the caller lists the cells of a scope. */
+/* Does the flood, which goes across faces and stays in the scope, reach this cell from others of its fragment? Not for
+   certain where elements meet in nodes or edges only, or where the caller lists the cells of a scope. */
 static int gxp_is_flooded(const gxp_cut *cut, uint32_t cell) {
     const uint32_t *node = cut->body->complex->elements + 4 * (size_t)cut->body->cells[cell].element;
     uint32_t k;
     if (cut->desc->scope_cell_count > 0) return 0;
-    for (k = 0; k < 4; k++) if (cut->body->node_pinched[node[k]]) return 0;
+    for (k = 0; k < 4; k++)
+        if (cut->body->node_pinched[node[k]]) return 0;
     return 1;
 }
 
-/* Fragments (of before the cut) that the surface does not touch may lie in the solid as a whole: one leaf of each joins the seeds, and one of each
-   cell that the flood may not reach. */
+/* Fragments (of before the cut) that the surface does not touch may lie in the solid as a whole: one leaf of each joins
+   the seeds, and one of each cell that the flood may not reach. */
 static gx_result gxp_seed_untouched(gxp_cut *cut) {
     gx_body *body = cut->body;
     gx_result result = gxp_update_view(body);
@@ -2043,7 +2361,8 @@ static gx_result gxp_seed_untouched(gxp_cut *cut) {
     if (result != GX_OK) return result;
     if (body->fragment_count > 0) memset(body->nodes.data, 0, body->fragment_count * sizeof *body->nodes.data);
     for (i = 0; i < body->seeds.count; i++)
-        if (gxp_is_kept(body, body->seeds.data[i])) body->nodes.data[gxp_cell_fragment(body, body->leaves[body->seeds.data[i]].cell)] = 1;
+        if (gxp_is_kept(body, body->seeds.data[i]))
+            body->nodes.data[gxp_cell_fragment(body, body->leaves[body->seeds.data[i]].cell)] = 1;
     for (i = 0; i < body->view_cells.count && result == GX_OK; i++) {
         const uint32_t cell = body->view_cells.data[i];
         if (body->nodes.data[body->view_fragments.data[i]] && gxp_is_flooded(cut, cell)) continue;
@@ -2076,11 +2395,13 @@ static gx_result gxp_find_solid(gxp_cut *cut, const gxp_surface *s, int scoped) 
     uint32_t i;
     gx_result result = GX_OK;
     body->seeds.count = 0;
-    for (i = 0; i < body->complex->wall_count && result == GX_OK; i++) result = gxp_wall_leaves(body, body->complex->walls[i] >> 1, &body->seeds);
+    for (i = 0; i < body->complex->wall_count && result == GX_OK; i++)
+        result = gxp_wall_leaves(body, body->complex->walls[i] >> 1, &body->seeds);
     if (result == GX_OK) result = gxp_seed_untouched(cut);
     if (result == GX_OK) result = gxp_find_windings(body, s, scoped);
     for (i = 0; i < body->queue.count && result == GX_OK; i++)
-        if (body->leaves[body->queue.data[i]].winding != 0) result = gxp_push(body, &body->removed, body->queue.data[i]);
+        if (body->leaves[body->queue.data[i]].winding != 0)
+            result = gxp_push(body, &body->removed, body->queue.data[i]);
     return result;
 }
 
@@ -2088,18 +2409,25 @@ static gx_result gxp_find_solid(gxp_cut *cut, const gxp_surface *s, int scoped) 
 
 /* r += a b */
 static void gxp_num_add_product(gxb_num *r, const gxb_num *a, const gxb_num *b) {
-    GXB_NUM(p); GXB_NUM(s);
+    GXB_NUM(p);
+    GXB_NUM(s);
     gxb_num_mul(&p, a, b);
     gxb_num_add(&s, r, &p);
-    r->sign = s.sign; r->exp = s.exp; r->n = s.n;
+    r->sign = s.sign;
+    r->exp = s.exp;
+    r->n = s.n;
     memcpy(r->d, s.d, s.n * sizeof *s.d);
 }
 
-typedef struct gxp_fine_point { gxb_num c[4]; gxb_limb limbs[4][32]; } gxp_fine_point;
+typedef struct gxp_fine_point {
+    gxb_num c[4];
+    gxb_limb limbs[4][32];
+} gxp_fine_point;
 
-/* >>links: pieces of element faces that no wall covers ------------------------------------------------------------------------ */
+/* >>links: pieces of element faces that no wall covers ------------------------------------------------------------- */
 
-/* Twice the area of a facet as seen along the axis of its plane, from approximate positions; *error: a bound for its error. */
+/* Twice the area of a facet as seen along the axis of its plane, from approximate positions; *error: a bound for its
+ * error. */
 static gx_result gxp_rough_area(gxb_complex *cx, uint32_t facet, double *area, double *error) {
     const uint32_t axis = cx->planes[cx->facets[facet].plane].axis, x = (axis + 1) % 3, y = (axis + 2) % 3;
     const gxb_ball *o = NULL;
@@ -2111,8 +2439,10 @@ static gx_result gxp_rough_area(gxb_complex *cx, uint32_t facet, double *area, d
         const gxb_ball *p = &cx->points[cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1]].ball;
         double size;
         if (i == 0) o = p;
-        a[0] = b[0]; a[1] = b[1];
-        b[0] = p->x[x] - o->x[x]; b[1] = p->x[y] - o->x[y];
+        a[0] = b[0];
+        a[1] = b[1];
+        b[0] = p->x[x] - o->x[x];
+        b[1] = p->x[y] - o->x[y];
         size = fabs(a[0]) + fabs(a[1]) + fabs(b[0]) + fabs(b[1]);
         sum += a[0] * b[1] - a[1] * b[0];
         *error += size * (size * 1e-15 + 4 * (p->error + o->error));
@@ -2121,24 +2451,35 @@ static gx_result gxp_rough_area(gxb_complex *cx, uint32_t facet, double *area, d
     return result;
 }
 
-/* The polygon of the points in body->seeds as a share of the face opposite to node k, in numbers that hold any size: areas in the
-   plane of two barycentric coordinates, where the face has 1. */
+/* The polygon of the points in body->seeds as a share of the face opposite to node k, in numbers that hold any size:
+   areas in the plane of two barycentric coordinates, where the face has 1. */
 static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
     gxp_fine_point p[3];
     unsigned axes[3];
     uint32_t i;
     int c;
-    GXB_NUM(sum); GXB_NUM(one);
+    GXB_NUM(sum);
+    GXB_NUM(one);
     gxi_part_axes(k, axes);
     gxb_num_set(&one, 1.0, 0);
-    for (i = 0; i < 3; i++) for (c = 0; c < 4; c++) p[i].c[c].d = p[i].limbs[c];
+    for (i = 0; i < 3; i++)
+        for (c = 0; c < 4; c++) p[i].c[c].d = p[i].limbs[c];
     for (i = 0; i < body->seeds.count; i++) {
-        gxp_fine_point *const a = &p[1 + i % 2], *const b = &p[1 + (i + 1) % 2];     /* a: this point, b: the one before */
-        GXB_NUM(x); GXB_NUM(y); GXB_NUM(z); GXB_NUM(w); GXB_NUM(s); GXB_NUM(t); GXB_NUM(d);
+        /* a: this point, b: the one before */
+        gxp_fine_point *const a = &p[1 + i % 2], *const b = &p[1 + (i + 1) % 2];
+        GXB_NUM(x);
+        GXB_NUM(y);
+        GXB_NUM(z);
+        GXB_NUM(w);
+        GXB_NUM(s);
+        GXB_NUM(t);
+        GXB_NUM(d);
         gxb_complex_barycentric_fine(body->complex, body->seeds.data[i], element, i == 0 ? p[0].c : a->c);
         if (i < 2) continue;
-        gxb_num_sub(&x, &b->c[axes[1]], &p[0].c[axes[1]]); gxb_num_sub(&y, &b->c[axes[2]], &p[0].c[axes[2]]);
-        gxb_num_sub(&z, &a->c[axes[1]], &p[0].c[axes[1]]); gxb_num_sub(&w, &a->c[axes[2]], &p[0].c[axes[2]]);
+        gxb_num_sub(&x, &b->c[axes[1]], &p[0].c[axes[1]]);
+        gxb_num_sub(&y, &b->c[axes[2]], &p[0].c[axes[2]]);
+        gxb_num_sub(&z, &a->c[axes[1]], &p[0].c[axes[1]]);
+        gxb_num_sub(&w, &a->c[axes[2]], &p[0].c[axes[2]]);
         gxb_num_mul(&s, &x, &w);
         gxb_num_mul(&t, &y, &z);
         gxb_num_sub(&d, &s, &t);
@@ -2154,7 +2495,8 @@ static gx_result gxp_facet_points(gx_body *body, uint32_t facet) {
     gx_result result = gxb_facet_edges(cx, facet, &e0, &en);
     body->seeds.count = 0;
     if (result == GX_OK) result = gxp_words_room(body, &body->seeds, en);
-    for (i = 0; i < en && result == GX_OK; i++) body->seeds.data[body->seeds.count++] = cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1];
+    for (i = 0; i < en && result == GX_OK; i++)
+        body->seeds.data[body->seeds.count++] = cx->edges[cx->pool[e0 + i] >> 1].v[cx->pool[e0 + i] & 1];
     return result;
 }
 
@@ -2166,7 +2508,8 @@ static uint32_t gxp_local_face(const gxb_complex *cx, uint32_t element, uint32_t
 
 /* An element with the face, and the node of it that the face does not have. */
 static uint32_t gxp_face_element(const gxb_complex *cx, uint32_t face, uint32_t *k) {
-    const uint32_t element = cx->face_elements[2 * face] != GXB_NONE ? cx->face_elements[2 * face] : cx->face_elements[2 * face + 1];
+    const uint32_t element =
+        cx->face_elements[2 * face] != GXB_NONE ? cx->face_elements[2 * face] : cx->face_elements[2 * face + 1];
     *k = gxp_local_face(cx, element, face);
     return element;
 }
@@ -2194,7 +2537,8 @@ static gx_result gxp_settle_links(gx_body *body) {
         const uint32_t from = body->link_first.data[i], to = body->link_first.data[i + 1];
         uint64_t *link = body->links.data;
         body->cell_fresh[body->fresh.data[i]] = i;
-        for (j = from; j < to; j++) link[j] = (uint64_t)body->leaves[GXP_LINK_CELL(link[j])].cell << 33 | (link[j] & 0x1ffffffffu);
+        for (j = from; j < to; j++)
+            link[j] = (uint64_t)body->leaves[GXP_LINK_CELL(link[j])].cell << 33 | (link[j] & 0x1ffffffffu);
         result = gxp_sort_keys(body, &body->links, from, to);
     }
     return result;
@@ -2206,11 +2550,13 @@ static uint32_t gxp_fresh_index(const gx_body *body, uint32_t cell) {
     return i < body->fresh.count && body->fresh.data[i] == cell ? i : GXP_NONE;
 }
 
-/* Share of the link first ... end-1 of its face, roughly, with a bound for its error; of its first facets, where those have certainly more than enough. */
-static gx_result gxp_rough_share(gx_body *body, uint32_t first, uint32_t end, double enough, double *share, double *error) {
+/* Share of the link first ... end-1 of its face, roughly, with a bound for its error; of its first facets, where those
+ * have certainly more than enough. */
+static gx_result gxp_rough_share(gx_body *body, uint32_t first, uint32_t end, double enough, double *share,
+                                 double *error) {
     gxb_complex *cx = body->complex;
     const gxb_cplane *plane = &cx->planes[cx->facets[GXP_LINK_FACET(body->links.data[first])].plane];
-    const double whole = fabs(plane->filter.n[plane->axis]);    /* the normal is a product of two of the face's edges */
+    const double whole = fabs(plane->filter.n[plane->axis]); /* the normal is a product of two of the face's edges */
     double part, part_error;
     gx_result result = GX_OK;
     *share = *error = 0;
@@ -2219,13 +2565,19 @@ static gx_result gxp_rough_share(gx_body *body, uint32_t first, uint32_t end, do
         *share += part;
         *error += part_error + plane->filter.error;
     }
-    if (!(*error < 0.5 * whole) || !(*share < 8 * whole)) { *share = 0; *error = 1; return result; }    /* nothing is known */
+    /* nothing is known */
+    if (!(*error < 0.5 * whole) || !(*share < 8 * whole)) {
+        *share = 0;
+        *error = 1;
+        return result;
+    }
     *share /= whole;
     *error = 4 * *error / whole;
     return result;
 }
 
-/* Is the link first ... end-1 certainly neither the smallest, which has a share of at most *bound (made smaller), nor to be severed? */
+/* Is the link first ... end-1 certainly neither the smallest, which has a share of at most *bound (made smaller), nor
+ * to be severed? */
 static gx_result gxp_is_wide(gxp_cut *cut, uint32_t first, uint32_t end, double *bound, int *wide) {
     const double enough = fmax(*bound, cut->desc->sever_below);
     double share, error;
@@ -2238,7 +2590,8 @@ static gx_result gxp_is_wide(gxp_cut *cut, uint32_t first, uint32_t end, double 
 /* Share of the link first ... end-1 of its face */
 static gx_result gxp_weigh_link(gx_body *body, uint32_t first, uint32_t end, double *share) {
     uint32_t k;
-    const uint32_t element = gxp_face_element(body->complex, body->complex->facets[GXP_LINK_FACET(body->links.data[first])].face, &k);
+    const uint32_t element =
+        gxp_face_element(body->complex, body->complex->facets[GXP_LINK_FACET(body->links.data[first])].face, &k);
     gx_result result = gxb_complex_open_element(body->complex, element);
     *share = 0;
     for (; first < end && result == GX_OK; first++) {
@@ -2257,12 +2610,14 @@ static gx_result gxp_judge_link(gxp_cut *cut, uint32_t first, uint32_t end) {
     if (share < cut->report.min_link_ratio) cut->report.min_link_ratio = share;
     if (share >= cut->desc->sever_below) return GX_OK;
     cut->report.severed_links++;
-    for (; first < end && result == GX_OK; first++) result = gxb_complex_set_wall(body->complex, GXP_LINK_FACET(body->links.data[first]));
+    for (; first < end && result == GX_OK; first++)
+        result = gxb_complex_set_wall(body->complex, GXP_LINK_FACET(body->links.data[first]));
     return result;
 }
 
-/* Weighs the links of a fresh cell roughly, but whole faces and those of fresh cells before it. All pieces of a face between the same two cells count as
-   one link. Those that may be the smallest or are to be severed go to body->nodes. *bound: of the smallest so far. */
+/* Weighs the links of a fresh cell roughly, but whole faces and those of fresh cells before it. All pieces of a face
+   between the same two cells count as one link. Those that may be the smallest or are to be severed go to body->nodes.
+   *bound: of the smallest so far. */
 static gx_result gxp_weigh_links(gxp_cut *cut, uint32_t index, double *bound) {
     gx_body *body = cut->body;
     const uint32_t last = body->link_first.data[index + 1];
@@ -2272,7 +2627,9 @@ static gx_result gxp_weigh_links(gxp_cut *cut, uint32_t index, double *bound) {
     for (first = body->link_first.data[index]; first < last && result == GX_OK; first = end) {
         const uint32_t other = GXP_LINK_CELL(body->links.data[first]), facet = GXP_LINK_FACET(body->links.data[first]);
         for (end = first + 1; end < last && GXP_LINK_CELL(body->links.data[end]) == other; end++) {}
-        if (gxp_fresh_index(body, other) < index || body->complex->face_facet[body->complex->facets[facet].face] == facet) continue;
+        if (gxp_fresh_index(body, other) < index ||
+            body->complex->face_facet[body->complex->facets[facet].face] == facet)
+            continue;
         result = gxp_is_wide(cut, first, end, bound, &wide);
         if (result == GX_OK && !wide) result = gxp_push(body, &body->nodes, first);
         if (result == GX_OK && !wide) result = gxp_push(body, &body->nodes, end);
@@ -2303,7 +2660,7 @@ static gx_result gxp_sever_links(gxp_cut *cut) {
     return result == GX_OK ? gxp_judge_links(cut, bound) : result;
 }
 
-/* >>cells: the touched ones fall apart ---------------------------------------------------------------------------------------- */
+/* >>cells: the touched ones fall apart ----------------------------------------------------------------------------- */
 
 /* Collects the cells on both sides of walls that this cut made. */
 static gx_result gxp_collect_touched(gxp_cut *cut) {
@@ -2350,7 +2707,8 @@ static gx_result gxp_new_cell(gx_body *body, uint32_t like, uint32_t *slot) {
     return GX_OK;
 }
 
-/* Walks the leaves that open facets inside the element join to the first in the queue, and lists their links, for now with the leaf behind each. */
+/* Walks the leaves that open facets inside the element join to the first in the queue, and lists their links, for now
+ * with the leaf behind each. */
 static gx_result gxp_walk_leaves(gx_body *body, uint32_t start) {
     gxb_complex *cx = body->complex;
     uint32_t done = 0, first, count, i;
@@ -2368,7 +2726,9 @@ static gx_result gxp_walk_leaves(gx_body *body, uint32_t start) {
             const gxb_facet *f = &cx->facets[facet];
             const uint32_t other = f->leaf[f->leaf[0] == leaf];
             if (!gxp_is_link(body, facet)) continue;
-            if (f->face != GXB_NONE) body->links.data[body->links.count++] = (uint64_t)other << 33 | (uint64_t)facet << 2 | gxp_local_face(cx, cx->leaves[leaf].element, f->face);
+            if (f->face != GXB_NONE)
+                body->links.data[body->links.count++] = (uint64_t)other << 33 | (uint64_t)facet << 2 |
+                                                        gxp_local_face(cx, cx->leaves[leaf].element, f->face);
             else if (body->leaves[other].stamp != body->stamp) {
                 body->leaves[other].stamp = body->stamp;
                 result = gxp_push(body, &body->queue, other);
@@ -2383,7 +2743,8 @@ static gx_result gxp_give_leaves(gx_body *body, uint32_t cell) {
     uint32_t i;
     gx_result result = gxp_save_cell(body, cell);
     for (i = body->queue.count; i-- > 0 && result == GX_OK;)
-        result = gxp_set_leaf(body, body->queue.data[i], cell, i + 1 < body->queue.count ? body->queue.data[i + 1] : GXP_NONE);
+        result = gxp_set_leaf(body, body->queue.data[i], cell,
+                              i + 1 < body->queue.count ? body->queue.data[i + 1] : GXP_NONE);
     if (result == GX_OK) body->cells[cell].first_leaf = body->queue.data[0];
     return result;
 }
@@ -2439,15 +2800,18 @@ static gx_result gxp_touch_severed(gxp_cut *cut) {
     uint32_t i;
     for (i = 0; i < body->touched.count && result == GX_OK; i++) {
         const uint32_t cell = body->touched.data[i];
-        if (body->cells[cell].kept && gxp_fresh_index(body, cell) == GXP_NONE) result = gxp_push(body, &body->fresh, cell);
+        if (body->cells[cell].kept && gxp_fresh_index(body, cell) == GXP_NONE)
+            result = gxp_push(body, &body->fresh, cell);
     }
     body->links.count = body->link_first.count = 0;
     body->stamp++;
-    for (i = 0; i < body->fresh.count && result == GX_OK; i++) result = gxp_walk_leaves(body, body->cells[body->fresh.data[i]].first_leaf);
+    for (i = 0; i < body->fresh.count && result == GX_OK; i++)
+        result = gxp_walk_leaves(body, body->cells[body->fresh.data[i]].first_leaf);
     return result == GX_OK ? gxp_settle_links(body) : result;
 }
 
-/* Asks for what dividing the next touched cells reads: leaves four and three ahead, their lists of facets two ahead, the facets of the next. */
+/* Asks for what dividing the next touched cells reads: leaves four and three ahead, their lists of facets two ahead,
+ * the facets of the next. */
 GXP_FETCHES void gxp_fetch_leaves(const gx_body *body, uint32_t index) {
     const gxb_complex *cx = body->complex;
     const uint32_t *touched = body->touched.data, count = body->touched.count;
@@ -2456,20 +2820,24 @@ GXP_FETCHES void gxp_fetch_leaves(const gx_body *body, uint32_t index) {
         GXP_FETCH(&body->leaves[leaf]);
         GXP_FETCH(&cx->leaves[leaf]);
     }
-    if (index + 3 < count) for (leaf = body->cells[touched[index + 3]].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next)
-        GXP_FETCH(&cx->leaves[leaf]);
-    if (index + 2 < count) for (leaf = body->cells[touched[index + 2]].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next)
-        GXP_FETCH(cx->pool + cx->leaves[leaf].facets);
-    if (index + 1 < count) for (leaf = body->cells[touched[index + 1]].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next)
-        for (i = 0; i < cx->leaves[leaf].facet_count; i++) GXP_FETCH(&cx->facets[cx->pool[cx->leaves[leaf].facets + i]]);
+    if (index + 3 < count)
+        for (leaf = body->cells[touched[index + 3]].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next)
+            GXP_FETCH(&cx->leaves[leaf]);
+    if (index + 2 < count)
+        for (leaf = body->cells[touched[index + 2]].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next)
+            GXP_FETCH(cx->pool + cx->leaves[leaf].facets);
+    if (index + 1 < count)
+        for (leaf = body->cells[touched[index + 1]].first_leaf; leaf != GXP_NONE; leaf = body->leaves[leaf].next)
+            for (i = 0; i < cx->leaves[leaf].facet_count; i++)
+                GXP_FETCH(&cx->facets[cx->pool[cx->leaves[leaf].facets + i]]);
 }
 
 /* Divides all touched cells. Leaves body->touched as it was, makes body->fresh of the pieces and lists their links. */
 static gx_result gxp_divide_cells(gxp_cut *cut) {
     gx_body *body = cut->body;
     uint32_t i;
-    gx_result result = gxp_reserve(&body->allocator, &body->saved_cells, sizeof *body->saved_cells, body->saved_cell_count,
-                                   &body->saved_cell_capacity, 4 * (size_t)body->touched.count);
+    gx_result result = gxp_reserve(&body->allocator, &body->saved_cells, sizeof *body->saved_cells,
+                                   body->saved_cell_count, &body->saved_cell_capacity, 4 * (size_t)body->touched.count);
     if (result == GX_OK) result = gxp_keys_room(body, &body->links, 16 * (size_t)body->touched.count);
     if (result == GX_OK) result = gxp_reserve_cells(body, body->touched.count);
     body->fresh.count = body->links.count = body->link_first.count = 0;
@@ -2486,7 +2854,7 @@ static gx_result gxp_divide_cells(gxp_cut *cut) {
     return result == GX_OK ? gxp_settle_links(body) : result;
 }
 
-/* >>components: nodal subdomains, and the copies that move them ---------------------------------------------------------------- */
+/* >>components: nodal subdomains, and the copies that move them ---------------------------------------------------- */
 
 static gx_result gxp_visit_cell(gx_body *body, uint32_t cell) {
     if (body->cell_stamp[cell] == body->stamp) return GX_OK;
@@ -2498,7 +2866,8 @@ static gx_result gxp_visit_cell(gx_body *body, uint32_t cell) {
 static gx_result gxp_cross_facet(gx_body *body, uint32_t facet, uint32_t leaf) {
     const gxb_facet *f = &body->complex->facets[facet];
     const uint32_t other = f->leaf[f->leaf[0] == leaf];
-    if (other == GXB_NONE || body->cell_stamp[body->leaves[other].cell] == body->stamp || !gxp_is_link(body, facet)) return GX_OK;
+    if (other == GXB_NONE || body->cell_stamp[body->leaves[other].cell] == body->stamp || !gxp_is_link(body, facet))
+        return GX_OK;
     return gxp_visit_cell(body, body->leaves[other].cell);
 }
 
@@ -2509,15 +2878,17 @@ static gx_result gxp_cross_whole_face(gx_body *body, uint32_t element, uint32_t 
     uint32_t i;
     gx_result result;
     if (other == GXP_NONE) return GX_OK;
-    if (cx->face_facet[face] == GXB_NONE) return gxp_is_kept(body, other) ? gxp_visit_cell(body, body->leaves[other].cell) : GX_OK;
+    if (cx->face_facet[face] == GXB_NONE)
+        return gxp_is_kept(body, other) ? gxp_visit_cell(body, body->leaves[other].cell) : GX_OK;
     body->list.count = 0;
     result = gxp_push_pieces(body, cx->face_facet[face], &body->list);
-    for (i = 0; i < body->list.count && result == GX_OK; i++) result = gxp_cross_facet(body, body->list.data[i], element);
+    for (i = 0; i < body->list.count && result == GX_OK; i++)
+        result = gxp_cross_facet(body, body->list.data[i], element);
     return result;
 }
 
-/* Visits the cells that links of a fresh cell join to it, but across the face opposite to local node k; unless all is set only fresh ones. *open
-   is set to 1 where there are others. */
+/* Visits the cells that links of a fresh cell join to it, but across the face opposite to local node k; unless all is
+   set only fresh ones. *open is set to 1 where there are others. */
 static gx_result gxp_cross_links(gx_body *body, uint32_t index, uint32_t k, int all, uint32_t *open) {
     uint32_t i;
     gx_result result = GX_OK;
@@ -2534,12 +2905,14 @@ static gx_result gxp_cross_links(gx_body *body, uint32_t index, uint32_t k, int 
 static gx_result gxp_cross_faces(gx_body *body, uint32_t cell, uint32_t node) {
     gxb_complex *cx = body->complex;
     const uint32_t element = body->cells[cell].element;
-    const uint32_t local = (uint32_t)gxp_local_node(body, element, node), opposite = cx->element_faces[4 * element + local];
+    const uint32_t local = (uint32_t)gxp_local_node(body, element, node),
+                   opposite = cx->element_faces[4 * element + local];
     uint32_t leaf, first, count, i, k;
     gx_result result = GX_OK;
     for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next) {
         if (cx->leaves[leaf].facet_count == 0) {
-            for (k = 0; k < 4 && result == GX_OK; k++) if (k != local) result = gxp_cross_whole_face(body, element, k);
+            for (k = 0; k < 4 && result == GX_OK; k++)
+                if (k != local) result = gxp_cross_whole_face(body, element, k);
             continue;
         }
         result = gxb_leaf_facets(cx, leaf, &first, &count);
@@ -2564,7 +2937,8 @@ static gx_result gxp_find_joint(gx_body *body, uint32_t node, gxp_joint *joint, 
     for (i = 0; i < body->triangles.count && result == GX_OK; i++) {
         const uint32_t leaf = body->triangles.data[i];
         result = gxp_look_for_joint(body, leaf, joint);
-        if (joint->found && !body->complex->leaves[leaf].removed && result == GX_OK) result = gxp_push(body, found, body->leaves[leaf].cell);
+        if (joint->found && !body->complex->leaves[leaf].removed && result == GX_OK)
+            result = gxp_push(body, found, body->leaves[leaf].cell);
     }
     return result;
 }
@@ -2574,11 +2948,14 @@ static gx_result gxp_cross_joint(gx_body *body, uint32_t cell, uint32_t node, ui
     gxp_joint joint;
     uint32_t i, member = 0;
     gx_result result;
-    joint.point = point; joint.edge = edge; joint.walled = joint.found = 0;
+    joint.point = point;
+    joint.edge = edge;
+    joint.walled = joint.found = 0;
     body->list.count = 0;
     result = gxp_find_joint(body, node, &joint, &body->list);
     for (i = 0; i < body->list.count; i++) member |= body->list.data[i] == cell;
-    for (i = 0; i < body->list.count && result == GX_OK && member && !joint.walled; i++) result = gxp_visit_cell(body, body->list.data[i]);
+    for (i = 0; i < body->list.count && result == GX_OK && member && !joint.walled; i++)
+        result = gxp_visit_cell(body, body->list.data[i]);
     return result;
 }
 
@@ -2590,25 +2967,30 @@ static gx_result gxp_cross_pinches(gx_body *body, uint32_t cell, uint32_t node) 
     if (result == GX_OK && (body->node_pinched[node] & 1)) result = gxp_cross_joint(body, cell, node, node, GXB_NONE);
     for (k = 0; k < 6 && result == GX_OK; k++) {
         const uint32_t edge = cx->element_edges[6 * element + k];
-        const uint32_t a = cx->elements[4 * element + gxp_edge_nodes[k][0]], b = cx->elements[4 * element + gxp_edge_nodes[k][1]];
+        const uint32_t a = cx->elements[4 * element + gxp_edge_nodes[k][0]],
+                       b = cx->elements[4 * element + gxp_edge_nodes[k][1]];
         if (!body->edge_pinched[edge] || (a != node && b != node)) continue;
         body->faces.count = 0;
         result = gxp_push_edge_pieces(body, cx->mesh_edge[edge], &body->faces);
-        for (i = 0; i < body->faces.count && result == GX_OK; i++) result = gxp_cross_joint(body, cell, node, GXB_NONE, body->faces.data[i]);
+        for (i = 0; i < body->faces.count && result == GX_OK; i++)
+            result = gxp_cross_joint(body, cell, node, GXB_NONE, body->faces.data[i]);
     }
     return result;
 }
 
-/* The piece of a nodal component that contains a fresh cell: appended to body->queue, every cell stamped. all 0: of its fresh cells alone, from one to
-   the next; *open: do links go on to others? */
+/* The piece of a nodal component that contains a fresh cell: appended to body->queue, every cell stamped. all 0: of its
+   fresh cells alone, from one to the next; *open: do links go on to others? */
 static gx_result gxp_walk_piece(gx_body *body, uint32_t cell, uint32_t node, int all, uint32_t *open) {
     uint32_t done = body->queue.count;
     gx_result result = gxp_visit_cell(body, cell);
     *open = 0;
     while (done < body->queue.count && result == GX_OK) {
         const uint32_t c = body->queue.data[done++], fresh = gxp_fresh_index(body, c);
-        if (fresh == GXP_NONE) result = gxp_cross_faces(body, c, node);
-        else result = gxp_cross_links(body, fresh, (uint32_t)gxp_local_node(body, body->cells[c].element, node), all, open);
+        if (fresh == GXP_NONE)
+            result = gxp_cross_faces(body, c, node);
+        else
+            result =
+                gxp_cross_links(body, fresh, (uint32_t)gxp_local_node(body, body->cells[c].element, node), all, open);
         if (result == GX_OK && body->node_pinched[node]) result = gxp_cross_pinches(body, c, node);
     }
     return result;
@@ -2658,18 +3040,19 @@ static gx_result gxp_pair_node(gx_body *body, uint32_t node) {
     return result;
 }
 
-/* Where to start walks: each touched cell around its nodes; around pinched nodes, where walls break joints that they only touch
-   in a point, every cell. */
+/* Where to start walks: each touched cell around its nodes; around pinched nodes, where walls break joints that they
+   only touch in a point, every cell. */
 static gx_result gxp_collect_pairs(gx_body *body) {
     uint32_t i, n;
     gx_result result = GX_OK;
     body->pairs.count = 0;
-    result = gxp_keys_room(body, &body->pairs, 8 * (size_t)body->fresh.count);      /* sorting takes as much again */
+    result = gxp_keys_room(body, &body->pairs, 8 * (size_t)body->fresh.count); /* sorting takes as much again */
     for (i = 0; i < body->fresh.count && result == GX_OK; i++) result = gxp_pair_cell(body, body->fresh.data[i]);
     for (i = 0; i < body->touched.count && result == GX_OK; i++)
         if (!body->cells[body->touched.data[i]].kept) result = gxp_pair_cell(body, body->touched.data[i]);
     for (i = 0, n = body->pairs.count; i < n && result == GX_OK; i++)
-        if (body->node_pinched[GXP_FIRST(body->pairs.data[i])]) result = gxp_push(body, &body->pinches, GXP_FIRST(body->pairs.data[i]));
+        if (body->node_pinched[GXP_FIRST(body->pairs.data[i])])
+            result = gxp_push(body, &body->pinches, GXP_FIRST(body->pairs.data[i]));
     gxp_sort_unique(&body->pinches);
     for (i = 0; i < body->pinches.count && result == GX_OK; i++) result = gxp_pair_node(body, body->pinches.data[i]);
     return result == GX_OK ? gxp_sort_keys(body, &body->pairs, 0, body->pairs.count) : result;
@@ -2677,7 +3060,8 @@ static gx_result gxp_collect_pairs(gx_body *body) {
 
 static int gxp_contains(const gxp_words *words, uint32_t value) {
     uint32_t i;
-    for (i = 0; i < words->count; i++) if (words->data[i] == value) return 1;
+    for (i = 0; i < words->count; i++)
+        if (words->data[i] == value) return 1;
     return 0;
 }
 
@@ -2685,9 +3069,10 @@ static uint32_t gxp_copy_of(const gx_body *body, uint32_t cell, uint32_t node) {
     return body->cells[cell].copies[gxp_local_node(body, body->cells[cell].element, node)];
 }
 
-/* Finds the pieces of the components around a node (pairs first ... end-1). Every piece of a component that fell apart contains a cell of a pair. Their
-   cells go to body->queue, where each starts to body->pieces, times two, 1 more if it is open; body->seeds: the copies of components with an open
-   piece. all 0: only fresh cells are looked at, which tells the pieces apart unless a component has two open ones: *sure. */
+/* Finds the pieces of the components around a node (pairs first ... end-1). Every piece of a component that fell apart
+   contains a cell of a pair. Their cells go to body->queue, where each starts to body->pieces, times two, 1 more if it
+   is open; body->seeds: the copies of components with an open piece. all 0: only fresh cells are looked at, which tells
+   the pieces apart unless a component has two open ones: *sure. */
 static gx_result gxp_find_pieces(gx_body *body, uint32_t first, uint32_t end, int all, int *sure) {
     const uint32_t node = GXP_FIRST(body->pairs.data[first]);
     uint32_t i, open;
@@ -2696,18 +3081,22 @@ static gx_result gxp_find_pieces(gx_body *body, uint32_t first, uint32_t end, in
     body->stamp++;
     *sure = all || !body->node_pinched[node];
     for (i = first; i < end && result == GX_OK && *sure; i++) {
-        const uint32_t cell = GXP_SECOND(body->pairs.data[i]), start = body->queue.count, copy = gxp_copy_of(body, cell, node);
+        const uint32_t cell = GXP_SECOND(body->pairs.data[i]), start = body->queue.count,
+                       copy = gxp_copy_of(body, cell, node);
         if (!body->cells[cell].kept || body->cell_stamp[cell] == body->stamp) continue;
         result = gxp_walk_piece(body, cell, node, all, &open);
-        if (open && gxp_contains(&body->seeds, copy)) { *sure = all; open = 0; }
+        if (open && gxp_contains(&body->seeds, copy)) {
+            *sure = all;
+            open = 0;
+        }
         if (result == GX_OK && open) result = gxp_push(body, &body->seeds, copy);
         if (result == GX_OK) result = gxp_push(body, &body->pieces, start << 1 | open);
     }
     return result;
 }
 
-/* Around one node: the pieces of each old component get copies of their own; one keeps the old copy, the open one, else the first. Old copies that lost
-   all cells join body->dead. */
+/* Around one node: the pieces of each old component get copies of their own; one keeps the old copy, the open one, else
+   the first. Old copies that lost all cells join body->dead. */
 static gx_result gxp_divide_node(gxp_cut *cut, uint32_t first, uint32_t end) {
     gx_body *body = cut->body;
     const uint32_t node = GXP_FIRST(body->pairs.data[first]);
@@ -2716,18 +3105,23 @@ static gx_result gxp_divide_node(gxp_cut *cut, uint32_t first, uint32_t end) {
     gx_result result = gxp_find_pieces(body, first, end, 0, &sure);
     if (result == GX_OK && !sure) result = gxp_find_pieces(body, first, end, 1, &sure);
     for (i = 0; i < body->pieces.count && result == GX_OK; i++) {
-        const uint32_t from = body->pieces.data[i] >> 1, to = i + 1 < body->pieces.count ? body->pieces.data[i + 1] >> 1 : body->queue.count;
+        const uint32_t from = body->pieces.data[i] >> 1,
+                       to = i + 1 < body->pieces.count ? body->pieces.data[i + 1] >> 1 : body->queue.count;
         const uint32_t old = gxp_copy_of(body, body->queue.data[from], node);
         uint32_t copy;
         if (body->pieces.data[i] & 1) continue;
-        if (!gxp_contains(&body->seeds, old)) { result = gxp_push(body, &body->seeds, old); continue; }
+        if (!gxp_contains(&body->seeds, old)) {
+            result = gxp_push(body, &body->seeds, old);
+            continue;
+        }
         result = gxp_new_copy(body, old, &copy);
         if (result == GX_OK) result = gxp_set_copy(body, node, copy, from, to);
         cut->report.created_copies++;
     }
     for (i = first; i < end && result == GX_OK; i++) {
         const uint32_t cell = GXP_SECOND(body->pairs.data[i]), old = gxp_copy_of(body, cell, node);
-        if (!body->cells[cell].kept && !gxp_contains(&body->seeds, old) && !gxp_contains(&body->dead, old)) result = gxp_push(body, &body->dead, old);
+        if (!body->cells[cell].kept && !gxp_contains(&body->seeds, old) && !gxp_contains(&body->dead, old))
+            result = gxp_push(body, &body->dead, old);
     }
     return result;
 }
@@ -2738,16 +3132,19 @@ static gx_result gxp_divide_nodes(gxp_cut *cut) {
     gx_result result = gxp_collect_pairs(body);
     body->dead.count = 0;
     for (first = 0; first < body->pairs.count && result == GX_OK; first = end) {
-        for (end = first; end < body->pairs.count && GXP_FIRST(body->pairs.data[end]) == GXP_FIRST(body->pairs.data[first]); end++) {}
+        for (end = first;
+             end < body->pairs.count && GXP_FIRST(body->pairs.data[end]) == GXP_FIRST(body->pairs.data[first]); end++) {
+        }
         result = gxp_divide_node(cut, first, end);
     }
     return result;
 }
 
-/* >>integrals: volume and mass of a part, by its boundary triangles in barycentric coordinates ------------------------------------ */
+/* >>integrals: volume and mass of a part, by its boundary triangles in barycentric coordinates --------------------- */
 
-/* The part's points and triangles: body->list has the points, body->lambdas 4 numbers for each, body->triangles the indices. Points of
-   the parts before it are kept where they may be met again: parts of one element share those of its walls. */
+/* The part's points and triangles: body->list has the points, body->lambdas 4 numbers for each, body->triangles the
+   indices. Points of the parts before it are kept where they may be met again: parts of one element share those of its
+   walls. */
 static void gxp_clear_boundary(gx_body *body, int other_element) {
     if (other_element || body->list.count > 64) body->list.count = 0;
     body->triangles.count = body->faces.count = 0;
@@ -2758,10 +3155,12 @@ static gx_result gxp_new_boundary_point(gx_body *body, uint32_t element, uint32_
     if (point >= body->point_slot.count) {
         result = gxp_words_room(body, &body->point_slot, body->complex->point_count - body->point_slot.count);
         if (result != GX_OK) return result;
-        memset(body->point_slot.data + body->point_slot.count, 0xff, (body->complex->point_count - body->point_slot.count) * sizeof(uint32_t));
+        memset(body->point_slot.data + body->point_slot.count, 0xff,
+               (body->complex->point_count - body->point_slot.count) * sizeof(uint32_t));
         body->point_slot.count = body->complex->point_count;
     }
-    result = gxp_reserve(&body->allocator, &body->lambdas, 4 * sizeof(double), body->list.count, &body->lambda_capacity, 1);
+    result =
+        gxp_reserve(&body->allocator, &body->lambdas, 4 * sizeof(double), body->list.count, &body->lambda_capacity, 1);
     *index = body->list.count;
     if (result == GX_OK) result = gxp_push(body, &body->list, point);
     if (result != GX_OK) return result;
@@ -2772,7 +3171,9 @@ static gx_result gxp_new_boundary_point(gx_body *body, uint32_t element, uint32_
 
 static gx_result gxp_add_boundary_point(gx_body *body, uint32_t element, uint32_t point, uint32_t *index) {
     *index = point < body->point_slot.count ? body->point_slot.data[point] : GXP_NONE;
-    return *index < body->list.count && body->list.data[*index] == point ? GX_OK : gxp_new_boundary_point(body, element, point, index);
+    return *index < body->list.count && body->list.data[*index] == point
+             ? GX_OK
+             : gxp_new_boundary_point(body, element, point, index);
 }
 
 /* Adds a facet as a fan of triangles; inward: the part is in front of it. */
@@ -2786,15 +3187,17 @@ static gx_result gxp_add_boundary_facet(gx_body *body, uint32_t element, uint32_
         uint32_t *triangle = body->triangles.data + body->triangles.count;
         result = gxp_add_boundary_point(body, element, cx->edges[e >> 1].v[e & 1], &corner[i < 2 ? i : 2]);
         if (i < 2) continue;
-        triangle[0] = corner[0]; triangle[inward ? 2 : 1] = corner[1]; triangle[inward ? 1 : 2] = corner[2];
+        triangle[0] = corner[0];
+        triangle[inward ? 2 : 1] = corner[1];
+        triangle[inward ? 1 : 2] = corner[2];
         body->triangles.count += 3;
         corner[1] = corner[2];
     }
     return result;
 }
 
-/* Adds the leaf's facets inside the element; those with the same cell on both sides cancel and are left out unless all is set. Those in faces of
-   the element are kept in body->faces, times two, 1 more if the part is in front. */
+/* Adds the leaf's facets inside the element; those with the same cell on both sides cancel and are left out unless all
+   is set. Those in faces of the element are kept in body->faces, times two, 1 more if the part is in front. */
 static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, int all) {
     gxb_complex *cx = body->complex;
     uint32_t first, count, i;
@@ -2804,7 +3207,8 @@ static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, int all) {
         const gxb_facet *f = &cx->facets[facet];
         const int inward = f->leaf[0] == leaf;
         const uint32_t other = f->leaf[inward];
-        if (f->face != GXB_NONE) result = gxp_push(body, &body->faces, facet << 1 | (uint32_t)inward);
+        if (f->face != GXB_NONE)
+            result = gxp_push(body, &body->faces, facet << 1 | (uint32_t)inward);
         else if (all || !gxp_is_kept(body, other) || body->leaves[other].cell != body->leaves[leaf].cell)
             result = gxp_add_boundary_facet(body, cx->leaves[leaf].element, facet, inward);
     }
@@ -2813,14 +3217,20 @@ static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, int all) {
 
 /* --- parts so small that doubles can't hold their moments: the same sums in exact numbers --- */
 
-typedef struct gxp_fine_sums { gxb_num c[10]; gxb_limb limbs[10][GXB_NUM_LIMBS]; } gxp_fine_sums;
+typedef struct gxp_fine_sums {
+    gxb_num c[10];
+    gxb_limb limbs[10][GXB_NUM_LIMBS];
+} gxp_fine_sums;
 /* det(a, b, c) */
 static void gxp_fine_determinant(gxb_num *det, gxb_num *p[3][3]) {
     static const int cyclic[3][2] = {{1, 2}, {2, 0}, {0, 1}};
     int k;
-    det->sign = det->exp = 0; det->n = 0;
+    det->sign = det->exp = 0;
+    det->n = 0;
     for (k = 0; k < 3; k++) {
-        GXB_NUM(s); GXB_NUM(t); GXB_NUM(u);
+        GXB_NUM(s);
+        GXB_NUM(t);
+        GXB_NUM(u);
         gxb_num_mul(&s, p[1][cyclic[k][0]], p[2][cyclic[k][1]]);
         gxb_num_mul(&t, p[1][cyclic[k][1]], p[2][cyclic[k][0]]);
         gxb_num_sub(&u, &s, &t);
@@ -2828,26 +3238,31 @@ static void gxp_fine_determinant(gxb_num *det, gxb_num *p[3][3]) {
     }
 }
 
-/* Adds the cone of a triangle to the origin: with D = det(a,b,c), s = a+b+c: D, D s_i, D (s_i s_j + a_i a_j + b_i b_j + c_i c_j) */
+/* Adds the cone of a triangle to the origin: with D = det(a,b,c), s = a+b+c: D, D s_i, D (s_i s_j + a_i a_j + b_i b_j +
+ * c_i c_j) */
 static void gxp_fine_add(gxp_fine_sums *sums, gxb_num *p[3][3]) {
     gxb_limb limbs[3][GXB_NUM_LIMBS];
     gxb_num s[3];
     int i, j, k, slot = 4;
-    GXB_NUM(det); GXB_NUM(one);
+    GXB_NUM(det);
+    GXB_NUM(one);
     gxp_fine_determinant(&det, p);
     gxb_num_set(&one, 1.0, 0);
     gxp_num_add_product(&sums->c[0], &det, &one);
     for (i = 0; i < 3; i++) {
-        s[i].sign = s[i].exp = 0; s[i].n = 0; s[i].d = limbs[i];
+        s[i].sign = s[i].exp = 0;
+        s[i].n = 0;
+        s[i].d = limbs[i];
         for (k = 0; k < 3; k++) gxp_num_add_product(&s[i], p[k][i], &one);
         gxp_num_add_product(&sums->c[1 + i], &det, &s[i]);
     }
-    for (i = 0; i < 3; i++) for (j = i; j < 3; j++, slot++) {
-        GXB_NUM(q);
-        for (k = 0; k < 3; k++) gxp_num_add_product(&q, p[k][i], p[k][j]);
-        gxp_num_add_product(&q, &s[i], &s[j]);
-        gxp_num_add_product(&sums->c[slot], &det, &q);
-    }
+    for (i = 0; i < 3; i++)
+        for (j = i; j < 3; j++, slot++) {
+            GXB_NUM(q);
+            for (k = 0; k < 3; k++) gxp_num_add_product(&q, p[k][i], p[k][j]);
+            gxp_num_add_product(&q, &s[i], &s[j]);
+            gxp_num_add_product(&sums->c[slot], &det, &q);
+        }
 }
 
 /* Those of one of the collected points, unless they are there already */
@@ -2867,13 +3282,18 @@ static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, g
     uint32_t i, t;
     int a, c;
     if (points == NULL) return GX_ERROR_MEMORY;
-    for (i = 0; i < 10; i++) { sums.c[i].sign = sums.c[i].exp = 0; sums.c[i].n = 0; sums.c[i].d = sums.limbs[i]; }
+    for (i = 0; i < 10; i++) {
+        sums.c[i].sign = sums.c[i].exp = 0;
+        sums.c[i].n = 0;
+        sums.c[i].d = sums.limbs[i];
+    }
     for (i = 0; i < body->list.count; i++) points[i].c[0].d = NULL;
     gxi_part_axes(k, axes);
     for (t = 0; t + 2 < body->triangles.count; t += 3) {
         gxb_num *p[3][3];
         for (a = 0; a < 3; a++) gxp_fine_coordinates(body, element, body->triangles.data[t + (uint32_t)a], points);
-        for (a = 0; a < 3; a++) for (c = 0; c < 3; c++) p[a][c] = &points[body->triangles.data[t + (uint32_t)a]].c[axes[c]];
+        for (a = 0; a < 3; a++)
+            for (c = 0; c < 3; c++) p[a][c] = &points[body->triangles.data[t + (uint32_t)a]].c[axes[c]];
         gxp_fine_add(&sums, p);
     }
     m->volume = gxb_num_to_double(&sums.c[0]) / 6;
@@ -2883,21 +3303,25 @@ static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, g
     return GX_OK;
 }
 
-#define GXP_CANCELLATION 1e-3   /* moments whose terms cancel to less than this share are summed in exact numbers: doubles lose 3 digits there */
+#define GXP_CANCELLATION                                                                                               \
+    1e-3 /* moments whose terms cancel to less than this share are summed in exact numbers: doubles lose 3 digits      \
+            there */
 
-/* Over the cones from vertex k to the collected triangles, the sizes of what makes up their volumes: of a x b . c, whose terms take on the errors of the
-   corners, and of a . (b - a) x (c - a), by which they are computed. */
+/* Over the cones from vertex k to the collected triangles, the sizes of what makes up their volumes: of a x b . c,
+   whose terms take on the errors of the corners, and of a . (b - a) x (c - a), by which they are computed. */
 static double gxp_cone_volumes(const gx_body *body, unsigned k) {
     unsigned axes[3], d;
     double sum = 0;
     uint32_t t;
     gxi_part_axes(k, axes);
     for (t = 0; t + 2 < body->triangles.count; t += 3) {
-        const double *a = body->lambdas + 4 * (size_t)body->triangles.data[t], *b = body->lambdas + 4 * (size_t)body->triangles.data[t + 1];
+        const double *a = body->lambdas + 4 * (size_t)body->triangles.data[t],
+                     *b = body->lambdas + 4 * (size_t)body->triangles.data[t + 1];
         const double *c = body->lambdas + 4 * (size_t)body->triangles.data[t + 2];
         for (d = 0; d < 3; d++) {
             const unsigned x = axes[d], y = axes[(d + 1) % 3], z = axes[(d + 2) % 3];
-            sum += a[x] * (b[y] * c[z] + b[z] * c[y] + fabs(b[y] - a[y]) * fabs(c[z] - a[z]) + fabs(b[z] - a[z]) * fabs(c[y] - a[y]));
+            sum += a[x] * (b[y] * c[z] + b[z] * c[y] + fabs(b[y] - a[y]) * fabs(c[z] - a[z]) +
+                           fabs(b[z] - a[z]) * fabs(c[y] - a[y]));
         }
     }
     return sum / 6;
@@ -2908,13 +3332,15 @@ static unsigned gxp_nearest_vertex(const gx_body *body) {
     double sum[4] = {0, 0, 0, 0};
     unsigned nearest = 0, k;
     uint32_t i;
-    for (i = 0; i < body->triangles.count; i++) for (k = 0; k < 4; k++) sum[k] += body->lambdas[4 * (size_t)body->triangles.data[i] + k];
-    for (k = 1; k < 4; k++) if (sum[k] > sum[nearest]) nearest = k;
+    for (i = 0; i < body->triangles.count; i++)
+        for (k = 0; k < 4; k++) sum[k] += body->lambdas[4 * (size_t)body->triangles.data[i] + k];
+    for (k = 1; k < 4; k++)
+        if (sum[k] > sum[nearest]) nearest = k;
     return nearest;
 }
 
-/* Moments of the collected boundary; *k: the vertex of the element that is their frame's origin. Seen from there, of the facets in faces of the
-   element only those in the opposite one span cones. */
+/* Moments of the collected boundary; *k: the vertex of the element that is their frame's origin. Seen from there, of
+   the facets in faces of the element only those in the opposite one span cones. */
 static gx_result gxp_boundary_moments(gx_body *body, uint32_t element, unsigned *k, gxi_moments2 *m) {
     const gxb_complex *cx = body->complex;
     uint32_t i;
@@ -2925,8 +3351,11 @@ static gx_result gxp_boundary_moments(gx_body *body, uint32_t element, unsigned 
         if (cx->facets[facet].face == cx->element_faces[4 * (size_t)element + *k])
             result = gxp_add_boundary_facet(body, element, facet, (int)(body->faces.data[i] & 1));
     }
-    if (result == GX_OK) result = gxi_part_moments_at(body->lambdas, body->list.count, body->triangles.data, body->triangles.count / 3, *k, m);
-    if (result == GX_OK && m->volume < GXP_CANCELLATION * gxp_cone_volumes(body, *k)) result = gxp_fine_moments(body, element, *k, m);
+    if (result == GX_OK)
+        result = gxi_part_moments_at(body->lambdas, body->list.count, body->triangles.data, body->triangles.count / 3,
+                                     *k, m);
+    if (result == GX_OK && m->volume < GXP_CANCELLATION * gxp_cone_volumes(body, *k))
+        result = gxp_fine_moments(body, element, *k, m);
     return result;
 }
 
@@ -2958,7 +3387,8 @@ static uint32_t gxp_middle_leaf(const gxb_complex *cx, uint32_t element) {
     uint32_t reference = cx->root[element], n;
     double middle[3] = {0, 0, 0};
     int k;
-    for (n = 0; n < 4; n++) for (k = 0; k < 3; k++) middle[k] += 0.25 * cx->points[cx->elements[4 * (size_t)element + n]].ball.x[k];
+    for (n = 0; n < 4; n++)
+        for (k = 0; k < 3; k++) middle[k] += 0.25 * cx->points[cx->elements[4 * (size_t)element + n]].ball.x[k];
     while (reference & 1) {
         const gxb_node *node = &cx->nodes[reference >> 1];
         const gxb_plane_filter *f = &cx->planes[node->plane].filter;
@@ -2969,23 +3399,28 @@ static uint32_t gxp_middle_leaf(const gxb_complex *cx, uint32_t element) {
     return reference >> 1;
 }
 
-/* The cell in the middle of the element, which is seldom small. GXP_NONE: it is not fresh, or something has been removed from the element, so that its
-   cells are not all of it, or its other cells have more leaves to look at than the fresh ones have. */
+/* The cell in the middle of the element, which is seldom small. GXP_NONE: it is not fresh, or something has been
+   removed from the element, so that its cells are not all of it, or its other cells have more leaves to look at than
+   the fresh ones have. */
 static uint32_t gxp_rest_cell(const gx_body *body, uint32_t element) {
     const uint32_t root = body->complex->root[element], all = root & 1 ? body->complex->nodes[root >> 1].leaves : 1;
     const uint32_t rest = body->leaves[gxp_middle_leaf(body->complex, element)].cell;
     uint32_t cell, leaf, sum = 0, others = 0;
     if (gxp_fresh_index(body, rest) == GXP_NONE) return GXP_NONE;
-    for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next) if (gxp_fresh_index(body, cell) != GXP_NONE) sum += gxp_count_leaves(body, cell);
+    for (cell = element; cell != GXP_NONE; cell = body->cells[cell].next)
+        if (gxp_fresh_index(body, cell) != GXP_NONE) sum += gxp_count_leaves(body, cell);
     for (cell = element; cell != GXP_NONE && others <= sum; cell = body->cells[cell].next) {
         if (gxp_fresh_index(body, cell) != GXP_NONE) continue;
-        for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && others <= sum; leaf = body->leaves[leaf].next) others++;
+        for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && others <= sum; leaf = body->leaves[leaf].next)
+            others++;
     }
     return others <= sum && sum + others == all ? rest : GXP_NONE;
 }
 
-#define GXP_REST_CELLS 4    /* an element with more cells is not looked at as a whole: a cut may touch few of them */
-#define GXP_REST 0.25   /* a cell with at least this share of its element may be what the others leave: its smallest moments lose two digits by that */
+#define GXP_REST_CELLS 4 /* an element with more cells is not looked at as a whole: a cut may touch few of them */
+#define GXP_REST                                                                                                       \
+    0.25 /* a cell with at least this share of its element may be what the others leave: its smallest moments lose two \
+            digits by that */
 
 /* Makes the cell, which has been saved, what the element's other cells leave. 0: that is too little. */
 static int gxp_leave_rest(gx_body *body, uint32_t rest, double volume) {
@@ -3043,7 +3478,7 @@ static gx_result gxp_integrate_removed(gxp_cut *cut, const gxp_words *removed) {
     return result;
 }
 
-/* >>commit ------------------------------------------------------------------------------------------------------------------ */
+/* >>commit --------------------------------------------------------------------------------------------------------- */
 
 /* Puts the last copy in the place of a dead one. */
 static void gxp_drop_copy(gx_body *body, uint32_t copy) {
@@ -3060,14 +3495,14 @@ static void gxp_drop_copy(gx_body *body, uint32_t copy) {
     gxp_copy_state(body, last, copy);
 }
 
-static uint64_t gxp_hash_doubles(uint64_t hash, const double *x, size_t count);     /* see hashes */
+static uint64_t gxp_hash_doubles(uint64_t hash, const double *x, size_t count); /* see hashes */
 
 static uint64_t gxp_hash_state(const gx_body *body, size_t copies) {
     return gxp_hash_doubles(gxp_hash_doubles(1, body->displacement, 3 * copies), body->velocity, 3 * copies) | 1;
 }
 
-/* Since the body was saved, copied or read its solver knows of no step: if the state of its first copies has been written, all wakes, in a copy as
-   in the original. */
+/* Since the body was saved, copied or read its solver knows of no step: if the state of its first copies has been
+   written, all wakes, in a copy as in the original. */
 static void gxp_wake_resumed(gx_body *body, size_t copies) {
     uint32_t i;
     if (body->resumed == 0 || body->resumed == gxp_hash_state(body, copies)) return;
@@ -3088,8 +3523,10 @@ static void gxp_note_changed(gx_body *body) {
     gx_result result = GX_OK;
     uint32_t i;
     if (body->model == GXP_MODEL_STALE) return;
-    for (i = 0; i < body->saved_cell_count && result == GX_OK; i++) result = gxp_push(body, &body->changed, body->saved_cells[i].cell.element);
-    for (i = 0; i < body->fresh.count && result == GX_OK; i++) result = gxp_push(body, &body->changed, body->cells[body->fresh.data[i]].element);
+    for (i = 0; i < body->saved_cell_count && result == GX_OK; i++)
+        result = gxp_push(body, &body->changed, body->saved_cells[i].cell.element);
+    for (i = 0; i < body->fresh.count && result == GX_OK; i++)
+        result = gxp_push(body, &body->changed, body->cells[body->fresh.data[i]].element);
     body->model = result == GX_OK ? GXP_MODEL_CHANGED : GXP_MODEL_STALE;
 }
 
@@ -3101,7 +3538,7 @@ static void gxp_commit(gxp_cut *cut) {
     for (i = 0; i < body->touched.count; i++) {
         gxp_cell *cell = &body->cells[body->touched.data[i]];
         if (cell->kept) continue;
-        gxp_touch_copies(body, cell);           /* also what hung on it by an edge or node only */
+        gxp_touch_copies(body, cell); /* also what hung on it by an edge or node only */
         memset(cell->copies, 0xff, sizeof cell->copies);
     }
     for (i = 0; i < body->removed.count; i++) body->leaves[body->removed.data[i]].next = GXP_NONE;
@@ -3155,7 +3592,8 @@ static gx_result gxp_arrange(gxp_cut *cut) {
     memset(surfaces, 0, count * sizeof *surfaces);
     body->touched.count = body->removed.count = body->pinches.count = 0;
     result = gxp_arrange_surfaces(cut, surfaces);
-    for (i = 0; i < count; i++) if (surfaces[i].given != NULL) gxp_surface_free(body, &surfaces[i]);
+    for (i = 0; i < count; i++)
+        if (surfaces[i].given != NULL) gxp_surface_free(body, &surfaces[i]);
     gxp_release(&body->allocator, surfaces, count * sizeof *surfaces);
     if (result == GX_OK) result = gxp_list_new_leaves(cut);
     return result == GX_OK ? gxp_remove_leaves(body) : result;
@@ -3169,7 +3607,8 @@ static gx_result gxp_enrich(gxp_cut *cut) {
     return result == GX_OK ? gxp_divide_nodes(cut) : result;
 }
 
-/* The integrals of a fresh cell, and of all others of its element, unless they are many. *before: the element of the fresh cell before it */
+/* The integrals of a fresh cell, and of all others of its element, unless they are many. *before: the element of the
+ * fresh cell before it */
 static gx_result gxp_integrate_fresh(gx_body *body, uint32_t cell, uint32_t *before) {
     const uint32_t element = body->cells[cell].element;
     if (body->cell_stamp[element] == body->stamp) return GX_OK;
@@ -3180,22 +3619,26 @@ static gx_result gxp_integrate_fresh(gx_body *body, uint32_t cell, uint32_t *bef
     return gxp_integrate_element(body, element);
 }
 
-/* Asks for what weighing the links of the next fresh cells reads: facets three ahead, their loops two ahead, the edges of the next. */
+/* Asks for what weighing the links of the next fresh cells reads: facets three ahead, their loops two ahead, the edges
+ * of the next. */
 GXP_FETCHES void gxp_fetch_links(const gx_body *body, uint32_t index) {
     const gxb_complex *cx = body->complex;
     const uint32_t *at = body->link_first.data;
     const uint32_t count = body->fresh.count;
     uint32_t j, i;
-    if (index + 3 < count) for (j = at[index + 3]; j < at[index + 4]; j++) GXP_FETCH(&cx->facets[GXP_LINK_FACET(body->links.data[j])]);
-    if (index + 2 < count) for (j = at[index + 2]; j < at[index + 3]; j++) {
-        const gxb_facet *f = &cx->facets[GXP_LINK_FACET(body->links.data[j])];
-        GXP_FETCH(cx->pool + f->loop);
-        GXP_FETCH(&cx->planes[f->plane].axis);
-    }
-    if (index + 1 < count) for (j = at[index + 1]; j < at[index + 2]; j++) {
-        const gxb_facet *f = &cx->facets[GXP_LINK_FACET(body->links.data[j])];
-        for (i = 0; i < f->loop_count; i++) GXP_FETCH(&cx->edges[cx->pool[f->loop + i] >> 1]);
-    }
+    if (index + 3 < count)
+        for (j = at[index + 3]; j < at[index + 4]; j++) GXP_FETCH(&cx->facets[GXP_LINK_FACET(body->links.data[j])]);
+    if (index + 2 < count)
+        for (j = at[index + 2]; j < at[index + 3]; j++) {
+            const gxb_facet *f = &cx->facets[GXP_LINK_FACET(body->links.data[j])];
+            GXP_FETCH(cx->pool + f->loop);
+            GXP_FETCH(&cx->planes[f->plane].axis);
+        }
+    if (index + 1 < count)
+        for (j = at[index + 1]; j < at[index + 2]; j++) {
+            const gxb_facet *f = &cx->facets[GXP_LINK_FACET(body->links.data[j])];
+            for (i = 0; i < f->loop_count; i++) GXP_FETCH(&cx->edges[cx->pool[f->loop + i] >> 1]);
+        }
 }
 
 /* Links are weighed here, where their facets are looked at anyway, unless they were before, to be severed. */
@@ -3220,7 +3663,8 @@ static gx_result gxp_check_cut(gxp_cut *cut) {
     size_t i;
     gx_result result = GX_OK;
     if (desc->surfaces == NULL || (desc->scope_fragment_count > 0 && desc->scope_fragments == NULL) ||
-        (desc->scope_cell_count > 0 && desc->scope_cells == NULL)) return GX_ERROR_ARGUMENT;
+        (desc->scope_cell_count > 0 && desc->scope_cells == NULL))
+        return GX_ERROR_ARGUMENT;
     if (desc->surface_count == 0) return GX_ERROR_EMPTY;
     if (!gxp_is_finite(desc->sever_below)) return GX_ERROR_NOT_FINITE;
     for (i = 0; i < desc->surface_count && result == GX_OK; i++) result = gxp_check_surface(cut, &desc->surfaces[i], i);
@@ -3228,7 +3672,7 @@ static gx_result gxp_check_cut(gxp_cut *cut) {
     return result;
 }
 
-static gx_result gxp_note_touched(gxp_cut *cut, uint32_t first_facet);  /* see >>boundary */
+static gx_result gxp_note_touched(gxp_cut *cut, uint32_t first_facet); /* see >>boundary */
 
 GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_report *report, gx_failure *failure) {
     gxp_cut cut;
@@ -3237,7 +3681,8 @@ GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_r
     gx_result result;
     if (body == NULL || desc == NULL) return gxp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX, SIZE_MAX);
     memset(&cut, 0, sizeof cut);
-    cut.body = body; cut.desc = desc;
+    cut.body = body;
+    cut.desc = desc;
     cut.report.min_link_ratio = 1;
     cut.failure.index = cut.failure.surface = SIZE_MAX;
     result = gxp_check_cut(&cut);
@@ -3250,7 +3695,8 @@ GXFEM_API gx_result gx_body_cut(gx_body *body, const gx_cut_desc *desc, gx_cut_r
     if (result == GX_OK) result = gxp_enrich(&cut);
     cut.report.seconds_enrichment = gxp_seconds(body) - start - cut.report.seconds_arrangement;
     if (result == GX_OK) result = gxp_integrate(&cut);
-    cut.report.seconds_integrals = gxp_seconds(body) - start - cut.report.seconds_arrangement - cut.report.seconds_enrichment;
+    cut.report.seconds_integrals =
+        gxp_seconds(body) - start - cut.report.seconds_arrangement - cut.report.seconds_enrichment;
     if (result == GX_OK) result = gxp_note_touched(&cut, first_facet);
     if (result != GX_OK) {
         gxp_rollback(&cut);
@@ -3283,37 +3729,44 @@ static int gxp_unit(const double n[3], double unit[3]) {
     return 1;
 }
 
-/* Sums of area normals at the vertices of the sheet go to normals, of edges in units of the longest one's power of two, so that areas are
-   numbers; then each is scaled to half the thickness. */
+/* Sums of area normals at the vertices of the sheet go to normals, of edges in units of the longest one's power of two,
+   so that areas are numbers; then each is scaled to half the thickness. */
 static gx_result gxp_offset_vectors(const gx_surface *s, double half, double *normals) {
     double longest = 0;
     size_t i;
     int k, c, pass, exponent = 0;
     memset(normals, 0, 3 * s->vertex_count * sizeof *normals);
-    for (i = 0; i < 3 * s->vertex_count; i++) if (!gxp_is_finite(s->vertices[i])) return GX_ERROR_NOT_FINITE;
-    for (i = 0; i < 3 * s->triangle_count; i++) if (s->triangles[i] >= s->vertex_count) return GX_ERROR_INDEX;
+    for (i = 0; i < 3 * s->vertex_count; i++)
+        if (!gxp_is_finite(s->vertices[i])) return GX_ERROR_NOT_FINITE;
+    for (i = 0; i < 3 * s->triangle_count; i++)
+        if (s->triangles[i] >= s->vertex_count) return GX_ERROR_INDEX;
     for (pass = 0; pass < 2; pass++) {
         for (i = 0; i < s->triangle_count; i++) {
             const uint32_t *t = s->triangles + 3 * i;
             double e[2][3], n[3];
-            for (c = 0; c < 2; c++) for (k = 0; k < 3; k++) {
-                e[c][k] = s->vertices[3 * (size_t)t[c + 1] + (size_t)k] - s->vertices[3 * (size_t)t[0] + (size_t)k];
-                if (pass == 0 && fabs(e[c][k]) > longest) longest = fabs(e[c][k]);
-                e[c][k] = ldexp(e[c][k], -exponent);
-            }
-            for (k = 0; k < 3; k++) n[k] = e[0][(k + 1) % 3] * e[1][(k + 2) % 3] - e[0][(k + 2) % 3] * e[1][(k + 1) % 3];
-            for (c = 0; c < 3 && pass == 1; c++) for (k = 0; k < 3; k++) normals[3 * (size_t)t[c] + (size_t)k] += n[k];
+            for (c = 0; c < 2; c++)
+                for (k = 0; k < 3; k++) {
+                    e[c][k] = s->vertices[3 * (size_t)t[c + 1] + (size_t)k] - s->vertices[3 * (size_t)t[0] + (size_t)k];
+                    if (pass == 0 && fabs(e[c][k]) > longest) longest = fabs(e[c][k]);
+                    e[c][k] = ldexp(e[c][k], -exponent);
+                }
+            for (k = 0; k < 3; k++)
+                n[k] = e[0][(k + 1) % 3] * e[1][(k + 2) % 3] - e[0][(k + 2) % 3] * e[1][(k + 1) % 3];
+            for (c = 0; c < 3 && pass == 1; c++)
+                for (k = 0; k < 3; k++) normals[3 * (size_t)t[c] + (size_t)k] += n[k];
         }
         if (gxp_is_finite(longest)) (void)frexp(longest, &exponent);
     }
     for (i = 0; i < s->vertex_count; i++) {
         double *n = normals + 3 * i;
-        if (gxp_unit(n, n)) for (k = 0; k < 3; k++) n[k] *= half;
+        if (gxp_unit(n, n))
+            for (k = 0; k < 3; k++) n[k] *= half;
     }
     return GX_OK;
 }
 
-/* Closes the rim: a quad for each half-edge whose edge has more triangles one way than the other. Appends to triangles. */
+/* Closes the rim: a quad for each half-edge whose edge has more triangles one way than the other. Appends to triangles.
+ */
 static gx_result gxp_close_solid(const gx_surface *s, const gx_allocator *a, uint32_t *triangles, size_t *count) {
     const size_t n = 3 * s->triangle_count, size = n * sizeof(gxp_half_edge);
     const uint32_t v = (uint32_t)s->vertex_count;
@@ -3323,7 +3776,8 @@ static gx_result gxp_close_solid(const gx_surface *s, const gx_allocator *a, uin
     for (i = 0; i < n; i++) {
         edges[i].from = s->triangles[i];
         edges[i].to = s->triangles[i % 3 == 2 ? i - 2 : i + 1];
-        edges[i].triangle = (uint32_t)(i / 3); edges[i].corner = (uint32_t)(i % 3);
+        edges[i].triangle = (uint32_t)(i / 3);
+        edges[i].corner = (uint32_t)(i % 3);
     }
     qsort(edges, n, sizeof *edges, gxp_compare_half_edges);
     for (i = 0; i < n; i = j) {
@@ -3335,8 +3789,12 @@ static gx_result gxp_close_solid(const gx_surface *s, const gx_allocator *a, uin
             uint32_t *t = triangles + 3 * *count;
             if (way * balance < 0) continue;
             balance -= way;
-            t[0] = to; t[1] = from; t[2] = from + v;
-            t[3] = to; t[4] = from + v; t[5] = to + v;
+            t[0] = to;
+            t[1] = from;
+            t[2] = from + v;
+            t[3] = to;
+            t[4] = from + v;
+            t[5] = to + v;
             *count += 2;
         }
     }
@@ -3344,15 +3802,17 @@ static gx_result gxp_close_solid(const gx_surface *s, const gx_allocator *a, uin
     return GX_OK;
 }
 
-GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thickness, double *vertices, size_t *vertex_count,
-                                        uint32_t *triangles, size_t *triangle_count, const gx_allocator *allocator) {
+GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thickness, double *vertices,
+                                        size_t *vertex_count, uint32_t *triangles, size_t *triangle_count,
+                                        const gx_allocator *allocator) {
     gx_allocator none;
     size_t i, count;
     gx_result result;
     double *normals;
     memset(&none, 0, sizeof none);
     if (allocator == NULL) allocator = &none;
-    if (!sheet || !vertices || !vertex_count || !triangles || !triangle_count || !gxbp_is_allocator(allocator)) return GX_ERROR_ARGUMENT;
+    if (!sheet || !vertices || !vertex_count || !triangles || !triangle_count || !gxbp_is_allocator(allocator))
+        return GX_ERROR_ARGUMENT;
     if (!gxp_is_finite(thickness)) return GX_ERROR_NOT_FINITE;
     if (!(thickness > 0)) return GX_ERROR_ARGUMENT;
     if (sheet->vertex_count == 0 || sheet->triangle_count == 0) return GX_ERROR_EMPTY;
@@ -3371,7 +3831,8 @@ GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thicknes
     }
     for (i = 0; i < 3 * sheet->triangle_count && result == GX_OK; i++) {
         triangles[i] = sheet->triangles[i];
-        triangles[3 * sheet->triangle_count + i] = sheet->triangles[i - i % 3 + (3 - i % 3) % 3] + (uint32_t)sheet->vertex_count;
+        triangles[3 * sheet->triangle_count + i] =
+            sheet->triangles[i - i % 3 + (3 - i % 3) % 3] + (uint32_t)sheet->vertex_count;
     }
     gxp_release(allocator, normals, 3 * sheet->vertex_count * sizeof *normals);
     if (result != GX_OK) return result;
@@ -3380,7 +3841,7 @@ GXFEM_API gx_result gx_surface_solidify(const gx_surface *sheet, double thicknes
     return GX_OK;
 }
 
-/* >>regions: which copies are held ---------------------------------------------------------------------------------------------- */
+/* >>regions: which copies are held --------------------------------------------------------------------------------- */
 
 static int gxp_point_in_region(gx_body *body, uint32_t point, const gx_region *r) {
     if (point < body->node_count) {
@@ -3395,13 +3856,16 @@ static gx_result gxp_cell_in_region(gx_body *body, uint32_t cell, const gx_regio
     uint32_t leaf, i;
     gx_result result = GX_OK;
     *inside = 0;
-    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK && !*inside; leaf = body->leaves[leaf].next) {
+    for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK && !*inside;
+         leaf = body->leaves[leaf].next) {
         if (body->complex->leaves[leaf].facet_count == 0) {
-            for (i = 0; i < 4; i++) *inside |= gxp_point_in_region(body, body->complex->elements[4 * body->cells[cell].element + i], r);
+            for (i = 0; i < 4; i++)
+                *inside |= gxp_point_in_region(body, body->complex->elements[4 * body->cells[cell].element + i], r);
             continue;
         }
         result = gxp_leaf_points(body, leaf);
-        for (i = 0; i < body->list.count && result == GX_OK && !*inside; i++) *inside = gxp_point_in_region(body, body->list.data[i], r);
+        for (i = 0; i < body->list.count && result == GX_OK && !*inside; i++)
+            *inside = gxp_point_in_region(body, body->list.data[i], r);
     }
     return result;
 }
@@ -3414,8 +3878,10 @@ static gx_result gxp_copy_in_region(gx_body *body, uint32_t copy, const gx_regio
     if (!gxp_point_in_region(body, node, r)) return GX_OK;
     for (j = body->node_start[node]; j < body->node_start[node + 1] && !*inside; j++) {
         const int k = gxp_local_node(body, body->node_elements[j], node);
-        for (cell = body->node_elements[j]; cell != GXP_NONE && result == GX_OK && !*inside; cell = body->cells[cell].next)
-            if (body->cells[cell].kept && body->cells[cell].copies[k] == copy) result = gxp_cell_in_region(body, cell, r, inside);
+        for (cell = body->node_elements[j]; cell != GXP_NONE && result == GX_OK && !*inside;
+             cell = body->cells[cell].next)
+            if (body->cells[cell].kept && body->cells[cell].copies[k] == copy)
+                result = gxp_cell_in_region(body, cell, r, inside);
     }
     return result;
 }
@@ -3426,8 +3892,9 @@ static gx_result gxp_update_held(gx_body *body) {
     if (!body->held_stale) return GX_OK;
     for (c = 0; c < body->copy_count && result == GX_OK; c++) {
         int held = 0;
-        for (r = 0; r < body->region_count && result == GX_OK && !held; r++) result = gxp_copy_in_region(body, c, &body->regions[r], &held);
-        if (body->held[c] && !held) body->rest_time[c] = 0;     /* what is let go wakes */
+        for (r = 0; r < body->region_count && result == GX_OK && !held; r++)
+            result = gxp_copy_in_region(body, c, &body->regions[r], &held);
+        if (body->held[c] && !held) body->rest_time[c] = 0; /* what is let go wakes */
         body->held[c] = (uint8_t)held;
     }
     if (result == GX_OK) body->held_stale = 0;
@@ -3457,25 +3924,34 @@ GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t
     return GX_OK;
 }
 
-/* >>fragments: the view ----------------------------------------------------------------------------------------------------------- */
+/* >>fragments: the view -------------------------------------------------------------------------------------------- */
 
 static uint32_t gxp_find(uint32_t *parent, uint32_t i) {
-    while (parent[i] != i) { parent[i] = parent[parent[i]]; i = parent[i]; }
+    while (parent[i] != i) {
+        parent[i] = parent[parent[i]];
+        i = parent[i];
+    }
     return i;
 }
 
 static void gxp_unite(uint32_t *parent, uint32_t i, uint32_t j) {
-    i = gxp_find(parent, i); j = gxp_find(parent, j);
-    if (i < j) parent[j] = i;
-    else parent[i] = j;
+    i = gxp_find(parent, i);
+    j = gxp_find(parent, j);
+    if (i < j)
+        parent[j] = i;
+    else
+        parent[i] = j;
 }
 
 static void gxp_unite_all(uint32_t *parent, const uint32_t copies[4]) {
     uint32_t root = gxp_find(parent, copies[0]), k;
     for (k = 1; k < 4; k++) {
         const uint32_t other = gxp_find(parent, copies[k]);
-        if (other < root) { parent[root] = other; root = other; }
-        else parent[other] = root;
+        if (other < root) {
+            parent[root] = other;
+            root = other;
+        } else
+            parent[other] = root;
     }
 }
 
@@ -3484,7 +3960,8 @@ static gx_result gxp_set_words(gx_body *body, gxp_words *words, size_t count) {
     return gxp_words_room(body, words, count);
 }
 
-/* Lists the kept cells by element and joins copies that a cell moves by: cells of one fragment share copies from link to link. */
+/* Lists the kept cells by element and joins copies that a cell moves by: cells of one fragment share copies from link
+ * to link. */
 static gx_result gxp_list_cells(gx_body *body) {
     uint32_t e, cell, i;
     gx_result result = gxp_set_words(body, &body->view_cells, body->cell_count);
@@ -3492,20 +3969,23 @@ static gx_result gxp_list_cells(gx_body *body) {
     if (result == GX_OK) result = gxp_set_words(body, &body->cell_element, body->cell_count);
     if (result == GX_OK) result = gxp_set_words(body, &body->cell_copies, 4 * (size_t)body->cell_count);
     if (result == GX_OK) result = gxp_set_words(body, &body->copy_fragment, body->copy_count);
-    if (result == GX_OK) result = gxp_reserve(&body->allocator, &body->cell_volume, sizeof(double), 0, &body->cell_volume_capacity, body->cell_count);
+    if (result == GX_OK)
+        result = gxp_reserve(&body->allocator, &body->cell_volume, sizeof(double), 0, &body->cell_volume_capacity,
+                             body->cell_count);
     if (result != GX_OK) return result;
     body->copy_fragment.count = body->copy_count;
     for (i = 0; i < body->copy_count; i++) body->copy_fragment.data[i] = i;
-    for (e = 0; e < body->element_count; e++) for (cell = e; cell != GXP_NONE; cell = body->cells[cell].next) {
-        const gxp_cell *c = &body->cells[cell];
-        if (!c->kept) continue;
-        body->cell_volume[body->view_cells.count] = c->volume;
-        body->view_cells.data[body->view_cells.count++] = cell;
-        body->cell_element.data[body->cell_element.count++] = e;
-        memcpy(body->cell_copies.data + body->cell_copies.count, c->copies, sizeof c->copies);
-        body->cell_copies.count += 4;
-        gxp_unite_all(body->copy_fragment.data, c->copies);
-    }
+    for (e = 0; e < body->element_count; e++)
+        for (cell = e; cell != GXP_NONE; cell = body->cells[cell].next) {
+            const gxp_cell *c = &body->cells[cell];
+            if (!c->kept) continue;
+            body->cell_volume[body->view_cells.count] = c->volume;
+            body->view_cells.data[body->view_cells.count++] = cell;
+            body->cell_element.data[body->cell_element.count++] = e;
+            memcpy(body->cell_copies.data + body->cell_copies.count, c->copies, sizeof c->copies);
+            body->cell_copies.count += 4;
+            gxp_unite_all(body->copy_fragment.data, c->copies);
+        }
     return GX_OK;
 }
 
@@ -3539,10 +4019,12 @@ static double gxp_mass_row(const double mass[10], int i) {
 }
 
 /* x of the cell's nodes as seen from a centre: at rest, or where the cell's copies have moved */
-static void gxp_cell_corners(const gx_body *body, const gxp_cell *cell, int moved, const double center[3], double x[4][3]) {
+static void gxp_cell_corners(const gx_body *body, const gxp_cell *cell, int moved, const double center[3],
+                             double x[4][3]) {
     int n, k;
     for (n = 0; n < 4; n++) {
-        const double *rest = body->positions + 3 * (size_t)body->complex->elements[4 * (size_t)cell->element + (size_t)n];
+        const double *rest =
+            body->positions + 3 * (size_t)body->complex->elements[4 * (size_t)cell->element + (size_t)n];
         const double *u = body->displacement + 3 * (size_t)cell->copies[n];
         for (k = 0; k < 3; k++) x[n][k] = rest[k] - center[k] + (moved ? u[k] : 0);
     }
@@ -3551,16 +4033,19 @@ static void gxp_cell_corners(const gx_body *body, const gxp_cell *cell, int move
 /* sum += density * integral of x over the cell */
 static void gxp_add_first_moment(const gxp_cell *cell, double x[4][3], double sum[3]) {
     int n, k;
-    for (n = 0; n < 4; n++) for (k = 0; k < 3; k++) sum[k] += gxp_mass_row(cell->mass, n) * x[n][k];
+    for (n = 0; n < 4; n++)
+        for (k = 0; k < 3; k++) sum[k] += gxp_mass_row(cell->mass, n) * x[n][k];
 }
 
 /* mx_i = sum_j m_ij x_j */
 static void gxp_mass_times(const gxp_cell *cell, double x[4][3], double mx[4][3]) {
     int i, k;
-    for (i = 0; i < 4; i++) for (k = 0; k < 3; k++) {
-        const uint8_t *at = gxp_mass_at[i];
-        mx[i][k] = cell->mass[at[0]] * x[0][k] + cell->mass[at[1]] * x[1][k] + cell->mass[at[2]] * x[2][k] + cell->mass[at[3]] * x[3][k];
-    }
+    for (i = 0; i < 4; i++)
+        for (k = 0; k < 3; k++) {
+            const uint8_t *at = gxp_mass_at[i];
+            mx[i][k] = cell->mass[at[0]] * x[0][k] + cell->mass[at[1]] * x[1][k] + cell->mass[at[2]] * x[2][k] +
+                       cell->mass[at[3]] * x[3][k];
+        }
 }
 
 /* inertia += density * integral of (|x|^2 1 - x x^T) = sum_ij m_ij (x_i . x_j 1 - x_i x_j^T); mx: see gxp_mass_times */
@@ -3568,8 +4053,12 @@ static void gxp_add_inertia(double x[4][3], double mx[4][3], double inertia[6]) 
     int i;
     for (i = 0; i < 4; i++) {
         const double *a = mx[i], *b = x[i];
-        inertia[0] += a[1] * b[1] + a[2] * b[2]; inertia[3] += a[0] * b[0] + a[2] * b[2]; inertia[5] += a[0] * b[0] + a[1] * b[1];
-        inertia[1] -= a[0] * b[1]; inertia[2] -= a[0] * b[2]; inertia[4] -= a[1] * b[2];
+        inertia[0] += a[1] * b[1] + a[2] * b[2];
+        inertia[3] += a[0] * b[0] + a[2] * b[2];
+        inertia[5] += a[0] * b[0] + a[1] * b[1];
+        inertia[1] -= a[0] * b[1];
+        inertia[2] -= a[0] * b[2];
+        inertia[4] -= a[1] * b[2];
     }
 }
 
@@ -3580,7 +4069,8 @@ static gx_result gxp_reserve_fragments(gx_body *body) {
     if (room > UINT32_MAX || room > SIZE_MAX / (GXP_FRAGMENT_ARRAYS * sizeof *memory)) return GX_ERROR_LIMIT;
     memory = (double *)gxp_allocate(&body->allocator, room * GXP_FRAGMENT_ARRAYS * sizeof *memory);
     if (memory == NULL) return GX_ERROR_MEMORY;
-    gxp_release(&body->allocator, body->fragments, (size_t)body->fragment_capacity * GXP_FRAGMENT_ARRAYS * sizeof *memory);
+    gxp_release(&body->allocator, body->fragments,
+                (size_t)body->fragment_capacity * GXP_FRAGMENT_ARRAYS * sizeof *memory);
     body->fragments = memory;
     body->fragment_capacity = (uint32_t)room;
     return GX_OK;
@@ -3596,8 +4086,10 @@ static gx_result gxp_sum_fragments(gx_body *body) {
     if (result == GX_OK) body->sums_stale = 0;
     if (result != GX_OK || body->fragment_count == 0) return result;
     memset(body->fragments, 0, (size_t)body->fragment_capacity * GXP_FRAGMENT_ARRAYS * sizeof(double));
-    volume = body->fragments; mass = volume + body->fragment_capacity;
-    center = mass + body->fragment_capacity; inertia = center + 3 * (size_t)body->fragment_capacity;
+    volume = body->fragments;
+    mass = volume + body->fragment_capacity;
+    center = mass + body->fragment_capacity;
+    inertia = center + 3 * (size_t)body->fragment_capacity;
     for (i = 0; i < body->view_cells.count; i++) {
         const gxp_cell *cell = &body->cells[body->view_cells.data[i]];
         f = body->view_fragments.data[i];
@@ -3609,7 +4101,8 @@ static gx_result gxp_sum_fragments(gx_body *body) {
     for (f = 0; f < body->fragment_count; f++) {
         body->volume += volume[f];
         body->mass += mass[f];
-        for (n = 0; n < 3; n++) if (mass[f] > 0) center[3 * (size_t)f + (size_t)n] /= mass[f];
+        for (n = 0; n < 3; n++)
+            if (mass[f] > 0) center[3 * (size_t)f + (size_t)n] /= mass[f];
     }
     for (i = 0; i < body->view_cells.count; i++) {
         const gxp_cell *cell = &body->cells[body->view_cells.data[i]];
@@ -3649,16 +4142,18 @@ static gx_result gxp_join_around_splits(gx_body *body, gxp_words *scratch) {
                 if (body->cells[cell].kept) result = gxp_visit_cell(body, cell);
     }
     if (result != GX_OK) return result;
-    for (i = 0; i < body->queue.count; i++) for (k = 0; k < 4; k++) {
-        const uint32_t copy = body->cells[body->queue.data[i]].copies[k];
-        parent[copy] = copy;
-    }
+    for (i = 0; i < body->queue.count; i++)
+        for (k = 0; k < 4; k++) {
+            const uint32_t copy = body->cells[body->queue.data[i]].copies[k];
+            parent[copy] = copy;
+        }
     for (i = 0; i < body->queue.count; i++) gxp_unite_all(parent, body->cells[body->queue.data[i]].copies);
     return GX_OK;
 }
 
-/* Which fragment each copy is in. Where all new copies still hang together with those they come from, around the nodes they are at, no
-   fragment has fallen apart: sheets take nothing away, so that whatever hung together by old copies does so by their descendants. */
+/* Which fragment each copy is in. Where all new copies still hang together with those they come from, around the nodes
+   they are at, no fragment has fallen apart: sheets take nothing away, so that whatever hung together by old copies
+   does so by their descendants. */
 static gx_result gxp_update_labels(gx_body *body) {
     const gxp_words *splits = &body->splits;
     uint32_t i;
@@ -3667,23 +4162,27 @@ static gx_result gxp_update_labels(gx_body *body) {
     if (!body->labels_known) return gxp_update_view(body);
     result = gxp_join_around_splits(body, &body->list);
     for (i = 0; i < splits->count && result == GX_OK; i += 2)
-        if (gxp_find(body->list.data, splits->data[i]) != gxp_find(body->list.data, splits->data[i + 1])) return gxp_update_view(body);
-    if (result == GX_OK) result = gxp_words_room(body, &body->copy_fragment, body->copy_count - body->copy_fragment.count);
+        if (gxp_find(body->list.data, splits->data[i]) != gxp_find(body->list.data, splits->data[i + 1]))
+            return gxp_update_view(body);
+    if (result == GX_OK)
+        result = gxp_words_room(body, &body->copy_fragment, body->copy_count - body->copy_fragment.count);
     if (result != GX_OK) return result;
     body->copy_fragment.count = body->copy_count;
-    for (i = 0; i < splits->count; i += 2) body->copy_fragment.data[splits->data[i]] = gxp_find(body->copy_fragment.data, splits->data[i + 1]);
+    for (i = 0; i < splits->count; i += 2)
+        body->copy_fragment.data[splits->data[i]] = gxp_find(body->copy_fragment.data, splits->data[i + 1]);
     body->splits.count = 0;
     return GX_OK;
 }
 
-/* --- what cuts have changed: fragments now are pieces of those of the last look, which their copies are labelled with --- */
+/* --- what cuts have changed: fragments now are pieces of those of the last look, which their copies are labelled with
+ * --- */
 
 /* What a look finds on its way */
 typedef struct gxp_change {
-    uint32_t *origin;       /* fragment_count: index at the last look */
-    uint32_t *touched;      /* fragment_count flags */
-    uint32_t *heaviest;     /* at the last look: the piece that keeps the id; GXP_NONE: nothing is left */
-    uint32_t *pieces;       /* at the last look */
+    uint32_t *origin;   /* fragment_count: index at the last look */
+    uint32_t *touched;  /* fragment_count flags */
+    uint32_t *heaviest; /* at the last look: the piece that keeps the id; GXP_NONE: nothing is left */
+    uint32_t *pieces;   /* at the last look */
 } gxp_change;
 
 static void gxp_label_copies(gx_body *body) {
@@ -3695,11 +4194,12 @@ static void gxp_label_copies(gx_body *body) {
 static void gxp_find_origins(gx_body *body, gxp_change *change) {
     const double *mass = body->fragments != NULL ? body->fragments + body->fragment_capacity : NULL;
     uint32_t i, k, f;
-    for (i = 0; i < body->view_cells.count; i++) for (k = 0; k < 4; k++) {
-        const uint32_t label = body->copy_label[body->cell_copies.data[4 * i + k]];
-        change->origin[body->view_fragments.data[i]] = label >> 1;
-        change->touched[body->view_fragments.data[i]] |= label & 1;
-    }
+    for (i = 0; i < body->view_cells.count; i++)
+        for (k = 0; k < 4; k++) {
+            const uint32_t label = body->copy_label[body->cell_copies.data[4 * i + k]];
+            change->origin[body->view_fragments.data[i]] = label >> 1;
+            change->touched[body->view_fragments.data[i]] |= label & 1;
+        }
     for (f = 0; f < body->fragment_count; f++) {
         uint32_t *heaviest = &change->heaviest[change->origin[f]];
         if (*heaviest == GXP_NONE || mass[f] > mass[*heaviest]) *heaviest = f;
@@ -3710,16 +4210,19 @@ static void gxp_find_origins(gx_body *body, gxp_change *change) {
 /* There is room in the lists. */
 static void gxp_give_ids(gx_body *body, const gxp_change *change) {
     const uint32_t before = body->fragment_ids.count;
-    uint32_t *ids = change->touched, i;     /* a fragment's flag is read before its id is written */
+    uint32_t *ids = change->touched, i; /* a fragment's flag is read before its id is written */
     body->removed_ids.count = 0;
     for (i = 0; i < before; i++)
-        if (change->heaviest[i] == GXP_NONE) body->removed_ids.data[body->removed_ids.count++] = body->fragment_ids.data[i];
+        if (change->heaviest[i] == GXP_NONE)
+            body->removed_ids.data[body->removed_ids.count++] = body->fragment_ids.data[i];
     for (i = 0; i < body->fragment_count; i++) {
         const uint32_t origin = change->origin[i];
         const int keeps = change->heaviest[origin] == i;
         body->fragment_origins.data[i] = body->fragment_ids.data[origin];
-        body->fragment_changes.data[i] = !keeps ? GX_FRAGMENT_CREATED : change->pieces[origin] > 1 ? GX_FRAGMENT_SPLIT :
-                                         change->touched[i] ? GX_FRAGMENT_TOUCHED : GX_FRAGMENT_UNCHANGED;
+        body->fragment_changes.data[i] = !keeps                     ? GX_FRAGMENT_CREATED
+                                       : change->pieces[origin] > 1 ? GX_FRAGMENT_SPLIT
+                                       : change->touched[i]         ? GX_FRAGMENT_TOUCHED
+                                                                    : GX_FRAGMENT_UNCHANGED;
         ids[i] = keeps ? body->fragment_ids.data[origin] : body->next_id++;
     }
     body->fragment_ids.count = body->fragment_origins.count = body->fragment_changes.count = body->fragment_count;
@@ -3736,7 +4239,8 @@ static gx_result gxp_look_room(gx_body *body) {
 
 /* The view is up to date. An error leaves labels and ids as they were: nothing of the change is lost. */
 static gx_result gxp_look(gx_body *body) {
-    const size_t now = body->fragment_count, before = body->fragment_ids.count, bytes = (2 * now + 2 * before + 1) * sizeof(uint32_t);
+    const size_t now = body->fragment_count, before = body->fragment_ids.count,
+                 bytes = (2 * now + 2 * before + 1) * sizeof(uint32_t);
     gxp_change change;
     gx_result result;
     if (!body->look_stale) return GX_OK;
@@ -3745,7 +4249,9 @@ static gx_result gxp_look(gx_body *body) {
     change.origin = (uint32_t *)gxp_allocate(&body->allocator, bytes);
     if (change.origin == NULL) return GX_ERROR_MEMORY;
     memset(change.origin, 0, bytes);
-    change.touched = change.origin + now; change.pieces = change.touched + now; change.heaviest = change.pieces + before;
+    change.touched = change.origin + now;
+    change.pieces = change.touched + now;
+    change.heaviest = change.pieces + before;
     memset(change.heaviest, 0xff, before * sizeof *change.heaviest);
     gxp_find_origins(body, &change);
     gxp_give_ids(body, &change);
@@ -3779,13 +4285,20 @@ GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view) {
     if (result == GX_OK) result = gxp_look(body);
     if (result == GX_OK) result = gxp_update_held(body);
     if (result != GX_OK) return result;
-    view->node_count = body->node_count; view->element_count = body->element_count;
+    view->node_count = body->node_count;
+    view->element_count = body->element_count;
     view->cell_count = body->view_cells.count;
-    view->cell_element = body->cell_element.data; view->cell_copies = body->cell_copies.data;
-    view->cell_volume = body->cell_volume; view->cell_fragment = body->view_fragments.data;
-    view->copy_count = body->copy_count; view->copy_node = body->copy_node; view->copy_held = body->held;
+    view->cell_element = body->cell_element.data;
+    view->cell_copies = body->cell_copies.data;
+    view->cell_volume = body->cell_volume;
+    view->cell_fragment = body->view_fragments.data;
+    view->copy_count = body->copy_count;
+    view->copy_node = body->copy_node;
+    view->copy_held = body->held;
     view->epoch = body->epoch;
-    view->displacement = body->displacement; view->velocity = body->velocity; view->rest_time = body->rest_time;
+    view->displacement = body->displacement;
+    view->velocity = body->velocity;
+    view->rest_time = body->rest_time;
     view->fragment_count = body->fragment_count;
     view->fragment_volume = body->fragments;
     view->fragment_mass = body->fragments ? body->fragments + body->fragment_capacity : NULL;
@@ -3794,14 +4307,17 @@ GXFEM_API gx_result gx_body_view(gx_body *body, gx_view *view) {
     view->fragment_id = body->fragment_ids.data;
     view->fragment_origin = body->fragment_origins.data;
     view->fragment_change = body->fragment_changes.data;
-    view->removed_count = body->removed_ids.count; view->removed_ids = body->removed_ids.data;
-    view->volume = body->volume; view->mass = body->mass;
+    view->removed_count = body->removed_ids.count;
+    view->removed_ids = body->removed_ids.data;
+    view->volume = body->volume;
+    view->mass = body->mass;
     return GX_OK;
 }
 
 /* --- motion --- */
 
-#define GXP_NO_INERTIA 1e-13    /* a principal moment below this share of the largest is rounding: nothing turns about its axis */
+#define GXP_NO_INERTIA                                                                                                 \
+    1e-13 /* a principal moment below this share of the largest is rounding: nothing turns about its axis */
 
 /* One rotation of Jacobi's method: makes entry pq of the symmetric a zero; columns of v are the axes. */
 static void gxp_rotate(double a[3][3], double v[3][3], int p, int q) {
@@ -3810,15 +4326,19 @@ static void gxp_rotate(double a[3][3], double v[3][3], int p, int q) {
     if (!(fabs(a[p][q]) > 0)) return;
     t = (a[q][q] - a[p][p]) / (2 * a[p][q]);
     t = (t < 0 ? -1 : 1) / (fabs(t) + sqrt(t * t + 1));
-    c = 1 / sqrt(t * t + 1); s = t * c;
+    c = 1 / sqrt(t * t + 1);
+    s = t * c;
     for (k = 0; k < 3; k++) {
         const double x = a[k][p], y = a[k][q];
-        a[k][p] = c * x - s * y; a[k][q] = s * x + c * y;
+        a[k][p] = c * x - s * y;
+        a[k][q] = s * x + c * y;
     }
     for (k = 0; k < 3; k++) {
         const double x = a[p][k], y = a[q][k], z = v[k][p], w = v[k][q];
-        a[p][k] = c * x - s * y; a[q][k] = s * x + c * y;
-        v[k][p] = c * z - s * w; v[k][q] = s * z + c * w;
+        a[p][k] = c * x - s * y;
+        a[q][k] = s * x + c * y;
+        v[k][p] = c * z - s * w;
+        v[k][q] = s * z + c * w;
     }
     a[p][q] = a[q][p] = 0;
 }
@@ -3827,12 +4347,19 @@ static void gxp_rotate(double a[3][3], double v[3][3], int p, int q) {
 static void gxp_spin(const double inertia[6], const double momentum[3], double spin[3]) {
     double a[3][3], v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, largest = 0;
     int i, k, sweep;
-    a[0][0] = inertia[0]; a[1][1] = inertia[3]; a[2][2] = inertia[5];
-    a[0][1] = a[1][0] = inertia[1]; a[0][2] = a[2][0] = inertia[2]; a[1][2] = a[2][1] = inertia[4];
-    for (sweep = 0; sweep < 8; sweep++) {   /* converges quadratically: 5 are enough */
-        gxp_rotate(a, v, 0, 1); gxp_rotate(a, v, 0, 2); gxp_rotate(a, v, 1, 2);
+    a[0][0] = inertia[0];
+    a[1][1] = inertia[3];
+    a[2][2] = inertia[5];
+    a[0][1] = a[1][0] = inertia[1];
+    a[0][2] = a[2][0] = inertia[2];
+    a[1][2] = a[2][1] = inertia[4];
+    for (sweep = 0; sweep < 8; sweep++) { /* converges quadratically: 5 are enough */
+        gxp_rotate(a, v, 0, 1);
+        gxp_rotate(a, v, 0, 2);
+        gxp_rotate(a, v, 1, 2);
     }
-    for (i = 0; i < 3; i++) if (a[i][i] > largest) largest = a[i][i];
+    for (i = 0; i < 3; i++)
+        if (a[i][i] > largest) largest = a[i][i];
     spin[0] = spin[1] = spin[2] = 0;
     for (i = 0; i < 3; i++) {
         const double along = v[0][i] * momentum[0] + v[1][i] * momentum[1] + v[2][i] * momentum[2];
@@ -3842,21 +4369,25 @@ static void gxp_spin(const double inertia[6], const double momentum[3], double s
 
 static void gxp_cell_velocities(const gx_body *body, const gxp_cell *cell, const double mean[3], double v[4][3]) {
     int n, k;
-    for (n = 0; n < 4; n++) for (k = 0; k < 3; k++) v[n][k] = body->velocity[3 * (size_t)cell->copies[n] + (size_t)k] - mean[k];
+    for (n = 0; n < 4; n++)
+        for (k = 0; k < 3; k++) v[n][k] = body->velocity[3 * (size_t)cell->copies[n] + (size_t)k] - mean[k];
 }
 
-/* With x and v relative to the centre: inertia, angular momentum sum_ij m_ij x_i x v_j, energy of the relative motion */
-static void gxp_add_rotation(const gxp_cell *cell, double x[4][3], double v[4][3], gx_motion *motion, double momentum[3]) {
+/* With x and v relative to the centre: inertia, angular momentum sum_ij m_ij x_i x v_j, energy of the relative motion
+ */
+static void gxp_add_rotation(const gxp_cell *cell, double x[4][3], double v[4][3], gx_motion *motion,
+                             double momentum[3]) {
     double mx[4][3], mv[4][3];
     int i, k;
     gxp_mass_times(cell, x, mx);
     gxp_mass_times(cell, v, mv);
     gxp_add_inertia(x, mx, motion->inertia);
-    for (i = 0; i < 4; i++) for (k = 0; k < 3; k++) {
-        const int a = (k + 1) % 3, b = (k + 2) % 3;
-        momentum[k] += mx[i][a] * v[i][b] - mx[i][b] * v[i][a];
-        motion->energy += 0.5 * mv[i][k] * v[i][k];
-    }
+    for (i = 0; i < 4; i++)
+        for (k = 0; k < 3; k++) {
+            const int a = (k + 1) % 3, b = (k + 2) % 3;
+            momentum[k] += mx[i][a] * v[i][b] - mx[i][b] * v[i][a];
+            motion->energy += 0.5 * mv[i][k] * v[i][k];
+        }
 }
 
 /* Mass, centre and velocity of all fragments */
@@ -3875,10 +4406,11 @@ static void gxp_find_centers(const gx_body *body, gx_motion *motions) {
         gxp_add_first_moment(cell, x, motion->center);
         gxp_add_first_moment(cell, v, motion->velocity);
     }
-    for (i = 0; i < body->fragment_count; i++) for (k = 0; k < 3 && motions[i].mass > 0; k++) {
-        motions[i].center[k] /= motions[i].mass;
-        motions[i].velocity[k] /= motions[i].mass;
-    }
+    for (i = 0; i < body->fragment_count; i++)
+        for (k = 0; k < 3 && motions[i].mass > 0; k++) {
+            motions[i].center[k] /= motions[i].mass;
+            motions[i].velocity[k] /= motions[i].mass;
+        }
 }
 
 /* Where a motion is not finite: is it the state, or only what doubles can hold of it? */
@@ -3900,7 +4432,7 @@ static gx_result gxp_check_motion(const gx_body *body, const gx_motion *motion) 
 }
 
 GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t capacity) {
-    double (*momentum)[3];
+    double(*momentum)[3];
     size_t bytes;
     uint32_t i;
     int k;
@@ -3910,7 +4442,7 @@ GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t cap
     if (result != GX_OK || body->fragment_count == 0) return result;
     if (capacity < body->fragment_count) return GX_ERROR_LIMIT;
     bytes = body->fragment_count * sizeof *momentum;
-    momentum = (double (*)[3])gxp_allocate(&body->allocator, bytes);
+    momentum = (double(*)[3])gxp_allocate(&body->allocator, bytes);
     if (momentum == NULL) return GX_ERROR_MEMORY;
     memset(momentum, 0, bytes);
     gxp_find_centers(body, motions);
@@ -3924,20 +4456,22 @@ GXFEM_API gx_result gx_body_motion(gx_body *body, gx_motion *motions, size_t cap
     }
     for (i = 0; i < body->fragment_count; i++) {
         gxp_spin(motions[i].inertia, momentum[i], motions[i].angular_velocity);
-        for (k = 0; k < 3; k++) motions[i].energy += 0.5 * motions[i].mass * motions[i].velocity[k] * motions[i].velocity[k];
+        for (k = 0; k < 3; k++)
+            motions[i].energy += 0.5 * motions[i].mass * motions[i].velocity[k] * motions[i].velocity[k];
         if (result == GX_OK) result = gxp_check_motion(body, &motions[i]);
     }
     gxp_release(&body->allocator, momentum, bytes);
     return result;
 }
 
-/* >>parts: what the solver sees: the cells of an element whose four copies coincide are one --------------------------------------- */
+/* >>parts: what the solver sees: the cells of an element whose four copies coincide are one ------------------------ */
 
 static void gxp_add_part(gx_body *body, const gxp_cell *cell, uint32_t first, const double gradients[12]) {
     gxs_element *part;
     uint32_t i;
     int k;
-    for (i = first; i < body->part_count; i++) if (memcmp(body->parts[i].copy, cell->copies, sizeof cell->copies) == 0) break;
+    for (i = first; i < body->part_count; i++)
+        if (memcmp(body->parts[i].copy, cell->copies, sizeof cell->copies) == 0) break;
     part = &body->parts[i];
     if (i == body->part_count) {
         memset(part, 0, sizeof *part);
@@ -3966,30 +4500,35 @@ static gx_result gxp_add_parts(gx_body *body, uint32_t element) {
 
 static gx_result gxp_make_parts(gx_body *body) {
     uint32_t e;
-    gx_result result = gxp_reserve(&body->allocator, &body->parts, sizeof *body->parts, 0, &body->part_capacity, body->cell_count);
+    gx_result result =
+        gxp_reserve(&body->allocator, &body->parts, sizeof *body->parts, 0, &body->part_capacity, body->cell_count);
     body->part_count = 0;
     for (e = 0; e < body->element_count && result == GX_OK; e++) result = gxp_add_parts(body, e);
     return result;
 }
 
 /* --- copies that only slivers carry follow others (RXFEM Eq. 22) ---
-   The share of a part is its volume over that of its element. A copy is weak if no part around it has a share of follow_below or more: so little
-   moves it that nothing else would keep it from running away. It takes the increment of the field of a strong cell near it, one without
-   weak copies. A fragment without a strong cell is thin everywhere: weak are then the copies that are so beside its fullest part; but if
-   that has a share below point_below, the fragment moves as a point. All work is around thin elements, those with a part of so small a share. */
+   The share of a part is its volume over that of its element. A copy is weak if no part around it has a share of
+   follow_below or more: so little moves it that nothing else would keep it from running away. It takes the increment of
+   the field of a strong cell near it, one without weak copies. A fragment without a strong cell is thin everywhere:
+   weak are then the copies that are so beside its fullest part; but if that has a share below point_below, the fragment
+   moves as a point. All work is around thin elements, those with a part of so small a share. */
 
 enum { GXP_FREE, GXP_FOLLOWS, GXP_FOLLOWS_POINT };
 
 typedef struct gxp_supports {
-    uint8_t *weak;          /* copy_count: GXP_FREE ... */
-    uint32_t *cell;         /* copy_count: whose field the copy follows, or, of a point, whose first copy; GXP_NONE: not known, or none */
-    uint32_t *queue;        /* copy_count: copies found by a search */
-    uint32_t *seen;         /* copy_count: the search that has met it last */
+    uint8_t *weak; /* copy_count: GXP_FREE ... */
+    /* copy_count: whose field the copy follows, or, of a point, whose first copy; GXP_NONE: not known, or none */
+    uint32_t *cell;
+    uint32_t *queue; /* copy_count: copies found by a search */
+    uint32_t *seen;  /* copy_count: the search that has met it last */
     uint32_t search;
 } gxp_supports;
 
 /* Cells around a copy, one after the other */
-typedef struct gxp_around { uint32_t copy, at, cell; } gxp_around;
+typedef struct gxp_around {
+    uint32_t copy, at, cell;
+} gxp_around;
 
 static gxp_around gxp_around_copy(const gx_body *body, uint32_t copy) {
     gxp_around around;
@@ -4008,7 +4547,9 @@ static int gxp_next_around(const gx_body *body, gxp_around *around) {
         if (around->cell == GXP_NONE && around->at == end) return 0;
         if (around->cell == GXP_NONE) around->cell = body->node_elements[around->at++];
         cell = &body->cells[around->cell];
-        if (cell->kept && (cell->copies[0] == copy || cell->copies[1] == copy || cell->copies[2] == copy || cell->copies[3] == copy)) return 1;
+        if (cell->kept &&
+            (cell->copies[0] == copy || cell->copies[1] == copy || cell->copies[2] == copy || cell->copies[3] == copy))
+            return 1;
     }
 }
 
@@ -4017,7 +4558,8 @@ static double gxp_part_share(const gx_body *body, uint32_t cell) {
     const gxp_cell *of = &body->cells[cell];
     double volume = 0;
     for (cell = of->element; cell != GXP_NONE; cell = body->cells[cell].next)
-        if (body->cells[cell].kept && memcmp(body->cells[cell].copies, of->copies, sizeof of->copies) == 0) volume += body->cells[cell].volume;
+        if (body->cells[cell].kept && memcmp(body->cells[cell].copies, of->copies, sizeof of->copies) == 0)
+            volume += body->cells[cell].volume;
     return volume / gxp_element_volume(body, of->element);
 }
 
@@ -4035,7 +4577,8 @@ static gx_result gxp_list_thin(gx_body *body, int anew) {
     uint32_t i, k, count = 0;
     for (i = k = 0; i < body->thin.count && !anew; i++) {
         while (k < body->changed.count && body->changed.data[k] < body->thin.data[i]) k++;
-        if (k == body->changed.count || body->changed.data[k] != body->thin.data[i]) body->thin.data[count++] = body->thin.data[i];
+        if (k == body->changed.count || body->changed.data[k] != body->thin.data[i])
+            body->thin.data[count++] = body->thin.data[i];
     }
     body->thin.count = count;
     for (i = 0; i < looked_at && result == GX_OK; i++) {
@@ -4043,14 +4586,15 @@ static gx_result gxp_list_thin(gx_body *body, int anew) {
         if (gxp_is_thin(body, element)) result = gxp_push(body, &body->thin, element);
     }
     gxp_sort_unique(&body->thin);
-    if (result != GX_OK) body->model = GXP_MODEL_STALE;     /* the list is not whole */
+    if (result != GX_OK) body->model = GXP_MODEL_STALE; /* the list is not whole */
     return result;
 }
 
 /* Do all parts around the copy have a smaller share? */
 static int gxp_is_weak(const gx_body *body, uint32_t copy, double share) {
     gxp_around around = gxp_around_copy(body, copy);
-    while (gxp_next_around(body, &around)) if (gxp_part_share(body, around.cell) >= share) return 0;
+    while (gxp_next_around(body, &around))
+        if (gxp_part_share(body, around.cell) >= share) return 0;
     return 1;
 }
 
@@ -4059,7 +4603,8 @@ static int gxp_is_strong(const gx_body *body, const gxp_supports *of, uint32_t c
     return !(of->weak[copies[0]] | of->weak[copies[1]] | of->weak[copies[2]] | of->weak[copies[3]]);
 }
 
-/* Weights by which a copy follows the field of a cell at its node, 1 in sum. Returns the sum of their sizes: 1 within the element, more outside. */
+/* Weights by which a copy follows the field of a cell at its node, 1 in sum. Returns the sum of their sizes: 1 within
+ * the element, more outside. */
 static double gxp_follow_weights(const gx_body *body, uint32_t copy, uint32_t cell, double weight[4]) {
     const double *at = body->positions + 3 * (size_t)body->copy_node[copy];
     double x[12], gradients[12];
@@ -4072,9 +4617,9 @@ static double gxp_follow_weights(const gx_body *body, uint32_t copy, uint32_t ce
     return fabs(weight[0]) + fabs(weight[1]) + fabs(weight[2]) + fabs(weight[3]);
 }
 
-/* What a weak copy follows: of the strong cells nearest to it, by cells between, the one whose field is extended least, or, where a copy that
-   already follows is as near, what that follows. So do weak copies on the way that are further than one cell from it. Returns how many
-   copies the search has met if there is no strong cell: all of the fragment. */
+/* What a weak copy follows: of the strong cells nearest to it, by cells between, the one whose field is extended least,
+   or, where a copy that already follows is as near, what that follows. So do weak copies on the way that are further
+   than one cell from it. Returns how many copies the search has met if there is no strong cell: all of the fragment. */
 static uint32_t gxp_find_cell(const gx_body *body, gxp_supports *of, uint32_t copy) {
     uint32_t begin, end, i, count = 1, best = GXP_NONE;
     int k;
@@ -4088,7 +4633,8 @@ static uint32_t gxp_find_cell(const gx_body *body, gxp_supports *of, uint32_t co
             gxp_around around = gxp_around_copy(body, of->queue[i]);
             if (known == GXP_NONE) known = of->cell[of->queue[i]];
             while (gxp_next_around(body, &around)) {
-                if (gxp_is_strong(body, of, around.cell) && (sum = gxp_follow_weights(body, copy, around.cell, weight)) < least) {
+                if (gxp_is_strong(body, of, around.cell) &&
+                    (sum = gxp_follow_weights(body, copy, around.cell, weight)) < least) {
                     least = sum;
                     best = around.cell;
                 }
@@ -4107,13 +4653,15 @@ static uint32_t gxp_find_cell(const gx_body *body, gxp_supports *of, uint32_t co
     return best == GXP_NONE ? count : 0;
 }
 
-/* How far a cell reaches beside its element: square root of the trace of its covariance in barycentric coordinates over that of the element, which
-   is 4 (1/10 - 1/16). A crumb of an element's corner reaches as far as it is large, a layer of any thickness about as far as the element. */
+/* How far a cell reaches beside its element: square root of the trace of its covariance in barycentric coordinates over
+   that of the element, which is 4 (1/10 - 1/16). A crumb of an element's corner reaches as far as it is large, a layer
+   of any thickness about as far as the element. */
 static double gxp_cell_reach(const gxp_cell *cell) {
-    static const int rows[4][4] = { {0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9} };
+    static const int rows[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
     double mass = 0, trace = 0, row;
     int i, k;
-    for (i = 0; i < 4; i++) for (k = 0; k < 4; k++) mass += cell->mass[rows[i][k]];
+    for (i = 0; i < 4; i++)
+        for (k = 0; k < 4; k++) mass += cell->mass[rows[i][k]];
     for (i = 0; i < 4 && mass > 0; i++) {
         for (k = 0, row = 0; k < 4; k++) row += cell->mass[rows[i][k]];
         trace += cell->mass[rows[i][i]] / mass - row / mass * (row / mass);
@@ -4121,7 +4669,8 @@ static double gxp_cell_reach(const gxp_cell *cell) {
     return trace > 0 ? sqrt(trace / 0.15) : 0;
 }
 
-/* A fragment without a strong cell, the first `count` copies of the queue: weak is what is so beside its fullest part, or it is a point. */
+/* A fragment without a strong cell, the first `count` copies of the queue: weak is what is so beside its fullest part,
+ * or it is a point. */
 static void gxp_weigh_fragment(const gx_body *body, gxp_supports *of, uint32_t count) {
     uint32_t i, fullest = GXP_NONE, lead;
     double most = 0, reach = 0;
@@ -4129,15 +4678,22 @@ static void gxp_weigh_fragment(const gx_body *body, gxp_supports *of, uint32_t c
         gxp_around around = gxp_around_copy(body, of->queue[i]);
         while (gxp_next_around(body, &around)) {
             const double share = gxp_part_share(body, around.cell);
-            if (fullest == GXP_NONE || share > most) { most = share; fullest = around.cell; }
+            if (fullest == GXP_NONE || share > most) {
+                most = share;
+                fullest = around.cell;
+            }
             reach = fmax(reach, gxp_cell_reach(&body->cells[around.cell]));
         }
     }
     lead = body->cells[fullest].copies[0];
     for (i = 0; i < count; i++) {
         const uint32_t copy = of->queue[i];
-        if (most >= body->point_below && reach >= body->crumb_reach) of->weak[copy] = gxp_is_weak(body, copy, body->follow_below * most) ? GXP_FOLLOWS : GXP_FREE;
-        else { of->weak[copy] = copy == lead ? GXP_FREE : GXP_FOLLOWS_POINT; of->cell[copy] = fullest; }
+        if (most >= body->point_below && reach >= body->crumb_reach)
+            of->weak[copy] = gxp_is_weak(body, copy, body->follow_below * most) ? GXP_FOLLOWS : GXP_FREE;
+        else {
+            of->weak[copy] = copy == lead ? GXP_FREE : GXP_FOLLOWS_POINT;
+            of->cell[copy] = fullest;
+        }
     }
 }
 
@@ -4169,8 +4725,10 @@ static void gxp_add_constraint(gx_body *body, const gxp_supports *of, uint32_t c
     constraint->copy = copy;
     memcpy(constraint->master, body->cells[of->cell[copy]].copies, sizeof constraint->master);
     memset(constraint->weight, 0, sizeof constraint->weight);
-    if (of->weak[copy] == GXP_FOLLOWS) (void)gxp_follow_weights(body, copy, of->cell[copy], constraint->weight);
-    else constraint->weight[0] = 1;
+    if (of->weak[copy] == GXP_FOLLOWS)
+        (void)gxp_follow_weights(body, copy, of->cell[copy], constraint->weight);
+    else
+        constraint->weight[0] = 1;
 }
 
 static gx_result gxp_make_constraints(gx_body *body) {
@@ -4191,8 +4749,10 @@ static gx_result gxp_make_constraints(gx_body *body) {
         memset(of.seen, 0, n * sizeof *of.seen);
         count = gxp_find_supports(body, &of);
         result = gxp_reserve(a, &body->constraints, sizeof *body->constraints, 0, &body->constraint_capacity, count);
-        for (i = 0; i < n && result == GX_OK; i++) if (of.weak[i]) gxp_add_constraint(body, &of, i);
-    } else result = GX_ERROR_MEMORY;
+        for (i = 0; i < n && result == GX_OK; i++)
+            if (of.weak[i]) gxp_add_constraint(body, &of, i);
+    } else
+        result = GX_ERROR_MEMORY;
     gxp_release(a, of.weak, n);
     gxp_release(a, of.cell, 3 * n * sizeof(uint32_t));
     return result;
@@ -4204,23 +4764,31 @@ static gx_result gxp_make_model(gx_body *body, gxs_model *model) {
     gx_result result = gxp_make_parts(body);
     if (result == GX_OK) result = gxp_list_thin(body, 1);
     if (result == GX_OK) result = gxp_make_constraints(body);
-    if (result == GX_OK) result = gxp_reserve(a, &body->rest, 3 * sizeof(double), 0, &body->rest_capacity, body->copy_count);
-    if (result == GX_OK) result = gxp_reserve(a, &body->elastic, sizeof *body->elastic, 0, &body->elastic_capacity, body->material_count);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &body->rest, 3 * sizeof(double), 0, &body->rest_capacity, body->copy_count);
+    if (result == GX_OK)
+        result =
+            gxp_reserve(a, &body->elastic, sizeof *body->elastic, 0, &body->elastic_capacity, body->material_count);
     if (result != GX_OK) return result;
     for (i = 0; i < body->copy_count; i++)
         memcpy(body->rest + 3 * (size_t)i, body->positions + 3 * (size_t)body->copy_node[i], 3 * sizeof(double));
     for (i = 0; i < body->material_count; i++) body->elastic[i] = body->materials[i].elastic;
     memset(model, 0, sizeof *model);
-    model->copy_count = body->copy_count; model->positions = body->rest;
-    model->elements = body->parts; model->element_count = body->part_count;
-    model->materials = body->elastic; model->material_count = body->material_count;
+    model->copy_count = body->copy_count;
+    model->positions = body->rest;
+    model->elements = body->parts;
+    model->element_count = body->part_count;
+    model->materials = body->elastic;
+    model->material_count = body->material_count;
     model->held = body->held;
-    model->constraints = body->constraints; model->constraint_count = body->constraint_count;
+    model->constraints = body->constraints;
+    model->constraint_count = body->constraint_count;
     model->epoch = body->epoch;
     return GX_OK;
 }
 
-/* The solver's model changed as the body was. Errors: besides MEMORY LIMIT and, if nothing is left, EMPTY: it is to be set anew. */
+/* The solver's model changed as the body was. Errors: besides MEMORY LIMIT and, if nothing is left, EMPTY: it is to be
+ * set anew. */
 static gx_result gxp_change_model(gx_body *body) {
     size_t room = 0;
     uint32_t i, cell;
@@ -4235,10 +4803,15 @@ static gx_result gxp_change_model(gx_body *body) {
     if (result == GX_OK) result = gxp_list_thin(body, 0);
     if (result == GX_OK) result = gxp_make_constraints(body);
     memset(&change, 0, sizeof change);
-    change.copy_count = body->copy_count; change.origins = body->copy_before; change.held = body->held;
-    change.groups = body->changed.data; change.group_count = body->changed.count;
-    change.elements = body->parts; change.element_count = body->part_count;
-    change.constraints = body->constraints; change.constraint_count = body->constraint_count;
+    change.copy_count = body->copy_count;
+    change.origins = body->copy_before;
+    change.held = body->held;
+    change.groups = body->changed.data;
+    change.group_count = body->changed.count;
+    change.elements = body->parts;
+    change.element_count = body->part_count;
+    change.constraints = body->constraints;
+    change.constraint_count = body->constraint_count;
     change.epoch = body->epoch;
     return result == GX_OK ? gxs_solver_update(body->solver, &change, NULL) : result;
 }
@@ -4246,7 +4819,8 @@ static gx_result gxp_change_model(gx_body *body) {
 /* What has been written to the state since the last step still wakes in the next one. */
 static void gxp_note_written(gx_body *body) {
     gxp_wake_resumed(body, body->copy_count);
-    gxs_solver_note_written(body->solver, body->copy_before, body->copy_count, body->displacement, body->velocity, body->rest_time);
+    gxs_solver_note_written(body->solver, body->copy_before, body->copy_count, body->displacement, body->velocity,
+                            body->rest_time);
 }
 
 static gx_result gxp_set_model(gx_body *body) {
@@ -4262,7 +4836,10 @@ static gx_result gxp_set_model(gx_body *body) {
 static gx_result gxp_update_model(gx_body *body) {
     gx_result result = gxp_update_held(body);
     uint32_t i;
-    if (result != GX_OK || body->model == GXP_MODEL_KNOWN) { gxp_release_model(body); return result; }
+    if (result != GX_OK || body->model == GXP_MODEL_KNOWN) {
+        gxp_release_model(body);
+        return result;
+    }
     if (body->model == GXP_MODEL_CHANGED) {
         result = gxp_change_model(body);
         body->model = result == GX_OK ? GXP_MODEL_KNOWN : GXP_MODEL_STALE;
@@ -4271,7 +4848,10 @@ static gx_result gxp_update_model(gx_body *body) {
     }
     if (result == GX_OK && body->model == GXP_MODEL_STALE) {
         result = gxp_set_model(body);
-        if (result == GX_OK) { body->model = GXP_MODEL_KNOWN; body->model_updated = 0; }
+        if (result == GX_OK) {
+            body->model = GXP_MODEL_KNOWN;
+            body->model_updated = 0;
+        }
     }
     gxp_release_model(body);
     body->changed.count = 0;
@@ -4293,10 +4873,14 @@ static gx_result gxp_complete_step(gx_body *body, const gx_step_desc *desc, gx_s
     int i;
     *step = *desc;
     step->rest_times = body->rest_time;
-    if (step->clock == NULL) { step->clock = body->clock; step->clock_user = body->clock_user; }
+    if (step->clock == NULL) {
+        step->clock = body->clock;
+        step->clock_user = body->clock_user;
+    }
     for (i = 0; i < 4 && history && result == GX_OK; i++)
         if (body->history[i] == NULL)
-            result = gxp_reserve(&body->allocator, &body->history[i], 3 * sizeof(double), 0, &body->history_capacity[i], body->copy_count);
+            result = gxp_reserve(&body->allocator, &body->history[i], 3 * sizeof(double), 0, &body->history_capacity[i],
+                                 body->copy_count);
     step->previous_displacement = history && body->previous_dt > 0 ? body->history[0] : NULL;
     step->previous_velocity = body->history[1];
     step->previous_dt = body->previous_dt;
@@ -4319,8 +4903,10 @@ static gx_result gxp_step(gx_body *body, const gx_step_desc *step, gx_step_repor
     for (i = 0; i < 2 && history; i++) {
         double *now = body->history[i + 2];
         const uint32_t capacity = body->history_capacity[i + 2];
-        body->history[i + 2] = body->history[i]; body->history_capacity[i + 2] = body->history_capacity[i];
-        body->history[i] = now; body->history_capacity[i] = capacity;
+        body->history[i + 2] = body->history[i];
+        body->history_capacity[i + 2] = body->history_capacity[i];
+        body->history[i] = now;
+        body->history_capacity[i] = capacity;
     }
     return GX_OK;
 }
@@ -4339,7 +4925,10 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
         if (failure == NULL) failure = &ignored;
         result = gxsp_check_step(&step, failure);
         if (result == GX_OK) result = gxsp_check_epochs(&step, body->epoch, failure);
-        if (result == GX_OK && report != NULL) { memset(report, 0, sizeof *report); report->stop = GXS_STOP_ASLEEP; }
+        if (result == GX_OK && report != NULL) {
+            memset(report, 0, sizeof *report);
+            report->stop = GXS_STOP_ASLEEP;
+        }
         return result;
     }
     result = gxp_step(body, &step, report, failure);
@@ -4348,10 +4937,12 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
     return result;
 }
 
-/* >>bytes: save and load, clone and restore ---------------------------------------------------------------------------------------
+/* >>bytes: save and load, clone and restore
+ * ---------------------------------------------------------------------------------------
  *
- * One stream of bytes does all four. A clone is written to memory and read back, without the checks; what the same functions write
- * and read stands once, in gxp_pass_cells (topology, beside gxb_complex_save) and gxp_pass_state (all else).
+ * One stream of bytes does all four. A clone is written to memory and read back, without the checks; what the same
+ * functions write and read stands once, in gxp_pass_cells (topology, beside gxb_complex_save) and gxp_pass_state (all
+ * else).
  */
 
 static uint64_t gxp_hash_words(uint64_t hash, const uint32_t *words, size_t count) {
@@ -4374,10 +4965,13 @@ static uint64_t gxp_hash_texture(uint64_t hash, const float *texture, size_t cou
 }
 
 static uint64_t gxp_hash_mesh(const gx_body *body) {
-    const uint64_t hash = gxp_hash_texture(gxp_hash_doubles(gxp_mix(body->node_count), body->positions, 3 * (size_t)body->node_count),
-                                           body->texture, body->node_count);
-    return gxp_hash_doubles(gxp_hash_words(gxp_hash_words(hash, body->complex->elements, 4 * (size_t)body->element_count),
-                                           body->element_materials, body->element_count), &body->support_below, 1);
+    const uint64_t hash =
+        gxp_hash_texture(gxp_hash_doubles(gxp_mix(body->node_count), body->positions, 3 * (size_t)body->node_count),
+                         body->texture, body->node_count);
+    return gxp_hash_doubles(
+        gxp_hash_words(gxp_hash_words(hash, body->complex->elements, 4 * (size_t)body->element_count),
+                       body->element_materials, body->element_count),
+        &body->support_below, 1);
 }
 
 static uint64_t gxp_hash_cut(uint64_t past, const gx_cut_desc *desc) {
@@ -4386,29 +4980,35 @@ static uint64_t gxp_hash_cut(uint64_t past, const gx_cut_desc *desc) {
     past = gxp_hash_doubles(gxp_hash_words(past, desc->scope_cells, desc->scope_cell_count), &desc->sever_below, 1);
     for (i = 0; i < desc->surface_count; i++) {
         const gx_surface *s = &desc->surfaces[i];
-        past = gxp_hash_doubles(gxp_mix(past ^ s->kind ^ (uint64_t)s->vertex_count << 8), s->vertices, 3 * s->vertex_count);
+        past = gxp_hash_doubles(gxp_mix(past ^ s->kind ^ (uint64_t)s->vertex_count << 8), s->vertices,
+                                3 * s->vertex_count);
         past = gxp_hash_texture(gxp_hash_words(past, s->triangles, 3 * s->triangle_count), s->texture, s->vertex_count);
     }
     return past;
 }
 
-static void gxp_require(gxb_stream *s, gx_result result) { if (s->result == GX_OK) s->result = result; }
-static void gxp_require_true(gxb_stream *s, int holds) { if (!holds) gxp_require(s, GX_ERROR_DAMAGED); }
+static void gxp_require(gxb_stream *s, gx_result result) {
+    if (s->result == GX_OK) s->result = result;
+}
+static void gxp_require_true(gxb_stream *s, int holds) {
+    if (!holds) gxp_require(s, GX_ERROR_DAMAGED);
+}
 static void gxp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, word, 1, sizeof *word); }
 
 /* --- head --- */
 
-#define GXP_SAVE_VERSION 2u     /* raised by every change of what follows */
-#define GXP_BYTE_ORDER 0x01020304u
+#define GXP_SAVE_VERSION 2u /* raised by every change of what follows */
+#define GXP_BYTE_ORDER   0x01020304u
 
 typedef struct gxp_head {
     unsigned char magic[8];
     uint32_t version, order;
-    double width;               /* -2.5: doubles are IEEE 754's */
-    uint64_t size, checksum;    /* of all; of what follows the head */
+    double width;            /* -2.5: doubles are IEEE 754's */
+    uint64_t size, checksum; /* of all; of what follows the head */
 } gxp_head;
 
-static const unsigned char gxp_magic[8] = {'g', 'x', 'f', 'e', 'm', '\r', '\n', 0x1a};    /* transfers that treat it as text show */
+/* transfers that treat it as text show */
+static const unsigned char gxp_magic[8] = {'g', 'x', 'f', 'e', 'm', '\r', '\n', 0x1a};
 
 static void gxp_pass_head(gxb_stream *s, gxp_head *head) {
     gxb_stream_pass(s, head->magic, 8, 1);
@@ -4422,9 +5022,11 @@ static void gxp_pass_head(gxb_stream *s, gxp_head *head) {
 static gxp_head gxp_make_head(uint64_t size, uint64_t checksum) {
     gxp_head head;
     memcpy(head.magic, gxp_magic, sizeof head.magic);
-    head.version = GXP_SAVE_VERSION; head.order = GXP_BYTE_ORDER;
+    head.version = GXP_SAVE_VERSION;
+    head.order = GXP_BYTE_ORDER;
     head.width = -2.5;
-    head.size = size; head.checksum = checksum;
+    head.size = size;
+    head.checksum = checksum;
     return head;
 }
 
@@ -4443,8 +5045,9 @@ static gx_result gxp_check_head(gxb_stream *s) {
     gxp_head head, own;
     gxp_pass_head(s, &head);
     own = gxp_make_head(head.size, head.checksum);
-    if (memcmp(head.magic, own.magic, sizeof own.magic) != 0 || head.version != own.version || head.order != own.order ||
-        memcmp(&head.width, &own.width, sizeof own.width) != 0) return GX_ERROR_FORMAT;
+    if (memcmp(head.magic, own.magic, sizeof own.magic) != 0 || head.version != own.version ||
+        head.order != own.order || memcmp(&head.width, &own.width, sizeof own.width) != 0)
+        return GX_ERROR_FORMAT;
     if (s->result != GX_OK || head.size != s->size) return GX_ERROR_DAMAGED;
     return head.checksum == gxp_checksum(s->in + s->at, s->size - s->at) ? GX_OK : GX_ERROR_DAMAGED;
 }
@@ -4465,7 +5068,7 @@ static void gxp_pass_material(gxb_stream *s, gx_material *m) {
 typedef struct gxp_mesh {
     uint32_t node_count, element_count, material_count;
     double support_below;
-    uint32_t textured;          /* 1: there is a texture */
+    uint32_t textured; /* 1: there is a texture */
     double *positions;
     float *texture;
     uint32_t *elements, *element_materials;
@@ -4491,11 +5094,16 @@ static void gxp_pass_mesh(gxb_stream *s, gxp_mesh *mesh) {
 
 static void gxp_save_mesh(gxb_stream *s, gx_body *body) {
     gxp_mesh mesh;
-    mesh.node_count = body->node_count; mesh.element_count = body->element_count; mesh.material_count = body->material_count;
+    mesh.node_count = body->node_count;
+    mesh.element_count = body->element_count;
+    mesh.material_count = body->material_count;
     mesh.support_below = body->support_below;
-    mesh.positions = body->positions; mesh.elements = body->complex->elements;
-    mesh.texture = body->texture; mesh.textured = body->texture != NULL;
-    mesh.element_materials = body->element_materials; mesh.materials = body->materials;
+    mesh.positions = body->positions;
+    mesh.elements = body->complex->elements;
+    mesh.texture = body->texture;
+    mesh.textured = body->texture != NULL;
+    mesh.element_materials = body->element_materials;
+    mesh.materials = body->materials;
     gxp_pass_sizes(s, &mesh);
     gxp_pass_mesh(s, &mesh);
 }
@@ -4506,7 +5114,10 @@ static gx_result gxp_give_energies(gxp_mesh *mesh, const gx_body_desc *desc, siz
     for (i = 0; i < mesh->material_count; i++) {
         gxs_material *m = &mesh->materials[i].elastic;
         if (m->kind != GXS_CUSTOM) continue;
-        if (desc->materials == NULL || i >= desc->material_count || desc->materials[i].elastic.energy == NULL) { *material = i; return GX_ERROR_ARGUMENT; }
+        if (desc->materials == NULL || i >= desc->material_count || desc->materials[i].elastic.energy == NULL) {
+            *material = i;
+            return GX_ERROR_ARGUMENT;
+        }
         m->energy = desc->materials[i].elastic.energy;
         m->user = desc->materials[i].elastic.user;
     }
@@ -4522,16 +5133,24 @@ static void gxp_create_again(gxb_stream *s, const gx_body_desc *given, gxp_mesh 
     gxp_require(s, gxp_give_energies(mesh, given, index));
     if (s->result != GX_OK) return;
     memset(&desc, 0, sizeof desc);
-    desc.allocator = given->allocator; desc.clock = given->clock; desc.clock_user = given->clock_user; desc.jobs = given->jobs;
-    desc.positions = mesh->positions; desc.node_count = mesh->node_count;
-    desc.elements = mesh->elements; desc.element_count = mesh->element_count;
-    desc.materials = mesh->materials; desc.material_count = mesh->material_count;
+    desc.allocator = given->allocator;
+    desc.clock = given->clock;
+    desc.clock_user = given->clock_user;
+    desc.jobs = given->jobs;
+    desc.positions = mesh->positions;
+    desc.node_count = mesh->node_count;
+    desc.elements = mesh->elements;
+    desc.element_count = mesh->element_count;
+    desc.materials = mesh->materials;
+    desc.material_count = mesh->material_count;
     desc.element_materials = mesh->element_materials;
     desc.texture = mesh->textured ? mesh->texture : NULL;
     desc.support_below = mesh->support_below;
     result = gx_body_create(&desc, body, NULL);
     gxp_require(s, result == GX_OK || result == GX_ERROR_MEMORY || result == GX_ERROR_LIMIT ||
-                   result == GX_ERROR_CONFIGURATION ? result : GX_ERROR_DAMAGED);
+                           result == GX_ERROR_CONFIGURATION
+                       ? result
+                       : GX_ERROR_DAMAGED);
 }
 
 static void gxp_load_mesh(gxb_stream *s, const gx_body_desc *desc, gx_body **body, size_t *index) {
@@ -4543,12 +5162,14 @@ static void gxp_load_mesh(gxb_stream *s, const gx_body_desc *desc, gx_body **bod
     gxb_stream_has(s, mesh.node_count, 3 * sizeof(double));
     gxb_stream_has(s, mesh.element_count, 5 * sizeof(uint32_t));
     gxb_stream_has(s, mesh.material_count, sizeof(uint32_t) + 4 * sizeof(double));
-    gxp_require_true(s, mesh.node_count > 0 && mesh.element_count > 0 && mesh.material_count > 0 && mesh.material_count <= INT32_MAX / sizeof(gx_material) &&
-                        mesh.textured <= 1);
+    gxp_require_true(s, mesh.node_count > 0 && mesh.element_count > 0 && mesh.material_count > 0 &&
+                            mesh.material_count <= INT32_MAX / sizeof(gx_material) && mesh.textured <= 1);
     if (s->result != GX_OK) return;
-    positions = 3 * (size_t)mesh.node_count * sizeof(double); elements = 4 * (size_t)mesh.element_count * sizeof(uint32_t);
+    positions = 3 * (size_t)mesh.node_count * sizeof(double);
+    elements = 4 * (size_t)mesh.element_count * sizeof(uint32_t);
     texture = 2 * (size_t)mesh.node_count * sizeof(float);
-    element_materials = elements / 4; materials = mesh.material_count * sizeof(gx_material);
+    element_materials = elements / 4;
+    materials = mesh.material_count * sizeof(gx_material);
     mesh.positions = (double *)gxp_allocate(a, positions);
     mesh.texture = (float *)gxp_allocate(a, texture);
     mesh.elements = (uint32_t *)gxp_allocate(a, elements);
@@ -4557,7 +5178,8 @@ static void gxp_load_mesh(gxb_stream *s, const gx_body_desc *desc, gx_body **bod
     if (mesh.positions && mesh.texture && mesh.elements && mesh.element_materials && mesh.materials) {
         memset(mesh.materials, 0, materials);
         gxp_create_again(s, desc, &mesh, body, index);
-    } else gxp_require(s, GX_ERROR_MEMORY);
+    } else
+        gxp_require(s, GX_ERROR_MEMORY);
     gxp_release(a, mesh.positions, positions);
     gxp_release(a, mesh.texture, texture);
     gxp_release(a, mesh.elements, elements);
@@ -4604,7 +5226,9 @@ static void gxp_save_topology(gxb_stream *s, gx_body *body) {
 }
 
 /* Marks, one byte for each cell, leaf and copy: it has its place. */
-typedef struct gxp_places { unsigned char *cell, *leaf, *copy; } gxp_places;
+typedef struct gxp_places {
+    unsigned char *cell, *leaf, *copy;
+} gxp_places;
 
 /* The cell's leaves are its own, kept, of its element and of no other cell; its copies are those of its element's
    nodes. It is no larger than the element; twice allows for rounding. */
@@ -4618,13 +5242,18 @@ static void gxp_check_cell(gxb_stream *s, gx_body *body, uint32_t cell, const gx
         gxp_require_true(s, leaf < body->leaf_count && !seen->leaf[leaf < body->leaf_count ? leaf : 0]);
         if (s->result != GX_OK) return;
         seen->leaf[leaf] = 1;
-        gxp_require_true(s, body->leaves[leaf].cell == cell && gxp_is_kept(body, leaf) && body->complex->leaves[leaf].element == c->element);
+        gxp_require_true(s, body->leaves[leaf].cell == cell && gxp_is_kept(body, leaf) &&
+                                body->complex->leaves[leaf].element == c->element);
     }
     gxp_require_true(s, gxp_is_finite(c->volume) && c->volume >= 0 && c->volume <= most);
     for (k = 0; k < 10; k++) gxp_require_true(s, gxp_is_finite(c->mass[k]) && fabs(c->mass[k]) <= most * density);
     for (k = 0; k < 4 && s->result == GX_OK; k++) {
-        if (!c->kept) { gxp_require_true(s, c->copies[k] == GXP_NONE); continue; }
-        gxp_require_true(s, c->copies[k] < body->copy_count && body->copy_node[c->copies[k] < body->copy_count ? c->copies[k] : 0] == node[k]);
+        if (!c->kept) {
+            gxp_require_true(s, c->copies[k] == GXP_NONE);
+            continue;
+        }
+        gxp_require_true(s, c->copies[k] < body->copy_count &&
+                                body->copy_node[c->copies[k] < body->copy_count ? c->copies[k] : 0] == node[k]);
         if (s->result == GX_OK) seen->copy[c->copies[k]] = 1;
     }
 }
@@ -4632,20 +5261,23 @@ static void gxp_check_cell(gxb_stream *s, gx_body *body, uint32_t cell, const gx
 /* Every cell is in its element's list once, every kept leaf in a kept cell, every copy in use. */
 static void gxp_check_lists(gxb_stream *s, gx_body *body, const gxp_places *seen) {
     uint32_t e, i, cell;
-    for (e = 0; e < body->element_count; e++) for (cell = e; cell != GXP_NONE && s->result == GX_OK; cell = body->cells[cell].next) {
-        gxp_require_true(s, cell < body->cell_count && !seen->cell[cell < body->cell_count ? cell : 0]);
-        if (s->result != GX_OK) return;
-        seen->cell[cell] = 1;
-        gxp_require_true(s, body->cells[cell].element == e);
-        if (s->result == GX_OK) gxp_check_cell(s, body, cell, seen);
-    }
+    for (e = 0; e < body->element_count; e++)
+        for (cell = e; cell != GXP_NONE && s->result == GX_OK; cell = body->cells[cell].next) {
+            gxp_require_true(s, cell < body->cell_count && !seen->cell[cell < body->cell_count ? cell : 0]);
+            if (s->result != GX_OK) return;
+            seen->cell[cell] = 1;
+            gxp_require_true(s, body->cells[cell].element == e);
+            if (s->result == GX_OK) gxp_check_cell(s, body, cell, seen);
+        }
     for (i = 0; i < body->cell_count; i++) gxp_require_true(s, seen->cell[i]);
     for (i = 0; i < body->copy_count; i++) gxp_require_true(s, seen->copy[i]);
     for (i = 0; i < body->leaf_count; i++) {
-        gxp_require_true(s, body->leaves[i].cell < body->cell_count && seen->leaf[i] == !body->complex->leaves[i].removed);
+        gxp_require_true(s,
+                         body->leaves[i].cell < body->cell_count && seen->leaf[i] == !body->complex->leaves[i].removed);
         gxp_require_true(s, seen->leaf[i] || body->leaves[i].next == GXP_NONE);
     }
-    for (i = 0; i < body->complex->label_count; i++) gxp_require_true(s, body->complex->labels[i].triangle < body->label_count);
+    for (i = 0; i < body->complex->label_count; i++)
+        gxp_require_true(s, body->complex->labels[i].triangle < body->label_count);
 }
 
 /* Surfaces in the order of their labels, each with maps for all of its triangles or for none. */
@@ -4656,7 +5288,8 @@ static void gxp_check_surfaces(gxb_stream *s, const gx_body *body) {
         const gxp_surface_record *r = &body->surfaces[i];
         const uint32_t end = i + 1 < body->surface_count ? r[1].label : body->label_count;
         gxp_require_true(s, r->label < end && (i > 0 || r->label == 0));
-        gxp_require_true(s, r->map == GXP_NONE || (r->map <= body->map_count && end - r->label <= body->map_count - r->map));
+        gxp_require_true(s, r->map == GXP_NONE ||
+                                (r->map <= body->map_count && end - r->label <= body->map_count - r->map));
     }
     gxp_require_true(s, body->surface_count > 0 || body->label_count == 0);
     for (k = 0; k < 8 * (size_t)body->map_count; k++) gxp_require_true(s, gxp_is_finite(body->maps[k]));
@@ -4666,9 +5299,13 @@ static void gxp_check_topology(gxb_stream *s, gx_body *body) {
     const size_t bytes = (size_t)body->cell_count + body->leaf_count + body->copy_count;
     gxp_places seen;
     seen.cell = (unsigned char *)gxp_allocate(&body->allocator, bytes);
-    if (seen.cell == NULL) { gxp_require(s, GX_ERROR_MEMORY); return; }
+    if (seen.cell == NULL) {
+        gxp_require(s, GX_ERROR_MEMORY);
+        return;
+    }
     memset(seen.cell, 0, bytes);
-    seen.leaf = seen.cell + body->cell_count; seen.copy = seen.leaf + body->leaf_count;
+    seen.leaf = seen.cell + body->cell_count;
+    seen.copy = seen.leaf + body->leaf_count;
     gxp_check_lists(s, body, &seen);
     gxp_check_surfaces(s, body);
     gxp_release(&body->allocator, seen.cell, bytes);
@@ -4688,16 +5325,21 @@ static void gxp_load_topology(gxb_stream *s, gx_body *body, int trusted) {
     gxp_require_true(s, cells >= body->element_count && cells <= INT32_MAX && copies <= INT32_MAX);
     if (s->result != GX_OK) return;
     gxp_require(s, gxp_reserve_cells(body, cells - body->cell_count));
-    gxp_require(s, gxp_reserve(&body->allocator, &body->leaves, sizeof *body->leaves, body->leaf_count, &body->leaf_capacity, leaves - body->leaf_count));
+    gxp_require(s, gxp_reserve(&body->allocator, &body->leaves, sizeof *body->leaves, body->leaf_count,
+                               &body->leaf_capacity, leaves - body->leaf_count));
     body->copy_count = 0;
     gxp_require(s, gxp_reserve_copies(body, copies));
-    gxp_require(s, gxp_reserve(&body->allocator, &body->surfaces, sizeof *body->surfaces, 0, &body->surface_capacity, surfaces));
+    gxp_require(s, gxp_reserve(&body->allocator, &body->surfaces, sizeof *body->surfaces, 0, &body->surface_capacity,
+                               surfaces));
     gxp_require(s, gxp_reserve(&body->allocator, &body->maps, 8 * sizeof *body->maps, 0, &body->map_capacity, maps));
     if (s->result != GX_OK) return;
     memset(body->leaves, 0, leaves * sizeof *body->leaves);
     if (copies > 0) memset(body->held, 0, copies);
-    body->cell_count = cells; body->leaf_count = leaves; body->copy_count = copies;
-    body->surface_count = surfaces; body->map_count = maps;
+    body->cell_count = cells;
+    body->leaf_count = leaves;
+    body->copy_count = copies;
+    body->surface_count = surfaces;
+    body->map_count = maps;
     gxp_pass_cells(s, body);
     if (s->result == GX_OK && !trusted) gxp_check_topology(s, body);
     body->held_stale = body->view_stale = 1;
@@ -4705,9 +5347,12 @@ static void gxp_load_topology(gxb_stream *s, gx_body *body, int trusted) {
     body->labels_known = 0;
 }
 
-/* --- state: all else. Whoever adds some to gx_body adds it to gxp_pass_state, and to gxp_state_room where it takes room --- */
+/* --- state: all else. Whoever adds some to gx_body adds it to gxp_pass_state, and to gxp_state_room where it takes
+ * room --- */
 
-typedef struct gxp_state_counts { uint32_t copies, regions, fragments, removed, history; } gxp_state_counts;
+typedef struct gxp_state_counts {
+    uint32_t copies, regions, fragments, removed, history;
+} gxp_state_counts;
 
 static void gxp_pass_state_counts(gxb_stream *s, gxp_state_counts *n) {
     gxp_pass_word(s, &n->copies);
@@ -4719,8 +5364,10 @@ static void gxp_pass_state_counts(gxb_stream *s, gxp_state_counts *n) {
 
 static gxp_state_counts gxp_count_state(const gx_body *body) {
     gxp_state_counts n;
-    n.copies = body->copy_count; n.regions = body->region_count;
-    n.fragments = body->fragment_ids.count; n.removed = body->removed_ids.count;
+    n.copies = body->copy_count;
+    n.regions = body->region_count;
+    n.fragments = body->fragment_ids.count;
+    n.removed = body->removed_ids.count;
     n.history = body->previous_dt > 0;
     return n;
 }
@@ -4733,9 +5380,12 @@ static gx_result gxp_state_room(gx_body *body, const gxp_state_counts *n) {
     if (r == GX_OK) r = gxp_words_room(body, &body->fragment_origins, n->fragments);
     if (r == GX_OK) r = gxp_words_room(body, &body->fragment_changes, n->fragments);
     if (r == GX_OK) r = gxp_words_room(body, &body->removed_ids, n->removed);
-    if (r == GX_OK) r = gxp_reserve(a, &body->regions, sizeof *body->regions, body->region_count, &body->region_capacity, n->regions);
+    if (r == GX_OK)
+        r = gxp_reserve(a, &body->regions, sizeof *body->regions, body->region_count, &body->region_capacity,
+                        n->regions);
     for (i = 0; i < 2 && r == GX_OK && n->history; i++)
-        if (body->history[i] == NULL) r = gxp_reserve(a, &body->history[i], 3 * sizeof(double), 0, &body->history_capacity[i], body->copy_count);
+        if (body->history[i] == NULL)
+            r = gxp_reserve(a, &body->history[i], 3 * sizeof(double), 0, &body->history_capacity[i], body->copy_count);
     return r;
 }
 
@@ -4794,12 +5444,14 @@ static void gxp_save_state(gxb_stream *s, gx_body *body) {
 static void gxp_check_state(gxb_stream *s, gx_body *body, const gxp_state_counts *n) {
     uint32_t i;
     gxp_require_true(s, body->next_id >= 1);
-    gxp_require_true(s, gxp_is_finite(body->previous_dt) && (n->history ? body->previous_dt > 0 : !(body->previous_dt > 0 || body->previous_dt < 0)));
+    gxp_require_true(s, gxp_is_finite(body->previous_dt) &&
+                            (n->history ? body->previous_dt > 0 : !(body->previous_dt > 0 || body->previous_dt < 0)));
     for (i = 0; i < n->regions; i++) gxp_require_true(s, gxp_check_region(&body->regions[i]) == GX_OK);
     for (i = 0; i < n->copies; i++) gxp_require_true(s, body->copy_label[i] >> 1 < n->fragments);
     for (i = 0; i < n->fragments; i++)
-        gxp_require_true(s, body->fragment_ids.data[i] - 1 < body->next_id - 1 && body->fragment_origins.data[i] - 1 < body->next_id - 1 &&
-                            body->fragment_changes.data[i] <= GX_FRAGMENT_CREATED);
+        gxp_require_true(s, body->fragment_ids.data[i] - 1 < body->next_id - 1 &&
+                                body->fragment_origins.data[i] - 1 < body->next_id - 1 &&
+                                body->fragment_changes.data[i] <= GX_FRAGMENT_CREATED);
     for (i = 0; i < n->removed; i++) gxp_require_true(s, body->removed_ids.data[i] - 1 < body->next_id - 1);
     if (s->result == GX_OK) gxp_require(s, gxp_update_view(body));
     gxp_require_true(s, body->look_stale || body->fragment_count == n->fragments);
@@ -4842,13 +5494,15 @@ GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, s
     gxp_note_written(body);
     memset(&s, 0, sizeof s);
     gxp_pass_head(&s, &head);
-    start = s.at; s.at = 0;
+    start = s.at;
+    s.at = 0;
     gxp_write(&s, body);
     *size = s.at;
     if (memory == NULL) return GX_OK;
     if (capacity < s.at) return GX_ERROR_LIMIT;
     s.out = (unsigned char *)memory;
-    s.size = s.at; s.at = 0;
+    s.size = s.at;
+    s.at = 0;
     gxp_write(&s, body);
     s.at = 0;
     head = gxp_make_head(s.size, gxp_checksum(s.out + start, s.size - start));
@@ -4861,20 +5515,25 @@ GXFEM_API gx_result gx_body_save(gx_body *body, void *memory, size_t capacity, s
 static gx_result gxp_read(gxb_stream *s, const gx_body_desc *desc, int trusted, gx_body **body, size_t *index) {
     gx_body *made = NULL;
     gxp_head head;
-    if (trusted) gxp_pass_head(s, &head);
-    else s->result = gxp_check_head(s);
+    if (trusted)
+        gxp_pass_head(s, &head);
+    else
+        s->result = gxp_check_head(s);
     *index = SIZE_MAX;
     if (s->result == GX_OK) gxp_load_mesh(s, desc, &made, index);
     if (s->result == GX_OK) gxp_load_topology(s, made, trusted);
     if (s->result == GX_OK) gxp_load_state(s, made, trusted);
     gxp_require_true(s, s->at == s->size);
-    if (s->result == GX_OK) *body = made;
-    else gx_body_destroy(made);
+    if (s->result == GX_OK)
+        *body = made;
+    else
+        gx_body_destroy(made);
     if (s->result == GX_ERROR_FORMAT || s->result == GX_ERROR_DAMAGED) *index = s->at;
     return s->result;
 }
 
-GXFEM_API gx_result gx_body_load(const void *memory, size_t size, const gx_body_desc *desc, gx_body **body, gx_failure *failure) {
+GXFEM_API gx_result gx_body_load(const void *memory, size_t size, const gx_body_desc *desc, gx_body **body,
+                                 gx_failure *failure) {
     gx_body_desc none;
     gxb_stream s;
     size_t index;
@@ -4901,13 +5560,19 @@ static gx_result gxp_copy_body(gx_body *from, const gx_body *host, gx_body **cop
     bytes = (unsigned char *)gxp_allocate(&host->allocator, size);
     if (bytes == NULL) return GX_ERROR_MEMORY;
     memset(&s, 0, sizeof s);
-    s.out = bytes; s.size = size;
+    s.out = bytes;
+    s.size = size;
     gxp_write(&s, from);
     memset(&s, 0, sizeof s);
-    s.in = bytes; s.size = size;
+    s.in = bytes;
+    s.size = size;
     memset(&desc, 0, sizeof desc);
-    desc.allocator = host->allocator; desc.clock = host->clock; desc.clock_user = host->clock_user; desc.jobs = host->jobs;
-    desc.materials = from->materials; desc.material_count = from->material_count;
+    desc.allocator = host->allocator;
+    desc.clock = host->clock;
+    desc.clock_user = host->clock_user;
+    desc.jobs = host->jobs;
+    desc.materials = from->materials;
+    desc.material_count = from->material_count;
     result = gxp_read(&s, &desc, 1, copy, &index);
     gxp_release(&host->allocator, bytes, size);
     if (result == GX_OK) gxp_resume(from);
@@ -4918,15 +5583,18 @@ GXFEM_API gx_result gx_body_clone(gx_body *body, gx_body **clone) {
     return body == NULL || clone == NULL ? GX_ERROR_ARGUMENT : gxp_copy_body(body, body, clone);
 }
 
-static int gxp_same_doubles(const double *a, const double *b, size_t count) { return memcmp(a, b, count * sizeof *a) == 0; }
+static int gxp_same_doubles(const double *a, const double *b, size_t count) {
+    return memcmp(a, b, count * sizeof *a) == 0;
+}
 
 static int gxp_same_materials(const gx_body *a, const gx_body *b) {
     uint32_t i;
     int same = a->material_count == b->material_count;
     for (i = 0; i < a->material_count && same; i++) {
         const gxs_material *p = &a->materials[i].elastic, *q = &b->materials[i].elastic;
-        same = p->kind == q->kind && gxp_same_doubles(&p->young, &q->young, 1) && gxp_same_doubles(&p->poisson, &q->poisson, 1) &&
-               gxp_same_doubles(&p->damping, &q->damping, 1) && gxp_same_doubles(&a->materials[i].density, &b->materials[i].density, 1) &&
+        same = p->kind == q->kind && gxp_same_doubles(&p->young, &q->young, 1) &&
+               gxp_same_doubles(&p->poisson, &q->poisson, 1) && gxp_same_doubles(&p->damping, &q->damping, 1) &&
+               gxp_same_doubles(&a->materials[i].density, &b->materials[i].density, 1) &&
                (p->kind != GXS_CUSTOM || (p->energy == q->energy && p->user == q->user));
     }
     return same;
@@ -4957,9 +5625,13 @@ static gx_result gxp_restore_state(gx_body *body, gx_body *from) {
     size = s.at;
     bytes = (unsigned char *)gxp_allocate(&body->allocator, size);
     if (bytes == NULL) return GX_ERROR_MEMORY;
-    s.out = bytes; s.size = size; s.at = 0;
+    s.out = bytes;
+    s.size = size;
+    s.at = 0;
     gxp_pass_state(&s, from, &n);
-    s.in = bytes; s.out = NULL; s.at = 0;
+    s.in = bytes;
+    s.out = NULL;
+    s.at = 0;
     gxp_pass_state(&s, body, &n);
     gxp_release(&body->allocator, bytes, size);
     if (!same_held) {
@@ -4977,20 +5649,25 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from) {
     if (body == NULL || from == NULL) return GX_ERROR_ARGUMENT;
     if (body == from) return GX_OK;
     if (body->past == from->past && body->copy_count == from->copy_count && body->cell_count == from->cell_count &&
-        body->leaf_count == from->leaf_count && gxp_same_materials(body, from)) return gxp_restore_state(body, from);
+        body->leaf_count == from->leaf_count && gxp_same_materials(body, from))
+        return gxp_restore_state(body, from);
     result = gxp_copy_body(from, body, &copy);
     if (result != GX_OK) return result;
-    swap = *body; *body = *copy; *copy = swap;
+    swap = *body;
+    *body = *copy;
+    *copy = swap;
     gx_body_destroy(copy);
     return GX_OK;
 }
 
-/* >>boundary: the visual surface. Its triangles are listed by element; those of elements that a cut touched are made anew. Triangles
-   and vertices stand without gaps: the last one takes the place of one that goes. ------------------------------------------------ */
+/* >>boundary: the visual surface. Its triangles are listed by element; those of elements that a cut touched are made
+   anew. Triangles and vertices stand without gaps: the last one takes the place of one that goes.
+   ------------------------------------------------ */
 
-/* Makes room for extra further items in several arrays of the same length: in all of them, or in none. arrays: their addresses. */
-static gx_result gxp_reserve_columns(const gx_allocator *a, void *const *arrays, const size_t *items, int columns, size_t count,
-                                     uint32_t *capacity, size_t extra) {
+/* Makes room for extra further items in several arrays of the same length: in all of them, or in none. arrays: their
+ * addresses. */
+static gx_result gxp_reserve_columns(const gx_allocator *a, void *const *arrays, const size_t *items, int columns,
+                                     size_t count, uint32_t *capacity, size_t extra) {
     const size_t need = count + extra, room = need + need / 2 + 16;
     void *memory[8], *old;
     int i, n;
@@ -5015,22 +5692,35 @@ static gx_result gxp_reserve_columns(const gx_allocator *a, void *const *arrays,
 enum { GXP_VERTEX_COLUMNS = 7, GXP_TRIANGLE_COLUMNS = 6 };
 
 static void gxp_vertex_columns(gxp_skin *s, void **arrays, size_t *items) {
-    arrays[0] = &s->vertices; items[0] = sizeof *s->vertices;
-    arrays[1] = &s->copies; items[1] = 4 * sizeof *s->copies;
-    arrays[2] = &s->weights; items[2] = 4 * sizeof *s->weights;
-    arrays[3] = &s->point; items[3] = sizeof *s->point;
-    arrays[4] = &s->rest; items[4] = 3 * sizeof *s->rest;
-    arrays[5] = &s->normal; items[5] = 3 * sizeof *s->normal;
-    arrays[6] = &s->texture; items[6] = 2 * sizeof *s->texture;
+    arrays[0] = &s->vertices;
+    items[0] = sizeof *s->vertices;
+    arrays[1] = &s->copies;
+    items[1] = 4 * sizeof *s->copies;
+    arrays[2] = &s->weights;
+    items[2] = 4 * sizeof *s->weights;
+    arrays[3] = &s->point;
+    items[3] = sizeof *s->point;
+    arrays[4] = &s->rest;
+    items[4] = 3 * sizeof *s->rest;
+    arrays[5] = &s->normal;
+    items[5] = 3 * sizeof *s->normal;
+    arrays[6] = &s->texture;
+    items[6] = 2 * sizeof *s->texture;
 }
 
 static void gxp_triangle_columns(gxp_skin *s, void **arrays, size_t *items) {
-    arrays[0] = &s->links; items[0] = sizeof *s->links;
-    arrays[1] = &s->triangles; items[1] = 3 * sizeof *s->triangles;
-    arrays[2] = &s->fragment; items[2] = sizeof *s->fragment;
-    arrays[3] = &s->element; items[3] = sizeof *s->element;
-    arrays[4] = &s->material; items[4] = sizeof *s->material;
-    arrays[5] = &s->surface; items[5] = sizeof *s->surface;
+    arrays[0] = &s->links;
+    items[0] = sizeof *s->links;
+    arrays[1] = &s->triangles;
+    items[1] = 3 * sizeof *s->triangles;
+    arrays[2] = &s->fragment;
+    items[2] = sizeof *s->fragment;
+    arrays[3] = &s->element;
+    items[3] = sizeof *s->element;
+    arrays[4] = &s->material;
+    items[4] = sizeof *s->material;
+    arrays[5] = &s->surface;
+    items[5] = sizeof *s->surface;
 }
 
 static void gxp_move_column_item(void *const *arrays, const size_t *items, int columns, size_t from, size_t to) {
@@ -5042,7 +5732,8 @@ static void gxp_move_column_item(void *const *arrays, const size_t *items, int c
     }
 }
 
-static void gxp_release_columns(const gx_allocator *a, void *const *arrays, const size_t *items, int columns, uint32_t capacity) {
+static void gxp_release_columns(const gx_allocator *a, void *const *arrays, const size_t *items, int columns,
+                                uint32_t capacity) {
     int i;
     for (i = 0; i < columns; i++) {
         void *data;
@@ -5065,9 +5756,14 @@ static void gxp_skin_free(gx_body *body) {
     gxp_release(&body->allocator, s->group_normals, (size_t)s->group_normal_capacity * 3 * sizeof *s->group_normals);
     gxp_release(&body->allocator, s->ranges[0], s->range_capacity[0] * sizeof **s->ranges);
     gxp_release(&body->allocator, s->ranges[1], s->range_capacity[1] * sizeof **s->ranges);
-    gxp_words_free(body, &s->dirty); gxp_words_free(body, &s->vertex_buckets); gxp_words_free(body, &s->slot_buckets);
-    gxp_words_free(body, &s->first); gxp_words_free(body, &s->boundary); gxp_words_free(body, &s->groups);
-    gxp_words_free(body, &s->changed[0]); gxp_words_free(body, &s->changed[1]);
+    gxp_words_free(body, &s->dirty);
+    gxp_words_free(body, &s->vertex_buckets);
+    gxp_words_free(body, &s->slot_buckets);
+    gxp_words_free(body, &s->first);
+    gxp_words_free(body, &s->boundary);
+    gxp_words_free(body, &s->groups);
+    gxp_words_free(body, &s->changed[0]);
+    gxp_words_free(body, &s->changed[1]);
 }
 
 /* --- what cuts touch --- */
@@ -5077,24 +5773,30 @@ static gx_result gxp_push_leaf_elements(gx_body *body, uint32_t facet) {
     uint32_t i;
     gx_result result = GX_OK;
     for (i = 0; i < 2 && result == GX_OK; i++)
-        if (cx->facets[facet].leaf[i] != GXB_NONE) result = gxp_push(body, &body->skin.dirty, cx->leaves[cx->facets[facet].leaf[i]].element);
+        if (cx->facets[facet].leaf[i] != GXB_NONE)
+            result = gxp_push(body, &body->skin.dirty, cx->leaves[cx->facets[facet].leaf[i]].element);
     return result;
 }
 
-/* Notes for the skin, if there is one, the elements in which the cut made facets or walls or changed a cell, and those whose copies
-   will be renumbered when dead ones are dropped. Elements noted in vain do no harm. */
+/* Notes for the skin, if there is one, the elements in which the cut made facets or walls or changed a cell, and those
+   whose copies will be renumbered when dead ones are dropped. Elements noted in vain do no harm. */
 static gx_result gxp_note_touched(gxp_cut *cut, uint32_t first_facet) {
     gx_body *body = cut->body;
     const gxb_complex *cx = body->complex;
     uint32_t i, j;
     gx_result result = GX_OK;
     if (!body->skin.made) return GX_OK;
-    if (body->skin.dirty.count / 8 > body->element_count) { body->skin.made = 0; return GX_OK; }
+    if (body->skin.dirty.count / 8 > body->element_count) {
+        body->skin.made = 0;
+        return GX_OK;
+    }
     for (i = first_facet; i < cx->facet_count && result == GX_OK; i++) result = gxp_push_leaf_elements(body, i);
     for (i = 0; i < cx->wall_count && result == GX_OK; i++) result = gxp_push_leaf_elements(body, cx->walls[i] >> 1);
-    for (i = 0; i < body->saved_cell_count && result == GX_OK; i++) result = gxp_push(body, &body->skin.dirty, body->saved_cells[i].cell.element);
-    for (i = 0; i < body->pinches.count; i++)   /* edges that were divided there without a new facet */
-        for (j = body->node_start[body->pinches.data[i]]; j < body->node_start[body->pinches.data[i] + 1] && result == GX_OK; j++)
+    for (i = 0; i < body->saved_cell_count && result == GX_OK; i++)
+        result = gxp_push(body, &body->skin.dirty, body->saved_cells[i].cell.element);
+    for (i = 0; i < body->pinches.count; i++) /* edges that were divided there without a new facet */
+        for (j = body->node_start[body->pinches.data[i]];
+             j < body->node_start[body->pinches.data[i] + 1] && result == GX_OK; j++)
             result = gxp_push(body, &body->skin.dirty, body->node_elements[j]);
     for (i = body->copy_count - body->dead.count; i < body->copy_count; i++) {
         const uint32_t node = body->copy_node[i];
@@ -5116,7 +5818,8 @@ static gx_result gxp_spread_to(gx_body *body, uint32_t element) {
     return gxp_push(body, &body->skin.dirty, element);
 }
 
-/* Elements that share a divided edge with a touched one have a further corner there; those across its faces see other cells. */
+/* Elements that share a divided edge with a touched one have a further corner there; those across its faces see other
+ * cells. */
 static gx_result gxp_spread_touched(gx_body *body) {
     const gxb_complex *cx = body->complex;
     gxp_words *dirty = &body->skin.dirty;
@@ -5133,10 +5836,12 @@ static gx_result gxp_spread_touched(gx_body *body) {
         const uint32_t e = dirty->data[i];
         for (k = 0; k < 4 && result == GX_OK; k++) result = gxp_spread_to(body, gxp_neighbour(body, e, k));
         for (k = 0; k < 6; k++) {
-            const uint32_t a = cx->elements[4 * e + gxp_edge_nodes[k][0]], b = cx->elements[4 * e + gxp_edge_nodes[k][1]];
+            const uint32_t a = cx->elements[4 * e + gxp_edge_nodes[k][0]],
+                           b = cx->elements[4 * e + gxp_edge_nodes[k][1]];
             if (!gxp_edge_is_divided(cx, cx->element_edges[6 * e + k])) continue;
             for (j = body->node_start[a]; j < body->node_start[a + 1] && result == GX_OK; j++)
-                if (gxp_local_node(body, body->node_elements[j], b) >= 0) result = gxp_spread_to(body, body->node_elements[j]);
+                if (gxp_local_node(body, body->node_elements[j], b) >= 0)
+                    result = gxp_spread_to(body, body->node_elements[j]);
         }
     }
     return result;
@@ -5157,7 +5862,8 @@ static void gxp_triangle_normal(const double *x, const uint32_t *t, double n[3])
 static void gxp_set_normal(float *normal, const double n[3]) {
     double unit[3];
     int k;
-    if (gxp_unit(n, unit)) for (k = 0; k < 3; k++) normal[k] = (float)unit[k];
+    if (gxp_unit(n, unit))
+        for (k = 0; k < 3; k++) normal[k] = (float)unit[k];
 }
 
 /* --- the outer surface before any cut: which of its corners are shaded as one --- */
@@ -5168,26 +5874,32 @@ static void gxp_outer_normal(const gx_body *body, uint32_t element, uint32_t k, 
     const uint8_t *f = gxp_outward[k];
     int i;
     gxp_element_positions(body, element, x);
-    for (i = 0; i < 3; i++) { a[i] = x[3 * f[1] + i] - x[3 * f[0] + i]; b[i] = x[3 * f[2] + i] - x[3 * f[0] + i]; }
+    for (i = 0; i < 3; i++) {
+        a[i] = x[3 * f[1] + i] - x[3 * f[0] + i];
+        b[i] = x[3 * f[2] + i] - x[3 * f[0] + i];
+    }
     for (i = 0; i < 3; i++) n[i] = 0.5 * (a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]);
 }
 
-/* Lists the outer faces: s->boundary has the number of each mesh face among them, body->faces element * 4 + k of each. */
+/* Lists the outer faces: s->boundary has the number of each mesh face among them, body->faces element * 4 + k of each.
+ */
 static gx_result gxp_list_outer_faces(gx_body *body) {
     const gxb_complex *cx = body->complex;
     gxp_skin *s = &body->skin;
     uint32_t e, k;
     gx_result result = gxp_set_words(body, &s->boundary, cx->face_count);
     body->faces.count = 0;
-    for (e = 0; e < body->element_count && result == GX_OK; e++) for (k = 0; k < 4 && result == GX_OK; k++) {
-        if (gxp_neighbour(body, e, k) != GXP_NONE) continue;
-        s->boundary.data[cx->element_faces[4 * e + k]] = body->faces.count;
-        result = gxp_push(body, &body->faces, 4 * e + k);
-    }
+    for (e = 0; e < body->element_count && result == GX_OK; e++)
+        for (k = 0; k < 4 && result == GX_OK; k++) {
+            if (gxp_neighbour(body, e, k) != GXP_NONE) continue;
+            s->boundary.data[cx->element_faces[4 * e + k]] = body->faces.count;
+            result = gxp_push(body, &body->faces, 4 * e + k);
+        }
     return result;
 }
 
-/* Two outer faces (by number) meet in the mesh edge from node a to b: where they bend little, their corners are one group. */
+/* Two outer faces (by number) meet in the mesh edge from node a to b: where they bend little, their corners are one
+ * group. */
 static void gxp_join_corners(gx_body *body, uint32_t p, uint32_t q, uint32_t a, uint32_t b) {
     const uint32_t ep = body->faces.data[p], eq = body->faces.data[q];
     uint32_t *group = body->skin.groups.data;
@@ -5195,33 +5907,40 @@ static void gxp_join_corners(gx_body *body, uint32_t p, uint32_t q, uint32_t a, 
     gxp_outer_normal(body, ep / 4, ep % 4, m);
     gxp_outer_normal(body, eq / 4, eq % 4, n);
     if (gxp_unit(m, m) && gxp_unit(n, n) && gxp_dot(m, n) < cos(body->skin.desc.crease_angle)) return;
-    gxp_unite(group, 4 * p + (uint32_t)gxp_local_node(body, ep / 4, a), 4 * q + (uint32_t)gxp_local_node(body, eq / 4, a));
-    gxp_unite(group, 4 * p + (uint32_t)gxp_local_node(body, ep / 4, b), 4 * q + (uint32_t)gxp_local_node(body, eq / 4, b));
+    gxp_unite(group, 4 * p + (uint32_t)gxp_local_node(body, ep / 4, a),
+              4 * q + (uint32_t)gxp_local_node(body, eq / 4, a));
+    gxp_unite(group, 4 * p + (uint32_t)gxp_local_node(body, ep / 4, b),
+              4 * q + (uint32_t)gxp_local_node(body, eq / 4, b));
 }
 
-/* Finds for each mesh edge the two outer faces that meet there, and joins them. body->list: of each edge, the first face and how many. */
+/* Finds for each mesh edge the two outer faces that meet there, and joins them. body->list: of each edge, the first
+ * face and how many. */
 static gx_result gxp_join_faces(gx_body *body) {
     const gxb_complex *cx = body->complex;
     uint32_t i, j, *first, *second;
     gx_result result = gxp_set_words(body, &body->list, 2 * (size_t)cx->mesh_edge_count);
     if (result != GX_OK) return result;
-    first = body->list.data; second = first + cx->mesh_edge_count;
+    first = body->list.data;
+    second = first + cx->mesh_edge_count;
     memset(first, 0xff, 2 * (size_t)cx->mesh_edge_count * sizeof *first);
-    for (i = 0; i < body->faces.count; i++) for (j = 0; j < 6; j++) {
-        const uint32_t e = body->faces.data[i] / 4, k = body->faces.data[i] % 4, edge = cx->element_edges[6 * e + j];
-        const uint32_t a = gxp_edge_nodes[j][0], b = gxp_edge_nodes[j][1];
-        if (a == k || b == k || body->edge_pinched[edge]) continue;
-        if (first[edge] == GXP_NONE) first[edge] = i;
-        else if (second[edge] == GXP_NONE) {
-            second[edge] = i;
-            gxp_join_corners(body, first[edge], i, cx->elements[4 * e + a], cx->elements[4 * e + b]);
+    for (i = 0; i < body->faces.count; i++)
+        for (j = 0; j < 6; j++) {
+            const uint32_t e = body->faces.data[i] / 4, k = body->faces.data[i] % 4,
+                           edge = cx->element_edges[6 * e + j];
+            const uint32_t a = gxp_edge_nodes[j][0], b = gxp_edge_nodes[j][1];
+            if (a == k || b == k || body->edge_pinched[edge]) continue;
+            if (first[edge] == GXP_NONE)
+                first[edge] = i;
+            else if (second[edge] == GXP_NONE) {
+                second[edge] = i;
+                gxp_join_corners(body, first[edge], i, cx->elements[4 * e + a], cx->elements[4 * e + b]);
+            }
         }
-    }
     return GX_OK;
 }
 
-/* Groups of corners of outer faces: s->groups has for each outer face's four nodes the number of its group (the fourth is not used);
-   s->group_normals their normals at rest, weighted by area, not of length 1. */
+/* Groups of corners of outer faces: s->groups has for each outer face's four nodes the number of its group (the fourth
+   is not used); s->group_normals their normals at rest, weighted by area, not of length 1. */
 static gx_result gxp_group_corners(gx_body *body) {
     gxp_skin *s = &body->skin;
     uint32_t i, k;
@@ -5229,7 +5948,9 @@ static gx_result gxp_group_corners(gx_body *body) {
     gx_result result = gxp_list_outer_faces(body);
     const uint32_t count = 4 * body->faces.count;
     if (result == GX_OK) result = gxp_set_words(body, &s->groups, count);
-    if (result == GX_OK) result = gxp_reserve(&body->allocator, &s->group_normals, 3 * sizeof(double), 0, &s->group_normal_capacity, count);
+    if (result == GX_OK)
+        result =
+            gxp_reserve(&body->allocator, &s->group_normals, 3 * sizeof(double), 0, &s->group_normal_capacity, count);
     if (result != GX_OK) return result;
     for (i = 0; i < count; i++) s->groups.data[i] = i;
     if (s->desc.crease_angle > 0) result = gxp_join_faces(body);
@@ -5239,7 +5960,8 @@ static gx_result gxp_group_corners(gx_body *body) {
     for (i = 0; i < body->faces.count; i++) {
         double n[3];
         gxp_outer_normal(body, body->faces.data[i] / 4, body->faces.data[i] % 4, n);
-        for (k = 0; k < 4; k++) for (j = 0; j < 3; j++) s->group_normals[3 * (size_t)s->groups.data[4 * i + k] + (size_t)j] += n[j];
+        for (k = 0; k < 4; k++)
+            for (j = 0; j < 3; j++) s->group_normals[3 * (size_t)s->groups.data[4 * i + k] + (size_t)j] += n[j];
     }
     return GX_OK;
 }
@@ -5250,8 +5972,10 @@ static uint32_t gxp_label_surface(const gx_body *body, uint32_t label) {
     uint32_t low = 0, high = body->surface_count;
     while (high - low > 1) {
         const uint32_t middle = low + (high - low) / 2;
-        if (body->surfaces[middle].label <= label) low = middle;
-        else high = middle;
+        if (body->surfaces[middle].label <= label)
+            low = middle;
+        else
+            high = middle;
     }
     return low;
 }
@@ -5265,14 +5989,18 @@ static const double *gxp_label_map(const gx_body *body, uint32_t label) {
     return body->maps + 8 * ((size_t)body->surfaces[surface].map + label - body->surfaces[surface].label);
 }
 
-/* --- slots: where normals of the deformed surface are summed. Outer ones by copy and group, those of cut faces by vertex --- */
+/* --- slots: where normals of the deformed surface are summed. Outer ones by copy and group, those of cut faces by
+ * vertex --- */
 
 static gx_result gxp_rehash(gx_body *body, gxp_words *buckets, uint32_t items) {
     uint32_t size = 64;
     gx_result result;
     while (size < items) size *= 2;
     result = gxp_set_words(body, buckets, size);
-    if (result == GX_OK) { buckets->count = size; memset(buckets->data, 0xff, size * sizeof *buckets->data); }
+    if (result == GX_OK) {
+        buckets->count = size;
+        memset(buckets->data, 0xff, size * sizeof *buckets->data);
+    }
     return result;
 }
 
@@ -5303,9 +6031,13 @@ static gx_result gxp_outer_slot(gx_body *body, uint32_t copy, uint32_t group, ui
     uint32_t i;
     if (result != GX_OK) return result;
     for (i = *gxp_slot_bucket(s, copy, group); i != GXP_NONE; i = s->slots[i].next)
-        if (s->slots[i].copy == copy && s->slots[i].group == group) { *slot = i; return GX_OK; }
+        if (s->slots[i].copy == copy && s->slots[i].group == group) {
+            *slot = i;
+            return GX_OK;
+        }
     i = s->slot_count++;
-    s->slots[i].copy = copy; s->slots[i].group = group;
+    s->slots[i].copy = copy;
+    s->slots[i].group = group;
     s->slots[i].next = *gxp_slot_bucket(s, copy, group);
     *gxp_slot_bucket(s, copy, group) = i;
     *slot = i;
@@ -5316,7 +6048,11 @@ static gx_result gxp_outer_slot(gx_body *body, uint32_t copy, uint32_t group, ui
 static gx_result gxp_own_slot(gx_body *body, uint32_t *slot) {
     gxp_skin *s = &body->skin;
     gx_result result = GX_OK;
-    if (s->free_slot != GXP_NONE) { *slot = s->free_slot; s->free_slot = s->slots[*slot].next; return GX_OK; }
+    if (s->free_slot != GXP_NONE) {
+        *slot = s->free_slot;
+        s->free_slot = s->slots[*slot].next;
+        return GX_OK;
+    }
     result = gxp_slot_room(body);
     if (result != GX_OK) return result;
     *slot = s->slot_count++;
@@ -5329,14 +6065,14 @@ static gx_result gxp_own_slot(gx_body *body, uint32_t *slot) {
 /* A facet that is shown, or rather its part in a leaf's cell */
 typedef struct gxp_skin_face {
     uint32_t element;
-    const uint32_t *copies;     /* the cell's */
-    uint32_t slots[4];          /* outer: of the face's nodes, by local node */
+    const uint32_t *copies; /* the cell's */
+    uint32_t slots[4];      /* outer: of the face's nodes, by local node */
     uint8_t outer;
-    uint32_t surface;           /* gx_skin.triangle_surface */
-    uint32_t label;             /* the cut triangle, GXP_NONE: none */
-    uint32_t plane;             /* of the complex */
-    uint32_t group[2];          /* see gxp_skin_key */
-    double normal[3];           /* outward at rest, of any length */
+    uint32_t surface;  /* gx_skin.triangle_surface */
+    uint32_t label;    /* the cut triangle, GXP_NONE: none */
+    uint32_t plane;    /* of the complex */
+    uint32_t group[2]; /* see gxp_skin_key */
+    double normal[3];  /* outward at rest, of any length */
 } gxp_skin_face;
 
 static uint32_t *gxp_vertex_bucket(gxp_skin *s, const gxp_skin_key *key) {
@@ -5354,7 +6090,8 @@ static gx_result gxp_vertex_room(gx_body *body) {
     uint32_t i;
     gx_result result;
     gxp_vertex_columns(s, arrays, items);
-    result = gxp_reserve_columns(&body->allocator, arrays, items, GXP_VERTEX_COLUMNS, s->vertex_count, &s->vertex_capacity, 1);
+    result = gxp_reserve_columns(&body->allocator, arrays, items, GXP_VERTEX_COLUMNS, s->vertex_count,
+                                 &s->vertex_capacity, 1);
     if (result != GX_OK || (s->vertex_capacity == before && s->vertex_buckets.count > 0)) return result;
     result = gxp_rehash(body, &s->vertex_buckets, s->vertex_capacity);
     for (i = 0; i < s->vertex_count && result == GX_OK; i++) {
@@ -5371,7 +6108,8 @@ static void gxp_make_key(const gx_body *body, const gxp_skin_face *face, uint32_
     uint32_t i, j, n = 0;
     memset(key->name, 0xff, sizeof key->name);
     key->point = point;
-    key->group[0] = face->group[0]; key->group[1] = face->group[1];
+    key->group[0] = face->group[0];
+    key->group[1] = face->group[1];
     for (i = 0; i < 4; i++) {
         const uint32_t name = face->outer ? face->slots[i] : face->copies[i];
         if (!(support >> i & 1) || name == GXP_NONE) continue;
@@ -5381,13 +6119,20 @@ static void gxp_make_key(const gx_body *body, const gxp_skin_face *face, uint32_
 }
 
 /* Copies, weights and slots of a point, those of weight 0 last. */
-static void gxp_weigh_point(const gxp_skin_face *face, const double lambda[4], uint32_t *copies, double *weights, uint32_t *slots) {
+static void gxp_weigh_point(const gxp_skin_face *face, const double lambda[4], uint32_t *copies, double *weights,
+                            uint32_t *slots) {
     uint32_t k, n = 0;
     for (k = 0; k < 4; k++) {
         if (!(lambda[k] > 0) || (face->outer && face->slots[k] == GXP_NONE)) continue;
-        copies[n] = face->copies[k]; weights[n] = lambda[k]; slots[n++] = face->slots[k];
+        copies[n] = face->copies[k];
+        weights[n] = lambda[k];
+        slots[n++] = face->slots[k];
     }
-    for (k = n; k < 4; k++) { copies[k] = copies[0]; weights[k] = 0; slots[k] = slots[0]; }
+    for (k = n; k < 4; k++) {
+        copies[k] = copies[0];
+        weights[k] = 0;
+        slots[k] = slots[0];
+    }
 }
 
 /* Outside by barycentric interpolation, on cut faces by the cut triangle's map. */
@@ -5398,7 +6143,8 @@ static void gxp_set_texture(gx_body *body, uint32_t vertex, const gxp_skin_face 
     for (i = 0; i < 2; i++) {
         double t = map != NULL ? map[4 * i + 3] : 0;
         for (k = 0; k < 3 && map != NULL; k++) t += map[4 * i + k] * (x[k] - body->complex->origin[k]);
-        for (k = 0; k < 4 && face->outer && body->texture != NULL; k++) t += lambda[k] * (double)body->texture[2 * (size_t)node[k] + (size_t)i];
+        for (k = 0; k < 4 && face->outer && body->texture != NULL; k++)
+            t += lambda[k] * (double)body->texture[2 * (size_t)node[k] + (size_t)i];
         body->skin.texture[2 * (size_t)vertex + (size_t)i] = (float)t;
     }
 }
@@ -5429,9 +6175,10 @@ static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const 
     for (k = 0; k < 3; k++) {
         rest[k] = 0;
         for (n = 0; n < 4; n++)
-            rest[k] += s->weights[4 * (size_t)i + n] * body->positions[3 * (size_t)body->copy_node[s->copies[4 * (size_t)i + n]] + (size_t)k];
+            rest[k] += s->weights[4 * (size_t)i + n] *
+                       body->positions[3 * (size_t)body->copy_node[s->copies[4 * (size_t)i + n]] + (size_t)k];
     }
-    memset(s->normal + 3 * (size_t)i, 0, 3 * sizeof *s->normal);    /* should the next not find one */
+    memset(s->normal + 3 * (size_t)i, 0, 3 * sizeof *s->normal); /* should the next not find one */
     gxp_set_normal(s->normal + 3 * (size_t)i, face->normal);
     gxp_set_texture(body, i, face, lambda);
     *vertex = s->vertex_count++;
@@ -5491,7 +6238,8 @@ static gx_result gxp_triangle_room(gx_body *body) {
     void *arrays[8];
     size_t items[8];
     gxp_triangle_columns(s, arrays, items);
-    return gxp_reserve_columns(&body->allocator, arrays, items, GXP_TRIANGLE_COLUMNS, s->triangle_count, &s->triangle_capacity, 1);
+    return gxp_reserve_columns(&body->allocator, arrays, items, GXP_TRIANGLE_COLUMNS, s->triangle_count,
+                               &s->triangle_capacity, 1);
 }
 
 /* Hooks the triangle's corners to its vertices and itself to its element. */
@@ -5517,12 +6265,16 @@ static void gxp_unlink_triangle(gxp_skin *s, uint32_t t) {
     for (k = 0; k < 3; k++) {
         const uint32_t next = own->corner_next[k], previous = own->corner_previous[k];
         if (next != GXP_NONE) s->links[next / 3].corner_previous[next % 3] = previous;
-        if (previous != GXP_NONE) s->links[previous / 3].corner_next[previous % 3] = next;
-        else s->vertices[s->triangles[3 * t + k]].corner = next;
+        if (previous != GXP_NONE)
+            s->links[previous / 3].corner_next[previous % 3] = next;
+        else
+            s->vertices[s->triangles[3 * t + k]].corner = next;
     }
     if (own->next != GXP_NONE) s->links[own->next].previous = own->previous;
-    if (own->previous != GXP_NONE) s->links[own->previous].next = own->next;
-    else s->first.data[s->element[t]] = own->next;
+    if (own->previous != GXP_NONE)
+        s->links[own->previous].next = own->next;
+    else
+        s->first.data[s->element[t]] = own->next;
 }
 
 /* Takes a triangle away; the last one takes its place. */
@@ -5560,7 +6312,8 @@ static gx_result gxp_add_skin_triangle(gx_body *body, const gxp_skin_face *face,
     s->surface[t] = face->surface;
     memset(s->links[t].normal, 0, sizeof s->links[t].normal);
     gxp_set_normal(s->links[t].normal, face->normal);
-    for (k = 0, j = 0; k < 4 && face->outer; k++) if (face->slots[k] != GXP_NONE) s->links[t].slots[j++] = face->slots[k];
+    for (k = 0, j = 0; k < 4 && face->outer; k++)
+        if (face->slots[k] != GXP_NONE) s->links[t].slots[j++] = face->slots[k];
     for (k = 0; k < 3 && !face->outer; k++) s->links[t].slots[k] = s->vertices[corner[k]].slots[0];
     gxp_link_triangle(s, t);
     return GX_OK;
@@ -5568,18 +6321,20 @@ static gx_result gxp_add_skin_triangle(gx_body *body, const gxp_skin_face *face,
 
 /* --- facets as triangles with area, so that they have normals: a facet's corners may stand in line with others --- */
 
-/* May corner i be cut off the polygon of complex points, which has area? So must its triangle have, and what remains. */
+/* May corner i be cut off the polygon of complex points, which has area? So must its triangle have, and what remains.
+ */
 static int gxp_is_ear(gx_body *body, const uint32_t *p, uint32_t n, uint32_t i, uint32_t plane) {
     const uint32_t before = p[(i + n - 1) % n], after = p[(i + 1) % n];
     uint32_t j;
     if (n == 3) return 1;
     if (gxb_complex_turn(body->complex, before, p[i], after, plane) == 0) return 0;
-    for (j = 2; j < n - 1; j++) if (gxb_complex_turn(body->complex, before, after, p[(i + j) % n], plane) != 0) return 1;
+    for (j = 2; j < n - 1; j++)
+        if (gxb_complex_turn(body->complex, before, after, p[(i + j) % n], plane) != 0) return 1;
     return 0;
 }
 
-/* Adds a facet as triangles, outward from the leaf: ears are cut off its convex polygon, whose points stand in body->faces, their
-   vertices in body->queue. */
+/* Adds a facet as triangles, outward from the leaf: ears are cut off its convex polygon, whose points stand in
+   body->faces, their vertices in body->queue. */
 static gx_result gxp_add_skin_facet(gx_body *body, const gxp_skin_face *face, uint32_t facet, uint32_t leaf) {
     gxb_complex *cx = body->complex;
     const int inward = cx->facets[facet].leaf[0] == leaf;
@@ -5597,7 +6352,9 @@ static gx_result gxp_add_skin_facet(gx_body *body, const gxp_skin_face *face, ui
     for (n = body->faces.count, i = 0; n >= 3 && result == GX_OK; n--) {
         uint32_t triangle[3], tries = 0;
         for (i %= n; tries < n && !gxp_is_ear(body, p, n, i, cx->facets[facet].plane); i = (i + 1) % n) tries++;
-        triangle[0] = v[(i + n - 1) % n]; triangle[1] = v[i]; triangle[2] = v[(i + 1) % n];
+        triangle[0] = v[(i + n - 1) % n];
+        triangle[1] = v[i];
+        triangle[2] = v[(i + 1) % n];
         result = gxp_add_skin_triangle(body, face, triangle, inward);
         memmove(p + i, p + i + 1, (n - 1 - i) * sizeof *p);
         memmove(v + i, v + i + 1, (n - 1 - i) * sizeof *v);
@@ -5608,7 +6365,8 @@ static gx_result gxp_add_skin_facet(gx_body *body, const gxp_skin_face *face, ui
 
 /* --- what an element shows --- */
 
-/* Do two cells move apart at a common facet? In one element where any copy differs, else where a shared node's copies differ. */
+/* Do two cells move apart at a common facet? In one element where any copy differs, else where a shared node's copies
+ * differ. */
 static int gxp_cells_part(const gx_body *body, uint32_t a, uint32_t b) {
     const gxp_cell *p = &body->cells[a], *q = &body->cells[b];
     uint32_t k;
@@ -5641,7 +6399,8 @@ static gx_result gxp_outer_face(gx_body *body, uint32_t k, gxp_skin_face *face) 
     gxp_outer_normal(body, face->element, k, face->normal);
     for (j = 0; j < 4 && result == GX_OK; j++) {
         face->slots[j] = GXP_NONE;
-        if (j != k) result = gxp_outer_slot(body, face->copies[j], body->skin.groups.data[4 * number + j], &face->slots[j]);
+        if (j != k)
+            result = gxp_outer_slot(body, face->copies[j], body->skin.groups.data[4 * number + j], &face->slots[j]);
     }
     return result;
 }
@@ -5659,10 +6418,13 @@ static void gxp_cut_face(const gx_body *body, uint32_t facet, uint32_t leaf, gxp
     face->label = first == GXP_NONE ? GXP_NONE : cx->labels[first].triangle;
     face->surface = first == GXP_NONE ? GX_SKIN_SEVERED : 1 + gxp_label_surface(body, face->label);
     memset(face->slots, 0xff, sizeof face->slots);
-    for (k = 0; k < 3; k++) face->normal[k] = front ? -cx->planes[face->plane].filter.n[k] : cx->planes[face->plane].filter.n[k];
+    for (k = 0; k < 3; k++)
+        face->normal[k] = front ? -cx->planes[face->plane].filter.n[k] : cx->planes[face->plane].filter.n[k];
     face->group[0] = face->surface;
-    if (body->skin.desc.smooth_cuts && first != GXP_NONE) face->group[1] = (uint32_t)(front ^ (cx->labels[first].orientation < 0));
-    else face->group[1] = 2 + 2 * face->plane + (uint32_t)front;
+    if (body->skin.desc.smooth_cuts && first != GXP_NONE)
+        face->group[1] = (uint32_t)(front ^ (cx->labels[first].orientation < 0));
+    else
+        face->group[1] = 2 + 2 * face->plane + (uint32_t)front;
 }
 
 static gx_result gxp_skin_leaf(gx_body *body, uint32_t leaf, gxp_skin_face *face) {
@@ -5677,7 +6439,8 @@ static gx_result gxp_skin_leaf(gx_body *body, uint32_t leaf, gxp_skin_face *face
         if (kind == 0) {
             for (k = 0; cx->element_faces[4 * face->element + k] != cx->facets[facet].face;) k++;
             result = gxp_outer_face(body, k, face);
-        } else gxp_cut_face(body, facet, leaf, face);
+        } else
+            gxp_cut_face(body, facet, leaf, face);
         if (result == GX_OK) result = gxp_add_skin_facet(body, face, facet, leaf);
     }
     return result;
@@ -5692,13 +6455,15 @@ static gx_result gxp_skin_whole(gx_body *body, gxp_skin_face *face) {
         if (gxp_neighbour(body, face->element, k) != GXP_NONE) continue;
         result = gxp_outer_face(body, k, face);
         for (j = 0; j < 3 && result == GX_OK; j++)
-            result = gxp_find_vertex(body, face, body->complex->elements[4 * face->element + gxp_outward[k][j]], &vertex[j]);
+            result =
+                gxp_find_vertex(body, face, body->complex->elements[4 * face->element + gxp_outward[k][j]], &vertex[j]);
         if (result == GX_OK) result = gxp_add_skin_triangle(body, face, vertex, 0);
     }
     return result;
 }
 
-/* Is the element's face k as the mesh has it: not divided, no wall, and the element behind it, if there is one, still there? */
+/* Is the element's face k as the mesh has it: not divided, no wall, and the element behind it, if there is one, still
+ * there? */
 static int gxp_face_is_whole(const gx_body *body, uint32_t element, uint32_t k) {
     const gxb_complex *cx = body->complex;
     const uint32_t facet = cx->face_facet[cx->element_faces[4 * element + k]];
@@ -5714,15 +6479,19 @@ static int gxp_face_is_whole(const gx_body *body, uint32_t element, uint32_t k) 
 static int gxp_is_untouched(const gx_body *body, uint32_t element) {
     const gxb_complex *cx = body->complex;
     uint32_t k;
-    if (body->cells[element].next != GXP_NONE || body->leaves[element].next != GXP_NONE || cx->leaves[element].removed) return 0;
-    for (k = 0; k < 4; k++) if (!gxp_face_is_whole(body, element, k)) return 0;
-    for (k = 0; k < 6; k++) if (gxp_edge_is_divided(cx, cx->element_edges[6 * element + k])) return 0;
+    if (body->cells[element].next != GXP_NONE || body->leaves[element].next != GXP_NONE || cx->leaves[element].removed)
+        return 0;
+    for (k = 0; k < 4; k++)
+        if (!gxp_face_is_whole(body, element, k)) return 0;
+    for (k = 0; k < 6; k++)
+        if (gxp_edge_is_divided(cx, cx->element_edges[6 * element + k])) return 0;
     return 1;
 }
 
 static int gxp_is_at_boundary(const gx_body *body, uint32_t element) {
     uint32_t k;
-    for (k = 0; k < 4; k++) if (gxp_neighbour(body, element, k) == GXP_NONE) return 1;
+    for (k = 0; k < 4; k++)
+        if (gxp_neighbour(body, element, k) == GXP_NONE) return 1;
     return 0;
 }
 
@@ -5732,35 +6501,43 @@ static gx_result gxp_skin_element(gx_body *body, uint32_t element) {
     uint32_t cell, leaf;
     gx_result result = GX_OK;
     if (untouched && !gxp_is_at_boundary(body, element)) return GX_OK;
-    gxp_clear_boundary(body, 1);    /* each point's coordinates in the element are found once, for all faces it is in */
+    gxp_clear_boundary(body, 1); /* each point's coordinates in the element are found once, for all faces it is in */
     memset(&face, 0, sizeof face);
     face.element = element;
     if (!untouched) result = gxb_complex_open_element(body->complex, element);
     for (cell = element; cell != GXP_NONE && result == GX_OK; cell = body->cells[cell].next) {
         if (!body->cells[cell].kept) continue;
         face.copies = body->cells[cell].copies;
-        if (untouched) result = gxp_skin_whole(body, &face);
-        else for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK; leaf = body->leaves[leaf].next)
-            result = gxp_skin_leaf(body, leaf, &face);
+        if (untouched)
+            result = gxp_skin_whole(body, &face);
+        else
+            for (leaf = body->cells[cell].first_leaf; leaf != GXP_NONE && result == GX_OK;
+                 leaf = body->leaves[leaf].next)
+                result = gxp_skin_leaf(body, leaf, &face);
     }
     return result;
 }
 
 /* --- what has changed --- */
 
-/* At rest: outer ones from the uncut mesh's, others from the facets around, weighted by area: their own normals, since a triangle's
-   corners may be rounded to a line. */
+/* At rest: outer ones from the uncut mesh's, others from the facets around, weighted by area: their own normals, since
+   a triangle's corners may be rounded to a line. */
 static void gxp_rest_normal(const gxp_skin *s, uint32_t vertex, float *normal) {
     double n[3] = {0, 0, 0}, a[3], unit[3];
     uint32_t corner, i;
     int k;
     if (s->vertices[vertex].outer) {
-        for (i = 0; i < 4; i++) for (k = 0; k < 3; k++)
-            n[k] += s->weights[4 * vertex + i] * s->group_normals[3 * (size_t)s->slots[s->vertices[vertex].slots[i]].group + (size_t)k];
-    } else for (corner = s->vertices[vertex].corner; corner != GXP_NONE; corner = s->links[corner / 3].corner_next[corner % 3]) {
-        gxp_triangle_normal(s->rest, s->triangles + 3 * (size_t)(corner / 3), a);
-        if (gxp_unit(a, unit)) for (k = 0; k < 3; k++) n[k] += gxp_dot(a, unit) * (double)s->links[corner / 3].normal[k];
-    }
+        for (i = 0; i < 4; i++)
+            for (k = 0; k < 3; k++)
+                n[k] += s->weights[4 * vertex + i] *
+                        s->group_normals[3 * (size_t)s->slots[s->vertices[vertex].slots[i]].group + (size_t)k];
+    } else
+        for (corner = s->vertices[vertex].corner; corner != GXP_NONE;
+             corner = s->links[corner / 3].corner_next[corner % 3]) {
+            gxp_triangle_normal(s->rest, s->triangles + 3 * (size_t)(corner / 3), a);
+            if (gxp_unit(a, unit))
+                for (k = 0; k < 3; k++) n[k] += gxp_dot(a, unit) * (double)s->links[corner / 3].normal[k];
+        }
     gxp_set_normal(normal, n);
 }
 
@@ -5769,7 +6546,8 @@ static gx_result gxp_drop_lonely_vertices(gx_body *body) {
     uint32_t i;
     gx_result result = GX_OK;
     gxp_sort_unique(&s->changed[0]);
-    for (i = s->changed[0].count; i-- > 0 && result == GX_OK;) {    /* from the end, so that none of them takes another's place */
+    /* from the end, so that none of them takes another's place */
+    for (i = s->changed[0].count; i-- > 0 && result == GX_OK;) {
         const uint32_t vertex = s->changed[0].data[i];
         if (s->vertices[vertex].corner == GXP_NONE) result = gxp_drop_vertex(body, vertex);
     }
@@ -5785,7 +6563,8 @@ static void gxp_renew_normals(gxp_skin *s) {
         if (vertex >= s->vertex_count) continue;
         memcpy(normal, s->normal + 3 * (size_t)vertex, sizeof normal);
         gxp_rest_normal(s, vertex, normal);
-        if (s->vertices[vertex].fresh || memcmp(normal, s->normal + 3 * (size_t)vertex, sizeof normal) != 0) s->changed[0].data[n++] = vertex;
+        if (s->vertices[vertex].fresh || memcmp(normal, s->normal + 3 * (size_t)vertex, sizeof normal) != 0)
+            s->changed[0].data[n++] = vertex;
         memcpy(s->normal + 3 * (size_t)vertex, normal, sizeof normal);
         s->vertices[vertex].fresh = s->vertices[vertex].noted = 0;
     }
@@ -5800,7 +6579,10 @@ static gx_result gxp_make_ranges(gx_body *body, int kind, uint32_t count) {
     uint32_t i, n = 0;
     gxp_sort_unique(changed);
     for (i = 0; i < changed->count && changed->data[i] < count && result == GX_OK; i++) {
-        if (n > 0 && s->ranges[kind][n - 1].first + s->ranges[kind][n - 1].count == changed->data[i]) { s->ranges[kind][n - 1].count++; continue; }
+        if (n > 0 && s->ranges[kind][n - 1].first + s->ranges[kind][n - 1].count == changed->data[i]) {
+            s->ranges[kind][n - 1].count++;
+            continue;
+        }
         result = gxp_reserve(&body->allocator, &s->ranges[kind], sizeof **s->ranges, n, &s->range_capacity[kind], 1);
         if (result != GX_OK) break;
         s->ranges[kind][n].first = changed->data[i];
@@ -5834,7 +6616,8 @@ static gx_result gxp_remake_elements(gx_body *body) {
     uint32_t i;
     gx_result result = GX_OK;
     for (i = 0; i < s->dirty.count && result == GX_OK; i++)
-        while (s->first.data[s->dirty.data[i]] != GXP_NONE && result == GX_OK) result = gxp_drop_triangle(body, s->first.data[s->dirty.data[i]]);
+        while (s->first.data[s->dirty.data[i]] != GXP_NONE && result == GX_OK)
+            result = gxp_drop_triangle(body, s->first.data[s->dirty.data[i]]);
     for (i = 0; i < s->dirty.count && result == GX_OK; i++) result = gxp_skin_element(body, s->dirty.data[i]);
     s->dirty.count = 0;
     if (result != GX_OK) return result;
@@ -5848,15 +6631,17 @@ static gx_result gxp_mark_fragments(gx_body *body) {
     uint32_t t;
     const gx_result result = gxp_update_labels(body);
     for (t = 0; t < s->triangle_count && result == GX_OK; t++)
-        s->fragment[t] = body->fragment_number.data[gxp_find(body->copy_fragment.data, s->copies[4 * (size_t)s->triangles[3 * (size_t)t]])];
+        s->fragment[t] =
+            body->fragment_number
+                .data[gxp_find(body->copy_fragment.data, s->copies[4 * (size_t)s->triangles[3 * (size_t)t]])];
     return result;
 }
 
 /* The skin after all cuts. Without memory it is left unmade: the next call makes all of it. */
 static gx_result gxp_update_skin(gx_body *body, const gx_skin_desc *desc) {
     gxp_skin *s = &body->skin;
-    const int all = !s->made || desc->crease_angle < s->desc.crease_angle || desc->crease_angle > s->desc.crease_angle ||
-                    desc->smooth_cuts != s->desc.smooth_cuts;
+    const int all = !s->made || desc->crease_angle < s->desc.crease_angle ||
+                    desc->crease_angle > s->desc.crease_angle || desc->smooth_cuts != s->desc.smooth_cuts;
     gx_result result;
     s->made = 0;
     s->range_count[0] = s->range_count[1] = 0;
@@ -5865,8 +6650,11 @@ static gx_result gxp_update_skin(gx_body *body, const gx_skin_desc *desc) {
     if (result == GX_OK) result = gxp_mark_fragments(body);
     if (result == GX_OK) result = gxp_make_ranges(body, 0, s->vertex_count);
     if (result == GX_OK) result = gxp_make_ranges(body, 1, s->triangle_count);
-    if (result == GX_OK) result = gxp_reserve(&body->allocator, &s->normals, 3 * sizeof(double), 0, &s->normal_capacity, s->slot_count);
-    if (result == GX_OK) result = gxp_reserve(&body->allocator, &s->positions, 3 * sizeof(double), 0, &s->position_capacity, s->vertex_count);
+    if (result == GX_OK)
+        result = gxp_reserve(&body->allocator, &s->normals, 3 * sizeof(double), 0, &s->normal_capacity, s->slot_count);
+    if (result == GX_OK)
+        result =
+            gxp_reserve(&body->allocator, &s->positions, 3 * sizeof(double), 0, &s->position_capacity, s->vertex_count);
     if (result == GX_OK) s->made = 1;
     return result;
 }
@@ -5874,13 +6662,22 @@ static gx_result gxp_update_skin(gx_body *body, const gx_skin_desc *desc) {
 static void gxp_show_skin(const gx_body *body, gx_skin *skin) {
     const gxp_skin *s = &body->skin;
     skin->vertex_count = s->vertex_count;
-    skin->vertex_copies = s->copies; skin->vertex_weights = s->weights; skin->vertex_point = s->point;
-    skin->vertex_rest = s->rest; skin->vertex_normal = s->normal; skin->vertex_texture = s->texture;
+    skin->vertex_copies = s->copies;
+    skin->vertex_weights = s->weights;
+    skin->vertex_point = s->point;
+    skin->vertex_rest = s->rest;
+    skin->vertex_normal = s->normal;
+    skin->vertex_texture = s->texture;
     skin->triangle_count = s->triangle_count;
-    skin->triangles = s->triangles; skin->triangle_fragment = s->fragment; skin->triangle_element = s->element;
-    skin->triangle_material = s->material; skin->triangle_surface = s->surface;
-    skin->vertex_ranges = s->ranges[0]; skin->vertex_range_count = s->range_count[0];
-    skin->triangle_ranges = s->ranges[1]; skin->triangle_range_count = s->range_count[1];
+    skin->triangles = s->triangles;
+    skin->triangle_fragment = s->fragment;
+    skin->triangle_element = s->element;
+    skin->triangle_material = s->material;
+    skin->triangle_surface = s->surface;
+    skin->vertex_ranges = s->ranges[0];
+    skin->vertex_range_count = s->range_count[0];
+    skin->triangle_ranges = s->ranges[1];
+    skin->triangle_range_count = s->range_count[1];
     skin->epoch = body->epoch;
 }
 
@@ -5909,7 +6706,8 @@ static void gxp_move_vertices(const gx_body *body, double *positions) {
         const double *w = s->weights + 4 * i;
         double x[3];
         for (k = 0; k < 3; k++) x[k] = s->rest[3 * i + (size_t)k];
-        for (n = 0; n < 4 && w[n] > 0; n++) for (k = 0; k < 3; k++) x[k] += w[n] * body->displacement[3 * (size_t)copies[n] + (size_t)k];
+        for (n = 0; n < 4 && w[n] > 0; n++)
+            for (k = 0; k < 3; k++) x[k] += w[n] * body->displacement[3 * (size_t)copies[n] + (size_t)k];
         for (k = 0; k < 3; k++) positions[3 * i + (size_t)k] = x[k];
     }
 }
@@ -5922,12 +6720,14 @@ static void gxp_deformed_normals(gxp_skin *s, float *normals) {
     for (i = 0; i < s->triangle_count; i++) {
         double a[3];
         gxp_triangle_normal(s->positions, s->triangles + 3 * i, a);
-        for (n = 0; n < 3; n++) for (k = 0; k < 3; k++) s->normals[3 * (size_t)s->links[i].slots[n] + (size_t)k] += a[k];
+        for (n = 0; n < 3; n++)
+            for (k = 0; k < 3; k++) s->normals[3 * (size_t)s->links[i].slots[n] + (size_t)k] += a[k];
     }
     for (i = 0; i < s->vertex_count; i++) {
         double a[3] = {0, 0, 0};
-        for (n = 0; n < 4 && s->weights[4 * i + (size_t)n] > 0; n++) for (k = 0; k < 3; k++)
-            a[k] += s->weights[4 * i + (size_t)n] * s->normals[3 * (size_t)s->vertices[i].slots[n] + (size_t)k];
+        for (n = 0; n < 4 && s->weights[4 * i + (size_t)n] > 0; n++)
+            for (k = 0; k < 3; k++)
+                a[k] += s->weights[4 * i + (size_t)n] * s->normals[3 * (size_t)s->vertices[i].slots[n] + (size_t)k];
         memcpy(normals + 3 * i, s->normal + 3 * i, 3 * sizeof *normals);
         gxp_set_normal(normals + 3 * i, a);
     }
@@ -5946,21 +6746,23 @@ GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3],
     if (body == NULL || !body->skin.made || body->skin.dirty.count > 0) return GX_ERROR_ARGUMENT;
     s = &body->skin;
     gxp_move_vertices(body, s->positions);
-    for (i = 0; i < s->vertex_count && positions != NULL; i++) for (k = 0; k < 3; k++)
-        positions[3 * i + (size_t)k] = (float)(s->positions[3 * i + (size_t)k] - (origin != NULL ? origin[k] : 0));
+    for (i = 0; i < s->vertex_count && positions != NULL; i++)
+        for (k = 0; k < 3; k++)
+            positions[3 * i + (size_t)k] = (float)(s->positions[3 * i + (size_t)k] - (origin != NULL ? origin[k] : 0));
     if (normals != NULL) gxp_deformed_normals(s, normals);
     return GX_OK;
 }
 
 /* --- rays --- */
 
-/* The deformed vertices as the ray sees them: two coordinates across it (a shear along the axis it follows most), and how far along it
-   they lie, in lengths of direction. */
+/* The deformed vertices as the ray sees them: two coordinates across it (a shear along the axis it follows most), and
+   how far along it they lie, in lengths of direction. */
 static void gxp_look_along(const gx_body *body, const double origin[3], const double direction[3]) {
     const gxp_skin *s = &body->skin;
     int axis = 0, k;
     size_t i;
-    for (k = 1; k < 3; k++) if (fabs(direction[k]) > fabs(direction[axis])) axis = k;
+    for (k = 1; k < 3; k++)
+        if (fabs(direction[k]) > fabs(direction[axis])) axis = k;
     gxp_move_vertices(body, s->positions);
     for (i = 0; i < s->vertex_count; i++) {
         double *x = s->positions + 3 * i;
@@ -5972,15 +6774,16 @@ static void gxp_look_along(const gx_body *body, const double origin[3], const do
     }
 }
 
-/* Does the ray pass through the triangle? Then share has the weights of its corners, and distance where. Signs are exact, so that no ray
-   slips through between triangles that share their corners. */
+/* Does the ray pass through the triangle? Then share has the weights of its corners, and distance where. Signs are
+   exact, so that no ray slips through between triangles that share their corners. */
 static int gxp_meet_triangle(const gxp_skin *s, const uint32_t *t, double share[3], double *distance) {
     static const double ray[2] = {0, 0};
     const double *p[3];
     double sum = 0;
     int k, positive = 0, negative = 0;
     for (k = 0; k < 3; k++) p[k] = s->positions + 3 * (size_t)t[k];
-    for (k = 0; k < 2; k++) if (!(fmin(p[0][k], fmin(p[1][k], p[2][k])) <= 0 && fmax(p[0][k], fmax(p[1][k], p[2][k])) >= 0)) return 0;
+    for (k = 0; k < 2; k++)
+        if (!(fmin(p[0][k], fmin(p[1][k], p[2][k])) <= 0 && fmax(p[0][k], fmax(p[1][k], p[2][k])) >= 0)) return 0;
     for (k = 0; k < 3; k++) {
         const double *a = p[(k + 1) % 3], *b = p[(k + 2) % 3];
         const int side = gxb_orient2d(ray, a, b);
@@ -5989,9 +6792,12 @@ static int gxp_meet_triangle(const gxp_skin *s, const uint32_t *t, double share[
         share[k] = fabs(a[0] * b[1] - a[1] * b[0]);
         sum += share[k];
     }
-    if (positive == negative || !(sum > 0)) return 0;   /* beside it, or the triangle is seen from its edge */
+    if (positive == negative || !(sum > 0)) return 0; /* beside it, or the triangle is seen from its edge */
     *distance = 0;
-    for (k = 0; k < 3; k++) { share[k] /= sum; *distance += share[k] * p[k][2]; }
+    for (k = 0; k < 3; k++) {
+        share[k] /= sum;
+        *distance += share[k] * p[k][2];
+    }
     return *distance >= 0;
 }
 
@@ -5999,8 +6805,11 @@ static void gxp_fill_hit(const gx_body *body, uint32_t triangle, const double sh
     const gxp_skin *s = &body->skin;
     uint32_t i, k, n, count = 0;
     int j;
-    hit->triangle = triangle; hit->epoch = body->epoch;
-    hit->fragment = s->fragment[triangle]; hit->element = s->element[triangle]; hit->surface = s->surface[triangle];
+    hit->triangle = triangle;
+    hit->epoch = body->epoch;
+    hit->fragment = s->fragment[triangle];
+    hit->element = s->element[triangle];
+    hit->surface = s->surface[triangle];
     for (i = 0; i < 3; i++) {
         const size_t v = s->triangles[3 * (size_t)triangle + i];
         for (j = 0; j < 3; j++) hit->material[j] += share[i] * s->rest[3 * v + (size_t)j];
@@ -6013,7 +6822,8 @@ static void gxp_fill_hit(const gx_body *body, uint32_t triangle, const double sh
     for (n = count; n < 4; n++) hit->copies[n] = hit->copies[0];
     for (j = 0; j < 3; j++) {
         hit->position[j] = hit->material[j];
-        for (n = 0; n < 4; n++) hit->position[j] += hit->weights[n] * body->displacement[3 * (size_t)hit->copies[n] + (size_t)j];
+        for (n = 0; n < 4; n++)
+            hit->position[j] += hit->weights[n] * body->displacement[3 * (size_t)hit->copies[n] + (size_t)j];
     }
 }
 
@@ -6024,7 +6834,8 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
     int k;
     if (body == NULL || origin == NULL || direction == NULL || hit == NULL) return GX_ERROR_ARGUMENT;
     if (!body->skin.made || body->skin.dirty.count > 0) return GX_ERROR_ARGUMENT;
-    for (k = 0; k < 3; k++) if (!gxp_is_finite(origin[k]) || !gxp_is_finite(direction[k])) return GX_ERROR_NOT_FINITE;
+    for (k = 0; k < 3; k++)
+        if (!gxp_is_finite(origin[k]) || !gxp_is_finite(direction[k])) return GX_ERROR_NOT_FINITE;
     if (!(gxp_dot(direction, direction) > 0)) return GX_ERROR_ARGUMENT;
     s = &body->skin;
     gxp_look_along(body, origin, direction);
@@ -6036,15 +6847,17 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
         hit->distance = distance;
         memcpy(best, share, sizeof best);
     }
-    if (found == UINT32_MAX) hit->triangle = found;
-    else gxp_fill_hit(body, found, best, hit);
+    if (found == UINT32_MAX)
+        hit->triangle = found;
+    else
+        gxp_fill_hit(body, found, best, hit);
     return GX_OK;
 }
 
-/* >>hashes ----------------------------------------------------------------------------------------------------------------------- */
+/* >>hashes --------------------------------------------------------------------------------------------------------- */
 
-#define GXP_BESIDE_WALL 0xfffffff0u     /* neighbour across a wall inside the element */
-#define GXP_ACROSS_WALL 0xfffffff1u     /* neighbour across a wall on a face */
+#define GXP_BESIDE_WALL 0xfffffff0u /* neighbour across a wall inside the element */
+#define GXP_ACROSS_WALL 0xfffffff1u /* neighbour across a wall on a face */
 
 /* Appends to pairs (face or kind, neighbour) for everything that a cell borders on. */
 static gx_result gxp_push_neighbours(gx_body *body, uint32_t cell) {
@@ -6058,7 +6871,11 @@ static gx_result gxp_push_neighbours(gx_body *body, uint32_t cell) {
             const gxb_facet *f = &cx->facets[cx->pool[first + i]];
             const uint32_t other = f->leaf[f->leaf[0] == leaf];
             if (!gxp_is_kept(body, other) || body->leaves[other].cell == cell) continue;
-            result = gxp_push_key(body, &body->pairs, f->face == GXB_NONE ? GXP_BESIDE_WALL : f->wall ? GXP_ACROSS_WALL : f->face, body->leaves[other].cell);
+            result = gxp_push_key(body, &body->pairs,
+                                  f->face == GXB_NONE ? GXP_BESIDE_WALL
+                                  : f->wall           ? GXP_ACROSS_WALL
+                                                      : f->face,
+                                  body->leaves[other].cell);
         }
     }
     return result;
@@ -6069,7 +6886,8 @@ static uint64_t gxp_hash_neighbours(const gx_body *body, const uint64_t *name) {
     uint32_t i;
     for (i = 0; i < body->pairs.count; i++) {
         const uint64_t pair = body->pairs.data[i];
-        if (i == 0 || pair != body->pairs.data[i - 1]) sum += gxp_mix(name[GXP_SECOND(pair)] ^ gxp_mix(GXP_FIRST(pair)));
+        if (i == 0 || pair != body->pairs.data[i - 1])
+            sum += gxp_mix(name[GXP_SECOND(pair)] ^ gxp_mix(GXP_FIRST(pair)));
     }
     return sum;
 }
@@ -6089,11 +6907,13 @@ static gx_result gxp_first_name(gx_body *body, uint32_t cell, uint64_t *name) {
     return result;
 }
 
-/* Three rounds in which each cell's name takes in its neighbours' names (Weisfeiler-Lehman); sums do not depend on any order. */
+/* Three rounds in which each cell's name takes in its neighbours' names (Weisfeiler-Lehman); sums do not depend on any
+ * order. */
 static gx_result gxp_name_cells(gx_body *body, uint64_t *name, uint64_t *next) {
     uint32_t i, round;
     gx_result result = GX_OK;
-    for (i = 0; i < body->view_cells.count && result == GX_OK; i++) result = gxp_first_name(body, body->view_cells.data[i], &name[body->view_cells.data[i]]);
+    for (i = 0; i < body->view_cells.count && result == GX_OK; i++)
+        result = gxp_first_name(body, body->view_cells.data[i], &name[body->view_cells.data[i]]);
     for (round = 0; round < 3 && result == GX_OK; round++) {
         for (i = 0; i < body->view_cells.count && result == GX_OK; i++) {
             const uint32_t cell = body->view_cells.data[i];
@@ -6125,7 +6945,10 @@ GXFEM_API uint64_t gx_body_topology_hash(gx_body *body, gx_result *result) {
     gx_result r;
     uint64_t *names, hash = 0;
     size_t words;
-    if (body == NULL) { if (result != NULL) *result = GX_ERROR_ARGUMENT; return 0; }
+    if (body == NULL) {
+        if (result != NULL) *result = GX_ERROR_ARGUMENT;
+        return 0;
+    }
     words = 2 * (size_t)body->cell_count + body->copy_count;
     r = gxp_update_view(body);
     names = (uint64_t *)gxp_allocate(&body->allocator, words * sizeof *names);
@@ -6168,9 +6991,11 @@ GXFEM_API uint64_t gx_body_state_hash(const gx_body *body) {
     for (i = 0; i < body->copy_count; i++) hash = gxp_mix(hash ^ body->copy_label[i]);
     for (i = 0; i < body->fragment_ids.count; i++) hash = gxp_mix(hash ^ body->fragment_ids.data[i]);
     hash = gxp_mix(hash ^ body->next_id);
-    for (i = 0; i < 2 && body->previous_dt > 0; i++) hash = gxp_hash_doubles(hash, body->history[i], 3 * (size_t)body->copy_count);
+    for (i = 0; i < 2 && body->previous_dt > 0; i++)
+        hash = gxp_hash_doubles(hash, body->history[i], 3 * (size_t)body->copy_count);
     for (i = 0; i < body->region_count; i++)
-        hash = gxp_hash_doubles(gxp_mix(hash ^ body->regions[i].axis ^ (uint64_t)(body->regions[i].side + 1) << 8), &body->regions[i].value, 1);
+        hash = gxp_hash_doubles(gxp_mix(hash ^ body->regions[i].axis ^ (uint64_t)(body->regions[i].side + 1) << 8),
+                                &body->regions[i].value, 1);
     return hash;
 }
 

@@ -1,7 +1,7 @@
 /* gxfem_boolean.h - exact geometry for cutting: predicates, and the cell complex that cuts leave. Part of gxfem 0.1.
  *
- * A convex region (a tetrahedron, or a mesh of them) is divided by triangles, any number of them, lying and crossing as they
- * like. Every decision is the sign of a polynomial in the given coordinates and is exact, under any compiler flag.
+ * A convex region (a tetrahedron, or a mesh of them) is divided by triangles, any number of them, lying and crossing as
+ * they like. Every decision is the sign of a polynomial in the given coordinates and is exact, under any compiler flag.
  *
  * One minute:
  *
@@ -27,50 +27,55 @@
  *
  * Contents (search for >>name; all functions are here, each after the first without what is in common):
  *     >>shared      result codes, allocator
- *     >>numbers     exact numbers, a double is an integer times a power of two: gxb_num_set, add, sub, mul, to_double, ratio
- *     >>predicates  of coordinates: gxb_orient2d, orient3d, incircle, insphere, winding_number; gxb_plane_init; points that are given, on a
- *                   line and a plane, on three planes: gxb_point_explicit, line_plane, three_planes; of these: gxb_side, compare,
- *                   orient_in_plane
- *     >>complex     the cell complex (points, planes, edges, facets, leaves): gxb_complex_create, destroy; begin, commit, rollback, reserve;
- *                   to divide: add_point, add_plane, insert, open_element, cover_edge, cover_node, set_wall, set_removed;
- *                   to read: gxb_leaf_facets, gxb_facet_edges; to ask: gxb_complex_side, turn, compare, winding, barycentric, support,
- *                   barycentric_fine
+ *     >>numbers     exact numbers, a double is an integer times a power of two: gxb_num_set, add, sub, mul, to_double,
+ * ratio
+ *     >>predicates  of coordinates: gxb_orient2d, orient3d, incircle, insphere, winding_number; gxb_plane_init; points
+ * that are given, on a line and a plane, on three planes: gxb_point_explicit, line_plane, three_planes; of these:
+ * gxb_side, compare, orient_in_plane
+ *     >>complex     the cell complex (points, planes, edges, facets, leaves): gxb_complex_create, destroy; begin,
+ * commit, rollback, reserve; to divide: add_point, add_plane, insert, open_element, cover_edge, cover_node, set_wall,
+ * set_removed; to read: gxb_leaf_facets, gxb_facet_edges; to ask: gxb_complex_side, turn, compare, winding,
+ * barycentric, support, barycentric_fine
  *     >>stream      a complex as bytes: gxb_stream_pass, has; gxb_complex_save, load
- *     >>boolean     Booleans of closed triangle surfaces, exact and chainable: gxb_boolean_create, add, evaluate, destroy; how results are
- *                   read off: set_triangulation, set_fine, set_mend; what else there is to know of one: components, defects, statistics
- *     then, under GXFEM_BOOLEAN_IMPLEMENTATION, in this order, from the bottom up:
- *     of all        >>bits and >>exact (arithmetic), >>filter (doubles with bounds), >>points (predicates), >>memory (arrays, transactions)
- *     of complexes  >>topology (of the mesh; signs), >>split (by a plane), >>clip and >>insert (a triangle), >>save, >>check (what was read)
- *     of Booleans   >>arrangement (on points, planes and exact numbers of a complex that has no elements)
+ *     >>boolean     Booleans of closed triangle surfaces, exact and chainable: gxb_boolean_create, add, evaluate,
+ * destroy; how results are read off: set_triangulation, set_fine, set_mend; what else there is to know of one:
+ * components, defects, statistics then, under GXFEM_BOOLEAN_IMPLEMENTATION, in this order, from the bottom up: of all
+ * >>bits and >>exact (arithmetic), >>filter (doubles with bounds), >>points (predicates), >>memory (arrays,
+ * transactions) of complexes  >>topology (of the mesh; signs), >>split (by a plane), >>clip and >>insert (a triangle),
+ * >>save, >>check (what was read) of Booleans   >>arrangement (on points, planes and exact numbers of a complex that
+ * has no elements)
  *
- * How the complex works. Each element of the mesh starts as one convex leaf, bounded by four facets, which it shares with its
- * neighbours. A triangle is clipped down the element's tree of planes (a binary space partition); each leaf whose inside it
- * meets is divided by the triangle's plane. The part of the dividing facet that the triangle covers is a wall, the rest is
- * open. So every leaf stays convex, and all that is ever asked is on which side of a plane a point lies. Points, edges and
- * facets are shared by all leaves around them: they are divided once, their neighbours see the pieces, and the complex
- * conforms at all times. Holes, dangling walls, detached walls and nested shells need no treatment of their own: what is
- * connected is what open facets join. A leaf with many facets is divided by a plane of no triangle too, without a wall. See
- * docs/ARCHITECTURE.md for the reasons.
+ * How the complex works. Each element of the mesh starts as one convex leaf, bounded by four facets, which it shares
+ * with its neighbours. A triangle is clipped down the element's tree of planes (a binary space partition); each leaf
+ * whose inside it meets is divided by the triangle's plane. The part of the dividing facet that the triangle covers is
+ * a wall, the rest is open. So every leaf stays convex, and all that is ever asked is on which side of a plane a point
+ * lies. Points, edges and facets are shared by all leaves around them: they are divided once, their neighbours see the
+ * pieces, and the complex conforms at all times. Holes, dangling walls, detached walls and nested shells need no
+ * treatment of their own: what is connected is what open facets join. A leaf with many facets is divided by a plane of
+ * no triangle too, without a wall. See docs/ARCHITECTURE.md for the reasons.
  *
- * How Booleans work. Where triangles of the operands meet is found by predicates of input points; each touched triangle is divided
- * along those segments; winding numbers spread from facet to facet; the result is the facets between inside and outside. Vertices are
- * rounded at the output only, and more operands may follow. See docs/KERNEL.md.
+ * How Booleans work. Where triangles of the operands meet is found by predicates of input points; each touched triangle
+ * is divided along those segments; winding numbers spread from facet to facet; the result is the facets between inside
+ * and outside. Vertices are rounded at the output only, and more operands may follow. See docs/KERNEL.md.
  *
- * What it does not do: round a result so that no triangle ever remains turned over (gxb_boolean_set_mend does what can be done).
+ * What it does not do: round a result so that no triangle ever remains turned over (gxb_boolean_set_mend does what can
+ * be done).
  *
  * Guarantees and limits
  *     - Signs are exact for finite coordinates under every flag, rounding mode and flush-to-zero. What they ask of
  *       doubles (>>numbers) is tried out wherever a complex or a Boolean is created: GX_ERROR_CONFIGURATION where it
  *       does not hold, as on x87 set to 24 bits.
- *     - Coordinates in a complex: scaled by a power of two to the mesh's box they are 0 or of magnitude 2^-128 to 2^128, and after
- *       subtraction of its origin at most 2^128, else GX_ERROR_RANGE. orient2d, orient3d, incircle and insphere take any
- *       finite double. Coordinates of a Boolean are 0 or of magnitude 2^-128 to 2^128, beside its first operand's
- *       largest if that is outside 2^+-60. That one is 2^-200 to 2^200 (GX_ERROR_RANGE), so that volumes are numbers.
- *     - At most 2^28 elements and some 1.4e9 points, planes, edges, facets and leaves; an operand of a Boolean: about 130 million triangles.
+ *     - Coordinates in a complex: scaled by a power of two to the mesh's box they are 0 or of magnitude 2^-128 to
+ * 2^128, and after subtraction of its origin at most 2^128, else GX_ERROR_RANGE. orient2d, orient3d, incircle and
+ * insphere take any finite double. Coordinates of a Boolean are 0 or of magnitude 2^-128 to 2^128, beside its first
+ * operand's largest if that is outside 2^+-60. That one is 2^-200 to 2^200 (GX_ERROR_RANGE), so that volumes are
+ * numbers.
+ *     - At most 2^28 elements and some 1.4e9 points, planes, edges, facets and leaves; an operand of a Boolean: about
+ * 130 million triangles.
  *     - No global state, no input or output, no heap traffic but the growth of the complex's own arrays.
  *
- * Configuration: GXB_LIMB32 uses 32-bit limbs also where 128-bit products exist (same results, slower). GXFEM_STATIC leaves out of a
- * program what it does not call.
+ * Configuration: GXB_LIMB32 uses 32-bit limbs also where 128-bit products exist (same results, slower). GXFEM_STATIC
+ * leaves out of a program what it does not call.
  *
  * References: J. R. Shewchuk, Adaptive precision floating-point arithmetic and fast robust geometric predicates (1997);
  *     M. Attene, Indirect predicates for geometric constructions (2020), for the term implicit point;
@@ -104,30 +109,30 @@
 /* What a function that can fail returns. On anything but GX_OK its inputs are as they were. */
 typedef enum gx_result {
     GX_OK = 0,
-    GX_ERROR_ARGUMENT,      /* a required pointer is NULL, a required field is zero or senseless */
-    GX_ERROR_MEMORY,        /* the allocator returned NULL */
-    GX_ERROR_NOT_FINITE,    /* a coordinate or parameter is NaN or infinite */
-    GX_ERROR_RANGE,         /* a coordinate or a mass is too large or too small (see "limits") */
-    GX_ERROR_INDEX,         /* an index points outside its array */
-    GX_ERROR_EMPTY,         /* no elements, no nodes or no triangles */
-    GX_ERROR_INVERTED,      /* an element has negative volume */
-    GX_ERROR_FLAT,          /* an element has no volume */
-    GX_ERROR_OVERLAP,       /* an element face is shared by more than two elements, or by two on one side */
-    GX_ERROR_NOT_CLOSED,    /* a solid's surface has a boundary, or its triangles are not oriented alike */
-    GX_ERROR_LIMIT,         /* more objects than 32-bit indices can name, or a caller's limit is reached */
-    GX_ERROR_DIVERGED,      /* a time step found no finite state of lower energy */
-    GX_ERROR_FREE,          /* a static balance is asked of a piece that nothing holds */
-    GX_ERROR_FORMAT,        /* not a saved body, or one of another version or another kind of machine */
-    GX_ERROR_DAMAGED,       /* a saved body is cut short, or what it says cannot be */
-    GX_ERROR_STALE,         /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
-    GX_ERROR_CONFIGURATION  /* arithmetic is not what exact predicates need: see >>numbers in gxfem_boolean.h */
+    GX_ERROR_ARGUMENT,     /* a required pointer is NULL, a required field is zero or senseless */
+    GX_ERROR_MEMORY,       /* the allocator returned NULL */
+    GX_ERROR_NOT_FINITE,   /* a coordinate or parameter is NaN or infinite */
+    GX_ERROR_RANGE,        /* a coordinate or a mass is too large or too small (see "limits") */
+    GX_ERROR_INDEX,        /* an index points outside its array */
+    GX_ERROR_EMPTY,        /* no elements, no nodes or no triangles */
+    GX_ERROR_INVERTED,     /* an element has negative volume */
+    GX_ERROR_FLAT,         /* an element has no volume */
+    GX_ERROR_OVERLAP,      /* an element face is shared by more than two elements, or by two on one side */
+    GX_ERROR_NOT_CLOSED,   /* a solid's surface has a boundary, or its triangles are not oriented alike */
+    GX_ERROR_LIMIT,        /* more objects than 32-bit indices can name, or a caller's limit is reached */
+    GX_ERROR_DIVERGED,     /* a time step found no finite state of lower energy */
+    GX_ERROR_FREE,         /* a static balance is asked of a piece that nothing holds */
+    GX_ERROR_FORMAT,       /* not a saved body, or one of another version or another kind of machine */
+    GX_ERROR_DAMAGED,      /* a saved body is cut short, or what it says cannot be */
+    GX_ERROR_STALE,        /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
+    GX_ERROR_CONFIGURATION /* arithmetic is not what exact predicates need: see >>numbers in gxfem_boolean.h */
 } gx_result;
 
 /* What went wrong, and where: index of the node, element, triangle or copy concerned. */
 typedef struct gx_failure {
     gx_result result;
-    size_t index;           /* SIZE_MAX: no single object is to blame */
-    size_t surface;         /* of a cut: which of its surfaces; else SIZE_MAX */
+    size_t index;   /* SIZE_MAX: no single object is to blame */
+    size_t surface; /* of a cut: which of its surfaces; else SIZE_MAX */
 } gx_failure;
 
 /* Where memory comes from. Zero-initialised: malloc, free and realloc. */
@@ -135,13 +140,15 @@ typedef struct gx_allocator {
     void *(*allocate)(void *user, size_t size);             /* NULL when there is none; size is never 0 */
     void (*release)(void *user, void *memory, size_t size); /* size as it was allocated; memory is never NULL */
     void *user;
-    /* A larger block with the bytes of the old one, which is then gone; NULL when there is none, and the old one stays. NULL: memory that
-       grows is allocated, copied and released. Only with the other two. */
+    /* A larger block with the bytes of the old one, which is then gone; NULL when there is none, and the old one stays.
+       NULL: memory that grows is allocated, copied and released. Only with the other two. */
     void *(*reallocate)(void *user, void *memory, size_t size, size_t larger);
 } gx_allocator;
-/* How work is handed to the host's threads. Zero-initialised: the calling thread does it all. Results do not depend on it. */
+/* How work is handed to the host's threads. Zero-initialised: the calling thread does it all. Results do not depend on
+ * it. */
 typedef struct gx_jobs {
-    /* Calls task(context, i) once for each i below count, on any threads, in any order, and returns when all have returned. */
+    /* Calls task(context, i) once for each i below count, on any threads, in any order, and returns when all have
+     * returned. */
     void (*parallel_for)(void *user, size_t count, void (*task)(void *context, size_t index), void *context);
     void *user;
 } gx_jobs;
@@ -150,7 +157,7 @@ typedef struct gx_jobs {
 extern "C" {
 #endif
 
-/* >>numbers ---------------------------------------------------------------------------------------------------------- */
+/* >>numbers -------------------------------------------------------------------------------------------------------- */
 
 /* Exact predicates ask of a double that it is one of IEEE 754: 53 digits, 11 bits of exponent. They ask of an operation
    that its relative error is at most 2^-52. They ask of the compiler that it does not see through gxbp_fence, and does
@@ -167,8 +174,9 @@ typedef uint32_t gxb_limb;
 #define GXB_NUM_LIMBS 336
 #endif
 
-/* sign * (d[0] + d[1] B + ... + d[n-1] B^(n-1)) * B^exp with B = 2^GXB_LIMB_BITS. Zero: sign 0, n 0. Neither end limb is 0.
-   d points to room for GXB_NUM_LIMBS limbs: enough for polynomials of degree 20 in coordinates of 2^-128 ... 2^128. */
+/* sign * (d[0] + d[1] B + ... + d[n-1] B^(n-1)) * B^exp with B = 2^GXB_LIMB_BITS. Zero: sign 0, n 0. Neither end limb
+   is 0. d points to room for GXB_NUM_LIMBS limbs: enough for polynomials of degree 20 in coordinates of 2^-128 ...
+   2^128. */
 typedef struct gxb_num {
     int32_t sign, exp;
     uint32_t n;
@@ -176,16 +184,25 @@ typedef struct gxb_num {
 } gxb_num;
 
 /* Declares a number x and its limbs on the stack. */
-#define GXB_NUM(x) gxb_limb x##_limbs[GXB_NUM_LIMBS]; gxb_num x = {0, 0, 0, NULL}; x.d = x##_limbs
+#define GXB_NUM(x)                                                                                                     \
+    gxb_limb x##_limbs[GXB_NUM_LIMBS];                                                                                 \
+    gxb_num x = {0, 0, 0, NULL};                                                                                       \
+    x.d = x##_limbs
 
-GXFEM_API void gxb_num_set(gxb_num *r, double value, int shift);                            /* r = value * 2^shift, exactly */
-GXFEM_API void gxb_num_add(gxb_num *r, const gxb_num *a, const gxb_num *b);                 /* r = a + b; r is neither */
-GXFEM_API void gxb_num_sub(gxb_num *r, const gxb_num *a, const gxb_num *b);                 /* r = a - b; r is neither */
-GXFEM_API void gxb_num_mul(gxb_num *r, const gxb_num *a, const gxb_num *b);                 /* r = a * b; r is neither */
-GXFEM_API double gxb_num_to_double(const gxb_num *a);                                       /* within one unit in the last place */
-GXFEM_API double gxb_num_ratio(const gxb_num *a, const gxb_num *b);                         /* a / b, relative error below 2^-50 within 2^-1000 ... 2^1000 */
+/* r = value * 2^shift, exactly */
+GXFEM_API void gxb_num_set(gxb_num *r, double value, int shift);
+/* r = a + b; r is neither */
+GXFEM_API void gxb_num_add(gxb_num *r, const gxb_num *a, const gxb_num *b);
+/* r = a - b; r is neither */
+GXFEM_API void gxb_num_sub(gxb_num *r, const gxb_num *a, const gxb_num *b);
+/* r = a * b; r is neither */
+GXFEM_API void gxb_num_mul(gxb_num *r, const gxb_num *a, const gxb_num *b);
+/* within one unit in the last place */
+GXFEM_API double gxb_num_to_double(const gxb_num *a);
+/* a / b, relative error below 2^-50 within 2^-1000 ... 2^1000 */
+GXFEM_API double gxb_num_ratio(const gxb_num *a, const gxb_num *b);
 
-/* >>predicates ------------------------------------------------------------------------------------------------------- */
+/* >>predicates ----------------------------------------------------------------------------------------------------- */
 
 /* Sign of |a-c, b-c|: 1 where a, b, c turn counter-clockwise, 0 where they are collinear. */
 GXFEM_API int gxb_orient2d(const double a[2], const double b[2], const double c[2]);
@@ -194,27 +211,38 @@ GXFEM_API int gxb_orient3d(const double a[3], const double b[3], const double c[
 /* 1 where d lies inside the circle through a, b, c, which turn counter-clockwise; -1 outside, 0 on it. */
 GXFEM_API int gxb_incircle(const double a[2], const double b[2], const double c[2], const double d[2]);
 /* 1 where e lies inside the sphere through a, b, c, d with gxb_orient3d(a, b, c, d) = 1; -1 outside, 0 on it. */
-GXFEM_API int gxb_insphere(const double a[3], const double b[3], const double c[3], const double d[3], const double e[3]);
+GXFEM_API int gxb_insphere(const double a[3], const double b[3], const double c[3], const double d[3],
+                           const double e[3]);
 
 /* Coordinates for gxb_plane and gxb_point: 0 or of magnitude 2^-128 to 2^128. */
 
 /* What the filter knows of a plane: n.(x - base) with proven errors (see >>filter). */
 typedef struct gxb_plane_filter {
-    double n[3];        /* approximate normal */
-    double base[3];     /* a point of the plane, within base_error in each coordinate */
+    double n[3];    /* approximate normal */
+    double base[3]; /* a point of the plane, within base_error in each coordinate */
     double base_error;
-    double error;       /* of each component of n */
-    double norm;        /* largest |n[i]| */
+    double error; /* of each component of n */
+    double norm;  /* largest |n[i]| */
 } gxb_plane_filter;
 
 /* A point within error of x in each coordinate; error >= 2^200: nothing is known. */
-typedef struct gxb_ball { double x[3], error; } gxb_ball;
+typedef struct gxb_ball {
+    double x[3], error;
+} gxb_ball;
 
 /* The plane of three points, not collinear; its normal is (q-p) x (r-p). The points must outlive it. */
-typedef struct gxb_plane { gxb_plane_filter filter; const double *p, *q, *r; } gxb_plane;
+typedef struct gxb_plane {
+    gxb_plane_filter filter;
+    const double *p, *q, *r;
+} gxb_plane;
 
-/* A point given by coordinates (p), a line through p and q with a plane (plane[0]), or three planes. All must outlive it. */
-typedef struct gxb_point { gxb_ball ball; const double *p, *q; const gxb_plane *plane[3]; } gxb_point;
+/* A point given by coordinates (p), a line through p and q with a plane (plane[0]), or three planes. All must outlive
+ * it. */
+typedef struct gxb_point {
+    gxb_ball ball;
+    const double *p, *q;
+    const gxb_plane *plane[3];
+} gxb_point;
 
 GXFEM_API void gxb_plane_init(gxb_plane *plane, const double p[3], const double q[3], const double r[3]);
 GXFEM_API void gxb_point_explicit(gxb_point *point, const double p[3]);
@@ -228,134 +256,170 @@ GXFEM_API int gxb_compare(const gxb_point *a, const gxb_point *b, int axis);
 /* Orientation of three points of the plane, seen from the side to which its normal points. */
 GXFEM_API int gxb_orient_in_plane(const gxb_point *a, const gxb_point *b, const gxb_point *c, const gxb_plane *plane);
 
-/* How often a closed surface (vertices x 3, triangles x 3) winds around p, counted by exact ray crossings: 1 inside of a surface
-   whose triangles are counter-clockwise from outside. *on_surface: p lies on a triangle, the number then means nothing. */
-GXFEM_API int gxb_winding_number(const double *vertices, const uint32_t *triangles, size_t triangle_count, const double p[3],
-                                 int *on_surface);
+/* How often a closed surface (vertices x 3, triangles x 3) winds around p, counted by exact ray crossings: 1 inside of
+   a surface whose triangles are counter-clockwise from outside. *on_surface: p lies on a triangle, the number then
+   means nothing. */
+GXFEM_API int gxb_winding_number(const double *vertices, const uint32_t *triangles, size_t triangle_count,
+                                 const double p[3], int *on_surface);
 
-/* >>complex ---------------------------------------------------------------------------------------------------------- */
+/* >>complex -------------------------------------------------------------------------------------------------------- */
 
 #define GXB_NONE UINT32_MAX
 
 enum { GXB_EXPLICIT = 0, GXB_LINE_PLANE = 1, GXB_THREE_PLANES = 2 };
 
-typedef struct gxb_cpoint {     /* a point of the complex */
-    gxb_ball ball;              /* in the complex's frame: (x - origin) * 2^shift */
-    uint32_t def[3];            /* two points and a plane, or three planes */
-    uint8_t kind;               /* GXB_EXPLICIT ... */
-    uint8_t wall;               /* 1: a triangle was made to separate here what meets in this node only */
+typedef struct gxb_cpoint { /* a point of the complex */
+    gxb_ball ball;          /* in the complex's frame: (x - origin) * 2^shift */
+    uint32_t def[3];        /* two points and a plane, or three planes */
+    uint8_t kind;           /* GXB_EXPLICIT ... */
+    uint8_t wall;           /* 1: a triangle was made to separate here what meets in this node only */
     int8_t sign[2];
-    uint32_t stamp[2];          /* when sign[i] was decided (complex.stamp[i]) */
-    gxb_num *exact;             /* X Y Z W, or NULL until they were needed */
-    double parameter[3];        /* barycentric coordinates on a mesh edge (of its two ends) or in a mesh face (of its plane's three nodes);
-                                   the first is negative until asked for */
+    uint32_t stamp[2]; /* when sign[i] was decided (complex.stamp[i]) */
+    gxb_num *exact;    /* X Y Z W, or NULL until they were needed */
+    /* barycentric coordinates on a mesh edge (of its two ends) or in a mesh face (of its plane's three nodes); the
+     * first is negative until asked for */
+    double parameter[3];
     uint32_t scratch;
 } gxb_cpoint;
 
-typedef struct gxb_cplane {     /* a plane: of three points, or through points 0 and 1 along coordinate axis def[2] */
+typedef struct gxb_cplane { /* a plane: of three points, or through points 0 and 1 along coordinate axis def[2] */
     gxb_plane_filter filter;
-    gxb_num *exact;             /* n and d, or NULL until they were needed */
+    gxb_num *exact; /* n and d, or NULL until they were needed */
     uint32_t def[3];
     uint8_t along_axis;
-    uint8_t axis;               /* a component of the normal that is not 0 */
-    int8_t axis_sign;           /* its sign */
+    uint8_t axis;     /* a component of the normal that is not 0 */
+    int8_t axis_sign; /* its sign */
 } gxb_cplane;
 
 typedef struct gxb_edge {
-    uint32_t v[2];              /* points */
-    uint32_t line[2];           /* two points (explicit_line) or two planes whose intersection carries the edge */
-    uint32_t child;             /* GXB_NONE, or the first of the two edges (child, child + 1) into which it was divided */
+    uint32_t v[2];    /* points */
+    uint32_t line[2]; /* two points (explicit_line) or two planes whose intersection carries the edge */
+    /* GXB_NONE, or the first of the two edges (child, child + 1) into which it was divided */
+    uint32_t child;
     uint32_t explicit_line : 1;
-    uint32_t wall : 1;          /* 1: a triangle was made to separate here what meets in this edge only */
-    uint32_t stamp : 30;        /* when it was added to a rim last (complex.edge_stamp) */
+    uint32_t wall : 1;   /* 1: a triangle was made to separate here what meets in this edge only */
+    uint32_t stamp : 30; /* when it was added to a rim last (complex.edge_stamp) */
 } gxb_edge;
 
-typedef struct gxb_facet {      /* a convex polygon */
+typedef struct gxb_facet { /* a convex polygon */
     uint32_t plane;
-    uint32_t loop, loop_count : 31;     /* in complex.pool: edge * 2 + (1 if walked backwards), counter-clockwise about the normal; count 0 of what was divided */
-    uint32_t wall : 1;          /* 1: material on its two sides is separated */
-    uint32_t leaf[2];           /* in front (where the normal points), behind; GXB_NONE outside the mesh */
-    uint32_t child;             /* GXB_NONE, or the first of the two facets (child, child + 1) into which it was divided */
-    uint32_t labels;            /* in complex.labels, or GXB_NONE: triangles that cover it */
-    uint32_t face;              /* the mesh face that it is part of, or GXB_NONE inside an element */
+    /* in complex.pool: edge * 2 + (1 if walked backwards), counter-clockwise about the normal; count 0 of what was
+     * divided */
+    uint32_t loop, loop_count : 31;
+    uint32_t wall : 1; /* 1: material on its two sides is separated */
+    uint32_t leaf[2];  /* in front (where the normal points), behind; GXB_NONE outside the mesh */
+    /* GXB_NONE, or the first of the two facets (child, child + 1) into which it was divided */
+    uint32_t child;
+    uint32_t labels; /* in complex.labels, or GXB_NONE: triangles that cover it */
+    uint32_t face;   /* the mesh face that it is part of, or GXB_NONE inside an element */
 } gxb_facet;
 
-typedef struct gxb_label { uint32_t triangle; int32_t orientation; uint32_t next; } gxb_label;
+typedef struct gxb_label {
+    uint32_t triangle;
+    int32_t orientation;
+    uint32_t next;
+} gxb_label;
 
-typedef struct gxb_leaf {       /* a convex piece of an element */
+typedef struct gxb_leaf { /* a convex piece of an element */
     uint32_t element;
-    uint32_t facets, facet_count;   /* in complex.pool; count 0: an element that nothing has touched */
-    uint32_t parent;            /* leaf from which it was split, GXB_NONE for an element's first */
-    uint32_t removed;           /* set by the user of the complex */
+    uint32_t facets, facet_count; /* in complex.pool; count 0: an element that nothing has touched */
+    uint32_t parent;              /* leaf from which it was split, GXB_NONE for an element's first */
+    uint32_t removed;             /* set by the user of the complex */
 } gxb_leaf;
 
-typedef struct gxb_node {       /* of an element's tree of planes */
-    uint32_t plane, child[2];   /* front, behind: leaf * 2 or node * 2 + 1 */
-    uint32_t parent;            /* node, GXB_NONE: the element's root */
-    uint32_t leaves;            /* below it */
+typedef struct gxb_node {     /* of an element's tree of planes */
+    uint32_t plane, child[2]; /* front, behind: leaf * 2 or node * 2 + 1 */
+    uint32_t parent;          /* node, GXB_NONE: the element's root */
+    uint32_t leaves;          /* below it */
 } gxb_node;
 
-typedef struct gxb_block { struct gxb_block *next; size_t size, used; } gxb_block;     /* of exact numbers; never moves */
+/* of exact numbers; never moves */
+typedef struct gxb_block {
+    struct gxb_block *next;
+    size_t size, used;
+} gxb_block;
 
 /* A triangle to insert. Fill point and label, call gxb_complex_add_plane, insert. */
 typedef struct gxb_triangle {
     uint32_t point[3];
     uint32_t plane;
-    int32_t orientation;        /* 1, or -1 where the plane was made for a coplanar neighbour that faces the other way */
-    uint32_t edge_plane[3];     /* through point[k], point[k+1]; made when needed */
-    uint32_t label;             /* the caller's name for it */
-    uint32_t wall;              /* 1: what it covers becomes a wall; 0: it only leaves its label */
+    /* 1, or -1 where the plane was made for a coplanar neighbour that faces the other way */
+    int32_t orientation;
+    uint32_t edge_plane[3]; /* through point[k], point[k+1]; made when needed */
+    uint32_t label;         /* the caller's name for it */
+    uint32_t wall;          /* 1: what it covers becomes a wall; 0: it only leaves its label */
 } gxb_triangle;
 
 typedef struct gxb_mesh {
-    const double *positions;    /* node_count x 3 */
+    const double *positions; /* node_count x 3 */
     size_t node_count;
-    const uint32_t *elements;   /* element_count x 4, positive volume */
+    const uint32_t *elements; /* element_count x 4, positive volume */
     size_t element_count;
 } gxb_mesh;
 
-typedef struct gxb_undo { uint32_t array, index; } gxb_undo;
+typedef struct gxb_undo {
+    uint32_t array, index;
+} gxb_undo;
 
-/* All arrays belong to the complex and may be read; [i] is valid for i < count. Points 0 ... node_count-1 are the nodes, leaves
-   0 ... element_count-1 the elements' first leaves. */
-typedef struct gxb_complex {        /* what is used most comes first: its addresses are short */
-    gxb_cpoint *points; uint32_t point_count, point_capacity;
-    gxb_cplane *planes; uint32_t plane_count, plane_capacity;
-    gxb_edge *edges; uint32_t edge_count, edge_capacity;
-    gxb_facet *facets; uint32_t facet_count, facet_capacity;
-    gxb_leaf *leaves; uint32_t leaf_count, leaf_capacity;
-    gxb_node *nodes; uint32_t tree_count, tree_capacity;
-    uint32_t *pool; uint32_t pool_count, pool_capacity;
-    uint32_t *elements;             /* the complex's copy, element_count x 4 */
-    uint32_t *element_faces;        /* element_count x 4: face opposite to node k */
-    uint32_t *element_edges;        /* element_count x 6: 01 02 03 12 13 23 */
-    uint32_t *face_elements;        /* face_count x 2: GXB_NONE at the mesh's boundary */
-    uint32_t *face_facet;           /* face_count: GXB_NONE until touched */
-    uint32_t *mesh_edge;            /* mesh_edge_count: GXB_NONE until touched */
-    uint32_t *root;                 /* element_count: tree reference */
+/* All arrays belong to the complex and may be read; [i] is valid for i < count. Points 0 ... node_count-1 are the
+   nodes, leaves 0 ... element_count-1 the elements' first leaves. */
+typedef struct gxb_complex { /* what is used most comes first: its addresses are short */
+    gxb_cpoint *points;
+    uint32_t point_count, point_capacity;
+    gxb_cplane *planes;
+    uint32_t plane_count, plane_capacity;
+    gxb_edge *edges;
+    uint32_t edge_count, edge_capacity;
+    gxb_facet *facets;
+    uint32_t facet_count, facet_capacity;
+    gxb_leaf *leaves;
+    uint32_t leaf_count, leaf_capacity;
+    gxb_node *nodes;
+    uint32_t tree_count, tree_capacity;
+    uint32_t *pool;
+    uint32_t pool_count, pool_capacity;
+    uint32_t *elements;      /* the complex's copy, element_count x 4 */
+    uint32_t *element_faces; /* element_count x 4: face opposite to node k */
+    uint32_t *element_edges; /* element_count x 6: 01 02 03 12 13 23 */
+    uint32_t *face_elements; /* face_count x 2: GXB_NONE at the mesh's boundary */
+    uint32_t *face_facet;    /* face_count: GXB_NONE until touched */
+    uint32_t *mesh_edge;     /* mesh_edge_count: GXB_NONE until touched */
+    uint32_t *root;          /* element_count: tree reference */
     uint32_t node_count, element_count, face_count, mesh_edge_count;
-    uint32_t pool_live, mark_live;  /* words of lists in use, now and at begin */
+    uint32_t pool_live, mark_live; /* words of lists in use, now and at begin */
     int shift;
     double origin[3];
-    gxb_label *labels; uint32_t label_count, label_capacity;
-    gxb_block *blocks;              /* exact coordinates, computed when first needed and kept */
-    uint32_t *walls; uint32_t wall_count, wall_capacity;    /* facets that were labelled, or made walls, since begin: 2 x facet, + 1 if none before */
-    gxb_undo *undo; uint32_t undo_count, undo_capacity;     /* what begin ... rollback restores, and the old contents */
-    unsigned char *undo_bytes; uint32_t undo_byte_count, undo_byte_capacity;
-    struct gxbp_corner *corners; uint32_t corner_count, corner_capacity;    /* stack of clipped polygons */
-    struct gxbp_task *tasks; uint32_t task_count, task_capacity;
-    uint32_t *scratch; uint32_t scratch_count, scratch_capacity;
-    gxb_block *mark_block; size_t mark_used;    /* blocks at begin */
-    uint32_t mark[8];               /* counts at begin: points planes edges facets leaves nodes labels pool */
+    gxb_label *labels;
+    uint32_t label_count, label_capacity;
+    gxb_block *blocks; /* exact coordinates, computed when first needed and kept */
+    /* facets that were labelled, or made walls, since begin: 2 x facet, + 1 if none before */
+    uint32_t *walls;
+    uint32_t wall_count, wall_capacity;
+    /* what begin ... rollback restores, and the old contents */
+    gxb_undo *undo;
+    uint32_t undo_count, undo_capacity;
+    unsigned char *undo_bytes;
+    uint32_t undo_byte_count, undo_byte_capacity;
+    /* stack of clipped polygons */
+    struct gxbp_corner *corners;
+    uint32_t corner_count, corner_capacity;
+    struct gxbp_task *tasks;
+    uint32_t task_count, task_capacity;
+    uint32_t *scratch;
+    uint32_t scratch_count, scratch_capacity;
+    /* blocks at begin */
+    gxb_block *mark_block;
+    size_t mark_used;
+    uint32_t mark[8]; /* counts at begin: points planes edges facets leaves nodes labels pool */
     uint32_t stamp[2], edge_stamp, sign_plane;
-    struct gxbp_pairs *pairs;       /* see >>insert, barycentric coordinates */
+    struct gxbp_pairs *pairs; /* see >>insert, barycentric coordinates */
     uint64_t filter_calls, exact_calls;
     gx_allocator allocator;
 } gxb_complex;
 
-/* The complex of a mesh. Errors: ARGUMENT, EMPTY, INDEX (element), NOT_FINITE and RANGE (node), INVERTED and FLAT (element), OVERLAP
-   (element: one of its faces is shared by more than two elements, or by two on the same side), LIMIT, MEMORY,
-   CONFIGURATION. */
+/* The complex of a mesh. Errors: ARGUMENT, EMPTY, INDEX (element), NOT_FINITE and RANGE (node), INVERTED and FLAT
+   (element), OVERLAP (element: one of its faces is shared by more than two elements, or by two on the same side),
+   LIMIT, MEMORY, CONFIGURATION. */
 GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator *allocator, gxb_complex **complex,
                                        gx_failure *failure);
 GXFEM_API void gxb_complex_destroy(gxb_complex *complex);
@@ -365,8 +429,8 @@ GXFEM_API void gxb_complex_begin(gxb_complex *complex);
 GXFEM_API void gxb_complex_commit(gxb_complex *complex);
 GXFEM_API void gxb_complex_rollback(gxb_complex *complex);
 
-/* Makes room for so many times more of everything as has been made since begin, where there is memory for that: early in a large transaction it saves
-   arrays from being moved many times. Nothing else depends on it. */
+/* Makes room for so many times more of everything as has been made since begin, where there is memory for that: early
+   in a large transaction it saves arrays from being moved many times. Nothing else depends on it. */
 GXFEM_API void gxb_complex_reserve(gxb_complex *complex, uint32_t times);
 
 /* What gxb_complex_add_point would refuse a point with. Errors: NOT_FINITE, RANGE. */
@@ -375,13 +439,14 @@ GXFEM_API gx_result gxb_complex_check_point(const gxb_complex *complex, const do
 GXFEM_API gx_result gxb_complex_add_point(gxb_complex *complex, const double x[3], uint32_t *point);
 /* Sets plane and orientation from the points. GX_ERROR_FLAT: the triangle has no area. */
 GXFEM_API gx_result gxb_complex_add_plane(gxb_complex *complex, gxb_triangle *triangle);
-/* Divides the leaves of one element that the triangle meets, and labels the facets that it covers. allowed: leaves for which allowed(user, leaf) is 0 are left alone (NULL: none). */
+/* Divides the leaves of one element that the triangle meets, and labels the facets that it covers. allowed: leaves for
+ * which allowed(user, leaf) is 0 are left alone (NULL: none). */
 GXFEM_API gx_result gxb_complex_insert(gxb_complex *complex, gxb_triangle *triangle, uint32_t element,
                                        int (*allowed)(void *user, uint32_t leaf), void *user);
-/* Where elements meet in nothing but a mesh edge or a node: marks what the triangle covers of that edge (pieces of it get wall 1)
-   or whether it covers the node. *covered is set to 1 if there is something, else left alone. */
-GXFEM_API gx_result gxb_complex_cover_edge(gxb_complex *complex, gxb_triangle *triangle, uint32_t element, uint32_t local_edge,
-                                           int *covered);
+/* Where elements meet in nothing but a mesh edge or a node: marks what the triangle covers of that edge (pieces of it
+   get wall 1) or whether it covers the node. *covered is set to 1 if there is something, else left alone. */
+GXFEM_API gx_result gxb_complex_cover_edge(gxb_complex *complex, gxb_triangle *triangle, uint32_t element,
+                                           uint32_t local_edge, int *covered);
 GXFEM_API gx_result gxb_complex_cover_node(gxb_complex *complex, gxb_triangle *triangle, uint32_t node, int *covered);
 /* Makes a facet a wall. */
 GXFEM_API gx_result gxb_complex_set_wall(gxb_complex *complex, uint32_t facet);
@@ -395,113 +460,150 @@ GXFEM_API gx_result gxb_facet_edges(gxb_complex *complex, uint32_t facet, uint32
 
 /* Sign of a point against a plane of the complex, exact. */
 GXFEM_API int gxb_complex_side(gxb_complex *complex, uint32_t point, uint32_t plane);
-/* Orientation of three points that lie in a plane of the complex, seen from the side to which its normal points, exact. */
+/* Orientation of three points that lie in a plane of the complex, seen from the side to which its normal points, exact.
+ */
 GXFEM_API int gxb_complex_turn(gxb_complex *complex, uint32_t a, uint32_t b, uint32_t c, uint32_t plane);
 /* Sign of point[axis] - value, exact. */
 GXFEM_API int gxb_complex_compare(gxb_complex *complex, uint32_t point, int axis, double value);
-/* gxb_winding_number around a point inside the convex hull of points of the complex: the sum of their homogeneous coordinates.
-   Exact for hulls that no double lies in. The surface is in the given coordinates and must not pass through the hull's inside. */
-GXFEM_API int gxb_complex_winding(gxb_complex *complex, const uint32_t *points, size_t point_count, const double *vertices,
-                                  const uint32_t *triangles, size_t triangle_count);
-/* Barycentric coordinates of a point in an element, each with a relative error below 2^-49 of its own (0 where it is 0). */
+/* gxb_winding_number around a point inside the convex hull of points of the complex: the sum of their homogeneous
+   coordinates. Exact for hulls that no double lies in. The surface is in the given coordinates and must not pass
+   through the hull's inside. */
+GXFEM_API int gxb_complex_winding(gxb_complex *complex, const uint32_t *points, size_t point_count,
+                                  const double *vertices, const uint32_t *triangles, size_t triangle_count);
+/* Barycentric coordinates of a point in an element, each with a relative error below 2^-49 of its own (0 where it is
+ * 0). */
 GXFEM_API void gxb_complex_barycentric(gxb_complex *complex, uint32_t point, uint32_t element, double lambda[4]);
 /* Bit k: its coordinate k is not 0 by the point's definition. Needs no arithmetic. */
 GXFEM_API unsigned gxb_complex_support(const gxb_complex *complex, uint32_t point, uint32_t element);
 /* The coordinates with a relative error below 2^-180. */
 GXFEM_API void gxb_complex_barycentric_fine(gxb_complex *complex, uint32_t point, uint32_t element, gxb_num lambda[4]);
 
-/* >>stream ----------------------------------------------------------------------------------------------------------- */
+/* >>stream --------------------------------------------------------------------------------------------------------- */
 
-/* Bytes that are written, counted (out NULL) or read (in not NULL), in the machine's own order. The first error stays, and what is
-   passed after it is not written, and read as 0. */
+/* Bytes that are written, counted (out NULL) or read (in not NULL), in the machine's own order. The first error stays,
+   and what is passed after it is not written, and read as 0. */
 typedef struct gxb_stream {
     unsigned char *out;
     const unsigned char *in;
-    size_t size, at;            /* room, or bytes there are; bytes passed */
-    gx_result result;           /* GX_ERROR_LIMIT: no room; GX_ERROR_DAMAGED: no more bytes, or what they say cannot be */
+    size_t size, at; /* room, or bytes there are; bytes passed */
+    /* GX_ERROR_LIMIT: no room; GX_ERROR_DAMAGED: no more bytes, or what they say cannot be */
+    gx_result result;
 } gxb_stream;
-GXFEM_API void gxb_stream_pass(gxb_stream *stream, void *data, size_t count, size_t width);    /* count items of width bytes */
-/* Reading: are there bytes for so many items? Else GX_ERROR_DAMAGED and 0, so that a count never asks for more memory than the bytes
-   that it counts. */
+/* count items of width bytes */
+GXFEM_API void gxb_stream_pass(gxb_stream *stream, void *data, size_t count, size_t width);
+/* Reading: are there bytes for so many items? Else GX_ERROR_DAMAGED and 0, so that a count never asks for more memory
+   than the bytes that it counts. */
 GXFEM_API int gxb_stream_has(gxb_stream *stream, size_t count, size_t width);
 
-/* What defines the complex, but for its mesh: no exact numbers, no signs, no lists that were replaced. Not within a transaction. */
+/* What defines the complex, but for its mesh: no exact numbers, no signs, no lists that were replaced. Not within a
+ * transaction. */
 GXFEM_API void gxb_complex_save(gxb_complex *complex, gxb_stream *stream);
-/* Reads it into a complex just created of the same mesh. trusted 0: everything is checked that other functions rely on, exactly: in
-   range, every tree a tree, facets convex polygons in their planes, leaves convex, closed and within their element's tree. After
-   an error (that of the stream: DAMAGED, MEMORY, LIMIT) the complex can only be destroyed. */
+/* Reads it into a complex just created of the same mesh. trusted 0: everything is checked that other functions rely on,
+   exactly: in range, every tree a tree, facets convex polygons in their planes, leaves convex, closed and within their
+   element's tree. After an error (that of the stream: DAMAGED, MEMORY, LIMIT) the complex can only be destroyed. */
 GXFEM_API gx_result gxb_complex_load(gxb_complex *complex, gxb_stream *stream, int trusted);
 
-/* >>boolean ---------------------------------------------------------------------------------------------------------- */
+/* >>boolean -------------------------------------------------------------------------------------------------------- */
 
-/* Booleans of closed triangle meshes. A Boolean holds operands and the exact arrangement of their triangles; the result is read off
-   it as often as wanted and more operands may follow: nothing is rounded in between (docs/KERNEL.md). */
+/* Booleans of closed triangle meshes. A Boolean holds operands and the exact arrangement of their triangles; the result
+   is read off it as often as wanted and more operands may follow: nothing is rounded in between (docs/KERNEL.md). */
 typedef struct gxb_boolean gxb_boolean;
 
 /* What an operand does to the result of those before it (to nothing, if it is the first). */
-enum { GXB_UNION = 0, GXB_INTERSECTION, GXB_DIFFERENCE, GXB_SYMMETRIC_DIFFERENCE,
-       GXB_SPLIT };         /* an open or closed sheet: it takes nothing away, and separates what lies on its two sides */
+enum {
+    GXB_UNION = 0,
+    GXB_INTERSECTION,
+    GXB_DIFFERENCE,
+    GXB_SYMMETRIC_DIFFERENCE,
+    /* an open or closed sheet: it takes nothing away, and separates what lies on its two sides */
+    GXB_SPLIT
+};
 /* Which winding numbers of an operand's surface count as inside. */
 enum { GXB_NONZERO = 0, GXB_POSITIVE, GXB_NEGATIVE, GXB_ODD };
 
 typedef struct gxb_operand {
-    const double *vertices;     size_t vertex_count;        /* x 3 */
-    const uint32_t *triangles;  size_t triangle_count;      /* x 3, counter-clockwise from outside */
-    uint32_t operation;         /* GXB_UNION ... */
-    uint32_t rule;              /* GXB_NONZERO ...; a sheet has none */
-    uint32_t simple;            /* 1: the caller vouches that this surface meets itself in common vertices and edges only, which saves looking */
+    /* x 3 */
+    const double *vertices;
+    size_t vertex_count;
+    /* x 3, counter-clockwise from outside */
+    const uint32_t *triangles;
+    size_t triangle_count;
+    uint32_t operation; /* GXB_UNION ... */
+    uint32_t rule;      /* GXB_NONZERO ...; a sheet has none */
+    /* 1: the caller vouches that this surface meets itself in common vertices and edges only, which saves looking */
+    uint32_t simple;
 } gxb_operand;
 
 /* How a result is divided into triangles. */
-enum { GXB_DIVIDED = 0,     /* as the operands have divided each other */
-       GXB_COARSE,          /* each source face in as few triangles as its outline allows: without vertices inside it, or on a straight
-                               part of its outline where no other face ends; nothing is merged across source faces */
-       GXB_MERGED };        /* as GXB_COARSE, of source faces that lie beside each other in one plane too: a triangle names one of them */
+enum {
+    GXB_DIVIDED = 0, /* as the operands have divided each other */
+    /* each source face in as few triangles as its outline allows: without vertices inside it, or on a straight part of
+       its outline where no other face ends; nothing is merged across source faces */
+    GXB_COARSE,
+    /* as GXB_COARSE, of source faces that lie beside each other in one plane too: a triangle names one of them */
+    GXB_MERGED
+};
 
 typedef struct gxb_boolean_desc {
     gx_allocator allocator;
-    size_t memory_limit;        /* in bytes, of all that the Boolean holds at a time; 0: none */
-    /* Instead of operations and rules: is a point around which the operands wind so often inside? NULL: by operations and rules. */
+    size_t memory_limit; /* in bytes, of all that the Boolean holds at a time; 0: none */
+    /* Instead of operations and rules: is a point around which the operands wind so often inside? NULL: by operations
+     * and rules. */
     int (*inside)(void *user, const int32_t *winding, size_t operand_count);
     void *user;
 } gxb_boolean_desc;
 
-enum { GXB_FROM_VERTEX = 0,     /* index[0]: vertex of operand[0] */
-       GXB_FROM_EDGE_TRIANGLE,  /* index[0]: 3 t + k, edge from corner k to k + 1 of triangle t of operand[0]; index[1]: triangle of operand[1] */
-       GXB_FROM_EDGE_EDGE,      /* both are 3 t + k */
-       GXB_FROM_THREE_TRIANGLES };
-typedef struct gxb_origin { uint32_t kind, operand[3], index[3]; } gxb_origin;
+enum {
+    GXB_FROM_VERTEX = 0, /* index[0]: vertex of operand[0] */
+    /* index[0]: 3 t + k, edge from corner k to k + 1 of triangle t of operand[0]; index[1]: triangle of operand[1] */
+    GXB_FROM_EDGE_TRIANGLE,
+    GXB_FROM_EDGE_EDGE, /* both are 3 t + k */
+    GXB_FROM_THREE_TRIANGLES
+};
+typedef struct gxb_origin {
+    uint32_t kind, operand[3], index[3];
+} gxb_origin;
 
 /* Arrays belong to the Boolean and are valid until it is changed, evaluated again or destroyed. */
 typedef struct gxb_boolean_result {
-    const double *vertices;     size_t vertex_count;        /* x 3; an input vertex has the input's bits, others are rounded once */
-    const uint32_t *triangles;  size_t triangle_count;      /* x 3; the exact surface is closed, oriented outward and does not cross itself */
-    const gxb_origin *vertex_origin;                        /* vertex_count */
-    const uint32_t *triangle_operand, *triangle_source;     /* triangle_count: operand, and its triangle there */
-    const uint8_t *triangle_reversed;                       /* triangle_count: 1 where it faces against that triangle */
+    /* x 3; an input vertex has the input's bits, others are rounded once */
+    const double *vertices;
+    size_t vertex_count;
+    /* x 3; the exact surface is closed, oriented outward and does not cross itself */
+    const uint32_t *triangles;
+    size_t triangle_count;
+    const gxb_origin *vertex_origin;                    /* vertex_count */
+    const uint32_t *triangle_operand, *triangle_source; /* triangle_count: operand, and its triangle there */
+    const uint8_t *triangle_reversed;                   /* triangle_count: 1 where it faces against that triangle */
 } gxb_boolean_result;
 
 /* What the interior of a result consists of. Arrays are valid as long as the result's. */
 typedef struct gxb_components {
     size_t count;
-    const double *volume;       /* count */
-    /* count: vertices - edges + triangles of a component's boundary, taken apart where it only touches itself: 2 for a ball, 0 for a
-       ring, 2 more for each cavity */
+    const double *volume; /* count */
+    /* count: vertices - edges + triangles of a component's boundary, taken apart where it only touches itself: 2 for a
+       ball, 0 for a ring, 2 more for each cavity */
     const int32_t *euler;
-    /* count x operands: 1 where a component lies only in front of a sheet (where its normals point), -1 only behind, 0 both or not at it */
+    /* count x operands: 1 where a component lies only in front of a sheet (where its normals point), -1 only behind, 0
+     * both or not at it */
     const int8_t *side;
-    const uint32_t *triangle;   /* of each triangle of the result: its component */
+    const uint32_t *triangle; /* of each triangle of the result: its component */
     double total_volume;
 } gxb_components;
 
-/* Triangles that rounding turned by a right angle or more from their source's plane, or left without area; exact. With gxb_boolean_set_mend: what
-   remains of them, and how many are none any more. A mended triangle is a part of its source but for the rounding. */
-typedef struct gxb_defects { const uint32_t *triangles; size_t count, mended_count; } gxb_defects;
+/* Triangles that rounding turned by a right angle or more from their source's plane, or left without area; exact. With
+   gxb_boolean_set_mend: what remains of them, and how many are none any more. A mended triangle is a part of its source
+   but for the rounding. */
+typedef struct gxb_defects {
+    const uint32_t *triangles;
+    size_t count, mended_count;
+} gxb_defects;
 
 /* Since creation */
 typedef struct gxb_statistics {
-    uint64_t filter_calls, exact_calls;                     /* signs asked for, and how many took exact arithmetic */
-    uint64_t allocations; size_t peak_bytes;
+    uint64_t filter_calls, exact_calls; /* signs asked for, and how many took exact arithmetic */
+    uint64_t allocations;
+    size_t peak_bytes;
 } gxb_statistics;
 
 /* desc may be NULL. Errors: ARGUMENT, LIMIT, MEMORY, CONFIGURATION. */
@@ -510,20 +612,21 @@ GXFEM_API void gxb_boolean_destroy(gxb_boolean *boolean);
 /* How results are read off the arrangement from now on; all are of the same exact surface. Errors: ARGUMENT. */
 /* GXB_DIVIDED (unless set) ... */
 GXFEM_API gx_result gxb_boolean_set_triangulation(gxb_boolean *boolean, uint32_t triangulation);
-/* 1: vertices are the doubles nearest to the exact points, volumes right to their last digits. 0 (unless set): vertices proven within 1e-10 of the largest
-   coordinate and volumes within 1e-7 of their size; both are mostly far nearer. */
+/* 1: vertices are the doubles nearest to the exact points, volumes right to their last digits. 0 (unless set): vertices
+   proven within 1e-10 of the largest coordinate and volumes within 1e-7 of their size; both are mostly far nearer. */
 GXFEM_API gx_result gxb_boolean_set_fine(gxb_boolean *boolean, int fine);
-/* 1: vertices and volumes as by gxb_boolean_set_fine; then defects are mended where that can be done within the rounding: an edge is turned, a vertex
-   becomes one with a neighbour 4 units of the last place away at most, or moves by 2. The surface stays closed, input vertices stay, components and
-   their Euler characteristics are the same. */
+/* 1: vertices and volumes as by gxb_boolean_set_fine; then defects are mended where that can be done within the
+   rounding: an edge is turned, a vertex becomes one with a neighbour 4 units of the last place away at most, or moves
+   by 2. The surface stays closed, input vertices stay, components and their Euler characteristics are the same. */
 GXFEM_API gx_result gxb_boolean_set_mend(gxb_boolean *boolean, int mend);
-/* Copies an operand. Errors: ARGUMENT, EMPTY, INDEX (triangle), NOT_FINITE and RANGE (vertex), NOT_CLOSED (triangle), LIMIT, MEMORY. */
+/* Copies an operand. Errors: ARGUMENT, EMPTY, INDEX (triangle), NOT_FINITE and RANGE (vertex), NOT_CLOSED (triangle),
+ * LIMIT, MEMORY. */
 GXFEM_API gx_result gxb_boolean_add(gxb_boolean *boolean, const gxb_operand *operand, gx_failure *failure);
-/* The result of all operands so far. Errors: EMPTY (no operand), MEMORY, LIMIT, OVERLAP (a surface vouched for as simple is not). After an error the
-   Boolean holds its operands and may be asked again. */
+/* The result of all operands so far. Errors: EMPTY (no operand), MEMORY, LIMIT, OVERLAP (a surface vouched for as
+   simple is not). After an error the Boolean holds its operands and may be asked again. */
 GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *boolean, gxb_boolean_result *result);
-/* Of the last result, found when first asked for. Errors: EMPTY (there is no result, or an operand has come since), MEMORY, LIMIT. After an error
-   the result is as it was. */
+/* Of the last result, found when first asked for. Errors: EMPTY (there is no result, or an operand has come since),
+   MEMORY, LIMIT. After an error the result is as it was. */
 GXFEM_API gx_result gxb_boolean_components(gxb_boolean *boolean, gxb_components *components);
 GXFEM_API gx_result gxb_boolean_defects(gxb_boolean *boolean, gxb_defects *defects);
 GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *boolean, gxb_statistics *statistics);
@@ -548,12 +651,14 @@ extern "C" {
 #pragma clang attribute push(__attribute__((target("no-simd128"))), apply_to = function)
 #endif
 
-/* What is called rarely is small rather than fast; what is called from many places, and each stage, is there once and by itself: compilers take longer
-   for a large function than for its parts. */
+/* What is called rarely is small rather than fast; what is called from many places, and each stage, is there once and
+   by itself: compilers take longer for a large function than for its parts. */
 #if defined(__GNUC__)
 #define GXBP_FETCH(address) __builtin_prefetch(address)
-#define GXBP_COLD __attribute__((cold, noinline))
-#define GXBP_RARE __attribute__((cold))     /* may be inlined where there is one call; of public functions, which GXFEM_STATIC makes inline */
+#define GXBP_COLD           __attribute__((cold, noinline))
+#define GXBP_RARE                                                                                                      \
+    __attribute__((cold)) /* may be inlined where there is one call; of public functions, which GXFEM_STATIC makes     \
+                             inline */
 #define GXBP_APART __attribute__((noinline))
 #else
 #define GXBP_FETCH(address) ((void)0)
@@ -562,7 +667,7 @@ extern "C" {
 #define GXBP_APART
 #endif
 
-/* >>bits: doubles taken apart and put together without floating-point arithmetic ---------------------------------------- */
+/* >>bits: doubles taken apart and put together without floating-point arithmetic ----------------------------------- */
 
 static uint64_t gxbp_bits(double x) {
     uint64_t b;
@@ -585,7 +690,7 @@ static int gxbp_is_zero(double x) { return (gxbp_bits(x) << 1) == 0; }
 
 static double gxbp_abs(double x) {
 #if defined(__GNUC__)
-    return __builtin_fabs(x);       /* one instruction, where bits would leave the registers of doubles and come back */
+    return __builtin_fabs(x); /* one instruction, where bits would leave the registers of doubles and come back */
 #else
     return gxbp_double(gxbp_bits(x) & ~((uint64_t)1 << 63));
 #endif
@@ -601,7 +706,7 @@ static int gxbp_exponent(double x) {
     return k;
 }
 
-/* >>exact: sums and products of doubles as integers times powers of two -------------------------------------------------- */
+/* >>exact: sums and products of doubles as integers times powers of two -------------------------------------------- */
 
 #if GXB_LIMB_BITS == 64
 __extension__ typedef unsigned __int128 gxbp_wide;
@@ -626,7 +731,7 @@ GXFEM_API void gxb_num_set(gxb_num *r, double value, int shift) {
     const uint64_t b = gxbp_bits(value), fraction = b & (((uint64_t)1 << 52) - 1);
     const int e = gxbp_exponent_bits(value);
     const uint64_t m = e == 0 ? fraction : fraction | (uint64_t)1 << 52;
-    const int power = (e == 0 ? -1074 : e - 1075) + shift;              /* value * 2^shift = m * 2^power */
+    const int power = (e == 0 ? -1074 : e - 1075) + shift; /* value * 2^shift = m * 2^power */
     const int off = (power % GXB_LIMB_BITS + GXB_LIMB_BITS) % GXB_LIMB_BITS;
     r->sign = m == 0 ? 0 : b >> 63 ? -1 : 1;
     r->exp = (power - off) / GXB_LIMB_BITS;
@@ -674,7 +779,7 @@ static void gxbp_num_place(gxb_num *r, const gxb_num *a, int32_t bottom, int32_t
     uint32_t i;
     r->exp = bottom;
     r->n = (uint32_t)(top - bottom);
-    for (i = 0; i < below; i++) r->d[i] = 0;        /* loops: a call for two or three limbs would cost more */
+    for (i = 0; i < below; i++) r->d[i] = 0; /* loops: a call for two or three limbs would cost more */
     for (i = 0; i < a->n; i++) r->d[below + i] = a->d[i];
     for (i = 0; i < above; i++) r->d[below + a->n + i] = 0;
 }
@@ -711,15 +816,23 @@ static void gxbp_num_sub_magnitude(gxb_num *r, const gxb_num *a, const gxb_num *
 static void gxbp_num_add_signed(gxb_num *r, const gxb_num *a, const gxb_num *b, int b_factor) {
     const int b_sign = b->sign * b_factor;
     int order;
-    if (b_sign == 0) { gxbp_num_copy(r, a, 1); return; }
-    if (a->sign == 0) { gxbp_num_copy(r, b, b_factor); return; }
+    if (b_sign == 0) {
+        gxbp_num_copy(r, a, 1);
+        return;
+    }
+    if (a->sign == 0) {
+        gxbp_num_copy(r, b, b_factor);
+        return;
+    }
     if (a->sign == b_sign) {
         gxbp_num_add_magnitude(r, a, b);
         r->sign = a->sign;
     } else {
         order = gxbp_num_compare_magnitude(a, b);
-        if (order >= 0) gxbp_num_sub_magnitude(r, a, b);
-        else gxbp_num_sub_magnitude(r, b, a);
+        if (order >= 0)
+            gxbp_num_sub_magnitude(r, a, b);
+        else
+            gxbp_num_sub_magnitude(r, b, a);
         r->sign = order == 0 ? 0 : order > 0 ? a->sign : b_sign;
     }
     if (r->d[0] == 0 || r->d[r->n - 1] == 0) gxbp_num_trim(r);
@@ -734,7 +847,10 @@ static GXBP_APART void gxbp_num_product(gxb_num *r, const gxb_num *a, const gxb_
     r->sign = a->sign * b->sign;
     r->exp = a->exp + b->exp;
     r->n = r->sign == 0 ? 0 : a->n + b->n;
-    if (r->n == 0) { r->exp = 0; return; }
+    if (r->n == 0) {
+        r->exp = 0;
+        return;
+    }
     for (j = 0; j < b->n; j++) {
         const gxbp_wide t = (gxbp_wide)a->d[0] * b->d[j] + carry;
         r->d[j] = (gxb_limb)t;
@@ -760,7 +876,11 @@ GXFEM_API void gxb_num_mul(gxb_num *r, const gxb_num *a, const gxb_num *b) { gxb
 /* Bits of a limb other than 0, counted up to the highest that is set. */
 static int gxbp_limb_bits(gxb_limb x) {
     int bits = 1, step;
-    for (step = GXB_LIMB_BITS / 2; step > 0; step /= 2) if (x >> step != 0) { bits += step; x >>= step; }
+    for (step = GXB_LIMB_BITS / 2; step > 0; step /= 2)
+        if (x >> step != 0) {
+            bits += step;
+            x >>= step;
+        }
     return bits;
 }
 
@@ -797,8 +917,8 @@ GXFEM_API double gxb_num_ratio(const gxb_num *a, const gxb_num *b) {
     int power_a, power_b;
     double q;
     if (a->sign == 0) return 0;
-    q = (double)gxbp_num_mantissa(a, &power_a);         /* 2^52 <= q < 2^53, a double without rounding */
-    q /= (double)gxbp_num_mantissa(b, &power_b);        /* 1/2 < q < 2 */
+    q = (double)gxbp_num_mantissa(a, &power_a);  /* 2^52 <= q < 2^53, a double without rounding */
+    q /= (double)gxbp_num_mantissa(b, &power_b); /* 1/2 < q < 2 */
     power_a -= power_b;
     if (power_a < -1000) return 0;
     if (power_a > 1000) power_a = 1000;
@@ -812,9 +932,11 @@ static GXBP_COLD void gxbp_num_increase(gxb_num *r, const gxb_num *a, int factor
     gxbp_num_copy(r, &sum, 1);
 }
 
-/* r = num / den, relative error below 2^-180: each of four steps adds the quotient of what is left (it uses num up), 50 bits. */
+/* r = num / den, relative error below 2^-180: each of four steps adds the quotient of what is left (it uses num up), 50
+ * bits. */
 static GXBP_COLD void gxbp_num_divide(gxb_num *r, gxb_num *num, const gxb_num *den) {
-    GXB_NUM(q); GXB_NUM(t);
+    GXB_NUM(q);
+    GXB_NUM(t);
     int step;
     gxb_num_set(r, 0, 0);
     for (step = 0; step < 4 && num->sign != 0; step++) {
@@ -827,7 +949,8 @@ static GXBP_COLD void gxbp_num_divide(gxb_num *r, gxb_num *num, const gxb_num *d
 
 /* r = a.b for vectors of three numbers; the worst length is that of one product plus 2 limbs */
 static void gxbp_num_dot(gxb_num *r, const gxb_num a[3], const gxb_num b[3]) {
-    GXB_NUM(t); GXB_NUM(s);
+    GXB_NUM(t);
+    GXB_NUM(s);
     GXB_NUM(u);
     gxb_num_mul(&s, &a[0], &b[0]);
     gxb_num_mul(&t, &a[1], &b[1]);
@@ -838,7 +961,8 @@ static void gxbp_num_dot(gxb_num *r, const gxb_num a[3], const gxb_num b[3]) {
 
 /* r = a*b - c*d */
 static void gxbp_num_det2(gxb_num *r, const gxb_num *a, const gxb_num *b, const gxb_num *c, const gxb_num *d) {
-    GXB_NUM(t); GXB_NUM(s);
+    GXB_NUM(t);
+    GXB_NUM(s);
     gxb_num_mul(&s, a, b);
     gxb_num_mul(&t, c, d);
     gxb_num_sub(r, &s, &t);
@@ -851,7 +975,10 @@ static GXBP_RARE void gxbp_num_cross(gxb_num r[3], const gxb_num a[3], const gxb
 }
 
 /* A vector of numbers with its limbs. */
-typedef struct gxbp_vec { gxb_num c[4]; gxb_limb limbs[4][GXB_NUM_LIMBS]; } gxbp_vec;
+typedef struct gxbp_vec {
+    gxb_num c[4];
+    gxb_limb limbs[4][GXB_NUM_LIMBS];
+} gxbp_vec;
 
 static GXBP_APART void gxbp_vec_init(gxbp_vec *v) {
     int k;
@@ -892,7 +1019,8 @@ static GXBP_COLD void gxbp_exact_plane(gxb_num plane[4], const gxb_num p[3], con
 
 /* r = n.X - d W for a homogeneous point: degree 9 for a point of three planes */
 static void gxbp_exact_side(gxb_num *r, const gxb_num point[4], const gxb_num plane[4]) {
-    GXB_NUM(t); GXB_NUM(s);
+    GXB_NUM(t);
+    GXB_NUM(s);
     gxbp_num_dot(&s, plane, point);
     gxb_num_mul(&t, &plane[3], &point[3]);
     gxb_num_sub(r, &s, &t);
@@ -900,12 +1028,15 @@ static void gxbp_exact_side(gxb_num *r, const gxb_num point[4], const gxb_num pl
 
 static void gxbp_make_weight_positive(gxb_num point[4]) {
     int k;
-    if (point[3].sign < 0) for (k = 0; k < 4; k++) point[k].sign = -point[k].sign;
+    if (point[3].sign < 0)
+        for (k = 0; k < 4; k++) point[k].sign = -point[k].sign;
 }
 
 /* Line through p and q with a plane: X = s_q p - s_p q, W = s_q - s_p with s = n.x - d; degrees 4 and 3. */
-static GXBP_COLD void gxbp_exact_line_plane(gxb_num point[4], const gxb_num p[4], const gxb_num q[4], const gxb_num plane[4]) {
-    GXB_NUM(sp); GXB_NUM(sq);
+static GXBP_COLD void gxbp_exact_line_plane(gxb_num point[4], const gxb_num p[4], const gxb_num q[4],
+                                            const gxb_num plane[4]) {
+    GXB_NUM(sp);
+    GXB_NUM(sq);
     int k;
     gxbp_exact_side(&sp, p, plane);
     gxbp_exact_side(&sq, q, plane);
@@ -915,35 +1046,46 @@ static GXBP_COLD void gxbp_exact_line_plane(gxb_num point[4], const gxb_num p[4]
 }
 
 /* Three planes by Cramer's rule: X = d1 n2 x n3 + d2 n3 x n1 + d3 n1 x n2, W = n1.(n2 x n3); degrees 7 and 6. */
-static GXBP_COLD void gxbp_exact_three_planes(gxb_num point[4], const gxb_num a[4], const gxb_num b[4], const gxb_num c[4]) {
+static GXBP_COLD void gxbp_exact_three_planes(gxb_num point[4], const gxb_num a[4], const gxb_num b[4],
+                                              const gxb_num c[4]) {
     gxbp_vec bc, ca, ab, row, d;
     int k;
-    gxbp_vec_init(&bc); gxbp_vec_init(&ca); gxbp_vec_init(&ab); gxbp_vec_init(&row); gxbp_vec_init(&d);
+    gxbp_vec_init(&bc);
+    gxbp_vec_init(&ca);
+    gxbp_vec_init(&ab);
+    gxbp_vec_init(&row);
+    gxbp_vec_init(&d);
     gxbp_num_cross(bc.c, b, c);
     gxbp_num_cross(ca.c, c, a);
     gxbp_num_cross(ab.c, a, b);
-    gxbp_num_copy(&d.c[0], &a[3], 1); gxbp_num_copy(&d.c[1], &b[3], 1); gxbp_num_copy(&d.c[2], &c[3], 1);
+    gxbp_num_copy(&d.c[0], &a[3], 1);
+    gxbp_num_copy(&d.c[1], &b[3], 1);
+    gxbp_num_copy(&d.c[2], &c[3], 1);
     for (k = 0; k < 3; k++) {
-        gxbp_num_copy(&row.c[0], &bc.c[k], 1); gxbp_num_copy(&row.c[1], &ca.c[k], 1); gxbp_num_copy(&row.c[2], &ab.c[k], 1);
+        gxbp_num_copy(&row.c[0], &bc.c[k], 1);
+        gxbp_num_copy(&row.c[1], &ca.c[k], 1);
+        gxbp_num_copy(&row.c[2], &ab.c[k], 1);
         gxbp_num_dot(&point[k], row.c, d.c);
     }
     gxbp_num_dot(&point[3], a, bc.c);
     gxbp_make_weight_positive(point);
 }
 
-/* >>filter: doubles with error bounds that hold for any order of operations, contraction, excess precision, rounding mode ----
+/* >>filter: doubles with error bounds that hold for any order of operations, contraction, excess precision, rounding
+ * mode ----
  *
- * u = 2^-52 bounds the relative error of one operation in every rounding mode. Underflow, flushed or not, adds at most 2^-1022
- * to a result; GXBP_TINY, far above every such error in the ranges of the complex, stands for it in every bound. Differences of
- * coordinates, normals and distances pass through gxbp_fence, so that a compiler that may reassociate can't multiply them out: bounds
- * rest on their size after cancellation. Everything after the fence is a sum of products; whatever its order, each elementary product suffers fewer
- * than eight roundings, so |error| <= 8u * (sum of |products|). Each bound below is at least that plus the inherited
- * errors to first order, times a factor of 2 or more that covers second-order terms and the rounding of the bound itself.
+ * u = 2^-52 bounds the relative error of one operation in every rounding mode. Underflow, flushed or not, adds at most
+ * 2^-1022 to a result; GXBP_TINY, far above every such error in the ranges of the complex, stands for it in every
+ * bound. Differences of coordinates, normals and distances pass through gxbp_fence, so that a compiler that may
+ * reassociate can't multiply them out: bounds rest on their size after cancellation. Everything after the fence is a
+ * sum of products; whatever its order, each elementary product suffers fewer than eight roundings, so |error| <= 8u *
+ * (sum of |products|). Each bound below is at least that plus the inherited errors to first order, times a factor of 2
+ * or more that covers second-order terms and the rounding of the bound itself.
  */
 #define GXBP_NO_BALL_EXPONENT 200
-#define GXBP_U gxbp_power(-52)
-#define GXBP_TINY gxbp_power(-600)
-#define GXBP_NO_BALL gxbp_power(GXBP_NO_BALL_EXPONENT)
+#define GXBP_U                gxbp_power(-52)
+#define GXBP_TINY             gxbp_power(-600)
+#define GXBP_NO_BALL          gxbp_power(GXBP_NO_BALL_EXPONENT)
 
 /* The constraint of a register that holds a double and no more bits. x87 has no such registers, cl no such assembly. */
 #if !defined(__GNUC__) && !defined(__clang__)
@@ -970,7 +1112,9 @@ static double gxbp_fence(double x) {
 
 static double gxbp_max(double a, double b) { return a > b ? a : b; }
 static double gxbp_min(double a, double b) { return a < b ? a : b; }
-static double gxbp_max3(const double a[3]) { return gxbp_max(gxbp_abs(a[0]), gxbp_max(gxbp_abs(a[1]), gxbp_abs(a[2]))); }
+static double gxbp_max3(const double a[3]) {
+    return gxbp_max(gxbp_abs(a[0]), gxbp_max(gxbp_abs(a[1]), gxbp_abs(a[2])));
+}
 
 static void gxbp_cross(double r[3], const double a[3], const double b[3]) {
     r[0] = a[1] * b[2] - a[2] * b[1];
@@ -978,8 +1122,8 @@ static void gxbp_cross(double r[3], const double a[3], const double b[3]) {
     r[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* The bound for each component of a x b, for sizes A and B and errors ea and eb of the components of a and b: two products of sizes A B, inherited
-   A eb + B ea + ea eb each, and 8u of 2 A B */
+/* The bound for each component of a x b, for sizes A and B and errors ea and eb of the components of a and b: two
+   products of sizes A B, inherited A eb + B ea + ea eb each, and 8u of 2 A B */
 static double gxbp_cross_error(double A, double ea, double B, double eb) {
     return 4 * (A * eb + B * ea + ea * eb) + 32 * GXBP_U * A * B + GXBP_TINY;
 }
@@ -1001,7 +1145,8 @@ static double gxbp_filter_difference(double c[3], const gxb_ball *a, const gxb_b
     return 2 * (a->error + b->error) + 2 * GXBP_U * gxbp_max3(c) + GXBP_TINY;
 }
 
-static void gxbp_filter_plane(gxb_plane_filter *f, const gxb_ball *p, const double a[3], double ea, const double b[3], double eb) {
+static void gxbp_filter_plane(gxb_plane_filter *f, const gxb_ball *p, const double a[3], double ea, const double b[3],
+                              double eb) {
     int k;
     f->error = gxbp_filter_cross(f->n, a, ea, b, eb);
     for (k = 0; k < 3; k++) f->n[k] = gxbp_fence(f->n[k]);
@@ -1036,7 +1181,7 @@ static void gxbp_filter_line_plane(gxb_ball *r, const gxb_ball *p, const gxb_bal
         return;
     }
     t = gxbp_fence(sp / den);
-    inverse = 1 / size;         /* while t is divided, too */
+    inverse = 1 / size; /* while t is divided, too */
     et = 4 * (ep + gxbp_abs(t) * eden) * inverse + 8 * GXBP_U * gxbp_abs(t);
     for (k = 0; k < 3; k++) r->x[k] = gxbp_fence(p->x[k] + t * l[k]);
     r->error = 2 * (gxbp_max3(l) * et + (gxbp_abs(t) + et) * el + p->error) +
@@ -1068,7 +1213,8 @@ static void gxbp_filter_three_planes(gxb_ball *out, const gxb_plane_filter *cons
     if (!(size > 4 * eD)) return;
     {
         double e = 0, largest = 0;
-        for (i = 0; i < 3; i++) e += 2 * (gxbp_abs(r[i]) * ec[i] + er[i] * (C[i] + ec[i])) + 24 * GXBP_U * gxbp_abs(r[i]) * C[i];
+        for (i = 0; i < 3; i++)
+            e += 2 * (gxbp_abs(r[i]) * ec[i] + er[i] * (C[i] + ec[i])) + 24 * GXBP_U * gxbp_abs(r[i]) * C[i];
         for (k = 0; k < 3; k++) {
             const double step = gxbp_fence((r[0] * c[0][k] + r[1] * c[1][k] + r[2] * c[2][k]) / D);
             largest = gxbp_max(largest, gxbp_abs(step));
@@ -1078,7 +1224,7 @@ static void gxbp_filter_three_planes(gxb_ball *out, const gxb_plane_filter *cons
     }
 }
 
-/* >>points: the predicates on their own ------------------------------------------------------------------------------ */
+/* >>points: the predicates on their own ---------------------------------------------------------------------------- */
 
 static void gxbp_ball_explicit(gxb_ball *ball, const double p[3]) {
     memcpy(ball->x, p, sizeof ball->x);
@@ -1088,7 +1234,9 @@ static void gxbp_ball_explicit(gxb_ball *ball, const double p[3]) {
 /* Do all differences and products of these points' coordinates keep away from overflow? (underflow: see GXBP_TINY) */
 static GXBP_APART int gxbp_filter_range(const double *const *x, int count, int dimension) {
     int i, k;
-    for (i = 0; i < count; i++) for (k = 0; k < dimension; k++) if (gxbp_exponent_bits(x[i][k]) > 1023 + 128) return 0;
+    for (i = 0; i < count; i++)
+        for (k = 0; k < dimension; k++)
+            if (gxbp_exponent_bits(x[i][k]) > 1023 + 128) return 0;
     return 1;
 }
 
@@ -1098,23 +1246,25 @@ static GXBP_APART int gxbp_filter_range(const double *const *x, int count, int d
 #if GXB_LIMB_BITS == 64
 __extension__ typedef __int128 gxbp_signed_wide;
 
-/* count doubles as integers below 2^61 of one unit. 0: the smallest needs a finer one, or is a denormal. A product by a power of two is exact unless
-   it underflows: then it is no integer, or has become 0. */
+/* count doubles as integers below 2^61 of one unit. 0: the smallest needs a finer one, or is a denormal. A product by a
+   power of two is exact unless it underflows: then it is no integer, or has become 0. */
 static int gxbp_short_integers(const double *const *x, int count, int dimension, int64_t *out) {
     int top = 0, i, k;
     double scale;
-    for (i = 0; i < count; i++) for (k = 0; k < dimension; k++) {
-        const int e = gxbp_exponent_bits(x[i][k]);
-        if (e > top) top = e;
-    }
+    for (i = 0; i < count; i++)
+        for (k = 0; k < dimension; k++) {
+            const int e = gxbp_exponent_bits(x[i][k]);
+            if (e > top) top = e;
+        }
     if (top == 0x7ff || 60 - (top - 1023) > 1023) return 0;
     scale = gxbp_power(60 - (top - 1023));
-    for (i = 0; i < count; i++) for (k = 0; k < dimension; k++) {
-        const double y = gxbp_fence(x[i][k] * scale);
-        const int64_t m = (int64_t)y;
-        if (gxbp_bits((double)m) << 1 != gxbp_bits(y) << 1 || (m == 0 && !gxbp_is_zero(x[i][k]))) return 0;
-        *out++ = m;
-    }
+    for (i = 0; i < count; i++)
+        for (k = 0; k < dimension; k++) {
+            const double y = gxbp_fence(x[i][k] * scale);
+            const int64_t m = (int64_t)y;
+            if (gxbp_bits((double)m) << 1 != gxbp_bits(y) << 1 || (m == 0 && !gxbp_is_zero(x[i][k]))) return 0;
+            *out++ = m;
+        }
     return 1;
 }
 
@@ -1127,14 +1277,18 @@ static int gxbp_orient2d_short(const double *const x[3]) {
     return s > t ? 1 : s < t ? -1 : 0;
 }
 
-/* |a-d b-d c-d| for points abc (three, one after the other) and d, as the result * 2^64 + *rest. Differences are below 2^62, minors below 2^125; each
-   minor is taken apart at 2^64, so that products with its halves stay below 2^127. */
+/* |a-d b-d c-d| for points abc (three, one after the other) and d, as the result * 2^64 + *rest. Differences are below
+   2^62, minors below 2^125; each minor is taken apart at 2^64, so that products with its halves stay below 2^127. */
 static gxbp_signed_wide gxbp_short_determinant(const int64_t *abc, const int64_t *d, uint64_t *rest) {
     int64_t v[9];
     gxbp_signed_wide high = 0;
     gxbp_wide low = 0;
     int k, m = 1, n = 2;
-    for (k = 0; k < 3; k++) { v[k] = abc[k] - d[k]; v[3 + k] = abc[3 + k] - d[k]; v[6 + k] = abc[6 + k] - d[k]; }
+    for (k = 0; k < 3; k++) {
+        v[k] = abc[k] - d[k];
+        v[3 + k] = abc[3 + k] - d[k];
+        v[6 + k] = abc[6 + k] - d[k];
+    }
     for (k = 0; k < 3; m = n, n = k++) {
         const gxbp_signed_wide minor = (gxbp_signed_wide)v[3 + m] * v[6 + n] - (gxbp_signed_wide)v[3 + n] * v[6 + m];
         const gxbp_signed_wide part = (gxbp_signed_wide)(uint64_t)minor * v[k];
@@ -1155,14 +1309,22 @@ static int gxbp_orient3d_short(const double *const x[4]) {
 }
 
 /* Such a determinant's sign and size */
-typedef struct gxbp_short { int sign; uint64_t d[3]; } gxbp_short;
+typedef struct gxbp_short {
+    int sign;
+    uint64_t d[3];
+} gxbp_short;
 
 static void gxbp_short_value(gxbp_short *r, const int64_t *abc, const int64_t *d) {
     uint64_t rest;
     gxbp_signed_wide high = gxbp_short_determinant(abc, d, &rest);
     r->sign = high < 0 ? -1 : high > 0 || rest != 0;
-    if (high < 0) { rest = 0 - rest; high = -high - (rest != 0); }
-    r->d[0] = rest; r->d[1] = (uint64_t)high; r->d[2] = (uint64_t)(high >> 64);
+    if (high < 0) {
+        rest = 0 - rest;
+        high = -high - (rest != 0);
+    }
+    r->d[0] = rest;
+    r->d[1] = (uint64_t)high;
+    r->d[2] = (uint64_t)(high >> 64);
 }
 
 static int gxbp_compare_limbs(const uint64_t *x, const uint64_t *y, int count) {
@@ -1194,15 +1356,18 @@ static int gxbp_short_det2(const gxbp_short *a, const gxbp_short *b, const gxbp_
     return ab * gxbp_compare_limbs(x, y, 6);
 }
 
-/* Side of the plane through x[0..2] on which the point lies in which the plane through x[3..5] cuts the line from x[6] to x[7]: for sides s and t of
-   these two against x[3..5], u and v against x[0..2], the sign of (t u - s v) / (t - s). Determinants are the negatives of sides. */
+/* Side of the plane through x[0..2] on which the point lies in which the plane through x[3..5] cuts the line from x[6]
+   to x[7]: for sides s and t of these two against x[3..5], u and v against x[0..2], the sign of (t u - s v) / (t - s).
+   Determinants are the negatives of sides. */
 static int gxbp_line_side_short(const double *const x[8]) {
     gxbp_short s, t, u, v;
     int64_t i[24];
     int order;
     if (!gxbp_short_integers(x, 8, 3, i)) return GXBP_UNKNOWN;
-    gxbp_short_value(&s, i + 9, i + 18); gxbp_short_value(&t, i + 9, i + 21);
-    gxbp_short_value(&u, i, i + 18); gxbp_short_value(&v, i, i + 21);
+    gxbp_short_value(&s, i + 9, i + 18);
+    gxbp_short_value(&t, i + 9, i + 21);
+    gxbp_short_value(&u, i, i + 18);
+    gxbp_short_value(&v, i, i + 21);
     order = s.sign != t.sign ? (s.sign > t.sign) - (s.sign < t.sign) : s.sign * gxbp_compare_limbs(s.d, t.d, 3);
     return order == 0 ? GXBP_UNKNOWN : order * gxbp_short_det2(&t, &u, &s, &v);
 }
@@ -1212,7 +1377,10 @@ static int gxbp_normal_short(const double *const x[3], int sign[3]) {
     int64_t v[9];
     int k, m = 1, n = 2;
     if (!gxbp_short_integers(x, 3, 3, v)) return 0;
-    for (k = 0; k < 3; k++) { v[3 + k] -= v[k]; v[6 + k] -= v[k]; }
+    for (k = 0; k < 3; k++) {
+        v[3 + k] -= v[k];
+        v[6 + k] -= v[k];
+    }
     for (k = 0; k < 3; m = n, n = k++) {
         const gxbp_signed_wide y = (gxbp_signed_wide)v[3 + m] * v[6 + n], z = (gxbp_signed_wide)v[3 + n] * v[6 + m];
         sign[k] = (y > z) - (y < z);
@@ -1260,7 +1428,9 @@ static GXBP_COLD int gxbp_orient2d_exact(const double *const p[3]) {
 
 GXFEM_API int gxb_orient2d(const double a[2], const double b[2], const double c[2]) {
     const double *p[3];
-    p[0] = a; p[1] = b; p[2] = c;
+    p[0] = a;
+    p[1] = b;
+    p[2] = c;
     if (gxbp_filter_range(p, 3, 2)) {
         const double ax = gxbp_fence(a[0] - c[0]), ay = gxbp_fence(a[1] - c[1]);
         const double bx = gxbp_fence(b[0] - c[0]), by = gxbp_fence(b[1] - c[1]);
@@ -1283,7 +1453,10 @@ static GXBP_APART int gxbp_orient3d_exact(const double *const p[4]) {
 
 GXFEM_API int gxb_orient3d(const double a[3], const double b[3], const double c[3], const double d[3]) {
     const double *p[4];
-    p[0] = a; p[1] = b; p[2] = c; p[3] = d;
+    p[0] = a;
+    p[1] = b;
+    p[2] = c;
+    p[3] = d;
     if (gxbp_filter_range(p, 4, 3)) {
         gxb_plane plane;
         gxb_ball ball;
@@ -1298,13 +1471,17 @@ GXFEM_API int gxb_orient3d(const double a[3], const double b[3], const double c[
     return gxbp_orient3d_exact(p);
 }
 
-/* Rows are the points less the last, with their squared lengths; the determinant along the column of squares. An elementary product of
-   the filter has four fenced differences, three products and is one of twelve: at most 4 + 3 + 11 roundings whatever the order; in 3D
-   five, four, one of 72: 80. Ranges as for gxb_orient3d keep all products from overflow and errors of underflow below GXBP_TINY. */
+/* Rows are the points less the last, with their squared lengths; the determinant along the column of squares. An
+   elementary product of the filter has four fenced differences, three products and is one of twelve: at most 4 + 3 + 11
+   roundings whatever the order; in 3D five, four, one of 72: 80. Ranges as for gxb_orient3d keep all products from
+   overflow and errors of underflow below GXBP_TINY. */
 static int gxbp_filter_incircle(const double *const p[4]) {
     double x[3], y[3], value = 0, size = 0;
     int i;
-    for (i = 0; i < 3; i++) { x[i] = gxbp_fence(p[i][0] - p[3][0]); y[i] = gxbp_fence(p[i][1] - p[3][1]); }
+    for (i = 0; i < 3; i++) {
+        x[i] = gxbp_fence(p[i][0] - p[3][0]);
+        y[i] = gxbp_fence(p[i][1] - p[3][1]);
+    }
     for (i = 0; i < 3; i++) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
         const double lift = x[i] * x[i] + y[i] * y[i];
@@ -1339,15 +1516,21 @@ static GXBP_COLD int gxbp_incircle_exact(const double *const p[4]) {
     GXB_NUM(r);
     int i;
     gxbp_exact_differences(row, p, 4, 2);
-    for (i = 0; i < 3; i++) { gxbp_num_dot(&row[i].c[3], row[i].c, row[i].c); row[i].c[2] = row[i].c[3]; }
+    for (i = 0; i < 3; i++) {
+        gxbp_num_dot(&row[i].c[3], row[i].c, row[i].c);
+        row[i].c[2] = row[i].c[3];
+    }
     gxbp_num_det3(&r, row[0].c, row[1].c, row[2].c);
     return r.sign;
 }
 
-/* Degree 5: a difference of any finite doubles has 34 limbs of 64 bits, its square 67, a minor 100, their product and the sum of four 167. */
+/* Degree 5: a difference of any finite doubles has 34 limbs of 64 bits, its square 67, a minor 100, their product and
+ * the sum of four 167. */
 static GXBP_COLD int gxbp_insphere_exact(const double *const p[5]) {
     gxbp_vec row[4];
-    GXB_NUM(minor); GXB_NUM(term); GXB_NUM(sum);
+    GXB_NUM(minor);
+    GXB_NUM(term);
+    GXB_NUM(sum);
     int i;
     gxbp_exact_differences(row, p, 5, 3);
     for (i = 0; i < 4; i++) {
@@ -1362,15 +1545,23 @@ static GXBP_COLD int gxbp_insphere_exact(const double *const p[5]) {
 GXFEM_API int gxb_incircle(const double a[2], const double b[2], const double c[2], const double d[2]) {
     const double *p[4];
     int sign;
-    p[0] = a; p[1] = b; p[2] = c; p[3] = d;
+    p[0] = a;
+    p[1] = b;
+    p[2] = c;
+    p[3] = d;
     sign = gxbp_filter_range(p, 4, 2) ? gxbp_filter_incircle(p) : 0;
     return sign != 0 ? sign : gxbp_incircle_exact(p);
 }
 
-GXFEM_API int gxb_insphere(const double a[3], const double b[3], const double c[3], const double d[3], const double e[3]) {
+GXFEM_API int gxb_insphere(const double a[3], const double b[3], const double c[3], const double d[3],
+                           const double e[3]) {
     const double *p[5];
     int sign;
-    p[0] = a; p[1] = b; p[2] = c; p[3] = d; p[4] = e;
+    p[0] = a;
+    p[1] = b;
+    p[2] = c;
+    p[3] = d;
+    p[4] = e;
     sign = gxbp_filter_range(p, 5, 3) ? gxbp_filter_insphere(p) : 0;
     return sign != 0 ? sign : gxbp_insphere_exact(p);
 }
@@ -1378,11 +1569,15 @@ GXFEM_API int gxb_insphere(const double a[3], const double b[3], const double c[
 GXFEM_API void gxb_plane_init(gxb_plane *plane, const double p[3], const double q[3], const double r[3]) {
     gxb_ball b[3];
     double a[3], c[3], ea, ec;
-    gxbp_ball_explicit(&b[0], p); gxbp_ball_explicit(&b[1], q); gxbp_ball_explicit(&b[2], r);
+    gxbp_ball_explicit(&b[0], p);
+    gxbp_ball_explicit(&b[1], q);
+    gxbp_ball_explicit(&b[2], r);
     ea = gxbp_filter_difference(a, &b[0], &b[1]);
     ec = gxbp_filter_difference(c, &b[0], &b[2]);
     gxbp_filter_plane(&plane->filter, &b[0], a, ea, c, ec);
-    plane->p = p; plane->q = q; plane->r = r;
+    plane->p = p;
+    plane->q = q;
+    plane->r = r;
 }
 
 static void gxbp_point_reset(gxb_point *point) {
@@ -1402,27 +1597,38 @@ GXFEM_API void gxb_point_line_plane(gxb_point *point, const double p[3], const d
     gxbp_ball_explicit(&a, p);
     gxbp_ball_explicit(&b, q);
     gxbp_filter_line_plane(&point->ball, &a, &b, &plane->filter);
-    point->p = p; point->q = q; point->plane[0] = plane;
+    point->p = p;
+    point->q = q;
+    point->plane[0] = plane;
 }
 
 GXFEM_API void gxb_point_three_planes(gxb_point *point, const gxb_plane *a, const gxb_plane *b, const gxb_plane *c) {
     const gxb_plane_filter *f[3];
     gxbp_point_reset(point);
-    f[0] = &a->filter; f[1] = &b->filter; f[2] = &c->filter;
+    f[0] = &a->filter;
+    f[1] = &b->filter;
+    f[2] = &c->filter;
     gxbp_filter_three_planes(&point->ball, f);
-    point->plane[0] = a; point->plane[1] = b; point->plane[2] = c;
+    point->plane[0] = a;
+    point->plane[1] = b;
+    point->plane[2] = c;
 }
 
 static GXBP_COLD void gxbp_plane_exact(gxbp_vec *v, const gxb_plane *plane) {
     gxbp_vec p, q, r;
-    gxbp_vec_set(&p, plane->p); gxbp_vec_set(&q, plane->q); gxbp_vec_set(&r, plane->r);
+    gxbp_vec_set(&p, plane->p);
+    gxbp_vec_set(&q, plane->q);
+    gxbp_vec_set(&r, plane->r);
     gxbp_vec_init(v);
     gxbp_exact_plane(v->c, p.c, q.c, r.c);
 }
 
 static GXBP_COLD void gxbp_point_exact(gxbp_vec *v, const gxb_point *point) {
     gxbp_vec a, b, c;
-    if (point->plane[0] == NULL) { gxbp_vec_set(v, point->p); return; }
+    if (point->plane[0] == NULL) {
+        gxbp_vec_set(v, point->p);
+        return;
+    }
     gxbp_vec_init(v);
     gxbp_plane_exact(&a, point->plane[0]);
     if (point->plane[1] == NULL) {
@@ -1478,17 +1684,21 @@ static GXBP_COLD int gxbp_orient_exact(const gxb_num a[4], const gxb_num b[4], c
     gxbp_num_det2(&cofactor.c[0], &b[j], &c[3], &c[j], &b[3]);
     gxbp_num_det2(&cofactor.c[1], &c[i], &b[3], &b[i], &c[3]);
     gxbp_num_det2(&cofactor.c[2], &b[i], &c[j], &c[i], &b[j]);
-    gxbp_num_copy(&row.c[0], &a[i], 1); gxbp_num_copy(&row.c[1], &a[j], 1); gxbp_num_copy(&row.c[2], &a[3], 1);
+    gxbp_num_copy(&row.c[0], &a[i], 1);
+    gxbp_num_copy(&row.c[1], &a[j], 1);
+    gxbp_num_copy(&row.c[2], &a[3], 1);
     gxbp_num_dot(&r, row.c, cofactor.c);
     return r.sign;
 }
 
-/* Orientation of three points in the plane of coordinates i and j; 0: not certain. Bounds as for one component of a cross product. */
+/* Orientation of three points in the plane of coordinates i and j; 0: not certain. Bounds as for one component of a
+ * cross product. */
 static int gxbp_filter_turn(const gxb_ball *a, const gxb_ball *b, const gxb_ball *c, int i, int j) {
     const double ui = gxbp_fence(b->x[i] - a->x[i]), uj = gxbp_fence(b->x[j] - a->x[j]);
     const double vi = gxbp_fence(c->x[i] - a->x[i]), vj = gxbp_fence(c->x[j] - a->x[j]);
     const double U = gxbp_max(gxbp_abs(ui), gxbp_abs(uj)), V = gxbp_max(gxbp_abs(vi), gxbp_abs(vj));
-    const double eu = 2 * (a->error + b->error) + 2 * GXBP_U * U + GXBP_TINY, ev = 2 * (a->error + c->error) + 2 * GXBP_U * V + GXBP_TINY;
+    const double eu = 2 * (a->error + b->error) + 2 * GXBP_U * U + GXBP_TINY,
+                 ev = 2 * (a->error + c->error) + 2 * GXBP_U * V + GXBP_TINY;
     const double bound = 4 * (U * ev + V * eu + eu * ev) + 32 * GXBP_U * U * V + GXBP_TINY;
     return gxbp_filter_sign(ui * vj - uj * vi, bound);
 }
@@ -1509,7 +1719,9 @@ GXFEM_API int gxb_orient_in_plane(const gxb_point *a, const gxb_point *b, const 
         const int i = (axis + 1) % 3, j = (axis + 2) % 3;
         const int turn = gxbp_filter_turn(&a->ball, &b->ball, &c->ball, i, j);
         if (turn != 0) return turn * sign;
-        gxbp_point_exact(&x[0], a); gxbp_point_exact(&x[1], b); gxbp_point_exact(&x[2], c);
+        gxbp_point_exact(&x[0], a);
+        gxbp_point_exact(&x[1], b);
+        gxbp_point_exact(&x[2], c);
         return gxbp_orient_exact(x[0].c, x[1].c, x[2].c, i, j) * sign;
     }
 }
@@ -1542,33 +1754,38 @@ static int gxbp_operations_hold(int zero) {
     const double lost = gxbp_fence(low - small);
     if (sizeof(double) != 8 || gxbp_bits(gxbp_fence(1)) != one_bits || gxbp_bits(one) != one_bits) return 0;
     if (gxbp_bits(gxbp_fence(one + unit)) != one_bits + 1 || gxbp_bits(product) != one_bits - 2) return 0;
-    if (gxbp_units_between(gxbp_fence(product / above), below) > 4) return 0;   /* may be by a reciprocal */
+    if (gxbp_units_between(gxbp_fence(product / above), below) > 4) return 0; /* may be by a reciprocal */
     if (gxbp_exponent(gxbp_fence(tiny * large)) != -100 || gxbp_exponent(gxbp_fence(large * large)) != 1000) return 0;
     if (gxbp_is_zero(lost)) return gxbp_bits(sum) == one_bits;
-    return gxbp_bits(sum) == one_bits + 1 && gxbp_bits(lost) == gxbp_bits(-unit);   /* rounded up */
+    return gxbp_bits(sum) == one_bits + 1 && gxbp_bits(lost) == gxbp_bits(-unit); /* rounded up */
 }
 
 /* Reads a number, then overwrites it: what clang 14 and 15 get wrong in vectors for WebAssembly (GXFEM_SCALAR) */
 static GXBP_APART void gxbp_in_place(double x[3]) {
     const double a = 2 * x[2] + 1, b = 3 * x[2] + 5;
     x[2] = 7 * x[2];
-    x[0] = a; x[1] = b;
+    x[0] = a;
+    x[1] = b;
 }
 
 /* A small slanted triangle, edges 2^-20 (3, 1, -2) and 2^-20 (-1, 4, 1), at (1, 1, 1); x[3] lies in its plane, x[4] and
    x[5] on a line through that. All differences and products are exact. */
-typedef struct gxbp_trial { double x[6][3], step, unit; gxb_plane plane; } gxbp_trial;
+typedef struct gxbp_trial {
+    double x[6][3], step, unit;
+    gxb_plane plane;
+} gxbp_trial;
 
 /* Sides of a point of the plane, and of those a unit in the last place below and above. Multiplied out (n.x - n.b) the
    sums would not tell them apart. */
 static int gxbp_sides_hold(gxbp_trial *t, int zero) {
-    static const signed char at[6][3] = { {0, 0, 0}, {3, 1, -2}, {-1, 4, 1},
-                                          {9, -10, -7}, {18, -11, 6}, {-18, -7, -46} };
+    static const signed char at[6][3] = {{0, 0, 0}, {3, 1, -2}, {-1, 4, 1}, {9, -10, -7}, {18, -11, 6}, {-18, -7, -46}};
     const double one = gxbp_hidden_power(0, zero);
     gxb_ball ball;
     int i, k;
-    t->step = gxbp_hidden_power(-20, zero); t->unit = gxbp_hidden_power(-52, zero);
-    for (i = 0; i < 6; i++) for (k = 0; k < 3; k++) t->x[i][k] = gxbp_fence(one + t->step * at[i][k]);
+    t->step = gxbp_hidden_power(-20, zero);
+    t->unit = gxbp_hidden_power(-52, zero);
+    for (i = 0; i < 6; i++)
+        for (k = 0; k < 3; k++) t->x[i][k] = gxbp_fence(one + t->step * at[i][k]);
     gxb_plane_init(&t->plane, t->x[0], t->x[1], t->x[2]);
     for (i = -1; i <= 1; i++) {
         double value, bound;
@@ -1598,8 +1815,10 @@ static int gxbp_meetings_hold(const gxbp_trial *t) {
     planes[0] = &t->plane.filter;
     gxbp_filter_line_plane(&met[0], &end[0], &end[1], &t->plane.filter);
     gxbp_filter_three_planes(&met[1], planes);
-    for (i = 0; i < 2; i++) for (k = 0; k < 3; k++)
-        if (!(met[i].error < 256 * t->unit) || gxbp_abs(gxbp_fence(met[i].x[k] - t->x[3][k])) > met[i].error) return 0;
+    for (i = 0; i < 2; i++)
+        for (k = 0; k < 3; k++)
+            if (!(met[i].error < 256 * t->unit) || gxbp_abs(gxbp_fence(met[i].x[k] - t->x[3][k])) > met[i].error)
+                return 0;
     return 1;
 }
 
@@ -1636,35 +1855,46 @@ static int gxbp_ray_reaches(const double a[3], const double b[3], const double c
     return 1;
 }
 
-/* A point of a triangle's plane, for which this is asked, lies in the triangle where no projection to a coordinate plane sees it on both sides
-   of edges. A triangle without area, all of whose projections are flat, contains what of its line is in its box. p is in the box prolonged
-   to -x. */
-static GXBP_COLD int gxbp_point_in_triangle(const double a[3], const double b[3], const double c[3], const double p[3]) {
+/* A point of a triangle's plane, for which this is asked, lies in the triangle where no projection to a coordinate
+   plane sees it on both sides of edges. A triangle without area, all of whose projections are flat, contains what of
+   its line is in its box. p is in the box prolonged to -x. */
+static GXBP_COLD int gxbp_point_in_triangle(const double a[3], const double b[3], const double c[3],
+                                            const double p[3]) {
     int k, flat = 1;
     for (k = 0; k < 3; k++) {
         const int i = (k + 1) % 3, j = (k + 2) % 3;
         double pa[2], pb[2], pc[2], pp[2];
         int s, t, r;
-        pa[0] = a[i]; pa[1] = a[j]; pb[0] = b[i]; pb[1] = b[j];
-        pc[0] = c[i]; pc[1] = c[j]; pp[0] = p[i]; pp[1] = p[j];
-        s = gxb_orient2d(pa, pb, pp); t = gxb_orient2d(pb, pc, pp); r = gxb_orient2d(pc, pa, pp);
+        pa[0] = a[i];
+        pa[1] = a[j];
+        pb[0] = b[i];
+        pb[1] = b[j];
+        pc[0] = c[i];
+        pc[1] = c[j];
+        pp[0] = p[i];
+        pp[1] = p[j];
+        s = gxb_orient2d(pa, pb, pp);
+        t = gxb_orient2d(pb, pc, pp);
+        r = gxb_orient2d(pc, pa, pp);
         if ((s > 0 || t > 0 || r > 0) && (s < 0 || t < 0 || r < 0)) return 0;
         flat = flat && gxb_orient2d(pa, pb, pc) == 0;
     }
-    return !flat || gxbp_compare_doubles(a[0], p[0]) <= 0 || gxbp_compare_doubles(b[0], p[0]) <= 0 || gxbp_compare_doubles(c[0], p[0]) <= 0;
+    return !flat || gxbp_compare_doubles(a[0], p[0]) <= 0 || gxbp_compare_doubles(b[0], p[0]) <= 0 ||
+           gxbp_compare_doubles(c[0], p[0]) <= 0;
 }
 
-/* Does the ray from p along +x cross the triangle? In the projection to y, z the ray is moved by (h, h^2), h -> 0, so that it
-   meets no edge; the sign of its side of edge a b is then that of the first term of the expansion in h which is not 0. */
+/* Does the ray from p along +x cross the triangle? In the projection to y, z the ray is moved by (h, h^2), h -> 0, so
+   that it meets no edge; the sign of its side of edge a b is then that of the first term of the expansion in h which is
+   not 0. */
 static int gxbp_ray_side(const double a[3], const double b[3], const double p[3]) {
     int sign = gxb_orient2d(a + 1, b + 1, p + 1);
     if (sign != 0) return sign;
-    sign = gxbp_compare_doubles(a[2], b[2]);            /* d/dy of the orientation is a_z - b_z */
-    return sign != 0 ? sign : gxbp_compare_doubles(b[1], a[1]);     /* d/dz is b_y - a_y */
+    sign = gxbp_compare_doubles(a[2], b[2]);                    /* d/dy of the orientation is a_z - b_z */
+    return sign != 0 ? sign : gxbp_compare_doubles(b[1], a[1]); /* d/dz is b_y - a_y */
 }
 
-GXFEM_API int gxb_winding_number(const double *vertices, const uint32_t *triangles, size_t triangle_count, const double p[3],
-                                 int *on_surface) {
+GXFEM_API int gxb_winding_number(const double *vertices, const uint32_t *triangles, size_t triangle_count,
+                                 const double p[3], int *on_surface) {
     int winding = 0;
     size_t t;
     *on_surface = 0;
@@ -1673,7 +1903,8 @@ GXFEM_API int gxb_winding_number(const double *vertices, const uint32_t *triangl
         const double *c = vertices + 3 * (size_t)triangles[3 * t + 2];
         int ab, side;
         if (!gxbp_ray_reaches(a, b, c, p)) continue;
-        side = gxb_orient3d(a, b, c, p);                /* 1: p is behind the triangle, the ray leaves through it if ab > 0 */
+        /* 1: p is behind the triangle, the ray leaves through it if ab > 0 */
+        side = gxb_orient3d(a, b, c, p);
         if (side == 0 && gxbp_point_in_triangle(a, b, c, p)) *on_surface = 1;
         ab = gxbp_ray_side(a, b, p);
         if (ab != 0 && side == ab && gxbp_ray_side(b, c, p) == ab && gxbp_ray_side(c, a, p) == ab) winding += ab;
@@ -1681,20 +1912,26 @@ GXFEM_API int gxb_winding_number(const double *vertices, const uint32_t *triangl
     return winding;
 }
 
-/* >>memory: growing arrays, transactions --------------------------------------------------------------------------------- */
+/* >>memory: growing arrays, transactions --------------------------------------------------------------------------- */
 
-static GXBP_APART void *gxbp_allocate(const gx_allocator *a, size_t size) { return a->allocate ? a->allocate(a->user, size) : malloc(size); }
+static GXBP_APART void *gxbp_allocate(const gx_allocator *a, size_t size) {
+    return a->allocate ? a->allocate(a->user, size) : malloc(size);
+}
 
 static GXBP_APART void gxbp_release(const gx_allocator *a, void *memory, size_t size) {
     if (memory == NULL) return;
-    if (a->release) a->release(a->user, memory, size);
-    else free(memory);
+    if (a->release)
+        a->release(a->user, memory, size);
+    else
+        free(memory);
 }
 
-/* A larger block with the first `used` bytes of the old one, which is then gone; NULL: there is none, and the old one stays. */
+/* A larger block with the first `used` bytes of the old one, which is then gone; NULL: there is none, and the old one
+ * stays. */
 static GXBP_RARE void *gxbp_reallocate(const gx_allocator *a, void *old, size_t old_size, size_t used, size_t size) {
     void *memory;
-    if (a->allocate == NULL && a->release == NULL) return realloc(old, size);   /* moves the pages of large blocks, not their bytes */
+    /* moves the pages of large blocks, not their bytes */
+    if (a->allocate == NULL && a->release == NULL) return realloc(old, size);
     if (a->reallocate != NULL && old != NULL) return a->reallocate(a->user, old, old_size, size);
     memory = gxbp_allocate(a, size);
     if (memory == NULL) return NULL;
@@ -1723,12 +1960,17 @@ static GXBP_APART gx_result gxbp_reserve(gxb_complex *cx, void *array, size_t it
     return GX_OK;
 }
 
-#define GXBP_RESERVE(cx, array, counter, extra) ((size_t)(extra) <= (cx)->counter##_capacity - (cx)->counter##_count ? GX_OK : \
-    gxbp_reserve(cx, &(cx)->array, sizeof *(cx)->array, extra))
+#define GXBP_RESERVE(cx, array, counter, extra)                                                                        \
+    ((size_t)(extra) <= (cx)->counter##_capacity - (cx)->counter##_count                                               \
+         ? GX_OK                                                                                                       \
+         : gxbp_reserve(cx, &(cx)->array, sizeof *(cx)->array, extra))
 
 /* Arrays of a structure: where they stand, size of an item */
-typedef struct gxbp_array { uint16_t at, item; } gxbp_array;
-#define GXBP_ARRAY(type, array) { offsetof(type, array), sizeof *((type *)NULL)->array }
+typedef struct gxbp_array {
+    uint16_t at, item;
+} gxbp_array;
+#define GXBP_ARRAY(type, array)                                                                                        \
+    { offsetof(type, array), sizeof *((type *)NULL)->array }
 
 static GXBP_COLD void gxbp_drop_arrays(const gx_allocator *a, void *owner, const gxbp_array *array, size_t count) {
     for (; count > 0; count--, array++) {
@@ -1742,10 +1984,10 @@ static GXBP_COLD void gxbp_drop_arrays(const gx_allocator *a, void *owner, const
 enum { GXBP_EDGES, GXBP_FACETS, GXBP_LEAVES, GXBP_NODES, GXBP_POINTS, GXBP_ROOTS, GXBP_FACES, GXBP_MESH_EDGES };
 
 static void *gxbp_item(gxb_complex *cx, uint32_t array, uint32_t index, size_t *size) {
-    static const gxbp_array arrays[] = {
-        GXBP_ARRAY(gxb_complex, edges), GXBP_ARRAY(gxb_complex, facets), GXBP_ARRAY(gxb_complex, leaves), GXBP_ARRAY(gxb_complex, nodes),
-        GXBP_ARRAY(gxb_complex, points), GXBP_ARRAY(gxb_complex, root), GXBP_ARRAY(gxb_complex, face_facet), GXBP_ARRAY(gxb_complex, mesh_edge)
-    };
+    static const gxbp_array arrays[] = {GXBP_ARRAY(gxb_complex, edges),      GXBP_ARRAY(gxb_complex, facets),
+                                        GXBP_ARRAY(gxb_complex, leaves),     GXBP_ARRAY(gxb_complex, nodes),
+                                        GXBP_ARRAY(gxb_complex, points),     GXBP_ARRAY(gxb_complex, root),
+                                        GXBP_ARRAY(gxb_complex, face_facet), GXBP_ARRAY(gxb_complex, mesh_edge)};
     unsigned char *items;
     memcpy(&items, (unsigned char *)cx + arrays[array].at, sizeof items);
     *size = arrays[array].item;
@@ -1758,7 +2000,7 @@ static uint32_t gxbp_item_mark(const gxb_complex *cx, uint32_t array) {
     return array <= GXBP_POINTS ? cx->mark[which[array]] : UINT32_MAX;
 }
 
-#define GXBP_UNDO_ITEM 128   /* no item that is saved is larger */
+#define GXBP_UNDO_ITEM 128 /* no item that is saved is larger */
 
 static gx_result gxbp_reserve_undo(gxb_complex *cx, size_t items) {
     gx_result result = GXBP_RESERVE(cx, undo, undo, items);
@@ -1784,8 +2026,8 @@ static void gxbp_move_list(const gxb_complex *cx, uint32_t *pool, uint32_t *used
     *used += count;
 }
 
-/* Lists that were replaced by longer ones stay in the pool; once they outweigh the others, the pool is renewed. Without memory for
-   that it stays as it is. */
+/* Lists that were replaced by longer ones stay in the pool; once they outweigh the others, the pool is renewed. Without
+   memory for that it stays as it is. */
 static GXBP_COLD void gxbp_compact_pool(gxb_complex *cx) {
     uint32_t *pool, used = 0, i;
     pool = (uint32_t *)gxbp_allocate(&cx->allocator, (size_t)cx->pool_capacity * sizeof *pool);
@@ -1794,15 +2036,22 @@ static GXBP_COLD void gxbp_compact_pool(gxb_complex *cx) {
         gxb_facet *f = &cx->facets[i];
         gxbp_move_list(cx, pool, &used, &f->loop, f->loop_count);
     }
-    for (i = 0; i < cx->leaf_count; i++) gxbp_move_list(cx, pool, &used, &cx->leaves[i].facets, cx->leaves[i].facet_count);
+    for (i = 0; i < cx->leaf_count; i++)
+        gxbp_move_list(cx, pool, &used, &cx->leaves[i].facets, cx->leaves[i].facet_count);
     gxbp_release(&cx->allocator, cx->pool, (size_t)cx->pool_capacity * sizeof *cx->pool);
     cx->pool = pool;
     cx->pool_count = cx->pool_live = used;
 }
 
 static GXBP_APART void gxbp_set_marks(gxb_complex *cx) {
-    cx->mark[0] = cx->point_count; cx->mark[1] = cx->plane_count; cx->mark[2] = cx->edge_count; cx->mark[3] = cx->facet_count;
-    cx->mark[4] = cx->leaf_count; cx->mark[5] = cx->tree_count; cx->mark[6] = cx->label_count; cx->mark[7] = cx->pool_count;
+    cx->mark[0] = cx->point_count;
+    cx->mark[1] = cx->plane_count;
+    cx->mark[2] = cx->edge_count;
+    cx->mark[3] = cx->facet_count;
+    cx->mark[4] = cx->leaf_count;
+    cx->mark[5] = cx->tree_count;
+    cx->mark[6] = cx->label_count;
+    cx->mark[7] = cx->pool_count;
     cx->mark_live = cx->pool_live;
     cx->mark_block = cx->blocks;
     cx->mark_used = cx->blocks != NULL ? cx->blocks->used : 0;
@@ -1822,7 +2071,8 @@ static int gxbp_is_recent(const gxb_complex *cx, const void *memory) {
     const gxb_block *block;
     for (block = cx->blocks; block != cx->mark_block; block = block->next)
         if (m >= (const unsigned char *)block && m < (const unsigned char *)block + block->size) return 1;
-    return block != NULL && m >= (const unsigned char *)block + cx->mark_used && m < (const unsigned char *)block + block->size;
+    return block != NULL && m >= (const unsigned char *)block + cx->mark_used &&
+           m < (const unsigned char *)block + block->size;
 }
 
 /* Gives back the blocks of exact numbers that are newer than this one. */
@@ -1837,17 +2087,23 @@ static GXBP_COLD void gxbp_drop_numbers(gxb_complex *cx, const gxb_block *last) 
 /* Gives back exact numbers kept since begin; those of older points and planes are computed again when needed. */
 static GXBP_COLD void gxbp_drop_recent_numbers(gxb_complex *cx) {
     uint32_t i;
-    for (i = 0; i < cx->mark[0]; i++) if (cx->points[i].exact != NULL && gxbp_is_recent(cx, cx->points[i].exact)) cx->points[i].exact = NULL;
-    for (i = 0; i < cx->mark[1]; i++) if (cx->planes[i].exact != NULL && gxbp_is_recent(cx, cx->planes[i].exact)) cx->planes[i].exact = NULL;
+    for (i = 0; i < cx->mark[0]; i++)
+        if (cx->points[i].exact != NULL && gxbp_is_recent(cx, cx->points[i].exact)) cx->points[i].exact = NULL;
+    for (i = 0; i < cx->mark[1]; i++)
+        if (cx->planes[i].exact != NULL && gxbp_is_recent(cx, cx->planes[i].exact)) cx->planes[i].exact = NULL;
     gxbp_drop_numbers(cx, cx->mark_block);
     if (cx->blocks != NULL) cx->blocks->used = cx->mark_used;
 }
 
-/* What is known of planes and points in pairs of doubles (see barycentric coordinates), by remainders of their numbers */
+/* What is known of planes and points in pairs of doubles (see barycentric coordinates), by remainders of their numbers
+ */
 enum { GXBP_PAIR_NORMALS = 32, GXBP_PAIR_SIDES = 256 };
-typedef struct gxbp_pair { double high, low, error; } gxbp_pair;       /* a number within error of high + low */
+typedef struct gxbp_pair {
+    double high, low, error;
+} gxbp_pair; /* a number within error of high + low */
 typedef struct gxbp_pairs {
-    uint32_t plane[GXBP_PAIR_NORMALS], side_plane[GXBP_PAIR_SIDES], side_point[GXBP_PAIR_SIDES];     /* GXB_NONE: nothing */
+    /* GXB_NONE: nothing */
+    uint32_t plane[GXBP_PAIR_NORMALS], side_plane[GXBP_PAIR_SIDES], side_point[GXBP_PAIR_SIDES];
     gxbp_pair normal[GXBP_PAIR_NORMALS][3], side[GXBP_PAIR_SIDES];
 } gxbp_pairs;
 
@@ -1856,7 +2112,7 @@ static void gxbp_forget_pairs(gxb_complex *cx) {
     memset(cx->pairs->side_plane, 0xff, sizeof cx->pairs->side_plane);
 }
 
-#define GXBP_LAST_STAMP 0x3fffffffu     /* of an edge */
+#define GXBP_LAST_STAMP 0x3fffffffu /* of an edge */
 
 /* Signs in the slot were of another plane; they are not looked at where their stamp is not the last. */
 static void gxbp_forget_signs(gxb_complex *cx, int slot) {
@@ -1881,12 +2137,18 @@ GXFEM_API GXBP_RARE void gxb_complex_rollback(gxb_complex *cx) {
         void *item = gxbp_item(cx, undo->array, undo->index, &size);
         cx->undo_byte_count -= (uint32_t)size;
         memcpy(item, cx->undo_bytes + cx->undo_byte_count, size);
-        if (undo->array == GXBP_EDGES) cx->edges[undo->index].stamp = 0;    /* may be of before stamps began again */
+        if (undo->array == GXBP_EDGES) cx->edges[undo->index].stamp = 0; /* may be of before stamps began again */
         if (undo->array == GXBP_POINTS) cx->points[undo->index].stamp[0] = cx->points[undo->index].stamp[1] = 0;
     }
     gxbp_drop_recent_numbers(cx);
-    cx->point_count = cx->mark[0]; cx->plane_count = cx->mark[1]; cx->edge_count = cx->mark[2]; cx->facet_count = cx->mark[3];
-    cx->leaf_count = cx->mark[4]; cx->tree_count = cx->mark[5]; cx->label_count = cx->mark[6]; cx->pool_count = cx->mark[7];
+    cx->point_count = cx->mark[0];
+    cx->plane_count = cx->mark[1];
+    cx->edge_count = cx->mark[2];
+    cx->facet_count = cx->mark[3];
+    cx->leaf_count = cx->mark[4];
+    cx->tree_count = cx->mark[5];
+    cx->label_count = cx->mark[6];
+    cx->pool_count = cx->mark[7];
     cx->pool_live = cx->mark_live;
     gxbp_forget_signs(cx, 0);
     gxbp_forget_signs(cx, 1);
@@ -1895,7 +2157,7 @@ GXFEM_API GXBP_RARE void gxb_complex_rollback(gxb_complex *cx) {
     gxbp_set_marks(cx);
 }
 
-/* >>topology: the complex of a mesh --------------------------------------------------------------------------------------- */
+/* >>topology: the complex of a mesh -------------------------------------------------------------------------------- */
 
 static gx_result gxbp_new_point(gxb_complex *cx, uint32_t *id) {
     const gx_result result = GXBP_RESERVE(cx, points, point, 1);
@@ -1914,14 +2176,17 @@ static void *gxbp_block_take(gxb_complex *cx, size_t size) {
     if (block == NULL || block->size - block->used < size) {
         block = (gxb_block *)gxbp_allocate(&cx->allocator, head + room);
         if (block == NULL) return NULL;
-        block->next = cx->blocks; block->size = head + room; block->used = head;
+        block->next = cx->blocks;
+        block->size = head + room;
+        block->used = head;
         cx->blocks = block;
     }
     block->used += size;
     return (unsigned char *)block + block->used - size;
 }
 
-/* A copy of four numbers that stays. NULL: no memory; the numbers are a cache, so that most callers may go on without. */
+/* A copy of four numbers that stays. NULL: no memory; the numbers are a cache, so that most callers may go on without.
+ */
 static gxb_num *gxbp_keep_exact(gxb_complex *cx, const gxb_num c[4]) {
     size_t total = 0;
     gxb_num *copy;
@@ -1943,14 +2208,16 @@ static gxb_num *gxbp_keep_exact(gxb_complex *cx, const gxb_num c[4]) {
 /* (x - origin) * 2^shift, exact; GX_ERROR_RANGE outside of 2^-128 ... 2^128 */
 static gx_result gxbp_frame_exact(const gxb_complex *cx, const double x[3], gxbp_vec *v) {
     int k;
-    GXB_NUM(a); GXB_NUM(b);
+    GXB_NUM(a);
+    GXB_NUM(b);
     gxbp_vec_init(v);
     gxb_num_set(&v->c[3], 1.0, 0);
     for (k = 0; k < 3; k++) {
         int power;
         gxb_num_set(&a, x[k], cx->shift);
         gxb_num_set(&b, cx->origin[k], cx->shift);
-        if ((a.sign != 0 && (gxbp_num_mantissa(&a, &power), power + 52 < -128)) || (a.sign != 0 && power + 52 > 128)) return GX_ERROR_RANGE;
+        if ((a.sign != 0 && (gxbp_num_mantissa(&a, &power), power + 52 < -128)) || (a.sign != 0 && power + 52 > 128))
+            return GX_ERROR_RANGE;
         gxb_num_sub(&v->c[k], &a, &b);
         if (v->c[k].sign != 0 && (gxbp_num_mantissa(&v->c[k], &power), power + 52 > 128)) return GX_ERROR_RANGE;
     }
@@ -1977,11 +2244,13 @@ GXFEM_API gx_result gxb_complex_add_point(gxb_complex *cx, const double x[3], ui
     uint32_t id;
     double ball[3], error = 0;
     int k;
-    for (k = 0; k < 3; k++) if (!gxbp_is_finite(x[k])) return GX_ERROR_NOT_FINITE;
+    for (k = 0; k < 3; k++)
+        if (!gxbp_is_finite(x[k])) return GX_ERROR_NOT_FINITE;
     result = gxbp_frame_exact(cx, x, &v);
     if (result != GX_OK) return result;
     for (k = 0; k < 3; k++) {
-        GXB_NUM(back); GXB_NUM(rest);
+        GXB_NUM(back);
+        GXB_NUM(rest);
         ball[k] = gxb_num_to_double(&v.c[k]);
         gxb_num_set(&back, ball[k], 0);
         gxb_num_sub(&rest, &v.c[k], &back);
@@ -2021,7 +2290,10 @@ static GXBP_COLD void gxbp_given(gxb_complex *cx, uint32_t point, double x[3]) {
     const gxb_num *c = gxbp_exact_cpoint(cx, point, &store);
     int k;
     for (k = 0; k < 3; k++) {
-        GXB_NUM(scale); GXB_NUM(given); GXB_NUM(origin); GXB_NUM(sum);
+        GXB_NUM(scale);
+        GXB_NUM(given);
+        GXB_NUM(origin);
+        GXB_NUM(sum);
         uint64_t m;
         int power;
         gxb_num_set(&scale, 1.0, -cx->shift);
@@ -2032,7 +2304,9 @@ static GXBP_COLD void gxbp_given(gxb_complex *cx, uint32_t point, double x[3]) {
         if (sum.sign == 0) continue;
         m = gxbp_num_mantissa(&sum, &power);
         if (power >= -1074) x[k] = gxbp_compose(m, power, sum.sign < 0);
-        else x[k] = gxbp_double((m >> (-1074 - power)) | (sum.sign < 0 ? (uint64_t)1 << 63 : 0));    /* a denormal: no bit is lost */
+        /* a denormal: no bit is lost */
+        else
+            x[k] = gxbp_double((m >> (-1074 - power)) | (sum.sign < 0 ? (uint64_t)1 << 63 : 0));
     }
 }
 
@@ -2042,8 +2316,10 @@ static GXBP_RARE void gxbp_exact_axis_plane(gxb_num plane[4], const gxb_num p[3]
     const uint32_t i = (axis + 1) % 3, j = (axis + 2) % 3;
     gxbp_vec_init(&a);
     gxbp_num_sub3(a.c, q, p);
-    plane[axis].sign = 0; plane[axis].exp = 0; plane[axis].n = 0;
-    gxbp_num_copy(&plane[i], &a.c[j], 1);       /* (a x e_k)_i = a_j, (a x e_k)_j = -a_i for i, j, k cyclic */
+    plane[axis].sign = 0;
+    plane[axis].exp = 0;
+    plane[axis].n = 0;
+    gxbp_num_copy(&plane[i], &a.c[j], 1); /* (a x e_k)_i = a_j, (a x e_k)_j = -a_i for i, j, k cyclic */
     gxbp_num_copy(&plane[j], &a.c[i], -1);
     gxbp_num_dot(&plane[3], plane, p);
 }
@@ -2056,8 +2332,10 @@ static GXBP_COLD const gxb_num *gxbp_exact_cplane(gxb_complex *cx, uint32_t plan
     gxbp_vec_init(store);
     p = gxbp_exact_cpoint(cx, f->def[0], &s[0]);
     q = gxbp_exact_cpoint(cx, f->def[1], &s[1]);
-    if (f->along_axis) gxbp_exact_axis_plane(store->c, p, q, f->def[2]);
-    else gxbp_exact_plane(store->c, p, q, gxbp_exact_cpoint(cx, f->def[2], &s[2]));
+    if (f->along_axis)
+        gxbp_exact_axis_plane(store->c, p, q, f->def[2]);
+    else
+        gxbp_exact_plane(store->c, p, q, gxbp_exact_cpoint(cx, f->def[2], &s[2]));
     f->exact = gxbp_keep_exact(cx, store->c);
     return f->exact != NULL ? f->exact : store->c;
 }
@@ -2080,7 +2358,9 @@ static void gxbp_definition_ball(const gxb_complex *cx, uint32_t kind, const uin
         gxbp_filter_line_plane(ball, &cx->points[def[0]].ball, &cx->points[def[1]].ball, &cx->planes[def[2]].filter);
     } else {
         const gxb_plane_filter *f[3];
-        f[0] = &cx->planes[def[0]].filter; f[1] = &cx->planes[def[1]].filter; f[2] = &cx->planes[def[2]].filter;
+        f[0] = &cx->planes[def[0]].filter;
+        f[1] = &cx->planes[def[1]].filter;
+        f[2] = &cx->planes[def[2]].filter;
         gxbp_filter_three_planes(ball, f);
     }
 }
@@ -2102,8 +2382,8 @@ static int gxbp_plane_has_line(const gxb_cplane *f, uint32_t p, uint32_t q) {
     return (p == f->def[0] || p == f->def[1] || p == third) && (q == f->def[0] || q == f->def[1] || q == third);
 }
 
-/* Is the point in the plane because two of its own planes meet in a line that the plane contains too? So it is where a sheet's
-   triangles meet in their common edge: what a filter never settles, and exact arithmetic need not. */
+/* Is the point in the plane because two of its own planes meet in a line that the plane contains too? So it is where a
+   sheet's triangles meet in their common edge: what a filter never settles, and exact arithmetic need not. */
 static GXBP_RARE int gxbp_incident_by_line(const gxb_complex *cx, const uint32_t def[3], uint32_t plane) {
     const gxb_cplane *f = &cx->planes[plane];
     const uint32_t line_count = f->along_axis ? 1u : 3u;
@@ -2128,7 +2408,8 @@ static GXBP_APART int gxbp_given_points(const gxb_complex *cx, const uint32_t *p
 }
 
 /* Of a point and a plane that are given by doubles, or a point of a line and a plane that are */
-static int gxbp_short_side(const gxb_complex *cx, uint32_t kind, const uint32_t def[3], uint32_t point, uint32_t plane) {
+static int gxbp_short_side(const gxb_complex *cx, uint32_t kind, const uint32_t def[3], uint32_t point,
+                           uint32_t plane) {
     const gxb_cplane *f = &cx->planes[plane], *g;
     const double *x[8];
     int turn;
@@ -2139,11 +2420,14 @@ static int gxbp_short_side(const gxb_complex *cx, uint32_t kind, const uint32_t 
         return turn == GXBP_UNKNOWN ? turn : -turn;
     }
     g = &cx->planes[def[2]];
-    if (kind != GXB_LINE_PLANE || g->along_axis || !gxbp_given_points(cx, g->def, 3, x + 3) || !gxbp_given_points(cx, def, 2, x + 6)) return GXBP_UNKNOWN;
+    if (kind != GXB_LINE_PLANE || g->along_axis || !gxbp_given_points(cx, g->def, 3, x + 3) ||
+        !gxbp_given_points(cx, def, 2, x + 6))
+        return GXBP_UNKNOWN;
     return gxbp_line_side_short(x);
 }
 
-/* Sign of the exact value of n.X - d W for a point of the complex, or (point GXB_NONE) for one that only has a definition. */
+/* Sign of the exact value of n.X - d W for a point of the complex, or (point GXB_NONE) for one that only has a
+ * definition. */
 static int gxbp_exact_sign(gxb_complex *cx, uint32_t kind, const uint32_t def[3], uint32_t point, uint32_t plane) {
     GXB_NUM(r);
     gxbp_vec sx, sn;
@@ -2154,7 +2438,8 @@ static int gxbp_exact_sign(gxb_complex *cx, uint32_t kind, const uint32_t def[3]
         if (known != GXBP_UNKNOWN) return known;
     }
     n = gxbp_exact_cplane(cx, plane, &sn);
-    if (point != GXB_NONE) x = gxbp_exact_cpoint(cx, point, &sx);
+    if (point != GXB_NONE)
+        x = gxbp_exact_cpoint(cx, point, &sx);
     else {
         gxbp_vec_init(&sx);
         gxbp_exact_definition(cx, kind, def, sx.c);
@@ -2163,7 +2448,8 @@ static int gxbp_exact_sign(gxb_complex *cx, uint32_t kind, const uint32_t def[3]
     return r.sign;
 }
 
-static int gxbp_side_of(gxb_complex *cx, const gxb_ball *ball, uint32_t kind, const uint32_t def[3], uint32_t point, uint32_t plane) {
+static int gxbp_side_of(gxb_complex *cx, const gxb_ball *ball, uint32_t kind, const uint32_t def[3], uint32_t point,
+                        uint32_t plane) {
     double bound, value;
     int sign;
     if (gxbp_incident(cx, kind, def, point, plane)) return 0;
@@ -2199,18 +2485,22 @@ GXFEM_API int gxb_complex_turn(gxb_complex *cx, uint32_t a, uint32_t b, uint32_t
     const gxb_cplane *f = &cx->planes[plane];
     const int i = (int)(f->axis + 1) % 3, j = (int)(f->axis + 2) % 3;
     int turn = 0;
-    if (cx->points[a].ball.error < GXBP_NO_BALL && cx->points[b].ball.error < GXBP_NO_BALL && cx->points[c].ball.error < GXBP_NO_BALL)
+    if (cx->points[a].ball.error < GXBP_NO_BALL && cx->points[b].ball.error < GXBP_NO_BALL &&
+        cx->points[c].ball.error < GXBP_NO_BALL)
         turn = gxbp_filter_turn(&cx->points[a].ball, &cx->points[b].ball, &cx->points[c].ball, i, j);
     if (turn == 0) {
         gxbp_vec s[3];
-        const gxb_num *x = gxbp_exact_cpoint(cx, a, &s[0]), *y = gxbp_exact_cpoint(cx, b, &s[1]), *z = gxbp_exact_cpoint(cx, c, &s[2]);
+        const gxb_num *x = gxbp_exact_cpoint(cx, a, &s[0]), *y = gxbp_exact_cpoint(cx, b, &s[1]),
+                      *z = gxbp_exact_cpoint(cx, c, &s[2]);
         turn = gxbp_orient_exact(x, y, z, i, j);
     }
     return turn * f->axis_sign;
 }
 
 GXFEM_API int gxb_complex_compare(gxb_complex *cx, uint32_t point, int axis, double value) {
-    GXB_NUM(a); GXB_NUM(b); GXB_NUM(c);
+    GXB_NUM(a);
+    GXB_NUM(b);
+    GXB_NUM(c);
     gxbp_vec store;
     const gxb_num *x = gxbp_exact_cpoint(cx, point, &store);
     gxb_num_set(&a, value, cx->shift);
@@ -2230,11 +2520,15 @@ static gx_result gxbp_new_plane(gxb_complex *cx, uint32_t p, uint32_t q, uint32_
     *id = cx->plane_count++;
     f = &cx->planes[*id];
     memset(f, 0, sizeof *f);
-    f->def[0] = p; f->def[1] = q; f->def[2] = r;
+    f->def[0] = p;
+    f->def[1] = q;
+    f->def[2] = r;
     f->along_axis = (uint8_t)along_axis;
     ea = gxbp_filter_difference(a, &cx->points[p].ball, &cx->points[q].ball);
-    if (along_axis) b[r] = 1;
-    else eb = gxbp_filter_difference(b, &cx->points[p].ball, &cx->points[r].ball);
+    if (along_axis)
+        b[r] = 1;
+    else
+        eb = gxbp_filter_difference(b, &cx->points[p].ball, &cx->points[r].ball);
     gxbp_filter_plane(&f->filter, &cx->points[p].ball, a, ea, b, eb);
     return GX_OK;
 }
@@ -2279,21 +2573,36 @@ GXFEM_API gx_result gxb_complex_add_plane(gxb_complex *cx, gxb_triangle *t) {
     return gxbp_plane_axis(cx, t->plane) ? GX_OK : GX_ERROR_FLAT;
 }
 
-/* --- faces and edges of the mesh by sorting: an element's are 4 x element + k, opposite to node k, and 6 x element + k --- */
+/* --- faces and edges of the mesh by sorting: an element's are 4 x element + k, opposite to node k, and 6 x element + k
+ * --- */
 
-static const uint8_t gxbp_face_nodes[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};     /* outward, opposite to node k */
+/* outward, opposite to node k */
+static const uint8_t gxbp_face_nodes[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 static const uint8_t gxbp_edge_nodes[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 
 static GXBP_APART void gxbp_sort3(uint32_t a[3]) {
     uint32_t t;
-    if (a[0] > a[1]) { t = a[0]; a[0] = a[1]; a[1] = t; }
-    if (a[1] > a[2]) { t = a[1]; a[1] = a[2]; a[2] = t; }
-    if (a[0] > a[1]) { t = a[0]; a[0] = a[1]; a[1] = t; }
+    if (a[0] > a[1]) {
+        t = a[0];
+        a[0] = a[1];
+        a[1] = t;
+    }
+    if (a[1] > a[2]) {
+        t = a[1];
+        a[1] = a[2];
+        a[2] = t;
+    }
+    if (a[0] > a[1]) {
+        t = a[0];
+        a[0] = a[1];
+        a[1] = t;
+    }
 }
 
 /* 1 where the outward order of the element's face is an even permutation of the sorted nodes */
 static int gxbp_face_is_even(const uint32_t *element, uint32_t face) {
-    const uint32_t a = element[gxbp_face_nodes[face][0]], b = element[gxbp_face_nodes[face][1]], c = element[gxbp_face_nodes[face][2]];
+    const uint32_t a = element[gxbp_face_nodes[face][0]], b = element[gxbp_face_nodes[face][1]],
+                   c = element[gxbp_face_nodes[face][2]];
     return (a < b) == ((b < c) == (a < c));
 }
 
@@ -2303,41 +2612,54 @@ static void gxbp_nodes_of(const gxb_complex *cx, uint32_t which, int of, uint32_
         const uint32_t *n = cx->elements + 4 * (which / 4);
         const uint8_t *face = gxbp_face_nodes[which % 4];
         const uint32_t a = n[face[0]], b = n[face[1]], c = n[face[2]], low = a < b ? a : b, high = a < b ? b : a;
-        node[0] = c < low ? c : low; node[2] = c > high ? c : high; node[1] = a + b + c - node[0] - node[2];
+        node[0] = c < low ? c : low;
+        node[2] = c > high ? c : high;
+        node[1] = a + b + c - node[0] - node[2];
     } else {
         const uint32_t *n = cx->elements + 4 * (which / 6);
         const uint32_t a = n[gxbp_edge_nodes[which % 6][0]], b = n[gxbp_edge_nodes[which % 6][1]];
-        node[0] = a < b ? a : b; node[1] = a < b ? b : a; node[2] = 0;
+        node[0] = a < b ? a : b;
+        node[1] = a < b ? b : a;
+        node[2] = 0;
     }
 }
 
-/* Sorts the faces (of 3) or edges (of 2) of all elements by their nodes, by each node in turn, the last first, so that what is equal keeps its order
-   [radix sort, Knuth vol. 3, 5.2.5]. to, other: room for all of them each; place: for node_count + 1. Returns where they are. */
+/* Sorts the faces (of 3) or edges (of 2) of all elements by their nodes, by each node in turn, the last first, so that
+   what is equal keeps its order [radix sort, Knuth vol. 3, 5.2.5]. to, other: room for all of them each; place: for
+   node_count + 1. Returns where they are. */
 static uint32_t *gxbp_sort_parts(const gxb_complex *cx, int of, uint32_t *to, uint32_t *other, uint32_t *place) {
     const uint32_t count = cx->element_count * (of == 3 ? 4 : 6);
     uint32_t *from = NULL, node[3], i;
     int digit = of;
     while (digit-- > 0) {
         memset(place, 0, ((size_t)cx->node_count + 1) * sizeof *place);
-        for (i = 0; i < count; i++) { gxbp_nodes_of(cx, i, of, node); place[node[digit] + 1]++; }
+        for (i = 0; i < count; i++) {
+            gxbp_nodes_of(cx, i, of, node);
+            place[node[digit] + 1]++;
+        }
         for (i = 0; i < cx->node_count; i++) place[i + 1] += place[i];
         for (i = 0; i < count; i++) {
             const uint32_t which = from == NULL ? i : from[i];
             gxbp_nodes_of(cx, which, of, node);
             to[place[node[digit]]++] = which;
         }
-        from = to; to = other; other = from;
+        from = to;
+        to = other;
+        other = from;
     }
     return from;
 }
 
 /* Numbers the faces in the order of their sorted nodes. Tables that are filled later are scratch. */
 static gx_result gxbp_number_faces(gxb_complex *cx, uint32_t *place, size_t *bad) {
-    const uint32_t count = cx->element_count * 4, *sorted = gxbp_sort_parts(cx, 3, cx->element_edges, cx->mesh_edge, place);
+    const uint32_t count = cx->element_count * 4,
+                   *sorted = gxbp_sort_parts(cx, 3, cx->element_edges, cx->mesh_edge, place);
     uint32_t before[3] = {0, 0, 0}, node[3], i;
     cx->face_count = 0;
     for (i = 0; i < count; i++) {
-        const uint32_t e = sorted[i] / 4, k = sorted[i] % 4, side = (uint32_t)gxbp_face_is_even(cx->elements + 4 * e, k);  /* behind the sorted normal */
+        /* behind the sorted normal */
+        const uint32_t e = sorted[i] / 4, k = sorted[i] % 4,
+                       side = (uint32_t)gxbp_face_is_even(cx->elements + 4 * e, k);
         uint32_t *sides;
         gxbp_nodes_of(cx, sorted[i], 3, node);
         if (memcmp(node, before, sizeof node) != 0) {
@@ -2346,7 +2668,10 @@ static gx_result gxbp_number_faces(gxb_complex *cx, uint32_t *place, size_t *bad
             cx->face_count++;
         }
         sides = cx->face_elements + 2 * (size_t)(cx->face_count - 1);
-        if (sides[side] != GXB_NONE) { *bad = e; return GX_ERROR_OVERLAP; }
+        if (sides[side] != GXB_NONE) {
+            *bad = e;
+            return GX_ERROR_OVERLAP;
+        }
         sides[side] = e;
         cx->element_faces[sorted[i]] = cx->face_count - 1;
     }
@@ -2354,7 +2679,8 @@ static gx_result gxbp_number_faces(gxb_complex *cx, uint32_t *place, size_t *bad
 }
 
 static void gxbp_number_edges(gxb_complex *cx, uint32_t *place) {
-    const uint32_t count = cx->element_count * 6, *sorted = gxbp_sort_parts(cx, 2, cx->element_edges, cx->mesh_edge, place);
+    const uint32_t count = cx->element_count * 6,
+                   *sorted = gxbp_sort_parts(cx, 2, cx->element_edges, cx->mesh_edge, place);
     uint32_t before[3] = {0, 0, 0}, node[3], i;
     cx->mesh_edge_count = 0;
     for (i = 0; i < count; i++) {
@@ -2367,7 +2693,9 @@ static void gxbp_number_edges(gxb_complex *cx, uint32_t *place) {
 
 /* floor(log2(high - low)), whatever the mode of the floating-point unit; -2000 where they are equal */
 static int gxbp_difference_exponent(double high, double low) {
-    GXB_NUM(a); GXB_NUM(b); GXB_NUM(d);
+    GXB_NUM(a);
+    GXB_NUM(b);
+    GXB_NUM(d);
     int power;
     gxb_num_set(&a, high, 0);
     gxb_num_set(&b, low, 0);
@@ -2377,8 +2705,8 @@ static int gxbp_difference_exponent(double high, double low) {
     return power + 52;
 }
 
-/* Frame: the origin is the mesh's lower corner rounded to few bits where the mesh lies far from 0 (so that the shift adds no
-   bits to its coordinates), else 0; the scale brings the box to size 1. */
+/* Frame: the origin is the mesh's lower corner rounded to few bits where the mesh lies far from 0 (so that the shift
+   adds no bits to its coordinates), else 0; the scale brings the box to size 1. */
 static gx_result gxbp_choose_frame(gxb_complex *cx, const gxb_mesh *mesh, size_t *bad) {
     int axis, largest = -2000;
     for (axis = 0; axis < 3; axis++) {
@@ -2387,8 +2715,14 @@ static gx_result gxbp_choose_frame(gxb_complex *cx, const gxb_mesh *mesh, size_t
         size_t i;
         for (i = 0; i < mesh->node_count; i++) {
             const double x = mesh->positions[3 * i + (size_t)axis];
-            if (!gxbp_is_finite(x)) { *bad = i; return GX_ERROR_NOT_FINITE; }
-            if (gxbp_exponent_bits(x) > 2000) { *bad = i; return GX_ERROR_RANGE; }
+            if (!gxbp_is_finite(x)) {
+                *bad = i;
+                return GX_ERROR_NOT_FINITE;
+            }
+            if (gxbp_exponent_bits(x) > 2000) {
+                *bad = i;
+                return GX_ERROR_RANGE;
+            }
             if (i == 0 || gxbp_compare_doubles(x, low) < 0) low = x;
             if (i == 0 || gxbp_compare_doubles(x, high) > 0) high = x;
         }
@@ -2396,9 +2730,11 @@ static gx_result gxbp_choose_frame(gxb_complex *cx, const gxb_mesh *mesh, size_t
         if (size == -2000) size = gxbp_is_zero(low) ? -2000 : gxbp_exponent(low);
         if (size > largest) largest = size;
         if (size > -2000 && !gxbp_is_zero(low) && gxbp_exponent(low) > size + 3) {
-            const int drop = gxbp_exponent(low) - size;                 /* keep so many leading bits */
-            if (drop < 52) cx->origin[axis] = gxbp_double(gxbp_bits(low) & ~((((uint64_t)1) << (52 - drop)) - 1));
-            else cx->origin[axis] = low;
+            const int drop = gxbp_exponent(low) - size; /* keep so many leading bits */
+            if (drop < 52)
+                cx->origin[axis] = gxbp_double(gxbp_bits(low) & ~((((uint64_t)1) << (52 - drop)) - 1));
+            else
+                cx->origin[axis] = low;
         }
     }
     cx->shift = largest == -2000 ? 0 : -largest - 1;
@@ -2427,7 +2763,7 @@ static gx_result gxbp_check_elements(gxb_complex *cx, const gxb_mesh *mesh, size
             if (cx->elements[4 * e + (uint32_t)k] >= mesh->node_count) return GX_ERROR_INDEX;
             x[k] = mesh->positions + 3 * (size_t)cx->elements[4 * e + (uint32_t)k];
         }
-        sign = gxb_orient3d(x[1], x[2], x[3], x[0]);    /* node 0 lies behind face 123 as seen from outside: below it */
+        sign = gxb_orient3d(x[1], x[2], x[3], x[0]); /* node 0 lies behind face 123 as seen from outside: below it */
         if (sign == 0) return GX_ERROR_FLAT;
         if (sign < 0) return GX_ERROR_INVERTED;
     }
@@ -2461,8 +2797,12 @@ static gx_result gxbp_fill_complex(gxb_complex *cx, const gxb_mesh *mesh, uint32
     uint32_t *place;
     memcpy(table, mesh->elements, n * 4 * sizeof *table);
     cx->elements = table;
-    cx->element_faces = table + 4 * n; cx->element_edges = table + 8 * n; cx->face_elements = table + 14 * n;
-    cx->face_facet = table + 22 * n; cx->mesh_edge = table + 26 * n; cx->root = table + 32 * n;
+    cx->element_faces = table + 4 * n;
+    cx->element_edges = table + 8 * n;
+    cx->face_elements = table + 14 * n;
+    cx->face_facet = table + 22 * n;
+    cx->mesh_edge = table + 26 * n;
+    cx->root = table + 32 * n;
     if (result == GX_OK) result = gxbp_check_elements(cx, mesh, bad);
     if (result == GX_OK) result = gxbp_add_nodes(cx, mesh, bad);
     if (result != GX_OK) return result;
@@ -2475,7 +2815,11 @@ static gx_result gxbp_fill_complex(gxb_complex *cx, const gxb_mesh *mesh, uint32
 }
 
 static GXBP_COLD gx_result gxbp_fail(gx_failure *failure, gx_result result, size_t index) {
-    if (failure != NULL) { failure->result = result; failure->index = index; failure->surface = SIZE_MAX; }
+    if (failure != NULL) {
+        failure->result = result;
+        failure->index = index;
+        failure->surface = SIZE_MAX;
+    }
     return result;
 }
 
@@ -2493,10 +2837,12 @@ GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator 
     gx_result result;
     memset(&none, 0, sizeof none);
     if (allocator == NULL) allocator = &none;
-    if (mesh == NULL || complex == NULL || !gxbp_is_allocator(allocator)) return gxbp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    if (mesh == NULL || complex == NULL || !gxbp_is_allocator(allocator))
+        return gxbp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     if (mesh->node_count == 0 || mesh->element_count == 0) return gxbp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
     if (mesh->positions == NULL || mesh->elements == NULL) return gxbp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
-    if (mesh->element_count > INT32_MAX / 8 || mesh->element_count > SIZE_MAX / 256 || mesh->node_count > INT32_MAX) return gxbp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
+    if (mesh->element_count > INT32_MAX / 8 || mesh->element_count > SIZE_MAX / 256 || mesh->node_count > INT32_MAX)
+        return gxbp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
     if (!gxbp_arithmetic_holds(1)) return gxbp_fail(failure, GX_ERROR_CONFIGURATION, SIZE_MAX);
     cx = (gxb_complex *)gxbp_allocate(allocator, sizeof *cx);
     if (cx == NULL) return gxbp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
@@ -2519,31 +2865,36 @@ GXFEM_API gx_result gxb_complex_create(const gxb_mesh *mesh, const gx_allocator 
     return gxbp_fail(failure, GX_OK, SIZE_MAX);
 }
 
-typedef struct gxbp_corner {    /* of a clipped polygon: its point, and what carries the edge to the next corner */
+typedef struct gxbp_corner { /* of a clipped polygon: its point, and what carries the edge to the next corner */
     gxb_ball ball;
     uint32_t kind, def[3], point;
-    uint32_t carrier;           /* a plane, or GXBP_TRIANGLE_EDGE + k */
+    uint32_t carrier; /* a plane, or GXBP_TRIANGLE_EDGE + k */
     int32_t sign;
 } gxbp_corner;
 
-typedef struct gxbp_task { uint32_t parent, side, first, count, coplanar; } gxbp_task;
+typedef struct gxbp_task {
+    uint32_t parent, side, first, count, coplanar;
+} gxbp_task;
 
 #define GXBP_TRIANGLE_EDGE 0x80000000u
-#define GXBP_IN_ROOT GXB_NONE   /* task.parent: the reference is the element's root */
+#define GXBP_IN_ROOT       GXB_NONE /* task.parent: the reference is the element's root */
 
-static const gxbp_array gxbp_complex_arrays[] = {      /* the first eight as in complex.mark */
-    GXBP_ARRAY(gxb_complex, points), GXBP_ARRAY(gxb_complex, planes), GXBP_ARRAY(gxb_complex, edges), GXBP_ARRAY(gxb_complex, facets),
-    GXBP_ARRAY(gxb_complex, leaves), GXBP_ARRAY(gxb_complex, nodes), GXBP_ARRAY(gxb_complex, labels), GXBP_ARRAY(gxb_complex, pool),
-    GXBP_ARRAY(gxb_complex, walls), GXBP_ARRAY(gxb_complex, undo), GXBP_ARRAY(gxb_complex, undo_bytes), GXBP_ARRAY(gxb_complex, corners),
-    GXBP_ARRAY(gxb_complex, tasks), GXBP_ARRAY(gxb_complex, scratch)
-};
+static const gxbp_array gxbp_complex_arrays[] = {/* the first eight as in complex.mark */
+                                                 GXBP_ARRAY(gxb_complex, points),     GXBP_ARRAY(gxb_complex, planes),
+                                                 GXBP_ARRAY(gxb_complex, edges),      GXBP_ARRAY(gxb_complex, facets),
+                                                 GXBP_ARRAY(gxb_complex, leaves),     GXBP_ARRAY(gxb_complex, nodes),
+                                                 GXBP_ARRAY(gxb_complex, labels),     GXBP_ARRAY(gxb_complex, pool),
+                                                 GXBP_ARRAY(gxb_complex, walls),      GXBP_ARRAY(gxb_complex, undo),
+                                                 GXBP_ARRAY(gxb_complex, undo_bytes), GXBP_ARRAY(gxb_complex, corners),
+                                                 GXBP_ARRAY(gxb_complex, tasks),      GXBP_ARRAY(gxb_complex, scratch)};
 
 /* An array grows to what is expected or by half, whichever is more: gxbp_reserve adds half of what it is asked for. */
 GXFEM_API GXBP_RARE void gxb_complex_reserve(gxb_complex *cx, uint32_t times) {
     uint32_t k;
-    for (k = 0; k < 8; k++) {       /* those with marks, which stand first */
+    for (k = 0; k < 8; k++) { /* those with marks, which stand first */
         unsigned char *at = (unsigned char *)cx + gxbp_complex_arrays[k].at;
-        const size_t count = gxbp_extent_of(at)[0], capacity = gxbp_extent_of(at)[1], need = count + (count - cx->mark[k]) * times;
+        const size_t count = gxbp_extent_of(at)[0], capacity = gxbp_extent_of(at)[1],
+                     need = count + (count - cx->mark[k]) * times;
         const size_t ask = need / 3 * 2 > capacity ? need / 3 * 2 : capacity;
         if (need > capacity) (void)gxbp_reserve(cx, at, gxbp_complex_arrays[k].item, ask + 1 - count);
     }
@@ -2560,9 +2911,11 @@ GXFEM_API GXBP_RARE void gxb_complex_destroy(gxb_complex *cx) {
     gxbp_release(&a, cx, sizeof *cx);
 }
 
-/* >>split: dividing edges, facets and leaves by a plane --------------------------------------------------------------------
+/* >>split: dividing edges, facets and leaves by a plane
+ * --------------------------------------------------------------------
  *
- * Every function here that can run out of memory reserves room first and then changes the complex without a way to fail.
+ * Every function here that can run out of memory reserves room first and then changes the complex without a way to
+ * fail.
  */
 
 static void gxbp_set_loop(gxb_facet *f, uint32_t first, uint32_t count) {
@@ -2613,7 +2966,8 @@ static uint32_t gxbp_count_loop(const gxb_complex *cx, uint32_t facet) {
 
 static void gxbp_push_edges(gxb_complex *cx, uint32_t signed_edge) {
     const uint32_t child = cx->edges[signed_edge >> 1].child, back = signed_edge & 1;
-    if (child == GXB_NONE) cx->pool[cx->pool_count++] = signed_edge;
+    if (child == GXB_NONE)
+        cx->pool[cx->pool_count++] = signed_edge;
     else {
         gxbp_push_edges(cx, (child + back) << 1 | back);
         gxbp_push_edges(cx, (child + 1 - back) << 1 | back);
@@ -2660,10 +3014,16 @@ GXFEM_API gx_result gxb_leaf_facets(gxb_complex *cx, uint32_t leaf, uint32_t *fi
     return GX_OK;
 }
 
-static uint32_t gxbp_edge_start(const gxb_complex *cx, uint32_t signed_edge) { return cx->edges[signed_edge >> 1].v[signed_edge & 1]; }
+static uint32_t gxbp_edge_start(const gxb_complex *cx, uint32_t signed_edge) {
+    return cx->edges[signed_edge >> 1].v[signed_edge & 1];
+}
 
-/* The cutting plane, and (explicit_line) the line in which the facets to be divided meet it, where that is a triangle's edge. */
-typedef struct gxbp_knife { uint32_t plane, line[2]; int explicit_line, slot; } gxbp_knife;
+/* The cutting plane, and (explicit_line) the line in which the facets to be divided meet it, where that is a triangle's
+ * edge. */
+typedef struct gxbp_knife {
+    uint32_t plane, line[2];
+    int explicit_line, slot;
+} gxbp_knife;
 
 /* Room for dividing facets with so many edges in all. */
 static gx_result gxbp_reserve_split(gxb_complex *cx, size_t facets, size_t edges) {
@@ -2680,17 +3040,21 @@ static gx_result gxbp_reserve_split(gxb_complex *cx, size_t facets, size_t edges
 static uint32_t gxbp_new_edge(gxb_complex *cx, uint32_t a, uint32_t b, const uint32_t line[2], uint32_t explicit_line) {
     gxb_edge *e = &cx->edges[cx->edge_count];
     memset(e, 0, sizeof *e);
-    e->v[0] = a; e->v[1] = b;
-    e->line[0] = line[0]; e->line[1] = line[1];
+    e->v[0] = a;
+    e->v[1] = b;
+    e->line[0] = line[0];
+    e->line[1] = line[1];
     e->explicit_line = explicit_line & 1;
     e->child = GXB_NONE;
     return cx->edge_count++;
 }
 
-/* A given point of the edge's line that is in the plane by definition, as where two edges of a triangle meet; GXB_NONE: there is none. */
+/* A given point of the edge's line that is in the plane by definition, as where two edges of a triangle meet; GXB_NONE:
+ * there is none. */
 static uint32_t gxbp_given_crossing(const gxb_complex *cx, const gxb_edge *e, uint32_t plane) {
     uint32_t i;
-    for (i = 0; i < 2 && e->explicit_line; i++) if (gxbp_incident(cx, GXB_EXPLICIT, NULL, e->line[i], plane)) return e->line[i];
+    for (i = 0; i < 2 && e->explicit_line; i++)
+        if (gxbp_incident(cx, GXB_EXPLICIT, NULL, e->line[i], plane)) return e->line[i];
     return GXB_NONE;
 }
 
@@ -2704,7 +3068,9 @@ static uint32_t gxbp_cross_edge(gxb_complex *cx, const gxb_edge *e, uint32_t pla
     memset(p, 0, sizeof *p);
     p->parameter[0] = -1;
     p->kind = e->explicit_line ? GXB_LINE_PLANE : GXB_THREE_PLANES;
-    p->def[0] = e->line[0]; p->def[1] = e->line[1]; p->def[2] = plane;
+    p->def[0] = e->line[0];
+    p->def[1] = e->line[1];
+    p->def[2] = plane;
     gxbp_definition_ball(cx, p->kind, p->def, &p->ball);
     return id;
 }
@@ -2722,8 +3088,8 @@ static void gxbp_split_edge(gxb_complex *cx, uint32_t edge, const gxbp_knife *kn
     cx->edges[cx->edge_count - 2].wall = cx->edges[cx->edge_count - 1].wall = e.wall;
 }
 
-/* Of a facet: bit 1, it has points in front of the plane; bit 2, behind it; the rest, how many are in it. *edges: how many its loop has when it is
-   resolved */
+/* Of a facet: bit 1, it has points in front of the plane; bit 2, behind it; the rest, how many are in it. *edges: how
+   many its loop has when it is resolved */
 static uint32_t gxbp_facet_signs(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife, uint32_t *edges) {
     const uint32_t *loop = cx->pool + cx->facets[facet].loop, *end = loop + cx->facets[facet].loop_count;
     uint32_t signs = 0, count = 0;
@@ -2743,11 +3109,15 @@ static int gxbp_facet_sides(gxb_complex *cx, uint32_t facet, const gxbp_knife *k
     return (int)(gxbp_facet_signs(cx, facet, knife, &edges) & 3);
 }
 
-/* A facet's loop while it is divided: in the middle of complex.scratch. zero: where the two points in the plane start edges. sign:
-   the side that the next edge starts on */
-typedef struct gxbp_parting { uint32_t *loop, count, zero[2], zeros; int sign; } gxbp_parting;
+/* A facet's loop while it is divided: in the middle of complex.scratch. zero: where the two points in the plane start
+   edges. sign: the side that the next edge starts on */
+typedef struct gxbp_parting {
+    uint32_t *loop, count, zero[2], zeros;
+    int sign;
+} gxbp_parting;
 
-/* Appends an edge that starts on the side parting->sign, or what it has been divided into; divides what the plane crosses. */
+/* Appends an edge that starts on the side parting->sign, or what it has been divided into; divides what the plane
+ * crosses. */
 static void gxbp_part_edge(gxb_complex *cx, uint32_t signed_edge, const gxbp_knife *knife, gxbp_parting *parting) {
     const uint32_t back = signed_edge & 1;
     const gxb_edge *e = &cx->edges[signed_edge >> 1];
@@ -2760,7 +3130,10 @@ static void gxbp_part_edge(gxb_complex *cx, uint32_t signed_edge, const gxbp_kni
     }
     parting->sign = gxbp_sign(cx, e->v[1 - back], knife->plane, knife->slot);
     if (from == 0 && parting->zeros < 2) parting->zero[parting->zeros++] = parting->count;
-    if (from * parting->sign >= 0) { parting->loop[parting->count++] = signed_edge; return; }
+    if (from * parting->sign >= 0) {
+        parting->loop[parting->count++] = signed_edge;
+        return;
+    }
     child = cx->edge_count;
     gxbp_split_edge(cx, signed_edge >> 1, knife);
     parting->loop[parting->count++] = (child + back) << 1 | back;
@@ -2769,23 +3142,30 @@ static void gxbp_part_edge(gxb_complex *cx, uint32_t signed_edge, const gxbp_kni
 }
 
 /* A list that has been replaced and that no rollback needs: room for one of those that replace it */
-typedef struct gxbp_gap { uint32_t first, count; } gxbp_gap;
+typedef struct gxbp_gap {
+    uint32_t first, count;
+} gxbp_gap;
 
 static gxbp_gap gxbp_list_gap(const gxb_complex *cx, uint32_t first, uint32_t count) {
     gxbp_gap gap;
-    gap.first = first; gap.count = first >= cx->mark[7] ? count : 0;
+    gap.first = first;
+    gap.count = first >= cx->mark[7] ? count : 0;
     return gap;
 }
 
 /* Where a new list of the pool stands: in the gap if it fits, and else behind all others. */
 static uint32_t gxbp_place_list(gxb_complex *cx, uint32_t count, gxbp_gap *gap) {
     const uint32_t end = cx->pool_count;
-    if (count <= gap->count) { gap->count = 0; return gap->first; }
+    if (count <= gap->count) {
+        gap->count = 0;
+        return gap->first;
+    }
     cx->pool_count += count;
     return end;
 }
 
-static void gxbp_copy_arc(gxb_complex *cx, const gxbp_parting *parting, uint32_t from, uint32_t to, uint32_t closing, gxbp_gap *gap, gxb_facet *child) {
+static void gxbp_copy_arc(gxb_complex *cx, const gxbp_parting *parting, uint32_t from, uint32_t to, uint32_t closing,
+                          gxbp_gap *gap, gxb_facet *child) {
     const uint32_t count = (to > from ? 0 : parting->count) + to - from + 1;
     uint32_t i, *out;
     gxbp_set_loop(child, gxbp_place_list(cx, count, gap), count);
@@ -2794,8 +3174,8 @@ static void gxbp_copy_arc(gxb_complex *cx, const gxbp_parting *parting, uint32_t
     *out = closing;
 }
 
-/* Divides a facet that has points on both sides of the plane. Its children are child (in front) and child + 1. Returns the new edge, signed as the front
-   child walks it. */
+/* Divides a facet that has points on both sides of the plane. Its children are child (in front) and child + 1. Returns
+   the new edge, signed as the front child walks it. */
 static uint32_t gxbp_split_facet(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife) {
     const gxb_facet f = cx->facets[facet];
     const uint32_t child = cx->facet_count, *zero;
@@ -2809,7 +3189,8 @@ static uint32_t gxbp_split_facet(gxb_complex *cx, uint32_t facet, const gxbp_kni
     for (i = 0; i < f.loop_count; i++) gxbp_part_edge(cx, cx->pool[f.loop + i], knife, &parting);
     line[0] = knife->explicit_line ? knife->line[0] : f.plane;
     line[1] = knife->explicit_line ? knife->line[1] : knife->plane;
-    edge = gxbp_new_edge(cx, gxbp_edge_start(cx, parting.loop[zero[0]]), gxbp_edge_start(cx, parting.loop[zero[1]]), line, (uint32_t)knife->explicit_line);
+    edge = gxbp_new_edge(cx, gxbp_edge_start(cx, parting.loop[zero[0]]), gxbp_edge_start(cx, parting.loop[zero[1]]),
+                         line, (uint32_t)knife->explicit_line);
     front = gxbp_sign(cx, gxbp_edge_start(cx, parting.loop[zero[0] + 1]), knife->plane, knife->slot) > 0 ? 0u : 1u;
     gxbp_save(cx, GXBP_FACETS, facet);
     cx->facets[facet].child = child;
@@ -2826,7 +3207,9 @@ static uint32_t gxbp_split_facet(gxb_complex *cx, uint32_t facet, const gxbp_kni
 
 /* --- dividing a leaf: its facets, then the facet between the two halves, then the tree --- */
 
-typedef struct gxbp_rim { uint32_t first, count; } gxbp_rim;    /* signed edges in complex.scratch */
+typedef struct gxbp_rim {
+    uint32_t first, count;
+} gxbp_rim; /* signed edges in complex.scratch */
 
 /* Adds an edge, or what it has been divided into. */
 static void gxbp_add_rim(gxb_complex *cx, gxbp_rim *rim, uint32_t signed_edge) {
@@ -2841,14 +3224,17 @@ static void gxbp_add_rim(gxb_complex *cx, gxbp_rim *rim, uint32_t signed_edge) {
     cx->scratch[rim->first + rim->count++] = signed_edge;
 }
 
-/* Edges of an undivided facet that lie in the plane belong to the rim: walked against the outside's view of the half in front. */
-static void gxbp_add_flat_edges(gxb_complex *cx, gxbp_rim *rim, uint32_t facet, uint32_t flip, const gxbp_knife *knife) {
+/* Edges of an undivided facet that lie in the plane belong to the rim: walked against the outside's view of the half in
+ * front. */
+static void gxbp_add_flat_edges(gxb_complex *cx, gxbp_rim *rim, uint32_t facet, uint32_t flip,
+                                const gxbp_knife *knife) {
     const gxb_facet *f = &cx->facets[facet];
     uint32_t i;
     for (i = 0; i < f->loop_count; i++) {
         const uint32_t e = cx->pool[f->loop + i];
         if (gxbp_sign(cx, cx->edges[e >> 1].v[0], knife->plane, knife->slot) == 0 &&
-            gxbp_sign(cx, cx->edges[e >> 1].v[1], knife->plane, knife->slot) == 0) gxbp_add_rim(cx, rim, e ^ flip);
+            gxbp_sign(cx, cx->edges[e >> 1].v[1], knife->plane, knife->slot) == 0)
+            gxbp_add_rim(cx, rim, e ^ flip);
     }
 }
 
@@ -2885,20 +3271,21 @@ static void gxbp_set_list(gxb_complex *cx, uint32_t leaf, const uint32_t *facets
     for (i = 0; i < count; i++) cx->pool[l->facets + i] = facets[i];
 }
 
-/* Divides a leaf whose inside the plane meets and which is ready: its facets and their signs are in complex.scratch. It becomes the half in front, the
-   new one lies behind. Returns the facet between them. */
+/* Divides a leaf whose inside the plane meets and which is ready: its facets and their signs are in complex.scratch. It
+   becomes the half in front, the new one lies behind. Returns the facet between them. */
 static uint32_t gxbp_split_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife *knife) {
     const uint32_t behind = cx->leaf_count++, listed = cx->leaves[leaf].facet_count, count = cx->scratch_count / 2;
     gxbp_rim rim;
     gxbp_gap gap;
     uint32_t *front_list, *behind_list, fronts = 0, behinds = 0, i, middle;
-    rim.first = 2 * count; rim.count = 0;
+    rim.first = 2 * count;
+    rim.count = 0;
     gxbp_forget_rim(cx);
     front_list = cx->scratch + cx->scratch_capacity - 2 * count - 2;
     behind_list = cx->scratch + cx->scratch_capacity - count - 1;
     for (i = 0; i < count; i++) {
         const uint32_t facet = cx->scratch[i], signs = cx->scratch[count + i], sides = signs & 3;
-        const uint32_t inward = cx->facets[facet].leaf[0] == leaf ? 1u : 0u;     /* its normal points into the leaf */
+        const uint32_t inward = cx->facets[facet].leaf[0] == leaf ? 1u : 0u; /* its normal points into the leaf */
         if (sides == 3) {
             const uint32_t edge = gxbp_split_facet(cx, facet, knife), child = cx->facets[facet].child;
             gxbp_add_rim(cx, &rim, edge ^ inward);
@@ -2907,7 +3294,8 @@ static uint32_t gxbp_split_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife
             behind_list[behinds++] = child + 1;
         } else {
             if (signs >= 8) gxbp_add_flat_edges(cx, &rim, facet, inward ^ (sides == 1 ? 0u : 1u), knife);
-            if (sides == 1) front_list[fronts++] = facet;
+            if (sides == 1)
+                front_list[fronts++] = facet;
             else {
                 gxbp_move_facet(cx, facet, leaf, behind);
                 behind_list[behinds++] = facet;
@@ -2935,7 +3323,8 @@ static uint32_t gxbp_split_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife
 static uint32_t gxbp_open_edge(gxb_complex *cx, uint32_t mesh_edge, uint32_t a, uint32_t b) {
     uint32_t line[2];
     if (cx->mesh_edge[mesh_edge] == GXB_NONE) {
-        line[0] = a < b ? a : b; line[1] = a < b ? b : a;
+        line[0] = a < b ? a : b;
+        line[1] = a < b ? b : a;
         gxbp_save(cx, GXBP_MESH_EDGES, mesh_edge);
         cx->mesh_edge[mesh_edge] = gxbp_new_edge(cx, line[0], line[1], line, 1);
     }
@@ -2948,7 +3337,8 @@ static uint32_t gxbp_local_edge(uint32_t i, uint32_t j) {
     return table[i][j];
 }
 
-/* The facet of an element's face: its plane through the nodes in ascending order, so that both elements make the same. */
+/* The facet of an element's face: its plane through the nodes in ascending order, so that both elements make the same.
+ */
 static GXBP_APART gx_result gxbp_open_face(gxb_complex *cx, uint32_t element, uint32_t k) {
     const uint32_t face = cx->element_faces[4 * element + k], *node = cx->elements + 4 * (size_t)element;
     uint32_t local[3], j, t, plane;
@@ -2956,9 +3346,13 @@ static GXBP_APART gx_result gxbp_open_face(gxb_complex *cx, uint32_t element, ui
     gx_result result;
     if (cx->face_facet[face] != GXB_NONE) return GX_OK;
     for (j = 0; j < 3; j++) local[j] = gxbp_face_nodes[k][j];
-    for (j = 0; j < 3; j++) {       /* sort by node: three steps of a bubble */
+    for (j = 0; j < 3; j++) { /* sort by node: three steps of a bubble */
         const uint32_t i = j % 2;
-        if (node[local[i]] > node[local[i + 1]]) { t = local[i]; local[i] = local[i + 1]; local[i + 1] = t; }
+        if (node[local[i]] > node[local[i + 1]]) {
+            t = local[i];
+            local[i] = local[i + 1];
+            local[i + 1] = t;
+        }
     }
     result = gxbp_new_plane(cx, node[local[0]], node[local[1]], node[local[2]], 0, &plane);
     if (result == GX_OK) result = gxbp_reserve_split(cx, 1, 3);
@@ -2970,11 +3364,12 @@ static GXBP_APART gx_result gxbp_open_face(gxb_complex *cx, uint32_t element, ui
     gxbp_set_loop(f, cx->pool_count, 3);
     f->child = f->labels = GXB_NONE;
     f->face = face;
-    f->leaf[0] = cx->face_elements[2 * face];       /* the first leaf of an element has the element's number */
+    f->leaf[0] = cx->face_elements[2 * face]; /* the first leaf of an element has the element's number */
     f->leaf[1] = cx->face_elements[2 * face + 1];
     for (j = 0; j < 3; j++) {
         const uint32_t a = local[j], b = local[(j + 1) % 3];
-        cx->pool[cx->pool_count++] = gxbp_open_edge(cx, cx->element_edges[6 * element + gxbp_local_edge(a, b)], node[a], node[b]);
+        cx->pool[cx->pool_count++] =
+            gxbp_open_edge(cx, cx->element_edges[6 * element + gxbp_local_edge(a, b)], node[a], node[b]);
     }
     cx->pool_live += 3;
     gxbp_save(cx, GXBP_FACES, face);
@@ -3002,7 +3397,7 @@ GXFEM_API gx_result gxb_complex_open_element(gxb_complex *cx, uint32_t element) 
     return GX_OK;
 }
 
-/* >>clip: a triangle against the tree of an element ------------------------------------------------------------------------ */
+/* >>clip: a triangle against the tree of an element ---------------------------------------------------------------- */
 
 static uint32_t gxbp_face_plane(const gxb_complex *cx, uint32_t element, uint32_t k) {
     return cx->facets[cx->face_facet[cx->element_faces[4 * element + k]]].plane;
@@ -3014,7 +3409,8 @@ static int gxbp_corner_sign(gxb_complex *cx, const gxbp_corner *c, uint32_t plan
 
 /* The point in which two carriers meet in the triangle's plane. */
 static void gxbp_clip_corner(gxb_complex *cx, const gxb_triangle *t, uint32_t a, uint32_t b, gxbp_corner *r) {
-    const uint32_t edge = a >= GXBP_TRIANGLE_EDGE ? a : b, k = edge - GXBP_TRIANGLE_EDGE, other = a >= GXBP_TRIANGLE_EDGE ? b : a;
+    const uint32_t edge = a >= GXBP_TRIANGLE_EDGE ? a : b, k = edge - GXBP_TRIANGLE_EDGE,
+                   other = a >= GXBP_TRIANGLE_EDGE ? b : a;
     r->sign = 0;
     r->point = GXB_NONE;
     r->def[2] = other;
@@ -3026,17 +3422,20 @@ static void gxbp_clip_corner(gxb_complex *cx, const gxb_triangle *t, uint32_t a,
     }
     if (edge >= GXBP_TRIANGLE_EDGE) {
         r->kind = GXB_LINE_PLANE;
-        r->def[0] = t->point[k]; r->def[1] = t->point[(k + 1) % 3];
+        r->def[0] = t->point[k];
+        r->def[1] = t->point[(k + 1) % 3];
     } else {
         r->kind = GXB_THREE_PLANES;
-        r->def[0] = t->plane; r->def[1] = edge;
+        r->def[0] = t->plane;
+        r->def[1] = edge;
     }
     gxbp_definition_ball(cx, r->kind, r->def, &r->ball);
 }
 
-/* Appends to the corner stack what of corners first ... first+count-1 (signs known) lies on one side of a carrier. Returns the number
-   of corners, 0 where that part has no area. */
-static uint32_t gxbp_clip(gxb_complex *cx, const gxb_triangle *t, uint32_t first, uint32_t count, uint32_t carrier, int side) {
+/* Appends to the corner stack what of corners first ... first+count-1 (signs known) lies on one side of a carrier.
+   Returns the number of corners, 0 where that part has no area. */
+static uint32_t gxbp_clip(gxb_complex *cx, const gxb_triangle *t, uint32_t first, uint32_t count, uint32_t carrier,
+                          int side) {
     const uint32_t start = cx->corner_count;
     uint32_t i;
     int inside = 0;
@@ -3072,10 +3471,10 @@ static int gxbp_corner_sides(gxb_complex *cx, uint32_t first, uint32_t count, ui
     return sides;
 }
 
-/* >>insert -------------------------------------------------------------------------------------------------------------- */
+/* >>insert --------------------------------------------------------------------------------------------------------- */
 
-/* The plane through edge k of the triangle, along the axis that is closest to its normal: the triangle lies in front of it where
-   *front is 1, behind it where it is -1. */
+/* The plane through edge k of the triangle, along the axis that is closest to its normal: the triangle lies in front of
+ *it where front is 1, behind it where it is -1. */
 static gx_result gxbp_edge_plane(gxb_complex *cx, gxb_triangle *t, uint32_t k, int *front) {
     const uint32_t axis = cx->planes[t->plane].axis;
     gx_result result = GX_OK;
@@ -3097,7 +3496,8 @@ static int32_t gxbp_relative_orientation(gxb_complex *cx, const gxb_triangle *t,
 static gx_result gxbp_add_label(gxb_complex *cx, const gxb_triangle *t, uint32_t facet) {
     uint32_t l;
     gx_result result = GXBP_RESERVE(cx, labels, label, 1);
-    for (l = cx->facets[facet].labels; l != GXB_NONE; l = cx->labels[l].next) if (cx->labels[l].triangle == t->label) return GX_OK;
+    for (l = cx->facets[facet].labels; l != GXB_NONE; l = cx->labels[l].next)
+        if (cx->labels[l].triangle == t->label) return GX_OK;
     if (result == GX_OK) result = GXBP_RESERVE(cx, walls, wall, 1);
     if (result == GX_OK) result = gxbp_reserve_undo(cx, 1);
     if (result != GX_OK) return result;
@@ -3132,12 +3532,14 @@ GXFEM_API gx_result gxb_complex_set_removed(gxb_complex *cx, uint32_t leaf) {
 /* The knife along edge k of the triangle, whose plane has been made. */
 static void gxbp_set_knife(const gxb_triangle *t, uint32_t k, gxbp_knife *knife) {
     knife->plane = t->edge_plane[k];
-    knife->line[0] = t->point[k]; knife->line[1] = t->point[(k + 1) % 3];
+    knife->line[0] = t->point[k];
+    knife->line[1] = t->point[(k + 1) % 3];
     knife->explicit_line = 1;
     knife->slot = 1;
 }
 
-/* Labels the part of a facet, in the triangle's plane, that the triangle covers; edges: bit k where edge k may bound that part. */
+/* Labels the part of a facet, in the triangle's plane, that the triangle covers; edges: bit k where edge k may bound
+ * that part. */
 static gx_result gxbp_cover_facet(gxb_complex *cx, gxb_triangle *t, uint32_t facet, uint32_t edges) {
     uint32_t k;
     for (k = 0; k < 3; k++) {
@@ -3156,14 +3558,16 @@ static gx_result gxbp_cover_facet(gxb_complex *cx, gxb_triangle *t, uint32_t fac
             if (result != GX_OK) return result;
             gxbp_split_facet(cx, facet, &knife);
             facet = cx->facets[facet].child + (front > 0 ? 0u : 1u);
-        } else if (sides != (front > 0 ? 1 : 2)) return GX_OK;      /* outside of the triangle */
+        } else if (sides != (front > 0 ? 1 : 2))
+            return GX_OK; /* outside of the triangle */
     }
     return gxbp_add_label(cx, t, facet);
 }
 
 /* --- pinched edges and nodes --- */
 
-/* Divides the piece of an edge in the triangle's plane by the planes of the triangle's edges k, k+1 ... and marks what is inside. */
+/* Divides the piece of an edge in the triangle's plane by the planes of the triangle's edges k, k+1 ... and marks what
+ * is inside. */
 static gx_result gxbp_cover_edge(gxb_complex *cx, gxb_triangle *t, uint32_t edge, uint32_t k, int *covered) {
     gx_result result = gxbp_reserve_split(cx, 0, 1);
     for (; k < 3 && result == GX_OK; k++) {
@@ -3195,9 +3599,11 @@ static GXBP_COLD gx_result gxbp_cover_edges(gxb_complex *cx, gxb_triangle *t, ui
     return result == GX_OK ? gxbp_cover_edges(cx, t, child + 1, covered) : result;
 }
 
-GXFEM_API GXBP_RARE gx_result gxb_complex_cover_edge(gxb_complex *cx, gxb_triangle *t, uint32_t element, uint32_t local_edge, int *covered) {
+GXFEM_API GXBP_RARE gx_result gxb_complex_cover_edge(gxb_complex *cx, gxb_triangle *t, uint32_t element,
+                                                     uint32_t local_edge, int *covered) {
     const uint32_t edge = cx->element_edges[6 * element + local_edge];
-    const uint32_t a = cx->elements[4 * element + gxbp_edge_nodes[local_edge][0]], b = cx->elements[4 * element + gxbp_edge_nodes[local_edge][1]];
+    const uint32_t a = cx->elements[4 * element + gxbp_edge_nodes[local_edge][0]],
+                   b = cx->elements[4 * element + gxbp_edge_nodes[local_edge][1]];
     gx_result result;
     if (gxb_complex_side(cx, a, t->plane) != 0 || gxb_complex_side(cx, b, t->plane) != 0) return GX_OK;
     result = gxb_complex_open_element(cx, element);
@@ -3234,16 +3640,26 @@ static gx_result gxbp_cover_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t leaf
     return result;
 }
 
-/* --- balance: planes that come in order, as in parallel cuts, would make chains of nodes. A chain is a list of nodes, each with what hangs
-   off it; where one node's plane has all that hangs off those above it on one side or the other, that node can stand above them,
-   and nodes with nothing on a side are not needed there. No leaf changes. --- */
+/* --- balance: planes that come in order, as in parallel cuts, would make chains of nodes. A chain is a list of nodes,
+   each with what hangs off it; where one node's plane has all that hangs off those above it on one side or the other,
+   that node can stand above them, and nodes with nothing on a side are not needed there. No leaf changes. --- */
 
-typedef struct gxbp_rung { uint32_t node, side, off; } gxbp_rung;   /* the chain goes on at child[side]; off: what hangs at the other one */
-typedef struct gxbp_step { uint32_t node, child[2]; } gxbp_step;
-typedef struct gxbp_plan { gxbp_step *step; uint32_t count; gxbp_rung *spare; } gxbp_plan;    /* what shall hang where, from below */
+/* the chain goes on at child[side]; off: what hangs at the other one */
+typedef struct gxbp_rung {
+    uint32_t node, side, off;
+} gxbp_rung;
+typedef struct gxbp_step {
+    uint32_t node, child[2];
+} gxbp_step;
+/* what shall hang where, from below */
+typedef struct gxbp_plan {
+    gxbp_step *step;
+    uint32_t count;
+    gxbp_rung *spare;
+} gxbp_plan;
 
-/* Is the tree far from what a balanced one of so many leaves has? Looked at eight times while it doubles where it is a chain for the
-   most part, else once: what is not a chain is seldom balanced by turning it round. */
+/* Is the tree far from what a balanced one of so many leaves has? Looked at eight times while it doubles where it is a
+   chain for the most part, else once: what is not a chain is seldom balanced by turning it round. */
 static int gxbp_is_slack(uint32_t height, uint32_t leaves) {
     uint32_t bits = 0, looks;
     while (leaves >> bits > 1) bits++;
@@ -3257,7 +3673,9 @@ static uint32_t gxbp_depth(const gxb_complex *cx, uint32_t node) {
     return depth;
 }
 
-static uint32_t gxbp_leaves_below(const gxb_complex *cx, uint32_t reference) { return reference & 1 ? cx->nodes[reference >> 1].leaves : 1; }
+static uint32_t gxbp_leaves_below(const gxb_complex *cx, uint32_t reference) {
+    return reference & 1 ? cx->nodes[reference >> 1].leaves : 1;
+}
 
 /* Those of the facets into which one was divided */
 static GXBP_APART int gxbp_pieces_sides(gxb_complex *cx, uint32_t facet, const gxbp_knife *knife) {
@@ -3266,8 +3684,8 @@ static GXBP_APART int gxbp_pieces_sides(gxb_complex *cx, uint32_t facet, const g
     return gxbp_pieces_sides(cx, child, knife) | gxbp_pieces_sides(cx, child + 1, knife);
 }
 
-/* On which sides of the plane (slot 1's, for its present stamp) the leaf has points: bit 1 in front, bit 2 behind. Edges need not be
-   resolved: what divides them lies between their ends. */
+/* On which sides of the plane (slot 1's, for its present stamp) the leaf has points: bit 1 in front, bit 2 behind.
+   Edges need not be resolved: what divides them lies between their ends. */
 static int gxbp_leaf_sides(gxb_complex *cx, uint32_t leaf, const gxbp_knife *knife) {
     const gxb_leaf *l = &cx->leaves[leaf];
     uint32_t i;
@@ -3296,8 +3714,8 @@ static uint32_t gxbp_plan_chain(gxbp_plan *plan, const gxbp_rung *rung, uint32_t
     return end;
 }
 
-/* Sorts what hangs above rung middle by its side of that plane: those on the chain's own side last. Their number is *own. 0: the plane
-   passes through one of them. spare: middle rungs */
+/* Sorts what hangs above rung middle by its side of that plane: those on the chain's own side last. Their number is
+ *own. 0: the plane passes through one of them. spare: middle rungs */
 static int gxbp_part_chain(gxb_complex *cx, gxbp_rung *rung, uint32_t middle, gxbp_rung *spare, uint32_t *own) {
     const uint32_t side = rung[middle].side;
     uint32_t i, n = 0;
@@ -3310,8 +3728,10 @@ static int gxbp_part_chain(gxb_complex *cx, gxbp_rung *rung, uint32_t middle, gx
     for (i = 0; i < middle; i++) {
         const int sides = gxbp_sides_below(cx, rung[i].off, &knife);
         if (sides == 3) return 0;
-        if ((sides == 1) == (side == 0)) spare[(*own)++] = rung[i];
-        else spare[middle - ++n] = rung[i];
+        if ((sides == 1) == (side == 0))
+            spare[(*own)++] = rung[i];
+        else
+            spare[middle - ++n] = rung[i];
     }
     for (i = 0; i < n; i++) rung[i] = spare[middle - 1 - i];
     memcpy(rung + n, spare, *own * sizeof *rung);
@@ -3319,7 +3739,8 @@ static int gxbp_part_chain(gxb_complex *cx, gxbp_rung *rung, uint32_t middle, gx
 }
 
 /* A balanced tree of the chain above end: the rung in the middle, by leaves, is made its root. */
-static GXBP_COLD uint32_t gxbp_balance_chain(gxb_complex *cx, gxbp_plan *plan, gxbp_rung *rung, uint32_t count, uint32_t end) {
+static GXBP_COLD uint32_t gxbp_balance_chain(gxb_complex *cx, gxbp_plan *plan, gxbp_rung *rung, uint32_t count,
+                                             uint32_t end) {
     uint32_t total = gxbp_leaves_below(cx, end), sum = 0, middle = 0, own, i, on, off;
     gxbp_rung root;
     if (count < 4) return gxbp_plan_chain(plan, rung, count, end);
@@ -3334,7 +3755,8 @@ static GXBP_COLD uint32_t gxbp_balance_chain(gxb_complex *cx, gxbp_plan *plan, g
 }
 
 /* Hangs everything where the plan says, from below, and the whole where top was. */
-static gx_result gxbp_follow_plan(gxb_complex *cx, const gxbp_plan *plan, uint32_t tree, uint32_t top, uint32_t element) {
+static gx_result gxbp_follow_plan(gxb_complex *cx, const gxbp_plan *plan, uint32_t tree, uint32_t top,
+                                  uint32_t element) {
     const uint32_t above = cx->nodes[top].parent;
     uint32_t i, k;
     gx_result result = gxbp_reserve_undo(cx, 3 * (size_t)plan->count + 1);
@@ -3346,11 +3768,18 @@ static gx_result gxbp_follow_plan(gxb_complex *cx, const gxbp_plan *plan, uint32
         for (k = 0; k < 2; k++) {
             const uint32_t child = n->child[k] = plan->step[i].child[k];
             n->leaves += gxbp_leaves_below(cx, child);
-            if (child & 1) { gxbp_save(cx, GXBP_NODES, child >> 1); cx->nodes[child >> 1].parent = plan->step[i].node; }
+            if (child & 1) {
+                gxbp_save(cx, GXBP_NODES, child >> 1);
+                cx->nodes[child >> 1].parent = plan->step[i].node;
+            }
         }
     }
-    cx->nodes[tree >> 1].parent = above;    /* it has been saved */
-    if (above == GXB_NONE) { gxbp_save(cx, GXBP_ROOTS, element); cx->root[element] = tree; return GX_OK; }
+    cx->nodes[tree >> 1].parent = above; /* it has been saved */
+    if (above == GXB_NONE) {
+        gxbp_save(cx, GXBP_ROOTS, element);
+        cx->root[element] = tree;
+        return GX_OK;
+    }
     gxbp_save(cx, GXBP_NODES, above);
     cx->nodes[above].child[cx->nodes[above].child[1] == 2 * top + 1] = tree;
     return GX_OK;
@@ -3371,7 +3800,9 @@ static GXBP_COLD gx_result gxbp_balance(gxb_complex *cx, uint32_t top, uint32_t 
         rung[i].off = cx->nodes[n].child[1 - rung[i].side];
         below = 2 * n + 1;
     }
-    plan.spare = rung + count; plan.step = (gxbp_step *)(void *)(rung + 2 * (size_t)count); plan.count = 0;
+    plan.spare = rung + count;
+    plan.step = (gxbp_step *)(void *)(rung + 2 * (size_t)count);
+    plan.count = 0;
     tree = gxbp_balance_chain(cx, &plan, rung, count, cx->nodes[node].child[0]);
     result = gxbp_follow_plan(cx, &plan, tree, top, element);
     gxbp_release(&cx->allocator, rung, size);
@@ -3409,43 +3840,51 @@ static gx_result gxbp_ready_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knif
         const uint32_t signs = cx->scratch[count + i] = gxbp_facet_signs(cx, cx->scratch[i], knife, &own);
         if ((signs & 3) == 3 || signs >= 8) edges += own;
     }
-    cx->scratch_count = 2 * count;      /* these stay where scratch moves */
+    cx->scratch_count = 2 * count; /* these stay where scratch moves */
     result = gxbp_reserve_split(cx, count, edges);
     if (result != GX_OK) cx->scratch_count = 0;
     return result;
 }
 
-/* Divides a leaf that is ready and hangs at the task's place; *node takes that place. Returns the facet between the halves. */
-static uint32_t gxbp_part_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife *knife, const gxbp_task *task, uint32_t *node) {
+/* Divides a leaf that is ready and hangs at the task's place; *node takes that place. Returns the facet between the
+ * halves. */
+static uint32_t gxbp_part_leaf(gxb_complex *cx, uint32_t leaf, const gxbp_knife *knife, const gxbp_task *task,
+                               uint32_t *node) {
     const uint32_t middle = gxbp_split_leaf(cx, leaf, knife);
-    gxb_node *n = &cx->nodes[*node = cx->tree_count++];
+    gxb_node *n = &cx->nodes[ *node = cx->tree_count++];
     n->plane = knife->plane;
     n->child[0] = 2 * leaf;
     n->child[1] = 2 * (cx->leaf_count - 1);
     n->parent = task->parent;
     n->leaves = 1;
-    if (task->parent == GXBP_IN_ROOT) gxbp_save(cx, GXBP_ROOTS, cx->leaves[leaf].element);
-    else gxbp_save(cx, GXBP_NODES, task->parent);
+    if (task->parent == GXBP_IN_ROOT)
+        gxbp_save(cx, GXBP_ROOTS, cx->leaves[leaf].element);
+    else
+        gxbp_save(cx, GXBP_NODES, task->parent);
     *gxbp_reference(cx, task, cx->leaves[leaf].element) = 2 * *node + 1;
     return middle;
 }
 
-/* --- free planes: the triangles of a convex surface would all divide one and the same leaf, in a time that grows with their number and its
-   facets. A leaf with many facets inside its element is divided by a plane across them that is no triangle's and makes no wall: the
-   facet between the halves stays open, and they stay one cell. What is chosen depends on given coordinates and exact signs alone. --- */
+/* --- free planes: the triangles of a convex surface would all divide one and the same leaf, in a time that grows with
+   their number and its facets. A leaf with many facets inside its element is divided by a plane across them that is no
+   triangle's and makes no wall: the facet between the halves stays open, and they stay one cell. What is chosen depends
+   on given coordinates and exact signs alone. --- */
 
-enum { GXBP_MANY_FACETS = 24, GXBP_SAMPLE = 32 };      /* looked at from so many on; of so many at most the median is taken */
+/* looked at from so many on; of so many at most the median is taken */
+enum { GXBP_MANY_FACETS = 24, GXBP_SAMPLE = 32 };
 
 /* A number from a to b > a with few bits */
 static GXBP_COLD double gxbp_between(double a, double b) {
     const uint64_t x = gxbp_bits(a), y = gxbp_bits(b);
     int drop = 52;
     if (gxbp_compare_doubles(a, 0) < 0) return gxbp_compare_doubles(b, 0) < 0 ? -gxbp_between(-b, -a) : 0;
-    if (x >> 52 == y >> 52) while (drop > 0 && x >> (drop - 1) == y >> (drop - 1)) drop--;
+    if (x >> 52 == y >> 52)
+        while (drop > 0 && x >> (drop - 1) == y >> (drop - 1)) drop--;
     return x >> 52 == y >> 52 && drop > 0 ? gxbp_double(y >> (drop - 1) << (drop - 1)) : gxbp_double(y >> 52 << 52);
 }
 
-/* Sorts the numbers. Returns how far apart the first and the last are, roughly: its exponent, and a number between the two in the middle. */
+/* Sorts the numbers. Returns how far apart the first and the last are, roughly: its exponent, and a number between the
+ * two in the middle. */
 static int gxbp_median(double *x, uint32_t count, double *median) {
     uint32_t i, j;
     for (i = 1; i < count; i++) {
@@ -3459,9 +3898,11 @@ static int gxbp_median(double *x, uint32_t count, double *median) {
     return gxbp_difference_exponent(x[count - 1], x[0]);
 }
 
-/* Where a plane along each axis would leave about as many of the facets on either side: by the first point of each facet's plane. rank: the axes, the one
-   along which these points are furthest apart first. Returns the number of axes along which they are apart at all. */
-static GXBP_COLD int gxbp_medians(gxb_complex *cx, const uint32_t *facets, uint32_t count, double median[3], int rank[3]) {
+/* Where a plane along each axis would leave about as many of the facets on either side: by the first point of each
+   facet's plane. rank: the axes, the one along which these points are furthest apart first. Returns the number of axes
+   along which they are apart at all. */
+static GXBP_COLD int gxbp_medians(gxb_complex *cx, const uint32_t *facets, uint32_t count, double median[3],
+                                  int rank[3]) {
     const uint32_t step = (count + GXBP_SAMPLE - 1) / GXBP_SAMPLE;
     double x[3][GXBP_SAMPLE], given[3];
     int spread[3], k, j, ranks = 0;
@@ -3480,7 +3921,8 @@ static GXBP_COLD int gxbp_medians(gxb_complex *cx, const uint32_t *facets, uint3
 }
 
 /* A plane across an axis: through points at the corners of the element's box. */
-static GXBP_COLD gx_result gxbp_new_free_plane(gxb_complex *cx, uint32_t element, int axis, double at, uint32_t *plane) {
+static GXBP_COLD gx_result gxbp_new_free_plane(gxb_complex *cx, uint32_t element, int axis, double at,
+                                               uint32_t *plane) {
     double low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, x[3];
     uint32_t point[3], i;
     int k;
@@ -3515,10 +3957,11 @@ static int gxbp_plane_parts(gxb_complex *cx, const uint32_t *facets, uint32_t co
     return front >= count / 4 && behind >= count / 4;
 }
 
-/* Divides the leaf at the task's place, which a triangle has just made, by a free plane if it has many facets and one parts them well; *node:
-   GXB_NONE, or what has taken its place. Looked at whenever their number is one of eight. */
+/* Divides the leaf at the task's place, which a triangle has just made, by a free plane if it has many facets and one
+   parts them well; *node: GXB_NONE, or what has taken its place. Looked at whenever their number is one of eight. */
 static GXBP_COLD gx_result gxbp_relieve_leaf(gxb_complex *cx, const gxbp_task *task, uint32_t *node) {
-    const uint32_t leaf = cx->nodes[task->parent].child[task->side] >> 1, points = cx->point_count, planes = cx->plane_count;
+    const uint32_t leaf = cx->nodes[task->parent].child[task->side] >> 1, points = cx->point_count,
+                   planes = cx->plane_count;
     const gxb_leaf l = cx->leaves[leaf];
     uint32_t i, n = 0, *inner;
     double median[3];
@@ -3527,7 +3970,8 @@ static GXBP_COLD gx_result gxbp_relieve_leaf(gxb_complex *cx, const gxbp_task *t
     gx_result result = GXBP_RESERVE(cx, scratch, scratch, l.facet_count);
     if (result != GX_OK) return result;
     inner = cx->scratch;
-    for (i = 0; i < l.facet_count; i++) if (cx->facets[cx->pool[l.facets + i]].face == GXB_NONE) inner[n++] = cx->pool[l.facets + i];
+    for (i = 0; i < l.facet_count; i++)
+        if (cx->facets[cx->pool[l.facets + i]].face == GXB_NONE) inner[n++] = cx->pool[l.facets + i];
     if (n < GXBP_MANY_FACETS || n % 8 != 0) return GX_OK;
     memset(&knife, 0, sizeof knife);
     knife.slot = 1;
@@ -3545,7 +3989,8 @@ static GXBP_COLD gx_result gxbp_relieve_leaf(gxb_complex *cx, const gxbp_task *t
     return result;
 }
 
-/* The triangle's part in the leaf is the polygon: divide the leaf and label what the triangle covers of the facet between. */
+/* The triangle's part in the leaf is the polygon: divide the leaf and label what the triangle covers of the facet
+ * between. */
 static gx_result gxbp_divide_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t leaf, const gxbp_task *task) {
     const uint32_t element = cx->leaves[leaf].element;
     gxbp_knife knife;
@@ -3564,15 +4009,22 @@ static gx_result gxbp_divide_leaf(gxb_complex *cx, gxb_triangle *t, uint32_t lea
     result = gxbp_cover_facet(cx, t, middle, edges);
     half.parent = node;
     for (half.side = 0; half.side < 2 && result == GX_OK; half.side++)
-        if (cx->leaves[cx->nodes[node].child[half.side] >> 1].facet_count >= GXBP_MANY_FACETS) result = gxbp_relieve_leaf(cx, &half, &freed[half.side]);
+        if (cx->leaves[cx->nodes[node].child[half.side] >> 1].facet_count >= GXBP_MANY_FACETS)
+            result = gxbp_relieve_leaf(cx, &half, &freed[half.side]);
     if (result == GX_OK) result = gxbp_grow_tree(cx, node, element);
-    for (i = 0; i < 2 && result == GX_OK; i++) if (freed[i] != GXB_NONE) result = gxbp_grow_tree(cx, freed[i], element);
+    for (i = 0; i < 2 && result == GX_OK; i++)
+        if (freed[i] != GXB_NONE) result = gxbp_grow_tree(cx, freed[i], element);
     return result;
 }
 
-static GXBP_APART void gxbp_push_task(gxb_complex *cx, uint32_t parent, uint32_t side, uint32_t first, uint32_t count, uint32_t coplanar) {
+static GXBP_APART void gxbp_push_task(gxb_complex *cx, uint32_t parent, uint32_t side, uint32_t first, uint32_t count,
+                                      uint32_t coplanar) {
     gxbp_task *task = &cx->tasks[cx->task_count++];
-    task->parent = parent; task->side = side; task->first = first; task->count = count; task->coplanar = coplanar;
+    task->parent = parent;
+    task->side = side;
+    task->first = first;
+    task->count = count;
+    task->coplanar = coplanar;
 }
 
 /* Sends the polygon of the task down the tree by one node. */
@@ -3595,15 +4047,20 @@ static gx_result gxbp_descend(gxb_complex *cx, gxb_triangle *t, const gxbp_task 
     return GX_OK;
 }
 
-/* What the triangle's plane, in front and behind of which there are nodes (or three in it), has of an element: a polygon of three corners where one
-   node is alone on its side, else of four. Each is a node, or a point of the edge between two, and starts a side in the face opposite to a third. */
+/* What the triangle's plane, in front and behind of which there are nodes (or three in it), has of an element: a
+   polygon of three corners where one node is alone on its side, else of four. Each is a node, or a point of the edge
+   between two, and starts a side in the face opposite to a third. */
 static uint32_t gxbp_choose_section(const int sign[4], uint8_t corners[4][3]) {
     uint8_t node[2][4];
     uint32_t count[2] = {0, 0}, k, side;
-    for (k = 0; k < 4; k++) { side = sign[k] > 0 ? 0u : 1u; if (sign[k] != 0) node[side][count[side]++] = (uint8_t)k; }
+    for (k = 0; k < 4; k++) {
+        side = sign[k] > 0 ? 0u : 1u;
+        if (sign[k] != 0) node[side][count[side]++] = (uint8_t)k;
+    }
     if (count[0] == 2 && count[1] == 2) {
         for (k = 0; k < 4; k++) {
-            corners[k][0] = node[0][k >> 1]; corners[k][1] = node[1][(k + 1) >> 1 & 1];
+            corners[k][0] = node[0][k >> 1];
+            corners[k][1] = node[1][(k + 1) >> 1 & 1];
             corners[k][2] = k & 1 ? node[1][k >> 1] : node[0][1 - (k >> 1)];
         }
         return 4;
@@ -3611,20 +4068,26 @@ static uint32_t gxbp_choose_section(const int sign[4], uint8_t corners[4][3]) {
     side = count[0] == 1 ? 0u : 1u;
     for (k = 0; k < 3; k++) {
         const uint8_t *rest = gxbp_face_nodes[node[side][0]];
-        corners[k][0] = node[side][0]; corners[k][1] = rest[k]; corners[k][2] = rest[(k + 2) % 3];
+        corners[k][0] = node[side][0];
+        corners[k][1] = rest[k];
+        corners[k][2] = rest[(k + 2) % 3];
     }
     return 3;
 }
 
-/* The point that has divided a mesh edge first, if the plane has done that, as for another element around the edge; GXB_NONE: it has not. */
+/* The point that has divided a mesh edge first, if the plane has done that, as for another element around the edge;
+ * GXB_NONE: it has not. */
 static uint32_t gxbp_made_crossing(const gxb_complex *cx, uint32_t mesh_edge, uint32_t plane) {
     const uint32_t child = cx->edges[cx->mesh_edge[mesh_edge]].child;
     const uint32_t point = child != GXB_NONE ? cx->edges[child].v[1] : GXB_NONE;
-    return point != GXB_NONE && cx->points[point].kind == GXB_LINE_PLANE && cx->points[point].def[2] == plane ? point : GXB_NONE;
+    return point != GXB_NONE && cx->points[point].kind == GXB_LINE_PLANE && cx->points[point].def[2] == plane
+             ? point
+             : GXB_NONE;
 }
 
 /* Pushes a corner of an element's section: local node j, or the point of the edge between nodes i and j. */
-static void gxbp_push_section_corner(gxb_complex *cx, const gxb_triangle *t, uint32_t element, uint32_t i, uint32_t j, int sign, uint32_t carrier) {
+static void gxbp_push_section_corner(gxb_complex *cx, const gxb_triangle *t, uint32_t element, uint32_t i, uint32_t j,
+                                     int sign, uint32_t carrier) {
     const uint32_t *node = cx->elements + 4 * (size_t)element, p = node[i], q = node[j];
     gxbp_corner *c = &cx->corners[cx->corner_count++];
     memset(c, 0, sizeof *c);
@@ -3637,14 +4100,20 @@ static void gxbp_push_section_corner(gxb_complex *cx, const gxb_triangle *t, uin
         return;
     }
     c->kind = GXB_LINE_PLANE;
-    c->def[0] = p < q ? p : q; c->def[1] = p < q ? q : p; c->def[2] = t->plane;
+    c->def[0] = p < q ? p : q;
+    c->def[1] = p < q ? q : p;
+    c->def[2] = t->plane;
     c->point = gxbp_made_crossing(cx, cx->element_edges[6 * element + gxbp_local_edge(i, j)], t->plane);
-    if (c->point != GXB_NONE) c->ball = cx->points[c->point].ball;
-    else gxbp_definition_ball(cx, c->kind, c->def, &c->ball);
+    if (c->point != GXB_NONE)
+        c->ball = cx->points[c->point].ball;
+    else
+        gxbp_definition_ball(cx, c->kind, c->def, &c->ball);
 }
 
-/* Signs of corners: 1 on the triangle's side of its edge k, -1 beyond. Bit 1 of *sides: some are on its side, bit 2: some beyond. */
-static gx_result gxbp_edge_sides(gxb_complex *cx, gxb_triangle *t, uint32_t k, uint32_t first, uint32_t count, int *sides) {
+/* Signs of corners: 1 on the triangle's side of its edge k, -1 beyond. Bit 1 of *sides: some are on its side, bit 2:
+ * some beyond. */
+static gx_result gxbp_edge_sides(gxb_complex *cx, gxb_triangle *t, uint32_t k, uint32_t first, uint32_t count,
+                                 int *sides) {
     const gxb_cplane *f = &cx->planes[t->plane];
     const gxb_ball *p = &cx->points[t->point[k]].ball, *q = &cx->points[t->point[(k + 1) % 3]].ball;
     const int x = (int)(f->axis + 1) % 3, y = (int)(f->axis + 2) % 3, turn = f->axis_sign * t->orientation;
@@ -3670,7 +4139,8 @@ static int gxbp_triangle_is_inside(gxb_complex *cx, const gxb_triangle *t, uint3
     for (k = 0; k < 4; k++) {
         const uint32_t face = cx->element_faces[4 * element + k], plane = cx->facets[cx->face_facet[face]].plane;
         const int inside = cx->face_elements[2 * face] == element ? 1 : -1;
-        for (i = 0; i < 3; i++) if (inside * gxb_complex_side(cx, t->point[i], plane) < 0) return 0;
+        for (i = 0; i < 3; i++)
+            if (inside * gxb_complex_side(cx, t->point[i], plane) < 0) return 0;
     }
     return 1;
 }
@@ -3688,21 +4158,29 @@ static void gxbp_push_triangle(gxb_complex *cx, const gxb_triangle *t) {
     }
 }
 
-/* What of the triangle lies in an element, on both sides of whose plane it has nodes, or three in the plane: the triangle itself, or the plane's section
-   clipped by the triangle's edges. task->count 0: nothing. */
-static gx_result gxbp_clip_to_element(gxb_complex *cx, gxb_triangle *t, uint32_t element, const int sign[4], gxbp_task *task) {
+/* What of the triangle lies in an element, on both sides of whose plane it has nodes, or three in the plane: the
+   triangle itself, or the plane's section clipped by the triangle's edges. task->count 0: nothing. */
+static gx_result gxbp_clip_to_element(gxb_complex *cx, gxb_triangle *t, uint32_t element, const int sign[4],
+                                      gxbp_task *task) {
     uint8_t corners[4][3];
     uint32_t k, first;
     int sides;
     gx_result result = GXBP_RESERVE(cx, corners, corner, 40);
     if (result != GX_OK) return result;
     cx->corner_count = cx->task_count = 0;
-    task->parent = GXBP_IN_ROOT; task->side = 0; task->first = 0; task->count = 3;
+    task->parent = GXBP_IN_ROOT;
+    task->side = 0;
+    task->first = 0;
+    task->count = 3;
     task->coplanar = (sign[0] == 0) + (sign[1] == 0) + (sign[2] == 0) + (sign[3] == 0) == 3;
-    if (gxbp_triangle_is_inside(cx, t, element)) { gxbp_push_triangle(cx, t); return GX_OK; }
+    if (gxbp_triangle_is_inside(cx, t, element)) {
+        gxbp_push_triangle(cx, t);
+        return GX_OK;
+    }
     task->count = gxbp_choose_section(sign, corners);
     for (k = 0; k < task->count; k++)
-        gxbp_push_section_corner(cx, t, element, corners[k][0], corners[k][1], sign[corners[k][1]], gxbp_face_plane(cx, element, corners[k][2]));
+        gxbp_push_section_corner(cx, t, element, corners[k][0], corners[k][1], sign[corners[k][1]],
+                                 gxbp_face_plane(cx, element, corners[k][2]));
     for (k = 0; k < 3 && task->count > 0; k++) {
         result = gxbp_edge_sides(cx, t, k, task->first, task->count, &sides);
         if (result != GX_OK) return result;
@@ -3714,7 +4192,8 @@ static gx_result gxbp_clip_to_element(gxb_complex *cx, gxb_triangle *t, uint32_t
     return GX_OK;
 }
 
-/* Signs of the element's nodes against the triangle's plane. Has that plane nothing of the element but a node or an edge, or nothing at all? */
+/* Signs of the element's nodes against the triangle's plane. Has that plane nothing of the element but a node or an
+ * edge, or nothing at all? */
 static int gxbp_misses_plane(gxb_complex *cx, const gxb_triangle *t, uint32_t element, int sign[4]) {
     int sides = 0, zeros = 0, k;
     for (k = 0; k < 4; k++) {
@@ -3744,10 +4223,14 @@ GXFEM_API gx_result gxb_complex_insert(gxb_complex *cx, gxb_triangle *t, uint32_
         uint32_t reference;
         task = cx->tasks[--cx->task_count];
         reference = *gxbp_reference(cx, &task, element);
-        if (reference & 1) result = gxbp_descend(cx, t, &task, reference >> 1);
-        else if (cx->leaves[reference >> 1].removed || (allowed != NULL && !allowed(user, reference >> 1))) continue;
-        else if (task.coplanar) result = gxbp_cover_leaf(cx, t, reference >> 1);
-        else result = gxbp_divide_leaf(cx, t, reference >> 1, &task);
+        if (reference & 1)
+            result = gxbp_descend(cx, t, &task, reference >> 1);
+        else if (cx->leaves[reference >> 1].removed || (allowed != NULL && !allowed(user, reference >> 1)))
+            continue;
+        else if (task.coplanar)
+            result = gxbp_cover_leaf(cx, t, reference >> 1);
+        else
+            result = gxbp_divide_leaf(cx, t, reference >> 1, &task);
     }
     return result;
 }
@@ -3755,7 +4238,11 @@ GXFEM_API gx_result gxb_complex_insert(gxb_complex *cx, gxb_triangle *t, uint32_
 /* --- winding number around a point that is not a double --- */
 
 /* A point in the given coordinates times 2^shift: homogeneous, and roughly. */
-typedef struct gxbp_probe { gxbp_vec exact; double rough[3]; int shift; } gxbp_probe;
+typedef struct gxbp_probe {
+    gxbp_vec exact;
+    double rough[3];
+    int shift;
+} gxbp_probe;
 
 static GXBP_COLD void gxbp_probe_init(gxb_complex *cx, const uint32_t *points, size_t count, gxbp_probe *probe) {
     size_t i;
@@ -3768,7 +4255,8 @@ static GXBP_COLD void gxbp_probe_init(gxb_complex *cx, const uint32_t *points, s
         for (k = 0; k < 4; k++) gxbp_num_increase(&probe->exact.c[k], &x[k], 1);
     }
     for (k = 0; k < 3; k++) {
-        GXB_NUM(origin); GXB_NUM(t);
+        GXB_NUM(origin);
+        GXB_NUM(t);
         gxb_num_set(&origin, cx->origin[k], cx->shift);
         gxb_num_mul(&t, &origin, &probe->exact.c[3]);
         gxbp_num_increase(&probe->exact.c[k], &t, 1);
@@ -3776,7 +4264,8 @@ static GXBP_COLD void gxbp_probe_init(gxb_complex *cx, const uint32_t *points, s
     }
 }
 
-/* Is the probe certainly beyond the triangle's box along y or z, or past it along x? The margin is far above the rounding. */
+/* Is the probe certainly beyond the triangle's box along y or z, or past it along x? The margin is far above the
+ * rounding. */
 static int gxbp_probe_misses(const gxbp_probe *probe, const double *const x[3]) {
     int k, c;
     for (k = 0; k < 3; k++) {
@@ -3800,7 +4289,9 @@ static GXBP_COLD int gxbp_probe_side(const gxbp_probe *probe, const double a[3],
     gxbp_vec p, q, row;
     GXB_NUM(r);
     int k, sign;
-    gxbp_vec_init(&p); gxbp_vec_init(&q); gxbp_vec_init(&row);
+    gxbp_vec_init(&p);
+    gxbp_vec_init(&q);
+    gxbp_vec_init(&row);
     for (k = 1; k < 3; k++) {
         gxb_num_set(&p.c[k], a[k], probe->shift);
         gxb_num_set(&q.c[k], b[k], probe->shift);
@@ -3841,7 +4332,8 @@ GXFEM_API int gxb_complex_winding(gxb_complex *cx, const uint32_t *points, size_
         for (c = 0; c < 3; c++) x[c] = vertices + 3 * (size_t)triangles[3 * t + (size_t)c];
         if (gxbp_probe_misses(&probe, x)) continue;
         side = gxbp_probe_side(&probe, x[0], x[1]);
-        if (side == 0 || gxbp_probe_side(&probe, x[1], x[2]) != side || gxbp_probe_side(&probe, x[2], x[0]) != side) continue;
+        if (side == 0 || gxbp_probe_side(&probe, x[1], x[2]) != side || gxbp_probe_side(&probe, x[2], x[0]) != side)
+            continue;
         if (gxbp_probe_orient(&probe, x) == side) winding += side;
     }
     return winding;
@@ -3849,13 +4341,14 @@ GXFEM_API int gxb_complex_winding(gxb_complex *cx, const uint32_t *points, size_
 
 /* --- numbers as sums of two doubles: about 100 bits, with bounds that hold as those of >>filter do ---
  *
- * The sum of two doubles is their rounded sum and its error, which the six operations of gxbp_pair_sum find but for 2^-103 of the
- * terms' sizes also where roundings are not to nearest [Boldo, Graillat, Muller, On the robustness of the 2Sum and Fast2Sum algorithms
- * (2017)]; a product is that of halves of 26 and 27 bits, taken apart by their bits. What is left out or rounded in a sum or product of
- * pairs is below 2^-100 of its terms' sizes; GXBP_PAIR_U has room for the rounding of the bounds too. Coordinates are below 2^16, so numbers
- * of degree 9 below 2^180, their errors below 2^600 even where nothing is known; GXBP_TINY stands for underflow.
+ * The sum of two doubles is their rounded sum and its error, which the six operations of gxbp_pair_sum find but for
+ * 2^-103 of the terms' sizes also where roundings are not to nearest [Boldo, Graillat, Muller, On the robustness of the
+ * 2Sum and Fast2Sum algorithms (2017)]; a product is that of halves of 26 and 27 bits, taken apart by their bits. What
+ * is left out or rounded in a sum or product of pairs is below 2^-100 of its terms' sizes; GXBP_PAIR_U has room for the
+ * rounding of the bounds too. Coordinates are below 2^16, so numbers of degree 9 below 2^180, their errors below 2^600
+ * even where nothing is known; GXBP_TINY stands for underflow.
  */
-#define GXBP_PAIR_U gxbp_power(-97)
+#define GXBP_PAIR_U     gxbp_power(-97)
 #define GXBP_PAIR_RANGE 16
 
 static gxbp_pair gxbp_pair_sum(double a, double b) {
@@ -3891,7 +4384,8 @@ static gxbp_pair gxbp_pair_mul(const gxbp_pair *a, const gxbp_pair *b) {
 }
 
 /* a b - c d */
-static GXBP_APART gxbp_pair gxbp_pair_det2(const gxbp_pair *a, const gxbp_pair *b, const gxbp_pair *c, const gxbp_pair *d) {
+static GXBP_APART gxbp_pair gxbp_pair_det2(const gxbp_pair *a, const gxbp_pair *b, const gxbp_pair *c,
+                                           const gxbp_pair *d) {
     const gxbp_pair s = gxbp_pair_mul(a, b), t = gxbp_pair_mul(c, d);
     return gxbp_pair_add(&s, &t, -1);
 }
@@ -3903,8 +4397,8 @@ static gxbp_pair gxbp_pair_dot(const gxbp_pair a[3], const gxbp_pair b[3]) {
     return gxbp_pair_add(&r, &t, 1);
 }
 
-/* a / b, if both are known to 2^-54 of their own values: with the roundings of the high parts and of the quotient the relative error is
-   below 2^-50. */
+/* a / b, if both are known to 2^-54 of their own values: with the roundings of the high parts and of the quotient the
+   relative error is below 2^-50. */
 static int gxbp_pair_ratio(const gxbp_pair *a, const gxbp_pair *b, double *ratio) {
     const double most = gxbp_power(-54);
     if (!(a->error < most * gxbp_abs(a->high)) || !(b->error < most * gxbp_abs(b->high))) return 0;
@@ -3914,7 +4408,8 @@ static int gxbp_pair_ratio(const gxbp_pair *a, const gxbp_pair *b, double *ratio
 
 /* q - p; where a coordinate is no double, or large, 0 with an error that no ratio outlives */
 static void gxbp_pair_difference(gxbp_pair r[3], const gxb_ball *p, const gxb_ball *q) {
-    const int good = p->error == 0 && q->error == 0 && gxbp_max(gxbp_max3(p->x), gxbp_max3(q->x)) < gxbp_power(GXBP_PAIR_RANGE);
+    const int good =
+        p->error == 0 && q->error == 0 && gxbp_max(gxbp_max3(p->x), gxbp_max3(q->x)) < gxbp_power(GXBP_PAIR_RANGE);
     int k;
     for (k = 0; k < 3; k++) {
         r[k] = gxbp_pair_sum(good ? q->x[k] : 0, good ? -p->x[k] : 0);
@@ -3930,10 +4425,12 @@ static const gxbp_pair *gxbp_pair_normal(gxb_complex *cx, uint32_t plane) {
     if (cx->pairs->plane[slot] == plane) return n;
     cx->pairs->plane[slot] = plane;
     gxbp_pair_difference(a, &cx->points[f->def[0]].ball, &cx->points[f->def[1]].ball);
-    if (f->along_axis) {        /* a x e */
+    if (f->along_axis) { /* a x e */
         const uint32_t j = (f->def[2] + 1) % 3, k = (f->def[2] + 2) % 3;
         n[j] = a[k];
-        n[k].high = -a[j].high; n[k].low = -a[j].low; n[k].error = a[j].error;
+        n[k].high = -a[j].high;
+        n[k].low = -a[j].low;
+        n[k].error = a[j].error;
         return n;
     }
     gxbp_pair_difference(b, &cx->points[f->def[0]].ball, &cx->points[f->def[2]].ball);
@@ -3953,11 +4450,12 @@ static gxbp_pair gxbp_pair_side(gxb_complex *cx, uint32_t point, uint32_t plane)
         const gxb_cplane *f = &cx->planes[plane];
         gxbp_pair d[3];
         gxbp_pair_difference(d, &cx->points[f->def[0]].ball, &cx->points[point].ball);
-        if (f->along_axis) {    /* its normal has no component along the axis */
+        if (f->along_axis) { /* its normal has no component along the axis */
             const uint32_t j = (f->def[2] + 1) % 3, k = (f->def[2] + 2) % 3;
             const gxbp_pair s = gxbp_pair_mul(&n[j], &d[j]), t = gxbp_pair_mul(&n[k], &d[k]);
             pairs->side[slot] = gxbp_pair_add(&s, &t, 1);
-        } else pairs->side[slot] = gxbp_pair_dot(n, d);
+        } else
+            pairs->side[slot] = gxbp_pair_dot(n, d);
         pairs->side_plane[slot] = plane;
         pairs->side_point[slot] = point;
     }
@@ -3975,21 +4473,25 @@ static void gxbp_distance(gxb_complex *cx, uint32_t point, uint32_t plane, gxb_n
 }
 
 static GXBP_COLD void gxbp_exact_edge_parameter(gxb_complex *cx, gxb_cpoint *p) {
-    GXB_NUM(a); GXB_NUM(b); GXB_NUM(d);
+    GXB_NUM(a);
+    GXB_NUM(b);
+    GXB_NUM(d);
     gxbp_distance(cx, p->def[0], p->def[2], &a, NULL);
     gxbp_distance(cx, p->def[1], p->def[2], &b, NULL);
     gxb_num_sub(&d, &b, &a);
-    p->parameter[0] = gxb_num_ratio(&b, &d);                /* the share of def[0] */
+    p->parameter[0] = gxb_num_ratio(&b, &d); /* the share of def[0] */
     p->parameter[1] = -gxb_num_ratio(&a, &d);
 }
 
-/* Where on the mesh edge from node def[0] to node def[1] the point lies: 0 ... 1. Asked for by every element around the edge, so kept. */
+/* Where on the mesh edge from node def[0] to node def[1] the point lies: 0 ... 1. Asked for by every element around the
+ * edge, so kept. */
 static double gxbp_edge_parameter(gxb_complex *cx, uint32_t point, int from_end) {
     gxb_cpoint *p = &cx->points[point];
     if (p->parameter[0] < 0) {
         const gxbp_pair a = gxbp_pair_side(cx, p->def[0], p->def[2]), b = gxbp_pair_side(cx, p->def[1], p->def[2]);
         const gxbp_pair d = gxbp_pair_add(&b, &a, -1), e = gxbp_pair_add(&a, &b, -1);
-        if (!gxbp_pair_ratio(&b, &d, &p->parameter[0]) || !gxbp_pair_ratio(&a, &e, &p->parameter[1])) gxbp_exact_edge_parameter(cx, p);
+        if (!gxbp_pair_ratio(&b, &d, &p->parameter[0]) || !gxbp_pair_ratio(&a, &e, &p->parameter[1]))
+            gxbp_exact_edge_parameter(cx, p);
     }
     return p->parameter[from_end];
 }
@@ -4020,7 +4522,8 @@ GXFEM_API unsigned gxb_complex_support(const gxb_complex *cx, uint32_t point, ui
     uint32_t k;
     for (k = 0; k < 4; k++) {
         const uint32_t node = cx->elements[4 * element + k];
-        if (on_edge ? node == p->def[0] || node == p->def[1] : gxbp_known_lambda(cx, point, element, k) != 0) support |= 1u << k;
+        if (on_edge ? node == p->def[0] || node == p->def[1] : gxbp_known_lambda(cx, point, element, k) != 0)
+            support |= 1u << k;
     }
     return support;
 }
@@ -4030,39 +4533,49 @@ static void gxbp_pair_point_shares(gxb_complex *cx, uint32_t point, uint32_t ele
     uint32_t k;
     for (k = 0; k < 4; k++) {
         share[k] = gxbp_pair_side(cx, point, gxbp_face_plane(cx, element, k));
-        if (cx->face_elements[2 * cx->element_faces[4 * element + k]] != element) { share[k].high = -share[k].high; share[k].low = -share[k].low; }
+        if (cx->face_elements[2 * cx->element_faces[4 * element + k]] != element) {
+            share[k].high = -share[k].high;
+            share[k].low = -share[k].low;
+        }
     }
 }
 
 /* Of a line through two points and a plane: with their sides a, b of the plane, the point is b p - a q. */
-static void gxbp_pair_line_shares(gxb_complex *cx, const uint32_t def[3], uint32_t element, const double lambda[4], gxbp_pair share[4]) {
+static void gxbp_pair_line_shares(gxb_complex *cx, const uint32_t def[3], uint32_t element, const double lambda[4],
+                                  gxbp_pair share[4]) {
     const gxbp_pair a = gxbp_pair_side(cx, def[0], def[2]), b = gxbp_pair_side(cx, def[1], def[2]);
     uint32_t k;
-    for (k = 0; k < 4; k++) if (lambda[k] < 0) {
-        const uint32_t face = gxbp_face_plane(cx, element, k);
-        const gxbp_pair p = gxbp_pair_side(cx, def[0], face), q = gxbp_pair_side(cx, def[1], face);
-        if (cx->face_elements[2 * cx->element_faces[4 * element + k]] == element) share[k] = gxbp_pair_det2(&p, &b, &q, &a);
-        else share[k] = gxbp_pair_det2(&q, &a, &p, &b);
-    }
+    for (k = 0; k < 4; k++)
+        if (lambda[k] < 0) {
+            const uint32_t face = gxbp_face_plane(cx, element, k);
+            const gxbp_pair p = gxbp_pair_side(cx, def[0], face), q = gxbp_pair_side(cx, def[1], face);
+            if (cx->face_elements[2 * cx->element_faces[4 * element + k]] == element)
+                share[k] = gxbp_pair_det2(&p, &b, &q, &a);
+            else
+                share[k] = gxbp_pair_det2(&q, &a, &p, &b);
+        }
 }
 
-/* Of three planes, by the sides on which they have the nodes: a plane's sum of sides x coordinates is 0, so these are the minors of the
-   sides. */
-static void gxbp_pair_plane_shares(gxb_complex *cx, const uint32_t def[3], uint32_t element, const double lambda[4], gxbp_pair share[4]) {
+/* Of three planes, by the sides on which they have the nodes: a plane's sum of sides x coordinates is 0, so these are
+   the minors of the sides. */
+static void gxbp_pair_plane_shares(gxb_complex *cx, const uint32_t def[3], uint32_t element, const double lambda[4],
+                                   gxbp_pair share[4]) {
     const uint32_t *node = cx->elements + 4 * (size_t)element;
     gxbp_pair side[3][4];
     uint32_t i, k;
-    for (i = 0; i < 3; i++) for (k = 0; k < 4; k++) side[i][k] = gxbp_pair_side(cx, node[k], def[i]);
-    for (k = 0; k < 4; k++) if (lambda[k] < 0) {
-        const uint8_t *rest = gxbp_face_nodes[k];       /* k and these are an even permutation of 0 1 2 3 */
-        gxbp_pair row[3], cofactor[3];
-        for (i = 0; i < 3; i++) {
-            const uint32_t j = rest[(i + 1) % 3], l = rest[(i + 2) % 3];
-            cofactor[i] = gxbp_pair_det2(&side[0][j], &side[1][l], &side[0][l], &side[1][j]);
-            row[i] = side[2][rest[i]];
+    for (i = 0; i < 3; i++)
+        for (k = 0; k < 4; k++) side[i][k] = gxbp_pair_side(cx, node[k], def[i]);
+    for (k = 0; k < 4; k++)
+        if (lambda[k] < 0) {
+            const uint8_t *rest = gxbp_face_nodes[k]; /* k and these are an even permutation of 0 1 2 3 */
+            gxbp_pair row[3], cofactor[3];
+            for (i = 0; i < 3; i++) {
+                const uint32_t j = rest[(i + 1) % 3], l = rest[(i + 2) % 3];
+                cofactor[i] = gxbp_pair_det2(&side[0][j], &side[1][l], &side[0][l], &side[1][j]);
+                row[i] = side[2][rest[i]];
+            }
+            share[k] = gxbp_pair_dot(row, cofactor);
         }
-        share[k] = gxbp_pair_dot(row, cofactor);
-    }
 }
 
 /* Is this the plane of a mesh face? Such are defined by nodes. */
@@ -4071,8 +4584,8 @@ static int gxbp_is_face_plane(const gxb_complex *cx, uint32_t plane) {
     return f->def[0] < cx->node_count && f->def[1] < cx->node_count && f->def[2] < cx->node_count && !f->along_axis;
 }
 
-/* Of a point in a mesh face, by the sides on which its two other planes have the face's nodes: the minors of these. 0: pairs do not tell, or it is in
-   two of such planes. */
+/* Of a point in a mesh face, by the sides on which its two other planes have the face's nodes: the minors of these. 0:
+   pairs do not tell, or it is in two of such planes. */
 static int gxbp_pair_in_face(gxb_complex *cx, uint32_t point, uint32_t face) {
     gxb_cpoint *p = &cx->points[point];
     const uint32_t *node = cx->planes[p->def[face]].def;
@@ -4090,13 +4603,14 @@ static int gxbp_pair_in_face(gxb_complex *cx, uint32_t point, uint32_t face) {
     }
     sum = gxbp_pair_add(&share[0], &share[1], 1);
     sum = gxbp_pair_add(&sum, &share[2], 1);
-    for (k = 0; k < 3; k++) if (!gxbp_pair_ratio(&share[k], &sum, &parameter[k])) return 0;
+    for (k = 0; k < 3; k++)
+        if (!gxbp_pair_ratio(&share[k], &sum, &parameter[k])) return 0;
     memcpy(p->parameter, parameter, sizeof p->parameter);
     return 1;
 }
 
-/* Coordinates of a point of three planes one of which is that of a mesh face of the element: those in the face, which are asked for by both elements
-   beside it, so kept. 0: there is no such plane, or pairs do not tell. */
+/* Coordinates of a point of three planes one of which is that of a mesh face of the element: those in the face, which
+   are asked for by both elements beside it, so kept. 0: there is no such plane, or pairs do not tell. */
 static int gxbp_face_barycentric(gxb_complex *cx, uint32_t point, uint32_t element, double lambda[4]) {
     const gxb_cpoint *p = &cx->points[point];
     const uint32_t *n = cx->elements + 4 * (size_t)element, *node;
@@ -4108,20 +4622,26 @@ static int gxbp_face_barycentric(gxb_complex *cx, uint32_t point, uint32_t eleme
     if (found < 3 || (p->parameter[0] < 0 && !gxbp_pair_in_face(cx, point, face))) return 0;
     for (k = 0; k < 4; k++) {
         lambda[k] = 0;
-        for (i = 0; i < 3; i++) if (n[k] == node[i]) lambda[k] = p->parameter[i];
+        for (i = 0; i < 3; i++)
+            if (n[k] == node[i]) lambda[k] = p->parameter[i];
     }
     return 1;
 }
 
-/* By pairs, those that they settle; -1 stands for the others. On entry what is known without arithmetic stands there. */
+/* By pairs, those that they settle; -1 stands for the others. On entry what is known without arithmetic stands there.
+ */
 static void gxbp_pair_barycentric(gxb_complex *cx, uint32_t point, uint32_t element, double lambda[4]) {
     const gxb_cpoint p = cx->points[point];
     gxbp_pair share[4], sum = gxbp_pair_sum(0, 0);
     uint32_t k;
-    if (p.kind == GXB_EXPLICIT) gxbp_pair_point_shares(cx, point, element, share);
-    else if (p.kind == GXB_LINE_PLANE) gxbp_pair_line_shares(cx, p.def, element, lambda, share);
-    else gxbp_pair_plane_shares(cx, p.def, element, lambda, share);
-    for (k = 0; k < 4; k++) if (lambda[k] < 0) sum = gxbp_pair_add(&sum, &share[k], 1);
+    if (p.kind == GXB_EXPLICIT)
+        gxbp_pair_point_shares(cx, point, element, share);
+    else if (p.kind == GXB_LINE_PLANE)
+        gxbp_pair_line_shares(cx, p.def, element, lambda, share);
+    else
+        gxbp_pair_plane_shares(cx, p.def, element, lambda, share);
+    for (k = 0; k < 4; k++)
+        if (lambda[k] < 0) sum = gxbp_pair_add(&sum, &share[k], 1);
     for (k = 0; k < 4; k++) {
         double ratio;
         if (lambda[k] < 0 && gxbp_pair_ratio(&share[k], &sum, &ratio)) lambda[k] = ratio;
@@ -4130,7 +4650,9 @@ static void gxbp_pair_barycentric(gxb_complex *cx, uint32_t point, uint32_t elem
 
 static GXBP_COLD double gxbp_exact_lambda(gxb_complex *cx, uint32_t point, uint32_t element, uint32_t k) {
     const uint32_t plane = gxbp_face_plane(cx, element, k);
-    GXB_NUM(d); GXB_NUM(w); GXB_NUM(h);
+    GXB_NUM(d);
+    GXB_NUM(w);
+    GXB_NUM(h);
     gxbp_distance(cx, cx->elements[4 * element + k], plane, &h, NULL);
     gxbp_distance(cx, point, plane, &d, &w);
     return gxb_num_ratio(&d, &w) / gxb_num_to_double(&h);
@@ -4143,19 +4665,28 @@ GXFEM_API void gxb_complex_barycentric(gxb_complex *cx, uint32_t point, uint32_t
     if (p->kind == GXB_THREE_PLANES && gxbp_face_barycentric(cx, point, element, lambda)) return;
     for (k = 0; k < 4; k++) {
         const uint32_t node = cx->elements[4 * element + k];
-        if (!on_edge) lambda[k] = gxbp_known_lambda(cx, point, element, k);
-        else lambda[k] = node == p->def[0] ? gxbp_edge_parameter(cx, point, 0) : node == p->def[1] ? gxbp_edge_parameter(cx, point, 1) : 0;
+        if (!on_edge)
+            lambda[k] = gxbp_known_lambda(cx, point, element, k);
+        else
+            lambda[k] = node == p->def[0] ? gxbp_edge_parameter(cx, point, 0)
+                      : node == p->def[1] ? gxbp_edge_parameter(cx, point, 1)
+                                          : 0;
     }
     if (on_edge || point < cx->node_count) return;
     gxbp_pair_barycentric(cx, point, element, lambda);
-    for (k = 0; k < 4; k++) if (lambda[k] < 0) lambda[k] = gxbp_exact_lambda(cx, point, element, k);
+    for (k = 0; k < 4; k++)
+        if (lambda[k] < 0) lambda[k] = gxbp_exact_lambda(cx, point, element, k);
 }
 
-GXFEM_API GXBP_RARE void gxb_complex_barycentric_fine(gxb_complex *cx, uint32_t point, uint32_t element, gxb_num lambda[4]) {
+GXFEM_API GXBP_RARE void gxb_complex_barycentric_fine(gxb_complex *cx, uint32_t point, uint32_t element,
+                                                      gxb_num lambda[4]) {
     uint32_t k;
     for (k = 0; k < 4; k++) {
         const int known = gxbp_known_lambda(cx, point, element, k);
-        GXB_NUM(num); GXB_NUM(den); GXB_NUM(weight); GXB_NUM(height);
+        GXB_NUM(num);
+        GXB_NUM(den);
+        GXB_NUM(weight);
+        GXB_NUM(height);
         gxb_num_set(&lambda[k], known > 0 ? 1.0 : 0.0, 0);
         if (known >= 0) continue;
         gxbp_distance(cx, point, gxbp_face_plane(cx, element, k), &num, &weight);
@@ -4165,7 +4696,7 @@ GXFEM_API GXBP_RARE void gxb_complex_barycentric_fine(gxb_complex *cx, uint32_t 
     }
 }
 
-/* >>save: points by their definitions, the rest by indices ------------------------------------------------------------------ */
+/* >>save: points by their definitions, the rest by indices --------------------------------------------------------- */
 
 GXFEM_API int gxb_stream_has(gxb_stream *stream, size_t count, size_t width) {
     if (stream->result == GX_OK && count > (stream->size - stream->at) / width) stream->result = GX_ERROR_DAMAGED;
@@ -4180,15 +4711,21 @@ GXFEM_API void gxb_stream_pass(gxb_stream *stream, void *data, size_t count, siz
     }
     if (stream->in == NULL && stream->out != NULL && bytes > stream->size - stream->at) stream->result = GX_ERROR_LIMIT;
     if (stream->result != GX_OK || bytes == 0) return;
-    if (stream->in != NULL) memcpy(data, stream->in + stream->at, bytes);
-    else if (stream->out != NULL) memcpy(stream->out + stream->at, data, bytes);
+    if (stream->in != NULL)
+        memcpy(data, stream->in + stream->at, bytes);
+    else if (stream->out != NULL)
+        memcpy(stream->out + stream->at, data, bytes);
     stream->at += bytes;
 }
 
 static GXBP_APART void gxbp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, word, 1, sizeof *word); }
 
-static void gxbp_require(gxb_stream *s, gx_result result) { if (s->result == GX_OK) s->result = result; }
-static void gxbp_require_true(gxb_stream *s, int holds) { if (!holds) gxbp_require(s, GX_ERROR_DAMAGED); }
+static void gxbp_require(gxb_stream *s, gx_result result) {
+    if (s->result == GX_OK) s->result = result;
+}
+static void gxbp_require_true(gxb_stream *s, int holds) {
+    if (!holds) gxbp_require(s, GX_ERROR_DAMAGED);
+}
 
 /* A word that is 0 or 1 */
 static uint32_t gxbp_pass_bit(gxb_stream *s, uint32_t bit) {
@@ -4205,7 +4742,10 @@ static GXBP_COLD void gxbp_save_points(gxb_complex *cx, gxb_stream *s) {
         double x[3];
         gxbp_pass_word(s, &head);
         if (i < cx->node_count) continue;
-        if (p->kind != GXB_EXPLICIT) { gxb_stream_pass(s, p->def, 3, sizeof *p->def); continue; }
+        if (p->kind != GXB_EXPLICIT) {
+            gxb_stream_pass(s, p->def, 3, sizeof *p->def);
+            continue;
+        }
         if (s->out != NULL) gxbp_given(cx, i, x);
         gxb_stream_pass(s, x, 3, sizeof *x);
     }
@@ -4219,13 +4759,19 @@ static GXBP_COLD void gxbp_load_points(gxb_complex *cx, gxb_stream *s, uint32_t 
         double x[3];
         gxbp_pass_word(s, &head);
         gxbp_require_true(s, head < 8 && (head & 3) <= (i < cx->node_count ? 0u : 2u));
-        if (i < cx->node_count) { cx->points[i].wall = (uint8_t)(head >> 2); continue; }
-        if ((head & 3) == GXB_EXPLICIT) gxb_stream_pass(s, x, 3, sizeof *x);
-        else gxb_stream_pass(s, def, 3, sizeof *def);
+        if (i < cx->node_count) {
+            cx->points[i].wall = (uint8_t)(head >> 2);
+            continue;
+        }
+        if ((head & 3) == GXB_EXPLICIT)
+            gxb_stream_pass(s, x, 3, sizeof *x);
+        else
+            gxb_stream_pass(s, def, 3, sizeof *def);
         if (s->result != GX_OK) return;
         if ((head & 3) == GXB_EXPLICIT) {
             const gx_result result = gxb_complex_add_point(cx, x, &id);
-            if (result != GX_OK) gxbp_require(s, result == GX_ERROR_MEMORY || result == GX_ERROR_LIMIT ? result : GX_ERROR_DAMAGED);
+            if (result != GX_OK)
+                gxbp_require(s, result == GX_ERROR_MEMORY || result == GX_ERROR_LIMIT ? result : GX_ERROR_DAMAGED);
         } else {
             gxbp_require(s, gxbp_new_point(cx, &id));
             if (s->result == GX_OK) memcpy(cx->points[id].def, def, sizeof def);
@@ -4236,7 +4782,9 @@ static GXBP_COLD void gxbp_load_points(gxb_complex *cx, gxb_stream *s, uint32_t 
     }
 }
 
-static int gxbp_is_explicit(const gxb_complex *cx, uint32_t point) { return point < cx->point_count && cx->points[point].kind == GXB_EXPLICIT; }
+static int gxbp_is_explicit(const gxb_complex *cx, uint32_t point) {
+    return point < cx->point_count && cx->points[point].kind == GXB_EXPLICIT;
+}
 
 static GXBP_COLD void gxbp_save_planes(gxb_complex *cx, gxb_stream *s) {
     uint32_t i;
@@ -4255,11 +4803,13 @@ static GXBP_COLD void gxbp_load_planes(gxb_complex *cx, gxb_stream *s, uint32_t 
         gxb_stream_pass(s, def, 3, sizeof *def);
         along_axis = gxbp_pass_bit(s, 0);
         gxbp_require_true(s, gxbp_is_explicit(cx, def[0]) && gxbp_is_explicit(cx, def[1]) &&
-                             (along_axis ? def[2] < 3 : gxbp_is_explicit(cx, def[2])));
+                                 (along_axis ? def[2] < 3 : gxbp_is_explicit(cx, def[2])));
         if (s->result == GX_OK) gxbp_require(s, gxbp_new_plane(cx, def[0], def[1], def[2], (int)along_axis, &id));
         if (s->result != GX_OK) return;
-        if (along_axis) for (k = 0; k < 3 && !normal; k++) normal = gxbp_normal_sign(cx, id, k) != 0;
-        else normal = gxbp_plane_axis(cx, id);
+        if (along_axis)
+            for (k = 0; k < 3 && !normal; k++) normal = gxbp_normal_sign(cx, id, k) != 0;
+        else
+            normal = gxbp_plane_axis(cx, id);
         gxbp_require_true(s, normal);
     }
 }
@@ -4271,7 +4821,8 @@ static GXBP_COLD void gxbp_place_points(gxb_complex *cx, gxb_stream *s) {
         gxb_cpoint *p = &cx->points[i];
         if (p->kind == GXB_EXPLICIT) continue;
         for (k = 0; k < 3; k++)
-            gxbp_require_true(s, k < 2 && p->kind == GXB_LINE_PLANE ? gxbp_is_explicit(cx, p->def[k]) : p->def[k] < cx->plane_count);
+            gxbp_require_true(s, k < 2 && p->kind == GXB_LINE_PLANE ? gxbp_is_explicit(cx, p->def[k])
+                                                                    : p->def[k] < cx->plane_count);
         if (s->result != GX_OK) return;
         gxbp_definition_ball(cx, p->kind, p->def, &p->ball);
         if (p->ball.error >= GXBP_NO_BALL) {
@@ -4285,9 +4836,15 @@ static GXBP_COLD void gxbp_place_points(gxb_complex *cx, gxb_stream *s) {
 static void gxbp_pass_list(gxb_complex *cx, gxb_stream *s, uint32_t *first, uint32_t *count) {
     gxbp_pass_word(s, count);
     if (s->in != NULL) {
-        if (!gxb_stream_has(s, *count, sizeof *cx->pool)) { *count = 0; return; }
+        if (!gxb_stream_has(s, *count, sizeof *cx->pool)) {
+            *count = 0;
+            return;
+        }
         gxbp_require(s, GXBP_RESERVE(cx, pool, pool, *count));
-        if (s->result != GX_OK) { *count = 0; return; }
+        if (s->result != GX_OK) {
+            *count = 0;
+            return;
+        }
         *first = cx->pool_count;
         cx->pool_count += *count;
     }
@@ -4353,8 +4910,13 @@ enum { GXBP_COUNTS = 7 };
 
 GXFEM_API GXBP_RARE void gxb_complex_save(gxb_complex *cx, gxb_stream *stream) {
     uint32_t counts[GXBP_COUNTS];
-    counts[0] = cx->point_count; counts[1] = cx->plane_count; counts[2] = cx->edge_count; counts[3] = cx->facet_count;
-    counts[4] = cx->leaf_count; counts[5] = cx->tree_count; counts[6] = cx->label_count;
+    counts[0] = cx->point_count;
+    counts[1] = cx->plane_count;
+    counts[2] = cx->edge_count;
+    counts[3] = cx->facet_count;
+    counts[4] = cx->leaf_count;
+    counts[5] = cx->tree_count;
+    counts[6] = cx->label_count;
     gxb_stream_pass(stream, counts, GXBP_COUNTS, sizeof *counts);
     gxbp_save_points(cx, stream);
     gxbp_save_planes(cx, stream);
@@ -4380,22 +4942,32 @@ static void gxbp_load_room(gxb_stream *s, gxb_complex *cx, const uint32_t counts
     gxbp_require(s, GXBP_RESERVE(cx, nodes, tree, counts[5]));
     gxbp_require(s, GXBP_RESERVE(cx, labels, label, counts[6]));
     if (s->result != GX_OK) return;
-    cx->edge_count = counts[2]; cx->facet_count = counts[3]; cx->leaf_count = counts[4]; cx->tree_count = counts[5]; cx->label_count = counts[6];
+    cx->edge_count = counts[2];
+    cx->facet_count = counts[3];
+    cx->leaf_count = counts[4];
+    cx->tree_count = counts[5];
+    cx->label_count = counts[6];
     if (counts[2] > 0) memset(cx->edges, 0, counts[2] * sizeof *cx->edges);
     if (counts[3] > 0) memset(cx->facets, 0, counts[3] * sizeof *cx->facets);
     memset(cx->leaves, 0, counts[4] * sizeof *cx->leaves);
 }
 
-static void gxbp_check(gxb_complex *cx, gxb_stream *s);     /* see >>check */
+static void gxbp_check(gxb_complex *cx, gxb_stream *s); /* see >>check */
 
 /* Parents of nodes and numbers of leaves, which are not saved */
 static void gxbp_link_trees(gxb_complex *cx) {
     uint32_t i, k, n;
-    for (i = 0; i < cx->tree_count; i++) { cx->nodes[i].parent = GXB_NONE; cx->nodes[i].leaves = 0; }
-    for (i = 0; i < cx->tree_count; i++) for (k = 0; k < 2; k++)
-        if (cx->nodes[i].child[k] & 1) cx->nodes[cx->nodes[i].child[k] >> 1].parent = i;
-    for (i = 0; i < cx->tree_count; i++) for (k = 0; k < 2; k++)
-        for (n = cx->nodes[i].child[k] & 1 ? GXB_NONE : i; n != GXB_NONE; n = cx->nodes[n].parent) cx->nodes[n].leaves++;
+    for (i = 0; i < cx->tree_count; i++) {
+        cx->nodes[i].parent = GXB_NONE;
+        cx->nodes[i].leaves = 0;
+    }
+    for (i = 0; i < cx->tree_count; i++)
+        for (k = 0; k < 2; k++)
+            if (cx->nodes[i].child[k] & 1) cx->nodes[cx->nodes[i].child[k] >> 1].parent = i;
+    for (i = 0; i < cx->tree_count; i++)
+        for (k = 0; k < 2; k++)
+            for (n = cx->nodes[i].child[k] & 1 ? GXB_NONE : i; n != GXB_NONE; n = cx->nodes[n].parent)
+                cx->nodes[n].leaves++;
 }
 
 GXFEM_API GXBP_RARE gx_result gxb_complex_load(gxb_complex *cx, gxb_stream *s, int trusted) {
@@ -4417,14 +4989,16 @@ GXFEM_API GXBP_RARE gx_result gxb_complex_load(gxb_complex *cx, gxb_stream *s, i
     return GX_OK;
 }
 
-/* >>check: is what was read a complex? ---------------------------------------------------------------------------------------
+/* >>check: is what was read a complex?
+ * ---------------------------------------------------------------------------------------
  *
- * First every index, then that trees are trees, then geometry, by the exact predicates: each facet is a convex polygon in its
- * plane; each leaf is closed and lies on one side of its facets' planes, which are those of its element's faces and of the nodes
- * above it in the tree. So each leaf is all of its part of the tree, and a triangle that the tree sends to a leaf divides it.
+ * First every index, then that trees are trees, then geometry, by the exact predicates: each facet is a convex polygon
+ * in its plane; each leaf is closed and lies on one side of its facets' planes, which are those of its element's faces
+ * and of the nodes above it in the tree. So each leaf is all of its part of the tree, and a triangle that the tree
+ * sends to a leaf divides it.
  */
 
-#define GXBP_DEPTH 10000    /* of a tree of edges, facets or leaves: functions that walk them call themselves */
+#define GXBP_DEPTH 10000 /* of a tree of edges, facets or leaves: functions that walk them call themselves */
 
 /* Trees of items that were divided into (child, child + 1): each child comes behind its one parent. child: of item i at
    first + i * size. depth: count. */
@@ -4449,24 +5023,29 @@ static void gxbp_check_indices(gxb_complex *cx, gxb_stream *s) {
     for (i = 0; i < cx->edge_count; i++) {
         const gxb_edge *e = &cx->edges[i];
         good &= e->v[0] < cx->point_count && e->v[1] < cx->point_count && e->v[0] != e->v[1];
-        for (j = 0; j < 2; j++) good &= e->explicit_line == 1 ? gxbp_is_explicit(cx, e->line[j]) : e->line[j] < cx->plane_count;
+        for (j = 0; j < 2; j++)
+            good &= e->explicit_line == 1 ? gxbp_is_explicit(cx, e->line[j]) : e->line[j] < cx->plane_count;
     }
     for (i = 0; i < cx->facet_count; i++) {
         const gxb_facet *f = &cx->facets[i];
         good &= f->plane < cx->plane_count && !cx->planes[f->plane < cx->plane_count ? f->plane : 0].along_axis &&
-                gxbp_below(f->leaf[0], cx->leaf_count) && gxbp_below(f->leaf[1], cx->leaf_count) && f->leaf[0] != f->leaf[1] &&
-                gxbp_below(f->labels, cx->label_count) && gxbp_below(f->face, cx->face_count);
+                gxbp_below(f->leaf[0], cx->leaf_count) && gxbp_below(f->leaf[1], cx->leaf_count) &&
+                f->leaf[0] != f->leaf[1] && gxbp_below(f->labels, cx->label_count) &&
+                gxbp_below(f->face, cx->face_count);
         for (j = 0; j < f->loop_count; j++) good &= cx->pool[f->loop + j] >> 1 < cx->edge_count;
     }
     for (i = 0; i < cx->leaf_count; i++) {
         const gxb_leaf *l = &cx->leaves[i];
         good &= l->element < cx->element_count && l->removed <= 1;
-        good &= i < cx->element_count ? l->element == i && l->parent == GXB_NONE : l->parent < i && cx->leaves[l->parent].element == l->element && l->facet_count > 0;
+        good &= i < cx->element_count
+                  ? l->element == i && l->parent == GXB_NONE
+                  : l->parent < i && cx->leaves[l->parent].element == l->element && l->facet_count > 0;
         for (j = 0; j < l->facet_count; j++) good &= cx->pool[l->facets + j] < cx->facet_count;
         if (!good) break;
     }
-    for (i = 0; i < cx->label_count; i++)     /* lists share their ends, which are older */
-        good &= (cx->labels[i].next == GXB_NONE || cx->labels[i].next < i) && cx->labels[i].orientation >= -1 && cx->labels[i].orientation <= 1;
+    for (i = 0; i < cx->label_count; i++) /* lists share their ends, which are older */
+        good &= (cx->labels[i].next == GXB_NONE || cx->labels[i].next < i) && cx->labels[i].orientation >= -1 &&
+                cx->labels[i].orientation <= 1;
     for (i = 0; i < cx->face_count; i++) good &= gxbp_below(cx->face_facet[i], cx->facet_count);
     for (i = 0; i < cx->mesh_edge_count; i++) good &= gxbp_below(cx->mesh_edge[i], cx->edge_count);
     gxbp_require_true(s, good);
@@ -4501,17 +5080,21 @@ static GXBP_COLD int gxbp_planes_cross(gxb_complex *cx, uint32_t a, uint32_t b) 
 
 static int gxbp_collinear(gxb_complex *cx, uint32_t a, uint32_t b, uint32_t c) {
     gxbp_vec sa, sb, sc;
-    const gxb_num *p = gxbp_exact_cpoint(cx, a, &sa), *q = gxbp_exact_cpoint(cx, b, &sb), *r = gxbp_exact_cpoint(cx, c, &sc);
-    return gxbp_orient_exact(p, q, r, 0, 1) == 0 && gxbp_orient_exact(p, q, r, 1, 2) == 0 && gxbp_orient_exact(p, q, r, 2, 0) == 0;
+    const gxb_num *p = gxbp_exact_cpoint(cx, a, &sa), *q = gxbp_exact_cpoint(cx, b, &sb),
+                  *r = gxbp_exact_cpoint(cx, c, &sc);
+    return gxbp_orient_exact(p, q, r, 0, 1) == 0 && gxbp_orient_exact(p, q, r, 1, 2) == 0 &&
+           gxbp_orient_exact(p, q, r, 2, 0) == 0;
 }
 
 static int gxbp_on_line(gxb_complex *cx, uint32_t point, const gxb_edge *e) {
     const gxb_cpoint *p = &cx->points[point];
     int i, planes = 0;
-    if (!e->explicit_line) return gxb_complex_side(cx, point, e->line[0]) == 0 && gxb_complex_side(cx, point, e->line[1]) == 0;
+    if (!e->explicit_line)
+        return gxb_complex_side(cx, point, e->line[0]) == 0 && gxb_complex_side(cx, point, e->line[1]) == 0;
     if (point == e->line[0] || point == e->line[1]) return 1;
     if (p->kind == GXB_LINE_PLANE && p->def[0] == e->line[0] && p->def[1] == e->line[1]) return 1;
-    for (i = 0; i < 3 && p->kind == GXB_THREE_PLANES; i++) planes += gxbp_plane_has_line(&cx->planes[p->def[i]], e->line[0], e->line[1]);
+    for (i = 0; i < 3 && p->kind == GXB_THREE_PLANES; i++)
+        planes += gxbp_plane_has_line(&cx->planes[p->def[i]], e->line[0], e->line[1]);
     return planes >= 2 || gxbp_collinear(cx, point, e->line[0], e->line[1]);
 }
 
@@ -4521,11 +5104,13 @@ static int gxbp_given_divides(gxb_complex *cx, const gxb_edge *e, uint32_t point
     int k, divides = 0;
     if (!e->explicit_line || (point != e->line[0] && point != e->line[1])) return 0;
     gxbp_given(cx, point, x);
-    for (k = 0; k < 3; k++) divides |= gxb_complex_compare(cx, e->v[0], k, x[k]) * gxb_complex_compare(cx, e->v[1], k, x[k]) < 0;
+    for (k = 0; k < 3; k++)
+        divides |= gxb_complex_compare(cx, e->v[0], k, x[k]) * gxb_complex_compare(cx, e->v[1], k, x[k]) < 0;
     return divides;
 }
 
-/* The halves of a divided edge: they meet in the point of its line and a plane between its ends, or in a given point of it. */
+/* The halves of a divided edge: they meet in the point of its line and a plane between its ends, or in a given point of
+ * it. */
 static int gxbp_edge_is_divided(gxb_complex *cx, const gxb_edge *e) {
     const gxb_edge *a = &cx->edges[e->child], *b = a + 1;
     const gxb_cpoint *p = &cx->points[a->v[1]];
@@ -4533,7 +5118,9 @@ static int gxbp_edge_is_divided(gxb_complex *cx, const gxb_edge *e) {
     if (a->explicit_line != e->explicit_line || b->explicit_line != e->explicit_line) return 0;
     if (memcmp(a->line, e->line, sizeof e->line) != 0 || memcmp(b->line, e->line, sizeof e->line) != 0) return 0;
     if (p->kind == GXB_EXPLICIT) return gxbp_given_divides(cx, e, a->v[1]);
-    if (p->kind != (e->explicit_line ? GXB_LINE_PLANE : GXB_THREE_PLANES) || p->def[0] != e->line[0] || p->def[1] != e->line[1]) return 0;
+    if (p->kind != (e->explicit_line ? GXB_LINE_PLANE : GXB_THREE_PLANES) || p->def[0] != e->line[0] ||
+        p->def[1] != e->line[1])
+        return 0;
     return gxb_complex_side(cx, e->v[0], p->def[2]) * gxb_complex_side(cx, e->v[1], p->def[2]) < 0;
 }
 
@@ -4543,7 +5130,8 @@ static void gxbp_check_edges(gxb_complex *cx, gxb_stream *s, const uint32_t *dep
     for (i = 0; i < cx->edge_count && s->result == GX_OK; i++) {
         const gxb_edge *e = &cx->edges[i];
         if (depth[i] == 0) {
-            gxbp_require_true(s, e->explicit_line ? !gxbp_same_place(cx, e->line[0], e->line[1]) : gxbp_planes_cross(cx, e->line[0], e->line[1]));
+            gxbp_require_true(s, e->explicit_line ? !gxbp_same_place(cx, e->line[0], e->line[1])
+                                                  : gxbp_planes_cross(cx, e->line[0], e->line[1]));
             gxbp_require_true(s, gxbp_on_line(cx, e->v[0], e) && gxbp_on_line(cx, e->v[1], e));
         }
         if (e->child != GXB_NONE && s->result == GX_OK) gxbp_require_true(s, gxbp_edge_is_divided(cx, e));
@@ -4554,8 +5142,8 @@ static void gxbp_check_edges(gxb_complex *cx, gxb_stream *s, const uint32_t *dep
         const gxb_edge *e;
         if (edge == GXB_NONE) continue;
         e = &cx->edges[edge];
-        gxbp_require_true(s, depth[edge] == 0 && e->explicit_line && e->line[0] == (a < b ? a : b) && e->line[1] == (a < b ? b : a) &&
-                             memcmp(e->v, e->line, sizeof e->v) == 0);
+        gxbp_require_true(s, depth[edge] == 0 && e->explicit_line && e->line[0] == (a < b ? a : b) &&
+                                 e->line[1] == (a < b ? b : a) && memcmp(e->v, e->line, sizeof e->v) == 0);
     }
 }
 
@@ -4565,18 +5153,18 @@ static void gxbp_check_edges(gxb_complex *cx, gxb_stream *s, const uint32_t *dep
 typedef struct gxbp_checker {
     gxb_complex *cx;
     gxb_stream *s;
-    uint32_t *edge_mark;        /* 2 x edge_count: round in which the edge was met, in this direction */
-    uint32_t *border;           /* 2 x edge_count: round of the leaf or face at whose facets it was met */
-    uint32_t *facet_mark;       /* 2 x facet_count: the leaf on this side has it */
-    uint32_t *edge;             /* edge_count: of the facet at work, undivided and signed */
-    uint32_t *corner;           /* edge_count: indices of those at which its line changes */
-    uint32_t *facet;            /* facet_count: undivided ones of the leaf or face at work */
-    uint32_t *point;            /* point_count: of the leaf at work */
+    uint32_t *edge_mark;  /* 2 x edge_count: round in which the edge was met, in this direction */
+    uint32_t *border;     /* 2 x edge_count: round of the leaf or face at whose facets it was met */
+    uint32_t *facet_mark; /* 2 x facet_count: the leaf on this side has it */
+    uint32_t *edge;       /* edge_count: of the facet at work, undivided and signed */
+    uint32_t *corner;     /* edge_count: indices of those at which its line changes */
+    uint32_t *facet;      /* facet_count: undivided ones of the leaf or face at work */
+    uint32_t *point;      /* point_count: of the leaf at work */
     uint32_t *edge_depth, *facet_depth, *node_depth;
-    uint32_t *queue, hung;      /* nodes that hang in a tree, each behind the one above it */
-    uint32_t *node_up, *leaf_up;/* 2 x node above + side; GXB_NONE: it is a root */
+    uint32_t *queue, hung;       /* nodes that hang in a tree, each behind the one above it */
+    uint32_t *node_up, *leaf_up; /* 2 x node above + side; GXB_NONE: it is a root */
     uint32_t *node_element;
-    uint32_t count, corners, facets, points, round, loose;      /* loose: edges in border without their opposite */
+    uint32_t count, corners, facets, points, round, loose; /* loose: edges in border without their opposite */
 } gxbp_checker;
 
 /* Appends the pieces of a signed edge; none may come twice in a facet. */
@@ -4606,8 +5194,8 @@ static int gxbp_same_carrier(const gxb_complex *cx, uint32_t a, uint32_t b) {
     return e->explicit_line == f->explicit_line && memcmp(e->line, f->line, sizeof e->line) == 0;
 }
 
-/* Edges first ... end-1 (cyclic) have one line: the corners lie to its left or on it, one does not lie on it, and every edge goes
-   the same way along it. */
+/* Edges first ... end-1 (cyclic) have one line: the corners lie to its left or on it, one does not lie on it, and every
+   edge goes the same way along it. */
 static int gxbp_side_is_convex(gxbp_checker *c, uint32_t plane, uint32_t first, uint32_t end) {
     gxb_complex *cx = c->cx;
     uint32_t i, apex = GXB_NONE, a = gxbp_edge_start(cx, c->edge[first]), b = gxbp_edge_start(cx, c->edge[end]);
@@ -4619,7 +5207,8 @@ static int gxbp_side_is_convex(gxbp_checker *c, uint32_t plane, uint32_t first, 
     }
     if (apex == GXB_NONE) return 0;
     for (i = first; i != end; i = (i + 1) % c->count) {
-        a = gxbp_edge_start(cx, c->edge[i]); b = gxbp_edge_start(cx, c->edge[(i + 1) % c->count]);
+        a = gxbp_edge_start(cx, c->edge[i]);
+        b = gxbp_edge_start(cx, c->edge[(i + 1) % c->count]);
         if (gxb_complex_turn(cx, a, b, apex, plane) <= 0) return 0;
     }
     return 1;
@@ -4636,8 +5225,8 @@ static void gxbp_check_polygon(gxbp_checker *c, uint32_t facet) {
     c->corners = 0;
     for (i = 0; i < c->count; i++) {
         const uint32_t e = c->edge[i], next = c->edge[(i + 1) % c->count], start = gxbp_edge_start(cx, e);
-        gxbp_require_true(c->s, cx->edges[e >> 1].v[1 - (e & 1)] == gxbp_edge_start(cx, next) && cx->points[start].scratch != c->round &&
-                                gxb_complex_side(cx, start, plane) == 0);
+        gxbp_require_true(c->s, cx->edges[e >> 1].v[1 - (e & 1)] == gxbp_edge_start(cx, next) &&
+                                    cx->points[start].scratch != c->round && gxb_complex_side(cx, start, plane) == 0);
         cx->points[start].scratch = c->round;
         if (!gxbp_same_carrier(cx, c->edge[(i + c->count - 1) % c->count], e)) c->corner[c->corners++] = i;
     }
@@ -4650,10 +5239,13 @@ static void gxbp_check_polygon(gxbp_checker *c, uint32_t facet) {
 static int gxbp_facet_is_between(const gxb_complex *cx, const gxb_facet *f) {
     int k;
     if (f->face == GXB_NONE)
-        return f->leaf[0] != GXB_NONE && f->leaf[1] != GXB_NONE && cx->leaves[f->leaf[0]].element == cx->leaves[f->leaf[1]].element;
+        return f->leaf[0] != GXB_NONE && f->leaf[1] != GXB_NONE &&
+               cx->leaves[f->leaf[0]].element == cx->leaves[f->leaf[1]].element;
     for (k = 0; k < 2; k++) {
         const uint32_t element = cx->face_elements[2 * f->face + (uint32_t)k];
-        if (element == GXB_NONE ? f->leaf[k] != GXB_NONE : f->leaf[k] == GXB_NONE || cx->leaves[f->leaf[k]].element != element) return 0;
+        if (element == GXB_NONE ? f->leaf[k] != GXB_NONE
+                                : f->leaf[k] == GXB_NONE || cx->leaves[f->leaf[k]].element != element)
+            return 0;
     }
     return 1;
 }
@@ -4664,7 +5256,7 @@ static void gxbp_check_facets(gxbp_checker *c) {
     for (i = 0; i < cx->facet_count && c->s->result == GX_OK; i++) {
         const gxb_facet *f = &cx->facets[i], *half = f->child == GXB_NONE ? f : &cx->facets[f->child];
         gxbp_require_true(c->s, half[0].plane == f->plane && half[0].face == f->face &&
-                                (f->child == GXB_NONE || (half[1].plane == f->plane && half[1].face == f->face)));
+                                    (f->child == GXB_NONE || (half[1].plane == f->plane && half[1].face == f->face)));
         if (f->face != GXB_NONE && c->facet_depth[i] == 0) gxbp_require_true(c->s, cx->face_facet[f->face] == i);
         if (f->child != GXB_NONE || c->s->result != GX_OK) continue;
         gxbp_require_true(c->s, gxbp_facet_is_between(cx, f));
@@ -4697,8 +5289,10 @@ static void gxbp_add_border(gxbp_checker *c, uint32_t facet, uint32_t flip, uint
         const uint32_t e = c->edge[i] ^ flip;
         gxbp_require_true(c->s, c->border[e] != round);
         c->border[e] = round;
-        if (c->border[e ^ 1] == round) c->loose--;
-        else c->loose++;
+        if (c->border[e ^ 1] == round)
+            c->loose--;
+        else
+            c->loose++;
     }
 }
 
@@ -4716,22 +5310,27 @@ static GXBP_COLD uint32_t gxbp_border_pieces(gxbp_checker *c, uint32_t signed_ed
 /* Element's face k: nodes a < b < c are its plane, and its border runs from a to b to c. */
 static void gxbp_check_face(gxbp_checker *c, uint32_t element, uint32_t k) {
     gxb_complex *cx = c->cx;
-    const uint32_t *node = cx->elements + 4 * (size_t)element, root = cx->face_facet[cx->element_faces[4 * (size_t)element + k]];
+    const uint32_t *node = cx->elements + 4 * (size_t)element,
+                   root = cx->face_facet[cx->element_faces[4 * (size_t)element + k]];
     uint32_t local[3], n[3], i, j, pieces = 0, round;
     const gxb_cplane *plane;
     if (root == GXB_NONE) return;
     plane = &cx->planes[cx->facets[root].plane];
     for (j = 0; j < 3; j++) n[j] = node[gxbp_face_nodes[k][j]];
     gxbp_sort3(n);
-    for (j = 0; j < 3; j++) for (i = 0; i < 4; i++) if (node[i] == n[j]) local[j] = i;
-    gxbp_require_true(c->s, c->facet_depth[root] == 0 && cx->facets[root].face == cx->element_faces[4 * (size_t)element + k] &&
-                            !plane->along_axis && memcmp(plane->def, n, sizeof n) == 0);
+    for (j = 0; j < 3; j++)
+        for (i = 0; i < 4; i++)
+            if (node[i] == n[j]) local[j] = i;
+    gxbp_require_true(c->s, c->facet_depth[root] == 0 &&
+                                cx->facets[root].face == cx->element_faces[4 * (size_t)element + k] &&
+                                !plane->along_axis && memcmp(plane->def, n, sizeof n) == 0);
     c->facets = c->loose = 0;
     round = ++c->round;
     gxbp_collect_facets(c, root, GXB_NONE);
     for (i = 0; i < c->facets && c->s->result == GX_OK; i++) gxbp_add_border(c, c->facet[i], 0, round);
     for (j = 0; j < 3 && c->s->result == GX_OK; j++) {
-        const uint32_t edge = cx->mesh_edge[cx->element_edges[6 * (size_t)element + gxbp_local_edge(local[j], local[(j + 1) % 3])]];
+        const uint32_t edge =
+            cx->mesh_edge[cx->element_edges[6 * (size_t)element + gxbp_local_edge(local[j], local[(j + 1) % 3])]];
         gxbp_require_true(c->s, edge != GXB_NONE);
         if (c->s->result == GX_OK) pieces += gxbp_border_pieces(c, edge << 1 | (j == 2 ? 1u : 0u), round);
     }
@@ -4748,7 +5347,10 @@ static void gxbp_hang(gxbp_checker *c, uint32_t reference, uint32_t up, uint32_t
     gxbp_require_true(c->s, index < count && from[index < count ? index : 0] == GXBP_UNSEEN);
     if (c->s->result != GX_OK) return;
     from[index] = up;
-    if (!(reference & 1)) { gxbp_require_true(c->s, c->cx->leaves[index].element == element); return; }
+    if (!(reference & 1)) {
+        gxbp_require_true(c->s, c->cx->leaves[index].element == element);
+        return;
+    }
     c->queue[c->hung++] = index;
     c->node_element[index] = element;
     c->node_depth[index] = depth;
@@ -4767,7 +5369,8 @@ static void gxbp_check_tree(gxbp_checker *c) {
         const uint32_t node = c->queue[i];
         const gxb_node *n = &cx->nodes[node];
         gxbp_require_true(c->s, n->plane < cx->plane_count && !cx->planes[n->plane].along_axis);
-        for (k = 0; k < 2 && c->s->result == GX_OK; k++) gxbp_hang(c, n->child[k], 2 * node + k, c->node_element[node], c->node_depth[node] + 1);
+        for (k = 0; k < 2 && c->s->result == GX_OK; k++)
+            gxbp_hang(c, n->child[k], 2 * node + k, c->node_element[node], c->node_depth[node] + 1);
     }
     gxbp_require_true(c->s, c->hung == cx->tree_count);
     for (i = 0; i < cx->leaf_count; i++) gxbp_require_true(c->s, c->leaf_up[i] != GXBP_UNSEEN);
@@ -4830,7 +5433,8 @@ static void gxbp_check_open_leaf(gxbp_checker *c, uint32_t leaf) {
         const uint32_t face = cx->element_faces[4 * (size_t)l.element + i];
         gxbp_require_true(c->s, cx->face_facet[face] != GXB_NONE);
         if (c->s->result == GX_OK)
-            gxbp_require_true(c->s, gxbp_lies_beside(c, gxbp_face_plane(cx, l.element, i), cx->face_elements[2 * face] == l.element ? 1 : -1, &off));
+            gxbp_require_true(c->s, gxbp_lies_beside(c, gxbp_face_plane(cx, l.element, i),
+                                                     cx->face_elements[2 * face] == l.element ? 1 : -1, &off));
     }
     for (up = c->leaf_up[leaf]; up != GXB_NONE && c->s->result == GX_OK; up = c->node_up[up >> 1])
         gxbp_require_true(c->s, gxbp_lies_beside(c, cx->nodes[up >> 1].plane, up & 1 ? -1 : 1, &off));
@@ -4841,22 +5445,28 @@ static void gxbp_check_leaves(gxbp_checker *c) {
     gxb_complex *cx = c->cx;
     uint32_t i, k;
     for (i = 0; i < cx->leaf_count && c->s->result == GX_OK; i++) {
-        if (cx->leaves[i].facet_count > 0) gxbp_check_open_leaf(c, i);
-        else gxbp_require_true(c->s, cx->root[i] == 2 * i);
+        if (cx->leaves[i].facet_count > 0)
+            gxbp_check_open_leaf(c, i);
+        else
+            gxbp_require_true(c->s, cx->root[i] == 2 * i);
     }
-    for (i = 0; i < cx->facet_count && c->s->result == GX_OK; i++) for (k = 0; k < 2; k++) {
-        const gxb_facet *f = &cx->facets[i];
-        if (f->child != GXB_NONE || f->leaf[k] == GXB_NONE) continue;
-        gxbp_require_true(c->s, cx->leaves[f->leaf[k]].facet_count > 0 ? c->facet_mark[2 * i + k] != 0 : f->face != GXB_NONE);
-    }
+    for (i = 0; i < cx->facet_count && c->s->result == GX_OK; i++)
+        for (k = 0; k < 2; k++) {
+            const gxb_facet *f = &cx->facets[i];
+            if (f->child != GXB_NONE || f->leaf[k] == GXB_NONE) continue;
+            gxbp_require_true(c->s, cx->leaves[f->leaf[k]].facet_count > 0 ? c->facet_mark[2 * i + k] != 0
+                                                                           : f->face != GXB_NONE);
+        }
 }
 
 static void gxbp_run_checks(gxbp_checker *c) {
     gxb_complex *cx = c->cx;
     uint32_t i;
     gxbp_check_indices(cx, c->s);
-    gxbp_check_trees(c->s, cx->edge_count > 0 ? &cx->edges->child : NULL, sizeof *cx->edges, cx->edge_count, c->edge_depth);
-    gxbp_check_trees(c->s, cx->facet_count > 0 ? &cx->facets->child : NULL, sizeof *cx->facets, cx->facet_count, c->facet_depth);
+    gxbp_check_trees(c->s, cx->edge_count > 0 ? &cx->edges->child : NULL, sizeof *cx->edges, cx->edge_count,
+                     c->edge_depth);
+    gxbp_check_trees(c->s, cx->facet_count > 0 ? &cx->facets->child : NULL, sizeof *cx->facets, cx->facet_count,
+                     c->facet_depth);
     if (c->s->result == GX_OK) gxbp_check_tree(c);
     if (c->s->result == GX_OK) gxbp_check_edges(cx, c->s, c->edge_depth);
     if (c->s->result == GX_OK) gxbp_check_facets(c);
@@ -4870,153 +5480,245 @@ static GXBP_COLD void gxbp_check(gxb_complex *cx, gxb_stream *s) {
     gxbp_checker c;
     uint32_t *block;
     memset(&c, 0, sizeof c);
-    if (words > SIZE_MAX / sizeof *block) { gxbp_require(s, GX_ERROR_LIMIT); return; }
+    if (words > SIZE_MAX / sizeof *block) {
+        gxbp_require(s, GX_ERROR_LIMIT);
+        return;
+    }
     block = (uint32_t *)gxbp_allocate(&cx->allocator, words * sizeof *block);
-    if (block == NULL) { gxbp_require(s, GX_ERROR_MEMORY); return; }
+    if (block == NULL) {
+        gxbp_require(s, GX_ERROR_MEMORY);
+        return;
+    }
     memset(block, 0, words * sizeof *block);
-    c.cx = cx; c.s = s;
-    c.edge_mark = block; c.border = c.edge_mark + 2 * e; c.edge = c.border + 2 * e; c.corner = c.edge + e; c.edge_depth = c.corner + e;
-    c.facet_mark = c.edge_depth + e; c.facet = c.facet_mark + 2 * f; c.facet_depth = c.facet + f;
-    c.node_depth = c.facet_depth + f; c.node_up = c.node_depth + n; c.node_element = c.node_up + n;
-    c.leaf_up = c.node_element + n; c.point = c.leaf_up + l; c.queue = c.point + cx->point_count;
+    c.cx = cx;
+    c.s = s;
+    c.edge_mark = block;
+    c.border = c.edge_mark + 2 * e;
+    c.edge = c.border + 2 * e;
+    c.corner = c.edge + e;
+    c.edge_depth = c.corner + e;
+    c.facet_mark = c.edge_depth + e;
+    c.facet = c.facet_mark + 2 * f;
+    c.facet_depth = c.facet + f;
+    c.node_depth = c.facet_depth + f;
+    c.node_up = c.node_depth + n;
+    c.node_element = c.node_up + n;
+    c.leaf_up = c.node_element + n;
+    c.point = c.leaf_up + l;
+    c.queue = c.point + cx->point_count;
     gxbp_run_checks(&c);
     gxbp_release(&cx->allocator, block, words * sizeof *block);
 }
 
-/* >>arrangement: triangles of closed surfaces, divided where they meet (docs/KERNEL.md) ------------------------------------- */
+/* >>arrangement: triangles of closed surfaces, divided where they meet (docs/KERNEL.md) ---------------------------- */
 
-/* Labels of a facet's edge are lists: the triangles that meet the facet's plane in it (sources), in flats also edges of sources
-   (half-edge | GXBP_EDGE_LABEL). */
+/* Labels of a facet's edge are lists: the triangles that meet the facet's plane in it (sources), in flats also edges of
+   sources (half-edge | GXBP_EDGE_LABEL). */
 #define GXBP_EDGE_LABEL ((uint32_t)1 << 31)
-#define GXBP_LOOSE UINT32_MAX            /* an edge that only triangulates */
-#define GXBP_BARE (UINT32_MAX - 1)      /* the end of a list: an edge that must stay */
+#define GXBP_LOOSE      UINT32_MAX       /* an edge that only triangulates */
+#define GXBP_BARE       (UINT32_MAX - 1) /* the end of a list: an edge that must stay */
 
-enum { GXBP_LEAF = 8 };                 /* triangles in a leaf of a box tree */
+enum { GXBP_LEAF = 8 }; /* triangles in a leaf of a box tree */
 
-typedef struct gxbp_source {    /* an input triangle */
+typedef struct gxbp_source { /* an input triangle */
     uint32_t point[3];
-    uint32_t twin[3];           /* the half-edge 3 s + k on the other side of edge k, GXB_NONE where there is not exactly one */
-    uint32_t edge[3];           /* in cuts; GXB_NONE: nothing is known of the edge, and it has no inner points */
-    uint32_t plane;             /* GXB_NONE until needed */
+    /* the half-edge 3 s + k on the other side of edge k, GXB_NONE where there is not exactly one */
+    uint32_t twin[3];
+    uint32_t edge[3]; /* in cuts; GXB_NONE: nothing is known of the edge, and it has no inner points */
+    uint32_t plane;   /* GXB_NONE until needed */
     uint32_t operand;
-    uint32_t facet;             /* first of its facets; of a flat: its root has them all */
-    uint32_t segments;          /* list */
-    uint32_t root, next;        /* flat: union-find parent, next member */
+    uint32_t facet;      /* first of its facets; of a flat: its root has them all */
+    uint32_t segments;   /* list */
+    uint32_t root, next; /* flat: union-find parent, next member */
     uint32_t flags;
 } gxbp_source;
-enum { GXBP_DEGENERATE = 1, GXBP_DIRTY = 2, GXBP_DIVIDED = 4, GXBP_FLAT = 8,
-       GXBP_REACHED = 16 };    /* one of its facets has got a state: all have, or will soon */
-enum { GXBP_FOLDS = 8 };        /* two bits of the flags for each edge from this one on, see gxbp_fold_beyond_filter */
+enum {
+    GXBP_DEGENERATE = 1,
+    GXBP_DIRTY = 2,
+    GXBP_DIVIDED = 4,
+    GXBP_FLAT = 8,
+    GXBP_REACHED = 16
+};                       /* one of its facets has got a state: all have, or will soon */
+enum { GXBP_FOLDS = 8 }; /* two bits of the flags for each edge from this one on, see gxbp_fold_beyond_filter */
 
-typedef struct gxbp_piece {     /* a triangle of a source's triangulation; edge k from v[k] to v[k + 1] */
+typedef struct gxbp_piece { /* a triangle of a source's triangulation; edge k from v[k] to v[k + 1] */
     uint32_t v[3], near[3], labels[3];
-    uint32_t source;            /* root of the flat; GXB_NONE: no longer in use */
+    uint32_t source; /* root of the flat; GXB_NONE: no longer in use */
     uint32_t next;
-    uint32_t covers;            /* in a flat: list of the sources that cover it */
-    uint32_t state;             /* winding numbers in front of it; GXB_NONE: not known. Kept from evaluation to evaluation */
+    uint32_t covers; /* in a flat: list of the sources that cover it */
+    /* winding numbers in front of it; GXB_NONE: not known. Kept from evaluation to evaluation */
+    uint32_t state;
 } gxbp_piece;
 
-typedef struct gxbp_vertex {    /* beside each point of the complex */
-    uint32_t key[4];            /* kind and what defines it, see gxb_origin; half-edges and sources */
-    uint32_t same;              /* union-find: points found to be equal */
-    uint32_t stamp, hint;       /* a facet around it in the triangulation at work */
-    uint32_t head, head_stamp;  /* scratch */
-    uint32_t slot;              /* scratch: place on the rim of the source at work; number in the output */
+typedef struct gxbp_vertex {   /* beside each point of the complex */
+    uint32_t key[4];           /* kind and what defines it, see gxb_origin; half-edges and sources */
+    uint32_t same;             /* union-find: points found to be equal */
+    uint32_t stamp, hint;      /* a facet around it in the triangulation at work */
+    uint32_t head, head_stamp; /* scratch */
+    uint32_t slot;             /* scratch: place on the rim of the source at work; number in the output */
 } gxbp_vertex;
 
-typedef struct gxbp_link { uint32_t value, next; } gxbp_link;
-/* left: the sign of the label's plane to the left of p q, seen from the side to which the source's normal points; 0: not known */
-typedef struct gxbp_segment { uint32_t p, q, label, next; int32_t left; } gxbp_segment;
-/* An edge of a surface. Its inner points: in cut_points, in the half-edge's direction. rim: of the facets of divided sources on its two sides (that
-   of the half-edge first) those at its start, as 3 f + k. */
-typedef struct gxbp_cut { uint32_t half_edge, first, count, rim[2]; } gxbp_cut;
-typedef struct gxbp_hit { uint32_t cut, point; } gxbp_hit;
-typedef struct gxbp_margin { uint32_t vertex, near, labels, made, dangling; } gxbp_margin;
-typedef struct gxbp_box { float low[3], high[3]; } gxbp_box;   /* coordinates / 16, not less wide than what is in it: see gxbp_float_below */
+typedef struct gxbp_link {
+    uint32_t value, next;
+} gxbp_link;
+/* left: the sign of the label's plane to the left of p q, seen from the side to which the source's normal points; 0:
+ * not known */
+typedef struct gxbp_segment {
+    uint32_t p, q, label, next;
+    int32_t left;
+} gxbp_segment;
+/* An edge of a surface. Its inner points: in cut_points, in the half-edge's direction. rim: of the facets of divided
+   sources on its two sides (that of the half-edge first) those at its start, as 3 f + k. */
+typedef struct gxbp_cut {
+    uint32_t half_edge, first, count, rim[2];
+} gxbp_cut;
+typedef struct gxbp_hit {
+    uint32_t cut, point;
+} gxbp_hit;
+typedef struct gxbp_margin {
+    uint32_t vertex, near, labels, made, dangling;
+} gxbp_margin;
+/* coordinates / 16, not less wide than what is in it: see gxbp_float_below */
+typedef struct gxbp_box {
+    float low[3], high[3];
+} gxbp_box;
 
 /* Of a leaf's triangles, side by side; those that are not there meet nothing. */
-typedef struct gxbp_leaf_boxes { float low[3][GXBP_LEAF], high[3][GXBP_LEAF]; } gxbp_leaf_boxes;
+typedef struct gxbp_leaf_boxes {
+    float low[3][GXBP_LEAF], high[3][GXBP_LEAF];
+} gxbp_leaf_boxes;
 
-typedef struct gxbp_tree {      /* boxes over groups of GXBP_LEAF sources, then over pairs of boxes, up to one */
-    uint32_t first, levels;     /* of its boxes in gxb_boolean.boxes */
-    uint32_t level[28];         /* first box of each level, from first */
+typedef struct gxbp_tree {  /* boxes over groups of GXBP_LEAF sources, then over pairs of boxes, up to one */
+    uint32_t first, levels; /* of its boxes in gxb_boolean.boxes */
+    uint32_t level[28];     /* first box of each level, from first */
     uint32_t size[28];
 } gxbp_tree;
 
 typedef struct gxbp_operand {
     uint32_t operation, rule;
-    uint32_t simple;            /* vouched for, or found */
-    uint32_t reached;           /* a facet has got a state in the evaluation at work */
+    uint32_t simple;  /* vouched for, or found */
+    uint32_t reached; /* a facet has got a state in the evaluation at work */
     uint32_t source, source_count;
-    uint32_t bounds;            /* of its leaves in gxb_boolean.bounds */
-    uint32_t *order;            /* sources in the order of the tree's leaves, in one piece of memory of its own */
+    uint32_t bounds; /* of its leaves in gxb_boolean.bounds */
+    uint32_t *order; /* sources in the order of the tree's leaves, in one piece of memory of its own */
     gxbp_tree tree;
 } gxbp_operand;
 
 /* From a state one up or down in an operand's winding number */
-typedef struct gxbp_crossing { uint32_t from, operand, to; int32_t change; } gxbp_crossing;
+typedef struct gxbp_crossing {
+    uint32_t from, operand, to;
+    int32_t change;
+} gxbp_crossing;
 enum { GXBP_STEPS = 64 };
 
-struct gxb_boolean {            /* what is used most comes first: its addresses are short */
-    gxbp_source *sources; uint32_t source_count, source_capacity;
-    gxbp_vertex *vertices; uint32_t vertex_count, vertex_capacity;
-    gxbp_piece *pieces; uint32_t piece_count, piece_capacity;
-    uint32_t *scratch; uint32_t scratch_count, scratch_capacity;
-    gxbp_link *links; uint32_t link_count, link_capacity;
-    gx_result result;           /* of the evaluation at work */
-    gxb_complex cx;             /* points, planes and exact numbers; the complex has no elements */
+struct gxb_boolean { /* what is used most comes first: its addresses are short */
+    gxbp_source *sources;
+    uint32_t source_count, source_capacity;
+    gxbp_vertex *vertices;
+    uint32_t vertex_count, vertex_capacity;
+    gxbp_piece *pieces;
+    uint32_t piece_count, piece_capacity;
+    uint32_t *scratch;
+    uint32_t scratch_count, scratch_capacity;
+    gxbp_link *links;
+    uint32_t link_count, link_capacity;
+    gx_result result; /* of the evaluation at work */
+    gxb_complex cx;   /* points, planes and exact numbers; the complex has no elements */
     gx_allocator outer;
     size_t limit, used, peak;
-    unsigned char *arena;       /* behind the struct: what small cases need comes from here */
+    unsigned char *arena; /* behind the struct: what small cases need comes from here */
     size_t arena_size, arena_used;
     uint64_t allocations;
     int over_limit;
-    int evaluated, measured, examined;      /* 1: there is a result; its components, its defects are known */
+    int evaluated, measured, examined; /* 1: there is a result; its components, its defects are known */
     uint32_t fine, mended, triangulation;
-    void (*coarsen)(gxb_boolean *b), (*mend)(gxb_boolean *b);       /* NULL where not asked for: the setters name them, nothing else does */
+    /* NULL where not asked for: the setters name them, nothing else does */
+    void (*coarsen)(gxb_boolean *b), (*mend)(gxb_boolean *b);
     int (*inside)(void *user, const int32_t *winding, size_t operand_count);
     void *user;
-    gxbp_operand *operands; uint32_t operand_count, operand_capacity;
-    gxbp_leaf_boxes *bounds; uint32_t bound_count, bound_capacity;      /* of each operand's sources, in its tree's order */
-    gxbp_box *boxes; uint32_t box_count, box_capacity;                  /* of trees */
-    uint32_t *table; uint32_t table_size, table_used;                   /* hash of points by coordinates or key */
-    gxbp_segment *segments; uint32_t segment_count, segment_capacity;
-    gxbp_cut *cuts; uint32_t cut_count, cut_capacity;
-    uint32_t *cut_points; uint32_t cut_point_count, cut_point_capacity;
-    gxbp_hit *hits; uint32_t hit_count, hit_capacity;
-    uint32_t *dirty; uint32_t dirty_count, dirty_capacity;
-    uint32_t marks;             /* how often a source was found to meet something */
-    uint32_t *divided; uint32_t divided_count, divided_capacity;        /* sources that were, alone or as a flat's roots */
-    gxbp_margin *rims; uint32_t rim_count, rim_capacity;
-    gxbp_margin *lefts; uint32_t left_count, left_capacity;
-    uint32_t *chain; uint32_t chain_count, chain_capacity;
-    uint32_t arranged;          /* operands that are in the arrangement */
-    uint32_t stated;            /* operands that states count; 0: facets have no states */
-    uint32_t unreached;         /* operands of which no facet has a state yet */
-    uint32_t segment_mark;      /* segments before it are in the triangulations */
-    uint32_t merged_points;     /* points before it were compared with each other */
-    struct gxbp_projected *projected; uint32_t projected_count, projected_capacity;     /* the computed ones of these, along a direction */
-    double reach;               /* the largest of their errors */
-    uint32_t united, renamed;   /* 1: since the last evaluation a point has got another name; an input vertex has ever */
-    uint32_t plane, stamp, head_stamp;                                  /* of the triangulation at work */
-    int32_t *windings; uint32_t winding_count, winding_capacity;        /* state x operand */
-    uint32_t *states; uint32_t state_count, state_capacity;             /* of each state: is it inside? */
-    uint32_t *state_table; uint32_t state_table_size, listed;           /* listed: how many states it has */
-    gxbp_crossing steps[GXBP_STEPS];                                        /* the last ones asked for */
-    double *out_vertices; uint32_t out_vertex_count, out_vertex_capacity;
-    gxb_origin *out_origins; uint32_t out_origin_count, out_origin_capacity;
-    uint32_t *out_points; uint32_t out_point_count, out_point_capacity;
-    uint32_t *out_triangles; uint32_t out_triangle_count, out_triangle_capacity;
-    uint32_t *out_operands; uint32_t out_operand_count, out_operand_capacity;
-    uint32_t *out_sources; uint32_t out_source_count, out_source_capacity;
-    uint32_t *out_components; uint32_t out_component_count, out_component_capacity;     /* of triangles */
-    uint32_t *out_planes; uint32_t out_plane_count, out_plane_capacity;
-    uint8_t *out_reversed; uint32_t out_reversed_count, out_reversed_capacity;
-    int8_t *out_sides; uint32_t out_side_count, out_side_capacity;
-    double *out_volumes; uint32_t out_volume_count, out_volume_capacity;
-    int32_t *out_eulers; uint32_t out_euler_count, out_euler_capacity;
-    uint32_t *out_defects; uint32_t out_defect_count, out_defect_capacity;
-    uint32_t *out_twins; uint32_t out_twin_count, out_twin_capacity;    /* of half-edges, to mend: wedges and corners apart */
+    gxbp_operand *operands;
+    uint32_t operand_count, operand_capacity;
+    /* of each operand's sources, in its tree's order */
+    gxbp_leaf_boxes *bounds;
+    uint32_t bound_count, bound_capacity;
+    /* of trees */
+    gxbp_box *boxes;
+    uint32_t box_count, box_capacity;
+    /* hash of points by coordinates or key */
+    uint32_t *table;
+    uint32_t table_size, table_used;
+    gxbp_segment *segments;
+    uint32_t segment_count, segment_capacity;
+    gxbp_cut *cuts;
+    uint32_t cut_count, cut_capacity;
+    uint32_t *cut_points;
+    uint32_t cut_point_count, cut_point_capacity;
+    gxbp_hit *hits;
+    uint32_t hit_count, hit_capacity;
+    uint32_t *dirty;
+    uint32_t dirty_count, dirty_capacity;
+    uint32_t marks; /* how often a source was found to meet something */
+    /* sources that were, alone or as a flat's roots */
+    uint32_t *divided;
+    uint32_t divided_count, divided_capacity;
+    gxbp_margin *rims;
+    uint32_t rim_count, rim_capacity;
+    gxbp_margin *lefts;
+    uint32_t left_count, left_capacity;
+    uint32_t *chain;
+    uint32_t chain_count, chain_capacity;
+    uint32_t arranged;      /* operands that are in the arrangement */
+    uint32_t stated;        /* operands that states count; 0: facets have no states */
+    uint32_t unreached;     /* operands of which no facet has a state yet */
+    uint32_t segment_mark;  /* segments before it are in the triangulations */
+    uint32_t merged_points; /* points before it were compared with each other */
+    /* the computed ones of these, along a direction */
+    struct gxbp_projected *projected;
+    uint32_t projected_count, projected_capacity;
+    double reach; /* the largest of their errors */
+    /* 1: since the last evaluation a point has got another name; an input vertex has ever */
+    uint32_t united, renamed;
+    uint32_t plane, stamp, head_stamp; /* of the triangulation at work */
+    /* state x operand */
+    int32_t *windings;
+    uint32_t winding_count, winding_capacity;
+    /* of each state: is it inside? */
+    uint32_t *states;
+    uint32_t state_count, state_capacity;
+    /* listed: how many states it has */
+    uint32_t *state_table;
+    uint32_t state_table_size, listed;
+    gxbp_crossing steps[GXBP_STEPS]; /* the last ones asked for */
+    double *out_vertices;
+    uint32_t out_vertex_count, out_vertex_capacity;
+    gxb_origin *out_origins;
+    uint32_t out_origin_count, out_origin_capacity;
+    uint32_t *out_points;
+    uint32_t out_point_count, out_point_capacity;
+    uint32_t *out_triangles;
+    uint32_t out_triangle_count, out_triangle_capacity;
+    uint32_t *out_operands;
+    uint32_t out_operand_count, out_operand_capacity;
+    uint32_t *out_sources;
+    uint32_t out_source_count, out_source_capacity;
+    /* of triangles */
+    uint32_t *out_components;
+    uint32_t out_component_count, out_component_capacity;
+    uint32_t *out_planes;
+    uint32_t out_plane_count, out_plane_capacity;
+    uint8_t *out_reversed;
+    uint32_t out_reversed_count, out_reversed_capacity;
+    int8_t *out_sides;
+    uint32_t out_side_count, out_side_capacity;
+    double *out_volumes;
+    uint32_t out_volume_count, out_volume_capacity;
+    int32_t *out_eulers;
+    uint32_t out_euler_count, out_euler_capacity;
+    uint32_t *out_defects;
+    uint32_t out_defect_count, out_defect_capacity;
+    /* of half-edges, to mend: wedges and corners apart */
+    uint32_t *out_twins;
+    uint32_t out_twin_count, out_twin_capacity;
 };
 
 /* --- memory --- */
@@ -5037,7 +5739,10 @@ static void *gxbp_count_allocate(void *user, size_t size) {
     gxb_boolean *b = (gxb_boolean *)user;
     void *memory = gxbp_take(b, size);
     if (memory != NULL) return memory;
-    if (b->limit != 0 && (size > b->limit || b->used > b->limit - size)) { b->over_limit = 1; return NULL; }
+    if (b->limit != 0 && (size > b->limit || b->used > b->limit - size)) {
+        b->over_limit = 1;
+        return NULL;
+    }
     memory = gxbp_allocate(&b->outer, size);
     if (memory == NULL) return NULL;
     b->allocations++;
@@ -5051,7 +5756,8 @@ static void gxbp_count_release(void *user, void *memory, size_t size) {
     const unsigned char *m = (const unsigned char *)memory;
     if (m >= b->arena && m < b->arena + b->arena_size) {
         const size_t from = (size_t)(m - b->arena);
-        if (from + gxbp_whole_words(size) == b->arena_used) b->arena_used = from;       /* what else is released there stays taken */
+        /* what else is released there stays taken */
+        if (from + gxbp_whole_words(size) == b->arena_used) b->arena_used = from;
         return;
     }
     b->used -= size;
@@ -5065,7 +5771,10 @@ static void *gxbp_count_reallocate(void *user, void *old, size_t size, size_t la
     const int in_arena = m >= b->arena && m < b->arena + b->arena_size;
     const size_t more = larger - size;
     void *memory;
-    if (!in_arena && b->limit != 0 && (more > b->limit || b->used > b->limit - more)) { b->over_limit = 1; return NULL; }
+    if (!in_arena && b->limit != 0 && (more > b->limit || b->used > b->limit - more)) {
+        b->over_limit = 1;
+        return NULL;
+    }
     memory = in_arena ? gxbp_count_allocate(user, larger) : gxbp_reallocate(&b->outer, old, size, size, larger);
     if (memory == NULL) return NULL;
     if (in_arena) {
@@ -5100,11 +5809,12 @@ static GXBP_APART int gxbp_room(gxb_boolean *b, void *array, size_t item, size_t
     return result == GX_OK ? 1 : gxbp_stop(b, result);
 }
 
-#define GXBP_ROOM(b, array, counter, extra) \
-    ((b)->counter##_count + (size_t)(extra) <= (b)->counter##_capacity || \
+#define GXBP_ROOM(b, array, counter, extra)                                                                            \
+    ((b)->counter##_count + (size_t)(extra) <= (b)->counter##_capacity ||                                              \
      gxbp_room(b, &(b)->array, sizeof *(b)->array, extra))
 
-/* Memory for as long as nobody else takes scratch; NULL: there is none. It is kept: what needs some next finds pages that have been touched. */
+/* Memory for as long as nobody else takes scratch; NULL: there is none. It is kept: what needs some next finds pages
+ * that have been touched. */
 static GXBP_APART void *gxbp_borrow(gxb_boolean *b, size_t bytes) {
     b->scratch_count = 0;
     return GXBP_ROOM(b, scratch, scratch, bytes / sizeof *b->scratch + 1) ? b->scratch : NULL;
@@ -5128,7 +5838,9 @@ static GXBP_APART uint32_t gxbp_hash_key(const uint32_t key[4]) {
     return gxbp_mix(gxbp_mix(key[0], (uint64_t)key[1] << 32 | key[2]), key[3]);
 }
 
-static GXBP_APART uint32_t gxbp_hash_place(const double x[3]) { return gxbp_mix(gxbp_mix(gxbp_mix(0, gxbp_bits(x[0])), gxbp_bits(x[1])), gxbp_bits(x[2])); }
+static GXBP_APART uint32_t gxbp_hash_place(const double x[3]) {
+    return gxbp_mix(gxbp_mix(gxbp_mix(0, gxbp_bits(x[0])), gxbp_bits(x[1])), gxbp_bits(x[2]));
+}
 
 static uint32_t gxbp_hash_point(const gxb_boolean *b, uint32_t point) {
     const uint32_t *key = b->vertices[point].key;
@@ -5178,10 +5890,16 @@ static inline uint32_t gxbp_new_vertex(gxb_boolean *b, uint32_t kind, uint32_t p
     gxbp_vertex *v;
     if (!GXBP_ROOM(b, vertices, vertex, 1)) return GXB_NONE;
     result = gxbp_new_point(&b->cx, &id);
-    if (result != GX_OK) { gxbp_stop(b, result); return GXB_NONE; }
+    if (result != GX_OK) {
+        gxbp_stop(b, result);
+        return GXB_NONE;
+    }
     v = &b->vertices[b->vertex_count++];
     memset(v, 0, sizeof *v);
-    v->key[0] = kind; v->key[1] = p; v->key[2] = q; v->key[3] = r;
+    v->key[0] = kind;
+    v->key[1] = p;
+    v->key[2] = q;
+    v->key[3] = r;
     v->same = id;
     return id;
 }
@@ -5214,12 +5932,14 @@ static GXBP_RARE void gxbp_unite(gxb_boolean *b, uint32_t keep, uint32_t drop) {
     p->def[0] = q->def[0];
 }
 
-/* The point of a plane where a line meets it, or of three planes. Where the ball is too large to filter by it comes from exact
-   coordinates: the ratio's relative error is below 2^-50. */
+/* The point of a plane where a line meets it, or of three planes. Where the ball is too large to filter by it comes
+   from exact coordinates: the ratio's relative error is below 2^-50. */
 static void gxbp_place_point(gxb_boolean *b, uint32_t point, uint32_t kind, uint32_t p, uint32_t q, uint32_t r) {
     gxb_cpoint *c = &b->cx.points[point];
     c->kind = (uint8_t)kind;
-    c->def[0] = p; c->def[1] = q; c->def[2] = r;
+    c->def[0] = p;
+    c->def[1] = q;
+    c->def[2] = r;
     gxbp_definition_ball(&b->cx, kind, c->def, &c->ball);
     if (c->ball.error > gxbp_power(-30) * gxbp_max3(c->ball.x)) {
         gxbp_vec store;
@@ -5240,7 +5960,10 @@ static uint32_t gxbp_keyed_point(gxb_boolean *b, uint32_t kind, uint32_t p, uint
     uint32_t key[4], k, id;
     *fresh = 0;
     if (!gxbp_table_room(b, 1)) return GXB_NONE;
-    key[0] = kind; key[1] = p; key[2] = q; key[3] = r;
+    key[0] = kind;
+    key[1] = p;
+    key[2] = q;
+    key[3] = r;
     for (k = gxbp_hash_key(key) & (b->table_size - 1); b->table[k] != GXB_NONE; k = (k + 1) & (b->table_size - 1))
         if (memcmp(b->vertices[b->table[k]].key, key, sizeof key) == 0) return gxbp_same(b, b->table[k]);
     id = gxbp_new_vertex(b, kind, p, q, r);
@@ -5267,7 +5990,7 @@ static gx_result gxbp_scale(const gxb_boolean *b, const double x[3], double y[3]
     return GX_OK;
 }
 
-#define GXBP_LARGEST 200    /* the first operand's largest coordinate is 2^+-this: cubes of 2^128 times it are finite */
+#define GXBP_LARGEST 200 /* the first operand's largest coordinate is 2^+-this: cubes of 2^128 times it are finite */
 
 /* Scenes of ordinary size keep their scale. *bad: the vertex with the largest coordinate, where that is out of range */
 static gx_result gxbp_choose_scale(gxb_boolean *b, const gxb_operand *operand, size_t *bad) {
@@ -5275,7 +5998,10 @@ static gx_result gxbp_choose_scale(gxb_boolean *b, const gxb_operand *operand, s
     size_t i, at = 0;
     for (i = 0; i < 3 * operand->vertex_count; i++) {
         const int e = gxbp_exponent_bits(operand->vertices[i]) - 1023;
-        if (e > largest && e < 1024 && !gxbp_is_zero(operand->vertices[i])) { largest = e; at = i / 3; }
+        if (e > largest && e < 1024 && !gxbp_is_zero(operand->vertices[i])) {
+            largest = e;
+            at = i / 3;
+        }
     }
     b->cx.shift = largest == -2000 || (largest >= -60 && largest <= 60) ? 0 : -largest;
     if (largest == -2000 || (largest >= -GXBP_LARGEST && largest <= GXBP_LARGEST)) return GX_OK;
@@ -5301,9 +6027,12 @@ static uint32_t gxbp_input_point(gxb_boolean *b, const double y[3], uint32_t ope
 static uint32_t gxbp_next_edge(uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
 static uint32_t gxbp_last_edge(uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
 
-/* An edge between vertex p and a later one, with which it is kept: how often it is passed forth (from p) and back, and by which half-edges
-   last. next: the later end of another edge of p. first: of the vertex itself, the half-edges between it and later ones. */
-typedef struct gxbp_passage { uint32_t first, p, next, forth, back, there, home; } gxbp_passage;
+/* An edge between vertex p and a later one, with which it is kept: how often it is passed forth (from p) and back, and
+   by which half-edges last. next: the later end of another edge of p. first: of the vertex itself, the half-edges
+   between it and later ones. */
+typedef struct gxbp_passage {
+    uint32_t first, p, next, forth, back, there, home;
+} gxbp_passage;
 
 /* Half-edges in lists of their earlier vertices, in ascending order; next: of each half-edge. */
 static void gxbp_list_half_edges(const uint32_t *triangles, uint32_t count, gxbp_passage *passages, uint32_t *next) {
@@ -5327,14 +6056,25 @@ static uint32_t gxbp_take_passages(const uint32_t *triangles, gxbp_passage *pass
         gxbp_passage *e = &passages[q];
         next = twin[h];
         twin[h] = GXB_NONE;
-        if (e->p != p) { e->p = p; e->forth = e->back = 0; e->next = last; last = q; }
-        if (from == p) { e->forth++; e->there = h; }
-        else { e->back++; e->home = h; }
+        if (e->p != p) {
+            e->p = p;
+            e->forth = e->back = 0;
+            e->next = last;
+            last = q;
+        }
+        if (from == p) {
+            e->forth++;
+            e->there = h;
+        } else {
+            e->back++;
+            e->home = h;
+        }
     }
     return last;
 }
 
-enum { GXBP_FEW = 32, GXBP_FEW_TRIANGLES = 80 };        /* vertices of which a table has all pairs; half-edges that a byte names */
+/* vertices of which a table has all pairs; half-edges that a byte names */
+enum { GXBP_FEW = 32, GXBP_FEW_TRIANGLES = 80 };
 
 /* Of few vertices. 0: not all edges have one half-edge in each direction. */
 static int gxbp_find_few_twins(const uint32_t *triangles, uint32_t count, uint32_t vertex_count, uint32_t *twin) {
@@ -5357,31 +6097,44 @@ static int gxbp_find_few_twins(const uint32_t *triangles, uint32_t count, uint32
 /* Words of room that gxbp_find_twins works in */
 static size_t gxbp_twin_room(size_t vertex_count) { return vertex_count * (sizeof(gxbp_passage) / sizeof(uint32_t)); }
 
-/* twin of each half-edge, GXB_NONE where an edge has not one in each direction. *open: a half-edge whose edge is passed more often in
-   its direction than in the other, or GXB_NONE: the surface is closed. */
-static void gxbp_find_twins(const uint32_t *triangles, size_t count, uint32_t vertex_count, uint32_t *twin, uint32_t *open, uint32_t *room) {
+/* twin of each half-edge, GXB_NONE where an edge has not one in each direction. *open: a half-edge whose edge is passed
+   more often in its direction than in the other, or GXB_NONE: the surface is closed. */
+static void gxbp_find_twins(const uint32_t *triangles, size_t count, uint32_t vertex_count, uint32_t *twin,
+                            uint32_t *open, uint32_t *room) {
     gxbp_passage *passages = (gxbp_passage *)(void *)room;
     uint32_t p, q, odd;
     *open = GXB_NONE;
-    if (vertex_count <= GXBP_FEW && count <= GXBP_FEW_TRIANGLES && gxbp_find_few_twins(triangles, (uint32_t)count, vertex_count, twin)) return;
+    if (vertex_count <= GXBP_FEW && count <= GXBP_FEW_TRIANGLES &&
+        gxbp_find_few_twins(triangles, (uint32_t)count, vertex_count, twin))
+        return;
     for (p = 0; p < vertex_count; p++) passages[p].first = passages[p].p = GXB_NONE;
     gxbp_list_half_edges(triangles, (uint32_t)count, passages, twin);
     for (p = 0; p < vertex_count; p++) {
         odd = GXB_NONE;
         for (q = gxbp_take_passages(triangles, passages, p, twin); q != GXB_NONE; q = passages[q].next) {
             const gxbp_passage *e = &passages[q];
-            if (e->forth == 1 && e->back == 1) { twin[e->there] = e->home; twin[e->home] = e->there; }
-            else if (e->forth != e->back) odd = e->forth > e->back ? e->there : e->home;
+            if (e->forth == 1 && e->back == 1) {
+                twin[e->there] = e->home;
+                twin[e->home] = e->there;
+            } else if (e->forth != e->back)
+                odd = e->forth > e->back ? e->there : e->home;
         }
         if (*open == GXB_NONE) *open = odd;
     }
 }
 
 /* Half-edges by the vertex that they leave, with the vertex in which they end. */
-typedef struct gxbp_exit { uint32_t half_edge, to; } gxbp_exit;
-typedef struct gxbp_fan { gxbp_exit *list; uint32_t *first; size_t bytes; } gxbp_fan;
+typedef struct gxbp_exit {
+    uint32_t half_edge, to;
+} gxbp_exit;
+typedef struct gxbp_fan {
+    gxbp_exit *list;
+    uint32_t *first;
+    size_t bytes;
+} gxbp_fan;
 
-static GXBP_COLD int gxbp_make_fan(gxb_boolean *b, const uint32_t *triangles, size_t count, uint32_t vertex_count, gxbp_fan *fan) {
+static GXBP_COLD int gxbp_make_fan(gxb_boolean *b, const uint32_t *triangles, size_t count, uint32_t vertex_count,
+                                   gxbp_fan *fan) {
     uint32_t h;
     fan->bytes = 3 * count * sizeof *fan->list + ((size_t)vertex_count + 1) * sizeof *fan->first;
     fan->list = (gxbp_exit *)gxbp_allocate(&b->cx.allocator, fan->bytes);
@@ -5400,8 +6153,9 @@ static GXBP_COLD int gxbp_make_fan(gxb_boolean *b, const uint32_t *triangles, si
 
 static void gxbp_drop_fan(gxb_boolean *b, gxbp_fan *fan) { gxbp_release(&b->cx.allocator, fan->list, fan->bytes); }
 
-/* Component k of a x c, and the size of its products. A product of three fenced differences suffers three roundings in them, two in itself and
-   at most five in the sum that makes an orientation of it: within 32u of the products' sizes. */
+/* Component k of a x c, and the size of its products. A product of three fenced differences suffers three roundings in
+   them, two in itself and at most five in the sum that makes an orientation of it: within 32u of the products' sizes.
+ */
 static double gxbp_cross_size(const double a[3], const double c[3], int i, int j, double *size) {
     *size = gxbp_abs(a[i] * c[j]) + gxbp_abs(a[j] * c[i]);
     return a[i] * c[j] - a[j] * c[i];
@@ -5417,7 +6171,9 @@ static GXBP_COLD int gxbp_has_area_exactly(const double *p, const double *q, con
     gxb_plane plane;
     gxbp_vec n;
     int sign[3];
-    x[0] = p; x[1] = q; x[2] = r;
+    x[0] = p;
+    x[1] = q;
+    x[2] = r;
     if (gxbp_normal_short(x, sign)) return sign[0] != 0 || sign[1] != 0 || sign[2] != 0;
     gxb_plane_init(&plane, p, q, r);
     gxbp_plane_exact(&n, &plane);
@@ -5428,7 +6184,10 @@ static GXBP_COLD int gxbp_has_area_exactly(const double *p, const double *q, con
 static int gxbp_has_area(const double *p, const double *q, const double *r) {
     double a[3], c[3], m, size;
     int k, i = 1, j = 2;
-    for (k = 0; k < 3; k++) { a[k] = gxbp_fence(q[k] - p[k]); c[k] = gxbp_fence(r[k] - p[k]); }
+    for (k = 0; k < 3; k++) {
+        a[k] = gxbp_fence(q[k] - p[k]);
+        c[k] = gxbp_fence(r[k] - p[k]);
+    }
     for (k = 0; k < 3; i = j, j = k++) {
         m = gxbp_cross_size(a, c, i, j, &size);
         if (gxbp_abs(m) > 32 * GXBP_U * size + GXBP_TINY) return 1;
@@ -5461,7 +6220,9 @@ static void gxbp_fill_source(gxb_boolean *b, uint32_t s, uint32_t operand, const
     for (k = 0; k < 3; k++) t->twin[k] = twin[k] == GXB_NONE ? GXB_NONE : twin[k] + 3 * first;
     t->plane = GXB_NONE;
     t->operand = operand;
-    t->flags = gxbp_has_area(x[t->point[0]].ball.x, x[t->point[1]].ball.x, x[t->point[2]].ball.x) ? 0 : (uint32_t)GXBP_DEGENERATE;
+    t->flags = gxbp_has_area(x[t->point[0]].ball.x, x[t->point[1]].ball.x, x[t->point[2]].ball.x)
+                 ? 0
+                 : (uint32_t)GXBP_DEGENERATE;
     gxbp_reset_source(b, s);
 }
 
@@ -5479,18 +6240,23 @@ static void gxbp_forget_degenerate(gxb_boolean *b, uint32_t first) {
     }
 }
 
-/* points and local: room for vertex_count; local triangles and twins: 3 per triangle. *distinct: no two vertices are at one place, local is i. */
-static gx_result gxbp_read_points(gxb_boolean *b, const gxb_operand *o, uint32_t *points, uint32_t *local, int *distinct, size_t *bad) {
+/* points and local: room for vertex_count; local triangles and twins: 3 per triangle. *distinct: no two vertices are at
+ * one place, local is i. */
+static gx_result gxbp_read_points(gxb_boolean *b, const gxb_operand *o, uint32_t *points, uint32_t *local,
+                                  int *distinct, size_t *bad) {
     size_t i;
     *distinct = 1;
     for (i = 0; i < o->vertex_count; i++) {
         double y[3];
         gxbp_vertex *v;
         const gx_result result = gxbp_scale(b, o->vertices + 3 * i, y);
-        if (result != GX_OK) { *bad = i; return result; }
+        if (result != GX_OK) {
+            *bad = i;
+            return result;
+        }
         points[i] = gxbp_input_point(b, y, b->operand_count, (uint32_t)i);
         if (points[i] == GXB_NONE) return b->result;
-        v = &b->vertices[points[i]];                /* vertices at one place are one: the first of them */
+        v = &b->vertices[points[i]]; /* vertices at one place are one: the first of them */
         if (v->head >= i || points[v->head] != points[i]) v->head = (uint32_t)i;
         local[i] = v->head;
         *distinct &= v->head == i;
@@ -5511,7 +6277,10 @@ static GXBP_APART gx_result gxbp_read_triangles(gxb_boolean *b, const gxb_operan
         triangles = joined;
     }
     gxbp_find_twins(triangles, o->triangle_count, (uint32_t)o->vertex_count, twin, &open, twin + 3 * o->triangle_count);
-    if (open != GXB_NONE && o->operation != GXB_SPLIT) { *bad = open / 3; return GX_ERROR_NOT_CLOSED; }
+    if (open != GXB_NONE && o->operation != GXB_SPLIT) {
+        *bad = open / 3;
+        return GX_ERROR_NOT_CLOSED;
+    }
     for (h = 0; h < o->triangle_count; h++) {
         gxbp_source *t = &b->sources[b->source_count];
         int k;
@@ -5522,14 +6291,20 @@ static GXBP_APART gx_result gxbp_read_triangles(gxb_boolean *b, const gxb_operan
     return GX_OK;
 }
 
-static const double *gxbp_corner_of(const gxb_boolean *b, uint32_t s, int k) { return b->cx.points[b->sources[s].point[k]].ball.x; }
+static const double *gxbp_corner_of(const gxb_boolean *b, uint32_t s, int k) {
+    return b->cx.points[b->sources[s].point[k]].ball.x;
+}
 
 /* --- box trees --- */
 
-/* Coordinates are below 2^128 and a float can't hold all of these, a sixteenth it can. A float's relative error is at most 2^-23; what is flushed
-   to zero is far below 2^-120. */
-static float gxbp_float_below(double x) { return (float)(x * 0.0625 - (gxbp_abs(x) * gxbp_power(-26) + gxbp_power(-120))); }
-static float gxbp_float_above(double x) { return (float)(x * 0.0625 + (gxbp_abs(x) * gxbp_power(-26) + gxbp_power(-120))); }
+/* Coordinates are below 2^128 and a float can't hold all of these, a sixteenth it can. A float's relative error is at
+   most 2^-23; what is flushed to zero is far below 2^-120. */
+static float gxbp_float_below(double x) {
+    return (float)(x * 0.0625 - (gxbp_abs(x) * gxbp_power(-26) + gxbp_power(-120)));
+}
+static float gxbp_float_above(double x) {
+    return (float)(x * 0.0625 + (gxbp_abs(x) * gxbp_power(-26) + gxbp_power(-120)));
+}
 
 static void gxbp_box_join(gxbp_box *a, const gxbp_box *c) {
     int k;
@@ -5561,8 +6336,9 @@ static gxbp_box gxbp_box_of(const gxb_boolean *b, uint32_t s) {
 }
 
 static int gxbp_box_meets(const gxbp_box *a, const gxbp_box *c) {
-    return (a->low[0] <= c->high[0]) & (c->low[0] <= a->high[0]) & (a->low[1] <= c->high[1]) & (c->low[1] <= a->high[1]) &
-           (a->low[2] <= c->high[2]) & (c->low[2] <= a->high[2]);      /* without branches: nobody can foretell them */
+    return (a->low[0] <= c->high[0]) & (c->low[0] <= a->high[0]) & (a->low[1] <= c->high[1]) &
+           (c->low[1] <= a->high[1]) & (a->low[2] <= c->high[2]) &
+           (c->low[2] <= a->high[2]); /* without branches: nobody can foretell them */
 }
 
 /* Ten bits with two zeros after each */
@@ -5584,7 +6360,10 @@ static GXBP_APART void gxbp_sort_sources(const gxb_boolean *b, const gxbp_operan
     memcpy(high, low, sizeof high);
     for (i = 1; i < o->source_count; i++) {
         const double *x = gxbp_corner_of(b, o->source + i, 0);
-        for (k = 0; k < 3; k++) { low[k] = gxbp_min(x[k], low[k]); high[k] = gxbp_max(x[k], high[k]); }
+        for (k = 0; k < 3; k++) {
+            low[k] = gxbp_min(x[k], low[k]);
+            high[k] = gxbp_max(x[k], high[k]);
+        }
     }
     for (k = 0; k < 3; k++) scale[k] = high[k] > low[k] ? 1023 / (high[k] - low[k]) : 0;
     for (i = 0; i < o->source_count; i++) {
@@ -5599,7 +6378,9 @@ static GXBP_APART void gxbp_sort_sources(const gxb_boolean *b, const gxbp_operan
         for (i = 0; i < o->source_count; i++) count[1 + (from[i] >> pass & 1023)]++;
         for (i = 1; i < 1025; i++) count[i] += count[i - 1];
         for (i = 0; i < o->source_count; i++) to[count[from[i] >> pass & 1023]++] = from[i];
-        swap = from; from = to; to = swap;
+        swap = from;
+        from = to;
+        to = swap;
     }
     for (i = 0; i < o->source_count; i++) o->order[i] = (uint32_t)from[i];
 }
@@ -5613,10 +6394,19 @@ static void gxbp_fill_leaf(gxb_boolean *b, const gxbp_operand *o, uint32_t i) {
         gxbp_box box;
         if (i * GXBP_LEAF + x < o->source_count) {
             box = gxbp_box_of(b, o->order[i * GXBP_LEAF + x]);
-            if (x == 0) *around = box;
-            else gxbp_box_join(around, &box);
-        } else for (k = 0; k < 3; k++) { box.low[k] = (float)gxbp_power(126); box.high[k] = -box.low[k]; }
-        for (k = 0; k < 3; k++) { leaf->low[k][x] = box.low[k]; leaf->high[k][x] = box.high[k]; }
+            if (x == 0)
+                *around = box;
+            else
+                gxbp_box_join(around, &box);
+        } else
+            for (k = 0; k < 3; k++) {
+                box.low[k] = (float)gxbp_power(126);
+                box.high[k] = -box.low[k];
+            }
+        for (k = 0; k < 3; k++) {
+            leaf->low[k][x] = box.low[k];
+            leaf->high[k][x] = box.high[k];
+        }
     }
 }
 
@@ -5628,8 +6418,10 @@ static void gxbp_fill_tree(gxb_boolean *b, const gxbp_operand *o) {
         for (i = 0; i < t->size[l - 1]; i++) {
             gxbp_box *box = &b->boxes[t->first + t->level[l] + i / 2];
             const gxbp_box *child = &b->boxes[t->first + t->level[l - 1] + i];
-            if (i % 2 == 0) *box = *child;
-            else gxbp_box_join(box, child);
+            if (i % 2 == 0)
+                *box = *child;
+            else
+                gxbp_box_join(box, child);
         }
 }
 
@@ -5643,10 +6435,11 @@ static GXBP_APART gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
         uint64_t *work = (uint64_t *)gxbp_borrow(b, 2 * words * sizeof *work);
         if (work == NULL) return b->result;
         gxbp_sort_sources(b, o, work);
-    } else for (i = 0; i < o->source_count; i++) o->order[i] = o->source + i;
+    } else
+        for (i = 0; i < o->source_count; i++) o->order[i] = o->source + i;
     o->bounds = b->bound_count;
     b->bound_count += size;
-    for (t->levels = 0; ; size = (size + 1) / 2) {
+    for (t->levels = 0;; size = (size + 1) / 2) {
         t->level[t->levels] = total;
         t->size[t->levels++] = size;
         total += size;
@@ -5659,31 +6452,41 @@ static GXBP_APART gx_result gxbp_make_tree(gxb_boolean *b, gxbp_operand *o) {
     return GX_OK;
 }
 
-/* With the first operand comes room for a second one of its size (gxbp_reserve adds half of what is asked for), and for thirds of it that the
-   two divide: what is not used is not touched, and nothing large is copied. */
-static size_t gxbp_foresee(const gxb_boolean *b, size_t count, size_t thirds) { return b->operand_count > 0 ? count : count + thirds * count / 3; }
+/* With the first operand comes room for a second one of its size (gxbp_reserve adds half of what is asked for), and for
+   thirds of it that the two divide: what is not used is not touched, and nothing large is copied. */
+static size_t gxbp_foresee(const gxb_boolean *b, size_t count, size_t thirds) {
+    return b->operand_count > 0 ? count : count + thirds * count / 3;
+}
 
 static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operand *o, size_t *bad) {
     const size_t words = 2 * o->vertex_count + 6 * o->triangle_count + gxbp_twin_room(o->vertex_count);
-    const size_t sources = gxbp_foresee(b, o->triangle_count, 1), pieces = gxbp_foresee(b, o->triangle_count, 3), points = gxbp_foresee(b, o->vertex_count, 3);
+    const size_t sources = gxbp_foresee(b, o->triangle_count, 1), pieces = gxbp_foresee(b, o->triangle_count, 3),
+                 points = gxbp_foresee(b, o->vertex_count, 3);
     const size_t leaves = gxbp_foresee(b, (o->triangle_count + GXBP_LEAF - 1) / GXBP_LEAF, 1);
     gxbp_operand *mine;
     gx_result result;
     uint32_t *work;
-    if (!GXBP_ROOM(b, operands, operand, 1) || !GXBP_ROOM(b, sources, source, sources) || !GXBP_ROOM(b, bounds, bound, leaves) ||
-        !GXBP_ROOM(b, pieces, piece, pieces) || !GXBP_ROOM(b, vertices, vertex, points) ||
-        !gxbp_table_room(b, (uint32_t)o->vertex_count)) return b->result;
+    if (!GXBP_ROOM(b, operands, operand, 1) || !GXBP_ROOM(b, sources, source, sources) ||
+        !GXBP_ROOM(b, bounds, bound, leaves) || !GXBP_ROOM(b, pieces, piece, pieces) ||
+        !GXBP_ROOM(b, vertices, vertex, points) || !gxbp_table_room(b, (uint32_t)o->vertex_count))
+        return b->result;
     result = GXBP_RESERVE(&b->cx, points, point, points);
     if (result != GX_OK) return result;
     work = (uint32_t *)gxbp_borrow(b, words * sizeof *work);
     if (work == NULL) return b->result;
     mine = &b->operands[b->operand_count];
     memset(mine, 0, sizeof *mine);
-    mine->operation = o->operation; mine->rule = o->rule; mine->simple = o->simple;
-    mine->source = b->source_count; mine->source_count = (uint32_t)o->triangle_count;
+    mine->operation = o->operation;
+    mine->rule = o->rule;
+    mine->simple = o->simple;
+    mine->source = b->source_count;
+    mine->source_count = (uint32_t)o->triangle_count;
     result = gxbp_read_triangles(b, o, work, bad);
     if (result == GX_OK) result = gxbp_make_tree(b, mine);
-    if (result != GX_OK) { gxbp_release(&b->cx.allocator, mine->order, o->triangle_count * sizeof *mine->order); return result; }
+    if (result != GX_OK) {
+        gxbp_release(&b->cx.allocator, mine->order, o->triangle_count * sizeof *mine->order);
+        return result;
+    }
     b->operand_count++;
     gxbp_forget_degenerate(b, mine->source);
     return GX_OK;
@@ -5717,7 +6520,12 @@ static int gxbp_flat_turn(const gxb_boolean *b, uint32_t plane, const double *p,
     const gxb_cplane *f = &b->cx.planes[plane];
     const uint32_t i = (f->axis + 1u) % 3, j = (f->axis + 2u) % 3;
     double a[2], c[2], d[2];
-    a[0] = p[i]; a[1] = p[j]; c[0] = q[i]; c[1] = q[j]; d[0] = r[i]; d[1] = r[j];
+    a[0] = p[i];
+    a[1] = p[j];
+    c[0] = q[i];
+    c[1] = q[j];
+    d[0] = r[i];
+    d[1] = r[j];
     return gxb_orient2d(a, c, d) * f->axis_sign;
 }
 
@@ -5725,7 +6533,7 @@ static int gxbp_flat_turn(const gxb_boolean *b, uint32_t plane, const double *p,
 static GXBP_APART int gxbp_fold_beyond_filter(gxb_boolean *b, uint32_t half_edge, uint32_t twin) {
     gxbp_source *s = &b->sources[half_edge / 3], *t = &b->sources[twin / 3];
     const uint32_t mine = GXBP_FOLDS + 2 * (half_edge % 3), other = GXBP_FOLDS + 2 * (twin % 3);
-    uint32_t fold = s->flags >> mine & 3;                           /* 0: not known, else 2 more than it is */
+    uint32_t fold = s->flags >> mine & 3; /* 0: not known, else 2 more than it is */
     if (fold == 0) {
         fold = (uint32_t)(gxbp_point_side_beyond_filter(b, t->point[(twin % 3 + 2) % 3], s->plane) + 2);
         s->flags |= fold << mine;
@@ -5734,8 +6542,8 @@ static GXBP_APART int gxbp_fold_beyond_filter(gxb_boolean *b, uint32_t half_edge
     return (int)fold - 2;
 }
 
-/* How the surface is folded between a triangle that has a plane, at a half-edge, and its twin, edge k of s: 1 towards its front, as the corner
-   beyond the edge lies in front of each, -1 to its back. */
+/* How the surface is folded between a triangle that has a plane, at a half-edge, and its twin, edge k of s: 1 towards
+   its front, as the corner beyond the edge lies in front of each, -1 to its back. */
 static inline int gxbp_fold(gxb_boolean *b, uint32_t half_edge, uint32_t s, uint32_t k) {
     const uint32_t plane = b->sources[half_edge / 3].plane, corner = b->sources[s].point[k == 0 ? 2 : k - 1];
     double bound, value;
@@ -5746,13 +6554,15 @@ static inline int gxbp_fold(gxb_boolean *b, uint32_t half_edge, uint32_t s, uint
     return value < -bound ? -1 : gxbp_fold_beyond_filter(b, half_edge, 3 * s + k);
 }
 
-/* A triangle that lies in the plane of a neighbour, and faces as it does, has the same plane: points on both are known to be in it. */
+/* A triangle that lies in the plane of a neighbour, and faces as it does, has the same plane: points on both are known
+ * to be in it. */
 static int gxbp_share_plane(gxb_boolean *b, uint32_t s) {
     uint32_t k;
     for (k = 0; k < 3; k++) {
         const uint32_t twin = b->sources[s].twin[k], plane = twin == GXB_NONE ? GXB_NONE : b->sources[twin / 3].plane;
         if (plane == GXB_NONE || gxbp_fold(b, twin, s, k) != 0 ||
-            gxbp_flat_turn(b, plane, gxbp_corner_of(b, s, 0), gxbp_corner_of(b, s, 1), gxbp_corner_of(b, s, 2)) <= 0) continue;
+            gxbp_flat_turn(b, plane, gxbp_corner_of(b, s, 0), gxbp_corner_of(b, s, 1), gxbp_corner_of(b, s, 2)) <= 0)
+            continue;
         b->sources[s].plane = plane;
         return 1;
     }
@@ -5764,12 +6574,17 @@ static GXBP_APART int gxbp_find_plane(gxb_boolean *b, uint32_t s) {
     gx_result result;
     if (gxbp_share_plane(b, s)) return 1;
     result = gxbp_new_plane(&b->cx, t->point[0], t->point[1], t->point[2], 0, &t->plane);
-    if (result != GX_OK) { t->plane = GXB_NONE; return gxbp_stop(b, result); }
+    if (result != GX_OK) {
+        t->plane = GXB_NONE;
+        return gxbp_stop(b, result);
+    }
     gxbp_plane_axis(&b->cx, t->plane);
     return 1;
 }
 
-static int gxbp_need_plane(gxb_boolean *b, uint32_t s) { return b->sources[s].plane != GXB_NONE || gxbp_find_plane(b, s); }
+static int gxbp_need_plane(gxb_boolean *b, uint32_t s) {
+    return b->sources[s].plane != GXB_NONE || gxbp_find_plane(b, s);
+}
 
 static GXBP_APART void gxbp_list_dirty(gxb_boolean *b, uint32_t s) {
     if (!GXBP_ROOM(b, dirty, dirty, 1)) return;
@@ -5787,7 +6602,11 @@ static void gxbp_add_segment(gxb_boolean *b, uint32_t s, uint32_t p, uint32_t q,
     gxbp_segment *segment;
     if (!GXBP_ROOM(b, segments, segment, 1)) return;
     segment = &b->segments[b->segment_count];
-    segment->p = p; segment->q = q; segment->label = label; segment->next = b->sources[s].segments; segment->left = left;
+    segment->p = p;
+    segment->q = q;
+    segment->label = label;
+    segment->next = b->sources[s].segments;
+    segment->left = left;
     b->sources[s].segments = b->segment_count++;
     gxbp_mark_dirty(b, s);
 }
@@ -5827,17 +6646,22 @@ static void gxbp_hit_edge(gxb_boolean *b, uint32_t s, int k, uint32_t point) {
 }
 
 /* Where a point of a triangle's plane lies: corner or edge -1: not there; both -1: inside. */
-typedef struct gxbp_spot { int outside, edge, corner; } gxbp_spot;
+typedef struct gxbp_spot {
+    int outside, edge, corner;
+} gxbp_spot;
 
 /* By the signs of the three edges, positive inside. */
 static gxbp_spot gxbp_spot_of(const int sign[3]) {
     gxbp_spot spot = {0, -1, -1};
     int k;
-    for (k = 0; k < 3; k++) if (sign[k] < 0) spot.outside = 1;
+    for (k = 0; k < 3; k++)
+        if (sign[k] < 0) spot.outside = 1;
     for (k = 0; k < 3 && !spot.outside; k++) {
         if (sign[k] != 0) continue;
-        if (sign[(k + 1) % 3] == 0) spot.corner = (k + 1) % 3;
-        else if (sign[(k + 2) % 3] != 0) spot.edge = k;
+        if (sign[(k + 1) % 3] == 0)
+            spot.corner = (k + 1) % 3;
+        else if (sign[(k + 2) % 3] != 0)
+            spot.edge = k;
     }
     return spot;
 }
@@ -5849,8 +6673,8 @@ static gxbp_spot gxbp_spot_of_point(const gxb_boolean *b, const double *x, uint3
     return gxbp_spot_of(sign);
 }
 
-/* Where the line from p (in front of the plane: side 1) to q (behind) passes: signs of gxbp_orient of the triangle's edges with p and q,
-   with the same bounds, from differences and products that they share. */
+/* Where the line from p (in front of the plane: side 1) to q (behind) passes: signs of gxbp_orient of the triangle's
+   edges with p and q, with the same bounds, from differences and products that they share. */
 static GXBP_COLD gxbp_spot gxbp_spot_of_line(gxb_boolean *b, const double *p, const double *q, int side, uint32_t s) {
     const double *x[4];
     double d[3], c[3][3], m[3][3], size[3][3];
@@ -5863,12 +6687,16 @@ static GXBP_COLD gxbp_spot gxbp_spot_of_line(gxb_boolean *b, const double *p, co
     }
     for (k = 0; k < 3; k++) {
         const double *a = c[k], *n = m[(k + 1) % 3], *z = size[(k + 1) % 3];
-        const double bound = 32 * GXBP_U * (gxbp_abs(a[0]) * z[0] + gxbp_abs(a[1]) * z[1] + gxbp_abs(a[2]) * z[2]) + GXBP_TINY;
+        const double bound =
+            32 * GXBP_U * (gxbp_abs(a[0]) * z[0] + gxbp_abs(a[1]) * z[1] + gxbp_abs(a[2]) * z[2]) + GXBP_TINY;
         sign[k] = side * gxbp_filter_sign(a[0] * n[0] + a[1] * n[1] + a[2] * n[2], bound);
         b->cx.filter_calls++;
         if (sign[k] == 0) {
             b->cx.exact_calls++;
-            x[0] = gxbp_corner_of(b, s, k); x[1] = gxbp_corner_of(b, s, (k + 1) % 3); x[2] = p; x[3] = q;
+            x[0] = gxbp_corner_of(b, s, k);
+            x[1] = gxbp_corner_of(b, s, (k + 1) % 3);
+            x[2] = p;
+            x[3] = q;
             sign[k] = side * gxbp_orient3d_exact(x);
         }
         if (sign[k] < 0) break;
@@ -5877,14 +6705,19 @@ static GXBP_COLD gxbp_spot gxbp_spot_of_line(gxb_boolean *b, const double *p, co
     return gxbp_spot_of(sign);
 }
 
-/* The points in which two triangles meet: at most two. left: gxbp_segment.left of the first triangle, from point 0 to 1. */
-typedef struct gxbp_meeting { uint32_t point[8]; int count, left; } gxbp_meeting;
+/* The points in which two triangles meet: at most two. left: gxbp_segment.left of the first triangle, from point 0
+ * to 1. */
+typedef struct gxbp_meeting {
+    uint32_t point[8];
+    int count, left;
+} gxbp_meeting;
 
 static void gxbp_found(gxb_boolean *b, gxbp_meeting *m, uint32_t point) {
     int i;
     if (point == GXB_NONE) return;
     point = gxbp_same(b, point);
-    for (i = 0; i < m->count; i++) if (m->point[i] == point) return;
+    for (i = 0; i < m->count; i++)
+        if (m->point[i] == point) return;
     if (m->count < 8) m->point[m->count++] = point;
 }
 
@@ -5892,21 +6725,29 @@ static uint32_t gxbp_edge_triangle_point(gxb_boolean *b, uint32_t s, int k, uint
     const uint32_t name = gxbp_edge_name(b, s, k);
     int fresh;
     const uint32_t point = gxbp_keyed_point(b, GXB_FROM_EDGE_TRIANGLE, name, t, 0, &fresh);
-    if (fresh) gxbp_place_point(b, point, GXB_LINE_PLANE, b->sources[s].point[k], b->sources[s].point[(k + 1) % 3], b->sources[t].plane);
+    if (fresh)
+        gxbp_place_point(b, point, GXB_LINE_PLANE, b->sources[s].point[k], b->sources[s].point[(k + 1) % 3],
+                         b->sources[t].plane);
     return point;
 }
 
-/* Edge k of s crosses edge j of t, and t's plane if plane is that; else (both lie in one plane) plane passes through edge j. */
+/* Edge k of s crosses edge j of t, and t's plane if plane is that; else (both lie in one plane) plane passes through
+ * edge j. */
 static GXBP_COLD uint32_t gxbp_edge_edge_point(gxb_boolean *b, uint32_t s, int k, uint32_t t, int j, uint32_t plane) {
     const uint32_t e = gxbp_edge_name(b, s, k), f = gxbp_edge_name(b, t, j);
-    const gx_result room = GXBP_RESERVE(&b->cx, planes, plane, 1);      /* first, so that a point without a place never stays */
+    /* first, so that a point without a place never stays */
+    const gx_result room = GXBP_RESERVE(&b->cx, planes, plane, 1);
     int fresh;
     uint32_t point;
-    if (room != GX_OK) { gxbp_stop(b, room); return GXB_NONE; }
+    if (room != GX_OK) {
+        gxbp_stop(b, room);
+        return GXB_NONE;
+    }
     point = gxbp_keyed_point(b, GXB_FROM_EDGE_EDGE, e < f ? e : f, e < f ? f : e, 0, &fresh);
     if (!fresh) return point;
     if (plane == GXB_NONE) {
-        gxbp_new_plane(&b->cx, b->sources[t].point[j], b->sources[t].point[(j + 1) % 3], b->cx.planes[b->sources[t].plane].axis, 1, &plane);
+        gxbp_new_plane(&b->cx, b->sources[t].point[j], b->sources[t].point[(j + 1) % 3],
+                       b->cx.planes[b->sources[t].plane].axis, 1, &plane);
         gxbp_plane_axis(&b->cx, plane);
     }
     gxbp_place_point(b, point, GXB_LINE_PLANE, b->sources[s].point[k], b->sources[s].point[(k + 1) % 3], plane);
@@ -5928,9 +6769,12 @@ static GXBP_COLD void gxbp_meet_one_way(gxb_boolean *b, uint32_t s, uint32_t t, 
             const gxbp_spot spot = gxbp_spot_of_line(b, gxbp_corner_of(b, s, k), gxbp_corner_of(b, s, j), side[k], t);
             uint32_t point;
             if (spot.outside) continue;
-            if (spot.corner >= 0) point = b->sources[t].point[spot.corner];
-            else if (spot.edge >= 0) point = gxbp_edge_edge_point(b, s, k, t, spot.edge, b->sources[t].plane);
-            else point = gxbp_edge_triangle_point(b, s, k, t);
+            if (spot.corner >= 0)
+                point = b->sources[t].point[spot.corner];
+            else if (spot.edge >= 0)
+                point = gxbp_edge_edge_point(b, s, k, t, spot.edge, b->sources[t].plane);
+            else
+                point = gxbp_edge_triangle_point(b, s, k, t);
             if (point == GXB_NONE) return;
             gxbp_hit_edge(b, s, k, point);
             if (spot.edge >= 0) gxbp_hit_edge(b, t, spot.edge, point);
@@ -5939,20 +6783,24 @@ static GXBP_COLD void gxbp_meet_one_way(gxb_boolean *b, uint32_t s, uint32_t t, 
     }
 }
 
-/* Edge k of s crosses t where the signs against the two edges of t that cross s's plane say: y[0] against edge j, y[1] against j + 2; neither is
-   negative. */
-static inline void gxbp_record_crossing(gxb_boolean *b, uint32_t s, int k, uint32_t t, int j, const int y[2], gxbp_meeting *m) {
+/* Edge k of s crosses t where the signs against the two edges of t that cross s's plane say: y[0] against edge j, y[1]
+   against j + 2; neither is negative. */
+static inline void gxbp_record_crossing(gxb_boolean *b, uint32_t s, int k, uint32_t t, int j, const int y[2],
+                                        gxbp_meeting *m) {
     const int edge = y[0] == 0 ? j : (j + 2) % 3;
     uint32_t point;
-    if (y[0] > 0 && y[1] > 0) point = gxbp_edge_triangle_point(b, s, k, t);
-    else point = gxbp_edge_edge_point(b, s, k, t, edge, b->sources[t].plane);
+    if (y[0] > 0 && y[1] > 0)
+        point = gxbp_edge_triangle_point(b, s, k, t);
+    else
+        point = gxbp_edge_edge_point(b, s, k, t, edge, b->sources[t].plane);
     if (point == GXB_NONE) return;
     gxbp_hit_edge(b, s, k, point);
     if (y[0] == 0 || y[1] == 0) gxbp_hit_edge(b, t, edge, point);
     gxbp_found(b, m, point);
 }
 
-/* sign[x][y]: orientation of (p[0], p[y + 1], q[x + 1], q[0]). The differences and products are shared: see gxbp_cross_size for the bound. */
+/* sign[x][y]: orientation of (p[0], p[y + 1], q[x + 1], q[0]). The differences and products are shared: see
+ * gxbp_cross_size for the bound. */
 static void gxbp_orient_pairs(gxb_boolean *b, const double *const q[3], const double *const p[3], int sign[2][2]) {
     const double *at[4];
     double w[3], u[2][3], v[3], m[3], size[3];
@@ -5966,12 +6814,17 @@ static void gxbp_orient_pairs(gxb_boolean *b, const double *const q[3], const do
         gxbp_cross_sizes(m, size, w, v);
         for (x = 0; x < 2; x++) {
             const double *a = u[x];
-            const double bound = 32 * GXBP_U * (gxbp_abs(a[0]) * size[0] + gxbp_abs(a[1]) * size[1] + gxbp_abs(a[2]) * size[2]) + GXBP_TINY;
+            const double bound =
+                32 * GXBP_U * (gxbp_abs(a[0]) * size[0] + gxbp_abs(a[1]) * size[1] + gxbp_abs(a[2]) * size[2]) +
+                GXBP_TINY;
             sign[x][y] = gxbp_filter_sign(a[0] * m[0] + a[1] * m[1] + a[2] * m[2], bound);
             b->cx.filter_calls++;
             if (sign[x][y] != 0) continue;
             b->cx.exact_calls++;
-            at[0] = p[0]; at[1] = p[y + 1]; at[2] = q[x + 1]; at[3] = q[0];
+            at[0] = p[0];
+            at[1] = p[y + 1];
+            at[2] = q[x + 1];
+            at[3] = q[0];
             sign[x][y] = gxbp_orient3d_exact(at);
         }
     }
@@ -5980,16 +6833,20 @@ static void gxbp_orient_pairs(gxb_boolean *b, const double *const q[3], const do
 /* The corner that is alone on its side */
 static int gxbp_lone_corner(const int side[3]) { return side[1] == side[2] ? 0 : side[0] == side[2] ? 1 : 2; }
 
-/* No corner lies in the other's plane. Two edges of each triangle cross it, those of the corner that is alone on its side; where one
-   passes is known from its orientations with the two of the other, and these are the same for both triangles. In s, walking from the
-   edge that leaves the lone corner to the one that comes back, that corner is to the left; so of_s there is the sign of |n_t n_s u| for the
-   way's direction u. In t likewise, with |n_s n_t w|: the two ways agree where the lone corners' signs differ. Of the two ends of what
-   is common, one begins both ways. */
-static void gxbp_meet_across(gxb_boolean *b, uint32_t s, uint32_t t, const int of_s[3], const int of_t[3], gxbp_meeting *m) {
+/* No corner lies in the other's plane. Two edges of each triangle cross it, those of the corner that is alone on its
+   side; where one passes is known from its orientations with the two of the other, and these are the same for both
+   triangles. In s, walking from the edge that leaves the lone corner to the one that comes back, that corner is to the
+   left; so of_s there is the sign of |n_t n_s u| for the way's direction u. In t likewise, with |n_s n_t w|: the two
+   ways agree where the lone corners' signs differ. Of the two ends of what is common, one begins both ways. */
+static void gxbp_meet_across(gxb_boolean *b, uint32_t s, uint32_t t, const int of_s[3], const int of_t[3],
+                             gxbp_meeting *m) {
     const int i = gxbp_lone_corner(of_s), j = gxbp_lone_corner(of_t);
     const double *p[3], *q[3];
     int sign[2][2], y[2], k, x;
-    for (k = 0; k < 3; k++) { q[k] = gxbp_corner_of(b, s, (i + k) % 3); p[k] = gxbp_corner_of(b, t, (j + k) % 3); }
+    for (k = 0; k < 3; k++) {
+        q[k] = gxbp_corner_of(b, s, (i + k) % 3);
+        p[k] = gxbp_corner_of(b, t, (j + k) % 3);
+    }
     gxbp_orient_pairs(b, q, p, sign);
     for (k = 0; k < 3; k++) {
         if (k == (i + 1) % 3) continue;
@@ -6041,8 +6898,12 @@ static GXBP_RARE void gxbp_join_flats(gxb_boolean *b, uint32_t s, uint32_t t) {
     gxbp_mark_dirty(b, s);
     gxbp_mark_dirty(b, t);
     if (r == q) return;
-    if (q < r) { const uint32_t swap = r; r = q; q = swap; }
-    for (last = q; b->sources[last].next != GXB_NONE; last = b->sources[last].next) {}      /* mostly alone */
+    if (q < r) {
+        const uint32_t swap = r;
+        r = q;
+        q = swap;
+    }
+    for (last = q; b->sources[last].next != GXB_NONE; last = b->sources[last].next) {} /* mostly alone */
     b->sources[last].next = b->sources[r].next;
     b->sources[r].next = q;
     b->sources[q].root = r;
@@ -6058,7 +6919,8 @@ static int gxbp_no_edge_separates(int turn[3][3], int orientation) {
 }
 
 /* Corner k of s in t; turn[j][k]: against t's edge j */
-static GXBP_COLD void gxbp_meet_corner(gxb_boolean *b, uint32_t s, int k, uint32_t t, int turn[3][3], int orientation, gxbp_meeting *m) {
+static GXBP_COLD void gxbp_meet_corner(gxb_boolean *b, uint32_t s, int k, uint32_t t, int turn[3][3], int orientation,
+                                       gxbp_meeting *m) {
     int sign[3], j;
     gxbp_spot spot;
     for (j = 0; j < 3; j++) sign[j] = turn[j][k] * orientation;
@@ -6073,25 +6935,31 @@ static GXBP_COLD void gxbp_meet_in_plane(gxb_boolean *b, uint32_t s, uint32_t t)
     int of_s[3][3], of_t[3][3], k, j, facing;
     gxbp_meeting m;
     m.count = m.left = 0;
-    for (k = 0; k < 3; k++) for (j = 0; j < 3; j++) {
-        of_s[k][j] = gxbp_flat_turn(b, plane, gxbp_corner_of(b, s, k), gxbp_corner_of(b, s, (k + 1) % 3), gxbp_corner_of(b, t, j));
-        of_t[k][j] = gxbp_flat_turn(b, plane, gxbp_corner_of(b, t, k), gxbp_corner_of(b, t, (k + 1) % 3), gxbp_corner_of(b, s, j));
-    }
+    for (k = 0; k < 3; k++)
+        for (j = 0; j < 3; j++) {
+            of_s[k][j] = gxbp_flat_turn(b, plane, gxbp_corner_of(b, s, k), gxbp_corner_of(b, s, (k + 1) % 3),
+                                        gxbp_corner_of(b, t, j));
+            of_t[k][j] = gxbp_flat_turn(b, plane, gxbp_corner_of(b, t, k), gxbp_corner_of(b, t, (k + 1) % 3),
+                                        gxbp_corner_of(b, s, j));
+        }
     facing = gxbp_flat_turn(b, plane, gxbp_corner_of(b, t, 0), gxbp_corner_of(b, t, 1), gxbp_corner_of(b, t, 2));
     for (k = 0; k < 3; k++) {
         gxbp_meet_corner(b, s, k, t, of_t, facing, &m);
         gxbp_meet_corner(b, t, k, s, of_s, 1, &m);
     }
-    for (k = 0; k < 3; k++) for (j = 0; j < 3; j++) {
-        uint32_t point;
-        if (of_s[k][j] * of_s[k][(j + 1) % 3] >= 0 || of_t[j][k] * of_t[j][(k + 1) % 3] >= 0) continue;
-        point = gxbp_edge_edge_point(b, s, k, t, j, GXB_NONE);
-        if (point == GXB_NONE) return;
-        gxbp_hit_edge(b, s, k, point);
-        gxbp_hit_edge(b, t, j, point);
-    }
-    if (gxbp_no_edge_separates(of_s, 1) && gxbp_no_edge_separates(of_t, facing)) gxbp_join_flats(b, s, t);
-    else gxbp_record_meeting(b, s, t, &m);
+    for (k = 0; k < 3; k++)
+        for (j = 0; j < 3; j++) {
+            uint32_t point;
+            if (of_s[k][j] * of_s[k][(j + 1) % 3] >= 0 || of_t[j][k] * of_t[j][(k + 1) % 3] >= 0) continue;
+            point = gxbp_edge_edge_point(b, s, k, t, j, GXB_NONE);
+            if (point == GXB_NONE) return;
+            gxbp_hit_edge(b, s, k, point);
+            gxbp_hit_edge(b, t, j, point);
+        }
+    if (gxbp_no_edge_separates(of_s, 1) && gxbp_no_edge_separates(of_t, facing))
+        gxbp_join_flats(b, s, t);
+    else
+        gxbp_record_meeting(b, s, t, &m);
 }
 
 /* The side of a source's corner; each point remembers two answers, of which slot says the one to replace. */
@@ -6116,7 +6984,8 @@ static int gxbp_all_on_one_side(const int side[3]) { return side[0] != 0 && side
 static int gxbp_are_neighbours(const gxb_boolean *b, uint32_t s, uint32_t t) {
     const uint32_t *twin = b->sources[s].twin;
     int k;
-    for (k = 0; k < 3; k++) if (twin[k] != GXB_NONE && twin[k] / 3 == t) return 1;
+    for (k = 0; k < 3; k++)
+        if (twin[k] != GXB_NONE && twin[k] / 3 == t) return 1;
     return 0;
 }
 
@@ -6133,7 +7002,9 @@ static GXBP_RARE int gxbp_flat_apart(const gxb_boolean *b, uint32_t s, uint32_t 
 }
 
 /* One corner in the plane, the others on one side of it */
-static int gxbp_touches_by_corner(const int side[3]) { return side[0] + side[1] + side[2] == 2 || side[0] + side[1] + side[2] == -2; }
+static int gxbp_touches_by_corner(const int side[3]) {
+    return side[0] + side[1] + side[2] == 2 || side[0] + side[1] + side[2] == -2;
+}
 
 static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
     int of_t[3], of_s[3];
@@ -6152,7 +7023,8 @@ static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
     gxbp_sides(b, s, b->sources[t].plane, 1, of_s);
     if (gxbp_all_on_one_side(of_s)) return;
     m.count = m.left = 0;
-    if (of_s[0] * of_s[1] * of_s[2] != 0 && of_t[0] * of_t[1] * of_t[2] != 0) gxbp_meet_across(b, s, t, of_s, of_t, &m);
+    if (of_s[0] * of_s[1] * of_s[2] != 0 && of_t[0] * of_t[1] * of_t[2] != 0)
+        gxbp_meet_across(b, s, t, of_s, of_t, &m);
     else {
         for (k = 0; k < 3; k++) common += gxbp_is_corner(b, t, b->sources[s].point[k]);
         if (common == 1 && (gxbp_touches_by_corner(of_s) || gxbp_touches_by_corner(of_t))) return;
@@ -6164,12 +7036,14 @@ static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
 
 /* --- broad phase: pairs of boxes of two trees, or of one --- */
 
-/* Which of a leaf's boxes meet a box: without branches, all at once where the compiler can. Returns 0 where none does. */
+/* Which of a leaf's boxes meet a box: without branches, all at once where the compiler can. Returns 0 where none does.
+ */
 static uint32_t gxbp_test_leaf(const gxbp_leaf_boxes *leaf, const gxbp_box *box, uint32_t meets[GXBP_LEAF]) {
     uint32_t x, any = 0;
     for (x = 0; x < GXBP_LEAF; x++)
-        meets[x] = (uint32_t)((leaf->low[0][x] <= box->high[0]) & (box->low[0] <= leaf->high[0][x]) & (leaf->low[1][x] <= box->high[1]) &
-                              (box->low[1] <= leaf->high[1][x]) & (leaf->low[2][x] <= box->high[2]) & (box->low[2] <= leaf->high[2][x]));
+        meets[x] = (uint32_t)((leaf->low[0][x] <= box->high[0]) & (box->low[0] <= leaf->high[0][x]) &
+                              (leaf->low[1][x] <= box->high[1]) & (box->low[1] <= leaf->high[1][x]) &
+                              (leaf->low[2][x] <= box->high[2]) & (box->low[2] <= leaf->high[2][x]));
     for (x = 0; x < GXBP_LEAF; x++) any |= meets[x];
     return any;
 }
@@ -6177,11 +7051,15 @@ static uint32_t gxbp_test_leaf(const gxbp_leaf_boxes *leaf, const gxbp_box *box,
 static gxbp_box gxbp_leaf_box(const gxbp_leaf_boxes *leaf, uint32_t x) {
     gxbp_box box;
     uint32_t k;
-    for (k = 0; k < 3; k++) { box.low[k] = leaf->low[k][x]; box.high[k] = leaf->high[k][x]; }
+    for (k = 0; k < 3; k++) {
+        box.low[k] = leaf->low[k][x];
+        box.high[k] = leaf->high[k][x];
+    }
     return box;
 }
 
-static GXBP_APART void gxbp_meet_leaves(gxb_boolean *b, const gxbp_operand *o, uint32_t i, const gxbp_operand *q, uint32_t j) {
+static GXBP_APART void gxbp_meet_leaves(gxb_boolean *b, const gxbp_operand *o, uint32_t i, const gxbp_operand *q,
+                                        uint32_t j) {
     uint32_t first[GXBP_LEAF], second[GXBP_LEAF], x, y;
     gxbp_test_leaf(&b->bounds[o->bounds + i], &b->boxes[q->tree.first + j], first);
     for (x = 0; x < GXBP_LEAF; x++) {
@@ -6196,17 +7074,23 @@ static GXBP_APART void gxbp_meet_leaves(gxb_boolean *b, const gxbp_operand *o, u
     }
 }
 
-static int gxbp_boxes_meet(const gxb_boolean *b, const gxbp_tree *s, uint32_t l, uint32_t i, const gxbp_tree *t, uint32_t m, uint32_t j) {
+static int gxbp_boxes_meet(const gxb_boolean *b, const gxbp_tree *s, uint32_t l, uint32_t i, const gxbp_tree *t,
+                           uint32_t m, uint32_t j) {
     return gxbp_box_meets(&b->boxes[s->first + s->level[l] + i], &b->boxes[t->first + t->level[m] + j]);
 }
 
-/* Box i of level l of one tree and box j of level m of the other, which meet: of the larger, or of both, those in it. Depth: the larger level. */
-static GXBP_APART void gxbp_meet_boxes(gxb_boolean *b, const gxbp_operand *o, uint32_t l, uint32_t i, const gxbp_operand *q, uint32_t m, uint32_t j) {
+/* Box i of level l of one tree and box j of level m of the other, which meet: of the larger, or of both, those in it.
+ * Depth: the larger level. */
+static GXBP_APART void gxbp_meet_boxes(gxb_boolean *b, const gxbp_operand *o, uint32_t l, uint32_t i,
+                                       const gxbp_operand *q, uint32_t m, uint32_t j) {
     const gxbp_tree *s = &o->tree, *t = &q->tree;
     const uint32_t of_s = l >= m, of_t = m >= l;
     uint32_t c, d;
     if (b->result != GX_OK) return;
-    if (l == 0 && m == 0) { gxbp_meet_leaves(b, o, i, q, j); return; }
+    if (l == 0 && m == 0) {
+        gxbp_meet_leaves(b, o, i, q, j);
+        return;
+    }
     for (c = i << of_s; c < (i + 1) << of_s && c < s->size[l - of_s]; c++)
         for (d = o == q && c > j << of_t ? c : j << of_t; d < (j + 1) << of_t && d < t->size[m - of_t]; d++)
             if (gxbp_boxes_meet(b, s, l - of_s, c, t, m - of_t, d)) gxbp_meet_boxes(b, o, l - of_s, c, q, m - of_t, d);
@@ -6223,13 +7107,15 @@ static void gxbp_meet_operands(gxb_boolean *b, uint32_t i, uint32_t j) {
 
 /* --- edges: their inner points in order --- */
 
-/* gxbp_compare_points for points in which two planes cut one line of input points: p lies on the side of q's plane on which the end is that it is nearer
-   to. Signs of points that are given by doubles, and of points of their lines, take no exact numbers. */
+/* gxbp_compare_points for points in which two planes cut one line of input points: p lies on the side of q's plane on
+   which the end is that it is nearer to. Signs of points that are given by doubles, and of points of their lines, take
+   no exact numbers. */
 static GXBP_COLD int gxbp_compare_on_line(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t axis) {
     const gxb_cpoint *x = b->cx.points, *u = &x[p], *v = &x[q];
     int of_end, along, side;
     if (u->kind != GXB_LINE_PLANE || v->kind != GXB_LINE_PLANE || u->exact != NULL || v->exact != NULL ||
-        !((u->def[0] == v->def[0] && u->def[1] == v->def[1]) || (u->def[0] == v->def[1] && u->def[1] == v->def[0]))) return GXBP_UNKNOWN;
+        !((u->def[0] == v->def[0] && u->def[1] == v->def[1]) || (u->def[0] == v->def[1] && u->def[1] == v->def[0])))
+        return GXBP_UNKNOWN;
     of_end = gxbp_point_side(b, u->def[0], v->def[2]);
     if (of_end == 0 || gxbp_point_side(b, u->def[1], v->def[2]) != -of_end) return GXBP_UNKNOWN;
     along = gxbp_compare_doubles(x[u->def[1]].ball.x[axis], x[u->def[0]].ball.x[axis]);
@@ -6268,15 +7154,20 @@ static uint32_t gxbp_insert_points(gxb_boolean *b, uint32_t *p, uint32_t count, 
             sign = gxbp_compare_points(b, x, p[j - 1], axis) * direction;
             if (sign >= 0) break;
         }
-        if (j > 0 && sign == 0) { gxbp_unite(b, p[j - 1], x); continue; }
+        if (j > 0 && sign == 0) {
+            gxbp_unite(b, p[j - 1], x);
+            continue;
+        }
         memmove(p + j + 1, p + j, (n++ - j) * sizeof *p);
         p[j] = x;
     }
     return n;
 }
 
-/* Merge sort of points along an axis, each pair compared once; equal ones become one. work: count words. Returns how many remain. */
-static uint32_t gxbp_sort_points(gxb_boolean *b, uint32_t *p, uint32_t count, uint32_t axis, int direction, uint32_t *work) {
+/* Merge sort of points along an axis, each pair compared once; equal ones become one. work: count words. Returns how
+ * many remain. */
+static uint32_t gxbp_sort_points(gxb_boolean *b, uint32_t *p, uint32_t count, uint32_t axis, int direction,
+                                 uint32_t *work) {
     const uint32_t half = count / 2;
     uint32_t i, j, k, left, end;
     if (count <= 8) return gxbp_insert_points(b, p, count, axis, direction);
@@ -6284,7 +7175,8 @@ static uint32_t gxbp_sort_points(gxb_boolean *b, uint32_t *p, uint32_t count, ui
     end = half + gxbp_sort_points(b, p + half, count - half, axis, direction, work);
     memcpy(work, p, left * sizeof *p);
     for (i = 0, j = half, k = 0; i < left && j < end; k++) {
-        const uint32_t x = gxbp_same(b, work[i]), y = gxbp_same(b, p[j]);   /* the right half may have named what is in the left */
+        /* the right half may have named what is in the left */
+        const uint32_t x = gxbp_same(b, work[i]), y = gxbp_same(b, p[j]);
         const int sign = gxbp_compare_points(b, y, x, axis) * direction;
         p[k] = sign < 0 ? y : x;
         i += sign >= 0;
@@ -6296,10 +7188,12 @@ static uint32_t gxbp_sort_points(gxb_boolean *b, uint32_t *p, uint32_t count, ui
     return k;
 }
 
-/* The longest axis of an edge, and its direction along it: an edge has a length, and the longest difference is never lost. */
+/* The longest axis of an edge, and its direction along it: an edge has a length, and the longest difference is never
+ * lost. */
 static uint32_t gxbp_edge_axis(const double *p, const double *q, int *direction) {
     uint32_t axis = 0, k;
-    for (k = 1; k < 3; k++) if (gxbp_abs(gxbp_fence(q[k] - p[k])) > gxbp_abs(gxbp_fence(q[axis] - p[axis]))) axis = k;
+    for (k = 1; k < 3; k++)
+        if (gxbp_abs(gxbp_fence(q[k] - p[k])) > gxbp_abs(gxbp_fence(q[axis] - p[axis]))) axis = k;
     *direction = gxbp_compare_doubles(q[axis], p[axis]);
     return axis;
 }
@@ -6330,7 +7224,10 @@ static GXBP_APART void gxbp_order_cuts(gxb_boolean *b) {
     uint32_t *first, *points, i;
     if (b->result != GX_OK || b->hit_count == 0) return;
     first = (uint32_t *)gxbp_allocate(&b->cx.allocator, words * sizeof *first);
-    if (first == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
+    if (first == NULL) {
+        gxbp_stop(b, GX_ERROR_MEMORY);
+        return;
+    }
     points = first + b->cut_count + 1;
     memset(first, 0, ((size_t)b->cut_count + 1) * sizeof *first);
     for (i = 0; i < b->hit_count; i++) first[b->hits[i].cut]++;
@@ -6353,12 +7250,16 @@ static GXBP_APART void gxbp_order_cuts(gxb_boolean *b) {
 /* Is the point an end of this line of two input points, or defined as a point of it? */
 static int gxbp_on_input_line(const gxb_cpoint *p, uint32_t from, uint32_t to) {
     if (p->kind == GXB_EXPLICIT) return p->def[0] == from || p->def[0] == to;
-    return p->kind == GXB_LINE_PLANE && ((p->def[0] == from && p->def[1] == to) || (p->def[0] == to && p->def[1] == from));
+    return p->kind == GXB_LINE_PLANE &&
+           ((p->def[0] == from && p->def[1] == to) || (p->def[0] == to && p->def[1] == from));
 }
 
-static uint32_t gxbp_plane_beside(const gxb_boolean *b, uint32_t half_edge) { return half_edge == GXB_NONE ? GXB_NONE : b->sources[half_edge / 3].plane; }
+static uint32_t gxbp_plane_beside(const gxb_boolean *b, uint32_t half_edge) {
+    return half_edge == GXB_NONE ? GXB_NONE : b->sources[half_edge / 3].plane;
+}
 
-/* Planes that a point is in by its definition: its own, and those of the input triangles at the edge that it is named by */
+/* Planes that a point is in by its definition: its own, and those of the input triangles at the edge that it is named
+ * by */
 static uint32_t gxbp_planes_of(const gxb_boolean *b, uint32_t v, uint32_t plane[3]) {
     const gxb_cpoint *p = &b->cx.points[v];
     const uint32_t *key = b->vertices[v].key;
@@ -6375,19 +7276,23 @@ static uint32_t gxbp_planes_of(const gxb_boolean *b, uint32_t v, uint32_t plane[
 static int gxbp_is_in_plane(const gxb_boolean *b, uint32_t v, uint32_t plane) {
     const gxb_cpoint *p = &b->cx.points[v];
     uint32_t of[3], count = gxbp_planes_of(b, v, of), k;
-    for (k = 0; k < count; k++) if (of[k] == plane) return 1;
+    for (k = 0; k < count; k++)
+        if (of[k] == plane) return 1;
     return gxbp_incident(&b->cx, p->kind, p->def, p->kind == GXB_EXPLICIT ? p->def[0] : v, plane);
 }
 
-/* Do three points of a plane lie on one line by their definitions: in a second common plane (one plane may have several names), or on
-   one edge? */
+/* Do three points of a plane lie on one line by their definitions: in a second common plane (one plane may have several
+   names), or on one edge? */
 static int gxbp_on_definition_line(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t r, uint32_t plane) {
     const gxb_cpoint *x = b->cx.points, *a = &x[p];
     uint32_t of[3], count = gxbp_planes_of(b, p, of), k;
-    if (a->kind == GXB_LINE_PLANE && gxbp_on_input_line(&x[q], a->def[0], a->def[1]) && gxbp_on_input_line(&x[r], a->def[0], a->def[1])) return 1;
+    if (a->kind == GXB_LINE_PLANE && gxbp_on_input_line(&x[q], a->def[0], a->def[1]) &&
+        gxbp_on_input_line(&x[r], a->def[0], a->def[1]))
+        return 1;
     for (k = 0; k < count; k++)
         if (of[k] != plane && of[k] != GXB_NONE && gxbp_is_in_plane(b, q, of[k]) && gxbp_is_in_plane(b, r, of[k]) &&
-            gxbp_planes_cross(&b->cx, of[k], plane)) return 1;
+            gxbp_planes_cross(&b->cx, of[k], plane))
+            return 1;
     return 0;
 }
 
@@ -6396,7 +7301,8 @@ static int gxbp_turn_by_filter(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t 
     const gxb_cplane *f = &b->cx.planes[b->plane];
     const gxb_cpoint *x = b->cx.points;
     b->cx.filter_calls++;
-    return f->axis_sign * gxbp_filter_turn(&x[p].ball, &x[q].ball, &x[r].ball, (int)(f->axis + 1) % 3, (int)(f->axis + 2) % 3);
+    return f->axis_sign *
+           gxbp_filter_turn(&x[p].ball, &x[q].ball, &x[r].ball, (int)(f->axis + 1) % 3, (int)(f->axis + 2) % 3);
 }
 
 /* Orientation in the plane of the triangulation at work. */
@@ -6406,7 +7312,8 @@ static int gxbp_turn(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t r) {
     if (turn != 0) return turn;
     if (p == q || q == r || r == p) return 0;
     if (gxbp_on_definition_line(b, p, q, r, b->plane) || gxbp_on_definition_line(b, q, r, p, b->plane) ||
-        gxbp_on_definition_line(b, r, p, q, b->plane)) return 0;
+        gxbp_on_definition_line(b, r, p, q, b->plane))
+        return 0;
     cx->exact_calls++;
     return gxb_complex_turn(cx, p, q, r, b->plane);
 }
@@ -6425,7 +7332,9 @@ static uint32_t gxbp_new_piece(gxb_boolean *b, uint32_t source) {
 static void gxbp_set_piece(gxb_boolean *b, uint32_t f, uint32_t p, uint32_t q, uint32_t r) {
     gxbp_piece *piece = &b->pieces[f];
     int k;
-    piece->v[0] = p; piece->v[1] = q; piece->v[2] = r;
+    piece->v[0] = p;
+    piece->v[1] = q;
+    piece->v[2] = r;
     for (k = 0; k < 3; k++) {
         b->vertices[piece->v[k]].hint = f;
         b->vertices[piece->v[k]].stamp = b->stamp;
@@ -6445,7 +7354,8 @@ static void gxbp_greet(gxb_boolean *b, uint32_t near, uint32_t p, uint32_t q, ui
     int k;
     if (near == GXB_NONE) return;
     n = &b->pieces[near];
-    for (k = 0; k < 3; k++) if (n->v[k] == q && n->v[(k + 1) % 3] == p) n->near[k] = f;
+    for (k = 0; k < 3; k++)
+        if (n->v[k] == q && n->v[(k + 1) % 3] == p) n->near[k] = f;
 }
 
 /* Begins work on a source's (root's) triangulation: vertices by their names of now, hints. */
@@ -6471,7 +7381,9 @@ static uint32_t gxbp_split_half(gxb_boolean *b, uint32_t f, int k, uint32_t x) {
     if (g == GXB_NONE) return GXB_NONE;
     old = b->pieces[f];
     b->pieces[g].state = old.state;
-    p = old.v[k]; q = old.v[(k + 1) % 3]; r = old.v[(k + 2) % 3];
+    p = old.v[k];
+    q = old.v[(k + 1) % 3];
+    r = old.v[(k + 2) % 3];
     gxbp_set_piece(b, f, p, x, r);
     gxbp_set_edge(b, f, 0, GXB_NONE, old.labels[k]);
     gxbp_set_edge(b, f, 1, g, GXBP_LOOSE);
@@ -6491,9 +7403,11 @@ static void gxbp_split_side(gxb_boolean *b, uint32_t f, int k, uint32_t x) {
     g = gxbp_split_half(b, f, k, x);
     if (other == GXB_NONE) return;
     k = (gxbp_corner_index(&b->pieces[other], p) + 2) % 3;
-    h = gxbp_split_half(b, other, k, x);                /* other: (q, x, r'), h: (x, p, r') */
-    b->pieces[f].near[0] = h; b->pieces[h].near[0] = f;
-    b->pieces[g].near[0] = other; b->pieces[other].near[0] = g;
+    h = gxbp_split_half(b, other, k, x); /* other: (q, x, r'), h: (x, p, r') */
+    b->pieces[f].near[0] = h;
+    b->pieces[h].near[0] = f;
+    b->pieces[g].near[0] = other;
+    b->pieces[other].near[0] = g;
 }
 
 static void gxbp_split_inside(gxb_boolean *b, uint32_t f, uint32_t x) {
@@ -6516,7 +7430,8 @@ static void gxbp_split_inside(gxb_boolean *b, uint32_t f, uint32_t x) {
 }
 
 static int gxbp_has_label(const gxb_boolean *b, uint32_t list, uint32_t label) {
-    for (; list != GXBP_LOOSE && list != GXBP_BARE; list = b->links[list].next) if (b->links[list].value == label) return 1;
+    for (; list != GXBP_LOOSE && list != GXBP_BARE; list = b->links[list].next)
+        if (b->links[list].value == label) return 1;
     return 0;
 }
 
@@ -6531,14 +7446,27 @@ static void gxbp_label_edge(gxb_boolean *b, uint32_t f, int k, uint32_t label) {
 
 /* --- along a straight line through a triangulation --- */
 
-/* The line from p to x. In a triangle's plane (label) its sides are those of the plane, times sigma (gxbp_segment.left where that is known). */
-typedef struct gxbp_line { uint32_t p, x, plane, source; int sigma; } gxbp_line;
+/* The line from p to x. In a triangle's plane (label) its sides are those of the plane, times sigma (gxbp_segment.left
+ * where that is known). */
+typedef struct gxbp_line {
+    uint32_t p, x, plane, source;
+    int sigma;
+} gxbp_line;
 
-static GXBP_RARE void gxbp_set_line(gxb_boolean *b, gxbp_line *line, uint32_t s, uint32_t p, uint32_t x, uint32_t label, int left) {
+static GXBP_RARE void gxbp_set_line(gxb_boolean *b, gxbp_line *line, uint32_t s, uint32_t p, uint32_t x, uint32_t label,
+                                    int left) {
     int k;
-    line->p = p; line->x = x; line->plane = GXB_NONE; line->source = label; line->sigma = 1;
+    line->p = p;
+    line->x = x;
+    line->plane = GXB_NONE;
+    line->source = label;
+    line->sigma = 1;
     if (label & GXBP_EDGE_LABEL) return;
-    if (left != 0) { line->plane = b->sources[label].plane; line->sigma = left; return; }
+    if (left != 0) {
+        line->plane = b->sources[label].plane;
+        line->sigma = left;
+        return;
+    }
     for (k = 0; k < 3; k++) {
         const int side = gxbp_point_side(b, b->sources[s].point[k], b->sources[label].plane);
         if (side == 0) continue;
@@ -6555,18 +7483,24 @@ static int gxbp_is_named_in(const gxb_boolean *b, uint32_t v, uint32_t t, uint32
     return key[2] == t || (key[1] / 3 == t && key[1] % 3 != j) || (twin != GXB_NONE && twin / 3 == t && twin % 3 != j);
 }
 
-/* The side of a source's plane. In a neighbour, all points that are not on the common edge lie on the side on which its other corner is: so
-   the two halves of a face that is flat but for rounding need no exact numbers of points computed in them. */
+/* The side of a source's plane. In a neighbour, all points that are not on the common edge lie on the side on which its
+   other corner is: so the two halves of a face that is flat but for rounding need no exact numbers of points computed
+   in them. */
 static int gxbp_side_of_source(gxb_boolean *b, uint32_t v, uint32_t s) {
     const uint32_t plane = b->sources[s].plane;
     double bound, value;
     int k;
-    if (b->cx.points[v].kind != GXB_LINE_PLANE || b->vertices[v].key[0] != GXB_FROM_EDGE_TRIANGLE) return gxbp_point_side(b, v, plane);
+    if (b->cx.points[v].kind != GXB_LINE_PLANE || b->vertices[v].key[0] != GXB_FROM_EDGE_TRIANGLE)
+        return gxbp_point_side(b, v, plane);
     value = gxbp_filter_side(&b->cx.points[v].ball, &b->cx.planes[plane].filter, &bound);
-    if (value > bound || value < -bound) { b->cx.filter_calls++; return value > 0 ? 1 : -1; }
+    if (value > bound || value < -bound) {
+        b->cx.filter_calls++;
+        return value > 0 ? 1 : -1;
+    }
     for (k = 0; k < 3; k++) {
         const uint32_t twin = b->sources[s].twin[k];
-        if (twin != GXB_NONE && gxbp_is_named_in(b, v, twin / 3, twin % 3)) return gxbp_point_side(b, b->sources[twin / 3].point[(twin % 3 + 2) % 3], plane);
+        if (twin != GXB_NONE && gxbp_is_named_in(b, v, twin / 3, twin % 3))
+            return gxbp_point_side(b, b->sources[twin / 3].point[(twin % 3 + 2) % 3], plane);
     }
     return gxbp_point_side(b, v, plane);
 }
@@ -6588,10 +7522,13 @@ static int gxbp_left_by_filter(gxb_boolean *b, const gxbp_line *line, uint32_t v
     return line->sigma * gxbp_filter_sign(value, bound);
 }
 
-/* Where the line leaves the star of a vertex: through the edge opposite to corner k of facet f (u right of it, w left), or along
-   edge k (ahead 1) or k + 2 (ahead 2). of_w: what the filter says of w, which is the next facet's u; 2: it was not asked. back: the walk
-   around the vertex has come to the rim and goes the other way from the start. */
-typedef struct gxbp_way { uint32_t f; int k, ahead, of_w, back; } gxbp_way;
+/* Where the line leaves the star of a vertex: through the edge opposite to corner k of facet f (u right of it, w left),
+   or along edge k (ahead 1) or k + 2 (ahead 2). of_w: what the filter says of w, which is the next facet's u; 2: it was
+   not asked. back: the walk around the vertex has come to the rim and goes the other way from the start. */
+typedef struct gxbp_way {
+    uint32_t f;
+    int k, ahead, of_w, back;
+} gxbp_way;
 
 static void gxbp_begin_star(const gxb_boolean *b, uint32_t v, gxbp_way *way) {
     way->f = b->vertices[v].hint;
@@ -6626,8 +7563,14 @@ static int gxbp_try_way(gxb_boolean *b, const gxbp_line *line, gxbp_way *way) {
     if (of_u == 0) of_u = gxbp_left(b, line, u);
     if (of_u > 0) return 0;
     if (of_w == 0) of_w = gxbp_left(b, line, w);
-    if (of_u == 0 && of_w > 0) { way->ahead = 1; return 1; }
-    if (of_w == 0 && of_u < 0) { way->ahead = 2; return 1; }
+    if (of_u == 0 && of_w > 0) {
+        way->ahead = 1;
+        return 1;
+    }
+    if (of_w == 0 && of_u < 0) {
+        way->ahead = 2;
+        return 1;
+    }
     way->ahead = 0;
     return of_u < 0 && of_w > 0;
 }
@@ -6645,35 +7588,55 @@ static int gxbp_find_edge(const gxb_boolean *b, uint32_t v, uint32_t goal, gxbp_
 
 static int gxbp_find_way(gxb_boolean *b, const gxbp_line *line, uint32_t v, gxbp_way *way) {
     gxbp_begin_star(b, v, way);
-    do if (gxbp_try_way(b, line, way)) return 1; while (gxbp_next_in_star(b, v, way));
+    do
+        if (gxbp_try_way(b, line, way)) return 1;
+    while (gxbp_next_in_star(b, v, way));
     return 0;
 }
 
 /* Where a point of the source lies in its triangulation: at a vertex, on edge k of facet f, inside f (k -1). */
-typedef struct gxbp_location { uint32_t vertex, f; int k; } gxbp_location;
+typedef struct gxbp_location {
+    uint32_t vertex, f;
+    int k;
+} gxbp_location;
 
 /* Crosses facets from way's edge on. 1: found. 0: *v is a vertex on the line before the point. */
 static int gxbp_cross_facets(gxb_boolean *b, const gxbp_line *line, gxbp_way way, uint32_t *v, gxbp_location *spot) {
     uint32_t f = way.f;
-    int k = (way.k + 1) % 3;                    /* the edge to cross, from u to w */
+    int k = (way.k + 1) % 3; /* the edge to cross, from u to w */
     uint32_t u = b->pieces[f].v[k], w = b->pieces[f].v[(k + 1) % 3];
     int t = gxbp_turn(b, u, w, line->x);
     for (;;) {
         uint32_t c;
         int of_c, j;
-        spot->vertex = GXB_NONE; spot->f = f; spot->k = t == 0 ? k : -1;
+        spot->vertex = GXB_NONE;
+        spot->f = f;
+        spot->k = t == 0 ? k : -1;
         if (t >= 0) return 1;
         f = b->pieces[f].near[k];
-        if (f == GXB_NONE) { gxbp_stop(b, GX_ERROR_OVERLAP); return 1; }
-        j = gxbp_corner_index(&b->pieces[f], w);        /* (w, u, c) */
+        if (f == GXB_NONE) {
+            gxbp_stop(b, GX_ERROR_OVERLAP);
+            return 1;
+        }
+        j = gxbp_corner_index(&b->pieces[f], w); /* (w, u, c) */
         c = b->pieces[f].v[(j + 2) % 3];
-        spot->f = f; spot->k = -1;
+        spot->f = f;
+        spot->k = -1;
         if (gxbp_turn_by_filter(b, u, c, line->x) > 0 && gxbp_turn_by_filter(b, c, w, line->x) > 0) return 1;
         of_c = gxbp_left(b, line, c);
-        if (of_c < 0) { u = c; k = (j + 2) % 3; t = gxbp_turn(b, c, w, line->x); }
-        else { k = (j + 1) % 3; t = gxbp_turn(b, u, c, line->x); if (of_c > 0) w = c; }
+        if (of_c < 0) {
+            u = c;
+            k = (j + 2) % 3;
+            t = gxbp_turn(b, c, w, line->x);
+        } else {
+            k = (j + 1) % 3;
+            t = gxbp_turn(b, u, c, line->x);
+            if (of_c > 0) w = c;
+        }
         if (of_c != 0) continue;
-        spot->vertex = t == 0 ? c : GXB_NONE; spot->f = f; spot->k = -1;
+        spot->vertex = t == 0 ? c : GXB_NONE;
+        spot->f = f;
+        spot->k = -1;
         *v = c;
         return t >= 0;
     }
@@ -6687,7 +7650,10 @@ static GXBP_RARE gxbp_location gxbp_locate(gxb_boolean *b, const gxbp_line *line
         gxbp_way way;
         uint32_t ahead;
         int t;
-        if (!gxbp_find_way(b, line, v, &way)) { gxbp_stop(b, GX_ERROR_OVERLAP); break; }
+        if (!gxbp_find_way(b, line, v, &way)) {
+            gxbp_stop(b, GX_ERROR_OVERLAP);
+            break;
+        }
         if (way.ahead == 0) {
             if (gxbp_cross_facets(b, line, way, &v, &spot)) return spot;
             continue;
@@ -6703,11 +7669,15 @@ static GXBP_RARE gxbp_location gxbp_locate(gxb_boolean *b, const gxbp_line *line
     return spot;
 }
 
-/* Are two points named by one edge? Then they are not equal, or it would have been found when its points were put in order. */
+/* Are two points named by one edge? Then they are not equal, or it would have been found when its points were put in
+ * order. */
 static GXBP_RARE int gxbp_share_edge(const gxb_boolean *b, uint32_t p, uint32_t q) {
     const uint32_t *k = b->vertices[p].key, *m = b->vertices[q].key;
-    if ((k[0] != GXB_FROM_EDGE_TRIANGLE && k[0] != GXB_FROM_EDGE_EDGE) || (m[0] != GXB_FROM_EDGE_TRIANGLE && m[0] != GXB_FROM_EDGE_EDGE)) return 0;
-    return k[1] == m[1] || (k[0] == GXB_FROM_EDGE_EDGE && k[2] == m[1]) || (m[0] == GXB_FROM_EDGE_EDGE && (k[1] == m[2] || (k[0] == m[0] && k[2] == m[2])));
+    if ((k[0] != GXB_FROM_EDGE_TRIANGLE && k[0] != GXB_FROM_EDGE_EDGE) ||
+        (m[0] != GXB_FROM_EDGE_TRIANGLE && m[0] != GXB_FROM_EDGE_EDGE))
+        return 0;
+    return k[1] == m[1] || (k[0] == GXB_FROM_EDGE_EDGE && k[2] == m[1]) ||
+           (m[0] == GXB_FROM_EDGE_EDGE && (k[1] == m[2] || (k[0] == m[0] && k[2] == m[2])));
 }
 
 /* Does q lie off a plane that p is in by its definition? */
@@ -6722,10 +7692,12 @@ static int gxbp_points_equal(gxb_boolean *b, uint32_t p, uint32_t q) {
     const gxb_ball *x = &b->cx.points[p].ball, *y = &b->cx.points[q].ball;
     const double reach = 2 * (x->error + y->error) + GXBP_TINY;
     uint32_t k;
-    for (k = 0; k < 3; k++) if (gxbp_abs(gxbp_fence(x->x[k] - y->x[k])) > 2 * reach) return 0;
+    for (k = 0; k < 3; k++)
+        if (gxbp_abs(gxbp_fence(x->x[k] - y->x[k])) > 2 * reach) return 0;
     if (p == q) return 1;
     if (gxbp_share_edge(b, p, q) || gxbp_leaves_plane(b, p, q)) return 0;
-    for (k = 0; k < 3; k++) if (gxbp_compare_points(b, p, q, k) != 0) return 0;
+    for (k = 0; k < 3; k++)
+        if (gxbp_compare_points(b, p, q, k) != 0) return 0;
     return 1;
 }
 
@@ -6737,13 +7709,21 @@ static uint32_t gxbp_insert_point(gxb_boolean *b, uint32_t s, uint32_t x, uint32
     gxbp_location spot;
     x = gxbp_same(b, x);
     if (gxbp_is_placed(b, x)) return x;
-    if (gxbp_points_equal(b, p, x)) { gxbp_unite(b, p, x); return p; }
+    if (gxbp_points_equal(b, p, x)) {
+        gxbp_unite(b, p, x);
+        return p;
+    }
     gxbp_set_line(b, &line, s, p, x, label, left);
     spot = gxbp_locate(b, &line);
     if (b->result != GX_OK) return x;
-    if (spot.vertex != GXB_NONE) { gxbp_unite(b, spot.vertex, x); return spot.vertex; }
-    if (spot.k >= 0) gxbp_split_side(b, spot.f, spot.k, x);
-    else gxbp_split_inside(b, spot.f, x);
+    if (spot.vertex != GXB_NONE) {
+        gxbp_unite(b, spot.vertex, x);
+        return spot.vertex;
+    }
+    if (spot.k >= 0)
+        gxbp_split_side(b, spot.f, spot.k, x);
+    else
+        gxbp_split_inside(b, spot.f, x);
     return x;
 }
 
@@ -6755,7 +7735,9 @@ static void gxbp_push_margin(gxb_boolean *b, gxbp_margin **list, uint32_t vertex
     gxbp_margin *r;
     if (count[0] == count[1] && !gxbp_room(b, list, sizeof **list, 1)) return;
     r = *list + count[0]++;
-    r->vertex = vertex; r->made = GXB_NONE; r->dangling = 0;
+    r->vertex = vertex;
+    r->made = GXB_NONE;
+    r->dangling = 0;
     r->near = f == GXB_NONE ? GXB_NONE : b->pieces[f].near[k];
     r->labels = f == GXB_NONE ? GXBP_LOOSE : b->pieces[f].labels[k];
 }
@@ -6766,7 +7748,9 @@ static uint32_t gxbp_choose_apex(gxb_boolean *b, const gxbp_margin *rim, uint32_
     for (i = low + 2; i < high; i++) {
         const uint32_t v = rim[i].vertex;
         if (v == rim[best].vertex || v == rim[low].vertex || v == rim[high].vertex) continue;
-        if (gxbp_turn(b, rim[low].vertex, rim[best].vertex, v) >= 0 && gxbp_turn(b, rim[best].vertex, rim[high].vertex, v) >= 0) best = i;
+        if (gxbp_turn(b, rim[low].vertex, rim[best].vertex, v) >= 0 &&
+            gxbp_turn(b, rim[best].vertex, rim[high].vertex, v) >= 0)
+            best = i;
     }
     return best;
 }
@@ -6775,29 +7759,37 @@ static uint32_t gxbp_choose_apex(gxb_boolean *b, const gxbp_margin *rim, uint32_
 static void gxbp_attach_rim(gxb_boolean *b, gxbp_margin *rim, uint32_t count, uint32_t i, uint32_t f, int k) {
     uint32_t j;
     gxbp_set_edge(b, f, k, rim[i].near, rim[i].labels);
-    if (!rim[i].dangling) { gxbp_greet(b, rim[i].near, rim[i].vertex, rim[i + 1].vertex, f); return; }
+    if (!rim[i].dangling) {
+        gxbp_greet(b, rim[i].near, rim[i].vertex, rim[i + 1].vertex, f);
+        return;
+    }
     rim[i].made = f;
     b->pieces[f].near[k] = GXB_NONE;
     for (j = 0; j + 1 < count; j++) {
-        if (rim[j].vertex != rim[i + 1].vertex || rim[j + 1].vertex != rim[i].vertex || rim[j].made == GXB_NONE) continue;
+        if (rim[j].vertex != rim[i + 1].vertex || rim[j + 1].vertex != rim[i].vertex || rim[j].made == GXB_NONE)
+            continue;
         b->pieces[f].near[k] = rim[j].made;
         gxbp_greet(b, rim[j].made, rim[i].vertex, rim[i + 1].vertex, f);
     }
 }
 
-/* Triangulates what lies between rim[low] ... rim[high] and the base; facets are taken from the scratch list's end. Returns the base's. */
-static GXBP_APART uint32_t gxbp_fill_rim(gxb_boolean *b, gxbp_margin *rim, uint32_t count, uint32_t low, uint32_t high) {
+/* Triangulates what lies between rim[low] ... rim[high] and the base; facets are taken from the scratch list's end.
+ * Returns the base's. */
+static GXBP_APART uint32_t gxbp_fill_rim(gxb_boolean *b, gxbp_margin *rim, uint32_t count, uint32_t low,
+                                         uint32_t high) {
     const uint32_t apex = gxbp_choose_apex(b, rim, low, high), f = b->scratch[--b->scratch_count];
     uint32_t g;
     gxbp_set_piece(b, f, rim[high].vertex, rim[low].vertex, rim[apex].vertex);
     gxbp_set_edge(b, f, 0, GXB_NONE, GXBP_LOOSE);
-    if (apex == low + 1) gxbp_attach_rim(b, rim, count, low, f, 1);
+    if (apex == low + 1)
+        gxbp_attach_rim(b, rim, count, low, f, 1);
     else {
         g = gxbp_fill_rim(b, rim, count, low, apex);
         gxbp_set_edge(b, f, 1, g, GXBP_LOOSE);
         b->pieces[g].near[0] = f;
     }
-    if (apex + 1 == high) gxbp_attach_rim(b, rim, count, apex, f, 2);
+    if (apex + 1 == high)
+        gxbp_attach_rim(b, rim, count, apex, f, 2);
     else {
         g = gxbp_fill_rim(b, rim, count, apex, high);
         gxbp_set_edge(b, f, 2, g, GXBP_LOOSE);
@@ -6812,11 +7804,18 @@ static GXBP_RARE uint32_t gxbp_crossing_point(gxb_boolean *b, uint32_t s, uint32
     int fresh;
     for (; other == GXB_NONE && labels != GXBP_BARE; labels = b->links[labels].next)
         if (!(b->links[labels].value & GXBP_EDGE_LABEL)) other = b->links[labels].value;
-    if (other == GXB_NONE || label & GXBP_EDGE_LABEL) { gxbp_stop(b, GX_ERROR_OVERLAP); return GXB_NONE; }
-    id[0] = s; id[1] = label; id[2] = other;
+    if (other == GXB_NONE || label & GXBP_EDGE_LABEL) {
+        gxbp_stop(b, GX_ERROR_OVERLAP);
+        return GXB_NONE;
+    }
+    id[0] = s;
+    id[1] = label;
+    id[2] = other;
     gxbp_sort3(id);
     other = gxbp_keyed_point(b, GXB_FROM_THREE_TRIANGLES, id[0], id[1], id[2], &fresh);
-    if (fresh) gxbp_place_point(b, other, GXB_THREE_PLANES, b->sources[id[0]].plane, b->sources[id[1]].plane, b->sources[id[2]].plane);
+    if (fresh)
+        gxbp_place_point(b, other, GXB_THREE_PLANES, b->sources[id[0]].plane, b->sources[id[1]].plane,
+                         b->sources[id[2]].plane);
     return other;
 }
 
@@ -6824,8 +7823,9 @@ static void gxbp_push(gxb_boolean *b, uint32_t value) {
     if (GXBP_ROOM(b, scratch, scratch, 1)) b->scratch[b->scratch_count++] = value;
 }
 
-/* Facets that the line crosses from way on, up to the first vertex on it: into scratch; their rims on its right (from the start) and
-   its left (from the start, without it). 0: an edge that must stay is in the way; it has been divided there. */
+/* Facets that the line crosses from way on, up to the first vertex on it: into scratch; their rims on its right (from
+   the start) and its left (from the start, without it). 0: an edge that must stay is in the way; it has been divided
+   there. */
 static int gxbp_collect_crossed(gxb_boolean *b, uint32_t s, const gxbp_line *line, gxbp_way way, uint32_t label) {
     uint32_t f = way.f, u = b->pieces[f].v[(way.k + 1) % 3], w = b->pieces[f].v[(way.k + 2) % 3];
     int k = (way.k + 1) % 3;
@@ -6839,21 +7839,35 @@ static int gxbp_collect_crossed(gxb_boolean *b, uint32_t s, const gxbp_line *lin
         if (b->pieces[f].labels[k] != GXBP_LOOSE) {
             const uint32_t x = gxbp_crossing_point(b, s, b->pieces[f].labels[k], label);
             if (x == GXB_NONE) return 0;
-            if (gxbp_is_placed(b, x)) { gxbp_stop(b, GX_ERROR_OVERLAP); return 0; }
+            if (gxbp_is_placed(b, x)) {
+                gxbp_stop(b, GX_ERROR_OVERLAP);
+                return 0;
+            }
             gxbp_split_side(b, f, k, x);
             return 0;
         }
         f = b->pieces[f].near[k];
-        if (f == GXB_NONE) { gxbp_stop(b, GX_ERROR_OVERLAP); return 0; }
+        if (f == GXB_NONE) {
+            gxbp_stop(b, GX_ERROR_OVERLAP);
+            return 0;
+        }
         gxbp_push(b, f);
         j = gxbp_corner_index(&b->pieces[f], w);
         c = b->pieces[f].v[(j + 2) % 3];
         of_c = gxbp_left(b, line, c);
         if (of_c <= 0) gxbp_push_margin(b, &b->rims, u, f, (j + 1) % 3);
         if (of_c >= 0) gxbp_push_margin(b, &b->lefts, c, f, (j + 2) % 3);
-        if (of_c == 0) { gxbp_push_margin(b, &b->rims, c, GXB_NONE, 0); return b->result == GX_OK; }
-        if (of_c < 0) { u = c; k = (j + 2) % 3; }
-        else { w = c; k = (j + 1) % 3; }
+        if (of_c == 0) {
+            gxbp_push_margin(b, &b->rims, c, GXB_NONE, 0);
+            return b->result == GX_OK;
+        }
+        if (of_c < 0) {
+            u = c;
+            k = (j + 2) % 3;
+        } else {
+            w = c;
+            k = (j + 1) % 3;
+        }
     }
     return 0;
 }
@@ -6862,17 +7876,19 @@ static int gxbp_collect_crossed(gxb_boolean *b, uint32_t s, const gxbp_line *lin
 
 static void gxbp_find_dangling(const gxb_boolean *b, gxbp_margin *rim, uint32_t count) {
     uint32_t i;
-    for (i = 0; i < count; i++) rim[i].dangling = rim[i].near != GXB_NONE && b->pieces[rim[i].near].state == GXBP_REMOVED;
+    for (i = 0; i < count; i++)
+        rim[i].dangling = rim[i].near != GXB_NONE && b->pieces[rim[i].near].state == GXBP_REMOVED;
 }
 
 /* Retriangulates the crossed facets with an edge from the start to the vertex in which the right rim ends. */
 static void gxbp_refill(gxb_boolean *b, uint32_t start) {
-    const uint32_t state = b->pieces[b->scratch[0]].state;      /* of all: no label is between them */
+    const uint32_t state = b->pieces[b->scratch[0]].state; /* of all: no label is between them */
     uint32_t i, n, f, g;
     for (i = 0; i < b->scratch_count; i++) b->pieces[b->scratch[i]].state = GXBP_REMOVED;
     gxbp_push_margin(b, &b->lefts, start, GXB_NONE, 0);
     if (b->result != GX_OK) return;
-    n = b->left_count - 1;                              /* the left rim goes backwards: turn it round, all but the start */
+    /* the left rim goes backwards: turn it round, all but the start */
+    n = b->left_count - 1;
     for (i = 0; i < n / 2; i++) {
         const gxbp_margin swap = b->lefts[i];
         b->lefts[i] = b->lefts[n - 1 - i];
@@ -6897,16 +7913,26 @@ static uint32_t gxbp_take_way(gxb_boolean *b, const gxbp_way *way, uint32_t labe
 static void gxbp_force_edge(gxb_boolean *b, uint32_t s, uint32_t p, uint32_t q, uint32_t label, int left) {
     gxbp_line line;
     gxbp_way way;
-    int known = 1;                      /* that there is no edge from p to q: it has been looked for, and nothing was refilled since */
+    /* that there is no edge from p to q: it has been looked for, and nothing was refilled since */
+    int known = 1;
     if (p == q) return;
-    if (gxbp_find_edge(b, p, q, &way)) { gxbp_take_way(b, &way, label); return; }
+    if (gxbp_find_edge(b, p, q, &way)) {
+        gxbp_take_way(b, &way, label);
+        return;
+    }
     gxbp_set_line(b, &line, s, p, q, label, left);
     while (p != q && b->result == GX_OK) {
-        if ((known || !gxbp_find_edge(b, p, q, &way)) && !gxbp_find_way(b, &line, p, &way)) { gxbp_stop(b, GX_ERROR_OVERLAP); return; }
+        if ((known || !gxbp_find_edge(b, p, q, &way)) && !gxbp_find_way(b, &line, p, &way)) {
+            gxbp_stop(b, GX_ERROR_OVERLAP);
+            return;
+        }
         known = 0;
-        if (way.ahead != 0) p = gxbp_take_way(b, &way, label);
-        else if (gxbp_collect_crossed(b, s, &line, way, label)) gxbp_refill(b, p);
-        else known = 1;
+        if (way.ahead != 0)
+            p = gxbp_take_way(b, &way, label);
+        else if (gxbp_collect_crossed(b, s, &line, way, label))
+            gxbp_refill(b, p);
+        else
+            known = 1;
     }
 }
 
@@ -6939,7 +7965,8 @@ static void gxbp_split_rim(gxb_boolean *b, uint32_t u, uint32_t x) {
 static void gxbp_divide_rim(gxb_boolean *b, uint32_t s, uint32_t k) {
     const uint32_t points = gxbp_edge_points(b, s, k);
     uint32_t i;
-    for (i = 1; i + 1 < points && b->result == GX_OK; i++) gxbp_split_rim(b, gxbp_edge_point(b, s, k, i - 1), gxbp_edge_point(b, s, k, i));
+    for (i = 1; i + 1 < points && b->result == GX_OK; i++)
+        gxbp_split_rim(b, gxbp_edge_point(b, s, k, i - 1), gxbp_edge_point(b, s, k, i));
 }
 
 /* Ends of segments that are inner points of the source's edges learn where. */
@@ -6953,14 +7980,15 @@ static void gxbp_find_rim_ends(gxb_boolean *b, uint32_t s, uint32_t n) {
         for (i = 1; i + 1 < gxbp_edge_points(b, s, k); i++) b->vertices[gxbp_edge_point(b, s, k, i)].slot = 3 * i + k;
 }
 
-/* Is the end of a segment in the triangulation? One on the rim is put there now: what nobody needs yet would only be in the way, as facets that
-   a segment must cross. */
+/* Is the end of a segment in the triangulation? One on the rim is put there now: what nobody needs yet would only be in
+   the way, as facets that a segment must cross. */
 static int gxbp_enter(gxb_boolean *b, uint32_t s, uint32_t v) {
     const uint32_t k = b->vertices[v].slot % 3;
     uint32_t i = b->vertices[v].slot / 3, u;
     if (gxbp_is_placed(b, v)) return 1;
     if (b->vertices[v].slot == GXB_NONE) return 0;
-    do u = gxbp_edge_point(b, s, k, --i); while (!gxbp_is_placed(b, u));
+    do u = gxbp_edge_point(b, s, k, --i);
+    while (!gxbp_is_placed(b, u));
     gxbp_split_rim(b, u, v);
     return b->result == GX_OK;
 }
@@ -7020,27 +8048,41 @@ static void gxbp_note_divided(gxb_boolean *b, uint32_t s) {
 
 /* --- dividing a source by chains: the generic small case --- */
 
-/* A source that nothing has divided yet, and segments of one simple surface, of which each chain leads from rim to rim and none touches another:
-   its parts are polygons, which are triangulated by cutting off corners. What bends where is known but for the chains' inner points. */
-enum { GXBP_SMALL = 24 };       /* rim points and segments; more are divided in the general way */
+/* A source that nothing has divided yet, and segments of one simple surface, of which each chain leads from rim to rim
+   and none touches another: its parts are polygons, which are triangulated by cutting off corners. What bends where is
+   known but for the chains' inner points. */
+enum { GXBP_SMALL = 24 }; /* rim points and segments; more are divided in the general way */
 
-/* A vertex of a polygon that is walked with its inside on the left. on: the edges of the source that it lies on, as bits; slot: of the edge to
-   the next vertex, GXB_NONE on the rim, but at the starts of the source's edges GXBP_RIM and the edge; bend: 1 convex, 0 straight, -1 reflex. */
+/* A vertex of a polygon that is walked with its inside on the left. on: the edges of the source that it lies on, as
+   bits; slot: of the edge to the next vertex, GXB_NONE on the rim, but at the starts of the source's edges GXBP_RIM and
+   the edge; bend: 1 convex, 0 straight, -1 reflex. */
 #define GXBP_RIM (UINT32_MAX - 3)
-typedef struct gxbp_knot { uint32_t vertex, on, slot; int bend; uint32_t before, after; } gxbp_knot;
-typedef struct gxbp_strand { uint32_t first, count, from, to; } gxbp_strand;    /* segments in gxbp_division.step, rim points at the ends */
+typedef struct gxbp_knot {
+    uint32_t vertex, on, slot;
+    int bend;
+    uint32_t before, after;
+} gxbp_knot;
+/* segments in gxbp_division.step, rim points at the ends */
+typedef struct gxbp_strand {
+    uint32_t first, count, from, to;
+} gxbp_strand;
 
 typedef struct gxbp_division {
-    uint32_t source, spare, state;          /* spare: the source's only facet, until it is used */
-    gxbp_knot rim[GXBP_SMALL]; uint32_t rim_count;
-    uint32_t corner[3];                     /* places of the source's corners in the rim */
-    uint32_t cut[3], other[3];              /* of the source's edges; 1: the cut has its half-edge from the other triangle */
-    uint32_t chain[GXBP_SMALL];             /* of each rim point: the strand that ends there, or GXB_NONE */
-    gxbp_strand strand[GXBP_SMALL]; uint32_t strand_count;
-    gxbp_knot step[GXBP_SMALL];             /* of each segment: the point that it leaves; slot: its place in b->chain */
-    uint32_t step_count, labels;            /* the segments' links, one after the other */
+    uint32_t source, spare, state; /* spare: the source's only facet, until it is used */
+    gxbp_knot rim[GXBP_SMALL];
+    uint32_t rim_count;
+    uint32_t corner[3]; /* places of the source's corners in the rim */
+    /* of the source's edges; 1: the cut has its half-edge from the other triangle */
+    uint32_t cut[3], other[3];
+    uint32_t chain[GXBP_SMALL]; /* of each rim point: the strand that ends there, or GXB_NONE */
+    gxbp_strand strand[GXBP_SMALL];
+    uint32_t strand_count;
+    gxbp_knot step[GXBP_SMALL];  /* of each segment: the point that it leaves; slot: its place in b->chain */
+    uint32_t step_count, labels; /* the segments' links, one after the other */
     gxbp_knot polygon[GXBP_SMALL];
-    uint32_t half[4 * GXBP_SMALL]; uint32_t slot_count;     /* of steps, then of diagonals: the facet's edge on the side that is there */
+    /* of steps, then of diagonals: the facet's edge on the side that is there */
+    uint32_t half[4 * GXBP_SMALL];
+    uint32_t slot_count;
 } gxbp_division;
 
 static int gxbp_is_generic(const gxb_boolean *b, uint32_t s, uint32_t n) {
@@ -7050,7 +8092,8 @@ static int gxbp_is_generic(const gxb_boolean *b, uint32_t s, uint32_t n) {
         const gxbp_segment *segment = &b->segments[b->chain[3 * i]];
         operand = b->sources[segment->label].operand;
         if (segment->left == 0 || !b->operands[operand].simple ||
-            operand != b->sources[b->segments[b->chain[0]].label].operand) return 0;
+            operand != b->sources[b->segments[b->chain[0]].label].operand)
+            return 0;
     }
     return 1;
 }
@@ -7093,7 +8136,8 @@ static int gxbp_mark_starts(gxb_boolean *b, gxbp_division *d) {
     return 1;
 }
 
-/* Ends of segments in lists of vertices, see gxbp_chain_segments: 2 i + e. The other end at an inner point of a chain; GXB_NONE: there are not two */
+/* Ends of segments in lists of vertices, see gxbp_chain_segments: 2 i + e. The other end at an inner point of a chain;
+ * GXB_NONE: there are not two */
 static uint32_t gxbp_other_end(const gxb_boolean *b, uint32_t v, uint32_t end) {
     const uint32_t first = b->vertices[v].head, second = b->chain[3 * (first / 2) + 1 + first % 2];
     if (second == GXB_NONE || b->chain[3 * (second / 2) + 1 + second % 2] != GXB_NONE) return GXB_NONE;
@@ -7116,7 +8160,8 @@ static GXBP_APART int gxbp_follow_chain(gxb_boolean *b, gxbp_division *d, uint32
             const uint32_t to = b->vertices[v].hint;
             strand->to = to;
             strand->count = d->step_count - strand->first;
-            if (d->chain[to] != GXB_NONE || to == from || (strand->count == 1 && d->rim[from].on & d->rim[to].on)) return 0;
+            if (d->chain[to] != GXB_NONE || to == from || (strand->count == 1 && d->rim[from].on & d->rim[to].on))
+                return 0;
             d->chain[from] = d->chain[to] = d->strand_count++;
             d->rim[from].bend = d->rim[to].bend = 1;
             return 1;
@@ -7130,19 +8175,25 @@ static GXBP_APART int gxbp_follow_chain(gxb_boolean *b, gxbp_division *d, uint32
 static int gxbp_left_of_segment(gxb_boolean *b, uint32_t i, uint32_t p, uint32_t q, uint32_t v) {
     const gxbp_segment *segment = &b->segments[b->chain[3 * i]];
     gxbp_line line;
-    line.p = p; line.x = q; line.plane = b->sources[segment->label].plane; line.source = segment->label;
+    line.p = p;
+    line.x = q;
+    line.plane = b->sources[segment->label].plane;
+    line.source = segment->label;
     line.sigma = gxbp_same(b, segment->p) == p ? segment->left : -segment->left;
     return gxbp_left(b, &line, v);
 }
 
-/* How a chain goes on at an inner point, from one segment to the next: where it passes an edge of the other surface, as that is folded there. */
+/* How a chain goes on at an inner point, from one segment to the next: where it passes an edge of the other surface, as
+ * that is folded there. */
 static int gxbp_bend_of_chain(gxb_boolean *b, const gxbp_knot *from, const gxbp_knot *at, uint32_t next) {
     const gxbp_segment *segment = &b->segments[b->chain[3 * from->slot]];
-    const uint32_t *key = b->vertices[at->vertex].key, t = segment->label, u = b->segments[b->chain[3 * at->slot]].label;
+    const uint32_t *key = b->vertices[at->vertex].key, t = segment->label,
+                   u = b->segments[b->chain[3 * at->slot]].label;
     const uint32_t twin = key[0] == GXB_FROM_EDGE_TRIANGLE ? b->sources[key[1] / 3].twin[key[1] % 3] : GXB_NONE;
     if (twin == GXB_NONE || !((key[1] / 3 == t && twin / 3 == u) || (key[1] / 3 == u && twin / 3 == t)))
         return gxbp_left_of_segment(b, from->slot, from->vertex, at->vertex, next);
-    return gxbp_fold(b, key[1], twin / 3, twin % 3) * (gxbp_same(b, segment->p) == from->vertex ? segment->left : -segment->left);
+    return gxbp_fold(b, key[1], twin / 3, twin % 3) *
+           (gxbp_same(b, segment->p) == from->vertex ? segment->left : -segment->left);
 }
 
 static GXBP_APART int gxbp_collect_chains(gxb_boolean *b, gxbp_division *d, uint32_t n) {
@@ -7159,24 +8210,28 @@ static GXBP_APART int gxbp_collect_chains(gxb_boolean *b, gxbp_division *d, uint
         for (m = d->strand[i].first + 1; m < d->strand[i].first + d->strand[i].count; m++) {
             const int last = m + 1 == d->strand[i].first + d->strand[i].count;
             d->step[m].on = 0;
-            d->step[m].bend = gxbp_bend_of_chain(b, &d->step[m - 1], &d->step[m], last ? d->rim[d->strand[i].to].vertex : d->step[m + 1].vertex);
+            d->step[m].bend = gxbp_bend_of_chain(b, &d->step[m - 1], &d->step[m],
+                                                 last ? d->rim[d->strand[i].to].vertex : d->step[m + 1].vertex);
         }
     return 1;
 }
 
 /* 1: p comes before q along an edge (bit) of the source, the inside of which is to the left; -1: after it */
-static int gxbp_along_rim(const gxb_boolean *b, const gxbp_division *d, const gxbp_knot *p, const gxbp_knot *q, uint32_t edge) {
+static int gxbp_along_rim(const gxb_boolean *b, const gxbp_division *d, const gxbp_knot *p, const gxbp_knot *q,
+                          uint32_t edge) {
     const uint32_t first = d->corner[edge >> 1], i = b->vertices[p->vertex].hint, j = b->vertices[q->vertex].hint;
     return (i < first ? i + d->rim_count : i) < (j < first ? j + d->rim_count : j) ? 1 : -1;
 }
 
 /* gxbp_knot_turn where the way from p to q is a segment: side of its plane; else GXBP_UNKNOWN */
-static int gxbp_turn_by_segment(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *p, const gxbp_knot *q, const gxbp_knot *r) {
+static int gxbp_turn_by_segment(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *p, const gxbp_knot *q,
+                                const gxbp_knot *r) {
     if (p->slot >= d->step_count || &d->polygon[p->after] != q) return GXBP_UNKNOWN;
     return gxbp_left_of_segment(b, d->step[p->slot].slot, p->vertex, q->vertex, r->vertex);
 }
 
-static GXBP_COLD int gxbp_turn_by_segments(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *p, const gxbp_knot *q, const gxbp_knot *r) {
+static GXBP_COLD int gxbp_turn_by_segments(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *p,
+                                           const gxbp_knot *q, const gxbp_knot *r) {
     int turn = gxbp_turn_by_segment(b, d, p, q, r);
     if (turn == GXBP_UNKNOWN) turn = gxbp_turn_by_segment(b, d, q, r, p);
     if (turn == GXBP_UNKNOWN) turn = gxbp_turn_by_segment(b, d, r, p, q);
@@ -7184,7 +8239,8 @@ static GXBP_COLD int gxbp_turn_by_segments(gxb_boolean *b, const gxbp_division *
 }
 
 /* Two on one edge of the source say where a third one lies: it is not right of that edge. */
-static GXBP_RARE int gxbp_knot_turn(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *p, const gxbp_knot *q, const gxbp_knot *r) {
+static GXBP_RARE int gxbp_knot_turn(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *p, const gxbp_knot *q,
+                                    const gxbp_knot *r) {
     const uint32_t pq = p->on & q->on, qr = q->on & r->on, rp = r->on & p->on;
     int turn;
     if (pq & r->on) return 0;
@@ -7196,17 +8252,21 @@ static GXBP_RARE int gxbp_knot_turn(gxb_boolean *b, const gxbp_division *d, cons
 }
 
 /* Does w lie right of the edge from p to q? */
-static int gxbp_is_beyond(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *p, const gxbp_knot *q, const gxbp_knot *w) {
+static int gxbp_is_beyond(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *p, const gxbp_knot *q,
+                          const gxbp_knot *w) {
     if (p->slot >= d->step_count) return gxbp_knot_turn(b, d, p, q, w) < 0;
     return gxbp_left_of_segment(b, d->step[p->slot].slot, p->vertex, q->vertex, w->vertex) < 0;
 }
 
-/* Is no other vertex in the triangle of a convex corner? One of those in it would not be convex; a quadrilateral's fourth one, if not convex, is. */
+/* Is no other vertex in the triangle of a convex corner? One of those in it would not be convex; a quadrilateral's
+ * fourth one, if not convex, is. */
 static int gxbp_is_ear(gxb_boolean *b, const gxbp_division *d, const gxbp_knot *q) {
     const gxbp_knot *p = &d->polygon[q->before], *r = &d->polygon[q->after], *w;
     if (r->after == p->before) return d->polygon[r->after].bend > 0;
     for (w = &d->polygon[r->after]; w != p; w = &d->polygon[w->after])
-        if (w->bend <= 0 && !(w->before == q->after && r->bend < 0) && !(w->after == q->before && p->bend < 0) && !gxbp_is_beyond(b, d, p, q, w) && !gxbp_is_beyond(b, d, q, r, w) && gxbp_knot_turn(b, d, r, p, w) >= 0) return 0;
+        if (w->bend <= 0 && !(w->before == q->after && r->bend < 0) && !(w->after == q->before && p->bend < 0) &&
+            !gxbp_is_beyond(b, d, p, q, w) && !gxbp_is_beyond(b, d, q, r, w) && gxbp_knot_turn(b, d, r, p, w) >= 0)
+            return 0;
     return 1;
 }
 
@@ -7228,13 +8288,16 @@ static inline void gxbp_use_slot(gxb_boolean *b, gxbp_division *d, uint32_t f, u
     b->pieces[other / 3].near[other % 3] = f;
 }
 
-static void gxbp_cut_ear(gxb_boolean *b, gxbp_division *d, gxbp_knot *p, const gxbp_knot *q, const gxbp_knot *r, uint32_t slot) {
+static void gxbp_cut_ear(gxb_boolean *b, gxbp_division *d, gxbp_knot *p, const gxbp_knot *q, const gxbp_knot *r,
+                         uint32_t slot) {
     const uint32_t f = d->spare != GXB_NONE ? d->spare : gxbp_new_piece(b, d->source);
     gxbp_piece *piece;
     if (f == GXB_NONE) return;
     d->spare = GXB_NONE;
     piece = &b->pieces[f];
-    piece->v[0] = p->vertex; piece->v[1] = q->vertex; piece->v[2] = r->vertex;
+    piece->v[0] = p->vertex;
+    piece->v[1] = q->vertex;
+    piece->v[2] = r->vertex;
     piece->state = d->state;
     gxbp_use_slot(b, d, f, 0, p->slot);
     gxbp_use_slot(b, d, f, 1, q->slot);
@@ -7262,7 +8325,8 @@ static GXBP_APART void gxbp_fill_polygon(gxb_boolean *b, gxbp_division *d, uint3
         r = &polygon[q->after];
         if (n > 3) {
             if (tried++ > 2 * n) gxbp_stop(b, GX_ERROR_OVERLAP);
-            if (q->bend <= 0 || (concave > 0 && ((tried <= n && p->bend > 0 && r->bend > 0) || !gxbp_is_ear(b, d, q)))) continue;
+            if (q->bend <= 0 || (concave > 0 && ((tried <= n && p->bend > 0 && r->bend > 0) || !gxbp_is_ear(b, d, q))))
+                continue;
             d->half[d->slot_count] = GXB_NONE;
         }
         gxbp_cut_ear(b, d, p, q, r, n == 3 ? r->slot : d->slot_count);
@@ -7276,7 +8340,8 @@ static GXBP_APART void gxbp_fill_polygon(gxb_boolean *b, gxbp_division *d, uint3
     }
 }
 
-/* Along a chain from rim point i: what it passes becomes a part of the polygon. Returns the rim point in which it ends. */
+/* Along a chain from rim point i: what it passes becomes a part of the polygon. Returns the rim point in which it ends.
+ */
 static uint32_t gxbp_walk_chain(gxbp_division *d, uint32_t i, uint32_t *n) {
     const gxbp_strand *strand = &d->strand[d->chain[i]];
     const int forward = strand->from == i;
@@ -7331,10 +8396,12 @@ static GXBP_APART int gxbp_divide_by_chains(gxb_boolean *b, uint32_t s, uint32_t
     return 1;
 }
 
-/* Facets at the starts of a source's edges: half-edges that leave the corner, or come to it where the edge starts at its other end. */
+/* Facets at the starts of a source's edges: half-edges that leave the corner, or come to it where the edge starts at
+ * its other end. */
 static void gxbp_note_rims(gxb_boolean *b, uint32_t s) {
     uint32_t leaves[3], comes[3], *rim[3], cut[3], f, k, j;
-    for (k = 0; k < 3; k++) if ((cut[k] = gxbp_need_cut(b, s, (int)k)) == GXB_NONE) return;
+    for (k = 0; k < 3; k++)
+        if ((cut[k] = gxbp_need_cut(b, s, (int)k)) == GXB_NONE) return;
     for (k = 0; k < 3; k++) {
         const int other = b->cuts[cut[k]].half_edge != 3 * s + k;
         leaves[k] = other ? GXB_NONE : gxbp_same(b, b->sources[s].point[k]);
@@ -7345,7 +8412,9 @@ static void gxbp_note_rims(gxb_boolean *b, uint32_t s) {
         const gxbp_piece *piece = &b->pieces[f];
         for (j = 0; j < 3; j++) {
             const uint32_t p = piece->v[j], q = piece->v[j == 2 ? 0 : j + 1];
-            if (piece->near[j] == GXB_NONE) for (k = 0; k < 3; k++) if (p == leaves[k] || q == comes[k]) *rim[k] = 3 * f + j;
+            if (piece->near[j] == GXB_NONE)
+                for (k = 0; k < 3; k++)
+                    if (p == leaves[k] || q == comes[k]) *rim[k] = 3 * f + j;
         }
     }
 }
@@ -7360,7 +8429,8 @@ static GXBP_APART void gxbp_divide_by_segments(gxb_boolean *b, uint32_t s, uint3
             const gxbp_segment *segment;
             if (b->chain[3 * i] == GXB_NONE) continue;
             segment = &b->segments[b->chain[3 * i]];
-            if (pass == 1 || gxbp_enter(b, s, gxbp_same(b, segment->p)) || gxbp_enter(b, s, gxbp_same(b, segment->q))) gxbp_trace_segments(b, s, i);
+            if (pass == 1 || gxbp_enter(b, s, gxbp_same(b, segment->p)) || gxbp_enter(b, s, gxbp_same(b, segment->q)))
+                gxbp_trace_segments(b, s, i);
         }
     for (k = 0; k < 3; k++) gxbp_divide_rim(b, s, k);
 }
@@ -7399,16 +8469,21 @@ static GXBP_COLD uint32_t gxbp_frame_corner(gxb_boolean *b, uint32_t plane, doub
 }
 
 static GXBP_COLD void gxbp_make_frame(gxb_boolean *b, uint32_t r) {
-    const uint32_t plane = b->sources[r].plane, i = (b->cx.planes[plane].axis + 1u) % 3, j = (b->cx.planes[plane].axis + 2u) % 3;
+    const uint32_t plane = b->sources[r].plane, i = (b->cx.planes[plane].axis + 1u) % 3,
+                   j = (b->cx.planes[plane].axis + 2u) % 3;
     uint32_t t, k, corner[4], f, g;
     double low[3], high[3], dx, dy;
     gxbp_extent(b, r, low, high);
     for (t = b->sources[r].next; t != GXB_NONE; t = b->sources[t].next) {
         double its_low[3], its_high[3];
         gxbp_extent(b, t, its_low, its_high);
-        for (k = 0; k < 3; k++) { low[k] = gxbp_min(its_low[k], low[k]); high[k] = gxbp_max(its_high[k], high[k]); }
+        for (k = 0; k < 3; k++) {
+            low[k] = gxbp_min(its_low[k], low[k]);
+            high[k] = gxbp_max(its_high[k], high[k]);
+        }
     }
-    dx = gxbp_fence(high[i] - low[i]); dy = gxbp_fence(high[j] - low[j]);
+    dx = gxbp_fence(high[i] - low[i]);
+    dy = gxbp_fence(high[j] - low[j]);
     corner[0] = gxbp_frame_corner(b, plane, low[i] - dx, low[j] - dy);
     corner[1] = gxbp_frame_corner(b, plane, high[i] + dx, low[j] - dy);
     corner[2] = gxbp_frame_corner(b, plane, high[i] + dx, high[j] + dy);
@@ -7416,15 +8491,23 @@ static GXBP_COLD void gxbp_make_frame(gxb_boolean *b, uint32_t r) {
     f = gxbp_new_piece(b, r);
     g = gxbp_new_piece(b, r);
     if (b->result != GX_OK) return;
-    if (b->cx.planes[plane].axis_sign < 0) { t = corner[1]; corner[1] = corner[3]; corner[3] = t; }
+    if (b->cx.planes[plane].axis_sign < 0) {
+        t = corner[1];
+        corner[1] = corner[3];
+        corner[3] = t;
+    }
     gxbp_set_piece(b, f, corner[0], corner[1], corner[2]);
     gxbp_set_piece(b, g, corner[0], corner[2], corner[3]);
-    for (t = 0; t < 3; t++) { gxbp_set_edge(b, f, (int)t, GXB_NONE, GXBP_BARE); gxbp_set_edge(b, g, (int)t, GXB_NONE, GXBP_BARE); }
+    for (t = 0; t < 3; t++) {
+        gxbp_set_edge(b, f, (int)t, GXB_NONE, GXBP_BARE);
+        gxbp_set_edge(b, g, (int)t, GXB_NONE, GXBP_BARE);
+    }
     gxbp_set_edge(b, f, 2, g, GXBP_LOOSE);
     gxbp_set_edge(b, g, 0, f, GXBP_LOOSE);
 }
 
-/* Each edge is there before points of the next one come: what they have to cross stays short. Returns the last vertex. */
+/* Each edge is there before points of the next one come: what they have to cross stays short. Returns the last vertex.
+ */
 static GXBP_RARE uint32_t gxbp_place_flat_edges(gxb_boolean *b, uint32_t r) {
     uint32_t last = b->pieces[b->sources[r].facet].v[0], t, k, i;
     for (t = r; t != GXB_NONE; t = b->sources[t].next)
@@ -7432,7 +8515,8 @@ static GXBP_RARE uint32_t gxbp_place_flat_edges(gxb_boolean *b, uint32_t r) {
             for (i = 0; i < gxbp_edge_points(b, t, k) && b->result == GX_OK; i++) {
                 const uint32_t v = last;
                 last = gxbp_insert_point(b, r, gxbp_edge_point(b, t, k, i), v, GXBP_EDGE_LABEL, 0);
-                if (i > 0 && b->result == GX_OK) gxbp_force_edge(b, r, v, last, gxbp_edge_name(b, t, (int)k) | GXBP_EDGE_LABEL, 0);
+                if (i > 0 && b->result == GX_OK)
+                    gxbp_force_edge(b, r, v, last, gxbp_edge_name(b, t, (int)k) | GXBP_EDGE_LABEL, 0);
             }
     return last;
 }
@@ -7451,7 +8535,9 @@ static GXBP_RARE void gxbp_place_flat_segments(gxb_boolean *b, uint32_t r, uint3
 
 /* 1: t faces as the plane's normal does. */
 static int gxbp_facing(const gxb_boolean *b, uint32_t r, uint32_t t) {
-    return r == t ? 1 : gxbp_flat_turn(b, b->sources[r].plane, gxbp_corner_of(b, t, 0), gxbp_corner_of(b, t, 1), gxbp_corner_of(b, t, 2));
+    return r == t ? 1
+                  : gxbp_flat_turn(b, b->sources[r].plane, gxbp_corner_of(b, t, 0), gxbp_corner_of(b, t, 1),
+                                   gxbp_corner_of(b, t, 2));
 }
 
 /* A facet at the start of t's first edge, inside t. */
@@ -7461,20 +8547,25 @@ static GXBP_RARE uint32_t gxbp_first_covered(gxb_boolean *b, uint32_t r, uint32_
     gxbp_line line;
     gxbp_way way;
     gxbp_set_line(b, &line, r, u, gxbp_edge_point(b, t, 0, 1), GXBP_EDGE_LABEL, 0);
-    if (!gxbp_find_edge(b, u, line.x, &way) && (!gxbp_find_way(b, &line, u, &way) || way.ahead == 0)) { gxbp_stop(b, GX_ERROR_OVERLAP); return GXB_NONE; }
+    if (!gxbp_find_edge(b, u, line.x, &way) && (!gxbp_find_way(b, &line, u, &way) || way.ahead == 0)) {
+        gxbp_stop(b, GX_ERROR_OVERLAP);
+        return GXB_NONE;
+    }
     if (way.ahead == (facing > 0 ? 1 : 2)) return way.f;
     return b->pieces[way.f].near[way.ahead == 1 ? way.k : (way.k + 2) % 3];
 }
 
 static int gxbp_covers(const gxb_boolean *b, uint32_t f, uint32_t t) {
     uint32_t c;
-    for (c = b->pieces[f].covers; c != GXB_NONE; c = b->links[c].next) if (b->links[c].value == t) return 1;
+    for (c = b->pieces[f].covers; c != GXB_NONE; c = b->links[c].next)
+        if (b->links[c].value == t) return 1;
     return 0;
 }
 
 static int gxbp_is_edge_of(const gxb_boolean *b, uint32_t labels, uint32_t t) {
     int k;
-    for (k = 0; k < 3; k++) if (gxbp_has_label(b, labels, gxbp_edge_name(b, t, k) | GXBP_EDGE_LABEL)) return 1;
+    for (k = 0; k < 3; k++)
+        if (gxbp_has_label(b, labels, gxbp_edge_name(b, t, k) | GXBP_EDGE_LABEL)) return 1;
     return 0;
 }
 
@@ -7519,8 +8610,10 @@ static GXBP_APART void gxbp_divide_dirty(gxb_boolean *b) {
     for (i = 0; i < b->dirty_count && b->result == GX_OK; i++) {
         const uint32_t s = b->dirty[i], r = gxbp_root(b, s);
         if (!(b->sources[s].flags & GXBP_DIRTY)) continue;
-        if (b->sources[r].flags & GXBP_FLAT) gxbp_divide_flat(b, r);
-        else gxbp_divide_source(b, s);
+        if (b->sources[r].flags & GXBP_FLAT)
+            gxbp_divide_flat(b, r);
+        else
+            gxbp_divide_source(b, s);
         b->sources[s].flags &= ~(uint32_t)GXBP_DIRTY;
     }
     b->dirty_count = 0;
@@ -7528,7 +8621,10 @@ static GXBP_APART void gxbp_divide_dirty(gxb_boolean *b) {
 
 /* --- points that are equal without having met in a triangulation --- */
 
-typedef struct gxbp_projected { double t; uint32_t point; } gxbp_projected;
+typedef struct gxbp_projected {
+    double t;
+    uint32_t point;
+} gxbp_projected;
 
 /* Merges the first half items with the others; work: room for these. */
 static inline void gxbp_merge_projected(gxbp_projected *p, uint32_t half, uint32_t count, gxbp_projected *work) {
@@ -7547,14 +8643,17 @@ static inline void gxbp_sort_few_projected(gxbp_projected *p, uint32_t count) {
 }
 
 static GXBP_APART void gxbp_sort_projected(gxbp_projected *p, uint32_t count, gxbp_projected *work) {
-    if (count <= 16) { gxbp_sort_few_projected(p, count); return; }
+    if (count <= 16) {
+        gxbp_sort_few_projected(p, count);
+        return;
+    }
     gxbp_sort_projected(p, count / 2, work);
     gxbp_sort_projected(p + count / 2, count - count / 2, work);
     gxbp_merge_projected(p, count / 2, count, work);
 }
 
-/* Computed points that are new since the last time are compared with all that lie within the errors of both along a direction in which few
-   points agree. The older name stays, in whatever order they are found. */
+/* Computed points that are new since the last time are compared with all that lie within the errors of both along a
+   direction in which few points agree. The older name stays, in whatever order they are found. */
 static GXBP_APART void gxbp_merge_points(gxb_boolean *b) {
     static const double direction[3] = {0.6180339887, 0.4142135623, 0.7320508075};
     const uint32_t old = b->projected_count;
@@ -7563,7 +8662,10 @@ static GXBP_APART void gxbp_merge_points(gxb_boolean *b) {
     uint32_t i, j;
     if (b->result != GX_OK || fresh == 0 || !GXBP_ROOM(b, projected, projected, fresh)) return;
     work = (gxbp_projected *)gxbp_allocate(&b->cx.allocator, size);
-    if (work == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
+    if (work == NULL) {
+        gxbp_stop(b, GX_ERROR_MEMORY);
+        return;
+    }
     p = b->projected;
     for (i = b->merged_points; i < b->vertex_count; i++) {
         const gxb_ball *x = &b->cx.points[i].ball;
@@ -7577,7 +8679,8 @@ static GXBP_APART void gxbp_merge_points(gxb_boolean *b) {
     for (i = 0; i < b->projected_count; i++)
         for (j = i + 1; j < b->projected_count && p[j].t - p[i].t <= 8 * b->reach; j++) {
             const uint32_t q = gxbp_same(b, p[i].point), r = gxbp_same(b, p[j].point);
-            if (q != r && (q >= b->merged_points || r >= b->merged_points) && gxbp_points_equal(b, q, r)) gxbp_unite(b, q < r ? q : r, q < r ? r : q);
+            if (q != r && (q >= b->merged_points || r >= b->merged_points) && gxbp_points_equal(b, q, r))
+                gxbp_unite(b, q < r ? q : r, q < r ? r : q);
         }
     gxbp_release(&b->cx.allocator, work, size);
     b->merged_points = b->vertex_count;
@@ -7618,7 +8721,7 @@ static uint32_t gxbp_hash_winding(const int32_t *winding, uint32_t count) {
     return hash;
 }
 
-enum { GXBP_FEW_STATES = 8 };   /* among which a state is looked for without a table */
+enum { GXBP_FEW_STATES = 8 }; /* among which a state is looked for without a table */
 
 /* A table of all states, with room for one more */
 static GXBP_COLD int gxbp_list_states(gxb_boolean *b) {
@@ -7628,7 +8731,8 @@ static GXBP_COLD int gxbp_list_states(gxb_boolean *b) {
     if (size > b->state_table_size && !gxbp_renew_table(b, &b->state_table, &b->state_table_size, size)) return 0;
     memset(b->state_table, 0xff, (size_t)b->state_table_size * sizeof *b->state_table);
     for (i = 0; i < b->state_count; i++) {
-        for (k = gxbp_hash_winding(b->windings + (size_t)i * n, n) & (size - 1); b->state_table[k] != GXB_NONE; k = (k + 1) & (size - 1)) {}
+        for (k = gxbp_hash_winding(b->windings + (size_t)i * n, n) & (size - 1); b->state_table[k] != GXB_NONE;
+             k = (k + 1) & (size - 1)) {}
         b->state_table[k] = i;
     }
     b->listed = b->state_count;
@@ -7642,11 +8746,15 @@ static uint32_t gxbp_find_state(gxb_boolean *b) {
     uint32_t k = 0;
     if (!GXBP_ROOM(b, states, state, 1)) return 0;
     if (b->state_count < GXBP_FEW_STATES) {
-        for (; k < b->state_count; k++) if (memcmp(b->windings + (size_t)k * n, winding, n * sizeof *winding) == 0) return k;
+        for (; k < b->state_count; k++)
+            if (memcmp(b->windings + (size_t)k * n, winding, n * sizeof *winding) == 0) return k;
     } else {
-        if ((b->listed < b->state_count || 2 * (b->state_count + 1) > b->state_table_size) && !gxbp_list_states(b)) return 0;
-        for (k = gxbp_hash_winding(winding, n) & (b->state_table_size - 1); b->state_table[k] != GXB_NONE; k = (k + 1) & (b->state_table_size - 1))
-            if (memcmp(b->windings + (size_t)b->state_table[k] * n, winding, n * sizeof *winding) == 0) return b->state_table[k];
+        if ((b->listed < b->state_count || 2 * (b->state_count + 1) > b->state_table_size) && !gxbp_list_states(b))
+            return 0;
+        for (k = gxbp_hash_winding(winding, n) & (b->state_table_size - 1); b->state_table[k] != GXB_NONE;
+             k = (k + 1) & (b->state_table_size - 1))
+            if (memcmp(b->windings + (size_t)b->state_table[k] * n, winding, n * sizeof *winding) == 0)
+                return b->state_table[k];
         b->state_table[k] = b->state_count;
         b->listed++;
     }
@@ -7661,16 +8769,21 @@ static int32_t *gxbp_copy_winding(gxb_boolean *b, uint32_t state) {
     b->winding_count = b->state_count * n;
     if (!GXBP_ROOM(b, windings, winding, n)) return NULL;
     winding = b->windings + b->winding_count;
-    if (state == GXB_NONE) memset(winding, 0, n * sizeof *winding);
-    else memcpy(winding, b->windings + (size_t)state * n, n * sizeof *winding);
+    if (state == GXB_NONE)
+        memset(winding, 0, n * sizeof *winding);
+    else
+        memcpy(winding, b->windings + (size_t)state * n, n * sizeof *winding);
     return winding;
 }
 
-static GXBP_APART uint32_t gxbp_new_step(gxb_boolean *b, gxbp_crossing *step, uint32_t from, uint32_t operand, int change) {
+static GXBP_APART uint32_t gxbp_new_step(gxb_boolean *b, gxbp_crossing *step, uint32_t from, uint32_t operand,
+                                         int change) {
     int32_t *winding = gxbp_copy_winding(b, from);
     if (winding == NULL) return 0;
     winding[operand] += change;
-    step->from = from; step->operand = operand; step->change = change;
+    step->from = from;
+    step->operand = operand;
+    step->change = change;
     step->to = gxbp_find_state(b);
     return step->to;
 }
@@ -7683,8 +8796,8 @@ static uint32_t gxbp_step_state(gxb_boolean *b, uint32_t from, uint32_t operand,
 
 static uint32_t gxbp_root_plane(const gxb_boolean *b, uint32_t f) { return b->sources[b->pieces[f].source].plane; }
 
-/* The side of t's plane on which facet f lies, which has edge k in it. If its apex is too near to tell, any corner of the source tells: side
-   times orientation with the edge is the same for all points. */
+/* The side of t's plane on which facet f lies, which has edge k in it. If its apex is too near to tell, any corner of
+   the source tells: side times orientation with the edge is the same for all points. */
 static int gxbp_side_of_piece(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
     const gxbp_piece *piece = &b->pieces[f];
     const gxb_plane_filter *filter = &b->cx.planes[b->sources[t].plane].filter;
@@ -7703,12 +8816,13 @@ static int gxbp_side_of_piece(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
     return side != 0 ? side : gxbp_side_of_source(b, piece->v[(k + 2) % 3], t);
 }
 
-/* How a label of edge k changes the winding number of its operand: a triangle with a part in front of f's plane is passed, from the side on
-   which f lies. */
+/* How a label of edge k changes the winding number of its operand: a triangle with a part in front of f's plane is
+   passed, from the side on which f lies. */
 static int gxbp_label_step(gxb_boolean *b, uint32_t f, int k, uint32_t t) {
     int i;
     if (t & GXBP_EDGE_LABEL || b->operands[b->sources[t].operand].operation == GXB_SPLIT) return 0;
-    for (i = 0; i < 3; i++) if (gxbp_corner_side(b, t, i, gxbp_root_plane(b, f), 0) > 0) return gxbp_side_of_piece(b, f, k, t);
+    for (i = 0; i < 3; i++)
+        if (gxbp_corner_side(b, t, i, gxbp_root_plane(b, f), 0) > 0) return gxbp_side_of_piece(b, f, k, t);
     return 0;
 }
 
@@ -7720,14 +8834,16 @@ static uint32_t gxbp_state_beyond(gxb_boolean *b, uint32_t f, int k) {
         const uint32_t t = b->links[list].value;
         const int change = gxbp_label_step(b, f, k, t);
         if (change == 0) continue;
-        if (winding == NULL && b->links[list].next == GXBP_BARE) return gxbp_step_state(b, b->pieces[f].state, b->sources[t].operand, change);
+        if (winding == NULL && b->links[list].next == GXBP_BARE)
+            return gxbp_step_state(b, b->pieces[f].state, b->sources[t].operand, change);
         if (winding == NULL && (winding = gxbp_copy_winding(b, b->pieces[f].state)) == NULL) return 0;
         winding[b->sources[t].operand] += change;
     }
     return winding == NULL ? b->pieces[f].state : gxbp_find_state(b);
 }
 
-/* Adds sign times the facet's own surfaces: behind it the winding number is larger by one for each that faces as its plane does. */
+/* Adds sign times the facet's own surfaces: behind it the winding number is larger by one for each that faces as its
+ * plane does. */
 static GXBP_COLD void gxbp_add_covers(const gxb_boolean *b, uint32_t f, int sign, int32_t *winding) {
     const uint32_t r = b->pieces[f].source;
     uint32_t c;
@@ -7737,7 +8853,8 @@ static GXBP_COLD void gxbp_add_covers(const gxb_boolean *b, uint32_t f, int sign
     }
     for (c = b->pieces[f].covers; c != GXB_NONE; c = b->links[c].next) {
         const uint32_t t = b->links[c].value;
-        if (b->operands[b->sources[t].operand].operation != GXB_SPLIT) winding[b->sources[t].operand] += sign * gxbp_facing(b, r, t);
+        if (b->operands[b->sources[t].operand].operation != GXB_SPLIT)
+            winding[b->sources[t].operand] += sign * gxbp_facing(b, r, t);
     }
 }
 
@@ -7745,28 +8862,30 @@ static uint32_t gxbp_state_behind(gxb_boolean *b, uint32_t f) {
     const uint32_t operand = b->sources[b->pieces[f].source].operand;
     int32_t *winding;
     if (b->pieces[f].covers == GXB_NONE)
-        return b->operands[operand].operation == GXB_SPLIT ? b->pieces[f].state : gxbp_step_state(b, b->pieces[f].state, operand, 1);
+        return b->operands[operand].operation == GXB_SPLIT ? b->pieces[f].state
+                                                           : gxbp_step_state(b, b->pieces[f].state, operand, 1);
     winding = gxbp_copy_winding(b, b->pieces[f].state);
     if (winding == NULL) return 0;
     gxbp_add_covers(b, f, 1, winding);
     return gxbp_find_state(b);
 }
 
-/* --- a first state by a ray along x from a point inside the facet, moved by (h, h^2) in y, z with h -> 0 (see gxbp_ray_side) --- */
+/* --- a first state by a ray along x from a point inside the facet, moved by (h, h^2) in y, z with h -> 0 (see
+ * gxbp_ray_side) --- */
 
 typedef struct gxbp_ray {
     gxb_ball ball;
-    gxbp_box box;               /* around the whole ray */
+    gxbp_box box; /* around the whole ray */
     uint32_t f;
     int32_t *winding;
-    int exact;                  /* is probe made yet? */
-    gxbp_probe probe;           /* the sum of the corners' homogeneous coordinates */
+    int exact;        /* is probe made yet? */
+    gxbp_probe probe; /* the sum of the corners' homogeneous coordinates */
 } gxbp_ray;
 
 static const gxbp_probe *gxbp_exact_probe(gxb_boolean *b, gxbp_ray *ray) {
     if (!ray->exact) {
         gxbp_probe_init(&b->cx, b->pieces[ray->f].v, 3, &ray->probe);
-        ray->probe.shift = 0;                           /* triangles are given in the frame */
+        ray->probe.shift = 0; /* triangles are given in the frame */
         ray->exact = 1;
     }
     b->cx.exact_calls++;
@@ -7784,7 +8903,8 @@ static void gxbp_set_ray(gxb_boolean *b, gxbp_ray *ray, uint32_t f) {
         given = given && p[k]->kind == GXB_EXPLICIT;
     }
     if (!given) gxbp_exact_probe(b, ray);
-    for (k = 0; k < 3; k++) ray->ball.x[k] = given ? (p[0]->ball.x[k] + p[1]->ball.x[k] + p[2]->ball.x[k]) / 3 : ray->probe.rough[k];
+    for (k = 0; k < 3; k++)
+        ray->ball.x[k] = given ? (p[0]->ball.x[k] + p[1]->ball.x[k] + p[2]->ball.x[k]) / 3 : ray->probe.rough[k];
     ray->ball.error = gxbp_max3(ray->ball.x);
     for (k = 0; k < 3 && given; k++) ray->ball.error = gxbp_max(ray->ball.error, gxbp_max3(p[k]->ball.x));
     ray->ball.error = gxbp_power(-49) * ray->ball.error + GXBP_TINY;
@@ -7808,10 +8928,14 @@ static void gxbp_cross_ray(gxb_boolean *b, gxbp_ray *ray, uint32_t s) {
     int left, behind;
     if (s == own || (b->sources[s].flags & GXBP_DEGENERATE) || gxbp_covers(b, ray->f, s)) return;
     left = gxbp_ray_left(b, ray, p, q);
-    if (left == 0 || gxbp_ray_left(b, ray, q, r) != left || gxbp_ray_left(b, ray, r, p) != left || !gxbp_need_plane(b, s)) return;
+    if (left == 0 || gxbp_ray_left(b, ray, q, r) != left || gxbp_ray_left(b, ray, r, p) != left ||
+        !gxbp_need_plane(b, s))
+        return;
     value = gxbp_filter_side(&ray->ball, &b->cx.planes[b->sources[s].plane].filter, &bound);
     behind = -gxbp_filter_sign(value, bound);
-    x[0] = p->x; x[1] = q->x; x[2] = r->x;
+    x[0] = p->x;
+    x[1] = q->x;
+    x[2] = r->x;
     if (behind == 0) behind = gxbp_probe_orient(gxbp_exact_probe(b, ray), x);
     if (behind == left) ray->winding[b->sources[s].operand] += left;
 }
@@ -7824,7 +8948,8 @@ static GXBP_APART void gxbp_shoot(gxb_boolean *b, gxbp_ray *ray, const gxbp_oper
         return;
     }
     gxbp_test_leaf(&b->bounds[o->bounds + i], &ray->box, meets);
-    for (c = 0; c < GXBP_LEAF; c++) if (meets[c]) gxbp_cross_ray(b, ray, o->order[i * GXBP_LEAF + c]);
+    for (c = 0; c < GXBP_LEAF; c++)
+        if (meets[c]) gxbp_cross_ray(b, ray, o->order[i * GXBP_LEAF + c]);
 }
 
 /* The side of a plane to which a point of it is moved: 0 for planes across x. */
@@ -7833,15 +8958,15 @@ static int gxbp_moved_side(gxb_boolean *b, uint32_t plane) {
     return side != 0 ? side : gxbp_normal_sign(&b->cx, plane, 2);
 }
 
-/* The start lies on the side of the facet's plane that the first of n_y, n_z, n_x which is not 0 says; from behind (n_x > 0) or from
-   in front (n_x < 0) the ray passes the facet itself. */
+/* The start lies on the side of the facet's plane that the first of n_y, n_z, n_x which is not 0 says; from behind (n_x
+   > 0) or from in front (n_x < 0) the ray passes the facet itself. */
 static GXBP_RARE void gxbp_cross_own(gxb_boolean *b, const gxbp_ray *ray) {
     const uint32_t plane = gxbp_root_plane(b, ray->f);
     const int nx = gxbp_normal_sign(&b->cx, plane, 0);
     int side = gxbp_moved_side(b, plane);
     if (side == 0) side = nx;
     if (nx * side < 0) gxbp_add_covers(b, ray->f, nx, ray->winding);
-    if (side < 0) gxbp_add_covers(b, ray->f, -1, ray->winding);         /* from the state behind to the one in front */
+    if (side < 0) gxbp_add_covers(b, ray->f, -1, ray->winding); /* from the state behind to the one in front */
 }
 
 /* The state in front of a facet, from one (GXB_NONE: zeros) that does not count operands from the first on. */
@@ -7853,14 +8978,17 @@ static GXBP_APART uint32_t gxbp_state_by_ray(gxb_boolean *b, uint32_t f, uint32_
     if (ray.winding == NULL) return 0;
     gxbp_set_ray(b, &ray, f);
     for (i = first; i < b->operand_count && b->result == GX_OK; i++)
-        if (b->operands[i].operation != GXB_SPLIT) gxbp_shoot(b, &ray, &b->operands[i], b->operands[i].tree.levels - 1, 0);
-    if (first == 0) gxbp_cross_own(b, &ray);            /* else the facet is of an older operand, and its own surfaces are counted */
+        if (b->operands[i].operation != GXB_SPLIT)
+            gxbp_shoot(b, &ray, &b->operands[i], b->operands[i].tree.levels - 1, 0);
+    /* else the facet is of an older operand, and its own surfaces are counted */
+    if (first == 0) gxbp_cross_own(b, &ray);
     return gxbp_find_state(b);
 }
 
 /* --- states spread from facet to facet --- */
 
-/* Where points were united, vertices get their last names: those of divided sources, and of all where that changes any. */
+/* Where points were united, vertices get their last names: those of divided sources, and of all where that changes any.
+ */
 static GXBP_RARE void gxbp_rename_vertices(gxb_boolean *b) {
     uint32_t f, i, k;
     for (i = 0; i < b->divided_count && b->united && !b->renamed; i++)
@@ -7882,11 +9010,12 @@ static uint32_t gxbp_rim_facet(const gxb_boolean *b, uint32_t s, uint32_t k) {
     return b->pieces[h / 3].labels[h % 3] == GXBP_BARE ? h / 3 : GXB_NONE;
 }
 
-/* The facet with which that at the start of edge k of a source shares its rim, across the surface's edge; GXB_NONE unless only the two
-   meet there. */
+/* The facet with which that at the start of edge k of a source shares its rim, across the surface's edge; GXB_NONE
+   unless only the two meet there. */
 static uint32_t gxbp_across_rim(const gxb_boolean *b, uint32_t s, uint32_t k) {
     const uint32_t twin = b->sources[s].twin[k];
-    if (twin == GXB_NONE || b->sources[twin / 3].flags & GXBP_FLAT || gxbp_rim_facet(b, s, k) == GXB_NONE) return GXB_NONE;
+    if (twin == GXB_NONE || b->sources[twin / 3].flags & GXBP_FLAT || gxbp_rim_facet(b, s, k) == GXB_NONE)
+        return GXB_NONE;
     return gxbp_rim_facet(b, twin / 3, twin % 3);
 }
 
@@ -7895,12 +9024,14 @@ static uint32_t gxbp_neighbour(const gxb_boolean *b, uint32_t f, int k) {
     const gxbp_piece *piece = &b->pieces[f];
     const gxbp_source *s = &b->sources[piece->source];
     uint32_t i;
-    if (s->flags & GXBP_FLAT) return piece->near[k] != GXB_NONE && b->pieces[piece->near[k]].covers != GXB_NONE ? piece->near[k] : GXB_NONE;
+    if (s->flags & GXBP_FLAT)
+        return piece->near[k] != GXB_NONE && b->pieces[piece->near[k]].covers != GXB_NONE ? piece->near[k] : GXB_NONE;
     if (piece->near[k] != GXB_NONE) return piece->near[k];
     if (!(s->flags & GXBP_DIVIDED)) return gxbp_across_rim(b, piece->source, (uint32_t)k);
     for (i = 0; i < 3; i++) {
         const gxbp_cut *cut = &b->cuts[s->edge[i]];
-        if (cut->rim[cut->half_edge != 3 * piece->source + i] == 3 * f + (uint32_t)k) return gxbp_across_rim(b, piece->source, i);
+        if (cut->rim[cut->half_edge != 3 * piece->source + i] == 3 * f + (uint32_t)k)
+            return gxbp_across_rim(b, piece->source, i);
     }
     return GXB_NONE;
 }
@@ -7908,7 +9039,8 @@ static uint32_t gxbp_neighbour(const gxb_boolean *b, uint32_t f, int k) {
 /* The source that alone crosses the edge of a facet; GXB_NONE: none or several do, or one has an edge there. */
 static uint32_t gxbp_crossing_source(const gxb_boolean *b, uint32_t f, int k) {
     const uint32_t list = b->pieces[f].labels[k];
-    if (b->pieces[f].near[k] == GXB_NONE || list == GXBP_LOOSE || list == GXBP_BARE || b->links[list].next != GXBP_BARE) return GXB_NONE;
+    if (b->pieces[f].near[k] == GXB_NONE || list == GXBP_LOOSE || list == GXBP_BARE || b->links[list].next != GXBP_BARE)
+        return GXB_NONE;
     return b->links[list].value & GXBP_EDGE_LABEL ? GXB_NONE : b->links[list].value;
 }
 
@@ -7916,7 +9048,8 @@ static uint32_t gxbp_crossing_source(const gxb_boolean *b, uint32_t f, int k) {
 static uint32_t gxbp_facet_at(const gxb_boolean *b, uint32_t s, uint32_t u, uint32_t w, int *k) {
     uint32_t f;
     for (f = b->sources[s].facet; f != GXB_NONE; f = b->pieces[f].next)
-        for (*k = 0; *k < 3; ++*k) if (b->pieces[f].v[*k] == u && b->pieces[f].v[(*k + 1) % 3] == w) return f;
+        for (*k = 0; *k < 3; ++*k)
+            if (b->pieces[f].v[*k] == u && b->pieces[f].v[(*k + 1) % 3] == w) return f;
     return GXB_NONE;
 }
 
@@ -7926,10 +9059,13 @@ static void gxbp_note_reached(gxb_boolean *b, uint32_t s) {
     o->reached = 1;
 }
 
-static int gxbp_winds(const gxb_boolean *b, uint32_t s) { return b->operands[b->sources[s].operand].operation != GXB_SPLIT; }
+static int gxbp_winds(const gxb_boolean *b, uint32_t s) {
+    return b->operands[b->sources[s].operand].operation != GXB_SPLIT;
+}
 
-/* From a facet to an operand of which no facet has a state yet, whose triangle crosses it in its edge k, where nothing else is: four facets meet
-   there, with the plane of each between two of the winding numbers. The facet that gets a state goes to b->chain. */
+/* From a facet to an operand of which no facet has a state yet, whose triangle crosses it in its edge k, where nothing
+   else is: four facets meet there, with the plane of each between two of the winding numbers. The facet that gets a
+   state goes to b->chain. */
 static void gxbp_reach_operand(gxb_boolean *b, uint32_t f, int k) {
     const uint32_t s = b->pieces[f].source, t = gxbp_crossing_source(b, f, k);
     int32_t *winding;
@@ -7937,7 +9073,9 @@ static void gxbp_reach_operand(gxb_boolean *b, uint32_t f, int k) {
     int j, side, other;
     if (t == GXB_NONE || b->operands[b->sources[t].operand].reached || b->sources[t].flags & GXBP_FLAT) return;
     g = gxbp_facet_at(b, t, b->pieces[f].v[k], b->pieces[f].v[(k + 1) % 3], &j);
-    if (g == GXB_NONE || gxbp_crossing_source(b, g, j) != s || b->pieces[g].state != GXB_NONE || !GXBP_ROOM(b, chain, chain, 1)) return;
+    if (g == GXB_NONE || gxbp_crossing_source(b, g, j) != s || b->pieces[g].state != GXB_NONE ||
+        !GXBP_ROOM(b, chain, chain, 1))
+        return;
     side = gxbp_side_of_piece(b, f, k, t);
     other = gxbp_side_of_piece(b, g, j, s);
     if (side == 0 || other == 0 || (winding = gxbp_copy_winding(b, b->pieces[f].state)) == NULL) return;
@@ -7960,7 +9098,8 @@ static void gxbp_spread_within(gxb_boolean *b, uint32_t f) {
         f = b->scratch[--b->scratch_count];
         for (k = 0; k < 3; k++) {
             const uint32_t near = b->pieces[f].near[k];
-            if (near == GXB_NONE || b->pieces[near].state != GXB_NONE || (flat && b->pieces[near].covers == GXB_NONE)) continue;
+            if (near == GXB_NONE || b->pieces[near].state != GXB_NONE || (flat && b->pieces[near].covers == GXB_NONE))
+                continue;
             b->pieces[near].state = gxbp_state_beyond(b, f, k);
             if (b->unreached > 0 && !flat) gxbp_reach_operand(b, f, k);
             gxbp_stack(b, near);
@@ -7968,8 +9107,8 @@ static void gxbp_spread_within(gxb_boolean *b, uint32_t f) {
     }
 }
 
-/* Through a source's facets, then across its edges to sources that have no states yet; in waves, so that the memory of many is waited for
-   at a time. */
+/* Through a source's facets, then across its edges to sources that have no states yet; in waves, so that the memory of
+   many is waited for at a time. */
 static void gxbp_spread_state(gxb_boolean *b, uint32_t first) {
     uint32_t i;
     b->scratch_count = 0;
@@ -7998,7 +9137,8 @@ static int gxbp_is_surface(const gxb_boolean *b, uint32_t f) {
     return s != GXB_NONE && (!(b->sources[s].flags & GXBP_FLAT) || b->pieces[f].covers != GXB_NONE);
 }
 
-/* --- states that are there already: new operands have the number 0 in them, which is right wherever their boxes are not --- */
+/* --- states that are there already: new operands have the number 0 in them, which is right wherever their boxes are
+ * not --- */
 
 /* Lengthens the states by the numbers of new operands, all 0: each state keeps its place. */
 static GXBP_APART int gxbp_lengthen_states(gxb_boolean *b) {
@@ -8020,14 +9160,18 @@ static GXBP_APART int gxbp_lengthen_states(gxb_boolean *b) {
 /* A state with this bit counts no new operand yet. */
 #define GXBP_OPEN ((uint32_t)1 << 31)
 
-static int gxbp_is_open(const gxb_boolean *b, uint32_t f) { return b->pieces[f].state != GXB_NONE && b->pieces[f].state & GXBP_OPEN; }
+static int gxbp_is_open(const gxb_boolean *b, uint32_t f) {
+    return b->pieces[f].state != GXB_NONE && b->pieces[f].state & GXBP_OPEN;
+}
 
 /* Is the facet certainly beside the box along this axis? */
 static int gxbp_piece_misses(const gxb_boolean *b, uint32_t f, const gxbp_box *box, int axis) {
     int i, side = 0;
     for (i = 0; i < 3; i++) {
         const gxb_ball *x = &b->cx.points[b->pieces[f].v[i]].ball;
-        const int mine = x->x[axis] + 2 * x->error < 16 * (double)box->low[axis] ? -1 : x->x[axis] - 2 * x->error > 16 * (double)box->high[axis];
+        const int mine = x->x[axis] + 2 * x->error < 16 * (double)box->low[axis]
+                           ? -1
+                           : x->x[axis] - 2 * x->error > 16 * (double)box->high[axis];
         if (mine == 0 || mine == -side) return 0;
         side = mine;
     }
@@ -8038,19 +9182,25 @@ static int gxbp_piece_misses(const gxb_boolean *b, uint32_t f, const gxbp_box *b
 static GXBP_RARE void gxbp_open_states(gxb_boolean *b, const gxbp_box *box) {
     uint32_t f;
     int axis = 0, k;
-    for (k = 1; k < 3; k++) if (box->high[k] - box->low[k] < box->high[axis] - box->low[axis]) axis = k;
+    for (k = 1; k < 3; k++)
+        if (box->high[k] - box->low[k] < box->high[axis] - box->low[axis]) axis = k;
     for (f = 0; f < b->piece_count; f++) {
-        if (b->pieces[f].source == GXB_NONE || b->pieces[f].state == GXB_NONE || gxbp_piece_misses(b, f, box, axis)) continue;
-        if (gxbp_piece_misses(b, f, box, (axis + 1) % 3) || gxbp_piece_misses(b, f, box, (axis + 2) % 3) || gxbp_is_open(b, f)) continue;
+        if (b->pieces[f].source == GXB_NONE || b->pieces[f].state == GXB_NONE || gxbp_piece_misses(b, f, box, axis))
+            continue;
+        if (gxbp_piece_misses(b, f, box, (axis + 1) % 3) || gxbp_piece_misses(b, f, box, (axis + 2) % 3) ||
+            gxbp_is_open(b, f))
+            continue;
         if (!GXBP_ROOM(b, chain, chain, 1)) return;
         b->chain[b->chain_count++] = f;
         b->pieces[f].state |= GXBP_OPEN;
     }
 }
 
-/* The state of an open facet beyond edge k of g, which is not open: its own with g's numbers of new operands and those of the labels between. */
+/* The state of an open facet beyond edge k of g, which is not open: its own with g's numbers of new operands and those
+ * of the labels between. */
 static uint32_t gxbp_close_state(gxb_boolean *b, uint32_t g, int k, uint32_t f) {
-    const uint32_t n = b->operand_count, m = b->stated, own = b->pieces[f].state & ~GXBP_OPEN, from = b->pieces[g].state;
+    const uint32_t n = b->operand_count, m = b->stated, own = b->pieces[f].state & ~GXBP_OPEN,
+                   from = b->pieces[g].state;
     uint32_t list = b->pieces[g].near[k] == f ? b->pieces[g].labels[k] : GXBP_BARE, i;
     int32_t *winding = gxbp_copy_winding(b, own);
     int differs = 0;
@@ -8058,7 +9208,8 @@ static uint32_t gxbp_close_state(gxb_boolean *b, uint32_t g, int k, uint32_t f) 
     for (i = m; i < n; i++) winding[i] = b->windings[(size_t)from * n + i];
     for (; list != GXBP_LOOSE && list != GXBP_BARE; list = b->links[list].next) {
         const uint32_t t = b->links[list].value;
-        if (!(t & GXBP_EDGE_LABEL) && b->sources[t].operand >= m) winding[b->sources[t].operand] += gxbp_label_step(b, g, k, t);
+        if (!(t & GXBP_EDGE_LABEL) && b->sources[t].operand >= m)
+            winding[b->sources[t].operand] += gxbp_label_step(b, g, k, t);
     }
     for (i = m; i < n; i++) differs = differs || winding[i] != 0;
     return differs ? gxbp_find_state(b) : own;
@@ -8107,7 +9258,8 @@ static void gxbp_find_state_of(gxb_boolean *b, uint32_t f) {
     gxbp_note_reached(b, b->pieces[f].source);
     b->pieces[f].state = gxbp_state_by_ray(b, f, GXB_NONE, 0);
     if (!GXBP_ROOM(b, chain, chain, 1)) return;
-    for (b->chain[b->chain_count++] = f; b->chain_count > 0 && b->result == GX_OK;) gxbp_spread_state(b, b->chain[--b->chain_count]);
+    for (b->chain[b->chain_count++] = f; b->chain_count > 0 && b->result == GX_OK;)
+        gxbp_spread_state(b, b->chain[--b->chain_count]);
 }
 
 static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
@@ -8119,10 +9271,14 @@ static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
     b->unreached = b->operand_count - b->stated;
     if (b->stated > 0) gxbp_close_states(b);
     b->chain_count = b->scratch_count = 0;
-    if (!GXBP_ROOM(b, scratch, scratch, (size_t)b->source_count + b->piece_count)) return;      /* each source and each facet is reached once */
-    for (s = 0; s < b->source_count && b->result == GX_OK; s++) {    /* first from input triangles, whose rays are cheap */
+    /* each source and each facet is reached once */
+    if (!GXBP_ROOM(b, scratch, scratch, (size_t)b->source_count + b->piece_count)) return;
+    /* first from input triangles, whose rays are cheap */
+    for (s = 0; s < b->source_count && b->result == GX_OK; s++) {
         f = b->sources[s].facet;
-        if (b->sources[s].flags & GXBP_DIVIDED || f == GXB_NONE || b->pieces[f].state != GXB_NONE || !gxbp_is_surface(b, f)) continue;
+        if (b->sources[s].flags & GXBP_DIVIDED || f == GXB_NONE || b->pieces[f].state != GXB_NONE ||
+            !gxbp_is_surface(b, f))
+            continue;
         gxbp_find_state_of(b, f);
     }
     for (f = 0; f < b->piece_count; f++)
@@ -8139,11 +9295,15 @@ static double gxbp_unscale(const gxb_boolean *b, double y) {
     return gxbp_double(gxbp_bits(y) - ((uint64_t)(int64_t)b->cx.shift << 52));
 }
 
-#define GXBP_VERTEX_ERROR 1e-10     /* relative to the largest coordinate: a larger ball gives way to exact coordinates */
+#define GXBP_VERTEX_ERROR 1e-10 /* relative to the largest coordinate: a larger ball gives way to exact coordinates */
 
 /* Sign of |num / den| less the middle of two doubles, given by their bits */
 static GXBP_RARE int gxbp_beyond_middle(const gxb_num *num, const gxb_num *den, uint64_t low, uint64_t high) {
-    GXB_NUM(p); GXB_NUM(q); GXB_NUM(sum); GXB_NUM(middle); GXB_NUM(twice);
+    GXB_NUM(p);
+    GXB_NUM(q);
+    GXB_NUM(sum);
+    GXB_NUM(middle);
+    GXB_NUM(twice);
     gxb_num_set(&p, gxbp_double(low), 0);
     gxb_num_set(&q, gxbp_double(high), 0);
     gxb_num_add(&sum, &p, &q);
@@ -8175,8 +9335,10 @@ static int gxbp_is_fine(const gxb_boolean *b) { return b->fine || b->mend != NUL
 static void gxbp_round_point(gxb_boolean *b, uint32_t point, double out[3]) {
     const gxb_cpoint *p = &b->cx.points[point];
     int k;
-    if (p->kind != GXB_EXPLICIT && (gxbp_is_fine(b) || p->ball.error > GXBP_VERTEX_ERROR * gxbp_max3(p->ball.x))) gxbp_round_exactly(b, point, out);
-    else for (k = 0; k < 3; k++) out[k] = gxbp_unscale(b, p->ball.x[k]);
+    if (p->kind != GXB_EXPLICIT && (gxbp_is_fine(b) || p->ball.error > GXBP_VERTEX_ERROR * gxbp_max3(p->ball.x)))
+        gxbp_round_exactly(b, point, out);
+    else
+        for (k = 0; k < 3; k++) out[k] = gxbp_unscale(b, p->ball.x[k]);
 }
 
 static void gxbp_name_source(const gxb_boolean *b, uint32_t s, uint32_t corner, uint32_t *operand, uint32_t *index) {
@@ -8189,14 +9351,16 @@ static void gxbp_name_source(const gxb_boolean *b, uint32_t s, uint32_t corner, 
 static GXBP_COLD int gxbp_holds_point(gxb_boolean *b, uint32_t s, uint32_t plane, uint32_t point) {
     int k, left = 0, right = 0;
     for (k = 0; k < 3; k++) {
-        const int turn = gxb_complex_turn(&b->cx, b->sources[s].point[k], b->sources[s].point[(k + 1) % 3], point, plane);
+        const int turn =
+            gxb_complex_turn(&b->cx, b->sources[s].point[k], b->sources[s].point[(k + 1) % 3], point, plane);
         left |= turn > 0;
         right |= turn < 0;
     }
     return !(left && right);
 }
 
-/* The source of a point that was found in s: in a flat, whose members share their triangulation, it may lie in another of them. */
+/* The source of a point that was found in s: in a flat, whose members share their triangulation, it may lie in another
+ * of them. */
 static GXBP_RARE uint32_t gxbp_member_at(gxb_boolean *b, uint32_t s, uint32_t point) {
     const uint32_t root = gxbp_root(b, s), plane = b->sources[root].plane;
     uint32_t t;
@@ -8211,14 +9375,21 @@ static GXBP_APART void gxbp_describe_point(gxb_boolean *b, uint32_t point, gxb_o
     int k;
     memset(o, 0, sizeof *o);
     o->kind = key[0];
-    if (key[0] == GXB_FROM_VERTEX) { o->operand[0] = key[1]; o->index[0] = key[2]; return; }
+    if (key[0] == GXB_FROM_VERTEX) {
+        o->operand[0] = key[1];
+        o->index[0] = key[2];
+        return;
+    }
     if (key[0] == GXB_FROM_THREE_TRIANGLES) {
-        for (k = 0; k < 3; k++) gxbp_name_source(b, gxbp_member_at(b, key[1 + k], point), 3, &o->operand[k], &o->index[k]);
+        for (k = 0; k < 3; k++)
+            gxbp_name_source(b, gxbp_member_at(b, key[1 + k], point), 3, &o->operand[k], &o->index[k]);
         return;
     }
     gxbp_name_source(b, key[1] / 3, key[1] % 3, &o->operand[0], &o->index[0]);
-    if (key[0] == GXB_FROM_EDGE_EDGE) gxbp_name_source(b, key[2] / 3, key[2] % 3, &o->operand[1], &o->index[1]);
-    else gxbp_name_source(b, key[2], 3, &o->operand[1], &o->index[1]);
+    if (key[0] == GXB_FROM_EDGE_EDGE)
+        gxbp_name_source(b, key[2] / 3, key[2] % 3, &o->operand[1], &o->index[1]);
+    else
+        gxbp_name_source(b, key[2], 3, &o->operand[1], &o->index[1]);
 }
 
 static uint32_t gxbp_out_vertex(gxb_boolean *b, uint32_t point) {
@@ -8230,13 +9401,16 @@ static uint32_t gxbp_out_vertex(gxb_boolean *b, uint32_t point) {
     return v->slot;
 }
 
-/* The source of a facet's surface: of those that cover it one of a sheet (sheets 1) or a closed surface; GXB_NONE: there is none. */
+/* The source of a facet's surface: of those that cover it one of a sheet (sheets 1) or a closed surface; GXB_NONE:
+ * there is none. */
 static uint32_t gxbp_cover_of(const gxb_boolean *b, uint32_t f, int sheets) {
     const uint32_t r = b->pieces[f].source;
     uint32_t c;
-    if (b->pieces[f].covers == GXB_NONE) return (b->operands[b->sources[r].operand].operation == GXB_SPLIT) == sheets ? r : GXB_NONE;
+    if (b->pieces[f].covers == GXB_NONE)
+        return (b->operands[b->sources[r].operand].operation == GXB_SPLIT) == sheets ? r : GXB_NONE;
     for (c = b->pieces[f].covers; c != GXB_NONE; c = b->links[c].next)
-        if ((b->operands[b->sources[b->links[c].value].operand].operation == GXB_SPLIT) == sheets) return b->links[c].value;
+        if ((b->operands[b->sources[b->links[c].value].operand].operation == GXB_SPLIT) == sheets)
+            return b->links[c].value;
     return GXB_NONE;
 }
 
@@ -8250,7 +9424,9 @@ static GXBP_APART int gxbp_more_triangles(gxb_boolean *b, size_t extra) {
 static void gxbp_emit(gxb_boolean *b, uint32_t f, int reversed, uint32_t source) {
     const uint32_t n = b->out_triangle_count, *v = b->pieces[f].v;
     uint32_t i;
-    if (!GXBP_ROOM(b, out_triangles, out_triangle, 3) || (b->out_source_count == b->out_source_capacity && !gxbp_more_triangles(b, 1))) return;
+    if (!GXBP_ROOM(b, out_triangles, out_triangle, 3) ||
+        (b->out_source_count == b->out_source_capacity && !gxbp_more_triangles(b, 1)))
+        return;
     b->out_triangles[n] = gxbp_out_vertex(b, v[0]);
     b->out_triangles[n + 1] = gxbp_out_vertex(b, v[reversed ? 2 : 1]);
     b->out_triangles[n + 2] = gxbp_out_vertex(b, v[reversed ? 1 : 2]);
@@ -8268,18 +9444,20 @@ static GXBP_APART void gxbp_set_triangle_count(gxb_boolean *b, uint32_t n) {
 }
 
 static GXBP_APART void gxbp_extract(gxb_boolean *b) {
-    uint32_t f, state = GXB_NONE, operand = GXB_NONE;       /* of the last facet that only its own source covers */
+    uint32_t f, state = GXB_NONE, operand = GXB_NONE; /* of the last facet that only its own source covers */
     int front_in = 0, back_in = 0;
     for (f = 0; f < b->vertex_count; f++) b->vertices[f].slot = GXB_NONE;
     gxbp_set_triangle_count(b, 0);
     b->out_point_count = b->out_vertex_count = b->out_origin_count = 0;
-    if (!gxbp_more_triangles(b, b->piece_count / 2) || !GXBP_ROOM(b, out_triangles, out_triangle, 3 * (size_t)(b->piece_count / 2))) return;
+    if (!gxbp_more_triangles(b, b->piece_count / 2) ||
+        !GXBP_ROOM(b, out_triangles, out_triangle, 3 * (size_t)(b->piece_count / 2)))
+        return;
     for (f = 0; f < b->piece_count && b->result == GX_OK; f++) {
         const gxbp_piece *piece = &b->pieces[f];
         uint32_t source;
         if (!gxbp_is_surface(b, f)) continue;
         if (piece->covers != GXB_NONE || piece->state != state || b->sources[piece->source].operand != operand) {
-            const uint32_t behind = gxbp_state_behind(b, f);        /* may move the states */
+            const uint32_t behind = gxbp_state_behind(b, f); /* may move the states */
             back_in = b->states[behind] != 0;
             front_in = b->states[piece->state] != 0;
             state = piece->covers == GXB_NONE ? piece->state : GXB_NONE;
@@ -8295,7 +9473,9 @@ static GXBP_APART void gxbp_extract(gxb_boolean *b) {
     }
 }
 
-static uint32_t gxbp_out_corner(const gxb_boolean *b, uint32_t t, uint32_t k) { return b->out_points[b->out_triangles[3 * t + k % 3]]; }
+static uint32_t gxbp_out_corner(const gxb_boolean *b, uint32_t t, uint32_t k) {
+    return b->out_points[b->out_triangles[3 * t + k % 3]];
+}
 
 /* A source that met nothing may have had no plane yet. GXB_NONE: no memory. */
 static uint32_t gxbp_out_plane(gxb_boolean *b, uint32_t t) {
@@ -8303,29 +9483,39 @@ static uint32_t gxbp_out_plane(gxb_boolean *b, uint32_t t) {
     return gxbp_need_plane(b, s) ? b->sources[s].plane : GXB_NONE;
 }
 
-/* --- coarse results: vertices that the outline of no face needs are taken away, one by one, and their stars filled with fewer triangles --- */
+/* --- coarse results: vertices that the outline of no face needs are taken away, one by one, and their stars filled
+ * with fewer triangles --- */
 
-/* The triangles of a face around a vertex, from outline to outline or all around. hint: one of the half-edges that leave it there. */
-typedef struct gxbp_umbrella { uint32_t vertex, hint, next; } gxbp_umbrella;
+/* The triangles of a face around a vertex, from outline to outline or all around. hint: one of the half-edges that
+ * leave it there. */
+typedef struct gxbp_umbrella {
+    uint32_t vertex, hint, next;
+} gxbp_umbrella;
 
 /* Half-edges are 3 t + k. */
 typedef struct gxbp_coarse {
-    uint32_t *near;             /* of each half-edge: the one across it in the same face, GXB_NONE on the face's outline */
-    uint32_t *corner;           /* of each half-edge: the umbrella that it leaves from; GXB_NONE: its triangle is gone */
-    gxbp_umbrella *umbrellas; uint32_t umbrella_count;
-    uint32_t *first;            /* of each vertex: its umbrellas */
-    uint32_t *degree;           /* of each vertex: edges of outlines that end there */
+    /* of each half-edge: the one across it in the same face, GXB_NONE on the face's outline */
+    uint32_t *near;
+    /* of each half-edge: the umbrella that it leaves from; GXB_NONE: its triangle is gone */
+    uint32_t *corner;
+    gxbp_umbrella *umbrellas;
+    uint32_t umbrella_count;
+    uint32_t *first;  /* of each vertex: its umbrellas */
+    uint32_t *degree; /* of each vertex: edges of outlines that end there */
 } gxbp_coarse;
 
-/* 1: triangle u is of t's face and faces as it does, -1: the other way (a sheet's other side), 0: it is of another face. */
+/* 1: triangle u is of t's face and faces as it does, -1: the other way (a sheet's other side), 0: it is of another
+ * face. */
 static int gxbp_same_face(gxb_boolean *b, uint32_t t, uint32_t u) {
     const int facing = b->out_planes[t] & 1 ? -1 : 1;
     uint32_t k;
-    if (b->out_operands[t] == b->out_operands[u] && b->out_sources[t] == b->out_sources[u]) return b->out_planes[u] & 1 ? -facing : facing;
+    if (b->out_operands[t] == b->out_operands[u] && b->out_sources[t] == b->out_sources[u])
+        return b->out_planes[u] & 1 ? -facing : facing;
     if (b->triangulation != GXB_MERGED) return 0;
     b->plane = gxbp_out_plane(b, t);
     if (b->plane == GXB_NONE) return 0;
-    for (k = 0; k < 3 && gxbp_out_plane(b, u) != b->plane; k++) if (gxbp_point_side(b, gxbp_out_corner(b, u, k), b->plane) != 0) return 0;
+    for (k = 0; k < 3 && gxbp_out_plane(b, u) != b->plane; k++)
+        if (gxbp_point_side(b, gxbp_out_corner(b, u, k), b->plane) != 0) return 0;
     return facing * gxbp_turn(b, gxbp_out_corner(b, u, 0), gxbp_out_corner(b, u, 1), gxbp_out_corner(b, u, 2));
 }
 
@@ -8345,8 +9535,13 @@ static int gxbp_pair_edge(gxb_boolean *b, const gxbp_fan *fan, uint32_t p, uint3
             found[pass][facing > 0] = h;
         }
     }
-    for (i = 0; i < 2; i++) if ((found[0][i] == GXB_NONE) != (found[1][i] == GXB_NONE)) return 0;
-    for (i = 0; i < 2; i++) if (found[0][i] != GXB_NONE) { near[found[0][i]] = found[1][i]; near[found[1][i]] = found[0][i]; }
+    for (i = 0; i < 2; i++)
+        if ((found[0][i] == GXB_NONE) != (found[1][i] == GXB_NONE)) return 0;
+    for (i = 0; i < 2; i++)
+        if (found[0][i] != GXB_NONE) {
+            near[found[0][i]] = found[1][i];
+            near[found[1][i]] = found[0][i];
+        }
     return 1;
 }
 
@@ -8368,15 +9563,18 @@ static void gxbp_make_umbrellas(const gxb_boolean *b, gxbp_coarse *c) {
     for (h = 0; h < b->out_triangle_count; h++) {
         const uint32_t u = c->umbrella_count, v = b->out_triangles[h];
         if (c->corner[h] != GXB_NONE) continue;
-        c->umbrellas[u].vertex = v; c->umbrellas[u].hint = h; c->umbrellas[u].next = c->first[v];
+        c->umbrellas[u].vertex = v;
+        c->umbrellas[u].hint = h;
+        c->umbrellas[u].next = c->first[v];
         c->first[v] = c->umbrella_count++;
         for (e = h; e != GXB_NONE && c->corner[e] == GXB_NONE; e = c->near[gxbp_last_edge(e)]) c->corner[e] = u;
-        for (e = c->near[h]; e != GXB_NONE && c->corner[gxbp_next_edge(e)] == GXB_NONE; e = c->near[gxbp_next_edge(e)]) c->corner[gxbp_next_edge(e)] = u;
+        for (e = c->near[h]; e != GXB_NONE && c->corner[gxbp_next_edge(e)] == GXB_NONE; e = c->near[gxbp_next_edge(e)])
+            c->corner[gxbp_next_edge(e)] = u;
     }
 }
 
-/* The polygon that an umbrella's triangles fill goes to rims (umbrellas of its vertices, what lies beyond the edge to the next), the
-   triangles to scratch. 1: it is open, the vertex lies on the edge from the last to the first. */
+/* The polygon that an umbrella's triangles fill goes to rims (umbrellas of its vertices, what lies beyond the edge to
+   the next), the triangles to scratch. 1: it is open, the vertex lies on the edge from the last to the first. */
 static int gxbp_open_umbrella(gxb_boolean *b, const gxbp_coarse *c, uint32_t u) {
     uint32_t start = c->umbrellas[u].hint, e = start, n;
     while (c->near[e] != GXB_NONE && (e = gxbp_next_edge(c->near[e])) != start) {}
@@ -8397,7 +9595,9 @@ static int gxbp_open_umbrella(gxb_boolean *b, const gxbp_coarse *c, uint32_t u) 
     return 1;
 }
 
-static uint32_t gxbp_coarse_point(const gxb_boolean *b, const gxbp_coarse *c, uint32_t u) { return b->out_points[c->umbrellas[u].vertex]; }
+static uint32_t gxbp_coarse_point(const gxb_boolean *b, const gxbp_coarse *c, uint32_t u) {
+    return b->out_points[c->umbrellas[u].vertex];
+}
 
 static void gxbp_link_half_edges(uint32_t *near, uint32_t h, uint32_t other) {
     near[h] = other;
@@ -8408,7 +9608,9 @@ static void gxbp_link_half_edges(uint32_t *near, uint32_t h, uint32_t other) {
 static void gxbp_fill_corner(gxb_boolean *b, gxbp_coarse *c, uint32_t p, uint32_t q, uint32_t r) {
     const uint32_t h = 3 * b->scratch[--b->scratch_count];
     uint32_t k;
-    c->corner[h] = b->rims[p].vertex; c->corner[h + 1] = b->rims[q].vertex; c->corner[h + 2] = b->rims[r].vertex;
+    c->corner[h] = b->rims[p].vertex;
+    c->corner[h + 1] = b->rims[q].vertex;
+    c->corner[h + 2] = b->rims[r].vertex;
     for (k = 0; k < 3; k++) c->umbrellas[c->corner[h + k]].hint = h + k;
     gxbp_link_half_edges(c->near, h, b->rims[p].near);
     gxbp_link_half_edges(c->near, h + 1, b->rims[q].near);
@@ -8416,25 +9618,33 @@ static void gxbp_fill_corner(gxb_boolean *b, gxbp_coarse *c, uint32_t p, uint32_
     b->rims[p].near = h + 2;
 }
 
-/* Fills the polygon of an umbrella around v. It is seen from v, and stays so if a convex corner is cut off whose ends are seen from v under
-   no more than a straight angle: then v is left of the new edge or on it. Of at most two corners, neighbours, the ends are seen under
-   more, and a polygon has three that are convex; where v lies on an edge, the corners of that edge are the two. */
+/* Fills the polygon of an umbrella around v. It is seen from v, and stays so if a convex corner is cut off whose ends
+   are seen from v under no more than a straight angle: then v is left of the new edge or on it. Of at most two corners,
+   neighbours, the ends are seen under more, and a polygon has three that are convex; where v lies on an edge, the
+   corners of that edge are the two. */
 static void gxbp_fill_umbrella(gxb_boolean *b, gxbp_coarse *c, uint32_t v) {
     gxbp_margin *rim = b->rims;
     const int facing = b->out_planes[b->scratch[0]] & 1 ? -1 : 1;
     uint32_t n = b->rim_count, i, q = 0, tried = 0;
-    for (i = 0; i < n; i++) { rim[i].labels = (i + 1) % n; rim[i].made = (i + n - 1) % n; }
+    for (i = 0; i < n; i++) {
+        rim[i].labels = (i + 1) % n;
+        rim[i].made = (i + n - 1) % n;
+    }
     while (n > 3 && b->result == GX_OK) {
-        const uint32_t p = rim[q].made, r = rim[q].labels, end = gxbp_coarse_point(b, c, rim[r].vertex), start = gxbp_coarse_point(b, c, rim[p].vertex);
-        if (facing * gxbp_turn(b, start, gxbp_coarse_point(b, c, rim[q].vertex), end) > 0 && facing * gxbp_turn(b, start, end, v) >= 0) {
+        const uint32_t p = rim[q].made, r = rim[q].labels, end = gxbp_coarse_point(b, c, rim[r].vertex),
+                       start = gxbp_coarse_point(b, c, rim[p].vertex);
+        if (facing * gxbp_turn(b, start, gxbp_coarse_point(b, c, rim[q].vertex), end) > 0 &&
+            facing * gxbp_turn(b, start, end, v) >= 0) {
             gxbp_fill_corner(b, c, p, q, r);
             rim[p].labels = r;
             rim[r].made = p;
             q = p;
             n--;
             tried = 0;
-        } else if (++tried <= n) q = r;
-        else gxbp_stop(b, GX_ERROR_OVERLAP);
+        } else if (++tried <= n)
+            q = r;
+        else
+            gxbp_stop(b, GX_ERROR_OVERLAP);
     }
     if (b->result != GX_OK) return;
     gxbp_fill_corner(b, c, rim[q].made, q, rim[q].labels);
@@ -8452,7 +9662,9 @@ static int gxbp_is_needless(gxb_boolean *b, const gxbp_coarse *c, uint32_t v) {
         if (!gxbp_open_umbrella(b, c, u)) continue;
         p = c->umbrellas[b->rims[0].vertex].vertex;
         q = c->umbrellas[b->rims[b->rim_count - 1].vertex].vertex;
-        if (p == q || (ends[0] != GXB_NONE && (p < q ? p : q) != ends[0]) || (ends[0] != GXB_NONE && (p < q ? q : p) != ends[1])) return 0;
+        if (p == q || (ends[0] != GXB_NONE && (p < q ? p : q) != ends[0]) ||
+            (ends[0] != GXB_NONE && (p < q ? q : p) != ends[1]))
+            return 0;
         if (ends[0] != GXB_NONE) continue;
         ends[0] = p < q ? p : q;
         ends[1] = p < q ? q : p;
@@ -8473,8 +9685,10 @@ static void gxbp_take_vertex(gxb_boolean *b, gxbp_coarse *c, uint32_t v) {
 
 /* Of which source a triangle is, and how it faces */
 static GXBP_COLD void gxbp_copy_origin(gxb_boolean *b, uint32_t to, uint32_t from) {
-    b->out_operands[to] = b->out_operands[from]; b->out_sources[to] = b->out_sources[from];
-    b->out_planes[to] = b->out_planes[from]; b->out_reversed[to] = b->out_reversed[from];
+    b->out_operands[to] = b->out_operands[from];
+    b->out_sources[to] = b->out_sources[from];
+    b->out_planes[to] = b->out_planes[from];
+    b->out_reversed[to] = b->out_reversed[from];
 }
 
 /* Vertices that no triangle has any more are taken out, rounded or not yet; map: a word for each. */
@@ -8494,7 +9708,10 @@ static GXBP_COLD void gxbp_drop_lonely(gxb_boolean *b, uint32_t *map) {
     }
     for (i = 0; i < b->out_triangle_count; i++) b->out_triangles[i] = map[b->out_triangles[i]];
     b->out_point_count = n;
-    if (rounded) { b->out_origin_count = n; b->out_vertex_count = 3 * n; }
+    if (rounded) {
+        b->out_origin_count = n;
+        b->out_vertex_count = 3 * n;
+    }
 }
 
 /* What is left becomes the result. */
@@ -8520,22 +9737,27 @@ static GXBP_COLD void gxbp_coarsen(gxb_boolean *b) {
     c.near = (uint32_t *)gxbp_allocate(&b->cx.allocator, bytes);
     if (c.near != NULL) {
         memset(c.near, 0xff, (2 * halves + points) * sizeof *c.near);
-        c.corner = c.near + halves; c.first = c.corner + halves; c.degree = c.first + points;
+        c.corner = c.near + halves;
+        c.first = c.corner + halves;
+        c.degree = c.first + points;
         c.umbrellas = (gxbp_umbrella *)(void *)(c.degree + points);
         memset(c.degree, 0, points * sizeof *c.degree);
         gxbp_find_outlines(b, &fan, &c);
         gxbp_make_umbrellas(b, &c);
-        for (v = 0; v < points && b->result == GX_OK; v++) if (gxbp_is_needless(b, &c, v)) gxbp_take_vertex(b, &c, v);
+        for (v = 0; v < points && b->result == GX_OK; v++)
+            if (gxbp_is_needless(b, &c, v)) gxbp_take_vertex(b, &c, v);
         if (b->result == GX_OK) gxbp_close_coarse(b, &c);
         gxbp_release(&b->cx.allocator, c.near, bytes);
-    } else gxbp_stop(b, GX_ERROR_MEMORY);
+    } else
+        gxbp_stop(b, GX_ERROR_MEMORY);
     gxbp_drop_fan(b, &fan);
 }
 
 static GXBP_APART void gxbp_round_vertices(gxb_boolean *b) {
     uint32_t i;
     if (b->result != GX_OK || !GXBP_ROOM(b, out_vertices, out_vertex, 3 * (size_t)b->out_point_count) ||
-        !GXBP_ROOM(b, out_origins, out_origin, b->out_point_count)) return;
+        !GXBP_ROOM(b, out_origins, out_origin, b->out_point_count))
+        return;
     for (i = 0; i < b->out_point_count; i++) {
         gxbp_round_point(b, b->out_points[i], b->out_vertices + 3 * (size_t)i);
         gxbp_describe_point(b, b->out_points[i], &b->out_origins[i]);
@@ -8544,24 +9766,31 @@ static GXBP_APART void gxbp_round_vertices(gxb_boolean *b) {
     b->out_origin_count = b->out_point_count;
 }
 
-static GXBP_COLD int gxbp_faces_exactly(gxb_boolean *b, uint32_t plane, const double *p, const double *q, const double *r) {
+static GXBP_COLD int gxbp_faces_exactly(gxb_boolean *b, uint32_t plane, const double *p, const double *q,
+                                        const double *r) {
     gxbp_vec store, given[3], n;
     GXB_NUM(value);
-    gxbp_vec_set(&given[0], p); gxbp_vec_set(&given[1], q); gxbp_vec_set(&given[2], r);
+    gxbp_vec_set(&given[0], p);
+    gxbp_vec_set(&given[1], q);
+    gxbp_vec_set(&given[2], r);
     gxbp_vec_init(&n);
     gxbp_exact_plane(n.c, given[0].c, given[1].c, given[2].c);
     gxbp_num_dot(&value, n.c, gxbp_exact_cplane(&b->cx, plane, &store));
     return value.sign;
 }
 
-/* Sign of n.((q - p) x (r - p)) for a plane's normal n and rounded points, exact. The filter's bound is that of gxbp_rough_volume, with n
-   for d0. */
+/* Sign of n.((q - p) x (r - p)) for a plane's normal n and rounded points, exact. The filter's bound is that of
+   gxbp_rough_volume, with n for d0. */
 static int gxbp_faces(gxb_boolean *b, uint32_t plane, const double *p, const double *q, const double *r) {
     const gxb_plane_filter *f = &b->cx.planes[plane].filter;
     double u[3], v[3], m[3], E, N;
     int k, sign = 0;
-    if (b->cx.shift == 0) {             /* else coordinates are not the frame's, and may be too large or too small to filter */
-        for (k = 0; k < 3; k++) { u[k] = gxbp_fence(q[k] - p[k]); v[k] = gxbp_fence(r[k] - p[k]); }
+    /* else coordinates are not the frame's, and may be too large or too small to filter */
+    if (b->cx.shift == 0) {
+        for (k = 0; k < 3; k++) {
+            u[k] = gxbp_fence(q[k] - p[k]);
+            v[k] = gxbp_fence(r[k] - p[k]);
+        }
         E = gxbp_filter_cross(m, u, 2 * GXBP_U * gxbp_max3(u) + GXBP_TINY, v, 2 * GXBP_U * gxbp_max3(v) + GXBP_TINY);
         N = gxbp_max3(m);
         sign = gxbp_filter_sign(f->n[0] * m[0] + f->n[1] * m[1] + f->n[2] * m[2],
@@ -8570,7 +9799,8 @@ static int gxbp_faces(gxb_boolean *b, uint32_t plane, const double *p, const dou
     return sign != 0 ? sign : gxbp_faces_exactly(b, plane, p, q, r);
 }
 
-/* Triangles that rounding has turned over or left without area. Those of input vertices are as they were, unless they were mended. */
+/* Triangles that rounding has turned over or left without area. Those of input vertices are as they were, unless they
+ * were mended. */
 static GXBP_APART void gxbp_find_defects(gxb_boolean *b) {
     uint32_t t, k;
     b->out_defect_count = 0;
@@ -8590,15 +9820,20 @@ static GXBP_APART void gxbp_find_defects(gxb_boolean *b) {
 /* --- components: shells (triangles joined where the solid between them is one), and which shell lies in which --- */
 
 static uint32_t gxbp_find_set(uint32_t *parent, uint32_t i) {
-    while (parent[i] != i) { parent[i] = parent[parent[i]]; i = parent[i]; }
+    while (parent[i] != i) {
+        parent[i] = parent[parent[i]];
+        i = parent[i];
+    }
     return i;
 }
 
 static void gxbp_join_sets(uint32_t *parent, uint32_t i, uint32_t j) {
     i = gxbp_find_set(parent, i);
     j = gxbp_find_set(parent, j);
-    if (i < j) parent[j] = i;
-    else parent[i] = j;
+    if (i < j)
+        parent[j] = i;
+    else
+        parent[i] = j;
 }
 
 /* Afterwards parent[i] is the set of i: parents come before their children. */
@@ -8607,13 +9842,21 @@ static void gxbp_flatten_sets(uint32_t *parent, uint32_t count) {
     for (i = 0; i < count; i++) parent[i] = parent[parent[i]];
 }
 
-/* Triangles around an edge from p to q, by angle. Seen along the edge, a triangle that passes it forwards (from p to q) has the solid at
-   smaller angles, one that passes it backwards at larger ones. */
-typedef struct gxbp_blade { uint32_t half_edge, apex, plane; int forward, toward, group; } gxbp_blade;
-typedef struct gxbp_blades { gxbp_blade *list; uint32_t count, capacity; } gxbp_blades;
+/* Triangles around an edge from p to q, by angle. Seen along the edge, a triangle that passes it forwards (from p to q)
+   has the solid at smaller angles, one that passes it backwards at larger ones. */
+typedef struct gxbp_blade {
+    uint32_t half_edge, apex, plane;
+    int forward, toward, group;
+} gxbp_blade;
+typedef struct gxbp_blades {
+    gxbp_blade *list;
+    uint32_t count, capacity;
+} gxbp_blades;
 
 /* 1: the apex of g lies at an angle between 0 and pi from f, -1: beyond, 0: in its plane */
-static int gxbp_blade_side(gxb_boolean *b, const gxbp_blade *f, const gxbp_blade *g) { return f->toward * gxbp_point_side(b, g->apex, f->plane); }
+static int gxbp_blade_side(gxb_boolean *b, const gxbp_blade *f, const gxbp_blade *g) {
+    return f->toward * gxbp_point_side(b, g->apex, f->plane);
+}
 
 static int gxbp_blade_precedes(gxb_boolean *b, const gxbp_blade *f, const gxbp_blade *g) {
     int side;
@@ -8622,7 +9865,8 @@ static int gxbp_blade_precedes(gxb_boolean *b, const gxbp_blade *f, const gxbp_b
     return side != 0 ? side > 0 : f->forward && !g->forward;
 }
 
-static GXBP_RARE void gxbp_make_blade(gxb_boolean *b, uint32_t h, uint32_t p, const gxbp_blade *first, gxbp_blade *blade, uint32_t q) {
+static GXBP_RARE void gxbp_make_blade(gxb_boolean *b, uint32_t h, uint32_t p, const gxbp_blade *first,
+                                      gxbp_blade *blade, uint32_t q) {
     blade->half_edge = h;
     blade->apex = gxbp_out_corner(b, h / 3, h % 3 + 2);
     blade->plane = gxbp_out_plane(b, h / 3);
@@ -8630,14 +9874,16 @@ static GXBP_RARE void gxbp_make_blade(gxb_boolean *b, uint32_t h, uint32_t p, co
     blade->toward = (b->out_planes[h / 3] & 1 ? -1 : 1) * (blade->forward ? 1 : -1);
     blade->group = 0;
     if (first == NULL) return;
-    blade->group = 2 - gxbp_blade_side(b, first, blade);            /* 1: first half, 3: second half */
+    blade->group = 2 - gxbp_blade_side(b, first, blade); /* 1: first half, 3: second half */
     if (blade->group != 2) return;
     b->plane = first->plane;
     if (gxbp_turn(b, p, q, blade->apex) == gxbp_turn(b, p, q, first->apex)) blade->group = 0;
 }
 
-/* Joins the triangles at the two sides of each wedge of the solid around an edge that more than two triangles share: there they are twins. */
-static GXBP_COLD void gxbp_join_wedges(gxb_boolean *b, const gxbp_fan *fan, uint32_t i, uint32_t j, uint32_t *parent, uint32_t *twin) {
+/* Joins the triangles at the two sides of each wedge of the solid around an edge that more than two triangles share:
+ * there they are twins. */
+static GXBP_COLD void gxbp_join_wedges(gxb_boolean *b, const gxbp_fan *fan, uint32_t i, uint32_t j, uint32_t *parent,
+                                       uint32_t *twin) {
     const uint32_t p = b->out_points[i], q = b->out_points[j];
     gxbp_blades blades = {NULL, 0, 0};
     uint32_t pass, k, m;
@@ -8646,10 +9892,13 @@ static GXBP_COLD void gxbp_join_wedges(gxb_boolean *b, const gxbp_fan *fan, uint
         for (k = fan->first[from]; k < fan->first[from + 1]; k++) {
             gxbp_blade mine, *blade;
             if (fan->list[k].to != to) continue;
-            if (!gxbp_room(b, &blades, sizeof *blades.list, 1) || gxbp_out_plane(b, fan->list[k].half_edge / 3) == GXB_NONE) break;
+            if (!gxbp_room(b, &blades, sizeof *blades.list, 1) ||
+                gxbp_out_plane(b, fan->list[k].half_edge / 3) == GXB_NONE)
+                break;
             blade = blades.list;
             gxbp_make_blade(b, fan->list[k].half_edge, p, blades.count == 0 ? NULL : blade, &mine, q);
-            for (m = blades.count++; m > 1 && gxbp_blade_precedes(b, &mine, &blade[m - 1]); m--) blade[m] = blade[m - 1];
+            for (m = blades.count++; m > 1 && gxbp_blade_precedes(b, &mine, &blade[m - 1]); m--)
+                blade[m] = blade[m - 1];
             blade[m] = mine;
         }
     }
@@ -8663,15 +9912,15 @@ static GXBP_COLD void gxbp_join_wedges(gxb_boolean *b, const gxbp_fan *fan, uint
     gxbp_release(&b->cx.allocator, blades.list, (size_t)blades.capacity * sizeof *blades.list);
 }
 
-/* Of each triangle: how many corners of the solid are counted there. A corner is what triangles around a vertex make that are joined by
-   twins; each is counted once. Uses up the twins. */
+/* Of each triangle: how many corners of the solid are counted there. A corner is what triangles around a vertex make
+   that are joined by twins; each is counted once. Uses up the twins. */
 static void gxbp_count_corners(uint32_t *twin, uint32_t count, int32_t *corners) {
     uint32_t h, g;
     for (h = 0; h < count; h++) corners[h] = 0;
     for (h = 0; h < 3 * count; h++) {
         if (twin[h] == GXB_NONE) continue;
         corners[h / 3]++;
-        for (g = h; twin[g] != GXB_NONE;) {                         /* on to the half-edge that ends there too */
+        for (g = h; twin[g] != GXB_NONE;) { /* on to the half-edge that ends there too */
             const uint32_t next = twin[g];
             twin[g] = GXB_NONE;
             g = next % 3 == 0 ? next + 2 : next - 1;
@@ -8686,20 +9935,24 @@ static GXBP_COLD void gxbp_join_all_wedges(gxb_boolean *b, uint32_t *parent, uin
     gxbp_fan fan;
     if (!gxbp_make_fan(b, v, b->out_source_count, b->out_point_count, &fan)) return;
     for (h = 0; h < 3 * b->out_source_count; h++)
-        if (twin[h] == GXB_NONE && v[h] < v[gxbp_next_edge(h)]) gxbp_join_wedges(b, &fan, v[h], v[gxbp_next_edge(h)], parent, twin);
+        if (twin[h] == GXB_NONE && v[h] < v[gxbp_next_edge(h)])
+            gxbp_join_wedges(b, &fan, v[h], v[gxbp_next_edge(h)], parent, twin);
     gxbp_drop_fan(b, &fan);
 }
 
 static GXBP_APART void gxbp_join_shells(gxb_boolean *b, uint32_t *parent, int32_t *corners) {
     const uint32_t count = b->out_source_count;
     const size_t words = 3 * (size_t)count;
-    uint32_t *twin = (uint32_t *)gxbp_borrow(b, (words + gxbp_twin_room(b->out_point_count)) * sizeof *twin), h, open, shared = 0;
+    uint32_t *twin = (uint32_t *)gxbp_borrow(b, (words + gxbp_twin_room(b->out_point_count)) * sizeof *twin), h, open,
+             shared = 0;
     b->out_twin_count = 0;
     if (twin == NULL) return;
     gxbp_find_twins(b->out_triangles, count, b->out_point_count, twin, &open, twin + words);
     for (h = 0; h < 3 * count; h++) {
-        if (twin[h] == GXB_NONE) shared = 1;
-        else if (twin[h] > h && parent[h / 3] != parent[twin[h] / 3]) gxbp_join_sets(parent, h / 3, twin[h] / 3);
+        if (twin[h] == GXB_NONE)
+            shared = 1;
+        else if (twin[h] > h && parent[h / 3] != parent[twin[h] / 3])
+            gxbp_join_sets(parent, h / 3, twin[h] / 3);
     }
     if (shared) gxbp_join_all_wedges(b, parent, twin);
     if (b->mend != NULL && GXBP_ROOM(b, out_twins, out_twin, words)) memcpy(b->out_twins, twin, words * sizeof *twin);
@@ -8719,9 +9972,17 @@ static GXBP_RARE void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *
     }
 }
 
-/* Coordinates of 180 bits of the result's vertices, each made once (then it has the stamp of b->head_stamp). first: of a vertex' limbs */
-typedef struct gxbp_fine { uint32_t first; gxb_num c[3]; } gxbp_fine;
-typedef struct gxbp_fines { gxbp_fine *vertices; gxb_limb *limbs; uint32_t limb_count, limb_capacity; } gxbp_fines;
+/* Coordinates of 180 bits of the result's vertices, each made once (then it has the stamp of b->head_stamp). first: of
+ * a vertex' limbs */
+typedef struct gxbp_fine {
+    uint32_t first;
+    gxb_num c[3];
+} gxbp_fine;
+typedef struct gxbp_fines {
+    gxbp_fine *vertices;
+    gxb_limb *limbs;
+    uint32_t limb_count, limb_capacity;
+} gxbp_fines;
 
 static GXBP_RARE void gxbp_need_fine(gxb_boolean *b, gxbp_fines *fines, uint32_t vertex) {
     const uint32_t point = b->out_points[vertex];
@@ -8751,7 +10012,8 @@ static const gxb_num *gxbp_use_fine(gxbp_fines *fines, uint32_t vertex) {
 
 /* Six times the volume of a list of triangles, from coordinates of 180 bits. */
 static GXBP_RARE double gxbp_fine_volume(gxb_boolean *b, uint32_t t, const uint32_t *next, gxbp_fines *fines) {
-    GXB_NUM(total); GXB_NUM(term);
+    GXB_NUM(total);
+    GXB_NUM(term);
     uint32_t k;
     for (; t != GXB_NONE; t = next[t]) {
         const uint32_t *v = b->out_triangles + 3 * (size_t)t;
@@ -8763,9 +10025,11 @@ static GXBP_RARE double gxbp_fine_volume(gxb_boolean *b, uint32_t t, const uint3
     return gxb_num_to_double(&total);
 }
 
-/* What d0 . n loses: bounds as in >>filter, for n's error and size E and N, the error e of d0 and its size D: 3 (D E + e (N + E)) and 8u of three
-   products */
-static double gxbp_volume_error(double D, double e, double N, double E) { return 6 * (D * E + e * (N + E)) + 48 * GXBP_U * D * N + GXBP_TINY; }
+/* What d0 . n loses: bounds as in >>filter, for n's error and size E and N, the error e of d0 and its size D: 3 (D E +
+   e (N + E)) and 8u of three products */
+static double gxbp_volume_error(double D, double e, double N, double E) {
+    return 6 * (D * E + e * (N + E)) + 48 * GXBP_U * D * N + GXBP_TINY;
+}
 
 /* Six times the volume of the tetrahedron from o to a triangle of the result, d0 . n */
 static double gxbp_rough_volume(const gxb_boolean *b, uint32_t t, const gxb_ball *o) {
@@ -8782,12 +10046,15 @@ static double gxbp_rough_volume(const gxb_boolean *b, uint32_t t, const gxb_ball
 static double gxbp_rough_error(const gxb_boolean *b, uint32_t t, const gxb_ball *o) {
     const gxb_ball *x = &b->cx.points[gxbp_out_corner(b, t, 0)].ball;
     double d0[3], d1[3], d2[3], n[3];
-    const double e = gxbp_filter_difference(d0, o, x), e1 = gxbp_filter_difference(d1, x, &b->cx.points[gxbp_out_corner(b, t, 1)].ball);
-    const double e2 = gxbp_filter_difference(d2, x, &b->cx.points[gxbp_out_corner(b, t, 2)].ball), E = gxbp_filter_cross(n, d1, e1, d2, e2);
+    const double e = gxbp_filter_difference(d0, o, x),
+                 e1 = gxbp_filter_difference(d1, x, &b->cx.points[gxbp_out_corner(b, t, 1)].ball);
+    const double e2 = gxbp_filter_difference(d2, x, &b->cx.points[gxbp_out_corner(b, t, 2)].ball),
+                 E = gxbp_filter_cross(n, d1, e1, d2, e2);
     return gxbp_volume_error(gxbp_max3(d0), e, gxbp_max3(n), E);
 }
 
-/* A bound of them all: from the size S of the box around all vertices, 8u larger for what rounding takes from it, and the largest of their errors */
+/* A bound of them all: from the size S of the box around all vertices, 8u larger for what rounding takes from it, and
+ * the largest of their errors */
 static double gxbp_largest_rough_error(const gxb_boolean *b) {
     const gxb_ball *first = &b->cx.points[b->out_points[0]].ball;
     double low[3], high[3], error = first->error, S = 0, e;
@@ -8796,7 +10063,10 @@ static double gxbp_largest_rough_error(const gxb_boolean *b) {
     memcpy(high, first->x, sizeof high);
     for (i = 1; i < b->out_point_count; i++) {
         const gxb_ball *ball = &b->cx.points[b->out_points[i]].ball;
-        for (k = 0; k < 3; k++) { low[k] = gxbp_min(ball->x[k], low[k]); high[k] = gxbp_max(ball->x[k], high[k]); }
+        for (k = 0; k < 3; k++) {
+            low[k] = gxbp_min(ball->x[k], low[k]);
+            high[k] = gxbp_max(ball->x[k], high[k]);
+        }
         error = gxbp_max(ball->error, error);
     }
     for (k = 0; k < 3; k++) S = gxbp_max(high[k] - low[k], S);
@@ -8805,12 +10075,14 @@ static double gxbp_largest_rough_error(const gxb_boolean *b) {
     return gxbp_volume_error(S, e, 2 * S * S, 8 * S * e + 4 * e * e + 32 * GXBP_U * S * S + GXBP_TINY);
 }
 
-#define GXBP_VOLUME_ERROR 1e-7     /* relative: sums of doubles with a larger bound, mostly far above their error, give way to exact ones */
+#define GXBP_VOLUME_ERROR                                                                                              \
+    1e-7 /* relative: sums of doubles with a larger bound, mostly far above their error, give way to exact ones */
 
 static int gxbp_is_rough(double volume, double error) { return error > GXBP_VOLUME_ERROR * gxbp_abs(volume); }
 
 /* Sums over the sets in volume[root] and error[root]; largest: a bound for all triangles, or 0: each has its own */
-static void gxbp_sum_volumes(const gxb_boolean *b, const uint32_t *parent, double *volume, double *error, double largest) {
+static void gxbp_sum_volumes(const gxb_boolean *b, const uint32_t *parent, double *volume, double *error,
+                             double largest) {
     uint32_t t;
     for (t = 0; t < b->out_source_count; t++) volume[t] = error[t] = 0;
     for (t = 0; t < b->out_source_count; t++) {
@@ -8823,22 +10095,30 @@ static void gxbp_sum_volumes(const gxb_boolean *b, const uint32_t *parent, doubl
 
 static int gxbp_any_is_rough(const gxb_boolean *b, const uint32_t *parent, const double *volume, const double *error) {
     uint32_t t;
-    for (t = 0; t < b->out_source_count; t++) if (parent[t] == t && gxbp_is_rough(volume[t], error[t])) return 1;
+    for (t = 0; t < b->out_source_count; t++)
+        if (parent[t] == t && gxbp_is_rough(volume[t], error[t])) return 1;
     return 0;
 }
 
 /* Exact sums where those of doubles are too rough, or of all */
-static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent, double *volume, double *error, int all) {
+static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent, double *volume, double *error,
+                                          int all) {
     const uint32_t count = b->out_source_count;
     const size_t vertices = b->out_point_count * sizeof(gxbp_fine), bytes = vertices + 2 * count * sizeof(uint32_t);
     gxbp_fines fines = {NULL, NULL, 0, 0};
     uint32_t t, *first, *next;
     fines.vertices = (gxbp_fine *)gxbp_allocate(&b->cx.allocator, bytes);
-    if (fines.vertices == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
+    if (fines.vertices == NULL) {
+        gxbp_stop(b, GX_ERROR_MEMORY);
+        return;
+    }
     first = (uint32_t *)(void *)((char *)fines.vertices + vertices);
     next = first + count;
     memset(first, 0xff, count * sizeof *first);
-    for (t = count; t-- > 0;) { next[t] = first[parent[t]]; first[parent[t]] = t; }
+    for (t = count; t-- > 0;) {
+        next[t] = first[parent[t]];
+        first[parent[t]] = t;
+    }
     b->head_stamp++;
     for (t = 0; t < count && b->result == GX_OK; t++)
         if (parent[t] == t && (all || gxbp_is_rough(volume[t], error[t]))) {
@@ -8849,7 +10129,8 @@ static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent
     gxbp_release(&b->cx.allocator, fines.vertices, bytes);
 }
 
-/* Six times the volumes of the sets in volume[root], in the frame's units. One bound for all triangles costs less; it is too large for many. */
+/* Six times the volumes of the sets in volume[root], in the frame's units. One bound for all triangles costs less; it
+ * is too large for many. */
 static GXBP_APART void gxbp_measure_shells(gxb_boolean *b, const uint32_t *parent, double *volume, double *error) {
     const int few = b->out_source_count <= GXBP_FEW_TRIANGLES;
     gxbp_sum_volumes(b, parent, volume, error, few ? gxbp_largest_rough_error(b) : 0);
@@ -8871,7 +10152,8 @@ static GXBP_COLD int gxbp_ray_left_of(gxb_boolean *b, gxbp_ray *ray, uint32_t p,
     return turn != 0 ? turn : way * gxbp_compare_points(b, q, p, 1);
 }
 
-/* A ray from a triangle. It begins on the side on which that one's solid lies: on the other one, of a sheet, begins another's. */
+/* A ray from a triangle. It begins on the side on which that one's solid lies: on the other one, of a sheet, begins
+ * another's. */
 static GXBP_COLD int gxbp_ray_from(gxb_boolean *b, gxbp_ray *ray, uint32_t t) {
     const int turned = b->out_planes[t] & 1 ? 1 : -1, moved = gxbp_moved_side(b, gxbp_out_plane(b, t));
     gxbp_set_ray(b, ray, b->out_planes[t] / 2);
@@ -8888,7 +10170,9 @@ static GXBP_COLD int gxbp_ray_passes(gxb_boolean *b, gxbp_ray *ray, int way, uin
     if (plane == GXB_NONE) return 0;
     for (k = 0; k < 3; k++) c[k] = gxbp_out_corner(b, t, k);
     left = gxbp_ray_left_of(b, ray, c[0], c[1], way);
-    if (left == 0 || gxbp_ray_left_of(b, ray, c[1], c[2], way) != left || gxbp_ray_left_of(b, ray, c[2], c[0], way) != left) return 0;
+    if (left == 0 || gxbp_ray_left_of(b, ray, c[1], c[2], way) != left ||
+        gxbp_ray_left_of(b, ray, c[2], c[0], way) != left)
+        return 0;
     value = gxbp_filter_side(&ray->ball, &b->cx.planes[plane].filter, &bound);
     behind = -gxbp_filter_sign(value, bound);
     if (behind == 0) {
@@ -8898,7 +10182,7 @@ static GXBP_COLD int gxbp_ray_passes(gxb_boolean *b, gxbp_ray *ray, int way, uin
         behind = -side.sign;
     }
     if (behind == 0) behind = -way * gxbp_moved_side(b, plane);
-    if (behind == 0) behind = -facing;              /* the other side of the facet, which lies across x */
+    if (behind == 0) behind = -facing; /* the other side of the facet, which lies across x */
     return behind * facing == left ? left : 0;
 }
 
@@ -8907,10 +10191,10 @@ static uint32_t gxbp_shell_of(const uint32_t *parent, uint32_t t) { return paren
 
 /* Columns along x, side x side of them, and the triangles of each: those that rays in it may pass */
 typedef struct gxbp_columns {
-    uint32_t *first, *list;     /* side x side + 1; where a column's triangles are in the list */
-    uint32_t *hit;              /* room for one word per triangle */
+    uint32_t *first, *list; /* side x side + 1; where a column's triangles are in the list */
+    uint32_t *hit;          /* room for one word per triangle */
     uint32_t side;
-    size_t words;               /* of the three, which begin with hit */
+    size_t words; /* of the three, which begin with hit */
     double low[2], size[2], margin;
 } gxbp_columns;
 
@@ -8920,7 +10204,8 @@ static uint32_t gxbp_column_at(const gxbp_columns *c, uint32_t k, double x) {
 }
 
 /* The columns of a triangle: from[0] to upto[0] along y, from[1] to upto[1] along z; how many they are */
-static uint32_t gxbp_columns_of(const gxb_boolean *b, const gxbp_columns *c, uint32_t t, uint32_t from[2], uint32_t upto[2]) {
+static uint32_t gxbp_columns_of(const gxb_boolean *b, const gxbp_columns *c, uint32_t t, uint32_t from[2],
+                                uint32_t upto[2]) {
     uint32_t i, k;
     for (k = 0; k < 2; k++) {
         double low = b->cx.points[gxbp_out_corner(b, t, 0)].ball.x[k + 1], high = low;
@@ -8944,7 +10229,10 @@ static void gxbp_bound_columns(const gxb_boolean *b, gxbp_columns *c) {
     memcpy(high, first->x + 1, sizeof high);
     for (i = 0; i < b->out_point_count; i++) {
         const gxb_ball *ball = &b->cx.points[b->out_points[i]].ball;
-        for (k = 0; k < 2; k++) { c->low[k] = gxbp_min(ball->x[k + 1], c->low[k]); high[k] = gxbp_max(ball->x[k + 1], high[k]); }
+        for (k = 0; k < 2; k++) {
+            c->low[k] = gxbp_min(ball->x[k + 1], c->low[k]);
+            high[k] = gxbp_max(ball->x[k + 1], high[k]);
+        }
         error = gxbp_max(ball->error, error);
         largest = gxbp_max(gxbp_max3(ball->x), largest);
     }
@@ -8961,7 +10249,8 @@ static GXBP_COLD int gxbp_make_columns(gxb_boolean *b, gxbp_columns *c) {
     while (side < 1024 && (size_t)side * side < count) side *= 2;
     for (;; side /= 2) {
         c->side = side;
-        for (t = 0, total = 0; t < count && total <= 8 * (size_t)count; t++) total += gxbp_columns_of(b, c, t, from, upto);
+        for (t = 0, total = 0; t < count && total <= 8 * (size_t)count; t++)
+            total += gxbp_columns_of(b, c, t, from, upto);
         if (side == 1 || total <= 8 * (size_t)count) break;
     }
     c->words = count + (size_t)side * side + 1 + total;
@@ -8972,12 +10261,14 @@ static GXBP_COLD int gxbp_make_columns(gxb_boolean *b, gxbp_columns *c) {
     memset(c->first, 0, ((size_t)side * side + 1) * sizeof *c->first);
     for (t = 0; t < count; t++) {
         gxbp_columns_of(b, c, t, from, upto);
-        for (i = from[0]; i <= upto[0]; i++) for (j = from[1]; j <= upto[1]; j++) c->first[i * side + j]++;
+        for (i = from[0]; i <= upto[0]; i++)
+            for (j = from[1]; j <= upto[1]; j++) c->first[i * side + j]++;
     }
     for (i = 1; i <= side * side; i++) c->first[i] += c->first[i - 1];
     for (t = count; t-- > 0;) {
         gxbp_columns_of(b, c, t, from, upto);
-        for (i = from[0]; i <= upto[0]; i++) for (j = from[1]; j <= upto[1]; j++) c->list[--c->first[i * side + j]] = t;
+        for (i = from[0]; i <= upto[0]; i++)
+            for (j = from[1]; j <= upto[1]; j++) c->list[--c->first[i * side + j]] = t;
     }
     return 1;
 }
@@ -8988,7 +10279,8 @@ static const uint32_t *gxbp_column_of(const gxbp_columns *c, const gxbp_ray *ray
 }
 
 /* Does shell t lie in shell u? Shells do not cross: one of its triangles says it. */
-static GXBP_COLD int gxbp_lies_in(gxb_boolean *b, uint32_t t, uint32_t u, const uint32_t *parent, const gxbp_columns *c) {
+static GXBP_COLD int gxbp_lies_in(gxb_boolean *b, uint32_t t, uint32_t u, const uint32_t *parent,
+                                  const gxbp_columns *c) {
     gxbp_ray ray;
     const int way = gxbp_ray_from(b, &ray, t);
     const uint32_t *column = gxbp_column_of(c, &ray);
@@ -8999,8 +10291,10 @@ static GXBP_COLD int gxbp_lies_in(gxb_boolean *b, uint32_t t, uint32_t u, const 
     return winding != 0;
 }
 
-/* The innermost shell with volume around a cavity's (or a sheet's) shell. winding: 0 for each triangle, and so again afterwards */
-static GXBP_COLD uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, const uint32_t *parent, const double *volume, int32_t *winding, const gxbp_columns *c) {
+/* The innermost shell with volume around a cavity's (or a sheet's) shell. winding: 0 for each triangle, and so again
+ * afterwards */
+static GXBP_COLD uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, const uint32_t *parent,
+                                              const double *volume, int32_t *winding, const gxbp_columns *c) {
     gxbp_ray ray;
     const int way = gxbp_ray_from(b, &ray, cavity);
     const uint32_t *column = gxbp_column_of(c, &ray);
@@ -9021,7 +10315,8 @@ static GXBP_COLD uint32_t gxbp_find_container(gxb_boolean *b, uint32_t cavity, c
 }
 
 /* Cavities and sheets go to their containers. Returns how many there are. */
-static GXBP_APART uint32_t gxbp_place_cavities(gxb_boolean *b, uint32_t *parent, const double *volume, int32_t *winding) {
+static GXBP_APART uint32_t gxbp_place_cavities(gxb_boolean *b, uint32_t *parent, const double *volume,
+                                               int32_t *winding) {
     const uint32_t count = b->out_source_count;
     gxbp_columns columns;
     uint32_t t, container, cavities = 0;
@@ -9057,10 +10352,11 @@ static void gxbp_join_cavities(gxb_boolean *b, uint32_t *parent, double *volume,
 }
 
 /* number: room for a word per triangle */
-static GXBP_APART void gxbp_number_components(gxb_boolean *b, const uint32_t *parent, const double *volume, uint32_t *number) {
+static GXBP_APART void gxbp_number_components(gxb_boolean *b, const uint32_t *parent, const double *volume,
+                                              uint32_t *number) {
     const uint32_t count = b->out_source_count;
     uint32_t t;
-    memset(number, 0, count * sizeof *number);              /* of a set, + 1 */
+    memset(number, 0, count * sizeof *number); /* of a set, + 1 */
     for (t = 0; t < count && b->result == GX_OK; t++) {
         const uint32_t set = parent[t];
         if (number[set] == 0) {
@@ -9098,7 +10394,8 @@ static GXBP_RARE void gxbp_find_sides(gxb_boolean *b) {
         const int8_t mine = b->out_reversed[t] ? 1 : -1;
         if (b->operands[b->out_operands[t]].operation == GXB_SPLIT) *side = *side == 0 || *side == mine ? mine : 2;
     }
-    for (i = 0; i < size && sheets > 0; i++) if (b->out_sides[i] == 2) b->out_sides[i] = 0;
+    for (i = 0; i < size && sheets > 0; i++)
+        if (b->out_sides[i] == 2) b->out_sides[i] = 0;
     b->out_side_count = (uint32_t)size;
 }
 
@@ -9129,7 +10426,10 @@ static GXBP_APART void gxbp_find_components(gxb_boolean *b) {
     b->out_component_count = b->out_volume_count = 0;
     if (b->result != GX_OK || count == 0 || !GXBP_ROOM(b, out_components, out_component, count)) return;
     parent = (uint32_t *)gxbp_allocate(&b->cx.allocator, bytes);
-    if (parent == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
+    if (parent == NULL) {
+        gxbp_stop(b, GX_ERROR_MEMORY);
+        return;
+    }
     corners = (int32_t *)(void *)(parent + 2 * (size_t)count);
     for (t = 0; t < count; t++) parent[t] = t;
     gxbp_join_shells(b, parent, corners);
@@ -9139,23 +10439,28 @@ static GXBP_APART void gxbp_find_components(gxb_boolean *b) {
     b->measured = b->result == GX_OK;
 }
 
-/* --- mending: a surface whose triangles rounding has turned over is changed within the rounding, until none is left or nothing helps.
-   The surface taken apart (out_twins: each edge joins two triangles) stays closed, and keeps its Euler characteristic. --- */
+/* --- mending: a surface whose triangles rounding has turned over is changed within the rounding, until none is left or
+   nothing helps. The surface taken apart (out_twins: each edge joins two triangles) stays closed, and keeps its Euler
+   characteristic. --- */
 
-#define GXBP_MEND_REACH 4       /* units in the last place of the largest coordinate: how near are two vertices that may become one */
-#define GXBP_MEND_STEPS 2       /* such units by which a coordinate may be moved */
+#define GXBP_MEND_REACH                                                                                                \
+    4 /* units in the last place of the largest coordinate: how near are two vertices that may become one */
+#define GXBP_MEND_STEPS 2 /* such units by which a coordinate may be moved */
 
 static uint32_t gxbp_before_edge(uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
 
 /* The next half-edge that leaves the same corner of the surface */
 static uint32_t gxbp_around(const gxb_boolean *b, uint32_t h) { return b->out_twins[gxbp_before_edge(h)]; }
 
-static const double *gxbp_out_place(const gxb_boolean *b, uint32_t vertex) { return b->out_vertices + 3 * (size_t)vertex; }
+static const double *gxbp_out_place(const gxb_boolean *b, uint32_t vertex) {
+    return b->out_vertices + 3 * (size_t)vertex;
+}
 
 /* 1 where a triangle of three vertices would be a defect on the side of triangle t's plane */
 static int gxbp_is_defect(gxb_boolean *b, uint32_t t, uint32_t p, uint32_t q, uint32_t r) {
     const int facing = b->out_planes[t] & 1 ? -1 : 1;
-    return gxbp_faces(b, gxbp_out_plane(b, t), gxbp_out_place(b, p), gxbp_out_place(b, q), gxbp_out_place(b, r)) != facing;
+    return gxbp_faces(b, gxbp_out_plane(b, t), gxbp_out_place(b, p), gxbp_out_place(b, q), gxbp_out_place(b, r)) !=
+           facing;
 }
 
 static int gxbp_is_defective(gxb_boolean *b, uint32_t t) {
@@ -9174,7 +10479,8 @@ static int gxbp_are_near(const gxb_boolean *b, uint32_t v, uint32_t w) {
     const double *x = gxbp_out_place(b, v), *y = gxbp_out_place(b, w);
     const double reach = GXBP_MEND_REACH * gxbp_max(gxbp_unit_at(b, v), gxbp_unit_at(b, w));
     int k;
-    for (k = 0; k < 3; k++) if (gxbp_abs(gxbp_fence(x[k] - y[k])) > reach) return 0;
+    for (k = 0; k < 3; k++)
+        if (gxbp_abs(gxbp_fence(x[k] - y[k])) > reach) return 0;
     return 1;
 }
 
@@ -9183,11 +10489,15 @@ static int gxbp_is_between(const gxb_boolean *b, uint32_t vertex, uint32_t p, ui
     const double *x = gxbp_out_place(b, vertex), *y = gxbp_out_place(b, p), *z = gxbp_out_place(b, q);
     const double reach = GXBP_MEND_REACH * gxbp_max(gxbp_unit_at(b, p), gxbp_unit_at(b, q));
     int k;
-    for (k = 0; k < 3; k++) if (gxbp_fence(gxbp_min(y[k], z[k]) - x[k]) > reach || gxbp_fence(x[k] - gxbp_max(y[k], z[k])) > reach) return 0;
+    for (k = 0; k < 3; k++)
+        if (gxbp_fence(gxbp_min(y[k], z[k]) - x[k]) > reach || gxbp_fence(x[k] - gxbp_max(y[k], z[k])) > reach)
+            return 0;
     return 1;
 }
 
-static int gxbp_is_given(const gxb_boolean *b, uint32_t vertex) { return b->cx.points[b->out_points[vertex]].kind == GXB_EXPLICIT; }
+static int gxbp_is_given(const gxb_boolean *b, uint32_t vertex) {
+    return b->cx.points[b->out_points[vertex]].kind == GXB_EXPLICIT;
+}
 
 /* How many edges leave the corner from which h does; *to: how many of them lead to a vertex */
 static uint32_t gxbp_count_around(const gxb_boolean *b, uint32_t h, uint32_t vertex, uint32_t *to) {
@@ -9202,26 +10512,37 @@ static uint32_t gxbp_count_around(const gxb_boolean *b, uint32_t h, uint32_t ver
 }
 
 static void gxbp_set_out_triangle(gxb_boolean *b, uint32_t t, uint32_t p, uint32_t q, uint32_t r) {
-    b->out_triangles[3 * t] = p; b->out_triangles[3 * t + 1] = q; b->out_triangles[3 * t + 2] = r;
+    b->out_triangles[3 * t] = p;
+    b->out_triangles[3 * t + 1] = q;
+    b->out_triangles[3 * t + 2] = r;
 }
 
-static void gxbp_join_out(gxb_boolean *b, uint32_t h, uint32_t g) { b->out_twins[h] = g; b->out_twins[g] = h; }
+static void gxbp_join_out(gxb_boolean *b, uint32_t h, uint32_t g) {
+    b->out_twins[h] = g;
+    b->out_twins[g] = h;
+}
 
-/* The edge of h, from p to q, between triangles (p, q, r) and (q, p, o), becomes one from r to o. The triangle of h, which has no area to
-   speak of, becomes a part of the other's source; r lies between p and q, or what is made would lie beyond the old ones. */
+/* The edge of h, from p to q, between triangles (p, q, r) and (q, p, o), becomes one from r to o. The triangle of h,
+   which has no area to speak of, becomes a part of the other's source; r lies between p and q, or what is made would
+   lie beyond the old ones. */
 static int gxbp_flip(gxb_boolean *b, uint32_t h) {
     const uint32_t g = b->out_twins[h], t = h / 3, s = g / 3, h1 = gxbp_next_edge(h), g1 = gxbp_next_edge(g);
-    const uint32_t p = b->out_triangles[h], q = b->out_triangles[h1], r = b->out_triangles[gxbp_before_edge(h)], o = b->out_triangles[gxbp_before_edge(g)];
-    const uint32_t qr = b->out_twins[h1], rp = b->out_twins[gxbp_before_edge(h)], po = b->out_twins[g1], oq = b->out_twins[gxbp_before_edge(g)];
+    const uint32_t p = b->out_triangles[h], q = b->out_triangles[h1], r = b->out_triangles[gxbp_before_edge(h)],
+                   o = b->out_triangles[gxbp_before_edge(g)];
+    const uint32_t qr = b->out_twins[h1], rp = b->out_twins[gxbp_before_edge(h)], po = b->out_twins[g1],
+                   oq = b->out_twins[gxbp_before_edge(g)];
     uint32_t known;
     if (r == o || qr / 3 == s || rp / 3 == s || !gxbp_is_between(b, r, p, q)) return 0;
-    if (gxbp_is_defect(b, s, p, o, r) || gxbp_is_defect(b, s, o, q, r)) return 0;   /* one of them might be large */
+    if (gxbp_is_defect(b, s, p, o, r) || gxbp_is_defect(b, s, o, q, r)) return 0; /* one of them might be large */
     gxbp_count_around(b, gxbp_before_edge(h), o, &known);
     if (known != 0) return 0;
     gxbp_set_out_triangle(b, t, p, o, r);
     gxbp_set_out_triangle(b, s, o, q, r);
-    gxbp_join_out(b, 3 * t, po); gxbp_join_out(b, 3 * t + 1, 3 * s + 2); gxbp_join_out(b, 3 * t + 2, rp);
-    gxbp_join_out(b, 3 * s, oq); gxbp_join_out(b, 3 * s + 1, qr);
+    gxbp_join_out(b, 3 * t, po);
+    gxbp_join_out(b, 3 * t + 1, 3 * s + 2);
+    gxbp_join_out(b, 3 * t + 2, rp);
+    gxbp_join_out(b, 3 * s, oq);
+    gxbp_join_out(b, 3 * s + 1, qr);
     gxbp_copy_origin(b, t, s);
     return 1;
 }
@@ -9251,17 +10572,19 @@ static int gxbp_collapse(gxb_boolean *b, uint32_t h) {
     if (v == w || gxbp_is_given(b, v) || !gxbp_are_near(b, v, w) || !gxbp_links_meet(b, h)) return 0;
     for (e = gxbp_around(b, h); e != h; e = gxbp_around(b, e)) {
         before += (uint32_t)gxbp_is_defective(b, e / 3);
-        if (e != g1) after += (uint32_t)gxbp_is_defect(b, e / 3, w, b->out_triangles[gxbp_next_edge(e)], b->out_triangles[gxbp_before_edge(e)]);
+        if (e != g1)
+            after += (uint32_t)gxbp_is_defect(b, e / 3, w, b->out_triangles[gxbp_next_edge(e)],
+                                              b->out_triangles[gxbp_before_edge(e)]);
         last = e;
     }
     if (after >= before + (uint32_t)gxbp_is_defective(b, h / 3)) return 0;
-    for (e = gxbp_around(b, h); ; e = gxbp_around(b, e)) {
+    for (e = gxbp_around(b, h);; e = gxbp_around(b, e)) {
         b->out_triangles[e] = w;
         if (e == last) break;
     }
     gxbp_join_out(b, b->out_twins[h1], b->out_twins[h2]);
     gxbp_join_out(b, b->out_twins[g1], b->out_twins[g2]);
-    b->out_triangles[3 * (h / 3)] = b->out_triangles[3 * (g / 3)] = GXB_NONE;       /* no longer there */
+    b->out_triangles[3 * (h / 3)] = b->out_triangles[3 * (g / 3)] = GXB_NONE; /* no longer there */
     return 1;
 }
 
@@ -9272,7 +10595,8 @@ static uint32_t gxbp_mend_edges(gxb_boolean *b) {
         const uint32_t t = b->out_defects[i];
         int helped = b->out_triangles[3 * t] == GXB_NONE || !gxbp_is_defective(b, t);
         for (k = 0; k < 3 && !helped; k++) helped = gxbp_flip(b, 3 * t + k) && ++done;
-        for (k = 0; k < 3 && !helped; k++) helped = (gxbp_collapse(b, 3 * t + k) || gxbp_collapse(b, b->out_twins[3 * t + k])) && ++done;
+        for (k = 0; k < 3 && !helped; k++)
+            helped = (gxbp_collapse(b, 3 * t + k) || gxbp_collapse(b, b->out_twins[3 * t + k])) && ++done;
     }
     return done;
 }
@@ -9314,14 +10638,17 @@ static int gxbp_move_vertex(gxb_boolean *b, const gxbp_fan *fan, uint32_t v, con
     memcpy(old, x, sizeof old);
     memcpy(best, x, sizeof best);
     for (i = 0; i < WIDTH * WIDTH * WIDTH && least > 0; i++) {
-        const uint32_t digit[3] = { i % WIDTH, i / WIDTH % WIDTH, i / (WIDTH * WIDTH) };
+        const uint32_t digit[3] = {i % WIDTH, i / WIDTH % WIDTH, i / (WIDTH * WIDTH)};
         uint32_t n;
         for (k = 0; k < 3; k++) {
             const uint32_t steps = (digit[k] + 1) / 2;
             x[k] = gxbp_fence(home[k] + (digit[k] % 2 == 0 ? -(double)steps : (double)steps) * unit);
         }
         n = gxbp_defects_at(b, fan, v);
-        if (n < least) { least = n; memcpy(best, x, sizeof best); }
+        if (n < least) {
+            least = n;
+            memcpy(best, x, sizeof best);
+        }
     }
     memcpy(x, least < before ? best : old, sizeof old);
     return least < before;
@@ -9347,7 +10674,10 @@ static GXBP_COLD void gxbp_mend_defects(gxb_boolean *b) {
     double *home;
     uint32_t *map, found = b->out_defect_count, done = 1;
     home = (double *)gxbp_allocate(&b->cx.allocator, bytes);
-    if (home == NULL) { gxbp_stop(b, GX_ERROR_MEMORY); return; }
+    if (home == NULL) {
+        gxbp_stop(b, GX_ERROR_MEMORY);
+        return;
+    }
     map = (uint32_t *)(void *)((char *)home + places);
     memcpy(home, b->out_vertices, places);
     while (done > 0 && b->out_defect_count > 0 && b->result == GX_OK) {
@@ -9372,25 +10702,33 @@ static GXBP_COLD void gxbp_mend(gxb_boolean *b) {
 /* --- the public functions --- */
 
 static const gxbp_array gxbp_boolean_arrays[] = {
-    GXBP_ARRAY(gxb_boolean, operands), GXBP_ARRAY(gxb_boolean, sources), GXBP_ARRAY(gxb_boolean, bounds), GXBP_ARRAY(gxb_boolean, boxes),
-    GXBP_ARRAY(gxb_boolean, vertices), GXBP_ARRAY(gxb_boolean, pieces), GXBP_ARRAY(gxb_boolean, links), GXBP_ARRAY(gxb_boolean, segments),
-    GXBP_ARRAY(gxb_boolean, cuts), GXBP_ARRAY(gxb_boolean, cut_points), GXBP_ARRAY(gxb_boolean, hits), GXBP_ARRAY(gxb_boolean, dirty),
-    GXBP_ARRAY(gxb_boolean, divided), GXBP_ARRAY(gxb_boolean, projected), GXBP_ARRAY(gxb_boolean, rims), GXBP_ARRAY(gxb_boolean, lefts),
-    GXBP_ARRAY(gxb_boolean, scratch), GXBP_ARRAY(gxb_boolean, chain), GXBP_ARRAY(gxb_boolean, windings), GXBP_ARRAY(gxb_boolean, states),
-    GXBP_ARRAY(gxb_boolean, out_vertices), GXBP_ARRAY(gxb_boolean, out_origins), GXBP_ARRAY(gxb_boolean, out_points),
-    GXBP_ARRAY(gxb_boolean, out_triangles), GXBP_ARRAY(gxb_boolean, out_operands), GXBP_ARRAY(gxb_boolean, out_sources),
-    GXBP_ARRAY(gxb_boolean, out_components), GXBP_ARRAY(gxb_boolean, out_planes), GXBP_ARRAY(gxb_boolean, out_volumes),
-    GXBP_ARRAY(gxb_boolean, out_defects), GXBP_ARRAY(gxb_boolean, out_reversed), GXBP_ARRAY(gxb_boolean, out_sides),
-    GXBP_ARRAY(gxb_boolean, out_eulers), GXBP_ARRAY(gxb_boolean, out_twins)
-};
+    GXBP_ARRAY(gxb_boolean, operands),       GXBP_ARRAY(gxb_boolean, sources),
+    GXBP_ARRAY(gxb_boolean, bounds),         GXBP_ARRAY(gxb_boolean, boxes),
+    GXBP_ARRAY(gxb_boolean, vertices),       GXBP_ARRAY(gxb_boolean, pieces),
+    GXBP_ARRAY(gxb_boolean, links),          GXBP_ARRAY(gxb_boolean, segments),
+    GXBP_ARRAY(gxb_boolean, cuts),           GXBP_ARRAY(gxb_boolean, cut_points),
+    GXBP_ARRAY(gxb_boolean, hits),           GXBP_ARRAY(gxb_boolean, dirty),
+    GXBP_ARRAY(gxb_boolean, divided),        GXBP_ARRAY(gxb_boolean, projected),
+    GXBP_ARRAY(gxb_boolean, rims),           GXBP_ARRAY(gxb_boolean, lefts),
+    GXBP_ARRAY(gxb_boolean, scratch),        GXBP_ARRAY(gxb_boolean, chain),
+    GXBP_ARRAY(gxb_boolean, windings),       GXBP_ARRAY(gxb_boolean, states),
+    GXBP_ARRAY(gxb_boolean, out_vertices),   GXBP_ARRAY(gxb_boolean, out_origins),
+    GXBP_ARRAY(gxb_boolean, out_points),     GXBP_ARRAY(gxb_boolean, out_triangles),
+    GXBP_ARRAY(gxb_boolean, out_operands),   GXBP_ARRAY(gxb_boolean, out_sources),
+    GXBP_ARRAY(gxb_boolean, out_components), GXBP_ARRAY(gxb_boolean, out_planes),
+    GXBP_ARRAY(gxb_boolean, out_volumes),    GXBP_ARRAY(gxb_boolean, out_defects),
+    GXBP_ARRAY(gxb_boolean, out_reversed),   GXBP_ARRAY(gxb_boolean, out_sides),
+    GXBP_ARRAY(gxb_boolean, out_eulers),     GXBP_ARRAY(gxb_boolean, out_twins)};
 
 static GXBP_COLD void gxbp_drop_boolean(gxb_boolean *b) {
     uint32_t i;
     for (i = 0; i < b->operand_count; i++)
         gxbp_release(&b->cx.allocator, b->operands[i].order, (size_t)b->operands[i].source_count * sizeof(uint32_t));
     gxbp_drop_numbers(&b->cx, NULL);
-    gxbp_drop_arrays(&b->cx.allocator, &b->cx, gxbp_complex_arrays, 2);      /* points and planes: there are no others */
-    gxbp_drop_arrays(&b->cx.allocator, b, gxbp_boolean_arrays, sizeof gxbp_boolean_arrays / sizeof *gxbp_boolean_arrays);
+    /* points and planes: there are no others */
+    gxbp_drop_arrays(&b->cx.allocator, &b->cx, gxbp_complex_arrays, 2);
+    gxbp_drop_arrays(&b->cx.allocator, b, gxbp_boolean_arrays,
+                     sizeof gxbp_boolean_arrays / sizeof *gxbp_boolean_arrays);
     gxbp_release(&b->cx.allocator, b->table, (size_t)b->table_size * sizeof *b->table);
     gxbp_release(&b->cx.allocator, b->state_table, (size_t)b->state_table_size * sizeof *b->state_table);
 }
@@ -9419,7 +10757,8 @@ GXFEM_API gx_result gxb_boolean_create(const gxb_boolean_desc *desc, gxb_boolean
     b->user = desc->user;
     b->cx.allocator.allocate = gxbp_count_allocate;
     b->cx.allocator.release = gxbp_count_release;
-    if (desc->allocator.allocate == NULL || desc->allocator.reallocate != NULL) b->cx.allocator.reallocate = gxbp_count_reallocate;
+    if (desc->allocator.allocate == NULL || desc->allocator.reallocate != NULL)
+        b->cx.allocator.reallocate = gxbp_count_reallocate;
     b->cx.allocator.user = b;
     *boolean = b;
     return GX_OK;
@@ -9429,7 +10768,7 @@ GXFEM_API void gxb_boolean_destroy(gxb_boolean *boolean) {
     gx_allocator outer;
     if (boolean == NULL) return;
     outer = boolean->outer;
-    if (boolean->allocations > 1) gxbp_drop_boolean(boolean);      /* else all is in the arena */
+    if (boolean->allocations > 1) gxbp_drop_boolean(boolean); /* else all is in the arena */
     gxbp_release(&outer, boolean, gxbp_whole_words(sizeof *boolean) + boolean->arena_size);
 }
 
@@ -9457,10 +10796,14 @@ static gx_result gxbp_check_operand(const gxb_boolean *b, const gxb_operand *o, 
     if (o->operation > GXB_SPLIT || o->rule > GXB_ODD) return GX_ERROR_ARGUMENT;
     if (o->triangle_count == 0 || o->vertex_count == 0) return GX_ERROR_EMPTY;
     if (o->vertices == NULL || o->triangles == NULL) return GX_ERROR_ARGUMENT;
-    if (o->triangle_count > INT32_MAX / 12 || o->triangle_count + b->source_count > INT32_MAX / 12 || o->vertex_count > INT32_MAX / 4 ||
-        b->operand_count > INT32_MAX / 64) return GX_ERROR_LIMIT;
+    if (o->triangle_count > INT32_MAX / 12 || o->triangle_count + b->source_count > INT32_MAX / 12 ||
+        o->vertex_count > INT32_MAX / 4 || b->operand_count > INT32_MAX / 64)
+        return GX_ERROR_LIMIT;
     for (i = 0; i < 3 * o->triangle_count; i++)
-        if (o->triangles[i] >= o->vertex_count) { *bad = i / 3; return GX_ERROR_INDEX; }
+        if (o->triangles[i] >= o->vertex_count) {
+            *bad = i / 3;
+            return GX_ERROR_INDEX;
+        }
     return GX_OK;
 }
 
@@ -9477,7 +10820,11 @@ GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, 
     if (b == NULL || operand == NULL) return gxbp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     result = gxbp_check_operand(b, operand, &bad);
     if (result != GX_OK) return gxbp_fail(failure, result, bad);
-    sources = b->source_count; pieces = b->piece_count; points = b->vertex_count; boxes = b->box_count; bounds = b->bound_count;
+    sources = b->source_count;
+    pieces = b->piece_count;
+    points = b->vertex_count;
+    boxes = b->box_count;
+    bounds = b->bound_count;
     b->result = GX_OK;
     b->over_limit = 0;
     result = b->operand_count == 0 ? gxbp_choose_scale(b, operand, &bad) : GX_OK;
@@ -9489,14 +10836,16 @@ GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, 
         b->piece_count = pieces;
         b->box_count = boxes;
         gxbp_cut_points_back(b, points);
-    } else b->evaluated = 0;
+    } else
+        b->evaluated = 0;
     return gxbp_fail(failure, result, bad);
 }
 
 /* After an error: the operands are as they came, nothing is arranged. Points that were found stay known. */
 static GXBP_COLD void gxbp_forget_arrangement(gxb_boolean *b) {
     uint32_t s;
-    b->piece_count = b->link_count = b->segment_count = b->cut_count = b->cut_point_count = b->hit_count = b->dirty_count = b->divided_count = 0;
+    b->piece_count = b->link_count = b->segment_count = b->cut_count = b->cut_point_count = b->hit_count =
+        b->dirty_count = b->divided_count = 0;
     b->arranged = b->segment_mark = b->stated = 0;
     for (s = 0; s < b->source_count; s++) {
         b->sources[s].flags &= (uint32_t)GXBP_DEGENERATE;
@@ -9525,10 +10874,14 @@ static GXBP_APART void gxbp_arrange(gxb_boolean *b) {
 
 static GXBP_APART void gxbp_show_result(const gxb_boolean *b, gxb_boolean_result *result) {
     memset(result, 0, sizeof *result);
-    result->vertices = b->out_vertices; result->vertex_count = b->out_point_count;
-    result->triangles = b->out_triangles; result->triangle_count = b->out_source_count;
+    result->vertices = b->out_vertices;
+    result->vertex_count = b->out_point_count;
+    result->triangles = b->out_triangles;
+    result->triangle_count = b->out_source_count;
     result->vertex_origin = b->out_origins;
-    result->triangle_operand = b->out_operands; result->triangle_source = b->out_sources; result->triangle_reversed = b->out_reversed;
+    result->triangle_operand = b->out_operands;
+    result->triangle_source = b->out_sources;
+    result->triangle_reversed = b->out_reversed;
 }
 
 GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *b, gxb_boolean_result *result) {
@@ -9544,8 +10897,10 @@ GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *b, gxb_boolean_result *res
     gxbp_round_vertices(b);
     if (b->result == GX_OK && b->mend != NULL) b->mend(b);
     b->evaluated = b->result == GX_OK;
-    if (b->evaluated) gxbp_show_result(b, result);
-    else gxbp_forget_arrangement(b);
+    if (b->evaluated)
+        gxbp_show_result(b, result);
+    else
+        gxbp_forget_arrangement(b);
     return b->result;
 }
 
@@ -9566,7 +10921,9 @@ GXFEM_API gx_result gxb_boolean_components(gxb_boolean *b, gxb_components *compo
     if (b->result != GX_OK) return b->result;
     memset(components, 0, sizeof *components);
     components->count = b->out_volume_count;
-    components->volume = b->out_volumes; components->euler = b->out_eulers; components->side = b->out_sides;
+    components->volume = b->out_volumes;
+    components->euler = b->out_eulers;
+    components->side = b->out_sides;
     components->triangle = b->out_components;
     for (i = 0; i < b->out_volume_count; i++) components->total_volume += b->out_volumes[i];
     return GX_OK;
@@ -9578,14 +10935,17 @@ GXFEM_API gx_result gxb_boolean_defects(gxb_boolean *b, gxb_defects *defects) {
     if (!b->examined) gxbp_find_defects(b);
     if (b->result != GX_OK) return b->result;
     defects->triangles = b->out_defects;
-    defects->count = b->out_defect_count; defects->mended_count = b->mended;
+    defects->count = b->out_defect_count;
+    defects->mended_count = b->mended;
     return GX_OK;
 }
 
 GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics *statistics) {
     if (b == NULL || statistics == NULL) return GX_ERROR_ARGUMENT;
-    statistics->filter_calls = b->cx.filter_calls; statistics->exact_calls = b->cx.exact_calls;
-    statistics->allocations = b->allocations; statistics->peak_bytes = b->peak;
+    statistics->filter_calls = b->cx.filter_calls;
+    statistics->exact_calls = b->cx.exact_calls;
+    statistics->allocations = b->allocations;
+    statistics->peak_bytes = b->peak;
     return GX_OK;
 }
 

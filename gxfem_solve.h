@@ -48,44 +48,48 @@
  *
  *     E(u) = |u - u_n - h v_n|_M^2 / (2 h^2) + U(u) + C(u) - f . u        GXFEM Eq. 10 divided by h^2; joule
  *
- * M: mass, U: elastic energy, C: springs and contact, f = M g + nodal forces: a linear term, so that M is never inverted. Then
- * v = (u - u_n) / h. That is backward Euler; BDF2 and the implicit midpoint rule differ in what takes the place of h and
- * u_n + h v_n, statics have no mass, Rayleigh damping is in the first term (mass) and in U (stiffness).
- * E is minimised by Newton's method with a line search on E. The Hessian of every element is projected to the nearest positive
- * semi-definite one in closed form (analytic eigensystem); where Newton goes on and steps are whole, near the end, the exact one
- * is tried. Products are matrix-free: eight elements side by side in a block, 48 blocks in a chunk, each chunk summed by itself
- * and the chunks in their order, so that results are the same for any number of threads. The linear systems go to conjugate
- * gradients with multigrid: the model itself smoothed by block-Jacobi, coarse levels on lattices whose points are doubled where
- * a cut runs between the copies around them, and a factorised one as soon as that is cheap. Coarse matrices serve until
- * iterations rise. The last two steps' directions are the guess for the next.
- * E is a sum over pieces (copies joined by elements), and each has a step length of its own in the line search, so that none of
- * them is flung about for what another gains. Every loose piece (none of its copies is held or touched by springs and contact)
- * moves as a whole first so that its momentum balances, and the later iterates leave its momentum alone: it is right to rounding
- * whatever the tolerances are, and free fall takes no iteration. Newton starts at u_n + h v_n; a piece that ends above E at u_n,
- * translated so, is brought down on the way from there: E(u) <= E(u_n) always, piece by piece and however fast it falls, so a
- * step cannot blow up; the midpoint rule, which goes on from there as far again, goes less far where it would gain energy.
- * Residuals are measured twice, both times scaled by the block diagonal D of the Hessian: in energy, sqrt(sum r_i . D_i^-1
- * r_i), and in displacement, sqrt(sum |D_i^-1 r_i|^2). The second sees a piece of 1e-12 of its neighbour's volume as well as
- * the neighbour.
- * A piece that has been slow for long sleeps if gxs_step_desc.sleep_speed says so; steps do without it until something touches it.
+ * M: mass, U: elastic energy, C: springs and contact, f = M g + nodal forces: a linear term, so that M is never
+ * inverted. Then v = (u - u_n) / h. That is backward Euler; BDF2 and the implicit midpoint rule differ in what takes
+ * the place of h and u_n + h v_n, statics have no mass, Rayleigh damping is in the first term (mass) and in U
+ * (stiffness). E is minimised by Newton's method with a line search on E. The Hessian of every element is projected to
+ * the nearest positive semi-definite one in closed form (analytic eigensystem); where Newton goes on and steps are
+ * whole, near the end, the exact one is tried. Products are matrix-free: eight elements side by side in a block, 48
+ * blocks in a chunk, each chunk summed by itself and the chunks in their order, so that results are the same for any
+ * number of threads. The linear systems go to conjugate gradients with multigrid: the model itself smoothed by
+ * block-Jacobi, coarse levels on lattices whose points are doubled where a cut runs between the copies around them, and
+ * a factorised one as soon as that is cheap. Coarse matrices serve until iterations rise. The last two steps'
+ * directions are the guess for the next. E is a sum over pieces (copies joined by elements), and each has a step length
+ * of its own in the line search, so that none of them is flung about for what another gains. Every loose piece (none of
+ * its copies is held or touched by springs and contact) moves as a whole first so that its momentum balances, and the
+ * later iterates leave its momentum alone: it is right to rounding whatever the tolerances are, and free fall takes no
+ * iteration. Newton starts at u_n + h v_n; a piece that ends above E at u_n, translated so, is brought down on the way
+ * from there: E(u) <= E(u_n) always, piece by piece and however fast it falls, so a step cannot blow up; the midpoint
+ * rule, which goes on from there as far again, goes less far where it would gain energy. Residuals are measured twice,
+ * both times scaled by the block diagonal D of the Hessian: in energy, sqrt(sum r_i . D_i^-1 r_i), and in displacement,
+ * sqrt(sum |D_i^-1 r_i|^2). The second sees a piece of 1e-12 of its neighbour's volume as well as the neighbour. A
+ * piece that has been slow for long sleeps if gxs_step_desc.sleep_speed says so; steps do without it until something
+ * touches it.
  *
- * WHAT IT DOES NOT DO. No cutting and no meshes: it sees elements of four copies. No search for contacts between pieces: give
- * points, planes and your own forces. No threads of its own: see gx_jobs; a task takes up to 90 kB of stack.
+ * WHAT IT DOES NOT DO. No cutting and no meshes: it sees elements of four copies. No search for contacts between
+ * pieces: give points, planes and your own forces. No threads of its own: see gx_jobs; a task takes up to 90 kB of
+ * stack.
  *
- * LIMITS. poisson in [0, 0.5), beyond 0.49999 the single precision of the Hessian tells; copies and elements below 2^30.
- * Energies, forces and states are doubles; the Hessian, its products and the preconditioner are single precision, which sets no
- * limit to what Newton reaches, only to what one linear solve does (about 1e-6 of the residual; a free body's slowest modes are
- * solved as well while inertia is above some 1e-6 of stiffness, rho h^2 / (E dt^2) for elements of size h). Where the mass of a part
- * of an element has its centre is rounded once, by at most 1e-7 of the element, and all is right for the mass so placed. Memory: 240 to 270
- * bytes per element in all, of a mesh with four elements per copy; 290 to 350 where cuts leave two or three. The material can invert without a failure and comes back by
- * itself; an element collapsed to a point, where its energy is stationary, is opened as if it were not quite one. Same input,
- * same binary: same bits. Nothing here needs isnan or infinities: it is right under -ffast-math, where sums round otherwise.
+ * LIMITS. poisson in [0, 0.5), beyond 0.49999 the single precision of the Hessian tells; copies and elements below
+ * 2^30. Energies, forces and states are doubles; the Hessian, its products and the preconditioner are single precision,
+ * which sets no limit to what Newton reaches, only to what one linear solve does (about 1e-6 of the residual; a free
+ * body's slowest modes are solved as well while inertia is above some 1e-6 of stiffness, rho h^2 / (E dt^2) for
+ * elements of size h). Where the mass of a part of an element has its centre is rounded once, by at most 1e-7 of the
+ * element, and all is right for the mass so placed. Memory: 240 to 270 bytes per element in all, of a mesh with four
+ * elements per copy; 290 to 350 where cuts leave two or three. The material can invert without a failure and comes back
+ * by itself; an element collapsed to a point, where its energy is stationary, is opened as if it were not quite one.
+ * Same input, same binary: same bits. Nothing here needs isnan or infinities: it is right under -ffast-math, where sums
+ * round otherwise.
  *
- * REFERENCES. GXFEM: Generalized eXtended Finite Element Method for Deformable Cutting via Boolean Operations, 2024. RXFEM:
- * Koschier, Bender, Thuerey, Robust eXtended Finite Elements for Complex Cutting of Deformables, ACM Trans. Graph. 36(4), 2017.
- * Smith 2018: Smith, de Goes, Kim, Stable Neo-Hookean Flesh Simulation, ACM Trans. Graph. 37(2), 2018.
- * BDF2 with steps that vary: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, III.5.
- * Stomakhin 2012: Stomakhin, Howes, Schroeder, Teran, Energetically Consistent Invertible Elasticity, SCA 2012.
+ * REFERENCES. GXFEM: Generalized eXtended Finite Element Method for Deformable Cutting via Boolean Operations, 2024.
+ * RXFEM: Koschier, Bender, Thuerey, Robust eXtended Finite Elements for Complex Cutting of Deformables, ACM Trans.
+ * Graph. 36(4), 2017. Smith 2018: Smith, de Goes, Kim, Stable Neo-Hookean Flesh Simulation, ACM Trans. Graph. 37(2),
+ * 2018. BDF2 with steps that vary: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, III.5. Stomakhin
+ * 2012: Stomakhin, Howes, Schroeder, Teran, Energetically Consistent Invertible Elasticity, SCA 2012.
  *
  * MACROS. GXFEM_SOLVE_IMPLEMENTATION or GXFEM_IMPLEMENTATION: the code comes here. GXFEM_STATIC: all static.
  */
@@ -117,30 +121,30 @@
 /* What a function that can fail returns. On anything but GX_OK its inputs are as they were. */
 typedef enum gx_result {
     GX_OK = 0,
-    GX_ERROR_ARGUMENT,      /* a required pointer is NULL, a required field is zero or senseless */
-    GX_ERROR_MEMORY,        /* the allocator returned NULL */
-    GX_ERROR_NOT_FINITE,    /* a coordinate or parameter is NaN or infinite */
-    GX_ERROR_RANGE,         /* a coordinate or a mass is too large or too small (see "limits") */
-    GX_ERROR_INDEX,         /* an index points outside its array */
-    GX_ERROR_EMPTY,         /* no elements, no nodes or no triangles */
-    GX_ERROR_INVERTED,      /* an element has negative volume */
-    GX_ERROR_FLAT,          /* an element has no volume */
-    GX_ERROR_OVERLAP,       /* an element face is shared by more than two elements, or by two on one side */
-    GX_ERROR_NOT_CLOSED,    /* a solid's surface has a boundary, or its triangles are not oriented alike */
-    GX_ERROR_LIMIT,         /* more objects than 32-bit indices can name, or a caller's limit is reached */
-    GX_ERROR_DIVERGED,      /* a time step found no finite state of lower energy */
-    GX_ERROR_FREE,          /* a static balance is asked of a piece that nothing holds */
-    GX_ERROR_FORMAT,        /* not a saved body, or one of another version or another kind of machine */
-    GX_ERROR_DAMAGED,       /* a saved body is cut short, or what it says cannot be */
-    GX_ERROR_STALE,         /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
-    GX_ERROR_CONFIGURATION  /* arithmetic is not what exact predicates need: see >>numbers in gxfem_boolean.h */
+    GX_ERROR_ARGUMENT,     /* a required pointer is NULL, a required field is zero or senseless */
+    GX_ERROR_MEMORY,       /* the allocator returned NULL */
+    GX_ERROR_NOT_FINITE,   /* a coordinate or parameter is NaN or infinite */
+    GX_ERROR_RANGE,        /* a coordinate or a mass is too large or too small (see "limits") */
+    GX_ERROR_INDEX,        /* an index points outside its array */
+    GX_ERROR_EMPTY,        /* no elements, no nodes or no triangles */
+    GX_ERROR_INVERTED,     /* an element has negative volume */
+    GX_ERROR_FLAT,         /* an element has no volume */
+    GX_ERROR_OVERLAP,      /* an element face is shared by more than two elements, or by two on one side */
+    GX_ERROR_NOT_CLOSED,   /* a solid's surface has a boundary, or its triangles are not oriented alike */
+    GX_ERROR_LIMIT,        /* more objects than 32-bit indices can name, or a caller's limit is reached */
+    GX_ERROR_DIVERGED,     /* a time step found no finite state of lower energy */
+    GX_ERROR_FREE,         /* a static balance is asked of a piece that nothing holds */
+    GX_ERROR_FORMAT,       /* not a saved body, or one of another version or another kind of machine */
+    GX_ERROR_DAMAGED,      /* a saved body is cut short, or what it says cannot be */
+    GX_ERROR_STALE,        /* copies are named by a numbering that a cut has changed (see gxs_model.epoch) */
+    GX_ERROR_CONFIGURATION /* arithmetic is not what exact predicates need: see >>numbers in gxfem_boolean.h */
 } gx_result;
 
 /* What went wrong, and where: index of the node, element, triangle or copy concerned. */
 typedef struct gx_failure {
     gx_result result;
-    size_t index;           /* SIZE_MAX: no single object is to blame */
-    size_t surface;         /* of a cut: which of its surfaces; else SIZE_MAX */
+    size_t index;   /* SIZE_MAX: no single object is to blame */
+    size_t surface; /* of a cut: which of its surfaces; else SIZE_MAX */
 } gx_failure;
 
 /* Where memory comes from. Zero-initialised: malloc, free and realloc. */
@@ -148,13 +152,15 @@ typedef struct gx_allocator {
     void *(*allocate)(void *user, size_t size);             /* NULL when there is none; size is never 0 */
     void (*release)(void *user, void *memory, size_t size); /* size as it was allocated; memory is never NULL */
     void *user;
-    /* A larger block with the bytes of the old one, which is then gone; NULL when there is none, and the old one stays. NULL: memory that
-       grows is allocated, copied and released. Only with the other two. */
+    /* A larger block with the bytes of the old one, which is then gone; NULL when there is none, and the old one stays.
+       NULL: memory that grows is allocated, copied and released. Only with the other two. */
     void *(*reallocate)(void *user, void *memory, size_t size, size_t larger);
 } gx_allocator;
-/* How work is handed to the host's threads. Zero-initialised: the calling thread does it all. Results do not depend on it. */
+/* How work is handed to the host's threads. Zero-initialised: the calling thread does it all. Results do not depend on
+ * it. */
 typedef struct gx_jobs {
-    /* Calls task(context, i) once for each i below count, on any threads, in any order, and returns when all have returned. */
+    /* Calls task(context, i) once for each i below count, on any threads, in any order, and returns when all have
+     * returned. */
     void (*parallel_for)(void *user, size_t count, void (*task)(void *context, size_t index), void *context);
     void *user;
 } gx_jobs;
@@ -176,195 +182,218 @@ typedef enum gxs_material_kind {
     GXS_CUSTOM                  /* the caller's own, by energy below */
 } gxs_material_kind;
 
-/* Energy density, J/m3, at a deformation gradient F (3x3 by rows), finite wherever F is. stress: P = d energy / dF, Pa, by rows;
- * hessian: dP_i/dF_j at [9 i + j], symmetric, it need not be semi-definite; either may be NULL. Called on the threads of gx_jobs. */
+/* Energy density, J/m3, at a deformation gradient F (3x3 by rows), finite wherever F is. stress: P = d energy / dF, Pa,
+ * by rows; hessian: dP_i/dF_j at [9 i + j], symmetric, it need not be semi-definite; either may be NULL. Called on the
+ * threads of gx_jobs. */
 typedef double (*gxs_energy_fn)(void *user, const double *deformation, double *stress, double *hessian);
 
 typedef struct gxs_material {
     gxs_material_kind kind;
-    double young;               /* Pa, above 0; of GXS_CUSTOM: about its stiffness, for scaling only */
-    double poisson;             /* 0 <= poisson < 0.5; of GXS_CUSTOM: checked, not used */
-    double damping;             /* Rayleigh's beta, s, 0 or more: stress grows by beta times its rate of change */
-    gxs_energy_fn energy;       /* GXS_CUSTOM only */
+    double young;         /* Pa, above 0; of GXS_CUSTOM: about its stiffness, for scaling only */
+    double poisson;       /* 0 <= poisson < 0.5; of GXS_CUSTOM: checked, not used */
+    double damping;       /* Rayleigh's beta, s, 0 or more: stress grows by beta times its rate of change */
+    gxs_energy_fn energy; /* GXS_CUSTOM only */
     void *user;
 } gxs_material;
 
 /* A linear tetrahedron, or the part of one that a cut has left. */
 typedef struct gxs_element {
-    uint32_t copy[4];           /* whose displacement each corner follows; below copy_count */
-    double gradient[4][3];      /* of the four shape functions, 1/m; row 0 is minus the sum of the others and not read */
-    double weight;              /* volume, m3; 0 or more */
-    double mass[10];            /* rho int N_i N_j, kg, symmetric, semi-definite (made so, if it is not) 4x4 block: 00 01 02 03 11 12 13 22 23 33;
-                                   of a row sum below 2^-25 of all, nothing */
-    uint32_t material;          /* below material_count */
-    uint32_t group;             /* the caller's, below 2^30: elements of one group are replaced together, see gxs_solver_update; else not read */
+    uint32_t copy[4]; /* whose displacement each corner follows; below copy_count */
+    /* of the four shape functions, 1/m; row 0 is minus the sum of the others and not read */
+    double gradient[4][3];
+    double weight; /* volume, m3; 0 or more */
+    /* rho int N_i N_j, kg, symmetric, semi-definite (made so, if it is not) 4x4 block: 00 01 02 03 11 12 13 22 23 33;
+     * of a row sum below 2^-25 of all, nothing */
+    double mass[10];
+    uint32_t material; /* below material_count */
+    /* the caller's, below 2^30: elements of one group are replaced together, see gxs_solver_update; else not read */
+    uint32_t group;
 } gxs_element;
 
-/* A copy that follows others: in every step its displacement changes by the sum of weight x what theirs change by. A held copy
- * follows nothing; masters follow nothing themselves. */
+/* A copy that follows others: in every step its displacement changes by the sum of weight x what theirs change by. A
+ * held copy follows nothing; masters follow nothing themselves. */
 typedef struct gxs_constraint {
     uint32_t copy;
-    uint32_t master[4];         /* below copy_count, also where the weight is 0 */
-    double weight[4];           /* 1 in sum where the copy shall follow translations */
+    uint32_t master[4]; /* below copy_count, also where the weight is 0 */
+    double weight[4];   /* 1 in sum where the copy shall follow translations */
 } gxs_constraint;
 
 /* Borrowed for the time of a call. */
 typedef struct gxs_model {
     size_t copy_count;
-    const double *positions;    /* copy_count x 3: the copies' nodes at rest, m; NULL: no multigrid, and more memory: elements whose gradients
-                                   are those of their copies' positions (to 1e-11) are kept without them */
-    const gxs_element *elements;/* element_count */
+    /* copy_count x 3: the copies' nodes at rest, m; NULL: no multigrid, and more memory: elements whose gradients are
+     * those of their copies' positions (to 1e-11) are kept without them */
+    const double *positions;
+    const gxs_element *elements; /* element_count */
     size_t element_count;
     const gxs_material *materials; /* material_count, as many as there are differing elements if need be */
     size_t material_count;
-    const uint8_t *held;        /* copy_count flags: not 0 keeps the copy's displacement; NULL: none is held */
-    uint32_t lumped_mass;       /* not 0: row sums of the mass; 0: as given (consistent) */
+    const uint8_t *held;               /* copy_count flags: not 0 keeps the copy's displacement; NULL: none is held */
+    uint32_t lumped_mass;              /* not 0: row sums of the mass; 0: as given (consistent) */
     const gxs_constraint *constraints; /* constraint_count, each of another copy */
     size_t constraint_count;
-    uint64_t epoch;             /* names this numbering of copies. Springs, contact points, forces and targets of a step
-                                   say which one they are of: those of another are GX_ERROR_STALE. 0 everywhere is fine
-                                   as long as copies keep their numbers */
+    /* names this numbering of copies. Springs, contact points, forces and targets of a step say which one they are of:
+     * those of another are GX_ERROR_STALE. 0 everywhere is fine as long as copies keep their numbers */
+    uint64_t epoch;
 } gxs_model;
 
 /* What a cut has changed of a model. Borrowed for the time of a call. */
 typedef struct gxs_change {
-    size_t copy_count;          /* from now on */
-    const uint32_t *origins;    /* copy_count: 2 x the index so far of the copy that this one is, or, for a new one, 2 x that of the copy
-                                   whose position and motion it takes over, + 1 */
-    const uint8_t *held;        /* copy_count flags as the model's; NULL: none is held */
-    const uint32_t *groups;     /* group_count, ascending: all elements of these go */
+    size_t copy_count; /* from now on */
+    /* copy_count: 2 x the index so far of the copy that this one is, or, for a new one, 2 x that of the copy whose
+     * position and motion it takes over, + 1 */
+    const uint32_t *origins;
+    const uint8_t *held;    /* copy_count flags as the model's; NULL: none is held */
+    const uint32_t *groups; /* group_count, ascending: all elements of these go */
     size_t group_count;
-    const gxs_element *elements;/* element_count, by ascending group: what comes in their place; of the model's materials */
+    /* element_count, by ascending group: what comes in their place; of the model's materials */
+    const gxs_element *elements;
     size_t element_count;
     const gxs_constraint *constraints; /* constraint_count: all that there are from now on */
     size_t constraint_count;
-    uint64_t epoch;             /* of the numbering from now on */
+    uint64_t epoch; /* of the numbering from now on */
 } gxs_change;
 
 typedef enum gxs_preconditioner {
-    GXS_AUTOMATIC = 0,          /* multigrid where it pays: in large pieces, in steps in which stiffness outweighs inertia */
-    GXS_BLOCK_JACOBI,           /* least memory; iterations grow with size, loose fragments and thin layers */
-    GXS_MULTIGRID,              /* coarse functions that never cross a cut */
-    GXS_VOLUME_RATIO            /* RXFEM Eq. 26, for comparison: each copy by the volume of its support */
+    /* multigrid where it pays: in large pieces, in steps in which stiffness outweighs inertia */
+    GXS_AUTOMATIC = 0,
+    GXS_BLOCK_JACOBI, /* least memory; iterations grow with size, loose fragments and thin layers */
+    GXS_MULTIGRID,    /* coarse functions that never cross a cut */
+    GXS_VOLUME_RATIO  /* RXFEM Eq. 26, for comparison: each copy by the volume of its support */
 } gxs_preconditioner;
 
 typedef enum gxs_matrix {
-    GXS_MATRIX_FREE = 0,        /* products from the elements; no fine matrix is ever assembled */
-    GXS_MATRIX_ASSEMBLED        /* 3x3 blocks by rows: cheaper products for more memory and an assembly in each Newton iteration */
+    GXS_MATRIX_FREE = 0, /* products from the elements; no fine matrix is ever assembled */
+    /* 3x3 blocks by rows: cheaper products for more memory and an assembly in each Newton iteration */
+    GXS_MATRIX_ASSEMBLED
 } gxs_matrix;
 
 typedef struct gxs_solver_desc {
-    gx_allocator allocator;     /* zero: malloc, free. Memory must be aligned as malloc aligns it */
-    gx_jobs jobs;               /* zero: none */
+    gx_allocator allocator; /* zero: malloc, free. Memory must be aligned as malloc aligns it */
+    gx_jobs jobs;           /* zero: none */
     gxs_preconditioner preconditioner;
     gxs_matrix matrix;
 } gxs_solver_desc;
 
 /* How time is discretised. All are implicit and minimise a potential of the form of E above. */
 typedef enum gxs_integrator {
-    GXS_BDF1 = 0,               /* backward Euler: first order, damps what it cannot resolve */
-    GXS_BDF2,                   /* second order, damps less; the first step, without one before it, is backward Euler */
-    GXS_MIDPOINT,               /* implicit midpoint: second order, damps nothing; needs steps that resolve the motion. Where Newton or CG
-                                   end early, or springs or contact begin to act after the middle of a step, its second half is
-                                   shortened piece by piece: none gains more than 1 % of its kinetic energy */
-    GXS_STATIC                  /* no inertia, velocities 0. dt 0: balance of forces, GX_ERROR_FREE where a piece is held by nothing.
-                                   dt above 0: the mass over dt^2 holds every copy where it was, so that free pieces have an answer */
+    GXS_BDF1 = 0, /* backward Euler: first order, damps what it cannot resolve */
+    GXS_BDF2,     /* second order, damps less; the first step, without one before it, is backward Euler */
+    /* implicit midpoint: second order, damps nothing; needs steps that resolve the motion. Where Newton or CG end
+       early, or springs or contact begin to act after the middle of a step, its second half is shortened piece by
+       piece: none gains more than 1 % of its kinetic energy */
+    GXS_MIDPOINT,
+    /* no inertia, velocities 0. dt 0: balance of forces, GX_ERROR_FREE where a piece is held by nothing. dt above 0:
+       the mass over dt^2 holds every copy where it was, so that free pieces have an answer */
+    GXS_STATIC
 } gxs_integrator;
 
-/* A material point: it is where the sum of weight x copy has moved it. A node, a point of an element, a vertex of a skin. */
+/* A material point: it is where the sum of weight x copy has moved it. A node, a point of an element, a vertex of a
+ * skin. */
 typedef struct gxs_point {
-    uint32_t copy[4];           /* below copy_count, also where the weight is 0 */
-    double weight[4];           /* of the shape functions there, 1 in sum */
-    double position[3];         /* at rest, m */
-    uint64_t epoch;             /* of the numbering that copy is of: the model's, else GX_ERROR_STALE */
+    uint32_t copy[4];   /* below copy_count, also where the weight is 0 */
+    double weight[4];   /* of the shape functions there, 1 in sum */
+    double position[3]; /* at rest, m */
+    uint64_t epoch;     /* of the numbering that copy is of: the model's, else GX_ERROR_STALE */
 } gxs_point;
 
 /* Pulls a point to a target: a hand, a haptic tool, an elastic tether. Energy stiffness/2 |x - target|^2 */
 typedef struct gxs_spring {
     gxs_point point;
-    double target[3];           /* m, in space */
-    double stiffness;           /* N/m, 0 or more */
+    double target[3]; /* m, in space */
+    double stiffness; /* N/m, 0 or more */
 } gxs_spring;
 
-/* Keeps contact points on the side of normal . x >= offset by a penalty of stiffness/2 depth^2 a point. Friction holds a point
- * by friction x the normal force at the step's start, up to sticking_speed in proportion to the speed. */
+/* Keeps contact points on the side of normal . x >= offset by a penalty of stiffness/2 depth^2 a point. Friction holds
+ * a point by friction x the normal force at the step's start, up to sticking_speed in proportion to the speed. */
 typedef struct gxs_plane {
-    double normal[3];           /* of length 1 */
-    double offset;              /* m */
-    double stiffness;           /* N/m, 0 or more */
-    double friction;            /* Coulomb's coefficient, 0 or more */
-    double sticking_speed;      /* m/s; 0: 1e-3 */
+    double normal[3];      /* of length 1 */
+    double offset;         /* m */
+    double stiffness;      /* N/m, 0 or more */
+    double friction;       /* Coulomb's coefficient, 0 or more */
+    double sticking_speed; /* m/s; 0: 1e-3 */
 } gxs_plane;
 
-/* A contact point's energy, J, at a position; force: on the point, minus its gradient, N; hessian: of the energy, N/m, semi-definite,
- * 00 01 02 11 12 22, NULL if it is not asked for. Called on the thread of the step only. */
+/* A contact point's energy, J, at a position; force: on the point, minus its gradient, N; hessian: of the energy, N/m,
+ * semi-definite, 00 01 02 11 12 22, NULL if it is not asked for. Called on the thread of the step only. */
 typedef double (*gxs_contact_fn)(void *user, size_t point, const double *position, double *force, double *hessian);
 
 typedef struct gxs_step_desc {
-    double dt;                  /* s, above 0; GXS_STATIC: 0 is possible */
-    double gravity[3];          /* m/s2 */
-    const double *forces;       /* copy_count x 3, N; NULL: none */
+    double dt;            /* s, above 0; GXS_STATIC: 0 is possible */
+    double gravity[3];    /* m/s2 */
+    const double *forces; /* copy_count x 3, N; NULL: none */
     gxs_integrator integrator;
-    const double *previous_displacement, *previous_velocity; /* copy_count x 3, of the step before; BDF2 only; NULL: none */
-    double previous_dt;         /* s, of the step before; BDF2 only */
-    const double *targets;      /* copy_count x 3: displacement of held copies at the step's end, others not read; NULL: they stay */
-    uint64_t epoch;             /* of the numbering of forces and targets: the model's, else GX_ERROR_STALE; read where
-                                   one of them is given */
+    /* copy_count x 3, of the step before; BDF2 only; NULL: none */
+    const double *previous_displacement, *previous_velocity;
+    double previous_dt; /* s, of the step before; BDF2 only */
+    /* copy_count x 3: displacement of held copies at the step's end, others not read; NULL: they stay */
+    const double *targets;
+    /* of the numbering of forces and targets: the model's, else GX_ERROR_STALE; read where one of them is given */
+    uint64_t epoch;
     double mass_damping;        /* Rayleigh's alpha, 1/s, 0 or more: force -alpha M v */
     uint32_t newton_iterations; /* at most so many; 0: 1 */
-    double newton_tolerance;    /* stop at this residual (see gxs_step_report); 0: 1e-8, far below what one iteration leaves of motion */
-    uint32_t cg_iterations;     /* per Newton iteration, at most; 0: 1000 */
-    double cg_tolerance;        /* reduction of the residual by each linear solve, below 1; 0: 1e-2, of the midpoint rule, which does not
-                                   damp what is left, 1e-3 */
-    const gxs_spring *springs;  /* spring_count */
+    /* stop at this residual (see gxs_step_report); 0: 1e-8, far below what one iteration leaves of motion */
+    double newton_tolerance;
+    uint32_t cg_iterations; /* per Newton iteration, at most; 0: 1000 */
+    /* reduction of the residual by each linear solve, below 1; 0: 1e-2, of the midpoint rule, which does not damp what
+     * is left, 1e-3 */
+    double cg_tolerance;
+    const gxs_spring *springs; /* spring_count */
     size_t spring_count;
-    double *spring_forces;      /* spring_count x 3: written, the force of each spring on the body at the end, N; NULL: not asked for */
-    const gxs_point *points;    /* point_count: of contact */
+    /* spring_count x 3: written, the force of each spring on the body at the end, N; NULL: not asked for */
+    double *spring_forces;
+    const gxs_point *points; /* point_count: of contact */
     size_t point_count;
-    const gxs_plane *planes;    /* plane_count, for every contact point */
+    const gxs_plane *planes; /* plane_count, for every contact point */
     size_t plane_count;
-    gxs_contact_fn contact;     /* for every contact point; NULL: none */
+    gxs_contact_fn contact; /* for every contact point; NULL: none */
     void *contact_user;
-    double sleep_speed;         /* m/s: a piece (copies joined by elements) none of whose copies has been faster for sleep_time sleeps:
-                                   steps leave it out until something touches it: what is given here changes for it, or its state is written.
-                                   What contact() knows is not seen: where that moves, set rest_times to 0. 0: none sleeps */
-    double sleep_time;          /* s; 0: 0.5 */
-    double *rest_times;         /* copy_count: for how long each copy has been slower, s; read and written. Needed by sleep_speed */
-    double (*clock)(void *user);/* s; NULL: none, the report's seconds are 0, and there may be no budget_seconds */
+    /* m/s: a piece (copies joined by elements) none of whose copies has been faster for sleep_time sleeps: steps leave
+     * it out until something touches it: what is given here changes for it, or its state is written. What contact()
+     * knows is not seen: where that moves, set rest_times to 0. 0: none sleeps */
+    double sleep_speed;
+    double sleep_time; /* s; 0: 0.5 */
+    /* copy_count: for how long each copy has been slower, s; read and written. Needed by sleep_speed */
+    double *rest_times;
+    double (*clock)(void *user); /* s; NULL: none, the report's seconds are 0, and there may be no budget_seconds */
     void *clock_user;
-    double budget_seconds;      /* after so long no further iteration begins, and the step ends with what it has; 0: no limit.
-                                   Results then depend on the machine */
+    /* after so long no further iteration begins, and the step ends with what it has; 0: no limit. Results then depend
+     * on the machine */
+    double budget_seconds;
 } gxs_step_desc;
 
 /* Why a step ended */
 typedef enum gxs_stop {
-    GXS_STOP_BALANCE = 0,       /* the residual is below newton_tolerance */
-    GXS_STOP_ITERATIONS,        /* newton_iterations are done */
-    GXS_STOP_SECONDS,           /* budget_seconds are over */
-    GXS_STOP_ROUNDING,          /* no lower energy can be told in doubles */
-    GXS_STOP_ASLEEP             /* nothing to move: every piece sleeps or is held */
+    GXS_STOP_BALANCE = 0, /* the residual is below newton_tolerance */
+    GXS_STOP_ITERATIONS,  /* newton_iterations are done */
+    GXS_STOP_SECONDS,     /* budget_seconds are over */
+    GXS_STOP_ROUNDING,    /* no lower energy can be told in doubles */
+    GXS_STOP_ASLEEP       /* nothing to move: every piece sleeps or is held */
 } gxs_stop;
 
 typedef struct gxs_step_report {
     gxs_stop stop;
-    size_t active_unknowns;     /* displacements solved for: three for each copy that is not held, follows nothing and is awake */
+    /* displacements solved for: three for each copy that is not held, follows nothing and is awake */
+    size_t active_unknowns;
     uint32_t newton_iterations; /* done; 0 when the start was in balance to rounding */
     uint32_t cg_iterations;     /* sum over Newton iterations */
     uint32_t line_search_steps; /* step lengths tried, sum over Newton iterations */
-    double residual;            /* |load - inertia - elastic| / (|load| + |inertia| + |elastic|) on the copies not held,
-                                   the larger of the two measures (see above) */
-    double energy;              /* E at the end, J, without pieces asleep and up to a constant: the load on held copies. Of the midpoint
-                                   rule this and the residual are those of its displacement at half the step */
+    /* |load - inertia - elastic| / (|load| + |inertia| + |elastic|) on the copies not held, the larger of the two
+     * measures (see above) */
+    double residual;
+    /* E at the end, J, without pieces asleep and up to a constant: the load on held copies. Of the midpoint rule this
+     * and the residual are those of its displacement at half the step */
+    double energy;
     gxs_preconditioner preconditioner; /* of the last linear solve; GXS_AUTOMATIC: there was none */
-    double seconds;             /* of the step; from gx_body_step with the renewal of the solver's model after a cut */
-    double seconds_linearise;   /* in Hessians and their diagonal, */
-    double seconds_prepare;     /* in numbers of the preconditioner and assembly, */
-    double seconds_solve;       /* in conjugate gradients; all 0 without a clock */
+    double seconds;           /* of the step; from gx_body_step with the renewal of the solver's model after a cut */
+    double seconds_linearise; /* in Hessians and their diagonal, */
+    double seconds_prepare;   /* in numbers of the preconditioner and assembly, */
+    double seconds_solve;     /* in conjugate gradients; all 0 without a clock */
 } gxs_step_report;
 
 /* What acted on all pieces in a step: a change of it wakes those that sleep. */
 typedef struct gxs_scene {
-    double gravity[3];          /* m/s2 */
+    double gravity[3];                /* m/s2 */
     uint64_t planes, forces, springs; /* hashes of what was given */
 } gxs_scene;
 
@@ -372,63 +401,68 @@ typedef struct gxs_scene {
 typedef struct gxs_solver gxs_solver;
 
 /* >>functions
- * Those that return a gx_result check all they read: GX_ERROR_ARGUMENT, _EMPTY, _LIMIT, _RANGE, _INDEX, _NOT_FINITE (index: of
- * the element, material, constraint, copy, spring, point or plane), _INVERTED (weight below 0; index: element). Steps
- * also GX_ERROR_STALE (copies of another epoch than the model's; index: spring or point, SIZE_MAX: forces or targets).
- * Outputs are written on GX_OK only. failure and report may be NULL. */
+ * Those that return a gx_result check all they read: GX_ERROR_ARGUMENT, _EMPTY, _LIMIT, _RANGE, _INDEX, _NOT_FINITE
+ * (index: of the element, material, constraint, copy, spring, point or plane), _INVERTED (weight below 0; index:
+ * element). Steps also GX_ERROR_STALE (copies of another epoch than the model's; index: spring or point, SIZE_MAX:
+ * forces or targets). Outputs are written on GX_OK only. failure and report may be NULL. */
 
-/* Advances displacement (m) and velocity (m/s), both copy_count x 3 of the model set last and not overlapping, by one step.
- * Held copies keep their displacement or go to their target, copies without an element of any weight or mass stay where they are;
- * both get the velocity of that.
- * GX_ERROR_ARGUMENT if no model is set; GX_ERROR_DIVERGED and (GXS_STATIC) GX_ERROR_FREE are possible: displacement and velocity
- * are then unchanged. A residual above newton_tolerance when the iterations are used up is no error: see the report. Allocates
- * (GX_ERROR_MEMORY) only where there are more springs and contact points than ever before. */
-GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement, double *velocity,
-                                    gxs_step_report *report, gx_failure *failure);
+/* Advances displacement (m) and velocity (m/s), both copy_count x 3 of the model set last and not overlapping, by one
+ * step. Held copies keep their displacement or go to their target, copies without an element of any weight or mass stay
+ * where they are; both get the velocity of that. GX_ERROR_ARGUMENT if no model is set; GX_ERROR_DIVERGED and
+ * (GXS_STATIC) GX_ERROR_FREE are possible: displacement and velocity are then unchanged. A residual above
+ * newton_tolerance when the iterations are used up is no error: see the report. Allocates (GX_ERROR_MEMORY) only where
+ * there are more springs and contact points than ever before. */
+GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement,
+                                    double *velocity, gxs_step_report *report, gx_failure *failure);
 
-/* What the next steps move, after each cut and each change of material or of what is held. All is copied into the solver's own
- * form. GX_ERROR_MEMORY is possible; on any error the model before stays. */
+/* What the next steps move, after each cut and each change of material or of what is held. All is copied into the
+ * solver's own form. GX_ERROR_MEMORY is possible; on any error the model before stays. */
 GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *model, gx_failure *failure);
 
-/* Changes the model in time that goes by the size of the change, but for what is proportional to the number of copies and small. Steps go on
- * with what they have learnt so far. Results are those of the whole model set anew but for rounding and the tolerances of steps.
- * GX_ERROR_ARGUMENT if no model is set, an order is not as it should be (index: of the group or element), or a
- * constraint cannot be (its index). GX_ERROR_LIMIT if the change does not fit what there is: a matrix is assembled,
- * mass is lumped, GXS_VOLUME_RATIO, lanes that changes have left behind are a quarter of all, a copy is held and was not or the other way round, no element is left,
- * elements that stay have lost a copy. On this and on GX_ERROR_MEMORY no model is set any more: set it. On other errors the
- * model before stays. */
+/* Changes the model in time that goes by the size of the change, but for what is proportional to the number of copies
+ * and small. Steps go on with what they have learnt so far. Results are those of the whole model set anew but for
+ * rounding and the tolerances of steps. GX_ERROR_ARGUMENT if no model is set, an order is not as it should be (index:
+ * of the group or element), or a constraint cannot be (its index). GX_ERROR_LIMIT if the change does not fit what there
+ * is: a matrix is assembled, mass is lumped, GXS_VOLUME_RATIO, lanes that changes have left behind are a quarter of
+ * all, a copy is held and was not or the other way round, no element is left, elements that stay have lost a copy. On
+ * this and on GX_ERROR_MEMORY no model is set any more: set it. On other errors the model before stays. */
 GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *change, gx_failure *failure);
-/* Sets the rest times of copies to 0 whose state has been written since the last step, so that their pieces wake although another model is
- * set before the next one, or another solver takes it. Vectors are of the copies of now; origins (count): as in gxs_change. */
-GXFEM_API void gxs_solver_note_written(const gxs_solver *solver, const uint32_t *origins, size_t count, const double *displacement,
-                                       const double *velocity, double *rest_times);
-/* For whoever saves a state and goes on from it later: the scene of the last step, and a solver as if its model had just been
- * set after a step in that scene; a model that has been updated is dropped, and must be set. Two solvers so resumed with the
- * same model, scene and states take the same steps, bit by bit. */
+/* Sets the rest times of copies to 0 whose state has been written since the last step, so that their pieces wake
+ * although another model is set before the next one, or another solver takes it. Vectors are of the copies of now;
+ * origins (count): as in gxs_change. */
+GXFEM_API void gxs_solver_note_written(const gxs_solver *solver, const uint32_t *origins, size_t count,
+                                       const double *displacement, const double *velocity, double *rest_times);
+/* For whoever saves a state and goes on from it later: the scene of the last step, and a solver as if its model had
+ * just been set after a step in that scene; a model that has been updated is dropped, and must be set. Two solvers so
+ * resumed with the same model, scene and states take the same steps, bit by bit. */
 GXFEM_API void gxs_solver_scene(const gxs_solver *solver, gxs_scene *scene);
 GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene);
 
-/* The model's operator for other uses than steps: a Krylov method of one's own, modes, an adjoint. gxs_solver_linearise makes it at a
- * displacement, gxs_solver_product applies it as often as one likes, matrix-free; both by the solver's jobs:
- *     product = (K + rate M) direction                    N; m; rate: 1/s2, 0 or more
- * K: Hessian of U, projected or, exact not 0, as it is; M: the mass, lumped if the model says so. Springs, contact and damping belong to
- * steps and are not in it, pieces asleep are. It acts on what can move: directions of held copies and of copies without an element count
- * as 0, those of followers are what their masters' make of them, and the product is 0 there, what acts on followers goes to their masters.
- * So it is symmetric, and semi-definite unless exact.
- * Vectors are copy_count x 3 doubles; between them numbers are single precision: of the Hessian, of what an element's copies move by
- * relative to the first (taken in double precision: translations meet no stiffness at all), of its forces; sums over elements are single
- * precision within chunks, double between them. A power of two times a direction gives exactly that times its product.
- * What is made lasts until the next step, update or model; then, or before anything is made, product is GX_ERROR_ARGUMENT. GX_ERROR_RANGE:
- * the Hessian is beyond single precision. Neither allocates, nor changes what steps do. product may not overlap direction. */
-GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displacement, double rate, uint32_t exact, gx_failure *failure);
-GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *direction, double *product, gx_failure *failure);
+/* The model's operator for other uses than steps: a Krylov method of one's own, modes, an adjoint. gxs_solver_linearise
+ * makes it at a displacement, gxs_solver_product applies it as often as one likes, matrix-free; both by the solver's
+ * jobs: product = (K + rate M) direction                    N; m; rate: 1/s2, 0 or more K: Hessian of U, projected or,
+ * exact not 0, as it is; M: the mass, lumped if the model says so. Springs, contact and damping belong to steps and are
+ * not in it, pieces asleep are. It acts on what can move: directions of held copies and of copies without an element
+ * count as 0, those of followers are what their masters' make of them, and the product is 0 there, what acts on
+ * followers goes to their masters. So it is symmetric, and semi-definite unless exact. Vectors are copy_count x 3
+ * doubles; between them numbers are single precision: of the Hessian, of what an element's copies move by relative to
+ * the first (taken in double precision: translations meet no stiffness at all), of its forces; sums over elements are
+ * single precision within chunks, double between them. A power of two times a direction gives exactly that times its
+ * product. What is made lasts until the next step, update or model; then, or before anything is made, product is
+ * GX_ERROR_ARGUMENT. GX_ERROR_RANGE: the Hessian is beyond single precision. Neither allocates, nor changes what steps
+ * do. product may not overlap direction. */
+GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displacement, double rate, uint32_t exact,
+                                         gx_failure *failure);
+GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *direction, double *product,
+                                       gx_failure *failure);
 
 GXFEM_API gx_result gxs_solver_create(const gxs_solver_desc *desc /* or NULL */, gxs_solver **solver);
 GXFEM_API void gxs_solver_destroy(gxs_solver *solver); /* NULL is allowed */
 
 /* Assembled forms, for tests and benches: no held copies, no constraints, no time. Vectors are copy_count x 3.
- * energy: U, J. gradient: dU/du, N. hessian_product: projected Hessian of U at displacement times direction, N, in single
- * precision as the solver has it. mass_product: M, not lumped, times direction. The output may not overlap an input. */
+ * energy: U, J. gradient: dU/du, N. hessian_product: projected Hessian of U at displacement times direction, N, in
+ * single precision as the solver has it. mass_product: M, not lumped, times direction. The output may not overlap an
+ * input. */
 GXFEM_API gx_result gxs_model_energy(const gxs_model *model, const double *displacement, double *energy);
 GXFEM_API gx_result gxs_model_gradient(const gxs_model *model, const double *displacement, double *gradient);
 GXFEM_API gx_result gxs_model_hessian_product(const gxs_model *model, const double *displacement,
@@ -447,7 +481,6 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #endif
 /* Stop here for the API. */
 #endif /* GXFEM_SOLVE_INCLUDED */
-
 
 #if defined(GXFEM_IMPLEMENTATION) && !defined(GXFEM_SOLVE_IMPLEMENTATION)
 #define GXFEM_SOLVE_IMPLEMENTATION
@@ -472,12 +505,13 @@ extern "C" {
 
 /* Blocks of a chunk: 384 elements, whose nodes (about 150) stay in the first-level cache. */
 #define GXSP_CHUNK_BLOCKS 48
-#define GXSP_CHUNK (GXSP_CHUNK_BLOCKS * GXSP_LANES)
+#define GXSP_CHUNK        (GXSP_CHUNK_BLOCKS * GXSP_LANES)
 
 /* A residual below this (about 50 units in the last place) is rounding: no iteration can lower it. */
 #define GXSP_ROUNDING 1e-14
 
-/* Sufficient decrease in the line search, share of what the slope promises [Nocedal and Wright, Numerical Optimization]. */
+/* Sufficient decrease in the line search, share of what the slope promises [Nocedal and Wright, Numerical
+ * Optimization]. */
 #define GXSP_ARMIJO 1e-4
 
 /* Newton ends after so many iterations in a row without a gain that doubles can tell. */
@@ -492,98 +526,109 @@ extern "C" {
 /* no piece, no node, no chunk */
 #define GXSP_NONE UINT32_MAX
 
-/* States of a piece: a copy is held; it has no mass, or constraints that do not follow translations; springs or contact have acted on it since
- * Newton's method began; it sleeps; they act on it at this linearisation */
-#define GXSP_HELD 1u
+/* States of a piece: a copy is held; it has no mass, or constraints that do not follow translations; springs or contact
+ * have acted on it since Newton's method began; it sleeps; they act on it at this linearisation */
+#define GXSP_HELD       1u
 #define GXSP_UNBALANCED 2u
-#define GXSP_TOUCHED 4u
-#define GXSP_ASLEEP 8u
-#define GXSP_TOUCHES 16u
+#define GXSP_TOUCHED    4u
+#define GXSP_ASLEEP     8u
+#define GXSP_TOUCHES    16u
 
-/* A cycle of the multigrid that makes a residual's energy so many times as large has met a coarse matrix that rounding has made senseless. */
+/* A cycle of the multigrid that makes a residual's energy so many times as large has met a coarse matrix that rounding
+ * has made senseless. */
 #define GXSP_ABSURD 1e20
 
-/* Gradients within so much of those of the rest positions, beside their largest entry, are taken to be rounded ones of these. */
+/* Gradients within so much of those of the rest positions, beside their largest entry, are taken to be rounded ones of
+ * these. */
 #define GXSP_PLACED 1e-11
 
-/* The midpoint rule's second half gains no more than this share of the kinetic energy: exact solutions gain less where steps resolve the
- * motion. GXSP_GAIN_TRIALS lengths are tried. */
-#define GXSP_GAIN 0.01
+/* The midpoint rule's second half gains no more than this share of the kinetic energy: exact solutions gain less where
+ * steps resolve the motion. GXSP_GAIN_TRIALS lengths are tried. */
+#define GXSP_GAIN        0.01
 #define GXSP_GAIN_TRIALS 8
 
-/* Hessians of elements so stretched that their entries, beside the moduli, were larger than this are those of elements stretched less, times the
- * fourth power of the rest, as which they grow at most; up to this weight, J: single precision holds the one times the other. */
+/* Hessians of elements so stretched that their entries, beside the moduli, were larger than this are those of elements
+ * stretched less, times the fourth power of the rest, as which they grow at most; up to this weight, J: single
+ * precision holds the one times the other. */
 #define GXSP_STRETCHED 1e24
-#define GXSP_HEAVIEST 1e12
+#define GXSP_HEAVIEST  1e12
 
-/* A copy between parts of elements is light if it has a smaller share than this of their mass (of whole ones it is 1/4), or of a neighbour's. */
-#define GXSP_LIGHT 0.1
+/* A copy between parts of elements is light if it has a smaller share than this of their mass (of whole ones it is
+ * 1/4), or of a neighbour's. */
+#define GXSP_LIGHT   0.1
 #define GXSP_LIGHTER 0.02
 
-/* Directions of light copies are bounded in so many iterations of a step, where that takes no more than this share of the slope of their piece. */
-#define GXSP_BOUNDED 8
+/* Directions of light copies are bounded in so many iterations of a step, where that takes no more than this share of
+ * the slope of their piece. */
+#define GXSP_BOUNDED    8
 #define GXSP_BOUND_COST 0.1
 
-/* An element all whose stretches are smaller is all but a point, where its forces vanish: directions are found as if it were
- * GXSP_NUDGE of its size. */
+/* An element all whose stretches are smaller is all but a point, where its forces vanish: directions are found as if it
+ * were GXSP_NUDGE of its size. */
 #define GXSP_COLLAPSED 1e-4
-#define GXSP_NUDGE 0.1
+#define GXSP_NUDGE     0.1
 
 /* How many nodes or slots ahead of themselves passes ask for what is in no order in memory */
 #define GXSP_AHEAD 128
 
-/* How many blocks ahead passes ask for what products read, and for what forces and Hessians are made of, which takes longer */
+/* How many blocks ahead passes ask for what products read, and for what forces and Hessians are made of, which takes
+ * longer */
 #define GXSP_TANGENTS_AHEAD 8
-#define GXSP_RESTS_AHEAD 2
+#define GXSP_RESTS_AHEAD    2
 
 /* Copies that one task of a pass over copies takes, and how many sums it may make. */
 #define GXSP_RANGE 512
-#define GXSP_SUMS 6
+#define GXSP_SUMS  6
 
-/* Square of the sine of the angle between two guesses, measured in energy, below which single precision does not tell them apart */
+/* Square of the sine of the angle between two guesses, measured in energy, below which single precision does not tell
+ * them apart */
 #define GXSP_PARALLEL 1e-5
 
 /* Spacing of the first lattice of the multigrid, in edges of an average element. */
 #define GXSP_SPACING 2.5
 
-/* Where a piece has more nodes of the first lattice for each copy than GXSP_CROWDED, it is given fewer: if it is shorter than so many spacings
- * along each axis, its affine motions, which are four nodes, or twice the spacing. Measured: 0.08 to 0.16 nodes of bodies in one piece, cut or not, 0.37 to 0.44
- * of those in pieces of 60 copies. */
+/* Where a piece has more nodes of the first lattice for each copy than GXSP_CROWDED, it is given fewer: if it is
+ * shorter than so many spacings along each axis, its affine motions, which are four nodes, or twice the spacing.
+ * Measured: 0.08 to 0.16 nodes of bodies in one piece, cut or not, 0.37 to 0.44 of those in pieces of 60 copies. */
 #define GXSP_CROWDED 0.25f
-#define GXSP_AFFINE 2
-#define GXSP_COARSE 3
+#define GXSP_AFFINE  2
+#define GXSP_COARSE  3
 
 /* In pieces of fewer copies block-Jacobi is at least as fast as multigrid; but for nearly incompressible ones. */
-#define GXSP_MULTIGRID_FROM 150
+#define GXSP_MULTIGRID_FROM       150
 #define GXSP_MULTIGRID_FROM_STIFF 60
-#define GXSP_STIFF_POISSON 0.48
+#define GXSP_STIFF_POISSON        0.48
 
-/* A level is factored that takes no more multiplications than this for each copy, level 1 than half of that, which takes most memory; or that the
- * next would not make smaller by a third. Slender bodies need it: coarser levels hardly bend with them, and an exact solution two levels down
- * saves two iterations in three. */
+/* A level is factored that takes no more multiplications than this for each copy, level 1 than half of that, which
+ * takes most memory; or that the next would not make smaller by a third. Slender bodies need it: coarser levels hardly
+ * bend with them, and an exact solution two levels down saves two iterations in three. */
 #define GXSP_FACTOR_COST 3000
-#define GXSP_LEVELS 12
+#define GXSP_LEVELS      12
 
-/* Where inertia has a larger mean share of the Hessian's diagonal blocks, block-Jacobi takes less time: few iterations, as the share bounds
- * the spectrum from below. Measured on blocks of 2,000 to 8,000 copies, cut and not, lattice and jittered, E of 1e6 and 1e8: as long as
- * multigrid at a share of 0.015 to 0.06, 0.8 to 1 times as long above, 1.1 to 2.7 times at 0.005 and below. */
+/* Where inertia has a larger mean share of the Hessian's diagonal blocks, block-Jacobi takes less time: few iterations,
+ * as the share bounds the spectrum from below. Measured on blocks of 2,000 to 8,000 copies, cut and not, lattice and
+ * jittered, E of 1e6 and 1e8: as long as multigrid at a share of 0.015 to 0.06, 0.8 to 1 times as long above, 1.1
+ * to 2.7 times at 0.005 and below. */
 #define GXSP_INERTIA 0.03
 
-/* Multigrid's diagonal grows by this share, so that what single precision leaves of its matrices is positive definite. */
+/* Multigrid's diagonal grows by this share, so that what single precision leaves of its matrices is positive definite.
+ */
 #define GXSP_SHIFT 1e-5f
 
-/* The stiffness of a whole element in the linear systems: 2^40 leaves room for pieces down to 1e-40 of it, and for masses above. */
+/* The stiffness of a whole element in the linear systems: 2^40 leaves room for pieces down to 1e-40 of it, and for
+ * masses above. */
 #define GXSP_STIFFNESS 40
 
-/* Coarse matrices cost as much as so many iterations. The first of a model serve for GXSP_LIFE iterations before new ones show what age
- * has cost; where that is less than GXSP_AGEING of what there is, the next trial comes GXSP_PATIENCE times as late. */
-#define GXSP_REMAKE 5
-#define GXSP_LIFE 40
-#define GXSP_AGEING 0.2
+/* Coarse matrices cost as much as so many iterations. The first of a model serve for GXSP_LIFE iterations before new
+ * ones show what age has cost; where that is less than GXSP_AGEING of what there is, the next trial comes GXSP_PATIENCE
+ * times as late. */
+#define GXSP_REMAKE   5
+#define GXSP_LIFE     40
+#define GXSP_AGEING   0.2
 #define GXSP_PATIENCE 2
 
-/* After a cut, coarse numbers are made for entries of dirty nodes only, where no larger a share of chunks follows such: these need a Hessian of
- * their own, at the state of the other numbers. */
+/* After a cut, coarse numbers are made for entries of dirty nodes only, where no larger a share of chunks follows such:
+ * these need a Hessian of their own, at the state of the other numbers. */
 #define GXSP_DIRTY 0.6
 
 /* How fast conjugate gradients are is read from so many iterations, of several solves if need be. */
@@ -592,11 +637,12 @@ extern "C" {
 /* Coarse matrices are of no use any more when it takes so many times as many of them. */
 #define GXSP_WORN 2
 
-/* The smoother's step length times the largest eigenvalue that is met is below this; at 2 the cycle would be indefinite, and the eigenvalue
- * is known to a tenth. */
+/* The smoother's step length times the largest eigenvalue that is met is below this; at 2 the cycle would be
+ * indefinite, and the eigenvalue is known to a tenth. */
 #define GXSP_OMEGA 1.75
 
-/* Linear solves for which the smoother's step length stays safe after it has proved too large; twice as many each further time */
+/* Linear solves for which the smoother's step length stays safe after it has proved too large; twice as many each
+ * further time */
 #define GXSP_PAUSE 8
 
 /* Stiffness in the linear systems below which single precision makes nothing of an inverse: it is left alone. */
@@ -623,26 +669,28 @@ extern "C" {
 #define GXSP_RESTRICT
 #endif
 
-/* Functions of column numbers that compilers know only once they are inlined: else these might be equal, and no vectors follow. */
+/* Functions of column numbers that compilers know only once they are inlined: else these might be equal, and no vectors
+ * follow. */
 #if defined(__GNUC__)
 #define GXSP_INLINE static inline __attribute__((always_inline))
 #else
 #define GXSP_INLINE static inline
 #endif
 
-/* Loops over the lanes of a block, and of two. Clang is told not to unroll them, since it else does so before it could vectorise. */
+/* Loops over the lanes of a block, and of two. Clang is told not to unroll them, since it else does so before it could
+ * vectorise. */
 #if defined(__clang__)
-#define GXSP_EACH(l, count) _Pragma("clang loop unroll(disable)") for (l = 0; l < (count); ++l)
+#define GXSP_EACH(l, count) _Pragma("clang loop unroll(disable)") for (l = 0; l < (count); l++)
 #elif defined(__GNUC__)
-#define GXSP_EACH(l, count) _Pragma("GCC ivdep") for (l = 0; l < (count); ++l)
+#define GXSP_EACH(l, count) _Pragma("GCC ivdep") for (l = 0; l < (count); l++)
 #else
-#define GXSP_EACH(l, count) for (l = 0; l < (count); ++l)
+#define GXSP_EACH(l, count) for (l = 0; l < (count); l++)
 #endif
-#define GXSP_EACH_LANE(l) GXSP_EACH(l, GXSP_LANES)
+#define GXSP_EACH_LANE(l)   GXSP_EACH(l, GXSP_LANES)
 #define GXSP_EACH_OF_TWO(l) GXSP_EACH(l, 2 * GXSP_LANES)
 
-/* Vectors for what compilers do not make of loops: shuffles of nodes' vectors and blocks, many sums at a time. Shuffles of vectors longer than
- * there are they make number by number, hence eight only where there are eight. */
+/* Vectors for what compilers do not make of loops: shuffles of nodes' vectors and blocks, many sums at a time. Shuffles
+ * of vectors longer than there are they make number by number, hence eight only where there are eight. */
 #if defined(__GNUC__) && (defined(__clang__) || __GNUC__ >= 12) && !defined(GXFEM_SCALAR)
 #define GXSP_SHUFFLES
 typedef __attribute__((vector_size(8), aligned(4), may_alias)) float gxsp_two;
@@ -659,32 +707,27 @@ typedef float gxsp_singles[GXSP_LANES];
 
 /* >>platform: comparisons with NaN mean nothing under -ffast-math, so finiteness is read off the bits */
 
-static int gxsp_finite(double value)
-{
+static int gxsp_finite(double value) {
     uint64_t bits;
     memcpy(&bits, &value, sizeof bits);
     return ((bits >> 52) & 0x7ff) != 0x7ff;
 }
 
-static int gxsp_finite_single(float value)
-{
+static int gxsp_finite_single(float value) {
     uint32_t bits;
     memcpy(&bits, &value, sizeof bits);
     return ((bits >> 23) & 0xff) != 0xff;
 }
 
 /* Index of the first value that is NaN or infinite; count if there is none. */
-static size_t gxsp_first_not_finite(const double *values, size_t count)
-{
+static size_t gxsp_first_not_finite(const double *values, size_t count) {
     size_t i;
-    for (i = 0; i < count; ++i)
-        if (!gxsp_finite(values[i]))
-            break;
+    for (i = 0; i < count; i++)
+        if (!gxsp_finite(values[i])) break;
     return i;
 }
 
-static gx_result gxsp_fail(gx_failure *failure, gx_result result, size_t index)
-{
+static gx_result gxsp_fail(gx_failure *failure, gx_result result, size_t index) {
     failure->result = result;
     failure->index = index;
     failure->surface = SIZE_MAX;
@@ -692,11 +735,10 @@ static gx_result gxsp_fail(gx_failure *failure, gx_result result, size_t index)
 }
 
 /* 3-vectors a[3 count], b[3 count]; three sums, so that no addition waits for the one before it */
-static double gxsp_dot(const double *a, const double *b, size_t count)
-{
+static double gxsp_dot(const double *a, const double *b, size_t count) {
     double x = 0, y = 0, z = 0;
     size_t i;
-    for (i = 0; i < count; ++i) {
+    for (i = 0; i < count; i++) {
         x += a[3 * i] * b[3 * i];
         y += a[3 * i + 1] * b[3 * i + 1];
         z += a[3 * i + 2] * b[3 * i + 2];
@@ -705,39 +747,28 @@ static double gxsp_dot(const double *a, const double *b, size_t count)
 }
 
 /* sum of a[i] b[i] in eight sums side by side, for vectors */
-static double gxsp_long_dot(const float *a, const double *b, size_t count)
-{
+static double gxsp_long_dot(const float *a, const double *b, size_t count) {
     double sum[8] = {0, 0, 0, 0, 0, 0, 0, 0};
     size_t i, k;
     for (i = 0; i + 8 <= count; i += 8)
-        for (k = 0; k < 8; ++k)
-            sum[k] += (double)a[i + k] * b[i + k];
-    for (; i < count; ++i)
-        sum[0] += (double)a[i] * b[i];
+        for (k = 0; k < 8; k++) sum[k] += (double)a[i + k] * b[i + k];
+    for (; i < count; i++) sum[0] += (double)a[i] * b[i];
     return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
 }
 
 /* index of entry (i, j), i <= j, of a symmetric 3x3 stored 00 01 02 11 12 22, and of a 9x9 alike */
-static int gxsp_packed3(int i, int j)
-{
-    return i * (5 - i) / 2 + j;
-}
+static int gxsp_packed3(int i, int j) { return i * (5 - i) / 2 + j; }
 
-static int gxsp_packed9(int i, int j)
-{
-    return i <= j ? i * (17 - i) / 2 + j : j * (17 - j) / 2 + i;
-}
+static int gxsp_packed9(int i, int j) { return i <= j ? i * (17 - i) / 2 + j : j * (17 - j) / 2 + i; }
 
 /* >>memory */
 
-static void *gxsp_malloc(void *user, size_t size)
-{
+static void *gxsp_malloc(void *user, size_t size) {
     (void)user;
     return malloc(size);
 }
 
-static void gxsp_free(void *user, void *memory, size_t size)
-{
+static void gxsp_free(void *user, void *memory, size_t size) {
     (void)user;
     (void)size;
     free(memory);
@@ -756,19 +787,16 @@ typedef struct gxsp_pool {
     int failed; /* an allocation returned NULL */
 } gxsp_pool;
 
-static void *gxsp_memory(gxsp_owned *owned)
-{
+static void *gxsp_memory(gxsp_owned *owned) {
     unsigned char *memory = (unsigned char *)(owned + 1);
     return memory + (GXSP_ALIGNMENT - (uintptr_t)memory % GXSP_ALIGNMENT) % GXSP_ALIGNMENT;
 }
 
 /* count x size bytes, zero; NULL, and failed is set, when there are none. Callers check failed once, at their end. */
-static void *gxsp_take(gxsp_pool *pool, size_t count, size_t size)
-{
+static void *gxsp_take(gxsp_pool *pool, size_t count, size_t size) {
     gxsp_owned *owned;
     size_t bytes = (count > 0 ? count : 1) * size;
-    if (pool->failed)
-        return NULL;
+    if (pool->failed) return NULL;
     owned = (gxsp_owned *)pool->allocator.allocate(pool->allocator.user, sizeof *owned + GXSP_ALIGNMENT + bytes);
     if (!owned) {
         pool->failed = 1;
@@ -780,17 +808,14 @@ static void *gxsp_take(gxsp_pool *pool, size_t count, size_t size)
     return memset(gxsp_memory(owned), 0, bytes);
 }
 
-/* Memory of room x size bytes in place of some of used x size, or of NULL, whose contents it has; the old one is given back. NULL, and the
- * old one stays, when there is none. */
-static void *gxsp_retake(gxsp_pool *pool, void *memory, size_t used, size_t room, size_t size)
-{
+/* Memory of room x size bytes in place of some of used x size, or of NULL, whose contents it has; the old one is given
+ * back. NULL, and the old one stays, when there is none. */
+static void *gxsp_retake(gxsp_pool *pool, void *memory, size_t used, size_t room, size_t size) {
     void *larger = gxsp_take(pool, room, size);
     gxsp_owned **link = &pool->last, *owned;
-    if (!larger || !memory)
-        return larger;
+    if (!larger || !memory) return larger;
     memcpy(larger, memory, used * size);
-    while (gxsp_memory(*link) != memory)
-        link = &(*link)->next;
+    while (gxsp_memory(*link) != memory) link = &(*link)->next;
     owned = *link;
     *link = owned->next;
     pool->allocator.release(pool->allocator.user, owned, owned->size);
@@ -798,8 +823,7 @@ static void *gxsp_retake(gxsp_pool *pool, void *memory, size_t used, size_t room
 }
 
 /* Gives back what was taken after mark was pool->last. */
-static void gxsp_release_to(gxsp_pool *pool, gxsp_owned *mark)
-{
+static void gxsp_release_to(gxsp_pool *pool, gxsp_owned *mark) {
     while (pool->last != mark) {
         gxsp_owned *owned = pool->last;
         pool->last = owned->next;
@@ -807,8 +831,7 @@ static void gxsp_release_to(gxsp_pool *pool, gxsp_owned *mark)
     }
 }
 
-static gxsp_pool gxsp_pool_make(const gx_allocator *allocator)
-{
+static gxsp_pool gxsp_pool_make(const gx_allocator *allocator) {
     gxsp_pool pool;
     pool.allocator = *allocator;
     pool.last = NULL;
@@ -818,13 +841,12 @@ static gxsp_pool gxsp_pool_make(const gx_allocator *allocator)
 
 /* Memory that is cut into arrays, one after the other */
 typedef struct gxsp_space {
-    unsigned char *memory;  /* NULL: arrays are only counted */
+    unsigned char *memory; /* NULL: arrays are only counted */
     size_t used;
 } gxsp_space;
 
 /* The next array of a space: count x size bytes. NULL if there is no memory. */
-static void *gxsp_carve(gxsp_space *space, size_t count, size_t size)
-{
+static void *gxsp_carve(gxsp_space *space, size_t count, size_t size) {
     const size_t at = space->used;
     space->used = at + (count * size + GXSP_ALIGNMENT - 1) / GXSP_ALIGNMENT * GXSP_ALIGNMENT;
     return space->memory ? space->memory + at : NULL;
@@ -833,8 +855,9 @@ static void *gxsp_carve(gxsp_space *space, size_t count, size_t size)
 /* What a step works on, cut into elements of a block, blocks of a chunk. Lanes without an element have weight, mass and
  * gradients 0 and name nodes of the chunk, to which they add zeros. */
 typedef struct gxsp_rest {
-    double weight[GXSP_LANES];      /* m3 */
-    double mass[GXSP_LANES];        /* kg: m of the block m (1 + delta_ij); in chunks that have moments all of the element's */
+    double weight[GXSP_LANES]; /* m3 */
+    /* kg: m of the block m (1 + delta_ij); in chunks that have moments all of the element's */
+    double mass[GXSP_LANES];
     uint32_t material[GXSP_LANES];
 } gxsp_rest;
 
@@ -848,8 +871,9 @@ typedef struct gxsp_corners {
     uint16_t node[4][GXSP_LANES];
 } gxsp_corners;
 
-/* Moments of masses that are not those of whole elements: M_ij = mass (c_i c_j + R_i . R_j), semi-definite however it is rounded, of slivers
- * too. c: centre of mass in barycentric coordinates, R R^T: their covariance; c_0 = 1 - sum c, R_0 = -sum R. */
+/* Moments of masses that are not those of whole elements: M_ij = mass (c_i c_j + R_i . R_j), semi-definite however it
+ * is rounded, of slivers too. c: centre of mass in barycentric coordinates, R R^T: their covariance; c_0 = 1 - sum c,
+ * R_0 = -sum R. */
 typedef struct gxsp_moments {
     float centre[3][GXSP_LANES]; /* of corners 1 ... 3, in whole units of 2^-24: with c_0 they are exactly 1 in sum */
     float root[6][GXSP_LANES];   /* of corners 1 ... 3, lower triangle by rows */
@@ -857,7 +881,8 @@ typedef struct gxsp_moments {
 
 /* Projected Hessian of a block: dP = U (h : U^T dF V) V^T. */
 typedef struct gxsp_tangent {
-    float frame[4][GXSP_LANES];    /* U of F = U S V^T as sqrt 2 times its unit quaternion: x, y, z, w; any such numbers make it symmetric */
+    /* U of F = U S V^T as sqrt 2 times its unit quaternion: x, y, z, w; any such numbers make it symmetric */
+    float frame[4][GXSP_LANES];
     float gradient[9][GXSP_LANES]; /* shape function gradients 1..3 times V, by rows, 1/m */
     float stretch[6][GXSP_LANES];  /* weight x h: stretches; J */
     float even[3][GXSP_LANES];     /* of the off-diagonal pairs (12), (20), (01): to themselves; J */
@@ -865,12 +890,14 @@ typedef struct gxsp_tangent {
     float mass[GXSP_LANES];        /* gxsp_rest.mass x rate, kg/s2 */
 } gxsp_tangent;
 
-/* Projected Hessian of a block of GXS_CUSTOM, which has no frame (U and V are 1): weight x dP_i/dF_j, upper triangle by rows; J */
+/* Projected Hessian of a block of GXS_CUSTOM, which has no frame (U and V are 1): weight x dP_i/dF_j, upper triangle by
+ * rows; J */
 typedef struct gxsp_general {
     float hessian[45][GXSP_LANES];
 } gxsp_general;
 
-/* Entries of the assembled matrix to which a block's corners i <= j add, in the order of gxs_element.mass: row the lower copy */
+/* Entries of the assembled matrix to which a block's corners i <= j add, in the order of gxs_element.mass: row the
+ * lower copy */
 typedef struct gxsp_fine {
     uint32_t entry[10][GXSP_LANES]; /* GXSP_NONE: a corner follows others */
 } gxsp_fine;
@@ -882,80 +909,93 @@ typedef struct gxsp_part {
 } gxsp_part;
 
 typedef struct gxsp_chunk {
-    gxsp_rest *rest;                 /* block_count, as are those without a count of their own */
+    gxsp_rest *rest; /* block_count, as are those without a count of their own */
     gxsp_corners *corners;
-    uint8_t *fresh;                  /* block_count + 1: bit i: corner i is not the one of the block before, in each lane; at the end all */
+    /* block_count + 1: bit i: corner i is not the one of the block before, in each lane; at the end all */
+    uint8_t *fresh;
     gxsp_tangent *tangents;
-    gxsp_gradients *gradients;       /* NULL: they are found in each pass, of system->positions */
-    gxsp_moments *moments;           /* NULL: elements are whole, or masses lumped */
-    gxsp_general *generals;          /* of GXS_CUSTOM; NULL: gxsp_tangent has the Hessians */
-    uint32_t *groups;                /* block_count x GXSP_LANES: group of the element in each lane; GXSP_NONE: there is none */
+    gxsp_gradients *gradients; /* NULL: they are found in each pass, of system->positions */
+    gxsp_moments *moments;     /* NULL: elements are whole, or masses lumped */
+    gxsp_general *generals;    /* of GXS_CUSTOM; NULL: gxsp_tangent has the Hessians */
+    /* block_count x GXSP_LANES: group of the element in each lane; GXSP_NONE: there is none */
+    uint32_t *groups;
     uint32_t first_block, block_count; /* blocks are counted through all chunks */
-    uint32_t first_node, node_count; /* into nodes and slots */
-    uint32_t first_part, part_count; /* into parts: one for each piece of its nodes, ascending */
-    uint32_t class_index;            /* see gxsp_class */
-    uint32_t edge_count;             /* see gxsp_edges; 0: not known */
-    int open;                        /* made by an update, with room for GXSP_CHUNK_BLOCKS */
+    uint32_t first_node, node_count;   /* into nodes and slots */
+    uint32_t first_part, part_count;   /* into parts: one for each piece of its nodes, ascending */
+    uint32_t class_index;              /* see gxsp_class */
+    uint32_t edge_count;               /* see gxsp_edges; 0: not known */
+    int open;                          /* made by an update, with room for GXSP_CHUNK_BLOCKS */
     gxs_material_kind kind;
 } gxsp_chunk;
 
 /* A vector of copies in single precision is n x 4, the fourth unused: one load per copy. */
 typedef float gxsp_vector4[4];
 
-/* A level of the multigrid; level 0 is the model. Transfer: value of node i = sum of weight[i][k] x value of parent[i][k]. */
+/* A level of the multigrid; level 0 is the model. Transfer: value of node i = sum of weight[i][k] x value of
+ * parent[i][k]. */
 typedef struct gxsp_level {
     uint32_t n;
-    int32_t (*place)[3];    /* n: lattice point; not of level 0 */
-    uint32_t (*parent)[4];  /* n: nodes of the next level, GXSP_NONE where the weight is 0 */
+    int32_t (*place)[3];   /* n: lattice point; not of level 0 */
+    uint32_t (*parent)[4]; /* n: nodes of the next level, GXSP_NONE where the weight is 0 */
     float (*weight)[4];
-    uint32_t *start;        /* n + 1: rows of the symmetric matrix on and above its diagonal; not of level 0 if it is matrix-free */
-    uint32_t *column;       /* ascending in a row: the first is the row's own */
-    float *block;           /* 9 per entry, by columns; of a last level after the first in shared memory: only from gxsp_lend to gxsp_give_back */
-    float *inverse;         /* n x 6: of the diagonal blocks, packed */
-    gxsp_vector4 *x, *b, *r;/* n: solution, right-hand side, residual; borrowed on level 0. The last level has no parents, weights, inverses, residual */
+    /* n + 1: rows of the symmetric matrix on and above its diagonal; not of level 0 if it is matrix-free */
+    uint32_t *start;
+    uint32_t *column; /* ascending in a row: the first is the row's own */
+    /* 9 per entry, by columns; of a last level after the first in shared memory: only from gxsp_lend to gxsp_give_back
+     */
+    float *block;
+    float *inverse; /* n x 6: of the diagonal blocks, packed */
+    /* n: solution, right-hand side, residual; borrowed on level 0. The last level has no parents, weights, inverses,
+     * residual */
+    gxsp_vector4 *x, *b, *r;
 } gxsp_level;
 
 /* Edges: pairs of a chunk's nodes, i < j, that share an element; numbered from 1. */
 typedef struct gxsp_edges {
     size_t table_size;
-    uint16_t *table;        /* table_size, nodes (nodes - 1) / 2 of the chunk that has most: the edge of two nodes i < j, at j (j - 1) / 2 + i, if ends says so, else one of another chunk */
+    /* table_size, nodes (nodes - 1) / 2 of the chunk that has most: the edge of two nodes i < j, at j (j - 1) / 2 + i,
+     * if ends says so, else one of another chunk */
+    uint16_t *table;
     uint32_t *ends;         /* i << 16 | j */
     float (*block)[9];      /* i's row and j's column of the Hessian, by columns */
     uint16_t *first, *next; /* the edges to higher nodes as a list: first by node, next by edge; 0: there is none */
     uint8_t *joined;        /* by node: it has an edge */
     uint32_t nodes, count;  /* count: with edge 0, which takes what is not wanted */
     uint16_t (*element)[6][GXSP_LANES]; /* by block: edges of its elements */
-    float (*own)[9];        /* by node: what its edges leave for its own block, see gxsp_half_row */
-    float *mass;            /* by node: half the row sum of the mass, scaled, kg/s2 */
-    uint16_t (*parent)[4];  /* by node: numbers of its parents, see gxsp_pairs */
-    float (*half)[9];       /* by number: a node's row of half the Hessian times the transfer; 0 but for the row at work */
-    uint16_t *touched;      /* numbers of those that are not 0 */
+    float (*own)[9];                    /* by node: what its edges leave for its own block, see gxsp_half_row */
+    float *mass;                        /* by node: half the row sum of the mass, scaled, kg/s2 */
+    uint16_t (*parent)[4];              /* by node: numbers of its parents, see gxsp_pairs */
+    /* by number: a node's row of half the Hessian times the transfer; 0 but for the row at work */
+    float (*half)[9];
+    uint16_t *touched; /* numbers of those that are not 0 */
 } gxsp_edges;
 
-/* Pairs of coarse nodes that the nodes of one chunk follow, numbered in the chunk from 1: where their entry of level 1's matrix is. Number 0
- * is where a node has no parent. */
+/* Pairs of coarse nodes that the nodes of one chunk follow, numbered in the chunk from 1: where their entry of level
+ * 1's matrix is. Number 0 is where a node has no parent. */
 typedef struct gxsp_pairs {
-    uint32_t *entry;    /* count x count, if that is GXSP_CHUNK_PARENTS at most: 2 x the entry, + 1 where it is that of the pair turned */
-    uint32_t *local;    /* by coarse node: its number in the chunk; of use as scratch elsewhere */
-    uint32_t *node;     /* by number: the coarse node */
-    uint32_t *seen;     /* by number: the chunk's node, plus 1, that has last touched it */
-    uint32_t *stamp;    /* by coarse node: the round in which it was numbered */
-    uint32_t round;     /* one for each visit of a chunk */
-    uint32_t count;     /* numbers given in this round, with 0 */
-    uint32_t most;      /* of any chunk; 0: the matrix is made from an assembled one */
-    float (*half)[9];   /* by node of the first level whose matrix is another level's: a row of that one times its transfer */
+    /* count x count, if that is GXSP_CHUNK_PARENTS at most: 2 x the entry, + 1 where it is that of the pair turned */
+    uint32_t *entry;
+    uint32_t *local; /* by coarse node: its number in the chunk; of use as scratch elsewhere */
+    uint32_t *node;  /* by number: the coarse node */
+    uint32_t *seen;  /* by number: the chunk's node, plus 1, that has last touched it */
+    uint32_t *stamp; /* by coarse node: the round in which it was numbered */
+    uint32_t round;  /* one for each visit of a chunk */
+    uint32_t count;  /* numbers given in this round, with 0 */
+    uint32_t most;   /* of any chunk; 0: the matrix is made from an assembled one */
+    /* by node of the first level whose matrix is another level's: a row of that one times its transfer */
+    float (*half)[9];
 } gxsp_pairs;
 
 /* Cholesky factor of the last level, row by row within its envelope. */
 typedef struct gxsp_factor {
-    uint32_t n;         /* unknowns */
-    uint32_t *order;    /* n / 3: node of the level in each place */
-    uint32_t *first;    /* n / 3: first column of the rows of each place */
-    size_t *row;        /* n / 3: where column 0 of the first of them would be in entry, see gxsp_factor_row */
-    float *entry;       /* entry_count; diagonal inverted */
+    uint32_t n;      /* unknowns */
+    uint32_t *order; /* n / 3: node of the level in each place */
+    uint32_t *first; /* n / 3: first column of the rows of each place */
+    size_t *row;     /* n / 3: where column 0 of the first of them would be in entry, see gxsp_factor_row */
+    float *entry;    /* entry_count; diagonal inverted */
     size_t entry_count;
-    double *x;          /* n: solution */
-    double *rows;       /* 3 x n: the three rows at work; in shared memory */
+    double *x;    /* n: solution */
+    double *rows; /* 3 x n: the three rows at work; in shared memory */
 } gxsp_factor;
 
 typedef struct gxsp_material {
@@ -966,17 +1006,19 @@ typedef struct gxsp_material {
     void *user;
 } gxsp_material;
 
-/* Copies joined by elements and constraints. E is a sum over pieces, but for points of contact and springs that join some: of those the
- * first leads, and what is told of energies and steps is that of all that it leads. */
+/* Copies joined by elements and constraints. E is a sum over pieces, but for points of contact and springs that join
+ * some: of those the first leads, and what is told of energies and steps is that of all that it leads. */
 typedef struct gxsp_piece {
     double sum[3];      /* over its copies, of the pass under way */
     double mass;        /* kg */
     double energies[3]; /* of the last evaluation: elastic with springs and contact, kinetic, size of their terms; J */
     double before[3];   /* at current */
     double base_energy; /* elastic, of what the last step returned, J; of use if gxsp_system.base_known */
-    double limit, ended; /* E where the step starts, which it is not to exceed, and where Newton's method has ended; J */
-    double base, low, gain; /* of the midpoint rule: E at base, and less that E at the middle without drift, and at a trial; J */
-    double drift[3];        /* of its second half, what is not shortened, m */
+    /* E where the step starts, which it is not to exceed, and where Newton's method has ended; J */
+    double limit, ended;
+    /* of the midpoint rule: E at base, and less that E at the middle without drift, and at a trial; J */
+    double base, low, gain;
+    double drift[3];    /* of its second half, what is not shortened, m */
     double slope, work; /* dE/dlength of the direction, and the load's work along it; J */
     double left;        /* what the linear solve has left of the residual, along the direction; J */
     double rounding;    /* of positions and of the load's terms, in units in the last place; J */
@@ -996,7 +1038,8 @@ typedef struct gxsp_follower {
     double weight[4];
 } gxsp_follower;
 
-/* A copy with next to nothing of the mass around it, such as the far corner of what a cut has left of an element; the lane whose others guide it */
+/* A copy with next to nothing of the mass around it, such as the far corner of what a cut has left of an element; the
+ * lane whose others guide it */
 typedef struct gxsp_light {
     uint32_t copy, chunk;
     uint16_t lane, corner;
@@ -1011,83 +1054,97 @@ typedef struct gxsp_term {
 
 /* What the solver keeps from model to model */
 typedef struct gxsp_lasting {
-    gxsp_term *term;        /* of the present linearisation */
+    gxsp_term *term; /* of the present linearisation */
     size_t count, capacity;
-    gxs_scene scene;       /* of the step before */
+    gxs_scene scene; /* of the step before */
 } gxsp_lasting;
 
 /* A model in the solver's form, with all that a step works with. n: copy_count. Vectors are n x 3 unless said. */
 typedef struct gxsp_system {
     gxsp_pool pool;
-    gxsp_pool coarse;       /* levels of the multigrid below the model, and what their numbers are made with */
+    gxsp_pool coarse; /* levels of the multigrid below the model, and what their numbers are made with */
     const gx_jobs *jobs;
     size_t n, element_count, block_count, slot_count, range_count;
-    uint64_t epoch;         /* of the copies' numbering */
+    uint64_t epoch;              /* of the copies' numbering */
     size_t copy_room, slot_room; /* of arrays over copies and slots, from the first update on */
-    unsigned char *shared;  /* shared_room bytes: slots, search, product and scaled; while coarse numbers are made, what they are made with */
+    /* shared_room bytes: slots, search, product and scaled; while coarse numbers are made, what they are made with */
+    unsigned char *shared;
     size_t shared_room;
     uint32_t chunk_count, chunk_room, material_count;
-    gxsp_material *materials;   /* material_count: as given */
-    gxsp_material *damped;      /* material_count: what the step under way works with: Rayleigh damping makes them stiffer */
+    gxsp_material *materials; /* material_count: as given */
+    /* material_count: what the step under way works with: Rayleigh damping makes them stiffer */
+    gxsp_material *damped;
     gxsp_chunk *chunks;
-    uint32_t *nodes;        /* slot_count: the copy of each node of each chunk; and GXSP_AHEAD zeros */
-    uint32_t *copy_start;   /* n + 1, into copy_slot */
-    uint32_t *copy_slot;    /* slot_count: a copy's slots, in the order of chunks: sums over them are the same for any number of threads;
-                               and GXSP_AHEAD zeros */
-    uint16_t *slot_root;    /* slot_count: number in the chunk of the least node that elements of the chunk join with this one; from the first */
-    int roots_known;        /* update on, when this is set */
-    double (*slots)[3];     /* slot_count: what a chunk's pass has for each node: 3 doubles, 4 floats (of products), or 6 */
+    uint32_t *nodes;      /* slot_count: the copy of each node of each chunk; and GXSP_AHEAD zeros */
+    uint32_t *copy_start; /* n + 1, into copy_slot */
+    /* slot_count: a copy's slots, in the order of chunks: sums over them are the same for any number of threads; and
+     * GXSP_AHEAD zeros */
+    uint32_t *copy_slot;
+    /* slot_count: number in the chunk of the least node that elements of the chunk join with this one; from the first
+     */
+    uint16_t *slot_root;
+    int roots_known; /* update on, when this is set */
+    /* slot_count: what a chunk's pass has for each node: 3 doubles, 4 floats (of products), or 6 */
+    double (*slots)[3];
     double (*range_sum)[GXSP_SUMS]; /* range_count: of passes over copies; added up in their order */
-    gxsp_part *parts;       /* part_count: of the chunks, in their order */
+    gxsp_part *parts;               /* part_count: of the chunks, in their order */
     uint32_t part_count;
     uint8_t *chunk_collapsed; /* chunk_count: the last linearisation found an element collapsed to a point */
-    double *positions;      /* rest, m; NULL: not given */
-    double *lumped;         /* n: row sums of the mass, kg */
-    uint8_t *held;          /* n: as the model says */
-    uint8_t *fixed;         /* n: held, or without an element and a follower of nothing */
-    uint8_t *still;         /* n: fixed or asleep: what this step leaves alone */
-    uint8_t *chunk_still;   /* chunk_count: all copies are */
-    uint32_t *piece;        /* n: number of the piece */
-    gxsp_piece *pieces;     /* piece_count */
+    double *positions;        /* rest, m; NULL: not given */
+    double *lumped;           /* n: row sums of the mass, kg */
+    uint8_t *held;            /* n: as the model says */
+    uint8_t *fixed;           /* n: held, or without an element and a follower of nothing */
+    uint8_t *still;           /* n: fixed or asleep: what this step leaves alone */
+    uint8_t *chunk_still;     /* chunk_count: all copies are */
+    uint32_t *piece;          /* n: number of the piece */
+    gxsp_piece *pieces;       /* piece_count */
     uint32_t piece_count, loose_count, free_count; /* loose: of state 0; free: but for GXSP_TOUCHED */
     gxsp_follower *followers;
     uint32_t follower_count;
     uint32_t follower_room; /* of followers */
-    uint32_t *follower;     /* n: index of the copy's entry in followers; GXSP_NONE: it follows none; of use if there are followers */
+    /* n: index of the copy's entry in followers; GXSP_NONE: it follows none; of use if there are followers */
+    uint32_t *follower;
     size_t follower_copies; /* room of follower */
     gxsp_lasting *lasting;  /* of the solver */
     gxsp_light *lights;     /* light_count */
     uint32_t light_count, light_room;
-    float *volume;          /* n: inverse volume of the support, scaled; of GXS_VOLUME_RATIO only */
-    double *target;         /* where inertia (and mass damping) alone lead; of backward Euler u_n + dt v_n */
-    double *damping;        /* what Rayleigh damping adds to the load, N; NULL: no material is damped */
-    double *current;        /* displacement: Newton's iterate */
-    double *force;          /* inertia + elastic at the iterate, N */
-    double *residual;       /* load - force; conjugate gradients use it up */
-    double *trial;          /* displacement: tried by the line search; in the memory of the residual, of which there is no need then */
-    double *direction;      /* the solution of the linear system */
-    gxsp_vector4 *search, *product, *scaled; /* of conjugate gradients: direction, Hessian times it, preconditioned residual */
-    float *diagonal;        /* n x 6: inverse of the Hessian's diagonal blocks, packed; 0 for fixed copies */
+    float *volume;    /* n: inverse volume of the support, scaled; of GXS_VOLUME_RATIO only */
+    double *target;   /* where inertia (and mass damping) alone lead; of backward Euler u_n + dt v_n */
+    double *damping;  /* what Rayleigh damping adds to the load, N; NULL: no material is damped */
+    double *current;  /* displacement: Newton's iterate */
+    double *force;    /* inertia + elastic at the iterate, N */
+    double *residual; /* load - force; conjugate gradients use it up */
+    /* displacement: tried by the line search; in the memory of the residual, of which there is no need then */
+    double *trial;
+    double *direction; /* the solution of the linear system */
+    /* of conjugate gradients: direction, Hessian times it, preconditioned residual */
+    gxsp_vector4 *search, *product, *scaled;
+    float *diagonal; /* n x 6: inverse of the Hessian's diagonal blocks, packed; 0 for fixed copies */
     int lumped_mass;
-    int stiff;              /* a material is nearly incompressible */
-    int damps;              /* a material is damped */
-    int chosen;             /* the preconditioner was chosen by the size of pieces */
-    double scale;           /* power of two by which the linear systems are multiplied, so that single precision holds tiny pieces too */
+    int stiff;  /* a material is nearly incompressible */
+    int damps;  /* a material is damped */
+    int chosen; /* the preconditioner was chosen by the size of pieces */
+    /* power of two by which the linear systems are multiplied, so that single precision holds tiny pieces too */
+    double scale;
     gxsp_level levels[GXSP_LEVELS];
-    uint32_t level_count;   /* 0: no multigrid */
-    int coarse_used;        /* the levels precondition the solve at work */
-    gxsp_edges edges;       /* of the chunk at work on level 1's matrix; in scratch or shared memory, and else nowhere, as pairs are */
+    uint32_t level_count; /* 0: no multigrid */
+    int coarse_used;      /* the levels precondition the solve at work */
+    /* of the chunk at work on level 1's matrix; in scratch or shared memory, and else nowhere, as pairs are */
+    gxsp_edges edges;
     gxsp_pairs pairs;
     gxsp_factor factor;
-    float omega;            /* step length of the smoother; 0: not known */
-    float omega_found;      /* by the largest eigenvalue found, which may have grown since */
-    uint32_t omega_rest, omega_pause; /* linear solves for which it stays the safe one, 0: it is omega_found; and the next time */
-    uint8_t *renewed;       /* n: the copy's diagonal is of other elements than when omega was found; from the first update on, of use if */
-    int omega_renewed;      /* there are such copies */
-    double coarse_rate;     /* for which the coarse matrices were made; below 0: never made */
-    double *coarse_state;   /* displacement at which; of a multigrid only */
-    int coarse_worn;        /* to be made anew */
-    double term_stiffness, coarse_stiffness; /* sums of springs' and contact's Hessians: now, when coarse matrices were made */
+    float omega;       /* step length of the smoother; 0: not known */
+    float omega_found; /* by the largest eigenvalue found, which may have grown since */
+    /* linear solves for which it stays the safe one, 0: it is omega_found; and the next time */
+    uint32_t omega_rest, omega_pause;
+    /* n: the copy's diagonal is of other elements than when omega was found; from the first update on, of use if */
+    uint8_t *renewed;
+    int omega_renewed;    /* there are such copies */
+    double coarse_rate;   /* for which the coarse matrices were made; below 0: never made */
+    double *coarse_state; /* displacement at which; of a multigrid only */
+    int coarse_worn;      /* to be made anew */
+    /* sums of springs' and contact's Hessians: now, when coarse matrices were made */
+    double term_stiffness, coarse_stiffness;
     gxsp_fine *fine;        /* block_count: places in the assembled matrix, levels[0]; NULL: matrix-free */
     uint32_t coarse_served; /* iterations since they were made */
     uint32_t coarse_life;   /* for how many iterations they are to serve */
@@ -1117,21 +1174,22 @@ typedef struct gxsp_problem {
     double mean[2];         /* its weights: of given and of previous_displacement */
     uint32_t cg_iterations; /* with the defaults put in */
     double cg_tolerance;
-    double nepers;          /* by how many factors of e the last linear solve has reduced the residual that its guess left */
-    double energies[3];     /* at current, sums over pieces; J */
-    const double *given;    /* displacement at the step's start, u_n */
-    double start;           /* on the clock */
+    /* by how many factors of e the last linear solve has reduced the residual that its guess left */
+    double nepers;
+    double energies[3];  /* at current, sums over pieces; J */
+    const double *given; /* displacement at the step's start, u_n */
+    double start;        /* on the clock */
     gxs_scene scene;
-    int exact;              /* the linearisation is not projected */
-    int indefinite;         /* conjugate gradients met negative curvature */
-    int projected_only;     /* the exact one has proved indefinite in this step */
-    int shortened;          /* the line search did not take the whole step */
-    int damps;              /* damping adds to the load */
-    int stalls;             /* iterations in a row that noise ended and that gained next to nothing */
-    double least;           /* residual so far */
-    int based;              /* pieces know E at base */
-    int noise;              /* the line search ended where energies differ by rounding only */
-    int collapsed;          /* the linearisation found elements collapsed to a point */
+    int exact;          /* the linearisation is not projected */
+    int indefinite;     /* conjugate gradients met negative curvature */
+    int projected_only; /* the exact one has proved indefinite in this step */
+    int shortened;      /* the line search did not take the whole step */
+    int damps;          /* damping adds to the load */
+    int stalls;         /* iterations in a row that noise ended and that gained next to nothing */
+    double least;       /* residual so far */
+    int based;          /* pieces know E at base */
+    int noise;          /* the line search ended where energies differ by rounding only */
+    int collapsed;      /* the linearisation found elements collapsed to a point */
     gxs_step_report report;
 } gxsp_problem;
 
@@ -1141,27 +1199,25 @@ struct gxs_solver {
     gxs_preconditioner preconditioner;
     gxs_matrix matrix;
     gxsp_lasting lasting;
-    gxsp_system *system;    /* in its own pool; NULL before the first model */
+    gxsp_system *system; /* in its own pool; NULL before the first model */
 };
 
 /* >>jobs */
 
 /* task(context, i) for every i below count, by the host's threads if it has any. */
-static void gxsp_parallel(const gx_jobs *jobs, size_t count, void (*task)(void *, size_t), void *context)
-{
+static void gxsp_parallel(const gx_jobs *jobs, size_t count, void (*task)(void *, size_t), void *context) {
     size_t i;
     if (jobs->parallel_for && count > 1)
         jobs->parallel_for(jobs->user, count, task, context);
     else
-        for (i = 0; i < count; ++i)
-            task(context, i);
+        for (i = 0; i < count; i++) task(context, i);
 }
 
-/* >>lanes: functions of one number that compilers turn into vector instructions; sqrt they leave alone for errno's sake */
+/* >>lanes: functions of one number that compilers turn into vector instructions; sqrt they leave alone for errno's sake
+ */
 
 /* 1 / sqrt(x) of a normal x > 0, to 3 units in the last place: the exponent halved, then Newton's method */
-static inline float gxsp_rsqrt(float x)
-{
+static inline float gxsp_rsqrt(float x) {
     uint32_t bits;
     float y;
     memcpy(&bits, &x, sizeof bits);
@@ -1172,33 +1228,40 @@ static inline float gxsp_rsqrt(float x)
     return y * (1.5f - 0.5f * x * y * y);
 }
 
-/* x - log(1 + x) for x >= -3/4 without cancellation. 1 + x = 2^k (1 + w), 1 + w in [sqrt 1/2, sqrt 2); with z = w / (2 + w)
- * w - log(1 + w) = w z - 2 z^3 (1/3 + z^2/5 + z^4/7 + ...), |z| < 0.172: the first term left out is below 1e-17 w^2. */
-static inline double gxsp_log_rest(double x)
-{
+/* x - log(1 + x) for x >= -3/4 without cancellation. 1 + x = 2^k (1 + w), 1 + w in [sqrt 1/2, sqrt 2); with z = w / (2
+ * + w) w - log(1 + w) = w z - 2 z^3 (1/3 + z^2/5 + z^4/7 + ...), |z| < 0.172: the first term left out is below 1e-17
+ * w^2. */
+static inline double gxsp_log_rest(double x) {
     const double y = 1 + x;
     uint64_t bits, exponent;
     double k, m, w, z, q;
     memcpy(&bits, &y, sizeof bits);
     exponent = (bits - 0x3fe6a09e667f3bcdu + ((uint64_t)1024 << 52)) >> 52; /* k + 1024 */
     bits -= (exponent - 1024) << 52;
-    exponent |= (uint64_t)0x433 << 52;                                      /* 2^52 + k + 1024 */
+    exponent |= (uint64_t)0x433 << 52; /* 2^52 + k + 1024 */
     memcpy(&m, &bits, sizeof m);
     memcpy(&k, &exponent, sizeof k);
     k -= 4503599627370496.0 + 1024.0;
     w = k < 0 || k > 0 ? m - 1 : x;
     z = w / (2 + w);
     q = z * z;
-    return w * z - 2 * z * q * (1.0 / 3 + q * (1.0 / 5 + q * (1.0 / 7 + q * (1.0 / 9 + q * (1.0 / 11 + q * (1.0 / 13 +
-           q * (1.0 / 15 + q * (1.0 / 17 + q * (1.0 / 19 + q * (1.0 / 21 + q / 23)))))))))) +
+    return w * z -
+           2 * z * q *
+               (1.0 / 3 +
+                q * (1.0 / 5 +
+                     q * (1.0 / 7 +
+                          q * (1.0 / 9 +
+                               q * (1.0 / 11 +
+                                    q * (1.0 / 13 +
+                                         q * (1.0 / 15 +
+                                              q * (1.0 / 17 + q * (1.0 / 19 + q * (1.0 / 21 + q / 23)))))))))) +
            (x - w - k * 0.69314718055994531);
 }
 
-/* >>material: energy density (J/m3) and first Piola-Kirchhoff stress P (Pa) from G = F - 1, so that nothing cancels near rest.
- * size: of the terms whose rounding the energy carries. */
+/* >>material: energy density (J/m3) and first Piola-Kirchhoff stress P (Pa) from G = F - 1, so that nothing cancels
+ * near rest. size: of the terms whose rounding the energy carries. */
 
-static gxsp_material gxsp_material_make(const gxs_material *given)
-{
+static gxsp_material gxsp_material_make(const gxs_material *given) {
     double shear = given->young / (2 * (1 + given->poisson));
     double lame = given->young * given->poisson / ((1 + given->poisson) * (1 - 2 * given->poisson));
     gxsp_material material;
@@ -1208,7 +1271,8 @@ static gxsp_material gxsp_material_make(const gxs_material *given)
     material.damping = given->damping;
     material.energy = given->energy;
     material.user = given->user;
-    if (given->kind == GXS_STABLE_NEO_HOOKEAN) { /* in small strain the Lame constants are mu', lambda' [Smith 2018, 3.4] */
+    /* in small strain the Lame constants are mu', lambda' [Smith 2018, 3.4] */
+    if (given->kind == GXS_STABLE_NEO_HOOKEAN) {
         material.mu = 4.0 / 3 * shear;
         material.lambda = lame + 5.0 / 6 * shear;
     }
@@ -1221,8 +1285,8 @@ static gxsp_material gxsp_material_make(const gxs_material *given)
 
 /* Density of a block and what it needs */
 typedef struct gxsp_state {
-    gxsp_lanes g[9];     /* displacement gradient, by rows */
-    gxsp_lanes p[9];     /* first Piola-Kirchhoff stress */
+    gxsp_lanes g[9]; /* displacement gradient, by rows */
+    gxsp_lanes p[9]; /* first Piola-Kirchhoff stress */
     gxsp_lanes energy, size;
     gxsp_lanes mu, lambda;
     const gxsp_material *material[GXSP_LANES]; /* of GXS_CUSTOM only */
@@ -1233,8 +1297,7 @@ typedef struct gxsp_state {
  *   alpha = 1 + 3/4 mu/lambda: no stress at rest. With t = tr G, i = Ic - 3, j = J - 1:
  *   psi = 3/8 mu (|G|^2 + tr G^2 - t^2 - 2 det G) + mu/2 (x - log(1 + x)) + lambda/2 j^2,   x = i/4
  *   P   = 3/4 mu (G + G^T - t 1 - cof G) + mu/4 i/(Ic + 1) F + lambda j cof F,   cof F = (1 + t) 1 - G^T + cof G */
-static void gxsp_neo_hookean(gxsp_state *GXSP_RESTRICT s)
-{
+static void gxsp_neo_hookean(gxsp_state *GXSP_RESTRICT s) {
     int l;
     GXSP_EACH_LANE(l) {
         const double a = s->g[0][l], b = s->g[1][l], c = s->g[2][l], d = s->g[3][l], e = s->g[4][l], f = s->g[5][l],
@@ -1265,18 +1328,19 @@ static void gxsp_neo_hookean(gxsp_state *GXSP_RESTRICT s)
 
 /* St. Venant-Kirchhoff, psi = mu E:E + lambda/2 (tr E)^2, E = (F^T F - 1) / 2, P = F (2 mu E + lambda tr E 1); and its
  * linearisation at rest: E = (G + G^T) / 2, P = 2 mu E + lambda tr E 1. bend: 1 or, for the linear material, 0. */
-static void gxsp_kirchhoff(gxsp_state *GXSP_RESTRICT s, double bend)
-{
+static void gxsp_kirchhoff(gxsp_state *GXSP_RESTRICT s, double bend) {
     int l;
     GXSP_EACH_LANE(l) {
         const double a = s->g[0][l], b = s->g[1][l], c = s->g[2][l], d = s->g[3][l], e = s->g[4][l], f = s->g[5][l],
-                     g = s->g[6][l], h = s->g[7][l], k = s->g[8][l], mu = s->mu[l], lambda = s->lambda[l], half = 0.5 * bend;
+                     g = s->g[6][l], h = s->g[7][l], k = s->g[8][l], mu = s->mu[l], lambda = s->lambda[l],
+                     half = 0.5 * bend;
         const double e0 = a + half * (a * a + d * d + g * g), e4 = e + half * (b * b + e * e + h * h),
                      e8 = k + half * (c * c + f * f + k * k), e1 = 0.5 * (b + d) + half * (a * b + d * e + g * h),
-                     e2 = 0.5 * (c + g) + half * (a * c + d * f + g * k), e5 = 0.5 * (f + h) + half * (b * c + e * f + h * k);
+                     e2 = 0.5 * (c + g) + half * (a * c + d * f + g * k),
+                     e5 = 0.5 * (f + h) + half * (b * c + e * f + h * k);
         const double trace = e0 + e4 + e8, pressure = lambda * trace;
-        const double s0 = 2 * mu * e0 + pressure, s4 = 2 * mu * e4 + pressure, s8 = 2 * mu * e8 + pressure, s1 = 2 * mu * e1,
-                     s2 = 2 * mu * e2, s5 = 2 * mu * e5;
+        const double s0 = 2 * mu * e0 + pressure, s4 = 2 * mu * e4 + pressure, s8 = 2 * mu * e8 + pressure,
+                     s1 = 2 * mu * e1, s2 = 2 * mu * e2, s5 = 2 * mu * e5;
         s->energy[l] = mu * (e0 * e0 + e4 * e4 + e8 * e8 + 2 * (e1 * e1 + e2 * e2 + e5 * e5)) + 0.5 * pressure * trace;
         s->size[l] = s->energy[l];
         s->p[0][l] = s0 + bend * (a * s0 + b * s1 + c * s2);
@@ -1298,23 +1362,22 @@ typedef struct gxsp_svd {
     gxsp_singles s[3];       /* signed, in order of size; F = U diag(s) V^T */
 } gxsp_svd;
 
-/* F V and V of two blocks on the way there: each turn waits for the one before it, so that the second block costs little. */
+/* F V and V of two blocks on the way there: each turn waits for the one before it, so that the second block costs
+ * little. */
 typedef struct gxsp_columns {
     float b[9][2 * GXSP_LANES], v[9][2 * GXSP_LANES];
     float scale[2 * GXSP_LANES]; /* what b is to be multiplied by */
 } gxsp_columns;
 
 /* (x, y) turned by the angle of cosine c and sine s */
-static inline void gxsp_turn(float c, float s, float *x, float *y)
-{
+static inline void gxsp_turn(float c, float s, float *x, float *y) {
     const float turned = c * *x - s * *y;
     *y = s * *x + c * *y;
     *x = turned;
 }
 
 /* Columns i and j of b and of v in lane l */
-static inline void gxsp_turn_columns(gxsp_columns *of, int i, int j, int l, float c, float s)
-{
+static inline void gxsp_turn_columns(gxsp_columns *of, int i, int j, int l, float c, float s) {
     gxsp_turn(c, s, &of->b[i][l], &of->b[j][l]);
     gxsp_turn(c, s, &of->b[3 + i][l], &of->b[3 + j][l]);
     gxsp_turn(c, s, &of->b[6 + i][l], &of->b[6 + j][l]);
@@ -1323,15 +1386,13 @@ static inline void gxsp_turn_columns(gxsp_columns *of, int i, int j, int l, floa
     gxsp_turn(c, s, &of->v[6 + i][l], &of->v[6 + j][l]);
 }
 
-static inline float gxsp_column_product(const gxsp_columns *of, int i, int j, int l)
-{
+static inline float gxsp_column_product(const gxsp_columns *of, int i, int j, int l) {
     return of->b[i][l] * of->b[j][l] + of->b[3 + i][l] * of->b[3 + j][l] + of->b[6 + i][l] * of->b[6 + j][l];
 }
 
-/* Makes columns i and j of b orthogonal. Whatever the rounding, U and V stay rotations: a Hessian built on them is a congruence
- * of a semi-definite one. */
-GXSP_INLINE void gxsp_orthogonalise(gxsp_columns *GXSP_RESTRICT of, int i, int j)
-{
+/* Makes columns i and j of b orthogonal. Whatever the rounding, U and V stay rotations: a Hessian built on them is a
+ * congruence of a semi-definite one. */
+GXSP_INLINE void gxsp_orthogonalise(gxsp_columns *GXSP_RESTRICT of, int i, int j) {
     int l;
     GXSP_EACH_OF_TWO(l) {
         const float gamma = 2 * gxsp_column_product(of, i, j, l);
@@ -1344,8 +1405,7 @@ GXSP_INLINE void gxsp_orthogonalise(gxsp_columns *GXSP_RESTRICT of, int i, int j
 }
 
 /* Brings the longer of columns i and j to i, by a quarter turn, so that det V stays 1. */
-GXSP_INLINE void gxsp_order_columns(gxsp_columns *GXSP_RESTRICT of, int i, int j)
-{
+GXSP_INLINE void gxsp_order_columns(gxsp_columns *GXSP_RESTRICT of, int i, int j) {
     int l;
     GXSP_EACH_OF_TWO(l) {
         const float s = gxsp_column_product(of, j, j, l) > gxsp_column_product(of, i, i, l) ? -1.0f : 0.0f;
@@ -1353,17 +1413,16 @@ GXSP_INLINE void gxsp_order_columns(gxsp_columns *GXSP_RESTRICT of, int i, int j
     }
 }
 
-/* U, V and s of the block that begins at first_lane, from the columns of b, orthogonal and the longest first; where columns vanish, U is
- * completed to a rotation. */
-static void gxsp_frame(const gxsp_columns *GXSP_RESTRICT from, int first_lane, gxsp_svd *GXSP_RESTRICT of)
-{
+/* U, V and s of the block that begins at first_lane, from the columns of b, orthogonal and the longest first; where
+ * columns vanish, U is completed to a rotation. */
+static void gxsp_frame(const gxsp_columns *GXSP_RESTRICT from, int first_lane, gxsp_svd *GXSP_RESTRICT of) {
     const float *scale = from->scale + first_lane;
     int k, l;
-    for (k = 0; k < 9; ++k)
-        memcpy(of->v[k], from->v[k] + first_lane, sizeof of->v[k]);
+    for (k = 0; k < 9; k++) memcpy(of->v[k], from->v[k] + first_lane, sizeof of->v[k]);
     GXSP_EACH_LANE(l) {
         const int m = first_lane + l;
-        const float a0 = from->b[0][m], a1 = from->b[3][m], a2 = from->b[6][m], b0 = from->b[1][m], b1 = from->b[4][m], b2 = from->b[7][m];
+        const float a0 = from->b[0][m], a1 = from->b[3][m], a2 = from->b[6][m], b0 = from->b[1][m], b1 = from->b[4][m],
+                    b2 = from->b[7][m];
         const float c0 = from->b[2][m], c1 = from->b[5][m], c2 = from->b[8][m];
         const float first = a0 * a0 + a1 * a1 + a2 * a2, some = first > 1e-30f ? 1.0f : 0.0f;
         const float reach = gxsp_rsqrt(first + 1e-30f) * some;
@@ -1375,7 +1434,8 @@ static void gxsp_frame(const gxsp_columns *GXSP_RESTRICT from, int first_lane, g
         const float x = s0 <= s1 && s0 <= s2 ? 1.0f : 0.0f, y = (1 - x) * (s1 <= s2 ? 1.0f : 0.0f), z = 1 - x - y;
         const float part = x * u0 + y * u1 + z * u2;
         const float n0 = x - part * u0, n1 = y - part * u1, n2 = z - part * u2;
-        const float across = p0 * p0 + p1 * p1 + p2 * p2, wide = across > 1e-12f * first + 1e-30f ? 1.0f : 0.0f, thin = 1 - wide;
+        const float across = p0 * p0 + p1 * p1 + p2 * p2, wide = across > 1e-12f * first + 1e-30f ? 1.0f : 0.0f,
+                    thin = 1 - wide;
         const float q0 = wide * p0 + thin * n0, q1 = wide * p1 + thin * n1, q2 = wide * p2 + thin * n2;
         const float unit = gxsp_rsqrt(q0 * q0 + q1 * q1 + q2 * q2);
         const float w0 = q0 * unit, w1 = q1 * unit, w2 = q2 * unit;
@@ -1390,57 +1450,59 @@ static void gxsp_frame(const gxsp_columns *GXSP_RESTRICT from, int first_lane, g
 }
 
 /* Are the columns of b, the largest entry of which is 1, orthogonal to single precision in every lane? */
-static int gxsp_orthogonal(const gxsp_columns *GXSP_RESTRICT of)
-{
+static int gxsp_orthogonal(const gxsp_columns *GXSP_RESTRICT of) {
     float square[2 * GXSP_LANES], most = 0;
     int l;
     GXSP_EACH_OF_TWO(l) {
-        const float x = gxsp_column_product(of, 0, 1, l), y = gxsp_column_product(of, 0, 2, l), z = gxsp_column_product(of, 1, 2, l);
+        const float x = gxsp_column_product(of, 0, 1, l), y = gxsp_column_product(of, 0, 2, l),
+                    z = gxsp_column_product(of, 1, 2, l);
         square[l] = x * x + y * y + z * z;
     }
-    for (l = 0; l < 2 * GXSP_LANES; ++l)
-        most = square[l] > most ? square[l] : most;
+    for (l = 0; l < 2 * GXSP_LANES; l++) most = square[l] > most ? square[l] : most;
     return most < 1e-13f;
 }
 
-static inline float gxsp_larger(float a, float b)
-{
+static inline float gxsp_larger(float a, float b) {
     const float x = a < 0 ? -a : a, y = b < 0 ? -b : b;
     return x > y ? x : y;
 }
 
-/* An entry of what has others of size 1; 0 where that is far from being told apart in single precision: the next powers of such entries would be
- * denormal, over which processors take a hundred cycles. Bodies that fall have many. */
+/* An entry of what has others of size 1; 0 where that is far from being told apart in single precision: the next powers
+ * of such entries would be denormal, over which processors take a hundred cycles. Bodies that fall have many. */
 GXSP_INLINE float gxsp_clean(float entry) { return entry < 1e-9f && entry > -1e-9f ? 0.0f : entry; }
 
 /* F = 1 + G of a block as columns at first_lane, by its largest entry, and V = 1 */
-static void gxsp_columns_begin(gxsp_lanes *GXSP_RESTRICT g, int first_lane, gxsp_columns *GXSP_RESTRICT of)
-{
+static void gxsp_columns_begin(gxsp_lanes *GXSP_RESTRICT g, int first_lane, gxsp_columns *GXSP_RESTRICT of) {
     int k, l;
     GXSP_EACH_LANE(l) {
         const int m = first_lane + l;
-        const float f0 = (float)(g[0][l] + 1), f1 = (float)g[1][l], f2 = (float)g[2][l], f3 = (float)g[3][l], f4 = (float)(g[4][l] + 1),
-                    f5 = (float)g[5][l], f6 = (float)g[6][l], f7 = (float)g[7][l], f8 = (float)(g[8][l] + 1);
-        const float a = gxsp_larger(gxsp_larger(f0, f1), gxsp_larger(f2, f3)), b = gxsp_larger(gxsp_larger(f4, f5), gxsp_larger(f6, f7));
-        const float largest = gxsp_larger(gxsp_larger(a, b), f8), scale = largest > 1e-30f ? largest : 1.0f, inverse = 1 / scale;
+        const float f0 = (float)(g[0][l] + 1), f1 = (float)g[1][l], f2 = (float)g[2][l], f3 = (float)g[3][l],
+                    f4 = (float)(g[4][l] + 1), f5 = (float)g[5][l], f6 = (float)g[6][l], f7 = (float)g[7][l],
+                    f8 = (float)(g[8][l] + 1);
+        const float a = gxsp_larger(gxsp_larger(f0, f1), gxsp_larger(f2, f3)),
+                    b = gxsp_larger(gxsp_larger(f4, f5), gxsp_larger(f6, f7));
+        const float largest = gxsp_larger(gxsp_larger(a, b), f8), scale = largest > 1e-30f ? largest : 1.0f,
+                    inverse = 1 / scale;
         of->scale[m] = scale;
-        of->b[0][m] = gxsp_clean(inverse * f0), of->b[1][m] = gxsp_clean(inverse * f1), of->b[2][m] = gxsp_clean(inverse * f2);
-        of->b[3][m] = gxsp_clean(inverse * f3), of->b[4][m] = gxsp_clean(inverse * f4), of->b[5][m] = gxsp_clean(inverse * f5);
-        of->b[6][m] = gxsp_clean(inverse * f6), of->b[7][m] = gxsp_clean(inverse * f7), of->b[8][m] = gxsp_clean(inverse * f8);
+        of->b[0][m] = gxsp_clean(inverse * f0), of->b[1][m] = gxsp_clean(inverse * f1),
+        of->b[2][m] = gxsp_clean(inverse * f2);
+        of->b[3][m] = gxsp_clean(inverse * f3), of->b[4][m] = gxsp_clean(inverse * f4),
+        of->b[5][m] = gxsp_clean(inverse * f5);
+        of->b[6][m] = gxsp_clean(inverse * f6), of->b[7][m] = gxsp_clean(inverse * f7),
+        of->b[8][m] = gxsp_clean(inverse * f8);
     }
-    for (k = 0; k < 9; ++k)
-        GXSP_EACH_LANE(l) of->v[k][first_lane + l] = k % 4 == 0 ? 1.0f : 0.0f;
+    for (k = 0; k < 9; k++) GXSP_EACH_LANE(l) of->v[k][first_lane + l] = k % 4 == 0 ? 1.0f : 0.0f;
 }
 
-/* F = 1 + G = U diag(s) V^T of two blocks, or of one if last is NULL, by one-sided Jacobi, every lane the same number of sweeps.
- * of: as many. */
-static void gxsp_decompose(gxsp_lanes *first, gxsp_lanes *last, gxsp_svd *of)
-{
+/* F = 1 + G = U diag(s) V^T of two blocks, or of one if last is NULL, by one-sided Jacobi, every lane the same number
+ * of sweeps. of: as many. */
+static void gxsp_decompose(gxsp_lanes *first, gxsp_lanes *last, gxsp_svd *of) {
     gxsp_columns at;
     int sweep;
     gxsp_columns_begin(first, 0, &at);
     gxsp_columns_begin(last ? last : first, GXSP_LANES, &at);
-    for (sweep = 0; sweep < 4 && !gxsp_orthogonal(&at); ++sweep) { /* quadratic at the end: 4 reach single precision for extreme F too */
+    /* quadratic at the end: 4 reach single precision for extreme F too */
+    for (sweep = 0; sweep < 4 && !gxsp_orthogonal(&at); sweep++) {
         gxsp_orthogonalise(&at, 0, 1);
         gxsp_orthogonalise(&at, 0, 2);
         gxsp_orthogonalise(&at, 1, 2);
@@ -1449,13 +1511,11 @@ static void gxsp_decompose(gxsp_lanes *first, gxsp_lanes *last, gxsp_svd *of)
     gxsp_order_columns(&at, 0, 2);
     gxsp_order_columns(&at, 1, 2);
     gxsp_frame(&at, 0, &of[0]);
-    if (last)
-        gxsp_frame(&at, GXSP_LANES, &of[1]);
+    if (last) gxsp_frame(&at, GXSP_LANES, &of[1]);
 }
 
 /* Cofactors of a 3x3: the derivative of its determinant. */
-static void gxsp_cofactors(const double *a, double *cofactors)
-{
+static void gxsp_cofactors(const double *a, double *cofactors) {
     cofactors[0] = a[4] * a[8] - a[5] * a[7];
     cofactors[1] = a[5] * a[6] - a[3] * a[8];
     cofactors[2] = a[3] * a[7] - a[4] * a[6];
@@ -1467,66 +1527,60 @@ static void gxsp_cofactors(const double *a, double *cofactors)
     cofactors[8] = a[0] * a[4] - a[1] * a[3];
 }
 
-/* One step of Newton's method for the rotation R of F = R S: R (1 + skew omega), (tr S - S) omega = axis of S's skew part, then
- * orthogonal again to second order. Left alone where tr S - S is singular: R is not unique there. */
-static void gxsp_polish_rotation(const double *f, double *rotation)
-{
+/* One step of Newton's method for the rotation R of F = R S: R (1 + skew omega), (tr S - S) omega = axis of S's skew
+ * part, then orthogonal again to second order. Left alone where tr S - S is singular: R is not unique there. */
+static void gxsp_polish_rotation(const double *f, double *rotation) {
     double s[9], a[9], inverse[9], axis[3], omega[3], turned[9], square[9], determinant, trace;
     int r, c, k;
-    for (r = 0; r < 3; ++r)
-        for (c = 0; c < 3; ++c)
+    for (r = 0; r < 3; r++)
+        for (c = 0; c < 3; c++)
             s[3 * r + c] = rotation[r] * f[c] + rotation[3 + r] * f[3 + c] + rotation[6 + r] * f[6 + c];
     trace = s[0] + s[4] + s[8];
-    for (r = 0; r < 3; ++r)
-        for (c = 0; c < 3; ++c)
-            a[3 * r + c] = (r == c ? trace : 0) - 0.5 * (s[3 * r + c] + s[3 * c + r]);
+    for (r = 0; r < 3; r++)
+        for (c = 0; c < 3; c++) a[3 * r + c] = (r == c ? trace : 0) - 0.5 * (s[3 * r + c] + s[3 * c + r]);
     gxsp_cofactors(a, inverse);
     determinant = a[0] * inverse[0] + a[1] * inverse[1] + a[2] * inverse[2];
     axis[0] = s[7] - s[5], axis[1] = s[2] - s[6], axis[2] = s[3] - s[1];
-    if (fabs(determinant) <= 1e-6 * fabs(trace * trace * trace))
-        return;
-    for (r = 0; r < 3; ++r)
+    if (fabs(determinant) <= 1e-6 * fabs(trace * trace * trace)) return;
+    for (r = 0; r < 3; r++)
         omega[r] = (inverse[r] * axis[0] + inverse[3 + r] * axis[1] + inverse[6 + r] * axis[2]) / determinant;
-    for (r = 0; r < 3; ++r) {
+    for (r = 0; r < 3; r++) {
         const double *from = rotation + 3 * r;
         turned[3 * r] = from[0] + from[1] * omega[2] - from[2] * omega[1];
         turned[3 * r + 1] = from[1] - from[0] * omega[2] + from[2] * omega[0];
         turned[3 * r + 2] = from[2] + from[0] * omega[1] - from[1] * omega[0];
     }
-    for (r = 0; r < 3; ++r)
-        for (c = 0; c < 3; ++c)
-            square[3 * r + c] = (r == c ? 1.5 : 0) -
-                0.5 * (turned[r] * turned[c] + turned[3 + r] * turned[3 + c] + turned[6 + r] * turned[6 + c]);
-    for (r = 0; r < 3; ++r)
-        for (c = 0; c < 3; ++c) {
+    for (r = 0; r < 3; r++)
+        for (c = 0; c < 3; c++)
+            square[3 * r + c] = (r == c ? 1.5 : 0) - 0.5 * (turned[r] * turned[c] + turned[3 + r] * turned[3 + c] +
+                                                            turned[6 + r] * turned[6 + c]);
+    for (r = 0; r < 3; r++)
+        for (c = 0; c < 3; c++) {
             double sum = 0;
-            for (k = 0; k < 3; ++k)
-                sum += turned[3 * r + k] * square[3 * k + c];
+            for (k = 0; k < 3; k++) sum += turned[3 * r + k] * square[3 * k + c];
             rotation[3 * r + c] = sum;
         }
 }
 
-/* Fixed corotated [Stomakhin 2012]: psi = mu |F - R|^2 + lambda/2 (J - 1)^2, P = 2 mu (F - R) + lambda (J - 1) cof F, R the
- * rotation of F's polar decomposition. R = U V^T is known to single precision; a Newton step for the rotation that makes
- * R^T F symmetric, (tr S - S) omega = its skew part, squares the error. */
-static void gxsp_corotated(gxsp_state *GXSP_RESTRICT s)
-{
+/* Fixed corotated [Stomakhin 2012]: psi = mu |F - R|^2 + lambda/2 (J - 1)^2, P = 2 mu (F - R) + lambda (J - 1) cof F, R
+ * the rotation of F's polar decomposition. R = U V^T is known to single precision; a Newton step for the rotation that
+ * makes R^T F symmetric, (tr S - S) omega = its skew part, squares the error. */
+static void gxsp_corotated(gxsp_state *GXSP_RESTRICT s) {
     gxsp_svd of;
     int l, r, c, k, round;
     gxsp_decompose(s->g, NULL, &of);
-    for (l = 0; l < GXSP_LANES; ++l) {
+    for (l = 0; l < GXSP_LANES; l++) {
         double f[9], rotation[9], cofactor[9], j, strain = 0;
-        for (k = 0; k < 9; ++k)
-            f[k] = s->g[k][l] + (k % 4 == 0 ? 1 : 0);
-        for (r = 0; r < 3; ++r)
-            for (c = 0; c < 3; ++c)
-                rotation[3 * r + c] = (double)of.u[3 * r][l] * of.v[3 * c][l] + (double)of.u[3 * r + 1][l] * of.v[3 * c + 1][l] +
+        for (k = 0; k < 9; k++) f[k] = s->g[k][l] + (k % 4 == 0 ? 1 : 0);
+        for (r = 0; r < 3; r++)
+            for (c = 0; c < 3; c++)
+                rotation[3 * r + c] = (double)of.u[3 * r][l] * of.v[3 * c][l] +
+                                      (double)of.u[3 * r + 1][l] * of.v[3 * c + 1][l] +
                                       (double)of.u[3 * r + 2][l] * of.v[3 * c + 2][l];
-        for (round = 0; round < 2; ++round)
-            gxsp_polish_rotation(f, rotation);
+        for (round = 0; round < 2; round++) gxsp_polish_rotation(f, rotation);
         gxsp_cofactors(f, cofactor);
         j = f[0] * cofactor[0] + f[1] * cofactor[1] + f[2] * cofactor[2] - 1;
-        for (k = 0; k < 9; ++k) {
+        for (k = 0; k < 9; k++) {
             double gap = f[k] - rotation[k];
             strain += gap * gap;
             s->p[k][l] = 2 * s->mu[l] * gap + s->lambda[l] * j * cofactor[k];
@@ -1537,23 +1591,20 @@ static void gxsp_corotated(gxsp_state *GXSP_RESTRICT s)
 }
 
 /* The caller's energy, one element after the other */
-static void gxsp_custom(gxsp_state *s)
-{
+static void gxsp_custom(gxsp_state *s) {
     int k, l;
-    for (l = 0; l < GXSP_LANES; ++l) {
+    for (l = 0; l < GXSP_LANES; l++) {
         double f[9], p[9];
-        for (k = 0; k < 9; ++k)
-            f[k] = s->g[k][l] + (k % 4 == 0 ? 1 : 0);
+        for (k = 0; k < 9; k++) f[k] = s->g[k][l] + (k % 4 == 0 ? 1 : 0);
         s->energy[l] = s->mu[l] * s->material[l]->energy(s->material[l]->user, f, p, NULL);
-        s->size[l] = fabs(s->energy[l]) + s->lambda[l]; /* its own rounding is not known: that of terms as large as its stiffness */
-        for (k = 0; k < 9; ++k)
-            s->p[k][l] = s->mu[l] * p[k];
+        /* its own rounding is not known: that of terms as large as its stiffness */
+        s->size[l] = fabs(s->energy[l]) + s->lambda[l];
+        for (k = 0; k < 9; k++) s->p[k][l] = s->mu[l] * p[k];
     }
 }
 
 /* Energy and stress of a block, from s->g. */
-static void gxsp_material_state(gxs_material_kind kind, gxsp_state *s)
-{
+static void gxsp_material_state(gxs_material_kind kind, gxsp_state *s) {
     switch (kind) {
     case GXS_CUSTOM: gxsp_custom(s); break;
     case GXS_ST_VENANT_KIRCHHOFF: gxsp_kirchhoff(s, 1); break;
@@ -1563,17 +1614,17 @@ static void gxsp_material_state(gxs_material_kind kind, gxsp_state *s)
     }
 }
 
-/* >>tangent: Hessian of psi at F = diag(s), projected. Every isotropic energy has this form: a 3x3 of the stretches, and for the
- * pair (F_ij, F_ji), k the third index, a 2x2 with eigenvalues flip = (psi_i - psi_j) / (s_i - s_j) for F_ij = F_ji and
- * twist = (psi_i + psi_j) / (s_i + s_j) for F_ij = -F_ji, psi_i = d psi / d s_i. even, odd: half their sum and difference. */
+/* >>tangent: Hessian of psi at F = diag(s), projected. Every isotropic energy has this form: a 3x3 of the stretches,
+ * and for the pair (F_ij, F_ji), k the third index, a 2x2 with eigenvalues flip = (psi_i - psi_j) / (s_i - s_j) for
+ * F_ij = F_ji and twist = (psi_i + psi_j) / (s_i + s_j) for F_ij = -F_ji, psi_i = d psi / d s_i. even, odd: half their
+ * sum and difference. */
 
 typedef struct gxsp_principal {
     gxsp_singles mu, lambda, weight;
     gxsp_singles stretch[6], flip[3], twist[3];
 } gxsp_principal;
 
-static void gxsp_neo_hookean_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to)
-{
+static void gxsp_neo_hookean_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to) {
     int l;
     GXSP_EACH_LANE(l) { /* eigensystem of [Smith 2018] */
         const float a = of->s[0][l], b = of->s[1][l], c = of->s[2][l], mu = to->mu[l], lambda = to->lambda[l];
@@ -1592,8 +1643,7 @@ static void gxsp_neo_hookean_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_pr
     }
 }
 
-static void gxsp_kirchhoff_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to)
-{
+static void gxsp_kirchhoff_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to) {
     int l;
     GXSP_EACH_LANE(l) { /* psi_i = s_i (mu (s_i^2 - 1) + lambda/2 sum (s^2 - 1)) */
         const float a = of->s[0][l], b = of->s[1][l], c = of->s[2][l], mu = to->mu[l], lambda = to->lambda[l];
@@ -1610,13 +1660,13 @@ static void gxsp_kirchhoff_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_prin
     }
 }
 
-static void gxsp_corotated_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to)
-{
+static void gxsp_corotated_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to) {
     int l;
     GXSP_EACH_LANE(l) { /* psi_i = 2 mu (s_i - 1) + lambda (J - 1) s_j s_k */
         const float a = of->s[0][l], b = of->s[1][l], c = of->s[2][l], mu = to->mu[l], lambda = to->lambda[l];
         const float x = b * c, y = c * a, z = a * b, pressure = lambda * (a * x - 1), least = 1e-6f;
-        const float bc = b + c > least ? b + c : least, ca = c + a > least ? c + a : least, ab = a + b > least ? a + b : least;
+        const float bc = b + c > least ? b + c : least, ca = c + a > least ? c + a : least,
+                    ab = a + b > least ? a + b : least;
         to->stretch[0][l] = 2 * mu + lambda * x * x;
         to->stretch[1][l] = lambda * x * y + pressure * c;
         to->stretch[2][l] = lambda * x * z + pressure * b;
@@ -1630,11 +1680,9 @@ static void gxsp_corotated_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_prin
 }
 
 /* The same at every F: U and V are 1. */
-static void gxsp_linear_principal(gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to)
-{
+static void gxsp_linear_principal(gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to) {
     int k, l;
-    for (k = 0; k < 9; ++k)
-        GXSP_EACH_LANE(l) of->u[k][l] = of->v[k][l] = k % 4 == 0 ? 1.0f : 0.0f;
+    for (k = 0; k < 9; k++) GXSP_EACH_LANE(l) of->u[k][l] = of->v[k][l] = k % 4 == 0 ? 1.0f : 0.0f;
     GXSP_EACH_LANE(l) {
         const float mu = to->mu[l], lambda = to->lambda[l];
         to->stretch[0][l] = to->stretch[3][l] = to->stretch[5][l] = 2 * mu + lambda;
@@ -1645,17 +1693,15 @@ static void gxsp_linear_principal(gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GX
 }
 
 /* One Jacobi turn of the symmetric a (n x n) that makes a_ij zero; the turn also goes to the columns of v. */
-static void gxsp_diagonalise(double *a, double *v, int n, int i, int j)
-{
+static void gxsp_diagonalise(double *a, double *v, int n, int i, int j) {
     double zeta, t, c, s;
     int k;
-    if (a[n * i + j] * a[n * i + j] <= 1e-32 * fabs(a[n * i + i] * a[n * j + j]))
-        return;
+    if (a[n * i + j] * a[n * i + j] <= 1e-32 * fabs(a[n * i + i] * a[n * j + j])) return;
     zeta = (a[n * j + j] - a[n * i + i]) / (2 * a[n * i + j]);
     t = (zeta < 0 ? -1 : 1) / (fabs(zeta) + sqrt(1 + zeta * zeta));
     c = 1 / sqrt(1 + t * t);
     s = c * t;
-    for (k = 0; k < n; ++k) {
+    for (k = 0; k < n; k++) {
         double ai = a[n * i + k], aj = a[n * j + k];
         a[n * i + k] = c * ai - s * aj, a[n * j + k] = s * ai + c * aj;
     }
@@ -1667,42 +1713,33 @@ static void gxsp_diagonalise(double *a, double *v, int n, int i, int j)
 }
 
 /* Replaces the symmetric a (n x n, n at most 9) by the nearest semi-definite one: negative eigenvalues become 0. */
-static void gxsp_project_symmetric(double *a, int n)
-{
+static void gxsp_project_symmetric(double *a, int n) {
     double v[81], value[9];
     int sweep, i, j, k;
-    for (k = 0; k < n * n; ++k)
-        v[k] = k % (n + 1) == 0 ? 1 : 0;
-    for (sweep = 0; sweep < 5 + n; ++sweep) /* converges quadratically: 5 reach rounding for 3x3 */
-        for (i = 0; i < n; ++i)
-            for (j = i + 1; j < n; ++j)
-                gxsp_diagonalise(a, v, n, i, j);
-    for (k = 0; k < n; ++k)
-        value[k] = a[(n + 1) * k] > 0 ? a[(n + 1) * k] : 0;
-    for (i = 0; i < n; ++i)
-        for (j = 0; j < n; ++j) {
+    for (k = 0; k < n * n; k++) v[k] = k % (n + 1) == 0 ? 1 : 0;
+    for (sweep = 0; sweep < 5 + n; sweep++) /* converges quadratically: 5 reach rounding for 3x3 */
+        for (i = 0; i < n; i++)
+            for (j = i + 1; j < n; j++) gxsp_diagonalise(a, v, n, i, j);
+    for (k = 0; k < n; k++) value[k] = a[(n + 1) * k] > 0 ? a[(n + 1) * k] : 0;
+    for (i = 0; i < n; i++)
+        for (j = 0; j < n; j++) {
             a[n * i + j] = 0;
-            for (k = 0; k < n; ++k)
-                a[n * i + j] += value[k] * v[n * i + k] * v[n * j + k];
+            for (k = 0; k < n; k++) a[n * i + j] += value[k] * v[n * i + k] * v[n * j + k];
         }
 }
 
-static void gxsp_project_lane(gxsp_singles *stretch, int lane)
-{
+static void gxsp_project_lane(gxsp_singles *stretch, int lane) {
     double a[9];
     int i, j;
-    for (i = 0; i < 3; ++i)
-        for (j = i; j < 3; ++j)
-            a[3 * i + j] = a[3 * j + i] = (double)stretch[gxsp_packed3(i, j)][lane];
+    for (i = 0; i < 3; i++)
+        for (j = i; j < 3; j++) a[3 * i + j] = a[3 * j + i] = (double)stretch[gxsp_packed3(i, j)][lane];
     gxsp_project_symmetric(a, 3);
-    for (i = 0; i < 3; ++i)
-        for (j = i; j < 3; ++j)
-            stretch[gxsp_packed3(i, j)][lane] = (float)a[3 * i + j];
+    for (i = 0; i < 3; i++)
+        for (j = i; j < 3; j++) stretch[gxsp_packed3(i, j)][lane] = (float)a[3 * i + j];
 }
 
 /* Is every lane's 3x3 of the stretches positive definite? (leading minors by elimination) */
-static void gxsp_project(gxsp_principal *GXSP_RESTRICT of)
-{
+static void gxsp_project(gxsp_principal *GXSP_RESTRICT of) {
     gxsp_singles least;
     int l;
     GXSP_EACH_LANE(l) {
@@ -1714,60 +1751,56 @@ static void gxsp_project(gxsp_principal *GXSP_RESTRICT of)
         const float low = a < d ? a : d;
         least[l] = low < f ? low : f;
     }
-    for (l = 0; l < GXSP_LANES; ++l)
-        if (!(least[l] > 0))
-            gxsp_project_lane(of->stretch, l);
+    for (l = 0; l < GXSP_LANES; l++)
+        if (!(least[l] > 0)) gxsp_project_lane(of->stretch, l);
 }
 
 /* The Hessian of a block of the caller's energy at s->g, times scale, exact or projected */
-static void gxsp_general_make(const gxsp_rest *rest, gxsp_lanes *gradients, double scale, int exact, gxsp_state *s, gxsp_tangent *tangent,
-                              gxsp_general *general)
-{
+static void gxsp_general_make(const gxsp_rest *rest, gxsp_lanes *gradients, double scale, int exact, gxsp_state *s,
+                              gxsp_tangent *tangent, gxsp_general *general) {
     int k, l, i, j;
-    for (l = 0; l < GXSP_LANES; ++l) {
+    for (l = 0; l < GXSP_LANES; l++) {
         double f[9], h[81];
-        for (k = 0; k < 9; ++k) {
+        for (k = 0; k < 9; k++) {
             f[k] = s->g[k][l] + (k % 4 == 0 ? 1 : 0);
             tangent->gradient[k][l] = (float)gradients[k][l];
         }
         s->material[l]->energy(s->material[l]->user, f, NULL, h);
-        if (!exact)
-            gxsp_project_symmetric(h, 9);
-        for (i = 0; i < 9; ++i)
-            for (j = i; j < 9; ++j)
+        if (!exact) gxsp_project_symmetric(h, 9);
+        for (i = 0; i < 9; i++)
+            for (j = i; j < 9; j++)
                 general->hessian[gxsp_packed9(i, j)][l] = (float)(scale * rest->weight[l] * s->mu[l] * h[9 * i + j]);
     }
 }
 
 /* Makes elements collapsed to a point, F = 0, small instead: F = GXSP_NUDGE. Were there any? */
-static int gxsp_nudge(gxsp_lanes *g)
-{
+static int gxsp_nudge(gxsp_lanes *g) {
     gxsp_lanes square;
     int k, l, any = 0;
     GXSP_EACH_LANE(l) square[l] = 0;
-    for (k = 0; k < 9; ++k)
-        GXSP_EACH_LANE(l) {
+    for (k = 0; k < 9; k++) GXSP_EACH_LANE(l) {
             const double f = g[k][l] + (k % 4 == 0 ? 1 : 0);
             square[l] += f * f;
         }
-    for (l = 0; l < GXSP_LANES; ++l)
+    for (l = 0; l < GXSP_LANES; l++)
         if (square[l] < GXSP_COLLAPSED * GXSP_COLLAPSED) {
-            for (k = 0; k < 9; ++k)
-                g[k][l] = k % 4 == 0 ? GXSP_NUDGE - 1 : 0;
+            for (k = 0; k < 9; k++) g[k][l] = k % 4 == 0 ? GXSP_NUDGE - 1 : 0;
             any = 1;
         }
     return any;
 }
 
-/* sqrt 2 times the unit quaternions of rotations u, by rows, from the largest of their four numbers: 4 q_i q_j are sums of entries of u */
-static void gxsp_pack_rotation(gxsp_singles *GXSP_RESTRICT u, gxsp_singles *GXSP_RESTRICT frame)
-{
+/* sqrt 2 times the unit quaternions of rotations u, by rows, from the largest of their four numbers: 4 q_i q_j are sums
+ * of entries of u */
+static void gxsp_pack_rotation(gxsp_singles *GXSP_RESTRICT u, gxsp_singles *GXSP_RESTRICT frame) {
     int l;
     GXSP_EACH_LANE(l) {
         const float a = u[0][l], b = u[4][l], c = u[8][l];
         const float xx = 1 + a - b - c, yy = 1 - a + b - c, zz = 1 - a - b + c, ww = 1 + a + b + c;
-        const float xy = gxsp_clean(u[1][l] + u[3][l]), xz = gxsp_clean(u[2][l] + u[6][l]), yz = gxsp_clean(u[5][l] + u[7][l]);
-        const float xw = gxsp_clean(u[7][l] - u[5][l]), yw = gxsp_clean(u[2][l] - u[6][l]), zw = gxsp_clean(u[3][l] - u[1][l]);
+        const float xy = gxsp_clean(u[1][l] + u[3][l]), xz = gxsp_clean(u[2][l] + u[6][l]),
+                    yz = gxsp_clean(u[5][l] + u[7][l]);
+        const float xw = gxsp_clean(u[7][l] - u[5][l]), yw = gxsp_clean(u[2][l] - u[6][l]),
+                    zw = gxsp_clean(u[3][l] - u[1][l]);
         const float first = xx > yy ? xx : yy, second = zz > ww ? zz : ww;
         const float half = first > second ? 1.0f : 0.0f, one = half * (xx > yy ? 1.0f : 0.0f), two = half - one;
         const float three = (1 - half) * (zz > ww ? 1.0f : 0.0f), four = 1 - half - three;
@@ -1778,24 +1811,22 @@ static void gxsp_pack_rotation(gxsp_singles *GXSP_RESTRICT u, gxsp_singles *GXSP
     }
 }
 
-/* What Hessians of one or two blocks of a kind are made from, where it is needed; last: NULL if there is but one. Was an element
- * collapsed? */
-static int gxsp_tangent_begin(gxs_material_kind kind, gxsp_state *first, gxsp_state *last, gxsp_svd *of)
-{
+/* What Hessians of one or two blocks of a kind are made from, where it is needed; last: NULL if there is but one. Was
+ * an element collapsed? */
+static int gxsp_tangent_begin(gxs_material_kind kind, gxsp_state *first, gxsp_state *last, gxsp_svd *of) {
     int collapsed;
-    if (kind == GXS_CUSTOM || kind == GXS_LINEAR)
-        return 0;
+    if (kind == GXS_CUSTOM || kind == GXS_LINEAR) return 0;
     collapsed = gxsp_nudge(first->g);
     collapsed |= last && gxsp_nudge(last->g);
     gxsp_decompose(first->g, last ? last->g : NULL, of);
     return collapsed;
 }
 
-/* What principal Hessians are made from, such that single precision holds them: moduli beside their sum, by which weights grow, and stretches that
- * are not too large */
-static void gxsp_scale_principal(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest, double scale, gxsp_state *GXSP_RESTRICT s,
-                                 gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to)
-{
+/* What principal Hessians are made from, such that single precision holds them: moduli beside their sum, by which
+ * weights grow, and stretches that are not too large */
+static void gxsp_scale_principal(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest, double scale,
+                                 gxsp_state *GXSP_RESTRICT s, gxsp_svd *GXSP_RESTRICT of,
+                                 gxsp_principal *GXSP_RESTRICT to) {
     gxsp_lanes weight;
     int k, l;
     GXSP_EACH_LANE(l) {
@@ -1804,22 +1835,24 @@ static void gxsp_scale_principal(gxs_material_kind kind, const gxsp_rest *GXSP_R
         to->lambda[l] = (float)(s->lambda[l] / modulus);
         weight[l] = scale * rest->weight[l] * modulus;
     }
-    for (l = 0; l < GXSP_LANES && kind != GXS_LINEAR; ++l) { /* whose Hessians have no stretches */
-        const double a = (double)of->s[0][l] * (double)of->s[0][l], b = (double)of->s[1][l] * (double)of->s[1][l], size = a * (b > 1 ? b : 1);
+    for (l = 0; l < GXSP_LANES && kind != GXS_LINEAR; l++) { /* whose Hessians have no stretches */
+        const double a = (double)of->s[0][l] * (double)of->s[0][l], b = (double)of->s[1][l] * (double)of->s[1][l],
+                     size = a * (b > 1 ? b : 1);
         if (size > GXSP_STRETCHED) {
-            const double most = weight[l] > GXSP_HEAVIEST ? weight[l] : GXSP_HEAVIEST, grown = weight[l] * (size / GXSP_STRETCHED);
-            for (k = 0; k < 3; ++k)
-                of->s[k][l] = (float)((double)of->s[k][l] / sqrt(sqrt(size / GXSP_STRETCHED)));
+            const double most = weight[l] > GXSP_HEAVIEST ? weight[l] : GXSP_HEAVIEST,
+                         grown = weight[l] * (size / GXSP_STRETCHED);
+            for (k = 0; k < 3; k++) of->s[k][l] = (float)((double)of->s[k][l] / sqrt(sqrt(size / GXSP_STRETCHED)));
             weight[l] = grown < most ? grown : most;
         }
     }
     GXSP_EACH_LANE(l) to->weight[l] = (float)weight[l];
 }
 
-/* The Hessian of a block at s->g, times scale, exact or projected. of: by gxsp_tangent_begin. general: of GXS_CUSTOM only, else NULL. */
-static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest, gxsp_lanes *GXSP_RESTRICT gradients, double scale, int exact,
-                              gxsp_state *s, gxsp_svd *GXSP_RESTRICT of, gxsp_tangent *GXSP_RESTRICT tangent, gxsp_general *general)
-{
+/* The Hessian of a block at s->g, times scale, exact or projected. of: by gxsp_tangent_begin. general: of GXS_CUSTOM
+ * only, else NULL. */
+static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest,
+                              gxsp_lanes *GXSP_RESTRICT gradients, double scale, int exact, gxsp_state *s,
+                              gxsp_svd *GXSP_RESTRICT of, gxsp_tangent *GXSP_RESTRICT tangent, gxsp_general *general) {
     const float least = exact ? -FLT_MAX : 0;
     gxsp_principal principal;
     int k, l, r, c;
@@ -1834,23 +1867,20 @@ static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_REST
     case GXS_LINEAR: gxsp_linear_principal(of, &principal); break;
     default: gxsp_neo_hookean_principal(of, &principal); break;
     }
-    if (!exact)
-        gxsp_project(&principal);
-    for (k = 0; k < 6; ++k)
-        GXSP_EACH_LANE(l) tangent->stretch[k][l] = principal.weight[l] * principal.stretch[k][l];
-    for (k = 0; k < 3; ++k)
-        GXSP_EACH_LANE(l) {
+    if (!exact) gxsp_project(&principal);
+    for (k = 0; k < 6; k++) GXSP_EACH_LANE(l) tangent->stretch[k][l] = principal.weight[l] * principal.stretch[k][l];
+    for (k = 0; k < 3; k++) GXSP_EACH_LANE(l) {
             const float flip = principal.flip[k][l] > least ? principal.flip[k][l] : least;
             const float twist = principal.twist[k][l] > least ? principal.twist[k][l] : least;
             tangent->even[k][l] = 0.5f * principal.weight[l] * (flip + twist);
             tangent->odd[k][l] = 0.5f * principal.weight[l] * (flip - twist);
         }
     gxsp_pack_rotation(of->u, tangent->frame);
-    for (r = 0; r < 3; ++r)
-        for (c = 0; c < 3; ++c)
-            GXSP_EACH_LANE(l)
-                tangent->gradient[3 * r + c][l] = (float)gradients[3 * r][l] * of->v[c][l] + (float)gradients[3 * r + 1][l] * of->v[3 + c][l] +
-                                                  (float)gradients[3 * r + 2][l] * of->v[6 + c][l];
+    for (r = 0; r < 3; r++)
+        for (c = 0; c < 3; c++) GXSP_EACH_LANE(l)
+    tangent->gradient[3 * r + c][l] = (float)gradients[3 * r][l] * of->v[c][l] +
+                                      (float)gradients[3 * r + 1][l] * of->v[3 + c][l] +
+                                      (float)gradients[3 * r + 2][l] * of->v[6 + c][l];
 }
 
 /* >>element: passes over one block. Vectors of its corners: x[3 corner + axis][lane]. */
@@ -1859,26 +1889,29 @@ static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_REST
 static const int gxsp_packed_mass[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
 
 /* Gradients of shape functions 1 ... 3 of elements whose corners are at x, by rows; 0 in lanes without weight */
-static void gxsp_gradients_make(const double *GXSP_RESTRICT weight, gxsp_lanes *GXSP_RESTRICT x, gxsp_lanes *GXSP_RESTRICT gradients)
-{
+static void gxsp_gradients_make(const double *GXSP_RESTRICT weight, gxsp_lanes *GXSP_RESTRICT x,
+                                gxsp_lanes *GXSP_RESTRICT gradients) {
     int l;
     GXSP_EACH_LANE(l) {
-        const double a0 = x[3][l] - x[0][l], a1 = x[4][l] - x[1][l], a2 = x[5][l] - x[2][l], b0 = x[6][l] - x[0][l], b1 = x[7][l] - x[1][l],
-                     b2 = x[8][l] - x[2][l], c0 = x[9][l] - x[0][l], c1 = x[10][l] - x[1][l], c2 = x[11][l] - x[2][l];
-        const double g0 = b1 * c2 - b2 * c1, g1 = b2 * c0 - b0 * c2, g2 = b0 * c1 - b1 * c0, determinant = a0 * g0 + a1 * g1 + a2 * g2;
+        const double a0 = x[3][l] - x[0][l], a1 = x[4][l] - x[1][l], a2 = x[5][l] - x[2][l], b0 = x[6][l] - x[0][l],
+                     b1 = x[7][l] - x[1][l], b2 = x[8][l] - x[2][l], c0 = x[9][l] - x[0][l], c1 = x[10][l] - x[1][l],
+                     c2 = x[11][l] - x[2][l];
+        const double g0 = b1 * c2 - b2 * c1, g1 = b2 * c0 - b0 * c2, g2 = b0 * c1 - b1 * c0,
+                     determinant = a0 * g0 + a1 * g1 + a2 * g2;
         const double scale = (weight[l] > 0 ? 1.0 : 0.0) / (weight[l] > 0 ? determinant : 1.0);
         gradients[0][l] = scale * g0, gradients[1][l] = scale * g1, gradients[2][l] = scale * g2;
-        gradients[3][l] = scale * (c1 * a2 - c2 * a1), gradients[4][l] = scale * (c2 * a0 - c0 * a2), gradients[5][l] = scale * (c0 * a1 - c1 * a0);
-        gradients[6][l] = scale * (a1 * b2 - a2 * b1), gradients[7][l] = scale * (a2 * b0 - a0 * b2), gradients[8][l] = scale * (a0 * b1 - a1 * b0);
+        gradients[3][l] = scale * (c1 * a2 - c2 * a1), gradients[4][l] = scale * (c2 * a0 - c0 * a2),
+        gradients[5][l] = scale * (c0 * a1 - c1 * a0);
+        gradients[6][l] = scale * (a1 * b2 - a2 * b1), gradients[7][l] = scale * (a2 * b0 - a0 * b2),
+        gradients[8][l] = scale * (a0 * b1 - a1 * b0);
     }
 }
 
 /* G = sum (u_i - u_0) grad N_i, exactly 0 for translations */
-static void gxsp_block_gradient(gxsp_lanes *GXSP_RESTRICT gradients, gxsp_lanes *GXSP_RESTRICT x, gxsp_lanes *GXSP_RESTRICT g)
-{
+static void gxsp_block_gradient(gxsp_lanes *GXSP_RESTRICT gradients, gxsp_lanes *GXSP_RESTRICT x,
+                                gxsp_lanes *GXSP_RESTRICT g) {
     int r, l;
-    for (r = 0; r < 3; ++r)
-        GXSP_EACH_LANE(l) {
+    for (r = 0; r < 3; r++) GXSP_EACH_LANE(l) {
             const double a = x[3 + r][l] - x[r][l], b = x[6 + r][l] - x[r][l], c = x[9 + r][l] - x[r][l];
             g[3 * r][l] = a * gradients[0][l] + b * gradients[3][l] + c * gradients[6][l];
             g[3 * r + 1][l] = a * gradients[1][l] + b * gradients[4][l] + c * gradients[7][l];
@@ -1887,12 +1920,10 @@ static void gxsp_block_gradient(gxsp_lanes *GXSP_RESTRICT gradients, gxsp_lanes 
 }
 
 /* force += weight x P : grad N; the four add up to zero but for rounding */
-static void gxsp_block_force(const double *GXSP_RESTRICT weight, gxsp_lanes *GXSP_RESTRICT gradients, gxsp_lanes *GXSP_RESTRICT p,
-                             gxsp_lanes *GXSP_RESTRICT force)
-{
+static void gxsp_block_force(const double *GXSP_RESTRICT weight, gxsp_lanes *GXSP_RESTRICT gradients,
+                             gxsp_lanes *GXSP_RESTRICT p, gxsp_lanes *GXSP_RESTRICT force) {
     int r, l;
-    for (r = 0; r < 3; ++r)
-        GXSP_EACH_LANE(l) {
+    for (r = 0; r < 3; r++) GXSP_EACH_LANE(l) {
             const double w = weight[l], x = w * p[3 * r][l], y = w * p[3 * r + 1][l], z = w * p[3 * r + 2][l];
             const double a = x * gradients[0][l] + y * gradients[1][l] + z * gradients[2][l];
             const double b = x * gradients[3][l] + y * gradients[4][l] + z * gradients[5][l];
@@ -1905,36 +1936,39 @@ static void gxsp_block_force(const double *GXSP_RESTRICT weight, gxsp_lanes *GXS
 }
 
 /* y += rate M x; energy = rate/2 x M x. moments: NULL where rest->mass says it all */
-static void gxsp_block_inertia(const gxsp_rest *GXSP_RESTRICT rest, const gxsp_moments *GXSP_RESTRICT moments, double rate,
-                               gxsp_lanes *GXSP_RESTRICT x, gxsp_lanes *GXSP_RESTRICT y, double *GXSP_RESTRICT energy)
-{
+static void gxsp_block_inertia(const gxsp_rest *GXSP_RESTRICT rest, const gxsp_moments *GXSP_RESTRICT moments,
+                               double rate, gxsp_lanes *GXSP_RESTRICT x, gxsp_lanes *GXSP_RESTRICT y,
+                               double *GXSP_RESTRICT energy) {
     int r, l;
     GXSP_EACH_LANE(l) energy[l] = 0;
-    for (r = 0; !moments && r < 3; ++r)
-        GXSP_EACH_LANE(l) {
+    for (r = 0; !moments && r < 3; r++) GXSP_EACH_LANE(l) {
             const double m = rate * rest->mass[l], a = x[r][l], b = x[3 + r][l], c = x[6 + r][l], d = x[9 + r][l];
-            const double sum = a + b + c + d, fa = m * (sum + a), fb = m * (sum + b), fc = m * (sum + c), fd = m * (sum + d);
+            const double sum = a + b + c + d, fa = m * (sum + a), fb = m * (sum + b), fc = m * (sum + c),
+                         fd = m * (sum + d);
             y[r][l] += fa, y[3 + r][l] += fb, y[6 + r][l] += fc, y[9 + r][l] += fd;
             energy[l] += 0.5 * (fa * a + fb * b + fc * c + fd * d);
         }
-    for (r = 0; moments && r < 3; ++r)
-        GXSP_EACH_LANE(l) {
-            const double m = rate * rest->mass[l], o = x[r][l], a = x[3 + r][l] - o, b = x[6 + r][l] - o, c = x[9 + r][l] - o;
-            const double ca = (double)moments->centre[0][l], cb = (double)moments->centre[1][l], cc = (double)moments->centre[2][l];
-            const double raa = (double)moments->root[0][l], rba = (double)moments->root[1][l], rbb = (double)moments->root[2][l],
-                         rca = (double)moments->root[3][l], rcb = (double)moments->root[4][l], rcc = (double)moments->root[5][l];
-            const double at = o + (ca * a + cb * b + cc * c), u = raa * a + rba * b + rca * c, v = rbb * b + rcb * c, w = rcc * c;
-            const double fa = m * (ca * at + raa * u), fb = m * (cb * at + rba * u + rbb * v), fc = m * (cc * at + rca * u + rcb * v + rcc * w);
+    for (r = 0; moments && r < 3; r++) GXSP_EACH_LANE(l) {
+            const double m = rate * rest->mass[l], o = x[r][l], a = x[3 + r][l] - o, b = x[6 + r][l] - o,
+                         c = x[9 + r][l] - o;
+            const double ca = (double)moments->centre[0][l], cb = (double)moments->centre[1][l],
+                         cc = (double)moments->centre[2][l];
+            const double raa = (double)moments->root[0][l], rba = (double)moments->root[1][l],
+                         rbb = (double)moments->root[2][l], rca = (double)moments->root[3][l],
+                         rcb = (double)moments->root[4][l], rcc = (double)moments->root[5][l];
+            const double at = o + (ca * a + cb * b + cc * c), u = raa * a + rba * b + rca * c, v = rbb * b + rcb * c,
+                         w = rcc * c;
+            const double fa = m * (ca * at + raa * u), fb = m * (cb * at + rba * u + rbb * v),
+                         fc = m * (cc * at + rca * u + rcb * v + rcc * w);
             y[r][l] += m * at - (fa + fb + fc), y[3 + r][l] += fa, y[6 + r][l] += fb, y[9 + r][l] += fc;
             energy[l] += 0.5 * m * (at * at + u * u + v * v + w * w);
         }
 }
 
-/* y += (K + rate M) x, one lane after the other in registers. m: NULL where elements are whole. apart: x of corners 1 ... 3 is what they
- * have more than corner 0, which callers know better than single precision could tell. */
-GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, const gxsp_moments *GXSP_RESTRICT m, int apart, gxsp_singles *GXSP_RESTRICT x,
-                                    gxsp_singles *GXSP_RESTRICT y)
-{
+/* y += (K + rate M) x, one lane after the other in registers. m: NULL where elements are whole. apart: x of corners 1
+ * ... 3 is what they have more than corner 0, which callers know better than single precision could tell. */
+GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, const gxsp_moments *GXSP_RESTRICT m, int apart,
+                                    gxsp_singles *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT y) {
     int l;
     GXSP_EACH_LANE(l) {
         const float x0 = x[0][l], x1 = x[1][l], x2 = x[2][l];
@@ -1945,17 +1979,21 @@ GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, const g
         const float a0 = x[3][l] - o0, a1 = x[4][l] - o1, a2 = x[5][l] - o2, b0 = x[6][l] - o0, b1 = x[7][l] - o1,
                     b2 = x[8][l] - o2, c0 = x[9][l] - o0, c1 = x[10][l] - o1, c2 = x[11][l] - o2;
         /* dF V = sum (x_i - x_0) (V^T grad N_i)^T */
-        const float d0 = a0 * g0 + b0 * g3 + c0 * g6, d1 = a0 * g1 + b0 * g4 + c0 * g7, d2 = a0 * g2 + b0 * g5 + c0 * g8,
-                    d3 = a1 * g0 + b1 * g3 + c1 * g6, d4 = a1 * g1 + b1 * g4 + c1 * g7, d5 = a1 * g2 + b1 * g5 + c1 * g8,
-                    d6 = a2 * g0 + b2 * g3 + c2 * g6, d7 = a2 * g1 + b2 * g4 + c2 * g7, d8 = a2 * g2 + b2 * g5 + c2 * g8;
+        const float d0 = a0 * g0 + b0 * g3 + c0 * g6, d1 = a0 * g1 + b0 * g4 + c0 * g7,
+                    d2 = a0 * g2 + b0 * g5 + c0 * g8, d3 = a1 * g0 + b1 * g3 + c1 * g6,
+                    d4 = a1 * g1 + b1 * g4 + c1 * g7, d5 = a1 * g2 + b1 * g5 + c1 * g8,
+                    d6 = a2 * g0 + b2 * g3 + c2 * g6, d7 = a2 * g1 + b2 * g4 + c2 * g7,
+                    d8 = a2 * g2 + b2 * g5 + c2 * g8;
         const float q0 = b->frame[0][l], q1 = b->frame[1][l], q2 = b->frame[2][l], q3 = b->frame[3][l];
-        const float u0 = 1 - (q1 * q1 + q2 * q2), u1 = q0 * q1 - q2 * q3, u2 = q0 * q2 + q1 * q3, u3 = q0 * q1 + q2 * q3,
-                    u4 = 1 - (q0 * q0 + q2 * q2), u5 = q1 * q2 - q0 * q3, u6 = q0 * q2 - q1 * q3, u7 = q1 * q2 + q0 * q3,
-                    u8 = 1 - (q0 * q0 + q1 * q1);
+        const float u0 = 1 - (q1 * q1 + q2 * q2), u1 = q0 * q1 - q2 * q3, u2 = q0 * q2 + q1 * q3,
+                    u3 = q0 * q1 + q2 * q3, u4 = 1 - (q0 * q0 + q2 * q2), u5 = q1 * q2 - q0 * q3,
+                    u6 = q0 * q2 - q1 * q3, u7 = q1 * q2 + q0 * q3, u8 = 1 - (q0 * q0 + q1 * q1);
         /* t = U^T dF V */
-        const float t0 = u0 * d0 + u3 * d3 + u6 * d6, t1 = u0 * d1 + u3 * d4 + u6 * d7, t2 = u0 * d2 + u3 * d5 + u6 * d8,
-                    t3 = u1 * d0 + u4 * d3 + u7 * d6, t4 = u1 * d1 + u4 * d4 + u7 * d7, t5 = u1 * d2 + u4 * d5 + u7 * d8,
-                    t6 = u2 * d0 + u5 * d3 + u8 * d6, t7 = u2 * d1 + u5 * d4 + u8 * d7, t8 = u2 * d2 + u5 * d5 + u8 * d8;
+        const float t0 = u0 * d0 + u3 * d3 + u6 * d6, t1 = u0 * d1 + u3 * d4 + u6 * d7,
+                    t2 = u0 * d2 + u3 * d5 + u6 * d8, t3 = u1 * d0 + u4 * d3 + u7 * d6,
+                    t4 = u1 * d1 + u4 * d4 + u7 * d7, t5 = u1 * d2 + u4 * d5 + u7 * d8,
+                    t6 = u2 * d0 + u5 * d3 + u8 * d6, t7 = u2 * d1 + u5 * d4 + u8 * d7,
+                    t8 = u2 * d2 + u5 * d5 + u8 * d8;
         /* s = weight h : t */
         const float s0 = b->stretch[0][l] * t0 + b->stretch[1][l] * t4 + b->stretch[2][l] * t8,
                     s4 = b->stretch[1][l] * t0 + b->stretch[3][l] * t4 + b->stretch[4][l] * t8,
@@ -1964,29 +2002,37 @@ GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, const g
                     s2 = b->even[1][l] * t2 + b->odd[1][l] * t6, s6 = b->even[1][l] * t6 + b->odd[1][l] * t2,
                     s5 = b->even[0][l] * t5 + b->odd[0][l] * t7, s7 = b->even[0][l] * t7 + b->odd[0][l] * t5;
         /* p = U s */
-        const float p0 = u0 * s0 + u1 * s3 + u2 * s6, p1 = u0 * s1 + u1 * s4 + u2 * s7, p2 = u0 * s2 + u1 * s5 + u2 * s8,
-                    p3 = u3 * s0 + u4 * s3 + u5 * s6, p4 = u3 * s1 + u4 * s4 + u5 * s7, p5 = u3 * s2 + u4 * s5 + u5 * s8,
-                    p6 = u6 * s0 + u7 * s3 + u8 * s6, p7 = u6 * s1 + u7 * s4 + u8 * s7, p8 = u6 * s2 + u7 * s5 + u8 * s8;
-        const float f0 = p0 * g0 + p1 * g1 + p2 * g2, f1 = p3 * g0 + p4 * g1 + p5 * g2, f2 = p6 * g0 + p7 * g1 + p8 * g2,
-                    f3 = p0 * g3 + p1 * g4 + p2 * g5, f4 = p3 * g3 + p4 * g4 + p5 * g5, f5 = p6 * g3 + p7 * g4 + p8 * g5,
-                    f6 = p0 * g6 + p1 * g7 + p2 * g8, f7 = p3 * g6 + p4 * g7 + p5 * g8, f8 = p6 * g6 + p7 * g7 + p8 * g8;
+        const float p0 = u0 * s0 + u1 * s3 + u2 * s6, p1 = u0 * s1 + u1 * s4 + u2 * s7,
+                    p2 = u0 * s2 + u1 * s5 + u2 * s8, p3 = u3 * s0 + u4 * s3 + u5 * s6,
+                    p4 = u3 * s1 + u4 * s4 + u5 * s7, p5 = u3 * s2 + u4 * s5 + u5 * s8,
+                    p6 = u6 * s0 + u7 * s3 + u8 * s6, p7 = u6 * s1 + u7 * s4 + u8 * s7,
+                    p8 = u6 * s2 + u7 * s5 + u8 * s8;
+        const float f0 = p0 * g0 + p1 * g1 + p2 * g2, f1 = p3 * g0 + p4 * g1 + p5 * g2,
+                    f2 = p6 * g0 + p7 * g1 + p8 * g2, f3 = p0 * g3 + p1 * g4 + p2 * g5,
+                    f4 = p3 * g3 + p4 * g4 + p5 * g5, f5 = p6 * g3 + p7 * g4 + p8 * g5,
+                    f6 = p0 * g6 + p1 * g7 + p2 * g8, f7 = p3 * g6 + p4 * g7 + p5 * g8,
+                    f8 = p6 * g6 + p7 * g7 + p8 * g8;
         if (m) {
-            const float n = b->mass[l], k0 = m->centre[0][l], k1 = m->centre[1][l], k2 = m->centre[2][l], r0 = m->root[0][l], r1 = m->root[1][l],
-                        r2 = m->root[2][l], r3 = m->root[3][l], r4 = m->root[4][l], r5 = m->root[5][l];
+            const float n = b->mass[l], k0 = m->centre[0][l], k1 = m->centre[1][l], k2 = m->centre[2][l],
+                        r0 = m->root[0][l], r1 = m->root[1][l], r2 = m->root[2][l], r3 = m->root[3][l],
+                        r4 = m->root[4][l], r5 = m->root[5][l];
             const float m0 = n * (x0 + (k0 * a0 + k1 * b0 + k2 * c0)), m1 = n * (x1 + (k0 * a1 + k1 * b1 + k2 * c1)),
                         m2 = n * (x2 + (k0 * a2 + k1 * b2 + k2 * c2));
-            const float v0 = n * (r0 * a0 + r1 * b0 + r3 * c0), v1 = n * (r0 * a1 + r1 * b1 + r3 * c1), v2 = n * (r0 * a2 + r1 * b2 + r3 * c2),
-                        v3 = n * (r2 * b0 + r4 * c0), v4 = n * (r2 * b1 + r4 * c1), v5 = n * (r2 * b2 + r4 * c2), v6 = n * (r5 * c0),
+            const float v0 = n * (r0 * a0 + r1 * b0 + r3 * c0), v1 = n * (r0 * a1 + r1 * b1 + r3 * c1),
+                        v2 = n * (r0 * a2 + r1 * b2 + r3 * c2), v3 = n * (r2 * b0 + r4 * c0),
+                        v4 = n * (r2 * b1 + r4 * c1), v5 = n * (r2 * b2 + r4 * c2), v6 = n * (r5 * c0),
                         v7 = n * (r5 * c1), v8 = n * (r5 * c2);
             const float h0 = k0 * m0 + r0 * v0 + f0, h1 = k0 * m1 + r0 * v1 + f1, h2 = k0 * m2 + r0 * v2 + f2,
-                        h3 = k1 * m0 + r1 * v0 + r2 * v3 + f3, h4 = k1 * m1 + r1 * v1 + r2 * v4 + f4, h5 = k1 * m2 + r1 * v2 + r2 * v5 + f5,
-                        h6 = k2 * m0 + r3 * v0 + r4 * v3 + r5 * v6 + f6, h7 = k2 * m1 + r3 * v1 + r4 * v4 + r5 * v7 + f7,
+                        h3 = k1 * m0 + r1 * v0 + r2 * v3 + f3, h4 = k1 * m1 + r1 * v1 + r2 * v4 + f4,
+                        h5 = k1 * m2 + r1 * v2 + r2 * v5 + f5, h6 = k2 * m0 + r3 * v0 + r4 * v3 + r5 * v6 + f6,
+                        h7 = k2 * m1 + r3 * v1 + r4 * v4 + r5 * v7 + f7,
                         h8 = k2 * m2 + r3 * v2 + r4 * v5 + r5 * v8 + f8;
             y[0][l] += m0 - (h0 + h3 + h6), y[1][l] += m1 - (h1 + h4 + h7), y[2][l] += m2 - (h2 + h5 + h8);
-            y[3][l] += h0, y[4][l] += h1, y[5][l] += h2, y[6][l] += h3, y[7][l] += h4, y[8][l] += h5, y[9][l] += h6, y[10][l] += h7,
-                y[11][l] += h8;
+            y[3][l] += h0, y[4][l] += h1, y[5][l] += h2, y[6][l] += h3, y[7][l] += h4, y[8][l] += h5, y[9][l] += h6,
+                y[10][l] += h7, y[11][l] += h8;
         } else {
-            const float n = b->mass[l], m0 = n * (a0 + b0 + c0 + 5 * x0), m1 = n * (a1 + b1 + c1 + 5 * x1), m2 = n * (a2 + b2 + c2 + 5 * x2);
+            const float n = b->mass[l], m0 = n * (a0 + b0 + c0 + 5 * x0), m1 = n * (a1 + b1 + c1 + 5 * x1),
+                        m2 = n * (a2 + b2 + c2 + 5 * x2);
             y[0][l] += m0 - (f0 + f3 + f6), y[1][l] += m1 - (f1 + f4 + f7), y[2][l] += m2 - (f2 + f5 + f8);
             y[3][l] += m0 + n * a0 + f0, y[4][l] += m1 + n * a1 + f1, y[5][l] += m2 + n * a2 + f2;
             y[6][l] += m0 + n * b0 + f3, y[7][l] += m1 + n * b1 + f4, y[8][l] += m2 + n * b2 + f5;
@@ -1996,37 +2042,33 @@ GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, const g
 }
 
 /* y += K x for a Hessian without a frame */
-static void gxsp_general_product(const gxsp_tangent *b, const gxsp_general *h, int apart, gxsp_singles *x, gxsp_singles *y)
-{
+static void gxsp_general_product(const gxsp_tangent *b, const gxsp_general *h, int apart, gxsp_singles *x,
+                                 gxsp_singles *y) {
     const float from = apart ? 0.0f : 1.0f;
     gxsp_singles d[9], p[9];
     int i, j, k, l;
-    for (i = 0; i < 9; ++i)
-        GXSP_EACH_LANE(l) {
+    for (i = 0; i < 9; i++) GXSP_EACH_LANE(l) {
             const int r = i / 3, c = i % 3;
             const float o = from * x[r][l];
-            d[i][l] = (x[3 + r][l] - o) * b->gradient[c][l] + (x[6 + r][l] - o) * b->gradient[3 + c][l] + (x[9 + r][l] - o) * b->gradient[6 + c][l];
+            d[i][l] = (x[3 + r][l] - o) * b->gradient[c][l] + (x[6 + r][l] - o) * b->gradient[3 + c][l] +
+                      (x[9 + r][l] - o) * b->gradient[6 + c][l];
             p[i][l] = 0;
         }
-    for (i = 0; i < 9; ++i)
-        for (j = 0; j < 9; ++j)
-            GXSP_EACH_LANE(l) p[i][l] += h->hessian[gxsp_packed9(i, j)][l] * d[j][l];
-    for (i = 0; i < 3; ++i)
-        GXSP_EACH_LANE(l)
-            for (k = 0; k < 3; ++k) {
-                const float f = p[3 * i][l] * b->gradient[3 * k][l] + p[3 * i + 1][l] * b->gradient[3 * k + 1][l] +
-                                p[3 * i + 2][l] * b->gradient[3 * k + 2][l];
-                y[3 + 3 * k + i][l] += f;
-                y[i][l] -= f;
-            }
+    for (i = 0; i < 9; i++)
+        for (j = 0; j < 9; j++) GXSP_EACH_LANE(l) p[i][l] += h->hessian[gxsp_packed9(i, j)][l] * d[j][l];
+    for (i = 0; i < 3; i++) GXSP_EACH_LANE(l)
+    for (k = 0; k < 3; k++) {
+        const float f = p[3 * i][l] * b->gradient[3 * k][l] + p[3 * i + 1][l] * b->gradient[3 * k + 1][l] +
+                        p[3 * i + 2][l] * b->gradient[3 * k + 2][l];
+        y[3 + 3 * k + i][l] += f;
+        y[i][l] -= f;
+    }
 }
 
 /* c and R of a corner: out[0], out[1 ... 3] */
-static void gxsp_corner_moments(const gxsp_moments *moments, int corner, gxsp_singles *out)
-{
+static void gxsp_corner_moments(const gxsp_moments *moments, int corner, gxsp_singles *out) {
     int k, l;
-    for (k = 0; k < 4; ++k)
-        GXSP_EACH_LANE(l) {
+    for (k = 0; k < 4; k++) GXSP_EACH_LANE(l) {
             const float a = k == 0 ? moments->centre[0][l] : k == 1 ? moments->root[0][l] : 0;
             const float b = k == 0 ? moments->centre[1][l] : k < 3 ? moments->root[k][l] : 0;
             const float c = k == 0 ? moments->centre[2][l] : moments->root[2 + k][l];
@@ -2035,35 +2077,35 @@ static void gxsp_corner_moments(const gxsp_moments *moments, int corner, gxsp_si
 }
 
 /* M_pq x rate */
-static void gxsp_block_mass(const gxsp_tangent *tangent, const gxsp_moments *moments, int p, int q, float *mass)
-{
+static void gxsp_block_mass(const gxsp_tangent *tangent, const gxsp_moments *moments, int p, int q, float *mass) {
     gxsp_singles of[8];
     int l;
     if (moments) {
         gxsp_corner_moments(moments, p, of);
         gxsp_corner_moments(moments, q, of + 4);
-        GXSP_EACH_LANE(l) mass[l] = tangent->mass[l] * (of[0][l] * of[4][l] + of[1][l] * of[5][l] + of[2][l] * of[6][l] + of[3][l] * of[7][l]);
+        GXSP_EACH_LANE(l)
+        mass[l] =
+            tangent->mass[l] * (of[0][l] * of[4][l] + of[1][l] * of[5][l] + of[2][l] * of[6][l] + of[3][l] * of[7][l]);
     } else
         GXSP_EACH_LANE(l) mass[l] = tangent->mass[l] * (p == q ? 2.0f : 1.0f);
 }
 
 /* y += rate M x. apart: as of gxsp_block_product */
-static void gxsp_inertia_product(const gxsp_tangent *b, const gxsp_moments *moments, int apart, gxsp_singles *x, gxsp_singles *y)
-{
+static void gxsp_inertia_product(const gxsp_tangent *b, const gxsp_moments *moments, int apart, gxsp_singles *x,
+                                 gxsp_singles *y) {
     gxsp_singles mass;
     int i, j, r, l;
-    for (i = 0; i < 4; ++i)
-        for (j = 0; j < 4; ++j) {
+    for (i = 0; i < 4; i++)
+        for (j = 0; j < 4; j++) {
             gxsp_block_mass(b, moments, i, j, mass);
-            for (r = 0; r < 3; ++r)
+            for (r = 0; r < 3; r++)
                 GXSP_EACH_LANE(l) y[3 * i + r][l] += mass[l] * (x[3 * j + r][l] + (apart && j > 0 ? x[r][l] : 0));
         }
 }
 
 /* The same for either */
-GXSP_INLINE void gxsp_kind_product(gxs_material_kind kind, const gxsp_tangent *b, const gxsp_moments *m, const gxsp_general *h, int apart,
-                                   gxsp_singles *x, gxsp_singles *y)
-{
+GXSP_INLINE void gxsp_kind_product(gxs_material_kind kind, const gxsp_tangent *b, const gxsp_moments *m,
+                                   const gxsp_general *h, int apart, gxsp_singles *x, gxsp_singles *y) {
     if (kind == GXS_CUSTOM) {
         gxsp_general_product(b, h, apart, x, y);
         gxsp_inertia_product(b, m, apart, x, y);
@@ -2077,25 +2119,22 @@ GXSP_INLINE void gxsp_kind_product(gxs_material_kind kind, const gxsp_tangent *b
         gxsp_block_product(b, NULL, 0, x, y);
 }
 
-static void gxsp_general_couple(const gxsp_general *general, gxsp_singles *p, gxsp_singles *q, gxsp_singles *block)
-{
+static void gxsp_general_couple(const gxsp_general *general, gxsp_singles *p, gxsp_singles *q, gxsp_singles *block) {
     int r, s, k, m, l;
-    for (r = 0; r < 3; ++r)
-        for (s = 0; s < 3; ++s) {
+    for (r = 0; r < 3; r++)
+        for (s = 0; s < 3; s++) {
             GXSP_EACH_LANE(l) block[3 * r + s][l] = 0;
-            for (k = 0; k < 3; ++k)
-                for (m = 0; m < 3; ++m)
-                    GXSP_EACH_LANE(l)
-                        block[3 * r + s][l] += general->hessian[gxsp_packed9(3 * r + k, 3 * s + m)][l] * p[k][l] * q[m][l];
+            for (k = 0; k < 3; k++)
+                for (m = 0; m < 3; m++) GXSP_EACH_LANE(l)
+            block[3 * r + s][l] += general->hessian[gxsp_packed9(3 * r + k, 3 * s + m)][l] * p[k][l] * q[m][l];
         }
 }
 
-/* block = U B U^T, B_rs = sum h_rk,sl p_k q_l: the part of the Hessian that couples two shape functions with gradients p and q
- * in the frame of V; by rows. */
+/* block = U B U^T, B_rs = sum h_rk,sl p_k q_l: the part of the Hessian that couples two shape functions with gradients
+ * p and q in the frame of V; by rows. */
 static void gxsp_block_couple(const gxsp_tangent *GXSP_RESTRICT t, const gxsp_general *general, /* or NULL */
-                              gxsp_singles *p, gxsp_singles *q, /* may be the same */
-                              gxsp_singles *GXSP_RESTRICT block)
-{
+                              gxsp_singles *p, gxsp_singles *q,                                 /* may be the same */
+                              gxsp_singles *GXSP_RESTRICT block) {
     int l;
     if (general) {
         gxsp_general_couple(general, p, q, block);
@@ -2112,26 +2151,29 @@ static void gxsp_block_couple(const gxsp_tangent *GXSP_RESTRICT t, const gxsp_ge
                     b2 = t->stretch[2][l] * p0 * q2 + o1 * p2 * q0, b6 = t->stretch[2][l] * p2 * q0 + o1 * p0 * q2,
                     b5 = t->stretch[4][l] * p1 * q2 + o0 * p2 * q1, b7 = t->stretch[4][l] * p2 * q1 + o0 * p1 * q2;
         const float r0 = t->frame[0][l], r1 = t->frame[1][l], r2 = t->frame[2][l], r3 = t->frame[3][l];
-        const float u0 = 1 - (r1 * r1 + r2 * r2), u1 = r0 * r1 - r2 * r3, u2 = r0 * r2 + r1 * r3, u3 = r0 * r1 + r2 * r3,
-                    u4 = 1 - (r0 * r0 + r2 * r2), u5 = r1 * r2 - r0 * r3, u6 = r0 * r2 - r1 * r3, u7 = r1 * r2 + r0 * r3,
-                    u8 = 1 - (r0 * r0 + r1 * r1);
-        const float a0 = u0 * b0 + u1 * b3 + u2 * b6, a1 = u0 * b1 + u1 * b4 + u2 * b7, a2 = u0 * b2 + u1 * b5 + u2 * b8,
-                    a3 = u3 * b0 + u4 * b3 + u5 * b6, a4 = u3 * b1 + u4 * b4 + u5 * b7, a5 = u3 * b2 + u4 * b5 + u5 * b8,
-                    a6 = u6 * b0 + u7 * b3 + u8 * b6, a7 = u6 * b1 + u7 * b4 + u8 * b7, a8 = u6 * b2 + u7 * b5 + u8 * b8;
-        block[0][l] = a0 * u0 + a1 * u1 + a2 * u2, block[1][l] = a0 * u3 + a1 * u4 + a2 * u5, block[2][l] = a0 * u6 + a1 * u7 + a2 * u8;
-        block[3][l] = a3 * u0 + a4 * u1 + a5 * u2, block[4][l] = a3 * u3 + a4 * u4 + a5 * u5, block[5][l] = a3 * u6 + a4 * u7 + a5 * u8;
-        block[6][l] = a6 * u0 + a7 * u1 + a8 * u2, block[7][l] = a6 * u3 + a7 * u4 + a8 * u5, block[8][l] = a6 * u6 + a7 * u7 + a8 * u8;
+        const float u0 = 1 - (r1 * r1 + r2 * r2), u1 = r0 * r1 - r2 * r3, u2 = r0 * r2 + r1 * r3,
+                    u3 = r0 * r1 + r2 * r3, u4 = 1 - (r0 * r0 + r2 * r2), u5 = r1 * r2 - r0 * r3,
+                    u6 = r0 * r2 - r1 * r3, u7 = r1 * r2 + r0 * r3, u8 = 1 - (r0 * r0 + r1 * r1);
+        const float a0 = u0 * b0 + u1 * b3 + u2 * b6, a1 = u0 * b1 + u1 * b4 + u2 * b7,
+                    a2 = u0 * b2 + u1 * b5 + u2 * b8, a3 = u3 * b0 + u4 * b3 + u5 * b6,
+                    a4 = u3 * b1 + u4 * b4 + u5 * b7, a5 = u3 * b2 + u4 * b5 + u5 * b8,
+                    a6 = u6 * b0 + u7 * b3 + u8 * b6, a7 = u6 * b1 + u7 * b4 + u8 * b7,
+                    a8 = u6 * b2 + u7 * b5 + u8 * b8;
+        block[0][l] = a0 * u0 + a1 * u1 + a2 * u2, block[1][l] = a0 * u3 + a1 * u4 + a2 * u5,
+        block[2][l] = a0 * u6 + a1 * u7 + a2 * u8;
+        block[3][l] = a3 * u0 + a4 * u1 + a5 * u2, block[4][l] = a3 * u3 + a4 * u4 + a5 * u5,
+        block[5][l] = a3 * u6 + a4 * u7 + a5 * u8;
+        block[6][l] = a6 * u0 + a7 * u1 + a8 * u2, block[7][l] = a6 * u3 + a7 * u4 + a8 * u5,
+        block[8][l] = a6 * u6 + a7 * u7 + a8 * u8;
     }
 }
 
 /* V^T grad N of corner 0 ... 3 */
-static void gxsp_block_corner(const gxsp_tangent *GXSP_RESTRICT t, int corner, gxsp_singles *GXSP_RESTRICT gamma)
-{
+static void gxsp_block_corner(const gxsp_tangent *GXSP_RESTRICT t, int corner, gxsp_singles *GXSP_RESTRICT gamma) {
     int k, l;
-    for (k = 0; k < 3; ++k)
-        GXSP_EACH_LANE(l)
-            gamma[k][l] = corner > 0 ? t->gradient[3 * (corner - 1) + k][l] :
-                          -(t->gradient[k][l] + t->gradient[3 + k][l] + t->gradient[6 + k][l]);
+    for (k = 0; k < 3; k++) GXSP_EACH_LANE(l)
+    gamma[k][l] = corner > 0 ? t->gradient[3 * (corner - 1) + k][l]
+                             : -(t->gradient[k][l] + t->gradient[3 + k][l] + t->gradient[6 + k][l]);
 }
 
 /* >>chunk: passes over one chunk, which only writes its own slots and sums */
@@ -2139,153 +2181,148 @@ static void gxsp_block_corner(const gxsp_tangent *GXSP_RESTRICT t, int corner, g
 /* What a pass reads and writes; unused fields are 0. Vectors have one entry per copy. */
 typedef struct gxsp_pass {
     gxsp_system *system;
-    double rate;                /* 1/s2; of products and linearisations times scale */
-    const double *from;         /* x 3: displacement, m */
-    double *sum;                /* x 3: forces, N */
+    double rate;        /* 1/s2; of products and linearisations times scale */
+    const double *from; /* x 3: displacement, m */
+    double *sum;        /* x 3: forces, N */
     const gxsp_material *materials;
-    const double *turned;       /* x 3: stresses are turned as elements are from here on to there; NULL: they are not */
-    int inertia;                /* forces and energy of the mass too */
-    int nudge;                  /* forces of collapsed elements as if they were not quite */
-    int exact;                  /* Hessians are not projected */
-    gxsp_vector4 *x;            /* of products: input */
-    gxsp_vector4 *y;            /* output */
-    const double *right;        /* x 3: output is this minus the product; NULL: it is the product */
-    double factor;              /* of passes over copies: what x is multiplied by */
+    const double *turned; /* x 3: stresses are turned as elements are from here on to there; NULL: they are not */
+    int inertia;          /* forces and energy of the mass too */
+    int nudge;            /* forces of collapsed elements as if they were not quite */
+    int exact;            /* Hessians are not projected */
+    gxsp_vector4 *x;      /* of products: input */
+    gxsp_vector4 *y;      /* output */
+    const double *right;  /* x 3: output is this minus the product; NULL: it is the product */
+    double factor;        /* of passes over copies: what x is multiplied by */
     const gxsp_problem *problem; /* of what needs the load */
 } gxsp_pass;
 
 /* Copies of the range with this index: from first, not including the one returned */
-static size_t gxsp_range(const gxsp_system *system, size_t index, size_t *first)
-{
+static size_t gxsp_range(const gxsp_system *system, size_t index, size_t *first) {
     *first = index * GXSP_RANGE;
     return *first + GXSP_RANGE < system->n ? *first + GXSP_RANGE : system->n;
 }
 
 /* A pass over all copies; sums: of those that it makes for each range, the first count, or NULL */
-static void gxsp_over_ranges(gxsp_system *system, void (*task)(void *, size_t), gxsp_pass *pass, double *sums, int count)
-{
+static void gxsp_over_ranges(gxsp_system *system, void (*task)(void *, size_t), gxsp_pass *pass, double *sums,
+                             int count) {
     size_t i;
     int k;
     pass->system = system;
     gxsp_parallel(system->jobs, system->range_count, task, pass);
-    for (k = 0; k < count; ++k)
-        for (i = 0, sums[k] = 0; i < system->range_count; ++i)
-            sums[k] += system->range_sum[i][k];
+    for (k = 0; k < count; k++)
+        for (i = 0, sums[k] = 0; i < system->range_count; i++) sums[k] += system->range_sum[i][k];
 }
 
-static const gxsp_moments *gxsp_block_moments(const gxsp_chunk *chunk, uint32_t block)
-{
+static const gxsp_moments *gxsp_block_moments(const gxsp_chunk *chunk, uint32_t block) {
     return chunk->moments ? &chunk->moments[block] : NULL;
 }
 
-static gxsp_general *gxsp_block_general(const gxsp_chunk *chunk, uint32_t block)
-{
+static gxsp_general *gxsp_block_general(const gxsp_chunk *chunk, uint32_t block) {
     return chunk->generals ? &chunk->generals[block] : NULL;
 }
 
-/* Asks for memory that is soon read: a block is too long for processors to see the next one in time. Always inline: gcc takes functions that
- * do nothing else for functions without effect, and leaves calls of them out. */
-GXSP_INLINE void gxsp_fetch(const void *memory, size_t size)
-{
+/* Asks for memory that is soon read: a block is too long for processors to see the next one in time. Always inline: gcc
+ * takes functions that do nothing else for functions without effect, and leaves calls of them out. */
+GXSP_INLINE void gxsp_fetch(const void *memory, size_t size) {
 #if defined(__GNUC__)
     const char *line = (const char *)memory;
     size_t k;
-    for (k = 0; k < size; k += 64)
-        __builtin_prefetch(line + k);
+    for (k = 0; k < size; k += 64) __builtin_prefetch(line + k);
 #else
     (void)memory;
     (void)size;
 #endif
 }
 
-/* Asks for what a pass soon reads of the block this many further on, in the chunk or the next one: its tangents, or what they are made of. */
-GXSP_INLINE void gxsp_fetch_block(const gxsp_system *system, size_t index, uint32_t block, uint32_t ahead, int tangents)
-{
+/* Asks for what a pass soon reads of the block this many further on, in the chunk or the next one: its tangents, or
+ * what they are made of. */
+GXSP_INLINE void gxsp_fetch_block(const gxsp_system *system, size_t index, uint32_t block, uint32_t ahead,
+                                  int tangents) {
     const gxsp_chunk *chunk = &system->chunks[index];
     uint32_t b = block + ahead;
     if (b >= chunk->block_count) {
         b -= chunk->block_count;
-        if (index + 1 == system->chunk_count || b >= chunk[1].block_count)
-            return;
-        ++chunk;
+        if (index + 1 == system->chunk_count || b >= chunk[1].block_count) return;
+        chunk++;
     }
     gxsp_fetch(&chunk->corners[b], sizeof *chunk->corners);
     if (tangents)
         gxsp_fetch(&chunk->tangents[b], sizeof *chunk->tangents);
     else
         gxsp_fetch(&chunk->rest[b], sizeof *chunk->rest);
-    if (chunk->moments)
-        gxsp_fetch(&chunk->moments[b], sizeof *chunk->moments);
+    if (chunk->moments) gxsp_fetch(&chunk->moments[b], sizeof *chunk->moments);
 }
 
 /* x of a chunk's nodes: x 3, and one more number */
-static void gxsp_chunk_load(const gxsp_system *system, const gxsp_chunk *chunk, const double *x, double *GXSP_RESTRICT to)
-{
+static void gxsp_chunk_load(const gxsp_system *system, const gxsp_chunk *chunk, const double *x,
+                            double *GXSP_RESTRICT to) {
     const uint32_t *copies = system->nodes + chunk->first_node;
     size_t i, c;
-    for (i = 0; i < chunk->node_count; ++i) {
+    for (i = 0; i < chunk->node_count; i++) {
         gxsp_fetch(x + 3 * (size_t)copies[i + GXSP_AHEAD], 3 * sizeof *x);
-        for (c = 0; c < 3; ++c)
-            to[3 * i + c] = x[3 * (size_t)copies[i] + c];
+        for (c = 0; c < 3; c++) to[3 * i + c] = x[3 * (size_t)copies[i] + c];
     }
     to[3 * i] = 0;
 }
 
 /* Three numbers of each of four nodes to three arrays; behind those of the last node there is one more. */
-static inline void gxsp_load_four(const uint16_t *node, const double *x, double *to0, double *to1, double *to2)
-{
+static inline void gxsp_load_four(const uint16_t *node, const double *x, double *to0, double *to1, double *to2) {
 #if defined(GXSP_SHUFFLES)
-    const gxsp_four_doubles a = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[0]), b = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[1]),
-                            c = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[2]), d = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[3]);
-    const gxsp_four_doubles p = __builtin_shufflevector(a, b, 0, 4, 2, 6), q = __builtin_shufflevector(c, d, 0, 4, 2, 6);
-    const gxsp_four_doubles r = __builtin_shufflevector(a, b, 1, 5, 3, 7), s = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    const gxsp_four_doubles a = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[0]),
+                            b = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[1]),
+                            c = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[2]),
+                            d = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[3]);
+    const gxsp_four_doubles p = __builtin_shufflevector(a, b, 0, 4, 2, 6),
+                            q = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+    const gxsp_four_doubles r = __builtin_shufflevector(a, b, 1, 5, 3, 7),
+                            s = __builtin_shufflevector(c, d, 1, 5, 3, 7);
     *(gxsp_four_doubles *)to0 = __builtin_shufflevector(p, q, 0, 1, 4, 5);
     *(gxsp_four_doubles *)to1 = __builtin_shufflevector(r, s, 0, 1, 4, 5);
     *(gxsp_four_doubles *)to2 = __builtin_shufflevector(p, q, 2, 3, 6, 7);
 #else
     int l;
-    for (l = 0; l < 4; ++l)
+    for (l = 0; l < 4; l++)
         to0[l] = x[3 * (size_t)node[l]], to1[l] = x[3 * (size_t)node[l] + 1], to2[l] = x[3 * (size_t)node[l] + 2];
 #endif
 }
 
-/* x of a block's corners from that of the chunk's nodes; of those that are not fresh it is there from the block before */
-static void gxsp_block_load(const gxsp_chunk *chunk, uint32_t b, const double *GXSP_RESTRICT x, gxsp_lanes *GXSP_RESTRICT corners)
-{
+/* x of a block's corners from that of the chunk's nodes; of those that are not fresh it is there from the block before
+ */
+static void gxsp_block_load(const gxsp_chunk *chunk, uint32_t b, const double *GXSP_RESTRICT x,
+                            gxsp_lanes *GXSP_RESTRICT corners) {
     const gxsp_corners *corner = &chunk->corners[b];
     int i, l;
-    for (i = 0; i < 4; ++i)
+    for (i = 0; i < 4; i++)
         for (l = 0; l < GXSP_LANES && chunk->fresh[b] >> i & 1; l += 4)
             gxsp_load_four(corner->node[i] + l, x, corners[3 * i] + l, corners[3 * i + 1] + l, corners[3 * i + 2] + l);
 }
 
 /* The same of x of all copies, without that of the chunk's nodes */
-static void gxsp_block_load_copies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, const double *x, gxsp_lanes *corners)
-{
+static void gxsp_block_load_copies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, const double *x,
+                                   gxsp_lanes *corners) {
     const uint32_t *copies = system->nodes + chunk->first_node;
     int i, l;
-    for (i = 0; i < 4; ++i)
-        for (l = 0; l < GXSP_LANES && chunk->fresh[b] >> i & 1; ++l) {
+    for (i = 0; i < 4; i++)
+        for (l = 0; l < GXSP_LANES && chunk->fresh[b] >> i & 1; l++) {
             const double *of = x + 3 * (size_t)copies[chunk->corners[b].node[i][l]];
             corners[3 * i][l] = of[0], corners[3 * i + 1][l] = of[1], corners[3 * i + 2][l] = of[2];
         }
 }
 
-/* Shape function gradients of a block. rest: positions of the chunk's nodes; corners: of the block's, as of gxsp_block_load */
-static gxsp_lanes *gxsp_block_gradients(const gxsp_chunk *chunk, uint32_t b, const double *rest, gxsp_lanes *corners, gxsp_lanes *made)
-{
-    if (chunk->gradients)
-        return chunk->gradients[b].entry;
+/* Shape function gradients of a block. rest: positions of the chunk's nodes; corners: of the block's, as of
+ * gxsp_block_load */
+static gxsp_lanes *gxsp_block_gradients(const gxsp_chunk *chunk, uint32_t b, const double *rest, gxsp_lanes *corners,
+                                        gxsp_lanes *made) {
+    if (chunk->gradients) return chunk->gradients[b].entry;
     gxsp_block_load(chunk, b, rest, corners);
     gxsp_gradients_make(chunk->rest[b].weight, corners, made);
     return made;
 }
 
 /* Parameters of a block's materials */
-static void gxsp_block_parameters(const gxsp_material *materials, const gxsp_rest *rest, gxsp_state *s)
-{
+static void gxsp_block_parameters(const gxsp_material *materials, const gxsp_rest *rest, gxsp_state *s) {
     int l;
-    for (l = 0; l < GXSP_LANES; ++l) {
+    for (l = 0; l < GXSP_LANES; l++) {
         const gxsp_material *material = &materials[rest->material[l]];
         s->mu[l] = material->mu;
         s->lambda[l] = material->lambda;
@@ -2293,81 +2330,78 @@ static void gxsp_block_parameters(const gxsp_material *materials, const gxsp_res
     }
 }
 
-/* Forces of a block into the chunk's slots, 3 doubles each, and 0 in their place; those of corners that the next block has too stay. */
-static void gxsp_block_store(const gxsp_chunk *chunk, uint32_t b, gxsp_lanes *GXSP_RESTRICT values, double *GXSP_RESTRICT slots)
-{
+/* Forces of a block into the chunk's slots, 3 doubles each, and 0 in their place; those of corners that the next block
+ * has too stay. */
+static void gxsp_block_store(const gxsp_chunk *chunk, uint32_t b, gxsp_lanes *GXSP_RESTRICT values,
+                             double *GXSP_RESTRICT slots) {
     const gxsp_corners *corner = &chunk->corners[b];
     int i, k, l;
-    for (i = 0; i < 4; ++i) {
-        if (!(chunk->fresh[b + 1] >> i & 1))
-            continue;
-        for (l = 0; l < GXSP_LANES; ++l) {
+    for (i = 0; i < 4; i++) {
+        if (!(chunk->fresh[b + 1] >> i & 1)) continue;
+        for (l = 0; l < GXSP_LANES; l++) {
             double *to = slots + 3 * (size_t)corner->node[i][l];
             to[0] += values[3 * i][l];
             to[1] += values[3 * i + 1][l];
             to[2] += values[3 * i + 2][l];
         }
-        for (k = 3 * i; k < 3 * i + 3; ++k)
-            GXSP_EACH_LANE(l) values[k][l] = 0;
+        for (k = 3 * i; k < 3 * i + 3; k++) GXSP_EACH_LANE(l) values[k][l] = 0;
     }
 }
 
-/* P of elements with displacement gradients from, turned by what turns their rotations into those at to; left alone where that is
- * more than a right angle: such an element is tangled. */
-static void gxsp_turn_stress(gxsp_lanes *from, gxsp_lanes *to, gxsp_lanes *p)
-{
+/* P of elements with displacement gradients from, turned by what turns their rotations into those at to; left alone
+ * where that is more than a right angle: such an element is tangled. */
+static void gxsp_turn_stress(gxsp_lanes *from, gxsp_lanes *to, gxsp_lanes *p) {
     gxsp_svd of[2];
     int r, c, k, l;
     gxsp_decompose(from, to, of);
-    for (l = 0; l < GXSP_LANES; ++l) {
+    for (l = 0; l < GXSP_LANES; l++) {
         double a[9], b[9], turn[9], stress[9], f[9], h[9];
-        for (r = 0; r < 3; ++r)
-            for (c = 0; c < 3; ++c) {
+        for (r = 0; r < 3; r++)
+            for (c = 0; c < 3; c++) {
                 a[3 * r + c] = b[3 * r + c] = 0;
-                for (k = 0; k < 3; ++k) {
+                for (k = 0; k < 3; k++) {
                     a[3 * r + c] += (double)(of[0].u[3 * r + k][l] * of[0].v[3 * c + k][l]);
                     b[3 * r + c] += (double)(of[1].u[3 * r + k][l] * of[1].v[3 * c + k][l]);
                 }
             }
-        for (k = 0; k < 9; ++k) {
+        for (k = 0; k < 9; k++) {
             f[k] = from[k][l] + (k % 4 == 0 ? 1 : 0);
             h[k] = to[k][l] + (k % 4 == 0 ? 1 : 0);
         }
-        gxsp_polish_rotation(f, a); /* else each step's load would have another error of single precision, and no body come to rest */
+        /* else each step's load would have another error of single precision, and no body come to rest */
+        gxsp_polish_rotation(f, a);
         gxsp_polish_rotation(h, b);
-        for (k = 0; k < 9; ++k) {
-            turn[k] = b[k / 3 * 3] * a[k % 3 * 3] + b[k / 3 * 3 + 1] * a[k % 3 * 3 + 1] + b[k / 3 * 3 + 2] * a[k % 3 * 3 + 2];
+        for (k = 0; k < 9; k++) {
+            turn[k] =
+                b[k / 3 * 3] * a[k % 3 * 3] + b[k / 3 * 3 + 1] * a[k % 3 * 3 + 1] + b[k / 3 * 3 + 2] * a[k % 3 * 3 + 2];
             stress[k] = p[k][l];
         }
-        for (k = 0; k < 9 && turn[0] + turn[4] + turn[8] > 1; ++k)
-            p[k][l] = turn[k / 3 * 3] * stress[k % 3] + turn[k / 3 * 3 + 1] * stress[3 + k % 3] + turn[k / 3 * 3 + 2] * stress[6 + k % 3];
+        for (k = 0; k < 9 && turn[0] + turn[4] + turn[8] > 1; k++)
+            p[k][l] = turn[k / 3 * 3] * stress[k % 3] + turn[k / 3 * 3 + 1] * stress[3 + k % 3] +
+                      turn[k / 3 * 3 + 2] * stress[6 + k % 3];
     }
 }
 
 /* Is a copy of the chunk elsewhere than inertia alone leads? Where Newton's method starts hardly any is. */
-static int gxsp_accelerates(const gxsp_system *system, const gxsp_chunk *chunk, const double *from)
-{
+static int gxsp_accelerates(const gxsp_system *system, const gxsp_chunk *chunk, const double *from) {
     const uint32_t *copies = system->nodes + chunk->first_node;
     uint32_t i;
-    for (i = 0; i < chunk->node_count; ++i)
+    for (i = 0; i < chunk->node_count; i++)
         if (memcmp(from + 3 * (size_t)copies[i], system->target + 3 * (size_t)copies[i], 3 * sizeof(double)) != 0)
             return 1;
     return 0;
 }
 
 /* Have all pieces of a chunk found their lengths? */
-static int gxsp_chunk_settled(const gxsp_system *system, const gxsp_chunk *chunk)
-{
+static int gxsp_chunk_settled(const gxsp_system *system, const gxsp_chunk *chunk) {
     uint32_t i;
-    for (i = 0; i < chunk->part_count; ++i)
-        if (!system->pieces[system->pieces[system->parts[chunk->first_part + i].piece].lead].settled)
-            return 0;
+    for (i = 0; i < chunk->part_count; i++)
+        if (!system->pieces[system->pieces[system->parts[chunk->first_part + i].piece].lead].settled) return 0;
     return 1;
 }
 
 /* What a chunk has of a piece of its nodes */
-static gxsp_part *gxsp_find_part(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t piece)
-{
+static gxsp_part *gxsp_find_part(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t piece) {
     gxsp_part *parts = system->parts + chunk->first_part;
     uint32_t low = 0, high = chunk->part_count - 1;
     while (low < high) {
@@ -2381,26 +2415,22 @@ static gxsp_part *gxsp_find_part(const gxsp_system *system, const gxsp_chunk *ch
 }
 
 /* Energies of a block's elements, added to the parts that they belong to */
-static void gxsp_add_energies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, gxsp_lanes *energies)
-{
+static void gxsp_add_energies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, gxsp_lanes *energies) {
     const uint32_t *copies = system->nodes + chunk->first_node;
     int k, l;
-    for (k = 0; k < 3 && chunk->part_count == 1; ++k) {
+    for (k = 0; k < 3 && chunk->part_count == 1; k++) {
         double sum = 0;
-        for (l = 0; l < GXSP_LANES; ++l)
-            sum += energies[k][l];
+        for (l = 0; l < GXSP_LANES; l++) sum += energies[k][l];
         system->parts[chunk->first_part].energies[k] += sum;
     }
-    for (l = 0; l < GXSP_LANES && chunk->part_count > 1; ++l) {
+    for (l = 0; l < GXSP_LANES && chunk->part_count > 1; l++) {
         gxsp_part *part = gxsp_find_part(system, chunk, system->piece[copies[chunk->corners[b].node[0][l]]]);
-        for (k = 0; k < 3; ++k)
-            part->energies[k] += energies[k][l];
+        for (k = 0; k < 3; k++) part->energies[k] += energies[k][l];
     }
 }
 
 /* Energies of a chunk at pass->from, part by part, and elastic + inertial forces. */
-static void gxsp_task_state(void *context, size_t index)
-{
+static void gxsp_task_state(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->chunks[index];
@@ -2409,19 +2439,16 @@ static void gxsp_task_state(void *context, size_t index)
     int k, l, inertia;
     double rest_at[3 * 4 * GXSP_CHUNK + 1], at[3 * 4 * GXSP_CHUNK + 1];
     gxsp_lanes corners[12], x[12], other[12], forces[12], made[9];
-    if (gxsp_chunk_settled(system, chunk))
-        return;
-    for (b = 0; b < chunk->part_count; ++b)
+    if (gxsp_chunk_settled(system, chunk)) return;
+    for (b = 0; b < chunk->part_count; b++)
         memset(system->parts[chunk->first_part + b].energies, 0, sizeof system->parts->energies);
     memset(slots, 0, 3 * (size_t)chunk->node_count * sizeof *slots);
-    if (system->chunk_still[index])
-        return;
+    if (system->chunk_still[index]) return;
     inertia = pass->inertia && gxsp_accelerates(system, chunk, pass->from);
     gxsp_chunk_load(system, chunk, pass->from, at);
-    if (!chunk->gradients)
-        gxsp_chunk_load(system, chunk, system->positions, rest_at);
+    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->positions, rest_at);
     memset(forces, 0, sizeof forces);
-    for (b = 0; b < chunk->block_count; ++b) {
+    for (b = 0; b < chunk->block_count; b++) {
         const gxsp_rest *rest = &chunk->rest[b];
         gxsp_lanes ahead[9], led[12], energies[3], *gradients;
         gxsp_state s;
@@ -2432,25 +2459,20 @@ static void gxsp_task_state(void *context, size_t index)
             gxsp_block_load_copies(system, chunk, b, inertia ? system->target : pass->turned, other);
         gxsp_block_parameters(pass->materials, rest, &s);
         gxsp_block_gradient(gradients, x, s.g);
-        if (pass->turned)
-            gxsp_block_gradient(gradients, other, ahead);
-        if (pass->nudge && chunk->kind != GXS_LINEAR && chunk->kind != GXS_CUSTOM)
-            gxsp_nudge(s.g);
+        if (pass->turned) gxsp_block_gradient(gradients, other, ahead);
+        if (pass->nudge && chunk->kind != GXS_LINEAR && chunk->kind != GXS_CUSTOM) gxsp_nudge(s.g);
         gxsp_material_state(chunk->kind, &s);
-        if (pass->turned && chunk->kind != GXS_LINEAR)
-            gxsp_turn_stress(s.g, ahead, s.p);
+        if (pass->turned && chunk->kind != GXS_LINEAR) gxsp_turn_stress(s.g, ahead, s.p);
         gxsp_block_force(rest->weight, gradients, s.p, forces);
-        for (l = 0; l < GXSP_LANES; ++l) {
+        for (l = 0; l < GXSP_LANES; l++) {
             energies[0][l] = rest->weight[l] * s.energy[l];
             energies[1][l] = 0;
             energies[2][l] = rest->weight[l] * s.size[l];
         }
         if (inertia) {
-            for (k = 0; k < 12; ++k)
-                GXSP_EACH_LANE(l) led[k][l] = x[k][l] - other[k][l];
+            for (k = 0; k < 12; k++) GXSP_EACH_LANE(l) led[k][l] = x[k][l] - other[k][l];
             gxsp_block_inertia(rest, gxsp_block_moments(chunk, b), pass->rate, led, forces, energies[1]);
-            for (l = 0; l < GXSP_LANES; ++l)
-                energies[2][l] += energies[1][l];
+            for (l = 0; l < GXSP_LANES; l++) energies[2][l] += energies[1][l];
         }
         gxsp_add_energies(system, chunk, b, energies);
         gxsp_block_store(chunk, b, forces, slots);
@@ -2458,16 +2480,15 @@ static void gxsp_task_state(void *context, size_t index)
 }
 
 /* sum = over the slots of each copy, 3 doubles each */
-static void gxsp_task_sum(void *context, size_t index)
-{
+static void gxsp_task_sum(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
     const double *slots = &system->slots[0][0];
     size_t i, end = gxsp_range(system, index, &i);
-    for (; i < end; ++i) {
+    for (; i < end; i++) {
         double x = 0, y = 0, z = 0;
         uint32_t s;
-        for (s = system->copy_start[i]; s < system->copy_start[i + 1]; ++s) {
+        for (s = system->copy_start[i]; s < system->copy_start[i + 1]; s++) {
             const double *from = slots + 3 * (size_t)system->copy_slot[s];
             gxsp_fetch(slots + 3 * (size_t)system->copy_slot[s + GXSP_AHEAD], 3 * sizeof *slots);
             x += from[0], y += from[1], z += from[2];
@@ -2477,14 +2498,13 @@ static void gxsp_task_sum(void *context, size_t index)
 }
 
 /* The piece that leads a copy's */
-static gxsp_piece *gxsp_lead_of(const gxsp_system *system, size_t copy)
-{
+static gxsp_piece *gxsp_lead_of(const gxsp_system *system, size_t copy) {
     return &system->pieces[system->pieces[system->piece[copy]].lead];
 }
 
 /* Energies of the pieces' elements at from, and elastic + inertial forces, 0 on what sleeps. turned: see gxsp_pass */
-static void gxsp_evaluate_elements(gxsp_system *system, double rate, const double *from, const double *turned, int nudge, double *force)
-{
+static void gxsp_evaluate_elements(gxsp_system *system, double rate, const double *from, const double *turned,
+                                   int nudge, double *force) {
     gxsp_pass pass;
     uint32_t p;
     int k;
@@ -2499,14 +2519,13 @@ static void gxsp_evaluate_elements(gxsp_system *system, double rate, const doubl
     pass.nudge = nudge;
     gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_state, &pass);
     gxsp_over_ranges(system, gxsp_task_sum, &pass, NULL, 0);
-    for (p = 0; p < system->piece_count; ++p)
-        memset(system->pieces[p].energies, 0, sizeof system->pieces->energies);
-    for (p = 0; p < system->part_count; ++p)
-        for (k = 0; k < 3; ++k)
+    for (p = 0; p < system->piece_count; p++) memset(system->pieces[p].energies, 0, sizeof system->pieces->energies);
+    for (p = 0; p < system->part_count; p++)
+        for (k = 0; k < 3; k++)
             system->pieces[system->pieces[system->parts[p].piece].lead].energies[k] += system->parts[p].energies[k];
     if (rate > 0 && system->lumped_mass) {
         size_t i;
-        for (i = 0; i < 3 * system->n; ++i)
+        for (i = 0; i < 3 * system->n; i++)
             if (!system->still[i / 3]) {
                 double moved = from[i] - system->target[i], inertia = rate * system->lumped[i / 3] * moved;
                 double *energies = gxsp_lead_of(system, i / 3)->energies;
@@ -2517,11 +2536,11 @@ static void gxsp_evaluate_elements(gxsp_system *system, double rate, const doubl
     }
 }
 
-/* >>model: elements sorted by material kind, by whether they are whole, and along a curve through space, then cut into chunks, seated in lanes */
+/* >>model: elements sorted by material kind, by whether they are whole, and along a curve through space, then cut into
+ * chunks, seated in lanes */
 
 /* Forests of joined indices: the root of a tree is its least. */
-static uint32_t gxsp_root(uint32_t *parent, uint32_t i)
-{
+static uint32_t gxsp_root(uint32_t *parent, uint32_t i) {
     while (parent[i] != i) {
         parent[i] = parent[parent[i]];
         i = parent[i];
@@ -2529,8 +2548,7 @@ static uint32_t gxsp_root(uint32_t *parent, uint32_t i)
     return i;
 }
 
-static void gxsp_join(uint32_t *parent, uint32_t i, uint32_t j)
-{
+static void gxsp_join(uint32_t *parent, uint32_t i, uint32_t j) {
     i = gxsp_root(parent, i);
     j = gxsp_root(parent, j);
     if (i < j)
@@ -2540,8 +2558,7 @@ static void gxsp_join(uint32_t *parent, uint32_t i, uint32_t j)
 }
 
 /* The ten bits of x with two zeros between each two */
-static uint32_t gxsp_spread(uint32_t x)
-{
+static uint32_t gxsp_spread(uint32_t x) {
     x = (x | x << 16) & 0x030000ffu;
     x = (x | x << 8) & 0x0300f00fu;
     x = (x | x << 4) & 0x030c30c3u;
@@ -2549,11 +2566,10 @@ static uint32_t gxsp_spread(uint32_t x)
 }
 
 /* Position of a place along the Z-order curve of 1024^3 cells */
-static uint32_t gxsp_curve(const double *at, const double *low, double per_cell)
-{
+static uint32_t gxsp_curve(const double *at, const double *low, double per_cell) {
     uint32_t code = 0;
     int k;
-    for (k = 0; k < 3; ++k) {
+    for (k = 0; k < 3; k++) {
         double cell = (at[k] - low[k]) * per_cell;
         code |= gxsp_spread(cell < 0 ? 0 : cell > 1023 ? 1023 : (uint32_t)cell) << k;
     }
@@ -2561,42 +2577,36 @@ static uint32_t gxsp_curve(const double *at, const double *low, double per_cell)
 }
 
 /* Is the mass block m (1 + delta_ij), as a whole element's is? To rounding of its ten integrals. */
-static int gxsp_whole(const double *mass)
-{
+static int gxsp_whole(const double *mass) {
     static const int own[10] = {2, 1, 1, 1, 2, 1, 1, 2, 1, 2};
     int k;
-    for (k = 0; k < 10; ++k)
-        if (fabs(mass[k] - 0.5 * own[k] * mass[0]) > 1e-14 * mass[0])
-            return 0;
+    for (k = 0; k < 10; k++)
+        if (fabs(mass[k] - 0.5 * own[k] * mass[0]) > 1e-14 * mass[0]) return 0;
     return 1;
 }
 
 /* An element's place in the order: class, then piece, then curve, the last of each ten bits first */
 typedef struct gxsp_sorted {
     uint32_t place, piece, class_index;
-    uint32_t index;                     /* of the element or, while pieces are sorted, of the piece */
+    uint32_t index; /* of the element or, while pieces are sorted, of the piece */
 } gxsp_sorted;
 
-static uint32_t gxsp_sorted_digit(const gxsp_sorted *of, int pass)
-{
-    return pass < 3 ? of->place >> (10 * pass) & 1023u : pass < 6 ? of->piece >> (10 * (pass - 3)) & 1023u : of->class_index;
+static uint32_t gxsp_sorted_digit(const gxsp_sorted *of, int pass) {
+    return pass < 3 ? of->place >> (10 * pass) & 1023u
+         : pass < 6 ? of->piece >> (10 * (pass - 3)) & 1023u
+                    : of->class_index;
 }
 
 /* Stable sort, least digit first; digits all alike are left out. other: room for as many */
-static gxsp_sorted *gxsp_sort(gxsp_sorted *sorted, gxsp_sorted *other, size_t count)
-{
+static gxsp_sorted *gxsp_sort(gxsp_sorted *sorted, gxsp_sorted *other, size_t count) {
     int pass, digit;
-    for (pass = 0; pass < 7; ++pass) {
+    for (pass = 0; pass < 7; pass++) {
         size_t start[1025] = {0}, i;
         gxsp_sorted *swap = sorted;
-        for (i = 0; i < count; ++i)
-            ++start[gxsp_sorted_digit(&sorted[i], pass) + 1];
-        if (start[gxsp_sorted_digit(&sorted[0], pass) + 1] == count)
-            continue;
-        for (digit = 0; digit < 1024; ++digit)
-            start[digit + 1] += start[digit];
-        for (i = 0; i < count; ++i)
-            other[start[gxsp_sorted_digit(&sorted[i], pass)]++] = sorted[i];
+        for (i = 0; i < count; i++) ++start[gxsp_sorted_digit(&sorted[i], pass) + 1];
+        if (start[gxsp_sorted_digit(&sorted[0], pass) + 1] == count) continue;
+        for (digit = 0; digit < 1024; digit++) start[digit + 1] += start[digit];
+        for (i = 0; i < count; i++) other[start[gxsp_sorted_digit(&sorted[i], pass)]++] = sorted[i];
         sorted = other;
         other = swap;
     }
@@ -2604,174 +2614,159 @@ static gxsp_sorted *gxsp_sort(gxsp_sorted *sorted, gxsp_sorted *other, size_t co
 }
 
 /* Position of every element along the curve through the model's box */
-static void gxsp_place_elements(const gxs_model *model, gxsp_sorted *sorted)
-{
+static void gxsp_place_elements(const gxs_model *model, gxsp_sorted *sorted) {
     double low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, extent = 0;
     size_t i;
     int k, r;
-    for (i = 0; model->positions && i < model->copy_count; ++i)
-        for (k = 0; k < 3; ++k) {
+    for (i = 0; model->positions && i < model->copy_count; i++)
+        for (k = 0; k < 3; k++) {
             double x = model->positions[3 * i + (size_t)k];
             low[k] = i == 0 || x < low[k] ? x : low[k];
             high[k] = i == 0 || x > high[k] ? x : high[k];
         }
-    for (k = 0; k < 3; ++k)
-        extent = high[k] - low[k] > extent ? high[k] - low[k] : extent;
-    for (i = 0; i < model->element_count && extent > 0; ++i) {
+    for (k = 0; k < 3; k++) extent = high[k] - low[k] > extent ? high[k] - low[k] : extent;
+    for (i = 0; i < model->element_count && extent > 0; i++) {
         double at[3] = {0, 0, 0};
-        for (k = 0; k < 4; ++k)
-            for (r = 0; r < 3; ++r)
+        for (k = 0; k < 4; k++)
+            for (r = 0; r < 3; r++)
                 at[r] += 0.25 * model->positions[3 * (size_t)model->elements[i].copy[k] + (size_t)r];
         sorted[i].place = gxsp_curve(at, low, 1024 / extent);
     }
 }
 
 /* Pieces in the order in which the curve first meets them. rank: by piece */
-static void gxsp_rank_pieces(const gxsp_system *system, const gxs_model *model, const gxsp_sorted *elements, gxsp_sorted *pieces,
-                             gxsp_sorted *other, uint32_t *rank)
-{
+static void gxsp_rank_pieces(const gxsp_system *system, const gxs_model *model, const gxsp_sorted *elements,
+                             gxsp_sorted *pieces, gxsp_sorted *other, uint32_t *rank) {
     size_t i;
-    for (i = 0; i < system->piece_count; ++i) {
+    for (i = 0; i < system->piece_count; i++) {
         pieces[i].index = (uint32_t)i;
         pieces[i].place = UINT32_MAX;
     }
-    for (i = 0; i < model->element_count; ++i) {
+    for (i = 0; i < model->element_count; i++) {
         gxsp_sorted *piece = &pieces[system->piece[model->elements[i].copy[0]]];
         piece->place = elements[i].place < piece->place ? elements[i].place : piece->place;
     }
     pieces = gxsp_sort(pieces, other, system->piece_count);
-    for (i = 0; i < system->piece_count; ++i)
-        rank[pieces[i].index] = (uint32_t)i;
+    for (i = 0; i < system->piece_count; i++) rank[pieces[i].index] = (uint32_t)i;
 }
 
 /* Are an element's gradients those that the rest positions x of its corners say, but for rounding? */
-static int gxsp_is_placed(const gxs_element *element, const double x[4][3])
-{
+static int gxsp_is_placed(const gxs_element *element, const double x[4][3]) {
     double edge[3][3], made[3][3], determinant = 0, most = 0, off = 0;
     int i, k;
-    for (i = 0; i < 3; ++i)
-        for (k = 0; k < 3; ++k)
-            edge[i][k] = x[1 + i][k] - x[0][k];
-    for (i = 0; i < 3; ++i) {
+    for (i = 0; i < 3; i++)
+        for (k = 0; k < 3; k++) edge[i][k] = x[1 + i][k] - x[0][k];
+    for (i = 0; i < 3; i++) {
         const double *a = edge[(i + 1) % 3], *b = edge[(i + 2) % 3];
-        made[i][0] = a[1] * b[2] - a[2] * b[1], made[i][1] = a[2] * b[0] - a[0] * b[2], made[i][2] = a[0] * b[1] - a[1] * b[0];
+        made[i][0] = a[1] * b[2] - a[2] * b[1], made[i][1] = a[2] * b[0] - a[0] * b[2],
+        made[i][2] = a[0] * b[1] - a[1] * b[0];
     }
-    for (k = 0; k < 3; ++k)
-        determinant += edge[0][k] * made[0][k];
-    if (!gxsp_finite(determinant) || !(fabs(determinant) >= DBL_MIN))
-        return 0;
-    for (k = 0; k < 9; ++k) {
+    for (k = 0; k < 3; k++) determinant += edge[0][k] * made[0][k];
+    if (!gxsp_finite(determinant) || !(fabs(determinant) >= DBL_MIN)) return 0;
+    for (k = 0; k < 9; k++) {
         const double given = element->gradient[1 + k / 3][k % 3], found = made[k / 3][k % 3] / determinant;
-        if (!gxsp_finite(found))
-            return 0;
+        if (!gxsp_finite(found)) return 0;
         most = fabs(given) > most ? fabs(given) : most;
         off = fabs(given - found) > off ? fabs(given - found) : off;
     }
     return off <= GXSP_PLACED * most;
 }
 
-/* What elements of one chunk are alike in: 4 x kind + 2 x (gradients are not those of the positions) + (masses are not those of whole
- * elements). positions: at 3 x copy, or, origins (as of gxs_change) given, of what the copy was; NULL: there are none */
-static uint32_t gxsp_class(gxs_material_kind kind, const gxs_element *element, uint32_t lumped, const double *positions, const uint32_t *origins)
-{
+/* What elements of one chunk are alike in: 4 x kind + 2 x (gradients are not those of the positions) + (masses are not
+ * those of whole elements). positions: at 3 x copy, or, origins (as of gxs_change) given, of what the copy was; NULL:
+ * there are none */
+static uint32_t gxsp_class(gxs_material_kind kind, const gxs_element *element, uint32_t lumped, const double *positions,
+                           const uint32_t *origins) {
     double x[4][3];
     int k;
-    for (k = 0; k < 4 && positions; ++k) {
+    for (k = 0; k < 4 && positions; k++) {
         const uint32_t copy = origins ? origins[element->copy[k]] >> 1 : element->copy[k];
         memcpy(x[k], positions + 3 * (size_t)copy, sizeof x[k]);
     }
-    return 4 * (uint32_t)kind + (positions && gxsp_is_placed(element, (const double(*)[3])x) ? 0u : 2u) + (lumped || gxsp_whole(element->mass) ? 0u : 1u);
+    return 4 * (uint32_t)kind + (positions && gxsp_is_placed(element, (const double(*)[3])x) ? 0u : 2u) +
+           (lumped || gxsp_whole(element->mass) ? 0u : 1u);
 }
 
-/* The order of elements. Elements of one piece are together, so that chunks have few nodes and sleep with their piece. */
-static gxsp_sorted *gxsp_order_elements(const gxsp_system *system, const gxs_model *model, gxsp_pool *scratch)
-{
+/* The order of elements. Elements of one piece are together, so that chunks have few nodes and sleep with their piece.
+ */
+static gxsp_sorted *gxsp_order_elements(const gxsp_system *system, const gxs_model *model, gxsp_pool *scratch) {
     const size_t count = model->element_count, pieces = system->piece_count, most = count > pieces ? count : pieces;
     gxsp_sorted *sorted = (gxsp_sorted *)gxsp_take(scratch, count, sizeof *sorted);
     gxsp_sorted *other = (gxsp_sorted *)gxsp_take(scratch, most, sizeof *other);
     gxsp_sorted *ranked = (gxsp_sorted *)gxsp_take(scratch, pieces, sizeof *ranked);
     uint32_t *rank = (uint32_t *)gxsp_take(scratch, pieces, sizeof(uint32_t));
     size_t i;
-    if (scratch->failed)
-        return NULL;
+    if (scratch->failed) return NULL;
     gxsp_place_elements(model, sorted);
     gxsp_rank_pieces(system, model, sorted, ranked, other, rank);
-    for (i = 0; i < count; ++i) {
+    for (i = 0; i < count; i++) {
         const gxs_element *element = &model->elements[i];
         sorted[i].index = (uint32_t)i;
         sorted[i].piece = rank[system->piece[element->copy[0]]];
-        sorted[i].class_index = gxsp_class(model->materials[element->material].kind, element, model->lumped_mass, model->positions, NULL);
+        sorted[i].class_index =
+            gxsp_class(model->materials[element->material].kind, element, model->lumped_mass, model->positions, NULL);
     }
     return gxsp_sort(sorted, other, count);
 }
 
 static const uint8_t gxsp_own_order[4] = {0, 1, 2, 3};
 
-/* An element's mass, returned, and its centre in barycentric coordinates: row sums over their sum. rounded: to whole units of 2^-24, so that
- * the four are 1 in sum, and none below 0 */
-static double gxsp_find_centre(const double *mass, double *centre, double *rounded)
-{
+/* An element's mass, returned, and its centre in barycentric coordinates: row sums over their sum. rounded: to whole
+ * units of 2^-24, so that the four are 1 in sum, and none below 0 */
+static double gxsp_find_centre(const double *mass, double *centre, double *rounded) {
     const double unit = 16777216;
     double sum = 0;
     int k, j, most = 1;
-    for (k = 0; k < 4; ++k) {
-        for (j = 0, centre[k] = 0; j < 4; ++j)
-            centre[k] += mass[gxsp_packed_mass[k][j]];
+    for (k = 0; k < 4; k++) {
+        for (j = 0, centre[k] = 0; j < 4; j++) centre[k] += mass[gxsp_packed_mass[k][j]];
         sum += centre[k];
     }
     rounded[0] = 1;
-    for (k = 3; k >= 0; --k) {
+    for (k = 3; k >= 0; k--) {
         centre[k] = sum > 0 ? centre[k] / sum : 0;
-        if (k > 0)
-            rounded[0] -= rounded[k] = floor(unit * centre[k] + 0.5) / unit;
+        if (k > 0) rounded[0] -= rounded[k] = floor(unit * centre[k] + 0.5) / unit;
     }
     most = rounded[2] > rounded[most] ? 2 : most;
     most = rounded[3] > rounded[most] ? 3 : most;
-    if (rounded[0] < 0)
-        rounded[most] += rounded[0], rounded[0] = 0;
+    if (rounded[0] < 0) rounded[most] += rounded[0], rounded[0] = 0;
     return sum > 0 ? sum : 0;
 }
 
 /* What each corner's copy has of an element's mass: row sums as the solver has them */
-static void gxsp_row_masses(const gxs_element *element, double *rows)
-{
+static void gxsp_row_masses(const gxs_element *element, double *rows) {
     const int whole = gxsp_whole(element->mass);
     double centre[4], mass = whole ? 2.5 * element->mass[0] : gxsp_find_centre(element->mass, centre, rows);
     int k;
-    for (k = 0; k < 4; ++k)
-        rows[k] = whole ? mass : mass * rows[k];
+    for (k = 0; k < 4; k++) rows[k] = whole ? mass : mass * rows[k];
 }
 
-/* Cholesky factor of a symmetric 3x3, which is used up, the largest pivot first, so that rounding stays as small as it was where the matrix is
- * next to singular or worse; then made lower triangular by turning columns, which leaves factor factor^T as it is. */
-static void gxsp_factor3(double c[3][3], double factor[3][3])
-{
+/* Cholesky factor of a symmetric 3x3, which is used up, the largest pivot first, so that rounding stays as small as it
+ * was where the matrix is next to singular or worse; then made lower triangular by turning columns, which leaves factor
+ * factor^T as it is. */
+static void gxsp_factor3(double c[3][3], double factor[3][3]) {
     int done[3] = {0, 0, 0}, step, i, j, k;
     memset(factor, 0, 9 * sizeof(double));
-    for (step = 0; step < 3; ++step) {
+    for (step = 0; step < 3; step++) {
         double root;
-        for (i = 0, k = -1; i < 3; ++i)
-            if (!done[i] && (k < 0 || c[i][i] > c[k][k]))
-                k = i;
-        if (!(c[k][k] > 0))
-            break;
+        for (i = 0, k = -1; i < 3; i++)
+            if (!done[i] && (k < 0 || c[i][i] > c[k][k])) k = i;
+        if (!(c[k][k] > 0)) break;
         root = sqrt(c[k][k]);
         done[k] = 1;
-        for (i = 0; i < 3; ++i)
+        for (i = 0; i < 3; i++)
             if (!done[i]) {
                 const double most = c[i][i] > 0 ? sqrt(c[i][i]) : 0;
                 factor[i][step] = fabs(c[i][k]) < root * most ? c[i][k] / root : copysign(most, c[i][k]);
             }
         factor[k][step] = root;
-        for (i = 0; i < 3; ++i)
-            for (j = 0; j < 3 && !done[i]; ++j)
-                c[i][j] -= factor[i][step] * factor[j][step];
+        for (i = 0; i < 3; i++)
+            for (j = 0; j < 3 && !done[i]; j++) c[i][j] -= factor[i][step] * factor[j][step];
     }
-    for (i = 0; i < 2; ++i)
-        for (j = i + 1; j < 3; ++j) {
+    for (i = 0; i < 2; i++)
+        for (j = i + 1; j < 3; j++) {
             const double length = sqrt(factor[i][i] * factor[i][i] + factor[i][j] * factor[i][j]);
             const double cosine = length > 0 ? factor[i][i] / length : 1, sine = length > 0 ? factor[i][j] / length : 0;
-            for (k = i; k < 3; ++k) {
+            for (k = i; k < 3; k++) {
                 const double a = factor[k][i], b = factor[k][j];
                 factor[k][i] = cosine * a + sine * b, factor[k][j] = cosine * b - sine * a;
             }
@@ -2779,34 +2774,33 @@ static void gxsp_factor3(double c[3][3], double factor[3][3])
 }
 
 /* Masses of a lane that are not those of a whole element. Returns all of it. */
-static double gxsp_place_moments(const double *mass, const uint8_t *order, gxsp_moments *moments, size_t lane)
-{
+static double gxsp_place_moments(const double *mass, const uint8_t *order, gxsp_moments *moments, size_t lane) {
     double centre[4], rounded[4], covariance[3][3], root[3][3];
     const double sum = gxsp_find_centre(mass, centre, rounded), all = sum > 0 ? sum : 1;
     const uint8_t *own = order + 1;
     int i, j;
-    for (i = 0; i < 3; ++i)
-        for (j = 0; j < 3; ++j)
+    for (i = 0; i < 3; i++)
+        for (j = 0; j < 3; j++)
             covariance[i][j] = mass[gxsp_packed_mass[own[i]][own[j]]] / all - centre[own[i]] * centre[own[j]];
     gxsp_factor3(covariance, root);
-    for (i = 0; i < 3; ++i) {
+    for (i = 0; i < 3; i++) {
         moments->centre[i][lane] = (float)rounded[own[i]];
-        for (j = 0; j <= i; ++j)
-            moments->root[i * (i + 1) / 2 + j][lane] = (float)root[i][j];
+        for (j = 0; j <= i; j++) moments->root[i * (i + 1) / 2 + j][lane] = (float)root[i][j];
     }
     return sum;
 }
 
 /* order: which of the element's corners come to be the lane's */
-static void gxsp_place_element(const gxsp_chunk *chunk, const gxs_element *element, const uint8_t *order, uint32_t at, uint32_t lumped)
-{
+static void gxsp_place_element(const gxsp_chunk *chunk, const gxs_element *element, const uint8_t *order, uint32_t at,
+                               uint32_t lumped) {
     gxsp_rest *rest = &chunk->rest[at / GXSP_LANES];
     size_t lane = at % GXSP_LANES;
     int i, k;
-    for (i = 0; i < 3 && chunk->gradients; ++i)
-        for (k = 0; k < 3; ++k)
+    for (i = 0; i < 3 && chunk->gradients; i++)
+        for (k = 0; k < 3; k++)
             chunk->gradients[at / GXSP_LANES].entry[3 * i + k][lane] =
-                order[1 + i] > 0 ? element->gradient[order[1 + i]][k] : -(element->gradient[1][k] + element->gradient[2][k] + element->gradient[3][k]);
+                order[1 + i] > 0 ? element->gradient[order[1 + i]][k]
+                                 : -(element->gradient[1][k] + element->gradient[2][k] + element->gradient[3][k]);
     rest->weight[lane] = element->weight;
     rest->material[lane] = element->material;
     chunk->groups[at] = element->group % GXSP_GROUPS; /* who does not update may have left it unset */
@@ -2817,147 +2811,137 @@ static void gxsp_place_element(const gxsp_chunk *chunk, const gxs_element *eleme
 }
 
 /* Ascending, by insertion */
-static void gxsp_sort_row(uint32_t *row, uint32_t count)
-{
+static void gxsp_sort_row(uint32_t *row, uint32_t count) {
     uint32_t i, j;
-    for (i = 1; i < count; ++i) {
+    for (i = 1; i < count; i++) {
         uint32_t value = row[i];
-        for (j = i; j > 0 && row[j - 1] > value; --j)
-            row[j] = row[j - 1];
+        for (j = i; j > 0 && row[j - 1] > value; j--) row[j] = row[j - 1];
         row[j] = value;
     }
 }
 
 /* Numbers of copies in the chunk at work */
 typedef struct gxsp_numbers {
-    uint32_t *local;    /* n: the number, where stamp is the round */
-    uint32_t *stamp;    /* n, 0 at first */
-    uint32_t round;     /* one for each chunk */
+    uint32_t *local; /* n: the number, where stamp is the round */
+    uint32_t *stamp; /* n, 0 at first */
+    uint32_t round;  /* one for each chunk */
 } gxsp_numbers;
 
-/* The nodes of a chunk in the order of their copies, which is that of memory. copies: of count elements; GXSP_NONE where there is none, else
- * numbers of nodes come in their place. Returns how many nodes there are. */
-static uint32_t gxsp_number_nodes(uint32_t (*copies)[4], uint32_t count, gxsp_numbers *numbers, uint32_t *nodes)
-{
+/* The nodes of a chunk in the order of their copies, which is that of memory. copies: of count elements; GXSP_NONE
+ * where there is none, else numbers of nodes come in their place. Returns how many nodes there are. */
+static uint32_t gxsp_number_nodes(uint32_t (*copies)[4], uint32_t count, gxsp_numbers *numbers, uint32_t *nodes) {
     uint32_t e, i, k, found = 0;
-    ++numbers->round;
-    for (e = 0; e < count; ++e)
-        for (k = 0; k < 4 && copies[e][0] != GXSP_NONE; ++k)
+    numbers->round++;
+    for (e = 0; e < count; e++)
+        for (k = 0; k < 4 && copies[e][0] != GXSP_NONE; k++)
             if (numbers->stamp[copies[e][k]] != numbers->round) {
                 numbers->stamp[copies[e][k]] = numbers->round;
                 nodes[found++] = copies[e][k];
             }
     gxsp_sort_row(nodes, found);
-    for (i = 0; i < found; ++i)
-        numbers->local[nodes[i]] = i;
-    for (e = 0; e < count; ++e)
-        for (k = 0; k < 4 && copies[e][k] != GXSP_NONE; ++k)
-            copies[e][k] = numbers->local[copies[e][k]];
+    for (i = 0; i < found; i++) numbers->local[nodes[i]] = i;
+    for (e = 0; e < count; e++)
+        for (k = 0; k < 4 && copies[e][k] != GXSP_NONE; k++) copies[e][k] = numbers->local[copies[e][k]];
     return found;
 }
 
-/* Corners of a chunk's blocks. nodes: by lane, GXSP_NONE where there is no element: such a lane has the corners of the block before */
-static void gxsp_set_corners(const gxsp_chunk *chunk, uint32_t (*nodes)[4])
-{
+/* Corners of a chunk's blocks. nodes: by lane, GXSP_NONE where there is no element: such a lane has the corners of the
+ * block before */
+static void gxsp_set_corners(const gxsp_chunk *chunk, uint32_t (*nodes)[4]) {
     uint32_t b, l, k;
-    for (b = 0; b < chunk->block_count; ++b) {
+    for (b = 0; b < chunk->block_count; b++) {
         gxsp_corners *corner = &chunk->corners[b];
         const gxsp_corners *before = b > 0 ? corner - 1 : corner;
         chunk->fresh[b] = b > 0 ? 0 : 15;
-        for (k = 0; k < 4; ++k)
-            for (l = 0; l < GXSP_LANES; ++l) {
+        for (k = 0; k < 4; k++)
+            for (l = 0; l < GXSP_LANES; l++) {
                 const uint32_t node = nodes[b * GXSP_LANES + l][k];
                 corner->node[k][l] = node != GXSP_NONE ? (uint16_t)node : b > 0 ? before->node[k][l] : 0;
-                chunk->fresh[b] = (uint8_t)(chunk->fresh[b] | (corner->node[k][l] != before->node[k][l] ? 1u << k : 0u));
+                chunk->fresh[b] =
+                    (uint8_t)(chunk->fresh[b] | (corner->node[k][l] != before->node[k][l] ? 1u << k : 0u));
             }
     }
     chunk->fresh[b] = 15;
 }
 
 /* --- lanes: which element of a chunk goes where ---
- * Neighbours come to lie in successive blocks, so that those of one block hardly share nodes: where they do, sums into slots wait for the
- * ones before them. And a pass over blocks neither reads nor writes a corner that is the same as in the block before, in each lane. So
- * lanes are made of chains around an edge: four elements, each with all but one corner of the one before. */
+ * Neighbours come to lie in successive blocks, so that those of one block hardly share nodes: where they do, sums into
+ * slots wait for the ones before them. And a pass over blocks neither reads nor writes a corner that is the same as in
+ * the block before, in each lane. So lanes are made of chains around an edge: four elements, each with all but one
+ * corner of the one before. */
 
 enum { GXSP_CHAIN = 4, GXSP_FACES = 4096 };
 
 typedef struct gxsp_seating {
-    uint32_t (*nodes)[4];               /* count: of each element */
+    uint32_t (*nodes)[4]; /* count: of each element */
     uint32_t count;
-    uint16_t across[GXSP_CHUNK][4];     /* the element beyond the face that a corner is not on, or count */
+    uint16_t across[GXSP_CHUNK][4]; /* the element beyond the face that a corner is not on, or count */
     uint8_t seated[GXSP_CHUNK];
-    uint16_t chain[GXSP_CHUNK];         /* elements of the chains of one length, one after the other */
-    uint8_t turn[GXSP_CHUNK][4];        /* and the order of their corners */
-    uint16_t seat[GXSP_CHUNK];          /* by lane: the element there, or count */
-    uint8_t order[GXSP_CHUNK][4];       /* by lane */
+    uint16_t chain[GXSP_CHUNK];   /* elements of the chains of one length, one after the other */
+    uint8_t turn[GXSP_CHUNK][4];  /* and the order of their corners */
+    uint16_t seat[GXSP_CHUNK];    /* by lane: the element there, or count */
+    uint8_t order[GXSP_CHUNK][4]; /* by lane */
 } gxsp_seating;
 
-/* Where three nodes stand in an element: their corners, and the fourth one; 4: not each is there once. Without branches, which could not be
- * foretold */
-static int gxsp_find_face(const uint32_t *element, const uint32_t *face, uint8_t *corners)
-{
+/* Where three nodes stand in an element: their corners, and the fourth one; 4: not each is there once. Without
+ * branches, which could not be foretold */
+static int gxsp_find_face(const uint32_t *element, const uint32_t *face, uint8_t *corners) {
     static const uint8_t corner_of[16] = {4, 0, 1, 4, 2, 4, 4, 4, 3, 4, 4, 4, 4, 4, 4, 4}; /* of a single bit */
     unsigned met[3];
     int i;
-    for (i = 0; i < 3; ++i) {
+    for (i = 0; i < 3; i++) {
         const uint32_t node = face[i];
-        met[i] = (element[0] == node ? 1u : 0u) | (element[1] == node ? 2u : 0u) | (element[2] == node ? 4u : 0u) | (element[3] == node ? 8u : 0u);
+        met[i] = (element[0] == node ? 1u : 0u) | (element[1] == node ? 2u : 0u) | (element[2] == node ? 4u : 0u) |
+                 (element[3] == node ? 8u : 0u);
         corners[i] = corner_of[met[i]];
     }
     return (corners[0] | corners[1] | corners[2]) & 4 ? 4 : corner_of[15 & ~(met[0] | met[1] | met[2])];
 }
 
 /* The nodes of the face that a corner is not on */
-static void gxsp_face_of(const uint32_t *element, int corner, uint32_t *face)
-{
+static void gxsp_face_of(const uint32_t *element, int corner, uint32_t *face) {
     int i;
-    for (i = 0; i < 3; ++i)
-        face[i] = element[i < corner ? i : i + 1];
+    for (i = 0; i < 3; i++) face[i] = element[i < corner ? i : i + 1];
 }
 
 /* Fills across by a table of faces that have been met. */
-static void gxsp_find_across(gxsp_seating *seating)
-{
+static void gxsp_find_across(gxsp_seating *seating) {
     uint16_t table[GXSP_FACES]; /* 4 x element + corner, from 1 */
     uint32_t f, at, face[3];
     uint8_t corners[3];
     memset(table, 0, sizeof table);
-    for (f = 0; f < 4 * seating->count; ++f) {
+    for (f = 0; f < 4 * seating->count; f++) {
         seating->across[f / 4][f % 4] = (uint16_t)seating->count;
         gxsp_face_of(seating->nodes[f / 4], (int)(f % 4), face);
-        for (at = (face[0] * face[0] + face[1] * face[1] + face[2] * face[2]) * 40503u / 16 % GXSP_FACES; table[at]; at = (at + 1) % GXSP_FACES) {
+        for (at = (face[0] * face[0] + face[1] * face[1] + face[2] * face[2]) * 40503u / 16 % GXSP_FACES; table[at];
+             at = (at + 1) % GXSP_FACES) {
             const uint32_t other = (table[at] - 1u) / 4;
             const int corner = gxsp_find_face(seating->nodes[other], face, corners);
-            if (corner != (int)((table[at] - 1u) % 4))
-                continue;
+            if (corner != (int)((table[at] - 1u) % 4)) continue;
             seating->across[f / 4][f % 4] = (uint16_t)other;
             seating->across[other][corner] = (uint16_t)(f / 4);
             break;
         }
-        if (!table[at])
-            table[at] = (uint16_t)(f + 1);
+        if (!table[at]) table[at] = (uint16_t)(f + 1);
     }
 }
 
 /* Walks from the chain's first element around the edge of its first two corners. Is there a way for length elements? */
-static int gxsp_walk_chain(const gxsp_seating *seating, uint32_t length, uint16_t *chain, uint8_t (*order)[4])
-{
+static int gxsp_walk_chain(const gxsp_seating *seating, uint32_t length, uint16_t *chain, uint8_t (*order)[4]) {
     uint32_t i, k;
-    for (i = 1; i < length; ++i) {
+    for (i = 1; i < length; i++) {
         const uint32_t moving = i % 2 ? 2 : 3, e = seating->across[chain[i - 1]][order[i - 1][moving]];
         const uint32_t *before = seating->nodes[chain[i - 1]];
         uint32_t face[3];
         uint8_t corners[3] = {0, 0, 0};
         int other;
-        if (e == seating->count || seating->seated[e])
-            return 0;
-        for (k = 0; k < i; ++k)
-            if (chain[k] == e)
-                return 0;
-        face[0] = before[order[i - 1][0]], face[1] = before[order[i - 1][1]], face[2] = before[order[i - 1][5 - moving]];
+        if (e == seating->count || seating->seated[e]) return 0;
+        for (k = 0; k < i; k++)
+            if (chain[k] == e) return 0;
+        face[0] = before[order[i - 1][0]], face[1] = before[order[i - 1][1]],
+        face[2] = before[order[i - 1][5 - moving]];
         other = gxsp_find_face(seating->nodes[e], face, corners);
-        if (other == 4)
-            return 0;
+        if (other == 4) return 0;
         order[i][moving] = (uint8_t)other;
         order[i][0] = corners[0], order[i][1] = corners[1], order[i][5 - moving] = corners[2];
         chain[i] = (uint16_t)e;
@@ -2966,47 +2950,44 @@ static int gxsp_walk_chain(const gxsp_seating *seating, uint32_t length, uint16_
 }
 
 /* A chain of so many elements that begins with e, which is not seated */
-static int gxsp_find_chain(const gxsp_seating *seating, uint32_t e, uint32_t length, uint16_t *chain, uint8_t (*order)[4])
-{
-    static const uint8_t edges[6][4] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 0, 2}, {2, 3, 0, 1}};
+static int gxsp_find_chain(const gxsp_seating *seating, uint32_t e, uint32_t length, uint16_t *chain,
+                           uint8_t (*order)[4]) {
+    static const uint8_t edges[6][4] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2},
+                                        {1, 2, 0, 3}, {1, 3, 0, 2}, {2, 3, 0, 1}};
     int edge, turned;
-    for (edge = 0; edge < 6; ++edge)
-        for (turned = 0; turned < 2; ++turned) {
+    for (edge = 0; edge < 6; edge++)
+        for (turned = 0; turned < 2; turned++) {
             chain[0] = (uint16_t)e;
             memcpy(order[0], edges[edge], 4);
             order[0][2] = edges[edge][2 + turned], order[0][3] = edges[edge][3 - turned];
-            if (gxsp_walk_chain(seating, length, chain, order))
-                return 1;
+            if (gxsp_walk_chain(seating, length, chain, order)) return 1;
         }
     return 0;
 }
 
 /* Chains of so many elements, of those not seated yet. Returns how many chains there are. */
-static uint32_t gxsp_list_chains(gxsp_seating *seating, uint32_t length)
-{
+static uint32_t gxsp_list_chains(gxsp_seating *seating, uint32_t length) {
     uint32_t e, i, found = 0;
-    for (e = 0; e < seating->count; ++e)
-        if (!seating->seated[e] && gxsp_find_chain(seating, e, length, &seating->chain[found * length], &seating->turn[found * length])) {
-            for (i = 0; i < length; ++i)
-                seating->seated[seating->chain[found * length + i]] = 1;
-            ++found;
+    for (e = 0; e < seating->count; e++)
+        if (!seating->seated[e] &&
+            gxsp_find_chain(seating, e, length, &seating->chain[found * length], &seating->turn[found * length])) {
+            for (i = 0; i < length; i++) seating->seated[seating->chain[found * length + i]] = 1;
+            found++;
         }
     return found;
 }
 
-/* Seats chains of so many elements in the blocks from first on, side by side, each in a lane. All of single elements; of longer ones those that
- * fill blocks. Returns the first block that is left. */
-static uint32_t gxsp_seat_chains(gxsp_seating *seating, uint32_t blocks, uint32_t length, uint32_t first)
-{
+/* Seats chains of so many elements in the blocks from first on, side by side, each in a lane. All of single elements;
+ * of longer ones those that fill blocks. Returns the first block that is left. */
+static uint32_t gxsp_seat_chains(gxsp_seating *seating, uint32_t blocks, uint32_t length, uint32_t first) {
     const uint32_t chains = gxsp_list_chains(seating, length), rows = length > 1 ? chains / GXSP_LANES : blocks - first;
     uint32_t c, i;
-    for (c = 0; c < chains; ++c)
-        for (i = 0; i < length; ++i) {
+    for (c = 0; c < chains; c++)
+        for (i = 0; i < length; i++) {
             const uint32_t at = c * length + i, e = seating->chain[at];
             const uint32_t lane = c < rows * GXSP_LANES ? (first + c % rows * length + i) * GXSP_LANES + c / rows : 0;
             seating->seated[e] = c < rows * GXSP_LANES;
-            if (!seating->seated[e])
-                continue;
+            if (!seating->seated[e]) continue;
             seating->seat[lane] = (uint16_t)e;
             memcpy(seating->order[lane], seating->turn[at], 4);
         }
@@ -3014,50 +2995,47 @@ static uint32_t gxsp_seat_chains(gxsp_seating *seating, uint32_t blocks, uint32_
 }
 
 /* The lane of each element of a chunk. nodes: of the elements, neighbours together */
-static void gxsp_seat_elements(gxsp_seating *seating, uint32_t (*nodes)[4], uint32_t count, uint32_t blocks)
-{
+static void gxsp_seat_elements(gxsp_seating *seating, uint32_t (*nodes)[4], uint32_t count, uint32_t blocks) {
     uint32_t lane, length, first = 0;
     seating->nodes = nodes;
     seating->count = count;
     memset(seating->seated, 0, sizeof seating->seated);
-    for (lane = 0; lane < GXSP_CHUNK; ++lane)
-        seating->seat[lane] = (uint16_t)count;
+    for (lane = 0; lane < GXSP_CHUNK; lane++) seating->seat[lane] = (uint16_t)count;
     gxsp_find_across(seating);
-    for (length = GXSP_CHAIN; length > 0; length /= 2)
-        first = gxsp_seat_chains(seating, blocks, length, first);
+    for (length = GXSP_CHAIN; length > 0; length /= 2) first = gxsp_seat_chains(seating, blocks, length, first);
 }
 
 /* Elements of a chunk in their lanes. elements: sorted; nodes: theirs, numbered in the chunk */
-static void gxsp_fill_chunk(const gxsp_chunk *chunk, const gxs_model *model, const gxsp_sorted *elements, uint32_t (*nodes)[4], uint32_t count)
-{
+static void gxsp_fill_chunk(const gxsp_chunk *chunk, const gxs_model *model, const gxsp_sorted *elements,
+                            uint32_t (*nodes)[4], uint32_t count) {
     gxsp_seating seating;
     uint32_t seated[GXSP_CHUNK][4], lane;
     int k;
     gxsp_seat_elements(&seating, nodes, count, chunk->block_count);
     memset(seated, 0xff, sizeof seated);
-    for (lane = 0; lane < chunk->block_count * GXSP_LANES; ++lane) {
+    for (lane = 0; lane < chunk->block_count * GXSP_LANES; lane++) {
         const uint32_t e = seating.seat[lane];
         if (e == count) { /* of no weight, but of a material there is */
             chunk->rest[lane / GXSP_LANES].material[lane % GXSP_LANES] = model->elements[elements[0].index].material;
             continue;
         }
         gxsp_place_element(chunk, &model->elements[elements[e].index], seating.order[lane], lane, model->lumped_mass);
-        for (k = 0; k < 4; ++k)
-            seated[lane][k] = nodes[e][seating.order[lane][k]];
+        for (k = 0; k < 4; k++) seated[lane][k] = nodes[e][seating.order[lane][k]];
     }
     gxsp_set_corners(chunk, seated);
 }
 
 /* Blocks and nodes of the chunks */
-static void gxsp_fill_chunks(gxsp_system *system, const gxs_model *model, const gxsp_sorted *sorted, gxsp_numbers *numbers)
-{
+static void gxsp_fill_chunks(gxsp_system *system, const gxs_model *model, const gxsp_sorted *sorted,
+                             gxsp_numbers *numbers) {
     uint32_t copies[GXSP_CHUNK][4], c;
     size_t first = 0;
-    for (c = 0; c < system->chunk_count; ++c) {
+    for (c = 0; c < system->chunk_count; c++) {
         gxsp_chunk *chunk = &system->chunks[c];
         uint32_t e;
         for (e = 0; first + e < model->element_count && e < chunk->block_count * GXSP_LANES &&
-             sorted[first + e].class_index == chunk->class_index; ++e) {
+                    sorted[first + e].class_index == chunk->class_index;
+             e++) {
             const gxs_element *element = &model->elements[sorted[first + e].index];
             gxsp_fetch(element, sizeof *element);
             memcpy(copies[e], element->copy, sizeof copies[e]);
@@ -3071,8 +3049,7 @@ static void gxsp_fill_chunks(gxsp_system *system, const gxs_model *model, const 
 }
 
 /* Chunks of the sorted elements: which blocks, what class. Returns how many. chunks: NULL, or room for all */
-static uint32_t gxsp_plan_chunks(gxsp_system *system, const gxsp_sorted *sorted, gxsp_chunk *chunks)
-{
+static uint32_t gxsp_plan_chunks(gxsp_system *system, const gxsp_sorted *sorted, gxsp_chunk *chunks) {
     uint32_t chunk_count = 0;
     size_t i = 0;
     system->block_count = 0;
@@ -3080,23 +3057,20 @@ static uint32_t gxsp_plan_chunks(gxsp_system *system, const gxsp_sorted *sorted,
         uint32_t class_index = sorted[i].class_index, count = 0;
         gxsp_chunk chunk;
         memset(&chunk, 0, sizeof chunk);
-        while (i < system->element_count && sorted[i].class_index == class_index && count < GXSP_CHUNK)
-            ++i, ++count;
+        while (i < system->element_count && sorted[i].class_index == class_index && count < GXSP_CHUNK) ++i, ++count;
         chunk.class_index = class_index;
         chunk.kind = (gxs_material_kind)(class_index / 4);
         chunk.first_block = (uint32_t)system->block_count;
         chunk.block_count = (count + GXSP_LANES - 1) / GXSP_LANES;
         system->block_count += chunk.block_count;
-        if (chunks)
-            chunks[chunk_count] = chunk;
-        ++chunk_count;
+        if (chunks) chunks[chunk_count] = chunk;
+        chunk_count++;
     }
     return chunk_count;
 }
 
 /* Blocks of chunks count of which are planned, but for those of steps: see gxsp_steps_make */
-static void gxsp_blocks_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count)
-{
+static void gxsp_blocks_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count) {
     gxsp_rest *rest;
     gxsp_corners *corners;
     gxsp_gradients *gradients;
@@ -3105,7 +3079,7 @@ static void gxsp_blocks_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count
     uint8_t *fresh;
     size_t blocks = 0, own = 0, general = 0;
     uint32_t c;
-    for (c = 0; c < count; ++c) {
+    for (c = 0; c < count; c++) {
         blocks += chunks[c].block_count;
         own += chunks[c].class_index & 2 ? chunks[c].block_count : 0;
         general += chunks[c].class_index & 1 ? chunks[c].block_count : 0;
@@ -3116,10 +3090,9 @@ static void gxsp_blocks_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count
     gradients = (gxsp_gradients *)gxsp_take(pool, own, sizeof(gxsp_gradients));
     moments = (gxsp_moments *)gxsp_take(pool, general, sizeof(gxsp_moments));
     fresh = (uint8_t *)gxsp_take(pool, blocks + count, 1);
-    if (pool->failed)
-        return;
+    if (pool->failed) return;
     memset(groups, 0xff, blocks * GXSP_LANES * sizeof *groups);
-    for (c = 0; c < count; ++c) {
+    for (c = 0; c < count; c++) {
         chunks[c].rest = rest;
         chunks[c].corners = corners;
         chunks[c].groups = groups;
@@ -3136,19 +3109,18 @@ static void gxsp_blocks_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count
 }
 
 /* Blocks that linearisations write */
-static void gxsp_tangents_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count)
-{
+static void gxsp_tangents_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count) {
     gxsp_tangent *tangents;
     gxsp_general *generals;
     size_t blocks = 0, custom = 0;
     uint32_t c;
-    for (c = 0; c < count; ++c) {
+    for (c = 0; c < count; c++) {
         blocks += chunks[c].block_count;
         custom += chunks[c].kind == GXS_CUSTOM ? chunks[c].block_count : 0;
     }
     tangents = (gxsp_tangent *)gxsp_take(pool, blocks, sizeof(gxsp_tangent));
     generals = (gxsp_general *)gxsp_take(pool, custom, sizeof(gxsp_general));
-    for (c = 0; c < count && !pool->failed; ++c) {
+    for (c = 0; c < count && !pool->failed; c++) {
         chunks[c].tangents = tangents;
         chunks[c].generals = chunks[c].kind == GXS_CUSTOM ? generals : NULL;
         tangents += chunks[c].block_count;
@@ -3157,137 +3129,119 @@ static void gxsp_tangents_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t cou
 }
 
 /* The slots of every copy, in the order of chunks */
-static void gxsp_list_slots(gxsp_system *system)
-{
+static void gxsp_list_slots(gxsp_system *system) {
     uint32_t i;
     size_t s;
     memset(system->copy_start, 0, (system->n + 2) * sizeof *system->copy_start);
-    for (s = 0; s < system->slot_count; ++s)
-        ++system->copy_start[system->nodes[s] + 2];
-    for (i = 0; i < system->n; ++i)
-        system->copy_start[i + 2] += system->copy_start[i + 1];
-    for (s = 0; s < system->slot_count; ++s) /* slots are in the order of chunks */
+    for (s = 0; s < system->slot_count; s++) system->copy_start[system->nodes[s] + 2]++;
+    for (i = 0; i < system->n; i++) system->copy_start[i + 2] += system->copy_start[i + 1];
+    for (s = 0; s < system->slot_count; s++) /* slots are in the order of chunks */
         system->copy_slot[system->copy_start[system->nodes[s] + 1]++] = (uint32_t)s;
     memset(system->copy_slot + system->slot_count, 0, GXSP_AHEAD * sizeof *system->copy_slot);
     memset(system->nodes + system->slot_count, 0, GXSP_AHEAD * sizeof *system->nodes);
 }
 
-static void gxsp_chunks_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model)
-{
+static void gxsp_chunks_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model) {
     gxsp_sorted *sorted = gxsp_order_elements(system, model, scratch);
     gxsp_numbers numbers;
     uint32_t *nodes;
     numbers.local = (uint32_t *)gxsp_take(scratch, system->n, sizeof(uint32_t));
     numbers.stamp = (uint32_t *)gxsp_take(scratch, system->n, sizeof(uint32_t));
     numbers.round = 0;
-    if (scratch->failed)
-        return;
+    if (scratch->failed) return;
     system->chunk_count = gxsp_plan_chunks(system, sorted, NULL);
     system->chunks = (gxsp_chunk *)gxsp_take(&system->pool, system->chunk_count, sizeof(gxsp_chunk));
     system->chunk_collapsed = (uint8_t *)gxsp_take(&system->pool, system->chunk_count, 1);
     system->chunk_still = (uint8_t *)gxsp_take(&system->pool, system->chunk_count, 1);
     system->copy_start = (uint32_t *)gxsp_take(&system->pool, system->n + 2, sizeof(uint32_t));
-    system->nodes = (uint32_t *)gxsp_take(scratch, 4 * system->element_count, sizeof(uint32_t)); /* its size is not known yet */
-    if (scratch->failed || system->pool.failed)
-        return;
+    /* its size is not known yet */
+    system->nodes = (uint32_t *)gxsp_take(scratch, 4 * system->element_count, sizeof(uint32_t));
+    if (scratch->failed || system->pool.failed) return;
     (void)gxsp_plan_chunks(system, sorted, system->chunks);
     gxsp_blocks_make(&system->pool, system->chunks, system->chunk_count);
-    if (system->pool.failed)
-        return;
+    if (system->pool.failed) return;
     gxsp_fill_chunks(system, model, sorted, &numbers);
     system->copy_slot = (uint32_t *)gxsp_take(&system->pool, system->slot_count + GXSP_AHEAD, sizeof(uint32_t));
     nodes = (uint32_t *)gxsp_take(&system->pool, system->slot_count + GXSP_AHEAD, sizeof(uint32_t));
-    if (system->pool.failed)
-        return;
+    if (system->pool.failed) return;
     memcpy(nodes, system->nodes, system->slot_count * sizeof(uint32_t));
     system->nodes = nodes;
     gxsp_list_slots(system);
 }
 
 /* Does the element give corner i stiffness or mass? */
-static int gxsp_supports(const gxs_element *element, int i)
-{
+static int gxsp_supports(const gxs_element *element, int i) {
     double rows[4];
-    if (element->weight > 0)
-        return 1;
+    if (element->weight > 0) return 1;
     gxsp_row_masses(element, rows);
     return rows[i] > 0;
 }
 
 /* Copies that no element supports are fixed like held ones; row sums of the mass. */
-static void gxsp_find_fixed(gxsp_system *system, const gxs_model *model)
-{
+static void gxsp_find_fixed(gxsp_system *system, const gxs_model *model) {
     size_t e, i;
     int k;
     memset(system->fixed, 1, system->n);
-    for (e = 0; e < model->element_count; ++e) {
+    for (e = 0; e < model->element_count; e++) {
         const gxs_element *element = &model->elements[e];
         double rows[4];
         gxsp_row_masses(element, rows);
-        for (k = 0; k < 4; ++k) {
-            if (gxsp_supports(element, k))
-                system->fixed[element->copy[k]] = 0;
+        for (k = 0; k < 4; k++) {
+            if (gxsp_supports(element, k)) system->fixed[element->copy[k]] = 0;
             system->lumped[element->copy[k]] += rows[k];
         }
     }
     if (model->held)
-        for (i = 0; i < system->n; ++i)
-            if (model->held[i])
-                system->held[i] = system->fixed[i] = 1;
+        for (i = 0; i < system->n; i++)
+            if (model->held[i]) system->held[i] = system->fixed[i] = 1;
 }
 
-static inline int gxsp_follows(const gxsp_system *system, size_t copy)
-{
+static inline int gxsp_follows(const gxsp_system *system, size_t copy) {
     return system->follower_count > 0 && system->follower[copy] != GXSP_NONE;
 }
 
-/* Index of a constraint that cannot be, as its copy has two or a master follows others; SIZE_MAX if all can. held: n flags or NULL; follows: n,
- * scratch, 0 */
-static size_t gxsp_bad_constraint(const gxs_constraint *constraints, size_t count, const uint8_t *held, uint8_t *follows)
-{
+/* Index of a constraint that cannot be, as its copy has two or a master follows others; SIZE_MAX if all can. held: n
+ * flags or NULL; follows: n, scratch, 0 */
+static size_t gxsp_bad_constraint(const gxs_constraint *constraints, size_t count, const uint8_t *held,
+                                  uint8_t *follows) {
     size_t i;
     int k;
-    for (i = 0; i < count; ++i) {
-        if (held && held[constraints[i].copy])
-            continue;
-        if (follows[constraints[i].copy])
-            return i;
+    for (i = 0; i < count; i++) {
+        if (held && held[constraints[i].copy]) continue;
+        if (follows[constraints[i].copy]) return i;
         follows[constraints[i].copy] = 1;
     }
-    for (i = 0; i < count; ++i)
-        for (k = 0; k < 4 && !(held && held[constraints[i].copy]); ++k)
-            if (fabs(constraints[i].weight[k]) > 0 && follows[constraints[i].master[k]])
-                return i;
+    for (i = 0; i < count; i++)
+        for (k = 0; k < 4 && !(held && held[constraints[i].copy]); k++)
+            if (fabs(constraints[i].weight[k]) > 0 && follows[constraints[i].master[k]]) return i;
     return SIZE_MAX;
 }
 
 /* Room for so many followers, and for the copies that there are */
-static void gxsp_followers_room(gxsp_system *system, size_t count)
-{
+static void gxsp_followers_room(gxsp_system *system, size_t count) {
     gxsp_pool *pool = &system->pool;
     if (count > system->follower_room) {
         system->follower_room = (uint32_t)(count + count / 8);
-        system->followers = (gxsp_follower *)gxsp_retake(pool, system->followers, 0, system->follower_room, sizeof(gxsp_follower));
+        system->followers =
+            (gxsp_follower *)gxsp_retake(pool, system->followers, 0, system->follower_room, sizeof(gxsp_follower));
     }
     if (count > 0 && system->n > system->follower_copies) {
         system->follower_copies = system->n > system->copy_room ? system->n : system->copy_room;
-        system->follower = (uint32_t *)gxsp_retake(pool, system->follower, 0, system->follower_copies, sizeof(uint32_t));
+        system->follower =
+            (uint32_t *)gxsp_retake(pool, system->follower, 0, system->follower_copies, sizeof(uint32_t));
     }
 }
 
 /* Which copies follow others: none of them is fixed unless it is held. */
-static void gxsp_set_followers(gxsp_system *system, const gxs_constraint *constraints, size_t count)
-{
+static void gxsp_set_followers(gxsp_system *system, const gxs_constraint *constraints, size_t count) {
     size_t i;
     gxsp_followers_room(system, count);
     system->follower_count = 0;
-    if (system->pool.failed || count == 0)
-        return;
+    if (system->pool.failed || count == 0) return;
     memset(system->follower, 0xff, system->n * sizeof *system->follower);
-    for (i = 0; i < count; ++i) {
+    for (i = 0; i < count; i++) {
         gxsp_follower *follower = &system->followers[system->follower_count];
-        if (system->held[constraints[i].copy])
-            continue;
+        if (system->held[constraints[i].copy]) continue;
         follower->copy = constraints[i].copy;
         memcpy(follower->master, constraints[i].master, sizeof follower->master);
         memcpy(follower->weight, constraints[i].weight, sizeof follower->weight);
@@ -3297,36 +3251,32 @@ static void gxsp_set_followers(gxsp_system *system, const gxs_constraint *constr
 }
 
 /* Joins what constraints couple. forest: n */
-static void gxsp_join_followers(const gxsp_system *system, uint32_t *forest)
-{
+static void gxsp_join_followers(const gxsp_system *system, uint32_t *forest) {
     size_t i;
     int k;
-    for (i = 0; i < system->follower_count; ++i)
-        for (k = 0; k < 4; ++k)
+    for (i = 0; i < system->follower_count; i++)
+        for (k = 0; k < 4; k++)
             if (fabs(system->followers[i].weight[k]) > 0)
                 gxsp_join(forest, system->followers[i].copy, system->followers[i].master[k]);
 }
 
 /* Joins what elements and constraints couple. forest: n */
-static void gxsp_join_copies(const gxsp_system *system, const gxs_model *model, uint32_t *forest)
-{
+static void gxsp_join_copies(const gxsp_system *system, const gxs_model *model, uint32_t *forest) {
     size_t e, i;
     int k;
-    for (i = 0; i < system->n; ++i)
-        forest[i] = (uint32_t)i;
-    for (e = 0; e < model->element_count; ++e)
-        for (k = 1; k < 4; ++k)
+    for (i = 0; i < system->n; i++) forest[i] = (uint32_t)i;
+    for (e = 0; e < model->element_count; e++)
+        for (k = 1; k < 4; k++)
             if (gxsp_supports(&model->elements[e], 0) || gxsp_supports(&model->elements[e], k))
                 gxsp_join(forest, model->elements[e].copy[0], model->elements[e].copy[k]);
     gxsp_join_followers(system, forest);
 }
 
 /* Numbers the pieces: trees of a forest of copies */
-static void gxsp_number_pieces(gxsp_system *system, uint32_t *forest)
-{
+static void gxsp_number_pieces(gxsp_system *system, uint32_t *forest) {
     size_t i;
     system->piece_count = 0;
-    for (i = 0; i < system->n; ++i) { /* roots come before their copies: the lower index wins in gxsp_join */
+    for (i = 0; i < system->n; i++) { /* roots come before their copies: the lower index wins in gxsp_join */
         uint32_t root = gxsp_root(forest, (uint32_t)i);
         system->piece[i] = root == i ? system->piece_count++ : system->piece[root];
     }
@@ -3334,80 +3284,72 @@ static void gxsp_number_pieces(gxsp_system *system, uint32_t *forest)
 
 /* Masses and states of the pieces, which are 0. A translation of one of state 0 meets no stiffness: K T = 0, so
  * T^T (K + rate M) x = rate x sum of lumped x. */
-static void gxsp_fill_pieces(gxsp_system *system)
-{
+static void gxsp_fill_pieces(gxsp_system *system) {
     size_t i;
     uint32_t p;
-    for (i = 0; i < system->n; ++i) {
+    for (i = 0; i < system->n; i++) {
         gxsp_piece *piece = &system->pieces[system->piece[i]];
         piece->mass += system->lumped[i];
         piece->state |= system->fixed[i] ? GXSP_HELD : 0;
     }
-    for (i = 0; i < system->follower_count; ++i) {
+    for (i = 0; i < system->follower_count; i++) {
         const double *w = system->followers[i].weight;
         if (fabs(w[0] + w[1] + w[2] + w[3] - 1) > 1e-12)
             system->pieces[system->piece[system->followers[i].copy]].state |= GXSP_UNBALANCED;
     }
-    for (p = 0; p < system->piece_count; ++p)
+    for (p = 0; p < system->piece_count; p++)
         system->pieces[p].state |= system->pieces[p].mass > 0 ? 0 : GXSP_UNBALANCED;
 }
 
 /* The pieces of every chunk, ascending. parts: NULL, or room for all. Returns how many there are. */
-static uint32_t gxsp_list_parts(gxsp_system *system, gxsp_part *parts)
-{
+static uint32_t gxsp_list_parts(gxsp_system *system, gxsp_part *parts) {
     uint32_t c, k, count = 0;
-    for (c = 0; c < system->piece_count; ++c)
+    for (c = 0; c < system->piece_count; c++)
         system->pieces[c].lead = GXSP_NONE; /* here: the chunk that has met it last */
-    for (c = 0; c < system->chunk_count; ++c) {
+    for (c = 0; c < system->chunk_count; c++) {
         gxsp_chunk *chunk = &system->chunks[c];
         chunk->first_part = count;
-        for (k = 0; k < chunk->node_count; ++k) {
+        for (k = 0; k < chunk->node_count; k++) {
             const uint32_t piece = system->piece[system->nodes[chunk->first_node + k]];
             uint32_t at = count;
-            if (system->pieces[piece].lead == c)
-                continue;
+            if (system->pieces[piece].lead == c) continue;
             system->pieces[piece].lead = c;
-            for (; parts && at > chunk->first_part && parts[at - 1].piece > piece; --at)
+            for (; parts && at > chunk->first_part && parts[at - 1].piece > piece; at--)
                 parts[at].piece = parts[at - 1].piece;
-            if (parts)
-                parts[at].piece = piece;
-            ++count;
+            if (parts) parts[at].piece = piece;
+            count++;
         }
         chunk->part_count = count - chunk->first_part;
     }
-    for (c = 0; c < system->piece_count; ++c)
-        system->pieces[c].lead = c;
+    for (c = 0; c < system->piece_count; c++) system->pieces[c].lead = c;
     return count;
 }
 
 /* Parts of the chunks, in place of those there were */
-static void gxsp_parts_make(gxsp_system *system)
-{
+static void gxsp_parts_make(gxsp_system *system) {
     const uint32_t count = gxsp_list_parts(system, NULL);
     system->parts = (gxsp_part *)gxsp_retake(&system->pool, system->parts, 0, count, sizeof(gxsp_part));
     system->part_count = count;
-    if (!system->pool.failed)
-        (void)gxsp_list_parts(system, system->parts);
+    if (!system->pool.failed) (void)gxsp_list_parts(system, system->parts);
 }
 
 /* Rest positions in spacings of the first lattice: GXSP_SPACING edges of an average whole element. 0: there is none. */
-static int gxsp_find_places(const gxsp_system *system, const gxs_model *model, float (*to)[3])
-{
+static int gxsp_find_places(const gxsp_system *system, const gxs_model *model, float (*to)[3]) {
     double volume = 0, spacing;
     size_t e, i, k, counted = 0;
-    for (e = 0; e < model->element_count; ++e) {
+    for (e = 0; e < model->element_count; e++) {
         const double *g = &model->elements[e].gradient[1][0];
-        double inverse = g[0] * (g[4] * g[8] - g[5] * g[7]) + g[1] * (g[5] * g[6] - g[3] * g[8]) + g[2] * (g[3] * g[7] - g[4] * g[6]);
+        double inverse = g[0] * (g[4] * g[8] - g[5] * g[7]) + g[1] * (g[5] * g[6] - g[3] * g[8]) +
+                         g[2] * (g[3] * g[7] - g[4] * g[6]);
         if (fabs(inverse) > 0) {
             volume += 1 / fabs(inverse) / 6;
-            ++counted;
+            counted++;
         }
     }
-    if (counted == 0)
-        return 0;
+    if (counted == 0) return 0;
     spacing = GXSP_SPACING * cbrt(5 * volume / (double)counted); /* five elements to a cube */
-    for (i = 0; i < system->n; ++i)
-        for (k = 0; k < 3; ++k) {
+    for (i = 0; i < system->n; i++)
+        for (k = 0; k < 3; k++) {
             double place = (model->positions[3 * i + k] - model->positions[k]) / spacing;
             if (!(fabs(place) < 1e6)) /* single precision would not place it */
                 return 0;
@@ -3417,12 +3359,9 @@ static int gxsp_find_places(const gxsp_system *system, const gxs_model *model, f
 }
 
 /* What is known of every copy */
-static void gxsp_copies_make(gxsp_system *system, const double *positions)
-{
-    if (positions)
-        system->positions = (double *)gxsp_take(&system->pool, 3 * system->n, sizeof(double));
-    if (system->positions)
-        memcpy(system->positions, positions, 3 * system->n * sizeof(double));
+static void gxsp_copies_make(gxsp_system *system, const double *positions) {
+    if (positions) system->positions = (double *)gxsp_take(&system->pool, 3 * system->n, sizeof(double));
+    if (system->positions) memcpy(system->positions, positions, 3 * system->n * sizeof(double));
     system->lumped = (double *)gxsp_take(&system->pool, system->n, sizeof(double));
     system->piece = (uint32_t *)gxsp_take(&system->pool, system->n, sizeof(uint32_t));
     system->fixed = (uint8_t *)gxsp_take(&system->pool, system->n, 1);
@@ -3430,21 +3369,21 @@ static void gxsp_copies_make(gxsp_system *system, const double *positions)
     system->held = (uint8_t *)gxsp_take(&system->pool, system->n, 1);
 }
 
-/* >>lattice: the multigrid's structure. A coarse node is a point of a lattice together with one connected component of the nodes
- * in its support, so that coarse functions never cross a cut (the copies' own trick, one level up). Values between lattice
- * points are linear on the six tetrahedra around a cell's diagonal: at most four weights, exact for affine fields. */
+/* >>lattice: the multigrid's structure. A coarse node is a point of a lattice together with one connected component of
+ * the nodes in its support, so that coarse functions never cross a cut (the copies' own trick, one level up). Values
+ * between lattice points are linear on the six tetrahedra around a cell's diagonal: at most four weights, exact for
+ * affine fields. */
 
 /* Lattice cell, order of axes and weights at a place. */
-static void gxsp_locate(const float *place, int32_t *cell, uint8_t *axis, float *weight)
-{
+static void gxsp_locate(const float *place, int32_t *cell, uint8_t *axis, float *weight) {
     float f[3];
     int k;
-    for (k = 0; k < 3; ++k) {
+    for (k = 0; k < 3; k++) {
         cell[k] = (int32_t)floor((double)place[k]);
         f[k] = place[k] - (float)cell[k];
         axis[k] = (uint8_t)k;
     }
-    for (k = 0; k < 3; ++k) { /* three compare-and-swaps sort three numbers: (0 1), (1 2), (0 1) */
+    for (k = 0; k < 3; k++) { /* three compare-and-swaps sort three numbers: (0 1), (1 2), (0 1) */
         int i = k % 2;
         if (f[axis[i]] < f[axis[i + 1]]) {
             uint8_t first = axis[i];
@@ -3458,57 +3397,55 @@ static void gxsp_locate(const float *place, int32_t *cell, uint8_t *axis, float 
     weight[3] = f[axis[2]];
 }
 
-/* Lattice points as one number; never 0. 2^20 points along each axis suffice for any 32-bit count of elements near each other;
- * farther ones would only share a number, not a component. */
-static uint64_t gxsp_lattice_key(const int32_t *point)
-{
+/* Lattice points as one number; never 0. 2^20 points along each axis suffice for any 32-bit count of elements near each
+ * other; farther ones would only share a number, not a component. */
+static uint64_t gxsp_lattice_key(const int32_t *point) {
     return ((uint64_t)((uint32_t)point[0] & 0x1fffffu) << 42 | (uint64_t)((uint32_t)point[1] & 0x1fffffu) << 21 |
-            ((uint32_t)point[2] & 0x1fffffu)) + 1;
+            ((uint32_t)point[2] & 0x1fffffu)) +
+           1;
 }
 
 /* Keys of the four points of the tetrahedron from a cell along axes */
-static void gxsp_tetrahedron_keys(const int32_t *cell, const uint8_t *axis, uint64_t *key)
-{
+static void gxsp_tetrahedron_keys(const int32_t *cell, const uint8_t *axis, uint64_t *key) {
     int32_t point[3];
     int k;
     memcpy(point, cell, sizeof point);
     key[0] = gxsp_lattice_key(point);
-    for (k = 0; k < 3; ++k) {
-        ++point[axis[k]];
+    for (k = 0; k < 3; k++) {
+        point[axis[k]]++;
         key[k + 1] = gxsp_lattice_key(point);
     }
 }
 
 /* What the transfer of a level is made from: four lattice points around each node, those of weight 0 left out */
 typedef struct gxsp_transfer {
-    uint64_t *key;      /* n x 4; 0: left out */
-    uint32_t *forest;   /* n x 4 */
+    uint64_t *key;    /* n x 4; 0: left out */
+    uint32_t *forest; /* n x 4 */
 } gxsp_transfer;
 
 /* Nodes i and j are neighbours: the lattice points around both belong to one component there. */
-static void gxsp_join_nodes(gxsp_transfer *transfer, uint32_t i, uint32_t j)
-{
+static void gxsp_join_nodes(gxsp_transfer *transfer, uint32_t i, uint32_t j) {
     const uint64_t *a = transfer->key + 4 * (size_t)i, *b = transfer->key + 4 * (size_t)j;
     uint32_t p, q;
-    for (p = 0; p < 4; ++p)
-        for (q = 0; q < 4; ++q)
-            if (a[p] == b[q] && a[p] != 0)
-                gxsp_join(transfer->forest, 4 * i + p, 4 * j + q);
+    for (p = 0; p < 4; p++)
+        for (q = 0; q < 4; q++)
+            if (a[p] == b[q] && a[p] != 0) gxsp_join(transfer->forest, 4 * i + p, 4 * j + q);
 }
 
 /* Points and weights of a level's nodes, before components are joined. place: n x 3, in spacings of the next lattice */
-static void gxsp_transfer_begin(const gxsp_level *level, float (*place)[3], const uint8_t *fixed, gxsp_transfer *transfer)
-{
+static void gxsp_transfer_begin(const gxsp_level *level, float (*place)[3], const uint8_t *fixed,
+                                gxsp_transfer *transfer) {
     uint32_t i;
     int k;
-    for (i = 0; i < level->n; ++i) {
+    for (i = 0; i < level->n; i++) {
         int32_t cell[3];
         uint8_t axis[3];
         gxsp_locate(place[i], cell, axis, level->weight[i]);
         gxsp_tetrahedron_keys(cell, axis, transfer->key + 4 * (size_t)i);
-        for (k = 0; k < 4; ++k) {
+        for (k = 0; k < 4; k++) {
             transfer->forest[4 * (size_t)i + (size_t)k] = 4 * i + (uint32_t)k;
-            if (level->weight[i][k] < 1e-4f || (fixed && fixed[i])) { /* 1e-4: what this leaves out of an affine field is far below the smoother's part */
+            /* 1e-4: what this leaves out of an affine field is far below the smoother's part */
+            if (level->weight[i][k] < 1e-4f || (fixed && fixed[i])) {
                 transfer->key[4 * (size_t)i + (size_t)k] = 0;
                 level->weight[i][k] = 0;
             }
@@ -3517,10 +3454,10 @@ static void gxsp_transfer_begin(const gxsp_level *level, float (*place)[3], cons
 }
 
 /* Numbers the components: the next level's nodes. Returns how many. */
-static uint32_t gxsp_transfer_end(gxsp_level *level, gxsp_transfer *transfer)
-{
+static uint32_t gxsp_transfer_end(gxsp_level *level, gxsp_transfer *transfer) {
     uint32_t slot, count = 0;
-    for (slot = 0; slot < 4 * level->n; ++slot) { /* roots come first in their tree: the lower index wins in gxsp_join */
+    /* roots come first in their tree: the lower index wins in gxsp_join */
+    for (slot = 0; slot < 4 * level->n; slot++) {
         uint32_t *parent = &level->parent[slot / 4][slot % 4], root;
         if (transfer->key[slot] == 0) {
             *parent = GXSP_NONE;
@@ -3532,14 +3469,13 @@ static uint32_t gxsp_transfer_end(gxsp_level *level, gxsp_transfer *transfer)
     return count;
 }
 
-static void gxsp_transfer_places(const gxsp_level *level, const gxsp_transfer *transfer, gxsp_level *next)
-{
+static void gxsp_transfer_places(const gxsp_level *level, const gxsp_transfer *transfer, gxsp_level *next) {
     uint32_t slot;
-    for (slot = 0; slot < 4 * level->n; ++slot)
+    for (slot = 0; slot < 4 * level->n; slot++)
         if (transfer->key[slot] != 0) {
             uint64_t key = transfer->key[slot] - 1;
             int k;
-            for (k = 0; k < 3; ++k) { /* 21 bits with their sign */
+            for (k = 0; k < 3; k++) { /* 21 bits with their sign */
                 uint32_t bits = (uint32_t)(key >> (42 - 21 * k)) & 0x1fffffu;
                 next->place[level->parent[slot / 4][slot % 4]][k] = (int32_t)bits - (bits & 0x100000u ? 0x200000 : 0);
             }
@@ -3547,15 +3483,13 @@ static void gxsp_transfer_places(const gxsp_level *level, const gxsp_transfer *t
 }
 
 /* Room for the transfer of a level to the next */
-static void gxsp_transfer_make(gxsp_pool *pool, gxsp_level *level)
-{
+static void gxsp_transfer_make(gxsp_pool *pool, gxsp_level *level) {
     level->parent = (uint32_t(*)[4])gxsp_take(pool, level->n, sizeof *level->parent);
     level->weight = (float(*)[4])gxsp_take(pool, level->n, sizeof *level->weight);
 }
 
 /* Room for a coarse level of n nodes, but for its matrix and what only those have that are not the last */
-static void gxsp_level_make(gxsp_pool *pool, gxsp_level *level, uint32_t n)
-{
+static void gxsp_level_make(gxsp_pool *pool, gxsp_level *level, uint32_t n) {
     level->n = n;
     level->place = (int32_t(*)[3])gxsp_take(pool, n, sizeof *level->place);
     level->start = (uint32_t *)gxsp_take(pool, (size_t)n + 1, sizeof(uint32_t));
@@ -3564,10 +3498,7 @@ static void gxsp_level_make(gxsp_pool *pool, gxsp_level *level, uint32_t n)
 }
 
 /* Numbers of the blocks of a level's matrix; products read four numbers of a column, hence one more */
-static size_t gxsp_block_numbers(const gxsp_level *level)
-{
-    return 9 * (size_t)level->start[level->n] + 1;
-}
+static size_t gxsp_block_numbers(const gxsp_level *level) { return 9 * (size_t)level->start[level->n] + 1; }
 
 /* Growing list of a matrix's entries: rows and columns, the row the lower; in a pool of temporary memory */
 typedef struct gxsp_list {
@@ -3575,14 +3506,11 @@ typedef struct gxsp_list {
     uint32_t (*pair)[2], count, room;
 } gxsp_list;
 
-static void gxsp_list_add(gxsp_list *list, uint32_t row, uint32_t column)
-{
+static void gxsp_list_add(gxsp_list *list, uint32_t row, uint32_t column) {
     if (list->count == list->room) {
-        uint32_t (*larger)[2] = (uint32_t(*)[2])gxsp_take(list->scratch, 2 * (size_t)list->room + 1024, sizeof *larger);
-        if (!larger)
-            return;
-        if (list->count > 0)
-            memcpy(larger, list->pair, list->count * sizeof *larger);
+        uint32_t(*larger)[2] = (uint32_t(*)[2])gxsp_take(list->scratch, 2 * (size_t)list->room + 1024, sizeof *larger);
+        if (!larger) return;
+        if (list->count > 0) memcpy(larger, list->pair, list->count * sizeof *larger);
         list->pair = larger;
         list->room = 2 * list->room + 1024;
     }
@@ -3591,22 +3519,18 @@ static void gxsp_list_add(gxsp_list *list, uint32_t row, uint32_t column)
 }
 
 /* Rows of a level's matrix from its entries on and above the diagonal, (row, column), of which some may come twice. */
-static void gxsp_rows_make(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *level, uint32_t (*list)[2], uint32_t listed)
-{
+static void gxsp_rows_make(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *level, uint32_t (*list)[2],
+                           uint32_t listed) {
     uint32_t *start = (uint32_t *)gxsp_take(scratch, (size_t)level->n + 2, sizeof(uint32_t));
     uint32_t *columns = (uint32_t *)gxsp_take(scratch, listed, sizeof(uint32_t));
     uint32_t *seen = (uint32_t *)gxsp_take(scratch, level->n, sizeof(uint32_t)), i, k, count = 0;
-    if (scratch->failed)
-        return;
-    for (i = 0; i < listed; ++i)
-        ++start[list[i][0] + 2];
-    for (i = 0; i < level->n; ++i)
-        start[i + 2] += start[i + 1];
-    for (i = 0; i < listed; ++i)
-        columns[start[list[i][0] + 1]++] = list[i][1];
-    for (i = 0; i < level->n; ++i) {
+    if (scratch->failed) return;
+    for (i = 0; i < listed; i++) start[list[i][0] + 2]++;
+    for (i = 0; i < level->n; i++) start[i + 2] += start[i + 1];
+    for (i = 0; i < listed; i++) columns[start[list[i][0] + 1]++] = list[i][1];
+    for (i = 0; i < level->n; i++) {
         level->start[i] = count;
-        for (k = start[i]; k < start[i + 1]; ++k)
+        for (k = start[i]; k < start[i + 1]; k++)
             if (seen[columns[k]] != i + 1) {
                 seen[columns[k]] = i + 1;
                 columns[count++] = columns[k]; /* no more are kept than have been read */
@@ -3615,61 +3539,53 @@ static void gxsp_rows_make(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *leve
     }
     level->start[level->n] = count;
     level->column = (uint32_t *)gxsp_take(pool, count, sizeof(uint32_t));
-    if (!pool->failed)
-        memcpy(level->column, columns, count * sizeof(uint32_t));
+    if (!pool->failed) memcpy(level->column, columns, count * sizeof(uint32_t));
 }
 
 /* Rows of the next level's matrix, transfer^T A transfer, from a level's */
-static void gxsp_coarse_rows(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *level)
-{
+static void gxsp_coarse_rows(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *level) {
     gxsp_level *next = level + 1;
-    uint32_t *seen = (uint32_t *)gxsp_take(scratch, next->n, sizeof(uint32_t)), *met = (uint32_t *)gxsp_take(scratch, next->n, sizeof(uint32_t));
+    uint32_t *seen = (uint32_t *)gxsp_take(scratch, next->n, sizeof(uint32_t)),
+             *met = (uint32_t *)gxsp_take(scratch, next->n, sizeof(uint32_t));
     uint32_t i, k, p, t, count;
     gxsp_list list;
     memset(&list, 0, sizeof list);
     list.scratch = scratch;
-    for (i = 0; i < next->n; ++i)
-        gxsp_list_add(&list, i, i);
-    for (i = 0; i < level->n && !scratch->failed; ++i) {
-        for (k = 4 * level->start[i], count = 0; k < 4 * level->start[i + 1]; ++k) {
+    for (i = 0; i < next->n; i++) gxsp_list_add(&list, i, i);
+    for (i = 0; i < level->n && !scratch->failed; i++) {
+        for (k = 4 * level->start[i], count = 0; k < 4 * level->start[i + 1]; k++) {
             const uint32_t parent = level->parent[level->column[k / 4]][k % 4];
-            if (parent == GXSP_NONE || seen[parent] == i + 1)
-                continue;
+            if (parent == GXSP_NONE || seen[parent] == i + 1) continue;
             seen[parent] = i + 1;
             met[count++] = parent;
         }
-        for (p = 0; p < 4; ++p)
-            for (t = 0; t < count && level->parent[i][p] != GXSP_NONE; ++t)
+        for (p = 0; p < 4; p++)
+            for (t = 0; t < count && level->parent[i][p] != GXSP_NONE; t++)
                 if (met[t] != level->parent[i][p])
                     gxsp_list_add(&list, met[t] < level->parent[i][p] ? met[t] : level->parent[i][p],
                                   met[t] < level->parent[i][p] ? level->parent[i][p] : met[t]);
     }
-    if (!scratch->failed)
-        gxsp_rows_make(pool, scratch, next, list.pair, list.count);
+    if (!scratch->failed) gxsp_rows_make(pool, scratch, next, list.pair, list.count);
 }
 
-/* The level after levels[at], at > 0, of twice its spacing. 0: it would not be much smaller. Scratch is left in the pool of
- * temporary memory. */
-static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t at)
-{
+/* The level after levels[at], at > 0, of twice its spacing. 0: it would not be much smaller. Scratch is left in the
+ * pool of temporary memory. */
+static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t at) {
     gxsp_level *level = &system->levels[at], *next = level + 1;
     gxsp_pool *pool = &system->coarse;
     gxsp_owned *mark = pool->last;
     gxsp_transfer transfer;
-    float (*place)[3] = (float(*)[3])gxsp_take(scratch, level->n, sizeof *place);
+    float(*place)[3] = (float(*)[3])gxsp_take(scratch, level->n, sizeof *place);
     uint32_t i, k, count;
     transfer.key = (uint64_t *)gxsp_take(scratch, 4 * (size_t)level->n, sizeof(uint64_t));
     transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * (size_t)level->n, sizeof(uint32_t));
     gxsp_transfer_make(pool, level);
-    if (scratch->failed || pool->failed)
-        return 0;
-    for (i = 0; i < level->n; ++i)
-        for (k = 0; k < 3; ++k)
-            place[i][k] = 0.5f * (float)level->place[i][k];
+    if (scratch->failed || pool->failed) return 0;
+    for (i = 0; i < level->n; i++)
+        for (k = 0; k < 3; k++) place[i][k] = 0.5f * (float)level->place[i][k];
     gxsp_transfer_begin(level, place, NULL, &transfer);
-    for (i = 0; i < level->n; ++i)
-        for (k = level->start[i] + 1; k < level->start[i + 1]; ++k)
-            gxsp_join_nodes(&transfer, i, level->column[k]);
+    for (i = 0; i < level->n; i++)
+        for (k = level->start[i] + 1; k < level->start[i + 1]; k++) gxsp_join_nodes(&transfer, i, level->column[k]);
     count = gxsp_transfer_end(level, &transfer);
     if (count > level->n - level->n / 3) {
         gxsp_release_to(pool, mark);
@@ -3679,8 +3595,7 @@ static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t at)
     level->inverse = (float *)gxsp_take(pool, 6 * (size_t)level->n, sizeof(float));
     level->r = (gxsp_vector4 *)gxsp_take(pool, level->n, sizeof(gxsp_vector4));
     gxsp_level_make(pool, next, count);
-    if (pool->failed)
-        return 0;
+    if (pool->failed) return 0;
     gxsp_transfer_places(level, &transfer, next);
     gxsp_coarse_rows(pool, scratch, level);
     return !pool->failed && !scratch->failed;
@@ -3691,37 +3606,34 @@ typedef struct gxsp_graph {
     uint32_t n, *start, *other; /* start: n + 2 */
 } gxsp_graph;
 
-static gxsp_graph gxsp_graph_make(gxsp_pool *scratch, const gxsp_level *level)
-{
+static gxsp_graph gxsp_graph_make(gxsp_pool *scratch, const gxsp_level *level) {
     gxsp_graph graph;
     uint32_t i, k;
     graph.n = level->n;
     graph.start = (uint32_t *)gxsp_take(scratch, (size_t)level->n + 2, sizeof(uint32_t));
     graph.other = (uint32_t *)gxsp_take(scratch, 2 * (size_t)level->start[level->n], sizeof(uint32_t));
-    if (scratch->failed)
-        return graph;
-    for (i = 0; i < level->n; ++i)
-        for (k = level->start[i] + 1; k < level->start[i + 1]; ++k)
-            ++graph.start[i + 2], ++graph.start[level->column[k] + 2];
-    for (i = 0; i < level->n; ++i)
-        graph.start[i + 2] += graph.start[i + 1];
-    for (i = 0; i < level->n; ++i)
-        for (k = level->start[i] + 1; k < level->start[i + 1]; ++k) {
+    if (scratch->failed) return graph;
+    for (i = 0; i < level->n; i++)
+        for (k = level->start[i] + 1; k < level->start[i + 1]; k++)
+            graph.start[i + 2]++, graph.start[level->column[k] + 2]++;
+    for (i = 0; i < level->n; i++) graph.start[i + 2] += graph.start[i + 1];
+    for (i = 0; i < level->n; i++)
+        for (k = level->start[i] + 1; k < level->start[i + 1]; k++) {
             graph.other[graph.start[i + 1]++] = level->column[k];
             graph.other[graph.start[level->column[k] + 1]++] = i;
         }
     return graph;
 }
 
-/* Breadth-first order of the component of a seed, appended to order; place: those met have theirs, others GXSP_NONE. Returns the new
- * length. */
-static uint32_t gxsp_order_component(const gxsp_graph *graph, uint32_t seed, uint32_t count, uint32_t *order, uint32_t *place)
-{
+/* Breadth-first order of the component of a seed, appended to order; place: those met have theirs, others GXSP_NONE.
+ * Returns the new length. */
+static uint32_t gxsp_order_component(const gxsp_graph *graph, uint32_t seed, uint32_t count, uint32_t *order,
+                                     uint32_t *place) {
     uint32_t done = count, k;
     place[seed] = count;
     order[count++] = seed;
-    for (; done < count; ++done)
-        for (k = graph->start[order[done]]; k < graph->start[order[done] + 1]; ++k)
+    for (; done < count; done++)
+        for (k = graph->start[order[done]]; k < graph->start[order[done] + 1]; k++)
             if (place[graph->other[k]] == GXSP_NONE) {
                 place[graph->other[k]] = count;
                 order[count++] = graph->other[k];
@@ -3730,31 +3642,27 @@ static uint32_t gxsp_order_component(const gxsp_graph *graph, uint32_t seed, uin
 }
 
 /* The first place in whose column row i of the factor has an entry */
-static uint32_t gxsp_first_place(const gxsp_graph *graph, const uint32_t *order, const uint32_t *place, uint32_t i)
-{
+static uint32_t gxsp_first_place(const gxsp_graph *graph, const uint32_t *order, const uint32_t *place, uint32_t i) {
     uint32_t first = i, k;
-    for (k = graph->start[order[i]]; k < graph->start[order[i] + 1]; ++k)
+    for (k = graph->start[order[i]]; k < graph->start[order[i] + 1]; k++)
         first = place[graph->other[k]] < first ? place[graph->other[k]] : first;
     return first;
 }
 
-/* Order for a small envelope: component by component, breadth first from a node that is last from some other. place: n, scratch.
- * Returns the multiplications of a factorisation. */
-static double gxsp_order_level(const gxsp_graph *graph, uint32_t *order, uint32_t *place)
-{
+/* Order for a small envelope: component by component, breadth first from a node that is last from some other. place: n,
+ * scratch. Returns the multiplications of a factorisation. */
+static double gxsp_order_level(const gxsp_graph *graph, uint32_t *order, uint32_t *place) {
     uint32_t seed, i, k, count = 0, end;
     double cost = 0;
     memset(place, 0xff, graph->n * sizeof *place);
-    for (seed = 0; seed < graph->n; ++seed) {
-        if (place[seed] != GXSP_NONE)
-            continue;
+    for (seed = 0; seed < graph->n; seed++) {
+        if (place[seed] != GXSP_NONE) continue;
         end = gxsp_order_component(graph, seed, count, order, place);
         k = order[end - 1];
-        for (i = count; i < end; ++i)
-            place[order[i]] = GXSP_NONE;
+        for (i = count; i < end; i++) place[order[i]] = GXSP_NONE;
         count = gxsp_order_component(graph, k, count, order, place);
     }
-    for (i = 0; i < graph->n; ++i) {
+    for (i = 0; i < graph->n; i++) {
         const double width = i - gxsp_first_place(graph, order, place, i) + 1;
         cost += 13.5 * width * width; /* three rows, each of a width squared / 2 */
     }
@@ -3762,26 +3670,25 @@ static double gxsp_order_level(const gxsp_graph *graph, uint32_t *order, uint32_
 }
 
 /* Is a level small enough to be factored? */
-static int gxsp_factors(gxsp_pool *scratch, const gxsp_level *level, size_t copies)
-{
+static int gxsp_factors(gxsp_pool *scratch, const gxsp_level *level, size_t copies) {
     gxsp_owned *mark = scratch->last;
     uint32_t *order = (uint32_t *)gxsp_take(scratch, 2 * (size_t)level->n, sizeof(uint32_t));
     const gxsp_graph graph = gxsp_graph_make(scratch, level);
-    const int factors = !scratch->failed && gxsp_order_level(&graph, order, order + level->n) <= GXSP_FACTOR_COST * (double)copies;
+    const int factors =
+        !scratch->failed && gxsp_order_level(&graph, order, order + level->n) <= GXSP_FACTOR_COST * (double)copies;
     gxsp_release_to(scratch, mark);
     return factors;
 }
 
-/* Row i of the factor, by columns from 0 on, of which it has those from first on. Rows of a place are one column longer each. */
-static inline float *gxsp_factor_row(const gxsp_factor *factor, uint32_t i)
-{
+/* Row i of the factor, by columns from 0 on, of which it has those from first on. Rows of a place are one column longer
+ * each. */
+static inline float *gxsp_factor_row(const gxsp_factor *factor, uint32_t i) {
     const uint32_t place = i / 3, r = i % 3;
     return factor->entry + (factor->row[place] + r * (size_t)(3 * place - factor->first[place] + 1) + (r == 2));
 }
 
 /* Order and envelope of the last level */
-static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch)
-{
+static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch) {
     const gxsp_level *level = &system->levels[system->level_count - 1];
     gxsp_factor *factor = &system->factor;
     uint32_t *place = (uint32_t *)gxsp_take(scratch, level->n, sizeof(uint32_t)), i;
@@ -3792,36 +3699,34 @@ static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch)
     factor->first = (uint32_t *)gxsp_take(&system->coarse, level->n, sizeof(uint32_t));
     factor->row = (size_t *)gxsp_take(&system->coarse, level->n, sizeof(size_t));
     factor->x = (double *)gxsp_take(&system->coarse, factor->n, sizeof(double));
-    if (scratch->failed || system->coarse.failed)
-        return;
+    if (scratch->failed || system->coarse.failed) return;
     (void)gxsp_order_level(&graph, factor->order, place);
-    for (i = 0; i < level->n; ++i) {
+    for (i = 0; i < level->n; i++) {
         const uint32_t first = 3 * gxsp_first_place(&graph, factor->order, place, i);
         factor->first[i] = first;
-        factor->row[i] = entries - first;   /* no less than 0: every row before has an entry */
+        factor->row[i] = entries - first; /* no less than 0: every row before has an entry */
         entries += 3 * (size_t)(3 * i - first) + 6;
     }
     factor->entry = (float *)gxsp_take(&system->coarse, entries, sizeof(float));
     factor->entry_count = entries;
 }
 
-static void gxsp_lane_copies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t block, int lane, uint32_t *copies)
-{
+static void gxsp_lane_copies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t block, int lane,
+                             uint32_t *copies) {
     const gxsp_corners *corner = &chunk->corners[block];
     int i;
-    for (i = 0; i < 4; ++i)
-        copies[i] = system->nodes[chunk->first_node + corner->node[i][lane]];
+    for (i = 0; i < 4; i++) copies[i] = system->nodes[chunk->first_node + corner->node[i][lane]];
 }
 
 /* Corners of the ten blocks of an element, in the order of gxs_element.mass */
-static const int gxsp_pair_corners[10][2] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {1, 1}, {1, 2}, {1, 3}, {2, 2}, {2, 3}, {3, 3}};
+static const int gxsp_pair_corners[10][2] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {1, 1},
+                                             {1, 2}, {1, 3}, {2, 2}, {2, 3}, {3, 3}};
 
 /* Arrays for the edges of any chunk; numbers: with those of the Hessian's blocks, for which edges have been counted */
-static void gxsp_edges_carve(gxsp_system *system, gxsp_space *space, int numbers)
-{
+static void gxsp_edges_carve(gxsp_system *system, gxsp_space *space, int numbers) {
     gxsp_edges *edges = &system->edges;
     size_t c, lanes = 0, nodes = 1, most = 0;
-    for (c = 0; c < system->chunk_count; ++c) {
+    for (c = 0; c < system->chunk_count; c++) {
         const gxsp_chunk *chunk = &system->chunks[c];
         const size_t of = chunk->block_count * GXSP_LANES, count = numbers ? chunk->edge_count : 1 + 6 * of;
         lanes = of > lanes ? of : lanes;
@@ -3832,8 +3737,7 @@ static void gxsp_edges_carve(gxsp_system *system, gxsp_space *space, int numbers
     edges->table_size = nodes * (nodes - 1) / 2;
     edges->ends = (uint32_t *)gxsp_carve(space, most + 1, sizeof(uint32_t)); /* one more is written than counts */
     edges->parent = (uint16_t(*)[4])gxsp_carve(space, nodes, sizeof *edges->parent);
-    if (!numbers)
-        return;
+    if (!numbers) return;
     edges->block = (float(*)[9])gxsp_carve(space, most, sizeof *edges->block);
     edges->element = (uint16_t(*)[6][GXSP_LANES])gxsp_carve(space, lanes / GXSP_LANES, sizeof *edges->element);
     edges->first = (uint16_t *)gxsp_carve(space, nodes, sizeof(uint16_t));
@@ -3844,8 +3748,7 @@ static void gxsp_edges_carve(gxsp_system *system, gxsp_space *space, int numbers
 }
 
 /* Room for listing the edges of any chunk, in temporary memory */
-static void gxsp_edges_make(gxsp_system *system, gxsp_pool *scratch)
-{
+static void gxsp_edges_make(gxsp_system *system, gxsp_pool *scratch) {
     gxsp_space space = {NULL, 0};
     gxsp_edges_carve(system, &space, 0);
     space.memory = (unsigned char *)gxsp_take(scratch, space.used, 1);
@@ -3853,21 +3756,18 @@ static void gxsp_edges_make(gxsp_system *system, gxsp_pool *scratch)
     gxsp_edges_carve(system, &space, 0);
 }
 
-static void gxsp_edges_begin(gxsp_edges *edges, const gxsp_chunk *chunk)
-{
+static void gxsp_edges_begin(gxsp_edges *edges, const gxsp_chunk *chunk) {
     edges->nodes = chunk->node_count;
     edges->count = 1;
 }
 
-/* The edge of two nodes, made where there is none; 0 of a node and itself. There is no branch on whether there is one: it
- * could not be foretold. count: of edges so far */
-static inline uint16_t gxsp_find_edge(const gxsp_edges *edges, uint32_t i, uint32_t j, uint32_t *count)
-{
+/* The edge of two nodes, made where there is none; 0 of a node and itself. There is no branch on whether there is one:
+ * it could not be foretold. count: of edges so far */
+static inline uint16_t gxsp_find_edge(const gxsp_edges *edges, uint32_t i, uint32_t j, uint32_t *count) {
     const uint32_t low = i < j ? i : j, high = i < j ? j : i, ends = low << 16 | high;
     uint16_t *at = &edges->table[high * (high - 1) / 2 + low];
     int made;
-    if (low == high)
-        return 0;
+    if (low == high) return 0;
     made = (*at >= *count) | (edges->ends[*at] != ends);
     edges->ends[*count] = ends;
     *at = made ? (uint16_t)*count : *at;
@@ -3876,51 +3776,46 @@ static inline uint16_t gxsp_find_edge(const gxsp_edges *edges, uint32_t i, uint3
 }
 
 /* The six edges of each element of a block; 0 where it has no weight */
-static void gxsp_block_edges(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_t b, uint16_t (*edge)[GXSP_LANES])
-{
+static void gxsp_block_edges(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_t b, uint16_t (*edge)[GXSP_LANES]) {
     const gxsp_corners *corner = &chunk->corners[b];
     uint32_t count = edges->count;
     int i, j, l, pair = 0;
-    for (i = 0; i < 4; ++i)
-        for (j = i + 1; j < 4; ++j, ++pair)
-            for (l = 0; l < GXSP_LANES; ++l)
-                edge[pair][l] = chunk->rest[b].weight[l] > 0 ? gxsp_find_edge(edges, corner->node[i][l], corner->node[j][l], &count) : 0;
+    for (i = 0; i < 4; i++)
+        for (j = i + 1; j < 4; j++, pair++)
+            for (l = 0; l < GXSP_LANES; l++)
+                edge[pair][l] = chunk->rest[b].weight[l] > 0
+                                  ? gxsp_find_edge(edges, corner->node[i][l], corner->node[j][l], &count)
+                                  : 0;
     edges->count = count;
 }
 
 /* All edges of a chunk's elements of any weight */
-static void gxsp_list_edges(gxsp_system *system, gxsp_chunk *chunk)
-{
+static void gxsp_list_edges(gxsp_system *system, gxsp_chunk *chunk) {
     uint16_t edge[6][GXSP_LANES];
     uint32_t b;
     gxsp_edges_begin(&system->edges, chunk);
-    for (b = 0; b < chunk->block_count; ++b)
-        gxsp_block_edges(&system->edges, chunk, b, edge);
+    for (b = 0; b < chunk->block_count; b++) gxsp_block_edges(&system->edges, chunk, b, edge);
     chunk->edge_count = system->edges.count;
 }
 
 /* Counts the edges of chunks of which they are not known. */
-static void gxsp_count_edges(gxsp_system *system)
-{
+static void gxsp_count_edges(gxsp_system *system) {
     uint32_t c;
-    for (c = 0; c < system->chunk_count; ++c)
-        if (system->chunks[c].edge_count == 0)
-            gxsp_list_edges(system, &system->chunks[c]);
+    for (c = 0; c < system->chunk_count; c++)
+        if (system->chunks[c].edge_count == 0) gxsp_list_edges(system, &system->chunks[c]);
 }
 
 /* Numbers the coarse nodes that a chunk's nodes follow. */
-static void gxsp_pairs_begin(gxsp_system *system, const gxsp_chunk *chunk)
-{
+static void gxsp_pairs_begin(gxsp_system *system, const gxsp_chunk *chunk) {
     gxsp_pairs *pairs = &system->pairs;
     uint32_t i, k;
-    ++pairs->round;
+    pairs->round++;
     pairs->count = 1;
-    for (i = 0; i < chunk->node_count; ++i)
-        for (k = 0; k < 4; ++k) {
+    for (i = 0; i < chunk->node_count; i++)
+        for (k = 0; k < 4; k++) {
             const uint32_t parent = system->levels[0].parent[system->nodes[chunk->first_node + i]][k];
             system->edges.parent[i][k] = 0;
-            if (parent == GXSP_NONE)
-                continue;
+            if (parent == GXSP_NONE) continue;
             if (pairs->stamp[parent] != pairs->round) {
                 pairs->stamp[parent] = pairs->round;
                 pairs->node[pairs->count] = parent;
@@ -3932,26 +3827,26 @@ static void gxsp_pairs_begin(gxsp_system *system, const gxsp_chunk *chunk)
 }
 
 /* Arrays for the pairs of any chunk; numbers: with those for entries of matrices */
-static void gxsp_pairs_carve(gxsp_system *system, gxsp_space *space, int numbers)
-{
+static void gxsp_pairs_carve(gxsp_system *system, gxsp_space *space, int numbers) {
     gxsp_pairs *pairs = &system->pairs;
     const size_t n = system->levels[1].n, side = pairs->most < GXSP_CHUNK_PARENTS ? pairs->most : GXSP_CHUNK_PARENTS;
-    const uint32_t next = system->fine ? 1 : 2; /* the first level whose matrix is that of another one times transfers */
+    /* the first level whose matrix is that of another one times transfers */
+    const uint32_t next = system->fine ? 1 : 2;
     pairs->local = (uint32_t *)gxsp_carve(space, n, sizeof(uint32_t));
     pairs->stamp = (uint32_t *)gxsp_carve(space, n, sizeof(uint32_t));
     pairs->node = (uint32_t *)gxsp_carve(space, n + 1, sizeof(uint32_t));
     pairs->seen = (uint32_t *)gxsp_carve(space, n + 1, sizeof(uint32_t));
-    if (!numbers)
-        return;
+    if (!numbers) return;
     pairs->entry = (uint32_t *)gxsp_carve(space, side * side, sizeof(uint32_t));
     system->edges.half = (float(*)[9])gxsp_carve(space, pairs->most, sizeof *system->edges.half);
-    system->edges.touched = (uint16_t *)gxsp_carve(space, (size_t)pairs->most + 1, sizeof(uint16_t)); /* one more is written than counts */
-    pairs->half = (float(*)[9])gxsp_carve(space, next < system->level_count ? system->levels[next].n : 0, sizeof *pairs->half);
+    /* one more is written than counts */
+    system->edges.touched = (uint16_t *)gxsp_carve(space, (size_t)pairs->most + 1, sizeof(uint16_t));
+    pairs->half =
+        (float(*)[9])gxsp_carve(space, next < system->level_count ? system->levels[next].n : 0, sizeof *pairs->half);
 }
 
 /* Room for listing the pairs of any chunk, in temporary memory, and how many coarse nodes it has at most */
-static void gxsp_pairs_make(gxsp_system *system, gxsp_pool *scratch)
-{
+static void gxsp_pairs_make(gxsp_system *system, gxsp_pool *scratch) {
     gxsp_space space = {NULL, 0};
     uint32_t c;
     gxsp_pairs_carve(system, &space, 0);
@@ -3959,7 +3854,7 @@ static void gxsp_pairs_make(gxsp_system *system, gxsp_pool *scratch)
     space.used = 0;
     gxsp_pairs_carve(system, &space, 0);
     system->pairs.round = system->pairs.most = 0;
-    for (c = 0; c < system->chunk_count && !scratch->failed && !system->fine; ++c) {
+    for (c = 0; c < system->chunk_count && !scratch->failed && !system->fine; c++) {
         gxsp_pairs_begin(system, &system->chunks[c]);
         system->pairs.most = system->pairs.count > system->pairs.most ? system->pairs.count : system->pairs.most;
     }
@@ -3967,21 +3862,18 @@ static void gxsp_pairs_make(gxsp_system *system, gxsp_pool *scratch)
 
 /* Sets of a chunk's coarse nodes, a bit for each, words to a set */
 typedef struct gxsp_sets {
-    uint64_t *own, *reach;  /* by node: its parents; those of its neighbours too */
-    uint64_t *row;          /* by number of the coarse node: those that it shares an element with */
+    uint64_t *own, *reach; /* by node: its parents; those of its neighbours too */
+    uint64_t *row;         /* by number of the coarse node: those that it shares an element with */
     size_t words;
 } gxsp_sets;
 
-static void gxsp_join_sets(uint64_t *to, const uint64_t *from, size_t words)
-{
+static void gxsp_join_sets(uint64_t *to, const uint64_t *from, size_t words) {
     size_t k;
-    for (k = 0; k < words; ++k)
-        to[k] |= from[k];
+    for (k = 0; k < words; k++) to[k] |= from[k];
 }
 
 /* The sets of a chunk after gxsp_pairs_begin. memory: room for all */
-static gxsp_sets gxsp_find_sets(gxsp_system *system, const gxsp_chunk *chunk, uint64_t *memory)
-{
+static gxsp_sets gxsp_find_sets(gxsp_system *system, const gxsp_chunk *chunk, uint64_t *memory) {
     gxsp_sets sets;
     const size_t words = sets.words = (system->pairs.count + 63) / 64;
     uint32_t i, k, b;
@@ -3991,40 +3883,41 @@ static gxsp_sets gxsp_find_sets(gxsp_system *system, const gxsp_chunk *chunk, ui
     sets.reach = sets.own + chunk->node_count * words;
     sets.row = sets.reach + chunk->node_count * words;
     memset(memory, 0, (2 * (size_t)chunk->node_count + system->pairs.count) * words * sizeof *memory);
-    for (i = 0; i < chunk->node_count; ++i)
-        for (k = 0; k < 4; ++k)
+    for (i = 0; i < chunk->node_count; i++)
+        for (k = 0; k < 4; k++)
             if (system->levels[0].parent[system->nodes[chunk->first_node + i]][k] != GXSP_NONE)
                 sets.own[i * words + system->edges.parent[i][k] / 64] |= (uint64_t)1 << system->edges.parent[i][k] % 64;
-    for (b = 0; b < chunk->block_count; ++b)
-        for (l = 0; l < GXSP_LANES; ++l) {
+    for (b = 0; b < chunk->block_count; b++)
+        for (l = 0; l < GXSP_LANES; l++) {
             const gxsp_rest *rest = &chunk->rest[b];
             const gxsp_corners *corner = &chunk->corners[b];
-            const size_t n0 = corner->node[0][l] * words, n1 = corner->node[1][l] * words, n2 = corner->node[2][l] * words,
-                         n3 = corner->node[3][l] * words;
-            for (word = 0; word < words && rest->weight[l] > 0; ++word) {
-                const uint64_t all = sets.own[n0 + word] | sets.own[n1 + word] | sets.own[n2 + word] | sets.own[n3 + word];
+            const size_t n0 = corner->node[0][l] * words, n1 = corner->node[1][l] * words,
+                         n2 = corner->node[2][l] * words, n3 = corner->node[3][l] * words;
+            for (word = 0; word < words && rest->weight[l] > 0; word++) {
+                const uint64_t all =
+                    sets.own[n0 + word] | sets.own[n1 + word] | sets.own[n2 + word] | sets.own[n3 + word];
                 sets.reach[n0 + word] |= all, sets.reach[n1 + word] |= all;
                 sets.reach[n2 + word] |= all, sets.reach[n3 + word] |= all;
             }
         }
-    for (i = 0; i < chunk->node_count; ++i)
-        for (k = 0; k < 4; ++k)
+    for (i = 0; i < chunk->node_count; i++)
+        for (k = 0; k < 4; k++)
             if (system->levels[0].parent[system->nodes[chunk->first_node + i]][k] != GXSP_NONE)
                 gxsp_join_sets(sets.row + system->edges.parent[i][k] * words, sets.reach + i * words, words);
     return sets;
 }
 
-/* Lists the entries of level 1's matrix that a chunk needs. dirty: by coarse node; only entries of one at least are listed; NULL: all
- * are. memory: see gxsp_find_sets */
-static void gxsp_list_pairs(gxsp_system *system, const gxsp_chunk *chunk, uint64_t *memory, const uint8_t *dirty, gxsp_list *list)
-{
+/* Lists the entries of level 1's matrix that a chunk needs. dirty: by coarse node; only entries of one at least are
+ * listed; NULL: all are. memory: see gxsp_find_sets */
+static void gxsp_list_pairs(gxsp_system *system, const gxsp_chunk *chunk, uint64_t *memory, const uint8_t *dirty,
+                            gxsp_list *list) {
     const uint32_t *node = system->pairs.node;
     gxsp_sets sets;
     uint32_t i, k;
     gxsp_pairs_begin(system, chunk);
     sets = gxsp_find_sets(system, chunk, memory);
-    for (i = 0; i < system->pairs.count; ++i)
-        for (k = 0; k < sets.words; ++k) {
+    for (i = 0; i < system->pairs.count; i++)
+        for (k = 0; k < sets.words; k++) {
             uint64_t set = sets.row[i * sets.words + k];
             uint32_t j;
             for (j = 64 * k; set != 0; set >>= 1, ++j)
@@ -4034,48 +3927,42 @@ static void gxsp_list_pairs(gxsp_system *system, const gxsp_chunk *chunk, uint64
 }
 
 /* Does a chunk have a node that follows one of the dirty? */
-static int gxsp_follows_dirty(const gxsp_system *system, const gxsp_chunk *chunk, const uint8_t *dirty)
-{
+static int gxsp_follows_dirty(const gxsp_system *system, const gxsp_chunk *chunk, const uint8_t *dirty) {
     uint32_t i, k;
-    for (i = 0; i < chunk->node_count; ++i)
-        for (k = 0; k < 4; ++k) {
+    for (i = 0; i < chunk->node_count; i++)
+        for (k = 0; k < 4; k++) {
             const uint32_t parent = system->levels[0].parent[system->nodes[chunk->first_node + i]][k];
-            if (parent != GXSP_NONE && dirty[parent])
-                return 1;
+            if (parent != GXSP_NONE && dirty[parent]) return 1;
         }
     return 0;
 }
 
-/* Level 1's matrix: two nodes are neighbours where an element follows both; every node is its own. before: the level of which all but
- * the dirty nodes and those after its own have the neighbours that they had; NULL: none has. */
-static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gxsp_level *before, const uint8_t *dirty)
-{
+/* Level 1's matrix: two nodes are neighbours where an element follows both; every node is its own. before: the level of
+ * which all but the dirty nodes and those after its own have the neighbours that they had; NULL: none has. */
+static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gxsp_level *before,
+                               const uint8_t *dirty) {
     uint32_t c, i, k, nodes = 0;
     uint64_t *memory;
     gxsp_list list;
     memset(&list, 0, sizeof list);
     list.scratch = scratch;
-    for (c = 0; c < system->chunk_count; ++c)
+    for (c = 0; c < system->chunk_count; c++)
         nodes = system->chunks[c].node_count > nodes ? system->chunks[c].node_count : nodes;
-    memory = (uint64_t *)gxsp_take(scratch, (6 * (size_t)nodes + 1) * (nodes / 16 + 1), sizeof(uint64_t)); /* four parents to a node */
-    if (scratch->failed)
-        return;
-    for (i = 0; i < system->levels[1].n; ++i)
-        gxsp_list_add(&list, i, i);
-    for (i = 0; before && i < before->n; ++i)
-        for (k = before->start[i]; k < before->start[i + 1] && !dirty[i]; ++k)
-            if (before->column[k] > i && !dirty[before->column[k]])
-                gxsp_list_add(&list, i, before->column[k]);
-    for (c = 0; c < system->chunk_count; ++c)
+    /* four parents to a node */
+    memory = (uint64_t *)gxsp_take(scratch, (6 * (size_t)nodes + 1) * (nodes / 16 + 1), sizeof(uint64_t));
+    if (scratch->failed) return;
+    for (i = 0; i < system->levels[1].n; i++) gxsp_list_add(&list, i, i);
+    for (i = 0; before && i < before->n; i++)
+        for (k = before->start[i]; k < before->start[i + 1] && !dirty[i]; k++)
+            if (before->column[k] > i && !dirty[before->column[k]]) gxsp_list_add(&list, i, before->column[k]);
+    for (c = 0; c < system->chunk_count; c++)
         if (!before || gxsp_follows_dirty(system, &system->chunks[c], dirty))
             gxsp_list_pairs(system, &system->chunks[c], memory, before ? dirty : NULL, &list);
-    if (!scratch->failed)
-        gxsp_rows_make(&system->coarse, scratch, &system->levels[1], list.pair, list.count);
+    if (!scratch->failed) gxsp_rows_make(&system->coarse, scratch, &system->levels[1], list.pair, list.count);
 }
 
 /* Index of column j in row i, or that of a lower one if the row does not have it */
-static uint32_t gxsp_find_entry(const gxsp_level *level, uint32_t i, uint32_t j)
-{
+static uint32_t gxsp_find_entry(const gxsp_level *level, uint32_t i, uint32_t j) {
     uint32_t low = level->start[i], high = level->start[i + 1];
     while (high - low > 1) {
         uint32_t middle = low + (high - low) / 2;
@@ -4088,8 +3975,7 @@ static uint32_t gxsp_find_entry(const gxsp_level *level, uint32_t i, uint32_t j)
 }
 
 /* The copies that an element's corner moves, with their weights: its own, or its masters. Returns how many. */
-static int gxsp_corner_masters(const gxsp_system *system, uint32_t copy, uint32_t *masters, float *weights)
-{
+static int gxsp_corner_masters(const gxsp_system *system, uint32_t copy, uint32_t *masters, float *weights) {
     const gxsp_follower *follower;
     int k, count = 0;
     if (!gxsp_follows(system, copy)) {
@@ -4098,7 +3984,7 @@ static int gxsp_corner_masters(const gxsp_system *system, uint32_t copy, uint32_
         return 1;
     }
     follower = &system->followers[system->follower[copy]];
-    for (k = 0; k < 4; ++k)
+    for (k = 0; k < 4; k++)
         if (fabs(follower->weight[k]) > 0) {
             masters[count] = follower->master[k];
             weights[count++] = (float)follower->weight[k];
@@ -4106,47 +3992,42 @@ static int gxsp_corner_masters(const gxsp_system *system, uint32_t copy, uint32_
     return count;
 }
 
-static int gxsp_element_follows(const gxsp_system *system, const uint32_t *copies)
-{
-    return gxsp_follows(system, copies[0]) || gxsp_follows(system, copies[1]) || gxsp_follows(system, copies[2]) || gxsp_follows(system, copies[3]);
+static int gxsp_element_follows(const gxsp_system *system, const uint32_t *copies) {
+    return gxsp_follows(system, copies[0]) || gxsp_follows(system, copies[1]) || gxsp_follows(system, copies[2]) ||
+           gxsp_follows(system, copies[3]);
 }
 
 /* Rows and columns, the row the lower, that an element adds to. Returns how many. */
-static uint32_t gxsp_element_pairs(const gxsp_system *system, const uint32_t *copies, uint32_t (*list)[2])
-{
+static uint32_t gxsp_element_pairs(const gxsp_system *system, const uint32_t *copies, uint32_t (*list)[2]) {
     uint32_t all[16], count = 0, listed = 0, i, j;
     float weights[4];
     int k;
-    for (k = 0; k < 4; ++k)
-        count += (uint32_t)gxsp_corner_masters(system, copies[k], all + count, weights);
-    for (i = 0; i < count; ++i)
-        for (j = i; j < count; ++j, ++listed) {
+    for (k = 0; k < 4; k++) count += (uint32_t)gxsp_corner_masters(system, copies[k], all + count, weights);
+    for (i = 0; i < count; i++)
+        for (j = i; j < count; j++, listed++) {
             list[listed][0] = all[i] < all[j] ? all[i] : all[j];
             list[listed][1] = all[i] < all[j] ? all[j] : all[i];
         }
     return listed;
 }
 
-/* The assembled matrix of what followers leave free: copies are neighbours where they share an element; every copy is its own. */
-static void gxsp_fine_make(gxsp_system *system, gxsp_pool *scratch)
-{
+/* The assembled matrix of what followers leave free: copies are neighbours where they share an element; every copy is
+ * its own. */
+static void gxsp_fine_make(gxsp_system *system, gxsp_pool *scratch) {
     gxsp_level *fine = &system->levels[0];
-    uint32_t (*list)[2] = NULL, c, b, i, count, room = 0;
+    uint32_t(*list)[2] = NULL, c, b, i, count, room = 0;
     int l, pair, pass;
     system->fine = (gxsp_fine *)gxsp_take(&system->pool, system->block_count, sizeof(gxsp_fine));
     fine->start = (uint32_t *)gxsp_take(&system->pool, system->n + 1, sizeof(uint32_t));
     fine->inverse = (float *)gxsp_take(&system->pool, 6 * system->n, sizeof(float));
-    if (system->pool.failed)
-        return;
-    for (pass = 0; pass < 2; ++pass) { /* count, then list */
-        if (pass == 1 && !(list = (uint32_t(*)[2])gxsp_take(scratch, room, sizeof *list)))
-            return;
-        for (i = 0, count = 0; i < fine->n; ++i, ++count)
-            if (list)
-                list[count][0] = list[count][1] = i;
-        for (c = 0; c < system->chunk_count; ++c)
-            for (b = 0; b < system->chunks[c].block_count; ++b)
-                for (l = 0; l < GXSP_LANES; ++l) {
+    if (system->pool.failed) return;
+    for (pass = 0; pass < 2; pass++) { /* count, then list */
+        if (pass == 1 && !(list = (uint32_t(*)[2])gxsp_take(scratch, room, sizeof *list))) return;
+        for (i = 0, count = 0; i < fine->n; i++, count++)
+            if (list) list[count][0] = list[count][1] = i;
+        for (c = 0; c < system->chunk_count; c++)
+            for (b = 0; b < system->chunks[c].block_count; b++)
+                for (l = 0; l < GXSP_LANES; l++) {
                     uint32_t copies[4], pairs[136][2];
                     gxsp_lane_copies(system, &system->chunks[c], b, l, copies);
                     count += gxsp_element_pairs(system, copies, list ? list + count : pairs);
@@ -4154,57 +4035,55 @@ static void gxsp_fine_make(gxsp_system *system, gxsp_pool *scratch)
         room = count;
     }
     gxsp_rows_make(&system->pool, scratch, fine, list, count);
-    if (!scratch->failed)
-        fine->block = (float *)gxsp_take(&system->pool, gxsp_block_numbers(fine), sizeof(float));
-    if (scratch->failed || system->pool.failed)
-        return;
-    for (c = 0; c < system->chunk_count; ++c)
-        for (i = 0; i < system->chunks[c].block_count * GXSP_LANES; ++i) {
+    if (!scratch->failed) fine->block = (float *)gxsp_take(&system->pool, gxsp_block_numbers(fine), sizeof(float));
+    if (scratch->failed || system->pool.failed) return;
+    for (c = 0; c < system->chunk_count; c++)
+        for (i = 0; i < system->chunks[c].block_count * GXSP_LANES; i++) {
             uint32_t copies[4];
             gxsp_lane_copies(system, &system->chunks[c], i / GXSP_LANES, (int)(i % GXSP_LANES), copies);
-            for (pair = 0; pair < 10; ++pair) {
+            for (pair = 0; pair < 10; pair++) {
                 const uint32_t p = copies[gxsp_pair_corners[pair][0]], q = copies[gxsp_pair_corners[pair][1]];
                 system->fine[system->chunks[c].first_block + i / GXSP_LANES].entry[pair][i % GXSP_LANES] =
-                    gxsp_element_follows(system, copies) ? GXSP_NONE : gxsp_find_entry(fine, p < q ? p : q, p < q ? q : p);
+                    gxsp_element_follows(system, copies) ? GXSP_NONE
+                                                         : gxsp_find_entry(fine, p < q ? p : q, p < q ? q : p);
             }
         }
 }
 
 /* The rows of level 1 and all levels after it. before, dirty: see gxsp_first_pattern */
-static void gxsp_levels_make(gxsp_system *system, gxsp_pool *scratch, const gxsp_level *before, const uint8_t *dirty)
-{
+static void gxsp_levels_make(gxsp_system *system, gxsp_pool *scratch, const gxsp_level *before, const uint8_t *dirty) {
     uint32_t at;
     gxsp_pairs_make(system, scratch);
-    if (scratch->failed)
-        return;
+    if (scratch->failed) return;
     if (system->fine)
         gxsp_coarse_rows(&system->coarse, scratch, &system->levels[0]);
     else
         gxsp_first_pattern(system, scratch, before, dirty);
     gxsp_count_edges(system);
-    if (scratch->failed || system->coarse.failed)
-        return;
-    for (at = 1; at + 1 < GXSP_LEVELS && !gxsp_factors(scratch, &system->levels[at], at == 1 ? system->n / 2 : system->n) &&
-                 gxsp_add_level(system, scratch, at); ++at)
+    if (scratch->failed || system->coarse.failed) return;
+    for (at = 1;
+         at + 1 < GXSP_LEVELS && !gxsp_factors(scratch, &system->levels[at], at == 1 ? system->n / 2 : system->n) &&
+         gxsp_add_level(system, scratch, at);
+         at++)
         ;
     system->level_count = at + 1;
-    for (at = 1; !scratch->failed && !system->coarse.failed && (at == 1 || at + 1 < system->level_count); ++at)
-        system->levels[at].block = (float *)gxsp_take(&system->coarse, gxsp_block_numbers(&system->levels[at]), sizeof(float));
+    for (at = 1; !scratch->failed && !system->coarse.failed && (at == 1 || at + 1 < system->level_count); at++)
+        system->levels[at].block =
+            (float *)gxsp_take(&system->coarse, gxsp_block_numbers(&system->levels[at]), sizeof(float));
     gxsp_factor_make(system, scratch);
 }
 
 /* The transfer of the model by a lattice. place: n x 3, in its spacings. Returns how many nodes level 1 has. */
-static uint32_t gxsp_first_transfer(gxsp_system *system, float (*place)[3], gxsp_transfer *transfer)
-{
+static uint32_t gxsp_first_transfer(gxsp_system *system, float (*place)[3], gxsp_transfer *transfer) {
     uint32_t c, e;
     gxsp_transfer_begin(&system->levels[0], place, system->fixed, transfer);
-    for (c = 0; c < system->chunk_count; ++c) {
+    for (c = 0; c < system->chunk_count; c++) {
         const uint32_t *copies = system->nodes + system->chunks[c].first_node;
         gxsp_list_edges(system, &system->chunks[c]);
-        for (e = 1; e < system->edges.count; ++e)
+        for (e = 1; e < system->edges.count; e++)
             gxsp_join_nodes(transfer, copies[system->edges.ends[e] >> 16], copies[system->edges.ends[e] & 0xffff]);
     }
-    for (e = 0; e < 4 * system->follower_count; ++e)
+    for (e = 0; e < 4 * system->follower_count; e++)
         if (fabs(system->followers[e / 4].weight[e % 4]) > 0)
             gxsp_join_nodes(transfer, system->followers[e / 4].copy, system->followers[e / 4].master[e % 4]);
     return gxsp_transfer_end(&system->levels[0], transfer);
@@ -4216,70 +4095,67 @@ typedef struct gxsp_crumb {
     float low[3], high[3], length; /* in spacings; length: the longest of high - low */
 } gxsp_crumb;
 
-static gxsp_crumb *gxsp_find_crumbs(const gxsp_system *system, gxsp_pool *scratch, float (*place)[3])
-{
+static gxsp_crumb *gxsp_find_crumbs(const gxsp_system *system, gxsp_pool *scratch, float (*place)[3]) {
     gxsp_crumb *crumbs = (gxsp_crumb *)gxsp_take(scratch, system->piece_count, sizeof *crumbs);
     uint32_t slot, i, k, nodes = 0;
-    if (!crumbs)
-        return NULL;
-    for (slot = 0; slot < 4 * system->n; ++slot) /* nodes are numbered as they are met */
+    if (!crumbs) return NULL;
+    for (slot = 0; slot < 4 * system->n; slot++) /* nodes are numbered as they are met */
         if (system->levels[0].parent[slot / 4][slot % 4] == nodes) {
-            ++crumbs[system->piece[slot / 4]].nodes;
-            ++nodes;
+            crumbs[system->piece[slot / 4]].nodes++;
+            nodes++;
         }
-    for (i = 0; i < system->n; ++i) {
+    for (i = 0; i < system->n; i++) {
         gxsp_crumb *crumb = &crumbs[system->piece[i]];
-        for (k = 0; k < 3; ++k) {
+        for (k = 0; k < 3; k++) {
             crumb->low[k] = crumb->copies == 0 || place[i][k] < crumb->low[k] ? place[i][k] : crumb->low[k];
             crumb->high[k] = crumb->copies == 0 || place[i][k] > crumb->high[k] ? place[i][k] : crumb->high[k];
         }
-        ++crumb->copies;
+        crumb->copies++;
     }
-    for (i = 0; i < system->piece_count; ++i)
-        for (k = 0; k < 3; ++k)
-            crumbs[i].length = crumbs[i].high[k] - crumbs[i].low[k] > crumbs[i].length ? crumbs[i].high[k] - crumbs[i].low[k] : crumbs[i].length;
+    for (i = 0; i < system->piece_count; i++)
+        for (k = 0; k < 3; k++)
+            crumbs[i].length = crumbs[i].high[k] - crumbs[i].low[k] > crumbs[i].length
+                                 ? crumbs[i].high[k] - crumbs[i].low[k]
+                                 : crumbs[i].length;
     return crumbs;
 }
 
-/* Small pieces have so many lattice points about them that fewer serve nearly as well: places of those that are crowded after
- * gxsp_first_transfer go into one tetrahedron of a lattice of their own size, whose functions are their affine motions, or, where pieces are
- * larger, into a lattice of twice the spacing. Not of long ones, which would hardly bend. Returns whether there are any. */
-static int gxsp_thin_crumbs(const gxsp_system *system, gxsp_pool *scratch, float (*place)[3])
-{
+/* Small pieces have so many lattice points about them that fewer serve nearly as well: places of those that are crowded
+ * after gxsp_first_transfer go into one tetrahedron of a lattice of their own size, whose functions are their affine
+ * motions, or, where pieces are larger, into a lattice of twice the spacing. Not of long ones, which would hardly bend.
+ * Returns whether there are any. */
+static int gxsp_thin_crumbs(const gxsp_system *system, gxsp_pool *scratch, float (*place)[3]) {
     const gxsp_crumb *crumbs = gxsp_find_crumbs(system, scratch, place);
     uint32_t i, k;
     int any = 0;
-    for (i = 0; i < system->n && crumbs; ++i) {
+    for (i = 0; i < system->n && crumbs; i++) {
         const gxsp_crumb *crumb = &crumbs[system->piece[i]];
-        if ((float)crumb->nodes <= GXSP_CROWDED * (float)crumb->copies || !(crumb->length < GXSP_COARSE))
-            continue;
+        if ((float)crumb->nodes <= GXSP_CROWDED * (float)crumb->copies || !(crumb->length < GXSP_COARSE)) continue;
         any = 1;
-        for (k = 0; k < 3; ++k)
-            place[i][k] = crumb->length >= GXSP_AFFINE ? 0.5f * place[i][k] : /* else where coordinates descend: in thirds of a cell */
-                          0.3f * (place[i][k] - crumb->low[k]) / (crumb->length + 1e-30f) + (float)(2 - k) / 3 + 0.01f;
+        for (k = 0; k < 3; k++) /* else where coordinates descend: in thirds of a cell */
+            place[i][k] =
+                crumb->length >= GXSP_AFFINE
+                    ? 0.5f * place[i][k]
+                    : 0.3f * (place[i][k] - crumb->low[k]) / (crumb->length + 1e-30f) + (float)(2 - k) / 3 + 0.01f;
     }
     return any;
 }
 
-/* All levels of the multigrid below the model; place: n x 3, see gxsp_find_places. level_count stays 0 if there is nothing to coarsen. */
-static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (*place)[3])
-{
+/* All levels of the multigrid below the model; place: n x 3, see gxsp_find_places. level_count stays 0 if there is
+ * nothing to coarsen. */
+static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (*place)[3]) {
     gxsp_level *fine = &system->levels[0];
     gxsp_transfer transfer;
     uint32_t count;
     gxsp_edges_make(system, scratch);
     transfer.key = (uint64_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint64_t));
     transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint32_t));
-    if (scratch->failed)
-        return;
+    if (scratch->failed) return;
     count = gxsp_first_transfer(system, place, &transfer);
-    if (gxsp_thin_crumbs(system, scratch, place))
-        count = gxsp_first_transfer(system, place, &transfer);
-    if (count == 0 || scratch->failed)
-        return;
+    if (gxsp_thin_crumbs(system, scratch, place)) count = gxsp_first_transfer(system, place, &transfer);
+    if (count == 0 || scratch->failed) return;
     gxsp_level_make(&system->coarse, fine + 1, count);
-    if (system->coarse.failed)
-        return;
+    if (system->coarse.failed) return;
     gxsp_transfer_places(fine, &transfer, fine + 1);
     gxsp_levels_make(system, scratch, NULL, NULL);
 }
@@ -4289,18 +4165,18 @@ static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (
 
 /* What is known of a copy before it is called light */
 typedef struct gxsp_weighed {
-    gxsp_light light;       /* in the lane with its heaviest neighbour */
-    double all, most;       /* mass of the elements around it; of the neighbour, kg */
-    int whole;              /* an element around it is whole */
+    gxsp_light light; /* in the lane with its heaviest neighbour */
+    double all, most; /* mass of the elements around it; of the neighbour, kg */
+    int whole;        /* an element around it is whole */
 } gxsp_weighed;
 
-static void gxsp_weigh_corner(const gxsp_system *system, uint32_t c, uint32_t lane, int corner, const uint32_t *copies, gxsp_weighed *weighed)
-{
+static void gxsp_weigh_corner(const gxsp_system *system, uint32_t c, uint32_t lane, int corner, const uint32_t *copies,
+                              gxsp_weighed *weighed) {
     const gxsp_chunk *chunk = &system->chunks[c];
     int k;
     weighed->whole |= !chunk->moments;
     weighed->all += chunk->rest[lane / GXSP_LANES].mass[lane % GXSP_LANES];
-    for (k = 0; k < 4; ++k)
+    for (k = 0; k < 4; k++)
         if (k != corner && system->lumped[copies[k]] > weighed->most) {
             weighed->most = system->lumped[copies[k]];
             weighed->light.copy = copies[corner], weighed->light.chunk = c;
@@ -4309,87 +4185,78 @@ static void gxsp_weigh_corner(const gxsp_system *system, uint32_t c, uint32_t la
 }
 
 /* Of each copy, or each that is touched. touched: n flags, or NULL: all */
-static void gxsp_weigh_copies(const gxsp_system *system, const uint8_t *touched, gxsp_weighed *weighed)
-{
+static void gxsp_weigh_copies(const gxsp_system *system, const uint8_t *touched, gxsp_weighed *weighed) {
     uint32_t c, i, lane, copies[4];
     int k;
-    for (c = 0; c < system->chunk_count; ++c) {
+    for (c = 0; c < system->chunk_count; c++) {
         const gxsp_chunk *chunk = &system->chunks[c];
-        for (i = 0; touched && i < chunk->node_count && !touched[system->nodes[chunk->first_node + i]]; ++i)
+        for (i = 0; touched && i < chunk->node_count && !touched[system->nodes[chunk->first_node + i]]; i++)
             ;
-        for (lane = 0; lane < chunk->block_count * GXSP_LANES && !(touched && i == chunk->node_count); ++lane) {
-            if (chunk->groups[lane] == GXSP_NONE)
-                continue;
+        for (lane = 0; lane < chunk->block_count * GXSP_LANES && !(touched && i == chunk->node_count); lane++) {
+            if (chunk->groups[lane] == GXSP_NONE) continue;
             gxsp_lane_copies(system, chunk, lane / GXSP_LANES, (int)(lane % GXSP_LANES), copies);
-            for (k = 0; k < 4; ++k)
-                if (!touched || touched[copies[k]])
-                    gxsp_weigh_corner(system, c, lane, k, copies, &weighed[copies[k]]);
+            for (k = 0; k < 4; k++)
+                if (!touched || touched[copies[k]]) gxsp_weigh_corner(system, c, lane, k, copies, &weighed[copies[k]]);
         }
     }
 }
 
-static int gxsp_is_light(const gxsp_system *system, size_t copy, const gxsp_weighed *weighed)
-{
+static int gxsp_is_light(const gxsp_system *system, size_t copy, const gxsp_weighed *weighed) {
     const double mass = system->lumped[copy];
     return !weighed->whole && !system->fixed[copy] && weighed->most > 0 &&
            (mass < GXSP_LIGHT * weighed->all || mass < GXSP_LIGHTER * weighed->most);
 }
 
 /* Lists light copies. touched: n flags: those of others stay as they are listed; NULL: all are listed anew */
-static void gxsp_list_lights(gxsp_system *system, gxsp_pool *scratch, const uint8_t *touched)
-{
+static void gxsp_list_lights(gxsp_system *system, gxsp_pool *scratch, const uint8_t *touched) {
     gxsp_weighed *weighed = (gxsp_weighed *)gxsp_take(scratch, system->n, sizeof *weighed);
     uint32_t i, count = 0, room;
-    if (scratch->failed)
-        return;
+    if (scratch->failed) return;
     gxsp_weigh_copies(system, touched, weighed);
-    for (i = 0; i < system->light_count && touched; ++i)
-        if (!touched[system->lights[i].copy])
-            system->lights[count++] = system->lights[i];
+    for (i = 0; i < system->light_count && touched; i++)
+        if (!touched[system->lights[i].copy]) system->lights[count++] = system->lights[i];
     system->light_count = room = count;
-    for (i = 0; i < system->n; ++i)
-        room += (uint32_t)gxsp_is_light(system, i, &weighed[i]);
+    for (i = 0; i < system->n; i++) room += (uint32_t)gxsp_is_light(system, i, &weighed[i]);
     if (room > system->light_room) {
         system->light_room = room + room / 8;
-        system->lights = (gxsp_light *)gxsp_retake(&system->pool, system->lights, count, system->light_room, sizeof(gxsp_light));
+        system->lights =
+            (gxsp_light *)gxsp_retake(&system->pool, system->lights, count, system->light_room, sizeof(gxsp_light));
     }
-    for (i = 0; i < system->n && !system->pool.failed; ++i)
-        if (gxsp_is_light(system, i, &weighed[i]))
-            system->lights[system->light_count++] = weighed[i].light;
+    for (i = 0; i < system->n && !system->pool.failed; i++)
+        if (gxsp_is_light(system, i, &weighed[i])) system->lights[system->light_count++] = weighed[i].light;
 }
 
-/* What guides a light copy at vector x, less another one or NULL (n x 3): the mean over the other corners, by their masses. Returns the heaviest. */
-static uint32_t gxsp_guide(const gxsp_system *system, const gxsp_light *light, const double *x, const double *less, double *mean)
-{
+/* What guides a light copy at vector x, less another one or NULL (n x 3): the mean over the other corners, by their
+ * masses. Returns the heaviest. */
+static uint32_t gxsp_guide(const gxsp_system *system, const gxsp_light *light, const double *x, const double *less,
+                           double *mean) {
     double sum = 0, most = 0;
     uint32_t copies[4], heaviest = light->copy;
     int k, c;
     gxsp_lane_copies(system, &system->chunks[light->chunk], light->lane / GXSP_LANES, light->lane % GXSP_LANES, copies);
     mean[0] = mean[1] = mean[2] = 0;
-    for (k = 0; k < 4; ++k) {
+    for (k = 0; k < 4; k++) {
         const double mass = k == light->corner ? 0 : system->lumped[copies[k]];
         sum += mass;
-        for (c = 0; c < 3; ++c)
-            mean[c] += mass * (x[3 * (size_t)copies[k] + (size_t)c] - (less ? less[3 * (size_t)copies[k] + (size_t)c] : 0));
-        if (mass > most)
-            most = mass, heaviest = copies[k];
+        for (c = 0; c < 3; c++)
+            mean[c] +=
+                mass * (x[3 * (size_t)copies[k] + (size_t)c] - (less ? less[3 * (size_t)copies[k] + (size_t)c] : 0));
+        if (mass > most) most = mass, heaviest = copies[k];
     }
-    for (c = 0; c < 3; ++c)
-        mean[c] /= sum;
+    for (c = 0; c < 3; c++) mean[c] /= sum;
     return heaviest;
 }
 
 /* >>system: a model in the solver's own form, all that does not depend on its state */
 
 /* 2^GXSP_STIFFNESS over Young's modulus times the length of the largest element, but for the mantissa */
-static double gxsp_choose_scale(const gxs_model *model)
-{
+static double gxsp_choose_scale(const gxs_model *model) {
     double young = 0, volume = 0, size;
     size_t i;
     int exponent;
-    for (i = 0; i < model->material_count; ++i)
+    for (i = 0; i < model->material_count; i++)
         young = model->materials[i].young > young ? model->materials[i].young : young;
-    for (i = 0; i < model->element_count; ++i)
+    for (i = 0; i < model->element_count; i++)
         volume = model->elements[i].weight > volume ? model->elements[i].weight : volume;
     size = volume > 0 ? young * cbrt(volume) : young;
     (void)frexp(size, &exponent);
@@ -4397,66 +4264,56 @@ static double gxsp_choose_scale(const gxs_model *model)
 }
 
 /* Inverse volumes of supports, the least of the size of a whole copy's inverse stiffness */
-static void gxsp_find_volumes(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model)
-{
+static void gxsp_find_volumes(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model) {
     double *volume = (double *)gxsp_take(scratch, system->n, sizeof(double)), largest = 0;
     size_t e, i;
     int k;
     system->volume = (float *)gxsp_take(&system->pool, system->n, sizeof(float));
-    if (system->pool.failed || scratch->failed)
-        return;
-    for (e = 0; e < model->element_count; ++e)
-        for (k = 0; k < 4; ++k)
-            volume[model->elements[e].copy[k]] += model->elements[e].weight;
-    for (i = 0; i < system->n; ++i)
-        largest = volume[i] > largest ? volume[i] : largest;
-    for (i = 0; i < system->n; ++i)
+    if (system->pool.failed || scratch->failed) return;
+    for (e = 0; e < model->element_count; e++)
+        for (k = 0; k < 4; k++) volume[model->elements[e].copy[k]] += model->elements[e].weight;
+    for (i = 0; i < system->n; i++) largest = volume[i] > largest ? volume[i] : largest;
+    for (i = 0; i < system->n; i++)
         system->volume[i] = volume[i] > 1e-20 * largest ? (float)ldexp(largest / volume[i], -GXSP_STIFFNESS) : 0;
 }
 
 /* Copies from which on a piece is large enough for multigrid */
-static uint32_t gxsp_large(const gxsp_system *system)
-{
+static uint32_t gxsp_large(const gxsp_system *system) {
     return system->stiff ? GXSP_MULTIGRID_FROM_STIFF : GXSP_MULTIGRID_FROM;
 }
 
-/* Does multigrid pay for a piece? All take as many iterations as the one that takes most. count: piece_count, scratch */
-static int gxsp_large_piece(const gxsp_system *system, uint32_t *count)
-{
+/* Does multigrid pay for a piece? All take as many iterations as the one that takes most. count: piece_count, scratch
+ */
+static int gxsp_large_piece(const gxsp_system *system, uint32_t *count) {
     const uint32_t from = gxsp_large(system);
     size_t i;
     memset(count, 0, system->piece_count * sizeof *count);
-    for (i = 0; i < system->n; ++i)
-        if (++count[system->piece[i]] >= from)
-            return 1;
+    for (i = 0; i < system->n; i++)
+        if (++count[system->piece[i]] >= from) return 1;
     return 0;
 }
 
 /* What depends on the choice of matrix and preconditioner. forest: n, scratch */
 static void gxsp_preconditioner_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model,
-                                     gxs_preconditioner preconditioner, gxs_matrix matrix, uint32_t *forest)
-{
-    float (*place)[3]; /* rest positions in spacings of the first lattice */
+                                     gxs_preconditioner preconditioner, gxs_matrix matrix, uint32_t *forest) {
+    float(*place)[3]; /* rest positions in spacings of the first lattice */
     const int multigrid = model->positions && (preconditioner == GXS_MULTIGRID ||
-                          (preconditioner == GXS_AUTOMATIC && gxsp_large_piece(system, forest)));
+                                               (preconditioner == GXS_AUTOMATIC && gxsp_large_piece(system, forest)));
     system->chosen = model->positions && preconditioner == GXS_AUTOMATIC;
-    if (preconditioner == GXS_VOLUME_RATIO)
-        gxsp_find_volumes(system, scratch, model);
+    if (preconditioner == GXS_VOLUME_RATIO) gxsp_find_volumes(system, scratch, model);
     system->levels[0].n = (uint32_t)system->n;
-    if (matrix == GXS_MATRIX_ASSEMBLED)
-        gxsp_fine_make(system, scratch);
-    if (!multigrid)
-        return;
+    if (matrix == GXS_MATRIX_ASSEMBLED) gxsp_fine_make(system, scratch);
+    if (!multigrid) return;
     gxsp_transfer_make(&system->pool, &system->levels[0]);
     place = (float(*)[3])gxsp_take(scratch, system->n, sizeof *place);
     if (!system->pool.failed && !scratch->failed && gxsp_find_places(system, model, place))
         gxsp_multigrid_make(system, scratch, place);
 }
 
-/* Everything about a model that does not depend on its state; scratch holds what is needed for the time being. Returns the index of
- * a constraint that cannot be, SIZE_MAX if all can. */
-static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model, const gxs_solver *solver)
-{
+/* Everything about a model that does not depend on its state; scratch holds what is needed for the time being. Returns
+ * the index of a constraint that cannot be, SIZE_MAX if all can. */
+static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model,
+                                const gxs_solver *solver) {
     uint32_t i, *forest = (uint32_t *)gxsp_take(scratch, model->copy_count, sizeof(uint32_t));
     gxsp_owned *mark;
     size_t bad;
@@ -4472,32 +4329,26 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
     system->materials = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
     system->damped = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
     gxsp_copies_make(system, model->positions);
-    if (scratch->failed || system->pool.failed)
-        return SIZE_MAX;
-    for (i = 0; i < system->material_count; ++i) {
+    if (scratch->failed || system->pool.failed) return SIZE_MAX;
+    for (i = 0; i < system->material_count; i++) {
         system->damped[i] = system->materials[i] = gxsp_material_make(&model->materials[i]);
         system->damps |= model->materials[i].damping > 0;
         system->stiff |= model->materials[i].kind != GXS_CUSTOM && model->materials[i].poisson > GXSP_STIFF_POISSON;
     }
     gxsp_find_fixed(system, model);
     bad = gxsp_bad_constraint(model->constraints, model->constraint_count, model->held, system->still);
-    if (bad == SIZE_MAX)
-        gxsp_set_followers(system, model->constraints, model->constraint_count);
-    if (bad != SIZE_MAX || system->pool.failed)
-        return bad;
+    if (bad == SIZE_MAX) gxsp_set_followers(system, model->constraints, model->constraint_count);
+    if (bad != SIZE_MAX || system->pool.failed) return bad;
     memcpy(system->still, system->fixed, system->n);
     gxsp_join_copies(system, model, forest);
     gxsp_number_pieces(system, forest);
     system->pieces = (gxsp_piece *)gxsp_take(&system->pool, system->piece_count, sizeof(gxsp_piece));
-    if (system->pool.failed)
-        return SIZE_MAX;
+    if (system->pool.failed) return SIZE_MAX;
     gxsp_fill_pieces(system);
     mark = scratch->last;
     gxsp_chunks_make(system, scratch, model);
-    if (!scratch->failed && !system->pool.failed)
-        gxsp_parts_make(system);
-    if (!scratch->failed && !system->pool.failed)
-        gxsp_list_lights(system, scratch, NULL);
+    if (!scratch->failed && !system->pool.failed) gxsp_parts_make(system);
+    if (!scratch->failed && !system->pool.failed) gxsp_list_lights(system, scratch, NULL);
     gxsp_release_to(scratch, mark);
     if (!scratch->failed && !system->pool.failed)
         gxsp_preconditioner_make(system, scratch, model, solver->preconditioner, solver->matrix, forest);
@@ -4507,19 +4358,16 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
 /* --- memory of steps --- */
 
 /* Arrays with which coarse numbers are made */
-static void gxsp_numbers_carve(gxsp_system *system, gxsp_space *space)
-{
+static void gxsp_numbers_carve(gxsp_system *system, gxsp_space *space) {
     gxsp_level *last = &system->levels[system->level_count - 1];
-    if (!system->fine)
-        gxsp_edges_carve(system, space, 1);
+    if (!system->fine) gxsp_edges_carve(system, space, 1);
     gxsp_pairs_carve(system, space, 1);
     if (system->level_count > 2) /* level 1 keeps its own: updates make only a part of it anew */
         last->block = (float *)gxsp_carve(space, gxsp_block_numbers(last), sizeof(float));
     system->factor.rows = (double *)gxsp_carve(space, 3 * (size_t)system->factor.n, sizeof(double));
 }
 
-static void gxsp_passes_carve(gxsp_system *system, gxsp_space *space)
-{
+static void gxsp_passes_carve(gxsp_system *system, gxsp_space *space) {
     system->slots = (double(*)[3])gxsp_carve(space, system->slot_count, sizeof *system->slots);
     system->search = (gxsp_vector4 *)gxsp_carve(space, system->n, sizeof(gxsp_vector4));
     system->product = (gxsp_vector4 *)gxsp_carve(space, system->n, sizeof(gxsp_vector4));
@@ -4527,27 +4375,23 @@ static void gxsp_passes_carve(gxsp_system *system, gxsp_space *space)
 }
 
 /* Vectors in shared memory are 0 again: what is unused of them, too, takes part in sums. */
-static void gxsp_give_back(gxsp_system *system)
-{
+static void gxsp_give_back(gxsp_system *system) {
     memset(system->search, 0, system->n * sizeof *system->search);
     memset(system->product, 0, system->n * sizeof *system->product);
     memset(system->scaled, 0, system->n * sizeof *system->scaled);
 }
 
 /* Room in shared memory for passes and for coarse numbers, in turn */
-static void gxsp_share(gxsp_system *system)
-{
+static void gxsp_share(gxsp_system *system) {
     gxsp_space passes = {NULL, 0}, numbers = {NULL, 0};
     size_t size;
     gxsp_passes_carve(system, &passes);
-    if (system->level_count > 0)
-        gxsp_numbers_carve(system, &numbers);
+    if (system->level_count > 0) gxsp_numbers_carve(system, &numbers);
     size = passes.used > numbers.used ? passes.used : numbers.used;
     if (size > system->shared_room) {
         const size_t room = system->shared ? size + size / 8 : size;
         unsigned char *larger = (unsigned char *)gxsp_retake(&system->pool, system->shared, 0, room, 1);
-        if (!larger)
-            return;
+        if (!larger) return;
         system->shared = larger;
         system->shared_room = room;
     }
@@ -4558,20 +4402,19 @@ static void gxsp_share(gxsp_system *system)
 }
 
 /* What only steps need: taken last, when all that a model is made with has been given back */
-static void gxsp_steps_make(gxsp_system *system)
-{
+static void gxsp_steps_make(gxsp_system *system) {
     double **vectors[6];
     gxsp_vector4 **singles[3];
     int i;
-    vectors[0] = &system->target, vectors[1] = &system->current, vectors[2] = &system->force, vectors[3] = &system->residual;
+    vectors[0] = &system->target, vectors[1] = &system->current, vectors[2] = &system->force,
+    vectors[3] = &system->residual;
     vectors[4] = &system->direction, vectors[5] = &system->coarse_state;
-    for (i = 0; i < (system->level_count > 0 ? 6 : 5); ++i)
+    for (i = 0; i < (system->level_count > 0 ? 6 : 5); i++)
         *vectors[i] = (double *)gxsp_take(&system->pool, 3 * system->n, sizeof(double));
     system->trial = system->residual;
-    if (system->damps)
-        system->damping = (double *)gxsp_take(&system->pool, 3 * system->n, sizeof(double));
+    if (system->damps) system->damping = (double *)gxsp_take(&system->pool, 3 * system->n, sizeof(double));
     singles[0] = &system->guess[0], singles[1] = &system->guess[1], singles[2] = &system->right;
-    for (i = 0; i < (system->fine ? 3 : 2); ++i)
+    for (i = 0; i < (system->fine ? 3 : 2); i++)
         *singles[i] = (gxsp_vector4 *)gxsp_take(&system->pool, system->n, sizeof(gxsp_vector4));
     system->diagonal = (float *)gxsp_take(&system->pool, 6 * system->n, sizeof(float));
     system->range_sum = (double(*)[GXSP_SUMS])gxsp_take(&system->pool, system->range_count, sizeof *system->range_sum);
@@ -4582,42 +4425,37 @@ static void gxsp_steps_make(gxsp_system *system)
 /* >>followers: what follows a copy gets its motion, and gives it its forces */
 
 /* Increments x of all copies from those of masters */
-static void gxsp_extend(const gxsp_system *system, gxsp_vector4 *x)
-{
+static void gxsp_extend(const gxsp_system *system, gxsp_vector4 *x) {
     uint32_t i, k, c;
-    for (i = 0; i < system->follower_count; ++i) {
+    for (i = 0; i < system->follower_count; i++) {
         const gxsp_follower *follower = &system->followers[i];
         gxsp_vector4 sum = {0, 0, 0, 0};
-        for (k = 0; k < 4; ++k)
-            for (c = 0; c < 3; ++c)
-                sum[c] += (float)follower->weight[k] * x[follower->master[k]][c];
+        for (k = 0; k < 4; k++)
+            for (c = 0; c < 3; c++) sum[c] += (float)follower->weight[k] * x[follower->master[k]][c];
         memcpy(x[follower->copy], sum, sizeof sum);
     }
 }
 
 /* Forces y on masters; 0 on followers */
-static void gxsp_reduce(const gxsp_system *system, gxsp_vector4 *y)
-{
+static void gxsp_reduce(const gxsp_system *system, gxsp_vector4 *y) {
     uint32_t i, k, c;
-    for (i = 0; i < system->follower_count; ++i) {
+    for (i = 0; i < system->follower_count; i++) {
         const gxsp_follower *follower = &system->followers[i];
-        for (k = 0; k < 4; ++k)
-            for (c = 0; c < 3; ++c)
-                y[follower->master[k]][c] += (float)follower->weight[k] * y[follower->copy][c];
+        for (k = 0; k < 4; k++)
+            for (c = 0; c < 3; c++) y[follower->master[k]][c] += (float)follower->weight[k] * y[follower->copy][c];
         memset(y[follower->copy], 0, sizeof *y);
     }
 }
 
 /* Displacements of followers: that at from, which may be NULL for 0, and what their masters have moved since then */
-static void gxsp_follow(const gxsp_system *system, const double *from, double *displacement)
-{
+static void gxsp_follow(const gxsp_system *system, const double *from, double *displacement) {
     uint32_t i, k, c;
-    for (i = 0; i < system->follower_count; ++i) {
+    for (i = 0; i < system->follower_count; i++) {
         const gxsp_follower *follower = &system->followers[i];
         double *to = displacement + 3 * (size_t)follower->copy;
-        for (c = 0; c < 3; ++c) {
+        for (c = 0; c < 3; c++) {
             double sum = from ? from[3 * (size_t)follower->copy + c] : 0;
-            for (k = 0; k < 4; ++k) {
+            for (k = 0; k < 4; k++) {
                 const size_t master = 3 * (size_t)follower->master[k] + c;
                 sum += follower->weight[k] * (displacement[master] - (from ? from[master] : 0));
             }
@@ -4627,13 +4465,12 @@ static void gxsp_follow(const gxsp_system *system, const double *from, double *d
 }
 
 /* Residuals: those of followers are given to masters, but not to copies that are still. still: n */
-static void gxsp_reduce_residual(const gxsp_system *system, const uint8_t *still, double *r)
-{
+static void gxsp_reduce_residual(const gxsp_system *system, const uint8_t *still, double *r) {
     uint32_t i, k, c;
-    for (i = 0; i < system->follower_count; ++i) {
+    for (i = 0; i < system->follower_count; i++) {
         const gxsp_follower *follower = &system->followers[i];
-        for (k = 0; k < 4; ++k)
-            for (c = 0; c < 3 && !still[follower->master[k]]; ++c)
+        for (k = 0; k < 4; k++)
+            for (c = 0; c < 3 && !still[follower->master[k]]; c++)
                 r[3 * (size_t)follower->master[k] + c] += follower->weight[k] * r[3 * (size_t)follower->copy + c];
         memset(r + 3 * (size_t)follower->copy, 0, 3 * sizeof *r);
     }
@@ -4644,8 +4481,7 @@ static void gxsp_reduce_residual(const gxsp_system *system, const uint8_t *still
 /* --- blocks: nine numbers by columns --- */
 
 /* By whole vectors: narrower stores would not be forwarded to the loads that soon follow. */
-static inline void gxsp_transpose_block(const float *GXSP_RESTRICT a, float *GXSP_RESTRICT transposed)
-{
+static inline void gxsp_transpose_block(const float *GXSP_RESTRICT a, float *GXSP_RESTRICT transposed) {
 #if defined(GXSP_SHUFFLES) && defined(__AVX__)
     const gxsp_eight all = *(const gxsp_eight *)a;
     *(gxsp_eight *)transposed = __builtin_shufflevector(all, all, 0, 3, 6, 1, 4, 7, 2, 5);
@@ -4661,8 +4497,8 @@ static inline void gxsp_transpose_block(const float *GXSP_RESTRICT a, float *GXS
 }
 
 /* to += lane l of nine numbers by rows, transposed or not, and mass on the diagonal */
-static void gxsp_add_lane(gxsp_singles *GXSP_RESTRICT block, int l, int transposed, float mass, float *GXSP_RESTRICT to)
-{
+static void gxsp_add_lane(gxsp_singles *GXSP_RESTRICT block, int l, int transposed, float mass,
+                          float *GXSP_RESTRICT to) {
     const int r = transposed ? 3 : 1, c = transposed ? 1 : 3;
     to[0] += block[0][l] + mass, to[c] += block[1][l], to[2 * c] += block[2][l];
     to[r] += block[3][l], to[4] += block[4][l] + mass, to[r + 2 * c] += block[5][l];
@@ -4670,51 +4506,40 @@ static void gxsp_add_lane(gxsp_singles *GXSP_RESTRICT block, int l, int transpos
 }
 
 /* y += a x for nine numbers */
-static void gxsp_add_scaled(float a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y)
-{
+static void gxsp_add_scaled(float a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y) {
     int k;
-    for (k = 0; k < 8; ++k)
-        y[k] += a * x[k];
+    for (k = 0; k < 8; k++) y[k] += a * x[k];
     y[8] += a * x[8];
 }
 
 /* y += a x for four numbers */
-static inline void gxsp_add_four(float a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y)
-{
+static inline void gxsp_add_four(float a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y) {
 #if defined(GXSP_SHUFFLES)
     const gxsp_four all = {a, a, a, a}; /* of a alone x87 makes a long double, which no vector is multiplied by */
     *(gxsp_four *)y += all * *(const gxsp_four *)x;
 #else
     int k;
-    for (k = 0; k < 4; ++k)
-        y[k] += a * x[k];
+    for (k = 0; k < 4; k++) y[k] += a * x[k];
 #endif
 }
 
-static void gxsp_add_mass(float mass, float *to)
-{
-    to[0] += mass, to[4] += mass, to[8] += mass;
-}
+static void gxsp_add_mass(float mass, float *to) { to[0] += mass, to[4] += mass, to[8] += mass; }
 
 /* y -= a x; the fourth of y is without meaning, as is what follows a */
-static void gxsp_subtract_block(const float *GXSP_RESTRICT a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y)
-{
+static void gxsp_subtract_block(const float *GXSP_RESTRICT a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y) {
     int k;
-    for (k = 0; k < 4; ++k)
-        y[k] -= a[k] * x[0] + a[3 + k] * x[1] + a[6 + k] * x[2];
+    for (k = 0; k < 4; k++) y[k] -= a[k] * x[0] + a[3 + k] * x[1] + a[6 + k] * x[2];
 }
 
 /* y -= a^T x */
-static void gxsp_subtract_turned(const float *GXSP_RESTRICT a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y)
-{
+static void gxsp_subtract_turned(const float *GXSP_RESTRICT a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y) {
     y[0] -= a[0] * x[0] + a[1] * x[1] + a[2] * x[2];
     y[1] -= a[3] * x[0] + a[4] * x[1] + a[5] * x[2];
     y[2] -= a[6] * x[0] + a[7] * x[1] + a[8] * x[2];
 }
 
 /* y = D^-1 x for packed D^-1 */
-static void gxsp_apply_packed(const float *d, const float *x, float *y)
-{
+static void gxsp_apply_packed(const float *d, const float *x, float *y) {
     const float a = x[0], b = x[1], c = x[2];
     y[0] = d[0] * a + d[1] * b + d[2] * c;
     y[1] = d[1] * a + d[3] * b + d[4] * c;
@@ -4725,24 +4550,27 @@ static void gxsp_apply_packed(const float *d, const float *x, float *y)
 /* Four nodes' vectors to three components side by side and back */
 #if defined(__AVX__)
 /* All eight lanes at once: narrower stores would not be forwarded to the loads that soon follow. */
-static inline void gxsp_gather_eight(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2)
-{
-    const gxsp_four a = *(const gxsp_four *)x[node[0]], b = *(const gxsp_four *)x[node[1]], c = *(const gxsp_four *)x[node[2]],
-                    d = *(const gxsp_four *)x[node[3]], e = *(const gxsp_four *)x[node[4]], f = *(const gxsp_four *)x[node[5]],
+static inline void gxsp_gather_eight(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2) {
+    const gxsp_four a = *(const gxsp_four *)x[node[0]], b = *(const gxsp_four *)x[node[1]],
+                    c = *(const gxsp_four *)x[node[2]], d = *(const gxsp_four *)x[node[3]],
+                    e = *(const gxsp_four *)x[node[4]], f = *(const gxsp_four *)x[node[5]],
                     g = *(const gxsp_four *)x[node[6]], h = *(const gxsp_four *)x[node[7]];
-    const gxsp_eight ae = __builtin_shufflevector(a, e, 0, 1, 2, 3, 4, 5, 6, 7), bf = __builtin_shufflevector(b, f, 0, 1, 2, 3, 4, 5, 6, 7),
-                     cg = __builtin_shufflevector(c, g, 0, 1, 2, 3, 4, 5, 6, 7), dh = __builtin_shufflevector(d, h, 0, 1, 2, 3, 4, 5, 6, 7);
-    const gxsp_eight p = __builtin_shufflevector(ae, bf, 0, 8, 1, 9, 4, 12, 5, 13), q = __builtin_shufflevector(cg, dh, 0, 8, 1, 9, 4, 12, 5, 13);
-    const gxsp_eight r = __builtin_shufflevector(ae, bf, 2, 10, 3, 11, 6, 14, 7, 15), s = __builtin_shufflevector(cg, dh, 2, 10, 3, 11, 6, 14, 7, 15);
+    const gxsp_eight ae = __builtin_shufflevector(a, e, 0, 1, 2, 3, 4, 5, 6, 7),
+                     bf = __builtin_shufflevector(b, f, 0, 1, 2, 3, 4, 5, 6, 7),
+                     cg = __builtin_shufflevector(c, g, 0, 1, 2, 3, 4, 5, 6, 7),
+                     dh = __builtin_shufflevector(d, h, 0, 1, 2, 3, 4, 5, 6, 7);
+    const gxsp_eight p = __builtin_shufflevector(ae, bf, 0, 8, 1, 9, 4, 12, 5, 13),
+                     q = __builtin_shufflevector(cg, dh, 0, 8, 1, 9, 4, 12, 5, 13);
+    const gxsp_eight r = __builtin_shufflevector(ae, bf, 2, 10, 3, 11, 6, 14, 7, 15),
+                     s = __builtin_shufflevector(cg, dh, 2, 10, 3, 11, 6, 14, 7, 15);
     *(gxsp_eight *)to0 = __builtin_shufflevector(p, q, 0, 1, 8, 9, 4, 5, 12, 13);
     *(gxsp_eight *)to1 = __builtin_shufflevector(p, q, 2, 3, 10, 11, 6, 7, 14, 15);
     *(gxsp_eight *)to2 = __builtin_shufflevector(r, s, 0, 1, 8, 9, 4, 5, 12, 13);
 }
 #else
-static inline void gxsp_gather_four(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2)
-{
-    const gxsp_four a = *(const gxsp_four *)x[node[0]], b = *(const gxsp_four *)x[node[1]], c = *(const gxsp_four *)x[node[2]],
-                    d = *(const gxsp_four *)x[node[3]];
+static inline void gxsp_gather_four(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2) {
+    const gxsp_four a = *(const gxsp_four *)x[node[0]], b = *(const gxsp_four *)x[node[1]],
+                    c = *(const gxsp_four *)x[node[2]], d = *(const gxsp_four *)x[node[3]];
     const gxsp_four p = __builtin_shufflevector(a, b, 0, 4, 1, 5), q = __builtin_shufflevector(c, d, 0, 4, 1, 5);
     const gxsp_four r = __builtin_shufflevector(a, b, 2, 6, 3, 7), s = __builtin_shufflevector(c, d, 2, 6, 3, 7);
     *(gxsp_four *)to0 = __builtin_shufflevector(p, q, 0, 1, 4, 5);
@@ -4751,15 +4579,14 @@ static inline void gxsp_gather_four(const uint16_t *node, const gxsp_vector4 *x,
 }
 
 /* Of vectors longer than there are, compilers make their shuffles number by number. */
-static inline void gxsp_gather_eight(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2)
-{
+static inline void gxsp_gather_eight(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2) {
     gxsp_gather_four(node, x, to0, to1, to2);
     gxsp_gather_four(node + 4, x, to0 + 4, to1 + 4, to2 + 4);
 }
 #endif
 
-static inline void gxsp_scatter_four(const uint16_t *node, const float *from0, const float *from1, const float *from2, gxsp_vector4 *y)
-{
+static inline void gxsp_scatter_four(const uint16_t *node, const float *from0, const float *from1, const float *from2,
+                                     gxsp_vector4 *y) {
     const gxsp_four p = *(const gxsp_four *)from0, q = *(const gxsp_four *)from1, r = *(const gxsp_four *)from2;
     const gxsp_four low = __builtin_shufflevector(p, q, 0, 4, 1, 5), high = __builtin_shufflevector(p, q, 2, 6, 3, 7);
     *(gxsp_four *)y[node[0]] += __builtin_shufflevector(low, r, 0, 1, 4, 4);
@@ -4768,9 +4595,9 @@ static inline void gxsp_scatter_four(const uint16_t *node, const float *from0, c
     *(gxsp_four *)y[node[3]] += __builtin_shufflevector(high, r, 2, 3, 7, 7);
 }
 
-static inline void gxsp_turn_four(const float *a, const float *b, const float *c, const float *d, gxsp_four *turned)
-{
-    const gxsp_four p = *(const gxsp_four *)a, q = *(const gxsp_four *)b, r = *(const gxsp_four *)c, s = *(const gxsp_four *)d;
+static inline void gxsp_turn_four(const float *a, const float *b, const float *c, const float *d, gxsp_four *turned) {
+    const gxsp_four p = *(const gxsp_four *)a, q = *(const gxsp_four *)b, r = *(const gxsp_four *)c,
+                    s = *(const gxsp_four *)d;
     const gxsp_four low = __builtin_shufflevector(p, q, 0, 4, 1, 5), high = __builtin_shufflevector(p, q, 2, 6, 3, 7);
     const gxsp_four next = __builtin_shufflevector(r, s, 0, 4, 1, 5), last = __builtin_shufflevector(r, s, 2, 6, 3, 7);
     turned[0] = __builtin_shufflevector(low, next, 0, 1, 4, 5);
@@ -4780,15 +4607,13 @@ static inline void gxsp_turn_four(const float *a, const float *b, const float *c
 }
 
 /* Six numbers of each of four lanes to those of their nodes, six side by side */
-static inline void gxsp_scatter_six(const uint16_t *node, gxsp_singles *from, int lane, float *y)
-{
+static inline void gxsp_scatter_six(const uint16_t *node, gxsp_singles *from, int lane, float *y) {
     const gxsp_four p = *(const gxsp_four *)(from[4] + lane), q = *(const gxsp_four *)(from[5] + lane);
     const gxsp_four low = __builtin_shufflevector(p, q, 0, 4, 1, 5), high = __builtin_shufflevector(p, q, 2, 6, 3, 7);
     gxsp_four first[4];
     int k;
     gxsp_turn_four(from[0] + lane, from[1] + lane, from[2] + lane, from[3] + lane, first);
-    for (k = 0; k < 4; ++k)
-        *(gxsp_four *)(y + 6 * (size_t)node[k]) += first[k];
+    for (k = 0; k < 4; k++) *(gxsp_four *)(y + 6 * (size_t)node[k]) += first[k];
     *(gxsp_two *)(y + 6 * (size_t)node[0] + 4) += __builtin_shufflevector(low, low, 0, 1);
     *(gxsp_two *)(y + 6 * (size_t)node[1] + 4) += __builtin_shufflevector(low, low, 2, 3);
     *(gxsp_two *)(y + 6 * (size_t)node[2] + 4) += __builtin_shufflevector(high, high, 0, 1);
@@ -4796,14 +4621,13 @@ static inline void gxsp_scatter_six(const uint16_t *node, gxsp_singles *from, in
 }
 
 /* Each lane's nine numbers to those of its entry */
-static inline void gxsp_add_lanes(const uint16_t *entry, gxsp_singles *block, float (*to)[9])
-{
+static inline void gxsp_add_lanes(const uint16_t *entry, gxsp_singles *block, float (*to)[9]) {
     int l, k;
     for (l = 0; l < GXSP_LANES; l += 4) {
         gxsp_four first[4], second[4];
         gxsp_turn_four(block[0] + l, block[1] + l, block[2] + l, block[3] + l, first);
         gxsp_turn_four(block[4] + l, block[5] + l, block[6] + l, block[7] + l, second);
-        for (k = 0; k < 4; ++k) {
+        for (k = 0; k < 4; k++) {
             float *at = to[entry[l + k]];
             *(gxsp_four *)at += first[k];
             *(gxsp_four *)(at + 4) += second[k];
@@ -4812,64 +4636,53 @@ static inline void gxsp_add_lanes(const uint16_t *entry, gxsp_singles *block, fl
     }
 }
 #else
-static void gxsp_gather_eight(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2)
-{
+static void gxsp_gather_eight(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2) {
     int l;
-    for (l = 0; l < GXSP_LANES; ++l)
-        to0[l] = x[node[l]][0], to1[l] = x[node[l]][1], to2[l] = x[node[l]][2];
+    for (l = 0; l < GXSP_LANES; l++) to0[l] = x[node[l]][0], to1[l] = x[node[l]][1], to2[l] = x[node[l]][2];
 }
 
-static void gxsp_scatter_four(const uint16_t *node, const float *from0, const float *from1, const float *from2, gxsp_vector4 *y)
-{
+static void gxsp_scatter_four(const uint16_t *node, const float *from0, const float *from1, const float *from2,
+                              gxsp_vector4 *y) {
     int l;
-    for (l = 0; l < 4; ++l)
-        y[node[l]][0] += from0[l], y[node[l]][1] += from1[l], y[node[l]][2] += from2[l];
+    for (l = 0; l < 4; l++) y[node[l]][0] += from0[l], y[node[l]][1] += from1[l], y[node[l]][2] += from2[l];
 }
 
-static void gxsp_scatter_six(const uint16_t *node, gxsp_singles *from, int lane, float *y)
-{
+static void gxsp_scatter_six(const uint16_t *node, gxsp_singles *from, int lane, float *y) {
     int k, l;
-    for (l = 0; l < 4; ++l)
-        for (k = 0; k < 6; ++k)
-            y[6 * (size_t)node[l] + (size_t)k] += from[k][lane + l];
+    for (l = 0; l < 4; l++)
+        for (k = 0; k < 6; k++) y[6 * (size_t)node[l] + (size_t)k] += from[k][lane + l];
 }
 
-static void gxsp_add_lanes(const uint16_t *entry, gxsp_singles *block, float (*to)[9])
-{
+static void gxsp_add_lanes(const uint16_t *entry, gxsp_singles *block, float (*to)[9]) {
     int l, k;
-    for (l = 0; l < GXSP_LANES; ++l)
-        for (k = 0; k < 9; ++k)
-            to[entry[l]][k] += block[k][l];
+    for (l = 0; l < GXSP_LANES; l++)
+        for (k = 0; k < 9; k++) to[entry[l]][k] += block[k][l];
 }
 #endif
 
 /* x of a block's corners; of those that are not fresh it is there from the block before */
-static void gxsp_block_gather(const gxsp_chunk *chunk, uint32_t b, const gxsp_vector4 *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT to)
-{
+static void gxsp_block_gather(const gxsp_chunk *chunk, uint32_t b, const gxsp_vector4 *GXSP_RESTRICT x,
+                              gxsp_singles *GXSP_RESTRICT to) {
     const gxsp_corners *corner = &chunk->corners[b];
     int i;
-    for (i = 0; i < 4; ++i)
-        if (chunk->fresh[b] >> i & 1)
-            gxsp_gather_eight(corner->node[i], x, to[3 * i], to[3 * i + 1], to[3 * i + 2]);
+    for (i = 0; i < 4; i++)
+        if (chunk->fresh[b] >> i & 1) gxsp_gather_eight(corner->node[i], x, to[3 * i], to[3 * i + 1], to[3 * i + 2]);
 }
 
 /* What a block adds to its corners, and 0 in its place; what those get that the next block has too stays. */
-static void gxsp_block_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_singles *GXSP_RESTRICT from, gxsp_vector4 *GXSP_RESTRICT y)
-{
+static void gxsp_block_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_singles *GXSP_RESTRICT from,
+                               gxsp_vector4 *GXSP_RESTRICT y) {
     const gxsp_corners *corner = &chunk->corners[b];
     int i, k, l;
-    for (i = 0; i < 4; ++i) {
-        if (!(chunk->fresh[b + 1] >> i & 1))
-            continue;
+    for (i = 0; i < 4; i++) {
+        if (!(chunk->fresh[b + 1] >> i & 1)) continue;
         for (l = 0; l < GXSP_LANES; l += 4)
             gxsp_scatter_four(corner->node[i] + l, from[3 * i] + l, from[3 * i + 1] + l, from[3 * i + 2] + l, y);
-        for (k = 3 * i; k < 3 * i + 3; ++k)
-            GXSP_EACH_LANE(l) from[k][l] = 0;
+        for (k = 3 * i; k < 3 * i + 3; k++) GXSP_EACH_LANE(l) from[k][l] = 0;
     }
 }
 
-static void gxsp_task_product(void *context, size_t index)
-{
+static void gxsp_task_product(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->chunks[index];
@@ -4878,36 +4691,35 @@ static void gxsp_task_product(void *context, size_t index)
     gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->slots + chunk->first_node;
     gxsp_singles from[12], to[12];
     uint32_t b, i;
-    if (system->chunk_still[index])
-        return;
-    for (i = 0; i < chunk->node_count; ++i) {
+    if (system->chunk_still[index]) return;
+    for (i = 0; i < chunk->node_count; i++) {
         gxsp_fetch(pass->x[copies[i + GXSP_AHEAD]], sizeof *pass->x);
         memcpy(in[i], pass->x[copies[i]], sizeof *in);
     }
     memset(out, 0, chunk->node_count * sizeof *out);
     memset(to, 0, sizeof to);
-    for (b = 0; b < chunk->block_count; ++b) {
+    for (b = 0; b < chunk->block_count; b++) {
         gxsp_fetch_block(system, index, b, GXSP_TANGENTS_AHEAD, 1);
         gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
-        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_moments(chunk, b), gxsp_block_general(chunk, b), 0, from, to);
+        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_moments(chunk, b), gxsp_block_general(chunk, b),
+                          0, from, to);
         gxsp_block_scatter(chunk, b, to, out);
     }
 }
 
 /* y = product, from the slots, or right - product; and the sum of x . product */
-static void gxsp_task_product_sum(void *context, size_t index)
-{
+static void gxsp_task_product_sum(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
     gxsp_vector4 *slots = (gxsp_vector4 *)(void *)system->slots;
     size_t i, end = gxsp_range(system, index, &i);
     double work = 0;
-    for (; i < end; ++i) {
+    for (; i < end; i++) {
         const float *at = pass->x[i], m = system->lumped_mass ? (float)(pass->rate * system->lumped[i]) : 0;
         const double *right = pass->right ? pass->right + 3 * i : NULL;
         float x = m * at[0], y = m * at[1], z = m * at[2], *to = pass->y[i];
         uint32_t s;
-        for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->still[i]; ++s) {
+        for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->still[i]; s++) {
             const float *from = slots[system->copy_slot[s]];
             gxsp_fetch(slots[system->copy_slot[s + GXSP_AHEAD]], sizeof *slots);
             x += from[0], y += from[1], z += from[2];
@@ -4922,22 +4734,21 @@ static void gxsp_task_product_sum(void *context, size_t index)
 }
 
 /* y = A x by the assembled matrix, on copies that are not still. Returns x . y. */
-static double gxsp_rows_product(const gxsp_system *system, gxsp_vector4 *x, gxsp_vector4 *y)
-{
+static double gxsp_rows_product(const gxsp_system *system, gxsp_vector4 *x, gxsp_vector4 *y) {
     const gxsp_level *fine = &system->levels[0];
     double work = 0;
     uint32_t i, k;
     int c;
     memset(y, 0, system->n * sizeof *y);
-    for (i = 0; i < fine->n; ++i) {
+    for (i = 0; i < fine->n; i++) {
         gxsp_vector4 minus = {0, 0, 0, 0};
         const float turned[3] = {-x[i][0], -x[i][1], -x[i][2]};
         gxsp_subtract_block(fine->block + 9 * (size_t)fine->start[i], x[i], minus);
-        for (k = fine->start[i] + 1; k < fine->start[i + 1]; ++k) {
+        for (k = fine->start[i] + 1; k < fine->start[i + 1]; k++) {
             gxsp_subtract_block(fine->block + 9 * (size_t)k, x[fine->column[k]], minus);
             gxsp_subtract_turned(fine->block + 9 * (size_t)k, turned, y[fine->column[k]]);
         }
-        for (c = 0; c < 3; ++c) { /* all rows before have added to it */
+        for (c = 0; c < 3; c++) { /* all rows before have added to it */
             y[i][c] = system->still[i] ? 0 : y[i][c] - minus[c];
             work += (double)x[i][c] * (double)y[i][c];
         }
@@ -4946,31 +4757,28 @@ static double gxsp_rows_product(const gxsp_system *system, gxsp_vector4 *x, gxsp
 }
 
 /* y += sign H x of springs and contact. Returns x . H x. */
-static double gxsp_add_terms(const gxsp_lasting *lasting, float sign, gxsp_vector4 *x, gxsp_vector4 *y)
-{
+static double gxsp_add_terms(const gxsp_lasting *lasting, float sign, gxsp_vector4 *x, gxsp_vector4 *y) {
     double work = 0;
     size_t t;
     int k, c;
-    for (t = 0; t < lasting->count; ++t) {
+    for (t = 0; t < lasting->count; t++) {
         const gxsp_term *term = &lasting->term[t];
         float at[3] = {0, 0, 0}, force[3];
-        for (k = 0; k < 4 && !term->assembled; ++k)
-            for (c = 0; c < 3; ++c)
-                at[c] += term->weight[k] * x[term->copy[k]][c];
+        for (k = 0; k < 4 && !term->assembled; k++)
+            for (c = 0; c < 3; c++) at[c] += term->weight[k] * x[term->copy[k]][c];
         gxsp_apply_packed(term->hessian, at, force);
-        for (c = 0; c < 3; ++c)
-            work += (double)at[c] * (double)force[c];
-        for (k = 0; k < 4 && !term->assembled; ++k)
-            for (c = 0; c < 3; ++c)
-                y[term->copy[k]][c] += sign * term->weight[k] * force[c];
+        for (c = 0; c < 3; c++) work += (double)at[c] * (double)force[c];
+        for (k = 0; k < 4 && !term->assembled; k++)
+            for (c = 0; c < 3; c++) y[term->copy[k]][c] += sign * term->weight[k] * force[c];
     }
     return work;
 }
 
-/* y = A x, or right - A x unless right is NULL, A = scale (K + rate M), K the projected Hessian of the last linearisation, on copies that
- * follow nothing; x of followers is written too. right: 0 where nothing moves; matrix-free only. Returns x . A x. */
-static double gxsp_product_from(gxsp_system *system, double rate, const double *right, gxsp_vector4 *x, gxsp_vector4 *y)
-{
+/* y = A x, or right - A x unless right is NULL, A = scale (K + rate M), K the projected Hessian of the last
+ * linearisation, on copies that follow nothing; x of followers is written too. right: 0 where nothing moves;
+ * matrix-free only. Returns x . A x. */
+static double gxsp_product_from(gxsp_system *system, double rate, const double *right, gxsp_vector4 *x,
+                                gxsp_vector4 *y) {
     gxsp_pass pass;
     double work;
     memset(&pass, 0, sizeof pass);
@@ -4992,16 +4800,15 @@ static double gxsp_product_from(gxsp_system *system, double rate, const double *
 }
 
 /* y = A x; returns x . y */
-static double gxsp_product(gxsp_system *system, double rate, gxsp_vector4 *x, gxsp_vector4 *y)
-{
+static double gxsp_product(gxsp_system *system, double rate, gxsp_vector4 *x, gxsp_vector4 *y) {
     return gxsp_product_from(system, rate, NULL, x, y);
 }
 
 /* --- products of doubles --- */
 
-/* How a direction moves a copy, times pass->factor: as it says, as its masters' make it if it follows them, not at all if it is fixed */
-static void gxsp_copy_direction(const gxsp_pass *pass, uint32_t copy, double *GXSP_RESTRICT to)
-{
+/* How a direction moves a copy, times pass->factor: as it says, as its masters' make it if it follows them, not at all
+ * if it is fixed */
+static void gxsp_copy_direction(const gxsp_pass *pass, uint32_t copy, double *GXSP_RESTRICT to) {
     const gxsp_system *system = pass->system;
     const double *from = pass->from + 3 * (size_t)copy;
     double factor = system->fixed[copy] ? 0 : pass->factor;
@@ -5011,48 +4818,45 @@ static void gxsp_copy_direction(const gxsp_pass *pass, uint32_t copy, double *GX
         return;
     }
     to[0] = to[1] = to[2] = 0;
-    for (k = 0; k < 4; ++k) {
+    for (k = 0; k < 4; k++) {
         const gxsp_follower *follower = &system->followers[system->follower[copy]];
         from = pass->from + 3 * (size_t)follower->master[k];
         factor = system->fixed[follower->master[k]] ? 0 : pass->factor * follower->weight[k];
-        for (c = 0; c < 3; ++c)
-            to[c] += factor * from[c];
+        for (c = 0; c < 3; c++) to[c] += factor * from[c];
     }
 }
 
 /* The first three of four doubles less those of origin, in single precision */
-static inline void gxsp_narrow_four(const double *x, const double *origin, float *to)
-{
+static inline void gxsp_narrow_four(const double *x, const double *origin, float *to) {
 #if defined(GXSP_SHUFFLES)
-    *(gxsp_four *)to = __builtin_convertvector(*(const gxsp_four_doubles *)x - *(const gxsp_four_doubles *)origin, gxsp_four);
+    *(gxsp_four *)to =
+        __builtin_convertvector(*(const gxsp_four_doubles *)x - *(const gxsp_four_doubles *)origin, gxsp_four);
 #else
     int k;
-    for (k = 0; k < 3; ++k)
-        to[k] = (float)(x[k] - origin[k]);
+    for (k = 0; k < 3; k++) to[k] = (float)(x[k] - origin[k]);
 #endif
 }
 
-/* What a block's corner 0 has and what the others have more; where neither is fresh it is there from the block before. in: x 3, and one more
- * double */
-static void gxsp_block_gather_doubles(const gxsp_chunk *chunk, uint32_t b, const double *GXSP_RESTRICT in, gxsp_singles *GXSP_RESTRICT to)
-{
+/* What a block's corner 0 has and what the others have more; where neither is fresh it is there from the block before.
+ * in: x 3, and one more double */
+static void gxsp_block_gather_doubles(const gxsp_chunk *chunk, uint32_t b, const double *GXSP_RESTRICT in,
+                                      gxsp_singles *GXSP_RESTRICT to) {
     const gxsp_corners *corner = &chunk->corners[b];
     static const uint16_t own[GXSP_LANES] = {0, 1, 2, 3, 4, 5, 6, 7};
     static const double zero[4] = {0, 0, 0, 0};
     gxsp_vector4 lanes[GXSP_LANES];
     int i, l;
-    for (i = 0; i < 4; ++i) {
-        if (!((chunk->fresh[b] | chunk->fresh[b] >> i) & 1))
-            continue;
-        for (l = 0; l < GXSP_LANES; ++l)
-            gxsp_narrow_four(in + 3 * (size_t)corner->node[i][l], i > 0 ? in + 3 * (size_t)corner->node[0][l] : zero, lanes[l]);
+    for (i = 0; i < 4; i++) {
+        if (!((chunk->fresh[b] | chunk->fresh[b] >> i) & 1)) continue;
+        for (l = 0; l < GXSP_LANES; l++)
+            gxsp_narrow_four(in + 3 * (size_t)corner->node[i][l], i > 0 ? in + 3 * (size_t)corner->node[0][l] : zero,
+                             lanes[l]);
         gxsp_gather_eight(own, (const gxsp_vector4 *)lanes, to[3 * i], to[3 * i + 1], to[3 * i + 2]);
     }
 }
 
 /* The product of pass->from, times pass->factor, into the chunk's slots, 4 floats each */
-static void gxsp_task_apply(void *context, size_t index)
-{
+static void gxsp_task_apply(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->chunks[index];
@@ -5061,86 +4865,81 @@ static void gxsp_task_apply(void *context, size_t index)
     gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->slots + chunk->first_node;
     gxsp_singles from[12], to[12];
     uint32_t b, i;
-    for (i = 0; i < chunk->node_count; ++i)
-        gxsp_copy_direction(pass, copies[i], in + 3 * (size_t)i);
+    for (i = 0; i < chunk->node_count; i++) gxsp_copy_direction(pass, copies[i], in + 3 * (size_t)i);
     in[3 * (size_t)i] = 0;
     memset(out, 0, chunk->node_count * sizeof *out);
     memset(to, 0, sizeof to);
-    for (b = 0; b < chunk->block_count; ++b) {
+    for (b = 0; b < chunk->block_count; b++) {
         gxsp_fetch_block(system, index, b, GXSP_TANGENTS_AHEAD, 1);
         gxsp_block_gather_doubles(chunk, b, in, from);
-        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_moments(chunk, b), gxsp_block_general(chunk, b), 1, from, to);
+        gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_moments(chunk, b), gxsp_block_general(chunk, b),
+                          1, from, to);
         gxsp_block_scatter(chunk, b, to, out);
     }
 }
 
 /* pass->sum = the product, from the slots, and what lumped masses make of it */
-static void gxsp_task_apply_sum(void *context, size_t index)
-{
+static void gxsp_task_apply_sum(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
     gxsp_vector4 *slots = (gxsp_vector4 *)(void *)system->slots;
     const double unit = 1 / system->scale, back = 1 / pass->factor;
     size_t i, end = gxsp_range(system, index, &i);
-    for (; i < end; ++i) {
+    for (; i < end; i++) {
         double at[3] = {0, 0, 0}, mass = system->lumped_mass ? pass->rate * system->lumped[i] : 0, x, y, z;
         uint32_t s;
-        if (mass > 0)
-            gxsp_copy_direction(pass, (uint32_t)i, at);
+        if (mass > 0) gxsp_copy_direction(pass, (uint32_t)i, at);
         x = mass * at[0], y = mass * at[1], z = mass * at[2];
-        for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->fixed[i]; ++s) {
+        for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->fixed[i]; s++) {
             const float *from = slots[system->copy_slot[s]];
             gxsp_fetch(slots[system->copy_slot[s + GXSP_AHEAD]], sizeof *slots);
             x += (double)from[0], y += (double)from[1], z += (double)from[2];
         }
-        pass->sum[3 * i] = x * unit * back, pass->sum[3 * i + 1] = y * unit * back, pass->sum[3 * i + 2] = z * unit * back;
+        pass->sum[3 * i] = x * unit * back, pass->sum[3 * i + 1] = y * unit * back,
+                      pass->sum[3 * i + 2] = z * unit * back;
     }
 }
 
-/* 2^k, |k| < 1023, about the inverse of the largest of the values, so that single precision holds them and their product; 0: one is not finite */
-static double gxsp_unit_factor(const double *values, size_t count)
-{
+/* 2^k, |k| < 1023, about the inverse of the largest of the values, so that single precision holds them and their
+ * product; 0: one is not finite */
+static double gxsp_unit_factor(const double *values, size_t count) {
     const uint64_t exponent = (uint64_t)0x7ff << 52, one = (uint64_t)1 << 52;
     uint64_t largest = one, bits;
     double factor;
     size_t i;
-    for (i = 0; i < count; ++i) {
+    for (i = 0; i < count; i++) {
         memcpy(&bits, &values[i], sizeof bits);
         largest = (bits & exponent) > largest ? bits & exponent : largest;
     }
-    if (largest == exponent)
-        return 0;
+    if (largest == exponent) return 0;
     bits = 2046 * one - (largest < 2045 * one ? largest : 2045 * one);
     memcpy(&factor, &bits, sizeof factor);
     return factor;
 }
 
-static int gxsp_all_finite_single(const void *numbers, size_t bytes)
-{
+static int gxsp_all_finite_single(const void *numbers, size_t bytes) {
     const float *number = (const float *)numbers;
     size_t i;
-    for (i = 0; i < bytes / sizeof *number; ++i)
-        if (!gxsp_finite_single(number[i]))
-            return 0;
+    for (i = 0; i < bytes / sizeof *number; i++)
+        if (!gxsp_finite_single(number[i])) return 0;
     return 1;
 }
 
 /* Are the Hessians and masses of all elements finite? */
-static int gxsp_tangents_finite(const gxsp_system *system)
-{
+static int gxsp_tangents_finite(const gxsp_system *system) {
     uint32_t c;
-    for (c = 0; c < system->chunk_count; ++c) {
+    for (c = 0; c < system->chunk_count; c++) {
         const gxsp_chunk *chunk = &system->chunks[c];
         if (!gxsp_all_finite_single(chunk->tangents, chunk->block_count * sizeof *chunk->tangents) ||
-            !gxsp_all_finite_single(chunk->generals, chunk->generals ? chunk->block_count * sizeof *chunk->generals : 0))
+            !gxsp_all_finite_single(chunk->generals,
+                                    chunk->generals ? chunk->block_count * sizeof *chunk->generals : 0))
             return 0;
     }
     return 1;
 }
 
 /* U of a block's Hessian, by rows */
-static void gxsp_block_frame(const gxsp_tangent *GXSP_RESTRICT t, gxsp_singles *GXSP_RESTRICT u)
-{
+static void gxsp_block_frame(const gxsp_tangent *GXSP_RESTRICT t, gxsp_singles *GXSP_RESTRICT u) {
     int l;
     GXSP_EACH_LANE(l) {
         const float a = t->frame[0][l], b = t->frame[1][l], c = t->frame[2][l], d = t->frame[3][l];
@@ -5151,9 +4950,8 @@ static void gxsp_block_frame(const gxsp_tangent *GXSP_RESTRICT t, gxsp_singles *
 }
 
 /* own += U B U^T, packed, B as of gxsp_block_couple: what couples a shape function with itself. p: its gradient */
-static void gxsp_block_own(const gxsp_tangent *GXSP_RESTRICT t, gxsp_singles *GXSP_RESTRICT u, gxsp_singles *GXSP_RESTRICT p,
-                           gxsp_singles *GXSP_RESTRICT own)
-{
+static void gxsp_block_own(const gxsp_tangent *GXSP_RESTRICT t, gxsp_singles *GXSP_RESTRICT u,
+                           gxsp_singles *GXSP_RESTRICT p, gxsp_singles *GXSP_RESTRICT own) {
     int l;
     GXSP_EACH_LANE(l) {
         const float p0 = p[0][l], p1 = p[1][l], p2 = p[2][l], q0 = p0 * p0, q1 = p1 * p1, q2 = p2 * p2;
@@ -5161,35 +4959,37 @@ static void gxsp_block_own(const gxsp_tangent *GXSP_RESTRICT t, gxsp_singles *GX
         const float b0 = t->stretch[0][l] * q0 + e2 * q1 + e1 * q2, b3 = t->stretch[3][l] * q1 + e2 * q0 + e0 * q2,
                     b5 = t->stretch[5][l] * q2 + e1 * q0 + e0 * q1, b1 = (t->stretch[1][l] + t->odd[2][l]) * p0 * p1,
                     b2 = (t->stretch[2][l] + t->odd[1][l]) * p0 * p2, b4 = (t->stretch[4][l] + t->odd[0][l]) * p1 * p2;
-        const float u0 = u[0][l], u1 = u[1][l], u2 = u[2][l], u3 = u[3][l], u4 = u[4][l], u5 = u[5][l], u6 = u[6][l], u7 = u[7][l], u8 = u[8][l];
-        const float a0 = u0 * b0 + u1 * b1 + u2 * b2, a1 = u0 * b1 + u1 * b3 + u2 * b4, a2 = u0 * b2 + u1 * b4 + u2 * b5,
-                    a3 = u3 * b0 + u4 * b1 + u5 * b2, a4 = u3 * b1 + u4 * b3 + u5 * b4, a5 = u3 * b2 + u4 * b4 + u5 * b5,
-                    a6 = u6 * b0 + u7 * b1 + u8 * b2, a7 = u6 * b1 + u7 * b3 + u8 * b4, a8 = u6 * b2 + u7 * b4 + u8 * b5;
-        own[0][l] += a0 * u0 + a1 * u1 + a2 * u2, own[1][l] += a0 * u3 + a1 * u4 + a2 * u5, own[2][l] += a0 * u6 + a1 * u7 + a2 * u8;
-        own[3][l] += a3 * u3 + a4 * u4 + a5 * u5, own[4][l] += a3 * u6 + a4 * u7 + a5 * u8, own[5][l] += a6 * u6 + a7 * u7 + a8 * u8;
+        const float u0 = u[0][l], u1 = u[1][l], u2 = u[2][l], u3 = u[3][l], u4 = u[4][l], u5 = u[5][l], u6 = u[6][l],
+                    u7 = u[7][l], u8 = u[8][l];
+        const float a0 = u0 * b0 + u1 * b1 + u2 * b2, a1 = u0 * b1 + u1 * b3 + u2 * b4,
+                    a2 = u0 * b2 + u1 * b4 + u2 * b5, a3 = u3 * b0 + u4 * b1 + u5 * b2,
+                    a4 = u3 * b1 + u4 * b3 + u5 * b4, a5 = u3 * b2 + u4 * b4 + u5 * b5,
+                    a6 = u6 * b0 + u7 * b1 + u8 * b2, a7 = u6 * b1 + u7 * b3 + u8 * b4,
+                    a8 = u6 * b2 + u7 * b4 + u8 * b5;
+        own[0][l] += a0 * u0 + a1 * u1 + a2 * u2, own[1][l] += a0 * u3 + a1 * u4 + a2 * u5,
+            own[2][l] += a0 * u6 + a1 * u7 + a2 * u8;
+        own[3][l] += a3 * u3 + a4 * u4 + a5 * u5, own[4][l] += a3 * u6 + a4 * u7 + a5 * u8,
+            own[5][l] += a6 * u6 + a7 * u7 + a8 * u8;
     }
 }
 
 /* The same of a Hessian without a frame */
-static void gxsp_general_own(const gxsp_general *general, gxsp_singles *p, gxsp_singles *own)
-{
+static void gxsp_general_own(const gxsp_general *general, gxsp_singles *p, gxsp_singles *own) {
     static const int packed[6] = {0, 1, 2, 4, 5, 8};
     gxsp_singles block[9];
     int k, l;
     gxsp_general_couple(general, p, p, block);
-    for (k = 0; k < 6; ++k)
-        GXSP_EACH_LANE(l) own[k][l] += block[packed[k]][l];
+    for (k = 0; k < 6; k++) GXSP_EACH_LANE(l) own[k][l] += block[packed[k]][l];
 }
 
 /* Diagonal blocks of a block's Hessian, packed: own[6 corner ...] += */
-static void gxsp_block_diagonal(const gxsp_chunk *chunk, uint32_t b, gxsp_singles *own)
-{
+static void gxsp_block_diagonal(const gxsp_chunk *chunk, uint32_t b, gxsp_singles *own) {
     static const int diagonal[3] = {0, 3, 5};
     const gxsp_tangent *tangent = &chunk->tangents[b];
     gxsp_singles u[9];
     int corner, k, l;
     gxsp_block_frame(tangent, u);
-    for (corner = 0; corner < 4; ++corner) {
+    for (corner = 0; corner < 4; corner++) {
         gxsp_singles gamma[3], mass;
         gxsp_block_corner(tangent, corner, gamma);
         if (chunk->generals)
@@ -5197,28 +4997,25 @@ static void gxsp_block_diagonal(const gxsp_chunk *chunk, uint32_t b, gxsp_single
         else
             gxsp_block_own(tangent, u, gamma, own + 6 * corner);
         gxsp_block_mass(tangent, gxsp_block_moments(chunk, b), corner, corner, mass);
-        for (k = 0; k < 3; ++k)
-            GXSP_EACH_LANE(l) own[6 * corner + diagonal[k]][l] += mass[l];
+        for (k = 0; k < 3; k++) GXSP_EACH_LANE(l) own[6 * corner + diagonal[k]][l] += mass[l];
     }
 }
 
-/* Diagonal blocks into the chunk's slots, 6 floats each, and 0 in their place; those of corners that the next block has too stay. */
-static void gxsp_diagonal_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_singles *GXSP_RESTRICT own, float *GXSP_RESTRICT slots)
-{
+/* Diagonal blocks into the chunk's slots, 6 floats each, and 0 in their place; those of corners that the next block has
+ * too stay. */
+static void gxsp_diagonal_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_singles *GXSP_RESTRICT own,
+                                  float *GXSP_RESTRICT slots) {
     int corner, k, l;
-    for (corner = 0; corner < 4; ++corner) {
-        if (!(chunk->fresh[b + 1] >> corner & 1))
-            continue;
+    for (corner = 0; corner < 4; corner++) {
+        if (!(chunk->fresh[b + 1] >> corner & 1)) continue;
         for (l = 0; l < GXSP_LANES; l += 4)
             gxsp_scatter_six(chunk->corners[b].node[corner] + l, own + 6 * corner, l, slots);
-        for (k = 6 * corner; k < 6 * corner + 6; ++k)
-            GXSP_EACH_LANE(l) own[k][l] = 0;
+        for (k = 6 * corner; k < 6 * corner + 6; k++) GXSP_EACH_LANE(l) own[k][l] = 0;
     }
 }
 
 /* Hessian of a chunk at pass->from, and its diagonal blocks into the slots */
-static void gxsp_task_linearise(void *context, size_t index)
-{
+static void gxsp_task_linearise(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->chunks[index];
@@ -5229,29 +5026,29 @@ static void gxsp_task_linearise(void *context, size_t index)
     uint32_t b, k, blocks;
     int l;
     system->chunk_collapsed[index] = 0;
-    if (system->chunk_still[index])
-        return;
+    if (system->chunk_still[index]) return;
     memset(slots, 0, 6 * (size_t)chunk->node_count * sizeof *slots);
     memset(own, 0, sizeof own);
     gxsp_chunk_load(system, chunk, pass->from, at);
-    if (!chunk->gradients)
-        gxsp_chunk_load(system, chunk, system->positions, rest_at);
+    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->positions, rest_at);
     for (b = 0; b < chunk->block_count; b += blocks) { /* two at a time */
         gxsp_state s[2];
         gxsp_svd of[2];
         blocks = b + 1 < chunk->block_count ? 2 : 1;
-        for (k = 0; k < blocks; ++k) {
+        for (k = 0; k < blocks; k++) {
             gxsp_fetch_block(system, index, b + k, GXSP_RESTS_AHEAD, 0);
             gxsp_block_load(chunk, b + k, at, x);
             gxsp_block_parameters(pass->materials, &chunk->rest[b + k], &s[k]);
             gradients[k] = gxsp_block_gradients(chunk, b + k, rest_at, corners, made[k]);
             gxsp_block_gradient(gradients[k], x, s[k].g);
         }
-        system->chunk_collapsed[index] |= (uint8_t)gxsp_tangent_begin(chunk->kind, &s[0], blocks > 1 ? &s[1] : NULL, of);
-        for (k = 0; k < blocks; ++k) {
+        system->chunk_collapsed[index] |=
+            (uint8_t)gxsp_tangent_begin(chunk->kind, &s[0], blocks > 1 ? &s[1] : NULL, of);
+        for (k = 0; k < blocks; k++) {
             const gxsp_rest *rest = &chunk->rest[b + k];
             gxsp_tangent *tangent = &chunk->tangents[b + k];
-            gxsp_tangent_make(chunk->kind, rest, gradients[k], system->scale, pass->exact, &s[k], &of[k], tangent, gxsp_block_general(chunk, b + k));
+            gxsp_tangent_make(chunk->kind, rest, gradients[k], system->scale, pass->exact, &s[k], &of[k], tangent,
+                              gxsp_block_general(chunk, b + k));
             GXSP_EACH_LANE(l) tangent->mass[l] = (float)(pass->rate * rest->mass[l]);
             gxsp_block_diagonal(chunk, b + k, own);
             gxsp_diagonal_scatter(chunk, b + k, own, slots);
@@ -5259,15 +5056,14 @@ static void gxsp_task_linearise(void *context, size_t index)
     }
 }
 
-/* Inverse of a positive semi-definite 3x3, packed in place, as W^T W with W the inverse Cholesky factor: semi-definite in spite
- * of rounding. 1e-7 of the trace is added (the entries are sums in single precision), so that a direction without stiffness gives
- * a large number, not an infinite one. Zero stays zero: such a copy is left alone; what is not finite stays so. */
-static void gxsp_invert3(double *a)
-{
+/* Inverse of a positive semi-definite 3x3, packed in place, as W^T W with W the inverse Cholesky factor: semi-definite
+ * in spite of rounding. 1e-7 of the trace is added (the entries are sums in single precision), so that a direction
+ * without stiffness gives a large number, not an infinite one. Zero stays zero: such a copy is left alone; what is not
+ * finite stays so. */
+static void gxsp_invert3(double *a) {
     const double shift = 1e-7;
     double trace = a[0] + a[3] + a[5], scale, l00, l10, l20, l11, l21, l22, w10, w20, w21;
-    if (!gxsp_finite(trace))
-        return;
+    if (!gxsp_finite(trace)) return;
     if (!(trace > 0)) {
         memset(a, 0, 6 * sizeof *a);
         return;
@@ -5293,62 +5089,63 @@ static void gxsp_invert3(double *a)
     a[5] = scale * l22 * l22;
 }
 
-static void gxsp_task_diagonal(void *context, size_t index)
-{
+static void gxsp_task_diagonal(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
     const float *slots = (const float *)(const void *)system->slots;
     size_t i, end = gxsp_range(system, index, &i);
-    for (; i < end; ++i) {
+    for (; i < end; i++) {
         double sum[6] = {0, 0, 0, 0, 0, 0};
         uint32_t s;
         int k;
-        for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->still[i]; ++s) {
+        for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->still[i]; s++) {
             gxsp_fetch(slots + 6 * (size_t)system->copy_slot[s + GXSP_AHEAD], 6 * sizeof *slots);
-            for (k = 0; k < 6; ++k)
-                sum[k] += (double)slots[6 * (size_t)system->copy_slot[s] + (size_t)k];
+            for (k = 0; k < 6; k++) sum[k] += (double)slots[6 * (size_t)system->copy_slot[s] + (size_t)k];
         }
-        for (k = 0; system->lumped_mass && k < 6; ++k)
+        for (k = 0; system->lumped_mass && k < 6; k++)
             sum[k] += k == 0 || k == 3 || k == 5 ? pass->rate * system->lumped[i] : 0;
         if (system->still[i] || sum[0] + sum[3] + sum[5] < GXSP_TINY) /* only what is coarser moves such a copy */
             memset(sum, 0, sizeof sum);
         gxsp_invert3(sum);
-        for (k = 0; k < 6; ++k)
-            system->diagonal[6 * i + (size_t)k] = (float)sum[k];
+        for (k = 0; k < 6; k++) system->diagonal[6 * i + (size_t)k] = (float)sum[k];
     }
 }
 
-/* Springs, contact and followers add to the diagonal blocks: all goes to a copy's first slot, from which the blocks are summed. */
-static void gxsp_extra_diagonal(gxsp_system *system)
-{
+/* Springs, contact and followers add to the diagonal blocks: all goes to a copy's first slot, from which the blocks are
+ * summed. */
+static void gxsp_extra_diagonal(gxsp_system *system) {
     float *slots = (float *)(void *)system->slots;
     size_t t;
     uint32_t i, s;
     int k, m;
-    for (t = 0; t < system->lasting->count; ++t)
-        for (k = 0; k < 4; ++k) {
+    for (t = 0; t < system->lasting->count; t++)
+        for (k = 0; k < 4; k++) {
             const gxsp_term *term = &system->lasting->term[t];
             const uint32_t copy = term->copy[k];
-            for (m = 0; m < 6 && system->copy_start[copy] < system->copy_start[copy + 1]; ++m)
-                slots[6 * (size_t)system->copy_slot[system->copy_start[copy]] + (size_t)m] += term->weight[k] * term->weight[k] * term->hessian[m];
+            for (m = 0; m < 6 && system->copy_start[copy] < system->copy_start[copy + 1]; m++)
+                slots[6 * (size_t)system->copy_slot[system->copy_start[copy]] + (size_t)m] +=
+                    term->weight[k] * term->weight[k] * term->hessian[m];
         }
-    for (i = 0; i < system->follower_count; ++i)
-        for (s = system->copy_start[system->followers[i].copy]; s < system->copy_start[system->followers[i].copy + 1]; ++s)
-            for (k = 0; k < 4; ++k) {
+    for (i = 0; i < system->follower_count; i++)
+        for (s = system->copy_start[system->followers[i].copy]; s < system->copy_start[system->followers[i].copy + 1];
+             s++)
+            for (k = 0; k < 4; k++) {
                 const uint32_t copy = system->followers[i].master[k];
                 const float weight = (float)system->followers[i].weight[k];
                 float *from = slots + 6 * (size_t)system->copy_slot[s];
-                for (m = 0; m < 6 && weight * weight > 0 && system->copy_start[copy] < system->copy_start[copy + 1]; ++m)
-                    slots[6 * (size_t)system->copy_slot[system->copy_start[copy]] + (size_t)m] += weight * weight * from[m];
+                for (m = 0; m < 6 && weight * weight > 0 && system->copy_start[copy] < system->copy_start[copy + 1];
+                     m++)
+                    slots[6 * (size_t)system->copy_slot[system->copy_start[copy]] + (size_t)m] +=
+                        weight * weight * from[m];
             }
-    for (i = 0; i < system->follower_count; ++i)
-        for (s = system->copy_start[system->followers[i].copy]; s < system->copy_start[system->followers[i].copy + 1]; ++s)
+    for (i = 0; i < system->follower_count; i++)
+        for (s = system->copy_start[system->followers[i].copy]; s < system->copy_start[system->followers[i].copy + 1];
+             s++)
             memset(slots + 6 * (size_t)system->copy_slot[s], 0, 6 * sizeof *slots);
 }
 
 /* Hessian of the elements, times scale, and inverse block diagonal at a displacement. 0 if a number overflowed. */
-static int gxsp_linearise(gxsp_system *system, double rate, const double *from, int exact, int *collapsed)
-{
+static int gxsp_linearise(gxsp_system *system, double rate, const double *from, int exact, int *collapsed) {
     gxsp_pass pass;
     size_t i;
     memset(&pass, 0, sizeof pass);
@@ -5361,46 +5158,41 @@ static int gxsp_linearise(gxsp_system *system, double rate, const double *from, 
     gxsp_extra_diagonal(system);
     gxsp_over_ranges(system, gxsp_task_diagonal, &pass, NULL, 0);
     *collapsed = 0;
-    for (i = 0; i < system->chunk_count; ++i)
-        *collapsed |= system->chunk_collapsed[i];
-    for (i = 0; i < 6 * system->n; ++i)
-        if (!gxsp_finite_single(system->diagonal[i]))
-            return 0;
+    for (i = 0; i < system->chunk_count; i++) *collapsed |= system->chunk_collapsed[i];
+    for (i = 0; i < 6 * system->n; i++)
+        if (!gxsp_finite_single(system->diagonal[i])) return 0;
     return 1;
 }
 
-/* >>multigrid: a level's matrix in block rows, of which only the upper half is stored; block Gauss-Seidel forward before and backward
- * after the coarse correction, so that the whole is symmetric. The order is that of the nodes. */
+/* >>multigrid: a level's matrix in block rows, of which only the upper half is stored; block Gauss-Seidel forward
+ * before and backward after the coarse correction, so that the whole is symmetric. The order is that of the nodes. */
 
-/* r = b without what the entries left of the diagonal make of x; if solve is set, x is solved for on the way, row by row. */
-static void gxsp_sweep_lower(gxsp_level *level, int solve)
-{
+/* r = b without what the entries left of the diagonal make of x; if solve is set, x is solved for on the way, row by
+ * row. */
+static void gxsp_sweep_lower(gxsp_level *level, int solve) {
     uint32_t i, k;
     memcpy(level->r, level->b, level->n * sizeof *level->r);
-    for (i = 0; i < level->n; ++i) {
-        if (solve)
-            gxsp_apply_packed(level->inverse + 6 * (size_t)i, level->r[i], level->x[i]);
-        for (k = level->start[i] + 1; k < level->start[i + 1]; ++k)
+    for (i = 0; i < level->n; i++) {
+        if (solve) gxsp_apply_packed(level->inverse + 6 * (size_t)i, level->r[i], level->x[i]);
+        for (k = level->start[i] + 1; k < level->start[i + 1]; k++)
             gxsp_subtract_turned(level->block + 9 * (size_t)k, level->x[i], level->r[level->column[k]]);
     }
 }
 
 /* x from 0 by one forward sweep: only the rows' entries left of the diagonal count. What the sweep leaves of b is then
  * minus the entries right of the diagonal times x. */
-static void gxsp_sweep_forward(gxsp_level *level)
-{
+static void gxsp_sweep_forward(gxsp_level *level) {
     uint32_t i, k;
     gxsp_sweep_lower(level, 1);
-    for (i = 0; i < level->n; ++i) {
+    for (i = 0; i < level->n; i++) {
         gxsp_vector4 r = {0, 0, 0, 0};
-        for (k = level->start[i] + 1; k < level->start[i + 1]; ++k)
+        for (k = level->start[i] + 1; k < level->start[i + 1]; k++)
             gxsp_subtract_block(level->block + 9 * (size_t)k, level->x[level->column[k]], r);
         memcpy(level->r[i], r, 3 * sizeof(float));
     }
 }
 
-static void gxsp_sweep_backward(gxsp_level *level)
-{
+static void gxsp_sweep_backward(gxsp_level *level) {
     uint32_t i, k;
     int c;
     gxsp_sweep_lower(level, 0);
@@ -5408,61 +5200,55 @@ static void gxsp_sweep_backward(gxsp_level *level)
         gxsp_vector4 r;
         float change[3];
         memcpy(r, level->r[i], sizeof r);
-        for (k = level->start[i]; k < level->start[i + 1]; ++k)
+        for (k = level->start[i]; k < level->start[i + 1]; k++)
             gxsp_subtract_block(level->block + 9 * (size_t)k, level->x[level->column[k]], r);
         gxsp_apply_packed(level->inverse + 6 * (size_t)i, r, change);
-        for (c = 0; c < 3; ++c)
-            level->x[i][c] += change[c];
+        for (c = 0; c < 3; c++) level->x[i][c] += change[c];
     }
 }
 
 /* b of the next level = transfer^T r */
-static void gxsp_restrict(const gxsp_level *level, gxsp_level *next)
-{
+static void gxsp_restrict(const gxsp_level *level, gxsp_level *next) {
     uint32_t i;
     int k;
     memset(next->b, 0, next->n * sizeof *next->b);
-    for (i = 0; i < level->n; ++i)
-        for (k = 0; k < 4; ++k)
+    for (i = 0; i < level->n; i++)
+        for (k = 0; k < 4; k++)
             if (level->parent[i][k] != GXSP_NONE)
                 gxsp_add_four(level->weight[i][k], level->r[i], next->b[level->parent[i][k]]);
 }
 
 /* x += transfer x of the next level */
-static void gxsp_prolong(gxsp_level *level, const gxsp_level *next)
-{
+static void gxsp_prolong(gxsp_level *level, const gxsp_level *next) {
     uint32_t i;
     int k;
-    for (i = 0; i < level->n; ++i)
-        for (k = 0; k < 4; ++k)
+    for (i = 0; i < level->n; i++)
+        for (k = 0; k < 4; k++)
             if (level->parent[i][k] != GXSP_NONE)
                 gxsp_add_four(level->weight[i][k], next->x[level->parent[i][k]], level->x[i]);
 }
 
 /* x = (L L^T)^-1 b on the last level */
-static void gxsp_factor_solve(const gxsp_factor *factor, gxsp_level *level)
-{
+static void gxsp_factor_solve(const gxsp_factor *factor, gxsp_level *level) {
     uint32_t i, j;
     double *x = factor->x;
-    for (i = 0; i < factor->n; ++i) {
+    for (i = 0; i < factor->n; i++) {
         const float *row = gxsp_factor_row(factor, i);
         const uint32_t first = factor->first[i / 3];
-        const double sum = (double)level->b[factor->order[i / 3]][i % 3] - gxsp_long_dot(row + first, x + first, i - first);
+        const double sum =
+            (double)level->b[factor->order[i / 3]][i % 3] - gxsp_long_dot(row + first, x + first, i - first);
         x[i] = sum * (double)row[i];
     }
     for (i = factor->n; i-- > 0;) {
         const float *row = gxsp_factor_row(factor, i);
         x[i] *= (double)row[i];
-        for (j = factor->first[i / 3]; j < i; ++j)
-            x[j] -= (double)row[j] * x[i];
+        for (j = factor->first[i / 3]; j < i; j++) x[j] -= (double)row[j] * x[i];
     }
-    for (i = 0; i < factor->n; ++i)
-        level->x[factor->order[i / 3]][i % 3] = (float)x[i];
+    for (i = 0; i < factor->n; i++) level->x[factor->order[i / 3]][i % 3] = (float)x[i];
 }
 
 /* x = the multigrid's answer to b on levels[at] and below, at > 0 */
-static void gxsp_cycle(gxsp_system *system, uint32_t at)
-{
+static void gxsp_cycle(gxsp_system *system, uint32_t at) {
     gxsp_level *level = &system->levels[at];
     if (at + 1 == system->level_count) {
         gxsp_factor_solve(&system->factor, level);
@@ -5476,11 +5262,10 @@ static void gxsp_cycle(gxsp_system *system, uint32_t at)
 }
 
 /* scaled += omega D^-1 product */
-static void gxsp_task_smooth(void *context, size_t index)
-{
+static void gxsp_task_smooth(void *context, size_t index) {
     const gxsp_system *system = ((const gxsp_pass *)context)->system;
     size_t i, end = gxsp_range(system, index, &i);
-    for (; i < end; ++i) {
+    for (; i < end; i++) {
         float y[3];
         gxsp_apply_packed(system->diagonal + 6 * i, system->product[i], y);
         system->scaled[i][0] += system->omega * y[0];
@@ -5489,10 +5274,10 @@ static void gxsp_task_smooth(void *context, size_t index)
     }
 }
 
-/* The smoother's step length that keeps the cycle definite at any state: no element's own D^-1 K exceeds 4, and so no sum of them; but for
- * followers, with what was met. quotient: x . A x / x . D x of an x, by which the length so far was too large; 0: not known */
-static void gxsp_shorten_omega(gxsp_system *system, double quotient)
-{
+/* The smoother's step length that keeps the cycle definite at any state: no element's own D^-1 K exceeds 4, and so no
+ * sum of them; but for followers, with what was met. quotient: x . A x / x . D x of an x, by which the length so far
+ * was too large; 0: not known */
+static void gxsp_shorten_omega(gxsp_system *system, double quotient) {
     const double largest = system->follower_count > 0 && 1.25 * quotient > 4 ? 1.25 * quotient : 4;
     system->omega = (float)(1.5 / largest);
     system->omega_pause = system->omega_pause > 0 ? system->omega_pause : GXSP_PAUSE;
@@ -5500,18 +5285,17 @@ static void gxsp_shorten_omega(gxsp_system *system, double quotient)
     system->omega_pause += system->omega_pause < 1024 ? system->omega_pause : 0;
 }
 
-/* scaled = V-cycle of the residual. Level 0 is smoothed by omega D^-1, once on entry, see gxsp_scale, or by block Gauss-Seidel if it is
- * assembled. A state in violent motion may have a larger eigenvalue than omega was found for: the residual, in which it grows, shows it.
- * energy: residual . D^-1 residual; scratch: product */
-static void gxsp_multigrid(gxsp_system *system, double rate, double energy)
-{
+/* scaled = V-cycle of the residual. Level 0 is smoothed by omega D^-1, once on entry, see gxsp_scale, or by block
+ * Gauss-Seidel if it is assembled. A state in violent motion may have a larger eigenvalue than omega was found for: the
+ * residual, in which it grows, shows it. energy: residual . D^-1 residual; scratch: product */
+static void gxsp_multigrid(gxsp_system *system, double rate, double energy) {
     gxsp_level *fine = &system->levels[0];
     gxsp_pass pass;
     double work;
     size_t i;
     fine->x = system->scaled, fine->b = system->right, fine->r = system->product;
     if (system->fine) {
-        for (i = 0; i < 3 * system->n; ++i)
+        for (i = 0; i < 3 * system->n; i++)
             system->right[i / 3][i % 3] = system->still[i / 3] ? 0 : (float)system->residual[i];
         gxsp_cycle(system, 0);
         return;
@@ -5520,8 +5304,7 @@ static void gxsp_multigrid(gxsp_system *system, double rate, double energy)
     if (work > GXSP_OMEGA * (double)system->omega * energy && system->omega_rest == 0) {
         const float before = system->omega;
         gxsp_shorten_omega(system, work / ((double)before * (double)before * energy));
-        for (i = 0; i < 3 * system->n; ++i)
-            fine->x[i / 3][i % 3] *= system->omega / before;
+        for (i = 0; i < 3 * system->n; i++) fine->x[i / 3][i % 3] *= system->omega / before;
         (void)gxsp_product_from(system, rate, system->residual, fine->x, fine->r);
     }
     gxsp_restrict(fine, fine + 1);
@@ -5534,13 +5317,14 @@ static void gxsp_multigrid(gxsp_system *system, double rate, double energy)
 
 /* --- numbers of the coarse levels --- */
 
-/* A block by rows, with its mass, to one by columns: that of the lower node's row, where corners p and q have the nodes */
-static void gxsp_order_block(const uint16_t *GXSP_RESTRICT p, const uint16_t *GXSP_RESTRICT q, const float *GXSP_RESTRICT mass,
-                             gxsp_singles *GXSP_RESTRICT block)
-{
+/* A block by rows, with its mass, to one by columns: that of the lower node's row, where corners p and q have the nodes
+ */
+static void gxsp_order_block(const uint16_t *GXSP_RESTRICT p, const uint16_t *GXSP_RESTRICT q,
+                             const float *GXSP_RESTRICT mass, gxsp_singles *GXSP_RESTRICT block) {
     int l;
     GXSP_EACH_LANE(l) {
-        const float b1 = block[1][l], b2 = block[2][l], b3 = block[3][l], b5 = block[5][l], b6 = block[6][l], b7 = block[7][l];
+        const float b1 = block[1][l], b2 = block[2][l], b3 = block[3][l], b5 = block[5][l], b6 = block[6][l],
+                    b7 = block[7][l];
         const int turned = p[l] > q[l];
         block[0][l] += mass[l], block[4][l] += mass[l], block[8][l] += mass[l];
         block[1][l] = turned ? b1 : b3, block[3][l] = turned ? b3 : b1;
@@ -5550,27 +5334,23 @@ static void gxsp_order_block(const uint16_t *GXSP_RESTRICT p, const uint16_t *GX
 }
 
 /* Half the row sums of a block's masses to its nodes */
-static void gxsp_own_mass(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_t b)
-{
+static void gxsp_own_mass(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_t b) {
     const gxsp_moments *moments = gxsp_block_moments(chunk, b);
     gxsp_singles of[4], half;
     int k, l;
-    for (k = 0; k < 4; ++k) {
-        if (moments)
-            gxsp_corner_moments(moments, k, of);
-        GXSP_EACH_LANE(l) half[l] = chunk->rest[b].weight[l] > 0 ? (moments ? 0.5f * of[0][l] : 2.5f) * chunk->tangents[b].mass[l] : 0;
-        for (l = 0; l < GXSP_LANES; ++l)
-            edges->mass[chunk->corners[b].node[k][l]] += half[l];
+    for (k = 0; k < 4; k++) {
+        if (moments) gxsp_corner_moments(moments, k, of);
+        GXSP_EACH_LANE(l)
+        half[l] = chunk->rest[b].weight[l] > 0 ? (moments ? 0.5f * of[0][l] : 2.5f) * chunk->tangents[b].mass[l] : 0;
+        for (l = 0; l < GXSP_LANES; l++) edges->mass[chunk->corners[b].node[k][l]] += half[l];
     }
 }
 
 /* The edges of a chunk, with lists by node, and all their numbers 0 */
-static void gxsp_edges_clear(gxsp_edges *edges, const gxsp_chunk *chunk)
-{
+static void gxsp_edges_clear(gxsp_edges *edges, const gxsp_chunk *chunk) {
     uint32_t b, e;
     gxsp_edges_begin(edges, chunk);
-    for (b = 0; b < chunk->block_count; ++b)
-        gxsp_block_edges(edges, chunk, b, edges->element[b]);
+    for (b = 0; b < chunk->block_count; b++) gxsp_block_edges(edges, chunk, b, edges->element[b]);
     memset(edges->first, 0, edges->nodes * sizeof *edges->first);
     memset(edges->joined, 0, edges->nodes);
     for (e = edges->count; --e > 0;) {
@@ -5584,24 +5364,22 @@ static void gxsp_edges_clear(gxsp_edges *edges, const gxsp_chunk *chunk)
     memset(edges->mass, 0, edges->nodes * sizeof *edges->mass);
 }
 
-/* Blocks of a chunk's edges: the Hessian of its elements, of i's row and j's column, with their mass; and the nodes' mass */
-static void gxsp_edge_blocks(gxsp_system *system, const gxsp_chunk *chunk)
-{
+/* Blocks of a chunk's edges: the Hessian of its elements, of i's row and j's column, with their mass; and the nodes'
+ * mass */
+static void gxsp_edge_blocks(gxsp_system *system, const gxsp_chunk *chunk) {
     gxsp_edges *edges = &system->edges;
     uint32_t b;
     int pair, k, at;
     gxsp_edges_clear(edges, chunk);
-    for (b = 0; b < chunk->block_count; ++b) {
+    for (b = 0; b < chunk->block_count; b++) {
         const gxsp_corners *corner = &chunk->corners[b];
         const gxsp_tangent *tangent = &chunk->tangents[b];
         gxsp_singles gamma[4][3];
-        for (k = 0; k < 4; ++k)
-            gxsp_block_corner(tangent, k, gamma[k]);
-        for (pair = at = 0; pair < 10; ++pair) {
+        for (k = 0; k < 4; k++) gxsp_block_corner(tangent, k, gamma[k]);
+        for (pair = at = 0; pair < 10; pair++) {
             const int p = gxsp_pair_corners[pair][0], q = gxsp_pair_corners[pair][1];
             gxsp_singles block[9], mass;
-            if (p == q)
-                continue;
+            if (p == q) continue;
             gxsp_block_couple(tangent, gxsp_block_general(chunk, b), gamma[p], gamma[q], block);
             gxsp_block_mass(tangent, gxsp_block_moments(chunk, b), p, q, mass);
             gxsp_order_block(corner->node[p], corner->node[q], mass, block);
@@ -5612,35 +5390,33 @@ static void gxsp_edge_blocks(gxsp_system *system, const gxsp_chunk *chunk)
 }
 
 /* Entries of level 1's matrix for the pairs of a chunk's coarse nodes */
-static void gxsp_pairs_find(gxsp_pairs *pairs, const gxsp_level *next)
-{
+static void gxsp_pairs_find(gxsp_pairs *pairs, const gxsp_level *next) {
     const uint32_t count = pairs->count;
     uint32_t i, k;
-    for (i = 1; i < count && count <= GXSP_CHUNK_PARENTS; ++i)
-        for (k = next->start[pairs->node[i]]; k < next->start[pairs->node[i] + 1]; ++k) {
-            const uint32_t column = next->column[k], j = pairs->stamp[column] == pairs->round ? pairs->local[column] : 0;
+    for (i = 1; i < count && count <= GXSP_CHUNK_PARENTS; i++)
+        for (k = next->start[pairs->node[i]]; k < next->start[pairs->node[i] + 1]; k++) {
+            const uint32_t column = next->column[k],
+                           j = pairs->stamp[column] == pairs->round ? pairs->local[column] : 0;
             pairs->entry[j * count + i] = 2 * k + 1;
             pairs->entry[i * count + j] = 2 * k;
         }
 }
 
 /* The entry of one pair: see gxsp_pairs */
-static uint32_t gxsp_pair_entry(const gxsp_pairs *pairs, const gxsp_level *next, uint32_t i, uint32_t j)
-{
+static uint32_t gxsp_pair_entry(const gxsp_pairs *pairs, const gxsp_level *next, uint32_t i, uint32_t j) {
     const uint32_t row = pairs->node[i], column = pairs->node[j];
-    if (pairs->count <= GXSP_CHUNK_PARENTS)
-        return pairs->entry[i * pairs->count + j];
+    if (pairs->count <= GXSP_CHUNK_PARENTS) return pairs->entry[i * pairs->count + j];
     return row <= column ? 2 * gxsp_find_entry(next, row, column) : 2 * gxsp_find_entry(next, column, row) + 1;
 }
 
-/* A block of node i's row and another's column, times the transfer, to edges->half. Returns how many numbers are touched, of which count
- * were. */
-static inline uint32_t gxsp_add_half(const gxsp_system *system, uint32_t i, uint32_t other, const float *weight, const float *block, uint32_t count)
-{
+/* A block of node i's row and another's column, times the transfer, to edges->half. Returns how many numbers are
+ * touched, of which count were. */
+static inline uint32_t gxsp_add_half(const gxsp_system *system, uint32_t i, uint32_t other, const float *weight,
+                                     const float *block, uint32_t count) {
     const gxsp_edges *edges = &system->edges;
     uint32_t *seen = system->pairs.seen;
     int q;
-    for (q = 0; q < 4; ++q) {
+    for (q = 0; q < 4; q++) {
         const uint16_t number = edges->parent[other][q];
         edges->touched[count] = number;
         count += seen[number] != i + 1;
@@ -5650,11 +5426,10 @@ static inline uint32_t gxsp_add_half(const gxsp_system *system, uint32_t i, uint
     return count;
 }
 
-/* Node i's row of S, where the Hessian is S + S^T, times the transfer, in edges->half by number; S has the edges to higher nodes and half
- * of what is on the diagonal. Rows of stiffness add up to 0, so that this half is half the mass less half of all the node's edges, turned
- * or not. Returns how many numbers are touched. */
-static uint32_t gxsp_half_row(gxsp_system *system, const uint32_t *copies, uint32_t i)
-{
+/* Node i's row of S, where the Hessian is S + S^T, times the transfer, in edges->half by number; S has the edges to
+ * higher nodes and half of what is on the diagonal. Rows of stiffness add up to 0, so that this half is half the mass
+ * less half of all the node's edges, turned or not. Returns how many numbers are touched. */
+static uint32_t gxsp_half_row(gxsp_system *system, const uint32_t *copies, uint32_t i) {
     const gxsp_level *fine = &system->levels[0];
     gxsp_edges *edges = &system->edges;
     uint32_t e, count = 0;
@@ -5669,10 +5444,9 @@ static uint32_t gxsp_half_row(gxsp_system *system, const uint32_t *copies, uint3
     return gxsp_add_half(system, i, i, fine->weight[copies[i]], edges->own[i], count);
 }
 
-/* A node's part of level 1's matrix; of a coarse node's own entry half, to which its turned half is missing. dirty: of entries in rows or
- * columns of dirty nodes only */
-static void gxsp_coarse_node(gxsp_system *system, const uint32_t *copies, uint32_t i, const uint8_t *dirty)
-{
+/* A node's part of level 1's matrix; of a coarse node's own entry half, to which its turned half is missing. dirty: of
+ * entries in rows or columns of dirty nodes only */
+static void gxsp_coarse_node(gxsp_system *system, const uint32_t *copies, uint32_t i, const uint8_t *dirty) {
     const float *weight = system->levels[0].weight[copies[i]];
     const gxsp_pairs *pairs = &system->pairs;
     gxsp_level *next = &system->levels[1];
@@ -5680,11 +5454,11 @@ static void gxsp_coarse_node(gxsp_system *system, const uint32_t *copies, uint32
     if (!system->edges.joined[i] && !(system->edges.mass[i] > 0)) /* elements without weight have no entries */
         return;
     count = gxsp_half_row(system, copies, i);
-    for (t = 0; t < count; ++t) {
+    for (t = 0; t < count; t++) {
         const uint32_t other = system->edges.touched[t];
         float *half = system->edges.half[other], turned[9];
         gxsp_transpose_block(half, turned);
-        for (p = 0; p < 4; ++p) {
+        for (p = 0; p < 4; p++) {
             const uint32_t number = system->edges.parent[i][p];
             if (number > 0 && (!dirty || dirty[pairs->node[number]] || dirty[pairs->node[other]])) {
                 const uint32_t entry = gxsp_pair_entry(pairs, next, number, other);
@@ -5695,22 +5469,20 @@ static void gxsp_coarse_node(gxsp_system *system, const uint32_t *copies, uint32
     }
 }
 
-/* Level 1's matrix from the last linearisation. dirty: only the rows and columns of dirty nodes, whose blocks are 0; NULL: all */
-static void gxsp_coarse_elements(gxsp_system *system, const uint8_t *dirty)
-{
+/* Level 1's matrix from the last linearisation. dirty: only the rows and columns of dirty nodes, whose blocks are 0;
+ * NULL: all */
+static void gxsp_coarse_elements(gxsp_system *system, const uint8_t *dirty) {
     gxsp_level *next = &system->levels[1];
     uint32_t c, i;
-    for (c = 0; c < system->chunk_count; ++c) {
+    for (c = 0; c < system->chunk_count; c++) {
         const gxsp_chunk *chunk = &system->chunks[c];
-        if (dirty && !gxsp_follows_dirty(system, chunk, dirty))
-            continue;
+        if (dirty && !gxsp_follows_dirty(system, chunk, dirty)) continue;
         gxsp_edge_blocks(system, chunk);
         gxsp_pairs_begin(system, chunk);
         gxsp_pairs_find(&system->pairs, next);
-        for (i = 0; i < chunk->node_count; ++i)
-            gxsp_coarse_node(system, system->nodes + chunk->first_node, i, dirty);
+        for (i = 0; i < chunk->node_count; i++) gxsp_coarse_node(system, system->nodes + chunk->first_node, i, dirty);
     }
-    for (i = 0; i < next->n; ++i)
+    for (i = 0; i < next->n; i++)
         if (!dirty || dirty[i]) {
             float *own = next->block + 9 * (size_t)next->start[i], turned[9];
             gxsp_transpose_block(own, turned);
@@ -5719,79 +5491,69 @@ static void gxsp_coarse_elements(gxsp_system *system, const uint8_t *dirty)
 }
 
 /* Inverse of a symmetric block, packed; 0 where single precision makes nothing of it. 0 if a number overflowed. */
-static int gxsp_invert_block(const float *block, float *inverse)
-{
+static int gxsp_invert_block(const float *block, float *inverse) {
     static const int packed[6] = {0, 3, 6, 4, 7, 8};
     double sum[6];
     int k;
-    for (k = 0; k < 6; ++k)
-        sum[k] = (double)block[packed[k]];
-    if (sum[0] + sum[3] + sum[5] < GXSP_TINY)
-        memset(sum, 0, sizeof sum);
+    for (k = 0; k < 6; k++) sum[k] = (double)block[packed[k]];
+    if (sum[0] + sum[3] + sum[5] < GXSP_TINY) memset(sum, 0, sizeof sum);
     gxsp_invert3(sum);
-    for (k = 0; k < 6; ++k) {
+    for (k = 0; k < 6; k++) {
         inverse[k] = (float)sum[k];
-        if (!gxsp_finite_single(inverse[k]))
-            return 0;
+        if (!gxsp_finite_single(inverse[k])) return 0;
     }
     return 1;
 }
 
-/* The diagonal raised by its share, of dirty nodes only unless dirty is NULL, and inverted. 0 if a number overflowed. */
-static int gxsp_invert_diagonal(gxsp_level *level, const uint8_t *dirty)
-{
+/* The diagonal raised by its share, of dirty nodes only unless dirty is NULL, and inverted. 0 if a number overflowed.
+ */
+static int gxsp_invert_diagonal(gxsp_level *level, const uint8_t *dirty) {
     uint32_t i;
-    for (i = 0; i < level->n; ++i) {
+    for (i = 0; i < level->n; i++) {
         float *block = level->block + 9 * (size_t)level->start[i];
-        if (!dirty || dirty[i])
-            gxsp_add_mass(GXSP_SHIFT * (block[0] + block[4] + block[8]), block);
-        if (level->inverse && !gxsp_invert_block(block, level->inverse + 6 * (size_t)i))
-            return 0;
+        if (!dirty || dirty[i]) gxsp_add_mass(GXSP_SHIFT * (block[0] + block[4] + block[8]), block);
+        if (level->inverse && !gxsp_invert_block(block, level->inverse + 6 * (size_t)i)) return 0;
     }
     return 1;
 }
 
-/* A node's row, its own block halved, times the transfer, in pairs->half by node of the next level. Returns how many are touched; which,
- * is in pairs->node. */
-static uint32_t gxsp_level_half_row(const gxsp_level *level, gxsp_pairs *pairs, uint32_t i)
-{
+/* A node's row, its own block halved, times the transfer, in pairs->half by node of the next level. Returns how many
+ * are touched; which, is in pairs->node. */
+static uint32_t gxsp_level_half_row(const gxsp_level *level, gxsp_pairs *pairs, uint32_t i) {
     uint32_t k, b, count = 0;
     int m;
-    for (k = level->start[i]; k < level->start[i + 1]; ++k)
-        for (b = 0; b < 4; ++b) {
+    for (k = level->start[i]; k < level->start[i + 1]; k++)
+        for (b = 0; b < 4; b++) {
             const uint32_t other = level->column[k], parent = level->parent[other][b];
-            const float *block = level->block + 9 * (size_t)k, weight = level->weight[other][b] * (other == i ? 0.5f : 1.0f);
-            if (parent == GXSP_NONE)
-                continue;
+            const float *block = level->block + 9 * (size_t)k,
+                        weight = level->weight[other][b] * (other == i ? 0.5f : 1.0f);
+            if (parent == GXSP_NONE) continue;
             if (pairs->seen[parent] == i + 1)
                 gxsp_add_scaled(weight, block, pairs->half[parent]);
             else {
                 pairs->seen[parent] = i + 1;
                 pairs->node[count++] = parent;
-                for (m = 0; m < 9; ++m)
-                    pairs->half[parent][m] = weight * block[m];
+                for (m = 0; m < 9; m++) pairs->half[parent][m] = weight * block[m];
             }
         }
     return count;
 }
 
 /* next's matrix = transfer^T A transfer = S + S^T, S of A's upper half */
-static void gxsp_coarsen(const gxsp_level *level, gxsp_level *next, gxsp_pairs *pairs)
-{
+static void gxsp_coarsen(const gxsp_level *level, gxsp_level *next, gxsp_pairs *pairs) {
     uint32_t i, a, t, count;
     memset(next->block, 0, 9 * (size_t)next->start[next->n] * sizeof *next->block);
     memset(pairs->seen, 0, next->n * sizeof *pairs->seen);
-    for (i = 0; i < level->n; ++i) {
+    for (i = 0; i < level->n; i++) {
         count = gxsp_level_half_row(level, pairs, i);
-        for (a = 0; a < 4; ++a)
-            for (t = 0; t < count && level->parent[i][a] != GXSP_NONE; ++t) {
+        for (a = 0; a < 4; a++)
+            for (t = 0; t < count && level->parent[i][a] != GXSP_NONE; t++) {
                 const uint32_t row = level->parent[i][a], column = pairs->node[t];
                 const float weight = level->weight[i][a], *half = pairs->half[column];
                 float turned[9];
                 if (row <= column)
                     gxsp_add_scaled(weight, half, next->block + 9 * (size_t)gxsp_find_entry(next, row, column));
-                if (row < column)
-                    continue;
+                if (row < column) continue;
                 gxsp_transpose_block(half, turned);
                 gxsp_add_scaled(weight, turned, next->block + 9 * (size_t)gxsp_find_entry(next, column, row));
             }
@@ -5799,24 +5561,23 @@ static void gxsp_coarsen(const gxsp_level *level, gxsp_level *next, gxsp_pairs *
 }
 
 /* A level's matrix into the lower half of the factor's envelope. place: n, scratch */
-static void gxsp_fill_factor(gxsp_factor *factor, const gxsp_level *level, uint32_t *place)
-{
+static void gxsp_fill_factor(gxsp_factor *factor, const gxsp_level *level, uint32_t *place) {
     uint32_t i, k, r, c;
     memset(factor->entry, 0, factor->entry_count * sizeof *factor->entry);
-    for (i = 0; i < level->n; ++i)
-        place[factor->order[i]] = i;
-    for (i = 0; i < level->n; ++i)
-        for (k = level->start[i]; k < level->start[i + 1]; ++k)
-            for (r = 0; r < 3; ++r)
-                for (c = 0; c < 3; ++c) {
+    for (i = 0; i < level->n; i++) place[factor->order[i]] = i;
+    for (i = 0; i < level->n; i++)
+        for (k = level->start[i]; k < level->start[i + 1]; k++)
+            for (r = 0; r < 3; r++)
+                for (c = 0; c < 3; c++) {
                     const uint32_t row = 3 * place[i] + r, column = 3 * place[level->column[k]] + c;
-                    gxsp_factor_row(factor, column <= row ? row : column)[column <= row ? column : row] = level->block[9 * (size_t)k + 3 * c + r];
+                    gxsp_factor_row(factor, column <= row ? row : column)[column <= row ? column : row] =
+                        level->block[9 * (size_t)k + 3 * c + r];
                 }
 }
 
 /* dots[3 r + c] = sum of row r of a, of three that are n apart, times row c of b, four sums side by side */
-static void gxsp_nine_dots(const double *GXSP_RESTRICT a, size_t n, const float *const *b, size_t count, double *GXSP_RESTRICT dots)
-{
+static void gxsp_nine_dots(const double *GXSP_RESTRICT a, size_t n, const float *const *b, size_t count,
+                           double *GXSP_RESTRICT dots) {
     size_t k = 0;
 #if defined(GXSP_SHUFFLES)
     gxsp_four_doubles s0 = {0, 0, 0, 0}, s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0, s8 = s0;
@@ -5830,14 +5591,18 @@ static void gxsp_nine_dots(const double *GXSP_RESTRICT a, size_t n, const float 
         s3 += q * x, s4 += q * y, s5 += q * z;
         s6 += r * x, s7 += r * y, s8 += r * z;
     }
-    dots[0] = (s0[0] + s0[2]) + (s0[1] + s0[3]), dots[1] = (s1[0] + s1[2]) + (s1[1] + s1[3]), dots[2] = (s2[0] + s2[2]) + (s2[1] + s2[3]);
-    dots[3] = (s3[0] + s3[2]) + (s3[1] + s3[3]), dots[4] = (s4[0] + s4[2]) + (s4[1] + s4[3]), dots[5] = (s5[0] + s5[2]) + (s5[1] + s5[3]);
-    dots[6] = (s6[0] + s6[2]) + (s6[1] + s6[3]), dots[7] = (s7[0] + s7[2]) + (s7[1] + s7[3]), dots[8] = (s8[0] + s8[2]) + (s8[1] + s8[3]);
+    dots[0] = (s0[0] + s0[2]) + (s0[1] + s0[3]), dots[1] = (s1[0] + s1[2]) + (s1[1] + s1[3]),
+    dots[2] = (s2[0] + s2[2]) + (s2[1] + s2[3]);
+    dots[3] = (s3[0] + s3[2]) + (s3[1] + s3[3]), dots[4] = (s4[0] + s4[2]) + (s4[1] + s4[3]),
+    dots[5] = (s5[0] + s5[2]) + (s5[1] + s5[3]);
+    dots[6] = (s6[0] + s6[2]) + (s6[1] + s6[3]), dots[7] = (s7[0] + s7[2]) + (s7[1] + s7[3]),
+    dots[8] = (s8[0] + s8[2]) + (s8[1] + s8[3]);
 #else
     memset(dots, 0, 9 * sizeof *dots);
 #endif
-    for (; k < count; ++k) {
-        const double x = (double)b[0][k], y = (double)b[1][k], z = (double)b[2][k], p = a[k], q = a[n + k], r = a[2 * n + k];
+    for (; k < count; k++) {
+        const double x = (double)b[0][k], y = (double)b[1][k], z = (double)b[2][k], p = a[k], q = a[n + k],
+                     r = a[2 * n + k];
         dots[0] += p * x, dots[1] += p * y, dots[2] += p * z;
         dots[3] += q * x, dots[4] += q * y, dots[5] += q * z;
         dots[6] += r * x, dots[7] += r * y, dots[8] += r * z;
@@ -5845,45 +5610,42 @@ static void gxsp_nine_dots(const double *GXSP_RESTRICT a, size_t n, const float 
 }
 
 /* Columns of the factor to the left of a node's own, in its three rows from row i on */
-static void gxsp_factor_left(gxsp_factor *factor, uint32_t i)
-{
+static void gxsp_factor_left(gxsp_factor *factor, uint32_t i) {
     const uint32_t first = factor->first[i / 3], n = factor->n;
     float *own[3];
     uint32_t j, m, r, c;
-    for (r = 0; r < 3; ++r) {
+    for (r = 0; r < 3; r++) {
         own[r] = gxsp_factor_row(factor, i + r);
-        for (j = first; j <= i + r; ++j)
-            factor->rows[r * (size_t)n + j] = (double)own[r][j];
+        for (j = first; j <= i + r; j++) factor->rows[r * (size_t)n + j] = (double)own[r][j];
     }
     for (j = first; j < i; j += 3) {
         const float *other[3], *from[3];
         double dots[9];
         m = factor->first[j / 3] > first ? factor->first[j / 3] : first;
-        for (c = 0; c < 3; ++c) {
+        for (c = 0; c < 3; c++) {
             other[c] = gxsp_factor_row(factor, j + c);
             from[c] = other[c] + m;
         }
         gxsp_nine_dots(factor->rows + m, n, from, j - m, dots);
-        for (r = 0; r < 3; ++r) {
+        for (r = 0; r < 3; r++) {
             double *sum = factor->rows + r * (size_t)n + j;
             sum[0] = (sum[0] - dots[3 * r]) * (double)other[0][j];
             sum[1] = (sum[1] - dots[3 * r + 1] - (double)other[1][j] * sum[0]) * (double)other[1][j + 1];
-            sum[2] = (sum[2] - dots[3 * r + 2] - (double)other[2][j] * sum[0] - (double)other[2][j + 1] * sum[1]) * (double)other[2][j + 2];
-            for (c = 0; c < 3; ++c)
-                own[r][j + c] = (float)sum[c];
+            sum[2] = (sum[2] - dots[3 * r + 2] - (double)other[2][j] * sum[0] - (double)other[2][j + 1] * sum[1]) *
+                     (double)other[2][j + 2];
+            for (c = 0; c < 3; c++) own[r][j + c] = (float)sum[c];
         }
     }
 }
 
 /* Columns of a node's own in row i + r, whose other columns are known. 0 if a number overflowed. */
-static int gxsp_factor_own(gxsp_factor *factor, uint32_t i, uint32_t r)
-{
+static int gxsp_factor_own(gxsp_factor *factor, uint32_t i, uint32_t r) {
     const uint32_t first = factor->first[i / 3];
     float *row = gxsp_factor_row(factor, i + r);
     double *sum = factor->rows + r * (size_t)factor->n;
     const double own = sum[i + r], least = 0.5 * (double)GXSP_SHIFT * own;
     uint32_t j;
-    for (j = i; j < i + r; ++j) {
+    for (j = i; j < i + r; j++) {
         const float *other = gxsp_factor_row(factor, j);
         sum[j] = (sum[j] - gxsp_long_dot(other + first, sum + first, j - first)) * (double)other[j];
         row[j] = (float)sum[j];
@@ -5893,101 +5655,97 @@ static int gxsp_factor_own(gxsp_factor *factor, uint32_t i, uint32_t r)
     return gxsp_finite_single(row[j]);
 }
 
-/* Cholesky of the last level, node by node. Without rounding no pivot is below GXSP_SHIFT of its diagonal. One below half of that is rounding
- * (of pieces that are small beside the lattice, whose coarse functions are nearly alike): its unknown is left out, for with any other pivot
- * later entries could grow without bound. Entries are of single precision, which leaves the product of the factors positive semi-definite;
- * the rows at work are of double. 0 if a number overflowed. */
-static int gxsp_factorise(gxsp_factor *factor, const gxsp_level *level, uint32_t *place)
-{
+/* Cholesky of the last level, node by node. Without rounding no pivot is below GXSP_SHIFT of its diagonal. One below
+ * half of that is rounding (of pieces that are small beside the lattice, whose coarse functions are nearly alike): its
+ * unknown is left out, for with any other pivot later entries could grow without bound. Entries are of single
+ * precision, which leaves the product of the factors positive semi-definite; the rows at work are of double. 0 if a
+ * number overflowed. */
+static int gxsp_factorise(gxsp_factor *factor, const gxsp_level *level, uint32_t *place) {
     uint32_t i, r;
     gxsp_fill_factor(factor, level, place);
     for (i = 0; i < factor->n; i += 3) {
         gxsp_factor_left(factor, i);
-        for (r = 0; r < 3; ++r)
-            if (!gxsp_factor_own(factor, i, r))
-                return 0;
+        for (r = 0; r < 3; r++)
+            if (!gxsp_factor_own(factor, i, r)) return 0;
     }
     return 1;
 }
 
 /* Lumped masses between coarse functions */
-static void gxsp_coarse_lumped(gxsp_system *system, double rate)
-{
+static void gxsp_coarse_lumped(gxsp_system *system, double rate) {
     const gxsp_level *fine = &system->levels[0];
     gxsp_level *next = &system->levels[1];
     uint32_t i;
     int p, q;
-    for (i = 0; i < fine->n; ++i)
-        for (p = 0; p < 4; ++p)
-            for (q = 0; q < 4; ++q)
+    for (i = 0; i < fine->n; i++)
+        for (p = 0; p < 4; p++)
+            for (q = 0; q < 4; q++)
                 if (fine->parent[i][p] <= fine->parent[i][q] && fine->parent[i][q] != GXSP_NONE)
                     gxsp_add_mass((float)(rate * system->lumped[i]) * fine->weight[i][p] * fine->weight[i][q],
-                                  next->block + 9 * (size_t)gxsp_find_entry(next, fine->parent[i][p], fine->parent[i][q]));
+                                  next->block +
+                                      9 * (size_t)gxsp_find_entry(next, fine->parent[i][p], fine->parent[i][q]));
 }
 
 /* Springs and contact between coarse functions, where level 1's matrix has an entry for them */
-static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term)
-{
+static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term) {
     static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
     const gxsp_level *fine = &system->levels[0];
     gxsp_level *next = &system->levels[1];
     int i, j, p, q, k;
-    for (i = 0; i < 16; ++i)
-        for (j = 0; j < 16; ++j) {
-            const uint32_t a = term->copy[i / 4], b = term->copy[j / 4], row = fine->parent[a][i % 4], column = fine->parent[b][j % 4];
+    for (i = 0; i < 16; i++)
+        for (j = 0; j < 16; j++) {
+            const uint32_t a = term->copy[i / 4], b = term->copy[j / 4], row = fine->parent[a][i % 4],
+                           column = fine->parent[b][j % 4];
             uint32_t entry;
             p = i % 4, q = j % 4;
-            if (row > column || column == GXSP_NONE)
-                continue;
+            if (row > column || column == GXSP_NONE) continue;
             entry = gxsp_find_entry(next, row, column);
-            if (next->column[entry] != column)
-                continue;
-            for (k = 0; k < 9; ++k)
-                next->block[9 * (size_t)entry + (size_t)k] +=
-                    term->weight[i / 4] * term->weight[j / 4] * fine->weight[a][p] * fine->weight[b][q] * term->hessian[full[k]];
+            if (next->column[entry] != column) continue;
+            for (k = 0; k < 9; k++)
+                next->block[9 * (size_t)entry + (size_t)k] += term->weight[i / 4] * term->weight[j / 4] *
+                                                              fine->weight[a][p] * fine->weight[b][q] *
+                                                              term->hessian[full[k]];
         }
 }
 
 /* Adds a corner pair's block, on and above the diagonal, where corners follow others. same: both are one corner */
-static void gxsp_assemble_following(gxsp_system *system, uint32_t p, uint32_t q, int same, const float *block)
-{
+static void gxsp_assemble_following(gxsp_system *system, uint32_t p, uint32_t q, int same, const float *block) {
     gxsp_level *fine = &system->levels[0];
     uint32_t a[4], b[4];
     float wa[4], wb[4], turned[9];
     const int as = gxsp_corner_masters(system, p, a, wa), bs = gxsp_corner_masters(system, q, b, wb);
     int i, j;
     gxsp_transpose_block(block, turned);
-    for (i = 0; i < as; ++i)
-        for (j = 0; j < bs; ++j) {
+    for (i = 0; i < as; i++)
+        for (j = 0; j < bs; j++) {
             const uint32_t low = a[i] < b[j] ? a[i] : b[j], high = a[i] < b[j] ? b[j] : a[i];
             float *to = fine->block + 9 * (size_t)gxsp_find_entry(fine, low, high);
             if (same && a[i] > b[j]) /* its mirror comes by itself */
                 continue;
             gxsp_add_scaled(wa[i] * wb[j], a[i] <= b[j] ? block : turned, to);
-            if (a[i] == b[j] && !same)
-                gxsp_add_scaled(wa[i] * wb[j], turned, to);
+            if (a[i] == b[j] && !same) gxsp_add_scaled(wa[i] * wb[j], turned, to);
         }
 }
 
 /* A block's elements, of which each lane's corner pair adds to one entry, or to those of its masters */
-static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, uint32_t b)
-{
+static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, uint32_t b) {
     gxsp_level *fine = &system->levels[0];
     const gxsp_corners *corner = &chunk->corners[b];
     const gxsp_tangent *tangent = &chunk->tangents[b];
     gxsp_singles gamma[4][3];
     int pair, l;
-    for (l = 0; l < 4; ++l)
-        gxsp_block_corner(tangent, l, gamma[l]);
-    for (pair = 0; pair < 10; ++pair) {
+    for (l = 0; l < 4; l++) gxsp_block_corner(tangent, l, gamma[l]);
+    for (pair = 0; pair < 10; pair++) {
         const int p = gxsp_pair_corners[pair][0], q = gxsp_pair_corners[pair][1];
         gxsp_singles block[9], masses;
         gxsp_block_couple(tangent, gxsp_block_general(chunk, b), gamma[p], gamma[q], block);
         gxsp_block_mass(tangent, gxsp_block_moments(chunk, b), p, q, masses);
-        for (l = 0; l < GXSP_LANES; ++l) {
-            const uint32_t *copies = system->nodes + chunk->first_node, entry = system->fine[chunk->first_block + b].entry[pair][l];
+        for (l = 0; l < GXSP_LANES; l++) {
+            const uint32_t *copies = system->nodes + chunk->first_node,
+                           entry = system->fine[chunk->first_block + b].entry[pair][l];
             const uint32_t i = copies[corner->node[p][l]], j = copies[corner->node[q][l]];
-            float own[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0}, *to = entry == GXSP_NONE ? own : fine->block + 9 * (size_t)entry;
+            float own[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0},
+                  *to = entry == GXSP_NONE ? own : fine->block + 9 * (size_t)entry;
             gxsp_add_lane(block, l, entry != GXSP_NONE && i > j, masses[l], to);
             if (entry == GXSP_NONE)
                 gxsp_assemble_following(system, i, j, p == q, own);
@@ -5998,102 +5756,94 @@ static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, ui
 }
 
 /* Adds a spring or contact, on and above the diagonal, if the matrix has entries for all of it. Has it? */
-static int gxsp_assemble_term(gxsp_system *system, const gxsp_term *term)
-{
+static int gxsp_assemble_term(gxsp_system *system, const gxsp_term *term) {
     static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
     gxsp_level *fine = &system->levels[0];
     uint32_t a[16], i, j, count = 0, entry;
     float w[16];
     int k, adds;
-    for (k = 0; k < 4; ++k)
+    for (k = 0; k < 4; k++)
         if (term->weight[k] * term->weight[k] > 0) {
             const uint32_t first = count;
-            for (count += (uint32_t)gxsp_corner_masters(system, term->copy[k], a + count, w + count), i = first; i < count; ++i)
+            for (count += (uint32_t)gxsp_corner_masters(system, term->copy[k], a + count, w + count), i = first;
+                 i < count; i++)
                 w[i] *= term->weight[k];
         }
-    for (adds = 0; adds < 2; ++adds)
-        for (i = 0; i < count; ++i)
-            for (j = 0; j < count; ++j) {
-                if (a[i] > a[j])
-                    continue;
+    for (adds = 0; adds < 2; adds++)
+        for (i = 0; i < count; i++)
+            for (j = 0; j < count; j++) {
+                if (a[i] > a[j]) continue;
                 entry = gxsp_find_entry(fine, a[i], a[j]);
-                if (fine->column[entry] != a[j])
-                    return 0;
-                for (k = 0; k < 9 && adds; ++k)
+                if (fine->column[entry] != a[j]) return 0;
+                for (k = 0; k < 9 && adds; k++)
                     fine->block[9 * (size_t)entry + (size_t)k] += w[i] * w[j] * term->hessian[full[k]];
             }
     return 1;
 }
 
 /* The assembled matrix from the last linearisation */
-static void gxsp_assemble(gxsp_system *system, double rate)
-{
+static void gxsp_assemble(gxsp_system *system, double rate) {
     gxsp_level *fine = &system->levels[0];
     uint32_t c, b, i;
     size_t t;
     memset(fine->block, 0, 9 * (size_t)fine->start[fine->n] * sizeof(float));
-    for (c = 0; c < system->chunk_count; ++c)
-        for (b = 0; b < system->chunks[c].block_count && !system->chunk_still[c]; ++b)
+    for (c = 0; c < system->chunk_count; c++)
+        for (b = 0; b < system->chunks[c].block_count && !system->chunk_still[c]; b++)
             gxsp_assemble_block(system, &system->chunks[c], b);
-    for (i = 0; i < fine->n && system->lumped_mass; ++i) {
+    for (i = 0; i < fine->n && system->lumped_mass; i++) {
         uint32_t a[4], p, q;
         float w[4];
         const uint32_t count = (uint32_t)gxsp_corner_masters(system, i, a, w);
-        for (p = 0; p < count; ++p)
-            for (q = 0; q < count; ++q)
+        for (p = 0; p < count; p++)
+            for (q = 0; q < count; q++)
                 if (a[p] <= a[q])
                     gxsp_add_mass(w[p] * w[q] * (float)(rate * system->lumped[i]),
                                   fine->block + 9 * (size_t)gxsp_find_entry(fine, a[p], a[q]));
     }
-    for (t = 0; t < system->lasting->count; ++t)
+    for (t = 0; t < system->lasting->count; t++)
         system->lasting->term[t].assembled = gxsp_assemble_term(system, &system->lasting->term[t]);
 }
 
-/* Inverse diagonal blocks of the assembled matrix with springs and contact, for block Gauss-Seidel. 0 where nothing moves. 0 if a number
- * overflowed. */
-static int gxsp_invert_fine(gxsp_system *system)
-{
+/* Inverse diagonal blocks of the assembled matrix with springs and contact, for block Gauss-Seidel. 0 where nothing
+ * moves. 0 if a number overflowed. */
+static int gxsp_invert_fine(gxsp_system *system) {
     static const int packed[6] = {0, 3, 6, 4, 7, 8}, full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
     gxsp_level *fine = &system->levels[0];
     uint32_t i, k;
     size_t t;
     int m;
-    for (i = 0; i < fine->n; ++i)
-        for (m = 0; m < 6; ++m)
+    for (i = 0; i < fine->n; i++)
+        for (m = 0; m < 6; m++)
             fine->inverse[6 * (size_t)i + (size_t)m] = fine->block[9 * (size_t)fine->start[i] + (size_t)packed[m]];
-    for (t = 0; t < system->lasting->count; ++t)
-        for (k = 0; k < 4 && !system->lasting->term[t].assembled; ++k) {
+    for (t = 0; t < system->lasting->count; t++)
+        for (k = 0; k < 4 && !system->lasting->term[t].assembled; k++) {
             const gxsp_term *term = &system->lasting->term[t];
-            for (m = 0; m < 6; ++m)
-                fine->inverse[6 * (size_t)term->copy[k] + (size_t)m] += term->weight[k] * term->weight[k] * term->hessian[m];
+            for (m = 0; m < 6; m++)
+                fine->inverse[6 * (size_t)term->copy[k] + (size_t)m] +=
+                    term->weight[k] * term->weight[k] * term->hessian[m];
         }
-    for (i = 0; i < fine->n; ++i) {
+    for (i = 0; i < fine->n; i++) {
         float *inverse = fine->inverse + 6 * (size_t)i, block[9];
-        for (m = 0; m < 9; ++m)
-            block[m] = system->still[i] || gxsp_follows(system, i) ? 0 : inverse[full[m]];
-        if (!gxsp_invert_block(block, inverse))
-            return 0;
+        for (m = 0; m < 9; m++) block[m] = system->still[i] || gxsp_follows(system, i) ? 0 : inverse[full[m]];
+        if (!gxsp_invert_block(block, inverse)) return 0;
     }
     return 1;
 }
 
-/* What follows from level 1's matrix. dirty: nodes of level 1 whose numbers are new; NULL: all are. 0 if a number overflowed. */
-static int gxsp_lower_numbers(gxsp_system *system, const uint8_t *dirty)
-{
+/* What follows from level 1's matrix. dirty: nodes of level 1 whose numbers are new; NULL: all are. 0 if a number
+ * overflowed. */
+static int gxsp_lower_numbers(gxsp_system *system, const uint8_t *dirty) {
     uint32_t at;
-    for (at = 1; at < system->level_count; ++at) {
+    for (at = 1; at < system->level_count; at++) {
         gxsp_level *level = &system->levels[at];
-        if (!gxsp_invert_diagonal(level, at == 1 ? dirty : NULL))
-            return 0;
-        if (at + 1 < system->level_count)
-            gxsp_coarsen(level, level + 1, &system->pairs);
+        if (!gxsp_invert_diagonal(level, at == 1 ? dirty : NULL)) return 0;
+        if (at + 1 < system->level_count) gxsp_coarsen(level, level + 1, &system->pairs);
     }
     return gxsp_factorise(&system->factor, &system->levels[system->level_count - 1], system->pairs.local);
 }
 
 /* Shared memory while coarse numbers are made */
-static void gxsp_lend(gxsp_system *system)
-{
+static void gxsp_lend(gxsp_system *system) {
     gxsp_space space = {NULL, 0};
     space.memory = system->shared;
     gxsp_numbers_carve(system, &space);
@@ -6106,8 +5856,7 @@ static void gxsp_lend(gxsp_system *system)
 }
 
 /* The matrices of all coarse levels from the last linearisation. 0 if a number overflowed. */
-static int gxsp_coarse_numbers(gxsp_system *system, double rate)
-{
+static int gxsp_coarse_numbers(gxsp_system *system, double rate) {
     gxsp_level *fine = &system->levels[0];
     int finite;
     size_t t;
@@ -6117,58 +5866,53 @@ static int gxsp_coarse_numbers(gxsp_system *system, double rate)
     else {
         memset(fine[1].block, 0, 9 * (size_t)fine[1].start[fine[1].n] * sizeof(float));
         gxsp_coarse_elements(system, NULL);
-        if (system->lumped_mass)
-            gxsp_coarse_lumped(system, system->scale * rate);
+        if (system->lumped_mass) gxsp_coarse_lumped(system, system->scale * rate);
     }
-    for (t = 0; t < system->lasting->count; ++t)
-        if (!system->lasting->term[t].assembled)
-            gxsp_coarse_term(system, &system->lasting->term[t]);
+    for (t = 0; t < system->lasting->count; t++)
+        if (!system->lasting->term[t].assembled) gxsp_coarse_term(system, &system->lasting->term[t]);
     finite = gxsp_lower_numbers(system, NULL);
     gxsp_give_back(system);
     return finite;
 }
 
-/* Largest eigenvalue of D^-1 (K + rate M) on what is not still, by the power method from a start that favours none; 0 if nothing moves */
-static double gxsp_largest_eigenvalue(gxsp_system *system, double rate)
-{
+/* Largest eigenvalue of D^-1 (K + rate M) on what is not still, by the power method from a start that favours none; 0
+ * if nothing moves */
+static double gxsp_largest_eigenvalue(gxsp_system *system, double rate) {
     gxsp_vector4 *x = system->search, *y = system->product;
     uint32_t random = 1;
     size_t i;
     int c, round;
     double largest = 0;
-    for (i = 0; i < system->n; ++i)
-        for (c = 0; c < 3; ++c) {
+    for (i = 0; i < system->n; i++)
+        for (c = 0; c < 3; c++) {
             random = random * 1664525u + 1013904223u;
             x[i][c] = system->still[i] ? 0 : (float)(random >> 8) / 8388608.0f - 1;
         }
-    for (round = 0; round < 6; ++round) {
+    for (round = 0; round < 6; round++) {
         double before = 0, after = 0;
         float scale;
         gxsp_product(system, rate, x, y);
-        for (i = 0; i < system->n; ++i) {
+        for (i = 0; i < system->n; i++) {
             float z[3];
             gxsp_apply_packed(system->diagonal + 6 * i, y[i], z);
-            for (c = 0; c < 3; ++c) {
+            for (c = 0; c < 3; c++) {
                 before += (double)y[i][c] * (double)x[i][c];
                 after += (double)y[i][c] * (double)z[c];
                 x[i][c] = z[c];
             }
         }
-        if (!(before > 0) || !(after > 0))
-            break;
+        if (!(before > 0) || !(after > 0)) break;
         largest = after / before;
         scale = (float)(1 / sqrt(after));
-        for (i = 0; i < system->n; ++i)
-            for (c = 0; c < 3; ++c)
-                x[i][c] *= scale;
+        for (i = 0; i < system->n; i++)
+            for (c = 0; c < 3; c++) x[i][c] *= scale;
     }
     return largest;
 }
 
-/* The smoother's step length: 3/2 of the inverse of the spectrum's end, which conjugate gradients like better than the 4/3 that damp its
- * upper half most. An eigenvalue a third larger would still leave the cycle definite. */
-static float gxsp_omega(const gxsp_system *system, double largest)
-{
+/* The smoother's step length: 3/2 of the inverse of the spectrum's end, which conjugate gradients like better than the
+ * 4/3 that damp its upper half most. An eigenvalue a third larger would still leave the cycle definite. */
+static float gxsp_omega(const gxsp_system *system, double largest) {
     largest = largest > 0 ? 1.05 * largest : 4;
     if (largest > 4 && system->follower_count == 0) /* no element's own D^-1 K exceeds 4 */
         largest = 4;
@@ -6176,87 +5920,83 @@ static float gxsp_omega(const gxsp_system *system, double largest)
 }
 
 /* Which copies and chunks the pieces' states leave alone */
-static void gxsp_mark_still(gxsp_system *system)
-{
+static void gxsp_mark_still(gxsp_system *system) {
     uint32_t c, k;
     size_t i;
-    for (i = 0; i < system->n; ++i)
+    for (i = 0; i < system->n; i++)
         system->still[i] = system->fixed[i] || (system->pieces[system->piece[i]].state & GXSP_ASLEEP);
-    for (c = 0; c < system->chunk_count; ++c) {
+    for (c = 0; c < system->chunk_count; c++) {
         system->chunk_still[c] = 1;
-        for (k = 0; k < system->chunks[c].node_count; ++k)
+        for (k = 0; k < system->chunks[c].node_count; k++)
             system->chunk_still[c] &= system->still[system->nodes[system->chunks[c].first_node + k]];
     }
 }
 
-/* Shortens the step length where the cycle might become indefinite where updates have changed the operator: elsewhere the largest
- * eigenvalue is no larger than it was. */
-static void gxsp_renew_omega(gxsp_system *system, double rate)
-{
+/* Shortens the step length where the cycle might become indefinite where updates have changed the operator: elsewhere
+ * the largest eigenvalue is no larger than it was. */
+static void gxsp_renew_omega(gxsp_system *system, double rate) {
     double largest;
     uint32_t c, k;
     size_t i;
-    for (i = 0; i < system->n; ++i)
-        system->still[i] |= !system->renewed[i];
-    for (c = 0; c < system->chunk_count; ++c) {
+    for (i = 0; i < system->n; i++) system->still[i] |= !system->renewed[i];
+    for (c = 0; c < system->chunk_count; c++) {
         uint8_t still = 1;
-        for (k = 0; k < system->chunks[c].node_count; ++k)
+        for (k = 0; k < system->chunks[c].node_count; k++)
             still &= system->still[system->nodes[system->chunks[c].first_node + k]];
         system->chunk_still[c] |= still;
     }
     largest = gxsp_largest_eigenvalue(system, rate);
-    if (GXSP_OMEGA < (double)system->omega_found * largest)
-        system->omega_found = (float)(GXSP_OMEGA / largest);
+    if (GXSP_OMEGA < (double)system->omega_found * largest) system->omega_found = (float)(GXSP_OMEGA / largest);
     gxsp_mark_still(system);
 }
 
 /* The step length for the solve to come */
-static void gxsp_choose_omega(gxsp_system *system, double rate)
-{
+static void gxsp_choose_omega(gxsp_system *system, double rate) {
     if (!(system->omega > 0))
         system->omega_found = gxsp_omega(system, gxsp_largest_eigenvalue(system, rate));
     else if (system->omega_renewed)
         gxsp_renew_omega(system, rate);
     system->omega_renewed = 0;
     system->omega_rest -= system->omega_rest > 0;
-    if (system->omega_rest == 0)
-        system->omega = system->omega_found;
+    if (system->omega_rest == 0) system->omega = system->omega_found;
 }
 
-/* >>update: what a cut has changed goes into the chunks and levels that there are. Elements are replaced where they were, further ones go
- * to chunks at the end; of chunks and coarse nodes of which nothing has changed only numbers are copied. */
+/* >>update: what a cut has changed goes into the chunks and levels that there are. Elements are replaced where they
+ * were, further ones go to chunks at the end; of chunks and coarse nodes of which nothing has changed only numbers are
+ * copied. */
 
 /* A lane whose element goes */
 typedef struct gxsp_hole {
     uint32_t chunk, lane, group;
-    uint32_t element;       /* of the change: what takes the lane; GXSP_NONE: nothing does */
+    uint32_t element; /* of the change: what takes the lane; GXSP_NONE: nothing does */
 } gxsp_hole;
 
 typedef struct gxsp_renewal {
     gxsp_system *system;
     gxsp_pool *scratch;
     const gxs_change *change;
-    size_t before;          /* copies so far */
-    uint32_t *successor;    /* before: what a copy is from now on; GXSP_NONE: it is no more */
-    uint8_t *touched;       /* change->copy_count: an element around the copy has gone or come */
-    gxsp_hole *holes;       /* hole_count; then, as holes of new chunks, what is placed elsewhere */
-    uint32_t hole_count, placed_count; /* placed: of elements that took no hole */
+    size_t before;                           /* copies so far */
+    uint32_t *successor;                     /* before: what a copy is from now on; GXSP_NONE: it is no more */
+    uint8_t *touched;                        /* change->copy_count: an element around the copy has gone or come */
+    gxsp_hole *holes;                        /* hole_count; then, as holes of new chunks, what is placed elsewhere */
+    uint32_t hole_count, placed_count;       /* placed: of elements that took no hole */
     uint32_t *left, *left_class, left_count; /* elements of the change that take no hole, and what they are alike in */
-    uint8_t *dirty;         /* by node of level 1 so far: some that follow it are touched */
-    uint8_t *alike;         /* change->copy_count: the copy follows what it followed */
+    uint8_t *dirty;                          /* by node of level 1 so far: some that follow it are touched */
+    uint8_t *alike;                          /* change->copy_count: the copy follows what it followed */
 } gxsp_renewal;
 
 /* What corner k's copy has of the mass of a lane's element: its row sum */
-static double gxsp_lane_mass(const gxsp_chunk *chunk, uint32_t lane, int k)
-{
+static double gxsp_lane_mass(const gxsp_chunk *chunk, uint32_t lane, int k) {
     const size_t b = lane / GXSP_LANES, l = lane % GXSP_LANES;
     const gxsp_moments *of = gxsp_block_moments(chunk, (uint32_t)b);
-    return chunk->rest[b].mass[l] * (!of ? 5 : (double)(k > 0 ? of->centre[k - 1][l] : 1 - (of->centre[0][l] + of->centre[1][l] + of->centre[2][l])));
+    return chunk->rest[b].mass[l] *
+           (!of ? 5
+                : (double)(k > 0 ? of->centre[k - 1][l]
+                                 : 1 - (of->centre[0][l] + of->centre[1][l] + of->centre[2][l])));
 }
 
 /* Does the element of a lane give corner k stiffness or mass? */
-static int gxsp_lane_supports(const gxsp_chunk *chunk, uint32_t lane, int k)
-{
+static int gxsp_lane_supports(const gxsp_chunk *chunk, uint32_t lane, int k) {
     return chunk->rest[lane / GXSP_LANES].weight[lane % GXSP_LANES] > 0 || gxsp_lane_mass(chunk, lane, k) > 0;
 }
 
@@ -6267,11 +6007,9 @@ typedef struct gxsp_filter {
     uint64_t bit[GXSP_FILTER / 64];
 } gxsp_filter;
 
-static int gxsp_changes(const gxs_change *change, const gxsp_filter *filter, uint32_t group)
-{
+static int gxsp_changes(const gxs_change *change, const gxsp_filter *filter, uint32_t group) {
     size_t low = 0, high = change->group_count;
-    if (!(filter->bit[group % GXSP_FILTER / 64] >> group % 64 & 1))
-        return 0;
+    if (!(filter->bit[group % GXSP_FILTER / 64] >> group % 64 & 1)) return 0;
     while (high - low > 1) {
         const size_t middle = low + (high - low) / 2;
         if (change->groups[middle] <= group)
@@ -6283,8 +6021,7 @@ static int gxsp_changes(const gxs_change *change, const gxsp_filter *filter, uin
 }
 
 /* All lanes of the groups that change, in the order of groups, then of lanes */
-static void gxsp_find_holes(gxsp_renewal *update)
-{
+static void gxsp_find_holes(gxsp_renewal *update) {
     const gxsp_system *system = update->system;
     gxsp_hole *found = NULL;
     gxsp_sorted *sorted, *other;
@@ -6292,31 +6029,26 @@ static void gxsp_find_holes(gxsp_renewal *update)
     uint32_t c, lane, pass, count = 0;
     size_t i;
     memset(&filter, 0, sizeof filter);
-    for (i = 0; i < update->change->group_count; ++i)
+    for (i = 0; i < update->change->group_count; i++)
         filter.bit[update->change->groups[i] % GXSP_FILTER / 64] |= (uint64_t)1 << update->change->groups[i] % 64;
-    for (pass = 0; pass < 2 && update->change->group_count > 0; ++pass) { /* count, then list */
-        if (pass == 1 && !(found = (gxsp_hole *)gxsp_take(update->scratch, count, sizeof *found)))
-            return;
-        for (c = 0, count = 0; c < system->chunk_count; ++c)
-            for (lane = 0; lane < system->chunks[c].block_count * GXSP_LANES; ++lane) {
+    for (pass = 0; pass < 2 && update->change->group_count > 0; pass++) { /* count, then list */
+        if (pass == 1 && !(found = (gxsp_hole *)gxsp_take(update->scratch, count, sizeof *found))) return;
+        for (c = 0, count = 0; c < system->chunk_count; c++)
+            for (lane = 0; lane < system->chunks[c].block_count * GXSP_LANES; lane++) {
                 const uint32_t group = system->chunks[c].groups[lane];
-                if (group == GXSP_NONE || !gxsp_changes(update->change, &filter, group))
-                    continue;
-                if (found)
-                    found[count].chunk = c, found[count].lane = lane, found[count].group = group;
-                ++count;
+                if (group == GXSP_NONE || !gxsp_changes(update->change, &filter, group)) continue;
+                if (found) found[count].chunk = c, found[count].lane = lane, found[count].group = group;
+                count++;
             }
     }
     sorted = (gxsp_sorted *)gxsp_take(update->scratch, count, sizeof *sorted);
     other = (gxsp_sorted *)gxsp_take(update->scratch, count, sizeof *other);
-    update->holes = (gxsp_hole *)gxsp_take(update->scratch, count + update->change->element_count, sizeof *update->holes);
-    if (update->scratch->failed)
-        return;
-    for (i = 0; i < count; ++i)
-        sorted[i].place = found[i].group, sorted[i].index = (uint32_t)i;
-    if (count > 0)
-        sorted = gxsp_sort(sorted, other, count);
-    for (i = 0; i < count; ++i) {
+    update->holes =
+        (gxsp_hole *)gxsp_take(update->scratch, count + update->change->element_count, sizeof *update->holes);
+    if (update->scratch->failed) return;
+    for (i = 0; i < count; i++) sorted[i].place = found[i].group, sorted[i].index = (uint32_t)i;
+    if (count > 0) sorted = gxsp_sort(sorted, other, count);
+    for (i = 0; i < count; i++) {
         update->holes[i] = found[sorted[i].index];
         update->holes[i].element = GXSP_NONE;
     }
@@ -6324,26 +6056,25 @@ static void gxsp_find_holes(gxsp_renewal *update)
 }
 
 /* Before copies are moved */
-static uint32_t gxsp_class_of(const gxsp_renewal *update, const gxs_element *element)
-{
+static uint32_t gxsp_class_of(const gxsp_renewal *update, const gxs_element *element) {
     const gxsp_system *system = update->system;
-    return gxsp_class(system->materials[element->material].kind, element, 0, system->positions, update->change->origins);
+    return gxsp_class(system->materials[element->material].kind, element, 0, system->positions,
+                      update->change->origins);
 }
 
 /* Elements take the lanes of their group as far as these are of their class. */
-static void gxsp_match_holes(gxsp_renewal *update)
-{
+static void gxsp_match_holes(gxsp_renewal *update) {
     const gxs_change *change = update->change;
     uint32_t first = 0, e, i;
     update->left = (uint32_t *)gxsp_take(update->scratch, change->element_count, sizeof(uint32_t));
     update->left_class = (uint32_t *)gxsp_take(update->scratch, change->element_count, sizeof(uint32_t));
-    for (e = 0; e < change->element_count && !update->scratch->failed; ++e) {
+    for (e = 0; e < change->element_count && !update->scratch->failed; e++) {
         const gxs_element *element = &change->elements[e];
         const uint32_t class_index = gxsp_class_of(update, element);
-        while (first < update->hole_count && update->holes[first].group < element->group)
-            ++first;
-        for (i = first; i < update->hole_count && update->holes[i].group == element->group; ++i)
-            if (update->holes[i].element == GXSP_NONE && update->system->chunks[update->holes[i].chunk].class_index == class_index)
+        while (first < update->hole_count && update->holes[first].group < element->group) first++;
+        for (i = first; i < update->hole_count && update->holes[i].group == element->group; i++)
+            if (update->holes[i].element == GXSP_NONE &&
+                update->system->chunks[update->holes[i].chunk].class_index == class_index)
                 break;
         if (i < update->hole_count && update->holes[i].group == element->group)
             update->holes[i].element = e;
@@ -6357,47 +6088,42 @@ static void gxsp_match_holes(gxsp_renewal *update)
 /* --- chunks --- */
 
 /* Copies around what goes, and the coarse nodes that these follow */
-static void gxsp_touch_removed(gxsp_renewal *update)
-{
+static void gxsp_touch_removed(gxsp_renewal *update) {
     const gxsp_system *system = update->system;
     uint32_t i, copies[4];
     int k, q;
-    for (i = 0; i < update->hole_count; ++i) {
+    for (i = 0; i < update->hole_count; i++) {
         const gxsp_hole *hole = &update->holes[i];
-        gxsp_lane_copies(system, &system->chunks[hole->chunk], hole->lane / GXSP_LANES, (int)(hole->lane % GXSP_LANES), copies);
-        for (k = 0; k < 4; ++k) {
-            if (update->successor[copies[k]] != GXSP_NONE)
-                update->touched[update->successor[copies[k]]] = 1;
-            for (q = 0; q < 4 && system->level_count > 0; ++q)
+        gxsp_lane_copies(system, &system->chunks[hole->chunk], hole->lane / GXSP_LANES, (int)(hole->lane % GXSP_LANES),
+                         copies);
+        for (k = 0; k < 4; k++) {
+            if (update->successor[copies[k]] != GXSP_NONE) update->touched[update->successor[copies[k]]] = 1;
+            for (q = 0; q < 4 && system->level_count > 0; q++)
                 if (system->levels[0].parent[copies[k]][q] != GXSP_NONE)
                     update->dirty[system->levels[0].parent[copies[k]][q]] = 1;
         }
     }
 }
 
-static void gxsp_touch_added(const gxsp_renewal *update)
-{
+static void gxsp_touch_added(const gxsp_renewal *update) {
     size_t e;
     int k;
-    for (e = 0; e < update->change->element_count; ++e)
-        for (k = 0; k < 4; ++k)
-            update->touched[update->change->elements[e].copy[k]] = 1;
+    for (e = 0; e < update->change->element_count; e++)
+        for (k = 0; k < 4; k++) update->touched[update->change->elements[e].copy[k]] = 1;
 }
 
-static void gxsp_empty_lane(const gxsp_chunk *chunk, uint32_t lane)
-{
+static void gxsp_empty_lane(const gxsp_chunk *chunk, uint32_t lane) {
     gxsp_rest *rest = &chunk->rest[lane / GXSP_LANES];
     const size_t l = lane % GXSP_LANES;
     int k;
     chunk->groups[lane] = GXSP_NONE;
     rest->weight[l] = rest->mass[l] = 0;
-    for (k = 0; k < 9 && chunk->gradients; ++k)
+    for (k = 0; k < 9 && chunk->gradients; k++)
         chunk->gradients[lane / GXSP_LANES].entry[k][l] = 0; /* wherever its corners are: F = 1 */
 }
 
 /* A new chunk at the end, without a block in use but with room for all that a chunk can have */
-static gxsp_chunk *gxsp_open_chunk(gxsp_system *system, uint32_t class_index)
-{
+static gxsp_chunk *gxsp_open_chunk(gxsp_system *system, uint32_t class_index) {
     gxsp_pool *pool = &system->pool;
     gxsp_chunk *chunk;
     if (system->chunk_count >= system->chunk_room) {
@@ -6407,8 +6133,7 @@ static gxsp_chunk *gxsp_open_chunk(gxsp_system *system, uint32_t class_index)
         system->chunk_still = (uint8_t *)gxsp_retake(pool, system->chunk_still, 0, room, 1);
         system->chunk_room = room;
     }
-    if (pool->failed)
-        return NULL;
+    if (pool->failed) return NULL;
     chunk = &system->chunks[system->chunk_count];
     memset(chunk, 0, sizeof *chunk);
     chunk->class_index = class_index;
@@ -6418,65 +6143,58 @@ static gxsp_chunk *gxsp_open_chunk(gxsp_system *system, uint32_t class_index)
     gxsp_blocks_make(pool, chunk, 1);
     gxsp_tangents_make(pool, chunk, 1);
     chunk->block_count = 0;
-    if (pool->failed)
-        return NULL;
-    ++system->chunk_count;
+    if (pool->failed) return NULL;
+    system->chunk_count++;
     return chunk;
 }
 
 /* A free lane of the open chunk at index, or GXSP_NONE */
-static uint32_t gxsp_free_lane(gxsp_chunk *chunk, uint32_t from)
-{
+static uint32_t gxsp_free_lane(gxsp_chunk *chunk, uint32_t from) {
     uint32_t lane;
-    for (lane = from; lane < chunk->block_count * GXSP_LANES; ++lane)
-        if (chunk->groups[lane] == GXSP_NONE)
-            return lane;
+    for (lane = from; lane < chunk->block_count * GXSP_LANES; lane++)
+        if (chunk->groups[lane] == GXSP_NONE) return lane;
     return chunk->block_count < GXSP_CHUNK_BLOCKS ? lane : GXSP_NONE;
 }
 
 /* Index of the last open chunk of a class, or chunk_count */
-static uint32_t gxsp_find_open(const gxsp_system *system, uint32_t class_index)
-{
+static uint32_t gxsp_find_open(const gxsp_system *system, uint32_t class_index) {
     uint32_t c;
     for (c = system->chunk_count; c-- > 0;)
-        if (system->chunks[c].open && system->chunks[c].class_index == class_index)
-            return c;
+        if (system->chunks[c].open && system->chunks[c].class_index == class_index) return c;
     return system->chunk_count;
 }
 
 /* Lanes of the class's open chunk, or of new ones, for those elements without a hole that are of this class */
-static void gxsp_place_class(gxsp_renewal *update, uint32_t class_index)
-{
+static void gxsp_place_class(gxsp_renewal *update, uint32_t class_index) {
     gxsp_system *system = update->system;
     uint32_t i, l, c = gxsp_find_open(system, class_index), lane = 0;
-    for (i = 0; i < update->left_count; ++i) {
+    for (i = 0; i < update->left_count; i++) {
         gxsp_hole *hole = &update->holes[update->hole_count + update->placed_count];
-        if (update->left_class[i] != class_index)
-            continue;
+        if (update->left_class[i] != class_index) continue;
         lane = c < system->chunk_count ? gxsp_free_lane(&system->chunks[c], lane) : GXSP_NONE;
         if (lane == GXSP_NONE) {
             c = system->chunk_count;
             lane = 0;
-            if (!gxsp_open_chunk(system, class_index))
-                return;
+            if (!gxsp_open_chunk(system, class_index)) return;
         }
-        if (lane == system->chunks[c].block_count * GXSP_LANES) { /* its other lanes are of no weight, but of a material there is */
-            for (l = 0; l < GXSP_LANES; ++l)
-                system->chunks[c].rest[lane / GXSP_LANES].material[l] = update->change->elements[update->left[i]].material;
-            ++system->chunks[c].block_count;
+        /* its other lanes are of no weight, but of a material there is */
+        if (lane == system->chunks[c].block_count * GXSP_LANES) {
+            for (l = 0; l < GXSP_LANES; l++)
+                system->chunks[c].rest[lane / GXSP_LANES].material[l] =
+                    update->change->elements[update->left[i]].material;
+            system->chunks[c].block_count++;
         }
         hole->chunk = c, hole->lane = lane, hole->element = update->left[i];
         gxsp_place_element(&system->chunks[c], &update->change->elements[hole->element], gxsp_own_order, lane, 0);
-        ++update->placed_count;
-        ++lane;
+        update->placed_count++;
+        lane++;
     }
 }
 
 /* Elements in their lanes; corners and nodes still are what they were. */
-static void gxsp_replace_elements(gxsp_renewal *update)
-{
+static void gxsp_replace_elements(gxsp_renewal *update) {
     uint32_t i, class_index;
-    for (i = 0; i < update->hole_count; ++i) {
+    for (i = 0; i < update->hole_count; i++) {
         const gxsp_hole *hole = &update->holes[i];
         const gxsp_chunk *chunk = &update->system->chunks[hole->chunk];
         if (hole->element == GXSP_NONE)
@@ -6484,33 +6202,32 @@ static void gxsp_replace_elements(gxsp_renewal *update)
         else
             gxsp_place_element(chunk, &update->change->elements[hole->element], gxsp_own_order, hole->lane, 0);
     }
-    for (class_index = 0; class_index < 4 * (GXS_CUSTOM + 1) && !update->system->pool.failed; ++class_index)
+    for (class_index = 0; class_index < 4 * (GXS_CUSTOM + 1) && !update->system->pool.failed; class_index++)
         gxsp_place_class(update, class_index);
 }
 
-/* Nodes of a chunk of which lanes have changed. next: by hole, the next one of its chunk. 0: an element that stays has lost a copy. */
-static int gxsp_renew_chunk(gxsp_renewal *update, gxsp_chunk *chunk, uint32_t hole, const uint32_t *next, gxsp_numbers *numbers, uint32_t *nodes)
-{
+/* Nodes of a chunk of which lanes have changed. next: by hole, the next one of its chunk. 0: an element that stays has
+ * lost a copy. */
+static int gxsp_renew_chunk(gxsp_renewal *update, gxsp_chunk *chunk, uint32_t hole, const uint32_t *next,
+                            gxsp_numbers *numbers, uint32_t *nodes) {
     const gxsp_system *system = update->system;
     uint32_t copies[GXSP_CHUNK][4], lane, used = 0;
     int k;
     memset(copies, 0xff, sizeof copies);
-    for (lane = 0; lane < chunk->block_count * GXSP_LANES && chunk->node_count > 0; ++lane) {
-        if (chunk->groups[lane] == GXSP_NONE)
-            continue;
+    for (lane = 0; lane < chunk->block_count * GXSP_LANES && chunk->node_count > 0; lane++) {
+        if (chunk->groups[lane] == GXSP_NONE) continue;
         gxsp_lane_copies(system, chunk, lane / GXSP_LANES, (int)(lane % GXSP_LANES), copies[lane]);
-        for (k = 0; k < 4; ++k)
-            copies[lane][k] = update->successor[copies[lane][k]];
+        for (k = 0; k < 4; k++) copies[lane][k] = update->successor[copies[lane][k]];
     }
     for (; hole != GXSP_NONE; hole = next[hole])
         if (update->holes[hole].element != GXSP_NONE)
-            memcpy(copies[update->holes[hole].lane], update->change->elements[update->holes[hole].element].copy, sizeof copies[0]);
-    for (lane = 0; lane < chunk->block_count * GXSP_LANES; ++lane)
+            memcpy(copies[update->holes[hole].lane], update->change->elements[update->holes[hole].element].copy,
+                   sizeof copies[0]);
+    for (lane = 0; lane < chunk->block_count * GXSP_LANES; lane++)
         if (chunk->groups[lane] != GXSP_NONE) {
             used = lane + 1;
-            for (k = 0; k < 4; ++k)
-                if (copies[lane][k] == GXSP_NONE)
-                    return 0;
+            for (k = 0; k < 4; k++)
+                if (copies[lane][k] == GXSP_NONE) return 0;
         }
     chunk->block_count = (used + GXSP_LANES - 1) / GXSP_LANES;
     chunk->node_count = gxsp_number_nodes(copies, chunk->block_count * GXSP_LANES, numbers, nodes);
@@ -6520,39 +6237,36 @@ static int gxsp_renew_chunk(gxsp_renewal *update, gxsp_chunk *chunk, uint32_t ho
 }
 
 /* Nodes of a chunk joined by its elements: by node, the least one that it is joined with */
-static void gxsp_find_roots(const gxsp_chunk *chunk, uint16_t *roots)
-{
+static void gxsp_find_roots(const gxsp_chunk *chunk, uint16_t *roots) {
     uint32_t forest[GXSP_CHUNK * 4], i, lane;
     int k;
-    for (i = 0; i < chunk->node_count; ++i)
-        forest[i] = i;
-    for (lane = 0; lane < chunk->block_count * GXSP_LANES; ++lane) {
+    for (i = 0; i < chunk->node_count; i++) forest[i] = i;
+    for (lane = 0; lane < chunk->block_count * GXSP_LANES; lane++) {
         const gxsp_corners *corner = &chunk->corners[lane / GXSP_LANES];
         const size_t l = lane % GXSP_LANES;
-        for (k = 1; k < 4 && chunk->groups[lane] != GXSP_NONE; ++k)
+        for (k = 1; k < 4 && chunk->groups[lane] != GXSP_NONE; k++)
             if (gxsp_lane_supports(chunk, lane, 0) || gxsp_lane_supports(chunk, lane, k))
                 gxsp_join(forest, corner->node[0][l], corner->node[k][l]);
     }
-    for (i = 0; i < chunk->node_count; ++i)
-        roots[i] = (uint16_t)gxsp_root(forest, i);
+    for (i = 0; i < chunk->node_count; i++) roots[i] = (uint16_t)gxsp_root(forest, i);
 }
 
 /* Room for so many slots */
-static void gxsp_slots_room(gxsp_system *system, size_t count)
-{
+static void gxsp_slots_room(gxsp_system *system, size_t count) {
     gxsp_pool *pool = &system->pool;
     if (count > system->slot_room) {
         system->slot_room = count + count / 8;
-        system->nodes = (uint32_t *)gxsp_retake(pool, system->nodes, 0, system->slot_room + GXSP_AHEAD, sizeof(uint32_t));
-        system->copy_slot = (uint32_t *)gxsp_retake(pool, system->copy_slot, 0, system->slot_room + GXSP_AHEAD, sizeof(uint32_t));
+        system->nodes =
+            (uint32_t *)gxsp_retake(pool, system->nodes, 0, system->slot_room + GXSP_AHEAD, sizeof(uint32_t));
+        system->copy_slot =
+            (uint32_t *)gxsp_retake(pool, system->copy_slot, 0, system->slot_room + GXSP_AHEAD, sizeof(uint32_t));
         system->slot_root = (uint16_t *)gxsp_retake(pool, system->slot_root, 0, system->slot_room, sizeof(uint16_t));
     }
     system->slot_count = count;
 }
 
 /* Nodes of all chunks. 0: an element that stays has lost a copy. */
-static int gxsp_renew_nodes(gxsp_renewal *update)
-{
+static int gxsp_renew_nodes(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     const size_t n = update->change->copy_count;
     const uint32_t holes = update->hole_count + update->placed_count;
@@ -6566,22 +6280,20 @@ static int gxsp_renew_nodes(gxsp_renewal *update)
     numbers.local = (uint32_t *)gxsp_take(update->scratch, n, sizeof(uint32_t));
     numbers.stamp = (uint32_t *)gxsp_take(update->scratch, n, sizeof(uint32_t));
     numbers.round = 0;
-    if (update->scratch->failed)
-        return 1;
+    if (update->scratch->failed) return 1;
     memset(first, 0xff, system->chunk_count * sizeof *first);
     for (i = holes; i-- > 0;) {
         next[i] = first[update->holes[i].chunk];
         first[update->holes[i].chunk] = i;
     }
-    for (c = 0; c < system->chunk_count; ++c) {
+    for (c = 0; c < system->chunk_count; c++) {
         gxsp_chunk *chunk = &system->chunks[c];
         const uint32_t before = chunk->first_node;
         if (first[c] != GXSP_NONE && !gxsp_renew_chunk(update, chunk, first[c], next, &numbers, nodes + count))
             return 0;
-        for (i = 0; i < chunk->node_count && first[c] == GXSP_NONE; ++i) {
+        for (i = 0; i < chunk->node_count && first[c] == GXSP_NONE; i++) {
             nodes[count + i] = update->successor[system->nodes[before + i]];
-            if (nodes[count + i] == GXSP_NONE)
-                return 0;
+            if (nodes[count + i] == GXSP_NONE) return 0;
         }
         if (first[c] != GXSP_NONE || !system->roots_known)
             gxsp_find_roots(chunk, roots + count);
@@ -6591,8 +6303,7 @@ static int gxsp_renew_nodes(gxsp_renewal *update)
         count += chunk->node_count;
     }
     gxsp_slots_room(system, count);
-    if (system->pool.failed)
-        return 1;
+    if (system->pool.failed) return 1;
     memcpy(system->nodes, nodes, count * sizeof *nodes);
     memcpy(system->slot_root, roots, count * sizeof *roots);
     system->roots_known = 1;
@@ -6602,23 +6313,21 @@ static int gxsp_renew_nodes(gxsp_renewal *update)
 /* --- copies --- */
 
 /* Room for so many copies; what they have stays theirs. */
-static void gxsp_copies_room(gxsp_system *system, size_t count)
-{
+static void gxsp_copies_room(gxsp_system *system, size_t count) {
     gxsp_pool *pool = &system->pool;
     const size_t n = system->n, most = count > n ? count : n, room = most + most / 8;
     gxsp_level *fine = &system->levels[0];
-    if (count <= system->copy_room)
-        return;
+    if (count <= system->copy_room) return;
     system->target = (double *)gxsp_retake(pool, system->target, 0, 3 * room, sizeof(double));
-    if (system->damping)
-        system->damping = (double *)gxsp_retake(pool, system->damping, 0, 3 * room, sizeof(double));
+    if (system->damping) system->damping = (double *)gxsp_retake(pool, system->damping, 0, 3 * room, sizeof(double));
     system->current = (double *)gxsp_retake(pool, system->current, 3 * n, 3 * room, sizeof(double));
     system->force = (double *)gxsp_retake(pool, system->force, 0, 3 * room, sizeof(double));
     system->trial = system->residual = (double *)gxsp_retake(pool, system->residual, 0, 3 * room, sizeof(double));
     system->direction = (double *)gxsp_retake(pool, system->direction, 0, 3 * room, sizeof(double));
     system->guess[0] = (gxsp_vector4 *)gxsp_retake(pool, system->guess[0], n, room, sizeof(gxsp_vector4));
     system->guess[1] = (gxsp_vector4 *)gxsp_retake(pool, system->guess[1], n, room, sizeof(gxsp_vector4));
-    system->range_sum = (double(*)[GXSP_SUMS])gxsp_retake(pool, system->range_sum, 0, room / GXSP_RANGE + 1, sizeof *system->range_sum);
+    system->range_sum =
+        (double(*)[GXSP_SUMS])gxsp_retake(pool, system->range_sum, 0, room / GXSP_RANGE + 1, sizeof *system->range_sum);
     system->diagonal = (float *)gxsp_retake(pool, system->diagonal, 0, 6 * room, sizeof(float));
     system->copy_start = (uint32_t *)gxsp_retake(pool, system->copy_start, 0, room + 2, sizeof(uint32_t));
     if (system->positions)
@@ -6637,37 +6346,32 @@ static void gxsp_copies_room(gxsp_system *system, size_t count)
     system->copy_room = room;
 }
 
-/* Entries of an array over copies go where their copies go. moved: copies that are not what they were, moved_count; kept: scratch */
-static void gxsp_move(const gxs_change *change, const uint32_t *moved, size_t moved_count, void *array, size_t size, unsigned char *kept)
-{
+/* Entries of an array over copies go where their copies go. moved: copies that are not what they were, moved_count;
+ * kept: scratch */
+static void gxsp_move(const gxs_change *change, const uint32_t *moved, size_t moved_count, void *array, size_t size,
+                      unsigned char *kept) {
     unsigned char *bytes = (unsigned char *)array;
     size_t i;
-    for (i = 0; i < moved_count; ++i)
-        memcpy(kept + i * size, bytes + (change->origins[moved[i]] >> 1) * size, size);
-    for (i = 0; i < moved_count; ++i)
-        memcpy(bytes + moved[i] * size, kept + i * size, size);
+    for (i = 0; i < moved_count; i++) memcpy(kept + i * size, bytes + (change->origins[moved[i]] >> 1) * size, size);
+    for (i = 0; i < moved_count; i++) memcpy(bytes + moved[i] * size, kept + i * size, size);
 }
 
 /* What is known of copies, for those there are from now on */
-static void gxsp_move_copies(gxsp_renewal *update)
-{
+static void gxsp_move_copies(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     const gxs_change *change = update->change;
     uint32_t *moved = (uint32_t *)gxsp_take(update->scratch, change->copy_count, sizeof(uint32_t)), i;
     unsigned char *kept;
     size_t count = 0;
     gxsp_copies_room(system, change->copy_count);
-    for (i = 0; i < change->copy_count && moved; ++i)
-        if (change->origins[i] >> 1 != i)
-            moved[count++] = i;
+    for (i = 0; i < change->copy_count && moved; i++)
+        if (change->origins[i] >> 1 != i) moved[count++] = i;
     kept = (unsigned char *)gxsp_take(update->scratch, count, 3 * sizeof(double)); /* the largest entry */
-    if (update->scratch->failed || system->pool.failed)
-        return;
+    if (update->scratch->failed || system->pool.failed) return;
     gxsp_move(change, moved, count, system->current, 3 * sizeof(double), kept);
     gxsp_move(change, moved, count, system->guess[0], sizeof(gxsp_vector4), kept);
     gxsp_move(change, moved, count, system->guess[1], sizeof(gxsp_vector4), kept);
-    if (system->positions)
-        gxsp_move(change, moved, count, system->positions, 3 * sizeof(double), kept);
+    if (system->positions) gxsp_move(change, moved, count, system->positions, 3 * sizeof(double), kept);
     gxsp_move(change, moved, count, system->lumped, sizeof(double), kept);
     gxsp_move(change, moved, count, system->piece, sizeof(uint32_t), kept);
     gxsp_move(change, moved, count, system->fixed, 1, kept);
@@ -6684,89 +6388,82 @@ static void gxsp_move_copies(gxsp_renewal *update)
 }
 
 /* A follower is as it was, but for the numbers of copies? */
-static int gxsp_follows_alike(const gxsp_renewal *update, const gxsp_follower *follower, const gxs_constraint *constraint)
-{
+static int gxsp_follows_alike(const gxsp_renewal *update, const gxsp_follower *follower,
+                              const gxs_constraint *constraint) {
     int k;
-    for (k = 0; k < 4; ++k)
-        if (update->successor[follower->master[k]] != constraint->master[k])
-            return 0;
+    for (k = 0; k < 4; k++)
+        if (update->successor[follower->master[k]] != constraint->master[k]) return 0;
     return memcmp(follower->weight, constraint->weight, sizeof follower->weight) == 0;
 }
 
-/* Copies that follow others from now on or no more, and what they follow, are touched, and the coarse nodes of both; not those of which all is
- * alike. */
-static void gxsp_touch_followers(gxsp_renewal *update)
-{
+/* Copies that follow others from now on or no more, and what they follow, are touched, and the coarse nodes of both;
+ * not those of which all is alike. */
+static void gxsp_touch_followers(gxsp_renewal *update) {
     const gxsp_system *system = update->system;
     const gxs_change *change = update->change;
     size_t i;
     int k, q;
-    for (i = 0; i < change->constraint_count && system->follower_count > 0; ++i) {
+    for (i = 0; i < change->constraint_count && system->follower_count > 0; i++) {
         const uint32_t copy = change->constraints[i].copy, origin = change->origins[copy];
         if (!(origin & 1) && gxsp_follows(system, origin >> 1))
-            update->alike[copy] = (uint8_t)gxsp_follows_alike(update, &system->followers[system->follower[origin >> 1]], &change->constraints[i]);
+            update->alike[copy] = (uint8_t)gxsp_follows_alike(update, &system->followers[system->follower[origin >> 1]],
+                                                              &change->constraints[i]);
     }
-    for (i = 0; i < system->follower_count; ++i) { /* as they were */
+    for (i = 0; i < system->follower_count; i++) { /* as they were */
         const uint32_t copy = system->followers[i].copy;
-        if (update->successor[copy] != GXSP_NONE && update->alike[update->successor[copy]])
-            continue;
-        for (k = -1; k < 4; ++k) {
+        if (update->successor[copy] != GXSP_NONE && update->alike[update->successor[copy]]) continue;
+        for (k = -1; k < 4; k++) {
             const uint32_t other = k < 0 ? copy : system->followers[i].master[k];
-            if (update->successor[other] != GXSP_NONE)
-                update->touched[update->successor[other]] = 1;
-            for (q = 0; q < 4 && system->level_count > 0; ++q)
+            if (update->successor[other] != GXSP_NONE) update->touched[update->successor[other]] = 1;
+            for (q = 0; q < 4 && system->level_count > 0; q++)
                 if (system->levels[0].parent[other][q] != GXSP_NONE)
                     update->dirty[system->levels[0].parent[other][q]] = 1;
         }
     }
-    for (i = 0; i < change->constraint_count; ++i) /* as they are */
-        for (k = -1; k < 4 && !update->alike[change->constraints[i].copy]; ++k) {
-            const uint32_t other = k < 0 ? change->constraints[i].copy : change->constraints[i].master[k], origin = change->origins[other] >> 1;
+    for (i = 0; i < change->constraint_count; i++) /* as they are */
+        for (k = -1; k < 4 && !update->alike[change->constraints[i].copy]; k++) {
+            const uint32_t other = k < 0 ? change->constraints[i].copy : change->constraints[i].master[k],
+                           origin = change->origins[other] >> 1;
             update->touched[other] = 1;
-            for (q = 0; q < 4 && system->level_count > 0; ++q)
+            for (q = 0; q < 4 && system->level_count > 0; q++)
                 if (system->levels[0].parent[origin][q] != GXSP_NONE)
                     update->dirty[system->levels[0].parent[origin][q]] = 1;
         }
 }
 
 /* Masses of touched copies, and whether anything supports them */
-static void gxsp_recount_copies(const gxsp_renewal *update)
-{
+static void gxsp_recount_copies(const gxsp_renewal *update) {
     gxsp_system *system = update->system;
     const uint8_t *touched = update->touched;
     uint32_t c, i, lane, copies[4];
     int k;
-    for (i = 0; i < system->n; ++i)
+    for (i = 0; i < system->n; i++)
         if (touched[i]) {
             system->lumped[i] = 0;
             system->fixed[i] = 1;
         }
-    for (c = 0; c < system->chunk_count; ++c) {
+    for (c = 0; c < system->chunk_count; c++) {
         const gxsp_chunk *chunk = &system->chunks[c];
         int any = 0;
-        for (i = 0; i < chunk->node_count; ++i)
-            any |= touched[system->nodes[chunk->first_node + i]];
-        for (lane = 0; lane < chunk->block_count * GXSP_LANES && any; ++lane) {
-            if (chunk->groups[lane] == GXSP_NONE)
-                continue;
+        for (i = 0; i < chunk->node_count; i++) any |= touched[system->nodes[chunk->first_node + i]];
+        for (lane = 0; lane < chunk->block_count * GXSP_LANES && any; lane++) {
+            if (chunk->groups[lane] == GXSP_NONE) continue;
             gxsp_lane_copies(system, chunk, lane / GXSP_LANES, (int)(lane % GXSP_LANES), copies);
-            for (k = 0; k < 4; ++k)
+            for (k = 0; k < 4; k++)
                 if (touched[copies[k]]) {
                     system->lumped[copies[k]] += gxsp_lane_mass(chunk, lane, k);
                     system->fixed[copies[k]] &= !gxsp_lane_supports(chunk, lane, k);
                 }
         }
     }
-    for (i = 0; i < system->n; ++i)
-        system->fixed[i] |= system->held[i];
+    for (i = 0; i < system->n; i++) system->fixed[i] |= system->held[i];
 }
 
 /* Light copies, by their numbers of now */
-static void gxsp_renew_lights(gxsp_renewal *update)
-{
+static void gxsp_renew_lights(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     uint32_t i, count = 0;
-    for (i = 0; i < system->light_count; ++i) {
+    for (i = 0; i < system->light_count; i++) {
         system->lights[count] = system->lights[i];
         system->lights[count].copy = update->successor[system->lights[i].copy];
         count += system->lights[count].copy != GXSP_NONE;
@@ -6776,89 +6473,77 @@ static void gxsp_renew_lights(gxsp_renewal *update)
 }
 
 /* Pieces, of which those sleep that are parts of sleeping ones: what has touched them wakes them again */
-static void gxsp_renew_pieces(gxsp_renewal *update)
-{
+static void gxsp_renew_pieces(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     uint32_t *forest = (uint32_t *)gxsp_take(update->scratch, system->n, sizeof(uint32_t)), c, i, p;
     uint8_t *asleep = (uint8_t *)gxsp_take(update->scratch, system->n, 1);
-    if (update->scratch->failed)
-        return;
-    for (i = 0; i < system->n; ++i) {
+    if (update->scratch->failed) return;
+    for (i = 0; i < system->n; i++) {
         forest[i] = i;
         asleep[i] = (system->pieces[system->piece[i]].state & GXSP_ASLEEP) != 0;
     }
-    for (c = 0; c < system->chunk_count; ++c)
-        for (i = 0; i < system->chunks[c].node_count; ++i) {
+    for (c = 0; c < system->chunk_count; c++)
+        for (i = 0; i < system->chunks[c].node_count; i++) {
             const uint32_t at = system->chunks[c].first_node + i;
             gxsp_join(forest, system->nodes[at], system->nodes[system->chunks[c].first_node + system->slot_root[at]]);
         }
     gxsp_join_followers(system, forest);
     gxsp_number_pieces(system, forest);
-    system->pieces = (gxsp_piece *)gxsp_retake(&system->pool, system->pieces, 0, system->piece_count, sizeof(gxsp_piece));
-    if (!system->pool.failed)
-        gxsp_parts_make(system);
-    if (system->pool.failed)
-        return;
+    system->pieces =
+        (gxsp_piece *)gxsp_retake(&system->pool, system->pieces, 0, system->piece_count, sizeof(gxsp_piece));
+    if (!system->pool.failed) gxsp_parts_make(system);
+    if (system->pool.failed) return;
     gxsp_fill_pieces(system);
-    for (p = 0; p < system->piece_count; ++p)
-        system->pieces[p].state |= GXSP_ASLEEP;
-    for (i = 0; i < system->n; ++i)
-        if (!system->fixed[i] && !asleep[i])
-            system->pieces[system->piece[i]].state &= ~GXSP_ASLEEP;
+    for (p = 0; p < system->piece_count; p++) system->pieces[p].state |= GXSP_ASLEEP;
+    for (i = 0; i < system->n; i++)
+        if (!system->fixed[i] && !asleep[i]) system->pieces[system->piece[i]].state &= ~GXSP_ASLEEP;
 }
 
 /* --- multigrid --- */
 
 /* Copies i and j are neighbours: they belong to one component of each dirty node that both follow. */
-static void gxsp_join_parents(const gxsp_renewal *update, uint32_t i, uint32_t j, uint32_t *forest)
-{
+static void gxsp_join_parents(const gxsp_renewal *update, uint32_t i, uint32_t j, uint32_t *forest) {
     const gxsp_level *fine = &update->system->levels[0];
     uint32_t p, q;
-    for (p = 0; p < 4; ++p) {
+    for (p = 0; p < 4; p++) {
         const uint32_t parent = fine->parent[i][p];
-        if (parent == GXSP_NONE || !update->dirty[parent])
-            continue;
-        for (q = 0; q < 4 && fine->parent[j][q] != parent; ++q)
+        if (parent == GXSP_NONE || !update->dirty[parent]) continue;
+        for (q = 0; q < 4 && fine->parent[j][q] != parent; q++)
             ;
-        if (q < 4)
-            gxsp_join(forest, 4 * i + p, 4 * j + q);
+        if (q < 4) gxsp_join(forest, 4 * i + p, 4 * j + q);
     }
 }
 
 /* Of components that touched copies belong to, what is joined now. forest: n x 4 */
-static void gxsp_join_dirty(gxsp_renewal *update, uint32_t *forest)
-{
+static void gxsp_join_dirty(gxsp_renewal *update, uint32_t *forest) {
     gxsp_system *system = update->system;
     const gxsp_level *fine = &system->levels[0];
     uint32_t c, e, slot;
-    for (slot = 0; slot < 4 * fine->n; ++slot)
-        forest[slot] = slot;
-    for (c = 0; c < system->chunk_count; ++c) {
+    for (slot = 0; slot < 4 * fine->n; slot++) forest[slot] = slot;
+    for (c = 0; c < system->chunk_count; c++) {
         const uint32_t *copies = system->nodes + system->chunks[c].first_node;
-        if (!gxsp_follows_dirty(system, &system->chunks[c], update->dirty))
-            continue;
+        if (!gxsp_follows_dirty(system, &system->chunks[c], update->dirty)) continue;
         gxsp_list_edges(system, &system->chunks[c]);
-        for (e = 1; e < system->edges.count; ++e)
-            gxsp_join_parents(update, copies[system->edges.ends[e] >> 16], copies[system->edges.ends[e] & 0xffff], forest);
+        for (e = 1; e < system->edges.count; e++)
+            gxsp_join_parents(update, copies[system->edges.ends[e] >> 16], copies[system->edges.ends[e] & 0xffff],
+                              forest);
     }
-    for (e = 0; e < 4 * system->follower_count; ++e)
+    for (e = 0; e < 4 * system->follower_count; e++)
         if (fabs(system->followers[e / 4].weight[e % 4]) > 0)
             gxsp_join_parents(update, system->followers[e / 4].copy, system->followers[e / 4].master[e % 4], forest);
 }
 
-/* Dirty coarse nodes fall apart: the first component of each keeps its number, further ones get new ones. from: n x 4, room: by new node,
- * which one it was part of. Returns how many nodes there are. */
-static uint32_t gxsp_number_dirty(gxsp_renewal *update, uint32_t *forest, uint32_t *from)
-{
+/* Dirty coarse nodes fall apart: the first component of each keeps its number, further ones get new ones. from: n x 4,
+ * room: by new node, which one it was part of. Returns how many nodes there are. */
+static uint32_t gxsp_number_dirty(gxsp_renewal *update, uint32_t *forest, uint32_t *from) {
     gxsp_system *system = update->system;
     const gxsp_level *fine = &system->levels[0];
     const uint32_t before = system->levels[1].n;
     uint32_t slot, count = before;
     uint8_t *kept = (uint8_t *)gxsp_take(update->scratch, before, 1);
-    for (slot = 0; slot < 4 * fine->n && kept; ++slot) {
+    for (slot = 0; slot < 4 * fine->n && kept; slot++) {
         uint32_t *parent = &fine->parent[slot / 4][slot % 4], root;
-        if (*parent == GXSP_NONE || !update->dirty[*parent])
-            continue;
+        if (*parent == GXSP_NONE || !update->dirty[*parent]) continue;
         root = gxsp_root(forest, slot);
         if (root != slot)
             *parent = fine->parent[root / 4][root % 4]; /* roots come first in their tree: it has its number */
@@ -6872,11 +6557,10 @@ static uint32_t gxsp_number_dirty(gxsp_renewal *update, uint32_t *forest, uint32
 }
 
 /* Copies that nothing moves any more follow nothing. */
-static void gxsp_drop_fixed(const gxsp_renewal *update)
-{
+static void gxsp_drop_fixed(const gxsp_renewal *update) {
     gxsp_level *fine = &update->system->levels[0];
     uint32_t i;
-    for (i = 0; i < fine->n; ++i)
+    for (i = 0; i < fine->n; i++)
         if (update->touched[i] && update->system->fixed[i]) {
             memset(fine->parent[i], 0xff, sizeof fine->parent[i]);
             memset(fine->weight[i], 0, sizeof fine->weight[i]);
@@ -6884,26 +6568,21 @@ static void gxsp_drop_fixed(const gxsp_renewal *update)
 }
 
 /* Blocks of level 1's entries between nodes that are not dirty, from the level as it was */
-static void gxsp_keep_blocks(const gxsp_level *before, gxsp_level *level, const uint8_t *dirty)
-{
+static void gxsp_keep_blocks(const gxsp_level *before, gxsp_level *level, const uint8_t *dirty) {
     uint32_t i, k, at;
-    for (i = 0; i < before->n; ++i) {
-        if (dirty[i])
-            continue;
-        for (k = before->start[i], at = level->start[i]; k < before->start[i + 1]; ++k) {
-            if (dirty[before->column[k]])
-                continue;
-            while (level->column[at] < before->column[k])
-                ++at;
+    for (i = 0; i < before->n; i++) {
+        if (dirty[i]) continue;
+        for (k = before->start[i], at = level->start[i]; k < before->start[i + 1]; k++) {
+            if (dirty[before->column[k]]) continue;
+            while (level->column[at] < before->column[k]) at++;
             memcpy(level->block + 9 * (size_t)at, before->block + 9 * (size_t)k, 9 * sizeof(float));
         }
     }
 }
 
-/* Numbers of the coarse levels: those of entries of dirty nodes from the Hessian at the state at which the others were made, so that all
- * together are semi-definite as ever. */
-static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, const uint8_t *dirty)
-{
+/* Numbers of the coarse levels: those of entries of dirty nodes from the Hessian at the state at which the others were
+ * made, so that all together are semi-definite as ever. */
+static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, const uint8_t *dirty) {
     gxsp_system *system = update->system;
     gxsp_pass pass;
     uint32_t c;
@@ -6914,7 +6593,7 @@ static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, co
     pass.materials = system->damped;
     pass.rate = system->scale * system->coarse_rate;
     pass.from = system->coarse_state;
-    for (c = 0; c < system->chunk_count; ++c)
+    for (c = 0; c < system->chunk_count; c++)
         if (gxsp_follows_dirty(system, &system->chunks[c], dirty)) {
             system->chunk_still[c] = 0;
             gxsp_task_linearise(&pass, c);
@@ -6926,23 +6605,18 @@ static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, co
     return finite;
 }
 
-/* Do so many chunks follow dirty nodes that all numbers anew, from the Hessian of the next step, cost no more than some of them? */
-static int gxsp_most_are_dirty(const gxsp_system *system, const uint8_t *dirty)
-{
+/* Do so many chunks follow dirty nodes that all numbers anew, from the Hessian of the next step, cost no more than some
+ * of them? */
+static int gxsp_most_are_dirty(const gxsp_system *system, const uint8_t *dirty) {
     uint32_t c, count = 0;
-    for (c = 0; c < system->chunk_count; ++c)
-        count += (uint32_t)gxsp_follows_dirty(system, &system->chunks[c], dirty);
+    for (c = 0; c < system->chunk_count; c++) count += (uint32_t)gxsp_follows_dirty(system, &system->chunks[c], dirty);
     return (double)count > GXSP_DIRTY * (double)system->chunk_count;
 }
 
 /* Is it known that the coarse matrices are as old as they can be? */
-static int gxsp_coarse_ends(const gxsp_system *system)
-{
-    return system->coarse_served >= system->coarse_life;
-}
+static int gxsp_coarse_ends(const gxsp_system *system) { return system->coarse_served >= system->coarse_life; }
 
-static void gxsp_renew_levels(gxsp_renewal *update)
-{
+static void gxsp_renew_levels(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     gxsp_pool *scratch = update->scratch, old = system->coarse;
     gxsp_level before = system->levels[1];
@@ -6963,31 +6637,29 @@ static void gxsp_renew_levels(gxsp_renewal *update)
         memset(dirty, 1, count);
         memcpy(dirty, update->dirty, before.n);
         memcpy(system->levels[1].place, before.place, before.n * sizeof *before.place);
-        for (i = before.n; i < count; ++i)
+        for (i = before.n; i < count; i++)
             memcpy(system->levels[1].place[i], before.place[from[i - before.n]], sizeof *before.place);
         gxsp_levels_make(system, scratch, &before, dirty);
     }
-    if (!scratch->failed && !system->coarse.failed)
-        gxsp_share(system);
+    if (!scratch->failed && !system->coarse.failed) gxsp_share(system);
     if (!scratch->failed && !system->coarse.failed && !system->pool.failed && system->coarse_rate >= 0 &&
-        (system->coarse_stiffness > 0 || system->coarse_worn || gxsp_coarse_ends(system) || gxsp_most_are_dirty(system, dirty) ||
-         !gxsp_renew_numbers(update, &before, dirty)))
-        system->coarse_rate = -1; /* all numbers are made anew by the next step; springs and contact are not known any more */
+        (system->coarse_stiffness > 0 || system->coarse_worn || gxsp_coarse_ends(system) ||
+         gxsp_most_are_dirty(system, dirty) || !gxsp_renew_numbers(update, &before, dirty)))
+        /* all numbers are made anew by the next step; springs and contact are not known any more */
+        system->coarse_rate = -1;
     gxsp_release_to(&old, NULL);
 }
 
 /* --- all of it --- */
 
 /* What copies so far have become. 0: two say that they are one, or one is not held as before. */
-static int gxsp_find_successors(gxsp_renewal *update)
-{
+static int gxsp_find_successors(gxsp_renewal *update) {
     const gxs_change *change = update->change;
     uint32_t i;
     memset(update->successor, 0xff, update->before * sizeof *update->successor);
-    for (i = 0; i < change->copy_count; ++i) {
+    for (i = 0; i < change->copy_count; i++) {
         uint32_t *of = &update->successor[change->origins[i] >> 1];
-        if ((change->held && change->held[i]) != (update->system->held[change->origins[i] >> 1] != 0))
-            return 0;
+        if ((change->held && change->held[i]) != (update->system->held[change->origins[i] >> 1] != 0)) return 0;
         if (change->origins[i] & 1)
             update->touched[i] = 1;
         else if (*of != GXSP_NONE)
@@ -6999,13 +6671,12 @@ static int gxsp_find_successors(gxsp_renewal *update)
 }
 
 /* What steps have learnt and what depends on all copies */
-static void gxsp_renew_steps(gxsp_renewal *update)
-{
+static void gxsp_renew_steps(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     size_t i;
     system->still_known = 0;
     system->base_known = 0;
-    for (i = 0; i < system->n; ++i)
+    for (i = 0; i < system->n; i++)
         system->renewed[i] = update->touched[i] | (system->omega_renewed ? system->renewed[i] : 0);
     system->omega_renewed = 1;
     memcpy(system->still, system->fixed, system->n);
@@ -7013,51 +6684,41 @@ static void gxsp_renew_steps(gxsp_renewal *update)
 }
 
 /* Can the model's form take changes? */
-static int gxsp_is_flexible(const gxsp_system *system)
-{
+static int gxsp_is_flexible(const gxsp_system *system) {
     return !system->fine && !system->volume && !system->lumped_mass;
 }
 
 /* Are the chunks still worth keeping, and the choice of preconditioner? */
-static int gxsp_is_compact(gxsp_renewal *update)
-{
+static int gxsp_is_compact(gxsp_renewal *update) {
     const gxsp_system *system = update->system;
     uint32_t *count = (uint32_t *)gxsp_take(update->scratch, system->piece_count, sizeof(uint32_t)), c;
     size_t lanes = 0;
-    for (c = 0; c < system->chunk_count; ++c)
-        lanes += system->chunks[c].block_count * GXSP_LANES;
-    if (lanes > system->element_count + system->element_count / 4 + 2 * GXSP_CHUNK)
-        return 0;
+    for (c = 0; c < system->chunk_count; c++) lanes += system->chunks[c].block_count * GXSP_LANES;
+    if (lanes > system->element_count + system->element_count / 4 + 2 * GXSP_CHUNK) return 0;
     return !count || !system->chosen || gxsp_large_piece(system, count) == (system->level_count > 0);
 }
 
 /* 0: the change does not fit. Memory may also have run out: see the pools. */
-static int gxsp_update_system(gxsp_renewal *update)
-{
+static int gxsp_update_system(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     gxsp_find_holes(update);
     gxsp_match_holes(update);
-    if (update->scratch->failed)
-        return 1;
+    if (update->scratch->failed) return 1;
     gxsp_touch_removed(update);
     gxsp_touch_followers(update);
     system->element_count += update->change->element_count;
     system->element_count -= update->hole_count;
     gxsp_replace_elements(update);
-    if (system->pool.failed)
-        return 1;
-    if (system->element_count == 0 || !gxsp_renew_nodes(update))
-        return 0;
+    if (system->pool.failed) return 1;
+    if (system->element_count == 0 || !gxsp_renew_nodes(update)) return 0;
     gxsp_move_copies(update);
-    if (update->scratch->failed || system->pool.failed)
-        return 1;
+    if (update->scratch->failed || system->pool.failed) return 1;
     gxsp_renew_steps(update);
     gxsp_touch_added(update);
     gxsp_recount_copies(update);
     gxsp_renew_lights(update);
     gxsp_set_followers(system, update->change->constraints, update->change->constraint_count);
-    if (system->pool.failed)
-        return 1;
+    if (system->pool.failed) return 1;
     gxsp_renew_pieces(update);
     if (!update->scratch->failed && !system->pool.failed && system->level_count > 0)
         gxsp_renew_levels(update);
@@ -7069,8 +6730,7 @@ static int gxsp_update_system(gxsp_renewal *update)
 /* >>pieces */
 
 /* Gravity, nodal forces and what damping adds to them on a copy, N; 0 on what this step leaves alone */
-GXSP_INLINE void gxsp_load(const gxsp_problem *problem, size_t copy, double *load)
-{
+GXSP_INLINE void gxsp_load(const gxsp_problem *problem, size_t copy, double *load) {
     const gxsp_system *system = problem->system;
     const double *gravity = problem->step->gravity, *forces = problem->step->forces, *damping = system->damping;
     const double mass = system->still[copy] ? 0 : system->lumped[copy];
@@ -7081,117 +6741,99 @@ GXSP_INLINE void gxsp_load(const gxsp_problem *problem, size_t copy, double *loa
         load[0] += damping[3 * copy], load[1] += damping[3 * copy + 1], load[2] += damping[3 * copy + 2];
 }
 
-/* Sums over pieces: cleared, copies added one by one, then as a mean over each piece's mass. 0: of pieces that have any state but those ignored */
-static void gxsp_clear_pieces(gxsp_system *system)
-{
+/* Sums over pieces: cleared, copies added one by one, then as a mean over each piece's mass. 0: of pieces that have any
+ * state but those ignored */
+static void gxsp_clear_pieces(gxsp_system *system) {
     uint32_t p;
-    for (p = 0; p < system->piece_count; ++p)
-        memset(system->pieces[p].sum, 0, sizeof system->pieces[p].sum);
+    for (p = 0; p < system->piece_count; p++) memset(system->pieces[p].sum, 0, sizeof system->pieces[p].sum);
 }
 
-static void gxsp_add_to_piece(gxsp_system *system, size_t copy, double x, double y, double z)
-{
+static void gxsp_add_to_piece(gxsp_system *system, size_t copy, double x, double y, double z) {
     double *sum = system->pieces[system->piece[copy]].sum;
     sum[0] += x, sum[1] += y, sum[2] += z;
 }
 
-static void gxsp_average_pieces(gxsp_system *system, uint32_t ignored)
-{
+static void gxsp_average_pieces(gxsp_system *system, uint32_t ignored) {
     uint32_t p, r;
-    for (p = 0; p < system->piece_count; ++p) {
+    for (p = 0; p < system->piece_count; p++) {
         gxsp_piece *piece = &system->pieces[p];
-        for (r = 0; r < 3; ++r)
-            piece->sum[r] = piece->state & ~ignored ? 0 : piece->sum[r] / piece->mass;
+        for (r = 0; r < 3; r++) piece->sum[r] = piece->state & ~ignored ? 0 : piece->sum[r] / piece->mass;
     }
 }
 
 /* Subtracts from x, piece by piece, the translation with x's momentum. */
-static void gxsp_remove_translations(gxsp_system *system, gxsp_vector4 *x)
-{
+static void gxsp_remove_translations(gxsp_system *system, gxsp_vector4 *x) {
     size_t i;
     int r;
-    if (system->loose_count == 0)
-        return;
+    if (system->loose_count == 0) return;
     gxsp_clear_pieces(system);
-    for (i = 0; i < system->n; ++i) {
+    for (i = 0; i < system->n; i++) {
         const double m = system->lumped[i];
         gxsp_add_to_piece(system, i, m * (double)x[i][0], m * (double)x[i][1], m * (double)x[i][2]);
     }
     gxsp_average_pieces(system, 0);
-    for (i = 0; i < system->n; ++i)
-        for (r = 0; r < 3; ++r)
-            x[i][r] -= (float)system->pieces[system->piece[i]].sum[r];
+    for (i = 0; i < system->n; i++)
+        for (r = 0; r < 3; r++) x[i][r] -= (float)system->pieces[system->piece[i]].sum[r];
 }
 
 /* Takes the momentum of every loose piece out of x. */
-static void gxsp_remove_momentum(gxsp_system *system, double *x)
-{
+static void gxsp_remove_momentum(gxsp_system *system, double *x) {
     size_t i, r;
-    if (system->loose_count == 0)
-        return;
+    if (system->loose_count == 0) return;
     gxsp_clear_pieces(system);
-    for (i = 0; i < system->n; ++i) {
+    for (i = 0; i < system->n; i++) {
         const double m = system->lumped[i];
         gxsp_add_to_piece(system, i, m * x[3 * i], m * x[3 * i + 1], m * x[3 * i + 2]);
     }
     gxsp_average_pieces(system, 0);
-    for (i = 0; i < system->n; ++i)
-        for (r = 0; r < 3; ++r)
-            x[3 * i + r] -= system->pieces[system->piece[i]].sum[r];
+    for (i = 0; i < system->n; i++)
+        for (r = 0; r < 3; r++) x[3 * i + r] -= system->pieces[system->piece[i]].sum[r];
 }
 
-/* Translates every piece of x that has no state but those ignored so that load = rate M (base + x - target) in sum. base: n x 3, or NULL: 0 */
-static void gxsp_balance_momentum(const gxsp_problem *problem, uint32_t ignored, const double *base, double *x)
-{
+/* Translates every piece of x that has no state but those ignored so that load = rate M (base + x - target) in sum.
+ * base: n x 3, or NULL: 0 */
+static void gxsp_balance_momentum(const gxsp_problem *problem, uint32_t ignored, const double *base, double *x) {
     gxsp_system *system = problem->system;
     size_t i, r;
-    if ((ignored ? system->free_count : system->loose_count) == 0)
-        return;
+    if ((ignored ? system->free_count : system->loose_count) == 0) return;
     gxsp_clear_pieces(system);
-    for (i = 0; i < system->n; ++i) {
+    for (i = 0; i < system->n; i++) {
         const double rate = problem->rate * system->lumped[i], *from = system->target + 3 * i;
         double f[3];
         gxsp_load(problem, i, f);
-        for (r = 0; r < 3; ++r)
-            f[r] -= rate * (x[3 * i + r] + (base ? base[3 * i + r] : 0) - from[r]);
+        for (r = 0; r < 3; r++) f[r] -= rate * (x[3 * i + r] + (base ? base[3 * i + r] : 0) - from[r]);
         gxsp_add_to_piece(system, i, f[0], f[1], f[2]);
     }
     gxsp_average_pieces(system, ignored);
-    for (i = 0; i < system->n; ++i)
-        for (r = 0; r < 3; ++r)
-            x[3 * i + r] += system->pieces[system->piece[i]].sum[r] / problem->rate;
+    for (i = 0; i < system->n; i++)
+        for (r = 0; r < 3; r++) x[3 * i + r] += system->pieces[system->piece[i]].sum[r] / problem->rate;
 }
 
-/* Translates every piece of the direction that nothing acts on now so that its momentum balances: linear solves are in single precision, to which
- * that of a piece of next to no mass, which contact has pushed before, is rounding. */
-static void gxsp_balance_direction(const gxsp_problem *problem)
-{
+/* Translates every piece of the direction that nothing acts on now so that its momentum balances: linear solves are in
+ * single precision, to which that of a piece of next to no mass, which contact has pushed before, is rounding. */
+static void gxsp_balance_direction(const gxsp_problem *problem) {
     gxsp_balance_momentum(problem, GXSP_TOUCHED, problem->system->current, problem->system->direction);
 }
 
 /* Forgets what springs and contact have acted on. */
-static void gxsp_untouch_pieces(gxsp_system *system)
-{
+static void gxsp_untouch_pieces(gxsp_system *system) {
     uint32_t p;
-    for (p = 0; p < system->piece_count; ++p)
-        system->pieces[p].state &= ~(GXSP_TOUCHED | GXSP_TOUCHES);
+    for (p = 0; p < system->piece_count; p++) system->pieces[p].state &= ~(GXSP_TOUCHED | GXSP_TOUCHES);
 }
 
-/* Pieces that springs and contact act on, of which terms tells, are not loose, nor are they again in this run of Newton's method: their
- * momentum is no longer that of the start. */
-static void gxsp_touch_pieces(gxsp_system *system)
-{
+/* Pieces that springs and contact act on, of which terms tells, are not loose, nor are they again in this run of
+ * Newton's method: their momentum is no longer that of the start. */
+static void gxsp_touch_pieces(gxsp_system *system) {
     size_t t;
     uint32_t p;
     int k;
-    for (p = 0; p < system->piece_count; ++p)
-        system->pieces[p].state &= ~GXSP_TOUCHES;
-    for (t = 0; t < system->lasting->count; ++t)
-        for (k = 0; k < 4; ++k)
+    for (p = 0; p < system->piece_count; p++) system->pieces[p].state &= ~GXSP_TOUCHES;
+    for (t = 0; t < system->lasting->count; t++)
+        for (k = 0; k < 4; k++)
             if (system->lasting->term[t].weight[k] * system->lasting->term[t].weight[k] > 0)
                 system->pieces[system->piece[system->lasting->term[t].copy[k]]].state |= GXSP_TOUCHED | GXSP_TOUCHES;
     system->loose_count = system->free_count = 0;
-    for (p = 0; p < system->piece_count; ++p) {
+    for (p = 0; p < system->piece_count; p++) {
         system->loose_count += system->pieces[p].state == 0;
         system->free_count += (system->pieces[p].state & ~GXSP_TOUCHED) == 0;
     }
@@ -7207,40 +6849,33 @@ typedef struct gxsp_pull {
     double hessian[6];  /* of the energy, N/m, packed */
 } gxsp_pull;
 
-static void gxsp_point_position(const gxs_point *point, const double *displacement, double *x)
-{
+static void gxsp_point_position(const gxs_point *point, const double *displacement, double *x) {
     int k, c;
     memcpy(x, point->position, 3 * sizeof *x);
-    for (k = 0; k < 4; ++k)
-        for (c = 0; c < 3; ++c)
-            x[c] += point->weight[k] * displacement[3 * (size_t)point->copy[k] + (size_t)c];
+    for (k = 0; k < 4; k++)
+        for (c = 0; c < 3; c++) x[c] += point->weight[k] * displacement[3 * (size_t)point->copy[k] + (size_t)c];
 }
 
 /* A copy of the piece that it belongs to */
-static size_t gxsp_point_copy(const gxs_point *point)
-{
+static size_t gxsp_point_copy(const gxs_point *point) {
     int k = 0;
-    while (k < 3 && !(fabs(point->weight[k]) > 0))
-        ++k;
+    while (k < 3 && !(fabs(point->weight[k]) > 0)) k++;
     return point->copy[k];
 }
 
 /* Can the step move it? */
-static int gxsp_point_moves(const gxsp_system *system, const gxs_point *point)
-{
+static int gxsp_point_moves(const gxsp_system *system, const gxs_point *point) {
     int k;
-    for (k = 0; k < 4; ++k)
-        if (fabs(point->weight[k]) > 0 && !system->still[point->copy[k]])
-            return 1;
+    for (k = 0; k < 4; k++)
+        if (fabs(point->weight[k]) > 0 && !system->still[point->copy[k]]) return 1;
     return 0;
 }
 
-static void gxsp_spring_pull(const gxs_spring *spring, const double *displacement, gxsp_pull *pull)
-{
+static void gxsp_spring_pull(const gxs_spring *spring, const double *displacement, gxsp_pull *pull) {
     int c;
     memset(pull, 0, sizeof *pull);
     gxsp_point_position(&spring->point, displacement, pull->position);
-    for (c = 0; c < 3; ++c) {
+    for (c = 0; c < 3; c++) {
         const double gap = spring->target[c] - pull->position[c];
         pull->energy += 0.5 * spring->stiffness * gap * gap;
         pull->force[c] = spring->stiffness * gap;
@@ -7249,59 +6884,53 @@ static void gxsp_spring_pull(const gxs_spring *spring, const double *displacemen
 }
 
 /* Adds a 1 + b n n^T */
-static void gxsp_add_dyad(double a, double b, const double *n, double *hessian)
-{
+static void gxsp_add_dyad(double a, double b, const double *n, double *hessian) {
     int i, j;
-    for (i = 0; i < 3; ++i)
-        for (j = i; j < 3; ++j)
-            hessian[gxsp_packed3(i, j)] += (i == j ? a : 0) + b * n[i] * n[j];
+    for (i = 0; i < 3; i++)
+        for (j = i; j < 3; j++) hessian[gxsp_packed3(i, j)] += (i == j ? a : 0) + b * n[i] * n[j];
 }
 
-/* Friction: energy load phi(|y|), y the way across the plane since the step's start, phi(s) = s^2 / (2 reach) up to reach and
- * s - reach/2 beyond. Convex, so its Hessian is semi-definite. cautious: in its place stands phi'(s) / s in every direction, which
- * bounds it: exact ones overshoot the kink at the end of sticking to and fro. */
-static void gxsp_friction_pull(const gxs_plane *plane, double load, double reach, const double *way, int cautious, gxsp_pull *pull)
-{
+/* Friction: energy load phi(|y|), y the way across the plane since the step's start, phi(s) = s^2 / (2 reach) up to
+ * reach and s - reach/2 beyond. Convex, so its Hessian is semi-definite. cautious: in its place stands phi'(s) / s in
+ * every direction, which bounds it: exact ones overshoot the kink at the end of sticking to and fro. */
+static void gxsp_friction_pull(const gxs_plane *plane, double load, double reach, const double *way, int cautious,
+                               gxsp_pull *pull) {
     const double *n = plane->normal, along = n[0] * way[0] + n[1] * way[1] + n[2] * way[2];
     double y[3], unit[3], s, factor;
     int c;
-    for (c = 0; c < 3; ++c)
-        y[c] = way[c] - along * n[c];
+    for (c = 0; c < 3; c++) y[c] = way[c] - along * n[c];
     s = sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2]);
     factor = load / (s > reach ? s : reach);
     pull->energy += s > reach ? load * (s - 0.5 * reach) : 0.5 * factor * s * s;
     gxsp_add_dyad(factor, -factor, n, pull->hessian);
-    for (c = 0; c < 3; ++c) {
+    for (c = 0; c < 3; c++) {
         pull->force[c] -= factor * y[c];
         unit[c] = s > 0 ? y[c] / s : 0;
     }
-    if (s > reach && !cautious)
-        gxsp_add_dyad(0, -factor, unit, pull->hessian);
+    if (s > reach && !cautious) gxsp_add_dyad(0, -factor, unit, pull->hessian);
 }
 
 /* before: where the point was at the step's start; dt: since then */
-static void gxsp_plane_pull(const gxs_plane *plane, double dt, const double *before, int cautious, gxsp_pull *pull)
-{
-    const double *n = plane->normal, *x = pull->position, depth = plane->offset - (n[0] * x[0] + n[1] * x[1] + n[2] * x[2]);
-    const double pressed = plane->stiffness * (plane->offset - (n[0] * before[0] + n[1] * before[1] + n[2] * before[2]));
+static void gxsp_plane_pull(const gxs_plane *plane, double dt, const double *before, int cautious, gxsp_pull *pull) {
+    const double *n = plane->normal, *x = pull->position,
+                 depth = plane->offset - (n[0] * x[0] + n[1] * x[1] + n[2] * x[2]);
+    const double pressed =
+        plane->stiffness * (plane->offset - (n[0] * before[0] + n[1] * before[1] + n[2] * before[2]));
     const double reach = dt * (plane->sticking_speed > 0 ? plane->sticking_speed : 1e-3);
     double way[3];
     int c;
     if (depth > 0) {
         pull->energy += 0.5 * plane->stiffness * depth * depth;
-        for (c = 0; c < 3; ++c)
-            pull->force[c] += plane->stiffness * depth * n[c];
+        for (c = 0; c < 3; c++) pull->force[c] += plane->stiffness * depth * n[c];
         gxsp_add_dyad(0, plane->stiffness, n, pull->hessian);
     }
-    for (c = 0; c < 3; ++c)
-        way[c] = x[c] - before[c];
+    for (c = 0; c < 3; c++) way[c] = x[c] - before[c];
     if (pressed > 0 && plane->friction > 0 && reach > 0)
         gxsp_friction_pull(plane, plane->friction * pressed, reach, way, cautious, pull);
 }
 
 /* All that acts on contact point i at a displacement */
-static void gxsp_contact_pull(const gxsp_problem *problem, size_t i, const double *displacement, gxsp_pull *pull)
-{
+static void gxsp_contact_pull(const gxsp_problem *problem, size_t i, const double *displacement, gxsp_pull *pull) {
     const gxs_step_desc *step = problem->step;
     double before[3];
     size_t p;
@@ -7309,28 +6938,27 @@ static void gxsp_contact_pull(const gxsp_problem *problem, size_t i, const doubl
     memset(pull, 0, sizeof *pull);
     gxsp_point_position(&step->points[i], displacement, pull->position);
     gxsp_point_position(&step->points[i], problem->given, before);
-    for (p = 0; p < step->plane_count; ++p)
+    for (p = 0; p < step->plane_count; p++)
         gxsp_plane_pull(&step->planes[p], step->integrator == GXS_MIDPOINT ? 0.5 * step->dt : step->dt, before,
                         problem->shortened, pull);
     if (step->contact) {
         double force[3] = {0, 0, 0}, hessian[6] = {0, 0, 0, 0, 0, 0};
         pull->energy += step->contact(step->contact_user, i, pull->position, force, hessian);
-        for (c = 0; c < 3; ++c)
-            pull->force[c] += force[c];
-        for (c = 0; c < 6; ++c)
-            pull->hessian[c] += hessian[c];
+        for (c = 0; c < 3; c++) pull->force[c] += force[c];
+        for (c = 0; c < 6; c++) pull->hessian[c] += hessian[c];
     }
 }
 
-/* The points of a step one after the other: springs, then those of contact. NULL at the end; points that do not move are left out. */
-static const gxs_point *gxsp_next_pull(const gxsp_problem *problem, size_t *at, const double *displacement, gxsp_pull *pull)
-{
+/* The points of a step one after the other: springs, then those of contact. NULL at the end; points that do not move
+ * are left out. */
+static const gxs_point *gxsp_next_pull(const gxsp_problem *problem, size_t *at, const double *displacement,
+                                       gxsp_pull *pull) {
     const gxs_step_desc *step = problem->step;
     for (; *at < step->spring_count + step->point_count; ++*at) {
         const size_t i = *at;
-        const gxs_point *point = i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
-        if (!gxsp_point_moves(problem->system, point))
-            continue;
+        const gxs_point *point =
+            i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
+        if (!gxsp_point_moves(problem->system, point)) continue;
         if (i < step->spring_count)
             gxsp_spring_pull(&step->springs[i], displacement, pull);
         else
@@ -7342,8 +6970,7 @@ static const gxs_point *gxsp_next_pull(const gxsp_problem *problem, size_t *at, 
 }
 
 /* Who leads piece p so far */
-static uint32_t gxsp_lead_root(gxsp_piece *pieces, uint32_t p)
-{
+static uint32_t gxsp_lead_root(gxsp_piece *pieces, uint32_t p) {
     while (pieces[p].lead != p) {
         pieces[p].lead = pieces[pieces[p].lead].lead;
         p = pieces[p].lead;
@@ -7352,22 +6979,20 @@ static uint32_t gxsp_lead_root(gxsp_piece *pieces, uint32_t p)
 }
 
 /* Which pieces lead which in this step: the first of those that points join */
-static void gxsp_choose_leads(const gxsp_problem *problem)
-{
+static void gxsp_choose_leads(const gxsp_problem *problem) {
     const gxs_step_desc *step = problem->step;
     gxsp_piece *pieces = problem->system->pieces;
     size_t i;
     uint32_t p;
     int k;
-    for (p = 0; p < problem->system->piece_count; ++p)
-        pieces[p].lead = p;
-    for (i = 0; i < step->spring_count + step->point_count; ++i) {
-        const gxs_point *point = i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
+    for (p = 0; p < problem->system->piece_count; p++) pieces[p].lead = p;
+    for (i = 0; i < step->spring_count + step->point_count; i++) {
+        const gxs_point *point =
+            i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
         uint32_t joined = GXSP_NONE;
-        for (k = 0; k < 4; ++k) {
+        for (k = 0; k < 4; k++) {
             uint32_t first;
-            if (!(fabs(point->weight[k]) > 0))
-                continue;
+            if (!(fabs(point->weight[k]) > 0)) continue;
             p = gxsp_lead_root(pieces, problem->system->piece[point->copy[k]]);
             joined = joined == GXSP_NONE ? p : joined;
             first = p < joined ? p : joined;
@@ -7375,24 +7000,21 @@ static void gxsp_choose_leads(const gxsp_problem *problem)
             joined = first;
         }
     }
-    for (p = 0; p < problem->system->piece_count; ++p) /* who leads comes first */
+    for (p = 0; p < problem->system->piece_count; p++) /* who leads comes first */
         pieces[p].lead = pieces[pieces[p].lead].lead;
 }
 
 /* Sums over pieces of what they had when they were evaluated last */
-static void gxsp_sum_energies(const gxsp_system *system, double *energies)
-{
+static void gxsp_sum_energies(const gxsp_system *system, double *energies) {
     uint32_t p;
     int k;
     energies[0] = energies[1] = energies[2] = 0;
-    for (p = 0; p < system->piece_count; ++p)
-        for (k = 0; k < 3; ++k)
-            energies[k] += system->pieces[p].energies[k];
+    for (p = 0; p < system->piece_count; p++)
+        for (k = 0; k < 3; k++) energies[k] += system->pieces[p].energies[k];
 }
 
 /* Energies of elements and points, piece by piece, and their forces with inertia */
-static void gxsp_evaluate(const gxsp_problem *problem, const double *from, int nudge, double *force)
-{
+static void gxsp_evaluate(const gxsp_problem *problem, const double *from, int nudge, double *force) {
     const gxs_point *point;
     gxsp_pull pull;
     size_t at = 0;
@@ -7402,20 +7024,20 @@ static void gxsp_evaluate(const gxsp_problem *problem, const double *from, int n
         double *energies = gxsp_lead_of(problem->system, gxsp_point_copy(point))->energies;
         energies[0] += pull.energy;
         energies[2] += fabs(pull.energy);
-        for (c = 0; c < 3; ++c) /* the gap of a spring is a small difference of positions */
+        for (c = 0; c < 3; c++) /* the gap of a spring is a small difference of positions */
             energies[2] += fabs(pull.force[c]) * (fabs(point->position[c]) + fabs(pull.position[c]));
-        for (k = 0; k < 4; ++k)
-            for (c = 0; c < 3 && !problem->system->still[point->copy[k]]; ++c)
+        for (k = 0; k < 4; k++)
+            for (c = 0; c < 3 && !problem->system->still[point->copy[k]]; c++)
                 force[3 * (size_t)point->copy[k] + (size_t)c] -= point->weight[k] * pull.force[c];
     }
 }
 
-/* Are springs and contact so much stiffer or softer, all in all, than when the coarse matrices were made that these are of no use? */
-static void gxsp_compare_terms(gxsp_system *system)
-{
+/* Are springs and contact so much stiffer or softer, all in all, than when the coarse matrices were made that these are
+ * of no use? */
+static void gxsp_compare_terms(gxsp_system *system) {
     double sum = 0;
     size_t t;
-    for (t = 0; t < system->lasting->count; ++t) {
+    for (t = 0; t < system->lasting->count; t++) {
         const float *h = system->lasting->term[t].hessian;
         sum += (double)h[0] + (double)h[3] + (double)h[5];
     }
@@ -7424,8 +7046,7 @@ static void gxsp_compare_terms(gxsp_system *system)
 }
 
 /* Hessians of all points at a displacement as terms, and which pieces they touch */
-static void gxsp_terms_make(const gxsp_problem *problem, const double *displacement)
-{
+static void gxsp_terms_make(const gxsp_problem *problem, const double *displacement) {
     gxsp_lasting *lasting = problem->system->lasting;
     const gxs_point *point;
     gxsp_pull pull;
@@ -7436,13 +7057,11 @@ static void gxsp_terms_make(const gxsp_problem *problem, const double *displacem
         gxsp_term *term = &lasting->term[lasting->count];
         if (!(pull.hessian[0] + pull.hessian[3] + pull.hessian[5] > 0) && !(gxsp_dot(pull.force, pull.force, 1) > 0))
             continue;
-        ++lasting->count;
+        lasting->count++;
         memcpy(term->copy, point->copy, sizeof term->copy);
         term->assembled = 0;
-        for (k = 0; k < 4; ++k)
-            term->weight[k] = (float)point->weight[k];
-        for (k = 0; k < 6; ++k)
-            term->hessian[k] = (float)(problem->system->scale * pull.hessian[k]);
+        for (k = 0; k < 4; k++) term->weight[k] = (float)point->weight[k];
+        for (k = 0; k < 6; k++) term->hessian[k] = (float)(problem->system->scale * pull.hessian[k]);
     }
     gxsp_touch_pieces(problem->system);
     gxsp_compare_terms(problem->system);
@@ -7455,40 +7074,38 @@ typedef struct gxsp_norms {
     double energy, displacement;
 } gxsp_norms;
 
-static int gxsp_reduced(const gxsp_norms *now, const gxsp_norms *first, double goal)
-{
+static int gxsp_reduced(const gxsp_norms *now, const gxsp_norms *first, double goal) {
     return now->energy <= goal * first->energy && now->displacement <= goal * first->displacement;
 }
 
 /* scaled = D^-1 r, times the step length of the smoother, of copies first to end - 1; sums: r . D^-1 r, |D^-1 r|^2 */
-static void gxsp_scale_copies(const gxsp_system *system, const double *r, size_t first, size_t end, double *sums)
-{
+static void gxsp_scale_copies(const gxsp_system *system, const double *r, size_t first, size_t end, double *sums) {
     const double factor = system->coarse_used && !system->fine ? (double)system->omega : 1;
     double energy = 0, displacement = 0;
     size_t i;
-    for (i = first; i < end; ++i) {
+    for (i = first; i < end; i++) {
         const float *d = system->diagonal + 6 * i;
         const double a = r[3 * i], b = r[3 * i + 1], c = r[3 * i + 2];
-        const double x = (double)d[0] * a + (double)d[1] * b + (double)d[2] * c, y = (double)d[1] * a + (double)d[3] * b + (double)d[4] * c,
+        const double x = (double)d[0] * a + (double)d[1] * b + (double)d[2] * c,
+                     y = (double)d[1] * a + (double)d[3] * b + (double)d[4] * c,
                      z = (double)d[2] * a + (double)d[4] * b + (double)d[5] * c;
         energy += x * a + y * b + z * c;
         displacement += x * x + y * y + z * z;
-        system->scaled[i][0] = (float)(factor * x), system->scaled[i][1] = (float)(factor * y), system->scaled[i][2] = (float)(factor * z);
+        system->scaled[i][0] = (float)(factor * x), system->scaled[i][1] = (float)(factor * y),
+        system->scaled[i][2] = (float)(factor * z);
     }
     sums[0] = energy;
     sums[1] = displacement;
 }
 
-static void gxsp_task_scale(void *context, size_t index)
-{
+static void gxsp_task_scale(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     size_t first, end = gxsp_range(pass->system, index, &first);
     gxsp_scale_copies(pass->system, pass->from, first, end, pass->system->range_sum[index]);
 }
 
 /* Over all ranges, by a task that scales them. */
-static gxsp_norms gxsp_norms_of(gxsp_system *system, void (*task)(void *, size_t), gxsp_pass *pass)
-{
+static gxsp_norms gxsp_norms_of(gxsp_system *system, void (*task)(void *, size_t), gxsp_pass *pass) {
     gxsp_norms norms;
     double sums[2];
     gxsp_over_ranges(system, task, pass, sums, 2);
@@ -7496,8 +7113,7 @@ static gxsp_norms gxsp_norms_of(gxsp_system *system, void (*task)(void *, size_t
     return norms;
 }
 
-static gxsp_norms gxsp_scale(gxsp_system *system, const double *r)
-{
+static gxsp_norms gxsp_scale(gxsp_system *system, const double *r) {
     gxsp_pass pass;
     memset(&pass, 0, sizeof pass);
     pass.from = r;
@@ -7505,13 +7121,12 @@ static gxsp_norms gxsp_scale(gxsp_system *system, const double *r)
 }
 
 /* direction += factor x, residual -= factor y, and the residual is scaled */
-static void gxsp_task_advance(void *context, size_t index)
-{
+static void gxsp_task_advance(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
     size_t i, first, end = gxsp_range(system, index, &first), c;
-    for (i = first; i < end; ++i)
-        for (c = 0; c < 3; ++c) {
+    for (i = first; i < end; i++)
+        for (c = 0; c < 3; c++) {
             system->direction[3 * i + c] += pass->factor * (double)pass->x[i][c];
             system->residual[3 * i + c] -= pass->factor * (double)pass->y[i][c];
         }
@@ -7519,8 +7134,7 @@ static void gxsp_task_advance(void *context, size_t index)
 }
 
 /* The direction goes on by length x, and the residual by as much of y = A x. Returns what is left. */
-static gxsp_norms gxsp_advance(gxsp_system *system, double length, gxsp_vector4 *x, gxsp_vector4 *y)
-{
+static gxsp_norms gxsp_advance(gxsp_system *system, double length, gxsp_vector4 *x, gxsp_vector4 *y) {
     gxsp_pass pass;
     memset(&pass, 0, sizeof pass);
     pass.factor = length;
@@ -7530,32 +7144,30 @@ static gxsp_norms gxsp_advance(gxsp_system *system, double length, gxsp_vector4 
 }
 
 /* Sums: residual . x, x . y if there is a y */
-static void gxsp_task_work(void *context, size_t index)
-{
+static void gxsp_task_work(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
     size_t i, end = gxsp_range(system, index, &i), c;
     double *sums = system->range_sum[index];
     sums[0] = sums[1] = 0;
-    for (; i < end; ++i)
-        for (c = 0; c < 3; ++c) {
+    for (; i < end; i++)
+        for (c = 0; c < 3; c++) {
             sums[0] += system->residual[3 * i + c] * (double)pass->x[i][c];
             sums[1] += pass->y ? (double)pass->x[i][c] * (double)pass->y[i][c] : 0;
         }
 }
 
 /* z = M^-1 r from D^-1 r, both scaled; without translations of loose pieces. energy: r . D^-1 r. Returns r . z. */
-static double gxsp_precondition(gxsp_system *system, double rate, double energy)
-{
+static double gxsp_precondition(gxsp_system *system, double rate, double energy) {
     gxsp_pass pass;
     double sums[2];
     size_t i;
     int c;
-    if (system->coarse_used)
-        gxsp_multigrid(system, rate, energy);
-    for (i = 0; i < system->n && system->volume; ++i)
-        for (c = 0; c < 3; ++c)
-            system->scaled[i][c] = system->still[i] ? 0 : system->volume[i] * (float)system->residual[3 * i + (size_t)c];
+    if (system->coarse_used) gxsp_multigrid(system, rate, energy);
+    for (i = 0; i < system->n && system->volume; i++)
+        for (c = 0; c < 3; c++)
+            system->scaled[i][c] =
+                system->still[i] ? 0 : system->volume[i] * (float)system->residual[3 * i + (size_t)c];
     gxsp_extend(system, system->scaled);
     gxsp_remove_translations(system, system->scaled);
     memset(&pass, 0, sizeof pass);
@@ -7564,16 +7176,15 @@ static double gxsp_precondition(gxsp_system *system, double rate, double energy)
     return sums[0];
 }
 
-/* Is r . z that of something definite, and of a size that can be? energy: r . D^-1 r, of which single precision tells 1e7 times as much at most */
-static int gxsp_is_definite(double rho, double energy)
-{
+/* Is r . z that of something definite, and of a size that can be? energy: r . D^-1 r, of which single precision tells
+ * 1e7 times as much at most */
+static int gxsp_is_definite(double rho, double energy) {
     return gxsp_finite(rho) && rho > 0 && rho <= GXSP_ABSURD * energy;
 }
 
-/* As gxsp_precondition, but definite: should the cycle prove not to be, it is smoothed more carefully, and at worst left out of this solve.
- * now: measures of the residual; changed: the preconditioner is not the one before */
-static double gxsp_precondition_definite(gxsp_system *system, double rate, const gxsp_norms *now, int *changed)
-{
+/* As gxsp_precondition, but definite: should the cycle prove not to be, it is smoothed more carefully, and at worst
+ * left out of this solve. now: measures of the residual; changed: the preconditioner is not the one before */
+static double gxsp_precondition_definite(gxsp_system *system, double rate, const gxsp_norms *now, int *changed) {
     const float omega = system->omega;
     double rho = gxsp_precondition(system, rate, now->energy);
     if (!gxsp_is_definite(rho, now->energy) && system->coarse_used && !system->fine && system->omega_rest == 0) {
@@ -7591,29 +7202,26 @@ static double gxsp_precondition_definite(gxsp_system *system, double rate, const
     return rho;
 }
 
-static double gxsp_now(const gxsp_problem *problem)
-{
+static double gxsp_now(const gxsp_problem *problem) {
     return problem->step->clock ? problem->step->clock(problem->step->clock_user) : 0;
 }
 
-static int gxsp_out_of_time(gxsp_problem *problem)
-{
-    if (problem->step->budget_seconds > 0 && problem->step->clock && gxsp_now(problem) - problem->start > problem->step->budget_seconds)
+static int gxsp_out_of_time(gxsp_problem *problem) {
+    if (problem->step->budget_seconds > 0 && problem->step->clock &&
+        gxsp_now(problem) - problem->start > problem->step->budget_seconds)
         problem->report.stop = GXS_STOP_SECONDS;
     return problem->report.stop == GXS_STOP_SECONDS;
 }
 
-/* A guess made ready for what is still now, and its product. Returns its curvature; work: with the residual, cross: of the product with
- * the other guess, if there is one. */
-static double gxsp_weigh_guess(gxsp_system *system, double rate, gxsp_vector4 *guess, gxsp_vector4 *other, gxsp_vector4 *product, double *work,
-                               double *cross)
-{
+/* A guess made ready for what is still now, and its product. Returns its curvature; work: with the residual, cross: of
+ * the product with the other guess, if there is one. */
+static double gxsp_weigh_guess(gxsp_system *system, double rate, gxsp_vector4 *guess, gxsp_vector4 *other,
+                               gxsp_vector4 *product, double *work, double *cross) {
     gxsp_pass pass;
     double sums[2], curvature;
     size_t i;
-    for (i = 0; i < system->n; ++i)
-        if (system->still[i])
-            memset(guess[i], 0, sizeof *guess);
+    for (i = 0; i < system->n; i++)
+        if (system->still[i]) memset(guess[i], 0, sizeof *guess);
     gxsp_extend(system, guess);
     gxsp_remove_translations(system, guess);
     curvature = gxsp_product(system, rate, guess, product);
@@ -7630,18 +7238,18 @@ static double gxsp_weigh_guess(gxsp_system *system, double rate, gxsp_vector4 *g
     return curvature;
 }
 
-/* Takes what is best of the plane of the last two steps' first directions as the start of conjugate gradients: where the acceleration
- * changes little from step to step, that is most of the solution. Returns what is left of the residual, of norms now. */
-static gxsp_norms gxsp_guess_direction(gxsp_system *system, double rate, gxsp_norms now)
-{
+/* Takes what is best of the plane of the last two steps' first directions as the start of conjugate gradients: where
+ * the acceleration changes little from step to step, that is most of the solution. Returns what is left of the
+ * residual, of norms now. */
+static gxsp_norms gxsp_guess_direction(gxsp_system *system, double rate, gxsp_norms now) {
     gxsp_vector4 *product = system->search;
     double curvature, work, first, cross = 0, second = 0;
     curvature = gxsp_weigh_guess(system, rate, system->guess[0], NULL, product, &work, NULL);
     first = work / curvature;
-    if (!(curvature > 0) || !gxsp_finite(work) || !gxsp_finite(curvature) || !gxsp_finite(first))
-        return now;
+    if (!(curvature > 0) || !gxsp_finite(work) || !gxsp_finite(curvature) || !gxsp_finite(first)) return now;
     if (system->guess_count > 1) {
-        double further, own = gxsp_weigh_guess(system, rate, system->guess[1], system->guess[0], system->product, &further, &cross);
+        double further,
+            own = gxsp_weigh_guess(system, rate, system->guess[1], system->guess[0], system->product, &further, &cross);
         const double share = cross / curvature, rest = own - share * cross;
         second = (further - share * work) / rest;
         if (!(rest > GXSP_PARALLEL * own) || !gxsp_finite(own) || !gxsp_finite(share) || !gxsp_finite(second))
@@ -7649,52 +7257,45 @@ static gxsp_norms gxsp_guess_direction(gxsp_system *system, double rate, gxsp_no
         first -= second > 0 || second < 0 ? second * share : 0;
     }
     now = gxsp_advance(system, first, system->guess[0], product);
-    if (second > 0 || second < 0)
-        now = gxsp_advance(system, second, system->guess[1], system->product);
+    if (second > 0 || second < 0) now = gxsp_advance(system, second, system->guess[1], system->product);
     return now;
 }
 
 /* The direction found is the next step's first guess, the one before its second. */
-static void gxsp_keep_guess(gxsp_system *system)
-{
+static void gxsp_keep_guess(gxsp_system *system) {
     gxsp_vector4 *oldest = system->guess[1];
     size_t i;
     system->guess[1] = system->guess[0];
     system->guess[0] = oldest;
-    for (i = 0; i < 3 * system->n; ++i)
-        oldest[i / 3][i % 3] = (float)system->direction[i];
+    for (i = 0; i < 3 * system->n; i++) oldest[i / 3][i % 3] = (float)system->direction[i];
     system->guess_count += system->guess_count < 2;
 }
 
 /* search = scaled + factor search */
-static void gxsp_task_search(void *context, size_t index)
-{
+static void gxsp_task_search(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
     const float factor = (float)pass->factor;
     size_t i, end = gxsp_range(system, index, &i), c;
-    for (; i < end; ++i)
-        for (c = 0; c < 4; ++c)
-            system->search[i][c] = system->scaled[i][c] + factor * system->search[i][c];
+    for (; i < end; i++)
+        for (c = 0; c < 4; c++) system->search[i][c] = system->scaled[i][c] + factor * system->search[i][c];
 }
 
 /* For each piece the work along the direction of what is left of the residual */
-static void gxsp_note_left(gxsp_system *system)
-{
+static void gxsp_note_left(gxsp_system *system) {
     size_t i;
     uint32_t p;
-    for (p = 0; p < system->piece_count; ++p)
-        system->pieces[p].left = 0;
-    for (i = 0; i < system->n; ++i)
-        gxsp_lead_of(system, i)->left += gxsp_dot(system->residual + 3 * i, system->direction + 3 * i, 1) / system->scale;
+    for (p = 0; p < system->piece_count; p++) system->pieces[p].left = 0;
+    for (i = 0; i < system->n; i++)
+        gxsp_lead_of(system, i)->left +=
+            gxsp_dot(system->residual + 3 * i, system->direction + 3 * i, 1) / system->scale;
 }
 
-/* Solves scale (K + rate M) direction = scale residual to a share of the residual, which is used up. The directions of free pieces carry
- * no momentum: their translations are projected out of the preconditioned residual (deflated conjugate gradients; the residual
- * has none, see gxsp_start). Operator and preconditioner are of single precision, vectors and sums of double. 0 if a number
- * overflowed. */
-static int gxsp_conjugate_gradients(gxsp_problem *problem)
-{
+/* Solves scale (K + rate M) direction = scale residual to a share of the residual, which is used up. The directions of
+ * free pieces carry no momentum: their translations are projected out of the preconditioned residual (deflated
+ * conjugate gradients; the residual has none, see gxsp_start). Operator and preconditioner are of single precision,
+ * vectors and sums of double. 0 if a number overflowed. */
+static int gxsp_conjugate_gradients(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     const double goal = problem->cg_tolerance * problem->cg_tolerance, rate = problem->rate;
     const int start = problem->report.newton_iterations == 0;
@@ -7705,29 +7306,24 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
     double rho = 0;
     size_t i;
     problem->indefinite = 0;
-    for (i = 0; i < 3 * system->n; ++i)
-        system->residual[i] *= system->scale;
+    for (i = 0; i < 3 * system->n; i++) system->residual[i] *= system->scale;
     now = first = gxsp_scale(system, system->residual);
     memset(system->direction, 0, 3 * system->n * sizeof(double));
-    if (start && system->guess_count > 0)
-        now = gxsp_guess_direction(system, rate, now);
+    if (start && system->guess_count > 0) now = gxsp_guess_direction(system, rate, now);
     guessed = now;
-    if (!gxsp_reduced(&now, &first, goal))
-        rho = gxsp_precondition_definite(system, rate, &now, &changed);
+    if (!gxsp_reduced(&now, &first, goal)) rho = gxsp_precondition_definite(system, rate, &now, &changed);
     memcpy(system->search, system->scaled, system->n * sizeof *system->search);
     memset(&pass, 0, sizeof pass);
-    for (iteration = 0; iteration < problem->cg_iterations && !gxsp_reduced(&now, &first, goal); ++iteration) {
+    for (iteration = 0; iteration < problem->cg_iterations && !gxsp_reduced(&now, &first, goal); iteration++) {
         const double curvature = gxsp_product(system, rate, system->search, system->product), before = rho;
-        if (!gxsp_finite(curvature) || !gxsp_finite(rho))
-            return 0;
+        if (!gxsp_finite(curvature) || !gxsp_finite(rho)) return 0;
         if (curvature <= 0 || rho <= 0) { /* of projected Hessians: rounding is all that is left */
             problem->indefinite = 1;
             break;
         }
         now = gxsp_advance(system, rho / curvature, system->search, system->product);
-        ++problem->report.cg_iterations;
-        if (gxsp_reduced(&now, &first, goal) || gxsp_out_of_time(problem))
-            break;
+        problem->report.cg_iterations++;
+        if (gxsp_reduced(&now, &first, goal) || gxsp_out_of_time(problem)) break;
         rho = gxsp_precondition_definite(system, rate, &now, &changed);
         pass.factor = changed ? 0 : rho / before;
         gxsp_over_ranges(system, gxsp_task_search, &pass, NULL, 0);
@@ -7736,57 +7332,50 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem)
     gxsp_note_left(system);
     gxsp_follow(system, NULL, system->direction);
     gxsp_balance_direction(problem);
-    if (gxsp_first_not_finite(system->direction, 3 * system->n) < 3 * system->n)
-        return 0;
-    if (start)
-        gxsp_keep_guess(system);
+    if (gxsp_first_not_finite(system->direction, 3 * system->n) < 3 * system->n) return 0;
+    if (start) gxsp_keep_guess(system);
     return 1;
 }
 
-/* Does multigrid pay at this rate? In a large piece whose copies' mean share of inertia in the linearisation's diagonal blocks is small, each
- * counted up to 4/3 of the bound, so that a quarter of stiff ones is enough; or where it is asked for */
-static int gxsp_coarse_pays(gxsp_system *system, double rate)
-{
+/* Does multigrid pay at this rate? In a large piece whose copies' mean share of inertia in the linearisation's diagonal
+ * blocks is small, each counted up to 4/3 of the bound, so that a quarter of stiff ones is enough; or where it is asked
+ * for */
+static int gxsp_coarse_pays(gxsp_system *system, double rate) {
     const double bound = 3 * GXSP_INERTIA / (system->scale * rate);
     size_t i;
     uint32_t p;
-    if (!system->chosen || !(rate > 0))
-        return 1;
+    if (!system->chosen || !(rate > 0)) return 1;
     gxsp_clear_pieces(system);
-    for (i = 0; i < system->n; ++i) {
+    for (i = 0; i < system->n; i++) {
         double *sum = system->pieces[system->piece[i]].sum; /* share, copies */
         const float *d = system->diagonal + 6 * i;
         const double compliance = (double)d[0] + (double)d[3] + (double)d[5], share = system->lumped[i] * compliance;
-        if (system->still[i] || !(compliance > 0))
-            continue;
+        if (system->still[i] || !(compliance > 0)) continue;
         sum[0] += share < 4 * bound / 3 ? share : 4 * bound / 3;
         sum[1] += 1;
     }
-    for (p = 0; p < system->piece_count; ++p)
-        if (system->pieces[p].sum[1] >= gxsp_large(system) && system->pieces[p].sum[0] <= bound * system->pieces[p].sum[1])
+    for (p = 0; p < system->piece_count; p++)
+        if (system->pieces[p].sum[1] >= gxsp_large(system) &&
+            system->pieces[p].sum[0] <= bound * system->pieces[p].sum[1])
             return 1;
     return 0;
 }
 
-/* Brings matrix and preconditioner up to date with the linearisation: the coarse matrices are made anew where they are missing, where
- * the rate has changed, where iterations have doubled since they were made, or before they rise by more than a renewal costs. */
-static int gxsp_prepare(gxsp_problem *problem)
-{
+/* Brings matrix and preconditioner up to date with the linearisation: the coarse matrices are made anew where they are
+ * missing, where the rate has changed, where iterations have doubled since they were made, or before they rise by more
+ * than a renewal costs. */
+static int gxsp_prepare(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     int other; /* than the rate of the coarse matrices */
     if (system->fine) {
         gxsp_assemble(system, system->scale * problem->rate);
-        if (!gxsp_invert_fine(system))
-            return 0;
+        if (!gxsp_invert_fine(system)) return 0;
     }
     system->coarse_used = system->level_count > 0 && gxsp_coarse_pays(system, problem->rate);
-    if (!system->coarse_used)
-        return 1;
-    if (!system->fine)
-        gxsp_choose_omega(system, problem->rate);
+    if (!system->coarse_used) return 1;
+    if (!system->fine) gxsp_choose_omega(system, problem->rate);
     other = system->coarse_rate < problem->rate || system->coarse_rate > problem->rate;
-    if (!other && (problem->exact || !(system->coarse_worn || gxsp_coarse_ends(system))))
-        return 1;
+    if (!other && (problem->exact || !(system->coarse_worn || gxsp_coarse_ends(system)))) return 1;
     system->coarse_lived = system->coarse_served;
     system->pace_old = other ? 0 : system->pace;
     system->pace = system->read_nepers = 0;
@@ -7798,34 +7387,28 @@ static int gxsp_prepare(gxsp_problem *problem)
     return gxsp_coarse_numbers(system, problem->rate);
 }
 
-/* For how long the coarse matrices are to serve, now that their first reading tells how much slower the ones before were in the end: if the
- * share lost grows to that evenly, cost / life + share / lived x life / 2 is least. */
-static void gxsp_learn_life(gxsp_system *system)
-{
+/* For how long the coarse matrices are to serve, now that their first reading tells how much slower the ones before
+ * were in the end: if the share lost grows to that evenly, cost / life + share / lived x life / 2 is least. */
+static void gxsp_learn_life(gxsp_system *system) {
     const double share = system->pace_old / system->pace - 1, lived = system->coarse_lived;
     const double best = share > GXSP_AGEING ? sqrt(2 * GXSP_REMAKE * lived / share) : GXSP_PATIENCE * lived;
     system->coarse_life = best < 1e9 ? (uint32_t)best + 1 : 1000000000;
 }
 
 /* Takes a reading when it is due. */
-static void gxsp_read_pace(gxsp_system *system)
-{
+static void gxsp_read_pace(gxsp_system *system) {
     const int first = !(system->pace > 0);
-    if (system->read < GXSP_READING || !(system->read_nepers > 0))
-        return;
+    if (system->read < GXSP_READING || !(system->read_nepers > 0)) return;
     system->pace = system->read / system->read_nepers;
     system->read = 0;
     system->read_nepers = 0;
-    if (first)
-        system->pace_young = system->pace;
-    if (first && system->pace_old > 0)
-        gxsp_learn_life(system);
+    if (first) system->pace_young = system->pace;
+    if (first && system->pace_old > 0) gxsp_learn_life(system);
     system->coarse_worn |= system->pace > GXSP_WORN * system->pace_young;
 }
 
 /* Solves the linear system and learns from the count of iterations how the coarse matrices age. */
-static int gxsp_solve(gxsp_problem *problem)
-{
+static int gxsp_solve(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     uint32_t before = problem->report.cg_iterations, count;
     double start = gxsp_now(problem), prepared;
@@ -7835,9 +7418,10 @@ static int gxsp_solve(gxsp_problem *problem)
     problem->report.seconds_prepare += prepared - start;
     problem->report.seconds_solve += gxsp_now(problem) - prepared;
     count = problem->report.cg_iterations - before;
-    problem->report.preconditioner = system->coarse_used ? GXS_MULTIGRID : system->volume ? GXS_VOLUME_RATIO : GXS_BLOCK_JACOBI;
-    if (!system->coarse_used)
-        return solved;
+    problem->report.preconditioner = system->coarse_used ? GXS_MULTIGRID
+                                   : system->volume      ? GXS_VOLUME_RATIO
+                                                         : GXS_BLOCK_JACOBI;
+    if (!system->coarse_used) return solved;
     system->coarse_served += count;
     system->read += count;
     system->read_nepers += count > 0 ? problem->nepers : 0;
@@ -7845,14 +7429,13 @@ static int gxsp_solve(gxsp_problem *problem)
     return solved;
 }
 
-/* >>sleep: a piece that has been slow for long is left out until something touches it: loads, targets, springs, contact points or planes that
- * change, a state or a rest time that the caller has written */
+/* >>sleep: a piece that has been slow for long is left out until something touches it: loads, targets, springs, contact
+ * points or planes that change, a state or a rest time that the caller has written */
 
 /* 1 of no values, never 0 */
-static uint64_t gxsp_hash(uint64_t hash, const double *values, size_t count)
-{
+static uint64_t gxsp_hash(uint64_t hash, const double *values, size_t count) {
     size_t i;
-    for (i = 0; i < count; ++i) {
+    for (i = 0; i < count; i++) {
         uint64_t bits;
         memcpy(&bits, &values[i], sizeof bits);
         hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
@@ -7861,28 +7444,23 @@ static uint64_t gxsp_hash(uint64_t hash, const double *values, size_t count)
     return hash | 1;
 }
 
-static int gxsp_differs(const double *a, const double *b)
-{
-    return memcmp(a, b, 3 * sizeof *a) != 0;
-}
+static int gxsp_differs(const double *a, const double *b) { return memcmp(a, b, 3 * sizeof *a) != 0; }
 
 /* Hashes of nodal forces and contact points, in all and by piece. Copies without a force do not count. */
-static uint64_t gxsp_hash_forces(gxsp_system *system, const gxs_step_desc *step)
-{
+static uint64_t gxsp_hash_forces(gxsp_system *system, const gxs_step_desc *step) {
     static const double zero[3] = {0, 0, 0};
     uint64_t all = 1;
     uint32_t p;
     size_t i;
-    for (p = 0; p < system->piece_count; ++p)
-        system->pieces[p].forces[1] = 1;
-    for (i = 0; step->forces && i < system->n; ++i)
+    for (p = 0; p < system->piece_count; p++) system->pieces[p].forces[1] = 1;
+    for (i = 0; step->forces && i < system->n; i++)
         if (gxsp_differs(step->forces + 3 * i, zero)) {
             uint64_t *hash = &system->pieces[system->piece[i]].forces[1];
             const double index = (double)i;
             *hash = gxsp_hash(gxsp_hash(*hash, &index, 1), step->forces + 3 * i, 3);
             all = gxsp_hash(gxsp_hash(all, &index, 1), step->forces + 3 * i, 3);
         }
-    for (i = 0; i < 4 * step->point_count && step->sleep_speed > 0; ++i) {
+    for (i = 0; i < 4 * step->point_count && step->sleep_speed > 0; i++) {
         const gxs_point *point = &step->points[i / 4];
         const double values[2] = {(double)point->copy[i % 4], point->weight[i % 4]};
         uint64_t *hash = &system->pieces[system->piece[point->copy[i % 4]]].forces[1];
@@ -7894,25 +7472,24 @@ static uint64_t gxsp_hash_forces(gxsp_system *system, const gxs_step_desc *step)
     return all;
 }
 
-static gxs_scene gxsp_scene_make(gxsp_system *system, const gxs_step_desc *step)
-{
+static gxs_scene gxsp_scene_make(gxsp_system *system, const gxs_step_desc *step) {
     gxs_scene scene;
     size_t i;
     memcpy(scene.gravity, step->gravity, sizeof scene.gravity);
     scene.planes = 1;
-    for (i = 0; i < step->plane_count; ++i) {
+    for (i = 0; i < step->plane_count; i++) {
         const gxs_plane *plane = &step->planes[i];
         const double values[4] = {plane->offset, plane->stiffness, plane->friction, plane->sticking_speed};
         scene.planes = gxsp_hash(gxsp_hash(scene.planes, plane->normal, 3), values, 4);
     }
     scene.forces = gxsp_hash_forces(system, step);
     scene.springs = 1;
-    for (i = 0; i < system->piece_count; ++i)
-        system->pieces[i].sprung[1] = 0;
-    for (i = 0; i < 4 * step->spring_count; ++i) {
+    for (i = 0; i < system->piece_count; i++) system->pieces[i].sprung[1] = 0;
+    for (i = 0; i < 4 * step->spring_count; i++) {
         const gxs_spring *spring = &step->springs[i / 4];
         const double values[3] = {(double)spring->point.copy[i % 4], spring->point.weight[i % 4], spring->stiffness};
-        scene.springs = gxsp_hash(gxsp_hash(gxsp_hash(scene.springs, spring->target, 3), spring->point.position, 3), values, 3);
+        scene.springs =
+            gxsp_hash(gxsp_hash(gxsp_hash(scene.springs, spring->target, 3), spring->point.position, 3), values, 3);
         if (fabs(spring->point.weight[i % 4]) > 0)
             system->pieces[system->piece[spring->point.copy[i % 4]]].sprung[1] = 1;
     }
@@ -7920,31 +7497,30 @@ static gxs_scene gxsp_scene_make(gxsp_system *system, const gxs_step_desc *step)
 }
 
 /* Is the state of a copy not what the last step returned? Of velocities only those of sleepers are known: 0. */
-static int gxsp_is_written(const gxsp_system *system, size_t copy, const double *displacement, const double *velocity)
-{
+static int gxsp_is_written(const gxsp_system *system, size_t copy, const double *displacement, const double *velocity) {
     static const double zero[3] = {0, 0, 0};
-    if (system->fixed[copy])
-        return 0;
+    if (system->fixed[copy]) return 0;
     return ((system->pieces[system->piece[copy]].state & GXSP_ASLEEP) && gxsp_differs(velocity, zero)) ||
            (system->stepped && gxsp_differs(displacement, system->current + 3 * copy));
 }
 
 /* Wakes the pieces of which something has changed. */
-static void gxsp_wake_touched(gxsp_problem *problem, const double *displacement, const double *velocity)
-{
+static void gxsp_wake_touched(gxsp_problem *problem, const double *displacement, const double *velocity) {
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
     const gxs_scene *before = &system->lasting->scene, *now = &problem->scene;
-    const int springs = now->springs != before->springs, forces = now->forces != before->forces, known = system->still_known;
-    const int all = gxsp_differs(now->gravity, before->gravity) || now->planes != before->planes || (!known && (springs || forces));
+    const int springs = now->springs != before->springs, forces = now->forces != before->forces,
+              known = system->still_known;
+    const int all =
+        gxsp_differs(now->gravity, before->gravity) || now->planes != before->planes || (!known && (springs || forces));
     size_t i;
     uint32_t p;
-    for (p = 0; p < system->piece_count; ++p) {
+    for (p = 0; p < system->piece_count; p++) {
         gxsp_piece *piece = &system->pieces[p];
         piece->woken = (system->failed && piece->woken) || all || (forces && piece->forces[0] != piece->forces[1]) ||
                        (springs && (piece->sprung[0] || piece->sprung[1]));
     }
-    for (i = 0; i < system->n; ++i) {
+    for (i = 0; i < system->n; i++) {
         gxsp_piece *piece = &system->pieces[system->piece[i]];
         if (step->targets && system->held[i] && gxsp_differs(step->targets + 3 * i, displacement + 3 * i))
             piece->woken = 1;
@@ -7954,22 +7530,22 @@ static void gxsp_wake_touched(gxsp_problem *problem, const double *displacement,
 }
 
 /* Is a copy faster than what may sleep? velocity: its own */
-static int gxsp_too_fast(const gxs_step_desc *step, const double *velocity)
-{
+static int gxsp_too_fast(const gxs_step_desc *step, const double *velocity) {
     return gxsp_dot(velocity, velocity, 1) > step->sleep_speed * step->sleep_speed;
 }
 
 /* Rouses the pieces that springs and contact points tie to those that are awake. Were there any? */
-static int gxsp_rouse_tied(gxsp_system *system, const gxs_step_desc *step)
-{
+static int gxsp_rouse_tied(gxsp_system *system, const gxs_step_desc *step) {
     int any = 0, k;
     size_t i;
-    for (i = 0; i < step->spring_count + step->point_count; ++i) {
-        const gxs_point *point = i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
+    for (i = 0; i < step->spring_count + step->point_count; i++) {
+        const gxs_point *point =
+            i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
         int awake = 0;
-        for (k = 0; k < 4; ++k)
-            awake |= fabs(point->weight[k]) > 0 && !system->fixed[point->copy[k]] && !system->pieces[system->piece[point->copy[k]]].tired;
-        for (k = 0; k < 4 && awake; ++k) {
+        for (k = 0; k < 4; k++)
+            awake |= fabs(point->weight[k]) > 0 && !system->fixed[point->copy[k]] &&
+                     !system->pieces[system->piece[point->copy[k]]].tired;
+        for (k = 0; k < 4 && awake; k++) {
             gxsp_piece *piece = &system->pieces[system->piece[point->copy[k]]];
             any |= fabs(point->weight[k]) > 0 && piece->tired;
             piece->tired &= !(fabs(point->weight[k]) > 0);
@@ -7979,8 +7555,7 @@ static int gxsp_rouse_tied(gxsp_system *system, const gxs_step_desc *step)
 }
 
 /* Which pieces sleep in this step, and so which copies are still. */
-static void gxsp_choose_sleepers(gxsp_problem *problem, const double *displacement, const double *velocity)
-{
+static void gxsp_choose_sleepers(gxsp_problem *problem, const double *displacement, const double *velocity) {
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
     const double time = step->sleep_time > 0 ? step->sleep_time : 0.5;
@@ -7989,40 +7564,35 @@ static void gxsp_choose_sleepers(gxsp_problem *problem, const double *displaceme
     size_t i;
     problem->scene = gxsp_scene_make(system, step);
     gxsp_wake_touched(problem, displacement, velocity);
-    for (p = 0; p < system->piece_count; ++p)
+    for (p = 0; p < system->piece_count; p++)
         system->pieces[p].tired = step->sleep_speed > 0 && !system->pieces[p].woken;
-    for (i = 0; i < system->n && step->sleep_speed > 0; ++i)
+    for (i = 0; i < system->n && step->sleep_speed > 0; i++)
         if (!system->fixed[i] && (step->rest_times[i] < time || gxsp_too_fast(step, velocity + 3 * i)))
             system->pieces[system->piece[i]].tired = 0;
     while (step->sleep_speed > 0 && gxsp_rouse_tied(system, step)) {}
-    for (p = 0; p < system->piece_count; ++p) {
+    for (p = 0; p < system->piece_count; p++) {
         gxsp_piece *piece = &system->pieces[p];
         const uint32_t state = (piece->state & ~GXSP_ASLEEP) | (piece->tired ? GXSP_ASLEEP : 0);
         changed |= state != piece->state;
         system->coarse_worn |= (piece->state & ~state & GXSP_ASLEEP) != 0; /* its matrices are old */
         piece->state = state;
     }
-    if (!changed && system->still_known)
-        return;
+    if (!changed && system->still_known) return;
     system->still_known = 1;
     system->base_known &= !changed;
     gxsp_mark_still(system);
     system->active = 3 * system->n;
-    for (i = 0; i < system->n; ++i)
-        system->active -= system->still[i] ? 3 : 0;
-    for (i = 0; i < system->follower_count; ++i)
-        system->active -= system->still[system->followers[i].copy] ? 0 : 3;
+    for (i = 0; i < system->n; i++) system->active -= system->still[i] ? 3 : 0;
+    for (i = 0; i < system->follower_count; i++) system->active -= system->still[system->followers[i].copy] ? 0 : 3;
 }
 
 /* The rest times of a step that has ended with these velocities */
-static void gxsp_count_rest(const gxsp_problem *problem, const double *velocity)
-{
+static void gxsp_count_rest(const gxsp_problem *problem, const double *velocity) {
     const gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
     size_t i;
-    if (!(step->sleep_speed > 0))
-        return;
-    for (i = 0; i < system->n; ++i) {
+    if (!(step->sleep_speed > 0)) return;
+    for (i = 0; i < system->n; i++) {
         const int rests = !gxsp_too_fast(step, velocity + 3 * i) && !system->pieces[system->piece[i]].woken;
         step->rest_times[i] = rests ? step->rest_times[i] + step->dt : 0;
     }
@@ -8030,21 +7600,19 @@ static void gxsp_count_rest(const gxsp_problem *problem, const double *velocity)
 
 /* >>newton */
 
-/* Adds the forces on held copies, which have no D of their own, scaled by the mean of the others'. A body that only its held copies
- * deform has no other force when it is in balance. */
-static void gxsp_add_reactions(const gxsp_system *system, gxsp_norms *norms)
-{
+/* Adds the forces on held copies, which have no D of their own, scaled by the mean of the others'. A body that only its
+ * held copies deform has no other force when it is in balance. */
+static void gxsp_add_reactions(const gxsp_system *system, gxsp_norms *norms) {
     double stiffness = 0, square = 0, compliance;
     size_t i, counted = 0;
-    for (i = 0; i < system->n; ++i) {
+    for (i = 0; i < system->n; i++) {
         const float *d = system->diagonal + 6 * i;
         const double trace = (double)d[0] + (double)d[3] + (double)d[5];
         if (trace > 0) {
             stiffness += 3 / trace;
-            ++counted;
+            counted++;
         }
-        if (system->held[i])
-            square += gxsp_dot(system->force + 3 * i, system->force + 3 * i, 1);
+        if (system->held[i]) square += gxsp_dot(system->force + 3 * i, system->force + 3 * i, 1);
     }
     compliance = stiffness > 0 ? (double)counted / stiffness : 0;
     norms->energy += square * compliance;
@@ -8052,8 +7620,7 @@ static void gxsp_add_reactions(const gxsp_system *system, gxsp_norms *norms)
 }
 
 /* Adds a vector's two measures by the block diagonal d. */
-static void gxsp_add_norms(const float *d, const double *r, double *sums)
-{
+static void gxsp_add_norms(const float *d, const double *r, double *sums) {
     const double x = (double)d[0] * r[0] + (double)d[1] * r[1] + (double)d[2] * r[2];
     const double y = (double)d[1] * r[0] + (double)d[3] * r[1] + (double)d[4] * r[2];
     const double z = (double)d[2] * r[0] + (double)d[4] * r[1] + (double)d[5] * r[2];
@@ -8061,19 +7628,19 @@ static void gxsp_add_norms(const float *d, const double *r, double *sums)
     sums[1] += x * x + y * y + z * z;
 }
 
-/* residual = load - force, 0 at fixed copies; sums: measures of load, inertia and elastic forces; inertia by the lumped mass */
-static void gxsp_task_balance(void *context, size_t index)
-{
+/* residual = load - force, 0 at fixed copies; sums: measures of load, inertia and elastic forces; inertia by the lumped
+ * mass */
+static void gxsp_task_balance(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
     double *sums = system->range_sum[index];
     size_t i, end = gxsp_range(system, index, &i), k;
     memset(sums, 0, sizeof *system->range_sum);
-    for (; i < end; ++i) {
+    for (; i < end; i++) {
         const float *d = system->diagonal + 6 * i;
         double load[3], inertia[3], elastic[3];
         gxsp_load(pass->problem, i, load);
-        for (k = 0; k < 3; ++k) {
+        for (k = 0; k < 3; k++) {
             inertia[k] = pass->rate * system->lumped[i] * (system->current[3 * i + k] - system->target[3 * i + k]);
             elastic[k] = system->force[3 * i + k] - inertia[k];
             system->residual[3 * i + k] = system->still[i] ? 0 : load[k] - system->force[3 * i + k];
@@ -8085,8 +7652,7 @@ static void gxsp_task_balance(void *context, size_t index)
 }
 
 /* residual at current, and its size relative to load, inertia and elastic forces (see gxs_step_report) */
-static double gxsp_balance(gxsp_problem *problem)
-{
+static double gxsp_balance(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     gxsp_norms elastic, residual;
     gxsp_pass pass;
@@ -8107,18 +7673,16 @@ static double gxsp_balance(gxsp_problem *problem)
 }
 
 /* What the pieces were evaluated to last is what they have at current. */
-static void gxsp_keep_energies(gxsp_problem *problem)
-{
+static void gxsp_keep_energies(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     uint32_t p;
-    for (p = 0; p < system->piece_count; ++p)
+    for (p = 0; p < system->piece_count; p++)
         memcpy(system->pieces[p].before, system->pieces[p].energies, sizeof system->pieces->before);
     gxsp_sum_energies(system, problem->energies);
 }
 
 /* Energies and forces at current. 0 if they are not finite. */
-static int gxsp_update(gxsp_problem *problem)
-{
+static int gxsp_update(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     gxsp_evaluate(problem, system->current, 0, system->force);
     gxsp_keep_energies(problem);
@@ -8127,48 +7691,42 @@ static int gxsp_update(gxsp_problem *problem)
 }
 
 /* Where everything is in a step that moves only held copies, to their targets, and what follows these: base */
-static void gxsp_find_base(const gxsp_problem *problem, double *to)
-{
+static void gxsp_find_base(const gxsp_problem *problem, double *to) {
     const gxsp_system *system = problem->system;
     const double *targets = problem->step->targets;
     size_t k;
     memcpy(to, problem->given, 3 * system->n * sizeof *to);
-    for (k = 0; k < 3 * system->n && targets; ++k)
+    for (k = 0; k < 3 * system->n && targets; k++)
         if (system->held[k / 3])
             to[k] = problem->step->integrator == GXS_MIDPOINT ? 0.5 * (to[k] + targets[k]) : targets[k];
     gxsp_follow(system, problem->given, to);
 }
 
-/* Light copies start where inertia leads what guides them: they have next to none of their own, and were they to start where they fly, the
- * linearisation would be that of an element torn apart. */
-static void gxsp_lead_lights(const gxsp_problem *problem)
-{
+/* Light copies start where inertia leads what guides them: they have next to none of their own, and were they to start
+ * where they fly, the linearisation would be that of an element torn apart. */
+static void gxsp_lead_lights(const gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     uint32_t i;
     int c;
-    for (i = 0; i < system->light_count; ++i) {
+    for (i = 0; i < system->light_count; i++) {
         const uint32_t copy = system->lights[i].copy;
         double mean[3];
-        if (system->still[copy])
-            continue;
+        if (system->still[copy]) continue;
         (void)gxsp_guide(system, &system->lights[i], system->target, problem->given, mean);
-        for (c = 0; c < 3; ++c)
+        for (c = 0; c < 3; c++)
             system->current[3 * (size_t)copy + (size_t)c] = problem->given[3 * (size_t)copy + (size_t)c] + mean[c];
     }
 }
 
-/* Start of Newton at base or where inertia leads, each loose piece translated so that its momentum balances. The rest of the
- * iteration cannot change momentum: elastic forces have none, and directions balance it. */
-static int gxsp_start(gxsp_problem *problem, int led)
-{
+/* Start of Newton at base or where inertia leads, each loose piece translated so that its momentum balances. The rest
+ * of the iteration cannot change momentum: elastic forces have none, and directions balance it. */
+static int gxsp_start(gxsp_problem *problem, int led) {
     gxsp_system *system = problem->system;
     size_t i;
     gxsp_find_base(problem, system->current);
-    for (i = 0; i < system->n && led; ++i)
-        if (!system->still[i])
-            memcpy(system->current + 3 * i, system->target + 3 * i, 3 * sizeof(double));
-    if (led)
-        gxsp_lead_lights(problem);
+    for (i = 0; i < system->n && led; i++)
+        if (!system->still[i]) memcpy(system->current + 3 * i, system->target + 3 * i, 3 * sizeof(double));
+    if (led) gxsp_lead_lights(problem);
     gxsp_follow(system, problem->given, system->current);
     gxsp_untouch_pieces(system);
     gxsp_terms_make(problem, system->current);
@@ -8176,40 +7734,35 @@ static int gxsp_start(gxsp_problem *problem, int led)
     return gxsp_first_not_finite(system->current, 3 * system->n) == 3 * system->n && gxsp_update(problem);
 }
 
-/* The direction takes no light copy further from what guides it than they are apart, at rest or now, unless the piece's way down depends on that: what
- * a copy of so little weight is left with hardly shows in E, which so could not tell a length for it. Later iterations, which few steps
- * have, are left alone: they converge by themselves. */
-static void gxsp_bound_lights(const gxsp_problem *problem)
-{
+/* The direction takes no light copy further from what guides it than they are apart, at rest or now, unless the piece's
+ * way down depends on that: what a copy of so little weight is left with hardly shows in E, which so could not tell a
+ * length for it. Later iterations, which few steps have, are left alone: they converge by themselves. */
+static void gxsp_bound_lights(const gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     const double *rest = system->positions, *moved = system->current;
     uint32_t i;
     size_t c;
     int any = 0;
-    for (i = 0; i < system->light_count && rest && problem->report.newton_iterations < GXSP_BOUNDED; ++i) {
+    for (i = 0; i < system->light_count && rest && problem->report.newton_iterations < GXSP_BOUNDED; i++) {
         const size_t copy = 3 * (size_t)system->lights[i].copy;
         gxsp_piece *piece = gxsp_lead_of(system, copy / 3);
         double *way = system->direction + copy, mean[3], less[3], gap[3], now[3], load[3], size, most, work;
         const size_t guide = 3 * (size_t)gxsp_guide(system, &system->lights[i], system->direction, NULL, mean);
-        for (c = 0; c < 3; ++c) {
+        for (c = 0; c < 3; c++) {
             less[c] = mean[c] - way[c];
             gap[c] = rest[copy + c] - rest[guide + c];
             now[c] = gap[c] + moved[copy + c] - moved[guide + c];
         }
         size = gxsp_dot(less, less, 1);
         most = fmax(gxsp_dot(gap, gap, 1), gxsp_dot(now, now, 1));
-        if (system->still[copy / 3] || gxsp_follows(system, copy / 3) || size <= most)
-            continue;
-        for (c = 0; c < 3; ++c)
-            less[c] *= 1 - sqrt(most / size);
+        if (system->still[copy / 3] || gxsp_follows(system, copy / 3) || size <= most) continue;
+        for (c = 0; c < 3; c++) less[c] *= 1 - sqrt(most / size);
         gxsp_load(problem, copy / 3, load);
         work = gxsp_dot(load, less, 1);
-        if (gxsp_dot(system->force + copy, less, 1) - work > GXSP_BOUND_COST * -piece->slope)
-            continue;
+        if (gxsp_dot(system->force + copy, less, 1) - work > GXSP_BOUND_COST * -piece->slope) continue;
         piece->slope += gxsp_dot(system->force + copy, less, 1) - work;
         piece->work += work;
-        for (c = 0; c < 3; ++c)
-            way[c] += less[c];
+        for (c = 0; c < 3; c++) way[c] += less[c];
         any = 1;
     }
     if (any) {
@@ -8218,46 +7771,44 @@ static void gxsp_bound_lights(const gxsp_problem *problem)
     }
 }
 
-/* What the line search knows of the pieces before its first trial. Linear solves end by a measure of all pieces together, and may have left one
- * that weighs next to nothing far beyond the minimum of its own linear model: it begins at that. 0 if a number is not finite. */
-static int gxsp_begin_search(const gxsp_problem *problem)
-{
+/* What the line search knows of the pieces before its first trial. Linear solves end by a measure of all pieces
+ * together, and may have left one that weighs next to nothing far beyond the minimum of its own linear model: it begins
+ * at that. 0 if a number is not finite. */
+static int gxsp_begin_search(const gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     int finite = 1;
     size_t i, k;
     uint32_t p;
-    for (p = 0; p < system->piece_count; ++p) {
+    for (p = 0; p < system->piece_count; p++) {
         gxsp_piece *piece = &system->pieces[p];
         piece->slope = piece->work = piece->rounding = 0;
         piece->length = 1;
     }
-    for (i = 0; i < system->n; ++i) {
+    for (i = 0; i < system->n; i++) {
         gxsp_piece *piece = gxsp_lead_of(system, i);
         const double *force = system->force + 3 * i, *way = system->direction + 3 * i;
         double load[3], work, rounding = 0;
         gxsp_load(problem, i, load);
         work = gxsp_dot(load, way, 1);
-        for (k = 0; k < 3; ++k)
-            rounding += fabs(force[k] * system->current[3 * i + k]) + fabs(load[k] * way[k]);
+        for (k = 0; k < 3; k++) rounding += fabs(force[k] * system->current[3 * i + k]) + fabs(load[k] * way[k]);
         piece->slope += gxsp_dot(force, way, 1) - work;
         piece->work += work;
         piece->rounding += rounding;
     }
     gxsp_bound_lights(problem);
-    for (p = 0; p < system->piece_count; ++p) {
+    for (p = 0; p < system->piece_count; p++) {
         gxsp_piece *piece = &system->pieces[p];
         const double curvature = -piece->slope - piece->left; /* of the linear model */
         finite &= gxsp_finite(piece->slope);
-        if (piece->slope < 0 && -piece->slope < GXSP_TOO_LONG * curvature)
-            piece->length = -piece->slope / curvature;
+        if (piece->slope < 0 && -piece->slope < GXSP_TOO_LONG * curvature) piece->length = -piece->slope / curvature;
     }
     return finite;
 }
 
 /* Has the piece gone far enough down? If not, it will try a shorter length. */
-static void gxsp_judge_length(gxsp_problem *problem, gxsp_piece *piece)
-{
-    const double *now = piece->energies, *before = piece->before, length = piece->length, promise = length * piece->slope;
+static void gxsp_judge_length(gxsp_problem *problem, gxsp_piece *piece) {
+    const double *now = piece->energies, *before = piece->before, length = piece->length,
+                 promise = length * piece->slope;
     const double change = (now[0] - before[0]) + (now[1] - before[1]) - length * piece->work;
     const double slack = 1e-15 * (now[2] + before[2] + piece->rounding);
     double next;
@@ -8273,28 +7824,25 @@ static void gxsp_judge_length(gxsp_problem *problem, gxsp_piece *piece)
 }
 
 /* Energies and forces at trial: current and each piece's length of the direction from there */
-static void gxsp_try_lengths(gxsp_problem *problem)
-{
+static void gxsp_try_lengths(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     size_t i, k;
-    for (i = 0; i < system->n; ++i) {
+    for (i = 0; i < system->n; i++) {
         const double length = gxsp_lead_of(system, i)->length;
-        for (k = 3 * i; k < 3 * i + 3; ++k)
-            system->trial[k] = system->current[k] + length * system->direction[k];
+        for (k = 3 * i; k < 3 * i + 3; k++) system->trial[k] = system->current[k] + length * system->direction[k];
     }
     gxsp_evaluate(problem, system->trial, 0, system->force);
 }
 
-/* Pieces that have found no length stay, and all may be evaluated again. Returns how many went down; left: how many stay. */
-static size_t gxsp_end_search(gxsp_system *system, size_t *left)
-{
+/* Pieces that have found no length stay, and all may be evaluated again. Returns how many went down; left: how many
+ * stay. */
+static size_t gxsp_end_search(gxsp_system *system, size_t *left) {
     size_t down = 0;
     uint32_t p;
     *left = 0;
-    for (p = 0; p < system->piece_count; ++p) {
+    for (p = 0; p < system->piece_count; p++) {
         gxsp_piece *piece = &system->pieces[p];
-        if (piece->lead != p)
-            continue;
+        if (piece->lead != p) continue;
         down += piece->settled && piece->slope < 0;
         *left += !piece->settled;
         piece->length = piece->settled ? piece->length : 0;
@@ -8302,34 +7850,30 @@ static size_t gxsp_end_search(gxsp_system *system, size_t *left)
     return down;
 }
 
-/* A step length for each piece along the direction, by backtracking on E, which is a sum over pieces: so it falls in each of them,
- * and none waits for another. current becomes the point found, and force and energies its own. 0: no finite point of lower energy. */
-static int gxsp_line_search(gxsp_problem *problem)
-{
+/* A step length for each piece along the direction, by backtracking on E, which is a sum over pieces: so it falls in
+ * each of them, and none waits for another. current becomes the point found, and force and energies its own. 0: no
+ * finite point of lower energy. */
+static int gxsp_line_search(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     double *found = system->trial;
     size_t left = 1, down;
     uint32_t p;
     int trial;
-    if (!gxsp_begin_search(problem))
-        return 0;
+    if (!gxsp_begin_search(problem)) return 0;
     problem->noise = 1;
-    for (trial = 0; trial < GXSP_TRIALS && left > 0 && (trial == 0 || !gxsp_out_of_time(problem)); ++trial) {
-        ++problem->report.line_search_steps;
+    for (trial = 0; trial < GXSP_TRIALS && left > 0 && (trial == 0 || !gxsp_out_of_time(problem)); trial++) {
+        problem->report.line_search_steps++;
         gxsp_try_lengths(problem);
-        for (p = 0, left = 0; p < system->piece_count; ++p) {
+        for (p = 0, left = 0; p < system->piece_count; p++) {
             gxsp_piece *piece = &system->pieces[p];
-            if (piece->lead == p && !piece->settled)
-                gxsp_judge_length(problem, piece);
+            if (piece->lead == p && !piece->settled) gxsp_judge_length(problem, piece);
             left += piece->lead == p && !piece->settled;
         }
     }
     problem->shortened = trial > 1;
     down = gxsp_end_search(system, &left);
-    if (left > 0)
-        gxsp_try_lengths(problem);
-    for (p = 0; p < system->piece_count; ++p)
-        system->pieces[p].settled = 0;
+    if (left > 0) gxsp_try_lengths(problem);
+    for (p = 0; p < system->piece_count; p++) system->pieces[p].settled = 0;
     gxsp_keep_energies(problem);
     system->trial = system->residual = system->current;
     system->current = found;
@@ -8337,11 +7881,10 @@ static int gxsp_line_search(gxsp_problem *problem)
 }
 
 /* E at a displacement of these energies, J */
-static double gxsp_potential(const gxsp_problem *problem, const double *energies, const double *displacement)
-{
+static double gxsp_potential(const gxsp_problem *problem, const double *energies, const double *displacement) {
     double work = 0;
     size_t i;
-    for (i = 0; i < problem->system->n; ++i) {
+    for (i = 0; i < problem->system->n; i++) {
         double load[3];
         gxsp_load(problem, i, load);
         work += gxsp_dot(load, displacement + 3 * i, 1);
@@ -8349,14 +7892,12 @@ static double gxsp_potential(const gxsp_problem *problem, const double *energies
     return energies[0] + energies[1] - work;
 }
 
-/* The step's integrator as rate and target: the equation of motion is M rate (u - target) = f - dU/du. With v = speed (u - mean)
- *   BDF1      speed = 1 / dt, mean = u_n;   rate = speed^2, target = mean + v_n / speed
- *   BDF2      r = dt / dt of the step before; a0 = (1 + 2 r) / (1 + r), a1 = -(1 + r), a2 = r^2 / (1 + r):
- *             speed = a0 / dt, mean = -(a1 u_n + a2 u_n-1) / a0, and the same of velocities: target = mean + mean of v / speed
- *   midpoint  u is the displacement at half the step: BDF1 of half the step, finished in gxsp_finish
- *   static    speed = 0, rate = 1 / dt^2 or 0, target = u_n */
-static void gxsp_choose_integrator(gxsp_problem *problem)
-{
+/* The step's integrator as rate and target: the equation of motion is M rate (u - target) = f - dU/du. With v = speed
+ * (u - mean) BDF1      speed = 1 / dt, mean = u_n;   rate = speed^2, target = mean + v_n / speed BDF2      r = dt / dt
+ * of the step before; a0 = (1 + 2 r) / (1 + r), a1 = -(1 + r), a2 = r^2 / (1 + r): speed = a0 / dt, mean = -(a1 u_n +
+ * a2 u_n-1) / a0, and the same of velocities: target = mean + mean of v / speed midpoint  u is the displacement at half
+ * the step: BDF1 of half the step, finished in gxsp_finish static    speed = 0, rate = 1 / dt^2 or 0, target = u_n */
+static void gxsp_choose_integrator(gxsp_problem *problem) {
     const gxs_step_desc *step = problem->step;
     double dt = step->integrator == GXS_MIDPOINT ? 0.5 * step->dt : step->dt;
     problem->mean[0] = 1;
@@ -8377,24 +7918,22 @@ static void gxsp_choose_integrator(gxsp_problem *problem)
 }
 
 /* Elastic forces at a displacement with the materials times their damping x factor, added to those of damping */
-static void gxsp_add_damping(gxsp_problem *problem, double factor, const double *displacement)
-{
+static void gxsp_add_damping(gxsp_problem *problem, double factor, const double *displacement) {
     gxsp_system *system = problem->system;
     size_t i;
-    for (i = 0; i < system->material_count; ++i) {
+    for (i = 0; i < system->material_count; i++) {
         system->damped[i].mu = factor * system->materials[i].damping * system->materials[i].mu;
         system->damped[i].lambda = factor * system->materials[i].damping * system->materials[i].lambda;
     }
     gxsp_evaluate_elements(system, 0, displacement, system->target, 0, system->force);
-    for (i = 0; i < 3 * system->n; ++i)
-        system->damping[i] += system->force[i];
+    for (i = 0; i < 3 * system->n; i++) system->damping[i] += system->force[i];
 }
 
-/* Rayleigh's stiffness damping: stress P(F) + beta dP/dt, the rate taken as that of the integrator, speed (P(F) - P of the mean before).
- * All energies are linear in their moduli, so that is the energy (1 + beta speed) U(u) with a load of the forces before. These are
- * turned as the elements are by inertia alone: rotations of what is under stress are not damped, to first order in the step. */
-static void gxsp_begin_damping(gxsp_problem *problem)
-{
+/* Rayleigh's stiffness damping: stress P(F) + beta dP/dt, the rate taken as that of the integrator, speed (P(F) - P of
+ * the mean before). All energies are linear in their moduli, so that is the energy (1 + beta speed) U(u) with a load of
+ * the forces before. These are turned as the elements are by inertia alone: rotations of what is under stress are not
+ * damped, to first order in the step. */
+static void gxsp_begin_damping(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     size_t i;
     problem->damps = system->damps && problem->speed > 0;
@@ -8405,7 +7944,7 @@ static void gxsp_begin_damping(gxsp_problem *problem)
         if (problem->mean[1] < 0)
             gxsp_add_damping(problem, problem->speed * problem->mean[1], problem->step->previous_displacement);
     }
-    for (i = 0; i < system->material_count; ++i) {
+    for (i = 0; i < system->material_count; i++) {
         const double factor = 1 + problem->speed * system->materials[i].damping;
         system->damped[i] = system->materials[i];
         system->damped[i].mu *= factor;
@@ -8414,35 +7953,32 @@ static void gxsp_begin_damping(gxsp_problem *problem)
 }
 
 /* mean of the displacements before. displacement: at the step's start */
-static double gxsp_mean(const gxsp_problem *problem, const double *displacement, size_t k)
-{
+static double gxsp_mean(const gxsp_problem *problem, const double *displacement, size_t k) {
     double mean = problem->mean[0] * displacement[k];
     return problem->mean[1] < 0 ? mean + problem->mean[1] * problem->step->previous_displacement[k] : mean;
 }
 
 /* Target; forces of damping */
-static void gxsp_begin(gxsp_problem *problem, const double *velocity)
-{
+static void gxsp_begin(gxsp_problem *problem, const double *velocity) {
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
     const double *displacement = problem->given;
-    const double lead = problem->speed > 0 ? problem->speed / problem->rate : 0; /* s; the rest of the rate is mass damping's */
+    /* s; the rest of the rate is mass damping's */
+    const double lead = problem->speed > 0 ? problem->speed / problem->rate : 0;
     size_t k;
     system->base_known = system->base_known && !step->targets && step->spring_count + step->point_count == 0 &&
                          memcmp(displacement, system->current, 3 * system->n * sizeof(double)) == 0;
-    for (k = 0; k < 3 * system->n; ++k) {
+    for (k = 0; k < 3 * system->n; k++) {
         double speed = problem->mean[0] * velocity[k];
-        if (problem->mean[1] < 0)
-            speed += problem->mean[1] * step->previous_velocity[k];
+        if (problem->mean[1] < 0) speed += problem->mean[1] * step->previous_velocity[k];
         system->target[k] = gxsp_mean(problem, displacement, k) + lead * speed;
-        if (system->still[k / 3] && !system->held[k / 3]) /* what a held copy is accelerated by acts on its neighbours */
-            system->target[k] = displacement[k];
+        /* what a held copy is accelerated by acts on its neighbours */
+        if (system->still[k / 3] && !system->held[k / 3]) system->target[k] = displacement[k];
     }
     gxsp_begin_damping(problem);
 }
 
-static int gxsp_linearise_all(gxsp_problem *problem)
-{
+static int gxsp_linearise_all(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     const double start = gxsp_now(problem);
     int finite;
@@ -8452,94 +7988,80 @@ static int gxsp_linearise_all(gxsp_problem *problem)
     return finite;
 }
 
-/* Elements collapsed to a point have no force that would open them: what they have all but collapsed takes its place, for the direction
- * and its slope. Energies stay as they are. */
-static void gxsp_nudge_forces(gxsp_problem *problem)
-{
+/* Elements collapsed to a point have no force that would open them: what they have all but collapsed takes its place,
+ * for the direction and its slope. Energies stay as they are. */
+static void gxsp_nudge_forces(gxsp_problem *problem) {
     gxsp_evaluate(problem, problem->system->current, 1, problem->system->force);
     gxsp_balance(problem);
 }
 
-/* The next direction. Near the end, where projected Hessians converge slowly, the exact one is tried: should it prove indefinite, the
- * projected one serves from there on. */
-static int gxsp_find_direction(gxsp_problem *problem)
-{
-    if (!gxsp_solve(problem))
-        return 0;
-    if (!problem->exact || !problem->indefinite)
-        return 1;
+/* The next direction. Near the end, where projected Hessians converge slowly, the exact one is tried: should it prove
+ * indefinite, the projected one serves from there on. */
+static int gxsp_find_direction(gxsp_problem *problem) {
+    if (!gxsp_solve(problem)) return 0;
+    if (!problem->exact || !problem->indefinite) return 1;
     problem->exact = 0;
     problem->projected_only = 1;
-    if (!gxsp_linearise_all(problem))
-        return 0;
+    if (!gxsp_linearise_all(problem)) return 0;
     gxsp_balance(problem);
     return gxsp_solve(problem);
 }
 
 /* Does Newton's method go on? before: residual an iteration ago. Says why not. */
-static int gxsp_goes_on(gxsp_problem *problem, double before)
-{
+static int gxsp_goes_on(gxsp_problem *problem, double before) {
     const gxs_step_desc *step = problem->step;
-    const uint32_t budget = step->newton_iterations ? step->newton_iterations : 1, done = problem->report.newton_iterations;
-    const double wanted = step->newton_tolerance > 0 ? step->newton_tolerance : 1e-8, goal = wanted > GXSP_ROUNDING ? wanted : GXSP_ROUNDING;
+    const uint32_t budget = step->newton_iterations ? step->newton_iterations : 1,
+                   done = problem->report.newton_iterations;
+    const double wanted = step->newton_tolerance > 0 ? step->newton_tolerance : 1e-8,
+                 goal = wanted > GXSP_ROUNDING ? wanted : GXSP_ROUNDING;
     const double residual = problem->report.residual;
     problem->report.stop = GXS_STOP_BALANCE;
-    if (residual <= goal && !problem->collapsed)
-        return 0;
+    if (residual <= goal && !problem->collapsed) return 0;
     problem->stalls = done > 0 && problem->noise && residual > 0.9 * problem->least ? problem->stalls + 1 : 0;
     problem->least = done == 0 || residual < problem->least ? residual : problem->least;
     problem->report.stop = GXS_STOP_ROUNDING;
-    if (problem->stalls > GXSP_STALLS)
-        return 0;
+    if (problem->stalls > GXSP_STALLS) return 0;
     problem->report.stop = GXS_STOP_ITERATIONS;
-    if (gxsp_out_of_time(problem) || done == budget)
-        return 0;
-    problem->exact = done > 0 && !problem->projected_only && !problem->shortened && residual < 0.1 && residual > 0.1 * before;
+    if (gxsp_out_of_time(problem) || done == budget) return 0;
+    problem->exact =
+        done > 0 && !problem->projected_only && !problem->shortened && residual < 0.1 && residual > 0.1 * before;
     return 1;
 }
 
-/* Newton's method, to balance or to the end of the budget, from a start that gxsp_start found finite or from where it has ended. */
-static gx_result gxsp_newton(gxsp_problem *problem)
-{
+/* Newton's method, to balance or to the end of the budget, from a start that gxsp_start found finite or from where it
+ * has ended. */
+static gx_result gxsp_newton(gxsp_problem *problem) {
     uint32_t *done = &problem->report.newton_iterations;
     double before = 0;
     problem->exact = problem->projected_only = problem->stalls = problem->shortened = 0;
-    if (*done == 0 && !gxsp_linearise_all(problem))
-        return GX_ERROR_DIVERGED;
+    if (*done == 0 && !gxsp_linearise_all(problem)) return GX_ERROR_DIVERGED;
     for (;;) {
         problem->report.residual = gxsp_balance(problem);
-        if (!gxsp_finite(problem->report.residual))
-            return GX_ERROR_DIVERGED;
-        if (!gxsp_goes_on(problem, before))
-            return GX_OK;
+        if (!gxsp_finite(problem->report.residual)) return GX_ERROR_DIVERGED;
+        if (!gxsp_goes_on(problem, before)) return GX_OK;
         before = problem->report.residual;
-        if (*done > 0 && !gxsp_linearise_all(problem))
-            break;
-        if (problem->collapsed)
-            gxsp_nudge_forces(problem);
-        if (!gxsp_find_direction(problem) || !gxsp_line_search(problem))
-            break;
+        if (*done > 0 && !gxsp_linearise_all(problem)) break;
+        if (problem->collapsed) gxsp_nudge_forces(problem);
+        if (!gxsp_find_direction(problem) || !gxsp_line_search(problem)) break;
         ++*done;
     }
     /* no further: what there is after a first success is lower than the start */
-    if (problem->report.stop != GXS_STOP_SECONDS)
-        problem->report.stop = GXS_STOP_ROUNDING;
+    if (problem->report.stop != GXS_STOP_SECONDS) problem->report.stop = GXS_STOP_ROUNDING;
     return *done > 0 || problem->report.stop == GXS_STOP_SECONDS ? GX_OK : GX_ERROR_DIVERGED;
 }
 
-/* E of every piece at current, and its limit: E at a displacement at which all were evaluated last, or, elastic set, of another one without
- * the kinetic energy */
-static void gxsp_limit_energies(const gxsp_problem *problem, const double *displacement, int elastic)
-{
+/* E of every piece at current, and its limit: E at a displacement at which all were evaluated last, or, elastic set, of
+ * another one without the kinetic energy */
+static void gxsp_limit_energies(const gxsp_problem *problem, const double *displacement, int elastic) {
     gxsp_system *system = problem->system;
     size_t i;
     uint32_t p;
-    for (p = 0; p < system->piece_count; ++p) {
+    for (p = 0; p < system->piece_count; p++) {
         gxsp_piece *piece = &system->pieces[p];
         piece->limit = elastic ? piece->base_energy : piece->energies[0] + piece->energies[1];
         piece->ended = piece->before[0] + piece->before[1];
     }
-    for (i = 0; i < system->n; ++i) {
+    for (i = 0; i < system->n; i++) {
         gxsp_piece *piece = gxsp_lead_of(system, i);
         double load[3];
         gxsp_load(problem, i, load);
@@ -8549,11 +8071,10 @@ static void gxsp_limit_energies(const gxsp_problem *problem, const double *displ
 }
 
 /* How many pieces have ended above their limit by more than rounding? risen says which. */
-static size_t gxsp_count_risen(gxsp_system *system)
-{
+static size_t gxsp_count_risen(gxsp_system *system) {
     size_t count = 0;
     uint32_t p;
-    for (p = 0; p < system->piece_count; ++p) {
+    for (p = 0; p < system->piece_count; p++) {
         gxsp_piece *piece = &system->pieces[p];
         const double slack = 1e-12 * fabs(piece->limit) + GXSP_ROUNDING * piece->before[2];
         piece->risen = piece->lead == p && gxsp_finite(piece->limit) && piece->ended > piece->limit + slack;
@@ -8563,29 +8084,27 @@ static size_t gxsp_count_risen(gxsp_system *system)
 }
 
 /* Where the pieces would be without a step, but for translations of loose ones: into trial */
-static void gxsp_stay(gxsp_problem *problem)
-{
+static void gxsp_stay(gxsp_problem *problem) {
     gxsp_find_base(problem, problem->system->trial);
     gxsp_balance_momentum(problem, 0, NULL, problem->system->trial);
 }
 
-/* E of every piece at base, when the limits are those at trial, to which loose pieces were translated: E is a parabola along that */
-static void gxsp_note_base(const gxsp_problem *problem)
-{
+/* E of every piece at base, when the limits are those at trial, to which loose pieces were translated: E is a parabola
+ * along that */
+static void gxsp_note_base(const gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     uint32_t p;
-    for (p = 0; p < system->piece_count; ++p)
-        system->pieces[p].base = system->pieces[p].limit;
-    for (p = 0; p < system->piece_count; ++p) {
+    for (p = 0; p < system->piece_count; p++) system->pieces[p].base = system->pieces[p].limit;
+    for (p = 0; p < system->piece_count; p++) {
         const gxsp_piece *piece = &system->pieces[p];
         if (piece->state == 0)
             system->pieces[piece->lead].base += 0.5 * piece->mass * gxsp_dot(piece->sum, piece->sum, 1) / problem->rate;
     }
 }
 
-/* Pieces whose E is above that at trial go on from there to where they are as far as it falls. Returns how many there were. */
-static size_t gxsp_bring_down(gxsp_problem *problem)
-{
+/* Pieces whose E is above that at trial go on from there to where they are as far as it falls. Returns how many there
+ * were. */
+static size_t gxsp_bring_down(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     size_t i, k, count;
     uint32_t p;
@@ -8594,30 +8113,28 @@ static size_t gxsp_bring_down(gxsp_problem *problem)
     gxsp_note_base(problem);
     problem->based = 1;
     count = gxsp_count_risen(system);
-    if (count == 0)
-        return 0;
-    for (i = 0; i < system->n; ++i) {
+    if (count == 0) return 0;
+    for (i = 0; i < system->n; i++) {
         const int risen = gxsp_lead_of(system, i)->risen;
-        for (k = 3 * i; k < 3 * i + 3; ++k) {
+        for (k = 3 * i; k < 3 * i + 3; k++) {
             system->direction[k] = risen ? system->current[k] - system->trial[k] : 0;
             system->current[k] = risen ? system->trial[k] : system->current[k];
         }
     }
-    for (p = 0; p < system->piece_count; ++p) {
+    for (p = 0; p < system->piece_count; p++) {
         system->pieces[p].left = 0;
         if (system->pieces[p].risen)
             memcpy(system->pieces[p].before, system->pieces[p].energies, sizeof system->pieces->before);
     }
-    if (!gxsp_line_search(problem))
-        (void)gxsp_update(problem);
+    if (!gxsp_line_search(problem)) (void)gxsp_update(problem);
     return count;
 }
 
-/* Newton's method from target, which is close to the answer in all but violent motion. A piece that ends higher in E than it was at base,
- * translated as its momentum says if it is loose, is brought down on the way from there, and Newton's method goes on with what is left of
- * its iterations: so E(u) <= E(base) always, piece by piece, and what a step can add to the energy is bounded. */
-static gx_result gxsp_minimise(gxsp_problem *problem)
-{
+/* Newton's method from target, which is close to the answer in all but violent motion. A piece that ends higher in E
+ * than it was at base, translated as its momentum says if it is loose, is brought down on the way from there, and
+ * Newton's method goes on with what is left of its iterations: so E(u) <= E(base) always, piece by piece, and what a
+ * step can add to the energy is bounded. */
+static gx_result gxsp_minimise(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     gx_result result = GX_ERROR_DIVERGED;
     if (system->active == 0) {
@@ -8626,8 +8143,7 @@ static gx_result gxsp_minimise(gxsp_problem *problem)
         return GX_OK;
     }
     gxsp_choose_leads(problem);
-    if (gxsp_start(problem, 1))
-        result = gxsp_newton(problem);
+    if (gxsp_start(problem, 1)) result = gxsp_newton(problem);
     if (result != GX_OK) {
         problem->report.newton_iterations = 0;
         return gxsp_start(problem, 0) ? gxsp_newton(problem) : GX_ERROR_DIVERGED;
@@ -8636,23 +8152,22 @@ static gx_result gxsp_minimise(gxsp_problem *problem)
     gxsp_limit_energies(problem, system->trial, 1);
     if (system->base_known && problem->step->integrator != GXS_MIDPOINT && gxsp_count_risen(system) == 0)
         return GX_OK; /* lower even without the kinetic energy that staying at base would take */
-    if (gxsp_bring_down(problem) > 0)
-        result = gxsp_newton(problem);
+    if (gxsp_bring_down(problem) > 0) result = gxsp_newton(problem);
     return result;
 }
 
-/* E of every piece at a displacement, less that at base: into gain. evaluated: 1: that was evaluated last; 0: it is current */
-static void gxsp_find_gains(const gxsp_problem *problem, const double *displacement, int evaluated)
-{
+/* E of every piece at a displacement, less that at base: into gain. evaluated: 1: that was evaluated last; 0: it is
+ * current */
+static void gxsp_find_gains(const gxsp_problem *problem, const double *displacement, int evaluated) {
     gxsp_system *system = problem->system;
     size_t i;
     uint32_t p;
-    for (p = 0; p < system->piece_count; ++p) {
+    for (p = 0; p < system->piece_count; p++) {
         gxsp_piece *piece = &system->pieces[p];
         const double *energies = evaluated ? piece->energies : piece->before;
         piece->gain = energies[0] + energies[1] - piece->base;
     }
-    for (i = 0; i < system->n; ++i) {
+    for (i = 0; i < system->n; i++) {
         double load[3];
         gxsp_load(problem, i, load);
         gxsp_lead_of(system, i)->gain -= gxsp_dot(load, displacement + 3 * i, 1);
@@ -8660,23 +8175,20 @@ static void gxsp_find_gains(const gxsp_problem *problem, const double *displacem
 }
 
 /* Pieces that springs or contact act on at a displacement are not loose any more. */
-static void gxsp_touch_pieces_at(const gxsp_problem *problem, const double *displacement)
-{
+static void gxsp_touch_pieces_at(const gxsp_problem *problem, const double *displacement) {
     gxsp_system *system = problem->system;
     const gxs_point *point;
     gxsp_pull pull;
     size_t at = 0;
     int k;
     while ((point = gxsp_next_pull(problem, &at, displacement, &pull)) != NULL)
-        for (k = 0; k < 4 && (fabs(pull.energy) > 0 || gxsp_dot(pull.force, pull.force, 1) > 0); ++k)
-            if (fabs(point->weight[k]) > 0)
-                system->pieces[system->piece[point->copy[k]]].state |= GXSP_TOUCHED;
+        for (k = 0; k < 4 && (fabs(pull.energy) > 0 || gxsp_dot(pull.force, pull.force, 1) > 0); k++)
+            if (fabs(point->weight[k]) > 0) system->pieces[system->piece[point->copy[k]]].state |= GXSP_TOUCHED;
 }
 
-/* Is the second half short enough for the piece? If not, it will try a shorter one, in the end none: E is about a parabola with its minimum, low,
- * where nothing is left of what is taken off. */
-static void gxsp_judge_gain(gxsp_piece *piece, int last)
-{
+/* Is the second half short enough for the piece? If not, it will try a shorter one, in the end none: E is about a
+ * parabola with its minimum, low, where nothing is left of what is taken off. */
+static void gxsp_judge_gain(gxsp_piece *piece, int last) {
     const double low = piece->low, gain = piece->gain;
     double next;
     if (gxsp_finite(gain) &&
@@ -8689,10 +8201,9 @@ static void gxsp_judge_gain(gxsp_piece *piece, int last)
 }
 
 /* Light copies keep their place beside what guides them: in x, n x 3, they go as the mean of their guides. */
-static void gxsp_guide_lights(const gxsp_system *system, double *x)
-{
+static void gxsp_guide_lights(const gxsp_system *system, double *x) {
     uint32_t i;
-    for (i = 0; i < system->light_count; ++i) {
+    for (i = 0; i < system->light_count; i++) {
         const uint32_t copy = system->lights[i].copy;
         if (!system->still[copy] && !gxsp_follows(system, copy)) {
             double mean[3];
@@ -8702,98 +8213,95 @@ static void gxsp_guide_lights(const gxsp_system *system, double *x)
     }
 }
 
-/* The second half of the midpoint rule from current: drift of loose pieces, and direction. What springs or contact act on at its end is not loose.
- * trial: that end. */
-static void gxsp_find_second_half(const gxsp_problem *problem)
-{
+/* The second half of the midpoint rule from current: drift of loose pieces, and direction. What springs or contact act
+ * on at its end is not loose. trial: that end. */
+static void gxsp_find_second_half(const gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     const size_t count = 3 * system->n;
     size_t i;
     uint32_t p;
     gxsp_find_base(problem, system->trial);
-    for (i = 0; i < count; ++i)
-        system->direction[i] = system->current[i] - system->trial[i];
+    for (i = 0; i < count; i++) system->direction[i] = system->current[i] - system->trial[i];
     gxsp_clear_pieces(system); /* nothing does if none is loose */
     gxsp_remove_momentum(system, system->direction);
-    for (p = 0; p < system->piece_count; ++p)
+    for (p = 0; p < system->piece_count; p++)
         memcpy(system->pieces[p].drift, system->pieces[p].sum, sizeof system->pieces->drift);
     gxsp_guide_lights(system, system->direction);
     gxsp_remove_momentum(system, system->direction);
-    for (i = 0; i < count; ++i)
-        system->trial[i] = system->current[i] + (system->direction[i] + system->pieces[system->piece[i / 3]].drift[i % 3]);
+    for (i = 0; i < count; i++)
+        system->trial[i] =
+            system->current[i] + (system->direction[i] + system->pieces[system->piece[i / 3]].drift[i % 3]);
     gxsp_touch_pieces_at(problem, system->trial);
-    for (i = 0; i < count; ++i)
-        system->direction[i] = system->pieces[system->piece[i / 3]].state == 0 ? system->direction[i] : system->trial[i] - system->current[i];
-    for (p = 0; p < system->piece_count; ++p) { /* a drift has its own part of the kinetic energy */
+    for (i = 0; i < count; i++)
+        system->direction[i] = system->pieces[system->piece[i / 3]].state == 0 ? system->direction[i]
+                                                                               : system->trial[i] - system->current[i];
+    for (p = 0; p < system->piece_count; p++) { /* a drift has its own part of the kinetic energy */
         gxsp_piece *piece = &system->pieces[p];
         if (piece->state == 0)
-            system->pieces[piece->lead].low += 0.5 * problem->rate * piece->mass * gxsp_dot(piece->drift, piece->drift, 1);
+            system->pieces[piece->lead].low +=
+                0.5 * problem->rate * piece->mass * gxsp_dot(piece->drift, piece->drift, 1);
         else
             memset(piece->drift, 0, sizeof piece->drift);
     }
 }
 
-/* The midpoint rule goes on from current by as much as from base to current, to an energy of E there, as that of the start is E(base).
- * These are equal but for terms of third order in the way, for what Newton's method and conjugate gradients have left, which would add
- * up from step to step and grow without end, and for springs and contact that first act beyond current. Where a piece would gain more than a
- * share of its kinetic energy, its second half is shortened, but for the translation of a piece that nothing acts on at either place. At worst
- * the step ends at current, where E is not above E(base). Light copies go as what guides them: nothing would damp them. direction becomes the end. */
-static void gxsp_bound_gain(gxsp_problem *problem)
-{
+/* The midpoint rule goes on from current by as much as from base to current, to an energy of E there, as that of the
+ * start is E(base). These are equal but for terms of third order in the way, for what Newton's method and conjugate
+ * gradients have left, which would add up from step to step and grow without end, and for springs and contact that
+ * first act beyond current. Where a piece would gain more than a share of its kinetic energy, its second half is
+ * shortened, but for the translation of a piece that nothing acts on at either place. At worst the step ends at
+ * current, where E is not above E(base). Light copies go as what guides them: nothing would damp them. direction
+ * becomes the end. */
+static void gxsp_bound_gain(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     const size_t count = 3 * system->n;
     size_t i, left = 1;
     uint32_t p;
     int trial;
-    if (!problem->based || problem->step->spring_count + problem->step->point_count > 0) { /* which begin to act anywhere */
+    /* which begin to act anywhere */
+    if (!problem->based || problem->step->spring_count + problem->step->point_count > 0) {
         gxsp_find_base(problem, system->trial);
         gxsp_evaluate(problem, system->trial, 0, system->force);
-        for (p = 0; p < system->piece_count; ++p)
-            system->pieces[p].base = 0;
+        for (p = 0; p < system->piece_count; p++) system->pieces[p].base = 0;
         gxsp_find_gains(problem, system->trial, 1);
-        for (p = 0; p < system->piece_count; ++p)
-            system->pieces[p].base = system->pieces[p].gain;
+        for (p = 0; p < system->piece_count; p++) system->pieces[p].base = system->pieces[p].gain;
     }
     gxsp_find_gains(problem, system->current, 0);
-    for (p = 0; p < system->piece_count; ++p) {
+    for (p = 0; p < system->piece_count; p++) {
         system->pieces[p].low = system->pieces[p].gain;
         system->pieces[p].length = 1;
     }
     gxsp_find_second_half(problem);
-    for (trial = 0; trial < GXSP_GAIN_TRIALS && left > 0; ++trial) {
-        for (i = 0; i < count; ++i)
+    for (trial = 0; trial < GXSP_GAIN_TRIALS && left > 0; trial++) {
+        for (i = 0; i < count; i++)
             system->trial[i] = system->current[i] + (system->pieces[system->piece[i / 3]].drift[i % 3] +
                                                      gxsp_lead_of(system, i / 3)->length * system->direction[i]);
         gxsp_evaluate(problem, system->trial, 0, system->force);
         gxsp_find_gains(problem, system->trial, 1);
-        for (p = 0, left = 0; p < system->piece_count; ++p) {
+        for (p = 0, left = 0; p < system->piece_count; p++) {
             gxsp_piece *piece = &system->pieces[p];
-            if (piece->lead == p && !piece->settled)
-                gxsp_judge_gain(piece, trial + 2 >= GXSP_GAIN_TRIALS);
+            if (piece->lead == p && !piece->settled) gxsp_judge_gain(piece, trial + 2 >= GXSP_GAIN_TRIALS);
             left += piece->lead == p && !piece->settled;
         }
     }
-    for (i = 0; i < count; ++i)
+    for (i = 0; i < count; i++)
         system->direction[i] = gxsp_lead_of(system, i / 3)->settled ? system->trial[i] : system->current[i];
-    for (p = 0; p < system->piece_count; ++p)
-        system->pieces[p].settled = 0;
+    for (p = 0; p < system->piece_count; p++) system->pieces[p].settled = 0;
 }
 
 /* Writes the state out, all of it or, if a number is not finite, none. */
-static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double *velocity)
-{
+static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double *velocity) {
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
     const int midpoint = step->integrator == GXS_MIDPOINT, bounded = midpoint && system->active > 0;
     size_t i, count = 3 * system->n;
     double *speeds = system->residual, *ends = system->direction;
-    if (bounded)
-        gxsp_bound_gain(problem);
-    for (i = 0; i < count; ++i)
+    if (bounded) gxsp_bound_gain(problem);
+    for (i = 0; i < count; i++)
         if (!bounded || system->still[i / 3])
             ends[i] = midpoint ? 2 * system->current[i] - displacement[i] : system->current[i];
     gxsp_follow(system, displacement, ends);
-    for (i = 0; i < count; ++i) {
+    for (i = 0; i < count; i++) {
         if (system->still[i / 3])
             speeds[i] = step->integrator == GXS_STATIC ? 0 : (ends[i] - displacement[i]) / step->dt;
         else
@@ -8805,12 +8313,11 @@ static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double
         return GX_ERROR_DIVERGED;
     memcpy(displacement, ends, count * sizeof(double));
     memcpy(velocity, speeds, count * sizeof(double));
-    if (midpoint)
-        memcpy(system->current, ends, count * sizeof(double));
+    if (midpoint) memcpy(system->current, ends, count * sizeof(double));
     system->stepped = 1;
     system->base_known = !midpoint && step->spring_count + step->point_count == 0;
     system->lasting->scene = problem->scene;
-    for (i = 0; i < system->piece_count; ++i) {
+    for (i = 0; i < system->piece_count; i++) {
         system->pieces[i].forces[0] = system->pieces[i].forces[1];
         system->pieces[i].sprung[0] = system->pieces[i].sprung[1];
         system->pieces[i].base_energy = system->pieces[i].before[0];
@@ -8820,11 +8327,10 @@ static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double
 }
 
 /* The force of every spring on the body at the end of the step */
-static void gxsp_report_springs(const gxsp_problem *problem)
-{
+static void gxsp_report_springs(const gxsp_problem *problem) {
     const gxs_step_desc *step = problem->step;
     size_t i;
-    for (i = 0; i < step->spring_count && step->spring_forces; ++i) {
+    for (i = 0; i < step->spring_count && step->spring_forces; i++) {
         gxsp_pull pull;
         gxsp_spring_pull(&step->springs[i], problem->system->current, &pull);
         memcpy(step->spring_forces + 3 * i, pull.force, sizeof pull.force);
@@ -8833,26 +8339,22 @@ static void gxsp_report_springs(const gxsp_problem *problem)
 
 /* >>check */
 
-static gx_result gxsp_check_element(const gxs_element *element, const gxs_model *model, size_t index, gx_failure *failure)
-{
+static gx_result gxsp_check_element(const gxs_element *element, const gxs_model *model, size_t index,
+                                    gx_failure *failure) {
     int i;
-    for (i = 0; i < 4; ++i)
-        if (element->copy[i] >= model->copy_count)
-            return gxsp_fail(failure, GX_ERROR_INDEX, index);
-    if (element->material >= model->material_count)
-        return gxsp_fail(failure, GX_ERROR_INDEX, index);
+    for (i = 0; i < 4; i++)
+        if (element->copy[i] >= model->copy_count) return gxsp_fail(failure, GX_ERROR_INDEX, index);
+    if (element->material >= model->material_count) return gxsp_fail(failure, GX_ERROR_INDEX, index);
     if (gxsp_first_not_finite(&element->gradient[1][0], 9) < 9 || !gxsp_finite(element->weight) ||
         gxsp_first_not_finite(element->mass, 10) < 10)
         return gxsp_fail(failure, GX_ERROR_NOT_FINITE, index);
-    if (element->weight < 0)
-        return gxsp_fail(failure, GX_ERROR_INVERTED, index);
+    if (element->weight < 0) return gxsp_fail(failure, GX_ERROR_INVERTED, index);
     if (element->mass[0] < 0 || element->mass[4] < 0 || element->mass[7] < 0 || element->mass[9] < 0)
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, index);
     return GX_OK;
 }
 
-static gx_result gxsp_check_material(const gxs_material *material, size_t index, gx_failure *failure)
-{
+static gx_result gxsp_check_material(const gxs_material *material, size_t index, gx_failure *failure) {
     if (!gxsp_finite(material->young) || !gxsp_finite(material->poisson) || !gxsp_finite(material->damping))
         return gxsp_fail(failure, GX_ERROR_NOT_FINITE, index);
     if (material->young <= 0 || material->poisson < 0 || material->poisson >= 0.5 || (int)material->kind < 0 ||
@@ -8861,71 +8363,65 @@ static gx_result gxsp_check_material(const gxs_material *material, size_t index,
     return GX_OK;
 }
 
-static gx_result gxsp_check_vector(const double *vector, size_t copy_count, gx_failure *failure)
-{
+static gx_result gxsp_check_vector(const double *vector, size_t copy_count, gx_failure *failure) {
     size_t i;
-    if (!vector)
-        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    if (!vector) return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     i = gxsp_first_not_finite(vector, 3 * copy_count);
     return i < 3 * copy_count ? gxsp_fail(failure, GX_ERROR_NOT_FINITE, i / 3) : GX_OK;
 }
 
-static gx_result gxsp_check_constraint(const gxs_constraint *constraint, size_t n, size_t index, gx_failure *failure)
-{
+static gx_result gxsp_check_constraint(const gxs_constraint *constraint, size_t n, size_t index, gx_failure *failure) {
     int k;
-    if (constraint->copy >= n)
-        return gxsp_fail(failure, GX_ERROR_INDEX, index);
-    for (k = 0; k < 4; ++k) {
-        if (constraint->master[k] >= n)
-            return gxsp_fail(failure, GX_ERROR_INDEX, index);
-        if (!gxsp_finite(constraint->weight[k]))
-            return gxsp_fail(failure, GX_ERROR_NOT_FINITE, index);
+    if (constraint->copy >= n) return gxsp_fail(failure, GX_ERROR_INDEX, index);
+    for (k = 0; k < 4; k++) {
+        if (constraint->master[k] >= n) return gxsp_fail(failure, GX_ERROR_INDEX, index);
+        if (!gxsp_finite(constraint->weight[k])) return gxsp_fail(failure, GX_ERROR_NOT_FINITE, index);
     }
     return GX_OK;
 }
 
-static gx_result gxsp_check_model(const gxs_model *model, gx_failure *failure)
-{
+static gx_result gxsp_check_model(const gxs_model *model, gx_failure *failure) {
     size_t e;
     gx_result result = GX_OK;
-    if (!model || (!model->elements && model->element_count > 0) || (!model->constraints && model->constraint_count > 0) || (!model->materials && model->material_count > 0))
+    if (!model || (!model->elements && model->element_count > 0) ||
+        (!model->constraints && model->constraint_count > 0) || (!model->materials && model->material_count > 0))
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     if (model->copy_count == 0 || model->element_count == 0 || model->material_count == 0)
         return gxsp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
     /* 1024: no array takes more bytes per object, so sizes cannot overflow; elements have four slots at most */
-    if (model->copy_count >= UINT32_MAX / 4 || model->element_count >= UINT32_MAX / 4 || model->material_count >= UINT32_MAX ||
-        model->copy_count >= SIZE_MAX / 1024 || model->element_count >= SIZE_MAX / 1024 || model->material_count >= SIZE_MAX / 1024 ||
+    if (model->copy_count >= UINT32_MAX / 4 || model->element_count >= UINT32_MAX / 4 ||
+        model->material_count >= UINT32_MAX || model->copy_count >= SIZE_MAX / 1024 ||
+        model->element_count >= SIZE_MAX / 1024 || model->material_count >= SIZE_MAX / 1024 ||
         model->constraint_count > model->copy_count)
         return gxsp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
-    for (e = 0; e < model->material_count && result == GX_OK; ++e)
+    for (e = 0; e < model->material_count && result == GX_OK; e++)
         result = gxsp_check_material(&model->materials[e], e, failure);
-    for (e = 0; e < model->element_count && result == GX_OK; ++e)
+    for (e = 0; e < model->element_count && result == GX_OK; e++)
         result = gxsp_check_element(&model->elements[e], model, e, failure);
-    for (e = 0; e < model->constraint_count && result == GX_OK; ++e)
+    for (e = 0; e < model->constraint_count && result == GX_OK; e++)
         result = gxsp_check_constraint(&model->constraints[e], model->copy_count, e, failure);
-    return result == GX_OK && model->positions ? gxsp_check_vector(model->positions, model->copy_count, failure) : result;
+    return result == GX_OK && model->positions ? gxsp_check_vector(model->positions, model->copy_count, failure)
+                                               : result;
 }
 
 /* dt within what the square of it and of its inverse can hold */
-static int gxsp_dt_fits(double dt)
-{
-    return dt >= 1e-100 && dt <= 1e100;
-}
+static int gxsp_dt_fits(double dt) { return dt >= 1e-100 && dt <= 1e100; }
 
-static gx_result gxsp_check_step(const gxs_step_desc *step, gx_failure *failure)
-{
-    const int still = step && step->integrator == GXS_STATIC, history = step && step->integrator == GXS_BDF2 && step->previous_displacement;
-    if (!step)
-        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+static gx_result gxsp_check_step(const gxs_step_desc *step, gx_failure *failure) {
+    const int still = step && step->integrator == GXS_STATIC,
+              history = step && step->integrator == GXS_BDF2 && step->previous_displacement;
+    if (!step) return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     if (!gxsp_finite(step->dt) || gxsp_first_not_finite(step->gravity, 3) < 3 || !gxsp_finite(step->newton_tolerance) ||
         !gxsp_finite(step->cg_tolerance) || !gxsp_finite(step->previous_dt) || !gxsp_finite(step->mass_damping) ||
         !gxsp_finite(step->sleep_speed) || !gxsp_finite(step->sleep_time) || !gxsp_finite(step->budget_seconds))
         return gxsp_fail(failure, GX_ERROR_NOT_FINITE, SIZE_MAX);
-    if (step->dt < 0 || (step->dt <= 0 && !still) || step->newton_tolerance < 0 || step->cg_tolerance < 0 || step->cg_tolerance >= 1 || step->mass_damping < 0 ||
-        (int)step->integrator < 0 || step->integrator > GXS_STATIC || step->sleep_speed < 0 || step->sleep_time < 0 ||
-        step->budget_seconds < 0 || (history && (!step->previous_velocity || step->previous_dt <= 0)) ||
+    if (step->dt < 0 || (step->dt <= 0 && !still) || step->newton_tolerance < 0 || step->cg_tolerance < 0 ||
+        step->cg_tolerance >= 1 || step->mass_damping < 0 || (int)step->integrator < 0 ||
+        step->integrator > GXS_STATIC || step->sleep_speed < 0 || step->sleep_time < 0 || step->budget_seconds < 0 ||
+        (history && (!step->previous_velocity || step->previous_dt <= 0)) ||
         (step->budget_seconds > 0 && !step->clock) || (step->sleep_speed > 0 && !step->rest_times) ||
-        (step->spring_count > 0 && !step->springs) || (step->point_count > 0 && !step->points) || (step->plane_count > 0 && !step->planes))
+        (step->spring_count > 0 && !step->springs) || (step->point_count > 0 && !step->points) ||
+        (step->plane_count > 0 && !step->planes))
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     if ((step->dt > 0 && !gxsp_dt_fits(step->dt)) || (history && !gxsp_dt_fits(step->previous_dt)))
         return gxsp_fail(failure, GX_ERROR_RANGE, SIZE_MAX);
@@ -8935,78 +8431,66 @@ static gx_result gxsp_check_step(const gxs_step_desc *step, gx_failure *failure)
 }
 
 /* Is all that names copies of one numbering? */
-static gx_result gxsp_check_epochs(const gxs_step_desc *step, uint64_t epoch, gx_failure *failure)
-{
+static gx_result gxsp_check_epochs(const gxs_step_desc *step, uint64_t epoch, gx_failure *failure) {
     size_t i;
-    if ((step->forces || step->targets) && step->epoch != epoch)
-        return gxsp_fail(failure, GX_ERROR_STALE, SIZE_MAX);
-    for (i = 0; i < step->spring_count; ++i)
-        if (step->springs[i].point.epoch != epoch)
-            return gxsp_fail(failure, GX_ERROR_STALE, i);
-    for (i = 0; i < step->point_count; ++i)
-        if (step->points[i].epoch != epoch)
-            return gxsp_fail(failure, GX_ERROR_STALE, i);
+    if ((step->forces || step->targets) && step->epoch != epoch) return gxsp_fail(failure, GX_ERROR_STALE, SIZE_MAX);
+    for (i = 0; i < step->spring_count; i++)
+        if (step->springs[i].point.epoch != epoch) return gxsp_fail(failure, GX_ERROR_STALE, i);
+    for (i = 0; i < step->point_count; i++)
+        if (step->points[i].epoch != epoch) return gxsp_fail(failure, GX_ERROR_STALE, i);
     return GX_OK;
 }
 
-static gx_result gxsp_check_point(const gxs_point *point, size_t n, size_t index, gx_failure *failure)
-{
+static gx_result gxsp_check_point(const gxs_point *point, size_t n, size_t index, gx_failure *failure) {
     int k;
-    for (k = 0; k < 4; ++k)
-        if (point->copy[k] >= n)
-            return gxsp_fail(failure, GX_ERROR_INDEX, index);
+    for (k = 0; k < 4; k++)
+        if (point->copy[k] >= n) return gxsp_fail(failure, GX_ERROR_INDEX, index);
     if (gxsp_first_not_finite(point->weight, 4) < 4 || gxsp_first_not_finite(point->position, 3) < 3)
         return gxsp_fail(failure, GX_ERROR_NOT_FINITE, index);
     return GX_OK;
 }
 
-static gx_result gxsp_check_plane(const gxs_plane *plane, size_t index, gx_failure *failure)
-{
+static gx_result gxsp_check_plane(const gxs_plane *plane, size_t index, gx_failure *failure) {
     if (gxsp_first_not_finite(plane->normal, 3) < 3 || !gxsp_finite(plane->offset) || !gxsp_finite(plane->stiffness) ||
         !gxsp_finite(plane->friction) || !gxsp_finite(plane->sticking_speed))
         return gxsp_fail(failure, GX_ERROR_NOT_FINITE, index);
-    if (fabs(gxsp_dot(plane->normal, plane->normal, 1) - 1) > 1e-6 || plane->stiffness < 0 || plane->friction < 0 || plane->sticking_speed < 0)
+    if (fabs(gxsp_dot(plane->normal, plane->normal, 1) - 1) > 1e-6 || plane->stiffness < 0 || plane->friction < 0 ||
+        plane->sticking_speed < 0)
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, index);
     return GX_OK;
 }
 
 /* Springs, contact points and planes of a step */
-static gx_result gxsp_check_points(const gxs_step_desc *step, size_t n, gx_failure *failure)
-{
+static gx_result gxsp_check_points(const gxs_step_desc *step, size_t n, gx_failure *failure) {
     gx_result result = GX_OK;
     size_t i;
-    for (i = 0; i < step->spring_count && result == GX_OK; ++i) {
+    for (i = 0; i < step->spring_count && result == GX_OK; i++) {
         result = gxsp_check_point(&step->springs[i].point, n, i, failure);
-        if (result == GX_OK && (gxsp_first_not_finite(step->springs[i].target, 3) < 3 || !gxsp_finite(step->springs[i].stiffness)))
+        if (result == GX_OK &&
+            (gxsp_first_not_finite(step->springs[i].target, 3) < 3 || !gxsp_finite(step->springs[i].stiffness)))
             result = gxsp_fail(failure, GX_ERROR_NOT_FINITE, i);
-        if (result == GX_OK && step->springs[i].stiffness < 0)
-            result = gxsp_fail(failure, GX_ERROR_ARGUMENT, i);
+        if (result == GX_OK && step->springs[i].stiffness < 0) result = gxsp_fail(failure, GX_ERROR_ARGUMENT, i);
     }
-    for (i = 0; i < step->point_count && result == GX_OK; ++i)
+    for (i = 0; i < step->point_count && result == GX_OK; i++)
         result = gxsp_check_point(&step->points[i], n, i, failure);
-    for (i = 0; i < step->plane_count && result == GX_OK; ++i)
-        result = gxsp_check_plane(&step->planes[i], i, failure);
+    for (i = 0; i < step->plane_count && result == GX_OK; i++) result = gxsp_check_plane(&step->planes[i], i, failure);
     return result;
 }
 
 /* Every array that a step reads */
-static gx_result gxsp_check_vectors(const gxs_step_desc *step, size_t n, const double *displacement, const double *velocity,
-                                    const uint8_t *held, gx_failure *failure)
-{
+static gx_result gxsp_check_vectors(const gxs_step_desc *step, size_t n, const double *displacement,
+                                    const double *velocity, const uint8_t *held, gx_failure *failure) {
     gx_result result = gxsp_check_vector(displacement, n, failure);
     size_t i;
-    if (result == GX_OK)
-        result = gxsp_check_vector(velocity, n, failure);
-    if (result == GX_OK && step->forces)
-        result = gxsp_check_vector(step->forces, n, failure);
+    if (result == GX_OK) result = gxsp_check_vector(velocity, n, failure);
+    if (result == GX_OK && step->forces) result = gxsp_check_vector(step->forces, n, failure);
     if (result == GX_OK && step->integrator == GXS_BDF2 && step->previous_displacement) {
         result = gxsp_check_vector(step->previous_displacement, n, failure);
-        if (result == GX_OK)
-            result = gxsp_check_vector(step->previous_velocity, n, failure);
+        if (result == GX_OK) result = gxsp_check_vector(step->previous_velocity, n, failure);
     }
     if (result == GX_OK && step->sleep_speed > 0 && (i = gxsp_first_not_finite(step->rest_times, n)) < n)
         result = gxsp_fail(failure, GX_ERROR_NOT_FINITE, i);
-    for (i = 0; step->targets && result == GX_OK && i < n; ++i)
+    for (i = 0; step->targets && result == GX_OK && i < n; i++)
         if (held[i] && gxsp_first_not_finite(step->targets + 3 * i, 3) < 3)
             result = gxsp_fail(failure, GX_ERROR_NOT_FINITE, i);
     return result;
@@ -9014,24 +8498,20 @@ static gx_result gxsp_check_vectors(const gxs_step_desc *step, size_t n, const d
 
 /* >>api */
 
-static void gxsp_system_destroy(gxsp_system *system)
-{
+static void gxsp_system_destroy(gxsp_system *system) {
     gxsp_pool pool;
-    if (!system)
-        return;
+    if (!system) return;
     gxsp_release_to(&system->coarse, NULL);
     pool = system->pool; /* which holds system itself */
     gxsp_release_to(&pool, NULL);
 }
 
-static void gxsp_drop_system(gxs_solver *solver)
-{
+static void gxsp_drop_system(gxs_solver *solver) {
     gxsp_system_destroy(solver->system);
     solver->system = NULL;
 }
 
-GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *model, gx_failure *failure)
-{
+GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *model, gx_failure *failure) {
     gx_failure ignored;
     gx_result result;
     gxsp_pool pool, scratch;
@@ -9039,24 +8519,20 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
     size_t bad;
     failure = failure ? failure : &ignored;
     gxsp_fail(failure, GX_OK, SIZE_MAX);
-    if (!solver)
-        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    if (!solver) return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     result = gxsp_check_model(model, failure);
-    if (result != GX_OK)
-        return result;
+    if (result != GX_OK) return result;
     pool = gxsp_pool_make(&solver->allocator);
     scratch = gxsp_pool_make(&solver->allocator);
     system = (gxsp_system *)gxsp_take(&pool, 1, sizeof *system);
-    if (!system)
-        return gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
+    if (!system) return gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
     system->pool = pool;
     system->coarse = gxsp_pool_make(&solver->allocator);
     system->jobs = &solver->jobs;
     system->lasting = &solver->lasting;
     bad = gxsp_system_build(system, &scratch, model, solver);
     gxsp_release_to(&scratch, NULL);
-    if (bad == SIZE_MAX && !scratch.failed && !system->pool.failed && !system->coarse.failed)
-        gxsp_steps_make(system);
+    if (bad == SIZE_MAX && !scratch.failed && !system->pool.failed && !system->coarse.failed) gxsp_steps_make(system);
     if (bad != SIZE_MAX)
         gxsp_fail(failure, GX_ERROR_ARGUMENT, bad);
     else if (scratch.failed || system->pool.failed || system->coarse.failed)
@@ -9071,41 +8547,35 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
 }
 
 /* Is the change one of this model? */
-static gx_result gxsp_check_change(const gxsp_system *system, const gxs_change *change, gx_failure *failure)
-{
+static gx_result gxsp_check_change(const gxsp_system *system, const gxs_change *change, gx_failure *failure) {
     gxs_model model;
     gx_result result = GX_OK;
     size_t i;
-    if (!change || !change->origins || (!change->groups && change->group_count > 0) || (!change->elements && change->element_count > 0) ||
-        (!change->constraints && change->constraint_count > 0))
+    if (!change || !change->origins || (!change->groups && change->group_count > 0) ||
+        (!change->elements && change->element_count > 0) || (!change->constraints && change->constraint_count > 0))
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
-    if (change->copy_count == 0)
-        return gxsp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
+    if (change->copy_count == 0) return gxsp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
     if (change->copy_count >= UINT32_MAX / 4 || change->element_count >= UINT32_MAX / 4 - system->element_count ||
         change->constraint_count > change->copy_count)
         return gxsp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
-    for (i = 0; i < change->copy_count; ++i)
-        if (change->origins[i] >> 1 >= system->n)
-            return gxsp_fail(failure, GX_ERROR_INDEX, i);
-    for (i = 1; i < change->group_count; ++i)
-        if (change->groups[i - 1] >= change->groups[i])
-            return gxsp_fail(failure, GX_ERROR_ARGUMENT, i);
-    for (i = 1; i < change->element_count; ++i)
-        if (change->elements[i - 1].group > change->elements[i].group)
-            return gxsp_fail(failure, GX_ERROR_ARGUMENT, i);
+    for (i = 0; i < change->copy_count; i++)
+        if (change->origins[i] >> 1 >= system->n) return gxsp_fail(failure, GX_ERROR_INDEX, i);
+    for (i = 1; i < change->group_count; i++)
+        if (change->groups[i - 1] >= change->groups[i]) return gxsp_fail(failure, GX_ERROR_ARGUMENT, i);
+    for (i = 1; i < change->element_count; i++)
+        if (change->elements[i - 1].group > change->elements[i].group) return gxsp_fail(failure, GX_ERROR_ARGUMENT, i);
     memset(&model, 0, sizeof model);
     model.copy_count = change->copy_count;
     model.material_count = system->material_count;
-    for (i = 0; i < change->element_count && result == GX_OK; ++i)
-        result = change->elements[i].group < GXSP_GROUPS ? gxsp_check_element(&change->elements[i], &model, i, failure) :
-                                                           gxsp_fail(failure, GX_ERROR_LIMIT, i);
-    for (i = 0; i < change->constraint_count && result == GX_OK; ++i)
+    for (i = 0; i < change->element_count && result == GX_OK; i++)
+        result = change->elements[i].group < GXSP_GROUPS ? gxsp_check_element(&change->elements[i], &model, i, failure)
+                                                         : gxsp_fail(failure, GX_ERROR_LIMIT, i);
+    for (i = 0; i < change->constraint_count && result == GX_OK; i++)
         result = gxsp_check_constraint(&change->constraints[i], change->copy_count, i, failure);
     return result;
 }
 
-GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *change, gx_failure *failure)
-{
+GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *change, gx_failure *failure) {
     gx_failure ignored;
     gxsp_pool scratch;
     gxsp_renewal update;
@@ -9115,12 +8585,10 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
     int fits;
     failure = failure ? failure : &ignored;
     gxsp_fail(failure, GX_OK, SIZE_MAX);
-    if (!solver || !solver->system)
-        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    if (!solver || !solver->system) return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     system = solver->system;
     if (gxsp_check_change(system, change, failure) != GX_OK) {
-        if (failure->result == GX_ERROR_LIMIT)
-            gxsp_drop_system(solver);
+        if (failure->result == GX_ERROR_LIMIT) gxsp_drop_system(solver);
         return failure->result;
     }
     scratch = gxsp_pool_make(&solver->allocator);
@@ -9135,7 +8603,8 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
     update.dirty = (uint8_t *)gxsp_take(&scratch, system->levels[1].n, 1);
     update.alike = (uint8_t *)gxsp_take(&scratch, change->copy_count, 1);
     follows = (uint8_t *)gxsp_take(&scratch, change->copy_count, 1);
-    bad = scratch.failed ? SIZE_MAX : gxsp_bad_constraint(change->constraints, change->constraint_count, change->held, follows);
+    bad = scratch.failed ? SIZE_MAX
+                         : gxsp_bad_constraint(change->constraints, change->constraint_count, change->held, follows);
     if (bad != SIZE_MAX) {
         gxsp_release_to(&scratch, NULL);
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, bad);
@@ -9146,27 +8615,22 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
         gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
     else if (!fits)
         gxsp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
-    if (failure->result != GX_OK)
-        gxsp_drop_system(solver);
+    if (failure->result != GX_OK) gxsp_drop_system(solver);
     return failure->result;
 }
 
-GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displacement, double rate, uint32_t exact, gx_failure *failure)
-{
+GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displacement, double rate, uint32_t exact,
+                                         gx_failure *failure) {
     gx_failure ignored;
     gxsp_system *system;
     gxsp_pass pass;
     failure = failure ? failure : &ignored;
     gxsp_fail(failure, GX_OK, SIZE_MAX);
-    if (!solver || !solver->system)
-        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    if (!solver || !solver->system) return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     system = solver->system;
-    if (gxsp_check_vector(displacement, system->n, failure) != GX_OK)
-        return failure->result;
-    if (!gxsp_finite(rate))
-        return gxsp_fail(failure, GX_ERROR_NOT_FINITE, SIZE_MAX);
-    if (rate < 0)
-        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    if (gxsp_check_vector(displacement, system->n, failure) != GX_OK) return failure->result;
+    if (!gxsp_finite(rate)) return gxsp_fail(failure, GX_ERROR_NOT_FINITE, SIZE_MAX);
+    if (rate < 0) return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     memset(&pass, 0, sizeof pass);
     pass.system = system;
     pass.materials = system->materials;
@@ -9180,8 +8644,8 @@ GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displ
     return system->product_rate < 0 ? gxsp_fail(failure, GX_ERROR_RANGE, SIZE_MAX) : GX_OK;
 }
 
-GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *direction, double *product, gx_failure *failure)
-{
+GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *direction, double *product,
+                                       gx_failure *failure) {
     gx_failure ignored;
     gxsp_system *system;
     gxsp_pass pass;
@@ -9196,41 +8660,33 @@ GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *directi
     pass.from = direction;
     pass.sum = product;
     pass.factor = gxsp_unit_factor(direction, 3 * system->n);
-    if (!(pass.factor > 0))
-        return gxsp_check_vector(direction, system->n, failure);
+    if (!(pass.factor > 0)) return gxsp_check_vector(direction, system->n, failure);
     gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_apply, &pass);
     gxsp_over_ranges(system, gxsp_task_apply_sum, &pass, NULL, 0);
     gxsp_reduce_residual(system, system->fixed, product);
     return GX_OK;
 }
 
-GXFEM_API void gxs_solver_note_written(const gxs_solver *solver, const uint32_t *origins, size_t count, const double *displacement,
-                                       const double *velocity, double *rest_times)
-{
+GXFEM_API void gxs_solver_note_written(const gxs_solver *solver, const uint32_t *origins, size_t count,
+                                       const double *displacement, const double *velocity, double *rest_times) {
     const gxsp_system *system = solver->system;
     size_t i;
-    for (i = 0; system && i < count; ++i) {
+    for (i = 0; system && i < count; i++) {
         const size_t before = origins[i] >> 1;
         if (before < system->n && gxsp_is_written(system, before, displacement + 3 * i, velocity + 3 * i))
             rest_times[i] = 0;
     }
 }
 
-GXFEM_API void gxs_solver_scene(const gxs_solver *solver, gxs_scene *scene)
-{
-    *scene = solver->lasting.scene;
-}
+GXFEM_API void gxs_solver_scene(const gxs_solver *solver, gxs_scene *scene) { *scene = solver->lasting.scene; }
 
 /* All that one step leaves to the next goes; what depends on the model alone stays. */
-GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene)
-{
+GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene) {
     gxsp_system *system = solver->system;
     uint32_t p;
     solver->lasting.scene = *scene;
-    if (system && system->roots_known)
-        gxsp_drop_system(solver);
-    if (!solver->system)
-        return;
+    if (system && system->roots_known) gxsp_drop_system(solver);
+    if (!solver->system) return;
     system->product_rate = -1;
     system->still_known = system->base_known = system->stepped = 0;
     system->guess_count = 0;
@@ -9242,7 +8698,7 @@ GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene)
     system->coarse_served = system->read = 0;
     system->coarse_life = GXSP_LIFE;
     system->pace = system->read_nepers = 0;
-    for (p = 0; p < system->piece_count; ++p) {
+    for (p = 0; p < system->piece_count; p++) {
         gxsp_piece *piece = &system->pieces[p];
         piece->state &= ~(GXSP_TOUCHED | GXSP_TOUCHES | GXSP_ASLEEP);
         piece->forces[0] = piece->forces[1] = 0;
@@ -9251,15 +8707,12 @@ GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene)
 }
 
 /* Room for the terms of a step */
-static int gxsp_reserve_terms(gxs_solver *solver, size_t count)
-{
+static int gxsp_reserve_terms(gxs_solver *solver, size_t count) {
     gxsp_lasting *lasting = &solver->lasting;
     gxsp_term *larger;
-    if (count <= lasting->capacity)
-        return 1;
+    if (count <= lasting->capacity) return 1;
     larger = (gxsp_term *)solver->allocator.allocate(solver->allocator.user, count * sizeof *larger);
-    if (!larger)
-        return 0;
+    if (!larger) return 0;
     if (lasting->term)
         solver->allocator.release(solver->allocator.user, lasting->term, lasting->capacity * sizeof *larger);
     lasting->term = larger;
@@ -9268,33 +8721,30 @@ static int gxsp_reserve_terms(gxs_solver *solver, size_t count)
 }
 
 /* A balance of forces without inertia needs every piece to be held, by a copy or a spring. */
-static gx_result gxsp_check_free(const gxsp_problem *problem, gx_failure *failure)
-{
+static gx_result gxsp_check_free(const gxsp_problem *problem, gx_failure *failure) {
     const gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
     size_t i, k;
     gxsp_untouch_pieces(problem->system);
-    for (k = 0; k < step->spring_count; ++k)
-        for (i = 0; i < 4 && step->springs[k].stiffness > 0; ++i)
+    for (k = 0; k < step->spring_count; k++)
+        for (i = 0; i < 4 && step->springs[k].stiffness > 0; i++)
             if (fabs(step->springs[k].point.weight[i]) > 0)
                 system->pieces[system->piece[step->springs[k].point.copy[i]]].state |= GXSP_TOUCHED;
-    for (i = 0; i < system->n && !(problem->rate > 0); ++i)
+    for (i = 0; i < system->n && !(problem->rate > 0); i++)
         if (!(system->pieces[system->piece[i]].state & (GXSP_HELD | GXSP_TOUCHED | GXSP_ASLEEP)))
             return gxsp_fail(failure, GX_ERROR_FREE, i);
     return GX_OK;
 }
 
-GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement, double *velocity,
-                                    gxs_step_report *report, gx_failure *failure)
-{
+GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement,
+                                    double *velocity, gxs_step_report *report, gx_failure *failure) {
     gxsp_problem problem;
     gx_failure ignored;
     gx_result result;
     size_t n;
     failure = failure ? failure : &ignored;
     gxsp_fail(failure, GX_OK, SIZE_MAX);
-    if (!solver || !solver->system)
-        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    if (!solver || !solver->system) return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     n = solver->system->n;
     if ((result = gxsp_check_step(step, failure)) != GX_OK ||
         (result = gxsp_check_epochs(step, solver->system->epoch, failure)) != GX_OK ||
@@ -9314,41 +8764,35 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     gxsp_choose_integrator(&problem);
     gxsp_choose_sleepers(&problem, displacement, velocity);
     problem.system->failed = 1;
-    if ((result = gxsp_check_free(&problem, failure)) != GX_OK)
-        return result;
+    if ((result = gxsp_check_free(&problem, failure)) != GX_OK) return result;
     gxsp_begin(&problem, velocity);
     problem.report.active_unknowns = problem.system->active;
     result = gxsp_minimise(&problem);
-    if (result == GX_OK)
-        result = gxsp_finish(&problem, displacement, velocity);
-    if (result != GX_OK)
-        return gxsp_fail(failure, result, SIZE_MAX);
+    if (result == GX_OK) result = gxsp_finish(&problem, displacement, velocity);
+    if (result != GX_OK) return gxsp_fail(failure, result, SIZE_MAX);
     problem.system->failed = 0;
     gxsp_report_springs(&problem);
     problem.report.seconds = gxsp_now(&problem) - problem.start;
-    if (report)
-        *report = problem.report;
+    if (report) *report = problem.report;
     return GX_OK;
 }
 
-GXFEM_API gx_result gxs_solver_create(const gxs_solver_desc *desc, gxs_solver **solver)
-{
+GXFEM_API gx_result gxs_solver_create(const gxs_solver_desc *desc, gxs_solver **solver) {
     gx_allocator used = {NULL, NULL, NULL, NULL};
     gxs_solver *made;
-    if (!solver || (desc && (!desc->allocator.allocate != !desc->allocator.release || (desc->allocator.reallocate && !desc->allocator.allocate))))
+    if (!solver || (desc && (!desc->allocator.allocate != !desc->allocator.release ||
+                             (desc->allocator.reallocate && !desc->allocator.allocate))))
         return GX_ERROR_ARGUMENT;
     if (desc && ((int)desc->preconditioner < 0 || desc->preconditioner > GXS_VOLUME_RATIO || (int)desc->matrix < 0 ||
                  desc->matrix > GXS_MATRIX_ASSEMBLED))
         return GX_ERROR_ARGUMENT;
-    if (desc)
-        used = desc->allocator;
+    if (desc) used = desc->allocator;
     if (!used.allocate) {
         used.allocate = gxsp_malloc;
         used.release = gxsp_free;
     }
     made = (gxs_solver *)used.allocate(used.user, sizeof *made);
-    if (!made)
-        return GX_ERROR_MEMORY;
+    if (!made) return GX_ERROR_MEMORY;
     memset(made, 0, sizeof *made);
     made->allocator = used;
     if (desc) {
@@ -9360,15 +8804,14 @@ GXFEM_API gx_result gxs_solver_create(const gxs_solver_desc *desc, gxs_solver **
     return GX_OK;
 }
 
-GXFEM_API void gxs_solver_destroy(gxs_solver *solver)
-{
+GXFEM_API void gxs_solver_destroy(gxs_solver *solver) {
     gx_allocator allocator;
-    if (!solver)
-        return;
+    if (!solver) return;
     allocator = solver->allocator;
     gxsp_system_destroy(solver->system);
     if (solver->lasting.term)
-        allocator.release(allocator.user, solver->lasting.term, solver->lasting.capacity * sizeof *solver->lasting.term);
+        allocator.release(allocator.user, solver->lasting.term,
+                          solver->lasting.capacity * sizeof *solver->lasting.term);
     allocator.release(allocator.user, solver, sizeof *solver);
 }
 
@@ -9385,68 +8828,57 @@ typedef struct gxsp_group {
 } gxsp_group;
 
 /* The next elements of one kind from at on. */
-static void gxsp_group_load(const gxs_model *model, size_t at, gxsp_group *group)
-{
+static void gxsp_group_load(const gxs_model *model, size_t at, gxsp_group *group) {
     size_t lane;
     int k;
     memset(group, 0, sizeof *group);
     group->elements = model->elements + at;
     group->kind = model->materials[group->elements->material].kind;
-    for (lane = 0; lane < GXSP_LANES; ++lane) {
+    for (lane = 0; lane < GXSP_LANES; lane++) {
         const gxs_element *element = &group->elements[lane];
-        if (at + lane >= model->element_count || model->materials[element->material].kind != group->kind)
-            break;
+        if (at + lane >= model->element_count || model->materials[element->material].kind != group->kind) break;
         group->material[lane] = gxsp_material_make(&model->materials[element->material]);
         group->state.mu[lane] = group->material[lane].mu;
         group->state.lambda[lane] = group->material[lane].lambda;
-        for (k = 0; k < 9; ++k)
-            group->gradients[k][lane] = element->gradient[1 + k / 3][k % 3];
+        for (k = 0; k < 9; k++) group->gradients[k][lane] = element->gradient[1 + k / 3][k % 3];
         group->rest.weight[lane] = element->weight;
     }
     group->count = (uint32_t)lane;
-    for (lane = 0; lane < GXSP_LANES; ++lane)
+    for (lane = 0; lane < GXSP_LANES; lane++)
         group->state.material[lane] = &group->material[lane < group->count ? lane : 0];
 }
 
-static void gxsp_group_gather(const gxsp_group *group, const double *x, gxsp_lanes *corners)
-{
+static void gxsp_group_gather(const gxsp_group *group, const double *x, gxsp_lanes *corners) {
     uint32_t lane;
     int i, r;
     memset(corners, 0, 12 * sizeof *corners);
-    for (lane = 0; lane < group->count; ++lane)
-        for (i = 0; i < 4; ++i)
-            for (r = 0; r < 3; ++r)
-                corners[3 * i + r][lane] = x[3 * (size_t)group->elements[lane].copy[i] + (size_t)r];
+    for (lane = 0; lane < group->count; lane++)
+        for (i = 0; i < 4; i++)
+            for (r = 0; r < 3; r++) corners[3 * i + r][lane] = x[3 * (size_t)group->elements[lane].copy[i] + (size_t)r];
 }
 
-static void gxsp_group_scatter(const gxsp_group *group, gxsp_lanes *values, double *y)
-{
+static void gxsp_group_scatter(const gxsp_group *group, gxsp_lanes *values, double *y) {
     uint32_t lane;
     int i, r;
-    for (lane = 0; lane < group->count; ++lane)
-        for (i = 0; i < 4; ++i)
-            for (r = 0; r < 3; ++r)
-                y[3 * (size_t)group->elements[lane].copy[i] + (size_t)r] += values[3 * i + r][lane];
+    for (lane = 0; lane < group->count; lane++)
+        for (i = 0; i < 4; i++)
+            for (r = 0; r < 3; r++) y[3 * (size_t)group->elements[lane].copy[i] + (size_t)r] += values[3 * i + r][lane];
 }
 
 /* Model and an input vector of one of the assembled forms. */
-static gx_result gxsp_check_form(const gxs_model *model, const double *vector, const void *output)
-{
+static gx_result gxsp_check_form(const gxs_model *model, const double *vector, const void *output) {
     gx_failure failure;
     gx_result result = gxsp_check_model(model, &failure);
-    if (result == GX_OK)
-        result = gxsp_check_vector(vector, model->copy_count, &failure);
+    if (result == GX_OK) result = gxsp_check_vector(vector, model->copy_count, &failure);
     return result == GX_OK && !output ? GX_ERROR_ARGUMENT : result;
 }
 
-GXFEM_API gx_result gxs_model_energy(const gxs_model *model, const double *displacement, double *energy)
-{
+GXFEM_API gx_result gxs_model_energy(const gxs_model *model, const double *displacement, double *energy) {
     gx_result result = gxsp_check_form(model, displacement, energy);
     double sum = 0;
     size_t e;
     uint32_t lane;
-    if (result != GX_OK)
-        return result;
+    if (result != GX_OK) return result;
     for (e = 0; e < model->element_count;) {
         gxsp_group group;
         gxsp_lanes x[12];
@@ -9454,20 +8886,17 @@ GXFEM_API gx_result gxs_model_energy(const gxs_model *model, const double *displ
         gxsp_group_gather(&group, displacement, x);
         gxsp_block_gradient(group.gradients, x, group.state.g);
         gxsp_material_state(group.kind, &group.state);
-        for (lane = 0; lane < group.count; ++lane)
-            sum += group.rest.weight[lane] * group.state.energy[lane];
+        for (lane = 0; lane < group.count; lane++) sum += group.rest.weight[lane] * group.state.energy[lane];
         e += group.count;
     }
     *energy = sum;
     return GX_OK;
 }
 
-GXFEM_API gx_result gxs_model_gradient(const gxs_model *model, const double *displacement, double *gradient)
-{
+GXFEM_API gx_result gxs_model_gradient(const gxs_model *model, const double *displacement, double *gradient) {
     gx_result result = gxsp_check_form(model, displacement, gradient);
     size_t e;
-    if (result != GX_OK)
-        return result;
+    if (result != GX_OK) return result;
     memset(gradient, 0, 3 * model->copy_count * sizeof(double));
     for (e = 0; e < model->element_count;) {
         gxsp_group group;
@@ -9485,15 +8914,12 @@ GXFEM_API gx_result gxs_model_gradient(const gxs_model *model, const double *dis
 }
 
 GXFEM_API gx_result gxs_model_hessian_product(const gxs_model *model, const double *displacement,
-                                              const double *direction, double *product)
-{
+                                              const double *direction, double *product) {
     gx_result result = gxsp_check_form(model, displacement, product);
     gx_failure failure;
     size_t e;
-    if (result == GX_OK)
-        result = gxsp_check_vector(direction, model->copy_count, &failure);
-    if (result != GX_OK)
-        return result;
+    if (result == GX_OK) result = gxsp_check_vector(direction, model->copy_count, &failure);
+    if (result != GX_OK) return result;
     memset(product, 0, 3 * model->copy_count * sizeof(double));
     for (e = 0; e < model->element_count;) {
         gxsp_group group;
@@ -9510,71 +8936,62 @@ GXFEM_API gx_result gxs_model_hessian_product(const gxs_model *model, const doub
         (void)gxsp_tangent_begin(group.kind, &group.state, NULL, &of);
         gxsp_tangent_make(group.kind, &group.rest, group.gradients, 1, 0, &group.state, &of, &tangent, &general);
         gxsp_group_gather(&group, direction, x);
-        for (k = 0; k < 12; ++k)
+        for (k = 0; k < 12; k++)
             GXSP_EACH_LANE(l) from[k][l] = (float)(x[k][l] - x[k % 3][l]); /* of translations exactly 0 */
         memset(to, 0, sizeof to);
         gxsp_kind_product(group.kind, &tangent, NULL, &general, 1, from, to);
-        for (k = 0; k < 12; ++k)
-            GXSP_EACH_LANE(l) x[k][l] = (double)to[k][l];
+        for (k = 0; k < 12; k++) GXSP_EACH_LANE(l) x[k][l] = (double)to[k][l];
         gxsp_group_scatter(&group, x, product);
         e += group.count;
     }
     return GX_OK;
 }
 
-GXFEM_API gx_result gxs_model_mass_product(const gxs_model *model, const double *direction, double *product)
-{
+GXFEM_API gx_result gxs_model_mass_product(const gxs_model *model, const double *direction, double *product) {
     gx_result result = gxsp_check_form(model, direction, product);
     size_t e, r;
     int i, j;
-    if (result != GX_OK)
-        return result;
+    if (result != GX_OK) return result;
     memset(product, 0, 3 * model->copy_count * sizeof(double));
-    for (e = 0; e < model->element_count; ++e) {
+    for (e = 0; e < model->element_count; e++) {
         const gxs_element *element = &model->elements[e];
-        for (i = 0; i < 4; ++i)
-            for (j = 0; j < 4; ++j)
-                for (r = 0; r < 3; ++r)
-                    product[3 * (size_t)element->copy[i] + r] += element->mass[gxsp_packed_mass[i][j]] * direction[3 * (size_t)element->copy[j] + r];
+        for (i = 0; i < 4; i++)
+            for (j = 0; j < 4; j++)
+                for (r = 0; r < 3; r++)
+                    product[3 * (size_t)element->copy[i] + r] +=
+                        element->mass[gxsp_packed_mass[i][j]] * direction[3 * (size_t)element->copy[j] + r];
     }
     return GX_OK;
 }
 
-static gxsp_state gxsp_single_state(const gxsp_material *material, const double *deformation)
-{
+static gxsp_state gxsp_single_state(const gxsp_material *material, const double *deformation) {
     gxsp_state state;
     int k;
     memset(&state, 0, sizeof state);
     state.mu[0] = material->mu;
     state.lambda[0] = material->lambda;
-    for (k = 0; k < GXSP_LANES; ++k)
-        state.material[k] = material;
-    for (k = 0; k < 9; ++k)
-        state.g[k][0] = deformation[k] - (k % 4 == 0 ? 1 : 0);
+    for (k = 0; k < GXSP_LANES; k++) state.material[k] = material;
+    for (k = 0; k < 9; k++) state.g[k][0] = deformation[k] - (k % 4 == 0 ? 1 : 0);
     return state;
 }
 
-GXFEM_API double gxs_material_energy(const gxs_material *material, const double *deformation)
-{
+GXFEM_API double gxs_material_energy(const gxs_material *material, const double *deformation) {
     const gxsp_material own = gxsp_material_make(material);
     gxsp_state state = gxsp_single_state(&own, deformation);
     gxsp_material_state(material->kind, &state);
     return state.energy[0];
 }
 
-GXFEM_API void gxs_material_stress(const gxs_material *material, const double *deformation, double *stress)
-{
+GXFEM_API void gxs_material_stress(const gxs_material *material, const double *deformation, double *stress) {
     const gxsp_material own = gxsp_material_make(material);
     gxsp_state state = gxsp_single_state(&own, deformation);
     int k;
     gxsp_material_state(material->kind, &state);
-    for (k = 0; k < 9; ++k)
-        stress[k] = state.p[k][0];
+    for (k = 0; k < 9; k++) stress[k] = state.p[k][0];
 }
 
 GXFEM_API void gxs_material_product(const gxs_material *material, const double *deformation, const double *direction,
-                                    double *product)
-{
+                                    double *product) {
     const gxsp_material own = gxsp_material_make(material);
     gxsp_state state = gxsp_single_state(&own, deformation);
     gxsp_rest rest;
@@ -9593,13 +9010,11 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
     gradients[0][0] = gradients[4][0] = gradients[8][0] = 1; /* u_i - u_0 are the columns of dF, forces those of dP */
     (void)gxsp_tangent_begin(material->kind, &state, NULL, &of);
     gxsp_tangent_make(material->kind, &rest, gradients, 1, 0, &state, &of, &tangent, &general);
-    for (k = 0; k < 3; ++k)
-        for (c = 0; c < 3; ++c)
-            from[3 + 3 * c + k][0] = (float)direction[3 * k + c];
+    for (k = 0; k < 3; k++)
+        for (c = 0; c < 3; c++) from[3 + 3 * c + k][0] = (float)direction[3 * k + c];
     gxsp_kind_product(material->kind, &tangent, NULL, &general, 1, from, to);
-    for (k = 0; k < 3; ++k)
-        for (c = 0; c < 3; ++c)
-            product[3 * k + c] = (double)to[3 + 3 * c + k][0];
+    for (k = 0; k < 3; k++)
+        for (c = 0; c < 3; c++) product[3 * k + c] = (double)to[3 + 3 * c + k][0];
 }
 
 #ifdef __cplusplus

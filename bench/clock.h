@@ -6,23 +6,20 @@
 #include <time.h>
 
 /* From some fixed instant; user is not used (the signature is gx_body_desc's). */
-static inline double seconds(void *user)
-{
+static inline double seconds(void *user) {
     struct timespec now;
     (void)user;
     clock_gettime(CLOCK_MONOTONIC, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static inline int ascending(const void *a, const void *b)
-{
+static inline int ascending(const void *a, const void *b) {
     const double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
 }
 
 /* Sorts the values. 0 of none */
-static inline double median(double *values, size_t count)
-{
+static inline double median(double *values, size_t count) {
     if (count == 0) return 0;
     qsort(values, count, sizeof *values, ascending);
     return 0.5 * (values[(count - 1) / 2] + values[count / 2]);

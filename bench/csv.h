@@ -1,4 +1,5 @@
-/* csv.h - tables of the benches. Rows go to stdout and, where there is one, to a file, which has its name when the table is whole: until then
+/* csv.h - tables of the benches. Rows go to stdout and, where there is one, to a file, which has its name when the
+   table is whole: until then
    ".part" is behind it. Define _POSIX_C_SOURCE before the first header. */
 #ifndef BENCH_CSV_H
 #define BENCH_CSV_H
@@ -14,19 +15,17 @@ static FILE *csv_file; /* NULL: stdout only */
 static char csv_path[4096];
 static int csv_to_file_only;
 
-static inline void csv_part(char path[sizeof csv_path + 8])
-{
+static inline void csv_part(char path[sizeof csv_path + 8]) {
     snprintf(path, sizeof csv_path + 8, "%s.part", csv_path);
 }
 
-static inline void csv_row(const char *format, ...)
-{
+static inline void csv_row(const char *format, ...) {
     FILE *to[2];
     int i;
     to[0] = csv_to_file_only ? NULL : stdout;
     to[1] = csv_file;
     progress_clear();
-    for (i = 0; i < 2; ++i) {
+    for (i = 0; i < 2; i++) {
         va_list values;
         if (!to[i]) continue;
         va_start(values, format);
@@ -38,8 +37,7 @@ static inline void csv_row(const char *format, ...)
 }
 
 /* usage: program [FILE [--small]]; anything else ends the program. Returns the file's name; NULL: none */
-static inline const char *csv_arguments(int argc, char **argv, int *small)
-{
+static inline const char *csv_arguments(int argc, char **argv, int *small) {
     *small = argc > 2 && strcmp(argv[2], "--small") == 0;
     if (argc <= 2 + *small && (argc < 2 || argv[1][0] != '-')) return argc > 1 ? argv[1] : NULL;
     fprintf(stderr, "usage: %s [FILE [--small]]\n", argv[0]);
@@ -47,8 +45,7 @@ static inline const char *csv_arguments(int argc, char **argv, int *small)
 }
 
 /* path: NULL: stdout only */
-static inline void csv_open(const char *program, const char *path, const char *header)
-{
+static inline void csv_open(const char *program, const char *path, const char *header) {
     char part[sizeof csv_path + 8];
     csv_file = NULL;
     if (path) {
@@ -64,15 +61,13 @@ static inline void csv_open(const char *program, const char *path, const char *h
 }
 
 /* A second table, which stdout does not get */
-static inline void csv_open_second(const char *program, const char *path, const char *header)
-{
+static inline void csv_open_second(const char *program, const char *path, const char *header) {
     csv_to_file_only = 1;
     csv_open(program, path, header);
 }
 
 /* 1, and says so, if the file could not be written */
-static inline int csv_close(void)
-{
+static inline int csv_close(void) {
     char part[sizeof csv_path + 8];
     if (!csv_file) return 0;
     csv_part(part);

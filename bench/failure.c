@@ -1,11 +1,12 @@
-/* failure.c - hard cases by every method: right, wrong (how), refused (why), diverged, crashed, or still busy after half a minute.
+/* failure.c - hard cases by every method: right, wrong (how), refused (why), diverged, crashed, or still busy after
+   half a minute.
 
    make bench-failure builds and runs it; it prints CSV and writes it to build/bench/failure.csv, a table to stderr.
    usage: failure [FILE [--small]]     --small: three seconds of a processor for each run
-   What the cases are, and what is right: bench/hard.h. Methods are those of bench/method.h, element deletion, and ways of integration where a case is about
-   integrals. "Algorithm 1 mended" has what its Boolean allows today, cuts a millionth as thick too. "but for volume": what a cut's
-   thickness takes away.
-   Each run has a process of its own, and half a minute of its processor. */
+   What the cases are, and what is right: bench/hard.h. Methods are those of bench/method.h, element deletion, and ways
+   of integration where a case is about integrals. "Algorithm 1 mended" has what its Boolean allows today, cuts a
+   millionth as thick too. "but for volume": what a cut's thickness takes away. Each run has a process of its own, and
+   half a minute of its processor. */
 #define _XOPEN_SOURCE 600
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
@@ -28,15 +29,15 @@ static unsigned most_seconds = 30;
 
 /* Elements whose inside a cut meets are taken away; the others are whole, on uncut nodes. */
 typedef struct deletion {
-    method_body *cut;           /* says which elements are met */
-    method_body *uncut;         /* moves */
-    gxs_element *elements; size_t element_count;
+    method_body *cut;   /* says which elements are met */
+    method_body *uncut; /* moves */
+    gxs_element *elements;
+    size_t element_count;
     gxs_solver *solver;
     int changed;
 } deletion;
 
-static void *deletion_create(const replay *scene)
-{
+static void *deletion_create(const replay *scene) {
     deletion *d = (deletion *)method_memory(NULL, 1, sizeof *d);
     memset(d, 0, sizeof *d);
     d->cut = (method_body *)method_body_create(scene);
@@ -47,15 +48,13 @@ static void *deletion_create(const replay *scene)
     return d;
 }
 
-static const char *deletion_cut(void *state, const replay_cut *cut, method_times *times)
-{
+static const char *deletion_cut(void *state, const replay_cut *cut, method_times *times) {
     deletion *d = (deletion *)state;
     d->changed = 1;
     return method_body_cut(d->cut, cut, times);
 }
 
-static void deletion_look(void *state, gxs_model *model, const double **displacement)
-{
+static void deletion_look(void *state, gxs_model *model, const double **displacement) {
     deletion *d = (deletion *)state;
     size_t i;
     method_library_look(d->uncut, model, displacement);
@@ -66,8 +65,7 @@ static void deletion_look(void *state, gxs_model *model, const double **displace
 }
 
 /* Nothing moves where nothing is left. */
-static const char *deletion_step(void *state, method_times *times)
-{
+static const char *deletion_step(void *state, method_times *times) {
     deletion *d = (deletion *)state;
     const double start = seconds(NULL);
     const double *displacement;
@@ -83,8 +81,7 @@ static const char *deletion_step(void *state, method_times *times)
 
 static size_t deletion_unknowns(void *state) { return method_body_unknowns(((deletion *)state)->uncut); }
 
-static void deletion_destroy(void *state)
-{
+static void deletion_destroy(void *state) {
     deletion *d = (deletion *)state;
     method_body_destroy(d->cut);
     method_body_destroy(d->uncut);
@@ -93,32 +90,39 @@ static void deletion_destroy(void *state)
     free(d);
 }
 
-static const method deletion_method = {"element deletion", deletion_create, deletion_cut, deletion_step, deletion_unknowns, deletion_look, deletion_destroy};
+static const method deletion_method = {"element deletion", deletion_create, deletion_cut,    deletion_step,
+                                       deletion_unknowns,  deletion_look,   deletion_destroy};
 
 /* ---- a case by a method ---- */
 
 static const double THINNER = 1e-6;
 
 /* NULL: a way of integration */
-static const method *column_method(int column) { return column < METHOD_COUNT ? &methods[column] : column == METHOD_COUNT ? &deletion_method : NULL; }
+static const method *column_method(int column) {
+    return column < METHOD_COUNT ? &methods[column] : column == METHOD_COUNT ? &deletion_method : NULL;
+}
 
-static const hard_integral_method *column_integral(int column) { return &hard_integral_methods[column - METHOD_COUNT - 1]; }
+static const hard_integral_method *column_integral(int column) {
+    return &hard_integral_methods[column - METHOD_COUNT - 1];
+}
 
-static const char *column_name(int column) { return column_method(column) ? column_method(column)->name : column_integral(column)->name; }
+static const char *column_name(int column) {
+    return column_method(column) ? column_method(column)->name : column_integral(column)->name;
+}
 
-static void judge_column(const hard_case *row, int column, char text[HARD_TEXT])
-{
+static void judge_column(const hard_case *row, int column, char text[HARD_TEXT]) {
     hard_trial t;
     hard_trial_make(&t, row);
     if (strcmp(column_name(column), "Algorithm 1 mended") == 0) t.scene.thickness *= THINNER;
-    if (column_method(column)) hard_judge(&t, column_method(column), text);
-    else hard_integral_judge(&t, column_integral(column), text);
+    if (column_method(column))
+        hard_judge(&t, column_method(column), text);
+    else
+        hard_integral_judge(&t, column_integral(column), text);
     hard_trial_free(&t);
 }
 
 /* The same in a process of its own */
-static void judge_apart(const hard_case *row, int column, char text[HARD_TEXT])
-{
+static void judge_apart(const hard_case *row, int column, char text[HARD_TEXT]) {
     const struct rlimit limit = {most_seconds, most_seconds + 1};
     int pipes[2], status = 0;
     ssize_t length;
@@ -137,27 +141,30 @@ static void judge_apart(const hard_case *row, int column, char text[HARD_TEXT])
     text[length > 0 ? length : 0] = 0;
     close(pipes[0]);
     waitpid(child, &status, 0);
-    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) snprintf(text, HARD_TEXT, "busy after %u s", most_seconds);
-    else if (WIFSIGNALED(status)) snprintf(text, HARD_TEXT, "crashed: signal %d", WTERMSIG(status));
-    else if (WEXITSTATUS(status) != 0) snprintf(text, HARD_TEXT, "crashed: exit %d", WEXITSTATUS(status));
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
+        snprintf(text, HARD_TEXT, "busy after %u s", most_seconds);
+    else if (WIFSIGNALED(status))
+        snprintf(text, HARD_TEXT, "crashed: signal %d", WTERMSIG(status));
+    else if (WEXITSTATUS(status) != 0)
+        snprintf(text, HARD_TEXT, "crashed: exit %d", WEXITSTATUS(status));
 }
 
 /* ---- the table ---- */
 
 enum { RIGHT, BUT_FOR_VOLUME, WRONG, REFUSED, DIVERGED, CRASHED, BUSY, OUTCOMES };
 
-static const char *const outcomes[OUTCOMES] = {"right", "right but for volume", "wrong", "refused", "diverged", "crashed", "busy"};
+static const char *const outcomes[OUTCOMES] = {
+    "right", "right but for volume", "wrong", "refused", "diverged", "crashed", "busy"};
 
-static int outcome_of(const char *text)
-{
+static int outcome_of(const char *text) {
     int i;
     if (strcmp(text, outcomes[RIGHT]) == 0) return RIGHT;
-    for (i = BUT_FOR_VOLUME; i + 1 < OUTCOMES; i++) if (strncmp(text, outcomes[i], strlen(outcomes[i])) == 0) return i;
+    for (i = BUT_FOR_VOLUME; i + 1 < OUTCOMES; i++)
+        if (strncmp(text, outcomes[i], strlen(outcomes[i])) == 0) return i;
     return BUSY;
 }
 
-static void print_table(size_t counts[COLUMNS][OUTCOMES])
-{
+static void print_table(size_t counts[COLUMNS][OUTCOMES]) {
     int c, i;
     fprintf(stderr, "%-20s", "cases");
     for (i = 0; i < OUTCOMES; i++) fprintf(stderr, " %s", outcomes[i]);
@@ -169,8 +176,7 @@ static void print_table(size_t counts[COLUMNS][OUTCOMES])
     }
 }
 
-int main(int argc, char **argv)
-{
+int main(int argc, char **argv) {
     static size_t counts[COLUMNS][OUTCOMES];
     int r, c, small;
     const char *path = csv_arguments(argc, argv, &small);

@@ -3,9 +3,10 @@
    make bench-frames builds and runs it; it prints CSV and writes it to build/bench/frames.csv, a table to stderr.
    usage: frames [FILE [--small]]     --small: the smallest block only
 
-   A block that hangs by its top and swings; after every fourth frame a horizontal cut goes one cell deeper, in strips that share their
-   edges exactly, until it has crossed 7/8 of the block. A cut frame is the cut, the renewal of the solver's model and the step.
-   Columns: medians in ms; worst: the slowest cut frame; ratio: cut frame to mean frame, those with a cut included; unknowns at the end. */
+   A block that hangs by its top and swings; after every fourth frame a horizontal cut goes one cell deeper, in strips
+   that share their edges exactly, until it has crossed 7/8 of the block. A cut frame is the cut, the renewal of the
+   solver's model and the step. Columns: medians in ms; worst: the slowest cut frame; ratio: cut frame to mean frame,
+   those with a cut included; unknowns at the end. */
 #define _POSIX_C_SOURCE 200112L
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
@@ -21,11 +22,10 @@ static const uint32_t block_cells[BLOCKS / 2] = {12, 19, 24};
 typedef struct row {
     char block[24];
     size_t unknowns;
-    double plain, cut, frame, worst, ratio;     /* ms */
+    double plain, cut, frame, worst, ratio; /* ms */
 } row;
 
-static void check(gx_result result)
-{
+static void check(gx_result result) {
     if (result == GX_OK) return;
     fprintf(stderr, "frames: %s\n", gx_result_text(result));
     exit(1);
@@ -37,8 +37,7 @@ typedef struct times {
     size_t plain_count, frame_count, frames;
 } times;
 
-static double step(gx_body *body, double time)
-{
+static double step(gx_body *body, double time) {
     const double start = seconds(NULL);
     gx_step_desc desc;
     memset(&desc, 0, sizeof desc);
@@ -49,16 +48,14 @@ static double step(gx_body *body, double time)
     return 1e3 * (seconds(NULL) - start);
 }
 
-static void plain_frame(gx_body *body, times *t)
-{
+static void plain_frame(gx_body *body, times *t) {
     const double ms = step(body, 0.033 * (double)t->frames++);
     t->plain[t->plain_count++] = ms;
     t->sum += ms;
 }
 
 /* The next strip of the cut, from x = low to high, and the step after it */
-static void cut_frame(gx_body *body, times *t, double low, double high)
-{
+static void cut_frame(gx_body *body, times *t, double low, double high) {
     const double start = seconds(NULL);
     double cut, ms;
     check(block_cut_rectangle(body, 2, 0.4711, low, high));
@@ -70,8 +67,7 @@ static void cut_frame(gx_body *body, times *t, double low, double high)
     t->worst = ms > t->worst ? ms : t->worst;
 }
 
-static row run(uint32_t cells, double jitter)
-{
+static row run(uint32_t cells, double jitter) {
     const uint32_t strips = cells * 7 / 8;
     block_desc desc;
     gx_body *body = NULL;
@@ -84,10 +80,10 @@ static row run(uint32_t cells, double jitter)
     desc.jitter = jitter;
     desc.young = 1e6;
     check(t ? block_create(&desc, &body) : GX_ERROR_MEMORY);
-    for (k = 0; k < 8; ++k) step(body, 0.033 * k);
-    for (i = 0; i < strips; ++i) {
+    for (k = 0; k < 8; k++) step(body, 0.033 * k);
+    for (i = 0; i < strips; i++) {
         cut_frame(body, t, i == 0 ? -0.1 : (i + 0.37) / cells, (i + 1 + 0.37) / cells);
-        for (k = 1; k < FRAMES_BETWEEN; ++k) plain_frame(body, t);
+        for (k = 1; k < FRAMES_BETWEEN; k++) plain_frame(body, t);
     }
     check(gx_body_view(body, &view));
     snprintf(r.block, sizeof r.block, "%s-%u", jitter > 0 ? "jittered" : "lattice", (unsigned)cells);
@@ -97,30 +93,30 @@ static row run(uint32_t cells, double jitter)
     r.frame = median(t->frame, t->frame_count);
     r.worst = t->worst;
     r.ratio = r.frame / (t->sum / (double)t->frames);
-    csv_row("%s,%lu,%.2f,%.2f,%.2f,%.2f,%.2f", r.block, (unsigned long)r.unknowns, r.plain, r.cut, r.frame, r.worst, r.ratio);
+    csv_row("%s,%lu,%.2f,%.2f,%.2f,%.2f,%.2f", r.block, (unsigned long)r.unknowns, r.plain, r.cut, r.frame, r.worst,
+            r.ratio);
     gx_body_destroy(body);
     free(t);
     return r;
 }
 
-static void print_table(const row *rows, size_t count)
-{
+static void print_table(const row *rows, size_t count) {
     size_t i;
-    fprintf(stderr, "%-12s %9s %12s %9s %14s %9s %7s\n", "block", "unknowns", "no cut, ms", "cut, ms", "cut frame, ms", "worst, ms", "ratio");
-    for (i = 0; i < count; ++i)
-        fprintf(stderr, "%-12s %9lu %12.2f %9.2f %14.2f %9.2f %7.2f\n", rows[i].block, (unsigned long)rows[i].unknowns, rows[i].plain, rows[i].cut,
-                rows[i].frame, rows[i].worst, rows[i].ratio);
+    fprintf(stderr, "%-12s %9s %12s %9s %14s %9s %7s\n", "block", "unknowns", "no cut, ms", "cut, ms", "cut frame, ms",
+            "worst, ms", "ratio");
+    for (i = 0; i < count; i++)
+        fprintf(stderr, "%-12s %9lu %12.2f %9.2f %14.2f %9.2f %7.2f\n", rows[i].block, (unsigned long)rows[i].unknowns,
+                rows[i].plain, rows[i].cut, rows[i].frame, rows[i].worst, rows[i].ratio);
 }
 
-int main(int argc, char **argv)
-{
+int main(int argc, char **argv) {
     int small;
     const char *path = csv_arguments(argc, argv, &small);
     const size_t count = small ? 2 : BLOCKS;
     row rows[BLOCKS];
     size_t i;
     csv_open(argv[0], path, "block,unknowns,plain_ms,cut_ms,cut_frame_ms,worst_ms,ratio");
-    for (i = 0; i < count; ++i) {
+    for (i = 0; i < count; i++) {
         progress_draw("frames", i, count, "");
         rows[i] = run(block_cells[i / 2], i % 2 ? 0.2 : 0);
     }

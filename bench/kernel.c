@@ -1,14 +1,17 @@
 /* kernel.c - Booleans of closed surfaces: A minus B0 (minus B1 ...), doubles in to doubles out.
 
-   make bench-kernel builds and runs it on generated workloads; make bench-kernel DATA=FOLDER on the files of a folder too: NAME_A.off,
-   NAME_B0.off, NAME_B1.off ... (as in "W1_A.off"). It prints CSV and writes it to build/bench/kernel.csv, a table to stderr.
+   make bench-kernel builds and runs it on generated workloads; make bench-kernel DATA=FOLDER on the files of a folder
+   too: NAME_A.off, NAME_B0.off, NAME_B1.off ... (as in "W1_A.off"). It prints CSV and writes it to
+   build/bench/kernel.csv, a table to stderr.
 
-   W1 a tetrahedron less a slab, W3 less a wavy slab of 1760 triangles, W4 a cube less 5 + 5 crossing slabs; "+" after a name: evaluated
-   after each operand. S: a bumpy sphere of 8,000 triangles less a turned copy. filter_share and exact_share: of the signs asked for, those that
-   the filter or the definitions decided, and those that took exact arithmetic. Surfaces are vouched for as simple; "?": they are not.
-   Each call creates, adds, evaluates, asks for the components, and destroys; surface_us: the median where it does not ask. SECONDS per workload and
-   way, at least three calls. What a call gives back stays with the process, as with whoever calls often: otherwise the C library hands it to the
-   system or not, by what was there before, and where it does a third is added to large workloads by the system's fresh pages. */
+   W1 a tetrahedron less a slab, W3 less a wavy slab of 1760 triangles, W4 a cube less 5 + 5 crossing slabs; "+" after a
+   name: evaluated after each operand. S: a bumpy sphere of 8,000 triangles less a turned copy. filter_share and
+   exact_share: of the signs asked for, those that the filter or the definitions decided, and those that took exact
+   arithmetic. Surfaces are vouched for as simple; "?": they are not. Each call creates, adds, evaluates, asks for the
+   components, and destroys; surface_us: the median where it does not ask. SECONDS per workload and way, at least three
+   calls. What a call gives back stays with the process, as with whoever calls often: otherwise the C library hands it
+   to the system or not, by what was there before, and where it does a third is added to large workloads by the system's
+   fresh pages. */
 #define _POSIX_C_SOURCE 200809L
 #define GXFEM_BOOLEAN_IMPLEMENTATION
 #include "../gxfem_boolean.h"
@@ -26,8 +29,7 @@ static const double SECONDS = 0.3;
 
 static size_t done, total; /* workloads */
 
-static void stop_at(const char *what, gx_result result)
-{
+static void stop_at(const char *what, gx_result result) {
     if (result == GX_OK) return;
     fprintf(stderr, "kernel: %s: error %d\n", what, (int)result);
     exit(1);
@@ -39,8 +41,7 @@ typedef struct figures {
     uint64_t filter, exact, allocations;
 } figures;
 
-static figures run(const char *name, const gxb_operand *operands, size_t count, int each, int ask)
-{
+static figures run(const char *name, const gxb_operand *operands, size_t count, int each, int ask) {
     gxb_boolean *b = NULL;
     gxb_boolean_result r;
     gxb_components c;
@@ -50,27 +51,35 @@ static figures run(const char *name, const gxb_operand *operands, size_t count, 
     memset(&r, 0, sizeof r);
     memset(&c, 0, sizeof c);
     stop_at(name, gxb_boolean_create(NULL, &b));
-    for (i = 0; i < count; ++i) {
+    for (i = 0; i < count; i++) {
         stop_at(name, gxb_boolean_add(b, &operands[i], NULL));
         if (i + 1 == count || (each && i > 0)) stop_at(name, gxb_boolean_evaluate(b, &r));
     }
     if (ask) stop_at(name, gxb_boolean_components(b, &c));
     stop_at(name, gxb_boolean_statistics(b, &s));
-    f.triangles = r.triangle_count; f.components = c.count; f.volume = c.total_volume;
-    f.filter = s.filter_calls; f.exact = s.exact_calls; f.allocations = s.allocations; f.peak = s.peak_bytes;
+    f.triangles = r.triangle_count;
+    f.components = c.count;
+    f.volume = c.total_volume;
+    f.filter = s.filter_calls;
+    f.exact = s.exact_calls;
+    f.allocations = s.allocations;
+    f.peak = s.peak_bytes;
     gxb_boolean_destroy(b);
     return f;
 }
 
 /* ---- rows ---- */
 
-typedef struct kept_row { char name[NAME + 2]; double us, surface; figures f; } kept_row;
+typedef struct kept_row {
+    char name[NAME + 2];
+    double us, surface;
+    figures f;
+} kept_row;
 
 static kept_row *rows;
 static size_t row_count;
 
-static void keep_row(const char *name, const char *mark, double us, double surface, const figures *f)
-{
+static void keep_row(const char *name, const char *mark, double us, double surface, const figures *f) {
     rows = (kept_row *)realloc(rows, (row_count + 1) * sizeof *rows);
     stop_at("rows", rows ? GX_OK : GX_ERROR_MEMORY);
     snprintf(rows[row_count].name, sizeof rows[row_count].name, "%s%s", name, mark);
@@ -81,109 +90,120 @@ static void keep_row(const char *name, const char *mark, double us, double surfa
 
 static double exact_share(const figures *f) { return f->filter == 0 ? 0 : (double)f->exact / (double)f->filter; }
 
-static void print_table(void)
-{
+static void print_table(void) {
     size_t i;
-    fprintf(stderr, "%-24s %11s %12s %9s %10s %14s %11s %11s\n", "workload", "median, us", "surface only", "triangles", "components", "volume", "exact signs", "allocations");
-    for (i = 0; i < row_count; ++i) {
+    fprintf(stderr, "%-24s %11s %12s %9s %10s %14s %11s %11s\n", "workload", "median, us", "surface only", "triangles",
+            "components", "volume", "exact signs", "allocations");
+    for (i = 0; i < row_count; i++) {
         const kept_row *r = &rows[i];
-        fprintf(stderr, "%-24s %11.1f %12.1f %9lu %10lu %14.8g %9.2f %% %11lu\n", r->name, r->us, r->surface, (unsigned long)r->f.triangles,
-                (unsigned long)r->f.components, r->f.volume, 100 * exact_share(&r->f), (unsigned long)r->f.allocations);
+        fprintf(stderr, "%-24s %11.1f %12.1f %9lu %10lu %14.8g %9.2f %% %11lu\n", r->name, r->us, r->surface,
+                (unsigned long)r->f.triangles, (unsigned long)r->f.components, r->f.volume, 100 * exact_share(&r->f),
+                (unsigned long)r->f.allocations);
     }
     free(rows);
 }
 
 /* The median of the times of both ways, in turn, in microseconds; *least: of the one that asks */
-static figures time_ways(const char *name, const gxb_operand *operands, size_t count, int each, double middle[2], double *least)
-{
+static figures time_ways(const char *name, const gxb_operand *operands, size_t count, int each, double middle[2],
+                         double *least) {
     static double us[2][CALLS];
     const double start = seconds(NULL);
     figures f[2];
     size_t n;
     int ask;
-    for (n = 0; n < CALLS && (n < 3 || seconds(NULL) - start < 2 * SECONDS); ++n)
-        for (ask = 0; ask < 2; ++ask) {
+    for (n = 0; n < CALLS && (n < 3 || seconds(NULL) - start < 2 * SECONDS); n++)
+        for (ask = 0; ask < 2; ask++) {
             const double before = seconds(NULL);
             f[ask] = run(name, operands, count, each, ask);
             us[ask][n] = 1e6 * (seconds(NULL) - before);
         }
-    for (ask = 0; ask < 2; ++ask) middle[ask] = median(us[ask], n);     /* which sorts them */
+    for (ask = 0; ask < 2; ask++) middle[ask] = median(us[ask], n); /* which sorts them */
     *least = us[1][0];
     return f[1];
 }
 
-static void measure(const char *name, const char *mark, const gxb_operand *operands, size_t count, int each)
-{
+static void measure(const char *name, const char *mark, const gxb_operand *operands, size_t count, int each) {
     double middle[2], least;
     const figures f = time_ways(name, operands, count, each, middle, &least);
-    csv_row("%s%s,%.1f,%.1f,%lu,%lu,%.17g,%.4f,%.4f,%lu,%lu,%.1f", name, mark, middle[1], least, (unsigned long)f.triangles, (unsigned long)f.components,
-            f.volume, 1 - exact_share(&f), exact_share(&f), (unsigned long)f.allocations, (unsigned long)f.peak, middle[0]);
+    csv_row("%s%s,%.1f,%.1f,%lu,%lu,%.17g,%.4f,%.4f,%lu,%lu,%.1f", name, mark, middle[1], least,
+            (unsigned long)f.triangles, (unsigned long)f.components, f.volume, 1 - exact_share(&f), exact_share(&f),
+            (unsigned long)f.allocations, (unsigned long)f.peak, middle[0]);
     keep_row(name, mark, middle[1], middle[0], &f);
 }
 
-static void measure_all(const char *name, gxb_operand *operands, size_t count)
-{
+static void measure_all(const char *name, gxb_operand *operands, size_t count) {
     size_t i;
     progress_draw("kernel", done++, total, name);
-    for (i = 0; i < count; ++i) { operands[i].operation = i == 0 ? GXB_UNION : GXB_DIFFERENCE; operands[i].simple = 1; }
+    for (i = 0; i < count; i++) {
+        operands[i].operation = i == 0 ? GXB_UNION : GXB_DIFFERENCE;
+        operands[i].simple = 1;
+    }
     measure(name, "", operands, count, 0);
     if (count > 2) measure(name, "+", operands, count, 1);
-    for (i = 0; i < count; ++i) operands[i].simple = 0;
+    for (i = 0; i < count; i++) operands[i].simple = 0;
     measure(name, "?", operands, count, 0);
 }
 
-static gxb_operand operand_of(const wl_surface *s)
-{
+static gxb_operand operand_of(const wl_surface *s) {
     gxb_operand o;
     memset(&o, 0, sizeof o);
-    o.vertices = s->vertices; o.vertex_count = s->vertex_count;
-    o.triangles = s->triangles; o.triangle_count = s->triangle_count;
+    o.vertices = s->vertices;
+    o.vertex_count = s->vertex_count;
+    o.triangles = s->triangles;
+    o.triangle_count = s->triangle_count;
     return o;
 }
 
 /* ---- generated ---- */
 
-static void measure_workload(const char *name, const wl_surface *body, workload w)
-{
+static void measure_workload(const char *name, const wl_surface *body, workload w) {
     gxb_operand operands[WL_SURFACES + 1];
     size_t i;
     operands[0] = operand_of(body);
-    for (i = 0; i < w.surface_count; ++i) operands[i + 1] = operand_of(&w.surfaces[i]);
+    for (i = 0; i < w.surface_count; i++) operands[i + 1] = operand_of(&w.surfaces[i]);
     measure_all(name, operands, w.surface_count + 1);
     wl_free(&w);
 }
 
 /* An octahedron whose faces are divided n x n, blown up to a sphere with bumps, in a frame */
-static wl_surface bumpy_sphere(uint32_t n, const wl_frame *frame)
-{
+static wl_surface bumpy_sphere(uint32_t n, const wl_frame *frame) {
     wl_surface s;
     uint32_t face, i, j;
     memset(&s, 0, sizeof s);
-    for (face = 0; face < 8; ++face) {
+    for (face = 0; face < 8; face++) {
         const uint32_t first = (uint32_t)s.vertex_count, outward = (face ^ face >> 1 ^ face >> 2) & 1;
-        for (j = 0; j <= n; ++j) for (i = 0; i + j <= n; ++i) {
-            double x[3], y[3], length;
-            int k;
-            x[0] = (double)i / n; x[1] = (double)j / n; x[2] = (double)(n - i - j) / n;
-            length = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
-            for (k = 0; k < 3; ++k) x[k] *= (face >> k & 1 ? -1 : 1) / length;
-            length = 1 + 0.07 * sin(9 * x[0]) * sin(8 * x[1]) * sin(7 * x[2]);
-            for (k = 0; k < 3; ++k) x[k] *= length;
-            wl_place(frame, x, y);
-            wl_add_vertex(&s, y);
-        }
-        for (j = 0; j < n; ++j) for (i = 0; i + j < n; ++i) {
-            const uint32_t row = first + j * (n + 1) - j * (j - 1) / 2, a = row + i, b = a + 1, c = a + n + 1 - j;
-            if (outward) wl_add_triangle(&s, a, c, b); else wl_add_triangle(&s, a, b, c);
-            if (i + j + 1 == n) continue;
-            if (outward) wl_add_triangle(&s, b, c, c + 1); else wl_add_triangle(&s, b, c + 1, c);
-        }
+        for (j = 0; j <= n; j++)
+            for (i = 0; i + j <= n; i++) {
+                double x[3], y[3], length;
+                int k;
+                x[0] = (double)i / n;
+                x[1] = (double)j / n;
+                x[2] = (double)(n - i - j) / n;
+                length = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+                for (k = 0; k < 3; k++) x[k] *= (face >> k & 1 ? -1 : 1) / length;
+                length = 1 + 0.07 * sin(9 * x[0]) * sin(8 * x[1]) * sin(7 * x[2]);
+                for (k = 0; k < 3; k++) x[k] *= length;
+                wl_place(frame, x, y);
+                wl_add_vertex(&s, y);
+            }
+        for (j = 0; j < n; j++)
+            for (i = 0; i + j < n; i++) {
+                const uint32_t row = first + j * (n + 1) - j * (j - 1) / 2, a = row + i, b = a + 1, c = a + n + 1 - j;
+                if (outward)
+                    wl_add_triangle(&s, a, c, b);
+                else
+                    wl_add_triangle(&s, a, b, c);
+                if (i + j + 1 == n) continue;
+                if (outward)
+                    wl_add_triangle(&s, b, c, c + 1);
+                else
+                    wl_add_triangle(&s, b, c + 1, c);
+            }
     }
     return s;
 }
 
-static void measure_spheres(void)
-{
+static void measure_spheres(void) {
     wl_frame axes = wl_axes(), turned = wl_rotated();
     wl_surface s[2];
     gxb_operand operands[2];
@@ -191,38 +211,42 @@ static void measure_spheres(void)
     memset(turned.origin, 0, sizeof turned.origin);
     s[0] = bumpy_sphere(32, &axes);
     s[1] = bumpy_sphere(32, &turned);
-    for (i = 0; i < 2; ++i) operands[i] = operand_of(&s[i]);
+    for (i = 0; i < 2; i++) operands[i] = operand_of(&s[i]);
     measure_all("S", operands, 2);
-    for (i = 0; i < 2; ++i) { free(s[i].vertices); free(s[i].triangles); }
+    for (i = 0; i < 2; i++) {
+        free(s[i].vertices);
+        free(s[i].triangles);
+    }
 }
 
-static void measure_generated(void)
-{
-    static const uint32_t faces[4][3] = { { 1, 2, 3 }, { 0, 3, 2 }, { 0, 1, 3 }, { 0, 2, 1 } };
-    static const double low[3] = { 0, 0, 0 }, high[3] = { 1, 1, 1 };
+static void measure_generated(void) {
+    static const uint32_t faces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+    static const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1};
     wl_frame axes = wl_axes();
     wl_surface tetrahedron, cube;
     int i;
     memset(&tetrahedron, 0, sizeof tetrahedron);
     memset(&cube, 0, sizeof cube);
-    for (i = 0; i < 4; ++i) wl_add_vertex(&tetrahedron, wl_unit_tetrahedron[i]);
-    for (i = 0; i < 4; ++i) wl_add_triangle(&tetrahedron, faces[i][0], faces[i][2], faces[i][1]);
-    if (gxb_orient3d(wl_unit_tetrahedron[1], wl_unit_tetrahedron[2], wl_unit_tetrahedron[3], wl_unit_tetrahedron[0]) > 0)
-        for (i = 0; i < 4; ++i) memcpy(tetrahedron.triangles + 3 * i, faces[i], sizeof faces[i]);
+    for (i = 0; i < 4; i++) wl_add_vertex(&tetrahedron, wl_unit_tetrahedron[i]);
+    for (i = 0; i < 4; i++) wl_add_triangle(&tetrahedron, faces[i][0], faces[i][2], faces[i][1]);
+    if (gxb_orient3d(wl_unit_tetrahedron[1], wl_unit_tetrahedron[2], wl_unit_tetrahedron[3], wl_unit_tetrahedron[0]) >
+        0)
+        for (i = 0; i < 4; i++) memcpy(tetrahedron.triangles + 3 * i, faces[i], sizeof faces[i]);
     wl_add_aligned_box(&cube, low, high);
     measure_workload("W1 generated", &tetrahedron, wl_through(1e-4));
     measure_workload("W3 generated", &tetrahedron, wl_wavy(1));
     measure_workload("W4 generated", &cube, wl_sticks(&axes));
     measure_spheres();
-    free(tetrahedron.vertices); free(tetrahedron.triangles);
-    free(cube.vertices); free(cube.triangles);
+    free(tetrahedron.vertices);
+    free(tetrahedron.triangles);
+    free(cube.vertices);
+    free(cube.triangles);
 }
 
 /* ---- from files ---- */
 
 /* An OFF file's polygons as fans. 0: there is none of this name. */
-static int read_off(const char *path, wl_surface *s)
-{
+static int read_off(const char *path, wl_surface *s) {
     FILE *file = fopen(path, "r");
     unsigned long vertices, faces, edges, i;
     unsigned count, k, n[3];
@@ -231,13 +255,13 @@ static int read_off(const char *path, wl_surface *s)
     memset(s, 0, sizeof *s);
     if (!file) return 0;
     if (fscanf(file, "%7s %lu %lu %lu", magic, &vertices, &faces, &edges) != 4 || strcmp(magic, "OFF") != 0) goto bad;
-    for (i = 0; i < vertices; ++i) {
+    for (i = 0; i < vertices; i++) {
         if (fscanf(file, "%lf %lf %lf", &x[0], &x[1], &x[2]) != 3) goto bad;
         wl_add_vertex(s, x);
     }
-    for (i = 0; i < faces; ++i) {
+    for (i = 0; i < faces; i++) {
         if (fscanf(file, "%u %u %u", &count, &n[0], &n[1]) != 3) goto bad;
-        for (k = 2; k < count; ++k) {
+        for (k = 2; k < count; k++) {
             if (fscanf(file, "%u", &n[2]) != 1) goto bad;
             wl_add_triangle(s, n[0], n[1], n[2]);
             n[1] = n[2];
@@ -250,8 +274,7 @@ bad:
     exit(1);
 }
 
-static void measure_files(const char *folder, const char *name)
-{
+static void measure_files(const char *folder, const char *name) {
     wl_surface s[OPERANDS];
     gxb_operand operands[OPERANDS];
     char path[1024];
@@ -262,18 +285,23 @@ static void measure_files(const char *folder, const char *name)
         snprintf(path, sizeof path, "%s/%s_B%lu.off", folder, name, (unsigned long)count++);
     }
     if (count > 1) measure_all(name, operands, count);
-    for (i = 0; i < count; ++i) { free(s[i].vertices); free(s[i].triangles); }
+    for (i = 0; i < count; i++) {
+        free(s[i].vertices);
+        free(s[i].triangles);
+    }
 }
 
 static int by_name(const void *a, const void *b) { return strcmp((const char *)a, (const char *)b); }
 
 /* Names of the workloads in a folder, in order */
-static size_t list_folder(const char *folder, char (*names)[NAME])
-{
+static size_t list_folder(const char *folder, char (*names)[NAME]) {
     DIR *directory = opendir(folder);
     const struct dirent *entry;
     size_t count = 0;
-    if (!directory) { fprintf(stderr, "kernel: %s: no such folder\n", folder); exit(1); }
+    if (!directory) {
+        fprintf(stderr, "kernel: %s: no such folder\n", folder);
+        exit(1);
+    }
     while (count < NAMES && (entry = readdir(directory)) != NULL) {
         const size_t length = strlen(entry->d_name);
         if (length < 7 || length - 6 >= NAME || strcmp(entry->d_name + length - 6, "_A.off") != 0) continue;
@@ -286,8 +314,7 @@ static size_t list_folder(const char *folder, char (*names)[NAME])
 }
 
 /* usage: kernel [FILE [FOLDER]] */
-int main(int argc, char **argv)
-{
+int main(int argc, char **argv) {
     static char names[NAMES][NAME];
     const size_t count = argc > 2 ? list_folder(argv[2], names) : 0;
     size_t i;
@@ -295,10 +322,12 @@ int main(int argc, char **argv)
     mallopt(M_MMAP_THRESHOLD, 1 << 25);
     mallopt(M_TRIM_THRESHOLD, 1 << 30);
 #endif
-    csv_open(argv[0], argc > 1 ? argv[1] : NULL, "workload,median_us,min_us,triangles,components,volume,filter_share,exact_share,allocations,peak_bytes,surface_us");
+    csv_open(argv[0], argc > 1 ? argv[1] : NULL,
+             "workload,median_us,min_us,triangles,components,volume,filter_share,exact_share,allocations,peak_bytes,"
+             "surface_us");
     total = GENERATED + count;
     measure_generated();
-    for (i = 0; i < count; ++i) measure_files(argv[2], names[i]);
+    for (i = 0; i < count; i++) measure_files(argv[2], names[i]);
     progress_draw("kernel", total, total, "");
     print_table();
     return csv_close();

@@ -1,13 +1,14 @@
-/* literal.h - the cutting of GXFEM's Algorithm 1 as it is published: a mesh Boolean for each nodal subdomain and each element
-   subdomain that a cut may touch, by solids of some thickness, results rounded to doubles after each cut.
+/* literal.h - the cutting of GXFEM's Algorithm 1 as it is published: a mesh Boolean for each nodal subdomain and each
+   element subdomain that a cut may touch, by solids of some thickness, results rounded to doubles after each cut.
 
-   A baseline of the bench. The Booleans are exact (gxb_boolean); what is the paper's is what is done with them: every node and every
-   element keeps its own triangle meshes, each cut on its own, and an element subdomain belongs to the nodal subdomain that is nearest
-   (Eq. 16). Element integrals are those of the subdomains' meshes (Eq. 21). The solver is gxfem_solve.h's.
+   A baseline of the bench. The Booleans are exact (gxb_boolean); what is the paper's is what is done with them: every
+   node and every element keeps its own triangle meshes, each cut on its own, and an element subdomain belongs to the
+   nodal subdomain that is nearest (Eq. 16). Element integrals are those of the subdomains' meshes (Eq. 21). The solver
+   is gxfem_solve.h's.
 
-   Algorithm 1 replaces a subdomain where the cut leaves more than one component of it (lines 5 and 15), and keeps it as it was
-   otherwise. So a cut that advances is given as all of it that there is so far; what ends inside a subdomain for good, and only divides it
-   together with a later cut, must be given again together with that.
+   Algorithm 1 replaces a subdomain where the cut leaves more than one component of it (lines 5 and 15), and keeps it as
+   it was otherwise. So a cut that advances is given as all of it that there is so far; what ends inside a subdomain for
+   good, and only divides it together with a later cut, must be given again together with that.
 
    Include after the implementation of gxfem.h. A program that runs out of memory ends here. */
 #ifndef GXFEM_BENCH_LITERAL_H
@@ -23,10 +24,14 @@
 
 /* A nodal or an element subdomain by its boundary */
 typedef struct literal_domain {
-    double *vertices; size_t vertex_count;      /* x 3 */
-    uint32_t *triangles; size_t triangle_count; /* x 3, counter-clockwise from outside */
-    uint32_t next;                              /* of the same node or element; LITERAL_NONE: none */
-    uint32_t copy;                              /* nodal: the displacement it has; element: not read */
+    /* x 3 */
+    double *vertices;
+    size_t vertex_count;
+    /* x 3, counter-clockwise from outside */
+    uint32_t *triangles;
+    size_t triangle_count;
+    uint32_t next; /* of the same node or element; LITERAL_NONE: none */
+    uint32_t copy; /* nodal: the displacement it has; element: not read */
 } literal_domain;
 
 #define LITERAL_NONE UINT32_MAX
@@ -34,56 +39,68 @@ typedef struct literal_domain {
 typedef struct literal_domains {
     literal_domain *domains;
     size_t count, capacity;
-    uint32_t *first;        /* by node or element */
+    uint32_t *first; /* by node or element */
 } literal_domains;
 
 /* A box of a binary tree over the elements */
-typedef struct literal_box { double low[3], high[3]; uint32_t first, count; } literal_box;  /* count 0: children first, first + 1 */
+/* count 0: children first, first + 1 */
+typedef struct literal_box {
+    double low[3], high[3];
+    uint32_t first, count;
+} literal_box;
 
 typedef struct literal_desc {
-    const double *positions; size_t node_count;     /* x 3 */
-    const uint32_t *elements; size_t element_count; /* x 4, of positive volume */
-    double density;                                 /* kg/m3 */
-    int mended;                                     /* 1: not as published: results in few triangles, defects of rounding mended (gxb_boolean_set_mend) */
+    /* x 3 */
+    const double *positions;
+    size_t node_count;
+    /* x 4, of positive volume */
+    const uint32_t *elements;
+    size_t element_count;
+    double density; /* kg/m3 */
+    /* 1: not as published: results in few triangles, defects of rounding mended (gxb_boolean_set_mend) */
+    int mended;
 } literal_desc;
 
 /* Of all cuts so far */
 typedef struct literal_report {
-    size_t booleans, failures;                      /* failures: Booleans that the rounding of earlier ones made impossible */
-    double seconds_booleans, seconds_integrals, seconds;    /* seconds: all of it, matching included */
+    /* failures: Booleans that the rounding of earlier ones made impossible */
+    size_t booleans, failures;
+    double seconds_booleans, seconds_integrals, seconds; /* seconds: all of it, matching included */
 } literal_report;
 
 typedef struct literal {
-    literal_desc desc;                              /* arrays of its own */
+    literal_desc desc; /* arrays of its own */
     literal_domains nodal, element;
-    literal_box *boxes; uint32_t box_count;
+    literal_box *boxes;
+    uint32_t box_count;
     uint32_t *box_elements;
-    uint32_t *copy_node; double *displacement, *velocity;   /* copies; x 3; x 3 */
+    /* copies; x 3; x 3 */
+    uint32_t *copy_node;
+    double *displacement, *velocity;
     size_t copy_count, copy_capacity;
-    uint8_t *dirty;                                 /* elements whose integrals and copies are to be found anew */
-    gxs_element *parts; size_t part_count;          /* by element subdomain; those there are are all up to date after literal_model */
-    double *rest;                                   /* copies x 3 */
+    uint8_t *dirty; /* elements whose integrals and copies are to be found anew */
+    /* by element subdomain; those there are are all up to date after literal_model */
+    gxs_element *parts;
+    size_t part_count;
+    double *rest; /* copies x 3 */
     literal_report report;
 } literal;
 
 /* ---- memory ---- */
 
-static void *literal_memory(void *old, size_t count, size_t size)
-{
+static void *literal_memory(void *old, size_t count, size_t size) {
     void *memory = realloc(old, count * size + 1);
     if (memory) return memory;
     fputs("literal: no memory\n", stderr);
     exit(1);
 }
 
-static void literal_drop_domain(literal_domain *domain)
-{
+static void literal_drop_domain(literal_domain *domain) {
     free(domain->vertices);
     free(domain->triangles);
 }
 
-static literal_domain *literal_add_domain(literal_domains *all, uint32_t owner)
-{
+static literal_domain *literal_add_domain(literal_domains *all, uint32_t owner) {
     literal_domain *domain;
     if (all->count == all->capacity) {
         all->capacity = 2 * all->capacity + 16;
@@ -96,8 +113,7 @@ static literal_domain *literal_add_domain(literal_domains *all, uint32_t owner)
     return domain;
 }
 
-static uint32_t literal_add_copy(literal *l, uint32_t node, uint32_t from)
-{
+static uint32_t literal_add_copy(literal *l, uint32_t node, uint32_t from) {
     const size_t i = l->copy_count++;
     if (i == l->copy_capacity) {
         l->copy_capacity = 2 * i + 16;
@@ -117,43 +133,49 @@ static uint32_t literal_add_copy(literal *l, uint32_t node, uint32_t from)
 
 /* ---- the first culling: boxes over the elements ---- */
 
-static void literal_fit_box(const literal *l, literal_box *box)
-{
+static void literal_fit_box(const literal *l, literal_box *box) {
     uint32_t i;
     int n, k;
-    for (k = 0; k < 3; k++) { box->low[k] = HUGE_VAL; box->high[k] = -HUGE_VAL; }
+    for (k = 0; k < 3; k++) {
+        box->low[k] = HUGE_VAL;
+        box->high[k] = -HUGE_VAL;
+    }
     for (i = box->first; i < box->first + box->count; i++)
         for (n = 0; n < 4; n++)
             for (k = 0; k < 3; k++) {
-                const double x = l->desc.positions[3 * (size_t)l->desc.elements[4 * (size_t)l->box_elements[i] + (size_t)n] + (size_t)k];
+                const double x =
+                    l->desc.positions[3 * (size_t)l->desc.elements[4 * (size_t)l->box_elements[i] + (size_t)n] +
+                                      (size_t)k];
                 box->low[k] = fmin(box->low[k], x);
                 box->high[k] = fmax(box->high[k], x);
             }
 }
 
-typedef struct literal_key { double at; uint32_t element; } literal_key;
+typedef struct literal_key {
+    double at;
+    uint32_t element;
+} literal_key;
 
-static int literal_key_order(const void *a, const void *b)
-{
+static int literal_key_order(const void *a, const void *b) {
     const literal_key *x = (const literal_key *)a, *y = (const literal_key *)b;
     return x->at != y->at ? (x->at > y->at) - (x->at < y->at) : (x->element > y->element) - (x->element < y->element);
 }
 
-static void literal_sort_box(literal *l, const literal_box *box, int axis, literal_key *keys)
-{
+static void literal_sort_box(literal *l, const literal_box *box, int axis, literal_key *keys) {
     uint32_t i;
     int n;
     for (i = 0; i < box->count; i++) {
         keys[i].element = l->box_elements[box->first + i];
         keys[i].at = 0;
-        for (n = 0; n < 4; n++) keys[i].at += l->desc.positions[3 * (size_t)l->desc.elements[4 * (size_t)keys[i].element + (size_t)n] + (size_t)axis];
+        for (n = 0; n < 4; n++)
+            keys[i].at +=
+                l->desc.positions[3 * (size_t)l->desc.elements[4 * (size_t)keys[i].element + (size_t)n] + (size_t)axis];
     }
     qsort(keys, box->count, sizeof *keys, literal_key_order);
     for (i = 0; i < box->count; i++) l->box_elements[box->first + i] = keys[i].element;
 }
 
-static void literal_build_boxes(literal *l)
-{
+static void literal_build_boxes(literal *l) {
     const uint32_t n = (uint32_t)l->desc.element_count;
     literal_key *keys = (literal_key *)literal_memory(NULL, n, sizeof *keys);
     uint32_t b;
@@ -168,7 +190,8 @@ static void literal_build_boxes(literal *l)
         int axis = 0, k;
         literal_fit_box(l, box);
         if (box->count <= 4) continue;
-        for (k = 1; k < 3; k++) if (box->high[k] - box->low[k] > box->high[axis] - box->low[axis]) axis = k;
+        for (k = 1; k < 3; k++)
+            if (box->high[k] - box->low[k] > box->high[axis] - box->low[axis]) axis = k;
         literal_sort_box(l, box, axis, keys);
         child[0].first = box->first;
         child[0].count = box->count / 2;
@@ -182,8 +205,7 @@ static void literal_build_boxes(literal *l)
 }
 
 /* Marks the elements whose boxes meet the triangle's. */
-static void literal_mark_elements(const literal *l, const double *const p[3], uint8_t *touched)
-{
+static void literal_mark_elements(const literal *l, const double *const p[3], uint8_t *touched) {
     double low[3], high[3];
     uint32_t stack[64], depth = 0, i;
     int k;
@@ -205,27 +227,30 @@ static void literal_mark_elements(const literal *l, const double *const p[3], ui
 
 /* ---- creation ---- */
 
-static const uint32_t literal_faces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};   /* outward */
+static const uint32_t literal_faces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}; /* outward */
 
 /* A triangle of a 1-ring, and its nodes in ascending order */
-typedef struct literal_face { uint32_t nodes[3], sorted[3]; } literal_face;
+typedef struct literal_face {
+    uint32_t nodes[3], sorted[3];
+} literal_face;
 
-static int literal_face_order(const void *a, const void *b)
-{
+static int literal_face_order(const void *a, const void *b) {
     return memcmp(((const literal_face *)a)->sorted, ((const literal_face *)b)->sorted, 3 * sizeof(uint32_t));
 }
 
-static void literal_sort3(uint32_t *v)
-{
+static void literal_sort3(uint32_t *v) {
     int i, j;
     for (i = 0; i < 2; i++)
         for (j = 0; j < 2 - i; j++)
-            if (v[j] > v[j + 1]) { const uint32_t t = v[j]; v[j] = v[j + 1]; v[j + 1] = t; }
+            if (v[j] > v[j + 1]) {
+                const uint32_t t = v[j];
+                v[j] = v[j + 1];
+                v[j + 1] = t;
+            }
 }
 
 /* Faces of the elements that only one of them has; returns how many. */
-static size_t literal_boundary(const literal_desc *desc, const uint32_t *ring, size_t count, literal_face *faces)
-{
+static size_t literal_boundary(const literal_desc *desc, const uint32_t *ring, size_t count, literal_face *faces) {
     size_t i, n = 0, kept = 0;
     int f, k;
     for (i = 0; i < count; i++)
@@ -236,15 +261,17 @@ static size_t literal_boundary(const literal_desc *desc, const uint32_t *ring, s
         }
     qsort(faces, n, sizeof *faces, literal_face_order);
     for (i = 0; i < n; i++) {
-        if (i + 1 < n && literal_face_order(&faces[i], &faces[i + 1]) == 0) i++;
-        else faces[kept++] = faces[i];
+        if (i + 1 < n && literal_face_order(&faces[i], &faces[i + 1]) == 0)
+            i++;
+        else
+            faces[kept++] = faces[i];
     }
     return kept;
 }
 
 /* The boundary of some elements as a mesh of its own; number: scratch, node_count, LITERAL_NONE before and after. */
-static void literal_fill_domain(const literal_desc *desc, literal_domain *domain, const literal_face *faces, size_t count, uint32_t *number)
-{
+static void literal_fill_domain(const literal_desc *desc, literal_domain *domain, const literal_face *faces,
+                                size_t count, uint32_t *number) {
     size_t i, n = 0;
     int k;
     domain->vertices = (double *)literal_memory(NULL, 9 * count, sizeof(double));
@@ -260,12 +287,12 @@ static void literal_fill_domain(const literal_desc *desc, literal_domain *domain
             domain->triangles[3 * i + (size_t)k] = number[node];
         }
     domain->vertex_count = n;
-    for (i = 0; i < count; i++) for (k = 0; k < 3; k++) number[faces[i].nodes[k]] = LITERAL_NONE;
+    for (i = 0; i < count; i++)
+        for (k = 0; k < 3; k++) number[faces[i].nodes[k]] = LITERAL_NONE;
 }
 
 /* Elements around each node: start (node_count + 1) into ring */
-static void literal_rings(const literal_desc *desc, uint32_t *start, uint32_t *ring)
-{
+static void literal_rings(const literal_desc *desc, uint32_t *start, uint32_t *ring) {
     size_t i;
     memset(start, 0, (desc->node_count + 1) * sizeof *start);
     for (i = 0; i < 4 * desc->element_count; i++) start[desc->elements[i] + 1]++;
@@ -275,8 +302,7 @@ static void literal_rings(const literal_desc *desc, uint32_t *start, uint32_t *r
     start[0] = 0;
 }
 
-static void literal_make_domains(literal *l)
-{
+static void literal_make_domains(literal *l) {
     const literal_desc *desc = &l->desc;
     uint32_t *start = (uint32_t *)literal_memory(NULL, desc->node_count + 1, sizeof *start);
     uint32_t *ring = (uint32_t *)literal_memory(NULL, 4 * desc->element_count, sizeof *ring);
@@ -293,21 +319,20 @@ static void literal_make_domains(literal *l)
     }
     for (i = 0; i < desc->element_count; i++) {
         literal_face faces[4];
-        literal_fill_domain(desc, literal_add_domain(&l->element, i), faces, literal_boundary(desc, &i, 1, faces), number);
+        literal_fill_domain(desc, literal_add_domain(&l->element, i), faces, literal_boundary(desc, &i, 1, faces),
+                            number);
     }
     free(start);
     free(ring);
     free(number);
 }
 
-static void literal_start(literal_domains *all, size_t owners)
-{
+static void literal_start(literal_domains *all, size_t owners) {
     all->first = (uint32_t *)literal_memory(NULL, owners, sizeof *all->first);
     memset(all->first, 0xff, owners * sizeof *all->first);
 }
 
-static literal *literal_create(const literal_desc *desc)
-{
+static literal *literal_create(const literal_desc *desc) {
     literal *l = (literal *)literal_memory(NULL, 1, sizeof *l);
     double *positions = (double *)literal_memory(NULL, 3 * desc->node_count, sizeof(double));
     uint32_t *elements = (uint32_t *)literal_memory(NULL, 4 * desc->element_count, sizeof(uint32_t));
@@ -326,16 +351,14 @@ static literal *literal_create(const literal_desc *desc)
     return l;
 }
 
-static void literal_free_domains(literal_domains *all)
-{
+static void literal_free_domains(literal_domains *all) {
     size_t i;
     for (i = 0; i < all->count; i++) literal_drop_domain(&all->domains[i]);
     free(all->domains);
     free(all->first);
 }
 
-static void literal_destroy(literal *l)
-{
+static void literal_destroy(literal *l) {
     literal_free_domains(&l->nodal);
     literal_free_domains(&l->element);
     free((void *)(uintptr_t)l->desc.positions);
@@ -354,24 +377,23 @@ static void literal_destroy(literal *l)
 /* ---- cutting ---- */
 
 /* An edge of a triangle, its vertices in ascending order */
-typedef struct literal_edge { uint32_t v[2], triangle; } literal_edge;
+typedef struct literal_edge {
+    uint32_t v[2], triangle;
+} literal_edge;
 
-static int literal_edge_order(const void *a, const void *b)
-{
+static int literal_edge_order(const void *a, const void *b) {
     const literal_edge *x = (const literal_edge *)a, *y = (const literal_edge *)b;
     const int order = memcmp(x->v, y->v, sizeof x->v);
     return order ? order : (x->triangle > y->triangle) - (x->triangle < y->triangle);
 }
 
-static uint32_t literal_root(uint32_t *parent, uint32_t i)
-{
+static uint32_t literal_root(uint32_t *parent, uint32_t i) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
 }
 
 /* Numbers the connected components of adjacent triangles (as the paper finds them); returns how many. */
-static uint32_t literal_components(const gxb_boolean_result *result, uint32_t *component)
-{
+static uint32_t literal_components(const gxb_boolean_result *result, uint32_t *component) {
     const uint32_t n = (uint32_t)result->triangle_count;
     literal_edge *edges = (literal_edge *)literal_memory(NULL, 3 * (size_t)n, sizeof *edges);
     uint32_t *parent = (uint32_t *)literal_memory(NULL, n, sizeof *parent), i, count = 0;
@@ -387,7 +409,8 @@ static uint32_t literal_components(const gxb_boolean_result *result, uint32_t *c
         if (memcmp(edges[i].v, edges[i - 1].v, sizeof edges[i].v) != 0) continue;
         parent[literal_root(parent, edges[i].triangle)] = literal_root(parent, edges[i - 1].triangle);
     }
-    for (i = 0; i < n; i++) if (literal_root(parent, i) == i) component[i] = count++;
+    for (i = 0; i < n; i++)
+        if (literal_root(parent, i) == i) component[i] = count++;
     for (i = 0; i < n; i++) component[i] = component[literal_root(parent, i)];
     free(edges);
     free(parent);
@@ -395,8 +418,8 @@ static uint32_t literal_components(const gxb_boolean_result *result, uint32_t *c
 }
 
 /* One component of a Boolean's result as a domain */
-static void literal_take_component(literal_domain *domain, const gxb_boolean_result *result, const uint32_t *components, uint32_t component, uint32_t *number)
-{
+static void literal_take_component(literal_domain *domain, const gxb_boolean_result *result, const uint32_t *components,
+                                   uint32_t component, uint32_t *number) {
     size_t t, n = 0, count = 0;
     int k;
     memset(number, 0xff, result->vertex_count * sizeof *number);
@@ -418,8 +441,7 @@ static void literal_take_component(literal_domain *domain, const gxb_boolean_res
     domain->triangle_count = count;
 }
 
-static int literal_boxes_meet(const literal_domain *domain, const gx_surface *solid)
-{
+static int literal_boxes_meet(const literal_domain *domain, const gx_surface *solid) {
     double low[2][3], high[2][3];
     const double *x[2] = {domain->vertices, solid->vertices};
     const size_t count[2] = {domain->vertex_count, solid->vertex_count};
@@ -434,24 +456,27 @@ static int literal_boxes_meet(const literal_domain *domain, const gx_surface *so
                 high[a][k] = fmax(high[a][k], x[a][3 * i + (size_t)k]);
             }
         }
-    for (k = 0; k < 3; k++) if (low[0][k] > high[1][k] || low[1][k] > high[0][k]) return 0;
+    for (k = 0; k < 3; k++)
+        if (low[0][k] > high[1][k] || low[1][k] > high[0][k]) return 0;
     return 1;
 }
 
-static gx_result literal_add_operand(gxb_boolean *boolean, const double *vertices, size_t vertex_count, const uint32_t *triangles, size_t triangle_count, uint32_t operation)
-{
+static gx_result literal_add_operand(gxb_boolean *boolean, const double *vertices, size_t vertex_count,
+                                     const uint32_t *triangles, size_t triangle_count, uint32_t operation) {
     gxb_operand operand;
     memset(&operand, 0, sizeof operand);
-    operand.vertices = vertices; operand.vertex_count = vertex_count;
-    operand.triangles = triangles; operand.triangle_count = triangle_count;
+    operand.vertices = vertices;
+    operand.vertex_count = vertex_count;
+    operand.triangles = triangles;
+    operand.triangle_count = triangle_count;
     operand.operation = operation;
-    operand.rule = GXB_POSITIVE;    /* rounded surfaces may be turned inside out in places: no material */
+    operand.rule = GXB_POSITIVE; /* rounded surfaces may be turned inside out in places: no material */
     return gxb_boolean_add(boolean, &operand, NULL);
 }
 
 /* Domain less solids. 0: none of them is near, or it cannot be had; there is no Boolean then */
-static int literal_subtract(literal *l, const literal_domain *domain, const gx_surface *solids, size_t count, gxb_boolean **boolean, gxb_boolean_result *result)
-{
+static int literal_subtract(literal *l, const literal_domain *domain, const gx_surface *solids, size_t count,
+                            gxb_boolean **boolean, gxb_boolean_result *result) {
     gx_result code;
     size_t i, near = 0;
     code = gxb_boolean_create(NULL, boolean);
@@ -459,11 +484,14 @@ static int literal_subtract(literal *l, const literal_domain *domain, const gx_s
         gxb_boolean_set_mend(*boolean, 1);
         gxb_boolean_set_triangulation(*boolean, GXB_COARSE);
     }
-    if (code == GX_OK) code = literal_add_operand(*boolean, domain->vertices, domain->vertex_count, domain->triangles, domain->triangle_count, GXB_UNION);
+    if (code == GX_OK)
+        code = literal_add_operand(*boolean, domain->vertices, domain->vertex_count, domain->triangles,
+                                   domain->triangle_count, GXB_UNION);
     for (i = 0; i < count && code == GX_OK; i++) {
         const gx_surface *s = &solids[i];
         if (!literal_boxes_meet(domain, s)) continue;
-        code = literal_add_operand(*boolean, s->vertices, s->vertex_count, s->triangles, s->triangle_count, GXB_DIFFERENCE);
+        code = literal_add_operand(*boolean, s->vertices, s->vertex_count, s->triangles, s->triangle_count,
+                                   GXB_DIFFERENCE);
         near++;
     }
     if (code == GX_OK && near > 0) {
@@ -476,9 +504,10 @@ static int literal_subtract(literal *l, const literal_domain *domain, const gx_s
     return 0;
 }
 
-/* Puts the components in the domain's place: the first has its slot, the others get new ones. Nodal ones but the first get copies. */
-static void literal_replace(literal *l, literal_domains *all, uint32_t owner, uint32_t at, const gxb_boolean_result *result, const uint32_t *components, uint32_t count)
-{
+/* Puts the components in the domain's place: the first has its slot, the others get new ones. Nodal ones but the first
+ * get copies. */
+static void literal_replace(literal *l, literal_domains *all, uint32_t owner, uint32_t at,
+                            const gxb_boolean_result *result, const uint32_t *components, uint32_t count) {
     uint32_t *number = (uint32_t *)literal_memory(NULL, result->vertex_count, sizeof *number), c;
     for (c = 0; c < count; c++) {
         const uint32_t copy = all->domains[at].copy;
@@ -491,8 +520,8 @@ static void literal_replace(literal *l, literal_domains *all, uint32_t owner, ui
 }
 
 /* Lines 2 to 9, or 12 to 18, for the subdomains of one node or element. Returns 1 where one was replaced. */
-static int literal_cut_domains(literal *l, literal_domains *all, uint32_t owner, const gx_surface *solids, size_t count)
-{
+static int literal_cut_domains(literal *l, literal_domains *all, uint32_t owner, const gx_surface *solids,
+                               size_t count) {
     uint32_t at, next;
     int changed = 0;
     for (at = all->first[owner]; at != LITERAL_NONE; at = next) {
@@ -514,29 +543,31 @@ static int literal_cut_domains(literal *l, literal_domains *all, uint32_t owner,
 }
 
 /* Which elements the surface's triangles may touch, and their nodes */
-static void literal_cull(const literal *l, const gx_surface *surface, uint8_t *touched, uint8_t *nodes)
-{
+static void literal_cull(const literal *l, const gx_surface *surface, uint8_t *touched, uint8_t *nodes) {
     size_t i;
     for (i = 0; i < surface->triangle_count; i++) {
         const uint32_t *t = surface->triangles + 3 * i;
-        const double *const p[3] = {surface->vertices + 3 * (size_t)t[0], surface->vertices + 3 * (size_t)t[1], surface->vertices + 3 * (size_t)t[2]};
+        const double *const p[3] = {surface->vertices + 3 * (size_t)t[0], surface->vertices + 3 * (size_t)t[1],
+                                    surface->vertices + 3 * (size_t)t[2]};
         literal_mark_elements(l, p, touched);
     }
     for (i = 0; i < 4 * l->desc.element_count; i++) nodes[l->desc.elements[i]] |= touched[i / 4];
 }
 
-/* Cuts by closed surfaces, all at once: lines 1 to 19. Only what the triangles of `fresh` may touch is looked at (NULL: of all solids).
-   Integrals and copies of elements: see literal_model. */
-static void literal_cut(literal *l, const gx_surface *solids, size_t count, const gx_surface *fresh)
-{
-    uint8_t *touched = (uint8_t *)literal_memory(NULL, l->desc.element_count, 1), *nodes = (uint8_t *)literal_memory(NULL, l->desc.node_count, 1);
+/* Cuts by closed surfaces, all at once: lines 1 to 19. Only what the triangles of `fresh` may touch is looked at (NULL:
+   of all solids). Integrals and copies of elements: see literal_model. */
+static void literal_cut(literal *l, const gx_surface *solids, size_t count, const gx_surface *fresh) {
+    uint8_t *touched = (uint8_t *)literal_memory(NULL, l->desc.element_count, 1),
+            *nodes = (uint8_t *)literal_memory(NULL, l->desc.node_count, 1);
     const double start = seconds(NULL);
     size_t i;
     memset(touched, 0, l->desc.element_count);
     memset(nodes, 0, l->desc.node_count);
     for (i = 0; i < (fresh ? 1 : count); i++) literal_cull(l, fresh ? fresh : &solids[i], touched, nodes);
-    for (i = 0; i < l->desc.node_count; i++) nodes[i] = (uint8_t)(nodes[i] && literal_cut_domains(l, &l->nodal, (uint32_t)i, solids, count));
-    for (i = 0; i < l->desc.element_count; i++) l->dirty[i] |= (uint8_t)(touched[i] && literal_cut_domains(l, &l->element, (uint32_t)i, solids, count));
+    for (i = 0; i < l->desc.node_count; i++)
+        nodes[i] = (uint8_t)(nodes[i] && literal_cut_domains(l, &l->nodal, (uint32_t)i, solids, count));
+    for (i = 0; i < l->desc.element_count; i++)
+        l->dirty[i] |= (uint8_t)(touched[i] && literal_cut_domains(l, &l->element, (uint32_t)i, solids, count));
     for (i = 0; i < 4 * l->desc.element_count; i++) l->dirty[i / 4] |= nodes[l->desc.elements[i]];
     l->report.seconds_booleans += seconds(NULL) - start;
     l->report.seconds += seconds(NULL) - start;
@@ -549,11 +580,13 @@ static void literal_cut(literal *l, const gx_surface *solids, size_t count, cons
 static double literal_dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /* Squared distance of x to the segment a b */
-static double literal_segment_distance(const double *x, const double *a, const double *b)
-{
+static double literal_segment_distance(const double *x, const double *a, const double *b) {
     double ab[3], ax[3], length, t, sum = 0;
     int k;
-    for (k = 0; k < 3; k++) { ab[k] = b[k] - a[k]; ax[k] = x[k] - a[k]; }
+    for (k = 0; k < 3; k++) {
+        ab[k] = b[k] - a[k];
+        ax[k] = x[k] - a[k];
+    }
     length = literal_dot(ab, ab);
     t = length > 0 ? fmin(1, fmax(0, literal_dot(ax, ab) / length)) : 0;
     for (k = 0; k < 3; k++) sum += (ax[k] - t * ab[k]) * (ax[k] - t * ab[k]);
@@ -561,12 +594,19 @@ static double literal_segment_distance(const double *x, const double *a, const d
 }
 
 /* Squared distance of x to the triangle: to its plane where x lies above it, else to its edges */
-static double literal_triangle_distance(const double *x, const double *const p[3])
-{
+static double literal_triangle_distance(const double *x, const double *const p[3]) {
     double u[3], v[3], w[3], uu, uv, vv, uw, vw, det, s, t, sum = 0;
     int k;
-    for (k = 0; k < 3; k++) { u[k] = p[1][k] - p[0][k]; v[k] = p[2][k] - p[0][k]; w[k] = x[k] - p[0][k]; }
-    uu = literal_dot(u, u); uv = literal_dot(u, v); vv = literal_dot(v, v); uw = literal_dot(u, w); vw = literal_dot(v, w);
+    for (k = 0; k < 3; k++) {
+        u[k] = p[1][k] - p[0][k];
+        v[k] = p[2][k] - p[0][k];
+        w[k] = x[k] - p[0][k];
+    }
+    uu = literal_dot(u, u);
+    uv = literal_dot(u, v);
+    vv = literal_dot(v, v);
+    uw = literal_dot(u, w);
+    vw = literal_dot(v, w);
     det = uu * vv - uv * uv;
     s = uw * vv - vw * uv;
     t = vw * uu - uw * uv;
@@ -574,12 +614,12 @@ static double literal_triangle_distance(const double *x, const double *const p[3
         for (k = 0; k < 3; k++) sum += (w[k] - (s * u[k] + t * v[k]) / det) * (w[k] - (s * u[k] + t * v[k]) / det);
         return sum;
     }
-    return fmin(literal_segment_distance(x, p[0], p[1]), fmin(literal_segment_distance(x, p[1], p[2]), literal_segment_distance(x, p[2], p[0])));
+    return fmin(literal_segment_distance(x, p[0], p[1]),
+                fmin(literal_segment_distance(x, p[1], p[2]), literal_segment_distance(x, p[2], p[0])));
 }
 
 /* Of a point to a subdomain; 0 inside */
-static double literal_distance(const literal_domain *domain, const double x[3])
-{
+static double literal_distance(const literal_domain *domain, const double x[3]) {
     double least = HUGE_VAL;
     size_t t;
     int on = 0, k;
@@ -593,8 +633,7 @@ static double literal_distance(const literal_domain *domain, const double x[3])
 }
 
 /* A point of the subdomain: the middle of its largest triangle */
-static void literal_point(const literal_domain *domain, double x[3])
-{
+static void literal_point(const literal_domain *domain, double x[3]) {
     double largest = -1;
     size_t t;
     int k;
@@ -609,8 +648,7 @@ static void literal_point(const literal_domain *domain, double x[3])
     }
 }
 
-static uint32_t literal_copy_of(const literal *l, uint32_t node, const double x[3])
-{
+static uint32_t literal_copy_of(const literal *l, uint32_t node, const double x[3]) {
     uint32_t at = l->nodal.first[node], copy = l->nodal.domains[at].copy;
     double least = HUGE_VAL;
     if (l->nodal.domains[at].next == LITERAL_NONE) return copy;
@@ -625,8 +663,7 @@ static uint32_t literal_copy_of(const literal *l, uint32_t node, const double x[
 
 /* ---- integrals (Eq. 21) and the solver's model ---- */
 
-static void literal_part(const literal *l, uint32_t element, const literal_domain *domain, gxs_element *part)
-{
+static void literal_part(const literal *l, uint32_t element, const literal_domain *domain, gxs_element *part) {
     double corners[12], gradients[12], volume, matrix[9], translation[3], x[3];
     const gxi_surface surface = {domain->vertices, domain->vertex_count, domain->triangles, domain->triangle_count};
     gxi_moments2 m;
@@ -638,20 +675,22 @@ static void literal_part(const literal *l, uint32_t element, const literal_domai
         memcpy(corners + 3 * n, l->desc.positions + 3 * (size_t)node, 3 * sizeof(double));
         part->copy[n] = literal_copy_of(l, node, x);
     }
-    if (gxi_tet_gradients(corners, gradients, &volume) != GX_OK || gxi_polyhedron_moments2(&surface, corners, &m) != GX_OK) return;
+    if (gxi_tet_gradients(corners, gradients, &volume) != GX_OK ||
+        gxi_polyhedron_moments2(&surface, corners, &m) != GX_OK)
+        return;
     memcpy(part->gradient, gradients, sizeof part->gradient);
     memcpy(matrix, gradients + 3, sizeof matrix);
     for (k = 0; k < 3; k++) translation[k] = 0;
     part->weight = fmax(0, m.volume);
     gxi_moments2_map(&m, matrix, translation);
     gxi_part_mass(&m, 0, volume, l->desc.density, part->mass);
-    if (part->mass[0] < 0 || part->mass[4] < 0 || part->mass[7] < 0 || part->mass[9] < 0)      /* of a sliver, by rounding */
+    /* of a sliver, by rounding */
+    if (part->mass[0] < 0 || part->mass[4] < 0 || part->mass[7] < 0 || part->mass[9] < 0)
         memset(part->mass, 0, sizeof part->mass);
 }
 
 /* Lines 20 to 24, and what the solver takes but for the materials. Arrays are valid until the next cut. */
-static void literal_model(literal *l, gxs_model *model)
-{
+static void literal_model(literal *l, gxs_model *model) {
     const double start = seconds(NULL);
     size_t i;
     uint32_t e, at;
@@ -660,10 +699,12 @@ static void literal_model(literal *l, gxs_model *model)
     l->part_count = l->element.count;
     for (e = 0; e < l->desc.element_count; e++) {
         if (!l->dirty[e]) continue;
-        for (at = l->element.first[e]; at != LITERAL_NONE; at = l->element.domains[at].next) literal_part(l, e, &l->element.domains[at], &l->parts[at]);
+        for (at = l->element.first[e]; at != LITERAL_NONE; at = l->element.domains[at].next)
+            literal_part(l, e, &l->element.domains[at], &l->parts[at]);
         l->dirty[e] = 0;
     }
-    for (i = 0; i < l->copy_count; i++) memcpy(l->rest + 3 * i, l->desc.positions + 3 * (size_t)l->copy_node[i], 3 * sizeof(double));
+    for (i = 0; i < l->copy_count; i++)
+        memcpy(l->rest + 3 * i, l->desc.positions + 3 * (size_t)l->copy_node[i], 3 * sizeof(double));
     memset(model, 0, sizeof *model);
     model->copy_count = l->copy_count;
     model->positions = l->rest;

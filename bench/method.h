@@ -1,5 +1,6 @@
-/* method.h - ways of cutting behind one interface: the library, RXFEM (rxfem.h), virtual nodes (vna.h), the literal Algorithm 1 (literal.h).
-   Each repeats a scene (replay.h) by the same time step, gxfem_solve.h's: only what is compared differs. Include after replay.h. */
+/* method.h - ways of cutting behind one interface: the library, RXFEM (rxfem.h), virtual nodes (vna.h), the literal
+   Algorithm 1 (literal.h). Each repeats a scene (replay.h) by the same time step, gxfem_solve.h's: only what is
+   compared differs. Include after replay.h. */
 #ifndef GXFEM_BENCH_METHOD_H
 #define GXFEM_BENCH_METHOD_H
 
@@ -10,13 +11,13 @@
 
 /* Of a frame */
 typedef struct method_times {
-    double booleans;        /* s: what finds the pieces, and which copies they have */
-    double integrals;       /* s: volumes and masses of the pieces */
-    double derivatives;     /* s: Hessians of the elastic energy */
-    double derivatives_once;/* s: RXFEM's by one evaluation a piece; not in total */
-    double solve;           /* s: preconditioner and conjugate gradients */
-    double total;           /* s: of the frame, the cut included */
-    size_t domains;         /* nodal and element subdomains that were looked at; 0: no cut */
+    double booleans;         /* s: what finds the pieces, and which copies they have */
+    double integrals;        /* s: volumes and masses of the pieces */
+    double derivatives;      /* s: Hessians of the elastic energy */
+    double derivatives_once; /* s: RXFEM's by one evaluation a piece; not in total */
+    double solve;            /* s: preconditioner and conjugate gradients */
+    double total;            /* s: of the frame, the cut included */
+    size_t domains;          /* nodal and element subdomains that were looked at; 0: no cut */
 } method_times;
 
 /* Those that can fail return NULL, or why they can't. */
@@ -31,22 +32,19 @@ typedef struct method {
     void (*destroy)(void *state);
 } method;
 
-static inline void method_must(gx_result result, const char *what)
-{
+static inline void method_must(gx_result result, const char *what) {
     if (result == GX_OK) return;
     fprintf(stderr, "%s: %s\n", what, gx_result_text(result));
     exit(1);
 }
 
-static inline void *method_memory(void *old, size_t count, size_t size)
-{
+static inline void *method_memory(void *old, size_t count, size_t size) {
     void *memory = realloc(old, count * size + 1);
     method_must(memory ? GX_OK : GX_ERROR_MEMORY, "bench");
     return memory;
 }
 
-static inline gx_step_desc method_step_desc(const replay *scene)
-{
+static inline gx_step_desc method_step_desc(const replay *scene) {
     gx_step_desc desc;
     memset(&desc, 0, sizeof desc);
     desc.dt = scene->dt;
@@ -56,15 +54,14 @@ static inline gx_step_desc method_step_desc(const replay *scene)
     return desc;
 }
 
-static inline void method_take_report(const gx_step_report *report, method_times *times)
-{
+static inline void method_take_report(const gx_step_report *report, method_times *times) {
     times->derivatives += report->seconds_linearise;
     times->solve += report->seconds_prepare + report->seconds_solve;
 }
 
 /* A step of copies by a solver, begun at `start` */
-static inline const char *method_solve(gxs_solver *solver, const replay *scene, double *displacement, double *velocity, double start, method_times *times)
-{
+static inline const char *method_solve(gxs_solver *solver, const replay *scene, double *displacement, double *velocity,
+                                       double start, method_times *times) {
     const gx_step_desc desc = method_step_desc(scene);
     gx_step_report report;
     const gx_result result = gxs_solver_step(solver, &desc, displacement, velocity, &report, NULL);
@@ -79,13 +76,12 @@ static inline const char *method_solve(gxs_solver *solver, const replay *scene, 
 typedef struct method_body {
     const replay *scene;
     gx_body *body;
-    gxs_solver *solver;         /* virtual nodes: of the replicas */
+    gxs_solver *solver; /* virtual nodes: of the replicas */
     gxs_element *replicas;
-    int changed;                /* virtual nodes: the solver does not have the model of the body as it is now */
+    int changed; /* virtual nodes: the solver does not have the model of the body as it is now */
 } method_body;
 
-static inline void *method_body_create(const replay *scene)
-{
+static inline void *method_body_create(const replay *scene) {
     method_body *m = (method_body *)method_memory(NULL, 1, sizeof *m);
     gx_body_desc desc;
     gx_view view;
@@ -93,9 +89,13 @@ static inline void *method_body_create(const replay *scene)
     memset(&desc, 0, sizeof desc);
     m->scene = scene;
     m->changed = 1;
-    desc.positions = scene->positions; desc.node_count = scene->node_count;
-    desc.elements = scene->elements; desc.element_count = scene->element_count;
-    desc.young = scene->young; desc.poisson = scene->poisson; desc.density = scene->density;
+    desc.positions = scene->positions;
+    desc.node_count = scene->node_count;
+    desc.elements = scene->elements;
+    desc.element_count = scene->element_count;
+    desc.young = scene->young;
+    desc.poisson = scene->poisson;
+    desc.density = scene->density;
     desc.clock = seconds;
     method_must(gx_body_create(&desc, &m->body, NULL), "body");
     method_must(gx_body_hold(m->body, scene->regions, scene->region_count), "hold");
@@ -105,8 +105,7 @@ static inline void *method_body_create(const replay *scene)
     return m;
 }
 
-static inline const char *method_body_cut(void *state, const replay_cut *cut, method_times *times)
-{
+static inline const char *method_body_cut(void *state, const replay_cut *cut, method_times *times) {
     method_body *m = (method_body *)state;
     const gx_surface strip = replay_strip(cut);
     const double start = seconds(NULL);
@@ -114,7 +113,8 @@ static inline const char *method_body_cut(void *state, const replay_cut *cut, me
     gx_cut_report report;
     gx_result result;
     memset(&desc, 0, sizeof desc);
-    desc.surfaces = &strip; desc.surface_count = 1;
+    desc.surfaces = &strip;
+    desc.surface_count = 1;
     desc.sever_below = m->scene->sever_below;
     result = gx_body_cut(m->body, &desc, &report, NULL);
     if (result != GX_OK) return gx_result_text(result);
@@ -126,8 +126,7 @@ static inline const char *method_body_cut(void *state, const replay_cut *cut, me
     return NULL;
 }
 
-static inline const char *method_library_step(void *state, method_times *times)
-{
+static inline const char *method_library_step(void *state, method_times *times) {
     method_body *m = (method_body *)state;
     const gx_step_desc desc = method_step_desc(m->scene);
     const double start = seconds(NULL);
@@ -139,23 +138,20 @@ static inline const char *method_library_step(void *state, method_times *times)
     return NULL;
 }
 
-static inline size_t method_body_unknowns(void *state)
-{
+static inline size_t method_body_unknowns(void *state) {
     gx_view view;
     method_must(gx_body_view(((method_body *)state)->body, &view), "view");
     return 3 * view.copy_count;
 }
 
-static inline void method_library_look(void *state, gxs_model *model, const double **displacement)
-{
+static inline void method_library_look(void *state, gxs_model *model, const double **displacement) {
     gx_view view;
     method_must(gx_body_view(((method_body *)state)->body, &view), "view");
     method_must(gx_body_model(((method_body *)state)->body, model), "model");
     *displacement = view.displacement;
 }
 
-static inline void method_body_destroy(void *state)
-{
+static inline void method_body_destroy(void *state) {
     method_body *m = (method_body *)state;
     gx_body_destroy(m->body);
     gxs_solver_destroy(m->solver);
@@ -165,8 +161,7 @@ static inline void method_body_destroy(void *state)
 
 /* ---- virtual nodes ---- */
 
-static inline void method_vna_renew(method_body *m)
-{
+static inline void method_vna_renew(method_body *m) {
     gxs_model model;
     method_must(gx_body_model(m->body, &model), "model");
     m->replicas = (gxs_element *)method_memory(m->replicas, model.element_count, sizeof *m->replicas);
@@ -177,8 +172,7 @@ static inline void method_vna_renew(method_body *m)
     m->changed = 0;
 }
 
-static inline const char *method_vna_step(void *state, method_times *times)
-{
+static inline const char *method_vna_step(void *state, method_times *times) {
     method_body *m = (method_body *)state;
     const double start = seconds(NULL);
     gx_view view;
@@ -187,8 +181,7 @@ static inline const char *method_vna_step(void *state, method_times *times)
     return method_solve(m->solver, m->scene, view.displacement, view.velocity, start, times);
 }
 
-static inline void method_vna_look(void *state, gxs_model *model, const double **displacement)
-{
+static inline void method_vna_look(void *state, gxs_model *model, const double **displacement) {
     method_body *m = (method_body *)state;
     method_library_look(m, model, displacement);
     m->replicas = (gxs_element *)method_memory(m->replicas, model->element_count, sizeof *m->replicas);
@@ -207,8 +200,7 @@ typedef struct method_literal {
     int changed;
 } method_literal;
 
-static inline void *method_literal_create(const replay *scene)
-{
+static inline void *method_literal_create(const replay *scene) {
     method_literal *m = (method_literal *)method_memory(NULL, 1, sizeof *m);
     literal_desc desc;
     memset(m, 0, sizeof *m);
@@ -218,8 +210,10 @@ static inline void *method_literal_create(const replay *scene)
     m->material.kind = GXS_STABLE_NEO_HOOKEAN;
     m->material.young = scene->young;
     m->material.poisson = scene->poisson;
-    desc.positions = scene->positions; desc.node_count = scene->node_count;
-    desc.elements = scene->elements; desc.element_count = scene->element_count;
+    desc.positions = scene->positions;
+    desc.node_count = scene->node_count;
+    desc.elements = scene->elements;
+    desc.element_count = scene->element_count;
     desc.density = scene->density;
     m->cutter = literal_create(&desc);
     memcpy(m->cutter->displacement, scene->displacement, 3 * scene->node_count * sizeof(double));
@@ -229,29 +223,28 @@ static inline void *method_literal_create(const replay *scene)
 }
 
 /* With what a Boolean of today gives: results in few triangles, and defects of rounding mended */
-static inline void *method_mended_create(const replay *scene)
-{
+static inline void *method_mended_create(const replay *scene) {
     method_literal *m = (method_literal *)method_literal_create(scene);
     m->cutter->desc.mended = 1;
     return m;
 }
 
 /* The path so far as a solid; vertices and triangles are the caller's to free. */
-static inline gx_surface method_solidify(const gx_surface *sheet, double thickness)
-{
+static inline gx_surface method_solidify(const gx_surface *sheet, double thickness) {
     double *vertices = (double *)method_memory(NULL, 6 * sheet->vertex_count, sizeof(double));
     uint32_t *triangles = (uint32_t *)method_memory(NULL, 24 * sheet->triangle_count, sizeof(uint32_t));
     gx_surface solid;
     memset(&solid, 0, sizeof solid);
-    method_must(gx_surface_solidify(sheet, thickness, vertices, &solid.vertex_count, triangles, &solid.triangle_count, NULL), "solid");
+    method_must(
+        gx_surface_solidify(sheet, thickness, vertices, &solid.vertex_count, triangles, &solid.triangle_count, NULL),
+        "solid");
     solid.vertices = vertices;
     solid.triangles = triangles;
     solid.kind = GX_SURFACE_SOLID;
     return solid;
 }
 
-static inline const char *method_literal_cut(void *state, const replay_cut *cut, method_times *times)
-{
+static inline const char *method_literal_cut(void *state, const replay_cut *cut, method_times *times) {
     method_literal *m = (method_literal *)state;
     const literal_report before = m->cutter->report;
     const gx_surface strip = replay_strip(cut);
@@ -270,8 +263,7 @@ static inline const char *method_literal_cut(void *state, const replay_cut *cut,
     return m->cutter->report.failures > before.failures ? "a Boolean of rounded subdomains is refused" : NULL;
 }
 
-static inline void method_literal_renew(method_literal *m, method_times *times)
-{
+static inline void method_literal_renew(method_literal *m, method_times *times) {
     const double before = m->cutter->report.seconds_integrals;
     gxs_model model;
     size_t i;
@@ -286,8 +278,7 @@ static inline void method_literal_renew(method_literal *m, method_times *times)
     m->changed = 0;
 }
 
-static inline const char *method_literal_step(void *state, method_times *times)
-{
+static inline const char *method_literal_step(void *state, method_times *times) {
     method_literal *m = (method_literal *)state;
     const double start = seconds(NULL);
     if (m->changed) method_literal_renew(m, times);
@@ -296,15 +287,13 @@ static inline const char *method_literal_step(void *state, method_times *times)
 
 static inline size_t method_literal_unknowns(void *state) { return 3 * ((method_literal *)state)->cutter->copy_count; }
 
-static inline void method_literal_look(void *state, gxs_model *model, const double **displacement)
-{
+static inline void method_literal_look(void *state, gxs_model *model, const double **displacement) {
     method_literal *m = (method_literal *)state;
     literal_model(m->cutter, model);
     *displacement = m->cutter->displacement;
 }
 
-static inline void method_literal_destroy(void *state)
-{
+static inline void method_literal_destroy(void *state) {
     method_literal *m = (method_literal *)state;
     literal_destroy(m->cutter);
     gxs_solver_destroy(m->solver);
@@ -314,33 +303,34 @@ static inline void method_literal_destroy(void *state)
 
 /* ---- RXFEM ---- */
 
-/* A cut that advances is one surface to RXFEM, whose patches its enrichments belong to: with each strip the mesh is cut anew by the paths
-   of all blades so far, and what is counted as the time of the cut is the share of patches that are new. Elastic derivatives are taken at
-   the rule's 24 points as published; their time is added to that of the common step. Beside it stands, in no sum, what they take once a
-   piece, in which F is constant. */
+/* A cut that advances is one surface to RXFEM, whose patches its enrichments belong to: with each strip the mesh is cut
+   anew by the paths of all blades so far, and what is counted as the time of the cut is the share of patches that are
+   new. Elastic derivatives are taken at the rule's 24 points as published; their time is added to that of the common
+   step. Beside it stands, in no sum, what they take once a piece, in which F is constant. */
 typedef struct method_rxfem {
     const replay *scene;
     rx_rules *rules;
     rx_body *body;
     rx_model *model;
-    const replay_cut **paths; size_t path_count;    /* of each blade, as far as it is cut */
+    /* of each blade, as far as it is cut */
+    const replay_cut **paths;
+    size_t path_count;
     gxs_solver *solver;
     gxs_material material;
     uint8_t *held;
-    double *displacement, *velocity;    /* copies x 3 */
-    double *forces, *stiffness;         /* of rx_elastic */
+    double *displacement, *velocity; /* copies x 3 */
+    double *forces, *stiffness;      /* of rx_elastic */
     int changed;
 } method_rxfem;
 
-static inline rx_body *method_rxfem_body(const method_rxfem *m)
-{
-    rx_body *body = rx_body_create(m->rules, m->scene->positions, m->scene->node_count, m->scene->elements, m->scene->element_count);
+static inline rx_body *method_rxfem_body(const method_rxfem *m) {
+    rx_body *body = rx_body_create(m->rules, m->scene->positions, m->scene->node_count, m->scene->elements,
+                                   m->scene->element_count);
     body->clock = seconds;
     return body;
 }
 
-static inline void *method_rxfem_create(const replay *scene)
-{
+static inline void *method_rxfem_create(const replay *scene) {
     method_rxfem *m = (method_rxfem *)method_memory(NULL, 1, sizeof *m);
     size_t i;
     memset(m, 0, sizeof *m);
@@ -364,8 +354,7 @@ static inline void *method_rxfem_create(const replay *scene)
 }
 
 /* The centre of a piece */
-static inline void method_rxfem_center(const rx_body *b, const rx_piece *piece, double x[3])
-{
+static inline void method_rxfem_center(const rx_body *b, const rx_piece *piece, double x[3]) {
     const double *o = rx_corner(b, piece->element, 0);
     int i, k;
     for (i = 0; i < 3; i++) {
@@ -376,8 +365,8 @@ static inline void method_rxfem_center(const rx_body *b, const rx_piece *piece, 
 }
 
 /* New copies start where those of the piece that they come from are. */
-static inline double *method_rxfem_carry(const method_rxfem *m, const rx_body *body, const rx_model *model, const double *old)
-{
+static inline double *method_rxfem_carry(const method_rxfem *m, const rx_body *body, const rx_model *model,
+                                         const double *old) {
     double *now = (double *)method_memory(NULL, 3 * model->value_count, sizeof(double));
     size_t i, k;
     memset(now, 0, 3 * model->value_count * sizeof(double));
@@ -387,15 +376,16 @@ static inline double *method_rxfem_carry(const method_rxfem *m, const rx_body *b
         method_rxfem_center(body, &body->pieces[i], x);
         from = rx_piece_at(m->body, body->pieces[i].element, x);
         for (k = 0; k < 4; k++)
-            memcpy(now + 3 * (size_t)model->corners[4 * i + k], old + 3 * (size_t)m->model->corners[4 * from + k], 3 * sizeof(double));
+            memcpy(now + 3 * (size_t)model->corners[4 * i + k], old + 3 * (size_t)m->model->corners[4 * from + k],
+                   3 * sizeof(double));
     }
     return now;
 }
 
-static inline void method_rxfem_take(method_rxfem *m, rx_body *body)
-{
+static inline void method_rxfem_take(method_rxfem *m, rx_body *body) {
     rx_model *model = rx_model_create(body, m->scene->density);
-    double *displacement = method_rxfem_carry(m, body, model, m->displacement), *velocity = method_rxfem_carry(m, body, model, m->velocity);
+    double *displacement = method_rxfem_carry(m, body, model, m->displacement),
+           *velocity = method_rxfem_carry(m, body, model, m->velocity);
     rx_body_destroy(m->body);
     rx_model_destroy(m->model);
     free(m->displacement);
@@ -407,8 +397,7 @@ static inline void method_rxfem_take(method_rxfem *m, rx_body *body)
     m->changed = 1;
 }
 
-static inline const char *method_rxfem_text(rx_result result)
-{
+static inline const char *method_rxfem_text(rx_result result) {
     switch (result) {
     case RX_OK: return NULL;
     case RX_ERROR_CROSSING: return "cuts cross or meet in an element";
@@ -419,18 +408,18 @@ static inline const char *method_rxfem_text(rx_result result)
 }
 
 /* Which path the cut goes on; path_count: none, it begins */
-static inline size_t method_rxfem_blade(const method_rxfem *m, const replay_cut *cut)
-{
+static inline size_t method_rxfem_blade(const method_rxfem *m, const replay_cut *cut) {
     size_t i;
     for (i = 0; i < m->path_count && cut->first > 0; i++) {
         const gx_surface *path = &m->paths[i]->path;
-        if (path->triangle_count == cut->first && memcmp(path->vertices, cut->path.vertices, 3 * path->vertex_count * sizeof(double)) == 0) return i;
+        if (path->triangle_count == cut->first &&
+            memcmp(path->vertices, cut->path.vertices, 3 * path->vertex_count * sizeof(double)) == 0)
+            return i;
     }
     return m->path_count;
 }
 
-static inline const char *method_rxfem_cut(void *state, const replay_cut *cut, method_times *times)
-{
+static inline const char *method_rxfem_cut(void *state, const replay_cut *cut, method_times *times) {
     method_rxfem *m = (method_rxfem *)state;
     const size_t before = m->body->patch_count;
     rx_body *body;
@@ -444,8 +433,10 @@ static inline const char *method_rxfem_cut(void *state, const replay_cut *cut, m
     body = method_rxfem_body(m);
     for (i = 0; i < m->path_count && result == RX_OK; i++) {
         rx_surface path;
-        path.vertices = m->paths[i]->path.vertices; path.vertex_count = m->paths[i]->path.vertex_count;
-        path.triangles = m->paths[i]->path.triangles; path.triangle_count = m->paths[i]->path.triangle_count;
+        path.vertices = m->paths[i]->path.vertices;
+        path.vertex_count = m->paths[i]->path.vertex_count;
+        path.triangles = m->paths[i]->path.triangles;
+        path.triangle_count = m->paths[i]->path.triangle_count;
         result = rx_body_cut(body, &path);
     }
     if (result != RX_OK) {
@@ -461,8 +452,7 @@ static inline const char *method_rxfem_cut(void *state, const replay_cut *cut, m
     return NULL;
 }
 
-static inline void method_rxfem_renew(method_rxfem *m)
-{
+static inline void method_rxfem_renew(method_rxfem *m) {
     gxs_model model = m->model->model;
     size_t i;
     m->held = (uint8_t *)method_memory(m->held, model.copy_count, 1);
@@ -471,15 +461,15 @@ static inline void method_rxfem_renew(method_rxfem *m)
     model.materials = &m->material;
     model.material_count = 1;
     method_must(gxs_solver_set_model(m->solver, &model, NULL), "model");
-    m->forces = (double *)method_memory(m->forces, 3 * (m->body->node_count + m->body->enrichment_count), sizeof(double));
+    m->forces =
+        (double *)method_memory(m->forces, 3 * (m->body->node_count + m->body->enrichment_count), sizeof(double));
     m->stiffness = (double *)method_memory(m->stiffness, 144 * m->body->piece_count, sizeof(double));
     m->changed = 0;
 }
 
-/* What an evaluation takes, of forces and tangents: at the rule's points, as published, or once a piece. At rest, since its time does not depend
-   on the state */
-static inline double method_rxfem_elastic(method_rxfem *m, int published)
-{
+/* What an evaluation takes, of forces and tangents: at the rule's points, as published, or once a piece. At rest, since
+   its time does not depend on the state */
+static inline double method_rxfem_elastic(method_rxfem *m, int published) {
     const size_t count = 3 * (m->body->node_count + m->body->enrichment_count);
     double *unknowns = (double *)calloc(count, sizeof(double)), start;
     method_must(unknowns ? GX_OK : GX_ERROR_MEMORY, "bench");
@@ -490,8 +480,7 @@ static inline double method_rxfem_elastic(method_rxfem *m, int published)
     return start;
 }
 
-static inline const char *method_rxfem_step(void *state, method_times *times)
-{
+static inline const char *method_rxfem_step(void *state, method_times *times) {
     method_rxfem *m = (method_rxfem *)state;
     const double start = seconds(NULL), derivatives = times->derivatives;
     const char *why;
@@ -506,21 +495,18 @@ static inline const char *method_rxfem_step(void *state, method_times *times)
     return NULL;
 }
 
-static inline size_t method_rxfem_unknowns(void *state)
-{
+static inline size_t method_rxfem_unknowns(void *state) {
     const method_rxfem *m = (method_rxfem *)state;
     return 3 * (m->body->node_count + m->body->enrichment_count);
 }
 
-static inline void method_rxfem_look(void *state, gxs_model *model, const double **displacement)
-{
+static inline void method_rxfem_look(void *state, gxs_model *model, const double **displacement) {
     const method_rxfem *m = (method_rxfem *)state;
     *model = m->model->model;
     *displacement = m->displacement;
 }
 
-static inline void method_rxfem_destroy(void *state)
-{
+static inline void method_rxfem_destroy(void *state) {
     method_rxfem *m = (method_rxfem *)state;
     rx_body_destroy(m->body);
     rx_model_destroy(m->model);
@@ -537,6 +523,7 @@ static inline void method_rxfem_destroy(void *state)
 
 /* ---- all ---- */
 
+/* clang-format off */
 static const method methods[] = {
     {"gxfem", method_body_create, method_body_cut, method_library_step, method_body_unknowns, method_library_look, method_body_destroy},
     {"RXFEM", method_rxfem_create, method_rxfem_cut, method_rxfem_step, method_rxfem_unknowns, method_rxfem_look, method_rxfem_destroy},
@@ -544,11 +531,11 @@ static const method methods[] = {
     {"Algorithm 1", method_literal_create, method_literal_cut, method_literal_step, method_literal_unknowns, method_literal_look, method_literal_destroy},
     {"Algorithm 1 mended", method_mended_create, method_literal_cut, method_literal_step, method_literal_unknowns, method_literal_look,
      method_literal_destroy}};
+/* clang-format on */
 
 enum { METHOD_COUNT = sizeof methods / sizeof methods[0] };
 
-static inline size_t method_index(const char *name)
-{
+static inline size_t method_index(const char *name) {
     size_t i = 0;
     while (strcmp(methods[i].name, name) != 0) i++;
     return i;

@@ -1,14 +1,13 @@
-/* parts.h - the parts into which cuts have divided a body's elements: integrals over them by points, in place of the library's, and who
-   has a point.
+/* parts.h - the parts into which cuts have divided a body's elements: integrals over them by points, in place of the
+   library's, and who has a point.
 
-   Parts are the elements of gx_body_model: cells whose four copies are the same are one. Which of them has a point is told by the planes
-   of the body's own arrangement, in doubles: kinder to sampling than a search of its own would be, so that what is charged to it is
-   points, not geometry.
-       parts_regular    n^3 cells of each divided element's reference tetrahedron (sampling.h)
-       parts_adaptive   subdivision to a depth, rules of degree 2 in its tetrahedra
-       parts_positive   positive weights at inner points from exact moments, degree 2
-       parts_rxfem      the moments that RXFEM's rule fits (rxfem.h), where it makes the same pieces
-   parts_delete is element deletion: what is left where every element whose inside a cut meets is taken away, on uncut nodes.
+   Parts are the elements of gx_body_model: cells whose four copies are the same are one. Which of them has a point is
+   told by the planes of the body's own arrangement, in doubles: kinder to sampling than a search of its own would be,
+   so that what is charged to it is points, not geometry. parts_regular    n^3 cells of each divided element's reference
+   tetrahedron (sampling.h) parts_adaptive   subdivision to a depth, rules of degree 2 in its tetrahedra parts_positive
+   positive weights at inner points from exact moments, degree 2 parts_rxfem      the moments that RXFEM's rule fits
+   (rxfem.h), where it makes the same pieces parts_delete is element deletion: what is left where every element whose
+   inside a cut meets is taken away, on uncut nodes.
 
    Include after rxfem_model.h, part.h and sampling.h. Out of memory ends the program. */
 #ifndef GXFEM_BENCH_PARTS_H
@@ -17,37 +16,36 @@
 #define PARTS_NONE UINT32_MAX
 
 typedef struct parts_body {
-    gx_body *body;              /* borrowed; neither cut nor held anew as long as this is in use */
-    gxs_model model;            /* of the body */
-    uint32_t *first;            /* element_count + 1: parts of each element in model.elements */
-    uint32_t *leaf_part;        /* by leaf of the body's complex; PARTS_NONE: removed */
-    uint32_t *leaves;           /* scratch: as many as there are leaves */
+    gx_body *body;       /* borrowed; neither cut nor held anew as long as this is in use */
+    gxs_model model;     /* of the body */
+    uint32_t *first;     /* element_count + 1: parts of each element in model.elements */
+    uint32_t *leaf_part; /* by leaf of the body's complex; PARTS_NONE: removed */
+    uint32_t *leaves;    /* scratch: as many as there are leaves */
 } parts_body;
 
 /* ---- which part ---- */
 
 /* The part of the element with these copies */
-static inline uint32_t parts_of_copies(const parts_body *p, uint32_t element, const uint32_t copies[4])
-{
+static inline uint32_t parts_of_copies(const parts_body *p, uint32_t element, const uint32_t copies[4]) {
     uint32_t i;
-    for (i = p->first[element]; i < p->first[element + 1]; i++) if (memcmp(p->model.elements[i].copy, copies, 4 * sizeof *copies) == 0) return i;
+    for (i = p->first[element]; i < p->first[element + 1]; i++)
+        if (memcmp(p->model.elements[i].copy, copies, 4 * sizeof *copies) == 0) return i;
     return PARTS_NONE;
 }
 
-static inline void parts_label_leaves(parts_body *p)
-{
+static inline void parts_label_leaves(parts_body *p) {
     const gx_body *body = p->body;
     uint32_t cell, leaf;
     memset(p->leaf_part, 255, body->leaf_count * sizeof *p->leaf_part);
     for (cell = 0; cell < body->cell_count; cell++) {
         const gxp_cell *c = &body->cells[cell];
         if (!c->kept) continue;
-        for (leaf = c->first_leaf; leaf != UINT32_MAX; leaf = body->leaves[leaf].next) p->leaf_part[leaf] = parts_of_copies(p, c->element, c->copies);
+        for (leaf = c->first_leaf; leaf != UINT32_MAX; leaf = body->leaves[leaf].next)
+            p->leaf_part[leaf] = parts_of_copies(p, c->element, c->copies);
     }
 }
 
-static inline parts_body parts_create(gx_body *body)
-{
+static inline parts_body parts_create(gx_body *body) {
     parts_body p;
     size_t i;
     memset(&p, 0, sizeof p);
@@ -63,22 +61,19 @@ static inline parts_body parts_create(gx_body *body)
     return p;
 }
 
-static inline void parts_free(parts_body *p)
-{
+static inline void parts_free(parts_body *p) {
     free(p->first);
     free(p->leaf_part);
     free(p->leaves);
     memset(p, 0, sizeof *p);
 }
 
-static inline const double *parts_corner(const parts_body *p, uint32_t element, int k)
-{
+static inline const double *parts_corner(const parts_body *p, uint32_t element, int k) {
     return p->body->positions + 3 * (size_t)p->body->complex->elements[4 * (size_t)element + (size_t)k];
 }
 
 /* Volume of the uncut element, m3 */
-static inline double parts_whole(const parts_body *p, uint32_t element)
-{
+static inline double parts_whole(const parts_body *p, uint32_t element) {
     double corners[12];
     int k;
     for (k = 0; k < 4; k++) memcpy(corners + 3 * k, parts_corner(p, element, k), 3 * sizeof(double));
@@ -86,8 +81,7 @@ static inline double parts_whole(const parts_body *p, uint32_t element)
 }
 
 /* The part of the element that has the material point; PARTS_NONE: removed */
-static inline uint32_t parts_find(const parts_body *p, uint32_t element, const double x[3])
-{
+static inline uint32_t parts_find(const parts_body *p, uint32_t element, const double x[3]) {
     const gxb_complex *cx = p->body->complex;
     uint32_t at = cx->root[element];
     double in[3];
@@ -104,8 +98,7 @@ static inline uint32_t parts_find(const parts_body *p, uint32_t element, const d
 }
 
 /* From the element's reference coordinates, lambda 1, 2, 3 */
-static inline void parts_material_point(const parts_body *p, uint32_t element, const double *at, double x[3])
-{
+static inline void parts_material_point(const parts_body *p, uint32_t element, const double *at, double x[3]) {
     const double *corner = parts_corner(p, element, 0);
     int a, k;
     for (a = 0; a < 3; a++)
@@ -113,12 +106,12 @@ static inline void parts_material_point(const parts_body *p, uint32_t element, c
 }
 
 /* The centre of a part from its mass; 0: it has none */
-static inline int parts_center(const parts_body *p, const gxs_element *from, uint32_t element, double x[3])
-{
+static inline int parts_center(const parts_body *p, const gxs_element *from, uint32_t element, double x[3]) {
     static const int row[3][4] = {{1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
     double at[3] = {0, 0, 0}, mass = from->mass[0] + from->mass[1] + from->mass[2] + from->mass[3];
     int i, j;
-    for (i = 0; i < 3; i++) for (j = 0; j < 4; j++) at[i] += from->mass[row[i][j]];
+    for (i = 0; i < 3; i++)
+        for (j = 0; j < 4; j++) at[i] += from->mass[row[i][j]];
     for (i = 0; i < 3; i++) mass += at[i];
     if (!(mass > 0)) return 0;
     for (i = 0; i < 3; i++) at[i] /= mass;
@@ -129,10 +122,12 @@ static inline int parts_center(const parts_body *p, const gxs_element *from, uin
 /* ---- integrals by points ---- */
 
 /* In the reference frame of one element */
-typedef struct parts_element { const parts_body *of; uint32_t element; } parts_element;
+typedef struct parts_element {
+    const parts_body *of;
+    uint32_t element;
+} parts_element;
 
-static inline int parts_number(const void *user, const double *at)
-{
+static inline int parts_number(const void *user, const double *at) {
     const parts_element *e = (const parts_element *)user;
     double x[3];
     uint32_t found;
@@ -142,15 +137,13 @@ static inline int parts_number(const void *user, const double *at)
 }
 
 /* Volume and mass of an element from moments in the reference frame */
-static inline void parts_fill(const gxi_moments2 *m, double whole, double density, gxs_element *e)
-{
+static inline void parts_fill(const gxi_moments2 *m, double whole, double density, gxs_element *e) {
     e->weight = fmax(0, 6 * whole * m->volume);
     gxi_part_mass(m, 0, whole, density, e->mass);
     rx_clear_negative(e->mass);
 }
 
-static inline void parts_add_point(gxi_moments2 *m, const double *point)
-{
+static inline void parts_add_point(gxi_moments2 *m, const double *point) {
     size_t at = 0, i, j;
     m->volume += point[3];
     for (i = 0; i < 3; i++) {
@@ -162,45 +155,43 @@ static inline void parts_add_point(gxi_moments2 *m, const double *point)
 /* A rule for all parts of an element; knob: cells, depth or degree */
 typedef void (*parts_rule_fn)(const parts_body *p, uint32_t element, double density, int knob, sampling_rule *rule);
 
-static inline sampling_region parts_region(const parts_element *e)
-{
+static inline sampling_region parts_region(const parts_element *e) {
     sampling_region region;
     region.part_of = parts_number;
     region.user = e;
     return region;
 }
 
-static inline void parts_regular(const parts_body *p, uint32_t element, double density, int cells, sampling_rule *rule)
-{
+static inline void parts_regular(const parts_body *p, uint32_t element, double density, int cells,
+                                 sampling_rule *rule) {
     const parts_element e = {p, element};
     const sampling_region region = parts_region(&e);
     (void)density;
     sampling_regular(&region, cells, rule);
 }
 
-static inline void parts_adaptive(const parts_body *p, uint32_t element, double density, int depth, sampling_rule *rule)
-{
+static inline void parts_adaptive(const parts_body *p, uint32_t element, double density, int depth,
+                                  sampling_rule *rule) {
     const parts_element e = {p, element};
     const sampling_region region = parts_region(&e);
     (void)density;
     sampling_adaptive(&region, 2, depth, rule);
 }
 
-/* The library's moments of a part, in the reference frame and the order of gxi_polyhedron_monomials: mass is 6 density volume
-   int lambda_i lambda_j */
-static inline void parts_moments(const gxs_element *of, double whole, double density, double m[10])
-{
+/* The library's moments of a part, in the reference frame and the order of gxi_polyhedron_monomials: mass is 6 density
+   volume int lambda_i lambda_j */
+static inline void parts_moments(const gxs_element *of, double whole, double density, double m[10]) {
     static const int row[3][4] = {{1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}}, second[6] = {4, 5, 6, 7, 8, 9};
     const double scale = 1 / (6 * whole * density);
     int i, j;
     m[0] = of->weight / (6 * whole);
-    for (i = 0; i < 3; i++) for (m[1 + i] = 0, j = 0; j < 4; j++) m[1 + i] += scale * of->mass[row[i][j]];
+    for (i = 0; i < 3; i++)
+        for (m[1 + i] = 0, j = 0; j < 4; j++) m[1 + i] += scale * of->mass[row[i][j]];
     for (i = 0; i < 6; i++) m[4 + i] = scale * of->mass[second[i]];
 }
 
 /* The leaves of a part as bench/part.h takes them; borrowed until the next call */
-static inline part parts_shape(const parts_body *p, uint32_t element, uint32_t index)
-{
+static inline part parts_shape(const parts_body *p, uint32_t element, uint32_t index) {
     const gx_body *body = p->body;
     uint32_t cell, leaf;
     part shape;
@@ -210,13 +201,14 @@ static inline part parts_shape(const parts_body *p, uint32_t element, uint32_t i
     shape.leaves = p->leaves;
     for (cell = element; cell != UINT32_MAX; cell = body->cells[cell].next) {
         if (!body->cells[cell].kept || parts_of_copies(p, element, body->cells[cell].copies) != index) continue;
-        for (leaf = body->cells[cell].first_leaf; leaf != UINT32_MAX; leaf = body->leaves[leaf].next) shape.leaves[shape.leaf_count++] = leaf;
+        for (leaf = body->cells[cell].first_leaf; leaf != UINT32_MAX; leaf = body->leaves[leaf].next)
+            shape.leaves[shape.leaf_count++] = leaf;
     }
     return shape;
 }
 
-static inline void parts_positive(const parts_body *p, uint32_t element, double density, int degree, sampling_rule *rule)
-{
+static inline void parts_positive(const parts_body *p, uint32_t element, double density, int degree,
+                                  sampling_rule *rule) {
     sampling_rule one;
     uint32_t i;
     size_t k;
@@ -237,9 +229,10 @@ static inline void parts_positive(const parts_body *p, uint32_t element, double 
     sampling_free(&one);
 }
 
-/* The model's elements with weights and masses by a rule in each divided element; counts (by part): its points, 1 in others. */
-static inline void parts_integrate(const parts_body *p, parts_rule_fn make, int knob, double density, gxs_element *elements, size_t *counts)
-{
+/* The model's elements with weights and masses by a rule in each divided element; counts (by part): its points, 1 in
+ * others. */
+static inline void parts_integrate(const parts_body *p, parts_rule_fn make, int knob, double density,
+                                   gxs_element *elements, size_t *counts) {
     sampling_rule rule;
     uint32_t e, i;
     size_t k;
@@ -263,9 +256,10 @@ static inline void parts_integrate(const parts_body *p, parts_rule_fn make, int 
     sampling_free(&rule);
 }
 
-/* The same by RXFEM's rules for a mesh that it has cut by the same surfaces: each part by the piece that has its centre */
-static inline void parts_rxfem(const parts_body *p, const rx_body *b, double density, gxs_element *elements, size_t *counts)
-{
+/* The same by RXFEM's rules for a mesh that it has cut by the same surfaces: each part by the piece that has its centre
+ */
+static inline void parts_rxfem(const parts_body *p, const rx_body *b, double density, gxs_element *elements,
+                               size_t *counts) {
     size_t i;
     memcpy(elements, p->model.elements, p->model.element_count * sizeof *elements);
     for (i = 0; i < p->model.element_count; i++) {
@@ -287,13 +281,16 @@ static inline void parts_rxfem(const parts_body *p, const rx_body *b, double den
 /* ---- element deletion ---- */
 
 /* Does a cut meet the element's inside */
-static inline int parts_is_met(const gx_body *body, uint32_t element) { return (int)(body->complex->root[element] & 1); }
+static inline int parts_is_met(const gx_body *body, uint32_t element) {
+    return (int)(body->complex->root[element] & 1);
+}
 
-/* Whole elements on uncut nodes, as many as there are left; elements: room for those of the mesh. uncut: its model before any cut */
-static inline size_t parts_delete(const parts_body *p, const gxs_model *uncut, gxs_element *elements)
-{
+/* Whole elements on uncut nodes, as many as there are left; elements: room for those of the mesh. uncut: its model
+ * before any cut */
+static inline size_t parts_delete(const parts_body *p, const gxs_model *uncut, gxs_element *elements) {
     size_t i, count = 0;
-    for (i = 0; i < uncut->element_count; i++) if (!parts_is_met(p->body, uncut->elements[i].group)) elements[count++] = uncut->elements[i];
+    for (i = 0; i < uncut->element_count; i++)
+        if (!parts_is_met(p->body, uncut->elements[i].group)) elements[count++] = uncut->elements[i];
     return count;
 }
 

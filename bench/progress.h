@@ -8,21 +8,19 @@
 static int progress_drawn; /* a bar stands on the terminal's last line */
 
 /* Takes the bar away, so that a line can be printed in its place. */
-static inline void progress_clear(void)
-{
+static inline void progress_clear(void) {
     if (!progress_drawn) return;
     fprintf(stderr, "\r\033[K");
     fflush(stderr);
     progress_drawn = 0;
 }
 
-static inline void progress_draw(const char *name, size_t done, size_t total, const char *at)
-{
+static inline void progress_draw(const char *name, size_t done, size_t total, const char *at) {
     const size_t width = 40, filled = total ? width * done / total : width;
     size_t i;
     if (!isatty(2)) return;
     fprintf(stderr, "\r%s [", name);
-    for (i = 0; i < width; ++i) fputc(i < filled ? '#' : '.', stderr);
+    for (i = 0; i < width; i++) fputc(i < filled ? '#' : '.', stderr);
     fprintf(stderr, "] %lu/%lu %-24.24s", (unsigned long)done, (unsigned long)total, at);
     if (done == total) fprintf(stderr, "\n");
     fflush(stderr);

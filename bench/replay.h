@@ -1,5 +1,6 @@
-/* replay.h - a scene's run as a file (--trace of the scenes, examples/scene.h): mesh, material, state at the start, what is held, and the
-   cuts of each frame. Read here, for methods to repeat. A file that is not one ends the program. Include after gxfem.h. */
+/* replay.h - a scene's run as a file (--trace of the scenes, examples/scene.h): mesh, material, state at the start,
+   what is held, and the cuts of each frame. Read here, for methods to repeat. A file that is not one ends the program.
+   Include after gxfem.h. */
 #ifndef GXFEM_BENCH_REPLAY_H
 #define GXFEM_BENCH_REPLAY_H
 
@@ -7,74 +8,69 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define REPLAY_THICKNESS 1e-4   /* GXFEM's Table 1, but for the single tetrahedron */
+#define REPLAY_THICKNESS 1e-4 /* GXFEM's Table 1, but for the single tetrahedron */
 
-/* Before a frame's step: the triangles from `first` on cut; those before it are what of the same blade's path was cut earlier. */
+/* Before a frame's step: the triangles from `first` on cut; those before it are what of the same blade's path was cut
+ * earlier. */
 typedef struct replay_cut {
     size_t frame, first;
     gx_surface path;
 } replay_cut;
 
 typedef struct replay {
-    double young, poisson, density;                 /* Pa, -, kg/m3 */
-    double dt, gravity[3];                          /* s, m/s2 */
+    double young, poisson, density; /* Pa, -, kg/m3 */
+    double dt, gravity[3];          /* s, m/s2 */
     unsigned long newton_iterations;
     size_t node_count, element_count, region_count, frames, cut_count;
-    double *positions, *displacement, *velocity;    /* node_count x 3 */
-    uint32_t *elements;                             /* element_count x 4 */
+    double *positions, *displacement, *velocity; /* node_count x 3 */
+    uint32_t *elements;                          /* element_count x 4 */
     gx_region *regions;
     replay_cut *cuts;
-    double sever_below;                             /* see gx_cut_desc; not in files: 0 */
-    double thickness;                               /* of sheets, for methods that need solids, m; not in files: REPLAY_THICKNESS */
-    const char *name;                               /* of the file */
-    FILE *stream;                                   /* while it is read */
+    double sever_below; /* see gx_cut_desc; not in files: 0 */
+    /* of sheets, for methods that need solids, m; not in files: REPLAY_THICKNESS */
+    double thickness;
+    const char *name; /* of the file */
+    FILE *stream;     /* while it is read */
 } replay;
 
-static inline void replay_expect(const replay *r, int holds)
-{
+static inline void replay_expect(const replay *r, int holds) {
     if (holds) return;
     fprintf(stderr, "%s: not a trace of a scene, or cut short\n", r->name);
     exit(2);
 }
 
-static inline double replay_number(const replay *r)
-{
+static inline double replay_number(const replay *r) {
     double x;
     replay_expect(r, fscanf(r->stream, "%lf", &x) == 1);
     return x;
 }
 
-static inline size_t replay_count(const replay *r)
-{
+static inline size_t replay_count(const replay *r) {
     unsigned long n;
     replay_expect(r, fscanf(r->stream, "%lu", &n) == 1);
     return n;
 }
 
-static inline void replay_word(const replay *r, const char *expected)
-{
+static inline void replay_word(const replay *r, const char *expected) {
     char word[32];
     replay_expect(r, fscanf(r->stream, "%31s", word) == 1 && strcmp(word, expected) == 0);
 }
 
-static inline void *replay_array(const replay *r, void *old, size_t count, size_t size)
-{
+static inline void *replay_array(const replay *r, void *old, size_t count, size_t size) {
     void *memory = realloc(old, count * size + 1);
     if (memory) return memory;
     fprintf(stderr, "%s: no memory\n", r->name);
     exit(1);
 }
 
-static inline double *replay_numbers(const replay *r, size_t count)
-{
+static inline double *replay_numbers(const replay *r, size_t count) {
     double *x = (double *)replay_array(r, NULL, count, sizeof *x);
     size_t i;
     for (i = 0; i < count; i++) x[i] = replay_number(r);
     return x;
 }
 
-static inline uint32_t *replay_indices(const replay *r, size_t count, size_t below)
-{
+static inline uint32_t *replay_indices(const replay *r, size_t count, size_t below) {
     uint32_t *x = (uint32_t *)replay_array(r, NULL, count, sizeof *x);
     size_t i;
     for (i = 0; i < count; i++) {
@@ -85,8 +81,7 @@ static inline uint32_t *replay_indices(const replay *r, size_t count, size_t bel
     return x;
 }
 
-static inline void replay_read_mesh(replay *r)
-{
+static inline void replay_read_mesh(replay *r) {
     double *all;
     size_t i;
     replay_word(r, "nodes");
@@ -106,8 +101,7 @@ static inline void replay_read_mesh(replay *r)
     r->elements = replay_indices(r, 4 * r->element_count, r->node_count);
 }
 
-static inline void replay_read_regions(replay *r)
-{
+static inline void replay_read_regions(replay *r) {
     size_t i;
     replay_word(r, "regions");
     r->region_count = replay_count(r);
@@ -120,8 +114,7 @@ static inline void replay_read_regions(replay *r)
     }
 }
 
-static inline void replay_read_cut(replay *r)
-{
+static inline void replay_read_cut(replay *r) {
     replay_cut *cut;
     r->cuts = (replay_cut *)replay_array(r, r->cuts, r->cut_count + 1, sizeof *r->cuts);
     cut = &r->cuts[r->cut_count++];
@@ -135,8 +128,7 @@ static inline void replay_read_cut(replay *r)
     cut->path.triangles = replay_indices(r, 3 * cut->path.triangle_count, cut->path.vertex_count);
 }
 
-static inline replay replay_read(const char *name)
-{
+static inline replay replay_read(const char *name) {
     replay r;
     char word[32];
     int k;
@@ -172,8 +164,7 @@ static inline replay replay_read(const char *name)
 }
 
 /* SCENE=TRACE on the command line: the scene's name, and what it is; a word that is not so ends the program. */
-static inline replay replay_argument(const char *program, const char *argument, char name[32])
-{
+static inline replay replay_argument(const char *program, const char *argument, char name[32]) {
     const char *file = strchr(argument, '=');
     if (!file || file - argument >= 32) {
         fprintf(stderr, "usage: %s FILE SCENE=TRACE...\n", program);
@@ -184,8 +175,7 @@ static inline replay replay_argument(const char *program, const char *argument, 
     return replay_read(file + 1);
 }
 
-static inline void replay_free(replay *r)
-{
+static inline void replay_free(replay *r) {
     size_t i;
     for (i = 0; i < r->cut_count; i++) {
         free((void *)(uintptr_t)r->cuts[i].path.vertices);
@@ -201,8 +191,7 @@ static inline void replay_free(replay *r)
 }
 
 /* Is a node where something is held? */
-static inline int replay_is_held(const replay *r, size_t node)
-{
+static inline int replay_is_held(const replay *r, size_t node) {
     size_t i;
     for (i = 0; i < r->region_count; i++) {
         const gx_region *g = &r->regions[i];
@@ -213,8 +202,7 @@ static inline int replay_is_held(const replay *r, size_t node)
 }
 
 /* The triangles of the cut that are new; borrowed */
-static inline gx_surface replay_strip(const replay_cut *cut)
-{
+static inline gx_surface replay_strip(const replay_cut *cut) {
     gx_surface strip = cut->path;
     strip.triangles += 3 * cut->first;
     strip.triangle_count -= cut->first;

@@ -1,18 +1,18 @@
 /* solver: what a time step costs, by preconditioner and form of the matrix, beside a direct solver.
 
-   make bench-solver [BENCH="--small --case NAME"] builds and runs it; it prints CSV and writes it to build/bench/solver.csv, a table to stderr.
+   make bench-solver [BENCH="--small --case NAME"] builds and runs it; it prints CSV and writes it to
+   build/bench/solver.csv, a table to stderr.
        --small      the smallest size only
        --case NAME  only the cases with NAME in their name: accordion, loose-jittered, 23k-1e8, ...
        --out DIR    where solver.csv and product.csv go; without it they are not written
 
-   A case is a block (block.h) that is let go from rest: backward Euler, 33 ms, one Newton iteration, linear systems to 1e-2. The
-   direction of gravity sways by 0.05 rad, so that the block swings on: else backward Euler would have brought a stiff one to rest
-   to the last digit before the measurement ends. (Not by more: one Newton iteration does not follow a stiff accordion that is
-   shaken, and its linear systems get easier.) Every method starts from the same cut body at rest and makes the same steps, of
-   which the first four are not counted. Columns of solver.csv:
-       setup_ms     gxs_solver_set_model: the structure, once per cut
-       solve_ms     the preconditioner's numbers (or the assembled matrix's) and conjugate gradients; median of the steps
-       step_ms      all of gxs_solver_step; median of the steps
+   A case is a block (block.h) that is let go from rest: backward Euler, 33 ms, one Newton iteration, linear systems to
+   1e-2. The direction of gravity sways by 0.05 rad, so that the block swings on: else backward Euler would have brought
+   a stiff one to rest to the last digit before the measurement ends. (Not by more: one Newton iteration does not follow
+   a stiff accordion that is shaken, and its linear systems get easier.) Every method starts from the same cut body at
+   rest and makes the same steps, of which the first four are not counted. Columns of solver.csv: setup_ms
+   gxs_solver_set_model: the structure, once per cut solve_ms     the preconditioner's numbers (or the assembled
+   matrix's) and conjugate gradients; median of the steps step_ms      all of gxs_solver_step; median of the steps
        iterations   of conjugate gradients, mean of the steps
        peak_bytes   the most memory that the solver had at any time, from its allocator
        residual     of the last step's report, after the one Newton iteration
@@ -20,12 +20,12 @@
    multigrid-free, in double precision:
        setup_ms     cholmod_analyze: ordering and symbolic factorisation, once per cut
        solve_ms     cholmod_factorize and cholmod_solve; median of three
-       step_ms      the median step of multigrid-free with this solve_ms in place of its own; filling the matrix is not counted
-       peak_bytes   CHOLMOD's own count of the matrix, factor and workspace
-       residual     |b - A x| / |b| of the linear system: not to be compared with the others
-   product.csv has the time of conjugate gradients per element and iteration: one product and some vector work with block-Jacobi,
-   three products with multigrid. And that of a product alone, with inertia, matrix-free on one thread: of `single` vectors as conjugate
-   gradients have them (gxsp_product), of `double` ones as callers do (gxs_solver_product); medians of batches.
+       step_ms      the median step of multigrid-free with this solve_ms in place of its own; filling the matrix is not
+   counted peak_bytes   CHOLMOD's own count of the matrix, factor and workspace residual     |b - A x| / |b| of the
+   linear system: not to be compared with the others product.csv has the time of conjugate gradients per element and
+   iteration: one product and some vector work with block-Jacobi, three products with multigrid. And that of a product
+   alone, with inertia, matrix-free on one thread: of `single` vectors as conjugate gradients have them (gxsp_product),
+   of `double` ones as callers do (gxs_solver_product); medians of batches.
 
    contents
      >>host      clock, memory, threads       >>direct    the linear system for CHOLMOD
@@ -61,7 +61,8 @@
 /* Steps from rest that are not counted, and the most that are made. */
 enum { STEPS_SKIPPED = 4, STEPS = 20 };
 
-/* A method whose counted steps have taken so many seconds ends with the step it is at: block-Jacobi on the largest blocks. */
+/* A method whose counted steps have taken so many seconds ends with the step it is at: block-Jacobi on the largest
+ * blocks. */
 static const double patience = 30.0;
 
 /* High enough not to be met: a limit would make slow methods look fast. */
@@ -77,11 +78,10 @@ static const double same_system = 1e-2;
 
 /* malloc, counted; on the thread of the solver's calls only */
 typedef struct meter {
-    size_t now, peak;       /* bytes */
+    size_t now, peak; /* bytes */
 } meter;
 
-static void *meter_allocate(void *user, size_t size)
-{
+static void *meter_allocate(void *user, size_t size) {
     meter *m = (meter *)user;
     void *memory = malloc(size);
     if (!memory) return NULL;
@@ -90,43 +90,43 @@ static void *meter_allocate(void *user, size_t size)
     return memory;
 }
 
-static void meter_release(void *user, void *memory, size_t size)
-{
+static void meter_release(void *user, void *memory, size_t size) {
     ((meter *)user)->now -= size;
     free(memory);
 }
 
-/* One thread that helps the calling one: both take the next index until there is none. Between passes it yields instead of
-   sleeping, as job systems do: a pass takes some 20 microseconds, waking a thread not less. All that both write is atomic. */
+/* One thread that helps the calling one: both take the next index until there is none. Between passes it yields instead
+   of sleeping, as job systems do: a pass takes some 20 microseconds, waking a thread not less. All that both write is
+   atomic. */
 typedef struct helper {
     pthread_t thread;
     void (*task)(void *, size_t);
     void *context;
     size_t count, next;
-    unsigned round, done;           /* rounds of work: begun, and finished by the helper */
+    unsigned round, done; /* rounds of work: begun, and finished by the helper */
     int quit;
 } helper;
 
-static void helper_work(helper *h)
-{
+static void helper_work(helper *h) {
     size_t i;
     while ((i = __atomic_fetch_add(&h->next, 1, __ATOMIC_RELAXED)) < h->count) h->task(h->context, i);
 }
 
-static void *helper_main(void *user)
-{
+static void *helper_main(void *user) {
     helper *h = (helper *)user;
     unsigned seen = 0;
     while (!__atomic_load_n(&h->quit, __ATOMIC_ACQUIRE)) {
-        if (__atomic_load_n(&h->round, __ATOMIC_ACQUIRE) == seen) { sched_yield(); continue; }
+        if (__atomic_load_n(&h->round, __ATOMIC_ACQUIRE) == seen) {
+            sched_yield();
+            continue;
+        }
         helper_work(h);
         __atomic_store_n(&h->done, ++seen, __ATOMIC_RELEASE);
     }
     return NULL;
 }
 
-static void helper_parallel_for(void *user, size_t count, void (*task)(void *, size_t), void *context)
-{
+static void helper_parallel_for(void *user, size_t count, void (*task)(void *, size_t), void *context) {
     helper *h = (helper *)user;
     h->task = task;
     h->context = context;
@@ -137,14 +137,12 @@ static void helper_parallel_for(void *user, size_t count, void (*task)(void *, s
     while (__atomic_load_n(&h->done, __ATOMIC_ACQUIRE) != h->round) sched_yield();
 }
 
-static int helper_start(helper *h)
-{
+static int helper_start(helper *h) {
     memset(h, 0, sizeof *h);
     return pthread_create(&h->thread, NULL, helper_main, h) == 0;
 }
 
-static void helper_stop(helper *h)
-{
+static void helper_stop(helper *h) {
     __atomic_store_n(&h->quit, 1, __ATOMIC_RELEASE);
     pthread_join(h->thread, NULL);
 }
@@ -155,11 +153,12 @@ typedef struct method {
     const char *name;
     gxs_preconditioner preconditioner;
     gxs_matrix matrix;
-    int threads;            /* 1 or 2 */
+    int threads; /* 1 or 2 */
 } method;
 
 /* volume-ratio differs from jacobi-free by its diagonal only. */
 enum { MULTIGRID_FREE = 2, MULTIGRID_FREE_2 = 5, METHODS = 6 };
+/* clang-format off */
 static const method methods[METHODS] = {
     {"jacobi-free", GXS_BLOCK_JACOBI, GXS_MATRIX_FREE, 1},
     {"jacobi-assembled", GXS_BLOCK_JACOBI, GXS_MATRIX_ASSEMBLED, 1},
@@ -167,18 +166,19 @@ static const method methods[METHODS] = {
     {"multigrid-assembled", GXS_MULTIGRID, GXS_MATRIX_ASSEMBLED, 1},
     {"volume-ratio", GXS_VOLUME_RATIO, GXS_MATRIX_FREE, 1},
     {"multigrid-free-2", GXS_MULTIGRID, GXS_MATRIX_FREE, 2}};
+/* clang-format on */
 
 typedef struct state {
-    size_t count;           /* 3 x copies */
+    size_t count; /* 3 x copies */
     double *displacement, *velocity;
-    int steps;              /* made from rest */
+    int steps; /* made from rest */
 } state;
 
 /* Times are in seconds. */
 typedef struct outcome {
-    double setup, solve, step;      /* the last two: medians */
-    double iterations;              /* per step */
-    double iteration;               /* seconds of conjugate gradients per iteration */
+    double setup, solve, step; /* the last two: medians */
+    double iterations;         /* per step */
+    double iteration;          /* seconds of conjugate gradients per iteration */
     double residual;
     size_t peak_bytes;
 } outcome;
@@ -191,14 +191,12 @@ typedef struct samples {
 
 static size_t runs, run_total; /* methods on cases */
 
-static int complain(const char *what, gx_result result)
-{
+static int complain(const char *what, gx_result result) {
     fprintf(stderr, "solver: %s: %s\n", what, gx_result_text(result));
     return 0;
 }
 
-static int state_begin(state *s, size_t copies)
-{
+static int state_begin(state *s, size_t copies) {
     s->steps = 0;
     s->count = 3 * copies;
     s->displacement = (double *)calloc(s->count, sizeof(double));
@@ -206,16 +204,14 @@ static int state_begin(state *s, size_t copies)
     return s->displacement && s->velocity;
 }
 
-static void state_end(state *s)
-{
+static void state_end(state *s) {
     free(s->displacement);
     free(s->velocity);
     memset(s, 0, sizeof *s);
 }
 
 /* The step with this number from rest; gravity sways once in 12 steps. */
-static gxs_step_desc step_make(int number)
-{
+static gxs_step_desc step_make(int number) {
     const double angle = 0.05 * sin(2.0 * 3.14159265358979 * number / 12.0);
     gxs_step_desc step;
     memset(&step, 0, sizeof step);
@@ -229,8 +225,7 @@ static gxs_step_desc step_make(int number)
     return step;
 }
 
-static void take_sample(samples *s, const gxs_step_report *report, double step)
-{
+static void take_sample(samples *s, const gxs_step_report *report, double step) {
     s->seconds += step;
     s->step[s->count] = step;
     s->solve[s->count++] = report->seconds_prepare + report->seconds_solve;
@@ -238,8 +233,7 @@ static void take_sample(samples *s, const gxs_step_report *report, double step)
     s->iterations += report->cg_iterations;
 }
 
-static void summarise(samples *s, outcome *o)
-{
+static void summarise(samples *s, outcome *o) {
     o->solve = median(s->solve, s->count);
     o->step = median(s->step, s->count);
     o->iterations = s->count > 0 ? s->iterations / (double)s->count : 0.0;
@@ -247,8 +241,7 @@ static void summarise(samples *s, outcome *o)
 }
 
 /* The state's next step. */
-static gx_result step_on(gxs_solver *solver, state *s, samples *taken, outcome *o)
-{
+static gx_result step_on(gxs_solver *solver, state *s, samples *taken, outcome *o) {
     const gxs_step_desc step = step_make(s->steps);
     const double start = seconds(NULL);
     gxs_step_report report;
@@ -259,8 +252,7 @@ static gx_result step_on(gxs_solver *solver, state *s, samples *taken, outcome *
     return GX_OK;
 }
 
-static gx_result swing(gxs_solver *solver, int steps, state *s, outcome *o)
-{
+static gx_result swing(gxs_solver *solver, int steps, state *s, outcome *o) {
     gx_result result = GX_OK;
     samples taken;
     memset(&taken, 0, sizeof taken);
@@ -269,8 +261,7 @@ static gx_result swing(gxs_solver *solver, int steps, state *s, outcome *o)
     return result;
 }
 
-static gx_result set_and_swing(const gxs_solver_desc *desc, const gxs_model *model, int steps, state *s, outcome *o)
-{
+static gx_result set_and_swing(const gxs_solver_desc *desc, const gxs_model *model, int steps, state *s, outcome *o) {
     gxs_solver *solver = NULL;
     gx_result result = gxs_solver_create(desc, &solver);
     const double start = seconds(NULL);
@@ -282,8 +273,7 @@ static gx_result set_and_swing(const gxs_solver_desc *desc, const gxs_model *mod
 }
 
 /* A method on a model at rest; s is its state in the end. */
-static int run_method(const method *m, const gxs_model *model, int steps, state *s, outcome *o)
-{
+static int run_method(const method *m, const gxs_model *model, int steps, state *s, outcome *o) {
     gxs_solver_desc desc;
     helper second;
     meter memory = {0, 0};
@@ -325,8 +315,7 @@ typedef struct operands {
     gxsp_vector4 *single_direction, *single_product;
 } operands;
 
-static int operands_begin(operands *o, size_t copies, double rate)
-{
+static int operands_begin(operands *o, size_t copies, double rate) {
     uint32_t random = 1;
     size_t i;
     o->rate = rate;
@@ -343,8 +332,7 @@ static int operands_begin(operands *o, size_t copies, double rate)
     return 1;
 }
 
-static void operands_end(operands *o)
-{
+static void operands_end(operands *o) {
     gxs_solver_destroy(o->solver);
     free(o->direction);
     free(o->product);
@@ -352,8 +340,7 @@ static void operands_end(operands *o)
     free(o->single_product);
 }
 
-static gx_result multiply_single(operands *o)
-{
+static gx_result multiply_single(operands *o) {
     gxsp_product(o->solver->system, o->rate, o->single_direction, o->single_product);
     return GX_OK;
 }
@@ -361,20 +348,19 @@ static gx_result multiply_single(operands *o)
 static gx_result multiply_doubles(operands *o) { return gxs_solver_product(o->solver, o->direction, o->product, NULL); }
 
 /* A batch: seconds of a product. count: products in it, 0 in the first one, which finds out */
-static gx_result time_batch(operands *o, gx_result (*multiply)(operands *), int *count, double *sample)
-{
+static gx_result time_batch(operands *o, gx_result (*multiply)(operands *), int *count, double *sample) {
     const double start = seconds(NULL);
     gx_result result = multiply(o);
     int i;
-    for (i = 1; result == GX_OK && (*count > 0 ? i < *count : seconds(NULL) - start < product_batch); i++) result = multiply(o);
+    for (i = 1; result == GX_OK && (*count > 0 ? i < *count : seconds(NULL) - start < product_batch); i++)
+        result = multiply(o);
     *sample = (seconds(NULL) - start) / i;
     *count = i;
     return result;
 }
 
 /* Medians; batches of either kind in turn, as the clock of the machine changes */
-static gx_result time_products(operands *o, products *p)
-{
+static gx_result time_products(operands *o, products *p) {
     double single[PRODUCT_BATCHES], doubles[PRODUCT_BATCHES];
     int batch, single_count = 0, doubles_count = 0;
     gx_result result = GX_OK;
@@ -389,8 +375,7 @@ static gx_result time_products(operands *o, products *p)
 }
 
 /* At the state s, with the inertia of the steps that led there */
-static int run_products(const gxs_model *model, const state *s, double rate, products *p)
-{
+static int run_products(const gxs_model *model, const state *s, double rate, products *p) {
     operands o;
     gx_result result;
     memset(&o, 0, sizeof o);
@@ -405,20 +390,20 @@ static int run_products(const gxs_model *model, const state *s, double rate, pro
 /* -------------------------------------------------------------------------------------------------- >>rows */
 
 typedef struct kept_row {
-    char name[40];          /* of the case */
+    char name[40]; /* of the case */
     const char *method;
     size_t unknowns, elements;
     outcome found;
-    products alone;         /* with the first method of the case; else 0 */
+    products alone; /* with the first method of the case; else 0 */
 } kept_row;
 
-enum { ROWS = 4 * BLOCK_CUTS * 4 * (METHODS + 1) };  /* sizes, cuts, jittered or not and soft or stiff; methods and cholmod */
+/* sizes, cuts, jittered or not and soft or stiff; methods and cholmod */
+enum { ROWS = 4 * BLOCK_CUTS * 4 * (METHODS + 1) };
 
 static kept_row rows[ROWS];
 static size_t row_count;
 
-static void add_row(const char *name, const char *method_name, const gxs_model *model, const outcome *o)
-{
+static void add_row(const char *name, const char *method_name, const gxs_model *model, const outcome *o) {
     kept_row *r = &rows[row_count++];
     snprintf(r->name, sizeof r->name, "%s", name);
     r->method = method_name;
@@ -426,8 +411,8 @@ static void add_row(const char *name, const char *method_name, const gxs_model *
     r->elements = model->element_count;
     r->found = *o;
     memset(&r->alone, 0, sizeof r->alone);
-    csv_row("%s,%s,%lu,%.1f,%.3f,%.3f,%.3f,%lu,%.3e", name, method_name, (unsigned long)r->unknowns, o->iterations, 1e3 * o->setup, 1e3 * o->solve,
-            1e3 * o->step, (unsigned long)o->peak_bytes, o->residual);
+    csv_row("%s,%s,%lu,%.1f,%.3f,%.3f,%.3f,%lu,%.3e", name, method_name, (unsigned long)r->unknowns, o->iterations,
+            1e3 * o->setup, 1e3 * o->solve, 1e3 * o->step, (unsigned long)o->peak_bytes, o->residual);
 }
 
 /* Nanoseconds per element */
@@ -436,13 +421,14 @@ static double per_element(const kept_row *r, double time) { return 1e9 * time / 
 /* Of conjugate gradients per element and iteration; 0: there are none */
 static double iteration_of(const kept_row *r) { return per_element(r, r->found.iteration); }
 
-/* Iterations / milliseconds of a step; cholmod: milliseconds. iteration: that of jacobi-free, which has one product in it */
-static void print_table(void)
-{
-    const kept_row *first = rows;   /* of the case */
+/* Iterations / milliseconds of a step; cholmod: milliseconds. iteration: that of jacobi-free, which has one product in
+ * it */
+static void print_table(void) {
+    const kept_row *first = rows; /* of the case */
     size_t i;
     int m;
-    fprintf(stderr, "iterations / ms of a step; ns per element: iteration of jacobi-free; product of single and of double vectors\n");
+    fprintf(stderr, "iterations / ms of a step; ns per element: iteration of jacobi-free; product of single and of "
+                    "double vectors\n");
     fprintf(stderr, "%-28s %8s", "case", "unknowns");
     for (m = 0; m < METHODS; m++) fprintf(stderr, " %19s", methods[m].name);
     fprintf(stderr, " %9s %9s %9s %9s", "cholmod", "iteration", "single", "double");
@@ -452,8 +438,10 @@ static void print_table(void)
             first = r;
             fprintf(stderr, "\n%-28s %8lu", r->name, (unsigned long)r->unknowns);
         }
-        if (strcmp(r->method, "cholmod") == 0) fprintf(stderr, " %9.2f", 1e3 * r->found.step);
-        else fprintf(stderr, " %8.1f / %8.2f", r->found.iterations, 1e3 * r->found.step);
+        if (strcmp(r->method, "cholmod") == 0)
+            fprintf(stderr, " %9.2f", 1e3 * r->found.step);
+        else
+            fprintf(stderr, " %8.1f / %8.2f", r->found.iterations, 1e3 * r->found.step);
         if (i + 1 < row_count && strcmp(r->name, r[1].name) == 0) continue;
         fprintf(stderr, "%*s %9.2f %9.2f %9.2f", strcmp(r->method, "cholmod") == 0 ? 0 : 10, "", iteration_of(first),
                 per_element(first, first->alone.single), per_element(first, first->alone.doubles));
@@ -461,13 +449,11 @@ static void print_table(void)
     fprintf(stderr, "\n");
 }
 
-static void write_product(const kept_row *r, const char *method_name, double time)
-{
+static void write_product(const kept_row *r, const char *method_name, double time) {
     if (time > 0) csv_row("%s,%s,%lu,%.2f", r->name, method_name, (unsigned long)r->elements, per_element(r, time));
 }
 
-static int write_products(const char *path)
-{
+static int write_products(const char *path) {
     size_t i;
     csv_open_second("solver", path, "case,method,elements,ns_per_element");
     for (i = 0; i < row_count; i++) {
@@ -479,8 +465,7 @@ static int write_products(const char *path)
 }
 
 /* A line beside the progress bar */
-static void say(const char *format, ...)
-{
+static void say(const char *format, ...) {
     va_list values;
     progress_clear();
     va_start(values, format);
@@ -490,16 +475,16 @@ static void say(const char *format, ...)
 
 /* ------------------------------------------------------------------------------------------------ >>direct */
 
-/* (K + rate M) x = b, its lower triangle by columns as CHOLMOD wants it, without held copies and copies without an element. A
-   copy's three unknowns make a block; blocks of a column are sorted by rows, so that the diagonal one is the first. Masses are
-   consistent and no copy follows others: so are the bodies of block.h. */
+/* (K + rate M) x = b, its lower triangle by columns as CHOLMOD wants it, without held copies and copies without an
+   element. A copy's three unknowns make a block; blocks of a column are sorted by rows, so that the diagonal one is the
+   first. Masses are consistent and no copy follows others: so are the bodies of block.h. */
 typedef struct direct {
     const gxs_model *model;
-    uint32_t *row;          /* copy_count: number of the copy's row of blocks; NO_ROW */
+    uint32_t *row; /* copy_count: number of the copy's row of blocks; NO_ROW */
     size_t rows;
-    uint64_t *blocks;       /* block_count: column << 32 | row, sorted */
+    uint64_t *blocks; /* block_count: column << 32 | row, sorted */
     size_t block_count;
-    size_t *column;         /* rows + 1: index of each column's first block */
+    size_t *column; /* rows + 1: index of each column's first block */
     cholmod_common common;
     cholmod_sparse *matrix;
     cholmod_dense *load, *solution;
@@ -508,35 +493,32 @@ typedef struct direct {
 
 static const uint32_t NO_ROW = UINT32_MAX;
 
-static void direct_number(direct *d)
-{
+static void direct_number(direct *d) {
     const gxs_model *model = d->model;
     size_t i;
     for (i = 0; i < model->copy_count; i++) d->row[i] = NO_ROW;
     for (i = 0; i < 4 * model->element_count; i++) {
         const gxs_element *element = &model->elements[i / 4];
         const uint32_t copy = element->copy[i % 4];
-        if (element->weight > 0 && d->row[copy] == NO_ROW && !(model->held && model->held[copy])) d->row[copy] = (uint32_t)d->rows++;
+        if (element->weight > 0 && d->row[copy] == NO_ROW && !(model->held && model->held[copy]))
+            d->row[copy] = (uint32_t)d->rows++;
     }
 }
 
 /* The lower block of corners i and j, or 0 if it has none: that of the other order, or one of them is held. */
-static int direct_block(const direct *d, const gxs_element *element, int i, int j, uint64_t *block)
-{
+static int direct_block(const direct *d, const gxs_element *element, int i, int j, uint64_t *block) {
     const uint32_t row = d->row[element->copy[i]], column = d->row[element->copy[j]];
     *block = (uint64_t)column << 32 | row;
     return element->weight > 0 && row != NO_ROW && column != NO_ROW && row >= column;
 }
 
-static int compare_blocks(const void *a, const void *b)
-{
+static int compare_blocks(const void *a, const void *b) {
     const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
     return x < y ? -1 : x > y;
 }
 
 /* Every block that an element has, once; blocks has room for ten of each element. */
-static void direct_list_blocks(direct *d)
-{
+static void direct_list_blocks(direct *d) {
     size_t e, count = 0, i;
     int pair;
     for (e = 0; e < d->model->element_count; e++)
@@ -548,17 +530,15 @@ static void direct_list_blocks(direct *d)
     for (i = 0; i < d->block_count; i++) d->column[(d->blocks[i] >> 32) + 1] = i + 1;
 }
 
-/* Where entry (r, s) of a block is in the matrix. A column of n blocks has 3 n, 3 n - 1 and 3 n - 2 entries in its three columns:
-   the diagonal block is a triangle. */
-static size_t direct_entry(const direct *d, size_t block, size_t r, size_t s)
-{
+/* Where entry (r, s) of a block is in the matrix. A column of n blocks has 3 n, 3 n - 1 and 3 n - 2 entries in its
+   three columns: the diagonal block is a triangle. */
+static size_t direct_entry(const direct *d, size_t block, size_t r, size_t s) {
     const size_t column = d->blocks[block] >> 32, first = d->column[column], blocks = d->column[column + 1] - first;
     return 9 * first - 3 * column + s * 3 * blocks - s * (s + 1) / 2 + 3 * (block - first) + r;
 }
 
 /* The rows and columns of the matrix's entries. */
-static void direct_shape(direct *d)
-{
+static void direct_shape(direct *d) {
     int *column = (int *)d->matrix->p, *row = (int *)d->matrix->i;
     size_t block, r, s;
     for (block = 0; block < d->block_count; block++) {
@@ -573,12 +553,12 @@ static void direct_shape(direct *d)
 
 /* dP/dF of an element at a displacement, 9x9, by the rows of F: made from nine products, symmetric but for rounding. */
 static void direct_tangent(const gxs_material *material, double gradient[4][3], const gxs_element *element,
-                           const double *displacement, double tangent[9][9])
-{
+                           const double *displacement, double tangent[9][9]) {
     double deformation[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, direction[9];
     int i, k;
     for (i = 0; i < 4; i++)
-        for (k = 0; k < 9; k++) deformation[k] += displacement[3 * (size_t)element->copy[i] + (size_t)k / 3] * gradient[i][k % 3];
+        for (k = 0; k < 9; k++)
+            deformation[k] += displacement[3 * (size_t)element->copy[i] + (size_t)k / 3] * gradient[i][k % 3];
     for (k = 0; k < 9; k++) {
         memset(direction, 0, sizeof direction);
         direction[k] = 1;
@@ -587,26 +567,24 @@ static void direct_tangent(const gxs_material *material, double gradient[4][3], 
 }
 
 /* Entry (r, s) of the block of corners i and j: weight g_i . (dP_r/dF_s g_j), and rate times the mass */
-static double direct_value(const gxs_element *element, double gradient[4][3], double tangent[9][9], double rate,
-                           int i, int j, int r, int s)
-{
+static double direct_value(const gxs_element *element, double gradient[4][3], double tangent[9][9], double rate, int i,
+                           int j, int r, int s) {
     static const int packed[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
     double sum = 0;
     int c, e;
     for (c = 0; c < 3; c++)
         for (e = 0; e < 3; e++)
-            sum += gradient[i][c] * gradient[j][e] * 0.5 * (tangent[3 * r + c][3 * s + e] + tangent[3 * s + e][3 * r + c]);
+            sum +=
+                gradient[i][c] * gradient[j][e] * 0.5 * (tangent[3 * r + c][3 * s + e] + tangent[3 * s + e][3 * r + c]);
     return element->weight * sum + (r == s ? rate * element->mass[packed[i][j]] : 0.0);
 }
 
-static size_t direct_find(const direct *d, uint64_t block)
-{
+static size_t direct_find(const direct *d, uint64_t block) {
     const uint64_t *found = (const uint64_t *)bsearch(&block, d->blocks, d->block_count, sizeof block, compare_blocks);
     return (size_t)(found - d->blocks);
 }
 
-static void direct_add_element(direct *d, const gxs_element *element, const double *displacement, double rate)
-{
+static void direct_add_element(direct *d, const gxs_element *element, const double *displacement, double rate) {
     double gradient[4][3], tangent[9][9], *values = (double *)d->matrix->x;
     uint64_t block;
     int pair, r, s;
@@ -620,13 +598,13 @@ static void direct_add_element(direct *d, const gxs_element *element, const doub
         at = direct_find(d, block);
         for (s = 0; s < 3; s++)
             for (r = i == j ? s : 0; r < 3; r++)
-                values[direct_entry(d, at, (size_t)r, (size_t)s)] += direct_value(element, gradient, tangent, rate, i, j, r, s);
+                values[direct_entry(d, at, (size_t)r, (size_t)s)] +=
+                    direct_value(element, gradient, tangent, rate, i, j, r, s);
     }
 }
 
 /* Mass times gravity less the elastic force, at a displacement: there the inertia of a step is 0. */
-static gx_result direct_make_load(direct *d, const double *displacement, const double gravity[3])
-{
+static gx_result direct_make_load(direct *d, const double *displacement, const double gravity[3]) {
     const size_t count = 3 * d->model->copy_count;
     double *fall = (double *)malloc(count * sizeof *fall), *weight = (double *)malloc(count * sizeof *weight);
     double *elastic = (double *)malloc(count * sizeof *elastic), *load = (double *)d->load->x;
@@ -643,8 +621,7 @@ static gx_result direct_make_load(direct *d, const double *displacement, const d
     return result;
 }
 
-static int direct_allocate(direct *d)
-{
+static int direct_allocate(direct *d) {
     const size_t copies = d->model->copy_count, elements = d->model->element_count;
     d->row = (uint32_t *)malloc(copies * sizeof *d->row);
     d->column = (size_t *)calloc(copies + 1, sizeof *d->column);
@@ -652,8 +629,7 @@ static int direct_allocate(direct *d)
     return d->row && d->column && d->blocks;
 }
 
-static gx_result direct_assemble(direct *d, const double *displacement, const gxs_step_desc *step)
-{
+static gx_result direct_assemble(direct *d, const double *displacement, const gxs_step_desc *step) {
     size_t e, size;
     if (!direct_allocate(d)) return GX_ERROR_MEMORY;
     direct_number(d);
@@ -669,16 +645,14 @@ static gx_result direct_assemble(direct *d, const double *displacement, const gx
     return direct_make_load(d, displacement, step->gravity);
 }
 
-static void direct_begin(direct *d, const gxs_model *model)
-{
+static void direct_begin(direct *d, const gxs_model *model) {
     memset(d, 0, sizeof *d);
     d->model = model;
     cholmod_start(&d->common);
     d->common.print = 0;
 }
 
-static void direct_end(direct *d)
-{
+static void direct_end(direct *d) {
     cholmod_free_sparse(&d->matrix, &d->common);
     cholmod_free_dense(&d->load, &d->common);
     cholmod_free_dense(&d->solution, &d->common);
@@ -690,8 +664,7 @@ static void direct_end(direct *d)
 }
 
 /* |b - A x| / |b|; the load is used up. */
-static double direct_residual(direct *d)
-{
+static double direct_residual(direct *d) {
     double one[2] = {1, 0}, minus[2] = {-1, 0};
     const double size = cholmod_norm_dense(d->load, 2, &d->common);
     cholmod_sdmult(d->matrix, 0, minus, one, d->solution, d->load, &d->common);
@@ -699,8 +672,7 @@ static double direct_residual(direct *d)
 }
 
 /* Analyses, and tells whether the rest is bearable. */
-static int direct_analyse(direct *d, outcome *o)
-{
+static int direct_analyse(direct *d, outcome *o) {
     const double start = seconds(NULL);
     double bytes;
     d->factor = cholmod_analyze(d->matrix, &d->common);
@@ -708,13 +680,13 @@ static int direct_analyse(direct *d, outcome *o)
     if (!d->factor) return complain("cholmod", GX_ERROR_MEMORY);
     bytes = d->factor->is_super ? 8.0 * (double)d->factor->xsize : 12.0 * d->common.lnz;
     if (bytes <= direct_bytes && d->common.fl <= direct_operations) return 1;
-    say("    cholmod: left out: its factor would have %.1f GB and take %.0f Gflop\n", 1e-9 * bytes, 1e-9 * d->common.fl);
+    say("    cholmod: left out: its factor would have %.1f GB and take %.0f Gflop\n", 1e-9 * bytes,
+        1e-9 * d->common.fl);
     return 0;
 }
 
 /* Factorises and solves, once; 0 if that failed. factorised: seconds of the first */
-static int direct_solve_once(direct *d, double *factorised, double *total)
-{
+static int direct_solve_once(direct *d, double *factorised, double *total) {
     const double start = seconds(NULL);
     cholmod_free_dense(&d->solution, &d->common);
     cholmod_factorize(d->matrix, d->factor, &d->common);
@@ -729,8 +701,7 @@ static int direct_solve_once(direct *d, double *factorised, double *total)
 }
 
 /* Three times: the first also pays for memory that steps keep. */
-static int direct_solve(direct *d, outcome *o)
-{
+static int direct_solve(direct *d, outcome *o) {
     const double operations = d->common.fl;
     double factorised[3], total[3];
     size_t i;
@@ -739,13 +710,13 @@ static int direct_solve(direct *d, outcome *o)
     o->solve = median(total, 3);
     o->peak_bytes = d->common.memory_usage;
     o->residual = direct_residual(d);
-    say("    cholmod: %.1f Gflop/s\n", 1e-9 * operations / median(factorised, 3)); /* of a large block 20 with a good BLAS */
+    /* of a large block 20 with a good BLAS */
+    say("    cholmod: %.1f Gflop/s\n", 1e-9 * operations / median(factorised, 3));
     return 1;
 }
 
 /* sqrt(x . M x) */
-static double mass_norm(const gxs_model *model, const double *x, double *scratch)
-{
+static double mass_norm(const gxs_model *model, const double *x, double *scratch) {
     double sum = 0;
     size_t i;
     if (gxs_model_mass_product(model, x, scratch) != GX_OK) return NAN;
@@ -753,11 +724,12 @@ static double mass_norm(const gxs_model *model, const double *x, double *scratch
     return sqrt(sum);
 }
 
-/* How far a step of the solver with a tight tolerance ends from where the solution says, relative to the solution, by the mass:
-   tells whether both solved the same system. It is that of the linear solve if the line search took the whole step. */
-static double direct_difference(direct *d, const double *start, const state *end)
-{
-    double *scratch = (double *)malloc(end->count * sizeof *scratch), *moved = (double *)calloc(end->count, sizeof *moved);
+/* How far a step of the solver with a tight tolerance ends from where the solution says, relative to the solution, by
+   the mass: tells whether both solved the same system. It is that of the linear solve if the line search took the whole
+   step. */
+static double direct_difference(direct *d, const double *start, const state *end) {
+    double *scratch = (double *)malloc(end->count * sizeof *scratch),
+           *moved = (double *)calloc(end->count, sizeof *moved);
     double *apart = (double *)calloc(end->count, sizeof *apart), difference = NAN;
     size_t i;
     if (scratch && moved && apart) {
@@ -775,8 +747,7 @@ static double direct_difference(direct *d, const double *start, const state *end
 }
 
 /* One step of multigrid-free to a tight tolerance */
-static gx_result step_tightly(const gxs_model *model, const gxs_step_desc *loose, state *s, gxs_step_report *report)
-{
+static gx_result step_tightly(const gxs_model *model, const gxs_step_desc *loose, state *s, gxs_step_report *report) {
     gxs_step_desc step = *loose;
     gxs_solver_desc desc;
     gxs_solver *solver = NULL;
@@ -793,8 +764,7 @@ static gx_result step_tightly(const gxs_model *model, const gxs_step_desc *loose
 }
 
 /* 0: it solved another system. A step that the line search has made shorter does not tell. */
-static int direct_check(direct *d, const gxs_step_desc *step, const double *start, state *s)
-{
+static int direct_check(direct *d, const gxs_step_desc *step, const double *start, state *s) {
     gxs_step_report report;
     const gx_result result = step_tightly(d->model, step, s, &report);
     double difference;
@@ -802,13 +772,14 @@ static int direct_check(direct *d, const gxs_step_desc *step, const double *star
     if (result != GX_OK) return complain("check of cholmod", result);
     difference = direct_difference(d, start, s);
     same = difference < same_system || report.line_search_steps > 1;
-    say("    cholmod: a step of multigrid-free to 1e-5 differs by %.1e%s\n", difference, same ? "" : ": ANOTHER SYSTEM");
+    say("    cholmod: a step of multigrid-free to 1e-5 differs by %.1e%s\n", difference,
+        same ? "" : ": ANOTHER SYSTEM");
     return same;
 }
 
-/* The system of the step that follows the state, as the solver has it: linearised where the velocity leads. 0: left out or failed. */
-static int run_direct(const gxs_model *model, state *s, outcome *o)
-{
+/* The system of the step that follows the state, as the solver has it: linearised where the velocity leads. 0: left out
+ * or failed. */
+static int run_direct(const gxs_model *model, state *s, outcome *o) {
     const gxs_step_desc step = step_make(s->steps);
     double *start = (double *)malloc(s->count * sizeof *start);
     gx_result result = start ? GX_OK : GX_ERROR_MEMORY;
@@ -819,8 +790,10 @@ static int run_direct(const gxs_model *model, state *s, outcome *o)
     direct_begin(&d, model);
     for (i = 0; i < s->count && start; i++) start[i] = s->displacement[i] + step.dt * s->velocity[i];
     if (result == GX_OK) result = direct_assemble(&d, start, &step);
-    if (result != GX_OK) complain("cholmod", result);
-    else done = direct_analyse(&d, o) && direct_solve(&d, o);
+    if (result != GX_OK)
+        complain("cholmod", result);
+    else
+        done = direct_analyse(&d, o) && direct_solve(&d, o);
     if (done) done = direct_check(&d, &step, start, s);
     direct_end(&d);
     free(start);
@@ -843,12 +816,11 @@ typedef struct scene {
     int steps;
 } scene;
 
-static scene scene_make(int cut, int jittered, int size, int hard)
-{
+static scene scene_make(int cut, int jittered, int size, int hard) {
     scene s;
     memset(&s, 0, sizeof s);
-    snprintf(s.name, sizeof s.name, "%s-%s-%s-%s", block_cut_names[cut], jittered ? "jittered" : "lattice", size_names[size],
-             hard ? "1e8" : "1e6");
+    snprintf(s.name, sizeof s.name, "%s-%s-%s-%s", block_cut_names[cut], jittered ? "jittered" : "lattice",
+             size_names[size], hard ? "1e8" : "1e6");
     s.block.cells = size_cells[cut][size];
     s.block.jitter = jittered ? 0.2 : 0.0;
     s.block.cut = cut;
@@ -858,8 +830,7 @@ static scene scene_make(int cut, int jittered, int size, int hard)
 }
 
 /* Two threads and one must give the same bits; that of runs of as many steps only. */
-static int compare_threads(const state *one, const state *two)
-{
+static int compare_threads(const state *one, const state *two) {
     int same;
     if (one->steps != two->steps) return 1;
     same = memcmp(one->displacement, two->displacement, one->count * sizeof(double)) == 0 &&
@@ -869,25 +840,27 @@ static int compare_threads(const state *one, const state *two)
 }
 
 /* The methods of the library; 0 if one failed. */
-static int run_methods(const scene *s, const gxs_model *model, outcome found[METHODS], state ends[METHODS])
-{
+static int run_methods(const scene *s, const gxs_model *model, outcome found[METHODS], state ends[METHODS]) {
     int m, ok = 1;
     for (m = 0; m < METHODS; m++) {
         progress_draw("solver", runs++, run_total, methods[m].name);
-        if (!run_method(&methods[m], model, s->steps, &ends[m], &found[m])) { ok = 0; continue; }
+        if (!run_method(&methods[m], model, s->steps, &ends[m], &found[m])) {
+            ok = 0;
+            continue;
+        }
         add_row(s->name, methods[m].name, model, &found[m]);
     }
     return ok && compare_threads(&ends[MULTIGRID_FREE], &ends[MULTIGRID_FREE_2]);
 }
 
-static int run_model(const scene *s, const gxs_model *model)
-{
+static int run_model(const scene *s, const gxs_model *model) {
     outcome found[METHODS], by_cholmod;
     state ends[METHODS];
     int m, ok;
     memset(ends, 0, sizeof ends);
     ok = run_methods(s, model, found, ends);
-    if (ok) ok = run_products(model, &ends[0], 1.0 / (step_make(0).dt * step_make(0).dt), &rows[row_count - METHODS].alone);
+    if (ok)
+        ok = run_products(model, &ends[0], 1.0 / (step_make(0).dt * step_make(0).dt), &rows[row_count - METHODS].alone);
     progress_draw("solver", runs++, run_total, "cholmod");
     if (ok && run_direct(model, &ends[MULTIGRID_FREE], &by_cholmod)) {
         by_cholmod.step = found[MULTIGRID_FREE].step - found[MULTIGRID_FREE].solve + by_cholmod.solve;
@@ -897,16 +870,17 @@ static int run_model(const scene *s, const gxs_model *model)
     return ok;
 }
 
-static int run_scene(const scene *s)
-{
+static int run_scene(const scene *s) {
     gx_body *body = NULL;
     gxs_model model;
     gx_result result = block_create(&s->block, &body);
     int ok;
     if (result == GX_OK) result = gx_body_model(body, &model);
-    if (result != GX_OK) ok = complain(s->name, result);
+    if (result != GX_OK)
+        ok = complain(s->name, result);
     else {
-        say("%s: %lu unknowns, %lu elements\n", s->name, (unsigned long)(3 * model.copy_count), (unsigned long)model.element_count);
+        say("%s: %lu unknowns, %lu elements\n", s->name, (unsigned long)(3 * model.copy_count),
+            (unsigned long)model.element_count);
         ok = run_model(s, &model);
     }
     gx_body_destroy(body);
@@ -916,26 +890,28 @@ static int run_scene(const scene *s)
 /* -------------------------------------------------------------------------------------------------- >>main */
 
 typedef struct settings {
-    const char *filter, *folder;    /* --case, --out */
+    const char *filter, *folder; /* --case, --out */
     int small;
 } settings;
 
-static int take_arguments(settings *set, int argc, char **argv)
-{
+static int take_arguments(settings *set, int argc, char **argv) {
     int i;
     memset(set, 0, sizeof *set);
     for (i = 1; i < argc; i++) {
-        if (strcmp(argv[i], "--small") == 0) set->small = 1;
-        else if (strcmp(argv[i], "--case") == 0 && i + 1 < argc) set->filter = argv[++i];
-        else if (strcmp(argv[i], "--out") == 0 && i + 1 < argc) set->folder = argv[++i];
-        else return 0;
+        if (strcmp(argv[i], "--small") == 0)
+            set->small = 1;
+        else if (strcmp(argv[i], "--case") == 0 && i + 1 < argc)
+            set->filter = argv[++i];
+        else if (strcmp(argv[i], "--out") == 0 && i + 1 < argc)
+            set->folder = argv[++i];
+        else
+            return 0;
     }
     return 1;
 }
 
 /* The cases that are asked for; returns how many */
-static size_t list_scenes(const settings *set, scene *list)
-{
+static size_t list_scenes(const settings *set, scene *list) {
     const int sizes = set->small ? 1 : SIZES;
     size_t count = 0;
     int i;
@@ -946,14 +922,12 @@ static size_t list_scenes(const settings *set, scene *list)
     return count;
 }
 
-static char *path_in(const settings *set, const char *file, char path[4096])
-{
+static char *path_in(const settings *set, const char *file, char path[4096]) {
     snprintf(path, 4096, "%s/%s", set->folder, file);
     return path;
 }
 
-int main(int argc, char **argv)
-{
+int main(int argc, char **argv) {
     static scene list[SIZES * BLOCK_CUTS * 4];
     char path[4096];
     settings set;
@@ -969,7 +943,7 @@ int main(int argc, char **argv)
         return 2;
     }
     csv_open(argv[0], set.folder ? path_in(&set, "solver.csv", path) : NULL,
-                  "case,method,unknowns,iterations,setup_ms,solve_ms,step_ms,peak_bytes,residual");
+             "case,method,unknowns,iterations,setup_ms,solve_ms,step_ms,peak_bytes,residual");
     run_total = count * (METHODS + 1);
     for (i = 0; i < count; i++) ok = run_scene(&list[i]) && ok;
     progress_draw("solver", run_total, run_total, "");

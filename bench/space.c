@@ -1,22 +1,21 @@
-/* space.c - the error of the space: the same cuts in finer and finer meshes, beside fine meshes whose faces lie on the cuts.
+/* space.c - the error of the space: the same cuts in finer and finer meshes, beside fine meshes whose faces lie on the
+   cuts.
 
    make bench-space builds and runs it; it prints CSV and writes it to build/bench/space.csv, a table to stderr.
    usage: space [FILE [--small]]
 
-   Strips of two scenes, one cube of 1 m wide, of linear elastic material, at rest under gravity: no error of time steps, of large motion or
-   of integrals is in it. Being linear, drops mean something beside each other only.
-       slices      of slab_in_five: 6 x 1 x 1 cubes held at one end, four planes, slices of 1/15 to 5/15 of a cube; drop of each one's end
-       accordion   of accordion: 16 x 1 x 16 cubes held by the top, six cuts from both sides in turn, each through 7/8; drop of the
-                   middle of the bottom
-   method, by refinement (cubes along the edge of a cube)
-       cut         the mesh, cut: the library's copies and integrals. RXFEM has the same space
-       VNA         the same copies, each part with all of its element's mass and stiffness (vna.h)
-       deletion    the elements that cuts meet are taken away (parts.h)
-       conforming  nodes lie on the cuts. slices: cubes through the thickness of each; accordion: cubes of the mesh made less high
-   truth: drops of conforming meshes are 1/d = 1/d0 + c h^2 (a stiffness and what locking adds to it): d0 from the two finest. The row
-   "truth" has as its error how far off the d0 from one mesh coarser is.
-   Columns: scene; piece; method; refinement; thickness of the piece in elements; unknowns; drop, m; truth, m; error: |drop / truth - 1|.
-   No drop: nothing of the piece is left. */
+   Strips of two scenes, one cube of 1 m wide, of linear elastic material, at rest under gravity: no error of time
+   steps, of large motion or of integrals is in it. Being linear, drops mean something beside each other only. slices of
+   slab_in_five: 6 x 1 x 1 cubes held at one end, four planes, slices of 1/15 to 5/15 of a cube; drop of each one's end
+       accordion   of accordion: 16 x 1 x 16 cubes held by the top, six cuts from both sides in turn, each through 7/8;
+   drop of the middle of the bottom method, by refinement (cubes along the edge of a cube) cut         the mesh, cut:
+   the library's copies and integrals. RXFEM has the same space VNA         the same copies, each part with all of its
+   element's mass and stiffness (vna.h) deletion    the elements that cuts meet are taken away (parts.h) conforming
+   nodes lie on the cuts. slices: cubes through the thickness of each; accordion: cubes of the mesh made less high
+   truth: drops of conforming meshes are 1/d = 1/d0 + c h^2 (a stiffness and what locking adds to it): d0 from the two
+   finest. The row "truth" has as its error how far off the d0 from one mesh coarser is. Columns: scene; piece; method;
+   refinement; thickness of the piece in elements; unknowns; drop, m; truth, m; error: |drop / truth - 1|. No drop:
+   nothing of the piece is left. */
 #define _POSIX_C_SOURCE 200809L
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
@@ -34,15 +33,13 @@ enum { PIECES = 5, FOLDS = 6, LEVELS = 2 * FOLDS + 2, CORNERS = 4, CUT = 0, VNA,
 static const char *const method_names[METHODS] = {"cut", "VNA", "deletion", "conforming"};
 static const double density = 1000, young = 3e7, poisson = 0.4, gravity = -9.81;
 
-static void expect(int holds, const char *what)
-{
+static void expect(int holds, const char *what) {
     if (holds) return;
     fprintf(stderr, "space: %s\n", what);
     exit(1);
 }
 
-static void *memory(size_t count, size_t size)
-{
+static void *memory(size_t count, size_t size) {
     void *room = calloc(count + 1, size);
     expect(room != NULL, "no memory");
     return room;
@@ -51,28 +48,31 @@ static void *memory(size_t count, size_t size)
 /* ---- what is compared ---- */
 
 /* A horizontal rectangle at z, from x[0] to x[1], wider than the strip */
-typedef struct flat { double z, x[2]; } flat;
+typedef struct flat {
+    double z, x[2];
+} flat;
 
 typedef struct strip {
     const char *name;
-    uint32_t cubes[3];          /* of refinement 1; the edge is 1 m */
+    uint32_t cubes[3]; /* of refinement 1; the edge is 1 m */
     gx_region held;
-    flat cuts[FOLDS]; size_t cut_count;
+    flat cuts[FOLDS];
+    size_t cut_count;
     size_t piece_count;
-    double low[PIECES], high[PIECES];   /* z of each piece */
-    double point[PIECES][3];    /* of each: where its drop is taken */
+    double low[PIECES], high[PIECES]; /* z of each piece */
+    double point[PIECES][3];          /* of each: where its drop is taken */
     double truth[PIECES], trust[PIECES];
 } strip;
 
-static strip make_slices(uint32_t length)
-{
+static strip make_slices(uint32_t length) {
     static const double z[PIECES + 1] = {0, 1.0 / 15, 3.0 / 15, 6.0 / 15, 10.0 / 15, 1};
     const gx_region wall = {0, -1, 1e-9};
     strip s;
     size_t i;
     memset(&s, 0, sizeof s);
     s.name = "slices";
-    s.cubes[0] = length; s.cubes[1] = s.cubes[2] = 1;
+    s.cubes[0] = length;
+    s.cubes[1] = s.cubes[2] = 1;
     s.held = wall;
     s.cut_count = PIECES - 1;
     s.piece_count = PIECES;
@@ -89,14 +89,14 @@ static strip make_slices(uint32_t length)
 }
 
 /* Where the scene's cuts lie, in cubes; ends are on planes of nodes. */
-static strip make_accordion(uint32_t cubes, size_t folds)
-{
+static strip make_accordion(uint32_t cubes, size_t folds) {
     const gx_region top = {2, 1, cubes - 1e-9};
     strip s;
     size_t i;
     memset(&s, 0, sizeof s);
     s.name = "accordion";
-    s.cubes[0] = s.cubes[2] = cubes; s.cubes[1] = 1;
+    s.cubes[0] = s.cubes[2] = cubes;
+    s.cubes[1] = 1;
     s.held = top;
     s.cut_count = folds;
     for (i = 0; i < folds; i++) {
@@ -115,8 +115,7 @@ static strip make_accordion(uint32_t cubes, size_t folds)
 /* ---- meshes and bodies ---- */
 
 /* n cubes along each axis of a box that begins at the origin */
-static gxio_mesh make_grid(const size_t n[3], const double size[3])
-{
+static gxio_mesh make_grid(const size_t n[3], const double size[3]) {
     gxio_mesh mesh;
     gxio_error error;
     char spec[64];
@@ -128,8 +127,7 @@ static gxio_mesh make_grid(const size_t n[3], const double size[3])
 }
 
 /* Cubes of the mesh's width whose layers end on the cuts: as many in each band as come closest to cubes */
-static gxio_mesh make_layers(const strip *s, uint32_t refinement)
-{
+static gxio_mesh make_layers(const strip *s, uint32_t refinement) {
     const double top = s->cubes[2];
     double levels[1024];
     size_t n[3], i, k, count = 0;
@@ -137,13 +135,17 @@ static gxio_mesh make_layers(const strip *s, uint32_t refinement)
     gxio_mesh mesh;
     for (i = 0; i <= s->cut_count; i++) {
         const double high = i < s->cut_count ? s->cuts[i].z : top;
-        const size_t layers = (size_t)((high - low) * refinement + 0.5) > 0 ? (size_t)((high - low) * refinement + 0.5) : 1;
+        const size_t layers =
+            (size_t)((high - low) * refinement + 0.5) > 0 ? (size_t)((high - low) * refinement + 0.5) : 1;
         for (k = 0; k < layers; k++) levels[count++] = low + (high - low) * (double)k / (double)layers;
         low = high;
     }
     expect(count < sizeof levels / sizeof levels[0], "too many layers");
     levels[count] = top;
-    for (i = 0; i < 3; i++) { n[i] = (size_t)s->cubes[i] * refinement; size[i] = s->cubes[i]; }
+    for (i = 0; i < 3; i++) {
+        n[i] = (size_t)s->cubes[i] * refinement;
+        size[i] = s->cubes[i];
+    }
     n[2] = count;
     size[2] = (double)count;
     mesh = make_grid(n, size);
@@ -151,8 +153,7 @@ static gxio_mesh make_layers(const strip *s, uint32_t refinement)
     return mesh;
 }
 
-static gx_body *make_body(const gxio_mesh *mesh, const gx_region *held)
-{
+static gx_body *make_body(const gxio_mesh *mesh, const gx_region *held) {
     gx_material material;
     gx_body_desc desc;
     gx_body *body;
@@ -162,16 +163,18 @@ static gx_body *make_body(const gxio_mesh *mesh, const gx_region *held)
     material.elastic.young = young;
     material.elastic.poisson = poisson;
     material.density = density;
-    desc.positions = mesh->positions; desc.node_count = mesh->node_count;
-    desc.elements = mesh->elements; desc.element_count = mesh->element_count;
-    desc.materials = &material; desc.material_count = 1;
+    desc.positions = mesh->positions;
+    desc.node_count = mesh->node_count;
+    desc.elements = mesh->elements;
+    desc.element_count = mesh->element_count;
+    desc.materials = &material;
+    desc.material_count = 1;
     expect(gx_body_create(&desc, &body, NULL) == GX_OK, "no body");
     expect(gx_body_hold(body, held, 1) == GX_OK, "nothing is held");
     return body;
 }
 
-static void cut_body(gx_body *body, const strip *s)
-{
+static void cut_body(gx_body *body, const strip *s) {
     static const uint32_t triangles[6] = {0, 1, 2, 0, 2, 3};
     double vertices[FOLDS][12];
     gx_surface sheets[FOLDS];
@@ -186,20 +189,23 @@ static void cut_body(gx_body *body, const strip *s)
             vertices[i][3 * k + 1] = k < 2 ? -9 : 9;
             vertices[i][3 * k + 2] = s->cuts[i].z;
         }
-        sheets[i].vertices = vertices[i]; sheets[i].vertex_count = CORNERS;
-        sheets[i].triangles = triangles; sheets[i].triangle_count = 2;
+        sheets[i].vertices = vertices[i];
+        sheets[i].vertex_count = CORNERS;
+        sheets[i].triangles = triangles;
+        sheets[i].triangle_count = 2;
     }
-    desc.surfaces = sheets; desc.surface_count = s->cut_count;
+    desc.surfaces = sheets;
+    desc.surface_count = s->cut_count;
     expect(gx_body_cut(body, &desc, NULL, NULL) == GX_OK, "a cut fails");
 }
 
 /* ---- rest ---- */
 
 /* Displacements at rest; copies on no element are held. unknowns: of the others */
-static double *find_rest(const gxs_model *given, size_t *unknowns)
-{
+static double *find_rest(const gxs_model *given, size_t *unknowns) {
     const size_t count = given->copy_count;
-    double *displacement = (double *)memory(3 * count, sizeof(double)), *velocity = (double *)memory(3 * count, sizeof(double));
+    double *displacement = (double *)memory(3 * count, sizeof(double)),
+           *velocity = (double *)memory(3 * count, sizeof(double));
     uint8_t *used = (uint8_t *)memory(count, 1), *held = (uint8_t *)memory(count, 1);
     gxs_model model = *given;
     gxs_step_desc step;
@@ -217,7 +223,8 @@ static double *find_rest(const gxs_model *given, size_t *unknowns)
     step.newton_iterations = 1000;
     step.newton_tolerance = 1e-7;
     step.cg_tolerance = 1e-4;
-    expect(gxs_solver_create(NULL, &solver) == GX_OK && gxs_solver_set_model(solver, &model, NULL) == GX_OK, "no model");
+    expect(gxs_solver_create(NULL, &solver) == GX_OK && gxs_solver_set_model(solver, &model, NULL) == GX_OK,
+           "no model");
     expect(gxs_solver_step(solver, &step, displacement, velocity, NULL, NULL) == GX_OK, "no rest is found");
     gxs_solver_destroy(solver);
     free(velocity);
@@ -227,16 +234,15 @@ static double *find_rest(const gxs_model *given, size_t *unknowns)
 }
 
 /* Barycentric coordinates */
-static void locate(const gxs_model *m, const gxs_element *e, const double x[3], double at[4])
-{
+static void locate(const gxs_model *m, const gxs_element *e, const double x[3], double at[4]) {
     const double *origin = m->positions + 3 * (size_t)e->copy[0];
     int i, k;
-    for (i = 0; i < 4; i++) for (at[i] = i == 0, k = 0; k < 3; k++) at[i] += e->gradient[i][k] * (x[k] - origin[k]);
+    for (i = 0; i < 4; i++)
+        for (at[i] = i == 0, k = 0; k < 3; k++) at[i] += e->gradient[i][k] * (x[k] - origin[k]);
 }
 
 /* z of the part's centre of mass */
-static double height(const gxs_model *m, const gxs_element *e)
-{
+static double height(const gxs_model *m, const gxs_element *e) {
     static const int row[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
     double z = 0, mass = 0;
     int i, j;
@@ -248,10 +254,10 @@ static double height(const gxs_model *m, const gxs_element *e)
     return z / mass;
 }
 
-/* How far the piece's point has gone down: by the part of the piece that has it, or is closest to it; 0: no part is left. pieces: the model
-   whose parts say which piece each element is of */
-static double drop_of(const strip *s, size_t piece, const gxs_model *m, const gxs_element *pieces, const double *displacement)
-{
+/* How far the piece's point has gone down: by the part of the piece that has it, or is closest to it; 0: no part is
+   left. pieces: the model whose parts say which piece each element is of */
+static double drop_of(const strip *s, size_t piece, const gxs_model *m, const gxs_element *pieces,
+                      const double *displacement) {
     double best = -HUGE_VAL, drop = 0;
     size_t i, k;
     for (i = 0; i < m->element_count; i++) {
@@ -273,44 +279,50 @@ static double drop_of(const strip *s, size_t piece, const gxs_model *m, const gx
 
 static size_t done, total;
 
-static void print_row(const strip *s, size_t piece, int method, uint32_t refinement, double thickness, size_t unknowns, double drop)
-{
+static void print_row(const strip *s, size_t piece, int method, uint32_t refinement, double thickness, size_t unknowns,
+                      double drop) {
     char value[64] = ",", error[32] = "";
     if (drop > 0) {
         snprintf(value, sizeof value, "%.6g", drop);
         snprintf(error, sizeof error, "%.3e", fabs(drop / s->truth[piece] - 1));
-    } else value[0] = 0;
-    csv_row("%s,%lu,%s,%lu,%.4g,%lu,%s,%.6g,%s", s->name, (unsigned long)piece + 1, method_names[method], (unsigned long)refinement, thickness,
-            (unsigned long)unknowns, value, s->truth[piece], error);
-    fprintf(stderr, "%-10s %5lu %-11s %10lu %12.4g %9lu %12s %12s\n", s->name, (unsigned long)piece + 1, method_names[method], (unsigned long)refinement,
-            thickness, (unsigned long)unknowns, drop > 0 ? value : "nothing left", error);
+    } else
+        value[0] = 0;
+    csv_row("%s,%lu,%s,%lu,%.4g,%lu,%s,%.6g,%s", s->name, (unsigned long)piece + 1, method_names[method],
+            (unsigned long)refinement, thickness, (unsigned long)unknowns, value, s->truth[piece], error);
+    fprintf(stderr, "%-10s %5lu %-11s %10lu %12.4g %9lu %12s %12s\n", s->name, (unsigned long)piece + 1,
+            method_names[method], (unsigned long)refinement, thickness, (unsigned long)unknowns,
+            drop > 0 ? value : "nothing left", error);
 }
 
 /* Thickness of a piece, cubes: of a fold that between two cuts */
-static double thickness_of(const strip *s, size_t piece) { return s->piece_count > 1 ? s->high[piece] - s->low[piece] : s->cuts[1].z - s->cuts[0].z; }
+static double thickness_of(const strip *s, size_t piece) {
+    return s->piece_count > 1 ? s->high[piece] - s->low[piece] : s->cuts[1].z - s->cuts[0].z;
+}
 
 /* Rows of one method in the cut body; uncut: the same mesh */
-static void run_method(const strip *s, const parts_body *p, const gxs_model *uncut, int method, uint32_t refinement)
-{
+static void run_method(const strip *s, const parts_body *p, const gxs_model *uncut, int method, uint32_t refinement) {
     gxs_model m = method == DELETION ? *uncut : p->model;
     gxs_element *elements = (gxs_element *)memory(m.element_count, sizeof *elements);
     const gxs_element *pieces = method == VNA ? m.elements : elements;
     double *rest = NULL;
     size_t unknowns = 0, i;
     progress_draw("space", done++, total, s->name);
-    if (method == DELETION) m.element_count = parts_delete(p, uncut, elements);
-    else if (method == VNA) vna_replicate(m.elements, m.element_count, &density, elements);
-    else memcpy(elements, m.elements, m.element_count * sizeof *elements);
+    if (method == DELETION)
+        m.element_count = parts_delete(p, uncut, elements);
+    else if (method == VNA)
+        vna_replicate(m.elements, m.element_count, &density, elements);
+    else
+        memcpy(elements, m.elements, m.element_count * sizeof *elements);
     m.elements = elements;
     if (m.element_count > 0) rest = find_rest(&m, &unknowns);
     for (i = 0; i < s->piece_count; i++)
-        print_row(s, i, method, refinement, refinement * thickness_of(s, i), unknowns, rest ? drop_of(s, i, &m, pieces, rest) : 0);
+        print_row(s, i, method, refinement, refinement * thickness_of(s, i), unknowns,
+                  rest ? drop_of(s, i, &m, pieces, rest) : 0);
     free(rest);
     free(elements);
 }
 
-static void run_cut(const strip *s, uint32_t refinement)
-{
+static void run_cut(const strip *s, uint32_t refinement) {
     size_t n[3], i;
     double size[3];
     gxio_mesh mesh;
@@ -318,7 +330,10 @@ static void run_cut(const strip *s, uint32_t refinement)
     gxs_model uncut;
     parts_body p;
     int method;
-    for (i = 0; i < 3; i++) { n[i] = (size_t)s->cubes[i] * refinement; size[i] = s->cubes[i]; }
+    for (i = 0; i < 3; i++) {
+        n[i] = (size_t)s->cubes[i] * refinement;
+        size[i] = s->cubes[i];
+    }
     mesh = make_grid(n, size);
     body = make_body(&mesh, &s->held);
     uncut_body = make_body(&mesh, &s->held);
@@ -332,9 +347,9 @@ static void run_cut(const strip *s, uint32_t refinement)
     gxio_mesh_release(&mesh);
 }
 
-/* A slice by itself, `refinement` cubes through its thickness; or the strip in layers that end on its cuts. Returns the drop. */
-static double run_conforming(const strip *s, size_t piece, uint32_t refinement, size_t *unknowns)
-{
+/* A slice by itself, `refinement` cubes through its thickness; or the strip in layers that end on its cuts. Returns the
+ * drop. */
+static double run_conforming(const strip *s, size_t piece, uint32_t refinement, size_t *unknowns) {
     gxio_mesh mesh;
     gx_body *body;
     gxs_model model;
@@ -342,11 +357,13 @@ static double run_conforming(const strip *s, size_t piece, uint32_t refinement, 
     progress_draw("space", done++, total, s->name);
     if (s->piece_count > 1) {
         const double t = thickness_of(s, piece), size[3] = {s->cubes[0], 1, t};
-        const size_t n[3] = {(size_t)ceil(size[0] * refinement / t - 1e-9), (size_t)ceil(refinement / t - 1e-9), refinement};
+        const size_t n[3] = {(size_t)ceil(size[0] * refinement / t - 1e-9), (size_t)ceil(refinement / t - 1e-9),
+                             refinement};
         size_t i;
         mesh = make_grid(n, size);
         for (i = 0; i < mesh.node_count; i++) mesh.positions[3 * i + 2] += s->low[piece];
-    } else mesh = make_layers(s, refinement);
+    } else
+        mesh = make_layers(s, refinement);
     body = make_body(&mesh, &s->held);
     if (s->piece_count == 1) cut_body(body, s);
     expect(gx_body_model(body, &model) == GX_OK, "no model");
@@ -362,23 +379,20 @@ static double run_conforming(const strip *s, size_t piece, uint32_t refinement, 
 static double extrapolate(double coarse, double fine) { return 3 / (4 / fine - 1 / coarse); }
 
 /* Elements of a conforming mesh of refinement 1 */
-static double conforming_size(const strip *s, size_t piece)
-{
+static double conforming_size(const strip *s, size_t piece) {
     const double t = thickness_of(s, piece);
     return s->piece_count > 1 ? 5 * ceil(s->cubes[0] / t) * ceil(1 / t) : 5.0 * s->cubes[0] * s->cubes[2];
 }
 
 enum { MESHES = 8 };
 
-static size_t count_conforming(const strip *s, size_t piece, double most_elements)
-{
+static size_t count_conforming(const strip *s, size_t piece, double most_elements) {
     size_t n = 0;
     while (n < MESHES && conforming_size(s, piece) * pow(8, (double)n) <= most_elements) n++;
     return n;
 }
 
-static void run_piece(strip *s, size_t piece, double most_elements)
-{
+static void run_piece(strip *s, size_t piece, double most_elements) {
     const size_t count = count_conforming(s, piece, most_elements);
     double drops[MESHES];
     size_t unknowns[MESHES], i;
@@ -387,42 +401,42 @@ static void run_piece(strip *s, size_t piece, double most_elements)
     s->truth[piece] = extrapolate(drops[count - 2], drops[count - 1]);
     if (count > 2) s->trust[piece] = fabs(extrapolate(drops[count - 3], drops[count - 2]) / s->truth[piece] - 1);
     for (i = 0; i < count; i++)
-        print_row(s, piece, CONFORMING, 1u << i, (s->piece_count > 1 ? 1 : thickness_of(s, piece)) * (double)(1u << i), unknowns[i], drops[i]);
-    csv_row("%s,%lu,truth,,,,%.6g,%.6g,%.3e", s->name, (unsigned long)piece + 1, s->truth[piece], s->truth[piece], s->trust[piece]);
-    fprintf(stderr, "%-10s %5lu %-11s %10s %12s %9s %12.6g %12.3e\n", s->name, (unsigned long)piece + 1, "truth", "", "", "", s->truth[piece], s->trust[piece]);
+        print_row(s, piece, CONFORMING, 1u << i, (s->piece_count > 1 ? 1 : thickness_of(s, piece)) * (double)(1u << i),
+                  unknowns[i], drops[i]);
+    csv_row("%s,%lu,truth,,,,%.6g,%.6g,%.3e", s->name, (unsigned long)piece + 1, s->truth[piece], s->truth[piece],
+            s->trust[piece]);
+    fprintf(stderr, "%-10s %5lu %-11s %10s %12s %9s %12.6g %12.3e\n", s->name, (unsigned long)piece + 1, "truth", "",
+            "", "", s->truth[piece], s->trust[piece]);
 }
 
-static size_t count_cut(const strip *s, double most_elements)
-{
+static size_t count_cut(const strip *s, double most_elements) {
     size_t n = 0;
     while (5.0 * s->cubes[0] * s->cubes[2] * pow(8, (double)n) <= most_elements) n++;
     return n;
 }
 
-static void run_strip(strip *s, double most_elements)
-{
+static void run_strip(strip *s, double most_elements) {
     const size_t count = count_cut(s, most_elements);
     size_t i;
     for (i = 0; i < s->piece_count; i++) run_piece(s, i, most_elements);
     for (i = 0; i < count; i++) run_cut(s, 1u << i);
 }
 
-static size_t count_rows(const strip *s, double most_elements)
-{
+static size_t count_rows(const strip *s, double most_elements) {
     size_t n = CONFORMING * count_cut(s, most_elements), i;
     for (i = 0; i < s->piece_count; i++) n += count_conforming(s, i, most_elements);
     return n;
 }
 
-int main(int argc, char **argv)
-{
+int main(int argc, char **argv) {
     int small;
     const char *path = csv_arguments(argc, argv, &small);
     const double most_elements = small ? 60000 : 700000;
     strip slices = make_slices(small ? 4 : 6), accordion = make_accordion(small ? 8 : 16, small ? 2 : FOLDS);
     csv_open(argv[0], path, "scene,piece,method,refinement,thickness,unknowns,drop,truth,error");
     total = count_rows(&slices, most_elements) + count_rows(&accordion, most_elements);
-    fprintf(stderr, "%-10s %5s %-11s %10s %12s %9s %12s %12s\n", "scene", "piece", "method", "refinement", "t, elements", "unknowns", "drop, m", "error");
+    fprintf(stderr, "%-10s %5s %-11s %10s %12s %9s %12s %12s\n", "scene", "piece", "method", "refinement",
+            "t, elements", "unknowns", "drop, m", "error");
     run_strip(&slices, most_elements);
     run_strip(&accordion, most_elements);
     progress_draw("space", done, total, "");

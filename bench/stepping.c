@@ -1,26 +1,27 @@
 /* stepping.c - accuracy against speed: the error of a motion against the time that it takes, over what can be turned.
 
-   make bench-stepping builds and runs it on the cut accordion and the slab in five slices (traces of the scenes, each blade's whole path
-   cut at the start); it prints CSV and writes it to build/bench/stepping.csv, to stderr where ours is on the front and where another
-   method is the better choice.
-   usage: stepping FILE [--small] SCENE=TRACE...     --small: a fifth of the time
+   make bench-stepping builds and runs it on the cut accordion and the slab in five slices (traces of the scenes, each
+   blade's whole path cut at the start); it prints CSV and writes it to build/bench/stepping.csv, to stderr where ours
+   is on the front and where another method is the better choice. usage: stepping FILE [--small] SCENE=TRACE... --small:
+   a fifth of the time
 
-   Every run moves the body from rest for 0.33 s. Its error is the difference from the reference in displacement, weighted by mass, as a
-   share of how far the reference moves. The reference: thin cuts, exact integrals, the same space, implicit midpoint with steps of
-   0.033/32 s, Newton to 1e-8. How far off it may be itself is in the row "reference": BDF2's difference from it with steps half as
-   long. The error of the space itself, under refinement, is space.c's.
+   Every run moves the body from rest for 0.33 s. Its error is the difference from the reference in displacement,
+   weighted by mass, as a share of how far the reference moves. The reference: thin cuts, exact integrals, the same
+   space, implicit midpoint with steps of 0.033/32 s, Newton to 1e-8. How far off it may be itself is in the row
+   "reference": BDF2's difference from it with steps half as long. The error of the space itself, under refinement, is
+   space.c's.
 
-   What is turned: steps, integrators, lumped mass, Newton, CG, preconditioners; element duplication (VNA) and deletion; and, all by BDF2
-   with steps of 0.033/4 s and CG to 1e-6, so that they differ in nothing else,
-       integrals   of divided elements, by points (bench/parts.h): "positive", degree; "adaptive", depth; "regular", cells along an edge;
-                   "RXFEM", degree. A step then takes an elastic evaluation at each point, as published; "one": one for each part, in
-                   which F is constant. RXFEM refuses cuts that cross: the accordion's
-       thickness   of cuts, in edges (their mean): "gxfem; solids", and "Algorithm 1" as published (bench/literal.h), of all blades at
-                   once: one after the other, blades that cross leave pieces stuck. Each part of the thin cut moves as the largest part
-                   of the other body whose centre is in it, and where there is none as if it had stayed where it was
-   Columns: series and what was turned in it; dt; steps; ms_per_step, the mean, the evaluations of its points included; ms_per_second, of
-   simulated time; error; of_exact: the difference from the same steps by thin cuts and exact integrals; integrals_ms: to integrate all
-   divided elements, once; points: of the mean divided part; note: why there is no motion. */
+   What is turned: steps, integrators, lumped mass, Newton, CG, preconditioners; element duplication (VNA) and deletion;
+   and, all by BDF2 with steps of 0.033/4 s and CG to 1e-6, so that they differ in nothing else, integrals   of divided
+   elements, by points (bench/parts.h): "positive", degree; "adaptive", depth; "regular", cells along an edge; "RXFEM",
+   degree. A step then takes an elastic evaluation at each point, as published; "one": one for each part, in which F is
+   constant. RXFEM refuses cuts that cross: the accordion's thickness   of cuts, in edges (their mean): "gxfem; solids",
+   and "Algorithm 1" as published (bench/literal.h), of all blades at once: one after the other, blades that cross leave
+   pieces stuck. Each part of the thin cut moves as the largest part of the other body whose centre is in it, and where
+   there is none as if it had stayed where it was Columns: series and what was turned in it; dt; steps; ms_per_step, the
+   mean, the evaluations of its points included; ms_per_second, of simulated time; error; of_exact: the difference from
+   the same steps by thin cuts and exact integrals; integrals_ms: to integrate all divided elements, once; points: of
+   the mean divided part; note: why there is no motion. */
 #define _POSIX_C_SOURCE 200809L
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
@@ -32,8 +33,8 @@
 #include "sampling.h"
 #include "parts.h"
 
-static const double longest = 0.033;    /* s, of a step */
-static double duration = 0.33;          /* s, of a run */
+static const double longest = 0.033; /* s, of a step */
+static double duration = 0.33;       /* s, of a run */
 
 /* A way of taking steps; zero: the library's own */
 typedef struct knobs {
@@ -50,21 +51,23 @@ typedef struct knobs {
 /* What is moved */
 typedef struct mover {
     gxs_model model;
-    const double *start;        /* copy_count x 3 */
-    uint32_t *corners;          /* x 4: copies that move the setting's parts, PARTS_NONE: the part is lost; NULL: the setting's own */
-    double integrals_ms;        /* to integrate all divided elements */
-    double evaluate_ms;         /* of all points, in a step */
-    double points;              /* of the mean divided part; 0: no points */
+    const double *start; /* copy_count x 3 */
+    /* x 4: copies that move the setting's parts, PARTS_NONE: the part is lost; NULL: the setting's own */
+    uint32_t *corners;
+    double integrals_ms; /* to integrate all divided elements */
+    double evaluate_ms;  /* of all points, in a step */
+    double points;       /* of the mean divided part; 0: no points */
 } mover;
 
 typedef struct setting {
     const char *name;
-    replay scene;               /* its cuts are each blade's whole path */
-    double edge;                /* mean, m */
+    replay scene; /* its cuts are each blade's whole path */
+    double edge;  /* mean, m */
     method_body *body;
     parts_body parts;
     mover own;
-    double *reference, *exact;  /* copy_count x 3: at the end; exact: by the steps with which integrals and thicknesses are compared */
+    /* copy_count x 3: at the end; exact: by the steps with which integrals and thicknesses are compared */
+    double *reference, *exact;
 } setting;
 
 /* ---- the table ---- */
@@ -72,15 +75,14 @@ typedef struct setting {
 typedef struct kept_row {
     char series[32], value[24];
     double ms_per_second, error;
-    double of_exact;            /* below 0: not compared with it */
-    double run_ms;              /* of the whole run, integrals once */
+    double of_exact; /* below 0: not compared with it */
+    double run_ms;   /* of the whole run, integrals once */
 } kept_row;
 
 static kept_row *kept_rows;
 static size_t kept_count, done, total;
 
-static void keep_row(const mover *m, const knobs *k, double ms, double error, double of_exact)
-{
+static void keep_row(const mover *m, const knobs *k, double ms, double error, double of_exact) {
     kept_row *kept;
     kept_rows = (kept_row *)method_memory(kept_rows, kept_count + 1, sizeof *kept_rows);
     kept = &kept_rows[kept_count++];
@@ -93,15 +95,16 @@ static void keep_row(const mover *m, const knobs *k, double ms, double error, do
 }
 
 /* ms below 0: no motion, and note says why; of_exact below 0: not compared with exact, and in the front */
-static void print_row(const setting *s, const mover *m, const knobs *k, double ms, double error, double of_exact, const char *note)
-{
+static void print_row(const setting *s, const mover *m, const knobs *k, double ms, double error, double of_exact,
+                      const char *note) {
     const unsigned long steps = (unsigned long)(duration / k->dt + 0.5);
     char head[128], compared[24] = "", integrals[24] = "", points[24] = "";
     snprintf(head, sizeof head, "%s,%s,%s,%g,%lu", s->name, k->series, k->value, k->dt, steps);
     if (of_exact >= 0) snprintf(compared, sizeof compared, "%.3e", of_exact);
     if (m && m->integrals_ms > 0) snprintf(integrals, sizeof integrals, "%.3f", m->integrals_ms);
     if (m && m->points > 0) snprintf(points, sizeof points, "%.1f", m->points);
-    if (ms < 0) csv_row("%s,,,,,%s,%s,%s", head, integrals, points, note);
+    if (ms < 0)
+        csv_row("%s,,,,,%s,%s,%s", head, integrals, points, note);
     else {
         csv_row("%s,%.3f,%.1f,%.3e,%s,%s,%s,%s", head, ms, ms / k->dt, error, compared, integrals, points, note);
         keep_row(m, k, ms, error, of_exact);
@@ -109,44 +112,46 @@ static void print_row(const setting *s, const mover *m, const knobs *k, double m
     progress_draw("stepping", ++done, total, k->series);
 }
 
-static int cheaper(const void *a, const void *b)
-{
+static int cheaper(const void *a, const void *b) {
     const double x = ((const kept_row *)a)->ms_per_second, y = ((const kept_row *)b)->ms_per_second;
     return (x > y) - (x < y);
 }
 
 /* Is it by the library's own means? Its block-Jacobi and assembled matrix are. */
-static int is_ours(const kept_row *r)
-{
-    return strncmp(r->series, "VNA", 3) != 0 && strncmp(r->series, "deletion", 8) != 0 && strstr(r->value, "RXFEM") == NULL;
+static int is_ours(const kept_row *r) {
+    return strncmp(r->series, "VNA", 3) != 0 && strncmp(r->series, "deletion", 8) != 0 &&
+           strstr(r->value, "RXFEM") == NULL;
 }
 
 /* The cheapest row of ours that is as exact; NULL: there is none. Rows are in order of time. */
-static const kept_row *cheapest_of_ours(double error)
-{
+static const kept_row *cheapest_of_ours(double error) {
     size_t i;
     for (i = 0; i < kept_count; i++)
         if (kept_rows[i].of_exact < 0 && is_ours(&kept_rows[i]) && kept_rows[i].error <= error) return &kept_rows[i];
     return NULL;
 }
 
-static void print_choice(const kept_row *r)
-{
+static void print_choice(const kept_row *r) {
     const kept_row *ours = cheapest_of_ours(r->error);
     fprintf(stderr, "%-24s %-16s %14.3f %10.2e", r->series, r->value, 1e-3 * r->ms_per_second, r->error);
-    if (is_ours(r)) fprintf(stderr, "\n");
-    else if (ours) fprintf(stderr, "  the better choice here: as exact, ours takes %.3f (%s, %s)\n", 1e-3 * ours->ms_per_second, ours->series, ours->value);
-    else fprintf(stderr, "  the better choice here: ours is never as exact\n");
+    if (is_ours(r))
+        fprintf(stderr, "\n");
+    else if (ours)
+        fprintf(stderr, "  the better choice here: as exact, ours takes %.3f (%s, %s)\n", 1e-3 * ours->ms_per_second,
+                ours->series, ours->value);
+    else
+        fprintf(stderr, "  the better choice here: ours is never as exact\n");
 }
 
-/* The front of a scene: rows that nothing cheaper beats. Those of integrals and thickness, all by the same steps, are left out. */
-static void print_front(const char *scene)
-{
+/* The front of a scene: rows that nothing cheaper beats. Those of integrals and thickness, all by the same steps, are
+ * left out. */
+static void print_front(const char *scene) {
     double least = HUGE_VAL;
     size_t i, front = 0, ours = 0;
     progress_clear();
     qsort(kept_rows, kept_count, sizeof *kept_rows, cheaper);
-    fprintf(stderr, "%s, from cheap to exact: what nothing cheaper beats\n%-24s %-16s %14s %10s\n", scene, "series", "value", "s per second", "error");
+    fprintf(stderr, "%s, from cheap to exact: what nothing cheaper beats\n%-24s %-16s %14s %10s\n", scene, "series",
+            "value", "s per second", "error");
     for (i = 0; i < kept_count; i++) {
         const kept_row *r = &kept_rows[i];
         if (r->of_exact >= 0 || r->error >= least) continue;
@@ -158,43 +163,47 @@ static void print_front(const char *scene)
     fprintf(stderr, "of this front %lu of %lu are ours\n", (unsigned long)ours, (unsigned long)front);
 }
 
-/* Integrals by other means, of the same steps: the better choice where the whole run, making them included, takes less by more than the noise
-   of times, and the motion is off by less than the steps' own error */
-static void print_integrals(void)
-{
+/* Integrals by other means, of the same steps: the better choice where the whole run, making them included, takes less
+   by more than the noise of times, and the motion is off by less than the steps' own error */
+static void print_integrals(void) {
     static const double noise = 0.15;
     const kept_row *exact = NULL;
     size_t i, better = 0;
-    for (i = 0; i < kept_count; i++) if (strcmp(kept_rows[i].series, "exact") == 0) exact = &kept_rows[i];
+    for (i = 0; i < kept_count; i++)
+        if (strcmp(kept_rows[i].series, "exact") == 0) exact = &kept_rows[i];
     method_must(exact ? GX_OK : GX_ERROR_ARGUMENT, "exact");
     for (i = 0; i < kept_count; i++) {
         const kept_row *r = &kept_rows[i];
         if (r->of_exact < 0 || r->of_exact >= exact->error || r->run_ms >= (1 - noise) * exact->run_ms) continue;
         better++;
-        fprintf(stderr, "integrals by \"%s\", %s, are the better choice: the run takes %.0f ms, beside %.0f, and is off by %.1e, the steps by %.1e\n",
+        fprintf(stderr,
+                "integrals by \"%s\", %s, are the better choice: the run takes %.0f ms, beside %.0f, and is off by "
+                "%.1e, the steps by %.1e\n",
                 r->series, r->value, r->run_ms, exact->run_ms, r->of_exact, exact->error);
     }
-    if (better == 0) fprintf(stderr, "exact integrals of thin cuts: nothing that is off by less than the steps (%.1e) takes less time\n", exact->error);
+    if (better == 0)
+        fprintf(stderr,
+                "exact integrals of thin cuts: nothing that is off by less than the steps (%.1e) takes less time\n",
+                exact->error);
 }
 
 /* ---- the cut body ---- */
 
 /* Does a later cut go on where this one ends? */
-static int is_continued(const replay *scene, size_t cut)
-{
+static int is_continued(const replay *scene, size_t cut) {
     const gx_surface *path = &scene->cuts[cut].path;
     size_t i;
     for (i = cut + 1; i < scene->cut_count; i++) {
         const replay_cut *later = &scene->cuts[i];
         if (later->first == path->triangle_count && later->path.vertex_count >= path->vertex_count &&
-            memcmp(later->path.vertices, path->vertices, 3 * path->vertex_count * sizeof(double)) == 0) return 1;
+            memcmp(later->path.vertices, path->vertices, 3 * path->vertex_count * sizeof(double)) == 0)
+            return 1;
     }
     return 0;
 }
 
 /* The scene with one cut for each blade, all of its path; arrays but for the cuts are borrowed. */
-static replay whole_blades(const replay *scene)
-{
+static replay whole_blades(const replay *scene) {
     replay r = *scene;
     size_t i;
     r.cuts = (replay_cut *)method_memory(NULL, scene->cut_count, sizeof *r.cuts);
@@ -206,8 +215,7 @@ static replay whole_blades(const replay *scene)
     return r;
 }
 
-static double mean_edge(const replay *scene)
-{
+static double mean_edge(const replay *scene) {
     static const int ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
     double sum = 0;
     size_t e, i, k;
@@ -223,17 +231,16 @@ static double mean_edge(const replay *scene)
 }
 
 /* The library's body with all cuts made */
-static method_body *cut_body(const replay *scene, method_times *times)
-{
+static method_body *cut_body(const replay *scene, method_times *times) {
     method_body *body = (method_body *)method_body_create(scene);
     size_t i;
     memset(times, 0, sizeof *times);
-    for (i = 0; i < scene->cut_count; i++) method_must(method_body_cut(body, &scene->cuts[i], times) ? GX_ERROR_ARGUMENT : GX_OK, "cut");
+    for (i = 0; i < scene->cut_count; i++)
+        method_must(method_body_cut(body, &scene->cuts[i], times) ? GX_ERROR_ARGUMENT : GX_OK, "cut");
     return body;
 }
 
-static void setting_make(setting *s, const char *name, const replay *scene)
-{
+static void setting_make(setting *s, const char *name, const replay *scene) {
     method_times times;
     memset(s, 0, sizeof *s);
     s->name = name;
@@ -247,8 +254,7 @@ static void setting_make(setting *s, const char *name, const replay *scene)
     s->exact = (double *)method_memory(NULL, 3 * s->own.model.copy_count, sizeof(double));
 }
 
-static void setting_free(setting *s)
-{
+static void setting_free(setting *s) {
     parts_free(&s->parts);
     method_body_destroy(s->body);
     free(s->scene.cuts);
@@ -258,8 +264,7 @@ static void setting_free(setting *s)
 
 /* ---- a run ---- */
 
-static gxs_solver *make_solver(const mover *m, const knobs *k)
-{
+static gxs_solver *make_solver(const mover *m, const knobs *k) {
     gxs_solver_desc desc;
     gxs_solver *solver;
     gxs_model model = m->model;
@@ -272,9 +277,9 @@ static gxs_solver *make_solver(const mover *m, const knobs *k)
     return solver;
 }
 
-/* One step; history: state before the last step and before this one, u and v of each, size numbers each. BDF2 needs the former. */
-static gx_result advance(gxs_solver *solver, gxs_step_desc *desc, double *u, double *v, double *history, size_t size)
-{
+/* One step; history: state before the last step and before this one, u and v of each, size numbers each. BDF2 needs the
+ * former. */
+static gx_result advance(gxs_solver *solver, gxs_step_desc *desc, double *u, double *v, double *history, size_t size) {
     double *before = history, *now = history + 2 * size;
     gx_result result;
     memcpy(now, u, size * sizeof(double));
@@ -288,10 +293,10 @@ static gx_result advance(gxs_solver *solver, gxs_step_desc *desc, double *u, dou
 }
 
 /* Moves u (copy_count x 3) from the start to the end; *ms: per step. */
-static gx_result run(const setting *s, const mover *m, const knobs *k, double *u, double *ms)
-{
+static gx_result run(const setting *s, const mover *m, const knobs *k, double *u, double *ms) {
     const size_t size = 3 * m->model.copy_count, steps = (size_t)(duration / k->dt + 0.5);
-    double *v = (double *)calloc(size, sizeof(double)), *history = (double *)method_memory(NULL, 4 * size, sizeof(double)), begin;
+    double *v = (double *)calloc(size, sizeof(double)),
+           *history = (double *)method_memory(NULL, 4 * size, sizeof(double)), begin;
     gxs_solver *solver = make_solver(m, k);
     gxs_step_desc desc;
     gx_result result = GX_OK;
@@ -314,9 +319,9 @@ static gx_result run(const setting *s, const mover *m, const knobs *k, double *u
     return result;
 }
 
-/* From `truth` (the setting's copies), over the setting's parts, each corner with its row of the mass, as a share of the reference's motion */
-static double error_of(const setting *s, const mover *m, const double *u, const double *truth)
-{
+/* From `truth` (the setting's copies), over the setting's parts, each corner with its row of the mass, as a share of
+ * the reference's motion */
+static double error_of(const setting *s, const mover *m, const double *u, const double *truth) {
     static const int row[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
     double off = 0, moved = 0;
     size_t i, c, j, k;
@@ -328,7 +333,8 @@ static double error_of(const setting *s, const mover *m, const double *u, const 
             double mass = 0;
             for (j = 0; j < 4; j++) mass += e->mass[row[c][j]];
             for (k = 0; k < 3; k++) {
-                const double start = s->own.start[3 * copy + k], at = other == PARTS_NONE ? start : u[3 * (size_t)other + k];
+                const double start = s->own.start[3 * copy + k],
+                             at = other == PARTS_NONE ? start : u[3 * (size_t)other + k];
                 off += mass * (at - truth[3 * copy + k]) * (at - truth[3 * copy + k]);
                 moved += mass * (s->reference[3 * copy + k] - start) * (s->reference[3 * copy + k] - start);
             }
@@ -336,15 +342,16 @@ static double error_of(const setting *s, const mover *m, const double *u, const 
     return sqrt(off / moved);
 }
 
-/* Runs and prints; "SERIES one" beside it where the mover has points: one evaluation for each part. compare: with the exact run of the same steps */
-static void row(const setting *s, const mover *m, const knobs *k, int compare)
-{
+/* Runs and prints; "SERIES one" beside it where the mover has points: one evaluation for each part. compare: with the
+ * exact run of the same steps */
+static void row(const setting *s, const mover *m, const knobs *k, int compare) {
     double *u = (double *)method_memory(NULL, 3 * m->model.copy_count, sizeof(double)), ms, error, of_exact;
     const gx_result result = run(s, m, k, u, &ms);
     error = result == GX_OK ? error_of(s, m, u, s->reference) : 0;
     of_exact = result == GX_OK && compare ? error_of(s, m, u, s->exact) : -1;
     if (result != GX_OK) ms = -1;
-    print_row(s, m, k, ms < 0 ? ms : ms + m->evaluate_ms, error, of_exact, result == GX_OK ? "" : gx_result_text(result));
+    print_row(s, m, k, ms < 0 ? ms : ms + m->evaluate_ms, error, of_exact,
+              result == GX_OK ? "" : gx_result_text(result));
     if (m->points > 0) {
         char series[32];
         knobs one = *k;
@@ -355,8 +362,7 @@ static void row(const setting *s, const mover *m, const knobs *k, int compare)
     free(u);
 }
 
-static knobs knobs_of(const char *series, const char *value, double dt, gxs_integrator integrator)
-{
+static knobs knobs_of(const char *series, const char *value, double dt, gxs_integrator integrator) {
     knobs k;
     memset(&k, 0, sizeof k);
     k.series = series;
@@ -368,9 +374,9 @@ static knobs knobs_of(const char *series, const char *value, double dt, gxs_inte
 
 /* ---- other movers ---- */
 
-/* Which copies of another body stand for the corners of the setting's parts; owners: the element of each of the model's elements */
-static uint32_t *match(const setting *s, const gxs_model *model, const uint32_t *owners)
-{
+/* Which copies of another body stand for the corners of the setting's parts; owners: the element of each of the model's
+ * elements */
+static uint32_t *match(const setting *s, const gxs_model *model, const uint32_t *owners) {
     const size_t count = s->own.model.element_count;
     uint32_t *corners = (uint32_t *)method_memory(NULL, 4 * count, sizeof *corners);
     double *largest = (double *)calloc(count + 1, sizeof *largest);
@@ -391,13 +397,13 @@ static uint32_t *match(const setting *s, const gxs_model *model, const uint32_t 
     return corners;
 }
 
-/* Milliseconds of forces and tangents of St. Venant-Kirchhoff at the points of divided parts, one by one as RXFEM takes them; counted from the
-   first MEASURED */
-static double evaluate_ms(const setting *s, const gxs_element *elements, const size_t *counts, double *points)
-{
+/* Milliseconds of forces and tangents of St. Venant-Kirchhoff at the points of divided parts, one by one as RXFEM takes
+   them; counted from the first MEASURED */
+static double evaluate_ms(const setting *s, const gxs_element *elements, const size_t *counts, double *points) {
     enum { MEASURED = 200000 };
     static const double lame[2] = {1e6, 1e6};
-    double force[12] = {0}, tangent[144] = {0}, f[9], all = 0, seen = 0, parts_seen = 0, begin = seconds(NULL), took = 0;
+    double force[12] = {0}, tangent[144] = {0}, f[9], all = 0, seen = 0, parts_seen = 0, begin = seconds(NULL),
+           took = 0;
     size_t i, j;
     for (i = 0; i < s->own.model.element_count; i++) {
         const uint32_t e = elements[i].group;
@@ -412,15 +418,14 @@ static double evaluate_ms(const setting *s, const gxs_element *elements, const s
         seen += (double)counts[i];
         took = seconds(NULL) - begin;
     }
-    method_must(tangent[0] >= 0 ? GX_OK : GX_ERROR_DIVERGED, "evaluation");     /* read, so that it is not left out */
+    method_must(tangent[0] >= 0 ? GX_OK : GX_ERROR_DIVERGED, "evaluation"); /* read, so that it is not left out */
     *points = all / parts_seen;
     return seen > 0 ? 1e3 * took * all / seen : 0;
 }
 
 /* ---- what is turned: steps and solvers ---- */
 
-static void find_reference(setting *s)
-{
+static void find_reference(setting *s) {
     knobs k = knobs_of("reference", "BDF2", longest / 32, GXS_MIDPOINT);
     double ms;
     progress_draw("stepping", done, total, "reference");
@@ -435,14 +440,20 @@ static void find_reference(setting *s)
 
 enum { STEPS = 5, SWEEPS = 6, TOLERANCES = 4, NEWTONS = 4, SOLVERS = 3 };
 
-typedef struct sweep { const char *series; gxs_integrator integrator; uint32_t newton; int lumped; } sweep;
+typedef struct sweep {
+    const char *series;
+    gxs_integrator integrator;
+    uint32_t newton;
+    int lumped;
+} sweep;
 
+/* clang-format off */
 static const sweep sweeps[SWEEPS] = {
     {"BDF1", GXS_BDF1, 1, 0}, {"BDF2", GXS_BDF2, 1, 0}, {"midpoint", GXS_MIDPOINT, 1, 0}, {"midpoint; 2 Newton", GXS_MIDPOINT, 2, 0},
     {"BDF1; lumped", GXS_BDF1, 1, 1}, {"BDF2; lumped", GXS_BDF2, 1, 1}};
+/* clang-format on */
 
-static void turn_steps(const setting *s, const mover *m, const sweep *w)
-{
+static void turn_steps(const setting *s, const mover *m, const sweep *w) {
     static const int divisors[STEPS] = {1, 2, 4, 8, 16};
     int i;
     for (i = 0; i < STEPS; i++) {
@@ -455,8 +466,7 @@ static void turn_steps(const setting *s, const mover *m, const sweep *w)
     }
 }
 
-static void turn_solver(const setting *s)
-{
+static void turn_solver(const setting *s) {
     static const double tolerances[TOLERANCES] = {1e-1, 1e-2, 1e-4, 1e-6};
     static const uint32_t newtons[NEWTONS] = {1, 2, 4, 16};
     char text[32];
@@ -486,8 +496,7 @@ static void turn_solver(const setting *s)
 
 /* ---- duplication and deletion of elements ---- */
 
-static void turn_duplication(const setting *s)
-{
+static void turn_duplication(const setting *s) {
     static const sweep w = {"VNA; BDF2", GXS_BDF2, 1, 0};
     mover m = s->own;
     gxs_element *replicas = (gxs_element *)method_memory(NULL, m.model.element_count, sizeof *replicas);
@@ -498,8 +507,7 @@ static void turn_duplication(const setting *s)
     free(replicas);
 }
 
-static void turn_deletion(const setting *s)
-{
+static void turn_deletion(const setting *s) {
     static const sweep w = {"deletion; BDF2", GXS_BDF2, 1, 0};
     method_body *uncut = (method_body *)method_body_create(&s->scene);
     gxs_element *elements = (gxs_element *)method_memory(NULL, s->scene.element_count, sizeof *elements);
@@ -509,7 +517,8 @@ static void turn_deletion(const setting *s)
     m.model.element_count = parts_delete(&s->parts, &m.model, elements);
     m.model.elements = elements;
     m.corners = match(s, &m.model, NULL);
-    if (m.model.element_count > 0) turn_steps(s, &m, &w);
+    if (m.model.element_count > 0)
+        turn_steps(s, &m, &w);
     else {
         const knobs k = knobs_of(w.series, "", longest, w.integrator);
         print_row(s, &m, &k, -1, 0, -1, "no element is left");
@@ -524,36 +533,41 @@ static void turn_deletion(const setting *s)
 
 enum { RULES = 3, KNOBS = 4 };
 
-static const struct { const char *series; parts_rule_fn make; int knobs[KNOBS]; } rules[RULES] = {
-    {"positive", parts_positive, {1, 2, 0, 0}}, {"adaptive", parts_adaptive, {1, 2, 3, 4}}, {"regular", parts_regular, {5, 10, 20, 50}}};
+static const struct {
+    const char *series;
+    parts_rule_fn make;
+    int knobs[KNOBS];
+} rules[RULES] = {{"positive", parts_positive, {1, 2, 0, 0}},
+                  {"adaptive", parts_adaptive, {1, 2, 3, 4}},
+                  {"regular", parts_regular, {5, 10, 20, 50}}};
 
-static knobs compared_knobs(const char *series, const char *value)
-{
+static knobs compared_knobs(const char *series, const char *value) {
     knobs k = knobs_of(series, value, longest / 4, GXS_BDF2);
     k.cg_tolerance = 1e-6;
     return k;
 }
 
 /* Cuts by all blades; NULL, or why RXFEM can't */
-static const char *cut_rxfem(const setting *s, rx_body *b)
-{
+static const char *cut_rxfem(const setting *s, rx_body *b) {
     size_t i;
     for (i = 0; i < s->scene.cut_count; i++) {
         const gx_surface *path = &s->scene.cuts[i].path;
         rx_surface surface;
         rx_result result;
-        surface.vertices = path->vertices; surface.vertex_count = path->vertex_count;
-        surface.triangles = path->triangles; surface.triangle_count = path->triangle_count;
+        surface.vertices = path->vertices;
+        surface.vertex_count = path->vertex_count;
+        surface.triangles = path->triangles;
+        surface.triangle_count = path->triangle_count;
         result = rx_body_cut(b, &surface);
         if (result != RX_OK) return method_rxfem_text(result);
     }
     return NULL;
 }
 
-static void turn_rxfem(const setting *s, mover *m, gxs_element *elements, size_t *counts)
-{
+static void turn_rxfem(const setting *s, mover *m, gxs_element *elements, size_t *counts) {
     rx_rules *fitted = rx_rules_create(2, 0);
-    rx_body *b = rx_body_create(fitted, s->scene.positions, s->scene.node_count, s->scene.elements, s->scene.element_count);
+    rx_body *b =
+        rx_body_create(fitted, s->scene.positions, s->scene.node_count, s->scene.elements, s->scene.element_count);
     knobs k = compared_knobs("RXFEM", "2");
     const char *why;
     b->clock = seconds;
@@ -572,8 +586,7 @@ static void turn_rxfem(const setting *s, mover *m, gxs_element *elements, size_t
     rx_rules_destroy(fitted);
 }
 
-static void turn_integrals(setting *s)
-{
+static void turn_integrals(setting *s) {
     mover m = s->own;
     const size_t count = m.model.element_count;
     gxs_element *elements = (gxs_element *)method_memory(NULL, count, sizeof *elements);
@@ -605,16 +618,14 @@ static void turn_integrals(setting *s)
 enum { THICKNESSES = 5 };
 
 /* Of all blades; the caller's to free */
-static gx_surface *make_solids(const setting *s, double thickness)
-{
+static gx_surface *make_solids(const setting *s, double thickness) {
     gx_surface *solids = (gx_surface *)method_memory(NULL, s->scene.cut_count, sizeof *solids);
     size_t i;
     for (i = 0; i < s->scene.cut_count; i++) solids[i] = method_solidify(&s->scene.cuts[i].path, thickness);
     return solids;
 }
 
-static void free_solids(const setting *s, gx_surface *solids)
-{
+static void free_solids(const setting *s, gx_surface *solids) {
     size_t i;
     for (i = 0; i < s->scene.cut_count; i++) {
         free((void *)(uintptr_t)solids[i].vertices);
@@ -623,8 +634,7 @@ static void free_solids(const setting *s, gx_surface *solids)
     free(solids);
 }
 
-static void row_solids(const setting *s, const gx_surface *solids, const knobs *k)
-{
+static void row_solids(const setting *s, const gx_surface *solids, const knobs *k) {
     replay scene = s->scene;
     method_times times;
     method_body *body;
@@ -647,16 +657,14 @@ static void row_solids(const setting *s, const gx_surface *solids, const knobs *
 }
 
 /* The element of each of Algorithm 1's parts */
-static uint32_t *literal_owners(const literal *l)
-{
+static uint32_t *literal_owners(const literal *l) {
     uint32_t *owners = (uint32_t *)method_memory(NULL, l->element.count, sizeof *owners), e, at;
     for (e = 0; e < l->desc.element_count; e++)
         for (at = l->element.first[e]; at != LITERAL_NONE; at = l->element.domains[at].next) owners[at] = e;
     return owners;
 }
 
-static void row_literal(const setting *s, const gx_surface *solids, const knobs *k)
-{
+static void row_literal(const setting *s, const gx_surface *solids, const knobs *k) {
     method_literal *body = (method_literal *)method_literal_create(&s->scene);
     method_times times;
     uint32_t *owners;
@@ -672,16 +680,17 @@ static void row_literal(const setting *s, const gx_surface *solids, const knobs 
     m.model.material_count = 1;
     m.integrals_ms = 1e3 * times.integrals;
     m.corners = match(s, &m.model, owners);
-    if (body->cutter->report.failures == 0) row(s, &m, k, 1);
-    else print_row(s, &m, k, -1, 0, -1, "a Boolean of rounded subdomains is refused");
+    if (body->cutter->report.failures == 0)
+        row(s, &m, k, 1);
+    else
+        print_row(s, &m, k, -1, 0, -1, "a Boolean of rounded subdomains is refused");
     free(m.corners);
     free(owners);
     method_literal_destroy(body);
 }
 
-static void turn_thickness(const setting *s)
-{
-    static const double thicknesses[THICKNESSES] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6};      /* edges */
+static void turn_thickness(const setting *s) {
+    static const double thicknesses[THICKNESSES] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}; /* edges */
     int i;
     for (i = 0; i < THICKNESSES; i++) {
         char text[16];
@@ -697,16 +706,15 @@ static void turn_thickness(const setting *s)
 
 /* ---- */
 
-static size_t rows_of_scene(void)
-{
+static size_t rows_of_scene(void) {
     size_t rows = 1 + STEPS * (SWEEPS + 2) + TOLERANCES + NEWTONS + SOLVERS + 1 + 2 + 2 * THICKNESSES;
     int i, j;
-    for (i = 0; i < RULES; i++) for (j = 0; j < KNOBS && rules[i].knobs[j]; j++) rows += 2;
+    for (i = 0; i < RULES; i++)
+        for (j = 0; j < KNOBS && rules[i].knobs[j]; j++) rows += 2;
     return rows;
 }
 
-int main(int argc, char **argv)
-{
+int main(int argc, char **argv) {
     const int small = argc > 2 && strcmp(argv[2], "--small") == 0;
     int i, j;
     if (argc < 3 + small) {
@@ -714,7 +722,8 @@ int main(int argc, char **argv)
         return 2;
     }
     if (small) duration /= 5;
-    csv_open(argv[0], argv[1], "scene,series,value,dt,steps,ms_per_step,ms_per_second,error,of_exact,integrals_ms,points,note");
+    csv_open(argv[0], argv[1],
+             "scene,series,value,dt,steps,ms_per_step,ms_per_second,error,of_exact,integrals_ms,points,note");
     total = (size_t)(argc - 2 - small) * rows_of_scene();
     for (i = 2 + small; i < argc; i++) {
         char name[32];

@@ -1,17 +1,17 @@
 /* table2.c - GXFEM's Table 2: what a run of each scene costs, by method.
 
-   make bench-table2 runs the scenes with the paper's numbers of frames, records them (--trace), and repeats them here by each method; it
-   prints CSV and writes it to build/bench/table2.csv, ratios to the published figures and to RXFEM here to table2_ratios.csv, both as tables
-   to stderr.
-   usage: table2 FILE RATIOS [--small] SCENE=TRACE...     --small: scenes are small ones, not to be compared with
-   the paper's; ten seconds of a processor for each run
+   make bench-table2 runs the scenes with the paper's numbers of frames, records them (--trace), and repeats them here
+   by each method; it prints CSV and writes it to build/bench/table2.csv, ratios to the published figures and to RXFEM
+   here to table2_ratios.csv, both as tables to stderr. usage: table2 FILE RATIOS [--small] SCENE=TRACE...     --small:
+   scenes are small ones, not to be compared with the paper's; ten seconds of a processor for each run
 
-   The columns are the paper's: EI, recomputing an element's integrals; MB, finding the pieces, per subdomain that was looked at (ours:
-   element that was touched; domains says how many); dpsi, Hessians of the elastic energy, per step (the paper: energy derivatives); CG, the
-   linear solve with its preconditioner; dt, a frame; C, sum over frames with a cut; C+U, over all. ended: why a method stopped after so many
-   frames (busy: each run is a process that has so many seconds of a processor); its sums are of those. Of a run below a second three are made,
-   and the median counts. Rows "paper" are the published ones,
-   of another machine (Intel i9-13900K). The paper's sticks are six, ours 36: more unknowns for the same cube. */
+   The columns are the paper's: EI, recomputing an element's integrals; MB, finding the pieces, per subdomain that was
+   looked at (ours: element that was touched; domains says how many); dpsi, Hessians of the elastic energy, per step
+   (the paper: energy derivatives); CG, the linear solve with its preconditioner; dt, a frame; C, sum over frames with a
+   cut; C+U, over all. ended: why a method stopped after so many frames (busy: each run is a process that has so many
+   seconds of a processor); its sums are of those. Of a run below a second three are made, and the median counts. Rows
+   "paper" are the published ones, of another machine (Intel i9-13900K). The paper's sticks are six, ours 36: more
+   unknowns for the same cube. */
 #define _XOPEN_SOURCE 600
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
@@ -33,9 +33,11 @@ static int small;
 /* Published in GXFEM's Table 2 */
 typedef struct published {
     const char *scene, *method;
-    double unknowns, integrals_ms, booleans_ms, derivatives_ms, solve_s, worst_s, mean_s, cut_s, all_s;    /* 0: not said */
+    /* 0: not said */
+    double unknowns, integrals_ms, booleans_ms, derivatives_ms, solve_s, worst_s, mean_s, cut_s, all_s;
 } published;
 
+/* clang-format off */
 static const published paper[] = {
     {"sticks", "RXFEM", 144, 2.48, 0, 5.6, 0.001, 0.032, 0.011, 0.097, 1.664},
     {"sticks", "GXFEM", 144, 0.36, 26.9, 0.0, 0.001, 0.278, 0.009, 0.898, 1.307},
@@ -45,45 +47,44 @@ static const published paper[] = {
     {"accordion", "GXFEM", 22800, 0.061, 6.437, 8.796, 4.811, 9.203, 5.785, 1088, 3124},
     {"octopus", "RXFEM", 20800, 0.683, 0, 120.96, 2.26, 12.241, 2.092, 122.2, 1255},
     {"octopus", "GXFEM", 20800, 0.048, 9.332, 7.18, 2.382, 17.3, 2.05, 137.7, 1230}};
+/* clang-format on */
 
 /* NULL: nothing that this run may be compared with */
-static const published *published_of(const char *scene, const char *of)
-{
+static const published *published_of(const char *scene, const char *of) {
     size_t i;
     for (i = 0; i < sizeof paper / sizeof paper[0] && !small; i++)
         if (strcmp(paper[i].scene, scene) == 0 && strcmp(paper[i].method, of) == 0) return &paper[i];
     return NULL;
 }
 
-static void print_paper(const char *scene)
-{
+static void print_paper(const char *scene) {
     size_t i;
     for (i = 0; i < sizeof paper / sizeof paper[0] && !small; i++) {
         const published *p = &paper[i];
         if (strcmp(p->scene, scene) != 0) continue;
-        csv_row("%s,%s (paper),,%.0f,,%g,%g,%g,%g,%g,%g,%g,%g,", scene, p->method, p->unknowns, p->integrals_ms, p->booleans_ms, p->derivatives_ms,
-                p->solve_s, p->worst_s, p->mean_s, p->cut_s, p->all_s);
+        csv_row("%s,%s (paper),,%.0f,,%g,%g,%g,%g,%g,%g,%g,%g,", scene, p->method, p->unknowns, p->integrals_ms,
+                p->booleans_ms, p->derivatives_ms, p->solve_s, p->worst_s, p->mean_s, p->cut_s, p->all_s);
     }
 }
 
 /* A method's run, as far as it has come */
 typedef struct run {
-    double integrals, booleans, derivatives, derivatives_once, solve, worst, cut, all;  /* s */
+    double integrals, booleans, derivatives, derivatives_once, solve, worst, cut, all; /* s */
     size_t domains, frames, unknowns;
-    char ended[96];             /* early, and why; empty: not so */
+    char ended[96]; /* early, and why; empty: not so */
 } run;
 
 /* All cuts of a frame, and its step; NULL or why it could not be */
-static const char *play_frame(const replay *scene, const method *m, void *state, size_t frame, size_t *next, method_times *times)
-{
+static const char *play_frame(const replay *scene, const method *m, void *state, size_t frame, size_t *next,
+                              method_times *times) {
     const char *why = NULL;
     memset(times, 0, sizeof *times);
-    for (; *next < scene->cut_count && scene->cuts[*next].frame == frame && !why; ++*next) why = m->cut(state, &scene->cuts[*next], times);
+    for (; *next < scene->cut_count && scene->cuts[*next].frame == frame && !why; *next++)
+        why = m->cut(state, &scene->cuts[*next], times);
     return why ? why : m->step(state, times);
 }
 
-static void add_frame(run *r, const method_times *times)
-{
+static void add_frame(run *r, const method_times *times) {
     r->integrals += times->integrals;
     r->booleans += times->booleans;
     r->derivatives += times->derivatives;
@@ -97,8 +98,7 @@ static void add_frame(run *r, const method_times *times)
 }
 
 /* In a process of its own: tells after each frame how far it is. */
-static void play(const replay *scene, const method *m, int to)
-{
+static void play(const replay *scene, const method *m, int to) {
     const struct rlimit limit = {most_seconds, most_seconds + 1};
     void *state;
     size_t next = 0;
@@ -110,8 +110,10 @@ static void play(const replay *scene, const method *m, int to)
     while (told == sizeof r && r.frames < scene->frames && !r.ended[0]) {
         method_times times;
         const char *why = play_frame(scene, m, state, r.frames, &next, &times);
-        if (why) snprintf(r.ended, sizeof r.ended, "%s", why);
-        else add_frame(&r, &times);
+        if (why)
+            snprintf(r.ended, sizeof r.ended, "%s", why);
+        else
+            add_frame(&r, &times);
         r.unknowns = m->unknowns(state);
         told = write(to, &r, sizeof r);
     }
@@ -119,8 +121,7 @@ static void play(const replay *scene, const method *m, int to)
 }
 
 /* history: room for frames; the run after each of them */
-static run play_apart(const char *name, const replay *scene, const method *m, run *history)
-{
+static run play_apart(const char *name, const replay *scene, const method *m, run *history) {
     int pipes[2], status = 0;
     pid_t child;
     run r, next;
@@ -138,45 +139,51 @@ static run play_apart(const char *name, const replay *scene, const method *m, ru
     }
     close(pipes[0]);
     waitpid(child, &status, 0);
-    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) snprintf(r.ended, sizeof r.ended, "busy after %u s", most_seconds);
-    else if (WIFSIGNALED(status)) snprintf(r.ended, sizeof r.ended, "crashed: signal %d", WTERMSIG(status));
-    else if (WEXITSTATUS(status) != 0) snprintf(r.ended, sizeof r.ended, "crashed: exit %d", WEXITSTATUS(status));
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
+        snprintf(r.ended, sizeof r.ended, "busy after %u s", most_seconds);
+    else if (WIFSIGNALED(status))
+        snprintf(r.ended, sizeof r.ended, "crashed: signal %d", WTERMSIG(status));
+    else if (WEXITSTATUS(status) != 0)
+        snprintf(r.ended, sizeof r.ended, "crashed: exit %d", WEXITSTATUS(status));
     return r;
 }
 
 static double per(double sum, size_t count) { return count ? sum / (double)count : 0; }
 
-static void print_run(const char *name, const method *m, const run *r)
-{
-    csv_row("%s,%s,%lu,%lu,%lu,%.4f,%.4f,%.3f,%.5f,%.5f,%.5f,%.4f,%.4f,%s", name, m->name, (unsigned long)r->frames, (unsigned long)r->unknowns,
-            (unsigned long)r->domains, 1e3 * per(r->integrals, r->domains), 1e3 * per(r->booleans, r->domains), 1e3 * per(r->derivatives, r->frames),
-            per(r->solve, r->frames), r->worst, per(r->all, r->frames), r->cut, r->all, r->ended);
+static void print_run(const char *name, const method *m, const run *r) {
+    csv_row("%s,%s,%lu,%lu,%lu,%.4f,%.4f,%.3f,%.5f,%.5f,%.5f,%.4f,%.4f,%s", name, m->name, (unsigned long)r->frames,
+            (unsigned long)r->unknowns, (unsigned long)r->domains, 1e3 * per(r->integrals, r->domains),
+            1e3 * per(r->booleans, r->domains), 1e3 * per(r->derivatives, r->frames), per(r->solve, r->frames),
+            r->worst, per(r->all, r->frames), r->cut, r->all, r->ended);
 }
 
 /* ---- the table ---- */
 
-typedef struct kept_run { char scene[32]; const char *method; run run; } kept_run;
+typedef struct kept_run {
+    char scene[32];
+    const char *method;
+    run run;
+} kept_run;
 
 static kept_run *kept;
 static size_t kept_count;
 
-static void keep_run(const char *name, const method *m, const run *r)
-{
+static void keep_run(const char *name, const method *m, const run *r) {
     kept = (kept_run *)method_memory(kept, kept_count + 1, sizeof *kept);
     snprintf(kept[kept_count].scene, sizeof kept[kept_count].scene, "%s", name);
     kept[kept_count].method = m->name;
     kept[kept_count++].run = *r;
 }
 
-static void print_table(void)
-{
+static void print_table(void) {
     size_t i;
-    fprintf(stderr, "%-10s %-18s %6s %8s %10s %8s %9s %10s %10s %9s %9s\n", "scene", "method", "frames", "unknowns", "subdomains", "EI, ms", "MB, ms",
-            "dpsi, ms", "dt avg, ms", "C, s", "C+U, s");
+    fprintf(stderr, "%-10s %-18s %6s %8s %10s %8s %9s %10s %10s %9s %9s\n", "scene", "method", "frames", "unknowns",
+            "subdomains", "EI, ms", "MB, ms", "dpsi, ms", "dt avg, ms", "C, s", "C+U, s");
     for (i = 0; i < kept_count; i++) {
         const run *r = &kept[i].run;
-        fprintf(stderr, "%-10s %-18s %6lu %8lu %10lu %8.4f %9.4f %10.3f %10.3f %9.3f %9.3f  %s\n", kept[i].scene, kept[i].method, (unsigned long)r->frames,
-                (unsigned long)r->unknowns, (unsigned long)r->domains, 1e3 * per(r->integrals, r->domains), 1e3 * per(r->booleans, r->domains),
+        fprintf(stderr, "%-10s %-18s %6lu %8lu %10lu %8.4f %9.4f %10.3f %10.3f %9.3f %9.3f  %s\n", kept[i].scene,
+                kept[i].method, (unsigned long)r->frames, (unsigned long)r->unknowns, (unsigned long)r->domains,
+                1e3 * per(r->integrals, r->domains), 1e3 * per(r->booleans, r->domains),
                 1e3 * per(r->derivatives, r->frames), 1e3 * per(r->all, r->frames), r->cut, r->all, r->ended);
     }
     free(kept);
@@ -187,14 +194,13 @@ static void print_table(void)
 typedef struct ratio {
     char scene[32];
     const char *of;
-    double theirs, ours, least;     /* s; theirs over ours, at least; 0: nothing is promised */
+    double theirs, ours, least; /* s; theirs over ours, at least; 0: nothing is promised */
 } ratio;
 
 static ratio ratios[MOST_RATIOS];
 static size_t ratio_count;
 
-static void add_ratio(const char *scene, const char *of, double theirs, double ours, double least)
-{
+static void add_ratio(const char *scene, const char *of, double theirs, double ours, double least) {
     ratio *r = &ratios[ratio_count];
     if (ratio_count == MOST_RATIOS || theirs <= 0 || ours <= 0) return;
     ratio_count++;
@@ -205,31 +211,35 @@ static void add_ratio(const char *scene, const char *of, double theirs, double o
     r->least = least;
 }
 
-/* Of the library's run to what is published; and, over the frames that others came, to RXFEM's and by Algorithm 1's subdomains, which are the
-   paper's: an element that is touched has one of its own and a share of those of its four nodes. history: of ours */
-static void compare(const char *scene, const run *ours, const run *history, const run *rxfem, const run *by_literal)
-{
+/* Of the library's run to what is published; and, over the frames that others came, to RXFEM's and by Algorithm 1's
+   subdomains, which are the paper's: an element that is touched has one of its own and a share of those of its four
+   nodes. history: of ours */
+static void compare(const char *scene, const run *ours, const run *history, const run *rxfem, const run *by_literal) {
     const published *gxfem_paper = published_of(scene, "GXFEM"), *rxfem_paper = published_of(scene, "RXFEM");
     if (gxfem_paper) {
         const double theirs = 1e-3 * (gxfem_paper->booleans_ms + gxfem_paper->integrals_ms);
-        add_ratio(scene, "cut: a subdomain (paper) to our touched element", theirs, per(ours->booleans + ours->integrals, ours->domains), 100);
+        add_ratio(scene, "cut: a subdomain (paper) to our touched element", theirs,
+                  per(ours->booleans + ours->integrals, ours->domains), 100);
         if (by_literal->frames > 0) {
             const run *r = &history[by_literal->frames - 1];
-            add_ratio(scene, "cut: a subdomain (paper) to our subdomain", theirs, per(r->booleans + r->integrals, by_literal->domains), 100);
+            add_ratio(scene, "cut: a subdomain (paper) to our subdomain", theirs,
+                      per(r->booleans + r->integrals, by_literal->domains), 100);
         }
         add_ratio(scene, "C+U (paper)", gxfem_paper->all_s, ours->all, 50);
     }
     if (rxfem_paper)
-        add_ratio(scene, "derivatives (RXFEM's in the paper)", 1e-3 * rxfem_paper->derivatives_ms, per(ours->derivatives, ours->frames), 10);
+        add_ratio(scene, "derivatives (RXFEM's in the paper)", 1e-3 * rxfem_paper->derivatives_ms,
+                  per(ours->derivatives, ours->frames), 10);
     if (rxfem->frames == 0) return;
     add_ratio(scene, "derivatives (RXFEM here)", rxfem->derivatives, history[rxfem->frames - 1].derivatives, 10);
-    add_ratio(scene, "derivatives (RXFEM here; once a piece)", rxfem->derivatives_once, history[rxfem->frames - 1].derivatives, 0);
+    add_ratio(scene, "derivatives (RXFEM here; once a piece)", rxfem->derivatives_once,
+              history[rxfem->frames - 1].derivatives, 0);
 }
 
-static void print_ratios(void)
-{
+static void print_ratios(void) {
     size_t i;
-    fprintf(stderr, "%-10s %-50s %12s %12s %8s %8s\n", "scene", "ratio to", "theirs, s", "ours, s", "ratio", "promised");
+    fprintf(stderr, "%-10s %-50s %12s %12s %8s %8s\n", "scene", "ratio to", "theirs, s", "ours, s", "ratio",
+            "promised");
     for (i = 0; i < ratio_count; i++) {
         const ratio *r = &ratios[i];
         const double times = r->theirs / r->ours;
@@ -237,13 +247,13 @@ static void print_ratios(void)
         char promised[16] = "";
         if (r->least > 0) snprintf(promised, sizeof promised, "%g", r->least);
         csv_row("%s,%s,%g,%g,%.1f,%s,%s", r->scene, r->of, r->theirs, r->ours, times, promised, verdict);
-        fprintf(stderr, "%-10s %-50s %12.3g %12.3g %8.1f %8s  %s\n", r->scene, r->of, r->theirs, r->ours, times, promised, verdict);
+        fprintf(stderr, "%-10s %-50s %12.3g %12.3g %8.1f %8s  %s\n", r->scene, r->of, r->theirs, r->ours, times,
+                promised, verdict);
     }
 }
 
 /* Short runs are played three times, and the one of median time counts: a machine's first milliseconds jitter most. */
-static run play_fairly(const char *name, const replay *scene, const method *m, run *history)
-{
+static run play_fairly(const char *name, const replay *scene, const method *m, run *history) {
     run *histories[3], runs[3], median;
     int i, count, at = 0;
     for (i = 0, count = 3; i < count; i++) {
@@ -252,7 +262,8 @@ static run play_fairly(const char *name, const replay *scene, const method *m, r
         if (runs[0].all > short_run) count = 1;
     }
     for (i = 0; i < count; i++) {
-        const int quicker = (runs[0].all < runs[i].all) + (runs[1 % count].all < runs[i].all) + (runs[2 % count].all < runs[i].all);
+        const int quicker =
+            (runs[0].all < runs[i].all) + (runs[1 % count].all < runs[i].all) + (runs[2 % count].all < runs[i].all);
         if (quicker == count / 2) at = i;
     }
     memcpy(history, histories[at], scene->frames * sizeof *history);
@@ -261,8 +272,7 @@ static run play_fairly(const char *name, const replay *scene, const method *m, r
     return median;
 }
 
-static void run_scene(const char *name, const replay *scene)
-{
+static void run_scene(const char *name, const replay *scene) {
     run *history[METHOD_COUNT], runs[METHOD_COUNT];
     size_t m;
     print_paper(name);
@@ -276,8 +286,7 @@ static void run_scene(const char *name, const replay *scene)
     for (m = 0; m < METHOD_COUNT; m++) free(history[m]);
 }
 
-int main(int argc, char **argv)
-{
+int main(int argc, char **argv) {
     int i, failed;
     small = argc > 3 && strcmp(argv[3], "--small") == 0;
     if (argc < 4 + small) {
@@ -285,7 +294,9 @@ int main(int argc, char **argv)
         return 2;
     }
     if (small) most_seconds = 10;
-    csv_open(argv[0], argv[1], "scene,method,frames,unknowns,domains,EI_ms,MB_ms,dpsi_ms,CG_s,dt_max_s,dt_avg_s,total_C_s,total_CU_s,ended");
+    csv_open(
+        argv[0], argv[1],
+        "scene,method,frames,unknowns,domains,EI_ms,MB_ms,dpsi_ms,CG_s,dt_max_s,dt_avg_s,total_C_s,total_CU_s,ended");
     for (i = 3 + small; i < argc; i++) {
         char name[32];
         replay scene = replay_argument(argv[0], argv[i], name);

@@ -1,25 +1,27 @@
-/* vna.h - the virtual node algorithm as a time step sees it: each part of a cut element is a whole element again, with all of its mass
-   and stiffness [Molino, Bao, Fedkiw 2004; without its limits on where cuts run: Sifakis, Der, Fedkiw 2007].
+/* vna.h - the virtual node algorithm as a time step sees it: each part of a cut element is a whole element again, with
+   all of its mass and stiffness [Molino, Bao, Fedkiw 2004; without its limits on where cuts run: Sifakis, Der, Fedkiw
+   2007].
 
-   A baseline of the bench. Which replicas there are, and which virtual nodes they share, is what the library finds: replicas share a
-   node where their material hangs together around it, in both methods. Include after gxfem.h or gxfem_solve.h. */
+   A baseline of the bench. Which replicas there are, and which virtual nodes they share, is what the library finds:
+   replicas share a node where their material hangs together around it, in both methods. Include after gxfem.h or
+   gxfem_solve.h. */
 #ifndef GXFEM_BENCH_VNA_H
 #define GXFEM_BENCH_VNA_H
 
 #include <string.h>
 
 /* Volume of the element that has these gradients of shape functions, 1/m */
-static double vna_volume(const double gradient[4][3])
-{
+static double vna_volume(const double gradient[4][3]) {
     const double *a = gradient[1], *b = gradient[2], *c = gradient[3];
-    const double det = a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+    const double det =
+        a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
     return 1 / (6 * (det < 0 ? -det : det));
 }
 
-/* Parts of elements (gx_body_model's) as replicas of whole elements; replicas: room for count. densities: by material, kg/m3 */
-static void vna_replicate(const gxs_element *parts, size_t count, const double *densities, gxs_element *replicas)
-{
-    static const double mass[10] = {2, 1, 1, 1, 2, 1, 1, 2, 1, 2};      /* / 20 of the whole */
+/* Parts of elements (gx_body_model's) as replicas of whole elements; replicas: room for count. densities: by material,
+ * kg/m3 */
+static void vna_replicate(const gxs_element *parts, size_t count, const double *densities, gxs_element *replicas) {
+    static const double mass[10] = {2, 1, 1, 1, 2, 1, 1, 2, 1, 2}; /* / 20 of the whole */
     size_t i, k;
     memcpy(replicas, parts, count * sizeof *replicas);
     for (i = 0; i < count; i++) {

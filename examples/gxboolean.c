@@ -1,8 +1,8 @@
 /* gxboolean: Booleans of closed triangle surfaces, and their splitting by sheets, with gxfem_boolean.h alone.
 
-   gxboolean SURFACE [--union|--intersection|--difference|--symmetric|--split SURFACE]... [options]; `gxboolean --help` says the rest.
-   Exit codes: 0 done; 1 the kernel refused a surface or failed; 2 usage error, or a file that can't be read or written.
-   On 1 and 2 one line on stderr says what, where and why.
+   gxboolean SURFACE [--union|--intersection|--difference|--symmetric|--split SURFACE]... [options]; `gxboolean --help`
+   says the rest. Exit codes: 0 done; 1 the kernel refused a surface or failed; 2 usage error, or a file that can't be
+   read or written. On 1 and 2 one line on stderr says what, where and why.
 
    contents
      >>settings    the command line
@@ -10,7 +10,7 @@
      >>output      a table, a file */
 #include "gxio.h"
 
-#ifndef GXFEM_LINKED            /* make examples compiles the library once for all */
+#ifndef GXFEM_LINKED /* make examples compiles the library once for all */
 #define GXFEM_BOOLEAN_IMPLEMENTATION
 #endif
 #include "../gxfem_boolean.h"
@@ -20,10 +20,10 @@ enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_MISUSED = 2 };
 /* -------------------------------------------------------------------------------------------- >>settings */
 
 typedef struct settings {
-    const char **surfaces;      /* count, as given */
-    uint32_t *operations;       /* count, GXB_UNION ... */
+    const char **surfaces; /* count, as given */
+    uint32_t *operations;  /* count, GXB_UNION ... */
     size_t count;
-    const char *out;            /* NULL: no file */
+    const char *out; /* NULL: no file */
     uint32_t rule;
     uint32_t triangulation;
     int fine, mend;
@@ -33,9 +33,11 @@ typedef struct settings {
 static const char usage[] =
     "usage: gxboolean SURFACE [OPERATION SURFACE]... [options]\n"
     "\n"
-    "Combines closed triangle surfaces exactly, one after the other; prints volume and Euler characteristic of each component.\n"
+    "Combines closed triangle surfaces exactly, one after the other; prints volume and Euler characteristic of each "
+    "component.\n"
     "\n"
-    "SURFACE  FILE.obj, FILE.off, FILE.stl, FILE.vtk, or box:X0,Y0,Z0,X1,Y1,Z1; to split by: also a file of an open surface,\n"
+    "SURFACE  FILE.obj, FILE.off, FILE.stl, FILE.vtk, or box:X0,Y0,Z0,X1,Y1,Z1; to split by: also a file of an open "
+    "surface,\n"
     "         plane:PX,PY,PZ,NX,NY,NZ or wave:PX,PY,PZ,NX,NY,NZ,AMPLITUDE,WAVELENGTH, across the first surface\n"
     "\n"
     "  --union SURFACE, --intersection SURFACE, --difference SURFACE, --symmetric SURFACE\n"
@@ -49,30 +51,35 @@ static const char usage[] =
     "  --out FILE          writes the result as FILE.off, or as FILE.obj with an object per component\n"
     "  --help              this text\n";
 
-static const char *const operations[] = {"--union", "--intersection", "--difference", "--symmetric", "--split"};    /* GXB_UNION ... */
-static const char *const rules[] = {"nonzero", "positive", "negative", "odd"};                                      /* GXB_NONZERO ... */
+/* GXB_UNION ... */
+static const char *const operations[] = {"--union", "--intersection", "--difference", "--symmetric", "--split"};
+/* GXB_NONZERO ... */
+static const char *const rules[] = {"nonzero", "positive", "negative", "odd"};
 
 /* Where a word stands in a list; the list's length if it does not. */
-static uint32_t find_word(const char *word, const char *const *list, uint32_t count)
-{
+static uint32_t find_word(const char *word, const char *const *list, uint32_t count) {
     uint32_t i;
     for (i = 0; i < count && strcmp(word, list[i]) != 0; i++) {}
     return i;
 }
 
-static int take_flag(settings *set, const char *name)
-{
-    if (strcmp(name, "--coarse") == 0) set->triangulation = GXB_COARSE;
-    else if (strcmp(name, "--merged") == 0) set->triangulation = GXB_MERGED;
-    else if (strcmp(name, "--fine") == 0) set->fine = 1;
-    else if (strcmp(name, "--mend") == 0) set->mend = 1;
-    else if (strcmp(name, "--help") == 0) set->help = 1;
-    else return 0;
+static int take_flag(settings *set, const char *name) {
+    if (strcmp(name, "--coarse") == 0)
+        set->triangulation = GXB_COARSE;
+    else if (strcmp(name, "--merged") == 0)
+        set->triangulation = GXB_MERGED;
+    else if (strcmp(name, "--fine") == 0)
+        set->fine = 1;
+    else if (strcmp(name, "--mend") == 0)
+        set->mend = 1;
+    else if (strcmp(name, "--help") == 0)
+        set->help = 1;
+    else
+        return 0;
     return 1;
 }
 
-static int take_value(settings *set, const char *name, const char *value, gxio_error *error)
-{
+static int take_value(settings *set, const char *name, const char *value, gxio_error *error) {
     const uint32_t operation = find_word(name, operations, 5);
     if (operation < 5) {
         if (set->count == 0) return gxio_fail(error, name, 0, "comes before the first surface");
@@ -80,15 +87,16 @@ static int take_value(settings *set, const char *name, const char *value, gxio_e
         set->surfaces[set->count++] = value;
     } else if (strcmp(name, "--rule") == 0) {
         set->rule = find_word(value, rules, 4);
-        if (set->rule == 4) return gxio_fail(error, name, 0, "'%s' is none of nonzero, positive, negative and odd", value);
+        if (set->rule == 4)
+            return gxio_fail(error, name, 0, "'%s' is none of nonzero, positive, negative and odd", value);
     } else if (!gxio_ends_with(value, ".off") && !gxio_ends_with(value, ".obj")) {
         return gxio_fail(error, name, 0, "'%s' does not end in .off or .obj", value);
-    } else set->out = value;
+    } else
+        set->out = value;
     return 1;
 }
 
-static int take_arguments(settings *set, int argc, char **argv, gxio_error *error)
-{
+static int take_arguments(settings *set, int argc, char **argv, gxio_error *error) {
     int i;
     for (i = 1; i < argc; i++) {
         const char *name = argv[i];
@@ -103,13 +111,14 @@ static int take_arguments(settings *set, int argc, char **argv, gxio_error *erro
             if (!take_value(set, name, argv[i], error)) return 0;
         }
     }
-    return set->help || set->count > 0 ? 1 : gxio_fail(error, "usage", 0, "gxboolean SURFACE [OPERATION SURFACE]..., see gxboolean --help");
+    return set->help || set->count > 0
+             ? 1
+             : gxio_fail(error, "usage", 0, "gxboolean SURFACE [OPERATION SURFACE]..., see gxboolean --help");
 }
 
 /* ---------------------------------------------------------------------------------------------- >>kernel */
 
-static const char *text_of(gx_result result)
-{
+static const char *text_of(gx_result result) {
     switch (result) {
     case GX_ERROR_MEMORY: return "out of memory";
     case GX_ERROR_NOT_FINITE: return "a coordinate is not finite";
@@ -121,9 +130,9 @@ static const char *text_of(gx_result result)
     }
 }
 
-/* Reads a surface and gives it to the Boolean, which copies it. first: the first surface, across which planes go; empty: this is it. */
-static int add_surface(const settings *set, size_t i, gxb_boolean *boolean, gxio_surface *first, gxio_error *error)
-{
+/* Reads a surface and gives it to the Boolean, which copies it. first: the first surface, across which planes go;
+ * empty: this is it. */
+static int add_surface(const settings *set, size_t i, gxb_boolean *boolean, gxio_surface *first, gxio_error *error) {
     gxio_box body;
     gxio_surface surface;
     gxb_operand operand;
@@ -145,10 +154,13 @@ static int add_surface(const settings *set, size_t i, gxb_boolean *boolean, gxio
     failure.result = gxb_boolean_add(boolean, &operand, &failure);
     if (failure.result != GX_OK) {
         const int known = failure.result == GX_ERROR_NOT_CLOSED && failure.index < surface.triangle_count;
-        gxio_fail(error, set->surfaces[i], known ? surface.triangle_lines[failure.index] : 0, "%s", text_of(failure.result));
+        gxio_fail(error, set->surfaces[i], known ? surface.triangle_lines[failure.index] : 0, "%s",
+                  text_of(failure.result));
     }
-    if (i == 0) *first = surface;
-    else gxio_surface_release(&surface);
+    if (i == 0)
+        *first = surface;
+    else
+        gxio_surface_release(&surface);
     return failure.result == GX_OK ? EXIT_DONE : EXIT_FAILED;
 }
 
@@ -159,15 +171,13 @@ typedef struct answer {
     gxb_defects defects;
 } answer;
 
-static gx_result ask(gxb_boolean *boolean, answer *a)
-{
+static gx_result ask(gxb_boolean *boolean, answer *a) {
     gx_result result = gxb_boolean_evaluate(boolean, &a->result);
     if (result == GX_OK) result = gxb_boolean_components(boolean, &a->components);
     return result == GX_OK ? gxb_boolean_defects(boolean, &a->defects) : result;
 }
 
-static int combine(const settings *set, gxb_boolean **boolean, answer *a, gxio_error *error)
-{
+static int combine(const settings *set, gxb_boolean **boolean, answer *a, gxio_error *error) {
     gxio_surface first;
     size_t i;
     int code = EXIT_DONE;
@@ -178,7 +188,8 @@ static int combine(const settings *set, gxb_boolean **boolean, answer *a, gxio_e
         gxb_boolean_set_fine(*boolean, set->fine);
         gxb_boolean_set_mend(*boolean, set->mend);
     }
-    for (i = 0; i < set->count && failed == GX_OK && code == EXIT_DONE; i++) code = add_surface(set, i, *boolean, &first, error);
+    for (i = 0; i < set->count && failed == GX_OK && code == EXIT_DONE; i++)
+        code = add_surface(set, i, *boolean, &first, error);
     gxio_surface_release(&first);
     if (failed == GX_OK && code == EXIT_DONE) failed = ask(*boolean, a);
     if (failed == GX_OK) return code;
@@ -188,33 +199,33 @@ static int combine(const settings *set, gxb_boolean **boolean, answer *a, gxio_e
 
 /* ---------------------------------------------------------------------------------------------- >>output */
 
-static void print_table(const answer *a)
-{
+static void print_table(const answer *a) {
     const size_t count = a->result.triangle_count;
     size_t c, t;
     printf("component  triangles  Euler  volume\n");
     for (c = 0; c < a->components.count; c++) {
         unsigned long triangles = 0;
         for (t = 0; t < count; t++) triangles += a->components.triangle[t] == c;
-        printf("%9lu  %9lu  %5ld  %.17g\n", (unsigned long)c, triangles, (long)a->components.euler[c], a->components.volume[c]);
+        printf("%9lu  %9lu  %5ld  %.17g\n", (unsigned long)c, triangles, (long)a->components.euler[c],
+               a->components.volume[c]);
     }
     printf("      all  %9lu         %.17g\n", (unsigned long)count, a->components.total_volume);
     if (a->defects.mended_count > 0 || a->defects.count > 0)
-        printf("turned over or flat by rounding: %lu; mended: %lu\n", (unsigned long)a->defects.count, (unsigned long)a->defects.mended_count);
+        printf("turned over or flat by rounding: %lu; mended: %lu\n", (unsigned long)a->defects.count,
+               (unsigned long)a->defects.mended_count);
 }
 
-static void write_off(FILE *stream, const gxb_boolean_result *r)
-{
+static void write_off(FILE *stream, const gxb_boolean_result *r) {
     size_t i;
     fprintf(stream, "OFF\n%lu %lu 0\n", (unsigned long)r->vertex_count, (unsigned long)r->triangle_count);
     for (i = 0; i < r->vertex_count; i++)
         fprintf(stream, "%.17g %.17g %.17g\n", r->vertices[3 * i], r->vertices[3 * i + 1], r->vertices[3 * i + 2]);
     for (i = 0; i < r->triangle_count; i++)
-        fprintf(stream, "3 %lu %lu %lu\n", (unsigned long)r->triangles[3 * i], (unsigned long)r->triangles[3 * i + 1], (unsigned long)r->triangles[3 * i + 2]);
+        fprintf(stream, "3 %lu %lu %lu\n", (unsigned long)r->triangles[3 * i], (unsigned long)r->triangles[3 * i + 1],
+                (unsigned long)r->triangles[3 * i + 2]);
 }
 
-static void write_obj(FILE *stream, const gxb_boolean_result *r, const gxb_components *components)
-{
+static void write_obj(FILE *stream, const gxb_boolean_result *r, const gxb_components *components) {
     size_t i, c;
     for (i = 0; i < r->vertex_count; i++)
         fprintf(stream, "v %.17g %.17g %.17g\n", r->vertices[3 * i], r->vertices[3 * i + 1], r->vertices[3 * i + 2]);
@@ -222,21 +233,22 @@ static void write_obj(FILE *stream, const gxb_boolean_result *r, const gxb_compo
         fprintf(stream, "o component_%lu\n", (unsigned long)c);
         for (i = 0; i < r->triangle_count; i++)
             if (components->triangle[i] == c)
-                fprintf(stream, "f %lu %lu %lu\n", r->triangles[3 * i] + 1ul, r->triangles[3 * i + 1] + 1ul, r->triangles[3 * i + 2] + 1ul);
+                fprintf(stream, "f %lu %lu %lu\n", r->triangles[3 * i] + 1ul, r->triangles[3 * i + 1] + 1ul,
+                        r->triangles[3 * i + 2] + 1ul);
     }
 }
 
-static int write_answer(const char *path, const answer *a, gxio_error *error)
-{
+static int write_answer(const char *path, const answer *a, gxio_error *error) {
     gxio_writer writer;
     if (!gxio_writer_open(&writer, path, error)) return EXIT_MISUSED;
-    if (gxio_ends_with(path, ".obj")) write_obj(writer.stream, &a->result, &a->components);
-    else write_off(writer.stream, &a->result);
+    if (gxio_ends_with(path, ".obj"))
+        write_obj(writer.stream, &a->result, &a->components);
+    else
+        write_off(writer.stream, &a->result);
     return gxio_writer_close(&writer, 1, error) ? EXIT_DONE : EXIT_MISUSED;
 }
 
-int main(int argc, char **argv)
-{
+int main(int argc, char **argv) {
     settings set;
     gxb_boolean *boolean = NULL;
     answer found;
@@ -245,9 +257,12 @@ int main(int argc, char **argv)
     memset(&set, 0, sizeof set);
     set.surfaces = (const char **)gxio_array((size_t)argc + 1, sizeof *set.surfaces);
     set.operations = (uint32_t *)gxio_array((size_t)argc + 1, sizeof *set.operations);
-    if (!set.surfaces || !set.operations) gxio_fail(&error, "arguments", 0, "out of memory");
-    else if (take_arguments(&set, argc, argv, &error)) code = set.help ? EXIT_DONE : combine(&set, &boolean, &found, &error);
-    if (code == EXIT_DONE && set.help) fputs(usage, stdout);
+    if (!set.surfaces || !set.operations)
+        gxio_fail(&error, "arguments", 0, "out of memory");
+    else if (take_arguments(&set, argc, argv, &error))
+        code = set.help ? EXIT_DONE : combine(&set, &boolean, &found, &error);
+    if (code == EXIT_DONE && set.help)
+        fputs(usage, stdout);
     else if (code == EXIT_DONE) {
         if (set.out) code = write_answer(set.out, &found, &error);
         if (code == EXIT_DONE) print_table(&found);

@@ -11,7 +11,7 @@
      >>report      summary and JSON */
 #include "gxio.h"
 
-#ifndef GXFEM_LINKED            /* make examples compiles the library once for all */
+#ifndef GXFEM_LINKED /* make examples compiles the library once for all */
 #define GXFEM_IMPLEMENTATION
 #endif
 #include "../gxfem.h"
@@ -30,12 +30,12 @@ enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_MISUSED = 2 };
 
 typedef struct settings {
     const char *mesh, *out, *format, *report;
-    const char **cuts;          /* cut_count, as given */
-    uint32_t *kinds;            /* cut_count, GX_SURFACE_SHEET or _SOLID */
+    const char **cuts; /* cut_count, as given */
+    uint32_t *kinds;   /* cut_count, GX_SURFACE_SHEET or _SOLID */
     size_t cut_count;
-    gx_region *regions;         /* region_count */
+    gx_region *regions; /* region_count */
     size_t region_count;
-    double thickness;           /* m; 0: sheets stay sheets */
+    double thickness; /* m; 0: sheets stay sheets */
     double dt, young, poisson, density, gravity[3], stretch[3];
     uint32_t frames, newton, cut_at;
     int quiet, help;
@@ -44,16 +44,16 @@ typedef struct settings {
 typedef struct run {
     settings set;
     gxio_mesh mesh;
-    gxio_surface *cuts;         /* cut_count */
+    gxio_surface *cuts; /* cut_count */
     gx_body *body;
     gx_view view;
     gx_skin skin;
-    double *skin_positions;     /* skin.vertex_count x 3 */
-    float *skin_normals;        /* the same */
+    double *skin_positions; /* skin.vertex_count x 3 */
+    float *skin_normals;    /* the same */
     gx_cut_report cut;
     int has_cut;
     uint32_t frames_written;
-    int bar;                    /* a progress bar stands on stderr */
+    int bar; /* a progress bar stands on stderr */
     double seconds_start, seconds_newton;
     gxio_error error;
 } run;
@@ -64,7 +64,7 @@ enum { TAKES_TEXT, TAKES_NUMBER, TAKES_COUNT, TAKES_VECTOR, TAKES_NOTHING, TAKES
 typedef struct option {
     const char *name;
     int takes;
-    void *target;               /* const char *, double, uint32_t, double[3] or int of the settings */
+    void *target; /* const char *, double, uint32_t, double[3] or int of the settings */
     int seen;
 } option;
 
@@ -80,7 +80,8 @@ static const char usage[] =
     "       cube5                    unit cube of 5 tetrahedra\n"
     "       grid:NX,NY,NZ[,5|6]      unit cubes of 5 (default) or 6 tetrahedra\n"
     "       tet                      corners at the origin and at 1 on each axis\n"
-    "       NAME[:SPACING]           octopus, bunny, armadillo, objects (a plate with things on it), with edges of about\n"
+    "       NAME[:SPACING]           octopus, bunny, armadillo, objects (a plate with things on it), with edges of "
+    "about\n"
     "                                SPACING; default and largest: 0.0188 0.05, 0.0085 0.02, 3.9 10, 0.058 0.1\n"
     "       ball:RADIUS,SPACING      about the origin; torus:R,r,SPACING: around the z axis\n"
     "CUT    FILE.obj, FILE.off       triangles or polygons\n"
@@ -112,10 +113,11 @@ static const char usage[] =
     "  --help              this text\n";
 
 /* A line "NAME: cause" as the run's error; returns 0. */
-static int misused(gxio_error *error, const char *name, const char *cause) { return gxio_fail(error, name, 0, "%s", cause); }
+static int misused(gxio_error *error, const char *name, const char *cause) {
+    return gxio_fail(error, name, 0, "%s", cause);
+}
 
-static int parse_count(const char *text, uint32_t *count)
-{
+static int parse_count(const char *text, uint32_t *count) {
     int64_t value;
     if (!gxio_parse_integer(text, text + strlen(text), &value) || value < 0 || value > 1000000) return 0;
     *count = (uint32_t)value;
@@ -123,45 +125,44 @@ static int parse_count(const char *text, uint32_t *count)
 }
 
 /* AXIS<V or AXIS>V */
-static int parse_region(const char *text, gx_region *region)
-{
+static int parse_region(const char *text, gx_region *region) {
     if (text[0] < 'x' || text[0] > 'z' || (text[1] != '<' && text[1] != '>')) return 0;
     region->axis = (uint32_t)(text[0] - 'x');
     region->side = text[1] == '<' ? -1 : 1;
     return gxio_argument_number(text + 2, &region->value);
 }
 
-static void add_cut(settings *set, const char *spec, uint32_t kind)
-{
+static void add_cut(settings *set, const char *spec, uint32_t kind) {
     set->kinds[set->cut_count] = kind;
     set->cuts[set->cut_count++] = spec;
 }
 
 /* Stores an option's value. Returns NULL, or what is wrong with it. */
-static const char *store(settings *set, const option *o, const char *value)
-{
+static const char *store(settings *set, const option *o, const char *value) {
     switch (o->takes) {
     case TAKES_TEXT: *(const char **)o->target = value; return *value ? NULL : "is empty";
     case TAKES_NUMBER: return gxio_argument_number(value, (double *)o->target) ? NULL : "is not a finite number";
     case TAKES_COUNT: return parse_count(value, (uint32_t *)o->target) ? NULL : "is not a count from 0 to 1000000";
-    case TAKES_VECTOR: return gxio_argument_list(value, (double *)o->target, 3, 3) == 3 ? NULL : "is not three finite numbers X,Y,Z";
+    case TAKES_VECTOR:
+        return gxio_argument_list(value, (double *)o->target, 3, 3) == 3 ? NULL : "is not three finite numbers X,Y,Z";
     case TAKES_SHEET: add_cut(set, value, GX_SURFACE_SHEET); return NULL;
     case TAKES_SOLID: add_cut(set, value, GX_SURFACE_SOLID); return NULL;
-    default: return parse_region(value, &set->regions[set->region_count++]) ? NULL : "is not AXIS<V or AXIS>V with the axis x, y or z";
+    default:
+        return parse_region(value, &set->regions[set->region_count++])
+                 ? NULL
+                 : "is not AXIS<V or AXIS>V with the axis x, y or z";
     }
 }
 
 /* The option that `name` names, or NULL. */
-static option *find_option(option *options, const char *name)
-{
+static option *find_option(option *options, const char *name) {
     for (; options->name; options++)
         if (strcmp(options->name, name) == 0) return options;
     return NULL;
 }
 
 /* Takes the argument at argv[*i] and its value, if it has one; *i is then the last one taken. */
-static int take_argument(settings *set, option *options, int argc, char **argv, int *i, gxio_error *error)
-{
+static int take_argument(settings *set, option *options, int argc, char **argv, int *i, gxio_error *error) {
     const char *name = argv[*i], *value, *cause;
     option *o;
     if (name[0] != '-') {
@@ -172,35 +173,36 @@ static int take_argument(settings *set, option *options, int argc, char **argv, 
     o = find_option(options, name);
     if (!o) return misused(error, name, "unknown option, see gxcut --help");
     if (o->seen++ && o->takes <= TAKES_NOTHING) return misused(error, name, "is given twice");
-    if (o->takes == TAKES_NOTHING) { *(int *)o->target = 1; return 1; }
+    if (o->takes == TAKES_NOTHING) {
+        *(int *)o->target = 1;
+        return 1;
+    }
     if (*i + 1 >= argc || strncmp(argv[*i + 1], "--", 2) == 0) return misused(error, name, "needs a value");
     value = argv[++*i];
     cause = store(set, o, value);
     return cause ? gxio_fail(error, name, 0, "'%s' %s", value, cause) : 1;
 }
 
-static int take_arguments(settings *set, int argc, char **argv, gxio_error *error)
-{
-    option options[] = {
-        {"--sheet", TAKES_SHEET, NULL, 0},
-        {"--solid", TAKES_SOLID, NULL, 0},
-        {"--thickness", TAKES_NUMBER, &set->thickness, 0},
-        {"--cut-at", TAKES_COUNT, &set->cut_at, 0},
-        {"--frames", TAKES_COUNT, &set->frames, 0},
-        {"--dt", TAKES_NUMBER, &set->dt, 0},
-        {"--newton", TAKES_COUNT, &set->newton, 0},
-        {"--young", TAKES_NUMBER, &set->young, 0},
-        {"--poisson", TAKES_NUMBER, &set->poisson, 0},
-        {"--density", TAKES_NUMBER, &set->density, 0},
-        {"--gravity", TAKES_VECTOR, set->gravity, 0},
-        {"--fix", TAKES_REGION, NULL, 0},
-        {"--stretch", TAKES_VECTOR, set->stretch, 0},
-        {"--out", TAKES_TEXT, &set->out, 0},
-        {"--format", TAKES_TEXT, &set->format, 0},
-        {"--report", TAKES_TEXT, &set->report, 0},
-        {"--quiet", TAKES_NOTHING, &set->quiet, 0},
-        {"--help", TAKES_NOTHING, &set->help, 0},
-        {NULL, 0, NULL, 0}};
+static int take_arguments(settings *set, int argc, char **argv, gxio_error *error) {
+    option options[] = {{"--sheet", TAKES_SHEET, NULL, 0},
+                        {"--solid", TAKES_SOLID, NULL, 0},
+                        {"--thickness", TAKES_NUMBER, &set->thickness, 0},
+                        {"--cut-at", TAKES_COUNT, &set->cut_at, 0},
+                        {"--frames", TAKES_COUNT, &set->frames, 0},
+                        {"--dt", TAKES_NUMBER, &set->dt, 0},
+                        {"--newton", TAKES_COUNT, &set->newton, 0},
+                        {"--young", TAKES_NUMBER, &set->young, 0},
+                        {"--poisson", TAKES_NUMBER, &set->poisson, 0},
+                        {"--density", TAKES_NUMBER, &set->density, 0},
+                        {"--gravity", TAKES_VECTOR, set->gravity, 0},
+                        {"--fix", TAKES_REGION, NULL, 0},
+                        {"--stretch", TAKES_VECTOR, set->stretch, 0},
+                        {"--out", TAKES_TEXT, &set->out, 0},
+                        {"--format", TAKES_TEXT, &set->format, 0},
+                        {"--report", TAKES_TEXT, &set->report, 0},
+                        {"--quiet", TAKES_NOTHING, &set->quiet, 0},
+                        {"--help", TAKES_NOTHING, &set->help, 0},
+                        {NULL, 0, NULL, 0}};
     int i;
     for (i = 1; i < argc; i++)
         if (!take_argument(set, options, argc, argv, &i, error)) return 0;
@@ -209,22 +211,24 @@ static int take_arguments(settings *set, int argc, char **argv, gxio_error *erro
     return 1;
 }
 
-static int check_settings(const settings *set, gxio_error *error)
-{
-    if (!set->mesh) return misused(error, "usage", "gxcut MESH [--sheet CUT]... [--solid CUT]... [options], see gxcut --help");
+static int check_settings(const settings *set, gxio_error *error) {
+    if (!set->mesh)
+        return misused(error, "usage", "gxcut MESH [--sheet CUT]... [--solid CUT]... [options], see gxcut --help");
     if (!(set->dt > 0.0)) return misused(error, "--dt", "must be above 0");
     if (!(set->young > 0.0)) return misused(error, "--young", "must be above 0");
-    if (!(set->poisson >= 0.0 && set->poisson < 0.5)) return misused(error, "--poisson", "must be at least 0 and below 0.5");
+    if (!(set->poisson >= 0.0 && set->poisson < 0.5))
+        return misused(error, "--poisson", "must be at least 0 and below 0.5");
     if (!(set->density > 0.0)) return misused(error, "--density", "must be above 0");
     if (!set->newton) return misused(error, "--newton", "must be at least 1");
-    if (set->cut_at && set->cut_at >= set->frames) return misused(error, "--cut-at", "must be below the number of frames");
-    if (strcmp(set->format, "vtu") != 0 && strcmp(set->format, "obj") != 0) return misused(error, "--format", "must be vtu or obj");
+    if (set->cut_at && set->cut_at >= set->frames)
+        return misused(error, "--cut-at", "must be below the number of frames");
+    if (strcmp(set->format, "vtu") != 0 && strcmp(set->format, "obj") != 0)
+        return misused(error, "--format", "must be vtu or obj");
     return 1;
 }
 
 /* Defaults, then the arguments; cuts and regions can't be more than there are arguments. */
-static int parse_settings(settings *set, int argc, char **argv, gxio_error *error)
-{
+static int parse_settings(settings *set, int argc, char **argv, gxio_error *error) {
     const size_t room = (size_t)argc + 1;
     set->out = "out";
     set->format = "vtu";
@@ -247,14 +251,12 @@ static int parse_settings(settings *set, int argc, char **argv, gxio_error *erro
 /* ----------------------------------------------------------------------------------------------- >>input */
 
 /* Ends the progress bar's line, so that what follows starts on its own. */
-static void end_bar(run *r)
-{
+static void end_bar(run *r) {
     if (r->bar) fputc('\n', stderr);
     r->bar = 0;
 }
 
-static int complain(run *r, int code)
-{
+static int complain(run *r, int code) {
     end_bar(r);
     fprintf(stderr, "gxcut: %s\n", r->error.text);
     return code;
@@ -263,25 +265,28 @@ static int complain(run *r, int code)
 static int names_point(gx_result result) { return result == GX_ERROR_NOT_FINITE || result == GX_ERROR_RANGE; }
 
 /* The library refused the mesh: names the file, and the line of the node or element to blame. */
-static int refuse_mesh(run *r, const gx_failure *failure)
-{
+static int refuse_mesh(run *r, const gx_failure *failure) {
     const int node = names_point(failure->result);
     const char *path = node ? r->mesh.node_path : r->mesh.element_path, *text = gx_result_text(failure->result);
     const uint32_t *lines = node ? r->mesh.node_lines : r->mesh.element_lines;
     const size_t index = failure->index;
-    if (index >= (node ? r->mesh.node_count : r->mesh.element_count)) gxio_fail(&r->error, path, 0, "%s", text);
-    else gxio_fail(&r->error, path, lines ? lines[index] : 0, "%s %lu: %s", node ? "node" : "element", (unsigned long)index, text);
+    if (index >= (node ? r->mesh.node_count : r->mesh.element_count))
+        gxio_fail(&r->error, path, 0, "%s", text);
+    else
+        gxio_fail(&r->error, path, lines ? lines[index] : 0, "%s %lu: %s", node ? "node" : "element",
+                  (unsigned long)index, text);
     return complain(r, failure->result == GX_ERROR_MEMORY ? EXIT_FAILED : EXIT_MISUSED);
 }
 
 /* A cut failed: names it, and the line of the triangle to blame. */
-static int refuse_cut(run *r, const gx_failure *failure)
-{
+static int refuse_cut(run *r, const gx_failure *failure) {
     const char *text = gx_result_text(failure->result), *what = names_point(failure->result) ? "vertex" : "triangle";
     const size_t s = failure->surface, index = failure->index;
     if (s >= r->set.cut_count) {
-        if (index == SIZE_MAX) gxio_fail(&r->error, "cut", 0, "%s", text);
-        else gxio_fail(&r->error, "cut", 0, "index %lu: %s", (unsigned long)index, text);
+        if (index == SIZE_MAX)
+            gxio_fail(&r->error, "cut", 0, "%s", text);
+        else
+            gxio_fail(&r->error, "cut", 0, "index %lu: %s", (unsigned long)index, text);
     } else if (index == SIZE_MAX) {
         gxio_fail(&r->error, r->set.cuts[s], 0, "cut %lu: %s", (unsigned long)s, text);
     } else {
@@ -293,8 +298,7 @@ static int refuse_cut(run *r, const gx_failure *failure)
     return complain(r, EXIT_FAILED);
 }
 
-static gx_surface view_cut(const run *r, size_t i)
-{
+static gx_surface view_cut(const run *r, size_t i) {
     gx_surface surface;
     memset(&surface, 0, sizeof surface);
     surface.vertices = r->cuts[i].vertices;
@@ -306,8 +310,7 @@ static gx_surface view_cut(const run *r, size_t i)
 }
 
 /* Replaces a sheet by a solid of the given thickness. Its triangles are new: no line of the file is theirs. */
-static int thicken(run *r, size_t i)
-{
+static int thicken(run *r, size_t i) {
     const gx_surface sheet = view_cut(r, i);
     gxio_surface solid;
     gx_failure failure;
@@ -316,9 +319,10 @@ static int thicken(run *r, size_t i)
     failure.surface = i;
     solid.vertices = (double *)gxio_array(sheet.vertex_count, 2 * 3 * sizeof(double));
     solid.triangles = (uint32_t *)gxio_array(sheet.triangle_count, 8 * 3 * sizeof(uint32_t));
-    failure.result = !solid.vertices || !solid.triangles ? GX_ERROR_MEMORY
-        : gx_surface_solidify(&sheet, r->set.thickness, solid.vertices, &solid.vertex_count, solid.triangles,
-                              &solid.triangle_count, NULL);
+    failure.result = !solid.vertices || !solid.triangles
+                       ? GX_ERROR_MEMORY
+                       : gx_surface_solidify(&sheet, r->set.thickness, solid.vertices, &solid.vertex_count,
+                                             solid.triangles, &solid.triangle_count, NULL);
     if (failure.result != GX_OK) {
         gxio_surface_release(&solid);
         return refuse_cut(r, &failure);
@@ -329,14 +333,16 @@ static int thicken(run *r, size_t i)
     return EXIT_DONE;
 }
 
-static int load(run *r)
-{
+static int load(run *r) {
     gxio_box body;
     size_t i;
     int code = EXIT_DONE;
     if (!gxio_mesh_load(r->set.mesh, &r->mesh, &r->error)) return complain(r, EXIT_MISUSED);
     r->cuts = (gxio_surface *)calloc(r->set.cut_count + 1, sizeof *r->cuts);
-    if (!r->cuts) { misused(&r->error, "cuts", "out of memory"); return complain(r, EXIT_FAILED); }
+    if (!r->cuts) {
+        misused(&r->error, "cuts", "out of memory");
+        return complain(r, EXIT_FAILED);
+    }
     gxio_mesh_bounds(&r->mesh, body.low, body.high);
     for (i = 0; i < r->set.cut_count; i++)
         if (!gxio_surface_load(r->set.cuts[i], &body, &r->cuts[i], &r->error)) return complain(r, EXIT_MISUSED);
@@ -346,15 +352,13 @@ static int load(run *r)
 }
 
 /* A call on the body failed for no reason in its input: "WHAT: text". */
-static int fail(run *r, const char *what, gx_result result)
-{
+static int fail(run *r, const char *what, gx_result result) {
     misused(&r->error, what, gx_result_text(result));
     return complain(r, EXIT_FAILED);
 }
 
 /* Displacement u = (s - 1)(X - centre of the bounding box), component by component. */
-static gx_result stretch(run *r)
-{
+static gx_result stretch(run *r) {
     double low[3], high[3];
     size_t copy, axis;
     const gx_result result = gx_body_view(r->body, &r->view);
@@ -368,8 +372,7 @@ static gx_result stretch(run *r)
 }
 
 /* The body, stretched, then held: what is held stays where the stretch put it. */
-static int build(run *r)
-{
+static int build(run *r) {
     gx_body_desc desc;
     gx_failure failure;
     gx_result result;
@@ -392,8 +395,7 @@ static int build(run *r)
 /* ------------------------------------------------------------------------------------------------- >>run */
 
 /* All cuts in one call. */
-static int cut(run *r)
-{
+static int cut(run *r) {
     gx_surface *surfaces = (gx_surface *)gxio_array(r->set.cut_count, sizeof *surfaces);
     gx_cut_desc desc;
     gx_failure failure;
@@ -411,9 +413,8 @@ static int cut(run *r)
 }
 
 /* Looks at the body as it now is: view, and skin with room for its positions if frames are to be written. */
-static int look(run *r)
-{
-    const gx_skin_desc shading = {0.6, 1};      /* creases of 34 degrees and more stay sharp */
+static int look(run *r) {
+    const gx_skin_desc shading = {0.6, 1}; /* creases of 34 degrees and more stay sharp */
     gx_result result = gx_body_view(r->body, &r->view);
     if (result == GX_OK && r->set.frames) {
         result = gx_body_skin(r->body, &shading, &r->skin);
@@ -427,14 +428,12 @@ static int look(run *r)
 }
 
 /* DIR/NAME; fails where it is too long. */
-static int join_path(run *r, const char *name, char path[GXIO_PATH_ROOM])
-{
+static int join_path(run *r, const char *name, char path[GXIO_PATH_ROOM]) {
     const int length = snprintf(path, GXIO_PATH_ROOM, "%s/%s", r->set.out, name);
     return length > 0 && length < GXIO_PATH_ROOM ? 1 : misused(&r->error, "--out", "the path is too long");
 }
 
-static int write_frame(run *r, uint32_t frame)
-{
+static int write_frame(run *r, uint32_t frame) {
     gxio_triangles t;
     char name[32], path[GXIO_PATH_ROOM];
     gx_body_skin_positions(r->body, r->skin_positions);
@@ -451,21 +450,21 @@ static int write_frame(run *r, uint32_t frame)
     t.material = r->skin.triangle_material;
     gxio_frame_name(name, sizeof name, frame, r->set.format);
     if (!join_path(r, name, path)) return 0;
-    if (!(strcmp(r->set.format, "obj") == 0 ? gxio_write_obj(path, &t, &r->error) : gxio_write_vtu(path, &t, &r->error))) return 0;
+    if (!(strcmp(r->set.format, "obj") == 0 ? gxio_write_obj(path, &t, &r->error)
+                                            : gxio_write_vtu(path, &t, &r->error)))
+        return 0;
     r->frames_written = frame + 1;
     return 1;
 }
 
 /* The collection of the frames there are: written also where a later step failed. */
-static int write_collection(run *r)
-{
+static int write_collection(run *r) {
     char path[GXIO_PATH_ROOM];
     if (!r->frames_written || strcmp(r->set.format, "vtu") != 0) return 1;
     return join_path(r, "frames.pvd", path) && gxio_write_pvd(path, r->frames_written, r->set.dt, &r->error);
 }
 
-static void draw_bar(run *r, uint32_t done)
-{
+static void draw_bar(run *r, uint32_t done) {
     const int width = 40, filled = (int)((double)width * done / r->set.frames);
     int i;
     if (r->set.quiet || !STDERR_IS_TERMINAL) return;
@@ -476,18 +475,19 @@ static void draw_bar(run *r, uint32_t done)
     r->bar = 1;
 }
 
-static int refuse_step(run *r, uint32_t frame, gx_result result)
-{
+static int refuse_step(run *r, uint32_t frame, gx_result result) {
     char name[32];
     snprintf(name, sizeof name, "frame %lu", (unsigned long)frame);
     if (!write_collection(r)) return complain(r, EXIT_MISUSED);
-    if (frame) gxio_fail(&r->error, name, 0, "%s; the %lu frames before it are in %s", gx_result_text(result), (unsigned long)frame, r->set.out);
-    else misused(&r->error, name, gx_result_text(result));
+    if (frame)
+        gxio_fail(&r->error, name, 0, "%s; the %lu frames before it are in %s", gx_result_text(result),
+                  (unsigned long)frame, r->set.out);
+    else
+        misused(&r->error, name, gx_result_text(result));
     return complain(r, EXIT_FAILED);
 }
 
-static int step(run *r, uint32_t frame)
-{
+static int step(run *r, uint32_t frame) {
     gx_step_desc desc;
     gx_step_report report;
     gx_result result;
@@ -502,8 +502,7 @@ static int step(run *r, uint32_t frame)
 }
 
 /* One frame: cut if it is time to, step, write. */
-static int advance(run *r, uint32_t frame)
-{
+static int advance(run *r, uint32_t frame) {
     int code = EXIT_DONE;
     if (frame == r->set.cut_at) {
         if (r->set.cut_count) code = cut(r);
@@ -517,8 +516,7 @@ static int advance(run *r, uint32_t frame)
     return EXIT_DONE;
 }
 
-static int simulate(run *r)
-{
+static int simulate(run *r) {
     uint32_t frame;
     int code = EXIT_DONE;
     if (!r->set.frames) {
@@ -534,8 +532,7 @@ static int simulate(run *r)
 
 /* ---------------------------------------------------------------------------------------------- >>report */
 
-static int compare_doubles(const void *a, const void *b)
-{
+static int compare_doubles(const void *a, const void *b) {
     const double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
 }
@@ -543,8 +540,7 @@ static int compare_doubles(const void *a, const void *b)
 static double smallest_link(const run *r) { return r->has_cut ? r->cut.min_link_ratio : 1.0; }
 
 /* "name": [values, ascending]; sorts them in place. */
-static void print_volumes(FILE *stream, const char *name, double *values, size_t count)
-{
+static void print_volumes(FILE *stream, const char *name, double *values, size_t count) {
     size_t i;
     if (count) qsort(values, count, sizeof *values, compare_doubles);
     fprintf(stream, "\"%s\": [", name);
@@ -553,14 +549,12 @@ static void print_volumes(FILE *stream, const char *name, double *values, size_t
 }
 
 /* Cells of view are sorted by element: the end of those of element e that begin at `cell`. */
-static size_t cells_end(const gx_view *view, size_t cell, size_t e)
-{
+static size_t cells_end(const gx_view *view, size_t cell, size_t e) {
     while (cell < view->cell_count && view->cell_element[cell] == e) cell++;
     return cell;
 }
 
-static void print_cells(FILE *stream, const gx_view *view, double *volumes)
-{
+static void print_cells(FILE *stream, const gx_view *view, double *volumes) {
     size_t e, cell = 0, end;
     char name[24];
     fprintf(stream, "  \"cells_per_element\": [");
@@ -578,33 +572,33 @@ static void print_cells(FILE *stream, const gx_view *view, double *volumes)
     fprintf(stream, "\n  },\n");
 }
 
-static void print_report(FILE *stream, run *r, uint64_t hash, double *cell_volumes, double *fragment_volumes)
-{
+static void print_report(FILE *stream, run *r, uint64_t hash, double *cell_volumes, double *fragment_volumes) {
     const gx_view *view = &r->view;
-    fprintf(stream, "{\n  \"elements\": %lu,\n  \"nodes\": %lu,\n  \"cells\": %lu,\n", (unsigned long)view->element_count,
-            (unsigned long)view->node_count, (unsigned long)view->cell_count);
+    fprintf(stream, "{\n  \"elements\": %lu,\n  \"nodes\": %lu,\n  \"cells\": %lu,\n",
+            (unsigned long)view->element_count, (unsigned long)view->node_count, (unsigned long)view->cell_count);
     print_cells(stream, view, cell_volumes);
-    fprintf(stream, "  \"copies\": %lu,\n  \"fragments\": %lu,\n  ", (unsigned long)view->copy_count, (unsigned long)view->fragment_count);
+    fprintf(stream, "  \"copies\": %lu,\n  \"fragments\": %lu,\n  ", (unsigned long)view->copy_count,
+            (unsigned long)view->fragment_count);
     print_volumes(stream, "fragment_volumes", fragment_volumes, view->fragment_count);
     fprintf(stream, ",\n  \"volume\": %.17g,\n  \"dofs\": %lu,\n  \"mass\": %.17g,\n", view->volume,
             3 * (unsigned long)view->copy_count, view->mass);
     fprintf(stream, "  \"topology_hash\": \"%08lx%08lx\",\n  \"min_link_ratio\": %.17g,\n", (unsigned long)(hash >> 32),
             (unsigned long)(hash & 0xffffffffu), smallest_link(r));
-    fprintf(stream, "  \"timings\": {\"arrangement\": %.17g, \"enrichment\": %.17g, \"integrals\": %.17g, \"newton\": %.17g, \"total\": %.17g},\n",
+    fprintf(stream,
+            "  \"timings\": {\"arrangement\": %.17g, \"enrichment\": %.17g, \"integrals\": %.17g, \"newton\": %.17g, "
+            "\"total\": %.17g},\n",
             r->cut.seconds_arrangement, r->cut.seconds_enrichment, r->cut.seconds_integrals, r->seconds_newton,
             gxio_seconds(NULL) - r->seconds_start);
     fprintf(stream, "  \"frames\": %lu\n}\n", (unsigned long)r->set.frames);
 }
 
-static double *copy_doubles(const double *values, size_t count)
-{
+static double *copy_doubles(const double *values, size_t count) {
     double *copy = (double *)gxio_array(count, sizeof *copy);
     if (copy && count) memcpy(copy, values, count * sizeof *copy);
     return copy;
 }
 
-static int report(run *r)
-{
+static int report(run *r) {
     gx_result result = GX_OK;
     const uint64_t hash = gx_body_topology_hash(r->body, &result);
     double *cells = copy_doubles(r->view.cell_volume, r->view.cell_count);
@@ -612,8 +606,10 @@ static int report(run *r)
     gxio_writer writer;
     int code = EXIT_DONE;
     if (!cells || !fragments) result = GX_ERROR_MEMORY;
-    if (result != GX_OK) code = fail(r, "report", result);
-    else if (!gxio_writer_open(&writer, r->set.report, &r->error)) code = complain(r, EXIT_MISUSED);
+    if (result != GX_OK)
+        code = fail(r, "report", result);
+    else if (!gxio_writer_open(&writer, r->set.report, &r->error))
+        code = complain(r, EXIT_MISUSED);
     else {
         print_report(writer.stream, r, hash, cells, fragments);
         if (!gxio_writer_close(&writer, 1, &r->error)) code = complain(r, EXIT_MISUSED);
@@ -623,25 +619,26 @@ static int report(run *r)
     return code;
 }
 
-static void summarise_frames(const run *r)
-{
+static void summarise_frames(const run *r) {
     char first[32], last[32];
     if (!r->set.frames) return;
     gxio_frame_name(first, sizeof first, 0, r->set.format);
     gxio_frame_name(last, sizeof last, r->set.frames - 1, r->set.format);
-    printf("steps     %lu of %g s, %.3g ms each\n", (unsigned long)r->set.frames, r->set.dt, 1e3 * r->seconds_newton / r->set.frames);
+    printf("steps     %lu of %g s, %.3g ms each\n", (unsigned long)r->set.frames, r->set.dt,
+           1e3 * r->seconds_newton / r->set.frames);
     printf("wrote     %s/%s to %s", r->set.out, first, last);
     if (strcmp(r->set.format, "vtu") == 0) printf("; ParaView opens %s/frames.pvd", r->set.out);
     putchar('\n');
 }
 
-static void summarise(const run *r)
-{
+static void summarise(const run *r) {
     const gx_view *view = &r->view;
-    printf("mesh      %s: %lu nodes, %lu elements\n", r->set.mesh, (unsigned long)view->node_count, (unsigned long)view->element_count);
+    printf("mesh      %s: %lu nodes, %lu elements\n", r->set.mesh, (unsigned long)view->node_count,
+           (unsigned long)view->element_count);
     if (r->has_cut)
-        printf("cuts      %lu: %lu elements touched, smallest link %.3g of its face, removed volume %.6g m3\n", (unsigned long)r->set.cut_count,
-               (unsigned long)r->cut.touched_elements, r->cut.min_link_ratio, r->cut.removed_volume);
+        printf("cuts      %lu: %lu elements touched, smallest link %.3g of its face, removed volume %.6g m3\n",
+               (unsigned long)r->set.cut_count, (unsigned long)r->cut.touched_elements, r->cut.min_link_ratio,
+               r->cut.removed_volume);
     printf("body      %lu cells, %lu fragments, volume %.15g m3, mass %.6g kg\n", (unsigned long)view->cell_count,
            (unsigned long)view->fragment_count, view->volume, view->mass);
     printf("unknowns  %lu copies x 3 = %lu\n", (unsigned long)view->copy_count, 3 * (unsigned long)view->copy_count);
@@ -653,8 +650,7 @@ static void summarise(const run *r)
     if (r->set.report) printf("report    %s\n", r->set.report);
 }
 
-static void release(run *r)
-{
+static void release(run *r) {
     size_t i;
     for (i = 0; r->cuts && i < r->set.cut_count; i++) gxio_surface_release(&r->cuts[i]);
     free(r->cuts);
@@ -667,11 +663,13 @@ static void release(run *r)
     free(r->set.regions);
 }
 
-static int execute(run *r, int argc, char **argv)
-{
+static int execute(run *r, int argc, char **argv) {
     int code;
     if (!parse_settings(&r->set, argc, argv, &r->error)) return complain(r, EXIT_MISUSED);
-    if (r->set.help) { fputs(usage, stdout); return EXIT_DONE; }
+    if (r->set.help) {
+        fputs(usage, stdout);
+        return EXIT_DONE;
+    }
     code = load(r);
     if (code == EXIT_DONE) code = build(r);
     if (code == EXIT_DONE) code = simulate(r);
@@ -680,8 +678,7 @@ static int execute(run *r, int argc, char **argv)
     return code;
 }
 
-int main(int argc, char **argv)
-{
+int main(int argc, char **argv) {
     run r;
     int code;
     memset(&r, 0, sizeof r);

@@ -19,7 +19,7 @@
 #define GXIO_H
 
 #if !defined(_WIN32) && !defined(_POSIX_C_SOURCE)
-#define _POSIX_C_SOURCE 200809L     /* clock_gettime; include this file before the system's */
+#define _POSIX_C_SOURCE 200809L /* clock_gettime; include this file before the system's */
 #endif
 
 #include <errno.h>
@@ -39,15 +39,16 @@
 #endif
 #include "gxshape.h"
 
-enum { GXIO_PATH_ROOM = 1024 };     /* longest path, with its terminator, bytes */
+enum { GXIO_PATH_ROOM = 1024 }; /* longest path, with its terminator, bytes */
 
 /* ------------------------------------------------------------------------------------------------ >>errors */
 
-typedef struct gxio_error { char text[2 * GXIO_PATH_ROOM]; } gxio_error;
+typedef struct gxio_error {
+    char text[2 * GXIO_PATH_ROOM];
+} gxio_error;
 
 /* Writes "PATH:LINE: cause" (line 0: "PATH: cause"). Returns 0, so that a caller can return it. */
-static inline int gxio_fail(gxio_error *error, const char *path, size_t line, const char *format, ...)
-{
+static inline int gxio_fail(gxio_error *error, const char *path, size_t line, const char *format, ...) {
     const size_t room = sizeof error->text;
     va_list arguments;
     int used = line ? snprintf(error->text, room, "%s:%lu: ", path, (unsigned long)line)
@@ -63,24 +64,22 @@ static inline int gxio_fail(gxio_error *error, const char *path, size_t line, co
 
 typedef struct gxio_reader {
     const char *path;
-    char *text;                 /* the whole file and a terminating 0; owned */
-    const char *at, *end;       /* next character; the terminating 0 */
-    size_t line;                /* of `at`, from 1 */
-    const char *token;          /* the last token read, not terminated */
+    char *text;           /* the whole file and a terminating 0; owned */
+    const char *at, *end; /* next character; the terminating 0 */
+    size_t line;          /* of `at`, from 1 */
+    const char *token;    /* the last token read, not terminated */
     size_t token_length, token_line;
 } gxio_reader;
 
-enum { GXIO_SAME_LINE = 0, GXIO_ANY_LINE = 1 };     /* where the next token may stand */
+enum { GXIO_SAME_LINE = 0, GXIO_ANY_LINE = 1 }; /* where the next token may stand */
 
-static inline void gxio_reader_release(gxio_reader *reader)
-{
+static inline void gxio_reader_release(gxio_reader *reader) {
     free(reader->text);
     memset(reader, 0, sizeof *reader);
 }
 
 /* The bytes of a file and a terminating 0, to be freed by the caller. NULL on failure; errno says why. */
-static inline char *gxio_slurp(const char *path, size_t *length)
-{
+static inline char *gxio_slurp(const char *path, size_t *length) {
     size_t capacity = 1 << 16, used = 0;
     FILE *stream = fopen(path, "rb");
     char *text = stream ? (char *)malloc(capacity) : NULL;
@@ -89,11 +88,18 @@ static inline char *gxio_slurp(const char *path, size_t *length)
         used += fread(text + used, 1, capacity - used - 1, stream);
         if (used < capacity - 1) break;
         grown = (char *)realloc(text, 2 * capacity);
-        if (!grown) { free(text); text = NULL; break; }
+        if (!grown) {
+            free(text);
+            text = NULL;
+            break;
+        }
         text = grown;
         capacity *= 2;
     }
-    if (text && ferror(stream)) { free(text); text = NULL; }
+    if (text && ferror(stream)) {
+        free(text);
+        text = NULL;
+    }
     if (text) text[used] = 0;
     if (stream) fclose(stream);
     *length = used;
@@ -101,8 +107,7 @@ static inline char *gxio_slurp(const char *path, size_t *length)
 }
 
 /* The whole file, whatever is in it. */
-static inline int gxio_reader_load(gxio_reader *reader, const char *path, gxio_error *error)
-{
+static inline int gxio_reader_load(gxio_reader *reader, const char *path, gxio_error *error) {
     size_t length = 0;
     memset(reader, 0, sizeof *reader);
     reader->path = path;
@@ -116,13 +121,11 @@ static inline int gxio_reader_load(gxio_reader *reader, const char *path, gxio_e
 }
 
 /* 1: text, 0: there are bytes of 0 in it, which no text has. */
-static inline int gxio_is_text(const gxio_reader *reader)
-{
+static inline int gxio_is_text(const gxio_reader *reader) {
     return memchr(reader->text, 0, (size_t)(reader->end - reader->text)) == NULL;
 }
 
-static inline int gxio_reader_open(gxio_reader *reader, const char *path, gxio_error *error)
-{
+static inline int gxio_reader_open(gxio_reader *reader, const char *path, gxio_error *error) {
     if (!gxio_reader_load(reader, path, error)) return 0;
     if (gxio_is_text(reader)) return 1;
     gxio_reader_release(reader);
@@ -131,65 +134,71 @@ static inline int gxio_reader_open(gxio_reader *reader, const char *path, gxio_e
 
 static inline int gxio_is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
 
-static inline void gxio_skip_line(gxio_reader *reader)
-{
+static inline void gxio_skip_line(gxio_reader *reader) {
     while (*reader->at && *reader->at != '\n') reader->at++;
 }
 
-static inline void gxio_next_line(gxio_reader *reader)
-{
+static inline void gxio_next_line(gxio_reader *reader) {
     gxio_skip_line(reader);
     if (!*reader->at) return;
     reader->at++;
     reader->line++;
 }
 
-/* Length of a backslash at the end of a line with the line's end, behind which an OBJ line goes on; 0: there is none. */
-static inline size_t gxio_continued(const char *at) { return at[0] != '\\' ? 0 : at[1] == '\n' ? 2 : at[1] == '\r' && at[2] == '\n' ? 3 : 0; }
+/* Length of a backslash at the end of a line with the line's end, behind which an OBJ line goes on; 0: there is none.
+ */
+static inline size_t gxio_continued(const char *at) {
+    return at[0] != '\\' ? 0 : at[1] == '\n' ? 2 : at[1] == '\r' && at[2] == '\n' ? 3 : 0;
+}
 
 /* Advances to the next token: text up to a blank, past comments (# to the end of the line).
    Returns 0 where there is none: at the end of the file, or of the line if it must stand on the same one. */
-static inline int gxio_next(gxio_reader *reader, int where)
-{
+static inline int gxio_next(gxio_reader *reader, int where) {
     for (;;) {
         const char c = *reader->at;
-        if (c == '#') gxio_skip_line(reader);
-        else if (gxio_is_blank(c)) reader->at++;
-        else if (gxio_continued(reader->at)) { reader->at += gxio_continued(reader->at); reader->line++; }
-        else if (c == '\n' && where == GXIO_ANY_LINE) { reader->at++; reader->line++; }
-        else break;
+        if (c == '#')
+            gxio_skip_line(reader);
+        else if (gxio_is_blank(c))
+            reader->at++;
+        else if (gxio_continued(reader->at)) {
+            reader->at += gxio_continued(reader->at);
+            reader->line++;
+        } else if (c == '\n' && where == GXIO_ANY_LINE) {
+            reader->at++;
+            reader->line++;
+        } else
+            break;
     }
     if (!*reader->at || *reader->at == '\n') return 0;
     reader->token = reader->at;
     reader->token_line = reader->line;
-    while (*reader->at && *reader->at != '\n' && *reader->at != '#' && !gxio_is_blank(*reader->at) && !gxio_continued(reader->at)) reader->at++;
+    while (*reader->at && *reader->at != '\n' && *reader->at != '#' && !gxio_is_blank(*reader->at) &&
+           !gxio_continued(reader->at))
+        reader->at++;
     reader->token_length = (size_t)(reader->at - reader->token);
     return 1;
 }
 
-static inline int gxio_token_is(const gxio_reader *reader, const char *word)
-{
+static inline int gxio_token_is(const gxio_reader *reader, const char *word) {
     return strlen(word) == reader->token_length && memcmp(word, reader->token, reader->token_length) == 0;
 }
 
 /* Fails at the last token: "PATH:LINE: 'token' cause". */
-static inline int gxio_bad_token(const gxio_reader *reader, const char *cause, gxio_error *error)
-{
+static inline int gxio_bad_token(const gxio_reader *reader, const char *cause, gxio_error *error) {
     const int shown = reader->token_length < 40 ? (int)reader->token_length : 40;
     return gxio_fail(error, reader->path, reader->token_line, "'%.*s' %s", shown, reader->token, cause);
 }
 
 /* The next token, or a failure that says what is missing. */
-static inline int gxio_need(gxio_reader *reader, int where, const char *what, gxio_error *error)
-{
+static inline int gxio_need(gxio_reader *reader, int where, const char *what, gxio_error *error) {
     if (gxio_next(reader, where)) return 1;
-    if (!*reader->at) return gxio_fail(error, reader->path, reader->token_line, "the file ends where %s should stand", what);
+    if (!*reader->at)
+        return gxio_fail(error, reader->path, reader->token_line, "the file ends where %s should stand", what);
     return gxio_fail(error, reader->path, reader->line, "%s is missing", what);
 }
 
 /* The next token, which must be `word`. */
-static inline int gxio_expect(gxio_reader *reader, const char *word, gxio_error *error)
-{
+static inline int gxio_expect(gxio_reader *reader, const char *word, gxio_error *error) {
     char cause[80];
     if (!gxio_need(reader, GXIO_ANY_LINE, word, error)) return 0;
     if (gxio_token_is(reader, word)) return 1;
@@ -199,8 +208,7 @@ static inline int gxio_expect(gxio_reader *reader, const char *word, gxio_error 
 
 /* A finite double that fills [text, end). Infinities and NaN are recognised by their letters and by errno, never by
    arithmetic, so that -ffast-math can't hide them. */
-static inline int gxio_parse_number(const char *text, const char *end, double *value)
-{
+static inline int gxio_parse_number(const char *text, const char *end, double *value) {
     const char *first = text + (*text == '-' || *text == '+');
     char *stop;
     if (first >= end || !((*first >= '0' && *first <= '9') || *first == '.')) return 0;
@@ -210,8 +218,7 @@ static inline int gxio_parse_number(const char *text, const char *end, double *v
 }
 
 /* An integer that fills [text, end), |value| <= 2^53. */
-static inline int gxio_parse_integer(const char *text, const char *end, int64_t *value)
-{
+static inline int gxio_parse_integer(const char *text, const char *end, int64_t *value) {
     const int64_t limit = (int64_t)1 << 53;
     const int negative = *text == '-';
     int64_t sum = 0;
@@ -226,15 +233,14 @@ static inline int gxio_parse_integer(const char *text, const char *end, int64_t 
     return 1;
 }
 
-static inline int gxio_read_number(gxio_reader *reader, int where, const char *what, double *value, gxio_error *error)
-{
+static inline int gxio_read_number(gxio_reader *reader, int where, const char *what, double *value, gxio_error *error) {
     if (!gxio_need(reader, where, what, error)) return 0;
     if (gxio_parse_number(reader->token, reader->token + reader->token_length, value)) return 1;
     return gxio_bad_token(reader, "is not a finite number", error);
 }
 
-static inline int gxio_read_integer(gxio_reader *reader, int where, const char *what, int64_t *value, gxio_error *error)
-{
+static inline int gxio_read_integer(gxio_reader *reader, int where, const char *what, int64_t *value,
+                                    gxio_error *error) {
     if (!gxio_need(reader, where, what, error)) return 0;
     if (gxio_parse_integer(reader->token, reader->token + reader->token_length, value)) return 1;
     return gxio_bad_token(reader, "is not an integer", error);
@@ -242,8 +248,7 @@ static inline int gxio_read_integer(gxio_reader *reader, int where, const char *
 
 /* The count of a list. A count that the rest of the file can't hold (two bytes per entry) is refused before anything
    is allocated for it. */
-static inline int gxio_read_count(gxio_reader *reader, int where, const char *what, size_t *count, gxio_error *error)
-{
+static inline int gxio_read_count(gxio_reader *reader, int where, const char *what, size_t *count, gxio_error *error) {
     int64_t value = 0;
     if (!gxio_read_integer(reader, where, what, &value, error)) return 0;
     if (value < 0) return gxio_bad_token(reader, "is a negative count", error);
@@ -254,16 +259,14 @@ static inline int gxio_read_count(gxio_reader *reader, int where, const char *wh
     return 1;
 }
 
-static inline int gxio_read_point(gxio_reader *reader, int where, double point[3], gxio_error *error)
-{
-    return gxio_read_number(reader, where, "a coordinate", &point[0], error)
-        && gxio_read_number(reader, where, "a coordinate", &point[1], error)
-        && gxio_read_number(reader, where, "a coordinate", &point[2], error);
+static inline int gxio_read_point(gxio_reader *reader, int where, double point[3], gxio_error *error) {
+    return gxio_read_number(reader, where, "a coordinate", &point[0], error) &&
+           gxio_read_number(reader, where, "a coordinate", &point[1], error) &&
+           gxio_read_number(reader, where, "a coordinate", &point[2], error);
 }
 
 /* An index of 0..UINT32_MAX; whether it lies inside its array is checked when the array is complete. */
-static inline int gxio_read_index(gxio_reader *reader, int where, uint32_t *index, gxio_error *error)
-{
+static inline int gxio_read_index(gxio_reader *reader, int where, uint32_t *index, gxio_error *error) {
     int64_t value = 0;
     if (!gxio_read_integer(reader, where, "an index", &value, error)) return 0;
     if (value < 0 || value > (int64_t)UINT32_MAX) return gxio_bad_token(reader, "is an index out of range", error);
@@ -273,14 +276,12 @@ static inline int gxio_read_index(gxio_reader *reader, int where, uint32_t *inde
 
 /* --------------------------------------------------------------------------------------------- >>arguments */
 
-static inline int gxio_argument_number(const char *text, double *value)
-{
+static inline int gxio_argument_number(const char *text, double *value) {
     return gxio_parse_number(text, text + strlen(text), value);
 }
 
 /* Reads between `least` and `most` numbers separated by commas. Returns how many, -1 on anything else. */
-static inline int gxio_argument_list(const char *text, double *values, int least, int most)
-{
+static inline int gxio_argument_list(const char *text, double *values, int least, int most) {
     int count = 0;
     for (;;) {
         const char *end = text + strcspn(text, ",");
@@ -291,15 +292,13 @@ static inline int gxio_argument_list(const char *text, double *values, int least
     }
 }
 
-static inline int gxio_ends_with(const char *text, const char *ending)
-{
+static inline int gxio_ends_with(const char *text, const char *ending) {
     const size_t length = strlen(text), tail = strlen(ending);
     return length > tail && strcmp(text + length - tail, ending) == 0;
 }
 
 /* What follows `prefix` in text, or NULL. */
-static inline const char *gxio_after(const char *text, const char *prefix)
-{
+static inline const char *gxio_after(const char *text, const char *prefix) {
     const size_t length = strlen(prefix);
     return strncmp(text, prefix, length) == 0 ? text + length : NULL;
 }
@@ -307,17 +306,16 @@ static inline const char *gxio_after(const char *text, const char *prefix)
 /* ---------------------------------------------------------------------------------------------- >>mesh */
 
 typedef struct gxio_mesh {
-    double *positions;          /* node_count x 3 */
+    double *positions; /* node_count x 3 */
     size_t node_count;
-    uint32_t *elements;         /* element_count x 4 */
+    uint32_t *elements; /* element_count x 4 */
     size_t element_count;
-    uint32_t *node_lines;       /* node_count, lines of node_path; NULL: generated */
-    uint32_t *element_lines;    /* element_count, lines of element_path; NULL: generated */
+    uint32_t *node_lines;    /* node_count, lines of node_path; NULL: generated */
+    uint32_t *element_lines; /* element_count, lines of element_path; NULL: generated */
     char node_path[GXIO_PATH_ROOM], element_path[GXIO_PATH_ROOM];
 } gxio_mesh;
 
-static inline void gxio_mesh_release(gxio_mesh *mesh)
-{
+static inline void gxio_mesh_release(gxio_mesh *mesh) {
     free(mesh->positions);
     free(mesh->elements);
     free(mesh->node_lines);
@@ -326,32 +324,30 @@ static inline void gxio_mesh_release(gxio_mesh *mesh)
 }
 
 /* malloc of count x size bytes, never of 0; NULL also where the product overflows. */
-static inline void *gxio_array(size_t count, size_t size)
-{
+static inline void *gxio_array(size_t count, size_t size) {
     if (count > (SIZE_MAX - 1) / size) return NULL;
     return malloc(count ? count * size : 1);
 }
 
-static inline int gxio_mesh_nodes(gxio_mesh *mesh, size_t count)
-{
+static inline int gxio_mesh_nodes(gxio_mesh *mesh, size_t count) {
     mesh->node_count = count;
     mesh->positions = (double *)gxio_array(count, 3 * sizeof(double));
     mesh->node_lines = (uint32_t *)gxio_array(count, sizeof(uint32_t));
     return mesh->positions && mesh->node_lines;
 }
 
-static inline int gxio_mesh_elements(gxio_mesh *mesh, size_t count)
-{
+static inline int gxio_mesh_elements(gxio_mesh *mesh, size_t count) {
     mesh->element_count = count;
     mesh->elements = (uint32_t *)gxio_array(count, 4 * sizeof(uint32_t));
     mesh->element_lines = (uint32_t *)gxio_array(count, sizeof(uint32_t));
     return mesh->elements && mesh->element_lines;
 }
 
-typedef struct gxio_box { double low[3], high[3]; } gxio_box;      /* m */
+typedef struct gxio_box {
+    double low[3], high[3];
+} gxio_box; /* m */
 
-static inline void gxio_bounds(const double *points, size_t count, double low[3], double high[3])
-{
+static inline void gxio_bounds(const double *points, size_t count, double low[3], double high[3]) {
     size_t i;
     int axis;
     for (axis = 0; axis < 3; axis++) low[axis] = high[axis] = count ? points[axis] : 0.0;
@@ -362,8 +358,7 @@ static inline void gxio_bounds(const double *points, size_t count, double low[3]
 }
 
 /* The bounding box of the nodes that elements have: files may hold others, which are no part of the body. */
-static inline void gxio_mesh_bounds(const gxio_mesh *mesh, double low[3], double high[3])
-{
+static inline void gxio_mesh_bounds(const gxio_mesh *mesh, double low[3], double high[3]) {
     size_t i;
     int axis;
     for (axis = 0; axis < 3; axis++) low[axis] = high[axis] = 0.0;
@@ -376,22 +371,21 @@ static inline void gxio_mesh_bounds(const gxio_mesh *mesh, double low[3], double
 }
 
 /* det(x1 - x0, x2 - x0, x3 - x0) in doubles. */
-static inline double gxio_element_determinant(const double *positions, const uint32_t *element)
-{
+static inline double gxio_element_determinant(const double *positions, const uint32_t *element) {
     double d[3][3];
     int corner, axis;
     for (corner = 0; corner < 3; corner++)
         for (axis = 0; axis < 3; axis++)
-            d[corner][axis] = positions[3 * element[corner + 1] + (uint32_t)axis] - positions[3 * element[0] + (uint32_t)axis];
-    return d[0][0] * (d[1][1] * d[2][2] - d[1][2] * d[2][1]) - d[0][1] * (d[1][0] * d[2][2] - d[1][2] * d[2][0])
-         + d[0][2] * (d[1][0] * d[2][1] - d[1][1] * d[2][0]);
+            d[corner][axis] =
+                positions[3 * element[corner + 1] + (uint32_t)axis] - positions[3 * element[0] + (uint32_t)axis];
+    return d[0][0] * (d[1][1] * d[2][2] - d[1][2] * d[2][1]) - d[0][1] * (d[1][0] * d[2][2] - d[1][2] * d[2][0]) +
+           d[0][2] * (d[1][0] * d[2][1] - d[1][1] * d[2][0]);
 }
 
 /* Some programs number a tetrahedron's corners the other way round. A file of several elements, none positive and some
    negative, is one of these: its elements are turned. Otherwise (also with one element, which shows no convention) the
    file's order stays, and an inverted element is for the library to refuse. */
-static inline void gxio_mesh_orient(gxio_mesh *mesh)
-{
+static inline void gxio_mesh_orient(gxio_mesh *mesh) {
     size_t e, negative = 0;
     for (e = 0; e < mesh->element_count; e++) {
         const double determinant = gxio_element_determinant(mesh->positions, mesh->elements + 4 * e);
@@ -407,22 +401,21 @@ static inline void gxio_mesh_orient(gxio_mesh *mesh)
 }
 
 /* Subtracts the file's first index (0 or 1) from all corners and checks that each names a node. */
-static inline int gxio_mesh_rebase(gxio_mesh *mesh, uint32_t base, gxio_error *error)
-{
+static inline int gxio_mesh_rebase(gxio_mesh *mesh, uint32_t base, gxio_error *error) {
     size_t i;
     for (i = 0; i < 4 * mesh->element_count; i++) {
         const uint32_t index = mesh->elements[i];
         if (index < base || index - base >= mesh->node_count)
             return gxio_fail(error, mesh->element_path, mesh->element_lines[i / 4],
                              "node index %lu is out of range: the nodes are %lu to %lu", (unsigned long)index,
-                             (unsigned long)base, (unsigned long)(mesh->node_count + base) - (mesh->node_count ? 1u : 0u));
+                             (unsigned long)base,
+                             (unsigned long)(mesh->node_count + base) - (mesh->node_count ? 1u : 0u));
         mesh->elements[i] = index - base;
     }
     return 1;
 }
 
-static inline int gxio_medit_vertices(gxio_reader *reader, gxio_mesh *mesh, gxio_error *error)
-{
+static inline int gxio_medit_vertices(gxio_reader *reader, gxio_mesh *mesh, gxio_error *error) {
     size_t i, count = 0;
     double reference;
     if (mesh->positions) return gxio_bad_token(reader, "occurs twice", error);
@@ -436,8 +429,7 @@ static inline int gxio_medit_vertices(gxio_reader *reader, gxio_mesh *mesh, gxio
     return 1;
 }
 
-static inline int gxio_medit_tetrahedra(gxio_reader *reader, gxio_mesh *mesh, gxio_error *error)
-{
+static inline int gxio_medit_tetrahedra(gxio_reader *reader, gxio_mesh *mesh, gxio_error *error) {
     size_t i, corner, count = 0;
     double reference;
     if (mesh->elements) return gxio_bad_token(reader, "occurs twice", error);
@@ -453,8 +445,7 @@ static inline int gxio_medit_tetrahedra(gxio_reader *reader, gxio_mesh *mesh, gx
 }
 
 /* MeshVersionFormatted 1 (float) or 2 (double); the later ones differ in binary files only. */
-static inline int gxio_medit_header(gxio_reader *reader, gxio_error *error)
-{
+static inline int gxio_medit_header(gxio_reader *reader, gxio_error *error) {
     int64_t version = 0;
     if (!gxio_need(reader, GXIO_ANY_LINE, "MeshVersionFormatted", error)) return 0;
     if (!gxio_token_is(reader, "MeshVersionFormatted"))
@@ -463,37 +454,42 @@ static inline int gxio_medit_header(gxio_reader *reader, gxio_error *error)
     return version >= 1 && version <= 4 ? 1 : gxio_bad_token(reader, "is not a known version of the format", error);
 }
 
-static inline int gxio_medit_dimension(gxio_reader *reader, gxio_error *error)
-{
+static inline int gxio_medit_dimension(gxio_reader *reader, gxio_error *error) {
     int64_t dimension = 0;
     if (!gxio_read_integer(reader, GXIO_ANY_LINE, "the dimension", &dimension, error)) return 0;
     return dimension == 3 ? 1 : gxio_bad_token(reader, "is the dimension, but 3 is needed", error);
 }
 
 /* Sections in any order; those not named here are skipped. A missing End is accepted. */
-static inline int gxio_medit_sections(gxio_reader *reader, gxio_mesh *mesh, gxio_error *error)
-{
+static inline int gxio_medit_sections(gxio_reader *reader, gxio_mesh *mesh, gxio_error *error) {
     int skipping = 0;
     while (gxio_next(reader, GXIO_ANY_LINE)) {
         const char c = *reader->token;
         int good = 1, known = 1;
-        if (gxio_token_is(reader, "End")) break;
-        else if (gxio_token_is(reader, "Dimension")) good = gxio_medit_dimension(reader, error);
-        else if (gxio_token_is(reader, "Vertices")) good = gxio_medit_vertices(reader, mesh, error);
-        else if (gxio_token_is(reader, "Tetrahedra")) good = gxio_medit_tetrahedra(reader, mesh, error);
-        else known = 0;
+        if (gxio_token_is(reader, "End"))
+            break;
+        else if (gxio_token_is(reader, "Dimension"))
+            good = gxio_medit_dimension(reader, error);
+        else if (gxio_token_is(reader, "Vertices"))
+            good = gxio_medit_vertices(reader, mesh, error);
+        else if (gxio_token_is(reader, "Tetrahedra"))
+            good = gxio_medit_tetrahedra(reader, mesh, error);
+        else
+            known = 0;
         if (!good) return 0;
-        if (known) skipping = 0;
-        else if ((c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z')) skipping = 1;
-        else if (!skipping) return gxio_bad_token(reader, "stands where a section's name should", error);
+        if (known)
+            skipping = 0;
+        else if ((c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'))
+            skipping = 1;
+        else if (!skipping)
+            return gxio_bad_token(reader, "stands where a section's name should", error);
     }
     if (!mesh->positions) return gxio_fail(error, reader->path, reader->token_line, "the file has no Vertices");
     if (!mesh->elements) return gxio_fail(error, reader->path, reader->token_line, "the file has no Tetrahedra");
     return 1;
 }
 
-static inline int gxio_read_medit(const char *path, gxio_mesh *mesh, gxio_error *error)
-{
+static inline int gxio_read_medit(const char *path, gxio_mesh *mesh, gxio_error *error) {
     gxio_reader reader;
     int good;
     if (!gxio_reader_open(&reader, path, error)) return 0;
@@ -505,8 +501,7 @@ static inline int gxio_read_medit(const char *path, gxio_mesh *mesh, gxio_error 
 }
 
 /* The number at the head of each of TetGen's lines counts up from the first line's. */
-static inline int gxio_tetgen_number(gxio_reader *reader, size_t i, uint32_t *base, gxio_error *error)
-{
+static inline int gxio_tetgen_number(gxio_reader *reader, size_t i, uint32_t *base, gxio_error *error) {
     uint32_t number = 0;
     if (!gxio_read_index(reader, GXIO_ANY_LINE, &number, error)) return 0;
     if (i == 0 && number > 1) return gxio_bad_token(reader, "is the first index, but it must be 0 or 1", error);
@@ -516,8 +511,7 @@ static inline int gxio_tetgen_number(gxio_reader *reader, size_t i, uint32_t *ba
 }
 
 /* .node: count, 3, attributes, markers; then per line: number, x, y, z and what we do not need. */
-static inline int gxio_tetgen_nodes(gxio_reader *reader, gxio_mesh *mesh, uint32_t *base, gxio_error *error)
-{
+static inline int gxio_tetgen_nodes(gxio_reader *reader, gxio_mesh *mesh, uint32_t *base, gxio_error *error) {
     size_t i, count = 0;
     int64_t dimension = 0;
     if (!gxio_read_count(reader, GXIO_ANY_LINE, "the number of nodes", &count, error)) return 0;
@@ -534,14 +528,14 @@ static inline int gxio_tetgen_nodes(gxio_reader *reader, gxio_mesh *mesh, uint32
 }
 
 /* .ele: count, corners (4, or 10: the first four count), attributes; then per line: number and corners. */
-static inline int gxio_tetgen_elements(gxio_reader *reader, gxio_mesh *mesh, gxio_error *error)
-{
+static inline int gxio_tetgen_elements(gxio_reader *reader, gxio_mesh *mesh, gxio_error *error) {
     size_t i, corner, count = 0;
     int64_t corners = 0;
     uint32_t base = 0;
     if (!gxio_read_count(reader, GXIO_ANY_LINE, "the number of tetrahedra", &count, error)) return 0;
     if (!gxio_read_integer(reader, GXIO_SAME_LINE, "the nodes per tetrahedron", &corners, error)) return 0;
-    if (corners != 4 && corners != 10) return gxio_bad_token(reader, "nodes per tetrahedron, but 4 or 10 are needed", error);
+    if (corners != 4 && corners != 10)
+        return gxio_bad_token(reader, "nodes per tetrahedron, but 4 or 10 are needed", error);
     gxio_skip_line(reader);
     if (!gxio_mesh_elements(mesh, count)) return gxio_fail(error, reader->path, reader->line, "out of memory");
     for (i = 0; i < count; i++, gxio_skip_line(reader)) {
@@ -554,8 +548,7 @@ static inline int gxio_tetgen_elements(gxio_reader *reader, gxio_mesh *mesh, gxi
 }
 
 /* base_path: without .node and .ele; both are read. */
-static inline int gxio_read_tetgen(const char *base_path, size_t length, gxio_mesh *mesh, gxio_error *error)
-{
+static inline int gxio_read_tetgen(const char *base_path, size_t length, gxio_mesh *mesh, gxio_error *error) {
     gxio_reader reader;
     uint32_t base = 0;
     int good;
@@ -572,19 +565,20 @@ static inline int gxio_read_tetgen(const char *base_path, size_t length, gxio_me
 
 /* ---------------------------------------------------------------------------------------------- >>gmsh */
 
-typedef struct gxio_tag { uint32_t tag, node; } gxio_tag;      /* a node's name in the file, its index */
+typedef struct gxio_tag {
+    uint32_t tag, node;
+} gxio_tag; /* a node's name in the file, its index */
 
 /* A file while it is read. Elements hold tags until all nodes are known. */
 typedef struct gxio_gmsh {
     gxio_reader *reader;
     gxio_mesh *mesh;
-    gxio_tag *tags;             /* mesh->node_count */
-    int version;                /* 2 or 4 */
+    gxio_tag *tags; /* mesh->node_count */
+    int version;    /* 2 or 4 */
 } gxio_gmsh;
 
 /* Past the line $EndNAME of the section $NAME, which is the last token. */
-static inline int gxio_gmsh_skip(gxio_reader *reader, gxio_error *error)
-{
+static inline int gxio_gmsh_skip(gxio_reader *reader, gxio_error *error) {
     const char *name = reader->token + 1;
     const size_t length = reader->token_length - 1, line = reader->token_line;
     while (*reader->at) {
@@ -597,14 +591,14 @@ static inline int gxio_gmsh_skip(gxio_reader *reader, gxio_error *error)
 }
 
 /* $MeshFormat: version, 0 (ASCII), size of a double. */
-static inline int gxio_gmsh_header(gxio_gmsh *file, gxio_error *error)
-{
+static inline int gxio_gmsh_header(gxio_gmsh *file, gxio_error *error) {
     gxio_reader *reader = file->reader;
     double version = 0.0;
     int64_t binary = 0;
     if (!gxio_expect(reader, "$MeshFormat", error)) return 0;
     if (!gxio_read_number(reader, GXIO_ANY_LINE, "the format's version", &version, error)) return 0;
-    file->version = version >= 2.0 && version < 3.0 ? 2 : version > 4.05 && version < 4.15 ? 4 : 0; /* x87: 4.1 has more digits than a double */
+    /* x87: 4.1 has more digits than a double */
+    file->version = version >= 2.0 && version < 3.0 ? 2 : version > 4.05 && version < 4.15 ? 4 : 0;
     if (!file->version) return gxio_bad_token(reader, "is the format's version, but 2.2 or 4.1 is needed", error);
     if (!gxio_read_integer(reader, GXIO_SAME_LINE, "the file's type", &binary, error)) return 0;
     if (binary) return gxio_bad_token(reader, "is the file's type, but 0 (ASCII) is needed", error);
@@ -612,23 +606,21 @@ static inline int gxio_gmsh_header(gxio_gmsh *file, gxio_error *error)
     return gxio_expect(reader, "$EndMeshFormat", error);
 }
 
-static inline int gxio_gmsh_room(gxio_gmsh *file, size_t nodes, gxio_error *error)
-{
-    if (file->mesh->positions) return gxio_fail(error, file->reader->path, file->reader->token_line, "a second section $Nodes");
+static inline int gxio_gmsh_room(gxio_gmsh *file, size_t nodes, gxio_error *error) {
+    if (file->mesh->positions)
+        return gxio_fail(error, file->reader->path, file->reader->token_line, "a second section $Nodes");
     file->tags = (gxio_tag *)gxio_array(nodes, sizeof *file->tags);
     if (gxio_mesh_nodes(file->mesh, nodes) && file->tags) return 1;
     return gxio_fail(error, file->reader->path, file->reader->line, "out of memory");
 }
 
-static inline int gxio_gmsh_tag(gxio_gmsh *file, size_t i, gxio_error *error)
-{
+static inline int gxio_gmsh_tag(gxio_gmsh *file, size_t i, gxio_error *error) {
     file->tags[i].node = (uint32_t)i;
     return gxio_read_index(file->reader, GXIO_ANY_LINE, &file->tags[i].tag, error);
 }
 
 /* What follows the coordinates on their line (4.1: those on a curve or surface) is passed over. */
-static inline int gxio_gmsh_point(gxio_gmsh *file, size_t i, int where, gxio_error *error)
-{
+static inline int gxio_gmsh_point(gxio_gmsh *file, size_t i, int where, gxio_error *error) {
     if (!gxio_read_point(file->reader, where, file->mesh->positions + 3 * i, error)) return 0;
     file->mesh->node_lines[i] = (uint32_t)file->reader->token_line;
     gxio_skip_line(file->reader);
@@ -636,8 +628,7 @@ static inline int gxio_gmsh_point(gxio_gmsh *file, size_t i, int where, gxio_err
 }
 
 /* Version 2: count, then tag and coordinates per line. */
-static inline int gxio_gmsh_nodes_2(gxio_gmsh *file, gxio_error *error)
-{
+static inline int gxio_gmsh_nodes_2(gxio_gmsh *file, gxio_error *error) {
     size_t i, count = 0;
     if (!gxio_read_count(file->reader, GXIO_ANY_LINE, "the number of nodes", &count, error)) return 0;
     if (!gxio_gmsh_room(file, count, error)) return 0;
@@ -647,62 +638,63 @@ static inline int gxio_gmsh_nodes_2(gxio_gmsh *file, gxio_error *error)
 }
 
 /* Version 4, first line of $Nodes and $Elements: number of blocks, of items in all. */
-static inline int gxio_gmsh_totals(gxio_gmsh *file, const char *what, size_t *blocks, size_t *total, gxio_error *error)
-{
+static inline int gxio_gmsh_totals(gxio_gmsh *file, const char *what, size_t *blocks, size_t *total,
+                                   gxio_error *error) {
     if (!gxio_read_count(file->reader, GXIO_ANY_LINE, "the number of blocks", blocks, error)) return 0;
     if (!gxio_read_count(file->reader, GXIO_SAME_LINE, what, total, error)) return 0;
     gxio_skip_line(file->reader);
     return 1;
 }
 
-/* Version 4, first line of a block: dimension and number of its entity, kind (of elements: their type), count, which may be
-   `left` at most. */
-static inline int gxio_gmsh_block(gxio_gmsh *file, int64_t *kind, size_t left, size_t *count, gxio_error *error)
-{
+/* Version 4, first line of a block: dimension and number of its entity, kind (of elements: their type), count, which
+   may be `left` at most. */
+static inline int gxio_gmsh_block(gxio_gmsh *file, int64_t *kind, size_t left, size_t *count, gxio_error *error) {
     int64_t dimension = 0, entity = 0;
     if (!gxio_read_integer(file->reader, GXIO_ANY_LINE, "a block's dimension", &dimension, error)) return 0;
     if (!gxio_read_integer(file->reader, GXIO_SAME_LINE, "a block's entity", &entity, error)) return 0;
     if (!gxio_read_integer(file->reader, GXIO_SAME_LINE, "a block's kind", kind, error)) return 0;
     if (!gxio_read_count(file->reader, GXIO_SAME_LINE, "a block's count", count, error)) return 0;
-    return *count <= left ? 1 : gxio_bad_token(file->reader, "is a larger count than the section's first line leaves", error);
+    return *count <= left
+             ? 1
+             : gxio_bad_token(file->reader, "is a larger count than the section's first line leaves", error);
 }
 
-static inline int gxio_gmsh_fewer(gxio_gmsh *file, const char *what, size_t left, gxio_error *error)
-{
-    return gxio_fail(error, file->reader->path, file->reader->token_line, "%lu %s fewer than the section's first line says",
-                     (unsigned long)left, what);
+static inline int gxio_gmsh_fewer(gxio_gmsh *file, const char *what, size_t left, gxio_error *error) {
+    return gxio_fail(error, file->reader->path, file->reader->token_line,
+                     "%lu %s fewer than the section's first line says", (unsigned long)left, what);
 }
 
 /* Version 4: blocks of all tags, then all coordinates. */
-static inline int gxio_gmsh_nodes_4(gxio_gmsh *file, gxio_error *error)
-{
+static inline int gxio_gmsh_nodes_4(gxio_gmsh *file, gxio_error *error) {
     size_t blocks = 0, total = 0, first = 0, count = 0, i;
     int64_t parametric = 0;
-    if (!gxio_gmsh_totals(file, "the number of nodes", &blocks, &total, error) || !gxio_gmsh_room(file, total, error)) return 0;
+    if (!gxio_gmsh_totals(file, "the number of nodes", &blocks, &total, error) || !gxio_gmsh_room(file, total, error))
+        return 0;
     for (; blocks > 0; blocks--, first += count) {
         if (!gxio_gmsh_block(file, &parametric, total - first, &count, error)) return 0;
-        for (i = 0; i < count; i++) if (!gxio_gmsh_tag(file, first + i, error)) return 0;
-        for (i = 0; i < count; i++) if (!gxio_gmsh_point(file, first + i, GXIO_ANY_LINE, error)) return 0;
+        for (i = 0; i < count; i++)
+            if (!gxio_gmsh_tag(file, first + i, error)) return 0;
+        for (i = 0; i < count; i++)
+            if (!gxio_gmsh_point(file, first + i, GXIO_ANY_LINE, error)) return 0;
     }
     if (first < total) return gxio_gmsh_fewer(file, "nodes", total - first, error);
     return gxio_expect(file->reader, "$EndNodes", error);
 }
 
 /* The corners of an element, which come first; only tetrahedra (type 4, or 11 with nodes on the edges) are kept. */
-static inline int gxio_gmsh_corners(gxio_gmsh *file, int64_t type, gxio_error *error)
-{
+static inline int gxio_gmsh_corners(gxio_gmsh *file, int64_t type, gxio_error *error) {
     gxio_mesh *mesh = file->mesh;
     int corner;
     for (corner = 0; corner < 4 && (type == 4 || type == 11); corner++)
-        if (!gxio_read_index(file->reader, GXIO_SAME_LINE, mesh->elements + 4 * mesh->element_count + corner, error)) return 0;
+        if (!gxio_read_index(file->reader, GXIO_SAME_LINE, mesh->elements + 4 * mesh->element_count + corner, error))
+            return 0;
     if (corner == 4) mesh->element_lines[mesh->element_count++] = (uint32_t)file->reader->token_line;
     gxio_skip_line(file->reader);
     return 1;
 }
 
 /* Room for tetrahedra, of which there are none yet. */
-static inline int gxio_gmsh_element_room(gxio_gmsh *file, size_t count, gxio_error *error)
-{
+static inline int gxio_gmsh_element_room(gxio_gmsh *file, size_t count, gxio_error *error) {
     const gxio_reader *reader = file->reader;
     if (file->mesh->elements) return gxio_fail(error, reader->path, reader->token_line, "a second section $Elements");
     if (!gxio_mesh_elements(file->mesh, count)) return gxio_fail(error, reader->path, reader->line, "out of memory");
@@ -711,8 +703,7 @@ static inline int gxio_gmsh_element_room(gxio_gmsh *file, size_t count, gxio_err
 }
 
 /* Version 2: count, then per line: number, type, how many tags, these, nodes. */
-static inline int gxio_gmsh_elements_2(gxio_gmsh *file, gxio_error *error)
-{
+static inline int gxio_gmsh_elements_2(gxio_gmsh *file, gxio_error *error) {
     gxio_reader *reader = file->reader;
     size_t i, count = 0, tags = 0;
     int64_t number = 0, type = 0, tag = 0;
@@ -722,15 +713,15 @@ static inline int gxio_gmsh_elements_2(gxio_gmsh *file, gxio_error *error)
         if (!gxio_read_integer(reader, GXIO_ANY_LINE, "an element's number", &number, error)) return 0;
         if (!gxio_read_integer(reader, GXIO_SAME_LINE, "an element's type", &type, error)) return 0;
         if (!gxio_read_count(reader, GXIO_SAME_LINE, "an element's number of tags", &tags, error)) return 0;
-        for (; tags > 0; tags--) if (!gxio_read_integer(reader, GXIO_SAME_LINE, "an element's tag", &tag, error)) return 0;
+        for (; tags > 0; tags--)
+            if (!gxio_read_integer(reader, GXIO_SAME_LINE, "an element's tag", &tag, error)) return 0;
         if (!gxio_gmsh_corners(file, type, error)) return 0;
     }
     return gxio_expect(reader, "$EndElements", error);
 }
 
 /* Version 4: blocks of one type, per line: number, nodes. */
-static inline int gxio_gmsh_elements_4(gxio_gmsh *file, gxio_error *error)
-{
+static inline int gxio_gmsh_elements_4(gxio_gmsh *file, gxio_error *error) {
     size_t blocks = 0, left = 0, count = 0;
     int64_t type = 0, number = 0;
     if (!gxio_gmsh_totals(file, "the number of elements", &blocks, &left, error)) return 0;
@@ -747,34 +738,34 @@ static inline int gxio_gmsh_elements_4(gxio_gmsh *file, gxio_error *error)
 }
 
 /* Sections in any order; those not named here are skipped. */
-static inline int gxio_gmsh_sections(gxio_gmsh *file, gxio_error *error)
-{
+static inline int gxio_gmsh_sections(gxio_gmsh *file, gxio_error *error) {
     gxio_reader *reader = file->reader;
     while (gxio_next(reader, GXIO_ANY_LINE)) {
         int good;
         if (*reader->token != '$') return gxio_bad_token(reader, "stands where a section $... should", error);
-        if (gxio_token_is(reader, "$Nodes")) good = file->version == 2 ? gxio_gmsh_nodes_2(file, error) : gxio_gmsh_nodes_4(file, error);
+        if (gxio_token_is(reader, "$Nodes"))
+            good = file->version == 2 ? gxio_gmsh_nodes_2(file, error) : gxio_gmsh_nodes_4(file, error);
         else if (gxio_token_is(reader, "$Elements"))
             good = file->version == 2 ? gxio_gmsh_elements_2(file, error) : gxio_gmsh_elements_4(file, error);
-        else good = gxio_gmsh_skip(reader, error);
+        else
+            good = gxio_gmsh_skip(reader, error);
         if (!good) return 0;
     }
     if (!file->mesh->positions) return gxio_fail(error, reader->path, reader->token_line, "the file has no $Nodes");
     if (!file->mesh->elements) return gxio_fail(error, reader->path, reader->token_line, "the file has no $Elements");
-    if (!file->mesh->element_count) return gxio_fail(error, reader->path, 0, "the file has no tetrahedra (elements of type 4 or 11)");
+    if (!file->mesh->element_count)
+        return gxio_fail(error, reader->path, 0, "the file has no tetrahedra (elements of type 4 or 11)");
     return 1;
 }
 
-static inline int gxio_tag_compare(const void *a, const void *b)
-{
+static inline int gxio_tag_compare(const void *a, const void *b) {
     const gxio_tag *p = (const gxio_tag *)a, *q = (const gxio_tag *)b;
     if (p->tag != q->tag) return p->tag < q->tag ? -1 : 1;
     return p->node < q->node ? -1 : p->node > q->node;
 }
 
 /* Replaces tags by the nodes' indices. */
-static inline int gxio_gmsh_resolve(gxio_gmsh *file, gxio_error *error)
-{
+static inline int gxio_gmsh_resolve(gxio_gmsh *file, gxio_error *error) {
     gxio_mesh *mesh = file->mesh;
     gxio_tag *tags = file->tags;
     size_t i;
@@ -784,11 +775,13 @@ static inline int gxio_gmsh_resolve(gxio_gmsh *file, gxio_error *error)
             return gxio_fail(error, mesh->node_path, mesh->node_lines[tags[i].node], "a second node with the tag %lu",
                              (unsigned long)tags[i].tag);
     for (i = 0; i < 4 * mesh->element_count; i++) {
-        size_t low = 0, high = mesh->node_count;        /* the first tag not below the corner's lies in low ... high */
+        size_t low = 0, high = mesh->node_count; /* the first tag not below the corner's lies in low ... high */
         while (low < high) {
             const size_t middle = low + (high - low) / 2;
-            if (tags[middle].tag < mesh->elements[i]) low = middle + 1;
-            else high = middle;
+            if (tags[middle].tag < mesh->elements[i])
+                low = middle + 1;
+            else
+                high = middle;
         }
         if (low == mesh->node_count || tags[low].tag != mesh->elements[i])
             return gxio_fail(error, mesh->element_path, mesh->element_lines[i / 4], "there is no node with the tag %lu",
@@ -798,8 +791,7 @@ static inline int gxio_gmsh_resolve(gxio_gmsh *file, gxio_error *error)
     return 1;
 }
 
-static inline int gxio_read_gmsh(const char *path, gxio_mesh *mesh, gxio_error *error)
-{
+static inline int gxio_read_gmsh(const char *path, gxio_mesh *mesh, gxio_error *error) {
     gxio_reader reader;
     gxio_gmsh file;
     int good;
@@ -820,31 +812,29 @@ static inline int gxio_read_gmsh(const char *path, gxio_mesh *mesh, gxio_error *
 /* Cells: lists of point indices, one after the other. */
 typedef struct gxio_cells {
     size_t count, index_count;
-    uint32_t *start;            /* count + 1 */
-    uint32_t *index;            /* index_count */
-    uint32_t *line;             /* count */
+    uint32_t *start; /* count + 1 */
+    uint32_t *index; /* index_count */
+    uint32_t *line;  /* count */
 } gxio_cells;
 
 /* What is read of a legacy VTK file. */
 typedef struct gxio_vtk {
-    double *points;             /* point_count x 3; NULL: none yet */
-    uint32_t *point_lines;      /* point_count */
+    double *points;        /* point_count x 3; NULL: none yet */
+    uint32_t *point_lines; /* point_count */
     size_t point_count;
-    gxio_cells cells;           /* CELLS of an unstructured grid, POLYGONS of polydata */
-    gxio_cells strips;          /* TRIANGLE_STRIPS */
-    uint32_t *types;            /* type_count, of cells */
+    gxio_cells cells;  /* CELLS of an unstructured grid, POLYGONS of polydata */
+    gxio_cells strips; /* TRIANGLE_STRIPS */
+    uint32_t *types;   /* type_count, of cells */
     size_t type_count;
 } gxio_vtk;
 
-static inline void gxio_cells_release(gxio_cells *cells)
-{
+static inline void gxio_cells_release(gxio_cells *cells) {
     free(cells->start);
     free(cells->index);
     free(cells->line);
 }
 
-static inline void gxio_vtk_release(gxio_vtk *vtk)
-{
+static inline void gxio_vtk_release(gxio_vtk *vtk) {
     free(vtk->points);
     free(vtk->point_lines);
     free(vtk->types);
@@ -853,8 +843,7 @@ static inline void gxio_vtk_release(gxio_vtk *vtk)
 }
 
 /* "# vtk DataFile Version X.Y", a title, ASCII, DATASET and its kind. */
-static inline int gxio_vtk_header(gxio_reader *reader, const char *dataset, gxio_error *error)
-{
+static inline int gxio_vtk_header(gxio_reader *reader, const char *dataset, gxio_error *error) {
     static const char first[] = "# vtk DataFile Version";
     char cause[80];
     if (strncmp(reader->at, first, sizeof first - 1) != 0)
@@ -864,14 +853,14 @@ static inline int gxio_vtk_header(gxio_reader *reader, const char *dataset, gxio
     if (!gxio_need(reader, GXIO_ANY_LINE, "ASCII", error)) return 0;
     if (!gxio_token_is(reader, "ASCII"))
         return gxio_bad_token(reader, "stands where ASCII should: files of that kind only can be read", error);
-    if (!gxio_expect(reader, "DATASET", error) || !gxio_need(reader, GXIO_SAME_LINE, "the kind of dataset", error)) return 0;
+    if (!gxio_expect(reader, "DATASET", error) || !gxio_need(reader, GXIO_SAME_LINE, "the kind of dataset", error))
+        return 0;
     snprintf(cause, sizeof cause, "is the kind of dataset, but %s is needed", dataset);
     return gxio_token_is(reader, dataset) ? 1 : gxio_bad_token(reader, cause, error);
 }
 
 /* POINTS count type, then three numbers each. */
-static inline int gxio_vtk_points(gxio_reader *reader, gxio_vtk *vtk, gxio_error *error)
-{
+static inline int gxio_vtk_points(gxio_reader *reader, gxio_vtk *vtk, gxio_error *error) {
     size_t i;
     if (vtk->points) return gxio_bad_token(reader, "occurs twice", error);
     if (!gxio_read_count(reader, GXIO_SAME_LINE, "the number of points", &vtk->point_count, error)) return 0;
@@ -886,19 +875,19 @@ static inline int gxio_vtk_points(gxio_reader *reader, gxio_vtk *vtk, gxio_error
     return 1;
 }
 
-static inline int gxio_cells_room(gxio_cells *cells, const gxio_reader *reader, gxio_error *error)
-{
+static inline int gxio_cells_room(gxio_cells *cells, const gxio_reader *reader, gxio_error *error) {
     cells->start = (uint32_t *)gxio_array(cells->count + 1, sizeof(uint32_t));
     cells->index = (uint32_t *)gxio_array(cells->index_count, sizeof(uint32_t));
     cells->line = (uint32_t *)gxio_array(cells->count, sizeof(uint32_t));
-    if (!cells->start || !cells->index || !cells->line) return gxio_fail(error, reader->path, reader->line, "out of memory");
+    if (!cells->start || !cells->index || !cells->line)
+        return gxio_fail(error, reader->path, reader->line, "out of memory");
     cells->start[0] = 0;
     return 1;
 }
 
 /* Versions up to 4: per cell its number of points and these. size: of both together. */
-static inline int gxio_cells_counted(gxio_reader *reader, gxio_cells *cells, size_t count, size_t size, gxio_error *error)
-{
+static inline int gxio_cells_counted(gxio_reader *reader, gxio_cells *cells, size_t count, size_t size,
+                                     gxio_error *error) {
     size_t i, k, points = 0, used = 0;
     if (size < count) return gxio_bad_token(reader, "is a smaller size than the number of cells", error);
     cells->count = count;
@@ -906,29 +895,35 @@ static inline int gxio_cells_counted(gxio_reader *reader, gxio_cells *cells, siz
     if (!gxio_cells_room(cells, reader, error)) return 0;
     for (i = 0; i < count; i++) {
         if (!gxio_read_count(reader, GXIO_ANY_LINE, "a cell's number of points", &points, error)) return 0;
-        if (points > cells->index_count - used) return gxio_bad_token(reader, "points are more than the section's size leaves", error);
+        if (points > cells->index_count - used)
+            return gxio_bad_token(reader, "points are more than the section's size leaves", error);
         cells->line[i] = (uint32_t)reader->token_line;
-        for (k = 0; k < points; k++) if (!gxio_read_index(reader, GXIO_ANY_LINE, cells->index + used++, error)) return 0;
+        for (k = 0; k < points; k++)
+            if (!gxio_read_index(reader, GXIO_ANY_LINE, cells->index + used++, error)) return 0;
         cells->start[i + 1] = (uint32_t)used;
     }
     if (used == cells->index_count) return 1;
     return gxio_fail(error, reader->path, reader->token_line, "the cells end before the section's size is reached");
 }
 
-/* Version 5: OFFSETS type, where each cell starts and the last ends; CONNECTIVITY type, points of all. OFFSETS is the last token. */
-static inline int gxio_cells_listed(gxio_reader *reader, gxio_cells *cells, size_t offsets, size_t size, gxio_error *error)
-{
+/* Version 5: OFFSETS type, where each cell starts and the last ends; CONNECTIVITY type, points of all. OFFSETS is the
+ * last token. */
+static inline int gxio_cells_listed(gxio_reader *reader, gxio_cells *cells, size_t offsets, size_t size,
+                                    gxio_error *error) {
     size_t i, k;
     cells->count = offsets ? offsets - 1 : 0;
     cells->index_count = size;
-    if (!gxio_cells_room(cells, reader, error) || !gxio_need(reader, GXIO_SAME_LINE, "the type of the offsets", error)) return 0;
+    if (!gxio_cells_room(cells, reader, error) || !gxio_need(reader, GXIO_SAME_LINE, "the type of the offsets", error))
+        return 0;
     for (i = 0; i < offsets; i++) {
         if (!gxio_read_index(reader, GXIO_ANY_LINE, cells->start + i, error)) return 0;
         if (i ? cells->start[i] < cells->start[i - 1] : cells->start[i] != 0)
             return gxio_bad_token(reader, "is an offset out of order", error);
     }
     if (cells->start[cells->count] != size) return gxio_bad_token(reader, "is not where the last cell ends", error);
-    if (!gxio_expect(reader, "CONNECTIVITY", error) || !gxio_need(reader, GXIO_SAME_LINE, "the type of the connectivity", error)) return 0;
+    if (!gxio_expect(reader, "CONNECTIVITY", error) ||
+        !gxio_need(reader, GXIO_SAME_LINE, "the type of the connectivity", error))
+        return 0;
     for (i = 0; i < cells->count; i++)
         for (k = cells->start[i]; k < cells->start[i + 1]; k++) {
             if (!gxio_read_index(reader, GXIO_ANY_LINE, cells->index + k, error)) return 0;
@@ -938,8 +933,7 @@ static inline int gxio_cells_listed(gxio_reader *reader, gxio_cells *cells, size
 }
 
 /* CELLS, POLYGONS or TRIANGLE_STRIPS, and two numbers. */
-static inline int gxio_vtk_cells(gxio_reader *reader, gxio_cells *cells, gxio_error *error)
-{
+static inline int gxio_vtk_cells(gxio_reader *reader, gxio_cells *cells, gxio_error *error) {
     size_t count = 0, size = 0;
     gxio_reader after;
     if (cells->start) return gxio_bad_token(reader, "occurs twice", error);
@@ -952,41 +946,49 @@ static inline int gxio_vtk_cells(gxio_reader *reader, gxio_cells *cells, gxio_er
     return gxio_cells_listed(reader, cells, count, size, error);
 }
 
-static inline int gxio_vtk_types(gxio_reader *reader, gxio_vtk *vtk, gxio_error *error)
-{
+static inline int gxio_vtk_types(gxio_reader *reader, gxio_vtk *vtk, gxio_error *error) {
     size_t i;
     if (vtk->types) return gxio_bad_token(reader, "occurs twice", error);
     if (!gxio_read_count(reader, GXIO_SAME_LINE, "the number of types", &vtk->type_count, error)) return 0;
     vtk->types = (uint32_t *)gxio_array(vtk->type_count, sizeof(uint32_t));
     if (!vtk->types) return gxio_fail(error, reader->path, reader->line, "out of memory");
-    for (i = 0; i < vtk->type_count; i++) if (!gxio_read_index(reader, GXIO_ANY_LINE, vtk->types + i, error)) return 0;
+    for (i = 0; i < vtk->type_count; i++)
+        if (!gxio_read_index(reader, GXIO_ANY_LINE, vtk->types + i, error)) return 0;
     return 1;
 }
 
-/* Sections up to the first with data. Those between, which are not needed (METADATA, FIELD, LINES, VERTICES), are skipped. */
-static inline int gxio_vtk_sections(gxio_reader *reader, gxio_vtk *vtk, gxio_error *error)
-{
+/* Sections up to the first with data. Those between, which are not needed (METADATA, FIELD, LINES, VERTICES), are
+ * skipped. */
+static inline int gxio_vtk_sections(gxio_reader *reader, gxio_vtk *vtk, gxio_error *error) {
     int skipping = 0;
     while (gxio_next(reader, GXIO_ANY_LINE)) {
         int good = 1, known = 1;
-        if (gxio_token_is(reader, "CELL_DATA") || gxio_token_is(reader, "POINT_DATA")) break;
-        else if (gxio_token_is(reader, "POINTS")) good = gxio_vtk_points(reader, vtk, error);
-        else if (gxio_token_is(reader, "CELLS") || gxio_token_is(reader, "POLYGONS")) good = gxio_vtk_cells(reader, &vtk->cells, error);
-        else if (gxio_token_is(reader, "TRIANGLE_STRIPS")) good = gxio_vtk_cells(reader, &vtk->strips, error);
-        else if (gxio_token_is(reader, "CELL_TYPES")) good = gxio_vtk_types(reader, vtk, error);
-        else known = 0;
+        if (gxio_token_is(reader, "CELL_DATA") || gxio_token_is(reader, "POINT_DATA"))
+            break;
+        else if (gxio_token_is(reader, "POINTS"))
+            good = gxio_vtk_points(reader, vtk, error);
+        else if (gxio_token_is(reader, "CELLS") || gxio_token_is(reader, "POLYGONS"))
+            good = gxio_vtk_cells(reader, &vtk->cells, error);
+        else if (gxio_token_is(reader, "TRIANGLE_STRIPS"))
+            good = gxio_vtk_cells(reader, &vtk->strips, error);
+        else if (gxio_token_is(reader, "CELL_TYPES"))
+            good = gxio_vtk_types(reader, vtk, error);
+        else
+            known = 0;
         if (!good) return 0;
-        if (known) skipping = 0;
-        else if (gxio_token_is(reader, "METADATA") || gxio_token_is(reader, "FIELD") || gxio_token_is(reader, "LINES")
-                 || gxio_token_is(reader, "VERTICES")) skipping = 1;
-        else if (!skipping) return gxio_bad_token(reader, "stands where a section's name should", error);
+        if (known)
+            skipping = 0;
+        else if (gxio_token_is(reader, "METADATA") || gxio_token_is(reader, "FIELD") ||
+                 gxio_token_is(reader, "LINES") || gxio_token_is(reader, "VERTICES"))
+            skipping = 1;
+        else if (!skipping)
+            return gxio_bad_token(reader, "stands where a section's name should", error);
     }
     return vtk->points ? 1 : gxio_fail(error, reader->path, reader->token_line, "the file has no POINTS");
 }
 
 /* A whole file whose DATASET is of the kind `dataset`. vtk is to be released, whatever is returned. */
-static inline int gxio_vtk_read(const char *path, const char *dataset, gxio_vtk *vtk, gxio_error *error)
-{
+static inline int gxio_vtk_read(const char *path, const char *dataset, gxio_vtk *vtk, gxio_error *error) {
     gxio_reader reader;
     int good;
     memset(vtk, 0, sizeof *vtk);
@@ -997,8 +999,7 @@ static inline int gxio_vtk_read(const char *path, const char *dataset, gxio_vtk 
 }
 
 /* The cells of type 10 (VTK_TETRA) and the corners of those of type 24 (VTK_QUADRATIC_TETRA); others are left out. */
-static inline int gxio_vtk_tetrahedra(const gxio_vtk *vtk, gxio_mesh *mesh, gxio_error *error)
-{
+static inline int gxio_vtk_tetrahedra(const gxio_vtk *vtk, gxio_mesh *mesh, gxio_error *error) {
     const gxio_cells *cells = &vtk->cells;
     size_t i;
     if (!cells->start) return gxio_fail(error, mesh->element_path, 0, "the file has no CELLS");
@@ -1016,11 +1017,12 @@ static inline int gxio_vtk_tetrahedra(const gxio_vtk *vtk, gxio_mesh *mesh, gxio
         memcpy(mesh->elements + 4 * mesh->element_count, cells->index + cells->start[i], 4 * sizeof(uint32_t));
         mesh->element_lines[mesh->element_count++] = cells->line[i];
     }
-    return mesh->element_count ? 1 : gxio_fail(error, mesh->element_path, 0, "the file has no tetrahedra (cells of type 10 or 24)");
+    return mesh->element_count
+             ? 1
+             : gxio_fail(error, mesh->element_path, 0, "the file has no tetrahedra (cells of type 10 or 24)");
 }
 
-static inline int gxio_read_vtk_mesh(const char *path, gxio_mesh *mesh, gxio_error *error)
-{
+static inline int gxio_read_vtk_mesh(const char *path, gxio_mesh *mesh, gxio_error *error) {
     gxio_vtk vtk;
     int good = gxio_vtk_read(path, "UNSTRUCTURED_GRID", &vtk, error);
     snprintf(mesh->node_path, sizeof mesh->node_path, "%s", path);
@@ -1041,12 +1043,13 @@ static inline int gxio_read_vtk_mesh(const char *path, gxio_mesh *mesh, gxio_err
 
 /* A unit cube with lowest corner `node[0]` as five or six tetrahedra; node[b] is the corner x + 2 y + 4 z = b. The five
    are mirrored in every second cube (`odd`), the six are Kuhn's: both ways neighbouring cubes' faces agree. */
-static inline uint32_t *gxio_fill_cube(const uint32_t node[8], int tetrahedra, int odd, uint32_t *element)
-{
+static inline uint32_t *gxio_fill_cube(const uint32_t node[8], int tetrahedra, int odd, uint32_t *element) {
+    /* clang-format off */
     static const unsigned char cube[3][6][4] = {
         {{0, 5, 3, 6}, {1, 3, 0, 5}, {2, 0, 3, 6}, {4, 6, 5, 0}, {7, 5, 6, 3}, {0, 0, 0, 0}},
         {{7, 2, 1, 4}, {6, 4, 2, 7}, {5, 7, 1, 4}, {3, 1, 7, 2}, {0, 2, 4, 1}, {0, 0, 0, 0}},
         {{0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}}};
+    /* clang-format on */
     const int kind = tetrahedra == 6 ? 2 : odd;
     int t, corner;
     for (t = 0; t < tetrahedra; t++)
@@ -1055,8 +1058,7 @@ static inline uint32_t *gxio_fill_cube(const uint32_t node[8], int tetrahedra, i
 }
 
 /* Cubes of edge 1 with the lowest corner at the origin; node x + (nx + 1)(y + (ny + 1) z). */
-static inline int gxio_make_grid(gxio_mesh *mesh, const size_t n[3], int tetrahedra)
-{
+static inline int gxio_make_grid(gxio_mesh *mesh, const size_t n[3], int tetrahedra) {
     const size_t row = n[0] + 1, layer = row * (n[1] + 1);
     size_t i, x, y, z;
     uint32_t *element;
@@ -1080,12 +1082,12 @@ static inline int gxio_make_grid(gxio_mesh *mesh, const size_t n[3], int tetrahe
 }
 
 /* grid:NX,NY,NZ[,5|6] */
-static inline int gxio_generate_grid(const char *spec, const char *list, gxio_mesh *mesh, gxio_error *error)
-{
+static inline int gxio_generate_grid(const char *spec, const char *list, gxio_mesh *mesh, gxio_error *error) {
     double number[4] = {0, 0, 0, 5};
     size_t n[3];
     int axis, good = gxio_argument_list(list, number, 3, 4) > 0 && (number[3] == 5.0 || number[3] == 6.0);
-    for (axis = 0; axis < 3; axis++) good = good && number[axis] >= 1.0 && number[axis] <= 1e6 && floor(number[axis]) == number[axis];
+    for (axis = 0; axis < 3; axis++)
+        good = good && number[axis] >= 1.0 && number[axis] <= 1e6 && floor(number[axis]) == number[axis];
     if (!good) return gxio_fail(error, spec, 0, "is not grid:NX,NY,NZ or grid:NX,NY,NZ,5 or grid:NX,NY,NZ,6");
     if (number[0] * number[1] * number[2] > 1e8) return gxio_fail(error, spec, 0, "has more than 10^8 cubes");
     for (axis = 0; axis < 3; axis++) n[axis] = (size_t)number[axis];
@@ -1093,8 +1095,7 @@ static inline int gxio_generate_grid(const char *spec, const char *list, gxio_me
 }
 
 /* tet: the reference tetrahedron, corners at the origin and at 1 on each axis. */
-static inline int gxio_generate_tet(gxio_mesh *mesh, gxio_error *error)
-{
+static inline int gxio_generate_tet(gxio_mesh *mesh, gxio_error *error) {
     static const double position[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
     static const uint32_t corner[4] = {0, 1, 2, 3};
     if (!gxio_mesh_nodes(mesh, 4) || !gxio_mesh_elements(mesh, 1)) return gxio_fail(error, "tet", 0, "out of memory");
@@ -1104,8 +1105,8 @@ static inline int gxio_generate_tet(gxio_mesh *mesh, gxio_error *error)
 }
 
 /* Takes over what gxshape.h made; fails if it says what is wrong. */
-static inline int gxio_take_shape(const char *spec, const char *wrong, const gxshape_mesh *made, gxio_mesh *mesh, gxio_error *error)
-{
+static inline int gxio_take_shape(const char *spec, const char *wrong, const gxshape_mesh *made, gxio_mesh *mesh,
+                                  gxio_error *error) {
     if (wrong) return gxio_fail(error, spec, 0, "%s", wrong);
     mesh->positions = made->positions;
     mesh->node_count = made->node_count;
@@ -1115,50 +1116,57 @@ static inline int gxio_take_shape(const char *spec, const char *wrong, const gxs
 }
 
 /* ball:RADIUS,SPACING and torus:R,r,SPACING about the origin, the torus around the z axis. */
-static inline int gxio_generate_round(const char *spec, gxio_mesh *mesh, gxio_error *error)
-{
+static inline int gxio_generate_round(const char *spec, gxio_mesh *mesh, gxio_error *error) {
     const char *ball = gxio_after(spec, "ball:");
     double number[3] = {0, 0, 0}, thin;
     gxshape_mesh made;
     gxshape_field field;
-    int count = ball ? gxio_argument_list(ball, number, 2, 2) : gxio_argument_list(spec + strlen("torus:"), number, 3, 3);
+    int count =
+        ball ? gxio_argument_list(ball, number, 2, 2) : gxio_argument_list(spec + strlen("torus:"), number, 3, 3);
     memset(&field, 0, sizeof field);
     field.part_count = 1;
     field.parts[0].kind = ball ? GXSHAPE_CAPSULE : GXSHAPE_RING;
     field.parts[0].q[2] = ball ? 0.0 : 1.0;
     field.parts[0].r[0] = number[0];
     field.parts[0].r[1] = thin = ball ? number[0] : number[1];
-    if (count < 0 || !(number[count - 1] > 0.0) || !(thin >= GXSHAPE_THINNEST * number[count - 1]) || (!ball && !(number[0] > thin)))
-        return gxio_fail(error, spec, 0, ball ? "is not ball:RADIUS,SPACING with 0 < SPACING <= RADIUS / 0.92"
-                                              : "is not torus:R,r,SPACING with R > r and 0 < SPACING <= r / 0.92");
+    if (count < 0 || !(number[count - 1] > 0.0) || !(thin >= GXSHAPE_THINNEST * number[count - 1]) ||
+        (!ball && !(number[0] > thin)))
+        return gxio_fail(error, spec, 0,
+                         ball ? "is not ball:RADIUS,SPACING with 0 < SPACING <= RADIUS / 0.92"
+                              : "is not torus:R,r,SPACING with R > r and 0 < SPACING <= r / 0.92");
     return gxio_take_shape(spec, gxshape_fill(&field, number[count - 1], &made), &made, mesh, error);
 }
 
 /* NAME or NAME:SPACING of one of gxshape.h's shapes. */
-static inline int gxio_generate_shape(const char *spec, const gxshape_named *named, gxio_mesh *mesh, gxio_error *error)
-{
+static inline int gxio_generate_shape(const char *spec, const gxshape_named *named, gxio_mesh *mesh,
+                                      gxio_error *error) {
     const char *list = strchr(spec, ':');
     double spacing = named->spacing;
     gxshape_mesh made;
     gxshape_field field;
     if (list && (!gxio_argument_number(list + 1, &spacing) || !(spacing > 0.0 && spacing <= named->coarsest)))
-        return gxio_fail(error, spec, 0, "is not %s or %s:SPACING with 0 < SPACING <= %g", named->name, named->name, named->coarsest);
+        return gxio_fail(error, spec, 0, "is not %s or %s:SPACING with 0 < SPACING <= %g", named->name, named->name,
+                         named->coarsest);
     memset(&field, 0, sizeof field);
     named->make(&field);
     return gxio_take_shape(spec, gxshape_fill(&field, spacing, &made), &made, mesh, error);
 }
 
-static inline int gxio_mesh_generate(const char *spec, gxio_mesh *mesh, gxio_error *error)
-{
+static inline int gxio_mesh_generate(const char *spec, gxio_mesh *mesh, gxio_error *error) {
     static const size_t one[3] = {1, 1, 1};
     const char *list = gxio_after(spec, "grid:");
     const gxshape_named *named = gxshape_find(spec, strcspn(spec, ":"));
     int good;
-    if (list) good = gxio_generate_grid(spec, list, mesh, error);
-    else if (named) good = gxio_generate_shape(spec, named, mesh, error);
-    else if (gxio_after(spec, "ball:") || gxio_after(spec, "torus:")) good = gxio_generate_round(spec, mesh, error);
-    else if (strcmp(spec, "tet") == 0) good = gxio_generate_tet(mesh, error);
-    else good = gxio_make_grid(mesh, one, 5) ? 1 : gxio_fail(error, spec, 0, "out of memory");
+    if (list)
+        good = gxio_generate_grid(spec, list, mesh, error);
+    else if (named)
+        good = gxio_generate_shape(spec, named, mesh, error);
+    else if (gxio_after(spec, "ball:") || gxio_after(spec, "torus:"))
+        good = gxio_generate_round(spec, mesh, error);
+    else if (strcmp(spec, "tet") == 0)
+        good = gxio_generate_tet(mesh, error);
+    else
+        good = gxio_make_grid(mesh, one, 5) ? 1 : gxio_fail(error, spec, 0, "out of memory");
     free(mesh->node_lines);
     free(mesh->element_lines);
     mesh->node_lines = mesh->element_lines = NULL;
@@ -1167,29 +1175,33 @@ static inline int gxio_mesh_generate(const char *spec, gxio_mesh *mesh, gxio_err
     return good;
 }
 
-static inline int gxio_mesh_is_generated(const char *spec)
-{
-    return strcmp(spec, "cube5") == 0 || strcmp(spec, "tet") == 0 || gxio_after(spec, "grid:") || gxio_after(spec, "ball:")
-        || gxio_after(spec, "torus:") || gxshape_find(spec, strcspn(spec, ":"));
+static inline int gxio_mesh_is_generated(const char *spec) {
+    return strcmp(spec, "cube5") == 0 || strcmp(spec, "tet") == 0 || gxio_after(spec, "grid:") ||
+           gxio_after(spec, "ball:") || gxio_after(spec, "torus:") || gxshape_find(spec, strcspn(spec, ":"));
 }
 
-static inline int gxio_mesh_read(const char *path, gxio_mesh *mesh, gxio_error *error)
-{
+static inline int gxio_mesh_read(const char *path, gxio_mesh *mesh, gxio_error *error) {
     const size_t length = strlen(path);
     int good;
-    if (gxio_ends_with(path, ".mesh")) good = gxio_read_medit(path, mesh, error);
-    else if (gxio_ends_with(path, ".msh")) good = gxio_read_gmsh(path, mesh, error);
-    else if (gxio_ends_with(path, ".vtk")) good = gxio_read_vtk_mesh(path, mesh, error);
-    else if (gxio_ends_with(path, ".node")) good = gxio_read_tetgen(path, length - 5, mesh, error);
-    else if (gxio_ends_with(path, ".ele")) good = gxio_read_tetgen(path, length - 4, mesh, error);
-    else good = gxio_read_tetgen(path, length, mesh, error);
+    if (gxio_ends_with(path, ".mesh"))
+        good = gxio_read_medit(path, mesh, error);
+    else if (gxio_ends_with(path, ".msh"))
+        good = gxio_read_gmsh(path, mesh, error);
+    else if (gxio_ends_with(path, ".vtk"))
+        good = gxio_read_vtk_mesh(path, mesh, error);
+    else if (gxio_ends_with(path, ".node"))
+        good = gxio_read_tetgen(path, length - 5, mesh, error);
+    else if (gxio_ends_with(path, ".ele"))
+        good = gxio_read_tetgen(path, length - 4, mesh, error);
+    else
+        good = gxio_read_tetgen(path, length, mesh, error);
     if (good) gxio_mesh_orient(mesh);
     return good;
 }
 
-/* cube5, tet, grid:..., a shape, a .mesh, .msh or .vtk file, a .node or .ele file, or the name that a .node and an .ele file share. */
-static inline int gxio_mesh_load(const char *spec, gxio_mesh *mesh, gxio_error *error)
-{
+/* cube5, tet, grid:..., a shape, a .mesh, .msh or .vtk file, a .node or .ele file, or the name that a .node and an .ele
+ * file share. */
+static inline int gxio_mesh_load(const char *spec, gxio_mesh *mesh, gxio_error *error) {
     int good;
     memset(mesh, 0, sizeof *mesh);
     if (strlen(spec) + 8 > GXIO_PATH_ROOM) return gxio_fail(error, "mesh", 0, "the name is too long");
@@ -1204,23 +1216,21 @@ static inline int gxio_mesh_load(const char *spec, gxio_mesh *mesh, gxio_error *
 /* -------------------------------------------------------------------------------------------- >>surface */
 
 typedef struct gxio_surface {
-    double *vertices;           /* vertex_count x 3 */
+    double *vertices; /* vertex_count x 3 */
     size_t vertex_count, vertex_room;
-    uint32_t *triangles;        /* triangle_count x 3 */
-    uint32_t *triangle_lines;   /* triangle_count; 0: generated */
+    uint32_t *triangles;      /* triangle_count x 3 */
+    uint32_t *triangle_lines; /* triangle_count; 0: generated */
     size_t triangle_count, triangle_room;
 } gxio_surface;
 
-static inline void gxio_surface_release(gxio_surface *surface)
-{
+static inline void gxio_surface_release(gxio_surface *surface) {
     free(surface->vertices);
     free(surface->triangles);
     free(surface->triangle_lines);
     memset(surface, 0, sizeof *surface);
 }
 
-static inline int gxio_add_vertex(gxio_surface *surface, double x, double y, double z)
-{
+static inline int gxio_add_vertex(gxio_surface *surface, double x, double y, double z) {
     double *vertex;
     if (surface->vertex_count == surface->vertex_room) {
         const size_t room = surface->vertex_room ? 2 * surface->vertex_room : 64;
@@ -1236,8 +1246,7 @@ static inline int gxio_add_vertex(gxio_surface *surface, double x, double y, dou
     return 1;
 }
 
-static inline int gxio_grow_triangles(gxio_surface *surface)
-{
+static inline int gxio_grow_triangles(gxio_surface *surface) {
     const size_t room = surface->triangle_room ? 2 * surface->triangle_room : 64;
     uint32_t *triangles = (uint32_t *)realloc(surface->triangles, room * 3 * sizeof(uint32_t)), *lines;
     if (!triangles) return 0;
@@ -1249,8 +1258,7 @@ static inline int gxio_grow_triangles(gxio_surface *surface)
     return 1;
 }
 
-static inline int gxio_add_triangle(gxio_surface *surface, uint32_t a, uint32_t b, uint32_t c, size_t line)
-{
+static inline int gxio_add_triangle(gxio_surface *surface, uint32_t a, uint32_t b, uint32_t c, size_t line) {
     uint32_t *triangle;
     if (surface->triangle_count == surface->triangle_room && !gxio_grow_triangles(surface)) return 0;
     surface->triangle_lines[surface->triangle_count] = (uint32_t)line;
@@ -1261,19 +1269,19 @@ static inline int gxio_add_triangle(gxio_surface *surface, uint32_t a, uint32_t 
     return 1;
 }
 
-static inline int gxio_surface_check(const gxio_surface *surface, const char *path, gxio_error *error)
-{
+static inline int gxio_surface_check(const gxio_surface *surface, const char *path, gxio_error *error) {
     size_t i;
     for (i = 0; i < 3 * surface->triangle_count; i++)
         if (surface->triangles[i] >= surface->vertex_count)
-            return gxio_fail(error, path, surface->triangle_lines[i / 3], "vertex index %lu is out of range: the file has %lu vertices",
+            return gxio_fail(error, path, surface->triangle_lines[i / 3],
+                             "vertex index %lu is out of range: the file has %lu vertices",
                              (unsigned long)surface->triangles[i], (unsigned long)surface->vertex_count);
     return 1;
 }
 
 /* One corner of an OBJ face: v, v/vt, v//vn or v/vt/vn; v counts from 1, or back from the last vertex if negative. */
-static inline int gxio_obj_corner(gxio_reader *reader, const gxio_surface *surface, uint32_t *corner, gxio_error *error)
-{
+static inline int gxio_obj_corner(gxio_reader *reader, const gxio_surface *surface, uint32_t *corner,
+                                  gxio_error *error) {
     const char *end = reader->token;
     int64_t v = 0;
     while (end < reader->token + reader->token_length && *end != '/') end++;
@@ -1285,8 +1293,7 @@ static inline int gxio_obj_corner(gxio_reader *reader, const gxio_surface *surfa
 }
 
 /* A polygon becomes a fan of triangles around its first corner. */
-static inline int gxio_obj_face(gxio_reader *reader, gxio_surface *surface, gxio_error *error)
-{
+static inline int gxio_obj_face(gxio_reader *reader, gxio_surface *surface, gxio_error *error) {
     uint32_t first = 0, last = 0, corner = 0;
     size_t count = 0;
     while (gxio_next(reader, GXIO_SAME_LINE)) {
@@ -1301,13 +1308,13 @@ static inline int gxio_obj_face(gxio_reader *reader, gxio_surface *surface, gxio
 }
 
 /* Lines v and f; all others are ignored. */
-static inline int gxio_read_obj(gxio_reader *reader, gxio_surface *surface, gxio_error *error)
-{
+static inline int gxio_read_obj(gxio_reader *reader, gxio_surface *surface, gxio_error *error) {
     double p[3] = {0, 0, 0};
     for (; gxio_next(reader, GXIO_ANY_LINE); gxio_skip_line(reader)) {
         if (gxio_token_is(reader, "v")) {
             if (!gxio_read_point(reader, GXIO_SAME_LINE, p, error)) return 0;
-            if (!gxio_add_vertex(surface, p[0], p[1], p[2])) return gxio_fail(error, reader->path, reader->line, "out of memory");
+            if (!gxio_add_vertex(surface, p[0], p[1], p[2]))
+                return gxio_fail(error, reader->path, reader->line, "out of memory");
         } else if (gxio_token_is(reader, "f")) {
             if (!gxio_obj_face(reader, surface, error)) return 0;
         }
@@ -1315,8 +1322,7 @@ static inline int gxio_read_obj(gxio_reader *reader, gxio_surface *surface, gxio
     return 1;
 }
 
-static inline int gxio_off_face(gxio_reader *reader, gxio_surface *surface, gxio_error *error)
-{
+static inline int gxio_off_face(gxio_reader *reader, gxio_surface *surface, gxio_error *error) {
     uint32_t first = 0, last = 0, corner = 0, corners = 0, i;
     if (!gxio_read_index(reader, GXIO_ANY_LINE, &corners, error)) return 0;
     if (corners < 3) return gxio_bad_token(reader, "corners are too few for a face", error);
@@ -1331,20 +1337,21 @@ static inline int gxio_off_face(gxio_reader *reader, gxio_surface *surface, gxio
 }
 
 /* [OFF] vertices faces edges, then a vertex or a face per line; colours and normals behind them are ignored. */
-static inline int gxio_read_off(gxio_reader *reader, gxio_surface *surface, gxio_error *error)
-{
+static inline int gxio_read_off(gxio_reader *reader, gxio_surface *surface, gxio_error *error) {
     size_t i, vertices = 0, faces = 0;
     double p[3] = {0, 0, 0};
     if (!gxio_need(reader, GXIO_ANY_LINE, "OFF", error)) return 0;
     if (!gxio_token_is(reader, "OFF") && !gxio_token_is(reader, "COFF") && !gxio_token_is(reader, "NOFF")) {
-        if (*reader->token < '0' || *reader->token > '9') return gxio_bad_token(reader, "stands where OFF should", error);
+        if (*reader->token < '0' || *reader->token > '9')
+            return gxio_bad_token(reader, "stands where OFF should", error);
         reader->at = reader->token;
     }
     if (!gxio_read_count(reader, GXIO_ANY_LINE, "the number of vertices", &vertices, error)) return 0;
     if (!gxio_read_count(reader, GXIO_ANY_LINE, "the number of faces", &faces, error)) return 0;
     for (i = 0, gxio_skip_line(reader); i < vertices; i++, gxio_skip_line(reader)) {
         if (!gxio_read_point(reader, GXIO_ANY_LINE, p, error)) return 0;
-        if (!gxio_add_vertex(surface, p[0], p[1], p[2])) return gxio_fail(error, reader->path, reader->line, "out of memory");
+        if (!gxio_add_vertex(surface, p[0], p[1], p[2]))
+            return gxio_fail(error, reader->path, reader->line, "out of memory");
     }
     for (i = 0; i < faces; i++, gxio_skip_line(reader))
         if (!gxio_off_face(reader, surface, error)) return 0;
@@ -1352,12 +1359,12 @@ static inline int gxio_read_off(gxio_reader *reader, gxio_surface *surface, gxio
 }
 
 /* Polygons as fans around their first corner, strips with every second triangle turned. */
-static inline int gxio_vtk_triangles(const char *path, const gxio_vtk *vtk, gxio_surface *surface, gxio_error *error)
-{
+static inline int gxio_vtk_triangles(const char *path, const gxio_vtk *vtk, gxio_surface *surface, gxio_error *error) {
     const uint32_t *at;
     size_t i, k;
     int good = 1;
-    if (!vtk->cells.start && !vtk->strips.start) return gxio_fail(error, path, 0, "the file has neither POLYGONS nor TRIANGLE_STRIPS");
+    if (!vtk->cells.start && !vtk->strips.start)
+        return gxio_fail(error, path, 0, "the file has neither POLYGONS nor TRIANGLE_STRIPS");
     for (i = 0; i < vtk->point_count && good; i++)
         good = gxio_add_vertex(surface, vtk->points[3 * i], vtk->points[3 * i + 1], vtk->points[3 * i + 2]);
     for (i = 0; i < vtk->cells.count && good; i++) {
@@ -1368,13 +1375,13 @@ static inline int gxio_vtk_triangles(const char *path, const gxio_vtk *vtk, gxio
     for (i = 0; i < vtk->strips.count && good; i++) {
         at = vtk->strips.index + vtk->strips.start[i];
         for (k = 2; k < vtk->strips.start[i + 1] - vtk->strips.start[i] && good; k++)
-            good = gxio_add_triangle(surface, at[k - 2], at[k % 2 ? k : k - 1], at[k % 2 ? k - 1 : k], vtk->strips.line[i]);
+            good = gxio_add_triangle(surface, at[k - 2], at[k % 2 ? k : k - 1], at[k % 2 ? k - 1 : k],
+                                     vtk->strips.line[i]);
     }
     return good ? 1 : gxio_fail(error, path, 0, "out of memory");
 }
 
-static inline int gxio_read_vtk_surface(const char *path, gxio_surface *surface, gxio_error *error)
-{
+static inline int gxio_read_vtk_surface(const char *path, gxio_surface *surface, gxio_error *error) {
     gxio_vtk vtk;
     const int good = gxio_vtk_read(path, "POLYDATA", &vtk, error) && gxio_vtk_triangles(path, &vtk, surface, error);
     gxio_vtk_release(&vtk);
@@ -1382,8 +1389,7 @@ static inline int gxio_read_vtk_surface(const char *path, gxio_surface *surface,
 }
 
 /* One facet of an ASCII STL file, whose word "facet" is the last token; its normal is not needed. */
-static inline int gxio_stl_facet(gxio_reader *reader, gxio_surface *surface, gxio_error *error)
-{
+static inline int gxio_stl_facet(gxio_reader *reader, gxio_surface *surface, gxio_error *error) {
     const uint32_t first = (uint32_t)surface->vertex_count;
     const size_t line = reader->token_line;
     double p[3] = {0, 0, 0};
@@ -1392,23 +1398,25 @@ static inline int gxio_stl_facet(gxio_reader *reader, gxio_surface *surface, gxi
     if (!gxio_expect(reader, "outer", error) || !gxio_expect(reader, "loop", error)) return 0;
     for (i = 0; i < 3; i++) {
         if (!gxio_expect(reader, "vertex", error) || !gxio_read_point(reader, GXIO_SAME_LINE, p, error)) return 0;
-        if (!gxio_add_vertex(surface, p[0], p[1], p[2])) return gxio_fail(error, reader->path, reader->line, "out of memory");
+        if (!gxio_add_vertex(surface, p[0], p[1], p[2]))
+            return gxio_fail(error, reader->path, reader->line, "out of memory");
     }
     if (!gxio_expect(reader, "endloop", error) || !gxio_expect(reader, "endfacet", error)) return 0;
-    return gxio_add_triangle(surface, first, first + 1, first + 2, line) ? 1
-        : gxio_fail(error, reader->path, reader->line, "out of memory");
+    return gxio_add_triangle(surface, first, first + 1, first + 2, line)
+             ? 1
+             : gxio_fail(error, reader->path, reader->line, "out of memory");
 }
 
 /* Any number of: solid NAME, facets, endsolid NAME. */
-static inline int gxio_stl_text(gxio_reader *reader, gxio_surface *surface, gxio_error *error)
-{
+static inline int gxio_stl_text(gxio_reader *reader, gxio_surface *surface, gxio_error *error) {
     if (!gxio_need(reader, GXIO_ANY_LINE, "solid", error)) return 0;
     do {
         if (!gxio_token_is(reader, "solid")) return gxio_bad_token(reader, "stands where solid should", error);
         for (gxio_skip_line(reader);;) {
             if (!gxio_need(reader, GXIO_ANY_LINE, "facet or endsolid", error)) return 0;
             if (gxio_token_is(reader, "endsolid")) break;
-            if (!gxio_token_is(reader, "facet")) return gxio_bad_token(reader, "stands where facet or endsolid should", error);
+            if (!gxio_token_is(reader, "facet"))
+                return gxio_bad_token(reader, "stands where facet or endsolid should", error);
             if (!gxio_stl_facet(reader, surface, error)) return 0;
         }
         gxio_skip_line(reader);
@@ -1417,8 +1425,7 @@ static inline int gxio_stl_text(gxio_reader *reader, gxio_surface *surface, gxio
 }
 
 /* Four bytes, the lowest first. */
-static inline uint32_t gxio_word(const char *bytes)
-{
+static inline uint32_t gxio_word(const char *bytes) {
     const unsigned char *b = (const unsigned char *)bytes;
     return (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
 }
@@ -1426,15 +1433,14 @@ static inline uint32_t gxio_word(const char *bytes)
 /* Binary STL: 80 bytes, the number of triangles, then for each 12 floats (normal, corners) and two bytes. */
 enum { GXIO_STL_HEAD = 84, GXIO_STL_TRIANGLE = 50 };
 
-static inline int gxio_stl_is_binary(const char *bytes, size_t length)
-{
-    return length >= GXIO_STL_HEAD && (length - GXIO_STL_HEAD) % GXIO_STL_TRIANGLE == 0
-        && (length - GXIO_STL_HEAD) / GXIO_STL_TRIANGLE == gxio_word(bytes + GXIO_STL_HEAD - 4);
+static inline int gxio_stl_is_binary(const char *bytes, size_t length) {
+    return length >= GXIO_STL_HEAD && (length - GXIO_STL_HEAD) % GXIO_STL_TRIANGLE == 0 &&
+           (length - GXIO_STL_HEAD) / GXIO_STL_TRIANGLE == gxio_word(bytes + GXIO_STL_HEAD - 4);
 }
 
 /* A float that is not finite has all bits of its exponent set. */
-static inline int gxio_stl_binary(const char *path, const char *bytes, size_t length, gxio_surface *surface, gxio_error *error)
-{
+static inline int gxio_stl_binary(const char *path, const char *bytes, size_t length, gxio_surface *surface,
+                                  gxio_error *error) {
     size_t i, count = (length - GXIO_STL_HEAD) / GXIO_STL_TRIANGLE;
     for (i = 0; i < count; i++) {
         const uint32_t first = (uint32_t)surface->vertex_count;
@@ -1450,31 +1456,33 @@ static inline int gxio_stl_binary(const char *path, const char *bytes, size_t le
         for (k = 0; k < 9; k += 3)
             if (!gxio_add_vertex(surface, (double)x[k], (double)x[k + 1], (double)x[k + 2]))
                 return gxio_fail(error, path, 0, "out of memory");
-        if (!gxio_add_triangle(surface, first, first + 1, first + 2, 0)) return gxio_fail(error, path, 0, "out of memory");
+        if (!gxio_add_triangle(surface, first, first + 1, first + 2, 0))
+            return gxio_fail(error, path, 0, "out of memory");
     }
     return 1;
 }
 
-typedef struct gxio_corner { double x[3]; uint32_t vertex; } gxio_corner;
+typedef struct gxio_corner {
+    double x[3];
+    uint32_t vertex;
+} gxio_corner;
 
 /* By coordinates; 0 and -0 are equal. */
-static inline int gxio_point_compare(const double x[3], const double y[3])
-{
+static inline int gxio_point_compare(const double x[3], const double y[3]) {
     int i;
-    for (i = 0; i < 3; i++) if (x[i] < y[i] || x[i] > y[i]) return x[i] < y[i] ? -1 : 1;
+    for (i = 0; i < 3; i++)
+        if (x[i] < y[i] || x[i] > y[i]) return x[i] < y[i] ? -1 : 1;
     return 0;
 }
 
-static inline int gxio_corner_compare(const void *a, const void *b)
-{
+static inline int gxio_corner_compare(const void *a, const void *b) {
     const gxio_corner *p = (const gxio_corner *)a, *q = (const gxio_corner *)b;
     const int order = gxio_point_compare(p->x, q->x);
     return order ? order : p->vertex < q->vertex ? -1 : p->vertex > q->vertex;
 }
 
 /* first[i]: the first vertex with the coordinates of i. corners: room for all vertices. */
-static inline void gxio_find_first(const gxio_surface *surface, gxio_corner *corners, uint32_t *first)
-{
+static inline void gxio_find_first(const gxio_surface *surface, gxio_corner *corners, uint32_t *first) {
     const size_t count = surface->vertex_count;
     size_t i, start = 0;
     for (i = 0; i < count; i++) {
@@ -1489,16 +1497,18 @@ static inline void gxio_find_first(const gxio_surface *surface, gxio_corner *cor
 }
 
 /* Makes one vertex of all with equal coordinates, in the order of the first ones. */
-static inline int gxio_surface_merge(gxio_surface *surface)
-{
+static inline int gxio_surface_merge(gxio_surface *surface) {
     const size_t count = surface->vertex_count;
     gxio_corner *corners = (gxio_corner *)gxio_array(count, sizeof *corners);
     uint32_t *name = (uint32_t *)gxio_array(count, sizeof *name);
     const int good = corners && name;
     size_t i, kept = 0;
     if (good) gxio_find_first(surface, corners, name);
-    for (i = 0; i < count && good; i++) {       /* name: of those before i, the new number */
-        if (name[i] != i) { name[i] = name[name[i]]; continue; }
+    for (i = 0; i < count && good; i++) { /* name: of those before i, the new number */
+        if (name[i] != i) {
+            name[i] = name[name[i]];
+            continue;
+        }
         memmove(surface->vertices + 3 * kept, surface->vertices + 3 * i, 3 * sizeof(double));
         name[i] = (uint32_t)kept++;
     }
@@ -1509,51 +1519,55 @@ static inline int gxio_surface_merge(gxio_surface *surface)
     return good;
 }
 
-static inline int gxio_read_stl(const char *path, gxio_surface *surface, gxio_error *error)
-{
+static inline int gxio_read_stl(const char *path, gxio_surface *surface, gxio_error *error) {
     gxio_reader reader;
     size_t length;
     int good;
     if (!gxio_reader_load(&reader, path, error)) return 0;
     length = (size_t)(reader.end - reader.text);
-    if (gxio_stl_is_binary(reader.text, length)) good = gxio_stl_binary(path, reader.text, length, surface, error);
-    else if (gxio_is_text(&reader)) good = gxio_stl_text(&reader, surface, error);
-    else good = gxio_fail(error, path, 0, "is binary, but not as long as its number of triangles asks for");
+    if (gxio_stl_is_binary(reader.text, length))
+        good = gxio_stl_binary(path, reader.text, length, surface, error);
+    else if (gxio_is_text(&reader))
+        good = gxio_stl_text(&reader, surface, error);
+    else
+        good = gxio_fail(error, path, 0, "is binary, but not as long as its number of triangles asks for");
     gxio_reader_release(&reader);
     return good && !gxio_surface_merge(surface) ? gxio_fail(error, path, 0, "out of memory") : good;
 }
 
-static inline int gxio_read_obj_or_off(const char *path, gxio_surface *surface, gxio_error *error)
-{
+static inline int gxio_read_obj_or_off(const char *path, gxio_surface *surface, gxio_error *error) {
     gxio_reader reader;
     int good;
     if (!gxio_reader_open(&reader, path, error)) return 0;
-    good = gxio_ends_with(path, ".obj") ? gxio_read_obj(&reader, surface, error) : gxio_read_off(&reader, surface, error);
+    good =
+        gxio_ends_with(path, ".obj") ? gxio_read_obj(&reader, surface, error) : gxio_read_off(&reader, surface, error);
     gxio_reader_release(&reader);
     return good;
 }
 
-static inline int gxio_surface_read(const char *path, gxio_surface *surface, gxio_error *error)
-{
+static inline int gxio_surface_read(const char *path, gxio_surface *surface, gxio_error *error) {
     int good;
-    if (gxio_ends_with(path, ".obj") || gxio_ends_with(path, ".off")) good = gxio_read_obj_or_off(path, surface, error);
-    else if (gxio_ends_with(path, ".stl")) good = gxio_read_stl(path, surface, error);
-    else if (gxio_ends_with(path, ".vtk")) good = gxio_read_vtk_surface(path, surface, error);
-    else return gxio_fail(error, path, 0, "is no cut: .obj, .off, .stl, .vtk, plane:..., box:... or wave:... is");
+    if (gxio_ends_with(path, ".obj") || gxio_ends_with(path, ".off"))
+        good = gxio_read_obj_or_off(path, surface, error);
+    else if (gxio_ends_with(path, ".stl"))
+        good = gxio_read_stl(path, surface, error);
+    else if (gxio_ends_with(path, ".vtk"))
+        good = gxio_read_vtk_surface(path, surface, error);
+    else
+        return gxio_fail(error, path, 0, "is no cut: .obj, .off, .stl, .vtk, plane:..., box:... or wave:... is");
     return good && gxio_surface_check(surface, path, error);
 }
 
 /* A plane with a frame, and where a body lies on it. */
 typedef struct gxio_frame {
-    double p[3];                /* the plane's given point */
-    double u[3], v[3], n[3];    /* orthonormal, n = u x v */
-    double at[2];               /* centre of the body's bounding box along u and v, from p */
-    double radius;              /* of the ball around the bounding box */
+    double p[3];             /* the plane's given point */
+    double u[3], v[3], n[3]; /* orthonormal, n = u x v */
+    double at[2];            /* centre of the body's bounding box along u and v, from p */
+    double radius;           /* of the ball around the bounding box */
 } gxio_frame;
 
 /* Unit vector along d, scaled first so that nothing overflows; 0 where d is 0. Zero components stay exactly zero. */
-static inline int gxio_normalise(double d[3])
-{
+static inline int gxio_normalise(double d[3]) {
     const double largest = fmax(fabs(d[0]), fmax(fabs(d[1]), fabs(d[2])));
     double length;
     int i;
@@ -1566,14 +1580,15 @@ static inline int gxio_normalise(double d[3])
 
 /* u is the coordinate axis closest to the plane (the first of equals), projected onto it: with n along an axis, u and v
    are axes too, with exact zeros, so that every vertex has exactly p's coordinate along n. */
-static inline int gxio_frame_make(gxio_frame *frame, const double point[3], const double normal[3], const gxio_box *body)
-{
+static inline int gxio_frame_make(gxio_frame *frame, const double point[3], const double normal[3],
+                                  const gxio_box *body) {
     double square = 0.0;
     int i, axis = 0;
     memcpy(frame->p, point, sizeof frame->p);
     memcpy(frame->n, normal, sizeof frame->n);
     if (!gxio_normalise(frame->n)) return 0;
-    for (i = 1; i < 3; i++) if (fabs(frame->n[i]) < fabs(frame->n[axis])) axis = i;
+    for (i = 1; i < 3; i++)
+        if (fabs(frame->n[i]) < fabs(frame->n[axis])) axis = i;
     for (i = 0; i < 3; i++) frame->u[i] = (i == axis ? 1.0 : 0.0) - frame->n[i] * frame->n[axis];
     gxio_normalise(frame->u);
     for (i = 0; i < 3; i++)
@@ -1590,20 +1605,18 @@ static inline int gxio_frame_make(gxio_frame *frame, const double point[3], cons
 }
 
 /* The vertex p + a u + b v + h n. */
-static inline int gxio_frame_vertex(const gxio_frame *frame, double a, double b, double h, gxio_surface *surface)
-{
+static inline int gxio_frame_vertex(const gxio_frame *frame, double a, double b, double h, gxio_surface *surface) {
     double x[3];
     int i;
     for (i = 0; i < 3; i++) x[i] = frame->p[i] + (a * frame->u[i] + b * frame->v[i] + h * frame->n[i]);
     return gxio_add_vertex(surface, x[0], x[1], x[2]);
 }
 
-/* plane:PX,PY,PZ,NX,NY,NZ: a square that covers the body's shadow on the plane through P with normal N. Its diagonal, at
-   which rounding makes a crease if N is oblique, passes beside the body: the body's ball lies in the first triangle, whose
-   inscribed circle has the radius edge (1 - 1/sqrt 2) = 1.1 ball radii. */
-static inline int gxio_generate_plane(const double number[6], const gxio_box *body, gxio_surface *surface)
-{
-    const double inscribed = 1.1, edge = 3.7556;    /* in ball radii */
+/* plane:PX,PY,PZ,NX,NY,NZ: a square that covers the body's shadow on the plane through P with normal N. Its diagonal,
+   at which rounding makes a crease if N is oblique, passes beside the body: the body's ball lies in the first triangle,
+   whose inscribed circle has the radius edge (1 - 1/sqrt 2) = 1.1 ball radii. */
+static inline int gxio_generate_plane(const double number[6], const gxio_box *body, gxio_surface *surface) {
+    const double inscribed = 1.1, edge = 3.7556; /* in ball radii */
     gxio_frame frame;
     double a0, b0, a1, b1;
     if (!gxio_frame_make(&frame, number, number + 3, body)) return 0;
@@ -1611,15 +1624,14 @@ static inline int gxio_generate_plane(const double number[6], const gxio_box *bo
     b0 = frame.at[1] - inscribed * frame.radius;
     a1 = a0 + edge * frame.radius;
     b1 = b0 + edge * frame.radius;
-    return gxio_frame_vertex(&frame, a0, b0, 0.0, surface) && gxio_frame_vertex(&frame, a1, b0, 0.0, surface)
-        && gxio_frame_vertex(&frame, a0, b1, 0.0, surface) && gxio_frame_vertex(&frame, a1, b1, 0.0, surface)
-        && gxio_add_triangle(surface, 0, 1, 2, 0) && gxio_add_triangle(surface, 1, 3, 2, 0);
+    return gxio_frame_vertex(&frame, a0, b0, 0.0, surface) && gxio_frame_vertex(&frame, a1, b0, 0.0, surface) &&
+           gxio_frame_vertex(&frame, a0, b1, 0.0, surface) && gxio_frame_vertex(&frame, a1, b1, 0.0, surface) &&
+           gxio_add_triangle(surface, 0, 1, 2, 0) && gxio_add_triangle(surface, 1, 3, 2, 0);
 }
 
 /* wave:PX,PY,PZ,NX,NY,NZ,AMPLITUDE,WAVELENGTH[,RESOLUTION]: the points p + s u + t v + A sin(2 pi s / L) n, as strips
    along v, RESOLUTION (16) strips per wavelength, s a multiple of L / RESOLUTION, across the whole body. */
-static inline int gxio_generate_wave(const double number[9], const gxio_box *body, gxio_surface *surface)
-{
+static inline int gxio_generate_wave(const double number[9], const gxio_box *body, gxio_surface *surface) {
     const double amplitude = number[6], wavelength = number[7], step = wavelength / number[8], turn = 6.283185307179586;
     gxio_frame frame;
     double first, last, reach;
@@ -1643,11 +1655,12 @@ static inline int gxio_generate_wave(const double number[9], const gxio_box *bod
 }
 
 /* box:X0,Y0,Z0,X1,Y1,Z1: twelve triangles, counter-clockwise from outside; corner x + 2 y + 4 z. */
-static inline int gxio_generate_box(const double number[6], gxio_surface *surface)
-{
-    static const unsigned char face[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+static inline int gxio_generate_box(const double number[6], gxio_surface *surface) {
+    static const unsigned char face[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                             {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
     int i;
-    for (i = 0; i < 3; i++) if (!(number[i] < number[i + 3])) return 0;
+    for (i = 0; i < 3; i++)
+        if (!(number[i] < number[i + 3])) return 0;
     for (i = 0; i < 8; i++)
         if (!gxio_add_vertex(surface, number[i & 1 ? 3 : 0], number[i & 2 ? 4 : 1], number[i & 4 ? 5 : 2])) return 0;
     for (i = 0; i < 6; i++) {
@@ -1657,8 +1670,8 @@ static inline int gxio_generate_box(const double number[6], gxio_surface *surfac
     return 1;
 }
 
-static inline int gxio_surface_generate(const char *spec, const gxio_box *body, gxio_surface *surface, gxio_error *error)
-{
+static inline int gxio_surface_generate(const char *spec, const gxio_box *body, gxio_surface *surface,
+                                        gxio_error *error) {
     double number[9] = {0, 0, 0, 0, 0, 0, 0, 0, 16};
     const char *list;
     if ((list = gxio_after(spec, "plane:")) != NULL) {
@@ -1671,13 +1684,13 @@ static inline int gxio_surface_generate(const char *spec, const gxio_box *body, 
     }
     list = gxio_after(spec, "wave:");
     if (gxio_argument_list(list, number, 8, 9) > 0 && gxio_generate_wave(number, body, surface)) return 1;
-    return gxio_fail(error, spec, 0, "is not wave:PX,PY,PZ,NX,NY,NZ,AMPLITUDE,WAVELENGTH[,RESOLUTION] with N not 0, "
-                                     "WAVELENGTH > 0, RESOLUTION >= 3 and at most 10^6 strips");
+    return gxio_fail(error, spec, 0,
+                     "is not wave:PX,PY,PZ,NX,NY,NZ,AMPLITUDE,WAVELENGTH[,RESOLUTION] with N not 0, "
+                     "WAVELENGTH > 0, RESOLUTION >= 3 and at most 10^6 strips");
 }
 
 /* body: what plane and wave sheets must cross. */
-static inline int gxio_surface_load(const char *spec, const gxio_box *body, gxio_surface *surface, gxio_error *error)
-{
+static inline int gxio_surface_load(const char *spec, const gxio_box *body, gxio_surface *surface, gxio_error *error) {
     int good;
     memset(surface, 0, sizeof *surface);
     if (gxio_after(spec, "plane:") || gxio_after(spec, "box:") || gxio_after(spec, "wave:"))
@@ -1696,8 +1709,7 @@ typedef struct gxio_writer {
     char path[GXIO_PATH_ROOM], temporary[GXIO_PATH_ROOM + 8];
 } gxio_writer;
 
-static inline int gxio_writer_open(gxio_writer *writer, const char *path, gxio_error *error)
-{
+static inline int gxio_writer_open(gxio_writer *writer, const char *path, gxio_error *error) {
     if (strlen(path) >= sizeof writer->path) return gxio_fail(error, "output", 0, "the path is too long");
     snprintf(writer->path, sizeof writer->path, "%s", path);
     snprintf(writer->temporary, sizeof writer->temporary, "%s.part", path);
@@ -1707,13 +1719,12 @@ static inline int gxio_writer_open(gxio_writer *writer, const char *path, gxio_e
 }
 
 /* Closes the file and gives it its name; if `good` is 0 or anything fails, removes it. */
-static inline int gxio_writer_close(gxio_writer *writer, int good, gxio_error *error)
-{
+static inline int gxio_writer_close(gxio_writer *writer, int good, gxio_error *error) {
     int complete = good && !ferror(writer->stream);
     errno = 0;
     if (fclose(writer->stream) != 0) complete = 0;
 #ifdef _WIN32
-    if (complete) remove(writer->path);     /* rename does not replace there */
+    if (complete) remove(writer->path); /* rename does not replace there */
 #endif
     if (complete && rename(writer->temporary, writer->path) == 0) return 1;
     gxio_fail(error, writer->path, 0, "cannot be written: %s", errno ? strerror(errno) : "the disk may be full");
@@ -1725,14 +1736,14 @@ static inline int gxio_writer_close(gxio_writer *writer, int good, gxio_error *e
 
 /* Triangles of one instant: positions of a skin and what is known per triangle. Nothing is owned. */
 typedef struct gxio_triangles {
-    const double *positions;    /* vertex_count x 3, m */
-    const float *normals;       /* vertex_count x 3 */
-    const float *texture;       /* vertex_count x 2, texture coordinates */
+    const double *positions; /* vertex_count x 3, m */
+    const float *normals;    /* vertex_count x 3 */
+    const float *texture;    /* vertex_count x 2, texture coordinates */
     size_t vertex_count;
-    const uint32_t *triangles;  /* triangle_count x 3 */
-    const uint32_t *fragment;   /* triangle_count, < fragment_count */
-    const uint32_t *surface;    /* triangle_count, 0: outer surface; else the number of the cut's surface, from 1 */
-    const uint32_t *material;   /* triangle_count */
+    const uint32_t *triangles; /* triangle_count x 3 */
+    const uint32_t *fragment;  /* triangle_count, < fragment_count */
+    const uint32_t *surface;   /* triangle_count, 0: outer surface; else the number of the cut's surface, from 1 */
+    const uint32_t *material;  /* triangle_count */
     size_t triangle_count, fragment_count;
 } gxio_triangles;
 
@@ -1744,14 +1755,12 @@ typedef struct gxio_base64 {
     char text[4096];
 } gxio_base64;
 
-static inline void gxio_base64_flush(gxio_base64 *out)
-{
+static inline void gxio_base64_flush(gxio_base64 *out) {
     fwrite(out->text, 1, out->used, out->stream);
     out->used = 0;
 }
 
-static inline void gxio_base64_group(gxio_base64 *out, const unsigned char b[3])
-{
+static inline void gxio_base64_group(gxio_base64 *out, const unsigned char b[3]) {
     static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     char *text;
     if (out->used == sizeof out->text) gxio_base64_flush(out);
@@ -1763,8 +1772,7 @@ static inline void gxio_base64_group(gxio_base64 *out, const unsigned char b[3])
     out->used += 4;
 }
 
-static inline void gxio_base64_bytes(gxio_base64 *out, const void *bytes, size_t count)
-{
+static inline void gxio_base64_bytes(gxio_base64 *out, const void *bytes, size_t count) {
     const unsigned char *byte = (const unsigned char *)bytes;
     size_t i;
     for (i = 0; i < count; i++) {
@@ -1777,8 +1785,7 @@ static inline void gxio_base64_bytes(gxio_base64 *out, const void *bytes, size_t
 }
 
 /* Pads the last group with '=' and empties the buffers. */
-static inline void gxio_base64_end(gxio_base64 *out)
-{
+static inline void gxio_base64_end(gxio_base64 *out) {
     const size_t padding = out->pending_count ? 3 - out->pending_count : 0;
     if (padding) {
         memset(out->pending + out->pending_count, 0, padding);
@@ -1790,12 +1797,14 @@ static inline void gxio_base64_end(gxio_base64 *out)
 }
 
 /* One appended array of a .vtu file: its size in bytes (64 bits), then its values, as one base64 text. */
-typedef struct gxio_block { const void *bytes; size_t size; } gxio_block;
+typedef struct gxio_block {
+    const void *bytes;
+    size_t size;
+} gxio_block;
 
 static inline size_t gxio_block_length(const gxio_block *block) { return (sizeof(uint64_t) + block->size + 2) / 3 * 4; }
 
-static inline void gxio_block_write(const gxio_block *block, FILE *stream)
-{
+static inline void gxio_block_write(const gxio_block *block, FILE *stream) {
     const uint64_t size = block->size;
     gxio_base64 out;
     out.stream = stream;
@@ -1805,8 +1814,7 @@ static inline void gxio_block_write(const gxio_block *block, FILE *stream)
     gxio_base64_end(&out);
 }
 
-static inline const char *gxio_byte_order(void)
-{
+static inline const char *gxio_byte_order(void) {
     const uint16_t probe = 1;
     unsigned char low;
     memcpy(&low, &probe, 1);
@@ -1814,15 +1822,19 @@ static inline const char *gxio_byte_order(void)
 }
 
 /* One array of a .vtu file: what stands before it, up to its name, and its bytes */
-typedef struct gxio_array_block { const char *head; gxio_block block; } gxio_array_block;
+typedef struct gxio_array_block {
+    const char *head;
+    gxio_block block;
+} gxio_array_block;
 
 enum { GXIO_VTU_ARRAYS = 9 };
 
-static inline void gxio_vtu_write(FILE *stream, const gxio_triangles *t, const gxio_array_block array[GXIO_VTU_ARRAYS])
-{
+static inline void gxio_vtu_write(FILE *stream, const gxio_triangles *t,
+                                  const gxio_array_block array[GXIO_VTU_ARRAYS]) {
     unsigned long offset = 0;
     int i;
-    fprintf(stream, "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"%s\" "
+    fprintf(stream,
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"%s\" "
             "header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"%lu\" NumberOfCells=\"%lu\">\n",
             gxio_byte_order(), (unsigned long)t->vertex_count, (unsigned long)t->triangle_count);
     for (i = 0; i < GXIO_VTU_ARRAYS; i++) {
@@ -1834,8 +1846,7 @@ static inline void gxio_vtu_write(FILE *stream, const gxio_triangles *t, const g
     fputs("\n</AppendedData>\n</VTKFile>\n", stream);
 }
 
-static inline gxio_array_block gxio_vtu_array(const char *head, const void *bytes, size_t size)
-{
+static inline gxio_array_block gxio_vtu_array(const char *head, const void *bytes, size_t size) {
     gxio_array_block array;
     array.head = head;
     array.block.bytes = bytes;
@@ -1843,9 +1854,9 @@ static inline gxio_array_block gxio_vtu_array(const char *head, const void *byte
     return array;
 }
 
-/* VTK's unstructured grid of triangles: normals and texture coordinates by vertex; fragment, surface and material by triangle. */
-static inline int gxio_write_vtu(const char *path, const gxio_triangles *t, gxio_error *error)
-{
+/* VTK's unstructured grid of triangles: normals and texture coordinates by vertex; fragment, surface and material by
+ * triangle. */
+static inline int gxio_write_vtu(const char *path, const gxio_triangles *t, gxio_error *error) {
     const size_t n = t->triangle_count, v = t->vertex_count, word = sizeof(uint32_t);
     uint32_t *ends = (uint32_t *)gxio_array(n, word);
     unsigned char *types = (unsigned char *)gxio_array(n, 1);
@@ -1855,16 +1866,22 @@ static inline int gxio_write_vtu(const char *path, const gxio_triangles *t, gxio
     int good = ends && types ? gxio_writer_open(&writer, path, error) : gxio_fail(error, path, 0, "out of memory");
     if (good) {
         for (i = 0; i < n; i++) ends[i] = (uint32_t)(3 * (i + 1));
-        memset(types, 5, n);        /* VTK_TRIANGLE */
-        array[0] = gxio_vtu_array("<PointData Normals=\"normal\" TCoords=\"texture\">\n<DataArray type=\"Float32\" Name=\"normal\" NumberOfComponents=\"3\"",
+        memset(types, 5, n); /* VTK_TRIANGLE */
+        array[0] = gxio_vtu_array("<PointData Normals=\"normal\" TCoords=\"texture\">\n<DataArray type=\"Float32\" "
+                                  "Name=\"normal\" NumberOfComponents=\"3\"",
                                   t->normals, v * 3 * sizeof(float));
-        array[1] = gxio_vtu_array("<DataArray type=\"Float32\" Name=\"texture\" NumberOfComponents=\"2\"", t->texture, v * 2 * sizeof(float));
-        array[2] = gxio_vtu_array("</PointData>\n<Points>\n<DataArray type=\"Float64\" Name=\"position\" NumberOfComponents=\"3\"",
-                                  t->positions, v * 3 * sizeof(double));
-        array[3] = gxio_vtu_array("</Points>\n<Cells>\n<DataArray type=\"UInt32\" Name=\"connectivity\"", t->triangles, n * 3 * word);
+        array[1] = gxio_vtu_array("<DataArray type=\"Float32\" Name=\"texture\" NumberOfComponents=\"2\"", t->texture,
+                                  v * 2 * sizeof(float));
+        array[2] = gxio_vtu_array(
+            "</PointData>\n<Points>\n<DataArray type=\"Float64\" Name=\"position\" NumberOfComponents=\"3\"",
+            t->positions, v * 3 * sizeof(double));
+        array[3] = gxio_vtu_array("</Points>\n<Cells>\n<DataArray type=\"UInt32\" Name=\"connectivity\"", t->triangles,
+                                  n * 3 * word);
         array[4] = gxio_vtu_array("<DataArray type=\"UInt32\" Name=\"offsets\"", ends, n * word);
         array[5] = gxio_vtu_array("<DataArray type=\"UInt8\" Name=\"types\"", types, n);
-        array[6] = gxio_vtu_array("</Cells>\n<CellData Scalars=\"fragment\">\n<DataArray type=\"UInt32\" Name=\"fragment\"", t->fragment, n * word);
+        array[6] =
+            gxio_vtu_array("</Cells>\n<CellData Scalars=\"fragment\">\n<DataArray type=\"UInt32\" Name=\"fragment\"",
+                           t->fragment, n * word);
         array[7] = gxio_vtu_array("<DataArray type=\"UInt32\" Name=\"surface\"", t->surface, n * word);
         array[8] = gxio_vtu_array("<DataArray type=\"UInt32\" Name=\"material\"", t->material, n * word);
         gxio_vtu_write(writer.stream, t, array);
@@ -1876,8 +1893,7 @@ static inline int gxio_write_vtu(const char *path, const gxio_triangles *t, gxio
 }
 
 /* Triangle numbers sorted by fragment; order: triangle_count, start: fragment_count + 1. */
-static inline void gxio_sort_by_fragment(const gxio_triangles *t, size_t *order, size_t *start)
-{
+static inline void gxio_sort_by_fragment(const gxio_triangles *t, size_t *order, size_t *start) {
     size_t i, f;
     for (f = 0; f <= t->fragment_count; f++) start[f] = 0;
     for (i = 0; i < t->triangle_count; i++) start[t->fragment[i]]++;
@@ -1885,14 +1901,13 @@ static inline void gxio_sort_by_fragment(const gxio_triangles *t, size_t *order,
     for (i = t->triangle_count; i-- > 0;) order[--start[t->fragment[i]]] = i;
 }
 
-static inline void gxio_obj_write(FILE *stream, const gxio_triangles *t, const size_t *order, const size_t *start)
-{
+static inline void gxio_obj_write(FILE *stream, const gxio_triangles *t, const size_t *order, const size_t *start) {
     size_t i, f, k;
     for (i = 0; i < t->vertex_count; i++) {
         const double *x = t->positions + 3 * i;
         const float *n = t->normals + 3 * i, *uv = t->texture + 2 * i;
-        fprintf(stream, "v %.9g %.9g %.9g\nvt %.9g %.9g\nvn %.5g %.5g %.5g\n", x[0], x[1], x[2],
-                (double)uv[0], (double)uv[1], (double)n[0], (double)n[1], (double)n[2]);
+        fprintf(stream, "v %.9g %.9g %.9g\nvt %.9g %.9g\nvn %.5g %.5g %.5g\n", x[0], x[1], x[2], (double)uv[0],
+                (double)uv[1], (double)n[0], (double)n[1], (double)n[2]);
     }
     for (f = 0; f < t->fragment_count; f++) {
         fprintf(stream, "g fragment_%lu\n", (unsigned long)f);
@@ -1906,8 +1921,7 @@ static inline void gxio_obj_write(FILE *stream, const gxio_triangles *t, const s
 }
 
 /* Wavefront, a group per fragment. */
-static inline int gxio_write_obj(const char *path, const gxio_triangles *t, gxio_error *error)
-{
+static inline int gxio_write_obj(const char *path, const gxio_triangles *t, gxio_error *error) {
     size_t *order = (size_t *)gxio_array(t->triangle_count, sizeof(size_t));
     size_t *start = (size_t *)gxio_array(t->fragment_count + 1, sizeof(size_t));
     gxio_writer writer;
@@ -1922,19 +1936,18 @@ static inline int gxio_write_obj(const char *path, const gxio_triangles *t, gxio
     return good;
 }
 
-static inline void gxio_frame_name(char *name, size_t room, uint32_t frame, const char *ending)
-{
+static inline void gxio_frame_name(char *name, size_t room, uint32_t frame, const char *ending) {
     snprintf(name, room, "frame_%04lu.%s", (unsigned long)frame, ending);
 }
 
 /* The .pvd collection of frames 0..frame_count - 1, named by gxio_frame_name, frame i at the time (i + 1) dt. */
-static inline int gxio_write_pvd(const char *path, uint32_t frame_count, double dt, gxio_error *error)
-{
+static inline int gxio_write_pvd(const char *path, uint32_t frame_count, double dt, gxio_error *error) {
     gxio_writer writer;
     uint32_t i;
     char name[32];
     if (!gxio_writer_open(&writer, path, error)) return 0;
-    fprintf(writer.stream, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"%s\">\n<Collection>\n",
+    fprintf(writer.stream,
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"%s\">\n<Collection>\n",
             gxio_byte_order());
     for (i = 0; i < frame_count; i++) {
         gxio_frame_name(name, sizeof name, i, "vtu");
@@ -1947,8 +1960,7 @@ static inline int gxio_write_pvd(const char *path, uint32_t frame_count, double 
 /* ---------------------------------------------------------------------------------------------- >>clock */
 
 /* Seconds from some fixed instant; user is ignored (the signature is gx_body_desc's). */
-static inline double gxio_seconds(void *user)
-{
+static inline double gxio_seconds(void *user) {
     (void)user;
 #if defined(CLOCK_MONOTONIC)
     {
@@ -1968,8 +1980,7 @@ static inline double gxio_seconds(void *user)
 }
 
 /* Makes a directory (not its parents) unless it is there. */
-static inline int gxio_make_directory(const char *path, gxio_error *error)
-{
+static inline int gxio_make_directory(const char *path, gxio_error *error) {
     int failed;
     errno = 0;
 #ifdef _WIN32

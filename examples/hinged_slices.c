@@ -1,15 +1,16 @@
-/* hinged_slices: a cube of 5 tetrahedra is hinged at one edge and sliced across it at three places; the slices fold down (RXFEM, Fig. 10).
+/* hinged_slices: a cube of 5 tetrahedra is hinged at one edge and sliced across it at three places; the slices fold
+   down (RXFEM, Fig. 10).
 
-   The cube is turned by 45 degrees about its hinge, which then lies farthest to one side, so that holding a half-space holds the hinge alone. The
-   far end of the hinge is at a wall: slices fold down one after the other as they are cut from it. At rest the centre of mass of each is below
-   the hinge, since the moments about the hinge are in balance. St. Venant-Kirchhoff, steps of 5 ms; drag brings the slices to rest. */
+   The cube is turned by 45 degrees about its hinge, which then lies farthest to one side, so that holding a half-space
+   holds the hinge alone. The far end of the hinge is at a wall: slices fold down one after the other as they are cut
+   from it. At rest the centre of mass of each is below the hinge, since the moments about the hinge are in balance. St.
+   Venant-Kirchhoff, steps of 5 ms; drag brings the slices to rest. */
 #include "scene.h"
 
 enum { CUTS = 3 };
 
 /* (x, y, z) to (x + z, y, z - x): exact; edges across y are of sqrt 2 then. */
-static void turn(scene *s)
-{
+static void turn(scene *s) {
     size_t i;
     for (i = 0; i < s->mesh.node_count; i++) {
         double *at = s->mesh.positions + 3 * i;
@@ -19,13 +20,15 @@ static void turn(scene *s)
     }
 }
 
-int main(int argc, char **argv)
-{
+int main(int argc, char **argv) {
     const scene_desc desc = {
-        .name = "hinged_slices", .about = "Slices are cut from a cube of 5 tetrahedra across an edge that is a hinge, and fold down.",
-        .mesh = "cube5", .frames = 600, .small_frames = 600};
-    const double edge = 1.4142135623730951;         /* across the hinge, m */
-    const double y[CUTS] = {0.1, 0.3, 0.6};         /* slices of 0.1, 0.2 and 0.3 m, and 0.4 m at the wall, y = 1 */
+        .name = "hinged_slices",
+        .about = "Slices are cut from a cube of 5 tetrahedra across an edge that is a hinge, and fold down.",
+        .mesh = "cube5",
+        .frames = 600,
+        .small_frames = 600};
+    const double edge = 1.4142135623730951; /* across the hinge, m */
+    const double y[CUTS] = {0.1, 0.3, 0.6}; /* slices of 0.1, 0.2 and 0.3 m, and 0.4 m at the wall, y = 1 */
     const gx_region held[2] = {{0, -1, 1e-9}, {1, 1, 1.0 - 1e-9}};
     gx_material material = {{GXS_ST_VENANT_KIRCHHOFF, 1e6, 0.4, 0, NULL, NULL}, 1000.0};
     scene_sheet blades[CUTS];
@@ -53,10 +56,11 @@ int main(int argc, char **argv)
     for (f = 0; f < s.view.fragment_count; f++) {
         const gx_motion motion = scene_motion(&s, f);
         const double *at = motion.center;
-        if (at[1] > y[CUTS - 1]) continue;      /* at the wall */
-        scene_check(&s, fabs(at[0]) < 1e-3 * edge && at[2] < 0.0,
-                    "slice of %.1f m: centre of mass %.1e of an edge beside the hinge, %.4f m below it (at most 1e-3, below)",
-                    s.view.fragment_volume[f] / 2.0, fabs(at[0]) / edge, -at[2]);
+        if (at[1] > y[CUTS - 1]) continue; /* at the wall */
+        scene_check(
+            &s, fabs(at[0]) < 1e-3 * edge && at[2] < 0.0,
+            "slice of %.1f m: centre of mass %.1e of an edge beside the hinge, %.4f m below it (at most 1e-3, below)",
+            s.view.fragment_volume[f] / 2.0, fabs(at[0]) / edge, -at[2]);
     }
     scene_check_body(&s);
     for (i = 0; i < CUTS; i++) scene_drop_sheet(&blades[i]);

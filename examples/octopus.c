@@ -1,16 +1,18 @@
 /* octopus: a wavy cut carves a smile, a second one crosses it and lets the jaw drop (GXFEM, "Smiling octopus", Fig. 8).
 
-   Seen along +z the octopus is a ball with arms around and behind it. It is as large as the paper's (edges of 2.4 m), at rest
-   under its weight (along -y), held by its arms and by what is behind z = 0.02. The smile is drawn across the ball from one
-   corner of the mouth to the other: a sheet along z that ends inside the head. It hardly opens, as nothing below it is loose.
-   The second cut crosses it near its end and goes down to a hinge above the chin. */
+   Seen along +z the octopus is a ball with arms around and behind it. It is as large as the paper's (edges of 2.4 m),
+   at rest under its weight (along -y), held by its arms and by what is behind z = 0.02. The smile is drawn across the
+   ball from one corner of the mouth to the other: a sheet along z that ends inside the head. It hardly opens, as
+   nothing below it is loose. The second cut crosses it near its end and goes down to a hinge above the chin. */
 #include "scene.h"
 
 enum { COLUMNS = 96, ROWS = 12 };
 
-static const double scale = 180.0;      /* metres per unit of the mesh: edges of 2.39 m on average (GXFEM Table 1) */
+static const double scale = 180.0; /* metres per unit of the mesh: edges of 2.39 m on average (GXFEM Table 1) */
 
-/* Units of the mesh: the middle of the face, its half width, where the mouth ends behind, where the jaw's hinge begins below */
+/* Units of the mesh: the middle of the face, its half width, where the mouth ends behind, where the jaw's hinge begins
+ * below */
+/* clang-format off */
 static const double middle[3] = {0.006, -0.072, -0.19}, half_width = 0.12, back = -0.075, hinge = -0.142;
 
 static void mesh_point(double x, double y, double z, double *at)
@@ -68,14 +70,19 @@ static double mouth_opening(const scene *s, lips of)
 static void hold_arms(scene *s)
 {
     const gx_region held[4] = {{2, 1, 0.02 * scale}, {0, -1, -0.14 * scale}, {0, 1, 0.16 * scale}, {1, 1, 0.09 * scale}};
+    /* clang-format on */
     scene_hold_all(s, held, 4);
 }
 
-int main(int argc, char **argv)
-{
-    const scene_desc desc = {
-        .name = "octopus", .about = "A wavy cut carves the mouth of an octopus, a second one lets its jaw drop.",
-        .mesh = "octopus", .small_mesh = "octopus:0.026", .any_mesh = 1, .frames = 120, .small_frames = 60, .least_frames = 50};
+int main(int argc, char **argv) {
+    const scene_desc desc = {.name = "octopus",
+                             .about = "A wavy cut carves the mouth of an octopus, a second one lets its jaw drop.",
+                             .mesh = "octopus",
+                             .small_mesh = "octopus:0.026",
+                             .any_mesh = 1,
+                             .frames = 120,
+                             .small_frames = 60,
+                             .least_frames = 50};
     scene s;
     scene_sheet mouth, jaw;
     lips of;
@@ -102,9 +109,12 @@ int main(int argc, char **argv)
         }
         scene_advance(&s, &jaw, 0.5, 0.75);
     }
-    scene_say(&s, "lips apart, as measured at two points of them: at first %.2f m, with the mouth cut %.2f m", closed, smiling);
-    scene_check(&s, mouth_opening(&s, of) > closed + 1.0, "lips apart in the end: %.2f m (1 m more than at first)", mouth_opening(&s, of));
-    scene_check(&s, jaw_height(&s, of) < before - 1.0, "the jaw drops by %.2f m (more than 1 m)", before - jaw_height(&s, of));
+    scene_say(&s, "lips apart, as measured at two points of them: at first %.2f m, with the mouth cut %.2f m", closed,
+              smiling);
+    scene_check(&s, mouth_opening(&s, of) > closed + 1.0, "lips apart in the end: %.2f m (1 m more than at first)",
+                mouth_opening(&s, of));
+    scene_check(&s, jaw_height(&s, of) < before - 1.0, "the jaw drops by %.2f m (more than 1 m)",
+                before - jaw_height(&s, of));
     mass = fabs(scene_mass(&s) / mass - 1.0);
     scene_check(&s, mass <= 1e-12, "mass against the uncut octopus's: %.1e (at most 1e-12)", mass);
     scene_check_body(&s);

@@ -25,13 +25,14 @@
      >>measures    what a scene is judged by
      >>report      checks, the line of the table
 
-   Exit codes: 0 all checks hold; 1 one does not, or a cut or a step failed; 2 usage error, or a file that can't be written. */
+   Exit codes: 0 all checks hold; 1 one does not, or a cut or a step failed; 2 usage error, or a file that can't be
+   written. */
 #ifndef SCENE_H
 #define SCENE_H
 
 #include "gxio.h"
 
-#ifndef GXFEM_LINKED            /* make examples compiles the library once for all scenes */
+#ifndef GXFEM_LINKED /* make examples compiles the library once for all scenes */
 #define GXFEM_IMPLEMENTATION
 #endif
 #include "../gxfem.h"
@@ -47,28 +48,39 @@
 /* --------------------------------------------------------------------------------------------- >>types */
 
 typedef struct scene_desc {
-    const char *name, *about;           /* about: one line */
-    const char *mesh, *small_mesh;      /* as gxio_mesh_load takes them; small_mesh NULL: the same */
-    int any_mesh;                       /* not 0: --mesh may name another */
+    const char *name, *about;      /* about: one line */
+    const char *mesh, *small_mesh; /* as gxio_mesh_load takes them; small_mesh NULL: the same */
+    int any_mesh;                  /* not 0: --mesh may name another */
     uint32_t frames, small_frames;
-    int has_csv;                        /* not 0: --csv names a file for figures of the scene's own */
-    uint32_t least_frames;              /* with fewer there is nothing to see; 0: any number will do */
+    int has_csv;           /* not 0: --csv names a file for figures of the scene's own */
+    uint32_t least_frames; /* with fewer there is nothing to see; 0: any number will do */
 } scene_desc;
 
 /* Seconds of a frame, or their sums */
-enum { SCENE_ARRANGEMENT, SCENE_ENRICHMENT, SCENE_INTEGRALS, SCENE_MODEL, SCENE_LINEARISE, SCENE_PREPARE, SCENE_SOLVE,
-       SCENE_FORCES,                    /* energies and forces of the step: what is left of it */
-       SCENE_SKIN,                      /* view, skin, positions of its vertices */
-       SCENE_PHASES };
+enum {
+    SCENE_ARRANGEMENT,
+    SCENE_ENRICHMENT,
+    SCENE_INTEGRALS,
+    SCENE_MODEL,
+    SCENE_LINEARISE,
+    SCENE_PREPARE,
+    SCENE_SOLVE,
+    SCENE_FORCES, /* energies and forces of the step: what is left of it */
+    SCENE_SKIN,   /* view, skin, positions of its vertices */
+    SCENE_PHASES
+};
 
-typedef struct scene_memory { size_t now, peak; } scene_memory;     /* bytes */
+typedef struct scene_memory {
+    size_t now, peak;
+} scene_memory; /* bytes */
 
-/* A surface of (along + 1) x (across + 1) points, cut column by column: neighbouring strips have the same vertices, bit by bit. */
+/* A surface of (along + 1) x (across + 1) points, cut column by column: neighbouring strips have the same vertices, bit
+ * by bit. */
 typedef struct scene_sheet {
-    double *vertices;                   /* column by column, x 3 */
-    uint32_t *triangles;                /* of the whole sheet, 2 x along x across x 3 */
+    double *vertices;    /* column by column, x 3 */
+    uint32_t *triangles; /* of the whole sheet, 2 x along x across x 3 */
     uint32_t along, across;
-    uint32_t done;                      /* columns cut so far */
+    uint32_t done; /* columns cut so far */
 } scene_sheet;
 
 /* Where the sheet is at a (along) and b (across), both from 0 to 1 */
@@ -76,37 +88,37 @@ typedef void (*scene_point_fn)(const void *user, double a, double b, double *x);
 
 /* The body's surface as triangles, and where its vertices come from */
 typedef struct scene_skin {
-    gxio_triangles triangles;           /* as files take them */
-    double *positions;                  /* triangles.vertex_count x 3, deformed; owned */
-    float *normals;                     /* triangles.vertex_count x 3; owned */
-    const uint32_t *vertex_point;       /* triangles.vertex_count */
-    const uint32_t *vertex_copies;      /* x 4 */
-    const double *vertex_weights;       /* x 4 */
+    gxio_triangles triangles;      /* as files take them */
+    double *positions;             /* triangles.vertex_count x 3, deformed; owned */
+    float *normals;                /* triangles.vertex_count x 3; owned */
+    const uint32_t *vertex_point;  /* triangles.vertex_count */
+    const uint32_t *vertex_copies; /* x 4 */
+    const double *vertex_weights;  /* x 4 */
 } scene_skin;
 
 typedef struct scene {
     scene_desc desc;
     int small, quiet, help;
-    uint32_t frame, frames, every;      /* frame: of the next step */
+    uint32_t frame, frames, every; /* frame: of the next step */
     const char *mesh_name, *out, *format, *table, *csv, *trace;
-    FILE *trace_stream;                 /* NULL: nothing traced yet */
-    gx_region *regions;                 /* region_count, what is held; owned */
+    FILE *trace_stream; /* NULL: nothing traced yet */
+    gx_region *regions; /* region_count, what is held; owned */
     size_t region_count;
-    gxio_mesh mesh;                     /* may be moved before scene_make */
-    gx_body_desc body_desc;             /* may be changed before scene_make */
-    gx_step_desc step;                  /* may be changed at any time */
+    gxio_mesh mesh;         /* may be moved before scene_make */
+    gx_body_desc body_desc; /* may be changed before scene_make */
+    gx_step_desc step;      /* may be changed at any time */
     gx_body *body;
     gx_view view;
-    scene_skin skin;                    /* of the last step */
-    int looked;                         /* view and skin are those of the body as it is cut now */
-    gx_surface *cuts;                   /* cut_count, every surface so far; they and their arrays owned */
+    scene_skin skin;  /* of the last step */
+    int looked;       /* view and skin are those of the body as it is cut now */
+    gx_surface *cuts; /* cut_count, every surface so far; they and their arrays owned */
     size_t cut_count;
     size_t first_copies, cut_triangles;
     scene_memory memory;
     double frame_seconds[SCENE_PHASES], frame_cut, sum[SCENE_PHASES], sum_frames, worst_frame;
-    double solver_start;                /* when the solver first looked at the clock in this step; below 0: not yet */
+    double solver_start; /* when the solver first looked at the clock in this step; below 0: not yet */
     uint32_t cut_frames, frames_written;
-    int bar;                            /* a progress bar stands on stderr */
+    int bar; /* a progress bar stands on stderr */
     uint32_t checks, wrong;
     gxio_error error;
 } scene;
@@ -115,37 +127,32 @@ typedef struct scene {
 
 enum { SCENE_RIGHT = 0, SCENE_WRONG = 1, SCENE_MISUSED = 2 };
 
-static inline void scene_end_bar(scene *s)
-{
+static inline void scene_end_bar(scene *s) {
     if (s->bar) fputc('\n', stderr);
     s->bar = 0;
 }
 
 /* Says what is in s->error and ends the program. */
-static inline void scene_quit(scene *s, int code)
-{
+static inline void scene_quit(scene *s, int code) {
     scene_end_bar(s);
     fprintf(stderr, "%s: %s\n", s->desc.name, s->error.text);
     exit(code);
 }
 
-static inline void scene_misuse(scene *s, const char *what, const char *cause)
-{
+static inline void scene_misuse(scene *s, const char *what, const char *cause) {
     gxio_fail(&s->error, what, 0, "%s", cause);
     scene_quit(s, SCENE_MISUSED);
 }
 
 /* Ends the program where a call on the body failed: "NAME: what: cause" */
-static inline void scene_must(scene *s, gx_result result, const char *what)
-{
+static inline void scene_must(scene *s, gx_result result, const char *what) {
     if (result == GX_OK) return;
     gxio_fail(&s->error, what, 0, "%s", gx_result_text(result));
     scene_quit(s, SCENE_WRONG);
 }
 
 /* count x size bytes, zeroed, or the end of the program */
-static inline void *scene_array(scene *s, size_t count, size_t size)
-{
+static inline void *scene_array(scene *s, size_t count, size_t size) {
     void *array = gxio_array(count, size);
     scene_must(s, array ? GX_OK : GX_ERROR_MEMORY, "memory");
     return memset(array, 0, count * size);
@@ -153,8 +160,7 @@ static inline void *scene_array(scene *s, size_t count, size_t size)
 
 /* -------------------------------------------------------------------------------------------- >>memory */
 
-static inline void *scene_allocate(void *user, size_t size)
-{
+static inline void *scene_allocate(void *user, size_t size) {
     scene_memory *memory = (scene_memory *)user;
     void *bytes = malloc(size);
     if (bytes) memory->now += size;
@@ -162,14 +168,12 @@ static inline void *scene_allocate(void *user, size_t size)
     return bytes;
 }
 
-static inline void scene_release(void *user, void *bytes, size_t size)
-{
+static inline void scene_release(void *user, void *bytes, size_t size) {
     ((scene_memory *)user)->now -= size;
     free(bytes);
 }
 
-static inline void *scene_reallocate(void *user, void *bytes, size_t size, size_t larger)
-{
+static inline void *scene_reallocate(void *user, void *bytes, size_t size, size_t larger) {
     scene_memory *memory = (scene_memory *)user;
     void *moved = realloc(bytes, larger);
     if (moved) memory->now += larger - size;
@@ -179,14 +183,14 @@ static inline void *scene_reallocate(void *user, void *bytes, size_t size, size_
 
 /* ----------------------------------------------------------------------------------------- >>arguments */
 
-static inline void scene_usage(const scene *s)
-{
+static inline void scene_usage(const scene *s) {
     printf("usage: %s [options]\n\n%s\n\n", s->desc.name, s->desc.about);
     puts("  --small             a smaller scene, for tests");
     printf("  --frames N          steps and frames (%lu; %lu with --small)\n", (unsigned long)s->desc.frames,
            (unsigned long)s->desc.small_frames);
     if (s->desc.has_csv) puts("  --csv FILE          appends the scene's figures to it");
-    if (s->desc.any_mesh) printf("  --mesh MESH         a file or a generated mesh, as gxcut takes them (%s)\n", s->desc.mesh);
+    if (s->desc.any_mesh)
+        printf("  --mesh MESH         a file or a generated mesh, as gxcut takes them (%s)\n", s->desc.mesh);
     puts("  --out DIR           writes frames there\n"
          "  --every N           only each N-th of them (1)\n"
          "  --format vtu|obj    frames for ParaView with a collection frames.pvd (default), or Wavefront\n"
@@ -196,46 +200,57 @@ static inline void scene_usage(const scene *s)
          "  --help              this text");
 }
 
-static inline void scene_read_count(scene *s, const char *name, const char *value, uint32_t *count)
-{
+static inline void scene_read_count(scene *s, const char *name, const char *value, uint32_t *count) {
     int64_t number;
     if (!gxio_parse_integer(value, value + strlen(value), &number) || number < 1 || number > 1000000)
         scene_misuse(s, name, "needs a count from 1 to 1000000");
     *count = (uint32_t)number;
 }
 
-static inline int scene_take_flag(scene *s, const char *name)
-{
-    if (strcmp(name, "--small") == 0) s->small = 1;
-    else if (strcmp(name, "--quiet") == 0) s->quiet = 1;
-    else if (strcmp(name, "--help") == 0) s->help = 1;
-    else return 0;
+static inline int scene_take_flag(scene *s, const char *name) {
+    if (strcmp(name, "--small") == 0)
+        s->small = 1;
+    else if (strcmp(name, "--quiet") == 0)
+        s->quiet = 1;
+    else if (strcmp(name, "--help") == 0)
+        s->help = 1;
+    else
+        return 0;
     return 1;
 }
 
-static inline int scene_take_value(scene *s, const char *name, const char *value)
-{
-    if (strcmp(name, "--frames") == 0) scene_read_count(s, name, value, &s->frames);
-    else if (strcmp(name, "--every") == 0) scene_read_count(s, name, value, &s->every);
-    else if (strcmp(name, "--out") == 0) s->out = value;
-    else if (strcmp(name, "--format") == 0) s->format = value;
-    else if (strcmp(name, "--table") == 0) s->table = value;
-    else if (strcmp(name, "--trace") == 0) s->trace = value;
-    else if (strcmp(name, "--csv") == 0 && s->desc.has_csv) s->csv = value;
-    else if (strcmp(name, "--mesh") == 0 && s->desc.any_mesh) s->mesh_name = value;
-    else return 0;
+static inline int scene_take_value(scene *s, const char *name, const char *value) {
+    if (strcmp(name, "--frames") == 0)
+        scene_read_count(s, name, value, &s->frames);
+    else if (strcmp(name, "--every") == 0)
+        scene_read_count(s, name, value, &s->every);
+    else if (strcmp(name, "--out") == 0)
+        s->out = value;
+    else if (strcmp(name, "--format") == 0)
+        s->format = value;
+    else if (strcmp(name, "--table") == 0)
+        s->table = value;
+    else if (strcmp(name, "--trace") == 0)
+        s->trace = value;
+    else if (strcmp(name, "--csv") == 0 && s->desc.has_csv)
+        s->csv = value;
+    else if (strcmp(name, "--mesh") == 0 && s->desc.any_mesh)
+        s->mesh_name = value;
+    else
+        return 0;
     return 1;
 }
 
-static inline void scene_take_arguments(scene *s, int argc, char **argv)
-{
+static inline void scene_take_arguments(scene *s, int argc, char **argv) {
     int i;
     for (i = 1; i < argc; i++) {
         if (scene_take_flag(s, argv[i])) continue;
-        if (!scene_take_value(s, argv[i], i + 1 < argc ? argv[i + 1] : "1")) scene_misuse(s, argv[i], "unknown option, see --help");
+        if (!scene_take_value(s, argv[i], i + 1 < argc ? argv[i + 1] : "1"))
+            scene_misuse(s, argv[i], "unknown option, see --help");
         if (++i >= argc) scene_misuse(s, argv[i - 1], "needs a value");
     }
-    if (strcmp(s->format, "vtu") != 0 && strcmp(s->format, "obj") != 0) scene_misuse(s, "--format", "must be vtu or obj");
+    if (strcmp(s->format, "vtu") != 0 && strcmp(s->format, "obj") != 0)
+        scene_misuse(s, "--format", "must be vtu or obj");
     if (s->frames && s->frames < s->desc.least_frames) {
         gxio_fail(&s->error, "--frames", 0, "needs at least %lu", (unsigned long)s->desc.least_frames);
         scene_quit(s, SCENE_MISUSED);
@@ -247,8 +262,7 @@ static inline void scene_take_arguments(scene *s, int argc, char **argv)
 /* ---------------------------------------------------------------------------------------------- >>body */
 
 /* The parameters of GXFEM section 5 */
-static inline void scene_set_defaults(scene *s)
-{
+static inline void scene_set_defaults(scene *s) {
     s->body_desc.young = 1e6;
     s->body_desc.poisson = 0.4;
     s->body_desc.density = 1000.0;
@@ -258,8 +272,7 @@ static inline void scene_set_defaults(scene *s)
 }
 
 /* Reads the command line and the mesh. */
-static inline void scene_open(scene *s, const scene_desc *desc, int argc, char **argv)
-{
+static inline void scene_open(scene *s, const scene_desc *desc, int argc, char **argv) {
     memset(s, 0, sizeof *s);
     s->desc = *desc;
     s->every = 1;
@@ -276,16 +289,14 @@ static inline void scene_open(scene *s, const scene_desc *desc, int argc, char *
 }
 
 /* Multiplies the mesh's coordinates. */
-static inline void scene_scale(scene *s, double x, double y, double z)
-{
+static inline void scene_scale(scene *s, double x, double y, double z) {
     const double factor[3] = {x, y, z};
     size_t i;
     for (i = 0; i < 3 * s->mesh.node_count; i++) s->mesh.positions[i] *= factor[i % 3];
 }
 
 /* Nodes that elements use, in their order; the others go. */
-static inline void scene_drop_nodes(scene *s)
-{
+static inline void scene_drop_nodes(scene *s) {
     uint32_t *number = (uint32_t *)scene_array(s, s->mesh.node_count, sizeof *number), count = 0;
     size_t i;
     for (i = 0; i < 4 * s->mesh.element_count; i++) number[s->mesh.elements[i]] = 1;
@@ -300,8 +311,7 @@ static inline void scene_drop_nodes(scene *s)
 }
 
 /* Keeps the elements whose centre is wanted, and the nodes that they use. */
-static inline void scene_keep(scene *s, int (*wanted)(const void *user, const double center[3]), const void *user)
-{
+static inline void scene_keep(scene *s, int (*wanted)(const void *user, const double center[3]), const void *user) {
     size_t e, kept = 0, i, k;
     for (e = 0; e < s->mesh.element_count; e++) {
         const uint32_t *corner = s->mesh.elements + 4 * e;
@@ -315,8 +325,7 @@ static inline void scene_keep(scene *s, int (*wanted)(const void *user, const do
 }
 
 /* The body, of s->mesh by s->body_desc */
-static inline void scene_make(scene *s)
-{
+static inline void scene_make(scene *s) {
     gx_body_desc *desc = &s->body_desc;
     gx_failure failure;
     gx_result result;
@@ -338,8 +347,7 @@ static inline void scene_make(scene *s)
 }
 
 /* Holds what lies in one of the regions. */
-static inline void scene_hold_all(scene *s, const gx_region *regions, size_t count)
-{
+static inline void scene_hold_all(scene *s, const gx_region *regions, size_t count) {
     free(s->regions);
     s->regions = (gx_region *)scene_array(s, count, sizeof *regions);
     s->region_count = count;
@@ -348,8 +356,7 @@ static inline void scene_hold_all(scene *s, const gx_region *regions, size_t cou
 }
 
 /* Holds what lies on one side (-1: below) of a plane across an axis. */
-static inline void scene_hold(scene *s, uint32_t axis, int32_t side, double value)
-{
+static inline void scene_hold(scene *s, uint32_t axis, int32_t side, double value) {
     gx_region region;
     region.axis = axis;
     region.side = side;
@@ -359,20 +366,23 @@ static inline void scene_hold(scene *s, uint32_t axis, int32_t side, double valu
 
 /* -------------------------------------------------------------------------------------------- >>sheets */
 
-static inline void scene_fill_triangles(scene_sheet *sheet)
-{
+static inline void scene_fill_triangles(scene_sheet *sheet) {
     const uint32_t row = sheet->across + 1;
     uint32_t i, j, *t = sheet->triangles;
     for (i = 0; i < sheet->along; i++)
         for (j = 0; j < sheet->across; j++, t += 6) {
             const uint32_t a = i * row + j, b = a + row;
-            t[0] = a; t[1] = b; t[2] = b + 1;
-            t[3] = a; t[4] = b + 1; t[5] = a + 1;
+            t[0] = a;
+            t[1] = b;
+            t[2] = b + 1;
+            t[3] = a;
+            t[4] = b + 1;
+            t[5] = a + 1;
         }
 }
 
-static inline scene_sheet scene_make_sheet(scene *s, uint32_t along, uint32_t across, scene_point_fn point, const void *user)
-{
+static inline scene_sheet scene_make_sheet(scene *s, uint32_t along, uint32_t across, scene_point_fn point,
+                                           const void *user) {
     scene_sheet sheet;
     uint32_t i, j;
     double *x;
@@ -387,16 +397,14 @@ static inline scene_sheet scene_make_sheet(scene *s, uint32_t along, uint32_t ac
     return sheet;
 }
 
-static inline void scene_drop_sheet(scene_sheet *sheet)
-{
+static inline void scene_drop_sheet(scene_sheet *sheet) {
     free(sheet->vertices);
     free(sheet->triangles);
     memset(sheet, 0, sizeof *sheet);
 }
 
 /* From -1 to 1, and the same for the same pair: the multiplications and shifts of a 32-bit hash */
-static inline double scene_noise(uint32_t i, uint32_t j)
-{
+static inline double scene_noise(uint32_t i, uint32_t j) {
     uint32_t h = i * 0x9E3779B1u ^ j * 0x85EBCA77u;
     h = (h ^ h >> 16) * 0x7FEB352Du;
     h = (h ^ h >> 15) * 0x846CA68Bu;
@@ -404,16 +412,16 @@ static inline double scene_noise(uint32_t i, uint32_t j)
 }
 
 /* corner + a u + b v; nine numbers */
-static inline void scene_flat_point(const void *user, double a, double b, double *x)
-{
+static inline void scene_flat_point(const void *user, double a, double b, double *x) {
     const double *p = (const double *)user;
     int i;
     for (i = 0; i < 3; i++) x[i] = p[i] + a * p[3 + i] + b * p[6 + i];
 }
 
-/* A parallelogram in `along` strips from `corner` along u. Where u and v are 0, every vertex has exactly the corner's coordinate. */
-static inline scene_sheet scene_flat_sheet(scene *s, const double corner[3], const double u[3], const double v[3], uint32_t along)
-{
+/* A parallelogram in `along` strips from `corner` along u. Where u and v are 0, every vertex has exactly the corner's
+ * coordinate. */
+static inline scene_sheet scene_flat_sheet(scene *s, const double corner[3], const double u[3], const double v[3],
+                                           uint32_t along) {
     double p[9];
     memcpy(p, corner, 3 * sizeof(double));
     memcpy(p + 3, u, 3 * sizeof(double));
@@ -424,8 +432,7 @@ static inline scene_sheet scene_flat_sheet(scene *s, const double corner[3], con
 /* --------------------------------------------------------------------------------------------- >>trace */
 
 /* Opens a file to write to (mode "w") or append to ("a"), or ends the program; scene_close_file closes it so. */
-static inline FILE *scene_open_file(scene *s, const char *path, const char *mode)
-{
+static inline FILE *scene_open_file(scene *s, const char *path, const char *mode) {
     FILE *stream;
     errno = 0;
     stream = fopen(path, mode);
@@ -435,8 +442,7 @@ static inline FILE *scene_open_file(scene *s, const char *path, const char *mode
     return NULL;
 }
 
-static inline void scene_close_file(scene *s, const char *path, FILE *stream)
-{
+static inline void scene_close_file(scene *s, const char *path, FILE *stream) {
     int good = !ferror(stream);
     errno = 0;
     if (fclose(stream) != 0) good = 0;
@@ -447,14 +453,14 @@ static inline void scene_close_file(scene *s, const char *path, FILE *stream)
 
 /* What the first frame starts from; the body is not cut yet. Lines of numbers, each kind after its name and count:
    nodes: position, displacement, velocity; elements: nodes; regions: axis, side, value, see gx_region. */
-static inline void scene_begin_trace(scene *s)
-{
+static inline void scene_begin_trace(scene *s) {
     FILE *f = s->trace_stream = scene_open_file(s, s->trace, "w");
     const double *u = s->view.displacement, *v = s->view.velocity;
     size_t i, k;
-    fprintf(f, "gxfem-trace 1\nmaterial %.17g %.17g %.17g\n", s->body_desc.young, s->body_desc.poisson, s->body_desc.density);
-    fprintf(f, "step %.17g %.17g %.17g %.17g %lu\n", s->step.dt, s->step.gravity[0], s->step.gravity[1], s->step.gravity[2],
-            (unsigned long)s->step.newton_iterations);
+    fprintf(f, "gxfem-trace 1\nmaterial %.17g %.17g %.17g\n", s->body_desc.young, s->body_desc.poisson,
+            s->body_desc.density);
+    fprintf(f, "step %.17g %.17g %.17g %.17g %lu\n", s->step.dt, s->step.gravity[0], s->step.gravity[1],
+            s->step.gravity[2], (unsigned long)s->step.newton_iterations);
     fprintf(f, "nodes %lu\n", (unsigned long)s->mesh.node_count);
     for (i = 0; i < s->mesh.node_count; i++) {
         for (k = 0; k < 3; k++) fprintf(f, "%.17g ", s->mesh.positions[3 * i + k]);
@@ -462,29 +468,31 @@ static inline void scene_begin_trace(scene *s)
         for (k = 0; k < 3; k++) fprintf(f, "%.17g%c", v[3 * i + k], k < 2 ? ' ' : '\n');
     }
     fprintf(f, "elements %lu\n", (unsigned long)s->mesh.element_count);
-    for (i = 0; i < 4 * s->mesh.element_count; i++) fprintf(f, "%lu%c", (unsigned long)s->mesh.elements[i], i % 4 < 3 ? ' ' : '\n');
+    for (i = 0; i < 4 * s->mesh.element_count; i++)
+        fprintf(f, "%lu%c", (unsigned long)s->mesh.elements[i], i % 4 < 3 ? ' ' : '\n');
     fprintf(f, "regions %lu\n", (unsigned long)s->region_count);
-    for (i = 0; i < s->region_count; i++) fprintf(f, "%lu %ld %.17g\n", (unsigned long)s->regions[i].axis, (long)s->regions[i].side, s->regions[i].value);
+    for (i = 0; i < s->region_count; i++)
+        fprintf(f, "%lu %ld %.17g\n", (unsigned long)s->regions[i].axis, (long)s->regions[i].side, s->regions[i].value);
     fprintf(f, "frames %lu\n", (unsigned long)s->frames);
 }
 
-/* Writes a cut by the triangles of a surface from `first` on; those before it are what of the same blade's path was cut before. */
-static inline void scene_trace_cut(scene *s, const gx_surface *surface, size_t first)
-{
+/* Writes a cut by the triangles of a surface from `first` on; those before it are what of the same blade's path was cut
+ * before. */
+static inline void scene_trace_cut(scene *s, const gx_surface *surface, size_t first) {
     FILE *f = s->trace_stream;
     size_t i;
     if (!f) return;
     fprintf(f, "cut %lu %lu %lu %lu\n", (unsigned long)s->frame, (unsigned long)surface->vertex_count,
             (unsigned long)surface->triangle_count, (unsigned long)first);
     for (i = 0; i < 3 * surface->vertex_count; i++) fprintf(f, "%.17g%c", surface->vertices[i], i % 3 < 2 ? ' ' : '\n');
-    for (i = 0; i < 3 * surface->triangle_count; i++) fprintf(f, "%lu%c", (unsigned long)surface->triangles[i], i % 3 < 2 ? ' ' : '\n');
+    for (i = 0; i < 3 * surface->triangle_count; i++)
+        fprintf(f, "%lu%c", (unsigned long)surface->triangles[i], i % 3 < 2 ? ' ' : '\n');
 }
 
 /* ---------------------------------------------------------------------------------------------- >>cuts */
 
 /* Remembers a surface: what it points to may go. */
-static inline void scene_record(scene *s, const gx_surface *surface)
-{
+static inline void scene_record(scene *s, const gx_surface *surface) {
     gx_surface *grown = (gx_surface *)realloc(s->cuts, (s->cut_count + 1) * sizeof *grown), *copy;
     double *vertices = (double *)scene_array(s, surface->vertex_count, 3 * sizeof(double));
     uint32_t *triangles = (uint32_t *)scene_array(s, surface->triangle_count, 3 * sizeof(uint32_t));
@@ -499,8 +507,7 @@ static inline void scene_record(scene *s, const gx_surface *surface)
     s->cut_triangles += surface->triangle_count;
 }
 
-static inline void scene_cut_body(scene *s, const gx_surface *surfaces, size_t count)
-{
+static inline void scene_cut_body(scene *s, const gx_surface *surfaces, size_t count) {
     const double start = gxio_seconds(NULL);
     gx_cut_desc desc;
     gx_cut_report report;
@@ -518,8 +525,7 @@ static inline void scene_cut_body(scene *s, const gx_surface *surfaces, size_t c
 }
 
 /* Cuts the body, now, by all surfaces at once. */
-static inline void scene_cut(scene *s, const gx_surface *surfaces, size_t count)
-{
+static inline void scene_cut(scene *s, const gx_surface *surfaces, size_t count) {
     size_t i;
     if (s->trace && !s->trace_stream) scene_begin_trace(s);
     for (i = 0; i < count; i++) scene_trace_cut(s, &surfaces[i], 0);
@@ -527,8 +533,7 @@ static inline void scene_cut(scene *s, const gx_surface *surfaces, size_t count)
 }
 
 /* Cuts the strips of a sheet up to a column. */
-static inline void scene_cut_up_to(scene *s, scene_sheet *sheet, uint32_t column)
-{
+static inline void scene_cut_up_to(scene *s, scene_sheet *sheet, uint32_t column) {
     const size_t row = sheet->across + 1;
     gx_surface strip, path;
     if (column <= sheet->done) return;
@@ -548,36 +553,32 @@ static inline void scene_cut_up_to(scene *s, scene_sheet *sheet, uint32_t column
     sheet->done = column;
 }
 
-/* The number of `count` things due in this frame, if the first is to begin at `from` and the last to end at `to`, shares of the
-   run, whatever its length */
-static inline uint32_t scene_due(const scene *s, double from, double to, uint32_t count)
-{
+/* The number of `count` things due in this frame, if the first is to begin at `from` and the last to end at `to`,
+   shares of the run, whatever its length */
+static inline uint32_t scene_due(const scene *s, double from, double to, uint32_t count) {
     const double share = ((s->frame + 1.0) / s->frames - from) / (to - from);
     return share >= 1.0 ? count : share <= 0.0 ? 0 : (uint32_t)(share * count + 1e-9);
 }
 
 /* Cuts the strips that are due: the sheet's sweep takes the run from `from` to `to`. */
-static inline void scene_advance(scene *s, scene_sheet *sheet, double from, double to)
-{
+static inline void scene_advance(scene *s, scene_sheet *sheet, double from, double to) {
     scene_cut_up_to(s, sheet, scene_due(s, from, to, sheet->along));
 }
 
 /* Cuts a whole parallelogram at once. */
-static inline void scene_cut_flat(scene *s, const double corner[3], const double u[3], const double v[3])
-{
+static inline void scene_cut_flat(scene *s, const double corner[3], const double u[3], const double v[3]) {
     scene_sheet sheet = scene_flat_sheet(s, corner, u, v, 1);
     scene_cut_up_to(s, &sheet, 1);
     scene_drop_sheet(&sheet);
 }
 
 /* Cuts the body through, across an axis at a coordinate. */
-static inline void scene_cut_across(scene *s, uint32_t axis, double at)
-{
+static inline void scene_cut_across(scene *s, uint32_t axis, double at) {
     double low[3], high[3], corner[3], u[3] = {0, 0, 0}, v[3] = {0, 0, 0};
     const uint32_t j = (axis + 1) % 3, k = (axis + 2) % 3;
     gxio_bounds(s->mesh.positions, s->mesh.node_count, low, high);
     corner[axis] = at;
-    corner[j] = 2.0 * low[j] - high[j];     /* a body's width beyond it on each side, and the diagonal beside it */
+    corner[j] = 2.0 * low[j] - high[j]; /* a body's width beyond it on each side, and the diagonal beside it */
     corner[k] = 2.0 * low[k] - high[k];
     u[j] = 4.0 * (high[j] - low[j]);
     v[k] = 4.0 * (high[k] - low[k]);
@@ -587,9 +588,8 @@ static inline void scene_cut_across(scene *s, uint32_t axis, double at)
 /* ---------------------------------------------------------------------------------------------- >>skin */
 
 /* Takes the surface anew after a cut, and where it and its normals are now. */
-static inline void scene_take_skin(scene *s)
-{
-    const gx_skin_desc shading = {0.6, 1};      /* creases of 34 degrees and more stay sharp */
+static inline void scene_take_skin(scene *s) {
+    const gx_skin_desc shading = {0.6, 1}; /* creases of 34 degrees and more stay sharp */
     gxio_triangles *triangles = &s->skin.triangles;
     gx_skin skin;
     if (!s->looked) {
@@ -617,8 +617,7 @@ static inline void scene_take_skin(scene *s)
 }
 
 /* View and skin of the body as it is now */
-static inline void scene_look(scene *s)
-{
+static inline void scene_look(scene *s) {
     const double start = gxio_seconds(NULL);
     if (!s->looked) scene_must(s, gx_body_view(s->body, &s->view), "view");
     scene_take_skin(s);
@@ -628,46 +627,43 @@ static inline void scene_look(scene *s)
 
 /* -------------------------------------------------------------------------------------------- >>frames */
 
-static inline void scene_join_path(scene *s, const char *name, char path[GXIO_PATH_ROOM])
-{
+static inline void scene_join_path(scene *s, const char *name, char path[GXIO_PATH_ROOM]) {
     const int length = snprintf(path, GXIO_PATH_ROOM, "%s/%s", s->out, name);
     if (length <= 0 || length >= GXIO_PATH_ROOM) scene_misuse(s, "--out", "the path is too long");
 }
 
-static inline void scene_write_frame(scene *s)
-{
+static inline void scene_write_frame(scene *s) {
     char name[32], path[GXIO_PATH_ROOM];
     gxio_frame_name(name, sizeof name, s->frames_written, s->format);
     scene_join_path(s, name, path);
     if (!(strcmp(s->format, "obj") == 0 ? gxio_write_obj(path, &s->skin.triangles, &s->error)
-                                        : gxio_write_vtu(path, &s->skin.triangles, &s->error))) scene_quit(s, SCENE_MISUSED);
+                                        : gxio_write_vtu(path, &s->skin.triangles, &s->error)))
+        scene_quit(s, SCENE_MISUSED);
     s->frames_written++;
 }
 
 /* The collection of the frames there are */
-static inline void scene_write_collection(scene *s)
-{
+static inline void scene_write_collection(scene *s) {
     char path[GXIO_PATH_ROOM];
     if (!s->frames_written || strcmp(s->format, "vtu") != 0) return;
     scene_join_path(s, "frames.pvd", path);
     if (!gxio_write_pvd(path, s->frames_written, s->step.dt * s->every, &s->error)) scene_quit(s, SCENE_MISUSED);
 }
 
-static inline void scene_draw_bar(scene *s)
-{
+static inline void scene_draw_bar(scene *s) {
     const int width = 40, filled = (int)((double)width * s->frame / s->frames);
     int i;
     if (s->quiet || !SCENE_STDERR_IS_TERMINAL) return;
     fprintf(stderr, "\r%s [", s->desc.name);
     for (i = 0; i < width; i++) fputc(i < filled ? '#' : '.', stderr);
-    fprintf(stderr, "] %lu/%lu, %lu unknowns ", (unsigned long)s->frame, (unsigned long)s->frames, 3 * (unsigned long)s->view.copy_count);
+    fprintf(stderr, "] %lu/%lu, %lu unknowns ", (unsigned long)s->frame, (unsigned long)s->frames,
+            3 * (unsigned long)s->view.copy_count);
     fflush(stderr);
     s->bar = 1;
 }
 
 /* The solver's clock: when it is first asked, the body has made the solver's model. */
-static inline double scene_solver_clock(void *user)
-{
+static inline double scene_solver_clock(void *user) {
     scene *s = (scene *)user;
     const double now = gxio_seconds(NULL);
     if (s->solver_start < 0.0) s->solver_start = now;
@@ -675,8 +671,7 @@ static inline double scene_solver_clock(void *user)
 }
 
 /* The body's step, and what it took by phase */
-static inline void scene_move(scene *s, gx_step_report *report)
-{
+static inline void scene_move(scene *s, gx_step_report *report) {
     const double start = gxio_seconds(NULL);
     double *seconds = s->frame_seconds;
     gx_result result;
@@ -685,18 +680,18 @@ static inline void scene_move(scene *s, gx_step_report *report)
     s->step.clock_user = s;
     s->solver_start = -1.0;
     result = gx_body_step(s->body, &s->step, report, NULL);
-    if (result != GX_OK && s->out) scene_write_collection(s);   /* what there is can be looked at */
+    if (result != GX_OK && s->out) scene_write_collection(s); /* what there is can be looked at */
     scene_must(s, result, "step");
     seconds[SCENE_MODEL] = s->solver_start < 0.0 ? 0.0 : s->solver_start - start;
     seconds[SCENE_LINEARISE] = report->seconds_linearise;
     seconds[SCENE_PREPARE] = report->seconds_prepare;
     seconds[SCENE_SOLVE] = report->seconds_solve;
-    seconds[SCENE_FORCES] = report->seconds - seconds[SCENE_MODEL] - seconds[SCENE_LINEARISE] - seconds[SCENE_PREPARE] - seconds[SCENE_SOLVE];
+    seconds[SCENE_FORCES] = report->seconds - seconds[SCENE_MODEL] - seconds[SCENE_LINEARISE] - seconds[SCENE_PREPARE] -
+                            seconds[SCENE_SOLVE];
 }
 
 /* Adds the frame's times to the run's. */
-static inline void scene_count_frame(scene *s)
-{
+static inline void scene_count_frame(scene *s) {
     double frame = s->frame_cut;
     int i;
     for (i = 0; i < SCENE_PHASES; i++) {
@@ -711,8 +706,7 @@ static inline void scene_count_frame(scene *s)
 }
 
 /* Ends a frame: a step by s->step, a look at the body, the frame's file if it is due. */
-static inline void scene_step(scene *s)
-{
+static inline void scene_step(scene *s) {
     gx_step_report report;
     if (s->trace && !s->trace_stream) scene_begin_trace(s);
     scene_move(s, &report);
@@ -726,9 +720,9 @@ static inline void scene_step(scene *s)
     if (s->out) scene_write_collection(s);
 }
 
-/* Brings the body to rest: balance of forces from where it is, without inertia. Returns the residual, see gxs_step_report. */
-static inline double scene_settle(scene *s, double tolerance)
-{
+/* Brings the body to rest: balance of forces from where it is, without inertia. Returns the residual, see
+ * gxs_step_report. */
+static inline double scene_settle(scene *s, double tolerance) {
     const gx_step_desc kept = s->step;
     gx_step_report report;
     s->step.integrator = GXS_STATIC;
@@ -745,25 +739,24 @@ static inline double scene_settle(scene *s, double tolerance)
 /* ------------------------------------------------------------------------------------------ >>measures */
 
 /* Volume of the mesh as it was given, m3 */
-static inline double scene_mesh_volume(const scene *s)
-{
+static inline double scene_mesh_volume(const scene *s) {
     double volume = 0.0;
     size_t e;
-    for (e = 0; e < s->mesh.element_count; e++) volume += gxio_element_determinant(s->mesh.positions, s->mesh.elements + 4 * e) / 6.0;
+    for (e = 0; e < s->mesh.element_count; e++)
+        volume += gxio_element_determinant(s->mesh.positions, s->mesh.elements + 4 * e) / 6.0;
     return volume;
 }
 
-/* Mass of the body as steps see it: the sum of all mass blocks, kg; compensated [Kahan 1965], so that a check to 1e-12 sees the blocks and
-   not their summation */
-static inline double scene_mass(scene *s)
-{
+/* Mass of the body as steps see it: the sum of all mass blocks, kg; compensated [Kahan 1965], so that a check to 1e-12
+   sees the blocks and not their summation */
+static inline double scene_mass(scene *s) {
     gxs_model model;
     double sum = 0.0, lost = 0.0;
     size_t e, i;
     scene_must(s, gx_body_model(s->body, &model), "model");
     for (e = 0; e < model.element_count; e++)
         for (i = 0; i < 10; i++) {
-            const double once = i == 0 || i == 4 || i == 7 || i == 9 ? 1.0 : 2.0;    /* diagonal or not */
+            const double once = i == 0 || i == 4 || i == 7 || i == 9 ? 1.0 : 2.0; /* diagonal or not */
             const double term = once * model.elements[e].mass[i] - lost, grown = sum + term;
             lost = grown - sum - term;
             sum = grown;
@@ -772,8 +765,7 @@ static inline double scene_mass(scene *s)
 }
 
 /* |sum of the cells' volumes / volume of the mesh - 1| */
-static inline double scene_volume_error(const scene *s)
-{
+static inline double scene_volume_error(const scene *s) {
     double volume = 0.0;
     size_t c;
     for (c = 0; c < s->view.cell_count; c++) volume += s->view.cell_volume[c];
@@ -781,27 +773,25 @@ static inline double scene_volume_error(const scene *s)
 }
 
 /* Elements that cuts have divided */
-static inline size_t scene_divided_elements(const scene *s)
-{
+static inline size_t scene_divided_elements(const scene *s) {
     size_t c, divided = 0;
     for (c = 1; c < s->view.cell_count; c++)
-        divided += s->view.cell_element[c] == s->view.cell_element[c - 1]
-            && (c < 2 || s->view.cell_element[c] != s->view.cell_element[c - 2]);
+        divided += s->view.cell_element[c] == s->view.cell_element[c - 1] &&
+                   (c < 2 || s->view.cell_element[c] != s->view.cell_element[c - 2]);
     return divided;
 }
 
 /* The node that a vertex of the surface is at, UINT32_MAX where it is at none */
-static inline uint32_t scene_node_at(const scene *s, size_t vertex)
-{
+static inline uint32_t scene_node_at(const scene *s, size_t vertex) {
     int k;
     for (k = 0; k < 4; k++)
-        if (s->skin.vertex_weights[4 * vertex + (size_t)k] >= 1.0) return s->view.copy_node[s->skin.vertex_copies[4 * vertex + (size_t)k]];
+        if (s->skin.vertex_weights[4 * vertex + (size_t)k] >= 1.0)
+            return s->view.copy_node[s->skin.vertex_copies[4 * vertex + (size_t)k]];
     return UINT32_MAX;
 }
 
 /* The node of the surface nearest to a material point */
-static inline uint32_t scene_nearest_node(const scene *s, const double x[3])
-{
+static inline uint32_t scene_nearest_node(const scene *s, const double x[3]) {
     double least = HUGE_VAL;
     uint32_t nearest = 0;
     size_t v, i;
@@ -819,36 +809,36 @@ static inline uint32_t scene_nearest_node(const scene *s, const double x[3])
 }
 
 /* Where a node of the surface that no cut passes through is now */
-static inline const double *scene_place(const scene *s, uint32_t node)
-{
+static inline const double *scene_place(const scene *s, uint32_t node) {
     size_t v;
     for (v = 0; v + 1 < s->skin.triangles.vertex_count && scene_node_at(s, v) != node;) v++;
     return s->skin.positions + 3 * v;
 }
 
 /* Fragments of at least a share of the body's volume */
-static inline size_t scene_fragments_above(const scene *s, double share)
-{
+static inline size_t scene_fragments_above(const scene *s, double share) {
     size_t f, count = 0;
     for (f = 0; f < s->view.fragment_count; f++) count += s->view.fragment_volume[f] >= share * s->view.volume;
     return count;
 }
 
-/* How far the two faces of the cuts are apart: the mean over the triangles' corners that have left their opposite, m. Fragments below a
-   share of the body's volume are left out. */
-static inline double scene_mean_gap(scene *s, double share)
-{
+/* How far the two faces of the cuts are apart: the mean over the triangles' corners that have left their opposite, m.
+   Fragments below a share of the body's volume are left out. */
+static inline double scene_mean_gap(scene *s, double share) {
     const gxio_triangles *t = &s->skin.triangles;
-    size_t *first, i, k, points = 0, count = 0;     /* first: vertex + 1 where each point was first seen */
+    size_t *first, i, k, points = 0, count = 0; /* first: vertex + 1 where each point was first seen */
     double sum = 0.0;
-    for (i = 0; i < t->vertex_count; i++) if (s->skin.vertex_point[i] >= points) points = (size_t)s->skin.vertex_point[i] + 1;
+    for (i = 0; i < t->vertex_count; i++)
+        if (s->skin.vertex_point[i] >= points) points = (size_t)s->skin.vertex_point[i] + 1;
     first = (size_t *)scene_array(s, points, sizeof *first);
     for (i = 0; i < 3 * t->triangle_count; i++) {
         const size_t vertex = t->triangles[i], point = s->skin.vertex_point[vertex];
         double distance = 0.0;
-        if (t->surface[i / 3] == GX_SKIN_OUTER || s->view.fragment_volume[t->fragment[i / 3]] < share * s->view.volume) continue;
+        if (t->surface[i / 3] == GX_SKIN_OUTER || s->view.fragment_volume[t->fragment[i / 3]] < share * s->view.volume)
+            continue;
         if (!first[point]) first[point] = vertex + 1;
-        for (k = 0; k < 3; k++) distance += pow(t->positions[3 * vertex + k] - t->positions[3 * (first[point] - 1) + k], 2.0);
+        for (k = 0; k < 3; k++)
+            distance += pow(t->positions[3 * vertex + k] - t->positions[3 * (first[point] - 1) + k], 2.0);
         sum += sqrt(distance);
         count += distance > 0.0;
     }
@@ -856,10 +846,9 @@ static inline double scene_mean_gap(scene *s, double share)
     return count ? sum / (double)count : 0.0;
 }
 
-/* The largest eigenvalue of a symmetric matrix, as 00 01 02 11 12 22: the largest root of its characteristic polynomial, by
-   the cosine of a third of an angle [Smith, Eigenvalues of a symmetric 3x3 matrix, CACM 1961] */
-static inline double scene_largest_eigenvalue(const double m[6])
-{
+/* The largest eigenvalue of a symmetric matrix, as 00 01 02 11 12 22: the largest root of its characteristic
+   polynomial, by the cosine of a third of an angle [Smith, Eigenvalues of a symmetric 3x3 matrix, CACM 1961] */
+static inline double scene_largest_eigenvalue(const double m[6]) {
     const double mean = (m[0] + m[3] + m[5]) / 3.0, x = m[0] - mean, y = m[3] - mean, z = m[5] - mean;
     const double p = sqrt((x * x + y * y + z * z + 2.0 * (m[1] * m[1] + m[2] * m[2] + m[4] * m[4])) / 6.0);
     double determinant;
@@ -869,33 +858,33 @@ static inline double scene_largest_eigenvalue(const double m[6])
 }
 
 /* The largest principal stretch of an element */
-static inline double scene_element_stretch(const gxs_element *e, const double *displacement)
-{
+static inline double scene_element_stretch(const gxs_element *e, const double *displacement) {
     double f[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, c[6];
     int corner, i, j;
     for (corner = 1; corner < 4; corner++)
         for (i = 0; i < 3; i++)
             for (j = 0; j < 3; j++)
-                f[i][j] += (displacement[3 * (size_t)e->copy[corner] + (size_t)i] - displacement[3 * (size_t)e->copy[0] + (size_t)i]) * e->gradient[corner][j];
+                f[i][j] += (displacement[3 * (size_t)e->copy[corner] + (size_t)i] -
+                            displacement[3 * (size_t)e->copy[0] + (size_t)i]) *
+                           e->gradient[corner][j];
     for (i = 0, corner = 0; i < 3; i++)
         for (j = i; j < 3; j++) c[corner++] = f[0][i] * f[0][j] + f[1][i] * f[1][j] + f[2][i] * f[2][j];
     return sqrt(scene_largest_eigenvalue(c));
 }
 
 /* The largest principal stretch of all parts: a part that drifted away from its neighbours would have a large one. */
-static inline double scene_largest_stretch(scene *s)
-{
+static inline double scene_largest_stretch(scene *s) {
     gxs_model model;
     double largest = 0.0;
     size_t e;
     scene_must(s, gx_body_model(s->body, &model), "model");
-    for (e = 0; e < model.element_count; e++) largest = fmax(largest, scene_element_stretch(&model.elements[e], s->view.displacement));
+    for (e = 0; e < model.element_count; e++)
+        largest = fmax(largest, scene_element_stretch(&model.elements[e], s->view.displacement));
     return largest;
 }
 
 /* The fragment of each copy, view.copy_count; to be freed by the caller. */
-static inline uint32_t *scene_copy_fragments(scene *s)
-{
+static inline uint32_t *scene_copy_fragments(scene *s) {
     uint32_t *fragment = (uint32_t *)scene_array(s, s->view.copy_count, sizeof *fragment);
     size_t i;
     for (i = 0; i < 4 * s->view.cell_count; i++) fragment[s->view.cell_copies[i]] = s->view.cell_fragment[i / 4];
@@ -903,8 +892,7 @@ static inline uint32_t *scene_copy_fragments(scene *s)
 }
 
 /* How a fragment moves */
-static inline gx_motion scene_motion(scene *s, uint32_t fragment)
-{
+static inline gx_motion scene_motion(scene *s, uint32_t fragment) {
     gx_motion *motions = (gx_motion *)scene_array(s, s->view.fragment_count, sizeof *motions), motion;
     scene_must(s, gx_body_motion(s->body, motions, s->view.fragment_count), "motion");
     motion = motions[fragment];
@@ -912,28 +900,32 @@ static inline gx_motion scene_motion(scene *s, uint32_t fragment)
     return motion;
 }
 
-typedef struct scene_corner { uint32_t point, copies[4], vertex; } scene_corner;
-typedef struct scene_edge { uint32_t low, high; int way; } scene_edge;
+typedef struct scene_corner {
+    uint32_t point, copies[4], vertex;
+} scene_corner;
+typedef struct scene_edge {
+    uint32_t low, high;
+    int way;
+} scene_edge;
 
-static inline int scene_compare_words(const void *a, const void *b)
-{
+static inline int scene_compare_words(const void *a, const void *b) {
     const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
     return (x > y) - (x < y);
 }
 
-static inline int scene_compare_corners(const void *a, const void *b) { return memcmp(a, b, sizeof(scene_corner) - sizeof(uint32_t)); }
+static inline int scene_compare_corners(const void *a, const void *b) {
+    return memcmp(a, b, sizeof(scene_corner) - sizeof(uint32_t));
+}
 
-static inline int scene_compare_edges(const void *a, const void *b)
-{
+static inline int scene_compare_edges(const void *a, const void *b) {
     const scene_edge *p = (const scene_edge *)a, *q = (const scene_edge *)b;
     const int low = scene_compare_words(&p->low, &q->low);
     return low ? low : scene_compare_words(&p->high, &q->high);
 }
 
-/* Numbers of the surface's corners, triangles.vertex_count: vertices that are the same material point and follow the same copies
-   (those of weight not 0) are one. To be freed by the caller. */
-static inline uint32_t *scene_merge_vertices(scene *s)
-{
+/* Numbers of the surface's corners, triangles.vertex_count: vertices that are the same material point and follow the
+   same copies (those of weight not 0) are one. To be freed by the caller. */
+static inline uint32_t *scene_merge_vertices(scene *s) {
     const size_t n = s->skin.triangles.vertex_count;
     scene_corner *corners = (scene_corner *)scene_array(s, n, sizeof *corners);
     uint32_t *merged = (uint32_t *)scene_array(s, n, sizeof *merged), count = 0;
@@ -942,7 +934,8 @@ static inline uint32_t *scene_merge_vertices(scene *s)
         corners[v].point = s->skin.vertex_point[v];
         corners[v].vertex = (uint32_t)v;
         for (k = 0; k < 4; k++)
-            corners[v].copies[k] = fabs(s->skin.vertex_weights[4 * v + k]) > 0.0 ? s->skin.vertex_copies[4 * v + k] : UINT32_MAX;
+            corners[v].copies[k] =
+                fabs(s->skin.vertex_weights[4 * v + k]) > 0.0 ? s->skin.vertex_copies[4 * v + k] : UINT32_MAX;
         qsort(corners[v].copies, 4, sizeof(uint32_t), scene_compare_words);
     }
     qsort(corners, n, sizeof *corners, scene_compare_corners);
@@ -955,8 +948,7 @@ static inline uint32_t *scene_merge_vertices(scene *s)
 }
 
 /* Edges of the surface that more triangles pass one way than the other: 0 where every fragment is watertight */
-static inline size_t scene_open_edges(scene *s)
-{
+static inline size_t scene_open_edges(scene *s) {
     const size_t n = 3 * s->skin.triangles.triangle_count;
     uint32_t *merged = scene_merge_vertices(s);
     scene_edge *edges = (scene_edge *)scene_array(s, n, sizeof *edges);
@@ -981,15 +973,14 @@ static inline size_t scene_open_edges(scene *s)
 
 /* The elements around a node as a mesh of their own, and what the cuts have in its box */
 typedef struct scene_ring {
-    double *positions, *vertices;       /* 3 per node; 9 per triangle */
-    uint32_t *elements, *triangles, *number;    /* number: of the mesh's nodes in the ring, UINT32_MAX elsewhere */
-    uint32_t *nodes;                    /* of the mesh, node_count */
+    double *positions, *vertices;            /* 3 per node; 9 per triangle */
+    uint32_t *elements, *triangles, *number; /* number: of the mesh's nodes in the ring, UINT32_MAX elsewhere */
+    uint32_t *nodes;                         /* of the mesh, node_count */
     size_t node_count, element_count, triangle_count;
     double low[3], high[3];
 } scene_ring;
 
-static inline void scene_fill_ring(const scene *s, scene_ring *ring, const uint32_t *around, size_t count)
-{
+static inline void scene_fill_ring(const scene *s, scene_ring *ring, const uint32_t *around, size_t count) {
     size_t i, k;
     ring->node_count = ring->triangle_count = 0;
     ring->element_count = count;
@@ -1007,8 +998,7 @@ static inline void scene_fill_ring(const scene *s, scene_ring *ring, const uint3
 }
 
 /* Does a triangle's box meet the ring's? */
-static inline int scene_meets_ring(const scene_ring *ring, const double *a, const double *b, const double *c)
-{
+static inline int scene_meets_ring(const scene_ring *ring, const double *a, const double *b, const double *c) {
     int i;
     for (i = 0; i < 3; i++)
         if (fmin(a[i], fmin(b[i], c[i])) > ring->high[i] || fmax(a[i], fmax(b[i], c[i])) < ring->low[i]) return 0;
@@ -1016,8 +1006,7 @@ static inline int scene_meets_ring(const scene_ring *ring, const double *a, cons
 }
 
 /* Adds the triangles of a sheet that may meet the ring. */
-static inline void scene_add_to_ring(scene_ring *ring, const gx_surface *sheet)
-{
+static inline void scene_add_to_ring(scene_ring *ring, const gx_surface *sheet) {
     size_t t, k;
     for (t = 0; t < sheet->triangle_count; t++) {
         const double *x[3];
@@ -1029,8 +1018,7 @@ static inline void scene_add_to_ring(scene_ring *ring, const gx_surface *sheet)
 }
 
 /* Fragments of the ring alone, cut at once by all the sheets' triangles and by all solids */
-static inline size_t scene_ring_fragments(scene *s, const scene_ring *ring)
-{
+static inline size_t scene_ring_fragments(scene *s, const scene_ring *ring) {
     gx_surface *surfaces = (gx_surface *)scene_array(s, s->cut_count + 1, sizeof *surfaces);
     gx_body_desc desc;
     gx_cut_desc cut;
@@ -1039,12 +1027,16 @@ static inline size_t scene_ring_fragments(scene *s, const scene_ring *ring)
     size_t i;
     memset(&desc, 0, sizeof desc);
     memset(&cut, 0, sizeof cut);
-    desc.positions = ring->positions; desc.node_count = ring->node_count;
-    desc.elements = ring->elements; desc.element_count = ring->element_count;
+    desc.positions = ring->positions;
+    desc.node_count = ring->node_count;
+    desc.elements = ring->elements;
+    desc.element_count = ring->element_count;
     desc.young = desc.density = 1.0;
     scene_must(s, gx_body_create(&desc, &body, NULL), "elements around a node");
-    surfaces[0].vertices = ring->vertices; surfaces[0].vertex_count = 3 * ring->triangle_count;
-    surfaces[0].triangles = ring->triangles; surfaces[0].triangle_count = ring->triangle_count;
+    surfaces[0].vertices = ring->vertices;
+    surfaces[0].vertex_count = 3 * ring->triangle_count;
+    surfaces[0].triangles = ring->triangles;
+    surfaces[0].triangle_count = ring->triangle_count;
     for (i = 0, cut.surface_count = ring->triangle_count > 0; i < s->cut_count; i++)
         if (s->cuts[i].kind == GX_SURFACE_SOLID) surfaces[cut.surface_count++] = s->cuts[i];
     cut.surfaces = surfaces;
@@ -1056,9 +1048,9 @@ static inline size_t scene_ring_fragments(scene *s, const scene_ring *ring)
     return i;
 }
 
-/* Elements around each node: those of node i are around[start[i]] to around[start[i + 1] - 1]. Both to be freed by the caller. */
-static inline void scene_list_around(scene *s, uint32_t **around, size_t **start)
-{
+/* Elements around each node: those of node i are around[start[i]] to around[start[i + 1] - 1]. Both to be freed by the
+ * caller. */
+static inline void scene_list_around(scene *s, uint32_t **around, size_t **start) {
     const size_t corners = 4 * s->mesh.element_count, n = s->mesh.node_count;
     size_t i;
     *around = (uint32_t *)scene_array(s, corners, sizeof **around);
@@ -1068,15 +1060,15 @@ static inline void scene_list_around(scene *s, uint32_t **around, size_t **start
     for (i = corners; i-- > 0;) (*around)[--(*start)[s->mesh.elements[i]]] = (uint32_t)(i / 4);
 }
 
-/* The least number of copies: for each node the number of pieces that all cuts so far, made at once, leave of the elements around
-   it and nothing else (GXFEM Eq. 18). Found by a body per node, from scratch. */
-static inline size_t scene_least_copies(scene *s)
-{
+/* The least number of copies: for each node the number of pieces that all cuts so far, made at once, leave of the
+   elements around it and nothing else (GXFEM Eq. 18). Found by a body per node, from scratch. */
+static inline size_t scene_least_copies(scene *s) {
     uint32_t *around;
     size_t *start, i, k, most = 1, least = 0;
     scene_ring ring;
     scene_list_around(s, &around, &start);
-    for (i = 0; i < s->mesh.node_count; i++) if (start[i + 1] - start[i] > most) most = start[i + 1] - start[i];
+    for (i = 0; i < s->mesh.node_count; i++)
+        if (start[i + 1] - start[i] > most) most = start[i + 1] - start[i];
     ring.positions = (double *)scene_array(s, 4 * most, 3 * sizeof(double));
     ring.elements = (uint32_t *)scene_array(s, 4 * most, sizeof(uint32_t));
     ring.nodes = (uint32_t *)scene_array(s, 4 * most, sizeof(uint32_t));
@@ -1088,11 +1080,18 @@ static inline size_t scene_least_copies(scene *s)
     for (i = 0; i < s->mesh.node_count; i++) {
         if (start[i] == start[i + 1]) continue;
         scene_fill_ring(s, &ring, around + start[i], start[i + 1] - start[i]);
-        for (k = 0; k < s->cut_count; k++) if (s->cuts[k].kind == GX_SURFACE_SHEET) scene_add_to_ring(&ring, &s->cuts[k]);
+        for (k = 0; k < s->cut_count; k++)
+            if (s->cuts[k].kind == GX_SURFACE_SHEET) scene_add_to_ring(&ring, &s->cuts[k]);
         least += scene_ring_fragments(s, &ring);
     }
-    free(ring.positions); free(ring.elements); free(ring.nodes); free(ring.number); free(ring.vertices); free(ring.triangles);
-    free(around); free(start);
+    free(ring.positions);
+    free(ring.elements);
+    free(ring.nodes);
+    free(ring.number);
+    free(ring.vertices);
+    free(ring.triangles);
+    free(around);
+    free(start);
     return least;
 }
 
@@ -1101,8 +1100,7 @@ static inline size_t scene_least_copies(scene *s)
 static inline unsigned long scene_unknowns(const scene *s) { return 3 * (unsigned long)s->view.copy_count; }
 
 /* A line of what one sees: "name: value (what it should be)", and whether it holds. */
-static inline void scene_check(scene *s, int ok, const char *format, ...)
-{
+static inline void scene_check(scene *s, int ok, const char *format, ...) {
     va_list arguments;
     s->checks++;
     if (!ok) s->wrong++;
@@ -1116,8 +1114,7 @@ static inline void scene_check(scene *s, int ok, const char *format, ...)
 }
 
 /* A line of what one sees that is no check */
-static inline void scene_say(scene *s, const char *format, ...)
-{
+static inline void scene_say(scene *s, const char *format, ...) {
     va_list arguments;
     if (s->quiet) return;
     scene_end_bar(s);
@@ -1128,13 +1125,14 @@ static inline void scene_say(scene *s, const char *format, ...)
     putchar('\n');
 }
 
-/* What holds in every scene that cuts by sheets: no volume lost, no copy too many or too few, no crack in the surface */
-static inline void scene_check_body(scene *s)
-{
+/* What holds in every scene that cuts by sheets: no volume lost, no copy too many or too few, no crack in the surface
+ */
+static inline void scene_check_body(scene *s) {
     const double volume = scene_volume_error(s);
     const size_t least = scene_least_copies(s), open = scene_open_edges(s);
-    scene_check(s, s->view.copy_count == least, "unknowns: %lu, %+.1f %% of the uncut body's %lu (least possible: %lu)", scene_unknowns(s),
-                100.0 * ((double)s->view.copy_count / (double)s->first_copies - 1.0), 3 * (unsigned long)s->first_copies, 3 * (unsigned long)least);
+    scene_check(s, s->view.copy_count == least, "unknowns: %lu, %+.1f %% of the uncut body's %lu (least possible: %lu)",
+                scene_unknowns(s), 100.0 * ((double)s->view.copy_count / (double)s->first_copies - 1.0),
+                3 * (unsigned long)s->first_copies, 3 * (unsigned long)least);
     scene_check(s, volume <= 1e-12, "volume of the cells against the mesh's: %.1e (at most 1e-12)", volume);
     scene_check(s, open == 0, "open edges of the surface: %lu (0)", (unsigned long)open);
 }
@@ -1143,40 +1141,40 @@ static inline void scene_check_body(scene *s)
 static inline double scene_ms(double seconds) { return floor(1e6 * seconds + 0.5) / 1e3; }
 
 /* Mean milliseconds per frame in which the phase happens: cuts in frames with a cut */
-static inline double scene_phase_ms(const scene *s, int phase)
-{
+static inline double scene_phase_ms(const scene *s, int phase) {
     const uint32_t frames = phase < SCENE_MODEL ? s->cut_frames : s->frame;
     return frames ? scene_ms(s->sum[phase] / frames) : 0.0;
 }
 
 static inline double scene_mean_ms(const scene *s) { return s->frame ? scene_ms(s->sum_frames / s->frame) : 0.0; }
 
-static inline void scene_print_times(scene *s)
-{
-    scene_say(s, "cuts: %lu triangles in %lu of %lu frames; ms per frame with a cut: arrangement %.3g, enrichment %.3g, integrals %.3g",
-              (unsigned long)s->cut_triangles, (unsigned long)s->cut_frames, (unsigned long)s->frame, scene_phase_ms(s, SCENE_ARRANGEMENT),
-              scene_phase_ms(s, SCENE_ENRICHMENT), scene_phase_ms(s, SCENE_INTEGRALS));
-    scene_say(s, "ms per frame: model %.3g, linearise %.3g, prepare %.3g, solve %.3g, forces %.3g, skin %.3g", scene_phase_ms(s, SCENE_MODEL),
-              scene_phase_ms(s, SCENE_LINEARISE), scene_phase_ms(s, SCENE_PREPARE), scene_phase_ms(s, SCENE_SOLVE),
-              scene_phase_ms(s, SCENE_FORCES), scene_phase_ms(s, SCENE_SKIN));
-    scene_say(s, "frame: %.3g ms, worst %.3g ms, %.0f frames/s; the body's memory at its peak: %.3g MB", scene_mean_ms(s), scene_ms(s->worst_frame),
-              s->frame / s->sum_frames, 1e-6 * (double)s->memory.peak);
+static inline void scene_print_times(scene *s) {
+    scene_say(s,
+              "cuts: %lu triangles in %lu of %lu frames; ms per frame with a cut: arrangement %.3g, enrichment %.3g, "
+              "integrals %.3g",
+              (unsigned long)s->cut_triangles, (unsigned long)s->cut_frames, (unsigned long)s->frame,
+              scene_phase_ms(s, SCENE_ARRANGEMENT), scene_phase_ms(s, SCENE_ENRICHMENT),
+              scene_phase_ms(s, SCENE_INTEGRALS));
+    scene_say(s, "ms per frame: model %.3g, linearise %.3g, prepare %.3g, solve %.3g, forces %.3g, skin %.3g",
+              scene_phase_ms(s, SCENE_MODEL), scene_phase_ms(s, SCENE_LINEARISE), scene_phase_ms(s, SCENE_PREPARE),
+              scene_phase_ms(s, SCENE_SOLVE), scene_phase_ms(s, SCENE_FORCES), scene_phase_ms(s, SCENE_SKIN));
+    scene_say(s, "frame: %.3g ms, worst %.3g ms, %.0f frames/s; the body's memory at its peak: %.3g MB",
+              scene_mean_ms(s), scene_ms(s->worst_frame), s->frame / s->sum_frames, 1e-6 * (double)s->memory.peak);
 }
 
 /* The scene's line of the table of all scenes, in Markdown */
-static inline void scene_print_row(const scene *s, FILE *stream)
-{
+static inline void scene_print_row(const scene *s, FILE *stream) {
     int i;
-    fprintf(stream, "| %s | %lu | %lu | %lu | %lu |", s->desc.name, (unsigned long)s->mesh.element_count, 3 * (unsigned long)s->first_copies,
-            scene_unknowns(s), (unsigned long)s->cut_triangles);
+    fprintf(stream, "| %s | %lu | %lu | %lu | %lu |", s->desc.name, (unsigned long)s->mesh.element_count,
+            3 * (unsigned long)s->first_copies, scene_unknowns(s), (unsigned long)s->cut_triangles);
     for (i = 0; i < SCENE_PHASES; i++) fprintf(stream, " %.3g |", scene_phase_ms(s, i));
-    fprintf(stream, " %.3g | %.3g | %.0f | %.3g | %lu of %lu |\n", scene_mean_ms(s), scene_ms(s->worst_frame), s->frame / s->sum_frames,
-            1e-6 * (double)s->memory.peak, (unsigned long)(s->checks - s->wrong), (unsigned long)s->checks);
+    fprintf(stream, " %.3g | %.3g | %.0f | %.3g | %lu of %lu |\n", scene_mean_ms(s), scene_ms(s->worst_frame),
+            s->frame / s->sum_frames, 1e-6 * (double)s->memory.peak, (unsigned long)(s->checks - s->wrong),
+            (unsigned long)s->checks);
 }
 
 /* Prints times, appends to the table, gives everything back. Returns the exit code. */
-static inline int scene_close(scene *s)
-{
+static inline int scene_close(scene *s) {
     size_t i;
     scene_print_times(s);
     if (s->table) {

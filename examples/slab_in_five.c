@@ -1,18 +1,22 @@
 /* slab_in_five: a slab is cut into five slices of increasing thickness (RXFEM, Fig. 11).
 
-   61 x 11 x 1 cubes of 5 tetrahedra, held at x = 0; St. Venant-Kirchhoff, steps of 5 ms. The four planes come in together from the free
-   end, one row of cubes after the other. RXFEM gives neither size nor stiffness: cubes of 1 cm, and 30 MPa, let the slices droop by a
-   good part of their length. */
+   61 x 11 x 1 cubes of 5 tetrahedra, held at x = 0; St. Venant-Kirchhoff, steps of 5 ms. The four planes come in
+   together from the free end, one row of cubes after the other. RXFEM gives neither size nor stiffness: cubes of 1 cm,
+   and 30 MPa, let the slices droop by a good part of their length. */
 #include "slab.h"
 
 enum { PLANES = 4, SLICES = PLANES + 1 };
 
-int main(int argc, char **argv)
-{
+int main(int argc, char **argv) {
     const scene_desc desc = {
-        .name = "slab_in_five", .about = "A slab is cut into five slices of 1/15 to 5/15 of its thickness, which droop each on its own.",
-        .mesh = "grid:61,11,1", .small_mesh = "grid:15,3,1", .frames = 300, .small_frames = 16, .has_csv = 1};
-    const double edge = 0.01;           /* of a cube, m */
+        .name = "slab_in_five",
+        .about = "A slab is cut into five slices of 1/15 to 5/15 of its thickness, which droop each on its own.",
+        .mesh = "grid:61,11,1",
+        .small_mesh = "grid:15,3,1",
+        .frames = 300,
+        .small_frames = 16,
+        .has_csv = 1};
+    const double edge = 0.01; /* of a cube, m */
     const double z[PLANES] = {edge / 15, 3 * edge / 15, 6 * edge / 15, 10 * edge / 15};
     gx_material material = {{GXS_ST_VENANT_KIRCHHOFF, 3e7, 0.4, 0, NULL, NULL}, 1000.0};
     scene_sheet planes[PLANES];
@@ -41,7 +45,8 @@ int main(int argc, char **argv)
     for (i = 0; i < SLICES; i++) scene_say(&s, "slice of %d/15 of the thickness: drop at rest %.4f m", i + 1, drops[i]);
     scene_check_body(&s);
     strip.edge = edge;
-    strip.z = z; strip.z_count = PLANES;
+    strip.z = z;
+    strip.z_count = PLANES;
     strip.most_elements = s.small ? 8000 : 160000;
     slab_study(&s, &strip);
     for (i = 0; i < PLANES; i++) scene_drop_sheet(&planes[i]);

@@ -1,8 +1,9 @@
-/* sticks: a stretched cube of 5 tetrahedra is cut into 36 sticks by 5 + 5 crossing planes (GXFEM, "Diced cube", Fig. 5).
+/* sticks: a stretched cube of 5 tetrahedra is cut into 36 sticks by 5 + 5 crossing planes (GXFEM, "Diced cube", Fig.
+   5).
 
-   The cube starts stretched sideways, and its foot is held so. Five parallel cuts make six slices of it, of 144 unknowns (Table 2);
-   five more cross them. The cuts come down in strips over the frames, one after the other. What is free of its neighbours springs
-   back to its own width: 36 sticks stand apart on the stretched foot. */
+   The cube starts stretched sideways, and its foot is held so. Five parallel cuts make six slices of it, of 144
+   unknowns (Table 2); five more cross them. The cuts come down in strips over the frames, one after the other. What is
+   free of its neighbours springs back to its own width: 36 sticks stand apart on the stretched foot. */
 #include "scene.h"
 
 enum { CUTS = 5, STRIPS = 6 };
@@ -10,17 +11,16 @@ enum { CUTS = 5, STRIPS = 6 };
 static const double stretch = 1.5;
 
 /* x and y about the axis of the cube, times `stretch` */
-static void pull(scene *s)
-{
+static void pull(scene *s) {
     size_t copy, i;
     for (copy = 0; copy < s->view.copy_count; copy++)
         for (i = 0; i < 2; i++)
-            s->view.displacement[3 * copy + i] = (stretch - 1.0) * (s->mesh.positions[3 * (size_t)s->view.copy_node[copy] + i] - 0.5);
+            s->view.displacement[3 * copy + i] =
+                (stretch - 1.0) * (s->mesh.positions[3 * (size_t)s->view.copy_node[copy] + i] - 0.5);
 }
 
 /* Five planes across an axis that come down along z */
-static void make_blades(scene *s, uint32_t axis, scene_sheet blades[CUTS])
-{
+static void make_blades(scene *s, uint32_t axis, scene_sheet blades[CUTS]) {
     int i;
     for (i = 0; i < CUTS; i++) {
         double corner[3] = {-0.5, -0.5, 1.5}, u[3] = {0, 0, -2}, v[3] = {2, 2, 0};
@@ -31,17 +31,19 @@ static void make_blades(scene *s, uint32_t axis, scene_sheet blades[CUTS])
 }
 
 /* The five sweep one after the other, from share `from` of the run to share `to`. */
-static void advance(scene *s, scene_sheet blades[CUTS], double from, double to)
-{
+static void advance(scene *s, scene_sheet blades[CUTS], double from, double to) {
     int i;
-    for (i = 0; i < CUTS; i++) scene_advance(s, &blades[i], from + i * (to - from) / CUTS, from + (i + 1) * (to - from) / CUTS);
+    for (i = 0; i < CUTS; i++)
+        scene_advance(s, &blades[i], from + i * (to - from) / CUTS, from + (i + 1) * (to - from) / CUTS);
 }
 
-int main(int argc, char **argv)
-{
-    const scene_desc desc = {
-        .name = "sticks", .about = "A stretched cube of 5 tetrahedra is cut into 36 sticks by 5 + 5 crossing planes.",
-        .mesh = "cube5", .frames = 150, .small_frames = 20};
+int main(int argc, char **argv) {
+    const scene_desc desc = {.name = "sticks",
+                             .about =
+                                 "A stretched cube of 5 tetrahedra is cut into 36 sticks by 5 + 5 crossing planes.",
+                             .mesh = "cube5",
+                             .frames = 150,
+                             .small_frames = 20};
     scene s;
     scene_sheet first[CUTS], second[CUTS];
     unsigned long parallel = 0;

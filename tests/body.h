@@ -1,5 +1,5 @@
-/* Bodies for tests: random numbers, a body of a workload, cut at once or in sequence, and what one asks of it. Include gxfem.h with its
-   implementation first. */
+/* Bodies for tests: random numbers, a body of a workload, cut at once or in sequence, and what one asks of it. Include
+   gxfem.h with its implementation first. */
 #ifndef GXFEM_TESTS_BODY_H
 #define GXFEM_TESTS_BODY_H
 
@@ -19,7 +19,9 @@ static inline uint64_t random_bits(void) {
     return z ^ z >> 31;
 }
 static inline int random_below(int n) { return (int)(random_bits() % (uint64_t)n); }
-static inline double random_real(double low, double high) { return low + (high - low) * ldexp((double)(random_bits() >> 11), -53); }
+static inline double random_real(double low, double high) {
+    return low + (high - low) * ldexp((double)(random_bits() >> 11), -53);
+}
 static inline void random_seed(uint64_t seed) { random_state = seed * UINT64_C(0x2545f4914f6cdd1d) + 11; }
 
 /* ---- bodies and cuts ---- */
@@ -27,9 +29,13 @@ static inline void random_seed(uint64_t seed) { random_state = seed * UINT64_C(0
 static inline gx_body_desc desc_of(const workload *w) {
     gx_body_desc desc;
     memset(&desc, 0, sizeof desc);
-    desc.positions = w->positions; desc.node_count = w->node_count;
-    desc.elements = w->elements; desc.element_count = w->element_count;
-    desc.young = 1e6; desc.poisson = 0.4; desc.density = 1000;
+    desc.positions = w->positions;
+    desc.node_count = w->node_count;
+    desc.elements = w->elements;
+    desc.element_count = w->element_count;
+    desc.young = 1e6;
+    desc.poisson = 0.4;
+    desc.density = 1000;
     return desc;
 }
 
@@ -44,8 +50,10 @@ static inline gx_body *body_of(const workload *w) {
 static inline gx_surface surface_of(const wl_surface *s) {
     gx_surface surface;
     memset(&surface, 0, sizeof surface);
-    surface.vertices = s->vertices; surface.vertex_count = s->vertex_count;
-    surface.triangles = s->triangles; surface.triangle_count = s->triangle_count;
+    surface.vertices = s->vertices;
+    surface.vertex_count = s->vertex_count;
+    surface.triangles = s->triangles;
+    surface.triangle_count = s->triangle_count;
     surface.kind = s->solid ? GX_SURFACE_SOLID : GX_SURFACE_SHEET;
     return surface;
 }
@@ -57,9 +65,10 @@ static inline gx_cut_report cut_by(gx_body *body, const workload *w, size_t firs
     gx_cut_report report;
     gx_result result;
     size_t i;
-    for (i = 0; i < count; ++i) surfaces[i] = surface_of(&w->surfaces[first + i]);
+    for (i = 0; i < count; i++) surfaces[i] = surface_of(&w->surfaces[first + i]);
     memset(&desc, 0, sizeof desc);
-    desc.surfaces = surfaces; desc.surface_count = count;
+    desc.surfaces = surfaces;
+    desc.surface_count = count;
     result = gx_body_cut(body, &desc, &report, NULL);
     ck_assert_msg(result == GX_OK, "cut: %s", gx_result_text(result));
     return report;
@@ -74,7 +83,7 @@ static inline gx_body *cut_at_once(const workload *w) {
 static inline gx_body *cut_in_sequence(const workload *w) {
     gx_body *body = body_of(w);
     size_t i;
-    for (i = 0; i < w->surface_count; ++i) cut_by(body, w, i, 1);
+    for (i = 0; i < w->surface_count; i++) cut_by(body, w, i, 1);
     return body;
 }
 
@@ -103,7 +112,7 @@ static inline workload grid(size_t nx, size_t ny, size_t nz, int tets) {
 static inline void add_axis_plane(workload *w, int axis, double value) {
     double x[4][3];
     int i;
-    for (i = 0; i < 4; ++i) {
+    for (i = 0; i < 4; i++) {
         x[i][axis] = value;
         x[i][(axis + 1) % 3] = i == 1 || i == 2 ? 64 : -64;
         x[i][(axis + 2) % 3] = i >= 2 ? 64 : -64;
@@ -117,45 +126,56 @@ static inline void add_plane(workload *w, const double p[3], const double n[3], 
     double u[3], v[3], x[3], length = 0;
     int i, k, small = fabs(n[0]) < fabs(n[1]) ? 0 : 1;
     if (fabs(n[2]) < fabs(n[small])) small = 2;
-    for (k = 0; k < 3; ++k) u[k] = 0;
-    u[(small + 1) % 3] = n[(small + 2) % 3]; u[(small + 2) % 3] = -n[(small + 1) % 3];
-    for (k = 0; k < 3; ++k) v[k] = n[(k + 1) % 3] * u[(k + 2) % 3] - n[(k + 2) % 3] * u[(k + 1) % 3];
-    for (k = 0; k < 3; ++k) length += n[k] * n[k];
+    for (k = 0; k < 3; k++) u[k] = 0;
+    u[(small + 1) % 3] = n[(small + 2) % 3];
+    u[(small + 2) % 3] = -n[(small + 1) % 3];
+    for (k = 0; k < 3; k++) v[k] = n[(k + 1) % 3] * u[(k + 2) % 3] - n[(k + 2) % 3] * u[(k + 1) % 3];
+    for (k = 0; k < 3; k++) length += n[k] * n[k];
     length = sqrt(length);
-    for (i = 0; i < 3; ++i) {
+    for (i = 0; i < 3; i++) {
         double a = 2.0943951023931953 * i, unit = 0;
-        for (k = 0; k < 3; ++k) unit += u[k] * u[k];
+        for (k = 0; k < 3; k++) unit += u[k] * u[k];
         unit = sqrt(unit);
-        for (k = 0; k < 3; ++k) x[k] = p[k] + 2.1 * radius / unit * (cos(a) * u[k] + sin(a) * v[k] / length);
+        for (k = 0; k < 3; k++) x[k] = p[k] + 2.1 * radius / unit * (cos(a) * u[k] + sin(a) * v[k] / length);
         wl_add_vertex(s, x);
     }
     wl_add_triangle(s, 0, 1, 2);
 }
 
-static inline wl_surface *add_box(workload *w, int solid, double x0, double y0, double z0, double x1, double y1, double z1) {
+static inline wl_surface *add_box(workload *w, int solid, double x0, double y0, double z0, double x1, double y1,
+                                  double z1) {
     wl_surface *s = wl_add_surface(w, solid);
     double low[3], high[3];
-    low[0] = x0; low[1] = y0; low[2] = z0; high[0] = x1; high[1] = y1; high[2] = z1;
+    low[0] = x0;
+    low[1] = y0;
+    low[2] = z0;
+    high[0] = x1;
+    high[1] = y1;
+    high[2] = z1;
     wl_add_aligned_box(s, low, high);
     return s;
 }
 
-/* n x n squares of two triangles of a sphere of radius 2, over and beyond the unit square across an axis, bulging to where it points */
+/* n x n squares of two triangles of a sphere of radius 2, over and beyond the unit square across an axis, bulging to
+ * where it points */
 static inline void add_cap(workload *w, uint32_t n, int axis) {
     wl_surface *s = wl_add_surface(w, 0);
     uint32_t i, j;
-    for (j = 0; j <= n; ++j) for (i = 0; i <= n; ++i) {
-        const double u = -0.0513 + 1.1027 * i / n, v = -0.0541 + 1.1027 * j / n;
-        double x[3];
-        x[axis] = sqrt(4 - (u - 0.4) * (u - 0.4) - (v - 0.45) * (v - 0.45)) - 1.4;
-        x[(axis + 1) % 3] = u; x[(axis + 2) % 3] = v;
-        wl_add_vertex(s, x);
-    }
-    for (j = 0; j < n; ++j) for (i = 0; i < n; ++i) {
-        const uint32_t a = j * (n + 1) + i, b = a + n + 1;
-        wl_add_triangle(s, a, a + 1, b + 1);
-        wl_add_triangle(s, a, b + 1, b);
-    }
+    for (j = 0; j <= n; j++)
+        for (i = 0; i <= n; i++) {
+            const double u = -0.0513 + 1.1027 * i / n, v = -0.0541 + 1.1027 * j / n;
+            double x[3];
+            x[axis] = sqrt(4 - (u - 0.4) * (u - 0.4) - (v - 0.45) * (v - 0.45)) - 1.4;
+            x[(axis + 1) % 3] = u;
+            x[(axis + 2) % 3] = v;
+            wl_add_vertex(s, x);
+        }
+    for (j = 0; j < n; j++)
+        for (i = 0; i < n; i++) {
+            const uint32_t a = j * (n + 1) + i, b = a + n + 1;
+            wl_add_triangle(s, a, a + 1, b + 1);
+            wl_add_triangle(s, a, b + 1, b);
+        }
 }
 
 #ifndef GXFEM_LINKED
@@ -165,8 +185,9 @@ static inline size_t free_planes(const gx_body *body) {
     uint8_t *labelled = (uint8_t *)calloc(cx->plane_count, 1);
     size_t count = 0;
     uint32_t i;
-    for (i = 0; i < cx->facet_count; ++i) if (cx->facets[i].labels != GXB_NONE) labelled[cx->facets[i].plane] = 1;
-    for (i = 0; i < cx->tree_count; ++i) count += !labelled[cx->nodes[i].plane];
+    for (i = 0; i < cx->facet_count; i++)
+        if (cx->facets[i].labels != GXB_NONE) labelled[cx->facets[i].plane] = 1;
+    for (i = 0; i < cx->tree_count; i++) count += !labelled[cx->nodes[i].plane];
     free(labelled);
     return count;
 }
@@ -180,9 +201,12 @@ static inline void random_point(const workload *w, double x[3]) {
     double low, high;
     size_t i;
     int k;
-    for (k = 0; k < 3; ++k) {
+    for (k = 0; k < 3; k++) {
         low = high = w->positions[k];
-        for (i = 0; i < w->node_count; ++i) { low = fmin(low, w->positions[3 * i + (size_t)k]); high = fmax(high, w->positions[3 * i + (size_t)k]); }
+        for (i = 0; i < w->node_count; i++) {
+            low = fmin(low, w->positions[3 * i + (size_t)k]);
+            high = fmax(high, w->positions[3 * i + (size_t)k]);
+        }
         x[k] = random_real(low, high);
     }
 }
@@ -191,7 +215,7 @@ static inline void add_random_plane(workload *w, double radius) {
     double p[3], n[3];
     int k;
     random_point(w, p);
-    for (k = 0; k < 3; ++k) n[k] = random_real(-1, 1);
+    for (k = 0; k < 3; k++) n[k] = random_real(-1, 1);
     add_plane(w, p, n, radius);
 }
 
@@ -202,13 +226,20 @@ static inline void add_random_cut(workload *w, int solids) {
     int k;
     random_point(w, p);
     switch (random_below(solids ? 8 : 6)) {
-    case 0: case 1: add_random_plane(w, 40); break;
+    case 0:
+    case 1: add_random_plane(w, 40); break;
     case 2: add_random_plane(w, random_real(0.05, 0.5)); break;
-    case 3: for (k = 0; k < 3; ++k) f.origin[k] = p[k]; wl_add_wave(wl_add_surface(w, 0), &f, 6, random_real(0.5, 3)); break;
+    case 3:
+        for (k = 0; k < 3; k++) f.origin[k] = p[k];
+        wl_add_wave(wl_add_surface(w, 0), &f, 6, random_real(0.5, 3));
+        break;
     case 4: add_axis_plane(w, random_below(3), random_below(5) / 4.0); break;
     case 5: add_box(w, 0, p[0] - 0.2, p[1] - 0.3, p[2] - 0.1, p[0] + 0.1, p[1] + 0.3, p[2] + 0.2); break;
     case 6: add_box(w, 1, p[0] - 0.2, p[1] - 0.3, p[2] - 0.1, p[0] + 0.1, p[1] + 0.3, p[2] + 0.2); break;
-    default: for (k = 0; k < 3; ++k) f.origin[k] = p[k]; wl_add_box(wl_add_surface(w, 1), &f, 3, 3, random_real(1e-9, 0.1)); break;
+    default:
+        for (k = 0; k < 3; k++) f.origin[k] = p[k];
+        wl_add_box(wl_add_surface(w, 1), &f, 3, 3, random_real(1e-9, 0.1));
+        break;
     }
 }
 
@@ -221,7 +252,8 @@ static inline workload random_mesh(void) {
     case 2: w = grid(2, 1, 1, 5); break;
     default: w = grid(1, 2, 1, 6); break;
     }
-    if (random_below(2)) for (i = 0; i < 3 * w.node_count; ++i) w.positions[i] += random_real(-0.1, 0.1);
+    if (random_below(2))
+        for (i = 0; i < 3 * w.node_count; i++) w.positions[i] += random_real(-0.1, 0.1);
     return w;
 }
 

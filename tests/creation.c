@@ -1,7 +1,7 @@
 /* creation.c - what comes of creating a Boolean, a complex and a body, of cloning a body and of loading a saved one.
 
-       creation made|refused           all must succeed; or creating must fail with GX_ERROR_CONFIGURATION and leave nothing
-       creation single                 with x87 set to 24 bits all of it must fail so, and before and after succeed
+       creation made|refused           all must succeed; or creating must fail with GX_ERROR_CONFIGURATION and leave
+   nothing creation single                 with x87 set to 24 bits all of it must fail so, and before and after succeed
 
    Exit status 1, and a line for each that is another. For builds that mislead the library: see flags.sh and wasm.sh. */
 #define GXFEM_STATIC
@@ -11,16 +11,14 @@
 
 static int wrong;
 
-static void expect(const char *what, gx_result got, gx_result wanted, const void *object)
-{
+static void expect(const char *what, gx_result got, gx_result wanted, const void *object) {
     if (got == wanted && (object != NULL) == (wanted == GX_OK)) return;
     printf("%s: result %d instead of %d, %s\n", what, (int)got, (int)wanted, object ? "an object" : "no object");
     wrong = 1;
 }
 
 /* Digits of x87: 0 for 24, 3 for 64 */
-static int set_digits(unsigned digits)
-{
+static int set_digits(unsigned digits) {
 #if defined(__i386__) || defined(__x86_64__)
     unsigned short word;
     __asm__ volatile("fnstcw %0" : "=m"(word));
@@ -33,15 +31,14 @@ static int set_digits(unsigned digits)
 #endif
 }
 
-static const double corners[12] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1 };
-static const uint32_t tetrahedron[4] = { 0, 1, 2, 3 };
+static const double corners[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+static const uint32_t tetrahedron[4] = {0, 1, 2, 3};
 static gx_body_desc desc;
 static gx_body *body;
 static unsigned char *saved;
 static size_t saved_size;
 
-static void create(gx_result wanted)
-{
+static void create(gx_result wanted) {
     gxb_boolean *boolean = NULL;
     gxb_complex *complex = NULL;
     gx_body *other = NULL;
@@ -50,7 +47,10 @@ static void create(gx_result wanted)
     expect("Boolean", result, wanted, boolean);
     gxb_boolean_destroy(boolean);
     memset(&mesh, 0, sizeof mesh);
-    mesh.positions = corners; mesh.node_count = 4; mesh.elements = tetrahedron; mesh.element_count = 1;
+    mesh.positions = corners;
+    mesh.node_count = 4;
+    mesh.elements = tetrahedron;
+    mesh.element_count = 1;
     result = gxb_complex_create(&mesh, NULL, &complex, NULL);
     expect("complex", result, wanted, complex);
     gxb_complex_destroy(complex);
@@ -59,8 +59,7 @@ static void create(gx_result wanted)
     gx_body_destroy(other);
 }
 
-static void copy(gx_result wanted)
-{
+static void copy(gx_result wanted) {
     gx_body *other = NULL;
     gx_result result = gx_body_clone(body, &other);
     expect("clone", result, wanted, other);
@@ -71,26 +70,40 @@ static void copy(gx_result wanted)
     gx_body_destroy(other);
 }
 
-static int prepare(void)
-{
+static int prepare(void) {
     if (gx_body_create(&desc, &body, NULL) != GX_OK || gx_body_save(body, NULL, 0, &saved_size) != GX_OK) return 0;
     saved = (unsigned char *)malloc(saved_size);
     return saved != NULL && gx_body_save(body, saved, saved_size, &saved_size) == GX_OK;
 }
 
-int main(int argc, char **argv)
-{
+int main(int argc, char **argv) {
     const char *mode = argc == 2 ? argv[1] : "";
-    desc.positions = corners; desc.node_count = 4;
-    desc.elements = tetrahedron; desc.element_count = 1;
-    desc.young = 1e5; desc.poisson = 0.3; desc.density = 1000;
-    if (strcmp(mode, "refused") == 0) { create(GX_ERROR_CONFIGURATION); return wrong; }
-    if (strcmp(mode, "made") != 0 && strcmp(mode, "single") != 0) { fprintf(stderr, "usage: creation made|refused|single\n"); return 2; }
-    if (!prepare()) { printf("no body to save\n"); return 1; }
+    desc.positions = corners;
+    desc.node_count = 4;
+    desc.elements = tetrahedron;
+    desc.element_count = 1;
+    desc.young = 1e5;
+    desc.poisson = 0.3;
+    desc.density = 1000;
+    if (strcmp(mode, "refused") == 0) {
+        create(GX_ERROR_CONFIGURATION);
+        return wrong;
+    }
+    if (strcmp(mode, "made") != 0 && strcmp(mode, "single") != 0) {
+        fprintf(stderr, "usage: creation made|refused|single\n");
+        return 2;
+    }
+    if (!prepare()) {
+        printf("no body to save\n");
+        return 1;
+    }
     create(GX_OK);
     copy(GX_OK);
     if (strcmp(mode, "single") == 0) {
-        if (!set_digits(0)) { printf("no x87 here\n"); return 1; }
+        if (!set_digits(0)) {
+            printf("no x87 here\n");
+            return 1;
+        }
         create(GX_ERROR_CONFIGURATION);
         copy(GX_ERROR_CONFIGURATION);
         set_digits(3);

@@ -6,6 +6,7 @@
 #     bench   SuiteSparse, for the direct solver that benches compare with
 #     charts  gnuplot, for charts
 #     wasm    clang with what it takes to make WebAssembly of C, and node, which runs it
+#     format  clang-format 14
 #     pictures  f3d, and a virtual display where there is no other, for pictures of scenes
 set -u
 
@@ -44,6 +45,7 @@ have() {
     bench) header cholmod.h || header suitesparse/cholmod.h ;;
     charts) has gnuplot ;;
     wasm) has node && links_wasm ;;
+    format) has clang-format ;;
     pictures) has f3d && { [ -n "${DISPLAY:-}" ] || has xvfb-run; } ;;
     *) echo "$0: no group '$1'" >&2; exit 2 ;;
     esac
@@ -66,6 +68,8 @@ packages() {
     charts:apt-get) echo gnuplot-nox ;;
     charts:*) echo gnuplot ;;
     wasm:apt-get) wasm_packages ;;
+    format:apt-get|format:brew) echo clang-format ;;
+    format:*) echo clang-tools-extra ;;
     pictures:apt-get) echo f3d xvfb xauth ;;
     pictures:dnf) echo f3d xorg-x11-server-Xvfb ;;
     pictures:pacman) echo f3d xorg-server-xvfb ;;
@@ -85,7 +89,7 @@ install() {
     esac
 }
 
-[ $# -gt 0 ] || { echo "usage: $0 check|cxx|bench|charts|wasm|pictures..." >&2; exit 2; }
+[ $# -gt 0 ] || { echo "usage: $0 check|cxx|bench|charts|wasm|format|pictures..." >&2; exit 2; }
 missing=
 for group in "$@"; do have "$group" || missing="$missing $group"; done
 [ -n "$missing" ] || exit 0

@@ -1,19 +1,18 @@
 /* oracle.h - what cutting a mesh must give, computed slowly and exactly: the truth that the library is held against.
 
    It shares no idea with the library. Every element is divided by *all* planes of the input, extended to infinity: the
-   plane of every cut triangle, and through every edge where a cut surface ends or bends one plane that crosses it there.
-   The pieces are convex, and no face of a piece straddles the boundary of a cut surface. Then
-       regions     pieces joined across faces that lie in no cut triangle; one winding number each: solids remove them
-       cells       pieces of one element joined across faces that lie in no sheet
-       links       cells of two elements whose pieces share a piece of their common face (edge, node) that no sheet covers
-       copies      per node: components of the cells of the elements around it
-       fragments   components of all cells
-   All decisions are signs of exact numbers (rational.h); a volume is a sum of positive exact volumes, each rounded once.
-   The work grows with the cube of the number of planes: a dozen is quick, a hundred is not.
+   plane of every cut triangle, and through every edge where a cut surface ends or bends one plane that crosses it
+   there. The pieces are convex, and no face of a piece straddles the boundary of a cut surface. Then regions     pieces
+   joined across faces that lie in no cut triangle; one winding number each: solids remove them cells       pieces of
+   one element joined across faces that lie in no sheet links       cells of two elements whose pieces share a piece of
+   their common face (edge, node) that no sheet covers copies      per node: components of the cells of the elements
+   around it fragments   components of all cells All decisions are signs of exact numbers (rational.h); a volume is a
+   sum of positive exact volumes, each rounded once. The work grows with the cube of the number of planes: a dozen is
+   quick, a hundred is not.
 
        oracle *truth = oracle_create(&mesh, surfaces, surface_count);
        ... truth->cell_count, truth->node_copies[i] ...
-       oracle_destroy(truth);      // in reverse order of creation: numbers live in rational.h's arena                  */
+       oracle_destroy(truth);      // in reverse order of creation: numbers live in rational.h's arena */
 #ifndef GXFEM_TESTS_ORACLE_H
 #define GXFEM_TESTS_ORACLE_H
 
@@ -21,109 +20,131 @@
 
 enum {
     ORACLE_WORDS = 4,
-    ORACLE_FACE = 64 * ORACLE_WORDS - 4,    /* first of the element's own four planes, face k opposite to its node k */
+    ORACLE_FACE = 64 * ORACLE_WORDS - 4, /* first of the element's own four planes, face k opposite to its node k */
     ORACLE_NONE = -1,
-    /* Where two elements meet in an edge or a node only. 0: they come apart where a wall touches that edge piece or node: a piece
-       of a sheet inside an element or on a face. 1: also where a sheet touches it from outside of the body and nowhere else
-       (Omega minus Gamma, the limit of a thin solid). */
+    /* Where two elements meet in an edge or a node only. 0: they come apart where a wall touches that edge piece or
+       node: a piece of a sheet inside an element or on a face. 1: also where a sheet touches it from outside of the
+       body and nowhere else (Omega minus Gamma, the limit of a thin solid). */
     ORACLE_TOUCH_FROM_OUTSIDE = 1
 };
 
 /* ---- input ---- */
 typedef struct oracle_mesh {
-    const double *positions;        /* node_count x 3 */
+    const double *positions; /* node_count x 3 */
     size_t node_count;
-    const uint32_t *elements;       /* element_count x 4, positive volume */
+    const uint32_t *elements; /* element_count x 4, positive volume */
     size_t element_count;
 } oracle_mesh;
 
 typedef struct oracle_surface {
-    const double *vertices;         /* x 3 */
-    const uint32_t *triangles;      /* triangle_count x 3 */
+    const double *vertices;    /* x 3 */
+    const uint32_t *triangles; /* triangle_count x 3 */
     size_t triangle_count;
-    int solid;                      /* 1: removes where its winding number is not 0; 0: a sheet */
+    int solid; /* 1: removes where its winding number is not 0; 0: a sheet */
 } oracle_surface;
 
 /* ---- sets of planes ---- */
-typedef struct oracle_set { uint64_t word[ORACLE_WORDS]; } oracle_set;
+typedef struct oracle_set {
+    uint64_t word[ORACLE_WORDS];
+} oracle_set;
 
-static inline oracle_set oracle_set_empty(void) { oracle_set s; memset(&s, 0, sizeof s); return s; }
+static inline oracle_set oracle_set_empty(void) {
+    oracle_set s;
+    memset(&s, 0, sizeof s);
+    return s;
+}
 static inline void oracle_set_add(oracle_set *s, int k) { s->word[k / 64] |= UINT64_C(1) << k % 64; }
 static inline int oracle_set_has(const oracle_set *s, int k) { return (int)(s->word[k / 64] >> k % 64 & 1); }
 static inline int oracle_set_equal(const oracle_set *a, const oracle_set *b) { return memcmp(a, b, sizeof *a) == 0; }
 
 static inline oracle_set oracle_set_and(const oracle_set *a, const oracle_set *b) {
-    oracle_set s; int i;
-    for (i = 0; i < ORACLE_WORDS; ++i) s.word[i] = a->word[i] & b->word[i];
+    oracle_set s;
+    int i;
+    for (i = 0; i < ORACLE_WORDS; i++) s.word[i] = a->word[i] & b->word[i];
     return s;
 }
 static inline oracle_set oracle_set_or(const oracle_set *a, const oracle_set *b) {
-    oracle_set s; int i;
-    for (i = 0; i < ORACLE_WORDS; ++i) s.word[i] = a->word[i] | b->word[i];
+    oracle_set s;
+    int i;
+    for (i = 0; i < ORACLE_WORDS; i++) s.word[i] = a->word[i] | b->word[i];
     return s;
 }
 static inline int oracle_set_contains(const oracle_set *a, const oracle_set *b) {
     int i;
-    for (i = 0; i < ORACLE_WORDS; ++i) if (b->word[i] & ~a->word[i]) return 0;
+    for (i = 0; i < ORACLE_WORDS; i++)
+        if (b->word[i] & ~a->word[i]) return 0;
     return 1;
 }
 static inline int oracle_set_first(const oracle_set *s) {
     int k;
-    for (k = 0; k < 64 * ORACLE_WORDS; ++k) if (oracle_set_has(s, k)) break;
+    for (k = 0; k < 64 * ORACLE_WORDS; k++)
+        if (oracle_set_has(s, k)) break;
     return k;
 }
 /* The only plane in which a and b differ; ORACLE_NONE if they differ in none or several. */
 static inline int oracle_set_difference(const oracle_set *a, const oracle_set *b) {
     int i, k, found = ORACLE_NONE;
-    for (i = 0; i < ORACLE_WORDS; ++i) {
+    for (i = 0; i < ORACLE_WORDS; i++) {
         uint64_t d = a->word[i] ^ b->word[i];
         if (d == 0) continue;
         if (found != ORACLE_NONE || (d & (d - 1)) != 0) return ORACLE_NONE;
-        for (k = 0; !(d >> k & 1); ++k) { }
+        for (k = 0; !(d >> k & 1); k++) {}
         found = 64 * i + k;
     }
     return found;
 }
 
 /* ---- geometry ---- */
-typedef struct oracle_plane { big h[4]; } oracle_plane;     /* h0 x + h1 y + h2 z + h3 = 0 */
+typedef struct oracle_plane {
+    big h[4];
+} oracle_plane; /* h0 x + h1 y + h2 z + h3 = 0 */
 
 typedef struct oracle_triangle {
     double corner[3][3];
     size_t surface;
-    int solid, plane;               /* plane: index, ORACLE_NONE where the mesh lies strictly on one side */
-    int axis;                       /* a direction in which the triangle can be projected */
+    int solid, plane; /* plane: index, ORACLE_NONE where the mesh lies strictly on one side */
+    int axis;         /* a direction in which the triangle can be projected */
 } oracle_triangle;
 
 typedef struct oracle_point {
-    big h[4];                       /* homogeneous: x = h0 / h3, ..., h3 > 0 */
-    oracle_set zero, plus;          /* planes that it lies on, or on the positive side of */
+    big h[4];              /* homogeneous: x = h0 / h3, ..., h3 > 0 */
+    oracle_set zero, plus; /* planes that it lies on, or on the positive side of */
 } oracle_point;
 
-typedef struct oracle_piece {       /* convex hull of some points of its element */
+typedef struct oracle_piece { /* convex hull of some points of its element */
     size_t element;
-    size_t points, point_count;     /* into oracle.corners */
-    oracle_set plus;                /* planes on whose positive side it lies */
+    size_t points, point_count; /* into oracle.corners */
+    oracle_set plus;            /* planes on whose positive side it lies */
     size_t region, cell;
     int removed;
 } oracle_piece;
 
-typedef struct oracle_link { size_t piece[2]; } oracle_link;
+typedef struct oracle_link {
+    size_t piece[2];
+} oracle_link;
 
 typedef struct oracle {
     oracle_mesh mesh;
-    oracle_plane *planes;       size_t plane_count;
-    oracle_triangle *triangles; size_t triangle_count;
-    oracle_point *points;       size_t point_count;
-    size_t *corners;            size_t corner_count;    /* of the pieces: indices of points */
-    oracle_piece *pieces;       size_t piece_count;
-    size_t *element_pieces;                             /* element_count + 1: where each element's pieces start */
-    oracle_link *links;         size_t link_count;      /* between pieces of different elements */
+    oracle_plane *planes;
+    size_t plane_count;
+    oracle_triangle *triangles;
+    size_t triangle_count;
+    oracle_point *points;
+    size_t point_count;
+    /* of the pieces: indices of points */
+    size_t *corners;
+    size_t corner_count;
+    oracle_piece *pieces;
+    size_t piece_count;
+    size_t *element_pieces; /* element_count + 1: where each element's pieces start */
+    /* between pieces of different elements */
+    oracle_link *links;
+    size_t link_count;
     size_t cell_count;
-    size_t *cell_element;                               /* cell_count, ascending */
+    size_t *cell_element; /* cell_count, ascending */
     double *cell_volume;
     size_t *cell_fragment;
-    size_t *node_copies;                                /* node_count */
+    size_t *node_copies; /* node_count */
     size_t copy_count;
     size_t fragment_count;
     double *fragment_volume;
@@ -169,7 +190,7 @@ static inline oracle_plane oracle_plane_through(const double x[3], const big nor
     big h[3];
     int k;
     big_vector(x, h);
-    for (k = 0; k < 3; ++k) p.h[k] = normal[k];
+    for (k = 0; k < 3; k++) p.h[k] = normal[k];
     p.h[3] = big_neg(big_dot(normal, h));
     return p;
 }
@@ -177,7 +198,8 @@ static inline oracle_plane oracle_plane_through(const double x[3], const big nor
 /* The plane of a triangle, normal (b - a) x (c - a); returns 0 where it has no area */
 static inline int oracle_plane_of(const double a[3], const double b[3], const double c[3], oracle_plane *p) {
     big u[3], v[3], n[3];
-    big_difference(b, a, u); big_difference(c, a, v);
+    big_difference(b, a, u);
+    big_difference(c, a, v);
     big_cross(u, v, n);
     *p = oracle_plane_through(a, n);
     return n[0].sign != 0 || n[1].sign != 0 || n[2].sign != 0;
@@ -186,8 +208,8 @@ static inline int oracle_plane_of(const double a[3], const double b[3], const do
 /* Same set of points: all 2 x 2 minors vanish. */
 static inline int oracle_plane_equal(const oracle_plane *p, const oracle_plane *q) {
     int i, j;
-    for (i = 0; i < 4; ++i)
-        for (j = i + 1; j < 4; ++j)
+    for (i = 0; i < 4; i++)
+        for (j = i + 1; j < 4; j++)
             if (big_det2(p->h[i], p->h[j], q->h[i], q->h[j]).sign != 0) return 0;
     return 1;
 }
@@ -198,7 +220,7 @@ static inline int oracle_plane_equal(const oracle_plane *p, const oracle_plane *
 static inline int oracle_plane_misses(const oracle *o, const oracle_plane *p) {
     size_t i;
     int first = oracle_side_of(p, o->mesh.positions);
-    for (i = 0; i < o->mesh.node_count; ++i)
+    for (i = 0; i < o->mesh.node_count; i++)
         if (first == 0 || oracle_side_of(p, o->mesh.positions + 3 * i) != first) return 0;
     return 1;
 }
@@ -206,7 +228,8 @@ static inline int oracle_plane_misses(const oracle *o, const oracle_plane *p) {
 static inline int oracle_plane_add(oracle *o, const oracle_plane *p) {
     size_t i;
     if (oracle_plane_misses(o, p)) return ORACLE_NONE;
-    for (i = 0; i < o->plane_count; ++i) if (oracle_plane_equal(&o->planes[i], p)) return (int)i;
+    for (i = 0; i < o->plane_count; i++)
+        if (oracle_plane_equal(&o->planes[i], p)) return (int)i;
     if (o->plane_count == ORACLE_FACE) rat_stop("oracle: too many planes");
     o->planes = (oracle_plane *)oracle_grow(o->planes, o->plane_count, sizeof *o->planes);
     o->planes[o->plane_count] = *p;
@@ -217,10 +240,11 @@ static inline void oracle_add_triangle(oracle *o, const oracle_surface *surface,
     oracle_triangle t;
     oracle_plane p;
     int i;
-    for (i = 0; i < 3; ++i)
+    for (i = 0; i < 3; i++)
         memcpy(t.corner[i], surface->vertices + 3 * surface->triangles[3 * triangle + (size_t)i], sizeof t.corner[i]);
     if (!oracle_plane_of(t.corner[0], t.corner[1], t.corner[2], &p)) return;
-    for (t.axis = 0, i = 1; i < 3; ++i) if (big_compare_abs(p.h[i], p.h[t.axis]) > 0) t.axis = i;
+    for (t.axis = 0, i = 1; i < 3; i++)
+        if (big_compare_abs(p.h[i], p.h[t.axis]) > 0) t.axis = i;
     t.surface = index;
     t.solid = surface->solid;
     t.plane = oracle_plane_add(o, &p);
@@ -251,14 +275,15 @@ static inline int oracle_edge_covered(const oracle *o, const oracle_triangle *t,
     int j;
     big h[4];
     oracle_homogeneous(t->corner[(k + 2) % 3], h);
-    for (i = 0; i < o->triangle_count; ++i) {
+    for (i = 0; i < o->triangle_count; i++) {
         const oracle_triangle *s = &o->triangles[i];
         if (s->plane != t->plane || s->solid != t->solid) continue;
-        for (j = 0; j < 3; ++j) {
+        for (j = 0; j < 3; j++) {
             const double *a = s->corner[j], *b = s->corner[(j + 1) % 3];
             big g[4];
             if (!(oracle_same_position(a, p) && oracle_same_position(b, q)) &&
-                !(oracle_same_position(a, q) && oracle_same_position(b, p))) continue;
+                !(oracle_same_position(a, q) && oracle_same_position(b, p)))
+                continue;
             oracle_homogeneous(s->corner[(j + 2) % 3], g);
             if (oracle_turn(p, q, g, t->axis) * oracle_turn(p, q, h, t->axis) < 0) return 1;
         }
@@ -269,9 +294,10 @@ static inline int oracle_edge_covered(const oracle *o, const oracle_triangle *t,
 /* Whether a plane other than t's own runs through edge k of t. */
 static inline int oracle_edge_crossed(const oracle *o, const oracle_triangle *t, int k) {
     size_t i;
-    for (i = 0; i < o->plane_count; ++i)
+    for (i = 0; i < o->plane_count; i++)
         if ((int)i != t->plane && oracle_side_of(&o->planes[i], t->corner[k]) == 0 &&
-            oracle_side_of(&o->planes[i], t->corner[(k + 1) % 3]) == 0) return 1;
+            oracle_side_of(&o->planes[i], t->corner[(k + 1) % 3]) == 0)
+            return 1;
     return 0;
 }
 
@@ -281,17 +307,19 @@ static inline oracle_plane oracle_edge_plane(const oracle_triangle *t, int k) {
     int i = (t->axis + 1) % 3, j = (t->axis + 2) % 3;
     big u[3], n[3];
     big_difference(q, p, u);
-    n[t->axis] = big_zero(); n[i] = u[j]; n[j] = big_neg(u[i]);
+    n[t->axis] = big_zero();
+    n[i] = u[j];
+    n[j] = big_neg(u[i]);
     return oracle_plane_through(p, n);
 }
 
 static inline void oracle_find_planes(oracle *o, const oracle_surface *surfaces, size_t surface_count) {
     size_t s, i;
     int k;
-    for (s = 0; s < surface_count; ++s)
-        for (i = 0; i < surfaces[s].triangle_count; ++i) oracle_add_triangle(o, &surfaces[s], s, i);
-    for (i = 0; i < o->triangle_count; ++i)
-        for (k = 0; k < 3; ++k) {
+    for (s = 0; s < surface_count; s++)
+        for (i = 0; i < surfaces[s].triangle_count; i++) oracle_add_triangle(o, &surfaces[s], s, i);
+    for (i = 0; i < o->triangle_count; i++)
+        for (k = 0; k < 3; k++) {
             const oracle_triangle *t = &o->triangles[i];
             oracle_plane p;
             if (t->plane == ORACLE_NONE || oracle_edge_covered(o, t, k) || oracle_edge_crossed(o, t, k)) continue;
@@ -308,7 +336,7 @@ static inline size_t oracle_add_point(oracle *o, const big h[4], const oracle_se
     memcpy(p.h, h, sizeof p.h);
     p.zero = *zero;
     p.plus = oracle_set_empty();
-    for (i = 0; i < o->plane_count; ++i) {
+    for (i = 0; i < o->plane_count; i++) {
         int side = oracle_side(&o->planes[i], h);
         if (side == 0) oracle_set_add(&p.zero, (int)i);
         if (side > 0) oracle_set_add(&p.plus, (int)i);
@@ -327,7 +355,7 @@ static inline void oracle_add_piece(oracle *o, size_t element, const size_t *poi
     p->element = element;
     p->points = o->corner_count;
     p->point_count = count;
-    for (i = 0; i < count; ++i) {
+    for (i = 0; i < count; i++) {
         o->corners = (size_t *)oracle_grow(o->corners, o->corner_count, sizeof *o->corners);
         o->corners[o->corner_count++] = points[i];
     }
@@ -341,18 +369,18 @@ static inline const oracle_point *oracle_corner(const oracle *o, const oracle_pi
 static inline oracle_set oracle_done(size_t k) {
     oracle_set s = oracle_set_empty();
     int i;
-    for (i = 0; i < (int)k; ++i) oracle_set_add(&s, i);
-    for (i = 0; i < 4; ++i) oracle_set_add(&s, ORACLE_FACE + i);
+    for (i = 0; i < (int)k; i++) oracle_set_add(&s, i);
+    for (i = 0; i < 4; i++) oracle_set_add(&s, ORACLE_FACE + i);
     return s;
 }
 
-/* Two corners span an edge of a convex piece when no other corner lies on all the planes that both lie on; only planes that
-   leave the piece on one side count. */
+/* Two corners span an edge of a convex piece when no other corner lies on all the planes that both lie on; only planes
+   that leave the piece on one side count. */
 static inline int oracle_adjacent(const oracle *o, const oracle_piece *p, size_t a, size_t b, const oracle_set *done) {
     oracle_set common = oracle_set_and(&oracle_corner(o, p, a)->zero, &oracle_corner(o, p, b)->zero);
     size_t i;
     common = oracle_set_and(&common, done);
-    for (i = 0; i < p->point_count; ++i)
+    for (i = 0; i < p->point_count; i++)
         if (i != a && i != b && oracle_set_contains(&oracle_corner(o, p, i)->zero, &common)) return 0;
     return 1;
 }
@@ -361,12 +389,15 @@ static inline int oracle_adjacent(const oracle *o, const oracle_piece *p, size_t
 static inline int oracle_meet(const oracle_plane *p, const oracle_plane *q, const oracle_plane *r, big h[4]) {
     big qr[3], rp[3], pq[3];
     int k;
-    big_cross(q->h, r->h, qr); big_cross(r->h, p->h, rp); big_cross(p->h, q->h, pq);
+    big_cross(q->h, r->h, qr);
+    big_cross(r->h, p->h, rp);
+    big_cross(p->h, q->h, pq);
     h[3] = big_dot(p->h, qr);
     if (h[3].sign == 0) return 0;
-    for (k = 0; k < 3; ++k)
+    for (k = 0; k < 3; k++)
         h[k] = big_neg(big_add(big_add(big_mul(p->h[3], qr[k]), big_mul(q->h[3], rp[k])), big_mul(r->h[3], pq[k])));
-    if (h[3].sign < 0) for (k = 0; k < 4; ++k) h[k] = big_neg(h[k]);
+    if (h[3].sign < 0)
+        for (k = 0; k < 4; k++) h[k] = big_neg(h[k]);
     return 1;
 }
 
@@ -375,20 +406,22 @@ static inline const oracle_plane *oracle_plane_at(const oracle *o, const oracle_
 }
 
 /* Where plane k crosses the edge between points a and b: the meeting point of k and two planes that hold the edge */
-static inline size_t oracle_cross_edge(oracle *o, const oracle_plane faces[4], size_t first, size_t a, size_t b, int k) {
+static inline size_t oracle_cross_edge(oracle *o, const oracle_plane faces[4], size_t first, size_t a, size_t b,
+                                       int k) {
     oracle_set common = oracle_set_and(&o->points[a].zero, &o->points[b].zero), zero, all = common;
     size_t found;
     int i, j, m;
     oracle_set_add(&all, k);
-    for (found = first; found < o->point_count; ++found)
+    for (found = first; found < o->point_count; found++)
         if (oracle_set_contains(&o->points[found].zero, &all)) return found;
-    for (i = 0; i < ORACLE_FACE + 4; ++i)
-        for (j = i + 1; j < ORACLE_FACE + 4; ++j) {
+    for (i = 0; i < ORACLE_FACE + 4; i++)
+        for (j = i + 1; j < ORACLE_FACE + 4; j++) {
             big h[4];
             if (!oracle_set_has(&common, i) || !oracle_set_has(&common, j)) continue;
             if (!oracle_meet(oracle_plane_at(o, faces, i), oracle_plane_at(o, faces, j), &o->planes[k], h)) continue;
             zero = oracle_set_empty();
-            for (m = 0; m < 4; ++m) if (oracle_side(&faces[m], h) == 0) oracle_set_add(&zero, ORACLE_FACE + m);
+            for (m = 0; m < 4; m++)
+                if (oracle_side(&faces[m], h) == 0) oracle_set_add(&zero, ORACLE_FACE + m);
             return oracle_add_point(o, h, &zero);
         }
     rat_stop("oracle: an edge without planes");
@@ -403,16 +436,17 @@ static inline void oracle_split(oracle *o, const oracle_plane faces[4], size_t f
     size_t plus_count = 0, minus_count = 0, a, b;
     oracle_set done = oracle_done((size_t)k);
     int above = 0, below = 0;
-    for (a = 0; a < p.point_count; ++a) {
+    for (a = 0; a < p.point_count; a++) {
         const oracle_point *x = oracle_corner(o, &p, a);
         int on = oracle_set_has(&x->zero, k), up = oracle_set_has(&x->plus, k);
         if (on || up) plus[plus_count++] = o->corners[p.points + a];
         if (on || !up) minus[minus_count++] = o->corners[p.points + a];
-        above |= up; below |= !on && !up;
+        above |= up;
+        below |= !on && !up;
     }
     if (above && below) {
-        for (a = 0; a < p.point_count; ++a)
-            for (b = 0; b < p.point_count; ++b) {
+        for (a = 0; a < p.point_count; a++)
+            for (b = 0; b < p.point_count; b++) {
                 size_t x = o->corners[p.points + a], y = o->corners[p.points + b];
                 if (!oracle_set_has(&o->points[x].plus, k)) continue;
                 if (oracle_set_has(&o->points[y].plus, k) || oracle_set_has(&o->points[y].zero, k)) continue;
@@ -421,10 +455,11 @@ static inline void oracle_split(oracle *o, const oracle_plane faces[4], size_t f
             }
         oracle_add_piece(o, p.element, plus, plus_count);
         o->pieces[index] = o->pieces[o->piece_count - 1];
-        --o->piece_count;
+        o->piece_count--;
         oracle_add_piece(o, p.element, minus, minus_count);
     }
-    free(plus); free(minus);
+    free(plus);
+    free(minus);
 }
 
 static inline const double *oracle_node(const oracle *o, size_t element, int k) {
@@ -435,25 +470,26 @@ static inline void oracle_divide_element(oracle *o, size_t element) {
     oracle_plane faces[4];
     size_t first = o->point_count, start = o->piece_count, corner[4], i, k;
     int a, b;
-    for (a = 0; a < 4; ++a)
+    for (a = 0; a < 4; a++)
         oracle_plane_of(oracle_node(o, element, (a + 1) % 4), oracle_node(o, element, (a + 2) % 4),
                         oracle_node(o, element, (a + 3) % 4), &faces[a]);
-    for (a = 0; a < 4; ++a) {
+    for (a = 0; a < 4; a++) {
         oracle_set zero = oracle_set_empty();
         big h[4];
-        for (b = 0; b < 4; ++b) if (b != a) oracle_set_add(&zero, ORACLE_FACE + b);
+        for (b = 0; b < 4; b++)
+            if (b != a) oracle_set_add(&zero, ORACLE_FACE + b);
         oracle_homogeneous(oracle_node(o, element, a), h);
         corner[a] = oracle_add_point(o, h, &zero);
     }
     oracle_add_piece(o, element, corner, 4);
-    for (k = 0; k < o->plane_count; ++k) {
+    for (k = 0; k < o->plane_count; k++) {
         size_t count = o->piece_count;
-        for (i = start; i < count; ++i) oracle_split(o, faces, first, i, (int)k);
+        for (i = start; i < count; i++) oracle_split(o, faces, first, i, (int)k);
     }
-    for (i = start; i < o->piece_count; ++i) {
+    for (i = start; i < o->piece_count; i++) {
         oracle_piece *p = &o->pieces[i];
         p->plus = oracle_set_empty();
-        for (k = 0; k < p->point_count; ++k) p->plus = oracle_set_or(&p->plus, &oracle_corner(o, p, k)->plus);
+        for (k = 0; k < p->point_count; k++) p->plus = oracle_set_or(&p->plus, &oracle_corner(o, p, k)->plus);
     }
     o->element_pieces[element + 1] = o->piece_count;
 }
@@ -463,7 +499,7 @@ static inline void oracle_divide_element(oracle *o, size_t element) {
 static inline rat oracle_tetrahedron(const big a[4], const big b[4], const big c[4], const big d[4]) {
     big u[3], v[3], w[3], den;
     int k;
-    for (k = 0; k < 3; ++k) {
+    for (k = 0; k < 3; k++) {
         u[k] = big_det2(a[3], a[k], b[3], b[k]);
         v[k] = big_det2(a[3], a[k], c[3], c[k]);
         w[k] = big_det2(a[3], a[k], d[3], d[k]);
@@ -473,11 +509,12 @@ static inline rat oracle_tetrahedron(const big a[4], const big b[4], const big c
 }
 
 /* Calls visit for every tetrahedron of the piece. */
-static inline void oracle_visit_tetrahedra(const oracle *o, const oracle_piece *p, void (*visit)(void *user, rat volume), void *user) {
+static inline void oracle_visit_tetrahedra(const oracle *o, const oracle_piece *p,
+                                           void (*visit)(void *user, rat volume), void *user) {
     const oracle_point *apex = oracle_corner(o, p, 0);
     oracle_set done = oracle_done(o->plane_count);
     int k;
-    for (k = 0; k < ORACLE_FACE + 4; ++k) {
+    for (k = 0; k < ORACLE_FACE + 4; k++) {
         size_t a, b, fan = p->point_count, on = 0;
         oracle_set common;
         if (k == (int)o->plane_count) k = ORACLE_FACE;
@@ -487,11 +524,12 @@ static inline void oracle_visit_tetrahedra(const oracle *o, const oracle_piece *
             const oracle_point *x = oracle_corner(o, p, a);
             if (!oracle_set_has(&x->zero, k)) continue;
             common = oracle_set_and(&common, &x->zero);
-            fan = a; ++on;
+            fan = a;
+            on++;
         }
-        if (on < 3 || oracle_set_first(&common) < k) continue;      /* a cut in an element's face: once */
-        for (a = 0; a < p->point_count; ++a)
-            for (b = a + 1; b < p->point_count; ++b) {
+        if (on < 3 || oracle_set_first(&common) < k) continue; /* a cut in an element's face: once */
+        for (a = 0; a < p->point_count; a++)
+            for (b = a + 1; b < p->point_count; b++) {
                 const oracle_point *x = oracle_corner(o, p, a), *y = oracle_corner(o, p, b);
                 if (a == fan || b == fan || !oracle_set_has(&x->zero, k) || !oracle_set_has(&y->zero, k)) continue;
                 if (!oracle_adjacent(o, p, a, b, &done)) continue;
@@ -526,9 +564,9 @@ static inline rat oracle_element_volume(const oracle_mesh *mesh, size_t element)
 
 /* ---- contacts: where a piece meets a face, an edge or a node of its element, or a plane ---- */
 typedef struct oracle_contact {
-    size_t count;               /* corners there */
-    oracle_set zero, plus;      /* the planes that it lies in, and on whose positive side: its name */
-    big center[4];              /* a point in its relative interior */
+    size_t count;          /* corners there */
+    oracle_set zero, plus; /* the planes that it lies in, and on whose positive side: its name */
+    big center[4];         /* a point in its relative interior */
 } oracle_contact;
 
 static inline oracle_contact oracle_contact_of(const oracle *o, const oracle_piece *p, const oracle_set *on) {
@@ -537,23 +575,24 @@ static inline oracle_contact oracle_contact_of(const oracle *o, const oracle_pie
     int k;
     memset(&c, 0, sizeof c);
     memset(&c.zero, 0xff, sizeof c.zero);
-    for (i = 0; i < p->point_count; ++i) {
+    for (i = 0; i < p->point_count; i++) {
         const oracle_point *x = oracle_corner(o, p, i);
         if (!oracle_set_contains(&x->zero, on)) continue;
-        ++c.count;
+        c.count++;
         c.zero = oracle_set_and(&c.zero, &x->zero);
         c.plus = oracle_set_or(&c.plus, &x->plus);
-        for (k = 0; k < 4; ++k) c.center[k] = big_add(c.center[k], x->h[k]);
+        for (k = 0; k < 4; k++) c.center[k] = big_add(c.center[k], x->h[k]);
     }
-    c.zero.word[ORACLE_WORDS - 1] &= ~(UINT64_C(15) << 60);     /* faces have other names in other elements */
+    c.zero.word[ORACLE_WORDS - 1] &= ~(UINT64_C(15) << 60); /* faces have other names in other elements */
     return c;
 }
 
 static inline int oracle_in_triangle(const oracle_triangle *t, const big x[4]) {
     int k, plus = 0, minus = 0;
-    for (k = 0; k < 3; ++k) {
+    for (k = 0; k < 3; k++) {
         int turn = oracle_turn(t->corner[k], t->corner[(k + 1) % 3], x, t->axis);
-        plus |= turn > 0; minus |= turn < 0;
+        plus |= turn > 0;
+        minus |= turn < 0;
     }
     return !(plus && minus);
 }
@@ -561,7 +600,7 @@ static inline int oracle_in_triangle(const oracle_triangle *t, const big x[4]) {
 /* Whether the contact lies in a triangle of a sheet (or, with solids, of any surface). */
 static inline int oracle_covered(const oracle *o, const oracle_contact *c, int solids) {
     size_t i;
-    for (i = 0; i < o->triangle_count; ++i) {
+    for (i = 0; i < o->triangle_count; i++) {
         const oracle_triangle *t = &o->triangles[i];
         if (t->plane == ORACLE_NONE || (t->solid && !solids)) continue;
         if (oracle_set_has(&c->zero, t->plane) && oracle_in_triangle(t, c->center)) return 1;
@@ -575,19 +614,24 @@ static inline size_t oracle_root(size_t *parent, size_t i) {
     return i;
 }
 static inline void oracle_join(size_t *parent, size_t i, size_t j) {
-    i = oracle_root(parent, i); j = oracle_root(parent, j);
-    if (i < j) parent[j] = i; else parent[i] = j;
+    i = oracle_root(parent, i);
+    j = oracle_root(parent, j);
+    if (i < j)
+        parent[j] = i;
+    else
+        parent[i] = j;
 }
 static inline size_t *oracle_singles(size_t count) {
     size_t *parent = (size_t *)oracle_memory(NULL, count, sizeof *parent), i;
-    for (i = 0; i < count; ++i) parent[i] = i;
+    for (i = 0; i < count; i++) parent[i] = i;
     return parent;
 }
-/* Numbers the sets in order of their first members: parent[i] becomes the number of i's set. Returns how many there are. */
+/* Numbers the sets in order of their first members: parent[i] becomes the number of i's set. Returns how many there
+ * are. */
 static inline size_t oracle_number(size_t *parent, size_t count) {
     size_t *number = (size_t *)oracle_memory(NULL, count, sizeof *number), sets = 0, i;
-    for (i = 0; i < count; ++i) {
-        size_t root = oracle_root(parent, i);       /* the smallest member */
+    for (i = 0; i < count; i++) {
+        size_t root = oracle_root(parent, i); /* the smallest member */
         number[i] = root == i ? sets++ : number[root];
     }
     memcpy(parent, number, count * sizeof *number);
@@ -597,19 +641,20 @@ static inline size_t oracle_number(size_t *parent, size_t count) {
 
 /* ---- regions, winding numbers, cells ---- */
 
-/* Joins the pieces of each element across faces that no sheet (solids: no surface) covers. Two pieces of one element share
-   a face when they lie on different sides of exactly one plane. */
+/* Joins the pieces of each element across faces that no sheet (solids: no surface) covers. Two pieces of one element
+   share a face when they lie on different sides of exactly one plane. */
 static inline void oracle_join_inside(const oracle *o, size_t *parent, int solids) {
     size_t e, i, j;
-    for (e = 0; e < o->mesh.element_count; ++e)
-        for (i = o->element_pieces[e]; i < o->element_pieces[e + 1]; ++i)
-            for (j = i + 1; j < o->element_pieces[e + 1]; ++j) {
+    for (e = 0; e < o->mesh.element_count; e++)
+        for (i = o->element_pieces[e]; i < o->element_pieces[e + 1]; i++)
+            for (j = i + 1; j < o->element_pieces[e + 1]; j++) {
                 const oracle_piece *p = &o->pieces[i], *q = &o->pieces[j];
                 int k = oracle_set_difference(&p->plus, &q->plus);
                 rat_mark mark = rat_arena_mark();
                 oracle_set on = oracle_set_empty();
                 oracle_contact c;
-                if (k == ORACLE_NONE || p->removed || q->removed || oracle_root(parent, i) == oracle_root(parent, j)) continue;
+                if (k == ORACLE_NONE || p->removed || q->removed || oracle_root(parent, i) == oracle_root(parent, j))
+                    continue;
                 oracle_set_add(&on, k);
                 c = oracle_contact_of(o, p, &on);
                 if (!oracle_covered(o, &c, solids)) oracle_join(parent, i, j);
@@ -617,32 +662,36 @@ static inline void oracle_join_inside(const oracle *o, size_t *parent, int solid
             }
 }
 
-/* +1, -1: the ray from x along d passes through the triangle from behind, from the front; 0: it misses. *generic = 0 where it
-   runs through an edge or a corner. */
+/* +1, -1: the ray from x along d passes through the triangle from behind, from the front; 0: it misses. *generic = 0
+   where it runs through an edge or a corner. */
 static inline int oracle_ray_crossing(const oracle_triangle *t, const big x[4], const big d[3], int *generic) {
     big v[3][3];
     int side[3], i, k, ahead, area;
-    for (i = 0; i < 3; ++i)
-        for (k = 0; k < 3; ++k) v[i][k] = big_sub(big_mul(big_from_double(t->corner[i][k]), x[3]), x[k]);
-    for (i = 0; i < 3; ++i) side[i] = big_sign(big_det3(d, v[i], v[(i + 1) % 3]));
+    for (i = 0; i < 3; i++)
+        for (k = 0; k < 3; k++) v[i][k] = big_sub(big_mul(big_from_double(t->corner[i][k]), x[3]), x[k]);
+    for (i = 0; i < 3; i++) side[i] = big_sign(big_det3(d, v[i], v[(i + 1) % 3]));
     area = side[0] != 0 ? side[0] : side[1] != 0 ? side[1] : side[2];
-    for (i = 0; i < 3; ++i) if (side[i] != 0 && side[i] != area) return 0;
+    for (i = 0; i < 3; i++)
+        if (side[i] != 0 && side[i] != area) return 0;
     ahead = big_sign(big_det3(v[0], v[1], v[2]));
-    if (area == 0 || ahead != area) return 0;       /* along the triangle's plane, or behind x */
-    for (i = 0; i < 3; ++i) if (side[i] == 0) *generic = 0;
+    if (area == 0 || ahead != area) return 0; /* along the triangle's plane, or behind x */
+    for (i = 0; i < 3; i++)
+        if (side[i] == 0) *generic = 0;
     return area;
 }
 
 /* Winding number of a surface around x: crossings of the first direction that meets no edge */
 static inline int oracle_winding(const oracle *o, size_t surface, const big x[4]) {
     int attempt, winding = 0, generic = 0, k;
-    for (attempt = 0; !generic; ++attempt) {
+    for (attempt = 0; !generic; attempt++) {
         size_t i;
         rat_mark mark = rat_arena_mark();
         big d[3];
-        winding = 0; generic = 1;
-        for (k = 0; k < 3; ++k) d[k] = big_from_int((attempt * attempt * (k + 3) + 7 * attempt + 11 * k * k + 13) % 101 - 50);
-        for (i = 0; i < o->triangle_count && generic; ++i)
+        winding = 0;
+        generic = 1;
+        for (k = 0; k < 3; k++)
+            d[k] = big_from_int((attempt * attempt * (k + 3) + 7 * attempt + 11 * k * k + 13) % 101 - 50);
+        for (i = 0; i < o->triangle_count && generic; i++)
             if (o->triangles[i].surface == surface) winding += oracle_ray_crossing(&o->triangles[i], x, d, &generic);
         rat_arena_release(mark);
     }
@@ -652,7 +701,7 @@ static inline int oracle_winding(const oracle *o, size_t surface, const big x[4]
 static inline void oracle_remove(oracle *o, const oracle_surface *surfaces, size_t surface_count) {
     size_t *region = oracle_singles(o->piece_count), i, s;
     oracle_join_inside(o, region, 1);
-    for (i = 0; i < o->piece_count; ++i) {
+    for (i = 0; i < o->piece_count; i++) {
         oracle_piece *p = &o->pieces[i];
         rat_mark mark = rat_arena_mark();
         oracle_set nothing = oracle_set_empty();
@@ -661,7 +710,7 @@ static inline void oracle_remove(oracle *o, const oracle_surface *surfaces, size
         p->removed = o->pieces[p->region].removed;
         if (p->region != i) continue;
         inside = oracle_contact_of(o, p, &nothing);
-        for (s = 0; s < surface_count && !p->removed; ++s)
+        for (s = 0; s < surface_count && !p->removed; s++)
             if (surfaces[s].solid && oracle_winding(o, s, inside.center) != 0) p->removed = 1;
         rat_arena_release(mark);
     }
@@ -671,7 +720,7 @@ static inline void oracle_remove(oracle *o, const oracle_surface *surfaces, size
 static inline void oracle_find_cells(oracle *o) {
     size_t *cell = oracle_singles(o->piece_count), *name = oracle_singles(o->piece_count), i;
     oracle_join_inside(o, cell, 0);
-    for (i = 0; i < o->piece_count; ++i) {
+    for (i = 0; i < o->piece_count; i++) {
         oracle_piece *p = &o->pieces[i];
         size_t root = oracle_root(cell, i);
         if (p->removed) continue;
@@ -685,7 +734,8 @@ static inline void oracle_find_cells(oracle *o) {
         p->cell = name[root];
         o->cell_volume[p->cell] += oracle_piece_volume(o, p);
     }
-    free(cell); free(name);
+    free(cell);
+    free(name);
 }
 
 /* ---- links ---- */
@@ -696,9 +746,15 @@ static inline size_t oracle_shared(const oracle *o, size_t e, size_t f, oracle_s
     size_t count = 0;
     int i, j;
     *in_e = *in_f = oracle_set_empty();
-    for (i = 0; i < 4; ++i) {       /* face i holds all nodes but node i */
+    for (i = 0; i < 4; i++) { /* face i holds all nodes but node i */
         int e_only = 1, f_only = 1;
-        for (j = 0; j < 4; ++j) { if (a[i] == b[j]) { e_only = 0; ++count; } if (b[i] == a[j]) f_only = 0; }
+        for (j = 0; j < 4; j++) {
+            if (a[i] == b[j]) {
+                e_only = 0;
+                count++;
+            }
+            if (b[i] == a[j]) f_only = 0;
+        }
         if (e_only) oracle_set_add(in_e, ORACLE_FACE + i);
         if (f_only) oracle_set_add(in_f, ORACLE_FACE + i);
     }
@@ -715,24 +771,33 @@ static inline int oracle_faces_at(const oracle *o, size_t e, size_t f, size_t g,
     size_t found = 0;
     int i, k;
     *on = oracle_set_empty();
-    for (i = 0; i < 4; ++i) {
+    for (i = 0; i < 4; i++) {
         int in_a = 0, in_b = 0;
-        for (k = 0; k < 4; ++k) { in_a |= d[i] == a[k]; in_b |= d[i] == b[k]; }
-        if (in_a && in_b) ++found; else oracle_set_add(on, ORACLE_FACE + i);
+        for (k = 0; k < 4; k++) {
+            in_a |= d[i] == a[k];
+            in_b |= d[i] == b[k];
+        }
+        if (in_a && in_b)
+            found++;
+        else
+            oracle_set_add(on, ORACLE_FACE + i);
     }
     return found == shared;
 }
 
-/* Whether a wall touches the contact c, at faces `on` of element e: c is on the rim of a covered facet of a piece of e. */
-static inline int oracle_touches_wall_in(const oracle *o, size_t e, const oracle_set *on, size_t shared, const oracle_contact *c) {
+/* Whether a wall touches the contact c, at faces `on` of element e: c is on the rim of a covered facet of a piece of e.
+ */
+static inline int oracle_touches_wall_in(const oracle *o, size_t e, const oracle_set *on, size_t shared,
+                                         const oracle_contact *c) {
     size_t i;
     int k;
-    for (i = o->element_pieces[e]; i < o->element_pieces[e + 1]; ++i)
-        for (k = 0; k < (int)o->plane_count; ++k) {
+    for (i = o->element_pieces[e]; i < o->element_pieces[e + 1]; i++)
+        for (k = 0; k < (int)o->plane_count; k++) {
             oracle_set facet = oracle_set_empty(), rim = *on;
             oracle_contact f, r;
             if (!oracle_set_has(&c->zero, k)) continue;
-            oracle_set_add(&facet, k); oracle_set_add(&rim, k);
+            oracle_set_add(&facet, k);
+            oracle_set_add(&rim, k);
             f = oracle_contact_of(o, &o->pieces[i], &facet);
             r = oracle_contact_of(o, &o->pieces[i], &rim);
             if (f.count >= 3 && r.count >= shared && oracle_same_contact(c, &r) && oracle_covered(o, &f, 0)) return 1;
@@ -740,17 +805,17 @@ static inline int oracle_touches_wall_in(const oracle *o, size_t e, const oracle
     return 0;
 }
 
-/* Whether the contact c of elements e and f can't join them: something that was removed touches it, or a sheet does. All
-   elements that have the shared nodes are asked. */
+/* Whether the contact c of elements e and f can't join them: something that was removed touches it, or a sheet does.
+   All elements that have the shared nodes are asked. */
 static inline int oracle_severed(const oracle *o, size_t e, size_t f, size_t shared, const oracle_contact *c) {
     size_t g, i;
     if (shared == 3) return oracle_covered(o, c, 0);
     if (ORACLE_TOUCH_FROM_OUTSIDE && oracle_covered(o, c, 0)) return 1;
-    for (g = 0; g < o->mesh.element_count; ++g) {
+    for (g = 0; g < o->mesh.element_count; g++) {
         oracle_set on;
         if (!oracle_faces_at(o, e, f, g, shared, &on)) continue;
         if (oracle_touches_wall_in(o, g, &on, shared, c)) return 1;
-        for (i = o->element_pieces[g]; i < o->element_pieces[g + 1]; ++i) {
+        for (i = o->element_pieces[g]; i < o->element_pieces[g + 1]; i++) {
             oracle_contact r;
             if (!o->pieces[i].removed) continue;
             r = oracle_contact_of(o, &o->pieces[i], &on);
@@ -760,17 +825,17 @@ static inline int oracle_severed(const oracle *o, size_t e, size_t f, size_t sha
     return 0;
 }
 
-/* Joins what two elements have in common: pieces of a face, of an edge, or a node (shared = 3, 2, 1 nodes; a piece of it has
-   at least as many corners there). */
+/* Joins what two elements have in common: pieces of a face, of an edge, or a node (shared = 3, 2, 1 nodes; a piece of
+   it has at least as many corners there). */
 static inline void oracle_link_elements(oracle *o, size_t e, size_t f) {
     oracle_set in_e, in_f;
     size_t shared = oracle_shared(o, e, f, &in_e, &in_f), i, j;
     if (shared == 0 || shared == 4) return;
-    for (i = o->element_pieces[e]; i < o->element_pieces[e + 1]; ++i) {
+    for (i = o->element_pieces[e]; i < o->element_pieces[e + 1]; i++) {
         rat_mark mark = rat_arena_mark();
         oracle_contact c = oracle_contact_of(o, &o->pieces[i], &in_e);
         if (!o->pieces[i].removed && c.count >= shared && !oracle_severed(o, e, f, shared, &c))
-            for (j = o->element_pieces[f]; j < o->element_pieces[f + 1]; ++j) {
+            for (j = o->element_pieces[f]; j < o->element_pieces[f + 1]; j++) {
                 oracle_contact d = oracle_contact_of(o, &o->pieces[j], &in_f);
                 if (o->pieces[j].removed || d.count < shared || !oracle_same_contact(&c, &d)) continue;
                 o->links = (oracle_link *)oracle_grow(o->links, o->link_count, sizeof *o->links);
@@ -790,11 +855,12 @@ static inline int oracle_has_node(const oracle *o, size_t element, size_t node) 
 
 static inline size_t oracle_count_copies(const oracle *o, size_t node) {
     size_t *parent = oracle_singles(o->cell_count), count = 0, i;
-    for (i = 0; i < o->link_count; ++i) {
+    for (i = 0; i < o->link_count; i++) {
         const oracle_piece *p = &o->pieces[o->links[i].piece[0]], *q = &o->pieces[o->links[i].piece[1]];
-        if (oracle_has_node(o, p->element, node) && oracle_has_node(o, q->element, node)) oracle_join(parent, p->cell, q->cell);
+        if (oracle_has_node(o, p->element, node) && oracle_has_node(o, q->element, node))
+            oracle_join(parent, p->cell, q->cell);
     }
-    for (i = 0; i < o->cell_count; ++i)
+    for (i = 0; i < o->cell_count; i++)
         count += oracle_has_node(o, o->cell_element[i], node) && oracle_root(parent, i) == i;
     free(parent);
     return count;
@@ -803,12 +869,12 @@ static inline size_t oracle_count_copies(const oracle *o, size_t node) {
 static inline void oracle_find_fragments(oracle *o) {
     size_t i;
     o->cell_fragment = oracle_singles(o->cell_count);
-    for (i = 0; i < o->link_count; ++i)
+    for (i = 0; i < o->link_count; i++)
         oracle_join(o->cell_fragment, o->pieces[o->links[i].piece[0]].cell, o->pieces[o->links[i].piece[1]].cell);
     o->fragment_count = oracle_number(o->cell_fragment, o->cell_count);
     o->fragment_volume = (double *)oracle_memory(NULL, o->fragment_count, sizeof *o->fragment_volume);
-    for (i = 0; i < o->fragment_count; ++i) o->fragment_volume[i] = 0;
-    for (i = 0; i < o->cell_count; ++i) {
+    for (i = 0; i < o->fragment_count; i++) o->fragment_volume[i] = 0;
+    for (i = 0; i < o->cell_count; i++) {
         o->fragment_volume[o->cell_fragment[i]] += o->cell_volume[i];
         o->volume += o->cell_volume[i];
     }
@@ -823,22 +889,32 @@ static inline oracle *oracle_create(const oracle_mesh *mesh, const oracle_surfac
     o->element_pieces = (size_t *)oracle_memory(NULL, mesh->element_count, sizeof *o->element_pieces);
     o->element_pieces[0] = 0;
     oracle_find_planes(o, surfaces, surface_count);
-    for (e = 0; e < mesh->element_count; ++e) oracle_divide_element(o, e);
+    for (e = 0; e < mesh->element_count; e++) oracle_divide_element(o, e);
     oracle_remove(o, surfaces, surface_count);
     oracle_find_cells(o);
-    for (e = 0; e < mesh->element_count; ++e)
-        for (f = e + 1; f < mesh->element_count; ++f) oracle_link_elements(o, e, f);
+    for (e = 0; e < mesh->element_count; e++)
+        for (f = e + 1; f < mesh->element_count; f++) oracle_link_elements(o, e, f);
     o->node_copies = (size_t *)oracle_memory(NULL, mesh->node_count, sizeof *o->node_copies);
-    for (e = 0; e < mesh->node_count; ++e) o->copy_count += o->node_copies[e] = oracle_count_copies(o, e);
+    for (e = 0; e < mesh->node_count; e++) o->copy_count += o->node_copies[e] = oracle_count_copies(o, e);
     oracle_find_fragments(o);
     return o;
 }
 
 static inline void oracle_destroy(oracle *o) {
     rat_arena_release(o->mark);
-    free(o->planes); free(o->triangles); free(o->points); free(o->corners); free(o->pieces); free(o->element_pieces);
-    free(o->links); free(o->cell_element); free(o->cell_volume); free(o->cell_fragment); free(o->node_copies);
-    free(o->fragment_volume); free(o);
+    free(o->planes);
+    free(o->triangles);
+    free(o->points);
+    free(o->corners);
+    free(o->pieces);
+    free(o->element_pieces);
+    free(o->links);
+    free(o->cell_element);
+    free(o->cell_volume);
+    free(o->cell_fragment);
+    free(o->node_copies);
+    free(o->fragment_volume);
+    free(o);
 }
 
 #endif /* GXFEM_TESTS_ORACLE_H */

@@ -1,16 +1,18 @@
 /* predicate_cases.h - near-degenerate input for the predicates of gxfem_boolean.h, and what they must answer.
 
-   Include after gxfem_boolean.h with its implementation: the filter's bounds are private functions. Exact answers come from
-   rational.h, by other formulas than the kernel's (coordinates about a vertex, Cramer's rule by columns), in integers only, so
-   that no compiler flag touches them. One case holds all that the predicates need: four planes, a line and a point that
-   (nearly) meet in one place. */
+   Include after gxfem_boolean.h with its implementation: the filter's bounds are private functions. Exact answers come
+   from rational.h, by other formulas than the kernel's (coordinates about a vertex, Cramer's rule by columns), in
+   integers only, so that no compiler flag touches them. One case holds all that the predicates need: four planes, a
+   line and a point that (nearly) meet in one place. */
 #ifndef GXFEM_TESTS_PREDICATE_CASES_H
 #define GXFEM_TESTS_PREDICATE_CASES_H
 
 #include "rational.h"
 
 /* ---- random numbers: xorshift*, the same everywhere ---- */
-typedef struct pc_random { uint64_t state; } pc_random;
+typedef struct pc_random {
+    uint64_t state;
+} pc_random;
 
 static inline pc_random pc_seeded(uint64_t seed) {
     pc_random r;
@@ -27,7 +29,8 @@ static inline uint64_t pc_next(pc_random *r) {
 }
 
 static inline uint32_t pc_below(pc_random *r, uint32_t n) { return (uint32_t)((pc_next(r) >> 33) % n); }
-static inline double pc_uniform(pc_random *r) { return (double)(int64_t)(pc_next(r) >> 11) / 4503599627370496.0 - 1; }  /* [-1, 1) */
+/* [-1, 1) */
+static inline double pc_uniform(pc_random *r) { return (double)(int64_t)(pc_next(r) >> 11) / 4503599627370496.0 - 1; }
 
 static inline double pc_from_bits(uint64_t b) {
     double x;
@@ -61,10 +64,10 @@ static inline double pc_any_double(pc_random *r) {
 
 /* ---- cases ---- */
 typedef struct pc_case {
-    double plane[4][3][3];  /* three points of each plane */
+    double plane[4][3][3]; /* three points of each plane */
     double line[2][3];
     double point[3];
-    double circle[4][3];    /* (nearly) on a circle in x and y */
+    double circle[4][3]; /* (nearly) on a circle in x and y */
     double sphere[5][3];
 } pc_case;
 
@@ -77,7 +80,8 @@ static inline void pc_vector(pc_random *r, int lattice, double v[3]) {
 }
 
 /* Three points whose plane passes through x along u and v but for rounding (on the lattice: exactly). */
-static inline void pc_plane_through(pc_random *r, int lattice, const double x[3], const double u[3], const double v[3], double p[3][3]) {
+static inline void pc_plane_through(pc_random *r, int lattice, const double x[3], const double u[3], const double v[3],
+                                    double p[3][3]) {
     const double a = lattice ? 1 : 0.7 + 0.5 * pc_uniform(r), b = lattice ? 1 : 0.7 + 0.5 * pc_uniform(r);
     int k;
     for (k = 0; k < 3; k++) {
@@ -88,10 +92,13 @@ static inline void pc_plane_through(pc_random *r, int lattice, const double x[3]
 }
 
 static inline void pc_scale(pc_random *r, double *x) {
-    const double factor = pc_power(pc_below(r, 2) ? 0 : pc_below(r, 2) ? (pc_below(r, 2) ? 100 : -100) : (int)pc_below(r, 201) - 100);
+    const double factor = pc_power(pc_below(r, 2)   ? 0
+                                   : pc_below(r, 2) ? (pc_below(r, 2) ? 100 : -100)
+                                                    : (int)pc_below(r, 201) - 100);
     double offset[3] = {0, 0, 0};
     int i;
-    if (pc_below(r, 8) == 0) for (i = 0; i < 3; i++) offset[i] = pc_uniform(r) * (pc_below(r, 2) ? 1e6 : 10);
+    if (pc_below(r, 8) == 0)
+        for (i = 0; i < 3; i++) offset[i] = pc_uniform(r) * (pc_below(r, 2) ? 1e6 : 10);
     for (i = 0; i < PC_CASE_DOUBLES; i++) x[i] = (x[i] + offset[i % 3]) * factor;
 }
 
@@ -124,34 +131,49 @@ static inline void pc_generate(pc_random *r, pc_case *c) {
     double *all = (double *)c, x[3], y[3], u[4][3], v[3], w[3];
     uint32_t i, noise = pc_below(r, 5);
     int k;
-    if (pc_below(r, 16) == 0) { pc_wild(r, all); return; }
+    if (pc_below(r, 16) == 0) {
+        pc_wild(r, all);
+        return;
+    }
     pc_vector(r, lattice, x);
     for (i = 0; i < 4; i++) {
         pc_vector(r, lattice, u[i]);
         pc_vector(r, lattice, v);
-        if ((i == 1 && (shared || apart)) || (i == 3 && shared)) memcpy(u[i], u[0], sizeof x);       /* planes through one line */
+        /* planes through one line */
+        if ((i == 1 && (shared || apart)) || (i == 3 && shared)) memcpy(u[i], u[0], sizeof x);
         for (k = 0; k < 3; k++) {
             v[k] = u[i][k] * (1 - thin) + v[k] * thin;
-            y[k] = i >= 2 && apart ? x[k] + (i == 2 ? 0.5 : -0.25) * u[0][k] : x[k];    /* elsewhere on that line */
+            y[k] = i >= 2 && apart ? x[k] + (i == 2 ? 0.5 : -0.25) * u[0][k] : x[k]; /* elsewhere on that line */
         }
         pc_plane_through(r, lattice && thin >= 1, y, u[i], v, c->plane[i]);
     }
     pc_vector(r, lattice, w);
-    if (pc_below(r, 8) == 0) for (k = 0; k < 3; k++) w[k] = u[3][k] + w[k] * thin;                   /* the line (nearly) in plane 3 */
+    /* the line (nearly) in plane 3 */
+    if (pc_below(r, 8) == 0)
+        for (k = 0; k < 3; k++) w[k] = u[3][k] + w[k] * thin;
     for (k = 0; k < 3; k++) {
         c->line[0][k] = x[k] + w[k];
         c->line[1][k] = x[k] - w[k] * (lattice ? 1 : 0.75);
         c->point[k] = x[k];
     }
     pc_round_points(r, x, u[0], c);
-    if (noise == 1) for (i = 0; i < 12; i++) { double *d = all + pc_below(r, PC_CASE_DOUBLES); *d = pc_nudge(*d, (int)pc_below(r, 7) - 3); }
-    if (noise == 2 || noise == 3) for (i = 27; i < PC_CASE_DOUBLES; i++) all[i] += pc_uniform(r) * (noise == 2 ? 1e-12 : 1e-7);
+    if (noise == 1)
+        for (i = 0; i < 12; i++) {
+            double *d = all + pc_below(r, PC_CASE_DOUBLES);
+            *d = pc_nudge(*d, (int)pc_below(r, 7) - 3);
+        }
+    if (noise == 2 || noise == 3)
+        for (i = 27; i < PC_CASE_DOUBLES; i++) all[i] += pc_uniform(r) * (noise == 2 ? 1e-12 : 1e-7);
     pc_scale(r, all);
 }
 
 /* ---- the exact answers ---- */
-typedef struct pc_plane { big n[3], d; } pc_plane;      /* n.x = d about the case's origin, its first vertex */
-typedef struct pc_point { big x[3], w; } pc_point;      /* x / w */
+typedef struct pc_plane {
+    big n[3], d;
+} pc_plane; /* n.x = d about the case's origin, its first vertex */
+typedef struct pc_point {
+    big x[3], w;
+} pc_point; /* x / w */
 
 static inline pc_plane pc_exact_plane(const double p[3][3], const double o[3]) {
     pc_plane e;
@@ -192,7 +214,9 @@ static inline pc_point pc_exact_planes(const pc_plane *a, const pc_plane *b, con
     e.w = big_det3(a->n, b->n, c->n);
     for (k = 0; k < 3; k++) {
         pc_plane u = *a, v = *b, w = *c;
-        u.n[k] = a->d; v.n[k] = b->d; w.n[k] = c->d;
+        u.n[k] = a->d;
+        v.n[k] = b->d;
+        w.n[k] = c->d;
         e.x[k] = big_det3(u.n, v.n, w.n);
     }
     return e;
@@ -202,7 +226,9 @@ static inline big pc_scaled_height(const pc_point *x, const pc_plane *plane) {
     return big_sub(big_dot(plane->n, x->x), big_mul(plane->d, x->w));
 }
 
-static inline int pc_exact_side(const pc_point *x, const pc_plane *plane) { return big_sign(pc_scaled_height(x, plane)) * x->w.sign; }
+static inline int pc_exact_side(const pc_point *x, const pc_plane *plane) {
+    return big_sign(pc_scaled_height(x, plane)) * x->w.sign;
+}
 
 static inline int pc_exact_compare(const pc_point *a, const pc_point *b, int axis) {
     return big_sign(big_sub(big_mul(a->x[axis], b->w), big_mul(b->x[axis], a->w))) * a->w.sign * b->w.sign;
@@ -212,7 +238,9 @@ static inline int pc_exact_orient(const pc_point *a, const pc_point *b, const pc
     big r[3][3];
     const pc_point *p[3];
     int i, axis = 0;
-    p[0] = a; p[1] = b; p[2] = c;
+    p[0] = a;
+    p[1] = b;
+    p[2] = c;
     while (axis < 2 && plane->n[axis].sign == 0) axis++;
     for (i = 0; i < 3; i++) {
         r[i][0] = p[i]->x[(axis + 1) % 3];
@@ -222,31 +250,46 @@ static inline int pc_exact_orient(const pc_point *a, const pc_point *b, const pc
     return big_sign(big_det3(r[0], r[1], r[2])) * a->w.sign * b->w.sign * c->w.sign * plane->n[axis].sign;
 }
 
-enum { PC_ORIENT2D, PC_ORIENT3D, PC_SIDE_EXPLICIT, PC_SIDE_LINE, PC_SIDE_PLANES, PC_COMPARE, PC_ORIENT_IN_PLANE, PC_INCIRCLE, PC_INSPHERE,
-       PC_KINDS };
-static const char *const pc_kind_names[PC_KINDS] = {"orient2d", "orient3d", "side of point", "side of line-plane", "side of three planes",
-                                                   "compare", "orient in plane", "incircle", "insphere"};
-enum { PC_INVALID = 9 };    /* no answer: parallel planes and the like */
+enum {
+    PC_ORIENT2D,
+    PC_ORIENT3D,
+    PC_SIDE_EXPLICIT,
+    PC_SIDE_LINE,
+    PC_SIDE_PLANES,
+    PC_COMPARE,
+    PC_ORIENT_IN_PLANE,
+    PC_INCIRCLE,
+    PC_INSPHERE,
+    PC_KINDS
+};
+static const char *const pc_kind_names[PC_KINDS] = {
+    "orient2d",        "orient3d", "side of point", "side of line-plane", "side of three planes", "compare",
+    "orient in plane", "incircle", "insphere"};
+enum { PC_INVALID = 9 }; /* no answer: parallel planes and the like */
 
 typedef struct pc_exact {
     pc_plane plane[4];
-    pc_point point, line, planes, other;    /* other: planes 0, 1 and 3 */
+    pc_point point, line, planes, other; /* other: planes 0, 1 and 3 */
     int sign[PC_KINDS];
 } pc_exact;
 
-static inline int pc_exact_orient2d(const double a[2], const double b[2], const double c[2]) { return big_sign(big_orient2d(a, b, c)); }
+static inline int pc_exact_orient2d(const double a[2], const double b[2], const double c[2]) {
+    return big_sign(big_orient2d(a, b, c));
+}
 static inline int pc_exact_orient3d(const double a[3], const double b[3], const double c[3], const double d[3]) {
     return -big_sign(big_orient3d(a, b, c, d));
 }
 
-/* By the lifting to a paraboloid about the first point: determinant of the other points' differences and their squared lengths. */
+/* By the lifting to a paraboloid about the first point: determinant of the other points' differences and their squared
+ * lengths. */
 static inline int pc_exact_incircle(const double (*p)[3]) {
     big row[3][3];
     int i;
     for (i = 0; i < 3; i++) {
         big d[3];
         big_difference(p[i + 1], p[0], d);
-        row[i][0] = d[0]; row[i][1] = d[1];
+        row[i][0] = d[0];
+        row[i][1] = d[1];
         row[i][2] = big_add(big_mul(d[0], d[0]), big_mul(d[1], d[1]));
     }
     return -big_sign(big_det3(row[0], row[1], row[2]));
@@ -288,7 +331,8 @@ static inline int pc_answer(const pc_case *c, int axis, pc_exact *e) {
     e->sign[PC_INSPHERE] = pc_exact_insphere(c->sphere);
     if (e->planes.w.sign != 0 && e->line.w.sign != 0) {
         e->sign[PC_COMPARE] = pc_exact_compare(&e->line, &e->planes, axis);
-        if (e->other.w.sign != 0) e->sign[PC_ORIENT_IN_PLANE] = pc_exact_orient(&e->line, &e->planes, &e->other, &e->plane[0]);
+        if (e->other.w.sign != 0)
+            e->sign[PC_ORIENT_IN_PLANE] = pc_exact_orient(&e->line, &e->planes, &e->other, &e->plane[0]);
     }
     return 1;
 }
@@ -327,7 +371,8 @@ static inline int pc_call(const pc_objects *k, int kind) {
     }
 }
 
-/* ---- the filter's bounds against the true errors: a bound that is too small shows here long before it costs a sign ---- */
+/* ---- the filter's bounds against the true errors: a bound that is too small shows here long before it costs a sign
+ * ---- */
 
 /* |value - num / den| as a share of the bound; above 1 the bound is wrong. */
 static inline double pc_share(double value, big offset, big num, big den, double bound) {
@@ -336,9 +381,11 @@ static inline double pc_share(double value, big offset, big num, big den, double
     return rat_to_double(error);
 }
 
-static inline void pc_worst(double *worst, double share) { if (share > *worst) *worst = share; }
+static inline void pc_worst(double *worst, double share) {
+    if (share > *worst) *worst = share;
+}
 
-#define PC_NO_BALL gxbp_power(200)     /* the error of a point that has no ball, as in the kernel */
+#define PC_NO_BALL gxbp_power(200) /* the error of a point that has no ball, as in the kernel */
 enum { PC_BOUND_NORMAL, PC_BOUND_LINE, PC_BOUND_PLANES, PC_BOUND_SIDE, PC_BOUNDS };
 static const char *const pc_bound_names[PC_BOUNDS] = {"normal", "line-plane ball", "three-plane ball", "side"};
 
@@ -348,7 +395,8 @@ static inline void pc_ball_share(const gxb_ball *ball, const pc_point *x, const 
     for (k = 0; k < 3; k++) pc_worst(worst, pc_share(ball->x[k], big_from_double(o[k]), x->x[k], x->w, ball->error));
 }
 
-static inline void pc_side_share(const gxb_ball *ball, const pc_point *x, const gxb_plane *f, const pc_plane *plane, double *worst) {
+static inline void pc_side_share(const gxb_ball *ball, const pc_point *x, const gxb_plane *f, const pc_plane *plane,
+                                 double *worst) {
     double value, bound;
     if (x->w.sign == 0 || !(ball->error < PC_NO_BALL)) return;
     value = gxbp_filter_side(ball, &f->filter, &bound);
@@ -359,8 +407,10 @@ static inline void pc_side_share(const gxb_ball *ball, const pc_point *x, const 
 static inline void pc_bound_shares(const pc_objects *k, const pc_exact *e, double worst[PC_BOUNDS]) {
     const double *o = k->input->plane[0][0];
     int i, j;
-    for (i = 0; i < 4; i++) for (j = 0; j < 3; j++)
-        pc_worst(&worst[PC_BOUND_NORMAL], pc_share(k->plane[i].filter.n[j], big_zero(), e->plane[i].n[j], big_from_int(1), k->plane[i].filter.error));
+    for (i = 0; i < 4; i++)
+        for (j = 0; j < 3; j++)
+            pc_worst(&worst[PC_BOUND_NORMAL], pc_share(k->plane[i].filter.n[j], big_zero(), e->plane[i].n[j],
+                                                       big_from_int(1), k->plane[i].filter.error));
     pc_ball_share(&k->line.ball, &e->line, o, &worst[PC_BOUND_LINE]);
     pc_ball_share(&k->planes.ball, &e->planes, o, &worst[PC_BOUND_PLANES]);
     pc_ball_share(&k->other.ball, &e->other, o, &worst[PC_BOUND_PLANES]);

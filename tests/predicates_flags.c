@@ -1,10 +1,12 @@
-/* predicates_flags.c - the predicates of gxfem_boolean.h against exact rationals, for any compiler flags (see flags.sh).
+/* predicates_flags.c - the predicates of gxfem_boolean.h against exact rationals, for any compiler flags (see
+   flags.sh).
 
        predicates_flags [CASES] [nearest|up|down|zero] [flush] [seed=S]
 
-   Prints the wrong signs of CASES near-degenerate cases (100000) times nine predicates, nanoseconds per call where the filter
-   decides and where the exact stage does, the exact stage's share, and how much of each of the filter's bounds the true errors
-   used up. Exit status 1 where a sign is wrong, a bound was exceeded, or arithmetic is refused that is good enough. */
+   Prints the wrong signs of CASES near-degenerate cases (100000) times nine predicates, nanoseconds per call where the
+   filter decides and where the exact stage does, the exact stage's share, and how much of each of the filter's bounds
+   the true errors used up. Exit status 1 where a sign is wrong, a bound was exceeded, or arithmetic is refused that is
+   good enough. */
 #define GXFEM_STATIC
 #define GXFEM_BOOLEAN_IMPLEMENTATION
 #include "../gxfem_boolean.h"
@@ -19,9 +21,14 @@
 
 enum { BATCH = 512, BOUND_EVERY = 8, REPEATS = 16 };
 
-typedef struct tally { uint64_t calls[2], timed[2], wrong; clock_t ticks[2]; } tally;  /* [0] decided by the filter, [1] exactly */
+/* [0] decided by the filter, [1] exactly */
+typedef struct tally {
+    uint64_t calls[2], timed[2], wrong;
+    clock_t ticks[2];
+} tally;
 
-/* ---- does the filter decide? The same bounds as in the predicates; a difference would only show in the shares printed ---- */
+/* ---- does the filter decide? The same bounds as in the predicates; a difference would only show in the shares printed
+ * ---- */
 
 static int filter_side(const gxb_point *point, const gxb_plane *plane) {
     double bound, value;
@@ -31,13 +38,16 @@ static int filter_side(const gxb_point *point, const gxb_plane *plane) {
 }
 
 static int filter_orient2d(const double a[2], const double b[2], const double c[2]) {
-    const double ax = gxbp_fence(a[0] - c[0]), ay = gxbp_fence(a[1] - c[1]), bx = gxbp_fence(b[0] - c[0]), by = gxbp_fence(b[1] - c[1]);
-    return gxbp_filter_sign(ax * by - ay * bx, 16 * gxbp_power(-52) * (gxbp_abs(ax * by) + gxbp_abs(ay * bx)) + gxbp_power(-600));
+    const double ax = gxbp_fence(a[0] - c[0]), ay = gxbp_fence(a[1] - c[1]), bx = gxbp_fence(b[0] - c[0]),
+                 by = gxbp_fence(b[1] - c[1]);
+    return gxbp_filter_sign(ax * by - ay * bx,
+                            16 * gxbp_power(-52) * (gxbp_abs(ax * by) + gxbp_abs(ay * bx)) + gxbp_power(-600));
 }
 
 static int filter_compare(const gxb_ball *a, const gxb_ball *b, int axis) {
     const double difference = gxbp_fence(a->x[axis] - b->x[axis]);
-    return gxbp_filter_sign(difference, 2 * (a->error + b->error) + 2 * gxbp_power(-52) * gxbp_abs(difference) + gxbp_power(-600));
+    return gxbp_filter_sign(difference,
+                            2 * (a->error + b->error) + 2 * gxbp_power(-52) * gxbp_abs(difference) + gxbp_power(-600));
 }
 
 static int filter_orient(const gxb_ball *a, const gxb_ball *b, const gxb_ball *c, const gxb_plane *plane) {
@@ -62,7 +72,8 @@ static int filter_decides(const pc_objects *k, int kind) {
     for (i = 0; i < 5; i++) sphere[i] = c->sphere[i];
     switch (kind) {
     case PC_ORIENT2D: return filter_orient2d(c->point, c->line[0], c->line[1]) != 0;
-    case PC_ORIENT3D: case PC_SIDE_EXPLICIT: return filter_side(&k->point, &k->plane[3]) != 0;
+    case PC_ORIENT3D:
+    case PC_SIDE_EXPLICIT: return filter_side(&k->point, &k->plane[3]) != 0;
     case PC_SIDE_LINE: return filter_side(&k->line, &k->plane[3]) != 0;
     case PC_SIDE_PLANES: return filter_side(&k->planes, &k->plane[3]) != 0;
     case PC_INCIRCLE: return gxbp_filter_incircle(circle) != 0;
@@ -94,7 +105,8 @@ static void prepare(pc_random *random, double worst[PC_BOUNDS]) {
     for (i = 0; i < BATCH; i++) {
         const rat_mark mark = rat_arena_mark();
         pc_exact exact;
-        do pc_generate(random, &cases[i]); while (!pc_answer(&cases[i], i % 3, &exact));
+        do pc_generate(random, &cases[i]);
+        while (!pc_answer(&cases[i], i % 3, &exact));
         for (kind = 0; kind < PC_KINDS; kind++) expected[i][kind] = (signed char)exact.sign[kind];
         if (i % BOUND_EVERY == 0) {
             pc_build(&cases[i], i % 3, &objects[i]);
@@ -111,7 +123,8 @@ static void measure(tally *t, const int *list, int count, int kind, int stage) {
     const int repeats = stage == 0 ? REPEATS : 1;
     const clock_t start = clock();
     int i, k, sum = 0;
-    for (k = 0; k < repeats; k++) for (i = 0; i < count; i++) sum += pc_call(&objects[list[i]], kind);
+    for (k = 0; k < repeats; k++)
+        for (i = 0; i < count; i++) sum += pc_call(&objects[list[i]], kind);
     t->ticks[stage] += clock() - start;
     t->timed[stage] += (uint64_t)(count * repeats);
     sink = sum;
@@ -143,8 +156,9 @@ static int report(const tally *t, const double worst[PC_BOUNDS], uint64_t done) 
     int kind, exceeded = 0;
     for (kind = 0; kind < PC_KINDS; kind++) {
         const uint64_t calls = t[kind].calls[0] + t[kind].calls[1];
-        printf("  %-21s %9.0f calls, %.0f wrong, filter %5.1f ns, exact %6.0f ns, %5.2f %% exact\n", pc_kind_names[kind], (double)calls,
-               (double)t[kind].wrong, nanoseconds(t[kind].ticks[0], t[kind].timed[0]), nanoseconds(t[kind].ticks[1], t[kind].timed[1]),
+        printf("  %-21s %9.0f calls, %.0f wrong, filter %5.1f ns, exact %6.0f ns, %5.2f %% exact\n",
+               pc_kind_names[kind], (double)calls, (double)t[kind].wrong,
+               nanoseconds(t[kind].ticks[0], t[kind].timed[0]), nanoseconds(t[kind].ticks[1], t[kind].timed[1]),
                calls == 0 ? 0 : 100 * (double)t[kind].calls[1] / (double)calls);
         wrong += t[kind].wrong;
     }
@@ -165,7 +179,10 @@ static int set_environment(const char *word) {
     if (strcmp(word, "zero") == 0) return fesetround(FE_TOWARDZERO) == 0;
 #endif
 #if defined(__SSE2__)
-    if (strcmp(word, "flush") == 0) { _mm_setcsr(_mm_getcsr() | 0x8040); return 1; }
+    if (strcmp(word, "flush") == 0) {
+        _mm_setcsr(_mm_getcsr() | 0x8040);
+        return 1;
+    }
 #endif
     return strcmp(word, "nearest") == 0;
 }
@@ -177,11 +194,19 @@ int main(int argc, char **argv) {
     pc_random random;
     int i, kind;
     for (i = 1; i < argc; i++) {
-        if (argv[i][0] >= '0' && argv[i][0] <= '9') wanted = strtoull(argv[i], NULL, 10);
-        else if (strncmp(argv[i], "seed=", 5) == 0) seed = strtoull(argv[i] + 5, NULL, 10);
-        else if (!set_environment(argv[i])) { fprintf(stderr, "predicates_flags: %s: not known here\n", argv[i]); return 2; }
+        if (argv[i][0] >= '0' && argv[i][0] <= '9')
+            wanted = strtoull(argv[i], NULL, 10);
+        else if (strncmp(argv[i], "seed=", 5) == 0)
+            seed = strtoull(argv[i] + 5, NULL, 10);
+        else if (!set_environment(argv[i])) {
+            fprintf(stderr, "predicates_flags: %s: not known here\n", argv[i]);
+            return 2;
+        }
     }
-    if (!gxbp_arithmetic_holds(1)) { printf("the trial of arithmetic fails\n"); return 1; }
+    if (!gxbp_arithmetic_holds(1)) {
+        printf("the trial of arithmetic fails\n");
+        return 1;
+    }
     random = pc_seeded(seed);
     for (done = 0; done < wanted; done += BATCH) {
         prepare(&random, worst);

@@ -26,8 +26,8 @@
 enum { RAT_BLOCK_LIMBS = 1 << 18, RAT_BLOCKS = 4096 };
 
 typedef struct rat_mark {
-    size_t block;   /* the block being filled */
-    size_t used;    /* limbs taken from it */
+    size_t block; /* the block being filled */
+    size_t used;  /* limbs taken from it */
 } rat_mark;
 
 static uint32_t *rat_blocks[RAT_BLOCKS];
@@ -44,7 +44,10 @@ static inline void rat_arena_release(rat_mark mark) { rat_arena = mark; }
 /* Gives the blocks back as well; every number made so far is gone. */
 static inline void rat_arena_free(void) {
     size_t i;
-    for (i = 0; i < RAT_BLOCKS; ++i) { free(rat_blocks[i]); rat_blocks[i] = NULL; }
+    for (i = 0; i < RAT_BLOCKS; i++) {
+        free(rat_blocks[i]);
+        rat_blocks[i] = NULL;
+    }
     rat_arena.block = 0;
     rat_arena.used = 0;
 }
@@ -67,14 +70,14 @@ static inline uint32_t *rat_limbs(size_t count) {
 
 /* ---- bigs: dyadic numbers ---- */
 typedef struct big {
-    const uint32_t *limb;   /* count limbs, least significant first; neither the first nor the last is 0 */
-    int32_t count;          /* 0: the number is zero */
-    int32_t exponent;       /* of the first limb, in limbs */
-    int32_t sign;           /* -1, 0, 1 */
+    const uint32_t *limb; /* count limbs, least significant first; neither the first nor the last is 0 */
+    int32_t count;        /* 0: the number is zero */
+    int32_t exponent;     /* of the first limb, in limbs */
+    int32_t sign;         /* -1, 0, 1 */
 } big;
 
 static inline big big_zero(void) {
-    big zero = { NULL, 0, 0, 0 };
+    big zero = {NULL, 0, 0, 0};
     return zero;
 }
 
@@ -82,9 +85,16 @@ static inline big big_zero(void) {
 static inline big big_normalised(const uint32_t *limb, int32_t count, int32_t exponent, int32_t sign) {
     big x;
     while (count > 0 && limb[count - 1] == 0) --count;
-    while (count > 0 && limb[0] == 0) { ++limb; ++exponent; --count; }
+    while (count > 0 && limb[0] == 0) {
+        limb++;
+        exponent++;
+        --count;
+    }
     if (count == 0) return big_zero();
-    x.limb = limb; x.count = count; x.exponent = exponent; x.sign = sign;
+    x.limb = limb;
+    x.count = count;
+    x.exponent = exponent;
+    x.sign = sign;
     return x;
 }
 
@@ -97,9 +107,13 @@ static inline big big_from_double(double x) {
     power = (int32_t)((bits >> 52) & 0x7ff);
     mantissa = bits & ((UINT64_C(1) << 52) - 1);
     if (power == 0x7ff) rat_stop("not a finite double");
-    if (power == 0) power = 1; else mantissa |= UINT64_C(1) << 52;
-    power += 32 * 64 - 1075;                /* now x = mantissa 2^(power - 32 64), and power > 0 */
-    exponent = power / 32; shift = power % 32;
+    if (power == 0)
+        power = 1;
+    else
+        mantissa |= UINT64_C(1) << 52;
+    power += 32 * 64 - 1075; /* now x = mantissa 2^(power - 32 64), and power > 0 */
+    exponent = power / 32;
+    shift = power % 32;
     limb = rat_limbs(3);
     limb[0] = (uint32_t)(mantissa << shift);
     limb[1] = (uint32_t)((mantissa >> (32 - shift)));
@@ -119,8 +133,14 @@ static inline int32_t big_top(big x) { return x.exponent + x.count; }
 static inline int32_t rat_min(int32_t a, int32_t b) { return a < b ? a : b; }
 static inline int32_t rat_max(int32_t a, int32_t b) { return a > b ? a : b; }
 
-static inline big big_neg(big x) { x.sign = -x.sign; return x; }
-static inline big big_abs(big x) { x.sign = x.sign != 0; return x; }
+static inline big big_neg(big x) {
+    x.sign = -x.sign;
+    return x;
+}
+static inline big big_abs(big x) {
+    x.sign = x.sign != 0;
+    return x;
+}
 static inline int big_sign(big x) { return x.sign; }
 
 /* -1, 0, 1: |a| against |b| */
@@ -129,7 +149,7 @@ static inline int big_compare_abs(big a, big b) {
     if (a.sign == 0 || b.sign == 0) return (a.sign != 0) - (b.sign != 0);
     if (big_top(a) != big_top(b)) return big_top(a) > big_top(b) ? 1 : -1;
     low = rat_min(a.exponent, b.exponent);
-    for (i = big_top(a) - 1; i >= low; --i) {
+    for (i = big_top(a) - 1; i >= low; i--) {
         uint32_t p = big_limb(a, i), q = big_limb(b, i);
         if (p != q) return p > q ? 1 : -1;
     }
@@ -141,7 +161,7 @@ static inline big big_sum_abs(big a, big b, int subtract, int32_t sign) {
     int32_t low = rat_min(a.exponent, b.exponent), high = rat_max(big_top(a), big_top(b)) + 1, i;
     uint32_t *limb = rat_limbs((size_t)(high - low));
     int64_t carry = 0;
-    for (i = low; i < high; ++i) {
+    for (i = low; i < high; i++) {
         int64_t p = big_limb(a, i), q = big_limb(b, i);
         carry += subtract ? p - q : p + q;
         limb[i - low] = (uint32_t)(carry & 0xffffffff);
@@ -166,10 +186,10 @@ static inline big big_mul(big a, big b) {
     if (a.sign == 0 || b.sign == 0) return big_zero();
     limb = rat_limbs((size_t)count);
     memset(limb, 0, (size_t)count * sizeof *limb);
-    for (i = 0; i < a.count; ++i) {
+    for (i = 0; i < a.count; i++) {
         uint64_t carry = 0;
-        for (j = 0; j < b.count; ++j) {
-            carry += (uint64_t)a.limb[i] * b.limb[j] + limb[i + j];     /* (2^32 - 1)^2 + 2 (2^32 - 1) = 2^64 - 1 */
+        for (j = 0; j < b.count; j++) {
+            carry += (uint64_t)a.limb[i] * b.limb[j] + limb[i + j]; /* (2^32 - 1)^2 + 2 (2^32 - 1) = 2^64 - 1 */
             limb[i + j] = (uint32_t)carry;
             carry >>= 32;
         }
@@ -233,18 +253,20 @@ static inline big big_dot(const big a[3], const big b[3]) {
 
 static inline void big_vector(const double x[3], big result[3]) {
     int k;
-    for (k = 0; k < 3; ++k) result[k] = big_from_double(x[k]);
+    for (k = 0; k < 3; k++) result[k] = big_from_double(x[k]);
 }
 
 static inline void big_difference(const double a[3], const double b[3], big result[3]) {
     int k;
-    for (k = 0; k < 3; ++k) result[k] = big_sub(big_from_double(a[k]), big_from_double(b[k]));
+    for (k = 0; k < 3; k++) result[k] = big_sub(big_from_double(a[k]), big_from_double(b[k]));
 }
 
 /* det(b - a, c - a, d - a): six times the volume of the tetrahedron, > 0 where d sees a, b, c clockwise */
 static inline big big_orient3d(const double a[3], const double b[3], const double c[3], const double d[3]) {
     big u[3], v[3], w[3];
-    big_difference(b, a, u); big_difference(c, a, v); big_difference(d, a, w);
+    big_difference(b, a, u);
+    big_difference(c, a, v);
+    big_difference(d, a, w);
     return big_det3(u, v, w);
 }
 
@@ -259,7 +281,7 @@ static inline big big_orient2d(const double a[2], const double b[2], const doubl
 /* ---- rationals ---- */
 typedef struct rat {
     big num;
-    big den;    /* > 0 */
+    big den; /* > 0 */
 } rat;
 
 static inline rat rat_ratio(big num, big den) {
@@ -279,8 +301,14 @@ static inline rat rat_add(rat a, rat b) {
     return rat_ratio(big_add(big_mul(a.num, b.den), big_mul(b.num, a.den)), big_mul(a.den, b.den));
 }
 
-static inline rat rat_neg(rat a) { a.num = big_neg(a.num); return a; }
-static inline rat rat_abs(rat a) { a.num = big_abs(a.num); return a; }
+static inline rat rat_neg(rat a) {
+    a.num = big_neg(a.num);
+    return a;
+}
+static inline rat rat_abs(rat a) {
+    a.num = big_abs(a.num);
+    return a;
+}
 static inline rat rat_sub(rat a, rat b) { return rat_add(a, rat_neg(b)); }
 static inline rat rat_mul(rat a, rat b) { return rat_ratio(big_mul(a.num, b.num), big_mul(a.den, b.den)); }
 static inline rat rat_div(rat a, rat b) { return rat_ratio(big_mul(a.num, b.den), big_mul(a.den, b.num)); }

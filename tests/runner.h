@@ -18,14 +18,14 @@
 #endif
 
 /* Adds a test for each of 0 ... count - 1, or for every fifth: coprime to what cases are combined of */
-#define ADD_SOME(tcase, test, count) \
-    do { \
-        int some_; \
-        for (some_ = 0; some_ < (count); some_ += FEWER > 1 ? FEWER + 1 : 1) tcase_add_loop_test(tcase, test, some_, some_ + 1); \
+#define ADD_SOME(tcase, test, count)                                                                                   \
+    do {                                                                                                               \
+        int some_;                                                                                                     \
+        for (some_ = 0; some_<(count); some_ += FEWER> 1 ? FEWER + 1 : 1)                                              \
+            tcase_add_loop_test(tcase, test, some_, some_ + 1);                                                        \
     } while (0)
 
-static inline int run_suite(Suite *suite)
-{
+static inline int run_suite(Suite *suite) {
     SRunner *runner = srunner_create(suite);
     int failed;
     srunner_run_all(runner, CK_NORMAL);

@@ -1,7 +1,8 @@
-/* test_baselines.c - what the benches compare the library with: bench/dense.h, part.h, rxfem.h and what it rests on, sampling.h, parts.h. Each
-   must be as good as it is meant to be, else the comparison says nothing.
+/* test_baselines.c - what the benches compare the library with: bench/dense.h, part.h, rxfem.h and what it rests on,
+   sampling.h, parts.h. Each must be as good as it is meant to be, else the comparison says nothing.
 
-   truth: part.h against rationals and the oracle; then rules against part.h, enrichments against the library's copies. */
+   truth: part.h against rationals and the oracle; then rules against part.h, enrichments against the library's copies.
+ */
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "../bench/part.h"
@@ -16,19 +17,23 @@ enum { SEEDS = 40 / FEWER };
 static const double unit_corners[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
 static const uint32_t unit_element[4] = {0, 1, 2, 3};
 
-static rx_rules *rules;         /* as published */
+static rx_rules *rules; /* as published */
 
 static void make_rules(void) { rules = rx_rules_create(2, 0); }
 static void free_rules(void) { rx_rules_destroy(rules); }
 
 static rx_surface rx_surface_of(const wl_surface *s) {
     rx_surface r;
-    r.vertices = s->vertices; r.vertex_count = s->vertex_count;
-    r.triangles = s->triangles; r.triangle_count = s->triangle_count;
+    r.vertices = s->vertices;
+    r.vertex_count = s->vertex_count;
+    r.triangles = s->triangles;
+    r.triangle_count = s->triangle_count;
     return r;
 }
 
-static rx_body *rx_body_of(const workload *w) { return rx_body_create(rules, w->positions, w->node_count, w->elements, w->element_count); }
+static rx_body *rx_body_of(const workload *w) {
+    return rx_body_create(rules, w->positions, w->node_count, w->elements, w->element_count);
+}
 
 static rx_result rx_cut_by(rx_body *b, const workload *w, size_t k) {
     const rx_surface s = rx_surface_of(&w->surfaces[k]);
@@ -39,13 +44,15 @@ static rx_result rx_cut_by(rx_body *b, const workload *w, size_t k) {
 
 static void fill_random(double *a, size_t n) {
     size_t i;
-    for (i = 0; i < n; ++i) a[i] = random_real(-1, 1);
+    for (i = 0; i < n; i++) a[i] = random_real(-1, 1);
 }
 
 /* c = a b, a: m x k, b: k x n */
 static void multiply(const double *a, const double *b, size_t m, size_t k, size_t n, double *c) {
     size_t i, j, l;
-    for (i = 0; i < m; ++i) for (j = 0; j < n; ++j) for (c[i * n + j] = 0, l = 0; l < k; ++l) c[i * n + j] += a[i * k + l] * b[l * n + j];
+    for (i = 0; i < m; i++)
+        for (j = 0; j < n; j++)
+            for (c[i * n + j] = 0, l = 0; l < k; l++) c[i * n + j] += a[i * k + l] * b[l * n + j];
 }
 
 /* A^T (A x - b) = 0 and x without a part in the null space: both are what x = A^+ b means. */
@@ -59,13 +66,13 @@ static void check_pseudo_inverse(pinv *p, size_t m, size_t n, size_t rank, uint6
     pinv_factor(p, a, m, n, 1e-10);
     pinv_solve(p, b, x);
     multiply(a, x, m, n, 1, back);
-    for (j = 0; j < n; ++j) {
-        for (gradient = 0, i = 0; i < m; ++i) gradient += a[i * n + j] * (back[i] - b[i]);
+    for (j = 0; j < n; j++) {
+        for (gradient = 0, i = 0; i < m; i++) gradient += a[i * n + j] * (back[i] - b[i]);
         CHECK_SEED(fabs(gradient) < 1e-10, seed);
     }
-    pinv_solve(p, back, again);             /* A^+ A x = x: x is orthogonal to what A takes to 0 */
-    for (j = 0; j < n; ++j) CHECK_SEED(fabs(again[j] - x[j]) < 1e-9, seed);
-    for (i = 0, j = 0; j < p->rank; ++j) i += p->scale[j] > 0;
+    pinv_solve(p, back, again); /* A^+ A x = x: x is orthogonal to what A takes to 0 */
+    for (j = 0; j < n; j++) CHECK_SEED(fabs(again[j] - x[j]) < 1e-9, seed);
+    for (i = 0, j = 0; j < p->rank; j++) i += p->scale[j] > 0;
     CHECK_SEED(i == rank, seed);
 }
 
@@ -73,10 +80,11 @@ START_TEST(pseudo_inverse) {
     pinv p;
     uint64_t seed;
     memset(&p, 0, sizeof p);
-    for (seed = 1; seed <= SEEDS; ++seed) {
+    for (seed = 1; seed <= SEEDS; seed++) {
         size_t m, n, least;
         random_seed(seed);
-        m = 1 + (size_t)random_below(20); n = 1 + (size_t)random_below(20);
+        m = 1 + (size_t)random_below(20);
+        n = 1 + (size_t)random_below(20);
         least = m < n ? m : n;
         check_pseudo_inverse(&p, m, n, 1 + (size_t)random_below((int)least), seed);
     }
@@ -92,36 +100,39 @@ static rat edge_share(const double *t, const double *x0, const double *x) {
     return rat_ratio(a, big_sub(a, b));
 }
 
-/* The moments of what a plane leaves at corner 0: the simplex with the legs s_i: s1 s2 s3 / 6, times s_i / 4, s_i s_j (1 + (i = j)) / 20 */
+/* The moments of what a plane leaves at corner 0: the simplex with the legs s_i: s1 s2 s3 / 6, times s_i / 4, s_i s_j
+ * (1 + (i = j)) / 20 */
 static void corner_moments(const double *t, const double *x, rat m[10]) {
     rat s[3], all;
     int i, j, at = 4;
-    for (i = 0; i < 3; ++i) s[i] = edge_share(t, x, x + 3 * (i + 1));
+    for (i = 0; i < 3; i++) s[i] = edge_share(t, x, x + 3 * (i + 1));
     all = rat_mul(rat_mul(s[0], s[1]), s[2]);
     m[0] = rat_div(all, rat_from_int(6));
-    for (i = 0; i < 3; ++i) m[1 + i] = rat_div(rat_mul(all, s[i]), rat_from_int(24));
-    for (i = 0; i < 3; ++i)
-        for (j = i; j < 3; ++j) m[at++] = rat_div(rat_mul(rat_mul(all, s[i]), s[j]), rat_from_int(i == j ? 60 : 120));
+    for (i = 0; i < 3; i++) m[1 + i] = rat_div(rat_mul(all, s[i]), rat_from_int(24));
+    for (i = 0; i < 3; i++)
+        for (j = i; j < 3; j++) m[at++] = rat_div(rat_mul(rat_mul(all, s[i]), s[j]), rat_from_int(i == j ? 60 : 120));
 }
 
 /* A triangle that cuts corner 0 of the tetrahedron off, far beyond it */
 static void cut_corner(const double *x, double *t) {
     double legs[3], p[9];
     int i, a;
-    for (i = 0; i < 3; ++i) legs[i] = random_real(0.05, 0.95);
-    for (i = 0; i < 9; ++i) p[i] = x[i % 3] + legs[i / 3] * (x[3 + i] - x[i % 3]);
-    for (i = 0; i < 3; ++i)
-        for (a = 0; a < 3; ++a) t[3 * i + a] = p[3 * i + a] + 3 * (2 * p[3 * i + a] - p[(3 * i + 3) % 9 + a] - p[(3 * i + 6) % 9 + a]);
+    for (i = 0; i < 3; i++) legs[i] = random_real(0.05, 0.95);
+    for (i = 0; i < 9; i++) p[i] = x[i % 3] + legs[i / 3] * (x[3 + i] - x[i % 3]);
+    for (i = 0; i < 3; i++)
+        for (a = 0; a < 3; a++)
+            t[3 * i + a] = p[3 * i + a] + 3 * (2 * p[3 * i + a] - p[(3 * i + 3) % 9 + a] - p[(3 * i + 6) % 9 + a]);
 }
 
 static void random_tetrahedron(double *x) {
-    do fill_random(x, 12); while (gxi_tet_volume(x) < 0.05);
+    do fill_random(x, 12);
+    while (gxi_tet_volume(x) < 0.05);
 }
 
 START_TEST(truth_against_rationals) {
     static const uint32_t triangle[3] = {0, 1, 2};
     uint64_t seed;
-    for (seed = 1; seed <= SEEDS; ++seed) {
+    for (seed = 1; seed <= SEEDS; seed++) {
         const rat_mark mark = rat_arena_mark();
         double x[12], t[9];
         long double m[10];
@@ -134,7 +145,8 @@ START_TEST(truth_against_rationals) {
         corner_moments(t, x, exact);
         p = part_create(x, t, triangle, 1, 0);
         part_moments(&p, m);
-        for (i = 0; i < 10; ++i) CHECK_SEED(fabs((double)m[i] - rat_to_double(exact[i])) <= 1e-15 * rat_to_double(exact[i]), seed);
+        for (i = 0; i < 10; i++)
+            CHECK_SEED(fabs((double)m[i] - rat_to_double(exact[i])) <= 1e-15 * rat_to_double(exact[i]), seed);
         part_free(&p);
         rat_arena_release(mark);
     }
@@ -155,16 +167,18 @@ START_TEST(truth_against_oracle) {
     size_t i;
     part_moments(&p, m);
     ck_assert_uint_eq(o->cell_count, 2);
-    ck_assert_double_eq_tol(fmin(fabs((double)m[0] - o->cell_volume[0]), fabs((double)m[0] - o->cell_volume[1])), 0, 1e-17);
-    for (i = 0; i < inside.count; ++i) volume += sampling_volume(inside.corners + 12 * i);
+    ck_assert_double_eq_tol(fmin(fabs((double)m[0] - o->cell_volume[0]), fabs((double)m[0] - o->cell_volume[1])), 0,
+                            1e-17);
+    for (i = 0; i < inside.count; i++) volume += sampling_volume(inside.corners + 12 * i);
     ck_assert_double_eq_tol(volume, (double)m[0], 1e-16);
-    for (i = 0; i < boundary.count; ++i) {
+    for (i = 0; i < boundary.count; i++) {
         double cone[12] = {0};
         memcpy(cone + 3, boundary.corners + 9 * i, 9 * sizeof(double));
         cones += sampling_volume(cone);
     }
     ck_assert_double_eq_tol(cones, (double)m[0], 1e-16);
-    free(inside.corners); free(boundary.corners);
+    free(inside.corners);
+    free(boundary.corners);
     part_free(&p);
     oracle_destroy(o);
 }
@@ -172,24 +186,26 @@ END_TEST
 
 /* ---- RXFEM's rules ---- */
 
-/* Divergence-free: no flux out of the tetrahedron. Antiderivatives: the flux is the integral. By the rules of whole faces. */
+/* Divergence-free: no flux out of the tetrahedron. Antiderivatives: the flux is the integral. By the rules of whole
+ * faces. */
 START_TEST(fields_and_antiderivatives) {
     unsigned degree;
-    for (degree = 1; degree <= RX_DEGREE_MAX; ++degree) {
+    for (degree = 1; degree <= RX_DEGREE_MAX; degree++) {
         rx_rules *r = rx_rules_create(degree, 0);
         const rx_fit *v = &r->volume, *f = &r->face;
         double flux[RX_FIELDS] = {0}, integral[RX_MONOMIALS] = {0}, moments[RX_MONOMIALS];
         size_t i, j;
         int k;
-        for (i = 0; i < f->moment_count; ++i) moments[i] = rx_simplex_integral(2, f->basis.exponent[i][0], f->basis.exponent[i][1], 0);
-        for (k = 0; k < 4; ++k)
-            for (i = 0; i < f->point_count; ++i) {
+        for (i = 0; i < f->moment_count; i++)
+            moments[i] = rx_simplex_integral(2, f->basis.exponent[i][0], f->basis.exponent[i][1], 0);
+        for (k = 0; k < 4; k++)
+            for (i = 0; i < f->point_count; i++) {
                 const double w = dense_dot(f->weights[i], moments, f->moment_count);
                 dense_add(flux, w, r->fluxes[k][i], v->field_count);
                 dense_add(integral, w, r->antiderivatives[k][i], v->moment_count);
             }
-        for (j = 0; j < v->field_count; ++j) ck_assert_double_eq_tol(flux[j], 0, 1e-13);
-        for (j = 0; j < v->moment_count; ++j) {
+        for (j = 0; j < v->field_count; j++) ck_assert_double_eq_tol(flux[j], 0, 1e-13);
+        for (j = 0; j < v->moment_count; j++) {
             const unsigned char *e = v->basis.exponent[j];
             ck_assert_double_eq_tol(integral[j], rx_simplex_integral(3, e[0], e[1], e[2]), 1e-13);
         }
@@ -198,7 +214,8 @@ START_TEST(fields_and_antiderivatives) {
 }
 END_TEST
 
-/* As many functions and points as the paper says: 24, 19; the fields to degree 3 in space are 50, to 4 in the plane 20. */
+/* As many functions and points as the paper says: 24, 19; the fields to degree 3 in space are 50, to 4 in the plane 20.
+ */
 START_TEST(published_counts) {
     size_t i;
     double gauss = 0;
@@ -208,7 +225,7 @@ START_TEST(published_counts) {
     ck_assert_uint_eq(rules->face.moment_count, 10);
     ck_assert_uint_eq(rules->volume.field_count, 50);
     ck_assert_uint_eq(rules->face.field_count, 20);
-    for (i = 0; i < RX_GAUSS; ++i) {
+    for (i = 0; i < RX_GAUSS; i++) {
         ck_assert_double_eq_tol(RX_GAUSS_AT[i], rx_gauss_point(RX_GAUSS, (int)i), 1e-15);
         gauss += RX_GAUSS_WEIGHT[i] * pow(RX_GAUSS_AT[i], 7);
     }
@@ -221,7 +238,7 @@ static double moments_error(const rx_body *b, const rx_piece *piece, const long 
     const rx_basis *basis = &b->rules->volume.basis;
     double worst = 0;
     size_t i;
-    for (i = 0; i < 10; ++i) {
+    for (i = 0; i < 10; i++) {
         const unsigned char *e = basis->exponent[i];
         worst = fmax(worst, fabs(piece->moments[i] - (double)m[i]) / rx_simplex_integral(3, e[0], e[1], e[2]));
     }
@@ -234,7 +251,8 @@ static const rx_piece *piece_at_corner(const rx_body *b) {
     return &b->pieces[(b->pieces[0].plus & 1) == (b->patches[b->patch_list[0]].plus & 1) ? 0 : 1];
 }
 
-/* Cuts one tetrahedron; returns the error of both pieces, and checks that the weights at the points give the moments. */
+/* Cuts one tetrahedron; returns the error of both pieces, and checks that the weights at the points give the moments.
+ */
 static double one_cut_error(rx_rules *r, const double *x, const rx_surface *s) {
     rx_body *b = rx_body_create(r, x, 4, unit_element, 1);
     part p = part_create(x, s->vertices, s->triangles, s->triangle_count, 0);
@@ -245,15 +263,15 @@ static double one_cut_error(rx_rules *r, const double *x, const rx_surface *s) {
     ck_assert_int_eq(rx_body_cut(b, s), RX_OK);
     piece = piece_at_corner(b);
     part_moments(&p, m);
-    for (i = 0; i < 10; ++i) {
+    for (i = 0; i < 10; i++) {
         const unsigned char *e = r->volume.basis.exponent[i];
         rest[i] = rx_simplex_integral(3, e[0], e[1], e[2]) - m[i];
     }
     error = fmax(moments_error(b, piece, m), moments_error(b, piece == b->pieces ? piece + 1 : b->pieces, rest));
     rx_weights(r, piece->moments, weights);
-    for (i = 0; i < r->volume.moment_count; ++i) {
+    for (i = 0; i < r->volume.moment_count; i++) {
         double sum = 0;
-        for (j = 0; j < r->volume.point_count; ++j) {
+        for (j = 0; j < r->volume.point_count; j++) {
             rx_basis_values(&r->volume.basis, r->volume.points[j], values);
             sum += weights[j] * values[i];
         }
@@ -272,41 +290,46 @@ static workload random_dihedral(uint64_t seed, int bent, double x[12]) {
     int k;
     random_seed(seed);
     random_tetrahedron(x);
-    w = wl_tetrahedron((const double (*)[3])(const void *)unit_corners);
+    w = wl_tetrahedron((const double(*)[3])(const void *)unit_corners);
     memcpy(w.positions, x, 12 * sizeof(double));
-    for (k = 0; k < 4; ++k) sum += share[k] = random_real(0.5, 1);
-    for (k = 0; k < 12; ++k) middle[k % 3] += share[k / 3] / sum * x[k];
-    do fill_random(ridge, 3); while (dense_dot(ridge, ridge, 3) < 0.2);
-    do fill_random(wing, 3); while (dense_dot(wing, wing, 3) < 0.2 || fabs(dense_dot(wing, ridge, 3)) > 0.2);
+    for (k = 0; k < 4; k++) sum += share[k] = random_real(0.5, 1);
+    for (k = 0; k < 12; k++) middle[k % 3] += share[k / 3] / sum * x[k];
+    do fill_random(ridge, 3);
+    while (dense_dot(ridge, ridge, 3) < 0.2);
+    do fill_random(wing, 3);
+    while (dense_dot(wing, wing, 3) < 0.2 || fabs(dense_dot(wing, ridge, 3)) > 0.2);
     if (!bent) {
         add_plane(&w, middle, wing, 9);
         return w;
     }
     s = wl_add_surface(&w, 0);
-    for (k = 0; k < 3; ++k) {
-        p[0][k] = middle[k] - 15 * ridge[k]; p[1][k] = middle[k] + 15 * ridge[k];
-        p[2][k] = middle[k] + 15 * wing[k]; p[3][k] = middle[k] - 15 * wing[k] + random_real(-8, 8);
+    for (k = 0; k < 3; k++) {
+        p[0][k] = middle[k] - 15 * ridge[k];
+        p[1][k] = middle[k] + 15 * ridge[k];
+        p[2][k] = middle[k] + 15 * wing[k];
+        p[3][k] = middle[k] - 15 * wing[k] + random_real(-8, 8);
     }
-    for (k = 0; k < 4; ++k) wl_add_vertex(s, p[k]);
+    for (k = 0; k < 4; k++) wl_add_vertex(s, p[k]);
     wl_add_triangle(s, 0, 1, 2);
     wl_add_triangle(s, 1, 0, 3);
     return w;
 }
 
-/* Exact on planes, and on wedges too: the fields' normal components span all polynomials on two planes at once. Triangles here reach 10 to
-   100 elements far; points on all of them, unclipped, cost digits. */
+/* Exact on planes, and on wedges too: the fields' normal components span all polynomials on two planes at once.
+   Triangles here reach 10 to 100 elements far; points on all of them, unclipped, cost digits. */
 START_TEST(rules_on_planes_and_wedges) {
     int clip, bent;
-    for (clip = 0; clip < 2; ++clip) {
+    for (clip = 0; clip < 2; clip++) {
         rx_rules *r = rx_rules_create(2, clip);
         uint64_t seed;
-        for (bent = 0; bent < 2; ++bent)
-            for (seed = 1; seed <= SEEDS; ++seed) {
+        for (bent = 0; bent < 2; bent++)
+            for (seed = 1; seed <= SEEDS; seed++) {
                 double x[12], error;
                 workload w = random_dihedral(seed, bent, x);
                 const rx_surface s = rx_surface_of(&w.surfaces[0]);
                 error = one_cut_error(r, x, &s);
-                ck_assert_msg(error < (clip ? 1e-11 : 1e-6), "seed %d, clip %d, bent %d: %.2e", (int)seed, clip, bent, error);
+                ck_assert_msg(error < (clip ? 1e-11 : 1e-6), "seed %d, clip %d, bent %d: %.2e", (int)seed, clip, bent,
+                              error);
                 wl_free(&w);
             }
         rx_rules_destroy(r);
@@ -314,22 +337,23 @@ START_TEST(rules_on_planes_and_wedges) {
 }
 END_TEST
 
-/* On a wavy sheet the interface is fitted, not integrated: the error is that of the fit, however small the triangles are. */
+/* On a wavy sheet the interface is fitted, not integrated: the error is that of the fit, however small the triangles
+ * are. */
 START_TEST(rules_on_waves) {
     static const double origin[3] = {0.05, 0.04, 0.31};
     double error[2];
     int i, k;
-    for (i = 0; i < 2; ++i) {
+    for (i = 0; i < 2; i++) {
         workload w = corner_tet();
         wl_frame f = wl_axes();
         rx_surface s;
-        for (k = 0; k < 3; ++k) f.origin[k] = origin[k];
+        for (k = 0; k < 3; k++) f.origin[k] = origin[k];
         wl_add_wave(wl_add_surface(&w, 0), &f, i == 0 ? 9 : 37, 1.9);
         s = rx_surface_of(&w.surfaces[0]);
         error[i] = one_cut_error(rules, w.positions, &s);
         wl_free(&w);
     }
-    for (i = 0; i < 2; ++i) {
+    for (i = 0; i < 2; i++) {
         ck_assert_double_gt(error[i], 1e-6);
         ck_assert_double_lt(error[i], 2e-3);
     }
@@ -338,10 +362,17 @@ END_TEST
 
 /* ---- RXFEM's enrichment ---- */
 
-/* The value at each corner of each cell by the functions: rows cell x 4 + corner, of the elements in order and their cells by volume */
-typedef struct span { double *a; size_t rows, columns; } span;
+/* The value at each corner of each cell by the functions: rows cell x 4 + corner, of the elements in order and their
+ * cells by volume */
+typedef struct span {
+    double *a;
+    size_t rows, columns;
+} span;
 
-typedef struct sized { double volume; size_t index; } sized;
+typedef struct sized {
+    double volume;
+    size_t index;
+} sized;
 
 static int by_volume(const void *a, const void *b) {
     const sized *x = (const sized *)a, *y = (const sized *)b;
@@ -352,12 +383,15 @@ static int by_volume(const void *a, const void *b) {
 static size_t *order_cells(const uint32_t *element, const double *volume, size_t count) {
     size_t *order = (size_t *)dense_memory(NULL, count, sizeof *order), from, to, i;
     sized *list = (sized *)dense_memory(NULL, count, sizeof *list);
-    for (i = 0; i < count; ++i) { list[i].volume = volume[i]; list[i].index = i; }
+    for (i = 0; i < count; i++) {
+        list[i].volume = volume[i];
+        list[i].index = i;
+    }
     for (from = 0; from < count; from = to) {
-        for (to = from; to < count && element[to] == element[from]; ++to) {}
+        for (to = from; to < count && element[to] == element[from]; to++) {}
         qsort(list + from, to - from, sizeof *list, by_volume);
     }
-    for (i = 0; i < count; ++i) order[i] = list[i].index;
+    for (i = 0; i < count; i++) order[i] = list[i].index;
     free(list);
     return order;
 }
@@ -365,9 +399,11 @@ static size_t *order_cells(const uint32_t *element, const double *volume, size_t
 static span span_of_copies(const gx_view *v) {
     size_t *order = order_cells(v->cell_element, v->cell_volume, v->cell_count), i, k;
     span s;
-    s.rows = 4 * v->cell_count; s.columns = v->copy_count;
+    s.rows = 4 * v->cell_count;
+    s.columns = v->copy_count;
     s.a = (double *)dense_memory(NULL, s.rows * s.columns, sizeof(double));
-    for (i = 0; i < v->cell_count; ++i) for (k = 0; k < 4; ++k) s.a[(4 * i + k) * s.columns + v->cell_copies[4 * order[i] + k]] = 1;
+    for (i = 0; i < v->cell_count; i++)
+        for (k = 0; k < 4; k++) s.a[(4 * i + k) * s.columns + v->cell_copies[4 * order[i] + k]] = 1;
     free(order);
     return s;
 }
@@ -378,18 +414,24 @@ static span span_of_enrichments(const rx_body *b) {
     size_t *order, i, j, count;
     int psi[64], k;
     span s;
-    for (i = 0; i < b->piece_count; ++i) { element[i] = b->pieces[i].element; volume[i] = b->pieces[i].moments[0]; }
+    for (i = 0; i < b->piece_count; i++) {
+        element[i] = b->pieces[i].element;
+        volume[i] = b->pieces[i].moments[0];
+    }
     order = order_cells(element, volume, b->piece_count);
-    s.rows = 4 * b->piece_count; s.columns = b->node_count + b->enrichment_count;
+    s.rows = 4 * b->piece_count;
+    s.columns = b->node_count + b->enrichment_count;
     s.a = (double *)dense_memory(NULL, s.rows * s.columns, sizeof(double));
-    for (i = 0; i < b->piece_count; ++i)
-        for (k = 0; k < 4; ++k) {
+    for (i = 0; i < b->piece_count; i++)
+        for (k = 0; k < 4; k++) {
             double *row = s.a + (4 * i + (size_t)k) * s.columns;
             row[b->elements[4 * element[order[i]] + (uint32_t)k]] = 1;
             count = rx_piece_functions(b, &b->pieces[order[i]], k, functions, psi);
-            for (j = 0; j < count; ++j) row[b->node_count + functions[j]] = psi[j];
+            for (j = 0; j < count; j++) row[b->node_count + functions[j]] = psi[j];
         }
-    free(element); free(volume); free(order);
+    free(element);
+    free(volume);
+    free(order);
     return s;
 }
 
@@ -398,7 +440,7 @@ static size_t rank_of(const span *s) {
     size_t rank = 0, i;
     memset(&p, 0, sizeof p);
     pinv_factor(&p, s->a, s->rows, s->columns, 1e-8);
-    for (i = 0; i < p.rank; ++i) rank += p.scale[i] > 0;
+    for (i = 0; i < p.rank; i++) rank += p.scale[i] > 0;
     pinv_free(&p);
     return rank;
 }
@@ -406,9 +448,10 @@ static size_t rank_of(const span *s) {
 static span side_by_side(const span *s, const span *t) {
     span both;
     size_t i;
-    both.rows = s->rows; both.columns = s->columns + t->columns;
+    both.rows = s->rows;
+    both.columns = s->columns + t->columns;
     both.a = (double *)dense_memory(NULL, both.rows * both.columns, sizeof(double));
-    for (i = 0; i < s->rows; ++i) {
+    for (i = 0; i < s->rows; i++) {
         memcpy(both.a + i * both.columns, s->a + i * s->columns, s->columns * sizeof(double));
         memcpy(both.a + i * both.columns + s->columns, t->a + i * t->columns, t->columns * sizeof(double));
     }
@@ -422,7 +465,7 @@ static size_t check_same_space(const workload *w) {
     const gx_view view = view_of(body);
     span copies, enrichments, both;
     size_t i, count;
-    for (i = 0; i < w->surface_count; ++i) ck_assert_int_eq(rx_cut_by(b, w, i), RX_OK);
+    for (i = 0; i < w->surface_count; i++) ck_assert_int_eq(rx_cut_by(b, w, i), RX_OK);
     ck_assert_uint_eq(b->piece_count, view.cell_count);
     ck_assert_uint_eq(b->node_count + b->enrichment_count, view.copy_count);
     copies = span_of_copies(&view);
@@ -431,7 +474,9 @@ static size_t check_same_space(const workload *w) {
     ck_assert_uint_eq(rank_of(&copies), view.copy_count);
     ck_assert_uint_eq(rank_of(&enrichments), view.copy_count);
     ck_assert_uint_eq(rank_of(&both), view.copy_count);
-    free(copies.a); free(enrichments.a); free(both.a);
+    free(copies.a);
+    free(enrichments.a);
+    free(both.a);
     count = b->enrichment_count;
     rx_body_destroy(b);
     gx_body_destroy(body);
@@ -440,17 +485,17 @@ static size_t check_same_space(const workload *w) {
 
 START_TEST(same_space_as_copies) {
     uint64_t seed;
-    for (seed = 1; seed <= SEEDS / 2; ++seed) {
+    for (seed = 1; seed <= SEEDS / 2; seed++) {
         workload w;
         double p[3], n[3];
         random_seed(seed);
         w = seed % 2 ? grid(2, 2, 1, 5) : grid(1, 2, 1, 6);
         random_point(&w, p);
         fill_random(n, 3);
-        add_plane(&w, p, n, seed % 3 ? 9 : 0.8);        /* through, or it ends inside */
-        if (seed % 2) {                                 /* a parallel one beside it */
+        add_plane(&w, p, n, seed % 3 ? 9 : 0.8); /* through, or it ends inside */
+        if (seed % 2) {                          /* a parallel one beside it */
             int k;
-            for (k = 0; k < 3; ++k) p[k] += 0.11 * n[k];
+            for (k = 0; k < 3; k++) p[k] += 0.11 * n[k];
             add_plane(&w, p, n, 9);
         }
         check_same_space(&w);
@@ -462,7 +507,7 @@ END_TEST
 /* Bumpy sheets, through and ending inside, on jittered meshes: as many pieces and unknowns as the exact topology has */
 START_TEST(complete_where_cells_are) {
     uint64_t seed;
-    for (seed = 1; seed <= SEEDS / 4; ++seed) {
+    for (seed = 1; seed <= SEEDS / 4; seed++) {
         workload w = grid(2, 2, 2, seed % 2 ? 5 : 6);
         wl_frame f = wl_rotated();
         gx_body *body;
@@ -470,8 +515,8 @@ START_TEST(complete_where_cells_are) {
         gx_view view;
         size_t i;
         random_seed(seed);
-        for (i = 0; i < 3 * w.node_count; ++i) w.positions[i] += random_real(-0.1, 0.1);
-        for (i = 0; i < 3; ++i) f.origin[i] = random_real(0.5, 1.5);
+        for (i = 0; i < 3 * w.node_count; i++) w.positions[i] += random_real(-0.1, 0.1);
+        for (i = 0; i < 3; i++) f.origin[i] = random_real(0.5, 1.5);
         wl_add_wave(wl_add_surface(&w, 0), &f, 9, seed % 3 ? 3 : random_real(0.3, 1));
         body = cut_in_sequence(&w);
         view = view_of(body);
@@ -490,12 +535,15 @@ END_TEST
 START_TEST(patches_of_one_surface) {
     workload w = grid(2, 2, 2, 5);
     wl_surface *s = wl_add_surface(&w, 0);
-    static const double profile[4][2] = {{0.9, -5}, {0.93, 5}, {1.13, 5.2}, {1.17, -5}};    /* x, z: up, over the body, down */
+    /* x, z: up, over the body, down */
+    static const double profile[4][2] = {{0.9, -5}, {0.93, 5}, {1.13, 5.2}, {1.17, -5}};
     size_t single;
     uint32_t i;
-    for (i = 0; i < 4; ++i) {
+    for (i = 0; i < 4; i++) {
         double x[3];
-        x[0] = profile[i][0]; x[1] = -9; x[2] = profile[i][1];
+        x[0] = profile[i][0];
+        x[1] = -9;
+        x[2] = profile[i][1];
         wl_add_vertex(s, x);
         x[1] = 9;
         wl_add_vertex(s, x);
@@ -505,19 +553,23 @@ START_TEST(patches_of_one_surface) {
         wl_add_triangle(s, i, i + 3, i + 2);
     }
     single = check_same_space(&w);
-    ck_assert_uint_gt(single, 18);      /* the plane alone enriches no more than the nodes of one layer on either side and those of the middle */
+    /* the plane alone enriches no more than the nodes of one layer on either side and those of the middle */
+    ck_assert_uint_gt(single, 18);
     wl_free(&w);
 }
 END_TEST
 
 /* ---- complete and partial ---- */
 
-static size_t pieces_of_cut(const double *vertices, uint32_t triangle_count, const uint32_t *triangles, uint32_t vertex_count, size_t *enriched) {
+static size_t pieces_of_cut(const double *vertices, uint32_t triangle_count, const uint32_t *triangles,
+                            uint32_t vertex_count, size_t *enriched) {
     rx_body *b = rx_body_create(rules, unit_corners, 4, unit_element, 1);
     rx_surface s;
     size_t count;
-    s.vertices = vertices; s.vertex_count = vertex_count;
-    s.triangles = triangles; s.triangle_count = triangle_count;
+    s.vertices = vertices;
+    s.vertex_count = vertex_count;
+    s.triangles = triangles;
+    s.triangle_count = triangle_count;
     ck_assert_int_eq(rx_body_cut(b, &s), RX_OK);
     count = b->piece_count;
     *enriched = b->enrichment_count;
@@ -528,9 +580,10 @@ static size_t pieces_of_cut(const double *vertices, uint32_t triangle_count, con
 START_TEST(complete_cuts) {
     static const uint32_t triangles[6] = {0, 1, 2, 0, 2, 3};
     static const double through[9] = {3.1, -0.9, 0.31, -0.9, 3.1, 0.32, -0.9, -0.9, 0.33};
-    static const double partial[9] = {1.1, -0.9, 0.31, -0.9, 1.1, 0.32, -0.9, -0.9, 0.33};   /* ends inside */
-    static const double within[9] = {0.2, 0.2, 0.2, 0.3, 0.2, 0.21, 0.2, 0.3, 0.22};         /* meets no face */
-    static const double dent[12] = {0.25, 0.25, 0.1, 0.35, 0.2, -0.1, 0.25, 0.4, -0.1, 0.1, 0.2, -0.1};    /* a tent through one face */
+    static const double partial[9] = {1.1, -0.9, 0.31, -0.9, 1.1, 0.32, -0.9, -0.9, 0.33}; /* ends inside */
+    static const double within[9] = {0.2, 0.2, 0.2, 0.3, 0.2, 0.21, 0.2, 0.3, 0.22};       /* meets no face */
+    /* a tent through one face */
+    static const double dent[12] = {0.25, 0.25, 0.1, 0.35, 0.2, -0.1, 0.25, 0.4, -0.1, 0.1, 0.2, -0.1};
     static const uint32_t tent[9] = {0, 1, 2, 0, 2, 3, 0, 3, 1};
     size_t enriched;
     ck_assert_uint_eq(pieces_of_cut(through, 1, triangles, 3, &enriched), 2);
@@ -550,7 +603,10 @@ START_TEST(sides_without_an_edge) {
     static const uint32_t tent[9] = {0, 1, 2, 0, 2, 3, 0, 3, 1};
     rx_surface s;
     double error;
-    s.vertices = vertices; s.vertex_count = 4; s.triangles = tent; s.triangle_count = 3;
+    s.vertices = vertices;
+    s.vertex_count = 4;
+    s.triangles = tent;
+    s.triangle_count = 3;
     error = one_cut_error(rules, unit_corners, &s);
     ck_assert_msg(error < 0.01, "%.3e", error);
 }
@@ -563,8 +619,9 @@ static void check_refused(const workload *w, rx_result expected) {
     rx_body *b = rx_body_of(w);
     size_t pieces, enrichments, i;
     rx_result result;
-    for (i = 0; i + 1 < w->surface_count; ++i) ck_assert_int_eq(rx_cut_by(b, w, i), RX_OK);
-    pieces = b->piece_count; enrichments = b->enrichment_count;
+    for (i = 0; i + 1 < w->surface_count; i++) ck_assert_int_eq(rx_cut_by(b, w, i), RX_OK);
+    pieces = b->piece_count;
+    enrichments = b->enrichment_count;
     result = rx_cut_by(b, w, i);
     ck_assert_int_eq(result, expected);
     ck_assert_uint_eq(b->piece_count, pieces);
@@ -574,30 +631,33 @@ static void check_refused(const workload *w, rx_result expected) {
 
 static void drop_surface(workload *w) {
     wl_surface *last = &w->surfaces[--w->surface_count];
-    free(last->vertices); free(last->triangles);
+    free(last->vertices);
+    free(last->triangles);
     memset(last, 0, sizeof *last);
 }
 
 START_TEST(crossing_cuts_are_refused) {
-    static const double p[3] = {0.5, 0.52, 0.47}, beside[3] = {0.5, 0.52, 0.9}, along[3] = {0.1, 0.05, 1}, across[3] = {1, 0.1, 0.07};
-    static const double ends[9] = {0.51, -3, 0.4, 0.52, 3, 0.41, 0.53, 0.1, 4};     /* its lower edge lies just below the first */
+    static const double p[3] = {0.5, 0.52, 0.47}, beside[3] = {0.5, 0.52, 0.9}, along[3] = {0.1, 0.05, 1},
+                        across[3] = {1, 0.1, 0.07};
+    /* its lower edge lies just below the first */
+    static const double ends[9] = {0.51, -3, 0.4, 0.52, 3, 0.41, 0.53, 0.1, 4};
     workload w = grid(1, 1, 1, 5);
     wl_surface *s;
     uint32_t i;
     add_plane(&w, p, along, 9);
     add_plane(&w, p, across, 9);
-    check_refused(&w, RX_ERROR_CROSSING);           /* two planes that cross */
+    check_refused(&w, RX_ERROR_CROSSING); /* two planes that cross */
     drop_surface(&w);
     add_plane(&w, p, along, 9);
-    check_refused(&w, RX_ERROR_CROSSING);           /* the same plane again */
+    check_refused(&w, RX_ERROR_CROSSING); /* the same plane again */
     drop_surface(&w);
     s = wl_add_surface(&w, 0);
-    for (i = 0; i < 3; ++i) wl_add_vertex(s, ends + 3 * i);
+    for (i = 0; i < 3; i++) wl_add_vertex(s, ends + 3 * i);
     wl_add_triangle(s, 0, 1, 2);
-    check_refused(&w, RX_ERROR_CROSSING);           /* a T */
+    check_refused(&w, RX_ERROR_CROSSING); /* a T */
     drop_surface(&w);
     add_plane(&w, beside, along, 9);
-    ck_assert_uint_gt(check_same_space(&w), 0);     /* but not a parallel one */
+    ck_assert_uint_gt(check_same_space(&w), 0); /* but not a parallel one */
     wl_free(&w);
 }
 END_TEST
@@ -611,11 +671,12 @@ START_TEST(bad_surfaces_are_refused) {
     uint32_t i;
     lists[0] = three;
     lists[1] = against;
-    for (k = 0; k < 2; ++k) {
+    for (k = 0; k < 2; k++) {
         workload w = grid(1, 1, 1, 5);
         wl_surface *s = wl_add_surface(&w, 0);
-        for (i = 0; i < 5; ++i) wl_add_vertex(s, x[i]);
-        for (i = 0; i < (k == 0 ? 3u : 2u); ++i) wl_add_triangle(s, lists[k][3 * i], lists[k][3 * i + 1], lists[k][3 * i + 2]);
+        for (i = 0; i < 5; i++) wl_add_vertex(s, x[i]);
+        for (i = 0; i < (k == 0 ? 3u : 2u); i++)
+            wl_add_triangle(s, lists[k][3 * i], lists[k][3 * i + 1], lists[k][3 * i + 2]);
         check_refused(&w, RX_ERROR_MANIFOLD);
         wl_free(&w);
     }
@@ -630,7 +691,7 @@ START_TEST(self_crossing_is_refused) {
     add_plane(&w, p, along, 9);
     add_plane(&w, p, across, 9);
     s = &w.surfaces[0];
-    for (i = 0; i < 3; ++i) wl_add_vertex(s, w.surfaces[1].vertices + 3 * i);
+    for (i = 0; i < 3; i++) wl_add_vertex(s, w.surfaces[1].vertices + 3 * i);
     wl_add_triangle(s, 3, 4, 5);
     drop_surface(&w);
     check_refused(&w, RX_ERROR_CROSSING);
@@ -640,7 +701,8 @@ END_TEST
 
 /* ---- section 6 ---- */
 
-/* Through nodes, along edges and facets: vertices are moved by a little, and what comes out is as far from what was asked. */
+/* Through nodes, along edges and facets: vertices are moved by a little, and what comes out is as far from what was
+ * asked. */
 START_TEST(perturbation) {
     workload w = grid(2, 2, 2, 5);
     rx_body *b;
@@ -651,7 +713,7 @@ START_TEST(perturbation) {
     ck_assert_int_eq(rx_cut_by(b, &w, 0), RX_OK);
     ck_assert_uint_gt(b->perturbed, 0);
     ck_assert_uint_gt(b->enrichment_count, 0);
-    for (i = 0; i < b->piece_count; ++i) {
+    for (i = 0; i < b->piece_count; i++) {
         const rx_piece *piece = &b->pieces[i];
         const double share = 6 * piece->moments[0];
         ck_assert_double_gt(share, -1e-6);
@@ -669,17 +731,20 @@ START_TEST(shares_of_support) {
     static const uint32_t triangle[3] = {0, 1, 2};
     static const double legs[4] = {0.5, 0.1, 0.002, 0.0005};
     size_t i, k;
-    for (k = 0; k < 4; ++k) {
+    for (k = 0; k < 4; k++) {
         const double s = legs[k];
         const double vertices[9] = {4 * s, -4 * s, s, s, 4 * s, -4 * s, -4 * s, s, 4 * s};
         rx_body *b = rx_body_create(rules, unit_corners, 4, unit_element, 1);
         rx_surface surface;
         double share[4];
-        surface.vertices = vertices; surface.vertex_count = 3; surface.triangles = triangle; surface.triangle_count = 1;
+        surface.vertices = vertices;
+        surface.vertex_count = 3;
+        surface.triangles = triangle;
+        surface.triangle_count = 1;
         ck_assert_int_eq(rx_body_cut(b, &surface), RX_OK);
         ck_assert_uint_eq(b->enrichment_count, 4);
         rx_shares(b, share);
-        for (i = 0; i < 4; ++i) {
+        for (i = 0; i < 4; i++) {
             const double expected = b->enrichments[i].node == 0 ? 1 - s * s * s : s * s * s;
             ck_assert_double_eq_tol(share[i], expected, 1e-13);
             ck_assert_int_eq(share[i] < RX_SUPPORT, b->enrichments[i].node != 0 && k == 3);
@@ -689,8 +754,8 @@ START_TEST(shares_of_support) {
 }
 END_TEST
 
-/* A sheet of 1e-10 of the cube's edge is on no well supported function of its own but those of its outer nodes: the others follow them, by
-   weights that give back what lies in the sheet's plane. */
+/* A sheet of 1e-10 of the cube's edge is on no well supported function of its own but those of its outer nodes: the
+   others follow them, by weights that give back what lies in the sheet's plane. */
 START_TEST(constrained_functions) {
     workload w = grid(1, 1, 1, 5);
     rx_body *b = rx_body_of(&w);
@@ -701,12 +766,12 @@ START_TEST(constrained_functions) {
     ck_assert_int_eq(rx_cut_by(b, &w, 0), RX_OK);
     m = rx_model_create(b, 1000);
     ck_assert_uint_gt(m->model.constraint_count, 0);
-    for (i = 0; i < m->model.constraint_count; ++i) {
+    for (i = 0; i < m->model.constraint_count; i++) {
         const gxs_constraint *c = &m->model.constraints[i];
         const double *x = m->positions + 3 * (size_t)c->copy;
         double sum = 0, y = 0, z = 0;
-        ck_assert_double_lt(x[0], 0.5);             /* a node of the far side, in the sheet */
-        for (k = 0; k < 4; ++k) {
+        ck_assert_double_lt(x[0], 0.5); /* a node of the far side, in the sheet */
+        for (k = 0; k < 4; k++) {
             const double *master = m->positions + 3 * (size_t)c->master[k];
             sum += c->weight[k];
             y += c->weight[k] * master[1];
@@ -724,7 +789,14 @@ END_TEST
 
 /* ---- rxfem_model.h ---- */
 
-typedef struct swing { gx_body *body; rx_body *b; rx_model *m; gxs_solver *solver; double *displacement, *velocity; uint8_t *held; } swing;
+typedef struct swing {
+    gx_body *body;
+    rx_body *b;
+    rx_model *m;
+    gxs_solver *solver;
+    double *displacement, *velocity;
+    uint8_t *held;
+} swing;
 
 /* Both are held where x is near 0, on each side of the cuts, and have the same material. */
 static swing swing_begin(const workload *w, gxs_material *material) {
@@ -733,17 +805,20 @@ static swing swing_begin(const workload *w, gxs_material *material) {
     size_t i;
     memset(&s, 0, sizeof s);
     memset(material, 0, sizeof *material);
-    material->kind = GXS_STABLE_NEO_HOOKEAN; material->young = 1e6; material->poisson = 0.4;
+    material->kind = GXS_STABLE_NEO_HOOKEAN;
+    material->young = 1e6;
+    material->poisson = 0.4;
     s.body = cut_in_sequence(w);
     s.b = rx_body_of(w);
-    for (i = 0; i < w->surface_count; ++i) ck_assert_int_eq(rx_cut_by(s.b, w, i), RX_OK);
+    for (i = 0; i < w->surface_count; i++) ck_assert_int_eq(rx_cut_by(s.b, w, i), RX_OK);
     s.m = rx_model_create(s.b, 1000);
     ck_assert_int_eq(gx_body_hold(s.body, &root, 1), GX_OK);
     s.displacement = (double *)dense_memory(NULL, 3 * s.m->value_count, sizeof(double));
     s.velocity = (double *)dense_memory(NULL, 3 * s.m->value_count, sizeof(double));
     s.held = (uint8_t *)dense_memory(NULL, s.m->value_count, 1);
-    for (i = 0; i < s.m->value_count; ++i) s.held[i] = s.m->positions[3 * i] < 1e-6;
-    s.m->model.materials = material; s.m->model.material_count = 1;
+    for (i = 0; i < s.m->value_count; i++) s.held[i] = s.m->positions[3 * i] < 1e-6;
+    s.m->model.materials = material;
+    s.m->model.material_count = 1;
     s.m->model.held = s.held;
     ck_assert_int_eq(gxs_solver_create(NULL, &s.solver), GX_OK);
     ck_assert_int_eq(gxs_solver_set_model(s.solver, &s.m->model, NULL), GX_OK);
@@ -755,7 +830,9 @@ static void swing_end(swing *s) {
     rx_model_destroy(s->m);
     rx_body_destroy(s->b);
     gx_body_destroy(s->body);
-    free(s->displacement); free(s->velocity); free(s->held);
+    free(s->displacement);
+    free(s->velocity);
+    free(s->held);
 }
 
 /* The largest difference between the displacements of corners of the same cells */
@@ -764,19 +841,25 @@ static double swing_difference(const swing *s, double *largest) {
     uint32_t *element = (uint32_t *)dense_memory(NULL, s->b->piece_count, sizeof *element);
     double *volume = (double *)dense_memory(NULL, s->b->piece_count, sizeof *volume), worst = 0;
     size_t *cells, *pieces, i, k, a;
-    for (i = 0; i < s->b->piece_count; ++i) { element[i] = s->b->pieces[i].element; volume[i] = s->b->pieces[i].moments[0]; }
+    for (i = 0; i < s->b->piece_count; i++) {
+        element[i] = s->b->pieces[i].element;
+        volume[i] = s->b->pieces[i].moments[0];
+    }
     cells = order_cells(view.cell_element, view.cell_volume, view.cell_count);
     pieces = order_cells(element, volume, s->b->piece_count);
     ck_assert_uint_eq(view.cell_count, s->b->piece_count);
-    for (*largest = 0, i = 0; i < view.cell_count; ++i)
-        for (k = 0; k < 4; ++k)
-            for (a = 0; a < 3; ++a) {
+    for (*largest = 0, i = 0; i < view.cell_count; i++)
+        for (k = 0; k < 4; k++)
+            for (a = 0; a < 3; a++) {
                 const double x = view.displacement[3 * view.cell_copies[4 * cells[i] + k] + a];
                 const double y = s->displacement[3 * s->m->corners[4 * pieces[i] + k] + a];
                 worst = fmax(worst, fabs(x - y));
                 *largest = fmax(*largest, fabs(x));
             }
-    free(element); free(volume); free(cells); free(pieces);
+    free(element);
+    free(volume);
+    free(cells);
+    free(pieces);
     return worst;
 }
 
@@ -793,9 +876,12 @@ START_TEST(same_motion_on_planes) {
     add_plane(&w, beside, normal, 9);
     s = swing_begin(&w, &material);
     memset(&step, 0, sizeof step);
-    step.dt = 0.01; step.gravity[2] = -9.81;
-    step.newton_iterations = 50; step.newton_tolerance = 1e-9; step.cg_tolerance = 1e-6;
-    for (i = 0; i < 5; ++i) {
+    step.dt = 0.01;
+    step.gravity[2] = -9.81;
+    step.newton_iterations = 50;
+    step.newton_tolerance = 1e-9;
+    step.cg_tolerance = 1e-6;
+    for (i = 0; i < 5; i++) {
         ck_assert_int_eq(gxs_solver_step(s.solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
         ck_assert_int_eq(gx_body_step(s.body, &step, NULL, NULL), GX_OK);
     }
@@ -807,7 +893,8 @@ START_TEST(same_motion_on_planes) {
 }
 END_TEST
 
-/* RXFEM's derivatives at the rule's points and once for each piece are the same, and energy and forces those of the library's model. */
+/* RXFEM's derivatives at the rule's points and once for each piece are the same, and energy and forces those of the
+ * library's model. */
 START_TEST(elastic_derivatives) {
     static const double p[3] = {0.9, 0.52, 0.47}, normal[3] = {0.1, 0.05, 1};
     workload w = grid(2, 1, 1, 5);
@@ -824,8 +911,8 @@ START_TEST(elastic_derivatives) {
     gradient = (double *)dense_memory(NULL, n, sizeof(double));
     spread = (double *)dense_memory(NULL, n, sizeof(double));
     random_seed(7);
-    for (i = 0; i < n; ++i) unknowns[i] = random_real(-0.1, 0.1);
-    for (i = 0; i < 2; ++i) {
+    for (i = 0; i < n; i++) unknowns[i] = random_real(-0.1, 0.1);
+    for (i = 0; i < 2; i++) {
         forces[i] = (double *)dense_memory(NULL, n, sizeof(double));
         stiffness[i] = (double *)dense_memory(NULL, 144 * s.b->piece_count, sizeof(double));
         energy[i] = rx_elastic(s.b, s.m, 1e6, 0.4, unknowns, i == 0, forces[i], stiffness[i]);
@@ -833,17 +920,23 @@ START_TEST(elastic_derivatives) {
     rx_values_of(s.b, s.m, unknowns, s.displacement);
     ck_assert_int_eq(gxs_model_energy(&s.m->model, s.displacement, &whole), GX_OK);
     ck_assert_int_eq(gxs_model_gradient(&s.m->model, s.displacement, gradient), GX_OK);
-    for (i = 0; i < s.m->value_count; ++i) rx_spread(s.b, s.m, (uint32_t)i, gradient + 3 * i, spread);
-    for (i = 0; i < n; ++i) scale = fmax(scale, fabs(spread[i]));
-    for (i = 0; i < 2; ++i) ck_assert_double_eq_tol(energy[i], whole, 1e-10 * whole);
-    for (i = 0; i < n; ++i) {
+    for (i = 0; i < s.m->value_count; i++) rx_spread(s.b, s.m, (uint32_t)i, gradient + 3 * i, spread);
+    for (i = 0; i < n; i++) scale = fmax(scale, fabs(spread[i]));
+    for (i = 0; i < 2; i++) ck_assert_double_eq_tol(energy[i], whole, 1e-10 * whole);
+    for (i = 0; i < n; i++) {
         ck_assert_double_eq_tol(forces[0][i], spread[i], 1e-9 * scale);
         ck_assert_double_eq_tol(forces[1][i], spread[i], 1e-9 * scale);
     }
-    for (scale = 0, i = 0; i < 144 * s.b->piece_count; ++i) scale = fmax(scale, fabs(stiffness[1][i]));
-    for (i = 0; i < 144 * s.b->piece_count; ++i) ck_assert_double_eq_tol(stiffness[0][i], stiffness[1][i], 1e-9 * scale);
-    free(unknowns); free(gradient); free(spread);
-    for (i = 0; i < 2; ++i) { free(forces[i]); free(stiffness[i]); }
+    for (scale = 0, i = 0; i < 144 * s.b->piece_count; i++) scale = fmax(scale, fabs(stiffness[1][i]));
+    for (i = 0; i < 144 * s.b->piece_count; i++)
+        ck_assert_double_eq_tol(stiffness[0][i], stiffness[1][i], 1e-9 * scale);
+    free(unknowns);
+    free(gradient);
+    free(spread);
+    for (i = 0; i < 2; i++) {
+        free(forces[i]);
+        free(stiffness[i]);
+    }
     swing_end(&s);
     wl_free(&w);
 }
@@ -859,23 +952,23 @@ START_TEST(elastic_tangent) {
     random_seed(3);
     random_tetrahedron(corners);
     memset(&e, 0, sizeof e);
-    for (k = 0; k < 4; ++k) e.copy[k] = (uint32_t)k;
+    for (k = 0; k < 4; k++) e.copy[k] = (uint32_t)k;
     ck_assert_int_eq(gxi_tet_gradients(corners, gradients, NULL), GX_OK);
     memcpy(e.gradient, gradients, sizeof gradients);
-    for (k = 0; k < 12; ++k) values[k] = random_real(-0.3, 0.3);
+    for (k = 0; k < 12; k++) values[k] = random_real(-0.3, 0.3);
     memset(stiffness, 0, sizeof stiffness);
     memset(force, 0, sizeof force);
     rx_deformation(&e, values, f);
     rx_add_point(lame, &e, f, 0.7, force[0], stiffness);
-    for (j = 0; j < 12; ++j) {
+    for (j = 0; j < 12; j++) {
         memset(force, 0, sizeof force);
-        for (side = 0; side < 2; ++side) {
+        for (side = 0; side < 2; side++) {
             values[j] += side ? step : -step;
             rx_deformation(&e, values, f);
             rx_add_point(lame, &e, f, 0.7, force[side], dropped);
             values[j] -= side ? step : -step;
         }
-        for (k = 0; k < 12; ++k) {
+        for (k = 0; k < 12; k++) {
             const double difference = (force[1][k] - force[0][k]) / (2 * step);
             ck_assert_msg(fabs(stiffness[12 * j + k] - difference) < 1e-6, "%g, %g", stiffness[12 * j + k], difference);
         }
@@ -885,8 +978,8 @@ END_TEST
 
 /* ---- sampling.h ---- */
 
-/* The numbers of points that RXFEM's Table 1 has for these regions: the plane's exactly; the adaptive ones depend on how a cell is found to
-   be crossed. */
+/* The numbers of points that RXFEM's Table 1 has for these regions: the plane's exactly; the adaptive ones depend on
+   how a cell is found to be crossed. */
 START_TEST(published_samples) {
     static const double plane[9] = {1.2, -1.2, 0.3, 0.3, 1.2, -1.2, -1.2, 0.3, 1.2};
     static const uint32_t triangle[3] = {0, 1, 2};
@@ -898,18 +991,21 @@ START_TEST(published_samples) {
     ck_assert_uint_eq(r.count, 560);
     ck_assert_double_eq_tol(560 / 125000.0 / (0.027 / 6), 1 - 4.44e-3, 1e-5);
     sampling_adaptive(&under, 1, 4, &r);
-    ck_assert_uint_ge(r.count, 45); ck_assert_uint_le(r.count, 60);
+    ck_assert_uint_ge(r.count, 45);
+    ck_assert_uint_le(r.count, 60);
     sampling_adaptive(&under, 2, 4, &r);
-    ck_assert_uint_ge(r.count, 160); ck_assert_uint_le(r.count, 200);
+    ck_assert_uint_ge(r.count, 160);
+    ck_assert_uint_le(r.count, 200);
     sampling_free(&r);
     sampling_surface_free(&s);
 }
 END_TEST
 
-/* Parity of crossings against the side of a plane; every sample of a bumpy sheet once above, once below its own turned-over copy */
+/* Parity of crossings against the side of a plane; every sample of a bumpy sheet once above, once below its own
+ * turned-over copy */
 START_TEST(inside_by_parity) {
     uint64_t seed;
-    for (seed = 1; seed <= SEEDS; ++seed) {
+    for (seed = 1; seed <= SEEDS; seed++) {
         workload w = corner_tet();
         sampling_surface s;
         double p[3], n[3], x[3];
@@ -920,10 +1016,10 @@ START_TEST(inside_by_parity) {
         if (fabs(n[2]) < 0.3) n[2] = 1;
         add_plane(&w, p, n, 20);
         s = sampling_surface_create(w.surfaces[0].vertices, w.surfaces[0].triangles, 1);
-        for (i = 0; i < 200; ++i) {
+        for (i = 0; i < 200; i++) {
             double height = 0;
-            for (k = 0; k < 3; ++k) x[k] = random_real(0, 1);
-            for (k = 0; k < 3; ++k) height += n[k] * (p[k] - x[k]) / n[2];
+            for (k = 0; k < 3; k++) x[k] = random_real(0, 1);
+            for (k = 0; k < 3; k++) height += n[k] * (p[k] - x[k]) / n[2];
             if (fabs(height) > 1e-12) CHECK_SEED(sampling_inside(&s, x) == (height > 0), seed);
         }
         sampling_surface_free(&s);
@@ -932,11 +1028,14 @@ START_TEST(inside_by_parity) {
 }
 END_TEST
 
-/* An element without a surface above or below it is integrated as a whole; errors fall with depth and with the number of cells. */
+/* An element without a surface above or below it is integrated as a whole; errors fall with depth and with the number
+ * of cells. */
 START_TEST(sampling_converges) {
-    static const double high[9] = {-9, -9, 3, 9, -9, 3, 0, 9, 3}, plane[9] = {1.2, -1.2, 0.3, 0.3, 1.2, -1.2, -1.2, 0.3, 1.2};
+    static const double high[9] = {-9, -9, 3, 9, -9, 3, 0, 9, 3},
+                        plane[9] = {1.2, -1.2, 0.3, 0.3, 1.2, -1.2, -1.2, 0.3, 1.2};
     static const uint32_t triangle[3] = {0, 1, 2};
-    sampling_surface whole = sampling_surface_create(high, triangle, 1), s = sampling_surface_create(plane, triangle, 1);
+    sampling_surface whole = sampling_surface_create(high, triangle, 1),
+                     s = sampling_surface_create(plane, triangle, 1);
     const sampling_region under_high = sampling_under(&whole), under = sampling_under(&s);
     sampling_rule r;
     double square = 0, volume[2] = {0, 0};
@@ -944,12 +1043,12 @@ START_TEST(sampling_converges) {
     memset(&r, 0, sizeof r);
     sampling_adaptive(&under_high, 2, 4, &r);
     ck_assert_uint_eq(r.count, 4);
-    for (i = 0; i < r.count; ++i) square += r.points[4 * i + 3] * r.points[4 * i] * r.points[4 * i];
+    for (i = 0; i < r.count; i++) square += r.points[4 * i + 3] * r.points[4 * i] * r.points[4 * i];
     ck_assert_double_eq_tol(square, 1.0 / 60, 1e-16);
     sampling_adaptive(&under, 2, 5, &r);
-    for (i = 0; i < r.count; ++i) volume[0] += r.points[4 * i + 3];
+    for (i = 0; i < r.count; i++) volume[0] += r.points[4 * i + 3];
     sampling_regular(&under, 100, &r);
-    for (i = 0; i < r.count; ++i) volume[1] += r.points[4 * i + 3];
+    for (i = 0; i < r.count; i++) volume[1] += r.points[4 * i + 3];
     ck_assert_double_eq_tol(volume[0], 0.0045, 0.0045 * 0.02);
     ck_assert_double_eq_tol(volume[1], 0.0045, 0.0045 * 0.002);
     sampling_free(&r);
@@ -964,9 +1063,11 @@ static void boundary_moments(part *p, unsigned degree, double *moments) {
     uint32_t *index = (uint32_t *)dense_memory(NULL, 3 * boundary.count, sizeof(uint32_t)), i;
     double work[SAMPLING_MONOMIALS];
     gxi_surface surface;
-    for (i = 0; i < 3 * boundary.count; ++i) index[i] = i;
-    surface.positions = boundary.corners; surface.position_count = 3 * boundary.count;
-    surface.triangles = index; surface.triangle_count = boundary.count;
+    for (i = 0; i < 3 * boundary.count; i++) index[i] = i;
+    surface.positions = boundary.corners;
+    surface.position_count = 3 * boundary.count;
+    surface.triangles = index;
+    surface.triangle_count = boundary.count;
     ck_assert_int_eq(gxi_polyhedron_monomials(&surface, NULL, degree, moments, work), GX_OK);
     free(index);
     free(boundary.corners);
@@ -983,21 +1084,23 @@ static void check_positive(part *p, const sampling_surface *s, int odd, unsigned
     boundary_moments(p, degree, moments);
     sampling_positive(inside.corners, inside.count, degree, moments, &r);
     CHECK_SEED(r.count > 0 && r.count <= m, seed);
-    for (i = 0; i < r.count; ++i) {
+    for (i = 0; i < r.count; i++) {
         const double *x = r.points + 4 * i;
         CHECK_SEED(x[0] > 0 && x[1] > 0 && x[2] > 0 && x[0] + x[1] + x[2] < 1 && x[3] > 0, seed);
         CHECK_SEED(sampling_inside(s, x) == odd, seed);
         sampling_monomials(degree, x, values);
         dense_add(sums, x[3], values, m);
     }
-    for (i = 0; i < m; ++i) ck_assert_msg(fabs(sums[i] - moments[i]) < 1e-14, "seed %d, degree %u, %d: %.2e", (int)seed, degree, (int)i, sums[i] - moments[i]);
+    for (i = 0; i < m; i++)
+        ck_assert_msg(fabs(sums[i] - moments[i]) < 1e-14, "seed %d, degree %u, %d: %.2e", (int)seed, degree, (int)i,
+                      sums[i] - moments[i]);
     sampling_free(&r);
     free(inside.corners);
 }
 
 START_TEST(positive_rules) {
     uint64_t seed;
-    for (seed = 1; seed <= SEEDS; ++seed) {
+    for (seed = 1; seed <= SEEDS; seed++) {
         workload w = corner_tet();
         wl_frame f = wl_axes();
         sampling_surface s;
@@ -1006,13 +1109,13 @@ START_TEST(positive_rules) {
         unsigned degree;
         int k, odd;
         random_seed(seed);
-        for (k = 0; k < 3; ++k) f.origin[k] = random_real(0.1, 0.4);
+        for (k = 0; k < 3; k++) f.origin[k] = random_real(0.1, 0.4);
         wl_add_wave(wl_add_surface(&w, 0), &f, 1 + (uint32_t)random_below(6), 2.3);
         cut = &w.surfaces[0];
         s = sampling_surface_create(cut->vertices, cut->triangles, cut->triangle_count);
         p = part_create(w.positions, cut->vertices, cut->triangles, cut->triangle_count, 0);
         odd = sampling_inside(&s, unit_corners);
-        for (degree = 1; degree <= SAMPLING_DEGREE_MAX; ++degree) check_positive(&p, &s, odd, degree, seed);
+        for (degree = 1; degree <= SAMPLING_DEGREE_MAX; degree++) check_positive(&p, &s, odd, degree, seed);
         part_free(&p);
         sampling_surface_free(&s);
         wl_free(&w);
@@ -1029,7 +1132,7 @@ static const double part_normals[3][3] = {{0.1, 0.05, 1}, {0.1, 0.05, 1}, {1, 0.
 static workload cut_block(size_t planes) {
     workload w = grid(2, 1, 1, 5);
     size_t i;
-    for (i = 0; i < planes; ++i) add_plane(&w, part_points[i], part_normals[i], 9);
+    for (i = 0; i < planes; i++) add_plane(&w, part_points[i], part_normals[i], 9);
     return w;
 }
 
@@ -1037,20 +1140,21 @@ static workload cut_block(size_t planes) {
 static double worst_integral(const parts_body *p, const gxs_element *elements) {
     double worst = 0, volume = 0, mass = 0;
     size_t i, k;
-    for (i = 0; i < p->model.element_count; ++i) {
+    for (i = 0; i < p->model.element_count; i++) {
         volume = fmax(volume, p->model.elements[i].weight);
         mass = fmax(mass, p->model.elements[i].mass[0]);
     }
-    for (i = 0; i < p->model.element_count; ++i) {
+    for (i = 0; i < p->model.element_count; i++) {
         const gxs_element *e = &p->model.elements[i];
         worst = fmax(worst, fabs(elements[i].weight - e->weight) / volume);
-        for (k = 0; k < 10; ++k) worst = fmax(worst, fabs(elements[i].mass[k] - e->mass[k]) / mass);
+        for (k = 0; k < 10; k++) worst = fmax(worst, fabs(elements[i].mass[k] - e->mass[k]) / mass);
         ck_assert(memcmp(elements[i].copy, e->copy, sizeof e->copy) == 0);
     }
     return worst;
 }
 
-/* By crossing planes: parts are convex, so each has its centre; and no two parts of an element have points with the same sides. */
+/* By crossing planes: parts are convex, so each has its centre; and no two parts of an element have points with the
+ * same sides. */
 START_TEST(points_of_parts) {
     workload w = cut_block(3);
     gx_body *body = cut_in_sequence(&w);
@@ -1058,25 +1162,27 @@ START_TEST(points_of_parts) {
     size_t i, k;
     int n;
     random_seed(5);
-    for (i = 0; i < p.model.element_count; ++i) {
+    for (i = 0; i < p.model.element_count; i++) {
         double x[3];
         ck_assert(parts_center(&p, &p.model.elements[i], p.model.elements[i].group, x));
         ck_assert_uint_eq(parts_find(&p, p.model.elements[i].group, x), i);
     }
-    for (n = 0; n < 2000; ++n) {
+    for (n = 0; n < 2000; n++) {
         const uint32_t e = (uint32_t)random_below((int)w.element_count);
         double x[2][3], at[3];
         unsigned side[2] = {0, 0};
         uint32_t part[2];
         int q;
-        for (q = 0; q < 2; ++q) {
-            for (k = 0; k < 3; ++k) at[k] = random_real(0, 1.0 / 3);
+        for (q = 0; q < 2; q++) {
+            for (k = 0; k < 3; k++) at[k] = random_real(0, 1.0 / 3);
             parts_material_point(&p, e, at, x[q]);
             part[q] = parts_find(&p, e, x[q]);
             ck_assert_uint_ge(part[q], p.first[e]);
             ck_assert_uint_lt(part[q], p.first[e + 1]);
-            for (k = 0; k < 3; ++k)
-                side[q] |= (unsigned)(dense_dot(part_normals[k], x[q], 3) > dense_dot(part_normals[k], part_points[k], 3)) << k;
+            for (k = 0; k < 3; k++)
+                side[q] |=
+                    (unsigned)(dense_dot(part_normals[k], x[q], 3) > dense_dot(part_normals[k], part_points[k], 3))
+                    << k;
         }
         if (side[0] == side[1]) ck_assert_uint_eq(part[0], part[1]);
         if (p.first[e + 1] - p.first[e] == 8 && side[0] != side[1]) ck_assert_uint_ne(part[0], part[1]);
@@ -1087,28 +1193,39 @@ START_TEST(points_of_parts) {
 }
 END_TEST
 
-/* Rules with positive weights give back the moments they are made of, others come closer with more points, those of uncut elements stay. */
+/* Rules with positive weights give back the moments they are made of, others come closer with more points, those of
+ * uncut elements stay. */
 START_TEST(rules_in_parts) {
-    static const struct { parts_rule_fn make; int knob; double within; } rules_of[5] = {
-        {parts_positive, 2, 1e-13}, {parts_regular, 10, 0.1}, {parts_regular, 40, 0.01}, {parts_adaptive, 3, 0.05}, {parts_adaptive, 5, 0.01}};
+    static const struct {
+        parts_rule_fn make;
+        int knob;
+        double within;
+    } rules_of[5] = {{parts_positive, 2, 1e-13},
+                     {parts_regular, 10, 0.1},
+                     {parts_regular, 40, 0.01},
+                     {parts_adaptive, 3, 0.05},
+                     {parts_adaptive, 5, 0.01}};
     workload w = cut_block(3);
     gx_body *body = cut_in_sequence(&w);
     parts_body p = parts_create(body);
     gxs_element *elements = (gxs_element *)dense_memory(NULL, p.model.element_count, sizeof *elements);
     size_t *counts = (size_t *)dense_memory(NULL, p.model.element_count, sizeof *counts), i;
     int k;
-    for (k = 0; k < 5; ++k) {
+    for (k = 0; k < 5; k++) {
         double worst;
         parts_integrate(&p, rules_of[k].make, rules_of[k].knob, 1000, elements, counts);
         worst = worst_integral(&p, elements);
         ck_assert_msg(worst < rules_of[k].within && (k == 0 || worst > 1e-9), "rule %d: %.2e", k, worst);
-        for (i = 0; i < p.model.element_count; ++i) {
+        for (i = 0; i < p.model.element_count; i++) {
             const uint32_t e = elements[i].group;
-            if (p.first[e + 1] - p.first[e] == 1) ck_assert_uint_eq(counts[i], 1);
-            else if (k == 0) ck_assert(counts[i] > 0 && counts[i] <= 10);
+            if (p.first[e + 1] - p.first[e] == 1)
+                ck_assert_uint_eq(counts[i], 1);
+            else if (k == 0)
+                ck_assert(counts[i] > 0 && counts[i] <= 10);
         }
     }
-    free(elements); free(counts);
+    free(elements);
+    free(counts);
     parts_free(&p);
     gx_body_destroy(body);
     wl_free(&w);
@@ -1124,13 +1241,14 @@ START_TEST(rxfem_in_parts) {
     gxs_element *elements = (gxs_element *)dense_memory(NULL, p.model.element_count, sizeof *elements);
     size_t *counts = (size_t *)dense_memory(NULL, p.model.element_count, sizeof *counts), i, cut = 0;
     double worst;
-    for (i = 0; i < 2; ++i) ck_assert_int_eq(rx_cut_by(b, &w, i), RX_OK);
+    for (i = 0; i < 2; i++) ck_assert_int_eq(rx_cut_by(b, &w, i), RX_OK);
     parts_rxfem(&p, b, 1000, elements, counts);
     worst = worst_integral(&p, elements);
     ck_assert_msg(worst < 1e-8, "%.2e", worst);
-    for (i = 0; i < p.model.element_count; ++i) cut += counts[i] == 24;
+    for (i = 0; i < p.model.element_count; i++) cut += counts[i] == 24;
     ck_assert_uint_gt(cut, 10);
-    free(elements); free(counts);
+    free(elements);
+    free(counts);
     parts_free(&p);
     rx_body_destroy(b);
     gx_body_destroy(body);
@@ -1138,21 +1256,25 @@ START_TEST(rxfem_in_parts) {
 }
 END_TEST
 
-/* Deletion takes away what a plane passes through, and no more: elements with nodes on both sides; of a plane that ends inside, also those
-   that it does not divide; of one in faces none. */
+/* Deletion takes away what a plane passes through, and no more: elements with nodes on both sides; of a plane that ends
+   inside, also those that it does not divide; of one in faces none. */
 START_TEST(deleted_elements) {
     static const double level[3] = {0.52, 0.5, 0.4};
     int k;
-    for (k = 0; k < 3; ++k) {
+    for (k = 0; k < 3; k++) {
         workload w = grid(2, 2, 2, 5);
         gx_body *body, *uncut = body_of(&w);
         gxs_model model;
         gxs_element *left;
         parts_body p;
         size_t i, count, expected = 0;
-        if (k == 1) add_axis_plane(&w, 2, 1);
+        if (k == 1)
+            add_axis_plane(&w, 2, 1);
         else {
-            const double x[4][3] = {{-1, -1, level[k]}, {k == 0 ? 3 : 1.3, -1, level[k]}, {k == 0 ? 3 : 1.3, 3, level[k]}, {-1, 3, level[k]}};
+            const double x[4][3] = {{-1, -1, level[k]},
+                                    {k == 0 ? 3 : 1.3, -1, level[k]},
+                                    {k == 0 ? 3 : 1.3, 3, level[k]},
+                                    {-1, 3, level[k]}};
             wl_add_quad(wl_add_surface(&w, 0), x[0], x[1], x[2], x[3]);
         }
         body = cut_in_sequence(&w);
@@ -1160,9 +1282,9 @@ START_TEST(deleted_elements) {
         ck_assert_int_eq(gx_body_model(uncut, &model), GX_OK);
         left = (gxs_element *)dense_memory(NULL, model.element_count, sizeof *left);
         count = parts_delete(&p, &model, left);
-        for (i = 0; i < w.element_count; ++i) {
+        for (i = 0; i < w.element_count; i++) {
             int below = 0, above = 0, n;
-            for (n = 0; n < 4; ++n) {
+            for (n = 0; n < 4; n++) {
                 const double z = w.positions[3 * w.elements[4 * i + n] + 2];
                 below |= z < level[k];
                 above |= z > level[k];
@@ -1170,10 +1292,11 @@ START_TEST(deleted_elements) {
             expected += k == 1 || !(below && above);
             if (!(below && above)) ck_assert(!parts_is_met(p.body, (uint32_t)i));
         }
-        if (k < 2) ck_assert_uint_eq(count, expected);
+        if (k < 2)
+            ck_assert_uint_eq(count, expected);
         else {
             size_t divided = 0;
-            for (i = 0; i < w.element_count; ++i) divided += p.first[i + 1] - p.first[i] > 1;
+            for (i = 0; i < w.element_count; i++) divided += p.first[i + 1] - p.first[i] > 1;
             ck_assert_uint_gt(count, expected);
             ck_assert_uint_lt(count, w.element_count - divided);
         }

@@ -1,5 +1,5 @@
-/* Tests of gxfem_boolean.h: exact numbers, predicates against exact rationals, the cell complex against its own invariants.
-   GXFEM_DATA: a data folder; the cases in its folder predicates/ are used where it is set. */
+/* Tests of gxfem_boolean.h: exact numbers, predicates against exact rationals, the cell complex against its own
+   invariants. GXFEM_DATA: a data folder; the cases in its folder predicates/ are used where it is set. */
 #define GXFEM_BOOLEAN_IMPLEMENTATION
 #include "../gxfem_boolean.h"
 
@@ -10,15 +10,15 @@
 
 static uint64_t current_seed;
 
-#define assert_that(condition, ...)                                                       \
-    do {                                                                                  \
-        if (!(condition)) {                                                               \
-            printf("%s:%d: seed %lu: ", __FILE__, __LINE__, (unsigned long)current_seed); \
-            printf(__VA_ARGS__);                                                          \
-            printf("\n");                                                                 \
-            fflush(stdout);                                                               \
-        }                                                                                 \
-        ck_assert_msg(condition, "%s", #condition);                                       \
+#define assert_that(condition, ...)                                                                                    \
+    do {                                                                                                               \
+        if (!(condition)) {                                                                                            \
+            printf("%s:%d: seed %lu: ", __FILE__, __LINE__, (unsigned long)current_seed);                              \
+            printf(__VA_ARGS__);                                                                                       \
+            printf("\n");                                                                                              \
+            fflush(stdout);                                                                                            \
+        }                                                                                                              \
+        ck_assert_msg(condition, "%s", #condition);                                                                    \
     } while (0)
 
 static pc_random seeded(uint64_t seed) {
@@ -30,12 +30,16 @@ static pc_random seeded(uint64_t seed) {
 
 /* A random sum of products of doubles, as the kernel and as the oracle see it. */
 static void random_number(pc_random *r, gxb_num *a, big *b) {
-    GXB_NUM(p); GXB_NUM(q); GXB_NUM(t); GXB_NUM(s);
+    GXB_NUM(p);
+    GXB_NUM(q);
+    GXB_NUM(t);
+    GXB_NUM(s);
     int terms = 1 + (int)pc_below(r, 3), i;
     gxb_num_set(a, 0, 0);
     *b = big_zero();
     for (i = 0; i < terms; i++) {
-        const double x = pc_below(r, 3) ? pc_any_double(r) : pc_uniform(r), y = pc_below(r, 3) ? (double)pc_below(r, 100) : pc_uniform(r);
+        const double x = pc_below(r, 3) ? pc_any_double(r) : pc_uniform(r),
+                     y = pc_below(r, 3) ? (double)pc_below(r, 100) : pc_uniform(r);
         gxb_num_set(&p, x, 0);
         gxb_num_set(&q, y, 0);
         gxb_num_mul(&t, &p, &q);
@@ -49,9 +53,11 @@ static int same_number(const gxb_num *a, big b) {
     int64_t k;
     if (a->sign != b.sign) return 0;
     if (a->sign == 0) return a->n == 0;
-    if (a->n == 0 || a->d[0] == 0 || a->d[a->n - 1] == 0) return 0;         /* trimmed */
-    for (k = 32 * (int64_t)rat_min(b.exponent, a->exp * (GXB_LIMB_BITS / 32)); k < 32 * (int64_t)(big_top(b) + 4); k += 32) {
-        const int32_t word = (int32_t)(k / 32), limb = word >> (GXB_LIMB_BITS == 64), high = GXB_LIMB_BITS == 64 ? word & 1 : 0;
+    if (a->n == 0 || a->d[0] == 0 || a->d[a->n - 1] == 0) return 0; /* trimmed */
+    for (k = 32 * (int64_t)rat_min(b.exponent, a->exp * (GXB_LIMB_BITS / 32)); k < 32 * (int64_t)(big_top(b) + 4);
+         k += 32) {
+        const int32_t word = (int32_t)(k / 32), limb = word >> (GXB_LIMB_BITS == 64),
+                      high = GXB_LIMB_BITS == 64 ? word & 1 : 0;
         const uint64_t value = gxbp_num_limb(a, limb);
         if ((uint32_t)(value >> (high ? 32 : 0)) != big_limb(b, word)) return 0;
     }
@@ -63,11 +69,17 @@ START_TEST(numbers_are_exact) {
     int i;
     for (i = 0; i < 20000; i++) {
         const rat_mark mark = rat_arena_mark();
-        GXB_NUM(a); GXB_NUM(b); GXB_NUM(c);
+        GXB_NUM(a);
+        GXB_NUM(b);
+        GXB_NUM(c);
         big x, y;
         random_number(&r, &a, &x);
         random_number(&r, &b, &y);
-        if (pc_below(&r, 8) == 0) { gxbp_num_copy(&b, &a, pc_below(&r, 2) ? 1 : -1); y = x; y.sign = b.sign; }
+        if (pc_below(&r, 8) == 0) {
+            gxbp_num_copy(&b, &a, pc_below(&r, 2) ? 1 : -1);
+            y = x;
+            y.sign = b.sign;
+        }
         assert_that(same_number(&a, x), "case %d", i);
         gxb_num_add(&c, &a, &b);
         assert_that(same_number(&c, big_add(x, y)), "sum, case %d", i);
@@ -77,14 +89,16 @@ START_TEST(numbers_are_exact) {
         assert_that(same_number(&c, big_mul(x, y)), "product, case %d", i);
         rat_arena_release(mark);
     }
-} END_TEST
+}
+END_TEST
 
 START_TEST(numbers_become_doubles) {
     pc_random r = seeded((uint64_t)_i + 1);
     int i, power_a, power_b;
     for (i = 0; i < 20000; i++) {
         const rat_mark mark = rat_arena_mark();
-        GXB_NUM(a); GXB_NUM(b);
+        GXB_NUM(a);
+        GXB_NUM(b);
         big x, y, error;
         double d;
         random_number(&r, &a, &x);
@@ -103,7 +117,8 @@ START_TEST(numbers_become_doubles) {
         }
         rat_arena_release(mark);
     }
-} END_TEST
+}
+END_TEST
 
 START_TEST(numbers_take_a_shift) {
     pc_random r = seeded(1);
@@ -114,10 +129,12 @@ START_TEST(numbers_take_a_shift) {
         const int shift = (int)pc_below(&r, 2001) - 1000;
         GXB_NUM(a);
         gxb_num_set(&a, x, shift);
-        assert_that(same_number(&a, big_mul(big_from_double(x), big_from_double(pc_power(shift)))), "%a 2^%d", x, shift);
+        assert_that(same_number(&a, big_mul(big_from_double(x), big_from_double(pc_power(shift)))), "%a 2^%d", x,
+                    shift);
         rat_arena_release(mark);
     }
-} END_TEST
+}
+END_TEST
 
 /* ==== predicates ==== */
 
@@ -136,20 +153,25 @@ START_TEST(predicates_have_the_right_sign) {
         pc_case c;
         pc_exact e;
         pc_objects k;
-        do pc_generate(&r, &c); while (!pc_answer(&c, i % 3, &e));
+        do pc_generate(&r, &c);
+        while (!pc_answer(&c, i % 3, &e));
         pc_build(&c, i % 3, &k);
         for (kind = 0; kind < PC_KINDS; kind++) {
             if (e.sign[kind] == PC_INVALID || pc_call(&k, kind) == e.sign[kind]) continue;
             print_doubles((const double *)&c, PC_CASE_DOUBLES);
-            assert_that(0, "%s, axis %d: %d instead of %d", pc_kind_names[kind], i % 3, pc_call(&k, kind), e.sign[kind]);
+            assert_that(0, "%s, axis %d: %d instead of %d", pc_kind_names[kind], i % 3, pc_call(&k, kind),
+                        e.sign[kind]);
         }
         pc_bound_shares(&k, &e, worst);
         rat_arena_release(mark);
     }
-    for (i = 0; i < PC_BOUNDS; i++) assert_that(worst[i] < 0.1, "%s: %g of the bound used", pc_bound_names[i], worst[i]);
-} END_TEST
+    for (i = 0; i < PC_BOUNDS; i++)
+        assert_that(worst[i] < 0.1, "%s: %g of the bound used", pc_bound_names[i], worst[i]);
+}
+END_TEST
 
-/* ---- inherited errors: true values placed in the corners of what the filter is told, to see that its bounds cover them ---- */
+/* ---- inherited errors: true values placed in the corners of what the filter is told, to see that its bounds cover
+ * them ---- */
 
 /* A multiple of 2^-20, so that adding errors of 2^-20 and more is exact. */
 static double grid(pc_random *r) { return (double)((int32_t)pc_below(r, 1 << 21) - (1 << 20)) / 1048576; }
@@ -161,11 +183,17 @@ static void true_vector(pc_random *r, const double x[3], double error, big out[3
     for (k = 0; k < 3; k++) out[k] = big_from_double(x[k] + error * ((int)pc_below(r, 3) - 1));
 }
 
-typedef struct true_plane { gxb_plane_filter f; big n[3], base[3]; } true_plane;
+typedef struct true_plane {
+    gxb_plane_filter f;
+    big n[3], base[3];
+} true_plane;
 
 static void random_true_plane(pc_random *r, true_plane *p) {
     int k;
-    for (k = 0; k < 3; k++) { p->f.n[k] = grid(r); p->f.base[k] = grid(r); }
+    for (k = 0; k < 3; k++) {
+        p->f.n[k] = grid(r);
+        p->f.base[k] = grid(r);
+    }
     p->f.error = grid_error(r);
     p->f.base_error = grid_error(r);
     p->f.norm = gxbp_max3(p->f.n);
@@ -200,18 +228,24 @@ static void inherited_shares(pc_random *r, double worst[INHERITS]) {
     pc_point point;
     double v[3], bound, value;
     int k;
-    for (k = 0; k < 3; k++) { random_true_plane(r, &p[k]); f[k] = &p[k].f; e[k] = as_exact_plane(&p[k]); }
+    for (k = 0; k < 3; k++) {
+        random_true_plane(r, &p[k]);
+        f[k] = &p[k].f;
+        e[k] = as_exact_plane(&p[k]);
+    }
     random_true_ball(r, &a, xa);
     random_true_ball(r, &b, xb);
     bound = gxbp_filter_difference(v, &a, &b);
-    for (k = 0; k < 3; k++) pc_worst(&worst[INHERIT_DIFFERENCE], pc_share(v[k], big_zero(), big_sub(xb[k], xa[k]), big_from_int(1), bound));
+    for (k = 0; k < 3; k++)
+        pc_worst(&worst[INHERIT_DIFFERENCE], pc_share(v[k], big_zero(), big_sub(xb[k], xa[k]), big_from_int(1), bound));
     bound = gxbp_filter_cross(v, p[0].f.n, p[0].f.error, p[1].f.n, p[1].f.error);
     big_cross(p[0].n, p[1].n, c);
     for (k = 0; k < 3; k++) pc_worst(&worst[INHERIT_CROSS], pc_share(v[k], big_zero(), c[k], big_from_int(1), bound));
     value = gxbp_filter_side(&a, f[0], &bound);
     pc_worst(&worst[INHERIT_SIDE], pc_share(value, big_zero(), pc_height(&e[0], xa), big_from_int(1), bound));
     gxbp_filter_line_plane(&ball, &a, &b, f[0]);
-    for (k = 0; k < 3; k++) point.x[k] = big_sub(big_mul(pc_height(&e[0], xa), xb[k]), big_mul(pc_height(&e[0], xb), xa[k]));
+    for (k = 0; k < 3; k++)
+        point.x[k] = big_sub(big_mul(pc_height(&e[0], xa), xb[k]), big_mul(pc_height(&e[0], xb), xa[k]));
     point.w = big_sub(pc_height(&e[0], xa), pc_height(&e[0], xb));
     pc_ball_share(&ball, &point, origin, &worst[INHERIT_LINE]);
     gxbp_filter_three_planes(&ball, f);
@@ -219,7 +253,8 @@ static void inherited_shares(pc_random *r, double worst[INHERITS]) {
     pc_ball_share(&ball, &point, origin, &worst[INHERIT_PLANES]);
 }
 
-/* Above 1 a bound is wrong; far below what is seen here (0.5, 0.5, 0.5, 0.07, 0.07) it would be slack, or this test blind. */
+/* Above 1 a bound is wrong; far below what is seen here (0.5, 0.5, 0.5, 0.07, 0.07) it would be slack, or this test
+ * blind. */
 START_TEST(inherited_errors_stay_within_bounds) {
     pc_random r = seeded((uint64_t)_i + 1);
     double worst[INHERITS] = {0, 0, 0, 0, 0};
@@ -230,8 +265,10 @@ START_TEST(inherited_errors_stay_within_bounds) {
         rat_arena_release(mark);
     }
     for (i = 0; i < INHERITS; i++) assert_that(worst[i] < 1 && worst[i] > 0.03, "bound %d: %g of it used", i, worst[i]);
-    if (getenv("GXFEM_VERBOSE") != NULL) for (i = 0; i < INHERITS; i++) printf("bound %d: %.3f of it used\n", i, worst[i]);
-} END_TEST
+    if (getenv("GXFEM_VERBOSE") != NULL)
+        for (i = 0; i < INHERITS; i++) printf("bound %d: %.3f of it used\n", i, worst[i]);
+}
+END_TEST
 
 /* Every pair and triple of kinds of points, in both orders. */
 START_TEST(points_of_all_kinds_compare) {
@@ -246,39 +283,60 @@ START_TEST(points_of_all_kinds_compare) {
         const pc_point *q[4];
         gxb_point corner;
         pc_point exact_corner;
-        do pc_generate(&r, &c); while (!pc_answer(&c, 0, &e) || e.line.w.sign == 0 || e.planes.w.sign == 0 || e.other.w.sign == 0);
+        do pc_generate(&r, &c);
+        while (!pc_answer(&c, 0, &e) || e.line.w.sign == 0 || e.planes.w.sign == 0 || e.other.w.sign == 0);
         pc_build(&c, 0, &o);
         gxb_point_explicit(&corner, c.plane[0][1]);
         exact_corner = pc_exact_explicit(c.plane[0][1], c.plane[0][0]);
-        p[0] = &corner; p[1] = &o.line; p[2] = &o.planes; p[3] = &o.other;
-        q[0] = &exact_corner; q[1] = &e.line; q[2] = &e.planes; q[3] = &e.other;
-        for (i = 0; i < 4; i++) for (j = 0; j < 4; j++) for (k = 0; k < 3; k++)
-            assert_that(gxb_compare(p[i], p[j], k) == pc_exact_compare(q[i], q[j], k), "case %d: points %d %d axis %d", n, i, j, k);
-        for (i = 0; i < 4; i++) for (j = 0; j < 4; j++) for (k = 0; k < 4; k++)
-            assert_that(gxb_orient_in_plane(p[i], p[j], p[k], &o.plane[0]) == pc_exact_orient(q[i], q[j], q[k], &e.plane[0]),
-                        "case %d: points %d %d %d", n, i, j, k);
-        for (i = 0; i < 4; i++) for (j = 0; j < 4; j++)
-            assert_that(gxb_side(p[i], &o.plane[j]) == pc_exact_side(q[i], &e.plane[j]), "case %d: point %d plane %d", n, i, j);
+        p[0] = &corner;
+        p[1] = &o.line;
+        p[2] = &o.planes;
+        p[3] = &o.other;
+        q[0] = &exact_corner;
+        q[1] = &e.line;
+        q[2] = &e.planes;
+        q[3] = &e.other;
+        for (i = 0; i < 4; i++)
+            for (j = 0; j < 4; j++)
+                for (k = 0; k < 3; k++)
+                    assert_that(gxb_compare(p[i], p[j], k) == pc_exact_compare(q[i], q[j], k),
+                                "case %d: points %d %d axis %d", n, i, j, k);
+        for (i = 0; i < 4; i++)
+            for (j = 0; j < 4; j++)
+                for (k = 0; k < 4; k++)
+                    assert_that(gxb_orient_in_plane(p[i], p[j], p[k], &o.plane[0]) ==
+                                    pc_exact_orient(q[i], q[j], q[k], &e.plane[0]),
+                                "case %d: points %d %d %d", n, i, j, k);
+        for (i = 0; i < 4; i++)
+            for (j = 0; j < 4; j++)
+                assert_that(gxb_side(p[i], &o.plane[j]) == pc_exact_side(q[i], &e.plane[j]),
+                            "case %d: point %d plane %d", n, i, j);
         rat_arena_release(mark);
     }
-} END_TEST
+}
+END_TEST
 
-/* Collinear and coplanar up to last bits, at any power of two that a double has, and doubles of any size side by side. */
+/* Collinear and coplanar up to last bits, at any power of two that a double has, and doubles of any size side by side.
+ */
 static void any_range_points(pc_random *r, double x[4][3], int n) {
     const int power = (int)pc_below(r, 2090) - 1080, style = (int)pc_below(r, 4);
     int i, k;
-    for (i = 0; i < 4; i++) for (k = 0; k < 3; k++) x[i][k] = style == 0 ? pc_any_double(r) : pc_uniform(r);
+    for (i = 0; i < 4; i++)
+        for (k = 0; k < 3; k++) x[i][k] = style == 0 ? pc_any_double(r) : pc_uniform(r);
     if (style == 0) return;
-    if (style == 1) for (i = 0; i < 4; i++) for (k = 0; k < 3; k++) x[i][k] = (double)pc_below(r, 9) - 4;
+    if (style == 1)
+        for (i = 0; i < 4; i++)
+            for (k = 0; k < 3; k++) x[i][k] = (double)pc_below(r, 9) - 4;
     for (k = 0; k < 3; k++) {
         const double a = style == 1 ? 2 : 0.3, b = style == 1 ? -1 : 0.9;
         x[3][k] = n == 2 ? x[3][k] : x[0][k] + a * (x[1][k] - x[0][k]) + b * (x[2][k] - x[0][k]);
         if (n == 2) x[2][k] = x[0][k] + a * (x[1][k] - x[0][k]);
     }
-    for (i = 0; i < 4; i++) for (k = 0; k < 3; k++) {
-        x[i][k] = ldexp(x[i][k], power);
-        if (pc_below(r, 8) == 0 && fabs(x[i][k]) < 1e300) x[i][k] = pc_nudge(x[i][k], (int)pc_below(r, 5) - 2);
-    }
+    for (i = 0; i < 4; i++)
+        for (k = 0; k < 3; k++) {
+            x[i][k] = ldexp(x[i][k], power);
+            if (pc_below(r, 8) == 0 && fabs(x[i][k]) < 1e300) x[i][k] = pc_nudge(x[i][k], (int)pc_below(r, 5) - 2);
+        }
 }
 
 START_TEST(orient_takes_any_double) {
@@ -299,7 +357,8 @@ START_TEST(orient_takes_any_double) {
         }
         rat_arena_release(mark);
     }
-} END_TEST
+}
+END_TEST
 
 START_TEST(orientation_is_as_documented) {
     const double a[3] = {0, 0, 0}, b[3] = {1, 0, 0}, c[3] = {0, 1, 0}, above[3] = {0, 0, 1}, below[3] = {0, 0, -1};
@@ -312,7 +371,8 @@ START_TEST(orientation_is_as_documented) {
     gxb_plane_init(&plane, a, b, c);
     gxb_point_explicit(&p, above);
     ck_assert_int_eq(gxb_side(&p, &plane), 1);
-} END_TEST
+}
+END_TEST
 
 /* The format of Shewchuk's published test cases: number, coordinates, sign. */
 /* So many points of the given dimension, and the sign of the predicate that takes them */
@@ -325,12 +385,18 @@ static void check_fixture(const char *name, int dimension, int points) {
     if (folder == NULL) return;
     snprintf(path, sizeof path, "%s/predicates/%s", folder, name);
     file = fopen(path, "r");
-    if (file == NULL) { printf("%s: not there\n", path); return; }
+    if (file == NULL) {
+        printf("%s: not there\n", path);
+        return;
+    }
     while (fscanf(file, "%d", &number) == 1) {
-        for (i = 0; i < points; i++) for (k = 0; k < dimension; k++) ck_assert_int_eq(fscanf(file, "%lf", &x[i][k]), 1);
+        for (i = 0; i < points; i++)
+            for (k = 0; k < dimension; k++) ck_assert_int_eq(fscanf(file, "%lf", &x[i][k]), 1);
         ck_assert_int_eq(fscanf(file, "%d", &sign), 1);
-        i = points == 3 ? gxb_orient2d(x[0], x[1], x[2]) : points == 5 ? gxb_insphere(x[0], x[1], x[2], x[3], x[4]) :
-            dimension == 2 ? gxb_incircle(x[0], x[1], x[2], x[3]) : gxb_orient3d(x[0], x[1], x[2], x[3]);
+        i = points == 3    ? gxb_orient2d(x[0], x[1], x[2])
+          : points == 5    ? gxb_insphere(x[0], x[1], x[2], x[3], x[4])
+          : dimension == 2 ? gxb_incircle(x[0], x[1], x[2], x[3])
+                           : gxb_orient3d(x[0], x[1], x[2], x[3]);
         assert_that(i == sign, "%s line %d: %d", name, number, i);
         lines++;
     }
@@ -343,14 +409,15 @@ START_TEST(published_cases) {
     check_fixture("orient3d.txt", 3, 4);
     check_fixture("incircle.txt", 2, 4);
     check_fixture("insphere.txt", 3, 5);
-} END_TEST
+}
+END_TEST
 
 /* ---- winding numbers ---- */
 
 enum { WINDING_TETS = 5 };
 
 static const double unit_tet[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-static const uint32_t tet_faces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};     /* outward */
+static const uint32_t tet_faces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}; /* outward */
 
 /* How a tetrahedron winds around p: 0, or its sign inside. *touched: p lies on it. */
 static int winding_of_tet(const double x[4][3], const double p[3], int *touched) {
@@ -375,9 +442,12 @@ START_TEST(winding_numbers_count) {
         uint32_t triangles[WINDING_TETS][4][3];
         int want = 0, touched = 0, on_surface, got;
         for (i = 0; i < WINDING_TETS; i++) {
-            do for (j = 0; j < 4; j++) for (k = 0; k < 3; k++) x[i][j][k] = lattice ? (double)pc_below(&r, 5) : pc_uniform(&r);
+            do
+                for (j = 0; j < 4; j++)
+                    for (k = 0; k < 3; k++) x[i][j][k] = lattice ? (double)pc_below(&r, 5) : pc_uniform(&r);
             while (big_sign(big_orient3d(x[i][0], x[i][1], x[i][2], x[i][3])) == 0);
-            for (j = 0; j < 4; j++) for (k = 0; k < 3; k++) triangles[i][j][k] = 4 * (uint32_t)i + tet_faces[j][k];
+            for (j = 0; j < 4; j++)
+                for (k = 0; k < 3; k++) triangles[i][j][k] = 4 * (uint32_t)i + tet_faces[j][k];
         }
         for (k = 0; k < 3; k++) p[k] = lattice ? (double)pc_below(&r, 9) / 2 : pc_uniform(&r);
         for (i = 0; i < WINDING_TETS; i++) want += winding_of_tet(x[i], p, &touched);
@@ -386,10 +456,12 @@ START_TEST(winding_numbers_count) {
         assert_that(touched || got == want, "case %d: %d instead of %d", n, got, want);
         rat_arena_release(mark);
     }
-} END_TEST
+}
+END_TEST
 
 START_TEST(triangles_without_area_have_no_outside) {
-    const double segment[9] = {1, 0, 0, 2, 0, 0, 3, 0, 0}, before[3] = {0, 0, 0}, on[3] = {1.5, 0, 0}, after[3] = {4, 0, 0};
+    const double segment[9] = {1, 0, 0, 2, 0, 0, 3, 0, 0}, before[3] = {0, 0, 0}, on[3] = {1.5, 0, 0},
+                 after[3] = {4, 0, 0};
     const uint32_t triangle[3] = {0, 1, 2};
     int on_surface;
     gxb_winding_number(segment, triangle, 1, on, &on_surface);
@@ -398,12 +470,15 @@ START_TEST(triangles_without_area_have_no_outside) {
     ck_assert_int_eq(on_surface, 0);
     gxb_winding_number(segment, triangle, 1, before, &on_surface);
     ck_assert_int_eq(on_surface, 0);
-} END_TEST
+}
+END_TEST
 
 /* ==== the complex ==== */
 
 /* Memory that counts, and fails on demand. */
-typedef struct heap { size_t bytes, calls, fail_at, fail_count; } heap;
+typedef struct heap {
+    size_t bytes, calls, fail_at, fail_count;
+} heap;
 
 static void *heap_allocate(void *user, size_t size) {
     heap *h = (heap *)user;
@@ -429,15 +504,19 @@ typedef struct scene {
     uint32_t cut_count;
 } scene;
 
-static const double cube_nodes[8][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}};
-static const uint32_t cube_elements[6][4] = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
+static const double cube_nodes[8][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0},
+                                        {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}};
+static const uint32_t cube_elements[6][4] = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7},
+                                             {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
 
-/* The first count of the six tetrahedra around a cube's diagonal; coordinates x * size + offset, jittered unless jitter is 0. */
+/* The first count of the six tetrahedra around a cube's diagonal; coordinates x * size + offset, jittered unless jitter
+ * is 0. */
 static void make_mesh(scene *s, pc_random *r, size_t count, double size, double offset, double jitter) {
     size_t i, k;
     s->node_count = 8;
     s->element_count = count;
-    for (i = 0; i < 8; i++) for (k = 0; k < 3; k++) s->nodes[i][k] = (cube_nodes[i][k] + jitter * pc_uniform(r)) * size + offset;
+    for (i = 0; i < 8; i++)
+        for (k = 0; k < 3; k++) s->nodes[i][k] = (cube_nodes[i][k] + jitter * pc_uniform(r)) * size + offset;
     memcpy(s->elements, cube_elements, count * sizeof cube_elements[0]);
 }
 
@@ -446,20 +525,29 @@ static void make_cuts(scene *s, pc_random *r, uint32_t count, int style, double 
     int k;
     s->cut_count = count;
     for (i = 0; i < count; i++) {
-        for (j = 0; j < 3; j++) for (k = 0; k < 3; k++) {
-            const double wide = 1.5 * pc_uniform(r) + 0.5, lattice = ((double)pc_below(r, 9) - 2) / 4;
-            s->cuts[i][j][k] = (style == 0 ? wide : lattice) * size + offset;
-        }
-        if (style == 2 && i > 0 && pc_below(r, 2)) {        /* beside an earlier one, or the same, or another piece of its plane */
-            const uint32_t other = pc_below(r, i), how = pc_below(r, 3);
-            for (j = 0; j < 3; j++) for (k = 0; k < 3; k++) {
-                const double *p = s->cuts[other][j], *q = s->cuts[other][(j + 1) % 3];
-                s->cuts[i][j][k] = how == 0 ? p[k] : how == 1 ? pc_nudge(p[k], (int)pc_below(r, 3) - 1) : p[k] + (q[k] - p[k]) / 2;
+        for (j = 0; j < 3; j++)
+            for (k = 0; k < 3; k++) {
+                const double wide = 1.5 * pc_uniform(r) + 0.5, lattice = ((double)pc_below(r, 9) - 2) / 4;
+                s->cuts[i][j][k] = (style == 0 ? wide : lattice) * size + offset;
             }
+        /* beside an earlier one, or the same, or another piece of its plane */
+        if (style == 2 && i > 0 && pc_below(r, 2)) {
+            const uint32_t other = pc_below(r, i), how = pc_below(r, 3);
+            for (j = 0; j < 3; j++)
+                for (k = 0; k < 3; k++) {
+                    const double *p = s->cuts[other][j], *q = s->cuts[other][(j + 1) % 3];
+                    s->cuts[i][j][k] = how == 0 ? p[k]
+                                     : how == 1 ? pc_nudge(p[k], (int)pc_below(r, 3) - 1)
+                                                : p[k] + (q[k] - p[k]) / 2;
+                }
         }
-        if (style == 3) for (j = 0; j < 3; j++) memcpy(s->cuts[i][j], s->nodes[pc_below(r, (uint32_t)s->node_count)], sizeof s->cuts[i][j]);
-        if (pc_exact_plane(s->cuts[i], s->cuts[i][0]).n[0].sign == 0 && pc_exact_plane(s->cuts[i], s->cuts[i][0]).n[1].sign == 0 &&
-            pc_exact_plane(s->cuts[i], s->cuts[i][0]).n[2].sign == 0) i--;
+        if (style == 3)
+            for (j = 0; j < 3; j++)
+                memcpy(s->cuts[i][j], s->nodes[pc_below(r, (uint32_t)s->node_count)], sizeof s->cuts[i][j]);
+        if (pc_exact_plane(s->cuts[i], s->cuts[i][0]).n[0].sign == 0 &&
+            pc_exact_plane(s->cuts[i], s->cuts[i][0]).n[1].sign == 0 &&
+            pc_exact_plane(s->cuts[i], s->cuts[i][0]).n[2].sign == 0)
+            i--;
     }
 }
 
@@ -482,9 +570,15 @@ static gxb_complex *open_scene(const scene *s, const gx_allocator *allocator) {
 }
 
 /* Point ids of the cuts' corners follow the nodes in order: cut c, corner j is point node_count + 3 c + j. */
-static uint32_t corner_id(const scene *s, uint32_t cut, uint32_t j) { (void)s; return 3 * cut + j; }
+static uint32_t corner_id(const scene *s, uint32_t cut, uint32_t j) {
+    (void)s;
+    return 3 * cut + j;
+}
 
-typedef struct inserted { gxb_triangle triangles[MAX_CUTS]; uint32_t points[3 * MAX_CUTS]; } inserted;
+typedef struct inserted {
+    gxb_triangle triangles[MAX_CUTS];
+    uint32_t points[3 * MAX_CUTS];
+} inserted;
 
 /* Inserts cut c, as wall c, in every element. */
 static gx_result insert_cut(gxb_complex *cx, const scene *s, inserted *in, uint32_t c) {
@@ -500,7 +594,7 @@ static gx_result insert_cut(gxb_complex *cx, const scene *s, inserted *in, uint3
     t->wall = 1;
     if (result == GX_OK) result = gxb_complex_add_plane(cx, t);
     for (e = 0; e < s->element_count && result == GX_OK; e++) result = gxb_complex_insert(cx, t, e, NULL, NULL);
-    gxb_complex_reserve(cx, 1 + c % 3);     /* changes nothing, whether there is memory for it or not */
+    gxb_complex_reserve(cx, 1 + c % 3); /* changes nothing, whether there is memory for it or not */
     return result;
 }
 
@@ -517,15 +611,16 @@ typedef struct model {
     const scene *s;
     const inserted *in;
     gxb_complex *cx;
-    pc_point *points;       /* point_count */
-    pc_plane *planes;       /* plane_count */
-    double (*position)[3];  /* point_count: rounded, relative to node 0 */
+    pc_point *points;      /* point_count */
+    pc_plane *planes;      /* plane_count */
+    double (*position)[3]; /* point_count: rounded, relative to node 0 */
 } model;
 
 static const double *explicit_position(const model *m, uint32_t point) {
     uint32_t i;
     if (point < m->s->node_count) return m->s->nodes[point];
-    for (i = 0; i < 3 * m->s->cut_count; i++) if (m->in->points[i] == point) return m->s->cuts[i / 3][i % 3];
+    for (i = 0; i < 3 * m->s->cut_count; i++)
+        if (m->in->points[i] == point) return m->s->cuts[i / 3][i % 3];
     ck_abort_msg("an explicit point that nobody added");
     return NULL;
 }
@@ -557,7 +652,8 @@ static pc_point exact_cpoint(const model *m, uint32_t point) {
     const double *o = m->s->nodes[0];
     double line[2][3];
     if (p->kind == GXB_EXPLICIT) return pc_exact_explicit(explicit_position(m, point), o);
-    if (p->kind == GXB_THREE_PLANES) return pc_exact_planes(&m->planes[p->def[0]], &m->planes[p->def[1]], &m->planes[p->def[2]]);
+    if (p->kind == GXB_THREE_PLANES)
+        return pc_exact_planes(&m->planes[p->def[0]], &m->planes[p->def[1]], &m->planes[p->def[2]]);
     memcpy(line[0], explicit_position(m, p->def[0]), sizeof line[0]);
     memcpy(line[1], explicit_position(m, p->def[1]), sizeof line[1]);
     return pc_exact_line(line, &m->planes[p->def[2]], o);
@@ -567,7 +663,9 @@ static model open_model(gxb_complex *cx, const scene *s, const inserted *in) {
     model m;
     uint32_t i;
     int k;
-    m.s = s; m.in = in; m.cx = cx;
+    m.s = s;
+    m.in = in;
+    m.cx = cx;
     m.planes = (pc_plane *)malloc((cx->plane_count + 1) * sizeof *m.planes);
     m.points = (pc_point *)malloc((cx->point_count + 1) * sizeof *m.points);
     m.position = (double(*)[3])malloc((cx->point_count + 1) * sizeof *m.position);
@@ -580,7 +678,11 @@ static model open_model(gxb_complex *cx, const scene *s, const inserted *in) {
     return m;
 }
 
-static void close_model(model *m) { free(m->planes); free(m->points); free(m->position); }
+static void close_model(model *m) {
+    free(m->planes);
+    free(m->points);
+    free(m->position);
+}
 
 /* ---- the invariants ---- */
 
@@ -617,7 +719,8 @@ static void check_loop(const model *m, uint32_t facet, const uint32_t *loop, uin
         int turn;
         assert_that(edge->child == GXB_NONE, "facet %u: edge %u is divided", facet, e >> 1);
         assert_that(edge->v[1 - (e & 1)] == b, "facet %u is not closed", facet);
-        assert_that(pc_exact_side(&m->points[a], &m->planes[f->plane]) == 0, "facet %u: point %u off its plane", facet, a);
+        assert_that(pc_exact_side(&m->points[a], &m->planes[f->plane]) == 0, "facet %u: point %u off its plane", facet,
+                    a);
         turn = pc_exact_orient(&m->points[a], &m->points[b], &m->points[c], &m->planes[f->plane]);
         assert_that(turn >= 0, "facet %u is not convex", facet);
         assert_that(gxb_complex_turn(m->cx, a, b, c, f->plane) == turn, "facet %u: turn at point %u", facet, b);
@@ -627,7 +730,9 @@ static void check_loop(const model *m, uint32_t facet, const uint32_t *loop, uin
     assert_that(turns >= 3, "facet %u has %u corners", facet, turns);
 }
 
-typedef struct use { uint32_t edge, direction; } use;
+typedef struct use {
+    uint32_t edge, direction;
+} use;
 
 static int compare_uses(const void *a, const void *b) {
     const use *p = (const use *)a, *q = (const use *)b;
@@ -644,7 +749,8 @@ static void check_closed(const model *m, uint32_t leaf, use *uses, uint32_t coun
     for (i = 0; i < count; i += 2) {
         int k;
         assert_that(uses[i].edge == uses[i + 1].edge && uses[i].direction + 1 == uses[i + 1].direction &&
-                    (i + 2 >= count || uses[i + 2].edge != uses[i].edge), "leaf %u: edge %u is not used once each way", leaf, uses[i].edge);
+                        (i + 2 >= count || uses[i + 2].edge != uses[i].edge),
+                    "leaf %u: edge %u is not used once each way", leaf, uses[i].edge);
         for (k = 0; k < 2; k++) {
             const uint32_t v = m->cx->edges[uses[i].edge].v[k];
             vertices += !seen[v];
@@ -656,7 +762,8 @@ static void check_closed(const model *m, uint32_t leaf, use *uses, uint32_t coun
 }
 
 /* All points of the leaf lie behind or on each of its facets as seen from outside. */
-static void check_convex(const model *m, uint32_t leaf, const uint32_t *facets, uint32_t count, const use *uses, uint32_t use_count) {
+static void check_convex(const model *m, uint32_t leaf, const uint32_t *facets, uint32_t count, const use *uses,
+                         uint32_t use_count) {
     uint32_t i, j;
     for (i = 0; i < count; i++) {
         const gxb_facet *f = &m->cx->facets[facets[i]];
@@ -664,7 +771,8 @@ static void check_convex(const model *m, uint32_t leaf, const uint32_t *facets, 
         int inside = 0;
         for (j = 0; j < use_count; j += 2) {
             const uint32_t v = m->cx->edges[uses[j].edge].v[0], w = m->cx->edges[uses[j].edge].v[1];
-            const int a = inward * pc_exact_side(&m->points[v], &m->planes[f->plane]), b = inward * pc_exact_side(&m->points[w], &m->planes[f->plane]);
+            const int a = inward * pc_exact_side(&m->points[v], &m->planes[f->plane]),
+                      b = inward * pc_exact_side(&m->points[w], &m->planes[f->plane]);
             assert_that(a >= 0 && b >= 0, "leaf %u is not convex at facet %u", leaf, facets[i]);
             inside |= a > 0 || b > 0;
         }
@@ -688,10 +796,11 @@ static double check_leaf(const model *m, uint32_t leaf) {
     facets = copy_list(cx, first, count);
     for (i = 0; i < count; i++) {
         const gxb_facet *f = &cx->facets[facets[i]];
-        const uint32_t outside_in = f->leaf[0] == leaf;     /* the normal points into the leaf */
+        const uint32_t outside_in = f->leaf[0] == leaf; /* the normal points into the leaf */
         uint32_t *loop;
         double area[3], volume = 0;
-        assert_that(f->child == GXB_NONE && (f->leaf[0] == leaf) != (f->leaf[1] == leaf), "facet %u of leaf %u", facets[i], leaf);
+        assert_that(f->child == GXB_NONE && (f->leaf[0] == leaf) != (f->leaf[1] == leaf), "facet %u of leaf %u",
+                    facets[i], leaf);
         ck_assert_int_eq(gxb_facet_edges(cx, facets[i], &edge_first, &edge_count), GX_OK);
         loop = copy_list(cx, edge_first, edge_count);
         check_loop(m, facets[i], loop, edge_count);
@@ -722,12 +831,16 @@ static void check_neighbours(const model *m) {
     }
     for (i = 0; i < cx->facet_count; i++) {
         uint32_t want = 0, k;
-        if (cx->facets[i].child != GXB_NONE) { ck_assert_uint_eq(listed[i], 0); continue; }
+        if (cx->facets[i].child != GXB_NONE) {
+            ck_assert_uint_eq(listed[i], 0);
+            continue;
+        }
         for (k = 0; k < 2; k++) {
             leaf = cx->facets[i].leaf[k];
             want += leaf != GXB_NONE && cx->leaves[leaf].facet_count > 0;
             if (cx->facets[i].face != GXB_NONE && leaf != GXB_NONE)
-                assert_that(cx->leaves[leaf].element == cx->face_elements[2 * cx->facets[i].face + k], "facet %u: leaf %u", i, leaf);
+                assert_that(cx->leaves[leaf].element == cx->face_elements[2 * cx->facets[i].face + k],
+                            "facet %u: leaf %u", i, leaf);
         }
         assert_that(listed[i] == want, "facet %u is listed %u times instead of %u", i, listed[i], want);
     }
@@ -753,7 +866,9 @@ static double element_volume(const model *m, uint32_t e) {
 
 /* ---- the area of a triangle in an element: clipped exactly, in homogeneous barycentric coordinates ---- */
 
-typedef struct corner { big lambda[4]; } corner;   /* times a positive factor of the corner's own */
+typedef struct corner {
+    big lambda[4];
+} corner; /* times a positive factor of the corner's own */
 
 static corner barycentric(const double nodes[4][3], const double p[3]) {
     const double *x[4];
@@ -771,7 +886,8 @@ static corner cross_face(const corner *c, const corner *d, int k) {
     corner r;
     int j;
     for (j = 0; j < 4; j++)
-        r.lambda[j] = big_add(big_mul(big_abs(d->lambda[k]), c->lambda[j]), big_mul(big_abs(c->lambda[k]), d->lambda[j]));
+        r.lambda[j] =
+            big_add(big_mul(big_abs(d->lambda[k]), c->lambda[j]), big_mul(big_abs(c->lambda[k]), d->lambda[j]));
     return r;
 }
 
@@ -795,7 +911,8 @@ static void corner_position(const double nodes[4][3], const corner *c, double p[
     for (k = 0; k < 3; k++) {
         big sum = big_zero();
         for (j = 1; j < 4; j++)
-            sum = big_add(sum, big_mul(c->lambda[j], big_sub(big_from_double(nodes[j][k]), big_from_double(nodes[0][k]))));
+            sum = big_add(sum,
+                          big_mul(c->lambda[j], big_sub(big_from_double(nodes[j][k]), big_from_double(nodes[0][k]))));
         p[k] = rat_to_double(rat_ratio(sum, weight));
     }
 }
@@ -808,20 +925,24 @@ static double area_in_element(const model *m, uint32_t cut, uint32_t element) {
     for (k = 0; k < 3; k++) a[k] = barycentric(nodes, m->s->cuts[cut][k]);
     for (k = 0; k < 4 && n > 0; k++) n = clip_to_face(a, n, k);
     for (i = 0; i < n; i++) corner_position(nodes, &a[i], p[i]);
-    for (i = 1; i + 1 < n; i++) for (k = 0; k < 3; k++) {
-        const int q = (k + 1) % 3, r = (k + 2) % 3;
-        area[k] += ((p[i][q] - p[0][q]) * (p[i + 1][r] - p[0][r]) - (p[i][r] - p[0][r]) * (p[i + 1][q] - p[0][q])) / 2;
-    }
+    for (i = 1; i + 1 < n; i++)
+        for (k = 0; k < 3; k++) {
+            const int q = (k + 1) % 3, r = (k + 2) % 3;
+            area[k] +=
+                ((p[i][q] - p[0][q]) * (p[i + 1][r] - p[0][r]) - (p[i][r] - p[0][r]) * (p[i + 1][q] - p[0][q])) / 2;
+        }
     return length3(area);
 }
 
 static const gxb_label *find_label(const gxb_complex *cx, uint32_t facet, uint32_t triangle) {
     uint32_t l;
-    for (l = cx->facets[facet].labels; l != GXB_NONE; l = cx->labels[l].next) if (cx->labels[l].triangle == triangle) return &cx->labels[l];
+    for (l = cx->facets[facet].labels; l != GXB_NONE; l = cx->labels[l].next)
+        if (cx->labels[l].triangle == triangle) return &cx->labels[l];
     return NULL;
 }
 
-/* The facets that carry the cut's label lie in its plane, face as it does, are walls, and have its area in every element. */
+/* The facets that carry the cut's label lie in its plane, face as it does, are walls, and have its area in every
+ * element. */
 static void check_walls(const model *m, uint32_t cut) {
     gxb_complex *cx = m->cx;
     const pc_plane own = pc_exact_plane(m->s->cuts[cut], m->s->nodes[0]);
@@ -833,12 +954,15 @@ static void check_walls(const model *m, uint32_t cut) {
         uint32_t *loop, elements[2];
         if (label == NULL) continue;
         assert_that(cx->facets[i].wall == 1, "facet %u is no wall", i);
-        assert_that(big_sign(big_dot(own.n, m->planes[cx->facets[i].plane].n)) == label->orientation, "facet %u, cut %u: orientation", i, cut);
+        assert_that(big_sign(big_dot(own.n, m->planes[cx->facets[i].plane].n)) == label->orientation,
+                    "facet %u, cut %u: orientation", i, cut);
         ck_assert_int_eq(gxb_facet_edges(cx, i, &first, &count), GX_OK);
         loop = copy_list(cx, first, count);
-        for (k = 0; k < count; k++) assert_that(pc_exact_side(&m->points[edge_start(cx, loop[k])], &own) == 0, "facet %u off cut %u", i, cut);
+        for (k = 0; k < count; k++)
+            assert_that(pc_exact_side(&m->points[edge_start(cx, loop[k])], &own) == 0, "facet %u off cut %u", i, cut);
         add_fan(m, loop, count, area, &volume);
-        for (k = 0; k < 2; k++) elements[k] = cx->facets[i].leaf[k] == GXB_NONE ? GXB_NONE : cx->leaves[cx->facets[i].leaf[k]].element;
+        for (k = 0; k < 2; k++)
+            elements[k] = cx->facets[i].leaf[k] == GXB_NONE ? GXB_NONE : cx->leaves[cx->facets[i].leaf[k]].element;
         if (elements[0] != GXB_NONE) found[elements[0]] += length3(area);
         if (elements[1] != GXB_NONE && elements[1] != elements[0]) found[elements[1]] += length3(area);
         free(loop);
@@ -846,7 +970,8 @@ static void check_walls(const model *m, uint32_t cut) {
     for (e = 0; e < m->s->element_count; e++) {
         const double volume = element_volume(m, e), want = area_in_element(m, cut, e);
         scale = pow(volume, 2.0 / 3);
-        assert_that(fabs(found[e] - want) <= 1e-12 * scale, "cut %u in element %u: area %.17g instead of %.17g", cut, e, found[e], want);
+        assert_that(fabs(found[e] - want) <= 1e-12 * scale, "cut %u in element %u: area %.17g instead of %.17g", cut, e,
+                    found[e], want);
     }
 }
 
@@ -854,11 +979,14 @@ static void check_walls(const model *m, uint32_t cut) {
 static void check_signs(const model *m, pc_random *r, int count) {
     int i;
     for (i = 0; i < count; i++) {
-        const uint32_t point = pc_below(r, m->cx->point_count), plane = pc_below(r, m->cx->plane_count), axis = pc_below(r, 3);
+        const uint32_t point = pc_below(r, m->cx->point_count), plane = pc_below(r, m->cx->plane_count),
+                       axis = pc_below(r, 3);
         const uint32_t node = pc_below(r, (uint32_t)m->s->node_count);
         const pc_point x = pc_exact_explicit(m->s->nodes[node], m->s->nodes[0]);
-        assert_that(gxb_complex_side(m->cx, point, plane) == pc_exact_side(&m->points[point], &m->planes[plane]), "point %u plane %u", point, plane);
-        assert_that(gxb_complex_compare(m->cx, point, (int)axis, m->s->nodes[node][axis]) == pc_exact_compare(&m->points[point], &x, (int)axis),
+        assert_that(gxb_complex_side(m->cx, point, plane) == pc_exact_side(&m->points[point], &m->planes[plane]),
+                    "point %u plane %u", point, plane);
+        assert_that(gxb_complex_compare(m->cx, point, (int)axis, m->s->nodes[node][axis]) ==
+                        pc_exact_compare(&m->points[point], &x, (int)axis),
                     "point %u against node %u on axis %u", point, node, axis);
     }
 }
@@ -885,18 +1013,23 @@ static void check_barycentric(const model *m, uint32_t element) {
                 for (j = 0; j < 3; j++) memcpy(face[j], m->s->nodes[v[tet_faces[k][j]]], sizeof face[j]);
                 plane = pc_exact_plane(face, m->s->nodes[0]);
                 num = pc_scaled_height(&m->points[point], &plane);
-                den = big_mul(pc_height(&plane, pc_exact_explicit(m->s->nodes[v[k]], m->s->nodes[0]).x), m->points[point].w);
+                den = big_mul(pc_height(&plane, pc_exact_explicit(m->s->nodes[v[k]], m->s->nodes[0]).x),
+                              m->points[point].w);
                 error = big_sub(big_mul(big_from_double(lambda[k]), den), num);
-                assert_that(big_compare_abs(error, big_scale(num, -49)) <= 0, "point %u element %u lambda %u = %a", point, element, k, lambda[k]);
+                assert_that(big_compare_abs(error, big_scale(num, -49)) <= 0, "point %u element %u lambda %u = %a",
+                            point, element, k, lambda[k]);
                 for (j = 0; j < fine.c[k].n; j++) {
                     const gxb_limb limb = fine.c[k].d[j];
                     const int32_t base = (fine.c[k].exp + (int32_t)j) * GXB_LIMB_BITS;
                     q = big_add(q, big_mul(big_from_double((double)(uint32_t)limb), big_from_double(pc_power(base))));
-                    if (GXB_LIMB_BITS == 64) q = big_add(q, big_mul(big_from_double((double)((uint64_t)limb >> 32)), big_from_double(pc_power(base + 32))));
+                    if (GXB_LIMB_BITS == 64)
+                        q = big_add(q, big_mul(big_from_double((double)((uint64_t)limb >> 32)),
+                                               big_from_double(pc_power(base + 32))));
                 }
                 q.sign = q.sign == 0 ? 0 : fine.c[k].sign;
                 error = big_sub(big_mul(q, den), num);
-                assert_that(big_compare_abs(error, big_scale(num, -180)) <= 0, "point %u element %u: fine lambda %u", point, element, k);
+                assert_that(big_compare_abs(error, big_scale(num, -180)) <= 0, "point %u element %u: fine lambda %u",
+                            point, element, k);
             }
         }
     }
@@ -922,7 +1055,8 @@ static void check_complex(gxb_complex *cx, const scene *s, const inserted *in, p
         const double want = element_volume(&m, i);
         check_tree(&m, i, cx->root[i], seen);
         if (!touched[i]) continue;
-        assert_that(fabs(volume[i] - want) <= 1e-12 * want, "element %u: volume %.17g instead of %.17g", i, volume[i], want);
+        assert_that(fabs(volume[i] - want) <= 1e-12 * want, "element %u: volume %.17g instead of %.17g", i, volume[i],
+                    want);
     }
     for (i = 0; i < cx->leaf_count; i++) assert_that(seen[i] == 1, "leaf %u stands %u times in the tree", i, seen[i]);
     for (i = 0; i < s->cut_count; i++) check_walls(&m, i);
@@ -939,7 +1073,10 @@ static void run_scene(const scene *s, pc_random *r) {
     gxb_complex *cx;
     inserted in;
     gx_result result;
-    allocator.allocate = heap_allocate; allocator.release = heap_release; allocator.user = &h; allocator.reallocate = NULL;
+    allocator.allocate = heap_allocate;
+    allocator.release = heap_release;
+    allocator.user = &h;
+    allocator.reallocate = NULL;
     cx = open_scene(s, &allocator);
     gxb_complex_begin(cx);
     result = insert_all(cx, s, &in);
@@ -961,9 +1098,11 @@ START_TEST(random_cuts_conform) {
         make_cuts(&s, &r, 1 + pc_below(&r, 8), 0, 1, 0);
         run_scene(&s, &r);
     }
-} END_TEST
+}
+END_TEST
 
-/* style 1: lattice; 2: coincident, coplanar and one ulp apart; 3: through nodes, along edges and in faces of the mesh */
+/* style 1: lattice; 2: coincident, coplanar and one ulp apart; 3: through nodes, along edges and in faces of the mesh
+ */
 START_TEST(degenerate_cuts_conform) {
     int style;
     for (style = 1; style <= 3; style++) {
@@ -976,11 +1115,13 @@ START_TEST(degenerate_cuts_conform) {
             run_scene(&s, &r);
         }
     }
-} END_TEST
+}
+END_TEST
 
 /* Far from the origin, tiny and huge, and with corners whose difference to the origin is not a double. */
 START_TEST(far_and_scaled_meshes_conform) {
-    static const double sizes[6] = {1, 0x1p-20, 0x1p20, 1e-3, 0x1p-100, 0x1p100}, offsets[6] = {1048576, 1, 1e8, -1e6, 0, 0};
+    static const double sizes[6] = {1, 0x1p-20, 0x1p20, 1e-3, 0x1p-100, 0x1p100},
+                        offsets[6] = {1048576, 1, 1e8, -1e6, 0, 0};
     pc_random r = seeded((uint64_t)_i + 1);
     scene s;
     int k;
@@ -992,7 +1133,8 @@ START_TEST(far_and_scaled_meshes_conform) {
     run_scene(&s, &r);
     for (k = 0; k < 3; k++) s.cuts[1][0][k] = sizes[_i] * 1e-25 * (k + 1);
     run_scene(&s, &r);
-} END_TEST
+}
+END_TEST
 
 /* Seen from a mesh at 2^20, a corner at 1e-25 is not a double, and all depends on that rest. */
 START_TEST(rests_below_the_last_bit_count) {
@@ -1006,27 +1148,36 @@ START_TEST(rests_below_the_last_bit_count) {
     uint32_t c, i, j, undecided = 0;
     make_mesh(&s, &r, 6, 1, 1048576, 0);
     s.cut_count = 4;
-    for (c = 0; c < s.cut_count; c++) do for (i = 0; i < 3; i++) {
-        for (j = 0; j < 3; j++) s.cuts[c][i][j] = (double)pc_below(&r, 3);
-        s.cuts[c][i][c % 3] = tiny[pc_below(&r, 6)];
-    } while (gxb_orient2d(s.cuts[c][0] + (c % 3 == 0), s.cuts[c][1] + (c % 3 == 0), s.cuts[c][2] + (c % 3 == 0)) == 0);
+    for (c = 0; c < s.cut_count; c++) do
+            for (i = 0; i < 3; i++) {
+                for (j = 0; j < 3; j++) s.cuts[c][i][j] = (double)pc_below(&r, 3);
+                s.cuts[c][i][c % 3] = tiny[pc_below(&r, 6)];
+            }
+        while (gxb_orient2d(s.cuts[c][0] + (c % 3 == 0), s.cuts[c][1] + (c % 3 == 0), s.cuts[c][2] + (c % 3 == 0)) ==
+               0);
     cx = open_scene(&s, NULL);
     ck_assert_int_eq(insert_all(cx, &s, &in), GX_OK);
     m = open_model(cx, &s, &in);
-    for (i = 0; i < cx->point_count; i++) for (j = 0; j < cx->plane_count; j++) {
-        const int want = pc_exact_side(&m.points[i], &m.planes[j]);
-        assert_that(gxb_complex_side(cx, i, j) == want, "point %u plane %u: not %d", i, j, want);
-        undecided += want == 0;
-    }
-    for (c = 0; c < s.cut_count; c++) for (i = 0; i < 3; i++) for (j = 0; j < 3; j++) {
-        const double value = tiny[pc_below(&r, 6)], x = s.cuts[c][i][j];
-        assert_that(gxb_complex_compare(cx, in.triangles[c].point[i], (int)j, value) == (x > value) - (x < value), "cut %u corner %u", c, i);
-    }
+    for (i = 0; i < cx->point_count; i++)
+        for (j = 0; j < cx->plane_count; j++) {
+            const int want = pc_exact_side(&m.points[i], &m.planes[j]);
+            assert_that(gxb_complex_side(cx, i, j) == want, "point %u plane %u: not %d", i, j, want);
+            undecided += want == 0;
+        }
+    for (c = 0; c < s.cut_count; c++)
+        for (i = 0; i < 3; i++)
+            for (j = 0; j < 3; j++) {
+                const double value = tiny[pc_below(&r, 6)], x = s.cuts[c][i][j];
+                assert_that(gxb_complex_compare(cx, in.triangles[c].point[i], (int)j, value) ==
+                                (x > value) - (x < value),
+                            "cut %u corner %u", c, i);
+            }
     ck_assert_uint_gt(undecided, 0);
     close_model(&m);
     gxb_complex_destroy(cx);
     rat_arena_release(mark);
-} END_TEST
+}
+END_TEST
 
 /* Geometry that does not change leaves a topology that does not change: moved and scaled by powers of two, exactly. */
 static uint64_t mix(uint64_t hash, uint64_t value) { return (hash ^ value) * UINT64_C(1099511628211) ^ (hash >> 29); }
@@ -1035,35 +1186,51 @@ static uint64_t mix(uint64_t hash, uint64_t value) { return (hash ^ value) * UIN
 static uint64_t hash_complex(const gxb_complex *cx, int geometry) {
     uint64_t h = 7;
     uint32_t i, j;
-    h = mix(h, cx->point_count); h = mix(h, cx->plane_count); h = mix(h, cx->edge_count); h = mix(h, cx->facet_count);
-    h = mix(h, cx->leaf_count); h = mix(h, cx->tree_count); h = mix(h, cx->label_count);
+    h = mix(h, cx->point_count);
+    h = mix(h, cx->plane_count);
+    h = mix(h, cx->edge_count);
+    h = mix(h, cx->facet_count);
+    h = mix(h, cx->leaf_count);
+    h = mix(h, cx->tree_count);
+    h = mix(h, cx->label_count);
     for (i = 0; i < cx->point_count; i++) {
         const gxb_cpoint *p = &cx->points[i];
         h = mix(mix(h, p->kind), p->wall);
-        for (j = 0; j < 3; j++) { h = mix(h, p->def[j]); if (geometry) h = mix(h, pc_bits(p->ball.x[j])); }
+        for (j = 0; j < 3; j++) {
+            h = mix(h, p->def[j]);
+            if (geometry) h = mix(h, pc_bits(p->ball.x[j]));
+        }
         if (geometry) h = mix(h, pc_bits(p->ball.error));
     }
     for (i = 0; i < cx->plane_count; i++) {
         const gxb_cplane *p = &cx->planes[i];
         h = mix(mix(mix(h, p->along_axis), p->axis), (uint32_t)p->axis_sign);
-        for (j = 0; j < 3; j++) { h = mix(h, p->def[j]); if (geometry) h = mix(h, pc_bits(p->filter.n[j])); }
+        for (j = 0; j < 3; j++) {
+            h = mix(h, p->def[j]);
+            if (geometry) h = mix(h, pc_bits(p->filter.n[j]));
+        }
     }
     for (i = 0; i < cx->edge_count; i++) {
         const gxb_edge *e = &cx->edges[i];
-        h = mix(mix(mix(mix(mix(mix(mix(h, e->v[0]), e->v[1]), e->line[0]), e->line[1]), e->explicit_line), e->child), e->wall);
+        h = mix(mix(mix(mix(mix(mix(mix(h, e->v[0]), e->v[1]), e->line[0]), e->line[1]), e->explicit_line), e->child),
+                e->wall);
     }
     for (i = 0; i < cx->facet_count; i++) {
         const gxb_facet *f = &cx->facets[i];
-        h = mix(mix(mix(mix(mix(mix(mix(h, f->plane), f->leaf[0]), f->leaf[1]), f->child), f->labels), f->face), f->wall);
-        if (f->child == GXB_NONE) for (j = 0; j < f->loop_count; j++) h = mix(h, cx->pool[f->loop + j]);
+        h = mix(mix(mix(mix(mix(mix(mix(h, f->plane), f->leaf[0]), f->leaf[1]), f->child), f->labels), f->face),
+                f->wall);
+        if (f->child == GXB_NONE)
+            for (j = 0; j < f->loop_count; j++) h = mix(h, cx->pool[f->loop + j]);
     }
     for (i = 0; i < cx->leaf_count; i++) {
         const gxb_leaf *l = &cx->leaves[i];
         h = mix(mix(mix(h, l->element), l->parent), l->removed);
         for (j = 0; j < l->facet_count; j++) h = mix(h, cx->pool[l->facets + j]);
     }
-    for (i = 0; i < cx->tree_count; i++) h = mix(mix(mix(h, cx->nodes[i].plane), cx->nodes[i].child[0]), cx->nodes[i].child[1]);
-    for (i = 0; i < cx->label_count; i++) h = mix(mix(mix(h, cx->labels[i].triangle), (uint32_t)cx->labels[i].orientation), cx->labels[i].next);
+    for (i = 0; i < cx->tree_count; i++)
+        h = mix(mix(mix(h, cx->nodes[i].plane), cx->nodes[i].child[0]), cx->nodes[i].child[1]);
+    for (i = 0; i < cx->label_count; i++)
+        h = mix(mix(mix(h, cx->labels[i].triangle), (uint32_t)cx->labels[i].orientation), cx->labels[i].next);
     for (i = 0; i < cx->element_count; i++) h = mix(h, cx->root[i]);
     for (i = 0; i < cx->face_count; i++) h = mix(h, cx->face_facet[i]);
     for (i = 0; i < cx->mesh_edge_count; i++) h = mix(h, cx->mesh_edge[i]);
@@ -1081,7 +1248,8 @@ static uint64_t topology_of(const scene *s) {
 }
 
 START_TEST(topology_is_the_same_moved_and_scaled) {
-    static const double factors[5] = {1, 0x1p-40, 0x1p60, 0x1p-900, 0x1p500}, offsets[5] = {1048576, 0, 67108864, 0, -16777216};
+    static const double factors[5] = {1, 0x1p-40, 0x1p60, 0x1p-900, 0x1p500},
+                        offsets[5] = {1048576, 0, 67108864, 0, -16777216};
     pc_random r = seeded((uint64_t)_i + 1);
     scene s;
     uint64_t first;
@@ -1092,11 +1260,14 @@ START_TEST(topology_is_the_same_moved_and_scaled) {
     first = topology_of(&s);
     for (k = 0; k < 5; k++) {
         scene t = s;
-        for (i = 0; i < 3 * t.node_count; i++) t.nodes[i / 3][i % 3] = (t.nodes[i / 3][i % 3] + offsets[k]) * factors[k];
-        for (i = 0; i < 9 * t.cut_count; i++) t.cuts[i / 9][i / 3 % 3][i % 3] = (t.cuts[i / 9][i / 3 % 3][i % 3] + offsets[k]) * factors[k];
+        for (i = 0; i < 3 * t.node_count; i++)
+            t.nodes[i / 3][i % 3] = (t.nodes[i / 3][i % 3] + offsets[k]) * factors[k];
+        for (i = 0; i < 9 * t.cut_count; i++)
+            t.cuts[i / 9][i / 3 % 3][i % 3] = (t.cuts[i / 9][i / 3 % 3][i % 3] + offsets[k]) * factors[k];
         assert_that(topology_of(&t) == first, "factor %a offset %g", factors[k], offsets[k]);
     }
-} END_TEST
+}
+END_TEST
 
 /* Stamps that have reached their last begin again, and none that points and edges still have counts as new. */
 START_TEST(stamps_begin_again) {
@@ -1112,18 +1283,20 @@ START_TEST(stamps_begin_again) {
     for (c = 0; c < s.cut_count / 2; c++) ck_assert_int_eq(insert_cut(cx, &s, &in, c), GX_OK);
     gxb_complex_commit(cx);
     for (before = 0; before < 2; before++) {
-        for (turn = 0; turn < 2; turn++) {      /* what is undone stamped what is there again the next time */
+        for (turn = 0; turn < 2; turn++) { /* what is undone stamped what is there again the next time */
             cx->stamp[0] = cx->stamp[1] = UINT32_MAX - before;
             cx->edge_stamp = 0x3fffffffu - before;
             gxb_complex_begin(cx);
             for (c = s.cut_count / 2; c < s.cut_count; c++) ck_assert_int_eq(insert_cut(cx, &s, &in, c), GX_OK);
             assert_that(cx->stamp[0] < 100 && cx->stamp[1] < 100000 && cx->edge_stamp < 100000, "no stamp began again");
-            assert_that(hash_complex(cx, 0) == topology_of(&s), "another topology, %lu before, turn %lu", (unsigned long)before, (unsigned long)turn);
+            assert_that(hash_complex(cx, 0) == topology_of(&s), "another topology, %lu before, turn %lu",
+                        (unsigned long)before, (unsigned long)turn);
             gxb_complex_rollback(cx);
         }
     }
     gxb_complex_destroy(cx);
-} END_TEST
+}
+END_TEST
 
 /* ---- what walls separate does not depend on the order of the cuts ---- */
 
@@ -1157,7 +1330,8 @@ static uint32_t piece_volumes(const scene *s, double volumes[256]) {
         parent[find_root(parent, f->leaf[0])] = find_root(parent, f->leaf[1]);
     }
     for (i = 0; i < cx->leaf_count; i++) sum[find_root(parent, i)] += check_leaf(&m, i);
-    for (i = 0; i < cx->leaf_count; i++) if (parent[i] == i && count < 256) volumes[count++] = sum[i];
+    for (i = 0; i < cx->leaf_count; i++)
+        if (parent[i] == i && count < 256) volumes[count++] = sum[i];
     qsort(volumes, count, sizeof *volumes, compare_doubles);
     free(parent);
     free(sum);
@@ -1187,7 +1361,8 @@ START_TEST(pieces_do_not_depend_on_the_order) {
         ck_assert_uint_eq(piece_volumes(&s, b), count);
         for (i = 0; i < count; i++) assert_that(fabs(a[i] - b[i]) < 1e-13, "piece %u: %.17g, %.17g", i, a[i], b[i]);
     }
-} END_TEST
+}
+END_TEST
 
 START_TEST(coincident_cuts_share_their_facets) {
     pc_random r = seeded((uint64_t)_i + 1);
@@ -1198,7 +1373,7 @@ START_TEST(coincident_cuts_share_their_facets) {
     make_mesh(&s, &r, 6, 1, 0, 0);
     make_cuts(&s, &r, 3, 1, 1, 0);
     memcpy(s.cuts[1], s.cuts[0], sizeof s.cuts[0]);
-    memcpy(s.cuts[2][0], s.cuts[0][1], sizeof s.cuts[2][0]);    /* turned round */
+    memcpy(s.cuts[2][0], s.cuts[0][1], sizeof s.cuts[2][0]); /* turned round */
     memcpy(s.cuts[2][1], s.cuts[0][0], sizeof s.cuts[2][1]);
     memcpy(s.cuts[2][2], s.cuts[0][2], sizeof s.cuts[2][2]);
     cx = open_scene(&s, NULL);
@@ -1206,7 +1381,9 @@ START_TEST(coincident_cuts_share_their_facets) {
     for (i = 0; i < cx->facet_count; i++) {
         const gxb_label *l[3];
         if (cx->facets[i].child != GXB_NONE) continue;
-        l[0] = find_label(cx, i, 0); l[1] = find_label(cx, i, 1); l[2] = find_label(cx, i, 2);
+        l[0] = find_label(cx, i, 0);
+        l[1] = find_label(cx, i, 1);
+        l[2] = find_label(cx, i, 2);
         assert_that((l[0] == NULL) == (l[1] == NULL) && (l[0] == NULL) == (l[2] == NULL), "facet %u", i);
         if (l[0] == NULL) continue;
         found++;
@@ -1216,13 +1393,19 @@ START_TEST(coincident_cuts_share_their_facets) {
     ck_assert_uint_gt(found + 1, area_in_element(&(model){&s, &in, cx, NULL, NULL, NULL}, 0, 0) > 0 ? 1 : 0);
     check_complex(cx, &s, &in, &r);
     gxb_complex_destroy(cx);
-} END_TEST
+}
+END_TEST
 
-static int refuse(void *user, uint32_t leaf) { (void)leaf; ++*(int *)user; return 0; }
+static int refuse(void *user, uint32_t leaf) {
+    (void)leaf;
+    *(int *)user++;
+    return 0;
+}
 
 START_TEST(refused_and_removed_leaves_stay_whole) {
     pc_random r = seeded(1);
-    const double across[3][3] = {{-9, -9, 0.25}, {9, -9, 0.25}, {0, 9, 0.25}}, along[3][3] = {{0.2, -9, -9}, {0.2, 9, -9}, {0.2, 0, 9}};
+    const double across[3][3] = {{-9, -9, 0.25}, {9, -9, 0.25}, {0, 9, 0.25}},
+                 along[3][3] = {{0.2, -9, -9}, {0.2, 9, -9}, {0.2, 0, 9}};
     scene s;
     inserted in;
     gxb_complex *cx;
@@ -1230,7 +1413,10 @@ START_TEST(refused_and_removed_leaves_stay_whole) {
     uint32_t leaves;
     make_mesh(&s, &r, 1, 1, 0, 0);
     memcpy(s.nodes, unit_tet, sizeof unit_tet);
-    s.elements[0][0] = 0; s.elements[0][1] = 1; s.elements[0][2] = 2; s.elements[0][3] = 3;
+    s.elements[0][0] = 0;
+    s.elements[0][1] = 1;
+    s.elements[0][2] = 2;
+    s.elements[0][3] = 3;
     s.node_count = 4;
     memcpy(s.cuts[0], across, sizeof across);
     memcpy(s.cuts[1], along, sizeof along);
@@ -1258,7 +1444,8 @@ START_TEST(refused_and_removed_leaves_stay_whole) {
     ck_assert_int_eq(asked, 1);
     ck_assert_uint_eq(cx->leaf_count, 1);
     gxb_complex_destroy(cx);
-} END_TEST
+}
+END_TEST
 
 START_TEST(rollback_restores_everything) {
     pc_random r = seeded((uint64_t)_i + 1);
@@ -1291,9 +1478,11 @@ START_TEST(rollback_restores_everything) {
     ck_assert_int_eq(insert_all(cx, &s, &twice), GX_OK);
     assert_that(hash_complex(cx, 1) == after, "a rolled back cut left a trace");
     gxb_complex_destroy(cx);
-} END_TEST
+}
+END_TEST
 
-/* Every allocation in turn fails, once or from then on: an error, an unchanged complex after rollback, and the same result at the next try. */
+/* Every allocation in turn fails, once or from then on: an error, an unchanged complex after rollback, and the same
+ * result at the next try. */
 START_TEST(every_allocation_may_fail) {
     pc_random r = seeded((uint64_t)_i / 2 + 1);
     heap h = {0, 0, 0, 0};
@@ -1302,16 +1491,22 @@ START_TEST(every_allocation_may_fail) {
     inserted in;
     size_t n, failures = 0;
     uint64_t good = 0;
-    allocator.allocate = heap_allocate; allocator.release = heap_release; allocator.user = &h; allocator.reallocate = NULL;
+    allocator.allocate = heap_allocate;
+    allocator.release = heap_release;
+    allocator.user = &h;
+    allocator.reallocate = NULL;
     make_mesh(&s, &r, 6, 1, _i / 2 == 1 ? 1e6 : 0, 0.05);
     make_cuts(&s, &r, 6, 2, 1, _i / 2 == 1 ? 1e6 : 0);
-    for (n = 0; ; n++) {
+    for (n = 0;; n++) {
         const gxb_mesh mesh = mesh_of(&s);
         gxb_complex *cx = NULL;
         gx_failure failure;
         uint64_t before;
         gx_result result;
-        h.calls = 0; h.fail_at = n; h.fail_count = _i % 2 ? SIZE_MAX : 1;       /* n = 0: none fails */
+        /* n = 0: none fails */
+        h.calls = 0;
+        h.fail_at = n;
+        h.fail_count = _i % 2 ? SIZE_MAX : 1;
         result = gxb_complex_create(&mesh, &allocator, &cx, &failure);
         if (result != GX_OK) {
             ck_assert_int_eq(result, GX_ERROR_MEMORY);
@@ -1323,7 +1518,10 @@ START_TEST(every_allocation_may_fail) {
         before = hash_complex(cx, 1);
         gxb_complex_begin(cx);
         result = insert_all(cx, &s, &in);
-        if (n > 0 && h.calls < n) { gxb_complex_destroy(cx); break; }           /* all have failed */
+        if (n > 0 && h.calls < n) {
+            gxb_complex_destroy(cx);
+            break;
+        } /* all have failed */
         if (result != GX_OK) {
             ck_assert_int_eq(result, GX_ERROR_MEMORY);
             failures++;
@@ -1344,14 +1542,16 @@ START_TEST(every_allocation_may_fail) {
     }
     ck_assert_uint_eq(h.bytes, 0);
     ck_assert_uint_gt(failures, 10);
-} END_TEST
+}
+END_TEST
 
 /* Reads every list, so that all are resolved. */
 static void read_lists(gxb_complex *cx) {
     uint32_t leaf, first, count, edge_first, edge_count, i;
     for (leaf = 0; leaf < cx->leaf_count; leaf++) {
         ck_assert_int_eq(gxb_leaf_facets(cx, leaf, &first, &count), GX_OK);
-        for (i = 0; i < count; i++) ck_assert_int_eq(gxb_facet_edges(cx, cx->pool[first + i], &edge_first, &edge_count), GX_OK);
+        for (i = 0; i < count; i++)
+            ck_assert_int_eq(gxb_facet_edges(cx, cx->pool[first + i], &edge_first, &edge_count), GX_OK);
     }
 }
 
@@ -1366,7 +1566,7 @@ START_TEST(many_transactions_conform) {
     make_cuts(&s, &r, MAX_CUTS, 0, 1, 0);
     cx = open_scene(&s, NULL);
     for (c = 0; c < s.cut_count; c++) {
-        for (k = 0; k < 4; k++) {       /* undone three times, then kept */
+        for (k = 0; k < 4; k++) { /* undone three times, then kept */
             const uint64_t before = hash_complex(cx, 1);
             const uint32_t pool_count = cx->pool_count;
             gxb_complex_begin(cx);
@@ -1377,13 +1577,15 @@ START_TEST(many_transactions_conform) {
             if (k < 3) {
                 gxb_complex_rollback(cx);
                 assert_that(hash_complex(cx, 1) == before, "cut %u", c);
-            } else gxb_complex_commit(cx);
+            } else
+                gxb_complex_commit(cx);
         }
     }
     ck_assert_uint_gt(compactions, 0);
     check_complex(cx, &s, &in, &r);
     gxb_complex_destroy(cx);
-} END_TEST
+}
+END_TEST
 
 /* ---- bad input ---- */
 
@@ -1394,18 +1596,23 @@ static void expect_mesh(const scene *s, gx_result want, size_t index) {
     heap h = {0, 0, 0, 0};
     gx_allocator allocator;
     gx_result result;
-    allocator.allocate = heap_allocate; allocator.release = heap_release; allocator.user = &h; allocator.reallocate = NULL;
+    allocator.allocate = heap_allocate;
+    allocator.release = heap_release;
+    allocator.user = &h;
+    allocator.reallocate = NULL;
     result = gxb_complex_create(&mesh, &allocator, &cx, &failure);
     assert_that(result == want && failure.result == want, "result %d instead of %d", (int)result, (int)want);
     assert_that(want == GX_OK || cx == NULL, "a complex in spite of error %d", (int)want);
-    assert_that(failure.index == index, "error %d: index %lu instead of %lu", (int)want, (unsigned long)failure.index, (unsigned long)index);
+    assert_that(failure.index == index, "error %d: index %lu instead of %lu", (int)want, (unsigned long)failure.index,
+                (unsigned long)index);
     gxb_complex_destroy(cx);
     ck_assert_uint_eq(h.bytes, 0);
 }
 
 START_TEST(bad_meshes_are_named) {
     pc_random r = seeded(1);
-    const double infinity = pc_from_bits(UINT64_C(0x7ff0000000000000)), nan = pc_from_bits(UINT64_C(0x7ff8000000000001));
+    const double infinity = pc_from_bits(UINT64_C(0x7ff0000000000000)),
+                 nan = pc_from_bits(UINT64_C(0x7ff8000000000001));
     scene good, s;
     gxb_mesh none;
     gx_allocator half;
@@ -1413,21 +1620,50 @@ START_TEST(bad_meshes_are_named) {
     gx_failure failure;
     make_mesh(&good, &r, 6, 1, 0, 0);
     expect_mesh(&good, GX_OK, SIZE_MAX);
-    s = good; s.nodes[5][1] = nan; expect_mesh(&s, GX_ERROR_NOT_FINITE, 5);
-    s = good; s.nodes[2][0] = infinity; expect_mesh(&s, GX_ERROR_NOT_FINITE, 2);
-    s = good; s.nodes[2][0] = -infinity; expect_mesh(&s, GX_ERROR_NOT_FINITE, 2);
-    s = good; s.elements[3][2] = 8; expect_mesh(&s, GX_ERROR_INDEX, 3);
-    s = good; s.elements[3][2] = UINT32_MAX; expect_mesh(&s, GX_ERROR_INDEX, 3);
-    s = good; s.elements[4][0] = good.elements[4][1]; s.elements[4][1] = good.elements[4][0]; expect_mesh(&s, GX_ERROR_INVERTED, 4);
-    s = good; s.elements[4][0] = s.elements[4][1]; expect_mesh(&s, GX_ERROR_FLAT, 4);
-    s = good; s.element_count = 1; memcpy(s.nodes[7], s.nodes[2], sizeof s.nodes[7]); expect_mesh(&s, GX_ERROR_FLAT, 0);
-    s = good; s.element_count = 7; memcpy(s.elements[6], s.elements[0], sizeof s.elements[6]); expect_mesh(&s, GX_ERROR_OVERLAP, 6);
-    s = good; s.nodes[1][1] = 1e-60; expect_mesh(&s, GX_ERROR_RANGE, 1);
-    s = good; s.node_count = 0; expect_mesh(&s, GX_ERROR_EMPTY, SIZE_MAX);
-    s = good; s.element_count = 0; expect_mesh(&s, GX_ERROR_EMPTY, SIZE_MAX);
-    none = mesh_of(&good); none.positions = NULL;
+    s = good;
+    s.nodes[5][1] = nan;
+    expect_mesh(&s, GX_ERROR_NOT_FINITE, 5);
+    s = good;
+    s.nodes[2][0] = infinity;
+    expect_mesh(&s, GX_ERROR_NOT_FINITE, 2);
+    s = good;
+    s.nodes[2][0] = -infinity;
+    expect_mesh(&s, GX_ERROR_NOT_FINITE, 2);
+    s = good;
+    s.elements[3][2] = 8;
+    expect_mesh(&s, GX_ERROR_INDEX, 3);
+    s = good;
+    s.elements[3][2] = UINT32_MAX;
+    expect_mesh(&s, GX_ERROR_INDEX, 3);
+    s = good;
+    s.elements[4][0] = good.elements[4][1];
+    s.elements[4][1] = good.elements[4][0];
+    expect_mesh(&s, GX_ERROR_INVERTED, 4);
+    s = good;
+    s.elements[4][0] = s.elements[4][1];
+    expect_mesh(&s, GX_ERROR_FLAT, 4);
+    s = good;
+    s.element_count = 1;
+    memcpy(s.nodes[7], s.nodes[2], sizeof s.nodes[7]);
+    expect_mesh(&s, GX_ERROR_FLAT, 0);
+    s = good;
+    s.element_count = 7;
+    memcpy(s.elements[6], s.elements[0], sizeof s.elements[6]);
+    expect_mesh(&s, GX_ERROR_OVERLAP, 6);
+    s = good;
+    s.nodes[1][1] = 1e-60;
+    expect_mesh(&s, GX_ERROR_RANGE, 1);
+    s = good;
+    s.node_count = 0;
+    expect_mesh(&s, GX_ERROR_EMPTY, SIZE_MAX);
+    s = good;
+    s.element_count = 0;
+    expect_mesh(&s, GX_ERROR_EMPTY, SIZE_MAX);
+    none = mesh_of(&good);
+    none.positions = NULL;
     ck_assert_int_eq(gxb_complex_create(&none, NULL, &cx, &failure), GX_ERROR_ARGUMENT);
-    none = mesh_of(&good); none.elements = NULL;
+    none = mesh_of(&good);
+    none.elements = NULL;
     ck_assert_int_eq(gxb_complex_create(&none, NULL, &cx, &failure), GX_ERROR_ARGUMENT);
     ck_assert_int_eq(gxb_complex_create(NULL, NULL, &cx, NULL), GX_ERROR_ARGUMENT);
     none = mesh_of(&good);
@@ -1436,7 +1672,8 @@ START_TEST(bad_meshes_are_named) {
     half.allocate = (void *(*)(void *, size_t))1;
     ck_assert_int_eq(gxb_complex_create(&none, &half, &cx, NULL), GX_ERROR_ARGUMENT);
     gxb_complex_destroy(NULL);
-} END_TEST
+}
+END_TEST
 
 /* Coordinates too large for any frame are named with their node, as the header promises. */
 START_TEST(huge_meshes_name_the_node) {
@@ -1445,7 +1682,8 @@ START_TEST(huge_meshes_name_the_node) {
     make_mesh(&s, &r, 6, 1, 0, 0);
     s.nodes[7][2] = 1e300;
     expect_mesh(&s, GX_ERROR_RANGE, 7);
-} END_TEST
+}
+END_TEST
 
 START_TEST(bad_triangles_are_named) {
     pc_random r = seeded(1);
@@ -1462,10 +1700,14 @@ START_TEST(bad_triangles_are_named) {
     cx = open_scene(&s, NULL);
     before = hash_complex(cx, 1);
     gxb_complex_begin(cx);
-    x[1] = nan; ck_assert_int_eq(gxb_complex_add_point(cx, x, &point), GX_ERROR_NOT_FINITE);
-    x[1] = 1e60; ck_assert_int_eq(gxb_complex_add_point(cx, x, &point), GX_ERROR_RANGE);
-    x[1] = 1e-60; ck_assert_int_eq(gxb_complex_add_point(cx, x, &point), GX_ERROR_RANGE);
-    x[1] = 1e38; ck_assert_int_eq(gxb_complex_add_point(cx, x, &point), GX_OK);
+    x[1] = nan;
+    ck_assert_int_eq(gxb_complex_add_point(cx, x, &point), GX_ERROR_NOT_FINITE);
+    x[1] = 1e60;
+    ck_assert_int_eq(gxb_complex_add_point(cx, x, &point), GX_ERROR_RANGE);
+    x[1] = 1e-60;
+    ck_assert_int_eq(gxb_complex_add_point(cx, x, &point), GX_ERROR_RANGE);
+    x[1] = 1e38;
+    ck_assert_int_eq(gxb_complex_add_point(cx, x, &point), GX_OK);
     memset(&t, 0, sizeof t);
     for (j = 0; j < 3; j++) ck_assert_int_eq(gxb_complex_add_point(cx, line[0], &t.point[j]), GX_OK);
     ck_assert_int_eq(gxb_complex_add_plane(cx, &t), GX_ERROR_FLAT);
@@ -1478,18 +1720,20 @@ START_TEST(bad_triangles_are_named) {
     ck_assert_int_eq(insert_cut(cx, &s, &in, 0), GX_ERROR_FLAT);
     gxb_complex_rollback(cx);
     assert_that(hash_complex(cx, 1) == before, "rollback");
-    s.cuts[0][2][2] = pc_nudge(s.cuts[0][2][2], 1);         /* one ulp of area */
+    s.cuts[0][2][2] = pc_nudge(s.cuts[0][2][2], 1); /* one ulp of area */
     gxb_complex_begin(cx);
     ck_assert_int_eq(insert_cut(cx, &s, &in, 0), GX_OK);
     check_complex(cx, &s, &in, &r);
     gxb_complex_destroy(cx);
-} END_TEST
+}
+END_TEST
 
 /* ==== the suite ==== */
 
 static Suite *boolean_suite(void) {
     Suite *suite = suite_create("gxfem_boolean");
-    TCase *numbers = tcase_create("numbers"), *predicates = tcase_create("predicates"), *complex = tcase_create("complex");
+    TCase *numbers = tcase_create("numbers"), *predicates = tcase_create("predicates"),
+          *complex = tcase_create("complex");
     TCase *input = tcase_create("input");
     tcase_add_loop_test(numbers, numbers_are_exact, 0, 2);
     tcase_add_loop_test(numbers, numbers_become_doubles, 0, 2);
@@ -1527,6 +1771,4 @@ static Suite *boolean_suite(void) {
     return suite;
 }
 
-int main(void) {
-    return run_suite(boolean_suite());
-}
+int main(void) { return run_suite(boolean_suite()); }

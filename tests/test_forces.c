@@ -1,5 +1,6 @@
-/* Tests of what acts on bodies in gxfem_solve.h besides their own elasticity: constraints, springs, planes with friction, contact,
- * statics, damping, sleep, time budgets, the assembled matrix; and of memory and random mixtures of all of it. */
+/* Tests of what acts on bodies in gxfem_solve.h besides their own elasticity: constraints, springs, planes with
+ * friction, contact, statics, damping, sleep, time budgets, the assembled matrix; and of memory and random mixtures of
+ * all of it. */
 #ifndef GXFEM_LINKED
 #define GXFEM_SOLVE_IMPLEMENTATION
 #endif
@@ -14,8 +15,7 @@
 /* every combination of preconditioner and matrix; the first is the plainest */
 enum { SOLVERS = 6 };
 
-static gxs_solver_desc solver_desc(int which)
-{
+static gxs_solver_desc solver_desc(int which) {
     static const gxs_preconditioner preconditioners[SOLVERS / 2] = {GXS_BLOCK_JACOBI, GXS_MULTIGRID, GXS_VOLUME_RATIO};
     gxs_solver_desc desc;
     memset(&desc, 0, sizeof desc);
@@ -24,15 +24,14 @@ static gxs_solver_desc solver_desc(int which)
     return desc;
 }
 
-static const char *solver_name(int which)
-{
-    static const char *const names[SOLVERS] = {"block-Jacobi free", "block-Jacobi assembled", "multigrid free", "multigrid assembled",
+static const char *solver_name(int which) {
+    static const char *const names[SOLVERS] = {"block-Jacobi free", "block-Jacobi assembled",
+                                               "multigrid free",    "multigrid assembled",
                                                "volume ratio free", "volume ratio assembled"};
     return names[which];
 }
 
-static gxs_solver *solver_of(int which)
-{
+static gxs_solver *solver_of(int which) {
     gxs_solver_desc desc = solver_desc(which);
     gxs_solver *solver = NULL;
     ck_assert_int_eq(gxs_solver_create(&desc, &solver), GX_OK);
@@ -40,8 +39,7 @@ static gxs_solver *solver_of(int which)
 }
 
 /* solved to (almost) all digits */
-static gxs_step_desc step_tight(double dt, double gravity)
-{
+static gxs_step_desc step_tight(double dt, double gravity) {
     gxs_step_desc step = step_make(dt, gravity);
     step.newton_iterations = 60;
     step.newton_tolerance = 1e-11;
@@ -50,18 +48,18 @@ static gxs_step_desc step_tight(double dt, double gravity)
     return step;
 }
 
-static void *longer(void *memory, size_t from, size_t to, size_t size)
-{
+static void *longer(void *memory, size_t from, size_t to, size_t size) {
     char *moved = (char *)realloc(memory, to * size);
     ck_assert_ptr_nonnull(moved);
     memset(moved + from * size, 0, (to - from) * size);
     return moved;
 }
 
-/* Adds another block beside the first, which it consumes; its copies and elements follow those of s. Materials are those of s. */
-static void scene_add(scene *s, scene *other, double x, double y, double z)
-{
-    const size_t n = s->model.copy_count, more = other->model.copy_count, e = s->model.element_count, last = e + other->model.element_count;
+/* Adds another block beside the first, which it consumes; its copies and elements follow those of s. Materials are
+ * those of s. */
+static void scene_add(scene *s, scene *other, double x, double y, double z) {
+    const size_t n = s->model.copy_count, more = other->model.copy_count, e = s->model.element_count,
+                 last = e + other->model.element_count;
     const double shift[3] = {x, y, z};
     size_t i;
     int k;
@@ -71,12 +69,10 @@ static void scene_add(scene *s, scene *other, double x, double y, double z)
     s->forces = (double *)longer(s->forces, 3 * n, 3 * (n + more), sizeof(double));
     s->held = (uint8_t *)longer(s->held, n, n + more, 1);
     s->elements = (gxs_element *)longer(s->elements, e, last, sizeof(gxs_element));
-    for (i = 0; i < 3 * more; ++i)
-        s->rest[3 * n + i] = other->rest[i] + shift[i % 3];
-    for (i = e; i < last; ++i) {
+    for (i = 0; i < 3 * more; i++) s->rest[3 * n + i] = other->rest[i] + shift[i % 3];
+    for (i = e; i < last; i++) {
         s->elements[i] = other->elements[i - e];
-        for (k = 0; k < 4; ++k)
-            s->elements[i].copy[k] += (uint32_t)n;
+        for (k = 0; k < 4; k++) s->elements[i].copy[k] += (uint32_t)n;
     }
     s->model.copy_count += more;
     s->model.element_count = last;
@@ -86,16 +82,15 @@ static void scene_add(scene *s, scene *other, double x, double y, double z)
     scene_free(other);
 }
 
-/* The same block cut at x, where nodes lie (of no jitter), and tied there: elements on the right get copies of their own, which follow.
- * Returns the constraints, for the caller to free. */
-static gxs_constraint *scene_split(scene *s, double x)
-{
+/* The same block cut at x, where nodes lie (of no jitter), and tied there: elements on the right get copies of their
+ * own, which follow. Returns the constraints, for the caller to free. */
+static gxs_constraint *scene_split(scene *s, double x) {
     const size_t n = s->model.copy_count;
     uint32_t *twin = (uint32_t *)zeroed(n, sizeof *twin), count = 0;
     gxs_constraint *ties = (gxs_constraint *)zeroed(n, sizeof *ties);
     size_t i, e;
     int k;
-    for (i = 0; i < n; ++i)
+    for (i = 0; i < n; i++)
         if (fabs(s->rest[3 * i] - x) < 1e-9) {
             ties[count].copy = twin[i] = (uint32_t)n + count;
             ties[count].master[0] = (uint32_t)i;
@@ -106,19 +101,17 @@ static gxs_constraint *scene_split(scene *s, double x)
     s->velocity = (double *)longer(s->velocity, 3 * n, 3 * (n + count), sizeof(double));
     s->forces = (double *)longer(s->forces, 3 * n, 3 * (n + count), sizeof(double));
     s->held = (uint8_t *)longer(s->held, n, n + count, 1);
-    for (i = 0; i < n; ++i)
+    for (i = 0; i < n; i++)
         if (twin[i]) {
             memcpy(s->rest + 3 * twin[i], s->rest + 3 * i, 3 * sizeof(double));
             memcpy(s->displacement + 3 * twin[i], s->displacement + 3 * i, 3 * sizeof(double));
             memcpy(s->velocity + 3 * twin[i], s->velocity + 3 * i, 3 * sizeof(double));
         }
-    for (e = 0; e < s->model.element_count; ++e) {
+    for (e = 0; e < s->model.element_count; e++) {
         double centre = 0;
-        for (k = 0; k < 4; ++k)
-            centre += 0.25 * s->rest[3 * s->elements[e].copy[k]];
-        for (k = 0; k < 4 && centre > x; ++k)
-            if (twin[s->elements[e].copy[k]])
-                s->elements[e].copy[k] = twin[s->elements[e].copy[k]];
+        for (k = 0; k < 4; k++) centre += 0.25 * s->rest[3 * s->elements[e].copy[k]];
+        for (k = 0; k < 4 && centre > x; k++)
+            if (twin[s->elements[e].copy[k]]) s->elements[e].copy[k] = twin[s->elements[e].copy[k]];
     }
     s->model.copy_count = n + count;
     s->model.positions = s->rest;
@@ -130,89 +123,76 @@ static gxs_constraint *scene_split(scene *s, double x)
 }
 
 /* M x, of lumped models too */
-static void mass_times(const scene *s, const double *x, double *y)
-{
+static void mass_times(const scene *s, const double *x, double *y) {
     const size_t count = 3 * s->model.copy_count;
     size_t i;
     if (s->model.lumped_mass) {
         double *ones = (double *)zeroed(count, sizeof *ones);
-        for (i = 0; i < count; ++i)
-            ones[i] = 1;
+        for (i = 0; i < count; i++) ones[i] = 1;
         ck_assert_int_eq(gxs_model_mass_product(&s->model, ones, y), GX_OK);
-        for (i = 0; i < count; ++i)
-            y[i] *= x[i];
+        for (i = 0; i < count; i++) y[i] *= x[i];
         free(ones);
     } else
         ck_assert_int_eq(gxs_model_mass_product(&s->model, x, y), GX_OK);
 }
 
-static double mass_of(const scene *s)
-{
+static double mass_of(const scene *s) {
     size_t e;
     int k;
     double sum = 0;
-    for (e = 0; e < s->model.element_count; ++e)
-        for (k = 0; k < 10; ++k)
-            sum += s->elements[e].mass[k] * (k == 0 || k == 4 || k == 7 || k == 9 ? 1 : 2);
+    for (e = 0; e < s->model.element_count; e++)
+        for (k = 0; k < 10; k++) sum += s->elements[e].mass[k] * (k == 0 || k == 4 || k == 7 || k == 9 ? 1 : 2);
     return sum;
 }
 
 /* kinetic, elastic and gravity's, J */
-static double total_energy(const scene *s, const double *gravity)
-{
+static double total_energy(const scene *s, const double *gravity) {
     const size_t count = 3 * s->model.copy_count;
     double *y = (double *)zeroed(2 * count, sizeof *y), sum;
     size_t i;
     ck_assert_int_eq(gxs_model_energy(&s->model, s->displacement, &sum), GX_OK);
     mass_times(s, s->velocity, y);
-    for (i = 0; i < count; ++i) {
+    for (i = 0; i < count; i++) {
         sum += 0.5 * y[i] * s->velocity[i];
         y[count + i] = gravity[i % 3];
     }
     mass_times(s, y + count, y);
-    for (i = 0; i < count; ++i)
-        sum -= y[i] * s->displacement[i];
+    for (i = 0; i < count; i++) sum -= y[i] * s->displacement[i];
     free(y);
     return sum;
 }
 
 /* sum of x cross M v, x where copies are now */
-static void angular_momentum(const scene *s, double *sum)
-{
+static void angular_momentum(const scene *s, double *sum) {
     double *mv = (double *)zeroed(3 * s->model.copy_count, sizeof *mv);
     size_t i, r;
     mass_times(s, s->velocity, mv);
     sum[0] = sum[1] = sum[2] = 0;
-    for (i = 0; i < s->model.copy_count; ++i) {
+    for (i = 0; i < s->model.copy_count; i++) {
         double x[3];
-        for (r = 0; r < 3; ++r)
-            x[r] = s->rest[3 * i + r] + s->displacement[3 * i + r];
-        for (r = 0; r < 3; ++r)
+        for (r = 0; r < 3; r++) x[r] = s->rest[3 * i + r] + s->displacement[3 * i + r];
+        for (r = 0; r < 3; r++)
             sum[r] += x[(r + 1) % 3] * mv[3 * i + (r + 2) % 3] - x[(r + 2) % 3] * mv[3 * i + (r + 1) % 3];
     }
     free(mv);
 }
 
-static double distance(const double *a, const double *b, size_t count)
-{
+static double distance(const double *a, const double *b, size_t count) {
     double most = 0;
     size_t i;
-    for (i = 0; i < count; ++i)
-        most = fabs(a[i] - b[i]) > most ? fabs(a[i] - b[i]) : most;
+    for (i = 0; i < count; i++) most = fabs(a[i] - b[i]) > most ? fabs(a[i] - b[i]) : most;
     return most;
 }
 
-static void check_finite(const scene *s)
-{
+static void check_finite(const scene *s) {
     size_t i;
-    for (i = 0; i < 3 * s->model.copy_count; ++i)
+    for (i = 0; i < 3 * s->model.copy_count; i++)
         assert_that(finite_bits(s->displacement[i]) && finite_bits(s->velocity[i]), "copy %lu", (unsigned long)(i / 3));
 }
 
 /* ---- points ---- */
 
-static gxs_point point_at(const scene *s, size_t copy)
-{
+static gxs_point point_at(const scene *s, size_t copy) {
     gxs_point point;
     memset(&point, 0, sizeof point);
     point.copy[0] = (uint32_t)copy;
@@ -221,53 +201,43 @@ static gxs_point point_at(const scene *s, size_t copy)
     return point;
 }
 
-static gxs_point point_within(const scene *s, size_t element, const double *weights)
-{
+static gxs_point point_within(const scene *s, size_t element, const double *weights) {
     gxs_point point;
     int k, r;
     memset(&point, 0, sizeof point);
-    for (k = 0; k < 4; ++k) {
+    for (k = 0; k < 4; k++) {
         point.copy[k] = s->elements[element].copy[k];
         point.weight[k] = weights[k];
-        for (r = 0; r < 3; ++r)
-            point.position[r] += weights[k] * s->rest[3 * point.copy[k] + (uint32_t)r];
+        for (r = 0; r < 3; r++) point.position[r] += weights[k] * s->rest[3 * point.copy[k] + (uint32_t)r];
     }
     return point;
 }
 
-static gxs_point random_point(const scene *s)
-{
+static gxs_point random_point(const scene *s) {
     double w[4], sum = 0;
     int k;
-    for (k = 0; k < 4; ++k)
-        sum += w[k] = 1.01 + uniform();
-    for (k = 0; k < 4; ++k)
-        w[k] /= sum;
+    for (k = 0; k < 4; k++) sum += w[k] = 1.01 + uniform();
+    for (k = 0; k < 4; k++) w[k] /= sum;
     return point_within(s, (size_t)((uniform() + 1) / 2 * (double)s->model.element_count), w);
 }
 
-static void point_now(const gxs_point *point, const double *displacement, double *x)
-{
+static void point_now(const gxs_point *point, const double *displacement, double *x) {
     int k, r;
-    for (r = 0; r < 3; ++r) {
+    for (r = 0; r < 3; r++) {
         x[r] = point->position[r];
-        for (k = 0; k < 4; ++k)
-            x[r] += point->weight[k] * displacement[3 * point->copy[k] + (uint32_t)r];
+        for (k = 0; k < 4; k++) x[r] += point->weight[k] * displacement[3 * point->copy[k] + (uint32_t)r];
     }
 }
 
 /* every copy of a block as a contact point */
-static gxs_point *points_of(const scene *s, size_t first, size_t end)
-{
+static gxs_point *points_of(const scene *s, size_t first, size_t end) {
     gxs_point *points = (gxs_point *)zeroed(end - first, sizeof *points);
     size_t i;
-    for (i = first; i < end; ++i)
-        points[i - first] = point_at(s, i);
+    for (i = first; i < end; i++) points[i - first] = point_at(s, i);
     return points;
 }
 
-static gxs_spring spring_make(gxs_point point, double stiffness)
-{
+static gxs_spring spring_make(gxs_point point, double stiffness) {
     gxs_spring spring;
     spring.point = point;
     memcpy(spring.target, point.position, sizeof spring.target);
@@ -275,8 +245,7 @@ static gxs_spring spring_make(gxs_point point, double stiffness)
     return spring;
 }
 
-static gxs_plane plane_make(double stiffness, double friction)
-{
+static gxs_plane plane_make(double stiffness, double friction) {
     gxs_plane plane;
     memset(&plane, 0, sizeof plane);
     plane.normal[2] = 1;
@@ -285,22 +254,20 @@ static gxs_plane plane_make(double stiffness, double friction)
     return plane;
 }
 
-static double plane_depth(const gxs_plane *plane, const double *x)
-{
+static double plane_depth(const gxs_plane *plane, const double *x) {
     double depth = plane->offset - plane->normal[0] * x[0] - plane->normal[1] * x[1] - plane->normal[2] * x[2];
     return depth > 0 ? depth : 0;
 }
 
-/* Sum over points of what the planes of a step do to them at displacement u, as the manual says, u_n being the start; N. Returns the
- * energy of what presses, J. */
-static double plane_forces(const gxs_step_desc *step, const double *un, const double *u, double *force)
-{
+/* Sum over points of what the planes of a step do to them at displacement u, as the manual says, u_n being the start;
+ * N. Returns the energy of what presses, J. */
+static double plane_forces(const gxs_step_desc *step, const double *un, const double *u, double *force) {
     double energy = 0;
     size_t i, p;
     int r;
     force[0] = force[1] = force[2] = 0;
-    for (i = 0; i < step->point_count; ++i)
-        for (p = 0; p < step->plane_count; ++p) {
+    for (i = 0; i < step->point_count; i++)
+        for (p = 0; p < step->plane_count; p++) {
             const gxs_plane *plane = &step->planes[p];
             const double reach = step->dt * (plane->sticking_speed > 0 ? plane->sticking_speed : 1e-3);
             double before[3], now[3], way[3], along = 0, length = 0, depth, hold;
@@ -308,15 +275,15 @@ static double plane_forces(const gxs_step_desc *step, const double *un, const do
             point_now(&step->points[i], u, now);
             depth = plane_depth(plane, now);
             hold = plane->friction * plane->stiffness * plane_depth(plane, before);
-            for (r = 0; r < 3; ++r)
-                along += plane->normal[r] * (now[r] - before[r]);
-            for (r = 0; r < 3; ++r) {
+            for (r = 0; r < 3; r++) along += plane->normal[r] * (now[r] - before[r]);
+            for (r = 0; r < 3; r++) {
                 way[r] = now[r] - before[r] - along * plane->normal[r];
                 length += way[r] * way[r];
             }
             length = sqrt(length);
-            for (r = 0; r < 3; ++r)
-                force[r] += plane->stiffness * depth * plane->normal[r] - hold * way[r] / (length > reach ? length : reach);
+            for (r = 0; r < 3; r++)
+                force[r] +=
+                    plane->stiffness * depth * plane->normal[r] - hold * way[r] / (length > reach ? length : reach);
             energy += 0.5 * plane->stiffness * depth * depth;
         }
     return energy;
@@ -325,36 +292,32 @@ static double plane_forces(const gxs_step_desc *step, const double *un, const do
 /* ---- constraints ---- */
 
 /* affine motion and some noise; of followers that of their masters */
-static void stir(scene *s, double affine, double noise)
-{
+static void stir(scene *s, double affine, double noise) {
     double a[9];
     size_t i, r;
-    for (i = 0; i < 9; ++i)
-        a[i] = affine * uniform();
-    for (i = 0; i < s->model.copy_count; ++i)
-        for (r = 0; r < 3; ++r)
-            s->velocity[3 * i + r] = s->held[i] ? 0 : a[3 * r] * s->rest[3 * i] + a[3 * r + 1] * s->rest[3 * i + 1] +
+    for (i = 0; i < 9; i++) a[i] = affine * uniform();
+    for (i = 0; i < s->model.copy_count; i++)
+        for (r = 0; r < 3; r++)
+            s->velocity[3 * i + r] = s->held[i] ? 0
+                                                : a[3 * r] * s->rest[3 * i] + a[3 * r + 1] * s->rest[3 * i + 1] +
                                                       a[3 * r + 2] * s->rest[3 * i + 2] + noise * uniform();
 }
 
-static void set_block(scene *s, int kind, int lumped, int held)
-{
+static void set_block(scene *s, int kind, int lumped, int held) {
     set_kind(s->material, kind);
     s->material->young = 1e5;
     s->material->damping = lumped ? 1e-3 : 0;
     s->model.lumped_mass = (uint32_t)lumped;
-    if (held)
-        scene_hold_left(s);
+    if (held) scene_hold_left(s);
 }
 
 /* a block whose halves are tied one to one moves as the whole block does */
-START_TEST(tied_blocks_move_as_one)
-{
+START_TEST(tied_blocks_move_as_one) {
     const int kind = _i / 4, lumped = _i / 2 % 2, held = _i % 2;
     gxs_step_desc step = step_tight(0.01, -9.81);
     double path[10][3 * 128];
     int which, frame;
-    for (which = -1; which < SOLVERS; ++which) { /* -1: the whole block */
+    for (which = -1; which < SOLVERS; which++) { /* -1: the whole block */
         gxs_solver *solver = solver_of(which < 0 ? 0 : which);
         gxs_constraint *ties = NULL;
         gxs_step_report report;
@@ -366,13 +329,13 @@ START_TEST(tied_blocks_move_as_one)
         ck_assert_uint_le(n, 128);
         set_block(&s, kind, lumped, held);
         stir(&s, 1, 0.3);
-        if (which >= 0)
-            ties = scene_split(&s, 0.75);
+        if (which >= 0) ties = scene_split(&s, 0.75);
         ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
-        for (frame = 0; frame < 10; ++frame) {
+        for (frame = 0; frame < 10; frame++) {
             double off;
             ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
-            assert_that(report.residual < 1e-10, "%s: residual %g", which < 0 ? "whole" : solver_name(which), report.residual);
+            assert_that(report.residual < 1e-10, "%s: residual %g", which < 0 ? "whole" : solver_name(which),
+                        report.residual);
             if (which < 0) {
                 memcpy(path[frame], s.displacement, 3 * n * sizeof(double));
                 continue;
@@ -380,10 +343,11 @@ START_TEST(tied_blocks_move_as_one)
             ck_assert_uint_eq(report.active_unknowns, 3 * (n - (held ? 9 : 0)));
             off = distance(path[frame], s.displacement, 3 * n);
             assert_that(off < 1e-8, "%s frame %d: %g m apart", solver_name(which), frame, off);
-            for (i = 0; i < s.model.constraint_count; ++i) {
+            for (i = 0; i < s.model.constraint_count; i++) {
                 const size_t a = 3 * ties[i].copy, b = 3 * ties[i].master[0];
                 assert_that(distance(s.displacement + a, s.displacement + b, 3) < 1e-13 &&
-                            distance(s.velocity + a, s.velocity + b, 3) < 1e-10, "tie %lu is open", (unsigned long)i);
+                                distance(s.velocity + a, s.velocity + b, 3) < 1e-10,
+                            "tie %lu is open", (unsigned long)i);
             }
         }
         free(ties);
@@ -394,8 +358,7 @@ START_TEST(tied_blocks_move_as_one)
 END_TEST
 
 /* of a tied free block too it is right to rounding, at a CG tolerance of 1e-1 */
-START_TEST(momentum_of_tied_blocks_is_balanced)
-{
+START_TEST(momentum_of_tied_blocks_is_balanced) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_make(0.01, -9.81);
     gxs_constraint *ties;
@@ -408,12 +371,13 @@ START_TEST(momentum_of_tied_blocks_is_balanced)
     ties = scene_split(&s, 0.5);
     step.cg_tolerance = 0.1;
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
-    for (frame = 0; frame < 20; ++frame) {
+    for (frame = 0; frame < 20; frame++) {
         momentum(&s, before);
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
         momentum(&s, after);
-        for (r = 0; r < 3; ++r)
-            assert_that(fabs(after[r] - before[r] - step.dt * step.gravity[r] * mass_of(&s)) < 1e-10, "frame %d axis %d: %g", frame, r,
+        for (r = 0; r < 3; r++)
+            assert_that(fabs(after[r] - before[r] - step.dt * step.gravity[r] * mass_of(&s)) < 1e-10,
+                        "frame %d axis %d: %g", frame, r,
                         after[r] - before[r] - step.dt * step.gravity[r] * mass_of(&s));
     }
     free(ties);
@@ -422,22 +386,21 @@ START_TEST(momentum_of_tied_blocks_is_balanced)
 }
 END_TEST
 
-/* A cube below, eight cubes of half its edge above; their nodes on its face follow its four nodes there. The spaces are continuous across
- * it, since its diagonal is that of the small ones. */
-static scene scene_hanging(gxs_constraint *ties)
-{
+/* A cube below, eight cubes of half its edge above; their nodes on its face follow its four nodes there. The spaces are
+ * continuous across it, since its diagonal is that of the small ones. */
+static scene scene_hanging(gxs_constraint *ties) {
     scene s = scene_block(1, 1, 1, 1, 0, 0), above = scene_block(2, 2, 2, 0.5, 0, 0);
     uint32_t i, count = 0;
     int k;
     scene_add(&s, &above, 0, 0, 1);
-    for (i = 8; i < s.model.copy_count; ++i)
+    for (i = 8; i < s.model.copy_count; i++)
         if (s.rest[3 * i + 2] < 1 + 1e-9) {
             const double x = s.rest[3 * i], y = s.rest[3 * i + 1];
             gxs_constraint *tie = &ties[count++];
             memset(tie, 0, sizeof *tie);
             tie->copy = i;
-            for (k = 0; k < 4; ++k) /* copies 4 ... 7 have z = 1; linear on the triangles on both sides of the diagonal x = y */
-                tie->master[k] = 4 + (uint32_t)k;
+            /* copies 4 ... 7 have z = 1; linear on the triangles on both sides of the diagonal x = y */
+            for (k = 0; k < 4; k++) tie->master[k] = 4 + (uint32_t)k;
             tie->weight[0] = 1 - (x > y ? x : y);
             tie->weight[1] = x > y ? x - y : 0;
             tie->weight[2] = y > x ? y - x : 0;
@@ -449,12 +412,12 @@ static scene scene_hanging(gxs_constraint *ties)
     return s;
 }
 
-/* The patch test: an affine displacement of the held copies is found everywhere, through the hanging nodes; the held copies are targets'. */
-START_TEST(hanging_nodes_pass_the_patch_test)
-{
+/* The patch test: an affine displacement of the held copies is found everywhere, through the hanging nodes; the held
+ * copies are targets'. */
+START_TEST(hanging_nodes_pass_the_patch_test) {
     gxs_constraint ties[9];
     int which, r;
-    for (which = 0; which < SOLVERS; ++which) {
+    for (which = 0; which < SOLVERS; which++) {
         gxs_solver *solver = solver_of(which);
         gxs_step_desc step = step_tight(0, 0);
         double a[9], *targets;
@@ -465,17 +428,17 @@ START_TEST(hanging_nodes_pass_the_patch_test)
         n = s.model.copy_count;
         targets = (double *)zeroed(3 * n, sizeof *targets);
         set_kind(s.material, _i);
-        for (i = 0; i < 9; ++i)
-            a[i] = 0.05 * uniform();
-        for (i = 0; i < n; ++i) {
+        for (i = 0; i < 9; i++) a[i] = 0.05 * uniform();
+        for (i = 0; i < n; i++) {
             const double *x = s.rest + 3 * i;
             const double inside = x[0] * (1 - x[0]) * x[1] * (1 - x[1]) * x[2] * (2 - x[2]);
             s.held[i] = _i == GXS_LINEAR ? x[2] < 1e-9 || x[2] > 2 - 1e-9 : inside < 1e-9;
-            if (i >= 8 && fabs(x[2] - 1) < 1e-9)
-                s.held[i] = 0;
-            for (r = 0; r < 3; ++r) /* of the linear one, whose sides are free: stretched by 1 %, narrower by Poisson's ratio */
-                targets[3 * i + (size_t)r] = _i == GXS_LINEAR ? (r == 2 ? 0.01 : -0.01 * s.material->poisson) * x[r] :
-                                             a[3 * r] * x[0] + a[3 * r + 1] * x[1] + a[3 * r + 2] * x[2];
+            if (i >= 8 && fabs(x[2] - 1) < 1e-9) s.held[i] = 0;
+            /* of the linear one, whose sides are free: stretched by 1 %, narrower by Poisson's ratio */
+            for (r = 0; r < 3; r++)
+                targets[3 * i + (size_t)r] = _i == GXS_LINEAR
+                                               ? (r == 2 ? 0.01 : -0.01 * s.material->poisson) * x[r]
+                                               : a[3 * r] * x[0] + a[3 * r + 1] * x[1] + a[3 * r + 2] * x[2];
         }
         step.integrator = GXS_STATIC;
         step.targets = targets;
@@ -490,11 +453,10 @@ START_TEST(hanging_nodes_pass_the_patch_test)
 END_TEST
 
 /* where the masters go, in motion; also with weights that are 1.5 in sum and below 0 */
-START_TEST(followers_change_by_their_masters_mean)
-{
+START_TEST(followers_change_by_their_masters_mean) {
     gxs_constraint ties[9];
     int which, frame, k;
-    for (which = 0; which < SOLVERS; ++which) {
+    for (which = 0; which < SOLVERS; which++) {
         gxs_solver *solver = solver_of(which);
         gxs_step_desc step = step_make(0.01, -9.81);
         double *before;
@@ -510,17 +472,18 @@ START_TEST(followers_change_by_their_masters_mean)
         else if (_i == 2)
             ties[4].weight[0] = 1.5, ties[4].weight[3] = 0;
         ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
-        for (frame = 0; frame < 20; ++frame) {
+        for (frame = 0; frame < 20; frame++) {
             memcpy(before, s.displacement, 3 * n * sizeof *before);
             ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
             check_finite(&s);
-            for (i = 0; i < 9; ++i)
-                for (r = 0; r < 3; ++r) {
+            for (i = 0; i < 9; i++)
+                for (r = 0; r < 3; r++) {
                     double way = 0, done = s.displacement[3 * ties[i].copy + r] - before[3 * ties[i].copy + r];
-                    for (k = 0; k < 4; ++k)
-                        way += ties[i].weight[k] * (s.displacement[3 * ties[i].master[k] + r] - before[3 * ties[i].master[k] + r]);
-                    assert_that(fabs(way - done) < 1e-13, "%s: follower %lu went %.17g, its masters %.17g", solver_name(which),
-                                (unsigned long)i, done, way);
+                    for (k = 0; k < 4; k++)
+                        way += ties[i].weight[k] *
+                               (s.displacement[3 * ties[i].master[k] + r] - before[3 * ties[i].master[k] + r]);
+                    assert_that(fabs(way - done) < 1e-13, "%s: follower %lu went %.17g, its masters %.17g",
+                                solver_name(which), (unsigned long)i, done, way);
                     assert_that(fabs(s.velocity[3 * ties[i].copy + r] - done / step.dt) < 1e-9, "velocity %g for %g",
                                 s.velocity[3 * ties[i].copy + r], done / step.dt);
                 }
@@ -532,14 +495,13 @@ START_TEST(followers_change_by_their_masters_mean)
 }
 END_TEST
 
-/* A block tied by its left face to held copies that move: as one whose left face itself is moved, velocities included. (Lumped, so that
- * the inertia of what is moved acts on nothing else.) */
-START_TEST(followers_of_moving_targets_go_along)
-{
+/* A block tied by its left face to held copies that move: as one whose left face itself is moved, velocities included.
+ * (Lumped, so that the inertia of what is moved acts on nothing else.) */
+START_TEST(followers_of_moving_targets_go_along) {
     static const gxs_integrator integrators[3] = {GXS_BDF1, GXS_BDF2, GXS_MIDPOINT};
     double path[30][2][3 * 64];
     int tied, frame;
-    for (tied = 0; tied < 2; ++tied) {
+    for (tied = 0; tied < 2; tied++) {
         gxs_solver *solver = solver_of(_i / 3);
         gxs_step_desc step = step_tight(0.01, 0);
         scene s;
@@ -555,7 +517,7 @@ START_TEST(followers_of_moving_targets_go_along)
         s.model.lumped_mass = 1;
         scene_hold_left(&s);
         if (tied) { /* nine copies of no element are held and moved; what is on the left follows */
-            for (i = 0; i < base; ++i)
+            for (i = 0; i < base; i++)
                 if (s.held[i]) {
                     ties[n - base].copy = (uint32_t)i;
                     ties[n - base].master[2] = (uint32_t)n;
@@ -573,15 +535,15 @@ START_TEST(followers_of_moving_targets_go_along)
         step.integrator = integrators[_i % 3];
         step.targets = targets;
         ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
-        for (frame = 0; frame < 30; ++frame) {
+        for (frame = 0; frame < 30; frame++) {
             gxs_step_report report;
             double off;
-            for (i = 0; i < n; ++i)
-                targets[3 * i + 1] = frame < 15 ? 0.01 * (frame + 1) : 0.15;
+            for (i = 0; i < n; i++) targets[3 * i + 1] = frame < 15 ? 0.01 * (frame + 1) : 0.15;
             memcpy(now[0], s.displacement, 3 * n * sizeof(double));
             memcpy(now[1], s.velocity, 3 * n * sizeof(double));
             if (frame > 0 && step.integrator == GXS_BDF2)
-                step.previous_displacement = previous[0], step.previous_velocity = previous[1], step.previous_dt = step.dt;
+                step.previous_displacement = previous[0], step.previous_velocity = previous[1],
+                step.previous_dt = step.dt;
             ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
             memcpy(previous, now, sizeof now);
             ck_assert_uint_eq(report.active_unknowns, 3 * (base - 9));
@@ -592,12 +554,14 @@ START_TEST(followers_of_moving_targets_go_along)
             }
             off = distance(path[frame][0], s.displacement, 3 * base);
             assert_that(step.integrator != GXS_BDF1 || off < 1e-9, "frame %d: %g m apart", frame, off);
-            for (i = 0; i < 9; ++i) {
+            for (i = 0; i < 9; i++) {
                 const size_t a = 3 * ties[i].copy, b = 3 * ties[i].master[2];
-                assert_that(distance(s.displacement + a, s.displacement + b, 3) < 1e-13, "frame %d: tie %lu is open", frame, (unsigned long)i);
+                assert_that(distance(s.displacement + a, s.displacement + b, 3) < 1e-13, "frame %d: tie %lu is open",
+                            frame, (unsigned long)i);
                 if (step.integrator == GXS_BDF1)
-                    assert_that(distance(s.velocity + a, s.velocity + b, 3) < 1e-10, "frame %d: a follower has %g m/s, its master %g", frame,
-                                s.velocity[a + 1], s.velocity[b + 1]);
+                    assert_that(distance(s.velocity + a, s.velocity + b, 3) < 1e-10,
+                                "frame %d: a follower has %g m/s, its master %g", frame, s.velocity[a + 1],
+                                s.velocity[b + 1]);
             }
             off = distance(path[frame][1], s.velocity, 3 * base);
             assert_that(step.integrator != GXS_BDF1 || off < 1e-7, "frame %d: velocities %g m/s apart", frame, off);
@@ -608,9 +572,9 @@ START_TEST(followers_of_moving_targets_go_along)
 }
 END_TEST
 
-/* A step is a minimum of E over what is free, also where targets move the rest: its gradient there is 0, by the assembled forms. */
-START_TEST(moved_copies_have_inertia)
-{
+/* A step is a minimum of E over what is free, also where targets move the rest: its gradient there is 0, by the
+ * assembled forms. */
+START_TEST(moved_copies_have_inertia) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_tight(0.01, -9.81);
     double *work, *targets, *un, *g, *my;
@@ -624,24 +588,23 @@ START_TEST(moved_copies_have_inertia)
     scene_hold_left(&s);
     step.targets = targets;
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
-    for (frame = 0; frame < 6; ++frame) {
+    for (frame = 0; frame < 6; frame++) {
         double worst = 0, size = 0, *y = work + 4 * count;
-        for (i = 0; i < s.model.copy_count; ++i)
-            targets[3 * i + 1] = frame < 3 ? 0.01 * (frame + 1) : 0.03;
+        for (i = 0; i < s.model.copy_count; i++) targets[3 * i + 1] = frame < 3 ? 0.01 * (frame + 1) : 0.03;
         memcpy(un, s.displacement, count * sizeof *un);
-        for (i = 0; i < count; ++i)
+        for (i = 0; i < count; i++)
             y[i] = -s.displacement[i] - step.dt * s.velocity[i] - step.dt * step.dt * step.gravity[i % 3];
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
-        for (i = 0; i < count; ++i)
-            y[i] = (y[i] + s.displacement[i]) / (step.dt * step.dt);
+        for (i = 0; i < count; i++) y[i] = (y[i] + s.displacement[i]) / (step.dt * step.dt);
         ck_assert_int_eq(gxs_model_mass_product(&s.model, y, my), GX_OK);
         ck_assert_int_eq(gxs_model_gradient(&s.model, s.displacement, g), GX_OK);
-        for (i = 0; i < count; ++i)
+        for (i = 0; i < count; i++)
             if (!s.held[i / 3]) {
                 worst = fabs(my[i] + g[i]) > worst ? fabs(my[i] + g[i]) : worst;
                 size = fabs(g[i]) > size ? fabs(g[i]) : size;
             }
-        assert_that(worst < 1e-7 * size, "frame %d: gradient of E %g N beside elastic forces of %g N", frame, worst, size);
+        assert_that(worst < 1e-7 * size, "frame %d: gradient of E %g N beside elastic forces of %g N", frame, worst,
+                    size);
     }
     free(work);
     gxs_solver_destroy(solver);
@@ -650,8 +613,7 @@ START_TEST(moved_copies_have_inertia)
 END_TEST
 
 /* all copies are held or follow held ones: no unknowns, and yet all moves */
-START_TEST(followers_alone_go_along)
-{
+START_TEST(followers_alone_go_along) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_make(0.01, -9.81);
     gxs_step_report report;
@@ -660,32 +622,30 @@ START_TEST(followers_alone_go_along)
     size_t i;
     scene s = scene_block(1, 1, 1, 1, 0, 0);
     memset(ties, 0, sizeof ties);
-    for (i = 0; i < 8; ++i) {
+    for (i = 0; i < 8; i++) {
         s.held[i] = i < 4;
         targets[3 * i] = targets[3 * i + 1] = 0, targets[3 * i + 2] = 0.25;
     }
-    for (i = 0; i < 4; ++i)
-        ties[i].copy = (uint32_t)(4 + i), ties[i].master[0] = (uint32_t)i, ties[i].weight[0] = 1;
+    for (i = 0; i < 4; i++) ties[i].copy = (uint32_t)(4 + i), ties[i].master[0] = (uint32_t)i, ties[i].weight[0] = 1;
     s.model.constraints = ties;
     s.model.constraint_count = 4;
     step.targets = targets;
     ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
     ck_assert_uint_eq(report.active_unknowns, 0);
-    for (i = 0; i < 8; ++i)
-        assert_that(s.displacement[3 * i + 2] == 0.25 && fabs(s.velocity[3 * i + 2] - 25) < 1e-9, "copy %lu at %g with %g m/s",
-                    (unsigned long)i, s.displacement[3 * i + 2], s.velocity[3 * i + 2]);
+    for (i = 0; i < 8; i++)
+        assert_that(s.displacement[3 * i + 2] == 0.25 && fabs(s.velocity[3 * i + 2] - 25) < 1e-9,
+                    "copy %lu at %g with %g m/s", (unsigned long)i, s.displacement[3 * i + 2], s.velocity[3 * i + 2]);
     gxs_solver_destroy(solver);
     scene_free(&s);
 }
 END_TEST
 
 /* two ties of a free block, one of them wrong: a named error, and the solver steps the model it had, bit for bit */
-static void expect_constraints(const gxs_constraint *ties, size_t count, gx_result expected, size_t index)
-{
+static void expect_constraints(const gxs_constraint *ties, size_t count, gx_result expected, size_t index) {
     gxs_step_desc step = step_make(0.033, -9.81);
     double first[3 * 12];
     int run;
-    for (run = 0; run < 2; ++run) {
+    for (run = 0; run < 2; run++) {
         gxs_solver *solver = solver_make();
         gx_failure failure;
         scene s = scene_block(2, 1, 1, 0.5, 0, 0);
@@ -701,27 +661,25 @@ static void expect_constraints(const gxs_constraint *ties, size_t count, gx_resu
             ck_assert_uint_eq(failure.index, index);
         }
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
-        if (run == 0)
-            memcpy(first, s.displacement, sizeof first);
+        if (run == 0) memcpy(first, s.displacement, sizeof first);
         ck_assert_int_eq(memcmp(first, s.displacement, sizeof first), 0);
         gxs_solver_destroy(solver);
         scene_free(&s);
     }
 }
 
-#define constraints_with(change, result, index)   \
-    do {                                          \
-        gxs_constraint ties[2];                   \
-        memset(ties, 0, sizeof ties);             \
-        ties[0].copy = 4, ties[1].copy = 5;       \
-        ties[0].master[0] = ties[1].master[0] = 2;\
-        ties[0].weight[0] = ties[1].weight[0] = 1;\
-        change;                                   \
-        expect_constraints(ties, 2, result, index);\
+#define constraints_with(change, result, index)                                                                        \
+    do {                                                                                                               \
+        gxs_constraint ties[2];                                                                                        \
+        memset(ties, 0, sizeof ties);                                                                                  \
+        ties[0].copy = 4, ties[1].copy = 5;                                                                            \
+        ties[0].master[0] = ties[1].master[0] = 2;                                                                     \
+        ties[0].weight[0] = ties[1].weight[0] = 1;                                                                     \
+        change;                                                                                                        \
+        expect_constraints(ties, 2, result, index);                                                                    \
     } while (0)
 
-START_TEST(bad_constraints_are_named)
-{
+START_TEST(bad_constraints_are_named) {
     constraints_with(ties[0].copy = 12, GX_ERROR_INDEX, 0);
     constraints_with(ties[1].copy = UINT32_MAX, GX_ERROR_INDEX, 1);
     constraints_with(ties[1].master[0] = 12, GX_ERROR_INDEX, 1);
@@ -738,8 +696,7 @@ START_TEST(bad_constraints_are_named)
 END_TEST
 
 /* a master of weight 0 that follows, and constraints of held copies, which follow nothing, are no chains */
-START_TEST(harmless_constraints_are_taken)
-{
+START_TEST(harmless_constraints_are_taken) {
     gxs_solver *solver = solver_make();
     gxs_step_desc step = step_make(0.033, -9.81);
     gxs_constraint ties[3];
@@ -762,8 +719,7 @@ END_TEST
 /* ---- springs ---- */
 
 /* p(n+1) - p(n) = dt (M g + forces of the springs at the end) */
-START_TEST(springs_balance_momentum)
-{
+START_TEST(springs_balance_momentum) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_tight(0.01, -9.81);
     gxs_spring springs[6];
@@ -773,36 +729,34 @@ START_TEST(springs_balance_momentum)
     seed((uint64_t)_i);
     s = scene_block(3, 2, 2, 0.25, 0.1, 0);
     stir(&s, 3, 1);
-    for (k = 0; k < 6; ++k) {
+    for (k = 0; k < 6; k++) {
         springs[k] = spring_make(random_point(&s), k == 5 ? 1e6 : 1e4);
-        for (r = 0; r < 3; ++r)
-            springs[k].target[r] += 0.2 * uniform();
+        for (r = 0; r < 3; r++) springs[k].target[r] += 0.2 * uniform();
     }
     step.springs = springs;
     step.spring_count = 6;
     step.spring_forces = forces;
     step.newton_tolerance = 1e-13;
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
-    for (frame = 0; frame < 10; ++frame) {
+    for (frame = 0; frame < 10; frame++) {
         gxs_step_report report;
         double scale = 0;
         momentum(&s, before);
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
         momentum(&s, after);
-        for (r = 0; r < 3; ++r)
-            scale += fabs(before[r]) + fabs(after[r]);
-        for (r = 0; r < 3; ++r) {
+        for (r = 0; r < 3; r++) scale += fabs(before[r]) + fabs(after[r]);
+        for (r = 0; r < 3; r++) {
             double impulse = step.dt * mass_of(&s) * step.gravity[r];
-            for (k = 0; k < 6; ++k)
-                impulse += step.dt * forces[3 * k + r];
-            assert_that(fabs(after[r] - before[r] - impulse) < 1e-10 * scale, "%s frame %d: %g of %g, residual %g", solver_name(_i), frame,
-                        after[r] - before[r] - impulse, scale, report.residual);
+            for (k = 0; k < 6; k++) impulse += step.dt * forces[3 * k + r];
+            assert_that(fabs(after[r] - before[r] - impulse) < 1e-10 * scale, "%s frame %d: %g of %g, residual %g",
+                        solver_name(_i), frame, after[r] - before[r] - impulse, scale, report.residual);
         }
-        for (k = 0; k < 6; ++k) { /* and the forces are those of Hooke's law */
+        for (k = 0; k < 6; k++) { /* and the forces are those of Hooke's law */
             double x[3];
             point_now(&springs[k].point, s.displacement, x);
-            for (r = 0; r < 3; ++r)
-                assert_that(fabs(forces[3 * k + r] - springs[k].stiffness * (springs[k].target[r] - x[r])) < 1e-12 * springs[k].stiffness,
+            for (r = 0; r < 3; r++)
+                assert_that(fabs(forces[3 * k + r] - springs[k].stiffness * (springs[k].target[r] - x[r])) <
+                                1e-12 * springs[k].stiffness,
                             "spring %d", k);
         }
     }
@@ -811,9 +765,9 @@ START_TEST(springs_balance_momentum)
 }
 END_TEST
 
-/* a block hung on three springs of unequal stiffness inside elements: their forces are its weight, with no torque about any point */
-START_TEST(springs_carry_a_weight)
-{
+/* a block hung on three springs of unequal stiffness inside elements: their forces are its weight, with no torque about
+ * any point */
+START_TEST(springs_carry_a_weight) {
     const double weights[4] = {0.1, 0.2, 0.3, 0.4};
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_tight(0, -9.81);
@@ -836,27 +790,25 @@ START_TEST(springs_carry_a_weight)
     ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
     assert_that(report.residual < 1e-10, "%s: residual %g", solver_name(_i), report.residual);
     scale = 9.81 * mass_of(&s);
-    for (k = 0; k < 3; ++k) {
+    for (k = 0; k < 3; k++) {
         double x[3];
         point_now(&springs[k].point, s.displacement, x);
-        for (r = 0; r < 3; ++r) {
+        for (r = 0; r < 3; r++) {
             sum[r] += forces[3 * k + r];
             torque[r] += x[(r + 1) % 3] * forces[3 * k + (r + 2) % 3] - x[(r + 2) % 3] * forces[3 * k + (r + 1) % 3];
         }
     }
-    for (i = 0; i < 3 * s.model.copy_count; ++i)
-        mg[i] = step.gravity[i % 3];
+    for (i = 0; i < 3 * s.model.copy_count; i++) mg[i] = step.gravity[i % 3];
     ck_assert_int_eq(gxs_model_mass_product(&s.model, mg, mg + 3 * s.model.copy_count), GX_OK);
     for (i = 0; i < 3 * s.model.copy_count; i += 3) {
         const double f = mg[3 * s.model.copy_count + i + 2];
         torque[0] += (s.rest[i + 1] + s.displacement[i + 1]) * f;
         torque[1] -= (s.rest[i] + s.displacement[i]) * f;
     }
-    for (r = 0; r < 3; ++r)
-        assert_that(fabs(sum[r] - (r == 2 ? scale : 0)) < 1e-8 * scale && fabs(torque[r]) < 1e-7 * scale, "axis %d: force %g torque %g", r,
-                    sum[r], torque[r]);
-    for (i = 0; i < 3 * s.model.copy_count; ++i)
-        ck_assert(s.velocity[i] == 0);
+    for (r = 0; r < 3; r++)
+        assert_that(fabs(sum[r] - (r == 2 ? scale : 0)) < 1e-8 * scale && fabs(torque[r]) < 1e-7 * scale,
+                    "axis %d: force %g torque %g", r, sum[r], torque[r]);
+    for (i = 0; i < 3 * s.model.copy_count; i++) ck_assert(s.velocity[i] == 0);
     free(mg);
     gxs_solver_destroy(solver);
     scene_free(&s);
@@ -864,11 +816,10 @@ START_TEST(springs_carry_a_weight)
 END_TEST
 
 /* springs of no stiffness, and springs on held copies only, change nothing but spring_forces */
-START_TEST(idle_springs_change_nothing)
-{
+START_TEST(idle_springs_change_nothing) {
     double first[3 * 64];
     int run, frame;
-    for (run = 0; run < 3; ++run) {
+    for (run = 0; run < 3; run++) {
         gxs_solver *solver = solver_of(_i);
         gxs_step_desc step = step_make(0.033, -9.81);
         gxs_spring springs[4];
@@ -881,7 +832,7 @@ START_TEST(idle_springs_change_nothing)
         count = 3 * s.model.copy_count;
         scene_hold_left(&s);
         stir(&s, 1, 1);
-        for (k = 0; k < 4; ++k) {
+        for (k = 0; k < 4; k++) {
             springs[k] = spring_make(run == 1 ? random_point(&s) : point_at(&s, (size_t)k * 4), run == 1 ? 0 : 1e5);
             springs[k].target[1] += 1;
         }
@@ -889,15 +840,14 @@ START_TEST(idle_springs_change_nothing)
         step.spring_count = run > 0 ? 4 : 0;
         step.spring_forces = forces;
         ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
-        for (frame = 0; frame < 5; ++frame)
+        for (frame = 0; frame < 5; frame++)
             ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
-        for (k = 0; k < 4 && run > 0; ++k) {
-            if (run == 2)
-                ck_assert(s.held[4 * k]);
-            assert_that(fabs(forces[3 * k + 1] - (run == 1 ? 0 : 1e5)) < 1e-6 && forces[3 * k] == 0, "spring %d: %g", k, forces[3 * k + 1]);
+        for (k = 0; k < 4 && run > 0; k++) {
+            if (run == 2) ck_assert(s.held[4 * k]);
+            assert_that(fabs(forces[3 * k + 1] - (run == 1 ? 0 : 1e5)) < 1e-6 && forces[3 * k] == 0, "spring %d: %g", k,
+                        forces[3 * k + 1]);
         }
-        if (run == 0)
-            memcpy(first, s.displacement, count * sizeof(double));
+        if (run == 0) memcpy(first, s.displacement, count * sizeof(double));
         assert_that(memcmp(first, s.displacement, count * sizeof(double)) == 0, "run %d: %g m apart", run,
                     distance(first, s.displacement, count));
         gxs_solver_destroy(solver);
@@ -907,8 +857,7 @@ START_TEST(idle_springs_change_nothing)
 END_TEST
 
 /* a hand of 1e9 N/m leads a corner and an inner point: both are where it is, but for force / stiffness */
-START_TEST(stiff_springs_lead)
-{
+START_TEST(stiff_springs_lead) {
     const double weights[4] = {0.25, 0.25, 0.25, 0.25};
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_tight(0.01, -9.81);
@@ -918,27 +867,28 @@ START_TEST(stiff_springs_lead)
     scene s = scene_block(6, 3, 3, 0.25, 0, 0);
     springs[0] = spring_make(point_at(&s, s.model.copy_count - 1), 1e9);
     springs[1] = spring_make(point_within(&s, 40, weights), 1e9);
-    for (k = 0; k < 2; ++k)
-        memcpy(start[k], springs[k].target, sizeof start[k]);
+    for (k = 0; k < 2; k++) memcpy(start[k], springs[k].target, sizeof start[k]);
     step.newton_tolerance = 1e-8;
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
-    ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK); /* one without them */
+    /* one without them */
+    ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
     step.springs = springs;
     step.spring_count = 2;
-    for (frame = 0; frame < 20; ++frame) {
+    for (frame = 0; frame < 20; frame++) {
         gxs_step_report report;
-        for (k = 0; k < 2; ++k) {
+        for (k = 0; k < 2; k++) {
             springs[k].target[0] = start[k][0] + 0.01 * frame;
             springs[k].target[1] = start[k][1] + 0.1 * sin(0.3 * frame);
         }
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
-        assert_that(report.residual < 1e-7, "%s frame %d: residual %g after %u Newton, %u CG iterations", solver_name(_i), frame,
-                    report.residual, (unsigned)report.newton_iterations, (unsigned)report.cg_iterations);
-        for (k = 0; k < 2; ++k) {
+        assert_that(report.residual < 1e-7, "%s frame %d: residual %g after %u Newton, %u CG iterations",
+                    solver_name(_i), frame, report.residual, (unsigned)report.newton_iterations,
+                    (unsigned)report.cg_iterations);
+        for (k = 0; k < 2; k++) {
             double x[3];
             point_now(&springs[k].point, s.displacement, x);
-            assert_that(distance(x, springs[k].target, 3) < 1e-3, "%s frame %d: spring %d is %g m behind", solver_name(_i), frame, k,
-                        distance(x, springs[k].target, 3));
+            assert_that(distance(x, springs[k].target, 3) < 1e-3, "%s frame %d: spring %d is %g m behind",
+                        solver_name(_i), frame, k, distance(x, springs[k].target, 3));
         }
     }
     gxs_solver_destroy(solver);
@@ -946,23 +896,22 @@ START_TEST(stiff_springs_lead)
 }
 END_TEST
 
-/* Springs at the middle of many elements and faces, of 1e-3 to 1e9 N/m, that come after steps without them: a solver that has known
- * other times solves as one that has not. */
-START_TEST(later_springs_converge_as_well)
-{
+/* Springs at the middle of many elements and faces, of 1e-3 to 1e9 N/m, that come after steps without them: a solver
+ * that has known other times solves as one that has not. */
+START_TEST(later_springs_converge_as_well) {
     static const double stiffnesses[3] = {1e3, 1e6, 1e9};
     gxs_step_desc step = step_make(0.033, -9.81);
     gxs_spring springs[200];
     uint32_t counts[2] = {0, 0};
     int late, k;
-    for (late = 0; late < 2; ++late) {
+    for (late = 0; late < 2; late++) {
         gxs_solver *solver = solver_of(_i / 3);
         gxs_step_report report;
         scene s;
         seed(17);
         s = scene_block(6, 6, 6, 0.25, 0.1, 0);
         scene_hold_left(&s);
-        for (k = 0; k < 200; ++k) {
+        for (k = 0; k < 200; k++) {
             const double inside[4] = {0.25, 0.25, 0.25, 0.25}, face[4] = {1.0 / 3, 1.0 / 3, 0, 1.0 / 3};
             springs[k] = spring_make(point_within(&s, 6 * (size_t)k + 2, k % 2 ? inside : face), stiffnesses[_i % 3]);
             springs[k].target[1] += 0.05;
@@ -971,8 +920,7 @@ START_TEST(later_springs_converge_as_well)
         ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
         step.newton_iterations = 1;
         step.spring_count = 0;
-        if (late)
-            ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
+        if (late) ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
         memset(s.displacement, 0, 3 * s.model.copy_count * sizeof(double));
         memset(s.velocity, 0, 3 * s.model.copy_count * sizeof(double));
         step.spring_count = 200;
@@ -980,15 +928,15 @@ START_TEST(later_springs_converge_as_well)
         step.newton_tolerance = 1e-6; /* 1e9 N/m x 5 cm leave not many more digits */
         step.cg_iterations = 3000;
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
-        assert_that(report.residual < 1e-6, "%s at %g N/m, %s: residual %g after %u Newton, %u CG iterations", solver_name(_i / 3),
-                    stiffnesses[_i % 3], late ? "late" : "early", report.residual, (unsigned)report.newton_iterations,
-                    (unsigned)report.cg_iterations);
+        assert_that(report.residual < 1e-6, "%s at %g N/m, %s: residual %g after %u Newton, %u CG iterations",
+                    solver_name(_i / 3), stiffnesses[_i % 3], late ? "late" : "early", report.residual,
+                    (unsigned)report.newton_iterations, (unsigned)report.cg_iterations);
         counts[late] = report.cg_iterations;
         gxs_solver_destroy(solver);
         scene_free(&s);
     }
-    assert_that(counts[1] <= 2 * counts[0] + 20, "%s at %g N/m: %u iterations, %u if they come late", solver_name(_i / 3), stiffnesses[_i % 3],
-                (unsigned)counts[0], (unsigned)counts[1]);
+    assert_that(counts[1] <= 2 * counts[0] + 20, "%s at %g N/m: %u iterations, %u if they come late",
+                solver_name(_i / 3), stiffnesses[_i % 3], (unsigned)counts[0], (unsigned)counts[1]);
 }
 END_TEST
 
@@ -1004,26 +952,23 @@ typedef struct attempt {
     gxs_solver *solver;
 } attempt;
 
-static double no_clock(void *user)
-{
+static double no_clock(void *user) {
     (void)user;
     return 0;
 }
 
-static double no_contact(void *user, size_t point, const double *position, double *force, double *hessian)
-{
+static double no_contact(void *user, size_t point, const double *position, double *force, double *hessian) {
     (void)user, (void)point, (void)position, (void)force, (void)hessian;
     return 0;
 }
 
-static void attempt_make(attempt *a)
-{
+static void attempt_make(attempt *a) {
     int k;
     memset(a, 0, sizeof *a);
     a->s = scene_block(2, 1, 1, 0.5, 0, 0);
     a->step = step_make(0.033, -9.81);
     a->solver = solver_make();
-    for (k = 0; k < 3; ++k) {
+    for (k = 0; k < 3; k++) {
         a->springs[k] = spring_make(point_at(&a->s, (size_t)k), 1e3);
         a->points[k] = point_at(&a->s, (size_t)k);
         a->planes[k % 2] = plane_make(1e4, 0.5);
@@ -1038,30 +983,28 @@ static void attempt_make(attempt *a)
     a->step.contact = no_contact;
 }
 
-static void expect(attempt *a, gx_result result, size_t index)
-{
+static void expect(attempt *a, gx_result result, size_t index) {
     const size_t count = 3 * a->s.model.copy_count;
     gx_failure failure;
     size_t i;
-    ck_assert_int_eq(advance(a->solver, &a->s.model, &a->step, a->s.displacement, a->s.velocity, NULL, &failure), result);
+    ck_assert_int_eq(advance(a->solver, &a->s.model, &a->step, a->s.displacement, a->s.velocity, NULL, &failure),
+                     result);
     ck_assert_int_eq(failure.result, result);
     ck_assert_uint_eq(failure.index, index);
-    for (i = 0; i < count && result != GX_OK; ++i)
-        ck_assert(a->s.displacement[i] == 0 && a->s.velocity[i] == 0);
+    for (i = 0; i < count && result != GX_OK; i++) ck_assert(a->s.displacement[i] == 0 && a->s.velocity[i] == 0);
     gxs_solver_destroy(a->solver);
     scene_free(&a->s);
 }
 
-#define attempt_with(change, result, index) \
-    do {                                    \
-        attempt a;                          \
-        attempt_make(&a);                   \
-        change;                             \
-        expect(&a, result, index);          \
+#define attempt_with(change, result, index)                                                                            \
+    do {                                                                                                               \
+        attempt a;                                                                                                     \
+        attempt_make(&a);                                                                                              \
+        change;                                                                                                        \
+        expect(&a, result, index);                                                                                     \
     } while (0)
 
-START_TEST(bad_input_is_named)
-{
+START_TEST(bad_input_is_named) {
     const double nan = not_a_number(0), infinity = not_a_number(1);
     attempt_with((void)a, GX_OK, SIZE_MAX);
     attempt_with(a.springs[1].point.copy[0] = 12, GX_ERROR_INDEX, 1);
@@ -1114,8 +1057,7 @@ END_TEST
 /* ---- planes and contact ---- */
 
 /* A block dropped on the plane z = 0 comes to rest there; what presses is its weight. */
-START_TEST(dropped_block_comes_to_rest)
-{
+START_TEST(dropped_block_comes_to_rest) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_tight(0.02, -9.81);
     gxs_plane plane = plane_make(1e5, 0.3);
@@ -1128,34 +1070,32 @@ START_TEST(dropped_block_comes_to_rest)
     s = scene_block(3, 2, 2, 0.25, 0.1, 0);
     s.material->damping = 0.01;
     points = points_of(&s, 0, s.model.copy_count);
-    for (i = 0; i < s.model.copy_count; ++i)
-        s.displacement[3 * i + 2] = 0.3;
+    for (i = 0; i < s.model.copy_count; i++) s.displacement[3 * i + 2] = 0.3;
     step.points = points;
     step.point_count = s.model.copy_count;
     step.planes = &plane;
     step.plane_count = 1;
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
-    for (frame = 0; frame < 90; ++frame) {
+    for (frame = 0; frame < 90; frame++) {
         step.dt = frame < 50 ? 0.02 : 0.2;
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
     }
-    for (i = 0; i < 3 * s.model.copy_count; ++i)
-        speed = fabs(s.velocity[i]) > speed ? fabs(s.velocity[i]) : speed;
+    for (i = 0; i < 3 * s.model.copy_count; i++) speed = fabs(s.velocity[i]) > speed ? fabs(s.velocity[i]) : speed;
     plane_forces(&step, s.displacement, s.displacement, force);
     assert_that(speed < 1e-5, "%s: still at %g m/s", solver_name(_i), speed);
-    assert_that(fabs(force[2] / (9.81 * mass_of(&s)) - 1) < 1e-6, "%s: %g N for a weight of %g N", solver_name(_i), force[2], 9.81 * mass_of(&s));
+    assert_that(fabs(force[2] / (9.81 * mass_of(&s)) - 1) < 1e-6, "%s: %g N for a weight of %g N", solver_name(_i),
+                force[2], 9.81 * mass_of(&s));
     free(points);
     gxs_solver_destroy(solver);
     scene_free(&s);
 }
 END_TEST
 
-/* A block that vibrates wildly at and above a plane, 40 times: what changes its momentum is what the manual says acts at the end of the
- * step, also where points touch in the course of the iteration and not at its end. */
-static void vibrate(int which, double friction, double tolerance)
-{
+/* A block that vibrates wildly at and above a plane, 40 times: what changes its momentum is what the manual says acts
+ * at the end of the step, also where points touch in the course of the iteration and not at its end. */
+static void vibrate(int which, double friction, double tolerance) {
     int trial, missed = 0, touched = 0, r;
-    for (trial = 0; trial < 40; ++trial) {
+    for (trial = 0; trial < 40; trial++) {
         gxs_solver *solver = solver_of(which);
         gxs_step_desc step = step_tight(0.01, -9.81);
         gxs_plane plane = plane_make(1e6, friction);
@@ -1168,10 +1108,9 @@ static void vibrate(int which, double friction, double tolerance)
         s = scene_block(2, 2, 2, 0.25, 0.1, 0);
         n = s.model.copy_count;
         start = (double *)zeroed(3 * n, sizeof *start);
-        for (i = 0; i < n; ++i) {
+        for (i = 0; i < n; i++) {
             s.displacement[3 * i + 2] = 0.02 + 0.02 * uniform();
-            for (r = 0; r < 3; ++r)
-                s.velocity[3 * i + (size_t)r] = (trial % 3 ? 5 : 2) * uniform();
+            for (r = 0; r < 3; r++) s.velocity[3 * i + (size_t)r] = (trial % 3 ? 5 : 2) * uniform();
         }
         memcpy(start, s.displacement, 3 * n * sizeof *start);
         points = points_of(&s, 0, n);
@@ -1186,15 +1125,15 @@ static void vibrate(int which, double friction, double tolerance)
         plane_forces(&step, start, s.displacement, force);
         touched += force[2] > 0;
         missed += force[2] <= 0;
-        for (r = 0; r < 3; ++r)
-            scale += fabs(before[r]) + fabs(after[r]) + step.dt * fabs(force[r]);
-        for (r = 0; r < 3; ++r)
-            assert_that(fabs(after[r] - before[r] - step.dt * (force[r] + mass_of(&s) * step.gravity[r])) < tolerance * scale,
-                        "%s axis %d: %g of %g Ns, residual %g after %u iterations, stop %d, contact %g N", solver_name(which), r,
-                        after[r] - before[r] - step.dt * (force[r] + mass_of(&s) * step.gravity[r]), scale, report.residual,
-                        (unsigned)report.newton_iterations, (int)report.stop, force[2]);
-        assert_that(report.residual < tolerance, "%s: residual %g after %u iterations, stop %d", solver_name(which), report.residual,
-                    (unsigned)report.newton_iterations, (int)report.stop);
+        for (r = 0; r < 3; r++) scale += fabs(before[r]) + fabs(after[r]) + step.dt * fabs(force[r]);
+        for (r = 0; r < 3; r++)
+            assert_that(
+                fabs(after[r] - before[r] - step.dt * (force[r] + mass_of(&s) * step.gravity[r])) < tolerance * scale,
+                "%s axis %d: %g of %g Ns, residual %g after %u iterations, stop %d, contact %g N", solver_name(which),
+                r, after[r] - before[r] - step.dt * (force[r] + mass_of(&s) * step.gravity[r]), scale, report.residual,
+                (unsigned)report.newton_iterations, (int)report.stop, force[2]);
+        assert_that(report.residual < tolerance, "%s: residual %g after %u iterations, stop %d", solver_name(which),
+                    report.residual, (unsigned)report.newton_iterations, (int)report.stop);
         free(points), free(start);
         gxs_solver_destroy(solver);
         scene_free(&s);
@@ -1202,23 +1141,16 @@ static void vibrate(int which, double friction, double tolerance)
     assert_that(missed > 3 && touched > 3, "%d touched, %d did not", touched, missed);
 }
 
-START_TEST(contact_balances_momentum)
-{
-    vibrate(_i, 0, 1e-8);
-}
+START_TEST(contact_balances_momentum) { vibrate(_i, 0, 1e-8); }
 END_TEST
 
 /* to fewer digits, within 200 iterations */
-START_TEST(friction_balances_momentum)
-{
-    vibrate(_i, 0.5, 1e-6);
-}
+START_TEST(friction_balances_momentum) { vibrate(_i, 0.5, 1e-6); }
 END_TEST
 
-/* A block on a slope of angle a, after a second: below the critical angle it creeps slower than sticking_speed, above it slides with
- * g (sin a - mu cos a). */
-static double slide(int which, double angle, double friction, double sticking, double seconds, double *acceleration)
-{
+/* A block on a slope of angle a, after a second: below the critical angle it creeps slower than sticking_speed, above
+ * it slides with g (sin a - mu cos a). */
+static double slide(int which, double angle, double friction, double sticking, double seconds, double *acceleration) {
     gxs_solver *solver = solver_of(which);
     gxs_step_desc step = step_make(0.005, -9.81);
     gxs_plane plane = plane_make(1e6, friction);
@@ -1234,7 +1166,7 @@ static double slide(int which, double angle, double friction, double sticking, d
     plane.normal[0] = -sin(angle), plane.normal[2] = cos(angle);
     {
         size_t i; /* turned to lie on the slope */
-        for (i = 0; i < s.model.copy_count; ++i) {
+        for (i = 0; i < s.model.copy_count; i++) {
             const double x = s.rest[3 * i], z = s.rest[3 * i + 2];
             s.displacement[3 * i] = cos(angle) * x - sin(angle) * z - x;
             s.displacement[3 * i + 2] = sin(angle) * x + cos(angle) * z - z - 1e-5;
@@ -1248,11 +1180,10 @@ static double slide(int which, double angle, double friction, double sticking, d
     step.newton_iterations = 10;
     step.newton_tolerance = 1e-8;
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
-    for (frame = 1; frame <= frames; ++frame) {
+    for (frame = 1; frame <= frames; frame++) {
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
         momentum(&s, p);
-        if (frame == frames / 2)
-            speed[0] = -(p[0] * cos(angle) + p[2] * sin(angle)) / mass;
+        if (frame == frames / 2) speed[0] = -(p[0] * cos(angle) + p[2] * sin(angle)) / mass;
     }
     speed[1] = -(p[0] * cos(angle) + p[2] * sin(angle)) / mass;
     *acceleration = (speed[1] - speed[0]) / ((frames - frames / 2) * step.dt);
@@ -1262,8 +1193,7 @@ static double slide(int which, double angle, double friction, double sticking, d
     return speed[1];
 }
 
-START_TEST(friction_holds_and_slides)
-{
+START_TEST(friction_holds_and_slides) {
     const double friction = 0.5, critical = atan(0.5);
     double acceleration, speed, angle;
     speed = slide(_i, 0.8 * critical, friction, 0, 1, &acceleration);
@@ -1272,17 +1202,18 @@ START_TEST(friction_holds_and_slides)
     assert_that(speed > 1e-3 && speed < 0.01, "%s: creeps at %g m/s", solver_name(_i), speed);
     angle = 1.5 * critical;
     speed = slide(_i, angle, friction, 0, 0.6, &acceleration);
-    assert_that(fabs(acceleration / (9.81 * (sin(angle) - friction * cos(angle))) - 1) < 0.02, "%s: accelerates by %g, not %g m/s2", solver_name(_i),
-                acceleration, 9.81 * (sin(angle) - friction * cos(angle)));
+    assert_that(fabs(acceleration / (9.81 * (sin(angle) - friction * cos(angle))) - 1) < 0.02,
+                "%s: accelerates by %g, not %g m/s2", solver_name(_i), acceleration,
+                9.81 * (sin(angle) - friction * cos(angle)));
     speed = slide(_i, angle, 0, 0, 0.6, &acceleration);
-    assert_that(fabs(acceleration / (9.81 * sin(angle)) - 1) < 0.005, "%s without friction: accelerates by %g, not %g m/s2", solver_name(_i),
-                acceleration, 9.81 * sin(angle));
+    assert_that(fabs(acceleration / (9.81 * sin(angle)) - 1) < 0.005,
+                "%s without friction: accelerates by %g, not %g m/s2", solver_name(_i), acceleration,
+                9.81 * sin(angle));
 }
 END_TEST
 
 /* falls, bounces, tumbles: kinetic + elastic + gravity's + contact's energy never grows */
-START_TEST(bounces_gain_no_energy)
-{
+START_TEST(bounces_gain_no_energy) {
     gxs_solver *solver = solver_of(_i % SOLVERS);
     gxs_step_desc step = step_tight(0.01, -9.81);
     gxs_plane planes[2];
@@ -1298,7 +1229,7 @@ START_TEST(bounces_gain_no_energy)
     planes[0] = plane_make(1e5, _i / SOLVERS ? 0.4 : 0);
     planes[1] = plane_make(1e5, _i / SOLVERS ? 0.4 : 0);
     planes[1].normal[2] = 0, planes[1].normal[0] = -1, planes[1].offset = -0.8;
-    for (i = 0; i < s.model.copy_count; ++i) {
+    for (i = 0; i < s.model.copy_count; i++) {
         s.displacement[3 * i + 2] = 0.2;
         s.velocity[3 * i] = 1 + s.rest[3 * i + 2];
         s.velocity[3 * i + 2] = -s.rest[3 * i];
@@ -1309,7 +1240,7 @@ START_TEST(bounces_gain_no_energy)
     step.plane_count = 2;
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
     first = least = total_energy(&s, step.gravity) + plane_forces(&step, s.displacement, s.displacement, force);
-    for (frame = 0; frame < 120; ++frame) {
+    for (frame = 0; frame < 120; frame++) {
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
         energy = total_energy(&s, step.gravity) + plane_forces(&step, s.displacement, s.displacement, force);
         hit = fabs(force[0]) + force[2] > hit ? fabs(force[0]) + force[2] : hit;
@@ -1324,25 +1255,29 @@ START_TEST(bounces_gain_no_energy)
 END_TEST
 
 /* the plane's penalty by the caller */
-static double penalty(void *user, size_t point, const double *position, double *force, double *hessian)
-{
+static double penalty(void *user, size_t point, const double *position, double *force, double *hessian) {
     const gxs_plane *plane = (const gxs_plane *)user;
     const double *n = plane->normal, depth = plane_depth(plane, position);
     int r;
     (void)point;
-    for (r = 0; r < 3; ++r)
-        force[r] = plane->stiffness * depth * n[r];
+    for (r = 0; r < 3; r++) force[r] = plane->stiffness * depth * n[r];
     if (hessian)
-        for (r = 0; r < 6; ++r)
-            hessian[r] = depth > 0 ? plane->stiffness * n[r < 3 ? 0 : r < 5 ? 1 : 2] * n[r < 3 ? r : r < 5 ? r - 2 : 2] : 0;
+        for (r = 0; r < 6; r++)
+            hessian[r] = depth > 0 ? plane->stiffness *
+                                         n[r < 3   ? 0
+                                           : r < 5 ? 1
+                                                   : 2] *
+                                         n[r < 3   ? r
+                                           : r < 5 ? r - 2
+                                                   : 2]
+                                   : 0;
     return 0.5 * plane->stiffness * depth * depth;
 }
 
-START_TEST(contact_by_callback_is_the_plane)
-{
+START_TEST(contact_by_callback_is_the_plane) {
     double path[60][3 * 27];
     int run, frame;
-    for (run = 0; run < 2; ++run) {
+    for (run = 0; run < 2; run++) {
         gxs_solver *solver = solver_of(_i);
         gxs_step_desc step = step_tight(0.01, -9.81);
         gxs_plane plane = plane_make(1e5, 0);
@@ -1353,8 +1288,7 @@ START_TEST(contact_by_callback_is_the_plane)
         s = scene_block(2, 2, 2, 0.25, 0.1, 0);
         points = points_of(&s, 0, s.model.copy_count);
         plane.normal[0] = 0.28, plane.normal[2] = 0.96;
-        for (i = 0; i < s.model.copy_count; ++i)
-            s.velocity[3 * i + 2] = -2, s.displacement[3 * i + 2] = 0.1;
+        for (i = 0; i < s.model.copy_count; i++) s.velocity[3 * i + 2] = -2, s.displacement[3 * i + 2] = 0.1;
         step.points = points;
         step.point_count = s.model.copy_count;
         step.planes = &plane;
@@ -1362,12 +1296,11 @@ START_TEST(contact_by_callback_is_the_plane)
         step.contact = run == 1 ? penalty : NULL;
         step.contact_user = &plane;
         ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
-        for (frame = 0; frame < 60; ++frame) {
+        for (frame = 0; frame < 60; frame++) {
             ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
-            if (run == 0)
-                memcpy(path[frame], s.displacement, sizeof path[frame]);
-            assert_that(distance(path[frame], s.displacement, 3 * 27) < 1e-12, "%s frame %d: %g m apart", solver_name(_i), frame,
-                        distance(path[frame], s.displacement, 3 * 27));
+            if (run == 0) memcpy(path[frame], s.displacement, sizeof path[frame]);
+            assert_that(distance(path[frame], s.displacement, 3 * 27) < 1e-12, "%s frame %d: %g m apart",
+                        solver_name(_i), frame, distance(path[frame], s.displacement, 3 * 27));
         }
         free(points);
         gxs_solver_destroy(solver);
@@ -1377,19 +1310,16 @@ START_TEST(contact_by_callback_is_the_plane)
 END_TEST
 
 /* the same force wherever the point is */
-static double constant_push(void *user, size_t point, const double *position, double *force, double *hessian)
-{
+static double constant_push(void *user, size_t point, const double *position, double *force, double *hessian) {
     const double *push = (const double *)user;
     (void)point;
     memcpy(force, push, 3 * sizeof *force);
-    if (hessian)
-        memset(hessian, 0, 6 * sizeof *hessian);
+    if (hessian) memset(hessian, 0, 6 * sizeof *hessian);
     return -(push[0] * position[0] + push[1] * position[1] + push[2] * position[2]);
 }
 
 /* A constant force by the callback, of no stiffness, gives a loose block the momentum of force x dt on each point. */
-START_TEST(constant_contact_forces_give_their_momentum)
-{
+START_TEST(constant_contact_forces_give_their_momentum) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_tight(0.01, 0);
     double push[3] = {1000, -300, 200}, p[3];
@@ -1402,13 +1332,13 @@ START_TEST(constant_contact_forces_give_their_momentum)
     step.contact = constant_push;
     step.contact_user = push;
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
-    for (frame = 1; frame <= 3; ++frame) {
+    for (frame = 1; frame <= 3; frame++) {
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
         momentum(&s, p);
-        for (r = 0; r < 3; ++r) {
+        for (r = 0; r < 3; r++) {
             const double expected = frame * step.dt * push[r] * (double)step.point_count;
-            assert_that(fabs(p[r] - expected) < 1e-6 * fabs(expected), "%s frame %d axis %d: %g kg m/s, not %g", solver_name(_i), frame, r,
-                        p[r], expected);
+            assert_that(fabs(p[r] - expected) < 1e-6 * fabs(expected), "%s frame %d axis %d: %g kg m/s, not %g",
+                        solver_name(_i), frame, r, p[r], expected);
         }
     }
     free(points);
@@ -1417,10 +1347,10 @@ START_TEST(constant_contact_forces_give_their_momentum)
 }
 END_TEST
 
-/* Friction opposes the way of a point since the step's start by friction x the normal force then, also of points that hang on held copies,
- * carried sideways (0) or lifted (1) by targets: forces on free copies balance, by the assembled forms. */
-START_TEST(friction_acts_on_points_that_targets_carry)
-{
+/* Friction opposes the way of a point since the step's start by friction x the normal force then, also of points that
+ * hang on held copies, carried sideways (0) or lifted (1) by targets: forces on free copies balance, by the assembled
+ * forms. */
+START_TEST(friction_acts_on_points_that_targets_carry) {
     const int lifted = _i % 2;
     gxs_solver *solver = solver_of(_i / 2);
     gxs_step_desc step = step_tight(0.01, 0);
@@ -1435,7 +1365,7 @@ START_TEST(friction_acts_on_points_that_targets_carry)
     targets = work, un = work + count, y = work + 2 * count, my = work + 3 * count, g = work + 4 * count;
     s.material->young = 1e4;
     scene_hold_left(&s);
-    for (i = 0; i < 6; ++i) {
+    for (i = 0; i < 6; i++) {
         const double weights[4] = {0.25, 0.25, 0.25, 0.25};
         points[i] = point_within(&s, i, weights);
     }
@@ -1445,35 +1375,30 @@ START_TEST(friction_acts_on_points_that_targets_carry)
     step.planes = &plane;
     step.plane_count = 1;
     step.targets = targets;
-    for (i = 0; i < s.model.copy_count; ++i)
-        s.velocity[3 * i] = lifted && !s.held[i] ? 5 : 0;
+    for (i = 0; i < s.model.copy_count; i++) s.velocity[3 * i] = lifted && !s.held[i] ? 5 : 0;
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
-    for (frame = 0; frame < 3; ++frame) {
+    for (frame = 0; frame < 3; frame++) {
         double worst = 0, friction = 0, push[3];
-        for (i = 0; i < s.model.copy_count; ++i)
-            targets[3 * i + (lifted ? 2 : 1)] = 0.05 * (frame + 1);
+        for (i = 0; i < s.model.copy_count; i++) targets[3 * i + (lifted ? 2 : 1)] = 0.05 * (frame + 1);
         memcpy(un, s.displacement, count * sizeof *un);
-        for (i = 0; i < count; ++i)
-            y[i] = -s.displacement[i] - step.dt * s.velocity[i];
+        for (i = 0; i < count; i++) y[i] = -s.displacement[i] - step.dt * s.velocity[i];
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
-        for (i = 0; i < count; ++i)
-            y[i] = (y[i] + s.displacement[i]) / (step.dt * step.dt);
+        for (i = 0; i < count; i++) y[i] = (y[i] + s.displacement[i]) / (step.dt * step.dt);
         ck_assert_int_eq(gxs_model_mass_product(&s.model, y, my), GX_OK);
         ck_assert_int_eq(gxs_model_gradient(&s.model, s.displacement, g), GX_OK);
-        for (i = 0; i < 6; ++i) {
+        for (i = 0; i < 6; i++) {
             gxs_step_desc one = step;
             one.points = &points[i];
             one.point_count = 1;
             plane_forces(&one, un, s.displacement, push);
             friction += sqrt(push[0] * push[0] + push[1] * push[1]);
-            for (k = 0; k < 4; ++k)
-                for (r = 0; r < 3; ++r)
-                    g[3 * points[i].copy[k] + (uint32_t)r] -= points[i].weight[k] * push[r];
+            for (k = 0; k < 4; k++)
+                for (r = 0; r < 3; r++) g[3 * points[i].copy[k] + (uint32_t)r] -= points[i].weight[k] * push[r];
         }
-        for (i = 0; i < count; ++i)
-            worst = !s.held[i / 3] && fabs(my[i] + g[i]) > worst ? fabs(my[i] + g[i]) : worst;
-        assert_that(friction > 100 && worst < 1e-5 * friction, "%s %s frame %d: off balance by %g N beside a friction of %g N",
-                    solver_name(_i / 2), lifted ? "lifted" : "carried", frame, worst, friction);
+        for (i = 0; i < count; i++) worst = !s.held[i / 3] && fabs(my[i] + g[i]) > worst ? fabs(my[i] + g[i]) : worst;
+        assert_that(friction > 100 && worst < 1e-5 * friction,
+                    "%s %s frame %d: off balance by %g N beside a friction of %g N", solver_name(_i / 2),
+                    lifted ? "lifted" : "carried", frame, worst, friction);
     }
     free(work);
     gxs_solver_destroy(solver);
@@ -1482,20 +1407,18 @@ START_TEST(friction_acts_on_points_that_targets_carry)
 END_TEST
 
 /* momentum of the copies from first to end */
-static void part_momentum(const scene *s, size_t first, size_t end, double *p)
-{
+static void part_momentum(const scene *s, size_t first, size_t end, double *p) {
     double *mv = (double *)zeroed(3 * s->model.copy_count, sizeof *mv);
     size_t i;
     mass_times(s, s->velocity, mv);
     p[0] = p[1] = p[2] = 0;
-    for (i = 3 * first; i < 3 * end; ++i)
-        p[i % 3] += mv[i];
+    for (i = 3 * first; i < 3 * end; i++) p[i % 3] += mv[i];
     free(mv);
 }
 
-/* beside a block that bounces and one on a spring flies a third: its momentum is right to rounding, at a CG tolerance of 1e-1 */
-START_TEST(pieces_in_flight_keep_their_momentum)
-{
+/* beside a block that bounces and one on a spring flies a third: its momentum is right to rounding, at a CG tolerance
+ * of 1e-1 */
+START_TEST(pieces_in_flight_keep_their_momentum) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_make(0.01, -9.81);
     gxs_plane plane = plane_make(1e5, 0.5);
@@ -1516,8 +1439,7 @@ START_TEST(pieces_in_flight_keep_their_momentum)
     n = s.model.copy_count;
     points = points_of(&s, 0, n);
     spring = spring_make(point_at(&s, a + 3), 1e5);
-    for (i = 0; i < 3 * n; ++i)
-        s.velocity[i] = 3 * uniform() - (i % 3 == 2 ? 2 : 0);
+    for (i = 0; i < 3 * n; i++) s.velocity[i] = 3 * uniform() - (i % 3 == 2 ? 2 : 0);
     step.points = points;
     step.point_count = n;
     step.planes = &plane;
@@ -1526,7 +1448,7 @@ START_TEST(pieces_in_flight_keep_their_momentum)
     step.spring_count = 1;
     step.cg_tolerance = 0.1;
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
-    for (frame = 0; frame < 60; ++frame) {
+    for (frame = 0; frame < 60; frame++) {
         double force[3];
         part_momentum(&s, b, n, before);
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
@@ -1535,14 +1457,13 @@ START_TEST(pieces_in_flight_keep_their_momentum)
         hits += force[2] > 0;
         { /* its own mass, of jittered elements: from M 1 */
             double *ones = (double *)zeroed(6 * n, sizeof *ones), mass = 0;
-            for (i = 0; i < 3 * n; ++i)
-                ones[i] = 1;
+            for (i = 0; i < 3 * n; i++) ones[i] = 1;
             mass_times(&s, ones, ones + 3 * n);
-            for (i = b; i < n; ++i)
-                mass += ones[3 * n + 3 * i];
-            for (r = 0; r < 3; ++r)
-                assert_that(fabs(after[r] - before[r] - step.dt * step.gravity[r] * mass) < 1e-10, "%s frame %d axis %d: %g", solver_name(_i),
-                            frame, r, after[r] - before[r] - step.dt * step.gravity[r] * mass);
+            for (i = b; i < n; i++) mass += ones[3 * n + 3 * i];
+            for (r = 0; r < 3; r++)
+                assert_that(fabs(after[r] - before[r] - step.dt * step.gravity[r] * mass) < 1e-10,
+                            "%s frame %d axis %d: %g", solver_name(_i), frame, r,
+                            after[r] - before[r] - step.dt * step.gravity[r] * mass);
             free(ones);
         }
     }
@@ -1557,10 +1478,9 @@ END_TEST
 
 enum { PIECES = 4 };
 
-/* A large block, stretched, that falls; three smaller ones, of 1/5 to 1/1000 of its edges, the last held or falling too, all
- * of whose nodes are anywhere within two edges and move. first: PIECES + 1 indices of copies */
-static scene scene_of_pieces(uint64_t from, int held, size_t *first)
-{
+/* A large block, stretched, that falls; three smaller ones, of 1/5 to 1/1000 of its edges, the last held or falling
+ * too, all of whose nodes are anywhere within two edges and move. first: PIECES + 1 indices of copies */
+static scene scene_of_pieces(uint64_t from, int held, size_t *first) {
     static const double edges[PIECES] = {0.25, 0.05, 0.01, 0.00025};
     size_t i;
     int p;
@@ -1568,18 +1488,18 @@ static scene scene_of_pieces(uint64_t from, int held, size_t *first)
     seed(from);
     s = scene_block(4, 2, 2, edges[0], 0.1, 0);
     first[0] = 0;
-    for (p = 1; p < PIECES; ++p) {
+    for (p = 1; p < PIECES; p++) {
         first[p] = s.model.copy_count;
         other = scene_block(2, 1, 1, edges[p], 0.1, 0);
         scene_add(&s, &other, 2.0 * p, 0, 0);
     }
     first[PIECES] = s.model.copy_count;
-    for (i = 0; i < 3 * first[1]; ++i) {
+    for (i = 0; i < 3 * first[1]; i++) {
         s.displacement[i] = s.rest[i];
         s.velocity[i] = i % 3 == 2 ? -10 : 0;
     }
-    for (p = 1; p < PIECES; ++p)
-        for (i = 3 * first[p]; i < 3 * first[p + 1]; ++i) {
+    for (p = 1; p < PIECES; p++)
+        for (i = 3 * first[p]; i < 3 * first[p + 1]; i++) {
             s.held[i / 3] = held && p == PIECES - 1 && i / 3 < first[p] + 2;
             s.displacement[i] = s.held[i / 3] ? 0 : 2 * edges[p] * uniform();
             s.velocity[i] = s.held[i / 3] ? 0 : 100 * edges[p] * uniform() - (i % 3 == 2 ? 10 : 0);
@@ -1588,58 +1508,51 @@ static scene scene_of_pieces(uint64_t from, int held, size_t *first)
 }
 
 /* x on copies first to end - 1, 0 elsewhere */
-static void part_of(const double *x, size_t first, size_t end, size_t n, double *part)
-{
+static void part_of(const double *x, size_t first, size_t end, size_t n, double *part) {
     memset(part, 0, 3 * n * sizeof *part);
     memcpy(part + 3 * first, x + 3 * first, 3 * (end - first) * sizeof *part);
 }
 
 /* E(u) of the copies first to end - 1, a piece, that were at un with velocities vn */
-static double part_potential(const scene *s, const gxs_step_desc *step, size_t first, size_t end, const double *un, const double *vn,
-                             const double *u)
-{
+static double part_potential(const scene *s, const gxs_step_desc *step, size_t first, size_t end, const double *un,
+                             const double *vn, const double *u) {
     const size_t n = s->model.copy_count;
     double *part = (double *)zeroed(9 * n, sizeof *part), *way = part + 3 * n, *product = way + 3 * n, sum;
     size_t i;
     part_of(u, first, end, n, part);
     ck_assert_int_eq(gxs_model_energy(&s->model, part, &sum), GX_OK);
-    for (i = 3 * first; i < 3 * end; ++i)
-        way[i] = u[i] - un[i] - step->dt * vn[i];
+    for (i = 3 * first; i < 3 * end; i++) way[i] = u[i] - un[i] - step->dt * vn[i];
     mass_times(s, way, product);
-    for (i = 3 * first; i < 3 * end; ++i)
-        sum += 0.5 * way[i] * product[i] / (step->dt * step->dt);
-    for (i = 3 * first; i < 3 * end; ++i)
-        way[i] = step->gravity[i % 3];
+    for (i = 3 * first; i < 3 * end; i++) sum += 0.5 * way[i] * product[i] / (step->dt * step->dt);
+    for (i = 3 * first; i < 3 * end; i++) way[i] = step->gravity[i % 3];
     mass_times(s, way, product);
-    for (i = 3 * first; i < 3 * end; ++i)
-        sum -= product[i] * u[i];
+    for (i = 3 * first; i < 3 * end; i++) sum -= product[i] * u[i];
     free(part);
     return sum;
 }
 
 /* Where the piece stays but, if it is loose, for falling on: u_n + t, t of its momentum and weight */
-static void part_stay(const scene *s, const gxs_step_desc *step, size_t first, size_t end, const double *un, const double *vn, double *u)
-{
+static void part_stay(const scene *s, const gxs_step_desc *step, size_t first, size_t end, const double *un,
+                      const double *vn, double *u) {
     const size_t n = s->model.copy_count;
     double *ones = (double *)zeroed(6 * n, sizeof *ones), *lumped = ones + 3 * n, mass = 0, moved[3] = {0, 0, 0};
     size_t i;
     int loose = 1;
-    for (i = 3 * first; i < 3 * end; ++i)
-        ones[i] = 1;
+    for (i = 3 * first; i < 3 * end; i++) ones[i] = 1;
     mass_times(s, ones, lumped);
-    for (i = 3 * first; i < 3 * end; ++i) {
+    for (i = 3 * first; i < 3 * end; i++) {
         mass += lumped[i] / 3;
         moved[i % 3] += lumped[i] * step->dt * vn[i];
         loose &= !s->held[i / 3];
     }
-    for (i = 3 * first; i < 3 * end; ++i)
+    for (i = 3 * first; i < 3 * end; i++)
         u[i] = un[i] + (loose ? moved[i % 3] / mass + step->gravity[i % 3] * step->dt * step->dt : 0);
     free(ones);
 }
 
-/* E of no piece ends above where it would be had the piece only fallen on, though others gain a million times what it may lose. */
-START_TEST(energy_falls_in_every_piece)
-{
+/* E of no piece ends above where it would be had the piece only fallen on, though others gain a million times what it
+ * may lose. */
+START_TEST(energy_falls_in_every_piece) {
     gxs_solver *solver = solver_of(_i % SOLVERS);
     const gxs_step_desc step = step_make(0.033, -9.81);
     size_t first[PIECES + 1], n;
@@ -1650,18 +1563,19 @@ START_TEST(energy_falls_in_every_piece)
     s.model.lumped_mass = _i / SOLVERS % 2 != 0;
     un = (double *)zeroed(9 * n, sizeof *un), vn = un + 3 * n, stay = vn + 3 * n;
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
-    for (frame = 0; frame < 30; ++frame) {
+    for (frame = 0; frame < 30; frame++) {
         memcpy(un, s.displacement, 3 * n * sizeof *un);
         memcpy(vn, s.velocity, 3 * n * sizeof *vn);
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
-        for (p = 0; p < PIECES; ++p) {
+        for (p = 0; p < PIECES; p++) {
             double ends, stays;
             part_stay(&s, &step, first[p], first[p + 1], un, vn, stay);
             ends = part_potential(&s, &step, first[p], first[p + 1], un, vn, s.displacement);
             stays = part_potential(&s, &step, first[p], first[p + 1], un, vn, stay);
-            /* of the small piece, which hangs turned by its hinge, E is a sum of terms 1e6 times as large: the solver takes 5e-9 of it for rounding */
-            assert_that(ends <= stays + 1e-8 * (fabs(stays) + fabs(ends)), "%s frame %d piece %d: %.17g above %.17g", solver_name(_i % SOLVERS),
-                        frame, p, ends, stays);
+            /* of the small piece, which hangs turned by its hinge, E is a sum of terms 1e6 times as large: the solver
+             * takes 5e-9 of it for rounding */
+            assert_that(ends <= stays + 1e-8 * (fabs(stays) + fabs(ends)), "%s frame %d piece %d: %.17g above %.17g",
+                        solver_name(_i % SOLVERS), frame, p, ends, stays);
         }
     }
     free(un);
@@ -1670,10 +1584,10 @@ START_TEST(energy_falls_in_every_piece)
 }
 END_TEST
 
-/* A step of pieces is a step of each by itself: none goes less far, or further, for another's sake. To 2 % (single precision, most of all
- * of block-Jacobi), and 2e-4 of how far all go: linear systems are solved to a share of the residual of all. */
-START_TEST(pieces_step_as_if_alone)
-{
+/* A step of pieces is a step of each by itself: none goes less far, or further, for another's sake. To 2 % (single
+ * precision, most of all of block-Jacobi), and 2e-4 of how far all go: linear systems are solved to a share of the
+ * residual of all. */
+START_TEST(pieces_step_as_if_alone) {
     gxs_solver *solver = solver_of(_i % 4);
     gxs_step_desc step = step_make(0.033, -9.81);
     size_t first[PIECES + 1], n, i;
@@ -1686,9 +1600,8 @@ START_TEST(pieces_step_as_if_alone)
     memcpy(start, s.displacement, 3 * n * sizeof *start);
     memcpy(start + 3 * n, s.velocity, 3 * n * sizeof *start);
     ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
-    for (i = 0; i < 3 * n; ++i)
-        all += (s.displacement[i] - start[i]) * (s.displacement[i] - start[i]);
-    for (p = 0; p < PIECES; ++p) {
+    for (i = 0; i < 3 * n; i++) all += (s.displacement[i] - start[i]) * (s.displacement[i] - start[i]);
+    for (p = 0; p < PIECES; p++) {
         double *u = start + 6 * n, *v = u + 3 * n, way = 0, off = 0;
         uint8_t *held = (uint8_t *)zeroed(n, 1);
         gxs_model alone = s.model;
@@ -1699,11 +1612,12 @@ START_TEST(pieces_step_as_if_alone)
         memcpy(held + first[p], s.held + first[p], first[p + 1] - first[p]);
         alone.held = held;
         ck_assert_int_eq(advance(solver, &alone, &step, u, v, NULL, NULL), GX_OK);
-        for (i = 3 * first[p]; i < 3 * first[p + 1]; ++i) {
+        for (i = 3 * first[p]; i < 3 * first[p + 1]; i++) {
             way += (u[i] - start[i]) * (u[i] - start[i]);
             off += (u[i] - s.displacement[i]) * (u[i] - s.displacement[i]);
         }
-        assert_that(off <= 4e-4 * way + 4e-8 * all, "%s piece %d: %g m off, having gone %g m", solver_name(_i % 4), p, sqrt(off), sqrt(way));
+        assert_that(off <= 4e-4 * way + 4e-8 * all, "%s piece %d: %g m off, having gone %g m", solver_name(_i % 4), p,
+                    sqrt(off), sqrt(way));
         free(held);
     }
     free(start);
@@ -1713,8 +1627,7 @@ START_TEST(pieces_step_as_if_alone)
 END_TEST
 
 /* Points that lie in several pieces join them: E is no sum over these any more, but falls in them together. */
-START_TEST(energy_falls_in_joined_pieces)
-{
+START_TEST(energy_falls_in_joined_pieces) {
     gxs_solver *solver = solver_make();
     size_t first[PIECES + 1], n;
     uint32_t k;
@@ -1724,7 +1637,7 @@ START_TEST(energy_falls_in_joined_pieces)
     gxs_step_desc step = step_make(0.033, 0);
     int p;
     n = s.model.copy_count;
-    for (p = 0; p < 2; ++p) { /* the first to the last piece, and that to the second */
+    for (p = 0; p < 2; p++) { /* the first to the last piece, and that to the second */
         gxs_point point = point_at(&s, first[p] + 3);
         point.copy[3] = (uint32_t)first[2] + 5;
         point.weight[0] = point.weight[3] = 0.5;
@@ -1734,16 +1647,16 @@ START_TEST(energy_falls_in_joined_pieces)
     step.springs = springs;
     step.spring_count = 2;
     u = (double *)zeroed(6 * n, sizeof *u);
-    for (k = 1; k <= 15; ++k) {
+    for (k = 1; k <= 15; k++) {
         gxs_step_report report;
         memcpy(u, s.displacement, 3 * n * sizeof *u);
         memset(u + 3 * n, 0, 3 * n * sizeof *u);
         step.newton_iterations = k;
         ck_assert_int_eq(advance(solver, &s.model, &step, u, u + 3 * n, &report, NULL), GX_OK);
-        assert_that(k == 1 || report.energy <= energy + 1e-12 * fabs(energy), "iterate %u: %.17g after %.17g", (unsigned)k, report.energy, energy);
+        assert_that(k == 1 || report.energy <= energy + 1e-12 * fabs(energy), "iterate %u: %.17g after %.17g",
+                    (unsigned)k, report.energy, energy);
         energy = report.energy;
-        if (report.newton_iterations < k)
-            break;
+        if (report.newton_iterations < k) break;
     }
     free(u);
     gxs_solver_destroy(solver);
@@ -1754,8 +1667,7 @@ END_TEST
 /* ---- statics ---- */
 
 /* the balance of a hanging bar, of every material, is where damped motion ends */
-START_TEST(static_balance_is_the_end_of_motion)
-{
+START_TEST(static_balance_is_the_end_of_motion) {
     const int kind = _i / SOLVERS, which = _i % SOLVERS;
     gxs_solver *solver = solver_of(which);
     gxs_step_desc step = step_tight(0, -9.81);
@@ -1763,7 +1675,7 @@ START_TEST(static_balance_is_the_end_of_motion)
     double end[3 * 64];
     size_t count;
     int run, frame;
-    for (run = 0; run < 2; ++run) {
+    for (run = 0; run < 2; run++) {
         scene s;
         seed((uint64_t)_i);
         s = scene_block(4, 2, 2, 0.25, 0, 0);
@@ -1776,17 +1688,17 @@ START_TEST(static_balance_is_the_end_of_motion)
         ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
         step.integrator = run ? GXS_STATIC : GXS_BDF1;
         step.dt = run ? 0 : 5;
-        for (frame = 0; frame < (run ? 1 : 12); ++frame)
+        for (frame = 0; frame < (run ? 1 : 12); frame++)
             ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
         assert_that(report.residual < 1e-10, "%s: residual %g", solver_name(which), report.residual);
         if (run == 0)
             memcpy(end, s.displacement, count * sizeof(double));
         else {
             size_t i;
-            assert_that(distance(end, s.displacement, count) < 1e-8, "%s: %g m apart", solver_name(which), distance(end, s.displacement, count));
+            assert_that(distance(end, s.displacement, count) < 1e-8, "%s: %g m apart", solver_name(which),
+                        distance(end, s.displacement, count));
             ck_assert(s.displacement[count - 1] < -1e-3);
-            for (i = 0; i < count; ++i)
-                ck_assert(s.velocity[i] == 0);
+            for (i = 0; i < count; i++) ck_assert(s.velocity[i] == 0);
         }
         scene_free(&s);
     }
@@ -1795,12 +1707,11 @@ START_TEST(static_balance_is_the_end_of_motion)
 END_TEST
 
 /* a balance through ties: a bar of three blocks, of which only the first is held */
-START_TEST(static_balance_reaches_through_ties)
-{
+START_TEST(static_balance_reaches_through_ties) {
     double end[3 * 320];
     uint32_t iterations = 0;
     int tied;
-    for (tied = 0; tied < 2; ++tied) {
+    for (tied = 0; tied < 2; tied++) {
         gxs_solver *solver = solver_of(_i);
         gxs_step_desc step = step_tight(0, -9.81);
         gxs_step_report report;
@@ -1811,18 +1722,19 @@ START_TEST(static_balance_reaches_through_ties)
         ck_assert_uint_lt(count, 3 * 330);
         count = count < 3 * 320 ? count : 3 * 320;
         s.material->young = 1e7;
-        if (tied)
-            ties = scene_split(&s, 1);
+        if (tied) ties = scene_split(&s, 1);
         scene_hold_left(&s);
         step.integrator = GXS_STATIC;
         step.newton_tolerance = 1e-9;
         ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
-        assert_that(report.residual < 1e-9, "%s%s: residual %g after %u Newton, %u CG iterations", solver_name(_i), tied ? ", tied" : "",
-                    report.residual, (unsigned)report.newton_iterations, (unsigned)report.cg_iterations);
+        assert_that(report.residual < 1e-9, "%s%s: residual %g after %u Newton, %u CG iterations", solver_name(_i),
+                    tied ? ", tied" : "", report.residual, (unsigned)report.newton_iterations,
+                    (unsigned)report.cg_iterations);
         if (tied) {
-            assert_that(distance(end, s.displacement, count) < 1e-7, "%s: %g m apart", solver_name(_i), distance(end, s.displacement, count));
-            assert_that(report.cg_iterations <= 4 * iterations, "%s: %u CG iterations, %u without ties", solver_name(_i),
-                        (unsigned)report.cg_iterations, (unsigned)iterations);
+            assert_that(distance(end, s.displacement, count) < 1e-7, "%s: %g m apart", solver_name(_i),
+                        distance(end, s.displacement, count));
+            assert_that(report.cg_iterations <= 4 * iterations, "%s: %u CG iterations, %u without ties",
+                        solver_name(_i), (unsigned)report.cg_iterations, (unsigned)iterations);
         }
         iterations = report.cg_iterations;
         memcpy(end, s.displacement, count * sizeof(double));
@@ -1833,9 +1745,9 @@ START_TEST(static_balance_reaches_through_ties)
 }
 END_TEST
 
-/* a held block and one that nothing holds: an error that names one of its copies; a spring or a time step gives it a balance */
-START_TEST(static_balance_needs_a_hold)
-{
+/* a held block and one that nothing holds: an error that names one of its copies; a spring or a time step gives it a
+ * balance */
+START_TEST(static_balance_needs_a_hold) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_tight(0, -9.81);
     gxs_spring spring;
@@ -1851,7 +1763,7 @@ START_TEST(static_balance_needs_a_hold)
     scene_add(&s, &other, 2, 0, 0);
     count = 3 * s.model.copy_count;
     before = (double *)zeroed(2 * count, sizeof *before);
-    for (i = 0; i < count; ++i) {
+    for (i = 0; i < count; i++) {
         before[i] = s.displacement[i] = s.held[i / 3] ? 0 : 0.01 * uniform();
         before[count + i] = s.velocity[i] = uniform();
     }
@@ -1859,19 +1771,20 @@ START_TEST(static_balance_needs_a_hold)
     ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, NULL, &failure), GX_ERROR_FREE);
     ck_assert_int_eq(failure.result, GX_ERROR_FREE);
     assert_that(failure.index >= first && failure.index < s.model.copy_count, "copy %lu", (unsigned long)failure.index);
-    ck_assert(memcmp(before, s.displacement, count * sizeof(double)) == 0 && memcmp(before + count, s.velocity, count * sizeof(double)) == 0);
+    ck_assert(memcmp(before, s.displacement, count * sizeof(double)) == 0 &&
+              memcmp(before + count, s.velocity, count * sizeof(double)) == 0);
     spring = spring_make(point_at(&s, failure.index), 0); /* a spring of no stiffness holds nothing */
     step.springs = &spring;
     step.spring_count = 1;
     ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, &failure), GX_ERROR_FREE);
     spring = spring_make(point_at(&s, 1), 1e5); /* of the other piece */
     ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, &failure), GX_ERROR_FREE);
-    ck_assert(memcmp(before, s.displacement, count * sizeof(double)) == 0 && memcmp(before + count, s.velocity, count * sizeof(double)) == 0);
+    ck_assert(memcmp(before, s.displacement, count * sizeof(double)) == 0 &&
+              memcmp(before + count, s.velocity, count * sizeof(double)) == 0);
     step.dt = 1;
     ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
     assert_that(report.residual < 1e-10, "residual %g", report.residual);
-    for (i = 0; i < count; ++i)
-        ck_assert(s.velocity[i] == 0);
+    for (i = 0; i < count; i++) ck_assert(s.velocity[i] == 0);
     step.dt = 0;
     spring = spring_make(point_at(&s, s.model.copy_count - 1), 1e5); /* by a corner: it swings until it hangs */
     ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
@@ -1885,8 +1798,7 @@ START_TEST(static_balance_needs_a_hold)
 END_TEST
 
 /* a tangled bar: E never rises from iterate to iterate, and the end is a balance */
-START_TEST(static_balance_is_found_from_afar)
-{
+START_TEST(static_balance_is_found_from_afar) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_make(0, -9.81);
     double energy = 0;
@@ -1897,14 +1809,14 @@ START_TEST(static_balance_is_found_from_afar)
     seed((uint64_t)_i);
     s = scene_block(4, 2, 2, 0.25, 0, 0);
     scene_hold_left(&s);
-    for (i = 0; i < 3 * s.model.copy_count; ++i)
-        s.displacement[i] = s.held[i / 3] ? 0 : 0.25 * uniform();
+    for (i = 0; i < 3 * s.model.copy_count; i++) s.displacement[i] = s.held[i / 3] ? 0 : 0.25 * uniform();
     step.integrator = GXS_STATIC;
     step.newton_tolerance = 1e-12;
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
-    for (frame = 0; frame < 200; ++frame) {
+    for (frame = 0; frame < 200; frame++) {
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
-        assert_that(frame == 0 || report.energy <= energy + 1e-12 * fabs(energy), "frame %d: %.17g J after %.17g J", frame, report.energy, energy);
+        assert_that(frame == 0 || report.energy <= energy + 1e-12 * fabs(energy), "frame %d: %.17g J after %.17g J",
+                    frame, report.energy, energy);
         energy = report.energy;
     }
     assert_that(report.residual < 1e-10, "%s: residual %g", solver_name(_i), report.residual);
@@ -1915,10 +1827,9 @@ END_TEST
 
 /* ---- stiffness damping ---- */
 
-/* Longitudinal free vibration of a bar held at its left, in its first mode, by the midpoint rule: its energy after some periods. frequency:
- * of its zero crossings, rad/s */
-static double ring(int kind, double damping, double *frequency)
-{
+/* Longitudinal free vibration of a bar held at its left, in its first mode, by the midpoint rule: its energy after some
+ * periods. frequency: of its zero crossings, rad/s */
+static double ring(int kind, double damping, double *frequency) {
     gxs_solver *solver = solver_make();
     gxs_step_desc step = step_tight(1.25e-4, 0); /* 1/320 of the period, which is 4 L sqrt(rho / E) */
     const double zero[3] = {0, 0, 0};
@@ -1931,18 +1842,16 @@ static double ring(int kind, double damping, double *frequency)
     s.material->poisson = 0;
     s.material->damping = damping;
     scene_hold_left(&s);
-    for (i = 0; i < s.model.copy_count; ++i)
-        s.displacement[3 * i] = 1e-5 * sin(2 * atan(1.0) * s.rest[3 * i]);
+    for (i = 0; i < s.model.copy_count; i++) s.displacement[3 * i] = 1e-5 * sin(2 * atan(1.0) * s.rest[3 * i]);
     step.integrator = GXS_MIDPOINT;
     step.newton_tolerance = 1e-9;
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
     first = total_energy(&s, zero);
-    for (frame = 1; frame <= 960; ++frame) {
+    for (frame = 1; frame <= 960; frame++) {
         double before = amplitude;
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
         amplitude = s.displacement[3 * s.model.copy_count - 3];
-        if (before > 0 && amplitude <= 0)
-            crossing[crossings++ > 0] = frame - amplitude / (amplitude - before);
+        if (before > 0 && amplitude <= 0) crossing[crossings++ > 0] = frame - amplitude / (amplitude - before);
         last = total_energy(&s, zero);
     }
     *frequency = 8 * atan(1.0) * (double)(crossings - 1) / ((crossing[1] - crossing[0]) * step.dt);
@@ -1952,19 +1861,17 @@ static double ring(int kind, double damping, double *frequency)
 }
 
 /* E falls by exp(-beta omega^2 t): a damping ratio of beta omega / 2 */
-START_TEST(modes_decay_by_stiffness_damping)
-{
+START_TEST(modes_decay_by_stiffness_damping) {
     double omega, damped, rate;
     rate = ring(_i, 0, &omega);
     assert_that(fabs(rate) < 1e-3, "undamped: %g 1/s", rate);
     assert_that(fabs(omega / (2 * atan(1.0) * 100) - 1) < 0.02, "omega %g", omega); /* pi/2 sqrt(E / rho) / L */
-    rate = ring(_i, 2 * 0.03 / omega, &damped); /* 3 % of critical */
+    rate = ring(_i, 2 * 0.03 / omega, &damped);                                     /* 3 % of critical */
     assert_that(fabs(rate / (2 * 0.03 * omega) - 1) < 0.02, "rate %g for %g", rate, 2 * 0.03 * omega);
 }
 END_TEST
 
-START_TEST(damping_keeps_momentum)
-{
+START_TEST(damping_keeps_momentum) {
     static const gxs_integrator integrators[3] = {GXS_BDF1, GXS_BDF2, GXS_MIDPOINT};
     const int kind = _i / 3;
     gxs_solver *solver = solver_make();
@@ -1978,15 +1885,14 @@ START_TEST(damping_keeps_momentum)
     count = 3 * s.model.copy_count;
     set_kind(s.material, kind);
     s.material->damping = 0.02;
-    for (i = 0; i < 2; ++i)
+    for (i = 0; i < 2; i++)
         previous[i] = (double *)zeroed(count, sizeof(double)), now[i] = (double *)zeroed(count, sizeof(double));
-    for (i = 0; i < count; ++i)
-        s.velocity[i] = 1 + uniform();
+    for (i = 0; i < count; i++) s.velocity[i] = 1 + uniform();
     step.integrator = integrators[_i % 3];
     step.cg_tolerance = 0.1;
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
     momentum(&s, before);
-    for (frame = 0; frame < 20; ++frame) {
+    for (frame = 0; frame < 20; frame++) {
         memcpy(now[0], s.displacement, count * sizeof(double));
         memcpy(now[1], s.velocity, count * sizeof(double));
         if (frame > 0)
@@ -1995,19 +1901,18 @@ START_TEST(damping_keeps_momentum)
         memcpy(previous[0], now[0], count * sizeof(double));
         memcpy(previous[1], now[1], count * sizeof(double));
         momentum(&s, after);
-        for (r = 0; r < 3; ++r)
-            assert_that(fabs(after[r] - before[r]) < 1e-10 * fabs(before[r]), "frame %d: %g of %g", frame, after[r] - before[r], before[r]);
+        for (r = 0; r < 3; r++)
+            assert_that(fabs(after[r] - before[r]) < 1e-10 * fabs(before[r]), "frame %d: %g of %g", frame,
+                        after[r] - before[r], before[r]);
     }
-    for (i = 0; i < 2; ++i)
-        free(previous[i]), free(now[i]);
+    for (i = 0; i < 2; i++) free(previous[i]), free(now[i]);
     gxs_solver_destroy(solver);
     scene_free(&s);
 }
 END_TEST
 
 /* damping by the stiffness has no noise of its own: a hanging bar comes to rest to (almost) all digits */
-START_TEST(damped_bodies_come_to_rest)
-{
+START_TEST(damped_bodies_come_to_rest) {
     gxs_solver *solver = solver_make();
     gxs_step_desc step = step_tight(0.02, -9.81);
     double speed = 0;
@@ -2019,10 +1924,9 @@ START_TEST(damped_bodies_come_to_rest)
     s.material->damping = 0.02;
     step.mass_damping = 5;
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
-    for (frame = 0; frame < 300; ++frame)
+    for (frame = 0; frame < 300; frame++)
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
-    for (i = 0; i < 3 * s.model.copy_count; ++i)
-        speed = fabs(s.velocity[i]) > speed ? fabs(s.velocity[i]) : speed;
+    for (i = 0; i < 3 * s.model.copy_count; i++) speed = fabs(s.velocity[i]) > speed ? fabs(s.velocity[i]) : speed;
     assert_that(speed < 1e-12, "still at %g m/s", speed);
     gxs_solver_destroy(solver);
     scene_free(&s);
@@ -2030,8 +1934,7 @@ START_TEST(damped_bodies_come_to_rest)
 END_TEST
 
 /* What is left of a body's angular momentum and energy after a revolution; it starts without stress. */
-static void revolve(int kind, double spin, double damping, double *left)
-{
+static void revolve(int kind, double spin, double damping, double *left) {
     const double zero[3] = {0, 0, 0};
     gxs_solver *solver = solver_make();
     gxs_step_desc step = step_tight(0.0075 / spin, 0);
@@ -2040,9 +1943,10 @@ static void revolve(int kind, double spin, double damping, double *left)
     int frame;
     scene s = scene_block(4, 2, 2, 0.25, 0, 0);
     set_kind(s.material, kind);
-    s.material->young = spin < 1 ? 1e4 : 1e6; /* so that what a step of the midpoint rule stretches is little beside the rest */
+    /* so that what a step of the midpoint rule stretches is little beside the rest */
+    s.material->young = spin < 1 ? 1e4 : 1e6;
     s.material->damping = damping;
-    for (i = 0; i < s.model.copy_count; ++i) {
+    for (i = 0; i < s.model.copy_count; i++) {
         s.velocity[3 * i] = -spin * (s.rest[3 * i + 1] - 0.25);
         s.velocity[3 * i + 1] = spin * (s.rest[3 * i] - 0.5);
     }
@@ -2051,7 +1955,7 @@ static void revolve(int kind, double spin, double damping, double *left)
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
     angular_momentum(&s, first);
     energy = total_energy(&s, zero);
-    for (frame = 0; frame < 838; ++frame) /* 2 pi / 0.0075 */
+    for (frame = 0; frame < 838; frame++) /* 2 pi / 0.0075 */
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
     angular_momentum(&s, last);
     left[0] = last[2] / first[2];
@@ -2060,26 +1964,25 @@ static void revolve(int kind, double spin, double damping, double *left)
     scene_free(&s);
 }
 
-/* At 0.05/s, next to no stress, and at 3/s, where it is stretched by 1e-3: stiffness damping leaves both as they are without it. */
-START_TEST(rotation_is_not_damped)
-{
+/* At 0.05/s, next to no stress, and at 3/s, where it is stretched by 1e-3: stiffness damping leaves both as they are
+ * without it. */
+START_TEST(rotation_is_not_damped) {
     const double spin = _i % 2 ? 3 : 0.05;
     double free_of_it[2], damped[2];
     revolve(_i / 2, spin, 0, free_of_it);
     revolve(_i / 2, spin, 1e-3, damped);
-    assert_that(fabs(free_of_it[0] - 1) < 1e-6 && fabs(free_of_it[1] - 1) < 5e-3, "undamped: angular momentum %.9g, energy %.9g of it left",
-                free_of_it[0], free_of_it[1]);
-    assert_that(fabs(damped[0] - 1) < 1e-3 && fabs(damped[1] - 1) < 5e-3, "damped: angular momentum %.9g, energy %.9g of it left", damped[0],
-                damped[1]);
+    assert_that(fabs(free_of_it[0] - 1) < 1e-6 && fabs(free_of_it[1] - 1) < 5e-3,
+                "undamped: angular momentum %.9g, energy %.9g of it left", free_of_it[0], free_of_it[1]);
+    assert_that(fabs(damped[0] - 1) < 1e-3 && fabs(damped[1] - 1) < 5e-3,
+                "damped: angular momentum %.9g, energy %.9g of it left", damped[0], damped[1]);
 }
 END_TEST
 
 /* ---- the midpoint rule ---- */
 
-/* A thin plate falls into its hold and swings. Nothing damps what one Newton iteration and a coarse solve leave, and step by step it would
- * add up without end; the body must never have more energy than it began with. */
-START_TEST(midpoint_gains_no_energy)
-{
+/* A thin plate falls into its hold and swings. Nothing damps what one Newton iteration and a coarse solve leave, and
+ * step by step it would add up without end; the body must never have more energy than it began with. */
+START_TEST(midpoint_gains_no_energy) {
     static const double gravity[3] = {0, 0, -9.81}, dts[2] = {0.001, 0.004};
     gxs_solver *solver = solver_of(_i / 2);
     gxs_step_desc step = step_make(dts[_i % 2], -9.81);
@@ -2092,38 +1995,39 @@ START_TEST(midpoint_gains_no_energy)
     step.cg_tolerance = 0.05;
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
     begin = total_energy(&s, gravity);
-    for (frame = 0; frame < 1200; ++frame) {
+    for (frame = 0; frame < 1200; frame++) {
         double energy;
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
         energy = total_energy(&s, gravity) - begin;
         most = energy > most ? energy : most;
         fall = fmin(fall, s.displacement[3 * s.model.copy_count - 1]);
     }
-    assert_that(fall < -0.03 && most < -0.02 * gravity[2] * mass_of(&s) * -fall, "%g J gained, %g m fallen", most, fall);
+    assert_that(fall < -0.03 && most < -0.02 * gravity[2] * mass_of(&s) * -fall, "%g J gained, %g m fallen", most,
+                fall);
     gxs_solver_destroy(solver);
     scene_free(&s);
 }
 END_TEST
 
 /* What a callback's point has met: the plane of a scene, by its caller */
-static double energy_at_plane(const scene *s, const gxs_step_desc *step, const gxs_plane *plane, const double *gravity)
-{
+static double energy_at_plane(const scene *s, const gxs_step_desc *step, const gxs_plane *plane,
+                              const double *gravity) {
     double sum = total_energy(s, gravity);
     size_t i;
     int k;
-    for (i = 0; i < step->point_count; ++i) {
+    for (i = 0; i < step->point_count; i++) {
         double x[3];
-        for (k = 0; k < 3; ++k)
+        for (k = 0; k < 3; k++)
             x[k] = step->points[i].position[k] + s->displacement[3 * step->points[i].copy[0] + (size_t)k];
         sum += 0.5 * plane->stiffness * plane_depth(plane, x) * plane_depth(plane, x);
     }
     return sum;
 }
 
-/* A free block meets a plane, given as such or by a callback, anywhere within a step, also after its middle: the step gains no more than 1 % of the kinetic
- * energy, however stiff the plane is; a block in flight beside it goes on as it was. */
-START_TEST(midpoint_gains_nothing_where_contact_begins)
-{
+/* A free block meets a plane, given as such or by a callback, anywhere within a step, also after its middle: the step
+ * gains no more than 1 % of the kinetic energy, however stiff the plane is; a block in flight beside it goes on as it
+ * was. */
+START_TEST(midpoint_gains_nothing_where_contact_begins) {
     static const double gravity[3] = {0, 0, 0}, stiffness[3] = {1e5, 1e7, 1e9};
     gxs_solver *solver = solver_make();
     gxs_step_desc step = step_tight(0.03, 0);
@@ -2137,8 +2041,7 @@ START_TEST(midpoint_gains_nothing_where_contact_begins)
     scene_add(&s, &other, 3, 0, 0);
     s.material->young = 1e6;
     plane.offset = -0.02 * (1 + _i / 6);
-    for (i = 0; i < s.model.copy_count; ++i)
-        s.velocity[3 * i + 2] = -5;
+    for (i = 0; i < s.model.copy_count; i++) s.velocity[3 * i + 2] = -5;
     points = points_of(&s, 0, n);
     step.integrator = GXS_MIDPOINT;
     step.points = points;
@@ -2150,17 +2053,18 @@ START_TEST(midpoint_gains_nothing_where_contact_begins)
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
     energy = energy_at_plane(&s, &step, &plane, gravity);
     memcpy(first, s.velocity + 3 * n, sizeof first);
-    for (frame = 0; frame < 8; ++frame) {
+    for (frame = 0; frame < 8; frame++) {
         const double before = energy;
         double *y = (double *)zeroed(3 * s.model.copy_count, sizeof *y), kinetic;
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
         mass_times(&s, s.velocity, y);
-        for (i = 0, kinetic = 0; i < 3 * s.model.copy_count; ++i)
-            kinetic += 0.5 * y[i] * s.velocity[i];
+        for (i = 0, kinetic = 0; i < 3 * s.model.copy_count; i++) kinetic += 0.5 * y[i] * s.velocity[i];
         energy = energy_at_plane(&s, &step, &plane, gravity);
         hit = fmax(hit, energy - total_energy(&s, gravity));
-        assert_that(energy <= before + 0.0101 * kinetic, "frame %d: %g J after %g J, of %g J kinetic", frame, energy, before, kinetic);
-        assert_that(fabs(s.velocity[3 * n + 2] - first[2]) < 1e-9, "frame %d: what flies has %g m/s", frame, s.velocity[3 * n + 2]);
+        assert_that(energy <= before + 0.0101 * kinetic, "frame %d: %g J after %g J, of %g J kinetic", frame, energy,
+                    before, kinetic);
+        assert_that(fabs(s.velocity[3 * n + 2] - first[2]) < 1e-9, "frame %d: what flies has %g m/s", frame,
+                    s.velocity[3 * n + 2]);
         free(y);
     }
     ck_assert(hit > 0);
@@ -2185,15 +2089,14 @@ typedef struct bedroom {
     size_t first[3]; /* copies of either block, and the end */
 } bedroom;
 
-static void bedroom_make(bedroom *room, int which)
-{
+static void bedroom_make(bedroom *room, int which) {
     scene slab = scene_block(2, 2, 1, 0.25, 0, 0);
     size_t i, n;
     memset(room, 0, sizeof *room);
     room->s = scene_block(3, 1, 1, 0.25, 0, 0);
     room->first[1] = room->s.model.copy_count;
     scene_hold_left(&room->s);
-    for (i = 0; i < room->first[1]; ++i) /* above the plane */
+    for (i = 0; i < room->first[1]; i++) /* above the plane */
         room->s.rest[3 * i + 2] += 2;
     scene_add(&room->s, &slab, 3, 0, 0);
     room->first[2] = n = room->s.model.copy_count;
@@ -2217,8 +2120,7 @@ static void bedroom_make(bedroom *room, int which)
     ck_assert_int_eq(gxs_solver_set_model(room->solver, &room->s.model, NULL), GX_OK);
 }
 
-static void bedroom_free(bedroom *room)
-{
+static void bedroom_free(bedroom *room) {
     free(room->points);
     free(room->rest_times);
     free(room->targets);
@@ -2226,55 +2128,49 @@ static void bedroom_free(bedroom *room)
     scene_free(&room->s);
 }
 
-static void bedroom_step(bedroom *room)
-{
-    ck_assert_int_eq(gxs_solver_step(room->solver, &room->step, room->s.displacement, room->s.velocity, &room->report, NULL), GX_OK);
+static void bedroom_step(bedroom *room) {
+    ck_assert_int_eq(
+        gxs_solver_step(room->solver, &room->step, room->s.displacement, room->s.velocity, &room->report, NULL), GX_OK);
 }
 
-static void settle(bedroom *room)
-{
+static void settle(bedroom *room) {
     int frame;
     double speed = 0;
     size_t i;
-    for (frame = 0; frame < 2000; ++frame) {
+    for (frame = 0; frame < 2000; frame++) {
         bedroom_step(room);
-        if (room->report.active_unknowns == 0)
-            return;
+        if (room->report.active_unknowns == 0) return;
     }
-    for (i = 0; i < 3 * room->first[2]; ++i)
+    for (i = 0; i < 3 * room->first[2]; i++)
         speed = fabs(room->s.velocity[i]) > speed ? fabs(room->s.velocity[i]) : speed;
-    assert_that(0, "not asleep after 2000 steps: %lu unknowns, %g m/s", (unsigned long)room->report.active_unknowns, speed);
+    assert_that(0, "not asleep after 2000 steps: %lu unknowns, %g m/s", (unsigned long)room->report.active_unknowns,
+                speed);
 }
 
 /* unknowns of a block when it is awake */
-static size_t unknowns_of(const bedroom *room, int block)
-{
+static size_t unknowns_of(const bedroom *room, int block) {
     size_t i, count = 0;
-    for (i = room->first[block]; i < room->first[block + 1]; ++i)
-        count += room->s.held[i] ? 0 : 3;
+    for (i = room->first[block]; i < room->first[block + 1]; i++) count += room->s.held[i] ? 0 : 3;
     return count;
 }
 
 /* The operator has what sleeps, too. */
-static void check_operator(bedroom *room)
-{
+static void check_operator(bedroom *room) {
     const size_t n = 3 * room->s.model.copy_count;
-    double *x = (double *)zeroed(n, sizeof *x), *y = (double *)zeroed(n, sizeof *y), *expected = (double *)zeroed(n, sizeof *y), most = 0;
+    double *x = (double *)zeroed(n, sizeof *x), *y = (double *)zeroed(n, sizeof *y),
+           *expected = (double *)zeroed(n, sizeof *y), most = 0;
     size_t i;
-    for (i = 0; i < n; ++i)
-        x[i] = room->s.held[i / 3] ? 0 : uniform();
+    for (i = 0; i < n; i++) x[i] = room->s.held[i / 3] ? 0 : uniform();
     ck_assert_int_eq(gxs_solver_linearise(room->solver, room->s.displacement, 0, 0, NULL), GX_OK);
     ck_assert_int_eq(gxs_solver_product(room->solver, x, y, NULL), GX_OK);
     ck_assert_int_eq(gxs_model_hessian_product(&room->s.model, room->s.displacement, x, expected), GX_OK);
-    for (i = 0; i < n; ++i)
-        most = fabs(expected[i]) > most ? fabs(expected[i]) : most;
-    for (i = 0; i < n; ++i)
+    for (i = 0; i < n; i++) most = fabs(expected[i]) > most ? fabs(expected[i]) : most;
+    for (i = 0; i < n; i++)
         assert_that(fabs(y[i] - (room->s.held[i / 3] ? 0 : expected[i])) < 4e-6 * most, "%g %g", y[i], expected[i]);
     free(x), free(y), free(expected);
 }
 
-START_TEST(settled_blocks_sleep)
-{
+START_TEST(settled_blocks_sleep) {
     bedroom room;
     double *bits;
     size_t i, n;
@@ -2288,16 +2184,12 @@ START_TEST(settled_blocks_sleep)
     ck_assert_int_eq(room.report.stop, GXS_STOP_ASLEEP);
     ck_assert_uint_eq(room.report.newton_iterations, 0);
     memcpy(bits, room.s.displacement, 3 * n * sizeof *bits);
-    for (frame = 0; frame < 20; ++frame) {
-        for (i = 0; i < 3 * n; ++i)
-            ck_assert(room.s.velocity[i] == 0);
+    for (frame = 0; frame < 20; frame++) {
+        for (i = 0; i < 3 * n; i++) ck_assert(room.s.velocity[i] == 0);
         ck_assert(memcmp(bits, room.s.displacement, 3 * n * sizeof *bits) == 0);
-        if (frame == 5)
-            room.step.dt = 0.01;
-        if (frame == 7)
-            check_operator(&room);
-        if (frame == 10)
-            room.step.integrator = GXS_MIDPOINT;
+        if (frame == 5) room.step.dt = 0.01;
+        if (frame == 7) check_operator(&room);
+        if (frame == 10) room.step.integrator = GXS_MIDPOINT;
         bedroom_step(&room);
         ck_assert_uint_eq(room.report.active_unknowns, 0);
         ck_assert_int_eq(room.report.stop, GXS_STOP_ASLEEP);
@@ -2310,8 +2202,7 @@ END_TEST
 
 enum { TOUCH_FORCE, TOUCH_VELOCITY, TOUCH_DISPLACEMENT, TOUCH_SPRING, TOUCH_REST_TIMES, TOUCH_TARGET, TOUCH_COUNT };
 
-static void touch(bedroom *room, int how, size_t copy)
-{
+static void touch(bedroom *room, int how, size_t copy) {
     switch (how) {
     case TOUCH_FORCE: room->s.forces[3 * copy] += 1; break;
     case TOUCH_VELOCITY: room->s.velocity[3 * copy + 1] = 1e-9; break;
@@ -2326,30 +2217,30 @@ static void touch(bedroom *room, int how, size_t copy)
 }
 
 /* what touches a block wakes it and no other */
-START_TEST(a_touch_wakes_one_block)
-{
-    static const char *const names[TOUCH_COUNT] = {"force", "velocity", "displacement", "spring", "rest time", "target"};
+START_TEST(a_touch_wakes_one_block) {
+    static const char *const names[TOUCH_COUNT] = {"force",  "velocity",  "displacement",
+                                                   "spring", "rest time", "target"};
     bedroom room;
     double *bits;
     int how, block, frame;
     bedroom_make(&room, _i);
     bits = (double *)zeroed(3 * room.first[2], sizeof *bits);
     settle(&room);
-    for (how = 0; how < TOUCH_COUNT; ++how)
-        for (block = 0; block < (how == TOUCH_TARGET ? 1 : 2); ++block) {
+    for (how = 0; how < TOUCH_COUNT; how++)
+        for (block = 0; block < (how == TOUCH_TARGET ? 1 : 2); block++) {
             const int other = 1 - block;
             const size_t from = 3 * room.first[other], count = 3 * (room.first[other + 1] - room.first[other]);
             memcpy(bits, room.s.displacement, 3 * room.first[2] * sizeof *bits);
             touch(&room, how, room.first[block + 1] - 1);
-            for (frame = 0; frame < 3; ++frame) {
+            for (frame = 0; frame < 3; frame++) {
                 size_t i;
                 bedroom_step(&room);
-                assert_that(room.report.active_unknowns == unknowns_of(&room, block), "%s: a %s at block %d: %lu unknowns in frame %d, not %lu",
-                            solver_name(_i), names[how], block, (unsigned long)room.report.active_unknowns, frame,
+                assert_that(room.report.active_unknowns == unknowns_of(&room, block),
+                            "%s: a %s at block %d: %lu unknowns in frame %d, not %lu", solver_name(_i), names[how],
+                            block, (unsigned long)room.report.active_unknowns, frame,
                             (unsigned long)unknowns_of(&room, block));
                 ck_assert(memcmp(bits + from, room.s.displacement + from, count * sizeof *bits) == 0);
-                for (i = 0; i < count; ++i)
-                    ck_assert(room.s.velocity[from + i] == 0);
+                for (i = 0; i < count; i++) ck_assert(room.s.velocity[from + i] == 0);
                 room.step.spring_count = 0;
             }
             settle(&room);
@@ -2360,8 +2251,7 @@ START_TEST(a_touch_wakes_one_block)
 END_TEST
 
 /* NULL forces are no forces: that they come and go touches what they act on only */
-START_TEST(forces_that_come_and_go_wake_one_block)
-{
+START_TEST(forces_that_come_and_go_wake_one_block) {
     bedroom room;
     bedroom_make(&room, _i);
     room.step.forces = NULL;
@@ -2381,13 +2271,12 @@ START_TEST(forces_that_come_and_go_wake_one_block)
 END_TEST
 
 /* gravity, and every number of a plane */
-START_TEST(changes_of_the_scene_wake_all)
-{
+START_TEST(changes_of_the_scene_wake_all) {
     bedroom room;
     int how;
     gxs_plane *plane = &room.plane, planes[2];
     bedroom_make(&room, _i);
-    for (how = 0; how < 8; ++how) {
+    for (how = 0; how < 8; how++) {
         settle(&room);
         switch (how) {
         case 0: room.step.gravity[2] = -9; break;
@@ -2404,8 +2293,8 @@ START_TEST(changes_of_the_scene_wake_all)
             room.step.plane_count = 2;
         }
         bedroom_step(&room);
-        assert_that(room.report.active_unknowns == unknowns_of(&room, 0) + unknowns_of(&room, 1), "change %d: %lu unknowns awake", how,
-                    (unsigned long)room.report.active_unknowns);
+        assert_that(room.report.active_unknowns == unknowns_of(&room, 0) + unknowns_of(&room, 1),
+                    "change %d: %lu unknowns awake", how, (unsigned long)room.report.active_unknowns);
         bedroom_step(&room); /* and they stay awake for sleep_time */
         ck_assert_uint_eq(room.report.active_unknowns, unknowns_of(&room, 0) + unknowns_of(&room, 1));
     }
@@ -2414,12 +2303,11 @@ START_TEST(changes_of_the_scene_wake_all)
 END_TEST
 
 /* A step that fails changes nothing, so the change that it has seen still wakes in the next. */
-START_TEST(a_failed_step_swallows_no_touch)
-{
+START_TEST(a_failed_step_swallows_no_touch) {
     bedroom room;
     int how;
     bedroom_make(&room, 0);
-    for (how = 0; how < 4; ++how) {
+    for (how = 0; how < 4; how++) {
         const size_t last = 3 * room.first[2] - 1;
         settle(&room);
         switch (how) {
@@ -2429,19 +2317,21 @@ START_TEST(a_failed_step_swallows_no_touch)
         default: room.rest_times[last / 3] = 0;
         }
         room.s.velocity[3 * room.first[1] - 1] = 1e200;
-        ck_assert_int_eq(gxs_solver_step(room.solver, &room.step, room.s.displacement, room.s.velocity, NULL, NULL), GX_ERROR_DIVERGED);
+        ck_assert_int_eq(gxs_solver_step(room.solver, &room.step, room.s.displacement, room.s.velocity, NULL, NULL),
+                         GX_ERROR_DIVERGED);
         room.s.velocity[3 * room.first[1] - 1] = 0;
         bedroom_step(&room);
-        assert_that(room.report.active_unknowns >= unknowns_of(&room, 1), "change %d: %lu unknowns awake after a failed step", how,
+        assert_that(room.report.active_unknowns >= unknowns_of(&room, 1),
+                    "change %d: %lu unknowns awake after a failed step", how,
                     (unsigned long)room.report.active_unknowns);
     }
     bedroom_free(&room);
 }
 END_TEST
 
-/* A velocity below sleep_speed that is written to a sleeper moves it, also when a step that fails comes before the one that succeeds. */
-START_TEST(a_failed_step_swallows_no_slow_kick)
-{
+/* A velocity below sleep_speed that is written to a sleeper moves it, also when a step that fails comes before the one
+ * that succeeds. */
+START_TEST(a_failed_step_swallows_no_slow_kick) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_make(0.01, 0);
     gxs_step_report report;
@@ -2454,11 +2344,10 @@ START_TEST(a_failed_step_swallows_no_slow_kick)
     step.sleep_speed = 1e-2;
     step.rest_times = rest_times;
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
-    for (frame = 0; frame < 100; ++frame)
+    for (frame = 0; frame < 100; frame++)
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
     ck_assert_uint_eq(report.active_unknowns, 0);
-    for (i = 0; i < n; ++i)
-        s.velocity[3 * i] = 5e-3;
+    for (i = 0; i < n; i++) s.velocity[3 * i] = 5e-3;
     step.integrator = GXS_STATIC;
     step.dt = 0;
     ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_ERROR_FREE);
@@ -2466,9 +2355,9 @@ START_TEST(a_failed_step_swallows_no_slow_kick)
     step.dt = 0.01;
     ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
     ck_assert_uint_eq(report.active_unknowns, 3 * n);
-    for (i = 0; i < n; ++i)
-        assert_that(fabs(s.displacement[3 * i] - 5e-5) < 1e-9 && fabs(s.velocity[3 * i] - 5e-3) < 1e-7, "copy %lu at %g with %g m/s",
-                    (unsigned long)i, s.displacement[3 * i], s.velocity[3 * i]);
+    for (i = 0; i < n; i++)
+        assert_that(fabs(s.displacement[3 * i] - 5e-5) < 1e-9 && fabs(s.velocity[3 * i] - 5e-3) < 1e-7,
+                    "copy %lu at %g with %g m/s", (unsigned long)i, s.displacement[3 * i], s.velocity[3 * i]);
     free(rest_times);
     gxs_solver_destroy(solver);
     scene_free(&s);
@@ -2476,29 +2365,27 @@ START_TEST(a_failed_step_swallows_no_slow_kick)
 END_TEST
 
 /* the same push moves a sleeping block as it moves one that was at rest awake */
-START_TEST(a_woken_block_moves_as_before)
-{
+START_TEST(a_woken_block_moves_as_before) {
     double path[40][3 * 64];
     int sleeps, frame;
-    for (sleeps = 0; sleeps < 2; ++sleeps) {
+    for (sleeps = 0; sleeps < 2; sleeps++) {
         bedroom room;
         bedroom_make(&room, _i);
         room.step.newton_iterations = 20;
         room.step.newton_tolerance = 1e-11;
         room.step.cg_tolerance = 1e-4;
         room.step.sleep_speed = sleeps ? 1e-9 : 0;
-        for (frame = 0; frame < 400; ++frame)
-            bedroom_step(&room);
+        for (frame = 0; frame < 400; frame++) bedroom_step(&room);
         assert_that(!sleeps || room.report.active_unknowns == 0, "%lu unknowns awake, ends at %g and %g m/s",
-                    (unsigned long)room.report.active_unknowns, room.s.velocity[3 * room.first[1] - 1], room.s.velocity[3 * room.first[2] - 1]);
+                    (unsigned long)room.report.active_unknowns, room.s.velocity[3 * room.first[1] - 1],
+                    room.s.velocity[3 * room.first[2] - 1]);
         room.s.forces[3 * room.first[1] - 1] = 300;
         room.s.forces[3 * room.first[2] - 3] = -300;
-        for (frame = 0; frame < 40; ++frame) {
+        for (frame = 0; frame < 40; frame++) {
             bedroom_step(&room);
-            if (!sleeps)
-                memcpy(path[frame], room.s.displacement, 3 * room.first[2] * sizeof(double));
-            assert_that(distance(path[frame], room.s.displacement, 3 * room.first[2]) < 1e-7, "frame %d: %g m apart", frame,
-                        distance(path[frame], room.s.displacement, 3 * room.first[2]));
+            if (!sleeps) memcpy(path[frame], room.s.displacement, 3 * room.first[2] * sizeof(double));
+            assert_that(distance(path[frame], room.s.displacement, 3 * room.first[2]) < 1e-7, "frame %d: %g m apart",
+                        frame, distance(path[frame], room.s.displacement, 3 * room.first[2]));
         }
         bedroom_free(&room);
     }
@@ -2506,8 +2393,7 @@ START_TEST(a_woken_block_moves_as_before)
 END_TEST
 
 /* without gravity a body at rest in mid-air sleeps where it is, beside one that flies on awake */
-START_TEST(bodies_sleep_in_mid_air)
-{
+START_TEST(bodies_sleep_in_mid_air) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_make(0.02, 0);
     gxs_step_report report;
@@ -2519,19 +2405,21 @@ START_TEST(bodies_sleep_in_mid_air)
     scene_add(&s, &other, 2, 0, 0);
     n = s.model.copy_count;
     rest_times = (double *)zeroed(n, sizeof *rest_times);
-    for (i = first; i < n; ++i)
-        s.velocity[3 * i] = 1;
+    for (i = first; i < n; i++) s.velocity[3 * i] = 1;
     step.sleep_speed = 1e-3; /* sleep_time 0: half a second */
     step.rest_times = rest_times;
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
-    for (frame = 1; frame <= 60; ++frame) {
+    for (frame = 1; frame <= 60; frame++) {
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
-        assert_that(frame < 25 ? report.active_unknowns == 3 * n : frame > 28 ? report.active_unknowns == 3 * (n - first) : 1,
+        assert_that(frame < 25   ? report.active_unknowns == 3 * n
+                    : frame > 28 ? report.active_unknowns == 3 * (n - first)
+                                 : 1,
                     "frame %d: %lu unknowns", frame, (unsigned long)report.active_unknowns);
     }
-    for (i = 0; i < 3 * n; ++i)
+    for (i = 0; i < 3 * n; i++)
         assert_that(fabs(s.displacement[i] - (i >= 3 * first && i % 3 == 0 ? 1.2 : 0)) < 1e-9 &&
-                    fabs(s.velocity[i] - (i >= 3 * first && i % 3 == 0 ? 1 : 0)) < 1e-9, "%g %g", s.displacement[i], s.velocity[i]);
+                        fabs(s.velocity[i] - (i >= 3 * first && i % 3 == 0 ? 1 : 0)) < 1e-9,
+                    "%g %g", s.displacement[i], s.velocity[i]);
     free(rest_times);
     gxs_solver_destroy(solver);
     scene_free(&s);
@@ -2539,27 +2427,25 @@ START_TEST(bodies_sleep_in_mid_air)
 END_TEST
 
 /* with the caller's rest times sleep lasts over a new model of the same copies; zeroed ones wake */
-START_TEST(sleep_outlasts_a_new_model)
-{
+START_TEST(sleep_outlasts_a_new_model) {
     bedroom room;
     double *bits;
     size_t i, n;
     bedroom_make(&room, _i / 2);
     n = room.first[2];
-    if (_i % 2)
-        room.step.forces = NULL;
+    if (_i % 2) room.step.forces = NULL;
     bits = (double *)zeroed(3 * n, sizeof *bits);
     settle(&room);
     memcpy(bits, room.s.displacement, 3 * n * sizeof *bits);
     ck_assert_int_eq(gxs_solver_set_model(room.solver, &room.s.model, NULL), GX_OK);
     bedroom_step(&room);
-    assert_that(room.report.active_unknowns == 0, "%s: %lu unknowns awake after a new model", _i % 2 ? "no forces" : "forces",
-                (unsigned long)room.report.active_unknowns);
+    assert_that(room.report.active_unknowns == 0, "%s: %lu unknowns awake after a new model",
+                _i % 2 ? "no forces" : "forces", (unsigned long)room.report.active_unknowns);
     bedroom_step(&room);
     ck_assert_uint_eq(room.report.active_unknowns, 0);
     ck_assert(memcmp(bits, room.s.displacement, 3 * n * sizeof *bits) == 0);
     ck_assert_int_eq(gxs_solver_set_model(room.solver, &room.s.model, NULL), GX_OK);
-    for (i = room.first[1]; i < n; ++i) /* as after a cut of the slab */
+    for (i = room.first[1]; i < n; i++) /* as after a cut of the slab */
         room.rest_times[i] = 0;
     bedroom_step(&room);
     ck_assert_uint_eq(room.report.active_unknowns, unknowns_of(&room, 1));
@@ -2569,8 +2455,7 @@ START_TEST(sleep_outlasts_a_new_model)
 END_TEST
 
 /* springs that do not change let a block sleep; one that does wakes it */
-START_TEST(blocks_on_constant_springs_sleep)
-{
+START_TEST(blocks_on_constant_springs_sleep) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_make(0.02, -9.81);
     gxs_step_report report;
@@ -2581,8 +2466,7 @@ START_TEST(blocks_on_constant_springs_sleep)
     scene s = scene_block(2, 2, 1, 0.25, 0, 0);
     n = s.model.copy_count;
     rest_times = (double *)zeroed(n, sizeof *rest_times);
-    for (k = 0; k < 3; ++k)
-        springs[k] = spring_make(point_at(&s, k == 0 ? 0 : k == 1 ? 2 : 7), 1e5);
+    for (k = 0; k < 3; k++) springs[k] = spring_make(point_at(&s, k == 0 ? 0 : k == 1 ? 2 : 7), 1e5);
     step.mass_damping = 5;
     step.sleep_speed = 1e-5;
     step.sleep_time = 0.1;
@@ -2590,13 +2474,12 @@ START_TEST(blocks_on_constant_springs_sleep)
     step.springs = springs;
     step.spring_count = 3;
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
-    for (frame = 0; frame < 1000; ++frame) {
+    for (frame = 0; frame < 1000; frame++) {
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
-        if (report.active_unknowns == 0)
-            break;
+        if (report.active_unknowns == 0) break;
     }
     assert_that(report.active_unknowns == 0, "awake on springs after 20 s at %g m/s", s.velocity[3 * n - 1]);
-    for (k = 0; k < 3; ++k) {
+    for (k = 0; k < 3; k++) {
         springs[k].target[k] += 1e-4;
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
         ck_assert_uint_eq(report.active_unknowns, 3 * n);
@@ -2608,8 +2491,7 @@ START_TEST(blocks_on_constant_springs_sleep)
 END_TEST
 
 /* What contact held is awake when its points are gone, and falls. */
-START_TEST(points_that_go_wake_what_they_held)
-{
+START_TEST(points_that_go_wake_what_they_held) {
     bedroom room;
     double before;
     int frame;
@@ -2617,7 +2499,7 @@ START_TEST(points_that_go_wake_what_they_held)
     settle(&room);
     before = room.s.displacement[3 * room.first[2] - 1];
     room.step.point_count = room.first[1]; /* those of the block that hangs are still there */
-    for (frame = 0; frame < 20; ++frame) {
+    for (frame = 0; frame < 20; frame++) {
         bedroom_step(&room);
         ck_assert_uint_eq(room.report.active_unknowns, unknowns_of(&room, 1));
     }
@@ -2627,16 +2509,16 @@ START_TEST(points_that_go_wake_what_they_held)
 END_TEST
 
 /* A spring between two blocks ties them: neither sleeps while the other is awake. */
-START_TEST(a_spring_between_blocks_wakes_both)
-{
+START_TEST(a_spring_between_blocks_wakes_both) {
     bedroom room;
     size_t i;
     bedroom_make(&room, _i);
     room.spring = spring_make(point_at(&room.s, room.first[1] - 1), 10);
     room.spring.point.copy[1] = (uint32_t)room.first[1];
     room.spring.point.weight[0] = room.spring.point.weight[1] = 0.5;
-    for (i = 0; i < 3; ++i) {
-        room.spring.point.position[i] = 0.5 * (room.s.rest[3 * (room.first[1] - 1) + i] + room.s.rest[3 * room.first[1] + i]);
+    for (i = 0; i < 3; i++) {
+        room.spring.point.position[i] =
+            0.5 * (room.s.rest[3 * (room.first[1] - 1) + i] + room.s.rest[3 * room.first[1] + i]);
         room.spring.target[i] = room.spring.point.position[i];
     }
     room.step.springs = &room.spring;
@@ -2650,8 +2532,7 @@ START_TEST(a_spring_between_blocks_wakes_both)
 END_TEST
 
 /* tied blocks are one piece: they fall asleep and wake together */
-START_TEST(tied_blocks_sleep_together)
-{
+START_TEST(tied_blocks_sleep_together) {
     gxs_solver *solver = solver_of(_i);
     gxs_step_desc step = step_make(0.02, -9.81);
     gxs_step_report report;
@@ -2670,15 +2551,14 @@ START_TEST(tied_blocks_sleep_together)
     step.sleep_speed = 1e-6;
     step.rest_times = rest_times;
     ck_assert_int_eq(gxs_solver_set_model(solver, &s.model, NULL), GX_OK);
-    for (frame = 0; frame < 2000; ++frame) {
+    for (frame = 0; frame < 2000; frame++) {
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
         ck_assert(report.active_unknowns == active || report.active_unknowns == 0);
-        if (report.active_unknowns == 0)
-            break;
+        if (report.active_unknowns == 0) break;
     }
     ck_assert_uint_eq(report.active_unknowns, 0);
     memcpy(bits, s.displacement, 3 * n * sizeof *bits);
-    for (frame = 0; frame < 5; ++frame)
+    for (frame = 0; frame < 5; frame++)
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
     ck_assert(memcmp(bits, s.displacement, 3 * n * sizeof *bits) == 0);
     s.velocity[3 * n - 1] = 1e-3; /* of a follower */
@@ -2692,33 +2572,30 @@ END_TEST
 
 /* ---- time budgets ---- */
 
-static double ticks(void *user)
-{
-    return *(double *)user += 1;
-}
+static double ticks(void *user) { return *(double *)user += 1; }
 
 /* E of the manual with springs and planes; no friction */
-static double potential(const scene *s, const gxs_step_desc *step, const double *un, const double *vn, const double *u)
-{
+static double potential(const scene *s, const gxs_step_desc *step, const double *un, const double *vn,
+                        const double *u) {
     double sum = incremental_potential(s, step, un, vn, u), force[3];
     size_t i;
     int r;
-    for (i = 0; i < step->spring_count; ++i) {
+    for (i = 0; i < step->spring_count; i++) {
         double x[3];
         point_now(&step->springs[i].point, u, x);
-        for (r = 0; r < 3; ++r)
-            sum += 0.5 * step->springs[i].stiffness * (step->springs[i].target[r] - x[r]) * (step->springs[i].target[r] - x[r]);
+        for (r = 0; r < 3; r++)
+            sum += 0.5 * step->springs[i].stiffness * (step->springs[i].target[r] - x[r]) *
+                   (step->springs[i].target[r] - x[r]);
     }
     return sum + plane_forces(step, un, u, force);
 }
 
 /* violent starts with springs and planes, however early the time is over: a finite state, no higher than the start */
-START_TEST(budgets_end_in_good_states)
-{
+START_TEST(budgets_end_in_good_states) {
     gxs_solver *solver = solver_of(_i);
     double budget, *un, *vn;
     int how, out_of_time = 0, in_time = 0;
-    for (how = 0; how < 4; ++how)
+    for (how = 0; how < 4; how++)
         for (budget = 0.5; budget < 5000; budget *= budget < 20 ? 1.15 : 1.6) {
             gxs_step_desc step = step_make(0.03, -9.81);
             gxs_step_report report;
@@ -2733,8 +2610,10 @@ START_TEST(budgets_end_in_good_states)
             count = 3 * s.model.copy_count;
             un = (double *)zeroed(count, sizeof *un), vn = (double *)zeroed(count, sizeof *vn);
             points = points_of(&s, 0, s.model.copy_count);
-            for (i = 0; i < count; ++i) {
-                s.displacement[i] = how == 0 ? 0.5 * uniform() : how == 1 ? (i % 3 == 2 ? -2 * s.rest[i] : 0) : 0.01 * uniform();
+            for (i = 0; i < count; i++) {
+                s.displacement[i] = how == 0 ? 0.5 * uniform()
+                                  : how == 1 ? (i % 3 == 2 ? -2 * s.rest[i] : 0)
+                                             : 0.01 * uniform();
                 s.velocity[i] = how == 2 ? 50 * uniform() : uniform();
             }
             memcpy(un, s.displacement, count * sizeof *un);
@@ -2753,15 +2632,21 @@ START_TEST(budgets_end_in_good_states)
             check_finite(&s);
             before = potential(&s, &step, un, vn, un);
             after = potential(&s, &step, un, vn, s.displacement);
-            assert_that(after <= before + 1e-11 * fabs(before), "start %d, budget %g: %.17g J after %.17g J", how, budget, after, before);
-            assert_that(fabs(report.energy - after) < 1e-9 * (fabs(after) + fabs(before)), "reported %.17g J, not %.17g", report.energy, after);
+            assert_that(after <= before + 1e-11 * fabs(before), "start %d, budget %g: %.17g J after %.17g J", how,
+                        budget, after, before);
+            assert_that(fabs(report.energy - after) < 1e-9 * (fabs(after) + fabs(before)),
+                        "reported %.17g J, not %.17g", report.energy, after);
             assert_that(distance(s.displacement, un, count) < 1e3, "far away");
-            for (i = 0; i < count; ++i)
-                assert_that(fabs(s.velocity[i] - (s.displacement[i] - un[i]) / step.dt) < 1e-9 * (1 + fabs(s.velocity[i])), "velocity");
-            assert_that(now <= budget + 12, "start %d, budget %g: went on until %g", how, budget, now); /* a few looks at the clock to end */
+            for (i = 0; i < count; i++)
+                assert_that(fabs(s.velocity[i] - (s.displacement[i] - un[i]) / step.dt) <
+                                1e-9 * (1 + fabs(s.velocity[i])),
+                            "velocity");
+            /* a few looks at the clock to end */
+            assert_that(now <= budget + 12, "start %d, budget %g: went on until %g", how, budget, now);
             assert_that(report.seconds_linearise >= 0 && report.seconds_prepare >= 0 && report.seconds_solve >= 0 &&
-                        report.seconds_linearise + report.seconds_prepare + report.seconds_solve <= now, "seconds %g + %g + %g of %g",
-                        report.seconds_linearise, report.seconds_prepare, report.seconds_solve, now);
+                            report.seconds_linearise + report.seconds_prepare + report.seconds_solve <= now,
+                        "seconds %g + %g + %g of %g", report.seconds_linearise, report.seconds_prepare,
+                        report.seconds_solve, now);
             out_of_time += report.stop == GXS_STOP_SECONDS;
             in_time += report.stop != GXS_STOP_SECONDS;
             free(un), free(vn), free(points);
@@ -2773,11 +2658,10 @@ START_TEST(budgets_end_in_good_states)
 END_TEST
 
 /* 0 without a clock; with one as many linearisations as it says; and looking at a clock changes no bits */
-START_TEST(seconds_need_a_clock)
-{
+START_TEST(seconds_need_a_clock) {
     double first[3 * 64];
     int timed;
-    for (timed = 0; timed < 2; ++timed) {
+    for (timed = 0; timed < 2; timed++) {
         gxs_solver *solver = solver_of(_i);
         gxs_step_desc step = step_make(0.033, -9.81);
         gxs_step_report report;
@@ -2785,15 +2669,14 @@ START_TEST(seconds_need_a_clock)
         scene s = scene_block(3, 2, 2, 0.25, 0, 0);
         scene_hold_left(&s);
         step.newton_iterations = 3;
-        if (timed)
-            step.clock = ticks, step.clock_user = &now;
+        if (timed) step.clock = ticks, step.clock_user = &now;
         ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
         if (!timed) {
             ck_assert(report.seconds_linearise == 0 && report.seconds_prepare == 0 && report.seconds_solve == 0);
             memcpy(first, s.displacement, 3 * s.model.copy_count * sizeof(double));
         } else {
-            assert_that(report.seconds_linearise >= 3 && report.seconds_prepare >= 3 && report.seconds_solve >= 3, "%g %g %g",
-                        report.seconds_linearise, report.seconds_prepare, report.seconds_solve);
+            assert_that(report.seconds_linearise >= 3 && report.seconds_prepare >= 3 && report.seconds_solve >= 3,
+                        "%g %g %g", report.seconds_linearise, report.seconds_prepare, report.seconds_solve);
             ck_assert(report.seconds_linearise + report.seconds_prepare + report.seconds_solve <= now);
         }
         ck_assert(memcmp(first, s.displacement, 3 * s.model.copy_count * sizeof(double)) == 0);
@@ -2805,13 +2688,13 @@ END_TEST
 
 /* ---- all matrices and preconditioners ---- */
 
-/* A tied bar with springs on a plane: every solver makes the same step; assembled multigrid takes not many more iterations. */
-START_TEST(solvers_agree)
-{
+/* A tied bar with springs on a plane: every solver makes the same step; assembled multigrid takes not many more
+ * iterations. */
+START_TEST(solvers_agree) {
     double first[3 * 512], size = 0;
     uint32_t iterations[SOLVERS] = {0};
     int which, k;
-    for (which = 0; which < SOLVERS; ++which) {
+    for (which = 0; which < SOLVERS; which++) {
         gxs_solver *solver = solver_of(which);
         gxs_step_desc step = step_make(0.02, -9.81);
         gxs_step_report report;
@@ -2826,14 +2709,13 @@ START_TEST(solvers_agree)
         set_kind(s.material, _i / 4);
         s.model.lumped_mass = (uint32_t)(_i % 2);
         stir(&s, 0.5, 0.5);
-        if (_i / 2 % 2)
-            ties = scene_split(&s, 1);
+        if (_i / 2 % 2) ties = scene_split(&s, 1);
         scene_hold_left(&s);
         count = 3 * s.model.copy_count;
         ck_assert_uint_le(count, 3 * 512);
-        for (i = 0; i < count; ++i)
+        for (i = 0; i < count; i++)
             s.displacement[i] = s.held[i / 3] ? 0 : s.displacement[i] - (i % 3 == 2 ? 1e-3 * s.rest[i - 2] : 0);
-        for (k = 0; k < 12; ++k) {
+        for (k = 0; k < 12; k++) {
             springs[k] = spring_make(random_point(&s), k % 3 ? 1e4 : 1e7);
             springs[k].target[1] += 0.02 * uniform();
         }
@@ -2846,13 +2728,12 @@ START_TEST(solvers_agree)
         step.cg_tolerance = 1e-3;
         step.cg_iterations = 5000;
         ck_assert_int_eq(advance(solver, &s.model, &step, s.displacement, s.velocity, &report, NULL), GX_OK);
-        assert_that(report.residual < 1e-9, "%s: residual %g after %u Newton, %u CG iterations", solver_name(which), report.residual,
-                    (unsigned)report.newton_iterations, (unsigned)report.cg_iterations);
+        assert_that(report.residual < 1e-9, "%s: residual %g after %u Newton, %u CG iterations", solver_name(which),
+                    report.residual, (unsigned)report.newton_iterations, (unsigned)report.cg_iterations);
         iterations[which] = report.cg_iterations;
         if (which == 0) {
             memcpy(first, s.displacement, count * sizeof(double));
-            for (i = 0; i < count; ++i)
-                size = fabs(first[i]) > size ? fabs(first[i]) : size;
+            for (i = 0; i < count; i++) size = fabs(first[i]) > size ? fabs(first[i]) : size;
         }
         assert_that(distance(first, s.displacement, count) < 1e-6 * size, "%s: %g m of %g apart", solver_name(which),
                     distance(first, s.displacement, count), size);
@@ -2860,18 +2741,18 @@ START_TEST(solvers_agree)
         gxs_solver_destroy(solver);
         scene_free(&s);
     }
-    assert_that(iterations[3] <= iterations[2] + iterations[2] / 2, "multigrid: %u iterations, assembled %u", (unsigned)iterations[2],
-                (unsigned)iterations[3]);
-    assert_that(iterations[2] <= iterations[0] && iterations[3] <= iterations[1], "block-Jacobi %u %u, multigrid %u %u", (unsigned)iterations[0],
-                (unsigned)iterations[1], (unsigned)iterations[2], (unsigned)iterations[3]);
+    assert_that(iterations[3] <= iterations[2] + iterations[2] / 2, "multigrid: %u iterations, assembled %u",
+                (unsigned)iterations[2], (unsigned)iterations[3]);
+    assert_that(iterations[2] <= iterations[0] && iterations[3] <= iterations[1], "block-Jacobi %u %u, multigrid %u %u",
+                (unsigned)iterations[0], (unsigned)iterations[1], (unsigned)iterations[2], (unsigned)iterations[3]);
 }
 END_TEST
 
 /* ---- memory ---- */
 
-/* create, then models with ties that grow, with steps of more and more springs and points; returns whether an allocation failed */
-static int run_with(failing *f, int which)
-{
+/* create, then models with ties that grow, with steps of more and more springs and points; returns whether an
+ * allocation failed */
+static int run_with(failing *f, int which) {
     gxs_solver_desc desc = solver_desc(which);
     gxs_solver *solver = NULL;
     int size, failed = 0;
@@ -2880,7 +2761,7 @@ static int run_with(failing *f, int which)
         ck_assert_ptr_null(solver);
         return 1;
     }
-    for (size = 1; size <= 2; ++size) {
+    for (size = 1; size <= 2; size++) {
         gxs_step_desc step = step_make(0.033, -9.81);
         gxs_constraint *ties;
         gxs_spring springs[3];
@@ -2893,9 +2774,8 @@ static int run_with(failing *f, int which)
         ties = scene_split(&s, 0.5 * size);
         set_kind(s.material, size == 2 ? GXS_CUSTOM : GXS_STABLE_NEO_HOOKEAN);
         points = points_of(&s, 0, s.model.copy_count);
-        for (k = 0; k < 3; ++k)
-            springs[k] = spring_make(points[k], 1e4);
-        for (part = 0; part < 4; ++part) { /* the model, then steps */
+        for (k = 0; k < 3; k++) springs[k] = spring_make(points[k], 1e4);
+        for (part = 0; part < 4; part++) { /* the model, then steps */
             int again = 0;
             step.springs = springs, step.spring_count = part >= 2 ? 3 : 0;
             step.points = points, step.point_count = part == 3 ? s.model.copy_count : 0;
@@ -2905,22 +2785,22 @@ static int run_with(failing *f, int which)
                 double *before = (double *)zeroed(3 * s.model.copy_count, 2 * sizeof(double));
                 memcpy(before, s.displacement, 3 * s.model.copy_count * sizeof(double));
                 memcpy(before + 3 * s.model.copy_count, s.velocity, 3 * s.model.copy_count * sizeof(double));
-                result = part == 0 ? gxs_solver_set_model(solver, &s.model, &failure) :
-                         gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, &failure);
+                result = part == 0 ? gxs_solver_set_model(solver, &s.model, &failure)
+                                   : gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, &failure);
                 if (result == GX_ERROR_MEMORY) {
                     ck_assert_int_eq(failure.result, GX_ERROR_MEMORY);
                     ck_assert(memcmp(before, s.displacement, 3 * s.model.copy_count * sizeof(double)) == 0 &&
-                              memcmp(before + 3 * s.model.copy_count, s.velocity, 3 * s.model.copy_count * sizeof(double)) == 0);
+                              memcmp(before + 3 * s.model.copy_count, s.velocity,
+                                     3 * s.model.copy_count * sizeof(double)) == 0);
                     failed = 1;
                 } else
                     ck_assert_int_eq(result, GX_OK);
                 free(before);
             } while (result == GX_ERROR_MEMORY && !f->forever && again++ == 0); /* the solver is still good */
             ck_assert(f->forever || result == GX_OK);
-            if (result != GX_OK && part == 0)
-                break;
+            if (result != GX_OK && part == 0) break;
         }
-        for (i = 0; i < 3 * s.model.copy_count; ++i)
+        for (i = 0; i < 3 * s.model.copy_count; i++)
             ck_assert(finite_bits(s.displacement[i]) && finite_bits(s.velocity[i]));
         free(ties), free(points);
         scene_free(&s);
@@ -2929,15 +2809,11 @@ static int run_with(failing *f, int which)
     return failed;
 }
 
-START_TEST(every_allocation_may_fail)
-{
-    sweep_allocations(run_with, _i);
-}
+START_TEST(every_allocation_may_fail) { sweep_allocations(run_with, _i); }
 END_TEST
 
 /* steps of no more springs and points than there have been allocate nothing */
-START_TEST(steps_allocate_for_more_points_only)
-{
+START_TEST(steps_allocate_for_more_points_only) {
     gxs_solver_desc desc = solver_desc(_i);
     failing f = {-1, 0, 0, 0};
     gxs_solver *solver = NULL;
@@ -2956,7 +2832,7 @@ START_TEST(steps_allocate_for_more_points_only)
     step.point_count = s.model.copy_count;
     ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
     calls = f.calls;
-    for (frame = 0; frame < 5; ++frame) {
+    for (frame = 0; frame < 5; frame++) {
         step.point_count = s.model.copy_count - (size_t)(frame % 2 * 10);
         ck_assert_int_eq(gxs_solver_step(solver, &step, s.displacement, s.velocity, NULL, NULL), GX_OK);
     }
@@ -2970,34 +2846,41 @@ END_TEST
 
 /* ---- absurd input ---- */
 
-/* *user says what is wrong with the answer: force, energy, off-diagonal or diagonal of the Hessian, a Hessian far from semi-definite */
-static double bad_contact(void *user, size_t point, const double *position, double *force, double *hessian)
-{
+/* *user says what is wrong with the answer: force, energy, off-diagonal or diagonal of the Hessian, a Hessian far from
+ * semi-definite */
+static double bad_contact(void *user, size_t point, const double *position, double *force, double *hessian) {
     const int fault = *(const int *)user;
     const double nan = not_a_number(0);
     (void)point, (void)position;
-    if (hessian)
-        hessian[0] = hessian[3] = hessian[5] = 1e3;
+    if (hessian) hessian[0] = hessian[3] = hessian[5] = 1e3;
     force[0] = fault == 0 ? nan : fault == 1 ? not_a_number(1) : 1;
-    if (hessian && fault >= 3)
-        hessian[fault == 3 ? 1 : 0] = fault == 5 ? -1e12 : nan;
+    if (hessian && fault >= 3) hessian[fault == 3 ? 1 : 0] = fault == 5 ? -1e12 : nan;
     return fault == 2 ? nan : 0;
 }
 
 /* an energy that is not a number where the element is stretched by a tenth */
-static double bad_energy(void *user, const double *f, double *stress, double *hessian)
-{
+static double bad_energy(void *user, const double *f, double *stress, double *hessian) {
     int i;
     (void)user;
-    for (i = 0; i < 9 && stress; ++i)
-        stress[i] = 1e6 * (f[i] - (i % 4 == 0));
-    for (i = 0; i < 81 && hessian; ++i)
-        hessian[i] = i % 10 == 0 ? 1e6 : 0;
+    for (i = 0; i < 9 && stress; i++) stress[i] = 1e6 * (f[i] - (i % 4 == 0));
+    for (i = 0; i < 81 && hessian; i++) hessian[i] = i % 10 == 0 ? 1e6 : 0;
     return f[0] > 1.1 ? not_a_number(0) : 5e5 * (f[0] - 1) * (f[0] - 1);
 }
 
-enum { ABSURD_SPRING, ABSURD_PLANE, ABSURD_SHORT, ABSURD_LONG, ABSURD_HELD, ABSURD_MASSLESS, ABSURD_TIED, ABSURD_TARGETS, ABSURD_FORCES, ABSURD_ENERGY,
-       ABSURD_CONTACT, ABSURD_COUNT = ABSURD_CONTACT + 6 };
+enum {
+    ABSURD_SPRING,
+    ABSURD_PLANE,
+    ABSURD_SHORT,
+    ABSURD_LONG,
+    ABSURD_HELD,
+    ABSURD_MASSLESS,
+    ABSURD_TIED,
+    ABSURD_TARGETS,
+    ABSURD_FORCES,
+    ABSURD_ENERGY,
+    ABSURD_CONTACT,
+    ABSURD_COUNT = ABSURD_CONTACT + 6
+};
 
 typedef struct absurdity {
     scene s;
@@ -3010,8 +2893,7 @@ typedef struct absurdity {
     int fault;
 } absurdity;
 
-static void absurdity_make(absurdity *a, int which)
-{
+static void absurdity_make(absurdity *a, int which) {
     size_t i, n;
     memset(a, 0, sizeof *a);
     seed(7);
@@ -3024,57 +2906,44 @@ static void absurdity_make(absurdity *a, int which)
     a->targets = (double *)zeroed(3 * n, sizeof(double));
     a->plane = plane_make(1e20, 0.5);
     a->fault = which - ABSURD_CONTACT;
-    for (i = 0; i < 2; ++i) {
+    for (i = 0; i < 2; i++) {
         a->springs[i] = spring_make(point_at(&a->s, n - 1), 1e20);
         a->springs[i].target[0] += 0.3 * (double)i; /* the two contradict each other */
     }
-    for (i = 0; i < 3 * n; ++i) {
+    for (i = 0; i < 3 * n; i++) {
         a->s.displacement[i] = 0.02 * uniform(), a->s.velocity[i] = uniform();
         a->s.forces[i] = 1e30 * uniform(), a->targets[i] = 1e6 * uniform();
     }
-    if (which != ABSURD_TIED)
-        scene_hold_left(&a->s);
-    for (i = 0; i < n && which == ABSURD_HELD; ++i)
-        a->s.held[i] = 1;
-    for (i = 0; i < a->s.model.element_count && which == ABSURD_MASSLESS; ++i)
+    if (which != ABSURD_TIED) scene_hold_left(&a->s);
+    for (i = 0; i < n && which == ABSURD_HELD; i++) a->s.held[i] = 1;
+    for (i = 0; i < a->s.model.element_count && which == ABSURD_MASSLESS; i++)
         memset(a->s.elements[i].mass, 0, sizeof a->s.elements[i].mass);
-    for (i = 1; i < n; ++i)
-        a->ties[i - 1].copy = (uint32_t)i, a->ties[i - 1].weight[0] = 1;
+    for (i = 1; i < n; i++) a->ties[i - 1].copy = (uint32_t)i, a->ties[i - 1].weight[0] = 1;
 }
 
 /* what a step has of it; an energy that is not a number is the model's */
-static void absurdity_apply(absurdity *a, int which)
-{
-    if (which == ABSURD_SPRING)
-        a->step.springs = a->springs, a->step.spring_count = 2;
+static void absurdity_apply(absurdity *a, int which) {
+    if (which == ABSURD_SPRING) a->step.springs = a->springs, a->step.spring_count = 2;
     if (which == ABSURD_PLANE || which >= ABSURD_CONTACT)
         a->step.points = a->points, a->step.point_count = a->s.model.copy_count;
-    if (which == ABSURD_PLANE)
-        a->step.planes = &a->plane, a->step.plane_count = 1;
-    if (which >= ABSURD_CONTACT)
-        a->step.contact = bad_contact, a->step.contact_user = &a->fault;
-    if (which == ABSURD_TIED)
-        a->s.model.constraints = a->ties, a->s.model.constraint_count = a->s.model.copy_count - 1;
-    if (which == ABSURD_TARGETS)
-        a->step.targets = a->targets;
-    if (which == ABSURD_FORCES)
-        a->step.forces = a->s.forces;
-    if (which == ABSURD_ENERGY)
-        a->s.material->kind = GXS_CUSTOM, a->s.material->energy = bad_energy;
+    if (which == ABSURD_PLANE) a->step.planes = &a->plane, a->step.plane_count = 1;
+    if (which >= ABSURD_CONTACT) a->step.contact = bad_contact, a->step.contact_user = &a->fault;
+    if (which == ABSURD_TIED) a->s.model.constraints = a->ties, a->s.model.constraint_count = a->s.model.copy_count - 1;
+    if (which == ABSURD_TARGETS) a->step.targets = a->targets;
+    if (which == ABSURD_FORCES) a->step.forces = a->s.forces;
+    if (which == ABSURD_ENERGY) a->s.material->kind = GXS_CUSTOM, a->s.material->energy = bad_energy;
 }
 
-static void absurdity_free(absurdity *a)
-{
+static void absurdity_free(absurdity *a) {
     free(a->points), free(a->ties), free(a->targets);
     scene_free(&a->s);
 }
 
 /* Whatever it is asked for, a step ends in numbers, or says that it has diverged and leaves the state alone. */
-START_TEST(absurd_steps_lose_nothing)
-{
+START_TEST(absurd_steps_lose_nothing) {
     const int which = _i / 4;
     int solver_index, frame;
-    for (solver_index = 0; solver_index < SOLVERS; ++solver_index) {
+    for (solver_index = 0; solver_index < SOLVERS; solver_index++) {
         gxs_solver *solver = solver_of(solver_index);
         gx_result result = GX_OK;
         absurdity a;
@@ -3086,16 +2955,19 @@ START_TEST(absurd_steps_lose_nothing)
         bytes = 3 * a.s.model.copy_count * sizeof(double);
         before = (double *)zeroed(2, bytes);
         ck_assert_int_eq(gxs_solver_set_model(solver, &a.s.model, NULL), GX_OK);
-        for (frame = 0; frame < 8 && result == GX_OK; ++frame) {
+        for (frame = 0; frame < 8 && result == GX_OK; frame++) {
             gxs_step_report report;
             gx_failure failure;
             memcpy(before, a.s.displacement, bytes), memcpy((char *)before + bytes, a.s.velocity, bytes);
             result = gxs_solver_step(solver, &a.step, a.s.displacement, a.s.velocity, &report, &failure);
-            assert_that(result == GX_OK || (result == GX_ERROR_DIVERGED && failure.result == result), "result %d", (int)result);
+            assert_that(result == GX_OK || (result == GX_ERROR_DIVERGED && failure.result == result), "result %d",
+                        (int)result);
             check_finite(&a.s);
-            assert_that(result != GX_OK || (finite_bits(report.energy) && finite_bits(report.residual)), "frame %d: report", frame);
+            assert_that(result != GX_OK || (finite_bits(report.energy) && finite_bits(report.residual)),
+                        "frame %d: report", frame);
         }
-        assert_that(result == GX_OK || (memcmp(before, a.s.displacement, bytes) == 0 && memcmp((char *)before + bytes, a.s.velocity, bytes) == 0),
+        assert_that(result == GX_OK || (memcmp(before, a.s.displacement, bytes) == 0 &&
+                                        memcmp((char *)before + bytes, a.s.velocity, bytes) == 0),
                     "a failed step has changed the state");
         free(before);
         gxs_solver_destroy(solver);
@@ -3106,8 +2978,7 @@ END_TEST
 
 /* ---- all at once ---- */
 
-static int dice(int sides)
-{
+static int dice(int sides) {
     int face = (int)((uniform() + 1) / 2 * sides);
     return face < sides ? face : sides - 1;
 }
@@ -3127,52 +2998,47 @@ typedef struct soak {
     gxs_step_desc step;
 } soak;
 
-static void soak_make(soak *k, uint64_t start)
-{
+static void soak_make(soak *k, uint64_t start) {
     size_t i, n, count = 0;
     int block;
     memset(k, 0, sizeof *k);
     seed(start);
     k->s = scene_block(1 + dice(4), 1 + dice(3), 1 + dice(3), 0.25, 0.1, 0);
-    for (block = dice(3); block > 0; --block) {
+    for (block = dice(3); block > 0; block--) {
         scene other = scene_block(1 + dice(3), 1 + dice(3), 1 + dice(2), 0.25, 0.1, 0);
         scene_add(&k->s, &other, 1.5 * block, 0.3 * uniform(), 0.3 + 0.3 * uniform());
     }
     n = k->s.model.copy_count;
-    for (i = 0; i < 3; ++i) {
+    for (i = 0; i < 3; i++) {
         set_kind(&k->materials[i], dice(KINDS));
         k->materials[i].young = pow(10, 4 + 3 * (uniform() + 1) / 2);
         k->materials[i].poisson = 0.49 * (uniform() + 1) / 2;
         k->materials[i].damping = dice(2) ? 0 : 0.01 * (uniform() + 1);
     }
-    for (i = 0; i < k->s.model.element_count; ++i)
-        k->s.elements[i].material = (uint32_t)dice(3);
+    for (i = 0; i < k->s.model.element_count; i++) k->s.elements[i].material = (uint32_t)dice(3);
     k->s.model.materials = k->materials;
     k->s.model.material_count = 3;
     k->s.model.lumped_mass = (uint32_t)dice(2);
     if (dice(2))
-        for (i = 0; i < n; ++i)
-            k->s.held[i] = dice(12) == 0;
+        for (i = 0; i < n; i++) k->s.held[i] = dice(12) == 0;
     k->ties = (gxs_constraint *)zeroed(n, sizeof *k->ties);
     if (dice(2))
-        for (i = n / 2; i < n; ++i) /* the upper half may follow the lower */
+        for (i = n / 2; i < n; i++) /* the upper half may follow the lower */
             if (dice(8) == 0) {
                 k->ties[count].copy = (uint32_t)i;
-                for (block = 0; block < 4; ++block)
-                    k->ties[count].master[block] = (uint32_t)dice((int)(n / 2));
+                for (block = 0; block < 4; block++) k->ties[count].master[block] = (uint32_t)dice((int)(n / 2));
                 k->ties[count].weight[0] = 0.5;
                 k->ties[count].weight[1] = dice(4) ? 0.5 : 0.3;
-                ++count;
+                count++;
             }
     k->s.model.constraints = k->ties;
     k->s.model.constraint_count = count;
     k->points = points_of(&k->s, 0, n);
     k->rest_times = (double *)zeroed(n, sizeof(double));
     k->targets = (double *)zeroed(3 * n, sizeof(double));
-    for (i = 0; i < 2; ++i)
+    for (i = 0; i < 2; i++)
         k->previous[i] = (double *)zeroed(3 * n, sizeof(double)), k->now[i] = (double *)zeroed(3 * n, sizeof(double));
-    for (i = 0; i < 3 * n; ++i)
-        k->s.velocity[i] = uniform();
+    for (i = 0; i < 3 * n; i++) k->s.velocity[i] = uniform();
     k->solver = solver_of(dice(SOLVERS));
     ck_assert_int_eq(gxs_solver_set_model(k->solver, &k->s.model, NULL), GX_OK);
     k->step = step_make(0.02, -9.81);
@@ -3183,41 +3049,33 @@ static void soak_make(soak *k, uint64_t start)
     k->planes[1].normal[2] = 0, k->planes[1].normal[0] = -1, k->planes[1].offset = -3;
 }
 
-static void soak_free(soak *k)
-{
+static void soak_free(soak *k) {
     size_t i;
-    for (i = 0; i < 2; ++i)
-        free(k->previous[i]), free(k->now[i]);
+    for (i = 0; i < 2; i++) free(k->previous[i]), free(k->now[i]);
     free(k->ties), free(k->points), free(k->rest_times), free(k->targets);
     gxs_solver_destroy(k->solver);
     scene_free(&k->s);
 }
 
 /* what changes now and then between steps */
-static void soak_change(soak *k, int frame)
-{
+static void soak_change(soak *k, int frame) {
     static const double dts[4] = {0.001, 0.01, 0.02, 0.033};
     gxs_step_desc *step = &k->step;
     const size_t n = k->s.model.copy_count;
     size_t i;
     int r;
-    if (dice(10) == 0)
-        step->dt = dts[dice(4)];
-    if (dice(20) == 0)
-        step->integrator = (gxs_integrator)dice(4);
-    if (dice(10) == 0)
-        step->gravity[dice(3)] = 9.81 * uniform();
-    if (dice(10) == 0)
-        step->mass_damping = dice(2) * 3 * (uniform() + 1);
+    if (dice(10) == 0) step->dt = dts[dice(4)];
+    if (dice(20) == 0) step->integrator = (gxs_integrator)dice(4);
+    if (dice(10) == 0) step->gravity[dice(3)] = 9.81 * uniform();
+    if (dice(10) == 0) step->mass_damping = dice(2) * 3 * (uniform() + 1);
     if (dice(6) == 0) {
         step->spring_count = (size_t)dice(SOAK_SPRINGS + 1);
-        for (i = 0; i < SOAK_SPRINGS; ++i)
+        for (i = 0; i < SOAK_SPRINGS; i++)
             k->springs[i] = spring_make(random_point(&k->s), dice(5) ? pow(10, 4 + 3 * uniform()) : 1e9);
         step->springs = k->springs;
     }
-    for (i = 0; i < step->spring_count; ++i)
-        for (r = 0; r < 3; ++r)
-            k->springs[i].target[r] += 0.01 * uniform();
+    for (i = 0; i < step->spring_count; i++)
+        for (r = 0; r < 3; r++) k->springs[i].target[r] += 0.01 * uniform();
     if (dice(10) == 0) {
         step->points = k->points;
         step->point_count = dice(2) ? n : 0;
@@ -3225,15 +3083,11 @@ static void soak_change(soak *k, int frame)
         step->plane_count = (size_t)dice(3);
         step->contact = dice(3) ? NULL : penalty;
     }
+    if (dice(10) == 0) step->forces = dice(2) ? k->s.forces : NULL;
     if (dice(10) == 0)
-        step->forces = dice(2) ? k->s.forces : NULL;
-    if (dice(10) == 0)
-        for (i = 0; i < 3 * n; ++i)
-            k->s.forces[i] = dice(2) ? uniform() : k->s.forces[i];
-    if (dice(10) == 0)
-        step->targets = dice(2) ? k->targets : NULL;
-    for (i = 0; i < 3 * n; ++i)
-        k->targets[i] = k->s.displacement[i] + (frame % 40 < 20 ? 0.002 * uniform() : 0);
+        for (i = 0; i < 3 * n; i++) k->s.forces[i] = dice(2) ? uniform() : k->s.forces[i];
+    if (dice(10) == 0) step->targets = dice(2) ? k->targets : NULL;
+    for (i = 0; i < 3 * n; i++) k->targets[i] = k->s.displacement[i] + (frame % 40 < 20 ? 0.002 * uniform() : 0);
     if (dice(10) == 0) {
         step->sleep_speed = dice(2) ? 0.2 : 0;
         step->sleep_time = 0.05;
@@ -3243,10 +3097,8 @@ static void soak_change(soak *k, int frame)
         step->clock = dice(2) ? ticks : NULL;
         step->budget_seconds = step->clock ? dice(30) : 0;
     }
-    if (dice(25) == 0)
-        k->s.velocity[dice((int)(3 * n))] += 5 * uniform();
-    if (dice(40) == 0)
-        ck_assert_int_eq(gxs_solver_set_model(k->solver, &k->s.model, NULL), GX_OK);
+    if (dice(25) == 0) k->s.velocity[dice((int)(3 * n))] += 5 * uniform();
+    if (dice(40) == 0) ck_assert_int_eq(gxs_solver_set_model(k->solver, &k->s.model, NULL), GX_OK);
     step->previous_displacement = step->previous_velocity = NULL;
     if (frame > 0 && dice(2)) {
         step->previous_displacement = k->previous[0];
@@ -3255,14 +3107,13 @@ static void soak_change(soak *k, int frame)
     }
 }
 
-START_TEST(anything_goes)
-{
+START_TEST(anything_goes) {
     soak k;
     int frame, j, r;
     size_t i, n;
     soak_make(&k, 1000 + (uint64_t)_i);
     n = k.s.model.copy_count;
-    for (frame = 0; frame < SOAK_STEPS; ++frame) {
+    for (frame = 0; frame < SOAK_STEPS; frame++) {
         gxs_step_report report;
         gx_failure failure;
         gx_result result;
@@ -3274,28 +3125,31 @@ START_TEST(anything_goes)
         result = gxs_solver_step(k.solver, &k.step, k.s.displacement, k.s.velocity, &report, &failure);
         assert_that(result == GX_OK, "frame %d: result %d, copy %lu", frame, (int)result, (unsigned long)failure.index);
         check_finite(&k.s);
-        assert_that(finite_bits(report.energy) && finite_bits(report.residual) && report.residual >= 0, "frame %d: report", frame);
-        for (i = 0; i < 3 * k.step.spring_count; ++i)
+        assert_that(finite_bits(report.energy) && finite_bits(report.residual) && report.residual >= 0,
+                    "frame %d: report", frame);
+        for (i = 0; i < 3 * k.step.spring_count; i++)
             assert_that(finite_bits(forces[i]), "frame %d: spring force", frame);
-        for (i = 0; i < n; ++i) {
-            assert_that(finite_bits(k.rest_times[i]) && k.rest_times[i] >= 0, "frame %d: rest time %g", frame, k.rest_times[i]);
-            for (r = 0; r < 3 && k.s.held[i]; ++r) {
+        for (i = 0; i < n; i++) {
+            assert_that(finite_bits(k.rest_times[i]) && k.rest_times[i] >= 0, "frame %d: rest time %g", frame,
+                        k.rest_times[i]);
+            for (r = 0; r < 3 && k.s.held[i]; r++) {
                 const double want = k.step.targets ? k.targets[3 * i + (size_t)r] : k.now[0][3 * i + (size_t)r];
-                assert_that(fabs(k.s.displacement[3 * i + (size_t)r] - want) < 1e-12 * (1 + fabs(want)), "frame %d: held copy %lu", frame,
-                            (unsigned long)i);
+                assert_that(fabs(k.s.displacement[3 * i + (size_t)r] - want) < 1e-12 * (1 + fabs(want)),
+                            "frame %d: held copy %lu", frame, (unsigned long)i);
             }
         }
-        for (i = 0; i < k.s.model.constraint_count; ++i)
-            for (r = 0; r < 3 && !k.s.held[k.ties[i].copy]; ++r) {
+        for (i = 0; i < k.s.model.constraint_count; i++)
+            for (r = 0; r < 3 && !k.s.held[k.ties[i].copy]; r++) {
                 const size_t at = 3 * k.ties[i].copy + (size_t)r;
                 double way = 0, size = 1 + fabs(k.s.displacement[at]);
-                for (j = 0; j < 4; ++j) {
+                for (j = 0; j < 4; j++) {
                     const size_t master = 3 * k.ties[i].master[j] + (size_t)r;
                     way += k.ties[i].weight[j] * (k.s.displacement[master] - k.now[0][master]);
                     size += fabs(k.s.displacement[master]);
                 }
-                assert_that(fabs(way - (k.s.displacement[at] - k.now[0][at])) < 1e-12 * size, "frame %d: follower %lu went %g, its masters %g",
-                            frame, (unsigned long)i, k.s.displacement[at] - k.now[0][at], way);
+                assert_that(fabs(way - (k.s.displacement[at] - k.now[0][at])) < 1e-12 * size,
+                            "frame %d: follower %lu went %g, its masters %g", frame, (unsigned long)i,
+                            k.s.displacement[at] - k.now[0][at], way);
             }
         memcpy(k.previous[0], k.now[0], 3 * n * sizeof(double));
         memcpy(k.previous[1], k.now[1], 3 * n * sizeof(double));
@@ -3305,15 +3159,17 @@ START_TEST(anything_goes)
 }
 END_TEST
 
-static Suite *forces_suite(void)
-{
+static Suite *forces_suite(void) {
     Suite *suite = suite_create("gxfem_solve: forces");
-    TCase *constraints = tcase_create("constraints"), *springs = tcase_create("springs"), *input = tcase_create("input");
+    TCase *constraints = tcase_create("constraints"), *springs = tcase_create("springs"),
+          *input = tcase_create("input");
     TCase *contact = tcase_create("contact"), *statics = tcase_create("statics"), *damping = tcase_create("damping");
-    TCase *sleep = tcase_create("sleep"), *budget = tcase_create("budget"), *solvers = tcase_create("solvers"), *all = tcase_create("all");
+    TCase *sleep = tcase_create("sleep"), *budget = tcase_create("budget"), *solvers = tcase_create("solvers"),
+          *all = tcase_create("all");
     TCase *midpoint = tcase_create("midpoint"), *cases[11];
     int i;
-    cases[0] = constraints, cases[1] = springs, cases[2] = input, cases[3] = contact, cases[4] = statics, cases[5] = damping;
+    cases[0] = constraints, cases[1] = springs, cases[2] = input, cases[3] = contact, cases[4] = statics,
+    cases[5] = damping;
     cases[6] = sleep, cases[7] = budget, cases[8] = solvers, cases[9] = all, cases[10] = midpoint;
     ADD_SOME(constraints, tied_blocks_move_as_one, 4 * KINDS);
     tcase_add_loop_test(constraints, momentum_of_tied_blocks_is_balanced, 0, SOLVERS);
@@ -3372,14 +3228,11 @@ static Suite *forces_suite(void)
     tcase_add_loop_test(all, steps_allocate_for_more_points_only, 0, SOLVERS);
     ADD_SOME(input, absurd_steps_lose_nothing, 4 * ABSURD_COUNT);
     ADD_SOME(all, anything_goes, 40);
-    for (i = 0; i < 11; ++i) {
+    for (i = 0; i < 11; i++) {
         tcase_set_timeout(cases[i], 120);
         suite_add_tcase(suite, cases[i]);
     }
     return suite;
 }
 
-int main(void)
-{
-    return run_suite(forces_suite());
-}
+int main(void) { return run_suite(forces_suite()); }

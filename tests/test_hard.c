@@ -1,5 +1,5 @@
-/* test_hard.c - the benches' hard cases (bench/hard.h), by the library as by the others: what is right is told from what is wrong; and the count
-   of the unknowns that separation demands (bench/least.h). */
+/* test_hard.c - the benches' hard cases (bench/hard.h), by the library as by the others: what is right is told from
+   what is wrong; and the count of the unknowns that separation demands (bench/least.h). */
 #define _POSIX_C_SOURCE 199309L
 #ifndef GXFEM_LINKED
 #define GXFEM_IMPLEMENTATION
@@ -32,7 +32,7 @@ static const hard_case *row_named(const char *name) {
 /* By all cases that take no seconds */
 START_TEST(right_by_the_library) {
     int i;
-    for (i = 0; i < HARD_CASES; ++i) {
+    for (i = 0; i < HARD_CASES; i++) {
         char text[HARD_TEXT];
         hard_trial t;
         if (hard_cases[i].tetrahedron) continue;
@@ -111,11 +111,12 @@ START_TEST(motion_is_judged) {
     hard_judge_pieces(&t, &p, moved, text);
     ck_assert_str_eq(text, "wrong: falls 100 % off");
     hard_pieces_free(&p);
-    for (i = 0; i < model.copy_count; ++i) moved[3 * i + 2] = hard_fall_of(&t);
+    for (i = 0; i < model.copy_count; i++) moved[3 * i + 2] = hard_fall_of(&t);
     p = hard_pieces_of(&t, &model, moved);
     hard_judge_pieces(&t, &p, moved, text);
     ck_assert_str_eq(text, "right");
-    for (i = 0; i < model.copy_count; ++i) if (p.of[i] == p.of[model.copy_count - 1]) moved[3 * i + 2] *= 1.05;
+    for (i = 0; i < model.copy_count; i++)
+        if (p.of[i] == p.of[model.copy_count - 1]) moved[3 * i + 2] *= 1.05;
     hard_pieces_free(&p);
     p = hard_pieces_of(&t, &model, moved);
     hard_judge_pieces(&t, &p, moved, text);
@@ -171,7 +172,7 @@ START_TEST(integrals_are_judged) {
 START_TEST(mended_is_the_same) {
     size_t copies[2], triangles[2], i;
     int mended;
-    for (mended = 0; mended < 2; ++mended) {
+    for (mended = 0; mended < 2; mended++) {
         hard_trial t;
         method_literal *m;
         method_times times;
@@ -179,9 +180,10 @@ START_TEST(mended_is_the_same) {
         m = (method_literal *)method_literal_create(&t.scene);
         m->cutter->desc.mended = mended;
         memset(&times, 0, sizeof times);
-        for (i = 0; i < t.scene.cut_count; ++i) ck_assert_ptr_null(method_literal_cut(m, &t.scene.cuts[i], &times));
+        for (i = 0; i < t.scene.cut_count; i++) ck_assert_ptr_null(method_literal_cut(m, &t.scene.cuts[i], &times));
         copies[mended] = m->cutter->copy_count;
-        for (triangles[mended] = i = 0; i < m->cutter->nodal.count; ++i) triangles[mended] += m->cutter->nodal.domains[i].triangle_count;
+        for (triangles[mended] = i = 0; i < m->cutter->nodal.count; i++)
+            triangles[mended] += m->cutter->nodal.domains[i].triangle_count;
         method_literal_destroy(m);
         hard_trial_free(&t);
     }
@@ -208,9 +210,11 @@ static void sheets_make(sheets_case *c, uint32_t cells, uint32_t side, size_t co
     desc.young = 1e6;
     ck_assert_int_eq(block_make_mesh(cells, 0.2, &c->block), GX_OK);
     ck_assert_int_eq(block_make_body(&c->block, &desc, &c->body), GX_OK);
-    c->mesh.positions = c->block.positions; c->mesh.node_count = c->block.side * c->block.side * c->block.side;
-    c->mesh.elements = c->block.elements; c->mesh.element_count = 5 * (size_t)cells * cells * cells;
-    for (i = 0; i <= side; ++i) {
+    c->mesh.positions = c->block.positions;
+    c->mesh.node_count = c->block.side * c->block.side * c->block.side;
+    c->mesh.elements = c->block.elements;
+    c->mesh.element_count = 5 * (size_t)cells * cells * cells;
+    for (i = 0; i <= side; i++) {
         c->x[i] = -0.1371 + 1.2717 * i / side;
         c->y[i] = -0.1213 + 1.2717 * i / side;
     }
@@ -230,19 +234,22 @@ static void sheets_cut(sheets_case *c, size_t sheet) {
     gx_cut_desc desc;
     memset(&s, 0, sizeof s);
     memset(&desc, 0, sizeof desc);
-    for (i = 0; i < n * n; ++i) {
+    for (i = 0; i < n * n; i++) {
         vertices[3 * i] = c->x[i % n];
         vertices[3 * i + 1] = c->y[i / n];
         vertices[3 * i + 2] = c->heights[sheet * n * n + i];
     }
-    for (j = 0; j < side; ++j)
-        for (i = 0; i < side; ++i) {
+    for (j = 0; j < side; j++)
+        for (i = 0; i < side; i++) {
             const uint32_t a = j * n + i, corners[6] = {a, a + 1, a + n + 1, a, a + n + 1, a + n};
             memcpy(triangles + 6 * k++, corners, sizeof corners);
         }
-    s.vertices = vertices; s.vertex_count = (size_t)n * n;
-    s.triangles = triangles; s.triangle_count = 2 * (size_t)side * side;
-    desc.surfaces = &s; desc.surface_count = 1;
+    s.vertices = vertices;
+    s.vertex_count = (size_t)n * n;
+    s.triangles = triangles;
+    s.triangle_count = 2 * (size_t)side * side;
+    desc.surfaces = &s;
+    desc.surface_count = 1;
     ck_assert_int_eq(gx_body_cut(c->body, &desc, NULL, NULL), GX_OK);
     free(vertices);
     free(triangles);
@@ -252,8 +259,9 @@ static void sheets_check(sheets_case *c, uint64_t seed) {
     const least_result counted = least_of(&c->mesh, &c->sheets);
     gx_view view;
     ck_assert_int_eq(gx_body_view(c->body, &view), GX_OK);
-    ck_assert_msg(counted.least == view.copy_count && counted.replicas == view.copy_count, "seed %lu: least %lu, replicas %lu, copies %lu",
-                  (unsigned long)seed, (unsigned long)counted.least, (unsigned long)counted.replicas, (unsigned long)view.copy_count);
+    ck_assert_msg(counted.least == view.copy_count && counted.replicas == view.copy_count,
+                  "seed %lu: least %lu, replicas %lu, copies %lu", (unsigned long)seed, (unsigned long)counted.least,
+                  (unsigned long)counted.replicas, (unsigned long)view.copy_count);
 }
 
 static void sheets_free(sheets_case *c) {
@@ -263,8 +271,10 @@ static void sheets_free(sheets_case *c) {
 }
 
 START_TEST(least_by_hand) {
-    static const double positions[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, lines[2] = {-1, 2}, flat[4] = {0.3, 0.3, 0.3, 0.3};
-    static const double two[8] = {0.3, 0.3, 0.3, 0.3, 0.5, 0.5, 0.5, 0.5}, crossing[8] = {0.3, 0.3, 0.3, 0.3, -0.9, 1.65, -0.9, 1.65};
+    static const double positions[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, lines[2] = {-1, 2},
+                        flat[4] = {0.3, 0.3, 0.3, 0.3};
+    static const double two[8] = {0.3, 0.3, 0.3, 0.3, 0.5, 0.5, 0.5, 0.5},
+                        crossing[8] = {0.3, 0.3, 0.3, 0.3, -0.9, 1.65, -0.9, 1.65};
     static const uint32_t element[4] = {0, 1, 2, 3};
     least_mesh mesh = {positions, 4, element, 1};
     least_sheets sheets = {lines, lines, flat, 1, 0};
@@ -285,7 +295,7 @@ START_TEST(least_by_hand) {
 /* Planes of random direction, or wavy sheets that cross each other */
 START_TEST(least_is_what_bodies_have) {
     uint64_t seed;
-    for (seed = 1; seed <= 24 / FEWER; ++seed) {
+    for (seed = 1; seed <= 24 / FEWER; seed++) {
         const uint32_t side = seed % 3 == 0 ? 1 : (uint32_t)(2 + seed % 4), n = side + 1;
         const size_t count = 1 + seed % 5;
         sheets_case c;
@@ -293,10 +303,12 @@ START_TEST(least_is_what_bodies_have) {
         uint32_t i;
         random_seed(seed);
         sheets_make(&c, 2 + seed % 2, side, count);
-        for (k = 0; k < count; ++k) {
-            const double height = random_real(0.2, 0.8), u = random_real(-1, 1), v = random_real(-1, 1), wave = side > 1 ? 0.2 : 0;
-            for (i = 0; i < n * n; ++i)
-                c.heights[k * n * n + i] = height + u * (c.x[i % n] - 0.5) + v * (c.y[i / n] - 0.5) + wave * random_real(-1, 1);
+        for (k = 0; k < count; k++) {
+            const double height = random_real(0.2, 0.8), u = random_real(-1, 1), v = random_real(-1, 1),
+                         wave = side > 1 ? 0.2 : 0;
+            for (i = 0; i < n * n; i++)
+                c.heights[k * n * n + i] =
+                    height + u * (c.x[i % n] - 0.5) + v * (c.y[i / n] - 0.5) + wave * random_real(-1, 1);
             sheets_cut(&c, k);
             c.sheets.count = k + 1;
             sheets_check(&c, seed);

@@ -1,12 +1,10 @@
 /* Tests of gxfem_integrate.h.
 
-   moments      ten integrals of cube, icosahedron, tetrahedron and boxes against analytic values; translation, map, inertia
-   monomials    random bodies of voxels (non-convex, tunnels, cavities), rotated, to degree 6 against Gauss-Legendre; far from
-                the origin; high degrees; translation
-   surfaces     area and flux monomials against Gauss-Legendre and the divergence theorem
-   elements     gradients, mass
-   parts        slivers at a vertex, layers, random splits by planes, thin layers, noise, cut faces
-   arguments    every refusal, with outputs unchanged
+   moments      ten integrals of cube, icosahedron, tetrahedron and boxes against analytic values; translation, map,
+   inertia monomials    random bodies of voxels (non-convex, tunnels, cavities), rotated, to degree 6 against
+   Gauss-Legendre; far from the origin; high degrees; translation surfaces     area and flux monomials against
+   Gauss-Legendre and the divergence theorem elements     gradients, mass parts        slivers at a vertex, layers,
+   random splits by planes, thin layers, noise, cut faces arguments    every refusal, with outputs unchanged
 
    GXFEM_DATA (environment): a folder with moments/cube, icosa, tetra and their *.volInt.out, compared where present.
    GXFEM_SEED: the first seed of the random tests (default 1). */
@@ -24,15 +22,13 @@
 
 static uint64_t case_seed, random_state;
 
-static void seed_random(uint64_t seed)
-{
+static void seed_random(uint64_t seed) {
     case_seed = seed;
     random_state = seed * 0x9e3779b97f4a7c15u + 0x1234567u;
 }
 
 /* splitmix64 */
-static double random_unit(void)
-{
+static double random_unit(void) {
     uint64_t z = random_state += 0x9e3779b97f4a7c15u;
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
@@ -40,27 +36,23 @@ static double random_unit(void)
     return (double)(z >> 11) / 9007199254740992.0;
 }
 
-static double random_between(double a, double b)
-{
-    return a + (b - a) * random_unit();
-}
+static double random_between(double a, double b) { return a + (b - a) * random_unit(); }
 
-static uint64_t first_seed(void)
-{
+static uint64_t first_seed(void) {
     const char *text = getenv("GXFEM_SEED");
     return text ? strtoull(text, NULL, 10) : 1;
 }
 
 /* Only failures reach Check, which writes a message for every assertion that it sees. */
-#define ASSERT_NEAR(value, expected, tolerance)                                                                               \
-    do {                                                                                                                      \
-        double v_ = (double)(value), e_ = (double)(expected), t_ = (double)(tolerance);                                       \
-        if (!(fabs(v_ - e_) <= t_))                                                                                           \
-            ck_abort_msg("%s = %.17g, expected %.17g within %.3g, is off by %.3g (seed %llu)", #value, v_, e_, t_,            \
-                         fabs(v_ - e_), (unsigned long long)case_seed);                                                       \
+#define ASSERT_NEAR(value, expected, tolerance)                                                                        \
+    do {                                                                                                               \
+        double v_ = (double)(value), e_ = (double)(expected), t_ = (double)(tolerance);                                \
+        if (!(fabs(v_ - e_) <= t_))                                                                                    \
+            ck_abort_msg("%s = %.17g, expected %.17g within %.3g, is off by %.3g (seed %llu)", #value, v_, e_, t_,     \
+                         fabs(v_ - e_), (unsigned long long)case_seed);                                                \
     } while (0)
 
-#define ASSERT_RELATIVE(value, expected, tolerance) ASSERT_NEAR(value, expected, (tolerance) * fabs((double)(expected)))
+#define ASSERT_RELATIVE(value, expected, tolerance) ASSERT_NEAR(value, expected, (tolerance)*fabs((double)(expected)))
 
 /* ---- bodies ---- */
 
@@ -70,8 +62,7 @@ typedef struct mesh {
     size_t position_count, triangle_count;
 } mesh;
 
-static gxi_surface surface_of(const mesh *m)
-{
+static gxi_surface surface_of(const mesh *m) {
     gxi_surface s;
     s.positions = m->positions;
     s.position_count = m->position_count;
@@ -80,8 +71,7 @@ static gxi_surface surface_of(const mesh *m)
     return s;
 }
 
-static void add_position(mesh *m, double x, double y, double z)
-{
+static void add_position(mesh *m, double x, double y, double z) {
     double *p = m->positions + 3 * m->position_count++;
     ck_assert(m->position_count <= 128);
     p[0] = x;
@@ -89,8 +79,7 @@ static void add_position(mesh *m, double x, double y, double z)
     p[2] = z;
 }
 
-static void add_triangle(mesh *m, size_t a, size_t b, size_t c)
-{
+static void add_triangle(mesh *m, size_t a, size_t b, size_t c) {
     uint32_t *t = m->triangles + 3 * m->triangle_count++;
     ck_assert(m->triangle_count <= 1024);
     t[0] = (uint32_t)a;
@@ -99,9 +88,8 @@ static void add_triangle(mesh *m, size_t a, size_t b, size_t c)
 }
 
 /* The boundary of a set of unit cells in a lattice of n^3 (n <= 3), cell x y z being bit x + n (y + n z). */
-static mesh make_voxels(unsigned n, uint32_t cells)
-{
-    mesh m = { { 0 }, { 0 }, 0, 0 };
+static mesh make_voxels(unsigned n, uint32_t cells) {
+    mesh m = {{0}, {0}, 0, 0};
     unsigned x[3], axis, side, corner;
     for (x[2] = 0; x[2] <= n; x[2]++)
         for (x[1] = 0; x[1] <= n; x[1]++)
@@ -112,13 +100,13 @@ static mesh make_voxels(unsigned n, uint32_t cells)
                 if (!(cells >> (x[0] + n * (x[1] + n * x[2])) & 1)) continue;
                 for (axis = 0; axis < 3; axis++)
                     for (side = 0; side < 2; side++) {
-                        unsigned y[3] = { x[0], x[1], x[2] }, outside;
+                        unsigned y[3] = {x[0], x[1], x[2]}, outside;
                         size_t quad[4];
                         y[axis] += side ? 1u : (unsigned)-1;
                         outside = y[axis] >= n;
                         if (!outside && (cells >> (y[0] + n * (y[1] + n * y[2])) & 1)) continue;
                         for (corner = 0; corner < 4; corner++) {
-                            unsigned u = (axis + 1) % 3, v = (axis + 2) % 3, c[3] = { x[0], x[1], x[2] };
+                            unsigned u = (axis + 1) % 3, v = (axis + 2) % 3, c[3] = {x[0], x[1], x[2]};
                             c[axis] += side;
                             c[u] += corner == 1 || corner == 2;
                             c[v] += corner >= 2;
@@ -131,17 +119,15 @@ static mesh make_voxels(unsigned n, uint32_t cells)
     return m;
 }
 
-static mesh make_box(const double lower[3], const double upper[3])
-{
+static mesh make_box(const double lower[3], const double upper[3]) {
     mesh m = make_voxels(1, 1);
     size_t i;
     for (i = 0; i < 24; i++) m.positions[i] = m.positions[i] > 0 ? upper[i % 3] : lower[i % 3];
     return m;
 }
 
-static mesh make_tetrahedron(const double p[12])
-{
-    mesh m = { { 0 }, { 0 }, 0, 0 };
+static mesh make_tetrahedron(const double p[12]) {
+    mesh m = {{0}, {0}, 0, 0};
     size_t i;
     for (i = 0; i < 4; i++) add_position(&m, p[3 * i], p[3 * i + 1], p[3 * i + 2]);
     add_triangle(&m, 0, 2, 1);
@@ -152,9 +138,8 @@ static mesh make_tetrahedron(const double p[12])
 }
 
 /* Twelve corners (0, +-1, +-phi) and cyclic, scaled to the unit sphere; faces are the triples at mutual distance 2. */
-static mesh make_icosahedron(void)
-{
-    mesh m = { { 0 }, { 0 }, 0, 0 };
+static mesh make_icosahedron(void) {
+    mesh m = {{0}, {0}, 0, 0};
     double phi = (1 + sqrt(5.0)) / 2, r = sqrt(1 + phi * phi), n[3];
     size_t i, j, k;
     for (i = 0; i < 12; i++) {
@@ -174,16 +159,17 @@ static mesh make_icosahedron(void)
                 gxip_subtract(a, c, ca);
                 if (gxip_length(ab) > edge || gxip_length(bc) > edge || gxip_length(ca) > edge) continue;
                 gxip_cross(ab, bc, n);
-                if (gxip_dot(n, a) > 0) add_triangle(&m, i, j, k);
-                else add_triangle(&m, i, k, j);
+                if (gxip_dot(n, a) > 0)
+                    add_triangle(&m, i, j, k);
+                else
+                    add_triangle(&m, i, k, j);
             }
     ck_assert_uint_eq(m.triangle_count, 20);
     return m;
 }
 
 /* Random rotation matrix by rows, from a quaternion. */
-static void random_rotation(double r[9])
-{
+static void random_rotation(double r[9]) {
     double q[4], n = 0;
     int i;
     do {
@@ -205,8 +191,7 @@ static void random_rotation(double r[9])
     r[8] = 1 - 2 * (q[1] * q[1] + q[2] * q[2]);
 }
 
-static void map_mesh(mesh *m, const double a[9], const double t[3])
-{
+static void map_mesh(mesh *m, const double a[9], const double t[3]) {
     size_t i, d;
     for (i = 0; i < m->position_count; i++) {
         double p[3];
@@ -217,11 +202,10 @@ static void map_mesh(mesh *m, const double a[9], const double t[3])
 
 /* ---- oracle: Gauss-Legendre in long double ---- */
 
-#define GAUSS_COUNT 8 /* exact to degree 15 */
+#define GAUSS_COUNT 8                                          /* exact to degree 15 */
 static long double gauss_x[GAUSS_COUNT], gauss_w[GAUSS_COUNT]; /* on 0 .. 1 */
 
-static void make_gauss(void)
-{
+static void make_gauss(void) {
     int i, k, n = GAUSS_COUNT;
     for (i = 0; i < n; i++) {
         long double x = cosl(3.14159265358979323846L * ((long double)i + 0.75L) / ((long double)n + 0.5L)), slope = 1;
@@ -241,8 +225,7 @@ static void make_gauss(void)
     }
 }
 
-static long double monomial(const long double p[3], unsigned i, unsigned j, unsigned k)
-{
+static long double monomial(const long double p[3], unsigned i, unsigned j, unsigned k) {
     long double r = 1;
     while (i-- > 0) r *= p[0];
     while (j-- > 0) r *= p[1];
@@ -251,8 +234,8 @@ static long double monomial(const long double p[3], unsigned i, unsigned j, unsi
 }
 
 /* Adds weight times all monomials at p, and of their absolute values. */
-static void add_monomials(const long double p[3], long double weight, unsigned degree, long double *sum, long double *size)
-{
+static void add_monomials(const long double p[3], long double weight, unsigned degree, long double *sum,
+                          long double *size) {
     unsigned n, i, j;
     size_t at = 0;
     for (n = 0; n <= degree; n++)
@@ -266,9 +249,8 @@ static void add_monomials(const long double p[3], long double weight, unsigned d
 }
 
 /* Integrals over the voxels mapped by x -> a x + t. */
-static void voxel_oracle(unsigned n, uint32_t cells, const double a[9], const double t[3], unsigned degree, long double *sum,
-                         long double *size)
-{
+static void voxel_oracle(unsigned n, uint32_t cells, const double a[9], const double t[3], unsigned degree,
+                         long double *sum, long double *size) {
     long double det = (long double)a[0] * ((long double)a[4] * a[8] - (long double)a[5] * a[7]) -
                       (long double)a[1] * ((long double)a[3] * a[8] - (long double)a[5] * a[6]) +
                       (long double)a[2] * ((long double)a[3] * a[7] - (long double)a[4] * a[6]);
@@ -290,64 +272,61 @@ static void voxel_oracle(unsigned n, uint32_t cells, const double a[9], const do
 
 /* Integrals over a triangle with weight `area`, by Duffy's map of the square: p = a + u (b - a) + u v (c - b). */
 static void triangle_oracle(const double *a, const double *b, const double *c, const double origin[3], long double area,
-                            unsigned degree, long double *sum, long double *size)
-{
+                            unsigned degree, long double *sum, long double *size) {
     unsigned i, j, d;
     for (i = 0; i < GAUSS_COUNT; i++)
         for (j = 0; j < GAUSS_COUNT; j++) {
             long double u = gauss_x[i], v = gauss_x[j], p[3];
-            for (d = 0; d < 3; d++) p[d] = a[d] + u * ((long double)b[d] - a[d]) + u * v * ((long double)c[d] - b[d]) - origin[d];
+            for (d = 0; d < 3; d++)
+                p[d] = a[d] + u * ((long double)b[d] - a[d]) + u * v * ((long double)c[d] - b[d]) - origin[d];
             add_monomials(p, 2 * area * u * gauss_w[i] * gauss_w[j], degree, sum, size);
         }
 }
 
 /* ---- moments ---- */
 
-static const double origin0[3] = { 0, 0, 0 };
+static const double origin0[3] = {0, 0, 0};
 
-static gxi_moments2 moments2_of(const mesh *m, const double *origin)
-{
+static gxi_moments2 moments2_of(const mesh *m, const double *origin) {
     gxi_surface s = surface_of(m);
     gxi_moments2 r;
     ck_assert_int_eq(gxi_polyhedron_moments2(&s, origin, &r), GX_OK);
     return r;
 }
 
-static void assert_moments2(const gxi_moments2 *m, const gxi_moments2 *expected, double volume_tolerance, double reach)
-{
+static void assert_moments2(const gxi_moments2 *m, const gxi_moments2 *expected, double volume_tolerance,
+                            double reach) {
     int i;
     ASSERT_NEAR(m->volume, expected->volume, volume_tolerance);
     for (i = 0; i < 3; i++) ASSERT_NEAR(m->first[i], expected->first[i], volume_tolerance * reach);
     for (i = 0; i < 6; i++) ASSERT_NEAR(m->second[i], expected->second[i], volume_tolerance * reach * reach);
 }
 
-START_TEST(ten_integrals_of_cube)
-{
-    const double lower[3] = { -10, -10, -10 }, upper[3] = { 10, 10, 10 };
-    const gxi_moments2 expected = { 8000, { 0, 0, 0 }, { 800000.0 / 3, 0, 0, 800000.0 / 3, 0, 800000.0 / 3 } };
+START_TEST(ten_integrals_of_cube) {
+    const double lower[3] = {-10, -10, -10}, upper[3] = {10, 10, 10};
+    const gxi_moments2 expected = {8000, {0, 0, 0}, {800000.0 / 3, 0, 0, 800000.0 / 3, 0, 800000.0 / 3}};
     mesh m = make_box(lower, upper);
     gxi_moments2 r = moments2_of(&m, NULL);
     assert_moments2(&r, &expected, 1e-11, 10);
 }
 END_TEST
 
-START_TEST(ten_integrals_of_tetrahedron)
-{
-    const double p[12] = { 0, 0, 0, 5, 0, 0, 0, 4, 0, 0, 0, 3 };
-    const gxi_moments2 expected = { 10, { 12.5, 10, 7.5 }, { 25, 10, 7.5, 16, 6, 9 } };
+START_TEST(ten_integrals_of_tetrahedron) {
+    const double p[12] = {0, 0, 0, 5, 0, 0, 0, 4, 0, 0, 0, 3};
+    const gxi_moments2 expected = {10, {12.5, 10, 7.5}, {25, 10, 7.5, 16, 6, 9}};
     mesh m = make_tetrahedron(p);
     gxi_moments2 r = moments2_of(&m, NULL);
     assert_moments2(&r, &expected, 1e-14, 1);
 }
 END_TEST
 
-/* Edge s = 1/sin(2 pi/5) at circumradius 1; volume 5 (3 + sqrt 5)/12 s^3; moment of inertia phi^2 s^2/10 of the mass. */
-START_TEST(ten_integrals_of_icosahedron)
-{
+/* Edge s = 1/sin(2 pi/5) at circumradius 1; volume 5 (3 + sqrt 5)/12 s^3; moment of inertia phi^2 s^2/10 of the mass.
+ */
+START_TEST(ten_integrals_of_icosahedron) {
     double s = 1 / sin(2 * acos(-1.0) / 5), phi = (1 + sqrt(5.0)) / 2, v = 5 * (3 + sqrt(5.0)) / 12 * s * s * s;
     double xx = v * phi * phi * s * s / 20, centre[3], inertia[6], rotation[9];
-    const double shift[3] = { 3, -4, 5 };
-    const gxi_moments2 expected = { v, { 0, 0, 0 }, { xx, 0, 0, xx, 0, xx } };
+    const double shift[3] = {3, -4, 5};
+    const gxi_moments2 expected = {v, {0, 0, 0}, {xx, 0, 0, xx, 0, xx}};
     mesh m = make_icosahedron();
     gxi_moments2 r = moments2_of(&m, NULL);
     int i;
@@ -363,8 +342,7 @@ START_TEST(ten_integrals_of_icosahedron)
 END_TEST
 
 /* A box lower..upper: the integral of x^i y^j z^k is a product of (u^(i+1) - l^(i+1))/(i+1). */
-static double box_monomial(const double lower[3], const double upper[3], const unsigned power[3], double *size)
-{
+static double box_monomial(const double lower[3], const double upper[3], const unsigned power[3], double *size) {
     double r = 1;
     int d;
     *size = 1;
@@ -376,8 +354,7 @@ static double box_monomial(const double lower[3], const double upper[3], const u
     return r;
 }
 
-START_TEST(boxes_to_degree_6)
-{
+START_TEST(boxes_to_degree_6) {
     double lower[3], upper[3], moments[84], work[84], size;
     mesh m;
     gxi_surface s;
@@ -399,8 +376,7 @@ START_TEST(boxes_to_degree_6)
 }
 END_TEST
 
-START_TEST(translation_and_map)
-{
+START_TEST(translation_and_map) {
     double a[9], shift[3], back[3], m20[10], work[10];
     mesh m = make_voxels(3, 0x5b7effdu), moved;
     gxi_moments2 r = moments2_of(&m, NULL), direct;
@@ -427,8 +403,7 @@ START_TEST(translation_and_map)
 }
 END_TEST
 
-START_TEST(disjoint_unions_add)
-{
+START_TEST(disjoint_unions_add) {
     mesh a = make_voxels(3, 0x000002fu), b = make_voxels(3, 0x7fffc00u), both = make_voxels(3, 0x7fffc2fu);
     gxi_moments2 ma = moments2_of(&a, NULL), mb = moments2_of(&b, NULL), m = moments2_of(&both, NULL);
     gxi_moments2_add(&ma, &mb);
@@ -439,16 +414,14 @@ END_TEST
 /* ---- monomials ---- */
 
 /* 27 voxels less the centre (cavity), less a row (tunnel), then random sets. */
-static uint32_t voxel_case(int i)
-{
+static uint32_t voxel_case(int i) {
     if (i == 0) return 0x7ffffffu & ~(1u << 13);
     if (i == 1) return 0x7ffffffu & ~(1u << 4 | 1u << 13 | 1u << 22);
     return 1u | (uint32_t)random_between(0, 134217728.0);
 }
 
-START_TEST(voxel_bodies_to_degree_6)
-{
-    long double sum[84] = { 0 }, size[84] = { 0 };
+START_TEST(voxel_bodies_to_degree_6) {
+    long double sum[84] = {0}, size[84] = {0};
     double a[9], t[3], moments[84], work[84], one, scale;
     mesh m;
     gxi_surface s;
@@ -479,9 +452,8 @@ START_TEST(voxel_bodies_to_degree_6)
 END_TEST
 
 /* Coordinates in 1/1024, offset 1e8: exactly representable, so the result must not notice the offset. */
-START_TEST(far_from_the_origin)
-{
-    double a[9], zero[3] = { 0, 0, 0 }, far[3] = { 1e8, -1e8, 3e8 }, near_moments[84], far_moments[84], work[84], back[3];
+START_TEST(far_from_the_origin) {
+    double a[9], zero[3] = {0, 0, 0}, far[3] = {1e8, -1e8, 3e8}, near_moments[84], far_moments[84], work[84], back[3];
     mesh m = make_voxels(3, 0x5b7effdu), moved;
     gxi_moments2 m2, expected;
     gxi_surface s;
@@ -503,15 +475,15 @@ START_TEST(far_from_the_origin)
     /* to the far origin and back: what translation keeps */
     gxi_moments2_translate(&m2, far);
     ASSERT_RELATIVE(m2.first[2], expected.volume * far[2] + expected.first[2], 1e-15);
-    ASSERT_RELATIVE(m2.second[5], expected.volume * far[2] * far[2] + 2 * far[2] * expected.first[2] + expected.second[5], 1e-15);
+    ASSERT_RELATIVE(m2.second[5],
+                    expected.volume * far[2] * far[2] + 2 * far[2] * expected.first[2] + expected.second[5], 1e-15);
     for (i = 0; i < 3; i++) back[i] = -far[i];
     gxi_moments2_translate(&m2, back);
     for (i = 0; i < 3; i++) ASSERT_NEAR(m2.first[i], expected.first[i], 1e-15 * 3e8 * expected.volume);
 }
 END_TEST
 
-START_TEST(monomials_translate)
-{
+START_TEST(monomials_translate) {
     double shift[3], minus[3], here[84], there[84], work[84];
     mesh m = make_icosahedron();
     gxi_surface s = surface_of(&m);
@@ -529,9 +501,8 @@ START_TEST(monomials_translate)
 END_TEST
 
 /* Unit tetrahedron: i! j! k! / (i + j + k + 3)!, every value relatively exact, whatever the degree. */
-START_TEST(high_degrees)
-{
-    const double unit[12] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1 };
+START_TEST(high_degrees) {
+    const double unit[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
     const unsigned degree = (unsigned)_i;
     mesh m = make_tetrahedron(unit);
     gxi_surface s = surface_of(&m);
@@ -556,8 +527,7 @@ START_TEST(high_degrees)
 }
 END_TEST
 
-START_TEST(counts_and_indices)
-{
+START_TEST(counts_and_indices) {
     ck_assert_uint_eq(gxi_monomial_count(0), 1);
     ck_assert_uint_eq(gxi_monomial_count(6), 84);
     ck_assert_uint_eq(gxi_monomial_count(GXI_DEGREE_MAX), 2862209);
@@ -570,11 +540,10 @@ END_TEST
 
 /* ---- surfaces ---- */
 
-START_TEST(open_surface_against_gauss)
-{
-    long double sum[84] = { 0 }, size[84] = { 0 }, flux[3][84] = { { 0 } }, flux_size[3][84] = { { 0 } };
+START_TEST(open_surface_against_gauss) {
+    long double sum[84] = {0}, size[84] = {0}, flux[3][84] = {{0}}, flux_size[3][84] = {{0}};
     double moments[84], flux_moments[3 * 84], work[84], origin[3];
-    mesh m = { { 0 }, { 0 }, 0, 0 };
+    mesh m = {{0}, {0}, 0, 0};
     gxi_surface s;
     size_t i, t, d;
     seed_random(first_seed() + (uint64_t)_i);
@@ -588,7 +557,8 @@ START_TEST(open_surface_against_gauss)
         for (d = 0; d < 3; d++) {
             size_t e = (d + 1) % 3, f = (d + 2) % 3;
             n[d] = (((long double)b[e] - a[e]) * ((long double)c[f] - a[f]) -
-                    ((long double)b[f] - a[f]) * ((long double)c[e] - a[e])) / 2;
+                    ((long double)b[f] - a[f]) * ((long double)c[e] - a[e])) /
+                   2;
             area += n[d] * n[d];
         }
         triangle_oracle(a, b, c, origin, sqrtl(area), 6, sum, size);
@@ -604,9 +574,8 @@ START_TEST(open_surface_against_gauss)
 END_TEST
 
 /* Closed surface: flux of f e_d = integral of df/dx_d, for every monomial f (GXFEM Eq. 21). */
-START_TEST(divergence_theorem)
-{
-    double volume[84], flux[3 * 84], work[84], a[9], t[3] = { 0.1, -0.2, 0.3 };
+START_TEST(divergence_theorem) {
+    double volume[84], flux[3 * 84], work[84], a[9], t[3] = {0.1, -0.2, 0.3};
     mesh m;
     gxi_surface s;
     unsigned p[3], d;
@@ -622,7 +591,7 @@ START_TEST(divergence_theorem)
         for (p[1] = 0; p[0] + p[1] <= 6; p[1]++)
             for (p[2] = 0; p[0] + p[1] + p[2] <= 6; p[2]++)
                 for (d = 0; d < 3; d++) {
-                    unsigned q[3] = { p[0], p[1], p[2] };
+                    unsigned q[3] = {p[0], p[1], p[2]};
                     double expected = 0;
                     if (q[d]-- > 0) expected = p[d] * volume[gxi_monomial_index(q[0], q[1], q[2])];
                     ASSERT_NEAR(flux[3 * gxi_monomial_index(p[0], p[1], p[2]) + d], expected, 1e-12);
@@ -630,10 +599,9 @@ START_TEST(divergence_theorem)
 }
 END_TEST
 
-START_TEST(areas)
-{
-    const double lower[3] = { 0, 0, 0 }, upper[3] = { 1, 2, 3 };
-    const double a[3] = { 0, 0, 0 }, b[3] = { 1e-170, 0, 0 }, c[3] = { 0, 1e-130, 0 };
+START_TEST(areas) {
+    const double lower[3] = {0, 0, 0}, upper[3] = {1, 2, 3};
+    const double a[3] = {0, 0, 0}, b[3] = {1e-170, 0, 0}, c[3] = {0, 1e-130, 0};
     mesh m = make_box(lower, upper);
     gxi_surface s = surface_of(&m);
     double moments[4], work[4], n[3];
@@ -649,16 +617,14 @@ END_TEST
 
 /* ---- elements ---- */
 
-static void random_element(double x[12])
-{
+static void random_element(double x[12]) {
     int i;
     do
         for (i = 0; i < 12; i++) x[i] = random_between(-1, 1);
     while (gxi_tet_volume(x) < 0.02);
 }
 
-START_TEST(gradients)
-{
+START_TEST(gradients) {
     double x[12], g[12], volume;
     int i, j, d;
     seed_random(first_seed() + (uint64_t)_i);
@@ -677,13 +643,12 @@ START_TEST(gradients)
 END_TEST
 
 /* The four faces of an element by vertex, outward. */
-static const uint32_t faces[12] = { 1, 2, 3, 0, 3, 2, 0, 1, 3, 0, 2, 1 };
-static const double corners[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 };
+static const uint32_t faces[12] = {1, 2, 3, 0, 3, 2, 0, 1, 3, 0, 2, 1};
+static const double corners[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
 /* Moments of a part in the frame of a given vertex. */
-static gxi_moments2 moments_at(const double *lambdas, const uint32_t *triangles, size_t triangle_count, unsigned k)
-{
-    gxi_moments2 m = { 0, { 0 }, { 0 } };
+static gxi_moments2 moments_at(const double *lambdas, const uint32_t *triangles, size_t triangle_count, unsigned k) {
+    gxi_moments2 m = {0, {0}, {0}};
     double p[3][3];
     unsigned axes[3];
     size_t t, i, d;
@@ -696,8 +661,7 @@ static gxi_moments2 moments_at(const double *lambdas, const uint32_t *triangles,
     return m;
 }
 
-START_TEST(whole_element)
-{
+START_TEST(whole_element) {
     double mass[10], part[10], load[4];
     unsigned k, chosen;
     gxi_moments2 m;
@@ -720,9 +684,9 @@ END_TEST
 
 /* ---- parts ---- */
 
-/* Corner cut off at vertex k: edges end at e[0], e[1], e[2] times their lengths. In the frame of k it is a tetrahedron. */
-static void corner_part(unsigned k, const double e[3], double lambdas[16])
-{
+/* Corner cut off at vertex k: edges end at e[0], e[1], e[2] times their lengths. In the frame of k it is a tetrahedron.
+ */
+static void corner_part(unsigned k, const double e[3], double lambdas[16]) {
     unsigned axes[3], i;
     gxi_part_axes(k, axes);
     memset(lambdas, 0, 16 * sizeof *lambdas);
@@ -733,8 +697,7 @@ static void corner_part(unsigned k, const double e[3], double lambdas[16])
     }
 }
 
-START_TEST(slivers_at_a_vertex)
-{
+START_TEST(slivers_at_a_vertex) {
     double e[3], lambdas[16], mass[10], load[4], v, sum, square;
     unsigned k, chosen, axes[3], i, j;
     gxi_moments2 m;
@@ -764,8 +727,7 @@ END_TEST
 
 /* A layer of relative thickness h upon face i: the element less the similar one with edges 1 - h. Its volume is
    V (1 - (1 - h)^3), the integral of lambda_i is V h^2 (6 - 8 h + 3 h^2)/4. */
-START_TEST(layers_upon_a_face)
-{
+START_TEST(layers_upon_a_face) {
     double h = pow(10, -_i), lambdas[24], load[4];
     uint32_t triangles[24];
     unsigned face, other[3], i, chosen;
@@ -775,7 +737,7 @@ START_TEST(layers_upon_a_face)
         memset(lambdas, 0, sizeof lambdas);
         for (i = 0; i < 3; i++) {
             uint32_t next = (i + 1) % 3, low = i, high = 3 + i;
-            const uint32_t side[6] = { low, high, next, next, high, 3 + next };
+            const uint32_t side[6] = {low, high, next, next, high, 3 + next};
             lambdas[4 * i + other[i]] = 1;
             lambdas[4 * (3 + i) + other[i]] = 1 - h;
             lambdas[4 * (3 + i) + face] = h;
@@ -797,7 +759,7 @@ START_TEST(layers_upon_a_face)
 END_TEST
 
 /* Convex cells with polygonal faces, corners in barycentric coordinates. */
-#define CELL_FACES 32
+#define CELL_FACES  32
 #define FACE_POINTS 32
 
 typedef struct cell {
@@ -805,8 +767,7 @@ typedef struct cell {
     int point_count[CELL_FACES], face_count;
 } cell;
 
-static cell *whole_cell(void)
-{
+static cell *whole_cell(void) {
     cell *c = (cell *)calloc(1, sizeof *c);
     int f, i;
     ck_assert_ptr_nonnull(c);
@@ -818,14 +779,12 @@ static cell *whole_cell(void)
     return c;
 }
 
-static double height(const double plane[4], const double p[4])
-{
+static double height(const double plane[4], const double p[4]) {
     return plane[0] * p[0] + plane[1] * p[1] + plane[2] * p[2] + plane[3] * p[3];
 }
 
 /* The point of the edge p q on the plane; the same bits for q p. */
-static void crossing(const double plane[4], const double *p, const double *q, double out[4])
-{
+static void crossing(const double plane[4], const double *p, const double *q, double out[4]) {
     double hp, hq;
     int i;
     if (memcmp(p, q, 4 * sizeof *p) > 0) {
@@ -839,14 +798,13 @@ static void crossing(const double plane[4], const double *p, const double *q, do
 }
 
 /* The part of c where the plane's height is negative (side -1) or positive (side 1); NULL if there is none. */
-static cell *clip(const cell *c, const double plane[4], double side)
-{
+static cell *clip(const cell *c, const double plane[4], double side) {
     cell *r = (cell *)calloc(1, sizeof *r);
     double from[FACE_POINTS][4], to[FACE_POINTS][4]; /* edges of the new face */
     int f, i, j, n, edges = 0;
     ck_assert_ptr_nonnull(r);
     for (f = 0; f < c->face_count; f++) {
-        double enter[4] = { 0 }, leave[4] = { 0 };
+        double enter[4] = {0}, leave[4] = {0};
         int crossed = 0;
         n = 0;
         for (i = 0; i < c->point_count[f]; i++) {
@@ -873,7 +831,7 @@ static cell *clip(const cell *c, const double plane[4], double side)
     }
     for (n = 0, j = 0; edges > 0 && n < edges; n++) { /* chain the edges, run backwards along the old faces */
         memcpy(r->points[r->face_count][n], from[j], sizeof from[j]);
-        for (i = 0; i < edges && memcmp(from[i], to[j], sizeof to[j]) != 0; i++) { }
+        for (i = 0; i < edges && memcmp(from[i], to[j], sizeof to[j]) != 0; i++) {}
         ck_assert_msg(i < edges, "the cap is not closed (seed %llu)", (unsigned long long)case_seed);
         j = i;
     }
@@ -883,12 +841,12 @@ static cell *clip(const cell *c, const double plane[4], double side)
 }
 
 /* lambdas and triangles (fans) of a cell; returns the number of triangles. */
-static size_t triangulate(const cell *c, double *lambdas, uint32_t *triangles)
-{
+static size_t triangulate(const cell *c, double *lambdas, uint32_t *triangles) {
     size_t t = 0, at = 0;
     int f, i;
     for (f = 0; f < c->face_count; f++) {
-        for (i = 0; i < c->point_count[f]; i++) memcpy(lambdas + 4 * (at + (size_t)i), c->points[f][i], 4 * sizeof *lambdas);
+        for (i = 0; i < c->point_count[f]; i++)
+            memcpy(lambdas + 4 * (at + (size_t)i), c->points[f][i], 4 * sizeof *lambdas);
         for (i = 2; i < c->point_count[f]; i++, t++) {
             triangles[3 * t] = (uint32_t)at;
             triangles[3 * t + 1] = (uint32_t)at + (uint32_t)i - 1;
@@ -900,13 +858,13 @@ static size_t triangulate(const cell *c, double *lambdas, uint32_t *triangles)
 }
 
 /* Mass block by long double tetrahedra about the mean of all corners: density 1, element volume 1. */
-static void cell_oracle(const double *lambdas, const uint32_t *triangles, size_t triangle_count, long double mass[10])
-{
-    long double centre[4] = { 0 }, v[4][4], det;
+static void cell_oracle(const double *lambdas, const uint32_t *triangles, size_t triangle_count, long double mass[10]) {
+    long double centre[4] = {0}, v[4][4], det;
     size_t t, i, j, d;
     memset(mass, 0, 10 * sizeof *mass);
     for (i = 0; i < 3 * triangle_count; i++)
-        for (d = 0; d < 4; d++) centre[d] += lambdas[4 * (size_t)triangles[i] + d] / (3.0L * (long double)triangle_count);
+        for (d = 0; d < 4; d++)
+            centre[d] += lambdas[4 * (size_t)triangles[i] + d] / (3.0L * (long double)triangle_count);
     for (t = 0; t < triangle_count; t++) {
         long double e[3][3];
         size_t at = 0;
@@ -931,8 +889,7 @@ static void cell_oracle(const double *lambdas, const uint32_t *triangles, size_t
 }
 
 /* Smallest eigenvalue of a symmetric 4 x 4 block, by Jacobi rotations. */
-static double smallest_eigenvalue(const double block[10])
-{
+static double smallest_eigenvalue(const double block[10]) {
     double a[4][4], least;
     size_t i, j, k, sweep;
     for (i = 0; i < 4; i++)
@@ -963,16 +920,14 @@ static double smallest_eigenvalue(const double block[10])
     return least;
 }
 
-static void assert_semidefinite(const double mass[10])
-{
+static void assert_semidefinite(const double mass[10]) {
     double trace = mass[0] + mass[4] + mass[7] + mass[9], least = smallest_eigenvalue(mass);
-    ck_assert_msg(trace >= 0 && least >= -2e-14 * trace, "eigenvalue %g of a mass block of trace %g (seed %llu)", least, trace,
-                  (unsigned long long)case_seed);
+    ck_assert_msg(trace >= 0 && least >= -2e-14 * trace, "eigenvalue %g of a mass block of trace %g (seed %llu)", least,
+                  trace, (unsigned long long)case_seed);
 }
 
 /* Mass of a cell for element volume 1 and density 1. */
-static void cell_mass(const cell *c, double mass[10], double load[4], long double oracle[10])
-{
+static void cell_mass(const cell *c, double mass[10], double load[4], long double oracle[10]) {
     static double lambdas[4 * CELL_FACES * FACE_POINTS];
     static uint32_t triangles[3 * CELL_FACES * FACE_POINTS];
     size_t count = triangulate(c, lambdas, triangles);
@@ -984,9 +939,9 @@ static void cell_mass(const cell *c, double mass[10], double load[4], long doubl
     cell_oracle(lambdas, triangles, count, oracle);
 }
 
-/* The same about vertex k, without the triangles in the element's faces through it; returns how many of them there are. */
-static size_t cell_mass_at(const cell *c, unsigned k, double mass[10])
-{
+/* The same about vertex k, without the triangles in the element's faces through it; returns how many of them there are.
+ */
+static size_t cell_mass_at(const cell *c, unsigned k, double mass[10]) {
     static double lambdas[4 * CELL_FACES * FACE_POINTS];
     static uint32_t triangles[3 * CELL_FACES * FACE_POINTS];
     size_t count = triangulate(c, lambdas, triangles), kept = 0, t;
@@ -1006,10 +961,9 @@ static size_t cell_mass_at(const cell *c, unsigned k, double mass[10])
 
 #define CELLS 256
 
-START_TEST(split_by_planes)
-{
-    cell *cells[CELLS] = { NULL };
-    double total[10] = { 0 }, load_total[4] = { 0 }, mass[10], load[4], whole[10];
+START_TEST(split_by_planes) {
+    cell *cells[CELLS] = {NULL};
+    double total[10] = {0}, load_total[4] = {0}, mass[10], load[4], whole[10];
     long double oracle[10];
     size_t left_out = 0;
     unsigned k;
@@ -1055,10 +1009,9 @@ START_TEST(split_by_planes)
 }
 END_TEST
 
-/* The layer between two parallel planes that cross the same edges of the element, of thickness h in the planes' height: a prism
-   upon the cap of the half above the lower plane. NULL if a vertex of the element lies between the planes. */
-static cell *make_layer(const double plane[4], double h)
-{
+/* The layer between two parallel planes that cross the same edges of the element, of thickness h in the planes' height:
+   a prism upon the cap of the half above the lower plane. NULL if a vertex of the element lies between the planes. */
+static cell *make_layer(const double plane[4], double h) {
     cell *whole = whole_cell(), *half = clip(whole, plane, 1), *layer = (cell *)calloc(1, sizeof *layer);
     double upper[4], bottom[4][4], top[4][4];
     int i, j, n, cap, same = 1;
@@ -1071,7 +1024,7 @@ static cell *make_layer(const double plane[4], double h)
     n = half->point_count[cap];
     ck_assert(n == 3 || n == 4);
     for (i = 0; i < n && same; i++) { /* each on an edge: two lambdas are not 0 */
-        const double *p = half->points[cap][i], *end[2] = { NULL, NULL };
+        const double *p = half->points[cap][i], *end[2] = {NULL, NULL};
         for (j = 0; j < 4; j++)
             if (p[j] > 0) end[end[0] != NULL] = corners + 4 * j;
         ck_assert(end[0] && end[1]);
@@ -1098,8 +1051,7 @@ static cell *make_layer(const double plane[4], double h)
 }
 
 /* Layers in general position, 1e-2 ... 1e-18 thick: below 1e-16 nothing but rounding is left. */
-START_TEST(thin_layers_are_semidefinite)
-{
+START_TEST(thin_layers_are_semidefinite) {
     double h = pow(10, -_i), plane[4], mass[10], load[4];
     long double oracle[10];
     int trial, i, above, tested = 0;
@@ -1125,10 +1077,10 @@ START_TEST(thin_layers_are_semidefinite)
 }
 END_TEST
 
-/* Prisms as thick as the last bits of their corners, both ways round: whatever the sum says, it becomes a mass among the corners. */
-START_TEST(parts_of_noise)
-{
-    const uint32_t prism[24] = { 0, 1, 2, 3, 5, 4, 0, 3, 1, 1, 3, 4, 1, 4, 2, 2, 4, 5, 2, 5, 0, 0, 5, 3 };
+/* Prisms as thick as the last bits of their corners, both ways round: whatever the sum says, it becomes a mass among
+ * the corners. */
+START_TEST(parts_of_noise) {
+    const uint32_t prism[24] = {0, 1, 2, 3, 5, 4, 0, 3, 1, 1, 3, 4, 1, 4, 2, 2, 4, 5, 2, 5, 0, 0, 5, 3};
     double lambdas[24], load[4], mass[10], sum;
     int trial, i, j, empty = 0;
     for (trial = 0; trial < 2000; trial++) {
@@ -1138,8 +1090,10 @@ START_TEST(parts_of_noise)
         for (i = 0; i < 3; i++) {
             for (j = 0, sum = 0; j < 4; j++) sum += lambdas[4 * i + j] = random_unit() < 0.3 ? 0 : random_unit();
             for (j = 0; j < 4; j++) {
-                if (!(sum > 0)) lambdas[4 * i + j] = sum = j == i;
-                else lambdas[4 * i + j] /= sum;
+                if (!(sum > 0))
+                    lambdas[4 * i + j] = sum = j == i;
+                else
+                    lambdas[4 * i + j] /= sum;
                 lambdas[4 * (i + 3) + j] = lambdas[4 * i + j] * (1 + random_between(-1, 1) * pow(10, -14 - _i));
             }
         }
@@ -1162,10 +1116,9 @@ START_TEST(parts_of_noise)
 END_TEST
 
 /* Moments made of noise become those of some mass in the box; right moments stay as they are. */
-START_TEST(repair)
-{
+START_TEST(repair) {
     double lower[3], upper[3], mass[10];
-    const double small[3] = { 0.4, 0.4, 0.4 }, noise[] = { 1e-300, 1e-30, 1e-16, 1e-3, 1 };
+    const double small[3] = {0.4, 0.4, 0.4}, noise[] = {1e-300, 1e-30, 1e-16, 1e-3, 1};
     gxi_moments2 m, before;
     size_t i;
     seed_random(first_seed() + (uint64_t)_i);
@@ -1194,19 +1147,18 @@ START_TEST(repair)
 }
 END_TEST
 
-/* A piece of a cut face in an element in space: integrals of lambda_i and lambda_i lambda_j against the surface monomials,
-   lambda_i = lambda_i(origin) + g_i . (x - origin). */
-START_TEST(cut_faces)
-{
-    double x[12], g[12], lambda[3][4], load[4] = { 0 }, mass[10] = { 0 }, n[3], area, moments[10], work[10];
-    mesh m = { { 0 }, { 0 }, 0, 0 };
+/* A piece of a cut face in an element in space: integrals of lambda_i and lambda_i lambda_j against the surface
+   monomials, lambda_i = lambda_i(origin) + g_i . (x - origin). */
+START_TEST(cut_faces) {
+    double x[12], g[12], lambda[3][4], load[4] = {0}, mass[10] = {0}, n[3], area, moments[10], work[10];
+    mesh m = {{0}, {0}, 0, 0};
     gxi_surface s;
     size_t i, j, d, e, at = 0;
     seed_random(first_seed() + (uint64_t)_i);
     random_element(x);
     ck_assert_int_eq(gxi_tet_gradients(x, g, NULL), GX_OK);
     for (i = 0; i < 3; i++) {
-        double sum = 0, p[3] = { 0, 0, 0 };
+        double sum = 0, p[3] = {0, 0, 0};
         for (j = 0; j < 4; j++) sum += lambda[i][j] = random_unit();
         for (j = 0; j < 4; j++) lambda[i][j] /= sum;
         for (j = 0; j < 4; j++)
@@ -1234,10 +1186,10 @@ START_TEST(cut_faces)
 }
 END_TEST
 
-/* The two ways to a part's volume: in its frame times 6 V, and its triangles in space; orientation included, for every k. */
-START_TEST(frames_and_space_agree)
-{
-    double x[12], e[3], lambdas[16], matrix[9], positions[12] = { 0 };
+/* The two ways to a part's volume: in its frame times 6 V, and its triangles in space; orientation included, for every
+ * k. */
+START_TEST(frames_and_space_agree) {
+    double x[12], e[3], lambdas[16], matrix[9], positions[12] = {0};
     unsigned k, axes[3], i, j, d;
     gxi_moments2 m, space;
     mesh part;
@@ -1263,9 +1215,8 @@ END_TEST
 
 /* ---- arguments ---- */
 
-static gx_result moments2_result(const double *positions, size_t position_count, const uint32_t *triangles, size_t triangle_count,
-                                 const double *origin)
-{
+static gx_result moments2_result(const double *positions, size_t position_count, const uint32_t *triangles,
+                                 size_t triangle_count, const double *origin) {
     gxi_surface s;
     gxi_moments2 m, before;
     double moments[30], work[30], one = 42;
@@ -1290,12 +1241,11 @@ static gx_result moments2_result(const double *positions, size_t position_count,
     return result;
 }
 
-START_TEST(bad_surfaces)
-{
-    double p[12] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1 }, bad_origin[3] = { 0, 0, 0 }, m[1], w[1];
-    const double far[3] = { -DBL_MAX, 0, 0 };
-    uint32_t t[12] = { 0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3 };
-    gxi_surface s = { p, 4, t, 4 };
+START_TEST(bad_surfaces) {
+    double p[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, bad_origin[3] = {0, 0, 0}, m[1], w[1];
+    const double far[3] = {-DBL_MAX, 0, 0};
+    uint32_t t[12] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+    gxi_surface s = {p, 4, t, 4};
     ck_assert_int_eq(moments2_result(p, 4, t, 4, NULL), GX_OK);
     ck_assert_int_eq(moments2_result(NULL, 4, t, 4, NULL), GX_ERROR_ARGUMENT);
     ck_assert_int_eq(moments2_result(p, 4, NULL, 4, NULL), GX_ERROR_ARGUMENT);
@@ -1332,12 +1282,11 @@ START_TEST(bad_surfaces)
 END_TEST
 
 /* The largest coordinates that are accepted give finite results, at every degree. */
-START_TEST(accepted_means_finite)
-{
-    double p[12] = { 0 }, moments[1771], work[1771];
+START_TEST(accepted_means_finite) {
+    double p[12] = {0}, moments[1771], work[1771];
     const unsigned degree = (unsigned)_i;
-    uint32_t t[12] = { 0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3 };
-    gxi_surface s = { p, 4, t, 4 };
+    uint32_t t[12] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+    gxi_surface s = {p, 4, t, 4};
     gx_result result;
     size_t i;
     int e, accepted = 0, finite = 1;
@@ -1346,7 +1295,8 @@ START_TEST(accepted_means_finite)
         result = gxi_polyhedron_monomials(&s, NULL, degree, moments, work);
         if (result != GX_OK) break;
         accepted = e;
-        for (i = 0; i < gxi_monomial_count(degree); i++) finite &= gxip_is_finite(moments[i]) && gxip_is_finite(work[i]);
+        for (i = 0; i < gxi_monomial_count(degree); i++)
+            finite &= gxip_is_finite(moments[i]) && gxip_is_finite(work[i]);
         ck_assert(finite);
         ck_assert_int_eq(gxi_surface_flux_monomials(&s, NULL, 0, moments, work), GX_OK);
     }
@@ -1355,10 +1305,9 @@ START_TEST(accepted_means_finite)
 }
 END_TEST
 
-START_TEST(bad_elements)
-{
-    const double flat[12] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0 }, inverted[12] = { 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1 };
-    double x[12] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1 }, g[12], before[12], volume = 42;
+START_TEST(bad_elements) {
+    const double flat[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}, inverted[12] = {0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1};
+    double x[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, g[12], before[12], volume = 42;
     int i;
     for (i = 0; i < 12; i++) g[i] = before[i] = 42;
     ck_assert_int_eq(gxi_tet_gradients(NULL, g, &volume), GX_ERROR_ARGUMENT);
@@ -1377,8 +1326,7 @@ START_TEST(bad_elements)
 }
 END_TEST
 
-START_TEST(bad_parts)
-{
+START_TEST(bad_parts) {
     double lambdas[16];
     uint32_t triangles[12];
     gxi_moments2 m, before;
@@ -1420,8 +1368,7 @@ END_TEST
 /* ---- published values, where present ---- */
 
 /* Format: vertex count, vertices, face count, faces (count, indices: clockwise from inside). */
-static int read_polyhedron(const char *path, mesh *m)
-{
+static int read_polyhedron(const char *path, mesh *m) {
     FILE *file = fopen(path, "r");
     unsigned vertices, polygons, n, v[16], i, j;
     memset(m, 0, sizeof *m);
@@ -1443,18 +1390,16 @@ static int read_polyhedron(const char *path, mesh *m)
 }
 
 /* The number after "NAME =" in a listing. */
-static double listed(const char *text, const char *name)
-{
+static double listed(const char *text, const char *name) {
     const char *at = strstr(text, name);
     ck_assert_msg(at != NULL, "no %s", name);
     return strtod(strchr(at, '=') + 1, NULL);
 }
 
-START_TEST(published_integrals)
-{
-    static const char *const names[3] = { "cube", "icosa", "tetra" };
-    static const char *const seconds[6] = { "Txx =", "Txy =", "Tzx =", "Tyy =", "Tyz =", "Tzz =" };
-    static const char *const firsts[3] = { "Tx =", "Ty =", "Tz =" };
+START_TEST(published_integrals) {
+    static const char *const names[3] = {"cube", "icosa", "tetra"};
+    static const char *const seconds[6] = {"Txx =", "Txy =", "Tzx =", "Tyy =", "Tyz =", "Tzz ="};
+    static const char *const firsts[3] = {"Tx =", "Ty =", "Tz ="};
     const char *data = getenv("GXFEM_DATA");
     char path[1024], text[4096];
     gxi_moments2 r;
@@ -1478,10 +1423,10 @@ START_TEST(published_integrals)
 }
 END_TEST
 
-static Suite *integrate_suite(void)
-{
+static Suite *integrate_suite(void) {
     Suite *suite = suite_create("gxfem_integrate");
-    TCase *moments = tcase_create("moments"), *monomials = tcase_create("monomials"), *surfaces = tcase_create("surfaces");
+    TCase *moments = tcase_create("moments"), *monomials = tcase_create("monomials"),
+          *surfaces = tcase_create("surfaces");
     TCase *elements = tcase_create("elements"), *parts = tcase_create("parts"), *arguments = tcase_create("arguments");
     tcase_add_test(moments, ten_integrals_of_cube);
     tcase_add_test(moments, ten_integrals_of_tetrahedron);
@@ -1524,8 +1469,7 @@ static Suite *integrate_suite(void)
     return suite;
 }
 
-int main(void)
-{
+int main(void) {
     make_gauss();
     return run_suite(integrate_suite());
 }

@@ -1,8 +1,9 @@
-/* test_memory.c - memory runs out. The n-th allocation fails, once or from then on, n = 0, 1, 2 ... until the call succeeds:
-   every failed call returns GX_ERROR_MEMORY and leaves the body's state hash alone, nothing leaks, sizes given back are sizes
-   taken, nothing is written behind a block, and the same call made again gives the topology that it gives without a failure. A call may
-   also succeed all the same (exact coordinates are cached where there is room): then with the same outcome. What fails once is asked of
-   an allocator that has no reallocate, what fails from then on and what fails again and again of one that has.
+/* test_memory.c - memory runs out. The n-th allocation fails, once or from then on, n = 0, 1, 2 ... until the call
+   succeeds: every failed call returns GX_ERROR_MEMORY and leaves the body's state hash alone, nothing leaks, sizes
+   given back are sizes taken, nothing is written behind a block, and the same call made again gives the topology that
+   it gives without a failure. A call may also succeed all the same (exact coordinates are cached where there is room):
+   then with the same outcome. What fails once is asked of an allocator that has no reallocate, what fails from then on
+   and what fails again and again of one that has.
 
    The tests run in one process each (Check's own fork), so they can be run under valgrind with CK_FORK=no. */
 #ifndef GXFEM_LINKED
@@ -14,15 +15,17 @@
 /* ---- an allocator that fails ---- */
 
 typedef struct memory {
-    size_t bytes, blocks;       /* that live */
+    size_t bytes, blocks; /* that live */
     size_t calls;
-    size_t fail_at;             /* this call fails, SIZE_MAX: none does */
+    size_t fail_at; /* this call fails, SIZE_MAX: none does */
     int from_then_on;
-    int grows;                  /* blocks are made larger by the allocator */
-    int failed, wrong, overrun; /* did one fail; was a block given back with another size; was something written behind one */
+    int grows; /* blocks are made larger by the allocator */
+    /* did one fail; was a block given back with another size; was something written behind one */
+    int failed, wrong, overrun;
 } memory;
 
-enum { HEAD = 16, TAIL = 64 };  /* bytes before each block: its size; keeps alignment. Bytes behind it: stay as they are */
+/* bytes before each block: its size; keeps alignment. Bytes behind it: stay as they are */
+enum { HEAD = 16, TAIL = 64 };
 
 static const unsigned char behind = 0xc3;
 
@@ -31,26 +34,33 @@ static void *take(void *user, size_t size) {
     const size_t call = m->calls++;
     char *block;
     if (size == 0) m->wrong = 1;
-    if (call == m->fail_at || (m->from_then_on && call > m->fail_at)) { m->failed = 1; return NULL; }
+    if (call == m->fail_at || (m->from_then_on && call > m->fail_at)) {
+        m->failed = 1;
+        return NULL;
+    }
     block = (char *)malloc(HEAD + size + TAIL);
     if (block == NULL) abort();
     memcpy(block, &size, sizeof size);
-    memset(block + HEAD, 0xa5, size);       /* what is not initialised shows */
+    memset(block + HEAD, 0xa5, size); /* what is not initialised shows */
     memset(block + HEAD + size, behind, TAIL);
     m->bytes += size;
-    ++m->blocks;
+    m->blocks++;
     return block + HEAD;
 }
 
 static void give(void *user, void *block, size_t size) {
     memory *m = (memory *)user;
     size_t taken, i;
-    if (block == NULL) { m->wrong = 1; return; }
+    if (block == NULL) {
+        m->wrong = 1;
+        return;
+    }
     memcpy(&taken, (char *)block - HEAD, sizeof taken);
     if (taken != size) m->wrong = 1;
-    for (i = 0; i < TAIL; ++i) if (((unsigned char *)block)[taken + i] != behind) m->overrun = 1;
+    for (i = 0; i < TAIL; i++)
+        if (((unsigned char *)block)[taken + i] != behind) m->overrun = 1;
     m->bytes -= taken;
-    --m->blocks;
+    m->blocks--;
     memset((char *)block - HEAD, 0x5a, taken + HEAD);
     free((char *)block - HEAD);
 }
@@ -66,7 +76,12 @@ static void *grow(void *user, void *block, size_t size, size_t larger) {
     return moved;
 }
 
-static void fail_from(memory *m, size_t n, int from_then_on) { m->calls = 0; m->fail_at = n; m->from_then_on = from_then_on; m->failed = 0; }
+static void fail_from(memory *m, size_t n, int from_then_on) {
+    m->calls = 0;
+    m->fail_at = n;
+    m->from_then_on = from_then_on;
+    m->failed = 0;
+}
 static void never_fail(memory *m) { fail_from(m, SIZE_MAX, 0); }
 
 static void check_empty(const memory *m, const char *what) {
@@ -77,37 +92,55 @@ static void check_empty(const memory *m, const char *what) {
 
 /* ---- bodies and cuts ---- */
 
-static const double cube[8][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, 1, 0 }, { 0, 0, 1 }, { 1, 0, 1 }, { 0, 1, 1 }, { 1, 1, 1 } };
-static const uint32_t five[20] = { 0, 5, 3, 6, 1, 3, 0, 5, 2, 0, 3, 6, 4, 5, 0, 6, 7, 3, 5, 6 };
-static const double sheet_a[9] = { 0.4, -9, -9, 0.4, 9, -9, 0.4, 0, 19 }, sheet_b[9] = { -9, 0.45, -9, 9, 0.55, -9, 0, 0.5, 19 },
-                    sheet_part[9] = { 0.1, 0.2, 0.6, 0.7, 0.1, 0.65, 0.3, 0.8, 0.7 };
-static const uint32_t one_triangle[3] = { 0, 1, 2 };
-static const double box[24] = { -1, -1, 0.3, 0.6, -1, 0.3, -1, 0.6, 0.3, 0.6, 0.6, 0.3, -1, -1, 0.7, 0.6, -1, 0.7, -1, 0.6, 0.7, 0.6, 0.6, 0.7 };
-static const uint32_t box_triangles[36] = { 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5 };
+static const double cube[8][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0},
+                                  {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}};
+static const uint32_t five[20] = {0, 5, 3, 6, 1, 3, 0, 5, 2, 0, 3, 6, 4, 5, 0, 6, 7, 3, 5, 6};
+static const double sheet_a[9] = {0.4, -9, -9, 0.4, 9, -9, 0.4, 0, 19},
+                    sheet_b[9] = {-9, 0.45, -9, 9, 0.55, -9, 0, 0.5, 19},
+                    sheet_part[9] = {0.1, 0.2, 0.6, 0.7, 0.1, 0.65, 0.3, 0.8, 0.7};
+static const uint32_t one_triangle[3] = {0, 1, 2};
+static const double box[24] = {-1, -1, 0.3, 0.6, -1, 0.3, -1, 0.6, 0.3, 0.6, 0.6, 0.3,
+                               -1, -1, 0.7, 0.6, -1, 0.7, -1, 0.6, 0.7, 0.6, 0.6, 0.7};
+static const uint32_t box_triangles[36] = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                                           2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
 
-static gx_surface surface(const double *vertices, size_t vertex_count, const uint32_t *triangles, size_t triangle_count, uint32_t kind) {
+static gx_surface surface(const double *vertices, size_t vertex_count, const uint32_t *triangles, size_t triangle_count,
+                          uint32_t kind) {
     gx_surface s;
     memset(&s, 0, sizeof s);
-    s.vertices = vertices; s.vertex_count = vertex_count;
-    s.triangles = triangles; s.triangle_count = triangle_count;
+    s.vertices = vertices;
+    s.vertex_count = vertex_count;
+    s.triangles = triangles;
+    s.triangle_count = triangle_count;
     s.kind = kind;
     return s;
 }
 static gx_surface sheet(const double *vertices) { return surface(vertices, 3, one_triangle, 1, GX_SURFACE_SHEET); }
 static gx_surface solid(void) { return surface(box, 8, box_triangles, 12, GX_SURFACE_SOLID); }
 
-typedef struct mesh { const double *positions; size_t node_count; const uint32_t *elements; size_t element_count; } mesh;
-static const mesh cube_mesh = { &cube[0][0], 8, five, 5 };
+typedef struct mesh {
+    const double *positions;
+    size_t node_count;
+    const uint32_t *elements;
+    size_t element_count;
+} mesh;
+static const mesh cube_mesh = {&cube[0][0], 8, five, 5};
 static const mesh *mesh_of_bodies = &cube_mesh;
-static gx_allocator allocator;  /* of the body made last */
+static gx_allocator allocator; /* of the body made last */
 
 static gx_result create(memory *m, gx_body **body) {
     gx_body_desc desc;
     memset(&desc, 0, sizeof desc);
-    desc.positions = mesh_of_bodies->positions; desc.node_count = mesh_of_bodies->node_count;
-    desc.elements = mesh_of_bodies->elements; desc.element_count = mesh_of_bodies->element_count;
-    desc.young = 1e6; desc.poisson = 0.4; desc.density = 1000;
-    allocator.allocate = take; allocator.release = give; allocator.user = m;
+    desc.positions = mesh_of_bodies->positions;
+    desc.node_count = mesh_of_bodies->node_count;
+    desc.elements = mesh_of_bodies->elements;
+    desc.element_count = mesh_of_bodies->element_count;
+    desc.young = 1e6;
+    desc.poisson = 0.4;
+    desc.density = 1000;
+    allocator.allocate = take;
+    allocator.release = give;
+    allocator.user = m;
     allocator.reallocate = m->grows ? grow : NULL;
     desc.allocator = allocator;
     return gx_body_create(&desc, body, NULL);
@@ -120,13 +153,19 @@ static gx_result cut(gx_body *body, const gx_surface *surfaces, size_t count, do
     gx_failure failure;
     gx_result result;
     memset(&desc, 0, sizeof desc);
-    desc.surfaces = surfaces; desc.surface_count = count;
+    desc.surfaces = surfaces;
+    desc.surface_count = count;
     desc.sever_below = sever_below;
-    if (scoped) { desc.scope_fragments = &first; desc.scope_fragment_count = 1; }
+    if (scoped) {
+        desc.scope_fragments = &first;
+        desc.scope_fragment_count = 1;
+    }
     result = gx_body_cut(body, &desc, &report, &failure);
     ck_assert_int_eq(failure.result, (int)result);
-    if (result == GX_ERROR_MEMORY) ck_assert(failure.index == SIZE_MAX && failure.surface == SIZE_MAX);  /* nothing is to blame */
-    if (result == GX_OK && sever_below > 0) ck_assert_uint_gt(report.severed_links, 0);     /* else the test tries nothing */
+    /* nothing is to blame */
+    if (result == GX_ERROR_MEMORY) ck_assert(failure.index == SIZE_MAX && failure.surface == SIZE_MAX);
+    /* else the test tries nothing */
+    if (result == GX_OK && sever_below > 0) ck_assert_uint_gt(report.severed_links, 0);
     return result;
 }
 
@@ -134,16 +173,40 @@ static gx_result cut(gx_body *body, const gx_surface *surfaces, size_t count, do
 
 typedef gx_result (*action)(gx_body *body);
 
-static gx_result cut_sheet(gx_body *body) { gx_surface s = sheet(sheet_a); return cut(body, &s, 1, 0, 0); }
-static gx_result cut_second_sheet(gx_body *body) { gx_surface s = sheet(sheet_b); return cut(body, &s, 1, 0, 0); }
-static gx_result cut_part(gx_body *body) { gx_surface s = sheet(sheet_part); return cut(body, &s, 1, 0, 0); }
-static gx_result cut_solid(gx_body *body) { gx_surface s = solid(); return cut(body, &s, 1, 0, 0); }
-static gx_result cut_scoped(gx_body *body) { gx_surface s = sheet(sheet_b); return cut(body, &s, 1, 0, 1); }
-static gx_result cut_scoped_solid(gx_body *body) { gx_surface s = solid(); return cut(body, &s, 1, 0, 1); }
-static gx_result cut_severing(gx_body *body) { gx_surface s = sheet(sheet_b); return cut(body, &s, 1, 0.4, 0); }
+static gx_result cut_sheet(gx_body *body) {
+    gx_surface s = sheet(sheet_a);
+    return cut(body, &s, 1, 0, 0);
+}
+static gx_result cut_second_sheet(gx_body *body) {
+    gx_surface s = sheet(sheet_b);
+    return cut(body, &s, 1, 0, 0);
+}
+static gx_result cut_part(gx_body *body) {
+    gx_surface s = sheet(sheet_part);
+    return cut(body, &s, 1, 0, 0);
+}
+static gx_result cut_solid(gx_body *body) {
+    gx_surface s = solid();
+    return cut(body, &s, 1, 0, 0);
+}
+static gx_result cut_scoped(gx_body *body) {
+    gx_surface s = sheet(sheet_b);
+    return cut(body, &s, 1, 0, 1);
+}
+static gx_result cut_scoped_solid(gx_body *body) {
+    gx_surface s = solid();
+    return cut(body, &s, 1, 0, 1);
+}
+static gx_result cut_severing(gx_body *body) {
+    gx_surface s = sheet(sheet_b);
+    return cut(body, &s, 1, 0.4, 0);
+}
 static gx_result cut_all(gx_body *body) {
     gx_surface s[4];
-    s[0] = sheet(sheet_a); s[1] = solid(); s[2] = sheet(sheet_b); s[3] = sheet(sheet_part);
+    s[0] = sheet(sheet_a);
+    s[1] = solid();
+    s[2] = sheet(sheet_b);
+    s[3] = sheet(sheet_part);
     return cut(body, s, 4, 0.01, 0);
 }
 
@@ -153,38 +216,57 @@ static gx_result cut_ring(gx_body *body) {
     double vertices[3 * ROUND * (HIGH + 1)];
     uint32_t triangles[6 * ROUND * HIGH], i, j, n = 0;
     gx_surface s;
-    for (j = 0; j <= HIGH; ++j) for (i = 0; i < ROUND; ++i) {
-        double *x = vertices + 3 * (ROUND * j + i);
-        const double radius = 0.1 + 0.013 * j * (HIGH - j);
-        x[0] = 0.511 + radius * cos(6.28318530717958 * i / ROUND); x[1] = 0.497 + radius * sin(6.28318530717958 * i / ROUND); x[2] = 0.41 + 0.04 * j;
-    }
-    for (j = 0; j < HIGH; ++j) for (i = 0; i < ROUND; ++i, n += 6) {
-        const uint32_t a = ROUND * j + i, b = ROUND * j + (i + 1) % ROUND, corners[6] = { a, b, b + ROUND, a, b + ROUND, a + ROUND };
-        memcpy(triangles + n, corners, sizeof corners);
-    }
+    for (j = 0; j <= HIGH; j++)
+        for (i = 0; i < ROUND; i++) {
+            double *x = vertices + 3 * (ROUND * j + i);
+            const double radius = 0.1 + 0.013 * j * (HIGH - j);
+            x[0] = 0.511 + radius * cos(6.28318530717958 * i / ROUND);
+            x[1] = 0.497 + radius * sin(6.28318530717958 * i / ROUND);
+            x[2] = 0.41 + 0.04 * j;
+        }
+    for (j = 0; j < HIGH; j++)
+        for (i = 0; i < ROUND; i, n += 6 ++) {
+            const uint32_t a = ROUND * j + i, b = ROUND * j + (i + 1) % ROUND,
+                           corners[6] = {a, b, b + ROUND, a, b + ROUND, a + ROUND};
+            memcpy(triangles + n, corners, sizeof corners);
+        }
     s = surface(vertices, ROUND * (HIGH + 1), triangles, 2 * ROUND * HIGH, GX_SURFACE_SHEET);
     return cut(body, &s, 1, 0, 0);
 }
-static gx_result look(gx_body *body) { gx_view view; return gx_body_view(body, &view); }
-static gx_result draw(gx_body *body) { gx_skin skin; return gx_body_skin(body, NULL, &skin); }
+static gx_result look(gx_body *body) {
+    gx_view view;
+    return gx_body_view(body, &view);
+}
+static gx_result draw(gx_body *body) {
+    gx_skin skin;
+    return gx_body_skin(body, NULL, &skin);
+}
 static gx_result hold(gx_body *body) {
-    static const gx_region regions[2] = { { 2, 1, 0.9 }, { 0, -1, 0.2 } };
+    static const gx_region regions[2] = {{2, 1, 0.9}, {0, -1, 0.2}};
     return gx_body_hold(body, regions, 2);
 }
 static gx_result hold_and_look(gx_body *body) {
-    static const gx_region region = { 2, 1, 0.8 };
+    static const gx_region region = {2, 1, 0.8};
     gx_result result = gx_body_hold(body, &region, 1);
     return result == GX_OK ? look(body) : result;
 }
 static gx_result step(gx_body *body) {
     gx_step_desc desc;
     memset(&desc, 0, sizeof desc);
-    desc.dt = 0.01; desc.gravity[2] = -9.81;
+    desc.dt = 0.01;
+    desc.gravity[2] = -9.81;
     return gx_body_step(body, &desc, NULL, NULL);
 }
-static gx_result hash(gx_body *body) { gx_result result; gx_body_topology_hash(body, &result); return result; }
+static gx_result hash(gx_body *body) {
+    gx_result result;
+    gx_body_topology_hash(body, &result);
+    return result;
+}
 
-static gx_result motion(gx_body *body) { gx_motion motions[64]; return gx_body_motion(body, motions, 64); }
+static gx_result motion(gx_body *body) {
+    gx_motion motions[64];
+    return gx_body_motion(body, motions, 64);
+}
 
 /* What there is of a copy, if one was made, is right. */
 static gx_result compare_and_destroy(gx_result result, gx_body *body, gx_body *copy) {
@@ -211,7 +293,7 @@ static gx_result save_and_load(gx_body *body) {
     return compare_and_destroy(result, body, copy);
 }
 
-static gx_body *source;         /* what bodies become again; its own memory lasts */
+static gx_body *source; /* what bodies become again; its own memory lasts */
 static gx_result restore(gx_body *body) {
     const uint64_t state = gx_body_state_hash(source);
     const gx_result result = gx_body_restore(body, source);
@@ -223,7 +305,7 @@ static gx_result restore(gx_body *body) {
 static gx_body *prepared(memory *m, const action *before) {
     gx_body *body = NULL;
     ck_assert_int_eq(create(m, &body), GX_OK);
-    for (; *before != NULL; ++before) ck_assert_int_eq((*before)(body), GX_OK);
+    for (; *before != NULL; before++) ck_assert_int_eq((*before)(body), GX_OK);
     return body;
 }
 
@@ -235,21 +317,32 @@ static uint64_t topology(gx_body *body) {
 }
 
 /* What the body is after the action without a failure */
-typedef struct outcome { uint64_t topology, state; size_t cells, copies, fragments; double volume; } outcome;
+typedef struct outcome {
+    uint64_t topology, state;
+    size_t cells, copies, fragments;
+    double volume;
+} outcome;
 
 static outcome outcome_of(gx_body *body) {
     outcome o;
     gx_view view;
     memset(&o, 0, sizeof o);
     ck_assert_int_eq(gx_body_view(body, &view), GX_OK);
-    o.topology = topology(body); o.state = gx_body_state_hash(body);
-    o.cells = view.cell_count; o.copies = view.copy_count; o.fragments = view.fragment_count; o.volume = view.volume;
+    o.topology = topology(body);
+    o.state = gx_body_state_hash(body);
+    o.cells = view.cell_count;
+    o.copies = view.copy_count;
+    o.fragments = view.fragment_count;
+    o.volume = view.volume;
     return o;
 }
 
-static void check_failure(gx_result result, uint64_t before, gx_body *body, const char *what, size_t n, int from_then_on) {
-    ck_assert_msg(result == GX_ERROR_MEMORY, "%s, allocation %zu%s: %s", what, n, from_then_on ? " and on" : "", gx_result_text(result));
-    ck_assert_msg(gx_body_state_hash(body) == before, "%s, allocation %zu%s: the body has changed", what, n, from_then_on ? " and on" : "");
+static void check_failure(gx_result result, uint64_t before, gx_body *body, const char *what, size_t n,
+                          int from_then_on) {
+    ck_assert_msg(result == GX_ERROR_MEMORY, "%s, allocation %zu%s: %s", what, n, from_then_on ? " and on" : "",
+                  gx_result_text(result));
+    ck_assert_msg(gx_body_state_hash(body) == before, "%s, allocation %zu%s: the body has changed", what, n,
+                  from_then_on ? " and on" : "");
 }
 
 static void check_outcome(gx_body *body, const outcome *truth, const char *what, size_t n) {
@@ -305,7 +398,7 @@ static void sweep_stubborn(const char *what, const action *before, action act, c
     never_fail(&m);
     body = prepared(&m, before);
     state = gx_body_state_hash(body);
-    for (n = 0; result != GX_OK; ++n) {
+    for (n = 0; result != GX_OK; n++) {
         fail_from(&m, n, n % 2 == 1);
         result = act(body);
         if (result != GX_OK) check_failure(result, state, body, what, n, n % 2 == 1);
@@ -333,31 +426,35 @@ static void sweep(const char *what, const action *before, action act) {
     sweep_stubborn(what, before, act, &truth);
 }
 
-static const action nothing[] = { NULL }, after_a_cut[] = { cut_sheet, NULL }, after_two[] = { cut_sheet, cut_part, look, NULL },
-                    after_solid[] = { cut_solid, NULL }, after_a_ring[] = { cut_ring, NULL }, held[] = { hold, cut_sheet, step, NULL }, drawn[] = { cut_sheet, draw, NULL },
-                    drawn_and_cut[] = { draw, cut_sheet, draw, cut_second_sheet, NULL };
+static const action nothing[] = {NULL}, after_a_cut[] = {cut_sheet, NULL},
+                    after_two[] = {cut_sheet, cut_part, look, NULL}, after_solid[] = {cut_solid, NULL},
+                    after_a_ring[] = {cut_ring, NULL}, held[] = {hold, cut_sheet, step, NULL},
+                    drawn[] = {cut_sheet, draw, NULL},
+                    drawn_and_cut[] = {draw, cut_sheet, draw, cut_second_sheet, NULL};
 
 START_TEST(creation) {
     int from_then_on;
     size_t n;
-    for (from_then_on = 0; from_then_on < 2; ++from_then_on) for (n = 0;; n = next(n)) {
-        memory m;
-        gx_body *body = NULL;
-        gx_result result;
-        memset(&m, 0, sizeof m);
-        fail_from(&m, n, from_then_on);
-        result = create(&m, &body);
-        if (m.failed) {
-            ck_assert_msg(result == GX_ERROR_MEMORY && body == NULL, "creation, allocation %zu: %s", n, gx_result_text(result));
+    for (from_then_on = 0; from_then_on < 2; from_then_on++)
+        for (n = 0;; n = next(n)) {
+            memory m;
+            gx_body *body = NULL;
+            gx_result result;
+            memset(&m, 0, sizeof m);
+            fail_from(&m, n, from_then_on);
+            result = create(&m, &body);
+            if (m.failed) {
+                ck_assert_msg(result == GX_ERROR_MEMORY && body == NULL, "creation, allocation %zu: %s", n,
+                              gx_result_text(result));
+                check_empty(&m, "creation");
+                continue;
+            }
+            ck_assert_int_eq(result, GX_OK);
+            ck_assert_uint_gt(n, 5);
+            gx_body_destroy(body);
             check_empty(&m, "creation");
-            continue;
+            break;
         }
-        ck_assert_int_eq(result, GX_OK);
-        ck_assert_uint_gt(n, 5);
-        gx_body_destroy(body);
-        check_empty(&m, "creation");
-        break;
-    }
 }
 END_TEST
 
@@ -420,14 +517,14 @@ START_TEST(holding) {
         memset(&m, 0, sizeof m);
         never_fail(&m);
         body = prepared(&m, after_a_cut);
-        for (n = 0; result != GX_OK; ++n) {
+        for (n = 0; result != GX_OK; n++) {
             fail_from(&m, n, 0);
             result = hold_and_look(body);
             ck_assert(result == GX_OK || (m.failed && result == GX_ERROR_MEMORY));
         }
         never_fail(&m);
         ck_assert_int_eq(gx_body_view(body, &view), GX_OK);
-        for (i = 0; i < view.copy_count; ++i) count += view.copy_held[i];
+        for (i = 0; i < view.copy_count; i++) count += view.copy_held[i];
         ck_assert_uint_gt(count, 0);
         gx_body_destroy(body);
         check_empty(&m, "hold and look");
@@ -445,10 +542,13 @@ END_TEST
 static gx_result step_bdf2(gx_body *body) {
     gx_step_desc desc;
     memset(&desc, 0, sizeof desc);
-    desc.dt = 0.01; desc.gravity[2] = -9.81; desc.integrator = GXS_BDF2;
+    desc.dt = 0.01;
+    desc.gravity[2] = -9.81;
+    desc.integrator = GXS_BDF2;
     return gx_body_step(body, &desc, NULL, NULL);
 }
-static const action moved[] = { hold, cut_sheet, look, step_bdf2, cut_solid, NULL }, unmoved[] = { cut_sheet, look, cut_solid, NULL };
+static const action moved[] = {hold, cut_sheet, look, step_bdf2, cut_solid, NULL},
+                    unmoved[] = {cut_sheet, look, cut_solid, NULL};
 
 START_TEST(motions) { sweep("motions", after_a_cut, motion); }
 END_TEST
@@ -463,10 +563,11 @@ END_TEST
 
 /* To a body with other cuts, to one with other state only, to one with room for more than there was */
 START_TEST(restoring) {
-    static const action *const sources[4] = { nothing, moved, moved, moved }, *const bodies[4] = { moved, after_a_cut, moved, unmoved };
+    static const action *const sources[4] = {nothing, moved, moved, moved}, *const bodies[4] = {moved, after_a_cut,
+                                                                                                moved, unmoved};
     memory m;
     int i;
-    for (i = 0; i < 4; ++i) {
+    for (i = 0; i < 4; i++) {
         memset(&m, 0, sizeof m);
         never_fail(&m);
         source = prepared(&m, sources[i]);
@@ -483,12 +584,12 @@ END_TEST
 
 /* A solid takes away the element at corner 1, and its copy of that corner */
 static gx_result cut_corner(gx_body *body) {
-    static const double corner[12] = { -1, -1, 0, 3, 3, 0, 3, -1, 4, 3, -9, -9 };
-    static const uint32_t triangles[12] = { 0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3 };
+    static const double corner[12] = {-1, -1, 0, 3, 3, 0, 3, -1, 4, 3, -9, -9};
+    static const uint32_t triangles[12] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
     gx_surface s = surface(corner, 4, triangles, 4, GX_SURFACE_SOLID);
     return cut(body, &s, 1, 0, 0);
 }
-static const action stepped_and_smaller[] = { step, cut_corner, NULL };
+static const action stepped_and_smaller[] = {step, cut_corner, NULL};
 
 /* A step of a body that has fewer copies than at the step before stays in its memory. */
 START_TEST(step_with_fewer_copies) {
@@ -510,23 +611,33 @@ enum { FAN = 60, FANS_NODES = 2 + 2 * (FAN + 1) };
 static double fan_angle(int fan, double i) { return 0.2 + 2.6 * i / FAN + 3.14159 * fan; }
 
 static gx_result cut_fan(gx_body *body) {
-    double x[9] = { 0, 0, -9, 0, 0, 9, 0, 0, 0.5 };
+    double x[9] = {0, 0, -9, 0, 0, 9, 0, 0, 0.5};
     gx_surface s = sheet(x);
-    x[6] = 3 * cos(fan_angle(0, FAN / 2 + 0.5)); x[7] = 3 * sin(fan_angle(0, FAN / 2 + 0.5));
+    x[6] = 3 * cos(fan_angle(0, FAN / 2 + 0.5));
+    x[7] = 3 * sin(fan_angle(0, FAN / 2 + 0.5));
     return cut(body, &s, 1, 0, 0);
 }
 
 /* A cut through an edge of many elements that fails leaves all of their copies as they were. */
 START_TEST(cut_of_a_fan) {
-    static double x[3 * FANS_NODES] = { 0, 0, 0, 0, 0, 1 };
+    static double x[3 * FANS_NODES] = {0, 0, 0, 0, 0, 1};
     static uint32_t elements[4 * 2 * FAN];
-    static const mesh fans = { x, FANS_NODES, elements, 2 * FAN };
+    static const mesh fans = {x, FANS_NODES, elements, 2 * FAN};
     uint32_t n = 2, *e = elements;
     int fan, i;
-    for (fan = 0; fan < 2; ++fan) for (i = 0; i <= FAN; ++i, ++n) {
-        x[3 * n] = cos(fan_angle(fan, i)); x[3 * n + 1] = sin(fan_angle(fan, i)); x[3 * n + 2] = 0.5;
-        if (i > 0) { e[0] = 0; e[1] = n - 1; e[2] = n; e[3] = 1; e += 4; }
-    }
+    for (fan = 0; fan < 2; fan++)
+        for (i = 0; i <= FAN; i++, n++) {
+            x[3 * n] = cos(fan_angle(fan, i));
+            x[3 * n + 1] = sin(fan_angle(fan, i));
+            x[3 * n + 2] = 0.5;
+            if (i > 0) {
+                e[0] = 0;
+                e[1] = n - 1;
+                e[2] = n;
+                e[3] = 1;
+                e += 4;
+            }
+        }
     mesh_of_bodies = &fans;
     sweep("a sheet in a fan", nothing, cut_fan);
     mesh_of_bodies = &cube_mesh;
@@ -535,7 +646,7 @@ END_TEST
 
 /* A model that there is no memory for does not keep the body from stepping: it moves as if none had been asked for. */
 START_TEST(step_after_a_failed_model) {
-    static const action one_step[] = { step, NULL }, two_steps[] = { step, step, NULL };
+    static const action one_step[] = {step, NULL}, two_steps[] = {step, step, NULL};
     gxs_model model;
     memory m;
     gx_body *body;
@@ -548,23 +659,24 @@ START_TEST(step_after_a_failed_model) {
     body = prepared(&m, two_steps);
     state = gx_body_state_hash(body);
     gx_body_destroy(body);
-    for (from_then_on = 0; from_then_on < 2; ++from_then_on) for (n = 0, result = GX_ERROR_MEMORY; result != GX_OK; n = next(n)) {
-        body = prepared(&m, one_step);
-        fail_from(&m, n, from_then_on);
-        result = gx_body_model(body, &model);
-        ck_assert_int_eq(result, m.failed ? GX_ERROR_MEMORY : GX_OK);
-        never_fail(&m);
-        ck_assert_int_eq(step(body), GX_OK);
-        ck_assert_msg(gx_body_state_hash(body) == state, "allocation %zu: another motion", n);
-        gx_body_destroy(body);
-        check_empty(&m, "a step after a model");
-    }
+    for (from_then_on = 0; from_then_on < 2; from_then_on++)
+        for (n = 0, result = GX_ERROR_MEMORY; result != GX_OK; n = next(n)) {
+            body = prepared(&m, one_step);
+            fail_from(&m, n, from_then_on);
+            result = gx_body_model(body, &model);
+            ck_assert_int_eq(result, m.failed ? GX_ERROR_MEMORY : GX_OK);
+            never_fail(&m);
+            ck_assert_int_eq(step(body), GX_OK);
+            ck_assert_msg(gx_body_state_hash(body) == state, "allocation %zu: another motion", n);
+            gx_body_destroy(body);
+            check_empty(&m, "a step after a model");
+        }
 }
 END_TEST
 
 START_TEST(solidifying) {
-    static const double square[12] = { 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0 };
-    static const uint32_t two[6] = { 0, 1, 2, 0, 2, 3 };
+    static const double square[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+    static const uint32_t two[6] = {0, 1, 2, 0, 2, 3};
     gx_surface s = surface(square, 4, two, 2, GX_SURFACE_SHEET);
     gx_result result = GX_ERROR_MEMORY;
     memory m;
@@ -573,8 +685,11 @@ START_TEST(solidifying) {
     uint32_t triangles[48];
     size_t n, v = 99, t = 98;
     memset(&m, 0, sizeof m);
-    a.allocate = take; a.release = give; a.user = &m; a.reallocate = NULL;
-    for (n = 0; result != GX_OK; ++n) {
+    a.allocate = take;
+    a.release = give;
+    a.user = &m;
+    a.reallocate = NULL;
+    for (n = 0; result != GX_OK; n++) {
         fail_from(&m, n, 0);
         result = gx_surface_solidify(&s, 0.1, vertices, &v, triangles, &t, &a);
         if (!m.failed) continue;

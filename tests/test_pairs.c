@@ -1,9 +1,10 @@
-/* test_pairs.c - a closed surface and another one, closed or open: union, intersection, difference and symmetric difference, or the first divided
-   by the second, beside the exact oracle (boolean_oracle.h); what is too large for it beside what must be true of volumes, and beside the same
-   with axes exchanged. A first surface that is open has to be refused, with a triangle at its rim.
+/* test_pairs.c - a closed surface and another one, closed or open: union, intersection, difference and symmetric
+   difference, or the first divided by the second, beside the exact oracle (boolean_oracle.h); what is too large for it
+   beside what must be true of volumes, and beside the same with axes exchanged. A first surface that is open has to be
+   refused, with a triangle at its rim.
 
-   GXFEM_DATA (environment): a data folder; the pairs in its folder boolean/ are taken too: MCUT's benchmark, and three of manifold's tests, whose
-   difference is known from CGAL's corefinement. GXFEM_VERBOSE: what each pair gives. */
+   GXFEM_DATA (environment): a data folder; the pairs in its folder boolean/ are taken too: MCUT's benchmark, and three
+   of manifold's tests, whose difference is known from CGAL's corefinement. GXFEM_VERBOSE: what each pair gives. */
 #define GXFEM_BOOLEAN_IMPLEMENTATION
 #include "../gxfem_boolean.h"
 #include "../examples/gxio.h"
@@ -12,15 +13,18 @@
 
 enum { PLANES = 80, PIECES = 60000, MCUT_PAIRS = 32 };
 enum { UNION, INTERSECTION, DIFFERENCE, SYMMETRIC, SPLIT, OPERATIONS };
-static const char *const operation_names[OPERATIONS] = {"union", "intersection", "difference", "symmetric difference", "split"};
-static const uint32_t operations[OPERATIONS] = {GXB_UNION, GXB_INTERSECTION, GXB_DIFFERENCE, GXB_SYMMETRIC_DIFFERENCE, GXB_SPLIT};
+static const char *const operation_names[OPERATIONS] = {"union", "intersection", "difference", "symmetric difference",
+                                                        "split"};
+static const uint32_t operations[OPERATIONS] = {GXB_UNION, GXB_INTERSECTION, GXB_DIFFERENCE, GXB_SYMMETRIC_DIFFERENCE,
+                                                GXB_SPLIT};
 
 typedef struct pair {
     const char *first, *second;
-    size_t components;      /* of the difference; 0: not known */
+    size_t components; /* of the difference; 0: not known */
     double volume;
 } pair;
 
+/* clang-format off */
 static const pair generated[] = {
     {"box:0,0,0,1,1,1", "box:0.5,0.25,0,2,0.75,1", 1, 0.75},           /* two faces in common planes */
     {"box:0,0,0,1,1,1", "box:0.25,-1,-1,0.5,2,2", 2, 0.75},
@@ -30,36 +34,43 @@ static const pair generated[] = {
     {"box:0,0,0,1,1,1", "plane:0.5,0.5,0.5,1,2,3", 0, 0},
     {"box:0,0,0,1,1,1", "wave:0.5,0.5,0.5,1,0,0,0.3,1,4", 0, 0},
     {"plane:0.5,0.5,0.5,1,2,3", "box:0,0,0,1,1,1", 0, 0}};
+/* clang-format on */
 enum { GENERATED = sizeof generated / sizeof generated[0] };
 
+/* clang-format off */
 static const pair manifold[] = {
     {"Cray_left", "Cray_right", 1, 982418629455.2062},
     {"Havocglass8_left", "Havocglass8_right", 5, 2710897.8084396427},
     {"Offset3", "Offset4", 1, 9415.249424127097}};
+/* clang-format on */
 enum { MANIFOLD = sizeof manifold / sizeof manifold[0] };
 
 static int is_told(void) { return getenv("GXFEM_VERBOSE") != NULL; }
 
 /* ---- closed? ---- */
 
-typedef struct side { double from[3], to[3]; size_t triangle; int turned; } side;
+typedef struct side {
+    double from[3], to[3];
+    size_t triangle;
+    int turned;
+} side;
 
-static int compare_ends(const void *a, const void *b)
-{
+static int compare_ends(const void *a, const void *b) {
     const side *x = (const side *)a, *y = (const side *)b;
-    const double *p = x->from, *q = y->from;    /* from and to stand behind one another */
+    const double *p = x->from, *q = y->from; /* from and to stand behind one another */
     int k;
-    for (k = 0; k < 6; k++) if (p[k] != q[k]) return p[k] < q[k] ? -1 : 1;
+    for (k = 0; k < 6; k++)
+        if (p[k] != q[k]) return p[k] < q[k] ? -1 : 1;
     return 0;
 }
 
 /* A triangle's edges from the lower to the higher end, edges of no length left out. Returns how many. */
-static size_t sides_of(const gxio_surface *s, size_t triangle, side *sides)
-{
+static size_t sides_of(const gxio_surface *s, size_t triangle, side *sides) {
     size_t k, n = 0;
     int j;
     for (k = 0; k < 3; k++) {
-        const double *a = s->vertices + 3 * (size_t)s->triangles[3 * triangle + k], *b = s->vertices + 3 * (size_t)s->triangles[3 * triangle + (k + 1) % 3];
+        const double *a = s->vertices + 3 * (size_t)s->triangles[3 * triangle + k],
+                     *b = s->vertices + 3 * (size_t)s->triangles[3 * triangle + (k + 1) % 3];
         int order = 0;
         for (j = 0; j < 3 && order == 0; j++) order = (a[j] > b[j]) - (a[j] < b[j]);
         if (order == 0) continue;
@@ -74,8 +85,7 @@ static size_t sides_of(const gxio_surface *s, size_t triangle, side *sides)
 }
 
 /* rim: of each triangle, whether an edge of it is passed more often one way than the other. Returns how many are. */
-static size_t find_rim(const gxio_surface *s, unsigned char *rim)
-{
+static size_t find_rim(const gxio_surface *s, unsigned char *rim) {
     side *sides = (side *)calloc(3 * s->triangle_count + 1, sizeof *sides);
     size_t n = 0, i, from, found = 0;
     ck_assert_ptr_nonnull(sides);
@@ -91,8 +101,7 @@ static size_t find_rim(const gxio_surface *s, unsigned char *rim)
     return found;
 }
 
-static int is_closed(const gxio_surface *s)
-{
+static int is_closed(const gxio_surface *s) {
     unsigned char *rim = (unsigned char *)calloc(s->triangle_count + 1, 1);
     size_t found;
     ck_assert_ptr_nonnull(rim);
@@ -103,20 +112,24 @@ static int is_closed(const gxio_surface *s)
 
 /* ---- the kernel ---- */
 
-typedef struct answer { size_t components; long euler; double volume; } answer;
+typedef struct answer {
+    size_t components;
+    long euler;
+    double volume;
+} answer;
 
-static gxb_operand operand_of(const gxio_surface *s, uint32_t operation)
-{
+static gxb_operand operand_of(const gxio_surface *s, uint32_t operation) {
     gxb_operand o;
     memset(&o, 0, sizeof o);
-    o.vertices = s->vertices; o.vertex_count = s->vertex_count;
-    o.triangles = s->triangles; o.triangle_count = s->triangle_count;
+    o.vertices = s->vertices;
+    o.vertex_count = s->vertex_count;
+    o.triangles = s->triangles;
+    o.triangle_count = s->triangle_count;
     o.operation = operation;
     return o;
 }
 
-static answer combine(const gxio_surface *s, size_t count, uint32_t operation)
-{
+static answer combine(const gxio_surface *s, size_t count, uint32_t operation) {
     gxb_boolean *b = NULL;
     gxb_boolean_result r;
     gxb_components c;
@@ -141,8 +154,7 @@ static answer combine(const gxio_surface *s, size_t count, uint32_t operation)
 }
 
 /* An open surface is no solid: refused, with one of the triangles at its rim. */
-static void check_refused(const gxio_surface *s)
-{
+static void check_refused(const gxio_surface *s) {
     const gxb_operand o = operand_of(s, GXB_UNION);
     unsigned char *rim = (unsigned char *)calloc(s->triangle_count + 1, 1);
     gxb_boolean *b = NULL;
@@ -159,8 +171,7 @@ static void check_refused(const gxio_surface *s)
 
 /* ---- the truth ---- */
 
-static int counts_inside(void *user, const int32_t *winding, size_t count)
-{
+static int counts_inside(void *user, const int32_t *winding, size_t count) {
     const int a = winding[0] != 0, b = winding[1] != 0;
     (void)count;
     switch (*(const int *)user) {
@@ -173,18 +184,20 @@ static int counts_inside(void *user, const int32_t *winding, size_t count)
 }
 
 /* 0: too large for the oracle */
-static int ask_oracle(const gxio_surface *s, int operation, truth *t)
-{
+static int ask_oracle(const gxio_surface *s, int operation, truth *t) {
     oracle_surface surface[2];
     size_t vertex_count[2], i;
     truth_question q;
     for (i = 0; i < 2; i++) {
         surface[i].vertices = s[i].vertices;
-        surface[i].triangles = s[i].triangles; surface[i].triangle_count = s[i].triangle_count;
+        surface[i].triangles = s[i].triangles;
+        surface[i].triangle_count = s[i].triangle_count;
         surface[i].solid = i == 0 || operation != SPLIT;
         vertex_count[i] = s[i].vertex_count;
     }
-    q.surface = surface; q.vertex_count = vertex_count; q.count = 2;
+    q.surface = surface;
+    q.vertex_count = vertex_count;
+    q.count = 2;
     q.planes = PLANES;
     q.pieces = PIECES;
     q.inside = counts_inside;
@@ -195,8 +208,7 @@ static int ask_oracle(const gxio_surface *s, int operation, truth *t)
 /* Volumes are promised to 1e-7 of themselves. */
 static void check_near(double x, double y, double size) { ck_assert_double_le(fabs(x - y), 4e-7 * size); }
 
-static void exchange_axes(gxio_surface *s)
-{
+static void exchange_axes(gxio_surface *s) {
     size_t i;
     for (i = 0; i < s->vertex_count; i++) {
         double *x = s->vertices + 3 * i, first = x[0];
@@ -207,8 +219,7 @@ static void exchange_axes(gxio_surface *s)
 }
 
 /* What is true of any operands, though no oracle knows the numbers */
-static void check_volumes(gxio_surface *s, const answer *a)
-{
+static void check_volumes(gxio_surface *s, const answer *a) {
     const answer first = combine(s, 1, GXB_UNION), second = combine(s + 1, 1, GXB_UNION);
     const double size = first.volume + second.volume;
     int operation;
@@ -225,8 +236,7 @@ static void check_volumes(gxio_surface *s, const answer *a)
     }
 }
 
-static answer check_operation(const gxio_surface *s, int operation, int *asked)
-{
+static answer check_operation(const gxio_surface *s, int operation, int *asked) {
     const answer a = combine(s, 2, operations[operation]);
     truth t;
     ck_assert_int_eq(a.euler % 2, 0);
@@ -236,26 +246,26 @@ static answer check_operation(const gxio_surface *s, int operation, int *asked)
         ck_assert_int_eq(a.euler, t.euler);
         check_near(a.volume, t.volume, t.volume);
     }
-    if (is_told()) printf("  %-20s %3zu components, volume %.17g, Euler characteristic %ld%s\n", operation_names[operation], a.components, a.volume, a.euler,
-        *asked ? ": as the oracle says" : "");
+    if (is_told())
+        printf("  %-20s %3zu components, volume %.17g, Euler characteristic %ld%s\n", operation_names[operation],
+               a.components, a.volume, a.euler, *asked ? ": as the oracle says" : "");
     return a;
 }
 
-static void load(const char *spec, gxio_surface *s)
-{
+static void load(const char *spec, gxio_surface *s) {
     const gxio_box box = {{0, 0, 0}, {1, 1, 1}};
     gxio_error error;
     if (!gxio_surface_load(spec, &box, s, &error)) ck_abort_msg("%s", error.text);
 }
 
-static void check_pair(const pair *p)
-{
+static void check_pair(const pair *p) {
     gxio_surface s[2];
     answer a[OPERATIONS];
     int operation, asked = 1, all = 1;
     load(p->first, &s[0]);
     load(p->second, &s[1]);
-    if (is_told()) printf("%s, %s: %zu + %zu triangles\n", p->first, p->second, s[0].triangle_count, s[1].triangle_count);
+    if (is_told())
+        printf("%s, %s: %zu + %zu triangles\n", p->first, p->second, s[0].triangle_count, s[1].triangle_count);
     if (!is_closed(&s[0])) {
         check_refused(&s[0]);
         if (is_told()) printf("  the first is open: refused\n");
@@ -273,7 +283,9 @@ static void check_pair(const pair *p)
             ck_assert_double_le(fabs(a[DIFFERENCE].volume - p->volume), 1e-12 * p->volume);
         }
         check_volumes(s, a);
-        if (is_told() && !all) printf("  checked by volumes and by axes exchanged%s\n", p->components ? ", and against what is known" : "");
+        if (is_told() && !all)
+            printf("  checked by volumes and by axes exchanged%s\n",
+                   p->components ? ", and against what is known" : "");
     }
     gxio_surface_release(&s[0]);
     gxio_surface_release(&s[1]);
@@ -281,10 +293,10 @@ static void check_pair(const pair *p)
 
 /* ---- tests ---- */
 
-START_TEST(generated_pairs) { check_pair(&generated[_i]); } END_TEST
+START_TEST(generated_pairs) { check_pair(&generated[_i]); }
+END_TEST
 
-START_TEST(mcut_pairs)
-{
+START_TEST(mcut_pairs) {
     char path[2][1024];
     pair p;
     memset(&p, 0, sizeof p);
@@ -296,8 +308,7 @@ START_TEST(mcut_pairs)
 }
 END_TEST
 
-START_TEST(manifold_pairs)
-{
+START_TEST(manifold_pairs) {
     char path[2][1024];
     pair p = manifold[_i];
     snprintf(path[0], sizeof path[0], "%s/boolean/manifold_%s.obj", getenv("GXFEM_DATA"), p.first);
@@ -308,8 +319,7 @@ START_TEST(manifold_pairs)
 }
 END_TEST
 
-int main(void)
-{
+int main(void) {
     Suite *suite = suite_create("pairs");
     TCase *tests = tcase_create("pairs");
     int result;

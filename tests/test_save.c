@@ -1,6 +1,6 @@
-/* test_save.c - saved, loaded, cloned and restored bodies: nothing that one can ask of them differs, later cuts give the same cells,
-   later steps the same bits. Damaged and hostile bytes: an error, or a body that can be used, but never a crash; run it with
-   make sanitize, too. */
+/* test_save.c - saved, loaded, cloned and restored bodies: nothing that one can ask of them differs, later cuts give
+   the same cells, later steps the same bits. Damaged and hostile bytes: an error, or a body that can be used, but never
+   a crash; run it with make sanitize, too. */
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "body.h"
@@ -10,15 +10,18 @@
 static void shake(gx_body *body, double size) {
     gx_view v = view_of(body);
     size_t i;
-    for (i = 0; i < 3 * v.copy_count; ++i) { v.displacement[i] = random_real(-size, size); v.velocity[i] = random_real(-size, size); }
-    for (i = 0; i < v.copy_count; ++i) v.rest_time[i] = random_real(0, 1);
+    for (i = 0; i < 3 * v.copy_count; i++) {
+        v.displacement[i] = random_real(-size, size);
+        v.velocity[i] = random_real(-size, size);
+    }
+    for (i = 0; i < v.copy_count; i++) v.rest_time[i] = random_real(0, 1);
 }
 
 /* Texture coordinates for any mesh or surface, rounded so that they are no exact numbers */
 static const float *texture(void) {
     static float t[4096];
     size_t i;
-    for (i = 0; i < 4096; ++i) t[i] = (float)sin(0.37 * (double)i);
+    for (i = 0; i < 4096; i++) t[i] = (float)sin(0.37 * (double)i);
     return t;
 }
 
@@ -28,11 +31,13 @@ static void cut_textured(gx_body *body, const workload *w, size_t surface, int t
     memset(&cut, 0, sizeof cut);
     ck_assert_uint_le(2 * s.vertex_count, 4096);
     s.texture = textured ? texture() : NULL;
-    cut.surfaces = &s; cut.surface_count = 1;
+    cut.surfaces = &s;
+    cut.surface_count = 1;
     ck_assert_int_eq(gx_body_cut(body, &cut, NULL, NULL), GX_OK);
 }
 
-/* A body cut by the first surfaces, some at once, some with textures, with looks in between now and then; the rest is spare. */
+/* A body cut by the first surfaces, some at once, some with textures, with looks in between now and then; the rest is
+ * spare. */
 static gx_body *random_body(workload *w, int cuts, int spare) {
     gx_body_desc desc = desc_of(w);
     gx_body *body = NULL;
@@ -40,10 +45,12 @@ static gx_body *random_body(workload *w, int cuts, int spare) {
     int k;
     desc.texture = random_below(2) ? texture() : NULL;
     ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
-    for (k = 0; k < cuts + spare; ++k) add_random_cut(w, 1);
-    for (i = 0; i < (size_t)cuts; ++i) {
-        if (i + 1 < (size_t)cuts && random_below(3) == 0) cut_by(body, w, i++, 2);
-        else cut_textured(body, w, i, random_below(2));
+    for (k = 0; k < cuts + spare; k++) add_random_cut(w, 1);
+    for (i = 0; i < (size_t)cuts; i++) {
+        if (i + 1 < (size_t)cuts && random_below(3) == 0)
+            cut_by(body, w, i++, 2);
+        else
+            cut_textured(body, w, i, random_below(2));
         if (random_below(2)) view_of(body);
     }
     return body;
@@ -51,13 +58,18 @@ static gx_body *random_body(workload *w, int cuts, int spare) {
 
 static gx_result hold_low(gx_body *body, double value) {
     gx_region region;
-    region.axis = 2; region.side = -1; region.value = value;
+    region.axis = 2;
+    region.side = -1;
+    region.value = value;
     return gx_body_hold(body, &region, 1);
 }
 
 /* ---- bytes ---- */
 
-typedef struct bytes { unsigned char *data; size_t size; } bytes;
+typedef struct bytes {
+    unsigned char *data;
+    size_t size;
+} bytes;
 
 static bytes saved(gx_body *body) {
     bytes b;
@@ -101,7 +113,8 @@ static gx_body *twin_of(gx_body *body, int by_bytes) {
 
 static void expect_equal_views(gx_body *a, gx_body *b, uint64_t seed) {
     gx_view p = view_of(a), q = view_of(b);
-    CHECK_SEED(p.cell_count == q.cell_count && p.copy_count == q.copy_count && p.fragment_count == q.fragment_count, seed);
+    CHECK_SEED(p.cell_count == q.cell_count && p.copy_count == q.copy_count && p.fragment_count == q.fragment_count,
+               seed);
     SAME(p.cell_element, q.cell_element, p.cell_count);
     SAME(p.cell_copies, q.cell_copies, 4 * p.cell_count);
     SAME(p.cell_volume, q.cell_volume, p.cell_count);
@@ -170,55 +183,64 @@ START_TEST(random_bodies) {
     again = saved(copy);
     CHECK_SEED(again.size == b.size && memcmp(again.data, b.data, b.size) == 0, seed);
     expect_equal(body, copy, seed);
-    for (k = 0; k < 3; ++k) {           /* further cuts */
+    for (k = 0; k < 3; k++) { /* further cuts */
         cut_textured(body, &w, w.surface_count - 1 - k, k == 0);
         cut_textured(copy, &w, w.surface_count - 1 - k, k == 0);
-        if (k != 1) expect_equal(body, copy, seed);     /* once without a look */
+        if (k != 1) expect_equal(body, copy, seed); /* once without a look */
     }
-    free(b.data); free(again.data);
-    gx_body_destroy(body); gx_body_destroy(copy);
+    free(b.data);
+    free(again.data);
+    gx_body_destroy(body);
+    gx_body_destroy(copy);
     wl_free(&w);
 }
 END_TEST
 
 /* Planes of no triangle, through points made for them, near and far from the origin; further cuts */
 START_TEST(many_triangles_in_an_element) {
-    static const double sizes[3] = { 1, 1e-3, 1e6 }, offsets[3] = { 0, 12345678.9, -3e7 };
+    static const double sizes[3] = {1, 1e-3, 1e6}, offsets[3] = {0, 12345678.9, -3e7};
     workload w = grid(1, 1, 1, 5);
     gx_body *body, *copy;
     size_t i, k;
-    add_cap(&w, 12, 0); add_cap(&w, 6, 1); add_axis_plane(&w, 2, 0.4);
-    for (i = 0; i < 3 * w.node_count; ++i) w.positions[i] = offsets[_i] + sizes[_i] * w.positions[i];
-    for (k = 0; k < w.surface_count; ++k)
-        for (i = 0; i < 3 * w.surfaces[k].vertex_count; ++i) w.surfaces[k].vertices[i] = offsets[_i] + sizes[_i] * w.surfaces[k].vertices[i];
+    add_cap(&w, 12, 0);
+    add_cap(&w, 6, 1);
+    add_axis_plane(&w, 2, 0.4);
+    for (i = 0; i < 3 * w.node_count; i++) w.positions[i] = offsets[_i] + sizes[_i] * w.positions[i];
+    for (k = 0; k < w.surface_count; k++)
+        for (i = 0; i < 3 * w.surfaces[k].vertex_count; i++)
+            w.surfaces[k].vertices[i] = offsets[_i] + sizes[_i] * w.surfaces[k].vertices[i];
     body = body_of(&w);
     cut_by(body, &w, 0, 1);
     ck_assert_uint_gt(free_planes(body), 2);
     copy = twin_of(body, 1);
     expect_equal(body, copy, (uint64_t)_i);
-    for (k = 1; k < 3; ++k) {
+    for (k = 1; k < 3; k++) {
         cut_by(body, &w, k, 1);
         cut_by(copy, &w, k, 1);
         expect_equal(body, copy, (uint64_t)_i);
     }
-    gx_body_destroy(body); gx_body_destroy(copy);
+    gx_body_destroy(body);
+    gx_body_destroy(copy);
     wl_free(&w);
 }
 END_TEST
 
 /* The frame of the complex shifts and scales: given coordinates must come back as they were. */
 START_TEST(far_and_small_bodies) {
-    static const double sizes[6] = { 1, 1e-6, 1e6, 1e-30, 4e-31, 6e29 }, offsets[6] = { 1e8, 0.3, 12345678.9, 0, 0, 0 };
+    static const double sizes[6] = {1, 1e-6, 1e6, 1e-30, 4e-31, 6e29}, offsets[6] = {1e8, 0.3, 12345678.9, 0, 0, 0};
     size_t i, k;
     workload w = grid(2, 2, 1, 5);
     gx_body *body, *copy;
-    double p[3] = { 0.9, 1.1, 0.4 }, n[3] = { 0.3, 1, 0.2 };
+    double p[3] = {0.9, 1.1, 0.4}, n[3] = {0.3, 1, 0.2};
     const double h = sizes[_i], x0 = offsets[_i];
     add_plane(&w, p, n, 2);
-    p[0] = 1.3; n[2] = -3;
+    p[0] = 1.3;
+    n[2] = -3;
     add_plane(&w, p, n, 2);
-    for (i = 0; i < 3 * w.node_count; ++i) w.positions[i] = x0 + h * w.positions[i];
-    for (k = 0; k < w.surface_count; ++k) for (i = 0; i < 3 * w.surfaces[k].vertex_count; ++i) w.surfaces[k].vertices[i] = x0 + h * w.surfaces[k].vertices[i];
+    for (i = 0; i < 3 * w.node_count; i++) w.positions[i] = x0 + h * w.positions[i];
+    for (k = 0; k < w.surface_count; k++)
+        for (i = 0; i < 3 * w.surfaces[k].vertex_count; i++)
+            w.surfaces[k].vertices[i] = x0 + h * w.surfaces[k].vertices[i];
     body = body_of(&w);
     cut_by(body, &w, 0, 1);
     copy = twin_of(body, 1);
@@ -227,25 +249,29 @@ START_TEST(far_and_small_bodies) {
     cut_by(copy, &w, 1, 1);
     expect_equal_cells(body, copy, (uint64_t)_i);
     ck_assert_uint_gt(view_of(body).fragment_count, 2);
-    gx_body_destroy(body); gx_body_destroy(copy);
+    gx_body_destroy(body);
+    gx_body_destroy(copy);
     wl_free(&w);
 }
 END_TEST
 
 /* Where elements meet in an edge or a node only, walls of edges and nodes are part of the complex. */
 START_TEST(pinched_bodies) {
-    static const double x[8][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { -1, 0, 0 }, { 0, -1, 0 }, { 0, -1, 1 }, { -1, 0, 1 } };
+    static const double x[8][3] = {{0, 0, 0},  {1, 0, 0},  {0, 1, 0},  {0, 0, 1},
+                                   {-1, 0, 0}, {0, -1, 0}, {0, -1, 1}, {-1, 0, 1}};
     workload w = wl_empty();
     gx_body *body, *copy;
     int i;
-    for (i = 0; i < 8; ++i) wl_add_node(&w, x[i][0], x[i][1], x[i][2]);
+    for (i = 0; i < 8; i++) wl_add_node(&w, x[i][0], x[i][1], x[i][2]);
     wl_add_element(&w, 0, 1, 2, 3);
-    if (_i == 0) wl_add_element(&w, 0, 4, 5, 3);        /* the edge 03 */
-    else wl_add_element(&w, 0, 4, 5, 6);                /* the node 0 */
+    if (_i == 0)
+        wl_add_element(&w, 0, 4, 5, 3); /* the edge 03 */
+    else
+        wl_add_element(&w, 0, 4, 5, 6); /* the node 0 */
     add_plane(&w, x[0], x[1], 0.5);
     add_axis_plane(&w, 2, 0.25);
     body = body_of(&w);
-    for (i = 0; i < 2; ++i) {
+    for (i = 0; i < 2; i++) {
         cut_by(body, &w, (size_t)i, 1);
         copy = twin_of(body, 1);
         expect_equal_cells(body, copy, (uint64_t)_i);
@@ -262,42 +288,49 @@ END_TEST
 
 /* ---- steps ---- */
 
-typedef struct custom { double stiffness; int calls; } custom;
+typedef struct custom {
+    double stiffness;
+    int calls;
+} custom;
 
 /* stiffness/2 |F - 1|^2 */
 static double custom_energy(void *user, const double *f, double *stress, double *hessian) {
     custom *c = (custom *)user;
     double energy = 0;
     int i;
-    ++c->calls;
-    for (i = 0; i < 9; ++i) {
+    c->calls++;
+    for (i = 0; i < 9; i++) {
         const double d = f[i] - (i % 4 == 0);
         energy += 0.5 * c->stiffness * d * d;
         if (stress) stress[i] = c->stiffness * d;
-        if (hessian) { memset(hessian + 9 * i, 0, 9 * sizeof *hessian); hessian[10 * i] = c->stiffness; }
+        if (hessian) {
+            memset(hessian + 9 * i, 0, 9 * sizeof *hessian);
+            hessian[10 * i] = c->stiffness;
+        }
     }
     return energy;
 }
 
 static void expect_same_steps(gx_body *a, gx_body *b, const gx_step_desc *step, int count, uint64_t seed) {
     int i;
-    for (i = 0; i < count; ++i) {
+    for (i = 0; i < count; i++) {
         gx_step_report p, q;
         ck_assert_int_eq(gx_body_step(a, step, &p, NULL), GX_OK);
         ck_assert_int_eq(gx_body_step(b, step, &q, NULL), GX_OK);
-        CHECK_SEED(p.cg_iterations == q.cg_iterations && p.newton_iterations == q.newton_iterations && p.stop == q.stop, seed);
+        CHECK_SEED(p.cg_iterations == q.cg_iterations && p.newton_iterations == q.newton_iterations && p.stop == q.stop,
+                   seed);
         CHECK_SEED(p.energy == q.energy, seed);
         CHECK_SEED(gx_body_state_hash(a) == gx_body_state_hash(b), seed);
     }
 }
 
-/* Integrators, materials, springs, contact; the size is one at which multigrid is used. Some steps before, a save or a clone in the
-   middle, a cut and steps after. */
+/* Integrators, materials, springs, contact; the size is one at which multigrid is used. Some steps before, a save or a
+   clone in the middle, a cut and steps after. */
 START_TEST(steps_go_on) {
-    static const gxs_integrator integrators[4] = { GXS_BDF1, GXS_BDF2, GXS_MIDPOINT, GXS_STATIC };
+    static const gxs_integrator integrators[4] = {GXS_BDF1, GXS_BDF2, GXS_MIDPOINT, GXS_STATIC};
     const uint64_t seed = (uint64_t)_i;
     const int variant = _i % 4, by_bytes = _i / 4 % 2, custom_material = _i / 8;
-    custom user = { 1e5, 0 };
+    custom user = {1e5, 0};
     gx_material materials[2];
     workload w = grid(5, 5, 6, 5);
     gx_body_desc desc = desc_of(&w);
@@ -311,12 +344,21 @@ START_TEST(steps_go_on) {
     int k;
     random_seed(seed + 77);
     memset(materials, 0, sizeof materials);
-    materials[0].elastic.young = 2e5; materials[0].elastic.poisson = 0.45; materials[0].density = 1000; materials[0].elastic.damping = 1e-3;
+    materials[0].elastic.young = 2e5;
+    materials[0].elastic.poisson = 0.45;
+    materials[0].density = 1000;
+    materials[0].elastic.damping = 1e-3;
     materials[1] = materials[0];
-    if (custom_material) { materials[1].elastic.kind = GXS_CUSTOM; materials[1].elastic.energy = custom_energy; materials[1].elastic.user = &user; }
+    if (custom_material) {
+        materials[1].elastic.kind = GXS_CUSTOM;
+        materials[1].elastic.energy = custom_energy;
+        materials[1].elastic.user = &user;
+    }
     of = (uint32_t *)calloc(w.element_count, sizeof *of);
-    for (i = 0; i < w.element_count; ++i) of[i] = i % 7 == 0;
-    desc.materials = materials; desc.material_count = 2; desc.element_materials = of;
+    for (i = 0; i < w.element_count; i++) of[i] = i % 7 == 0;
+    desc.materials = materials;
+    desc.material_count = 2;
+    desc.element_materials = of;
     desc.support_below = 0.01;
     ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
     add_axis_plane(&w, 0, 2.4);
@@ -324,16 +366,35 @@ START_TEST(steps_go_on) {
     cut_by(body, &w, 0, 1);
     ck_assert_int_eq(hold_low(body, 0.5), GX_OK);
     shake(body, 0.02);
-    memset(&step, 0, sizeof step); memset(&spring, 0, sizeof spring); memset(&plane, 0, sizeof plane); memset(&point, 0, sizeof point);
-    step.dt = 0.01; step.gravity[0] = 3; step.gravity[2] = -9.81; step.integrator = integrators[variant];
+    memset(&step, 0, sizeof step);
+    memset(&spring, 0, sizeof spring);
+    memset(&plane, 0, sizeof plane);
+    memset(&point, 0, sizeof point);
+    step.dt = 0.01;
+    step.gravity[0] = 3;
+    step.gravity[2] = -9.81;
+    step.integrator = integrators[variant];
     if (variant == 3) step.dt = 0;
-    for (k = 0; k < 4; ++k) { spring.point.copy[k] = point.copy[k] = (uint32_t)(200 + k); spring.point.weight[k] = point.weight[k] = 0.25; }
+    for (k = 0; k < 4; k++) {
+        spring.point.copy[k] = point.copy[k] = (uint32_t)(200 + k);
+        spring.point.weight[k] = point.weight[k] = 0.25;
+    }
     spring.point.epoch = point.epoch = view_of(body).epoch;
-    spring.target[0] = 2; spring.target[1] = 1; spring.target[2] = 4; spring.stiffness = 1e3;
-    plane.normal[2] = 1; plane.offset = -1; plane.stiffness = 1e4; plane.friction = 0.3;
-    step.springs = &spring; step.spring_count = 1;
-    step.planes = &plane; step.plane_count = 1; step.points = &point; step.point_count = 1;
-    for (k = 0; k < 3; ++k) ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
+    spring.target[0] = 2;
+    spring.target[1] = 1;
+    spring.target[2] = 4;
+    spring.stiffness = 1e3;
+    plane.normal[2] = 1;
+    plane.offset = -1;
+    plane.stiffness = 1e4;
+    plane.friction = 0.3;
+    step.springs = &spring;
+    step.spring_count = 1;
+    step.planes = &plane;
+    step.plane_count = 1;
+    step.points = &point;
+    step.point_count = 1;
+    for (k = 0; k < 3; k++) ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
     if (by_bytes) {
         bytes b = saved(body);
         if (custom_material) {
@@ -344,7 +405,8 @@ START_TEST(steps_go_on) {
         }
         ck_assert_int_eq(gx_body_load(b.data, b.size, &desc, &copy, NULL), GX_OK);
         free(b.data);
-    } else copy = clone_of(body);
+    } else
+        copy = clone_of(body);
     ck_assert(gx_body_state_hash(body) == gx_body_state_hash(copy));
     expect_same_steps(body, copy, &step, 4, seed);
     step.dt = variant == 3 ? 0 : 0.007;
@@ -352,14 +414,17 @@ START_TEST(steps_go_on) {
     expect_same_steps(body, copy, &step, 3, seed);
     cut_by(body, &w, 1, 1);
     cut_by(copy, &w, 1, 1);
-    step.spring_count = 1; spring.stiffness = 1e6;
+    step.spring_count = 1;
+    spring.stiffness = 1e6;
     spring.point.epoch = point.epoch = view_of(body).epoch;
     ck_assert(view_of(copy).epoch == point.epoch);
-    step.integrator = GXS_BDF1; step.dt = 0.01;
+    step.integrator = GXS_BDF1;
+    step.dt = 0.01;
     expect_same_steps(body, copy, &step, 2, seed);
     ck_assert_int_eq(user.calls > 0, custom_material);
     free(of);
-    gx_body_destroy(body); gx_body_destroy(copy);
+    gx_body_destroy(body);
+    gx_body_destroy(copy);
     wl_free(&w);
 }
 END_TEST
@@ -373,9 +438,13 @@ START_TEST(sleepers_sleep_on) {
     int i;
     ck_assert_int_eq(hold_low(body, 0.5), GX_OK);
     memset(&step, 0, sizeof step);
-    step.dt = 0.1; step.gravity[2] = -9.81; step.sleep_speed = 1e-3; step.sleep_time = 0.3;
+    step.dt = 0.1;
+    step.gravity[2] = -9.81;
+    step.sleep_speed = 1e-3;
+    step.sleep_time = 0.3;
     memset(&report, 0, sizeof report);
-    for (i = 0; i < 300 && report.stop != GXS_STOP_ASLEEP; ++i) ck_assert_int_eq(gx_body_step(body, &step, &report, NULL), GX_OK);
+    for (i = 0; i < 300 && report.stop != GXS_STOP_ASLEEP; i++)
+        ck_assert_int_eq(gx_body_step(body, &step, &report, NULL), GX_OK);
     ck_assert_int_eq(report.stop, GXS_STOP_ASLEEP);
     copy = twin_of(body, 1);
     clone = clone_of(body);
@@ -386,14 +455,17 @@ START_TEST(sleepers_sleep_on) {
     step.gravity[0] = 1;
     ck_assert_int_eq(gx_body_step(copy, &step, &report, NULL), GX_OK);
     ck_assert_int_ne(report.stop, GXS_STOP_ASLEEP);
-    gx_body_destroy(body); gx_body_destroy(copy); gx_body_destroy(clone);
+    gx_body_destroy(body);
+    gx_body_destroy(copy);
+    gx_body_destroy(clone);
     wl_free(&w);
 }
 END_TEST
 
 /* ---- clones and restoring ---- */
 
-/* Back to a clone after steps (the state alone), after cuts (all), and after another hold; then the same steps as before. */
+/* Back to a clone after steps (the state alone), after cuts (all), and after another hold; then the same steps as
+ * before. */
 START_TEST(rollback) {
     const uint64_t seed = (uint64_t)_i + 1;
     workload w = grid(3, 3, 3, 6);
@@ -405,16 +477,18 @@ START_TEST(rollback) {
     body = random_body(&w, 2, 1);
     ck_assert_int_eq(hold_low(body, 0.5), GX_OK);
     memset(&step, 0, sizeof step);
-    step.dt = 0.01; step.gravity[2] = -9.81; step.integrator = _i % 2 ? GXS_BDF2 : GXS_BDF1;
-    for (i = 0; i < 2; ++i) ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
-    view_of(body);      /* what one has seen is state, too */
+    step.dt = 0.01;
+    step.gravity[2] = -9.81;
+    step.integrator = _i % 2 ? GXS_BDF2 : GXS_BDF1;
+    for (i = 0; i < 2; i++) ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
+    view_of(body); /* what one has seen is state, too */
     snapshot = clone_of(body);
     before = gx_body_state_hash(snapshot);
     CHECK_SEED(gx_body_state_hash(body) == before, seed);
-    for (i = 0; i < 4; ++i) ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
+    for (i = 0; i < 4; i++) ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
     after = gx_body_state_hash(body);
     CHECK_SEED(after != before && gx_body_state_hash(snapshot) == before, seed);
-    for (way = 0; way < 4; ++way) {
+    for (way = 0; way < 4; way++) {
         if (way == 1) cut_by(body, &w, w.surface_count - 1, 1);
         if (way == 2) ck_assert_int_eq(gx_body_hold(body, NULL, 0), GX_OK);
         if (way == 3) shake(body, 1);
@@ -422,15 +496,17 @@ START_TEST(rollback) {
         ck_assert_int_eq(gx_body_restore(body, snapshot), GX_OK);
         CHECK_SEED(gx_body_state_hash(body) == before, seed);
         expect_equal_views(body, snapshot, seed);
-        for (i = 0; i < 4; ++i) ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
-        ck_assert_msg(gx_body_state_hash(body) == after, "seed %llu, way %d: another end", (unsigned long long)seed, way);
+        for (i = 0; i < 4; i++) ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
+        ck_assert_msg(gx_body_state_hash(body) == after, "seed %llu, way %d: another end", (unsigned long long)seed,
+                      way);
     }
-    ck_assert_int_eq(gx_body_restore(snapshot, body), GX_OK);   /* brought up to date: both go on alike */
+    ck_assert_int_eq(gx_body_restore(snapshot, body), GX_OK); /* brought up to date: both go on alike */
     CHECK_SEED(gx_body_state_hash(snapshot) == after, seed);
     expect_same_steps(body, snapshot, &step, 3, seed);
     ck_assert_int_eq(gx_body_restore(body, body), GX_OK);
     expect_equal(body, snapshot, seed);
-    gx_body_destroy(body); gx_body_destroy(snapshot);
+    gx_body_destroy(body);
+    gx_body_destroy(snapshot);
     wl_free(&w);
 }
 END_TEST
@@ -440,10 +516,11 @@ START_TEST(restoring_from_strangers) {
     workload w = grid(2, 1, 1, 5), v = grid(2, 1, 1, 5);
     gx_body_desc desc = desc_of(&w);
     gx_body *a, *b, *c = NULL;
-    double p[3] = { 0.5, 0.5, 0.5 }, n[3] = { 1, 0.1, 0.2 };
+    double p[3] = {0.5, 0.5, 0.5}, n[3] = {1, 0.1, 0.2};
     gx_step_desc step;
     memset(&step, 0, sizeof step);
-    step.dt = 0.01; step.gravity[2] = -1;
+    step.dt = 0.01;
+    step.gravity[2] = -1;
     add_plane(&w, p, n, 4);
     p[0] += 1e-9;
     add_plane(&v, p, n, 4);
@@ -461,8 +538,11 @@ START_TEST(restoring_from_strangers) {
     ck_assert_int_eq(gx_body_restore(a, c), GX_OK);
     expect_equal(a, c, 0);
     expect_same_steps(a, c, &step, 2, 1);
-    gx_body_destroy(a); gx_body_destroy(b); gx_body_destroy(c);
-    wl_free(&w); wl_free(&v);
+    gx_body_destroy(a);
+    gx_body_destroy(b);
+    gx_body_destroy(c);
+    wl_free(&w);
+    wl_free(&v);
 }
 END_TEST
 
@@ -472,18 +552,20 @@ START_TEST(epochs_go_with_the_copies) {
     gx_body *body = body_of(&w), *twin, *clone;
     uint64_t first, second;
     int by_bytes;
-    add_axis_plane(&w, 0, 0.7); add_axis_plane(&w, 1, 1.3); add_axis_plane(&w, 0, 40);
-    for (by_bytes = 0; by_bytes < 2; ++by_bytes) {
+    add_axis_plane(&w, 0, 0.7);
+    add_axis_plane(&w, 1, 1.3);
+    add_axis_plane(&w, 0, 40);
+    for (by_bytes = 0; by_bytes < 2; by_bytes++) {
         twin = twin_of(body, by_bytes);
         ck_assert(view_of(twin).epoch == 0);
         gx_body_destroy(twin);
     }
     cut_by(body, &w, 0, 1);
-    cut_by(body, &w, 2, 1);                     /* the epoch is not that of the last cut */
+    cut_by(body, &w, 2, 1); /* the epoch is not that of the last cut */
     first = view_of(body).epoch;
     ck_assert(first != 0 && first != body->past);
     clone = clone_of(body);
-    for (by_bytes = 0; by_bytes < 2; ++by_bytes) {
+    for (by_bytes = 0; by_bytes < 2; by_bytes++) {
         twin = twin_of(body, by_bytes);
         ck_assert(view_of(twin).epoch == first);
         cut_by(twin, &w, 1, 1);
@@ -492,7 +574,7 @@ START_TEST(epochs_go_with_the_copies) {
         ck_assert(second != first && view_of(twin).epoch == second);
         ck_assert_int_eq(gx_body_restore(twin, clone), GX_OK);
         ck_assert(view_of(twin).epoch == first);
-        cut_by(twin, &w, 0, 1);                 /* nothing new: the same place again */
+        cut_by(twin, &w, 0, 1); /* nothing new: the same place again */
         ck_assert(view_of(twin).epoch == first);
         gx_body_destroy(twin);
         ck_assert_int_eq(gx_body_restore(body, clone), GX_OK);
@@ -500,7 +582,9 @@ START_TEST(epochs_go_with_the_copies) {
     twin = body_of(&w);
     cut_by(twin, &w, 1, 1);
     ck_assert(view_of(twin).copy_count != 0 && view_of(twin).epoch != first);
-    gx_body_destroy(twin); gx_body_destroy(clone); gx_body_destroy(body);
+    gx_body_destroy(twin);
+    gx_body_destroy(clone);
+    gx_body_destroy(body);
     wl_free(&w);
 }
 END_TEST
@@ -518,7 +602,8 @@ START_TEST(copies_stand_alone) {
     cut_by(copy, &w, w.surface_count - 1, 1);
     cut_by(clone, &w, w.surface_count - 1, 1);
     expect_equal(copy, clone, 5);
-    gx_body_destroy(copy); gx_body_destroy(clone);
+    gx_body_destroy(copy);
+    gx_body_destroy(clone);
     wl_free(&w);
 }
 END_TEST
@@ -561,7 +646,7 @@ START_TEST(foreign_bytes) {
     gx_body *body = cut_at_once(&w), *other = NULL;
     bytes b = saved(body);
     size_t i;
-    for (i = 0; i < 24; ++i) {
+    for (i = 0; i < 24; i++) {
         b.data[i] ^= 0x55;
         ck_assert_int_eq(gx_body_load(b.data, b.size, NULL, &other, NULL), GX_ERROR_FORMAT);
         b.data[i] ^= 0x55;
@@ -579,38 +664,62 @@ END_TEST
 
 enum { HEAD_BYTES = 40, AT_SIZE = 24, AT_CHECKSUM = 32 };
 
-enum { SEEN = 1, PINCHED = 2 };     /* changes have been looked at; elements share an edge only, part of which is a wall */
+/* changes have been looked at; elements share an edge only, part of which is a wall */
+enum { SEEN = 1, PINCHED = 2 };
 
 /* A small body with all there is: sheets, a partial one, a solid, held copies, history */
 static gx_body *small_body(workload *w, int variant) {
     gx_body *body;
     gx_step_desc step;
-    double p[3] = { 0.2, 0.2, 0.2 }, n[3] = { 1, 0.3, 0.2 };
+    double p[3] = {0.2, 0.2, 0.2}, n[3] = {1, 0.3, 0.2};
     wl_surface *s;
     *w = wl_empty();
-    wl_add_node(w, 0, 0, 0); wl_add_node(w, 1, 0, 0); wl_add_node(w, 0, 1, 0); wl_add_node(w, 0, 0, 1); wl_add_node(w, 1, 1, 1);
+    wl_add_node(w, 0, 0, 0);
+    wl_add_node(w, 1, 0, 0);
+    wl_add_node(w, 0, 1, 0);
+    wl_add_node(w, 0, 0, 1);
+    wl_add_node(w, 1, 1, 1);
     wl_add_element(w, 0, 1, 2, 3);
-    if (variant & PINCHED) { wl_add_node(w, 1.2, 1, 0.2); wl_add_element(w, 1, 2, 4, 5); }
-    else wl_add_element(w, 4, 1, 2, 3);
+    if (variant & PINCHED) {
+        wl_add_node(w, 1.2, 1, 0.2);
+        wl_add_element(w, 1, 2, 4, 5);
+    } else
+        wl_add_element(w, 4, 1, 2, 3);
     add_plane(w, p, n, 3);
     s = wl_add_surface(w, 0);
-    p[0] = 0.5; p[1] = 0.1; p[2] = 0.1; wl_add_vertex(s, p);
-    p[1] = 0.3; wl_add_vertex(s, p);
-    p[2] = 0.4; p[0] = 0.4; wl_add_vertex(s, p);
+    p[0] = 0.5;
+    p[1] = 0.1;
+    p[2] = 0.1;
+    wl_add_vertex(s, p);
+    p[1] = 0.3;
+    wl_add_vertex(s, p);
+    p[2] = 0.4;
+    p[0] = 0.4;
+    wl_add_vertex(s, p);
     wl_add_triangle(s, 0, 1, 2);
     add_box(w, 1, -1, -1, 0.6, 0.3, 0.3, 2);
-    n[0] = -0.2; p[0] = p[1] = p[2] = 0.4;
+    n[0] = -0.2;
+    p[0] = p[1] = p[2] = 0.4;
     add_plane(w, p, n, 3);
     s = wl_add_surface(w, 0);
-    p[0] = 0.7; p[1] = 0.3; p[2] = -1; wl_add_vertex(s, p);
-    p[0] = 0.3; p[1] = 0.7; wl_add_vertex(s, p);
-    p[0] = p[1] = 0.5; p[2] = 1; wl_add_vertex(s, p);
+    p[0] = 0.7;
+    p[1] = 0.3;
+    p[2] = -1;
+    wl_add_vertex(s, p);
+    p[0] = 0.3;
+    p[1] = 0.7;
+    wl_add_vertex(s, p);
+    p[0] = p[1] = 0.5;
+    p[2] = 1;
+    wl_add_vertex(s, p);
     wl_add_triangle(s, 0, 1, 2);
     body = body_of(w);
     cut_textured(body, w, 0, 1);
     cut_by(body, w, 4, 1);
     memset(&step, 0, sizeof step);
-    step.dt = 0.01; step.gravity[2] = -9.81; step.integrator = GXS_BDF2;
+    step.dt = 0.01;
+    step.gravity[2] = -9.81;
+    step.integrator = GXS_BDF2;
     ck_assert_int_eq(hold_low(body, 0.1), GX_OK);
     ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
     view_of(body);
@@ -628,8 +737,8 @@ static void seal(bytes b) {
 
 /* What was loaded is used in every way; errors are fine. */
 static void use(gx_body *body, const workload *w) {
-    static const gx_region region = { 0, 1, 0.3 };
-    static const double origin[3] = { 0.2, 0.2, -3 }, direction[3] = { 0, 0.01, 1 };
+    static const gx_region region = {0, 1, 0.3};
+    static const double origin[3] = {0.2, 0.2, -3}, direction[3] = {0, 0.01, 1};
     gx_surface surface = surface_of(&w->surfaces[3]);
     gx_cut_desc cut;
     gx_step_desc step;
@@ -640,9 +749,15 @@ static void use(gx_body *body, const workload *w) {
     gx_body *clone = NULL;
     gx_result result;
     size_t size;
-    memset(&cut, 0, sizeof cut); memset(&step, 0, sizeof step);
-    step.dt = 0.01; step.integrator = GXS_BDF2; step.cg_iterations = 20; step.sleep_speed = 1e-3;
-    cut.surfaces = &surface; cut.surface_count = 1; cut.sever_below = 1e-3;
+    memset(&cut, 0, sizeof cut);
+    memset(&step, 0, sizeof step);
+    step.dt = 0.01;
+    step.integrator = GXS_BDF2;
+    step.cg_iterations = 20;
+    step.sleep_speed = 1e-3;
+    cut.surfaces = &surface;
+    cut.surface_count = 1;
+    cut.sever_below = 1e-3;
     (void)gx_body_view(body, &view);
     (void)gx_body_step(body, &step, NULL, NULL);
     (void)gx_body_topology_hash(body, &result);
@@ -650,7 +765,8 @@ static void use(gx_body *body, const workload *w) {
     surface = surface_of(&w->surfaces[2]);
     (void)gx_body_cut(body, &cut, NULL, NULL);
     (void)gx_body_hold(body, &region, 1);
-    if (gx_body_view(body, &view) == GX_OK && view.fragment_count > 0) ck_assert_uint_lt(view.cell_fragment[view.cell_count - 1], view.fragment_count);
+    if (gx_body_view(body, &view) == GX_OK && view.fragment_count > 0)
+        ck_assert_uint_lt(view.cell_fragment[view.cell_count - 1], view.fragment_count);
     (void)gx_body_skin(body, NULL, &skin);
     (void)gx_body_pick(body, origin, direction, &hit);
     (void)gx_body_motion(body, motions, 64);
@@ -664,8 +780,9 @@ static int try_bytes(bytes b, const workload *w, const char *what, size_t at) {
     gx_body *body = NULL;
     gx_failure failure;
     const gx_result result = gx_body_load(b.data, b.size, NULL, &body, &failure);
-    ck_assert_msg(result == GX_OK || result == GX_ERROR_FORMAT || result == GX_ERROR_DAMAGED || result == GX_ERROR_LIMIT ||
-                  result == GX_ERROR_ARGUMENT, "%s at %zu: %s", what, at, gx_result_text(result));
+    ck_assert_msg(result == GX_OK || result == GX_ERROR_FORMAT || result == GX_ERROR_DAMAGED ||
+                      result == GX_ERROR_LIMIT || result == GX_ERROR_ARGUMENT,
+                  "%s at %zu: %s", what, at, gx_result_text(result));
     ck_assert_msg((result == GX_OK) == (body != NULL) && failure.result == result, "%s at %zu", what, at);
     if (body != NULL) use(body, w);
     gx_body_destroy(body);
@@ -678,19 +795,20 @@ START_TEST(damage_is_seen) {
     gx_body *body = small_body(&w, SEEN);
     bytes b = saved(body), part;
     size_t i;
-    for (i = 0; i < b.size; ++i) {
+    for (i = 0; i < b.size; i++) {
         b.data[i] ^= (unsigned char)(1u << i % 8);
         ck_assert_msg(!try_bytes(b, &w, "a flipped bit", i), "a flipped bit at %zu is not seen", i);
         b.data[i] ^= (unsigned char)(1u << i % 8);
     }
-    for (i = 0; i < b.size; ++i) {
-        part.data = (unsigned char *)malloc(i + 1);      /* so that a sanitizer sees what reads beyond it */
+    for (i = 0; i < b.size; i++) {
+        part.data = (unsigned char *)malloc(i + 1); /* so that a sanitizer sees what reads beyond it */
         part.size = i;
         memcpy(part.data, b.data, i);
         ck_assert_msg(!try_bytes(part, &w, "cut short", i), "that it is cut short at %zu is not seen", i);
         if (i >= HEAD_BYTES) {
             seal(part);
-            ck_assert_msg(!try_bytes(part, &w, "cut short and sealed", i), "that it is cut short at %zu is not seen", i);
+            ck_assert_msg(!try_bytes(part, &w, "cut short and sealed", i), "that it is cut short at %zu is not seen",
+                          i);
         }
         free(part.data);
     }
@@ -706,11 +824,13 @@ START_TEST(damage_beyond_the_range) {
     workload w;
     gx_body *body = small_body(&w, SEEN), *other = NULL;
     bytes b = saved(body);
-    double right[3], wrong[3] = { 1e300, 1e308, 1e308 };
-    size_t i, k, found[3] = { 0, 0, 0 };
-    right[0] = body->materials[0].density; right[1] = body->cells[0].volume; right[2] = body->cells[0].mass[0];
-    for (i = HEAD_BYTES; i + 8 <= b.size; ++i)
-        for (k = 0; k < 3; ++k) {
+    double right[3], wrong[3] = {1e300, 1e308, 1e308};
+    size_t i, k, found[3] = {0, 0, 0};
+    right[0] = body->materials[0].density;
+    right[1] = body->cells[0].volume;
+    right[2] = body->cells[0].mass[0];
+    for (i = HEAD_BYTES; i + 8 <= b.size; i++)
+        for (k = 0; k < 3; k++) {
             if (memcmp(b.data + i, &right[k], 8) != 0) continue;
             memcpy(b.data + i, &wrong[k], 8);
             seal(b);
@@ -718,7 +838,7 @@ START_TEST(damage_beyond_the_range) {
             memcpy(b.data + i, &right[k], 8);
             found[k]++;
         }
-    for (k = 0; k < 3; ++k) ck_assert_uint_eq(found[k], 1);
+    for (k = 0; k < 3; k++) ck_assert_uint_eq(found[k], 1);
     seal(b);
     ck_assert(try_bytes(b, &w, "as it was", 0));
     free(b.data);
@@ -740,7 +860,7 @@ START_TEST(hostile_bits) {
         passed += (size_t)try_bytes(b, &w, "a bit", i);
         b.data[i] ^= flip;
     }
-    ck_assert_uint_gt(passed, 0);               /* coordinates, velocities */
+    ck_assert_uint_gt(passed, 0); /* coordinates, velocities */
     ck_assert_uint_lt(passed, b.size - HEAD_BYTES);
     free(b.data);
     gx_body_destroy(body);
@@ -750,7 +870,7 @@ END_TEST
 
 /* Every word replaced by ones that an index or a count might be. */
 START_TEST(hostile_words) {
-    static const uint32_t values[6] = { 0, 1, UINT32_MAX, 0x7fffffff, 0x80000000u, 3 };
+    static const uint32_t values[6] = {0, 1, UINT32_MAX, 0x7fffffff, 0x80000000u, 3};
     workload w;
     gx_body *body = small_body(&w, _i % 2 ? PINCHED : SEEN);
     bytes b = saved(body);
@@ -780,22 +900,27 @@ START_TEST(hostile_mixtures) {
     random_seed(seed);
     m.data = (unsigned char *)malloc(b.size);
     m.size = b.size;
-    for (round = 0; round < 1000 / FEWER; ++round) {
+    for (round = 0; round < 1000 / FEWER; round++) {
         const int words = (int)((b.size - HEAD_BYTES) / 4);
         memcpy(m.data, b.data, b.size);
-        for (k = 1 + random_below(3); k > 0; --k) {
-            const size_t from = HEAD_BYTES + 4 * (size_t)random_below(words), to = HEAD_BYTES + 4 * (size_t)random_below(words);
+        for (k = 1 + random_below(3); k > 0; k--) {
+            const size_t from = HEAD_BYTES + 4 * (size_t)random_below(words),
+                         to = HEAD_BYTES + 4 * (size_t)random_below(words);
             uint32_t p, q, small = (uint32_t)random_below(40);
             memcpy(&p, m.data + from, 4);
             memcpy(&q, m.data + to, 4);
-            if (random_below(2)) { memcpy(m.data + from, &small, 4); continue; }
+            if (random_below(2)) {
+                memcpy(m.data + from, &small, 4);
+                continue;
+            }
             memcpy(m.data + to, &p, 4);
             if (random_below(2)) memcpy(m.data + from, &q, 4);
         }
         seal(m);
         (void)try_bytes(m, &w, "a mixture", (size_t)round);
     }
-    free(b.data); free(m.data);
+    free(b.data);
+    free(m.data);
     gx_body_destroy(body);
     wl_free(&w);
 }

@@ -19,11 +19,14 @@ static oracle *cheese_truth(const cheese_surface *surfaces) {
     oracle_surface input[CHEESE_SURFACES];
     oracle_mesh mesh;
     int i;
-    mesh.positions = cheese_positions; mesh.node_count = 4;
-    mesh.elements = cheese_element; mesh.element_count = 1;
-    for (i = 0; i < CHEESE_SURFACES; ++i) {
+    mesh.positions = cheese_positions;
+    mesh.node_count = 4;
+    mesh.elements = cheese_element;
+    mesh.element_count = 1;
+    for (i = 0; i < CHEESE_SURFACES; i++) {
         input[i].vertices = surfaces[i].vertices;
-        input[i].triangles = surfaces[i].triangles; input[i].triangle_count = surfaces[i].triangle_count;
+        input[i].triangles = surfaces[i].triangles;
+        input[i].triangle_count = surfaces[i].triangle_count;
         input[i].solid = 0;
     }
     return oracle_create(&mesh, input, CHEESE_SURFACES);
@@ -39,27 +42,33 @@ static gx_body *cheese_body(const cheese_surface *surfaces) {
     memset(&desc, 0, sizeof desc);
     memset(&cut, 0, sizeof cut);
     memset(&surface, 0, sizeof surface);
-    desc.positions = cheese_positions; desc.node_count = 4;
-    desc.elements = cheese_element; desc.element_count = 1;
+    desc.positions = cheese_positions;
+    desc.node_count = 4;
+    desc.elements = cheese_element;
+    desc.element_count = 1;
     desc.young = desc.density = 1;
     ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
-    cut.surfaces = &surface; cut.surface_count = 1;
-    for (i = 0; i < CHEESE_SURFACES; ++i) {
-        surface.vertices = surfaces[i].vertices; surface.vertex_count = surfaces[i].vertex_count;
-        surface.triangles = surfaces[i].triangles; surface.triangle_count = surfaces[i].triangle_count;
+    cut.surfaces = &surface;
+    cut.surface_count = 1;
+    for (i = 0; i < CHEESE_SURFACES; i++) {
+        surface.vertices = surfaces[i].vertices;
+        surface.vertex_count = surfaces[i].vertex_count;
+        surface.triangles = surfaces[i].triangles;
+        surface.triangle_count = surfaces[i].triangle_count;
         ck_assert_int_eq(gx_body_cut(body, &cut, NULL, NULL), GX_OK);
     }
     return body;
 }
 
 static void compare_volumes(const oracle *truth, const gx_view *view) {
-    double *ours = (double *)malloc(view->cell_count * sizeof *ours), *exact = (double *)malloc(view->cell_count * sizeof *exact);
+    double *ours = (double *)malloc(view->cell_count * sizeof *ours),
+           *exact = (double *)malloc(view->cell_count * sizeof *exact);
     size_t i;
     memcpy(ours, view->cell_volume, view->cell_count * sizeof *ours);
     memcpy(exact, truth->cell_volume, view->cell_count * sizeof *exact);
     qsort(ours, view->cell_count, sizeof *ours, ascending);
     qsort(exact, view->cell_count, sizeof *exact, ascending);
-    for (i = 0; i < view->cell_count; ++i) ck_assert_double_eq_tol(ours[i], exact[i], 1e-14 * view->volume);
+    for (i = 0; i < view->cell_count; i++) ck_assert_double_eq_tol(ours[i], exact[i], 1e-14 * view->volume);
     free(ours);
     free(exact);
 }
@@ -70,7 +79,7 @@ START_TEST(cheese_is_the_oracles) {
     oracle *truth;
     gx_body *body;
     gx_view view;
-    size_t node, copies[4] = { 0, 0, 0, 0 }, i;
+    size_t node, copies[4] = {0, 0, 0, 0}, i;
     cheese_fill(surfaces, CHEESE_COARSE);
     truth = cheese_truth(surfaces);
     body = cheese_body(surfaces);
@@ -79,8 +88,8 @@ START_TEST(cheese_is_the_oracles) {
     ck_assert_uint_eq(truth->copy_count, CHEESE_COPIES);
     ck_assert_uint_eq(view.cell_count, truth->cell_count);
     ck_assert_uint_eq(view.fragment_count, truth->fragment_count);
-    for (i = 0; i < view.copy_count; ++i) ++copies[view.copy_node[i]];
-    for (node = 0; node < 4; ++node) ck_assert_uint_eq(copies[node], truth->node_copies[node]);
+    for (i = 0; i < view.copy_count; i++) ++copies[view.copy_node[i]];
+    for (node = 0; node < 4; node++) ck_assert_uint_eq(copies[node], truth->node_copies[node]);
     compare_volumes(truth, &view);
     gx_body_destroy(body);
     oracle_destroy(truth);

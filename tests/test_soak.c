@@ -1,17 +1,20 @@
-/* test_soak.c - lives of bodies that are cut, kicked and dropped (bench/soak.h): nothing runs away, no energy is gained, no call fails. */
+/* test_soak.c - lives of bodies that are cut, kicked and dropped (bench/soak.h): nothing runs away, no energy is
+ * gained, no call fails. */
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "../bench/soak.h"
 #include "body.h"
 
-/* A copy that runs away is beyond 1e10 times the rest; of speeds, one step of a light copy in contact is let pass (make bench-soak tells). */
+/* A copy that runs away is beyond 1e10 times the rest; of speeds, one step of a light copy in contact is let pass (make
+ * bench-soak tells). */
 START_TEST(nothing_runs_away) {
     row r;
     memset(&r, 0, sizeof r);
     run_life(_i, 0, 0, &r);
     ck_assert_uint_eq(r.errors, 0);
     ck_assert_uint_gt(r.cuts, 20);
-    ck_assert_msg(r.reach < 10 && r.speed < 100, "a copy is %g times as far as the rest, %g times as fast", r.reach, r.speed);
+    ck_assert_msg(r.reach < 10 && r.speed < 100, "a copy is %g times as far as the rest, %g times as fast", r.reach,
+                  r.speed);
     ck_assert_msg(r.gain < (_i == GXS_MIDPOINT ? 0.0101 : 1e-7), "gains %g", r.gain);
 }
 END_TEST

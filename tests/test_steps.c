@@ -16,7 +16,7 @@ static gx_step_desc step_of(double dt, double gravity) {
 }
 
 static void hold_above(gx_body *body, double z) {
-    gx_region region = { 2, 1, 0 };
+    gx_region region = {2, 1, 0};
     region.value = z;
     ck_assert_int_eq(gx_body_hold(body, &region, 1), GX_OK);
 }
@@ -43,29 +43,47 @@ START_TEST(materials_by_element) {
     gx_step_desc step = step_of(0, -9.81);
     gx_view view;
     double low = 0, middle = 0, top, stretch[2];
-    size_t i, k, counts[3] = { 0, 0, 0 };
+    size_t i, k, counts[3] = {0, 0, 0};
     memset(materials, 0, sizeof materials);
-    materials[0].elastic.kind = GXS_LINEAR; materials[0].elastic.young = 1e6; materials[0].density = 1000;
-    materials[1] = materials[0]; materials[1].elastic.young = 4e6; materials[1].density = 500;
-    for (i = 0; i < w.element_count; ++i) {
+    materials[0].elastic.kind = GXS_LINEAR;
+    materials[0].elastic.young = 1e6;
+    materials[0].density = 1000;
+    materials[1] = materials[0];
+    materials[1].elastic.young = 4e6;
+    materials[1].density = 500;
+    for (i = 0; i < w.element_count; i++) {
         double z = 0;
-        for (k = 0; k < 4; ++k) z += 0.25 * w.positions[3 * w.elements[4 * i + k] + 2];
+        for (k = 0; k < 4; k++) z += 0.25 * w.positions[3 * w.elements[4 * i + k] + 2];
         which[i] = z > 4;
     }
-    desc.materials = materials; desc.material_count = 2; desc.element_materials = which;
+    desc.materials = materials;
+    desc.material_count = 2;
+    desc.element_materials = which;
     ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
     hold_above(body, 8 - 1e-9);
     view = view_of(body);
     ck_assert_double_eq_tol(view.mass, 1000 * 16 + 500 * 16, 1e-8);
-    step.integrator = GXS_STATIC; step.newton_iterations = 20; step.newton_tolerance = 1e-10; step.cg_tolerance = 1e-8;
+    step.integrator = GXS_STATIC;
+    step.newton_iterations = 20;
+    step.newton_tolerance = 1e-10;
+    step.cg_tolerance = 1e-8;
     ck_assert_int_eq(advance(body, &step, 1).stop, GXS_STOP_BALANCE);
-    for (i = 0; i < view.copy_count; ++i) {
+    for (i = 0; i < view.copy_count; i++) {
         const double z = w.positions[3 * view.copy_node[i] + 2], u = view.displacement[3 * i + 2];
-        if (z < 1e-9) { low += u; counts[0]++; }
-        if (fabs(z - 4) < 1e-9) { middle += u; counts[1]++; }
+        if (z < 1e-9) {
+            low += u;
+            counts[0]++;
+        }
+        if (fabs(z - 4) < 1e-9) {
+            middle += u;
+            counts[1]++;
+        }
     }
-    low /= (double)counts[0]; middle /= (double)counts[1]; top = 0;
-    stretch[0] = middle - low; stretch[1] = top - middle;
+    low /= (double)counts[0];
+    middle /= (double)counts[1];
+    top = 0;
+    stretch[0] = middle - low;
+    stretch[1] = top - middle;
     /* bars under their own weight and what hangs below: rho g L^2 / (2 E), and that with the lower part's weight */
     ck_assert_double_eq_tol(stretch[0], 1000 * 9.81 * 16 / 2e6, 0.03 * stretch[0]);
     ck_assert_double_eq_tol(stretch[1], (500 * 9.81 * 8 + 1000 * 9.81 * 16) / 4e6, 0.1 * stretch[1]);
@@ -79,23 +97,44 @@ START_TEST(bad_materials_are_named) {
     workload w = grid(1, 1, 1, 5);
     gx_body_desc desc = desc_of(&w);
     gx_material materials[2];
-    uint32_t which[5] = { 0, 1, 0, 1, 0 };
+    uint32_t which[5] = {0, 1, 0, 1, 0};
     gx_body *body = NULL;
     gx_failure failure;
     memset(materials, 0, sizeof materials);
-    materials[0].elastic.young = 1e6; materials[0].density = 1000;
+    materials[0].elastic.young = 1e6;
+    materials[0].density = 1000;
     materials[1] = materials[0];
-    desc.materials = materials; desc.element_materials = which;
-#define EXPECT(result, at) do { ck_assert_int_eq(gx_body_create(&desc, &body, &failure), result); ck_assert_uint_eq(failure.index, at); } while (0)
+    desc.materials = materials;
+    desc.element_materials = which;
+#define EXPECT(result, at)                                                                                             \
+    do {                                                                                                               \
+        ck_assert_int_eq(gx_body_create(&desc, &body, &failure), result);                                              \
+        ck_assert_uint_eq(failure.index, at);                                                                          \
+    } while (0)
     EXPECT(GX_ERROR_EMPTY, SIZE_MAX);
     desc.material_count = 2;
-    materials[1].density = 0; EXPECT(GX_ERROR_ARGUMENT, 1); materials[1].density = 1000;
-    materials[0].elastic.young = NAN; EXPECT(GX_ERROR_NOT_FINITE, 0); materials[0].elastic.young = 1e6;
-    materials[1].elastic.damping = -1; EXPECT(GX_ERROR_ARGUMENT, 1); materials[1].elastic.damping = 0;
-    materials[1].elastic.kind = GXS_CUSTOM; EXPECT(GX_ERROR_ARGUMENT, 1); materials[1].elastic.kind = GXS_LINEAR;
-    which[3] = 2; EXPECT(GX_ERROR_INDEX, 3); which[3] = 1;
-    desc.support_below = -1; EXPECT(GX_ERROR_ARGUMENT, SIZE_MAX); desc.support_below = 1; EXPECT(GX_ERROR_ARGUMENT, SIZE_MAX);
-    desc.support_below = NAN; EXPECT(GX_ERROR_NOT_FINITE, SIZE_MAX); desc.support_below = 0;
+    materials[1].density = 0;
+    EXPECT(GX_ERROR_ARGUMENT, 1);
+    materials[1].density = 1000;
+    materials[0].elastic.young = NAN;
+    EXPECT(GX_ERROR_NOT_FINITE, 0);
+    materials[0].elastic.young = 1e6;
+    materials[1].elastic.damping = -1;
+    EXPECT(GX_ERROR_ARGUMENT, 1);
+    materials[1].elastic.damping = 0;
+    materials[1].elastic.kind = GXS_CUSTOM;
+    EXPECT(GX_ERROR_ARGUMENT, 1);
+    materials[1].elastic.kind = GXS_LINEAR;
+    which[3] = 2;
+    EXPECT(GX_ERROR_INDEX, 3);
+    which[3] = 1;
+    desc.support_below = -1;
+    EXPECT(GX_ERROR_ARGUMENT, SIZE_MAX);
+    desc.support_below = 1;
+    EXPECT(GX_ERROR_ARGUMENT, SIZE_MAX);
+    desc.support_below = NAN;
+    EXPECT(GX_ERROR_NOT_FINITE, SIZE_MAX);
+    desc.support_below = 0;
     ck_assert_int_eq(gx_body_create(&desc, &body, &failure), GX_OK);
     gx_body_destroy(body);
     wl_free(&w);
@@ -104,7 +143,8 @@ END_TEST
 
 /* ---- the model ---- */
 
-/* Whatever the cuts, the model has the body's volume and mass, and a solver of one's own that is given it does what the body does. */
+/* Whatever the cuts, the model has the body's volume and mass, and a solver of one's own that is given it does what the
+ * body does. */
 START_TEST(model_is_what_the_body_moves) {
     const uint64_t seed = (uint64_t)_i;
     workload w = grid(3, 3, 3, 5);
@@ -114,7 +154,7 @@ START_TEST(model_is_what_the_body_moves) {
     gxs_solver *solver = NULL;
     gx_step_desc step = step_of(0.02, -9.81);
     double volume = 0, mass = 0, *u, *v;
-    const double n[3] = { 0.3, 1, 0.2 }, p[3] = { 1.5, 1.4, 1.6 };
+    const double n[3] = {0.3, 1, 0.2}, p[3] = {1.5, 1.4, 1.6};
     size_t i, k, bytes;
     random_seed(seed);
     if (_i > 0) add_plane(&w, p, n, 10);
@@ -122,27 +162,30 @@ START_TEST(model_is_what_the_body_moves) {
     hold_above(body, 3 - 1e-9);
     view = view_of(body);
     bytes = 3 * view.copy_count * sizeof *u;
-    for (i = 0; i < 3 * view.copy_count; ++i) view.velocity[i] = random_real(-1, 1);
+    for (i = 0; i < 3 * view.copy_count; i++) view.velocity[i] = random_real(-1, 1);
     ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
     ck_assert_uint_eq(model.copy_count, view.copy_count);
-    for (i = 0; i < model.element_count; ++i) {
+    for (i = 0; i < model.element_count; i++) {
         volume += model.elements[i].weight;
-        for (k = 0; k < 10; ++k) mass += model.elements[i].mass[k] * (k == 0 || k == 4 || k == 7 || k == 9 ? 1 : 2);
+        for (k = 0; k < 10; k++) mass += model.elements[i].mass[k] * (k == 0 || k == 4 || k == 7 || k == 9 ? 1 : 2);
     }
     ck_assert_double_eq_tol(volume, view.volume, 1e-12 * volume);
     ck_assert_double_eq_tol(mass, view.mass, 1e-12 * mass);
-    u = (double *)malloc(bytes); v = (double *)malloc(bytes);
-    memcpy(u, view.displacement, bytes); memcpy(v, view.velocity, bytes);
+    u = (double *)malloc(bytes);
+    v = (double *)malloc(bytes);
+    memcpy(u, view.displacement, bytes);
+    memcpy(v, view.velocity, bytes);
     ck_assert_int_eq(gxs_solver_create(NULL, &solver), GX_OK);
     ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);
-    for (i = 0; i < 5; ++i) {
+    for (i = 0; i < 5; i++) {
         ck_assert_int_eq(gxs_solver_step(solver, &step, u, v, NULL, NULL), GX_OK);
         advance(body, &step, 1);
     }
     ck_assert(memcmp(u, view.displacement, bytes) == 0 && memcmp(v, view.velocity, bytes) == 0);
     ck_assert_int_eq(gx_body_model(NULL, &model), GX_ERROR_ARGUMENT);
     ck_assert_int_eq(gx_body_model(body, NULL), GX_ERROR_ARGUMENT);
-    free(u); free(v);
+    free(u);
+    free(v);
     gxs_solver_destroy(solver);
     gx_body_destroy(body);
     wl_free(&w);
@@ -164,12 +207,13 @@ static double violent(int how, size_t axis, double rest) {
     }
 }
 
-/* k Newton iterations from one start, k = 1, 2, ...: their results are the accepted iterates of the longest run. The body is cut across, part
-   way, and 1e-9 beside the first cut. Whatever it starts from, E falls with each and all is finite; a collapsed body opens. */
+/* k Newton iterations from one start, k = 1, 2, ...: their results are the accepted iterates of the longest run. The
+   body is cut across, part way, and 1e-9 beside the first cut. Whatever it starts from, E falls with each and all is
+   finite; a collapsed body opens. */
 START_TEST(energy_of_cut_bodies_falls_from_violent_starts) {
-    static const double dts[2] = { 0.033, 1 }, ratios[2] = { 0.4, 0.4999 };
-    static const double n[3][3] = { { 0.3, 1, 0.2 }, { 1, 0.1, 0 }, { 0.3, 1, 0.2 } };
-    static const double p[3][3] = { { 1.5, 1.4, 1.6 }, { 1.7, 1.2, 1.1 }, { 1.5, 1.400000001, 1.6 } };
+    static const double dts[2] = {0.033, 1}, ratios[2] = {0.4, 0.4999};
+    static const double n[3][3] = {{0.3, 1, 0.2}, {1, 0.1, 0}, {0.3, 1, 0.2}};
+    static const double p[3][3] = {{1.5, 1.4, 1.6}, {1.7, 1.2, 1.1}, {1.5, 1.400000001, 1.6}};
     const int how = _i / 4;
     workload w = grid(3, 3, 3, 5);
     gx_body *body;
@@ -182,7 +226,7 @@ START_TEST(energy_of_cut_bodies_falls_from_violent_starts) {
     size_t i, count;
     uint32_t k;
     random_seed((uint64_t)_i);
-    for (i = 0; i < 3; ++i) add_plane(&w, p[i], n[i], i == 1 ? 1.2 : 10);
+    for (i = 0; i < 3; i++) add_plane(&w, p[i], n[i], i == 1 ? 1.2 : 10);
     body = cut_at_once(&w);
     ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
     material = model.materials[0];
@@ -190,25 +234,28 @@ START_TEST(energy_of_cut_bodies_falls_from_violent_starts) {
     model.materials = &material;
     count = 3 * model.copy_count;
     start = (double *)malloc(3 * count * sizeof *start);
-    u = start + count; v = u + count;
-    for (i = 0; i < count; ++i) start[i] = violent(how, i % 3, model.positions[i]);
+    u = start + count;
+    v = u + count;
+    for (i = 0; i < count; i++) start[i] = violent(how, i % 3, model.positions[i]);
     ck_assert_int_eq(gxs_solver_create(NULL, &solver), GX_OK);
     ck_assert_int_eq(gxs_model_energy(&model, start, &before), GX_OK);
-    for (k = 1; k <= 20; ++k) {
+    for (k = 1; k <= 20; k++) {
         memcpy(u, start, count * sizeof *u);
         memset(v, 0, count * sizeof *v);
         step.newton_iterations = k;
         ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);
         ck_assert_int_eq(gxs_solver_step(solver, &step, u, v, &report, NULL), GX_OK);
-        for (i = 0; i < count; ++i) ck_assert(isfinite(u[i]) && isfinite(v[i]));
-        ck_assert_msg(isfinite(report.residual) && report.energy <= before + 1e-12 * fabs(before), "iterate %u: %.17g after %.17g", (unsigned)k,
-                      report.energy, before);
+        for (i = 0; i < count; i++) ck_assert(isfinite(u[i]) && isfinite(v[i]));
+        ck_assert_msg(isfinite(report.residual) && report.energy <= before + 1e-12 * fabs(before),
+                      "iterate %u: %.17g after %.17g", (unsigned)k, report.energy, before);
         before = report.energy;
         if (report.newton_iterations < k) break;
     }
     ck_assert(memcmp(u, start, count * sizeof *u) != 0);
-    ck_assert(report.stop == GXS_STOP_BALANCE || report.stop == GXS_STOP_ITERATIONS || report.stop == GXS_STOP_ROUNDING);
-    ck_assert_msg(report.stop != GXS_STOP_ROUNDING || report.residual < 1e-6, "gives up at a residual of %g", report.residual);
+    ck_assert(report.stop == GXS_STOP_BALANCE || report.stop == GXS_STOP_ITERATIONS ||
+              report.stop == GXS_STOP_ROUNDING);
+    ck_assert_msg(report.stop != GXS_STOP_ROUNDING || report.residual < 1e-6, "gives up at a residual of %g",
+                  report.residual);
     ck_assert(report.stop != GXS_STOP_ITERATIONS || report.newton_iterations == step.newton_iterations);
     gxs_solver_destroy(solver);
     free(start);
@@ -219,8 +266,8 @@ END_TEST
 
 /* ---- history ---- */
 
-/* BDF2 on a body that falls: of second order, so exact from the second step on but for the first one's error; a cut in between does not
-   show in the motion, and so the history of new copies is that of the old. */
+/* BDF2 on a body that falls: of second order, so exact from the second step on but for the first one's error; a cut in
+   between does not show in the motion, and so the history of new copies is that of the old. */
 START_TEST(bdf2_goes_on_after_a_cut) {
     workload w = grid(2, 2, 2, 5);
     gx_body *cut = body_of(&w), *whole = body_of(&w);
@@ -229,34 +276,46 @@ START_TEST(bdf2_goes_on_after_a_cut) {
     size_t i;
     int k;
     add_axis_plane(&w, 0, 0.7);
-    step.integrator = GXS_BDF2; step.newton_tolerance = 1e-13; step.newton_iterations = 5;
-    a = view_of(cut); b = view_of(whole);
-    for (i = 0; i < a.copy_count; ++i) for (k = 0; k < 3; ++k) a.velocity[3 * i + (size_t)k] = b.velocity[3 * i + (size_t)k] = 0.1 * k;
-    advance(cut, &step, 4); advance(whole, &step, 4);
+    step.integrator = GXS_BDF2;
+    step.newton_tolerance = 1e-13;
+    step.newton_iterations = 5;
+    a = view_of(cut);
+    b = view_of(whole);
+    for (i = 0; i < a.copy_count; i++)
+        for (k = 0; k < 3; k++) a.velocity[3 * i + (size_t)k] = b.velocity[3 * i + (size_t)k] = 0.1 * k;
+    advance(cut, &step, 4);
+    advance(whole, &step, 4);
     cut_by(cut, &w, 0, 1);
-    advance(cut, &step, 6); advance(whole, &step, 6);
-    a = view_of(cut); b = view_of(whole);
+    advance(cut, &step, 6);
+    advance(whole, &step, 6);
+    a = view_of(cut);
+    b = view_of(whole);
     ck_assert_uint_eq(a.fragment_count, 2);
-    for (i = 0; i < a.copy_count; ++i) for (k = 0; k < 3; ++k) {
-        ck_assert_double_eq_tol(a.displacement[3 * i + (size_t)k], b.displacement[(size_t)k], 1e-13);
-        ck_assert_double_eq_tol(a.velocity[3 * i + (size_t)k], 0.1 * k - (k == 2) * 9.81 * 0.1, 1e-12);
-    }
+    for (i = 0; i < a.copy_count; i++)
+        for (k = 0; k < 3; k++) {
+            ck_assert_double_eq_tol(a.displacement[3 * i + (size_t)k], b.displacement[(size_t)k], 1e-13);
+            ck_assert_double_eq_tol(a.velocity[3 * i + (size_t)k], 0.1 * k - (k == 2) * 9.81 * 0.1, 1e-12);
+        }
     /* after a step of another kind it starts anew, by backward Euler */
-    step.integrator = GXS_BDF1; advance(whole, &step, 1);
-    step.integrator = GXS_BDF2; b = view_of(whole);
+    step.integrator = GXS_BDF1;
+    advance(whole, &step, 1);
+    step.integrator = GXS_BDF2;
+    b = view_of(whole);
     {
         const double before = b.displacement[2], speed = b.velocity[2];
         advance(whole, &step, 1);
         ck_assert_double_eq_tol(b.displacement[2] - before, 0.01 * (speed - 0.0981), 1e-13);
     }
-    gx_body_destroy(cut); gx_body_destroy(whole);
+    gx_body_destroy(cut);
+    gx_body_destroy(whole);
     wl_free(&w);
 }
 END_TEST
 
 /* ---- sleep ---- */
 
-/* A block cut in two by its middle hangs on both sides and comes to rest; a cut wakes the side that it touches, not the other. */
+/* A block cut in two by its middle hangs on both sides and comes to rest; a cut wakes the side that it touches, not the
+ * other. */
 START_TEST(cuts_wake_what_they_touch) {
     workload w = grid(4, 2, 2, 5);
     gx_body_desc desc = desc_of(&w);
@@ -269,26 +328,32 @@ START_TEST(cuts_wake_what_they_touch) {
     size_t i, left = 0, all;
     int n;
     memset(&material, 0, sizeof material);
-    material.elastic.young = 1e6; material.elastic.poisson = 0.4; material.density = 1000;
-    desc.materials = &material; desc.material_count = 1;
+    material.elastic.young = 1e6;
+    material.elastic.poisson = 0.4;
+    material.density = 1000;
+    desc.materials = &material;
+    desc.material_count = 1;
     ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
-    add_axis_plane(&w, 0, 2.25); add_box(&w, 0, -1, -1, 0.5, 1.75, 4, 0.75);
+    add_axis_plane(&w, 0, 2.25);
+    add_box(&w, 0, -1, -1, 0.5, 1.75, 4, 0.75);
     cut_by(body, &w, 0, 1);
     hold_above(body, 2 - 1e-9);
-    step.sleep_speed = 1e-3; step.mass_damping = 5;
+    step.sleep_speed = 1e-3;
+    step.mass_damping = 5;
     report = advance(body, &step, 1);
-    for (n = 0; n < 400 && report.stop != GXS_STOP_ASLEEP; ++n) report = advance(body, &step, 1);
+    for (n = 0; n < 400 && report.stop != GXS_STOP_ASLEEP; n++) report = advance(body, &step, 1);
     ck_assert_int_eq(report.stop, GXS_STOP_ASLEEP);
     ck_assert_uint_eq(report.active_unknowns, 0);
     cut_by(body, &w, 1, 1);
     view = view_of(body);
     before = (double *)malloc(3 * view.copy_count * sizeof *before);
     memcpy(before, view.displacement, 3 * view.copy_count * sizeof *before);
-    for (i = all = 0; i < view.copy_count; ++i) all += view.copy_held[i] ? 0 : 3;
+    for (i = all = 0; i < view.copy_count; i++) all += view.copy_held[i] ? 0 : 3;
     report = advance(body, &step, 1);
-    ck_assert_msg(report.active_unknowns > 0 && report.active_unknowns < all, "%zu of %zu", report.active_unknowns, all);
+    ck_assert_msg(report.active_unknowns > 0 && report.active_unknowns < all, "%zu of %zu", report.active_unknowns,
+                  all);
     report = advance(body, &step, 20);
-    for (i = 0; i < view.copy_count; ++i) {
+    for (i = 0; i < view.copy_count; i++) {
         const int moved = memcmp(before + 3 * i, view.displacement + 3 * i, 3 * sizeof *before) != 0;
         left += moved;
         ck_assert(!moved || view.rest_time[i] < 1);
@@ -309,7 +374,7 @@ static gx_body *hung_asleep(const workload *w, double support_below, const gx_st
     ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
     cut_by(body, w, 0, 1);
     hold_above(body, 2 - 1e-9);
-    for (n = 0; n < 400 && advance(body, step, 1).stop != GXS_STOP_ASLEEP; ++n) continue;
+    for (n = 0; n < 400 && advance(body, step, 1).stop != GXS_STOP_ASLEEP; n++) continue;
     ck_assert_uint_eq(advance(body, step, 1).active_unknowns, 0);
     return body;
 }
@@ -322,14 +387,16 @@ START_TEST(released_sleepers_fall) {
     gx_view view;
     size_t i;
     add_axis_plane(&w, 0, 2.25);
-    step.sleep_speed = 1e-3; step.mass_damping = 5;
+    step.sleep_speed = 1e-3;
+    step.mass_damping = 5;
     body = hung_asleep(&w, 0, &step);
     ck_assert_int_eq(gx_body_hold(body, NULL, 0), GX_OK);
     view = view_of(body);
     ck_assert_uint_eq(advance(body, &step, 1).active_unknowns, 3 * view.copy_count);
     advance(body, &step, 9);
-    for (i = 0; i < view.copy_count; ++i)
-        ck_assert_msg(view.displacement[3 * i + 2] < -0.2, "copy %zu has fallen %g m", i, -view.displacement[3 * i + 2]);
+    for (i = 0; i < view.copy_count; i++)
+        ck_assert_msg(view.displacement[3 * i + 2] < -0.2, "copy %zu has fallen %g m", i,
+                      -view.displacement[3 * i + 2]);
     gx_body_destroy(body);
     wl_free(&w);
 }
@@ -347,12 +414,14 @@ static size_t right_of(const gx_view *view, const workload *w) {
 /* Writes a displacement to it, or a velocity below sleep_speed. */
 static void write_right(gx_body *body, const workload *w, int velocity) {
     gx_view view = view_of(body);
-    if (velocity) view.velocity[3 * right_of(&view, w)] = 5e-4;
-    else view.displacement[3 * right_of(&view, w)] += 0.3;
+    if (velocity)
+        view.velocity[3 * right_of(&view, w)] = 5e-4;
+    else
+        view.displacement[3 * right_of(&view, w)] += 0.3;
 }
 
-/* What is written to a sleeper wakes it, and its clone and loaded copy alike, bit for bit, whatever happens to the body before the step:
-   after the write (late 0) or before it (1). */
+/* What is written to a sleeper wakes it, and its clone and loaded copy alike, bit for bit, whatever happens to the body
+   before the step: after the write (late 0) or before it (1). */
 START_TEST(sleepers_see_what_is_written_through_changes) {
     const int change = _i / 4, velocity = _i / 2 % 2, late = _i % 2;
     workload w = grid(4, 2, 2, 5);
@@ -364,8 +433,10 @@ START_TEST(sleepers_see_what_is_written_through_changes) {
     double was;
     void *bytes;
     int n;
-    add_axis_plane(&w, 0, 2.25); add_box(&w, 0, -1, -1, 0.5, 1.75, 4, 0.75);
-    step.sleep_speed = 1e-3; step.mass_damping = 5;
+    add_axis_plane(&w, 0, 2.25);
+    add_box(&w, 0, -1, -1, 0.5, 1.75, 4, 0.75);
+    step.sleep_speed = 1e-3;
+    step.mass_damping = 5;
     body = hung_asleep(&w, change == CUT_WITHOUT_SUPPORT ? 1e-4 : 0, &step);
     if (!late) write_right(body, &w, velocity);
     switch (change) {
@@ -385,41 +456,44 @@ START_TEST(sleepers_see_what_is_written_through_changes) {
     view = view_of(body);
     at = right_of(&view, &w);
     was = view.displacement[3 * at];
-    for (n = 0; n < 20; ++n) {
+    for (n = 0; n < 20; n++) {
         report = advance(body, &step, 1);
-        ck_assert_msg(n > 0 || (report.active_unknowns > 0 && view.displacement[3 * at] != was && view.rest_time[at] < 0.5),
+        ck_assert_msg(n > 0 ||
+                          (report.active_unknowns > 0 && view.displacement[3 * at] != was && view.rest_time[at] < 0.5),
                       "%zu unknowns awake, moved by %g m", report.active_unknowns, view.displacement[3 * at] - was);
         if (!twin) continue;
         twins = advance(twin, &step, 1);
         other = view_of(twin);
         ck_assert_uint_eq(report.active_unknowns, twins.active_unknowns);
         ck_assert_msg(memcmp(view.displacement, other.displacement, 3 * view.copy_count * sizeof was) == 0 &&
-                      memcmp(view.velocity, other.velocity, 3 * view.copy_count * sizeof was) == 0, "step %d", n);
+                          memcmp(view.velocity, other.velocity, 3 * view.copy_count * sizeof was) == 0,
+                      "step %d", n);
     }
     if (!velocity) ck_assert(view.displacement[3 * at] < was - 0.2);
-    gx_body_destroy(body); gx_body_destroy(twin);
+    gx_body_destroy(body);
+    gx_body_destroy(twin);
     wl_free(&w);
 }
 END_TEST
 
 /* ---- copies without support ---- */
 
-/* A corner cut off so close to its node that it has 1e-12 ... 1e-3 of its element: falls like the rest, as a point whether or not
-   support_below says so. It never disturbs the body that it has left. */
+/* A corner cut off so close to its node that it has 1e-12 ... 1e-3 of its element: falls like the rest, as a point
+   whether or not support_below says so. It never disturbs the body that it has left. */
 START_TEST(tiny_corners_fall) {
-    static const double sizes[3] = { 1e-1, 1e-2, 1e-4 };
+    static const double sizes[3] = {1e-1, 1e-2, 1e-4};
     workload w = grid(1, 1, 1, 5);
     gx_body_desc desc = desc_of(&w);
     gx_step_desc step = step_of(0.033, -9.81);
     gxs_step_report report;
-    const double size = sizes[_i / 2], n[3] = { 1, 1, 1 };
+    const double size = sizes[_i / 2], n[3] = {1, 1, 1};
     double p[3];
     gx_body *body = NULL;
     gx_view view;
     gxs_model model;
     size_t i;
     int k;
-    for (k = 0; k < 3; ++k) p[k] = size / 3;
+    for (k = 0; k < 3; k++) p[k] = size / 3;
     add_plane(&w, p, n, 20);
     desc.support_below = _i % 2 ? 2e-3 : 0;
     ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
@@ -428,10 +502,10 @@ START_TEST(tiny_corners_fall) {
     ck_assert_uint_eq(view.fragment_count, 2);
     ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
     ck_assert_uint_eq(model.constraint_count, view.copy_count - 8 - 1); /* one leads */
-    for (i = 0; i < 3 * view.copy_count; ++i) view.velocity[i] = (double)(i % 3);
+    for (i = 0; i < 3 * view.copy_count; i++) view.velocity[i] = (double)(i % 3);
     report = advance(body, &step, 10);
     ck_assert(report.cg_iterations < 30);
-    for (i = 0; i < view.copy_count; ++i) {
+    for (i = 0; i < view.copy_count; i++) {
         const double fallen = 9.81 * 0.033 * 0.033 * 55;
         ck_assert_double_eq_tol(view.displacement[3 * i + 2], 0.66 - fallen, 1e-9);
         ck_assert_double_eq_tol(view.displacement[3 * i + 1], 0.33, 1e-9);
@@ -441,12 +515,13 @@ START_TEST(tiny_corners_fall) {
 }
 END_TEST
 
-/* Bodies most of whose copies have too little support for themselves can be stepped, and copies that follow others follow none that do. */
+/* Bodies most of whose copies have too little support for themselves can be stepped, and copies that follow others
+ * follow none that do. */
 START_TEST(few_supports_are_enough) {
     const gx_step_desc step = step_of(0.01, -9.81);
     int n, i, k, j;
     random_seed((uint64_t)_i * 11 + 3);
-    for (n = 0; n < 30; ++n) {
+    for (n = 0; n < 30; n++) {
         workload w = grid(1 + (size_t)random_below(2), 1 + (size_t)random_below(2), 1, 5);
         gx_body_desc desc = desc_of(&w);
         gx_body *body = NULL;
@@ -455,17 +530,21 @@ START_TEST(few_supports_are_enough) {
         uint8_t *follows;
         desc.support_below = n % 2 ? 0.3 : pow(10, random_real(-5, -0.5));
         ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
-        for (i = 0; i < 10; ++i) {
+        for (i = 0; i < 10; i++) {
             double point[3], normal[3];
-            for (k = 0; k < 3; ++k) { point[k] = random_real(0, 1); normal[k] = random_real(-1, 1); }
+            for (k = 0; k < 3; k++) {
+                point[k] = random_real(0, 1);
+                normal[k] = random_real(-1, 1);
+            }
             add_plane(&w, point, normal, random_below(2) ? 40 : 0.7);
             cut_by(body, &w, (size_t)i, 1);
         }
         ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
         follows = (uint8_t *)calloc(model.copy_count, 1);
-        for (c = 0; c < model.constraint_count; ++c) follows[model.constraints[c].copy] = 1;
-        for (c = 0; c < model.constraint_count; ++c)
-            for (j = 0; j < 4; ++j) ck_assert(!(fabs(model.constraints[c].weight[j]) > 0) || !follows[model.constraints[c].master[j]]);
+        for (c = 0; c < model.constraint_count; c++) follows[model.constraints[c].copy] = 1;
+        for (c = 0; c < model.constraint_count; c++)
+            for (j = 0; j < 4; j++)
+                ck_assert(!(fabs(model.constraints[c].weight[j]) > 0) || !follows[model.constraints[c].master[j]]);
         ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
         free(follows);
         gx_body_destroy(body);
@@ -474,7 +553,8 @@ START_TEST(few_supports_are_enough) {
 }
 END_TEST
 
-/* What is at rest is kicked, or moved, in one of the steps around the one in which it would fall asleep: it is awake then. */
+/* What is at rest is kicked, or moved, in one of the steps around the one in which it would fall asleep: it is awake
+ * then. */
 START_TEST(the_step_of_falling_asleep_sees_what_is_written) {
     workload w = grid(1, 1, 1, 5);
     gx_body *body = body_of(&w);
@@ -484,13 +564,17 @@ START_TEST(the_step_of_falling_asleep_sees_what_is_written) {
     size_t c;
     int n;
     step.sleep_speed = 1e-3;
-    for (n = 0; n < 20 + _i / 2; ++n) ck_assert_int_eq(gx_body_step(body, &step, &report, NULL), GX_OK);
-    if (_i % 2) view.displacement[0] += 0.3;
-    else for (c = 0; c < view.copy_count; ++c) view.velocity[3 * c] = 1;
+    for (n = 0; n < 20 + _i / 2; n++) ck_assert_int_eq(gx_body_step(body, &step, &report, NULL), GX_OK);
+    if (_i % 2)
+        view.displacement[0] += 0.3;
+    else
+        for (c = 0; c < view.copy_count; c++) view.velocity[3 * c] = 1;
     ck_assert_int_eq(gx_body_step(body, &step, &report, NULL), GX_OK);
     ck_assert_uint_eq(report.active_unknowns, 3 * view.copy_count);
-    if (_i % 2) ck_assert(view.displacement[0] < 0.29);
-    else ck_assert_double_eq_tol(view.displacement[3], 0.02, 1e-9);
+    if (_i % 2)
+        ck_assert(view.displacement[0] < 0.29);
+    else
+        ck_assert_double_eq_tol(view.displacement[3], 0.02, 1e-9);
     gx_body_destroy(body);
     wl_free(&w);
 }
@@ -501,7 +585,9 @@ static double six_volumes(const workload *w, uint32_t element) {
     const uint32_t *n = w->elements + 4 * (size_t)element;
     double d[3][3];
     int i, k;
-    for (i = 0; i < 3; ++i) for (k = 0; k < 3; ++k) d[i][k] = w->positions[3 * n[i + 1] + (uint32_t)k] - w->positions[3 * n[0] + (uint32_t)k];
+    for (i = 0; i < 3; i++)
+        for (k = 0; k < 3; k++)
+            d[i][k] = w->positions[3 * n[i + 1] + (uint32_t)k] - w->positions[3 * n[0] + (uint32_t)k];
     return d[0][0] * (d[1][1] * d[2][2] - d[1][2] * d[2][1]) + d[0][1] * (d[1][2] * d[2][0] - d[1][0] * d[2][2]) +
            d[0][2] * (d[1][0] * d[2][1] - d[1][1] * d[2][0]);
 }
@@ -510,18 +596,19 @@ static double six_volumes(const workload *w, uint32_t element) {
 static double most_of(const workload *w, const gx_view *view, const double *vector, int all) {
     double most = 0;
     size_t i, k;
-    for (i = 0; i < view->cell_count; ++i)
-        for (k = 0; k < 12 && (all || 6 * view->cell_volume[i] > 0.01 * six_volumes(w, view->cell_element[i])); ++k)
+    for (i = 0; i < view->cell_count; i++)
+        for (k = 0; k < 12 && (all || 6 * view->cell_volume[i] > 0.01 * six_volumes(w, view->cell_element[i])); k++)
             most = fmax(most, fabs(vector[3 * view->cell_copies[4 * i + k / 3] + k % 3]));
     return most;
 }
 
-/* A kicked block hangs by its top, with slivers of 1e-30 of an element at a node that three planes all but meet, or along layers of nodes, an ulp
-   beside them: no copy is flung further or faster than ten times what the body moves by, by any integrator, whatever support_below says. */
+/* A kicked block hangs by its top, with slivers of 1e-30 of an element at a node that three planes all but meet, or
+   along layers of nodes, an ulp beside them: no copy is flung further or faster than ten times what the body moves by,
+   by any integrator, whatever support_below says. */
 START_TEST(kicked_slivers_stay_with_their_body) {
-    static const uint64_t seeds[4] = { 87, 93, 124, 7 };
-    static const gxs_integrator integrators[3] = { GXS_BDF1, GXS_BDF2, GXS_MIDPOINT };
-    const gx_region top = { 2, 1, 1.9 };
+    static const uint64_t seeds[4] = {87, 93, 124, 7};
+    static const gxs_integrator integrators[3] = {GXS_BDF1, GXS_BDF2, GXS_MIDPOINT};
+    const gx_region top = {2, 1, 1.9};
     gx_step_desc step = step_of(1.0 / 60, -9.81);
     workload w;
     gx_body *body = NULL;
@@ -538,22 +625,25 @@ START_TEST(kicked_slivers_stay_with_their_body) {
     ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
     ck_assert_int_eq(gx_body_hold(body, &top, 1), GX_OK);
     node = (size_t)random_below((int)w.node_count);
-    for (k = 0; k < 3; ++k) {
-        const double normal[3] = { random_real(-1, 1), random_real(-1, 1), random_real(-1, 1) }, off = pow(10, -random_real(9, 16));
+    for (k = 0; k < 3; k++) {
+        const double normal[3] = {random_real(-1, 1), random_real(-1, 1), random_real(-1, 1)},
+                     off = pow(10, -random_real(9, 16));
         double point[3];
-        for (i = 0; i < 3; ++i) point[i] = w.positions[3 * node + i] + off * random_real(-1, 1);
+        for (i = 0; i < 3; i++) point[i] = w.positions[3 * node + i] + off * random_real(-1, 1);
         add_plane(&w, point, normal, random_below(2) ? 0.8 : 40);
         cut_by(body, &w, (size_t)k, 1);
     }
     add_axis_plane(&w, 2, nextafter(1, 2));
     cut_by(body, &w, 3, 1);
     view = view_of(body);
-    for (i = 0; i < 3 * view.copy_count; ++i) if (!view.copy_held[i / 3]) view.velocity[i] = random_real(-1, 1);
-    for (k = 0; k < 300; ++k) {
+    for (i = 0; i < 3 * view.copy_count; i++)
+        if (!view.copy_held[i / 3]) view.velocity[i] = random_real(-1, 1);
+    for (k = 0; k < 300; k++) {
         ck_assert_int_eq(gx_body_step(body, &step, NULL, NULL), GX_OK);
         moved = fmax(moved, most_of(&w, &view, view.displacement, 0));
         speed = fmax(speed, most_of(&w, &view, view.velocity, 0));
-        ck_assert_msg(most_of(&w, &view, view.displacement, 1) < 10 * moved && most_of(&w, &view, view.velocity, 1) < 10 * speed,
+        ck_assert_msg(most_of(&w, &view, view.displacement, 1) < 10 * moved &&
+                          most_of(&w, &view, view.velocity, 1) < 10 * speed,
                       "step %d: %g m where the body moves %g m, %g m/s where it has been at %g m/s", k,
                       most_of(&w, &view, view.displacement, 1), moved, most_of(&w, &view, view.velocity, 1), speed);
     }
@@ -562,8 +652,8 @@ START_TEST(kicked_slivers_stay_with_their_body) {
 }
 END_TEST
 
-/* A plane so close to a layer of nodes that the copies behind it have next to no support, in a block that hangs by them: extended, they
-   follow the field of what is before it, and the block hangs as the uncut one below. */
+/* A plane so close to a layer of nodes that the copies behind it have next to no support, in a block that hangs by
+   them: extended, they follow the field of what is before it, and the block hangs as the uncut one below. */
 START_TEST(copies_without_support_follow_their_fragment) {
     workload w = grid(2, 2, 4, 5);
     gx_body_desc desc = desc_of(&w);
@@ -586,20 +676,21 @@ START_TEST(copies_without_support_follow_their_fragment) {
     memcpy(before, view.displacement, 3 * view.copy_count * sizeof *before);
     advance(body, &step, 3);
     ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
-    for (i = 0; i < model.constraint_count; ++i) {
+    for (i = 0; i < model.constraint_count; i++) {
         const gxs_constraint *c = &model.constraints[i];
         double sum = 0;
         int r;
-        for (k = 0; k < 4; ++k) sum += c->weight[k];
+        for (k = 0; k < 4; k++) sum += c->weight[k];
         ck_assert_double_eq_tol(sum, 1, 1e-12);
-        for (r = 0; r < 3; ++r) {
+        for (r = 0; r < 3; r++) {
             double moved = view.displacement[3 * c->copy + (uint32_t)r] - before[3 * c->copy + (uint32_t)r];
-            for (k = 0; k < 4; ++k)
-                moved -= c->weight[k] * (view.displacement[3 * c->master[k] + (uint32_t)r] - before[3 * c->master[k] + (uint32_t)r]);
+            for (k = 0; k < 4; k++)
+                moved -= c->weight[k] *
+                         (view.displacement[3 * c->master[k] + (uint32_t)r] - before[3 * c->master[k] + (uint32_t)r]);
             ck_assert(fabs(moved) < 1e-13);
         }
     }
-    for (i = 0; i < 3 * view.copy_count; ++i) ck_assert(fabs(view.displacement[i]) < 1);
+    for (i = 0; i < 3 * view.copy_count; i++) ck_assert(fabs(view.displacement[i]) < 1);
     free(before);
     gx_body_destroy(body);
     wl_free(&w);
@@ -619,7 +710,7 @@ START_TEST(springs_pull_points_of_the_skin) {
     gx_view view;
     double force[3], speed = 0, mass, *x;
     size_t i, k;
-    const double n[3] = { 1, 0.2, 0.1 }, p[3] = { 1.1, 1, 1 };
+    const double n[3] = {1, 0.2, 0.1}, p[3] = {1.1, 1, 1};
     gx_failure failure;
     add_plane(&w, p, n, 10);
     body = cut_at_once(&w);
@@ -635,18 +726,25 @@ START_TEST(springs_pull_points_of_the_skin) {
     memcpy(spring.target, x, sizeof spring.target);
     spring.target[1] += 1;
     spring.stiffness = 1000;
-    step.springs = &spring; step.spring_count = 1; step.spring_forces = force;
-    step.newton_iterations = 20; step.newton_tolerance = 1e-10; step.cg_tolerance = 1e-8;
+    step.springs = &spring;
+    step.spring_count = 1;
+    step.spring_forces = force;
+    step.newton_iterations = 20;
+    step.newton_tolerance = 1e-10;
+    step.cg_tolerance = 1e-8;
     advance(body, &step, 1);
     mass = view.fragment_mass[skin.triangle_fragment[0]];
     ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
-    for (i = 0; i < model.element_count; ++i) for (k = 0; k < 4; ++k) {
-        static const int rows[4][4] = { { 0, 1, 2, 3 }, { 1, 4, 5, 6 }, { 2, 5, 7, 8 }, { 3, 6, 8, 9 } };
-        int j;
-        for (j = 0; j < 4; ++j) speed += model.elements[i].mass[rows[k][j]] * view.velocity[3 * model.elements[i].copy[k] + 1];
-    }
+    for (i = 0; i < model.element_count; i++)
+        for (k = 0; k < 4; k++) {
+            static const int rows[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
+            int j;
+            for (j = 0; j < 4; j++)
+                speed += model.elements[i].mass[rows[k][j]] * view.velocity[3 * model.elements[i].copy[k] + 1];
+        }
     ck_assert(mass > 0 && force[1] > 900 && force[1] <= 1000);
-    ck_assert_double_eq_tol(speed, 0.01 * force[1], 1e-7 * speed); /* the solver has centres of masses in single precision */
+    /* the solver has centres of masses in single precision */
+    ck_assert_double_eq_tol(speed, 0.01 * force[1], 1e-7 * speed);
     spring.point.copy[2] = 100000;
     ck_assert_int_eq(gx_body_step(body, &step, NULL, &failure), GX_ERROR_INDEX);
     ck_assert_uint_eq(failure.index, 0);
@@ -660,7 +758,12 @@ END_TEST
 
 /* Something of each kind that names copies; kind: which is given to the step */
 enum { BY_SPRING, BY_POINT, BY_FORCES, BY_TARGETS, KINDS_OF_NAMES };
-typedef struct naming { gxs_spring springs[2]; gxs_point points[3]; double *vector; gx_step_desc step; } naming;
+typedef struct naming {
+    gxs_spring springs[2];
+    gxs_point points[3];
+    double *vector;
+    gx_step_desc step;
+} naming;
 
 /* All are made anew, of the first vertices of the skin. */
 static void name_copies(naming *n, gx_body *body, int kind) {
@@ -672,15 +775,24 @@ static void name_copies(naming *n, gx_body *body, int kind) {
     memset(n, 0, sizeof *n);
     n->vector = (double *)calloc(3 * view.copy_count + 1, sizeof *n->vector);
     n->step = step_of(0.01, -9.81);
-    for (i = 0; i < 3; ++i) {
+    for (i = 0; i < 3; i++) {
         n->points[i].epoch = skin.epoch;
         if (skin.vertex_count == 0) continue;
         memcpy(n->points[i].copy, skin.vertex_copies + 4 * i, sizeof n->points[i].copy);
         memcpy(n->points[i].weight, skin.vertex_weights + 4 * i, sizeof n->points[i].weight);
     }
-    for (i = 0; i < 2; ++i) { n->springs[i].point = n->points[i]; n->springs[i].stiffness = 1; }
-    if (kind == BY_SPRING) { n->step.springs = n->springs; n->step.spring_count = 2; }
-    if (kind == BY_POINT) { n->step.points = n->points; n->step.point_count = 3; }
+    for (i = 0; i < 2; i++) {
+        n->springs[i].point = n->points[i];
+        n->springs[i].stiffness = 1;
+    }
+    if (kind == BY_SPRING) {
+        n->step.springs = n->springs;
+        n->step.spring_count = 2;
+    }
+    if (kind == BY_POINT) {
+        n->step.points = n->points;
+        n->step.point_count = 3;
+    }
     if (kind == BY_FORCES) n->step.forces = n->vector;
     if (kind == BY_TARGETS) n->step.targets = n->vector;
     if (kind == BY_FORCES || kind == BY_TARGETS) n->step.epoch = view.epoch;
@@ -710,21 +822,21 @@ START_TEST(names_of_copies_go_stale) {
     naming n;
     uint64_t epoch;
     size_t i;
-    const double corners[3][3] = { { 0.2, 0.2, 0.3 }, { 0.3, 0.2, 0.3 }, { 0.2, 0.3, 0.3 } };
+    const double corners[3][3] = {{0.2, 0.2, 0.3}, {0.3, 0.2, 0.3}, {0.2, 0.3, 0.3}};
     memset(&n, 0, sizeof n);
     desc.support_below = _i / KINDS_OF_NAMES ? 1e-3 : 0;
     ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
     hold_above(body, 2 - 1e-9);
     add_axis_plane(&w, 0, 40);
     part = wl_add_surface(&w, 0);
-    for (i = 0; i < 3; ++i) wl_add_vertex(part, corners[i]);
+    for (i = 0; i < 3; i++) wl_add_vertex(part, corners[i]);
     wl_add_triangle(part, 0, 1, 2);
     add_axis_plane(&w, 0, 1.3);
     add_box(&w, 1, -1, -1, -1, 1.1, 3, 3);
     add_box(&w, 1, -1, -1, -1, 3, 3, 3);
     ck_assert(view_of(body).epoch == 0);
     name_copies(&n, body, kind);
-    for (i = 0; i < 5; ++i) {
+    for (i = 0; i < 5; i++) {
         advance(body, &n.step, 1);
         epoch = view_of(body).epoch;
         report = cut_by(body, &w, i, 1);
@@ -746,7 +858,7 @@ END_TEST
 
 /* View, skin, hit and model of a cut body; a spring at the hit is fine. */
 START_TEST(whoever_tells_copies_tells_the_epoch) {
-    static const double origin[3] = { 0.3, 0.4, -5 }, up[3] = { 0, 0, 1 };
+    static const double origin[3] = {0.3, 0.4, -5}, up[3] = {0, 0, 1};
     workload w = grid(2, 2, 2, 5);
     gx_body *body;
     gx_step_desc step = step_of(0.01, 0);
@@ -768,7 +880,8 @@ START_TEST(whoever_tells_copies_tells_the_epoch) {
     memcpy(spring.point.weight, hit.weights, sizeof hit.weights);
     spring.point.epoch = hit.epoch;
     spring.stiffness = 1;
-    step.springs = &spring; step.spring_count = 1;
+    step.springs = &spring;
+    step.spring_count = 1;
     advance(body, &step, 1);
     gx_body_destroy(body);
     wl_free(&w);

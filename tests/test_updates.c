@@ -1,15 +1,15 @@
-/* test_updates.c - a cut changes the solver's model instead of making it anew (gxs_solver_update): the same motion as with a model that is
-   set whole after each cut, no more iterations, the same bits in any order of jobs and after a save, sleepers that wake, bad changes,
-   memory that runs out; how much of it solvers take; coarse functions of
-   small pieces. */
+/* test_updates.c - a cut changes the solver's model instead of making it anew (gxs_solver_update): the same motion as
+   with a model that is set whole after each cut, no more iterations, the same bits in any order of jobs and after a
+   save, sleepers that wake, bad changes, memory that runs out; how much of it solvers take; coarse functions of small
+   pieces. */
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "body.h"
 
-enum { BLOCK = 6 };     /* cells along an edge: enough copies for multigrid */
+enum { BLOCK = 6 }; /* cells along an edge: enough copies for multigrid */
 
 static void hold_top(gx_body *body) {
-    const gx_region top = { 2, 1, BLOCK - 1e-9 };
+    const gx_region top = {2, 1, BLOCK - 1e-9};
     ck_assert_int_eq(gx_body_hold(body, &top, 1), GX_OK);
 }
 
@@ -17,14 +17,17 @@ static gx_step_desc step_of(double dt) {
     gx_step_desc step;
     memset(&step, 0, sizeof step);
     step.dt = dt;
-    step.gravity[0] = 1; step.gravity[2] = -9.81;
+    step.gravity[0] = 1;
+    step.gravity[2] = -9.81;
     return step;
 }
 
 /* Steps to balance, so that two ways to the same step end alike */
 static gx_step_desc exact_step(double dt) {
     gx_step_desc step = step_of(dt);
-    step.newton_iterations = 60; step.newton_tolerance = 1e-11; step.cg_tolerance = 1e-4;
+    step.newton_iterations = 60;
+    step.newton_tolerance = 1e-11;
+    step.cg_tolerance = 1e-4;
     return step;
 }
 
@@ -40,14 +43,15 @@ static uint32_t advance(gx_body *body, const gx_step_desc *step, int steps) {
     return iterations;
 }
 
-/* Difference of displacements relative to these, both by the mass: a copy of 1e-60 of its element's has no place that doubles could tell. */
+/* Difference of displacements relative to these, both by the mass: a copy of 1e-60 of its element's has no place that
+ * doubles could tell. */
 static double apart(gx_body *a, gx_body *b) {
     const gx_view of = view_of(a), to = view_of(b);
     const double *mass = a->solver->system->lumped;
     double most = 0, gap = 0;
     size_t i;
     ck_assert_uint_eq(of.copy_count, to.copy_count);
-    for (i = 0; i < 3 * of.copy_count; ++i) {
+    for (i = 0; i < 3 * of.copy_count; i++) {
         const double d = of.displacement[i] - to.displacement[i];
         most += mass[i / 3] * of.displacement[i] * of.displacement[i];
         gap += mass[i / 3] * d * d;
@@ -57,21 +61,23 @@ static double apart(gx_body *a, gx_body *b) {
 
 static int same_bits(gx_body *a, gx_body *b) {
     const gx_view of = view_of(a), to = view_of(b);
-    return of.copy_count == to.copy_count && memcmp(of.displacement, to.displacement, 3 * of.copy_count * sizeof(double)) == 0 &&
+    return of.copy_count == to.copy_count &&
+           memcmp(of.displacement, to.displacement, 3 * of.copy_count * sizeof(double)) == 0 &&
            memcmp(of.velocity, to.velocity, 3 * of.copy_count * sizeof(double)) == 0;
 }
 
 /* A quad across z, in x from low to high */
 static void add_strip(workload *w, double z, double low, double high) {
-    const double a[3] = { low, -1, z }, b[3] = { high, -1, z }, c[3] = { high, BLOCK + 1, z }, d[3] = { low, BLOCK + 1, z };
+    const double a[3] = {low, -1, z}, b[3] = {high, -1, z}, c[3] = {high, BLOCK + 1, z}, d[3] = {low, BLOCK + 1, z};
     wl_add_quad(wl_add_surface(w, 0), a, b, c, d);
 }
 
-/* Cuts of a block: strips that grow together, sheets that end inside and cross, holes, planes that part it, a cut through nodes */
+/* Cuts of a block: strips that grow together, sheets that end inside and cross, holes, planes that part it, a cut
+ * through nodes */
 static void add_cuts(workload *w) {
-    const double p[3] = { 3.1, 2.9, 3.3 }, n[3] = { 1, 0.3, 0.2 }, q[3] = { 2.13, 4.21, 1.93 }, m[3] = { 0.1, 1, 0.4 };
+    const double p[3] = {3.1, 2.9, 3.3}, n[3] = {1, 0.3, 0.2}, q[3] = {2.13, 4.21, 1.93}, m[3] = {0.1, 1, 0.4};
     int i;
-    for (i = 0; i < 4; ++i) add_strip(w, 2.37, i - 0.63, i + 0.37);
+    for (i = 0; i < 4; i++) add_strip(w, 2.37, i - 0.63, i + 0.37);
     add_plane(w, p, n, 1.2);
     add_plane(w, q, m, 0.7);
     add_box(w, 1, 1.2, 1.3, 3.1, 2.6, 2.2, 4.4);
@@ -89,25 +95,26 @@ static workload block_with_cuts(uint64_t seed) {
     return w;
 }
 
-/* The operator of a model that has been changed, by that of one that has been set whole, within what single precision makes of other orders */
+/* The operator of a model that has been changed, by that of one that has been set whole, within what single precision
+ * makes of other orders */
 static void check_operator(gx_body *changed, gx_body *whole) {
     const gx_view view = view_of(changed);
     const size_t n = 3 * view.copy_count;
     double *x = (double *)calloc(3 * n, sizeof *x), *y = x + n, *z = x + 2 * n, most = 0;
     size_t i;
-    for (i = 0; i < n; ++i) x[i] = sin(0.37 * (double)(i * i % 1009));
+    for (i = 0; i < n; i++) x[i] = sin(0.37 * (double)(i * i % 1009));
     ck_assert_int_eq(gxs_solver_product(changed->solver, x, y, NULL), GX_ERROR_ARGUMENT);
     ck_assert_int_eq(gxs_solver_linearise(changed->solver, view.displacement, 100, 0, NULL), GX_OK);
     ck_assert_int_eq(gxs_solver_linearise(whole->solver, view.displacement, 100, 0, NULL), GX_OK);
     ck_assert_int_eq(gxs_solver_product(changed->solver, x, y, NULL), GX_OK);
     ck_assert_int_eq(gxs_solver_product(whole->solver, x, z, NULL), GX_OK);
-    for (i = 0; i < n; ++i) most = fabs(z[i]) > most ? fabs(z[i]) : most;
-    for (i = 0; i < n; ++i) ck_assert_msg(fabs(y[i] - z[i]) <= 1e-6 * most, "%g and %g", y[i], z[i]);
+    for (i = 0; i < n; i++) most = fabs(z[i]) > most ? fabs(z[i]) : most;
+    for (i = 0; i < n; i++) ck_assert_msg(fabs(y[i] - z[i]) <= 1e-6 * most, "%g and %g", y[i], z[i]);
     free(x);
 }
 
-/* What is told of blocks holds: which corners are not those of the block before, where there is no element. Returns how many corners of a block
- * differ from those of the one before, on average. */
+/* What is told of blocks holds: which corners are not those of the block before, where there is no element. Returns how
+ * many corners of a block differ from those of the one before, on average. */
 static double check_lanes(gx_body *body) {
     const gxsp_system *system = body->solver->system;
     const uint32_t lanes = (uint32_t)(sizeof(gxsp_singles) / sizeof(float));
@@ -116,18 +123,18 @@ static double check_lanes(gx_body *body) {
     gxs_model model;
     ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
     ck_assert(memcmp(model.positions, system->positions, 3 * model.copy_count * sizeof(double)) == 0);
-    for (c = 0; c < system->chunk_count; ++c) {
+    for (c = 0; c < system->chunk_count; c++) {
         const gxsp_chunk *chunk = &system->chunks[c];
         ck_assert_uint_eq(chunk->fresh[chunk->block_count], 15);
         ck_assert_ptr_null(chunk->gradients); /* of no element of a body */
         blocks += chunk->block_count;
-        for (b = 0; b < chunk->block_count; ++b)
-            for (i = 0; i < 4; ++i) {
+        for (b = 0; b < chunk->block_count; b++)
+            for (i = 0; i < 4; i++) {
                 const uint16_t *node = chunk->corners[b].node[i];
                 const int differs = b == 0 || memcmp(node, chunk->corners[b - 1].node[i], lanes * sizeof *node) != 0;
                 ck_assert_int_eq(chunk->fresh[b] >> i & 1, differs);
                 fresh += (size_t)differs;
-                for (l = 0; l < lanes; ++l) {
+                for (l = 0; l < lanes; l++) {
                     ck_assert_uint_lt(node[l], chunk->node_count);
                     ck_assert(chunk->groups[b * lanes + l] != UINT32_MAX || !(chunk->rest[b].weight[l] > 0));
                 }
@@ -143,13 +150,17 @@ START_TEST(cuts_change_the_model) {
     gx_body *changed = body_of(&w), *whole = body_of(&w);
     gx_step_desc step = exact_step(0.02);
     size_t c, updates = 0, followers = 0;
-    hold_top(changed); hold_top(whole);
-    advance(changed, &step, 2); advance(whole, &step, 2);
-    for (c = 0; c < w.surface_count; ++c) {
-        cut_by(changed, &w, c, 1); cut_by(whole, &w, c, 1);
-        hold_top(whole);                /* so that its model is set whole */
-        if (c % 3 == 1) continue;       /* two cuts before a step */
-        advance(changed, &step, 2); advance(whole, &step, 2);
+    hold_top(changed);
+    hold_top(whole);
+    advance(changed, &step, 2);
+    advance(whole, &step, 2);
+    for (c = 0; c < w.surface_count; c++) {
+        cut_by(changed, &w, c, 1);
+        cut_by(whole, &w, c, 1);
+        hold_top(whole);          /* so that its model is set whole */
+        if (c % 3 == 1) continue; /* two cuts before a step */
+        advance(changed, &step, 2);
+        advance(whole, &step, 2);
         updates += changed->model_updated != 0;
         ck_assert(!whole->model_updated);
         ck_assert_uint_eq(changed->solver->system->follower_count, whole->solver->system->follower_count);
@@ -162,14 +173,16 @@ START_TEST(cuts_change_the_model) {
     }
     ck_assert_uint_gt(updates, 3);
     ck_assert_uint_gt(followers, 0);
-    gx_body_destroy(changed); gx_body_destroy(whole);
+    gx_body_destroy(changed);
+    gx_body_destroy(whole);
     wl_free(&w);
 }
 END_TEST
 
 /* BDF2, damping and a material that is not the default: what the model keeps is of no one kind. */
 START_TEST(changed_models_are_of_any_kind) {
-    static const gxs_material_kind kinds[4] = { GXS_ST_VENANT_KIRCHHOFF, GXS_FIXED_COROTATED, GXS_LINEAR, GXS_STABLE_NEO_HOOKEAN };
+    static const gxs_material_kind kinds[4] = {GXS_ST_VENANT_KIRCHHOFF, GXS_FIXED_COROTATED, GXS_LINEAR,
+                                               GXS_STABLE_NEO_HOOKEAN};
     workload w = block_with_cuts(2);
     gx_body_desc desc = desc_of(&w);
     gx_material materials[2];
@@ -178,25 +191,36 @@ START_TEST(changed_models_are_of_any_kind) {
     gx_step_desc step = exact_step(0.01);
     size_t c;
     memset(materials, 0, sizeof materials);
-    materials[0].elastic.kind = kinds[_i]; materials[0].elastic.young = 2e6; materials[0].elastic.poisson = 0.3; materials[0].density = 1000;
+    materials[0].elastic.kind = kinds[_i];
+    materials[0].elastic.young = 2e6;
+    materials[0].elastic.poisson = 0.3;
+    materials[0].density = 1000;
     materials[0].elastic.damping = 1e-3;
     materials[1] = materials[0];
-    materials[1].elastic.kind = GXS_STABLE_NEO_HOOKEAN; materials[1].elastic.young = 5e6;
-    for (c = 0; c < w.element_count; ++c) which[c] = c / 7 % 2;
-    desc.materials = materials; desc.material_count = 2; desc.element_materials = which;
+    materials[1].elastic.kind = GXS_STABLE_NEO_HOOKEAN;
+    materials[1].elastic.young = 5e6;
+    for (c = 0; c < w.element_count; c++) which[c] = c / 7 % 2;
+    desc.materials = materials;
+    desc.material_count = 2;
+    desc.element_materials = which;
     step.integrator = GXS_BDF2;
     ck_assert_int_eq(gx_body_create(&desc, &changed, NULL), GX_OK);
     ck_assert_int_eq(gx_body_create(&desc, &whole, NULL), GX_OK);
-    hold_top(changed); hold_top(whole);
-    advance(changed, &step, 2); advance(whole, &step, 2);
-    for (c = 0; c < 6; ++c) {
-        cut_by(changed, &w, c, 1); cut_by(whole, &w, c, 1);
+    hold_top(changed);
+    hold_top(whole);
+    advance(changed, &step, 2);
+    advance(whole, &step, 2);
+    for (c = 0; c < 6; c++) {
+        cut_by(changed, &w, c, 1);
+        cut_by(whole, &w, c, 1);
         hold_top(whole);
-        advance(changed, &step, 1); advance(whole, &step, 1);
+        advance(changed, &step, 1);
+        advance(whole, &step, 1);
         ck_assert(changed->model_updated);
         ck_assert_msg(apart(changed, whole) < 1e-6, "after cut %zu: %g", c, apart(changed, whole));
     }
-    gx_body_destroy(changed); gx_body_destroy(whole);
+    gx_body_destroy(changed);
+    gx_body_destroy(whole);
     free(which);
     wl_free(&w);
 }
@@ -207,32 +231,38 @@ static double coarse_difference(const gxsp_level *level, const float *block) {
     uint32_t i, k;
     double most = 0;
     int m;
-    for (i = 0; i < level->n; ++i)
-        for (k = level->start[i]; k < level->start[i + 1]; ++k) {
-            const float *own = block + 9 * (size_t)level->start[i], *other = block + 9 * (size_t)level->start[level->column[k]];
+    for (i = 0; i < level->n; i++)
+        for (k = level->start[i]; k < level->start[i + 1]; k++) {
+            const float *own = block + 9 * (size_t)level->start[i],
+                        *other = block + 9 * (size_t)level->start[level->column[k]];
             const double size = sqrt((double)(own[0] + own[4] + own[8]) * (double)(other[0] + other[4] + other[8]));
-            for (m = 0; m < 9; ++m) most = fmax(most, fabs((double)(level->block[9 * (size_t)k + (size_t)m] - block[9 * (size_t)k + (size_t)m])) / size);
+            for (m = 0; m < 9; m++)
+                most = fmax(most,
+                            fabs((double)(level->block[9 * (size_t)k + (size_t)m] - block[9 * (size_t)k + (size_t)m])) /
+                                size);
         }
     return most;
 }
 
-/* A cut at one end of a long body: the coarse numbers are made anew there, at the state of those that stay, and are what all anew are there. */
+/* A cut at one end of a long body: the coarse numbers are made anew there, at the state of those that stay, and are
+ * what all anew are there. */
 START_TEST(small_cuts_keep_coarse_numbers) {
     workload w = grid(40, 4, 4, 5 + (uint32_t)(_i % 2));
-    const gx_region left = { 0, -1, 1e-9 };
+    const gx_region left = {0, -1, 1e-9};
     gx_step_desc step = step_of(0.2);
     gx_body *body;
     size_t c;
-    for (c = 0; c < 3; ++c) {
-        const double x = 39 - (double)c - 0.37, a[3] = { x, -1, 2.23 }, b[3] = { x + 1, -1, 2.23 }, d[3] = { x + 1, 5, 2.23 }, e[3] = { x, 5, 2.23 };
+    for (c = 0; c < 3; c++) {
+        const double x = 39 - (double)c - 0.37, a[3] = {x, -1, 2.23}, b[3] = {x + 1, -1, 2.23}, d[3] = {x + 1, 5, 2.23},
+                     e[3] = {x, 5, 2.23};
         wl_add_quad(wl_add_surface(&w, 0), a, b, d, e);
     }
     body = body_of(&w);
     ck_assert_int_eq(gx_body_hold(body, &left, 1), GX_OK);
     advance(body, &step, 3);
-    for (c = 0; c < w.surface_count; ++c) {
+    for (c = 0; c < w.surface_count; c++) {
         gxsp_system *system = body->solver->system;
-        const double before[3] = { system->coarse_state[3], system->coarse_state[4], system->coarse_state[5] };
+        const double before[3] = {system->coarse_state[3], system->coarse_state[4], system->coarse_state[5]};
         const gxsp_level *level = &system->levels[1];
         size_t bytes;
         float *block;
@@ -241,7 +271,7 @@ START_TEST(small_cuts_keep_coarse_numbers) {
         cut_by(body, &w, c, 1);
         advance(body, &step, 1);
         ck_assert(body->model_updated);
-        ck_assert(memcmp(before, system->coarse_state + 3, sizeof before) == 0);     /* no step has made them */
+        ck_assert(memcmp(before, system->coarse_state + 3, sizeof before) == 0); /* no step has made them */
         ck_assert(system->coarse_rate > 0);
         bytes = 9 * (size_t)level->start[level->n] * sizeof *block;
         block = (float *)malloc(bytes);
@@ -253,34 +283,40 @@ START_TEST(small_cuts_keep_coarse_numbers) {
     }
     gx_body_destroy(body);
     wl_free(&w);
-} END_TEST
+}
+END_TEST
 
 /* One Newton iteration a step, as in a game: what is kept of the preconditioner is worth what a new one is. */
 START_TEST(changed_models_take_no_more_iterations) {
     workload w = grid(12, 12, 12, 5);
     gx_body *changed, *whole;
-    const gx_region top = { 2, 1, 12 - 1e-9 };
+    const gx_region top = {2, 1, 12 - 1e-9};
     gx_step_desc step = step_of(0.033);
     uint32_t by_change = 0, by_whole = 0;
     double x;
     size_t c;
     for (x = -0.63; x < 9; x += 1) {
-        const double a[3] = { x, -1, 5.47 }, b[3] = { x + 1, -1, 5.47 }, d[3] = { x + 1, 13, 5.47 }, e[3] = { x, 13, 5.47 };
+        const double a[3] = {x, -1, 5.47}, b[3] = {x + 1, -1, 5.47}, d[3] = {x + 1, 13, 5.47}, e[3] = {x, 13, 5.47};
         wl_add_quad(wl_add_surface(&w, 0), a, b, d, e);
     }
-    changed = body_of(&w); whole = body_of(&w);
+    changed = body_of(&w);
+    whole = body_of(&w);
     ck_assert_int_eq(gx_body_hold(changed, &top, 1), GX_OK);
     ck_assert_int_eq(gx_body_hold(whole, &top, 1), GX_OK);
-    advance(changed, &step, 4); advance(whole, &step, 4);
-    for (c = 0; c < w.surface_count; ++c) {
-        cut_by(changed, &w, c, 1); cut_by(whole, &w, c, 1);
+    advance(changed, &step, 4);
+    advance(whole, &step, 4);
+    for (c = 0; c < w.surface_count; c++) {
+        cut_by(changed, &w, c, 1);
+        cut_by(whole, &w, c, 1);
         ck_assert_int_eq(gx_body_hold(whole, &top, 1), GX_OK);
         by_change += advance(changed, &step, 2);
         by_whole += advance(whole, &step, 2);
         ck_assert(changed->model_updated);
     }
-    ck_assert_msg(by_change <= by_whole + by_whole / 10, "%u iterations, %u with models set whole", by_change, by_whole);
-    gx_body_destroy(changed); gx_body_destroy(whole);
+    ck_assert_msg(by_change <= by_whole + by_whole / 10, "%u iterations, %u with models set whole", by_change,
+                  by_whole);
+    gx_body_destroy(changed);
+    gx_body_destroy(whole);
     wl_free(&w);
 }
 END_TEST
@@ -301,19 +337,25 @@ START_TEST(order_of_jobs_does_not_matter) {
     ck_assert_int_eq(gx_body_create(&desc, &one, NULL), GX_OK);
     desc.jobs.parallel_for = backwards;
     ck_assert_int_eq(gx_body_create(&desc, &other, NULL), GX_OK);
-    hold_top(one); hold_top(other);
-    advance(one, &step, 2); advance(other, &step, 2);
-    for (c = 0; c < w.surface_count; ++c) {
-        cut_by(one, &w, c, 1); cut_by(other, &w, c, 1);
-        advance(one, &step, 2); advance(other, &step, 2);
+    hold_top(one);
+    hold_top(other);
+    advance(one, &step, 2);
+    advance(other, &step, 2);
+    for (c = 0; c < w.surface_count; c++) {
+        cut_by(one, &w, c, 1);
+        cut_by(other, &w, c, 1);
+        advance(one, &step, 2);
+        advance(other, &step, 2);
         ck_assert_msg(same_bits(one, other), "after cut %zu", c);
     }
-    gx_body_destroy(one); gx_body_destroy(other);
+    gx_body_destroy(one);
+    gx_body_destroy(other);
     wl_free(&w);
 }
 END_TEST
 
-/* A body saved when its model has been changed, and when it is yet to be changed, takes the steps that its copy takes. */
+/* A body saved when its model has been changed, and when it is yet to be changed, takes the steps that its copy takes.
+ */
 START_TEST(saved_bodies_go_on_alike) {
     workload w = block_with_cuts(4);
     gx_body *body = body_of(&w), *copy = NULL, *before = NULL;
@@ -326,20 +368,27 @@ START_TEST(saved_bodies_go_on_alike) {
     if (_i % 2) cut_by(body, &w, 2, 1);
     ck_assert_int_eq(gx_body_clone(body, &copy), GX_OK);
     ck_assert_int_eq(gx_body_clone(body, &before), GX_OK);
-    advance(body, &step, 2); advance(copy, &step, 2);
+    advance(body, &step, 2);
+    advance(copy, &step, 2);
     ck_assert(same_bits(body, copy));
-    cut_by(body, &w, 3, 2); cut_by(copy, &w, 3, 2);
-    advance(body, &step, 2); advance(copy, &step, 2);
+    cut_by(body, &w, 3, 2);
+    cut_by(copy, &w, 3, 2);
+    advance(body, &step, 2);
+    advance(copy, &step, 2);
     ck_assert(body->model_updated && same_bits(body, copy));
     ck_assert_int_eq(gx_body_restore(body, before), GX_OK);
-    advance(body, &step, 2); advance(before, &step, 2);
+    advance(body, &step, 2);
+    advance(before, &step, 2);
     ck_assert(same_bits(body, before));
-    gx_body_destroy(body); gx_body_destroy(copy); gx_body_destroy(before);
+    gx_body_destroy(body);
+    gx_body_destroy(copy);
+    gx_body_destroy(before);
     wl_free(&w);
 }
 END_TEST
 
-/* A state that has been restored without a cut in between: the model is that of the same cells, but has been changed. */
+/* A state that has been restored without a cut in between: the model is that of the same cells, but has been changed.
+ */
 START_TEST(restored_states_go_on_alike) {
     workload w = block_with_cuts(5);
     gx_body *body = body_of(&w), *mark = NULL;
@@ -351,12 +400,16 @@ START_TEST(restored_states_go_on_alike) {
     ck_assert(body->model_updated);
     ck_assert_int_eq(gx_body_clone(body, &mark), GX_OK);
     advance(body, &step, 3);
-    cut_by(body, &w, 5, 1); cut_by(mark, &w, 5, 1);     /* the same cuts, so that restoring copies the state alone */
+    /* the same cuts, so that restoring copies the state alone */
+    cut_by(body, &w, 5, 1);
+    cut_by(mark, &w, 5, 1);
     advance(body, &step, 1);
     ck_assert_int_eq(gx_body_restore(body, mark), GX_OK);
-    advance(body, &step, 3); advance(mark, &step, 3);
+    advance(body, &step, 3);
+    advance(mark, &step, 3);
     ck_assert(same_bits(body, mark));
-    gx_body_destroy(body); gx_body_destroy(mark);
+    gx_body_destroy(body);
+    gx_body_destroy(mark);
     wl_free(&w);
 }
 END_TEST
@@ -367,29 +420,36 @@ END_TEST
 START_TEST(what_is_written_between_cut_and_step_wakes) {
     workload w = grid(4, 2, 2, 5);
     gx_body *body;
-    const gx_region top = { 2, 1, 2 - 1e-9 };
+    const gx_region top = {2, 1, 2 - 1e-9};
     gx_step_desc step = step_of(0.033);
     gxs_step_report report;
     gx_view view;
     size_t i, all = 0;
     int n;
-    add_axis_plane(&w, 0, 2.25); add_box(&w, 0, -1, -1, 0.5, 1.75, 4, 0.75);
+    add_axis_plane(&w, 0, 2.25);
+    add_box(&w, 0, -1, -1, 0.5, 1.75, 4, 0.75);
     body = body_of(&w);
     cut_by(body, &w, 0, 1);
     ck_assert_int_eq(gx_body_hold(body, &top, 1), GX_OK);
-    step.sleep_speed = 1e-3; step.mass_damping = 5;
-    for (n = 0, report.active_unknowns = 1; n < 400 && report.active_unknowns > 0; ++n)
+    step.sleep_speed = 1e-3;
+    step.mass_damping = 5;
+    for (n = 0, report.active_unknowns = 1; n < 400 && report.active_unknowns > 0; n++)
         ck_assert_int_eq(gx_body_step(body, &step, &report, NULL), GX_OK);
     ck_assert_uint_eq(report.active_unknowns, 0);
     cut_by(body, &w, 1, 1);
     view = view_of(body);
-    for (i = 0; i < view.copy_count; ++i) all += view.copy_held[i] ? 0 : 3;
-    for (i = 0; i < view.copy_count && _i; ++i)
-        if (!view.copy_held[i] && w.positions[3 * view.copy_node[i]] > 3.5) { body->displacement[3 * i + _i - 1] += 1e-3; break; }
+    for (i = 0; i < view.copy_count; i++) all += view.copy_held[i] ? 0 : 3;
+    for (i = 0; i < view.copy_count && _i; i++)
+        if (!view.copy_held[i] && w.positions[3 * view.copy_node[i]] > 3.5) {
+            body->displacement[3 * i + _i - 1] += 1e-3;
+            break;
+        }
     ck_assert_int_eq(gx_body_step(body, &step, &report, NULL), GX_OK);
     ck_assert(body->model_updated);
-    if (_i) ck_assert_uint_eq(report.active_unknowns, all);
-    else ck_assert(report.active_unknowns > 0 && report.active_unknowns < all);
+    if (_i)
+        ck_assert_uint_eq(report.active_unknowns, all);
+    else
+        ck_assert(report.active_unknowns > 0 && report.active_unknowns < all);
     gx_body_destroy(body);
     wl_free(&w);
 }
@@ -401,24 +461,28 @@ static double spring_energy(void *user, const double *deformation, double *stres
     double energy = 0;
     int i;
     (void)user;
-    for (i = 0; i < 9; ++i) {
+    for (i = 0; i < 9; i++) {
         const double d = deformation[i] - (i % 4 == 0 ? 1 : 0);
         energy += 5e5 * d * d;
         if (stress) stress[i] = 1e6 * d;
     }
-    for (i = 0; i < 81 && hessian; ++i) hessian[i] = i % 10 == 0 ? 1e6 : 0;
+    for (i = 0; i < 81 && hessian; i++) hessian[i] = i % 10 == 0 ? 1e6 : 0;
     return energy;
 }
 
-/* An element of the caller's own material beside others is cut: lanes that the change leaves empty ask no material that has no energy. */
+/* An element of the caller's own material beside others is cut: lanes that the change leaves empty ask no material that
+ * has no energy. */
 START_TEST(own_materials_are_cut) {
     workload w = grid(1, 1, 1, 5);
     gx_body_desc desc = desc_of(&w);
-    const gx_material materials[2] = {{{GXS_STABLE_NEO_HOOKEAN, 1e6, 0.4, 0, NULL, NULL}, 1000}, {{GXS_CUSTOM, 1e6, 0, 0, spring_energy, NULL}, 1000}};
+    const gx_material materials[2] = {{{GXS_STABLE_NEO_HOOKEAN, 1e6, 0.4, 0, NULL, NULL}, 1000},
+                                      {{GXS_CUSTOM, 1e6, 0, 0, spring_energy, NULL}, 1000}};
     const uint32_t which[5] = {1, 0, 0, 0, 0};
     const gx_step_desc step = step_of(0.033);
     gx_body *body = NULL;
-    desc.materials = materials; desc.material_count = 2; desc.element_materials = which;
+    desc.materials = materials;
+    desc.material_count = 2;
+    desc.element_materials = which;
     ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
     advance(body, &step, 1);
     add_axis_plane(&w, 0, 0.4);
@@ -451,7 +515,7 @@ START_TEST(bad_changes_are_named) {
     gx_body *body = body_of(&w);
     gxs_model model = model_of(body);
     gxs_solver *solver = solver_with(&model);
-    uint32_t *origins = (uint32_t *)malloc(model.copy_count * sizeof *origins), groups[2] = { 3, 5 };
+    uint32_t *origins = (uint32_t *)malloc(model.copy_count * sizeof *origins), groups[2] = {3, 5};
     gxs_element elements[2];
     gxs_constraint constraints[2];
     gxs_change change;
@@ -459,52 +523,105 @@ START_TEST(bad_changes_are_named) {
     gx_failure failure;
     double *u = (double *)calloc(9 * model.copy_count, sizeof *u);
     size_t i;
-    for (i = 0; i < model.copy_count; ++i) origins[i] = 2 * (uint32_t)i;
-    memset(&change, 0, sizeof change); memset(&step, 0, sizeof step);
+    for (i = 0; i < model.copy_count; i++) origins[i] = 2 * (uint32_t)i;
+    memset(&change, 0, sizeof change);
+    memset(&step, 0, sizeof step);
     step.dt = 0.01;
-    elements[0] = model.elements[3]; elements[1] = model.elements[5];
-    change.copy_count = model.copy_count; change.origins = origins;
-    change.groups = groups; change.group_count = 2;
-    change.elements = elements; change.element_count = 2;
-#define EXPECT(result, at) do { ck_assert_int_eq(gxs_solver_update(solver, &change, &failure), result); ck_assert_uint_eq(failure.index, at); } while (0)
+    elements[0] = model.elements[3];
+    elements[1] = model.elements[5];
+    change.copy_count = model.copy_count;
+    change.origins = origins;
+    change.groups = groups;
+    change.group_count = 2;
+    change.elements = elements;
+    change.element_count = 2;
+#define EXPECT(result, at)                                                                                             \
+    do {                                                                                                               \
+        ck_assert_int_eq(gxs_solver_update(solver, &change, &failure), result);                                        \
+        ck_assert_uint_eq(failure.index, at);                                                                          \
+    } while (0)
     ck_assert_int_eq(gxs_solver_update(NULL, &change, &failure), GX_ERROR_ARGUMENT);
     ck_assert_int_eq(gxs_solver_update(solver, NULL, &failure), GX_ERROR_ARGUMENT);
-    change.origins = NULL; EXPECT(GX_ERROR_ARGUMENT, SIZE_MAX); change.origins = origins;
-    change.groups = NULL; EXPECT(GX_ERROR_ARGUMENT, SIZE_MAX); change.groups = groups;
-    change.elements = NULL; EXPECT(GX_ERROR_ARGUMENT, SIZE_MAX); change.elements = elements;
-    change.copy_count = 0; EXPECT(GX_ERROR_EMPTY, SIZE_MAX); change.copy_count = model.copy_count;
-    origins[4] = 2 * (uint32_t)model.copy_count; EXPECT(GX_ERROR_INDEX, 4); origins[4] = 8;
-    groups[1] = 3; EXPECT(GX_ERROR_ARGUMENT, 1); groups[1] = 5;
-    elements[0].group = 6; EXPECT(GX_ERROR_ARGUMENT, 1); elements[0].group = 3;
-    elements[1].copy[2] = (uint32_t)model.copy_count; EXPECT(GX_ERROR_INDEX, 1); elements[1].copy[2] = model.elements[5].copy[2];
-    elements[1].material = 1; EXPECT(GX_ERROR_INDEX, 1); elements[1].material = 0;
-    elements[0].weight = NAN; EXPECT(GX_ERROR_NOT_FINITE, 0);
-    elements[0].weight = -1; EXPECT(GX_ERROR_INVERTED, 0); elements[0].weight = model.elements[3].weight;
+    change.origins = NULL;
+    EXPECT(GX_ERROR_ARGUMENT, SIZE_MAX);
+    change.origins = origins;
+    change.groups = NULL;
+    EXPECT(GX_ERROR_ARGUMENT, SIZE_MAX);
+    change.groups = groups;
+    change.elements = NULL;
+    EXPECT(GX_ERROR_ARGUMENT, SIZE_MAX);
+    change.elements = elements;
+    change.copy_count = 0;
+    EXPECT(GX_ERROR_EMPTY, SIZE_MAX);
+    change.copy_count = model.copy_count;
+    origins[4] = 2 * (uint32_t)model.copy_count;
+    EXPECT(GX_ERROR_INDEX, 4);
+    origins[4] = 8;
+    groups[1] = 3;
+    EXPECT(GX_ERROR_ARGUMENT, 1);
+    groups[1] = 5;
+    elements[0].group = 6;
+    EXPECT(GX_ERROR_ARGUMENT, 1);
+    elements[0].group = 3;
+    elements[1].copy[2] = (uint32_t)model.copy_count;
+    EXPECT(GX_ERROR_INDEX, 1);
+    elements[1].copy[2] = model.elements[5].copy[2];
+    elements[1].material = 1;
+    EXPECT(GX_ERROR_INDEX, 1);
+    elements[1].material = 0;
+    elements[0].weight = NAN;
+    EXPECT(GX_ERROR_NOT_FINITE, 0);
+    elements[0].weight = -1;
+    EXPECT(GX_ERROR_INVERTED, 0);
+    elements[0].weight = model.elements[3].weight;
     memset(constraints, 0, sizeof constraints);
-    constraints[0].copy = 1; constraints[0].weight[0] = constraints[1].weight[0] = 1; constraints[1].copy = 2;
-    change.constraint_count = 2; EXPECT(GX_ERROR_ARGUMENT, SIZE_MAX); change.constraints = constraints;
-    constraints[1].copy = 1; EXPECT(GX_ERROR_ARGUMENT, 1); constraints[1].copy = 2;     /* follows twice */
-    constraints[1].master[0] = 1; EXPECT(GX_ERROR_ARGUMENT, 1);                         /* follows a follower */
-    constraints[1].master[0] = (uint32_t)model.copy_count; EXPECT(GX_ERROR_INDEX, 1); constraints[1].master[0] = 0;
-    constraints[0].weight[2] = NAN; EXPECT(GX_ERROR_NOT_FINITE, 0); constraints[0].weight[2] = 0;
-    change.constraint_count = model.copy_count + 1; EXPECT(GX_ERROR_LIMIT, SIZE_MAX);
+    constraints[0].copy = 1;
+    constraints[0].weight[0] = constraints[1].weight[0] = 1;
+    constraints[1].copy = 2;
+    change.constraint_count = 2;
+    EXPECT(GX_ERROR_ARGUMENT, SIZE_MAX);
+    change.constraints = constraints;
+    /* follows twice */
+    constraints[1].copy = 1;
+    EXPECT(GX_ERROR_ARGUMENT, 1);
+    constraints[1].copy = 2;
+    /* follows a follower */
+    constraints[1].master[0] = 1;
+    EXPECT(GX_ERROR_ARGUMENT, 1);
+    constraints[1].master[0] = (uint32_t)model.copy_count;
+    EXPECT(GX_ERROR_INDEX, 1);
+    constraints[1].master[0] = 0;
+    constraints[0].weight[2] = NAN;
+    EXPECT(GX_ERROR_NOT_FINITE, 0);
+    constraints[0].weight[2] = 0;
+    change.constraint_count = model.copy_count + 1;
+    EXPECT(GX_ERROR_LIMIT, SIZE_MAX);
     ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);
-    change.constraint_count = 2; EXPECT(GX_OK, SIZE_MAX);
+    change.constraint_count = 2;
+    EXPECT(GX_OK, SIZE_MAX);
     u[5 + 3 * model.copy_count] = 1;
     ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * model.copy_count, NULL, NULL), GX_OK);
-    for (i = 0; i < 6; ++i) ck_assert_double_eq_tol(u[3 + i], u[i % 3], 1e-15);         /* both follow copy 0 */
-    change.constraints = NULL; change.constraint_count = 0;
+    for (i = 0; i < 6; i++) ck_assert_double_eq_tol(u[3 + i], u[i % 3], 1e-15); /* both follow copy 0 */
+    change.constraints = NULL;
+    change.constraint_count = 0;
     memset(u, 0, 9 * model.copy_count * sizeof *u);
-    ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * model.copy_count, NULL, NULL), GX_OK);  /* the model is still set */
+    /* the model is still set */
+    ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * model.copy_count, NULL, NULL), GX_OK);
     EXPECT(GX_OK, SIZE_MAX);
     ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * model.copy_count, NULL, NULL), GX_OK);
-    change.copy_count--; EXPECT(GX_ERROR_LIMIT, SIZE_MAX); change.copy_count++;     /* a copy is lost that elements have */
-    EXPECT(GX_ERROR_ARGUMENT, SIZE_MAX);                                            /* no model is set any more */
+    /* a copy is lost that elements have */
+    change.copy_count--;
+    EXPECT(GX_ERROR_LIMIT, SIZE_MAX);
+    change.copy_count++;
+    EXPECT(GX_ERROR_ARGUMENT, SIZE_MAX); /* no model is set any more */
     ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * model.copy_count, NULL, NULL), GX_ERROR_ARGUMENT);
     ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);
-    origins[7] = 6; EXPECT(GX_ERROR_LIMIT, SIZE_MAX); origins[7] = 14;              /* two copies that are one */
+    /* two copies that are one */
+    origins[7] = 6;
+    EXPECT(GX_ERROR_LIMIT, SIZE_MAX);
+    origins[7] = 14;
 #undef EXPECT
-    ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);    /* steps say of which numbering they are */
+    ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK); /* steps say of which numbering they are */
     step.forces = u + 6 * model.copy_count;
     ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * model.copy_count, NULL, NULL), GX_OK);
     change.epoch = 9;
@@ -518,7 +635,8 @@ START_TEST(bad_changes_are_named) {
     step.epoch = 3;
     ck_assert_int_eq(gxs_solver_step(solver, &step, u, u + 3 * model.copy_count, NULL, NULL), GX_OK);
     gxs_solver_destroy(solver);
-    free(origins); free(u);
+    free(origins);
+    free(u);
     gx_body_destroy(body);
     wl_free(&w);
 }
@@ -531,20 +649,32 @@ START_TEST(changes_of_nothing_change_nothing) {
     gxs_model model = model_of(body);
     const size_t n = model.copy_count;
     gxs_element *elements = (gxs_element *)malloc(model.element_count * sizeof *elements);
-    uint32_t *origins = (uint32_t *)malloc(n * sizeof *origins), *groups = (uint32_t *)malloc(model.element_count * sizeof *groups);
+    uint32_t *origins = (uint32_t *)malloc(n * sizeof *origins),
+             *groups = (uint32_t *)malloc(model.element_count * sizeof *groups);
     double *u = (double *)calloc(6 * n, sizeof *u), *other = (double *)calloc(6 * n, sizeof *other), most = 0;
     gxs_solver *plain = solver_with(&model), *changed = solver_with(&model);
     gxs_step_desc step;
     gxs_change change;
     size_t i, round;
-    memset(&step, 0, sizeof step); memset(&change, 0, sizeof change);
-    step.dt = 0.02; step.gravity[2] = -9.81; step.newton_iterations = 60; step.newton_tolerance = 1e-11; step.cg_tolerance = 1e-4;
+    memset(&step, 0, sizeof step);
+    memset(&change, 0, sizeof change);
+    step.dt = 0.02;
+    step.gravity[2] = -9.81;
+    step.newton_iterations = 60;
+    step.newton_tolerance = 1e-11;
+    step.cg_tolerance = 1e-4;
     random_seed(7);
-    for (i = 0; i < n; ++i) { origins[i] = 2 * (uint32_t)i; u[3 * i] = other[3 * i] = 0.2 * sin(w.positions[3 * i + 2]); }
-    for (round = 0; round < 6; ++round) {
-        change.copy_count = n; change.origins = origins; change.groups = groups; change.elements = elements;
+    for (i = 0; i < n; i++) {
+        origins[i] = 2 * (uint32_t)i;
+        u[3 * i] = other[3 * i] = 0.2 * sin(w.positions[3 * i + 2]);
+    }
+    for (round = 0; round < 6; round++) {
+        change.copy_count = n;
+        change.origins = origins;
+        change.groups = groups;
+        change.elements = elements;
         change.group_count = change.element_count = 0;
-        for (i = 0; i < model.element_count; ++i)
+        for (i = 0; i < model.element_count; i++)
             if (random_below(8) == 0) {
                 groups[change.group_count++] = (uint32_t)i;
                 elements[change.element_count++] = model.elements[i];
@@ -552,11 +682,16 @@ START_TEST(changes_of_nothing_change_nothing) {
         ck_assert_int_eq(gxs_solver_update(changed, &change, NULL), GX_OK);
         ck_assert_int_eq(gxs_solver_step(plain, &step, u, u + 3 * n, NULL, NULL), GX_OK);
         ck_assert_int_eq(gxs_solver_step(changed, &step, other, other + 3 * n, NULL, NULL), GX_OK);
-        for (i = 0, most = 0; i < 3 * n; ++i) most = fmax(most, fabs(u[i] - other[i]));
+        for (i = 0, most = 0; i < 3 * n; i++) most = fmax(most, fabs(u[i] - other[i]));
         ck_assert_msg(most < 1e-8, "round %zu: %g", round, most);
     }
-    gxs_solver_destroy(plain); gxs_solver_destroy(changed);
-    free(elements); free(origins); free(groups); free(u); free(other);
+    gxs_solver_destroy(plain);
+    gxs_solver_destroy(changed);
+    free(elements);
+    free(origins);
+    free(groups);
+    free(u);
+    free(other);
     gx_body_destroy(body);
     wl_free(&w);
 }
@@ -564,18 +699,30 @@ END_TEST
 
 /* ---- memory ---- */
 
-typedef struct memory { size_t left; int from_then_on, failed; } memory;
+typedef struct memory {
+    size_t left;
+    int from_then_on, failed;
+} memory;
 
 static void *take(void *user, size_t size) {
     memory *m = (memory *)user;
-    if (m->left == 0 || (m->failed && m->from_then_on)) { m->failed = 1; m->left = SIZE_MAX; return NULL; }
+    if (m->left == 0 || (m->failed && m->from_then_on)) {
+        m->failed = 1;
+        m->left = SIZE_MAX;
+        return NULL;
+    }
     m->left--;
     return malloc(size);
 }
 
-static void give(void *user, void *block, size_t size) { (void)user; (void)size; free(block); }
+static void give(void *user, void *block, size_t size) {
+    (void)user;
+    (void)size;
+    free(block);
+}
 
-/* The n-th allocation of the step after a cut fails, once or from then on: the body is as it was, and the step made again is as good. */
+/* The n-th allocation of the step after a cut fails, once or from then on: the body is as it was, and the step made
+ * again is as good. */
 START_TEST(memory_may_run_out) {
     workload w = block_with_cuts(6);
     gx_body_desc desc = desc_of(&w);
@@ -586,23 +733,27 @@ START_TEST(memory_may_run_out) {
     advance(whole, &step, 1);
     cut_by(whole, &w, 0, 1);
     advance(whole, &step, 1);
-    for (n = 0;; ++n) {
-        memory m = { SIZE_MAX, 0, 0 };
+    for (n = 0;; n++) {
+        memory m = {SIZE_MAX, 0, 0};
         gx_body *body = NULL;
         gx_result result;
         uint64_t hash;
-        desc.allocator.allocate = take; desc.allocator.release = give; desc.allocator.user = &m;
+        desc.allocator.allocate = take;
+        desc.allocator.release = give;
+        desc.allocator.user = &m;
         ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
         hold_top(body);
         advance(body, &step, 1);
         cut_by(body, &w, 0, 1);
         hash = gx_body_state_hash(body);
-        m.left = n; m.from_then_on = _i;
+        m.left = n;
+        m.from_then_on = _i;
         result = gx_body_step(body, &step, NULL, NULL);
         failures += m.failed != 0;
         ck_assert_int_eq(result, m.failed ? GX_ERROR_MEMORY : GX_OK);
         ck_assert(!m.failed || gx_body_state_hash(body) == hash);
-        m.left = SIZE_MAX; m.from_then_on = 0;
+        m.left = SIZE_MAX;
+        m.from_then_on = 0;
         if (result != GX_OK) advance(body, &step, 1);
         ck_assert_msg(apart(body, whole) < 1e-6, "allocation %zu: %g", n, apart(body, whole));
         gx_body_destroy(body);
@@ -616,8 +767,14 @@ END_TEST
 
 /* ---- how much memory that takes ---- */
 
-static void *counted(void *user, size_t size) { *(size_t *)user += size; return malloc(size); }
-static void uncounted(void *user, void *memory, size_t size) { *(size_t *)user -= size; free(memory); }
+static void *counted(void *user, size_t size) {
+    *(size_t *)user += size;
+    return malloc(size);
+}
+static void uncounted(void *user, void *memory, size_t size) {
+    *(size_t *)user -= size;
+    free(memory);
+}
 
 /* Bytes per element that a solver has after a step */
 static double bytes_of(const gxs_model *model, gxs_preconditioner preconditioner) {
@@ -630,9 +787,12 @@ static double bytes_of(const gxs_model *model, gxs_preconditioner preconditioner
     double each;
     memset(&desc, 0, sizeof desc);
     memset(&own, 0, sizeof own);
-    own.dt = step.dt; own.gravity[2] = step.gravity[2];
+    own.dt = step.dt;
+    own.gravity[2] = step.gravity[2];
     desc.preconditioner = preconditioner;
-    desc.allocator.allocate = counted; desc.allocator.release = uncounted; desc.allocator.user = &bytes;
+    desc.allocator.allocate = counted;
+    desc.allocator.release = uncounted;
+    desc.allocator.user = &bytes;
     ck_assert_int_eq(gxs_solver_create(&desc, &solver), GX_OK);
     ck_assert_int_eq(gxs_solver_set_model(solver, model, NULL), GX_OK);
     ck_assert_int_eq(gxs_solver_step(solver, &own, state, state + 3 * model->copy_count, NULL, NULL), GX_OK);
@@ -643,10 +803,10 @@ static double bytes_of(const gxs_model *model, gxs_preconditioner preconditioner
     return each;
 }
 
-/* Whole, cut by strips that leave it in one piece, cut to crumbs of so many cells a side: 350 bytes for an element of the model, lists and multigrid
-   included, with what the solver chooses and with multigrid forced upon it. */
+/* Whole, cut by strips that leave it in one piece, cut to crumbs of so many cells a side: 350 bytes for an element of
+   the model, lists and multigrid included, with what the solver chooses and with multigrid forced upon it. */
 START_TEST(solvers_take_bounded_memory) {
-    static const double sides[] = { 0, 4, 2.53, 3.51, 4, 4.49, 5.51, 6.53 };
+    static const double sides[] = {0, 4, 2.53, 3.51, 4, 4.49, 5.51, 6.53};
     workload w = grid(_i < 2 ? 16 : 17, 16, 16, 6);
     gxs_model model;
     gx_body *body;
@@ -655,10 +815,11 @@ START_TEST(solvers_take_bounded_memory) {
     for (z = 4.37; z < 15 && _i == 1; z += sides[_i]) {
         const int left = fmod(z, 8) < 4;
         const double low = left ? 2.3 : -1, high = left ? 17 : 13.7;
-        const double a[3] = { low, -1, z }, b[3] = { high, -1, z }, c[3] = { high, 17, z }, d[3] = { low, 17, z };
+        const double a[3] = {low, -1, z}, b[3] = {high, -1, z}, c[3] = {high, 17, z}, d[3] = {low, 17, z};
         wl_add_quad(wl_add_surface(&w, 0), a, b, c, d);
     }
-    for (axis = 0; axis < 3 && _i > 1; ++axis) for (z = sides[_i] + 0.37; z < 15; z += sides[_i]) add_axis_plane(&w, axis, z);
+    for (axis = 0; axis < 3 && _i > 1; axis++)
+        for (z = sides[_i] + 0.37; z < 15; z += sides[_i]) add_axis_plane(&w, axis, z);
     body = cut_at_once(&w);
     ck_assert(_i > 1 ? view_of(body).fragment_count >= 27 : view_of(body).fragment_count == 1);
     ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
@@ -667,7 +828,8 @@ START_TEST(solvers_take_bounded_memory) {
     ck_assert_msg(chosen < 350 && forced < 350, "%g and %g bytes per element", chosen, forced);
     gx_body_destroy(body);
     wl_free(&w);
-} END_TEST
+}
+END_TEST
 
 /* ---- coarse functions of small pieces ---- */
 
@@ -678,14 +840,16 @@ static void add_bar(workload *w, double x, double size, uint32_t nx, uint32_t ny
     size_t i;
     w->positions = (double *)realloc(w->positions, 3 * (nodes + bar.node_count) * sizeof *w->positions);
     w->elements = (uint32_t *)realloc(w->elements, 4 * (elements + bar.element_count) * sizeof *w->elements);
-    for (i = 0; i < 3 * bar.node_count; ++i) w->positions[3 * nodes + i] = (i % 3 == 0 ? x : 3) + size * bar.positions[i];
-    for (i = 0; i < 4 * bar.element_count; ++i) w->elements[4 * elements + i] = bar.elements[i] + (uint32_t)nodes;
-    w->node_count += bar.node_count; w->element_count += bar.element_count;
+    for (i = 0; i < 3 * bar.node_count; i++)
+        w->positions[3 * nodes + i] = (i % 3 == 0 ? x : 3) + size * bar.positions[i];
+    for (i = 0; i < 4 * bar.element_count; i++) w->elements[4 * elements + i] = bar.elements[i] + (uint32_t)nodes;
+    w->node_count += bar.node_count;
+    w->element_count += bar.element_count;
     wl_free(&bar);
 }
 
-/* Fifty pieces of a hundredth to a half of a large one's cells beside it: their coarse functions go by their own size (13,000 iterations
-   where they went by the lattice's). */
+/* Fifty pieces of a hundredth to a half of a large one's cells beside it: their coarse functions go by their own size
+   (13,000 iterations where they went by the lattice's). */
 START_TEST(small_pieces_beside_a_large_one) {
     workload w = grid(8, 8, 8, 6);
     gx_body *body;
@@ -696,19 +860,23 @@ START_TEST(small_pieces_beside_a_large_one) {
     gxs_step_report report;
     double *state;
     uint32_t i, iterations = 0;
-    for (i = 0; i < 50; ++i) add_bar(&w, 10 + i, 0.01 + 0.01 * i, 1 + i % 3, 1 + i % 2);
+    for (i = 0; i < 50; i++) add_bar(&w, 10 + i, 0.01 + 0.01 * i, 1 + i % 3, 1 + i % 2);
     body = body_of(&w);
     ck_assert_int_eq(gx_body_model(body, &model), GX_OK);
     state = (double *)calloc(6 * model.copy_count, sizeof *state);
     random_seed(5);
-    for (i = 0; i < 3 * model.copy_count; ++i) state[3 * model.copy_count + i] = random_real(-0.05, 0.05);
+    for (i = 0; i < 3 * model.copy_count; i++) state[3 * model.copy_count + i] = random_real(-0.05, 0.05);
     memset(&desc, 0, sizeof desc);
     memset(&step, 0, sizeof step);
-    step.dt = 0.3; step.gravity[2] = -9.81; step.newton_iterations = 30; step.newton_tolerance = 1e-10; step.cg_tolerance = 1e-4;
+    step.dt = 0.3;
+    step.gravity[2] = -9.81;
+    step.newton_iterations = 30;
+    step.newton_tolerance = 1e-10;
+    step.cg_tolerance = 1e-4;
     ck_assert_int_eq(gxs_solver_create(&desc, &solver), GX_OK);
     ck_assert_int_eq(gxs_solver_set_model(solver, &model, NULL), GX_OK);
     ck_assert_uint_gt(solver->system->level_count, 1);
-    for (i = 0; i < 3; ++i) {
+    for (i = 0; i < 3; i++) {
         ck_assert_int_eq(gxs_solver_step(solver, &step, state, state + 3 * model.copy_count, &report, NULL), GX_OK);
         iterations += report.cg_iterations;
     }
@@ -717,7 +885,8 @@ START_TEST(small_pieces_beside_a_large_one) {
     gx_body_destroy(body);
     free(state);
     wl_free(&w);
-} END_TEST
+}
+END_TEST
 
 static Suite *updates_suite(void) {
     Suite *suite = suite_create("updates");

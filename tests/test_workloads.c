@@ -1,5 +1,6 @@
-/* test_workloads.c - the named workloads (workloads.h) as cuts of a body: fragments, kept volume, removed volume, so that a cut
-   that was ignored is seen, however thin. Truth: the exact oracle; for W3, of 1760 triangles, exact cones. */
+/* test_workloads.c - the named workloads (workloads.h) as cuts of a body: fragments, kept volume, removed volume, so
+   that a cut that was ignored is seen, however thin. Truth: the exact oracle; for W3, of 1760 triangles, exact cones.
+ */
 #ifndef GXFEM_LINKED
 #define GXFEM_IMPLEMENTATION
 #endif
@@ -10,10 +11,10 @@
 
 typedef struct answer {
     size_t fragments;
-    double kept;        /* volume of the body after all cuts */
-    double removed;     /* as the reports say, all cuts together */
-    double size;        /* volume of the body before */
-    long euler;         /* vertices - edges + triangles of the skin, all fragments together: 2 for each ball */
+    double kept;    /* volume of the body after all cuts */
+    double removed; /* as the reports say, all cuts together */
+    double size;    /* volume of the body before */
+    long euler;     /* vertices - edges + triangles of the skin, all fragments together: 2 for each ball */
     long open_edges;
 } answer;
 
@@ -21,9 +22,13 @@ static gx_body *build(const workload *w) {
     gx_body_desc desc;
     gx_body *body = NULL;
     memset(&desc, 0, sizeof desc);
-    desc.positions = w->positions; desc.node_count = w->node_count;
-    desc.elements = w->elements; desc.element_count = w->element_count;
-    desc.young = 1e6; desc.poisson = 0.4; desc.density = 1000;
+    desc.positions = w->positions;
+    desc.node_count = w->node_count;
+    desc.elements = w->elements;
+    desc.element_count = w->element_count;
+    desc.young = 1e6;
+    desc.poisson = 0.4;
+    desc.density = 1000;
     ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
     return body;
 }
@@ -31,8 +36,10 @@ static gx_body *build(const workload *w) {
 static gx_surface surface_of(const wl_surface *s) {
     gx_surface surface;
     memset(&surface, 0, sizeof surface);
-    surface.vertices = s->vertices; surface.vertex_count = s->vertex_count;
-    surface.triangles = s->triangles; surface.triangle_count = s->triangle_count;
+    surface.vertices = s->vertices;
+    surface.vertex_count = s->vertex_count;
+    surface.triangles = s->triangles;
+    surface.triangle_count = s->triangle_count;
     surface.kind = s->solid ? GX_SURFACE_SOLID : GX_SURFACE_SHEET;
     return surface;
 }
@@ -56,12 +63,12 @@ static answer cut_body(const workload *w, int at_once) {
     gx_cut_desc desc;
     gx_cut_report report;
     gx_view view;
-    answer a = { 0, 0, 0, 0, 0, 0 };
+    answer a = {0, 0, 0, 0, 0, 0};
     size_t i;
     ck_assert_int_eq(gx_body_view(body, &view), GX_OK);
     a.size = view.volume;
-    for (i = 0; i < w->surface_count; ++i) surfaces[i] = surface_of(&w->surfaces[i]);
-    for (i = 0; i < (at_once ? 1 : w->surface_count); ++i) {
+    for (i = 0; i < w->surface_count; i++) surfaces[i] = surface_of(&w->surfaces[i]);
+    for (i = 0; i < (at_once ? 1 : w->surface_count); i++) {
         memset(&desc, 0, sizeof desc);
         desc.surfaces = surfaces + i;
         desc.surface_count = at_once ? w->surface_count : 1;
@@ -80,8 +87,8 @@ static answer cut_body(const workload *w, int at_once) {
 static void check_answer(const char *name, const answer *a, size_t fragments, double kept, double removed) {
     ck_assert_msg(a->fragments == fragments, "%s: %zu fragments, should be %zu", name, a->fragments, fragments);
     ck_assert_msg(fabs(a->kept - kept) <= 1e-10 * kept, "%s: kept %.17g, should be %.17g", name, a->kept, kept);
-    ck_assert_msg(fabs(a->removed - removed) <= 1e-10 * removed, "%s: removed %.17g, should be %.17g",
-                  name, a->removed, removed);
+    ck_assert_msg(fabs(a->removed - removed) <= 1e-10 * removed, "%s: removed %.17g, should be %.17g", name, a->removed,
+                  removed);
     ck_assert_msg(a->open_edges == 0, "%s: %ld open edges", name, a->open_edges);
     ck_assert_msg(a->euler == 2 * (long)fragments, "%s: Euler characteristic %ld", name, a->euler);
     ck_assert_msg((a->removed > 0) == (removed > 0), "%s: removed %.17g, should be %.17g", name, a->removed, removed);
@@ -108,7 +115,7 @@ START_TEST(w2_ring_slab) {
 }
 END_TEST
 
-static const double w3_apex[3] = { 0.148, 0.298, 0.398 };   /* any point; near the sheet, cones are small */
+static const double w3_apex[3] = {0.148, 0.298, 0.398}; /* any point; near the sheet, cones are small */
 
 /* A wavy sheet: nothing is lost. */
 START_TEST(w3_sheet) {
@@ -137,10 +144,14 @@ START_TEST(w3_solidified_by_the_library) {
     double *vertices = (double *)oracle_memory(NULL, 6 * s->vertex_count, sizeof *vertices), removed;
     uint32_t *triangles = (uint32_t *)oracle_memory(NULL, 24 * s->triangle_count, sizeof *triangles);
     answer a;
-    ck_assert_int_eq(gx_surface_solidify(&sheet, 1e-3, vertices, &s->vertex_count, triangles, &s->triangle_count, NULL), GX_OK);
+    ck_assert_int_eq(gx_surface_solidify(&sheet, 1e-3, vertices, &s->vertex_count, triangles, &s->triangle_count, NULL),
+                     GX_OK);
     ck_assert_uint_eq(s->triangle_count, 1760);
-    free(s->vertices); free(s->triangles);
-    s->vertices = vertices; s->triangles = triangles; s->solid = 1;
+    free(s->vertices);
+    free(s->triangles);
+    s->vertices = vertices;
+    s->triangles = triangles;
+    s->solid = 1;
     removed = wl_inside_volume(wl_unit_tetrahedron, s, w3_apex);
     a = cut_body(&w, 1);
     check_answer("W3 by gx_surface_solidify", &a, 2, a.size - removed, removed);

@@ -2,8 +2,7 @@
 #define GXFEM_IMPLEMENTATION
 #include "../../gxfem.h"
 
-int main(void)
-{
+int main(void) {
     gx_body_destroy(NULL);
     return gx_body_create(NULL, NULL, NULL) == GX_ERROR_ARGUMENT ? 0 : 1;
 }

@@ -2,8 +2,7 @@
 #define GXFEM_BOOLEAN_IMPLEMENTATION
 #include "../../gxfem_boolean.h"
 
-int main(void)
-{
+int main(void) {
     const double a[2] = {0, 0}, b[2] = {1, 0}, c[2] = {0, 1};
     return gxb_orient2d(a, b, c) == 1 ? 0 : 1;
 }

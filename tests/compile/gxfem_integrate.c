@@ -2,7 +2,4 @@
 #define GXFEM_INTEGRATE_IMPLEMENTATION
 #include "../../gxfem_integrate.h"
 
-int main(void)
-{
-    return gxi_monomial_count(3) == 20 ? 0 : 1;
-}
+int main(void) { return gxi_monomial_count(3) == 20 ? 0 : 1; }

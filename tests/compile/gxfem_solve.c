@@ -2,8 +2,7 @@
 #define GXFEM_SOLVE_IMPLEMENTATION
 #include "../../gxfem_solve.h"
 
-int main(void)
-{
+int main(void) {
     gxs_solver_destroy(NULL);
     return gxs_solver_create(NULL, NULL) == GX_ERROR_ARGUMENT ? 0 : 1;
 }

@@ -7,6 +7,7 @@
 #ifdef __cplusplus
 extern "C"
 #endif
-int use_elsewhere(void);
+    int
+    use_elsewhere(void);
 
 int main(void) { return use_all() + use_elsewhere(); }

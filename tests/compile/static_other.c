@@ -7,5 +7,6 @@
 #ifdef __cplusplus
 extern "C"
 #endif
-int use_elsewhere(void);
+    int
+    use_elsewhere(void);
 int use_elsewhere(void) { return use_all(); }

@@ -5,5 +5,6 @@
 #ifdef __cplusplus
 extern "C"
 #endif
-int unit_implements(void);
+    int
+    unit_implements(void);
 int unit_implements(void) { return gx_body_create(NULL, NULL, NULL) == GX_ERROR_ARGUMENT ? 0 : 1; }

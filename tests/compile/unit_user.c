@@ -8,6 +8,7 @@
 #ifdef __cplusplus
 extern "C"
 #endif
-int unit_implements(void);
+    int
+    unit_implements(void);
 
 int main(void) { return use_all() + unit_implements(); }

@@ -1,6 +1,5 @@
 /* Calls one function of each header. */
-static inline int use_all(void)
-{
+static inline int use_all(void) {
     const double a[2] = {0, 0}, b[2] = {1, 0}, c[2] = {0, 1};
     gx_body_destroy(NULL);
     gxs_solver_destroy(NULL);
