@@ -7,7 +7,7 @@ import {mkdirSync, rmSync, writeFileSync} from "node:fs";
 import {openPage} from "../tests/chromium.mjs";
 
 const [path, directory, file] = process.argv.slice(2);
-const [width, height] = [640, 400], milliseconds = 50, rest = 400; // of a frame; of the last one
+const [width, height] = [640, 440], milliseconds = 50, rest = 400; // of a frame; of the last one
 
 rmSync(directory, {recursive: true, force: true});
 mkdirSync(directory, {recursive: true});
@@ -16,8 +16,9 @@ await page.evaluate(`
     document.querySelectorAll("#about, #keys, #bar").forEach(element => { element.style.display = "none"; });
     document.documentElement.style.background = document.body.style.background = "transparent";
     player.play(false);
-    Object.assign(player.viewer.camera, {yaw: -1.2, pitch: 0.2, zoom: 1.25});
-    player.viewer.camera.pan(0, 0.06, ${width / height});
+    player.viewer.lines = "none";
+    Object.assign(player.viewer.camera, {yaw: -0.75, pitch: 0.08, zoom: 1.75});
+    player.viewer.camera.pan(0, 0.21, ${width / height});
     undefined`);
 const count = await page.evaluate("player.frames.count"), names = [];
 for (let i = 0; i < count; i++) {
@@ -28,6 +29,6 @@ for (let i = 0; i < count; i++) {
 }
 await page.close();
 const last = names.pop();
-execFileSync("img2webp", ["-loop", "0", "-lossy", "-q", "70", "-m", "6", "-d", milliseconds, ...names,
+execFileSync("img2webp", ["-loop", "0", "-lossy", "-q", "80", "-m", "6", "-d", milliseconds, ...names,
                           "-d", rest, last, "-o", file], {stdio: ["ignore", "ignore", "inherit"]});
 console.log(`${file}: ${count} frames`);

@@ -115,11 +115,11 @@ function gxColour(lightness, chroma, hue) {
 }
 
 /* The n-th of any number of colours. Hues step by an angle, lightness by four levels, so that those of neighbouring
-   numbers are far apart and the first 36 at least 36 bytes. */
+   numbers are far apart; any two of the first 36 differ by 30 in bytes. */
 function gxNthColour(n, pale) {
-    const hue = 205 + 152.5 * n, level = n % 4;
-    return pale ? gxColour([0.93, 0.86, 0.96, 0.89][level], 0.045, hue)
-                : gxColour([0.70, 0.50, 0.83, 0.60][level], 0.135, hue);
+    const hue = 215 + 147 * n, level = n % 4;
+    return pale ? gxColour([0.91, 0.85, 0.93, 0.88][level], 0.045, hue)
+                : gxColour([0.72, 0.56, 0.80, 0.64][level], 0.130, hue);
 }
 
 /* By fragment: its own colour, and a pale one on its cut faces */
@@ -159,8 +159,8 @@ class GxCamera {
         this.zoom = 1;
     }
 
-    /* Distance at which the radius fits the narrower side of the view */
-    distance(aspect) { return 1.05 * this.radius / this.zoom / Math.min(aspect, 1) / Math.sin(Math.atan(this.slope)); }
+    /* Distance at which a box of this radius about fills the narrower side of the view */
+    distance(aspect) { return 0.88 * this.radius / this.zoom / Math.min(aspect, 1) / Math.sin(Math.atan(this.slope)); }
 
     axes() {
         const level = gxMix(this.side, Math.cos(this.yaw), this.front, Math.sin(this.yaw));
@@ -203,10 +203,12 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 colour;
 uniform mat4 matrix;
 uniform mat3 axes; /* columns: right, above, back */
+uniform float lift; /* towards the camera, so that lines lie on their faces */
 out vec3 n;
 out vec4 c;
 void main() {
     gl_Position = matrix * vec4(position, 1.0);
+    gl_Position.z -= lift * gl_Position.w;
     n = normalize(normal) * axes;
     c = colour;
 }`;
@@ -276,8 +278,6 @@ class GxViewer {
         for (const name of ["faces", "edges", "triangles"]) this.indices[name] = {buffer: gl.createBuffer(), count: 0};
         gl.enable(gl.DEPTH_TEST);
         gl.depthFunc(gl.LEQUAL);
-        gl.enable(gl.POLYGON_OFFSET_FILL);
-        gl.polygonOffset(1, 1);
         gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
         this.mesh = this.coloured = null;
     }
@@ -301,26 +301,22 @@ class GxViewer {
         this.owner = owner; /* of each drawn vertex: one of its triangles */
         this.arrays = [0, 1].map(() => new Float32Array(3 * source.length));
         this.fill("faces", drawn);
-        this.takeLines(drawn);
+        this.takeLines(triangles, drawn);
         this.coloured = null;
     }
 
     /* Lines of all triangles; edges are those that only one triangle has: vertices are not shared across creases. */
-    takeLines(drawn) {
+    takeLines(triangles, drawn) {
         const sides = new Map();
         for (let i = 0; i < drawn.length; i++) {
-            const a = drawn[i], b = drawn[i % 3 === 2 ? i - 2 : i + 1];
-            const key = Math.min(a, b) * 4294967296 + Math.max(a, b);
-            sides.set(key, (sides.get(key) || 0) + 1);
+            const next = i % 3 === 2 ? i - 2 : i + 1, a = triangles[i], b = triangles[next];
+            const key = Math.min(a, b) * 4294967296 + Math.max(a, b), side = sides.get(key);
+            if (side) side.count++;
+            else sides.set(key, {ends: [drawn[i], drawn[next]], count: 1});
         }
-        const ends = wanted => {
-            const list = [];
-            for (const [key, count] of sides)
-                if (wanted(count)) list.push(Math.floor(key / 4294967296), key % 4294967296);
-            return Uint32Array.from(list);
-        };
-        this.fill("edges", ends(count => count === 1));
-        this.fill("triangles", ends(() => true));
+        const all = [...sides.values()], ends = list => Uint32Array.from(list.flatMap(side => side.ends));
+        this.fill("edges", ends(all.filter(side => side.count === 1)));
+        this.fill("triangles", ends(all));
     }
 
     fill(name, array) {
@@ -379,10 +375,12 @@ class GxViewer {
         gl.uniformMatrix3fv(this.at("axes"), false, new Float32Array([...right, ...above, ...back]));
         gl.uniform1i(this.at("flatly"), this.flat);
         gl.uniform4f(this.at("line"), 0, 0, 0, 0);
+        gl.uniform1f(this.at("lift"), 0);
         gl.disable(gl.BLEND);
         this.drawList("faces", gl.TRIANGLES);
         if (this.lines === "none" || this.flat) return;
         gl.enable(gl.BLEND);
+        gl.uniform1f(this.at("lift"), 1e-4);
         gl.uniform4f(this.at("line"), 0.04, 0.06, 0.09, this.lines === "edges" ? 0.55 : 0.4);
         this.drawList(this.lines, gl.LINES);
     }
@@ -390,15 +388,15 @@ class GxViewer {
 
 /* -------------------------------------------------------------------------------------------------- >>player */
 
-/* The box to look at: that of the first frame, grown by those of the others up to twice its size. `follow`: the body
-   leaves it, so the camera goes with it. */
+/* The box to look at: that of the first frame, grown by those of the others up to twice its size. `follow`: all of the
+   body leaves the first frame's box, so the camera goes with it. */
 function gxStage(frames) {
     const [low, high] = frames.box(0), size = Math.hypot(...gxMix(high, 1, low, -1));
     const all = [low.slice(), high.slice()];
     let follow = false;
     for (let i = 1; i < frames.count; i++) {
         const [a, b] = frames.box(i);
-        follow = follow || Math.hypot(...gxMix(gxMix(a, 0.5, b, 0.5), 1, gxMix(low, 0.5, high, 0.5), -1)) > 2 * size;
+        follow = follow || a.some((x, k) => x > high[k] || b[k] < low[k]);
         for (let k = 0; k < 3; k++) {
             all[0][k] = Math.min(all[0][k], Math.max(a[k], low[k] - 0.5 * size));
             all[1][k] = Math.max(all[1][k], Math.min(b[k], high[k] + 0.5 * size));
