@@ -22,7 +22,7 @@ linked = $(compile) -DGXFEM_LINKED
 sanitizers = -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all
 
 help:
-	@echo "make demo        cuts a cube of 5 tetrahedra into 36 sticks and simulates it (needs a C compiler, nothing else)"
+	@echo "make demo        cuts a cube of 5 tetrahedra into 36 sticks, simulates it, writes a page that plays it (needs a C compiler only)"
 	@echo "make check-page  opens the demo's page in headless Chromium; installs Chromium and node where they are missing"
 	@echo "make check       builds and runs the tests; installs Check and pkg-config where they are missing"
 	@echo "make check-all   check, then lint, compile tests, sanitizers, compilers and flags; takes longer"
@@ -85,9 +85,15 @@ examples/player.h: examples/player.html examples/player.js examples/player.sh
 sixths = 0.16666666666666666 0.33333333333333331 0.5 0.66666666666666663 0.83333333333333337
 demo_cuts = $(foreach i,$(sixths),--sheet plane:$(i),0.5,0.5,1,0,0) $(foreach i,$(sixths),--sheet plane:0.5,$(i),0.5,0,1,0)
 
-demo_run = $(BUILD)/gxcut cube5 $(demo_cuts) --fix 'z<0.001' --stretch 1.5,1.5,1.5 --young 1e5 --dt 0.01 --frames 60
+demo_run = $(BUILD)/demo/gxcut cube5 $(demo_cuts) --fix 'z<0.001' --stretch 1.5,1.5,1.5 --young 1e5 --dt 0.01 --frames 60
 
-demo: $(BUILD)/gxcut
+# The demo's own program, all in one and less optimised: who tries it waits for the compiler.
+$(BUILD)/demo/gxcut: examples/gxcut.c $(headers) $(wildcard examples/*.h)
+	@echo "Compiles the library and examples/gxcut.c into $@: about ten seconds."
+	@mkdir -p $(@D)
+	@$(CC) -std=c99 $(WARNINGS) -O1 -DGXFEM_STATIC -I. $< -o $@ $(LDFLAGS) -lm
+
+demo: $(BUILD)/demo/gxcut
 	@echo "Cuts a cube of five tetrahedra by 5 + 5 crossing planes into 36 sticks, stretches it, holds its foot, lets go."
 	@$(demo_run) --out $(BUILD)/demo --report $(BUILD)/demo.json
 	@$(demo_run) --quiet --format html --out $(BUILD)/demo/demo.html
