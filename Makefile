@@ -15,19 +15,21 @@ headers = gxfem.h gxfem_boolean.h gxfem_integrate.h gxfem_solve.h
 tests = $(patsubst tests/%.c,%,$(shell ls -S tests/test_*.c))
 linked_tests = $(patsubst tests/%.c,%,$(shell grep -l GXFEM_LINKED tests/test_*.c))
 examples = $(patsubst examples/%.c,%,$(sort $(wildcard examples/*.c)))
-scenes = $(filter-out embed gxcut gxboolean,$(examples))
+scenes = $(filter-out embed gxcut gxboolean animation,$(examples))
 linked_examples = $(filter-out embed,$(examples))
 compile = $(CC) -std=c99 -g $(WARNINGS) $(CFLAGS)
 linked = $(compile) -DGXFEM_LINKED
 sanitizers = -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all
 
 help:
-	@echo "make demo        cuts a cube of 5 tetrahedra into 36 sticks and simulates it (needs a C compiler, nothing else)"
+	@echo "make demo        cuts a cube of 5 tetrahedra into 36 sticks, simulates it, writes a page that plays it (needs a C compiler only)"
+	@echo "make check-page  opens the demo's page in headless Chromium; installs Chromium and node where they are missing"
 	@echo "make check       builds and runs the tests; installs Check and pkg-config where they are missing"
 	@echo "make check-all   check, then lint, compile tests, sanitizers, compilers and flags; takes longer"
 	@echo "make examples    builds $(examples) in $(BUILD)/"
 	@echo "make scenes      runs the scenes of the papers, writes docs/SCENES.md; SMALL=1: small ones, $(BUILD)/scenes/SCENES.md"
 	@echo "make pictures    renders the scenes into docs/pictures/; installs f3d and a virtual display where they are missing"
+	@echo "make animation   the README's animated picture, docs/pictures/cut.webp; installs Chromium, node and img2webp"
 	@echo "make lint        house rules of the four headers"
 	@echo "make format      lays out all C files by .clang-format; installs clang-format where it is missing"
 	@echo "make compile     the headers by every compiler and standard there is, C and C++"
@@ -75,14 +77,31 @@ $(BUILD)/gxfem.o: $(headers)
 	@mkdir -p $(@D)
 	printf '#define GXFEM_IMPLEMENTATION\n#include "gxfem.h"\n' | $(compile) -I. -x c -c - -o $@
 
+# The page that plays frames, as C. It is committed, so that examples need nothing but a C compiler.
+examples/player.h: examples/player.html examples/player.js examples/player.sh
+	sh examples/player.sh examples/player.html examples/player.js >$@.part && mv $@.part $@
+
 # Sticks along z: five planes across x, five across y. The foot of the cube is held as stretched; the rest springs back.
 sixths = 0.16666666666666666 0.33333333333333331 0.5 0.66666666666666663 0.83333333333333337
 demo_cuts = $(foreach i,$(sixths),--sheet plane:$(i),0.5,0.5,1,0,0) $(foreach i,$(sixths),--sheet plane:0.5,$(i),0.5,0,1,0)
 
-demo: $(BUILD)/gxcut
+demo_run = $(BUILD)/demo/gxcut cube5 $(demo_cuts) --fix 'z<0.001' --stretch 1.5,1.5,1.5 --young 1e5 --dt 0.01 --frames 60
+
+# The demo's own program, all in one and less optimised: who tries it waits for the compiler.
+$(BUILD)/demo/gxcut: examples/gxcut.c $(headers) $(wildcard examples/*.h)
+	@echo "Compiles the library and examples/gxcut.c into $@: about ten seconds."
+	@mkdir -p $(@D)
+	@$(CC) -std=c99 $(WARNINGS) -O1 -DGXFEM_STATIC -I. $< -o $@ $(LDFLAGS) -lm
+
+demo: $(BUILD)/demo/gxcut
 	@echo "Cuts a cube of five tetrahedra by 5 + 5 crossing planes into 36 sticks, stretches it, holds its foot, lets go."
-	@$(BUILD)/gxcut cube5 $(demo_cuts) --fix 'z<0.001' --stretch 1.5,1.5,1.5 --young 1e5 --dt 0.01 --frames 60 \
-	    --out $(BUILD)/demo --report $(BUILD)/demo.json
+	@$(demo_run) --out $(BUILD)/demo --report $(BUILD)/demo.json
+	@$(demo_run) --quiet --format html --out $(BUILD)/demo/demo.html
+	@echo "look      open $(BUILD)/demo/demo.html in a browser"
+
+check-page: demo
+	@if sh tests/install.sh page; then node tests/check_page.mjs $(BUILD)/demo/demo.html 36 $(BUILD)/check-page; \
+	else echo "left out: no chromium"; fi
 
 # ---- scenes. Without gnuplot there is no chart, and nothing else is missing.
 
@@ -93,6 +112,12 @@ scenes: $(scenes:%=$(BUILD)/%)
 pictures: $(scenes:%=$(BUILD)/%)
 	@sh tests/install.sh pictures
 	@sh examples/pictures.sh $(BUILD) docs/pictures
+
+# The animated picture: a run as a page, its frames drawn by the player, then one file of them
+animation: $(BUILD)/animation
+	@sh tests/install.sh animation
+	@$(BUILD)/animation --quiet --format html --out $(BUILD)/animation.html
+	@node examples/animation.mjs $(BUILD)/animation.html $(BUILD)/frames docs/pictures/cut.webp
 
 # ---- tests. Each runs in processes of its own (Check forks), so that a crash is one failed test.
 
@@ -261,4 +286,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo scenes pictures bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(tests:%=run-%) sanitize sanitize-scenes compile lint format fuzz flags hashes check-wasm $(benches:%=bench-%) bench charts check-all clean
+.PHONY: help examples demo check-page scenes pictures animation bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(tests:%=run-%) sanitize sanitize-scenes compile lint format fuzz flags hashes check-wasm $(benches:%=bench-%) bench charts check-all clean

@@ -50,6 +50,8 @@ typedef struct run {
     gx_skin skin;
     double *skin_positions; /* skin.vertex_count x 3 */
     float *skin_normals;    /* the same */
+    gxio_page page;         /* of --format html */
+    int has_page, has_mesh; /* the page is open; it has the triangles of the skin */
     gx_cut_report cut;
     int has_cut;
     uint32_t frames_written;
@@ -106,8 +108,10 @@ static const char usage[] =
     "  --gravity X,Y,Z     m/s2 (0,0,-9.81)\n"
     "  --fix 'AXIS<V'      holds the material with x, y or z below V; 'AXIS>V': above\n"
     "  --stretch X,Y,Z     starts scaled by these factors about the centre of the bounding box\n"
-    "  --out DIR           where frames go (out)\n"
-    "  --format vtu|obj    frames for ParaView with a collection frames.pvd (default), or Wavefront\n"
+    "  --out PATH          directory of the frames (out); with --format html: the file (out.html)\n"
+    "  --format vtu|obj|html\n"
+    "                      frames for ParaView with a collection frames.pvd (default), Wavefront, or one page that a\n"
+    "                      browser plays, without a network\n"
     "  --report FILE.json  counts, volumes and timings\n"
     "  --quiet             no summary, no progress bar\n"
     "  --help              this text\n";
@@ -211,6 +215,8 @@ static int take_arguments(settings *set, int argc, char **argv, gxio_error *erro
     return 1;
 }
 
+static int is_format(const settings *set, const char *format) { return strcmp(set->format, format) == 0; }
+
 static int check_settings(const settings *set, gxio_error *error) {
     if (!set->mesh)
         return misused(error, "usage", "gxcut MESH [--sheet CUT]... [--solid CUT]... [options], see gxcut --help");
@@ -222,15 +228,14 @@ static int check_settings(const settings *set, gxio_error *error) {
     if (!set->newton) return misused(error, "--newton", "must be at least 1");
     if (set->cut_at && set->cut_at >= set->frames)
         return misused(error, "--cut-at", "must be below the number of frames");
-    if (strcmp(set->format, "vtu") != 0 && strcmp(set->format, "obj") != 0)
-        return misused(error, "--format", "must be vtu or obj");
+    if (!is_format(set, "vtu") && !is_format(set, "obj") && !is_format(set, "html"))
+        return misused(error, "--format", "must be vtu, obj or html");
     return 1;
 }
 
 /* Defaults, then the arguments; cuts and regions can't be more than there are arguments. */
 static int parse_settings(settings *set, int argc, char **argv, gxio_error *error) {
     const size_t room = (size_t)argc + 1;
-    set->out = "out";
     set->format = "vtu";
     set->dt = 0.033;
     set->young = 1e6;
@@ -245,6 +250,7 @@ static int parse_settings(settings *set, int argc, char **argv, gxio_error *erro
     set->regions = (gx_region *)gxio_array(room, sizeof *set->regions);
     if (!set->cuts || !set->kinds || !set->regions) return misused(error, "arguments", "out of memory");
     if (!take_arguments(set, argc, argv, error)) return 0;
+    if (!set->out) set->out = is_format(set, "html") ? "out.html" : "out";
     return set->help ? 1 : check_settings(set, error);
 }
 
@@ -421,6 +427,7 @@ static int look(run *r) {
         free(r->skin_positions);
         free(r->skin_normals);
         r->skin_positions = result == GX_OK ? (double *)gxio_array(r->skin.vertex_count, 3 * sizeof(double)) : NULL;
+        r->has_mesh = 0;
         r->skin_normals = result == GX_OK ? (float *)gxio_array(r->skin.vertex_count, 3 * sizeof(float)) : NULL;
         if (result == GX_OK && (!r->skin_positions || !r->skin_normals)) result = GX_ERROR_MEMORY;
     }
@@ -433,9 +440,35 @@ static int join_path(run *r, const char *name, char path[GXIO_PATH_ROOM]) {
     return length > 0 && length < GXIO_PATH_ROOM ? 1 : misused(&r->error, "--out", "the path is too long");
 }
 
+/* DIR/frame_NNNN.FORMAT */
+static int write_file(run *r, const gxio_triangles *t, uint32_t frame) {
+    char name[32], path[GXIO_PATH_ROOM];
+    if (frame == 0 && !gxio_make_directory(r->set.out, &r->error)) return 0;
+    gxio_frame_name(name, sizeof name, frame, r->set.format);
+    if (!join_path(r, name, path)) return 0;
+    return is_format(&r->set, "obj") ? gxio_write_obj(path, t, &r->error) : gxio_write_vtu(path, t, &r->error);
+}
+
+/* Against gravity; without any, along z */
+static void find_up(const run *r, double up[3]) {
+    int i;
+    for (i = 0; i < 3; i++) up[i] = -r->set.gravity[i];
+    if (!(fabs(up[0]) + fabs(up[1]) + fabs(up[2]) > 0.0)) up[2] = 1.0;
+}
+
+static int write_to_page(run *r, const gxio_triangles *t, uint32_t frame) {
+    double up[3];
+    find_up(r, up);
+    if (!r->has_page && !gxio_page_open(&r->page, r->set.out, r->set.mesh, up, &r->error)) return 0;
+    r->has_page = 1;
+    if (!r->has_mesh) gxio_page_mesh(&r->page, t, r->view.fragment_id);
+    r->has_mesh = 1;
+    gxio_page_frame(&r->page, t, (frame + 1.0) * r->set.dt);
+    return 1;
+}
+
 static int write_frame(run *r, uint32_t frame) {
     gxio_triangles t;
-    char name[32], path[GXIO_PATH_ROOM];
     gx_body_skin_positions(r->body, r->skin_positions);
     gx_body_skin_vertices(r->body, NULL, NULL, r->skin_normals);
     t.positions = r->skin_positions;
@@ -448,19 +481,19 @@ static int write_frame(run *r, uint32_t frame) {
     t.fragment_count = r->view.fragment_count;
     t.surface = r->skin.triangle_surface;
     t.material = r->skin.triangle_material;
-    gxio_frame_name(name, sizeof name, frame, r->set.format);
-    if (!join_path(r, name, path)) return 0;
-    if (!(strcmp(r->set.format, "obj") == 0 ? gxio_write_obj(path, &t, &r->error)
-                                            : gxio_write_vtu(path, &t, &r->error)))
-        return 0;
+    if (!(is_format(&r->set, "html") ? write_to_page(r, &t, frame) : write_file(r, &t, frame))) return 0;
     r->frames_written = frame + 1;
     return 1;
 }
 
-/* The collection of the frames there are: written also where a later step failed. */
-static int write_collection(run *r) {
+/* Completes the page, or writes the collection of the frames there are: also where a later step failed. */
+static int finish_frames(run *r) {
     char path[GXIO_PATH_ROOM];
-    if (!r->frames_written || strcmp(r->set.format, "vtu") != 0) return 1;
+    if (r->has_page) {
+        r->has_page = 0;
+        return gxio_page_close(&r->page, 1, &r->error);
+    }
+    if (!r->frames_written || !is_format(&r->set, "vtu")) return 1;
     return join_path(r, "frames.pvd", path) && gxio_write_pvd(path, r->frames_written, r->set.dt, &r->error);
 }
 
@@ -478,7 +511,7 @@ static void draw_bar(run *r, uint32_t done) {
 static int refuse_step(run *r, uint32_t frame, gx_result result) {
     char name[32];
     snprintf(name, sizeof name, "frame %lu", (unsigned long)frame);
-    if (!write_collection(r)) return complain(r, EXIT_MISUSED);
+    if (!finish_frames(r)) return complain(r, EXIT_MISUSED);
     if (frame)
         gxio_fail(&r->error, name, 0, "%s; the %lu frames before it are in %s", gx_result_text(result),
                   (unsigned long)frame, r->set.out);
@@ -510,7 +543,6 @@ static int advance(run *r, uint32_t frame) {
     }
     if (code == EXIT_DONE) code = step(r, frame);
     if (code != EXIT_DONE) return code;
-    if (frame == 0 && !gxio_make_directory(r->set.out, &r->error)) return complain(r, EXIT_MISUSED);
     if (!write_frame(r, frame)) return complain(r, EXIT_MISUSED);
     draw_bar(r, frame + 1);
     return EXIT_DONE;
@@ -526,7 +558,7 @@ static int simulate(run *r) {
     if (r->set.cut_at) code = look(r);
     for (frame = 0; frame < r->set.frames && code == EXIT_DONE; frame++) code = advance(r, frame);
     end_bar(r);
-    if (code == EXIT_DONE && !write_collection(r)) code = complain(r, EXIT_MISUSED);
+    if (code == EXIT_DONE && !finish_frames(r)) code = complain(r, EXIT_MISUSED);
     return code;
 }
 
@@ -622,12 +654,16 @@ static int report(run *r) {
 static void summarise_frames(const run *r) {
     char first[32], last[32];
     if (!r->set.frames) return;
-    gxio_frame_name(first, sizeof first, 0, r->set.format);
-    gxio_frame_name(last, sizeof last, r->set.frames - 1, r->set.format);
     printf("steps     %lu of %g s, %.3g ms each\n", (unsigned long)r->set.frames, r->set.dt,
            1e3 * r->seconds_newton / r->set.frames);
+    if (is_format(&r->set, "html")) {
+        printf("wrote     %s; open it in a browser\n", r->set.out);
+        return;
+    }
+    gxio_frame_name(first, sizeof first, 0, r->set.format);
+    gxio_frame_name(last, sizeof last, r->set.frames - 1, r->set.format);
     printf("wrote     %s/%s to %s", r->set.out, first, last);
-    if (strcmp(r->set.format, "vtu") == 0) printf("; ParaView opens %s/frames.pvd", r->set.out);
+    if (is_format(&r->set, "vtu")) printf("; ParaView opens %s/frames.pvd", r->set.out);
     putchar('\n');
 }
 
@@ -652,6 +688,7 @@ static void summarise(const run *r) {
 
 static void release(run *r) {
     size_t i;
+    if (r->has_page) finish_frames(r); /* a cut failed: the frames before it stay, as files do */
     for (i = 0; r->cuts && i < r->set.cut_count; i++) gxio_surface_release(&r->cuts[i]);
     free(r->cuts);
     free(r->skin_positions);

@@ -11,6 +11,7 @@
      >>surface     triangle surfaces: .obj, .off, .stl, .vtk, generated plane:..., box:..., wave:...
      >>writer      files that are either complete or not there
      >>frames      triangles with fragment ids as .vtu or .obj, and the .pvd collection of a run
+     >>page        frames as one .html file that a browser plays
      >>clock       seconds, directories
 
    Every function that can fail returns 1 on success and 0 on failure, with one line in error->text.
@@ -38,6 +39,7 @@
 #include <sys/types.h>
 #endif
 #include "gxshape.h"
+#include "player.h"
 
 enum { GXIO_PATH_ROOM = 1024 }; /* longest path, with its terminator, bytes */
 
@@ -1955,6 +1957,118 @@ static inline int gxio_write_pvd(const char *path, uint32_t frame_count, double 
     }
     fputs("</Collection>\n</VTKFile>\n", writer.stream);
     return gxio_writer_close(&writer, 1, error);
+}
+
+/* ----------------------------------------------------------------------------------------------- >>page */
+
+/* A page in the making: player.html with the frames so far. player.js says how frames are written. */
+typedef struct gxio_page {
+    gxio_writer writer;
+    gxio_base64 out;
+} gxio_page;
+
+static inline void gxio_page_byte(gxio_page *page, uint32_t value) {
+    const unsigned char byte = (unsigned char)(value & 255);
+    gxio_base64_bytes(&page->out, &byte, 1);
+}
+
+/* The low `bytes` bytes of a value, lowest first */
+static inline void gxio_page_value(gxio_page *page, uint32_t value, int bytes) {
+    for (; bytes-- > 0; value >>= 8) gxio_page_byte(page, value);
+}
+
+static inline void gxio_page_float(gxio_page *page, double value) {
+    const float rounded = (float)value;
+    uint32_t bits;
+    memcpy(&bits, &rounded, sizeof bits);
+    gxio_page_value(page, bits, 4);
+}
+
+/* Begins a line of base64; gxio_page_end_line ends it. */
+static inline void gxio_page_begin_line(gxio_page *page, const char *name) {
+    fprintf(page->writer.stream, "%s ", name);
+    page->out.stream = page->writer.stream;
+    page->out.pending_count = page->out.used = 0;
+}
+
+static inline void gxio_page_end_line(gxio_page *page) {
+    gxio_base64_end(&page->out);
+    fputc('\n', page->writer.stream);
+}
+
+/* A JSON string that is safe inside a script element */
+static inline void gxio_page_text(gxio_page *page, const char *text) {
+    fputc('"', page->writer.stream);
+    for (; *text; text++) {
+        const unsigned char c = (unsigned char)*text;
+        if (c < ' ' || c == '"' || c == '\\' || c == '<')
+            fprintf(page->writer.stream, "\\u%04x", (unsigned)c);
+        else
+            fputc(c, page->writer.stream);
+    }
+    fputc('"', page->writer.stream);
+}
+
+/* Opens a page without frames. */
+static inline int gxio_page_open(gxio_page *page, const char *path, const char *title, const double up[3],
+                                 gxio_error *error) {
+    const char *const *line;
+    if (!gxio_writer_open(&page->writer, path, error)) return 0;
+    for (line = gxio_player_top; *line; line++) fputs(*line, page->writer.stream);
+    fprintf(page->writer.stream, "gxfem-frames 1\ntitle ");
+    gxio_page_text(page, title);
+    fprintf(page->writer.stream, "\nup %.9g %.9g %.9g\n", up[0], up[1], up[2]);
+    return 1;
+}
+
+/* The triangles of the frames that follow. fragment_id: fragment_count numbers, each the same fragment's in all meshes
+ */
+static inline void gxio_page_mesh(gxio_page *page, const gxio_triangles *t, const uint32_t *fragment_id) {
+    size_t i;
+    gxio_page_begin_line(page, "mesh");
+    gxio_page_value(page, (uint32_t)t->vertex_count, 4);
+    gxio_page_value(page, (uint32_t)t->triangle_count, 4);
+    for (i = 0; i < 3 * t->triangle_count; i++) gxio_page_value(page, t->triangles[i], 4);
+    for (i = 0; i < t->triangle_count; i++) gxio_page_value(page, fragment_id[t->fragment[i]], 4);
+    for (i = 0; i < t->triangle_count; i++) gxio_page_value(page, t->surface[i], 4);
+    gxio_page_end_line(page);
+}
+
+/* A normal as a point of the octahedron |x| + |y| + |z| = 127, seen from above; its lower half is folded outwards. */
+static inline void gxio_page_normal(gxio_page *page, const float n[3]) {
+    const double sum = fabs((double)n[0]) + fabs((double)n[1]) + fabs((double)n[2]);
+    double x = sum > 0.0 ? (double)n[0] / sum : 0.0, y = sum > 0.0 ? (double)n[1] / sum : 0.0;
+    if (n[2] < 0.0f) {
+        const double folded = (1.0 - fabs(y)) * (x < 0.0 ? -1.0 : 1.0);
+        y = (1.0 - fabs(x)) * (y < 0.0 ? -1.0 : 1.0);
+        x = folded;
+    }
+    gxio_page_byte(page, (uint32_t)(int32_t)floor(127.0 * x + 0.5));
+    gxio_page_byte(page, (uint32_t)(int32_t)floor(127.0 * y + 0.5));
+}
+
+/* Where the triangles of the last gxio_page_mesh are at a time, s. Positions are rounded to 1/65535 of the frame's box.
+ */
+static inline void gxio_page_frame(gxio_page *page, const gxio_triangles *t, double time) {
+    double low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, scale[3];
+    size_t i;
+    if (t->vertex_count) gxio_bounds(t->positions, t->vertex_count, low, high);
+    gxio_page_begin_line(page, "frame");
+    gxio_page_float(page, time);
+    for (i = 0; i < 3; i++) gxio_page_float(page, low[i]);
+    for (i = 0; i < 3; i++) gxio_page_float(page, high[i]);
+    for (i = 0; i < 3; i++) scale[i] = high[i] > low[i] ? 65535.0 / (high[i] - low[i]) : 0.0;
+    for (i = 0; i < 3 * t->vertex_count; i++)
+        gxio_page_value(page, (uint32_t)((t->positions[i] - low[i % 3]) * scale[i % 3] + 0.5), 2);
+    for (i = 0; i < t->vertex_count; i++) gxio_page_normal(page, t->normals + 3 * i);
+    gxio_page_end_line(page);
+}
+
+/* Completes the page, or removes it if `good` is 0 or anything fails. */
+static inline int gxio_page_close(gxio_page *page, int good, gxio_error *error) {
+    const char *const *line;
+    for (line = gxio_player_end; *line; line++) fputs(*line, page->writer.stream);
+    return gxio_writer_close(&page->writer, good, error);
 }
 
 /* ---------------------------------------------------------------------------------------------- >>clock */

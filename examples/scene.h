@@ -118,7 +118,9 @@ typedef struct scene {
     double frame_seconds[SCENE_PHASES], frame_cut, sum[SCENE_PHASES], sum_frames, worst_frame;
     double solver_start; /* when the solver first looked at the clock in this step; below 0: not yet */
     uint32_t cut_frames, frames_written;
-    int bar; /* a progress bar stands on stderr */
+    gxio_page page;         /* of --format html */
+    int has_page, has_mesh; /* the page is open; it has the triangles of the skin */
+    int bar;                /* a progress bar stands on stderr */
     uint32_t checks, wrong;
     gxio_error error;
 } scene;
@@ -193,7 +195,10 @@ static inline void scene_usage(const scene *s) {
         printf("  --mesh MESH         a file or a generated mesh, as gxcut takes them (%s)\n", s->desc.mesh);
     puts("  --out DIR           writes frames there\n"
          "  --every N           only each N-th of them (1)\n"
-         "  --format vtu|obj    frames for ParaView with a collection frames.pvd (default), or Wavefront\n"
+         "  --format vtu|obj|html\n"
+         "                      frames for ParaView with a collection frames.pvd (default), Wavefront, or one page "
+         "that a\n"
+         "                      browser plays: --out then names that file\n"
          "  --table FILE        appends the scene's line of the table of all scenes\n"
          "  --trace FILE        writes mesh, material, state and cuts there, for bench/ to repeat\n"
          "  --quiet             prints only what is wrong\n"
@@ -241,6 +246,8 @@ static inline int scene_take_value(scene *s, const char *name, const char *value
     return 1;
 }
 
+static inline int scene_is_format(const scene *s, const char *format) { return strcmp(s->format, format) == 0; }
+
 static inline void scene_take_arguments(scene *s, int argc, char **argv) {
     int i;
     for (i = 1; i < argc; i++) {
@@ -249,8 +256,8 @@ static inline void scene_take_arguments(scene *s, int argc, char **argv) {
             scene_misuse(s, argv[i], "unknown option, see --help");
         if (++i >= argc) scene_misuse(s, argv[i - 1], "needs a value");
     }
-    if (strcmp(s->format, "vtu") != 0 && strcmp(s->format, "obj") != 0)
-        scene_misuse(s, "--format", "must be vtu or obj");
+    if (!scene_is_format(s, "vtu") && !scene_is_format(s, "obj") && !scene_is_format(s, "html"))
+        scene_misuse(s, "--format", "must be vtu, obj or html");
     if (s->frames && s->frames < s->desc.least_frames) {
         gxio_fail(&s->error, "--frames", 0, "needs at least %lu", (unsigned long)s->desc.least_frames);
         scene_quit(s, SCENE_MISUSED);
@@ -284,7 +291,7 @@ static inline void scene_open(scene *s, const scene_desc *desc, int argc, char *
         exit(SCENE_RIGHT);
     }
     if (!gxio_mesh_load(s->mesh_name, &s->mesh, &s->error)) scene_quit(s, SCENE_MISUSED);
-    if (s->out && !gxio_make_directory(s->out, &s->error)) scene_quit(s, SCENE_MISUSED);
+    if (s->out && !scene_is_format(s, "html") && !gxio_make_directory(s->out, &s->error)) scene_quit(s, SCENE_MISUSED);
     if (!s->quiet) printf("%s: %s\n", s->desc.name, s->desc.about);
 }
 
@@ -596,6 +603,7 @@ static inline void scene_take_skin(scene *s) {
         scene_must(s, gx_body_skin(s->body, &shading, &skin), "skin");
         free(s->skin.positions);
         free(s->skin.normals);
+        s->has_mesh = 0;
         s->skin.positions = (double *)scene_array(s, skin.vertex_count, 3 * sizeof(double));
         s->skin.normals = (float *)scene_array(s, skin.vertex_count, 3 * sizeof(float));
         s->skin.vertex_point = skin.vertex_point;
@@ -632,20 +640,36 @@ static inline void scene_join_path(scene *s, const char *name, char path[GXIO_PA
     if (length <= 0 || length >= GXIO_PATH_ROOM) scene_misuse(s, "--out", "the path is too long");
 }
 
-static inline void scene_write_frame(scene *s) {
+static inline int scene_write_file(scene *s) {
     char name[32], path[GXIO_PATH_ROOM];
     gxio_frame_name(name, sizeof name, s->frames_written, s->format);
     scene_join_path(s, name, path);
-    if (!(strcmp(s->format, "obj") == 0 ? gxio_write_obj(path, &s->skin.triangles, &s->error)
-                                        : gxio_write_vtu(path, &s->skin.triangles, &s->error)))
-        scene_quit(s, SCENE_MISUSED);
+    return scene_is_format(s, "obj") ? gxio_write_obj(path, &s->skin.triangles, &s->error)
+                                     : gxio_write_vtu(path, &s->skin.triangles, &s->error);
+}
+
+/* Up is against gravity. */
+static inline int scene_write_to_page(scene *s) {
+    const double up[3] = {-s->step.gravity[0], -s->step.gravity[1], -s->step.gravity[2]};
+    if (!s->has_page && !gxio_page_open(&s->page, s->out, s->desc.name, up, &s->error)) return 0;
+    s->has_page = 1;
+    if (!s->has_mesh) gxio_page_mesh(&s->page, &s->skin.triangles, s->view.fragment_id);
+    s->has_mesh = 1;
+    gxio_page_frame(&s->page, &s->skin.triangles, s->step.dt * s->frame);
+    return 1;
+}
+
+static inline void scene_write_frame(scene *s) {
+    if (!(scene_is_format(s, "html") ? scene_write_to_page(s) : scene_write_file(s))) scene_quit(s, SCENE_MISUSED);
     s->frames_written++;
 }
 
-/* The collection of the frames there are */
-static inline void scene_write_collection(scene *s) {
+/* Completes the page, or writes the collection of the frames there are. */
+static inline void scene_finish_frames(scene *s) {
     char path[GXIO_PATH_ROOM];
-    if (!s->frames_written || strcmp(s->format, "vtu") != 0) return;
+    if (s->has_page && !gxio_page_close(&s->page, 1, &s->error)) scene_quit(s, SCENE_MISUSED);
+    s->has_page = 0;
+    if (!s->frames_written || !scene_is_format(s, "vtu")) return;
     scene_join_path(s, "frames.pvd", path);
     if (!gxio_write_pvd(path, s->frames_written, s->step.dt * s->every, &s->error)) scene_quit(s, SCENE_MISUSED);
 }
@@ -680,7 +704,7 @@ static inline void scene_move(scene *s, gx_step_report *report) {
     s->step.clock_user = s;
     s->solver_start = -1.0;
     result = gx_body_step(s->body, &s->step, report, NULL);
-    if (result != GX_OK && s->out) scene_write_collection(s); /* what there is can be looked at */
+    if (result != GX_OK && s->out) scene_finish_frames(s); /* what there is can be looked at */
     scene_must(s, result, "step");
     seconds[SCENE_MODEL] = s->solver_start < 0.0 ? 0.0 : s->solver_start - start;
     seconds[SCENE_LINEARISE] = report->seconds_linearise;
@@ -717,7 +741,7 @@ static inline void scene_step(scene *s) {
     scene_draw_bar(s);
     if (s->frame < s->frames) return;
     scene_end_bar(s);
-    if (s->out) scene_write_collection(s);
+    if (s->out) scene_finish_frames(s);
 }
 
 /* Brings the body to rest: balance of forces from where it is, without inertia. Returns the residual, see

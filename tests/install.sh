@@ -7,6 +7,8 @@
 #     charts  gnuplot, for charts
 #     wasm    clang with what it takes to make WebAssembly of C, and node, which runs it
 #     format  clang-format 14
+#     page    Chromium and node, for the page that the demo makes
+#     animation  the same, and img2webp, for the README's animated picture
 #     pictures  f3d, and a virtual display where there is no other, for pictures of scenes
 set -u
 
@@ -38,6 +40,8 @@ wasm_packages() {
     echo lld wasi-libc "libclang-rt-${version:+$version-}dev-wasm32"
 }
 
+has_browser() { has chromium || has chromium-browser || has google-chrome || [ -d /Applications/Chromium.app ]; }
+
 have() {
     case $1 in
     check) has pkg-config && pkg-config --exists check ;;
@@ -46,6 +50,8 @@ have() {
     charts) has gnuplot ;;
     wasm) has node && links_wasm ;;
     format) has clang-format ;;
+    page) has node && has_browser ;;
+    animation) has node && has_browser && has img2webp ;;
     pictures) has f3d && { [ -n "${DISPLAY:-}" ] || has xvfb-run; } ;;
     *) echo "$0: no group '$1'" >&2; exit 2 ;;
     esac
@@ -70,6 +76,12 @@ packages() {
     wasm:apt-get) wasm_packages ;;
     format:apt-get|format:brew) echo clang-format ;;
     format:*) echo clang-tools-extra ;;
+    page:apt-get|page:dnf|page:pacman) echo chromium nodejs ;;
+    page:brew) echo chromium node ;;
+    animation:apt-get) echo chromium nodejs webp ;;
+    animation:dnf) echo chromium nodejs libwebp-tools ;;
+    animation:pacman) echo chromium nodejs libwebp ;;
+    animation:brew) echo chromium node webp ;;
     pictures:apt-get) echo f3d xvfb xauth ;;
     pictures:dnf) echo f3d xorg-x11-server-Xvfb ;;
     pictures:pacman) echo f3d xorg-server-xvfb ;;
@@ -89,7 +101,7 @@ install() {
     esac
 }
 
-[ $# -gt 0 ] || { echo "usage: $0 check|cxx|bench|charts|wasm|format|pictures..." >&2; exit 2; }
+[ $# -gt 0 ] || { echo "usage: $0 check|cxx|bench|charts|wasm|format|page|animation|pictures..." >&2; exit 2; }
 missing=
 for group in "$@"; do have "$group" || missing="$missing $group"; done
 [ -n "$missing" ] || exit 0

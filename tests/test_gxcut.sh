@@ -1,6 +1,7 @@
 #!/bin/sh
 # Tests the program examples/gxcut.c from outside: exit codes, messages, files, figures.
 # usage: sh tests/test_gxcut.sh PATH/TO/gxcut
+source=$(cd "$(dirname -- "$0")/.." && pwd)
 . "$(dirname -- "$0")/program.sh"
 
 # refuses NAME CODE PATTERN ARGUMENTS...: exits with CODE, says one line that matches PATTERN, leaves no file behind
@@ -59,6 +60,32 @@ mesh() {
       printf 'Edges\n1 1 2 0\nTetrahedra\n%s\n' $#
       for element in "$@"; do echo "$element"; done
       echo End; } >"$name"
+}
+
+# page_lines: what the lines of page.html hold: "mesh VERTICES TRIANGLES FRAGMENTS CUT_TRIANGLES" or
+# "frame VERTICES SECONDS_POSITIVE"; a line of any other length than its counts make it is "bad"
+page_lines() {
+    LC_ALL=C awk '
+        function digit(c) { return index("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/", c) - 1 }
+        function byte(i,   at, a, b) {
+            at = int(i / 3) * 4 + i % 3 + 1
+            a = digit(substr($2, at, 1)); b = digit(substr($2, at + 1, 1))
+            return i % 3 == 0 ? a * 4 + int(b / 16) : i % 3 == 1 ? a % 16 * 16 + int(b / 4) : a % 4 * 64 + b
+        }
+        function word(i) { return byte(4 * i) + 256 * (byte(4 * i + 1) + 256 * (byte(4 * i + 2) + 256 * byte(4 * i + 3))) }
+        /^(mesh|frame) / { padding = gsub(/=/, "="); size = length($2) / 4 * 3 - padding }
+        /^mesh / {
+            vertices = word(0); n = word(1); fragments = cuts = bad = 0
+            split("", seen)
+            if (size != 8 + 20 * n) bad = 1
+            for (i = 0; i < 3 * n && !bad; i++) if (word(2 + i) >= vertices) bad = 1
+            for (i = 0; i < n && !bad; i++) {
+                if (!seen[word(2 + 3 * n + i)]++) fragments++
+                if (word(2 + 4 * n + i)) cuts++
+            }
+            print bad ? "bad" : $1 " " vertices " " n " " fragments " " cuts
+        }
+        /^frame / { print size != 28 + 8 * vertices ? "bad" : $1 " " vertices " " (word(0) > 0 && word(0) < 2139095040) }' page.html
 }
 
 # ---- usage
@@ -152,6 +179,7 @@ refuses "open surface as solid, second cut" 1 "cut 1.*closed" cube5 --solid box:
 # ---- output that cannot be written
 : >file
 refuses "directory is a file" 2 "file/frame_0000.vtu: cannot be written|file: cannot" cube5 --frames 1 --out file
+refuses "page nowhere" 2 "nowhere/p.html: cannot be written" cube5 --frames 1 --format html --out nowhere/p.html
 refuses "report nowhere" 2 "nowhere/r.json: cannot be written" cube5 --frames 0 --report nowhere/r.json
 
 # ---- good runs
@@ -220,6 +248,28 @@ has "frames" fragments 2
 check "summary" "$(grep -q 'frames.pvd' stdout && grep -q 'ms each' stdout || echo 'incomplete')"
 runs "obj frames" cube5 $planes_x --frames 2 --format obj --out here
 check "groups" "$([ "$(grep -c '^g ' here/frame_0001.obj)" -eq 6 ] && [ ! -e here/frames.pvd ] || echo 'other groups or files')"
+
+# ---- a page
+runs "page" cube5 $planes_x $planes_y --cut-at 2 --frames 4 --fix 'z<0.001' --stretch 1.5,1.5,1.5 --format html --out page.html
+check "one file" "$([ -s page.html ] && [ ! -e out ] && [ -z "$(find . -name '*.part')" ] || echo 'none or others')"
+check "page in the summary" "$(grep -q 'page.html; open it in a browser' stdout || echo 'missing')"
+page_lines >lines
+check "two meshes, two frames each" "$([ "$(cut -d ' ' -f 1 lines | tr '\n' ' ')" = "mesh frame frame mesh frame frame " ] || cat lines)"
+check "12 triangles uncut, then 36 fragments with cut faces" "$(awk '/^mesh/ && ++n == 1 && ($3 != 12 || $4 != 1 || $5 != 0) ||
+    /^mesh/ && n == 2 && ($4 != 36 || $5 < 120) || /^frame/ && $3 != 1 { print }' lines)"
+awk -v script="$source/examples/player.js" '/^<script src=/ { print "<script>"; while ((getline line <script) > 0) print line
+    print "</script>"; next } { print }' "$source/examples/player.html" >player
+grep -Ev '^(gxfem-frames|title|up|mesh|frame) ' page.html | cmp -s - player
+check "the page is the player and its frames" "$([ $? -eq 0 ] || echo 'differs: is player.h older than player.html or player.js?')"
+check "loads nothing" "$(grep -nE 'https?:|src=|href=|url\(|@import|import *\(|fetch *\(|XMLHttpRequest' page.html | cut -c 1-80)"
+mesh 'a<"b.mesh' 0 "1 2 3 4 0"
+runs "page of a name with <" 'a<"b.mesh' --frames 1 --format html --out page.html
+check "title" "$(grep -qx 'title "a\\u003c\\u0022b.mesh"' page.html || grep '^title' page.html)"
+printf 'v 0.5 -1 -1\nv 0.5 3 -1\nv 0.5 -1 3\nf 1 2 3\n' >c.obj
+rm page.html
+"$program" cube5 --solid c.obj --cut-at 2 --frames 4 --format html --out page.html >stdout 2>stderr
+check "frames before a cut that fails" "$([ $? -eq 1 ] && [ "$(page_lines | grep -c '^frame')" -eq 2 ] &&
+    [ "$(tail -n 1 page.html)" = '</html>' ] || echo 'are not in the page')"
 
 echo "$passed passed, $failed failed"
 [ $failed -eq 0 ]

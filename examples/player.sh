@@ -1,0 +1,23 @@
+#!/bin/sh
+# Makes player.h of player.html and player.js: the page as C strings, in two arrays, around the place of the frames.
+# usage: sh examples/player.sh HTML JS >HEADER
+set -u
+[ $# -eq 2 ] || { echo "usage: $0 HTML JS" >&2; exit 2; }
+awk -v script="$2" '
+    function put(line) { gsub(/\\/, "&&", line); gsub(/"/, "\\\\&", line); print "    \"" line "\\n\"," }
+    BEGIN {
+        print "/* Made of player.html and player.js by player.sh: do not change it here. */"
+        print "#ifndef GXIO_PLAYER_H\n#define GXIO_PLAYER_H\n\n/* clang-format off */"
+        print "/* Lines of the page above its frames, then those below; NULL ends each. */"
+        print "static const char *const gxio_player_top[] = {"
+    }
+    /^<script src="player.js"><\/script>$/ {
+        put("<script>")
+        while ((got = (getline line <script)) > 0) put(line)
+        if (got < 0) exit 1
+        put("</script>")
+        next
+    }
+    { put($0) }
+    /^<script id="frames"/ { print "    0};\nstatic const char *const gxio_player_end[] = {" }
+    END { print "    0};\n/* clang-format on */\n\n#endif /* GXIO_PLAYER_H */" }' "$1"
