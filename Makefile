@@ -184,13 +184,17 @@ check-package:
 	@JOBS=$(JOBS) CC="$(CC)" sh tests/package.sh $(BUILD)/package
 
 lint:
-	@sh tests/lint.sh $(headers)
+	@sh tests/lint.sh
+	@sh tests/test_lint.sh
 
 # By clang-format 14, whose versions differ in details. What is between "clang-format off" and "on" stays: tables.
 formatted = $(headers) $(wildcard examples/*.[ch] tests/*.[ch] tests/compile/*.[ch] tests/compile/*.cc tests/package/*.c bench/*.[ch])
 format:
 	@sh tests/install.sh format
 	@clang-format -i $(formatted)
+
+formatted:
+	@echo $(formatted)
 
 flags:
 	@JOBS=$(JOBS) sh tests/flags.sh
@@ -299,4 +303,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo scenes pictures bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(tests:%=run-%) sanitize sanitize-scenes compile amalgam check-amalgam install check-package coverage lint format fuzz flags hashes check-wasm $(benches:%=bench-%) bench charts check-all clean
+.PHONY: help examples demo scenes pictures bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(tests:%=run-%) sanitize sanitize-scenes compile amalgam check-amalgam install check-package coverage lint format formatted fuzz flags hashes check-wasm $(benches:%=bench-%) bench charts check-all clean
