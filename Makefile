@@ -183,6 +183,15 @@ install:
 check-package:
 	@JOBS=$(JOBS) CC="$(CC)" sh tests/package.sh $(BUILD)/package
 
+# Without optimisation, so that each branch of the source is one of the program; counts are added atomically, as threads count too.
+coverage:
+	@sh tests/install.sh check
+	@mkdir -p $(BUILD)/coverage && find $(BUILD)/coverage -name '*.gcda' -exec rm -f {} +
+	@CK_TIMEOUT_MULTIPLIER=20 $(MAKE) --no-print-directory -k -j$(JOBS) check-programs CC=gcc BUILD=$(BUILD)/coverage \
+	    CFLAGS="-O0 --coverage -fprofile-update=prefer-atomic" >$(BUILD)/coverage/check.log 2>&1 || \
+	    { grep -E 'FAILED|:[FE]:|error' $(BUILD)/coverage/check.log; echo "tests fail: $(BUILD)/coverage/check.log"; exit 1; }
+	@sh tests/coverage.sh $(BUILD)/coverage
+
 lint:
 	@sh tests/lint.sh
 	@sh tests/test_lint.sh
