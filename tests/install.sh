@@ -9,6 +9,7 @@
 #     format  clang-format 14
 #     page    Chromium and node, for the page that the demo makes
 #     animation  the same, and img2webp, for the README's animated picture
+#     cmake   CMake, for the package that others find
 #     pictures  f3d, and a virtual display where there is no other, for pictures of scenes
 set -u
 
@@ -52,6 +53,7 @@ have() {
     format) has clang-format ;;
     page) has node && has_browser ;;
     animation) has node && has_browser && has img2webp ;;
+    cmake) has cmake ;;
     pictures) has f3d && { [ -n "${DISPLAY:-}" ] || has xvfb-run; } ;;
     *) echo "$0: no group '$1'" >&2; exit 2 ;;
     esac
@@ -82,6 +84,7 @@ packages() {
     animation:dnf) echo chromium nodejs libwebp-tools ;;
     animation:pacman) echo chromium nodejs libwebp ;;
     animation:brew) echo chromium node webp ;;
+    cmake:*) echo cmake ;;
     pictures:apt-get) echo f3d xvfb xauth ;;
     pictures:dnf) echo f3d xorg-x11-server-Xvfb ;;
     pictures:pacman) echo f3d xorg-server-xvfb ;;
@@ -101,7 +104,7 @@ install() {
     esac
 }
 
-[ $# -gt 0 ] || { echo "usage: $0 check|cxx|bench|charts|wasm|format|page|animation|pictures..." >&2; exit 2; }
+[ $# -gt 0 ] || { echo "usage: $0 check|cxx|bench|charts|wasm|format|cmake|page|animation|pictures..." >&2; exit 2; }
 missing=
 for group in "$@"; do have "$group" || missing="$missing $group"; done
 [ -n "$missing" ] || exit 0
