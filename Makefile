@@ -122,6 +122,13 @@ $(linked_tests:%=$(BUILD)/tests/%): $(BUILD)/tests/%: tests/%.c $(BUILD)/gxfem.o
 	@mkdir -p $(@D)
 	$(linked) -Itests $(shell pkg-config --cflags check) $< $(BUILD)/gxfem.o -o $@ $(LDFLAGS) $(shell pkg-config --libs check) -lm
 
+# The recipes' test includes the snippets of the page.
+$(BUILD)/tests/test_recipes: $(BUILD)/recipes.h
+$(BUILD)/tests/test_recipes: compile += -I$(BUILD) -pthread
+$(BUILD)/recipes.h: docs/RECIPES.md tests/recipes.awk
+	@mkdir -p $(@D)
+	awk -f tests/recipes.awk $< >$@
+
 # All but the tests of what benches compare the library with
 sanitize:
 	@sh tests/install.sh check
