@@ -152,6 +152,13 @@ $(linked_tests:%=$(BUILD)/tests/%): $(BUILD)/tests/%: tests/%.c $(BUILD)/gxfem.o
 	@mkdir -p $(@D)
 	$(linked) -Itests $(shell pkg-config --cflags check) $< $(BUILD)/gxfem.o -o $@ $(LDFLAGS) $(shell pkg-config --libs check) -lm
 
+# The recipes' test includes the snippets of the page.
+$(BUILD)/tests/test_recipes: $(BUILD)/recipes.h
+$(BUILD)/tests/test_recipes: compile += -I$(BUILD) -pthread
+$(BUILD)/recipes.h: docs/RECIPES.md tests/recipes.awk
+	@mkdir -p $(@D)
+	awk -f tests/recipes.awk $< >$@
+
 # All but the tests of what benches compare the library with
 sanitize:
 	@sh tests/install.sh check
@@ -263,6 +270,9 @@ $(BUILD)/bench/solver: bench/solver.c $(wildcard bench/*.h) $(headers)
 	@mkdir -p $(@D)
 	@$(CC) $(bench_standard) $(WARNINGS) $(BENCH_CFLAGS) -pthread $(shell pkg-config --cflags CHOLMOD 2>/dev/null) $< -o $@ $(LDFLAGS) \
 	    $(shell pkg-config --libs CHOLMOD 2>/dev/null || echo -lcholmod) -lm
+
+# Frames are measured as users build: their table stands in the README.
+$(BUILD)/bench/frames: BENCH_CFLAGS = -O2
 
 bench-solver:
 	@sh tests/install.sh bench >&2

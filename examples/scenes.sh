@@ -2,7 +2,7 @@
 # Runs scenes and writes what they say as one page.
 # usage: sh examples/scenes.sh PROGRAMS PAGE [SCENE_OPTION]... -- SCENE...
 #     PROGRAMS  directory of the built scenes
-#     PAGE      Markdown file to write; where gnuplot is, charts/locking.svg beside it
+#     PAGE      Markdown file to write; where gnuplot is, charts/locking.svg beside it. It shows pictures/SCENE.png.
 #     CC, CFLAGS are named on the page
 # Goes on where a scene is wrong; exits with 1 then.
 set -u
@@ -50,8 +50,40 @@ chart() {
                 print "" }'; } | gnuplot
 }
 
+# Pictures, three in a row
+gallery() {
+    echo "| | | |"
+    echo "| --- | --- | --- |"
+    count=0
+    for scene in "$@"; do
+        printf '| ![%s](pictures/%s.png) `%s`: %s ' "$scene" "$scene" "$scene" "$(awk -v name="### $scene" '
+            $0 == name { found = 1; next } found && /[^ ]/ { print; exit }' "$work/said")"
+        count=$((count + 1))
+        [ $((count % 3)) -ne 0 ] || echo "|"
+    done
+    [ $((count % 3)) -eq 0 ] || echo "|"
+}
+
 {
     echo "# Scenes"
+    echo
+    echo "The scenes of the two papers, by their parameters where they give them, one file each in \`examples/\`."
+    echo
+    gallery "$@"
+    echo
+    echo "    make examples"
+    echo "    build/helix_plate --out frames          # --help: all options; --small: seconds"
+    echo "    build/octopus --mesh FILE               # octopus, bunny_groove, armadillo on a mesh of yours"
+    echo "    make scenes                             # all of them: this page (minutes)"
+    echo "    make pictures                           # the pictures above (f3d)"
+    echo
+    echo "Each prints the numbers that show whether it is right, and ends with exit code 1 if one is not: no copy more than the least"
+    echo "possible, found by another path; volume and mass kept to 1e-12; a watertight surface; deflections equal to brute-force"
+    echo "integration in the same space; and what is its own. \`scene.h\` has what they share, for scenes of your own too: sheets that"
+    echo "advance strip by strip, times, files, checks; \`slab.h\`: brute-force integration, locking; \`cheese.h\`: surfaces."
+    echo "\`gxcut.c\` and \`gxboolean.c\` are the command-line programs, \`gxio.h\` their readers and writers, \`gxshape.h\` their shapes."
+    echo
+    echo "## Times"
     echo
     echo "Written by \`make scenes\`${options:+ with$options}. $(${CC:-cc} --version | head -n 1), ${CFLAGS:-}, $(uname -m), one thread. Times are of the"
     echo "machine that ran it: mean milliseconds, of cuts over the frames in which one happens, of the rest over all frames."

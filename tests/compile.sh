@@ -9,7 +9,8 @@
 # - tests/compile/*.c and *.cc: each header alone, all together, twice, implementation before and after plain inclusion
 # - two translation units, C and C++ in all four combinations; two files with GXFEM_STATIC
 # - a shared library by the user's GXFEM_API: it exports the public functions, no private one, and a program calls it
-# - the example in each header's opening comment and the README's program, extracted, compiled and run
+# - the example in each header's opening comment and the README's program, extracted, compiled and run, the latter as C++ too
+# - the snippets of docs/RECIPES.md, as C and C++
 # - examples/*.c
 set -u
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd) || exit 2
@@ -66,6 +67,10 @@ extract_readme() { awk '/^```c$/ { inside = 1; next } /^```/ { if (inside) exit 
 
 for name in gxfem gxfem_boolean gxfem_integrate gxfem_solve; do extract_example "$root/$name.h" >"example_$name.c"; done
 extract_readme >readme.c
+{ echo '#define _POSIX_C_SOURCE 200112L'
+  for name in math pthread stdio stdlib string time; do echo "#include <$name.h>"; done
+  echo '#include "gxfem.h"'
+  awk -f "$root/tests/recipes.awk" "$root/docs/RECIPES.md"; } >recipes.c
 for file in example_*.c readme.c; do [ -s $file ] || { echo "FAILED no program found for $file"; echo $file >>failed; }; done
 
 compilers=
@@ -128,10 +133,15 @@ for cc in $compilers; do
             [ $file = readme.c ] && says=" && { ./$program | grep -q ': 2 fragments' || { echo 'the program says something else'; exit 1; }; }"
             job "$cc -std=$std $file" "$cc -std=$std $warnings -I$headers $file -o $program -lm && ./$program$says"
         done
+        job "$cc -std=$std docs/RECIPES.md" "$cc -std=$std $warnings -Wno-unused-function -I$headers -fsyntax-only recipes.c"
         for file in "$root"/examples/*.c; do
             job "$cc -std=$std examples/$(basename "$file")" "$cc -std=$std $warnings -I$headers -fsyntax-only $file"
         done
     done
+    command -v "$cxx" >/dev/null 2>&1 || continue
+    program=readme.$cxx
+    job "$cxx -std=c++17 readme.c" "$cxx -std=c++17 $warnings -x c++ -I$headers readme.c -o $program -lm && ./$program | grep -q ': 2 fragments'"
+    job "$cxx -std=c++17 docs/RECIPES.md" "$cxx -std=c++17 $warnings -Wno-unused-function -x c++ -I$root -fsyntax-only recipes.c"
 done
 run_jobs
 

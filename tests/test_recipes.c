@@ -1,0 +1,489 @@
+/* test_recipes.c - the snippets of docs/RECIPES.md, as they stand there, do what the page says. `make` extracts them.
+ */
+#define _POSIX_C_SOURCE 200112L
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#ifndef GXFEM_LINKED
+#define GXFEM_IMPLEMENTATION
+#endif
+#include "../gxfem.h"
+#include "recipes.h"
+#include "../bench/block.h"
+#include "runner.h"
+
+#define OK(call) ck_assert_int_eq(call, GX_OK)
+
+/* ---- scenes ---- */
+
+static gx_body *make_body(uint32_t cells, const gx_jobs *jobs) {
+    gx_body_desc desc;
+    block_mesh mesh;
+    gx_body *body = NULL;
+    OK(block_make_mesh(cells, 0.2, &mesh));
+    memset(&desc, 0, sizeof desc);
+    desc.positions = mesh.positions;
+    desc.node_count = mesh.side * mesh.side * mesh.side;
+    desc.elements = mesh.elements;
+    desc.element_count = 5 * (size_t)cells * cells * cells;
+    desc.young = 2e5;
+    desc.poisson = 0.4;
+    desc.density = 1000;
+    if (jobs) desc.jobs = *jobs;
+    OK(gx_body_create(&desc, &body, NULL));
+    block_free_mesh(&mesh);
+    return body;
+}
+
+static gx_body *make_hanging(uint32_t cells, const gx_jobs *jobs) {
+    const gx_region top = {2, 1, 1 - 1e-9};
+    gx_body *body = make_body(cells, jobs);
+    OK(gx_body_hold(body, &top, 1));
+    return body;
+}
+
+static gx_step_desc step_of(double dt) {
+    gx_step_desc step;
+    memset(&step, 0, sizeof step);
+    step.dt = dt;
+    step.gravity[2] = -9.81;
+    return step;
+}
+
+static void advance(gx_body *body, int steps) {
+    const gx_step_desc step = step_of(1.0 / 60);
+    while (steps-- > 0) OK(gx_body_step(body, &step, NULL, NULL));
+}
+
+static gx_view view_of(gx_body *body) {
+    gx_view view;
+    OK(gx_body_view(body, &view));
+    return view;
+}
+
+static void cut_through(gx_body *body, uint32_t axis, double at) { OK(block_cut_rectangle(body, axis, at, -0.1, 1.1)); }
+
+/* ---- Draw ---- */
+
+static unsigned char *buffers[4];
+static size_t buffer_sizes[4], uploaded;
+
+void upload(int buffer, size_t offset, const void *data, size_t size) {
+    if (offset + size > buffer_sizes[buffer]) {
+        buffers[buffer] = (unsigned char *)realloc(buffers[buffer], offset + size);
+        buffer_sizes[buffer] = offset + size;
+    }
+    memcpy(buffers[buffer] + offset, data, size);
+    uploaded += size;
+}
+
+START_TEST(draw) {
+    gx_body *body = make_hanging(6, NULL);
+    gx_skin skin;
+    int cut;
+    for (cut = 0; cut < 4; cut++) {
+        size_t v;
+        int k;
+        if (cut > 0) OK(block_cut_rectangle(body, 2, 0.2 * cut + 0.013, -0.1, 0.45));
+        uploaded = 0;
+        OK(draw_changes(body, &skin));
+        /* the first time all, later less than half */
+        if (cut > 0) ck_assert_uint_lt(uploaded, (skin.vertex_count * 8 + skin.triangle_count * 12) / 2);
+        ck_assert(memcmp(buffers[TEXTURE], skin.vertex_texture, skin.vertex_count * 2 * sizeof(float)) == 0);
+        ck_assert(memcmp(buffers[TRIANGLES], skin.triangles, skin.triangle_count * 3 * sizeof(uint32_t)) == 0);
+        advance(body, 5);
+        {
+            float *positions = (float *)malloc(skin.vertex_count * 3 * sizeof *positions);
+            float *normals = (float *)malloc(skin.vertex_count * 3 * sizeof *normals);
+            double *exact = (double *)malloc(skin.vertex_count * 3 * sizeof *exact);
+            OK(draw_frame(body, &skin, positions, normals));
+            OK(gx_body_skin_positions(body, exact));
+            memcpy(positions, buffers[POSITIONS], skin.vertex_count * 3 * sizeof *positions);
+            for (v = 0; v < skin.vertex_count; v++)
+                for (k = 0; k < 3; k++) ck_assert(fabs(positions[3 * v + k] - exact[3 * v + k]) < 1e-6);
+            free(positions);
+            free(normals);
+            free(exact);
+        }
+    }
+    gx_body_destroy(body);
+}
+END_TEST
+
+/* ---- Drag ---- */
+
+static const double below[3] = {0.47, 0.53, -5}, up[3] = {0, 0, 1};
+
+static double height_of(gx_body *body) {
+    gx_hit hit;
+    OK(gx_body_pick(body, below, up, &hit));
+    ck_assert(hit.triangle != UINT32_MAX);
+    return hit.position[2];
+}
+
+START_TEST(drag) {
+    gx_body *body = make_hanging(4, NULL);
+    const gx_step_desc step = step_of(1.0 / 60);
+    gx_skin skin;
+    grip g;
+    double before;
+    int i;
+    OK(gx_body_skin(body, NULL, &skin));
+    before = height_of(body);
+    OK(grab(body, below, up, 2e5, &g));
+    ck_assert(g.holds);
+    g.spring.target[2] -= 0.3;
+    for (i = 0; i < 60; i++) OK(drag_step(body, step, &g));
+    ck_assert(height_of(body) < before - 0.1);
+    ck_assert(g.force[2] < 0); /* it is pulled down */
+    cut_through(body, 2, 0.4711);
+    ck_assert_int_eq(drag_step(body, step, &g), GX_ERROR_STALE);
+    OK(gx_body_skin(body, NULL, &skin));
+    OK(grab_again(body, below, up, &g));
+    ck_assert(g.holds);
+    OK(drag_step(body, step, &g));
+    {
+        const double beside[3] = {9, 9, -5};
+        OK(grab(body, beside, up, 1e4, &g));
+        ck_assert(!g.holds);
+        OK(drag_step(body, step, &g)); /* nothing is held: a step as any */
+    }
+    gx_body_destroy(body);
+}
+END_TEST
+
+/* ---- Hold ---- */
+
+START_TEST(hold) {
+    enum { CELLS = 4, NODES = 125 };
+    gx_body *body = make_body(CELLS, NULL);
+    gx_step_desc step = step_of(1.0 / 60);
+    static gxs_spring springs[NODES];
+    uint8_t is_held[NODES];
+    block_mesh mesh;
+    size_t i, count;
+    OK(block_make_mesh(CELLS, 0.2, &mesh));
+    for (i = 0; i < NODES; i++) is_held[i] = mesh.positions[3 * i + 2] > 0.999 && mesh.positions[3 * i] < 0.6;
+    OK(hold_nodes(body, is_held, mesh.positions, 1e6, springs, NODES, &count));
+    ck_assert_uint_eq(count, 15);
+    step.springs = springs;
+    step.spring_count = count;
+    for (i = 0; i < 120; i++) OK(gx_body_step(body, &step, NULL, NULL));
+    {
+        const gx_view view = view_of(body);
+        size_t c;
+        for (c = 0; c < view.copy_count; c++)
+            if (is_held[view.copy_node[c]]) ck_assert(fabs(view.displacement[3 * c + 2]) < 0.01);
+    }
+    memset(is_held, 0, sizeof is_held);
+    OK(hold_nodes(body, is_held, mesh.positions, 1e6, springs, NODES, &count));
+    ck_assert_uint_eq(count, 0);
+    block_free_mesh(&mesh);
+    gx_body_destroy(body);
+}
+END_TEST
+
+/* ---- Ground ---- */
+
+/* Two seconds on the ground, which slopes. Returns the mean height of what was lowest. */
+static double land(gx_body *body, double slope, size_t *count, size_t *unmerged) {
+    gx_step_desc step = step_of(1.0 / 60);
+    gx_skin skin;
+    gxs_point *points;
+    double low = 0, *x;
+    size_t v, bottom = 0;
+    int i;
+    step.gravity[0] = 9.81 * slope;
+    OK(gx_body_skin(body, NULL, &skin));
+    points = (gxs_point *)malloc(skin.vertex_count * sizeof *points);
+    x = (double *)malloc(skin.vertex_count * 3 * sizeof *x);
+    OK(contact_points(&skin, points, count));
+    *unmerged = skin.vertex_count;
+    for (i = 0; i < 120; i++) OK(ground_step(body, step, points, *count));
+    OK(gx_body_skin_positions(body, x));
+    for (v = 0; v < skin.vertex_count; v++)
+        if (skin.vertex_rest[3 * v + 2] < 1e-9) {
+            low += x[3 * v + 2];
+            bottom++;
+        }
+    free(points);
+    free(x);
+    return low / (double)bottom;
+}
+
+START_TEST(ground) {
+    gx_body *body = make_body(4, NULL);
+    const double sinks = 1000 * 9.81 / (25 * 1e4);
+    size_t count, unmerged;
+    const double low = land(body, 0, &count, &unmerged);
+    gx_motion before, after;
+    ck_assert_uint_eq(count, 98); /* nodes on the outside of 4 x 4 x 4 cells */
+    ck_assert_msg(fabs(low + sinks) < 0.2 * sinks, "sinks by %g, not by %g", -low, sinks);
+    OK(gx_body_motion(body, &before, 1));
+    land(body, 0.1, &count, &unmerged);
+    OK(gx_body_motion(body, &after, 1));
+    ck_assert_msg(fabs(after.center[0] - before.center[0]) < 0.1, "slides by %g m", after.center[0] - before.center[0]);
+    gx_body_destroy(body);
+}
+END_TEST
+
+START_TEST(ground_after_cuts) {
+    gx_body *body = make_body(4, NULL);
+    size_t count, unmerged, c;
+    double low;
+    gx_view view;
+    for (c = 0; c < 3; c++) cut_through(body, (uint32_t)c, 0.4711);
+    view = view_of(body);
+    for (c = 0; c < view.copy_count; c++) view.displacement[3 * c + 2] = 0.2; /* dropped from there */
+    low = land(body, 0, &count, &unmerged);
+    ck_assert_msg(low < 0.01 && low > -0.2, "%g", low);
+    ck_assert_uint_lt(2 * count, unmerged);
+    gx_body_destroy(body);
+}
+END_TEST
+
+/* ---- Threads ---- */
+
+static size_t calls;
+
+static void counted_for(void *user, size_t count, void (*task)(void *context, size_t index), void *context) {
+    calls++;
+    pool_for(user, count, task, context);
+}
+
+START_TEST(threads) {
+    gx_body *alone = make_hanging(12, NULL), *together;
+    pool p;
+    gx_jobs jobs = {NULL, NULL};
+    enum { STEPS = 10 };
+    jobs.parallel_for = counted_for;
+    jobs.user = &p;
+    ck_assert(pool_start(&p));
+    together = make_hanging(12, &jobs);
+    cut_through(alone, 2, 0.4711);
+    cut_through(together, 2, 0.4711);
+    ck_assert_uint_eq(calls, 0); /* cuts use no jobs */
+    advance(alone, STEPS);
+    advance(together, STEPS);
+    ck_assert(gx_body_state_hash(alone) == gx_body_state_hash(together));
+    ck_assert_msg(calls > 24 * STEPS && calls < 160 * STEPS, "%g calls a step", (double)calls / STEPS);
+    gx_body_destroy(alone);
+    gx_body_destroy(together);
+    pool_stop(&p);
+}
+END_TEST
+
+/* ---- Undo and save ---- */
+
+START_TEST(undo_and_save) {
+    static const char path[] = "build/test_recipes.saved";
+    gx_body *body = make_hanging(4, NULL), *before = NULL, *loaded = NULL;
+    gx_result result;
+    uint64_t hash, topology;
+    int i;
+    for (i = 0; i < 2; i++) {
+        advance(body, 5);
+        hash = gx_body_state_hash(body);
+        OK(remember(body, &before));
+        cut_through(body, 0, 0.3 + 0.2 * i);
+        advance(body, 5);
+        ck_assert(gx_body_state_hash(body) != hash);
+        OK(undo(body, before));
+        ck_assert(gx_body_state_hash(body) == hash);
+    }
+    cut_through(body, 1, 0.37);
+    topology = gx_body_topology_hash(body, &result);
+    OK(save_file(body, path));
+    OK(load_file(path, NULL, &loaded));
+    ck_assert(gx_body_topology_hash(loaded, &result) == topology);
+    advance(body, 3);
+    advance(loaded, 3);
+    cut_through(body, 0, 0.61);
+    cut_through(loaded, 0, 0.61);
+    ck_assert(gx_body_state_hash(body) == gx_body_state_hash(loaded));
+    ck_assert_int_ne(load_file("build/there-is-none", NULL, &loaded), GX_OK);
+    remove(path);
+    gx_body_destroy(body);
+    gx_body_destroy(before);
+    gx_body_destroy(loaded);
+}
+END_TEST
+
+/* ---- Integrator ---- */
+
+/* A block of 0.6 m, turned by 45 degrees, held by its upper edge */
+static gx_body *make_pendulum(void) {
+    const double size = 0.6, half = sqrt(0.5), edge = 2 * size * half;
+    gx_region top = {2, 1, 0};
+    gx_step_desc rest = step_of(0);
+    gx_body_desc desc;
+    block_mesh mesh;
+    gx_body *body = NULL;
+    size_t i;
+    OK(block_make_mesh(3, 0, &mesh));
+    for (i = 0; i < 64; i++) {
+        double *x = mesh.positions + 3 * i;
+        const double along = x[0], z = x[2];
+        x[0] = size * half * (along - z);
+        x[1] *= size;
+        x[2] = size * half * (along + z);
+    }
+    memset(&desc, 0, sizeof desc);
+    desc.positions = mesh.positions;
+    desc.node_count = 64;
+    desc.elements = mesh.elements;
+    desc.element_count = 135;
+    desc.young = 1e6;
+    desc.poisson = 0.4;
+    desc.density = 1000;
+    OK(gx_body_create(&desc, &body, NULL));
+    top.value = edge - 1e-6;
+    OK(gx_body_hold(body, &top, 1));
+    rest.integrator = GXS_STATIC;
+    rest.newton_iterations = 20;
+    OK(gx_body_step(body, &rest, NULL, NULL));
+    {
+        gx_view view = view_of(body);
+        for (i = 0; i < view.copy_count; i++) { /* one radian per second about the edge */
+            const double *x = mesh.positions + 3 * (size_t)view.copy_node[i];
+            view.velocity[3 * i] = x[2] - edge;
+            view.velocity[3 * i + 2] = -x[0];
+        }
+    }
+    block_free_mesh(&mesh);
+    return body;
+}
+
+/* What is left of the swing after five seconds: how far its centre moves sideways, there and back */
+static double swing_left(gxs_integrator integrator) {
+    enum { FRAMES = 96, LATER = 300 }; /* more than a period; 5 s */
+    gx_body *body = make_pendulum();
+    double low[2] = {1, 1}, high[2] = {-1, -1};
+    int frame;
+    for (frame = 0; frame < LATER + FRAMES; frame++) {
+        const int half = frame >= LATER;
+        gx_step_desc step = step_of(1.0 / 60);
+        gx_motion motion;
+        step.integrator = integrator;
+        OK(integrator == GXS_BDF2 ? lively_step(body, step, frame == 0) : gx_body_step(body, &step, NULL, NULL));
+        if (frame >= FRAMES && !half) continue;
+        OK(gx_body_motion(body, &motion, 1));
+        low[half] = fmin(low[half], motion.center[0]);
+        high[half] = fmax(high[half], motion.center[0]);
+    }
+    gx_body_destroy(body);
+    return (high[1] - low[1]) / (high[0] - low[0]);
+}
+
+/* The number in the page's row of an integrator */
+static double page_says(const char *integrator) {
+    FILE *file = fopen("docs/RECIPES.md", "r");
+    char line[512], row[64];
+    double value = -1;
+    snprintf(row, sizeof row, "| `%s` |", integrator);
+    ck_assert_ptr_nonnull(file);
+    while (fgets(line, sizeof line, file))
+        if (strncmp(line, row, strlen(row)) == 0) value = strtod(line + strlen(row), NULL);
+    fclose(file);
+    return value;
+}
+
+START_TEST(integrator) {
+    static const char *const names[] = {"GXS_BDF1", "GXS_BDF2", "GXS_MIDPOINT"};
+    static const gxs_integrator integrators[] = {GXS_BDF1, GXS_BDF2, GXS_MIDPOINT};
+    const double left = swing_left(integrators[_i]), said = page_says(names[_i]);
+    ck_assert_msg(fabs(left - said) < 0.01, "%s: %.3f of the swing are left, the page says %g", names[_i], left, said);
+}
+END_TEST
+
+/* ---- Budget ---- */
+
+START_TEST(budget) {
+    gx_body *body = make_hanging(8, NULL);
+    gx_step_report report;
+    const gx_step_desc step = step_of(1.0 / 60);
+    OK(frame_in_time(body, step, NULL, now(NULL), 100, &report));
+    ck_assert_int_ne(report.stop, GXS_STOP_SECONDS);
+    ck_assert_uint_gt(report.newton_iterations, 1);
+    OK(frame_in_time(body, step, NULL, now(NULL) - 1, 0.016, &report));
+    ck_assert_int_eq(report.stop, GXS_STOP_SECONDS);
+    gx_body_destroy(body);
+}
+END_TEST
+
+/* ---- Haptics ---- */
+
+static double distance(const double a[3], const double b[3]) {
+    return sqrt(pow(a[0] - b[0], 2) + pow(a[1] - b[1], 2) + pow(a[2] - b[2], 2));
+}
+
+START_TEST(haptics) {
+    gx_body *body = make_hanging(6, NULL), *ghost = NULL, *beside = NULL;
+    const gx_step_desc step = step_of(1.0 / 60);
+    const double reach = 0.002, moved[3] = {0.0011, -0.0008, 0.0013}; /* 100 mm/s and more */
+    const double stiffness = 2e4;
+    double *state, worst = 0, bare = 0;
+    gx_skin skin;
+    grip g;
+    int i, k;
+    OK(block_cut_rectangle(body, 2, 0.4711, -0.1, 0.6));
+    OK(gx_body_skin(body, NULL, &skin));
+    OK(grab(body, below, up, stiffness, &g));
+    OK(gx_body_clone(body, &ghost));
+    OK(gx_body_clone(body, &beside));
+    state = (double *)malloc(6 * view_of(body).copy_count * sizeof *state);
+    for (i = 0; i < 40; i++) {
+        haptic_model model;
+        double tool[3], predicted[3], change[3], actual[3];
+        grip other;
+        g.spring.target[2] -= 0.002;
+        g.spring.target[0] += 0.001 * sin(0.3 * i);
+        if (i % 8 == 7) OK(gx_body_restore(beside, body));
+        OK(haptic_step(body, ghost, step, &g, state, reach, &model));
+        if (i % 8 != 7) continue;
+        /* the step that the same body takes with the tool elsewhere */
+        other = g;
+        for (k = 0; k < 3; k++) other.spring.target[k] = tool[k] = model.tool[k] + moved[k];
+        OK(drag_step(beside, step, &other));
+        haptic_force(&model, tool, predicted);
+        for (k = 0; k < 3; k++) {
+            actual[k] = -other.force[k];
+            change[k] = -model.force[k] - stiffness * moved[k];
+        }
+        worst = fmax(worst, distance(predicted, actual) / (stiffness * distance(tool, model.tool)));
+        bare = fmax(bare, distance(change, actual) / (stiffness * distance(tool, model.tool)));
+    }
+    ck_assert_msg(worst < 0.01, "the model's force is off by %g, the bare spring's by %g", worst, bare);
+    ck_assert_msg(bare > 0.15 && bare < 0.25, "the model's force is off by %g, the bare spring's by %g", worst, bare);
+    cut_through(body, 0, 0.777);
+    {
+        haptic_model model;
+        ck_assert_int_eq(haptic_step(body, ghost, step, &g, state, reach, &model), GX_ERROR_STALE);
+    }
+    free(state);
+    gx_body_destroy(body);
+    gx_body_destroy(ghost);
+    gx_body_destroy(beside);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("recipes");
+    TCase *tc = tcase_create("snippets of docs/RECIPES.md");
+    tcase_set_timeout(tc, 60);
+    tcase_add_test(tc, draw);
+    tcase_add_test(tc, drag);
+    tcase_add_test(tc, hold);
+    tcase_add_test(tc, ground);
+    tcase_add_test(tc, ground_after_cuts);
+    tcase_add_test(tc, threads);
+    tcase_add_test(tc, undo_and_save);
+    tcase_add_loop_test(tc, integrator, 0, 3);
+    tcase_add_test(tc, budget);
+    tcase_add_test(tc, haptics);
+    suite_add_tcase(suite, tc);
+    return run_suite(suite);
+}
