@@ -57,6 +57,11 @@ help:
 	@echo "  soak           100,000 steps of bodies that are cut, kicked and dropped: does a copy run away?"
 	@echo "  frames         frames in which a cut happens beside those in which none does"
 	@echo "  skin           the visual surface: moved in each frame, rebuilt after a cut"
+	@echo "make amalgam     $(BUILD)/gxfem_all.h: the four headers in one"
+	@echo "make check-amalgam  compile tests of that header"
+	@echo "make install     the headers and gxfem.pc, for pkg-config; PREFIX=/usr/local, DESTDIR= (a stage)"
+	@echo "make check-package  installs into $(BUILD)/package and uses that: by CMake, if it is there, and by pkg-config"
+	@echo "make coverage    lines and branches of the headers that make check reaches: $(BUILD)/coverage/; needs gcc and gcov"
 	@echo "make clean       removes $(BUILD)/"
 
 # ---- programs
@@ -147,14 +152,58 @@ $(BUILD)/fuzz/fuzz: tests/fuzz.c tests/fuzz_cases.h tests/boolean_oracle.h tests
 compile:
 	@sh tests/compile.sh $(BUILD)/compile
 
+# ---- what others adopt: one header of the four, files in their places. Headers that include only that one stand in for the four in tests.
+
+# The version is written once, in the headers.
+version = $(shell awk '/^.define GXFEM_VERSION_(MAJOR|MINOR|PATCH) / { v = v dot $$3; dot = "." } END { print v }' gxfem.h)
+
+amalgam: $(BUILD)/gxfem_all.h
+
+# Lower headers first, as each includes those. Of the shared block the first copy stays.
+$(BUILD)/gxfem_all.h: gxfem_boolean.h gxfem_integrate.h gxfem_solve.h gxfem.h
+	@mkdir -p $(@D)
+	@{ echo '/* SPDX-License-Identifier: MIT */'; \
+	    echo '/* gxfem_all.h - the headers of gxfem $(version) in one. Made by "make amalgam"; include it in their place. */'; \
+	    awk '/^\/\* >>shared:/ { skip = shared++ } \
+	        !skip && !/^#include "gxfem/; \
+	        /^#endif \/\* GXFEM_SHARED_INCLUDED/ { skip = 0 }' $^; } >$@
+
+check-amalgam: amalgam
+	@mkdir -p $(BUILD)/amalgam
+	@for header in $(headers); do echo '#include "../gxfem_all.h"' >$(BUILD)/amalgam/$$header; done
+	@JOBS=$(JOBS) STANDARDS="$(or $(STANDARDS),c99 c17 c++11 c++17)" sh tests/compile.sh $(BUILD)/compile_amalgam $(BUILD)/amalgam
+
+PREFIX ?= /usr/local
+install:
+	@mkdir -p $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(PREFIX)/share/pkgconfig
+	cp $(headers) $(DESTDIR)$(PREFIX)/include/
+	sed 's|@PREFIX@|$(PREFIX)|; s|@INCLUDEDIR@|$(PREFIX)/include|; s|@VERSION@|$(version)|' gxfem.pc.in \
+	    >$(DESTDIR)$(PREFIX)/share/pkgconfig/gxfem.pc
+
+check-package:
+	@JOBS=$(JOBS) CC="$(CC)" sh tests/package.sh $(BUILD)/package
+
+# Without optimisation, so that each branch of the source is one of the program; counts are added atomically, as threads count too.
+coverage:
+	@sh tests/install.sh check
+	@mkdir -p $(BUILD)/coverage && find $(BUILD)/coverage -name '*.gcda' -exec rm -f {} +
+	@CK_TIMEOUT_MULTIPLIER=20 $(MAKE) --no-print-directory -k -j$(JOBS) check-programs CC=gcc BUILD=$(BUILD)/coverage \
+	    CFLAGS="-O0 --coverage -fprofile-update=prefer-atomic" >$(BUILD)/coverage/check.log 2>&1 || \
+	    { grep -E 'FAILED|:[FE]:|error' $(BUILD)/coverage/check.log; echo "tests fail: $(BUILD)/coverage/check.log"; exit 1; }
+	@sh tests/coverage.sh $(BUILD)/coverage
+
 lint:
-	@sh tests/lint.sh $(headers)
+	@sh tests/lint.sh
+	@sh tests/test_lint.sh
 
 # By clang-format 14, whose versions differ in details. What is between "clang-format off" and "on" stays: tables.
-formatted = $(headers) $(wildcard examples/*.[ch] tests/*.[ch] tests/compile/*.[ch] tests/compile/*.cc bench/*.[ch])
+formatted = $(headers) $(wildcard examples/*.[ch] tests/*.[ch] tests/compile/*.[ch] tests/compile/*.cc tests/package/*.c bench/*.[ch])
 format:
 	@sh tests/install.sh format
 	@clang-format -i $(formatted)
+
+formatted:
+	@echo $(formatted)
 
 flags:
 	@JOBS=$(JOBS) sh tests/flags.sh
@@ -252,6 +301,8 @@ check-all: check
 	@$(MAKE) --no-print-directory lint
 	@$(MAKE) --no-print-directory examples
 	@$(MAKE) --no-print-directory compile
+	@$(MAKE) --no-print-directory check-amalgam
+	@$(MAKE) --no-print-directory check-package
 	@$(MAKE) --no-print-directory sanitize
 	@for cc in gcc clang; do \
 	    if command -v $$cc >/dev/null; then $(MAKE) --no-print-directory check CC=$$cc BUILD=$(BUILD)/$$cc || exit 1; fi; done
@@ -261,4 +312,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help examples demo scenes pictures bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(tests:%=run-%) sanitize sanitize-scenes compile lint format fuzz flags hashes check-wasm $(benches:%=bench-%) bench charts check-all clean
+.PHONY: help examples demo scenes pictures bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(tests:%=run-%) sanitize sanitize-scenes compile amalgam check-amalgam install check-package coverage lint format formatted fuzz flags hashes check-wasm $(benches:%=bench-%) bench charts check-all clean

@@ -1,4 +1,5 @@
-/* gxfem_boolean.h - exact geometry for cutting: predicates, and the cell complex that cuts leave. Part of gxfem 0.1.
+/* SPDX-License-Identifier: MIT */
+/* gxfem_boolean.h - exact geometry for cutting: predicates, and the cell complex that cuts leave. Part of gxfem 0.2.0.
  *
  * A convex region (a tetrahedron, or a mesh of them) is divided by triangles, any number of them, lying and crossing as
  * they like. Every decision is the sign of a polynomial in the given coordinates and is exact, under any compiler flag.
@@ -99,11 +100,22 @@
 #define GXFEM_APART
 #endif
 
-/* GXFEM_STATIC makes every function private to the file that includes the headers */
+/* The version of all headers. GXFEM_VERSION is one number that can be compared: 200 is 0.2.0. */
+#define GXFEM_VERSION_MAJOR 0
+#define GXFEM_VERSION_MINOR 2
+#define GXFEM_VERSION_PATCH 0
+#define GXFEM_VERSION       (GXFEM_VERSION_MAJOR * 10000 + GXFEM_VERSION_MINOR * 100 + GXFEM_VERSION_PATCH)
+
+/* GXFEM_API stands before every public function. Define it before inclusion to build or use a shared library:
+   __declspec(dllexport) in the file with the implementation and __declspec(dllimport) elsewhere, or
+   __attribute__((visibility("default"))). On WebAssembly put GXFEM_APART in front of it.
+   GXFEM_STATIC makes every function private to the file that includes the headers, unless GXFEM_API is defined. */
+#ifndef GXFEM_API
 #ifdef GXFEM_STATIC
 #define GXFEM_API GXFEM_APART static inline
 #else
 #define GXFEM_API GXFEM_APART extern
+#endif
 #endif
 
 /* What a function that can fail returns. On anything but GX_OK its inputs are as they were. */

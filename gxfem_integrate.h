@@ -1,4 +1,5 @@
-/* gxfem_integrate.h - v0.1 - exact integrals of polynomials over polyhedra and cut finite elements
+/* SPDX-License-Identifier: MIT */
+/* gxfem_integrate.h - exact integrals of polynomials over polyhedra and cut finite elements. Part of gxfem 0.2.0.
 
    A polyhedron is given by its boundary triangles, nothing else: no tetrahedralisation, no quadrature points. The
    divergence theorem (GXFEM Eq. 21) turns an integral over the inside into a sum over the triangles, in closed form, to
@@ -87,11 +88,22 @@
 #define GXFEM_APART
 #endif
 
-/* GXFEM_STATIC makes every function private to the file that includes the headers */
+/* The version of all headers. GXFEM_VERSION is one number that can be compared: 200 is 0.2.0. */
+#define GXFEM_VERSION_MAJOR 0
+#define GXFEM_VERSION_MINOR 2
+#define GXFEM_VERSION_PATCH 0
+#define GXFEM_VERSION       (GXFEM_VERSION_MAJOR * 10000 + GXFEM_VERSION_MINOR * 100 + GXFEM_VERSION_PATCH)
+
+/* GXFEM_API stands before every public function. Define it before inclusion to build or use a shared library:
+   __declspec(dllexport) in the file with the implementation and __declspec(dllimport) elsewhere, or
+   __attribute__((visibility("default"))). On WebAssembly put GXFEM_APART in front of it.
+   GXFEM_STATIC makes every function private to the file that includes the headers, unless GXFEM_API is defined. */
+#ifndef GXFEM_API
 #ifdef GXFEM_STATIC
 #define GXFEM_API GXFEM_APART static inline
 #else
 #define GXFEM_API GXFEM_APART extern
+#endif
 #endif
 
 /* What a function that can fail returns. On anything but GX_OK its inputs are as they were. */

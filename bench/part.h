@@ -50,7 +50,7 @@ static inline void part_flood(part *p, uint32_t node) {
     size_t done;
     memset(seen, 0, cx->leaf_count);
     p->leaves = (uint32_t *)dense_memory(NULL, cx->leaf_count, sizeof(uint32_t));
-    while (!part_has_point(cx, leaf, node)) ++leaf;
+    while (!part_has_point(cx, leaf, node)) leaf++;
     seen[p->leaves[p->leaf_count++] = leaf] = 1;
     for (done = 0; done < p->leaf_count; done++) {
         part_expect(gxb_leaf_facets(cx, p->leaves[done], &first, &count));

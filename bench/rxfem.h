@@ -173,7 +173,7 @@ static inline void rx_find_neighbours(rx_body *b) {
 static inline void rx_find_rings(rx_body *b) {
     size_t i;
     memset(b->ring_first, 0, (b->node_count + 1) * sizeof *b->ring_first);
-    for (i = 0; i < 4 * b->element_count; i++) ++b->ring_first[b->elements[i]];
+    for (i = 0; i < 4 * b->element_count; i++) b->ring_first[b->elements[i]]++;
     for (i = 1; i <= b->node_count; i++) b->ring_first[i] += b->ring_first[i - 1];
     for (i = 4 * b->element_count; i-- > 0;) b->ring[--b->ring_first[b->elements[i]]] = (uint32_t)(i / 4);
 }
@@ -646,7 +646,7 @@ static inline int rx_cross_within(const rx_body *b, uint32_t element, uint32_t s
 
 static inline size_t rx_contact_range(const rx_body *b, size_t from, size_t end) {
     size_t to = from;
-    while (to < end && b->contacts[to].element == b->contacts[from].element) ++to;
+    while (to < end && b->contacts[to].element == b->contacts[from].element) to++;
     return to;
 }
 
@@ -974,7 +974,7 @@ static inline size_t rx_link_patches(const rx_body *b, size_t before, size_t fir
 
 static inline int rx_corner_of(const rx_body *b, uint32_t element, uint32_t node) {
     int k = 0;
-    while (b->elements[4 * element + (uint32_t)k] != node) ++k;
+    while (b->elements[4 * element + (uint32_t)k] != node) k++;
     return k;
 }
 
@@ -1206,7 +1206,7 @@ static inline rx_result rx_check_counts(const rx_body *b, size_t first) {
 static inline size_t *rx_old_contacts(rx_body *b, size_t before) {
     size_t *first = (size_t *)dense_memory(NULL, b->element_count + 1, sizeof *first), i;
     memset(first, 0, (b->element_count + 1) * sizeof *first);
-    for (i = 0; i < before; i++) ++first[b->contacts[i].element];
+    for (i = 0; i < before; i++) first[b->contacts[i].element]++;
     for (i = 1; i <= b->element_count; i++) first[i] += first[i - 1];
     b->by_element = (size_t *)dense_memory(b->by_element, before, sizeof *b->by_element);
     for (i = before; i-- > 0;) b->by_element[--first[b->contacts[i].element]] = i;

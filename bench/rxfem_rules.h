@@ -227,7 +227,7 @@ static inline double rx_gauss_point(int n, int k) {
 static inline size_t rx_collapsed_points(int dimension, size_t least, double (*points)[3]) {
     size_t count = 0;
     int n = 1, i, j, k;
-    while ((size_t)(dimension == 2 ? n * n : n * n * n) < least) ++n;
+    while ((size_t)(dimension == 2 ? n * n : n * n * n) < least) n++;
     for (i = 0; i < n; i++)
         for (j = 0; j < n; j++)
             for (k = 0; k < (dimension == 2 ? 1 : n); k++) {
@@ -473,7 +473,7 @@ static inline void rx_add_piece(rx_fit *f, const double *a, const double *b, dou
 static inline int rx_edge_of(int a, int b, int *turned) {
     int e = 0;
     *turned = a > b;
-    while (RX_EDGE[e][*turned] != a || RX_EDGE[e][!*turned] != b) ++e;
+    while (RX_EDGE[e][*turned] != a || RX_EDGE[e][!*turned] != b) e++;
     return e;
 }
 

@@ -115,7 +115,7 @@ static inline size_t truth_turn(const truth_faces *f, size_t face, size_t a, siz
 
 static inline size_t truth_corner_of(const truth_faces *f, size_t face, size_t point) {
     size_t i = f->face[face].corners;
-    while (f->corner[i] != point) ++i;
+    while (f->corner[i] != point) i++;
     return i;
 }
 

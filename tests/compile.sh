@@ -1,10 +1,14 @@
 #!/bin/sh
 # Compiles the headers in every way users do, by every compiler and standard there is, and fails on any warning.
-# usage: sh tests/compile.sh DIRECTORY      (for objects and programs; made if needed)
+# usage: sh tests/compile.sh DIRECTORY [HEADERS]
+#     DIRECTORY   for objects and programs; made if needed
+#     HEADERS     the folder that the headers are included from; without it, the repository's own
 #     COMPILERS   which to try (gcc clang); each with its C++ front end      JOBS   how many at a time (2)
+#     STANDARDS   which to try (c99 c11 c17 gnu99 c++11 c++14 c++17 c++20); c99 and c++11 are linked and run
 #
 # - tests/compile/*.c and *.cc: each header alone, all together, twice, implementation before and after plain inclusion
 # - two translation units, C and C++ in all four combinations; two files with GXFEM_STATIC
+# - a shared library by the user's GXFEM_API: it exports the public functions, no private one, and a program calls it
 # - the example in each header's opening comment and the README's program, extracted, compiled and run
 # - examples/*.c
 set -u
@@ -20,7 +24,18 @@ if [ "${1-}" = --job ]; then
     exit 0
 fi
 
-[ $# -eq 1 ] || { echo "usage: $0 DIRECTORY" >&2; exit 2; }
+# ---- what a shared library exports: public functions of each header, nothing private
+if [ "${1-}" = --exports ]; then
+    nm -D --defined-only "$2" | awk '{ print $NF }' >"$2.names" || exit 1
+    for name in gx_body_cut gxb_orient2d gxi_monomial_count gxs_solver_step; do
+        grep -qx $name "$2.names" || { echo "$name: undefined in $2"; exit 1; }
+    done
+    ! grep -E '^gx[bis]?p_' "$2.names" | sed 's/$/: private name exported, an error/' | grep .
+    exit
+fi
+
+[ $# -eq 1 ] || [ $# -eq 2 ] || { echo "usage: $0 DIRECTORY [HEADERS]" >&2; exit 2; }
+headers=$(CDPATH= cd -- "${2:-$root}" && pwd) || exit 2
 mkdir -p "$1" && cd "$1" || exit 2
 rm -rf ./*
 : >passed
@@ -59,11 +74,11 @@ for cc in ${COMPILERS:-gcc clang}; do
 done
 [ -n "$compilers" ] || { echo "$0: no compiler" >&2; exit 2; }
 
-# standards COMPILER STANDARD...: those of them that the compiler knows
+# known_standards COMPILER c|c++: those to try that the compiler knows
 known_standards() {
     compiler=$1 language=$2
-    shift 2
-    for std in "$@"; do
+    for std in ${STANDARDS:-c99 c11 c17 gnu99 c++11 c++14 c++17 c++20}; do
+        case $language:$std in c:*++*) continue ;; c++:*++*) ;; c++:*) continue ;; esac
         if echo 'int main(void);' | $compiler -x "$language" -std="$std" -fsyntax-only - >/dev/null 2>&1; then echo "$std"; fi
     done
 }
@@ -74,6 +89,9 @@ output_of() { case $1 in c99 | c++11) echo "-c -o $2" ;; *) echo "-fsyntax-only"
 # level_of STANDARD FILE: some warnings need the optimiser; once is enough
 level_of() { case $1:$2 in c99:together | c99:static | c++11:together | c++11:static) echo -O2 ;; *) echo -O0 ;; esac; }
 
+# What a shared library is compiled with: names are hidden unless GXFEM_API shows them.
+flags_of() { [ "$1" != exported ] || echo "-fPIC -fvisibility=hidden"; }
+
 for cc in $compilers; do
     cxx=$(cxx_of "$cc")
     widths=default
@@ -82,24 +100,24 @@ for cc in $compilers; do
     for width in $widths; do
         wide=
         [ $width = m32 ] && wide=-m32
-        for std in $(known_standards "$cc" c c99 c11 c17 gnu99); do
+        for std in $(known_standards "$cc" c); do
             [ $width = m32 ] && [ $std != c99 ] && continue
             for file in "$root"/tests/compile/*.c; do
                 base=$(basename "$file" .c)
                 level=$(level_of $std "$base")
                 job "$cc $wide -std=$std $level tests/compile/$base.c" \
-                    "$cc $wide -std=$std $level $warnings $root/tests/compile/$base.c $(output_of $std $base.$cc.$width.$std.o)"
+                    "$cc $wide -std=$std $level $warnings $(flags_of $base) -I$headers $root/tests/compile/$base.c $(output_of $std $base.$cc.$width.$std.o)"
             done
         done
         if ! command -v "$cxx" >/dev/null 2>&1; then echo "no $cxx here: left out"; continue; fi
         if [ $width = m32 ] && ! $cxx -m32 -x c++ probe.c -o probe >/dev/null 2>&1; then echo "$cxx -m32 does not work here: left out"; continue; fi
-        for std in $(known_standards "$cxx" c++ c++11 c++14 c++17 c++20); do
+        for std in $(known_standards "$cxx" c++); do
             [ $width = m32 ] && [ $std != c++11 ] && continue
             for file in "$root"/tests/compile/*.cc; do
                 base=$(basename "$file" .cc)
                 level=$(level_of $std "$base")
                 job "$cxx $wide -std=$std $level tests/compile/$base.cc" \
-                    "$cxx $wide -std=$std $level $warnings $root/tests/compile/$base.cc $(output_of $std $base.$cxx.$width.$std.o)"
+                    "$cxx $wide -std=$std $level $warnings $(flags_of $base) -I$headers $root/tests/compile/$base.cc $(output_of $std $base.$cxx.$width.$std.o)"
             done
         done
     done
@@ -108,10 +126,10 @@ for cc in $compilers; do
             program=${file%.c}.$cc.$std
             says=
             [ $file = readme.c ] && says=" && { ./$program | grep -q ': 2 fragments' || { echo 'the program says something else'; exit 1; }; }"
-            job "$cc -std=$std $file" "$cc -std=$std $warnings -I$root $file -o $program -lm && ./$program$says"
+            job "$cc -std=$std $file" "$cc -std=$std $warnings -I$headers $file -o $program -lm && ./$program$says"
         done
         for file in "$root"/examples/*.c; do
-            job "$cc -std=$std examples/$(basename "$file")" "$cc -std=$std $warnings -I$root -fsyntax-only $file"
+            job "$cc -std=$std examples/$(basename "$file")" "$cc -std=$std $warnings -I$headers -fsyntax-only $file"
         done
     done
 done
@@ -128,6 +146,14 @@ for cc in $compilers; do
         for name in gxfem gxfem_boolean gxfem_integrate gxfem_solve together plain_first implementation_first; do
             job "$name by $cc $wide" "$cc $wide $name.$c.o -o $name.$c -lm && ./$name.$c"
             [ -f "$name.$cc11.o" ] && job "$name by $cxx $wide" "$cxx $wide $name.$cc11.o -o $name.$cc11 -lm && ./$name.$cc11"
+        done
+        for one in "$c" "$cc11"; do
+            [ $width = default ] && [ -f "exported.$one.o" ] || continue
+            linker=$cc
+            [ "$one" = "$cc11" ] && linker=$cxx
+            library=libexported.$one.so
+            job "shared library: $one" "$linker -shared exported.$one.o -o $library -lm && sh $root/tests/compile.sh --exports $library && \
+$linker exported_user.$one.o ./$library -o exported.$one && ./exported.$one"
         done
         linker=$cc
         [ -f "unit.$cc11.o" ] && linker=$cxx

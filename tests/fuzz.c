@@ -363,7 +363,7 @@ static gx_result expected(const case_operand *c, int shift) {
     for (i = 0; i < c->mesh.vertices; i++)
         for (name[i] = 0; !(c->mesh.x[name[i]][0] == c->mesh.x[i][0] && c->mesh.x[name[i]][1] == c->mesh.x[i][1] &&
                             c->mesh.x[name[i]][2] == c->mesh.x[i][2]);
-             ++name[i]) {}
+             name[i]++) {}
     return is_closed(&c->mesh.t[0][0], c->mesh.triangles, name) ? GX_OK : GX_ERROR_NOT_CLOSED;
 }
 

@@ -7,6 +7,7 @@
 #     charts  gnuplot, for charts
 #     wasm    clang with what it takes to make WebAssembly of C, and node, which runs it
 #     format  clang-format 14
+#     cmake   CMake, for the package that others find
 #     pictures  f3d, and a virtual display where there is no other, for pictures of scenes
 set -u
 
@@ -46,6 +47,7 @@ have() {
     charts) has gnuplot ;;
     wasm) has node && links_wasm ;;
     format) has clang-format ;;
+    cmake) has cmake ;;
     pictures) has f3d && { [ -n "${DISPLAY:-}" ] || has xvfb-run; } ;;
     *) echo "$0: no group '$1'" >&2; exit 2 ;;
     esac
@@ -70,6 +72,7 @@ packages() {
     wasm:apt-get) wasm_packages ;;
     format:apt-get|format:brew) echo clang-format ;;
     format:*) echo clang-tools-extra ;;
+    cmake:*) echo cmake ;;
     pictures:apt-get) echo f3d xvfb xauth ;;
     pictures:dnf) echo f3d xorg-x11-server-Xvfb ;;
     pictures:pacman) echo f3d xorg-server-xvfb ;;
@@ -89,7 +92,7 @@ install() {
     esac
 }
 
-[ $# -gt 0 ] || { echo "usage: $0 check|cxx|bench|charts|wasm|format|pictures..." >&2; exit 2; }
+[ $# -gt 0 ] || { echo "usage: $0 check|cxx|bench|charts|wasm|format|cmake|pictures..." >&2; exit 2; }
 missing=
 for group in "$@"; do have "$group" || missing="$missing $group"; done
 [ -n "$missing" ] || exit 0

@@ -84,11 +84,11 @@ static inline big big_zero(void) {
 /* Strips zero limbs at both ends, which makes the representation unique. */
 static inline big big_normalised(const uint32_t *limb, int32_t count, int32_t exponent, int32_t sign) {
     big x;
-    while (count > 0 && limb[count - 1] == 0) --count;
+    while (count > 0 && limb[count - 1] == 0) count--;
     while (count > 0 && limb[0] == 0) {
         limb++;
         exponent++;
-        --count;
+        count--;
     }
     if (count == 0) return big_zero();
     x.limb = limb;
@@ -214,7 +214,7 @@ static inline double big_frexp(big x, int *power) {
     *power = 0;
     if (x.sign == 0) return 0.0;
     high = (uint64_t)big_limb(x, big_top(x) - 1) << 32 | big_limb(x, big_top(x) - 2);
-    while (!(high >> (63 - shift) & 1)) ++shift;
+    while (!(high >> (63 - shift) & 1)) shift++;
     if (shift > 0) high = high << shift | big_limb(x, big_top(x) - 3) >> (32 - shift);
     mantissa = ldexp((double)(high >> 11), -53);
     *power = 32 * big_top(x) - shift;

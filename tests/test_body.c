@@ -1419,7 +1419,7 @@ START_TEST(open_solids_are_refused) {
         uint64_t state = gx_body_state_hash(body);
         add_axis_plane(&w, 0, 0.5);
         s = add_box(&w, 1, 0.25, 0.25, 0.25, 0.75, 0.75, 0.75);
-        if (kind == 0) --s->triangle_count;    /* a triangle is missing */
+        if (kind == 0) s->triangle_count--;    /* a triangle is missing */
         if (kind == 1) turn_inside_out(s, 11); /* one is turned */
         /* moved, with all its triangles: still closed */
         if (kind == 2) s->vertices[3 * 6] = nextafter(s->vertices[3 * 6], 1);
@@ -2220,7 +2220,7 @@ START_TEST(ordered_cuts_make_no_chains) {
     ck_assert_uint_eq(view.cell_count, 5 * (CUTS + 1));
     for (i = 0; i < cx->tree_count; i++) {
         uint32_t leaves = 0;
-        for (depth = 1, n = cx->nodes[i].parent; n != GXB_NONE; n = cx->nodes[n].parent) ++depth;
+        for (depth = 1, n = cx->nodes[i].parent; n != GXB_NONE; n = cx->nodes[n].parent) depth++;
         ck_assert_uint_le(depth, 2 * 10 + 5);
         for (k = 0; k < 2; k++) {
             const uint32_t child = cx->nodes[i].child[k];

@@ -346,7 +346,7 @@ START_TEST(scope_beside_a_pinch) {
     v = view_of(body);
     ck_assert_uint_eq(v.fragment_count, 2);
     tip = v.fragment_center[3] > v.fragment_center[0];
-    while (v.cell_fragment[cell] != tip) ++cell;
+    while (v.cell_fragment[cell] != tip) cell++;
     surface = surface_of(s);
     memset(&cut, 0, sizeof cut);
     cut.surfaces = &surface;

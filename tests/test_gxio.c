@@ -666,7 +666,7 @@ START_TEST(boundary_lies_on_the_surface) {
     size_t f;
     int k;
     for (f = 0; f < count; f++) {
-        if (f + 1 < count && compare_faces(&faces[f], &faces[f + 1]) == 0) { ++f; continue; }
+        if (f + 1 < count && compare_faces(&faces[f], &faces[f + 1]) == 0) { f++; continue; }
         for (k = 0; k < 3; k++) ck_assert_double_eq_tol(gxshape_length(mesh.positions + 3 * faces[f].corner[k]), 1, 1e-11);
     }
     free(faces);

@@ -23,7 +23,7 @@ static TCase *add_case(Suite *suite, const char *name) {
 
 static const hard_case *row_named(const char *name) {
     int i = 0;
-    while (strcmp(hard_cases[i].name, name) != 0) ++i;
+    while (strcmp(hard_cases[i].name, name) != 0) i++;
     return &hard_cases[i];
 }
 

@@ -88,7 +88,7 @@ START_TEST(cheese_is_the_oracles) {
     ck_assert_uint_eq(truth->copy_count, CHEESE_COPIES);
     ck_assert_uint_eq(view.cell_count, truth->cell_count);
     ck_assert_uint_eq(view.fragment_count, truth->fragment_count);
-    for (i = 0; i < view.copy_count; i++) ++copies[view.copy_node[i]];
+    for (i = 0; i < view.copy_count; i++) copies[view.copy_node[i]]++;
     for (node = 0; node < 4; node++) ck_assert_uint_eq(copies[node], truth->node_copies[node]);
     compare_volumes(truth, &view);
     gx_body_destroy(body);

@@ -407,7 +407,7 @@ enum { HELD_AGAIN, CLONED, LOADED, CUT_ELSEWHERE, CUT_WITHOUT_SUPPORT, CHANGE_CO
 /* A free copy far right */
 static size_t right_of(const gx_view *view, const workload *w) {
     size_t i = 0;
-    while (view->copy_held[i] || w->positions[3 * view->copy_node[i]] < 3.5) ++i;
+    while (view->copy_held[i] || w->positions[3 * view->copy_node[i]] < 3.5) i++;
     return i;
 }
 

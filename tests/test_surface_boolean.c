@@ -67,7 +67,7 @@ static wl_surface boundary_of(const workload *w) {
 
 static void swap_bytes(void *a, void *b, size_t size) {
     unsigned char *p = (unsigned char *)a, *q = (unsigned char *)b;
-    for (; size > 0; --size, ++p, ++q) {
+    for (; size > 0; size--, p++, q++) {
         const unsigned char kept = *p;
         *p = *q;
         *q = kept;

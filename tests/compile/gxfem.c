@@ -1,6 +1,6 @@
 /* The header alone, with its own switch. */
 #define GXFEM_IMPLEMENTATION
-#include "../../gxfem.h"
+#include "gxfem.h"
 
 int main(void) {
     gx_body_destroy(NULL);

@@ -1,6 +1,6 @@
 /* The header alone, with its own switch. */
 #define GXFEM_SOLVE_IMPLEMENTATION
-#include "../../gxfem_solve.h"
+#include "gxfem_solve.h"
 
 int main(void) {
     gxs_solver_destroy(NULL);

@@ -1,7 +1,7 @@
 /* Everything private to this file, most of it unused; linked with a second such file. */
 #define GXFEM_STATIC
 #define GXFEM_IMPLEMENTATION
-#include "../../gxfem.h"
+#include "gxfem.h"
 #include "use.h"
 
 #ifdef __cplusplus

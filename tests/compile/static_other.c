@@ -1,7 +1,7 @@
 /* The second file: its own copy of everything. */
 #define GXFEM_STATIC
 #define GXFEM_IMPLEMENTATION
-#include "../../gxfem.h"
+#include "gxfem.h"
 #include "use.h"
 
 #ifdef __cplusplus

@@ -1,6 +1,6 @@
 /* One of two translation units: the one that has the implementation. */
 #define GXFEM_IMPLEMENTATION
-#include "../../gxfem.h"
+#include "gxfem.h"
 
 #ifdef __cplusplus
 extern "C"

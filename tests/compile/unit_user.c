@@ -1,8 +1,8 @@
 /* The other: includes plainly, calls across. */
-#include "../../gxfem.h"
-#include "../../gxfem_boolean.h"
-#include "../../gxfem_integrate.h"
-#include "../../gxfem_solve.h"
+#include "gxfem.h"
+#include "gxfem_boolean.h"
+#include "gxfem_integrate.h"
+#include "gxfem_solve.h"
 #include "use.h"
 
 #ifdef __cplusplus
