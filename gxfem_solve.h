@@ -810,7 +810,7 @@ static void *gxsp_take(gxsp_pool *pool, size_t count, size_t size) {
 
 /* Memory of room x size bytes in place of some of used x size, or of NULL, whose contents it has; the old one is given
  * back. NULL, and the old one stays, when there is none. */
-static void *gxsp_retake(gxsp_pool *pool, void *memory, size_t used, size_t room, size_t size) {
+static void *gxsp_grow(gxsp_pool *pool, void *memory, size_t used, size_t room, size_t size) {
     void *larger = gxsp_take(pool, room, size);
     gxsp_owned **link = &pool->last, *owned;
     if (!larger || !memory) return larger;
@@ -903,28 +903,28 @@ typedef struct gxsp_fine {
 } gxsp_fine;
 
 /* What a chunk has of one piece */
-typedef struct gxsp_part {
+typedef struct gxsp_partial {
     double energies[3]; /* of the pass under way: elastic, kinetic, size of the terms they are sums of; J */
-    uint32_t piece;
-} gxsp_part;
+    uint32_t component;
+} gxsp_partial;
 
 typedef struct gxsp_chunk {
     gxsp_rest *rest; /* block_count, as are those without a count of their own */
     gxsp_corners *corners;
     /* block_count + 1: bit i: corner i is not the one of the block before, in each lane; at the end all */
-    uint8_t *fresh;
+    uint8_t *changed;
     gxsp_tangent *tangents;
-    gxsp_gradients *gradients; /* NULL: they are found in each pass, of system->positions */
+    gxsp_gradients *gradients; /* NULL: they are found in each pass, from the rest positions */
     gxsp_moments *moments;     /* NULL: elements are whole, or masses lumped */
     gxsp_general *generals;    /* of GXS_CUSTOM; NULL: gxsp_tangent has the Hessians */
     /* block_count x GXSP_LANES: group of the element in each lane; GXSP_NONE: there is none */
     uint32_t *groups;
-    uint32_t first_block, block_count; /* blocks are counted through all chunks */
-    uint32_t first_node, node_count;   /* into nodes and slots */
-    uint32_t first_part, part_count;   /* into parts: one for each piece of its nodes, ascending */
-    uint32_t class_index;              /* see gxsp_class */
-    uint32_t edge_count;               /* see gxsp_edges; 0: not known */
-    int open;                          /* made by an update, with room for GXSP_CHUNK_BLOCKS */
+    uint32_t first_block, block_count;     /* blocks are counted through all chunks */
+    uint32_t first_node, node_count;       /* into nodes and slots */
+    uint32_t first_partial, partial_count; /* into parts: one for each piece of its nodes, ascending */
+    uint32_t class_index;                  /* see gxsp_class */
+    uint32_t edge_count;                   /* see gxsp_edges; 0: not known */
+    int open;                              /* made by an update, with room for GXSP_CHUNK_BLOCKS */
     gxs_material_kind kind;
 } gxsp_chunk;
 
@@ -1008,12 +1008,12 @@ typedef struct gxsp_material {
 
 /* Copies joined by elements and constraints. E is a sum over pieces, but for points of contact and springs that join
  * some: of those the first leads, and what is told of energies and steps is that of all that it leads. */
-typedef struct gxsp_piece {
+typedef struct gxsp_component {
     double sum[3];      /* over its copies, of the pass under way */
     double mass;        /* kg */
     double energies[3]; /* of the last evaluation: elastic with springs and contact, kinetic, size of their terms; J */
     double before[3];   /* at current */
-    double base_energy; /* elastic, of what the last step returned, J; of use if gxsp_system.base_known */
+    double base_energy; /* elastic, of what the last step returned, J; valid while base_known */
     /* E where the step starts, which it is not to exceed, and where Newton's method has ended; J */
     double limit, ended;
     /* of the midpoint rule: E at base, and less that E at the middle without drift, and at a trial; J */
@@ -1027,10 +1027,10 @@ typedef struct gxsp_piece {
     int risen;          /* E has ended above limit */
     uint32_t lead;      /* which piece leads it; itself: it leads */
     uint64_t forces[2]; /* hash of its nodal forces and contact points: of the step before, of this one */
-    int sprung[2];      /* a spring acts on it: in the step before, in this one */
-    int woken, tired;   /* something touches it in this step; nothing does, and it has been slow for long */
+    int has_spring[2];  /* a spring acts on it: in the step before, in this one */
+    int woken, resting; /* something touches it in this step; nothing does, and it has been slow for long */
     uint32_t state;     /* GXSP_HELD ... GXSP_TOUCHES; 0: loose, a translation of it meets no stiffness */
-} gxsp_piece;
+} gxsp_component;
 
 /* A follower of the model */
 typedef struct gxsp_follower {
@@ -1059,111 +1059,154 @@ typedef struct gxsp_lasting {
     gxs_scene scene; /* of the step before */
 } gxsp_lasting;
 
-/* A model in the solver's form, with all that a step works with. n: copy_count. Vectors are n x 3 unless said. */
-typedef struct gxsp_system {
-    gxsp_pool pool;
-    gxsp_pool coarse; /* levels of the multigrid below the model, and what their numbers are made with */
-    const gx_jobs *jobs;
-    size_t n, element_count, block_count, slot_count, range_count;
-    uint64_t epoch;              /* of the copies' numbering */
-    size_t copy_room, slot_room; /* of arrays over copies and slots, from the first update on */
-    /* shared_room bytes: slots, search, product and scaled; while coarse numbers are made, what they are made with */
-    unsigned char *shared;
-    size_t shared_room;
-    uint32_t chunk_count, chunk_room, material_count;
+/* The model, in the solver's own order. Written when a model is set and by updates; steps only read it, except for the
+ * step fields of the components. n: copies. */
+typedef struct gxsp_model {
+    size_t n;         /* gxs_model.copy_count */
+    size_t copy_room; /* copies for which the columns over copies have room */
+    size_t element_count;
+    size_t range_count; /* n / GXSP_RANGE, rounded up */
+    uint64_t epoch;     /* names the numbering of copies */
+    double scale; /* power of two that multiplies the linear systems: single precision then holds tiny components */
+    int lumped_mass;
+    int stiff; /* a material is nearly incompressible */
+    int damps; /* a material is damped */
+    uint32_t material_count;
     gxsp_material *materials; /* material_count: as given */
-    /* material_count: what the step under way works with: Rayleigh damping makes them stiffer */
-    gxsp_material *damped;
+    double *positions;        /* n x 3: rest positions, m; NULL: not given */
+    double *lumped;           /* n: row sums of the mass, kg */
+    uint8_t *held;            /* n: as given */
+    uint8_t *fixed;           /* n: held, or neither supported by an element nor a follower */
+    uint32_t *component;      /* n: index of the copy's component */
+    gxsp_component *components;
+    uint32_t component_count;
+    gxsp_follower *followers;
+    uint32_t follower_count, follower_room;
+    /* n: index of the copy's entry in followers; GXSP_NONE: it follows none. Valid while there are followers */
+    uint32_t *follower;
+    size_t follower_copies; /* copies for which follower has room */
+    gxsp_light *lights;
+    uint32_t light_count, light_room;
+    float *volume; /* n: inverse volume of the support, scaled; GXS_VOLUME_RATIO only, else NULL */
+} gxsp_model;
+
+/* The elements in chunks, and the slots into which chunks write. Written when a model is set and by updates. */
+typedef struct gxsp_mesh {
     gxsp_chunk *chunks;
-    uint32_t *nodes;      /* slot_count: the copy of each node of each chunk; and GXSP_AHEAD zeros */
-    uint32_t *copy_start; /* n + 1, into copy_slot */
-    /* slot_count: a copy's slots, in the order of chunks: sums over them are the same for any number of threads; and
-     * GXSP_AHEAD zeros */
+    uint32_t chunk_count, chunk_room;
+    size_t block_count; /* of all chunks; not kept up to date by updates */
+    size_t slot_count;  /* nodes of all chunks: one slot each */
+    size_t slot_room;
+    uint32_t *nodes;      /* slot_count: the copy of the slot; then GXSP_AHEAD zeros */
+    uint32_t *copy_start; /* n + 1: a copy's range in copy_slot */
+    /* slot_count: a copy's slots in the order of chunks, so that sums do not depend on threads; then GXSP_AHEAD zeros
+     */
     uint32_t *copy_slot;
-    /* slot_count: number in the chunk of the least node that elements of the chunk join with this one; from the first
+    /* slot_count: the least node of the chunk that the chunk's elements connect with this one. Valid while roots_known
      */
     uint16_t *slot_root;
-    int roots_known; /* update on, when this is set */
-    /* slot_count: what a chunk's pass has for each node: 3 doubles, 4 floats (of products), or 6 */
-    double (*slots)[3];
-    double (*range_sum)[GXSP_SUMS]; /* range_count: of passes over copies; added up in their order */
-    gxsp_part *parts;               /* part_count: of the chunks, in their order */
-    uint32_t part_count;
-    uint8_t *chunk_collapsed; /* chunk_count: the last linearisation found an element collapsed to a point */
-    double *positions;        /* rest, m; NULL: not given */
-    double *lumped;           /* n: row sums of the mass, kg */
-    uint8_t *held;            /* n: as the model says */
-    uint8_t *fixed;           /* n: held, or without an element and a follower of nothing */
-    uint8_t *still;           /* n: fixed or asleep: what this step leaves alone */
-    uint8_t *chunk_still;     /* chunk_count: all copies are */
-    uint32_t *piece;          /* n: number of the piece */
-    gxsp_piece *pieces;       /* piece_count */
-    uint32_t piece_count, loose_count, free_count; /* loose: of state 0; free: but for GXSP_TOUCHED */
-    gxsp_follower *followers;
-    uint32_t follower_count;
-    uint32_t follower_room; /* of followers */
-    /* n: index of the copy's entry in followers; GXSP_NONE: it follows none; of use if there are followers */
-    uint32_t *follower;
-    size_t follower_copies; /* room of follower */
-    gxsp_lasting *lasting;  /* of the solver */
-    gxsp_light *lights;     /* light_count */
-    uint32_t light_count, light_room;
-    float *volume;    /* n: inverse volume of the support, scaled; of GXS_VOLUME_RATIO only */
-    double *target;   /* where inertia (and mass damping) alone lead; of backward Euler u_n + dt v_n */
-    double *damping;  /* what Rayleigh damping adds to the load, N; NULL: no material is damped */
-    double *current;  /* displacement: Newton's iterate */
-    double *force;    /* inertia + elastic at the iterate, N */
-    double *residual; /* load - force; conjugate gradients use it up */
-    /* displacement: tried by the line search; in the memory of the residual, of which there is no need then */
-    double *trial;
-    double *direction; /* the solution of the linear system */
-    /* of conjugate gradients: direction, Hessian times it, preconditioned residual */
-    gxsp_vector4 *search, *product, *scaled;
-    float *diagonal; /* n x 6: inverse of the Hessian's diagonal blocks, packed; 0 for fixed copies */
-    int lumped_mass;
-    int stiff;  /* a material is nearly incompressible */
-    int damps;  /* a material is damped */
-    int chosen; /* the preconditioner was chosen by the size of pieces */
-    /* power of two by which the linear systems are multiplied, so that single precision holds tiny pieces too */
-    double scale;
-    gxsp_level levels[GXSP_LEVELS];
-    uint32_t level_count; /* 0: no multigrid */
-    int coarse_used;      /* the levels precondition the solve at work */
-    /* of the chunk at work on level 1's matrix; in scratch or shared memory, and else nowhere, as pairs are */
-    gxsp_edges edges;
-    gxsp_pairs pairs;
+    int roots_known;        /* set by the first update */
+    gxsp_partial *partials; /* partial_count: those of the first chunk, then of the next */
+    uint32_t partial_count;
+} gxsp_mesh;
+
+/* Structure of the multigrid, and the numbers of its matrices. Everything below level 0 is in its own pool, which an
+ * update replaces. */
+typedef struct gxsp_multigrid {
+    gxsp_pool pool;
+    gxsp_level levels[GXSP_LEVELS]; /* level 0 is the model */
+    uint32_t level_count;           /* 0: no multigrid */
+    int chosen;                     /* the preconditioner was chosen by the size of components */
+    int used;                       /* the levels precondition the solve at work */
+    gxsp_fine *fine;                /* block_count: entries of the assembled matrix, levels[0]; NULL: matrix-free */
+    gxsp_edges edges;               /* of the chunk at work; its arrays are in scratch or shared memory */
+    gxsp_pairs pairs;               /* of the chunk at work; its arrays are in scratch or shared memory */
     gxsp_factor factor;
-    float omega;       /* step length of the smoother; 0: not known */
-    float omega_found; /* by the largest eigenvalue found, which may have grown since */
-    /* linear solves for which it stays the safe one, 0: it is omega_found; and the next time */
-    uint32_t omega_rest, omega_pause;
-    /* n: the copy's diagonal is of other elements than when omega was found; from the first update on, of use if */
-    uint8_t *renewed;
-    int omega_renewed;    /* there are such copies */
-    double coarse_rate;   /* for which the coarse matrices were made; below 0: never made */
-    double *coarse_state; /* displacement at which; of a multigrid only */
-    int coarse_worn;      /* to be made anew */
-    /* sums of springs' and contact's Hessians: now, when coarse matrices were made */
-    double term_stiffness, coarse_stiffness;
-    gxsp_fine *fine;        /* block_count: places in the assembled matrix, levels[0]; NULL: matrix-free */
-    uint32_t coarse_served; /* iterations since they were made */
-    uint32_t coarse_life;   /* for how many iterations they are to serve */
-    uint32_t coarse_lived;  /* for how many those before did */
-    uint32_t read;          /* iterations since the last reading */
-    double read_nepers;     /* and by how many factors of e they have reduced residuals */
-    double pace;            /* iterations for each factor of e, by the last reading; 0: none yet */
-    double pace_young;      /* by the first one */
-    double pace_old;        /* by the last one of the matrices before; 0: of another time step, or there was none */
-    int still_known;        /* still and chunk_still are those of the pieces' states */
-    size_t active;          /* unknowns of this step */
-    int stepped;            /* current is what the last step returned, copies of cuts since where theirs were */
-    int base_known;         /* current is what the last step returned, and the pieces know its elastic energies */
-    int failed;             /* the last step has: what woke in it stays awake */
-    double product_rate;    /* of the linearisation for gxs_solver_product; below 0: there is none */
-    gxsp_vector4 *right;    /* n: residual in single precision; of GXS_MATRIX_ASSEMBLED only, else NULL */
-    gxsp_vector4 *guess[2]; /* n: directions of the first iterations of the last step and of the one before */
-    uint32_t guess_count;   /* how many of them there are */
+} gxsp_multigrid;
+
+/* At which state the coarse matrices were made, and how they age. A reading measures the pace of conjugate gradients.
+ */
+typedef struct gxsp_coarse {
+    double rate;          /* of the inertia in the matrices; below 0: they were never made */
+    double *displacement; /* n x 3: at which they were made; of a multigrid only */
+    double stiffness;     /* sum of springs' and contact's Hessians in them */
+    int worn;             /* they must be made anew */
+    uint32_t served;      /* iterations since they were made */
+    uint32_t life;        /* iterations that they are to serve */
+    uint32_t lived;       /* iterations that those before served */
+    uint32_t read;        /* iterations since the last reading */
+    double read_nepers;   /* factors of e by which those iterations reduced residuals */
+    double pace;          /* iterations for each factor of e, by the last reading; 0: none yet */
+    double pace_young;    /* by the first reading */
+    double pace_old;      /* by the last reading of the matrices before; 0: none, or of another time step */
+} gxsp_coarse;
+
+/* The step length of the smoother on level 0. */
+typedef struct gxsp_smoother {
+    float omega;            /* step length in use; 0: not known */
+    float found;            /* by the largest eigenvalue found, which may have grown since */
+    uint32_t cautious;      /* linear solves during which omega stays the safe length; 0: omega is the one found */
+    uint32_t next_cautious; /* cautious, the next time that omega proves too large */
+    uint8_t *renewed;       /* n: the copy's elements are not those for which omega was found. Valid if any_renewed */
+    int any_renewed;
+} gxsp_smoother;
+
+/* The vectors of a step, n x 3 unless said, and the memory that passes and coarse numbers share. */
+typedef struct gxsp_vectors {
+    double *target;    /* where inertia and mass damping alone lead, m; backward Euler: u_n + dt v_n */
+    double *damping;   /* what Rayleigh damping adds to the load, N; NULL: no material is damped */
+    double *current;   /* Newton's iterate, m */
+    double *force;     /* inertia + elastic at the iterate, N */
+    double *residual;  /* load - force, N; conjugate gradients use it up, then gxsp_trial has its memory */
+    double *direction; /* solution of the linear system, m */
+    float *diagonal;   /* n x 6: inverse of the Hessian's diagonal blocks, packed; 0 for fixed copies */
+    /* n: directions of the first iterations of the last step and of the one before; see gxsp_state.guess_count */
+    gxsp_vector4 *guess[2];
+    gxsp_vector4 *right;            /* n: residual in single precision; GXS_MATRIX_ASSEMBLED only, else NULL */
+    double (*range_sum)[GXSP_SUMS]; /* range_count: sums of a pass over copies; added up in their order */
+    /* shared_room bytes. Passes have slots, search, product and scaled in it. Between gxsp_lend_memory and
+     * gxsp_return_memory the making of coarse numbers has its arrays there: see gxsp_numbers_carve */
+    unsigned char *shared;
+    size_t shared_room;
+    double (*slots)[3];                      /* slot_count: a chunk's result for each node: 3 doubles, 4 or 6 floats */
+    gxsp_vector4 *search, *product, *scaled; /* n: CG's direction, Hessian times it, preconditioned residual */
+} gxsp_vectors;
+
+/* What one step leaves to the next, and what the step under way leaves alone. */
+typedef struct gxsp_history {
+    gxsp_material *damped;    /* material_count: the step's materials, stiffer by Rayleigh damping */
+    uint8_t *still;           /* n: fixed or asleep: the step leaves the copy alone */
+    uint8_t *chunk_still;     /* chunk_count: all copies of the chunk are still */
+    int still_known;          /* still and chunk_still agree with the states of the components */
+    uint8_t *chunk_collapsed; /* chunk_count: the last linearisation found an element collapsed to a point */
+    uint32_t loose_count;     /* components of state 0 */
+    uint32_t free_count;      /* components of no state but GXSP_TOUCHED */
+    double term_stiffness;    /* sum of springs' and contact's Hessians */
+    size_t active;            /* unknowns of this step */
+    int stepped;    /* current is what the last step returned; copies that a cut has made are at their origin's place */
+    int base_known; /* current is what the last step returned, and components know its elastic energies */
+    int failed;     /* the last step failed: the components that it woke stay awake */
+    double product_rate;  /* of the linearisation for gxs_solver_product; below 0: there is none */
+    uint32_t guess_count; /* valid guesses: 0, 1 or 2 */
+} gxsp_history;
+
+/* A model in the solver's form, and all that its steps work with. One allocation of pool, as are its arrays. */
+typedef struct gxsp_system {
+    gxsp_pool pool;
+    const gx_jobs *jobs;   /* of the solver */
+    gxsp_lasting *lasting; /* of the solver */
+    gxsp_model model;
+    gxsp_mesh mesh;
+    gxsp_multigrid multigrid;
+    gxsp_coarse coarse;
+    gxsp_smoother smoother;
+    gxsp_vectors vectors;
+    gxsp_history state;
 } gxsp_system;
+
+/* The line search's trial displacement, n x 3. It lies in the residual's memory: nothing needs the residual while
+ * lengths are tried. */
+static double *gxsp_trial(const gxsp_system *system) { return system->vectors.residual; }
 
 /* A step under way */
 typedef struct gxsp_problem {
@@ -1967,12 +2010,12 @@ static void gxsp_block_inertia(const gxsp_rest *GXSP_RESTRICT rest, const gxsp_m
 
 /* y += (K + rate M) x, one lane after the other in registers. m: NULL where elements are whole. apart: x of corners 1
  * ... 3 is what they have more than corner 0, which callers know better than single precision could tell. */
-GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, const gxsp_moments *GXSP_RESTRICT m, int apart,
-                                    gxsp_singles *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT y) {
+GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, const gxsp_moments *GXSP_RESTRICT m,
+                                    int relative, gxsp_singles *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT y) {
     int l;
     GXSP_EACH_LANE(l) {
         const float x0 = x[0][l], x1 = x[1][l], x2 = x[2][l];
-        const float o0 = apart ? 0 : x0, o1 = apart ? 0 : x1, o2 = apart ? 0 : x2;
+        const float o0 = relative ? 0 : x0, o1 = relative ? 0 : x1, o2 = relative ? 0 : x2;
         const float g0 = b->gradient[0][l], g1 = b->gradient[1][l], g2 = b->gradient[2][l], g3 = b->gradient[3][l],
                     g4 = b->gradient[4][l], g5 = b->gradient[5][l], g6 = b->gradient[6][l], g7 = b->gradient[7][l],
                     g8 = b->gradient[8][l];
@@ -2042,9 +2085,9 @@ GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, const g
 }
 
 /* y += K x for a Hessian without a frame */
-static void gxsp_general_product(const gxsp_tangent *b, const gxsp_general *h, int apart, gxsp_singles *x,
+static void gxsp_general_product(const gxsp_tangent *b, const gxsp_general *h, int relative, gxsp_singles *x,
                                  gxsp_singles *y) {
-    const float from = apart ? 0.0f : 1.0f;
+    const float from = relative ? 0.0f : 1.0f;
     gxsp_singles d[9], p[9];
     int i, j, k, l;
     for (i = 0; i < 9; i++) GXSP_EACH_LANE(l) {
@@ -2091,7 +2134,7 @@ static void gxsp_block_mass(const gxsp_tangent *tangent, const gxsp_moments *mom
 }
 
 /* y += rate M x. apart: as of gxsp_block_product */
-static void gxsp_inertia_product(const gxsp_tangent *b, const gxsp_moments *moments, int apart, gxsp_singles *x,
+static void gxsp_inertia_product(const gxsp_tangent *b, const gxsp_moments *moments, int relative, gxsp_singles *x,
                                  gxsp_singles *y) {
     gxsp_singles mass;
     int i, j, r, l;
@@ -2099,21 +2142,21 @@ static void gxsp_inertia_product(const gxsp_tangent *b, const gxsp_moments *mome
         for (j = 0; j < 4; j++) {
             gxsp_block_mass(b, moments, i, j, mass);
             for (r = 0; r < 3; r++)
-                GXSP_EACH_LANE(l) y[3 * i + r][l] += mass[l] * (x[3 * j + r][l] + (apart && j > 0 ? x[r][l] : 0));
+                GXSP_EACH_LANE(l) y[3 * i + r][l] += mass[l] * (x[3 * j + r][l] + (relative && j > 0 ? x[r][l] : 0));
         }
 }
 
 /* The same for either */
 GXSP_INLINE void gxsp_kind_product(gxs_material_kind kind, const gxsp_tangent *b, const gxsp_moments *m,
-                                   const gxsp_general *h, int apart, gxsp_singles *x, gxsp_singles *y) {
+                                   const gxsp_general *h, int relative, gxsp_singles *x, gxsp_singles *y) {
     if (kind == GXS_CUSTOM) {
-        gxsp_general_product(b, h, apart, x, y);
-        gxsp_inertia_product(b, m, apart, x, y);
-    } else if (m && apart)
+        gxsp_general_product(b, h, relative, x, y);
+        gxsp_inertia_product(b, m, relative, x, y);
+    } else if (m && relative)
         gxsp_block_product(b, m, 1, x, y);
     else if (m)
         gxsp_block_product(b, m, 0, x, y);
-    else if (apart)
+    else if (relative)
         gxsp_block_product(b, NULL, 1, x, y);
     else
         gxsp_block_product(b, NULL, 0, x, y);
@@ -2199,7 +2242,7 @@ typedef struct gxsp_pass {
 /* Copies of the range with this index: from first, not including the one returned */
 static size_t gxsp_range(const gxsp_system *system, size_t index, size_t *first) {
     *first = index * GXSP_RANGE;
-    return *first + GXSP_RANGE < system->n ? *first + GXSP_RANGE : system->n;
+    return *first + GXSP_RANGE < system->model.n ? *first + GXSP_RANGE : system->model.n;
 }
 
 /* A pass over all copies; sums: of those that it makes for each range, the first count, or NULL */
@@ -2208,9 +2251,9 @@ static void gxsp_over_ranges(gxsp_system *system, void (*task)(void *, size_t), 
     size_t i;
     int k;
     pass->system = system;
-    gxsp_parallel(system->jobs, system->range_count, task, pass);
+    gxsp_parallel(system->jobs, system->model.range_count, task, pass);
     for (k = 0; k < count; k++)
-        for (i = 0, sums[k] = 0; i < system->range_count; i++) sums[k] += system->range_sum[i][k];
+        for (i = 0, sums[k] = 0; i < system->model.range_count; i++) sums[k] += system->vectors.range_sum[i][k];
 }
 
 static const gxsp_moments *gxsp_block_moments(const gxsp_chunk *chunk, uint32_t block) {
@@ -2223,7 +2266,7 @@ static gxsp_general *gxsp_block_general(const gxsp_chunk *chunk, uint32_t block)
 
 /* Asks for memory that is soon read: a block is too long for processors to see the next one in time. Always inline: gcc
  * takes functions that do nothing else for functions without effect, and leaves calls of them out. */
-GXSP_INLINE void gxsp_fetch(const void *memory, size_t size) {
+GXSP_INLINE void gxsp_prefetch(const void *memory, size_t size) {
 #if defined(__GNUC__)
     const char *line = (const char *)memory;
     size_t k;
@@ -2236,30 +2279,30 @@ GXSP_INLINE void gxsp_fetch(const void *memory, size_t size) {
 
 /* Asks for what a pass soon reads of the block this many further on, in the chunk or the next one: its tangents, or
  * what they are made of. */
-GXSP_INLINE void gxsp_fetch_block(const gxsp_system *system, size_t index, uint32_t block, uint32_t ahead,
-                                  int tangents) {
-    const gxsp_chunk *chunk = &system->chunks[index];
+GXSP_INLINE void gxsp_prefetch_block(const gxsp_system *system, size_t index, uint32_t block, uint32_t ahead,
+                                     int tangents) {
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
     uint32_t b = block + ahead;
     if (b >= chunk->block_count) {
         b -= chunk->block_count;
-        if (index + 1 == system->chunk_count || b >= chunk[1].block_count) return;
+        if (index + 1 == system->mesh.chunk_count || b >= chunk[1].block_count) return;
         chunk++;
     }
-    gxsp_fetch(&chunk->corners[b], sizeof *chunk->corners);
+    gxsp_prefetch(&chunk->corners[b], sizeof *chunk->corners);
     if (tangents)
-        gxsp_fetch(&chunk->tangents[b], sizeof *chunk->tangents);
+        gxsp_prefetch(&chunk->tangents[b], sizeof *chunk->tangents);
     else
-        gxsp_fetch(&chunk->rest[b], sizeof *chunk->rest);
-    if (chunk->moments) gxsp_fetch(&chunk->moments[b], sizeof *chunk->moments);
+        gxsp_prefetch(&chunk->rest[b], sizeof *chunk->rest);
+    if (chunk->moments) gxsp_prefetch(&chunk->moments[b], sizeof *chunk->moments);
 }
 
 /* x of a chunk's nodes: x 3, and one more number */
 static void gxsp_chunk_load(const gxsp_system *system, const gxsp_chunk *chunk, const double *x,
                             double *GXSP_RESTRICT to) {
-    const uint32_t *copies = system->nodes + chunk->first_node;
+    const uint32_t *copies = system->mesh.nodes + chunk->first_node;
     size_t i, c;
     for (i = 0; i < chunk->node_count; i++) {
-        gxsp_fetch(x + 3 * (size_t)copies[i + GXSP_AHEAD], 3 * sizeof *x);
+        gxsp_prefetch(x + 3 * (size_t)copies[i + GXSP_AHEAD], 3 * sizeof *x);
         for (c = 0; c < 3; c++) to[3 * i + c] = x[3 * (size_t)copies[i] + c];
     }
     to[3 * i] = 0;
@@ -2293,17 +2336,17 @@ static void gxsp_block_load(const gxsp_chunk *chunk, uint32_t b, const double *G
     const gxsp_corners *corner = &chunk->corners[b];
     int i, l;
     for (i = 0; i < 4; i++)
-        for (l = 0; l < GXSP_LANES && chunk->fresh[b] >> i & 1; l += 4)
+        for (l = 0; l < GXSP_LANES && chunk->changed[b] >> i & 1; l += 4)
             gxsp_load_four(corner->node[i] + l, x, corners[3 * i] + l, corners[3 * i + 1] + l, corners[3 * i + 2] + l);
 }
 
 /* The same of x of all copies, without that of the chunk's nodes */
 static void gxsp_block_load_copies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, const double *x,
                                    gxsp_lanes *corners) {
-    const uint32_t *copies = system->nodes + chunk->first_node;
+    const uint32_t *copies = system->mesh.nodes + chunk->first_node;
     int i, l;
     for (i = 0; i < 4; i++)
-        for (l = 0; l < GXSP_LANES && chunk->fresh[b] >> i & 1; l++) {
+        for (l = 0; l < GXSP_LANES && chunk->changed[b] >> i & 1; l++) {
             const double *of = x + 3 * (size_t)copies[chunk->corners[b].node[i][l]];
             corners[3 * i][l] = of[0], corners[3 * i + 1][l] = of[1], corners[3 * i + 2][l] = of[2];
         }
@@ -2337,7 +2380,7 @@ static void gxsp_block_store(const gxsp_chunk *chunk, uint32_t b, gxsp_lanes *GX
     const gxsp_corners *corner = &chunk->corners[b];
     int i, k, l;
     for (i = 0; i < 4; i++) {
-        if (!(chunk->fresh[b + 1] >> i & 1)) continue;
+        if (!(chunk->changed[b + 1] >> i & 1)) continue;
         for (l = 0; l < GXSP_LANES; l++) {
             double *to = slots + 3 * (size_t)corner->node[i][l];
             to[0] += values[3 * i][l];
@@ -2350,7 +2393,7 @@ static void gxsp_block_store(const gxsp_chunk *chunk, uint32_t b, gxsp_lanes *GX
 
 /* P of elements with displacement gradients from, turned by what turns their rotations into those at to; left alone
  * where that is more than a right angle: such an element is tangled. */
-static void gxsp_turn_stress(gxsp_lanes *from, gxsp_lanes *to, gxsp_lanes *p) {
+static void gxsp_rotate_stress(gxsp_lanes *from, gxsp_lanes *to, gxsp_lanes *p) {
     gxsp_svd of[2];
     int r, c, k, l;
     gxsp_decompose(from, to, of);
@@ -2384,10 +2427,11 @@ static void gxsp_turn_stress(gxsp_lanes *from, gxsp_lanes *to, gxsp_lanes *p) {
 
 /* Is a copy of the chunk elsewhere than inertia alone leads? Where Newton's method starts hardly any is. */
 static int gxsp_accelerates(const gxsp_system *system, const gxsp_chunk *chunk, const double *from) {
-    const uint32_t *copies = system->nodes + chunk->first_node;
+    const uint32_t *copies = system->mesh.nodes + chunk->first_node;
     uint32_t i;
     for (i = 0; i < chunk->node_count; i++)
-        if (memcmp(from + 3 * (size_t)copies[i], system->target + 3 * (size_t)copies[i], 3 * sizeof(double)) != 0)
+        if (memcmp(from + 3 * (size_t)copies[i], system->vectors.target + 3 * (size_t)copies[i], 3 * sizeof(double)) !=
+            0)
             return 1;
     return 0;
 }
@@ -2395,36 +2439,40 @@ static int gxsp_accelerates(const gxsp_system *system, const gxsp_chunk *chunk, 
 /* Have all pieces of a chunk found their lengths? */
 static int gxsp_chunk_settled(const gxsp_system *system, const gxsp_chunk *chunk) {
     uint32_t i;
-    for (i = 0; i < chunk->part_count; i++)
-        if (!system->pieces[system->pieces[system->parts[chunk->first_part + i].piece].lead].settled) return 0;
+    for (i = 0; i < chunk->partial_count; i++)
+        if (!system->model
+                 .components[system->model.components[system->mesh.partials[chunk->first_partial + i].component].lead]
+                 .settled)
+            return 0;
     return 1;
 }
 
 /* What a chunk has of a piece of its nodes */
-static gxsp_part *gxsp_find_part(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t piece) {
-    gxsp_part *parts = system->parts + chunk->first_part;
-    uint32_t low = 0, high = chunk->part_count - 1;
+static gxsp_partial *gxsp_find_partial(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t component) {
+    gxsp_partial *partials = system->mesh.partials + chunk->first_partial;
+    uint32_t low = 0, high = chunk->partial_count - 1;
     while (low < high) {
         const uint32_t middle = low + (high - low) / 2;
-        if (parts[middle].piece < piece)
+        if (partials[middle].component < component)
             low = middle + 1;
         else
             high = middle;
     }
-    return &parts[low];
+    return &partials[low];
 }
 
 /* Energies of a block's elements, added to the parts that they belong to */
 static void gxsp_add_energies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, gxsp_lanes *energies) {
-    const uint32_t *copies = system->nodes + chunk->first_node;
+    const uint32_t *copies = system->mesh.nodes + chunk->first_node;
     int k, l;
-    for (k = 0; k < 3 && chunk->part_count == 1; k++) {
+    for (k = 0; k < 3 && chunk->partial_count == 1; k++) {
         double sum = 0;
         for (l = 0; l < GXSP_LANES; l++) sum += energies[k][l];
-        system->parts[chunk->first_part].energies[k] += sum;
+        system->mesh.partials[chunk->first_partial].energies[k] += sum;
     }
-    for (l = 0; l < GXSP_LANES && chunk->part_count > 1; l++) {
-        gxsp_part *part = gxsp_find_part(system, chunk, system->piece[copies[chunk->corners[b].node[0][l]]]);
+    for (l = 0; l < GXSP_LANES && chunk->partial_count > 1; l++) {
+        gxsp_partial *part =
+            gxsp_find_partial(system, chunk, system->model.component[copies[chunk->corners[b].node[0][l]]]);
         for (k = 0; k < 3; k++) part->energies[k] += energies[k][l];
     }
 }
@@ -2433,36 +2481,36 @@ static void gxsp_add_energies(const gxsp_system *system, const gxsp_chunk *chunk
 static void gxsp_task_state(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     gxsp_system *system = pass->system;
-    const gxsp_chunk *chunk = &system->chunks[index];
-    double *slots = &system->slots[chunk->first_node][0];
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    double *slots = &system->vectors.slots[chunk->first_node][0];
     uint32_t b;
     int k, l, inertia;
     double rest_at[3 * 4 * GXSP_CHUNK + 1], at[3 * 4 * GXSP_CHUNK + 1];
     gxsp_lanes corners[12], x[12], other[12], forces[12], made[9];
     if (gxsp_chunk_settled(system, chunk)) return;
-    for (b = 0; b < chunk->part_count; b++)
-        memset(system->parts[chunk->first_part + b].energies, 0, sizeof system->parts->energies);
+    for (b = 0; b < chunk->partial_count; b++)
+        memset(system->mesh.partials[chunk->first_partial + b].energies, 0, sizeof system->mesh.partials->energies);
     memset(slots, 0, 3 * (size_t)chunk->node_count * sizeof *slots);
-    if (system->chunk_still[index]) return;
+    if (system->state.chunk_still[index]) return;
     inertia = pass->inertia && gxsp_accelerates(system, chunk, pass->from);
     gxsp_chunk_load(system, chunk, pass->from, at);
-    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->positions, rest_at);
+    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, rest_at);
     memset(forces, 0, sizeof forces);
     for (b = 0; b < chunk->block_count; b++) {
         const gxsp_rest *rest = &chunk->rest[b];
         gxsp_lanes ahead[9], led[12], energies[3], *gradients;
         gxsp_state s;
-        gxsp_fetch_block(system, index, b, GXSP_RESTS_AHEAD, 0);
+        gxsp_prefetch_block(system, index, b, GXSP_RESTS_AHEAD, 0);
         gxsp_block_load(chunk, b, at, x);
         gradients = gxsp_block_gradients(chunk, b, rest_at, corners, made);
         if (inertia || pass->turned) /* never both: what is turned has no inertia */
-            gxsp_block_load_copies(system, chunk, b, inertia ? system->target : pass->turned, other);
+            gxsp_block_load_copies(system, chunk, b, inertia ? system->vectors.target : pass->turned, other);
         gxsp_block_parameters(pass->materials, rest, &s);
         gxsp_block_gradient(gradients, x, s.g);
         if (pass->turned) gxsp_block_gradient(gradients, other, ahead);
         if (pass->nudge && chunk->kind != GXS_LINEAR && chunk->kind != GXS_CUSTOM) gxsp_nudge(s.g);
         gxsp_material_state(chunk->kind, &s);
-        if (pass->turned && chunk->kind != GXS_LINEAR) gxsp_turn_stress(s.g, ahead, s.p);
+        if (pass->turned && chunk->kind != GXS_LINEAR) gxsp_rotate_stress(s.g, ahead, s.p);
         gxsp_block_force(rest->weight, gradients, s.p, forces);
         for (l = 0; l < GXSP_LANES; l++) {
             energies[0][l] = rest->weight[l] * s.energy[l];
@@ -2483,14 +2531,14 @@ static void gxsp_task_state(void *context, size_t index) {
 static void gxsp_task_sum(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
-    const double *slots = &system->slots[0][0];
+    const double *slots = &system->vectors.slots[0][0];
     size_t i, end = gxsp_range(system, index, &i);
     for (; i < end; i++) {
         double x = 0, y = 0, z = 0;
         uint32_t s;
-        for (s = system->copy_start[i]; s < system->copy_start[i + 1]; s++) {
-            const double *from = slots + 3 * (size_t)system->copy_slot[s];
-            gxsp_fetch(slots + 3 * (size_t)system->copy_slot[s + GXSP_AHEAD], 3 * sizeof *slots);
+        for (s = system->mesh.copy_start[i]; s < system->mesh.copy_start[i + 1]; s++) {
+            const double *from = slots + 3 * (size_t)system->mesh.copy_slot[s];
+            gxsp_prefetch(slots + 3 * (size_t)system->mesh.copy_slot[s + GXSP_AHEAD], 3 * sizeof *slots);
             x += from[0], y += from[1], z += from[2];
         }
         pass->sum[3 * i] = x, pass->sum[3 * i + 1] = y, pass->sum[3 * i + 2] = z;
@@ -2498,8 +2546,8 @@ static void gxsp_task_sum(void *context, size_t index) {
 }
 
 /* The piece that leads a copy's */
-static gxsp_piece *gxsp_lead_of(const gxsp_system *system, size_t copy) {
-    return &system->pieces[system->pieces[system->piece[copy]].lead];
+static gxsp_component *gxsp_lead_of(const gxsp_system *system, size_t copy) {
+    return &system->model.components[system->model.components[system->model.component[copy]].lead];
 }
 
 /* Energies of the pieces' elements at from, and elastic + inertial forces, 0 on what sleeps. turned: see gxsp_pass */
@@ -2510,24 +2558,27 @@ static void gxsp_evaluate_elements(gxsp_system *system, double rate, const doubl
     int k;
     memset(&pass, 0, sizeof pass);
     pass.system = system;
-    pass.materials = system->damped;
+    pass.materials = system->state.damped;
     pass.rate = rate;
     pass.from = from;
     pass.sum = force;
-    pass.inertia = rate > 0 && !system->lumped_mass;
+    pass.inertia = rate > 0 && !system->model.lumped_mass;
     pass.turned = turned;
     pass.nudge = nudge;
-    gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_state, &pass);
+    gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_state, &pass);
     gxsp_over_ranges(system, gxsp_task_sum, &pass, NULL, 0);
-    for (p = 0; p < system->piece_count; p++) memset(system->pieces[p].energies, 0, sizeof system->pieces->energies);
-    for (p = 0; p < system->part_count; p++)
+    for (p = 0; p < system->model.component_count; p++)
+        memset(system->model.components[p].energies, 0, sizeof system->model.components->energies);
+    for (p = 0; p < system->mesh.partial_count; p++)
         for (k = 0; k < 3; k++)
-            system->pieces[system->pieces[system->parts[p].piece].lead].energies[k] += system->parts[p].energies[k];
-    if (rate > 0 && system->lumped_mass) {
+            system->model.components[system->model.components[system->mesh.partials[p].component].lead].energies[k] +=
+                system->mesh.partials[p].energies[k];
+    if (rate > 0 && system->model.lumped_mass) {
         size_t i;
-        for (i = 0; i < 3 * system->n; i++)
-            if (!system->still[i / 3]) {
-                double moved = from[i] - system->target[i], inertia = rate * system->lumped[i / 3] * moved;
+        for (i = 0; i < 3 * system->model.n; i++)
+            if (!system->state.still[i / 3]) {
+                double moved = from[i] - system->vectors.target[i],
+                       inertia = rate * system->model.lumped[i / 3] * moved;
                 double *energies = gxsp_lead_of(system, i / 3)->energies;
                 force[i] += inertia;
                 energies[1] += 0.5 * inertia * moved;
@@ -2587,13 +2638,13 @@ static int gxsp_whole(const double *mass) {
 
 /* An element's place in the order: class, then piece, then curve, the last of each ten bits first */
 typedef struct gxsp_sorted {
-    uint32_t place, piece, class_index;
+    uint32_t place, component, class_index;
     uint32_t index; /* of the element or, while pieces are sorted, of the piece */
 } gxsp_sorted;
 
 static uint32_t gxsp_sorted_digit(const gxsp_sorted *of, int pass) {
     return pass < 3 ? of->place >> (10 * pass) & 1023u
-         : pass < 6 ? of->piece >> (10 * (pass - 3)) & 1023u
+         : pass < 6 ? of->component >> (10 * (pass - 3)) & 1023u
                     : of->class_index;
 }
 
@@ -2635,19 +2686,19 @@ static void gxsp_place_elements(const gxs_model *model, gxsp_sorted *sorted) {
 }
 
 /* Pieces in the order in which the curve first meets them. rank: by piece */
-static void gxsp_rank_pieces(const gxsp_system *system, const gxs_model *model, const gxsp_sorted *elements,
-                             gxsp_sorted *pieces, gxsp_sorted *other, uint32_t *rank) {
+static void gxsp_rank_components(const gxsp_system *system, const gxs_model *model, const gxsp_sorted *elements,
+                                 gxsp_sorted *components, gxsp_sorted *other, uint32_t *rank) {
     size_t i;
-    for (i = 0; i < system->piece_count; i++) {
-        pieces[i].index = (uint32_t)i;
-        pieces[i].place = UINT32_MAX;
+    for (i = 0; i < system->model.component_count; i++) {
+        components[i].index = (uint32_t)i;
+        components[i].place = UINT32_MAX;
     }
     for (i = 0; i < model->element_count; i++) {
-        gxsp_sorted *piece = &pieces[system->piece[model->elements[i].copy[0]]];
-        piece->place = elements[i].place < piece->place ? elements[i].place : piece->place;
+        gxsp_sorted *component = &components[system->model.component[model->elements[i].copy[0]]];
+        component->place = elements[i].place < component->place ? elements[i].place : component->place;
     }
-    pieces = gxsp_sort(pieces, other, system->piece_count);
-    for (i = 0; i < system->piece_count; i++) rank[pieces[i].index] = (uint32_t)i;
+    components = gxsp_sort(components, other, system->model.component_count);
+    for (i = 0; i < system->model.component_count; i++) rank[components[i].index] = (uint32_t)i;
 }
 
 /* Are an element's gradients those that the rest positions x of its corners say, but for rounding? */
@@ -2690,19 +2741,20 @@ static uint32_t gxsp_class(gxs_material_kind kind, const gxs_element *element, u
 /* The order of elements. Elements of one piece are together, so that chunks have few nodes and sleep with their piece.
  */
 static gxsp_sorted *gxsp_order_elements(const gxsp_system *system, const gxs_model *model, gxsp_pool *scratch) {
-    const size_t count = model->element_count, pieces = system->piece_count, most = count > pieces ? count : pieces;
+    const size_t count = model->element_count, components = system->model.component_count,
+                 most = count > components ? count : components;
     gxsp_sorted *sorted = (gxsp_sorted *)gxsp_take(scratch, count, sizeof *sorted);
     gxsp_sorted *other = (gxsp_sorted *)gxsp_take(scratch, most, sizeof *other);
-    gxsp_sorted *ranked = (gxsp_sorted *)gxsp_take(scratch, pieces, sizeof *ranked);
-    uint32_t *rank = (uint32_t *)gxsp_take(scratch, pieces, sizeof(uint32_t));
+    gxsp_sorted *ranked = (gxsp_sorted *)gxsp_take(scratch, components, sizeof *ranked);
+    uint32_t *rank = (uint32_t *)gxsp_take(scratch, components, sizeof(uint32_t));
     size_t i;
     if (scratch->failed) return NULL;
     gxsp_place_elements(model, sorted);
-    gxsp_rank_pieces(system, model, sorted, ranked, other, rank);
+    gxsp_rank_components(system, model, sorted, ranked, other, rank);
     for (i = 0; i < count; i++) {
         const gxs_element *element = &model->elements[i];
         sorted[i].index = (uint32_t)i;
-        sorted[i].piece = rank[system->piece[element->copy[0]]];
+        sorted[i].component = rank[system->model.component[element->copy[0]]];
         sorted[i].class_index =
             gxsp_class(model->materials[element->material].kind, element, model->lumped_mass, model->positions, NULL);
     }
@@ -2852,16 +2904,16 @@ static void gxsp_set_corners(const gxsp_chunk *chunk, uint32_t (*nodes)[4]) {
     for (b = 0; b < chunk->block_count; b++) {
         gxsp_corners *corner = &chunk->corners[b];
         const gxsp_corners *before = b > 0 ? corner - 1 : corner;
-        chunk->fresh[b] = b > 0 ? 0 : 15;
+        chunk->changed[b] = b > 0 ? 0 : 15;
         for (k = 0; k < 4; k++)
             for (l = 0; l < GXSP_LANES; l++) {
                 const uint32_t node = nodes[b * GXSP_LANES + l][k];
                 corner->node[k][l] = node != GXSP_NONE ? (uint16_t)node : b > 0 ? before->node[k][l] : 0;
-                chunk->fresh[b] =
-                    (uint8_t)(chunk->fresh[b] | (corner->node[k][l] != before->node[k][l] ? 1u << k : 0u));
+                chunk->changed[b] =
+                    (uint8_t)(chunk->changed[b] | (corner->node[k][l] != before->node[k][l] ? 1u << k : 0u));
             }
     }
-    chunk->fresh[b] = 15;
+    chunk->changed[b] = 15;
 }
 
 /* --- lanes: which element of a chunk goes where ---
@@ -2870,18 +2922,18 @@ static void gxsp_set_corners(const gxsp_chunk *chunk, uint32_t (*nodes)[4]) {
  * the block before, in each lane. So lanes are made of chains around an edge: four elements, each with all but one
  * corner of the one before. */
 
-enum { GXSP_CHAIN = 4, GXSP_FACES = 4096 };
+enum { GXSP_STRIP = 4, GXSP_FACES = 4096 };
 
-typedef struct gxsp_seating {
+typedef struct gxsp_layout {
     uint32_t (*nodes)[4]; /* count: of each element */
     uint32_t count;
     uint16_t across[GXSP_CHUNK][4]; /* the element beyond the face that a corner is not on, or count */
-    uint8_t seated[GXSP_CHUNK];
-    uint16_t chain[GXSP_CHUNK];   /* elements of the chains of one length, one after the other */
+    uint8_t placed[GXSP_CHUNK];
+    uint16_t strip[GXSP_CHUNK];   /* elements of the chains of one length, one after the other */
     uint8_t turn[GXSP_CHUNK][4];  /* and the order of their corners */
-    uint16_t seat[GXSP_CHUNK];    /* by lane: the element there, or count */
+    uint16_t element[GXSP_CHUNK]; /* by lane: the element there, or count */
     uint8_t order[GXSP_CHUNK][4]; /* by lane */
-} gxsp_seating;
+} gxsp_layout;
 
 /* Where three nodes stand in an element: their corners, and the fourth one; 4: not each is there once. Without
  * branches, which could not be foretold */
@@ -2905,21 +2957,21 @@ static void gxsp_face_of(const uint32_t *element, int corner, uint32_t *face) {
 }
 
 /* Fills across by a table of faces that have been met. */
-static void gxsp_find_across(gxsp_seating *seating) {
+static void gxsp_find_across(gxsp_layout *layout) {
     uint16_t table[GXSP_FACES]; /* 4 x element + corner, from 1 */
     uint32_t f, at, face[3];
     uint8_t corners[3];
     memset(table, 0, sizeof table);
-    for (f = 0; f < 4 * seating->count; f++) {
-        seating->across[f / 4][f % 4] = (uint16_t)seating->count;
-        gxsp_face_of(seating->nodes[f / 4], (int)(f % 4), face);
+    for (f = 0; f < 4 * layout->count; f++) {
+        layout->across[f / 4][f % 4] = (uint16_t)layout->count;
+        gxsp_face_of(layout->nodes[f / 4], (int)(f % 4), face);
         for (at = (face[0] * face[0] + face[1] * face[1] + face[2] * face[2]) * 40503u / 16 % GXSP_FACES; table[at];
              at = (at + 1) % GXSP_FACES) {
             const uint32_t other = (table[at] - 1u) / 4;
-            const int corner = gxsp_find_face(seating->nodes[other], face, corners);
+            const int corner = gxsp_find_face(layout->nodes[other], face, corners);
             if (corner != (int)((table[at] - 1u) % 4)) continue;
-            seating->across[f / 4][f % 4] = (uint16_t)other;
-            seating->across[other][corner] = (uint16_t)(f / 4);
+            layout->across[f / 4][f % 4] = (uint16_t)other;
+            layout->across[other][corner] = (uint16_t)(f / 4);
             break;
         }
         if (!table[at]) table[at] = (uint16_t)(f + 1);
@@ -2927,51 +2979,51 @@ static void gxsp_find_across(gxsp_seating *seating) {
 }
 
 /* Walks from the chain's first element around the edge of its first two corners. Is there a way for length elements? */
-static int gxsp_walk_chain(const gxsp_seating *seating, uint32_t length, uint16_t *chain, uint8_t (*order)[4]) {
+static int gxsp_walk_strip(const gxsp_layout *layout, uint32_t length, uint16_t *strip, uint8_t (*order)[4]) {
     uint32_t i, k;
     for (i = 1; i < length; i++) {
-        const uint32_t moving = i % 2 ? 2 : 3, e = seating->across[chain[i - 1]][order[i - 1][moving]];
-        const uint32_t *before = seating->nodes[chain[i - 1]];
+        const uint32_t moving = i % 2 ? 2 : 3, e = layout->across[strip[i - 1]][order[i - 1][moving]];
+        const uint32_t *before = layout->nodes[strip[i - 1]];
         uint32_t face[3];
         uint8_t corners[3] = {0, 0, 0};
         int other;
-        if (e == seating->count || seating->seated[e]) return 0;
+        if (e == layout->count || layout->placed[e]) return 0;
         for (k = 0; k < i; k++)
-            if (chain[k] == e) return 0;
+            if (strip[k] == e) return 0;
         face[0] = before[order[i - 1][0]], face[1] = before[order[i - 1][1]],
         face[2] = before[order[i - 1][5 - moving]];
-        other = gxsp_find_face(seating->nodes[e], face, corners);
+        other = gxsp_find_face(layout->nodes[e], face, corners);
         if (other == 4) return 0;
         order[i][moving] = (uint8_t)other;
         order[i][0] = corners[0], order[i][1] = corners[1], order[i][5 - moving] = corners[2];
-        chain[i] = (uint16_t)e;
+        strip[i] = (uint16_t)e;
     }
     return 1;
 }
 
 /* A chain of so many elements that begins with e, which is not seated */
-static int gxsp_find_chain(const gxsp_seating *seating, uint32_t e, uint32_t length, uint16_t *chain,
+static int gxsp_find_strip(const gxsp_layout *layout, uint32_t e, uint32_t length, uint16_t *strip,
                            uint8_t (*order)[4]) {
     static const uint8_t edges[6][4] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2},
                                         {1, 2, 0, 3}, {1, 3, 0, 2}, {2, 3, 0, 1}};
     int edge, turned;
     for (edge = 0; edge < 6; edge++)
         for (turned = 0; turned < 2; turned++) {
-            chain[0] = (uint16_t)e;
+            strip[0] = (uint16_t)e;
             memcpy(order[0], edges[edge], 4);
             order[0][2] = edges[edge][2 + turned], order[0][3] = edges[edge][3 - turned];
-            if (gxsp_walk_chain(seating, length, chain, order)) return 1;
+            if (gxsp_walk_strip(layout, length, strip, order)) return 1;
         }
     return 0;
 }
 
 /* Chains of so many elements, of those not seated yet. Returns how many chains there are. */
-static uint32_t gxsp_list_chains(gxsp_seating *seating, uint32_t length) {
+static uint32_t gxsp_list_strips(gxsp_layout *layout, uint32_t length) {
     uint32_t e, i, found = 0;
-    for (e = 0; e < seating->count; e++)
-        if (!seating->seated[e] &&
-            gxsp_find_chain(seating, e, length, &seating->chain[found * length], &seating->turn[found * length])) {
-            for (i = 0; i < length; i++) seating->seated[seating->chain[found * length + i]] = 1;
+    for (e = 0; e < layout->count; e++)
+        if (!layout->placed[e] &&
+            gxsp_find_strip(layout, e, length, &layout->strip[found * length], &layout->turn[found * length])) {
+            for (i = 0; i < length; i++) layout->placed[layout->strip[found * length + i]] = 1;
             found++;
         }
     return found;
@@ -2979,50 +3031,50 @@ static uint32_t gxsp_list_chains(gxsp_seating *seating, uint32_t length) {
 
 /* Seats chains of so many elements in the blocks from first on, side by side, each in a lane. All of single elements;
  * of longer ones those that fill blocks. Returns the first block that is left. */
-static uint32_t gxsp_seat_chains(gxsp_seating *seating, uint32_t blocks, uint32_t length, uint32_t first) {
-    const uint32_t chains = gxsp_list_chains(seating, length), rows = length > 1 ? chains / GXSP_LANES : blocks - first;
+static uint32_t gxsp_place_strips(gxsp_layout *layout, uint32_t blocks, uint32_t length, uint32_t first) {
+    const uint32_t strips = gxsp_list_strips(layout, length), rows = length > 1 ? strips / GXSP_LANES : blocks - first;
     uint32_t c, i;
-    for (c = 0; c < chains; c++)
+    for (c = 0; c < strips; c++)
         for (i = 0; i < length; i++) {
-            const uint32_t at = c * length + i, e = seating->chain[at];
+            const uint32_t at = c * length + i, e = layout->strip[at];
             const uint32_t lane = c < rows * GXSP_LANES ? (first + c % rows * length + i) * GXSP_LANES + c / rows : 0;
-            seating->seated[e] = c < rows * GXSP_LANES;
-            if (!seating->seated[e]) continue;
-            seating->seat[lane] = (uint16_t)e;
-            memcpy(seating->order[lane], seating->turn[at], 4);
+            layout->placed[e] = c < rows * GXSP_LANES;
+            if (!layout->placed[e]) continue;
+            layout->element[lane] = (uint16_t)e;
+            memcpy(layout->order[lane], layout->turn[at], 4);
         }
     return first + rows * length;
 }
 
 /* The lane of each element of a chunk. nodes: of the elements, neighbours together */
-static void gxsp_seat_elements(gxsp_seating *seating, uint32_t (*nodes)[4], uint32_t count, uint32_t blocks) {
+static void gxsp_assign_lanes(gxsp_layout *layout, uint32_t (*nodes)[4], uint32_t count, uint32_t blocks) {
     uint32_t lane, length, first = 0;
-    seating->nodes = nodes;
-    seating->count = count;
-    memset(seating->seated, 0, sizeof seating->seated);
-    for (lane = 0; lane < GXSP_CHUNK; lane++) seating->seat[lane] = (uint16_t)count;
-    gxsp_find_across(seating);
-    for (length = GXSP_CHAIN; length > 0; length /= 2) first = gxsp_seat_chains(seating, blocks, length, first);
+    layout->nodes = nodes;
+    layout->count = count;
+    memset(layout->placed, 0, sizeof layout->placed);
+    for (lane = 0; lane < GXSP_CHUNK; lane++) layout->element[lane] = (uint16_t)count;
+    gxsp_find_across(layout);
+    for (length = GXSP_STRIP; length > 0; length /= 2) first = gxsp_place_strips(layout, blocks, length, first);
 }
 
 /* Elements of a chunk in their lanes. elements: sorted; nodes: theirs, numbered in the chunk */
 static void gxsp_fill_chunk(const gxsp_chunk *chunk, const gxs_model *model, const gxsp_sorted *elements,
                             uint32_t (*nodes)[4], uint32_t count) {
-    gxsp_seating seating;
-    uint32_t seated[GXSP_CHUNK][4], lane;
+    gxsp_layout layout;
+    uint32_t placed[GXSP_CHUNK][4], lane;
     int k;
-    gxsp_seat_elements(&seating, nodes, count, chunk->block_count);
-    memset(seated, 0xff, sizeof seated);
+    gxsp_assign_lanes(&layout, nodes, count, chunk->block_count);
+    memset(placed, 0xff, sizeof placed);
     for (lane = 0; lane < chunk->block_count * GXSP_LANES; lane++) {
-        const uint32_t e = seating.seat[lane];
+        const uint32_t e = layout.element[lane];
         if (e == count) { /* of no weight, but of a material there is */
             chunk->rest[lane / GXSP_LANES].material[lane % GXSP_LANES] = model->elements[elements[0].index].material;
             continue;
         }
-        gxsp_place_element(chunk, &model->elements[elements[e].index], seating.order[lane], lane, model->lumped_mass);
-        for (k = 0; k < 4; k++) seated[lane][k] = nodes[e][seating.order[lane][k]];
+        gxsp_place_element(chunk, &model->elements[elements[e].index], layout.order[lane], lane, model->lumped_mass);
+        for (k = 0; k < 4; k++) placed[lane][k] = nodes[e][layout.order[lane][k]];
     }
-    gxsp_set_corners(chunk, seated);
+    gxsp_set_corners(chunk, placed);
 }
 
 /* Blocks and nodes of the chunks */
@@ -3030,21 +3082,21 @@ static void gxsp_fill_chunks(gxsp_system *system, const gxs_model *model, const 
                              gxsp_numbers *numbers) {
     uint32_t copies[GXSP_CHUNK][4], c;
     size_t first = 0;
-    for (c = 0; c < system->chunk_count; c++) {
-        gxsp_chunk *chunk = &system->chunks[c];
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        gxsp_chunk *chunk = &system->mesh.chunks[c];
         uint32_t e;
         for (e = 0; first + e < model->element_count && e < chunk->block_count * GXSP_LANES &&
                     sorted[first + e].class_index == chunk->class_index;
              e++) {
             const gxs_element *element = &model->elements[sorted[first + e].index];
-            gxsp_fetch(element, sizeof *element);
+            gxsp_prefetch(element, sizeof *element);
             memcpy(copies[e], element->copy, sizeof copies[e]);
         }
-        chunk->first_node = (uint32_t)system->slot_count;
-        chunk->node_count = gxsp_number_nodes(copies, e, numbers, system->nodes + system->slot_count);
+        chunk->first_node = (uint32_t)system->mesh.slot_count;
+        chunk->node_count = gxsp_number_nodes(copies, e, numbers, system->mesh.nodes + system->mesh.slot_count);
         gxsp_fill_chunk(chunk, model, sorted + first, copies, e);
         first += e;
-        system->slot_count += chunk->node_count;
+        system->mesh.slot_count += chunk->node_count;
     }
 }
 
@@ -3052,17 +3104,18 @@ static void gxsp_fill_chunks(gxsp_system *system, const gxs_model *model, const 
 static uint32_t gxsp_plan_chunks(gxsp_system *system, const gxsp_sorted *sorted, gxsp_chunk *chunks) {
     uint32_t chunk_count = 0;
     size_t i = 0;
-    system->block_count = 0;
-    while (i < system->element_count) {
+    system->mesh.block_count = 0;
+    while (i < system->model.element_count) {
         uint32_t class_index = sorted[i].class_index, count = 0;
         gxsp_chunk chunk;
         memset(&chunk, 0, sizeof chunk);
-        while (i < system->element_count && sorted[i].class_index == class_index && count < GXSP_CHUNK) ++i, ++count;
+        while (i < system->model.element_count && sorted[i].class_index == class_index && count < GXSP_CHUNK)
+            ++i, ++count;
         chunk.class_index = class_index;
         chunk.kind = (gxs_material_kind)(class_index / 4);
-        chunk.first_block = (uint32_t)system->block_count;
+        chunk.first_block = (uint32_t)system->mesh.block_count;
         chunk.block_count = (count + GXSP_LANES - 1) / GXSP_LANES;
-        system->block_count += chunk.block_count;
+        system->mesh.block_count += chunk.block_count;
         if (chunks) chunks[chunk_count] = chunk;
         chunk_count++;
     }
@@ -3076,7 +3129,7 @@ static void gxsp_blocks_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count
     gxsp_gradients *gradients;
     gxsp_moments *moments;
     uint32_t *groups;
-    uint8_t *fresh;
+    uint8_t *changed;
     size_t blocks = 0, own = 0, general = 0;
     uint32_t c;
     for (c = 0; c < count; c++) {
@@ -3089,20 +3142,20 @@ static void gxsp_blocks_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count
     groups = (uint32_t *)gxsp_take(pool, blocks * GXSP_LANES, sizeof(uint32_t));
     gradients = (gxsp_gradients *)gxsp_take(pool, own, sizeof(gxsp_gradients));
     moments = (gxsp_moments *)gxsp_take(pool, general, sizeof(gxsp_moments));
-    fresh = (uint8_t *)gxsp_take(pool, blocks + count, 1);
+    changed = (uint8_t *)gxsp_take(pool, blocks + count, 1);
     if (pool->failed) return;
     memset(groups, 0xff, blocks * GXSP_LANES * sizeof *groups);
     for (c = 0; c < count; c++) {
         chunks[c].rest = rest;
         chunks[c].corners = corners;
         chunks[c].groups = groups;
-        chunks[c].fresh = fresh;
+        chunks[c].changed = changed;
         chunks[c].gradients = chunks[c].class_index & 2 ? gradients : NULL;
         chunks[c].moments = chunks[c].class_index & 1 ? moments : NULL;
         rest += chunks[c].block_count;
         corners += chunks[c].block_count;
         groups += chunks[c].block_count * GXSP_LANES;
-        fresh += chunks[c].block_count + 1;
+        changed += chunks[c].block_count + 1;
         gradients += chunks[c].class_index & 2 ? chunks[c].block_count : 0;
         moments += chunks[c].class_index & 1 ? chunks[c].block_count : 0;
     }
@@ -3132,40 +3185,41 @@ static void gxsp_tangents_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t cou
 static void gxsp_list_slots(gxsp_system *system) {
     uint32_t i;
     size_t s;
-    memset(system->copy_start, 0, (system->n + 2) * sizeof *system->copy_start);
-    for (s = 0; s < system->slot_count; s++) system->copy_start[system->nodes[s] + 2]++;
-    for (i = 0; i < system->n; i++) system->copy_start[i + 2] += system->copy_start[i + 1];
-    for (s = 0; s < system->slot_count; s++) /* slots are in the order of chunks */
-        system->copy_slot[system->copy_start[system->nodes[s] + 1]++] = (uint32_t)s;
-    memset(system->copy_slot + system->slot_count, 0, GXSP_AHEAD * sizeof *system->copy_slot);
-    memset(system->nodes + system->slot_count, 0, GXSP_AHEAD * sizeof *system->nodes);
+    memset(system->mesh.copy_start, 0, (system->model.n + 2) * sizeof *system->mesh.copy_start);
+    for (s = 0; s < system->mesh.slot_count; s++) system->mesh.copy_start[system->mesh.nodes[s] + 2]++;
+    for (i = 0; i < system->model.n; i++) system->mesh.copy_start[i + 2] += system->mesh.copy_start[i + 1];
+    for (s = 0; s < system->mesh.slot_count; s++) /* slots are in the order of chunks */
+        system->mesh.copy_slot[system->mesh.copy_start[system->mesh.nodes[s] + 1]++] = (uint32_t)s;
+    memset(system->mesh.copy_slot + system->mesh.slot_count, 0, GXSP_AHEAD * sizeof *system->mesh.copy_slot);
+    memset(system->mesh.nodes + system->mesh.slot_count, 0, GXSP_AHEAD * sizeof *system->mesh.nodes);
 }
 
 static void gxsp_chunks_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model) {
     gxsp_sorted *sorted = gxsp_order_elements(system, model, scratch);
     gxsp_numbers numbers;
     uint32_t *nodes;
-    numbers.local = (uint32_t *)gxsp_take(scratch, system->n, sizeof(uint32_t));
-    numbers.stamp = (uint32_t *)gxsp_take(scratch, system->n, sizeof(uint32_t));
+    numbers.local = (uint32_t *)gxsp_take(scratch, system->model.n, sizeof(uint32_t));
+    numbers.stamp = (uint32_t *)gxsp_take(scratch, system->model.n, sizeof(uint32_t));
     numbers.round = 0;
     if (scratch->failed) return;
-    system->chunk_count = gxsp_plan_chunks(system, sorted, NULL);
-    system->chunks = (gxsp_chunk *)gxsp_take(&system->pool, system->chunk_count, sizeof(gxsp_chunk));
-    system->chunk_collapsed = (uint8_t *)gxsp_take(&system->pool, system->chunk_count, 1);
-    system->chunk_still = (uint8_t *)gxsp_take(&system->pool, system->chunk_count, 1);
-    system->copy_start = (uint32_t *)gxsp_take(&system->pool, system->n + 2, sizeof(uint32_t));
+    system->mesh.chunk_count = gxsp_plan_chunks(system, sorted, NULL);
+    system->mesh.chunks = (gxsp_chunk *)gxsp_take(&system->pool, system->mesh.chunk_count, sizeof(gxsp_chunk));
+    system->state.chunk_collapsed = (uint8_t *)gxsp_take(&system->pool, system->mesh.chunk_count, 1);
+    system->state.chunk_still = (uint8_t *)gxsp_take(&system->pool, system->mesh.chunk_count, 1);
+    system->mesh.copy_start = (uint32_t *)gxsp_take(&system->pool, system->model.n + 2, sizeof(uint32_t));
     /* its size is not known yet */
-    system->nodes = (uint32_t *)gxsp_take(scratch, 4 * system->element_count, sizeof(uint32_t));
+    system->mesh.nodes = (uint32_t *)gxsp_take(scratch, 4 * system->model.element_count, sizeof(uint32_t));
     if (scratch->failed || system->pool.failed) return;
-    (void)gxsp_plan_chunks(system, sorted, system->chunks);
-    gxsp_blocks_make(&system->pool, system->chunks, system->chunk_count);
+    (void)gxsp_plan_chunks(system, sorted, system->mesh.chunks);
+    gxsp_blocks_make(&system->pool, system->mesh.chunks, system->mesh.chunk_count);
     if (system->pool.failed) return;
     gxsp_fill_chunks(system, model, sorted, &numbers);
-    system->copy_slot = (uint32_t *)gxsp_take(&system->pool, system->slot_count + GXSP_AHEAD, sizeof(uint32_t));
-    nodes = (uint32_t *)gxsp_take(&system->pool, system->slot_count + GXSP_AHEAD, sizeof(uint32_t));
+    system->mesh.copy_slot =
+        (uint32_t *)gxsp_take(&system->pool, system->mesh.slot_count + GXSP_AHEAD, sizeof(uint32_t));
+    nodes = (uint32_t *)gxsp_take(&system->pool, system->mesh.slot_count + GXSP_AHEAD, sizeof(uint32_t));
     if (system->pool.failed) return;
-    memcpy(nodes, system->nodes, system->slot_count * sizeof(uint32_t));
-    system->nodes = nodes;
+    memcpy(nodes, system->mesh.nodes, system->mesh.slot_count * sizeof(uint32_t));
+    system->mesh.nodes = nodes;
     gxsp_list_slots(system);
 }
 
@@ -3181,23 +3235,23 @@ static int gxsp_supports(const gxs_element *element, int i) {
 static void gxsp_find_fixed(gxsp_system *system, const gxs_model *model) {
     size_t e, i;
     int k;
-    memset(system->fixed, 1, system->n);
+    memset(system->model.fixed, 1, system->model.n);
     for (e = 0; e < model->element_count; e++) {
         const gxs_element *element = &model->elements[e];
         double rows[4];
         gxsp_row_masses(element, rows);
         for (k = 0; k < 4; k++) {
-            if (gxsp_supports(element, k)) system->fixed[element->copy[k]] = 0;
-            system->lumped[element->copy[k]] += rows[k];
+            if (gxsp_supports(element, k)) system->model.fixed[element->copy[k]] = 0;
+            system->model.lumped[element->copy[k]] += rows[k];
         }
     }
     if (model->held)
-        for (i = 0; i < system->n; i++)
-            if (model->held[i]) system->held[i] = system->fixed[i] = 1;
+        for (i = 0; i < system->model.n; i++)
+            if (model->held[i]) system->model.held[i] = system->model.fixed[i] = 1;
 }
 
 static inline int gxsp_follows(const gxsp_system *system, size_t copy) {
-    return system->follower_count > 0 && system->follower[copy] != GXSP_NONE;
+    return system->model.follower_count > 0 && system->model.follower[copy] != GXSP_NONE;
 }
 
 /* Index of a constraint that cannot be, as its copy has two or a master follows others; SIZE_MAX if all can. held: n
@@ -3220,15 +3274,16 @@ static size_t gxsp_bad_constraint(const gxs_constraint *constraints, size_t coun
 /* Room for so many followers, and for the copies that there are */
 static void gxsp_followers_room(gxsp_system *system, size_t count) {
     gxsp_pool *pool = &system->pool;
-    if (count > system->follower_room) {
-        system->follower_room = (uint32_t)(count + count / 8);
-        system->followers =
-            (gxsp_follower *)gxsp_retake(pool, system->followers, 0, system->follower_room, sizeof(gxsp_follower));
+    if (count > system->model.follower_room) {
+        system->model.follower_room = (uint32_t)(count + count / 8);
+        system->model.followers = (gxsp_follower *)gxsp_grow(pool, system->model.followers, 0,
+                                                             system->model.follower_room, sizeof(gxsp_follower));
     }
-    if (count > 0 && system->n > system->follower_copies) {
-        system->follower_copies = system->n > system->copy_room ? system->n : system->copy_room;
-        system->follower =
-            (uint32_t *)gxsp_retake(pool, system->follower, 0, system->follower_copies, sizeof(uint32_t));
+    if (count > 0 && system->model.n > system->model.follower_copies) {
+        system->model.follower_copies =
+            system->model.n > system->model.copy_room ? system->model.n : system->model.copy_room;
+        system->model.follower =
+            (uint32_t *)gxsp_grow(pool, system->model.follower, 0, system->model.follower_copies, sizeof(uint32_t));
     }
 }
 
@@ -3236,17 +3291,17 @@ static void gxsp_followers_room(gxsp_system *system, size_t count) {
 static void gxsp_set_followers(gxsp_system *system, const gxs_constraint *constraints, size_t count) {
     size_t i;
     gxsp_followers_room(system, count);
-    system->follower_count = 0;
+    system->model.follower_count = 0;
     if (system->pool.failed || count == 0) return;
-    memset(system->follower, 0xff, system->n * sizeof *system->follower);
+    memset(system->model.follower, 0xff, system->model.n * sizeof *system->model.follower);
     for (i = 0; i < count; i++) {
-        gxsp_follower *follower = &system->followers[system->follower_count];
-        if (system->held[constraints[i].copy]) continue;
+        gxsp_follower *follower = &system->model.followers[system->model.follower_count];
+        if (system->model.held[constraints[i].copy]) continue;
         follower->copy = constraints[i].copy;
         memcpy(follower->master, constraints[i].master, sizeof follower->master);
         memcpy(follower->weight, constraints[i].weight, sizeof follower->weight);
-        system->fixed[follower->copy] = 0;
-        system->follower[follower->copy] = system->follower_count++;
+        system->model.fixed[follower->copy] = 0;
+        system->model.follower[follower->copy] = system->model.follower_count++;
     }
 }
 
@@ -3254,17 +3309,17 @@ static void gxsp_set_followers(gxsp_system *system, const gxs_constraint *constr
 static void gxsp_join_followers(const gxsp_system *system, uint32_t *forest) {
     size_t i;
     int k;
-    for (i = 0; i < system->follower_count; i++)
+    for (i = 0; i < system->model.follower_count; i++)
         for (k = 0; k < 4; k++)
-            if (fabs(system->followers[i].weight[k]) > 0)
-                gxsp_join(forest, system->followers[i].copy, system->followers[i].master[k]);
+            if (fabs(system->model.followers[i].weight[k]) > 0)
+                gxsp_join(forest, system->model.followers[i].copy, system->model.followers[i].master[k]);
 }
 
 /* Joins what elements and constraints couple. forest: n */
 static void gxsp_join_copies(const gxsp_system *system, const gxs_model *model, uint32_t *forest) {
     size_t e, i;
     int k;
-    for (i = 0; i < system->n; i++) forest[i] = (uint32_t)i;
+    for (i = 0; i < system->model.n; i++) forest[i] = (uint32_t)i;
     for (e = 0; e < model->element_count; e++)
         for (k = 1; k < 4; k++)
             if (gxsp_supports(&model->elements[e], 0) || gxsp_supports(&model->elements[e], k))
@@ -3273,64 +3328,65 @@ static void gxsp_join_copies(const gxsp_system *system, const gxs_model *model, 
 }
 
 /* Numbers the pieces: trees of a forest of copies */
-static void gxsp_number_pieces(gxsp_system *system, uint32_t *forest) {
+static void gxsp_number_components(gxsp_system *system, uint32_t *forest) {
     size_t i;
-    system->piece_count = 0;
-    for (i = 0; i < system->n; i++) { /* roots come before their copies: the lower index wins in gxsp_join */
+    system->model.component_count = 0;
+    for (i = 0; i < system->model.n; i++) { /* roots come before their copies: the lower index wins in gxsp_join */
         uint32_t root = gxsp_root(forest, (uint32_t)i);
-        system->piece[i] = root == i ? system->piece_count++ : system->piece[root];
+        system->model.component[i] = root == i ? system->model.component_count++ : system->model.component[root];
     }
 }
 
 /* Masses and states of the pieces, which are 0. A translation of one of state 0 meets no stiffness: K T = 0, so
  * T^T (K + rate M) x = rate x sum of lumped x. */
-static void gxsp_fill_pieces(gxsp_system *system) {
+static void gxsp_fill_components(gxsp_system *system) {
     size_t i;
     uint32_t p;
-    for (i = 0; i < system->n; i++) {
-        gxsp_piece *piece = &system->pieces[system->piece[i]];
-        piece->mass += system->lumped[i];
-        piece->state |= system->fixed[i] ? GXSP_HELD : 0;
+    for (i = 0; i < system->model.n; i++) {
+        gxsp_component *component = &system->model.components[system->model.component[i]];
+        component->mass += system->model.lumped[i];
+        component->state |= system->model.fixed[i] ? GXSP_HELD : 0;
     }
-    for (i = 0; i < system->follower_count; i++) {
-        const double *w = system->followers[i].weight;
+    for (i = 0; i < system->model.follower_count; i++) {
+        const double *w = system->model.followers[i].weight;
         if (fabs(w[0] + w[1] + w[2] + w[3] - 1) > 1e-12)
-            system->pieces[system->piece[system->followers[i].copy]].state |= GXSP_UNBALANCED;
+            system->model.components[system->model.component[system->model.followers[i].copy]].state |= GXSP_UNBALANCED;
     }
-    for (p = 0; p < system->piece_count; p++)
-        system->pieces[p].state |= system->pieces[p].mass > 0 ? 0 : GXSP_UNBALANCED;
+    for (p = 0; p < system->model.component_count; p++)
+        system->model.components[p].state |= system->model.components[p].mass > 0 ? 0 : GXSP_UNBALANCED;
 }
 
 /* The pieces of every chunk, ascending. parts: NULL, or room for all. Returns how many there are. */
-static uint32_t gxsp_list_parts(gxsp_system *system, gxsp_part *parts) {
+static uint32_t gxsp_list_partials(gxsp_system *system, gxsp_partial *partials) {
     uint32_t c, k, count = 0;
-    for (c = 0; c < system->piece_count; c++)
-        system->pieces[c].lead = GXSP_NONE; /* here: the chunk that has met it last */
-    for (c = 0; c < system->chunk_count; c++) {
-        gxsp_chunk *chunk = &system->chunks[c];
-        chunk->first_part = count;
+    for (c = 0; c < system->model.component_count; c++)
+        system->model.components[c].lead = GXSP_NONE; /* here: the chunk that has met it last */
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        gxsp_chunk *chunk = &system->mesh.chunks[c];
+        chunk->first_partial = count;
         for (k = 0; k < chunk->node_count; k++) {
-            const uint32_t piece = system->piece[system->nodes[chunk->first_node + k]];
+            const uint32_t component = system->model.component[system->mesh.nodes[chunk->first_node + k]];
             uint32_t at = count;
-            if (system->pieces[piece].lead == c) continue;
-            system->pieces[piece].lead = c;
-            for (; parts && at > chunk->first_part && parts[at - 1].piece > piece; at--)
-                parts[at].piece = parts[at - 1].piece;
-            if (parts) parts[at].piece = piece;
+            if (system->model.components[component].lead == c) continue;
+            system->model.components[component].lead = c;
+            for (; partials && at > chunk->first_partial && partials[at - 1].component > component; at--)
+                partials[at].component = partials[at - 1].component;
+            if (partials) partials[at].component = component;
             count++;
         }
-        chunk->part_count = count - chunk->first_part;
+        chunk->partial_count = count - chunk->first_partial;
     }
-    for (c = 0; c < system->piece_count; c++) system->pieces[c].lead = c;
+    for (c = 0; c < system->model.component_count; c++) system->model.components[c].lead = c;
     return count;
 }
 
 /* Parts of the chunks, in place of those there were */
-static void gxsp_parts_make(gxsp_system *system) {
-    const uint32_t count = gxsp_list_parts(system, NULL);
-    system->parts = (gxsp_part *)gxsp_retake(&system->pool, system->parts, 0, count, sizeof(gxsp_part));
-    system->part_count = count;
-    if (!system->pool.failed) (void)gxsp_list_parts(system, system->parts);
+static void gxsp_partials_make(gxsp_system *system) {
+    const uint32_t count = gxsp_list_partials(system, NULL);
+    system->mesh.partials =
+        (gxsp_partial *)gxsp_grow(&system->pool, system->mesh.partials, 0, count, sizeof(gxsp_partial));
+    system->mesh.partial_count = count;
+    if (!system->pool.failed) (void)gxsp_list_partials(system, system->mesh.partials);
 }
 
 /* Rest positions in spacings of the first lattice: GXSP_SPACING edges of an average whole element. 0: there is none. */
@@ -3348,7 +3404,7 @@ static int gxsp_find_places(const gxsp_system *system, const gxs_model *model, f
     }
     if (counted == 0) return 0;
     spacing = GXSP_SPACING * cbrt(5 * volume / (double)counted); /* five elements to a cube */
-    for (i = 0; i < system->n; i++)
+    for (i = 0; i < system->model.n; i++)
         for (k = 0; k < 3; k++) {
             double place = (model->positions[3 * i + k] - model->positions[k]) / spacing;
             if (!(fabs(place) < 1e6)) /* single precision would not place it */
@@ -3360,13 +3416,13 @@ static int gxsp_find_places(const gxsp_system *system, const gxs_model *model, f
 
 /* What is known of every copy */
 static void gxsp_copies_make(gxsp_system *system, const double *positions) {
-    if (positions) system->positions = (double *)gxsp_take(&system->pool, 3 * system->n, sizeof(double));
-    if (system->positions) memcpy(system->positions, positions, 3 * system->n * sizeof(double));
-    system->lumped = (double *)gxsp_take(&system->pool, system->n, sizeof(double));
-    system->piece = (uint32_t *)gxsp_take(&system->pool, system->n, sizeof(uint32_t));
-    system->fixed = (uint8_t *)gxsp_take(&system->pool, system->n, 1);
-    system->still = (uint8_t *)gxsp_take(&system->pool, system->n, 1);
-    system->held = (uint8_t *)gxsp_take(&system->pool, system->n, 1);
+    if (positions) system->model.positions = (double *)gxsp_take(&system->pool, 3 * system->model.n, sizeof(double));
+    if (system->model.positions) memcpy(system->model.positions, positions, 3 * system->model.n * sizeof(double));
+    system->model.lumped = (double *)gxsp_take(&system->pool, system->model.n, sizeof(double));
+    system->model.component = (uint32_t *)gxsp_take(&system->pool, system->model.n, sizeof(uint32_t));
+    system->model.fixed = (uint8_t *)gxsp_take(&system->pool, system->model.n, 1);
+    system->state.still = (uint8_t *)gxsp_take(&system->pool, system->model.n, 1);
+    system->model.held = (uint8_t *)gxsp_take(&system->pool, system->model.n, 1);
 }
 
 /* >>lattice: the multigrid's structure. A coarse node is a point of a lattice together with one connected component of
@@ -3571,8 +3627,8 @@ static void gxsp_coarse_rows(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *le
 /* The level after levels[at], at > 0, of twice its spacing. 0: it would not be much smaller. Scratch is left in the
  * pool of temporary memory. */
 static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t at) {
-    gxsp_level *level = &system->levels[at], *next = level + 1;
-    gxsp_pool *pool = &system->coarse;
+    gxsp_level *level = &system->multigrid.levels[at], *next = level + 1;
+    gxsp_pool *pool = &system->multigrid.pool;
     gxsp_owned *mark = pool->last;
     gxsp_transfer transfer;
     float(*place)[3] = (float(*)[3])gxsp_take(scratch, level->n, sizeof *place);
@@ -3689,17 +3745,17 @@ static inline float *gxsp_factor_row(const gxsp_factor *factor, uint32_t i) {
 
 /* Order and envelope of the last level */
 static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch) {
-    const gxsp_level *level = &system->levels[system->level_count - 1];
-    gxsp_factor *factor = &system->factor;
+    const gxsp_level *level = &system->multigrid.levels[system->multigrid.level_count - 1];
+    gxsp_factor *factor = &system->multigrid.factor;
     uint32_t *place = (uint32_t *)gxsp_take(scratch, level->n, sizeof(uint32_t)), i;
     const gxsp_graph graph = gxsp_graph_make(scratch, level);
     size_t entries = 0;
     factor->n = 3 * level->n;
-    factor->order = (uint32_t *)gxsp_take(&system->coarse, level->n, sizeof(uint32_t));
-    factor->first = (uint32_t *)gxsp_take(&system->coarse, level->n, sizeof(uint32_t));
-    factor->row = (size_t *)gxsp_take(&system->coarse, level->n, sizeof(size_t));
-    factor->x = (double *)gxsp_take(&system->coarse, factor->n, sizeof(double));
-    if (scratch->failed || system->coarse.failed) return;
+    factor->order = (uint32_t *)gxsp_take(&system->multigrid.pool, level->n, sizeof(uint32_t));
+    factor->first = (uint32_t *)gxsp_take(&system->multigrid.pool, level->n, sizeof(uint32_t));
+    factor->row = (size_t *)gxsp_take(&system->multigrid.pool, level->n, sizeof(size_t));
+    factor->x = (double *)gxsp_take(&system->multigrid.pool, factor->n, sizeof(double));
+    if (scratch->failed || system->multigrid.pool.failed) return;
     (void)gxsp_order_level(&graph, factor->order, place);
     for (i = 0; i < level->n; i++) {
         const uint32_t first = 3 * gxsp_first_place(&graph, factor->order, place, i);
@@ -3707,7 +3763,7 @@ static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch) {
         factor->row[i] = entries - first; /* no less than 0: every row before has an entry */
         entries += 3 * (size_t)(3 * i - first) + 6;
     }
-    factor->entry = (float *)gxsp_take(&system->coarse, entries, sizeof(float));
+    factor->entry = (float *)gxsp_take(&system->multigrid.pool, entries, sizeof(float));
     factor->entry_count = entries;
 }
 
@@ -3715,7 +3771,7 @@ static void gxsp_lane_copies(const gxsp_system *system, const gxsp_chunk *chunk,
                              uint32_t *copies) {
     const gxsp_corners *corner = &chunk->corners[block];
     int i;
-    for (i = 0; i < 4; i++) copies[i] = system->nodes[chunk->first_node + corner->node[i][lane]];
+    for (i = 0; i < 4; i++) copies[i] = system->mesh.nodes[chunk->first_node + corner->node[i][lane]];
 }
 
 /* Corners of the ten blocks of an element, in the order of gxs_element.mass */
@@ -3724,10 +3780,10 @@ static const int gxsp_pair_corners[10][2] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {1,
 
 /* Arrays for the edges of any chunk; numbers: with those of the Hessian's blocks, for which edges have been counted */
 static void gxsp_edges_carve(gxsp_system *system, gxsp_space *space, int numbers) {
-    gxsp_edges *edges = &system->edges;
+    gxsp_edges *edges = &system->multigrid.edges;
     size_t c, lanes = 0, nodes = 1, most = 0;
-    for (c = 0; c < system->chunk_count; c++) {
-        const gxsp_chunk *chunk = &system->chunks[c];
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        const gxsp_chunk *chunk = &system->mesh.chunks[c];
         const size_t of = chunk->block_count * GXSP_LANES, count = numbers ? chunk->edge_count : 1 + 6 * of;
         lanes = of > lanes ? of : lanes;
         nodes = chunk->node_count > nodes ? chunk->node_count : nodes;
@@ -3793,56 +3849,57 @@ static void gxsp_block_edges(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_
 static void gxsp_list_edges(gxsp_system *system, gxsp_chunk *chunk) {
     uint16_t edge[6][GXSP_LANES];
     uint32_t b;
-    gxsp_edges_begin(&system->edges, chunk);
-    for (b = 0; b < chunk->block_count; b++) gxsp_block_edges(&system->edges, chunk, b, edge);
-    chunk->edge_count = system->edges.count;
+    gxsp_edges_begin(&system->multigrid.edges, chunk);
+    for (b = 0; b < chunk->block_count; b++) gxsp_block_edges(&system->multigrid.edges, chunk, b, edge);
+    chunk->edge_count = system->multigrid.edges.count;
 }
 
 /* Counts the edges of chunks of which they are not known. */
 static void gxsp_count_edges(gxsp_system *system) {
     uint32_t c;
-    for (c = 0; c < system->chunk_count; c++)
-        if (system->chunks[c].edge_count == 0) gxsp_list_edges(system, &system->chunks[c]);
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        if (system->mesh.chunks[c].edge_count == 0) gxsp_list_edges(system, &system->mesh.chunks[c]);
 }
 
 /* Numbers the coarse nodes that a chunk's nodes follow. */
 static void gxsp_pairs_begin(gxsp_system *system, const gxsp_chunk *chunk) {
-    gxsp_pairs *pairs = &system->pairs;
+    gxsp_pairs *pairs = &system->multigrid.pairs;
     uint32_t i, k;
     pairs->round++;
     pairs->count = 1;
     for (i = 0; i < chunk->node_count; i++)
         for (k = 0; k < 4; k++) {
-            const uint32_t parent = system->levels[0].parent[system->nodes[chunk->first_node + i]][k];
-            system->edges.parent[i][k] = 0;
+            const uint32_t parent = system->multigrid.levels[0].parent[system->mesh.nodes[chunk->first_node + i]][k];
+            system->multigrid.edges.parent[i][k] = 0;
             if (parent == GXSP_NONE) continue;
             if (pairs->stamp[parent] != pairs->round) {
                 pairs->stamp[parent] = pairs->round;
                 pairs->node[pairs->count] = parent;
                 pairs->local[parent] = pairs->count++;
             }
-            system->edges.parent[i][k] = (uint16_t)pairs->local[parent];
+            system->multigrid.edges.parent[i][k] = (uint16_t)pairs->local[parent];
         }
     memset(pairs->seen, 0, pairs->count * sizeof *pairs->seen);
 }
 
 /* Arrays for the pairs of any chunk; numbers: with those for entries of matrices */
 static void gxsp_pairs_carve(gxsp_system *system, gxsp_space *space, int numbers) {
-    gxsp_pairs *pairs = &system->pairs;
-    const size_t n = system->levels[1].n, side = pairs->most < GXSP_CHUNK_PARENTS ? pairs->most : GXSP_CHUNK_PARENTS;
+    gxsp_pairs *pairs = &system->multigrid.pairs;
+    const size_t n = system->multigrid.levels[1].n,
+                 side = pairs->most < GXSP_CHUNK_PARENTS ? pairs->most : GXSP_CHUNK_PARENTS;
     /* the first level whose matrix is that of another one times transfers */
-    const uint32_t next = system->fine ? 1 : 2;
+    const uint32_t next = system->multigrid.fine ? 1 : 2;
     pairs->local = (uint32_t *)gxsp_carve(space, n, sizeof(uint32_t));
     pairs->stamp = (uint32_t *)gxsp_carve(space, n, sizeof(uint32_t));
     pairs->node = (uint32_t *)gxsp_carve(space, n + 1, sizeof(uint32_t));
     pairs->seen = (uint32_t *)gxsp_carve(space, n + 1, sizeof(uint32_t));
     if (!numbers) return;
     pairs->entry = (uint32_t *)gxsp_carve(space, side * side, sizeof(uint32_t));
-    system->edges.half = (float(*)[9])gxsp_carve(space, pairs->most, sizeof *system->edges.half);
+    system->multigrid.edges.half = (float(*)[9])gxsp_carve(space, pairs->most, sizeof *system->multigrid.edges.half);
     /* one more is written than counts */
-    system->edges.touched = (uint16_t *)gxsp_carve(space, (size_t)pairs->most + 1, sizeof(uint16_t));
-    pairs->half =
-        (float(*)[9])gxsp_carve(space, next < system->level_count ? system->levels[next].n : 0, sizeof *pairs->half);
+    system->multigrid.edges.touched = (uint16_t *)gxsp_carve(space, (size_t)pairs->most + 1, sizeof(uint16_t));
+    pairs->half = (float(*)[9])gxsp_carve(
+        space, next < system->multigrid.level_count ? system->multigrid.levels[next].n : 0, sizeof *pairs->half);
 }
 
 /* Room for listing the pairs of any chunk, in temporary memory, and how many coarse nodes it has at most */
@@ -3853,10 +3910,12 @@ static void gxsp_pairs_make(gxsp_system *system, gxsp_pool *scratch) {
     space.memory = (unsigned char *)gxsp_take(scratch, space.used, 1);
     space.used = 0;
     gxsp_pairs_carve(system, &space, 0);
-    system->pairs.round = system->pairs.most = 0;
-    for (c = 0; c < system->chunk_count && !scratch->failed && !system->fine; c++) {
-        gxsp_pairs_begin(system, &system->chunks[c]);
-        system->pairs.most = system->pairs.count > system->pairs.most ? system->pairs.count : system->pairs.most;
+    system->multigrid.pairs.round = system->multigrid.pairs.most = 0;
+    for (c = 0; c < system->mesh.chunk_count && !scratch->failed && !system->multigrid.fine; c++) {
+        gxsp_pairs_begin(system, &system->mesh.chunks[c]);
+        system->multigrid.pairs.most = system->multigrid.pairs.count > system->multigrid.pairs.most
+                                         ? system->multigrid.pairs.count
+                                         : system->multigrid.pairs.most;
     }
 }
 
@@ -3875,18 +3934,19 @@ static void gxsp_join_sets(uint64_t *to, const uint64_t *from, size_t words) {
 /* The sets of a chunk after gxsp_pairs_begin. memory: room for all */
 static gxsp_sets gxsp_find_sets(gxsp_system *system, const gxsp_chunk *chunk, uint64_t *memory) {
     gxsp_sets sets;
-    const size_t words = sets.words = (system->pairs.count + 63) / 64;
+    const size_t words = sets.words = (system->multigrid.pairs.count + 63) / 64;
     uint32_t i, k, b;
     size_t word;
     int l;
     sets.own = memory;
     sets.reach = sets.own + chunk->node_count * words;
     sets.row = sets.reach + chunk->node_count * words;
-    memset(memory, 0, (2 * (size_t)chunk->node_count + system->pairs.count) * words * sizeof *memory);
+    memset(memory, 0, (2 * (size_t)chunk->node_count + system->multigrid.pairs.count) * words * sizeof *memory);
     for (i = 0; i < chunk->node_count; i++)
         for (k = 0; k < 4; k++)
-            if (system->levels[0].parent[system->nodes[chunk->first_node + i]][k] != GXSP_NONE)
-                sets.own[i * words + system->edges.parent[i][k] / 64] |= (uint64_t)1 << system->edges.parent[i][k] % 64;
+            if (system->multigrid.levels[0].parent[system->mesh.nodes[chunk->first_node + i]][k] != GXSP_NONE)
+                sets.own[i * words + system->multigrid.edges.parent[i][k] / 64] |=
+                    (uint64_t)1 << system->multigrid.edges.parent[i][k] % 64;
     for (b = 0; b < chunk->block_count; b++)
         for (l = 0; l < GXSP_LANES; l++) {
             const gxsp_rest *rest = &chunk->rest[b];
@@ -3902,8 +3962,8 @@ static gxsp_sets gxsp_find_sets(gxsp_system *system, const gxsp_chunk *chunk, ui
         }
     for (i = 0; i < chunk->node_count; i++)
         for (k = 0; k < 4; k++)
-            if (system->levels[0].parent[system->nodes[chunk->first_node + i]][k] != GXSP_NONE)
-                gxsp_join_sets(sets.row + system->edges.parent[i][k] * words, sets.reach + i * words, words);
+            if (system->multigrid.levels[0].parent[system->mesh.nodes[chunk->first_node + i]][k] != GXSP_NONE)
+                gxsp_join_sets(sets.row + system->multigrid.edges.parent[i][k] * words, sets.reach + i * words, words);
     return sets;
 }
 
@@ -3911,12 +3971,12 @@ static gxsp_sets gxsp_find_sets(gxsp_system *system, const gxsp_chunk *chunk, ui
  * listed; NULL: all are. memory: see gxsp_find_sets */
 static void gxsp_list_pairs(gxsp_system *system, const gxsp_chunk *chunk, uint64_t *memory, const uint8_t *dirty,
                             gxsp_list *list) {
-    const uint32_t *node = system->pairs.node;
+    const uint32_t *node = system->multigrid.pairs.node;
     gxsp_sets sets;
     uint32_t i, k;
     gxsp_pairs_begin(system, chunk);
     sets = gxsp_find_sets(system, chunk, memory);
-    for (i = 0; i < system->pairs.count; i++)
+    for (i = 0; i < system->multigrid.pairs.count; i++)
         for (k = 0; k < sets.words; k++) {
             uint64_t set = sets.row[i * sets.words + k];
             uint32_t j;
@@ -3931,7 +3991,7 @@ static int gxsp_follows_dirty(const gxsp_system *system, const gxsp_chunk *chunk
     uint32_t i, k;
     for (i = 0; i < chunk->node_count; i++)
         for (k = 0; k < 4; k++) {
-            const uint32_t parent = system->levels[0].parent[system->nodes[chunk->first_node + i]][k];
+            const uint32_t parent = system->multigrid.levels[0].parent[system->mesh.nodes[chunk->first_node + i]][k];
             if (parent != GXSP_NONE && dirty[parent]) return 1;
         }
     return 0;
@@ -3946,19 +4006,20 @@ static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gx
     gxsp_list list;
     memset(&list, 0, sizeof list);
     list.scratch = scratch;
-    for (c = 0; c < system->chunk_count; c++)
-        nodes = system->chunks[c].node_count > nodes ? system->chunks[c].node_count : nodes;
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        nodes = system->mesh.chunks[c].node_count > nodes ? system->mesh.chunks[c].node_count : nodes;
     /* four parents to a node */
     memory = (uint64_t *)gxsp_take(scratch, (6 * (size_t)nodes + 1) * (nodes / 16 + 1), sizeof(uint64_t));
     if (scratch->failed) return;
-    for (i = 0; i < system->levels[1].n; i++) gxsp_list_add(&list, i, i);
+    for (i = 0; i < system->multigrid.levels[1].n; i++) gxsp_list_add(&list, i, i);
     for (i = 0; before && i < before->n; i++)
         for (k = before->start[i]; k < before->start[i + 1] && !dirty[i]; k++)
             if (before->column[k] > i && !dirty[before->column[k]]) gxsp_list_add(&list, i, before->column[k]);
-    for (c = 0; c < system->chunk_count; c++)
-        if (!before || gxsp_follows_dirty(system, &system->chunks[c], dirty))
-            gxsp_list_pairs(system, &system->chunks[c], memory, before ? dirty : NULL, &list);
-    if (!scratch->failed) gxsp_rows_make(&system->coarse, scratch, &system->levels[1], list.pair, list.count);
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        if (!before || gxsp_follows_dirty(system, &system->mesh.chunks[c], dirty))
+            gxsp_list_pairs(system, &system->mesh.chunks[c], memory, before ? dirty : NULL, &list);
+    if (!scratch->failed)
+        gxsp_rows_make(&system->multigrid.pool, scratch, &system->multigrid.levels[1], list.pair, list.count);
 }
 
 /* Index of column j in row i, or that of a lower one if the row does not have it */
@@ -3983,7 +4044,7 @@ static int gxsp_corner_masters(const gxsp_system *system, uint32_t copy, uint32_
         weights[0] = 1;
         return 1;
     }
-    follower = &system->followers[system->follower[copy]];
+    follower = &system->model.followers[system->model.follower[copy]];
     for (k = 0; k < 4; k++)
         if (fabs(follower->weight[k]) > 0) {
             masters[count] = follower->master[k];
@@ -4014,22 +4075,22 @@ static uint32_t gxsp_element_pairs(const gxsp_system *system, const uint32_t *co
 /* The assembled matrix of what followers leave free: copies are neighbours where they share an element; every copy is
  * its own. */
 static void gxsp_fine_make(gxsp_system *system, gxsp_pool *scratch) {
-    gxsp_level *fine = &system->levels[0];
+    gxsp_level *fine = &system->multigrid.levels[0];
     uint32_t(*list)[2] = NULL, c, b, i, count, room = 0;
     int l, pair, pass;
-    system->fine = (gxsp_fine *)gxsp_take(&system->pool, system->block_count, sizeof(gxsp_fine));
-    fine->start = (uint32_t *)gxsp_take(&system->pool, system->n + 1, sizeof(uint32_t));
-    fine->inverse = (float *)gxsp_take(&system->pool, 6 * system->n, sizeof(float));
+    system->multigrid.fine = (gxsp_fine *)gxsp_take(&system->pool, system->mesh.block_count, sizeof(gxsp_fine));
+    fine->start = (uint32_t *)gxsp_take(&system->pool, system->model.n + 1, sizeof(uint32_t));
+    fine->inverse = (float *)gxsp_take(&system->pool, 6 * system->model.n, sizeof(float));
     if (system->pool.failed) return;
     for (pass = 0; pass < 2; pass++) { /* count, then list */
         if (pass == 1 && !(list = (uint32_t(*)[2])gxsp_take(scratch, room, sizeof *list))) return;
         for (i = 0, count = 0; i < fine->n; i++, count++)
             if (list) list[count][0] = list[count][1] = i;
-        for (c = 0; c < system->chunk_count; c++)
-            for (b = 0; b < system->chunks[c].block_count; b++)
+        for (c = 0; c < system->mesh.chunk_count; c++)
+            for (b = 0; b < system->mesh.chunks[c].block_count; b++)
                 for (l = 0; l < GXSP_LANES; l++) {
                     uint32_t copies[4], pairs[136][2];
-                    gxsp_lane_copies(system, &system->chunks[c], b, l, copies);
+                    gxsp_lane_copies(system, &system->mesh.chunks[c], b, l, copies);
                     count += gxsp_element_pairs(system, copies, list ? list + count : pairs);
                 }
         room = count;
@@ -4037,15 +4098,16 @@ static void gxsp_fine_make(gxsp_system *system, gxsp_pool *scratch) {
     gxsp_rows_make(&system->pool, scratch, fine, list, count);
     if (!scratch->failed) fine->block = (float *)gxsp_take(&system->pool, gxsp_block_numbers(fine), sizeof(float));
     if (scratch->failed || system->pool.failed) return;
-    for (c = 0; c < system->chunk_count; c++)
-        for (i = 0; i < system->chunks[c].block_count * GXSP_LANES; i++) {
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        for (i = 0; i < system->mesh.chunks[c].block_count * GXSP_LANES; i++) {
             uint32_t copies[4];
-            gxsp_lane_copies(system, &system->chunks[c], i / GXSP_LANES, (int)(i % GXSP_LANES), copies);
+            gxsp_lane_copies(system, &system->mesh.chunks[c], i / GXSP_LANES, (int)(i % GXSP_LANES), copies);
             for (pair = 0; pair < 10; pair++) {
                 const uint32_t p = copies[gxsp_pair_corners[pair][0]], q = copies[gxsp_pair_corners[pair][1]];
-                system->fine[system->chunks[c].first_block + i / GXSP_LANES].entry[pair][i % GXSP_LANES] =
-                    gxsp_element_follows(system, copies) ? GXSP_NONE
-                                                         : gxsp_find_entry(fine, p < q ? p : q, p < q ? q : p);
+                system->multigrid.fine[system->mesh.chunks[c].first_block + i / GXSP_LANES]
+                    .entry[pair][i % GXSP_LANES] = gxsp_element_follows(system, copies)
+                                                     ? GXSP_NONE
+                                                     : gxsp_find_entry(fine, p < q ? p : q, p < q ? q : p);
             }
         }
 }
@@ -4055,88 +4117,93 @@ static void gxsp_levels_make(gxsp_system *system, gxsp_pool *scratch, const gxsp
     uint32_t at;
     gxsp_pairs_make(system, scratch);
     if (scratch->failed) return;
-    if (system->fine)
-        gxsp_coarse_rows(&system->coarse, scratch, &system->levels[0]);
+    if (system->multigrid.fine)
+        gxsp_coarse_rows(&system->multigrid.pool, scratch, &system->multigrid.levels[0]);
     else
         gxsp_first_pattern(system, scratch, before, dirty);
     gxsp_count_edges(system);
-    if (scratch->failed || system->coarse.failed) return;
+    if (scratch->failed || system->multigrid.pool.failed) return;
     for (at = 1;
-         at + 1 < GXSP_LEVELS && !gxsp_factors(scratch, &system->levels[at], at == 1 ? system->n / 2 : system->n) &&
+         at + 1 < GXSP_LEVELS &&
+         !gxsp_factors(scratch, &system->multigrid.levels[at], at == 1 ? system->model.n / 2 : system->model.n) &&
          gxsp_add_level(system, scratch, at);
          at++)
         ;
-    system->level_count = at + 1;
-    for (at = 1; !scratch->failed && !system->coarse.failed && (at == 1 || at + 1 < system->level_count); at++)
-        system->levels[at].block =
-            (float *)gxsp_take(&system->coarse, gxsp_block_numbers(&system->levels[at]), sizeof(float));
+    system->multigrid.level_count = at + 1;
+    for (at = 1;
+         !scratch->failed && !system->multigrid.pool.failed && (at == 1 || at + 1 < system->multigrid.level_count);
+         at++)
+        system->multigrid.levels[at].block = (float *)gxsp_take(
+            &system->multigrid.pool, gxsp_block_numbers(&system->multigrid.levels[at]), sizeof(float));
     gxsp_factor_make(system, scratch);
 }
 
 /* The transfer of the model by a lattice. place: n x 3, in its spacings. Returns how many nodes level 1 has. */
 static uint32_t gxsp_first_transfer(gxsp_system *system, float (*place)[3], gxsp_transfer *transfer) {
     uint32_t c, e;
-    gxsp_transfer_begin(&system->levels[0], place, system->fixed, transfer);
-    for (c = 0; c < system->chunk_count; c++) {
-        const uint32_t *copies = system->nodes + system->chunks[c].first_node;
-        gxsp_list_edges(system, &system->chunks[c]);
-        for (e = 1; e < system->edges.count; e++)
-            gxsp_join_nodes(transfer, copies[system->edges.ends[e] >> 16], copies[system->edges.ends[e] & 0xffff]);
+    gxsp_transfer_begin(&system->multigrid.levels[0], place, system->model.fixed, transfer);
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        const uint32_t *copies = system->mesh.nodes + system->mesh.chunks[c].first_node;
+        gxsp_list_edges(system, &system->mesh.chunks[c]);
+        for (e = 1; e < system->multigrid.edges.count; e++)
+            gxsp_join_nodes(transfer, copies[system->multigrid.edges.ends[e] >> 16],
+                            copies[system->multigrid.edges.ends[e] & 0xffff]);
     }
-    for (e = 0; e < 4 * system->follower_count; e++)
-        if (fabs(system->followers[e / 4].weight[e % 4]) > 0)
-            gxsp_join_nodes(transfer, system->followers[e / 4].copy, system->followers[e / 4].master[e % 4]);
-    return gxsp_transfer_end(&system->levels[0], transfer);
+    for (e = 0; e < 4 * system->model.follower_count; e++)
+        if (fabs(system->model.followers[e / 4].weight[e % 4]) > 0)
+            gxsp_join_nodes(transfer, system->model.followers[e / 4].copy,
+                            system->model.followers[e / 4].master[e % 4]);
+    return gxsp_transfer_end(&system->multigrid.levels[0], transfer);
 }
 
 /* What the first lattice has of a piece */
-typedef struct gxsp_crumb {
+typedef struct gxsp_extent {
     uint32_t copies, nodes;
     float low[3], high[3], length; /* in spacings; length: the longest of high - low */
-} gxsp_crumb;
+} gxsp_extent;
 
-static gxsp_crumb *gxsp_find_crumbs(const gxsp_system *system, gxsp_pool *scratch, float (*place)[3]) {
-    gxsp_crumb *crumbs = (gxsp_crumb *)gxsp_take(scratch, system->piece_count, sizeof *crumbs);
+static gxsp_extent *gxsp_find_extents(const gxsp_system *system, gxsp_pool *scratch, float (*place)[3]) {
+    gxsp_extent *extents = (gxsp_extent *)gxsp_take(scratch, system->model.component_count, sizeof *extents);
     uint32_t slot, i, k, nodes = 0;
-    if (!crumbs) return NULL;
-    for (slot = 0; slot < 4 * system->n; slot++) /* nodes are numbered as they are met */
-        if (system->levels[0].parent[slot / 4][slot % 4] == nodes) {
-            crumbs[system->piece[slot / 4]].nodes++;
+    if (!extents) return NULL;
+    for (slot = 0; slot < 4 * system->model.n; slot++) /* nodes are numbered as they are met */
+        if (system->multigrid.levels[0].parent[slot / 4][slot % 4] == nodes) {
+            extents[system->model.component[slot / 4]].nodes++;
             nodes++;
         }
-    for (i = 0; i < system->n; i++) {
-        gxsp_crumb *crumb = &crumbs[system->piece[i]];
+    for (i = 0; i < system->model.n; i++) {
+        gxsp_extent *extent = &extents[system->model.component[i]];
         for (k = 0; k < 3; k++) {
-            crumb->low[k] = crumb->copies == 0 || place[i][k] < crumb->low[k] ? place[i][k] : crumb->low[k];
-            crumb->high[k] = crumb->copies == 0 || place[i][k] > crumb->high[k] ? place[i][k] : crumb->high[k];
+            extent->low[k] = extent->copies == 0 || place[i][k] < extent->low[k] ? place[i][k] : extent->low[k];
+            extent->high[k] = extent->copies == 0 || place[i][k] > extent->high[k] ? place[i][k] : extent->high[k];
         }
-        crumb->copies++;
+        extent->copies++;
     }
-    for (i = 0; i < system->piece_count; i++)
+    for (i = 0; i < system->model.component_count; i++)
         for (k = 0; k < 3; k++)
-            crumbs[i].length = crumbs[i].high[k] - crumbs[i].low[k] > crumbs[i].length
-                                 ? crumbs[i].high[k] - crumbs[i].low[k]
-                                 : crumbs[i].length;
-    return crumbs;
+            extents[i].length = extents[i].high[k] - extents[i].low[k] > extents[i].length
+                                  ? extents[i].high[k] - extents[i].low[k]
+                                  : extents[i].length;
+    return extents;
 }
 
 /* Small pieces have so many lattice points about them that fewer serve nearly as well: places of those that are crowded
  * after gxsp_first_transfer go into one tetrahedron of a lattice of their own size, whose functions are their affine
  * motions, or, where pieces are larger, into a lattice of twice the spacing. Not of long ones, which would hardly bend.
  * Returns whether there are any. */
-static int gxsp_thin_crumbs(const gxsp_system *system, gxsp_pool *scratch, float (*place)[3]) {
-    const gxsp_crumb *crumbs = gxsp_find_crumbs(system, scratch, place);
+static int gxsp_thin_crowded(const gxsp_system *system, gxsp_pool *scratch, float (*place)[3]) {
+    const gxsp_extent *extents = gxsp_find_extents(system, scratch, place);
     uint32_t i, k;
     int any = 0;
-    for (i = 0; i < system->n && crumbs; i++) {
-        const gxsp_crumb *crumb = &crumbs[system->piece[i]];
-        if ((float)crumb->nodes <= GXSP_CROWDED * (float)crumb->copies || !(crumb->length < GXSP_COARSE)) continue;
+    for (i = 0; i < system->model.n && extents; i++) {
+        const gxsp_extent *extent = &extents[system->model.component[i]];
+        if ((float)extent->nodes <= GXSP_CROWDED * (float)extent->copies || !(extent->length < GXSP_COARSE)) continue;
         any = 1;
         for (k = 0; k < 3; k++) /* else where coordinates descend: in thirds of a cell */
             place[i][k] =
-                crumb->length >= GXSP_AFFINE
+                extent->length >= GXSP_AFFINE
                     ? 0.5f * place[i][k]
-                    : 0.3f * (place[i][k] - crumb->low[k]) / (crumb->length + 1e-30f) + (float)(2 - k) / 3 + 0.01f;
+                    : 0.3f * (place[i][k] - extent->low[k]) / (extent->length + 1e-30f) + (float)(2 - k) / 3 + 0.01f;
     }
     return any;
 }
@@ -4144,18 +4211,18 @@ static int gxsp_thin_crumbs(const gxsp_system *system, gxsp_pool *scratch, float
 /* All levels of the multigrid below the model; place: n x 3, see gxsp_find_places. level_count stays 0 if there is
  * nothing to coarsen. */
 static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (*place)[3]) {
-    gxsp_level *fine = &system->levels[0];
+    gxsp_level *fine = &system->multigrid.levels[0];
     gxsp_transfer transfer;
     uint32_t count;
     gxsp_edges_make(system, scratch);
-    transfer.key = (uint64_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint64_t));
-    transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint32_t));
+    transfer.key = (uint64_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint64_t));
+    transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
     if (scratch->failed) return;
     count = gxsp_first_transfer(system, place, &transfer);
-    if (gxsp_thin_crumbs(system, scratch, place)) count = gxsp_first_transfer(system, place, &transfer);
+    if (gxsp_thin_crowded(system, scratch, place)) count = gxsp_first_transfer(system, place, &transfer);
     if (count == 0 || scratch->failed) return;
-    gxsp_level_make(&system->coarse, fine + 1, count);
-    if (system->coarse.failed) return;
+    gxsp_level_make(&system->multigrid.pool, fine + 1, count);
+    if (system->multigrid.pool.failed) return;
     gxsp_transfer_places(fine, &transfer, fine + 1);
     gxsp_levels_make(system, scratch, NULL, NULL);
 }
@@ -4172,13 +4239,13 @@ typedef struct gxsp_weighed {
 
 static void gxsp_weigh_corner(const gxsp_system *system, uint32_t c, uint32_t lane, int corner, const uint32_t *copies,
                               gxsp_weighed *weighed) {
-    const gxsp_chunk *chunk = &system->chunks[c];
+    const gxsp_chunk *chunk = &system->mesh.chunks[c];
     int k;
     weighed->whole |= !chunk->moments;
     weighed->all += chunk->rest[lane / GXSP_LANES].mass[lane % GXSP_LANES];
     for (k = 0; k < 4; k++)
-        if (k != corner && system->lumped[copies[k]] > weighed->most) {
-            weighed->most = system->lumped[copies[k]];
+        if (k != corner && system->model.lumped[copies[k]] > weighed->most) {
+            weighed->most = system->model.lumped[copies[k]];
             weighed->light.copy = copies[corner], weighed->light.chunk = c;
             weighed->light.lane = (uint16_t)lane, weighed->light.corner = (uint16_t)corner;
         }
@@ -4188,9 +4255,9 @@ static void gxsp_weigh_corner(const gxsp_system *system, uint32_t c, uint32_t la
 static void gxsp_weigh_copies(const gxsp_system *system, const uint8_t *touched, gxsp_weighed *weighed) {
     uint32_t c, i, lane, copies[4];
     int k;
-    for (c = 0; c < system->chunk_count; c++) {
-        const gxsp_chunk *chunk = &system->chunks[c];
-        for (i = 0; touched && i < chunk->node_count && !touched[system->nodes[chunk->first_node + i]]; i++)
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        const gxsp_chunk *chunk = &system->mesh.chunks[c];
+        for (i = 0; touched && i < chunk->node_count && !touched[system->mesh.nodes[chunk->first_node + i]]; i++)
             ;
         for (lane = 0; lane < chunk->block_count * GXSP_LANES && !(touched && i == chunk->node_count); lane++) {
             if (chunk->groups[lane] == GXSP_NONE) continue;
@@ -4202,28 +4269,28 @@ static void gxsp_weigh_copies(const gxsp_system *system, const uint8_t *touched,
 }
 
 static int gxsp_is_light(const gxsp_system *system, size_t copy, const gxsp_weighed *weighed) {
-    const double mass = system->lumped[copy];
-    return !weighed->whole && !system->fixed[copy] && weighed->most > 0 &&
+    const double mass = system->model.lumped[copy];
+    return !weighed->whole && !system->model.fixed[copy] && weighed->most > 0 &&
            (mass < GXSP_LIGHT * weighed->all || mass < GXSP_LIGHTER * weighed->most);
 }
 
 /* Lists light copies. touched: n flags: those of others stay as they are listed; NULL: all are listed anew */
 static void gxsp_list_lights(gxsp_system *system, gxsp_pool *scratch, const uint8_t *touched) {
-    gxsp_weighed *weighed = (gxsp_weighed *)gxsp_take(scratch, system->n, sizeof *weighed);
+    gxsp_weighed *weighed = (gxsp_weighed *)gxsp_take(scratch, system->model.n, sizeof *weighed);
     uint32_t i, count = 0, room;
     if (scratch->failed) return;
     gxsp_weigh_copies(system, touched, weighed);
-    for (i = 0; i < system->light_count && touched; i++)
-        if (!touched[system->lights[i].copy]) system->lights[count++] = system->lights[i];
-    system->light_count = room = count;
-    for (i = 0; i < system->n; i++) room += (uint32_t)gxsp_is_light(system, i, &weighed[i]);
-    if (room > system->light_room) {
-        system->light_room = room + room / 8;
-        system->lights =
-            (gxsp_light *)gxsp_retake(&system->pool, system->lights, count, system->light_room, sizeof(gxsp_light));
+    for (i = 0; i < system->model.light_count && touched; i++)
+        if (!touched[system->model.lights[i].copy]) system->model.lights[count++] = system->model.lights[i];
+    system->model.light_count = room = count;
+    for (i = 0; i < system->model.n; i++) room += (uint32_t)gxsp_is_light(system, i, &weighed[i]);
+    if (room > system->model.light_room) {
+        system->model.light_room = room + room / 8;
+        system->model.lights = (gxsp_light *)gxsp_grow(&system->pool, system->model.lights, count,
+                                                       system->model.light_room, sizeof(gxsp_light));
     }
-    for (i = 0; i < system->n && !system->pool.failed; i++)
-        if (gxsp_is_light(system, i, &weighed[i])) system->lights[system->light_count++] = weighed[i].light;
+    for (i = 0; i < system->model.n && !system->pool.failed; i++)
+        if (gxsp_is_light(system, i, &weighed[i])) system->model.lights[system->model.light_count++] = weighed[i].light;
 }
 
 /* What guides a light copy at vector x, less another one or NULL (n x 3): the mean over the other corners, by their
@@ -4233,10 +4300,11 @@ static uint32_t gxsp_guide(const gxsp_system *system, const gxsp_light *light, c
     double sum = 0, most = 0;
     uint32_t copies[4], heaviest = light->copy;
     int k, c;
-    gxsp_lane_copies(system, &system->chunks[light->chunk], light->lane / GXSP_LANES, light->lane % GXSP_LANES, copies);
+    gxsp_lane_copies(system, &system->mesh.chunks[light->chunk], light->lane / GXSP_LANES, light->lane % GXSP_LANES,
+                     copies);
     mean[0] = mean[1] = mean[2] = 0;
     for (k = 0; k < 4; k++) {
-        const double mass = k == light->corner ? 0 : system->lumped[copies[k]];
+        const double mass = k == light->corner ? 0 : system->model.lumped[copies[k]];
         sum += mass;
         for (c = 0; c < 3; c++)
             mean[c] +=
@@ -4265,31 +4333,31 @@ static double gxsp_choose_scale(const gxs_model *model) {
 
 /* Inverse volumes of supports, the least of the size of a whole copy's inverse stiffness */
 static void gxsp_find_volumes(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model) {
-    double *volume = (double *)gxsp_take(scratch, system->n, sizeof(double)), largest = 0;
+    double *volume = (double *)gxsp_take(scratch, system->model.n, sizeof(double)), largest = 0;
     size_t e, i;
     int k;
-    system->volume = (float *)gxsp_take(&system->pool, system->n, sizeof(float));
+    system->model.volume = (float *)gxsp_take(&system->pool, system->model.n, sizeof(float));
     if (system->pool.failed || scratch->failed) return;
     for (e = 0; e < model->element_count; e++)
         for (k = 0; k < 4; k++) volume[model->elements[e].copy[k]] += model->elements[e].weight;
-    for (i = 0; i < system->n; i++) largest = volume[i] > largest ? volume[i] : largest;
-    for (i = 0; i < system->n; i++)
-        system->volume[i] = volume[i] > 1e-20 * largest ? (float)ldexp(largest / volume[i], -GXSP_STIFFNESS) : 0;
+    for (i = 0; i < system->model.n; i++) largest = volume[i] > largest ? volume[i] : largest;
+    for (i = 0; i < system->model.n; i++)
+        system->model.volume[i] = volume[i] > 1e-20 * largest ? (float)ldexp(largest / volume[i], -GXSP_STIFFNESS) : 0;
 }
 
 /* Copies from which on a piece is large enough for multigrid */
 static uint32_t gxsp_large(const gxsp_system *system) {
-    return system->stiff ? GXSP_MULTIGRID_FROM_STIFF : GXSP_MULTIGRID_FROM;
+    return system->model.stiff ? GXSP_MULTIGRID_FROM_STIFF : GXSP_MULTIGRID_FROM;
 }
 
 /* Does multigrid pay for a piece? All take as many iterations as the one that takes most. count: piece_count, scratch
  */
-static int gxsp_large_piece(const gxsp_system *system, uint32_t *count) {
+static int gxsp_large_component(const gxsp_system *system, uint32_t *count) {
     const uint32_t from = gxsp_large(system);
     size_t i;
-    memset(count, 0, system->piece_count * sizeof *count);
-    for (i = 0; i < system->n; i++)
-        if (++count[system->piece[i]] >= from) return 1;
+    memset(count, 0, system->model.component_count * sizeof *count);
+    for (i = 0; i < system->model.n; i++)
+        if (++count[system->model.component[i]] >= from) return 1;
     return 0;
 }
 
@@ -4297,15 +4365,16 @@ static int gxsp_large_piece(const gxsp_system *system, uint32_t *count) {
 static void gxsp_preconditioner_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model,
                                      gxs_preconditioner preconditioner, gxs_matrix matrix, uint32_t *forest) {
     float(*place)[3]; /* rest positions in spacings of the first lattice */
-    const int multigrid = model->positions && (preconditioner == GXS_MULTIGRID ||
-                                               (preconditioner == GXS_AUTOMATIC && gxsp_large_piece(system, forest)));
-    system->chosen = model->positions && preconditioner == GXS_AUTOMATIC;
+    const int multigrid =
+        model->positions &&
+        (preconditioner == GXS_MULTIGRID || (preconditioner == GXS_AUTOMATIC && gxsp_large_component(system, forest)));
+    system->multigrid.chosen = model->positions && preconditioner == GXS_AUTOMATIC;
     if (preconditioner == GXS_VOLUME_RATIO) gxsp_find_volumes(system, scratch, model);
-    system->levels[0].n = (uint32_t)system->n;
+    system->multigrid.levels[0].n = (uint32_t)system->model.n;
     if (matrix == GXS_MATRIX_ASSEMBLED) gxsp_fine_make(system, scratch);
     if (!multigrid) return;
-    gxsp_transfer_make(&system->pool, &system->levels[0]);
-    place = (float(*)[3])gxsp_take(scratch, system->n, sizeof *place);
+    gxsp_transfer_make(&system->pool, &system->multigrid.levels[0]);
+    place = (float(*)[3])gxsp_take(scratch, system->model.n, sizeof *place);
     if (!system->pool.failed && !scratch->failed && gxsp_find_places(system, model, place))
         gxsp_multigrid_make(system, scratch, place);
 }
@@ -4317,37 +4386,39 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
     uint32_t i, *forest = (uint32_t *)gxsp_take(scratch, model->copy_count, sizeof(uint32_t));
     gxsp_owned *mark;
     size_t bad;
-    system->n = model->copy_count;
-    system->epoch = model->epoch;
-    system->element_count = model->element_count;
-    system->range_count = (system->n + GXSP_RANGE - 1) / GXSP_RANGE;
-    system->lumped_mass = model->lumped_mass != 0;
-    system->scale = gxsp_choose_scale(model);
-    system->coarse_rate = system->product_rate = -1;
-    system->coarse_life = GXSP_LIFE;
-    system->material_count = (uint32_t)model->material_count;
-    system->materials = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
-    system->damped = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
+    system->model.n = model->copy_count;
+    system->model.epoch = model->epoch;
+    system->model.element_count = model->element_count;
+    system->model.range_count = (system->model.n + GXSP_RANGE - 1) / GXSP_RANGE;
+    system->model.lumped_mass = model->lumped_mass != 0;
+    system->model.scale = gxsp_choose_scale(model);
+    system->coarse.rate = system->state.product_rate = -1;
+    system->coarse.life = GXSP_LIFE;
+    system->model.material_count = (uint32_t)model->material_count;
+    system->model.materials = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
+    system->state.damped = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
     gxsp_copies_make(system, model->positions);
     if (scratch->failed || system->pool.failed) return SIZE_MAX;
-    for (i = 0; i < system->material_count; i++) {
-        system->damped[i] = system->materials[i] = gxsp_material_make(&model->materials[i]);
-        system->damps |= model->materials[i].damping > 0;
-        system->stiff |= model->materials[i].kind != GXS_CUSTOM && model->materials[i].poisson > GXSP_STIFF_POISSON;
+    for (i = 0; i < system->model.material_count; i++) {
+        system->state.damped[i] = system->model.materials[i] = gxsp_material_make(&model->materials[i]);
+        system->model.damps |= model->materials[i].damping > 0;
+        system->model.stiff |=
+            model->materials[i].kind != GXS_CUSTOM && model->materials[i].poisson > GXSP_STIFF_POISSON;
     }
     gxsp_find_fixed(system, model);
-    bad = gxsp_bad_constraint(model->constraints, model->constraint_count, model->held, system->still);
+    bad = gxsp_bad_constraint(model->constraints, model->constraint_count, model->held, system->state.still);
     if (bad == SIZE_MAX) gxsp_set_followers(system, model->constraints, model->constraint_count);
     if (bad != SIZE_MAX || system->pool.failed) return bad;
-    memcpy(system->still, system->fixed, system->n);
+    memcpy(system->state.still, system->model.fixed, system->model.n);
     gxsp_join_copies(system, model, forest);
-    gxsp_number_pieces(system, forest);
-    system->pieces = (gxsp_piece *)gxsp_take(&system->pool, system->piece_count, sizeof(gxsp_piece));
+    gxsp_number_components(system, forest);
+    system->model.components =
+        (gxsp_component *)gxsp_take(&system->pool, system->model.component_count, sizeof(gxsp_component));
     if (system->pool.failed) return SIZE_MAX;
-    gxsp_fill_pieces(system);
+    gxsp_fill_components(system);
     mark = scratch->last;
     gxsp_chunks_make(system, scratch, model);
-    if (!scratch->failed && !system->pool.failed) gxsp_parts_make(system);
+    if (!scratch->failed && !system->pool.failed) gxsp_partials_make(system);
     if (!scratch->failed && !system->pool.failed) gxsp_list_lights(system, scratch, NULL);
     gxsp_release_to(scratch, mark);
     if (!scratch->failed && !system->pool.failed)
@@ -4359,46 +4430,46 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
 
 /* Arrays with which coarse numbers are made */
 static void gxsp_numbers_carve(gxsp_system *system, gxsp_space *space) {
-    gxsp_level *last = &system->levels[system->level_count - 1];
-    if (!system->fine) gxsp_edges_carve(system, space, 1);
+    gxsp_level *last = &system->multigrid.levels[system->multigrid.level_count - 1];
+    if (!system->multigrid.fine) gxsp_edges_carve(system, space, 1);
     gxsp_pairs_carve(system, space, 1);
-    if (system->level_count > 2) /* level 1 keeps its own: updates make only a part of it anew */
+    if (system->multigrid.level_count > 2) /* level 1 keeps its own: updates make only a part of it anew */
         last->block = (float *)gxsp_carve(space, gxsp_block_numbers(last), sizeof(float));
-    system->factor.rows = (double *)gxsp_carve(space, 3 * (size_t)system->factor.n, sizeof(double));
+    system->multigrid.factor.rows = (double *)gxsp_carve(space, 3 * (size_t)system->multigrid.factor.n, sizeof(double));
 }
 
 static void gxsp_passes_carve(gxsp_system *system, gxsp_space *space) {
-    system->slots = (double(*)[3])gxsp_carve(space, system->slot_count, sizeof *system->slots);
-    system->search = (gxsp_vector4 *)gxsp_carve(space, system->n, sizeof(gxsp_vector4));
-    system->product = (gxsp_vector4 *)gxsp_carve(space, system->n, sizeof(gxsp_vector4));
-    system->scaled = (gxsp_vector4 *)gxsp_carve(space, system->n, sizeof(gxsp_vector4));
+    system->vectors.slots = (double(*)[3])gxsp_carve(space, system->mesh.slot_count, sizeof *system->vectors.slots);
+    system->vectors.search = (gxsp_vector4 *)gxsp_carve(space, system->model.n, sizeof(gxsp_vector4));
+    system->vectors.product = (gxsp_vector4 *)gxsp_carve(space, system->model.n, sizeof(gxsp_vector4));
+    system->vectors.scaled = (gxsp_vector4 *)gxsp_carve(space, system->model.n, sizeof(gxsp_vector4));
 }
 
 /* Vectors in shared memory are 0 again: what is unused of them, too, takes part in sums. */
-static void gxsp_give_back(gxsp_system *system) {
-    memset(system->search, 0, system->n * sizeof *system->search);
-    memset(system->product, 0, system->n * sizeof *system->product);
-    memset(system->scaled, 0, system->n * sizeof *system->scaled);
+static void gxsp_return_memory(gxsp_system *system) {
+    memset(system->vectors.search, 0, system->model.n * sizeof *system->vectors.search);
+    memset(system->vectors.product, 0, system->model.n * sizeof *system->vectors.product);
+    memset(system->vectors.scaled, 0, system->model.n * sizeof *system->vectors.scaled);
 }
 
 /* Room in shared memory for passes and for coarse numbers, in turn */
-static void gxsp_share(gxsp_system *system) {
+static void gxsp_share_memory(gxsp_system *system) {
     gxsp_space passes = {NULL, 0}, numbers = {NULL, 0};
     size_t size;
     gxsp_passes_carve(system, &passes);
-    if (system->level_count > 0) gxsp_numbers_carve(system, &numbers);
+    if (system->multigrid.level_count > 0) gxsp_numbers_carve(system, &numbers);
     size = passes.used > numbers.used ? passes.used : numbers.used;
-    if (size > system->shared_room) {
-        const size_t room = system->shared ? size + size / 8 : size;
-        unsigned char *larger = (unsigned char *)gxsp_retake(&system->pool, system->shared, 0, room, 1);
+    if (size > system->vectors.shared_room) {
+        const size_t room = system->vectors.shared ? size + size / 8 : size;
+        unsigned char *larger = (unsigned char *)gxsp_grow(&system->pool, system->vectors.shared, 0, room, 1);
         if (!larger) return;
-        system->shared = larger;
-        system->shared_room = room;
+        system->vectors.shared = larger;
+        system->vectors.shared_room = room;
     }
-    passes.memory = system->shared;
+    passes.memory = system->vectors.shared;
     passes.used = 0;
     gxsp_passes_carve(system, &passes);
-    gxsp_give_back(system);
+    gxsp_return_memory(system);
 }
 
 /* What only steps need: taken last, when all that a model is made with has been given back */
@@ -4406,20 +4477,21 @@ static void gxsp_steps_make(gxsp_system *system) {
     double **vectors[6];
     gxsp_vector4 **singles[3];
     int i;
-    vectors[0] = &system->target, vectors[1] = &system->current, vectors[2] = &system->force,
-    vectors[3] = &system->residual;
-    vectors[4] = &system->direction, vectors[5] = &system->coarse_state;
-    for (i = 0; i < (system->level_count > 0 ? 6 : 5); i++)
-        *vectors[i] = (double *)gxsp_take(&system->pool, 3 * system->n, sizeof(double));
-    system->trial = system->residual;
-    if (system->damps) system->damping = (double *)gxsp_take(&system->pool, 3 * system->n, sizeof(double));
-    singles[0] = &system->guess[0], singles[1] = &system->guess[1], singles[2] = &system->right;
-    for (i = 0; i < (system->fine ? 3 : 2); i++)
-        *singles[i] = (gxsp_vector4 *)gxsp_take(&system->pool, system->n, sizeof(gxsp_vector4));
-    system->diagonal = (float *)gxsp_take(&system->pool, 6 * system->n, sizeof(float));
-    system->range_sum = (double(*)[GXSP_SUMS])gxsp_take(&system->pool, system->range_count, sizeof *system->range_sum);
-    gxsp_share(system);
-    gxsp_tangents_make(&system->pool, system->chunks, system->chunk_count);
+    vectors[0] = &system->vectors.target, vectors[1] = &system->vectors.current, vectors[2] = &system->vectors.force,
+    vectors[3] = &system->vectors.residual;
+    vectors[4] = &system->vectors.direction, vectors[5] = &system->coarse.displacement;
+    for (i = 0; i < (system->multigrid.level_count > 0 ? 6 : 5); i++)
+        *vectors[i] = (double *)gxsp_take(&system->pool, 3 * system->model.n, sizeof(double));
+    if (system->model.damps)
+        system->vectors.damping = (double *)gxsp_take(&system->pool, 3 * system->model.n, sizeof(double));
+    singles[0] = &system->vectors.guess[0], singles[1] = &system->vectors.guess[1], singles[2] = &system->vectors.right;
+    for (i = 0; i < (system->multigrid.fine ? 3 : 2); i++)
+        *singles[i] = (gxsp_vector4 *)gxsp_take(&system->pool, system->model.n, sizeof(gxsp_vector4));
+    system->vectors.diagonal = (float *)gxsp_take(&system->pool, 6 * system->model.n, sizeof(float));
+    system->vectors.range_sum =
+        (double(*)[GXSP_SUMS])gxsp_take(&system->pool, system->model.range_count, sizeof *system->vectors.range_sum);
+    gxsp_share_memory(system);
+    gxsp_tangents_make(&system->pool, system->mesh.chunks, system->mesh.chunk_count);
 }
 
 /* >>followers: what follows a copy gets its motion, and gives it its forces */
@@ -4427,8 +4499,8 @@ static void gxsp_steps_make(gxsp_system *system) {
 /* Increments x of all copies from those of masters */
 static void gxsp_extend(const gxsp_system *system, gxsp_vector4 *x) {
     uint32_t i, k, c;
-    for (i = 0; i < system->follower_count; i++) {
-        const gxsp_follower *follower = &system->followers[i];
+    for (i = 0; i < system->model.follower_count; i++) {
+        const gxsp_follower *follower = &system->model.followers[i];
         gxsp_vector4 sum = {0, 0, 0, 0};
         for (k = 0; k < 4; k++)
             for (c = 0; c < 3; c++) sum[c] += (float)follower->weight[k] * x[follower->master[k]][c];
@@ -4439,8 +4511,8 @@ static void gxsp_extend(const gxsp_system *system, gxsp_vector4 *x) {
 /* Forces y on masters; 0 on followers */
 static void gxsp_reduce(const gxsp_system *system, gxsp_vector4 *y) {
     uint32_t i, k, c;
-    for (i = 0; i < system->follower_count; i++) {
-        const gxsp_follower *follower = &system->followers[i];
+    for (i = 0; i < system->model.follower_count; i++) {
+        const gxsp_follower *follower = &system->model.followers[i];
         for (k = 0; k < 4; k++)
             for (c = 0; c < 3; c++) y[follower->master[k]][c] += (float)follower->weight[k] * y[follower->copy][c];
         memset(y[follower->copy], 0, sizeof *y);
@@ -4450,8 +4522,8 @@ static void gxsp_reduce(const gxsp_system *system, gxsp_vector4 *y) {
 /* Displacements of followers: that at from, which may be NULL for 0, and what their masters have moved since then */
 static void gxsp_follow(const gxsp_system *system, const double *from, double *displacement) {
     uint32_t i, k, c;
-    for (i = 0; i < system->follower_count; i++) {
-        const gxsp_follower *follower = &system->followers[i];
+    for (i = 0; i < system->model.follower_count; i++) {
+        const gxsp_follower *follower = &system->model.followers[i];
         double *to = displacement + 3 * (size_t)follower->copy;
         for (c = 0; c < 3; c++) {
             double sum = from ? from[3 * (size_t)follower->copy + c] : 0;
@@ -4467,8 +4539,8 @@ static void gxsp_follow(const gxsp_system *system, const double *from, double *d
 /* Residuals: those of followers are given to masters, but not to copies that are still. still: n */
 static void gxsp_reduce_residual(const gxsp_system *system, const uint8_t *still, double *r) {
     uint32_t i, k, c;
-    for (i = 0; i < system->follower_count; i++) {
-        const gxsp_follower *follower = &system->followers[i];
+    for (i = 0; i < system->model.follower_count; i++) {
+        const gxsp_follower *follower = &system->model.followers[i];
         for (k = 0; k < 4; k++)
             for (c = 0; c < 3 && !still[follower->master[k]]; c++)
                 r[3 * (size_t)follower->master[k] + c] += follower->weight[k] * r[3 * (size_t)follower->copy + c];
@@ -4532,7 +4604,8 @@ static void gxsp_subtract_block(const float *GXSP_RESTRICT a, const float *GXSP_
 }
 
 /* y -= a^T x */
-static void gxsp_subtract_turned(const float *GXSP_RESTRICT a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y) {
+static void gxsp_subtract_transposed(const float *GXSP_RESTRICT a, const float *GXSP_RESTRICT x,
+                                     float *GXSP_RESTRICT y) {
     y[0] -= a[0] * x[0] + a[1] * x[1] + a[2] * x[2];
     y[1] -= a[3] * x[0] + a[4] * x[1] + a[5] * x[2];
     y[2] -= a[6] * x[0] + a[7] * x[1] + a[8] * x[2];
@@ -4595,7 +4668,8 @@ static inline void gxsp_scatter_four(const uint16_t *node, const float *from0, c
     *(gxsp_four *)y[node[3]] += __builtin_shufflevector(high, r, 2, 3, 7, 7);
 }
 
-static inline void gxsp_turn_four(const float *a, const float *b, const float *c, const float *d, gxsp_four *turned) {
+static inline void gxsp_transpose_four(const float *a, const float *b, const float *c, const float *d,
+                                       gxsp_four *turned) {
     const gxsp_four p = *(const gxsp_four *)a, q = *(const gxsp_four *)b, r = *(const gxsp_four *)c,
                     s = *(const gxsp_four *)d;
     const gxsp_four low = __builtin_shufflevector(p, q, 0, 4, 1, 5), high = __builtin_shufflevector(p, q, 2, 6, 3, 7);
@@ -4612,7 +4686,7 @@ static inline void gxsp_scatter_six(const uint16_t *node, gxsp_singles *from, in
     const gxsp_four low = __builtin_shufflevector(p, q, 0, 4, 1, 5), high = __builtin_shufflevector(p, q, 2, 6, 3, 7);
     gxsp_four first[4];
     int k;
-    gxsp_turn_four(from[0] + lane, from[1] + lane, from[2] + lane, from[3] + lane, first);
+    gxsp_transpose_four(from[0] + lane, from[1] + lane, from[2] + lane, from[3] + lane, first);
     for (k = 0; k < 4; k++) *(gxsp_four *)(y + 6 * (size_t)node[k]) += first[k];
     *(gxsp_two *)(y + 6 * (size_t)node[0] + 4) += __builtin_shufflevector(low, low, 0, 1);
     *(gxsp_two *)(y + 6 * (size_t)node[1] + 4) += __builtin_shufflevector(low, low, 2, 3);
@@ -4625,8 +4699,8 @@ static inline void gxsp_add_lanes(const uint16_t *entry, gxsp_singles *block, fl
     int l, k;
     for (l = 0; l < GXSP_LANES; l += 4) {
         gxsp_four first[4], second[4];
-        gxsp_turn_four(block[0] + l, block[1] + l, block[2] + l, block[3] + l, first);
-        gxsp_turn_four(block[4] + l, block[5] + l, block[6] + l, block[7] + l, second);
+        gxsp_transpose_four(block[0] + l, block[1] + l, block[2] + l, block[3] + l, first);
+        gxsp_transpose_four(block[4] + l, block[5] + l, block[6] + l, block[7] + l, second);
         for (k = 0; k < 4; k++) {
             float *at = to[entry[l + k]];
             *(gxsp_four *)at += first[k];
@@ -4666,7 +4740,7 @@ static void gxsp_block_gather(const gxsp_chunk *chunk, uint32_t b, const gxsp_ve
     const gxsp_corners *corner = &chunk->corners[b];
     int i;
     for (i = 0; i < 4; i++)
-        if (chunk->fresh[b] >> i & 1) gxsp_gather_eight(corner->node[i], x, to[3 * i], to[3 * i + 1], to[3 * i + 2]);
+        if (chunk->changed[b] >> i & 1) gxsp_gather_eight(corner->node[i], x, to[3 * i], to[3 * i + 1], to[3 * i + 2]);
 }
 
 /* What a block adds to its corners, and 0 in its place; what those get that the next block has too stays. */
@@ -4675,7 +4749,7 @@ static void gxsp_block_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_singles
     const gxsp_corners *corner = &chunk->corners[b];
     int i, k, l;
     for (i = 0; i < 4; i++) {
-        if (!(chunk->fresh[b + 1] >> i & 1)) continue;
+        if (!(chunk->changed[b + 1] >> i & 1)) continue;
         for (l = 0; l < GXSP_LANES; l += 4)
             gxsp_scatter_four(corner->node[i] + l, from[3 * i] + l, from[3 * i + 1] + l, from[3 * i + 2] + l, y);
         for (k = 3 * i; k < 3 * i + 3; k++) GXSP_EACH_LANE(l) from[k][l] = 0;
@@ -4685,21 +4759,21 @@ static void gxsp_block_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_singles
 static void gxsp_task_product(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
-    const gxsp_chunk *chunk = &system->chunks[index];
-    const uint32_t *copies = system->nodes + chunk->first_node;
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    const uint32_t *copies = system->mesh.nodes + chunk->first_node;
     gxsp_vector4 in[4 * GXSP_CHUNK]; /* apart from the chunks', so that it stays in the cache */
-    gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->slots + chunk->first_node;
+    gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
     gxsp_singles from[12], to[12];
     uint32_t b, i;
-    if (system->chunk_still[index]) return;
+    if (system->state.chunk_still[index]) return;
     for (i = 0; i < chunk->node_count; i++) {
-        gxsp_fetch(pass->x[copies[i + GXSP_AHEAD]], sizeof *pass->x);
+        gxsp_prefetch(pass->x[copies[i + GXSP_AHEAD]], sizeof *pass->x);
         memcpy(in[i], pass->x[copies[i]], sizeof *in);
     }
     memset(out, 0, chunk->node_count * sizeof *out);
     memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; b++) {
-        gxsp_fetch_block(system, index, b, GXSP_TANGENTS_AHEAD, 1);
+        gxsp_prefetch_block(system, index, b, GXSP_TANGENTS_AHEAD, 1);
         gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
         gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_moments(chunk, b), gxsp_block_general(chunk, b),
                           0, from, to);
@@ -4711,17 +4785,17 @@ static void gxsp_task_product(void *context, size_t index) {
 static void gxsp_task_product_sum(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
-    gxsp_vector4 *slots = (gxsp_vector4 *)(void *)system->slots;
+    gxsp_vector4 *slots = (gxsp_vector4 *)(void *)system->vectors.slots;
     size_t i, end = gxsp_range(system, index, &i);
     double work = 0;
     for (; i < end; i++) {
-        const float *at = pass->x[i], m = system->lumped_mass ? (float)(pass->rate * system->lumped[i]) : 0;
+        const float *at = pass->x[i], m = system->model.lumped_mass ? (float)(pass->rate * system->model.lumped[i]) : 0;
         const double *right = pass->right ? pass->right + 3 * i : NULL;
         float x = m * at[0], y = m * at[1], z = m * at[2], *to = pass->y[i];
         uint32_t s;
-        for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->still[i]; s++) {
-            const float *from = slots[system->copy_slot[s]];
-            gxsp_fetch(slots[system->copy_slot[s + GXSP_AHEAD]], sizeof *slots);
+        for (s = system->mesh.copy_start[i]; s < system->mesh.copy_start[i + 1] && !system->state.still[i]; s++) {
+            const float *from = slots[system->mesh.copy_slot[s]];
+            gxsp_prefetch(slots[system->mesh.copy_slot[s + GXSP_AHEAD]], sizeof *slots);
             x += from[0], y += from[1], z += from[2];
         }
         if (right)
@@ -4730,26 +4804,26 @@ static void gxsp_task_product_sum(void *context, size_t index) {
             to[0] = x, to[1] = y, to[2] = z;
         work += (double)at[0] * (double)x + (double)at[1] * (double)y + (double)at[2] * (double)z;
     }
-    system->range_sum[index][0] = work;
+    system->vectors.range_sum[index][0] = work;
 }
 
 /* y = A x by the assembled matrix, on copies that are not still. Returns x . y. */
 static double gxsp_rows_product(const gxsp_system *system, gxsp_vector4 *x, gxsp_vector4 *y) {
-    const gxsp_level *fine = &system->levels[0];
+    const gxsp_level *fine = &system->multigrid.levels[0];
     double work = 0;
     uint32_t i, k;
     int c;
-    memset(y, 0, system->n * sizeof *y);
+    memset(y, 0, system->model.n * sizeof *y);
     for (i = 0; i < fine->n; i++) {
         gxsp_vector4 minus = {0, 0, 0, 0};
         const float turned[3] = {-x[i][0], -x[i][1], -x[i][2]};
         gxsp_subtract_block(fine->block + 9 * (size_t)fine->start[i], x[i], minus);
         for (k = fine->start[i] + 1; k < fine->start[i + 1]; k++) {
             gxsp_subtract_block(fine->block + 9 * (size_t)k, x[fine->column[k]], minus);
-            gxsp_subtract_turned(fine->block + 9 * (size_t)k, turned, y[fine->column[k]]);
+            gxsp_subtract_transposed(fine->block + 9 * (size_t)k, turned, y[fine->column[k]]);
         }
         for (c = 0; c < 3; c++) { /* all rows before have added to it */
-            y[i][c] = system->still[i] ? 0 : y[i][c] - minus[c];
+            y[i][c] = system->state.still[i] ? 0 : y[i][c] - minus[c];
             work += (double)x[i][c] * (double)y[i][c];
         }
     }
@@ -4783,15 +4857,15 @@ static double gxsp_product_from(gxsp_system *system, double rate, const double *
     double work;
     memset(&pass, 0, sizeof pass);
     pass.system = system;
-    pass.rate = system->scale * rate;
+    pass.rate = system->model.scale * rate;
     pass.x = x;
     pass.y = y;
     pass.right = right;
     gxsp_extend(system, x);
-    if (system->fine)
+    if (system->multigrid.fine)
         work = gxsp_rows_product(system, x, y);
     else {
-        gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_product, &pass);
+        gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_product, &pass);
         gxsp_over_ranges(system, gxsp_task_product_sum, &pass, &work, 1);
     }
     work += gxsp_add_terms(system->lasting, right ? -1.0f : 1.0f, x, y);
@@ -4811,7 +4885,7 @@ static double gxsp_product(gxsp_system *system, double rate, gxsp_vector4 *x, gx
 static void gxsp_copy_direction(const gxsp_pass *pass, uint32_t copy, double *GXSP_RESTRICT to) {
     const gxsp_system *system = pass->system;
     const double *from = pass->from + 3 * (size_t)copy;
-    double factor = system->fixed[copy] ? 0 : pass->factor;
+    double factor = system->model.fixed[copy] ? 0 : pass->factor;
     int k, c;
     if (!gxsp_follows(system, copy)) {
         to[0] = factor * from[0], to[1] = factor * from[1], to[2] = factor * from[2];
@@ -4819,9 +4893,9 @@ static void gxsp_copy_direction(const gxsp_pass *pass, uint32_t copy, double *GX
     }
     to[0] = to[1] = to[2] = 0;
     for (k = 0; k < 4; k++) {
-        const gxsp_follower *follower = &system->followers[system->follower[copy]];
+        const gxsp_follower *follower = &system->model.followers[system->model.follower[copy]];
         from = pass->from + 3 * (size_t)follower->master[k];
-        factor = system->fixed[follower->master[k]] ? 0 : pass->factor * follower->weight[k];
+        factor = system->model.fixed[follower->master[k]] ? 0 : pass->factor * follower->weight[k];
         for (c = 0; c < 3; c++) to[c] += factor * from[c];
     }
 }
@@ -4847,7 +4921,7 @@ static void gxsp_block_gather_doubles(const gxsp_chunk *chunk, uint32_t b, const
     gxsp_vector4 lanes[GXSP_LANES];
     int i, l;
     for (i = 0; i < 4; i++) {
-        if (!((chunk->fresh[b] | chunk->fresh[b] >> i) & 1)) continue;
+        if (!((chunk->changed[b] | chunk->changed[b] >> i) & 1)) continue;
         for (l = 0; l < GXSP_LANES; l++)
             gxsp_narrow_four(in + 3 * (size_t)corner->node[i][l], i > 0 ? in + 3 * (size_t)corner->node[0][l] : zero,
                              lanes[l]);
@@ -4859,10 +4933,10 @@ static void gxsp_block_gather_doubles(const gxsp_chunk *chunk, uint32_t b, const
 static void gxsp_task_apply(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
-    const gxsp_chunk *chunk = &system->chunks[index];
-    const uint32_t *copies = system->nodes + chunk->first_node;
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    const uint32_t *copies = system->mesh.nodes + chunk->first_node;
     double in[3 * 4 * GXSP_CHUNK + 1]; /* one more than is read as numbers */
-    gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->slots + chunk->first_node;
+    gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
     gxsp_singles from[12], to[12];
     uint32_t b, i;
     for (i = 0; i < chunk->node_count; i++) gxsp_copy_direction(pass, copies[i], in + 3 * (size_t)i);
@@ -4870,7 +4944,7 @@ static void gxsp_task_apply(void *context, size_t index) {
     memset(out, 0, chunk->node_count * sizeof *out);
     memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; b++) {
-        gxsp_fetch_block(system, index, b, GXSP_TANGENTS_AHEAD, 1);
+        gxsp_prefetch_block(system, index, b, GXSP_TANGENTS_AHEAD, 1);
         gxsp_block_gather_doubles(chunk, b, in, from);
         gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_moments(chunk, b), gxsp_block_general(chunk, b),
                           1, from, to);
@@ -4882,17 +4956,17 @@ static void gxsp_task_apply(void *context, size_t index) {
 static void gxsp_task_apply_sum(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
-    gxsp_vector4 *slots = (gxsp_vector4 *)(void *)system->slots;
-    const double unit = 1 / system->scale, back = 1 / pass->factor;
+    gxsp_vector4 *slots = (gxsp_vector4 *)(void *)system->vectors.slots;
+    const double unit = 1 / system->model.scale, back = 1 / pass->factor;
     size_t i, end = gxsp_range(system, index, &i);
     for (; i < end; i++) {
-        double at[3] = {0, 0, 0}, mass = system->lumped_mass ? pass->rate * system->lumped[i] : 0, x, y, z;
+        double at[3] = {0, 0, 0}, mass = system->model.lumped_mass ? pass->rate * system->model.lumped[i] : 0, x, y, z;
         uint32_t s;
         if (mass > 0) gxsp_copy_direction(pass, (uint32_t)i, at);
         x = mass * at[0], y = mass * at[1], z = mass * at[2];
-        for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->fixed[i]; s++) {
-            const float *from = slots[system->copy_slot[s]];
-            gxsp_fetch(slots[system->copy_slot[s + GXSP_AHEAD]], sizeof *slots);
+        for (s = system->mesh.copy_start[i]; s < system->mesh.copy_start[i + 1] && !system->model.fixed[i]; s++) {
+            const float *from = slots[system->mesh.copy_slot[s]];
+            gxsp_prefetch(slots[system->mesh.copy_slot[s + GXSP_AHEAD]], sizeof *slots);
             x += (double)from[0], y += (double)from[1], z += (double)from[2];
         }
         pass->sum[3 * i] = x * unit * back, pass->sum[3 * i + 1] = y * unit * back,
@@ -4928,8 +5002,8 @@ static int gxsp_all_finite_single(const void *numbers, size_t bytes) {
 /* Are the Hessians and masses of all elements finite? */
 static int gxsp_tangents_finite(const gxsp_system *system) {
     uint32_t c;
-    for (c = 0; c < system->chunk_count; c++) {
-        const gxsp_chunk *chunk = &system->chunks[c];
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        const gxsp_chunk *chunk = &system->mesh.chunks[c];
         if (!gxsp_all_finite_single(chunk->tangents, chunk->block_count * sizeof *chunk->tangents) ||
             !gxsp_all_finite_single(chunk->generals,
                                     chunk->generals ? chunk->block_count * sizeof *chunk->generals : 0))
@@ -5007,7 +5081,7 @@ static void gxsp_diagonal_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_sing
                                   float *GXSP_RESTRICT slots) {
     int corner, k, l;
     for (corner = 0; corner < 4; corner++) {
-        if (!(chunk->fresh[b + 1] >> corner & 1)) continue;
+        if (!(chunk->changed[b + 1] >> corner & 1)) continue;
         for (l = 0; l < GXSP_LANES; l += 4)
             gxsp_scatter_six(chunk->corners[b].node[corner] + l, own + 6 * corner, l, slots);
         for (k = 6 * corner; k < 6 * corner + 6; k++) GXSP_EACH_LANE(l) own[k][l] = 0;
@@ -5018,36 +5092,36 @@ static void gxsp_diagonal_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_sing
 static void gxsp_task_linearise(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     gxsp_system *system = pass->system;
-    const gxsp_chunk *chunk = &system->chunks[index];
-    float *slots = (float *)(void *)system->slots[chunk->first_node];
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    float *slots = (float *)(void *)system->vectors.slots[chunk->first_node];
     double rest_at[3 * 4 * GXSP_CHUNK + 1], at[3 * 4 * GXSP_CHUNK + 1];
     gxsp_lanes corners[12], x[12], made[2][9], *gradients[2];
     gxsp_singles own[24];
     uint32_t b, k, blocks;
     int l;
-    system->chunk_collapsed[index] = 0;
-    if (system->chunk_still[index]) return;
+    system->state.chunk_collapsed[index] = 0;
+    if (system->state.chunk_still[index]) return;
     memset(slots, 0, 6 * (size_t)chunk->node_count * sizeof *slots);
     memset(own, 0, sizeof own);
     gxsp_chunk_load(system, chunk, pass->from, at);
-    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->positions, rest_at);
+    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, rest_at);
     for (b = 0; b < chunk->block_count; b += blocks) { /* two at a time */
         gxsp_state s[2];
         gxsp_svd of[2];
         blocks = b + 1 < chunk->block_count ? 2 : 1;
         for (k = 0; k < blocks; k++) {
-            gxsp_fetch_block(system, index, b + k, GXSP_RESTS_AHEAD, 0);
+            gxsp_prefetch_block(system, index, b + k, GXSP_RESTS_AHEAD, 0);
             gxsp_block_load(chunk, b + k, at, x);
             gxsp_block_parameters(pass->materials, &chunk->rest[b + k], &s[k]);
             gradients[k] = gxsp_block_gradients(chunk, b + k, rest_at, corners, made[k]);
             gxsp_block_gradient(gradients[k], x, s[k].g);
         }
-        system->chunk_collapsed[index] |=
+        system->state.chunk_collapsed[index] |=
             (uint8_t)gxsp_tangent_begin(chunk->kind, &s[0], blocks > 1 ? &s[1] : NULL, of);
         for (k = 0; k < blocks; k++) {
             const gxsp_rest *rest = &chunk->rest[b + k];
             gxsp_tangent *tangent = &chunk->tangents[b + k];
-            gxsp_tangent_make(chunk->kind, rest, gradients[k], system->scale, pass->exact, &s[k], &of[k], tangent,
+            gxsp_tangent_make(chunk->kind, rest, gradients[k], system->model.scale, pass->exact, &s[k], &of[k], tangent,
                               gxsp_block_general(chunk, b + k));
             GXSP_EACH_LANE(l) tangent->mass[l] = (float)(pass->rate * rest->mass[l]);
             gxsp_block_diagonal(chunk, b + k, own);
@@ -5092,29 +5166,29 @@ static void gxsp_invert3(double *a) {
 static void gxsp_task_diagonal(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
-    const float *slots = (const float *)(const void *)system->slots;
+    const float *slots = (const float *)(const void *)system->vectors.slots;
     size_t i, end = gxsp_range(system, index, &i);
     for (; i < end; i++) {
         double sum[6] = {0, 0, 0, 0, 0, 0};
         uint32_t s;
         int k;
-        for (s = system->copy_start[i]; s < system->copy_start[i + 1] && !system->still[i]; s++) {
-            gxsp_fetch(slots + 6 * (size_t)system->copy_slot[s + GXSP_AHEAD], 6 * sizeof *slots);
-            for (k = 0; k < 6; k++) sum[k] += (double)slots[6 * (size_t)system->copy_slot[s] + (size_t)k];
+        for (s = system->mesh.copy_start[i]; s < system->mesh.copy_start[i + 1] && !system->state.still[i]; s++) {
+            gxsp_prefetch(slots + 6 * (size_t)system->mesh.copy_slot[s + GXSP_AHEAD], 6 * sizeof *slots);
+            for (k = 0; k < 6; k++) sum[k] += (double)slots[6 * (size_t)system->mesh.copy_slot[s] + (size_t)k];
         }
-        for (k = 0; system->lumped_mass && k < 6; k++)
-            sum[k] += k == 0 || k == 3 || k == 5 ? pass->rate * system->lumped[i] : 0;
-        if (system->still[i] || sum[0] + sum[3] + sum[5] < GXSP_TINY) /* only what is coarser moves such a copy */
+        for (k = 0; system->model.lumped_mass && k < 6; k++)
+            sum[k] += k == 0 || k == 3 || k == 5 ? pass->rate * system->model.lumped[i] : 0;
+        if (system->state.still[i] || sum[0] + sum[3] + sum[5] < GXSP_TINY) /* only what is coarser moves such a copy */
             memset(sum, 0, sizeof sum);
         gxsp_invert3(sum);
-        for (k = 0; k < 6; k++) system->diagonal[6 * i + (size_t)k] = (float)sum[k];
+        for (k = 0; k < 6; k++) system->vectors.diagonal[6 * i + (size_t)k] = (float)sum[k];
     }
 }
 
 /* Springs, contact and followers add to the diagonal blocks: all goes to a copy's first slot, from which the blocks are
  * summed. */
 static void gxsp_extra_diagonal(gxsp_system *system) {
-    float *slots = (float *)(void *)system->slots;
+    float *slots = (float *)(void *)system->vectors.slots;
     size_t t;
     uint32_t i, s;
     int k, m;
@@ -5122,26 +5196,27 @@ static void gxsp_extra_diagonal(gxsp_system *system) {
         for (k = 0; k < 4; k++) {
             const gxsp_term *term = &system->lasting->term[t];
             const uint32_t copy = term->copy[k];
-            for (m = 0; m < 6 && system->copy_start[copy] < system->copy_start[copy + 1]; m++)
-                slots[6 * (size_t)system->copy_slot[system->copy_start[copy]] + (size_t)m] +=
+            for (m = 0; m < 6 && system->mesh.copy_start[copy] < system->mesh.copy_start[copy + 1]; m++)
+                slots[6 * (size_t)system->mesh.copy_slot[system->mesh.copy_start[copy]] + (size_t)m] +=
                     term->weight[k] * term->weight[k] * term->hessian[m];
         }
-    for (i = 0; i < system->follower_count; i++)
-        for (s = system->copy_start[system->followers[i].copy]; s < system->copy_start[system->followers[i].copy + 1];
-             s++)
+    for (i = 0; i < system->model.follower_count; i++)
+        for (s = system->mesh.copy_start[system->model.followers[i].copy];
+             s < system->mesh.copy_start[system->model.followers[i].copy + 1]; s++)
             for (k = 0; k < 4; k++) {
-                const uint32_t copy = system->followers[i].master[k];
-                const float weight = (float)system->followers[i].weight[k];
-                float *from = slots + 6 * (size_t)system->copy_slot[s];
-                for (m = 0; m < 6 && weight * weight > 0 && system->copy_start[copy] < system->copy_start[copy + 1];
+                const uint32_t copy = system->model.followers[i].master[k];
+                const float weight = (float)system->model.followers[i].weight[k];
+                float *from = slots + 6 * (size_t)system->mesh.copy_slot[s];
+                for (m = 0;
+                     m < 6 && weight * weight > 0 && system->mesh.copy_start[copy] < system->mesh.copy_start[copy + 1];
                      m++)
-                    slots[6 * (size_t)system->copy_slot[system->copy_start[copy]] + (size_t)m] +=
+                    slots[6 * (size_t)system->mesh.copy_slot[system->mesh.copy_start[copy]] + (size_t)m] +=
                         weight * weight * from[m];
             }
-    for (i = 0; i < system->follower_count; i++)
-        for (s = system->copy_start[system->followers[i].copy]; s < system->copy_start[system->followers[i].copy + 1];
-             s++)
-            memset(slots + 6 * (size_t)system->copy_slot[s], 0, 6 * sizeof *slots);
+    for (i = 0; i < system->model.follower_count; i++)
+        for (s = system->mesh.copy_start[system->model.followers[i].copy];
+             s < system->mesh.copy_start[system->model.followers[i].copy + 1]; s++)
+            memset(slots + 6 * (size_t)system->mesh.copy_slot[s], 0, 6 * sizeof *slots);
 }
 
 /* Hessian of the elements, times scale, and inverse block diagonal at a displacement. 0 if a number overflowed. */
@@ -5150,17 +5225,17 @@ static int gxsp_linearise(gxsp_system *system, double rate, const double *from, 
     size_t i;
     memset(&pass, 0, sizeof pass);
     pass.system = system;
-    pass.materials = system->damped;
-    pass.rate = system->scale * rate;
+    pass.materials = system->state.damped;
+    pass.rate = system->model.scale * rate;
     pass.from = from;
     pass.exact = exact;
-    gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_linearise, &pass);
+    gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_linearise, &pass);
     gxsp_extra_diagonal(system);
     gxsp_over_ranges(system, gxsp_task_diagonal, &pass, NULL, 0);
     *collapsed = 0;
-    for (i = 0; i < system->chunk_count; i++) *collapsed |= system->chunk_collapsed[i];
-    for (i = 0; i < 6 * system->n; i++)
-        if (!gxsp_finite_single(system->diagonal[i])) return 0;
+    for (i = 0; i < system->mesh.chunk_count; i++) *collapsed |= system->state.chunk_collapsed[i];
+    for (i = 0; i < 6 * system->model.n; i++)
+        if (!gxsp_finite_single(system->vectors.diagonal[i])) return 0;
     return 1;
 }
 
@@ -5175,7 +5250,7 @@ static void gxsp_sweep_lower(gxsp_level *level, int solve) {
     for (i = 0; i < level->n; i++) {
         if (solve) gxsp_apply_packed(level->inverse + 6 * (size_t)i, level->r[i], level->x[i]);
         for (k = level->start[i] + 1; k < level->start[i + 1]; k++)
-            gxsp_subtract_turned(level->block + 9 * (size_t)k, level->x[i], level->r[level->column[k]]);
+            gxsp_subtract_transposed(level->block + 9 * (size_t)k, level->x[i], level->r[level->column[k]]);
     }
 }
 
@@ -5249,9 +5324,9 @@ static void gxsp_factor_solve(const gxsp_factor *factor, gxsp_level *level) {
 
 /* x = the multigrid's answer to b on levels[at] and below, at > 0 */
 static void gxsp_cycle(gxsp_system *system, uint32_t at) {
-    gxsp_level *level = &system->levels[at];
-    if (at + 1 == system->level_count) {
-        gxsp_factor_solve(&system->factor, level);
+    gxsp_level *level = &system->multigrid.levels[at];
+    if (at + 1 == system->multigrid.level_count) {
+        gxsp_factor_solve(&system->multigrid.factor, level);
         return;
     }
     gxsp_sweep_forward(level);
@@ -5267,10 +5342,10 @@ static void gxsp_task_smooth(void *context, size_t index) {
     size_t i, end = gxsp_range(system, index, &i);
     for (; i < end; i++) {
         float y[3];
-        gxsp_apply_packed(system->diagonal + 6 * i, system->product[i], y);
-        system->scaled[i][0] += system->omega * y[0];
-        system->scaled[i][1] += system->omega * y[1];
-        system->scaled[i][2] += system->omega * y[2];
+        gxsp_apply_packed(system->vectors.diagonal + 6 * i, system->vectors.product[i], y);
+        system->vectors.scaled[i][0] += system->smoother.omega * y[0];
+        system->vectors.scaled[i][1] += system->smoother.omega * y[1];
+        system->vectors.scaled[i][2] += system->smoother.omega * y[2];
     }
 }
 
@@ -5278,39 +5353,39 @@ static void gxsp_task_smooth(void *context, size_t index) {
  * sum of them; but for followers, with what was met. quotient: x . A x / x . D x of an x, by which the length so far
  * was too large; 0: not known */
 static void gxsp_shorten_omega(gxsp_system *system, double quotient) {
-    const double largest = system->follower_count > 0 && 1.25 * quotient > 4 ? 1.25 * quotient : 4;
-    system->omega = (float)(1.5 / largest);
-    system->omega_pause = system->omega_pause > 0 ? system->omega_pause : GXSP_PAUSE;
-    system->omega_rest = system->omega_pause;
-    system->omega_pause += system->omega_pause < 1024 ? system->omega_pause : 0;
+    const double largest = system->model.follower_count > 0 && 1.25 * quotient > 4 ? 1.25 * quotient : 4;
+    system->smoother.omega = (float)(1.5 / largest);
+    system->smoother.next_cautious = system->smoother.next_cautious > 0 ? system->smoother.next_cautious : GXSP_PAUSE;
+    system->smoother.cautious = system->smoother.next_cautious;
+    system->smoother.next_cautious += system->smoother.next_cautious < 1024 ? system->smoother.next_cautious : 0;
 }
 
 /* scaled = V-cycle of the residual. Level 0 is smoothed by omega D^-1, once on entry, see gxsp_scale, or by block
  * Gauss-Seidel if it is assembled. A state in violent motion may have a larger eigenvalue than omega was found for: the
  * residual, in which it grows, shows it. energy: residual . D^-1 residual; scratch: product */
-static void gxsp_multigrid(gxsp_system *system, double rate, double energy) {
-    gxsp_level *fine = &system->levels[0];
+static void gxsp_v_cycle(gxsp_system *system, double rate, double energy) {
+    gxsp_level *fine = &system->multigrid.levels[0];
     gxsp_pass pass;
     double work;
     size_t i;
-    fine->x = system->scaled, fine->b = system->right, fine->r = system->product;
-    if (system->fine) {
-        for (i = 0; i < 3 * system->n; i++)
-            system->right[i / 3][i % 3] = system->still[i / 3] ? 0 : (float)system->residual[i];
+    fine->x = system->vectors.scaled, fine->b = system->vectors.right, fine->r = system->vectors.product;
+    if (system->multigrid.fine) {
+        for (i = 0; i < 3 * system->model.n; i++)
+            system->vectors.right[i / 3][i % 3] = system->state.still[i / 3] ? 0 : (float)system->vectors.residual[i];
         gxsp_cycle(system, 0);
         return;
     }
-    work = gxsp_product_from(system, rate, system->residual, fine->x, fine->r);
-    if (work > GXSP_OMEGA * (double)system->omega * energy && system->omega_rest == 0) {
-        const float before = system->omega;
+    work = gxsp_product_from(system, rate, system->vectors.residual, fine->x, fine->r);
+    if (work > GXSP_OMEGA * (double)system->smoother.omega * energy && system->smoother.cautious == 0) {
+        const float before = system->smoother.omega;
         gxsp_shorten_omega(system, work / ((double)before * (double)before * energy));
-        for (i = 0; i < 3 * system->n; i++) fine->x[i / 3][i % 3] *= system->omega / before;
-        (void)gxsp_product_from(system, rate, system->residual, fine->x, fine->r);
+        for (i = 0; i < 3 * system->model.n; i++) fine->x[i / 3][i % 3] *= system->smoother.omega / before;
+        (void)gxsp_product_from(system, rate, system->vectors.residual, fine->x, fine->r);
     }
     gxsp_restrict(fine, fine + 1);
     gxsp_cycle(system, 1);
     gxsp_prolong(fine, fine + 1);
-    (void)gxsp_product_from(system, rate, system->residual, fine->x, fine->r);
+    (void)gxsp_product_from(system, rate, system->vectors.residual, fine->x, fine->r);
     memset(&pass, 0, sizeof pass);
     gxsp_over_ranges(system, gxsp_task_smooth, &pass, NULL, 0);
 }
@@ -5367,7 +5442,7 @@ static void gxsp_edges_clear(gxsp_edges *edges, const gxsp_chunk *chunk) {
 /* Blocks of a chunk's edges: the Hessian of its elements, of i's row and j's column, with their mass; and the nodes'
  * mass */
 static void gxsp_edge_blocks(gxsp_system *system, const gxsp_chunk *chunk) {
-    gxsp_edges *edges = &system->edges;
+    gxsp_edges *edges = &system->multigrid.edges;
     uint32_t b;
     int pair, k, at;
     gxsp_edges_clear(edges, chunk);
@@ -5413,8 +5488,8 @@ static uint32_t gxsp_pair_entry(const gxsp_pairs *pairs, const gxsp_level *next,
  * touched, of which count were. */
 static inline uint32_t gxsp_add_half(const gxsp_system *system, uint32_t i, uint32_t other, const float *weight,
                                      const float *block, uint32_t count) {
-    const gxsp_edges *edges = &system->edges;
-    uint32_t *seen = system->pairs.seen;
+    const gxsp_edges *edges = &system->multigrid.edges;
+    uint32_t *seen = system->multigrid.pairs.seen;
     int q;
     for (q = 0; q < 4; q++) {
         const uint16_t number = edges->parent[other][q];
@@ -5430,10 +5505,10 @@ static inline uint32_t gxsp_add_half(const gxsp_system *system, uint32_t i, uint
  * higher nodes and half of what is on the diagonal. Rows of stiffness add up to 0, so that this half is half the mass
  * less half of all the node's edges, turned or not. Returns how many numbers are touched. */
 static uint32_t gxsp_half_row(gxsp_system *system, const uint32_t *copies, uint32_t i) {
-    const gxsp_level *fine = &system->levels[0];
-    gxsp_edges *edges = &system->edges;
+    const gxsp_level *fine = &system->multigrid.levels[0];
+    gxsp_edges *edges = &system->multigrid.edges;
     uint32_t e, count = 0;
-    system->pairs.seen[0] = i + 1;
+    system->multigrid.pairs.seen[0] = i + 1;
     for (e = edges->first[i]; e != 0; e = edges->next[e]) {
         const uint32_t other = edges->ends[e] & 0xffff;
         gxsp_add_scaled(-0.5f, edges->block[e], edges->own[i]);
@@ -5447,19 +5522,20 @@ static uint32_t gxsp_half_row(gxsp_system *system, const uint32_t *copies, uint3
 /* A node's part of level 1's matrix; of a coarse node's own entry half, to which its turned half is missing. dirty: of
  * entries in rows or columns of dirty nodes only */
 static void gxsp_coarse_node(gxsp_system *system, const uint32_t *copies, uint32_t i, const uint8_t *dirty) {
-    const float *weight = system->levels[0].weight[copies[i]];
-    const gxsp_pairs *pairs = &system->pairs;
-    gxsp_level *next = &system->levels[1];
+    const float *weight = system->multigrid.levels[0].weight[copies[i]];
+    const gxsp_pairs *pairs = &system->multigrid.pairs;
+    gxsp_level *next = &system->multigrid.levels[1];
     uint32_t p, t, count;
-    if (!system->edges.joined[i] && !(system->edges.mass[i] > 0)) /* elements without weight have no entries */
+    if (!system->multigrid.edges.joined[i] && !(system->multigrid.edges.mass[i] > 0)) /* elements without weight have no
+                                                                                         entries */
         return;
     count = gxsp_half_row(system, copies, i);
     for (t = 0; t < count; t++) {
-        const uint32_t other = system->edges.touched[t];
-        float *half = system->edges.half[other], turned[9];
+        const uint32_t other = system->multigrid.edges.touched[t];
+        float *half = system->multigrid.edges.half[other], turned[9];
         gxsp_transpose_block(half, turned);
         for (p = 0; p < 4; p++) {
-            const uint32_t number = system->edges.parent[i][p];
+            const uint32_t number = system->multigrid.edges.parent[i][p];
             if (number > 0 && (!dirty || dirty[pairs->node[number]] || dirty[pairs->node[other]])) {
                 const uint32_t entry = gxsp_pair_entry(pairs, next, number, other);
                 gxsp_add_scaled(weight[p], entry & 1 ? turned : half, next->block + 9 * (size_t)(entry >> 1));
@@ -5472,15 +5548,16 @@ static void gxsp_coarse_node(gxsp_system *system, const uint32_t *copies, uint32
 /* Level 1's matrix from the last linearisation. dirty: only the rows and columns of dirty nodes, whose blocks are 0;
  * NULL: all */
 static void gxsp_coarse_elements(gxsp_system *system, const uint8_t *dirty) {
-    gxsp_level *next = &system->levels[1];
+    gxsp_level *next = &system->multigrid.levels[1];
     uint32_t c, i;
-    for (c = 0; c < system->chunk_count; c++) {
-        const gxsp_chunk *chunk = &system->chunks[c];
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        const gxsp_chunk *chunk = &system->mesh.chunks[c];
         if (dirty && !gxsp_follows_dirty(system, chunk, dirty)) continue;
         gxsp_edge_blocks(system, chunk);
         gxsp_pairs_begin(system, chunk);
-        gxsp_pairs_find(&system->pairs, next);
-        for (i = 0; i < chunk->node_count; i++) gxsp_coarse_node(system, system->nodes + chunk->first_node, i, dirty);
+        gxsp_pairs_find(&system->multigrid.pairs, next);
+        for (i = 0; i < chunk->node_count; i++)
+            gxsp_coarse_node(system, system->mesh.nodes + chunk->first_node, i, dirty);
     }
     for (i = 0; i < next->n; i++)
         if (!dirty || dirty[i]) {
@@ -5673,15 +5750,15 @@ static int gxsp_factorise(gxsp_factor *factor, const gxsp_level *level, uint32_t
 
 /* Lumped masses between coarse functions */
 static void gxsp_coarse_lumped(gxsp_system *system, double rate) {
-    const gxsp_level *fine = &system->levels[0];
-    gxsp_level *next = &system->levels[1];
+    const gxsp_level *fine = &system->multigrid.levels[0];
+    gxsp_level *next = &system->multigrid.levels[1];
     uint32_t i;
     int p, q;
     for (i = 0; i < fine->n; i++)
         for (p = 0; p < 4; p++)
             for (q = 0; q < 4; q++)
                 if (fine->parent[i][p] <= fine->parent[i][q] && fine->parent[i][q] != GXSP_NONE)
-                    gxsp_add_mass((float)(rate * system->lumped[i]) * fine->weight[i][p] * fine->weight[i][q],
+                    gxsp_add_mass((float)(rate * system->model.lumped[i]) * fine->weight[i][p] * fine->weight[i][q],
                                   next->block +
                                       9 * (size_t)gxsp_find_entry(next, fine->parent[i][p], fine->parent[i][q]));
 }
@@ -5689,8 +5766,8 @@ static void gxsp_coarse_lumped(gxsp_system *system, double rate) {
 /* Springs and contact between coarse functions, where level 1's matrix has an entry for them */
 static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term) {
     static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    const gxsp_level *fine = &system->levels[0];
-    gxsp_level *next = &system->levels[1];
+    const gxsp_level *fine = &system->multigrid.levels[0];
+    gxsp_level *next = &system->multigrid.levels[1];
     int i, j, p, q, k;
     for (i = 0; i < 16; i++)
         for (j = 0; j < 16; j++) {
@@ -5710,7 +5787,7 @@ static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term) {
 
 /* Adds a corner pair's block, on and above the diagonal, where corners follow others. same: both are one corner */
 static void gxsp_assemble_following(gxsp_system *system, uint32_t p, uint32_t q, int same, const float *block) {
-    gxsp_level *fine = &system->levels[0];
+    gxsp_level *fine = &system->multigrid.levels[0];
     uint32_t a[4], b[4];
     float wa[4], wb[4], turned[9];
     const int as = gxsp_corner_masters(system, p, a, wa), bs = gxsp_corner_masters(system, q, b, wb);
@@ -5729,7 +5806,7 @@ static void gxsp_assemble_following(gxsp_system *system, uint32_t p, uint32_t q,
 
 /* A block's elements, of which each lane's corner pair adds to one entry, or to those of its masters */
 static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, uint32_t b) {
-    gxsp_level *fine = &system->levels[0];
+    gxsp_level *fine = &system->multigrid.levels[0];
     const gxsp_corners *corner = &chunk->corners[b];
     const gxsp_tangent *tangent = &chunk->tangents[b];
     gxsp_singles gamma[4][3];
@@ -5741,8 +5818,8 @@ static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, ui
         gxsp_block_couple(tangent, gxsp_block_general(chunk, b), gamma[p], gamma[q], block);
         gxsp_block_mass(tangent, gxsp_block_moments(chunk, b), p, q, masses);
         for (l = 0; l < GXSP_LANES; l++) {
-            const uint32_t *copies = system->nodes + chunk->first_node,
-                           entry = system->fine[chunk->first_block + b].entry[pair][l];
+            const uint32_t *copies = system->mesh.nodes + chunk->first_node,
+                           entry = system->multigrid.fine[chunk->first_block + b].entry[pair][l];
             const uint32_t i = copies[corner->node[p][l]], j = copies[corner->node[q][l]];
             float own[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0},
                   *to = entry == GXSP_NONE ? own : fine->block + 9 * (size_t)entry;
@@ -5758,7 +5835,7 @@ static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, ui
 /* Adds a spring or contact, on and above the diagonal, if the matrix has entries for all of it. Has it? */
 static int gxsp_assemble_term(gxsp_system *system, const gxsp_term *term) {
     static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    gxsp_level *fine = &system->levels[0];
+    gxsp_level *fine = &system->multigrid.levels[0];
     uint32_t a[16], i, j, count = 0, entry;
     float w[16];
     int k, adds;
@@ -5783,21 +5860,21 @@ static int gxsp_assemble_term(gxsp_system *system, const gxsp_term *term) {
 
 /* The assembled matrix from the last linearisation */
 static void gxsp_assemble(gxsp_system *system, double rate) {
-    gxsp_level *fine = &system->levels[0];
+    gxsp_level *fine = &system->multigrid.levels[0];
     uint32_t c, b, i;
     size_t t;
     memset(fine->block, 0, 9 * (size_t)fine->start[fine->n] * sizeof(float));
-    for (c = 0; c < system->chunk_count; c++)
-        for (b = 0; b < system->chunks[c].block_count && !system->chunk_still[c]; b++)
-            gxsp_assemble_block(system, &system->chunks[c], b);
-    for (i = 0; i < fine->n && system->lumped_mass; i++) {
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        for (b = 0; b < system->mesh.chunks[c].block_count && !system->state.chunk_still[c]; b++)
+            gxsp_assemble_block(system, &system->mesh.chunks[c], b);
+    for (i = 0; i < fine->n && system->model.lumped_mass; i++) {
         uint32_t a[4], p, q;
         float w[4];
         const uint32_t count = (uint32_t)gxsp_corner_masters(system, i, a, w);
         for (p = 0; p < count; p++)
             for (q = 0; q < count; q++)
                 if (a[p] <= a[q])
-                    gxsp_add_mass(w[p] * w[q] * (float)(rate * system->lumped[i]),
+                    gxsp_add_mass(w[p] * w[q] * (float)(rate * system->model.lumped[i]),
                                   fine->block + 9 * (size_t)gxsp_find_entry(fine, a[p], a[q]));
     }
     for (t = 0; t < system->lasting->count; t++)
@@ -5808,7 +5885,7 @@ static void gxsp_assemble(gxsp_system *system, double rate) {
  * moves. 0 if a number overflowed. */
 static int gxsp_invert_fine(gxsp_system *system) {
     static const int packed[6] = {0, 3, 6, 4, 7, 8}, full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    gxsp_level *fine = &system->levels[0];
+    gxsp_level *fine = &system->multigrid.levels[0];
     uint32_t i, k;
     size_t t;
     int m;
@@ -5824,7 +5901,7 @@ static int gxsp_invert_fine(gxsp_system *system) {
         }
     for (i = 0; i < fine->n; i++) {
         float *inverse = fine->inverse + 6 * (size_t)i, block[9];
-        for (m = 0; m < 9; m++) block[m] = system->still[i] || gxsp_follows(system, i) ? 0 : inverse[full[m]];
+        for (m = 0; m < 9; m++) block[m] = system->state.still[i] || gxsp_follows(system, i) ? 0 : inverse[full[m]];
         if (!gxsp_invert_block(block, inverse)) return 0;
     }
     return 1;
@@ -5834,67 +5911,69 @@ static int gxsp_invert_fine(gxsp_system *system) {
  * overflowed. */
 static int gxsp_lower_numbers(gxsp_system *system, const uint8_t *dirty) {
     uint32_t at;
-    for (at = 1; at < system->level_count; at++) {
-        gxsp_level *level = &system->levels[at];
+    for (at = 1; at < system->multigrid.level_count; at++) {
+        gxsp_level *level = &system->multigrid.levels[at];
         if (!gxsp_invert_diagonal(level, at == 1 ? dirty : NULL)) return 0;
-        if (at + 1 < system->level_count) gxsp_coarsen(level, level + 1, &system->pairs);
+        if (at + 1 < system->multigrid.level_count) gxsp_coarsen(level, level + 1, &system->multigrid.pairs);
     }
-    return gxsp_factorise(&system->factor, &system->levels[system->level_count - 1], system->pairs.local);
+    return gxsp_factorise(&system->multigrid.factor, &system->multigrid.levels[system->multigrid.level_count - 1],
+                          system->multigrid.pairs.local);
 }
 
 /* Shared memory while coarse numbers are made */
-static void gxsp_lend(gxsp_system *system) {
+static void gxsp_lend_memory(gxsp_system *system) {
     gxsp_space space = {NULL, 0};
-    space.memory = system->shared;
+    space.memory = system->vectors.shared;
     gxsp_numbers_carve(system, &space);
-    if (!system->fine) {
-        memset(system->edges.table, 0, system->edges.table_size * sizeof *system->edges.table);
-        memset(system->edges.half, 0, system->pairs.most * sizeof *system->edges.half);
-        memset(system->pairs.stamp, 0, system->levels[1].n * sizeof *system->pairs.stamp);
-        system->pairs.round = 0;
+    if (!system->multigrid.fine) {
+        memset(system->multigrid.edges.table, 0,
+               system->multigrid.edges.table_size * sizeof *system->multigrid.edges.table);
+        memset(system->multigrid.edges.half, 0, system->multigrid.pairs.most * sizeof *system->multigrid.edges.half);
+        memset(system->multigrid.pairs.stamp, 0, system->multigrid.levels[1].n * sizeof *system->multigrid.pairs.stamp);
+        system->multigrid.pairs.round = 0;
     }
 }
 
 /* The matrices of all coarse levels from the last linearisation. 0 if a number overflowed. */
 static int gxsp_coarse_numbers(gxsp_system *system, double rate) {
-    gxsp_level *fine = &system->levels[0];
+    gxsp_level *fine = &system->multigrid.levels[0];
     int finite;
     size_t t;
-    gxsp_lend(system);
-    if (system->fine)
-        gxsp_coarsen(fine, fine + 1, &system->pairs);
+    gxsp_lend_memory(system);
+    if (system->multigrid.fine)
+        gxsp_coarsen(fine, fine + 1, &system->multigrid.pairs);
     else {
         memset(fine[1].block, 0, 9 * (size_t)fine[1].start[fine[1].n] * sizeof(float));
         gxsp_coarse_elements(system, NULL);
-        if (system->lumped_mass) gxsp_coarse_lumped(system, system->scale * rate);
+        if (system->model.lumped_mass) gxsp_coarse_lumped(system, system->model.scale * rate);
     }
     for (t = 0; t < system->lasting->count; t++)
         if (!system->lasting->term[t].assembled) gxsp_coarse_term(system, &system->lasting->term[t]);
     finite = gxsp_lower_numbers(system, NULL);
-    gxsp_give_back(system);
+    gxsp_return_memory(system);
     return finite;
 }
 
 /* Largest eigenvalue of D^-1 (K + rate M) on what is not still, by the power method from a start that favours none; 0
  * if nothing moves */
 static double gxsp_largest_eigenvalue(gxsp_system *system, double rate) {
-    gxsp_vector4 *x = system->search, *y = system->product;
+    gxsp_vector4 *x = system->vectors.search, *y = system->vectors.product;
     uint32_t random = 1;
     size_t i;
     int c, round;
     double largest = 0;
-    for (i = 0; i < system->n; i++)
+    for (i = 0; i < system->model.n; i++)
         for (c = 0; c < 3; c++) {
             random = random * 1664525u + 1013904223u;
-            x[i][c] = system->still[i] ? 0 : (float)(random >> 8) / 8388608.0f - 1;
+            x[i][c] = system->state.still[i] ? 0 : (float)(random >> 8) / 8388608.0f - 1;
         }
     for (round = 0; round < 6; round++) {
         double before = 0, after = 0;
         float scale;
         gxsp_product(system, rate, x, y);
-        for (i = 0; i < system->n; i++) {
+        for (i = 0; i < system->model.n; i++) {
             float z[3];
-            gxsp_apply_packed(system->diagonal + 6 * i, y[i], z);
+            gxsp_apply_packed(system->vectors.diagonal + 6 * i, y[i], z);
             for (c = 0; c < 3; c++) {
                 before += (double)y[i][c] * (double)x[i][c];
                 after += (double)y[i][c] * (double)z[c];
@@ -5904,7 +5983,7 @@ static double gxsp_largest_eigenvalue(gxsp_system *system, double rate) {
         if (!(before > 0) || !(after > 0)) break;
         largest = after / before;
         scale = (float)(1 / sqrt(after));
-        for (i = 0; i < system->n; i++)
+        for (i = 0; i < system->model.n; i++)
             for (c = 0; c < 3; c++) x[i][c] *= scale;
     }
     return largest;
@@ -5914,7 +5993,7 @@ static double gxsp_largest_eigenvalue(gxsp_system *system, double rate) {
  * 4/3 that damp its upper half most. An eigenvalue a third larger would still leave the cycle definite. */
 static float gxsp_omega(const gxsp_system *system, double largest) {
     largest = largest > 0 ? 1.05 * largest : 4;
-    if (largest > 4 && system->follower_count == 0) /* no element's own D^-1 K exceeds 4 */
+    if (largest > 4 && system->model.follower_count == 0) /* no element's own D^-1 K exceeds 4 */
         largest = 4;
     return (float)(1.5 / largest);
 }
@@ -5923,12 +6002,14 @@ static float gxsp_omega(const gxsp_system *system, double largest) {
 static void gxsp_mark_still(gxsp_system *system) {
     uint32_t c, k;
     size_t i;
-    for (i = 0; i < system->n; i++)
-        system->still[i] = system->fixed[i] || (system->pieces[system->piece[i]].state & GXSP_ASLEEP);
-    for (c = 0; c < system->chunk_count; c++) {
-        system->chunk_still[c] = 1;
-        for (k = 0; k < system->chunks[c].node_count; k++)
-            system->chunk_still[c] &= system->still[system->nodes[system->chunks[c].first_node + k]];
+    for (i = 0; i < system->model.n; i++)
+        system->state.still[i] =
+            system->model.fixed[i] || (system->model.components[system->model.component[i]].state & GXSP_ASLEEP);
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        system->state.chunk_still[c] = 1;
+        for (k = 0; k < system->mesh.chunks[c].node_count; k++)
+            system->state.chunk_still[c] &=
+                system->state.still[system->mesh.nodes[system->mesh.chunks[c].first_node + k]];
     }
 }
 
@@ -5938,27 +6019,27 @@ static void gxsp_renew_omega(gxsp_system *system, double rate) {
     double largest;
     uint32_t c, k;
     size_t i;
-    for (i = 0; i < system->n; i++) system->still[i] |= !system->renewed[i];
-    for (c = 0; c < system->chunk_count; c++) {
+    for (i = 0; i < system->model.n; i++) system->state.still[i] |= !system->smoother.renewed[i];
+    for (c = 0; c < system->mesh.chunk_count; c++) {
         uint8_t still = 1;
-        for (k = 0; k < system->chunks[c].node_count; k++)
-            still &= system->still[system->nodes[system->chunks[c].first_node + k]];
-        system->chunk_still[c] |= still;
+        for (k = 0; k < system->mesh.chunks[c].node_count; k++)
+            still &= system->state.still[system->mesh.nodes[system->mesh.chunks[c].first_node + k]];
+        system->state.chunk_still[c] |= still;
     }
     largest = gxsp_largest_eigenvalue(system, rate);
-    if (GXSP_OMEGA < (double)system->omega_found * largest) system->omega_found = (float)(GXSP_OMEGA / largest);
+    if (GXSP_OMEGA < (double)system->smoother.found * largest) system->smoother.found = (float)(GXSP_OMEGA / largest);
     gxsp_mark_still(system);
 }
 
 /* The step length for the solve to come */
 static void gxsp_choose_omega(gxsp_system *system, double rate) {
-    if (!(system->omega > 0))
-        system->omega_found = gxsp_omega(system, gxsp_largest_eigenvalue(system, rate));
-    else if (system->omega_renewed)
+    if (!(system->smoother.omega > 0))
+        system->smoother.found = gxsp_omega(system, gxsp_largest_eigenvalue(system, rate));
+    else if (system->smoother.any_renewed)
         gxsp_renew_omega(system, rate);
-    system->omega_renewed = 0;
-    system->omega_rest -= system->omega_rest > 0;
-    if (system->omega_rest == 0) system->omega = system->omega_found;
+    system->smoother.any_renewed = 0;
+    system->smoother.cautious -= system->smoother.cautious > 0;
+    if (system->smoother.cautious == 0) system->smoother.omega = system->smoother.found;
 }
 
 /* >>update: what a cut has changed goes into the chunks and levels that there are. Elements are replaced where they
@@ -5966,10 +6047,10 @@ static void gxsp_choose_omega(gxsp_system *system, double rate) {
  * copied. */
 
 /* A lane whose element goes */
-typedef struct gxsp_hole {
+typedef struct gxsp_edit {
     uint32_t chunk, lane, group;
     uint32_t element; /* of the change: what takes the lane; GXSP_NONE: nothing does */
-} gxsp_hole;
+} gxsp_edit;
 
 typedef struct gxsp_renewal {
     gxsp_system *system;
@@ -5978,8 +6059,8 @@ typedef struct gxsp_renewal {
     size_t before;                           /* copies so far */
     uint32_t *successor;                     /* before: what a copy is from now on; GXSP_NONE: it is no more */
     uint8_t *touched;                        /* change->copy_count: an element around the copy has gone or come */
-    gxsp_hole *holes;                        /* hole_count; then, as holes of new chunks, what is placed elsewhere */
-    uint32_t hole_count, placed_count;       /* placed: of elements that took no hole */
+    gxsp_edit *edits;                        /* hole_count; then, as holes of new chunks, what is placed elsewhere */
+    uint32_t edit_count, placed_count;       /* placed: of elements that took no hole */
     uint32_t *left, *left_class, left_count; /* elements of the change that take no hole, and what they are alike in */
     uint8_t *dirty;                          /* by node of level 1 so far: some that follow it are touched */
     uint8_t *alike;                          /* change->copy_count: the copy follows what it followed */
@@ -6021,9 +6102,9 @@ static int gxsp_changes(const gxs_change *change, const gxsp_filter *filter, uin
 }
 
 /* All lanes of the groups that change, in the order of groups, then of lanes */
-static void gxsp_find_holes(gxsp_renewal *update) {
+static void gxsp_find_edits(gxsp_renewal *update) {
     const gxsp_system *system = update->system;
-    gxsp_hole *found = NULL;
+    gxsp_edit *found = NULL;
     gxsp_sorted *sorted, *other;
     gxsp_filter filter;
     uint32_t c, lane, pass, count = 0;
@@ -6032,10 +6113,10 @@ static void gxsp_find_holes(gxsp_renewal *update) {
     for (i = 0; i < update->change->group_count; i++)
         filter.bit[update->change->groups[i] % GXSP_FILTER / 64] |= (uint64_t)1 << update->change->groups[i] % 64;
     for (pass = 0; pass < 2 && update->change->group_count > 0; pass++) { /* count, then list */
-        if (pass == 1 && !(found = (gxsp_hole *)gxsp_take(update->scratch, count, sizeof *found))) return;
-        for (c = 0, count = 0; c < system->chunk_count; c++)
-            for (lane = 0; lane < system->chunks[c].block_count * GXSP_LANES; lane++) {
-                const uint32_t group = system->chunks[c].groups[lane];
+        if (pass == 1 && !(found = (gxsp_edit *)gxsp_take(update->scratch, count, sizeof *found))) return;
+        for (c = 0, count = 0; c < system->mesh.chunk_count; c++)
+            for (lane = 0; lane < system->mesh.chunks[c].block_count * GXSP_LANES; lane++) {
+                const uint32_t group = system->mesh.chunks[c].groups[lane];
                 if (group == GXSP_NONE || !gxsp_changes(update->change, &filter, group)) continue;
                 if (found) found[count].chunk = c, found[count].lane = lane, found[count].group = group;
                 count++;
@@ -6043,27 +6124,27 @@ static void gxsp_find_holes(gxsp_renewal *update) {
     }
     sorted = (gxsp_sorted *)gxsp_take(update->scratch, count, sizeof *sorted);
     other = (gxsp_sorted *)gxsp_take(update->scratch, count, sizeof *other);
-    update->holes =
-        (gxsp_hole *)gxsp_take(update->scratch, count + update->change->element_count, sizeof *update->holes);
+    update->edits =
+        (gxsp_edit *)gxsp_take(update->scratch, count + update->change->element_count, sizeof *update->edits);
     if (update->scratch->failed) return;
     for (i = 0; i < count; i++) sorted[i].place = found[i].group, sorted[i].index = (uint32_t)i;
     if (count > 0) sorted = gxsp_sort(sorted, other, count);
     for (i = 0; i < count; i++) {
-        update->holes[i] = found[sorted[i].index];
-        update->holes[i].element = GXSP_NONE;
+        update->edits[i] = found[sorted[i].index];
+        update->edits[i].element = GXSP_NONE;
     }
-    update->hole_count = count;
+    update->edit_count = count;
 }
 
 /* Before copies are moved */
 static uint32_t gxsp_class_of(const gxsp_renewal *update, const gxs_element *element) {
     const gxsp_system *system = update->system;
-    return gxsp_class(system->materials[element->material].kind, element, 0, system->positions,
+    return gxsp_class(system->model.materials[element->material].kind, element, 0, system->model.positions,
                       update->change->origins);
 }
 
 /* Elements take the lanes of their group as far as these are of their class. */
-static void gxsp_match_holes(gxsp_renewal *update) {
+static void gxsp_match_edits(gxsp_renewal *update) {
     const gxs_change *change = update->change;
     uint32_t first = 0, e, i;
     update->left = (uint32_t *)gxsp_take(update->scratch, change->element_count, sizeof(uint32_t));
@@ -6071,13 +6152,13 @@ static void gxsp_match_holes(gxsp_renewal *update) {
     for (e = 0; e < change->element_count && !update->scratch->failed; e++) {
         const gxs_element *element = &change->elements[e];
         const uint32_t class_index = gxsp_class_of(update, element);
-        while (first < update->hole_count && update->holes[first].group < element->group) first++;
-        for (i = first; i < update->hole_count && update->holes[i].group == element->group; i++)
-            if (update->holes[i].element == GXSP_NONE &&
-                update->system->chunks[update->holes[i].chunk].class_index == class_index)
+        while (first < update->edit_count && update->edits[first].group < element->group) first++;
+        for (i = first; i < update->edit_count && update->edits[i].group == element->group; i++)
+            if (update->edits[i].element == GXSP_NONE &&
+                update->system->mesh.chunks[update->edits[i].chunk].class_index == class_index)
                 break;
-        if (i < update->hole_count && update->holes[i].group == element->group)
-            update->holes[i].element = e;
+        if (i < update->edit_count && update->edits[i].group == element->group)
+            update->edits[i].element = e;
         else {
             update->left_class[update->left_count] = class_index;
             update->left[update->left_count++] = e;
@@ -6092,15 +6173,15 @@ static void gxsp_touch_removed(gxsp_renewal *update) {
     const gxsp_system *system = update->system;
     uint32_t i, copies[4];
     int k, q;
-    for (i = 0; i < update->hole_count; i++) {
-        const gxsp_hole *hole = &update->holes[i];
-        gxsp_lane_copies(system, &system->chunks[hole->chunk], hole->lane / GXSP_LANES, (int)(hole->lane % GXSP_LANES),
-                         copies);
+    for (i = 0; i < update->edit_count; i++) {
+        const gxsp_edit *edit = &update->edits[i];
+        gxsp_lane_copies(system, &system->mesh.chunks[edit->chunk], edit->lane / GXSP_LANES,
+                         (int)(edit->lane % GXSP_LANES), copies);
         for (k = 0; k < 4; k++) {
             if (update->successor[copies[k]] != GXSP_NONE) update->touched[update->successor[copies[k]]] = 1;
-            for (q = 0; q < 4 && system->level_count > 0; q++)
-                if (system->levels[0].parent[copies[k]][q] != GXSP_NONE)
-                    update->dirty[system->levels[0].parent[copies[k]][q]] = 1;
+            for (q = 0; q < 4 && system->multigrid.level_count > 0; q++)
+                if (system->multigrid.levels[0].parent[copies[k]][q] != GXSP_NONE)
+                    update->dirty[system->multigrid.levels[0].parent[copies[k]][q]] = 1;
         }
     }
 }
@@ -6126,15 +6207,16 @@ static void gxsp_empty_lane(const gxsp_chunk *chunk, uint32_t lane) {
 static gxsp_chunk *gxsp_open_chunk(gxsp_system *system, uint32_t class_index) {
     gxsp_pool *pool = &system->pool;
     gxsp_chunk *chunk;
-    if (system->chunk_count >= system->chunk_room) {
-        const uint32_t room = system->chunk_count + system->chunk_count / 8 + 8;
-        system->chunks = (gxsp_chunk *)gxsp_retake(pool, system->chunks, system->chunk_count, room, sizeof(gxsp_chunk));
-        system->chunk_collapsed = (uint8_t *)gxsp_retake(pool, system->chunk_collapsed, 0, room, 1);
-        system->chunk_still = (uint8_t *)gxsp_retake(pool, system->chunk_still, 0, room, 1);
-        system->chunk_room = room;
+    if (system->mesh.chunk_count >= system->mesh.chunk_room) {
+        const uint32_t room = system->mesh.chunk_count + system->mesh.chunk_count / 8 + 8;
+        system->mesh.chunks =
+            (gxsp_chunk *)gxsp_grow(pool, system->mesh.chunks, system->mesh.chunk_count, room, sizeof(gxsp_chunk));
+        system->state.chunk_collapsed = (uint8_t *)gxsp_grow(pool, system->state.chunk_collapsed, 0, room, 1);
+        system->state.chunk_still = (uint8_t *)gxsp_grow(pool, system->state.chunk_still, 0, room, 1);
+        system->mesh.chunk_room = room;
     }
     if (pool->failed) return NULL;
-    chunk = &system->chunks[system->chunk_count];
+    chunk = &system->mesh.chunks[system->mesh.chunk_count];
     memset(chunk, 0, sizeof *chunk);
     chunk->class_index = class_index;
     chunk->kind = (gxs_material_kind)(class_index / 4);
@@ -6144,7 +6226,7 @@ static gxsp_chunk *gxsp_open_chunk(gxsp_system *system, uint32_t class_index) {
     gxsp_tangents_make(pool, chunk, 1);
     chunk->block_count = 0;
     if (pool->failed) return NULL;
-    system->chunk_count++;
+    system->mesh.chunk_count++;
     return chunk;
 }
 
@@ -6159,9 +6241,9 @@ static uint32_t gxsp_free_lane(gxsp_chunk *chunk, uint32_t from) {
 /* Index of the last open chunk of a class, or chunk_count */
 static uint32_t gxsp_find_open(const gxsp_system *system, uint32_t class_index) {
     uint32_t c;
-    for (c = system->chunk_count; c-- > 0;)
-        if (system->chunks[c].open && system->chunks[c].class_index == class_index) return c;
-    return system->chunk_count;
+    for (c = system->mesh.chunk_count; c-- > 0;)
+        if (system->mesh.chunks[c].open && system->mesh.chunks[c].class_index == class_index) return c;
+    return system->mesh.chunk_count;
 }
 
 /* Lanes of the class's open chunk, or of new ones, for those elements without a hole that are of this class */
@@ -6169,23 +6251,23 @@ static void gxsp_place_class(gxsp_renewal *update, uint32_t class_index) {
     gxsp_system *system = update->system;
     uint32_t i, l, c = gxsp_find_open(system, class_index), lane = 0;
     for (i = 0; i < update->left_count; i++) {
-        gxsp_hole *hole = &update->holes[update->hole_count + update->placed_count];
+        gxsp_edit *edit = &update->edits[update->edit_count + update->placed_count];
         if (update->left_class[i] != class_index) continue;
-        lane = c < system->chunk_count ? gxsp_free_lane(&system->chunks[c], lane) : GXSP_NONE;
+        lane = c < system->mesh.chunk_count ? gxsp_free_lane(&system->mesh.chunks[c], lane) : GXSP_NONE;
         if (lane == GXSP_NONE) {
-            c = system->chunk_count;
+            c = system->mesh.chunk_count;
             lane = 0;
             if (!gxsp_open_chunk(system, class_index)) return;
         }
         /* its other lanes are of no weight, but of a material there is */
-        if (lane == system->chunks[c].block_count * GXSP_LANES) {
+        if (lane == system->mesh.chunks[c].block_count * GXSP_LANES) {
             for (l = 0; l < GXSP_LANES; l++)
-                system->chunks[c].rest[lane / GXSP_LANES].material[l] =
+                system->mesh.chunks[c].rest[lane / GXSP_LANES].material[l] =
                     update->change->elements[update->left[i]].material;
-            system->chunks[c].block_count++;
+            system->mesh.chunks[c].block_count++;
         }
-        hole->chunk = c, hole->lane = lane, hole->element = update->left[i];
-        gxsp_place_element(&system->chunks[c], &update->change->elements[hole->element], gxsp_own_order, lane, 0);
+        edit->chunk = c, edit->lane = lane, edit->element = update->left[i];
+        gxsp_place_element(&system->mesh.chunks[c], &update->change->elements[edit->element], gxsp_own_order, lane, 0);
         update->placed_count++;
         lane++;
     }
@@ -6194,13 +6276,13 @@ static void gxsp_place_class(gxsp_renewal *update, uint32_t class_index) {
 /* Elements in their lanes; corners and nodes still are what they were. */
 static void gxsp_replace_elements(gxsp_renewal *update) {
     uint32_t i, class_index;
-    for (i = 0; i < update->hole_count; i++) {
-        const gxsp_hole *hole = &update->holes[i];
-        const gxsp_chunk *chunk = &update->system->chunks[hole->chunk];
-        if (hole->element == GXSP_NONE)
-            gxsp_empty_lane(chunk, hole->lane);
+    for (i = 0; i < update->edit_count; i++) {
+        const gxsp_edit *edit = &update->edits[i];
+        const gxsp_chunk *chunk = &update->system->mesh.chunks[edit->chunk];
+        if (edit->element == GXSP_NONE)
+            gxsp_empty_lane(chunk, edit->lane);
         else
-            gxsp_place_element(chunk, &update->change->elements[hole->element], gxsp_own_order, hole->lane, 0);
+            gxsp_place_element(chunk, &update->change->elements[edit->element], gxsp_own_order, edit->lane, 0);
     }
     for (class_index = 0; class_index < 4 * (GXS_CUSTOM + 1) && !update->system->pool.failed; class_index++)
         gxsp_place_class(update, class_index);
@@ -6208,7 +6290,7 @@ static void gxsp_replace_elements(gxsp_renewal *update) {
 
 /* Nodes of a chunk of which lanes have changed. next: by hole, the next one of its chunk. 0: an element that stays has
  * lost a copy. */
-static int gxsp_renew_chunk(gxsp_renewal *update, gxsp_chunk *chunk, uint32_t hole, const uint32_t *next,
+static int gxsp_renew_chunk(gxsp_renewal *update, gxsp_chunk *chunk, uint32_t edit, const uint32_t *next,
                             gxsp_numbers *numbers, uint32_t *nodes) {
     const gxsp_system *system = update->system;
     uint32_t copies[GXSP_CHUNK][4], lane, used = 0;
@@ -6219,9 +6301,9 @@ static int gxsp_renew_chunk(gxsp_renewal *update, gxsp_chunk *chunk, uint32_t ho
         gxsp_lane_copies(system, chunk, lane / GXSP_LANES, (int)(lane % GXSP_LANES), copies[lane]);
         for (k = 0; k < 4; k++) copies[lane][k] = update->successor[copies[lane][k]];
     }
-    for (; hole != GXSP_NONE; hole = next[hole])
-        if (update->holes[hole].element != GXSP_NONE)
-            memcpy(copies[update->holes[hole].lane], update->change->elements[update->holes[hole].element].copy,
+    for (; edit != GXSP_NONE; edit = next[edit])
+        if (update->edits[edit].element != GXSP_NONE)
+            memcpy(copies[update->edits[edit].lane], update->change->elements[update->edits[edit].element].copy,
                    sizeof copies[0]);
     for (lane = 0; lane < chunk->block_count * GXSP_LANES; lane++)
         if (chunk->groups[lane] != GXSP_NONE) {
@@ -6254,25 +6336,26 @@ static void gxsp_find_roots(const gxsp_chunk *chunk, uint16_t *roots) {
 /* Room for so many slots */
 static void gxsp_slots_room(gxsp_system *system, size_t count) {
     gxsp_pool *pool = &system->pool;
-    if (count > system->slot_room) {
-        system->slot_room = count + count / 8;
-        system->nodes =
-            (uint32_t *)gxsp_retake(pool, system->nodes, 0, system->slot_room + GXSP_AHEAD, sizeof(uint32_t));
-        system->copy_slot =
-            (uint32_t *)gxsp_retake(pool, system->copy_slot, 0, system->slot_room + GXSP_AHEAD, sizeof(uint32_t));
-        system->slot_root = (uint16_t *)gxsp_retake(pool, system->slot_root, 0, system->slot_room, sizeof(uint16_t));
+    if (count > system->mesh.slot_room) {
+        system->mesh.slot_room = count + count / 8;
+        system->mesh.nodes =
+            (uint32_t *)gxsp_grow(pool, system->mesh.nodes, 0, system->mesh.slot_room + GXSP_AHEAD, sizeof(uint32_t));
+        system->mesh.copy_slot = (uint32_t *)gxsp_grow(pool, system->mesh.copy_slot, 0,
+                                                       system->mesh.slot_room + GXSP_AHEAD, sizeof(uint32_t));
+        system->mesh.slot_root =
+            (uint16_t *)gxsp_grow(pool, system->mesh.slot_root, 0, system->mesh.slot_room, sizeof(uint16_t));
     }
-    system->slot_count = count;
+    system->mesh.slot_count = count;
 }
 
 /* Nodes of all chunks. 0: an element that stays has lost a copy. */
 static int gxsp_renew_nodes(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     const size_t n = update->change->copy_count;
-    const uint32_t holes = update->hole_count + update->placed_count;
-    const size_t room = system->slot_count + 4 * (size_t)holes;
-    uint32_t *first = (uint32_t *)gxsp_take(update->scratch, system->chunk_count, sizeof(uint32_t)), c, i;
-    uint32_t *next = (uint32_t *)gxsp_take(update->scratch, holes, sizeof(uint32_t));
+    const uint32_t edits = update->edit_count + update->placed_count;
+    const size_t room = system->mesh.slot_count + 4 * (size_t)edits;
+    uint32_t *first = (uint32_t *)gxsp_take(update->scratch, system->mesh.chunk_count, sizeof(uint32_t)), c, i;
+    uint32_t *next = (uint32_t *)gxsp_take(update->scratch, edits, sizeof(uint32_t));
     uint32_t *nodes = (uint32_t *)gxsp_take(update->scratch, room, sizeof(uint32_t));
     uint16_t *roots = (uint16_t *)gxsp_take(update->scratch, room, sizeof(uint16_t));
     size_t count = 0;
@@ -6281,32 +6364,32 @@ static int gxsp_renew_nodes(gxsp_renewal *update) {
     numbers.stamp = (uint32_t *)gxsp_take(update->scratch, n, sizeof(uint32_t));
     numbers.round = 0;
     if (update->scratch->failed) return 1;
-    memset(first, 0xff, system->chunk_count * sizeof *first);
-    for (i = holes; i-- > 0;) {
-        next[i] = first[update->holes[i].chunk];
-        first[update->holes[i].chunk] = i;
+    memset(first, 0xff, system->mesh.chunk_count * sizeof *first);
+    for (i = edits; i-- > 0;) {
+        next[i] = first[update->edits[i].chunk];
+        first[update->edits[i].chunk] = i;
     }
-    for (c = 0; c < system->chunk_count; c++) {
-        gxsp_chunk *chunk = &system->chunks[c];
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        gxsp_chunk *chunk = &system->mesh.chunks[c];
         const uint32_t before = chunk->first_node;
         if (first[c] != GXSP_NONE && !gxsp_renew_chunk(update, chunk, first[c], next, &numbers, nodes + count))
             return 0;
         for (i = 0; i < chunk->node_count && first[c] == GXSP_NONE; i++) {
-            nodes[count + i] = update->successor[system->nodes[before + i]];
+            nodes[count + i] = update->successor[system->mesh.nodes[before + i]];
             if (nodes[count + i] == GXSP_NONE) return 0;
         }
-        if (first[c] != GXSP_NONE || !system->roots_known)
+        if (first[c] != GXSP_NONE || !system->mesh.roots_known)
             gxsp_find_roots(chunk, roots + count);
         else
-            memcpy(roots + count, system->slot_root + before, chunk->node_count * sizeof *roots);
+            memcpy(roots + count, system->mesh.slot_root + before, chunk->node_count * sizeof *roots);
         chunk->first_node = (uint32_t)count;
         count += chunk->node_count;
     }
     gxsp_slots_room(system, count);
     if (system->pool.failed) return 1;
-    memcpy(system->nodes, nodes, count * sizeof *nodes);
-    memcpy(system->slot_root, roots, count * sizeof *roots);
-    system->roots_known = 1;
+    memcpy(system->mesh.nodes, nodes, count * sizeof *nodes);
+    memcpy(system->mesh.slot_root, roots, count * sizeof *roots);
+    system->mesh.roots_known = 1;
     return 1;
 }
 
@@ -6315,35 +6398,37 @@ static int gxsp_renew_nodes(gxsp_renewal *update) {
 /* Room for so many copies; what they have stays theirs. */
 static void gxsp_copies_room(gxsp_system *system, size_t count) {
     gxsp_pool *pool = &system->pool;
-    const size_t n = system->n, most = count > n ? count : n, room = most + most / 8;
-    gxsp_level *fine = &system->levels[0];
-    if (count <= system->copy_room) return;
-    system->target = (double *)gxsp_retake(pool, system->target, 0, 3 * room, sizeof(double));
-    if (system->damping) system->damping = (double *)gxsp_retake(pool, system->damping, 0, 3 * room, sizeof(double));
-    system->current = (double *)gxsp_retake(pool, system->current, 3 * n, 3 * room, sizeof(double));
-    system->force = (double *)gxsp_retake(pool, system->force, 0, 3 * room, sizeof(double));
-    system->trial = system->residual = (double *)gxsp_retake(pool, system->residual, 0, 3 * room, sizeof(double));
-    system->direction = (double *)gxsp_retake(pool, system->direction, 0, 3 * room, sizeof(double));
-    system->guess[0] = (gxsp_vector4 *)gxsp_retake(pool, system->guess[0], n, room, sizeof(gxsp_vector4));
-    system->guess[1] = (gxsp_vector4 *)gxsp_retake(pool, system->guess[1], n, room, sizeof(gxsp_vector4));
-    system->range_sum =
-        (double(*)[GXSP_SUMS])gxsp_retake(pool, system->range_sum, 0, room / GXSP_RANGE + 1, sizeof *system->range_sum);
-    system->diagonal = (float *)gxsp_retake(pool, system->diagonal, 0, 6 * room, sizeof(float));
-    system->copy_start = (uint32_t *)gxsp_retake(pool, system->copy_start, 0, room + 2, sizeof(uint32_t));
-    if (system->positions)
-        system->positions = (double *)gxsp_retake(pool, system->positions, 3 * n, 3 * room, sizeof(double));
-    system->lumped = (double *)gxsp_retake(pool, system->lumped, n, room, sizeof(double));
-    system->piece = (uint32_t *)gxsp_retake(pool, system->piece, n, room, sizeof(uint32_t));
-    system->fixed = (uint8_t *)gxsp_retake(pool, system->fixed, n, room, 1);
-    system->still = (uint8_t *)gxsp_retake(pool, system->still, 0, room, 1);
-    system->held = (uint8_t *)gxsp_retake(pool, system->held, n, room, 1);
-    system->renewed = (uint8_t *)gxsp_retake(pool, system->renewed, 0, room, 1);
-    if (system->level_count > 0) {
-        system->coarse_state = (double *)gxsp_retake(pool, system->coarse_state, 3 * n, 3 * room, sizeof(double));
-        fine->parent = (uint32_t(*)[4])gxsp_retake(pool, fine->parent, n, room, sizeof *fine->parent);
-        fine->weight = (float(*)[4])gxsp_retake(pool, fine->weight, n, room, sizeof *fine->weight);
+    const size_t n = system->model.n, most = count > n ? count : n, room = most + most / 8;
+    gxsp_level *fine = &system->multigrid.levels[0];
+    if (count <= system->model.copy_room) return;
+    system->vectors.target = (double *)gxsp_grow(pool, system->vectors.target, 0, 3 * room, sizeof(double));
+    if (system->vectors.damping)
+        system->vectors.damping = (double *)gxsp_grow(pool, system->vectors.damping, 0, 3 * room, sizeof(double));
+    system->vectors.current = (double *)gxsp_grow(pool, system->vectors.current, 3 * n, 3 * room, sizeof(double));
+    system->vectors.force = (double *)gxsp_grow(pool, system->vectors.force, 0, 3 * room, sizeof(double));
+    system->vectors.residual = (double *)gxsp_grow(pool, system->vectors.residual, 0, 3 * room, sizeof(double));
+    system->vectors.direction = (double *)gxsp_grow(pool, system->vectors.direction, 0, 3 * room, sizeof(double));
+    system->vectors.guess[0] = (gxsp_vector4 *)gxsp_grow(pool, system->vectors.guess[0], n, room, sizeof(gxsp_vector4));
+    system->vectors.guess[1] = (gxsp_vector4 *)gxsp_grow(pool, system->vectors.guess[1], n, room, sizeof(gxsp_vector4));
+    system->vectors.range_sum = (double(*)[GXSP_SUMS])gxsp_grow(
+        pool, system->vectors.range_sum, 0, room / GXSP_RANGE + 1, sizeof *system->vectors.range_sum);
+    system->vectors.diagonal = (float *)gxsp_grow(pool, system->vectors.diagonal, 0, 6 * room, sizeof(float));
+    system->mesh.copy_start = (uint32_t *)gxsp_grow(pool, system->mesh.copy_start, 0, room + 2, sizeof(uint32_t));
+    if (system->model.positions)
+        system->model.positions = (double *)gxsp_grow(pool, system->model.positions, 3 * n, 3 * room, sizeof(double));
+    system->model.lumped = (double *)gxsp_grow(pool, system->model.lumped, n, room, sizeof(double));
+    system->model.component = (uint32_t *)gxsp_grow(pool, system->model.component, n, room, sizeof(uint32_t));
+    system->model.fixed = (uint8_t *)gxsp_grow(pool, system->model.fixed, n, room, 1);
+    system->state.still = (uint8_t *)gxsp_grow(pool, system->state.still, 0, room, 1);
+    system->model.held = (uint8_t *)gxsp_grow(pool, system->model.held, n, room, 1);
+    system->smoother.renewed = (uint8_t *)gxsp_grow(pool, system->smoother.renewed, 0, room, 1);
+    if (system->multigrid.level_count > 0) {
+        system->coarse.displacement =
+            (double *)gxsp_grow(pool, system->coarse.displacement, 3 * n, 3 * room, sizeof(double));
+        fine->parent = (uint32_t(*)[4])gxsp_grow(pool, fine->parent, n, room, sizeof *fine->parent);
+        fine->weight = (float(*)[4])gxsp_grow(pool, fine->weight, n, room, sizeof *fine->weight);
     }
-    system->copy_room = room;
+    system->model.copy_room = room;
 }
 
 /* Entries of an array over copies go where their copies go. moved: copies that are not what they were, moved_count;
@@ -6368,23 +6453,25 @@ static void gxsp_move_copies(gxsp_renewal *update) {
         if (change->origins[i] >> 1 != i) moved[count++] = i;
     kept = (unsigned char *)gxsp_take(update->scratch, count, 3 * sizeof(double)); /* the largest entry */
     if (update->scratch->failed || system->pool.failed) return;
-    gxsp_move(change, moved, count, system->current, 3 * sizeof(double), kept);
-    gxsp_move(change, moved, count, system->guess[0], sizeof(gxsp_vector4), kept);
-    gxsp_move(change, moved, count, system->guess[1], sizeof(gxsp_vector4), kept);
-    if (system->positions) gxsp_move(change, moved, count, system->positions, 3 * sizeof(double), kept);
-    gxsp_move(change, moved, count, system->lumped, sizeof(double), kept);
-    gxsp_move(change, moved, count, system->piece, sizeof(uint32_t), kept);
-    gxsp_move(change, moved, count, system->fixed, 1, kept);
-    gxsp_move(change, moved, count, system->held, 1, kept);
-    if (system->level_count > 0) {
-        gxsp_move(change, moved, count, system->coarse_state, 3 * sizeof(double), kept);
-        gxsp_move(change, moved, count, system->levels[0].parent, sizeof *system->levels[0].parent, kept);
-        gxsp_move(change, moved, count, system->levels[0].weight, sizeof *system->levels[0].weight, kept);
+    gxsp_move(change, moved, count, system->vectors.current, 3 * sizeof(double), kept);
+    gxsp_move(change, moved, count, system->vectors.guess[0], sizeof(gxsp_vector4), kept);
+    gxsp_move(change, moved, count, system->vectors.guess[1], sizeof(gxsp_vector4), kept);
+    if (system->model.positions) gxsp_move(change, moved, count, system->model.positions, 3 * sizeof(double), kept);
+    gxsp_move(change, moved, count, system->model.lumped, sizeof(double), kept);
+    gxsp_move(change, moved, count, system->model.component, sizeof(uint32_t), kept);
+    gxsp_move(change, moved, count, system->model.fixed, 1, kept);
+    gxsp_move(change, moved, count, system->model.held, 1, kept);
+    if (system->multigrid.level_count > 0) {
+        gxsp_move(change, moved, count, system->coarse.displacement, 3 * sizeof(double), kept);
+        gxsp_move(change, moved, count, system->multigrid.levels[0].parent, sizeof *system->multigrid.levels[0].parent,
+                  kept);
+        gxsp_move(change, moved, count, system->multigrid.levels[0].weight, sizeof *system->multigrid.levels[0].weight,
+                  kept);
     }
-    system->n = change->copy_count;
-    system->epoch = change->epoch;
-    system->levels[0].n = (uint32_t)change->copy_count;
-    system->range_count = (system->n + GXSP_RANGE - 1) / GXSP_RANGE;
+    system->model.n = change->copy_count;
+    system->model.epoch = change->epoch;
+    system->multigrid.levels[0].n = (uint32_t)change->copy_count;
+    system->model.range_count = (system->model.n + GXSP_RANGE - 1) / GXSP_RANGE;
 }
 
 /* A follower is as it was, but for the numbers of copies? */
@@ -6403,21 +6490,21 @@ static void gxsp_touch_followers(gxsp_renewal *update) {
     const gxs_change *change = update->change;
     size_t i;
     int k, q;
-    for (i = 0; i < change->constraint_count && system->follower_count > 0; i++) {
+    for (i = 0; i < change->constraint_count && system->model.follower_count > 0; i++) {
         const uint32_t copy = change->constraints[i].copy, origin = change->origins[copy];
         if (!(origin & 1) && gxsp_follows(system, origin >> 1))
-            update->alike[copy] = (uint8_t)gxsp_follows_alike(update, &system->followers[system->follower[origin >> 1]],
-                                                              &change->constraints[i]);
+            update->alike[copy] = (uint8_t)gxsp_follows_alike(
+                update, &system->model.followers[system->model.follower[origin >> 1]], &change->constraints[i]);
     }
-    for (i = 0; i < system->follower_count; i++) { /* as they were */
-        const uint32_t copy = system->followers[i].copy;
+    for (i = 0; i < system->model.follower_count; i++) { /* as they were */
+        const uint32_t copy = system->model.followers[i].copy;
         if (update->successor[copy] != GXSP_NONE && update->alike[update->successor[copy]]) continue;
         for (k = -1; k < 4; k++) {
-            const uint32_t other = k < 0 ? copy : system->followers[i].master[k];
+            const uint32_t other = k < 0 ? copy : system->model.followers[i].master[k];
             if (update->successor[other] != GXSP_NONE) update->touched[update->successor[other]] = 1;
-            for (q = 0; q < 4 && system->level_count > 0; q++)
-                if (system->levels[0].parent[other][q] != GXSP_NONE)
-                    update->dirty[system->levels[0].parent[other][q]] = 1;
+            for (q = 0; q < 4 && system->multigrid.level_count > 0; q++)
+                if (system->multigrid.levels[0].parent[other][q] != GXSP_NONE)
+                    update->dirty[system->multigrid.levels[0].parent[other][q]] = 1;
         }
     }
     for (i = 0; i < change->constraint_count; i++) /* as they are */
@@ -6425,9 +6512,9 @@ static void gxsp_touch_followers(gxsp_renewal *update) {
             const uint32_t other = k < 0 ? change->constraints[i].copy : change->constraints[i].master[k],
                            origin = change->origins[other] >> 1;
             update->touched[other] = 1;
-            for (q = 0; q < 4 && system->level_count > 0; q++)
-                if (system->levels[0].parent[origin][q] != GXSP_NONE)
-                    update->dirty[system->levels[0].parent[origin][q]] = 1;
+            for (q = 0; q < 4 && system->multigrid.level_count > 0; q++)
+                if (system->multigrid.levels[0].parent[origin][q] != GXSP_NONE)
+                    update->dirty[system->multigrid.levels[0].parent[origin][q]] = 1;
         }
 }
 
@@ -6437,73 +6524,75 @@ static void gxsp_recount_copies(const gxsp_renewal *update) {
     const uint8_t *touched = update->touched;
     uint32_t c, i, lane, copies[4];
     int k;
-    for (i = 0; i < system->n; i++)
+    for (i = 0; i < system->model.n; i++)
         if (touched[i]) {
-            system->lumped[i] = 0;
-            system->fixed[i] = 1;
+            system->model.lumped[i] = 0;
+            system->model.fixed[i] = 1;
         }
-    for (c = 0; c < system->chunk_count; c++) {
-        const gxsp_chunk *chunk = &system->chunks[c];
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        const gxsp_chunk *chunk = &system->mesh.chunks[c];
         int any = 0;
-        for (i = 0; i < chunk->node_count; i++) any |= touched[system->nodes[chunk->first_node + i]];
+        for (i = 0; i < chunk->node_count; i++) any |= touched[system->mesh.nodes[chunk->first_node + i]];
         for (lane = 0; lane < chunk->block_count * GXSP_LANES && any; lane++) {
             if (chunk->groups[lane] == GXSP_NONE) continue;
             gxsp_lane_copies(system, chunk, lane / GXSP_LANES, (int)(lane % GXSP_LANES), copies);
             for (k = 0; k < 4; k++)
                 if (touched[copies[k]]) {
-                    system->lumped[copies[k]] += gxsp_lane_mass(chunk, lane, k);
-                    system->fixed[copies[k]] &= !gxsp_lane_supports(chunk, lane, k);
+                    system->model.lumped[copies[k]] += gxsp_lane_mass(chunk, lane, k);
+                    system->model.fixed[copies[k]] &= !gxsp_lane_supports(chunk, lane, k);
                 }
         }
     }
-    for (i = 0; i < system->n; i++) system->fixed[i] |= system->held[i];
+    for (i = 0; i < system->model.n; i++) system->model.fixed[i] |= system->model.held[i];
 }
 
 /* Light copies, by their numbers of now */
 static void gxsp_renew_lights(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     uint32_t i, count = 0;
-    for (i = 0; i < system->light_count; i++) {
-        system->lights[count] = system->lights[i];
-        system->lights[count].copy = update->successor[system->lights[i].copy];
-        count += system->lights[count].copy != GXSP_NONE;
+    for (i = 0; i < system->model.light_count; i++) {
+        system->model.lights[count] = system->model.lights[i];
+        system->model.lights[count].copy = update->successor[system->model.lights[i].copy];
+        count += system->model.lights[count].copy != GXSP_NONE;
     }
-    system->light_count = count;
+    system->model.light_count = count;
     gxsp_list_lights(system, update->scratch, update->touched);
 }
 
 /* Pieces, of which those sleep that are parts of sleeping ones: what has touched them wakes them again */
-static void gxsp_renew_pieces(gxsp_renewal *update) {
+static void gxsp_renew_components(gxsp_renewal *update) {
     gxsp_system *system = update->system;
-    uint32_t *forest = (uint32_t *)gxsp_take(update->scratch, system->n, sizeof(uint32_t)), c, i, p;
-    uint8_t *asleep = (uint8_t *)gxsp_take(update->scratch, system->n, 1);
+    uint32_t *forest = (uint32_t *)gxsp_take(update->scratch, system->model.n, sizeof(uint32_t)), c, i, p;
+    uint8_t *asleep = (uint8_t *)gxsp_take(update->scratch, system->model.n, 1);
     if (update->scratch->failed) return;
-    for (i = 0; i < system->n; i++) {
+    for (i = 0; i < system->model.n; i++) {
         forest[i] = i;
-        asleep[i] = (system->pieces[system->piece[i]].state & GXSP_ASLEEP) != 0;
+        asleep[i] = (system->model.components[system->model.component[i]].state & GXSP_ASLEEP) != 0;
     }
-    for (c = 0; c < system->chunk_count; c++)
-        for (i = 0; i < system->chunks[c].node_count; i++) {
-            const uint32_t at = system->chunks[c].first_node + i;
-            gxsp_join(forest, system->nodes[at], system->nodes[system->chunks[c].first_node + system->slot_root[at]]);
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        for (i = 0; i < system->mesh.chunks[c].node_count; i++) {
+            const uint32_t at = system->mesh.chunks[c].first_node + i;
+            gxsp_join(forest, system->mesh.nodes[at],
+                      system->mesh.nodes[system->mesh.chunks[c].first_node + system->mesh.slot_root[at]]);
         }
     gxsp_join_followers(system, forest);
-    gxsp_number_pieces(system, forest);
-    system->pieces =
-        (gxsp_piece *)gxsp_retake(&system->pool, system->pieces, 0, system->piece_count, sizeof(gxsp_piece));
-    if (!system->pool.failed) gxsp_parts_make(system);
+    gxsp_number_components(system, forest);
+    system->model.components = (gxsp_component *)gxsp_grow(&system->pool, system->model.components, 0,
+                                                           system->model.component_count, sizeof(gxsp_component));
+    if (!system->pool.failed) gxsp_partials_make(system);
     if (system->pool.failed) return;
-    gxsp_fill_pieces(system);
-    for (p = 0; p < system->piece_count; p++) system->pieces[p].state |= GXSP_ASLEEP;
-    for (i = 0; i < system->n; i++)
-        if (!system->fixed[i] && !asleep[i]) system->pieces[system->piece[i]].state &= ~GXSP_ASLEEP;
+    gxsp_fill_components(system);
+    for (p = 0; p < system->model.component_count; p++) system->model.components[p].state |= GXSP_ASLEEP;
+    for (i = 0; i < system->model.n; i++)
+        if (!system->model.fixed[i] && !asleep[i])
+            system->model.components[system->model.component[i]].state &= ~GXSP_ASLEEP;
 }
 
 /* --- multigrid --- */
 
 /* Copies i and j are neighbours: they belong to one component of each dirty node that both follow. */
 static void gxsp_join_parents(const gxsp_renewal *update, uint32_t i, uint32_t j, uint32_t *forest) {
-    const gxsp_level *fine = &update->system->levels[0];
+    const gxsp_level *fine = &update->system->multigrid.levels[0];
     uint32_t p, q;
     for (p = 0; p < 4; p++) {
         const uint32_t parent = fine->parent[i][p];
@@ -6517,28 +6606,29 @@ static void gxsp_join_parents(const gxsp_renewal *update, uint32_t i, uint32_t j
 /* Of components that touched copies belong to, what is joined now. forest: n x 4 */
 static void gxsp_join_dirty(gxsp_renewal *update, uint32_t *forest) {
     gxsp_system *system = update->system;
-    const gxsp_level *fine = &system->levels[0];
+    const gxsp_level *fine = &system->multigrid.levels[0];
     uint32_t c, e, slot;
     for (slot = 0; slot < 4 * fine->n; slot++) forest[slot] = slot;
-    for (c = 0; c < system->chunk_count; c++) {
-        const uint32_t *copies = system->nodes + system->chunks[c].first_node;
-        if (!gxsp_follows_dirty(system, &system->chunks[c], update->dirty)) continue;
-        gxsp_list_edges(system, &system->chunks[c]);
-        for (e = 1; e < system->edges.count; e++)
-            gxsp_join_parents(update, copies[system->edges.ends[e] >> 16], copies[system->edges.ends[e] & 0xffff],
-                              forest);
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        const uint32_t *copies = system->mesh.nodes + system->mesh.chunks[c].first_node;
+        if (!gxsp_follows_dirty(system, &system->mesh.chunks[c], update->dirty)) continue;
+        gxsp_list_edges(system, &system->mesh.chunks[c]);
+        for (e = 1; e < system->multigrid.edges.count; e++)
+            gxsp_join_parents(update, copies[system->multigrid.edges.ends[e] >> 16],
+                              copies[system->multigrid.edges.ends[e] & 0xffff], forest);
     }
-    for (e = 0; e < 4 * system->follower_count; e++)
-        if (fabs(system->followers[e / 4].weight[e % 4]) > 0)
-            gxsp_join_parents(update, system->followers[e / 4].copy, system->followers[e / 4].master[e % 4], forest);
+    for (e = 0; e < 4 * system->model.follower_count; e++)
+        if (fabs(system->model.followers[e / 4].weight[e % 4]) > 0)
+            gxsp_join_parents(update, system->model.followers[e / 4].copy, system->model.followers[e / 4].master[e % 4],
+                              forest);
 }
 
 /* Dirty coarse nodes fall apart: the first component of each keeps its number, further ones get new ones. from: n x 4,
  * room: by new node, which one it was part of. Returns how many nodes there are. */
 static uint32_t gxsp_number_dirty(gxsp_renewal *update, uint32_t *forest, uint32_t *from) {
     gxsp_system *system = update->system;
-    const gxsp_level *fine = &system->levels[0];
-    const uint32_t before = system->levels[1].n;
+    const gxsp_level *fine = &system->multigrid.levels[0];
+    const uint32_t before = system->multigrid.levels[1].n;
     uint32_t slot, count = before;
     uint8_t *kept = (uint8_t *)gxsp_take(update->scratch, before, 1);
     for (slot = 0; slot < 4 * fine->n && kept; slot++) {
@@ -6558,10 +6648,10 @@ static uint32_t gxsp_number_dirty(gxsp_renewal *update, uint32_t *forest, uint32
 
 /* Copies that nothing moves any more follow nothing. */
 static void gxsp_drop_fixed(const gxsp_renewal *update) {
-    gxsp_level *fine = &update->system->levels[0];
+    gxsp_level *fine = &update->system->multigrid.levels[0];
     uint32_t i;
     for (i = 0; i < fine->n; i++)
-        if (update->touched[i] && update->system->fixed[i]) {
+        if (update->touched[i] && update->system->model.fixed[i]) {
             memset(fine->parent[i], 0xff, sizeof fine->parent[i]);
             memset(fine->weight[i], 0, sizeof fine->weight[i]);
         }
@@ -6587,21 +6677,21 @@ static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, co
     gxsp_pass pass;
     uint32_t c;
     int finite;
-    gxsp_keep_blocks(before, &system->levels[1], dirty);
+    gxsp_keep_blocks(before, &system->multigrid.levels[1], dirty);
     memset(&pass, 0, sizeof pass);
     pass.system = system;
-    pass.materials = system->damped;
-    pass.rate = system->scale * system->coarse_rate;
-    pass.from = system->coarse_state;
-    for (c = 0; c < system->chunk_count; c++)
-        if (gxsp_follows_dirty(system, &system->chunks[c], dirty)) {
-            system->chunk_still[c] = 0;
+    pass.materials = system->state.damped;
+    pass.rate = system->model.scale * system->coarse.rate;
+    pass.from = system->coarse.displacement;
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        if (gxsp_follows_dirty(system, &system->mesh.chunks[c], dirty)) {
+            system->state.chunk_still[c] = 0;
             gxsp_task_linearise(&pass, c);
         }
-    gxsp_lend(system);
+    gxsp_lend_memory(system);
     gxsp_coarse_elements(system, dirty);
     finite = gxsp_lower_numbers(system, dirty);
-    gxsp_give_back(system);
+    gxsp_return_memory(system);
     return finite;
 }
 
@@ -6609,44 +6699,45 @@ static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, co
  * of them? */
 static int gxsp_most_are_dirty(const gxsp_system *system, const uint8_t *dirty) {
     uint32_t c, count = 0;
-    for (c = 0; c < system->chunk_count; c++) count += (uint32_t)gxsp_follows_dirty(system, &system->chunks[c], dirty);
-    return (double)count > GXSP_DIRTY * (double)system->chunk_count;
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        count += (uint32_t)gxsp_follows_dirty(system, &system->mesh.chunks[c], dirty);
+    return (double)count > GXSP_DIRTY * (double)system->mesh.chunk_count;
 }
 
 /* Is it known that the coarse matrices are as old as they can be? */
-static int gxsp_coarse_ends(const gxsp_system *system) { return system->coarse_served >= system->coarse_life; }
+static int gxsp_coarse_ends(const gxsp_system *system) { return system->coarse.served >= system->coarse.life; }
 
 static void gxsp_renew_levels(gxsp_renewal *update) {
     gxsp_system *system = update->system;
-    gxsp_pool *scratch = update->scratch, old = system->coarse;
-    gxsp_level before = system->levels[1];
-    uint32_t *forest = (uint32_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint32_t));
-    uint32_t *from = (uint32_t *)gxsp_take(scratch, 4 * system->n, sizeof(uint32_t)), count = 0, i;
+    gxsp_pool *scratch = update->scratch, old = system->multigrid.pool;
+    gxsp_level before = system->multigrid.levels[1];
+    uint32_t *forest = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
+    uint32_t *from = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t)), count = 0, i;
     uint8_t *dirty = NULL;
-    system->coarse = gxsp_pool_make(&old.allocator);
+    system->multigrid.pool = gxsp_pool_make(&old.allocator);
     gxsp_edges_make(system, scratch);
-    if (!scratch->failed && !system->coarse.failed) {
+    if (!scratch->failed && !system->multigrid.pool.failed) {
         gxsp_drop_fixed(update);
         gxsp_join_dirty(update, forest);
         count = gxsp_number_dirty(update, forest, from);
-        memset(&system->levels[1], 0, (GXSP_LEVELS - 1) * sizeof system->levels[1]);
-        gxsp_level_make(&system->coarse, &system->levels[1], count);
+        memset(&system->multigrid.levels[1], 0, (GXSP_LEVELS - 1) * sizeof system->multigrid.levels[1]);
+        gxsp_level_make(&system->multigrid.pool, &system->multigrid.levels[1], count);
         dirty = (uint8_t *)gxsp_take(scratch, count, 1);
     }
-    if (!scratch->failed && !system->coarse.failed) {
+    if (!scratch->failed && !system->multigrid.pool.failed) {
         memset(dirty, 1, count);
         memcpy(dirty, update->dirty, before.n);
-        memcpy(system->levels[1].place, before.place, before.n * sizeof *before.place);
+        memcpy(system->multigrid.levels[1].place, before.place, before.n * sizeof *before.place);
         for (i = before.n; i < count; i++)
-            memcpy(system->levels[1].place[i], before.place[from[i - before.n]], sizeof *before.place);
+            memcpy(system->multigrid.levels[1].place[i], before.place[from[i - before.n]], sizeof *before.place);
         gxsp_levels_make(system, scratch, &before, dirty);
     }
-    if (!scratch->failed && !system->coarse.failed) gxsp_share(system);
-    if (!scratch->failed && !system->coarse.failed && !system->pool.failed && system->coarse_rate >= 0 &&
-        (system->coarse_stiffness > 0 || system->coarse_worn || gxsp_coarse_ends(system) ||
+    if (!scratch->failed && !system->multigrid.pool.failed) gxsp_share_memory(system);
+    if (!scratch->failed && !system->multigrid.pool.failed && !system->pool.failed && system->coarse.rate >= 0 &&
+        (system->coarse.stiffness > 0 || system->coarse.worn || gxsp_coarse_ends(system) ||
          gxsp_most_are_dirty(system, dirty) || !gxsp_renew_numbers(update, &before, dirty)))
         /* all numbers are made anew by the next step; springs and contact are not known any more */
-        system->coarse_rate = -1;
+        system->coarse.rate = -1;
     gxsp_release_to(&old, NULL);
 }
 
@@ -6659,7 +6750,7 @@ static int gxsp_find_successors(gxsp_renewal *update) {
     memset(update->successor, 0xff, update->before * sizeof *update->successor);
     for (i = 0; i < change->copy_count; i++) {
         uint32_t *of = &update->successor[change->origins[i] >> 1];
-        if ((change->held && change->held[i]) != (update->system->held[change->origins[i] >> 1] != 0)) return 0;
+        if ((change->held && change->held[i]) != (update->system->model.held[change->origins[i] >> 1] != 0)) return 0;
         if (change->origins[i] & 1)
             update->touched[i] = 1;
         else if (*of != GXSP_NONE)
@@ -6674,43 +6765,45 @@ static int gxsp_find_successors(gxsp_renewal *update) {
 static void gxsp_renew_steps(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     size_t i;
-    system->still_known = 0;
-    system->base_known = 0;
-    for (i = 0; i < system->n; i++)
-        system->renewed[i] = update->touched[i] | (system->omega_renewed ? system->renewed[i] : 0);
-    system->omega_renewed = 1;
-    memcpy(system->still, system->fixed, system->n);
+    system->state.still_known = 0;
+    system->state.base_known = 0;
+    for (i = 0; i < system->model.n; i++)
+        system->smoother.renewed[i] =
+            update->touched[i] | (system->smoother.any_renewed ? system->smoother.renewed[i] : 0);
+    system->smoother.any_renewed = 1;
+    memcpy(system->state.still, system->model.fixed, system->model.n);
     gxsp_list_slots(system);
 }
 
 /* Can the model's form take changes? */
 static int gxsp_is_flexible(const gxsp_system *system) {
-    return !system->fine && !system->volume && !system->lumped_mass;
+    return !system->multigrid.fine && !system->model.volume && !system->model.lumped_mass;
 }
 
 /* Are the chunks still worth keeping, and the choice of preconditioner? */
 static int gxsp_is_compact(gxsp_renewal *update) {
     const gxsp_system *system = update->system;
-    uint32_t *count = (uint32_t *)gxsp_take(update->scratch, system->piece_count, sizeof(uint32_t)), c;
+    uint32_t *count = (uint32_t *)gxsp_take(update->scratch, system->model.component_count, sizeof(uint32_t)), c;
     size_t lanes = 0;
-    for (c = 0; c < system->chunk_count; c++) lanes += system->chunks[c].block_count * GXSP_LANES;
-    if (lanes > system->element_count + system->element_count / 4 + 2 * GXSP_CHUNK) return 0;
-    return !count || !system->chosen || gxsp_large_piece(system, count) == (system->level_count > 0);
+    for (c = 0; c < system->mesh.chunk_count; c++) lanes += system->mesh.chunks[c].block_count * GXSP_LANES;
+    if (lanes > system->model.element_count + system->model.element_count / 4 + 2 * GXSP_CHUNK) return 0;
+    return !count || !system->multigrid.chosen ||
+           gxsp_large_component(system, count) == (system->multigrid.level_count > 0);
 }
 
 /* 0: the change does not fit. Memory may also have run out: see the pools. */
 static int gxsp_update_system(gxsp_renewal *update) {
     gxsp_system *system = update->system;
-    gxsp_find_holes(update);
-    gxsp_match_holes(update);
+    gxsp_find_edits(update);
+    gxsp_match_edits(update);
     if (update->scratch->failed) return 1;
     gxsp_touch_removed(update);
     gxsp_touch_followers(update);
-    system->element_count += update->change->element_count;
-    system->element_count -= update->hole_count;
+    system->model.element_count += update->change->element_count;
+    system->model.element_count -= update->edit_count;
     gxsp_replace_elements(update);
     if (system->pool.failed) return 1;
-    if (system->element_count == 0 || !gxsp_renew_nodes(update)) return 0;
+    if (system->model.element_count == 0 || !gxsp_renew_nodes(update)) return 0;
     gxsp_move_copies(update);
     if (update->scratch->failed || system->pool.failed) return 1;
     gxsp_renew_steps(update);
@@ -6719,11 +6812,11 @@ static int gxsp_update_system(gxsp_renewal *update) {
     gxsp_renew_lights(update);
     gxsp_set_followers(system, update->change->constraints, update->change->constraint_count);
     if (system->pool.failed) return 1;
-    gxsp_renew_pieces(update);
-    if (!update->scratch->failed && !system->pool.failed && system->level_count > 0)
+    gxsp_renew_components(update);
+    if (!update->scratch->failed && !system->pool.failed && system->multigrid.level_count > 0)
         gxsp_renew_levels(update);
     else if (!system->pool.failed)
-        gxsp_share(system);
+        gxsp_share_memory(system);
     return gxsp_is_compact(update);
 }
 
@@ -6732,10 +6825,10 @@ static int gxsp_update_system(gxsp_renewal *update) {
 /* Gravity, nodal forces and what damping adds to them on a copy, N; 0 on what this step leaves alone */
 GXSP_INLINE void gxsp_load(const gxsp_problem *problem, size_t copy, double *load) {
     const gxsp_system *system = problem->system;
-    const double *gravity = problem->step->gravity, *forces = problem->step->forces, *damping = system->damping;
-    const double mass = system->still[copy] ? 0 : system->lumped[copy];
+    const double *gravity = problem->step->gravity, *forces = problem->step->forces, *damping = system->vectors.damping;
+    const double mass = system->state.still[copy] ? 0 : system->model.lumped[copy];
     load[0] = mass * gravity[0], load[1] = mass * gravity[1], load[2] = mass * gravity[2];
-    if (forces && !system->still[copy])
+    if (forces && !system->state.still[copy])
         load[0] += forces[3 * copy], load[1] += forces[3 * copy + 1], load[2] += forces[3 * copy + 2];
     if (problem->damps)
         load[0] += damping[3 * copy], load[1] += damping[3 * copy + 1], load[2] += damping[3 * copy + 2];
@@ -6743,21 +6836,23 @@ GXSP_INLINE void gxsp_load(const gxsp_problem *problem, size_t copy, double *loa
 
 /* Sums over pieces: cleared, copies added one by one, then as a mean over each piece's mass. 0: of pieces that have any
  * state but those ignored */
-static void gxsp_clear_pieces(gxsp_system *system) {
+static void gxsp_clear_components(gxsp_system *system) {
     uint32_t p;
-    for (p = 0; p < system->piece_count; p++) memset(system->pieces[p].sum, 0, sizeof system->pieces[p].sum);
+    for (p = 0; p < system->model.component_count; p++)
+        memset(system->model.components[p].sum, 0, sizeof system->model.components[p].sum);
 }
 
-static void gxsp_add_to_piece(gxsp_system *system, size_t copy, double x, double y, double z) {
-    double *sum = system->pieces[system->piece[copy]].sum;
+static void gxsp_add_to_component(gxsp_system *system, size_t copy, double x, double y, double z) {
+    double *sum = system->model.components[system->model.component[copy]].sum;
     sum[0] += x, sum[1] += y, sum[2] += z;
 }
 
-static void gxsp_average_pieces(gxsp_system *system, uint32_t ignored) {
+static void gxsp_average_components(gxsp_system *system, uint32_t ignored) {
     uint32_t p, r;
-    for (p = 0; p < system->piece_count; p++) {
-        gxsp_piece *piece = &system->pieces[p];
-        for (r = 0; r < 3; r++) piece->sum[r] = piece->state & ~ignored ? 0 : piece->sum[r] / piece->mass;
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        for (r = 0; r < 3; r++)
+            component->sum[r] = component->state & ~ignored ? 0 : component->sum[r] / component->mass;
     }
 }
 
@@ -6765,29 +6860,29 @@ static void gxsp_average_pieces(gxsp_system *system, uint32_t ignored) {
 static void gxsp_remove_translations(gxsp_system *system, gxsp_vector4 *x) {
     size_t i;
     int r;
-    if (system->loose_count == 0) return;
-    gxsp_clear_pieces(system);
-    for (i = 0; i < system->n; i++) {
-        const double m = system->lumped[i];
-        gxsp_add_to_piece(system, i, m * (double)x[i][0], m * (double)x[i][1], m * (double)x[i][2]);
+    if (system->state.loose_count == 0) return;
+    gxsp_clear_components(system);
+    for (i = 0; i < system->model.n; i++) {
+        const double m = system->model.lumped[i];
+        gxsp_add_to_component(system, i, m * (double)x[i][0], m * (double)x[i][1], m * (double)x[i][2]);
     }
-    gxsp_average_pieces(system, 0);
-    for (i = 0; i < system->n; i++)
-        for (r = 0; r < 3; r++) x[i][r] -= (float)system->pieces[system->piece[i]].sum[r];
+    gxsp_average_components(system, 0);
+    for (i = 0; i < system->model.n; i++)
+        for (r = 0; r < 3; r++) x[i][r] -= (float)system->model.components[system->model.component[i]].sum[r];
 }
 
 /* Takes the momentum of every loose piece out of x. */
 static void gxsp_remove_momentum(gxsp_system *system, double *x) {
     size_t i, r;
-    if (system->loose_count == 0) return;
-    gxsp_clear_pieces(system);
-    for (i = 0; i < system->n; i++) {
-        const double m = system->lumped[i];
-        gxsp_add_to_piece(system, i, m * x[3 * i], m * x[3 * i + 1], m * x[3 * i + 2]);
+    if (system->state.loose_count == 0) return;
+    gxsp_clear_components(system);
+    for (i = 0; i < system->model.n; i++) {
+        const double m = system->model.lumped[i];
+        gxsp_add_to_component(system, i, m * x[3 * i], m * x[3 * i + 1], m * x[3 * i + 2]);
     }
-    gxsp_average_pieces(system, 0);
-    for (i = 0; i < system->n; i++)
-        for (r = 0; r < 3; r++) x[3 * i + r] -= system->pieces[system->piece[i]].sum[r];
+    gxsp_average_components(system, 0);
+    for (i = 0; i < system->model.n; i++)
+        for (r = 0; r < 3; r++) x[3 * i + r] -= system->model.components[system->model.component[i]].sum[r];
 }
 
 /* Translates every piece of x that has no state but those ignored so that load = rate M (base + x - target) in sum.
@@ -6795,47 +6890,50 @@ static void gxsp_remove_momentum(gxsp_system *system, double *x) {
 static void gxsp_balance_momentum(const gxsp_problem *problem, uint32_t ignored, const double *base, double *x) {
     gxsp_system *system = problem->system;
     size_t i, r;
-    if ((ignored ? system->free_count : system->loose_count) == 0) return;
-    gxsp_clear_pieces(system);
-    for (i = 0; i < system->n; i++) {
-        const double rate = problem->rate * system->lumped[i], *from = system->target + 3 * i;
+    if ((ignored ? system->state.free_count : system->state.loose_count) == 0) return;
+    gxsp_clear_components(system);
+    for (i = 0; i < system->model.n; i++) {
+        const double rate = problem->rate * system->model.lumped[i], *from = system->vectors.target + 3 * i;
         double f[3];
         gxsp_load(problem, i, f);
         for (r = 0; r < 3; r++) f[r] -= rate * (x[3 * i + r] + (base ? base[3 * i + r] : 0) - from[r]);
-        gxsp_add_to_piece(system, i, f[0], f[1], f[2]);
+        gxsp_add_to_component(system, i, f[0], f[1], f[2]);
     }
-    gxsp_average_pieces(system, ignored);
-    for (i = 0; i < system->n; i++)
-        for (r = 0; r < 3; r++) x[3 * i + r] += system->pieces[system->piece[i]].sum[r] / problem->rate;
+    gxsp_average_components(system, ignored);
+    for (i = 0; i < system->model.n; i++)
+        for (r = 0; r < 3; r++)
+            x[3 * i + r] += system->model.components[system->model.component[i]].sum[r] / problem->rate;
 }
 
 /* Translates every piece of the direction that nothing acts on now so that its momentum balances: linear solves are in
  * single precision, to which that of a piece of next to no mass, which contact has pushed before, is rounding. */
 static void gxsp_balance_direction(const gxsp_problem *problem) {
-    gxsp_balance_momentum(problem, GXSP_TOUCHED, problem->system->current, problem->system->direction);
+    gxsp_balance_momentum(problem, GXSP_TOUCHED, problem->system->vectors.current, problem->system->vectors.direction);
 }
 
 /* Forgets what springs and contact have acted on. */
-static void gxsp_untouch_pieces(gxsp_system *system) {
+static void gxsp_untouch_components(gxsp_system *system) {
     uint32_t p;
-    for (p = 0; p < system->piece_count; p++) system->pieces[p].state &= ~(GXSP_TOUCHED | GXSP_TOUCHES);
+    for (p = 0; p < system->model.component_count; p++)
+        system->model.components[p].state &= ~(GXSP_TOUCHED | GXSP_TOUCHES);
 }
 
 /* Pieces that springs and contact act on, of which terms tells, are not loose, nor are they again in this run of
  * Newton's method: their momentum is no longer that of the start. */
-static void gxsp_touch_pieces(gxsp_system *system) {
+static void gxsp_touch_components(gxsp_system *system) {
     size_t t;
     uint32_t p;
     int k;
-    for (p = 0; p < system->piece_count; p++) system->pieces[p].state &= ~GXSP_TOUCHES;
+    for (p = 0; p < system->model.component_count; p++) system->model.components[p].state &= ~GXSP_TOUCHES;
     for (t = 0; t < system->lasting->count; t++)
         for (k = 0; k < 4; k++)
             if (system->lasting->term[t].weight[k] * system->lasting->term[t].weight[k] > 0)
-                system->pieces[system->piece[system->lasting->term[t].copy[k]]].state |= GXSP_TOUCHED | GXSP_TOUCHES;
-    system->loose_count = system->free_count = 0;
-    for (p = 0; p < system->piece_count; p++) {
-        system->loose_count += system->pieces[p].state == 0;
-        system->free_count += (system->pieces[p].state & ~GXSP_TOUCHED) == 0;
+                system->model.components[system->model.component[system->lasting->term[t].copy[k]]].state |=
+                    GXSP_TOUCHED | GXSP_TOUCHES;
+    system->state.loose_count = system->state.free_count = 0;
+    for (p = 0; p < system->model.component_count; p++) {
+        system->state.loose_count += system->model.components[p].state == 0;
+        system->state.free_count += (system->model.components[p].state & ~GXSP_TOUCHED) == 0;
     }
 }
 
@@ -6867,7 +6965,7 @@ static size_t gxsp_point_copy(const gxs_point *point) {
 static int gxsp_point_moves(const gxsp_system *system, const gxs_point *point) {
     int k;
     for (k = 0; k < 4; k++)
-        if (fabs(point->weight[k]) > 0 && !system->still[point->copy[k]]) return 1;
+        if (fabs(point->weight[k]) > 0 && !system->state.still[point->copy[k]]) return 1;
     return 0;
 }
 
@@ -6970,10 +7068,10 @@ static const gxs_point *gxsp_next_pull(const gxsp_problem *problem, size_t *at, 
 }
 
 /* Who leads piece p so far */
-static uint32_t gxsp_lead_root(gxsp_piece *pieces, uint32_t p) {
-    while (pieces[p].lead != p) {
-        pieces[p].lead = pieces[pieces[p].lead].lead;
-        p = pieces[p].lead;
+static uint32_t gxsp_lead_root(gxsp_component *components, uint32_t p) {
+    while (components[p].lead != p) {
+        components[p].lead = components[components[p].lead].lead;
+        p = components[p].lead;
     }
     return p;
 }
@@ -6981,11 +7079,11 @@ static uint32_t gxsp_lead_root(gxsp_piece *pieces, uint32_t p) {
 /* Which pieces lead which in this step: the first of those that points join */
 static void gxsp_choose_leads(const gxsp_problem *problem) {
     const gxs_step_desc *step = problem->step;
-    gxsp_piece *pieces = problem->system->pieces;
+    gxsp_component *components = problem->system->model.components;
     size_t i;
     uint32_t p;
     int k;
-    for (p = 0; p < problem->system->piece_count; p++) pieces[p].lead = p;
+    for (p = 0; p < problem->system->model.component_count; p++) components[p].lead = p;
     for (i = 0; i < step->spring_count + step->point_count; i++) {
         const gxs_point *point =
             i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
@@ -6993,15 +7091,15 @@ static void gxsp_choose_leads(const gxsp_problem *problem) {
         for (k = 0; k < 4; k++) {
             uint32_t first;
             if (!(fabs(point->weight[k]) > 0)) continue;
-            p = gxsp_lead_root(pieces, problem->system->piece[point->copy[k]]);
+            p = gxsp_lead_root(components, problem->system->model.component[point->copy[k]]);
             joined = joined == GXSP_NONE ? p : joined;
             first = p < joined ? p : joined;
-            pieces[p].lead = pieces[joined].lead = first;
+            components[p].lead = components[joined].lead = first;
             joined = first;
         }
     }
-    for (p = 0; p < problem->system->piece_count; p++) /* who leads comes first */
-        pieces[p].lead = pieces[pieces[p].lead].lead;
+    for (p = 0; p < problem->system->model.component_count; p++) /* who leads comes first */
+        components[p].lead = components[components[p].lead].lead;
 }
 
 /* Sums over pieces of what they had when they were evaluated last */
@@ -7009,8 +7107,8 @@ static void gxsp_sum_energies(const gxsp_system *system, double *energies) {
     uint32_t p;
     int k;
     energies[0] = energies[1] = energies[2] = 0;
-    for (p = 0; p < system->piece_count; p++)
-        for (k = 0; k < 3; k++) energies[k] += system->pieces[p].energies[k];
+    for (p = 0; p < system->model.component_count; p++)
+        for (k = 0; k < 3; k++) energies[k] += system->model.components[p].energies[k];
 }
 
 /* Energies of elements and points, piece by piece, and their forces with inertia */
@@ -7027,7 +7125,7 @@ static void gxsp_evaluate(const gxsp_problem *problem, const double *from, int n
         for (c = 0; c < 3; c++) /* the gap of a spring is a small difference of positions */
             energies[2] += fabs(pull.force[c]) * (fabs(point->position[c]) + fabs(pull.position[c]));
         for (k = 0; k < 4; k++)
-            for (c = 0; c < 3 && !problem->system->still[point->copy[k]]; c++)
+            for (c = 0; c < 3 && !problem->system->state.still[point->copy[k]]; c++)
                 force[3 * (size_t)point->copy[k] + (size_t)c] -= point->weight[k] * pull.force[c];
     }
 }
@@ -7041,8 +7139,8 @@ static void gxsp_compare_terms(gxsp_system *system) {
         const float *h = system->lasting->term[t].hessian;
         sum += (double)h[0] + (double)h[3] + (double)h[5];
     }
-    system->term_stiffness = sum;
-    system->coarse_worn |= sum > 4 * system->coarse_stiffness || 4 * sum < system->coarse_stiffness;
+    system->state.term_stiffness = sum;
+    system->coarse.worn |= sum > 4 * system->coarse.stiffness || 4 * sum < system->coarse.stiffness;
 }
 
 /* Hessians of all points at a displacement as terms, and which pieces they touch */
@@ -7061,9 +7159,9 @@ static void gxsp_terms_make(const gxsp_problem *problem, const double *displacem
         memcpy(term->copy, point->copy, sizeof term->copy);
         term->assembled = 0;
         for (k = 0; k < 4; k++) term->weight[k] = (float)point->weight[k];
-        for (k = 0; k < 6; k++) term->hessian[k] = (float)(problem->system->scale * pull.hessian[k]);
+        for (k = 0; k < 6; k++) term->hessian[k] = (float)(problem->system->model.scale * pull.hessian[k]);
     }
-    gxsp_touch_pieces(problem->system);
+    gxsp_touch_components(problem->system);
     gxsp_compare_terms(problem->system);
 }
 
@@ -7074,25 +7172,25 @@ typedef struct gxsp_norms {
     double energy, displacement;
 } gxsp_norms;
 
-static int gxsp_reduced(const gxsp_norms *now, const gxsp_norms *first, double goal) {
+static int gxsp_converged(const gxsp_norms *now, const gxsp_norms *first, double goal) {
     return now->energy <= goal * first->energy && now->displacement <= goal * first->displacement;
 }
 
 /* scaled = D^-1 r, times the step length of the smoother, of copies first to end - 1; sums: r . D^-1 r, |D^-1 r|^2 */
 static void gxsp_scale_copies(const gxsp_system *system, const double *r, size_t first, size_t end, double *sums) {
-    const double factor = system->coarse_used && !system->fine ? (double)system->omega : 1;
+    const double factor = system->multigrid.used && !system->multigrid.fine ? (double)system->smoother.omega : 1;
     double energy = 0, displacement = 0;
     size_t i;
     for (i = first; i < end; i++) {
-        const float *d = system->diagonal + 6 * i;
+        const float *d = system->vectors.diagonal + 6 * i;
         const double a = r[3 * i], b = r[3 * i + 1], c = r[3 * i + 2];
         const double x = (double)d[0] * a + (double)d[1] * b + (double)d[2] * c,
                      y = (double)d[1] * a + (double)d[3] * b + (double)d[4] * c,
                      z = (double)d[2] * a + (double)d[4] * b + (double)d[5] * c;
         energy += x * a + y * b + z * c;
         displacement += x * x + y * y + z * z;
-        system->scaled[i][0] = (float)(factor * x), system->scaled[i][1] = (float)(factor * y),
-        system->scaled[i][2] = (float)(factor * z);
+        system->vectors.scaled[i][0] = (float)(factor * x), system->vectors.scaled[i][1] = (float)(factor * y),
+        system->vectors.scaled[i][2] = (float)(factor * z);
     }
     sums[0] = energy;
     sums[1] = displacement;
@@ -7101,7 +7199,7 @@ static void gxsp_scale_copies(const gxsp_system *system, const double *r, size_t
 static void gxsp_task_scale(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     size_t first, end = gxsp_range(pass->system, index, &first);
-    gxsp_scale_copies(pass->system, pass->from, first, end, pass->system->range_sum[index]);
+    gxsp_scale_copies(pass->system, pass->from, first, end, pass->system->vectors.range_sum[index]);
 }
 
 /* Over all ranges, by a task that scales them. */
@@ -7127,10 +7225,10 @@ static void gxsp_task_advance(void *context, size_t index) {
     size_t i, first, end = gxsp_range(system, index, &first), c;
     for (i = first; i < end; i++)
         for (c = 0; c < 3; c++) {
-            system->direction[3 * i + c] += pass->factor * (double)pass->x[i][c];
-            system->residual[3 * i + c] -= pass->factor * (double)pass->y[i][c];
+            system->vectors.direction[3 * i + c] += pass->factor * (double)pass->x[i][c];
+            system->vectors.residual[3 * i + c] -= pass->factor * (double)pass->y[i][c];
         }
-    gxsp_scale_copies(system, system->residual, first, end, system->range_sum[index]);
+    gxsp_scale_copies(system, system->vectors.residual, first, end, system->vectors.range_sum[index]);
 }
 
 /* The direction goes on by length x, and the residual by as much of y = A x. Returns what is left. */
@@ -7148,11 +7246,11 @@ static void gxsp_task_work(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
     size_t i, end = gxsp_range(system, index, &i), c;
-    double *sums = system->range_sum[index];
+    double *sums = system->vectors.range_sum[index];
     sums[0] = sums[1] = 0;
     for (; i < end; i++)
         for (c = 0; c < 3; c++) {
-            sums[0] += system->residual[3 * i + c] * (double)pass->x[i][c];
+            sums[0] += system->vectors.residual[3 * i + c] * (double)pass->x[i][c];
             sums[1] += pass->y ? (double)pass->x[i][c] * (double)pass->y[i][c] : 0;
         }
 }
@@ -7163,15 +7261,16 @@ static double gxsp_precondition(gxsp_system *system, double rate, double energy)
     double sums[2];
     size_t i;
     int c;
-    if (system->coarse_used) gxsp_multigrid(system, rate, energy);
-    for (i = 0; i < system->n && system->volume; i++)
+    if (system->multigrid.used) gxsp_v_cycle(system, rate, energy);
+    for (i = 0; i < system->model.n && system->model.volume; i++)
         for (c = 0; c < 3; c++)
-            system->scaled[i][c] =
-                system->still[i] ? 0 : system->volume[i] * (float)system->residual[3 * i + (size_t)c];
-    gxsp_extend(system, system->scaled);
-    gxsp_remove_translations(system, system->scaled);
+            system->vectors.scaled[i][c] =
+                system->state.still[i] ? 0
+                                       : system->model.volume[i] * (float)system->vectors.residual[3 * i + (size_t)c];
+    gxsp_extend(system, system->vectors.scaled);
+    gxsp_remove_translations(system, system->vectors.scaled);
     memset(&pass, 0, sizeof pass);
-    pass.x = system->scaled;
+    pass.x = system->vectors.scaled;
     gxsp_over_ranges(system, gxsp_task_work, &pass, sums, 1);
     return sums[0];
 }
@@ -7185,18 +7284,19 @@ static int gxsp_is_definite(double rho, double energy) {
 /* As gxsp_precondition, but definite: should the cycle prove not to be, it is smoothed more carefully, and at worst
  * left out of this solve. now: measures of the residual; changed: the preconditioner is not the one before */
 static double gxsp_precondition_definite(gxsp_system *system, double rate, const gxsp_norms *now, int *changed) {
-    const float omega = system->omega;
+    const float omega = system->smoother.omega;
     double rho = gxsp_precondition(system, rate, now->energy);
-    if (!gxsp_is_definite(rho, now->energy) && system->coarse_used && !system->fine && system->omega_rest == 0) {
+    if (!gxsp_is_definite(rho, now->energy) && system->multigrid.used && !system->multigrid.fine &&
+        system->smoother.cautious == 0) {
         gxsp_shorten_omega(system, 0);
-        (void)gxsp_scale(system, system->residual);
+        (void)gxsp_scale(system, system->vectors.residual);
         rho = gxsp_precondition(system, rate, now->energy);
     }
-    *changed = omega < system->omega || omega > system->omega;
-    if (!gxsp_is_definite(rho, now->energy) && system->coarse_used) {
-        system->coarse_used = 0;
-        system->coarse_worn = *changed = 1;
-        (void)gxsp_scale(system, system->residual);
+    *changed = omega < system->smoother.omega || omega > system->smoother.omega;
+    if (!gxsp_is_definite(rho, now->energy) && system->multigrid.used) {
+        system->multigrid.used = 0;
+        system->coarse.worn = *changed = 1;
+        (void)gxsp_scale(system, system->vectors.residual);
         rho = gxsp_precondition(system, rate, now->energy);
     }
     return rho;
@@ -7220,8 +7320,8 @@ static double gxsp_weigh_guess(gxsp_system *system, double rate, gxsp_vector4 *g
     gxsp_pass pass;
     double sums[2], curvature;
     size_t i;
-    for (i = 0; i < system->n; i++)
-        if (system->still[i]) memset(guess[i], 0, sizeof *guess);
+    for (i = 0; i < system->model.n; i++)
+        if (system->state.still[i]) memset(guess[i], 0, sizeof *guess);
     gxsp_extend(system, guess);
     gxsp_remove_translations(system, guess);
     curvature = gxsp_product(system, rate, guess, product);
@@ -7242,33 +7342,33 @@ static double gxsp_weigh_guess(gxsp_system *system, double rate, gxsp_vector4 *g
  * the acceleration changes little from step to step, that is most of the solution. Returns what is left of the
  * residual, of norms now. */
 static gxsp_norms gxsp_guess_direction(gxsp_system *system, double rate, gxsp_norms now) {
-    gxsp_vector4 *product = system->search;
+    gxsp_vector4 *product = system->vectors.search;
     double curvature, work, first, cross = 0, second = 0;
-    curvature = gxsp_weigh_guess(system, rate, system->guess[0], NULL, product, &work, NULL);
+    curvature = gxsp_weigh_guess(system, rate, system->vectors.guess[0], NULL, product, &work, NULL);
     first = work / curvature;
     if (!(curvature > 0) || !gxsp_finite(work) || !gxsp_finite(curvature) || !gxsp_finite(first)) return now;
-    if (system->guess_count > 1) {
-        double further,
-            own = gxsp_weigh_guess(system, rate, system->guess[1], system->guess[0], system->product, &further, &cross);
+    if (system->state.guess_count > 1) {
+        double further, own = gxsp_weigh_guess(system, rate, system->vectors.guess[1], system->vectors.guess[0],
+                                               system->vectors.product, &further, &cross);
         const double share = cross / curvature, rest = own - share * cross;
         second = (further - share * work) / rest;
         if (!(rest > GXSP_PARALLEL * own) || !gxsp_finite(own) || !gxsp_finite(share) || !gxsp_finite(second))
             second = 0;
         first -= second > 0 || second < 0 ? second * share : 0;
     }
-    now = gxsp_advance(system, first, system->guess[0], product);
-    if (second > 0 || second < 0) now = gxsp_advance(system, second, system->guess[1], system->product);
+    now = gxsp_advance(system, first, system->vectors.guess[0], product);
+    if (second > 0 || second < 0) now = gxsp_advance(system, second, system->vectors.guess[1], system->vectors.product);
     return now;
 }
 
 /* The direction found is the next step's first guess, the one before its second. */
 static void gxsp_keep_guess(gxsp_system *system) {
-    gxsp_vector4 *oldest = system->guess[1];
+    gxsp_vector4 *oldest = system->vectors.guess[1];
     size_t i;
-    system->guess[1] = system->guess[0];
-    system->guess[0] = oldest;
-    for (i = 0; i < 3 * system->n; i++) oldest[i / 3][i % 3] = (float)system->direction[i];
-    system->guess_count += system->guess_count < 2;
+    system->vectors.guess[1] = system->vectors.guess[0];
+    system->vectors.guess[0] = oldest;
+    for (i = 0; i < 3 * system->model.n; i++) oldest[i / 3][i % 3] = (float)system->vectors.direction[i];
+    system->state.guess_count += system->state.guess_count < 2;
 }
 
 /* search = scaled + factor search */
@@ -7278,17 +7378,18 @@ static void gxsp_task_search(void *context, size_t index) {
     const float factor = (float)pass->factor;
     size_t i, end = gxsp_range(system, index, &i), c;
     for (; i < end; i++)
-        for (c = 0; c < 4; c++) system->search[i][c] = system->scaled[i][c] + factor * system->search[i][c];
+        for (c = 0; c < 4; c++)
+            system->vectors.search[i][c] = system->vectors.scaled[i][c] + factor * system->vectors.search[i][c];
 }
 
 /* For each piece the work along the direction of what is left of the residual */
 static void gxsp_note_left(gxsp_system *system) {
     size_t i;
     uint32_t p;
-    for (p = 0; p < system->piece_count; p++) system->pieces[p].left = 0;
-    for (i = 0; i < system->n; i++)
+    for (p = 0; p < system->model.component_count; p++) system->model.components[p].left = 0;
+    for (i = 0; i < system->model.n; i++)
         gxsp_lead_of(system, i)->left +=
-            gxsp_dot(system->residual + 3 * i, system->direction + 3 * i, 1) / system->scale;
+            gxsp_dot(system->vectors.residual + 3 * i, system->vectors.direction + 3 * i, 1) / system->model.scale;
 }
 
 /* Solves scale (K + rate M) direction = scale residual to a share of the residual, which is used up. The directions of
@@ -7306,33 +7407,34 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem) {
     double rho = 0;
     size_t i;
     problem->indefinite = 0;
-    for (i = 0; i < 3 * system->n; i++) system->residual[i] *= system->scale;
-    now = first = gxsp_scale(system, system->residual);
-    memset(system->direction, 0, 3 * system->n * sizeof(double));
-    if (start && system->guess_count > 0) now = gxsp_guess_direction(system, rate, now);
+    for (i = 0; i < 3 * system->model.n; i++) system->vectors.residual[i] *= system->model.scale;
+    now = first = gxsp_scale(system, system->vectors.residual);
+    memset(system->vectors.direction, 0, 3 * system->model.n * sizeof(double));
+    if (start && system->state.guess_count > 0) now = gxsp_guess_direction(system, rate, now);
     guessed = now;
-    if (!gxsp_reduced(&now, &first, goal)) rho = gxsp_precondition_definite(system, rate, &now, &changed);
-    memcpy(system->search, system->scaled, system->n * sizeof *system->search);
+    if (!gxsp_converged(&now, &first, goal)) rho = gxsp_precondition_definite(system, rate, &now, &changed);
+    memcpy(system->vectors.search, system->vectors.scaled, system->model.n * sizeof *system->vectors.search);
     memset(&pass, 0, sizeof pass);
-    for (iteration = 0; iteration < problem->cg_iterations && !gxsp_reduced(&now, &first, goal); iteration++) {
-        const double curvature = gxsp_product(system, rate, system->search, system->product), before = rho;
+    for (iteration = 0; iteration < problem->cg_iterations && !gxsp_converged(&now, &first, goal); iteration++) {
+        const double curvature = gxsp_product(system, rate, system->vectors.search, system->vectors.product),
+                     before = rho;
         if (!gxsp_finite(curvature) || !gxsp_finite(rho)) return 0;
         if (curvature <= 0 || rho <= 0) { /* of projected Hessians: rounding is all that is left */
             problem->indefinite = 1;
             break;
         }
-        now = gxsp_advance(system, rho / curvature, system->search, system->product);
+        now = gxsp_advance(system, rho / curvature, system->vectors.search, system->vectors.product);
         problem->report.cg_iterations++;
-        if (gxsp_reduced(&now, &first, goal) || gxsp_out_of_time(problem)) break;
+        if (gxsp_converged(&now, &first, goal) || gxsp_out_of_time(problem)) break;
         rho = gxsp_precondition_definite(system, rate, &now, &changed);
         pass.factor = changed ? 0 : rho / before;
         gxsp_over_ranges(system, gxsp_task_search, &pass, NULL, 0);
     }
     problem->nepers = now.energy > 0 && guessed.energy > now.energy ? 0.5 * log(guessed.energy / now.energy) : 0;
     gxsp_note_left(system);
-    gxsp_follow(system, NULL, system->direction);
+    gxsp_follow(system, NULL, system->vectors.direction);
     gxsp_balance_direction(problem);
-    if (gxsp_first_not_finite(system->direction, 3 * system->n) < 3 * system->n) return 0;
+    if (gxsp_first_not_finite(system->vectors.direction, 3 * system->model.n) < 3 * system->model.n) return 0;
     if (start) gxsp_keep_guess(system);
     return 1;
 }
@@ -7341,22 +7443,23 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem) {
  * blocks is small, each counted up to 4/3 of the bound, so that a quarter of stiff ones is enough; or where it is asked
  * for */
 static int gxsp_coarse_pays(gxsp_system *system, double rate) {
-    const double bound = 3 * GXSP_INERTIA / (system->scale * rate);
+    const double bound = 3 * GXSP_INERTIA / (system->model.scale * rate);
     size_t i;
     uint32_t p;
-    if (!system->chosen || !(rate > 0)) return 1;
-    gxsp_clear_pieces(system);
-    for (i = 0; i < system->n; i++) {
-        double *sum = system->pieces[system->piece[i]].sum; /* share, copies */
-        const float *d = system->diagonal + 6 * i;
-        const double compliance = (double)d[0] + (double)d[3] + (double)d[5], share = system->lumped[i] * compliance;
-        if (system->still[i] || !(compliance > 0)) continue;
+    if (!system->multigrid.chosen || !(rate > 0)) return 1;
+    gxsp_clear_components(system);
+    for (i = 0; i < system->model.n; i++) {
+        double *sum = system->model.components[system->model.component[i]].sum; /* share, copies */
+        const float *d = system->vectors.diagonal + 6 * i;
+        const double compliance = (double)d[0] + (double)d[3] + (double)d[5],
+                     share = system->model.lumped[i] * compliance;
+        if (system->state.still[i] || !(compliance > 0)) continue;
         sum[0] += share < 4 * bound / 3 ? share : 4 * bound / 3;
         sum[1] += 1;
     }
-    for (p = 0; p < system->piece_count; p++)
-        if (system->pieces[p].sum[1] >= gxsp_large(system) &&
-            system->pieces[p].sum[0] <= bound * system->pieces[p].sum[1])
+    for (p = 0; p < system->model.component_count; p++)
+        if (system->model.components[p].sum[1] >= gxsp_large(system) &&
+            system->model.components[p].sum[0] <= bound * system->model.components[p].sum[1])
             return 1;
     return 0;
 }
@@ -7367,44 +7470,44 @@ static int gxsp_coarse_pays(gxsp_system *system, double rate) {
 static int gxsp_prepare(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     int other; /* than the rate of the coarse matrices */
-    if (system->fine) {
-        gxsp_assemble(system, system->scale * problem->rate);
+    if (system->multigrid.fine) {
+        gxsp_assemble(system, system->model.scale * problem->rate);
         if (!gxsp_invert_fine(system)) return 0;
     }
-    system->coarse_used = system->level_count > 0 && gxsp_coarse_pays(system, problem->rate);
-    if (!system->coarse_used) return 1;
-    if (!system->fine) gxsp_choose_omega(system, problem->rate);
-    other = system->coarse_rate < problem->rate || system->coarse_rate > problem->rate;
-    if (!other && (problem->exact || !(system->coarse_worn || gxsp_coarse_ends(system)))) return 1;
-    system->coarse_lived = system->coarse_served;
-    system->pace_old = other ? 0 : system->pace;
-    system->pace = system->read_nepers = 0;
-    system->read = system->coarse_served = 0;
-    system->coarse_rate = problem->rate;
-    memcpy(system->coarse_state, system->current, 3 * system->n * sizeof(double));
-    system->coarse_worn = 0;
-    system->coarse_stiffness = system->term_stiffness;
+    system->multigrid.used = system->multigrid.level_count > 0 && gxsp_coarse_pays(system, problem->rate);
+    if (!system->multigrid.used) return 1;
+    if (!system->multigrid.fine) gxsp_choose_omega(system, problem->rate);
+    other = system->coarse.rate < problem->rate || system->coarse.rate > problem->rate;
+    if (!other && (problem->exact || !(system->coarse.worn || gxsp_coarse_ends(system)))) return 1;
+    system->coarse.lived = system->coarse.served;
+    system->coarse.pace_old = other ? 0 : system->coarse.pace;
+    system->coarse.pace = system->coarse.read_nepers = 0;
+    system->coarse.read = system->coarse.served = 0;
+    system->coarse.rate = problem->rate;
+    memcpy(system->coarse.displacement, system->vectors.current, 3 * system->model.n * sizeof(double));
+    system->coarse.worn = 0;
+    system->coarse.stiffness = system->state.term_stiffness;
     return gxsp_coarse_numbers(system, problem->rate);
 }
 
 /* For how long the coarse matrices are to serve, now that their first reading tells how much slower the ones before
  * were in the end: if the share lost grows to that evenly, cost / life + share / lived x life / 2 is least. */
 static void gxsp_learn_life(gxsp_system *system) {
-    const double share = system->pace_old / system->pace - 1, lived = system->coarse_lived;
+    const double share = system->coarse.pace_old / system->coarse.pace - 1, lived = system->coarse.lived;
     const double best = share > GXSP_AGEING ? sqrt(2 * GXSP_REMAKE * lived / share) : GXSP_PATIENCE * lived;
-    system->coarse_life = best < 1e9 ? (uint32_t)best + 1 : 1000000000;
+    system->coarse.life = best < 1e9 ? (uint32_t)best + 1 : 1000000000;
 }
 
 /* Takes a reading when it is due. */
 static void gxsp_read_pace(gxsp_system *system) {
-    const int first = !(system->pace > 0);
-    if (system->read < GXSP_READING || !(system->read_nepers > 0)) return;
-    system->pace = system->read / system->read_nepers;
-    system->read = 0;
-    system->read_nepers = 0;
-    if (first) system->pace_young = system->pace;
-    if (first && system->pace_old > 0) gxsp_learn_life(system);
-    system->coarse_worn |= system->pace > GXSP_WORN * system->pace_young;
+    const int first = !(system->coarse.pace > 0);
+    if (system->coarse.read < GXSP_READING || !(system->coarse.read_nepers > 0)) return;
+    system->coarse.pace = system->coarse.read / system->coarse.read_nepers;
+    system->coarse.read = 0;
+    system->coarse.read_nepers = 0;
+    if (first) system->coarse.pace_young = system->coarse.pace;
+    if (first && system->coarse.pace_old > 0) gxsp_learn_life(system);
+    system->coarse.worn |= system->coarse.pace > GXSP_WORN * system->coarse.pace_young;
 }
 
 /* Solves the linear system and learns from the count of iterations how the coarse matrices age. */
@@ -7418,13 +7521,13 @@ static int gxsp_solve(gxsp_problem *problem) {
     problem->report.seconds_prepare += prepared - start;
     problem->report.seconds_solve += gxsp_now(problem) - prepared;
     count = problem->report.cg_iterations - before;
-    problem->report.preconditioner = system->coarse_used ? GXS_MULTIGRID
-                                   : system->volume      ? GXS_VOLUME_RATIO
-                                                         : GXS_BLOCK_JACOBI;
-    if (!system->coarse_used) return solved;
-    system->coarse_served += count;
-    system->read += count;
-    system->read_nepers += count > 0 ? problem->nepers : 0;
+    problem->report.preconditioner = system->multigrid.used ? GXS_MULTIGRID
+                                   : system->model.volume   ? GXS_VOLUME_RATIO
+                                                            : GXS_BLOCK_JACOBI;
+    if (!system->multigrid.used) return solved;
+    system->coarse.served += count;
+    system->coarse.read += count;
+    system->coarse.read_nepers += count > 0 ? problem->nepers : 0;
     gxsp_read_pace(system);
     return solved;
 }
@@ -7452,10 +7555,10 @@ static uint64_t gxsp_hash_forces(gxsp_system *system, const gxs_step_desc *step)
     uint64_t all = 1;
     uint32_t p;
     size_t i;
-    for (p = 0; p < system->piece_count; p++) system->pieces[p].forces[1] = 1;
-    for (i = 0; step->forces && i < system->n; i++)
+    for (p = 0; p < system->model.component_count; p++) system->model.components[p].forces[1] = 1;
+    for (i = 0; step->forces && i < system->model.n; i++)
         if (gxsp_differs(step->forces + 3 * i, zero)) {
-            uint64_t *hash = &system->pieces[system->piece[i]].forces[1];
+            uint64_t *hash = &system->model.components[system->model.component[i]].forces[1];
             const double index = (double)i;
             *hash = gxsp_hash(gxsp_hash(*hash, &index, 1), step->forces + 3 * i, 3);
             all = gxsp_hash(gxsp_hash(all, &index, 1), step->forces + 3 * i, 3);
@@ -7463,7 +7566,7 @@ static uint64_t gxsp_hash_forces(gxsp_system *system, const gxs_step_desc *step)
     for (i = 0; i < 4 * step->point_count && step->sleep_speed > 0; i++) {
         const gxs_point *point = &step->points[i / 4];
         const double values[2] = {(double)point->copy[i % 4], point->weight[i % 4]};
-        uint64_t *hash = &system->pieces[system->piece[point->copy[i % 4]]].forces[1];
+        uint64_t *hash = &system->model.components[system->model.component[point->copy[i % 4]]].forces[1];
         if (fabs(values[1]) > 0) {
             *hash = gxsp_hash(gxsp_hash(*hash, values, 2), point->position, 3);
             all = gxsp_hash(gxsp_hash(all, values, 2), point->position, 3);
@@ -7484,14 +7587,14 @@ static gxs_scene gxsp_scene_make(gxsp_system *system, const gxs_step_desc *step)
     }
     scene.forces = gxsp_hash_forces(system, step);
     scene.springs = 1;
-    for (i = 0; i < system->piece_count; i++) system->pieces[i].sprung[1] = 0;
+    for (i = 0; i < system->model.component_count; i++) system->model.components[i].has_spring[1] = 0;
     for (i = 0; i < 4 * step->spring_count; i++) {
         const gxs_spring *spring = &step->springs[i / 4];
         const double values[3] = {(double)spring->point.copy[i % 4], spring->point.weight[i % 4], spring->stiffness};
         scene.springs =
             gxsp_hash(gxsp_hash(gxsp_hash(scene.springs, spring->target, 3), spring->point.position, 3), values, 3);
         if (fabs(spring->point.weight[i % 4]) > 0)
-            system->pieces[system->piece[spring->point.copy[i % 4]]].sprung[1] = 1;
+            system->model.components[system->model.component[spring->point.copy[i % 4]]].has_spring[1] = 1;
     }
     return scene;
 }
@@ -7499,9 +7602,10 @@ static gxs_scene gxsp_scene_make(gxsp_system *system, const gxs_step_desc *step)
 /* Is the state of a copy not what the last step returned? Of velocities only those of sleepers are known: 0. */
 static int gxsp_is_written(const gxsp_system *system, size_t copy, const double *displacement, const double *velocity) {
     static const double zero[3] = {0, 0, 0};
-    if (system->fixed[copy]) return 0;
-    return ((system->pieces[system->piece[copy]].state & GXSP_ASLEEP) && gxsp_differs(velocity, zero)) ||
-           (system->stepped && gxsp_differs(displacement, system->current + 3 * copy));
+    if (system->model.fixed[copy]) return 0;
+    return ((system->model.components[system->model.component[copy]].state & GXSP_ASLEEP) &&
+            gxsp_differs(velocity, zero)) ||
+           (system->state.stepped && gxsp_differs(displacement, system->vectors.current + 3 * copy));
 }
 
 /* Wakes the pieces of which something has changed. */
@@ -7510,22 +7614,23 @@ static void gxsp_wake_touched(gxsp_problem *problem, const double *displacement,
     const gxs_step_desc *step = problem->step;
     const gxs_scene *before = &system->lasting->scene, *now = &problem->scene;
     const int springs = now->springs != before->springs, forces = now->forces != before->forces,
-              known = system->still_known;
+              known = system->state.still_known;
     const int all =
         gxsp_differs(now->gravity, before->gravity) || now->planes != before->planes || (!known && (springs || forces));
     size_t i;
     uint32_t p;
-    for (p = 0; p < system->piece_count; p++) {
-        gxsp_piece *piece = &system->pieces[p];
-        piece->woken = (system->failed && piece->woken) || all || (forces && piece->forces[0] != piece->forces[1]) ||
-                       (springs && (piece->sprung[0] || piece->sprung[1]));
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        component->woken = (system->state.failed && component->woken) || all ||
+                           (forces && component->forces[0] != component->forces[1]) ||
+                           (springs && (component->has_spring[0] || component->has_spring[1]));
     }
-    for (i = 0; i < system->n; i++) {
-        gxsp_piece *piece = &system->pieces[system->piece[i]];
-        if (step->targets && system->held[i] && gxsp_differs(step->targets + 3 * i, displacement + 3 * i))
-            piece->woken = 1;
+    for (i = 0; i < system->model.n; i++) {
+        gxsp_component *component = &system->model.components[system->model.component[i]];
+        if (step->targets && system->model.held[i] && gxsp_differs(step->targets + 3 * i, displacement + 3 * i))
+            component->woken = 1;
         if (step->sleep_speed > 0 && gxsp_is_written(system, i, displacement + 3 * i, velocity + 3 * i))
-            piece->woken = 1;
+            component->woken = 1;
     }
 }
 
@@ -7535,7 +7640,7 @@ static int gxsp_too_fast(const gxs_step_desc *step, const double *velocity) {
 }
 
 /* Rouses the pieces that springs and contact points tie to those that are awake. Were there any? */
-static int gxsp_rouse_tied(gxsp_system *system, const gxs_step_desc *step) {
+static int gxsp_wake_joined(gxsp_system *system, const gxs_step_desc *step) {
     int any = 0, k;
     size_t i;
     for (i = 0; i < step->spring_count + step->point_count; i++) {
@@ -7543,12 +7648,12 @@ static int gxsp_rouse_tied(gxsp_system *system, const gxs_step_desc *step) {
             i < step->spring_count ? &step->springs[i].point : &step->points[i - step->spring_count];
         int awake = 0;
         for (k = 0; k < 4; k++)
-            awake |= fabs(point->weight[k]) > 0 && !system->fixed[point->copy[k]] &&
-                     !system->pieces[system->piece[point->copy[k]]].tired;
+            awake |= fabs(point->weight[k]) > 0 && !system->model.fixed[point->copy[k]] &&
+                     !system->model.components[system->model.component[point->copy[k]]].resting;
         for (k = 0; k < 4 && awake; k++) {
-            gxsp_piece *piece = &system->pieces[system->piece[point->copy[k]]];
-            any |= fabs(point->weight[k]) > 0 && piece->tired;
-            piece->tired &= !(fabs(point->weight[k]) > 0);
+            gxsp_component *component = &system->model.components[system->model.component[point->copy[k]]];
+            any |= fabs(point->weight[k]) > 0 && component->resting;
+            component->resting &= !(fabs(point->weight[k]) > 0);
         }
     }
     return any;
@@ -7564,26 +7669,27 @@ static void gxsp_choose_sleepers(gxsp_problem *problem, const double *displaceme
     size_t i;
     problem->scene = gxsp_scene_make(system, step);
     gxsp_wake_touched(problem, displacement, velocity);
-    for (p = 0; p < system->piece_count; p++)
-        system->pieces[p].tired = step->sleep_speed > 0 && !system->pieces[p].woken;
-    for (i = 0; i < system->n && step->sleep_speed > 0; i++)
-        if (!system->fixed[i] && (step->rest_times[i] < time || gxsp_too_fast(step, velocity + 3 * i)))
-            system->pieces[system->piece[i]].tired = 0;
-    while (step->sleep_speed > 0 && gxsp_rouse_tied(system, step)) {}
-    for (p = 0; p < system->piece_count; p++) {
-        gxsp_piece *piece = &system->pieces[p];
-        const uint32_t state = (piece->state & ~GXSP_ASLEEP) | (piece->tired ? GXSP_ASLEEP : 0);
-        changed |= state != piece->state;
-        system->coarse_worn |= (piece->state & ~state & GXSP_ASLEEP) != 0; /* its matrices are old */
-        piece->state = state;
+    for (p = 0; p < system->model.component_count; p++)
+        system->model.components[p].resting = step->sleep_speed > 0 && !system->model.components[p].woken;
+    for (i = 0; i < system->model.n && step->sleep_speed > 0; i++)
+        if (!system->model.fixed[i] && (step->rest_times[i] < time || gxsp_too_fast(step, velocity + 3 * i)))
+            system->model.components[system->model.component[i]].resting = 0;
+    while (step->sleep_speed > 0 && gxsp_wake_joined(system, step)) {}
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        const uint32_t state = (component->state & ~GXSP_ASLEEP) | (component->resting ? GXSP_ASLEEP : 0);
+        changed |= state != component->state;
+        system->coarse.worn |= (component->state & ~state & GXSP_ASLEEP) != 0; /* its matrices are old */
+        component->state = state;
     }
-    if (!changed && system->still_known) return;
-    system->still_known = 1;
-    system->base_known &= !changed;
+    if (!changed && system->state.still_known) return;
+    system->state.still_known = 1;
+    system->state.base_known &= !changed;
     gxsp_mark_still(system);
-    system->active = 3 * system->n;
-    for (i = 0; i < system->n; i++) system->active -= system->still[i] ? 3 : 0;
-    for (i = 0; i < system->follower_count; i++) system->active -= system->still[system->followers[i].copy] ? 0 : 3;
+    system->state.active = 3 * system->model.n;
+    for (i = 0; i < system->model.n; i++) system->state.active -= system->state.still[i] ? 3 : 0;
+    for (i = 0; i < system->model.follower_count; i++)
+        system->state.active -= system->state.still[system->model.followers[i].copy] ? 0 : 3;
 }
 
 /* The rest times of a step that has ended with these velocities */
@@ -7592,8 +7698,9 @@ static void gxsp_count_rest(const gxsp_problem *problem, const double *velocity)
     const gxs_step_desc *step = problem->step;
     size_t i;
     if (!(step->sleep_speed > 0)) return;
-    for (i = 0; i < system->n; i++) {
-        const int rests = !gxsp_too_fast(step, velocity + 3 * i) && !system->pieces[system->piece[i]].woken;
+    for (i = 0; i < system->model.n; i++) {
+        const int rests =
+            !gxsp_too_fast(step, velocity + 3 * i) && !system->model.components[system->model.component[i]].woken;
         step->rest_times[i] = rests ? step->rest_times[i] + step->dt : 0;
     }
 }
@@ -7605,14 +7712,14 @@ static void gxsp_count_rest(const gxsp_problem *problem, const double *velocity)
 static void gxsp_add_reactions(const gxsp_system *system, gxsp_norms *norms) {
     double stiffness = 0, square = 0, compliance;
     size_t i, counted = 0;
-    for (i = 0; i < system->n; i++) {
-        const float *d = system->diagonal + 6 * i;
+    for (i = 0; i < system->model.n; i++) {
+        const float *d = system->vectors.diagonal + 6 * i;
         const double trace = (double)d[0] + (double)d[3] + (double)d[5];
         if (trace > 0) {
             stiffness += 3 / trace;
             counted++;
         }
-        if (system->held[i]) square += gxsp_dot(system->force + 3 * i, system->force + 3 * i, 1);
+        if (system->model.held[i]) square += gxsp_dot(system->vectors.force + 3 * i, system->vectors.force + 3 * i, 1);
     }
     compliance = stiffness > 0 ? (double)counted / stiffness : 0;
     norms->energy += square * compliance;
@@ -7633,17 +7740,19 @@ static void gxsp_add_norms(const float *d, const double *r, double *sums) {
 static void gxsp_task_balance(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
-    double *sums = system->range_sum[index];
+    double *sums = system->vectors.range_sum[index];
     size_t i, end = gxsp_range(system, index, &i), k;
-    memset(sums, 0, sizeof *system->range_sum);
+    memset(sums, 0, sizeof *system->vectors.range_sum);
     for (; i < end; i++) {
-        const float *d = system->diagonal + 6 * i;
+        const float *d = system->vectors.diagonal + 6 * i;
         double load[3], inertia[3], elastic[3];
         gxsp_load(pass->problem, i, load);
         for (k = 0; k < 3; k++) {
-            inertia[k] = pass->rate * system->lumped[i] * (system->current[3 * i + k] - system->target[3 * i + k]);
-            elastic[k] = system->force[3 * i + k] - inertia[k];
-            system->residual[3 * i + k] = system->still[i] ? 0 : load[k] - system->force[3 * i + k];
+            inertia[k] = pass->rate * system->model.lumped[i] *
+                         (system->vectors.current[3 * i + k] - system->vectors.target[3 * i + k]);
+            elastic[k] = system->vectors.force[3 * i + k] - inertia[k];
+            system->vectors.residual[3 * i + k] =
+                system->state.still[i] ? 0 : load[k] - system->vectors.force[3 * i + k];
         }
         gxsp_add_norms(d, load, sums);
         gxsp_add_norms(d, inertia, sums + 2);
@@ -7663,8 +7772,8 @@ static double gxsp_balance(gxsp_problem *problem) {
     gxsp_over_ranges(system, gxsp_task_balance, &pass, sums, GXSP_SUMS);
     elastic.energy = sums[4], elastic.displacement = sums[5];
     gxsp_add_reactions(system, &elastic);
-    gxsp_reduce_residual(system, system->still, system->residual);
-    residual = gxsp_scale(system, system->residual);
+    gxsp_reduce_residual(system, system->state.still, system->vectors.residual);
+    residual = gxsp_scale(system, system->vectors.residual);
     energy = sqrt(sums[0]) + sqrt(sums[2]) + sqrt(elastic.energy);
     displacement = sqrt(sums[1]) + sqrt(sums[3]) + sqrt(elastic.displacement);
     by_energy = energy > 0 ? sqrt(residual.energy) / energy : 0;
@@ -7676,18 +7785,19 @@ static double gxsp_balance(gxsp_problem *problem) {
 static void gxsp_keep_energies(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     uint32_t p;
-    for (p = 0; p < system->piece_count; p++)
-        memcpy(system->pieces[p].before, system->pieces[p].energies, sizeof system->pieces->before);
+    for (p = 0; p < system->model.component_count; p++)
+        memcpy(system->model.components[p].before, system->model.components[p].energies,
+               sizeof system->model.components->before);
     gxsp_sum_energies(system, problem->energies);
 }
 
 /* Energies and forces at current. 0 if they are not finite. */
-static int gxsp_update(gxsp_problem *problem) {
+static int gxsp_evaluate_current(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
-    gxsp_evaluate(problem, system->current, 0, system->force);
+    gxsp_evaluate(problem, system->vectors.current, 0, system->vectors.force);
     gxsp_keep_energies(problem);
     return gxsp_finite(problem->energies[0]) && gxsp_finite(problem->energies[1]) &&
-           gxsp_first_not_finite(system->force, 3 * system->n) == 3 * system->n;
+           gxsp_first_not_finite(system->vectors.force, 3 * system->model.n) == 3 * system->model.n;
 }
 
 /* Where everything is in a step that moves only held copies, to their targets, and what follows these: base */
@@ -7695,9 +7805,9 @@ static void gxsp_find_base(const gxsp_problem *problem, double *to) {
     const gxsp_system *system = problem->system;
     const double *targets = problem->step->targets;
     size_t k;
-    memcpy(to, problem->given, 3 * system->n * sizeof *to);
-    for (k = 0; k < 3 * system->n && targets; k++)
-        if (system->held[k / 3])
+    memcpy(to, problem->given, 3 * system->model.n * sizeof *to);
+    for (k = 0; k < 3 * system->model.n && targets; k++)
+        if (system->model.held[k / 3])
             to[k] = problem->step->integrator == GXS_MIDPOINT ? 0.5 * (to[k] + targets[k]) : targets[k];
     gxsp_follow(system, problem->given, to);
 }
@@ -7708,13 +7818,14 @@ static void gxsp_lead_lights(const gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     uint32_t i;
     int c;
-    for (i = 0; i < system->light_count; i++) {
-        const uint32_t copy = system->lights[i].copy;
+    for (i = 0; i < system->model.light_count; i++) {
+        const uint32_t copy = system->model.lights[i].copy;
         double mean[3];
-        if (system->still[copy]) continue;
-        (void)gxsp_guide(system, &system->lights[i], system->target, problem->given, mean);
+        if (system->state.still[copy]) continue;
+        (void)gxsp_guide(system, &system->model.lights[i], system->vectors.target, problem->given, mean);
         for (c = 0; c < 3; c++)
-            system->current[3 * (size_t)copy + (size_t)c] = problem->given[3 * (size_t)copy + (size_t)c] + mean[c];
+            system->vectors.current[3 * (size_t)copy + (size_t)c] =
+                problem->given[3 * (size_t)copy + (size_t)c] + mean[c];
     }
 }
 
@@ -7723,15 +7834,17 @@ static void gxsp_lead_lights(const gxsp_problem *problem) {
 static int gxsp_start(gxsp_problem *problem, int led) {
     gxsp_system *system = problem->system;
     size_t i;
-    gxsp_find_base(problem, system->current);
-    for (i = 0; i < system->n && led; i++)
-        if (!system->still[i]) memcpy(system->current + 3 * i, system->target + 3 * i, 3 * sizeof(double));
+    gxsp_find_base(problem, system->vectors.current);
+    for (i = 0; i < system->model.n && led; i++)
+        if (!system->state.still[i])
+            memcpy(system->vectors.current + 3 * i, system->vectors.target + 3 * i, 3 * sizeof(double));
     if (led) gxsp_lead_lights(problem);
-    gxsp_follow(system, problem->given, system->current);
-    gxsp_untouch_pieces(system);
-    gxsp_terms_make(problem, system->current);
-    gxsp_balance_momentum(problem, 0, NULL, system->current);
-    return gxsp_first_not_finite(system->current, 3 * system->n) == 3 * system->n && gxsp_update(problem);
+    gxsp_follow(system, problem->given, system->vectors.current);
+    gxsp_untouch_components(system);
+    gxsp_terms_make(problem, system->vectors.current);
+    gxsp_balance_momentum(problem, 0, NULL, system->vectors.current);
+    return gxsp_first_not_finite(system->vectors.current, 3 * system->model.n) == 3 * system->model.n &&
+           gxsp_evaluate_current(problem);
 }
 
 /* The direction takes no light copy further from what guides it than they are apart, at rest or now, unless the piece's
@@ -7739,15 +7852,16 @@ static int gxsp_start(gxsp_problem *problem, int led) {
  * length for it. Later iterations, which few steps have, are left alone: they converge by themselves. */
 static void gxsp_bound_lights(const gxsp_problem *problem) {
     gxsp_system *system = problem->system;
-    const double *rest = system->positions, *moved = system->current;
+    const double *rest = system->model.positions, *moved = system->vectors.current;
     uint32_t i;
     size_t c;
     int any = 0;
-    for (i = 0; i < system->light_count && rest && problem->report.newton_iterations < GXSP_BOUNDED; i++) {
-        const size_t copy = 3 * (size_t)system->lights[i].copy;
-        gxsp_piece *piece = gxsp_lead_of(system, copy / 3);
-        double *way = system->direction + copy, mean[3], less[3], gap[3], now[3], load[3], size, most, work;
-        const size_t guide = 3 * (size_t)gxsp_guide(system, &system->lights[i], system->direction, NULL, mean);
+    for (i = 0; i < system->model.light_count && rest && problem->report.newton_iterations < GXSP_BOUNDED; i++) {
+        const size_t copy = 3 * (size_t)system->model.lights[i].copy;
+        gxsp_component *component = gxsp_lead_of(system, copy / 3);
+        double *way = system->vectors.direction + copy, mean[3], less[3], gap[3], now[3], load[3], size, most, work;
+        const size_t guide =
+            3 * (size_t)gxsp_guide(system, &system->model.lights[i], system->vectors.direction, NULL, mean);
         for (c = 0; c < 3; c++) {
             less[c] = mean[c] - way[c];
             gap[c] = rest[copy + c] - rest[guide + c];
@@ -7755,18 +7869,18 @@ static void gxsp_bound_lights(const gxsp_problem *problem) {
         }
         size = gxsp_dot(less, less, 1);
         most = fmax(gxsp_dot(gap, gap, 1), gxsp_dot(now, now, 1));
-        if (system->still[copy / 3] || gxsp_follows(system, copy / 3) || size <= most) continue;
+        if (system->state.still[copy / 3] || gxsp_follows(system, copy / 3) || size <= most) continue;
         for (c = 0; c < 3; c++) less[c] *= 1 - sqrt(most / size);
         gxsp_load(problem, copy / 3, load);
         work = gxsp_dot(load, less, 1);
-        if (gxsp_dot(system->force + copy, less, 1) - work > GXSP_BOUND_COST * -piece->slope) continue;
-        piece->slope += gxsp_dot(system->force + copy, less, 1) - work;
-        piece->work += work;
+        if (gxsp_dot(system->vectors.force + copy, less, 1) - work > GXSP_BOUND_COST * -component->slope) continue;
+        component->slope += gxsp_dot(system->vectors.force + copy, less, 1) - work;
+        component->work += work;
         for (c = 0; c < 3; c++) way[c] += less[c];
         any = 1;
     }
     if (any) {
-        gxsp_follow(system, NULL, system->direction);
+        gxsp_follow(system, NULL, system->vectors.direction);
         gxsp_balance_direction(problem);
     }
 }
@@ -7779,59 +7893,62 @@ static int gxsp_begin_search(const gxsp_problem *problem) {
     int finite = 1;
     size_t i, k;
     uint32_t p;
-    for (p = 0; p < system->piece_count; p++) {
-        gxsp_piece *piece = &system->pieces[p];
-        piece->slope = piece->work = piece->rounding = 0;
-        piece->length = 1;
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        component->slope = component->work = component->rounding = 0;
+        component->length = 1;
     }
-    for (i = 0; i < system->n; i++) {
-        gxsp_piece *piece = gxsp_lead_of(system, i);
-        const double *force = system->force + 3 * i, *way = system->direction + 3 * i;
+    for (i = 0; i < system->model.n; i++) {
+        gxsp_component *component = gxsp_lead_of(system, i);
+        const double *force = system->vectors.force + 3 * i, *way = system->vectors.direction + 3 * i;
         double load[3], work, rounding = 0;
         gxsp_load(problem, i, load);
         work = gxsp_dot(load, way, 1);
-        for (k = 0; k < 3; k++) rounding += fabs(force[k] * system->current[3 * i + k]) + fabs(load[k] * way[k]);
-        piece->slope += gxsp_dot(force, way, 1) - work;
-        piece->work += work;
-        piece->rounding += rounding;
+        for (k = 0; k < 3; k++)
+            rounding += fabs(force[k] * system->vectors.current[3 * i + k]) + fabs(load[k] * way[k]);
+        component->slope += gxsp_dot(force, way, 1) - work;
+        component->work += work;
+        component->rounding += rounding;
     }
     gxsp_bound_lights(problem);
-    for (p = 0; p < system->piece_count; p++) {
-        gxsp_piece *piece = &system->pieces[p];
-        const double curvature = -piece->slope - piece->left; /* of the linear model */
-        finite &= gxsp_finite(piece->slope);
-        if (piece->slope < 0 && -piece->slope < GXSP_TOO_LONG * curvature) piece->length = -piece->slope / curvature;
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        const double curvature = -component->slope - component->left; /* of the linear model */
+        finite &= gxsp_finite(component->slope);
+        if (component->slope < 0 && -component->slope < GXSP_TOO_LONG * curvature)
+            component->length = -component->slope / curvature;
     }
     return finite;
 }
 
 /* Has the piece gone far enough down? If not, it will try a shorter length. */
-static void gxsp_judge_length(gxsp_problem *problem, gxsp_piece *piece) {
-    const double *now = piece->energies, *before = piece->before, length = piece->length,
-                 promise = length * piece->slope;
-    const double change = (now[0] - before[0]) + (now[1] - before[1]) - length * piece->work;
-    const double slack = 1e-15 * (now[2] + before[2] + piece->rounding);
+static void gxsp_judge_length(gxsp_problem *problem, gxsp_component *component) {
+    const double *now = component->energies, *before = component->before, length = component->length,
+                 promise = length * component->slope;
+    const double change = (now[0] - before[0]) + (now[1] - before[1]) - length * component->work;
+    const double slack = 1e-15 * (now[2] + before[2] + component->rounding);
     double next;
     if (gxsp_finite(change) && gxsp_finite(now[2]) && change <= (promise < 0 ? GXSP_ARMIJO * promise : 0) + slack) {
         problem->noise &= fabs(change) <= slack;
-        piece->settled = 1;
+        component->settled = 1;
         return;
     }
     /* minimum of the parabola through the two energies and the slope, within 1/10 to 1/2 of the length */
     next = gxsp_finite(change) && change > promise ? -0.5 * promise * length / (change - promise) : 0.1 * length;
     next = next < 0.1 * length ? 0.1 * length : next > 0.5 * length ? 0.5 * length : next;
-    piece->length = promise < 0 ? next : 0;
+    component->length = promise < 0 ? next : 0;
 }
 
 /* Energies and forces at trial: current and each piece's length of the direction from there */
 static void gxsp_try_lengths(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     size_t i, k;
-    for (i = 0; i < system->n; i++) {
+    for (i = 0; i < system->model.n; i++) {
         const double length = gxsp_lead_of(system, i)->length;
-        for (k = 3 * i; k < 3 * i + 3; k++) system->trial[k] = system->current[k] + length * system->direction[k];
+        for (k = 3 * i; k < 3 * i + 3; k++)
+            gxsp_trial(system)[k] = system->vectors.current[k] + length * system->vectors.direction[k];
     }
-    gxsp_evaluate(problem, system->trial, 0, system->force);
+    gxsp_evaluate(problem, gxsp_trial(system), 0, system->vectors.force);
 }
 
 /* Pieces that have found no length stay, and all may be evaluated again. Returns how many went down; left: how many
@@ -7840,12 +7957,12 @@ static size_t gxsp_end_search(gxsp_system *system, size_t *left) {
     size_t down = 0;
     uint32_t p;
     *left = 0;
-    for (p = 0; p < system->piece_count; p++) {
-        gxsp_piece *piece = &system->pieces[p];
-        if (piece->lead != p) continue;
-        down += piece->settled && piece->slope < 0;
-        *left += !piece->settled;
-        piece->length = piece->settled ? piece->length : 0;
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        if (component->lead != p) continue;
+        down += component->settled && component->slope < 0;
+        *left += !component->settled;
+        component->length = component->settled ? component->length : 0;
     }
     return down;
 }
@@ -7855,7 +7972,7 @@ static size_t gxsp_end_search(gxsp_system *system, size_t *left) {
  * finite point of lower energy. */
 static int gxsp_line_search(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
-    double *found = system->trial;
+    double *found = gxsp_trial(system);
     size_t left = 1, down;
     uint32_t p;
     int trial;
@@ -7864,19 +7981,19 @@ static int gxsp_line_search(gxsp_problem *problem) {
     for (trial = 0; trial < GXSP_TRIALS && left > 0 && (trial == 0 || !gxsp_out_of_time(problem)); trial++) {
         problem->report.line_search_steps++;
         gxsp_try_lengths(problem);
-        for (p = 0, left = 0; p < system->piece_count; p++) {
-            gxsp_piece *piece = &system->pieces[p];
-            if (piece->lead == p && !piece->settled) gxsp_judge_length(problem, piece);
-            left += piece->lead == p && !piece->settled;
+        for (p = 0, left = 0; p < system->model.component_count; p++) {
+            gxsp_component *component = &system->model.components[p];
+            if (component->lead == p && !component->settled) gxsp_judge_length(problem, component);
+            left += component->lead == p && !component->settled;
         }
     }
     problem->shortened = trial > 1;
     down = gxsp_end_search(system, &left);
     if (left > 0) gxsp_try_lengths(problem);
-    for (p = 0; p < system->piece_count; p++) system->pieces[p].settled = 0;
+    for (p = 0; p < system->model.component_count; p++) system->model.components[p].settled = 0;
     gxsp_keep_energies(problem);
-    system->trial = system->residual = system->current;
-    system->current = found;
+    system->vectors.residual = system->vectors.current;
+    system->vectors.current = found;
     return left == 0 || down > 0;
 }
 
@@ -7884,7 +8001,7 @@ static int gxsp_line_search(gxsp_problem *problem) {
 static double gxsp_potential(const gxsp_problem *problem, const double *energies, const double *displacement) {
     double work = 0;
     size_t i;
-    for (i = 0; i < problem->system->n; i++) {
+    for (i = 0; i < problem->system->model.n; i++) {
         double load[3];
         gxsp_load(problem, i, load);
         work += gxsp_dot(load, displacement + 3 * i, 1);
@@ -7921,12 +8038,13 @@ static void gxsp_choose_integrator(gxsp_problem *problem) {
 static void gxsp_add_damping(gxsp_problem *problem, double factor, const double *displacement) {
     gxsp_system *system = problem->system;
     size_t i;
-    for (i = 0; i < system->material_count; i++) {
-        system->damped[i].mu = factor * system->materials[i].damping * system->materials[i].mu;
-        system->damped[i].lambda = factor * system->materials[i].damping * system->materials[i].lambda;
+    for (i = 0; i < system->model.material_count; i++) {
+        system->state.damped[i].mu = factor * system->model.materials[i].damping * system->model.materials[i].mu;
+        system->state.damped[i].lambda =
+            factor * system->model.materials[i].damping * system->model.materials[i].lambda;
     }
-    gxsp_evaluate_elements(system, 0, displacement, system->target, 0, system->force);
-    for (i = 0; i < 3 * system->n; i++) system->damping[i] += system->force[i];
+    gxsp_evaluate_elements(system, 0, displacement, system->vectors.target, 0, system->vectors.force);
+    for (i = 0; i < 3 * system->model.n; i++) system->vectors.damping[i] += system->vectors.force[i];
 }
 
 /* Rayleigh's stiffness damping: stress P(F) + beta dP/dt, the rate taken as that of the integrator, speed (P(F) - P of
@@ -7936,19 +8054,19 @@ static void gxsp_add_damping(gxsp_problem *problem, double factor, const double 
 static void gxsp_begin_damping(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     size_t i;
-    problem->damps = system->damps && problem->speed > 0;
+    problem->damps = system->model.damps && problem->speed > 0;
     if (problem->damps) {
-        system->base_known = 0;
-        memset(system->damping, 0, 3 * system->n * sizeof(double));
+        system->state.base_known = 0;
+        memset(system->vectors.damping, 0, 3 * system->model.n * sizeof(double));
         gxsp_add_damping(problem, problem->speed * problem->mean[0], problem->given);
         if (problem->mean[1] < 0)
             gxsp_add_damping(problem, problem->speed * problem->mean[1], problem->step->previous_displacement);
     }
-    for (i = 0; i < system->material_count; i++) {
-        const double factor = 1 + problem->speed * system->materials[i].damping;
-        system->damped[i] = system->materials[i];
-        system->damped[i].mu *= factor;
-        system->damped[i].lambda *= factor;
+    for (i = 0; i < system->model.material_count; i++) {
+        const double factor = 1 + problem->speed * system->model.materials[i].damping;
+        system->state.damped[i] = system->model.materials[i];
+        system->state.damped[i].mu *= factor;
+        system->state.damped[i].lambda *= factor;
     }
 }
 
@@ -7966,14 +8084,15 @@ static void gxsp_begin(gxsp_problem *problem, const double *velocity) {
     /* s; the rest of the rate is mass damping's */
     const double lead = problem->speed > 0 ? problem->speed / problem->rate : 0;
     size_t k;
-    system->base_known = system->base_known && !step->targets && step->spring_count + step->point_count == 0 &&
-                         memcmp(displacement, system->current, 3 * system->n * sizeof(double)) == 0;
-    for (k = 0; k < 3 * system->n; k++) {
+    system->state.base_known = system->state.base_known && !step->targets &&
+                               step->spring_count + step->point_count == 0 &&
+                               memcmp(displacement, system->vectors.current, 3 * system->model.n * sizeof(double)) == 0;
+    for (k = 0; k < 3 * system->model.n; k++) {
         double speed = problem->mean[0] * velocity[k];
         if (problem->mean[1] < 0) speed += problem->mean[1] * step->previous_velocity[k];
-        system->target[k] = gxsp_mean(problem, displacement, k) + lead * speed;
+        system->vectors.target[k] = gxsp_mean(problem, displacement, k) + lead * speed;
         /* what a held copy is accelerated by acts on its neighbours */
-        if (system->still[k / 3] && !system->held[k / 3]) system->target[k] = displacement[k];
+        if (system->state.still[k / 3] && !system->model.held[k / 3]) system->vectors.target[k] = displacement[k];
     }
     gxsp_begin_damping(problem);
 }
@@ -7982,8 +8101,8 @@ static int gxsp_linearise_all(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     const double start = gxsp_now(problem);
     int finite;
-    gxsp_terms_make(problem, system->current);
-    finite = gxsp_linearise(system, problem->rate, system->current, problem->exact, &problem->collapsed);
+    gxsp_terms_make(problem, system->vectors.current);
+    finite = gxsp_linearise(system, problem->rate, system->vectors.current, problem->exact, &problem->collapsed);
     problem->report.seconds_linearise += gxsp_now(problem) - start;
     return finite;
 }
@@ -7991,7 +8110,7 @@ static int gxsp_linearise_all(gxsp_problem *problem) {
 /* Elements collapsed to a point have no force that would open them: what they have all but collapsed takes its place,
  * for the direction and its slope. Energies stay as they are. */
 static void gxsp_nudge_forces(gxsp_problem *problem) {
-    gxsp_evaluate(problem, problem->system->current, 1, problem->system->force);
+    gxsp_evaluate(problem, problem->system->vectors.current, 1, problem->system->vectors.force);
     gxsp_balance(problem);
 }
 
@@ -8008,7 +8127,7 @@ static int gxsp_find_direction(gxsp_problem *problem) {
 }
 
 /* Does Newton's method go on? before: residual an iteration ago. Says why not. */
-static int gxsp_goes_on(gxsp_problem *problem, double before) {
+static int gxsp_continues(gxsp_problem *problem, double before) {
     const gxs_step_desc *step = problem->step;
     const uint32_t budget = step->newton_iterations ? step->newton_iterations : 1,
                    done = problem->report.newton_iterations;
@@ -8038,7 +8157,7 @@ static gx_result gxsp_newton(gxsp_problem *problem) {
     for (;;) {
         problem->report.residual = gxsp_balance(problem);
         if (!gxsp_finite(problem->report.residual)) return GX_ERROR_DIVERGED;
-        if (!gxsp_goes_on(problem, before)) return GX_OK;
+        if (!gxsp_continues(problem, before)) return GX_OK;
         before = problem->report.residual;
         if (*done > 0 && !gxsp_linearise_all(problem)) break;
         if (problem->collapsed) gxsp_nudge_forces(problem);
@@ -8056,17 +8175,17 @@ static void gxsp_limit_energies(const gxsp_problem *problem, const double *displ
     gxsp_system *system = problem->system;
     size_t i;
     uint32_t p;
-    for (p = 0; p < system->piece_count; p++) {
-        gxsp_piece *piece = &system->pieces[p];
-        piece->limit = elastic ? piece->base_energy : piece->energies[0] + piece->energies[1];
-        piece->ended = piece->before[0] + piece->before[1];
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        component->limit = elastic ? component->base_energy : component->energies[0] + component->energies[1];
+        component->ended = component->before[0] + component->before[1];
     }
-    for (i = 0; i < system->n; i++) {
-        gxsp_piece *piece = gxsp_lead_of(system, i);
+    for (i = 0; i < system->model.n; i++) {
+        gxsp_component *component = gxsp_lead_of(system, i);
         double load[3];
         gxsp_load(problem, i, load);
-        piece->limit -= gxsp_dot(load, displacement + 3 * i, 1);
-        piece->ended -= gxsp_dot(load, system->current + 3 * i, 1);
+        component->limit -= gxsp_dot(load, displacement + 3 * i, 1);
+        component->ended -= gxsp_dot(load, system->vectors.current + 3 * i, 1);
     }
 }
 
@@ -8074,19 +8193,20 @@ static void gxsp_limit_energies(const gxsp_problem *problem, const double *displ
 static size_t gxsp_count_risen(gxsp_system *system) {
     size_t count = 0;
     uint32_t p;
-    for (p = 0; p < system->piece_count; p++) {
-        gxsp_piece *piece = &system->pieces[p];
-        const double slack = 1e-12 * fabs(piece->limit) + GXSP_ROUNDING * piece->before[2];
-        piece->risen = piece->lead == p && gxsp_finite(piece->limit) && piece->ended > piece->limit + slack;
-        count += piece->risen != 0;
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        const double slack = 1e-12 * fabs(component->limit) + GXSP_ROUNDING * component->before[2];
+        component->risen =
+            component->lead == p && gxsp_finite(component->limit) && component->ended > component->limit + slack;
+        count += component->risen != 0;
     }
     return count;
 }
 
 /* Where the pieces would be without a step, but for translations of loose ones: into trial */
-static void gxsp_stay(gxsp_problem *problem) {
-    gxsp_find_base(problem, problem->system->trial);
-    gxsp_balance_momentum(problem, 0, NULL, problem->system->trial);
+static void gxsp_translate_base(gxsp_problem *problem) {
+    gxsp_find_base(problem, gxsp_trial(problem->system));
+    gxsp_balance_momentum(problem, 0, NULL, gxsp_trial(problem->system));
 }
 
 /* E of every piece at base, when the limits are those at trial, to which loose pieces were translated: E is a parabola
@@ -8094,11 +8214,13 @@ static void gxsp_stay(gxsp_problem *problem) {
 static void gxsp_note_base(const gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     uint32_t p;
-    for (p = 0; p < system->piece_count; p++) system->pieces[p].base = system->pieces[p].limit;
-    for (p = 0; p < system->piece_count; p++) {
-        const gxsp_piece *piece = &system->pieces[p];
-        if (piece->state == 0)
-            system->pieces[piece->lead].base += 0.5 * piece->mass * gxsp_dot(piece->sum, piece->sum, 1) / problem->rate;
+    for (p = 0; p < system->model.component_count; p++)
+        system->model.components[p].base = system->model.components[p].limit;
+    for (p = 0; p < system->model.component_count; p++) {
+        const gxsp_component *component = &system->model.components[p];
+        if (component->state == 0)
+            system->model.components[component->lead].base +=
+                0.5 * component->mass * gxsp_dot(component->sum, component->sum, 1) / problem->rate;
     }
 }
 
@@ -8108,25 +8230,26 @@ static size_t gxsp_bring_down(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     size_t i, k, count;
     uint32_t p;
-    gxsp_evaluate(problem, system->trial, 0, system->force);
-    gxsp_limit_energies(problem, system->trial, 0);
+    gxsp_evaluate(problem, gxsp_trial(system), 0, system->vectors.force);
+    gxsp_limit_energies(problem, gxsp_trial(system), 0);
     gxsp_note_base(problem);
     problem->based = 1;
     count = gxsp_count_risen(system);
     if (count == 0) return 0;
-    for (i = 0; i < system->n; i++) {
+    for (i = 0; i < system->model.n; i++) {
         const int risen = gxsp_lead_of(system, i)->risen;
         for (k = 3 * i; k < 3 * i + 3; k++) {
-            system->direction[k] = risen ? system->current[k] - system->trial[k] : 0;
-            system->current[k] = risen ? system->trial[k] : system->current[k];
+            system->vectors.direction[k] = risen ? system->vectors.current[k] - gxsp_trial(system)[k] : 0;
+            system->vectors.current[k] = risen ? gxsp_trial(system)[k] : system->vectors.current[k];
         }
     }
-    for (p = 0; p < system->piece_count; p++) {
-        system->pieces[p].left = 0;
-        if (system->pieces[p].risen)
-            memcpy(system->pieces[p].before, system->pieces[p].energies, sizeof system->pieces->before);
+    for (p = 0; p < system->model.component_count; p++) {
+        system->model.components[p].left = 0;
+        if (system->model.components[p].risen)
+            memcpy(system->model.components[p].before, system->model.components[p].energies,
+                   sizeof system->model.components->before);
     }
-    if (!gxsp_line_search(problem)) (void)gxsp_update(problem);
+    if (!gxsp_line_search(problem)) (void)gxsp_evaluate_current(problem);
     return count;
 }
 
@@ -8137,8 +8260,8 @@ static size_t gxsp_bring_down(gxsp_problem *problem) {
 static gx_result gxsp_minimise(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     gx_result result = GX_ERROR_DIVERGED;
-    if (system->active == 0) {
-        gxsp_find_base(problem, system->current);
+    if (system->state.active == 0) {
+        gxsp_find_base(problem, system->vectors.current);
         problem->report.stop = GXS_STOP_ASLEEP;
         return GX_OK;
     }
@@ -8148,9 +8271,9 @@ static gx_result gxsp_minimise(gxsp_problem *problem) {
         problem->report.newton_iterations = 0;
         return gxsp_start(problem, 0) ? gxsp_newton(problem) : GX_ERROR_DIVERGED;
     }
-    gxsp_stay(problem);
-    gxsp_limit_energies(problem, system->trial, 1);
-    if (system->base_known && problem->step->integrator != GXS_MIDPOINT && gxsp_count_risen(system) == 0)
+    gxsp_translate_base(problem);
+    gxsp_limit_energies(problem, gxsp_trial(system), 1);
+    if (system->state.base_known && problem->step->integrator != GXS_MIDPOINT && gxsp_count_risen(system) == 0)
         return GX_OK; /* lower even without the kinetic energy that staying at base would take */
     if (gxsp_bring_down(problem) > 0) result = gxsp_newton(problem);
     return result;
@@ -8162,12 +8285,12 @@ static void gxsp_find_gains(const gxsp_problem *problem, const double *displacem
     gxsp_system *system = problem->system;
     size_t i;
     uint32_t p;
-    for (p = 0; p < system->piece_count; p++) {
-        gxsp_piece *piece = &system->pieces[p];
-        const double *energies = evaluated ? piece->energies : piece->before;
-        piece->gain = energies[0] + energies[1] - piece->base;
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        const double *energies = evaluated ? component->energies : component->before;
+        component->gain = energies[0] + energies[1] - component->base;
     }
-    for (i = 0; i < system->n; i++) {
+    for (i = 0; i < system->model.n; i++) {
         double load[3];
         gxsp_load(problem, i, load);
         gxsp_lead_of(system, i)->gain -= gxsp_dot(load, displacement + 3 * i, 1);
@@ -8175,7 +8298,7 @@ static void gxsp_find_gains(const gxsp_problem *problem, const double *displacem
 }
 
 /* Pieces that springs or contact act on at a displacement are not loose any more. */
-static void gxsp_touch_pieces_at(const gxsp_problem *problem, const double *displacement) {
+static void gxsp_touch_components_at(const gxsp_problem *problem, const double *displacement) {
     gxsp_system *system = problem->system;
     const gxs_point *point;
     gxsp_pull pull;
@@ -8183,31 +8306,32 @@ static void gxsp_touch_pieces_at(const gxsp_problem *problem, const double *disp
     int k;
     while ((point = gxsp_next_pull(problem, &at, displacement, &pull)) != NULL)
         for (k = 0; k < 4 && (fabs(pull.energy) > 0 || gxsp_dot(pull.force, pull.force, 1) > 0); k++)
-            if (fabs(point->weight[k]) > 0) system->pieces[system->piece[point->copy[k]]].state |= GXSP_TOUCHED;
+            if (fabs(point->weight[k]) > 0)
+                system->model.components[system->model.component[point->copy[k]]].state |= GXSP_TOUCHED;
 }
 
 /* Is the second half short enough for the piece? If not, it will try a shorter one, in the end none: E is about a
  * parabola with its minimum, low, where nothing is left of what is taken off. */
-static void gxsp_judge_gain(gxsp_piece *piece, int last) {
-    const double low = piece->low, gain = piece->gain;
+static void gxsp_judge_gain(gxsp_component *component, int last) {
+    const double low = component->low, gain = component->gain;
     double next;
-    if (gxsp_finite(gain) &&
-        gain <= GXSP_GAIN * piece->energies[1] + 1e-12 * fabs(piece->base) + GXSP_ROUNDING * piece->energies[2]) {
-        piece->settled = 1;
+    if (gxsp_finite(gain) && gain <= GXSP_GAIN * component->energies[1] + 1e-12 * fabs(component->base) +
+                                         GXSP_ROUNDING * component->energies[2]) {
+        component->settled = 1;
         return;
     }
-    next = gxsp_finite(gain) && low < 0 && gain > low ? piece->length * sqrt(low / (low - gain)) : 0;
-    piece->length = last ? 0 : next < 0.1 * piece->length ? 0.1 * piece->length : next;
+    next = gxsp_finite(gain) && low < 0 && gain > low ? component->length * sqrt(low / (low - gain)) : 0;
+    component->length = last ? 0 : next < 0.1 * component->length ? 0.1 * component->length : next;
 }
 
 /* Light copies keep their place beside what guides them: in x, n x 3, they go as the mean of their guides. */
 static void gxsp_guide_lights(const gxsp_system *system, double *x) {
     uint32_t i;
-    for (i = 0; i < system->light_count; i++) {
-        const uint32_t copy = system->lights[i].copy;
-        if (!system->still[copy] && !gxsp_follows(system, copy)) {
+    for (i = 0; i < system->model.light_count; i++) {
+        const uint32_t copy = system->model.lights[i].copy;
+        if (!system->state.still[copy] && !gxsp_follows(system, copy)) {
             double mean[3];
-            (void)gxsp_guide(system, &system->lights[i], x, NULL, mean);
+            (void)gxsp_guide(system, &system->model.lights[i], x, NULL, mean);
             memcpy(x + 3 * (size_t)copy, mean, sizeof mean);
         }
     }
@@ -8217,31 +8341,34 @@ static void gxsp_guide_lights(const gxsp_system *system, double *x) {
  * on at its end is not loose. trial: that end. */
 static void gxsp_find_second_half(const gxsp_problem *problem) {
     gxsp_system *system = problem->system;
-    const size_t count = 3 * system->n;
+    const size_t count = 3 * system->model.n;
     size_t i;
     uint32_t p;
-    gxsp_find_base(problem, system->trial);
-    for (i = 0; i < count; i++) system->direction[i] = system->current[i] - system->trial[i];
-    gxsp_clear_pieces(system); /* nothing does if none is loose */
-    gxsp_remove_momentum(system, system->direction);
-    for (p = 0; p < system->piece_count; p++)
-        memcpy(system->pieces[p].drift, system->pieces[p].sum, sizeof system->pieces->drift);
-    gxsp_guide_lights(system, system->direction);
-    gxsp_remove_momentum(system, system->direction);
+    gxsp_find_base(problem, gxsp_trial(system));
+    for (i = 0; i < count; i++) system->vectors.direction[i] = system->vectors.current[i] - gxsp_trial(system)[i];
+    gxsp_clear_components(system); /* nothing does if none is loose */
+    gxsp_remove_momentum(system, system->vectors.direction);
+    for (p = 0; p < system->model.component_count; p++)
+        memcpy(system->model.components[p].drift, system->model.components[p].sum,
+               sizeof system->model.components->drift);
+    gxsp_guide_lights(system, system->vectors.direction);
+    gxsp_remove_momentum(system, system->vectors.direction);
     for (i = 0; i < count; i++)
-        system->trial[i] =
-            system->current[i] + (system->direction[i] + system->pieces[system->piece[i / 3]].drift[i % 3]);
-    gxsp_touch_pieces_at(problem, system->trial);
+        gxsp_trial(system)[i] =
+            system->vectors.current[i] +
+            (system->vectors.direction[i] + system->model.components[system->model.component[i / 3]].drift[i % 3]);
+    gxsp_touch_components_at(problem, gxsp_trial(system));
     for (i = 0; i < count; i++)
-        system->direction[i] = system->pieces[system->piece[i / 3]].state == 0 ? system->direction[i]
-                                                                               : system->trial[i] - system->current[i];
-    for (p = 0; p < system->piece_count; p++) { /* a drift has its own part of the kinetic energy */
-        gxsp_piece *piece = &system->pieces[p];
-        if (piece->state == 0)
-            system->pieces[piece->lead].low +=
-                0.5 * problem->rate * piece->mass * gxsp_dot(piece->drift, piece->drift, 1);
+        system->vectors.direction[i] = system->model.components[system->model.component[i / 3]].state == 0
+                                         ? system->vectors.direction[i]
+                                         : gxsp_trial(system)[i] - system->vectors.current[i];
+    for (p = 0; p < system->model.component_count; p++) { /* a drift has its own part of the kinetic energy */
+        gxsp_component *component = &system->model.components[p];
+        if (component->state == 0)
+            system->model.components[component->lead].low +=
+                0.5 * problem->rate * component->mass * gxsp_dot(component->drift, component->drift, 1);
         else
-            memset(piece->drift, 0, sizeof piece->drift);
+            memset(component->drift, 0, sizeof component->drift);
     }
 }
 
@@ -8254,73 +8381,76 @@ static void gxsp_find_second_half(const gxsp_problem *problem) {
  * becomes the end. */
 static void gxsp_bound_gain(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
-    const size_t count = 3 * system->n;
+    const size_t count = 3 * system->model.n;
     size_t i, left = 1;
     uint32_t p;
     int trial;
     /* which begin to act anywhere */
     if (!problem->based || problem->step->spring_count + problem->step->point_count > 0) {
-        gxsp_find_base(problem, system->trial);
-        gxsp_evaluate(problem, system->trial, 0, system->force);
-        for (p = 0; p < system->piece_count; p++) system->pieces[p].base = 0;
-        gxsp_find_gains(problem, system->trial, 1);
-        for (p = 0; p < system->piece_count; p++) system->pieces[p].base = system->pieces[p].gain;
+        gxsp_find_base(problem, gxsp_trial(system));
+        gxsp_evaluate(problem, gxsp_trial(system), 0, system->vectors.force);
+        for (p = 0; p < system->model.component_count; p++) system->model.components[p].base = 0;
+        gxsp_find_gains(problem, gxsp_trial(system), 1);
+        for (p = 0; p < system->model.component_count; p++)
+            system->model.components[p].base = system->model.components[p].gain;
     }
-    gxsp_find_gains(problem, system->current, 0);
-    for (p = 0; p < system->piece_count; p++) {
-        system->pieces[p].low = system->pieces[p].gain;
-        system->pieces[p].length = 1;
+    gxsp_find_gains(problem, system->vectors.current, 0);
+    for (p = 0; p < system->model.component_count; p++) {
+        system->model.components[p].low = system->model.components[p].gain;
+        system->model.components[p].length = 1;
     }
     gxsp_find_second_half(problem);
     for (trial = 0; trial < GXSP_GAIN_TRIALS && left > 0; trial++) {
         for (i = 0; i < count; i++)
-            system->trial[i] = system->current[i] + (system->pieces[system->piece[i / 3]].drift[i % 3] +
-                                                     gxsp_lead_of(system, i / 3)->length * system->direction[i]);
-        gxsp_evaluate(problem, system->trial, 0, system->force);
-        gxsp_find_gains(problem, system->trial, 1);
-        for (p = 0, left = 0; p < system->piece_count; p++) {
-            gxsp_piece *piece = &system->pieces[p];
-            if (piece->lead == p && !piece->settled) gxsp_judge_gain(piece, trial + 2 >= GXSP_GAIN_TRIALS);
-            left += piece->lead == p && !piece->settled;
+            gxsp_trial(system)[i] =
+                system->vectors.current[i] + (system->model.components[system->model.component[i / 3]].drift[i % 3] +
+                                              gxsp_lead_of(system, i / 3)->length * system->vectors.direction[i]);
+        gxsp_evaluate(problem, gxsp_trial(system), 0, system->vectors.force);
+        gxsp_find_gains(problem, gxsp_trial(system), 1);
+        for (p = 0, left = 0; p < system->model.component_count; p++) {
+            gxsp_component *component = &system->model.components[p];
+            if (component->lead == p && !component->settled) gxsp_judge_gain(component, trial + 2 >= GXSP_GAIN_TRIALS);
+            left += component->lead == p && !component->settled;
         }
     }
     for (i = 0; i < count; i++)
-        system->direction[i] = gxsp_lead_of(system, i / 3)->settled ? system->trial[i] : system->current[i];
-    for (p = 0; p < system->piece_count; p++) system->pieces[p].settled = 0;
+        system->vectors.direction[i] =
+            gxsp_lead_of(system, i / 3)->settled ? gxsp_trial(system)[i] : system->vectors.current[i];
+    for (p = 0; p < system->model.component_count; p++) system->model.components[p].settled = 0;
 }
 
 /* Writes the state out, all of it or, if a number is not finite, none. */
 static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double *velocity) {
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
-    const int midpoint = step->integrator == GXS_MIDPOINT, bounded = midpoint && system->active > 0;
-    size_t i, count = 3 * system->n;
-    double *speeds = system->residual, *ends = system->direction;
+    const int midpoint = step->integrator == GXS_MIDPOINT, bounded = midpoint && system->state.active > 0;
+    size_t i, count = 3 * system->model.n;
+    double *speeds = system->vectors.residual, *ends = system->vectors.direction;
     if (bounded) gxsp_bound_gain(problem);
     for (i = 0; i < count; i++)
-        if (!bounded || system->still[i / 3])
-            ends[i] = midpoint ? 2 * system->current[i] - displacement[i] : system->current[i];
+        if (!bounded || system->state.still[i / 3])
+            ends[i] = midpoint ? 2 * system->vectors.current[i] - displacement[i] : system->vectors.current[i];
     gxsp_follow(system, displacement, ends);
     for (i = 0; i < count; i++) {
-        if (system->still[i / 3])
+        if (system->state.still[i / 3])
             speeds[i] = step->integrator == GXS_STATIC ? 0 : (ends[i] - displacement[i]) / step->dt;
         else
             speeds[i] = problem->speed * (ends[i] - gxsp_mean(problem, displacement, i)) - (midpoint ? velocity[i] : 0);
     }
-    problem->report.energy = gxsp_potential(problem, problem->energies, system->current);
+    problem->report.energy = gxsp_potential(problem, problem->energies, system->vectors.current);
     if (gxsp_first_not_finite(speeds, count) < count || gxsp_first_not_finite(ends, count) < count ||
         !gxsp_finite(problem->report.energy))
         return GX_ERROR_DIVERGED;
     memcpy(displacement, ends, count * sizeof(double));
     memcpy(velocity, speeds, count * sizeof(double));
-    if (midpoint) memcpy(system->current, ends, count * sizeof(double));
-    system->stepped = 1;
-    system->base_known = !midpoint && step->spring_count + step->point_count == 0;
+    if (midpoint) memcpy(system->vectors.current, ends, count * sizeof(double));
+    system->state.stepped = 1;
+    system->state.base_known = !midpoint && step->spring_count + step->point_count == 0;
     system->lasting->scene = problem->scene;
-    for (i = 0; i < system->piece_count; i++) {
-        system->pieces[i].forces[0] = system->pieces[i].forces[1];
-        system->pieces[i].sprung[0] = system->pieces[i].sprung[1];
-        system->pieces[i].base_energy = system->pieces[i].before[0];
+    for (i = 0; i < system->model.component_count; i++) {
+        system->model.components[i].forces[0] = system->model.components[i].forces[1];
+        system->model.components[i].has_spring[0] = system->model.components[i].has_spring[1];
+        system->model.components[i].base_energy = system->model.components[i].before[0];
     }
     gxsp_count_rest(problem, velocity);
     return GX_OK;
@@ -8332,7 +8462,7 @@ static void gxsp_report_springs(const gxsp_problem *problem) {
     size_t i;
     for (i = 0; i < step->spring_count && step->spring_forces; i++) {
         gxsp_pull pull;
-        gxsp_spring_pull(&step->springs[i], problem->system->current, &pull);
+        gxsp_spring_pull(&step->springs[i], problem->system->vectors.current, &pull);
         memcpy(step->spring_forces + 3 * i, pull.force, sizeof pull.force);
     }
 }
@@ -8501,7 +8631,7 @@ static gx_result gxsp_check_vectors(const gxs_step_desc *step, size_t n, const d
 static void gxsp_system_destroy(gxsp_system *system) {
     gxsp_pool pool;
     if (!system) return;
-    gxsp_release_to(&system->coarse, NULL);
+    gxsp_release_to(&system->multigrid.pool, NULL);
     pool = system->pool; /* which holds system itself */
     gxsp_release_to(&pool, NULL);
 }
@@ -8527,15 +8657,16 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
     system = (gxsp_system *)gxsp_take(&pool, 1, sizeof *system);
     if (!system) return gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
     system->pool = pool;
-    system->coarse = gxsp_pool_make(&solver->allocator);
+    system->multigrid.pool = gxsp_pool_make(&solver->allocator);
     system->jobs = &solver->jobs;
     system->lasting = &solver->lasting;
     bad = gxsp_system_build(system, &scratch, model, solver);
     gxsp_release_to(&scratch, NULL);
-    if (bad == SIZE_MAX && !scratch.failed && !system->pool.failed && !system->coarse.failed) gxsp_steps_make(system);
+    if (bad == SIZE_MAX && !scratch.failed && !system->pool.failed && !system->multigrid.pool.failed)
+        gxsp_steps_make(system);
     if (bad != SIZE_MAX)
         gxsp_fail(failure, GX_ERROR_ARGUMENT, bad);
-    else if (scratch.failed || system->pool.failed || system->coarse.failed)
+    else if (scratch.failed || system->pool.failed || system->multigrid.pool.failed)
         gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
     if (failure->result != GX_OK) {
         gxsp_system_destroy(system);
@@ -8555,18 +8686,18 @@ static gx_result gxsp_check_change(const gxsp_system *system, const gxs_change *
         (!change->elements && change->element_count > 0) || (!change->constraints && change->constraint_count > 0))
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     if (change->copy_count == 0) return gxsp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
-    if (change->copy_count >= UINT32_MAX / 4 || change->element_count >= UINT32_MAX / 4 - system->element_count ||
+    if (change->copy_count >= UINT32_MAX / 4 || change->element_count >= UINT32_MAX / 4 - system->model.element_count ||
         change->constraint_count > change->copy_count)
         return gxsp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
     for (i = 0; i < change->copy_count; i++)
-        if (change->origins[i] >> 1 >= system->n) return gxsp_fail(failure, GX_ERROR_INDEX, i);
+        if (change->origins[i] >> 1 >= system->model.n) return gxsp_fail(failure, GX_ERROR_INDEX, i);
     for (i = 1; i < change->group_count; i++)
         if (change->groups[i - 1] >= change->groups[i]) return gxsp_fail(failure, GX_ERROR_ARGUMENT, i);
     for (i = 1; i < change->element_count; i++)
         if (change->elements[i - 1].group > change->elements[i].group) return gxsp_fail(failure, GX_ERROR_ARGUMENT, i);
     memset(&model, 0, sizeof model);
     model.copy_count = change->copy_count;
-    model.material_count = system->material_count;
+    model.material_count = system->model.material_count;
     for (i = 0; i < change->element_count && result == GX_OK; i++)
         result = change->elements[i].group < GXSP_GROUPS ? gxsp_check_element(&change->elements[i], &model, i, failure)
                                                          : gxsp_fail(failure, GX_ERROR_LIMIT, i);
@@ -8592,15 +8723,15 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
         return failure->result;
     }
     scratch = gxsp_pool_make(&solver->allocator);
-    system->product_rate = -1;
+    system->state.product_rate = -1;
     memset(&update, 0, sizeof update);
     update.system = system;
     update.scratch = &scratch;
     update.change = change;
-    update.before = system->n;
-    update.successor = (uint32_t *)gxsp_take(&scratch, system->n, sizeof(uint32_t));
+    update.before = system->model.n;
+    update.successor = (uint32_t *)gxsp_take(&scratch, system->model.n, sizeof(uint32_t));
     update.touched = (uint8_t *)gxsp_take(&scratch, change->copy_count, 1);
-    update.dirty = (uint8_t *)gxsp_take(&scratch, system->levels[1].n, 1);
+    update.dirty = (uint8_t *)gxsp_take(&scratch, system->multigrid.levels[1].n, 1);
     update.alike = (uint8_t *)gxsp_take(&scratch, change->copy_count, 1);
     follows = (uint8_t *)gxsp_take(&scratch, change->copy_count, 1);
     bad = scratch.failed ? SIZE_MAX
@@ -8611,7 +8742,7 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
     }
     fits = scratch.failed || (gxsp_is_flexible(system) && gxsp_find_successors(&update) && gxsp_update_system(&update));
     gxsp_release_to(&scratch, NULL);
-    if (scratch.failed || system->pool.failed || system->coarse.failed)
+    if (scratch.failed || system->pool.failed || system->multigrid.pool.failed)
         gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
     else if (!fits)
         gxsp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
@@ -8628,20 +8759,20 @@ GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displ
     gxsp_fail(failure, GX_OK, SIZE_MAX);
     if (!solver || !solver->system) return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     system = solver->system;
-    if (gxsp_check_vector(displacement, system->n, failure) != GX_OK) return failure->result;
+    if (gxsp_check_vector(displacement, system->model.n, failure) != GX_OK) return failure->result;
     if (!gxsp_finite(rate)) return gxsp_fail(failure, GX_ERROR_NOT_FINITE, SIZE_MAX);
     if (rate < 0) return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     memset(&pass, 0, sizeof pass);
     pass.system = system;
-    pass.materials = system->materials;
-    pass.rate = system->scale * rate;
+    pass.materials = system->model.materials;
+    pass.rate = system->model.scale * rate;
     pass.from = displacement;
     pass.exact = exact != 0;
-    memset(system->chunk_still, 0, system->chunk_count); /* what sleeps is part of it */
-    gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_linearise, &pass);
+    memset(system->state.chunk_still, 0, system->mesh.chunk_count); /* what sleeps is part of it */
+    gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_linearise, &pass);
     gxsp_mark_still(system);
-    system->product_rate = gxsp_tangents_finite(system) ? rate : -1;
-    return system->product_rate < 0 ? gxsp_fail(failure, GX_ERROR_RANGE, SIZE_MAX) : GX_OK;
+    system->state.product_rate = gxsp_tangents_finite(system) ? rate : -1;
+    return system->state.product_rate < 0 ? gxsp_fail(failure, GX_ERROR_RANGE, SIZE_MAX) : GX_OK;
 }
 
 GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *direction, double *product,
@@ -8651,19 +8782,19 @@ GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *directi
     gxsp_pass pass;
     failure = failure ? failure : &ignored;
     gxsp_fail(failure, GX_OK, SIZE_MAX);
-    if (!solver || !solver->system || solver->system->product_rate < 0 || !direction || !product)
+    if (!solver || !solver->system || solver->system->state.product_rate < 0 || !direction || !product)
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     system = solver->system;
     memset(&pass, 0, sizeof pass);
     pass.system = system;
-    pass.rate = system->scale * system->product_rate;
+    pass.rate = system->model.scale * system->state.product_rate;
     pass.from = direction;
     pass.sum = product;
-    pass.factor = gxsp_unit_factor(direction, 3 * system->n);
-    if (!(pass.factor > 0)) return gxsp_check_vector(direction, system->n, failure);
-    gxsp_parallel(system->jobs, system->chunk_count, gxsp_task_apply, &pass);
+    pass.factor = gxsp_unit_factor(direction, 3 * system->model.n);
+    if (!(pass.factor > 0)) return gxsp_check_vector(direction, system->model.n, failure);
+    gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_apply, &pass);
     gxsp_over_ranges(system, gxsp_task_apply_sum, &pass, NULL, 0);
-    gxsp_reduce_residual(system, system->fixed, product);
+    gxsp_reduce_residual(system, system->model.fixed, product);
     return GX_OK;
 }
 
@@ -8673,7 +8804,7 @@ GXFEM_API void gxs_solver_note_written(const gxs_solver *solver, const uint32_t 
     size_t i;
     for (i = 0; system && i < count; i++) {
         const size_t before = origins[i] >> 1;
-        if (before < system->n && gxsp_is_written(system, before, displacement + 3 * i, velocity + 3 * i))
+        if (before < system->model.n && gxsp_is_written(system, before, displacement + 3 * i, velocity + 3 * i))
             rest_times[i] = 0;
     }
 }
@@ -8685,24 +8816,24 @@ GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene) {
     gxsp_system *system = solver->system;
     uint32_t p;
     solver->lasting.scene = *scene;
-    if (system && system->roots_known) gxsp_drop_system(solver);
+    if (system && system->mesh.roots_known) gxsp_drop_system(solver);
     if (!solver->system) return;
-    system->product_rate = -1;
-    system->still_known = system->base_known = system->stepped = 0;
-    system->guess_count = 0;
-    system->omega = 0;
-    system->omega_rest = system->omega_pause = 0;
-    system->coarse_rate = -1;
-    system->coarse_stiffness = 0;
-    system->coarse_worn = 0;
-    system->coarse_served = system->read = 0;
-    system->coarse_life = GXSP_LIFE;
-    system->pace = system->read_nepers = 0;
-    for (p = 0; p < system->piece_count; p++) {
-        gxsp_piece *piece = &system->pieces[p];
-        piece->state &= ~(GXSP_TOUCHED | GXSP_TOUCHES | GXSP_ASLEEP);
-        piece->forces[0] = piece->forces[1] = 0;
-        piece->sprung[0] = piece->sprung[1] = 0;
+    system->state.product_rate = -1;
+    system->state.still_known = system->state.base_known = system->state.stepped = 0;
+    system->state.guess_count = 0;
+    system->smoother.omega = 0;
+    system->smoother.cautious = system->smoother.next_cautious = 0;
+    system->coarse.rate = -1;
+    system->coarse.stiffness = 0;
+    system->coarse.worn = 0;
+    system->coarse.served = system->coarse.read = 0;
+    system->coarse.life = GXSP_LIFE;
+    system->coarse.pace = system->coarse.read_nepers = 0;
+    for (p = 0; p < system->model.component_count; p++) {
+        gxsp_component *component = &system->model.components[p];
+        component->state &= ~(GXSP_TOUCHED | GXSP_TOUCHES | GXSP_ASLEEP);
+        component->forces[0] = component->forces[1] = 0;
+        component->has_spring[0] = component->has_spring[1] = 0;
     }
 }
 
@@ -8725,13 +8856,13 @@ static gx_result gxsp_check_free(const gxsp_problem *problem, gx_failure *failur
     const gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
     size_t i, k;
-    gxsp_untouch_pieces(problem->system);
+    gxsp_untouch_components(problem->system);
     for (k = 0; k < step->spring_count; k++)
         for (i = 0; i < 4 && step->springs[k].stiffness > 0; i++)
             if (fabs(step->springs[k].point.weight[i]) > 0)
-                system->pieces[system->piece[step->springs[k].point.copy[i]]].state |= GXSP_TOUCHED;
-    for (i = 0; i < system->n && !(problem->rate > 0); i++)
-        if (!(system->pieces[system->piece[i]].state & (GXSP_HELD | GXSP_TOUCHED | GXSP_ASLEEP)))
+                system->model.components[system->model.component[step->springs[k].point.copy[i]]].state |= GXSP_TOUCHED;
+    for (i = 0; i < system->model.n && !(problem->rate > 0); i++)
+        if (!(system->model.components[system->model.component[i]].state & (GXSP_HELD | GXSP_TOUCHED | GXSP_ASLEEP)))
             return gxsp_fail(failure, GX_ERROR_FREE, i);
     return GX_OK;
 }
@@ -8745,17 +8876,17 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     failure = failure ? failure : &ignored;
     gxsp_fail(failure, GX_OK, SIZE_MAX);
     if (!solver || !solver->system) return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
-    n = solver->system->n;
+    n = solver->system->model.n;
     if ((result = gxsp_check_step(step, failure)) != GX_OK ||
-        (result = gxsp_check_epochs(step, solver->system->epoch, failure)) != GX_OK ||
+        (result = gxsp_check_epochs(step, solver->system->model.epoch, failure)) != GX_OK ||
         (result = gxsp_check_points(step, n, failure)) != GX_OK ||
-        (result = gxsp_check_vectors(step, n, displacement, velocity, solver->system->held, failure)) != GX_OK)
+        (result = gxsp_check_vectors(step, n, displacement, velocity, solver->system->model.held, failure)) != GX_OK)
         return result;
     if (!gxsp_reserve_terms(solver, step->spring_count + step->point_count))
         return gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
     memset(&problem, 0, sizeof problem);
     problem.system = solver->system;
-    problem.system->product_rate = -1;
+    problem.system->state.product_rate = -1;
     problem.step = step;
     problem.given = displacement;
     problem.cg_iterations = step->cg_iterations ? step->cg_iterations : 1000;
@@ -8763,14 +8894,14 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     problem.start = gxsp_now(&problem);
     gxsp_choose_integrator(&problem);
     gxsp_choose_sleepers(&problem, displacement, velocity);
-    problem.system->failed = 1;
+    problem.system->state.failed = 1;
     if ((result = gxsp_check_free(&problem, failure)) != GX_OK) return result;
     gxsp_begin(&problem, velocity);
-    problem.report.active_unknowns = problem.system->active;
+    problem.report.active_unknowns = problem.system->state.active;
     result = gxsp_minimise(&problem);
     if (result == GX_OK) result = gxsp_finish(&problem, displacement, velocity);
     if (result != GX_OK) return gxsp_fail(failure, result, SIZE_MAX);
-    problem.system->failed = 0;
+    problem.system->state.failed = 0;
     gxsp_report_springs(&problem);
     problem.report.seconds = gxsp_now(&problem) - problem.start;
     if (report) *report = problem.report;
