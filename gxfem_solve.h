@@ -831,6 +831,9 @@ static void gxsp_release_to(gxsp_pool *pool, gxsp_owned *mark) {
     }
 }
 
+/* Entries for which an array that grows is given room, so that it seldom grows */
+static size_t gxsp_room(size_t count) { return count + count / 8; }
+
 static gxsp_pool gxsp_pool_make(const gx_allocator *allocator) {
     gxsp_pool pool;
     pool.allocator = *allocator;
@@ -1054,8 +1057,9 @@ typedef struct gxsp_term {
 
 /* What the solver keeps from model to model */
 typedef struct gxsp_lasting {
+    gxsp_pool pool;  /* of term */
     gxsp_term *term; /* of the present linearisation */
-    size_t count, capacity;
+    size_t count, room;
     gxs_scene scene; /* of the step before */
 } gxsp_lasting;
 
@@ -1084,7 +1088,6 @@ typedef struct gxsp_model {
     uint32_t follower_count, follower_room;
     /* n: index of the copy's entry in followers; GXSP_NONE: it follows none. Valid while there are followers */
     uint32_t *follower;
-    size_t follower_copies; /* copies for which follower has room */
     gxsp_light *lights;
     uint32_t light_count, light_room;
     float *volume; /* n: inverse volume of the support, scaled; GXS_VOLUME_RATIO only, else NULL */
@@ -1207,6 +1210,137 @@ typedef struct gxsp_system {
 /* The line search's trial displacement, n x 3. It lies in the residual's memory: nothing needs the residual while
  * lengths are tried. */
 static double *gxsp_trial(const gxsp_system *system) { return system->vectors.residual; }
+
+/* >>columns: arrays that have one entry for each copy, slot or chunk
+ *
+ * The tables list them once. Making, growth and updates go by the tables. A column that the model does not need is NULL
+ * and stays so. */
+
+/* When a column is made: by the code that needs it, with the model, or last, for steps */
+enum { GXSP_BY_OWNER, GXSP_WITH_MODEL, GXSP_FOR_STEPS };
+
+typedef struct gxsp_column {
+    size_t offset; /* of the array's pointer, in gxsp_system */
+    size_t size;   /* bytes of an entry */
+    size_t extra;  /* entries behind the last */
+    int made;      /* GXSP_BY_OWNER ... GXSP_FOR_STEPS */
+    int kept;      /* growth keeps the entries, and updates move them with their copies; else they are made anew */
+} gxsp_column;
+
+#define GXSP_IN(field) offsetof(gxsp_system, field)
+
+/* clang-format off */
+static const gxsp_column gxsp_copy_columns[] = {
+    /* array                                                     bytes                 extra       made          kept */
+    {GXSP_IN(model.positions),                                  3 * sizeof(double),   0,          GXSP_BY_OWNER,   1},
+    {GXSP_IN(model.lumped),                                     sizeof(double),       0,          GXSP_WITH_MODEL, 1},
+    {GXSP_IN(model.component),                                  sizeof(uint32_t),     0,          GXSP_WITH_MODEL, 1},
+    {GXSP_IN(model.fixed),                                      1,                    0,          GXSP_WITH_MODEL, 1},
+    {GXSP_IN(model.held),                                       1,                    0,          GXSP_WITH_MODEL, 1},
+    {GXSP_IN(model.follower),                                   sizeof(uint32_t),     0,          GXSP_BY_OWNER,   0},
+    {GXSP_IN(mesh.copy_start),                                  sizeof(uint32_t),     2,          GXSP_WITH_MODEL, 0},
+    {GXSP_IN(state.still),                                      1,                    0,          GXSP_WITH_MODEL, 0},
+    {GXSP_IN(vectors.target),                                   3 * sizeof(double),   0,          GXSP_FOR_STEPS,  0},
+    {GXSP_IN(vectors.damping),                                  3 * sizeof(double),   0,          GXSP_BY_OWNER,   0},
+    {GXSP_IN(vectors.current),                                  3 * sizeof(double),   0,          GXSP_FOR_STEPS,  1},
+    {GXSP_IN(vectors.force),                                    3 * sizeof(double),   0,          GXSP_FOR_STEPS,  0},
+    {GXSP_IN(vectors.residual),                                 3 * sizeof(double),   0,          GXSP_FOR_STEPS,  0},
+    {GXSP_IN(vectors.direction),                                3 * sizeof(double),   0,          GXSP_FOR_STEPS,  0},
+    {GXSP_IN(vectors.diagonal),                                 6 * sizeof(float),    0,          GXSP_FOR_STEPS,  0},
+    {GXSP_IN(vectors.guess),                                    sizeof(gxsp_vector4), 0,          GXSP_FOR_STEPS,  1},
+    {GXSP_IN(vectors.guess) + sizeof(gxsp_vector4 *),           sizeof(gxsp_vector4), 0,          GXSP_FOR_STEPS,  1},
+    {GXSP_IN(vectors.right),                                    sizeof(gxsp_vector4), 0,          GXSP_BY_OWNER,   0},
+    {GXSP_IN(smoother.renewed),                                 1,                    0,          GXSP_FOR_STEPS,  0},
+    {GXSP_IN(coarse.displacement),                              3 * sizeof(double),   0,          GXSP_BY_OWNER,   1},
+    {GXSP_IN(multigrid.levels) + offsetof(gxsp_level, parent),  4 * sizeof(uint32_t), 0,          GXSP_BY_OWNER,   1},
+    {GXSP_IN(multigrid.levels) + offsetof(gxsp_level, weight),  4 * sizeof(float),    0,          GXSP_BY_OWNER,   1}};
+
+static const gxsp_column gxsp_slot_columns[] = {
+    {GXSP_IN(mesh.nodes),                                       sizeof(uint32_t),     GXSP_AHEAD, GXSP_BY_OWNER,   0},
+    {GXSP_IN(mesh.copy_slot),                                   sizeof(uint32_t),     GXSP_AHEAD, GXSP_BY_OWNER,   0},
+    {GXSP_IN(mesh.slot_root),                                   sizeof(uint16_t),     0,          GXSP_BY_OWNER,   0}};
+
+static const gxsp_column gxsp_chunk_columns[] = {
+    {GXSP_IN(mesh.chunks),                                      sizeof(gxsp_chunk),   0,          GXSP_WITH_MODEL, 1},
+    {GXSP_IN(state.chunk_collapsed),                            1,                    0,          GXSP_WITH_MODEL, 0},
+    {GXSP_IN(state.chunk_still),                                1,                    0,          GXSP_WITH_MODEL, 0}};
+/* clang-format on */
+
+/* The columns of a table and how many there are */
+#define GXSP_COLUMNS(table) table, sizeof(table) / sizeof *(table)
+
+static void *gxsp_column_array(const gxsp_system *system, const gxsp_column *column) {
+    void *array;
+    memcpy(&array, (const unsigned char *)system + column->offset, sizeof array);
+    return array;
+}
+
+static void gxsp_set_column(gxsp_system *system, const gxsp_column *column, void *array) {
+    memcpy((unsigned char *)system + column->offset, &array, sizeof array);
+}
+
+/* Makes the columns of a stage, with room for so many entries; all entries are 0. */
+static void gxsp_columns_make(gxsp_system *system, const gxsp_column *columns, size_t count, int made, size_t room) {
+    size_t i;
+    for (i = 0; i < count; i++)
+        if (columns[i].made == made)
+            gxsp_set_column(system, &columns[i], gxsp_take(&system->pool, room + columns[i].extra, columns[i].size));
+}
+
+/* Gives the columns that there are room for so many entries. used: entries of those that are kept */
+static void gxsp_columns_grow(gxsp_system *system, const gxsp_column *columns, size_t count, size_t used, size_t room) {
+    size_t i;
+    for (i = 0; i < count; i++) {
+        void *array = gxsp_column_array(system, &columns[i]);
+        if (array)
+            gxsp_set_column(
+                system, &columns[i],
+                gxsp_grow(&system->pool, array, columns[i].kept ? used : 0, room + columns[i].extra, columns[i].size));
+    }
+}
+
+/* Room for so many copies. The columns that are kept keep the entries of the copies so far. */
+static void gxsp_copies_room(gxsp_system *system, size_t count) {
+    const size_t room = gxsp_room(count);
+    if (count <= system->model.copy_room) return;
+    gxsp_columns_grow(system, GXSP_COLUMNS(gxsp_copy_columns), system->model.n, room);
+    system->vectors.range_sum = (double(*)[GXSP_SUMS])gxsp_grow(
+        &system->pool, system->vectors.range_sum, 0, room / GXSP_RANGE + 1, sizeof *system->vectors.range_sum);
+    system->model.copy_room = room;
+}
+
+/* Room for so many slots, and roots of them. What they held is lost. */
+static void gxsp_slots_room(gxsp_system *system, size_t count) {
+    if (count > system->mesh.slot_room) {
+        system->mesh.slot_room = gxsp_room(count);
+        gxsp_columns_grow(system, GXSP_COLUMNS(gxsp_slot_columns), 0, system->mesh.slot_room);
+    }
+    if (!system->mesh.slot_root)
+        system->mesh.slot_root = (uint16_t *)gxsp_take(&system->pool, system->mesh.slot_room, sizeof(uint16_t));
+    system->mesh.slot_count = count;
+}
+
+/* Room for one more chunk */
+static void gxsp_chunk_room(gxsp_system *system) {
+    const uint32_t count = system->mesh.chunk_count;
+    if (count < system->mesh.chunk_room) return;
+    system->mesh.chunk_room = (uint32_t)gxsp_room(count) + 8;
+    gxsp_columns_grow(system, GXSP_COLUMNS(gxsp_chunk_columns), count, system->mesh.chunk_room);
+}
+
+/* Moves the entries of the kept columns with their copies. moved: moved_count copies that are not where their origins
+ * (as of gxs_change) were; saved: room for as many entries of the largest kind, 3 doubles */
+static void gxsp_columns_move(gxsp_system *system, const uint32_t *origins, const uint32_t *moved, size_t moved_count,
+                              unsigned char *saved) {
+    size_t c, i;
+    for (c = 0; c < sizeof gxsp_copy_columns / sizeof *gxsp_copy_columns; c++) {
+        const size_t size = gxsp_copy_columns[c].size;
+        unsigned char *array = (unsigned char *)gxsp_column_array(system, &gxsp_copy_columns[c]);
+        if (!array || !gxsp_copy_columns[c].kept) continue;
+        for (i = 0; i < moved_count; i++) memcpy(saved + i * size, array + (origins[moved[i]] >> 1) * size, size);
+        for (i = 0; i < moved_count; i++) memcpy(array + moved[i] * size, saved + i * size, size);
+    }
+}
 
 /* A step under way */
 typedef struct gxsp_problem {
@@ -3203,10 +3337,8 @@ static void gxsp_chunks_make(gxsp_system *system, gxsp_pool *scratch, const gxs_
     numbers.round = 0;
     if (scratch->failed) return;
     system->mesh.chunk_count = gxsp_plan_chunks(system, sorted, NULL);
-    system->mesh.chunks = (gxsp_chunk *)gxsp_take(&system->pool, system->mesh.chunk_count, sizeof(gxsp_chunk));
-    system->state.chunk_collapsed = (uint8_t *)gxsp_take(&system->pool, system->mesh.chunk_count, 1);
-    system->state.chunk_still = (uint8_t *)gxsp_take(&system->pool, system->mesh.chunk_count, 1);
-    system->mesh.copy_start = (uint32_t *)gxsp_take(&system->pool, system->model.n + 2, sizeof(uint32_t));
+    system->mesh.chunk_room = system->mesh.chunk_count;
+    gxsp_columns_make(system, GXSP_COLUMNS(gxsp_chunk_columns), GXSP_WITH_MODEL, system->mesh.chunk_count);
     /* its size is not known yet */
     system->mesh.nodes = (uint32_t *)gxsp_take(scratch, 4 * system->model.element_count, sizeof(uint32_t));
     if (scratch->failed || system->pool.failed) return;
@@ -3273,18 +3405,14 @@ static size_t gxsp_bad_constraint(const gxs_constraint *constraints, size_t coun
 
 /* Room for so many followers, and for the copies that there are */
 static void gxsp_followers_room(gxsp_system *system, size_t count) {
-    gxsp_pool *pool = &system->pool;
-    if (count > system->model.follower_room) {
-        system->model.follower_room = (uint32_t)(count + count / 8);
-        system->model.followers = (gxsp_follower *)gxsp_grow(pool, system->model.followers, 0,
-                                                             system->model.follower_room, sizeof(gxsp_follower));
+    gxsp_model *model = &system->model;
+    if (count > model->follower_room) {
+        model->follower_room = (uint32_t)gxsp_room(count);
+        model->followers =
+            (gxsp_follower *)gxsp_grow(&system->pool, model->followers, 0, model->follower_room, sizeof(gxsp_follower));
     }
-    if (count > 0 && system->model.n > system->model.follower_copies) {
-        system->model.follower_copies =
-            system->model.n > system->model.copy_room ? system->model.n : system->model.copy_room;
-        system->model.follower =
-            (uint32_t *)gxsp_grow(pool, system->model.follower, 0, system->model.follower_copies, sizeof(uint32_t));
-    }
+    if (count > 0 && !model->follower)
+        model->follower = (uint32_t *)gxsp_take(&system->pool, model->copy_room, sizeof(uint32_t));
 }
 
 /* Which copies follow others: none of them is fixed unless it is held. */
@@ -3414,15 +3542,12 @@ static int gxsp_find_places(const gxsp_system *system, const gxs_model *model, f
     return 1;
 }
 
-/* What is known of every copy */
+/* Columns over copies that come with the model. positions: as given, or NULL */
 static void gxsp_copies_make(gxsp_system *system, const double *positions) {
-    if (positions) system->model.positions = (double *)gxsp_take(&system->pool, 3 * system->model.n, sizeof(double));
-    if (system->model.positions) memcpy(system->model.positions, positions, 3 * system->model.n * sizeof(double));
-    system->model.lumped = (double *)gxsp_take(&system->pool, system->model.n, sizeof(double));
-    system->model.component = (uint32_t *)gxsp_take(&system->pool, system->model.n, sizeof(uint32_t));
-    system->model.fixed = (uint8_t *)gxsp_take(&system->pool, system->model.n, 1);
-    system->state.still = (uint8_t *)gxsp_take(&system->pool, system->model.n, 1);
-    system->model.held = (uint8_t *)gxsp_take(&system->pool, system->model.n, 1);
+    const size_t n = system->model.copy_room = system->model.n;
+    if (positions) system->model.positions = (double *)gxsp_take(&system->pool, n, 3 * sizeof(double));
+    if (system->model.positions) memcpy(system->model.positions, positions, 3 * n * sizeof(double));
+    gxsp_columns_make(system, GXSP_COLUMNS(gxsp_copy_columns), GXSP_WITH_MODEL, n);
 }
 
 /* >>lattice: the multigrid's structure. A coarse node is a point of a lattice together with one connected component of
@@ -3564,11 +3689,11 @@ typedef struct gxsp_list {
 
 static void gxsp_list_add(gxsp_list *list, uint32_t row, uint32_t column) {
     if (list->count == list->room) {
-        uint32_t(*larger)[2] = (uint32_t(*)[2])gxsp_take(list->scratch, 2 * (size_t)list->room + 1024, sizeof *larger);
+        const uint32_t room = 2 * list->room + 1024;
+        uint32_t(*larger)[2] = (uint32_t(*)[2])gxsp_grow(list->scratch, list->pair, list->count, room, sizeof *larger);
         if (!larger) return;
-        if (list->count > 0) memcpy(larger, list->pair, list->count * sizeof *larger);
         list->pair = larger;
-        list->room = 2 * list->room + 1024;
+        list->room = room;
     }
     list->pair[list->count][0] = row;
     list->pair[list->count++][1] = column;
@@ -4285,7 +4410,7 @@ static void gxsp_list_lights(gxsp_system *system, gxsp_pool *scratch, const uint
     system->model.light_count = room = count;
     for (i = 0; i < system->model.n; i++) room += (uint32_t)gxsp_is_light(system, i, &weighed[i]);
     if (room > system->model.light_room) {
-        system->model.light_room = room + room / 8;
+        system->model.light_room = (uint32_t)gxsp_room(room);
         system->model.lights = (gxsp_light *)gxsp_grow(&system->pool, system->model.lights, count,
                                                        system->model.light_room, sizeof(gxsp_light));
     }
@@ -4460,7 +4585,7 @@ static void gxsp_share_memory(gxsp_system *system) {
     if (system->multigrid.level_count > 0) gxsp_numbers_carve(system, &numbers);
     size = passes.used > numbers.used ? passes.used : numbers.used;
     if (size > system->vectors.shared_room) {
-        const size_t room = system->vectors.shared ? size + size / 8 : size;
+        const size_t room = system->vectors.shared ? gxsp_room(size) : size;
         unsigned char *larger = (unsigned char *)gxsp_grow(&system->pool, system->vectors.shared, 0, room, 1);
         if (!larger) return;
         system->vectors.shared = larger;
@@ -4472,24 +4597,17 @@ static void gxsp_share_memory(gxsp_system *system) {
     gxsp_return_memory(system);
 }
 
-/* What only steps need: taken last, when all that a model is made with has been given back */
+/* Memory that only steps need. Taken last, when what the model is made with has been given back */
 static void gxsp_steps_make(gxsp_system *system) {
-    double **vectors[6];
-    gxsp_vector4 **singles[3];
-    int i;
-    vectors[0] = &system->vectors.target, vectors[1] = &system->vectors.current, vectors[2] = &system->vectors.force,
-    vectors[3] = &system->vectors.residual;
-    vectors[4] = &system->vectors.direction, vectors[5] = &system->coarse.displacement;
-    for (i = 0; i < (system->multigrid.level_count > 0 ? 6 : 5); i++)
-        *vectors[i] = (double *)gxsp_take(&system->pool, 3 * system->model.n, sizeof(double));
-    if (system->model.damps)
-        system->vectors.damping = (double *)gxsp_take(&system->pool, 3 * system->model.n, sizeof(double));
-    singles[0] = &system->vectors.guess[0], singles[1] = &system->vectors.guess[1], singles[2] = &system->vectors.right;
-    for (i = 0; i < (system->multigrid.fine ? 3 : 2); i++)
-        *singles[i] = (gxsp_vector4 *)gxsp_take(&system->pool, system->model.n, sizeof(gxsp_vector4));
-    system->vectors.diagonal = (float *)gxsp_take(&system->pool, 6 * system->model.n, sizeof(float));
-    system->vectors.range_sum =
-        (double(*)[GXSP_SUMS])gxsp_take(&system->pool, system->model.range_count, sizeof *system->vectors.range_sum);
+    const size_t n = system->model.n;
+    gxsp_vectors *vectors = &system->vectors;
+    gxsp_columns_make(system, GXSP_COLUMNS(gxsp_copy_columns), GXSP_FOR_STEPS, n);
+    if (system->multigrid.level_count > 0)
+        system->coarse.displacement = (double *)gxsp_take(&system->pool, n, 3 * sizeof(double));
+    if (system->model.damps) vectors->damping = (double *)gxsp_take(&system->pool, n, 3 * sizeof(double));
+    if (system->multigrid.fine) vectors->right = (gxsp_vector4 *)gxsp_take(&system->pool, n, sizeof(gxsp_vector4));
+    vectors->range_sum =
+        (double(*)[GXSP_SUMS])gxsp_take(&system->pool, system->model.range_count, sizeof *vectors->range_sum);
     gxsp_share_memory(system);
     gxsp_tangents_make(&system->pool, system->mesh.chunks, system->mesh.chunk_count);
 }
@@ -6207,14 +6325,7 @@ static void gxsp_empty_lane(const gxsp_chunk *chunk, uint32_t lane) {
 static gxsp_chunk *gxsp_open_chunk(gxsp_system *system, uint32_t class_index) {
     gxsp_pool *pool = &system->pool;
     gxsp_chunk *chunk;
-    if (system->mesh.chunk_count >= system->mesh.chunk_room) {
-        const uint32_t room = system->mesh.chunk_count + system->mesh.chunk_count / 8 + 8;
-        system->mesh.chunks =
-            (gxsp_chunk *)gxsp_grow(pool, system->mesh.chunks, system->mesh.chunk_count, room, sizeof(gxsp_chunk));
-        system->state.chunk_collapsed = (uint8_t *)gxsp_grow(pool, system->state.chunk_collapsed, 0, room, 1);
-        system->state.chunk_still = (uint8_t *)gxsp_grow(pool, system->state.chunk_still, 0, room, 1);
-        system->mesh.chunk_room = room;
-    }
+    gxsp_chunk_room(system);
     if (pool->failed) return NULL;
     chunk = &system->mesh.chunks[system->mesh.chunk_count];
     memset(chunk, 0, sizeof *chunk);
@@ -6333,21 +6444,6 @@ static void gxsp_find_roots(const gxsp_chunk *chunk, uint16_t *roots) {
     for (i = 0; i < chunk->node_count; i++) roots[i] = (uint16_t)gxsp_root(forest, i);
 }
 
-/* Room for so many slots */
-static void gxsp_slots_room(gxsp_system *system, size_t count) {
-    gxsp_pool *pool = &system->pool;
-    if (count > system->mesh.slot_room) {
-        system->mesh.slot_room = count + count / 8;
-        system->mesh.nodes =
-            (uint32_t *)gxsp_grow(pool, system->mesh.nodes, 0, system->mesh.slot_room + GXSP_AHEAD, sizeof(uint32_t));
-        system->mesh.copy_slot = (uint32_t *)gxsp_grow(pool, system->mesh.copy_slot, 0,
-                                                       system->mesh.slot_room + GXSP_AHEAD, sizeof(uint32_t));
-        system->mesh.slot_root =
-            (uint16_t *)gxsp_grow(pool, system->mesh.slot_root, 0, system->mesh.slot_room, sizeof(uint16_t));
-    }
-    system->mesh.slot_count = count;
-}
-
 /* Nodes of all chunks. 0: an element that stays has lost a copy. */
 static int gxsp_renew_nodes(gxsp_renewal *update) {
     gxsp_system *system = update->system;
@@ -6395,79 +6491,19 @@ static int gxsp_renew_nodes(gxsp_renewal *update) {
 
 /* --- copies --- */
 
-/* Room for so many copies; what they have stays theirs. */
-static void gxsp_copies_room(gxsp_system *system, size_t count) {
-    gxsp_pool *pool = &system->pool;
-    const size_t n = system->model.n, most = count > n ? count : n, room = most + most / 8;
-    gxsp_level *fine = &system->multigrid.levels[0];
-    if (count <= system->model.copy_room) return;
-    system->vectors.target = (double *)gxsp_grow(pool, system->vectors.target, 0, 3 * room, sizeof(double));
-    if (system->vectors.damping)
-        system->vectors.damping = (double *)gxsp_grow(pool, system->vectors.damping, 0, 3 * room, sizeof(double));
-    system->vectors.current = (double *)gxsp_grow(pool, system->vectors.current, 3 * n, 3 * room, sizeof(double));
-    system->vectors.force = (double *)gxsp_grow(pool, system->vectors.force, 0, 3 * room, sizeof(double));
-    system->vectors.residual = (double *)gxsp_grow(pool, system->vectors.residual, 0, 3 * room, sizeof(double));
-    system->vectors.direction = (double *)gxsp_grow(pool, system->vectors.direction, 0, 3 * room, sizeof(double));
-    system->vectors.guess[0] = (gxsp_vector4 *)gxsp_grow(pool, system->vectors.guess[0], n, room, sizeof(gxsp_vector4));
-    system->vectors.guess[1] = (gxsp_vector4 *)gxsp_grow(pool, system->vectors.guess[1], n, room, sizeof(gxsp_vector4));
-    system->vectors.range_sum = (double(*)[GXSP_SUMS])gxsp_grow(
-        pool, system->vectors.range_sum, 0, room / GXSP_RANGE + 1, sizeof *system->vectors.range_sum);
-    system->vectors.diagonal = (float *)gxsp_grow(pool, system->vectors.diagonal, 0, 6 * room, sizeof(float));
-    system->mesh.copy_start = (uint32_t *)gxsp_grow(pool, system->mesh.copy_start, 0, room + 2, sizeof(uint32_t));
-    if (system->model.positions)
-        system->model.positions = (double *)gxsp_grow(pool, system->model.positions, 3 * n, 3 * room, sizeof(double));
-    system->model.lumped = (double *)gxsp_grow(pool, system->model.lumped, n, room, sizeof(double));
-    system->model.component = (uint32_t *)gxsp_grow(pool, system->model.component, n, room, sizeof(uint32_t));
-    system->model.fixed = (uint8_t *)gxsp_grow(pool, system->model.fixed, n, room, 1);
-    system->state.still = (uint8_t *)gxsp_grow(pool, system->state.still, 0, room, 1);
-    system->model.held = (uint8_t *)gxsp_grow(pool, system->model.held, n, room, 1);
-    system->smoother.renewed = (uint8_t *)gxsp_grow(pool, system->smoother.renewed, 0, room, 1);
-    if (system->multigrid.level_count > 0) {
-        system->coarse.displacement =
-            (double *)gxsp_grow(pool, system->coarse.displacement, 3 * n, 3 * room, sizeof(double));
-        fine->parent = (uint32_t(*)[4])gxsp_grow(pool, fine->parent, n, room, sizeof *fine->parent);
-        fine->weight = (float(*)[4])gxsp_grow(pool, fine->weight, n, room, sizeof *fine->weight);
-    }
-    system->model.copy_room = room;
-}
-
-/* Entries of an array over copies go where their copies go. moved: copies that are not what they were, moved_count;
- * kept: scratch */
-static void gxsp_move(const gxs_change *change, const uint32_t *moved, size_t moved_count, void *array, size_t size,
-                      unsigned char *kept) {
-    unsigned char *bytes = (unsigned char *)array;
-    size_t i;
-    for (i = 0; i < moved_count; i++) memcpy(kept + i * size, bytes + (change->origins[moved[i]] >> 1) * size, size);
-    for (i = 0; i < moved_count; i++) memcpy(bytes + moved[i] * size, kept + i * size, size);
-}
-
 /* What is known of copies, for those there are from now on */
 static void gxsp_move_copies(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     const gxs_change *change = update->change;
     uint32_t *moved = (uint32_t *)gxsp_take(update->scratch, change->copy_count, sizeof(uint32_t)), i;
-    unsigned char *kept;
+    unsigned char *saved;
     size_t count = 0;
     gxsp_copies_room(system, change->copy_count);
     for (i = 0; i < change->copy_count && moved; i++)
         if (change->origins[i] >> 1 != i) moved[count++] = i;
-    kept = (unsigned char *)gxsp_take(update->scratch, count, 3 * sizeof(double)); /* the largest entry */
+    saved = (unsigned char *)gxsp_take(update->scratch, count, 3 * sizeof(double)); /* the largest entry */
     if (update->scratch->failed || system->pool.failed) return;
-    gxsp_move(change, moved, count, system->vectors.current, 3 * sizeof(double), kept);
-    gxsp_move(change, moved, count, system->vectors.guess[0], sizeof(gxsp_vector4), kept);
-    gxsp_move(change, moved, count, system->vectors.guess[1], sizeof(gxsp_vector4), kept);
-    if (system->model.positions) gxsp_move(change, moved, count, system->model.positions, 3 * sizeof(double), kept);
-    gxsp_move(change, moved, count, system->model.lumped, sizeof(double), kept);
-    gxsp_move(change, moved, count, system->model.component, sizeof(uint32_t), kept);
-    gxsp_move(change, moved, count, system->model.fixed, 1, kept);
-    gxsp_move(change, moved, count, system->model.held, 1, kept);
-    if (system->multigrid.level_count > 0) {
-        gxsp_move(change, moved, count, system->coarse.displacement, 3 * sizeof(double), kept);
-        gxsp_move(change, moved, count, system->multigrid.levels[0].parent, sizeof *system->multigrid.levels[0].parent,
-                  kept);
-        gxsp_move(change, moved, count, system->multigrid.levels[0].weight, sizeof *system->multigrid.levels[0].weight,
-                  kept);
-    }
+    gxsp_columns_move(system, change->origins, moved, count, saved);
     system->model.n = change->copy_count;
     system->model.epoch = change->epoch;
     system->multigrid.levels[0].n = (uint32_t)change->copy_count;
@@ -8838,16 +8874,14 @@ GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene) {
 }
 
 /* Room for the terms of a step */
-static int gxsp_reserve_terms(gxs_solver *solver, size_t count) {
-    gxsp_lasting *lasting = &solver->lasting;
+static int gxsp_reserve_terms(gxsp_lasting *lasting, size_t count) {
     gxsp_term *larger;
-    if (count <= lasting->capacity) return 1;
-    larger = (gxsp_term *)solver->allocator.allocate(solver->allocator.user, count * sizeof *larger);
+    if (count <= lasting->room) return 1;
+    lasting->pool.failed = 0;
+    larger = (gxsp_term *)gxsp_grow(&lasting->pool, lasting->term, 0, count, sizeof *larger);
     if (!larger) return 0;
-    if (lasting->term)
-        solver->allocator.release(solver->allocator.user, lasting->term, lasting->capacity * sizeof *larger);
     lasting->term = larger;
-    lasting->capacity = count;
+    lasting->room = count;
     return 1;
 }
 
@@ -8882,7 +8916,7 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
         (result = gxsp_check_points(step, n, failure)) != GX_OK ||
         (result = gxsp_check_vectors(step, n, displacement, velocity, solver->system->model.held, failure)) != GX_OK)
         return result;
-    if (!gxsp_reserve_terms(solver, step->spring_count + step->point_count))
+    if (!gxsp_reserve_terms(&solver->lasting, step->spring_count + step->point_count))
         return gxsp_fail(failure, GX_ERROR_MEMORY, SIZE_MAX);
     memset(&problem, 0, sizeof problem);
     problem.system = solver->system;
@@ -8926,6 +8960,7 @@ GXFEM_API gx_result gxs_solver_create(const gxs_solver_desc *desc, gxs_solver **
     if (!made) return GX_ERROR_MEMORY;
     memset(made, 0, sizeof *made);
     made->allocator = used;
+    made->lasting.pool = gxsp_pool_make(&used);
     if (desc) {
         made->jobs = desc->jobs;
         made->preconditioner = desc->preconditioner;
@@ -8940,9 +8975,7 @@ GXFEM_API void gxs_solver_destroy(gxs_solver *solver) {
     if (!solver) return;
     allocator = solver->allocator;
     gxsp_system_destroy(solver->system);
-    if (solver->lasting.term)
-        allocator.release(allocator.user, solver->lasting.term,
-                          solver->lasting.capacity * sizeof *solver->lasting.term);
+    gxsp_release_to(&solver->lasting.pool, NULL);
     allocator.release(allocator.user, solver, sizeof *solver);
 }
 
@@ -9215,6 +9248,8 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_INERTIA
 #undef GXSP_PARALLEL
 #undef GXSP_SUMS
+#undef GXSP_IN
+#undef GXSP_COLUMNS
 #undef GXSP_SHUFFLES
 #ifdef GXFEM_SCALAR
 #pragma clang attribute pop
