@@ -500,6 +500,10 @@ extern "C" {
 #pragma clang attribute push(__attribute__((target("no-simd128"))), apply_to = function)
 #endif
 
+/* >>constants: sizes, limits and measured choices ------------------------------------------------------------------ */
+
+/* In and out: nothing but macros and the types of vectors. Numbers that were measured say on what. */
+
 /* elements side by side in a block: whole vectors on every instruction set up to 512 bits of doubles */
 #define GXSP_LANES 8
 
@@ -705,7 +709,11 @@ typedef __attribute__((vector_size(32), aligned(4), may_alias)) float gxsp_eight
 typedef double gxsp_lanes[GXSP_LANES];
 typedef float gxsp_singles[GXSP_LANES];
 
-/* >>platform: comparisons with NaN mean nothing under -ffast-math, so finiteness is read off the bits */
+/* >>scalars: bits, sums, functions of one number ------------------------------------------------------------------- */
+
+/* Functions of numbers and arrays of numbers only. Finiteness is read off the bits, since comparisons with NaN
+ * mean nothing under -ffast-math. Compilers turn these functions into vector instructions; they leave sqrt alone
+ * for the sake of errno. */
 
 static int gxsp_finite(double value) {
     uint64_t bits;
@@ -725,6 +733,14 @@ static size_t gxsp_first_not_finite(const double *values, size_t count) {
     for (i = 0; i < count; i++)
         if (!gxsp_finite(values[i])) break;
     return i;
+}
+
+static int gxsp_all_finite_single(const void *numbers, size_t bytes) {
+    const float *number = (const float *)numbers;
+    size_t i;
+    for (i = 0; i < bytes / sizeof *number; i++)
+        if (!gxsp_finite_single(number[i])) return 0;
+    return 1;
 }
 
 static gx_result gxsp_fail(gx_failure *failure, gx_result result, size_t index) {
@@ -761,7 +777,94 @@ static int gxsp_packed3(int i, int j) { return i * (5 - i) / 2 + j; }
 
 static int gxsp_packed9(int i, int j) { return i <= j ? i * (17 - i) / 2 + j : j * (17 - j) / 2 + i; }
 
-/* >>memory */
+/* 1 / sqrt(x) of a normal x > 0, to 3 units in the last place: the exponent halved, then Newton's method */
+static inline float gxsp_rsqrt(float x) {
+    uint32_t bits;
+    float y;
+    memcpy(&bits, &x, sizeof bits);
+    bits = 0x5f375a86u - (bits >> 1);
+    memcpy(&y, &bits, sizeof y);
+    y = y * (1.5f - 0.5f * x * y * y);
+    y = y * (1.5f - 0.5f * x * y * y);
+    return y * (1.5f - 0.5f * x * y * y);
+}
+
+/* x - log(1 + x) for x >= -3/4 without cancellation. 1 + x = 2^k (1 + w), 1 + w in [sqrt 1/2, sqrt 2); with z = w / (2
+ * + w) w - log(1 + w) = w z - 2 z^3 (1/3 + z^2/5 + z^4/7 + ...), |z| < 0.172: the first term left out is below 1e-17
+ * w^2. */
+static inline double gxsp_log_rest(double x) {
+    const double y = 1 + x;
+    uint64_t bits, exponent;
+    double k, m, w, z, q;
+    memcpy(&bits, &y, sizeof bits);
+    exponent = (bits - 0x3fe6a09e667f3bcdu + ((uint64_t)1024 << 52)) >> 52; /* k + 1024 */
+    bits -= (exponent - 1024) << 52;
+    exponent |= (uint64_t)0x433 << 52; /* 2^52 + k + 1024 */
+    memcpy(&m, &bits, sizeof m);
+    memcpy(&k, &exponent, sizeof k);
+    k -= 4503599627370496.0 + 1024.0;
+    w = k < 0 || k > 0 ? m - 1 : x;
+    z = w / (2 + w);
+    q = z * z;
+    return w * z -
+           2 * z * q *
+               (1.0 / 3 +
+                q * (1.0 / 5 +
+                     q * (1.0 / 7 +
+                          q * (1.0 / 9 +
+                               q * (1.0 / 11 +
+                                    q * (1.0 / 13 +
+                                         q * (1.0 / 15 +
+                                              q * (1.0 / 17 + q * (1.0 / 19 + q * (1.0 / 21 + q / 23)))))))))) +
+           (x - w - k * 0.69314718055994531);
+}
+
+static inline float gxsp_larger(float a, float b) {
+    const float x = a < 0 ? -a : a, y = b < 0 ? -b : b;
+    return x > y ? x : y;
+}
+
+/* An entry of what has others of size 1; 0 where that is far from being told apart in single precision: the next powers
+ * of such entries would be denormal, over which processors take a hundred cycles. Bodies that fall have many. */
+GXSP_INLINE float gxsp_clean(float entry) { return entry < 1e-9f && entry > -1e-9f ? 0.0f : entry; }
+
+/* 2^k, |k| < 1023, about the inverse of the largest of the values, so that single precision holds them and their
+ * product; 0: one is not finite */
+static double gxsp_unit_factor(const double *values, size_t count) {
+    const uint64_t exponent = (uint64_t)0x7ff << 52, one = (uint64_t)1 << 52;
+    uint64_t largest = one, bits;
+    double factor;
+    size_t i;
+    for (i = 0; i < count; i++) {
+        memcpy(&bits, &values[i], sizeof bits);
+        largest = (bits & exponent) > largest ? bits & exponent : largest;
+    }
+    if (largest == exponent) return 0;
+    bits = 2046 * one - (largest < 2045 * one ? largest : 2045 * one);
+    memcpy(&factor, &bits, sizeof factor);
+    return factor;
+}
+
+/* 1 of no values, never 0 */
+static uint64_t gxsp_hash(uint64_t hash, const double *values, size_t count) {
+    size_t i;
+    for (i = 0; i < count; i++) {
+        uint64_t bits;
+        memcpy(&bits, &values[i], sizeof bits);
+        hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
+        hash ^= hash >> 29;
+    }
+    return hash | 1;
+}
+
+static int gxsp_differs(const double *a, const double *b) { return memcmp(a, b, 3 * sizeof *a) != 0; }
+
+/* >>memory: pools -------------------------------------------------------------------------------------------------- */
+
+/* In: the caller's allocator. Every array of the solver belongs to a pool and is zero when it is taken. There is
+ * one way to grow: gxsp_grow takes a larger array, copies what is kept and gives the old one back; gxsp_room says
+ * how large. Arrays that are never needed at the same time lie in one allocation, which a gxsp_space cuts into
+ * arrays. */
 
 static void *gxsp_malloc(void *user, size_t size) {
     (void)user;
@@ -854,6 +957,12 @@ static void *gxsp_carve(gxsp_space *space, size_t count, size_t size) {
     space->used = at + (count * size + GXSP_ALIGNMENT - 1) / GXSP_ALIGNMENT * GXSP_ALIGNMENT;
     return space->memory ? space->memory + at : NULL;
 }
+
+/* >>structs: the solver's own form of a model ---------------------------------------------------------------------- */
+
+/* In and out: types only. A model is elements in lanes, lanes in blocks, blocks in chunks; copies have a slot in
+ * each chunk that they are in. gxsp_system is divided by lifetime. The comment on an array says its shape, its
+ * unit and when it is valid. */
 
 /* What a step works on, cut into elements of a block, blocks of a chunk. Lanes without an element have weight, mass and
  * gradients 0 and name nodes of the chunk, to which they add zeros. */
@@ -1211,10 +1320,65 @@ typedef struct gxsp_system {
  * lengths are tried. */
 static double *gxsp_trial(const gxsp_system *system) { return system->vectors.residual; }
 
-/* >>columns: arrays that have one entry for each copy, slot or chunk
- *
- * The tables list them once. Making, growth and updates go by the tables. A column that the model does not need is NULL
- * and stays so. */
+/* A step under way */
+typedef struct gxsp_problem {
+    gxsp_system *system;
+    const gxs_step_desc *step;
+    double rate;            /* of the inertia: rate/2 |u - target|_M^2, 1/s2 */
+    double speed;           /* v = speed (u - a mean of the displacements before), 1/s */
+    double mean[2];         /* its weights: of given and of previous_displacement */
+    uint32_t cg_iterations; /* with the defaults put in */
+    double cg_tolerance;
+    /* by how many factors of e the last linear solve has reduced the residual that its guess left */
+    double nepers;
+    double energies[3];  /* at current, sums over pieces; J */
+    const double *given; /* displacement at the step's start, u_n */
+    double start;        /* on the clock */
+    gxs_scene scene;
+    int exact;          /* the linearisation is not projected */
+    int indefinite;     /* conjugate gradients met negative curvature */
+    int projected_only; /* the exact one has proved indefinite in this step */
+    int shortened;      /* the line search did not take the whole step */
+    int damps;          /* damping adds to the load */
+    int stalls;         /* iterations in a row that noise ended and that gained next to nothing */
+    double least;       /* residual so far */
+    int based;          /* pieces know E at base */
+    int noise;          /* the line search ended where energies differ by rounding only */
+    int collapsed;      /* the linearisation found elements collapsed to a point */
+    gxs_step_report report;
+} gxsp_problem;
+
+/* What a pass reads and writes; unused fields are 0. Vectors have one entry per copy. */
+typedef struct gxsp_pass {
+    gxsp_system *system;
+    double rate;        /* 1/s2; of products and linearisations times scale */
+    const double *from; /* x 3: displacement, m */
+    double *sum;        /* x 3: forces, N */
+    const gxsp_material *materials;
+    const double *turned; /* x 3: stresses are turned as elements are from here on to there; NULL: they are not */
+    int inertia;          /* forces and energy of the mass too */
+    int nudge;            /* forces of collapsed elements as if they were not quite */
+    int exact;            /* Hessians are not projected */
+    gxsp_vector4 *x;      /* of products: input */
+    gxsp_vector4 *y;      /* output */
+    const double *right;  /* x 3: output is this minus the product; NULL: it is the product */
+    double factor;        /* of passes over copies: what x is multiplied by */
+    const gxsp_problem *problem; /* of what needs the load */
+} gxsp_pass;
+
+struct gxs_solver {
+    gx_allocator allocator;
+    gx_jobs jobs;
+    gxs_preconditioner preconditioner;
+    gxs_matrix matrix;
+    gxsp_lasting lasting;
+    gxsp_system *system; /* in its own pool; NULL before the first model */
+};
+
+/* >>columns: arrays that have one entry for each copy, slot or chunk ----------------------------------------------- */
+
+/* The tables list them once. Making, growth and updates go by the tables, and touch no other array but the sums
+ * of ranges. A column that a model does not need is NULL and stays so. */
 
 /* When a column is made: by the code that needs it, with the model, or last, for steps */
 enum { GXSP_BY_OWNER, GXSP_WITH_MODEL, GXSP_FOR_STEPS };
@@ -1342,44 +1506,10 @@ static void gxsp_columns_move(gxsp_system *system, const uint32_t *origins, cons
     }
 }
 
-/* A step under way */
-typedef struct gxsp_problem {
-    gxsp_system *system;
-    const gxs_step_desc *step;
-    double rate;            /* of the inertia: rate/2 |u - target|_M^2, 1/s2 */
-    double speed;           /* v = speed (u - a mean of the displacements before), 1/s */
-    double mean[2];         /* its weights: of given and of previous_displacement */
-    uint32_t cg_iterations; /* with the defaults put in */
-    double cg_tolerance;
-    /* by how many factors of e the last linear solve has reduced the residual that its guess left */
-    double nepers;
-    double energies[3];  /* at current, sums over pieces; J */
-    const double *given; /* displacement at the step's start, u_n */
-    double start;        /* on the clock */
-    gxs_scene scene;
-    int exact;          /* the linearisation is not projected */
-    int indefinite;     /* conjugate gradients met negative curvature */
-    int projected_only; /* the exact one has proved indefinite in this step */
-    int shortened;      /* the line search did not take the whole step */
-    int damps;          /* damping adds to the load */
-    int stalls;         /* iterations in a row that noise ended and that gained next to nothing */
-    double least;       /* residual so far */
-    int based;          /* pieces know E at base */
-    int noise;          /* the line search ended where energies differ by rounding only */
-    int collapsed;      /* the linearisation found elements collapsed to a point */
-    gxs_step_report report;
-} gxsp_problem;
+/* >>jobs: loops, by threads or not --------------------------------------------------------------------------------- */
 
-struct gxs_solver {
-    gx_allocator allocator;
-    gx_jobs jobs;
-    gxs_preconditioner preconditioner;
-    gxs_matrix matrix;
-    gxsp_lasting lasting;
-    gxsp_system *system; /* in its own pool; NULL before the first model */
-};
-
-/* >>jobs */
+/* In: a task and how often to call it. A task writes its own chunk, slots, range or sums only; sums of ranges are
+ * added up in their order, so that results do not depend on threads. */
 
 /* task(context, i) for every i below count, by the host's threads if it has any. */
 static void gxsp_parallel(const gx_jobs *jobs, size_t count, void (*task)(void *, size_t), void *context) {
@@ -1390,53 +1520,241 @@ static void gxsp_parallel(const gx_jobs *jobs, size_t count, void (*task)(void *
         for (i = 0; i < count; i++) task(context, i);
 }
 
-/* >>lanes: functions of one number that compilers turn into vector instructions; sqrt they leave alone for errno's sake
- */
-
-/* 1 / sqrt(x) of a normal x > 0, to 3 units in the last place: the exponent halved, then Newton's method */
-static inline float gxsp_rsqrt(float x) {
-    uint32_t bits;
-    float y;
-    memcpy(&bits, &x, sizeof bits);
-    bits = 0x5f375a86u - (bits >> 1);
-    memcpy(&y, &bits, sizeof y);
-    y = y * (1.5f - 0.5f * x * y * y);
-    y = y * (1.5f - 0.5f * x * y * y);
-    return y * (1.5f - 0.5f * x * y * y);
+/* Copies of the range with this index: from first, not including the one returned */
+static size_t gxsp_range(const gxsp_system *system, size_t index, size_t *first) {
+    *first = index * GXSP_RANGE;
+    return *first + GXSP_RANGE < system->model.n ? *first + GXSP_RANGE : system->model.n;
 }
 
-/* x - log(1 + x) for x >= -3/4 without cancellation. 1 + x = 2^k (1 + w), 1 + w in [sqrt 1/2, sqrt 2); with z = w / (2
- * + w) w - log(1 + w) = w z - 2 z^3 (1/3 + z^2/5 + z^4/7 + ...), |z| < 0.172: the first term left out is below 1e-17
- * w^2. */
-static inline double gxsp_log_rest(double x) {
-    const double y = 1 + x;
-    uint64_t bits, exponent;
-    double k, m, w, z, q;
-    memcpy(&bits, &y, sizeof bits);
-    exponent = (bits - 0x3fe6a09e667f3bcdu + ((uint64_t)1024 << 52)) >> 52; /* k + 1024 */
-    bits -= (exponent - 1024) << 52;
-    exponent |= (uint64_t)0x433 << 52; /* 2^52 + k + 1024 */
-    memcpy(&m, &bits, sizeof m);
-    memcpy(&k, &exponent, sizeof k);
-    k -= 4503599627370496.0 + 1024.0;
-    w = k < 0 || k > 0 ? m - 1 : x;
-    z = w / (2 + w);
-    q = z * z;
-    return w * z -
-           2 * z * q *
-               (1.0 / 3 +
-                q * (1.0 / 5 +
-                     q * (1.0 / 7 +
-                          q * (1.0 / 9 +
-                               q * (1.0 / 11 +
-                                    q * (1.0 / 13 +
-                                         q * (1.0 / 15 +
-                                              q * (1.0 / 17 + q * (1.0 / 19 + q * (1.0 / 21 + q / 23)))))))))) +
-           (x - w - k * 0.69314718055994531);
+/* A pass over all copies; sums: of those that it makes for each range, the first count, or NULL */
+static void gxsp_over_ranges(gxsp_system *system, void (*task)(void *, size_t), gxsp_pass *pass, double *sums,
+                             int count) {
+    size_t i;
+    int k;
+    pass->system = system;
+    gxsp_parallel(system->jobs, system->model.range_count, task, pass);
+    for (k = 0; k < count; k++)
+        for (i = 0, sums[k] = 0; i < system->model.range_count; i++) sums[k] += system->vectors.range_sum[i][k];
 }
 
-/* >>material: energy density (J/m3) and first Piola-Kirchhoff stress P (Pa) from G = F - 1, so that nothing cancels
- * near rest. size: of the terms whose rounding the energy carries. */
+/* Asks for memory that is soon read: a block is too long for processors to see the next one in time. Always inline: gcc
+ * takes functions that do nothing else for functions without effect, and leaves calls of them out. */
+GXSP_INLINE void gxsp_prefetch(const void *memory, size_t size) {
+#if defined(__GNUC__)
+    const char *line = (const char *)memory;
+    size_t k;
+    for (k = 0; k < size; k += 64) __builtin_prefetch(line + k);
+#else
+    (void)memory;
+    (void)size;
+#endif
+}
+
+/* >>svd: stretches and rotations of F ------------------------------------------------------------------------------ */
+
+/* In: displacement gradients of one or two blocks. Out: F = U diag(s) V^T in single precision; a rotation can be
+ * polished to double precision. */
+
+typedef struct gxsp_svd {
+    gxsp_singles u[9], v[9]; /* rotations, determinant 1 */
+    gxsp_singles s[3];       /* signed, in order of size; F = U diag(s) V^T */
+} gxsp_svd;
+
+/* F V and V of two blocks on the way there: each turn waits for the one before it, so that the second block costs
+ * little. */
+typedef struct gxsp_jacobi {
+    float b[9][2 * GXSP_LANES], v[9][2 * GXSP_LANES];
+    float scale[2 * GXSP_LANES]; /* what b is to be multiplied by */
+} gxsp_jacobi;
+
+/* (x, y) turned by the angle of cosine c and sine s */
+static inline void gxsp_turn(float c, float s, float *x, float *y) {
+    const float turned = c * *x - s * *y;
+    *y = s * *x + c * *y;
+    *x = turned;
+}
+
+/* Columns i and j of b and of v in lane l */
+static inline void gxsp_turn_columns(gxsp_jacobi *of, int i, int j, int l, float c, float s) {
+    gxsp_turn(c, s, &of->b[i][l], &of->b[j][l]);
+    gxsp_turn(c, s, &of->b[3 + i][l], &of->b[3 + j][l]);
+    gxsp_turn(c, s, &of->b[6 + i][l], &of->b[6 + j][l]);
+    gxsp_turn(c, s, &of->v[i][l], &of->v[j][l]);
+    gxsp_turn(c, s, &of->v[3 + i][l], &of->v[3 + j][l]);
+    gxsp_turn(c, s, &of->v[6 + i][l], &of->v[6 + j][l]);
+}
+
+static inline float gxsp_jacobi_product(const gxsp_jacobi *of, int i, int j, int l) {
+    return of->b[i][l] * of->b[j][l] + of->b[3 + i][l] * of->b[3 + j][l] + of->b[6 + i][l] * of->b[6 + j][l];
+}
+
+/* Makes columns i and j of b orthogonal. Whatever the rounding, U and V stay rotations: a Hessian built on them is a
+ * congruence of a semi-definite one. */
+GXSP_INLINE void gxsp_orthogonalise(gxsp_jacobi *GXSP_RESTRICT of, int i, int j) {
+    int l;
+    GXSP_EACH_OF_TWO(l) {
+        const float gamma = 2 * gxsp_jacobi_product(of, i, j, l);
+        const float gap = gxsp_jacobi_product(of, j, j, l) - gxsp_jacobi_product(of, i, i, l);
+        const float size = gap < 0 ? -gap : gap, square = gap * gap + gamma * gamma + 1e-35f;
+        const float tangent = (gap < 0 ? -gamma : gamma) / (size + square * gxsp_rsqrt(square));
+        const float c = gxsp_rsqrt(1 + tangent * tangent);
+        gxsp_turn_columns(of, i, j, l, c, c * tangent);
+    }
+}
+
+/* Brings the longer of columns i and j to i, by a quarter turn, so that det V stays 1. */
+GXSP_INLINE void gxsp_order_columns(gxsp_jacobi *GXSP_RESTRICT of, int i, int j) {
+    int l;
+    GXSP_EACH_OF_TWO(l) {
+        const float s = gxsp_jacobi_product(of, j, j, l) > gxsp_jacobi_product(of, i, i, l) ? -1.0f : 0.0f;
+        gxsp_turn_columns(of, i, j, l, 1 + s, s);
+    }
+}
+
+/* U, V and s of the block that begins at first_lane, from the columns of b, orthogonal and the longest first; where
+ * columns vanish, U is completed to a rotation. */
+static void gxsp_frame(const gxsp_jacobi *GXSP_RESTRICT from, int first_lane, gxsp_svd *GXSP_RESTRICT of) {
+    const float *scale = from->scale + first_lane;
+    int k, l;
+    for (k = 0; k < 9; k++) memcpy(of->v[k], from->v[k] + first_lane, sizeof of->v[k]);
+    GXSP_EACH_LANE(l) {
+        const int m = first_lane + l;
+        const float a0 = from->b[0][m], a1 = from->b[3][m], a2 = from->b[6][m], b0 = from->b[1][m], b1 = from->b[4][m],
+                    b2 = from->b[7][m];
+        const float c0 = from->b[2][m], c1 = from->b[5][m], c2 = from->b[8][m];
+        const float first = a0 * a0 + a1 * a1 + a2 * a2, some = first > 1e-30f ? 1.0f : 0.0f;
+        const float reach = gxsp_rsqrt(first + 1e-30f) * some;
+        const float u0 = a0 * reach + (1 - some), u1 = a1 * reach, u2 = a2 * reach;
+        const float along = u0 * b0 + u1 * b1 + u2 * b2;
+        const float p0 = b0 - along * u0, p1 = b1 - along * u1, p2 = b2 - along * u2;
+        /* a line: any direction across will do; the axis least along it */
+        const float s0 = u0 * u0, s1 = u1 * u1, s2 = u2 * u2;
+        const float x = s0 <= s1 && s0 <= s2 ? 1.0f : 0.0f, y = (1 - x) * (s1 <= s2 ? 1.0f : 0.0f), z = 1 - x - y;
+        const float part = x * u0 + y * u1 + z * u2;
+        const float n0 = x - part * u0, n1 = y - part * u1, n2 = z - part * u2;
+        const float across = p0 * p0 + p1 * p1 + p2 * p2, wide = across > 1e-12f * first + 1e-30f ? 1.0f : 0.0f,
+                    thin = 1 - wide;
+        const float q0 = wide * p0 + thin * n0, q1 = wide * p1 + thin * n1, q2 = wide * p2 + thin * n2;
+        const float unit = gxsp_rsqrt(q0 * q0 + q1 * q1 + q2 * q2);
+        const float w0 = q0 * unit, w1 = q1 * unit, w2 = q2 * unit;
+        const float t0 = u1 * w2 - u2 * w1, t1 = u2 * w0 - u0 * w2, t2 = u0 * w1 - u1 * w0;
+        of->u[0][l] = u0, of->u[3][l] = u1, of->u[6][l] = u2;
+        of->u[1][l] = w0, of->u[4][l] = w1, of->u[7][l] = w2;
+        of->u[2][l] = t0, of->u[5][l] = t1, of->u[8][l] = t2;
+        of->s[0][l] = scale[l] * (u0 * a0 + u1 * a1 + u2 * a2);
+        of->s[1][l] = scale[l] * (w0 * b0 + w1 * b1 + w2 * b2);
+        of->s[2][l] = scale[l] * (t0 * c0 + t1 * c1 + t2 * c2);
+    }
+}
+
+/* Are the columns of b, the largest entry of which is 1, orthogonal to single precision in every lane? */
+static int gxsp_orthogonal(const gxsp_jacobi *GXSP_RESTRICT of) {
+    float square[2 * GXSP_LANES], most = 0;
+    int l;
+    GXSP_EACH_OF_TWO(l) {
+        const float x = gxsp_jacobi_product(of, 0, 1, l), y = gxsp_jacobi_product(of, 0, 2, l),
+                    z = gxsp_jacobi_product(of, 1, 2, l);
+        square[l] = x * x + y * y + z * z;
+    }
+    for (l = 0; l < 2 * GXSP_LANES; l++) most = square[l] > most ? square[l] : most;
+    return most < 1e-13f;
+}
+
+/* F = 1 + G of a block as columns at first_lane, by its largest entry, and V = 1 */
+static void gxsp_jacobi_begin(gxsp_lanes *GXSP_RESTRICT g, int first_lane, gxsp_jacobi *GXSP_RESTRICT of) {
+    int k, l;
+    GXSP_EACH_LANE(l) {
+        const int m = first_lane + l;
+        const float f0 = (float)(g[0][l] + 1), f1 = (float)g[1][l], f2 = (float)g[2][l], f3 = (float)g[3][l],
+                    f4 = (float)(g[4][l] + 1), f5 = (float)g[5][l], f6 = (float)g[6][l], f7 = (float)g[7][l],
+                    f8 = (float)(g[8][l] + 1);
+        const float a = gxsp_larger(gxsp_larger(f0, f1), gxsp_larger(f2, f3)),
+                    b = gxsp_larger(gxsp_larger(f4, f5), gxsp_larger(f6, f7));
+        const float largest = gxsp_larger(gxsp_larger(a, b), f8), scale = largest > 1e-30f ? largest : 1.0f,
+                    inverse = 1 / scale;
+        of->scale[m] = scale;
+        of->b[0][m] = gxsp_clean(inverse * f0), of->b[1][m] = gxsp_clean(inverse * f1),
+        of->b[2][m] = gxsp_clean(inverse * f2);
+        of->b[3][m] = gxsp_clean(inverse * f3), of->b[4][m] = gxsp_clean(inverse * f4),
+        of->b[5][m] = gxsp_clean(inverse * f5);
+        of->b[6][m] = gxsp_clean(inverse * f6), of->b[7][m] = gxsp_clean(inverse * f7),
+        of->b[8][m] = gxsp_clean(inverse * f8);
+    }
+    for (k = 0; k < 9; k++) GXSP_EACH_LANE(l) of->v[k][first_lane + l] = k % 4 == 0 ? 1.0f : 0.0f;
+}
+
+/* F = 1 + G = U diag(s) V^T of two blocks, or of one if last is NULL, by one-sided Jacobi, every lane the same number
+ * of sweeps. of: as many. */
+static void gxsp_decompose(gxsp_lanes *first, gxsp_lanes *last, gxsp_svd *of) {
+    gxsp_jacobi at;
+    int sweep;
+    gxsp_jacobi_begin(first, 0, &at);
+    gxsp_jacobi_begin(last ? last : first, GXSP_LANES, &at);
+    /* quadratic at the end: 4 reach single precision for extreme F too */
+    for (sweep = 0; sweep < 4 && !gxsp_orthogonal(&at); sweep++) {
+        gxsp_orthogonalise(&at, 0, 1);
+        gxsp_orthogonalise(&at, 0, 2);
+        gxsp_orthogonalise(&at, 1, 2);
+    }
+    gxsp_order_columns(&at, 0, 1);
+    gxsp_order_columns(&at, 0, 2);
+    gxsp_order_columns(&at, 1, 2);
+    gxsp_frame(&at, 0, &of[0]);
+    if (last) gxsp_frame(&at, GXSP_LANES, &of[1]);
+}
+
+/* Cofactors of a 3x3: the derivative of its determinant. */
+static void gxsp_cofactors(const double *a, double *cofactors) {
+    cofactors[0] = a[4] * a[8] - a[5] * a[7];
+    cofactors[1] = a[5] * a[6] - a[3] * a[8];
+    cofactors[2] = a[3] * a[7] - a[4] * a[6];
+    cofactors[3] = a[2] * a[7] - a[1] * a[8];
+    cofactors[4] = a[0] * a[8] - a[2] * a[6];
+    cofactors[5] = a[1] * a[6] - a[0] * a[7];
+    cofactors[6] = a[1] * a[5] - a[2] * a[4];
+    cofactors[7] = a[2] * a[3] - a[0] * a[5];
+    cofactors[8] = a[0] * a[4] - a[1] * a[3];
+}
+
+/* One step of Newton's method for the rotation R of F = R S: R (1 + skew omega), (tr S - S) omega = axis of S's skew
+ * part, then orthogonal again to second order. Left alone where tr S - S is singular: R is not unique there. */
+static void gxsp_polish_rotation(const double *f, double *rotation) {
+    double s[9], a[9], inverse[9], axis[3], omega[3], turned[9], square[9], determinant, trace;
+    int r, c, k;
+    for (r = 0; r < 3; r++)
+        for (c = 0; c < 3; c++)
+            s[3 * r + c] = rotation[r] * f[c] + rotation[3 + r] * f[3 + c] + rotation[6 + r] * f[6 + c];
+    trace = s[0] + s[4] + s[8];
+    for (r = 0; r < 3; r++)
+        for (c = 0; c < 3; c++) a[3 * r + c] = (r == c ? trace : 0) - 0.5 * (s[3 * r + c] + s[3 * c + r]);
+    gxsp_cofactors(a, inverse);
+    determinant = a[0] * inverse[0] + a[1] * inverse[1] + a[2] * inverse[2];
+    axis[0] = s[7] - s[5], axis[1] = s[2] - s[6], axis[2] = s[3] - s[1];
+    if (fabs(determinant) <= 1e-6 * fabs(trace * trace * trace)) return;
+    for (r = 0; r < 3; r++)
+        omega[r] = (inverse[r] * axis[0] + inverse[3 + r] * axis[1] + inverse[6 + r] * axis[2]) / determinant;
+    for (r = 0; r < 3; r++) {
+        const double *from = rotation + 3 * r;
+        turned[3 * r] = from[0] + from[1] * omega[2] - from[2] * omega[1];
+        turned[3 * r + 1] = from[1] - from[0] * omega[2] + from[2] * omega[0];
+        turned[3 * r + 2] = from[2] + from[0] * omega[1] - from[1] * omega[0];
+    }
+    for (r = 0; r < 3; r++)
+        for (c = 0; c < 3; c++)
+            square[3 * r + c] = (r == c ? 1.5 : 0) - 0.5 * (turned[r] * turned[c] + turned[3 + r] * turned[3 + c] +
+                                                            turned[6 + r] * turned[6 + c]);
+    for (r = 0; r < 3; r++)
+        for (c = 0; c < 3; c++) {
+            double sum = 0;
+            for (k = 0; k < 3; k++) sum += turned[3 * r + k] * square[3 * k + c];
+            rotation[3 * r + c] = sum;
+        }
+}
+
+/* >>material: energies and stresses -------------------------------------------------------------------------------- */
+
+/* In: G = F - 1, so that nothing cancels near rest. Out: energy density (J/m3), first Piola-Kirchhoff stress P
+ * (Pa), and the size of the terms whose rounding the energy carries. */
 
 static gxsp_material gxsp_material_make(const gxs_material *given) {
     double shear = given->young / (2 * (1 + given->poisson));
@@ -1532,213 +1850,6 @@ static void gxsp_kirchhoff(gxsp_state *GXSP_RESTRICT s, double bend) {
     }
 }
 
-/* >>svd */
-
-typedef struct gxsp_svd {
-    gxsp_singles u[9], v[9]; /* rotations, determinant 1 */
-    gxsp_singles s[3];       /* signed, in order of size; F = U diag(s) V^T */
-} gxsp_svd;
-
-/* F V and V of two blocks on the way there: each turn waits for the one before it, so that the second block costs
- * little. */
-typedef struct gxsp_columns {
-    float b[9][2 * GXSP_LANES], v[9][2 * GXSP_LANES];
-    float scale[2 * GXSP_LANES]; /* what b is to be multiplied by */
-} gxsp_columns;
-
-/* (x, y) turned by the angle of cosine c and sine s */
-static inline void gxsp_turn(float c, float s, float *x, float *y) {
-    const float turned = c * *x - s * *y;
-    *y = s * *x + c * *y;
-    *x = turned;
-}
-
-/* Columns i and j of b and of v in lane l */
-static inline void gxsp_turn_columns(gxsp_columns *of, int i, int j, int l, float c, float s) {
-    gxsp_turn(c, s, &of->b[i][l], &of->b[j][l]);
-    gxsp_turn(c, s, &of->b[3 + i][l], &of->b[3 + j][l]);
-    gxsp_turn(c, s, &of->b[6 + i][l], &of->b[6 + j][l]);
-    gxsp_turn(c, s, &of->v[i][l], &of->v[j][l]);
-    gxsp_turn(c, s, &of->v[3 + i][l], &of->v[3 + j][l]);
-    gxsp_turn(c, s, &of->v[6 + i][l], &of->v[6 + j][l]);
-}
-
-static inline float gxsp_column_product(const gxsp_columns *of, int i, int j, int l) {
-    return of->b[i][l] * of->b[j][l] + of->b[3 + i][l] * of->b[3 + j][l] + of->b[6 + i][l] * of->b[6 + j][l];
-}
-
-/* Makes columns i and j of b orthogonal. Whatever the rounding, U and V stay rotations: a Hessian built on them is a
- * congruence of a semi-definite one. */
-GXSP_INLINE void gxsp_orthogonalise(gxsp_columns *GXSP_RESTRICT of, int i, int j) {
-    int l;
-    GXSP_EACH_OF_TWO(l) {
-        const float gamma = 2 * gxsp_column_product(of, i, j, l);
-        const float gap = gxsp_column_product(of, j, j, l) - gxsp_column_product(of, i, i, l);
-        const float size = gap < 0 ? -gap : gap, square = gap * gap + gamma * gamma + 1e-35f;
-        const float tangent = (gap < 0 ? -gamma : gamma) / (size + square * gxsp_rsqrt(square));
-        const float c = gxsp_rsqrt(1 + tangent * tangent);
-        gxsp_turn_columns(of, i, j, l, c, c * tangent);
-    }
-}
-
-/* Brings the longer of columns i and j to i, by a quarter turn, so that det V stays 1. */
-GXSP_INLINE void gxsp_order_columns(gxsp_columns *GXSP_RESTRICT of, int i, int j) {
-    int l;
-    GXSP_EACH_OF_TWO(l) {
-        const float s = gxsp_column_product(of, j, j, l) > gxsp_column_product(of, i, i, l) ? -1.0f : 0.0f;
-        gxsp_turn_columns(of, i, j, l, 1 + s, s);
-    }
-}
-
-/* U, V and s of the block that begins at first_lane, from the columns of b, orthogonal and the longest first; where
- * columns vanish, U is completed to a rotation. */
-static void gxsp_frame(const gxsp_columns *GXSP_RESTRICT from, int first_lane, gxsp_svd *GXSP_RESTRICT of) {
-    const float *scale = from->scale + first_lane;
-    int k, l;
-    for (k = 0; k < 9; k++) memcpy(of->v[k], from->v[k] + first_lane, sizeof of->v[k]);
-    GXSP_EACH_LANE(l) {
-        const int m = first_lane + l;
-        const float a0 = from->b[0][m], a1 = from->b[3][m], a2 = from->b[6][m], b0 = from->b[1][m], b1 = from->b[4][m],
-                    b2 = from->b[7][m];
-        const float c0 = from->b[2][m], c1 = from->b[5][m], c2 = from->b[8][m];
-        const float first = a0 * a0 + a1 * a1 + a2 * a2, some = first > 1e-30f ? 1.0f : 0.0f;
-        const float reach = gxsp_rsqrt(first + 1e-30f) * some;
-        const float u0 = a0 * reach + (1 - some), u1 = a1 * reach, u2 = a2 * reach;
-        const float along = u0 * b0 + u1 * b1 + u2 * b2;
-        const float p0 = b0 - along * u0, p1 = b1 - along * u1, p2 = b2 - along * u2;
-        /* a line: any direction across will do; the axis least along it */
-        const float s0 = u0 * u0, s1 = u1 * u1, s2 = u2 * u2;
-        const float x = s0 <= s1 && s0 <= s2 ? 1.0f : 0.0f, y = (1 - x) * (s1 <= s2 ? 1.0f : 0.0f), z = 1 - x - y;
-        const float part = x * u0 + y * u1 + z * u2;
-        const float n0 = x - part * u0, n1 = y - part * u1, n2 = z - part * u2;
-        const float across = p0 * p0 + p1 * p1 + p2 * p2, wide = across > 1e-12f * first + 1e-30f ? 1.0f : 0.0f,
-                    thin = 1 - wide;
-        const float q0 = wide * p0 + thin * n0, q1 = wide * p1 + thin * n1, q2 = wide * p2 + thin * n2;
-        const float unit = gxsp_rsqrt(q0 * q0 + q1 * q1 + q2 * q2);
-        const float w0 = q0 * unit, w1 = q1 * unit, w2 = q2 * unit;
-        const float t0 = u1 * w2 - u2 * w1, t1 = u2 * w0 - u0 * w2, t2 = u0 * w1 - u1 * w0;
-        of->u[0][l] = u0, of->u[3][l] = u1, of->u[6][l] = u2;
-        of->u[1][l] = w0, of->u[4][l] = w1, of->u[7][l] = w2;
-        of->u[2][l] = t0, of->u[5][l] = t1, of->u[8][l] = t2;
-        of->s[0][l] = scale[l] * (u0 * a0 + u1 * a1 + u2 * a2);
-        of->s[1][l] = scale[l] * (w0 * b0 + w1 * b1 + w2 * b2);
-        of->s[2][l] = scale[l] * (t0 * c0 + t1 * c1 + t2 * c2);
-    }
-}
-
-/* Are the columns of b, the largest entry of which is 1, orthogonal to single precision in every lane? */
-static int gxsp_orthogonal(const gxsp_columns *GXSP_RESTRICT of) {
-    float square[2 * GXSP_LANES], most = 0;
-    int l;
-    GXSP_EACH_OF_TWO(l) {
-        const float x = gxsp_column_product(of, 0, 1, l), y = gxsp_column_product(of, 0, 2, l),
-                    z = gxsp_column_product(of, 1, 2, l);
-        square[l] = x * x + y * y + z * z;
-    }
-    for (l = 0; l < 2 * GXSP_LANES; l++) most = square[l] > most ? square[l] : most;
-    return most < 1e-13f;
-}
-
-static inline float gxsp_larger(float a, float b) {
-    const float x = a < 0 ? -a : a, y = b < 0 ? -b : b;
-    return x > y ? x : y;
-}
-
-/* An entry of what has others of size 1; 0 where that is far from being told apart in single precision: the next powers
- * of such entries would be denormal, over which processors take a hundred cycles. Bodies that fall have many. */
-GXSP_INLINE float gxsp_clean(float entry) { return entry < 1e-9f && entry > -1e-9f ? 0.0f : entry; }
-
-/* F = 1 + G of a block as columns at first_lane, by its largest entry, and V = 1 */
-static void gxsp_columns_begin(gxsp_lanes *GXSP_RESTRICT g, int first_lane, gxsp_columns *GXSP_RESTRICT of) {
-    int k, l;
-    GXSP_EACH_LANE(l) {
-        const int m = first_lane + l;
-        const float f0 = (float)(g[0][l] + 1), f1 = (float)g[1][l], f2 = (float)g[2][l], f3 = (float)g[3][l],
-                    f4 = (float)(g[4][l] + 1), f5 = (float)g[5][l], f6 = (float)g[6][l], f7 = (float)g[7][l],
-                    f8 = (float)(g[8][l] + 1);
-        const float a = gxsp_larger(gxsp_larger(f0, f1), gxsp_larger(f2, f3)),
-                    b = gxsp_larger(gxsp_larger(f4, f5), gxsp_larger(f6, f7));
-        const float largest = gxsp_larger(gxsp_larger(a, b), f8), scale = largest > 1e-30f ? largest : 1.0f,
-                    inverse = 1 / scale;
-        of->scale[m] = scale;
-        of->b[0][m] = gxsp_clean(inverse * f0), of->b[1][m] = gxsp_clean(inverse * f1),
-        of->b[2][m] = gxsp_clean(inverse * f2);
-        of->b[3][m] = gxsp_clean(inverse * f3), of->b[4][m] = gxsp_clean(inverse * f4),
-        of->b[5][m] = gxsp_clean(inverse * f5);
-        of->b[6][m] = gxsp_clean(inverse * f6), of->b[7][m] = gxsp_clean(inverse * f7),
-        of->b[8][m] = gxsp_clean(inverse * f8);
-    }
-    for (k = 0; k < 9; k++) GXSP_EACH_LANE(l) of->v[k][first_lane + l] = k % 4 == 0 ? 1.0f : 0.0f;
-}
-
-/* F = 1 + G = U diag(s) V^T of two blocks, or of one if last is NULL, by one-sided Jacobi, every lane the same number
- * of sweeps. of: as many. */
-static void gxsp_decompose(gxsp_lanes *first, gxsp_lanes *last, gxsp_svd *of) {
-    gxsp_columns at;
-    int sweep;
-    gxsp_columns_begin(first, 0, &at);
-    gxsp_columns_begin(last ? last : first, GXSP_LANES, &at);
-    /* quadratic at the end: 4 reach single precision for extreme F too */
-    for (sweep = 0; sweep < 4 && !gxsp_orthogonal(&at); sweep++) {
-        gxsp_orthogonalise(&at, 0, 1);
-        gxsp_orthogonalise(&at, 0, 2);
-        gxsp_orthogonalise(&at, 1, 2);
-    }
-    gxsp_order_columns(&at, 0, 1);
-    gxsp_order_columns(&at, 0, 2);
-    gxsp_order_columns(&at, 1, 2);
-    gxsp_frame(&at, 0, &of[0]);
-    if (last) gxsp_frame(&at, GXSP_LANES, &of[1]);
-}
-
-/* Cofactors of a 3x3: the derivative of its determinant. */
-static void gxsp_cofactors(const double *a, double *cofactors) {
-    cofactors[0] = a[4] * a[8] - a[5] * a[7];
-    cofactors[1] = a[5] * a[6] - a[3] * a[8];
-    cofactors[2] = a[3] * a[7] - a[4] * a[6];
-    cofactors[3] = a[2] * a[7] - a[1] * a[8];
-    cofactors[4] = a[0] * a[8] - a[2] * a[6];
-    cofactors[5] = a[1] * a[6] - a[0] * a[7];
-    cofactors[6] = a[1] * a[5] - a[2] * a[4];
-    cofactors[7] = a[2] * a[3] - a[0] * a[5];
-    cofactors[8] = a[0] * a[4] - a[1] * a[3];
-}
-
-/* One step of Newton's method for the rotation R of F = R S: R (1 + skew omega), (tr S - S) omega = axis of S's skew
- * part, then orthogonal again to second order. Left alone where tr S - S is singular: R is not unique there. */
-static void gxsp_polish_rotation(const double *f, double *rotation) {
-    double s[9], a[9], inverse[9], axis[3], omega[3], turned[9], square[9], determinant, trace;
-    int r, c, k;
-    for (r = 0; r < 3; r++)
-        for (c = 0; c < 3; c++)
-            s[3 * r + c] = rotation[r] * f[c] + rotation[3 + r] * f[3 + c] + rotation[6 + r] * f[6 + c];
-    trace = s[0] + s[4] + s[8];
-    for (r = 0; r < 3; r++)
-        for (c = 0; c < 3; c++) a[3 * r + c] = (r == c ? trace : 0) - 0.5 * (s[3 * r + c] + s[3 * c + r]);
-    gxsp_cofactors(a, inverse);
-    determinant = a[0] * inverse[0] + a[1] * inverse[1] + a[2] * inverse[2];
-    axis[0] = s[7] - s[5], axis[1] = s[2] - s[6], axis[2] = s[3] - s[1];
-    if (fabs(determinant) <= 1e-6 * fabs(trace * trace * trace)) return;
-    for (r = 0; r < 3; r++)
-        omega[r] = (inverse[r] * axis[0] + inverse[3 + r] * axis[1] + inverse[6 + r] * axis[2]) / determinant;
-    for (r = 0; r < 3; r++) {
-        const double *from = rotation + 3 * r;
-        turned[3 * r] = from[0] + from[1] * omega[2] - from[2] * omega[1];
-        turned[3 * r + 1] = from[1] - from[0] * omega[2] + from[2] * omega[0];
-        turned[3 * r + 2] = from[2] + from[0] * omega[1] - from[1] * omega[0];
-    }
-    for (r = 0; r < 3; r++)
-        for (c = 0; c < 3; c++)
-            square[3 * r + c] = (r == c ? 1.5 : 0) - 0.5 * (turned[r] * turned[c] + turned[3 + r] * turned[3 + c] +
-                                                            turned[6 + r] * turned[6 + c]);
-    for (r = 0; r < 3; r++)
-        for (c = 0; c < 3; c++) {
-            double sum = 0;
-            for (k = 0; k < 3; k++) sum += turned[3 * r + k] * square[3 * k + c];
-            rotation[3 * r + c] = sum;
-        }
-}
-
 /* Fixed corotated [Stomakhin 2012]: psi = mu |F - R|^2 + lambda/2 (J - 1)^2, P = 2 mu (F - R) + lambda (J - 1) cof F, R
  * the rotation of F's polar decomposition. R = U V^T is known to single precision; a Newton step for the rotation that
  * makes R^T F symmetric, (tr S - S) omega = its skew part, squares the error. */
@@ -1791,10 +1902,12 @@ static void gxsp_material_state(gxs_material_kind kind, gxsp_state *s) {
     }
 }
 
-/* >>tangent: Hessian of psi at F = diag(s), projected. Every isotropic energy has this form: a 3x3 of the stretches,
- * and for the pair (F_ij, F_ji), k the third index, a 2x2 with eigenvalues flip = (psi_i - psi_j) / (s_i - s_j) for
- * F_ij = F_ji and twist = (psi_i + psi_j) / (s_i + s_j) for F_ij = -F_ji, psi_i = d psi / d s_i. even, odd: half their
- * sum and difference. */
+/* >>tangent: Hessian of one block ---------------------------------------------------------------------------------- */
+
+/* The Hessian of psi at F = diag(s), projected. Every isotropic energy has this form: a 3x3 of the stretches, and
+ * for each pair (F_ij, F_ji), k the third index, a 2x2. The eigenvalues of the 2x2 are flip = (psi_i - psi_j) /
+ * (s_i - s_j) for F_ij = F_ji and twist = (psi_i + psi_j) / (s_i + s_j) for F_ij = -F_ji, where psi_i = d psi / d
+ * s_i. even and odd are half their sum and half their difference. */
 
 typedef struct gxsp_principal {
     gxsp_singles mu, lambda, weight;
@@ -2060,7 +2173,10 @@ static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_REST
                                       (float)gradients[3 * r + 2][l] * of->v[6 + c][l];
 }
 
-/* >>element: passes over one block. Vectors of its corners: x[3 corner + axis][lane]. */
+/* >>element: passes over one block --------------------------------------------------------------------------------- */
+
+/* In: a block and vectors of its corners, x[3 corner + axis][lane]. Out: forces, products, and blocks of the
+ * Hessian that couple two corners. Nothing else is read or written. */
 
 /* Entries of gxs_element.mass */
 static const int gxsp_packed_mass[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
@@ -2353,42 +2469,540 @@ static void gxsp_block_corner(const gxsp_tangent *GXSP_RESTRICT t, int corner, g
                              : -(t->gradient[k][l] + t->gradient[3 + k][l] + t->gradient[6 + k][l]);
 }
 
-/* >>chunk: passes over one chunk, which only writes its own slots and sums */
-
-/* What a pass reads and writes; unused fields are 0. Vectors have one entry per copy. */
-typedef struct gxsp_pass {
-    gxsp_system *system;
-    double rate;        /* 1/s2; of products and linearisations times scale */
-    const double *from; /* x 3: displacement, m */
-    double *sum;        /* x 3: forces, N */
-    const gxsp_material *materials;
-    const double *turned; /* x 3: stresses are turned as elements are from here on to there; NULL: they are not */
-    int inertia;          /* forces and energy of the mass too */
-    int nudge;            /* forces of collapsed elements as if they were not quite */
-    int exact;            /* Hessians are not projected */
-    gxsp_vector4 *x;      /* of products: input */
-    gxsp_vector4 *y;      /* output */
-    const double *right;  /* x 3: output is this minus the product; NULL: it is the product */
-    double factor;        /* of passes over copies: what x is multiplied by */
-    const gxsp_problem *problem; /* of what needs the load */
-} gxsp_pass;
-
-/* Copies of the range with this index: from first, not including the one returned */
-static size_t gxsp_range(const gxsp_system *system, size_t index, size_t *first) {
-    *first = index * GXSP_RANGE;
-    return *first + GXSP_RANGE < system->model.n ? *first + GXSP_RANGE : system->model.n;
+/* U of a block's Hessian, by rows */
+static void gxsp_block_frame(const gxsp_tangent *GXSP_RESTRICT t, gxsp_singles *GXSP_RESTRICT u) {
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float a = t->frame[0][l], b = t->frame[1][l], c = t->frame[2][l], d = t->frame[3][l];
+        u[0][l] = 1 - (b * b + c * c), u[1][l] = a * b - c * d, u[2][l] = a * c + b * d;
+        u[3][l] = a * b + c * d, u[4][l] = 1 - (a * a + c * c), u[5][l] = b * c - a * d;
+        u[6][l] = a * c - b * d, u[7][l] = b * c + a * d, u[8][l] = 1 - (a * a + b * b);
+    }
 }
 
-/* A pass over all copies; sums: of those that it makes for each range, the first count, or NULL */
-static void gxsp_over_ranges(gxsp_system *system, void (*task)(void *, size_t), gxsp_pass *pass, double *sums,
-                             int count) {
-    size_t i;
+/* own += U B U^T, packed, B as of gxsp_block_couple: what couples a shape function with itself. p: its gradient */
+static void gxsp_block_own(const gxsp_tangent *GXSP_RESTRICT t, gxsp_singles *GXSP_RESTRICT u,
+                           gxsp_singles *GXSP_RESTRICT p, gxsp_singles *GXSP_RESTRICT own) {
+    int l;
+    GXSP_EACH_LANE(l) {
+        const float p0 = p[0][l], p1 = p[1][l], p2 = p[2][l], q0 = p0 * p0, q1 = p1 * p1, q2 = p2 * p2;
+        const float e0 = t->even[0][l], e1 = t->even[1][l], e2 = t->even[2][l];
+        const float b0 = t->stretch[0][l] * q0 + e2 * q1 + e1 * q2, b3 = t->stretch[3][l] * q1 + e2 * q0 + e0 * q2,
+                    b5 = t->stretch[5][l] * q2 + e1 * q0 + e0 * q1, b1 = (t->stretch[1][l] + t->odd[2][l]) * p0 * p1,
+                    b2 = (t->stretch[2][l] + t->odd[1][l]) * p0 * p2, b4 = (t->stretch[4][l] + t->odd[0][l]) * p1 * p2;
+        const float u0 = u[0][l], u1 = u[1][l], u2 = u[2][l], u3 = u[3][l], u4 = u[4][l], u5 = u[5][l], u6 = u[6][l],
+                    u7 = u[7][l], u8 = u[8][l];
+        const float a0 = u0 * b0 + u1 * b1 + u2 * b2, a1 = u0 * b1 + u1 * b3 + u2 * b4,
+                    a2 = u0 * b2 + u1 * b4 + u2 * b5, a3 = u3 * b0 + u4 * b1 + u5 * b2,
+                    a4 = u3 * b1 + u4 * b3 + u5 * b4, a5 = u3 * b2 + u4 * b4 + u5 * b5,
+                    a6 = u6 * b0 + u7 * b1 + u8 * b2, a7 = u6 * b1 + u7 * b3 + u8 * b4,
+                    a8 = u6 * b2 + u7 * b4 + u8 * b5;
+        own[0][l] += a0 * u0 + a1 * u1 + a2 * u2, own[1][l] += a0 * u3 + a1 * u4 + a2 * u5,
+            own[2][l] += a0 * u6 + a1 * u7 + a2 * u8;
+        own[3][l] += a3 * u3 + a4 * u4 + a5 * u5, own[4][l] += a3 * u6 + a4 * u7 + a5 * u8,
+            own[5][l] += a6 * u6 + a7 * u7 + a8 * u8;
+    }
+}
+
+/* The same of a Hessian without a frame */
+static void gxsp_general_own(const gxsp_general *general, gxsp_singles *p, gxsp_singles *own) {
+    static const int packed[6] = {0, 1, 2, 4, 5, 8};
+    gxsp_singles block[9];
+    int k, l;
+    gxsp_general_couple(general, p, p, block);
+    for (k = 0; k < 6; k++) GXSP_EACH_LANE(l) own[k][l] += block[packed[k]][l];
+}
+
+/* >>masses: an element's mass in its lane -------------------------------------------------------------------------- */
+
+/* In: gxs_element.mass. Out: the mass of a whole element, or mass, centre and covariance of a part of one. */
+
+/* Is the mass block m (1 + delta_ij), as a whole element's is? To rounding of its ten integrals. */
+static int gxsp_whole(const double *mass) {
+    static const int own[10] = {2, 1, 1, 1, 2, 1, 1, 2, 1, 2};
     int k;
-    pass->system = system;
-    gxsp_parallel(system->jobs, system->model.range_count, task, pass);
-    for (k = 0; k < count; k++)
-        for (i = 0, sums[k] = 0; i < system->model.range_count; i++) sums[k] += system->vectors.range_sum[i][k];
+    for (k = 0; k < 10; k++)
+        if (fabs(mass[k] - 0.5 * own[k] * mass[0]) > 1e-14 * mass[0]) return 0;
+    return 1;
 }
+
+static const uint8_t gxsp_own_order[4] = {0, 1, 2, 3};
+
+/* An element's mass, returned, and its centre in barycentric coordinates: row sums over their sum. rounded: to whole
+ * units of 2^-24, so that the four are 1 in sum, and none below 0 */
+static double gxsp_find_centre(const double *mass, double *centre, double *rounded) {
+    const double unit = 16777216;
+    double sum = 0;
+    int k, j, most = 1;
+    for (k = 0; k < 4; k++) {
+        for (j = 0, centre[k] = 0; j < 4; j++) centre[k] += mass[gxsp_packed_mass[k][j]];
+        sum += centre[k];
+    }
+    rounded[0] = 1;
+    for (k = 3; k >= 0; k--) {
+        centre[k] = sum > 0 ? centre[k] / sum : 0;
+        if (k > 0) rounded[0] -= rounded[k] = floor(unit * centre[k] + 0.5) / unit;
+    }
+    most = rounded[2] > rounded[most] ? 2 : most;
+    most = rounded[3] > rounded[most] ? 3 : most;
+    if (rounded[0] < 0) rounded[most] += rounded[0], rounded[0] = 0;
+    return sum > 0 ? sum : 0;
+}
+
+/* What each corner's copy has of an element's mass: row sums as the solver has them */
+static void gxsp_row_masses(const gxs_element *element, double *rows) {
+    const int whole = gxsp_whole(element->mass);
+    double centre[4], mass = whole ? 2.5 * element->mass[0] : gxsp_find_centre(element->mass, centre, rows);
+    int k;
+    for (k = 0; k < 4; k++) rows[k] = whole ? mass : mass * rows[k];
+}
+
+/* Does the element give corner i stiffness or mass? */
+static int gxsp_supports(const gxs_element *element, int i) {
+    double rows[4];
+    if (element->weight > 0) return 1;
+    gxsp_row_masses(element, rows);
+    return rows[i] > 0;
+}
+
+/* Cholesky factor of a symmetric 3x3, which is used up, the largest pivot first, so that rounding stays as small as it
+ * was where the matrix is next to singular or worse; then made lower triangular by turning columns, which leaves factor
+ * factor^T as it is. */
+static void gxsp_factor3(double c[3][3], double factor[3][3]) {
+    int done[3] = {0, 0, 0}, step, i, j, k;
+    memset(factor, 0, 9 * sizeof(double));
+    for (step = 0; step < 3; step++) {
+        double root;
+        for (i = 0, k = -1; i < 3; i++)
+            if (!done[i] && (k < 0 || c[i][i] > c[k][k])) k = i;
+        if (!(c[k][k] > 0)) break;
+        root = sqrt(c[k][k]);
+        done[k] = 1;
+        for (i = 0; i < 3; i++)
+            if (!done[i]) {
+                const double most = c[i][i] > 0 ? sqrt(c[i][i]) : 0;
+                factor[i][step] = fabs(c[i][k]) < root * most ? c[i][k] / root : copysign(most, c[i][k]);
+            }
+        factor[k][step] = root;
+        for (i = 0; i < 3; i++)
+            for (j = 0; j < 3 && !done[i]; j++) c[i][j] -= factor[i][step] * factor[j][step];
+    }
+    for (i = 0; i < 2; i++)
+        for (j = i + 1; j < 3; j++) {
+            const double length = sqrt(factor[i][i] * factor[i][i] + factor[i][j] * factor[i][j]);
+            const double cosine = length > 0 ? factor[i][i] / length : 1, sine = length > 0 ? factor[i][j] / length : 0;
+            for (k = i; k < 3; k++) {
+                const double a = factor[k][i], b = factor[k][j];
+                factor[k][i] = cosine * a + sine * b, factor[k][j] = cosine * b - sine * a;
+            }
+        }
+}
+
+/* Masses of a lane that are not those of a whole element. Returns all of it. */
+static double gxsp_place_moments(const double *mass, const uint8_t *order, gxsp_moments *moments, size_t lane) {
+    double centre[4], rounded[4], covariance[3][3], root[3][3];
+    const double sum = gxsp_find_centre(mass, centre, rounded), all = sum > 0 ? sum : 1;
+    const uint8_t *own = order + 1;
+    int i, j;
+    for (i = 0; i < 3; i++)
+        for (j = 0; j < 3; j++)
+            covariance[i][j] = mass[gxsp_packed_mass[own[i]][own[j]]] / all - centre[own[i]] * centre[own[j]];
+    gxsp_factor3(covariance, root);
+    for (i = 0; i < 3; i++) {
+        moments->centre[i][lane] = (float)rounded[own[i]];
+        for (j = 0; j <= i; j++) moments->root[i * (i + 1) / 2 + j][lane] = (float)root[i][j];
+    }
+    return sum;
+}
+
+/* order: which of the element's corners come to be the lane's */
+static void gxsp_place_element(const gxsp_chunk *chunk, const gxs_element *element, const uint8_t *order, uint32_t at,
+                               uint32_t lumped) {
+    gxsp_rest *rest = &chunk->rest[at / GXSP_LANES];
+    size_t lane = at % GXSP_LANES;
+    int i, k;
+    for (i = 0; i < 3 && chunk->gradients; i++)
+        for (k = 0; k < 3; k++)
+            chunk->gradients[at / GXSP_LANES].entry[3 * i + k][lane] =
+                order[1 + i] > 0 ? element->gradient[order[1 + i]][k]
+                                 : -(element->gradient[1][k] + element->gradient[2][k] + element->gradient[3][k]);
+    rest->weight[lane] = element->weight;
+    rest->material[lane] = element->material;
+    chunk->groups[at] = element->group % GXSP_GROUPS; /* who does not update may have left it unset */
+    if (chunk->moments)
+        rest->mass[lane] = gxsp_place_moments(element->mass, order, &chunk->moments[at / GXSP_LANES], lane);
+    else
+        rest->mass[lane] = lumped ? 0 : 0.5 * element->mass[0];
+}
+
+/* >>order: the order of elements ----------------------------------------------------------------------------------- */
+
+/* In: the model and the components of its copies. Out: elements sorted by class, then by component, then along a
+ * curve through space, so that chunks have few nodes and sleep with their component. Sorting and forests of
+ * joined indices serve later sections too. */
+
+/* Forests of joined indices: the root of a tree is its least. */
+static uint32_t gxsp_root(uint32_t *parent, uint32_t i) {
+    while (parent[i] != i) {
+        parent[i] = parent[parent[i]];
+        i = parent[i];
+    }
+    return i;
+}
+
+static void gxsp_join(uint32_t *parent, uint32_t i, uint32_t j) {
+    i = gxsp_root(parent, i);
+    j = gxsp_root(parent, j);
+    if (i < j)
+        parent[j] = i;
+    else
+        parent[i] = j;
+}
+
+/* The ten bits of x with two zeros between each two */
+static uint32_t gxsp_spread(uint32_t x) {
+    x = (x | x << 16) & 0x030000ffu;
+    x = (x | x << 8) & 0x0300f00fu;
+    x = (x | x << 4) & 0x030c30c3u;
+    return (x | x << 2) & 0x09249249u;
+}
+
+/* Position of a place along the Z-order curve of 1024^3 cells */
+static uint32_t gxsp_curve(const double *at, const double *low, double per_cell) {
+    uint32_t code = 0;
+    int k;
+    for (k = 0; k < 3; k++) {
+        double cell = (at[k] - low[k]) * per_cell;
+        code |= gxsp_spread(cell < 0 ? 0 : cell > 1023 ? 1023 : (uint32_t)cell) << k;
+    }
+    return code;
+}
+
+/* An element's place in the order: class, then piece, then curve, the last of each ten bits first */
+typedef struct gxsp_sorted {
+    uint32_t place, component, class_index;
+    uint32_t index; /* of the element or, while pieces are sorted, of the piece */
+} gxsp_sorted;
+
+static uint32_t gxsp_sorted_digit(const gxsp_sorted *of, int pass) {
+    return pass < 3 ? of->place >> (10 * pass) & 1023u
+         : pass < 6 ? of->component >> (10 * (pass - 3)) & 1023u
+                    : of->class_index;
+}
+
+/* Stable sort, least digit first; digits all alike are left out. other: room for as many */
+static gxsp_sorted *gxsp_sort(gxsp_sorted *sorted, gxsp_sorted *other, size_t count) {
+    int pass, digit;
+    for (pass = 0; pass < 7; pass++) {
+        size_t start[1025] = {0}, i;
+        gxsp_sorted *swap = sorted;
+        for (i = 0; i < count; i++) ++start[gxsp_sorted_digit(&sorted[i], pass) + 1];
+        if (start[gxsp_sorted_digit(&sorted[0], pass) + 1] == count) continue;
+        for (digit = 0; digit < 1024; digit++) start[digit + 1] += start[digit];
+        for (i = 0; i < count; i++) other[start[gxsp_sorted_digit(&sorted[i], pass)]++] = sorted[i];
+        sorted = other;
+        other = swap;
+    }
+    return sorted;
+}
+
+/* Position of every element along the curve through the model's box */
+static void gxsp_place_elements(const gxs_model *model, gxsp_sorted *sorted) {
+    double low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, extent = 0;
+    size_t i;
+    int k, r;
+    for (i = 0; model->positions && i < model->copy_count; i++)
+        for (k = 0; k < 3; k++) {
+            double x = model->positions[3 * i + (size_t)k];
+            low[k] = i == 0 || x < low[k] ? x : low[k];
+            high[k] = i == 0 || x > high[k] ? x : high[k];
+        }
+    for (k = 0; k < 3; k++) extent = high[k] - low[k] > extent ? high[k] - low[k] : extent;
+    for (i = 0; i < model->element_count && extent > 0; i++) {
+        double at[3] = {0, 0, 0};
+        for (k = 0; k < 4; k++)
+            for (r = 0; r < 3; r++)
+                at[r] += 0.25 * model->positions[3 * (size_t)model->elements[i].copy[k] + (size_t)r];
+        sorted[i].place = gxsp_curve(at, low, 1024 / extent);
+    }
+}
+
+/* Pieces in the order in which the curve first meets them. rank: by piece */
+static void gxsp_rank_components(const gxsp_system *system, const gxs_model *model, const gxsp_sorted *elements,
+                                 gxsp_sorted *components, gxsp_sorted *other, uint32_t *rank) {
+    size_t i;
+    for (i = 0; i < system->model.component_count; i++) {
+        components[i].index = (uint32_t)i;
+        components[i].place = UINT32_MAX;
+    }
+    for (i = 0; i < model->element_count; i++) {
+        gxsp_sorted *component = &components[system->model.component[model->elements[i].copy[0]]];
+        component->place = elements[i].place < component->place ? elements[i].place : component->place;
+    }
+    components = gxsp_sort(components, other, system->model.component_count);
+    for (i = 0; i < system->model.component_count; i++) rank[components[i].index] = (uint32_t)i;
+}
+
+/* Are an element's gradients those that the rest positions x of its corners say, but for rounding? */
+static int gxsp_is_placed(const gxs_element *element, const double x[4][3]) {
+    double edge[3][3], made[3][3], determinant = 0, most = 0, off = 0;
+    int i, k;
+    for (i = 0; i < 3; i++)
+        for (k = 0; k < 3; k++) edge[i][k] = x[1 + i][k] - x[0][k];
+    for (i = 0; i < 3; i++) {
+        const double *a = edge[(i + 1) % 3], *b = edge[(i + 2) % 3];
+        made[i][0] = a[1] * b[2] - a[2] * b[1], made[i][1] = a[2] * b[0] - a[0] * b[2],
+        made[i][2] = a[0] * b[1] - a[1] * b[0];
+    }
+    for (k = 0; k < 3; k++) determinant += edge[0][k] * made[0][k];
+    if (!gxsp_finite(determinant) || !(fabs(determinant) >= DBL_MIN)) return 0;
+    for (k = 0; k < 9; k++) {
+        const double given = element->gradient[1 + k / 3][k % 3], found = made[k / 3][k % 3] / determinant;
+        if (!gxsp_finite(found)) return 0;
+        most = fabs(given) > most ? fabs(given) : most;
+        off = fabs(given - found) > off ? fabs(given - found) : off;
+    }
+    return off <= GXSP_PLACED * most;
+}
+
+/* What elements of one chunk are alike in: 4 x kind + 2 x (gradients are not those of the positions) + (masses are not
+ * those of whole elements). positions: at 3 x copy, or, origins (as of gxs_change) given, of what the copy was; NULL:
+ * there are none */
+static uint32_t gxsp_class(gxs_material_kind kind, const gxs_element *element, uint32_t lumped, const double *positions,
+                           const uint32_t *origins) {
+    double x[4][3];
+    int k;
+    for (k = 0; k < 4 && positions; k++) {
+        const uint32_t copy = origins ? origins[element->copy[k]] >> 1 : element->copy[k];
+        memcpy(x[k], positions + 3 * (size_t)copy, sizeof x[k]);
+    }
+    return 4 * (uint32_t)kind + (positions && gxsp_is_placed(element, (const double(*)[3])x) ? 0u : 2u) +
+           (lumped || gxsp_whole(element->mass) ? 0u : 1u);
+}
+
+/* The order of elements. Elements of one piece are together, so that chunks have few nodes and sleep with their piece.
+ */
+static gxsp_sorted *gxsp_order_elements(const gxsp_system *system, const gxs_model *model, gxsp_pool *scratch) {
+    const size_t count = model->element_count, components = system->model.component_count,
+                 most = count > components ? count : components;
+    gxsp_sorted *sorted = (gxsp_sorted *)gxsp_take(scratch, count, sizeof *sorted);
+    gxsp_sorted *other = (gxsp_sorted *)gxsp_take(scratch, most, sizeof *other);
+    gxsp_sorted *ranked = (gxsp_sorted *)gxsp_take(scratch, components, sizeof *ranked);
+    uint32_t *rank = (uint32_t *)gxsp_take(scratch, components, sizeof(uint32_t));
+    size_t i;
+    if (scratch->failed) return NULL;
+    gxsp_place_elements(model, sorted);
+    gxsp_rank_components(system, model, sorted, ranked, other, rank);
+    for (i = 0; i < count; i++) {
+        const gxs_element *element = &model->elements[i];
+        sorted[i].index = (uint32_t)i;
+        sorted[i].component = rank[system->model.component[element->copy[0]]];
+        sorted[i].class_index =
+            gxsp_class(model->materials[element->material].kind, element, model->lumped_mass, model->positions, NULL);
+    }
+    return gxsp_sort(sorted, other, count);
+}
+
+/* >>lanes: which element of a chunk goes to which lane ------------------------------------------------------------- */
+
+/* In: nodes of a chunk's elements. Out: a lane for each element. Neighbours go to successive blocks, so that
+ * elements of one block seldom share nodes: where they do, sums into slots wait for the ones before. A pass over
+ * blocks neither loads nor stores a corner that is the same as in the block before in every lane. Hence lanes are
+ * filled with strips around an edge: four elements, each with all but one corner of the one before. */
+
+/* Ascending, by insertion */
+static void gxsp_sort_row(uint32_t *row, uint32_t count) {
+    uint32_t i, j;
+    for (i = 1; i < count; i++) {
+        uint32_t value = row[i];
+        for (j = i; j > 0 && row[j - 1] > value; j--) row[j] = row[j - 1];
+        row[j] = value;
+    }
+}
+
+/* Numbers of copies in the chunk at work */
+typedef struct gxsp_numbers {
+    uint32_t *local; /* n: the number, where stamp is the round */
+    uint32_t *stamp; /* n, 0 at first */
+    uint32_t round;  /* one for each chunk */
+} gxsp_numbers;
+
+/* The nodes of a chunk in the order of their copies, which is that of memory. copies: of count elements; GXSP_NONE
+ * where there is none, else numbers of nodes come in their place. Returns how many nodes there are. */
+static uint32_t gxsp_number_nodes(uint32_t (*copies)[4], uint32_t count, gxsp_numbers *numbers, uint32_t *nodes) {
+    uint32_t e, i, k, found = 0;
+    numbers->round++;
+    for (e = 0; e < count; e++)
+        for (k = 0; k < 4 && copies[e][0] != GXSP_NONE; k++)
+            if (numbers->stamp[copies[e][k]] != numbers->round) {
+                numbers->stamp[copies[e][k]] = numbers->round;
+                nodes[found++] = copies[e][k];
+            }
+    gxsp_sort_row(nodes, found);
+    for (i = 0; i < found; i++) numbers->local[nodes[i]] = i;
+    for (e = 0; e < count; e++)
+        for (k = 0; k < 4 && copies[e][k] != GXSP_NONE; k++) copies[e][k] = numbers->local[copies[e][k]];
+    return found;
+}
+
+/* Corners of a chunk's blocks. nodes: by lane, GXSP_NONE where there is no element: such a lane has the corners of the
+ * block before */
+static void gxsp_set_corners(const gxsp_chunk *chunk, uint32_t (*nodes)[4]) {
+    uint32_t b, l, k;
+    for (b = 0; b < chunk->block_count; b++) {
+        gxsp_corners *corner = &chunk->corners[b];
+        const gxsp_corners *before = b > 0 ? corner - 1 : corner;
+        chunk->changed[b] = b > 0 ? 0 : 15;
+        for (k = 0; k < 4; k++)
+            for (l = 0; l < GXSP_LANES; l++) {
+                const uint32_t node = nodes[b * GXSP_LANES + l][k];
+                corner->node[k][l] = node != GXSP_NONE ? (uint16_t)node : b > 0 ? before->node[k][l] : 0;
+                chunk->changed[b] =
+                    (uint8_t)(chunk->changed[b] | (corner->node[k][l] != before->node[k][l] ? 1u << k : 0u));
+            }
+    }
+    chunk->changed[b] = 15;
+}
+
+enum { GXSP_STRIP = 4, GXSP_FACES = 4096 };
+
+typedef struct gxsp_layout {
+    uint32_t (*nodes)[4]; /* count: of each element */
+    uint32_t count;
+    uint16_t across[GXSP_CHUNK][4]; /* the element beyond the face that a corner is not on, or count */
+    uint8_t placed[GXSP_CHUNK];
+    uint16_t strip[GXSP_CHUNK];   /* elements of the chains of one length, one after the other */
+    uint8_t turn[GXSP_CHUNK][4];  /* and the order of their corners */
+    uint16_t element[GXSP_CHUNK]; /* by lane: the element there, or count */
+    uint8_t order[GXSP_CHUNK][4]; /* by lane */
+} gxsp_layout;
+
+/* Where three nodes stand in an element: their corners, and the fourth one; 4: not each is there once. Without
+ * branches, which could not be foretold */
+static int gxsp_find_face(const uint32_t *element, const uint32_t *face, uint8_t *corners) {
+    static const uint8_t corner_of[16] = {4, 0, 1, 4, 2, 4, 4, 4, 3, 4, 4, 4, 4, 4, 4, 4}; /* of a single bit */
+    unsigned met[3];
+    int i;
+    for (i = 0; i < 3; i++) {
+        const uint32_t node = face[i];
+        met[i] = (element[0] == node ? 1u : 0u) | (element[1] == node ? 2u : 0u) | (element[2] == node ? 4u : 0u) |
+                 (element[3] == node ? 8u : 0u);
+        corners[i] = corner_of[met[i]];
+    }
+    return (corners[0] | corners[1] | corners[2]) & 4 ? 4 : corner_of[15 & ~(met[0] | met[1] | met[2])];
+}
+
+/* The nodes of the face that a corner is not on */
+static void gxsp_face_of(const uint32_t *element, int corner, uint32_t *face) {
+    int i;
+    for (i = 0; i < 3; i++) face[i] = element[i < corner ? i : i + 1];
+}
+
+/* Fills across by a table of faces that have been met. */
+static void gxsp_find_across(gxsp_layout *layout) {
+    uint16_t table[GXSP_FACES]; /* 4 x element + corner, from 1 */
+    uint32_t f, at, face[3];
+    uint8_t corners[3];
+    memset(table, 0, sizeof table);
+    for (f = 0; f < 4 * layout->count; f++) {
+        layout->across[f / 4][f % 4] = (uint16_t)layout->count;
+        gxsp_face_of(layout->nodes[f / 4], (int)(f % 4), face);
+        for (at = (face[0] * face[0] + face[1] * face[1] + face[2] * face[2]) * 40503u / 16 % GXSP_FACES; table[at];
+             at = (at + 1) % GXSP_FACES) {
+            const uint32_t other = (table[at] - 1u) / 4;
+            const int corner = gxsp_find_face(layout->nodes[other], face, corners);
+            if (corner != (int)((table[at] - 1u) % 4)) continue;
+            layout->across[f / 4][f % 4] = (uint16_t)other;
+            layout->across[other][corner] = (uint16_t)(f / 4);
+            break;
+        }
+        if (!table[at]) table[at] = (uint16_t)(f + 1);
+    }
+}
+
+/* Walks from the chain's first element around the edge of its first two corners. Is there a way for length elements? */
+static int gxsp_walk_strip(const gxsp_layout *layout, uint32_t length, uint16_t *strip, uint8_t (*order)[4]) {
+    uint32_t i, k;
+    for (i = 1; i < length; i++) {
+        const uint32_t moving = i % 2 ? 2 : 3, e = layout->across[strip[i - 1]][order[i - 1][moving]];
+        const uint32_t *before = layout->nodes[strip[i - 1]];
+        uint32_t face[3];
+        uint8_t corners[3] = {0, 0, 0};
+        int other;
+        if (e == layout->count || layout->placed[e]) return 0;
+        for (k = 0; k < i; k++)
+            if (strip[k] == e) return 0;
+        face[0] = before[order[i - 1][0]], face[1] = before[order[i - 1][1]],
+        face[2] = before[order[i - 1][5 - moving]];
+        other = gxsp_find_face(layout->nodes[e], face, corners);
+        if (other == 4) return 0;
+        order[i][moving] = (uint8_t)other;
+        order[i][0] = corners[0], order[i][1] = corners[1], order[i][5 - moving] = corners[2];
+        strip[i] = (uint16_t)e;
+    }
+    return 1;
+}
+
+/* A chain of so many elements that begins with e, which is not seated */
+static int gxsp_find_strip(const gxsp_layout *layout, uint32_t e, uint32_t length, uint16_t *strip,
+                           uint8_t (*order)[4]) {
+    static const uint8_t edges[6][4] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2},
+                                        {1, 2, 0, 3}, {1, 3, 0, 2}, {2, 3, 0, 1}};
+    int edge, turned;
+    for (edge = 0; edge < 6; edge++)
+        for (turned = 0; turned < 2; turned++) {
+            strip[0] = (uint16_t)e;
+            memcpy(order[0], edges[edge], 4);
+            order[0][2] = edges[edge][2 + turned], order[0][3] = edges[edge][3 - turned];
+            if (gxsp_walk_strip(layout, length, strip, order)) return 1;
+        }
+    return 0;
+}
+
+/* Chains of so many elements, of those not seated yet. Returns how many chains there are. */
+static uint32_t gxsp_list_strips(gxsp_layout *layout, uint32_t length) {
+    uint32_t e, i, found = 0;
+    for (e = 0; e < layout->count; e++)
+        if (!layout->placed[e] &&
+            gxsp_find_strip(layout, e, length, &layout->strip[found * length], &layout->turn[found * length])) {
+            for (i = 0; i < length; i++) layout->placed[layout->strip[found * length + i]] = 1;
+            found++;
+        }
+    return found;
+}
+
+/* Seats chains of so many elements in the blocks from first on, side by side, each in a lane. All of single elements;
+ * of longer ones those that fill blocks. Returns the first block that is left. */
+static uint32_t gxsp_place_strips(gxsp_layout *layout, uint32_t blocks, uint32_t length, uint32_t first) {
+    const uint32_t strips = gxsp_list_strips(layout, length), rows = length > 1 ? strips / GXSP_LANES : blocks - first;
+    uint32_t c, i;
+    for (c = 0; c < strips; c++)
+        for (i = 0; i < length; i++) {
+            const uint32_t at = c * length + i, e = layout->strip[at];
+            const uint32_t lane = c < rows * GXSP_LANES ? (first + c % rows * length + i) * GXSP_LANES + c / rows : 0;
+            layout->placed[e] = c < rows * GXSP_LANES;
+            if (!layout->placed[e]) continue;
+            layout->element[lane] = (uint16_t)e;
+            memcpy(layout->order[lane], layout->turn[at], 4);
+        }
+    return first + rows * length;
+}
+
+/* The lane of each element of a chunk. nodes: of the elements, neighbours together */
+static void gxsp_assign_lanes(gxsp_layout *layout, uint32_t (*nodes)[4], uint32_t count, uint32_t blocks) {
+    uint32_t lane, length, first = 0;
+    layout->nodes = nodes;
+    layout->count = count;
+    memset(layout->placed, 0, sizeof layout->placed);
+    for (lane = 0; lane < GXSP_CHUNK; lane++) layout->element[lane] = (uint16_t)count;
+    gxsp_find_across(layout);
+    for (length = GXSP_STRIP; length > 0; length /= 2) first = gxsp_place_strips(layout, blocks, length, first);
+}
+
+/* >>chunks: blocks and slots --------------------------------------------------------------------------------------- */
+
+/* In: the sorted elements. Out: chunks with their blocks and nodes, and the slots of every copy. Writes
+ * gxsp_mesh. */
 
 static const gxsp_moments *gxsp_block_moments(const gxsp_chunk *chunk, uint32_t block) {
     return chunk->moments ? &chunk->moments[block] : NULL;
@@ -2398,18 +3012,1574 @@ static gxsp_general *gxsp_block_general(const gxsp_chunk *chunk, uint32_t block)
     return chunk->generals ? &chunk->generals[block] : NULL;
 }
 
-/* Asks for memory that is soon read: a block is too long for processors to see the next one in time. Always inline: gcc
- * takes functions that do nothing else for functions without effect, and leaves calls of them out. */
-GXSP_INLINE void gxsp_prefetch(const void *memory, size_t size) {
-#if defined(__GNUC__)
-    const char *line = (const char *)memory;
-    size_t k;
-    for (k = 0; k < size; k += 64) __builtin_prefetch(line + k);
-#else
-    (void)memory;
-    (void)size;
-#endif
+static void gxsp_lane_copies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t block, int lane,
+                             uint32_t *copies) {
+    const gxsp_corners *corner = &chunk->corners[block];
+    int i;
+    for (i = 0; i < 4; i++) copies[i] = system->mesh.nodes[chunk->first_node + corner->node[i][lane]];
 }
+
+/* What corner k's copy has of the mass of a lane's element: its row sum */
+static double gxsp_lane_mass(const gxsp_chunk *chunk, uint32_t lane, int k) {
+    const size_t b = lane / GXSP_LANES, l = lane % GXSP_LANES;
+    const gxsp_moments *of = gxsp_block_moments(chunk, (uint32_t)b);
+    return chunk->rest[b].mass[l] *
+           (!of ? 5
+                : (double)(k > 0 ? of->centre[k - 1][l]
+                                 : 1 - (of->centre[0][l] + of->centre[1][l] + of->centre[2][l])));
+}
+
+/* Does the element of a lane give corner k stiffness or mass? */
+static int gxsp_lane_supports(const gxsp_chunk *chunk, uint32_t lane, int k) {
+    return chunk->rest[lane / GXSP_LANES].weight[lane % GXSP_LANES] > 0 || gxsp_lane_mass(chunk, lane, k) > 0;
+}
+
+/* Elements of a chunk in their lanes. elements: sorted; nodes: theirs, numbered in the chunk */
+static void gxsp_fill_chunk(const gxsp_chunk *chunk, const gxs_model *model, const gxsp_sorted *elements,
+                            uint32_t (*nodes)[4], uint32_t count) {
+    gxsp_layout layout;
+    uint32_t placed[GXSP_CHUNK][4], lane;
+    int k;
+    gxsp_assign_lanes(&layout, nodes, count, chunk->block_count);
+    memset(placed, 0xff, sizeof placed);
+    for (lane = 0; lane < chunk->block_count * GXSP_LANES; lane++) {
+        const uint32_t e = layout.element[lane];
+        if (e == count) { /* of no weight, but of a material there is */
+            chunk->rest[lane / GXSP_LANES].material[lane % GXSP_LANES] = model->elements[elements[0].index].material;
+            continue;
+        }
+        gxsp_place_element(chunk, &model->elements[elements[e].index], layout.order[lane], lane, model->lumped_mass);
+        for (k = 0; k < 4; k++) placed[lane][k] = nodes[e][layout.order[lane][k]];
+    }
+    gxsp_set_corners(chunk, placed);
+}
+
+/* Blocks and nodes of the chunks */
+static void gxsp_fill_chunks(gxsp_system *system, const gxs_model *model, const gxsp_sorted *sorted,
+                             gxsp_numbers *numbers) {
+    uint32_t copies[GXSP_CHUNK][4], c;
+    size_t first = 0;
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        gxsp_chunk *chunk = &system->mesh.chunks[c];
+        uint32_t e;
+        for (e = 0; first + e < model->element_count && e < chunk->block_count * GXSP_LANES &&
+                    sorted[first + e].class_index == chunk->class_index;
+             e++) {
+            const gxs_element *element = &model->elements[sorted[first + e].index];
+            gxsp_prefetch(element, sizeof *element);
+            memcpy(copies[e], element->copy, sizeof copies[e]);
+        }
+        chunk->first_node = (uint32_t)system->mesh.slot_count;
+        chunk->node_count = gxsp_number_nodes(copies, e, numbers, system->mesh.nodes + system->mesh.slot_count);
+        gxsp_fill_chunk(chunk, model, sorted + first, copies, e);
+        first += e;
+        system->mesh.slot_count += chunk->node_count;
+    }
+}
+
+/* Chunks of the sorted elements: which blocks, what class. Returns how many. chunks: NULL, or room for all */
+static uint32_t gxsp_plan_chunks(gxsp_system *system, const gxsp_sorted *sorted, gxsp_chunk *chunks) {
+    uint32_t chunk_count = 0;
+    size_t i = 0;
+    system->mesh.block_count = 0;
+    while (i < system->model.element_count) {
+        uint32_t class_index = sorted[i].class_index, count = 0;
+        gxsp_chunk chunk;
+        memset(&chunk, 0, sizeof chunk);
+        while (i < system->model.element_count && sorted[i].class_index == class_index && count < GXSP_CHUNK)
+            ++i, ++count;
+        chunk.class_index = class_index;
+        chunk.kind = (gxs_material_kind)(class_index / 4);
+        chunk.first_block = (uint32_t)system->mesh.block_count;
+        chunk.block_count = (count + GXSP_LANES - 1) / GXSP_LANES;
+        system->mesh.block_count += chunk.block_count;
+        if (chunks) chunks[chunk_count] = chunk;
+        chunk_count++;
+    }
+    return chunk_count;
+}
+
+/* Blocks of chunks count of which are planned, but for those of steps: see gxsp_steps_make */
+static void gxsp_blocks_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count) {
+    gxsp_rest *rest;
+    gxsp_corners *corners;
+    gxsp_gradients *gradients;
+    gxsp_moments *moments;
+    uint32_t *groups;
+    uint8_t *changed;
+    size_t blocks = 0, own = 0, general = 0;
+    uint32_t c;
+    for (c = 0; c < count; c++) {
+        blocks += chunks[c].block_count;
+        own += chunks[c].class_index & 2 ? chunks[c].block_count : 0;
+        general += chunks[c].class_index & 1 ? chunks[c].block_count : 0;
+    }
+    rest = (gxsp_rest *)gxsp_take(pool, blocks, sizeof(gxsp_rest));
+    corners = (gxsp_corners *)gxsp_take(pool, blocks, sizeof(gxsp_corners));
+    groups = (uint32_t *)gxsp_take(pool, blocks * GXSP_LANES, sizeof(uint32_t));
+    gradients = (gxsp_gradients *)gxsp_take(pool, own, sizeof(gxsp_gradients));
+    moments = (gxsp_moments *)gxsp_take(pool, general, sizeof(gxsp_moments));
+    changed = (uint8_t *)gxsp_take(pool, blocks + count, 1);
+    if (pool->failed) return;
+    memset(groups, 0xff, blocks * GXSP_LANES * sizeof *groups);
+    for (c = 0; c < count; c++) {
+        chunks[c].rest = rest;
+        chunks[c].corners = corners;
+        chunks[c].groups = groups;
+        chunks[c].changed = changed;
+        chunks[c].gradients = chunks[c].class_index & 2 ? gradients : NULL;
+        chunks[c].moments = chunks[c].class_index & 1 ? moments : NULL;
+        rest += chunks[c].block_count;
+        corners += chunks[c].block_count;
+        groups += chunks[c].block_count * GXSP_LANES;
+        changed += chunks[c].block_count + 1;
+        gradients += chunks[c].class_index & 2 ? chunks[c].block_count : 0;
+        moments += chunks[c].class_index & 1 ? chunks[c].block_count : 0;
+    }
+}
+
+/* Blocks that linearisations write */
+static void gxsp_tangents_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count) {
+    gxsp_tangent *tangents;
+    gxsp_general *generals;
+    size_t blocks = 0, custom = 0;
+    uint32_t c;
+    for (c = 0; c < count; c++) {
+        blocks += chunks[c].block_count;
+        custom += chunks[c].kind == GXS_CUSTOM ? chunks[c].block_count : 0;
+    }
+    tangents = (gxsp_tangent *)gxsp_take(pool, blocks, sizeof(gxsp_tangent));
+    generals = (gxsp_general *)gxsp_take(pool, custom, sizeof(gxsp_general));
+    for (c = 0; c < count && !pool->failed; c++) {
+        chunks[c].tangents = tangents;
+        chunks[c].generals = chunks[c].kind == GXS_CUSTOM ? generals : NULL;
+        tangents += chunks[c].block_count;
+        generals += chunks[c].kind == GXS_CUSTOM ? chunks[c].block_count : 0;
+    }
+}
+
+/* The slots of every copy, in the order of chunks */
+static void gxsp_list_slots(gxsp_system *system) {
+    uint32_t i;
+    size_t s;
+    memset(system->mesh.copy_start, 0, (system->model.n + 2) * sizeof *system->mesh.copy_start);
+    for (s = 0; s < system->mesh.slot_count; s++) system->mesh.copy_start[system->mesh.nodes[s] + 2]++;
+    for (i = 0; i < system->model.n; i++) system->mesh.copy_start[i + 2] += system->mesh.copy_start[i + 1];
+    for (s = 0; s < system->mesh.slot_count; s++) /* slots are in the order of chunks */
+        system->mesh.copy_slot[system->mesh.copy_start[system->mesh.nodes[s] + 1]++] = (uint32_t)s;
+    memset(system->mesh.copy_slot + system->mesh.slot_count, 0, GXSP_AHEAD * sizeof *system->mesh.copy_slot);
+    memset(system->mesh.nodes + system->mesh.slot_count, 0, GXSP_AHEAD * sizeof *system->mesh.nodes);
+}
+
+static void gxsp_chunks_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model) {
+    gxsp_sorted *sorted = gxsp_order_elements(system, model, scratch);
+    gxsp_numbers numbers;
+    uint32_t *nodes;
+    numbers.local = (uint32_t *)gxsp_take(scratch, system->model.n, sizeof(uint32_t));
+    numbers.stamp = (uint32_t *)gxsp_take(scratch, system->model.n, sizeof(uint32_t));
+    numbers.round = 0;
+    if (scratch->failed) return;
+    system->mesh.chunk_count = gxsp_plan_chunks(system, sorted, NULL);
+    system->mesh.chunk_room = system->mesh.chunk_count;
+    gxsp_columns_make(system, GXSP_COLUMNS(gxsp_chunk_columns), GXSP_WITH_MODEL, system->mesh.chunk_count);
+    /* its size is not known yet */
+    system->mesh.nodes = (uint32_t *)gxsp_take(scratch, 4 * system->model.element_count, sizeof(uint32_t));
+    if (scratch->failed || system->pool.failed) return;
+    (void)gxsp_plan_chunks(system, sorted, system->mesh.chunks);
+    gxsp_blocks_make(&system->pool, system->mesh.chunks, system->mesh.chunk_count);
+    if (system->pool.failed) return;
+    gxsp_fill_chunks(system, model, sorted, &numbers);
+    system->mesh.copy_slot =
+        (uint32_t *)gxsp_take(&system->pool, system->mesh.slot_count + GXSP_AHEAD, sizeof(uint32_t));
+    nodes = (uint32_t *)gxsp_take(&system->pool, system->mesh.slot_count + GXSP_AHEAD, sizeof(uint32_t));
+    if (system->pool.failed) return;
+    memcpy(nodes, system->mesh.nodes, system->mesh.slot_count * sizeof(uint32_t));
+    system->mesh.nodes = nodes;
+    gxsp_list_slots(system);
+}
+
+/* >>copies: which copies move, which follow others, which belong together ------------------------------------------ */
+
+/* In: held copies, constraints and elements. Out: fixed copies, followers, components and the partial sums of
+ * chunks. Writes gxsp_model; marks in gxsp_history what a step leaves alone. */
+
+/* Columns over copies that come with the model. positions: as given, or NULL */
+static void gxsp_copies_make(gxsp_system *system, const double *positions) {
+    const size_t n = system->model.copy_room = system->model.n;
+    if (positions) system->model.positions = (double *)gxsp_take(&system->pool, n, 3 * sizeof(double));
+    if (system->model.positions) memcpy(system->model.positions, positions, 3 * n * sizeof(double));
+    gxsp_columns_make(system, GXSP_COLUMNS(gxsp_copy_columns), GXSP_WITH_MODEL, n);
+}
+
+/* Copies that no element supports are fixed like held ones; row sums of the mass. */
+static void gxsp_find_fixed(gxsp_system *system, const gxs_model *model) {
+    size_t e, i;
+    int k;
+    memset(system->model.fixed, 1, system->model.n);
+    for (e = 0; e < model->element_count; e++) {
+        const gxs_element *element = &model->elements[e];
+        double rows[4];
+        gxsp_row_masses(element, rows);
+        for (k = 0; k < 4; k++) {
+            if (gxsp_supports(element, k)) system->model.fixed[element->copy[k]] = 0;
+            system->model.lumped[element->copy[k]] += rows[k];
+        }
+    }
+    if (model->held)
+        for (i = 0; i < system->model.n; i++)
+            if (model->held[i]) system->model.held[i] = system->model.fixed[i] = 1;
+}
+
+static inline int gxsp_follows(const gxsp_system *system, size_t copy) {
+    return system->model.follower_count > 0 && system->model.follower[copy] != GXSP_NONE;
+}
+
+/* Index of a constraint that cannot be, as its copy has two or a master follows others; SIZE_MAX if all can. held: n
+ * flags or NULL; follows: n, scratch, 0 */
+static size_t gxsp_bad_constraint(const gxs_constraint *constraints, size_t count, const uint8_t *held,
+                                  uint8_t *follows) {
+    size_t i;
+    int k;
+    for (i = 0; i < count; i++) {
+        if (held && held[constraints[i].copy]) continue;
+        if (follows[constraints[i].copy]) return i;
+        follows[constraints[i].copy] = 1;
+    }
+    for (i = 0; i < count; i++)
+        for (k = 0; k < 4 && !(held && held[constraints[i].copy]); k++)
+            if (fabs(constraints[i].weight[k]) > 0 && follows[constraints[i].master[k]]) return i;
+    return SIZE_MAX;
+}
+
+/* Room for so many followers, and for the copies that there are */
+static void gxsp_followers_room(gxsp_system *system, size_t count) {
+    gxsp_model *model = &system->model;
+    if (count > model->follower_room) {
+        model->follower_room = (uint32_t)gxsp_room(count);
+        model->followers =
+            (gxsp_follower *)gxsp_grow(&system->pool, model->followers, 0, model->follower_room, sizeof(gxsp_follower));
+    }
+    if (count > 0 && !model->follower)
+        model->follower = (uint32_t *)gxsp_take(&system->pool, model->copy_room, sizeof(uint32_t));
+}
+
+/* Which copies follow others: none of them is fixed unless it is held. */
+static void gxsp_set_followers(gxsp_system *system, const gxs_constraint *constraints, size_t count) {
+    size_t i;
+    gxsp_followers_room(system, count);
+    system->model.follower_count = 0;
+    if (system->pool.failed || count == 0) return;
+    memset(system->model.follower, 0xff, system->model.n * sizeof *system->model.follower);
+    for (i = 0; i < count; i++) {
+        gxsp_follower *follower = &system->model.followers[system->model.follower_count];
+        if (system->model.held[constraints[i].copy]) continue;
+        follower->copy = constraints[i].copy;
+        memcpy(follower->master, constraints[i].master, sizeof follower->master);
+        memcpy(follower->weight, constraints[i].weight, sizeof follower->weight);
+        system->model.fixed[follower->copy] = 0;
+        system->model.follower[follower->copy] = system->model.follower_count++;
+    }
+}
+
+/* Joins what constraints couple. forest: n */
+static void gxsp_join_followers(const gxsp_system *system, uint32_t *forest) {
+    size_t i;
+    int k;
+    for (i = 0; i < system->model.follower_count; i++)
+        for (k = 0; k < 4; k++)
+            if (fabs(system->model.followers[i].weight[k]) > 0)
+                gxsp_join(forest, system->model.followers[i].copy, system->model.followers[i].master[k]);
+}
+
+/* Joins what elements and constraints couple. forest: n */
+static void gxsp_join_copies(const gxsp_system *system, const gxs_model *model, uint32_t *forest) {
+    size_t e, i;
+    int k;
+    for (i = 0; i < system->model.n; i++) forest[i] = (uint32_t)i;
+    for (e = 0; e < model->element_count; e++)
+        for (k = 1; k < 4; k++)
+            if (gxsp_supports(&model->elements[e], 0) || gxsp_supports(&model->elements[e], k))
+                gxsp_join(forest, model->elements[e].copy[0], model->elements[e].copy[k]);
+    gxsp_join_followers(system, forest);
+}
+
+/* Numbers the pieces: trees of a forest of copies */
+static void gxsp_number_components(gxsp_system *system, uint32_t *forest) {
+    size_t i;
+    system->model.component_count = 0;
+    for (i = 0; i < system->model.n; i++) { /* roots come before their copies: the lower index wins in gxsp_join */
+        uint32_t root = gxsp_root(forest, (uint32_t)i);
+        system->model.component[i] = root == i ? system->model.component_count++ : system->model.component[root];
+    }
+}
+
+/* Masses and states of the pieces, which are 0. A translation of one of state 0 meets no stiffness: K T = 0, so
+ * T^T (K + rate M) x = rate x sum of lumped x. */
+static void gxsp_fill_components(gxsp_system *system) {
+    size_t i;
+    uint32_t p;
+    for (i = 0; i < system->model.n; i++) {
+        gxsp_component *component = &system->model.components[system->model.component[i]];
+        component->mass += system->model.lumped[i];
+        component->state |= system->model.fixed[i] ? GXSP_HELD : 0;
+    }
+    for (i = 0; i < system->model.follower_count; i++) {
+        const double *w = system->model.followers[i].weight;
+        if (fabs(w[0] + w[1] + w[2] + w[3] - 1) > 1e-12)
+            system->model.components[system->model.component[system->model.followers[i].copy]].state |= GXSP_UNBALANCED;
+    }
+    for (p = 0; p < system->model.component_count; p++)
+        system->model.components[p].state |= system->model.components[p].mass > 0 ? 0 : GXSP_UNBALANCED;
+}
+
+/* The pieces of every chunk, ascending. parts: NULL, or room for all. Returns how many there are. */
+static uint32_t gxsp_list_partials(gxsp_system *system, gxsp_partial *partials) {
+    uint32_t c, k, count = 0;
+    for (c = 0; c < system->model.component_count; c++)
+        system->model.components[c].lead = GXSP_NONE; /* here: the chunk that has met it last */
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        gxsp_chunk *chunk = &system->mesh.chunks[c];
+        chunk->first_partial = count;
+        for (k = 0; k < chunk->node_count; k++) {
+            const uint32_t component = system->model.component[system->mesh.nodes[chunk->first_node + k]];
+            uint32_t at = count;
+            if (system->model.components[component].lead == c) continue;
+            system->model.components[component].lead = c;
+            for (; partials && at > chunk->first_partial && partials[at - 1].component > component; at--)
+                partials[at].component = partials[at - 1].component;
+            if (partials) partials[at].component = component;
+            count++;
+        }
+        chunk->partial_count = count - chunk->first_partial;
+    }
+    for (c = 0; c < system->model.component_count; c++) system->model.components[c].lead = c;
+    return count;
+}
+
+/* Parts of the chunks, in place of those there were */
+static void gxsp_partials_make(gxsp_system *system) {
+    const uint32_t count = gxsp_list_partials(system, NULL);
+    system->mesh.partials =
+        (gxsp_partial *)gxsp_grow(&system->pool, system->mesh.partials, 0, count, sizeof(gxsp_partial));
+    system->mesh.partial_count = count;
+    if (!system->pool.failed) (void)gxsp_list_partials(system, system->mesh.partials);
+}
+
+/* The piece that leads a copy's */
+static gxsp_component *gxsp_lead_of(const gxsp_system *system, size_t copy) {
+    return &system->model.components[system->model.components[system->model.component[copy]].lead];
+}
+
+/* Which copies and chunks the pieces' states leave alone */
+static void gxsp_mark_still(gxsp_system *system) {
+    uint32_t c, k;
+    size_t i;
+    for (i = 0; i < system->model.n; i++)
+        system->state.still[i] =
+            system->model.fixed[i] || (system->model.components[system->model.component[i]].state & GXSP_ASLEEP);
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        system->state.chunk_still[c] = 1;
+        for (k = 0; k < system->mesh.chunks[c].node_count; k++)
+            system->state.chunk_still[c] &=
+                system->state.still[system->mesh.nodes[system->mesh.chunks[c].first_node + k]];
+    }
+}
+
+/* The copies that an element's corner moves, with their weights: its own, or its masters. Returns how many. */
+static int gxsp_corner_masters(const gxsp_system *system, uint32_t copy, uint32_t *masters, float *weights) {
+    const gxsp_follower *follower;
+    int k, count = 0;
+    if (!gxsp_follows(system, copy)) {
+        masters[0] = copy;
+        weights[0] = 1;
+        return 1;
+    }
+    follower = &system->model.followers[system->model.follower[copy]];
+    for (k = 0; k < 4; k++)
+        if (fabs(follower->weight[k]) > 0) {
+            masters[count] = follower->master[k];
+            weights[count++] = (float)follower->weight[k];
+        }
+    return count;
+}
+
+static int gxsp_element_follows(const gxsp_system *system, const uint32_t *copies) {
+    return gxsp_follows(system, copies[0]) || gxsp_follows(system, copies[1]) || gxsp_follows(system, copies[2]) ||
+           gxsp_follows(system, copies[3]);
+}
+
+/* >>followers: motion from masters, forces to masters -------------------------------------------------------------- */
+
+/* In and out: vectors over copies. A follower moves by the weighted sum of its masters' motion; its forces act on
+ * them. */
+
+/* Increments x of all copies from those of masters */
+static void gxsp_extend(const gxsp_system *system, gxsp_vector4 *x) {
+    uint32_t i, k, c;
+    for (i = 0; i < system->model.follower_count; i++) {
+        const gxsp_follower *follower = &system->model.followers[i];
+        gxsp_vector4 sum = {0, 0, 0, 0};
+        for (k = 0; k < 4; k++)
+            for (c = 0; c < 3; c++) sum[c] += (float)follower->weight[k] * x[follower->master[k]][c];
+        memcpy(x[follower->copy], sum, sizeof sum);
+    }
+}
+
+/* Forces y on masters; 0 on followers */
+static void gxsp_reduce(const gxsp_system *system, gxsp_vector4 *y) {
+    uint32_t i, k, c;
+    for (i = 0; i < system->model.follower_count; i++) {
+        const gxsp_follower *follower = &system->model.followers[i];
+        for (k = 0; k < 4; k++)
+            for (c = 0; c < 3; c++) y[follower->master[k]][c] += (float)follower->weight[k] * y[follower->copy][c];
+        memset(y[follower->copy], 0, sizeof *y);
+    }
+}
+
+/* Displacements of followers: that at from, which may be NULL for 0, and what their masters have moved since then */
+static void gxsp_follow(const gxsp_system *system, const double *from, double *displacement) {
+    uint32_t i, k, c;
+    for (i = 0; i < system->model.follower_count; i++) {
+        const gxsp_follower *follower = &system->model.followers[i];
+        double *to = displacement + 3 * (size_t)follower->copy;
+        for (c = 0; c < 3; c++) {
+            double sum = from ? from[3 * (size_t)follower->copy + c] : 0;
+            for (k = 0; k < 4; k++) {
+                const size_t master = 3 * (size_t)follower->master[k] + c;
+                sum += follower->weight[k] * (displacement[master] - (from ? from[master] : 0));
+            }
+            to[c] = sum;
+        }
+    }
+}
+
+/* Residuals: those of followers are given to masters, but not to copies that are still. still: n */
+static void gxsp_reduce_residual(const gxsp_system *system, const uint8_t *still, double *r) {
+    uint32_t i, k, c;
+    for (i = 0; i < system->model.follower_count; i++) {
+        const gxsp_follower *follower = &system->model.followers[i];
+        for (k = 0; k < 4; k++)
+            for (c = 0; c < 3 && !still[follower->master[k]]; c++)
+                r[3 * (size_t)follower->master[k] + c] += follower->weight[k] * r[3 * (size_t)follower->copy + c];
+        memset(r + 3 * (size_t)follower->copy, 0, 3 * sizeof *r);
+    }
+}
+
+/* >>transfer: from one level of the multigrid to the next ---------------------------------------------------------- */
+
+/* In: places of a level's nodes in spacings of the next lattice, and which nodes are neighbours. Out: the next
+ * level's nodes, parents and weights. A coarse node is a point of the lattice together with one cluster, that is
+ * one connected set of the nodes in its support, so that coarse functions never cross a cut (the copies' own
+ * idea, one level up). Values between lattice points are linear on the six tetrahedra around a cell's diagonal:
+ * at most four weights, exact for affine fields. */
+
+/* Rest positions in spacings of the first lattice: GXSP_SPACING edges of an average whole element. 0: there is none. */
+static int gxsp_find_places(const gxsp_system *system, const gxs_model *model, float (*to)[3]) {
+    double volume = 0, spacing;
+    size_t e, i, k, counted = 0;
+    for (e = 0; e < model->element_count; e++) {
+        const double *g = &model->elements[e].gradient[1][0];
+        double inverse = g[0] * (g[4] * g[8] - g[5] * g[7]) + g[1] * (g[5] * g[6] - g[3] * g[8]) +
+                         g[2] * (g[3] * g[7] - g[4] * g[6]);
+        if (fabs(inverse) > 0) {
+            volume += 1 / fabs(inverse) / 6;
+            counted++;
+        }
+    }
+    if (counted == 0) return 0;
+    spacing = GXSP_SPACING * cbrt(5 * volume / (double)counted); /* five elements to a cube */
+    for (i = 0; i < system->model.n; i++)
+        for (k = 0; k < 3; k++) {
+            double place = (model->positions[3 * i + k] - model->positions[k]) / spacing;
+            if (!(fabs(place) < 1e6)) /* single precision would not place it */
+                return 0;
+            to[i][k] = (float)place + 0.31f; /* lattice planes off the mesh's own */
+        }
+    return 1;
+}
+
+/* Lattice cell, order of axes and weights at a place. */
+static void gxsp_locate(const float *place, int32_t *cell, uint8_t *axis, float *weight) {
+    float f[3];
+    int k;
+    for (k = 0; k < 3; k++) {
+        cell[k] = (int32_t)floor((double)place[k]);
+        f[k] = place[k] - (float)cell[k];
+        axis[k] = (uint8_t)k;
+    }
+    for (k = 0; k < 3; k++) { /* three compare-and-swaps sort three numbers: (0 1), (1 2), (0 1) */
+        int i = k % 2;
+        if (f[axis[i]] < f[axis[i + 1]]) {
+            uint8_t first = axis[i];
+            axis[i] = axis[i + 1];
+            axis[i + 1] = first;
+        }
+    }
+    weight[0] = 1 - f[axis[0]];
+    weight[1] = f[axis[0]] - f[axis[1]];
+    weight[2] = f[axis[1]] - f[axis[2]];
+    weight[3] = f[axis[2]];
+}
+
+/* Lattice points as one number; never 0. 2^20 points along each axis suffice for any 32-bit count of elements near each
+ * other; farther ones would only share a number, not a component. */
+static uint64_t gxsp_lattice_key(const int32_t *point) {
+    return ((uint64_t)((uint32_t)point[0] & 0x1fffffu) << 42 | (uint64_t)((uint32_t)point[1] & 0x1fffffu) << 21 |
+            ((uint32_t)point[2] & 0x1fffffu)) +
+           1;
+}
+
+/* Keys of the four points of the tetrahedron from a cell along axes */
+static void gxsp_tetrahedron_keys(const int32_t *cell, const uint8_t *axis, uint64_t *key) {
+    int32_t point[3];
+    int k;
+    memcpy(point, cell, sizeof point);
+    key[0] = gxsp_lattice_key(point);
+    for (k = 0; k < 3; k++) {
+        point[axis[k]]++;
+        key[k + 1] = gxsp_lattice_key(point);
+    }
+}
+
+/* What the transfer of a level is made from: four lattice points around each node, those of weight 0 left out */
+typedef struct gxsp_transfer {
+    uint64_t *key;    /* n x 4; 0: left out */
+    uint32_t *forest; /* n x 4 */
+} gxsp_transfer;
+
+/* Nodes i and j are neighbours: the lattice points around both belong to one component there. */
+static void gxsp_join_nodes(gxsp_transfer *transfer, uint32_t i, uint32_t j) {
+    const uint64_t *a = transfer->key + 4 * (size_t)i, *b = transfer->key + 4 * (size_t)j;
+    uint32_t p, q;
+    for (p = 0; p < 4; p++)
+        for (q = 0; q < 4; q++)
+            if (a[p] == b[q] && a[p] != 0) gxsp_join(transfer->forest, 4 * i + p, 4 * j + q);
+}
+
+/* Points and weights of a level's nodes, before components are joined. place: n x 3, in spacings of the next lattice */
+static void gxsp_transfer_begin(const gxsp_level *level, float (*place)[3], const uint8_t *fixed,
+                                gxsp_transfer *transfer) {
+    uint32_t i;
+    int k;
+    for (i = 0; i < level->n; i++) {
+        int32_t cell[3];
+        uint8_t axis[3];
+        gxsp_locate(place[i], cell, axis, level->weight[i]);
+        gxsp_tetrahedron_keys(cell, axis, transfer->key + 4 * (size_t)i);
+        for (k = 0; k < 4; k++) {
+            transfer->forest[4 * (size_t)i + (size_t)k] = 4 * i + (uint32_t)k;
+            /* 1e-4: what this leaves out of an affine field is far below the smoother's part */
+            if (level->weight[i][k] < 1e-4f || (fixed && fixed[i])) {
+                transfer->key[4 * (size_t)i + (size_t)k] = 0;
+                level->weight[i][k] = 0;
+            }
+        }
+    }
+}
+
+/* Numbers the components: the next level's nodes. Returns how many. */
+static uint32_t gxsp_transfer_end(gxsp_level *level, gxsp_transfer *transfer) {
+    uint32_t slot, count = 0;
+    /* roots come first in their tree: the lower index wins in gxsp_join */
+    for (slot = 0; slot < 4 * level->n; slot++) {
+        uint32_t *parent = &level->parent[slot / 4][slot % 4], root;
+        if (transfer->key[slot] == 0) {
+            *parent = GXSP_NONE;
+            continue;
+        }
+        root = gxsp_root(transfer->forest, slot);
+        *parent = root == slot ? count++ : level->parent[root / 4][root % 4];
+    }
+    return count;
+}
+
+static void gxsp_transfer_places(const gxsp_level *level, const gxsp_transfer *transfer, gxsp_level *next) {
+    uint32_t slot;
+    for (slot = 0; slot < 4 * level->n; slot++)
+        if (transfer->key[slot] != 0) {
+            uint64_t key = transfer->key[slot] - 1;
+            int k;
+            for (k = 0; k < 3; k++) { /* 21 bits with their sign */
+                uint32_t bits = (uint32_t)(key >> (42 - 21 * k)) & 0x1fffffu;
+                next->place[level->parent[slot / 4][slot % 4]][k] = (int32_t)bits - (bits & 0x100000u ? 0x200000 : 0);
+            }
+        }
+}
+
+/* Room for the transfer of a level to the next */
+static void gxsp_transfer_make(gxsp_pool *pool, gxsp_level *level) {
+    level->parent = (uint32_t(*)[4])gxsp_take(pool, level->n, sizeof *level->parent);
+    level->weight = (float(*)[4])gxsp_take(pool, level->n, sizeof *level->weight);
+}
+
+/* Room for a coarse level of n nodes, but for its matrix and what only those have that are not the last */
+static void gxsp_level_make(gxsp_pool *pool, gxsp_level *level, uint32_t n) {
+    level->n = n;
+    level->place = (int32_t(*)[3])gxsp_take(pool, n, sizeof *level->place);
+    level->start = (uint32_t *)gxsp_take(pool, (size_t)n + 1, sizeof(uint32_t));
+    level->x = (gxsp_vector4 *)gxsp_take(pool, n, sizeof(gxsp_vector4));
+    level->b = (gxsp_vector4 *)gxsp_take(pool, n, sizeof(gxsp_vector4));
+}
+
+/* >>levels: patterns of the coarse matrices, envelope of the factor ------------------------------------------------ */
+
+/* In: a level's pattern and transfer. Out: the pattern of the next level's matrix, and order and envelope of the
+ * last one's factor. Writes gxsp_multigrid, but no numbers. */
+
+/* Numbers of the blocks of a level's matrix; products read four numbers of a column, hence one more */
+static size_t gxsp_block_numbers(const gxsp_level *level) { return 9 * (size_t)level->start[level->n] + 1; }
+
+/* Growing list of a matrix's entries: rows and columns, the row the lower; in a pool of temporary memory */
+typedef struct gxsp_list {
+    gxsp_pool *scratch;
+    uint32_t (*pair)[2], count, room;
+} gxsp_list;
+
+static void gxsp_list_add(gxsp_list *list, uint32_t row, uint32_t column) {
+    if (list->count == list->room) {
+        const uint32_t room = 2 * list->room + 1024;
+        uint32_t(*larger)[2] = (uint32_t(*)[2])gxsp_grow(list->scratch, list->pair, list->count, room, sizeof *larger);
+        if (!larger) return;
+        list->pair = larger;
+        list->room = room;
+    }
+    list->pair[list->count][0] = row;
+    list->pair[list->count++][1] = column;
+}
+
+/* Rows of a level's matrix from its entries on and above the diagonal, (row, column), of which some may come twice. */
+static void gxsp_rows_make(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *level, uint32_t (*list)[2],
+                           uint32_t listed) {
+    uint32_t *start = (uint32_t *)gxsp_take(scratch, (size_t)level->n + 2, sizeof(uint32_t));
+    uint32_t *columns = (uint32_t *)gxsp_take(scratch, listed, sizeof(uint32_t));
+    uint32_t *seen = (uint32_t *)gxsp_take(scratch, level->n, sizeof(uint32_t)), i, k, count = 0;
+    if (scratch->failed) return;
+    for (i = 0; i < listed; i++) start[list[i][0] + 2]++;
+    for (i = 0; i < level->n; i++) start[i + 2] += start[i + 1];
+    for (i = 0; i < listed; i++) columns[start[list[i][0] + 1]++] = list[i][1];
+    for (i = 0; i < level->n; i++) {
+        level->start[i] = count;
+        for (k = start[i]; k < start[i + 1]; k++)
+            if (seen[columns[k]] != i + 1) {
+                seen[columns[k]] = i + 1;
+                columns[count++] = columns[k]; /* no more are kept than have been read */
+            }
+        gxsp_sort_row(columns + level->start[i], count - level->start[i]);
+    }
+    level->start[level->n] = count;
+    level->column = (uint32_t *)gxsp_take(pool, count, sizeof(uint32_t));
+    if (!pool->failed) memcpy(level->column, columns, count * sizeof(uint32_t));
+}
+
+/* Index of column j in row i, or that of a lower one if the row does not have it */
+static uint32_t gxsp_find_entry(const gxsp_level *level, uint32_t i, uint32_t j) {
+    uint32_t low = level->start[i], high = level->start[i + 1];
+    while (high - low > 1) {
+        uint32_t middle = low + (high - low) / 2;
+        if (level->column[middle] <= j)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* Rows of the next level's matrix, transfer^T A transfer, from a level's */
+static void gxsp_coarse_rows(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *level) {
+    gxsp_level *next = level + 1;
+    uint32_t *seen = (uint32_t *)gxsp_take(scratch, next->n, sizeof(uint32_t)),
+             *met = (uint32_t *)gxsp_take(scratch, next->n, sizeof(uint32_t));
+    uint32_t i, k, p, t, count;
+    gxsp_list list;
+    memset(&list, 0, sizeof list);
+    list.scratch = scratch;
+    for (i = 0; i < next->n; i++) gxsp_list_add(&list, i, i);
+    for (i = 0; i < level->n && !scratch->failed; i++) {
+        for (k = 4 * level->start[i], count = 0; k < 4 * level->start[i + 1]; k++) {
+            const uint32_t parent = level->parent[level->column[k / 4]][k % 4];
+            if (parent == GXSP_NONE || seen[parent] == i + 1) continue;
+            seen[parent] = i + 1;
+            met[count++] = parent;
+        }
+        for (p = 0; p < 4; p++)
+            for (t = 0; t < count && level->parent[i][p] != GXSP_NONE; t++)
+                if (met[t] != level->parent[i][p])
+                    gxsp_list_add(&list, met[t] < level->parent[i][p] ? met[t] : level->parent[i][p],
+                                  met[t] < level->parent[i][p] ? level->parent[i][p] : met[t]);
+    }
+    if (!scratch->failed) gxsp_rows_make(pool, scratch, next, list.pair, list.count);
+}
+
+/* The level after levels[at], at > 0, of twice its spacing. 0: it would not be much smaller. Scratch is left in the
+ * pool of temporary memory. */
+static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t at) {
+    gxsp_level *level = &system->multigrid.levels[at], *next = level + 1;
+    gxsp_pool *pool = &system->multigrid.pool;
+    gxsp_owned *mark = pool->last;
+    gxsp_transfer transfer;
+    float(*place)[3] = (float(*)[3])gxsp_take(scratch, level->n, sizeof *place);
+    uint32_t i, k, count;
+    transfer.key = (uint64_t *)gxsp_take(scratch, 4 * (size_t)level->n, sizeof(uint64_t));
+    transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * (size_t)level->n, sizeof(uint32_t));
+    gxsp_transfer_make(pool, level);
+    if (scratch->failed || pool->failed) return 0;
+    for (i = 0; i < level->n; i++)
+        for (k = 0; k < 3; k++) place[i][k] = 0.5f * (float)level->place[i][k];
+    gxsp_transfer_begin(level, place, NULL, &transfer);
+    for (i = 0; i < level->n; i++)
+        for (k = level->start[i] + 1; k < level->start[i + 1]; k++) gxsp_join_nodes(&transfer, i, level->column[k]);
+    count = gxsp_transfer_end(level, &transfer);
+    if (count > level->n - level->n / 3) {
+        gxsp_release_to(pool, mark);
+        level->parent = NULL, level->weight = NULL;
+        return 0;
+    }
+    level->inverse = (float *)gxsp_take(pool, 6 * (size_t)level->n, sizeof(float));
+    level->r = (gxsp_vector4 *)gxsp_take(pool, level->n, sizeof(gxsp_vector4));
+    gxsp_level_make(pool, next, count);
+    if (pool->failed) return 0;
+    gxsp_transfer_places(level, &transfer, next);
+    gxsp_coarse_rows(pool, scratch, level);
+    return !pool->failed && !scratch->failed;
+}
+
+/* Neighbours of each node of a level, both ways; in temporary memory */
+typedef struct gxsp_graph {
+    uint32_t n, *start, *other; /* start: n + 2 */
+} gxsp_graph;
+
+static gxsp_graph gxsp_graph_make(gxsp_pool *scratch, const gxsp_level *level) {
+    gxsp_graph graph;
+    uint32_t i, k;
+    graph.n = level->n;
+    graph.start = (uint32_t *)gxsp_take(scratch, (size_t)level->n + 2, sizeof(uint32_t));
+    graph.other = (uint32_t *)gxsp_take(scratch, 2 * (size_t)level->start[level->n], sizeof(uint32_t));
+    if (scratch->failed) return graph;
+    for (i = 0; i < level->n; i++)
+        for (k = level->start[i] + 1; k < level->start[i + 1]; k++)
+            graph.start[i + 2]++, graph.start[level->column[k] + 2]++;
+    for (i = 0; i < level->n; i++) graph.start[i + 2] += graph.start[i + 1];
+    for (i = 0; i < level->n; i++)
+        for (k = level->start[i] + 1; k < level->start[i + 1]; k++) {
+            graph.other[graph.start[i + 1]++] = level->column[k];
+            graph.other[graph.start[level->column[k] + 1]++] = i;
+        }
+    return graph;
+}
+
+/* Breadth-first order of the component of a seed, appended to order; place: those met have theirs, others GXSP_NONE.
+ * Returns the new length. */
+static uint32_t gxsp_order_component(const gxsp_graph *graph, uint32_t seed, uint32_t count, uint32_t *order,
+                                     uint32_t *place) {
+    uint32_t done = count, k;
+    place[seed] = count;
+    order[count++] = seed;
+    for (; done < count; done++)
+        for (k = graph->start[order[done]]; k < graph->start[order[done] + 1]; k++)
+            if (place[graph->other[k]] == GXSP_NONE) {
+                place[graph->other[k]] = count;
+                order[count++] = graph->other[k];
+            }
+    return count;
+}
+
+/* The first place in whose column row i of the factor has an entry */
+static uint32_t gxsp_first_place(const gxsp_graph *graph, const uint32_t *order, const uint32_t *place, uint32_t i) {
+    uint32_t first = i, k;
+    for (k = graph->start[order[i]]; k < graph->start[order[i] + 1]; k++)
+        first = place[graph->other[k]] < first ? place[graph->other[k]] : first;
+    return first;
+}
+
+/* Order for a small envelope: component by component, breadth first from a node that is last from some other. place: n,
+ * scratch. Returns the multiplications of a factorisation. */
+static double gxsp_order_level(const gxsp_graph *graph, uint32_t *order, uint32_t *place) {
+    uint32_t seed, i, k, count = 0, end;
+    double cost = 0;
+    memset(place, 0xff, graph->n * sizeof *place);
+    for (seed = 0; seed < graph->n; seed++) {
+        if (place[seed] != GXSP_NONE) continue;
+        end = gxsp_order_component(graph, seed, count, order, place);
+        k = order[end - 1];
+        for (i = count; i < end; i++) place[order[i]] = GXSP_NONE;
+        count = gxsp_order_component(graph, k, count, order, place);
+    }
+    for (i = 0; i < graph->n; i++) {
+        const double width = i - gxsp_first_place(graph, order, place, i) + 1;
+        cost += 13.5 * width * width; /* three rows, each of a width squared / 2 */
+    }
+    return cost;
+}
+
+/* Is a level small enough to be factored? */
+static int gxsp_factors(gxsp_pool *scratch, const gxsp_level *level, size_t copies) {
+    gxsp_owned *mark = scratch->last;
+    uint32_t *order = (uint32_t *)gxsp_take(scratch, 2 * (size_t)level->n, sizeof(uint32_t));
+    const gxsp_graph graph = gxsp_graph_make(scratch, level);
+    const int factors =
+        !scratch->failed && gxsp_order_level(&graph, order, order + level->n) <= GXSP_FACTOR_COST * (double)copies;
+    gxsp_release_to(scratch, mark);
+    return factors;
+}
+
+/* Row i of the factor, by columns from 0 on, of which it has those from first on. Rows of a place are one column longer
+ * each. */
+static inline float *gxsp_factor_row(const gxsp_factor *factor, uint32_t i) {
+    const uint32_t place = i / 3, r = i % 3;
+    return factor->entry + (factor->row[place] + r * (size_t)(3 * place - factor->first[place] + 1) + (r == 2));
+}
+
+/* Order and envelope of the last level */
+static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch) {
+    const gxsp_level *level = &system->multigrid.levels[system->multigrid.level_count - 1];
+    gxsp_factor *factor = &system->multigrid.factor;
+    uint32_t *place = (uint32_t *)gxsp_take(scratch, level->n, sizeof(uint32_t)), i;
+    const gxsp_graph graph = gxsp_graph_make(scratch, level);
+    size_t entries = 0;
+    factor->n = 3 * level->n;
+    factor->order = (uint32_t *)gxsp_take(&system->multigrid.pool, level->n, sizeof(uint32_t));
+    factor->first = (uint32_t *)gxsp_take(&system->multigrid.pool, level->n, sizeof(uint32_t));
+    factor->row = (size_t *)gxsp_take(&system->multigrid.pool, level->n, sizeof(size_t));
+    factor->x = (double *)gxsp_take(&system->multigrid.pool, factor->n, sizeof(double));
+    if (scratch->failed || system->multigrid.pool.failed) return;
+    (void)gxsp_order_level(&graph, factor->order, place);
+    for (i = 0; i < level->n; i++) {
+        const uint32_t first = 3 * gxsp_first_place(&graph, factor->order, place, i);
+        factor->first[i] = first;
+        factor->row[i] = entries - first; /* no less than 0: every row before has an entry */
+        entries += 3 * (size_t)(3 * i - first) + 6;
+    }
+    factor->entry = (float *)gxsp_take(&system->multigrid.pool, entries, sizeof(float));
+    factor->entry_count = entries;
+}
+
+/* >>pattern: edges of chunks, pattern of level 1 and of the assembled matrix --------------------------------------- */
+
+/* In: chunks and the transfer of level 0. Out: the rows of level 1's matrix, found without an assembled one, and
+ * the pattern of the assembled matrix. Edges and pairs are of one chunk at a time, in scratch or shared memory. */
+
+/* Corners of the ten blocks of an element, in the order of gxs_element.mass */
+static const int gxsp_pair_corners[10][2] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {1, 1},
+                                             {1, 2}, {1, 3}, {2, 2}, {2, 3}, {3, 3}};
+
+/* Arrays for the edges of any chunk; numbers: with those of the Hessian's blocks, for which edges have been counted */
+static void gxsp_edges_carve(gxsp_system *system, gxsp_space *space, int numbers) {
+    gxsp_edges *edges = &system->multigrid.edges;
+    size_t c, lanes = 0, nodes = 1, most = 0;
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        const gxsp_chunk *chunk = &system->mesh.chunks[c];
+        const size_t of = chunk->block_count * GXSP_LANES, count = numbers ? chunk->edge_count : 1 + 6 * of;
+        lanes = of > lanes ? of : lanes;
+        nodes = chunk->node_count > nodes ? chunk->node_count : nodes;
+        most = count > most ? count : most;
+    }
+    edges->table = (uint16_t *)gxsp_carve(space, nodes * (nodes - 1) / 2, sizeof(uint16_t));
+    edges->table_size = nodes * (nodes - 1) / 2;
+    edges->ends = (uint32_t *)gxsp_carve(space, most + 1, sizeof(uint32_t)); /* one more is written than counts */
+    edges->parent = (uint16_t(*)[4])gxsp_carve(space, nodes, sizeof *edges->parent);
+    if (!numbers) return;
+    edges->block = (float(*)[9])gxsp_carve(space, most, sizeof *edges->block);
+    edges->element = (uint16_t(*)[6][GXSP_LANES])gxsp_carve(space, lanes / GXSP_LANES, sizeof *edges->element);
+    edges->first = (uint16_t *)gxsp_carve(space, nodes, sizeof(uint16_t));
+    edges->next = (uint16_t *)gxsp_carve(space, most, sizeof(uint16_t));
+    edges->joined = (uint8_t *)gxsp_carve(space, nodes, 1);
+    edges->own = (float(*)[9])gxsp_carve(space, nodes, sizeof *edges->own);
+    edges->mass = (float *)gxsp_carve(space, nodes, sizeof(float));
+}
+
+/* Room for listing the edges of any chunk, in temporary memory */
+static void gxsp_edges_make(gxsp_system *system, gxsp_pool *scratch) {
+    gxsp_space space = {NULL, 0};
+    gxsp_edges_carve(system, &space, 0);
+    space.memory = (unsigned char *)gxsp_take(scratch, space.used, 1);
+    space.used = 0;
+    gxsp_edges_carve(system, &space, 0);
+}
+
+static void gxsp_edges_begin(gxsp_edges *edges, const gxsp_chunk *chunk) {
+    edges->nodes = chunk->node_count;
+    edges->count = 1;
+}
+
+/* The edge of two nodes, made where there is none; 0 of a node and itself. There is no branch on whether there is one:
+ * it could not be foretold. count: of edges so far */
+static inline uint16_t gxsp_find_edge(const gxsp_edges *edges, uint32_t i, uint32_t j, uint32_t *count) {
+    const uint32_t low = i < j ? i : j, high = i < j ? j : i, ends = low << 16 | high;
+    uint16_t *at = &edges->table[high * (high - 1) / 2 + low];
+    int made;
+    if (low == high) return 0;
+    made = (*at >= *count) | (edges->ends[*at] != ends);
+    edges->ends[*count] = ends;
+    *at = made ? (uint16_t)*count : *at;
+    *count += (uint32_t)made;
+    return *at;
+}
+
+/* The six edges of each element of a block; 0 where it has no weight */
+static void gxsp_block_edges(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_t b, uint16_t (*edge)[GXSP_LANES]) {
+    const gxsp_corners *corner = &chunk->corners[b];
+    uint32_t count = edges->count;
+    int i, j, l, pair = 0;
+    for (i = 0; i < 4; i++)
+        for (j = i + 1; j < 4; j++, pair++)
+            for (l = 0; l < GXSP_LANES; l++)
+                edge[pair][l] = chunk->rest[b].weight[l] > 0
+                                  ? gxsp_find_edge(edges, corner->node[i][l], corner->node[j][l], &count)
+                                  : 0;
+    edges->count = count;
+}
+
+/* All edges of a chunk's elements of any weight */
+static void gxsp_list_edges(gxsp_system *system, gxsp_chunk *chunk) {
+    uint16_t edge[6][GXSP_LANES];
+    uint32_t b;
+    gxsp_edges_begin(&system->multigrid.edges, chunk);
+    for (b = 0; b < chunk->block_count; b++) gxsp_block_edges(&system->multigrid.edges, chunk, b, edge);
+    chunk->edge_count = system->multigrid.edges.count;
+}
+
+/* Counts the edges of chunks of which they are not known. */
+static void gxsp_count_edges(gxsp_system *system) {
+    uint32_t c;
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        if (system->mesh.chunks[c].edge_count == 0) gxsp_list_edges(system, &system->mesh.chunks[c]);
+}
+
+/* Numbers the coarse nodes that a chunk's nodes follow. */
+static void gxsp_pairs_begin(gxsp_system *system, const gxsp_chunk *chunk) {
+    gxsp_pairs *pairs = &system->multigrid.pairs;
+    uint32_t i, k;
+    pairs->round++;
+    pairs->count = 1;
+    for (i = 0; i < chunk->node_count; i++)
+        for (k = 0; k < 4; k++) {
+            const uint32_t parent = system->multigrid.levels[0].parent[system->mesh.nodes[chunk->first_node + i]][k];
+            system->multigrid.edges.parent[i][k] = 0;
+            if (parent == GXSP_NONE) continue;
+            if (pairs->stamp[parent] != pairs->round) {
+                pairs->stamp[parent] = pairs->round;
+                pairs->node[pairs->count] = parent;
+                pairs->local[parent] = pairs->count++;
+            }
+            system->multigrid.edges.parent[i][k] = (uint16_t)pairs->local[parent];
+        }
+    memset(pairs->seen, 0, pairs->count * sizeof *pairs->seen);
+}
+
+/* Arrays for the pairs of any chunk; numbers: with those for entries of matrices */
+static void gxsp_pairs_carve(gxsp_system *system, gxsp_space *space, int numbers) {
+    gxsp_pairs *pairs = &system->multigrid.pairs;
+    const size_t n = system->multigrid.levels[1].n,
+                 side = pairs->most < GXSP_CHUNK_PARENTS ? pairs->most : GXSP_CHUNK_PARENTS;
+    /* the first level whose matrix is that of another one times transfers */
+    const uint32_t next = system->multigrid.fine ? 1 : 2;
+    pairs->local = (uint32_t *)gxsp_carve(space, n, sizeof(uint32_t));
+    pairs->stamp = (uint32_t *)gxsp_carve(space, n, sizeof(uint32_t));
+    pairs->node = (uint32_t *)gxsp_carve(space, n + 1, sizeof(uint32_t));
+    pairs->seen = (uint32_t *)gxsp_carve(space, n + 1, sizeof(uint32_t));
+    if (!numbers) return;
+    pairs->entry = (uint32_t *)gxsp_carve(space, side * side, sizeof(uint32_t));
+    system->multigrid.edges.half = (float(*)[9])gxsp_carve(space, pairs->most, sizeof *system->multigrid.edges.half);
+    /* one more is written than counts */
+    system->multigrid.edges.touched = (uint16_t *)gxsp_carve(space, (size_t)pairs->most + 1, sizeof(uint16_t));
+    pairs->half = (float(*)[9])gxsp_carve(
+        space, next < system->multigrid.level_count ? system->multigrid.levels[next].n : 0, sizeof *pairs->half);
+}
+
+/* Room for listing the pairs of any chunk, in temporary memory, and how many coarse nodes it has at most */
+static void gxsp_pairs_make(gxsp_system *system, gxsp_pool *scratch) {
+    gxsp_space space = {NULL, 0};
+    uint32_t c;
+    gxsp_pairs_carve(system, &space, 0);
+    space.memory = (unsigned char *)gxsp_take(scratch, space.used, 1);
+    space.used = 0;
+    gxsp_pairs_carve(system, &space, 0);
+    system->multigrid.pairs.round = system->multigrid.pairs.most = 0;
+    for (c = 0; c < system->mesh.chunk_count && !scratch->failed && !system->multigrid.fine; c++) {
+        gxsp_pairs_begin(system, &system->mesh.chunks[c]);
+        system->multigrid.pairs.most = system->multigrid.pairs.count > system->multigrid.pairs.most
+                                         ? system->multigrid.pairs.count
+                                         : system->multigrid.pairs.most;
+    }
+}
+
+/* Sets of a chunk's coarse nodes, a bit for each, words to a set */
+typedef struct gxsp_sets {
+    uint64_t *own, *reach; /* by node: its parents; those of its neighbours too */
+    uint64_t *row;         /* by number of the coarse node: those that it shares an element with */
+    size_t words;
+} gxsp_sets;
+
+static void gxsp_join_sets(uint64_t *to, const uint64_t *from, size_t words) {
+    size_t k;
+    for (k = 0; k < words; k++) to[k] |= from[k];
+}
+
+/* The sets of a chunk after gxsp_pairs_begin. memory: room for all */
+static gxsp_sets gxsp_find_sets(gxsp_system *system, const gxsp_chunk *chunk, uint64_t *memory) {
+    gxsp_sets sets;
+    const size_t words = sets.words = (system->multigrid.pairs.count + 63) / 64;
+    uint32_t i, k, b;
+    size_t word;
+    int l;
+    sets.own = memory;
+    sets.reach = sets.own + chunk->node_count * words;
+    sets.row = sets.reach + chunk->node_count * words;
+    memset(memory, 0, (2 * (size_t)chunk->node_count + system->multigrid.pairs.count) * words * sizeof *memory);
+    for (i = 0; i < chunk->node_count; i++)
+        for (k = 0; k < 4; k++)
+            if (system->multigrid.levels[0].parent[system->mesh.nodes[chunk->first_node + i]][k] != GXSP_NONE)
+                sets.own[i * words + system->multigrid.edges.parent[i][k] / 64] |=
+                    (uint64_t)1 << system->multigrid.edges.parent[i][k] % 64;
+    for (b = 0; b < chunk->block_count; b++)
+        for (l = 0; l < GXSP_LANES; l++) {
+            const gxsp_rest *rest = &chunk->rest[b];
+            const gxsp_corners *corner = &chunk->corners[b];
+            const size_t n0 = corner->node[0][l] * words, n1 = corner->node[1][l] * words,
+                         n2 = corner->node[2][l] * words, n3 = corner->node[3][l] * words;
+            for (word = 0; word < words && rest->weight[l] > 0; word++) {
+                const uint64_t all =
+                    sets.own[n0 + word] | sets.own[n1 + word] | sets.own[n2 + word] | sets.own[n3 + word];
+                sets.reach[n0 + word] |= all, sets.reach[n1 + word] |= all;
+                sets.reach[n2 + word] |= all, sets.reach[n3 + word] |= all;
+            }
+        }
+    for (i = 0; i < chunk->node_count; i++)
+        for (k = 0; k < 4; k++)
+            if (system->multigrid.levels[0].parent[system->mesh.nodes[chunk->first_node + i]][k] != GXSP_NONE)
+                gxsp_join_sets(sets.row + system->multigrid.edges.parent[i][k] * words, sets.reach + i * words, words);
+    return sets;
+}
+
+/* Lists the entries of level 1's matrix that a chunk needs. dirty: by coarse node; only entries of one at least are
+ * listed; NULL: all are. memory: see gxsp_find_sets */
+static void gxsp_list_pairs(gxsp_system *system, const gxsp_chunk *chunk, uint64_t *memory, const uint8_t *dirty,
+                            gxsp_list *list) {
+    const uint32_t *node = system->multigrid.pairs.node;
+    gxsp_sets sets;
+    uint32_t i, k;
+    gxsp_pairs_begin(system, chunk);
+    sets = gxsp_find_sets(system, chunk, memory);
+    for (i = 0; i < system->multigrid.pairs.count; i++)
+        for (k = 0; k < sets.words; k++) {
+            uint64_t set = sets.row[i * sets.words + k];
+            uint32_t j;
+            for (j = 64 * k; set != 0; set >>= 1, ++j)
+                if ((set & 1) && node[i] < node[j] && (!dirty || dirty[node[i]] || dirty[node[j]]))
+                    gxsp_list_add(list, node[i], node[j]);
+        }
+}
+
+/* Does a chunk have a node that follows one of the dirty? */
+static int gxsp_follows_dirty(const gxsp_system *system, const gxsp_chunk *chunk, const uint8_t *dirty) {
+    uint32_t i, k;
+    for (i = 0; i < chunk->node_count; i++)
+        for (k = 0; k < 4; k++) {
+            const uint32_t parent = system->multigrid.levels[0].parent[system->mesh.nodes[chunk->first_node + i]][k];
+            if (parent != GXSP_NONE && dirty[parent]) return 1;
+        }
+    return 0;
+}
+
+/* Level 1's matrix: two nodes are neighbours where an element follows both; every node is its own. before: the level of
+ * which all but the dirty nodes and those after its own have the neighbours that they had; NULL: none has. */
+static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gxsp_level *before,
+                               const uint8_t *dirty) {
+    uint32_t c, i, k, nodes = 0;
+    uint64_t *memory;
+    gxsp_list list;
+    memset(&list, 0, sizeof list);
+    list.scratch = scratch;
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        nodes = system->mesh.chunks[c].node_count > nodes ? system->mesh.chunks[c].node_count : nodes;
+    /* four parents to a node */
+    memory = (uint64_t *)gxsp_take(scratch, (6 * (size_t)nodes + 1) * (nodes / 16 + 1), sizeof(uint64_t));
+    if (scratch->failed) return;
+    for (i = 0; i < system->multigrid.levels[1].n; i++) gxsp_list_add(&list, i, i);
+    for (i = 0; before && i < before->n; i++)
+        for (k = before->start[i]; k < before->start[i + 1] && !dirty[i]; k++)
+            if (before->column[k] > i && !dirty[before->column[k]]) gxsp_list_add(&list, i, before->column[k]);
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        if (!before || gxsp_follows_dirty(system, &system->mesh.chunks[c], dirty))
+            gxsp_list_pairs(system, &system->mesh.chunks[c], memory, before ? dirty : NULL, &list);
+    if (!scratch->failed)
+        gxsp_rows_make(&system->multigrid.pool, scratch, &system->multigrid.levels[1], list.pair, list.count);
+}
+
+/* Rows and columns, the row the lower, that an element adds to. Returns how many. */
+static uint32_t gxsp_element_pairs(const gxsp_system *system, const uint32_t *copies, uint32_t (*list)[2]) {
+    uint32_t all[16], count = 0, listed = 0, i, j;
+    float weights[4];
+    int k;
+    for (k = 0; k < 4; k++) count += (uint32_t)gxsp_corner_masters(system, copies[k], all + count, weights);
+    for (i = 0; i < count; i++)
+        for (j = i; j < count; j++, listed++) {
+            list[listed][0] = all[i] < all[j] ? all[i] : all[j];
+            list[listed][1] = all[i] < all[j] ? all[j] : all[i];
+        }
+    return listed;
+}
+
+/* The assembled matrix of what followers leave free: copies are neighbours where they share an element; every copy is
+ * its own. */
+static void gxsp_fine_make(gxsp_system *system, gxsp_pool *scratch) {
+    gxsp_level *fine = &system->multigrid.levels[0];
+    uint32_t(*list)[2] = NULL, c, b, i, count, room = 0;
+    int l, pair, pass;
+    system->multigrid.fine = (gxsp_fine *)gxsp_take(&system->pool, system->mesh.block_count, sizeof(gxsp_fine));
+    fine->start = (uint32_t *)gxsp_take(&system->pool, system->model.n + 1, sizeof(uint32_t));
+    fine->inverse = (float *)gxsp_take(&system->pool, 6 * system->model.n, sizeof(float));
+    if (system->pool.failed) return;
+    for (pass = 0; pass < 2; pass++) { /* count, then list */
+        if (pass == 1 && !(list = (uint32_t(*)[2])gxsp_take(scratch, room, sizeof *list))) return;
+        for (i = 0, count = 0; i < fine->n; i++, count++)
+            if (list) list[count][0] = list[count][1] = i;
+        for (c = 0; c < system->mesh.chunk_count; c++)
+            for (b = 0; b < system->mesh.chunks[c].block_count; b++)
+                for (l = 0; l < GXSP_LANES; l++) {
+                    uint32_t copies[4], pairs[136][2];
+                    gxsp_lane_copies(system, &system->mesh.chunks[c], b, l, copies);
+                    count += gxsp_element_pairs(system, copies, list ? list + count : pairs);
+                }
+        room = count;
+    }
+    gxsp_rows_make(&system->pool, scratch, fine, list, count);
+    if (!scratch->failed) fine->block = (float *)gxsp_take(&system->pool, gxsp_block_numbers(fine), sizeof(float));
+    if (scratch->failed || system->pool.failed) return;
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        for (i = 0; i < system->mesh.chunks[c].block_count * GXSP_LANES; i++) {
+            uint32_t copies[4];
+            gxsp_lane_copies(system, &system->mesh.chunks[c], i / GXSP_LANES, (int)(i % GXSP_LANES), copies);
+            for (pair = 0; pair < 10; pair++) {
+                const uint32_t p = copies[gxsp_pair_corners[pair][0]], q = copies[gxsp_pair_corners[pair][1]];
+                system->multigrid.fine[system->mesh.chunks[c].first_block + i / GXSP_LANES]
+                    .entry[pair][i % GXSP_LANES] = gxsp_element_follows(system, copies)
+                                                     ? GXSP_NONE
+                                                     : gxsp_find_entry(fine, p < q ? p : q, p < q ? q : p);
+            }
+        }
+}
+
+/* >>hierarchy: all levels ------------------------------------------------------------------------------------------ */
+
+/* In: the model with its transfer to be made. Out: level_count and the structure of every level; 0 levels if
+ * there is nothing to coarsen. */
+
+/* The rows of level 1 and all levels after it. before, dirty: see gxsp_first_pattern */
+static void gxsp_levels_make(gxsp_system *system, gxsp_pool *scratch, const gxsp_level *before, const uint8_t *dirty) {
+    uint32_t at;
+    gxsp_pairs_make(system, scratch);
+    if (scratch->failed) return;
+    if (system->multigrid.fine)
+        gxsp_coarse_rows(&system->multigrid.pool, scratch, &system->multigrid.levels[0]);
+    else
+        gxsp_first_pattern(system, scratch, before, dirty);
+    gxsp_count_edges(system);
+    if (scratch->failed || system->multigrid.pool.failed) return;
+    for (at = 1;
+         at + 1 < GXSP_LEVELS &&
+         !gxsp_factors(scratch, &system->multigrid.levels[at], at == 1 ? system->model.n / 2 : system->model.n) &&
+         gxsp_add_level(system, scratch, at);
+         at++)
+        ;
+    system->multigrid.level_count = at + 1;
+    for (at = 1;
+         !scratch->failed && !system->multigrid.pool.failed && (at == 1 || at + 1 < system->multigrid.level_count);
+         at++)
+        system->multigrid.levels[at].block = (float *)gxsp_take(
+            &system->multigrid.pool, gxsp_block_numbers(&system->multigrid.levels[at]), sizeof(float));
+    gxsp_factor_make(system, scratch);
+}
+
+/* The transfer of the model by a lattice. place: n x 3, in its spacings. Returns how many nodes level 1 has. */
+static uint32_t gxsp_first_transfer(gxsp_system *system, float (*place)[3], gxsp_transfer *transfer) {
+    uint32_t c, e;
+    gxsp_transfer_begin(&system->multigrid.levels[0], place, system->model.fixed, transfer);
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        const uint32_t *copies = system->mesh.nodes + system->mesh.chunks[c].first_node;
+        gxsp_list_edges(system, &system->mesh.chunks[c]);
+        for (e = 1; e < system->multigrid.edges.count; e++)
+            gxsp_join_nodes(transfer, copies[system->multigrid.edges.ends[e] >> 16],
+                            copies[system->multigrid.edges.ends[e] & 0xffff]);
+    }
+    for (e = 0; e < 4 * system->model.follower_count; e++)
+        if (fabs(system->model.followers[e / 4].weight[e % 4]) > 0)
+            gxsp_join_nodes(transfer, system->model.followers[e / 4].copy,
+                            system->model.followers[e / 4].master[e % 4]);
+    return gxsp_transfer_end(&system->multigrid.levels[0], transfer);
+}
+
+/* What the first lattice has of a piece */
+typedef struct gxsp_extent {
+    uint32_t copies, nodes;
+    float low[3], high[3], length; /* in spacings; length: the longest of high - low */
+} gxsp_extent;
+
+static gxsp_extent *gxsp_find_extents(const gxsp_system *system, gxsp_pool *scratch, float (*place)[3]) {
+    gxsp_extent *extents = (gxsp_extent *)gxsp_take(scratch, system->model.component_count, sizeof *extents);
+    uint32_t slot, i, k, nodes = 0;
+    if (!extents) return NULL;
+    for (slot = 0; slot < 4 * system->model.n; slot++) /* nodes are numbered as they are met */
+        if (system->multigrid.levels[0].parent[slot / 4][slot % 4] == nodes) {
+            extents[system->model.component[slot / 4]].nodes++;
+            nodes++;
+        }
+    for (i = 0; i < system->model.n; i++) {
+        gxsp_extent *extent = &extents[system->model.component[i]];
+        for (k = 0; k < 3; k++) {
+            extent->low[k] = extent->copies == 0 || place[i][k] < extent->low[k] ? place[i][k] : extent->low[k];
+            extent->high[k] = extent->copies == 0 || place[i][k] > extent->high[k] ? place[i][k] : extent->high[k];
+        }
+        extent->copies++;
+    }
+    for (i = 0; i < system->model.component_count; i++)
+        for (k = 0; k < 3; k++)
+            extents[i].length = extents[i].high[k] - extents[i].low[k] > extents[i].length
+                                  ? extents[i].high[k] - extents[i].low[k]
+                                  : extents[i].length;
+    return extents;
+}
+
+/* Small pieces have so many lattice points about them that fewer serve nearly as well: places of those that are crowded
+ * after gxsp_first_transfer go into one tetrahedron of a lattice of their own size, whose functions are their affine
+ * motions, or, where pieces are larger, into a lattice of twice the spacing. Not of long ones, which would hardly bend.
+ * Returns whether there are any. */
+static int gxsp_thin_crowded(const gxsp_system *system, gxsp_pool *scratch, float (*place)[3]) {
+    const gxsp_extent *extents = gxsp_find_extents(system, scratch, place);
+    uint32_t i, k;
+    int any = 0;
+    for (i = 0; i < system->model.n && extents; i++) {
+        const gxsp_extent *extent = &extents[system->model.component[i]];
+        if ((float)extent->nodes <= GXSP_CROWDED * (float)extent->copies || !(extent->length < GXSP_COARSE)) continue;
+        any = 1;
+        for (k = 0; k < 3; k++) /* else where coordinates descend: in thirds of a cell */
+            place[i][k] =
+                extent->length >= GXSP_AFFINE
+                    ? 0.5f * place[i][k]
+                    : 0.3f * (place[i][k] - extent->low[k]) / (extent->length + 1e-30f) + (float)(2 - k) / 3 + 0.01f;
+    }
+    return any;
+}
+
+/* All levels of the multigrid below the model; place: n x 3, see gxsp_find_places. level_count stays 0 if there is
+ * nothing to coarsen. */
+static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (*place)[3]) {
+    gxsp_level *fine = &system->multigrid.levels[0];
+    gxsp_transfer transfer;
+    uint32_t count;
+    gxsp_edges_make(system, scratch);
+    transfer.key = (uint64_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint64_t));
+    transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
+    if (scratch->failed) return;
+    count = gxsp_first_transfer(system, place, &transfer);
+    if (gxsp_thin_crowded(system, scratch, place)) count = gxsp_first_transfer(system, place, &transfer);
+    if (count == 0 || scratch->failed) return;
+    gxsp_level_make(&system->multigrid.pool, fine + 1, count);
+    if (system->multigrid.pool.failed) return;
+    gxsp_transfer_places(fine, &transfer, fine + 1);
+    gxsp_levels_make(system, scratch, NULL, NULL);
+}
+
+/* >>lights: copies with next to no mass ---------------------------------------------------------------------------- */
+
+/* In: chunks and row sums of masses. Out: the list of light copies: copies with only parts of elements around
+ * them, nearly all of whose mass belongs to other copies. >>balance starts them where their neighbours lead,
+ * >>search bounds their way. */
+
+/* What is known of a copy before it is called light */
+typedef struct gxsp_weighed {
+    gxsp_light light; /* in the lane with its heaviest neighbour */
+    double all, most; /* mass of the elements around it; of the neighbour, kg */
+    int whole;        /* an element around it is whole */
+} gxsp_weighed;
+
+static void gxsp_weigh_corner(const gxsp_system *system, uint32_t c, uint32_t lane, int corner, const uint32_t *copies,
+                              gxsp_weighed *weighed) {
+    const gxsp_chunk *chunk = &system->mesh.chunks[c];
+    int k;
+    weighed->whole |= !chunk->moments;
+    weighed->all += chunk->rest[lane / GXSP_LANES].mass[lane % GXSP_LANES];
+    for (k = 0; k < 4; k++)
+        if (k != corner && system->model.lumped[copies[k]] > weighed->most) {
+            weighed->most = system->model.lumped[copies[k]];
+            weighed->light.copy = copies[corner], weighed->light.chunk = c;
+            weighed->light.lane = (uint16_t)lane, weighed->light.corner = (uint16_t)corner;
+        }
+}
+
+/* Of each copy, or each that is touched. touched: n flags, or NULL: all */
+static void gxsp_weigh_copies(const gxsp_system *system, const uint8_t *touched, gxsp_weighed *weighed) {
+    uint32_t c, i, lane, copies[4];
+    int k;
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        const gxsp_chunk *chunk = &system->mesh.chunks[c];
+        for (i = 0; touched && i < chunk->node_count && !touched[system->mesh.nodes[chunk->first_node + i]]; i++)
+            ;
+        for (lane = 0; lane < chunk->block_count * GXSP_LANES && !(touched && i == chunk->node_count); lane++) {
+            if (chunk->groups[lane] == GXSP_NONE) continue;
+            gxsp_lane_copies(system, chunk, lane / GXSP_LANES, (int)(lane % GXSP_LANES), copies);
+            for (k = 0; k < 4; k++)
+                if (!touched || touched[copies[k]]) gxsp_weigh_corner(system, c, lane, k, copies, &weighed[copies[k]]);
+        }
+    }
+}
+
+static int gxsp_is_light(const gxsp_system *system, size_t copy, const gxsp_weighed *weighed) {
+    const double mass = system->model.lumped[copy];
+    return !weighed->whole && !system->model.fixed[copy] && weighed->most > 0 &&
+           (mass < GXSP_LIGHT * weighed->all || mass < GXSP_LIGHTER * weighed->most);
+}
+
+/* Lists light copies. touched: n flags: those of others stay as they are listed; NULL: all are listed anew */
+static void gxsp_list_lights(gxsp_system *system, gxsp_pool *scratch, const uint8_t *touched) {
+    gxsp_weighed *weighed = (gxsp_weighed *)gxsp_take(scratch, system->model.n, sizeof *weighed);
+    uint32_t i, count = 0, room;
+    if (scratch->failed) return;
+    gxsp_weigh_copies(system, touched, weighed);
+    for (i = 0; i < system->model.light_count && touched; i++)
+        if (!touched[system->model.lights[i].copy]) system->model.lights[count++] = system->model.lights[i];
+    system->model.light_count = room = count;
+    for (i = 0; i < system->model.n; i++) room += (uint32_t)gxsp_is_light(system, i, &weighed[i]);
+    if (room > system->model.light_room) {
+        system->model.light_room = (uint32_t)gxsp_room(room);
+        system->model.lights = (gxsp_light *)gxsp_grow(&system->pool, system->model.lights, count,
+                                                       system->model.light_room, sizeof(gxsp_light));
+    }
+    for (i = 0; i < system->model.n && !system->pool.failed; i++)
+        if (gxsp_is_light(system, i, &weighed[i])) system->model.lights[system->model.light_count++] = weighed[i].light;
+}
+
+/* What guides a light copy at vector x, less another one or NULL (n x 3): the mean over the other corners, by their
+ * masses. Returns the heaviest. */
+static uint32_t gxsp_guide(const gxsp_system *system, const gxsp_light *light, const double *x, const double *less,
+                           double *mean) {
+    double sum = 0, most = 0;
+    uint32_t copies[4], heaviest = light->copy;
+    int k, c;
+    gxsp_lane_copies(system, &system->mesh.chunks[light->chunk], light->lane / GXSP_LANES, light->lane % GXSP_LANES,
+                     copies);
+    mean[0] = mean[1] = mean[2] = 0;
+    for (k = 0; k < 4; k++) {
+        const double mass = k == light->corner ? 0 : system->model.lumped[copies[k]];
+        sum += mass;
+        for (c = 0; c < 3; c++)
+            mean[c] +=
+                mass * (x[3 * (size_t)copies[k] + (size_t)c] - (less ? less[3 * (size_t)copies[k] + (size_t)c] : 0));
+        if (mass > most) most = mass, heaviest = copies[k];
+    }
+    for (c = 0; c < 3; c++) mean[c] /= sum;
+    return heaviest;
+}
+
+/* >>sharing: memory that passes and coarse numbers have in turn ---------------------------------------------------- */
+
+/* In: sizes of the model and its levels. Out: arrays in gxsp_vectors.shared. Passes have it except between
+ * gxsp_lend_memory and gxsp_return_memory. */
+
+/* Arrays with which coarse numbers are made */
+static void gxsp_numbers_carve(gxsp_system *system, gxsp_space *space) {
+    gxsp_level *last = &system->multigrid.levels[system->multigrid.level_count - 1];
+    if (!system->multigrid.fine) gxsp_edges_carve(system, space, 1);
+    gxsp_pairs_carve(system, space, 1);
+    if (system->multigrid.level_count > 2) /* level 1 keeps its own: updates make only a part of it anew */
+        last->block = (float *)gxsp_carve(space, gxsp_block_numbers(last), sizeof(float));
+    system->multigrid.factor.rows = (double *)gxsp_carve(space, 3 * (size_t)system->multigrid.factor.n, sizeof(double));
+}
+
+static void gxsp_passes_carve(gxsp_system *system, gxsp_space *space) {
+    system->vectors.slots = (double(*)[3])gxsp_carve(space, system->mesh.slot_count, sizeof *system->vectors.slots);
+    system->vectors.search = (gxsp_vector4 *)gxsp_carve(space, system->model.n, sizeof(gxsp_vector4));
+    system->vectors.product = (gxsp_vector4 *)gxsp_carve(space, system->model.n, sizeof(gxsp_vector4));
+    system->vectors.scaled = (gxsp_vector4 *)gxsp_carve(space, system->model.n, sizeof(gxsp_vector4));
+}
+
+/* Vectors in shared memory are 0 again: what is unused of them, too, takes part in sums. */
+static void gxsp_return_memory(gxsp_system *system) {
+    memset(system->vectors.search, 0, system->model.n * sizeof *system->vectors.search);
+    memset(system->vectors.product, 0, system->model.n * sizeof *system->vectors.product);
+    memset(system->vectors.scaled, 0, system->model.n * sizeof *system->vectors.scaled);
+}
+
+/* Room in shared memory for passes and for coarse numbers, in turn */
+static void gxsp_share_memory(gxsp_system *system) {
+    gxsp_space passes = {NULL, 0}, numbers = {NULL, 0};
+    size_t size;
+    gxsp_passes_carve(system, &passes);
+    if (system->multigrid.level_count > 0) gxsp_numbers_carve(system, &numbers);
+    size = passes.used > numbers.used ? passes.used : numbers.used;
+    if (size > system->vectors.shared_room) {
+        const size_t room = system->vectors.shared ? gxsp_room(size) : size;
+        unsigned char *larger = (unsigned char *)gxsp_grow(&system->pool, system->vectors.shared, 0, room, 1);
+        if (!larger) return;
+        system->vectors.shared = larger;
+        system->vectors.shared_room = room;
+    }
+    passes.memory = system->vectors.shared;
+    passes.used = 0;
+    gxsp_passes_carve(system, &passes);
+    gxsp_return_memory(system);
+}
+
+/* Shared memory while coarse numbers are made */
+static void gxsp_lend_memory(gxsp_system *system) {
+    gxsp_space space = {NULL, 0};
+    space.memory = system->vectors.shared;
+    gxsp_numbers_carve(system, &space);
+    if (!system->multigrid.fine) {
+        memset(system->multigrid.edges.table, 0,
+               system->multigrid.edges.table_size * sizeof *system->multigrid.edges.table);
+        memset(system->multigrid.edges.half, 0, system->multigrid.pairs.most * sizeof *system->multigrid.edges.half);
+        memset(system->multigrid.pairs.stamp, 0, system->multigrid.levels[1].n * sizeof *system->multigrid.pairs.stamp);
+        system->multigrid.pairs.round = 0;
+    }
+}
+
+/* >>system: a model in the solver's own form ----------------------------------------------------------------------- */
+
+/* In: the caller's model, already checked. Out: a gxsp_system, with all that does not depend on the state and the
+ * memory of steps. */
+
+/* 2^GXSP_STIFFNESS over Young's modulus times the length of the largest element, but for the mantissa */
+static double gxsp_choose_scale(const gxs_model *model) {
+    double young = 0, volume = 0, size;
+    size_t i;
+    int exponent;
+    for (i = 0; i < model->material_count; i++)
+        young = model->materials[i].young > young ? model->materials[i].young : young;
+    for (i = 0; i < model->element_count; i++)
+        volume = model->elements[i].weight > volume ? model->elements[i].weight : volume;
+    size = volume > 0 ? young * cbrt(volume) : young;
+    (void)frexp(size, &exponent);
+    return ldexp(1, GXSP_STIFFNESS - exponent);
+}
+
+/* Inverse volumes of supports, the least of the size of a whole copy's inverse stiffness */
+static void gxsp_find_volumes(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model) {
+    double *volume = (double *)gxsp_take(scratch, system->model.n, sizeof(double)), largest = 0;
+    size_t e, i;
+    int k;
+    system->model.volume = (float *)gxsp_take(&system->pool, system->model.n, sizeof(float));
+    if (system->pool.failed || scratch->failed) return;
+    for (e = 0; e < model->element_count; e++)
+        for (k = 0; k < 4; k++) volume[model->elements[e].copy[k]] += model->elements[e].weight;
+    for (i = 0; i < system->model.n; i++) largest = volume[i] > largest ? volume[i] : largest;
+    for (i = 0; i < system->model.n; i++)
+        system->model.volume[i] = volume[i] > 1e-20 * largest ? (float)ldexp(largest / volume[i], -GXSP_STIFFNESS) : 0;
+}
+
+/* Copies from which on a piece is large enough for multigrid */
+static uint32_t gxsp_large(const gxsp_system *system) {
+    return system->model.stiff ? GXSP_MULTIGRID_FROM_STIFF : GXSP_MULTIGRID_FROM;
+}
+
+/* Does multigrid pay for a piece? All take as many iterations as the one that takes most. count: piece_count, scratch
+ */
+static int gxsp_large_component(const gxsp_system *system, uint32_t *count) {
+    const uint32_t from = gxsp_large(system);
+    size_t i;
+    memset(count, 0, system->model.component_count * sizeof *count);
+    for (i = 0; i < system->model.n; i++)
+        if (++count[system->model.component[i]] >= from) return 1;
+    return 0;
+}
+
+/* What depends on the choice of matrix and preconditioner. forest: n, scratch */
+static void gxsp_preconditioner_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model,
+                                     gxs_preconditioner preconditioner, gxs_matrix matrix, uint32_t *forest) {
+    float(*place)[3]; /* rest positions in spacings of the first lattice */
+    const int multigrid =
+        model->positions &&
+        (preconditioner == GXS_MULTIGRID || (preconditioner == GXS_AUTOMATIC && gxsp_large_component(system, forest)));
+    system->multigrid.chosen = model->positions && preconditioner == GXS_AUTOMATIC;
+    if (preconditioner == GXS_VOLUME_RATIO) gxsp_find_volumes(system, scratch, model);
+    system->multigrid.levels[0].n = (uint32_t)system->model.n;
+    if (matrix == GXS_MATRIX_ASSEMBLED) gxsp_fine_make(system, scratch);
+    if (!multigrid) return;
+    gxsp_transfer_make(&system->pool, &system->multigrid.levels[0]);
+    place = (float(*)[3])gxsp_take(scratch, system->model.n, sizeof *place);
+    if (!system->pool.failed && !scratch->failed && gxsp_find_places(system, model, place))
+        gxsp_multigrid_make(system, scratch, place);
+}
+
+/* Everything about a model that does not depend on its state; scratch holds what is needed for the time being. Returns
+ * the index of a constraint that cannot be, SIZE_MAX if all can. */
+static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model,
+                                const gxs_solver *solver) {
+    uint32_t i, *forest = (uint32_t *)gxsp_take(scratch, model->copy_count, sizeof(uint32_t));
+    gxsp_owned *mark;
+    size_t bad;
+    system->model.n = model->copy_count;
+    system->model.epoch = model->epoch;
+    system->model.element_count = model->element_count;
+    system->model.range_count = (system->model.n + GXSP_RANGE - 1) / GXSP_RANGE;
+    system->model.lumped_mass = model->lumped_mass != 0;
+    system->model.scale = gxsp_choose_scale(model);
+    system->coarse.rate = system->state.product_rate = -1;
+    system->coarse.life = GXSP_LIFE;
+    system->model.material_count = (uint32_t)model->material_count;
+    system->model.materials = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
+    system->state.damped = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
+    gxsp_copies_make(system, model->positions);
+    if (scratch->failed || system->pool.failed) return SIZE_MAX;
+    for (i = 0; i < system->model.material_count; i++) {
+        system->state.damped[i] = system->model.materials[i] = gxsp_material_make(&model->materials[i]);
+        system->model.damps |= model->materials[i].damping > 0;
+        system->model.stiff |=
+            model->materials[i].kind != GXS_CUSTOM && model->materials[i].poisson > GXSP_STIFF_POISSON;
+    }
+    gxsp_find_fixed(system, model);
+    bad = gxsp_bad_constraint(model->constraints, model->constraint_count, model->held, system->state.still);
+    if (bad == SIZE_MAX) gxsp_set_followers(system, model->constraints, model->constraint_count);
+    if (bad != SIZE_MAX || system->pool.failed) return bad;
+    memcpy(system->state.still, system->model.fixed, system->model.n);
+    gxsp_join_copies(system, model, forest);
+    gxsp_number_components(system, forest);
+    system->model.components =
+        (gxsp_component *)gxsp_take(&system->pool, system->model.component_count, sizeof(gxsp_component));
+    if (system->pool.failed) return SIZE_MAX;
+    gxsp_fill_components(system);
+    mark = scratch->last;
+    gxsp_chunks_make(system, scratch, model);
+    if (!scratch->failed && !system->pool.failed) gxsp_partials_make(system);
+    if (!scratch->failed && !system->pool.failed) gxsp_list_lights(system, scratch, NULL);
+    gxsp_release_to(scratch, mark);
+    if (!scratch->failed && !system->pool.failed)
+        gxsp_preconditioner_make(system, scratch, model, solver->preconditioner, solver->matrix, forest);
+    return SIZE_MAX;
+}
+
+/* Memory that only steps need. Taken last, when what the model is made with has been given back */
+static void gxsp_steps_make(gxsp_system *system) {
+    const size_t n = system->model.n;
+    gxsp_vectors *vectors = &system->vectors;
+    gxsp_columns_make(system, GXSP_COLUMNS(gxsp_copy_columns), GXSP_FOR_STEPS, n);
+    if (system->multigrid.level_count > 0)
+        system->coarse.displacement = (double *)gxsp_take(&system->pool, n, 3 * sizeof(double));
+    if (system->model.damps) vectors->damping = (double *)gxsp_take(&system->pool, n, 3 * sizeof(double));
+    if (system->multigrid.fine) vectors->right = (gxsp_vector4 *)gxsp_take(&system->pool, n, sizeof(gxsp_vector4));
+    vectors->range_sum =
+        (double(*)[GXSP_SUMS])gxsp_take(&system->pool, system->model.range_count, sizeof *vectors->range_sum);
+    gxsp_share_memory(system);
+    gxsp_tangents_make(&system->pool, system->mesh.chunks, system->mesh.chunk_count);
+}
+
+static void gxsp_system_destroy(gxsp_system *system) {
+    gxsp_pool pool;
+    if (!system) return;
+    gxsp_release_to(&system->multigrid.pool, NULL);
+    pool = system->pool; /* which holds system itself */
+    gxsp_release_to(&pool, NULL);
+}
+
+static void gxsp_drop_system(gxs_solver *solver) {
+    gxsp_system_destroy(solver->system);
+    solver->system = NULL;
+}
+
+/* >>forces: energies and forces of chunks -------------------------------------------------------------------------- */
+
+/* In: displacements. Out: energies of components; elastic and inertial forces of copies. A task writes the slots
+ * and partial sums of its own chunk only. */
 
 /* Asks for what a pass soon reads of the block this many further on, in the chunk or the next one: its tangents, or
  * what they are made of. */
@@ -2679,11 +4849,6 @@ static void gxsp_task_sum(void *context, size_t index) {
     }
 }
 
-/* The piece that leads a copy's */
-static gxsp_component *gxsp_lead_of(const gxsp_system *system, size_t copy) {
-    return &system->model.components[system->model.components[system->model.component[copy]].lead];
-}
-
 /* Energies of the pieces' elements at from, and elastic + inertial forces, 0 on what sleeps. turned: see gxsp_pass */
 static void gxsp_evaluate_elements(gxsp_system *system, double rate, const double *from, const double *turned,
                                    int nudge, double *force) {
@@ -2721,1954 +4886,9 @@ static void gxsp_evaluate_elements(gxsp_system *system, double rate, const doubl
     }
 }
 
-/* >>model: elements sorted by material kind, by whether they are whole, and along a curve through space, then cut into
- * chunks, seated in lanes */
+/* >>blocks: vectors of copies and 3x3 blocks, nine numbers by columns ---------------------------------------------- */
 
-/* Forests of joined indices: the root of a tree is its least. */
-static uint32_t gxsp_root(uint32_t *parent, uint32_t i) {
-    while (parent[i] != i) {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    return i;
-}
-
-static void gxsp_join(uint32_t *parent, uint32_t i, uint32_t j) {
-    i = gxsp_root(parent, i);
-    j = gxsp_root(parent, j);
-    if (i < j)
-        parent[j] = i;
-    else
-        parent[i] = j;
-}
-
-/* The ten bits of x with two zeros between each two */
-static uint32_t gxsp_spread(uint32_t x) {
-    x = (x | x << 16) & 0x030000ffu;
-    x = (x | x << 8) & 0x0300f00fu;
-    x = (x | x << 4) & 0x030c30c3u;
-    return (x | x << 2) & 0x09249249u;
-}
-
-/* Position of a place along the Z-order curve of 1024^3 cells */
-static uint32_t gxsp_curve(const double *at, const double *low, double per_cell) {
-    uint32_t code = 0;
-    int k;
-    for (k = 0; k < 3; k++) {
-        double cell = (at[k] - low[k]) * per_cell;
-        code |= gxsp_spread(cell < 0 ? 0 : cell > 1023 ? 1023 : (uint32_t)cell) << k;
-    }
-    return code;
-}
-
-/* Is the mass block m (1 + delta_ij), as a whole element's is? To rounding of its ten integrals. */
-static int gxsp_whole(const double *mass) {
-    static const int own[10] = {2, 1, 1, 1, 2, 1, 1, 2, 1, 2};
-    int k;
-    for (k = 0; k < 10; k++)
-        if (fabs(mass[k] - 0.5 * own[k] * mass[0]) > 1e-14 * mass[0]) return 0;
-    return 1;
-}
-
-/* An element's place in the order: class, then piece, then curve, the last of each ten bits first */
-typedef struct gxsp_sorted {
-    uint32_t place, component, class_index;
-    uint32_t index; /* of the element or, while pieces are sorted, of the piece */
-} gxsp_sorted;
-
-static uint32_t gxsp_sorted_digit(const gxsp_sorted *of, int pass) {
-    return pass < 3 ? of->place >> (10 * pass) & 1023u
-         : pass < 6 ? of->component >> (10 * (pass - 3)) & 1023u
-                    : of->class_index;
-}
-
-/* Stable sort, least digit first; digits all alike are left out. other: room for as many */
-static gxsp_sorted *gxsp_sort(gxsp_sorted *sorted, gxsp_sorted *other, size_t count) {
-    int pass, digit;
-    for (pass = 0; pass < 7; pass++) {
-        size_t start[1025] = {0}, i;
-        gxsp_sorted *swap = sorted;
-        for (i = 0; i < count; i++) ++start[gxsp_sorted_digit(&sorted[i], pass) + 1];
-        if (start[gxsp_sorted_digit(&sorted[0], pass) + 1] == count) continue;
-        for (digit = 0; digit < 1024; digit++) start[digit + 1] += start[digit];
-        for (i = 0; i < count; i++) other[start[gxsp_sorted_digit(&sorted[i], pass)]++] = sorted[i];
-        sorted = other;
-        other = swap;
-    }
-    return sorted;
-}
-
-/* Position of every element along the curve through the model's box */
-static void gxsp_place_elements(const gxs_model *model, gxsp_sorted *sorted) {
-    double low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, extent = 0;
-    size_t i;
-    int k, r;
-    for (i = 0; model->positions && i < model->copy_count; i++)
-        for (k = 0; k < 3; k++) {
-            double x = model->positions[3 * i + (size_t)k];
-            low[k] = i == 0 || x < low[k] ? x : low[k];
-            high[k] = i == 0 || x > high[k] ? x : high[k];
-        }
-    for (k = 0; k < 3; k++) extent = high[k] - low[k] > extent ? high[k] - low[k] : extent;
-    for (i = 0; i < model->element_count && extent > 0; i++) {
-        double at[3] = {0, 0, 0};
-        for (k = 0; k < 4; k++)
-            for (r = 0; r < 3; r++)
-                at[r] += 0.25 * model->positions[3 * (size_t)model->elements[i].copy[k] + (size_t)r];
-        sorted[i].place = gxsp_curve(at, low, 1024 / extent);
-    }
-}
-
-/* Pieces in the order in which the curve first meets them. rank: by piece */
-static void gxsp_rank_components(const gxsp_system *system, const gxs_model *model, const gxsp_sorted *elements,
-                                 gxsp_sorted *components, gxsp_sorted *other, uint32_t *rank) {
-    size_t i;
-    for (i = 0; i < system->model.component_count; i++) {
-        components[i].index = (uint32_t)i;
-        components[i].place = UINT32_MAX;
-    }
-    for (i = 0; i < model->element_count; i++) {
-        gxsp_sorted *component = &components[system->model.component[model->elements[i].copy[0]]];
-        component->place = elements[i].place < component->place ? elements[i].place : component->place;
-    }
-    components = gxsp_sort(components, other, system->model.component_count);
-    for (i = 0; i < system->model.component_count; i++) rank[components[i].index] = (uint32_t)i;
-}
-
-/* Are an element's gradients those that the rest positions x of its corners say, but for rounding? */
-static int gxsp_is_placed(const gxs_element *element, const double x[4][3]) {
-    double edge[3][3], made[3][3], determinant = 0, most = 0, off = 0;
-    int i, k;
-    for (i = 0; i < 3; i++)
-        for (k = 0; k < 3; k++) edge[i][k] = x[1 + i][k] - x[0][k];
-    for (i = 0; i < 3; i++) {
-        const double *a = edge[(i + 1) % 3], *b = edge[(i + 2) % 3];
-        made[i][0] = a[1] * b[2] - a[2] * b[1], made[i][1] = a[2] * b[0] - a[0] * b[2],
-        made[i][2] = a[0] * b[1] - a[1] * b[0];
-    }
-    for (k = 0; k < 3; k++) determinant += edge[0][k] * made[0][k];
-    if (!gxsp_finite(determinant) || !(fabs(determinant) >= DBL_MIN)) return 0;
-    for (k = 0; k < 9; k++) {
-        const double given = element->gradient[1 + k / 3][k % 3], found = made[k / 3][k % 3] / determinant;
-        if (!gxsp_finite(found)) return 0;
-        most = fabs(given) > most ? fabs(given) : most;
-        off = fabs(given - found) > off ? fabs(given - found) : off;
-    }
-    return off <= GXSP_PLACED * most;
-}
-
-/* What elements of one chunk are alike in: 4 x kind + 2 x (gradients are not those of the positions) + (masses are not
- * those of whole elements). positions: at 3 x copy, or, origins (as of gxs_change) given, of what the copy was; NULL:
- * there are none */
-static uint32_t gxsp_class(gxs_material_kind kind, const gxs_element *element, uint32_t lumped, const double *positions,
-                           const uint32_t *origins) {
-    double x[4][3];
-    int k;
-    for (k = 0; k < 4 && positions; k++) {
-        const uint32_t copy = origins ? origins[element->copy[k]] >> 1 : element->copy[k];
-        memcpy(x[k], positions + 3 * (size_t)copy, sizeof x[k]);
-    }
-    return 4 * (uint32_t)kind + (positions && gxsp_is_placed(element, (const double(*)[3])x) ? 0u : 2u) +
-           (lumped || gxsp_whole(element->mass) ? 0u : 1u);
-}
-
-/* The order of elements. Elements of one piece are together, so that chunks have few nodes and sleep with their piece.
- */
-static gxsp_sorted *gxsp_order_elements(const gxsp_system *system, const gxs_model *model, gxsp_pool *scratch) {
-    const size_t count = model->element_count, components = system->model.component_count,
-                 most = count > components ? count : components;
-    gxsp_sorted *sorted = (gxsp_sorted *)gxsp_take(scratch, count, sizeof *sorted);
-    gxsp_sorted *other = (gxsp_sorted *)gxsp_take(scratch, most, sizeof *other);
-    gxsp_sorted *ranked = (gxsp_sorted *)gxsp_take(scratch, components, sizeof *ranked);
-    uint32_t *rank = (uint32_t *)gxsp_take(scratch, components, sizeof(uint32_t));
-    size_t i;
-    if (scratch->failed) return NULL;
-    gxsp_place_elements(model, sorted);
-    gxsp_rank_components(system, model, sorted, ranked, other, rank);
-    for (i = 0; i < count; i++) {
-        const gxs_element *element = &model->elements[i];
-        sorted[i].index = (uint32_t)i;
-        sorted[i].component = rank[system->model.component[element->copy[0]]];
-        sorted[i].class_index =
-            gxsp_class(model->materials[element->material].kind, element, model->lumped_mass, model->positions, NULL);
-    }
-    return gxsp_sort(sorted, other, count);
-}
-
-static const uint8_t gxsp_own_order[4] = {0, 1, 2, 3};
-
-/* An element's mass, returned, and its centre in barycentric coordinates: row sums over their sum. rounded: to whole
- * units of 2^-24, so that the four are 1 in sum, and none below 0 */
-static double gxsp_find_centre(const double *mass, double *centre, double *rounded) {
-    const double unit = 16777216;
-    double sum = 0;
-    int k, j, most = 1;
-    for (k = 0; k < 4; k++) {
-        for (j = 0, centre[k] = 0; j < 4; j++) centre[k] += mass[gxsp_packed_mass[k][j]];
-        sum += centre[k];
-    }
-    rounded[0] = 1;
-    for (k = 3; k >= 0; k--) {
-        centre[k] = sum > 0 ? centre[k] / sum : 0;
-        if (k > 0) rounded[0] -= rounded[k] = floor(unit * centre[k] + 0.5) / unit;
-    }
-    most = rounded[2] > rounded[most] ? 2 : most;
-    most = rounded[3] > rounded[most] ? 3 : most;
-    if (rounded[0] < 0) rounded[most] += rounded[0], rounded[0] = 0;
-    return sum > 0 ? sum : 0;
-}
-
-/* What each corner's copy has of an element's mass: row sums as the solver has them */
-static void gxsp_row_masses(const gxs_element *element, double *rows) {
-    const int whole = gxsp_whole(element->mass);
-    double centre[4], mass = whole ? 2.5 * element->mass[0] : gxsp_find_centre(element->mass, centre, rows);
-    int k;
-    for (k = 0; k < 4; k++) rows[k] = whole ? mass : mass * rows[k];
-}
-
-/* Cholesky factor of a symmetric 3x3, which is used up, the largest pivot first, so that rounding stays as small as it
- * was where the matrix is next to singular or worse; then made lower triangular by turning columns, which leaves factor
- * factor^T as it is. */
-static void gxsp_factor3(double c[3][3], double factor[3][3]) {
-    int done[3] = {0, 0, 0}, step, i, j, k;
-    memset(factor, 0, 9 * sizeof(double));
-    for (step = 0; step < 3; step++) {
-        double root;
-        for (i = 0, k = -1; i < 3; i++)
-            if (!done[i] && (k < 0 || c[i][i] > c[k][k])) k = i;
-        if (!(c[k][k] > 0)) break;
-        root = sqrt(c[k][k]);
-        done[k] = 1;
-        for (i = 0; i < 3; i++)
-            if (!done[i]) {
-                const double most = c[i][i] > 0 ? sqrt(c[i][i]) : 0;
-                factor[i][step] = fabs(c[i][k]) < root * most ? c[i][k] / root : copysign(most, c[i][k]);
-            }
-        factor[k][step] = root;
-        for (i = 0; i < 3; i++)
-            for (j = 0; j < 3 && !done[i]; j++) c[i][j] -= factor[i][step] * factor[j][step];
-    }
-    for (i = 0; i < 2; i++)
-        for (j = i + 1; j < 3; j++) {
-            const double length = sqrt(factor[i][i] * factor[i][i] + factor[i][j] * factor[i][j]);
-            const double cosine = length > 0 ? factor[i][i] / length : 1, sine = length > 0 ? factor[i][j] / length : 0;
-            for (k = i; k < 3; k++) {
-                const double a = factor[k][i], b = factor[k][j];
-                factor[k][i] = cosine * a + sine * b, factor[k][j] = cosine * b - sine * a;
-            }
-        }
-}
-
-/* Masses of a lane that are not those of a whole element. Returns all of it. */
-static double gxsp_place_moments(const double *mass, const uint8_t *order, gxsp_moments *moments, size_t lane) {
-    double centre[4], rounded[4], covariance[3][3], root[3][3];
-    const double sum = gxsp_find_centre(mass, centre, rounded), all = sum > 0 ? sum : 1;
-    const uint8_t *own = order + 1;
-    int i, j;
-    for (i = 0; i < 3; i++)
-        for (j = 0; j < 3; j++)
-            covariance[i][j] = mass[gxsp_packed_mass[own[i]][own[j]]] / all - centre[own[i]] * centre[own[j]];
-    gxsp_factor3(covariance, root);
-    for (i = 0; i < 3; i++) {
-        moments->centre[i][lane] = (float)rounded[own[i]];
-        for (j = 0; j <= i; j++) moments->root[i * (i + 1) / 2 + j][lane] = (float)root[i][j];
-    }
-    return sum;
-}
-
-/* order: which of the element's corners come to be the lane's */
-static void gxsp_place_element(const gxsp_chunk *chunk, const gxs_element *element, const uint8_t *order, uint32_t at,
-                               uint32_t lumped) {
-    gxsp_rest *rest = &chunk->rest[at / GXSP_LANES];
-    size_t lane = at % GXSP_LANES;
-    int i, k;
-    for (i = 0; i < 3 && chunk->gradients; i++)
-        for (k = 0; k < 3; k++)
-            chunk->gradients[at / GXSP_LANES].entry[3 * i + k][lane] =
-                order[1 + i] > 0 ? element->gradient[order[1 + i]][k]
-                                 : -(element->gradient[1][k] + element->gradient[2][k] + element->gradient[3][k]);
-    rest->weight[lane] = element->weight;
-    rest->material[lane] = element->material;
-    chunk->groups[at] = element->group % GXSP_GROUPS; /* who does not update may have left it unset */
-    if (chunk->moments)
-        rest->mass[lane] = gxsp_place_moments(element->mass, order, &chunk->moments[at / GXSP_LANES], lane);
-    else
-        rest->mass[lane] = lumped ? 0 : 0.5 * element->mass[0];
-}
-
-/* Ascending, by insertion */
-static void gxsp_sort_row(uint32_t *row, uint32_t count) {
-    uint32_t i, j;
-    for (i = 1; i < count; i++) {
-        uint32_t value = row[i];
-        for (j = i; j > 0 && row[j - 1] > value; j--) row[j] = row[j - 1];
-        row[j] = value;
-    }
-}
-
-/* Numbers of copies in the chunk at work */
-typedef struct gxsp_numbers {
-    uint32_t *local; /* n: the number, where stamp is the round */
-    uint32_t *stamp; /* n, 0 at first */
-    uint32_t round;  /* one for each chunk */
-} gxsp_numbers;
-
-/* The nodes of a chunk in the order of their copies, which is that of memory. copies: of count elements; GXSP_NONE
- * where there is none, else numbers of nodes come in their place. Returns how many nodes there are. */
-static uint32_t gxsp_number_nodes(uint32_t (*copies)[4], uint32_t count, gxsp_numbers *numbers, uint32_t *nodes) {
-    uint32_t e, i, k, found = 0;
-    numbers->round++;
-    for (e = 0; e < count; e++)
-        for (k = 0; k < 4 && copies[e][0] != GXSP_NONE; k++)
-            if (numbers->stamp[copies[e][k]] != numbers->round) {
-                numbers->stamp[copies[e][k]] = numbers->round;
-                nodes[found++] = copies[e][k];
-            }
-    gxsp_sort_row(nodes, found);
-    for (i = 0; i < found; i++) numbers->local[nodes[i]] = i;
-    for (e = 0; e < count; e++)
-        for (k = 0; k < 4 && copies[e][k] != GXSP_NONE; k++) copies[e][k] = numbers->local[copies[e][k]];
-    return found;
-}
-
-/* Corners of a chunk's blocks. nodes: by lane, GXSP_NONE where there is no element: such a lane has the corners of the
- * block before */
-static void gxsp_set_corners(const gxsp_chunk *chunk, uint32_t (*nodes)[4]) {
-    uint32_t b, l, k;
-    for (b = 0; b < chunk->block_count; b++) {
-        gxsp_corners *corner = &chunk->corners[b];
-        const gxsp_corners *before = b > 0 ? corner - 1 : corner;
-        chunk->changed[b] = b > 0 ? 0 : 15;
-        for (k = 0; k < 4; k++)
-            for (l = 0; l < GXSP_LANES; l++) {
-                const uint32_t node = nodes[b * GXSP_LANES + l][k];
-                corner->node[k][l] = node != GXSP_NONE ? (uint16_t)node : b > 0 ? before->node[k][l] : 0;
-                chunk->changed[b] =
-                    (uint8_t)(chunk->changed[b] | (corner->node[k][l] != before->node[k][l] ? 1u << k : 0u));
-            }
-    }
-    chunk->changed[b] = 15;
-}
-
-/* --- lanes: which element of a chunk goes where ---
- * Neighbours come to lie in successive blocks, so that those of one block hardly share nodes: where they do, sums into
- * slots wait for the ones before them. And a pass over blocks neither reads nor writes a corner that is the same as in
- * the block before, in each lane. So lanes are made of chains around an edge: four elements, each with all but one
- * corner of the one before. */
-
-enum { GXSP_STRIP = 4, GXSP_FACES = 4096 };
-
-typedef struct gxsp_layout {
-    uint32_t (*nodes)[4]; /* count: of each element */
-    uint32_t count;
-    uint16_t across[GXSP_CHUNK][4]; /* the element beyond the face that a corner is not on, or count */
-    uint8_t placed[GXSP_CHUNK];
-    uint16_t strip[GXSP_CHUNK];   /* elements of the chains of one length, one after the other */
-    uint8_t turn[GXSP_CHUNK][4];  /* and the order of their corners */
-    uint16_t element[GXSP_CHUNK]; /* by lane: the element there, or count */
-    uint8_t order[GXSP_CHUNK][4]; /* by lane */
-} gxsp_layout;
-
-/* Where three nodes stand in an element: their corners, and the fourth one; 4: not each is there once. Without
- * branches, which could not be foretold */
-static int gxsp_find_face(const uint32_t *element, const uint32_t *face, uint8_t *corners) {
-    static const uint8_t corner_of[16] = {4, 0, 1, 4, 2, 4, 4, 4, 3, 4, 4, 4, 4, 4, 4, 4}; /* of a single bit */
-    unsigned met[3];
-    int i;
-    for (i = 0; i < 3; i++) {
-        const uint32_t node = face[i];
-        met[i] = (element[0] == node ? 1u : 0u) | (element[1] == node ? 2u : 0u) | (element[2] == node ? 4u : 0u) |
-                 (element[3] == node ? 8u : 0u);
-        corners[i] = corner_of[met[i]];
-    }
-    return (corners[0] | corners[1] | corners[2]) & 4 ? 4 : corner_of[15 & ~(met[0] | met[1] | met[2])];
-}
-
-/* The nodes of the face that a corner is not on */
-static void gxsp_face_of(const uint32_t *element, int corner, uint32_t *face) {
-    int i;
-    for (i = 0; i < 3; i++) face[i] = element[i < corner ? i : i + 1];
-}
-
-/* Fills across by a table of faces that have been met. */
-static void gxsp_find_across(gxsp_layout *layout) {
-    uint16_t table[GXSP_FACES]; /* 4 x element + corner, from 1 */
-    uint32_t f, at, face[3];
-    uint8_t corners[3];
-    memset(table, 0, sizeof table);
-    for (f = 0; f < 4 * layout->count; f++) {
-        layout->across[f / 4][f % 4] = (uint16_t)layout->count;
-        gxsp_face_of(layout->nodes[f / 4], (int)(f % 4), face);
-        for (at = (face[0] * face[0] + face[1] * face[1] + face[2] * face[2]) * 40503u / 16 % GXSP_FACES; table[at];
-             at = (at + 1) % GXSP_FACES) {
-            const uint32_t other = (table[at] - 1u) / 4;
-            const int corner = gxsp_find_face(layout->nodes[other], face, corners);
-            if (corner != (int)((table[at] - 1u) % 4)) continue;
-            layout->across[f / 4][f % 4] = (uint16_t)other;
-            layout->across[other][corner] = (uint16_t)(f / 4);
-            break;
-        }
-        if (!table[at]) table[at] = (uint16_t)(f + 1);
-    }
-}
-
-/* Walks from the chain's first element around the edge of its first two corners. Is there a way for length elements? */
-static int gxsp_walk_strip(const gxsp_layout *layout, uint32_t length, uint16_t *strip, uint8_t (*order)[4]) {
-    uint32_t i, k;
-    for (i = 1; i < length; i++) {
-        const uint32_t moving = i % 2 ? 2 : 3, e = layout->across[strip[i - 1]][order[i - 1][moving]];
-        const uint32_t *before = layout->nodes[strip[i - 1]];
-        uint32_t face[3];
-        uint8_t corners[3] = {0, 0, 0};
-        int other;
-        if (e == layout->count || layout->placed[e]) return 0;
-        for (k = 0; k < i; k++)
-            if (strip[k] == e) return 0;
-        face[0] = before[order[i - 1][0]], face[1] = before[order[i - 1][1]],
-        face[2] = before[order[i - 1][5 - moving]];
-        other = gxsp_find_face(layout->nodes[e], face, corners);
-        if (other == 4) return 0;
-        order[i][moving] = (uint8_t)other;
-        order[i][0] = corners[0], order[i][1] = corners[1], order[i][5 - moving] = corners[2];
-        strip[i] = (uint16_t)e;
-    }
-    return 1;
-}
-
-/* A chain of so many elements that begins with e, which is not seated */
-static int gxsp_find_strip(const gxsp_layout *layout, uint32_t e, uint32_t length, uint16_t *strip,
-                           uint8_t (*order)[4]) {
-    static const uint8_t edges[6][4] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2},
-                                        {1, 2, 0, 3}, {1, 3, 0, 2}, {2, 3, 0, 1}};
-    int edge, turned;
-    for (edge = 0; edge < 6; edge++)
-        for (turned = 0; turned < 2; turned++) {
-            strip[0] = (uint16_t)e;
-            memcpy(order[0], edges[edge], 4);
-            order[0][2] = edges[edge][2 + turned], order[0][3] = edges[edge][3 - turned];
-            if (gxsp_walk_strip(layout, length, strip, order)) return 1;
-        }
-    return 0;
-}
-
-/* Chains of so many elements, of those not seated yet. Returns how many chains there are. */
-static uint32_t gxsp_list_strips(gxsp_layout *layout, uint32_t length) {
-    uint32_t e, i, found = 0;
-    for (e = 0; e < layout->count; e++)
-        if (!layout->placed[e] &&
-            gxsp_find_strip(layout, e, length, &layout->strip[found * length], &layout->turn[found * length])) {
-            for (i = 0; i < length; i++) layout->placed[layout->strip[found * length + i]] = 1;
-            found++;
-        }
-    return found;
-}
-
-/* Seats chains of so many elements in the blocks from first on, side by side, each in a lane. All of single elements;
- * of longer ones those that fill blocks. Returns the first block that is left. */
-static uint32_t gxsp_place_strips(gxsp_layout *layout, uint32_t blocks, uint32_t length, uint32_t first) {
-    const uint32_t strips = gxsp_list_strips(layout, length), rows = length > 1 ? strips / GXSP_LANES : blocks - first;
-    uint32_t c, i;
-    for (c = 0; c < strips; c++)
-        for (i = 0; i < length; i++) {
-            const uint32_t at = c * length + i, e = layout->strip[at];
-            const uint32_t lane = c < rows * GXSP_LANES ? (first + c % rows * length + i) * GXSP_LANES + c / rows : 0;
-            layout->placed[e] = c < rows * GXSP_LANES;
-            if (!layout->placed[e]) continue;
-            layout->element[lane] = (uint16_t)e;
-            memcpy(layout->order[lane], layout->turn[at], 4);
-        }
-    return first + rows * length;
-}
-
-/* The lane of each element of a chunk. nodes: of the elements, neighbours together */
-static void gxsp_assign_lanes(gxsp_layout *layout, uint32_t (*nodes)[4], uint32_t count, uint32_t blocks) {
-    uint32_t lane, length, first = 0;
-    layout->nodes = nodes;
-    layout->count = count;
-    memset(layout->placed, 0, sizeof layout->placed);
-    for (lane = 0; lane < GXSP_CHUNK; lane++) layout->element[lane] = (uint16_t)count;
-    gxsp_find_across(layout);
-    for (length = GXSP_STRIP; length > 0; length /= 2) first = gxsp_place_strips(layout, blocks, length, first);
-}
-
-/* Elements of a chunk in their lanes. elements: sorted; nodes: theirs, numbered in the chunk */
-static void gxsp_fill_chunk(const gxsp_chunk *chunk, const gxs_model *model, const gxsp_sorted *elements,
-                            uint32_t (*nodes)[4], uint32_t count) {
-    gxsp_layout layout;
-    uint32_t placed[GXSP_CHUNK][4], lane;
-    int k;
-    gxsp_assign_lanes(&layout, nodes, count, chunk->block_count);
-    memset(placed, 0xff, sizeof placed);
-    for (lane = 0; lane < chunk->block_count * GXSP_LANES; lane++) {
-        const uint32_t e = layout.element[lane];
-        if (e == count) { /* of no weight, but of a material there is */
-            chunk->rest[lane / GXSP_LANES].material[lane % GXSP_LANES] = model->elements[elements[0].index].material;
-            continue;
-        }
-        gxsp_place_element(chunk, &model->elements[elements[e].index], layout.order[lane], lane, model->lumped_mass);
-        for (k = 0; k < 4; k++) placed[lane][k] = nodes[e][layout.order[lane][k]];
-    }
-    gxsp_set_corners(chunk, placed);
-}
-
-/* Blocks and nodes of the chunks */
-static void gxsp_fill_chunks(gxsp_system *system, const gxs_model *model, const gxsp_sorted *sorted,
-                             gxsp_numbers *numbers) {
-    uint32_t copies[GXSP_CHUNK][4], c;
-    size_t first = 0;
-    for (c = 0; c < system->mesh.chunk_count; c++) {
-        gxsp_chunk *chunk = &system->mesh.chunks[c];
-        uint32_t e;
-        for (e = 0; first + e < model->element_count && e < chunk->block_count * GXSP_LANES &&
-                    sorted[first + e].class_index == chunk->class_index;
-             e++) {
-            const gxs_element *element = &model->elements[sorted[first + e].index];
-            gxsp_prefetch(element, sizeof *element);
-            memcpy(copies[e], element->copy, sizeof copies[e]);
-        }
-        chunk->first_node = (uint32_t)system->mesh.slot_count;
-        chunk->node_count = gxsp_number_nodes(copies, e, numbers, system->mesh.nodes + system->mesh.slot_count);
-        gxsp_fill_chunk(chunk, model, sorted + first, copies, e);
-        first += e;
-        system->mesh.slot_count += chunk->node_count;
-    }
-}
-
-/* Chunks of the sorted elements: which blocks, what class. Returns how many. chunks: NULL, or room for all */
-static uint32_t gxsp_plan_chunks(gxsp_system *system, const gxsp_sorted *sorted, gxsp_chunk *chunks) {
-    uint32_t chunk_count = 0;
-    size_t i = 0;
-    system->mesh.block_count = 0;
-    while (i < system->model.element_count) {
-        uint32_t class_index = sorted[i].class_index, count = 0;
-        gxsp_chunk chunk;
-        memset(&chunk, 0, sizeof chunk);
-        while (i < system->model.element_count && sorted[i].class_index == class_index && count < GXSP_CHUNK)
-            ++i, ++count;
-        chunk.class_index = class_index;
-        chunk.kind = (gxs_material_kind)(class_index / 4);
-        chunk.first_block = (uint32_t)system->mesh.block_count;
-        chunk.block_count = (count + GXSP_LANES - 1) / GXSP_LANES;
-        system->mesh.block_count += chunk.block_count;
-        if (chunks) chunks[chunk_count] = chunk;
-        chunk_count++;
-    }
-    return chunk_count;
-}
-
-/* Blocks of chunks count of which are planned, but for those of steps: see gxsp_steps_make */
-static void gxsp_blocks_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count) {
-    gxsp_rest *rest;
-    gxsp_corners *corners;
-    gxsp_gradients *gradients;
-    gxsp_moments *moments;
-    uint32_t *groups;
-    uint8_t *changed;
-    size_t blocks = 0, own = 0, general = 0;
-    uint32_t c;
-    for (c = 0; c < count; c++) {
-        blocks += chunks[c].block_count;
-        own += chunks[c].class_index & 2 ? chunks[c].block_count : 0;
-        general += chunks[c].class_index & 1 ? chunks[c].block_count : 0;
-    }
-    rest = (gxsp_rest *)gxsp_take(pool, blocks, sizeof(gxsp_rest));
-    corners = (gxsp_corners *)gxsp_take(pool, blocks, sizeof(gxsp_corners));
-    groups = (uint32_t *)gxsp_take(pool, blocks * GXSP_LANES, sizeof(uint32_t));
-    gradients = (gxsp_gradients *)gxsp_take(pool, own, sizeof(gxsp_gradients));
-    moments = (gxsp_moments *)gxsp_take(pool, general, sizeof(gxsp_moments));
-    changed = (uint8_t *)gxsp_take(pool, blocks + count, 1);
-    if (pool->failed) return;
-    memset(groups, 0xff, blocks * GXSP_LANES * sizeof *groups);
-    for (c = 0; c < count; c++) {
-        chunks[c].rest = rest;
-        chunks[c].corners = corners;
-        chunks[c].groups = groups;
-        chunks[c].changed = changed;
-        chunks[c].gradients = chunks[c].class_index & 2 ? gradients : NULL;
-        chunks[c].moments = chunks[c].class_index & 1 ? moments : NULL;
-        rest += chunks[c].block_count;
-        corners += chunks[c].block_count;
-        groups += chunks[c].block_count * GXSP_LANES;
-        changed += chunks[c].block_count + 1;
-        gradients += chunks[c].class_index & 2 ? chunks[c].block_count : 0;
-        moments += chunks[c].class_index & 1 ? chunks[c].block_count : 0;
-    }
-}
-
-/* Blocks that linearisations write */
-static void gxsp_tangents_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count) {
-    gxsp_tangent *tangents;
-    gxsp_general *generals;
-    size_t blocks = 0, custom = 0;
-    uint32_t c;
-    for (c = 0; c < count; c++) {
-        blocks += chunks[c].block_count;
-        custom += chunks[c].kind == GXS_CUSTOM ? chunks[c].block_count : 0;
-    }
-    tangents = (gxsp_tangent *)gxsp_take(pool, blocks, sizeof(gxsp_tangent));
-    generals = (gxsp_general *)gxsp_take(pool, custom, sizeof(gxsp_general));
-    for (c = 0; c < count && !pool->failed; c++) {
-        chunks[c].tangents = tangents;
-        chunks[c].generals = chunks[c].kind == GXS_CUSTOM ? generals : NULL;
-        tangents += chunks[c].block_count;
-        generals += chunks[c].kind == GXS_CUSTOM ? chunks[c].block_count : 0;
-    }
-}
-
-/* The slots of every copy, in the order of chunks */
-static void gxsp_list_slots(gxsp_system *system) {
-    uint32_t i;
-    size_t s;
-    memset(system->mesh.copy_start, 0, (system->model.n + 2) * sizeof *system->mesh.copy_start);
-    for (s = 0; s < system->mesh.slot_count; s++) system->mesh.copy_start[system->mesh.nodes[s] + 2]++;
-    for (i = 0; i < system->model.n; i++) system->mesh.copy_start[i + 2] += system->mesh.copy_start[i + 1];
-    for (s = 0; s < system->mesh.slot_count; s++) /* slots are in the order of chunks */
-        system->mesh.copy_slot[system->mesh.copy_start[system->mesh.nodes[s] + 1]++] = (uint32_t)s;
-    memset(system->mesh.copy_slot + system->mesh.slot_count, 0, GXSP_AHEAD * sizeof *system->mesh.copy_slot);
-    memset(system->mesh.nodes + system->mesh.slot_count, 0, GXSP_AHEAD * sizeof *system->mesh.nodes);
-}
-
-static void gxsp_chunks_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model) {
-    gxsp_sorted *sorted = gxsp_order_elements(system, model, scratch);
-    gxsp_numbers numbers;
-    uint32_t *nodes;
-    numbers.local = (uint32_t *)gxsp_take(scratch, system->model.n, sizeof(uint32_t));
-    numbers.stamp = (uint32_t *)gxsp_take(scratch, system->model.n, sizeof(uint32_t));
-    numbers.round = 0;
-    if (scratch->failed) return;
-    system->mesh.chunk_count = gxsp_plan_chunks(system, sorted, NULL);
-    system->mesh.chunk_room = system->mesh.chunk_count;
-    gxsp_columns_make(system, GXSP_COLUMNS(gxsp_chunk_columns), GXSP_WITH_MODEL, system->mesh.chunk_count);
-    /* its size is not known yet */
-    system->mesh.nodes = (uint32_t *)gxsp_take(scratch, 4 * system->model.element_count, sizeof(uint32_t));
-    if (scratch->failed || system->pool.failed) return;
-    (void)gxsp_plan_chunks(system, sorted, system->mesh.chunks);
-    gxsp_blocks_make(&system->pool, system->mesh.chunks, system->mesh.chunk_count);
-    if (system->pool.failed) return;
-    gxsp_fill_chunks(system, model, sorted, &numbers);
-    system->mesh.copy_slot =
-        (uint32_t *)gxsp_take(&system->pool, system->mesh.slot_count + GXSP_AHEAD, sizeof(uint32_t));
-    nodes = (uint32_t *)gxsp_take(&system->pool, system->mesh.slot_count + GXSP_AHEAD, sizeof(uint32_t));
-    if (system->pool.failed) return;
-    memcpy(nodes, system->mesh.nodes, system->mesh.slot_count * sizeof(uint32_t));
-    system->mesh.nodes = nodes;
-    gxsp_list_slots(system);
-}
-
-/* Does the element give corner i stiffness or mass? */
-static int gxsp_supports(const gxs_element *element, int i) {
-    double rows[4];
-    if (element->weight > 0) return 1;
-    gxsp_row_masses(element, rows);
-    return rows[i] > 0;
-}
-
-/* Copies that no element supports are fixed like held ones; row sums of the mass. */
-static void gxsp_find_fixed(gxsp_system *system, const gxs_model *model) {
-    size_t e, i;
-    int k;
-    memset(system->model.fixed, 1, system->model.n);
-    for (e = 0; e < model->element_count; e++) {
-        const gxs_element *element = &model->elements[e];
-        double rows[4];
-        gxsp_row_masses(element, rows);
-        for (k = 0; k < 4; k++) {
-            if (gxsp_supports(element, k)) system->model.fixed[element->copy[k]] = 0;
-            system->model.lumped[element->copy[k]] += rows[k];
-        }
-    }
-    if (model->held)
-        for (i = 0; i < system->model.n; i++)
-            if (model->held[i]) system->model.held[i] = system->model.fixed[i] = 1;
-}
-
-static inline int gxsp_follows(const gxsp_system *system, size_t copy) {
-    return system->model.follower_count > 0 && system->model.follower[copy] != GXSP_NONE;
-}
-
-/* Index of a constraint that cannot be, as its copy has two or a master follows others; SIZE_MAX if all can. held: n
- * flags or NULL; follows: n, scratch, 0 */
-static size_t gxsp_bad_constraint(const gxs_constraint *constraints, size_t count, const uint8_t *held,
-                                  uint8_t *follows) {
-    size_t i;
-    int k;
-    for (i = 0; i < count; i++) {
-        if (held && held[constraints[i].copy]) continue;
-        if (follows[constraints[i].copy]) return i;
-        follows[constraints[i].copy] = 1;
-    }
-    for (i = 0; i < count; i++)
-        for (k = 0; k < 4 && !(held && held[constraints[i].copy]); k++)
-            if (fabs(constraints[i].weight[k]) > 0 && follows[constraints[i].master[k]]) return i;
-    return SIZE_MAX;
-}
-
-/* Room for so many followers, and for the copies that there are */
-static void gxsp_followers_room(gxsp_system *system, size_t count) {
-    gxsp_model *model = &system->model;
-    if (count > model->follower_room) {
-        model->follower_room = (uint32_t)gxsp_room(count);
-        model->followers =
-            (gxsp_follower *)gxsp_grow(&system->pool, model->followers, 0, model->follower_room, sizeof(gxsp_follower));
-    }
-    if (count > 0 && !model->follower)
-        model->follower = (uint32_t *)gxsp_take(&system->pool, model->copy_room, sizeof(uint32_t));
-}
-
-/* Which copies follow others: none of them is fixed unless it is held. */
-static void gxsp_set_followers(gxsp_system *system, const gxs_constraint *constraints, size_t count) {
-    size_t i;
-    gxsp_followers_room(system, count);
-    system->model.follower_count = 0;
-    if (system->pool.failed || count == 0) return;
-    memset(system->model.follower, 0xff, system->model.n * sizeof *system->model.follower);
-    for (i = 0; i < count; i++) {
-        gxsp_follower *follower = &system->model.followers[system->model.follower_count];
-        if (system->model.held[constraints[i].copy]) continue;
-        follower->copy = constraints[i].copy;
-        memcpy(follower->master, constraints[i].master, sizeof follower->master);
-        memcpy(follower->weight, constraints[i].weight, sizeof follower->weight);
-        system->model.fixed[follower->copy] = 0;
-        system->model.follower[follower->copy] = system->model.follower_count++;
-    }
-}
-
-/* Joins what constraints couple. forest: n */
-static void gxsp_join_followers(const gxsp_system *system, uint32_t *forest) {
-    size_t i;
-    int k;
-    for (i = 0; i < system->model.follower_count; i++)
-        for (k = 0; k < 4; k++)
-            if (fabs(system->model.followers[i].weight[k]) > 0)
-                gxsp_join(forest, system->model.followers[i].copy, system->model.followers[i].master[k]);
-}
-
-/* Joins what elements and constraints couple. forest: n */
-static void gxsp_join_copies(const gxsp_system *system, const gxs_model *model, uint32_t *forest) {
-    size_t e, i;
-    int k;
-    for (i = 0; i < system->model.n; i++) forest[i] = (uint32_t)i;
-    for (e = 0; e < model->element_count; e++)
-        for (k = 1; k < 4; k++)
-            if (gxsp_supports(&model->elements[e], 0) || gxsp_supports(&model->elements[e], k))
-                gxsp_join(forest, model->elements[e].copy[0], model->elements[e].copy[k]);
-    gxsp_join_followers(system, forest);
-}
-
-/* Numbers the pieces: trees of a forest of copies */
-static void gxsp_number_components(gxsp_system *system, uint32_t *forest) {
-    size_t i;
-    system->model.component_count = 0;
-    for (i = 0; i < system->model.n; i++) { /* roots come before their copies: the lower index wins in gxsp_join */
-        uint32_t root = gxsp_root(forest, (uint32_t)i);
-        system->model.component[i] = root == i ? system->model.component_count++ : system->model.component[root];
-    }
-}
-
-/* Masses and states of the pieces, which are 0. A translation of one of state 0 meets no stiffness: K T = 0, so
- * T^T (K + rate M) x = rate x sum of lumped x. */
-static void gxsp_fill_components(gxsp_system *system) {
-    size_t i;
-    uint32_t p;
-    for (i = 0; i < system->model.n; i++) {
-        gxsp_component *component = &system->model.components[system->model.component[i]];
-        component->mass += system->model.lumped[i];
-        component->state |= system->model.fixed[i] ? GXSP_HELD : 0;
-    }
-    for (i = 0; i < system->model.follower_count; i++) {
-        const double *w = system->model.followers[i].weight;
-        if (fabs(w[0] + w[1] + w[2] + w[3] - 1) > 1e-12)
-            system->model.components[system->model.component[system->model.followers[i].copy]].state |= GXSP_UNBALANCED;
-    }
-    for (p = 0; p < system->model.component_count; p++)
-        system->model.components[p].state |= system->model.components[p].mass > 0 ? 0 : GXSP_UNBALANCED;
-}
-
-/* The pieces of every chunk, ascending. parts: NULL, or room for all. Returns how many there are. */
-static uint32_t gxsp_list_partials(gxsp_system *system, gxsp_partial *partials) {
-    uint32_t c, k, count = 0;
-    for (c = 0; c < system->model.component_count; c++)
-        system->model.components[c].lead = GXSP_NONE; /* here: the chunk that has met it last */
-    for (c = 0; c < system->mesh.chunk_count; c++) {
-        gxsp_chunk *chunk = &system->mesh.chunks[c];
-        chunk->first_partial = count;
-        for (k = 0; k < chunk->node_count; k++) {
-            const uint32_t component = system->model.component[system->mesh.nodes[chunk->first_node + k]];
-            uint32_t at = count;
-            if (system->model.components[component].lead == c) continue;
-            system->model.components[component].lead = c;
-            for (; partials && at > chunk->first_partial && partials[at - 1].component > component; at--)
-                partials[at].component = partials[at - 1].component;
-            if (partials) partials[at].component = component;
-            count++;
-        }
-        chunk->partial_count = count - chunk->first_partial;
-    }
-    for (c = 0; c < system->model.component_count; c++) system->model.components[c].lead = c;
-    return count;
-}
-
-/* Parts of the chunks, in place of those there were */
-static void gxsp_partials_make(gxsp_system *system) {
-    const uint32_t count = gxsp_list_partials(system, NULL);
-    system->mesh.partials =
-        (gxsp_partial *)gxsp_grow(&system->pool, system->mesh.partials, 0, count, sizeof(gxsp_partial));
-    system->mesh.partial_count = count;
-    if (!system->pool.failed) (void)gxsp_list_partials(system, system->mesh.partials);
-}
-
-/* Rest positions in spacings of the first lattice: GXSP_SPACING edges of an average whole element. 0: there is none. */
-static int gxsp_find_places(const gxsp_system *system, const gxs_model *model, float (*to)[3]) {
-    double volume = 0, spacing;
-    size_t e, i, k, counted = 0;
-    for (e = 0; e < model->element_count; e++) {
-        const double *g = &model->elements[e].gradient[1][0];
-        double inverse = g[0] * (g[4] * g[8] - g[5] * g[7]) + g[1] * (g[5] * g[6] - g[3] * g[8]) +
-                         g[2] * (g[3] * g[7] - g[4] * g[6]);
-        if (fabs(inverse) > 0) {
-            volume += 1 / fabs(inverse) / 6;
-            counted++;
-        }
-    }
-    if (counted == 0) return 0;
-    spacing = GXSP_SPACING * cbrt(5 * volume / (double)counted); /* five elements to a cube */
-    for (i = 0; i < system->model.n; i++)
-        for (k = 0; k < 3; k++) {
-            double place = (model->positions[3 * i + k] - model->positions[k]) / spacing;
-            if (!(fabs(place) < 1e6)) /* single precision would not place it */
-                return 0;
-            to[i][k] = (float)place + 0.31f; /* lattice planes off the mesh's own */
-        }
-    return 1;
-}
-
-/* Columns over copies that come with the model. positions: as given, or NULL */
-static void gxsp_copies_make(gxsp_system *system, const double *positions) {
-    const size_t n = system->model.copy_room = system->model.n;
-    if (positions) system->model.positions = (double *)gxsp_take(&system->pool, n, 3 * sizeof(double));
-    if (system->model.positions) memcpy(system->model.positions, positions, 3 * n * sizeof(double));
-    gxsp_columns_make(system, GXSP_COLUMNS(gxsp_copy_columns), GXSP_WITH_MODEL, n);
-}
-
-/* >>lattice: the multigrid's structure. A coarse node is a point of a lattice together with one connected component of
- * the nodes in its support, so that coarse functions never cross a cut (the copies' own trick, one level up). Values
- * between lattice points are linear on the six tetrahedra around a cell's diagonal: at most four weights, exact for
- * affine fields. */
-
-/* Lattice cell, order of axes and weights at a place. */
-static void gxsp_locate(const float *place, int32_t *cell, uint8_t *axis, float *weight) {
-    float f[3];
-    int k;
-    for (k = 0; k < 3; k++) {
-        cell[k] = (int32_t)floor((double)place[k]);
-        f[k] = place[k] - (float)cell[k];
-        axis[k] = (uint8_t)k;
-    }
-    for (k = 0; k < 3; k++) { /* three compare-and-swaps sort three numbers: (0 1), (1 2), (0 1) */
-        int i = k % 2;
-        if (f[axis[i]] < f[axis[i + 1]]) {
-            uint8_t first = axis[i];
-            axis[i] = axis[i + 1];
-            axis[i + 1] = first;
-        }
-    }
-    weight[0] = 1 - f[axis[0]];
-    weight[1] = f[axis[0]] - f[axis[1]];
-    weight[2] = f[axis[1]] - f[axis[2]];
-    weight[3] = f[axis[2]];
-}
-
-/* Lattice points as one number; never 0. 2^20 points along each axis suffice for any 32-bit count of elements near each
- * other; farther ones would only share a number, not a component. */
-static uint64_t gxsp_lattice_key(const int32_t *point) {
-    return ((uint64_t)((uint32_t)point[0] & 0x1fffffu) << 42 | (uint64_t)((uint32_t)point[1] & 0x1fffffu) << 21 |
-            ((uint32_t)point[2] & 0x1fffffu)) +
-           1;
-}
-
-/* Keys of the four points of the tetrahedron from a cell along axes */
-static void gxsp_tetrahedron_keys(const int32_t *cell, const uint8_t *axis, uint64_t *key) {
-    int32_t point[3];
-    int k;
-    memcpy(point, cell, sizeof point);
-    key[0] = gxsp_lattice_key(point);
-    for (k = 0; k < 3; k++) {
-        point[axis[k]]++;
-        key[k + 1] = gxsp_lattice_key(point);
-    }
-}
-
-/* What the transfer of a level is made from: four lattice points around each node, those of weight 0 left out */
-typedef struct gxsp_transfer {
-    uint64_t *key;    /* n x 4; 0: left out */
-    uint32_t *forest; /* n x 4 */
-} gxsp_transfer;
-
-/* Nodes i and j are neighbours: the lattice points around both belong to one component there. */
-static void gxsp_join_nodes(gxsp_transfer *transfer, uint32_t i, uint32_t j) {
-    const uint64_t *a = transfer->key + 4 * (size_t)i, *b = transfer->key + 4 * (size_t)j;
-    uint32_t p, q;
-    for (p = 0; p < 4; p++)
-        for (q = 0; q < 4; q++)
-            if (a[p] == b[q] && a[p] != 0) gxsp_join(transfer->forest, 4 * i + p, 4 * j + q);
-}
-
-/* Points and weights of a level's nodes, before components are joined. place: n x 3, in spacings of the next lattice */
-static void gxsp_transfer_begin(const gxsp_level *level, float (*place)[3], const uint8_t *fixed,
-                                gxsp_transfer *transfer) {
-    uint32_t i;
-    int k;
-    for (i = 0; i < level->n; i++) {
-        int32_t cell[3];
-        uint8_t axis[3];
-        gxsp_locate(place[i], cell, axis, level->weight[i]);
-        gxsp_tetrahedron_keys(cell, axis, transfer->key + 4 * (size_t)i);
-        for (k = 0; k < 4; k++) {
-            transfer->forest[4 * (size_t)i + (size_t)k] = 4 * i + (uint32_t)k;
-            /* 1e-4: what this leaves out of an affine field is far below the smoother's part */
-            if (level->weight[i][k] < 1e-4f || (fixed && fixed[i])) {
-                transfer->key[4 * (size_t)i + (size_t)k] = 0;
-                level->weight[i][k] = 0;
-            }
-        }
-    }
-}
-
-/* Numbers the components: the next level's nodes. Returns how many. */
-static uint32_t gxsp_transfer_end(gxsp_level *level, gxsp_transfer *transfer) {
-    uint32_t slot, count = 0;
-    /* roots come first in their tree: the lower index wins in gxsp_join */
-    for (slot = 0; slot < 4 * level->n; slot++) {
-        uint32_t *parent = &level->parent[slot / 4][slot % 4], root;
-        if (transfer->key[slot] == 0) {
-            *parent = GXSP_NONE;
-            continue;
-        }
-        root = gxsp_root(transfer->forest, slot);
-        *parent = root == slot ? count++ : level->parent[root / 4][root % 4];
-    }
-    return count;
-}
-
-static void gxsp_transfer_places(const gxsp_level *level, const gxsp_transfer *transfer, gxsp_level *next) {
-    uint32_t slot;
-    for (slot = 0; slot < 4 * level->n; slot++)
-        if (transfer->key[slot] != 0) {
-            uint64_t key = transfer->key[slot] - 1;
-            int k;
-            for (k = 0; k < 3; k++) { /* 21 bits with their sign */
-                uint32_t bits = (uint32_t)(key >> (42 - 21 * k)) & 0x1fffffu;
-                next->place[level->parent[slot / 4][slot % 4]][k] = (int32_t)bits - (bits & 0x100000u ? 0x200000 : 0);
-            }
-        }
-}
-
-/* Room for the transfer of a level to the next */
-static void gxsp_transfer_make(gxsp_pool *pool, gxsp_level *level) {
-    level->parent = (uint32_t(*)[4])gxsp_take(pool, level->n, sizeof *level->parent);
-    level->weight = (float(*)[4])gxsp_take(pool, level->n, sizeof *level->weight);
-}
-
-/* Room for a coarse level of n nodes, but for its matrix and what only those have that are not the last */
-static void gxsp_level_make(gxsp_pool *pool, gxsp_level *level, uint32_t n) {
-    level->n = n;
-    level->place = (int32_t(*)[3])gxsp_take(pool, n, sizeof *level->place);
-    level->start = (uint32_t *)gxsp_take(pool, (size_t)n + 1, sizeof(uint32_t));
-    level->x = (gxsp_vector4 *)gxsp_take(pool, n, sizeof(gxsp_vector4));
-    level->b = (gxsp_vector4 *)gxsp_take(pool, n, sizeof(gxsp_vector4));
-}
-
-/* Numbers of the blocks of a level's matrix; products read four numbers of a column, hence one more */
-static size_t gxsp_block_numbers(const gxsp_level *level) { return 9 * (size_t)level->start[level->n] + 1; }
-
-/* Growing list of a matrix's entries: rows and columns, the row the lower; in a pool of temporary memory */
-typedef struct gxsp_list {
-    gxsp_pool *scratch;
-    uint32_t (*pair)[2], count, room;
-} gxsp_list;
-
-static void gxsp_list_add(gxsp_list *list, uint32_t row, uint32_t column) {
-    if (list->count == list->room) {
-        const uint32_t room = 2 * list->room + 1024;
-        uint32_t(*larger)[2] = (uint32_t(*)[2])gxsp_grow(list->scratch, list->pair, list->count, room, sizeof *larger);
-        if (!larger) return;
-        list->pair = larger;
-        list->room = room;
-    }
-    list->pair[list->count][0] = row;
-    list->pair[list->count++][1] = column;
-}
-
-/* Rows of a level's matrix from its entries on and above the diagonal, (row, column), of which some may come twice. */
-static void gxsp_rows_make(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *level, uint32_t (*list)[2],
-                           uint32_t listed) {
-    uint32_t *start = (uint32_t *)gxsp_take(scratch, (size_t)level->n + 2, sizeof(uint32_t));
-    uint32_t *columns = (uint32_t *)gxsp_take(scratch, listed, sizeof(uint32_t));
-    uint32_t *seen = (uint32_t *)gxsp_take(scratch, level->n, sizeof(uint32_t)), i, k, count = 0;
-    if (scratch->failed) return;
-    for (i = 0; i < listed; i++) start[list[i][0] + 2]++;
-    for (i = 0; i < level->n; i++) start[i + 2] += start[i + 1];
-    for (i = 0; i < listed; i++) columns[start[list[i][0] + 1]++] = list[i][1];
-    for (i = 0; i < level->n; i++) {
-        level->start[i] = count;
-        for (k = start[i]; k < start[i + 1]; k++)
-            if (seen[columns[k]] != i + 1) {
-                seen[columns[k]] = i + 1;
-                columns[count++] = columns[k]; /* no more are kept than have been read */
-            }
-        gxsp_sort_row(columns + level->start[i], count - level->start[i]);
-    }
-    level->start[level->n] = count;
-    level->column = (uint32_t *)gxsp_take(pool, count, sizeof(uint32_t));
-    if (!pool->failed) memcpy(level->column, columns, count * sizeof(uint32_t));
-}
-
-/* Rows of the next level's matrix, transfer^T A transfer, from a level's */
-static void gxsp_coarse_rows(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *level) {
-    gxsp_level *next = level + 1;
-    uint32_t *seen = (uint32_t *)gxsp_take(scratch, next->n, sizeof(uint32_t)),
-             *met = (uint32_t *)gxsp_take(scratch, next->n, sizeof(uint32_t));
-    uint32_t i, k, p, t, count;
-    gxsp_list list;
-    memset(&list, 0, sizeof list);
-    list.scratch = scratch;
-    for (i = 0; i < next->n; i++) gxsp_list_add(&list, i, i);
-    for (i = 0; i < level->n && !scratch->failed; i++) {
-        for (k = 4 * level->start[i], count = 0; k < 4 * level->start[i + 1]; k++) {
-            const uint32_t parent = level->parent[level->column[k / 4]][k % 4];
-            if (parent == GXSP_NONE || seen[parent] == i + 1) continue;
-            seen[parent] = i + 1;
-            met[count++] = parent;
-        }
-        for (p = 0; p < 4; p++)
-            for (t = 0; t < count && level->parent[i][p] != GXSP_NONE; t++)
-                if (met[t] != level->parent[i][p])
-                    gxsp_list_add(&list, met[t] < level->parent[i][p] ? met[t] : level->parent[i][p],
-                                  met[t] < level->parent[i][p] ? level->parent[i][p] : met[t]);
-    }
-    if (!scratch->failed) gxsp_rows_make(pool, scratch, next, list.pair, list.count);
-}
-
-/* The level after levels[at], at > 0, of twice its spacing. 0: it would not be much smaller. Scratch is left in the
- * pool of temporary memory. */
-static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t at) {
-    gxsp_level *level = &system->multigrid.levels[at], *next = level + 1;
-    gxsp_pool *pool = &system->multigrid.pool;
-    gxsp_owned *mark = pool->last;
-    gxsp_transfer transfer;
-    float(*place)[3] = (float(*)[3])gxsp_take(scratch, level->n, sizeof *place);
-    uint32_t i, k, count;
-    transfer.key = (uint64_t *)gxsp_take(scratch, 4 * (size_t)level->n, sizeof(uint64_t));
-    transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * (size_t)level->n, sizeof(uint32_t));
-    gxsp_transfer_make(pool, level);
-    if (scratch->failed || pool->failed) return 0;
-    for (i = 0; i < level->n; i++)
-        for (k = 0; k < 3; k++) place[i][k] = 0.5f * (float)level->place[i][k];
-    gxsp_transfer_begin(level, place, NULL, &transfer);
-    for (i = 0; i < level->n; i++)
-        for (k = level->start[i] + 1; k < level->start[i + 1]; k++) gxsp_join_nodes(&transfer, i, level->column[k]);
-    count = gxsp_transfer_end(level, &transfer);
-    if (count > level->n - level->n / 3) {
-        gxsp_release_to(pool, mark);
-        level->parent = NULL, level->weight = NULL;
-        return 0;
-    }
-    level->inverse = (float *)gxsp_take(pool, 6 * (size_t)level->n, sizeof(float));
-    level->r = (gxsp_vector4 *)gxsp_take(pool, level->n, sizeof(gxsp_vector4));
-    gxsp_level_make(pool, next, count);
-    if (pool->failed) return 0;
-    gxsp_transfer_places(level, &transfer, next);
-    gxsp_coarse_rows(pool, scratch, level);
-    return !pool->failed && !scratch->failed;
-}
-
-/* Neighbours of each node of a level, both ways; in temporary memory */
-typedef struct gxsp_graph {
-    uint32_t n, *start, *other; /* start: n + 2 */
-} gxsp_graph;
-
-static gxsp_graph gxsp_graph_make(gxsp_pool *scratch, const gxsp_level *level) {
-    gxsp_graph graph;
-    uint32_t i, k;
-    graph.n = level->n;
-    graph.start = (uint32_t *)gxsp_take(scratch, (size_t)level->n + 2, sizeof(uint32_t));
-    graph.other = (uint32_t *)gxsp_take(scratch, 2 * (size_t)level->start[level->n], sizeof(uint32_t));
-    if (scratch->failed) return graph;
-    for (i = 0; i < level->n; i++)
-        for (k = level->start[i] + 1; k < level->start[i + 1]; k++)
-            graph.start[i + 2]++, graph.start[level->column[k] + 2]++;
-    for (i = 0; i < level->n; i++) graph.start[i + 2] += graph.start[i + 1];
-    for (i = 0; i < level->n; i++)
-        for (k = level->start[i] + 1; k < level->start[i + 1]; k++) {
-            graph.other[graph.start[i + 1]++] = level->column[k];
-            graph.other[graph.start[level->column[k] + 1]++] = i;
-        }
-    return graph;
-}
-
-/* Breadth-first order of the component of a seed, appended to order; place: those met have theirs, others GXSP_NONE.
- * Returns the new length. */
-static uint32_t gxsp_order_component(const gxsp_graph *graph, uint32_t seed, uint32_t count, uint32_t *order,
-                                     uint32_t *place) {
-    uint32_t done = count, k;
-    place[seed] = count;
-    order[count++] = seed;
-    for (; done < count; done++)
-        for (k = graph->start[order[done]]; k < graph->start[order[done] + 1]; k++)
-            if (place[graph->other[k]] == GXSP_NONE) {
-                place[graph->other[k]] = count;
-                order[count++] = graph->other[k];
-            }
-    return count;
-}
-
-/* The first place in whose column row i of the factor has an entry */
-static uint32_t gxsp_first_place(const gxsp_graph *graph, const uint32_t *order, const uint32_t *place, uint32_t i) {
-    uint32_t first = i, k;
-    for (k = graph->start[order[i]]; k < graph->start[order[i] + 1]; k++)
-        first = place[graph->other[k]] < first ? place[graph->other[k]] : first;
-    return first;
-}
-
-/* Order for a small envelope: component by component, breadth first from a node that is last from some other. place: n,
- * scratch. Returns the multiplications of a factorisation. */
-static double gxsp_order_level(const gxsp_graph *graph, uint32_t *order, uint32_t *place) {
-    uint32_t seed, i, k, count = 0, end;
-    double cost = 0;
-    memset(place, 0xff, graph->n * sizeof *place);
-    for (seed = 0; seed < graph->n; seed++) {
-        if (place[seed] != GXSP_NONE) continue;
-        end = gxsp_order_component(graph, seed, count, order, place);
-        k = order[end - 1];
-        for (i = count; i < end; i++) place[order[i]] = GXSP_NONE;
-        count = gxsp_order_component(graph, k, count, order, place);
-    }
-    for (i = 0; i < graph->n; i++) {
-        const double width = i - gxsp_first_place(graph, order, place, i) + 1;
-        cost += 13.5 * width * width; /* three rows, each of a width squared / 2 */
-    }
-    return cost;
-}
-
-/* Is a level small enough to be factored? */
-static int gxsp_factors(gxsp_pool *scratch, const gxsp_level *level, size_t copies) {
-    gxsp_owned *mark = scratch->last;
-    uint32_t *order = (uint32_t *)gxsp_take(scratch, 2 * (size_t)level->n, sizeof(uint32_t));
-    const gxsp_graph graph = gxsp_graph_make(scratch, level);
-    const int factors =
-        !scratch->failed && gxsp_order_level(&graph, order, order + level->n) <= GXSP_FACTOR_COST * (double)copies;
-    gxsp_release_to(scratch, mark);
-    return factors;
-}
-
-/* Row i of the factor, by columns from 0 on, of which it has those from first on. Rows of a place are one column longer
- * each. */
-static inline float *gxsp_factor_row(const gxsp_factor *factor, uint32_t i) {
-    const uint32_t place = i / 3, r = i % 3;
-    return factor->entry + (factor->row[place] + r * (size_t)(3 * place - factor->first[place] + 1) + (r == 2));
-}
-
-/* Order and envelope of the last level */
-static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch) {
-    const gxsp_level *level = &system->multigrid.levels[system->multigrid.level_count - 1];
-    gxsp_factor *factor = &system->multigrid.factor;
-    uint32_t *place = (uint32_t *)gxsp_take(scratch, level->n, sizeof(uint32_t)), i;
-    const gxsp_graph graph = gxsp_graph_make(scratch, level);
-    size_t entries = 0;
-    factor->n = 3 * level->n;
-    factor->order = (uint32_t *)gxsp_take(&system->multigrid.pool, level->n, sizeof(uint32_t));
-    factor->first = (uint32_t *)gxsp_take(&system->multigrid.pool, level->n, sizeof(uint32_t));
-    factor->row = (size_t *)gxsp_take(&system->multigrid.pool, level->n, sizeof(size_t));
-    factor->x = (double *)gxsp_take(&system->multigrid.pool, factor->n, sizeof(double));
-    if (scratch->failed || system->multigrid.pool.failed) return;
-    (void)gxsp_order_level(&graph, factor->order, place);
-    for (i = 0; i < level->n; i++) {
-        const uint32_t first = 3 * gxsp_first_place(&graph, factor->order, place, i);
-        factor->first[i] = first;
-        factor->row[i] = entries - first; /* no less than 0: every row before has an entry */
-        entries += 3 * (size_t)(3 * i - first) + 6;
-    }
-    factor->entry = (float *)gxsp_take(&system->multigrid.pool, entries, sizeof(float));
-    factor->entry_count = entries;
-}
-
-static void gxsp_lane_copies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t block, int lane,
-                             uint32_t *copies) {
-    const gxsp_corners *corner = &chunk->corners[block];
-    int i;
-    for (i = 0; i < 4; i++) copies[i] = system->mesh.nodes[chunk->first_node + corner->node[i][lane]];
-}
-
-/* Corners of the ten blocks of an element, in the order of gxs_element.mass */
-static const int gxsp_pair_corners[10][2] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {1, 1},
-                                             {1, 2}, {1, 3}, {2, 2}, {2, 3}, {3, 3}};
-
-/* Arrays for the edges of any chunk; numbers: with those of the Hessian's blocks, for which edges have been counted */
-static void gxsp_edges_carve(gxsp_system *system, gxsp_space *space, int numbers) {
-    gxsp_edges *edges = &system->multigrid.edges;
-    size_t c, lanes = 0, nodes = 1, most = 0;
-    for (c = 0; c < system->mesh.chunk_count; c++) {
-        const gxsp_chunk *chunk = &system->mesh.chunks[c];
-        const size_t of = chunk->block_count * GXSP_LANES, count = numbers ? chunk->edge_count : 1 + 6 * of;
-        lanes = of > lanes ? of : lanes;
-        nodes = chunk->node_count > nodes ? chunk->node_count : nodes;
-        most = count > most ? count : most;
-    }
-    edges->table = (uint16_t *)gxsp_carve(space, nodes * (nodes - 1) / 2, sizeof(uint16_t));
-    edges->table_size = nodes * (nodes - 1) / 2;
-    edges->ends = (uint32_t *)gxsp_carve(space, most + 1, sizeof(uint32_t)); /* one more is written than counts */
-    edges->parent = (uint16_t(*)[4])gxsp_carve(space, nodes, sizeof *edges->parent);
-    if (!numbers) return;
-    edges->block = (float(*)[9])gxsp_carve(space, most, sizeof *edges->block);
-    edges->element = (uint16_t(*)[6][GXSP_LANES])gxsp_carve(space, lanes / GXSP_LANES, sizeof *edges->element);
-    edges->first = (uint16_t *)gxsp_carve(space, nodes, sizeof(uint16_t));
-    edges->next = (uint16_t *)gxsp_carve(space, most, sizeof(uint16_t));
-    edges->joined = (uint8_t *)gxsp_carve(space, nodes, 1);
-    edges->own = (float(*)[9])gxsp_carve(space, nodes, sizeof *edges->own);
-    edges->mass = (float *)gxsp_carve(space, nodes, sizeof(float));
-}
-
-/* Room for listing the edges of any chunk, in temporary memory */
-static void gxsp_edges_make(gxsp_system *system, gxsp_pool *scratch) {
-    gxsp_space space = {NULL, 0};
-    gxsp_edges_carve(system, &space, 0);
-    space.memory = (unsigned char *)gxsp_take(scratch, space.used, 1);
-    space.used = 0;
-    gxsp_edges_carve(system, &space, 0);
-}
-
-static void gxsp_edges_begin(gxsp_edges *edges, const gxsp_chunk *chunk) {
-    edges->nodes = chunk->node_count;
-    edges->count = 1;
-}
-
-/* The edge of two nodes, made where there is none; 0 of a node and itself. There is no branch on whether there is one:
- * it could not be foretold. count: of edges so far */
-static inline uint16_t gxsp_find_edge(const gxsp_edges *edges, uint32_t i, uint32_t j, uint32_t *count) {
-    const uint32_t low = i < j ? i : j, high = i < j ? j : i, ends = low << 16 | high;
-    uint16_t *at = &edges->table[high * (high - 1) / 2 + low];
-    int made;
-    if (low == high) return 0;
-    made = (*at >= *count) | (edges->ends[*at] != ends);
-    edges->ends[*count] = ends;
-    *at = made ? (uint16_t)*count : *at;
-    *count += (uint32_t)made;
-    return *at;
-}
-
-/* The six edges of each element of a block; 0 where it has no weight */
-static void gxsp_block_edges(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_t b, uint16_t (*edge)[GXSP_LANES]) {
-    const gxsp_corners *corner = &chunk->corners[b];
-    uint32_t count = edges->count;
-    int i, j, l, pair = 0;
-    for (i = 0; i < 4; i++)
-        for (j = i + 1; j < 4; j++, pair++)
-            for (l = 0; l < GXSP_LANES; l++)
-                edge[pair][l] = chunk->rest[b].weight[l] > 0
-                                  ? gxsp_find_edge(edges, corner->node[i][l], corner->node[j][l], &count)
-                                  : 0;
-    edges->count = count;
-}
-
-/* All edges of a chunk's elements of any weight */
-static void gxsp_list_edges(gxsp_system *system, gxsp_chunk *chunk) {
-    uint16_t edge[6][GXSP_LANES];
-    uint32_t b;
-    gxsp_edges_begin(&system->multigrid.edges, chunk);
-    for (b = 0; b < chunk->block_count; b++) gxsp_block_edges(&system->multigrid.edges, chunk, b, edge);
-    chunk->edge_count = system->multigrid.edges.count;
-}
-
-/* Counts the edges of chunks of which they are not known. */
-static void gxsp_count_edges(gxsp_system *system) {
-    uint32_t c;
-    for (c = 0; c < system->mesh.chunk_count; c++)
-        if (system->mesh.chunks[c].edge_count == 0) gxsp_list_edges(system, &system->mesh.chunks[c]);
-}
-
-/* Numbers the coarse nodes that a chunk's nodes follow. */
-static void gxsp_pairs_begin(gxsp_system *system, const gxsp_chunk *chunk) {
-    gxsp_pairs *pairs = &system->multigrid.pairs;
-    uint32_t i, k;
-    pairs->round++;
-    pairs->count = 1;
-    for (i = 0; i < chunk->node_count; i++)
-        for (k = 0; k < 4; k++) {
-            const uint32_t parent = system->multigrid.levels[0].parent[system->mesh.nodes[chunk->first_node + i]][k];
-            system->multigrid.edges.parent[i][k] = 0;
-            if (parent == GXSP_NONE) continue;
-            if (pairs->stamp[parent] != pairs->round) {
-                pairs->stamp[parent] = pairs->round;
-                pairs->node[pairs->count] = parent;
-                pairs->local[parent] = pairs->count++;
-            }
-            system->multigrid.edges.parent[i][k] = (uint16_t)pairs->local[parent];
-        }
-    memset(pairs->seen, 0, pairs->count * sizeof *pairs->seen);
-}
-
-/* Arrays for the pairs of any chunk; numbers: with those for entries of matrices */
-static void gxsp_pairs_carve(gxsp_system *system, gxsp_space *space, int numbers) {
-    gxsp_pairs *pairs = &system->multigrid.pairs;
-    const size_t n = system->multigrid.levels[1].n,
-                 side = pairs->most < GXSP_CHUNK_PARENTS ? pairs->most : GXSP_CHUNK_PARENTS;
-    /* the first level whose matrix is that of another one times transfers */
-    const uint32_t next = system->multigrid.fine ? 1 : 2;
-    pairs->local = (uint32_t *)gxsp_carve(space, n, sizeof(uint32_t));
-    pairs->stamp = (uint32_t *)gxsp_carve(space, n, sizeof(uint32_t));
-    pairs->node = (uint32_t *)gxsp_carve(space, n + 1, sizeof(uint32_t));
-    pairs->seen = (uint32_t *)gxsp_carve(space, n + 1, sizeof(uint32_t));
-    if (!numbers) return;
-    pairs->entry = (uint32_t *)gxsp_carve(space, side * side, sizeof(uint32_t));
-    system->multigrid.edges.half = (float(*)[9])gxsp_carve(space, pairs->most, sizeof *system->multigrid.edges.half);
-    /* one more is written than counts */
-    system->multigrid.edges.touched = (uint16_t *)gxsp_carve(space, (size_t)pairs->most + 1, sizeof(uint16_t));
-    pairs->half = (float(*)[9])gxsp_carve(
-        space, next < system->multigrid.level_count ? system->multigrid.levels[next].n : 0, sizeof *pairs->half);
-}
-
-/* Room for listing the pairs of any chunk, in temporary memory, and how many coarse nodes it has at most */
-static void gxsp_pairs_make(gxsp_system *system, gxsp_pool *scratch) {
-    gxsp_space space = {NULL, 0};
-    uint32_t c;
-    gxsp_pairs_carve(system, &space, 0);
-    space.memory = (unsigned char *)gxsp_take(scratch, space.used, 1);
-    space.used = 0;
-    gxsp_pairs_carve(system, &space, 0);
-    system->multigrid.pairs.round = system->multigrid.pairs.most = 0;
-    for (c = 0; c < system->mesh.chunk_count && !scratch->failed && !system->multigrid.fine; c++) {
-        gxsp_pairs_begin(system, &system->mesh.chunks[c]);
-        system->multigrid.pairs.most = system->multigrid.pairs.count > system->multigrid.pairs.most
-                                         ? system->multigrid.pairs.count
-                                         : system->multigrid.pairs.most;
-    }
-}
-
-/* Sets of a chunk's coarse nodes, a bit for each, words to a set */
-typedef struct gxsp_sets {
-    uint64_t *own, *reach; /* by node: its parents; those of its neighbours too */
-    uint64_t *row;         /* by number of the coarse node: those that it shares an element with */
-    size_t words;
-} gxsp_sets;
-
-static void gxsp_join_sets(uint64_t *to, const uint64_t *from, size_t words) {
-    size_t k;
-    for (k = 0; k < words; k++) to[k] |= from[k];
-}
-
-/* The sets of a chunk after gxsp_pairs_begin. memory: room for all */
-static gxsp_sets gxsp_find_sets(gxsp_system *system, const gxsp_chunk *chunk, uint64_t *memory) {
-    gxsp_sets sets;
-    const size_t words = sets.words = (system->multigrid.pairs.count + 63) / 64;
-    uint32_t i, k, b;
-    size_t word;
-    int l;
-    sets.own = memory;
-    sets.reach = sets.own + chunk->node_count * words;
-    sets.row = sets.reach + chunk->node_count * words;
-    memset(memory, 0, (2 * (size_t)chunk->node_count + system->multigrid.pairs.count) * words * sizeof *memory);
-    for (i = 0; i < chunk->node_count; i++)
-        for (k = 0; k < 4; k++)
-            if (system->multigrid.levels[0].parent[system->mesh.nodes[chunk->first_node + i]][k] != GXSP_NONE)
-                sets.own[i * words + system->multigrid.edges.parent[i][k] / 64] |=
-                    (uint64_t)1 << system->multigrid.edges.parent[i][k] % 64;
-    for (b = 0; b < chunk->block_count; b++)
-        for (l = 0; l < GXSP_LANES; l++) {
-            const gxsp_rest *rest = &chunk->rest[b];
-            const gxsp_corners *corner = &chunk->corners[b];
-            const size_t n0 = corner->node[0][l] * words, n1 = corner->node[1][l] * words,
-                         n2 = corner->node[2][l] * words, n3 = corner->node[3][l] * words;
-            for (word = 0; word < words && rest->weight[l] > 0; word++) {
-                const uint64_t all =
-                    sets.own[n0 + word] | sets.own[n1 + word] | sets.own[n2 + word] | sets.own[n3 + word];
-                sets.reach[n0 + word] |= all, sets.reach[n1 + word] |= all;
-                sets.reach[n2 + word] |= all, sets.reach[n3 + word] |= all;
-            }
-        }
-    for (i = 0; i < chunk->node_count; i++)
-        for (k = 0; k < 4; k++)
-            if (system->multigrid.levels[0].parent[system->mesh.nodes[chunk->first_node + i]][k] != GXSP_NONE)
-                gxsp_join_sets(sets.row + system->multigrid.edges.parent[i][k] * words, sets.reach + i * words, words);
-    return sets;
-}
-
-/* Lists the entries of level 1's matrix that a chunk needs. dirty: by coarse node; only entries of one at least are
- * listed; NULL: all are. memory: see gxsp_find_sets */
-static void gxsp_list_pairs(gxsp_system *system, const gxsp_chunk *chunk, uint64_t *memory, const uint8_t *dirty,
-                            gxsp_list *list) {
-    const uint32_t *node = system->multigrid.pairs.node;
-    gxsp_sets sets;
-    uint32_t i, k;
-    gxsp_pairs_begin(system, chunk);
-    sets = gxsp_find_sets(system, chunk, memory);
-    for (i = 0; i < system->multigrid.pairs.count; i++)
-        for (k = 0; k < sets.words; k++) {
-            uint64_t set = sets.row[i * sets.words + k];
-            uint32_t j;
-            for (j = 64 * k; set != 0; set >>= 1, ++j)
-                if ((set & 1) && node[i] < node[j] && (!dirty || dirty[node[i]] || dirty[node[j]]))
-                    gxsp_list_add(list, node[i], node[j]);
-        }
-}
-
-/* Does a chunk have a node that follows one of the dirty? */
-static int gxsp_follows_dirty(const gxsp_system *system, const gxsp_chunk *chunk, const uint8_t *dirty) {
-    uint32_t i, k;
-    for (i = 0; i < chunk->node_count; i++)
-        for (k = 0; k < 4; k++) {
-            const uint32_t parent = system->multigrid.levels[0].parent[system->mesh.nodes[chunk->first_node + i]][k];
-            if (parent != GXSP_NONE && dirty[parent]) return 1;
-        }
-    return 0;
-}
-
-/* Level 1's matrix: two nodes are neighbours where an element follows both; every node is its own. before: the level of
- * which all but the dirty nodes and those after its own have the neighbours that they had; NULL: none has. */
-static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gxsp_level *before,
-                               const uint8_t *dirty) {
-    uint32_t c, i, k, nodes = 0;
-    uint64_t *memory;
-    gxsp_list list;
-    memset(&list, 0, sizeof list);
-    list.scratch = scratch;
-    for (c = 0; c < system->mesh.chunk_count; c++)
-        nodes = system->mesh.chunks[c].node_count > nodes ? system->mesh.chunks[c].node_count : nodes;
-    /* four parents to a node */
-    memory = (uint64_t *)gxsp_take(scratch, (6 * (size_t)nodes + 1) * (nodes / 16 + 1), sizeof(uint64_t));
-    if (scratch->failed) return;
-    for (i = 0; i < system->multigrid.levels[1].n; i++) gxsp_list_add(&list, i, i);
-    for (i = 0; before && i < before->n; i++)
-        for (k = before->start[i]; k < before->start[i + 1] && !dirty[i]; k++)
-            if (before->column[k] > i && !dirty[before->column[k]]) gxsp_list_add(&list, i, before->column[k]);
-    for (c = 0; c < system->mesh.chunk_count; c++)
-        if (!before || gxsp_follows_dirty(system, &system->mesh.chunks[c], dirty))
-            gxsp_list_pairs(system, &system->mesh.chunks[c], memory, before ? dirty : NULL, &list);
-    if (!scratch->failed)
-        gxsp_rows_make(&system->multigrid.pool, scratch, &system->multigrid.levels[1], list.pair, list.count);
-}
-
-/* Index of column j in row i, or that of a lower one if the row does not have it */
-static uint32_t gxsp_find_entry(const gxsp_level *level, uint32_t i, uint32_t j) {
-    uint32_t low = level->start[i], high = level->start[i + 1];
-    while (high - low > 1) {
-        uint32_t middle = low + (high - low) / 2;
-        if (level->column[middle] <= j)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
-}
-
-/* The copies that an element's corner moves, with their weights: its own, or its masters. Returns how many. */
-static int gxsp_corner_masters(const gxsp_system *system, uint32_t copy, uint32_t *masters, float *weights) {
-    const gxsp_follower *follower;
-    int k, count = 0;
-    if (!gxsp_follows(system, copy)) {
-        masters[0] = copy;
-        weights[0] = 1;
-        return 1;
-    }
-    follower = &system->model.followers[system->model.follower[copy]];
-    for (k = 0; k < 4; k++)
-        if (fabs(follower->weight[k]) > 0) {
-            masters[count] = follower->master[k];
-            weights[count++] = (float)follower->weight[k];
-        }
-    return count;
-}
-
-static int gxsp_element_follows(const gxsp_system *system, const uint32_t *copies) {
-    return gxsp_follows(system, copies[0]) || gxsp_follows(system, copies[1]) || gxsp_follows(system, copies[2]) ||
-           gxsp_follows(system, copies[3]);
-}
-
-/* Rows and columns, the row the lower, that an element adds to. Returns how many. */
-static uint32_t gxsp_element_pairs(const gxsp_system *system, const uint32_t *copies, uint32_t (*list)[2]) {
-    uint32_t all[16], count = 0, listed = 0, i, j;
-    float weights[4];
-    int k;
-    for (k = 0; k < 4; k++) count += (uint32_t)gxsp_corner_masters(system, copies[k], all + count, weights);
-    for (i = 0; i < count; i++)
-        for (j = i; j < count; j++, listed++) {
-            list[listed][0] = all[i] < all[j] ? all[i] : all[j];
-            list[listed][1] = all[i] < all[j] ? all[j] : all[i];
-        }
-    return listed;
-}
-
-/* The assembled matrix of what followers leave free: copies are neighbours where they share an element; every copy is
- * its own. */
-static void gxsp_fine_make(gxsp_system *system, gxsp_pool *scratch) {
-    gxsp_level *fine = &system->multigrid.levels[0];
-    uint32_t(*list)[2] = NULL, c, b, i, count, room = 0;
-    int l, pair, pass;
-    system->multigrid.fine = (gxsp_fine *)gxsp_take(&system->pool, system->mesh.block_count, sizeof(gxsp_fine));
-    fine->start = (uint32_t *)gxsp_take(&system->pool, system->model.n + 1, sizeof(uint32_t));
-    fine->inverse = (float *)gxsp_take(&system->pool, 6 * system->model.n, sizeof(float));
-    if (system->pool.failed) return;
-    for (pass = 0; pass < 2; pass++) { /* count, then list */
-        if (pass == 1 && !(list = (uint32_t(*)[2])gxsp_take(scratch, room, sizeof *list))) return;
-        for (i = 0, count = 0; i < fine->n; i++, count++)
-            if (list) list[count][0] = list[count][1] = i;
-        for (c = 0; c < system->mesh.chunk_count; c++)
-            for (b = 0; b < system->mesh.chunks[c].block_count; b++)
-                for (l = 0; l < GXSP_LANES; l++) {
-                    uint32_t copies[4], pairs[136][2];
-                    gxsp_lane_copies(system, &system->mesh.chunks[c], b, l, copies);
-                    count += gxsp_element_pairs(system, copies, list ? list + count : pairs);
-                }
-        room = count;
-    }
-    gxsp_rows_make(&system->pool, scratch, fine, list, count);
-    if (!scratch->failed) fine->block = (float *)gxsp_take(&system->pool, gxsp_block_numbers(fine), sizeof(float));
-    if (scratch->failed || system->pool.failed) return;
-    for (c = 0; c < system->mesh.chunk_count; c++)
-        for (i = 0; i < system->mesh.chunks[c].block_count * GXSP_LANES; i++) {
-            uint32_t copies[4];
-            gxsp_lane_copies(system, &system->mesh.chunks[c], i / GXSP_LANES, (int)(i % GXSP_LANES), copies);
-            for (pair = 0; pair < 10; pair++) {
-                const uint32_t p = copies[gxsp_pair_corners[pair][0]], q = copies[gxsp_pair_corners[pair][1]];
-                system->multigrid.fine[system->mesh.chunks[c].first_block + i / GXSP_LANES]
-                    .entry[pair][i % GXSP_LANES] = gxsp_element_follows(system, copies)
-                                                     ? GXSP_NONE
-                                                     : gxsp_find_entry(fine, p < q ? p : q, p < q ? q : p);
-            }
-        }
-}
-
-/* The rows of level 1 and all levels after it. before, dirty: see gxsp_first_pattern */
-static void gxsp_levels_make(gxsp_system *system, gxsp_pool *scratch, const gxsp_level *before, const uint8_t *dirty) {
-    uint32_t at;
-    gxsp_pairs_make(system, scratch);
-    if (scratch->failed) return;
-    if (system->multigrid.fine)
-        gxsp_coarse_rows(&system->multigrid.pool, scratch, &system->multigrid.levels[0]);
-    else
-        gxsp_first_pattern(system, scratch, before, dirty);
-    gxsp_count_edges(system);
-    if (scratch->failed || system->multigrid.pool.failed) return;
-    for (at = 1;
-         at + 1 < GXSP_LEVELS &&
-         !gxsp_factors(scratch, &system->multigrid.levels[at], at == 1 ? system->model.n / 2 : system->model.n) &&
-         gxsp_add_level(system, scratch, at);
-         at++)
-        ;
-    system->multigrid.level_count = at + 1;
-    for (at = 1;
-         !scratch->failed && !system->multigrid.pool.failed && (at == 1 || at + 1 < system->multigrid.level_count);
-         at++)
-        system->multigrid.levels[at].block = (float *)gxsp_take(
-            &system->multigrid.pool, gxsp_block_numbers(&system->multigrid.levels[at]), sizeof(float));
-    gxsp_factor_make(system, scratch);
-}
-
-/* The transfer of the model by a lattice. place: n x 3, in its spacings. Returns how many nodes level 1 has. */
-static uint32_t gxsp_first_transfer(gxsp_system *system, float (*place)[3], gxsp_transfer *transfer) {
-    uint32_t c, e;
-    gxsp_transfer_begin(&system->multigrid.levels[0], place, system->model.fixed, transfer);
-    for (c = 0; c < system->mesh.chunk_count; c++) {
-        const uint32_t *copies = system->mesh.nodes + system->mesh.chunks[c].first_node;
-        gxsp_list_edges(system, &system->mesh.chunks[c]);
-        for (e = 1; e < system->multigrid.edges.count; e++)
-            gxsp_join_nodes(transfer, copies[system->multigrid.edges.ends[e] >> 16],
-                            copies[system->multigrid.edges.ends[e] & 0xffff]);
-    }
-    for (e = 0; e < 4 * system->model.follower_count; e++)
-        if (fabs(system->model.followers[e / 4].weight[e % 4]) > 0)
-            gxsp_join_nodes(transfer, system->model.followers[e / 4].copy,
-                            system->model.followers[e / 4].master[e % 4]);
-    return gxsp_transfer_end(&system->multigrid.levels[0], transfer);
-}
-
-/* What the first lattice has of a piece */
-typedef struct gxsp_extent {
-    uint32_t copies, nodes;
-    float low[3], high[3], length; /* in spacings; length: the longest of high - low */
-} gxsp_extent;
-
-static gxsp_extent *gxsp_find_extents(const gxsp_system *system, gxsp_pool *scratch, float (*place)[3]) {
-    gxsp_extent *extents = (gxsp_extent *)gxsp_take(scratch, system->model.component_count, sizeof *extents);
-    uint32_t slot, i, k, nodes = 0;
-    if (!extents) return NULL;
-    for (slot = 0; slot < 4 * system->model.n; slot++) /* nodes are numbered as they are met */
-        if (system->multigrid.levels[0].parent[slot / 4][slot % 4] == nodes) {
-            extents[system->model.component[slot / 4]].nodes++;
-            nodes++;
-        }
-    for (i = 0; i < system->model.n; i++) {
-        gxsp_extent *extent = &extents[system->model.component[i]];
-        for (k = 0; k < 3; k++) {
-            extent->low[k] = extent->copies == 0 || place[i][k] < extent->low[k] ? place[i][k] : extent->low[k];
-            extent->high[k] = extent->copies == 0 || place[i][k] > extent->high[k] ? place[i][k] : extent->high[k];
-        }
-        extent->copies++;
-    }
-    for (i = 0; i < system->model.component_count; i++)
-        for (k = 0; k < 3; k++)
-            extents[i].length = extents[i].high[k] - extents[i].low[k] > extents[i].length
-                                  ? extents[i].high[k] - extents[i].low[k]
-                                  : extents[i].length;
-    return extents;
-}
-
-/* Small pieces have so many lattice points about them that fewer serve nearly as well: places of those that are crowded
- * after gxsp_first_transfer go into one tetrahedron of a lattice of their own size, whose functions are their affine
- * motions, or, where pieces are larger, into a lattice of twice the spacing. Not of long ones, which would hardly bend.
- * Returns whether there are any. */
-static int gxsp_thin_crowded(const gxsp_system *system, gxsp_pool *scratch, float (*place)[3]) {
-    const gxsp_extent *extents = gxsp_find_extents(system, scratch, place);
-    uint32_t i, k;
-    int any = 0;
-    for (i = 0; i < system->model.n && extents; i++) {
-        const gxsp_extent *extent = &extents[system->model.component[i]];
-        if ((float)extent->nodes <= GXSP_CROWDED * (float)extent->copies || !(extent->length < GXSP_COARSE)) continue;
-        any = 1;
-        for (k = 0; k < 3; k++) /* else where coordinates descend: in thirds of a cell */
-            place[i][k] =
-                extent->length >= GXSP_AFFINE
-                    ? 0.5f * place[i][k]
-                    : 0.3f * (place[i][k] - extent->low[k]) / (extent->length + 1e-30f) + (float)(2 - k) / 3 + 0.01f;
-    }
-    return any;
-}
-
-/* All levels of the multigrid below the model; place: n x 3, see gxsp_find_places. level_count stays 0 if there is
- * nothing to coarsen. */
-static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (*place)[3]) {
-    gxsp_level *fine = &system->multigrid.levels[0];
-    gxsp_transfer transfer;
-    uint32_t count;
-    gxsp_edges_make(system, scratch);
-    transfer.key = (uint64_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint64_t));
-    transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
-    if (scratch->failed) return;
-    count = gxsp_first_transfer(system, place, &transfer);
-    if (gxsp_thin_crowded(system, scratch, place)) count = gxsp_first_transfer(system, place, &transfer);
-    if (count == 0 || scratch->failed) return;
-    gxsp_level_make(&system->multigrid.pool, fine + 1, count);
-    if (system->multigrid.pool.failed) return;
-    gxsp_transfer_places(fine, &transfer, fine + 1);
-    gxsp_levels_make(system, scratch, NULL, NULL);
-}
-
-/* >>lights: copies around which there are only parts of elements, nearly all of whose mass is that of others. They are
- * listed with the model and by its updates; >>newton starts them where their neighbours lead, and bounds their way. */
-
-/* What is known of a copy before it is called light */
-typedef struct gxsp_weighed {
-    gxsp_light light; /* in the lane with its heaviest neighbour */
-    double all, most; /* mass of the elements around it; of the neighbour, kg */
-    int whole;        /* an element around it is whole */
-} gxsp_weighed;
-
-static void gxsp_weigh_corner(const gxsp_system *system, uint32_t c, uint32_t lane, int corner, const uint32_t *copies,
-                              gxsp_weighed *weighed) {
-    const gxsp_chunk *chunk = &system->mesh.chunks[c];
-    int k;
-    weighed->whole |= !chunk->moments;
-    weighed->all += chunk->rest[lane / GXSP_LANES].mass[lane % GXSP_LANES];
-    for (k = 0; k < 4; k++)
-        if (k != corner && system->model.lumped[copies[k]] > weighed->most) {
-            weighed->most = system->model.lumped[copies[k]];
-            weighed->light.copy = copies[corner], weighed->light.chunk = c;
-            weighed->light.lane = (uint16_t)lane, weighed->light.corner = (uint16_t)corner;
-        }
-}
-
-/* Of each copy, or each that is touched. touched: n flags, or NULL: all */
-static void gxsp_weigh_copies(const gxsp_system *system, const uint8_t *touched, gxsp_weighed *weighed) {
-    uint32_t c, i, lane, copies[4];
-    int k;
-    for (c = 0; c < system->mesh.chunk_count; c++) {
-        const gxsp_chunk *chunk = &system->mesh.chunks[c];
-        for (i = 0; touched && i < chunk->node_count && !touched[system->mesh.nodes[chunk->first_node + i]]; i++)
-            ;
-        for (lane = 0; lane < chunk->block_count * GXSP_LANES && !(touched && i == chunk->node_count); lane++) {
-            if (chunk->groups[lane] == GXSP_NONE) continue;
-            gxsp_lane_copies(system, chunk, lane / GXSP_LANES, (int)(lane % GXSP_LANES), copies);
-            for (k = 0; k < 4; k++)
-                if (!touched || touched[copies[k]]) gxsp_weigh_corner(system, c, lane, k, copies, &weighed[copies[k]]);
-        }
-    }
-}
-
-static int gxsp_is_light(const gxsp_system *system, size_t copy, const gxsp_weighed *weighed) {
-    const double mass = system->model.lumped[copy];
-    return !weighed->whole && !system->model.fixed[copy] && weighed->most > 0 &&
-           (mass < GXSP_LIGHT * weighed->all || mass < GXSP_LIGHTER * weighed->most);
-}
-
-/* Lists light copies. touched: n flags: those of others stay as they are listed; NULL: all are listed anew */
-static void gxsp_list_lights(gxsp_system *system, gxsp_pool *scratch, const uint8_t *touched) {
-    gxsp_weighed *weighed = (gxsp_weighed *)gxsp_take(scratch, system->model.n, sizeof *weighed);
-    uint32_t i, count = 0, room;
-    if (scratch->failed) return;
-    gxsp_weigh_copies(system, touched, weighed);
-    for (i = 0; i < system->model.light_count && touched; i++)
-        if (!touched[system->model.lights[i].copy]) system->model.lights[count++] = system->model.lights[i];
-    system->model.light_count = room = count;
-    for (i = 0; i < system->model.n; i++) room += (uint32_t)gxsp_is_light(system, i, &weighed[i]);
-    if (room > system->model.light_room) {
-        system->model.light_room = (uint32_t)gxsp_room(room);
-        system->model.lights = (gxsp_light *)gxsp_grow(&system->pool, system->model.lights, count,
-                                                       system->model.light_room, sizeof(gxsp_light));
-    }
-    for (i = 0; i < system->model.n && !system->pool.failed; i++)
-        if (gxsp_is_light(system, i, &weighed[i])) system->model.lights[system->model.light_count++] = weighed[i].light;
-}
-
-/* What guides a light copy at vector x, less another one or NULL (n x 3): the mean over the other corners, by their
- * masses. Returns the heaviest. */
-static uint32_t gxsp_guide(const gxsp_system *system, const gxsp_light *light, const double *x, const double *less,
-                           double *mean) {
-    double sum = 0, most = 0;
-    uint32_t copies[4], heaviest = light->copy;
-    int k, c;
-    gxsp_lane_copies(system, &system->mesh.chunks[light->chunk], light->lane / GXSP_LANES, light->lane % GXSP_LANES,
-                     copies);
-    mean[0] = mean[1] = mean[2] = 0;
-    for (k = 0; k < 4; k++) {
-        const double mass = k == light->corner ? 0 : system->model.lumped[copies[k]];
-        sum += mass;
-        for (c = 0; c < 3; c++)
-            mean[c] +=
-                mass * (x[3 * (size_t)copies[k] + (size_t)c] - (less ? less[3 * (size_t)copies[k] + (size_t)c] : 0));
-        if (mass > most) most = mass, heaviest = copies[k];
-    }
-    for (c = 0; c < 3; c++) mean[c] /= sum;
-    return heaviest;
-}
-
-/* >>system: a model in the solver's own form, all that does not depend on its state */
-
-/* 2^GXSP_STIFFNESS over Young's modulus times the length of the largest element, but for the mantissa */
-static double gxsp_choose_scale(const gxs_model *model) {
-    double young = 0, volume = 0, size;
-    size_t i;
-    int exponent;
-    for (i = 0; i < model->material_count; i++)
-        young = model->materials[i].young > young ? model->materials[i].young : young;
-    for (i = 0; i < model->element_count; i++)
-        volume = model->elements[i].weight > volume ? model->elements[i].weight : volume;
-    size = volume > 0 ? young * cbrt(volume) : young;
-    (void)frexp(size, &exponent);
-    return ldexp(1, GXSP_STIFFNESS - exponent);
-}
-
-/* Inverse volumes of supports, the least of the size of a whole copy's inverse stiffness */
-static void gxsp_find_volumes(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model) {
-    double *volume = (double *)gxsp_take(scratch, system->model.n, sizeof(double)), largest = 0;
-    size_t e, i;
-    int k;
-    system->model.volume = (float *)gxsp_take(&system->pool, system->model.n, sizeof(float));
-    if (system->pool.failed || scratch->failed) return;
-    for (e = 0; e < model->element_count; e++)
-        for (k = 0; k < 4; k++) volume[model->elements[e].copy[k]] += model->elements[e].weight;
-    for (i = 0; i < system->model.n; i++) largest = volume[i] > largest ? volume[i] : largest;
-    for (i = 0; i < system->model.n; i++)
-        system->model.volume[i] = volume[i] > 1e-20 * largest ? (float)ldexp(largest / volume[i], -GXSP_STIFFNESS) : 0;
-}
-
-/* Copies from which on a piece is large enough for multigrid */
-static uint32_t gxsp_large(const gxsp_system *system) {
-    return system->model.stiff ? GXSP_MULTIGRID_FROM_STIFF : GXSP_MULTIGRID_FROM;
-}
-
-/* Does multigrid pay for a piece? All take as many iterations as the one that takes most. count: piece_count, scratch
- */
-static int gxsp_large_component(const gxsp_system *system, uint32_t *count) {
-    const uint32_t from = gxsp_large(system);
-    size_t i;
-    memset(count, 0, system->model.component_count * sizeof *count);
-    for (i = 0; i < system->model.n; i++)
-        if (++count[system->model.component[i]] >= from) return 1;
-    return 0;
-}
-
-/* What depends on the choice of matrix and preconditioner. forest: n, scratch */
-static void gxsp_preconditioner_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model,
-                                     gxs_preconditioner preconditioner, gxs_matrix matrix, uint32_t *forest) {
-    float(*place)[3]; /* rest positions in spacings of the first lattice */
-    const int multigrid =
-        model->positions &&
-        (preconditioner == GXS_MULTIGRID || (preconditioner == GXS_AUTOMATIC && gxsp_large_component(system, forest)));
-    system->multigrid.chosen = model->positions && preconditioner == GXS_AUTOMATIC;
-    if (preconditioner == GXS_VOLUME_RATIO) gxsp_find_volumes(system, scratch, model);
-    system->multigrid.levels[0].n = (uint32_t)system->model.n;
-    if (matrix == GXS_MATRIX_ASSEMBLED) gxsp_fine_make(system, scratch);
-    if (!multigrid) return;
-    gxsp_transfer_make(&system->pool, &system->multigrid.levels[0]);
-    place = (float(*)[3])gxsp_take(scratch, system->model.n, sizeof *place);
-    if (!system->pool.failed && !scratch->failed && gxsp_find_places(system, model, place))
-        gxsp_multigrid_make(system, scratch, place);
-}
-
-/* Everything about a model that does not depend on its state; scratch holds what is needed for the time being. Returns
- * the index of a constraint that cannot be, SIZE_MAX if all can. */
-static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model,
-                                const gxs_solver *solver) {
-    uint32_t i, *forest = (uint32_t *)gxsp_take(scratch, model->copy_count, sizeof(uint32_t));
-    gxsp_owned *mark;
-    size_t bad;
-    system->model.n = model->copy_count;
-    system->model.epoch = model->epoch;
-    system->model.element_count = model->element_count;
-    system->model.range_count = (system->model.n + GXSP_RANGE - 1) / GXSP_RANGE;
-    system->model.lumped_mass = model->lumped_mass != 0;
-    system->model.scale = gxsp_choose_scale(model);
-    system->coarse.rate = system->state.product_rate = -1;
-    system->coarse.life = GXSP_LIFE;
-    system->model.material_count = (uint32_t)model->material_count;
-    system->model.materials = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
-    system->state.damped = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
-    gxsp_copies_make(system, model->positions);
-    if (scratch->failed || system->pool.failed) return SIZE_MAX;
-    for (i = 0; i < system->model.material_count; i++) {
-        system->state.damped[i] = system->model.materials[i] = gxsp_material_make(&model->materials[i]);
-        system->model.damps |= model->materials[i].damping > 0;
-        system->model.stiff |=
-            model->materials[i].kind != GXS_CUSTOM && model->materials[i].poisson > GXSP_STIFF_POISSON;
-    }
-    gxsp_find_fixed(system, model);
-    bad = gxsp_bad_constraint(model->constraints, model->constraint_count, model->held, system->state.still);
-    if (bad == SIZE_MAX) gxsp_set_followers(system, model->constraints, model->constraint_count);
-    if (bad != SIZE_MAX || system->pool.failed) return bad;
-    memcpy(system->state.still, system->model.fixed, system->model.n);
-    gxsp_join_copies(system, model, forest);
-    gxsp_number_components(system, forest);
-    system->model.components =
-        (gxsp_component *)gxsp_take(&system->pool, system->model.component_count, sizeof(gxsp_component));
-    if (system->pool.failed) return SIZE_MAX;
-    gxsp_fill_components(system);
-    mark = scratch->last;
-    gxsp_chunks_make(system, scratch, model);
-    if (!scratch->failed && !system->pool.failed) gxsp_partials_make(system);
-    if (!scratch->failed && !system->pool.failed) gxsp_list_lights(system, scratch, NULL);
-    gxsp_release_to(scratch, mark);
-    if (!scratch->failed && !system->pool.failed)
-        gxsp_preconditioner_make(system, scratch, model, solver->preconditioner, solver->matrix, forest);
-    return SIZE_MAX;
-}
-
-/* --- memory of steps --- */
-
-/* Arrays with which coarse numbers are made */
-static void gxsp_numbers_carve(gxsp_system *system, gxsp_space *space) {
-    gxsp_level *last = &system->multigrid.levels[system->multigrid.level_count - 1];
-    if (!system->multigrid.fine) gxsp_edges_carve(system, space, 1);
-    gxsp_pairs_carve(system, space, 1);
-    if (system->multigrid.level_count > 2) /* level 1 keeps its own: updates make only a part of it anew */
-        last->block = (float *)gxsp_carve(space, gxsp_block_numbers(last), sizeof(float));
-    system->multigrid.factor.rows = (double *)gxsp_carve(space, 3 * (size_t)system->multigrid.factor.n, sizeof(double));
-}
-
-static void gxsp_passes_carve(gxsp_system *system, gxsp_space *space) {
-    system->vectors.slots = (double(*)[3])gxsp_carve(space, system->mesh.slot_count, sizeof *system->vectors.slots);
-    system->vectors.search = (gxsp_vector4 *)gxsp_carve(space, system->model.n, sizeof(gxsp_vector4));
-    system->vectors.product = (gxsp_vector4 *)gxsp_carve(space, system->model.n, sizeof(gxsp_vector4));
-    system->vectors.scaled = (gxsp_vector4 *)gxsp_carve(space, system->model.n, sizeof(gxsp_vector4));
-}
-
-/* Vectors in shared memory are 0 again: what is unused of them, too, takes part in sums. */
-static void gxsp_return_memory(gxsp_system *system) {
-    memset(system->vectors.search, 0, system->model.n * sizeof *system->vectors.search);
-    memset(system->vectors.product, 0, system->model.n * sizeof *system->vectors.product);
-    memset(system->vectors.scaled, 0, system->model.n * sizeof *system->vectors.scaled);
-}
-
-/* Room in shared memory for passes and for coarse numbers, in turn */
-static void gxsp_share_memory(gxsp_system *system) {
-    gxsp_space passes = {NULL, 0}, numbers = {NULL, 0};
-    size_t size;
-    gxsp_passes_carve(system, &passes);
-    if (system->multigrid.level_count > 0) gxsp_numbers_carve(system, &numbers);
-    size = passes.used > numbers.used ? passes.used : numbers.used;
-    if (size > system->vectors.shared_room) {
-        const size_t room = system->vectors.shared ? gxsp_room(size) : size;
-        unsigned char *larger = (unsigned char *)gxsp_grow(&system->pool, system->vectors.shared, 0, room, 1);
-        if (!larger) return;
-        system->vectors.shared = larger;
-        system->vectors.shared_room = room;
-    }
-    passes.memory = system->vectors.shared;
-    passes.used = 0;
-    gxsp_passes_carve(system, &passes);
-    gxsp_return_memory(system);
-}
-
-/* Memory that only steps need. Taken last, when what the model is made with has been given back */
-static void gxsp_steps_make(gxsp_system *system) {
-    const size_t n = system->model.n;
-    gxsp_vectors *vectors = &system->vectors;
-    gxsp_columns_make(system, GXSP_COLUMNS(gxsp_copy_columns), GXSP_FOR_STEPS, n);
-    if (system->multigrid.level_count > 0)
-        system->coarse.displacement = (double *)gxsp_take(&system->pool, n, 3 * sizeof(double));
-    if (system->model.damps) vectors->damping = (double *)gxsp_take(&system->pool, n, 3 * sizeof(double));
-    if (system->multigrid.fine) vectors->right = (gxsp_vector4 *)gxsp_take(&system->pool, n, sizeof(gxsp_vector4));
-    vectors->range_sum =
-        (double(*)[GXSP_SUMS])gxsp_take(&system->pool, system->model.range_count, sizeof *vectors->range_sum);
-    gxsp_share_memory(system);
-    gxsp_tangents_make(&system->pool, system->mesh.chunks, system->mesh.chunk_count);
-}
-
-/* >>followers: what follows a copy gets its motion, and gives it its forces */
-
-/* Increments x of all copies from those of masters */
-static void gxsp_extend(const gxsp_system *system, gxsp_vector4 *x) {
-    uint32_t i, k, c;
-    for (i = 0; i < system->model.follower_count; i++) {
-        const gxsp_follower *follower = &system->model.followers[i];
-        gxsp_vector4 sum = {0, 0, 0, 0};
-        for (k = 0; k < 4; k++)
-            for (c = 0; c < 3; c++) sum[c] += (float)follower->weight[k] * x[follower->master[k]][c];
-        memcpy(x[follower->copy], sum, sizeof sum);
-    }
-}
-
-/* Forces y on masters; 0 on followers */
-static void gxsp_reduce(const gxsp_system *system, gxsp_vector4 *y) {
-    uint32_t i, k, c;
-    for (i = 0; i < system->model.follower_count; i++) {
-        const gxsp_follower *follower = &system->model.followers[i];
-        for (k = 0; k < 4; k++)
-            for (c = 0; c < 3; c++) y[follower->master[k]][c] += (float)follower->weight[k] * y[follower->copy][c];
-        memset(y[follower->copy], 0, sizeof *y);
-    }
-}
-
-/* Displacements of followers: that at from, which may be NULL for 0, and what their masters have moved since then */
-static void gxsp_follow(const gxsp_system *system, const double *from, double *displacement) {
-    uint32_t i, k, c;
-    for (i = 0; i < system->model.follower_count; i++) {
-        const gxsp_follower *follower = &system->model.followers[i];
-        double *to = displacement + 3 * (size_t)follower->copy;
-        for (c = 0; c < 3; c++) {
-            double sum = from ? from[3 * (size_t)follower->copy + c] : 0;
-            for (k = 0; k < 4; k++) {
-                const size_t master = 3 * (size_t)follower->master[k] + c;
-                sum += follower->weight[k] * (displacement[master] - (from ? from[master] : 0));
-            }
-            to[c] = sum;
-        }
-    }
-}
-
-/* Residuals: those of followers are given to masters, but not to copies that are still. still: n */
-static void gxsp_reduce_residual(const gxsp_system *system, const uint8_t *still, double *r) {
-    uint32_t i, k, c;
-    for (i = 0; i < system->model.follower_count; i++) {
-        const gxsp_follower *follower = &system->model.followers[i];
-        for (k = 0; k < 4; k++)
-            for (c = 0; c < 3 && !still[follower->master[k]]; c++)
-                r[3 * (size_t)follower->master[k] + c] += follower->weight[k] * r[3 * (size_t)follower->copy + c];
-        memset(r + 3 * (size_t)follower->copy, 0, 3 * sizeof *r);
-    }
-}
-
-/* >>operator */
-
-/* --- blocks: nine numbers by columns --- */
+/* In and out: a few numbers at a time. Vector code stands beside plain C that computes the same. */
 
 /* By whole vectors: narrower stores would not be forwarded to the loads that soon follow. */
 static inline void gxsp_transpose_block(const float *GXSP_RESTRICT a, float *GXSP_RESTRICT transposed) {
@@ -4852,6 +5072,11 @@ static void gxsp_add_lanes(const uint16_t *entry, gxsp_singles *block, float (*t
 }
 #endif
 
+/* >>product: the Hessian times a vector, in single precision ------------------------------------------------------- */
+
+/* In: the last linearisation and a vector. Out: the product on copies that follow nothing; what sleeps counts as
+ * 0. */
+
 /* x of a block's corners; of those that are not fresh it is there from the block before */
 static void gxsp_block_gather(const gxsp_chunk *chunk, uint32_t b, const gxsp_vector4 *GXSP_RESTRICT x,
                               gxsp_singles *GXSP_RESTRICT to) {
@@ -4996,7 +5221,10 @@ static double gxsp_product(gxsp_system *system, double rate, gxsp_vector4 *x, gx
     return gxsp_product_from(system, rate, NULL, x, y);
 }
 
-/* --- products of doubles --- */
+/* >>doubles: products of vectors in double precision, for gxs_solver_product --------------------------------------- */
+
+/* In: the last linearisation and a direction. Out: the product, with what sleeps. Differences between an
+ * element's corners are taken in double precision. */
 
 /* How a direction moves a copy, times pass->factor: as it says, as its masters' make it if it follows them, not at all
  * if it is fixed */
@@ -5092,31 +5320,6 @@ static void gxsp_task_apply_sum(void *context, size_t index) {
     }
 }
 
-/* 2^k, |k| < 1023, about the inverse of the largest of the values, so that single precision holds them and their
- * product; 0: one is not finite */
-static double gxsp_unit_factor(const double *values, size_t count) {
-    const uint64_t exponent = (uint64_t)0x7ff << 52, one = (uint64_t)1 << 52;
-    uint64_t largest = one, bits;
-    double factor;
-    size_t i;
-    for (i = 0; i < count; i++) {
-        memcpy(&bits, &values[i], sizeof bits);
-        largest = (bits & exponent) > largest ? bits & exponent : largest;
-    }
-    if (largest == exponent) return 0;
-    bits = 2046 * one - (largest < 2045 * one ? largest : 2045 * one);
-    memcpy(&factor, &bits, sizeof factor);
-    return factor;
-}
-
-static int gxsp_all_finite_single(const void *numbers, size_t bytes) {
-    const float *number = (const float *)numbers;
-    size_t i;
-    for (i = 0; i < bytes / sizeof *number; i++)
-        if (!gxsp_finite_single(number[i])) return 0;
-    return 1;
-}
-
 /* Are the Hessians and masses of all elements finite? */
 static int gxsp_tangents_finite(const gxsp_system *system) {
     uint32_t c;
@@ -5130,49 +5333,10 @@ static int gxsp_tangents_finite(const gxsp_system *system) {
     return 1;
 }
 
-/* U of a block's Hessian, by rows */
-static void gxsp_block_frame(const gxsp_tangent *GXSP_RESTRICT t, gxsp_singles *GXSP_RESTRICT u) {
-    int l;
-    GXSP_EACH_LANE(l) {
-        const float a = t->frame[0][l], b = t->frame[1][l], c = t->frame[2][l], d = t->frame[3][l];
-        u[0][l] = 1 - (b * b + c * c), u[1][l] = a * b - c * d, u[2][l] = a * c + b * d;
-        u[3][l] = a * b + c * d, u[4][l] = 1 - (a * a + c * c), u[5][l] = b * c - a * d;
-        u[6][l] = a * c - b * d, u[7][l] = b * c + a * d, u[8][l] = 1 - (a * a + b * b);
-    }
-}
+/* >>linearise: Hessians of elements, and the inverse block diagonal ------------------------------------------------ */
 
-/* own += U B U^T, packed, B as of gxsp_block_couple: what couples a shape function with itself. p: its gradient */
-static void gxsp_block_own(const gxsp_tangent *GXSP_RESTRICT t, gxsp_singles *GXSP_RESTRICT u,
-                           gxsp_singles *GXSP_RESTRICT p, gxsp_singles *GXSP_RESTRICT own) {
-    int l;
-    GXSP_EACH_LANE(l) {
-        const float p0 = p[0][l], p1 = p[1][l], p2 = p[2][l], q0 = p0 * p0, q1 = p1 * p1, q2 = p2 * p2;
-        const float e0 = t->even[0][l], e1 = t->even[1][l], e2 = t->even[2][l];
-        const float b0 = t->stretch[0][l] * q0 + e2 * q1 + e1 * q2, b3 = t->stretch[3][l] * q1 + e2 * q0 + e0 * q2,
-                    b5 = t->stretch[5][l] * q2 + e1 * q0 + e0 * q1, b1 = (t->stretch[1][l] + t->odd[2][l]) * p0 * p1,
-                    b2 = (t->stretch[2][l] + t->odd[1][l]) * p0 * p2, b4 = (t->stretch[4][l] + t->odd[0][l]) * p1 * p2;
-        const float u0 = u[0][l], u1 = u[1][l], u2 = u[2][l], u3 = u[3][l], u4 = u[4][l], u5 = u[5][l], u6 = u[6][l],
-                    u7 = u[7][l], u8 = u[8][l];
-        const float a0 = u0 * b0 + u1 * b1 + u2 * b2, a1 = u0 * b1 + u1 * b3 + u2 * b4,
-                    a2 = u0 * b2 + u1 * b4 + u2 * b5, a3 = u3 * b0 + u4 * b1 + u5 * b2,
-                    a4 = u3 * b1 + u4 * b3 + u5 * b4, a5 = u3 * b2 + u4 * b4 + u5 * b5,
-                    a6 = u6 * b0 + u7 * b1 + u8 * b2, a7 = u6 * b1 + u7 * b3 + u8 * b4,
-                    a8 = u6 * b2 + u7 * b4 + u8 * b5;
-        own[0][l] += a0 * u0 + a1 * u1 + a2 * u2, own[1][l] += a0 * u3 + a1 * u4 + a2 * u5,
-            own[2][l] += a0 * u6 + a1 * u7 + a2 * u8;
-        own[3][l] += a3 * u3 + a4 * u4 + a5 * u5, own[4][l] += a3 * u6 + a4 * u7 + a5 * u8,
-            own[5][l] += a6 * u6 + a7 * u7 + a8 * u8;
-    }
-}
-
-/* The same of a Hessian without a frame */
-static void gxsp_general_own(const gxsp_general *general, gxsp_singles *p, gxsp_singles *own) {
-    static const int packed[6] = {0, 1, 2, 4, 5, 8};
-    gxsp_singles block[9];
-    int k, l;
-    gxsp_general_couple(general, p, p, block);
-    for (k = 0; k < 6; k++) GXSP_EACH_LANE(l) own[k][l] += block[packed[k]][l];
-}
+/* In: a displacement. Out: the tangents of all blocks, gxsp_vectors.diagonal, and whether an element has
+ * collapsed. */
 
 /* Diagonal blocks of a block's Hessian, packed: own[6 corner ...] += */
 static void gxsp_block_diagonal(const gxsp_chunk *chunk, uint32_t b, gxsp_singles *own) {
@@ -5357,158 +5521,10 @@ static int gxsp_linearise(gxsp_system *system, double rate, const double *from, 
     return 1;
 }
 
-/* >>multigrid: a level's matrix in block rows, of which only the upper half is stored; block Gauss-Seidel forward
- * before and backward after the coarse correction, so that the whole is symmetric. The order is that of the nodes. */
+/* >>galerkin: numbers of the coarse matrices, transfer^T A transfer ------------------------------------------------ */
 
-/* r = b without what the entries left of the diagonal make of x; if solve is set, x is solved for on the way, row by
- * row. */
-static void gxsp_sweep_lower(gxsp_level *level, int solve) {
-    uint32_t i, k;
-    memcpy(level->r, level->b, level->n * sizeof *level->r);
-    for (i = 0; i < level->n; i++) {
-        if (solve) gxsp_apply_packed(level->inverse + 6 * (size_t)i, level->r[i], level->x[i]);
-        for (k = level->start[i] + 1; k < level->start[i + 1]; k++)
-            gxsp_subtract_transposed(level->block + 9 * (size_t)k, level->x[i], level->r[level->column[k]]);
-    }
-}
-
-/* x from 0 by one forward sweep: only the rows' entries left of the diagonal count. What the sweep leaves of b is then
- * minus the entries right of the diagonal times x. */
-static void gxsp_sweep_forward(gxsp_level *level) {
-    uint32_t i, k;
-    gxsp_sweep_lower(level, 1);
-    for (i = 0; i < level->n; i++) {
-        gxsp_vector4 r = {0, 0, 0, 0};
-        for (k = level->start[i] + 1; k < level->start[i + 1]; k++)
-            gxsp_subtract_block(level->block + 9 * (size_t)k, level->x[level->column[k]], r);
-        memcpy(level->r[i], r, 3 * sizeof(float));
-    }
-}
-
-static void gxsp_sweep_backward(gxsp_level *level) {
-    uint32_t i, k;
-    int c;
-    gxsp_sweep_lower(level, 0);
-    for (i = level->n; i-- > 0;) {
-        gxsp_vector4 r;
-        float change[3];
-        memcpy(r, level->r[i], sizeof r);
-        for (k = level->start[i]; k < level->start[i + 1]; k++)
-            gxsp_subtract_block(level->block + 9 * (size_t)k, level->x[level->column[k]], r);
-        gxsp_apply_packed(level->inverse + 6 * (size_t)i, r, change);
-        for (c = 0; c < 3; c++) level->x[i][c] += change[c];
-    }
-}
-
-/* b of the next level = transfer^T r */
-static void gxsp_restrict(const gxsp_level *level, gxsp_level *next) {
-    uint32_t i;
-    int k;
-    memset(next->b, 0, next->n * sizeof *next->b);
-    for (i = 0; i < level->n; i++)
-        for (k = 0; k < 4; k++)
-            if (level->parent[i][k] != GXSP_NONE)
-                gxsp_add_four(level->weight[i][k], level->r[i], next->b[level->parent[i][k]]);
-}
-
-/* x += transfer x of the next level */
-static void gxsp_prolong(gxsp_level *level, const gxsp_level *next) {
-    uint32_t i;
-    int k;
-    for (i = 0; i < level->n; i++)
-        for (k = 0; k < 4; k++)
-            if (level->parent[i][k] != GXSP_NONE)
-                gxsp_add_four(level->weight[i][k], next->x[level->parent[i][k]], level->x[i]);
-}
-
-/* x = (L L^T)^-1 b on the last level */
-static void gxsp_factor_solve(const gxsp_factor *factor, gxsp_level *level) {
-    uint32_t i, j;
-    double *x = factor->x;
-    for (i = 0; i < factor->n; i++) {
-        const float *row = gxsp_factor_row(factor, i);
-        const uint32_t first = factor->first[i / 3];
-        const double sum =
-            (double)level->b[factor->order[i / 3]][i % 3] - gxsp_long_dot(row + first, x + first, i - first);
-        x[i] = sum * (double)row[i];
-    }
-    for (i = factor->n; i-- > 0;) {
-        const float *row = gxsp_factor_row(factor, i);
-        x[i] *= (double)row[i];
-        for (j = factor->first[i / 3]; j < i; j++) x[j] -= (double)row[j] * x[i];
-    }
-    for (i = 0; i < factor->n; i++) level->x[factor->order[i / 3]][i % 3] = (float)x[i];
-}
-
-/* x = the multigrid's answer to b on levels[at] and below, at > 0 */
-static void gxsp_cycle(gxsp_system *system, uint32_t at) {
-    gxsp_level *level = &system->multigrid.levels[at];
-    if (at + 1 == system->multigrid.level_count) {
-        gxsp_factor_solve(&system->multigrid.factor, level);
-        return;
-    }
-    gxsp_sweep_forward(level);
-    gxsp_restrict(level, level + 1);
-    gxsp_cycle(system, at + 1);
-    gxsp_prolong(level, level + 1);
-    gxsp_sweep_backward(level);
-}
-
-/* scaled += omega D^-1 product */
-static void gxsp_task_smooth(void *context, size_t index) {
-    const gxsp_system *system = ((const gxsp_pass *)context)->system;
-    size_t i, end = gxsp_range(system, index, &i);
-    for (; i < end; i++) {
-        float y[3];
-        gxsp_apply_packed(system->vectors.diagonal + 6 * i, system->vectors.product[i], y);
-        system->vectors.scaled[i][0] += system->smoother.omega * y[0];
-        system->vectors.scaled[i][1] += system->smoother.omega * y[1];
-        system->vectors.scaled[i][2] += system->smoother.omega * y[2];
-    }
-}
-
-/* The smoother's step length that keeps the cycle definite at any state: no element's own D^-1 K exceeds 4, and so no
- * sum of them; but for followers, with what was met. quotient: x . A x / x . D x of an x, by which the length so far
- * was too large; 0: not known */
-static void gxsp_shorten_omega(gxsp_system *system, double quotient) {
-    const double largest = system->model.follower_count > 0 && 1.25 * quotient > 4 ? 1.25 * quotient : 4;
-    system->smoother.omega = (float)(1.5 / largest);
-    system->smoother.next_cautious = system->smoother.next_cautious > 0 ? system->smoother.next_cautious : GXSP_PAUSE;
-    system->smoother.cautious = system->smoother.next_cautious;
-    system->smoother.next_cautious += system->smoother.next_cautious < 1024 ? system->smoother.next_cautious : 0;
-}
-
-/* scaled = V-cycle of the residual. Level 0 is smoothed by omega D^-1, once on entry, see gxsp_scale, or by block
- * Gauss-Seidel if it is assembled. A state in violent motion may have a larger eigenvalue than omega was found for: the
- * residual, in which it grows, shows it. energy: residual . D^-1 residual; scratch: product */
-static void gxsp_v_cycle(gxsp_system *system, double rate, double energy) {
-    gxsp_level *fine = &system->multigrid.levels[0];
-    gxsp_pass pass;
-    double work;
-    size_t i;
-    fine->x = system->vectors.scaled, fine->b = system->vectors.right, fine->r = system->vectors.product;
-    if (system->multigrid.fine) {
-        for (i = 0; i < 3 * system->model.n; i++)
-            system->vectors.right[i / 3][i % 3] = system->state.still[i / 3] ? 0 : (float)system->vectors.residual[i];
-        gxsp_cycle(system, 0);
-        return;
-    }
-    work = gxsp_product_from(system, rate, system->vectors.residual, fine->x, fine->r);
-    if (work > GXSP_OMEGA * (double)system->smoother.omega * energy && system->smoother.cautious == 0) {
-        const float before = system->smoother.omega;
-        gxsp_shorten_omega(system, work / ((double)before * (double)before * energy));
-        for (i = 0; i < 3 * system->model.n; i++) fine->x[i / 3][i % 3] *= system->smoother.omega / before;
-        (void)gxsp_product_from(system, rate, system->vectors.residual, fine->x, fine->r);
-    }
-    gxsp_restrict(fine, fine + 1);
-    gxsp_cycle(system, 1);
-    gxsp_prolong(fine, fine + 1);
-    (void)gxsp_product_from(system, rate, system->vectors.residual, fine->x, fine->r);
-    memset(&pass, 0, sizeof pass);
-    gxsp_over_ranges(system, gxsp_task_smooth, &pass, NULL, 0);
-}
-
-/* --- numbers of the coarse levels --- */
+/* In: the last linearisation, or a level's matrix. Out: the next level's matrix. Level 1's is made chunk by chunk
+ * from the elements, in shared memory, without an assembled matrix. */
 
 /* A block by rows, with its mass, to one by columns: that of the lower node's row, where corners p and q have the nodes
  */
@@ -5685,33 +5701,6 @@ static void gxsp_coarse_elements(gxsp_system *system, const uint8_t *dirty) {
         }
 }
 
-/* Inverse of a symmetric block, packed; 0 where single precision makes nothing of it. 0 if a number overflowed. */
-static int gxsp_invert_block(const float *block, float *inverse) {
-    static const int packed[6] = {0, 3, 6, 4, 7, 8};
-    double sum[6];
-    int k;
-    for (k = 0; k < 6; k++) sum[k] = (double)block[packed[k]];
-    if (sum[0] + sum[3] + sum[5] < GXSP_TINY) memset(sum, 0, sizeof sum);
-    gxsp_invert3(sum);
-    for (k = 0; k < 6; k++) {
-        inverse[k] = (float)sum[k];
-        if (!gxsp_finite_single(inverse[k])) return 0;
-    }
-    return 1;
-}
-
-/* The diagonal raised by its share, of dirty nodes only unless dirty is NULL, and inverted. 0 if a number overflowed.
- */
-static int gxsp_invert_diagonal(gxsp_level *level, const uint8_t *dirty) {
-    uint32_t i;
-    for (i = 0; i < level->n; i++) {
-        float *block = level->block + 9 * (size_t)level->start[i];
-        if (!dirty || dirty[i]) gxsp_add_mass(GXSP_SHIFT * (block[0] + block[4] + block[8]), block);
-        if (level->inverse && !gxsp_invert_block(block, level->inverse + 6 * (size_t)i)) return 0;
-    }
-    return 1;
-}
-
 /* A node's row, its own block halved, times the transfer, in pairs->half by node of the next level. Returns how many
  * are touched; which, is in pairs->node. */
 static uint32_t gxsp_level_half_row(const gxsp_level *level, gxsp_pairs *pairs, uint32_t i) {
@@ -5753,6 +5742,75 @@ static void gxsp_coarsen(const gxsp_level *level, gxsp_level *next, gxsp_pairs *
                 gxsp_add_scaled(weight, turned, next->block + 9 * (size_t)gxsp_find_entry(next, column, row));
             }
     }
+}
+
+/* Lumped masses between coarse functions */
+static void gxsp_coarse_lumped(gxsp_system *system, double rate) {
+    const gxsp_level *fine = &system->multigrid.levels[0];
+    gxsp_level *next = &system->multigrid.levels[1];
+    uint32_t i;
+    int p, q;
+    for (i = 0; i < fine->n; i++)
+        for (p = 0; p < 4; p++)
+            for (q = 0; q < 4; q++)
+                if (fine->parent[i][p] <= fine->parent[i][q] && fine->parent[i][q] != GXSP_NONE)
+                    gxsp_add_mass((float)(rate * system->model.lumped[i]) * fine->weight[i][p] * fine->weight[i][q],
+                                  next->block +
+                                      9 * (size_t)gxsp_find_entry(next, fine->parent[i][p], fine->parent[i][q]));
+}
+
+/* Springs and contact between coarse functions, where level 1's matrix has an entry for them */
+static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term) {
+    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    const gxsp_level *fine = &system->multigrid.levels[0];
+    gxsp_level *next = &system->multigrid.levels[1];
+    int i, j, p, q, k;
+    for (i = 0; i < 16; i++)
+        for (j = 0; j < 16; j++) {
+            const uint32_t a = term->copy[i / 4], b = term->copy[j / 4], row = fine->parent[a][i % 4],
+                           column = fine->parent[b][j % 4];
+            uint32_t entry;
+            p = i % 4, q = j % 4;
+            if (row > column || column == GXSP_NONE) continue;
+            entry = gxsp_find_entry(next, row, column);
+            if (next->column[entry] != column) continue;
+            for (k = 0; k < 9; k++)
+                next->block[9 * (size_t)entry + (size_t)k] += term->weight[i / 4] * term->weight[j / 4] *
+                                                              fine->weight[a][p] * fine->weight[b][q] *
+                                                              term->hessian[full[k]];
+        }
+}
+
+/* >>factor: the last level's Cholesky factor, and all numbers below level 0 ---------------------------------------- */
+
+/* In: level 1's matrix. Out: the matrices and inverse diagonals of all levels, the factor of the last one. 0 is
+ * returned if a number overflowed. */
+
+/* Inverse of a symmetric block, packed; 0 where single precision makes nothing of it. 0 if a number overflowed. */
+static int gxsp_invert_block(const float *block, float *inverse) {
+    static const int packed[6] = {0, 3, 6, 4, 7, 8};
+    double sum[6];
+    int k;
+    for (k = 0; k < 6; k++) sum[k] = (double)block[packed[k]];
+    if (sum[0] + sum[3] + sum[5] < GXSP_TINY) memset(sum, 0, sizeof sum);
+    gxsp_invert3(sum);
+    for (k = 0; k < 6; k++) {
+        inverse[k] = (float)sum[k];
+        if (!gxsp_finite_single(inverse[k])) return 0;
+    }
+    return 1;
+}
+
+/* The diagonal raised by its share, of dirty nodes only unless dirty is NULL, and inverted. 0 if a number overflowed.
+ */
+static int gxsp_invert_diagonal(gxsp_level *level, const uint8_t *dirty) {
+    uint32_t i;
+    for (i = 0; i < level->n; i++) {
+        float *block = level->block + 9 * (size_t)level->start[i];
+        if (!dirty || dirty[i]) gxsp_add_mass(GXSP_SHIFT * (block[0] + block[4] + block[8]), block);
+        if (level->inverse && !gxsp_invert_block(block, level->inverse + 6 * (size_t)i)) return 0;
+    }
+    return 1;
 }
 
 /* A level's matrix into the lower half of the factor's envelope. place: n, scratch */
@@ -5866,42 +5924,42 @@ static int gxsp_factorise(gxsp_factor *factor, const gxsp_level *level, uint32_t
     return 1;
 }
 
-/* Lumped masses between coarse functions */
-static void gxsp_coarse_lumped(gxsp_system *system, double rate) {
-    const gxsp_level *fine = &system->multigrid.levels[0];
-    gxsp_level *next = &system->multigrid.levels[1];
-    uint32_t i;
-    int p, q;
-    for (i = 0; i < fine->n; i++)
-        for (p = 0; p < 4; p++)
-            for (q = 0; q < 4; q++)
-                if (fine->parent[i][p] <= fine->parent[i][q] && fine->parent[i][q] != GXSP_NONE)
-                    gxsp_add_mass((float)(rate * system->model.lumped[i]) * fine->weight[i][p] * fine->weight[i][q],
-                                  next->block +
-                                      9 * (size_t)gxsp_find_entry(next, fine->parent[i][p], fine->parent[i][q]));
+/* What follows from level 1's matrix. dirty: nodes of level 1 whose numbers are new; NULL: all are. 0 if a number
+ * overflowed. */
+static int gxsp_lower_numbers(gxsp_system *system, const uint8_t *dirty) {
+    uint32_t at;
+    for (at = 1; at < system->multigrid.level_count; at++) {
+        gxsp_level *level = &system->multigrid.levels[at];
+        if (!gxsp_invert_diagonal(level, at == 1 ? dirty : NULL)) return 0;
+        if (at + 1 < system->multigrid.level_count) gxsp_coarsen(level, level + 1, &system->multigrid.pairs);
+    }
+    return gxsp_factorise(&system->multigrid.factor, &system->multigrid.levels[system->multigrid.level_count - 1],
+                          system->multigrid.pairs.local);
 }
 
-/* Springs and contact between coarse functions, where level 1's matrix has an entry for them */
-static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term) {
-    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    const gxsp_level *fine = &system->multigrid.levels[0];
-    gxsp_level *next = &system->multigrid.levels[1];
-    int i, j, p, q, k;
-    for (i = 0; i < 16; i++)
-        for (j = 0; j < 16; j++) {
-            const uint32_t a = term->copy[i / 4], b = term->copy[j / 4], row = fine->parent[a][i % 4],
-                           column = fine->parent[b][j % 4];
-            uint32_t entry;
-            p = i % 4, q = j % 4;
-            if (row > column || column == GXSP_NONE) continue;
-            entry = gxsp_find_entry(next, row, column);
-            if (next->column[entry] != column) continue;
-            for (k = 0; k < 9; k++)
-                next->block[9 * (size_t)entry + (size_t)k] += term->weight[i / 4] * term->weight[j / 4] *
-                                                              fine->weight[a][p] * fine->weight[b][q] *
-                                                              term->hessian[full[k]];
-        }
+/* The matrices of all coarse levels from the last linearisation. 0 if a number overflowed. */
+static int gxsp_coarse_numbers(gxsp_system *system, double rate) {
+    gxsp_level *fine = &system->multigrid.levels[0];
+    int finite;
+    size_t t;
+    gxsp_lend_memory(system);
+    if (system->multigrid.fine)
+        gxsp_coarsen(fine, fine + 1, &system->multigrid.pairs);
+    else {
+        memset(fine[1].block, 0, 9 * (size_t)fine[1].start[fine[1].n] * sizeof(float));
+        gxsp_coarse_elements(system, NULL);
+        if (system->model.lumped_mass) gxsp_coarse_lumped(system, system->model.scale * rate);
+    }
+    for (t = 0; t < system->lasting->count; t++)
+        if (!system->lasting->term[t].assembled) gxsp_coarse_term(system, &system->lasting->term[t]);
+    finite = gxsp_lower_numbers(system, NULL);
+    gxsp_return_memory(system);
+    return finite;
 }
+
+/* >>assembly: the assembled matrix --------------------------------------------------------------------------------- */
+
+/* In: the last linearisation. Out: levels[0].block and its inverse diagonal; GXS_MATRIX_ASSEMBLED only. */
 
 /* Adds a corner pair's block, on and above the diagonal, where corners follow others. same: both are one corner */
 static void gxsp_assemble_following(gxsp_system *system, uint32_t p, uint32_t q, int same, const float *block) {
@@ -6025,52 +6083,9 @@ static int gxsp_invert_fine(gxsp_system *system) {
     return 1;
 }
 
-/* What follows from level 1's matrix. dirty: nodes of level 1 whose numbers are new; NULL: all are. 0 if a number
- * overflowed. */
-static int gxsp_lower_numbers(gxsp_system *system, const uint8_t *dirty) {
-    uint32_t at;
-    for (at = 1; at < system->multigrid.level_count; at++) {
-        gxsp_level *level = &system->multigrid.levels[at];
-        if (!gxsp_invert_diagonal(level, at == 1 ? dirty : NULL)) return 0;
-        if (at + 1 < system->multigrid.level_count) gxsp_coarsen(level, level + 1, &system->multigrid.pairs);
-    }
-    return gxsp_factorise(&system->multigrid.factor, &system->multigrid.levels[system->multigrid.level_count - 1],
-                          system->multigrid.pairs.local);
-}
+/* >>smoother: its step length -------------------------------------------------------------------------------------- */
 
-/* Shared memory while coarse numbers are made */
-static void gxsp_lend_memory(gxsp_system *system) {
-    gxsp_space space = {NULL, 0};
-    space.memory = system->vectors.shared;
-    gxsp_numbers_carve(system, &space);
-    if (!system->multigrid.fine) {
-        memset(system->multigrid.edges.table, 0,
-               system->multigrid.edges.table_size * sizeof *system->multigrid.edges.table);
-        memset(system->multigrid.edges.half, 0, system->multigrid.pairs.most * sizeof *system->multigrid.edges.half);
-        memset(system->multigrid.pairs.stamp, 0, system->multigrid.levels[1].n * sizeof *system->multigrid.pairs.stamp);
-        system->multigrid.pairs.round = 0;
-    }
-}
-
-/* The matrices of all coarse levels from the last linearisation. 0 if a number overflowed. */
-static int gxsp_coarse_numbers(gxsp_system *system, double rate) {
-    gxsp_level *fine = &system->multigrid.levels[0];
-    int finite;
-    size_t t;
-    gxsp_lend_memory(system);
-    if (system->multigrid.fine)
-        gxsp_coarsen(fine, fine + 1, &system->multigrid.pairs);
-    else {
-        memset(fine[1].block, 0, 9 * (size_t)fine[1].start[fine[1].n] * sizeof(float));
-        gxsp_coarse_elements(system, NULL);
-        if (system->model.lumped_mass) gxsp_coarse_lumped(system, system->model.scale * rate);
-    }
-    for (t = 0; t < system->lasting->count; t++)
-        if (!system->lasting->term[t].assembled) gxsp_coarse_term(system, &system->lasting->term[t]);
-    finite = gxsp_lower_numbers(system, NULL);
-    gxsp_return_memory(system);
-    return finite;
-}
+/* In: the last linearisation and its block diagonal. Out: gxsp_smoother. Uses the search and product vectors. */
 
 /* Largest eigenvalue of D^-1 (K + rate M) on what is not still, by the power method from a start that favours none; 0
  * if nothing moves */
@@ -6116,21 +6131,6 @@ static float gxsp_omega(const gxsp_system *system, double largest) {
     return (float)(1.5 / largest);
 }
 
-/* Which copies and chunks the pieces' states leave alone */
-static void gxsp_mark_still(gxsp_system *system) {
-    uint32_t c, k;
-    size_t i;
-    for (i = 0; i < system->model.n; i++)
-        system->state.still[i] =
-            system->model.fixed[i] || (system->model.components[system->model.component[i]].state & GXSP_ASLEEP);
-    for (c = 0; c < system->mesh.chunk_count; c++) {
-        system->state.chunk_still[c] = 1;
-        for (k = 0; k < system->mesh.chunks[c].node_count; k++)
-            system->state.chunk_still[c] &=
-                system->state.still[system->mesh.nodes[system->mesh.chunks[c].first_node + k]];
-    }
-}
-
 /* Shortens the step length where the cycle might become indefinite where updates have changed the operator: elsewhere
  * the largest eigenvalue is no larger than it was. */
 static void gxsp_renew_omega(gxsp_system *system, double rate) {
@@ -6160,9 +6160,165 @@ static void gxsp_choose_omega(gxsp_system *system, double rate) {
     if (system->smoother.cautious == 0) system->smoother.omega = system->smoother.found;
 }
 
-/* >>update: what a cut has changed goes into the chunks and levels that there are. Elements are replaced where they
- * were, further ones go to chunks at the end; of chunks and coarse nodes of which nothing has changed only numbers are
- * copied. */
+/* The smoother's step length that keeps the cycle definite at any state: no element's own D^-1 K exceeds 4, and so no
+ * sum of them; but for followers, with what was met. quotient: x . A x / x . D x of an x, by which the length so far
+ * was too large; 0: not known */
+static void gxsp_shorten_omega(gxsp_system *system, double quotient) {
+    const double largest = system->model.follower_count > 0 && 1.25 * quotient > 4 ? 1.25 * quotient : 4;
+    system->smoother.omega = (float)(1.5 / largest);
+    system->smoother.next_cautious = system->smoother.next_cautious > 0 ? system->smoother.next_cautious : GXSP_PAUSE;
+    system->smoother.cautious = system->smoother.next_cautious;
+    system->smoother.next_cautious += system->smoother.next_cautious < 1024 ? system->smoother.next_cautious : 0;
+}
+
+/* >>cycle: the V-cycle --------------------------------------------------------------------------------------------- */
+
+/* In: the residual. Out: the preconditioned residual in gxsp_vectors.scaled. A level's matrix is stored as the
+ * upper half of its block rows. Block Gauss-Seidel goes forward before the coarse correction and backward after
+ * it, in the order of the nodes, so that the whole is symmetric. */
+
+/* r = b without what the entries left of the diagonal make of x; if solve is set, x is solved for on the way, row by
+ * row. */
+static void gxsp_sweep_lower(gxsp_level *level, int solve) {
+    uint32_t i, k;
+    memcpy(level->r, level->b, level->n * sizeof *level->r);
+    for (i = 0; i < level->n; i++) {
+        if (solve) gxsp_apply_packed(level->inverse + 6 * (size_t)i, level->r[i], level->x[i]);
+        for (k = level->start[i] + 1; k < level->start[i + 1]; k++)
+            gxsp_subtract_transposed(level->block + 9 * (size_t)k, level->x[i], level->r[level->column[k]]);
+    }
+}
+
+/* x from 0 by one forward sweep: only the rows' entries left of the diagonal count. What the sweep leaves of b is then
+ * minus the entries right of the diagonal times x. */
+static void gxsp_sweep_forward(gxsp_level *level) {
+    uint32_t i, k;
+    gxsp_sweep_lower(level, 1);
+    for (i = 0; i < level->n; i++) {
+        gxsp_vector4 r = {0, 0, 0, 0};
+        for (k = level->start[i] + 1; k < level->start[i + 1]; k++)
+            gxsp_subtract_block(level->block + 9 * (size_t)k, level->x[level->column[k]], r);
+        memcpy(level->r[i], r, 3 * sizeof(float));
+    }
+}
+
+static void gxsp_sweep_backward(gxsp_level *level) {
+    uint32_t i, k;
+    int c;
+    gxsp_sweep_lower(level, 0);
+    for (i = level->n; i-- > 0;) {
+        gxsp_vector4 r;
+        float change[3];
+        memcpy(r, level->r[i], sizeof r);
+        for (k = level->start[i]; k < level->start[i + 1]; k++)
+            gxsp_subtract_block(level->block + 9 * (size_t)k, level->x[level->column[k]], r);
+        gxsp_apply_packed(level->inverse + 6 * (size_t)i, r, change);
+        for (c = 0; c < 3; c++) level->x[i][c] += change[c];
+    }
+}
+
+/* b of the next level = transfer^T r */
+static void gxsp_restrict(const gxsp_level *level, gxsp_level *next) {
+    uint32_t i;
+    int k;
+    memset(next->b, 0, next->n * sizeof *next->b);
+    for (i = 0; i < level->n; i++)
+        for (k = 0; k < 4; k++)
+            if (level->parent[i][k] != GXSP_NONE)
+                gxsp_add_four(level->weight[i][k], level->r[i], next->b[level->parent[i][k]]);
+}
+
+/* x += transfer x of the next level */
+static void gxsp_prolong(gxsp_level *level, const gxsp_level *next) {
+    uint32_t i;
+    int k;
+    for (i = 0; i < level->n; i++)
+        for (k = 0; k < 4; k++)
+            if (level->parent[i][k] != GXSP_NONE)
+                gxsp_add_four(level->weight[i][k], next->x[level->parent[i][k]], level->x[i]);
+}
+
+/* x = (L L^T)^-1 b on the last level */
+static void gxsp_factor_solve(const gxsp_factor *factor, gxsp_level *level) {
+    uint32_t i, j;
+    double *x = factor->x;
+    for (i = 0; i < factor->n; i++) {
+        const float *row = gxsp_factor_row(factor, i);
+        const uint32_t first = factor->first[i / 3];
+        const double sum =
+            (double)level->b[factor->order[i / 3]][i % 3] - gxsp_long_dot(row + first, x + first, i - first);
+        x[i] = sum * (double)row[i];
+    }
+    for (i = factor->n; i-- > 0;) {
+        const float *row = gxsp_factor_row(factor, i);
+        x[i] *= (double)row[i];
+        for (j = factor->first[i / 3]; j < i; j++) x[j] -= (double)row[j] * x[i];
+    }
+    for (i = 0; i < factor->n; i++) level->x[factor->order[i / 3]][i % 3] = (float)x[i];
+}
+
+/* x = the multigrid's answer to b on levels[at] and below, at > 0 */
+static void gxsp_cycle(gxsp_system *system, uint32_t at) {
+    gxsp_level *level = &system->multigrid.levels[at];
+    if (at + 1 == system->multigrid.level_count) {
+        gxsp_factor_solve(&system->multigrid.factor, level);
+        return;
+    }
+    gxsp_sweep_forward(level);
+    gxsp_restrict(level, level + 1);
+    gxsp_cycle(system, at + 1);
+    gxsp_prolong(level, level + 1);
+    gxsp_sweep_backward(level);
+}
+
+/* scaled += omega D^-1 product */
+static void gxsp_task_smooth(void *context, size_t index) {
+    const gxsp_system *system = ((const gxsp_pass *)context)->system;
+    size_t i, end = gxsp_range(system, index, &i);
+    for (; i < end; i++) {
+        float y[3];
+        gxsp_apply_packed(system->vectors.diagonal + 6 * i, system->vectors.product[i], y);
+        system->vectors.scaled[i][0] += system->smoother.omega * y[0];
+        system->vectors.scaled[i][1] += system->smoother.omega * y[1];
+        system->vectors.scaled[i][2] += system->smoother.omega * y[2];
+    }
+}
+
+/* scaled = V-cycle of the residual. Level 0 is smoothed by omega D^-1, once on entry, see gxsp_scale, or by block
+ * Gauss-Seidel if it is assembled. A state in violent motion may have a larger eigenvalue than omega was found for: the
+ * residual, in which it grows, shows it. energy: residual . D^-1 residual; scratch: product */
+static void gxsp_v_cycle(gxsp_system *system, double rate, double energy) {
+    gxsp_level *fine = &system->multigrid.levels[0];
+    gxsp_pass pass;
+    double work;
+    size_t i;
+    fine->x = system->vectors.scaled, fine->b = system->vectors.right, fine->r = system->vectors.product;
+    if (system->multigrid.fine) {
+        for (i = 0; i < 3 * system->model.n; i++)
+            system->vectors.right[i / 3][i % 3] = system->state.still[i / 3] ? 0 : (float)system->vectors.residual[i];
+        gxsp_cycle(system, 0);
+        return;
+    }
+    work = gxsp_product_from(system, rate, system->vectors.residual, fine->x, fine->r);
+    if (work > GXSP_OMEGA * (double)system->smoother.omega * energy && system->smoother.cautious == 0) {
+        const float before = system->smoother.omega;
+        gxsp_shorten_omega(system, work / ((double)before * (double)before * energy));
+        for (i = 0; i < 3 * system->model.n; i++) fine->x[i / 3][i % 3] *= system->smoother.omega / before;
+        (void)gxsp_product_from(system, rate, system->vectors.residual, fine->x, fine->r);
+    }
+    gxsp_restrict(fine, fine + 1);
+    gxsp_cycle(system, 1);
+    gxsp_prolong(fine, fine + 1);
+    (void)gxsp_product_from(system, rate, system->vectors.residual, fine->x, fine->r);
+    memset(&pass, 0, sizeof pass);
+    gxsp_over_ranges(system, gxsp_task_smooth, &pass, NULL, 0);
+}
+
+/* >>edits: which lanes an update changes --------------------------------------------------------------------------- */
+
+/* In: a gxs_change. Out: elements in their lanes and nodes of chunks. Elements are replaced where they were;
+ * further ones go to chunks at the end. Chunks in which nothing has changed only get the new numbers of their
+ * copies. */
 
 /* A lane whose element goes */
 typedef struct gxsp_edit {
@@ -6183,23 +6339,6 @@ typedef struct gxsp_renewal {
     uint8_t *dirty;                          /* by node of level 1 so far: some that follow it are touched */
     uint8_t *alike;                          /* change->copy_count: the copy follows what it followed */
 } gxsp_renewal;
-
-/* What corner k's copy has of the mass of a lane's element: its row sum */
-static double gxsp_lane_mass(const gxsp_chunk *chunk, uint32_t lane, int k) {
-    const size_t b = lane / GXSP_LANES, l = lane % GXSP_LANES;
-    const gxsp_moments *of = gxsp_block_moments(chunk, (uint32_t)b);
-    return chunk->rest[b].mass[l] *
-           (!of ? 5
-                : (double)(k > 0 ? of->centre[k - 1][l]
-                                 : 1 - (of->centre[0][l] + of->centre[1][l] + of->centre[2][l])));
-}
-
-/* Does the element of a lane give corner k stiffness or mass? */
-static int gxsp_lane_supports(const gxsp_chunk *chunk, uint32_t lane, int k) {
-    return chunk->rest[lane / GXSP_LANES].weight[lane % GXSP_LANES] > 0 || gxsp_lane_mass(chunk, lane, k) > 0;
-}
-
-/* --- which lanes change --- */
 
 /* Groups that change: a bit for each, of as many low bits of their numbers as make GXSP_FILTER */
 typedef struct gxsp_filter {
@@ -6283,8 +6422,6 @@ static void gxsp_match_edits(gxsp_renewal *update) {
         }
     }
 }
-
-/* --- chunks --- */
 
 /* Copies around what goes, and the coarse nodes that these follow */
 static void gxsp_touch_removed(gxsp_renewal *update) {
@@ -6489,7 +6626,28 @@ static int gxsp_renew_nodes(gxsp_renewal *update) {
     return 1;
 }
 
-/* --- copies --- */
+/* >>renewal: copies and components after an update ----------------------------------------------------------------- */
+
+/* In: new numbers of copies, touched copies. Out: the columns over copies in their new order, masses, followers,
+ * light copies and components. */
+
+/* What copies so far have become. 0: two say that they are one, or one is not held as before. */
+static int gxsp_find_successors(gxsp_renewal *update) {
+    const gxs_change *change = update->change;
+    uint32_t i;
+    memset(update->successor, 0xff, update->before * sizeof *update->successor);
+    for (i = 0; i < change->copy_count; i++) {
+        uint32_t *of = &update->successor[change->origins[i] >> 1];
+        if ((change->held && change->held[i]) != (update->system->model.held[change->origins[i] >> 1] != 0)) return 0;
+        if (change->origins[i] & 1)
+            update->touched[i] = 1;
+        else if (*of != GXSP_NONE)
+            return 0;
+        else
+            *of = i;
+    }
+    return 1;
+}
 
 /* What is known of copies, for those there are from now on */
 static void gxsp_move_copies(gxsp_renewal *update) {
@@ -6624,7 +6782,10 @@ static void gxsp_renew_components(gxsp_renewal *update) {
             system->model.components[system->model.component[i]].state &= ~GXSP_ASLEEP;
 }
 
-/* --- multigrid --- */
+/* >>update: levels after an update, and the whole of it ------------------------------------------------------------ */
+
+/* In: dirty nodes of level 1: those that touched copies follow. Out: clusters of dirty nodes, new levels below
+ * the model, and numbers. Numbers of entries between other nodes are copied. */
 
 /* Copies i and j are neighbours: they belong to one component of each dirty node that both follow. */
 static void gxsp_join_parents(const gxsp_renewal *update, uint32_t i, uint32_t j, uint32_t *forest) {
@@ -6777,26 +6938,6 @@ static void gxsp_renew_levels(gxsp_renewal *update) {
     gxsp_release_to(&old, NULL);
 }
 
-/* --- all of it --- */
-
-/* What copies so far have become. 0: two say that they are one, or one is not held as before. */
-static int gxsp_find_successors(gxsp_renewal *update) {
-    const gxs_change *change = update->change;
-    uint32_t i;
-    memset(update->successor, 0xff, update->before * sizeof *update->successor);
-    for (i = 0; i < change->copy_count; i++) {
-        uint32_t *of = &update->successor[change->origins[i] >> 1];
-        if ((change->held && change->held[i]) != (update->system->model.held[change->origins[i] >> 1] != 0)) return 0;
-        if (change->origins[i] & 1)
-            update->touched[i] = 1;
-        else if (*of != GXSP_NONE)
-            return 0;
-        else
-            *of = i;
-    }
-    return 1;
-}
-
 /* What steps have learnt and what depends on all copies */
 static void gxsp_renew_steps(gxsp_renewal *update) {
     gxsp_system *system = update->system;
@@ -6856,7 +6997,10 @@ static int gxsp_update_system(gxsp_renewal *update) {
     return gxsp_is_compact(update);
 }
 
-/* >>pieces */
+/* >>components: translations and momentum of loose components ------------------------------------------------------ */
+
+/* In: vectors over copies and the load. Out: the vectors without momentum, or translated so that momentum
+ * balances. Uses gxsp_component.sum. */
 
 /* Gravity, nodal forces and what damping adds to them on a copy, N; 0 on what this step leaves alone */
 GXSP_INLINE void gxsp_load(const gxsp_problem *problem, size_t copy, double *load) {
@@ -6973,7 +7117,10 @@ static void gxsp_touch_components(gxsp_system *system) {
     }
 }
 
-/* >>points: springs and contact at material points */
+/* >>points: springs and contact at material points ----------------------------------------------------------------- */
+
+/* In: the step's springs, contact points and planes. Out: their energies, forces and Hessians (terms), and which
+ * components they join. */
 
 /* What acts on one point */
 typedef struct gxsp_pull {
@@ -7201,7 +7348,10 @@ static void gxsp_terms_make(const gxsp_problem *problem, const double *displacem
     gxsp_compare_terms(problem->system);
 }
 
-/* >>cg */
+/* >>cg: conjugate gradients ---------------------------------------------------------------------------------------- */
+
+/* In: the last linearisation and the residual, which is used up. Out: the direction, and for each component what
+ * the solve has left. */
 
 /* The two measures of a vector r of forces, squared: r . D^-1 r (energy) and |D^-1 r|^2 (displacement). */
 typedef struct gxsp_norms {
@@ -7475,6 +7625,11 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem) {
     return 1;
 }
 
+/* >>ageing: when coarse matrices are made anew --------------------------------------------------------------------- */
+
+/* In: the linearisation, counts of iterations. Out: matrices and preconditioner ready for a solve, and the solve
+ * itself. Writes gxsp_coarse. */
+
 /* Does multigrid pay at this rate? In a large piece whose copies' mean share of inertia in the linearisation's diagonal
  * blocks is small, each counted up to 4/3 of the bound, so that a quarter of stiff ones is enough; or where it is asked
  * for */
@@ -7568,22 +7723,11 @@ static int gxsp_solve(gxsp_problem *problem) {
     return solved;
 }
 
-/* >>sleep: a piece that has been slow for long is left out until something touches it: loads, targets, springs, contact
- * points or planes that change, a state or a rest time that the caller has written */
+/* >>sleep: components at rest are left out ------------------------------------------------------------------------- */
 
-/* 1 of no values, never 0 */
-static uint64_t gxsp_hash(uint64_t hash, const double *values, size_t count) {
-    size_t i;
-    for (i = 0; i < count; i++) {
-        uint64_t bits;
-        memcpy(&bits, &values[i], sizeof bits);
-        hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
-        hash ^= hash >> 29;
-    }
-    return hash | 1;
-}
-
-static int gxsp_differs(const double *a, const double *b) { return memcmp(a, b, 3 * sizeof *a) != 0; }
+/* In: the step, the state that the caller gives, rest times. Out: which components sleep. A component that has
+ * been slow for long sleeps until something touches it: loads, targets, springs, contact points or planes that
+ * change, or a state or rest time that the caller has written. */
 
 /* Hashes of nodal forces and contact points, in all and by piece. Copies without a force do not count. */
 static uint64_t gxsp_hash_forces(gxsp_system *system, const gxs_step_desc *step) {
@@ -7741,7 +7885,9 @@ static void gxsp_count_rest(const gxsp_problem *problem, const double *velocity)
     }
 }
 
-/* >>newton */
+/* >>balance: residual, energies and the start of Newton's method --------------------------------------------------- */
+
+/* In: a displacement. Out: energies of components, forces, the residual and its measure. */
 
 /* Adds the forces on held copies, which have no D of their own, scaled by the mean of the others'. A body that only its
  * held copies deform has no other force when it is in balance. */
@@ -7882,6 +8028,11 @@ static int gxsp_start(gxsp_problem *problem, int led) {
     return gxsp_first_not_finite(system->vectors.current, 3 * system->model.n) == 3 * system->model.n &&
            gxsp_evaluate_current(problem);
 }
+
+/* >>search: the line search ---------------------------------------------------------------------------------------- */
+
+/* In: current and direction. Out: current at the point found, its energies and forces, a length for each
+ * component. The trial displacement has the residual's memory. */
 
 /* The direction takes no light copy further from what guides it than they are apart, at rest or now, unless the piece's
  * way down depends on that: what a copy of so little weight is left with hardly shows in E, which so could not tell a
@@ -8033,17 +8184,9 @@ static int gxsp_line_search(gxsp_problem *problem) {
     return left == 0 || down > 0;
 }
 
-/* E at a displacement of these energies, J */
-static double gxsp_potential(const gxsp_problem *problem, const double *energies, const double *displacement) {
-    double work = 0;
-    size_t i;
-    for (i = 0; i < problem->system->model.n; i++) {
-        double load[3];
-        gxsp_load(problem, i, load);
-        work += gxsp_dot(load, displacement + 3 * i, 1);
-    }
-    return energies[0] + energies[1] - work;
-}
+/* >>integrators: BDF1, BDF2, midpoint, statics --------------------------------------------------------------------- */
+
+/* In: the step and the state at its start. Out: rate, speed, target and the load of damping. */
 
 /* The step's integrator as rate and target: the equation of motion is M rate (u - target) = f - dU/du. With v = speed
  * (u - mean) BDF1      speed = 1 / dt, mean = u_n;   rate = speed^2, target = mean + v_n / speed BDF2      r = dt / dt
@@ -8132,6 +8275,10 @@ static void gxsp_begin(gxsp_problem *problem, const double *velocity) {
     }
     gxsp_begin_damping(problem);
 }
+
+/* >>newton: Newton's method, and the bound on E -------------------------------------------------------------------- */
+
+/* In: target and base. Out: current, where E is no higher than at base in any component. */
 
 static int gxsp_linearise_all(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
@@ -8315,6 +8462,11 @@ static gx_result gxsp_minimise(gxsp_problem *problem) {
     return result;
 }
 
+/* >>midpoint: the second half of the midpoint rule, and the end of a step ------------------------------------------ */
+
+/* In: current, where Newton's method has ended. Out: the caller's displacement, velocity, rest times and spring
+ * forces, and what the next step is told. */
+
 /* E of every piece at a displacement, less that at base: into gain. evaluated: 1: that was evaluated last; 0: it is
  * current */
 static void gxsp_find_gains(const gxsp_problem *problem, const double *displacement, int evaluated) {
@@ -8455,6 +8607,18 @@ static void gxsp_bound_gain(gxsp_problem *problem) {
     for (p = 0; p < system->model.component_count; p++) system->model.components[p].settled = 0;
 }
 
+/* E at a displacement of these energies, J */
+static double gxsp_potential(const gxsp_problem *problem, const double *energies, const double *displacement) {
+    double work = 0;
+    size_t i;
+    for (i = 0; i < problem->system->model.n; i++) {
+        double load[3];
+        gxsp_load(problem, i, load);
+        work += gxsp_dot(load, displacement + 3 * i, 1);
+    }
+    return energies[0] + energies[1] - work;
+}
+
 /* Writes the state out, all of it or, if a number is not finite, none. */
 static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double *velocity) {
     gxsp_system *system = problem->system;
@@ -8503,7 +8667,10 @@ static void gxsp_report_springs(const gxsp_problem *problem) {
     }
 }
 
-/* >>check */
+/* >>check: of what is given ---------------------------------------------------------------------------------------- */
+
+/* In: what the caller gives. Out: a result code, and the index of what is wrong. Nothing is written but the
+ * failure and, by gxsp_check_free, marks of touched components. */
 
 static gx_result gxsp_check_element(const gxs_element *element, const gxs_model *model, size_t index,
                                     gx_failure *failure) {
@@ -8662,20 +8829,55 @@ static gx_result gxsp_check_vectors(const gxs_step_desc *step, size_t n, const d
     return result;
 }
 
-/* >>api */
-
-static void gxsp_system_destroy(gxsp_system *system) {
-    gxsp_pool pool;
-    if (!system) return;
-    gxsp_release_to(&system->multigrid.pool, NULL);
-    pool = system->pool; /* which holds system itself */
-    gxsp_release_to(&pool, NULL);
+/* Is the change one of this model? */
+static gx_result gxsp_check_change(const gxsp_system *system, const gxs_change *change, gx_failure *failure) {
+    gxs_model model;
+    gx_result result = GX_OK;
+    size_t i;
+    if (!change || !change->origins || (!change->groups && change->group_count > 0) ||
+        (!change->elements && change->element_count > 0) || (!change->constraints && change->constraint_count > 0))
+        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
+    if (change->copy_count == 0) return gxsp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
+    if (change->copy_count >= UINT32_MAX / 4 || change->element_count >= UINT32_MAX / 4 - system->model.element_count ||
+        change->constraint_count > change->copy_count)
+        return gxsp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
+    for (i = 0; i < change->copy_count; i++)
+        if (change->origins[i] >> 1 >= system->model.n) return gxsp_fail(failure, GX_ERROR_INDEX, i);
+    for (i = 1; i < change->group_count; i++)
+        if (change->groups[i - 1] >= change->groups[i]) return gxsp_fail(failure, GX_ERROR_ARGUMENT, i);
+    for (i = 1; i < change->element_count; i++)
+        if (change->elements[i - 1].group > change->elements[i].group) return gxsp_fail(failure, GX_ERROR_ARGUMENT, i);
+    memset(&model, 0, sizeof model);
+    model.copy_count = change->copy_count;
+    model.material_count = system->model.material_count;
+    for (i = 0; i < change->element_count && result == GX_OK; i++)
+        result = change->elements[i].group < GXSP_GROUPS ? gxsp_check_element(&change->elements[i], &model, i, failure)
+                                                         : gxsp_fail(failure, GX_ERROR_LIMIT, i);
+    for (i = 0; i < change->constraint_count && result == GX_OK; i++)
+        result = gxsp_check_constraint(&change->constraints[i], change->copy_count, i, failure);
+    return result;
 }
 
-static void gxsp_drop_system(gxs_solver *solver) {
-    gxsp_system_destroy(solver->system);
-    solver->system = NULL;
+/* A balance of forces without inertia needs every piece to be held, by a copy or a spring. */
+static gx_result gxsp_check_free(const gxsp_problem *problem, gx_failure *failure) {
+    const gxsp_system *system = problem->system;
+    const gxs_step_desc *step = problem->step;
+    size_t i, k;
+    gxsp_untouch_components(problem->system);
+    for (k = 0; k < step->spring_count; k++)
+        for (i = 0; i < 4 && step->springs[k].stiffness > 0; i++)
+            if (fabs(step->springs[k].point.weight[i]) > 0)
+                system->model.components[system->model.component[step->springs[k].point.copy[i]]].state |= GXSP_TOUCHED;
+    for (i = 0; i < system->model.n && !(problem->rate > 0); i++)
+        if (!(system->model.components[system->model.component[i]].state & (GXSP_HELD | GXSP_TOUCHED | GXSP_ASLEEP)))
+            return gxsp_fail(failure, GX_ERROR_FREE, i);
+    return GX_OK;
 }
+
+/* >>api: the public functions -------------------------------------------------------------------------------------- */
+
+/* Each checks what it is given, then calls the sections above. Memory of the solver itself is of the allocator,
+ * all else of pools. */
 
 GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *model, gx_failure *failure) {
     gx_failure ignored;
@@ -8711,35 +8913,6 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
     gxsp_system_destroy(solver->system);
     solver->system = system;
     return GX_OK;
-}
-
-/* Is the change one of this model? */
-static gx_result gxsp_check_change(const gxsp_system *system, const gxs_change *change, gx_failure *failure) {
-    gxs_model model;
-    gx_result result = GX_OK;
-    size_t i;
-    if (!change || !change->origins || (!change->groups && change->group_count > 0) ||
-        (!change->elements && change->element_count > 0) || (!change->constraints && change->constraint_count > 0))
-        return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
-    if (change->copy_count == 0) return gxsp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
-    if (change->copy_count >= UINT32_MAX / 4 || change->element_count >= UINT32_MAX / 4 - system->model.element_count ||
-        change->constraint_count > change->copy_count)
-        return gxsp_fail(failure, GX_ERROR_LIMIT, SIZE_MAX);
-    for (i = 0; i < change->copy_count; i++)
-        if (change->origins[i] >> 1 >= system->model.n) return gxsp_fail(failure, GX_ERROR_INDEX, i);
-    for (i = 1; i < change->group_count; i++)
-        if (change->groups[i - 1] >= change->groups[i]) return gxsp_fail(failure, GX_ERROR_ARGUMENT, i);
-    for (i = 1; i < change->element_count; i++)
-        if (change->elements[i - 1].group > change->elements[i].group) return gxsp_fail(failure, GX_ERROR_ARGUMENT, i);
-    memset(&model, 0, sizeof model);
-    model.copy_count = change->copy_count;
-    model.material_count = system->model.material_count;
-    for (i = 0; i < change->element_count && result == GX_OK; i++)
-        result = change->elements[i].group < GXSP_GROUPS ? gxsp_check_element(&change->elements[i], &model, i, failure)
-                                                         : gxsp_fail(failure, GX_ERROR_LIMIT, i);
-    for (i = 0; i < change->constraint_count && result == GX_OK; i++)
-        result = gxsp_check_constraint(&change->constraints[i], change->copy_count, i, failure);
-    return result;
 }
 
 GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *change, gx_failure *failure) {
@@ -8885,22 +9058,6 @@ static int gxsp_reserve_terms(gxsp_lasting *lasting, size_t count) {
     return 1;
 }
 
-/* A balance of forces without inertia needs every piece to be held, by a copy or a spring. */
-static gx_result gxsp_check_free(const gxsp_problem *problem, gx_failure *failure) {
-    const gxsp_system *system = problem->system;
-    const gxs_step_desc *step = problem->step;
-    size_t i, k;
-    gxsp_untouch_components(problem->system);
-    for (k = 0; k < step->spring_count; k++)
-        for (i = 0; i < 4 && step->springs[k].stiffness > 0; i++)
-            if (fabs(step->springs[k].point.weight[i]) > 0)
-                system->model.components[system->model.component[step->springs[k].point.copy[i]]].state |= GXSP_TOUCHED;
-    for (i = 0; i < system->model.n && !(problem->rate > 0); i++)
-        if (!(system->model.components[system->model.component[i]].state & (GXSP_HELD | GXSP_TOUCHED | GXSP_ASLEEP)))
-            return gxsp_fail(failure, GX_ERROR_FREE, i);
-    return GX_OK;
-}
-
 GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement,
                                     double *velocity, gxs_step_report *report, gx_failure *failure) {
     gxsp_problem problem;
@@ -8979,7 +9136,10 @@ GXFEM_API void gxs_solver_destroy(gxs_solver *solver) {
     allocator.release(allocator.user, solver, sizeof *solver);
 }
 
-/* >>forms: the assembled forms, eight elements of the caller's array at a time */
+/* >>forms: assembled forms, and a material at one F ---------------------------------------------------------------- */
+
+/* Eight elements of the caller's array at a time, or one deformation gradient. Nothing is kept; no system is
+ * needed. */
 
 typedef struct gxsp_group {
     gxsp_rest rest;
