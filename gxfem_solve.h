@@ -504,7 +504,7 @@ extern "C" {
 
 /* In and out: nothing but macros and the types of vectors. Numbers that were measured say on what. */
 
-/* elements side by side in a block: whole vectors on every instruction set up to 512 bits of doubles */
+/* Elements side by side in a block: whole vectors on every instruction set up to 512 bits of doubles */
 #define GXSP_LANES 8
 
 /* Blocks of a chunk: 384 elements, whose nodes (about 150) stay in the first-level cache. */
@@ -518,150 +518,150 @@ extern "C" {
  * Optimization]. */
 #define GXSP_ARMIJO 1e-4
 
-/* Newton ends after so many iterations in a row without a gain that doubles can tell. */
+/* Newton's method ends after this many iterations in a row whose gain doubles cannot tell. */
 #define GXSP_STALLS 4
 
-/* A direction that goes twice as far as the linear model's minimum along it, or further, is begun at that minimum. */
+/* The line search starts at the linear model's minimum along a direction that goes at least twice as far as that. */
 #define GXSP_TOO_LONG 0.5
 
-/* Line search: at worst each trial halves the step; after 60 nothing of it is left. */
+/* Trials of the line search. Each at least halves the step; after 60 nothing of it is left. */
 #define GXSP_TRIALS 60
 
-/* no piece, no node, no chunk */
+/* No component, node, chunk or copy */
 #define GXSP_NONE UINT32_MAX
 
-/* States of a piece: a copy is held; it has no mass, or constraints that do not follow translations; springs or contact
- * have acted on it since Newton's method began; it sleeps; they act on it at this linearisation */
+/* States of a component. HELD: a copy of it is held. UNBALANCED: it has no mass, or constraints that do not follow
+ * translations. TOUCHED: springs or contact have acted on it since Newton's method began. ASLEEP: it sleeps.
+ * TOUCHES: springs or contact act on it at this linearisation. */
 #define GXSP_HELD       1u
 #define GXSP_UNBALANCED 2u
 #define GXSP_TOUCHED    4u
 #define GXSP_ASLEEP     8u
 #define GXSP_TOUCHES    16u
 
-/* A cycle of the multigrid that makes a residual's energy so many times as large has met a coarse matrix that rounding
- * has made senseless. */
+/* If a cycle of the multigrid multiplies a residual's energy by this, rounding has made a coarse matrix senseless. */
 #define GXSP_ABSURD 1e20
 
-/* Gradients within so much of those of the rest positions, beside their largest entry, are taken to be rounded ones of
- * these. */
+/* Gradients that differ from those of the rest positions by no more than this, relative to their largest entry, are
+ * taken for rounded ones of these. */
 #define GXSP_PLACED 1e-11
 
-/* The midpoint rule's second half gains no more than this share of the kinetic energy: exact solutions gain less where
+/* The midpoint rule's second half gains at most this share of the kinetic energy: exact solutions gain less where
  * steps resolve the motion. GXSP_GAIN_TRIALS lengths are tried. */
 #define GXSP_GAIN        0.01
 #define GXSP_GAIN_TRIALS 8
 
-/* Hessians of elements so stretched that their entries, beside the moduli, were larger than this are those of elements
- * stretched less, times the fourth power of the rest, as which they grow at most; up to this weight, J: single
- * precision holds the one times the other. */
+/* Single precision must hold weight times Hessian. Where the Hessian's entries relative to the moduli would exceed
+ * GXSP_STRETCHED, the stretches are clamped, and the weight is scaled by the fourth power of the excess, the
+ * fastest growth there is, up to GXSP_HEAVIEST, J. */
 #define GXSP_STRETCHED 1e24
 #define GXSP_HEAVIEST  1e12
 
-/* A copy between parts of elements is light if it has a smaller share than this of their mass (of whole ones it is
- * 1/4), or of a neighbour's. */
+/* A copy between parts of elements is light if its share of their mass is below GXSP_LIGHT (in whole elements the
+ * share is 1/4), or its mass below GXSP_LIGHTER of a neighbour's. */
 #define GXSP_LIGHT   0.1
 #define GXSP_LIGHTER 0.02
 
-/* Directions of light copies are bounded in so many iterations of a step, where that takes no more than this share of
- * the slope of their piece. */
+/* Directions of light copies are bounded in the first GXSP_BOUNDED iterations of a step, where that costs at most
+ * GXSP_BOUND_COST of the slope of their component. */
 #define GXSP_BOUNDED    8
 #define GXSP_BOUND_COST 0.1
 
-/* An element all whose stretches are smaller is all but a point, where its forces vanish: directions are found as if it
- * were GXSP_NUDGE of its size. */
+/* An element is collapsed if all its stretches are below GXSP_COLLAPSED: its forces vanish there. Directions are
+ * found as if it were GXSP_NUDGE of its size. */
 #define GXSP_COLLAPSED 1e-4
 #define GXSP_NUDGE     0.1
 
-/* How many nodes or slots ahead of themselves passes ask for what is in no order in memory */
+/* Passes prefetch data that is in no order in memory this many nodes or slots ahead. */
 #define GXSP_AHEAD 128
 
-/* How many blocks ahead passes ask for what products read, and for what forces and Hessians are made of, which takes
- * longer */
+/* Passes prefetch the data of products, and that of forces and Hessians, which take longer, this many blocks ahead. */
 #define GXSP_TANGENTS_AHEAD 8
 #define GXSP_RESTS_AHEAD    2
 
-/* Copies that one task of a pass over copies takes, and how many sums it may make. */
+/* Copies of one task of a pass over copies, and how many sums it may make */
 #define GXSP_RANGE 512
 #define GXSP_SUMS  6
 
-/* Square of the sine of the angle between two guesses, measured in energy, below which single precision does not tell
- * them apart */
+/* Single precision cannot tell two guesses apart if the square of the sine of their angle, measured in energy, is
+ * below this. */
 #define GXSP_PARALLEL 1e-5
 
 /* Spacing of the first lattice of the multigrid, in edges of an average element. */
 #define GXSP_SPACING 2.5
 
-/* Where a piece has more nodes of the first lattice for each copy than GXSP_CROWDED, it is given fewer: if it is
- * shorter than so many spacings along each axis, its affine motions, which are four nodes, or twice the spacing.
- * Measured: 0.08 to 0.16 nodes of bodies in one piece, cut or not, 0.37 to 0.44 of those in pieces of 60 copies. */
+/* A component with more than GXSP_CROWDED nodes of the first lattice per copy gets fewer: its affine motions, which
+ * are four nodes, if it is shorter than GXSP_AFFINE spacings along each axis; a lattice of twice the spacing if it
+ * is shorter than GXSP_COARSE. Measured: 0.08 to 0.16 nodes per copy in bodies of one component, cut or not, 0.37
+ * to 0.44 in components of 60 copies. */
 #define GXSP_CROWDED 0.25f
 #define GXSP_AFFINE  2
 #define GXSP_COARSE  3
 
-/* In pieces of fewer copies block-Jacobi is at least as fast as multigrid; but for nearly incompressible ones. */
+/* In components of fewer copies block-Jacobi is at least as fast as multigrid. For nearly incompressible ones the
+ * bound is lower. */
 #define GXSP_MULTIGRID_FROM       150
 #define GXSP_MULTIGRID_FROM_STIFF 60
 #define GXSP_STIFF_POISSON        0.48
 
-/* A level is factored that takes no more multiplications than this for each copy, level 1 than half of that, which
- * takes most memory; or that the next would not make smaller by a third. Slender bodies need it: coarser levels hardly
- * bend with them, and an exact solution two levels down saves two iterations in three. */
+/* A level is factored if that takes at most this many multiplications per copy (level 1: half of that, since it
+ * takes most memory), or if the next level would not be smaller by a third. Slender bodies need it: coarser levels
+ * hardly bend with them, and an exact solution two levels down saves two iterations in three. */
 #define GXSP_FACTOR_COST 3000
 #define GXSP_LEVELS      12
 
-/* Where inertia has a larger mean share of the Hessian's diagonal blocks, block-Jacobi takes less time: few iterations,
- * as the share bounds the spectrum from below. Measured on blocks of 2,000 to 8,000 copies, cut and not, lattice and
- * jittered, E of 1e6 and 1e8: as long as multigrid at a share of 0.015 to 0.06, 0.8 to 1 times as long above, 1.1
- * to 2.7 times at 0.005 and below. */
+/* Block-Jacobi takes less time than multigrid where inertia's mean share of the Hessian's diagonal blocks is larger
+ * than this: few iterations, as the share bounds the spectrum from below. Measured on blocks of 2,000 to 8,000
+ * copies, cut and not, lattice and jittered, E of 1e6 and 1e8: as long as multigrid at a share of 0.015 to 0.06,
+ * 0.8 to 1 times as long above, 1.1 to 2.7 times at 0.005 and below. */
 #define GXSP_INERTIA 0.03
 
-/* Multigrid's diagonal grows by this share, so that what single precision leaves of its matrices is positive definite.
- */
+/* Multigrid's diagonal grows by this share, so that its matrices stay positive definite in single precision. */
 #define GXSP_SHIFT 1e-5f
 
-/* The stiffness of a whole element in the linear systems: 2^40 leaves room for pieces down to 1e-40 of it, and for
- * masses above. */
+/* Binary exponent of a whole element's stiffness in the linear systems: leaves room for components down to 1e-40 of
+ * it, and for masses above. */
 #define GXSP_STIFFNESS 40
 
-/* Coarse matrices cost as much as so many iterations. The first of a model serve for GXSP_LIFE iterations before new
- * ones show what age has cost; where that is less than GXSP_AGEING of what there is, the next trial comes GXSP_PATIENCE
- * times as late. */
+/* Making coarse matrices costs as much as GXSP_REMAKE iterations. The first of a model serve for GXSP_LIFE
+ * iterations. New ones then show what age has cost. If that is less than GXSP_AGEING of the pace, the next ones
+ * serve GXSP_PATIENCE times as long. */
 #define GXSP_REMAKE   5
 #define GXSP_LIFE     40
 #define GXSP_AGEING   0.2
 #define GXSP_PATIENCE 2
 
-/* After a cut, coarse numbers are made for entries of dirty nodes only, where no larger a share of chunks follows such:
- * these need a Hessian of their own, at the state of the other numbers. */
+/* After a cut, coarse numbers are made for entries of dirty nodes only, unless a larger share of chunks follows
+ * such nodes: these need a Hessian of their own, at the state of the other numbers. */
 #define GXSP_DIRTY 0.6
 
-/* How fast conjugate gradients are is read from so many iterations, of several solves if need be. */
+/* Iterations, of several solves if need be, over which the pace of conjugate gradients is measured. */
 #define GXSP_READING 10
 
-/* Coarse matrices are of no use any more when it takes so many times as many of them. */
+/* Coarse matrices are worn when iterations are this many times slower than at first. */
 #define GXSP_WORN 2
 
-/* The smoother's step length times the largest eigenvalue that is met is below this; at 2 the cycle would be
- * indefinite, and the eigenvalue is known to a tenth. */
+/* Bound on the smoother's step length times the largest eigenvalue met. At 2 the cycle would be indefinite; the
+ * eigenvalue is known to a tenth. */
 #define GXSP_OMEGA 1.75
 
-/* Linear solves for which the smoother's step length stays safe after it has proved too large; twice as many each
- * further time */
+/* Linear solves for which the smoother's step length stays the safe one after it has proved too large. Twice as
+ * many each further time. */
 #define GXSP_PAUSE 8
 
-/* Stiffness in the linear systems below which single precision makes nothing of an inverse: it is left alone. */
+/* A diagonal block of less stiffness in the linear systems has no inverse in single precision: it is left alone. */
 #define GXSP_TINY 1e-28
 
-/* Up to so many coarse nodes a chunk has a table of matrix entries; of more, entries are looked for each time. */
+/* A chunk with at most this many coarse nodes has a table of matrix entries. With more, each entry is searched for. */
 #define GXSP_CHUNK_PARENTS 192
 
-/* Memory begins at multiples of this: no vector lies across two cache lines. */
+/* Arrays begin at multiples of this many bytes: no vector lies across two cache lines. */
 #define GXSP_ALIGNMENT 64
 
-/* Bits of the table in which changed groups are looked up first; a power of two. */
+/* Bits of the filter of changed groups; a power of two. */
 #define GXSP_FILTER 65536u
 
-/* Groups of elements are below this: as many bits as gxsp_sort goes by. */
+/* Groups of elements are below this: gxsp_sort sorts by 30 bits. */
 #define GXSP_GROUPS ((uint32_t)1 << 30)
 
 /* Arrays of a block's passes never overlap. */
@@ -673,16 +673,15 @@ extern "C" {
 #define GXSP_RESTRICT
 #endif
 
-/* Functions of column numbers that compilers know only once they are inlined: else these might be equal, and no vectors
- * follow. */
+/* Inlined, so that compilers know the column numbers: columns that might be equal are not vectorised. */
 #if defined(__GNUC__)
 #define GXSP_INLINE static inline __attribute__((always_inline))
 #else
 #define GXSP_INLINE static inline
 #endif
 
-/* Loops over the lanes of a block, and of two. Clang is told not to unroll them, since it else does so before it could
- * vectorise. */
+/* Loops over the lanes of a block, and of two. Clang is told not to unroll them: it would unroll before it
+ * vectorises. */
 #if defined(__clang__)
 #define GXSP_EACH(l, count) _Pragma("clang loop unroll(disable)") for (l = 0; l < (count); l++)
 #elif defined(__GNUC__)
@@ -693,8 +692,9 @@ extern "C" {
 #define GXSP_EACH_LANE(l)   GXSP_EACH(l, GXSP_LANES)
 #define GXSP_EACH_OF_TWO(l) GXSP_EACH(l, 2 * GXSP_LANES)
 
-/* Vectors for what compilers do not make of loops: shuffles of nodes' vectors and blocks, many sums at a time. Shuffles
- * of vectors longer than there are they make number by number, hence eight only where there are eight. */
+/* Vectors for code that compilers do not vectorise: shuffles of nodes' vectors and blocks, many sums at a time.
+ * Shuffles of vectors longer than the machine's are compiled number by number. Hence vectors of eight floats with
+ * AVX only. */
 #if defined(__GNUC__) && (defined(__clang__) || __GNUC__ >= 12) && !defined(GXFEM_SCALAR)
 #define GXSP_SHUFFLES
 typedef __attribute__((vector_size(8), aligned(4), may_alias)) float gxsp_two;
@@ -705,7 +705,7 @@ typedef __attribute__((vector_size(32), aligned(4), may_alias)) float gxsp_eight
 #endif
 #endif
 
-/* one number per element of a block */
+/* One number per element of a block */
 typedef double gxsp_lanes[GXSP_LANES];
 typedef float gxsp_singles[GXSP_LANES];
 
@@ -777,7 +777,7 @@ static int gxsp_packed3(int i, int j) { return i * (5 - i) / 2 + j; }
 
 static int gxsp_packed9(int i, int j) { return i <= j ? i * (17 - i) / 2 + j : j * (17 - j) / 2 + i; }
 
-/* 1 / sqrt(x) of a normal x > 0, to 3 units in the last place: the exponent halved, then Newton's method */
+/* 1 / sqrt(x) of a normal x > 0, to 3 units in the last place: halves the exponent, then Newton's method. */
 static inline float gxsp_rsqrt(float x) {
     uint32_t bits;
     float y;
@@ -819,17 +819,18 @@ static inline double gxsp_log_rest(double x) {
            (x - w - k * 0.69314718055994531);
 }
 
+/* The larger magnitude */
 static inline float gxsp_larger(float a, float b) {
     const float x = a < 0 ? -a : a, y = b < 0 ? -b : b;
     return x > y ? x : y;
 }
 
-/* An entry of what has others of size 1; 0 where that is far from being told apart in single precision: the next powers
- * of such entries would be denormal, over which processors take a hundred cycles. Bodies that fall have many. */
+/* An entry beside others of size 1; 0 if it is far below their rounding in single precision. Powers of such entries
+ * would be denormal, which cost processors a hundred cycles. Falling bodies have many. */
 GXSP_INLINE float gxsp_clean(float entry) { return entry < 1e-9f && entry > -1e-9f ? 0.0f : entry; }
 
-/* 2^k, |k| < 1023, about the inverse of the largest of the values, so that single precision holds them and their
- * product; 0: one is not finite */
+/* 2^k, |k| < 1023, about the inverse of the largest value's size: single precision holds the values times that, and
+ * their product. 0: a value is not finite. */
 static double gxsp_unit_factor(const double *values, size_t count) {
     const uint64_t exponent = (uint64_t)0x7ff << 52, one = (uint64_t)1 << 52;
     uint64_t largest = one, bits;
@@ -845,7 +846,7 @@ static double gxsp_unit_factor(const double *values, size_t count) {
     return factor;
 }
 
-/* 1 of no values, never 0 */
+/* Hash of values appended to a hash; never 0, and 1 for no values */
 static uint64_t gxsp_hash(uint64_t hash, const double *values, size_t count) {
     size_t i;
     for (i = 0; i < count; i++) {
@@ -883,7 +884,7 @@ typedef struct gxsp_owned {
     size_t size; /* with this head */
 } gxsp_owned;
 
-/* Allocations that are given back together. */
+/* Allocations that are given back together */
 typedef struct gxsp_pool {
     gx_allocator allocator;
     gxsp_owned *last;
@@ -895,7 +896,7 @@ static void *gxsp_memory(gxsp_owned *owned) {
     return memory + (GXSP_ALIGNMENT - (uintptr_t)memory % GXSP_ALIGNMENT) % GXSP_ALIGNMENT;
 }
 
-/* count x size bytes, zero; NULL, and failed is set, when there are none. Callers check failed once, at their end. */
+/* count x size bytes, zero. NULL, and failed is set, if there is no memory. Callers check failed once, at their end. */
 static void *gxsp_take(gxsp_pool *pool, size_t count, size_t size) {
     gxsp_owned *owned;
     size_t bytes = (count > 0 ? count : 1) * size;
@@ -911,8 +912,8 @@ static void *gxsp_take(gxsp_pool *pool, size_t count, size_t size) {
     return memset(gxsp_memory(owned), 0, bytes);
 }
 
-/* Memory of room x size bytes in place of some of used x size, or of NULL, whose contents it has; the old one is given
- * back. NULL, and the old one stays, when there is none. */
+/* Replaces an array by one of room x size bytes, keeps its first used x size bytes and gives the old one back.
+ * memory NULL: there is none yet. Returns NULL, and the old array stays, if there is no memory. */
 static void *gxsp_grow(gxsp_pool *pool, void *memory, size_t used, size_t room, size_t size) {
     void *larger = gxsp_take(pool, room, size);
     gxsp_owned **link = &pool->last, *owned;
@@ -925,7 +926,7 @@ static void *gxsp_grow(gxsp_pool *pool, void *memory, size_t used, size_t room, 
     return larger;
 }
 
-/* Gives back what was taken after mark was pool->last. */
+/* Gives back everything taken since mark was pool->last. */
 static void gxsp_release_to(gxsp_pool *pool, gxsp_owned *mark) {
     while (pool->last != mark) {
         gxsp_owned *owned = pool->last;
@@ -945,13 +946,13 @@ static gxsp_pool gxsp_pool_make(const gx_allocator *allocator) {
     return pool;
 }
 
-/* Memory that is cut into arrays, one after the other */
+/* One allocation that is cut into arrays, one after the other */
 typedef struct gxsp_space {
     unsigned char *memory; /* NULL: arrays are only counted */
     size_t used;
 } gxsp_space;
 
-/* The next array of a space: count x size bytes. NULL if there is no memory. */
+/* The next array of a space: count x size bytes; NULL if the space has no memory and only counts. */
 static void *gxsp_carve(gxsp_space *space, size_t count, size_t size) {
     const size_t at = space->used;
     space->used = at + (count * size + GXSP_ALIGNMENT - 1) / GXSP_ALIGNMENT * GXSP_ALIGNMENT;
@@ -964,8 +965,8 @@ static void *gxsp_carve(gxsp_space *space, size_t count, size_t size) {
  * each chunk that they are in. gxsp_system is divided by lifetime. The comment on an array says its shape, its
  * unit and when it is valid. */
 
-/* What a step works on, cut into elements of a block, blocks of a chunk. Lanes without an element have weight, mass and
- * gradients 0 and name nodes of the chunk, to which they add zeros. */
+/* Constants of a block's elements. A lane without an element has weight, mass and gradients 0 and names nodes of
+ * the chunk, to which it adds zeros. */
 typedef struct gxsp_rest {
     double weight[GXSP_LANES]; /* m3 */
     /* kg: m of the block m (1 + delta_ij); in chunks that have moments all of the element's */
@@ -973,12 +974,13 @@ typedef struct gxsp_rest {
     uint32_t material[GXSP_LANES];
 } gxsp_rest;
 
-/* Gradients of shape functions 1 ... 3 of a block, by rows, 1/m, where they are not what rest positions say */
+/* Gradients of shape functions 1 ... 3 of a block, by rows, 1/m. Only where they differ from those of the rest
+ * positions */
 typedef struct gxsp_gradients {
     double entry[9][GXSP_LANES];
 } gxsp_gradients;
 
-/* Nodes of a block, numbered in its chunk; apart from the rest, of which products need nothing else */
+/* Nodes of a block, numbered in its chunk. Apart from gxsp_rest, because products need nothing else */
 typedef struct gxsp_corners {
     uint16_t node[4][GXSP_LANES];
 } gxsp_corners;
@@ -1002,19 +1004,19 @@ typedef struct gxsp_tangent {
     float mass[GXSP_LANES];        /* gxsp_rest.mass x rate, kg/s2 */
 } gxsp_tangent;
 
-/* Projected Hessian of a block of GXS_CUSTOM, which has no frame (U and V are 1): weight x dP_i/dF_j, upper triangle by
- * rows; J */
+/* Projected Hessian of a block of GXS_CUSTOM, which has no frame (U and V are 1): weight x dP_i/dF_j, upper
+ * triangle by rows; J */
 typedef struct gxsp_general {
     float hessian[45][GXSP_LANES];
 } gxsp_general;
 
-/* Entries of the assembled matrix to which a block's corners i <= j add, in the order of gxs_element.mass: row the
+/* Entries of the assembled matrix to which a block's corners i <= j add, in the order of gxs_element.mass. Row: the
  * lower copy */
 typedef struct gxsp_fine {
     uint32_t entry[10][GXSP_LANES]; /* GXSP_NONE: a corner follows others */
 } gxsp_fine;
 
-/* What a chunk has of one piece */
+/* A chunk's energies of one component */
 typedef struct gxsp_partial {
     double energies[3]; /* of the pass under way: elastic, kinetic, size of the terms they are sums of; J */
     uint32_t component;
@@ -1040,10 +1042,10 @@ typedef struct gxsp_chunk {
     gxs_material_kind kind;
 } gxsp_chunk;
 
-/* A vector of copies in single precision is n x 4, the fourth unused: one load per copy. */
+/* A vector over copies in single precision is n x 4: one load per copy. The fourth number is unused. */
 typedef float gxsp_vector4[4];
 
-/* A level of the multigrid; level 0 is the model. Transfer: value of node i = sum of weight[i][k] x value of
+/* A level of the multigrid. Level 0 is the model. Transfer: value of node i = sum of weight[i][k] x value of
  * parent[i][k]. */
 typedef struct gxsp_level {
     uint32_t n;
@@ -1062,7 +1064,7 @@ typedef struct gxsp_level {
     gxsp_vector4 *x, *b, *r;
 } gxsp_level;
 
-/* Edges: pairs of a chunk's nodes, i < j, that share an element; numbered from 1. */
+/* Edges: pairs of a chunk's nodes, i < j, that share an element, numbered from 1. */
 typedef struct gxsp_edges {
     size_t table_size;
     /* table_size, nodes (nodes - 1) / 2 of the chunk that has most: the edge of two nodes i < j, at j (j - 1) / 2 + i,
@@ -1082,8 +1084,8 @@ typedef struct gxsp_edges {
     uint16_t *touched; /* numbers of those that are not 0 */
 } gxsp_edges;
 
-/* Pairs of coarse nodes that the nodes of one chunk follow, numbered in the chunk from 1: where their entry of level
- * 1's matrix is. Number 0 is where a node has no parent. */
+/* Pairs of coarse nodes that are parents of one chunk's nodes, and their entries of level 1's matrix. Coarse nodes
+ * are numbered in the chunk from 1; number 0 stands for no parent. */
 typedef struct gxsp_pairs {
     /* count x count, if that is GXSP_CHUNK_PARENTS at most: 2 x the entry, + 1 where it is that of the pair turned */
     uint32_t *entry;
@@ -1098,7 +1100,7 @@ typedef struct gxsp_pairs {
     float (*half)[9];
 } gxsp_pairs;
 
-/* Cholesky factor of the last level, row by row within its envelope. */
+/* Cholesky factor of the last level, row by row within its envelope */
 typedef struct gxsp_factor {
     uint32_t n;      /* unknowns */
     uint32_t *order; /* n / 3: node of the level in each place */
@@ -1118,8 +1120,9 @@ typedef struct gxsp_material {
     void *user;
 } gxsp_material;
 
-/* Copies joined by elements and constraints. E is a sum over pieces, but for points of contact and springs that join
- * some: of those the first leads, and what is told of energies and steps is that of all that it leads. */
+/* Copies joined by elements and constraints. E is a sum over components, but for springs and contact points that
+ * join some. The first of those so joined leads the others; its energies and step length are those of all that it
+ * leads. */
 typedef struct gxsp_component {
     double sum[3];      /* over its copies, of the pass under way */
     double mass;        /* kg */
@@ -1144,20 +1147,20 @@ typedef struct gxsp_component {
     uint32_t state;     /* GXSP_HELD ... GXSP_TOUCHES; 0: loose, a translation of it meets no stiffness */
 } gxsp_component;
 
-/* A follower of the model */
+/* A copy that follows others */
 typedef struct gxsp_follower {
     uint32_t copy, master[4];
     double weight[4];
 } gxsp_follower;
 
-/* A copy with next to nothing of the mass around it, such as the far corner of what a cut has left of an element; the
- * lane whose others guide it */
+/* A copy with next to none of the mass around it, such as the far corner of an element's thin rest after a cut; and
+ * the lane of the element whose other corners guide it */
 typedef struct gxsp_light {
     uint32_t copy, chunk;
     uint16_t lane, corner;
 } gxsp_light;
 
-/* Hessian of springs and contact at one point, times scale */
+/* Hessian of the springs and contact at one point, times scale */
 typedef struct gxsp_term {
     uint32_t copy[4];
     float weight[4], hessian[6];
@@ -1348,7 +1351,7 @@ typedef struct gxsp_problem {
     gxs_step_report report;
 } gxsp_problem;
 
-/* What a pass reads and writes; unused fields are 0. Vectors have one entry per copy. */
+/* In- and output of a pass. Unused fields are 0. Vectors have one entry per copy. */
 typedef struct gxsp_pass {
     gxsp_system *system;
     double rate;        /* 1/s2; of products and linearisations times scale */
@@ -1511,7 +1514,7 @@ static void gxsp_columns_move(gxsp_system *system, const uint32_t *origins, cons
 /* In: a task and how often to call it. A task writes its own chunk, slots, range or sums only; sums of ranges are
  * added up in their order, so that results do not depend on threads. */
 
-/* task(context, i) for every i below count, by the host's threads if it has any. */
+/* Calls task(context, i) for every i below count, by the host's threads if there are any. */
 static void gxsp_parallel(const gx_jobs *jobs, size_t count, void (*task)(void *, size_t), void *context) {
     size_t i;
     if (jobs->parallel_for && count > 1)
@@ -1520,13 +1523,13 @@ static void gxsp_parallel(const gx_jobs *jobs, size_t count, void (*task)(void *
         for (i = 0; i < count; i++) task(context, i);
 }
 
-/* Copies of the range with this index: from first, not including the one returned */
+/* The first copy of a range, and one past its last, which is returned */
 static size_t gxsp_range(const gxsp_system *system, size_t index, size_t *first) {
     *first = index * GXSP_RANGE;
     return *first + GXSP_RANGE < system->model.n ? *first + GXSP_RANGE : system->model.n;
 }
 
-/* A pass over all copies; sums: of those that it makes for each range, the first count, or NULL */
+/* A pass over all copies. sums: the first count of the sums that it makes for each range, or NULL */
 static void gxsp_over_ranges(gxsp_system *system, void (*task)(void *, size_t), gxsp_pass *pass, double *sums,
                              int count) {
     size_t i;
@@ -1537,8 +1540,8 @@ static void gxsp_over_ranges(gxsp_system *system, void (*task)(void *, size_t), 
         for (i = 0, sums[k] = 0; i < system->model.range_count; i++) sums[k] += system->vectors.range_sum[i][k];
 }
 
-/* Asks for memory that is soon read: a block is too long for processors to see the next one in time. Always inline: gcc
- * takes functions that do nothing else for functions without effect, and leaves calls of them out. */
+/* Prefetches memory that is read soon: a block is too long for processors to see the next one in time. Always
+ * inline: gcc takes functions that do nothing else for functions without effect and drops their calls. */
 GXSP_INLINE void gxsp_prefetch(const void *memory, size_t size) {
 #if defined(__GNUC__)
     const char *line = (const char *)memory;
@@ -1560,21 +1563,21 @@ typedef struct gxsp_svd {
     gxsp_singles s[3];       /* signed, in order of size; F = U diag(s) V^T */
 } gxsp_svd;
 
-/* F V and V of two blocks on the way there: each turn waits for the one before it, so that the second block costs
- * little. */
+/* F V and V of two blocks, on the way to an SVD. Each rotation waits for the one before it, so that the second
+ * block costs little. */
 typedef struct gxsp_jacobi {
     float b[9][2 * GXSP_LANES], v[9][2 * GXSP_LANES];
     float scale[2 * GXSP_LANES]; /* what b is to be multiplied by */
 } gxsp_jacobi;
 
-/* (x, y) turned by the angle of cosine c and sine s */
+/* Rotates (x, y) by the angle of cosine c and sine s. */
 static inline void gxsp_turn(float c, float s, float *x, float *y) {
     const float turned = c * *x - s * *y;
     *y = s * *x + c * *y;
     *x = turned;
 }
 
-/* Columns i and j of b and of v in lane l */
+/* Rotates columns i and j of b and of v in lane l. */
 static inline void gxsp_turn_columns(gxsp_jacobi *of, int i, int j, int l, float c, float s) {
     gxsp_turn(c, s, &of->b[i][l], &of->b[j][l]);
     gxsp_turn(c, s, &of->b[3 + i][l], &of->b[3 + j][l]);
@@ -1588,7 +1591,7 @@ static inline float gxsp_jacobi_product(const gxsp_jacobi *of, int i, int j, int
     return of->b[i][l] * of->b[j][l] + of->b[3 + i][l] * of->b[3 + j][l] + of->b[6 + i][l] * of->b[6 + j][l];
 }
 
-/* Makes columns i and j of b orthogonal. Whatever the rounding, U and V stay rotations: a Hessian built on them is a
+/* Makes columns i and j of b orthogonal. U and V stay rotations whatever the rounding: a Hessian built on them is a
  * congruence of a semi-definite one. */
 GXSP_INLINE void gxsp_orthogonalise(gxsp_jacobi *GXSP_RESTRICT of, int i, int j) {
     int l;
@@ -1602,7 +1605,7 @@ GXSP_INLINE void gxsp_orthogonalise(gxsp_jacobi *GXSP_RESTRICT of, int i, int j)
     }
 }
 
-/* Brings the longer of columns i and j to i, by a quarter turn, so that det V stays 1. */
+/* Makes column i the longer one of i and j, by a quarter turn, so that det V stays 1. */
 GXSP_INLINE void gxsp_order_columns(gxsp_jacobi *GXSP_RESTRICT of, int i, int j) {
     int l;
     GXSP_EACH_OF_TWO(l) {
@@ -1611,8 +1614,8 @@ GXSP_INLINE void gxsp_order_columns(gxsp_jacobi *GXSP_RESTRICT of, int i, int j)
     }
 }
 
-/* U, V and s of the block that begins at first_lane, from the columns of b, orthogonal and the longest first; where
- * columns vanish, U is completed to a rotation. */
+/* U, V and s of the block that begins at first_lane, from the columns of b, which are orthogonal and sorted by
+ * falling length. Where columns vanish, U is completed to a rotation. */
 static void gxsp_frame(const gxsp_jacobi *GXSP_RESTRICT from, int first_lane, gxsp_svd *GXSP_RESTRICT of) {
     const float *scale = from->scale + first_lane;
     int k, l;
@@ -1647,7 +1650,7 @@ static void gxsp_frame(const gxsp_jacobi *GXSP_RESTRICT from, int first_lane, gx
     }
 }
 
-/* Are the columns of b, the largest entry of which is 1, orthogonal to single precision in every lane? */
+/* Are the columns of b orthogonal to single precision in every lane? The largest entry of b is 1. */
 static int gxsp_orthogonal(const gxsp_jacobi *GXSP_RESTRICT of) {
     float square[2 * GXSP_LANES], most = 0;
     int l;
@@ -1660,7 +1663,7 @@ static int gxsp_orthogonal(const gxsp_jacobi *GXSP_RESTRICT of) {
     return most < 1e-13f;
 }
 
-/* F = 1 + G of a block as columns at first_lane, by its largest entry, and V = 1 */
+/* F = 1 + G of a block, divided by its largest entry, as columns at first_lane, and V = 1 */
 static void gxsp_jacobi_begin(gxsp_lanes *GXSP_RESTRICT g, int first_lane, gxsp_jacobi *GXSP_RESTRICT of) {
     int k, l;
     GXSP_EACH_LANE(l) {
@@ -1683,8 +1686,8 @@ static void gxsp_jacobi_begin(gxsp_lanes *GXSP_RESTRICT g, int first_lane, gxsp_
     for (k = 0; k < 9; k++) GXSP_EACH_LANE(l) of->v[k][first_lane + l] = k % 4 == 0 ? 1.0f : 0.0f;
 }
 
-/* F = 1 + G = U diag(s) V^T of two blocks, or of one if last is NULL, by one-sided Jacobi, every lane the same number
- * of sweeps. of: as many. */
+/* F = 1 + G = U diag(s) V^T of two blocks, or of one if last is NULL, by one-sided Jacobi with the same number of
+ * sweeps in every lane. of: one entry per block. */
 static void gxsp_decompose(gxsp_lanes *first, gxsp_lanes *last, gxsp_svd *of) {
     gxsp_jacobi at;
     int sweep;
@@ -1703,7 +1706,7 @@ static void gxsp_decompose(gxsp_lanes *first, gxsp_lanes *last, gxsp_svd *of) {
     if (last) gxsp_frame(&at, GXSP_LANES, &of[1]);
 }
 
-/* Cofactors of a 3x3: the derivative of its determinant. */
+/* Cofactors of a 3x3: the derivative of its determinant */
 static void gxsp_cofactors(const double *a, double *cofactors) {
     cofactors[0] = a[4] * a[8] - a[5] * a[7];
     cofactors[1] = a[5] * a[6] - a[3] * a[8];
@@ -1716,8 +1719,8 @@ static void gxsp_cofactors(const double *a, double *cofactors) {
     cofactors[8] = a[0] * a[4] - a[1] * a[3];
 }
 
-/* One step of Newton's method for the rotation R of F = R S: R (1 + skew omega), (tr S - S) omega = axis of S's skew
- * part, then orthogonal again to second order. Left alone where tr S - S is singular: R is not unique there. */
+/* One step of Newton's method for the rotation R of F = R S: R (1 + skew omega) with (tr S - S) omega = axis of S's
+ * skew part, then orthogonal again to second order. Does nothing where tr S - S is singular: R is not unique there. */
 static void gxsp_polish_rotation(const double *f, double *rotation) {
     double s[9], a[9], inverse[9], axis[3], omega[3], turned[9], square[9], determinant, trace;
     int r, c, k;
@@ -1778,7 +1781,7 @@ static gxsp_material gxsp_material_make(const gxs_material *given) {
     return material;
 }
 
-/* Density of a block and what it needs */
+/* Energy density and stress of a block, and their arguments */
 typedef struct gxsp_state {
     gxsp_lanes g[9]; /* displacement gradient, by rows */
     gxsp_lanes p[9]; /* first Piola-Kirchhoff stress */
@@ -1891,7 +1894,7 @@ static void gxsp_custom(gxsp_state *s) {
     }
 }
 
-/* Energy and stress of a block, from s->g. */
+/* Energy and stress of a block at s->g */
 static void gxsp_material_state(gxs_material_kind kind, gxsp_state *s) {
     switch (kind) {
     case GXS_CUSTOM: gxsp_custom(s); break;
@@ -1969,7 +1972,7 @@ static void gxsp_corotated_principal(const gxsp_svd *GXSP_RESTRICT of, gxsp_prin
     }
 }
 
-/* The same at every F: U and V are 1. */
+/* The Hessian is the same at every F: U and V are 1. */
 static void gxsp_linear_principal(gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GXSP_RESTRICT to) {
     int k, l;
     for (k = 0; k < 9; k++) GXSP_EACH_LANE(l) of->u[k][l] = of->v[k][l] = k % 4 == 0 ? 1.0f : 0.0f;
@@ -1982,7 +1985,7 @@ static void gxsp_linear_principal(gxsp_svd *GXSP_RESTRICT of, gxsp_principal *GX
     }
 }
 
-/* One Jacobi turn of the symmetric a (n x n) that makes a_ij zero; the turn also goes to the columns of v. */
+/* One Jacobi rotation of the symmetric a (n x n) that makes a_ij zero. The columns of v are rotated too. */
 static void gxsp_diagonalise(double *a, double *v, int n, int i, int j) {
     double zeta, t, c, s;
     int k;
@@ -2028,7 +2031,8 @@ static void gxsp_project_lane(gxsp_singles *stretch, int lane) {
         for (j = i; j < 3; j++) stretch[gxsp_packed3(i, j)][lane] = (float)a[3 * i + j];
 }
 
-/* Is every lane's 3x3 of the stretches positive definite? (leading minors by elimination) */
+/* Projects the 3x3 of the stretches in lanes where it is not positive definite, which leading minors by elimination
+ * decide. */
 static void gxsp_project(gxsp_principal *GXSP_RESTRICT of) {
     gxsp_singles least;
     int l;
@@ -2045,7 +2049,7 @@ static void gxsp_project(gxsp_principal *GXSP_RESTRICT of) {
         if (!(least[l] > 0)) gxsp_project_lane(of->stretch, l);
 }
 
-/* The Hessian of a block of the caller's energy at s->g, times scale, exact or projected */
+/* The Hessian of a block of the caller's energy at s->g, times scale; exact or projected */
 static void gxsp_general_make(const gxsp_rest *rest, gxsp_lanes *gradients, double scale, int exact, gxsp_state *s,
                               gxsp_tangent *tangent, gxsp_general *general) {
     int k, l, i, j;
@@ -2063,7 +2067,7 @@ static void gxsp_general_make(const gxsp_rest *rest, gxsp_lanes *gradients, doub
     }
 }
 
-/* Makes elements collapsed to a point, F = 0, small instead: F = GXSP_NUDGE. Were there any? */
+/* Sets F = GXSP_NUDGE in elements collapsed to a point, F = 0. Returns whether there were any. */
 static int gxsp_nudge(gxsp_lanes *g) {
     gxsp_lanes square;
     int k, l, any = 0;
@@ -2080,8 +2084,8 @@ static int gxsp_nudge(gxsp_lanes *g) {
     return any;
 }
 
-/* sqrt 2 times the unit quaternions of rotations u, by rows, from the largest of their four numbers: 4 q_i q_j are sums
- * of entries of u */
+/* sqrt 2 times the unit quaternions of the rotations u, by rows. Starts from the largest of the four numbers: 4 q_i
+ * q_j are sums of entries of u. */
 static void gxsp_pack_rotation(gxsp_singles *GXSP_RESTRICT u, gxsp_singles *GXSP_RESTRICT frame) {
     int l;
     GXSP_EACH_LANE(l) {
@@ -2101,8 +2105,8 @@ static void gxsp_pack_rotation(gxsp_singles *GXSP_RESTRICT u, gxsp_singles *GXSP
     }
 }
 
-/* What Hessians of one or two blocks of a kind are made from, where it is needed; last: NULL if there is but one. Was
- * an element collapsed? */
+/* The SVD that Hessians of one or two blocks of a kind need; last: NULL if there is one block. Returns whether an
+ * element was collapsed. */
 static int gxsp_tangent_begin(gxs_material_kind kind, gxsp_state *first, gxsp_state *last, gxsp_svd *of) {
     int collapsed;
     if (kind == GXS_CUSTOM || kind == GXS_LINEAR) return 0;
@@ -2112,8 +2116,8 @@ static int gxsp_tangent_begin(gxs_material_kind kind, gxsp_state *first, gxsp_st
     return collapsed;
 }
 
-/* What principal Hessians are made from, such that single precision holds them: moduli beside their sum, by which
- * weights grow, and stretches that are not too large */
+/* Arguments of principal Hessians, scaled so that single precision holds them: moduli relative to their sum, by
+ * which weights grow, and clamped stretches */
 static void gxsp_scale_principal(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest, double scale,
                                  gxsp_state *GXSP_RESTRICT s, gxsp_svd *GXSP_RESTRICT of,
                                  gxsp_principal *GXSP_RESTRICT to) {
@@ -2138,7 +2142,7 @@ static void gxsp_scale_principal(gxs_material_kind kind, const gxsp_rest *GXSP_R
     GXSP_EACH_LANE(l) to->weight[l] = (float)weight[l];
 }
 
-/* The Hessian of a block at s->g, times scale, exact or projected. of: by gxsp_tangent_begin. general: of GXS_CUSTOM
+/* The Hessian of a block at s->g, times scale; exact or projected. of: by gxsp_tangent_begin. general: GXS_CUSTOM
  * only, else NULL. */
 static void gxsp_tangent_make(gxs_material_kind kind, const gxsp_rest *GXSP_RESTRICT rest,
                               gxsp_lanes *GXSP_RESTRICT gradients, double scale, int exact, gxsp_state *s,
@@ -2200,7 +2204,7 @@ static void gxsp_gradients_make(const double *GXSP_RESTRICT weight, gxsp_lanes *
     }
 }
 
-/* G = sum (u_i - u_0) grad N_i, exactly 0 for translations */
+/* G = sum (u_i - u_0) grad N_i: exactly 0 for translations */
 static void gxsp_block_gradient(gxsp_lanes *GXSP_RESTRICT gradients, gxsp_lanes *GXSP_RESTRICT x,
                                 gxsp_lanes *GXSP_RESTRICT g) {
     int r, l;
@@ -2212,7 +2216,7 @@ static void gxsp_block_gradient(gxsp_lanes *GXSP_RESTRICT gradients, gxsp_lanes 
         }
 }
 
-/* force += weight x P : grad N; the four add up to zero but for rounding */
+/* force += weight x P : grad N. The four add up to zero but for rounding. */
 static void gxsp_block_force(const double *GXSP_RESTRICT weight, gxsp_lanes *GXSP_RESTRICT gradients,
                              gxsp_lanes *GXSP_RESTRICT p, gxsp_lanes *GXSP_RESTRICT force) {
     int r, l;
@@ -2228,7 +2232,7 @@ static void gxsp_block_force(const double *GXSP_RESTRICT weight, gxsp_lanes *GXS
         }
 }
 
-/* y += rate M x; energy = rate/2 x M x. moments: NULL where rest->mass says it all */
+/* y += rate M x; energy = rate/2 x M x. moments: NULL where rest->mass is enough */
 static void gxsp_block_inertia(const gxsp_rest *GXSP_RESTRICT rest, const gxsp_moments *GXSP_RESTRICT moments,
                                double rate, gxsp_lanes *GXSP_RESTRICT x, gxsp_lanes *GXSP_RESTRICT y,
                                double *GXSP_RESTRICT energy) {
@@ -2258,8 +2262,9 @@ static void gxsp_block_inertia(const gxsp_rest *GXSP_RESTRICT rest, const gxsp_m
         }
 }
 
-/* y += (K + rate M) x, one lane after the other in registers. m: NULL where elements are whole. apart: x of corners 1
- * ... 3 is what they have more than corner 0, which callers know better than single precision could tell. */
+/* y += (K + rate M) x, one lane after the other in registers. m: NULL where elements are whole. relative: x of
+ * corners 1 ... 3 is their difference to corner 0, which the caller knows more accurately than single precision
+ * could. */
 GXSP_INLINE void gxsp_block_product(const gxsp_tangent *GXSP_RESTRICT b, const gxsp_moments *GXSP_RESTRICT m,
                                     int relative, gxsp_singles *GXSP_RESTRICT x, gxsp_singles *GXSP_RESTRICT y) {
     int l;
@@ -2358,7 +2363,7 @@ static void gxsp_general_product(const gxsp_tangent *b, const gxsp_general *h, i
     }
 }
 
-/* c and R of a corner: out[0], out[1 ... 3] */
+/* c and R of a corner: out[0] and out[1 ... 3] */
 static void gxsp_corner_moments(const gxsp_moments *moments, int corner, gxsp_singles *out) {
     int k, l;
     for (k = 0; k < 4; k++) GXSP_EACH_LANE(l) {
@@ -2383,7 +2388,7 @@ static void gxsp_block_mass(const gxsp_tangent *tangent, const gxsp_moments *mom
         GXSP_EACH_LANE(l) mass[l] = tangent->mass[l] * (p == q ? 2.0f : 1.0f);
 }
 
-/* y += rate M x. apart: as of gxsp_block_product */
+/* y += rate M x. relative: see gxsp_block_product */
 static void gxsp_inertia_product(const gxsp_tangent *b, const gxsp_moments *moments, int relative, gxsp_singles *x,
                                  gxsp_singles *y) {
     gxsp_singles mass;
@@ -2396,7 +2401,7 @@ static void gxsp_inertia_product(const gxsp_tangent *b, const gxsp_moments *mome
         }
 }
 
-/* The same for either */
+/* y += (K + rate M) x for any kind of material */
 GXSP_INLINE void gxsp_kind_product(gxs_material_kind kind, const gxsp_tangent *b, const gxsp_moments *m,
                                    const gxsp_general *h, int relative, gxsp_singles *x, gxsp_singles *y) {
     if (kind == GXS_CUSTOM) {
@@ -2423,8 +2428,8 @@ static void gxsp_general_couple(const gxsp_general *general, gxsp_singles *p, gx
         }
 }
 
-/* block = U B U^T, B_rs = sum h_rk,sl p_k q_l: the part of the Hessian that couples two shape functions with gradients
- * p and q in the frame of V; by rows. */
+/* block = U B U^T, B_rs = sum h_rk,sl p_k q_l, by rows: the block of the Hessian that couples two shape functions.
+ * p, q: their gradients in the frame of V */
 static void gxsp_block_couple(const gxsp_tangent *GXSP_RESTRICT t, const gxsp_general *general, /* or NULL */
                               gxsp_singles *p, gxsp_singles *q,                                 /* may be the same */
                               gxsp_singles *GXSP_RESTRICT block) {
@@ -2480,7 +2485,7 @@ static void gxsp_block_frame(const gxsp_tangent *GXSP_RESTRICT t, gxsp_singles *
     }
 }
 
-/* own += U B U^T, packed, B as of gxsp_block_couple: what couples a shape function with itself. p: its gradient */
+/* own += U B U^T, packed: couples a shape function with itself, B as in gxsp_block_couple. p: its gradient */
 static void gxsp_block_own(const gxsp_tangent *GXSP_RESTRICT t, gxsp_singles *GXSP_RESTRICT u,
                            gxsp_singles *GXSP_RESTRICT p, gxsp_singles *GXSP_RESTRICT own) {
     int l;
@@ -2504,7 +2509,7 @@ static void gxsp_block_own(const gxsp_tangent *GXSP_RESTRICT t, gxsp_singles *GX
     }
 }
 
-/* The same of a Hessian without a frame */
+/* The same for a Hessian without a frame */
 static void gxsp_general_own(const gxsp_general *general, gxsp_singles *p, gxsp_singles *own) {
     static const int packed[6] = {0, 1, 2, 4, 5, 8};
     gxsp_singles block[9];
@@ -2517,7 +2522,7 @@ static void gxsp_general_own(const gxsp_general *general, gxsp_singles *p, gxsp_
 
 /* In: gxs_element.mass. Out: the mass of a whole element, or mass, centre and covariance of a part of one. */
 
-/* Is the mass block m (1 + delta_ij), as a whole element's is? To rounding of its ten integrals. */
+/* Is the mass block m (1 + delta_ij), as that of a whole element, to the rounding of its ten integrals? */
 static int gxsp_whole(const double *mass) {
     static const int own[10] = {2, 1, 1, 1, 2, 1, 1, 2, 1, 2};
     int k;
@@ -2528,8 +2533,8 @@ static int gxsp_whole(const double *mass) {
 
 static const uint8_t gxsp_own_order[4] = {0, 1, 2, 3};
 
-/* An element's mass, returned, and its centre in barycentric coordinates: row sums over their sum. rounded: to whole
- * units of 2^-24, so that the four are 1 in sum, and none below 0 */
+/* Returns an element's mass. centre: barycentric coordinates of its centre, row sums over their sum. rounded: the
+ * same in whole units of 2^-24, 1 in sum and none below 0 */
 static double gxsp_find_centre(const double *mass, double *centre, double *rounded) {
     const double unit = 16777216;
     double sum = 0;
@@ -2549,7 +2554,7 @@ static double gxsp_find_centre(const double *mass, double *centre, double *round
     return sum > 0 ? sum : 0;
 }
 
-/* What each corner's copy has of an element's mass: row sums as the solver has them */
+/* Mass of each corner: row sums as the solver has them */
 static void gxsp_row_masses(const gxs_element *element, double *rows) {
     const int whole = gxsp_whole(element->mass);
     double centre[4], mass = whole ? 2.5 * element->mass[0] : gxsp_find_centre(element->mass, centre, rows);
@@ -2565,9 +2570,9 @@ static int gxsp_supports(const gxs_element *element, int i) {
     return rows[i] > 0;
 }
 
-/* Cholesky factor of a symmetric 3x3, which is used up, the largest pivot first, so that rounding stays as small as it
- * was where the matrix is next to singular or worse; then made lower triangular by turning columns, which leaves factor
- * factor^T as it is. */
+/* Cholesky factor of a symmetric 3x3, which is used up. The largest pivot goes first, so that rounding stays small
+ * where the matrix is singular or worse. Rotating columns, which leaves factor factor^T as it is, then makes it
+ * lower triangular. */
 static void gxsp_factor3(double c[3][3], double factor[3][3]) {
     int done[3] = {0, 0, 0}, step, i, j, k;
     memset(factor, 0, 9 * sizeof(double));
@@ -2598,7 +2603,7 @@ static void gxsp_factor3(double c[3][3], double factor[3][3]) {
         }
 }
 
-/* Masses of a lane that are not those of a whole element. Returns all of it. */
+/* Moments of a lane whose mass is not that of a whole element. Returns its mass. */
 static double gxsp_place_moments(const double *mass, const uint8_t *order, gxsp_moments *moments, size_t lane) {
     double centre[4], rounded[4], covariance[3][3], root[3][3];
     const double sum = gxsp_find_centre(mass, centre, rounded), all = sum > 0 ? sum : 1;
@@ -2615,7 +2620,7 @@ static double gxsp_place_moments(const double *mass, const uint8_t *order, gxsp_
     return sum;
 }
 
-/* order: which of the element's corners come to be the lane's */
+/* Puts an element into lane `at` of a chunk. order: corner of the element for each corner of the lane */
 static void gxsp_place_element(const gxsp_chunk *chunk, const gxs_element *element, const uint8_t *order, uint32_t at,
                                uint32_t lumped) {
     gxsp_rest *rest = &chunk->rest[at / GXSP_LANES];
@@ -2641,7 +2646,7 @@ static void gxsp_place_element(const gxsp_chunk *chunk, const gxs_element *eleme
  * curve through space, so that chunks have few nodes and sleep with their component. Sorting and forests of
  * joined indices serve later sections too. */
 
-/* Forests of joined indices: the root of a tree is its least. */
+/* Forests of joined indices: the root of a tree is its least index. */
 static uint32_t gxsp_root(uint32_t *parent, uint32_t i) {
     while (parent[i] != i) {
         parent[i] = parent[parent[i]];
@@ -2659,7 +2664,7 @@ static void gxsp_join(uint32_t *parent, uint32_t i, uint32_t j) {
         parent[i] = j;
 }
 
-/* The ten bits of x with two zeros between each two */
+/* The ten bits of x with two zeros between neighbours */
 static uint32_t gxsp_spread(uint32_t x) {
     x = (x | x << 16) & 0x030000ffu;
     x = (x | x << 8) & 0x0300f00fu;
@@ -2667,7 +2672,7 @@ static uint32_t gxsp_spread(uint32_t x) {
     return (x | x << 2) & 0x09249249u;
 }
 
-/* Position of a place along the Z-order curve of 1024^3 cells */
+/* Position of a point along the Z-order curve through 1024^3 cells */
 static uint32_t gxsp_curve(const double *at, const double *low, double per_cell) {
     uint32_t code = 0;
     int k;
@@ -2678,7 +2683,8 @@ static uint32_t gxsp_curve(const double *at, const double *low, double per_cell)
     return code;
 }
 
-/* An element's place in the order: class, then piece, then curve, the last of each ten bits first */
+/* An element's place in the order: by class, then component, then curve. Sorting takes ten bits at a time, the last
+ * first. */
 typedef struct gxsp_sorted {
     uint32_t place, component, class_index;
     uint32_t index; /* of the element or, while pieces are sorted, of the piece */
@@ -2690,7 +2696,7 @@ static uint32_t gxsp_sorted_digit(const gxsp_sorted *of, int pass) {
                     : of->class_index;
 }
 
-/* Stable sort, least digit first; digits all alike are left out. other: room for as many */
+/* Stable radix sort, least digit first. A digit that is the same everywhere is skipped. other: room for as many */
 static gxsp_sorted *gxsp_sort(gxsp_sorted *sorted, gxsp_sorted *other, size_t count) {
     int pass, digit;
     for (pass = 0; pass < 7; pass++) {
@@ -2727,7 +2733,7 @@ static void gxsp_place_elements(const gxs_model *model, gxsp_sorted *sorted) {
     }
 }
 
-/* Pieces in the order in which the curve first meets them. rank: by piece */
+/* Ranks components in the order in which the curve first meets them. rank: by component */
 static void gxsp_rank_components(const gxsp_system *system, const gxs_model *model, const gxsp_sorted *elements,
                                  gxsp_sorted *components, gxsp_sorted *other, uint32_t *rank) {
     size_t i;
@@ -2743,7 +2749,7 @@ static void gxsp_rank_components(const gxsp_system *system, const gxs_model *mod
     for (i = 0; i < system->model.component_count; i++) rank[components[i].index] = (uint32_t)i;
 }
 
-/* Are an element's gradients those that the rest positions x of its corners say, but for rounding? */
+/* Are an element's gradients those of the rest positions x of its corners, but for rounding? */
 static int gxsp_is_placed(const gxs_element *element, const double x[4][3]) {
     double edge[3][3], made[3][3], determinant = 0, most = 0, off = 0;
     int i, k;
@@ -2765,9 +2771,9 @@ static int gxsp_is_placed(const gxs_element *element, const double x[4][3]) {
     return off <= GXSP_PLACED * most;
 }
 
-/* What elements of one chunk are alike in: 4 x kind + 2 x (gradients are not those of the positions) + (masses are not
- * those of whole elements). positions: at 3 x copy, or, origins (as of gxs_change) given, of what the copy was; NULL:
- * there are none */
+/* Class of an element; a chunk has elements of one class: 4 x kind + 2 x (gradients differ from those of the
+ * positions) + (mass is not that of a whole element). positions: at 3 x copy, or, with origins (as in gxs_change),
+ * at 3 x the copy's origin; NULL: there are none */
 static uint32_t gxsp_class(gxs_material_kind kind, const gxs_element *element, uint32_t lumped, const double *positions,
                            const uint32_t *origins) {
     double x[4][3];
@@ -2780,8 +2786,7 @@ static uint32_t gxsp_class(gxs_material_kind kind, const gxs_element *element, u
            (lumped || gxsp_whole(element->mass) ? 0u : 1u);
 }
 
-/* The order of elements. Elements of one piece are together, so that chunks have few nodes and sleep with their piece.
- */
+/* The elements in their order, in scratch */
 static gxsp_sorted *gxsp_order_elements(const gxsp_system *system, const gxs_model *model, gxsp_pool *scratch) {
     const size_t count = model->element_count, components = system->model.component_count,
                  most = count > components ? count : components;
@@ -2810,7 +2815,7 @@ static gxsp_sorted *gxsp_order_elements(const gxsp_system *system, const gxs_mod
  * blocks neither loads nor stores a corner that is the same as in the block before in every lane. Hence lanes are
  * filled with strips around an edge: four elements, each with all but one corner of the one before. */
 
-/* Ascending, by insertion */
+/* Sorts ascending, by insertion. */
 static void gxsp_sort_row(uint32_t *row, uint32_t count) {
     uint32_t i, j;
     for (i = 1; i < count; i++) {
@@ -2827,8 +2832,8 @@ typedef struct gxsp_numbers {
     uint32_t round;  /* one for each chunk */
 } gxsp_numbers;
 
-/* The nodes of a chunk in the order of their copies, which is that of memory. copies: of count elements; GXSP_NONE
- * where there is none, else numbers of nodes come in their place. Returns how many nodes there are. */
+/* Numbers the nodes of a chunk in the order of their copies, which is that of memory. copies: of count elements,
+ * GXSP_NONE where there is none; numbers of nodes replace them. Returns the number of nodes. */
 static uint32_t gxsp_number_nodes(uint32_t (*copies)[4], uint32_t count, gxsp_numbers *numbers, uint32_t *nodes) {
     uint32_t e, i, k, found = 0;
     numbers->round++;
@@ -2845,8 +2850,8 @@ static uint32_t gxsp_number_nodes(uint32_t (*copies)[4], uint32_t count, gxsp_nu
     return found;
 }
 
-/* Corners of a chunk's blocks. nodes: by lane, GXSP_NONE where there is no element: such a lane has the corners of the
- * block before */
+/* Corners of a chunk's blocks. nodes: by lane; GXSP_NONE: there is no element, and the lane keeps the corners of
+ * the block before */
 static void gxsp_set_corners(const gxsp_chunk *chunk, uint32_t (*nodes)[4]) {
     uint32_t b, l, k;
     for (b = 0; b < chunk->block_count; b++) {
@@ -2877,8 +2882,8 @@ typedef struct gxsp_layout {
     uint8_t order[GXSP_CHUNK][4]; /* by lane */
 } gxsp_layout;
 
-/* Where three nodes stand in an element: their corners, and the fourth one; 4: not each is there once. Without
- * branches, which could not be foretold */
+/* Finds three nodes in an element: their corners, and returns the fourth corner; 4: not each is there once. Without
+ * branches, which processors could not predict */
 static int gxsp_find_face(const uint32_t *element, const uint32_t *face, uint8_t *corners) {
     static const uint8_t corner_of[16] = {4, 0, 1, 4, 2, 4, 4, 4, 3, 4, 4, 4, 4, 4, 4, 4}; /* of a single bit */
     unsigned met[3];
@@ -2892,13 +2897,13 @@ static int gxsp_find_face(const uint32_t *element, const uint32_t *face, uint8_t
     return (corners[0] | corners[1] | corners[2]) & 4 ? 4 : corner_of[15 & ~(met[0] | met[1] | met[2])];
 }
 
-/* The nodes of the face that a corner is not on */
+/* The nodes of the face opposite a corner */
 static void gxsp_face_of(const uint32_t *element, int corner, uint32_t *face) {
     int i;
     for (i = 0; i < 3; i++) face[i] = element[i < corner ? i : i + 1];
 }
 
-/* Fills across by a table of faces that have been met. */
+/* Fills across, with a hash table of the faces met so far. */
 static void gxsp_find_across(gxsp_layout *layout) {
     uint16_t table[GXSP_FACES]; /* 4 x element + corner, from 1 */
     uint32_t f, at, face[3];
@@ -2920,7 +2925,7 @@ static void gxsp_find_across(gxsp_layout *layout) {
     }
 }
 
-/* Walks from the chain's first element around the edge of its first two corners. Is there a way for length elements? */
+/* Walks from the strip's first element around the edge of its first two corners. Are there length elements? */
 static int gxsp_walk_strip(const gxsp_layout *layout, uint32_t length, uint16_t *strip, uint8_t (*order)[4]) {
     uint32_t i, k;
     for (i = 1; i < length; i++) {
@@ -2943,7 +2948,7 @@ static int gxsp_walk_strip(const gxsp_layout *layout, uint32_t length, uint16_t 
     return 1;
 }
 
-/* A chain of so many elements that begins with e, which is not seated */
+/* A strip of length elements that begins with e, which has no lane yet. Returns whether there is one. */
 static int gxsp_find_strip(const gxsp_layout *layout, uint32_t e, uint32_t length, uint16_t *strip,
                            uint8_t (*order)[4]) {
     static const uint8_t edges[6][4] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2},
@@ -2959,7 +2964,7 @@ static int gxsp_find_strip(const gxsp_layout *layout, uint32_t e, uint32_t lengt
     return 0;
 }
 
-/* Chains of so many elements, of those not seated yet. Returns how many chains there are. */
+/* Lists strips of length elements that have no lane yet. Returns how many strips there are. */
 static uint32_t gxsp_list_strips(gxsp_layout *layout, uint32_t length) {
     uint32_t e, i, found = 0;
     for (e = 0; e < layout->count; e++)
@@ -2971,8 +2976,8 @@ static uint32_t gxsp_list_strips(gxsp_layout *layout, uint32_t length) {
     return found;
 }
 
-/* Seats chains of so many elements in the blocks from first on, side by side, each in a lane. All of single elements;
- * of longer ones those that fill blocks. Returns the first block that is left. */
+/* Puts strips of length elements side by side into the blocks from first on, one strip per lane. Single elements
+ * all get a lane; of longer strips those that fill whole blocks. Returns the first block that is left. */
 static uint32_t gxsp_place_strips(gxsp_layout *layout, uint32_t blocks, uint32_t length, uint32_t first) {
     const uint32_t strips = gxsp_list_strips(layout, length), rows = length > 1 ? strips / GXSP_LANES : blocks - first;
     uint32_t c, i;
@@ -2988,7 +2993,7 @@ static uint32_t gxsp_place_strips(gxsp_layout *layout, uint32_t blocks, uint32_t
     return first + rows * length;
 }
 
-/* The lane of each element of a chunk. nodes: of the elements, neighbours together */
+/* The lane of each element of a chunk. nodes: of the elements; neighbours follow each other */
 static void gxsp_assign_lanes(gxsp_layout *layout, uint32_t (*nodes)[4], uint32_t count, uint32_t blocks) {
     uint32_t lane, length, first = 0;
     layout->nodes = nodes;
@@ -3019,7 +3024,7 @@ static void gxsp_lane_copies(const gxsp_system *system, const gxsp_chunk *chunk,
     for (i = 0; i < 4; i++) copies[i] = system->mesh.nodes[chunk->first_node + corner->node[i][lane]];
 }
 
-/* What corner k's copy has of the mass of a lane's element: its row sum */
+/* Row sum of the mass of a lane's element at corner k */
 static double gxsp_lane_mass(const gxsp_chunk *chunk, uint32_t lane, int k) {
     const size_t b = lane / GXSP_LANES, l = lane % GXSP_LANES;
     const gxsp_moments *of = gxsp_block_moments(chunk, (uint32_t)b);
@@ -3034,7 +3039,7 @@ static int gxsp_lane_supports(const gxsp_chunk *chunk, uint32_t lane, int k) {
     return chunk->rest[lane / GXSP_LANES].weight[lane % GXSP_LANES] > 0 || gxsp_lane_mass(chunk, lane, k) > 0;
 }
 
-/* Elements of a chunk in their lanes. elements: sorted; nodes: theirs, numbered in the chunk */
+/* Puts elements of a chunk into their lanes. elements: sorted; nodes: theirs, numbered in the chunk */
 static void gxsp_fill_chunk(const gxsp_chunk *chunk, const gxs_model *model, const gxsp_sorted *elements,
                             uint32_t (*nodes)[4], uint32_t count) {
     gxsp_layout layout;
@@ -3054,7 +3059,7 @@ static void gxsp_fill_chunk(const gxsp_chunk *chunk, const gxs_model *model, con
     gxsp_set_corners(chunk, placed);
 }
 
-/* Blocks and nodes of the chunks */
+/* Blocks and nodes of all chunks */
 static void gxsp_fill_chunks(gxsp_system *system, const gxs_model *model, const gxsp_sorted *sorted,
                              gxsp_numbers *numbers) {
     uint32_t copies[GXSP_CHUNK][4], c;
@@ -3077,7 +3082,8 @@ static void gxsp_fill_chunks(gxsp_system *system, const gxs_model *model, const 
     }
 }
 
-/* Chunks of the sorted elements: which blocks, what class. Returns how many. chunks: NULL, or room for all */
+/* Cuts the sorted elements into chunks: their blocks and classes. Returns the number of chunks. chunks: NULL, or
+ * room for all */
 static uint32_t gxsp_plan_chunks(gxsp_system *system, const gxsp_sorted *sorted, gxsp_chunk *chunks) {
     uint32_t chunk_count = 0;
     size_t i = 0;
@@ -3099,7 +3105,7 @@ static uint32_t gxsp_plan_chunks(gxsp_system *system, const gxsp_sorted *sorted,
     return chunk_count;
 }
 
-/* Blocks of chunks count of which are planned, but for those of steps: see gxsp_steps_make */
+/* Blocks of the planned chunks, without those that linearisations write */
 static void gxsp_blocks_make(gxsp_pool *pool, gxsp_chunk *chunks, uint32_t count) {
     gxsp_rest *rest;
     gxsp_corners *corners;
@@ -3211,7 +3217,7 @@ static void gxsp_copies_make(gxsp_system *system, const double *positions) {
     gxsp_columns_make(system, GXSP_COLUMNS(gxsp_copy_columns), GXSP_WITH_MODEL, n);
 }
 
-/* Copies that no element supports are fixed like held ones; row sums of the mass. */
+/* Row sums of the mass. Copies that no element supports are fixed, like held ones. */
 static void gxsp_find_fixed(gxsp_system *system, const gxs_model *model) {
     size_t e, i;
     int k;
@@ -3234,8 +3240,8 @@ static inline int gxsp_follows(const gxsp_system *system, size_t copy) {
     return system->model.follower_count > 0 && system->model.follower[copy] != GXSP_NONE;
 }
 
-/* Index of a constraint that cannot be, as its copy has two or a master follows others; SIZE_MAX if all can. held: n
- * flags or NULL; follows: n, scratch, 0 */
+/* Index of a constraint that is not allowed: its copy has two, or a master follows others. SIZE_MAX: all are
+ * allowed. held: n flags or NULL; follows: n zeros, scratch */
 static size_t gxsp_bad_constraint(const gxs_constraint *constraints, size_t count, const uint8_t *held,
                                   uint8_t *follows) {
     size_t i;
@@ -3263,7 +3269,7 @@ static void gxsp_followers_room(gxsp_system *system, size_t count) {
         model->follower = (uint32_t *)gxsp_take(&system->pool, model->copy_room, sizeof(uint32_t));
 }
 
-/* Which copies follow others: none of them is fixed unless it is held. */
+/* Sets the followers. None of them is fixed unless it is held. */
 static void gxsp_set_followers(gxsp_system *system, const gxs_constraint *constraints, size_t count) {
     size_t i;
     gxsp_followers_room(system, count);
@@ -3281,7 +3287,7 @@ static void gxsp_set_followers(gxsp_system *system, const gxs_constraint *constr
     }
 }
 
-/* Joins what constraints couple. forest: n */
+/* Joins copies that constraints couple. forest: n */
 static void gxsp_join_followers(const gxsp_system *system, uint32_t *forest) {
     size_t i;
     int k;
@@ -3291,7 +3297,7 @@ static void gxsp_join_followers(const gxsp_system *system, uint32_t *forest) {
                 gxsp_join(forest, system->model.followers[i].copy, system->model.followers[i].master[k]);
 }
 
-/* Joins what elements and constraints couple. forest: n */
+/* Joins copies that elements and constraints couple. forest: n */
 static void gxsp_join_copies(const gxsp_system *system, const gxs_model *model, uint32_t *forest) {
     size_t e, i;
     int k;
@@ -3303,7 +3309,7 @@ static void gxsp_join_copies(const gxsp_system *system, const gxs_model *model, 
     gxsp_join_followers(system, forest);
 }
 
-/* Numbers the pieces: trees of a forest of copies */
+/* Numbers the components: the trees of a forest of copies */
 static void gxsp_number_components(gxsp_system *system, uint32_t *forest) {
     size_t i;
     system->model.component_count = 0;
@@ -3313,8 +3319,8 @@ static void gxsp_number_components(gxsp_system *system, uint32_t *forest) {
     }
 }
 
-/* Masses and states of the pieces, which are 0. A translation of one of state 0 meets no stiffness: K T = 0, so
- * T^T (K + rate M) x = rate x sum of lumped x. */
+/* Masses and states of the components, which are zero before. A translation of a component of state 0 meets no
+ * stiffness: K T = 0, so T^T (K + rate M) x = rate x sum of lumped x. */
 static void gxsp_fill_components(gxsp_system *system) {
     size_t i;
     uint32_t p;
@@ -3332,7 +3338,7 @@ static void gxsp_fill_components(gxsp_system *system) {
         system->model.components[p].state |= system->model.components[p].mass > 0 ? 0 : GXSP_UNBALANCED;
 }
 
-/* The pieces of every chunk, ascending. parts: NULL, or room for all. Returns how many there are. */
+/* The components of every chunk, ascending. partials: NULL, or room for all. Returns how many there are. */
 static uint32_t gxsp_list_partials(gxsp_system *system, gxsp_partial *partials) {
     uint32_t c, k, count = 0;
     for (c = 0; c < system->model.component_count; c++)
@@ -3356,7 +3362,7 @@ static uint32_t gxsp_list_partials(gxsp_system *system, gxsp_partial *partials) 
     return count;
 }
 
-/* Parts of the chunks, in place of those there were */
+/* Partial sums of the chunks, in place of those before */
 static void gxsp_partials_make(gxsp_system *system) {
     const uint32_t count = gxsp_list_partials(system, NULL);
     system->mesh.partials =
@@ -3365,12 +3371,12 @@ static void gxsp_partials_make(gxsp_system *system) {
     if (!system->pool.failed) (void)gxsp_list_partials(system, system->mesh.partials);
 }
 
-/* The piece that leads a copy's */
+/* The component that leads a copy's component */
 static gxsp_component *gxsp_lead_of(const gxsp_system *system, size_t copy) {
     return &system->model.components[system->model.components[system->model.component[copy]].lead];
 }
 
-/* Which copies and chunks the pieces' states leave alone */
+/* Marks the copies and chunks that the components' states leave alone. */
 static void gxsp_mark_still(gxsp_system *system) {
     uint32_t c, k;
     size_t i;
@@ -3385,7 +3391,7 @@ static void gxsp_mark_still(gxsp_system *system) {
     }
 }
 
-/* The copies that an element's corner moves, with their weights: its own, or its masters. Returns how many. */
+/* The copies that move an element's corner, and their weights: its own copy, or its masters. Returns how many. */
 static int gxsp_corner_masters(const gxsp_system *system, uint32_t copy, uint32_t *masters, float *weights) {
     const gxsp_follower *follower;
     int k, count = 0;
@@ -3413,7 +3419,7 @@ static int gxsp_element_follows(const gxsp_system *system, const uint32_t *copie
 /* In and out: vectors over copies. A follower moves by the weighted sum of its masters' motion; its forces act on
  * them. */
 
-/* Increments x of all copies from those of masters */
+/* Increments x of followers from those of their masters */
 static void gxsp_extend(const gxsp_system *system, gxsp_vector4 *x) {
     uint32_t i, k, c;
     for (i = 0; i < system->model.follower_count; i++) {
@@ -3425,7 +3431,7 @@ static void gxsp_extend(const gxsp_system *system, gxsp_vector4 *x) {
     }
 }
 
-/* Forces y on masters; 0 on followers */
+/* Adds forces y on followers to those on their masters; 0 on followers. */
 static void gxsp_reduce(const gxsp_system *system, gxsp_vector4 *y) {
     uint32_t i, k, c;
     for (i = 0; i < system->model.follower_count; i++) {
@@ -3436,7 +3442,7 @@ static void gxsp_reduce(const gxsp_system *system, gxsp_vector4 *y) {
     }
 }
 
-/* Displacements of followers: that at from, which may be NULL for 0, and what their masters have moved since then */
+/* Displacements of followers: that at from (NULL: 0), and the motion of their masters since then */
 static void gxsp_follow(const gxsp_system *system, const double *from, double *displacement) {
     uint32_t i, k, c;
     for (i = 0; i < system->model.follower_count; i++) {
@@ -3453,7 +3459,7 @@ static void gxsp_follow(const gxsp_system *system, const double *from, double *d
     }
 }
 
-/* Residuals: those of followers are given to masters, but not to copies that are still. still: n */
+/* Adds residuals of followers to those of their masters, unless these are still. still: n */
 static void gxsp_reduce_residual(const gxsp_system *system, const uint8_t *still, double *r) {
     uint32_t i, k, c;
     for (i = 0; i < system->model.follower_count; i++) {
@@ -3498,7 +3504,7 @@ static int gxsp_find_places(const gxsp_system *system, const gxs_model *model, f
     return 1;
 }
 
-/* Lattice cell, order of axes and weights at a place. */
+/* Lattice cell, order of axes and weights at a place */
 static void gxsp_locate(const float *place, int32_t *cell, uint8_t *axis, float *weight) {
     float f[3];
     int k;
@@ -3521,8 +3527,8 @@ static void gxsp_locate(const float *place, int32_t *cell, uint8_t *axis, float 
     weight[3] = f[axis[2]];
 }
 
-/* Lattice points as one number; never 0. 2^20 points along each axis suffice for any 32-bit count of elements near each
- * other; farther ones would only share a number, not a component. */
+/* A lattice point as one number, never 0. 2^20 points along each axis suffice for any 32-bit count of elements near
+ * each other; farther ones would share a number, but no cluster. */
 static uint64_t gxsp_lattice_key(const int32_t *point) {
     return ((uint64_t)((uint32_t)point[0] & 0x1fffffu) << 42 | (uint64_t)((uint32_t)point[1] & 0x1fffffu) << 21 |
             ((uint32_t)point[2] & 0x1fffffu)) +
@@ -3541,13 +3547,13 @@ static void gxsp_tetrahedron_keys(const int32_t *cell, const uint8_t *axis, uint
     }
 }
 
-/* What the transfer of a level is made from: four lattice points around each node, those of weight 0 left out */
+/* Scratch for the transfer of a level: the four lattice points around each node; those of weight 0 are left out */
 typedef struct gxsp_transfer {
     uint64_t *key;    /* n x 4; 0: left out */
     uint32_t *forest; /* n x 4 */
 } gxsp_transfer;
 
-/* Nodes i and j are neighbours: the lattice points around both belong to one component there. */
+/* Nodes i and j are neighbours: they are in one cluster of each lattice point around both. */
 static void gxsp_join_nodes(gxsp_transfer *transfer, uint32_t i, uint32_t j) {
     const uint64_t *a = transfer->key + 4 * (size_t)i, *b = transfer->key + 4 * (size_t)j;
     uint32_t p, q;
@@ -3556,7 +3562,8 @@ static void gxsp_join_nodes(gxsp_transfer *transfer, uint32_t i, uint32_t j) {
             if (a[p] == b[q] && a[p] != 0) gxsp_join(transfer->forest, 4 * i + p, 4 * j + q);
 }
 
-/* Points and weights of a level's nodes, before components are joined. place: n x 3, in spacings of the next lattice */
+/* Lattice points and weights of a level's nodes, before clusters are joined. place: n x 3, in spacings of the next
+ * lattice */
 static void gxsp_transfer_begin(const gxsp_level *level, float (*place)[3], const uint8_t *fixed,
                                 gxsp_transfer *transfer) {
     uint32_t i;
@@ -3577,7 +3584,7 @@ static void gxsp_transfer_begin(const gxsp_level *level, float (*place)[3], cons
     }
 }
 
-/* Numbers the components: the next level's nodes. Returns how many. */
+/* Numbers the clusters, which are the next level's nodes. Returns how many there are. */
 static uint32_t gxsp_transfer_end(gxsp_level *level, gxsp_transfer *transfer) {
     uint32_t slot, count = 0;
     /* roots come first in their tree: the lower index wins in gxsp_join */
@@ -3606,13 +3613,13 @@ static void gxsp_transfer_places(const gxsp_level *level, const gxsp_transfer *t
         }
 }
 
-/* Room for the transfer of a level to the next */
+/* Memory for the transfer of a level to the next */
 static void gxsp_transfer_make(gxsp_pool *pool, gxsp_level *level) {
     level->parent = (uint32_t(*)[4])gxsp_take(pool, level->n, sizeof *level->parent);
     level->weight = (float(*)[4])gxsp_take(pool, level->n, sizeof *level->weight);
 }
 
-/* Room for a coarse level of n nodes, but for its matrix and what only those have that are not the last */
+/* Memory for a coarse level of n nodes, without its matrix and what the last level does not have */
 static void gxsp_level_make(gxsp_pool *pool, gxsp_level *level, uint32_t n) {
     level->n = n;
     level->place = (int32_t(*)[3])gxsp_take(pool, n, sizeof *level->place);
@@ -3626,10 +3633,10 @@ static void gxsp_level_make(gxsp_pool *pool, gxsp_level *level, uint32_t n) {
 /* In: a level's pattern and transfer. Out: the pattern of the next level's matrix, and order and envelope of the
  * last one's factor. Writes gxsp_multigrid, but no numbers. */
 
-/* Numbers of the blocks of a level's matrix; products read four numbers of a column, hence one more */
+/* Numbers in the blocks of a level's matrix, and one more: products read a column as four numbers. */
 static size_t gxsp_block_numbers(const gxsp_level *level) { return 9 * (size_t)level->start[level->n] + 1; }
 
-/* Growing list of a matrix's entries: rows and columns, the row the lower; in a pool of temporary memory */
+/* Growing list of a matrix's entries (row, column), row <= column; in scratch */
 typedef struct gxsp_list {
     gxsp_pool *scratch;
     uint32_t (*pair)[2], count, room;
@@ -3647,7 +3654,8 @@ static void gxsp_list_add(gxsp_list *list, uint32_t row, uint32_t column) {
     list->pair[list->count++][1] = column;
 }
 
-/* Rows of a level's matrix from its entries on and above the diagonal, (row, column), of which some may come twice. */
+/* Rows of a level's matrix from its entries (row, column) on and above the diagonal, which may be listed more than
+ * once */
 static void gxsp_rows_make(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *level, uint32_t (*list)[2],
                            uint32_t listed) {
     uint32_t *start = (uint32_t *)gxsp_take(scratch, (size_t)level->n + 2, sizeof(uint32_t));
@@ -3671,7 +3679,7 @@ static void gxsp_rows_make(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *leve
     if (!pool->failed) memcpy(level->column, columns, count * sizeof(uint32_t));
 }
 
-/* Index of column j in row i, or that of a lower one if the row does not have it */
+/* Index of column j in row i, or of a lower column if the row does not have it */
 static uint32_t gxsp_find_entry(const gxsp_level *level, uint32_t i, uint32_t j) {
     uint32_t low = level->start[i], high = level->start[i + 1];
     while (high - low > 1) {
@@ -3684,7 +3692,7 @@ static uint32_t gxsp_find_entry(const gxsp_level *level, uint32_t i, uint32_t j)
     return low;
 }
 
-/* Rows of the next level's matrix, transfer^T A transfer, from a level's */
+/* Rows of the next level's matrix, transfer^T A transfer, from those of a level */
 static void gxsp_coarse_rows(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *level) {
     gxsp_level *next = level + 1;
     uint32_t *seen = (uint32_t *)gxsp_take(scratch, next->n, sizeof(uint32_t)),
@@ -3710,8 +3718,8 @@ static void gxsp_coarse_rows(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *le
     if (!scratch->failed) gxsp_rows_make(pool, scratch, next, list.pair, list.count);
 }
 
-/* The level after levels[at], at > 0, of twice its spacing. 0: it would not be much smaller. Scratch is left in the
- * pool of temporary memory. */
+/* Adds the level after levels[at], at > 0, with twice its spacing. 0: it would not be much smaller. What it takes
+ * of scratch stays there. */
 static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t at) {
     gxsp_level *level = &system->multigrid.levels[at], *next = level + 1;
     gxsp_pool *pool = &system->multigrid.pool;
@@ -3743,7 +3751,7 @@ static int gxsp_add_level(gxsp_system *system, gxsp_pool *scratch, uint32_t at) 
     return !pool->failed && !scratch->failed;
 }
 
-/* Neighbours of each node of a level, both ways; in temporary memory */
+/* Neighbours of each node of a level, in both directions; in scratch */
 typedef struct gxsp_graph {
     uint32_t n, *start, *other; /* start: n + 2 */
 } gxsp_graph;
@@ -3767,7 +3775,7 @@ static gxsp_graph gxsp_graph_make(gxsp_pool *scratch, const gxsp_level *level) {
     return graph;
 }
 
-/* Breadth-first order of the component of a seed, appended to order; place: those met have theirs, others GXSP_NONE.
+/* Appends the connected component of a seed to order, breadth first. place: GXSP_NONE for nodes not met yet.
  * Returns the new length. */
 static uint32_t gxsp_order_component(const gxsp_graph *graph, uint32_t seed, uint32_t count, uint32_t *order,
                                      uint32_t *place) {
@@ -3791,8 +3799,8 @@ static uint32_t gxsp_first_place(const gxsp_graph *graph, const uint32_t *order,
     return first;
 }
 
-/* Order for a small envelope: component by component, breadth first from a node that is last from some other. place: n,
- * scratch. Returns the multiplications of a factorisation. */
+/* Order for a small envelope: one connected component after the other, each breadth first from a node that was last
+ * from some other. place: n, scratch. Returns the multiplications of a factorisation. */
 static double gxsp_order_level(const gxsp_graph *graph, uint32_t *order, uint32_t *place) {
     uint32_t seed, i, k, count = 0, end;
     double cost = 0;
@@ -3822,14 +3830,14 @@ static int gxsp_factors(gxsp_pool *scratch, const gxsp_level *level, size_t copi
     return factors;
 }
 
-/* Row i of the factor, by columns from 0 on, of which it has those from first on. Rows of a place are one column longer
- * each. */
+/* Row i of the factor, indexed by column; valid from its first column on. Each row of a place is one column longer
+ * than the one before. */
 static inline float *gxsp_factor_row(const gxsp_factor *factor, uint32_t i) {
     const uint32_t place = i / 3, r = i % 3;
     return factor->entry + (factor->row[place] + r * (size_t)(3 * place - factor->first[place] + 1) + (r == 2));
 }
 
-/* Order and envelope of the last level */
+/* Order and envelope of the last level's factor */
 static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch) {
     const gxsp_level *level = &system->multigrid.levels[system->multigrid.level_count - 1];
     gxsp_factor *factor = &system->multigrid.factor;
@@ -3862,7 +3870,7 @@ static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch) {
 static const int gxsp_pair_corners[10][2] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {1, 1},
                                              {1, 2}, {1, 3}, {2, 2}, {2, 3}, {3, 3}};
 
-/* Arrays for the edges of any chunk; numbers: with those of the Hessian's blocks, for which edges have been counted */
+/* Arrays for the edges of any chunk. numbers: with those for blocks of the Hessian; edges are counted then */
 static void gxsp_edges_carve(gxsp_system *system, gxsp_space *space, int numbers) {
     gxsp_edges *edges = &system->multigrid.edges;
     size_t c, lanes = 0, nodes = 1, most = 0;
@@ -3887,7 +3895,7 @@ static void gxsp_edges_carve(gxsp_system *system, gxsp_space *space, int numbers
     edges->mass = (float *)gxsp_carve(space, nodes, sizeof(float));
 }
 
-/* Room for listing the edges of any chunk, in temporary memory */
+/* Memory for listing the edges of any chunk, in scratch */
 static void gxsp_edges_make(gxsp_system *system, gxsp_pool *scratch) {
     gxsp_space space = {NULL, 0};
     gxsp_edges_carve(system, &space, 0);
@@ -3901,8 +3909,8 @@ static void gxsp_edges_begin(gxsp_edges *edges, const gxsp_chunk *chunk) {
     edges->count = 1;
 }
 
-/* The edge of two nodes, made where there is none; 0 of a node and itself. There is no branch on whether there is one:
- * it could not be foretold. count: of edges so far */
+/* The edge of two nodes, made if there is none yet; 0 for a node and itself. Has no branch on whether there is one:
+ * processors could not predict it. count: edges so far */
 static inline uint16_t gxsp_find_edge(const gxsp_edges *edges, uint32_t i, uint32_t j, uint32_t *count) {
     const uint32_t low = i < j ? i : j, high = i < j ? j : i, ends = low << 16 | high;
     uint16_t *at = &edges->table[high * (high - 1) / 2 + low];
@@ -3915,7 +3923,7 @@ static inline uint16_t gxsp_find_edge(const gxsp_edges *edges, uint32_t i, uint3
     return *at;
 }
 
-/* The six edges of each element of a block; 0 where it has no weight */
+/* The six edges of each element of a block; 0 where the element has no weight */
 static void gxsp_block_edges(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_t b, uint16_t (*edge)[GXSP_LANES]) {
     const gxsp_corners *corner = &chunk->corners[b];
     uint32_t count = edges->count;
@@ -3929,7 +3937,7 @@ static void gxsp_block_edges(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_
     edges->count = count;
 }
 
-/* All edges of a chunk's elements of any weight */
+/* Lists the edges of a chunk's elements that have weight. */
 static void gxsp_list_edges(gxsp_system *system, gxsp_chunk *chunk) {
     uint16_t edge[6][GXSP_LANES];
     uint32_t b;
@@ -3938,14 +3946,14 @@ static void gxsp_list_edges(gxsp_system *system, gxsp_chunk *chunk) {
     chunk->edge_count = system->multigrid.edges.count;
 }
 
-/* Counts the edges of chunks of which they are not known. */
+/* Counts the edges of chunks for which they are not known. */
 static void gxsp_count_edges(gxsp_system *system) {
     uint32_t c;
     for (c = 0; c < system->mesh.chunk_count; c++)
         if (system->mesh.chunks[c].edge_count == 0) gxsp_list_edges(system, &system->mesh.chunks[c]);
 }
 
-/* Numbers the coarse nodes that a chunk's nodes follow. */
+/* Numbers the coarse nodes that are parents of a chunk's nodes. */
 static void gxsp_pairs_begin(gxsp_system *system, const gxsp_chunk *chunk) {
     gxsp_pairs *pairs = &system->multigrid.pairs;
     uint32_t i, k;
@@ -3966,7 +3974,7 @@ static void gxsp_pairs_begin(gxsp_system *system, const gxsp_chunk *chunk) {
     memset(pairs->seen, 0, pairs->count * sizeof *pairs->seen);
 }
 
-/* Arrays for the pairs of any chunk; numbers: with those for entries of matrices */
+/* Arrays for the pairs of any chunk. numbers: with those for entries of matrices */
 static void gxsp_pairs_carve(gxsp_system *system, gxsp_space *space, int numbers) {
     gxsp_pairs *pairs = &system->multigrid.pairs;
     const size_t n = system->multigrid.levels[1].n,
@@ -3986,7 +3994,7 @@ static void gxsp_pairs_carve(gxsp_system *system, gxsp_space *space, int numbers
         space, next < system->multigrid.level_count ? system->multigrid.levels[next].n : 0, sizeof *pairs->half);
 }
 
-/* Room for listing the pairs of any chunk, in temporary memory, and how many coarse nodes it has at most */
+/* Memory for listing the pairs of any chunk, in scratch, and the largest number of coarse nodes of a chunk */
 static void gxsp_pairs_make(gxsp_system *system, gxsp_pool *scratch) {
     gxsp_space space = {NULL, 0};
     uint32_t c;
@@ -4003,7 +4011,7 @@ static void gxsp_pairs_make(gxsp_system *system, gxsp_pool *scratch) {
     }
 }
 
-/* Sets of a chunk's coarse nodes, a bit for each, words to a set */
+/* Sets of a chunk's coarse nodes, as bits in `words` words */
 typedef struct gxsp_sets {
     uint64_t *own, *reach; /* by node: its parents; those of its neighbours too */
     uint64_t *row;         /* by number of the coarse node: those that it shares an element with */
@@ -4051,8 +4059,8 @@ static gxsp_sets gxsp_find_sets(gxsp_system *system, const gxsp_chunk *chunk, ui
     return sets;
 }
 
-/* Lists the entries of level 1's matrix that a chunk needs. dirty: by coarse node; only entries of one at least are
- * listed; NULL: all are. memory: see gxsp_find_sets */
+/* Lists the entries of level 1's matrix to which a chunk adds. dirty: by coarse node; only entries with a dirty
+ * node are listed; NULL: all are. memory: see gxsp_find_sets */
 static void gxsp_list_pairs(gxsp_system *system, const gxsp_chunk *chunk, uint64_t *memory, const uint8_t *dirty,
                             gxsp_list *list) {
     const uint32_t *node = system->multigrid.pairs.node;
@@ -4070,7 +4078,7 @@ static void gxsp_list_pairs(gxsp_system *system, const gxsp_chunk *chunk, uint64
         }
 }
 
-/* Does a chunk have a node that follows one of the dirty? */
+/* Does a node of the chunk have a dirty parent? */
 static int gxsp_follows_dirty(const gxsp_system *system, const gxsp_chunk *chunk, const uint8_t *dirty) {
     uint32_t i, k;
     for (i = 0; i < chunk->node_count; i++)
@@ -4081,8 +4089,9 @@ static int gxsp_follows_dirty(const gxsp_system *system, const gxsp_chunk *chunk
     return 0;
 }
 
-/* Level 1's matrix: two nodes are neighbours where an element follows both; every node is its own. before: the level of
- * which all but the dirty nodes and those after its own have the neighbours that they had; NULL: none has. */
+/* Pattern of level 1's matrix: two nodes are neighbours where an element has both as parents; every node is its own
+ * neighbour. before: the level before an update; nodes that are in it and not dirty keep their neighbours. NULL:
+ * all are found anew */
 static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gxsp_level *before,
                                const uint8_t *dirty) {
     uint32_t c, i, k, nodes = 0;
@@ -4106,7 +4115,7 @@ static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gx
         gxsp_rows_make(&system->multigrid.pool, scratch, &system->multigrid.levels[1], list.pair, list.count);
 }
 
-/* Rows and columns, the row the lower, that an element adds to. Returns how many. */
+/* Entries (row, column), row <= column, to which an element adds. Returns how many. */
 static uint32_t gxsp_element_pairs(const gxsp_system *system, const uint32_t *copies, uint32_t (*list)[2]) {
     uint32_t all[16], count = 0, listed = 0, i, j;
     float weights[4];
@@ -4120,8 +4129,8 @@ static uint32_t gxsp_element_pairs(const gxsp_system *system, const uint32_t *co
     return listed;
 }
 
-/* The assembled matrix of what followers leave free: copies are neighbours where they share an element; every copy is
- * its own. */
+/* The pattern of the assembled matrix on copies that follow nothing: copies are neighbours where they share an
+ * element; every copy is its own neighbour. */
 static void gxsp_fine_make(gxsp_system *system, gxsp_pool *scratch) {
     gxsp_level *fine = &system->multigrid.levels[0];
     uint32_t(*list)[2] = NULL, c, b, i, count, room = 0;
@@ -4191,7 +4200,7 @@ static void gxsp_levels_make(gxsp_system *system, gxsp_pool *scratch, const gxsp
     gxsp_factor_make(system, scratch);
 }
 
-/* The transfer of the model by a lattice. place: n x 3, in its spacings. Returns how many nodes level 1 has. */
+/* The transfer of the model by a lattice. place: n x 3, in its spacings. Returns the number of level 1's nodes. */
 static uint32_t gxsp_first_transfer(gxsp_system *system, float (*place)[3], gxsp_transfer *transfer) {
     uint32_t c, e;
     gxsp_transfer_begin(&system->multigrid.levels[0], place, system->model.fixed, transfer);
@@ -4209,7 +4218,7 @@ static uint32_t gxsp_first_transfer(gxsp_system *system, float (*place)[3], gxsp
     return gxsp_transfer_end(&system->multigrid.levels[0], transfer);
 }
 
-/* What the first lattice has of a piece */
+/* A component on the first lattice: its copies, nodes and box */
 typedef struct gxsp_extent {
     uint32_t copies, nodes;
     float low[3], high[3], length; /* in spacings; length: the longest of high - low */
@@ -4240,10 +4249,10 @@ static gxsp_extent *gxsp_find_extents(const gxsp_system *system, gxsp_pool *scra
     return extents;
 }
 
-/* Small pieces have so many lattice points about them that fewer serve nearly as well: places of those that are crowded
- * after gxsp_first_transfer go into one tetrahedron of a lattice of their own size, whose functions are their affine
- * motions, or, where pieces are larger, into a lattice of twice the spacing. Not of long ones, which would hardly bend.
- * Returns whether there are any. */
+/* Small components have so many lattice points around them that fewer serve nearly as well. After
+ * gxsp_first_transfer, the places of crowded ones go into one tetrahedron of a lattice of their own size, whose
+ * functions are their affine motions, or, if they are larger, into a lattice of twice the spacing. Long ones stay,
+ * since they would hardly bend. Returns whether there are any. */
 static int gxsp_thin_crowded(const gxsp_system *system, gxsp_pool *scratch, float (*place)[3]) {
     const gxsp_extent *extents = gxsp_find_extents(system, scratch, place);
     uint32_t i, k;
@@ -4261,7 +4270,7 @@ static int gxsp_thin_crowded(const gxsp_system *system, gxsp_pool *scratch, floa
     return any;
 }
 
-/* All levels of the multigrid below the model; place: n x 3, see gxsp_find_places. level_count stays 0 if there is
+/* All levels of the multigrid below the model. place: n x 3, see gxsp_find_places. level_count stays 0 if there is
  * nothing to coarsen. */
 static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (*place)[3]) {
     gxsp_level *fine = &system->multigrid.levels[0];
@@ -4286,7 +4295,7 @@ static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (
  * them, nearly all of whose mass belongs to other copies. >>balance starts them where their neighbours lead,
  * >>search bounds their way. */
 
-/* What is known of a copy before it is called light */
+/* Masses around a copy, by which it is light or not */
 typedef struct gxsp_weighed {
     gxsp_light light; /* in the lane with its heaviest neighbour */
     double all, most; /* mass of the elements around it; of the neighbour, kg */
@@ -4307,7 +4316,7 @@ static void gxsp_weigh_corner(const gxsp_system *system, uint32_t c, uint32_t la
         }
 }
 
-/* Of each copy, or each that is touched. touched: n flags, or NULL: all */
+/* Weighs each copy, or each touched one. touched: n flags, or NULL: all */
 static void gxsp_weigh_copies(const gxsp_system *system, const uint8_t *touched, gxsp_weighed *weighed) {
     uint32_t c, i, lane, copies[4];
     int k;
@@ -4330,7 +4339,7 @@ static int gxsp_is_light(const gxsp_system *system, size_t copy, const gxsp_weig
            (mass < GXSP_LIGHT * weighed->all || mass < GXSP_LIGHTER * weighed->most);
 }
 
-/* Lists light copies. touched: n flags: those of others stay as they are listed; NULL: all are listed anew */
+/* Lists light copies. touched: n flags: other copies stay as they are listed; NULL: all are listed anew */
 static void gxsp_list_lights(gxsp_system *system, gxsp_pool *scratch, const uint8_t *touched) {
     gxsp_weighed *weighed = (gxsp_weighed *)gxsp_take(scratch, system->model.n, sizeof *weighed);
     uint32_t i, count = 0, room;
@@ -4349,8 +4358,8 @@ static void gxsp_list_lights(gxsp_system *system, gxsp_pool *scratch, const uint
         if (gxsp_is_light(system, i, &weighed[i])) system->model.lights[system->model.light_count++] = weighed[i].light;
 }
 
-/* What guides a light copy at vector x, less another one or NULL (n x 3): the mean over the other corners, by their
- * masses. Returns the heaviest. */
+/* Mean of a vector x, minus another one (or NULL), over the corners that guide a light copy, weighted by their
+ * masses; n x 3. Returns the heaviest of these copies. */
 static uint32_t gxsp_guide(const gxsp_system *system, const gxsp_light *light, const double *x, const double *less,
                            double *mean) {
     double sum = 0, most = 0;
@@ -4386,6 +4395,7 @@ static void gxsp_numbers_carve(gxsp_system *system, gxsp_space *space) {
     system->multigrid.factor.rows = (double *)gxsp_carve(space, 3 * (size_t)system->multigrid.factor.n, sizeof(double));
 }
 
+/* Arrays of passes over chunks and of conjugate gradients */
 static void gxsp_passes_carve(gxsp_system *system, gxsp_space *space) {
     system->vectors.slots = (double(*)[3])gxsp_carve(space, system->mesh.slot_count, sizeof *system->vectors.slots);
     system->vectors.search = (gxsp_vector4 *)gxsp_carve(space, system->model.n, sizeof(gxsp_vector4));
@@ -4393,14 +4403,14 @@ static void gxsp_passes_carve(gxsp_system *system, gxsp_space *space) {
     system->vectors.scaled = (gxsp_vector4 *)gxsp_carve(space, system->model.n, sizeof(gxsp_vector4));
 }
 
-/* Vectors in shared memory are 0 again: what is unused of them, too, takes part in sums. */
+/* Shared memory goes back to passes. Its vectors become 0: their unused numbers take part in sums too. */
 static void gxsp_return_memory(gxsp_system *system) {
     memset(system->vectors.search, 0, system->model.n * sizeof *system->vectors.search);
     memset(system->vectors.product, 0, system->model.n * sizeof *system->vectors.product);
     memset(system->vectors.scaled, 0, system->model.n * sizeof *system->vectors.scaled);
 }
 
-/* Room in shared memory for passes and for coarse numbers, in turn */
+/* Makes shared memory large enough for passes and for coarse numbers, which have it in turn. */
 static void gxsp_share_memory(gxsp_system *system) {
     gxsp_space passes = {NULL, 0}, numbers = {NULL, 0};
     size_t size;
@@ -4420,7 +4430,7 @@ static void gxsp_share_memory(gxsp_system *system) {
     gxsp_return_memory(system);
 }
 
-/* Shared memory while coarse numbers are made */
+/* Lends shared memory to the making of coarse numbers, until gxsp_return_memory. */
 static void gxsp_lend_memory(gxsp_system *system) {
     gxsp_space space = {NULL, 0};
     space.memory = system->vectors.shared;
@@ -4439,7 +4449,7 @@ static void gxsp_lend_memory(gxsp_system *system) {
 /* In: the caller's model, already checked. Out: a gxsp_system, with all that does not depend on the state and the
  * memory of steps. */
 
-/* 2^GXSP_STIFFNESS over Young's modulus times the length of the largest element, but for the mantissa */
+/* 2^GXSP_STIFFNESS / (Young's modulus times the length of the largest element), rounded to a power of two */
 static double gxsp_choose_scale(const gxs_model *model) {
     double young = 0, volume = 0, size;
     size_t i;
@@ -4453,7 +4463,7 @@ static double gxsp_choose_scale(const gxs_model *model) {
     return ldexp(1, GXSP_STIFFNESS - exponent);
 }
 
-/* Inverse volumes of supports, the least of the size of a whole copy's inverse stiffness */
+/* Inverse volumes of supports; the least is about the inverse stiffness of a whole copy */
 static void gxsp_find_volumes(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model) {
     double *volume = (double *)gxsp_take(scratch, system->model.n, sizeof(double)), largest = 0;
     size_t e, i;
@@ -4467,13 +4477,13 @@ static void gxsp_find_volumes(gxsp_system *system, gxsp_pool *scratch, const gxs
         system->model.volume[i] = volume[i] > 1e-20 * largest ? (float)ldexp(largest / volume[i], -GXSP_STIFFNESS) : 0;
 }
 
-/* Copies from which on a piece is large enough for multigrid */
+/* A component is large enough for multigrid from this many copies on. */
 static uint32_t gxsp_large(const gxsp_system *system) {
     return system->model.stiff ? GXSP_MULTIGRID_FROM_STIFF : GXSP_MULTIGRID_FROM;
 }
 
-/* Does multigrid pay for a piece? All take as many iterations as the one that takes most. count: piece_count, scratch
- */
+/* Does multigrid pay for a component? All components take as many iterations as the slowest one. count:
+ * component_count, scratch */
 static int gxsp_large_component(const gxsp_system *system, uint32_t *count) {
     const uint32_t from = gxsp_large(system);
     size_t i;
@@ -4483,7 +4493,7 @@ static int gxsp_large_component(const gxsp_system *system, uint32_t *count) {
     return 0;
 }
 
-/* What depends on the choice of matrix and preconditioner. forest: n, scratch */
+/* Everything that depends on the choice of matrix and preconditioner. forest: n, scratch */
 static void gxsp_preconditioner_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model,
                                      gxs_preconditioner preconditioner, gxs_matrix matrix, uint32_t *forest) {
     float(*place)[3]; /* rest positions in spacings of the first lattice */
@@ -4501,8 +4511,8 @@ static void gxsp_preconditioner_make(gxsp_system *system, gxsp_pool *scratch, co
         gxsp_multigrid_make(system, scratch, place);
 }
 
-/* Everything about a model that does not depend on its state; scratch holds what is needed for the time being. Returns
- * the index of a constraint that cannot be, SIZE_MAX if all can. */
+/* Everything about a model that does not depend on its state. scratch: for temporary memory. Returns the index of a
+ * constraint that is not allowed, or SIZE_MAX. */
 static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model,
                                 const gxs_solver *solver) {
     uint32_t i, *forest = (uint32_t *)gxsp_take(scratch, model->copy_count, sizeof(uint32_t));
@@ -4548,7 +4558,7 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
     return SIZE_MAX;
 }
 
-/* Memory that only steps need. Taken last, when what the model is made with has been given back */
+/* Memory that only steps need. Taken last, when temporary memory has been given back */
 static void gxsp_steps_make(gxsp_system *system) {
     const size_t n = system->model.n;
     gxsp_vectors *vectors = &system->vectors;
@@ -4581,8 +4591,8 @@ static void gxsp_drop_system(gxs_solver *solver) {
 /* In: displacements. Out: energies of components; elastic and inertial forces of copies. A task writes the slots
  * and partial sums of its own chunk only. */
 
-/* Asks for what a pass soon reads of the block this many further on, in the chunk or the next one: its tangents, or
- * what they are made of. */
+/* Prefetches the block that a pass reads `ahead` blocks later, in this chunk or the next: its tangents, or the data
+ * that they are made from. */
 GXSP_INLINE void gxsp_prefetch_block(const gxsp_system *system, size_t index, uint32_t block, uint32_t ahead,
                                      int tangents) {
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
@@ -4600,7 +4610,7 @@ GXSP_INLINE void gxsp_prefetch_block(const gxsp_system *system, size_t index, ui
     if (chunk->moments) gxsp_prefetch(&chunk->moments[b], sizeof *chunk->moments);
 }
 
-/* x of a chunk's nodes: x 3, and one more number */
+/* x of a chunk's nodes: x 3, and one more number, which vectors read */
 static void gxsp_chunk_load(const gxsp_system *system, const gxsp_chunk *chunk, const double *x,
                             double *GXSP_RESTRICT to) {
     const uint32_t *copies = system->mesh.nodes + chunk->first_node;
@@ -4612,7 +4622,7 @@ static void gxsp_chunk_load(const gxsp_system *system, const gxsp_chunk *chunk, 
     to[3 * i] = 0;
 }
 
-/* Three numbers of each of four nodes to three arrays; behind those of the last node there is one more. */
+/* Three numbers of each of four nodes to three arrays. The last node's are followed by one more. */
 static inline void gxsp_load_four(const uint16_t *node, const double *x, double *to0, double *to1, double *to2) {
 #if defined(GXSP_SHUFFLES)
     const gxsp_four_doubles a = *(const gxsp_four_doubles *)(x + 3 * (size_t)node[0]),
@@ -4633,8 +4643,8 @@ static inline void gxsp_load_four(const uint16_t *node, const double *x, double 
 #endif
 }
 
-/* x of a block's corners from that of the chunk's nodes; of those that are not fresh it is there from the block before
- */
+/* x of a block's corners from that of the chunk's nodes. A corner that has not changed since the block before keeps
+ * its values. */
 static void gxsp_block_load(const gxsp_chunk *chunk, uint32_t b, const double *GXSP_RESTRICT x,
                             gxsp_lanes *GXSP_RESTRICT corners) {
     const gxsp_corners *corner = &chunk->corners[b];
@@ -4644,7 +4654,7 @@ static void gxsp_block_load(const gxsp_chunk *chunk, uint32_t b, const double *G
             gxsp_load_four(corner->node[i] + l, x, corners[3 * i] + l, corners[3 * i + 1] + l, corners[3 * i + 2] + l);
 }
 
-/* The same of x of all copies, without that of the chunk's nodes */
+/* The same from x of all copies */
 static void gxsp_block_load_copies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, const double *x,
                                    gxsp_lanes *corners) {
     const uint32_t *copies = system->mesh.nodes + chunk->first_node;
@@ -4656,8 +4666,8 @@ static void gxsp_block_load_copies(const gxsp_system *system, const gxsp_chunk *
         }
 }
 
-/* Shape function gradients of a block. rest: positions of the chunk's nodes; corners: of the block's, as of
- * gxsp_block_load */
+/* Shape function gradients of a block. rest: positions of the chunk's nodes; corners: of the block's, kept from
+ * block to block as in gxsp_block_load */
 static gxsp_lanes *gxsp_block_gradients(const gxsp_chunk *chunk, uint32_t b, const double *rest, gxsp_lanes *corners,
                                         gxsp_lanes *made) {
     if (chunk->gradients) return chunk->gradients[b].entry;
@@ -4677,8 +4687,8 @@ static void gxsp_block_parameters(const gxsp_material *materials, const gxsp_res
     }
 }
 
-/* Forces of a block into the chunk's slots, 3 doubles each, and 0 in their place; those of corners that the next block
- * has too stay. */
+/* Adds forces of a block to the chunk's slots, 3 doubles each, and sets them to 0. Forces on a corner that the next
+ * block has too are kept for it. */
 static void gxsp_block_store(const gxsp_chunk *chunk, uint32_t b, gxsp_lanes *GXSP_RESTRICT values,
                              double *GXSP_RESTRICT slots) {
     const gxsp_corners *corner = &chunk->corners[b];
@@ -4695,8 +4705,8 @@ static void gxsp_block_store(const gxsp_chunk *chunk, uint32_t b, gxsp_lanes *GX
     }
 }
 
-/* P of elements with displacement gradients from, turned by what turns their rotations into those at to; left alone
- * where that is more than a right angle: such an element is tangled. */
+/* Rotates P of elements by the rotation from their orientation at displacement gradients `from` to that at `to`. P
+ * stays where that is more than a right angle: such an element is tangled. */
 static void gxsp_rotate_stress(gxsp_lanes *from, gxsp_lanes *to, gxsp_lanes *p) {
     gxsp_svd of[2];
     int r, c, k, l;
@@ -4729,7 +4739,7 @@ static void gxsp_rotate_stress(gxsp_lanes *from, gxsp_lanes *to, gxsp_lanes *p) 
     }
 }
 
-/* Is a copy of the chunk elsewhere than inertia alone leads? Where Newton's method starts hardly any is. */
+/* Is a copy of the chunk off its target? Hardly any is where Newton's method starts. */
 static int gxsp_accelerates(const gxsp_system *system, const gxsp_chunk *chunk, const double *from) {
     const uint32_t *copies = system->mesh.nodes + chunk->first_node;
     uint32_t i;
@@ -4740,7 +4750,7 @@ static int gxsp_accelerates(const gxsp_system *system, const gxsp_chunk *chunk, 
     return 0;
 }
 
-/* Have all pieces of a chunk found their lengths? */
+/* Have all components of a chunk found their lengths? */
 static int gxsp_chunk_settled(const gxsp_system *system, const gxsp_chunk *chunk) {
     uint32_t i;
     for (i = 0; i < chunk->partial_count; i++)
@@ -4751,7 +4761,7 @@ static int gxsp_chunk_settled(const gxsp_system *system, const gxsp_chunk *chunk
     return 1;
 }
 
-/* What a chunk has of a piece of its nodes */
+/* The chunk's partial sum of a component */
 static gxsp_partial *gxsp_find_partial(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t component) {
     gxsp_partial *partials = system->mesh.partials + chunk->first_partial;
     uint32_t low = 0, high = chunk->partial_count - 1;
@@ -4765,7 +4775,7 @@ static gxsp_partial *gxsp_find_partial(const gxsp_system *system, const gxsp_chu
     return &partials[low];
 }
 
-/* Energies of a block's elements, added to the parts that they belong to */
+/* Adds the energies of a block's elements to the partial sums of their components. */
 static void gxsp_add_energies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, gxsp_lanes *energies) {
     const uint32_t *copies = system->mesh.nodes + chunk->first_node;
     int k, l;
@@ -4781,7 +4791,7 @@ static void gxsp_add_energies(const gxsp_system *system, const gxsp_chunk *chunk
     }
 }
 
-/* Energies of a chunk at pass->from, part by part, and elastic + inertial forces. */
+/* Energies of a chunk at pass->from, component by component, and elastic + inertial forces */
 static void gxsp_task_state(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     gxsp_system *system = pass->system;
@@ -4831,7 +4841,7 @@ static void gxsp_task_state(void *context, size_t index) {
     }
 }
 
-/* sum = over the slots of each copy, 3 doubles each */
+/* sum = sum over the slots of each copy, 3 doubles each */
 static void gxsp_task_sum(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
@@ -4849,7 +4859,8 @@ static void gxsp_task_sum(void *context, size_t index) {
     }
 }
 
-/* Energies of the pieces' elements at from, and elastic + inertial forces, 0 on what sleeps. turned: see gxsp_pass */
+/* Energies of the components' elements at from, and elastic + inertial forces, 0 where a component sleeps. rotated:
+ * see gxsp_pass */
 static void gxsp_evaluate_elements(gxsp_system *system, double rate, const double *from, const double *turned,
                                    int nudge, double *force) {
     gxsp_pass pass;
@@ -4890,7 +4901,7 @@ static void gxsp_evaluate_elements(gxsp_system *system, double rate, const doubl
 
 /* In and out: a few numbers at a time. Vector code stands beside plain C that computes the same. */
 
-/* By whole vectors: narrower stores would not be forwarded to the loads that soon follow. */
+/* Stores whole vectors: processors cannot forward narrower stores to the wide loads that soon follow. */
 static inline void gxsp_transpose_block(const float *GXSP_RESTRICT a, float *GXSP_RESTRICT transposed) {
 #if defined(GXSP_SHUFFLES) && defined(__AVX__)
     const gxsp_eight all = *(const gxsp_eight *)a;
@@ -4935,7 +4946,7 @@ static inline void gxsp_add_four(float a, const float *GXSP_RESTRICT x, float *G
 
 static void gxsp_add_mass(float mass, float *to) { to[0] += mass, to[4] += mass, to[8] += mass; }
 
-/* y -= a x; the fourth of y is without meaning, as is what follows a */
+/* y -= a x. The fourth number of y has no meaning, nor has the one behind a. */
 static void gxsp_subtract_block(const float *GXSP_RESTRICT a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y) {
     int k;
     for (k = 0; k < 4; k++) y[k] -= a[k] * x[0] + a[3 + k] * x[1] + a[6 + k] * x[2];
@@ -5077,7 +5088,7 @@ static void gxsp_add_lanes(const uint16_t *entry, gxsp_singles *block, float (*t
 /* In: the last linearisation and a vector. Out: the product on copies that follow nothing; what sleeps counts as
  * 0. */
 
-/* x of a block's corners; of those that are not fresh it is there from the block before */
+/* x of a block's corners. A corner that has not changed since the block before keeps its values. */
 static void gxsp_block_gather(const gxsp_chunk *chunk, uint32_t b, const gxsp_vector4 *GXSP_RESTRICT x,
                               gxsp_singles *GXSP_RESTRICT to) {
     const gxsp_corners *corner = &chunk->corners[b];
@@ -5086,7 +5097,8 @@ static void gxsp_block_gather(const gxsp_chunk *chunk, uint32_t b, const gxsp_ve
         if (chunk->changed[b] >> i & 1) gxsp_gather_eight(corner->node[i], x, to[3 * i], to[3 * i + 1], to[3 * i + 2]);
 }
 
-/* What a block adds to its corners, and 0 in its place; what those get that the next block has too stays. */
+/* Adds a block's result to its corners, and sets it to 0. The result at a corner that the next block has too is
+ * kept for it. */
 static void gxsp_block_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_singles *GXSP_RESTRICT from,
                                gxsp_vector4 *GXSP_RESTRICT y) {
     const gxsp_corners *corner = &chunk->corners[b];
@@ -5191,8 +5203,8 @@ static double gxsp_add_terms(const gxsp_lasting *lasting, float sign, gxsp_vecto
     return work;
 }
 
-/* y = A x, or right - A x unless right is NULL, A = scale (K + rate M), K the projected Hessian of the last
- * linearisation, on copies that follow nothing; x of followers is written too. right: 0 where nothing moves;
+/* y = A x, or right - A x unless right is NULL, with A = scale (K + rate M), K the Hessian of the last
+ * linearisation, on copies that follow nothing. x of followers is written too. right: 0 where nothing moves;
  * matrix-free only. Returns x . A x. */
 static double gxsp_product_from(gxsp_system *system, double rate, const double *right, gxsp_vector4 *x,
                                 gxsp_vector4 *y) {
@@ -5226,8 +5238,8 @@ static double gxsp_product(gxsp_system *system, double rate, gxsp_vector4 *x, gx
 /* In: the last linearisation and a direction. Out: the product, with what sleeps. Differences between an
  * element's corners are taken in double precision. */
 
-/* How a direction moves a copy, times pass->factor: as it says, as its masters' make it if it follows them, not at all
- * if it is fixed */
+/* Motion of a copy by a direction, times pass->factor: the direction's own, that of its masters if it follows them,
+ * 0 if it is fixed */
 static void gxsp_copy_direction(const gxsp_pass *pass, uint32_t copy, double *GXSP_RESTRICT to) {
     const gxsp_system *system = pass->system;
     const double *from = pass->from + 3 * (size_t)copy;
@@ -5246,7 +5258,7 @@ static void gxsp_copy_direction(const gxsp_pass *pass, uint32_t copy, double *GX
     }
 }
 
-/* The first three of four doubles less those of origin, in single precision */
+/* The first three of four doubles minus those of origin, in single precision */
 static inline void gxsp_narrow_four(const double *x, const double *origin, float *to) {
 #if defined(GXSP_SHUFFLES)
     *(gxsp_four *)to =
@@ -5257,8 +5269,8 @@ static inline void gxsp_narrow_four(const double *x, const double *origin, float
 #endif
 }
 
-/* What a block's corner 0 has and what the others have more; where neither is fresh it is there from the block before.
- * in: x 3, and one more double */
+/* x of a block's corner 0, and of the others relative to it. Where neither corner has changed since the block
+ * before, values are kept. in: x 3, and one more double */
 static void gxsp_block_gather_doubles(const gxsp_chunk *chunk, uint32_t b, const double *GXSP_RESTRICT in,
                                       gxsp_singles *GXSP_RESTRICT to) {
     const gxsp_corners *corner = &chunk->corners[b];
@@ -5298,7 +5310,7 @@ static void gxsp_task_apply(void *context, size_t index) {
     }
 }
 
-/* pass->sum = the product, from the slots, and what lumped masses make of it */
+/* pass->sum = the product, from the slots and from lumped masses */
 static void gxsp_task_apply_sum(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
@@ -5338,7 +5350,7 @@ static int gxsp_tangents_finite(const gxsp_system *system) {
 /* In: a displacement. Out: the tangents of all blocks, gxsp_vectors.diagonal, and whether an element has
  * collapsed. */
 
-/* Diagonal blocks of a block's Hessian, packed: own[6 corner ...] += */
+/* Adds the diagonal blocks of a block's Hessian, packed, to own[6 corner ...]. */
 static void gxsp_block_diagonal(const gxsp_chunk *chunk, uint32_t b, gxsp_singles *own) {
     static const int diagonal[3] = {0, 3, 5};
     const gxsp_tangent *tangent = &chunk->tangents[b];
@@ -5357,8 +5369,8 @@ static void gxsp_block_diagonal(const gxsp_chunk *chunk, uint32_t b, gxsp_single
     }
 }
 
-/* Diagonal blocks into the chunk's slots, 6 floats each, and 0 in their place; those of corners that the next block has
- * too stay. */
+/* Adds diagonal blocks to the chunk's slots, 6 floats each, and sets them to 0. Those of corners that the next
+ * block has too are kept for it. */
 static void gxsp_diagonal_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_singles *GXSP_RESTRICT own,
                                   float *GXSP_RESTRICT slots) {
     int corner, k, l;
@@ -5412,10 +5424,10 @@ static void gxsp_task_linearise(void *context, size_t index) {
     }
 }
 
-/* Inverse of a positive semi-definite 3x3, packed in place, as W^T W with W the inverse Cholesky factor: semi-definite
- * in spite of rounding. 1e-7 of the trace is added (the entries are sums in single precision), so that a direction
- * without stiffness gives a large number, not an infinite one. Zero stays zero: such a copy is left alone; what is not
- * finite stays so. */
+/* Inverse of a positive semi-definite 3x3, packed, in place, as W^T W with W the inverse Cholesky factor:
+ * semi-definite in spite of rounding. 1e-7 of the trace is added, since the entries are sums in single precision: a
+ * direction without stiffness gives a large number, not an infinite one. Zero stays zero: such a copy is left
+ * alone. What is not finite stays so. */
 static void gxsp_invert3(double *a) {
     const double shift = 1e-7;
     double trace = a[0] + a[3] + a[5], scale, l00, l10, l20, l11, l21, l22, w10, w20, w21;
@@ -5467,7 +5479,7 @@ static void gxsp_task_diagonal(void *context, size_t index) {
     }
 }
 
-/* Springs, contact and followers add to the diagonal blocks: all goes to a copy's first slot, from which the blocks are
+/* Adds springs, contact and followers to the diagonal blocks: to a copy's first slot, from which the blocks are
  * summed. */
 static void gxsp_extra_diagonal(gxsp_system *system) {
     float *slots = (float *)(void *)system->vectors.slots;
@@ -5501,7 +5513,7 @@ static void gxsp_extra_diagonal(gxsp_system *system) {
             memset(slots + 6 * (size_t)system->mesh.copy_slot[s], 0, 6 * sizeof *slots);
 }
 
-/* Hessian of the elements, times scale, and inverse block diagonal at a displacement. 0 if a number overflowed. */
+/* Hessian of the elements, times scale, and inverse block diagonal at a displacement. 0: a number overflowed. */
 static int gxsp_linearise(gxsp_system *system, double rate, const double *from, int exact, int *collapsed) {
     gxsp_pass pass;
     size_t i;
@@ -5526,8 +5538,7 @@ static int gxsp_linearise(gxsp_system *system, double rate, const double *from, 
 /* In: the last linearisation, or a level's matrix. Out: the next level's matrix. Level 1's is made chunk by chunk
  * from the elements, in shared memory, without an assembled matrix. */
 
-/* A block by rows, with its mass, to one by columns: that of the lower node's row, where corners p and q have the nodes
- */
+/* Turns a block by rows into one by columns, for the row of the lower of the two nodes p and q, and adds its mass. */
 static void gxsp_order_block(const uint16_t *GXSP_RESTRICT p, const uint16_t *GXSP_RESTRICT q,
                              const float *GXSP_RESTRICT mass, gxsp_singles *GXSP_RESTRICT block) {
     int l;
@@ -5542,7 +5553,7 @@ static void gxsp_order_block(const uint16_t *GXSP_RESTRICT p, const uint16_t *GX
     }
 }
 
-/* Half the row sums of a block's masses to its nodes */
+/* Adds half the row sums of a block's masses to its nodes. */
 static void gxsp_own_mass(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_t b) {
     const gxsp_moments *moments = gxsp_block_moments(chunk, b);
     gxsp_singles of[4], half;
@@ -5555,7 +5566,7 @@ static void gxsp_own_mass(gxsp_edges *edges, const gxsp_chunk *chunk, uint32_t b
     }
 }
 
-/* The edges of a chunk, with lists by node, and all their numbers 0 */
+/* The edges of a chunk, with lists by node. Their numbers are 0. */
 static void gxsp_edges_clear(gxsp_edges *edges, const gxsp_chunk *chunk) {
     uint32_t b, e;
     gxsp_edges_begin(edges, chunk);
@@ -5573,8 +5584,8 @@ static void gxsp_edges_clear(gxsp_edges *edges, const gxsp_chunk *chunk) {
     memset(edges->mass, 0, edges->nodes * sizeof *edges->mass);
 }
 
-/* Blocks of a chunk's edges: the Hessian of its elements, of i's row and j's column, with their mass; and the nodes'
- * mass */
+/* Blocks of a chunk's edges: the Hessian of its elements in i's row and j's column, with their mass; and the masses
+ * of nodes */
 static void gxsp_edge_blocks(gxsp_system *system, const gxsp_chunk *chunk) {
     gxsp_edges *edges = &system->multigrid.edges;
     uint32_t b;
@@ -5618,8 +5629,8 @@ static uint32_t gxsp_pair_entry(const gxsp_pairs *pairs, const gxsp_level *next,
     return row <= column ? 2 * gxsp_find_entry(next, row, column) : 2 * gxsp_find_entry(next, column, row) + 1;
 }
 
-/* A block of node i's row and another's column, times the transfer, to edges->half. Returns how many numbers are
- * touched, of which count were. */
+/* Adds a block in node i's row and another node's column, times the transfer, to edges->half. count: numbers
+ * touched so far. Returns how many are. */
 static inline uint32_t gxsp_add_half(const gxsp_system *system, uint32_t i, uint32_t other, const float *weight,
                                      const float *block, uint32_t count) {
     const gxsp_edges *edges = &system->multigrid.edges;
@@ -5635,9 +5646,9 @@ static inline uint32_t gxsp_add_half(const gxsp_system *system, uint32_t i, uint
     return count;
 }
 
-/* Node i's row of S, where the Hessian is S + S^T, times the transfer, in edges->half by number; S has the edges to
- * higher nodes and half of what is on the diagonal. Rows of stiffness add up to 0, so that this half is half the mass
- * less half of all the node's edges, turned or not. Returns how many numbers are touched. */
+/* Node i's row of S, where the Hessian is S + S^T, times the transfer, in edges->half by number. S has the edges to
+ * higher nodes and half the diagonal. Rows of stiffness add up to 0: hence half the diagonal is half the mass minus
+ * half the sum of the node's edges, transposed or not. Returns how many numbers are touched. */
 static uint32_t gxsp_half_row(gxsp_system *system, const uint32_t *copies, uint32_t i) {
     const gxsp_level *fine = &system->multigrid.levels[0];
     gxsp_edges *edges = &system->multigrid.edges;
@@ -5653,8 +5664,8 @@ static uint32_t gxsp_half_row(gxsp_system *system, const uint32_t *copies, uint3
     return gxsp_add_half(system, i, i, fine->weight[copies[i]], edges->own[i], count);
 }
 
-/* A node's part of level 1's matrix; of a coarse node's own entry half, to which its turned half is missing. dirty: of
- * entries in rows or columns of dirty nodes only */
+/* Adds a node's contribution to level 1's matrix. A coarse node's own entry only gets half, to which its transpose
+ * is added later. dirty: only entries in rows or columns of dirty nodes */
 static void gxsp_coarse_node(gxsp_system *system, const uint32_t *copies, uint32_t i, const uint8_t *dirty) {
     const float *weight = system->multigrid.levels[0].weight[copies[i]];
     const gxsp_pairs *pairs = &system->multigrid.pairs;
@@ -5679,8 +5690,8 @@ static void gxsp_coarse_node(gxsp_system *system, const uint32_t *copies, uint32
     }
 }
 
-/* Level 1's matrix from the last linearisation. dirty: only the rows and columns of dirty nodes, whose blocks are 0;
- * NULL: all */
+/* Level 1's matrix from the last linearisation. dirty: only the rows and columns of dirty nodes, whose blocks are 0
+ * before; NULL: all */
 static void gxsp_coarse_elements(gxsp_system *system, const uint8_t *dirty) {
     gxsp_level *next = &system->multigrid.levels[1];
     uint32_t c, i;
@@ -5701,8 +5712,8 @@ static void gxsp_coarse_elements(gxsp_system *system, const uint8_t *dirty) {
         }
 }
 
-/* A node's row, its own block halved, times the transfer, in pairs->half by node of the next level. Returns how many
- * are touched; which, is in pairs->node. */
+/* A node's row, its own block halved, times the transfer, in pairs->half by node of the next level. pairs->node
+ * lists the touched ones. Returns how many there are. */
 static uint32_t gxsp_level_half_row(const gxsp_level *level, gxsp_pairs *pairs, uint32_t i) {
     uint32_t k, b, count = 0;
     int m;
@@ -5723,7 +5734,7 @@ static uint32_t gxsp_level_half_row(const gxsp_level *level, gxsp_pairs *pairs, 
     return count;
 }
 
-/* next's matrix = transfer^T A transfer = S + S^T, S of A's upper half */
+/* next's matrix = transfer^T A transfer = S + S^T, with S from A's upper half */
 static void gxsp_coarsen(const gxsp_level *level, gxsp_level *next, gxsp_pairs *pairs) {
     uint32_t i, a, t, count;
     memset(next->block, 0, 9 * (size_t)next->start[next->n] * sizeof *next->block);
@@ -5786,7 +5797,7 @@ static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term) {
 /* In: level 1's matrix. Out: the matrices and inverse diagonals of all levels, the factor of the last one. 0 is
  * returned if a number overflowed. */
 
-/* Inverse of a symmetric block, packed; 0 where single precision makes nothing of it. 0 if a number overflowed. */
+/* Inverse of a symmetric block, packed; 0 where single precision has no inverse. Returns 0 if a number overflowed. */
 static int gxsp_invert_block(const float *block, float *inverse) {
     static const int packed[6] = {0, 3, 6, 4, 7, 8};
     double sum[6];
@@ -5801,8 +5812,7 @@ static int gxsp_invert_block(const float *block, float *inverse) {
     return 1;
 }
 
-/* The diagonal raised by its share, of dirty nodes only unless dirty is NULL, and inverted. 0 if a number overflowed.
- */
+/* Adds GXSP_SHIFT to the diagonal, of dirty nodes only unless dirty is NULL, and inverts it. 0: a number overflowed. */
 static int gxsp_invert_diagonal(gxsp_level *level, const uint8_t *dirty) {
     uint32_t i;
     for (i = 0; i < level->n; i++) {
@@ -5813,7 +5823,7 @@ static int gxsp_invert_diagonal(gxsp_level *level, const uint8_t *dirty) {
     return 1;
 }
 
-/* A level's matrix into the lower half of the factor's envelope. place: n, scratch */
+/* Copies a level's matrix into the lower half of the factor's envelope. place: n, scratch */
 static void gxsp_fill_factor(gxsp_factor *factor, const gxsp_level *level, uint32_t *place) {
     uint32_t i, k, r, c;
     memset(factor->entry, 0, factor->entry_count * sizeof *factor->entry);
@@ -5828,7 +5838,7 @@ static void gxsp_fill_factor(gxsp_factor *factor, const gxsp_level *level, uint3
                 }
 }
 
-/* dots[3 r + c] = sum of row r of a, of three that are n apart, times row c of b, four sums side by side */
+/* dots[3 r + c] = row r of a times row c of b, in four sums side by side. The three rows of a are n apart. */
 static void gxsp_nine_dots(const double *GXSP_RESTRICT a, size_t n, const float *const *b, size_t count,
                            double *GXSP_RESTRICT dots) {
     size_t k = 0;
@@ -5891,7 +5901,7 @@ static void gxsp_factor_left(gxsp_factor *factor, uint32_t i) {
     }
 }
 
-/* Columns of a node's own in row i + r, whose other columns are known. 0 if a number overflowed. */
+/* A node's own columns in row i + r, once its other columns are known. 0: a number overflowed. */
 static int gxsp_factor_own(gxsp_factor *factor, uint32_t i, uint32_t r) {
     const uint32_t first = factor->first[i / 3];
     float *row = gxsp_factor_row(factor, i + r);
@@ -5908,11 +5918,11 @@ static int gxsp_factor_own(gxsp_factor *factor, uint32_t i, uint32_t r) {
     return gxsp_finite_single(row[j]);
 }
 
-/* Cholesky of the last level, node by node. Without rounding no pivot is below GXSP_SHIFT of its diagonal. One below
- * half of that is rounding (of pieces that are small beside the lattice, whose coarse functions are nearly alike): its
- * unknown is left out, for with any other pivot later entries could grow without bound. Entries are of single
- * precision, which leaves the product of the factors positive semi-definite; the rows at work are of double. 0 if a
- * number overflowed. */
+/* Cholesky of the last level, node by node. Without rounding no pivot is below GXSP_SHIFT of its diagonal. One
+ * below half of that is rounding, as in components that are small beside the lattice, whose coarse functions are
+ * nearly alike: its unknown is left out, for any other pivot would let later entries grow without bound. Entries
+ * are single precision, which leaves the product of the factors positive semi-definite; the rows at work are
+ * double. 0: a number overflowed. */
 static int gxsp_factorise(gxsp_factor *factor, const gxsp_level *level, uint32_t *place) {
     uint32_t i, r;
     gxsp_fill_factor(factor, level, place);
@@ -5924,8 +5934,8 @@ static int gxsp_factorise(gxsp_factor *factor, const gxsp_level *level, uint32_t
     return 1;
 }
 
-/* What follows from level 1's matrix. dirty: nodes of level 1 whose numbers are new; NULL: all are. 0 if a number
- * overflowed. */
+/* All numbers that follow from level 1's matrix. dirty: nodes of level 1 whose numbers are new; NULL: all are. 0: a
+ * number overflowed. */
 static int gxsp_lower_numbers(gxsp_system *system, const uint8_t *dirty) {
     uint32_t at;
     for (at = 1; at < system->multigrid.level_count; at++) {
@@ -5937,7 +5947,7 @@ static int gxsp_lower_numbers(gxsp_system *system, const uint8_t *dirty) {
                           system->multigrid.pairs.local);
 }
 
-/* The matrices of all coarse levels from the last linearisation. 0 if a number overflowed. */
+/* The matrices of all coarse levels from the last linearisation. 0: a number overflowed. */
 static int gxsp_coarse_numbers(gxsp_system *system, double rate) {
     gxsp_level *fine = &system->multigrid.levels[0];
     int finite;
@@ -5961,7 +5971,7 @@ static int gxsp_coarse_numbers(gxsp_system *system, double rate) {
 
 /* In: the last linearisation. Out: levels[0].block and its inverse diagonal; GXS_MATRIX_ASSEMBLED only. */
 
-/* Adds a corner pair's block, on and above the diagonal, where corners follow others. same: both are one corner */
+/* Adds a corner pair's block, on and above the diagonal, where corners follow others. same: both corners are one */
 static void gxsp_assemble_following(gxsp_system *system, uint32_t p, uint32_t q, int same, const float *block) {
     gxsp_level *fine = &system->multigrid.levels[0];
     uint32_t a[4], b[4];
@@ -5980,7 +5990,7 @@ static void gxsp_assemble_following(gxsp_system *system, uint32_t p, uint32_t q,
         }
 }
 
-/* A block's elements, of which each lane's corner pair adds to one entry, or to those of its masters */
+/* Adds a block's elements. Each lane's corner pair adds to one entry, or to those of its masters. */
 static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, uint32_t b) {
     gxsp_level *fine = &system->multigrid.levels[0];
     const gxsp_corners *corner = &chunk->corners[b];
@@ -6008,7 +6018,8 @@ static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, ui
     }
 }
 
-/* Adds a spring or contact, on and above the diagonal, if the matrix has entries for all of it. Has it? */
+/* Adds a spring or contact, on and above the diagonal, if the matrix has all the entries it needs. Returns whether
+ * it has. */
 static int gxsp_assemble_term(gxsp_system *system, const gxsp_term *term) {
     static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
     gxsp_level *fine = &system->multigrid.levels[0];
@@ -6057,8 +6068,8 @@ static void gxsp_assemble(gxsp_system *system, double rate) {
         system->lasting->term[t].assembled = gxsp_assemble_term(system, &system->lasting->term[t]);
 }
 
-/* Inverse diagonal blocks of the assembled matrix with springs and contact, for block Gauss-Seidel. 0 where nothing
- * moves. 0 if a number overflowed. */
+/* Inverse diagonal blocks of the assembled matrix with springs and contact, for block Gauss-Seidel; 0 where nothing
+ * moves. Returns 0 if a number overflowed. */
 static int gxsp_invert_fine(gxsp_system *system) {
     static const int packed[6] = {0, 3, 6, 4, 7, 8}, full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
     gxsp_level *fine = &system->multigrid.levels[0];
@@ -6087,8 +6098,8 @@ static int gxsp_invert_fine(gxsp_system *system) {
 
 /* In: the last linearisation and its block diagonal. Out: gxsp_smoother. Uses the search and product vectors. */
 
-/* Largest eigenvalue of D^-1 (K + rate M) on what is not still, by the power method from a start that favours none; 0
- * if nothing moves */
+/* Largest eigenvalue of D^-1 (K + rate M) on copies that are not still, by the power method from a start that
+ * favours none; 0 if nothing moves */
 static double gxsp_largest_eigenvalue(gxsp_system *system, double rate) {
     gxsp_vector4 *x = system->vectors.search, *y = system->vectors.product;
     uint32_t random = 1;
@@ -6122,8 +6133,8 @@ static double gxsp_largest_eigenvalue(gxsp_system *system, double rate) {
     return largest;
 }
 
-/* The smoother's step length: 3/2 of the inverse of the spectrum's end, which conjugate gradients like better than the
- * 4/3 that damp its upper half most. An eigenvalue a third larger would still leave the cycle definite. */
+/* The smoother's step length: 3/2 over the largest eigenvalue. Conjugate gradients prefer it to the 4/3 that damp
+ * the upper half of the spectrum most. An eigenvalue a third larger would leave the cycle definite. */
 static float gxsp_omega(const gxsp_system *system, double largest) {
     largest = largest > 0 ? 1.05 * largest : 4;
     if (largest > 4 && system->model.follower_count == 0) /* no element's own D^-1 K exceeds 4 */
@@ -6131,7 +6142,7 @@ static float gxsp_omega(const gxsp_system *system, double largest) {
     return (float)(1.5 / largest);
 }
 
-/* Shortens the step length where the cycle might become indefinite where updates have changed the operator: elsewhere
+/* Shortens the step length if the cycle might become indefinite where updates have changed the operator. Elsewhere
  * the largest eigenvalue is no larger than it was. */
 static void gxsp_renew_omega(gxsp_system *system, double rate) {
     double largest;
@@ -6149,7 +6160,7 @@ static void gxsp_renew_omega(gxsp_system *system, double rate) {
     gxsp_mark_still(system);
 }
 
-/* The step length for the solve to come */
+/* The step length for the next solve */
 static void gxsp_choose_omega(gxsp_system *system, double rate) {
     if (!(system->smoother.omega > 0))
         system->smoother.found = gxsp_omega(system, gxsp_largest_eigenvalue(system, rate));
@@ -6160,9 +6171,9 @@ static void gxsp_choose_omega(gxsp_system *system, double rate) {
     if (system->smoother.cautious == 0) system->smoother.omega = system->smoother.found;
 }
 
-/* The smoother's step length that keeps the cycle definite at any state: no element's own D^-1 K exceeds 4, and so no
- * sum of them; but for followers, with what was met. quotient: x . A x / x . D x of an x, by which the length so far
- * was too large; 0: not known */
+/* Sets the step length that keeps the cycle definite at any state: no element's own D^-1 K exceeds 4, and so no sum
+ * of them does; with followers it may, and the quotient met counts. quotient: x . A x / x . D x of an x for which
+ * the length was too large; 0: not known */
 static void gxsp_shorten_omega(gxsp_system *system, double quotient) {
     const double largest = system->model.follower_count > 0 && 1.25 * quotient > 4 ? 1.25 * quotient : 4;
     system->smoother.omega = (float)(1.5 / largest);
@@ -6177,8 +6188,7 @@ static void gxsp_shorten_omega(gxsp_system *system, double quotient) {
  * upper half of its block rows. Block Gauss-Seidel goes forward before the coarse correction and backward after
  * it, in the order of the nodes, so that the whole is symmetric. */
 
-/* r = b without what the entries left of the diagonal make of x; if solve is set, x is solved for on the way, row by
- * row. */
+/* r = b minus the entries left of the diagonal times x. solve: x is solved for on the way, row by row */
 static void gxsp_sweep_lower(gxsp_level *level, int solve) {
     uint32_t i, k;
     memcpy(level->r, level->b, level->n * sizeof *level->r);
@@ -6189,8 +6199,8 @@ static void gxsp_sweep_lower(gxsp_level *level, int solve) {
     }
 }
 
-/* x from 0 by one forward sweep: only the rows' entries left of the diagonal count. What the sweep leaves of b is then
- * minus the entries right of the diagonal times x. */
+/* x from 0 by one forward sweep, for which only entries left of the diagonal count. The residual then is minus the
+ * entries right of the diagonal times x. */
 static void gxsp_sweep_forward(gxsp_level *level) {
     uint32_t i, k;
     gxsp_sweep_lower(level, 1);
@@ -6284,9 +6294,9 @@ static void gxsp_task_smooth(void *context, size_t index) {
     }
 }
 
-/* scaled = V-cycle of the residual. Level 0 is smoothed by omega D^-1, once on entry, see gxsp_scale, or by block
- * Gauss-Seidel if it is assembled. A state in violent motion may have a larger eigenvalue than omega was found for: the
- * residual, in which it grows, shows it. energy: residual . D^-1 residual; scratch: product */
+/* scaled = V-cycle of the residual. Level 0 is smoothed by omega D^-1, once on entry (see gxsp_scale), or by block
+ * Gauss-Seidel if it is assembled. In violent motion the largest eigenvalue may exceed the one for which omega was
+ * found: the residual grows in it and shows it. energy: residual . D^-1 residual; product: scratch */
 static void gxsp_v_cycle(gxsp_system *system, double rate, double energy) {
     gxsp_level *fine = &system->multigrid.levels[0];
     gxsp_pass pass;
@@ -6320,7 +6330,7 @@ static void gxsp_v_cycle(gxsp_system *system, double rate, double energy) {
  * further ones go to chunks at the end. Chunks in which nothing has changed only get the new numbers of their
  * copies. */
 
-/* A lane whose element goes */
+/* A lane whose element goes, comes or is replaced */
 typedef struct gxsp_edit {
     uint32_t chunk, lane, group;
     uint32_t element; /* of the change: what takes the lane; GXSP_NONE: nothing does */
@@ -6340,11 +6350,12 @@ typedef struct gxsp_renewal {
     uint8_t *alike;                          /* change->copy_count: the copy follows what it followed */
 } gxsp_renewal;
 
-/* Groups that change: a bit for each, of as many low bits of their numbers as make GXSP_FILTER */
+/* Groups that change: a bit for each, indexed by the low bits of their numbers */
 typedef struct gxsp_filter {
     uint64_t bit[GXSP_FILTER / 64];
 } gxsp_filter;
 
+/* Does a group change? */
 static int gxsp_changes(const gxs_change *change, const gxsp_filter *filter, uint32_t group) {
     size_t low = 0, high = change->group_count;
     if (!(filter->bit[group % GXSP_FILTER / 64] >> group % 64 & 1)) return 0;
@@ -6393,14 +6404,14 @@ static void gxsp_find_edits(gxsp_renewal *update) {
     update->edit_count = count;
 }
 
-/* Before copies are moved */
+/* Class of an element of the change. Called before copies are moved */
 static uint32_t gxsp_class_of(const gxsp_renewal *update, const gxs_element *element) {
     const gxsp_system *system = update->system;
     return gxsp_class(system->model.materials[element->material].kind, element, 0, system->model.positions,
                       update->change->origins);
 }
 
-/* Elements take the lanes of their group as far as these are of their class. */
+/* Gives elements the lanes of their group, as far as these are of their class. */
 static void gxsp_match_edits(gxsp_renewal *update) {
     const gxs_change *change = update->change;
     uint32_t first = 0, e, i;
@@ -6423,7 +6434,7 @@ static void gxsp_match_edits(gxsp_renewal *update) {
     }
 }
 
-/* Copies around what goes, and the coarse nodes that these follow */
+/* Touches the copies around elements that go, and marks the coarse nodes that these follow as dirty. */
 static void gxsp_touch_removed(gxsp_renewal *update) {
     const gxsp_system *system = update->system;
     uint32_t i, copies[4];
@@ -6458,7 +6469,7 @@ static void gxsp_empty_lane(const gxsp_chunk *chunk, uint32_t lane) {
         chunk->gradients[lane / GXSP_LANES].entry[k][l] = 0; /* wherever its corners are: F = 1 */
 }
 
-/* A new chunk at the end, without a block in use but with room for all that a chunk can have */
+/* A new chunk at the end. No block is in use, but there is memory for all that a chunk can have. */
 static gxsp_chunk *gxsp_open_chunk(gxsp_system *system, uint32_t class_index) {
     gxsp_pool *pool = &system->pool;
     gxsp_chunk *chunk;
@@ -6478,7 +6489,7 @@ static gxsp_chunk *gxsp_open_chunk(gxsp_system *system, uint32_t class_index) {
     return chunk;
 }
 
-/* A free lane of the open chunk at index, or GXSP_NONE */
+/* The first free lane of a chunk from a lane on, or GXSP_NONE */
 static uint32_t gxsp_free_lane(gxsp_chunk *chunk, uint32_t from) {
     uint32_t lane;
     for (lane = from; lane < chunk->block_count * GXSP_LANES; lane++)
@@ -6494,7 +6505,7 @@ static uint32_t gxsp_find_open(const gxsp_system *system, uint32_t class_index) 
     return system->mesh.chunk_count;
 }
 
-/* Lanes of the class's open chunk, or of new ones, for those elements without a hole that are of this class */
+/* Puts those elements of a class that took no lane of their group into its open chunk, or into new ones. */
 static void gxsp_place_class(gxsp_renewal *update, uint32_t class_index) {
     gxsp_system *system = update->system;
     uint32_t i, l, c = gxsp_find_open(system, class_index), lane = 0;
@@ -6521,7 +6532,7 @@ static void gxsp_place_class(gxsp_renewal *update, uint32_t class_index) {
     }
 }
 
-/* Elements in their lanes; corners and nodes still are what they were. */
+/* Puts elements into their lanes. Corners and nodes stay as they were. */
 static void gxsp_replace_elements(gxsp_renewal *update) {
     uint32_t i, class_index;
     for (i = 0; i < update->edit_count; i++) {
@@ -6536,8 +6547,8 @@ static void gxsp_replace_elements(gxsp_renewal *update) {
         gxsp_place_class(update, class_index);
 }
 
-/* Nodes of a chunk of which lanes have changed. next: by hole, the next one of its chunk. 0: an element that stays has
- * lost a copy. */
+/* Nodes of a chunk whose lanes have changed. edit: the chunk's first; next: the next edit of the same chunk. 0: an
+ * element that stays has lost a copy. */
 static int gxsp_renew_chunk(gxsp_renewal *update, gxsp_chunk *chunk, uint32_t edit, const uint32_t *next,
                             gxsp_numbers *numbers, uint32_t *nodes) {
     const gxsp_system *system = update->system;
@@ -6566,7 +6577,7 @@ static int gxsp_renew_chunk(gxsp_renewal *update, gxsp_chunk *chunk, uint32_t ed
     return 1;
 }
 
-/* Nodes of a chunk joined by its elements: by node, the least one that it is joined with */
+/* Joins nodes of a chunk by its elements. roots: by node, the least node that it is joined with */
 static void gxsp_find_roots(const gxsp_chunk *chunk, uint16_t *roots) {
     uint32_t forest[GXSP_CHUNK * 4], i, lane;
     int k;
@@ -6631,7 +6642,7 @@ static int gxsp_renew_nodes(gxsp_renewal *update) {
 /* In: new numbers of copies, touched copies. Out: the columns over copies in their new order, masses, followers,
  * light copies and components. */
 
-/* What copies so far have become. 0: two say that they are one, or one is not held as before. */
+/* The new number of each copy so far. 0: two copies have the same origin, or a copy is not held as before. */
 static int gxsp_find_successors(gxsp_renewal *update) {
     const gxs_change *change = update->change;
     uint32_t i;
@@ -6649,7 +6660,7 @@ static int gxsp_find_successors(gxsp_renewal *update) {
     return 1;
 }
 
-/* What is known of copies, for those there are from now on */
+/* Brings the columns over copies into the new numbering. */
 static void gxsp_move_copies(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     const gxs_change *change = update->change;
@@ -6668,7 +6679,7 @@ static void gxsp_move_copies(gxsp_renewal *update) {
     system->model.range_count = (system->model.n + GXSP_RANGE - 1) / GXSP_RANGE;
 }
 
-/* A follower is as it was, but for the numbers of copies? */
+/* Is a follower the same as before, but for the numbers of copies? */
 static int gxsp_follows_alike(const gxsp_renewal *update, const gxsp_follower *follower,
                               const gxs_constraint *constraint) {
     int k;
@@ -6677,8 +6688,8 @@ static int gxsp_follows_alike(const gxsp_renewal *update, const gxsp_follower *f
     return memcmp(follower->weight, constraint->weight, sizeof follower->weight) == 0;
 }
 
-/* Copies that follow others from now on or no more, and what they follow, are touched, and the coarse nodes of both;
- * not those of which all is alike. */
+/* Touches copies that begin or cease to follow others, and their masters, and marks the coarse nodes of both as
+ * dirty. Followers that are the same as before are left out. */
 static void gxsp_touch_followers(gxsp_renewal *update) {
     const gxsp_system *system = update->system;
     const gxs_change *change = update->change;
@@ -6740,7 +6751,7 @@ static void gxsp_recount_copies(const gxsp_renewal *update) {
     for (i = 0; i < system->model.n; i++) system->model.fixed[i] |= system->model.held[i];
 }
 
-/* Light copies, by their numbers of now */
+/* Light copies, in the new numbering */
 static void gxsp_renew_lights(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     uint32_t i, count = 0;
@@ -6753,7 +6764,7 @@ static void gxsp_renew_lights(gxsp_renewal *update) {
     gxsp_list_lights(system, update->scratch, update->touched);
 }
 
-/* Pieces, of which those sleep that are parts of sleeping ones: what has touched them wakes them again */
+/* Components. Those made of sleeping ones sleep; touched ones are woken later. */
 static void gxsp_renew_components(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     uint32_t *forest = (uint32_t *)gxsp_take(update->scratch, system->model.n, sizeof(uint32_t)), c, i, p;
@@ -6787,7 +6798,7 @@ static void gxsp_renew_components(gxsp_renewal *update) {
 /* In: dirty nodes of level 1: those that touched copies follow. Out: clusters of dirty nodes, new levels below
  * the model, and numbers. Numbers of entries between other nodes are copied. */
 
-/* Copies i and j are neighbours: they belong to one component of each dirty node that both follow. */
+/* Copies i and j are neighbours: they are in one cluster of each dirty node that both follow. */
 static void gxsp_join_parents(const gxsp_renewal *update, uint32_t i, uint32_t j, uint32_t *forest) {
     const gxsp_level *fine = &update->system->multigrid.levels[0];
     uint32_t p, q;
@@ -6800,7 +6811,7 @@ static void gxsp_join_parents(const gxsp_renewal *update, uint32_t i, uint32_t j
     }
 }
 
-/* Of components that touched copies belong to, what is joined now. forest: n x 4 */
+/* Joins the clusters of dirty nodes anew. forest: n x 4 */
 static void gxsp_join_dirty(gxsp_renewal *update, uint32_t *forest) {
     gxsp_system *system = update->system;
     const gxsp_level *fine = &system->multigrid.levels[0];
@@ -6820,8 +6831,8 @@ static void gxsp_join_dirty(gxsp_renewal *update, uint32_t *forest) {
                               forest);
 }
 
-/* Dirty coarse nodes fall apart: the first component of each keeps its number, further ones get new ones. from: n x 4,
- * room: by new node, which one it was part of. Returns how many nodes there are. */
+/* Splits dirty coarse nodes into clusters: the first one of each node keeps its number, others get new ones. from:
+ * n x 4, room: by new node, the node that it was part of. Returns the number of nodes. */
 static uint32_t gxsp_number_dirty(gxsp_renewal *update, uint32_t *forest, uint32_t *from) {
     gxsp_system *system = update->system;
     const gxsp_level *fine = &system->multigrid.levels[0];
@@ -6843,7 +6854,7 @@ static uint32_t gxsp_number_dirty(gxsp_renewal *update, uint32_t *forest, uint32
     return count;
 }
 
-/* Copies that nothing moves any more follow nothing. */
+/* Copies that nothing moves any more have no parents. */
 static void gxsp_drop_fixed(const gxsp_renewal *update) {
     gxsp_level *fine = &update->system->multigrid.levels[0];
     uint32_t i;
@@ -6854,7 +6865,7 @@ static void gxsp_drop_fixed(const gxsp_renewal *update) {
         }
 }
 
-/* Blocks of level 1's entries between nodes that are not dirty, from the level as it was */
+/* Copies blocks of level 1's entries between nodes that are not dirty, from the level before. */
 static void gxsp_keep_blocks(const gxsp_level *before, gxsp_level *level, const uint8_t *dirty) {
     uint32_t i, k, at;
     for (i = 0; i < before->n; i++) {
@@ -6867,8 +6878,8 @@ static void gxsp_keep_blocks(const gxsp_level *before, gxsp_level *level, const 
     }
 }
 
-/* Numbers of the coarse levels: those of entries of dirty nodes from the Hessian at the state at which the others were
- * made, so that all together are semi-definite as ever. */
+/* Numbers of the coarse levels. Those of entries with dirty nodes come from the Hessian at the state at which the
+ * others were made, so that the matrix stays semi-definite. */
 static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, const uint8_t *dirty) {
     gxsp_system *system = update->system;
     gxsp_pass pass;
@@ -6892,8 +6903,8 @@ static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, co
     return finite;
 }
 
-/* Do so many chunks follow dirty nodes that all numbers anew, from the Hessian of the next step, cost no more than some
- * of them? */
+/* Do so many chunks follow dirty nodes that making all numbers anew, from the Hessian of the next step, costs no
+ * more than making some? */
 static int gxsp_most_are_dirty(const gxsp_system *system, const uint8_t *dirty) {
     uint32_t c, count = 0;
     for (c = 0; c < system->mesh.chunk_count; c++)
@@ -6901,7 +6912,7 @@ static int gxsp_most_are_dirty(const gxsp_system *system, const uint8_t *dirty) 
     return (double)count > GXSP_DIRTY * (double)system->mesh.chunk_count;
 }
 
-/* Is it known that the coarse matrices are as old as they can be? */
+/* Have the coarse matrices served their time? */
 static int gxsp_coarse_ends(const gxsp_system *system) { return system->coarse.served >= system->coarse.life; }
 
 static void gxsp_renew_levels(gxsp_renewal *update) {
@@ -6938,7 +6949,7 @@ static void gxsp_renew_levels(gxsp_renewal *update) {
     gxsp_release_to(&old, NULL);
 }
 
-/* What steps have learnt and what depends on all copies */
+/* History of steps, and data that depends on all copies */
 static void gxsp_renew_steps(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     size_t i;
@@ -6957,7 +6968,7 @@ static int gxsp_is_flexible(const gxsp_system *system) {
     return !system->multigrid.fine && !system->model.volume && !system->model.lumped_mass;
 }
 
-/* Are the chunks still worth keeping, and the choice of preconditioner? */
+/* Are the chunks still worth keeping, and is the choice of preconditioner still right? */
 static int gxsp_is_compact(gxsp_renewal *update) {
     const gxsp_system *system = update->system;
     uint32_t *count = (uint32_t *)gxsp_take(update->scratch, system->model.component_count, sizeof(uint32_t)), c;
@@ -6968,7 +6979,8 @@ static int gxsp_is_compact(gxsp_renewal *update) {
            gxsp_large_component(system, count) == (system->multigrid.level_count > 0);
 }
 
-/* 0: the change does not fit. Memory may also have run out: see the pools. */
+/* Applies a cut's changes to the existing chunks and levels. 0: the change does not fit. Memory may also have run
+ * out: see the pools. */
 static int gxsp_update_system(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     gxsp_find_edits(update);
@@ -7002,7 +7014,7 @@ static int gxsp_update_system(gxsp_renewal *update) {
 /* In: vectors over copies and the load. Out: the vectors without momentum, or translated so that momentum
  * balances. Uses gxsp_component.sum. */
 
-/* Gravity, nodal forces and what damping adds to them on a copy, N; 0 on what this step leaves alone */
+/* Load on a copy: gravity, nodal forces and the load of damping, N; 0 if the step leaves the copy alone */
 GXSP_INLINE void gxsp_load(const gxsp_problem *problem, size_t copy, double *load) {
     const gxsp_system *system = problem->system;
     const double *gravity = problem->step->gravity, *forces = problem->step->forces, *damping = system->vectors.damping;
@@ -7014,8 +7026,8 @@ GXSP_INLINE void gxsp_load(const gxsp_problem *problem, size_t copy, double *loa
         load[0] += damping[3 * copy], load[1] += damping[3 * copy + 1], load[2] += damping[3 * copy + 2];
 }
 
-/* Sums over pieces: cleared, copies added one by one, then as a mean over each piece's mass. 0: of pieces that have any
- * state but those ignored */
+/* Sums over components: cleared, then copies are added one by one, then divided by each component's mass. The mean
+ * is 0 for components with any state but those ignored. */
 static void gxsp_clear_components(gxsp_system *system) {
     uint32_t p;
     for (p = 0; p < system->model.component_count; p++)
@@ -7036,7 +7048,7 @@ static void gxsp_average_components(gxsp_system *system, uint32_t ignored) {
     }
 }
 
-/* Subtracts from x, piece by piece, the translation with x's momentum. */
+/* Subtracts from x, component by component, the translation with x's momentum. */
 static void gxsp_remove_translations(gxsp_system *system, gxsp_vector4 *x) {
     size_t i;
     int r;
@@ -7051,7 +7063,7 @@ static void gxsp_remove_translations(gxsp_system *system, gxsp_vector4 *x) {
         for (r = 0; r < 3; r++) x[i][r] -= (float)system->model.components[system->model.component[i]].sum[r];
 }
 
-/* Takes the momentum of every loose piece out of x. */
+/* Subtracts from x the momentum of every loose component. */
 static void gxsp_remove_momentum(gxsp_system *system, double *x) {
     size_t i, r;
     if (system->state.loose_count == 0) return;
@@ -7065,8 +7077,8 @@ static void gxsp_remove_momentum(gxsp_system *system, double *x) {
         for (r = 0; r < 3; r++) x[3 * i + r] -= system->model.components[system->model.component[i]].sum[r];
 }
 
-/* Translates every piece of x that has no state but those ignored so that load = rate M (base + x - target) in sum.
- * base: n x 3, or NULL: 0 */
+/* Translates every component of x that has no state but those ignored so that load = rate M (base + x - target) in
+ * sum. base: n x 3, or NULL: 0 */
 static void gxsp_balance_momentum(const gxsp_problem *problem, uint32_t ignored, const double *base, double *x) {
     gxsp_system *system = problem->system;
     size_t i, r;
@@ -7085,21 +7097,22 @@ static void gxsp_balance_momentum(const gxsp_problem *problem, uint32_t ignored,
             x[3 * i + r] += system->model.components[system->model.component[i]].sum[r] / problem->rate;
 }
 
-/* Translates every piece of the direction that nothing acts on now so that its momentum balances: linear solves are in
- * single precision, to which that of a piece of next to no mass, which contact has pushed before, is rounding. */
+/* Translates the direction on every component that nothing acts on now so that its momentum balances. Linear solves
+ * are single precision: the momentum of a component of next to no mass, which contact has pushed before, is lost in
+ * their rounding. */
 static void gxsp_balance_direction(const gxsp_problem *problem) {
     gxsp_balance_momentum(problem, GXSP_TOUCHED, problem->system->vectors.current, problem->system->vectors.direction);
 }
 
-/* Forgets what springs and contact have acted on. */
+/* Forgets which components springs and contact have acted on. */
 static void gxsp_untouch_components(gxsp_system *system) {
     uint32_t p;
     for (p = 0; p < system->model.component_count; p++)
         system->model.components[p].state &= ~(GXSP_TOUCHED | GXSP_TOUCHES);
 }
 
-/* Pieces that springs and contact act on, of which terms tells, are not loose, nor are they again in this run of
- * Newton's method: their momentum is no longer that of the start. */
+/* Components on which springs and contact act, by their terms, are not loose for the rest of this run of Newton's
+ * method: their momentum is no longer that of the start. */
 static void gxsp_touch_components(gxsp_system *system) {
     size_t t;
     uint32_t p;
@@ -7122,7 +7135,7 @@ static void gxsp_touch_components(gxsp_system *system) {
 /* In: the step's springs, contact points and planes. Out: their energies, forces and Hessians (terms), and which
  * components they join. */
 
-/* What acts on one point */
+/* A spring or contact at one point */
 typedef struct gxsp_pull {
     double position[3]; /* of the point, m */
     double energy;      /* J */
@@ -7137,14 +7150,14 @@ static void gxsp_point_position(const gxs_point *point, const double *displaceme
         for (c = 0; c < 3; c++) x[c] += point->weight[k] * displacement[3 * (size_t)point->copy[k] + (size_t)c];
 }
 
-/* A copy of the piece that it belongs to */
+/* A copy of the component that the point belongs to */
 static size_t gxsp_point_copy(const gxs_point *point) {
     int k = 0;
     while (k < 3 && !(fabs(point->weight[k]) > 0)) k++;
     return point->copy[k];
 }
 
-/* Can the step move it? */
+/* Can the step move the point? */
 static int gxsp_point_moves(const gxsp_system *system, const gxs_point *point) {
     int k;
     for (k = 0; k < 4; k++)
@@ -7164,7 +7177,7 @@ static void gxsp_spring_pull(const gxs_spring *spring, const double *displacemen
     }
 }
 
-/* Adds a 1 + b n n^T */
+/* hessian += a 1 + b n n^T */
 static void gxsp_add_dyad(double a, double b, const double *n, double *hessian) {
     int i, j;
     for (i = 0; i < 3; i++)
@@ -7172,8 +7185,9 @@ static void gxsp_add_dyad(double a, double b, const double *n, double *hessian) 
 }
 
 /* Friction: energy load phi(|y|), y the way across the plane since the step's start, phi(s) = s^2 / (2 reach) up to
- * reach and s - reach/2 beyond. Convex, so its Hessian is semi-definite. cautious: in its place stands phi'(s) / s in
- * every direction, which bounds it: exact ones overshoot the kink at the end of sticking to and fro. */
+ * reach and s - reach/2 beyond. It is convex, so its Hessian is semi-definite. cautious: phi'(s) / s in every
+ * direction takes the Hessian's place, which it bounds. Exact ones overshoot the kink at the end of sticking to and
+ * fro. */
 static void gxsp_friction_pull(const gxs_plane *plane, double load, double reach, const double *way, int cautious,
                                gxsp_pull *pull) {
     const double *n = plane->normal, along = n[0] * way[0] + n[1] * way[1] + n[2] * way[2];
@@ -7191,7 +7205,7 @@ static void gxsp_friction_pull(const gxs_plane *plane, double load, double reach
     if (s > reach && !cautious) gxsp_add_dyad(0, -factor, unit, pull->hessian);
 }
 
-/* before: where the point was at the step's start; dt: since then */
+/* before: where the point was at the step's start; dt: time since then */
 static void gxsp_plane_pull(const gxs_plane *plane, double dt, const double *before, int cautious, gxsp_pull *pull) {
     const double *n = plane->normal, *x = pull->position,
                  depth = plane->offset - (n[0] * x[0] + n[1] * x[1] + n[2] * x[2]);
@@ -7230,8 +7244,8 @@ static void gxsp_contact_pull(const gxsp_problem *problem, size_t i, const doubl
     }
 }
 
-/* The points of a step one after the other: springs, then those of contact. NULL at the end; points that do not move
- * are left out. */
+/* The next point of a step: springs first, then contact points. NULL at the end. Points that do not move are
+ * skipped. */
 static const gxs_point *gxsp_next_pull(const gxsp_problem *problem, size_t *at, const double *displacement,
                                        gxsp_pull *pull) {
     const gxs_step_desc *step = problem->step;
@@ -7250,7 +7264,7 @@ static const gxs_point *gxsp_next_pull(const gxsp_problem *problem, size_t *at, 
     return NULL;
 }
 
-/* Who leads piece p so far */
+/* The component that leads p so far */
 static uint32_t gxsp_lead_root(gxsp_component *components, uint32_t p) {
     while (components[p].lead != p) {
         components[p].lead = components[components[p].lead].lead;
@@ -7259,7 +7273,7 @@ static uint32_t gxsp_lead_root(gxsp_component *components, uint32_t p) {
     return p;
 }
 
-/* Which pieces lead which in this step: the first of those that points join */
+/* Chooses which components lead in this step: the first of those that points join. */
 static void gxsp_choose_leads(const gxsp_problem *problem) {
     const gxs_step_desc *step = problem->step;
     gxsp_component *components = problem->system->model.components;
@@ -7285,7 +7299,7 @@ static void gxsp_choose_leads(const gxsp_problem *problem) {
         components[p].lead = components[components[p].lead].lead;
 }
 
-/* Sums over pieces of what they had when they were evaluated last */
+/* Sums of the components' energies at the last evaluation */
 static void gxsp_sum_energies(const gxsp_system *system, double *energies) {
     uint32_t p;
     int k;
@@ -7294,7 +7308,7 @@ static void gxsp_sum_energies(const gxsp_system *system, double *energies) {
         for (k = 0; k < 3; k++) energies[k] += system->model.components[p].energies[k];
 }
 
-/* Energies of elements and points, piece by piece, and their forces with inertia */
+/* Energies of elements and points, component by component, and their forces with inertia */
 static void gxsp_evaluate(const gxsp_problem *problem, const double *from, int nudge, double *force) {
     const gxs_point *point;
     gxsp_pull pull;
@@ -7313,8 +7327,8 @@ static void gxsp_evaluate(const gxsp_problem *problem, const double *from, int n
     }
 }
 
-/* Are springs and contact so much stiffer or softer, all in all, than when the coarse matrices were made that these are
- * of no use? */
+/* Coarse matrices are worn if springs and contact are, in all, four times stiffer or softer than when they were
+ * made. */
 static void gxsp_compare_terms(gxsp_system *system) {
     double sum = 0;
     size_t t;
@@ -7326,7 +7340,7 @@ static void gxsp_compare_terms(gxsp_system *system) {
     system->coarse.worn |= sum > 4 * system->coarse.stiffness || 4 * sum < system->coarse.stiffness;
 }
 
-/* Hessians of all points at a displacement as terms, and which pieces they touch */
+/* Hessians of all points at a displacement as terms, and which components they touch */
 static void gxsp_terms_make(const gxsp_problem *problem, const double *displacement) {
     gxsp_lasting *lasting = problem->system->lasting;
     const gxs_point *point;
@@ -7353,7 +7367,7 @@ static void gxsp_terms_make(const gxsp_problem *problem, const double *displacem
 /* In: the last linearisation and the residual, which is used up. Out: the direction, and for each component what
  * the solve has left. */
 
-/* The two measures of a vector r of forces, squared: r . D^-1 r (energy) and |D^-1 r|^2 (displacement). */
+/* The two measures of a vector r of forces, squared: r . D^-1 r (energy) and |D^-1 r|^2 (displacement) */
 typedef struct gxsp_norms {
     double energy, displacement;
 } gxsp_norms;
@@ -7362,7 +7376,7 @@ static int gxsp_converged(const gxsp_norms *now, const gxsp_norms *first, double
     return now->energy <= goal * first->energy && now->displacement <= goal * first->displacement;
 }
 
-/* scaled = D^-1 r, times the step length of the smoother, of copies first to end - 1; sums: r . D^-1 r, |D^-1 r|^2 */
+/* scaled = D^-1 r, times the step length of the smoother, of copies first ... end - 1. sums: r . D^-1 r, |D^-1 r|^2 */
 static void gxsp_scale_copies(const gxsp_system *system, const double *r, size_t first, size_t end, double *sums) {
     const double factor = system->multigrid.used && !system->multigrid.fine ? (double)system->smoother.omega : 1;
     double energy = 0, displacement = 0;
@@ -7388,7 +7402,7 @@ static void gxsp_task_scale(void *context, size_t index) {
     gxsp_scale_copies(pass->system, pass->from, first, end, pass->system->vectors.range_sum[index]);
 }
 
-/* Over all ranges, by a task that scales them. */
+/* Norms over all ranges, by a task that scales them */
 static gxsp_norms gxsp_norms_of(gxsp_system *system, void (*task)(void *, size_t), gxsp_pass *pass) {
     gxsp_norms norms;
     double sums[2];
@@ -7404,7 +7418,7 @@ static gxsp_norms gxsp_scale(gxsp_system *system, const double *r) {
     return gxsp_norms_of(system, gxsp_task_scale, &pass);
 }
 
-/* direction += factor x, residual -= factor y, and the residual is scaled */
+/* direction += factor x, residual -= factor y; then scales the residual. */
 static void gxsp_task_advance(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
@@ -7417,7 +7431,7 @@ static void gxsp_task_advance(void *context, size_t index) {
     gxsp_scale_copies(system, system->vectors.residual, first, end, system->vectors.range_sum[index]);
 }
 
-/* The direction goes on by length x, and the residual by as much of y = A x. Returns what is left. */
+/* Advances the direction by length x, and the residual by as much of y = A x. Returns the norms of the new residual. */
 static gxsp_norms gxsp_advance(gxsp_system *system, double length, gxsp_vector4 *x, gxsp_vector4 *y) {
     gxsp_pass pass;
     memset(&pass, 0, sizeof pass);
@@ -7427,7 +7441,7 @@ static gxsp_norms gxsp_advance(gxsp_system *system, double length, gxsp_vector4 
     return gxsp_norms_of(system, gxsp_task_advance, &pass);
 }
 
-/* Sums: residual . x, x . y if there is a y */
+/* Sums: residual . x, and x . y if there is a y */
 static void gxsp_task_work(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
@@ -7441,7 +7455,8 @@ static void gxsp_task_work(void *context, size_t index) {
         }
 }
 
-/* z = M^-1 r from D^-1 r, both scaled; without translations of loose pieces. energy: r . D^-1 r. Returns r . z. */
+/* z = M^-1 r from D^-1 r, both in scaled, without translations of loose components. energy: r . D^-1 r. Returns r .
+ * z. */
 static double gxsp_precondition(gxsp_system *system, double rate, double energy) {
     gxsp_pass pass;
     double sums[2];
@@ -7461,14 +7476,14 @@ static double gxsp_precondition(gxsp_system *system, double rate, double energy)
     return sums[0];
 }
 
-/* Is r . z that of something definite, and of a size that can be? energy: r . D^-1 r, of which single precision tells
- * 1e7 times as much at most */
+/* Can r . z be that of a definite preconditioner? energy: r . D^-1 r; single precision allows 1e7 times as much at
+ * most */
 static int gxsp_is_definite(double rho, double energy) {
     return gxsp_finite(rho) && rho > 0 && rho <= GXSP_ABSURD * energy;
 }
 
-/* As gxsp_precondition, but definite: should the cycle prove not to be, it is smoothed more carefully, and at worst
- * left out of this solve. now: measures of the residual; changed: the preconditioner is not the one before */
+/* As gxsp_precondition, but definite: if the cycle proves not to be, it is smoothed more carefully, and at worst
+ * left out of this solve. now: measures of the residual; changed: the preconditioner differs from the one before */
 static double gxsp_precondition_definite(gxsp_system *system, double rate, const gxsp_norms *now, int *changed) {
     const float omega = system->smoother.omega;
     double rho = gxsp_precondition(system, rate, now->energy);
@@ -7499,8 +7514,8 @@ static int gxsp_out_of_time(gxsp_problem *problem) {
     return problem->report.stop == GXS_STOP_SECONDS;
 }
 
-/* A guess made ready for what is still now, and its product. Returns its curvature; work: with the residual, cross: of
- * the product with the other guess, if there is one. */
+/* Makes a guess 0 on copies that are still now, and applies the Hessian to it. Returns its curvature. work: with
+ * the residual; cross: of the product with the other guess, if there is one */
 static double gxsp_weigh_guess(gxsp_system *system, double rate, gxsp_vector4 *guess, gxsp_vector4 *other,
                                gxsp_vector4 *product, double *work, double *cross) {
     gxsp_pass pass;
@@ -7524,9 +7539,9 @@ static double gxsp_weigh_guess(gxsp_system *system, double rate, gxsp_vector4 *g
     return curvature;
 }
 
-/* Takes what is best of the plane of the last two steps' first directions as the start of conjugate gradients: where
- * the acceleration changes little from step to step, that is most of the solution. Returns what is left of the
- * residual, of norms now. */
+/* Starts conjugate gradients at the best point of the plane of the last two steps' first directions. Where the
+ * acceleration changes little from step to step, that is most of the solution. now: norms of the residual; returns
+ * those of the new one. */
 static gxsp_norms gxsp_guess_direction(gxsp_system *system, double rate, gxsp_norms now) {
     gxsp_vector4 *product = system->vectors.search;
     double curvature, work, first, cross = 0, second = 0;
@@ -7547,7 +7562,7 @@ static gxsp_norms gxsp_guess_direction(gxsp_system *system, double rate, gxsp_no
     return now;
 }
 
-/* The direction found is the next step's first guess, the one before its second. */
+/* The direction found becomes the next step's first guess, the one before its second. */
 static void gxsp_keep_guess(gxsp_system *system) {
     gxsp_vector4 *oldest = system->vectors.guess[1];
     size_t i;
@@ -7568,7 +7583,7 @@ static void gxsp_task_search(void *context, size_t index) {
             system->vectors.search[i][c] = system->vectors.scaled[i][c] + factor * system->vectors.search[i][c];
 }
 
-/* For each piece the work along the direction of what is left of the residual */
+/* For each component, the work of the remaining residual along the direction */
 static void gxsp_note_left(gxsp_system *system) {
     size_t i;
     uint32_t p;
@@ -7578,10 +7593,10 @@ static void gxsp_note_left(gxsp_system *system) {
             gxsp_dot(system->vectors.residual + 3 * i, system->vectors.direction + 3 * i, 1) / system->model.scale;
 }
 
-/* Solves scale (K + rate M) direction = scale residual to a share of the residual, which is used up. The directions of
- * free pieces carry no momentum: their translations are projected out of the preconditioned residual (deflated
- * conjugate gradients; the residual has none, see gxsp_start). Operator and preconditioner are of single precision,
- * vectors and sums of double. 0 if a number overflowed. */
+/* Solves scale (K + rate M) direction = scale residual to a share of the residual, which is used up. Directions of
+ * free components carry no momentum: their translations are projected out of the preconditioned residual (deflated
+ * conjugate gradients; the residual has none, see gxsp_start). Operator and preconditioner are single precision,
+ * vectors and sums double. 0: a number overflowed. */
 static int gxsp_conjugate_gradients(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     const double goal = problem->cg_tolerance * problem->cg_tolerance, rate = problem->rate;
@@ -7630,9 +7645,9 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem) {
 /* In: the linearisation, counts of iterations. Out: matrices and preconditioner ready for a solve, and the solve
  * itself. Writes gxsp_coarse. */
 
-/* Does multigrid pay at this rate? In a large piece whose copies' mean share of inertia in the linearisation's diagonal
- * blocks is small, each counted up to 4/3 of the bound, so that a quarter of stiff ones is enough; or where it is asked
- * for */
+/* Does multigrid pay at this rate? It does where it was asked for, and if a large component has a small mean share
+ * of inertia in the linearisation's diagonal blocks. Each copy counts up to 4/3 of the bound, so that a quarter of
+ * stiff ones is enough. */
 static int gxsp_coarse_pays(gxsp_system *system, double rate) {
     const double bound = 3 * GXSP_INERTIA / (system->model.scale * rate);
     size_t i;
@@ -7655,9 +7670,9 @@ static int gxsp_coarse_pays(gxsp_system *system, double rate) {
     return 0;
 }
 
-/* Brings matrix and preconditioner up to date with the linearisation: the coarse matrices are made anew where they are
- * missing, where the rate has changed, where iterations have doubled since they were made, or before they rise by more
- * than a renewal costs. */
+/* Updates matrix and preconditioner to the linearisation. Coarse matrices are made anew if there are none, if the
+ * rate has changed, if iterations have doubled since they were made, or before they rise by more than new ones
+ * cost. */
 static int gxsp_prepare(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     int other; /* than the rate of the coarse matrices */
@@ -7681,8 +7696,8 @@ static int gxsp_prepare(gxsp_problem *problem) {
     return gxsp_coarse_numbers(system, problem->rate);
 }
 
-/* For how long the coarse matrices are to serve, now that their first reading tells how much slower the ones before
- * were in the end: if the share lost grows to that evenly, cost / life + share / lived x life / 2 is least. */
+/* Chooses how long the coarse matrices are to serve. Their first reading tells how much slower the ones before were
+ * in the end. If the share lost grows to that evenly, cost / life + share / lived x life / 2 is least. */
 static void gxsp_learn_life(gxsp_system *system) {
     const double share = system->coarse.pace_old / system->coarse.pace - 1, lived = system->coarse.lived;
     const double best = share > GXSP_AGEING ? sqrt(2 * GXSP_REMAKE * lived / share) : GXSP_PATIENCE * lived;
@@ -7701,7 +7716,7 @@ static void gxsp_read_pace(gxsp_system *system) {
     system->coarse.worn |= system->coarse.pace > GXSP_WORN * system->coarse.pace_young;
 }
 
-/* Solves the linear system and learns from the count of iterations how the coarse matrices age. */
+/* Solves the linear system, and learns from the iterations how the coarse matrices age. */
 static int gxsp_solve(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     uint32_t before = problem->report.cg_iterations, count;
@@ -7729,7 +7744,7 @@ static int gxsp_solve(gxsp_problem *problem) {
  * been slow for long sleeps until something touches it: loads, targets, springs, contact points or planes that
  * change, or a state or rest time that the caller has written. */
 
-/* Hashes of nodal forces and contact points, in all and by piece. Copies without a force do not count. */
+/* Hashes of nodal forces and contact points, in all and by component. Copies without a force do not count. */
 static uint64_t gxsp_hash_forces(gxsp_system *system, const gxs_step_desc *step) {
     static const double zero[3] = {0, 0, 0};
     uint64_t all = 1;
@@ -7779,7 +7794,8 @@ static gxs_scene gxsp_scene_make(gxsp_system *system, const gxs_step_desc *step)
     return scene;
 }
 
-/* Is the state of a copy not what the last step returned? Of velocities only those of sleepers are known: 0. */
+/* Does the state of a copy differ from the one that the last step returned? Of velocities only those of sleepers
+ * are known: 0. */
 static int gxsp_is_written(const gxsp_system *system, size_t copy, const double *displacement, const double *velocity) {
     static const double zero[3] = {0, 0, 0};
     if (system->model.fixed[copy]) return 0;
@@ -7788,7 +7804,7 @@ static int gxsp_is_written(const gxsp_system *system, size_t copy, const double 
            (system->state.stepped && gxsp_differs(displacement, system->vectors.current + 3 * copy));
 }
 
-/* Wakes the pieces of which something has changed. */
+/* Wakes the components that a change touches. */
 static void gxsp_wake_touched(gxsp_problem *problem, const double *displacement, const double *velocity) {
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
@@ -7814,12 +7830,12 @@ static void gxsp_wake_touched(gxsp_problem *problem, const double *displacement,
     }
 }
 
-/* Is a copy faster than what may sleep? velocity: its own */
+/* Is a copy too fast to sleep? velocity: its own */
 static int gxsp_too_fast(const gxs_step_desc *step, const double *velocity) {
     return gxsp_dot(velocity, velocity, 1) > step->sleep_speed * step->sleep_speed;
 }
 
-/* Rouses the pieces that springs and contact points tie to those that are awake. Were there any? */
+/* Wakes the components that springs and contact points join to awake ones. Returns whether there were any. */
 static int gxsp_wake_joined(gxsp_system *system, const gxs_step_desc *step) {
     int any = 0, k;
     size_t i;
@@ -7839,7 +7855,7 @@ static int gxsp_wake_joined(gxsp_system *system, const gxs_step_desc *step) {
     return any;
 }
 
-/* Which pieces sleep in this step, and so which copies are still. */
+/* Chooses the components that sleep in this step, and so the copies that are still. */
 static void gxsp_choose_sleepers(gxsp_problem *problem, const double *displacement, const double *velocity) {
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
@@ -7872,7 +7888,7 @@ static void gxsp_choose_sleepers(gxsp_problem *problem, const double *displaceme
         system->state.active -= system->state.still[system->model.followers[i].copy] ? 0 : 3;
 }
 
-/* The rest times of a step that has ended with these velocities */
+/* Rest times after a step that has ended with these velocities */
 static void gxsp_count_rest(const gxsp_problem *problem, const double *velocity) {
     const gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
@@ -7889,8 +7905,8 @@ static void gxsp_count_rest(const gxsp_problem *problem, const double *velocity)
 
 /* In: a displacement. Out: energies of components, forces, the residual and its measure. */
 
-/* Adds the forces on held copies, which have no D of their own, scaled by the mean of the others'. A body that only its
- * held copies deform has no other force when it is in balance. */
+/* Adds the forces on held copies, which have no D of their own, scaled by the mean of the others'. A body that only
+ * its held copies deform has no other force when it is in balance. */
 static void gxsp_add_reactions(const gxsp_system *system, gxsp_norms *norms) {
     double stiffness = 0, square = 0, compliance;
     size_t i, counted = 0;
@@ -7917,8 +7933,8 @@ static void gxsp_add_norms(const float *d, const double *r, double *sums) {
     sums[1] += x * x + y * y + z * z;
 }
 
-/* residual = load - force, 0 at fixed copies; sums: measures of load, inertia and elastic forces; inertia by the lumped
- * mass */
+/* residual = load - force, 0 at fixed copies. sums: measures of load, inertia and elastic forces; inertia by the
+ * lumped mass */
 static void gxsp_task_balance(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
@@ -7942,7 +7958,7 @@ static void gxsp_task_balance(void *context, size_t index) {
     }
 }
 
-/* residual at current, and its size relative to load, inertia and elastic forces (see gxs_step_report) */
+/* residual at current. Returns its size relative to load, inertia and elastic forces (see gxs_step_report). */
 static double gxsp_balance(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     gxsp_norms elastic, residual;
@@ -7963,7 +7979,7 @@ static double gxsp_balance(gxsp_problem *problem) {
     return by_energy > by_displacement ? by_energy : by_displacement;
 }
 
-/* What the pieces were evaluated to last is what they have at current. */
+/* The components' energies at the last evaluation become those at current. */
 static void gxsp_keep_energies(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     uint32_t p;
@@ -7973,7 +7989,7 @@ static void gxsp_keep_energies(gxsp_problem *problem) {
     gxsp_sum_energies(system, problem->energies);
 }
 
-/* Energies and forces at current. 0 if they are not finite. */
+/* Energies and forces at current. 0: they are not finite. */
 static int gxsp_evaluate_current(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     gxsp_evaluate(problem, system->vectors.current, 0, system->vectors.force);
@@ -7982,7 +7998,7 @@ static int gxsp_evaluate_current(gxsp_problem *problem) {
            gxsp_first_not_finite(system->vectors.force, 3 * system->model.n) == 3 * system->model.n;
 }
 
-/* Where everything is in a step that moves only held copies, to their targets, and what follows these: base */
+/* Base: the displacement of a step that only moves held copies to their targets, and their followers */
 static void gxsp_find_base(const gxsp_problem *problem, double *to) {
     const gxsp_system *system = problem->system;
     const double *targets = problem->step->targets;
@@ -7994,8 +8010,8 @@ static void gxsp_find_base(const gxsp_problem *problem, double *to) {
     gxsp_follow(system, problem->given, to);
 }
 
-/* Light copies start where inertia leads what guides them: they have next to none of their own, and were they to start
- * where they fly, the linearisation would be that of an element torn apart. */
+/* Light copies start where inertia leads the copies that guide them. They have next to no inertia of their own;
+ * started where they fly, the linearisation would be that of an element torn apart. */
 static void gxsp_lead_lights(const gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     uint32_t i;
@@ -8011,8 +8027,8 @@ static void gxsp_lead_lights(const gxsp_problem *problem) {
     }
 }
 
-/* Start of Newton at base or where inertia leads, each loose piece translated so that its momentum balances. The rest
- * of the iteration cannot change momentum: elastic forces have none, and directions balance it. */
+/* Starts Newton's method at base, or where inertia leads; each loose component is translated so that its momentum
+ * balances. The iteration cannot change momentum: elastic forces have none, and directions balance it. */
 static int gxsp_start(gxsp_problem *problem, int led) {
     gxsp_system *system = problem->system;
     size_t i;
@@ -8034,9 +8050,10 @@ static int gxsp_start(gxsp_problem *problem, int led) {
 /* In: current and direction. Out: current at the point found, its energies and forces, a length for each
  * component. The trial displacement has the residual's memory. */
 
-/* The direction takes no light copy further from what guides it than they are apart, at rest or now, unless the piece's
- * way down depends on that: what a copy of so little weight is left with hardly shows in E, which so could not tell a
- * length for it. Later iterations, which few steps have, are left alone: they converge by themselves. */
+/* Bounds the direction of light copies: relative to the copies that guide them, at most as far as they are apart,
+ * at rest or now, unless the component's descent depends on it. E hardly shows a copy of so little weight, so the
+ * line search could not find a length for it. Later iterations, which few steps have, are left alone: they converge
+ * by themselves. */
 static void gxsp_bound_lights(const gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     const double *rest = system->model.positions, *moved = system->vectors.current;
@@ -8072,9 +8089,9 @@ static void gxsp_bound_lights(const gxsp_problem *problem) {
     }
 }
 
-/* What the line search knows of the pieces before its first trial. Linear solves end by a measure of all pieces
- * together, and may have left one that weighs next to nothing far beyond the minimum of its own linear model: it begins
- * at that. 0 if a number is not finite. */
+/* Slopes, rounding and first lengths of the components. Linear solves end by a measure of all components together.
+ * They may leave one that weighs next to nothing far beyond the minimum of its own linear model: it starts at that
+ * minimum. 0: a number is not finite. */
 static int gxsp_begin_search(const gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     int finite = 1;
@@ -8108,7 +8125,7 @@ static int gxsp_begin_search(const gxsp_problem *problem) {
     return finite;
 }
 
-/* Has the piece gone far enough down? If not, it will try a shorter length. */
+/* Has the component gone down far enough? If not, it will try a shorter length. */
 static void gxsp_judge_length(gxsp_problem *problem, gxsp_component *component) {
     const double *now = component->energies, *before = component->before, length = component->length,
                  promise = length * component->slope;
@@ -8126,7 +8143,7 @@ static void gxsp_judge_length(gxsp_problem *problem, gxsp_component *component) 
     component->length = promise < 0 ? next : 0;
 }
 
-/* Energies and forces at trial: current and each piece's length of the direction from there */
+/* Energies and forces at trial = current + each component's length of the direction */
 static void gxsp_try_lengths(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     size_t i, k;
@@ -8138,8 +8155,7 @@ static void gxsp_try_lengths(gxsp_problem *problem) {
     gxsp_evaluate(problem, gxsp_trial(system), 0, system->vectors.force);
 }
 
-/* Pieces that have found no length stay, and all may be evaluated again. Returns how many went down; left: how many
- * stay. */
+/* Components that have found no length stay. Returns how many went down; left: how many stay. */
 static size_t gxsp_end_search(gxsp_system *system, size_t *left) {
     size_t down = 0;
     uint32_t p;
@@ -8154,9 +8170,9 @@ static size_t gxsp_end_search(gxsp_system *system, size_t *left) {
     return down;
 }
 
-/* A step length for each piece along the direction, by backtracking on E, which is a sum over pieces: so it falls in
- * each of them, and none waits for another. current becomes the point found, and force and energies its own. 0: no
- * finite point of lower energy. */
+/* A step length for each component along the direction, by backtracking on E. E is a sum over components: it falls
+ * in each of them, and none waits for another. current becomes the point found, with its forces and energies. 0: no
+ * finite point of lower energy was found. */
 static int gxsp_line_search(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     double *found = gxsp_trial(system);
@@ -8213,7 +8229,7 @@ static void gxsp_choose_integrator(gxsp_problem *problem) {
     problem->rate = problem->speed * problem->speed + problem->speed * step->mass_damping;
 }
 
-/* Elastic forces at a displacement with the materials times their damping x factor, added to those of damping */
+/* Adds elastic forces at a displacement, with moduli times damping x factor, to the load of damping. */
 static void gxsp_add_damping(gxsp_problem *problem, double factor, const double *displacement) {
     gxsp_system *system = problem->system;
     size_t i;
@@ -8226,10 +8242,10 @@ static void gxsp_add_damping(gxsp_problem *problem, double factor, const double 
     for (i = 0; i < 3 * system->model.n; i++) system->vectors.damping[i] += system->vectors.force[i];
 }
 
-/* Rayleigh's stiffness damping: stress P(F) + beta dP/dt, the rate taken as that of the integrator, speed (P(F) - P of
- * the mean before). All energies are linear in their moduli, so that is the energy (1 + beta speed) U(u) with a load of
- * the forces before. These are turned as the elements are by inertia alone: rotations of what is under stress are not
- * damped, to first order in the step. */
+/* Rayleigh's stiffness damping: stress P(F) + beta dP/dt, with the integrator's rate speed (P(F) - P of the mean
+ * before). Energies are linear in their moduli, so that is the energy (1 + beta speed) U(u) and a load of the
+ * forces before. Those forces are rotated with the elements' motion by inertia alone: rotations under stress are
+ * not damped, to first order in the step. */
 static void gxsp_begin_damping(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     size_t i;
@@ -8249,13 +8265,13 @@ static void gxsp_begin_damping(gxsp_problem *problem) {
     }
 }
 
-/* mean of the displacements before. displacement: at the step's start */
+/* Mean of the displacements before. displacement: at the step's start */
 static double gxsp_mean(const gxsp_problem *problem, const double *displacement, size_t k) {
     double mean = problem->mean[0] * displacement[k];
     return problem->mean[1] < 0 ? mean + problem->mean[1] * problem->step->previous_displacement[k] : mean;
 }
 
-/* Target; forces of damping */
+/* Target and load of damping */
 static void gxsp_begin(gxsp_problem *problem, const double *velocity) {
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
@@ -8290,14 +8306,14 @@ static int gxsp_linearise_all(gxsp_problem *problem) {
     return finite;
 }
 
-/* Elements collapsed to a point have no force that would open them: what they have all but collapsed takes its place,
- * for the direction and its slope. Energies stay as they are. */
+/* Elements collapsed to a point have no force that would open them. For the direction and its slope they get the
+ * force of an element that has all but collapsed. Energies stay as they are. */
 static void gxsp_nudge_forces(gxsp_problem *problem) {
     gxsp_evaluate(problem, problem->system->vectors.current, 1, problem->system->vectors.force);
     gxsp_balance(problem);
 }
 
-/* The next direction. Near the end, where projected Hessians converge slowly, the exact one is tried: should it prove
+/* The next direction. Near the end, where projected Hessians converge slowly, the exact one is tried; if it proves
  * indefinite, the projected one serves from there on. */
 static int gxsp_find_direction(gxsp_problem *problem) {
     if (!gxsp_solve(problem)) return 0;
@@ -8309,7 +8325,7 @@ static int gxsp_find_direction(gxsp_problem *problem) {
     return gxsp_solve(problem);
 }
 
-/* Does Newton's method go on? before: residual an iteration ago. Says why not. */
+/* Does Newton's method continue? If not, report.stop says why. before: the residual an iteration ago */
 static int gxsp_continues(gxsp_problem *problem, double before) {
     const gxs_step_desc *step = problem->step;
     const uint32_t budget = step->newton_iterations ? step->newton_iterations : 1,
@@ -8330,8 +8346,8 @@ static int gxsp_continues(gxsp_problem *problem, double before) {
     return 1;
 }
 
-/* Newton's method, to balance or to the end of the budget, from a start that gxsp_start found finite or from where it
- * has ended. */
+/* Newton's method, to balance or to the end of the budget, from a start that gxsp_start found finite or from where
+ * it has ended. */
 static gx_result gxsp_newton(gxsp_problem *problem) {
     uint32_t *done = &problem->report.newton_iterations;
     double before = 0;
@@ -8352,8 +8368,8 @@ static gx_result gxsp_newton(gxsp_problem *problem) {
     return *done > 0 || problem->report.stop == GXS_STOP_SECONDS ? GX_OK : GX_ERROR_DIVERGED;
 }
 
-/* E of every piece at current, and its limit: E at a displacement at which all were evaluated last, or, elastic set, of
- * another one without the kinetic energy */
+/* E of every component at current, and its limit: E at a displacement at which all were evaluated last, or, with
+ * elastic, at another one without the kinetic energy */
 static void gxsp_limit_energies(const gxsp_problem *problem, const double *displacement, int elastic) {
     gxsp_system *system = problem->system;
     size_t i;
@@ -8372,7 +8388,7 @@ static void gxsp_limit_energies(const gxsp_problem *problem, const double *displ
     }
 }
 
-/* How many pieces have ended above their limit by more than rounding? risen says which. */
+/* Counts the components that have ended above their limit by more than rounding; risen marks them. */
 static size_t gxsp_count_risen(gxsp_system *system) {
     size_t count = 0;
     uint32_t p;
@@ -8386,14 +8402,14 @@ static size_t gxsp_count_risen(gxsp_system *system) {
     return count;
 }
 
-/* Where the pieces would be without a step, but for translations of loose ones: into trial */
+/* Base, with loose components translated so that their momentum balances: into trial */
 static void gxsp_translate_base(gxsp_problem *problem) {
     gxsp_find_base(problem, gxsp_trial(problem->system));
     gxsp_balance_momentum(problem, 0, NULL, gxsp_trial(problem->system));
 }
 
-/* E of every piece at base, when the limits are those at trial, to which loose pieces were translated: E is a parabola
- * along that */
+/* E of every component at base, once the limits are E at trial, to which loose components were translated: E is a
+ * parabola along the translation. */
 static void gxsp_note_base(const gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     uint32_t p;
@@ -8407,8 +8423,8 @@ static void gxsp_note_base(const gxsp_problem *problem) {
     }
 }
 
-/* Pieces whose E is above that at trial go on from there to where they are as far as it falls. Returns how many there
- * were. */
+/* Components whose E exceeds that at trial go from there towards their point as far as E falls. Returns how many
+ * there were. */
 static size_t gxsp_bring_down(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     size_t i, k, count;
@@ -8436,10 +8452,10 @@ static size_t gxsp_bring_down(gxsp_problem *problem) {
     return count;
 }
 
-/* Newton's method from target, which is close to the answer in all but violent motion. A piece that ends higher in E
- * than it was at base, translated as its momentum says if it is loose, is brought down on the way from there, and
- * Newton's method goes on with what is left of its iterations: so E(u) <= E(base) always, piece by piece, and what a
- * step can add to the energy is bounded. */
+/* Newton's method from target, which is close to the answer except in violent motion. A component that ends higher
+ * in E than at base (translated by its momentum if it is loose) is brought down on the way from there, and Newton's
+ * method continues with the iterations that are left. So E(u) <= E(base) always, component by component, which
+ * bounds the energy that a step can add. */
 static gx_result gxsp_minimise(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     gx_result result = GX_ERROR_DIVERGED;
@@ -8467,8 +8483,8 @@ static gx_result gxsp_minimise(gxsp_problem *problem) {
 /* In: current, where Newton's method has ended. Out: the caller's displacement, velocity, rest times and spring
  * forces, and what the next step is told. */
 
-/* E of every piece at a displacement, less that at base: into gain. evaluated: 1: that was evaluated last; 0: it is
- * current */
+/* gain = E of every component at a displacement, minus that at base. evaluated: 1: the displacement was evaluated
+ * last; 0: it is current */
 static void gxsp_find_gains(const gxsp_problem *problem, const double *displacement, int evaluated) {
     gxsp_system *system = problem->system;
     size_t i;
@@ -8485,7 +8501,7 @@ static void gxsp_find_gains(const gxsp_problem *problem, const double *displacem
     }
 }
 
-/* Pieces that springs or contact act on at a displacement are not loose any more. */
+/* Components on which springs or contact act at a displacement are not loose any more. */
 static void gxsp_touch_components_at(const gxsp_problem *problem, const double *displacement) {
     gxsp_system *system = problem->system;
     const gxs_point *point;
@@ -8498,8 +8514,8 @@ static void gxsp_touch_components_at(const gxsp_problem *problem, const double *
                 system->model.components[system->model.component[point->copy[k]]].state |= GXSP_TOUCHED;
 }
 
-/* Is the second half short enough for the piece? If not, it will try a shorter one, in the end none: E is about a
- * parabola with its minimum, low, where nothing is left of what is taken off. */
+/* Is the second half short enough for the component? If not, it will try a shorter one, in the end none: E is about
+ * a parabola whose minimum, low, is where nothing of the second half is left. */
 static void gxsp_judge_gain(gxsp_component *component, int last) {
     const double low = component->low, gain = component->gain;
     double next;
@@ -8512,7 +8528,7 @@ static void gxsp_judge_gain(gxsp_component *component, int last) {
     component->length = last ? 0 : next < 0.1 * component->length ? 0.1 * component->length : next;
 }
 
-/* Light copies keep their place beside what guides them: in x, n x 3, they go as the mean of their guides. */
+/* Light copies keep their place beside the copies that guide them: in x, n x 3, they move by the mean of these. */
 static void gxsp_guide_lights(const gxsp_system *system, double *x) {
     uint32_t i;
     for (i = 0; i < system->model.light_count; i++) {
@@ -8525,8 +8541,8 @@ static void gxsp_guide_lights(const gxsp_system *system, double *x) {
     }
 }
 
-/* The second half of the midpoint rule from current: drift of loose pieces, and direction. What springs or contact act
- * on at its end is not loose. trial: that end. */
+/* The second half of the midpoint rule from current: drift of loose components, and direction. Components on which
+ * springs or contact act at its end are not loose. trial: that end. */
 static void gxsp_find_second_half(const gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     const size_t count = 3 * system->model.n;
@@ -8560,13 +8576,13 @@ static void gxsp_find_second_half(const gxsp_problem *problem) {
     }
 }
 
-/* The midpoint rule goes on from current by as much as from base to current, to an energy of E there, as that of the
- * start is E(base). These are equal but for terms of third order in the way, for what Newton's method and conjugate
- * gradients have left, which would add up from step to step and grow without end, and for springs and contact that
- * first act beyond current. Where a piece would gain more than a share of its kinetic energy, its second half is
- * shortened, but for the translation of a piece that nothing acts on at either place. At worst the step ends at
- * current, where E is not above E(base). Light copies go as what guides them: nothing would damp them. direction
- * becomes the end. */
+/* The midpoint rule continues from current by as much as from base to current; E there is the end's energy, as
+ * E(base) is the start's. The two are equal but for terms of third order in the way, for what Newton's method and
+ * conjugate gradients have left, which would add up from step to step without bound, and for springs and contact
+ * that first act beyond current. If a component would gain more than a share of its kinetic energy, its second half
+ * is shortened, except the translation of a component that nothing acts on at either place. At worst the step ends
+ * at current, where E is not above E(base). Light copies move with the copies that guide them: nothing would damp
+ * them. direction becomes the end. */
 static void gxsp_bound_gain(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
     const size_t count = 3 * system->model.n;
@@ -8607,7 +8623,7 @@ static void gxsp_bound_gain(gxsp_problem *problem) {
     for (p = 0; p < system->model.component_count; p++) system->model.components[p].settled = 0;
 }
 
-/* E at a displacement of these energies, J */
+/* E at a displacement whose energies are given, J */
 static double gxsp_potential(const gxsp_problem *problem, const double *energies, const double *displacement) {
     double work = 0;
     size_t i;
@@ -8619,7 +8635,8 @@ static double gxsp_potential(const gxsp_problem *problem, const double *energies
     return energies[0] + energies[1] - work;
 }
 
-/* Writes the state out, all of it or, if a number is not finite, none. */
+/* Writes the state out: all of it, or none if a number is not finite. residual and direction have the new velocity
+ * and displacement here. */
 static gx_result gxsp_finish(gxsp_problem *problem, double *displacement, double *velocity) {
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
@@ -8737,7 +8754,7 @@ static gx_result gxsp_check_model(const gxs_model *model, gx_failure *failure) {
                                                : result;
 }
 
-/* dt within what the square of it and of its inverse can hold */
+/* dt within the range where its square and the inverse of that are finite */
 static int gxsp_dt_fits(double dt) { return dt >= 1e-100 && dt <= 1e100; }
 
 static gx_result gxsp_check_step(const gxs_step_desc *step, gx_failure *failure) {
@@ -8763,7 +8780,7 @@ static gx_result gxsp_check_step(const gxs_step_desc *step, gx_failure *failure)
     return GX_OK;
 }
 
-/* Is all that names copies of one numbering? */
+/* Does everything that names copies use the model's numbering? */
 static gx_result gxsp_check_epochs(const gxs_step_desc *step, uint64_t epoch, gx_failure *failure) {
     size_t i;
     if ((step->forces || step->targets) && step->epoch != epoch) return gxsp_fail(failure, GX_ERROR_STALE, SIZE_MAX);
@@ -8858,7 +8875,7 @@ static gx_result gxsp_check_change(const gxsp_system *system, const gxs_change *
     return result;
 }
 
-/* A balance of forces without inertia needs every piece to be held, by a copy or a spring. */
+/* A balance of forces without inertia needs every component to be held, by a copy or a spring. */
 static gx_result gxsp_check_free(const gxsp_problem *problem, gx_failure *failure) {
     const gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
@@ -9020,7 +9037,7 @@ GXFEM_API void gxs_solver_note_written(const gxs_solver *solver, const uint32_t 
 
 GXFEM_API void gxs_solver_scene(const gxs_solver *solver, gxs_scene *scene) { *scene = solver->lasting.scene; }
 
-/* All that one step leaves to the next goes; what depends on the model alone stays. */
+/* Forgets what one step leaves to the next. What depends on the model alone stays. */
 GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene) {
     gxsp_system *system = solver->system;
     uint32_t p;
@@ -9046,7 +9063,7 @@ GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene) {
     }
 }
 
-/* Room for the terms of a step */
+/* Memory for the terms of a step */
 static int gxsp_reserve_terms(gxsp_lasting *lasting, size_t count) {
     gxsp_term *larger;
     if (count <= lasting->room) return 1;
@@ -9151,7 +9168,7 @@ typedef struct gxsp_group {
     const gxs_element *elements;
 } gxsp_group;
 
-/* The next elements of one kind from at on. */
+/* The next elements of one kind from at on */
 static void gxsp_group_load(const gxs_model *model, size_t at, gxsp_group *group) {
     size_t lane;
     int k;
@@ -9189,7 +9206,7 @@ static void gxsp_group_scatter(const gxsp_group *group, gxsp_lanes *values, doub
             for (r = 0; r < 3; r++) y[3 * (size_t)group->elements[lane].copy[i] + (size_t)r] += values[3 * i + r][lane];
 }
 
-/* Model and an input vector of one of the assembled forms. */
+/* Checks the model and an input vector of one of the assembled forms. */
 static gx_result gxsp_check_form(const gxs_model *model, const double *vector, const void *output) {
     gx_failure failure;
     gx_result result = gxsp_check_model(model, &failure);

@@ -125,14 +125,14 @@ static double check_lanes(gx_body *body) {
     ck_assert(memcmp(model.positions, system->model.positions, 3 * model.copy_count * sizeof(double)) == 0);
     for (c = 0; c < system->mesh.chunk_count; c++) {
         const gxsp_chunk *chunk = &system->mesh.chunks[c];
-        ck_assert_uint_eq(chunk->fresh[chunk->block_count], 15);
+        ck_assert_uint_eq(chunk->changed[chunk->block_count], 15);
         ck_assert_ptr_null(chunk->gradients); /* of no element of a body */
         blocks += chunk->block_count;
         for (b = 0; b < chunk->block_count; b++)
             for (i = 0; i < 4; i++) {
                 const uint16_t *node = chunk->corners[b].node[i];
                 const int differs = b == 0 || memcmp(node, chunk->corners[b - 1].node[i], lanes * sizeof *node) != 0;
-                ck_assert_int_eq(chunk->fresh[b] >> i & 1, differs);
+                ck_assert_int_eq(chunk->changed[b] >> i & 1, differs);
                 fresh += (size_t)differs;
                 for (l = 0; l < lanes; l++) {
                     ck_assert_uint_lt(node[l], chunk->node_count);
