@@ -28,61 +28,76 @@
  *         return (int)result;
  *     }
  *
- * CONTENTS (search for the anchors; in the order of the file)
- *   >>shared      result codes, allocator, jobs    >>lattice     structure of the multigrid
- *   >>types       materials, elements, step        >>lights      copies with next to no mass
- *   >>functions   the API                          >>system      all that a model is made into
- *   >>platform    finite by bits                   >>followers   constraints between copies
- *   >>memory      pools, the solver's own form     >>operator    product, linearisation, block diagonal
- *   >>jobs        a loop, by threads or not        >>multigrid   the cycle, numbers of its levels, assembly
- *   >>lanes       rsqrt, log for vectors           >>update      what a cut changes
- *   >>material    energies and stresses            >>pieces      translations of loose pieces
- *   >>svd         stretches and rotations of F     >>points      springs and contact
- *   >>tangent     Hessian of one block             >>cg          conjugate gradients
- *   >>element     passes over one block            >>sleep       what rests is left out
- *   >>chunk       passes over chunks               >>newton      line search, Newton, integrators
- *   >>model       order of elements, chunks, lanes >>check       of what is given
- *   >>forms       assembled forms, one F (last)    >>api         the public functions
+ * CONTENTS (search for the anchors; in the order of the file. Functions call functions of their own section and of
+ * earlier ones only)
+ *   interface:    >>shared result codes, allocator, jobs | >>types materials, elements, step | >>functions the API
+ *   foundations:  >>constants sizes, limits | >>scalars bits, sums | >>memory pools | >>structs the solver's own form |
+ *                 >>columns arrays over copies, slots, chunks | >>jobs loops
+ *   kernels:      >>svd stretches and rotations of F | >>material energies, stresses | >>tangent Hessian of one block |
+ *                 >>element passes over one block
+ *   chunks:       >>masses of parts of elements | >>order of elements | >>lanes of a chunk | >>chunks blocks, slots |
+ *                 >>copies fixed, following, connected | >>followers constraints between copies
+ *   structure:    >>transfer between levels | >>levels their patterns | >>pattern of level 1 | >>hierarchy all levels |
+ *                 >>lights copies with next to no mass | >>sharing of memory | >>system a model in the solver's form
+ *   operator:     >>forces energies, forces | >>blocks 3x3 blocks | >>product single precision | >>doubles double
+ *                 precision | >>linearise Hessians, block diagonal
+ *   multigrid:    >>galerkin coarse matrices | >>factor of the last level | >>assembly the assembled matrix |
+ *                 >>smoother its step length | >>cycle the V-cycle
+ *   changes:      >>edits lanes that a cut changes | >>renewal copies and components | >>update levels, all of it
+ *   steps:        >>components momentum | >>points springs, contact | >>cg conjugate gradients | >>ageing of coarse
+ *                 matrices | >>sleep rest | >>balance residual, start | >>search lengths | >>integrators BDF, midpoint
+ * |
+ *                 >>newton iterations, bound on E | >>midpoint second half, end of a step
+ *   entrance:     >>check what is given | >>api the public functions | >>forms assembled forms, one F
+ *
+ * WORDS. Copy: a node's displacement for one connected set of cells. Component: copies joined by elements and
+ * constraints. Lane, block, chunk: an element's place, eight lanes, 48 blocks. Slot: a copy's place in the results of
+ * one chunk. Loose component: no copy of it is held or touched by springs or contact. Light copy: next to none of the
+ * mass around it is its own. Base: where a step would end that only moves held copies to their targets.
  *
  * WHAT IT DOES. A step of length h is the minimum over the displacements u of the incremental potential
  *
  *     E(u) = |u - u_n - h v_n|_M^2 / (2 h^2) + U(u) + C(u) - f . u        GXFEM Eq. 10 divided by h^2; joule
  *
- * M: mass, U: elastic energy, C: springs and contact, f = M g + nodal forces: a linear term, so that M is never
- * inverted. Then v = (u - u_n) / h. That is backward Euler; BDF2 and the implicit midpoint rule differ in what takes
- * the place of h and u_n + h v_n, statics have no mass, Rayleigh damping is in the first term (mass) and in U
- * (stiffness). E is minimised by Newton's method with a line search on E. The Hessian of every element is projected to
- * the nearest positive semi-definite one in closed form (analytic eigensystem); where Newton goes on and steps are
- * whole, near the end, the exact one is tried. Products are matrix-free: eight elements side by side in a block, 48
- * blocks in a chunk, each chunk summed by itself and the chunks in their order, so that results are the same for any
- * number of threads. The linear systems go to conjugate gradients with multigrid: the model itself smoothed by
- * block-Jacobi, coarse levels on lattices whose points are doubled where a cut runs between the copies around them, and
- * a factorised one as soon as that is cheap. Coarse matrices serve until iterations rise. The last two steps'
- * directions are the guess for the next. E is a sum over pieces (copies joined by elements), and each has a step length
- * of its own in the line search, so that none of them is flung about for what another gains. Every loose piece (none of
- * its copies is held or touched by springs and contact) moves as a whole first so that its momentum balances, and the
- * later iterates leave its momentum alone: it is right to rounding whatever the tolerances are, and free fall takes no
- * iteration. Newton starts at u_n + h v_n; a piece that ends above E at u_n, translated so, is brought down on the way
- * from there: E(u) <= E(u_n) always, piece by piece and however fast it falls, so a step cannot blow up; the midpoint
- * rule, which goes on from there as far again, goes less far where it would gain energy. Residuals are measured twice,
- * both times scaled by the block diagonal D of the Hessian: in energy, sqrt(sum r_i . D_i^-1 r_i), and in displacement,
- * sqrt(sum |D_i^-1 r_i|^2). The second sees a piece of 1e-12 of its neighbour's volume as well as the neighbour. A
- * piece that has been slow for long sleeps if gxs_step_desc.sleep_speed says so; steps do without it until something
- * touches it.
+ * M: mass, U: elastic energy, C: springs and contact, f = M g + nodal forces. f is a linear term, so that M is never
+ * inverted. Then v = (u - u_n) / h. That is backward Euler. BDF2 and the implicit midpoint rule replace h and
+ * u_n + h v_n by others; statics have no mass. Rayleigh damping is in the first term (mass) and in U (stiffness).
+ *
+ * Newton's method with a line search minimises E. The Hessian of every element is projected to the nearest positive
+ * semi-definite one in closed form (analytic eigensystem). Near the end, where steps are whole, the exact one is tried.
+ * Products are matrix-free: eight elements side by side in a block, 48 blocks in a chunk. Each chunk is summed by
+ * itself and the chunks in their order, so that results are the same for any number of threads.
+ *
+ * Conjugate gradients with multigrid solve the linear systems. The finest level is the model itself, smoothed by
+ * block-Jacobi. Coarse levels live on lattices whose points are doubled where a cut separates the copies around them;
+ * the first level for which that is cheap is factorised. Coarse matrices serve until iterations rise. The last two
+ * steps' directions are the guess for the next.
+ *
+ * E is a sum over components, and each has a step length of its own in the line search, so that none of them is flung
+ * about for the gain of another. Every loose component first moves as a whole so that its momentum balances, and later
+ * iterates leave its momentum alone: it is right to rounding whatever the tolerances are, and free fall takes no
+ * iteration. Newton's method starts at u_n + h v_n. A component that ends above E at u_n, translated so, is brought
+ * down on the way from there. So E(u) <= E(u_n) always, component by component and however fast it falls: a step cannot
+ * blow up. The midpoint rule continues from there as far again, or less far where it would gain energy.
+ *
+ * Residuals are measured twice, both times scaled by the block diagonal D of the Hessian: in energy, sqrt(sum r_i .
+ * D_i^-1 r_i), and in displacement, sqrt(sum |D_i^-1 r_i|^2). The second measure sees a component of 1e-12 of its
+ * neighbour's volume as well as the neighbour. A component that has been slow for long sleeps if
+ * gxs_step_desc.sleep_speed says so; steps leave it out until something touches it.
  *
  * WHAT IT DOES NOT DO. No cutting and no meshes: it sees elements of four copies. No search for contacts between
- * pieces: give points, planes and your own forces. No threads of its own: see gx_jobs; a task takes up to 90 kB of
+ * components: give points, planes and your own forces. No threads of its own: see gx_jobs; a task takes up to 90 kB of
  * stack.
  *
- * LIMITS. poisson in [0, 0.5), beyond 0.49999 the single precision of the Hessian tells; copies and elements below
- * 2^30. Energies, forces and states are doubles; the Hessian, its products and the preconditioner are single precision,
- * which sets no limit to what Newton reaches, only to what one linear solve does (about 1e-6 of the residual; a free
+ * LIMITS. poisson in [0, 0.5); beyond 0.49999 the Hessian's single precision shows. Copies and elements below 2^30.
+ * Energies, forces and states are doubles. The Hessian, its products and the preconditioner are single precision, which
+ * does not limit what Newton's method reaches, only what one linear solve does (about 1e-6 of the residual; a free
  * body's slowest modes are solved as well while inertia is above some 1e-6 of stiffness, rho h^2 / (E dt^2) for
- * elements of size h). Where the mass of a part of an element has its centre is rounded once, by at most 1e-7 of the
- * element, and all is right for the mass so placed. Memory: 240 to 270 bytes per element in all, of a mesh with four
- * elements per copy; 290 to 350 where cuts leave two or three. The material can invert without a failure and comes back
- * by itself; an element collapsed to a point, where its energy is stationary, is opened as if it were not quite one.
- * Same input, same binary: same bits. Nothing here needs isnan or infinities: it is right under -ffast-math, where sums
+ * elements of size h). The centre of the mass of a part of an element is rounded once, by at most 1e-7 of the element;
+ * all is right for the mass so placed. Memory: 240 to 270 bytes per element in all, of a mesh with four elements per
+ * copy; 290 to 350 where cuts leave two or three. The material can invert without a failure and recovers by itself. An
+ * element collapsed to a point, where its energy is stationary, is opened as if it were not quite collapsed. Same
+ * input, same binary: same bits. Nothing here needs isnan or infinities: it is right under -ffast-math, where sums
  * round otherwise.
  *
  * REFERENCES. GXFEM: Generalized eXtended Finite Element Method for Deformable Cutting via Boolean Operations, 2024.
@@ -182,15 +197,15 @@ typedef enum gxs_material_kind {
     GXS_CUSTOM                  /* the caller's own, by energy below */
 } gxs_material_kind;
 
-/* Energy density, J/m3, at a deformation gradient F (3x3 by rows), finite wherever F is. stress: P = d energy / dF, Pa,
- * by rows; hessian: dP_i/dF_j at [9 i + j], symmetric, it need not be semi-definite; either may be NULL. Called on the
+/* Energy density, J/m3, at a deformation gradient F (3x3 by rows); finite wherever F is. stress: P = d energy / dF, Pa,
+ * by rows; hessian: dP_i/dF_j at [9 i + j], symmetric, not necessarily semi-definite. Either may be NULL. Called on the
  * threads of gx_jobs. */
 typedef double (*gxs_energy_fn)(void *user, const double *deformation, double *stress, double *hessian);
 
 typedef struct gxs_material {
     gxs_material_kind kind;
-    double young;         /* Pa, above 0; of GXS_CUSTOM: about its stiffness, for scaling only */
-    double poisson;       /* 0 <= poisson < 0.5; of GXS_CUSTOM: checked, not used */
+    double young;         /* Pa, above 0; GXS_CUSTOM: about its stiffness, for scaling only */
+    double poisson;       /* 0 <= poisson < 0.5; GXS_CUSTOM: checked, not used */
     double damping;       /* Rayleigh's beta, s, 0 or more: stress grows by beta times its rate of change */
     gxs_energy_fn energy; /* GXS_CUSTOM only */
     void *user;
@@ -198,66 +213,66 @@ typedef struct gxs_material {
 
 /* A linear tetrahedron, or the part of one that a cut has left. */
 typedef struct gxs_element {
-    uint32_t copy[4]; /* whose displacement each corner follows; below copy_count */
-    /* of the four shape functions, 1/m; row 0 is minus the sum of the others and not read */
+    uint32_t copy[4]; /* the copy that moves each corner; below copy_count */
+    /* of the four shape functions, 1/m; row 0, minus the sum of the others, is not read */
     double gradient[4][3];
     double weight; /* volume, m3; 0 or more */
-    /* rho int N_i N_j, kg, symmetric, semi-definite (made so, if it is not) 4x4 block: 00 01 02 03 11 12 13 22 23 33;
-     * of a row sum below 2^-25 of all, nothing */
+    /* rho int N_i N_j, kg, symmetric, semi-definite (made so if it is not) 4x4 block: 00 01 02 03 11 12 13 22 23 33. A
+     * row sum below 2^-25 of the element's mass counts as 0 */
     double mass[10];
     uint32_t material; /* below material_count */
-    /* the caller's, below 2^30: elements of one group are replaced together, see gxs_solver_update; else not read */
+    /* the caller's, below 2^30: elements of one group are replaced together. Read by gxs_solver_update only */
     uint32_t group;
 } gxs_element;
 
-/* A copy that follows others: in every step its displacement changes by the sum of weight x what theirs change by. A
- * held copy follows nothing; masters follow nothing themselves. */
+/* A copy that follows others: in every step its displacement changes by the weighted sum of the changes of theirs. A
+ * held copy follows nothing. Masters follow nothing themselves. */
 typedef struct gxs_constraint {
     uint32_t copy;
     uint32_t master[4]; /* below copy_count, also where the weight is 0 */
-    double weight[4];   /* 1 in sum where the copy shall follow translations */
+    double weight[4];   /* 1 in sum if the copy is to follow translations */
 } gxs_constraint;
 
 /* Borrowed for the time of a call. */
 typedef struct gxs_model {
     size_t copy_count;
-    /* copy_count x 3: the copies' nodes at rest, m; NULL: no multigrid, and more memory: elements whose gradients are
-     * those of their copies' positions (to 1e-11) are kept without them */
+    /* copy_count x 3: the copies' nodes at rest, m; NULL: no multigrid, and more memory. With positions, gradients that
+     * agree with them (to 1e-11) are not stored */
     const double *positions;
     const gxs_element *elements; /* element_count */
     size_t element_count;
-    const gxs_material *materials; /* material_count, as many as there are differing elements if need be */
+    const gxs_material *materials; /* material_count, up to one per element */
     size_t material_count;
-    const uint8_t *held;               /* copy_count flags: not 0 keeps the copy's displacement; NULL: none is held */
-    uint32_t lumped_mass;              /* not 0: row sums of the mass; 0: as given (consistent) */
+    const uint8_t *held;  /* copy_count flags: not 0: the copy keeps its displacement; NULL: none is held */
+    uint32_t lumped_mass; /* not 0: row sums of the mass; 0: as given (consistent) */
     const gxs_constraint *constraints; /* constraint_count, each of another copy */
     size_t constraint_count;
-    /* names this numbering of copies. Springs, contact points, forces and targets of a step say which one they are of:
-     * those of another are GX_ERROR_STALE. 0 everywhere is fine as long as copies keep their numbers */
+    /* names this numbering of copies. Springs, contact points, forces and targets of a step name the numbering that
+     * they use; another one is GX_ERROR_STALE. 0 everywhere is fine as long as copies keep their numbers */
     uint64_t epoch;
 } gxs_model;
 
-/* What a cut has changed of a model. Borrowed for the time of a call. */
+/* The change that a cut makes to a model. Borrowed for the time of a call. */
 typedef struct gxs_change {
     size_t copy_count; /* from now on */
-    /* copy_count: 2 x the index so far of the copy that this one is, or, for a new one, 2 x that of the copy whose
-     * position and motion it takes over, + 1 */
+    /* copy_count: 2 x the copy's index so far; for a new copy 2 x the index of the copy whose position and motion it
+     * takes over, + 1 */
     const uint32_t *origins;
     const uint8_t *held;    /* copy_count flags as the model's; NULL: none is held */
-    const uint32_t *groups; /* group_count, ascending: all elements of these go */
+    const uint32_t *groups; /* group_count, ascending: all elements of these groups go */
     size_t group_count;
-    /* element_count, by ascending group: what comes in their place; of the model's materials */
+    /* element_count, by ascending group: the elements in their place, of the model's materials */
     const gxs_element *elements;
     size_t element_count;
-    const gxs_constraint *constraints; /* constraint_count: all that there are from now on */
+    const gxs_constraint *constraints; /* constraint_count: all constraints from now on */
     size_t constraint_count;
     uint64_t epoch; /* of the numbering from now on */
 } gxs_change;
 
 typedef enum gxs_preconditioner {
-    /* multigrid where it pays: in large pieces, in steps in which stiffness outweighs inertia */
+    /* multigrid where it pays: in large components, in steps in which stiffness outweighs inertia */
     GXS_AUTOMATIC = 0,
-    GXS_BLOCK_JACOBI, /* least memory; iterations grow with size, loose fragments and thin layers */
+    GXS_BLOCK_JACOBI, /* least memory; iterations grow with size, with loose fragments and with thin layers */
     GXS_MULTIGRID,    /* coarse functions that never cross a cut */
     GXS_VOLUME_RATIO  /* RXFEM Eq. 26, for comparison: each copy by the volume of its support */
 } gxs_preconditioner;
@@ -277,24 +292,24 @@ typedef struct gxs_solver_desc {
 
 /* How time is discretised. All are implicit and minimise a potential of the form of E above. */
 typedef enum gxs_integrator {
-    GXS_BDF1 = 0, /* backward Euler: first order, damps what it cannot resolve */
-    GXS_BDF2,     /* second order, damps less; the first step, without one before it, is backward Euler */
+    GXS_BDF1 = 0, /* backward Euler: first order, damps motion that it cannot resolve */
+    GXS_BDF2,     /* second order, damps less; the first step is backward Euler */
     /* implicit midpoint: second order, damps nothing; needs steps that resolve the motion. Where Newton or CG end
-       early, or springs or contact begin to act after the middle of a step, its second half is shortened piece by
-       piece: none gains more than 1 % of its kinetic energy */
+       early, or springs or contact begin to act after the middle of a step, its second half is shortened, component by
+       component: none gains more than 1 % of its kinetic energy */
     GXS_MIDPOINT,
-    /* no inertia, velocities 0. dt 0: balance of forces, GX_ERROR_FREE where a piece is held by nothing. dt above 0:
-       the mass over dt^2 holds every copy where it was, so that free pieces have an answer */
+    /* no inertia, velocities 0. dt 0: balance of forces; GX_ERROR_FREE if nothing holds a component. dt above 0: the
+       mass over dt^2 holds every copy where it was, so that free components have an answer */
     GXS_STATIC
 } gxs_integrator;
 
-/* A material point: it is where the sum of weight x copy has moved it. A node, a point of an element, a vertex of a
- * skin. */
+/* A material point: a node, a point of an element, a vertex of a skin. Its displacement is the sum of weight x that of
+ * copy. */
 typedef struct gxs_point {
     uint32_t copy[4];   /* below copy_count, also where the weight is 0 */
     double weight[4];   /* of the shape functions there, 1 in sum */
     double position[3]; /* at rest, m */
-    uint64_t epoch;     /* of the numbering that copy is of: the model's, else GX_ERROR_STALE */
+    uint64_t epoch;     /* names the numbering of copy: the model's, else GX_ERROR_STALE */
 } gxs_point;
 
 /* Pulls a point to a target: a hand, a haptic tool, an elastic tether. Energy stiffness/2 |x - target|^2 */
@@ -304,8 +319,8 @@ typedef struct gxs_spring {
     double stiffness; /* N/m, 0 or more */
 } gxs_spring;
 
-/* Keeps contact points on the side of normal . x >= offset by a penalty of stiffness/2 depth^2 a point. Friction holds
- * a point by friction x the normal force at the step's start, up to sticking_speed in proportion to the speed. */
+/* Keeps contact points on the side of normal . x >= offset by a penalty of stiffness/2 depth^2 a point. Friction is
+ * friction x the normal force at the step's start; below sticking_speed it is proportional to the speed. */
 typedef struct gxs_plane {
     double normal[3];      /* of length 1 */
     double offset;         /* m */
@@ -315,32 +330,32 @@ typedef struct gxs_plane {
 } gxs_plane;
 
 /* A contact point's energy, J, at a position; force: on the point, minus its gradient, N; hessian: of the energy, N/m,
- * semi-definite, 00 01 02 11 12 22, NULL if it is not asked for. Called on the thread of the step only. */
+ * semi-definite, 00 01 02 11 12 22, or NULL. Called on the thread of the step only. */
 typedef double (*gxs_contact_fn)(void *user, size_t point, const double *position, double *force, double *hessian);
 
 typedef struct gxs_step_desc {
-    double dt;            /* s, above 0; GXS_STATIC: 0 is possible */
+    double dt;            /* s, above 0; GXS_STATIC: 0 or more */
     double gravity[3];    /* m/s2 */
     const double *forces; /* copy_count x 3, N; NULL: none */
     gxs_integrator integrator;
     /* copy_count x 3, of the step before; BDF2 only; NULL: none */
     const double *previous_displacement, *previous_velocity;
     double previous_dt; /* s, of the step before; BDF2 only */
-    /* copy_count x 3: displacement of held copies at the step's end, others not read; NULL: they stay */
+    /* copy_count x 3: displacement of held copies at the step's end; others are not read. NULL: held copies stay */
     const double *targets;
-    /* of the numbering of forces and targets: the model's, else GX_ERROR_STALE; read where one of them is given */
+    /* names the numbering of forces and targets: the model's, else GX_ERROR_STALE. Read if one of them is given */
     uint64_t epoch;
     double mass_damping;        /* Rayleigh's alpha, 1/s, 0 or more: force -alpha M v */
-    uint32_t newton_iterations; /* at most so many; 0: 1 */
-    /* stop at this residual (see gxs_step_report); 0: 1e-8, far below what one iteration leaves of motion */
+    uint32_t newton_iterations; /* at most; 0: 1 */
+    /* stop at this residual (see gxs_step_report); 0: 1e-8, far below what one iteration leaves in motion */
     double newton_tolerance;
     uint32_t cg_iterations; /* per Newton iteration, at most; 0: 1000 */
-    /* reduction of the residual by each linear solve, below 1; 0: 1e-2, of the midpoint rule, which does not damp what
-     * is left, 1e-3 */
+    /* reduction of the residual by each linear solve, below 1; 0: 1e-2, and 1e-3 with the midpoint rule, which does not
+     * damp the error */
     double cg_tolerance;
     const gxs_spring *springs; /* spring_count */
     size_t spring_count;
-    /* spring_count x 3: written, the force of each spring on the body at the end, N; NULL: not asked for */
+    /* spring_count x 3: receives the force of each spring on the body at the end, N; or NULL */
     double *spring_forces;
     const gxs_point *points; /* point_count: of contact */
     size_t point_count;
@@ -348,17 +363,17 @@ typedef struct gxs_step_desc {
     size_t plane_count;
     gxs_contact_fn contact; /* for every contact point; NULL: none */
     void *contact_user;
-    /* m/s: a piece (copies joined by elements) none of whose copies has been faster for sleep_time sleeps: steps leave
-     * it out until something touches it: what is given here changes for it, or its state is written. What contact()
-     * knows is not seen: where that moves, set rest_times to 0. 0: none sleeps */
+    /* m/s: a component (copies joined by elements) sleeps when none of its copies has been faster for sleep_time. Steps
+     * leave it out until something touches it: what is given here changes for it, or its state is written. Changes
+     * inside contact() are not seen: set rest_times to 0 where it moves. 0: none sleeps */
     double sleep_speed;
     double sleep_time; /* s; 0: 0.5 */
-    /* copy_count: for how long each copy has been slower, s; read and written. Needed by sleep_speed */
+    /* copy_count: for how long each copy has been slower, s; read and written. Required with sleep_speed */
     double *rest_times;
-    double (*clock)(void *user); /* s; NULL: none, the report's seconds are 0, and there may be no budget_seconds */
+    double (*clock)(void *user); /* s; NULL: the report's seconds are 0, and budget_seconds must be 0 */
     void *clock_user;
-    /* after so long no further iteration begins, and the step ends with what it has; 0: no limit. Results then depend
-     * on the machine */
+    /* no iteration begins after this time, and the step ends with what it has; 0: no limit. Results then depend on the
+     * machine */
     double budget_seconds;
 } gxs_step_desc;
 
@@ -367,90 +382,90 @@ typedef enum gxs_stop {
     GXS_STOP_BALANCE = 0, /* the residual is below newton_tolerance */
     GXS_STOP_ITERATIONS,  /* newton_iterations are done */
     GXS_STOP_SECONDS,     /* budget_seconds are over */
-    GXS_STOP_ROUNDING,    /* no lower energy can be told in doubles */
-    GXS_STOP_ASLEEP       /* nothing to move: every piece sleeps or is held */
+    GXS_STOP_ROUNDING,    /* doubles cannot tell a lower energy */
+    GXS_STOP_ASLEEP       /* nothing to move: every component sleeps or is held */
 } gxs_stop;
 
 typedef struct gxs_step_report {
     gxs_stop stop;
-    /* displacements solved for: three for each copy that is not held, follows nothing and is awake */
+    /* displacements solved for: three per copy that is awake, not held and follows nothing */
     size_t active_unknowns;
-    uint32_t newton_iterations; /* done; 0 when the start was in balance to rounding */
+    uint32_t newton_iterations; /* 0: the start was in balance to rounding */
     uint32_t cg_iterations;     /* sum over Newton iterations */
-    uint32_t line_search_steps; /* step lengths tried, sum over Newton iterations */
-    /* |load - inertia - elastic| / (|load| + |inertia| + |elastic|) on the copies not held, the larger of the two
+    uint32_t line_search_steps; /* step lengths tried; sum over Newton iterations */
+    /* |load - inertia - elastic| / (|load| + |inertia| + |elastic|) on copies that are not held; the larger of the two
      * measures (see above) */
     double residual;
-    /* E at the end, J, without pieces asleep and up to a constant: the load on held copies. Of the midpoint rule this
-     * and the residual are those of its displacement at half the step */
+    /* E at the end, J, without sleeping components and up to a constant, the load on held copies. With the midpoint
+     * rule this and the residual are those at half the step */
     double energy;
-    gxs_preconditioner preconditioner; /* of the last linear solve; GXS_AUTOMATIC: there was none */
-    double seconds;           /* of the step; from gx_body_step with the renewal of the solver's model after a cut */
-    double seconds_linearise; /* in Hessians and their diagonal, */
-    double seconds_prepare;   /* in numbers of the preconditioner and assembly, */
-    double seconds_solve;     /* in conjugate gradients; all 0 without a clock */
+    gxs_preconditioner preconditioner; /* in the last linear solve; GXS_AUTOMATIC: there was none */
+    double seconds;           /* of the step; gx_body_step includes the renewal of the solver's model after a cut */
+    double seconds_linearise; /* in Hessians and their diagonal */
+    double seconds_prepare;   /* in assembly and the numbers of the preconditioner */
+    double seconds_solve;     /* in conjugate gradients */
 } gxs_step_report;
 
-/* What acted on all pieces in a step: a change of it wakes those that sleep. */
+/* What acts on all components in a step. A change of it wakes sleeping ones. */
 typedef struct gxs_scene {
     double gravity[3];                /* m/s2 */
-    uint64_t planes, forces, springs; /* hashes of what was given */
+    uint64_t planes, forces, springs; /* hashes */
 } gxs_scene;
 
 /* A model in the solver's own form, and the workspace of its steps; one call at a time. */
 typedef struct gxs_solver gxs_solver;
 
 /* >>functions
- * Those that return a gx_result check all they read: GX_ERROR_ARGUMENT, _EMPTY, _LIMIT, _RANGE, _INDEX, _NOT_FINITE
- * (index: of the element, material, constraint, copy, spring, point or plane), _INVERTED (weight below 0; index:
- * element). Steps also GX_ERROR_STALE (copies of another epoch than the model's; index: spring or point, SIZE_MAX:
- * forces or targets). Outputs are written on GX_OK only. failure and report may be NULL. */
+ * Functions that return a gx_result check all that they read: GX_ERROR_ARGUMENT, _EMPTY, _LIMIT, _RANGE, _INDEX,
+ * _NOT_FINITE (index: of the element, material, constraint, copy, spring, point or plane), _INVERTED (weight below 0;
+ * index: element). Steps also GX_ERROR_STALE (copies of another epoch than the model's; index: spring or point,
+ * SIZE_MAX: forces or targets). Outputs are written on GX_OK only. failure and report may be NULL. */
 
 /* Advances displacement (m) and velocity (m/s), both copy_count x 3 of the model set last and not overlapping, by one
- * step. Held copies keep their displacement or go to their target, copies without an element of any weight or mass stay
- * where they are; both get the velocity of that. GX_ERROR_ARGUMENT if no model is set; GX_ERROR_DIVERGED and
- * (GXS_STATIC) GX_ERROR_FREE are possible: displacement and velocity are then unchanged. A residual above
- * newton_tolerance when the iterations are used up is no error: see the report. Allocates (GX_ERROR_MEMORY) only where
- * there are more springs and contact points than ever before. */
+ * step. Held copies keep their displacement or go to their target. Copies that no element gives weight or mass stay
+ * where they are. Both get the velocity of that motion. GX_ERROR_ARGUMENT: no model is set. GX_ERROR_DIVERGED and, with
+ * GXS_STATIC, GX_ERROR_FREE leave displacement and velocity unchanged. A residual above newton_tolerance when the
+ * iterations are used up is no error: see the report. Allocates (GX_ERROR_MEMORY) only if there are more springs and
+ * contact points than ever before. */
 GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement,
                                     double *velocity, gxs_step_report *report, gx_failure *failure);
 
-/* What the next steps move, after each cut and each change of material or of what is held. All is copied into the
- * solver's own form. GX_ERROR_MEMORY is possible; on any error the model before stays. */
+/* Sets the model that the next steps move; again after each cut and each change of materials or held copies. All is
+ * copied into the solver's own form. GX_ERROR_MEMORY is possible. On any error the model before stays. */
 GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *model, gx_failure *failure);
 
-/* Changes the model in time that goes by the size of the change, but for what is proportional to the number of copies
- * and small. Steps go on with what they have learnt so far. Results are those of the whole model set anew but for
- * rounding and the tolerances of steps. GX_ERROR_ARGUMENT if no model is set, an order is not as it should be (index:
- * of the group or element), or a constraint cannot be (its index). GX_ERROR_LIMIT if the change does not fit what there
- * is: a matrix is assembled, mass is lumped, GXS_VOLUME_RATIO, lanes that changes have left behind are a quarter of
- * all, a copy is held and was not or the other way round, no element is left, elements that stay have lost a copy. On
- * this and on GX_ERROR_MEMORY no model is set any more: set it. On other errors the model before stays. */
+/* Changes the model. The time is proportional to the size of the change, but for small work proportional to the number
+ * of copies. Preconditioner and guesses are kept. Results are those of the whole model set anew, but for rounding and
+ * the tolerances of steps. GX_ERROR_ARGUMENT: no model is set, groups or elements are not in order (index: of the group
+ * or element), or a constraint is not allowed (its index). GX_ERROR_LIMIT: the change does not fit. Either the matrix
+ * is assembled, mass is lumped, GXS_VOLUME_RATIO is used, empty lanes are a quarter of all, a copy is held that was not
+ * or the other way round, no element is left, or an element that stays has lost a copy. After this and GX_ERROR_MEMORY
+ * no model is set any more: set it. On other errors the model before stays. */
 GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *change, gx_failure *failure);
-/* Sets the rest times of copies to 0 whose state has been written since the last step, so that their pieces wake
- * although another model is set before the next one, or another solver takes it. Vectors are of the copies of now;
- * origins (count): as in gxs_change. */
+/* Sets the rest times of copies to 0 whose state has been written since the last step. Their components then wake even
+ * if another model is set before the next step, or another solver takes it. Vectors use the present numbering; origins
+ * (count): as in gxs_change. */
 GXFEM_API void gxs_solver_note_written(const gxs_solver *solver, const uint32_t *origins, size_t count,
                                        const double *displacement, const double *velocity, double *rest_times);
-/* For whoever saves a state and goes on from it later: the scene of the last step, and a solver as if its model had
- * just been set after a step in that scene; a model that has been updated is dropped, and must be set. Two solvers so
- * resumed with the same model, scene and states take the same steps, bit by bit. */
+/* For saving a state and continuing later. gxs_solver_scene gives the scene of the last step. gxs_solver_resume makes
+ * the solver as if its model had just been set after a step in that scene; a model that has been updated is dropped and
+ * must be set. Two solvers resumed with the same model, scene and states take the same steps, bit by bit. */
 GXFEM_API void gxs_solver_scene(const gxs_solver *solver, gxs_scene *scene);
 GXFEM_API void gxs_solver_resume(gxs_solver *solver, const gxs_scene *scene);
 
 /* The model's operator for other uses than steps: a Krylov method of one's own, modes, an adjoint. gxs_solver_linearise
- * makes it at a displacement, gxs_solver_product applies it as often as one likes, matrix-free; both by the solver's
- * jobs: product = (K + rate M) direction                    N; m; rate: 1/s2, 0 or more K: Hessian of U, projected or,
- * exact not 0, as it is; M: the mass, lumped if the model says so. Springs, contact and damping belong to steps and are
- * not in it, pieces asleep are. It acts on what can move: directions of held copies and of copies without an element
- * count as 0, those of followers are what their masters' make of them, and the product is 0 there, what acts on
- * followers goes to their masters. So it is symmetric, and semi-definite unless exact. Vectors are copy_count x 3
- * doubles; between them numbers are single precision: of the Hessian, of what an element's copies move by relative to
- * the first (taken in double precision: translations meet no stiffness at all), of its forces; sums over elements are
- * single precision within chunks, double between them. A power of two times a direction gives exactly that times its
- * product. What is made lasts until the next step, update or model; then, or before anything is made, product is
- * GX_ERROR_ARGUMENT. GX_ERROR_RANGE: the Hessian is beyond single precision. Neither allocates, nor changes what steps
- * do. product may not overlap direction. */
+ * makes it at a displacement. gxs_solver_product applies it any number of times, matrix-free. Both use the solver's
+ * jobs. product = (K + rate M) direction, N; direction: m; rate: 1/s2, 0 or more. K: Hessian of U, projected unless
+ * exact is not 0; M: the mass, lumped if the model says so. Springs, contact and damping belong to steps and are left
+ * out; sleeping components are included. Directions of held copies and of copies without an element count as 0, and
+ * followers move as their masters make them. The product is 0 on all of these; forces on followers go to their masters.
+ * So the operator is symmetric, and semi-definite unless exact. Vectors are copy_count x 3 doubles. The Hessian, the
+ * motion of an element's copies relative to its first one, and its forces are single precision; the differences are
+ * taken in double precision, so that translations meet no stiffness at all. Sums over elements are single precision
+ * within chunks, double between them. A direction times a power of two gives exactly its product times that power. The
+ * operator lasts until the next step, update or model; without one, product is GX_ERROR_ARGUMENT. GX_ERROR_RANGE: the
+ * Hessian is beyond single precision. Neither function allocates or changes what steps do. product may not overlap
+ * direction. */
 GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displacement, double rate, uint32_t exact,
                                          gx_failure *failure);
 GXFEM_API gx_result gxs_solver_product(gxs_solver *solver, const double *direction, double *product,
