@@ -984,7 +984,7 @@ static void *gxsp_carve(gxsp_space *space, size_t count, size_t size) {
  * the chunk, to which it adds zeros. */
 typedef struct gxsp_rest {
     double weight[GXSP_LANES]; /* m3 */
-    /* kg: m of the block m (1 + delta_ij); in chunks that have moments all of the element's */
+    /* kg: m of the block m (1 + delta_ij); the element's mass in chunks that have moments */
     double mass[GXSP_LANES];
     uint32_t material[GXSP_LANES];
 } gxsp_rest;
@@ -1000,22 +1000,22 @@ typedef struct gxsp_corners {
     uint16_t node[4][GXSP_LANES];
 } gxsp_corners;
 
-/* Moments of masses that are not those of whole elements: M_ij = mass (c_i c_j + R_i . R_j), semi-definite however it
- * is rounded, of slivers too. c: centre of mass in barycentric coordinates, R R^T: their covariance; c_0 = 1 - sum c,
- * R_0 = -sum R. */
+/* Moments of the mass of a part of an element: M_ij = mass (c_i c_j + R_i . R_j), semi-definite however it is rounded,
+ * for slivers too. c: centre of mass in barycentric coordinates; R R^T: their covariance; c_0 = 1 - sum c, R_0 = -sum
+ * R. */
 typedef struct gxsp_moments {
-    float centre[3][GXSP_LANES]; /* of corners 1 ... 3, in whole units of 2^-24: with c_0 they are exactly 1 in sum */
+    float centre[3][GXSP_LANES]; /* of corners 1 ... 3, in whole units of 2^-24: exactly 1 in sum with c_0 */
     float root[6][GXSP_LANES];   /* of corners 1 ... 3, lower triangle by rows */
 } gxsp_moments;
 
 /* Projected Hessian of a block: dP = U (h : U^T dF V) V^T. */
 typedef struct gxsp_tangent {
-    /* U of F = U S V^T as sqrt 2 times its unit quaternion: x, y, z, w; any such numbers make it symmetric */
+    /* U of F = U S V^T as sqrt 2 times its unit quaternion: x, y, z, w. Any four numbers give a symmetric Hessian */
     float frame[4][GXSP_LANES];
     float gradient[9][GXSP_LANES]; /* shape function gradients 1..3 times V, by rows, 1/m */
     float stretch[6][GXSP_LANES];  /* weight x h: stretches; J */
-    float even[3][GXSP_LANES];     /* of the off-diagonal pairs (12), (20), (01): to themselves; J */
-    float odd[3][GXSP_LANES];      /* and to each other; J */
+    float even[3][GXSP_LANES];     /* factor of an off-diagonal entry (12), (20), (01) to itself; J */
+    float odd[3][GXSP_LANES];      /* factor of an off-diagonal entry to its mirror; J */
     float mass[GXSP_LANES];        /* gxsp_rest.mass x rate, kg/s2 */
 } gxsp_tangent;
 
@@ -1033,24 +1033,25 @@ typedef struct gxsp_fine {
 
 /* A chunk's energies of one component */
 typedef struct gxsp_partial {
-    double energies[3]; /* of the pass under way: elastic, kinetic, size of the terms they are sums of; J */
+    double energies[3]; /* of the last pass: elastic, kinetic, size of the terms that were summed; J */
     uint32_t component;
 } gxsp_partial;
 
 typedef struct gxsp_chunk {
-    gxsp_rest *rest; /* block_count, as are those without a count of their own */
+    gxsp_rest *rest; /* block_count, like every array here without a count of its own */
     gxsp_corners *corners;
-    /* block_count + 1: bit i: corner i is not the one of the block before, in each lane; at the end all */
+    /* block_count + 1: bit i: some lane's corner i differs from that of the block before; behind the last block all
+     * bits */
     uint8_t *changed;
     gxsp_tangent *tangents;
-    gxsp_gradients *gradients; /* NULL: they are found in each pass, from the rest positions */
+    gxsp_gradients *gradients; /* NULL: passes compute them from the rest positions */
     gxsp_moments *moments;     /* NULL: elements are whole, or masses lumped */
-    gxsp_general *generals;    /* of GXS_CUSTOM; NULL: gxsp_tangent has the Hessians */
+    gxsp_general *generals;    /* GXS_CUSTOM only; NULL: gxsp_tangent has the Hessians */
     /* block_count x GXSP_LANES: group of the element in each lane; GXSP_NONE: there is none */
     uint32_t *groups;
     uint32_t first_block, block_count;     /* blocks are counted through all chunks */
     uint32_t first_node, node_count;       /* into nodes and slots */
-    uint32_t first_partial, partial_count; /* into parts: one for each piece of its nodes, ascending */
+    uint32_t first_partial, partial_count; /* into partials: one per component of its nodes, ascending */
     uint32_t class_index;                  /* see gxsp_class */
     uint32_t edge_count;                   /* see gxsp_edges; 0: not known */
     int open;                              /* made by an update, with room for GXSP_CHUNK_BLOCKS */
@@ -1069,49 +1070,51 @@ typedef struct gxsp_level {
     float (*weight)[4];
     /* n + 1: rows of the symmetric matrix on and above its diagonal; not of level 0 if it is matrix-free */
     uint32_t *start;
-    uint32_t *column; /* ascending in a row: the first is the row's own */
-    /* 9 per entry, by columns; of a last level after the first in shared memory: only from gxsp_lend to gxsp_give_back
+    uint32_t *column; /* ascending in a row; the first is the diagonal */
+    /* 9 per entry, by columns. The last level, unless it is level 1, has it in shared memory, between gxsp_lend_memory
+     * and gxsp_return_memory
      */
     float *block;
     float *inverse; /* n x 6: of the diagonal blocks, packed */
-    /* n: solution, right-hand side, residual; borrowed on level 0. The last level has no parents, weights, inverses,
-     * residual */
+    /* n: solution, right-hand side, residual; those of level 0 are vectors of gxsp_vectors. The last level has no
+     * parents, weights, inverses and residual */
     gxsp_vector4 *x, *b, *r;
 } gxsp_level;
 
 /* Edges: pairs of a chunk's nodes, i < j, that share an element, numbered from 1. */
 typedef struct gxsp_edges {
     size_t table_size;
-    /* table_size, nodes (nodes - 1) / 2 of the chunk that has most: the edge of two nodes i < j, at j (j - 1) / 2 + i,
-     * if ends says so, else one of another chunk */
+    /* table_size, nodes (nodes - 1) / 2 of the largest chunk: the edge of two nodes i < j, at j (j - 1) / 2 + i. Valid
+     * if ends agrees; otherwise an edge of another chunk */
     uint16_t *table;
     uint32_t *ends;         /* i << 16 | j */
     float (*block)[9];      /* i's row and j's column of the Hessian, by columns */
     uint16_t *first, *next; /* the edges to higher nodes as a list: first by node, next by edge; 0: there is none */
     uint8_t *joined;        /* by node: it has an edge */
-    uint32_t nodes, count;  /* count: with edge 0, which takes what is not wanted */
+    uint32_t nodes, count;  /* count: with edge 0, which collects what no edge needs */
     uint16_t (*element)[6][GXSP_LANES]; /* by block: edges of its elements */
-    float (*own)[9];                    /* by node: what its edges leave for its own block, see gxsp_half_row */
+    float (*own)[9];                    /* by node: half its diagonal block, see gxsp_half_row */
     float *mass;                        /* by node: half the row sum of the mass, scaled, kg/s2 */
     uint16_t (*parent)[4];              /* by node: numbers of its parents, see gxsp_pairs */
-    /* by number: a node's row of half the Hessian times the transfer; 0 but for the row at work */
+    /* by number: a node's row of half the Hessian times the transfer; 0 between rows */
     float (*half)[9];
-    uint16_t *touched; /* numbers of those that are not 0 */
+    uint16_t *touched; /* numbers in half that are not 0 */
 } gxsp_edges;
 
 /* Pairs of coarse nodes that are parents of one chunk's nodes, and their entries of level 1's matrix. Coarse nodes
  * are numbered in the chunk from 1; number 0 stands for no parent. */
 typedef struct gxsp_pairs {
-    /* count x count, if that is GXSP_CHUNK_PARENTS at most: 2 x the entry, + 1 where it is that of the pair turned */
+    /* count x count, if count is at most GXSP_CHUNK_PARENTS: 2 x the entry, + 1 if it is the entry of the transposed
+     * pair */
     uint32_t *entry;
-    uint32_t *local; /* by coarse node: its number in the chunk; of use as scratch elsewhere */
-    uint32_t *node;  /* by number: the coarse node */
-    uint32_t *seen;  /* by number: the chunk's node, plus 1, that has last touched it */
+    uint32_t *local; /* by coarse node: its number in the chunk. gxsp_lower_numbers has it as scratch */
+    uint32_t *node;  /* by number: the coarse node. gxsp_coarsen lists nodes of the next level in it */
+    uint32_t *seen;  /* by number, in gxsp_coarsen by node: the row, plus 1, that touched it last */
     uint32_t *stamp; /* by coarse node: the round in which it was numbered */
     uint32_t round;  /* one for each visit of a chunk */
-    uint32_t count;  /* numbers given in this round, with 0 */
-    uint32_t most;   /* of any chunk; 0: the matrix is made from an assembled one */
-    /* by node of the first level whose matrix is another level's: a row of that one times its transfer */
+    uint32_t count;  /* numbers given in this round, 0 included */
+    uint32_t most;   /* largest count of any chunk; 0: the matrix is made from an assembled one */
+    /* by node of the next level: a row of a level's matrix times its transfer */
     float (*half)[9];
 } gxsp_pairs;
 
@@ -1120,7 +1123,7 @@ typedef struct gxsp_factor {
     uint32_t n;      /* unknowns */
     uint32_t *order; /* n / 3: node of the level in each place */
     uint32_t *first; /* n / 3: first column of the rows of each place */
-    size_t *row;     /* n / 3: where column 0 of the first of them would be in entry, see gxsp_factor_row */
+    size_t *row;     /* n / 3: index in entry of column 0 of a place's first row, see gxsp_factor_row */
     float *entry;    /* entry_count; diagonal inverted */
     size_t entry_count;
     double *x;    /* n: solution */
@@ -1129,7 +1132,7 @@ typedef struct gxsp_factor {
 
 typedef struct gxsp_material {
     gxs_material_kind kind;
-    double mu, lambda; /* Pa; of GXS_CUSTOM a factor of its energy, and about its stiffness */
+    double mu, lambda; /* Pa; GXS_CUSTOM: a factor of its energy, and about its stiffness */
     double damping;    /* s */
     gxs_energy_fn energy;
     void *user;
@@ -1139,27 +1142,28 @@ typedef struct gxsp_material {
  * join some. The first of those so joined leads the others; its energies and step length are those of all that it
  * leads. */
 typedef struct gxsp_component {
-    double sum[3];      /* over its copies, of the pass under way */
+    double sum[3];      /* over its copies, in the pass at work */
     double mass;        /* kg */
-    double energies[3]; /* of the last evaluation: elastic with springs and contact, kinetic, size of their terms; J */
+    double energies[3]; /* at the last evaluation: elastic with springs and contact, kinetic, size of their terms; J */
     double before[3];   /* at current */
-    double base_energy; /* elastic, of what the last step returned, J; valid while base_known */
-    /* E where the step starts, which it is not to exceed, and where Newton's method has ended; J */
+    double base_energy; /* elastic energy of the state that the last step returned, J; valid while base_known */
+    /* E at the step's start, which the step must not exceed, and E where Newton's method has ended; J */
     double limit, ended;
-    /* of the midpoint rule: E at base, and less that E at the middle without drift, and at a trial; J */
+    /* midpoint rule: E at base; E at the middle without drift and E at a trial, both minus base; J */
     double base, low, gain;
-    double drift[3];    /* of its second half, what is not shortened, m */
+    double drift[3];    /* midpoint rule: translation of the second half, which is not shortened, m */
     double slope, work; /* dE/dlength of the direction, and the load's work along it; J */
-    double left;        /* what the linear solve has left of the residual, along the direction; J */
-    double rounding;    /* of positions and of the load's terms, in units in the last place; J */
-    double length;      /* share of the direction that it goes */
-    int settled;        /* its length is found: chunks all of whose pieces are settled are not evaluated again */
+    double left;        /* work of the linear solve's remaining residual along the direction; J */
+    double rounding;    /* size of the rounding of positions and of the load's terms, in units in the last place; J */
+    double length;      /* step length, as a share of the direction */
+    int settled;        /* its length is found. A chunk whose components are all settled is not evaluated again */
     int risen;          /* E has ended above limit */
-    uint32_t lead;      /* which piece leads it; itself: it leads */
+    uint32_t lead;      /* index of the component that leads it; its own index: it leads */
     uint64_t forces[2]; /* hash of its nodal forces and contact points: of the step before, of this one */
     int has_spring[2];  /* a spring acts on it: in the step before, in this one */
-    int woken, resting; /* something touches it in this step; nothing does, and it has been slow for long */
-    uint32_t state;     /* GXSP_HELD ... GXSP_TOUCHES; 0: loose, a translation of it meets no stiffness */
+    int woken, resting; /* woken: something touches it in this step. resting: nothing does, and it has been slow for
+                           long */
+    uint32_t state;     /* GXSP_HELD ... GXSP_TOUCHES. 0: loose, so that a translation of it meets no stiffness */
 } gxsp_component;
 
 /* A copy that follows others */
@@ -1342,26 +1346,26 @@ static double *gxsp_trial(const gxsp_system *system) { return system->vectors.re
 typedef struct gxsp_problem {
     gxsp_system *system;
     const gxs_step_desc *step;
-    double rate;            /* of the inertia: rate/2 |u - target|_M^2, 1/s2 */
+    double rate;            /* factor of inertia, rate/2 |u - target|_M^2; 1/s2 */
     double speed;           /* v = speed (u - a mean of the displacements before), 1/s */
-    double mean[2];         /* its weights: of given and of previous_displacement */
-    uint32_t cg_iterations; /* with the defaults put in */
+    double mean[2];         /* weights of given and of previous_displacement in that mean */
+    uint32_t cg_iterations; /* with defaults filled in */
     double cg_tolerance;
-    /* by how many factors of e the last linear solve has reduced the residual that its guess left */
+    /* factors of e by which the last linear solve reduced the residual left by its guess */
     double nepers;
-    double energies[3];  /* at current, sums over pieces; J */
-    const double *given; /* displacement at the step's start, u_n */
+    double energies[3];  /* at current, sums over components; J */
+    const double *given; /* the caller's displacement at the step's start, u_n */
     double start;        /* on the clock */
     gxs_scene scene;
     int exact;          /* the linearisation is not projected */
     int indefinite;     /* conjugate gradients met negative curvature */
-    int projected_only; /* the exact one has proved indefinite in this step */
+    int projected_only; /* the exact linearisation has proved indefinite in this step */
     int shortened;      /* the line search did not take the whole step */
     int damps;          /* damping adds to the load */
-    int stalls;         /* iterations in a row that noise ended and that gained next to nothing */
-    double least;       /* residual so far */
-    int based;          /* pieces know E at base */
-    int noise;          /* the line search ended where energies differ by rounding only */
+    int stalls;         /* consecutive iterations that noise ended and that gained next to nothing */
+    double least;       /* smallest residual so far */
+    int based;          /* components know E at base */
+    int noise;          /* at the end of the line search energies differed by rounding only */
     int collapsed;      /* the linearisation found elements collapsed to a point */
     gxs_step_report report;
 } gxsp_problem;
@@ -1369,19 +1373,20 @@ typedef struct gxsp_problem {
 /* In- and output of a pass. Unused fields are 0. Vectors have one entry per copy. */
 typedef struct gxsp_pass {
     gxsp_system *system;
-    double rate;        /* 1/s2; of products and linearisations times scale */
+    double rate;        /* 1/s2; in products and linearisations times scale */
     const double *from; /* x 3: displacement, m */
     double *sum;        /* x 3: forces, N */
     const gxsp_material *materials;
-    const double *turned; /* x 3: stresses are turned as elements are from here on to there; NULL: they are not */
-    int inertia;          /* forces and energy of the mass too */
-    int nudge;            /* forces of collapsed elements as if they were not quite */
-    int exact;            /* Hessians are not projected */
-    gxsp_vector4 *x;      /* of products: input */
-    gxsp_vector4 *y;      /* output */
-    const double *right;  /* x 3: output is this minus the product; NULL: it is the product */
-    double factor;        /* of passes over copies: what x is multiplied by */
-    const gxsp_problem *problem; /* of what needs the load */
+    const double *rotated; /* x 3: stresses are rotated with the elements' motion from `from` to this displacement;
+                              NULL: they are not */
+    int inertia;           /* with forces and energy of inertia */
+    int nudge;             /* collapsed elements get the forces of nearly collapsed ones */
+    int exact;             /* Hessians are not projected */
+    gxsp_vector4 *x;       /* of products: input */
+    gxsp_vector4 *y;       /* output */
+    const double *right;   /* x 3: output is this minus the product; NULL: it is the product */
+    double factor;         /* in passes over copies: multiplies x */
+    const gxsp_problem *problem; /* for passes that need the load */
 } gxsp_pass;
 
 struct gxs_solver {
@@ -1582,14 +1587,14 @@ typedef struct gxsp_svd {
  * block costs little. */
 typedef struct gxsp_jacobi {
     float b[9][2 * GXSP_LANES], v[9][2 * GXSP_LANES];
-    float scale[2 * GXSP_LANES]; /* what b is to be multiplied by */
+    float scale[2 * GXSP_LANES]; /* multiplies b */
 } gxsp_jacobi;
 
 /* Rotates (x, y) by the angle of cosine c and sine s. */
 static inline void gxsp_turn(float c, float s, float *x, float *y) {
-    const float turned = c * *x - s * *y;
+    const float rotated = c * *x - s * *y;
     *y = s * *x + c * *y;
-    *x = turned;
+    *x = rotated;
 }
 
 /* Rotates columns i and j of b and of v in lane l. */
@@ -1645,7 +1650,7 @@ static void gxsp_frame(const gxsp_jacobi *GXSP_RESTRICT from, int first_lane, gx
         const float u0 = a0 * reach + (1 - some), u1 = a1 * reach, u2 = a2 * reach;
         const float along = u0 * b0 + u1 * b1 + u2 * b2;
         const float p0 = b0 - along * u0, p1 = b1 - along * u1, p2 = b2 - along * u2;
-        /* a line: any direction across will do; the axis least along it */
+        /* F maps to a line: any direction across it will do; take that of the axis least along it */
         const float s0 = u0 * u0, s1 = u1 * u1, s2 = u2 * u2;
         const float x = s0 <= s1 && s0 <= s2 ? 1.0f : 0.0f, y = (1 - x) * (s1 <= s2 ? 1.0f : 0.0f), z = 1 - x - y;
         const float part = x * u0 + y * u1 + z * u2;
@@ -1708,7 +1713,7 @@ static void gxsp_decompose(gxsp_lanes *first, gxsp_lanes *last, gxsp_svd *of) {
     int sweep;
     gxsp_jacobi_begin(first, 0, &at);
     gxsp_jacobi_begin(last ? last : first, GXSP_LANES, &at);
-    /* quadratic at the end: 4 reach single precision for extreme F too */
+    /* convergence is quadratic: 4 sweeps reach single precision even for extreme F */
     for (sweep = 0; sweep < 4 && !gxsp_orthogonal(&at); sweep++) {
         gxsp_orthogonalise(&at, 0, 1);
         gxsp_orthogonalise(&at, 0, 2);
@@ -1737,7 +1742,7 @@ static void gxsp_cofactors(const double *a, double *cofactors) {
 /* One step of Newton's method for the rotation R of F = R S: R (1 + skew omega) with (tr S - S) omega = axis of S's
  * skew part, then orthogonal again to second order. Does nothing where tr S - S is singular: R is not unique there. */
 static void gxsp_polish_rotation(const double *f, double *rotation) {
-    double s[9], a[9], inverse[9], axis[3], omega[3], turned[9], square[9], determinant, trace;
+    double s[9], a[9], inverse[9], axis[3], omega[3], rotated[9], square[9], determinant, trace;
     int r, c, k;
     for (r = 0; r < 3; r++)
         for (c = 0; c < 3; c++)
@@ -1753,18 +1758,18 @@ static void gxsp_polish_rotation(const double *f, double *rotation) {
         omega[r] = (inverse[r] * axis[0] + inverse[3 + r] * axis[1] + inverse[6 + r] * axis[2]) / determinant;
     for (r = 0; r < 3; r++) {
         const double *from = rotation + 3 * r;
-        turned[3 * r] = from[0] + from[1] * omega[2] - from[2] * omega[1];
-        turned[3 * r + 1] = from[1] - from[0] * omega[2] + from[2] * omega[0];
-        turned[3 * r + 2] = from[2] + from[0] * omega[1] - from[1] * omega[0];
+        rotated[3 * r] = from[0] + from[1] * omega[2] - from[2] * omega[1];
+        rotated[3 * r + 1] = from[1] - from[0] * omega[2] + from[2] * omega[0];
+        rotated[3 * r + 2] = from[2] + from[0] * omega[1] - from[1] * omega[0];
     }
     for (r = 0; r < 3; r++)
         for (c = 0; c < 3; c++)
-            square[3 * r + c] = (r == c ? 1.5 : 0) - 0.5 * (turned[r] * turned[c] + turned[3 + r] * turned[3 + c] +
-                                                            turned[6 + r] * turned[6 + c]);
+            square[3 * r + c] = (r == c ? 1.5 : 0) - 0.5 * (rotated[r] * rotated[c] + rotated[3 + r] * rotated[3 + c] +
+                                                            rotated[6 + r] * rotated[6 + c]);
     for (r = 0; r < 3; r++)
         for (c = 0; c < 3; c++) {
             double sum = 0;
-            for (k = 0; k < 3; k++) sum += turned[3 * r + k] * square[3 * k + c];
+            for (k = 0; k < 3; k++) sum += rotated[3 * r + k] * square[3 * k + c];
             rotation[3 * r + c] = sum;
         }
 }
@@ -1869,8 +1874,8 @@ static void gxsp_kirchhoff(gxsp_state *GXSP_RESTRICT s, double bend) {
 }
 
 /* Fixed corotated [Stomakhin 2012]: psi = mu |F - R|^2 + lambda/2 (J - 1)^2, P = 2 mu (F - R) + lambda (J - 1) cof F, R
- * the rotation of F's polar decomposition. R = U V^T is known to single precision; a Newton step for the rotation that
- * makes R^T F symmetric, (tr S - S) omega = its skew part, squares the error. */
+ * the rotation of F's polar decomposition. R = U V^T is known to single precision; each Newton step for the rotation
+ * that makes R^T F symmetric squares the error. */
 static void gxsp_corotated(gxsp_state *GXSP_RESTRICT s) {
     gxsp_svd of;
     int l, r, c, k, round;
@@ -1903,7 +1908,7 @@ static void gxsp_custom(gxsp_state *s) {
         double f[9], p[9];
         for (k = 0; k < 9; k++) f[k] = s->g[k][l] + (k % 4 == 0 ? 1 : 0);
         s->energy[l] = s->mu[l] * s->material[l]->energy(s->material[l]->user, f, p, NULL);
-        /* its own rounding is not known: that of terms as large as its stiffness */
+        /* its rounding is not known: take that of terms as large as its stiffness */
         s->size[l] = fabs(s->energy[l]) + s->lambda[l];
         for (k = 0; k < 9; k++) s->p[k][l] = s->mu[l] * p[k];
     }
@@ -2144,7 +2149,7 @@ static void gxsp_scale_principal(gxs_material_kind kind, const gxsp_rest *GXSP_R
         to->lambda[l] = (float)(s->lambda[l] / modulus);
         weight[l] = scale * rest->weight[l] * modulus;
     }
-    for (l = 0; l < GXSP_LANES && kind != GXS_LINEAR; l++) { /* whose Hessians have no stretches */
+    for (l = 0; l < GXSP_LANES && kind != GXS_LINEAR; l++) { /* its Hessians have no stretches */
         const double a = (double)of->s[0][l] * (double)of->s[0][l], b = (double)of->s[1][l] * (double)of->s[1][l],
                      size = a * (b > 1 ? b : 1);
         if (size > GXSP_STRETCHED) {
@@ -2648,7 +2653,7 @@ static void gxsp_place_element(const gxsp_chunk *chunk, const gxs_element *eleme
                                  : -(element->gradient[1][k] + element->gradient[2][k] + element->gradient[3][k]);
     rest->weight[lane] = element->weight;
     rest->material[lane] = element->material;
-    chunk->groups[at] = element->group % GXSP_GROUPS; /* who does not update may have left it unset */
+    chunk->groups[at] = element->group % GXSP_GROUPS; /* a caller who does not update may leave it unset */
     if (chunk->moments)
         rest->mass[lane] = gxsp_place_moments(element->mass, order, &chunk->moments[at / GXSP_LANES], lane);
     else
@@ -2702,7 +2707,7 @@ static uint32_t gxsp_curve(const double *at, const double *low, double per_cell)
  * first. */
 typedef struct gxsp_sorted {
     uint32_t place, component, class_index;
-    uint32_t index; /* of the element or, while pieces are sorted, of the piece */
+    uint32_t index; /* of the element or, while components are sorted, of the component */
 } gxsp_sorted;
 
 static uint32_t gxsp_sorted_digit(const gxsp_sorted *of, int pass) {
@@ -2842,9 +2847,9 @@ static void gxsp_sort_row(uint32_t *row, uint32_t count) {
 
 /* Numbers of copies in the chunk at work */
 typedef struct gxsp_numbers {
-    uint32_t *local; /* n: the number, where stamp is the round */
+    uint32_t *local; /* n: the number; valid where stamp is the round */
     uint32_t *stamp; /* n, 0 at first */
-    uint32_t round;  /* one for each chunk */
+    uint32_t round;  /* one per chunk */
 } gxsp_numbers;
 
 /* Numbers the nodes of a chunk in the order of their copies, which is that of memory. copies: of count elements,
@@ -2887,12 +2892,12 @@ static void gxsp_set_corners(const gxsp_chunk *chunk, uint32_t (*nodes)[4]) {
 enum { GXSP_STRIP = 4, GXSP_FACES = 4096 };
 
 typedef struct gxsp_layout {
-    uint32_t (*nodes)[4]; /* count: of each element */
+    uint32_t (*nodes)[4]; /* count: nodes of each element */
     uint32_t count;
-    uint16_t across[GXSP_CHUNK][4]; /* the element beyond the face that a corner is not on, or count */
+    uint16_t across[GXSP_CHUNK][4]; /* the element beyond the face opposite the corner, or count */
     uint8_t placed[GXSP_CHUNK];
-    uint16_t strip[GXSP_CHUNK];   /* elements of the chains of one length, one after the other */
-    uint8_t turn[GXSP_CHUNK][4];  /* and the order of their corners */
+    uint16_t strip[GXSP_CHUNK];   /* elements of the strips of one length, one strip after the other */
+    uint8_t turn[GXSP_CHUNK][4];  /* the order of their corners */
     uint16_t element[GXSP_CHUNK]; /* by lane: the element there, or count */
     uint8_t order[GXSP_CHUNK][4]; /* by lane */
 } gxsp_layout;
@@ -2900,7 +2905,7 @@ typedef struct gxsp_layout {
 /* Finds three nodes in an element: their corners, and returns the fourth corner; 4: not each is there once. Without
  * branches, which processors could not predict */
 static int gxsp_find_face(const uint32_t *element, const uint32_t *face, uint8_t *corners) {
-    static const uint8_t corner_of[16] = {4, 0, 1, 4, 2, 4, 4, 4, 3, 4, 4, 4, 4, 4, 4, 4}; /* of a single bit */
+    static const uint8_t corner_of[16] = {4, 0, 1, 4, 2, 4, 4, 4, 3, 4, 4, 4, 4, 4, 4, 4}; /* by its bit */
     unsigned met[3];
     int i;
     for (i = 0; i < 3; i++) {
@@ -2968,12 +2973,12 @@ static int gxsp_find_strip(const gxsp_layout *layout, uint32_t e, uint32_t lengt
                            uint8_t (*order)[4]) {
     static const uint8_t edges[6][4] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2},
                                         {1, 2, 0, 3}, {1, 3, 0, 2}, {2, 3, 0, 1}};
-    int edge, turned;
+    int edge, swapped;
     for (edge = 0; edge < 6; edge++)
-        for (turned = 0; turned < 2; turned++) {
+        for (swapped = 0; swapped < 2; swapped++) {
             strip[0] = (uint16_t)e;
             memcpy(order[0], edges[edge], 4);
-            order[0][2] = edges[edge][2 + turned], order[0][3] = edges[edge][3 - turned];
+            order[0][2] = edges[edge][2 + swapped], order[0][3] = edges[edge][3 - swapped];
             if (gxsp_walk_strip(layout, length, strip, order)) return 1;
         }
     return 0;
@@ -3064,7 +3069,7 @@ static void gxsp_fill_chunk(const gxsp_chunk *chunk, const gxs_model *model, con
     memset(placed, 0xff, sizeof placed);
     for (lane = 0; lane < chunk->block_count * GXSP_LANES; lane++) {
         const uint32_t e = layout.element[lane];
-        if (e == count) { /* of no weight, but of a material there is */
+        if (e == count) { /* no weight, but a valid material */
             chunk->rest[lane / GXSP_LANES].material[lane % GXSP_LANES] = model->elements[elements[0].index].material;
             continue;
         }
@@ -3186,7 +3191,7 @@ static void gxsp_list_slots(gxsp_system *system) {
     memset(system->mesh.copy_start, 0, (system->model.n + 2) * sizeof *system->mesh.copy_start);
     for (s = 0; s < system->mesh.slot_count; s++) system->mesh.copy_start[system->mesh.nodes[s] + 2]++;
     for (i = 0; i < system->model.n; i++) system->mesh.copy_start[i + 2] += system->mesh.copy_start[i + 1];
-    for (s = 0; s < system->mesh.slot_count; s++) /* slots are in the order of chunks */
+    for (s = 0; s < system->mesh.slot_count; s++) /* slots follow the order of chunks */
         system->mesh.copy_slot[system->mesh.copy_start[system->mesh.nodes[s] + 1]++] = (uint32_t)s;
     memset(system->mesh.copy_slot + system->mesh.slot_count, 0, GXSP_AHEAD * sizeof *system->mesh.copy_slot);
     memset(system->mesh.nodes + system->mesh.slot_count, 0, GXSP_AHEAD * sizeof *system->mesh.nodes);
@@ -3203,7 +3208,7 @@ static void gxsp_chunks_make(gxsp_system *system, gxsp_pool *scratch, const gxs_
     system->mesh.chunk_count = gxsp_plan_chunks(system, sorted, NULL);
     system->mesh.chunk_room = system->mesh.chunk_count;
     gxsp_columns_make(system, GXSP_COLUMNS(gxsp_chunk_columns), GXSP_WITH_MODEL, system->mesh.chunk_count);
-    /* its size is not known yet */
+    /* the number of slots is not known yet */
     system->mesh.nodes = (uint32_t *)gxsp_take(scratch, 4 * system->model.element_count, sizeof(uint32_t));
     if (scratch->failed || system->pool.failed) return;
     (void)gxsp_plan_chunks(system, sorted, system->mesh.chunks);
@@ -3357,7 +3362,7 @@ static void gxsp_fill_components(gxsp_system *system) {
 static uint32_t gxsp_list_partials(gxsp_system *system, gxsp_partial *partials) {
     uint32_t c, k, count = 0;
     for (c = 0; c < system->model.component_count; c++)
-        system->model.components[c].lead = GXSP_NONE; /* here: the chunk that has met it last */
+        system->model.components[c].lead = GXSP_NONE; /* in this loop: the last chunk that has met it */
     for (c = 0; c < system->mesh.chunk_count; c++) {
         gxsp_chunk *chunk = &system->mesh.chunks[c];
         chunk->first_partial = count;
@@ -3512,9 +3517,9 @@ static int gxsp_find_places(const gxsp_system *system, const gxs_model *model, f
     for (i = 0; i < system->model.n; i++)
         for (k = 0; k < 3; k++) {
             double place = (model->positions[3 * i + k] - model->positions[k]) / spacing;
-            if (!(fabs(place) < 1e6)) /* single precision would not place it */
+            if (!(fabs(place) < 1e6)) /* single precision could not hold it */
                 return 0;
-            to[i][k] = (float)place + 0.31f; /* lattice planes off the mesh's own */
+            to[i][k] = (float)place + 0.31f; /* keeps lattice planes off those of the mesh */
         }
     return 1;
 }
@@ -3590,7 +3595,8 @@ static void gxsp_transfer_begin(const gxsp_level *level, float (*place)[3], cons
         gxsp_tetrahedron_keys(cell, axis, transfer->key + 4 * (size_t)i);
         for (k = 0; k < 4; k++) {
             transfer->forest[4 * (size_t)i + (size_t)k] = 4 * i + (uint32_t)k;
-            /* 1e-4: what this leaves out of an affine field is far below the smoother's part */
+            /* the error that dropping weights below 1e-4 makes in an affine field is far below what the smoother
+             * removes */
             if (level->weight[i][k] < 1e-4f || (fixed && fixed[i])) {
                 transfer->key[4 * (size_t)i + (size_t)k] = 0;
                 level->weight[i][k] = 0;
@@ -3685,7 +3691,7 @@ static void gxsp_rows_make(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *leve
         for (k = start[i]; k < start[i + 1]; k++)
             if (seen[columns[k]] != i + 1) {
                 seen[columns[k]] = i + 1;
-                columns[count++] = columns[k]; /* no more are kept than have been read */
+                columns[count++] = columns[k]; /* writes never overtake reads */
             }
         gxsp_sort_row(columns + level->start[i], count - level->start[i]);
     }
@@ -3829,7 +3835,7 @@ static double gxsp_order_level(const gxsp_graph *graph, uint32_t *order, uint32_
     }
     for (i = 0; i < graph->n; i++) {
         const double width = i - gxsp_first_place(graph, order, place, i) + 1;
-        cost += 13.5 * width * width; /* three rows, each of a width squared / 2 */
+        cost += 13.5 * width * width; /* three rows, each of width squared / 2 */
     }
     return cost;
 }
@@ -3869,7 +3875,7 @@ static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch) {
     for (i = 0; i < level->n; i++) {
         const uint32_t first = 3 * gxsp_first_place(&graph, factor->order, place, i);
         factor->first[i] = first;
-        factor->row[i] = entries - first; /* no less than 0: every row before has an entry */
+        factor->row[i] = entries - first; /* not negative: every row before has an entry */
         entries += 3 * (size_t)(3 * i - first) + 6;
     }
     factor->entry = (float *)gxsp_take(&system->multigrid.pool, entries, sizeof(float));
@@ -3898,7 +3904,7 @@ static void gxsp_edges_carve(gxsp_system *system, gxsp_space *space, int numbers
     }
     edges->table = (uint16_t *)gxsp_carve(space, nodes * (nodes - 1) / 2, sizeof(uint16_t));
     edges->table_size = nodes * (nodes - 1) / 2;
-    edges->ends = (uint32_t *)gxsp_carve(space, most + 1, sizeof(uint32_t)); /* one more is written than counts */
+    edges->ends = (uint32_t *)gxsp_carve(space, most + 1, sizeof(uint32_t)); /* one more is written than counted */
     edges->parent = (uint16_t(*)[4])gxsp_carve(space, nodes, sizeof *edges->parent);
     if (!numbers) return;
     edges->block = (float(*)[9])gxsp_carve(space, most, sizeof *edges->block);
@@ -4003,7 +4009,7 @@ static void gxsp_pairs_carve(gxsp_system *system, gxsp_space *space, int numbers
     if (!numbers) return;
     pairs->entry = (uint32_t *)gxsp_carve(space, side * side, sizeof(uint32_t));
     system->multigrid.edges.half = (float(*)[9])gxsp_carve(space, pairs->most, sizeof *system->multigrid.edges.half);
-    /* one more is written than counts */
+    /* one more is written than counted */
     system->multigrid.edges.touched = (uint16_t *)gxsp_carve(space, (size_t)pairs->most + 1, sizeof(uint16_t));
     pairs->half = (float(*)[9])gxsp_carve(
         space, next < system->multigrid.level_count ? system->multigrid.levels[next].n : 0, sizeof *pairs->half);
@@ -4405,7 +4411,7 @@ static void gxsp_numbers_carve(gxsp_system *system, gxsp_space *space) {
     gxsp_level *last = &system->multigrid.levels[system->multigrid.level_count - 1];
     if (!system->multigrid.fine) gxsp_edges_carve(system, space, 1);
     gxsp_pairs_carve(system, space, 1);
-    if (system->multigrid.level_count > 2) /* level 1 keeps its own: updates make only a part of it anew */
+    if (system->multigrid.level_count > 2) /* level 1 keeps its own: updates make only part of it anew */
         last->block = (float *)gxsp_carve(space, gxsp_block_numbers(last), sizeof(float));
     system->multigrid.factor.rows = (double *)gxsp_carve(space, 3 * (size_t)system->multigrid.factor.n, sizeof(double));
 }
@@ -4592,7 +4598,7 @@ static void gxsp_system_destroy(gxsp_system *system) {
     gxsp_pool pool;
     if (!system) return;
     gxsp_release_to(&system->multigrid.pool, NULL);
-    pool = system->pool; /* which holds system itself */
+    pool = system->pool; /* the pool also holds the system itself */
     gxsp_release_to(&pool, NULL);
 }
 
@@ -4740,7 +4746,7 @@ static void gxsp_rotate_stress(gxsp_lanes *from, gxsp_lanes *to, gxsp_lanes *p) 
             f[k] = from[k][l] + (k % 4 == 0 ? 1 : 0);
             h[k] = to[k][l] + (k % 4 == 0 ? 1 : 0);
         }
-        /* else each step's load would have another error of single precision, and no body come to rest */
+        /* otherwise each step's load would have its own single-precision error, and no body would come to rest */
         gxsp_polish_rotation(f, a);
         gxsp_polish_rotation(h, b);
         for (k = 0; k < 9; k++) {
@@ -4800,9 +4806,9 @@ static void gxsp_add_energies(const gxsp_system *system, const gxsp_chunk *chunk
         system->mesh.partials[chunk->first_partial].energies[k] += sum;
     }
     for (l = 0; l < GXSP_LANES && chunk->partial_count > 1; l++) {
-        gxsp_partial *part =
+        gxsp_partial *partial =
             gxsp_find_partial(system, chunk, system->model.component[copies[chunk->corners[b].node[0][l]]]);
-        for (k = 0; k < 3; k++) part->energies[k] += energies[k][l];
+        for (k = 0; k < 3; k++) partial->energies[k] += energies[k][l];
     }
 }
 
@@ -4832,14 +4838,14 @@ static void gxsp_task_state(void *context, size_t index) {
         gxsp_prefetch_block(system, index, b, GXSP_RESTS_AHEAD, 0);
         gxsp_block_load(chunk, b, at, x);
         gradients = gxsp_block_gradients(chunk, b, rest_at, corners, made);
-        if (inertia || pass->turned) /* never both: what is turned has no inertia */
-            gxsp_block_load_copies(system, chunk, b, inertia ? system->vectors.target : pass->turned, other);
+        if (inertia || pass->rotated) /* never both: rotated stresses come without inertia */
+            gxsp_block_load_copies(system, chunk, b, inertia ? system->vectors.target : pass->rotated, other);
         gxsp_block_parameters(pass->materials, rest, &s);
         gxsp_block_gradient(gradients, x, s.g);
-        if (pass->turned) gxsp_block_gradient(gradients, other, ahead);
+        if (pass->rotated) gxsp_block_gradient(gradients, other, ahead);
         if (pass->nudge && chunk->kind != GXS_LINEAR && chunk->kind != GXS_CUSTOM) gxsp_nudge(s.g);
         gxsp_material_state(chunk->kind, &s);
-        if (pass->turned && chunk->kind != GXS_LINEAR) gxsp_rotate_stress(s.g, ahead, s.p);
+        if (pass->rotated && chunk->kind != GXS_LINEAR) gxsp_rotate_stress(s.g, ahead, s.p);
         gxsp_block_force(rest->weight, gradients, s.p, forces);
         for (l = 0; l < GXSP_LANES; l++) {
             energies[0][l] = rest->weight[l] * s.energy[l];
@@ -4876,7 +4882,7 @@ static void gxsp_task_sum(void *context, size_t index) {
 
 /* Energies of the components' elements at from, and elastic + inertial forces, 0 where a component sleeps. rotated:
  * see gxsp_pass */
-static void gxsp_evaluate_elements(gxsp_system *system, double rate, const double *from, const double *turned,
+static void gxsp_evaluate_elements(gxsp_system *system, double rate, const double *from, const double *rotated,
                                    int nudge, double *force) {
     gxsp_pass pass;
     uint32_t p;
@@ -4888,7 +4894,7 @@ static void gxsp_evaluate_elements(gxsp_system *system, double rate, const doubl
     pass.from = from;
     pass.sum = force;
     pass.inertia = rate > 0 && !system->model.lumped_mass;
-    pass.turned = turned;
+    pass.rotated = rotated;
     pass.nudge = nudge;
     gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_state, &pass);
     gxsp_over_ranges(system, gxsp_task_sum, &pass, NULL, 0);
@@ -4951,7 +4957,8 @@ static void gxsp_add_scaled(float a, const float *GXSP_RESTRICT x, float *GXSP_R
 /* y += a x for four numbers */
 static inline void gxsp_add_four(float a, const float *GXSP_RESTRICT x, float *GXSP_RESTRICT y) {
 #if defined(GXSP_SHUFFLES)
-    const gxsp_four all = {a, a, a, a}; /* of a alone x87 makes a long double, which no vector is multiplied by */
+    const gxsp_four all = {a, a, a, a}; /* x87 would make a long double of a alone, by which no vector can be multiplied
+                                         */
     *(gxsp_four *)y += all * *(const gxsp_four *)x;
 #else
     int k;
@@ -5015,7 +5022,7 @@ static inline void gxsp_gather_four(const uint16_t *node, const gxsp_vector4 *x,
     *(gxsp_four *)to2 = __builtin_shufflevector(r, s, 0, 1, 4, 5);
 }
 
-/* Of vectors longer than there are, compilers make their shuffles number by number. */
+/* Compilers shuffle vectors longer than the machine's number by number. */
 static inline void gxsp_gather_eight(const uint16_t *node, const gxsp_vector4 *x, float *to0, float *to1, float *to2) {
     gxsp_gather_four(node, x, to0, to1, to2);
     gxsp_gather_four(node + 4, x, to0 + 4, to1 + 4, to2 + 4);
@@ -5033,15 +5040,15 @@ static inline void gxsp_scatter_four(const uint16_t *node, const float *from0, c
 }
 
 static inline void gxsp_transpose_four(const float *a, const float *b, const float *c, const float *d,
-                                       gxsp_four *turned) {
+                                       gxsp_four *transposed) {
     const gxsp_four p = *(const gxsp_four *)a, q = *(const gxsp_four *)b, r = *(const gxsp_four *)c,
                     s = *(const gxsp_four *)d;
     const gxsp_four low = __builtin_shufflevector(p, q, 0, 4, 1, 5), high = __builtin_shufflevector(p, q, 2, 6, 3, 7);
     const gxsp_four next = __builtin_shufflevector(r, s, 0, 4, 1, 5), last = __builtin_shufflevector(r, s, 2, 6, 3, 7);
-    turned[0] = __builtin_shufflevector(low, next, 0, 1, 4, 5);
-    turned[1] = __builtin_shufflevector(low, next, 2, 3, 6, 7);
-    turned[2] = __builtin_shufflevector(high, last, 0, 1, 4, 5);
-    turned[3] = __builtin_shufflevector(high, last, 2, 3, 6, 7);
+    transposed[0] = __builtin_shufflevector(low, next, 0, 1, 4, 5);
+    transposed[1] = __builtin_shufflevector(low, next, 2, 3, 6, 7);
+    transposed[2] = __builtin_shufflevector(high, last, 0, 1, 4, 5);
+    transposed[3] = __builtin_shufflevector(high, last, 2, 3, 6, 7);
 }
 
 /* Six numbers of each of four lanes to those of their nodes, six side by side */
@@ -5131,7 +5138,7 @@ static void gxsp_task_product(void *context, size_t index) {
     const gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     const uint32_t *copies = system->mesh.nodes + chunk->first_node;
-    gxsp_vector4 in[4 * GXSP_CHUNK]; /* apart from the chunks', so that it stays in the cache */
+    gxsp_vector4 in[4 * GXSP_CHUNK]; /* not the chunks' own memory: stays in the cache */
     gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
     gxsp_singles from[12], to[12];
     uint32_t b, i;
@@ -5186,11 +5193,11 @@ static double gxsp_rows_product(const gxsp_system *system, gxsp_vector4 *x, gxsp
     memset(y, 0, system->model.n * sizeof *y);
     for (i = 0; i < fine->n; i++) {
         gxsp_vector4 minus = {0, 0, 0, 0};
-        const float turned[3] = {-x[i][0], -x[i][1], -x[i][2]};
+        const float minus_x[3] = {-x[i][0], -x[i][1], -x[i][2]};
         gxsp_subtract_block(fine->block + 9 * (size_t)fine->start[i], x[i], minus);
         for (k = fine->start[i] + 1; k < fine->start[i + 1]; k++) {
             gxsp_subtract_block(fine->block + 9 * (size_t)k, x[fine->column[k]], minus);
-            gxsp_subtract_transposed(fine->block + 9 * (size_t)k, turned, y[fine->column[k]]);
+            gxsp_subtract_transposed(fine->block + 9 * (size_t)k, minus_x, y[fine->column[k]]);
         }
         for (c = 0; c < 3; c++) { /* all rows before have added to it */
             y[i][c] = system->state.still[i] ? 0 : y[i][c] - minus[c];
@@ -5487,7 +5494,7 @@ static void gxsp_task_diagonal(void *context, size_t index) {
         }
         for (k = 0; system->model.lumped_mass && k < 6; k++)
             sum[k] += k == 0 || k == 3 || k == 5 ? pass->rate * system->model.lumped[i] : 0;
-        if (system->state.still[i] || sum[0] + sum[3] + sum[5] < GXSP_TINY) /* only what is coarser moves such a copy */
+        if (system->state.still[i] || sum[0] + sum[3] + sum[5] < GXSP_TINY) /* only coarser levels move such a copy */
             memset(sum, 0, sizeof sum);
         gxsp_invert3(sum);
         for (k = 0; k < 6; k++) system->vectors.diagonal[6 * i + (size_t)k] = (float)sum[k];
@@ -5560,11 +5567,11 @@ static void gxsp_order_block(const uint16_t *GXSP_RESTRICT p, const uint16_t *GX
     GXSP_EACH_LANE(l) {
         const float b1 = block[1][l], b2 = block[2][l], b3 = block[3][l], b5 = block[5][l], b6 = block[6][l],
                     b7 = block[7][l];
-        const int turned = p[l] > q[l];
+        const int transposed = p[l] > q[l];
         block[0][l] += mass[l], block[4][l] += mass[l], block[8][l] += mass[l];
-        block[1][l] = turned ? b1 : b3, block[3][l] = turned ? b3 : b1;
-        block[2][l] = turned ? b2 : b6, block[6][l] = turned ? b6 : b2;
-        block[5][l] = turned ? b5 : b7, block[7][l] = turned ? b7 : b5;
+        block[1][l] = transposed ? b1 : b3, block[3][l] = transposed ? b3 : b1;
+        block[2][l] = transposed ? b2 : b6, block[6][l] = transposed ? b6 : b2;
+        block[5][l] = transposed ? b5 : b7, block[7][l] = transposed ? b7 : b5;
     }
 }
 
@@ -5692,16 +5699,16 @@ static void gxsp_coarse_node(gxsp_system *system, const uint32_t *copies, uint32
     count = gxsp_half_row(system, copies, i);
     for (t = 0; t < count; t++) {
         const uint32_t other = system->multigrid.edges.touched[t];
-        float *half = system->multigrid.edges.half[other], turned[9];
-        gxsp_transpose_block(half, turned);
+        float *half = system->multigrid.edges.half[other], transposed[9];
+        gxsp_transpose_block(half, transposed);
         for (p = 0; p < 4; p++) {
             const uint32_t number = system->multigrid.edges.parent[i][p];
             if (number > 0 && (!dirty || dirty[pairs->node[number]] || dirty[pairs->node[other]])) {
                 const uint32_t entry = gxsp_pair_entry(pairs, next, number, other);
-                gxsp_add_scaled(weight[p], entry & 1 ? turned : half, next->block + 9 * (size_t)(entry >> 1));
+                gxsp_add_scaled(weight[p], entry & 1 ? transposed : half, next->block + 9 * (size_t)(entry >> 1));
             }
         }
-        memset(half, 0, sizeof turned);
+        memset(half, 0, sizeof transposed);
     }
 }
 
@@ -5721,9 +5728,9 @@ static void gxsp_coarse_elements(gxsp_system *system, const uint8_t *dirty) {
     }
     for (i = 0; i < next->n; i++)
         if (!dirty || dirty[i]) {
-            float *own = next->block + 9 * (size_t)next->start[i], turned[9];
-            gxsp_transpose_block(own, turned);
-            gxsp_add_scaled(1, turned, own);
+            float *own = next->block + 9 * (size_t)next->start[i], transposed[9];
+            gxsp_transpose_block(own, transposed);
+            gxsp_add_scaled(1, transposed, own);
         }
 }
 
@@ -5760,12 +5767,12 @@ static void gxsp_coarsen(const gxsp_level *level, gxsp_level *next, gxsp_pairs *
             for (t = 0; t < count && level->parent[i][a] != GXSP_NONE; t++) {
                 const uint32_t row = level->parent[i][a], column = pairs->node[t];
                 const float weight = level->weight[i][a], *half = pairs->half[column];
-                float turned[9];
+                float transposed[9];
                 if (row <= column)
                     gxsp_add_scaled(weight, half, next->block + 9 * (size_t)gxsp_find_entry(next, row, column));
                 if (row < column) continue;
-                gxsp_transpose_block(half, turned);
-                gxsp_add_scaled(weight, turned, next->block + 9 * (size_t)gxsp_find_entry(next, column, row));
+                gxsp_transpose_block(half, transposed);
+                gxsp_add_scaled(weight, transposed, next->block + 9 * (size_t)gxsp_find_entry(next, column, row));
             }
     }
 }
@@ -5990,18 +5997,18 @@ static int gxsp_coarse_numbers(gxsp_system *system, double rate) {
 static void gxsp_assemble_following(gxsp_system *system, uint32_t p, uint32_t q, int same, const float *block) {
     gxsp_level *fine = &system->multigrid.levels[0];
     uint32_t a[4], b[4];
-    float wa[4], wb[4], turned[9];
+    float wa[4], wb[4], transposed[9];
     const int as = gxsp_corner_masters(system, p, a, wa), bs = gxsp_corner_masters(system, q, b, wb);
     int i, j;
-    gxsp_transpose_block(block, turned);
+    gxsp_transpose_block(block, transposed);
     for (i = 0; i < as; i++)
         for (j = 0; j < bs; j++) {
             const uint32_t low = a[i] < b[j] ? a[i] : b[j], high = a[i] < b[j] ? b[j] : a[i];
             float *to = fine->block + 9 * (size_t)gxsp_find_entry(fine, low, high);
-            if (same && a[i] > b[j]) /* its mirror comes by itself */
+            if (same && a[i] > b[j]) /* its mirror is added in its own turn */
                 continue;
-            gxsp_add_scaled(wa[i] * wb[j], a[i] <= b[j] ? block : turned, to);
-            if (a[i] == b[j] && !same) gxsp_add_scaled(wa[i] * wb[j], turned, to);
+            gxsp_add_scaled(wa[i] * wb[j], a[i] <= b[j] ? block : transposed, to);
+            if (a[i] == b[j] && !same) gxsp_add_scaled(wa[i] * wb[j], transposed, to);
         }
 }
 
@@ -6027,7 +6034,7 @@ static void gxsp_assemble_block(gxsp_system *system, const gxsp_chunk *chunk, ui
             gxsp_add_lane(block, l, entry != GXSP_NONE && i > j, masses[l], to);
             if (entry == GXSP_NONE)
                 gxsp_assemble_following(system, i, j, p == q, own);
-            else if (p != q && i == j) /* two corners that follow one copy */
+            else if (p != q && i == j) /* both corners follow one copy */
                 gxsp_add_lane(block, l, 1, masses[l], to);
         }
     }
@@ -6348,21 +6355,22 @@ static void gxsp_v_cycle(gxsp_system *system, double rate, double energy) {
 /* A lane whose element goes, comes or is replaced */
 typedef struct gxsp_edit {
     uint32_t chunk, lane, group;
-    uint32_t element; /* of the change: what takes the lane; GXSP_NONE: nothing does */
+    uint32_t element; /* of the change, that takes the lane; GXSP_NONE: none does */
 } gxsp_edit;
 
 typedef struct gxsp_renewal {
     gxsp_system *system;
     gxsp_pool *scratch;
     const gxs_change *change;
-    size_t before;                           /* copies so far */
-    uint32_t *successor;                     /* before: what a copy is from now on; GXSP_NONE: it is no more */
-    uint8_t *touched;                        /* change->copy_count: an element around the copy has gone or come */
-    gxsp_edit *edits;                        /* hole_count; then, as holes of new chunks, what is placed elsewhere */
-    uint32_t edit_count, placed_count;       /* placed: of elements that took no hole */
-    uint32_t *left, *left_class, left_count; /* elements of the change that take no hole, and what they are alike in */
-    uint8_t *dirty;                          /* by node of level 1 so far: some that follow it are touched */
-    uint8_t *alike;                          /* change->copy_count: the copy follows what it followed */
+    size_t before;       /* copies so far */
+    uint32_t *successor; /* before: new number of a copy; GXSP_NONE: it is gone */
+    uint8_t *touched;    /* change->copy_count: an element around the copy goes or comes */
+    gxsp_edit *edits;    /* edit_count lanes of changed groups; then placed_count lanes of further elements */
+    uint32_t edit_count, placed_count;       /* see edits */
+    uint32_t *left, *left_class, left_count; /* left_count elements of the change that take no lane of their group, and
+                                                their classes */
+    uint8_t *dirty; /* by node of level 1 before the update: some of its followers are touched */
+    uint8_t *alike; /* change->copy_count: the copy follows the same copies as before */
 } gxsp_renewal;
 
 /* Groups that change: a bit for each, indexed by the low bits of their numbers */
@@ -6481,7 +6489,7 @@ static void gxsp_empty_lane(const gxsp_chunk *chunk, uint32_t lane) {
     chunk->groups[lane] = GXSP_NONE;
     rest->weight[l] = rest->mass[l] = 0;
     for (k = 0; k < 9 && chunk->gradients; k++)
-        chunk->gradients[lane / GXSP_LANES].entry[k][l] = 0; /* wherever its corners are: F = 1 */
+        chunk->gradients[lane / GXSP_LANES].entry[k][l] = 0; /* F = 1 wherever its corners are */
 }
 
 /* A new chunk at the end. No block is in use, but there is memory for all that a chunk can have. */
@@ -6533,7 +6541,7 @@ static void gxsp_place_class(gxsp_renewal *update, uint32_t class_index) {
             lane = 0;
             if (!gxsp_open_chunk(system, class_index)) return;
         }
-        /* its other lanes are of no weight, but of a material there is */
+        /* its other lanes have no weight, but a valid material */
         if (lane == system->mesh.chunks[c].block_count * GXSP_LANES) {
             for (l = 0; l < GXSP_LANES; l++)
                 system->mesh.chunks[c].rest[lane / GXSP_LANES].material[l] =
@@ -6716,7 +6724,7 @@ static void gxsp_touch_followers(gxsp_renewal *update) {
             update->alike[copy] = (uint8_t)gxsp_follows_alike(
                 update, &system->model.followers[system->model.follower[origin >> 1]], &change->constraints[i]);
     }
-    for (i = 0; i < system->model.follower_count; i++) { /* as they were */
+    for (i = 0; i < system->model.follower_count; i++) { /* followers before the update */
         const uint32_t copy = system->model.followers[i].copy;
         if (update->successor[copy] != GXSP_NONE && update->alike[update->successor[copy]]) continue;
         for (k = -1; k < 4; k++) {
@@ -6727,7 +6735,7 @@ static void gxsp_touch_followers(gxsp_renewal *update) {
                     update->dirty[system->multigrid.levels[0].parent[other][q]] = 1;
         }
     }
-    for (i = 0; i < change->constraint_count; i++) /* as they are */
+    for (i = 0; i < change->constraint_count; i++) /* followers from now on */
         for (k = -1; k < 4 && !update->alike[change->constraints[i].copy]; k++) {
             const uint32_t other = k < 0 ? change->constraints[i].copy : change->constraints[i].master[k],
                            origin = change->origins[other] >> 1;
@@ -6859,7 +6867,8 @@ static uint32_t gxsp_number_dirty(gxsp_renewal *update, uint32_t *forest, uint32
         if (*parent == GXSP_NONE || !update->dirty[*parent]) continue;
         root = gxsp_root(forest, slot);
         if (root != slot)
-            *parent = fine->parent[root / 4][root % 4]; /* roots come first in their tree: it has its number */
+            *parent = fine->parent[root / 4][root % 4]; /* roots come first in their tree: the root has its number
+                                                           already */
         else if (kept[*parent]) {
             from[count - before] = *parent;
             *parent = count++;
@@ -6959,7 +6968,7 @@ static void gxsp_renew_levels(gxsp_renewal *update) {
     if (!scratch->failed && !system->multigrid.pool.failed && !system->pool.failed && system->coarse.rate >= 0 &&
         (system->coarse.stiffness > 0 || system->coarse.worn || gxsp_coarse_ends(system) ||
          gxsp_most_are_dirty(system, dirty) || !gxsp_renew_numbers(update, &before, dirty)))
-        /* all numbers are made anew by the next step; springs and contact are not known any more */
+        /* the next step makes all numbers anew; springs and contact are no longer known */
         system->coarse.rate = -1;
     gxsp_release_to(&old, NULL);
 }
@@ -7310,7 +7319,7 @@ static void gxsp_choose_leads(const gxsp_problem *problem) {
             joined = first;
         }
     }
-    for (p = 0; p < problem->system->model.component_count; p++) /* who leads comes first */
+    for (p = 0; p < problem->system->model.component_count; p++) /* leads come first */
         components[p].lead = components[components[p].lead].lead;
 }
 
@@ -7334,7 +7343,7 @@ static void gxsp_evaluate(const gxsp_problem *problem, const double *from, int n
         double *energies = gxsp_lead_of(problem->system, gxsp_point_copy(point))->energies;
         energies[0] += pull.energy;
         energies[2] += fabs(pull.energy);
-        for (c = 0; c < 3; c++) /* the gap of a spring is a small difference of positions */
+        for (c = 0; c < 3; c++) /* the gap of a spring is a small difference of large positions */
             energies[2] += fabs(pull.force[c]) * (fabs(point->position[c]) + fabs(pull.position[c]));
         for (k = 0; k < 4; k++)
             for (c = 0; c < 3 && !problem->system->state.still[point->copy[k]]; c++)
@@ -7635,7 +7644,7 @@ static int gxsp_conjugate_gradients(gxsp_problem *problem) {
         const double curvature = gxsp_product(system, rate, system->vectors.search, system->vectors.product),
                      before = rho;
         if (!gxsp_finite(curvature) || !gxsp_finite(rho)) return 0;
-        if (curvature <= 0 || rho <= 0) { /* of projected Hessians: rounding is all that is left */
+        if (curvature <= 0 || rho <= 0) { /* with a projected Hessian: only rounding is left */
             problem->indefinite = 1;
             break;
         }
@@ -7690,7 +7699,7 @@ static int gxsp_coarse_pays(gxsp_system *system, double rate) {
  * cost. */
 static int gxsp_prepare(gxsp_problem *problem) {
     gxsp_system *system = problem->system;
-    int other; /* than the rate of the coarse matrices */
+    int other; /* the rate differs from that of the coarse matrices */
     if (system->multigrid.fine) {
         gxsp_assemble(system, system->model.scale * problem->rate);
         if (!gxsp_invert_fine(system)) return 0;
@@ -7890,7 +7899,7 @@ static void gxsp_choose_sleepers(gxsp_problem *problem, const double *displaceme
         gxsp_component *component = &system->model.components[p];
         const uint32_t state = (component->state & ~GXSP_ASLEEP) | (component->resting ? GXSP_ASLEEP : 0);
         changed |= state != component->state;
-        system->coarse.worn |= (component->state & ~state & GXSP_ASLEEP) != 0; /* its matrices are old */
+        system->coarse.worn |= (component->state & ~state & GXSP_ASLEEP) != 0; /* its coarse matrices are old */
         component->state = state;
     }
     if (!changed && system->state.still_known) return;
@@ -8291,7 +8300,7 @@ static void gxsp_begin(gxsp_problem *problem, const double *velocity) {
     gxsp_system *system = problem->system;
     const gxs_step_desc *step = problem->step;
     const double *displacement = problem->given;
-    /* s; the rest of the rate is mass damping's */
+    /* s; mass damping makes up the rest of the rate */
     const double lead = problem->speed > 0 ? problem->speed / problem->rate : 0;
     size_t k;
     system->state.base_known = system->state.base_known && !step->targets &&
@@ -8301,7 +8310,7 @@ static void gxsp_begin(gxsp_problem *problem, const double *velocity) {
         double speed = problem->mean[0] * velocity[k];
         if (problem->mean[1] < 0) speed += problem->mean[1] * step->previous_velocity[k];
         system->vectors.target[k] = gxsp_mean(problem, displacement, k) + lead * speed;
-        /* what a held copy is accelerated by acts on its neighbours */
+        /* the acceleration of a held copy acts on its neighbours */
         if (system->state.still[k / 3] && !system->model.held[k / 3]) system->vectors.target[k] = displacement[k];
     }
     gxsp_begin_damping(problem);
@@ -8378,7 +8387,7 @@ static gx_result gxsp_newton(gxsp_problem *problem) {
         if (!gxsp_find_direction(problem) || !gxsp_line_search(problem)) break;
         ++*done;
     }
-    /* no further: what there is after a first success is lower than the start */
+    /* no further progress; after a first success the state is lower than the start */
     if (problem->report.stop != GXS_STOP_SECONDS) problem->report.stop = GXS_STOP_ROUNDING;
     return *done > 0 || problem->report.stop == GXS_STOP_SECONDS ? GX_OK : GX_ERROR_DIVERGED;
 }
@@ -8488,7 +8497,7 @@ static gx_result gxsp_minimise(gxsp_problem *problem) {
     gxsp_translate_base(problem);
     gxsp_limit_energies(problem, gxsp_trial(system), 1);
     if (system->state.base_known && problem->step->integrator != GXS_MIDPOINT && gxsp_count_risen(system) == 0)
-        return GX_OK; /* lower even without the kinetic energy that staying at base would take */
+        return GX_OK; /* lower than base even without the kinetic energy that staying there would take */
     if (gxsp_bring_down(problem) > 0) result = gxsp_newton(problem);
     return result;
 }
@@ -8565,7 +8574,7 @@ static void gxsp_find_second_half(const gxsp_problem *problem) {
     uint32_t p;
     gxsp_find_base(problem, gxsp_trial(system));
     for (i = 0; i < count; i++) system->vectors.direction[i] = system->vectors.current[i] - gxsp_trial(system)[i];
-    gxsp_clear_components(system); /* nothing does if none is loose */
+    gxsp_clear_components(system); /* nothing else does if none is loose */
     gxsp_remove_momentum(system, system->vectors.direction);
     for (p = 0; p < system->model.component_count; p++)
         memcpy(system->model.components[p].drift, system->model.components[p].sum,
@@ -8581,7 +8590,7 @@ static void gxsp_find_second_half(const gxsp_problem *problem) {
         system->vectors.direction[i] = system->model.components[system->model.component[i / 3]].state == 0
                                          ? system->vectors.direction[i]
                                          : gxsp_trial(system)[i] - system->vectors.current[i];
-    for (p = 0; p < system->model.component_count; p++) { /* a drift has its own part of the kinetic energy */
+    for (p = 0; p < system->model.component_count; p++) { /* a drift has its own share of the kinetic energy */
         gxsp_component *component = &system->model.components[p];
         if (component->state == 0)
             system->model.components[component->lead].low +=
@@ -8604,7 +8613,7 @@ static void gxsp_bound_gain(gxsp_problem *problem) {
     size_t i, left = 1;
     uint32_t p;
     int trial;
-    /* which begin to act anywhere */
+    /* springs and contact may begin to act anywhere */
     if (!problem->based || problem->step->spring_count + problem->step->point_count > 0) {
         gxsp_find_base(problem, gxsp_trial(system));
         gxsp_evaluate(problem, gxsp_trial(system), 0, system->vectors.force);
@@ -8753,7 +8762,8 @@ static gx_result gxsp_check_model(const gxs_model *model, gx_failure *failure) {
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, SIZE_MAX);
     if (model->copy_count == 0 || model->element_count == 0 || model->material_count == 0)
         return gxsp_fail(failure, GX_ERROR_EMPTY, SIZE_MAX);
-    /* 1024: no array takes more bytes per object, so sizes cannot overflow; elements have four slots at most */
+    /* no array takes more than 1024 bytes per object, so that sizes cannot overflow; an element has at most four slots
+     */
     if (model->copy_count >= UINT32_MAX / 4 || model->element_count >= UINT32_MAX / 4 ||
         model->material_count >= UINT32_MAX || model->copy_count >= SIZE_MAX / 1024 ||
         model->element_count >= SIZE_MAX / 1024 || model->material_count >= SIZE_MAX / 1024 ||
@@ -9009,7 +9019,7 @@ GXFEM_API gx_result gxs_solver_linearise(gxs_solver *solver, const double *displ
     pass.rate = system->model.scale * rate;
     pass.from = displacement;
     pass.exact = exact != 0;
-    memset(system->state.chunk_still, 0, system->mesh.chunk_count); /* what sleeps is part of it */
+    memset(system->state.chunk_still, 0, system->mesh.chunk_count); /* sleeping components are included */
     gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_linearise, &pass);
     gxsp_mark_still(system);
     system->state.product_rate = gxsp_tangents_finite(system) ? rate : -1;
@@ -9293,7 +9303,7 @@ GXFEM_API gx_result gxs_model_hessian_product(const gxs_model *model, const doub
         gxsp_tangent_make(group.kind, &group.rest, group.gradients, 1, 0, &group.state, &of, &tangent, &general);
         gxsp_group_gather(&group, direction, x);
         for (k = 0; k < 12; k++)
-            GXSP_EACH_LANE(l) from[k][l] = (float)(x[k][l] - x[k % 3][l]); /* of translations exactly 0 */
+            GXSP_EACH_LANE(l) from[k][l] = (float)(x[k][l] - x[k % 3][l]); /* exactly 0 for translations */
         memset(to, 0, sizeof to);
         gxsp_kind_product(group.kind, &tangent, NULL, &general, 1, from, to);
         for (k = 0; k < 12; k++) GXSP_EACH_LANE(l) x[k][l] = (double)to[k][l];
@@ -9363,7 +9373,8 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
     memset(to, 0, sizeof to);
     rest.weight[0] = 1;
     memset(gradients, 0, sizeof gradients);
-    gradients[0][0] = gradients[4][0] = gradients[8][0] = 1; /* u_i - u_0 are the columns of dF, forces those of dP */
+    gradients[0][0] = gradients[4][0] = gradients[8][0] = 1; /* u_i - u_0 are the columns of dF, the forces those of dP
+                                                              */
     (void)gxsp_tangent_begin(material->kind, &state, NULL, &of);
     gxsp_tangent_make(material->kind, &rest, gradients, 1, 0, &state, &of, &tangent, &general);
     for (k = 0; k < 3; k++)
