@@ -804,9 +804,9 @@ static inline float gxsp_rsqrt(float x) {
     return y * (1.5f - 0.5f * x * y * y);
 }
 
-/* x - log(1 + x) for x >= -3/4 without cancellation. 1 + x = 2^k (1 + w), 1 + w in [sqrt 1/2, sqrt 2); with z = w / (2
- * + w) w - log(1 + w) = w z - 2 z^3 (1/3 + z^2/5 + z^4/7 + ...), |z| < 0.172: the first term left out is below 1e-17
- * w^2. */
+/* x - log(1 + x) for x >= -3/4 without cancellation. 1 + x = 2^k (1 + w), 1 + w in [sqrt 1/2, sqrt 2).
+ * With z = w / (2 + w): w - log(1 + w) = w z - 2 z^3 (1/3 + z^2/5 + z^4/7 + ...), |z| < 0.172.
+ * The first term left out is below 1e-17 w^2. */
 static inline double gxsp_log_rest(double x) {
     const double y = 1 + x;
     uint64_t bits, exponent;
@@ -8228,11 +8228,13 @@ static int gxsp_line_search(gxsp_problem *problem) {
 
 /* In: the step and the state at its start. Out: rate, speed, target and the load of damping. */
 
-/* The step's integrator as rate and target: the equation of motion is M rate (u - target) = f - dU/du. With v = speed
- * (u - mean) BDF1      speed = 1 / dt, mean = u_n;   rate = speed^2, target = mean + v_n / speed BDF2      r = dt / dt
- * of the step before; a0 = (1 + 2 r) / (1 + r), a1 = -(1 + r), a2 = r^2 / (1 + r): speed = a0 / dt, mean = -(a1 u_n +
- * a2 u_n-1) / a0, and the same of velocities: target = mean + mean of v / speed midpoint  u is the displacement at half
- * the step: BDF1 of half the step, finished in gxsp_finish static    speed = 0, rate = 1 / dt^2 or 0, target = u_n */
+/* The step's integrator as rate and target: the equation of motion is M rate (u - target) = f - dU/du, and
+ * v = speed (u - mean).
+ *   BDF1      speed = 1 / dt, mean = u_n; rate = speed^2, target = mean + v_n / speed
+ *   BDF2      r = dt / dt of the step before; a0 = (1 + 2 r) / (1 + r), a1 = -(1 + r), a2 = r^2 / (1 + r);
+ *             speed = a0 / dt, mean = -(a1 u_n + a2 u_n-1) / a0; target = mean + mean of v / speed
+ *   midpoint  u is the displacement at half the step: BDF1 of half the step, finished in gxsp_finish
+ *   static    speed = 0, rate = 1 / dt^2 or 0, target = u_n */
 static void gxsp_choose_integrator(gxsp_problem *problem) {
     const gxs_step_desc *step = problem->step;
     double dt = step->integrator == GXS_MIDPOINT ? 0.5 * step->dt : step->dt;
